@@ -1,0 +1,30 @@
+# Everything Duet takes from the distribution, found in one place.
+
+# Debian ships no ProtobufConfig.cmake: module mode, and before gRPC, which would look for it.
+find_package(Protobuf REQUIRED)
+find_package(Threads REQUIRED)
+find_package(absl CONFIG REQUIRED)
+find_package(gRPC CONFIG REQUIRED)
+find_package(nlohmann_json CONFIG REQUIRED)
+find_package(CLI11 CONFIG REQUIRED)
+
+if(NOT DUET_CLIENT_ONLY)
+  find_package(prometheus-cpp CONFIG REQUIRED)
+  find_package(Torch CONFIG REQUIRED)
+  # LibTorch runs on whatever libblas is installed; the reference one is 30 to 60 times slower, so
+  # OpenBLAS is linked by name.
+  find_library(DUET_OPENBLAS openblas REQUIRED)
+
+  # LibTorch's headers, seen by the few targets that need them.
+  add_library(duet_torch INTERFACE)
+  add_library(duet::torch ALIAS duet_torch)
+  target_link_libraries(duet_torch INTERFACE ${DUET_OPENBLAS} ${TORCH_LIBRARIES})
+  target_include_directories(duet_torch SYSTEM INTERFACE ${TORCH_INCLUDE_DIRS})
+
+  if(DUET_BUILD_TESTS)
+    find_package(GTest CONFIG REQUIRED)
+  endif()
+  if(DUET_BUILD_BENCHMARKS)
+    find_package(benchmark CONFIG REQUIRED)
+  endif()
+endif()

@@ -1,0 +1,27 @@
+# duet_proto_library(NAME proto IMPORT_DIR dir PROTOS a/b.proto ... [GRPC c/d.proto ...])
+# Generates C++ for every proto, and gRPC stubs (with mocks) for those in GRPC.
+function(duet_proto_library)
+  cmake_parse_arguments(A "" "NAME;IMPORT_DIR" "PROTOS;GRPC" ${ARGN})
+  set(out ${CMAKE_CURRENT_BINARY_DIR}/gen)
+  file(MAKE_DIRECTORY ${out})
+  set(sources "")
+  foreach(proto IN LISTS A_PROTOS A_GRPC)
+    string(REGEX REPLACE "\\.proto$" "" stem ${proto})
+    set(generated ${out}/${stem}.pb.cc ${out}/${stem}.pb.h)
+    set(grpc_arguments "")
+    if(proto IN_LIST A_GRPC)
+      list(APPEND generated ${out}/${stem}.grpc.pb.cc ${out}/${stem}.grpc.pb.h)
+      set(grpc_arguments --grpc_out=${out}
+          --plugin=protoc-gen-grpc=$<TARGET_FILE:gRPC::grpc_cpp_plugin>)
+    endif()
+    add_custom_command(OUTPUT ${generated}
+      COMMAND protobuf::protoc -I ${A_IMPORT_DIR} --cpp_out=${out} ${grpc_arguments} ${proto}
+      DEPENDS ${A_IMPORT_DIR}/${proto} protobuf::protoc VERBATIM)
+    list(APPEND sources ${generated})
+  endforeach()
+  add_library(duet_${A_NAME} STATIC ${sources})
+  add_library(duet::${A_NAME} ALIAS duet_${A_NAME})
+  target_include_directories(duet_${A_NAME} SYSTEM PUBLIC
+    $<BUILD_INTERFACE:${out}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_link_libraries(duet_${A_NAME} PUBLIC gRPC::grpc++ protobuf::libprotobuf)
+endfunction()

@@ -1,0 +1,59 @@
+# How every target of the project is made: explicit sources, aliases, no global flags.
+include(DuetWarnings)
+
+# duet_library(NAME motion SOURCES a.cc b.cc [DEPS duet::x absl::y] [PRIVATE_DEPS ...])
+# Makes duet_<name> with the alias duet::<name>; headers are included from the top folder.
+function(duet_library)
+  cmake_parse_arguments(A "" "NAME" "SOURCES;DEPS;PRIVATE_DEPS" ${ARGN})
+  add_library(duet_${A_NAME} STATIC ${A_SOURCES})
+  add_library(duet::${A_NAME} ALIAS duet_${A_NAME})
+  target_include_directories(duet_${A_NAME} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+                                                   $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_link_libraries(duet_${A_NAME} PUBLIC ${A_DEPS} PRIVATE ${A_PRIVATE_DEPS})
+  duet_enable_warnings(duet_${A_NAME})
+endfunction()
+
+# duet_program(NAME duet-server SOURCES main.cc DEPS ...): an executable in <build>/bin.
+function(duet_program)
+  cmake_parse_arguments(A "" "NAME" "SOURCES;DEPS" ${ARGN})
+  add_executable(${A_NAME} ${A_SOURCES})
+  target_link_libraries(${A_NAME} PRIVATE ${A_DEPS})
+  target_include_directories(${A_NAME} PRIVATE ${PROJECT_SOURCE_DIR})
+  duet_enable_warnings(${A_NAME})
+endfunction()
+
+# duet_test(NAME motion_test SOURCES a_test.cc DEPS ... [LABELS ...] [ENVIRONMENT ...] [TIMEOUT s])
+# One CTest entry a test program; GoogleTest's main and mocks are linked.
+function(duet_test)
+  cmake_parse_arguments(A "" "NAME;TIMEOUT" "SOURCES;DEPS;LABELS;ENVIRONMENT" ${ARGN})
+  add_executable(${A_NAME} ${A_SOURCES})
+  target_link_libraries(${A_NAME} PRIVATE ${A_DEPS} GTest::gmock GTest::gtest_main)
+  target_include_directories(${A_NAME} PRIVATE ${PROJECT_SOURCE_DIR})
+  set_target_properties(${A_NAME} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
+  duet_enable_warnings(${A_NAME})
+  add_test(NAME ${A_NAME} COMMAND ${A_NAME})
+  if(NOT A_TIMEOUT)
+    set(A_TIMEOUT 300)
+  endif()
+  set_tests_properties(${A_NAME} PROPERTIES TIMEOUT ${A_TIMEOUT} LABELS "${A_LABELS}"
+    ENVIRONMENT "DUET_SOURCE_DIR=${PROJECT_SOURCE_DIR};DUET_BIN_DIR=${CMAKE_BINARY_DIR}/bin;OMP_NUM_THREADS=1;${A_ENVIRONMENT}")
+endfunction()
+
+# duet_embed_file(TARGET symbol path): links a file's bytes into TARGET as
+#   extern "C" const unsigned char <symbol>[], <symbol>_end[];
+function(duet_embed_file target symbol path)
+  set(stub ${CMAKE_CURRENT_BINARY_DIR}/${symbol}.S)
+  file(WRITE ${stub}.in
+"    .section .rodata
+    .global ${symbol}, ${symbol}_end
+    .balign 64
+${symbol}:
+    .incbin \"${path}\"
+${symbol}_end:
+    .byte 0
+    .section .note.GNU-stack,\"\",@progbits
+")
+  configure_file(${stub}.in ${stub} COPYONLY)
+  set_source_files_properties(${stub} PROPERTIES OBJECT_DEPENDS ${path})
+  target_sources(${target} PRIVATE ${stub})
+endfunction()

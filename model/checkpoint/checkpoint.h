@@ -1,0 +1,36 @@
+#ifndef DUET_MODEL_CHECKPOINT_CHECKPOINT_H_
+#define DUET_MODEL_CHECKPOINT_CHECKPOINT_H_
+
+#include <filesystem>
+#include <string_view>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "model/checkpoint/manifest.h"
+#include "model/checkpoint/safetensors.h"
+
+namespace duet {
+
+// A generator at rest: data only, never code.
+struct Checkpoint {
+  Manifest manifest;
+  std::vector<Tensor> tensors;  // in the order of ExpectedTensors(manifest)
+};
+
+// Checks manifest and weights against each other: size, SHA-256, and exactly the tensors of
+// ExpectedTensors, all finite.
+absl::StatusOr<Checkpoint> ParseCheckpoint(std::string_view manifest_json,
+                                           std::string_view weights);
+
+// Reads <folder>/manifest.json and the weights beside it. Refuses symbolic links, names that leave
+// the folder, files over the size cap. NOT_FOUND when a file is absent.
+absl::StatusOr<Checkpoint> ReadCheckpoint(const std::filesystem::path& folder);
+
+// Writes a checkpoint folder whole or not at all (a temporary folder beside it, then a rename);
+// fills in manifest.weights. ALREADY_EXISTS when the folder exists.
+absl::Status WriteCheckpoint(const std::filesystem::path& folder, Checkpoint checkpoint);
+
+}  // namespace duet
+
+#endif  // DUET_MODEL_CHECKPOINT_CHECKPOINT_H_

@@ -1,0 +1,94 @@
+#ifndef DUET_MODEL_CHECKPOINT_MANIFEST_H_
+#define DUET_MODEL_CHECKPOINT_MANIFEST_H_
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "model/engine/model_description.h"
+
+namespace duet {
+
+// The version of the checkpoint format that this code writes. Older ones are read, newer refused.
+inline constexpr int kCheckpointFormatVersion = 1;
+
+// Sizes of the generator (paper section 3.1, 3.2). All else follows from skeleton and classes.
+struct GeneratorArchitecture {
+  // "paper": the sixth slice is the whole body with the label vector; "released": the label alone.
+  std::string variant = "paper";
+  // The whole-body slice also gets the follower's start (see StartFeatureCount).
+  bool follower_start = false;
+  // A slice's fully connected layer has its width + this many outputs; 0 leaves the layer out.
+  int slice_features = 50;
+  // LSTM units of each slice in each direction. The decoder has slices x this in each direction.
+  int encoder_hidden = 40;
+  // Rows of W2 in the attention score (Eq. 2).
+  int attention = 128;
+};
+
+// Where the weights are and what they must hash to.
+struct WeightsFile {
+  std::string file = "weights.safetensors";
+  uint64_t bytes = 0;
+  std::string sha256;  // lower-case hex
+};
+
+// manifest.json of a checkpoint folder <name>/<version>/.
+struct Manifest {
+  int format_version = kCheckpointFormatVersion;
+  ModelDescription model;
+  GeneratorArchitecture generator;
+  WeightsFile weights;
+  std::string git_revision;
+  std::string created;                          // RFC 3339
+  std::map<std::string, std::string> training;  // settings and data of the run, for people
+  std::map<std::string, double> metrics;        // "afd.kick": 0.61, ...
+};
+
+// Reads and writes manifest.json. Strict: unknown, missing, repeated or mistyped fields, sizes out
+// of range and inconsistent skeletons are INVALID_ARGUMENT, naming the field, what came and what
+// was wanted. `text` may come from anywhere.
+absl::StatusOr<Manifest> ParseManifest(std::string_view text);
+std::string SerializeManifest(const Manifest& manifest);
+
+// Slices of the generator: the skeleton's parts, then the whole body.
+struct SliceShape {
+  std::string name;  // part name, or "whole_body"
+  int input = 0;     // values a frame
+  int features = 0;  // after the fully connected layer
+};
+std::vector<SliceShape> SliceShapes(const Manifest& manifest);
+
+// Values that describe a follower start: root (3), pose relative to the root (3 x joints), and two
+// flags (root known, pose known).
+int StartFeatureCount(const Skeleton& skeleton);
+
+// A tensor that a checkpoint must hold, float32.
+struct TensorSpec {
+  std::string name;
+  std::vector<int64_t> shape;
+};
+
+// The one table of tensor names and shapes, fixed by the manifest:
+//   encoder.<slice>.fc.weight        [features, input]     (absent when slice_features is 0)
+//   encoder.<slice>.fc.bias          [features]
+//   encoder.<slice>.<dir>.weight_ih  [4 E, features]       dir: forward, backward; gates i f g o
+//   encoder.<slice>.<dir>.weight_hh  [4 E, E]
+//   encoder.<slice>.<dir>.bias       [4 E]
+//   decoder.<dir>.attention_encoded  [A, S 2 E]            U of W2 = [U V]
+//   decoder.<dir>.attention_state    [A, S E]              V
+//   decoder.<dir>.attention_score    [A]                   w1
+//   decoder.<dir>.weight_ih          [4 S E, S 2 E]
+//   decoder.<dir>.weight_hh          [4 S E, S E]
+//   decoder.<dir>.bias               [4 S E]
+//   output.weight                    [3 J, S 2 E]
+//   output.bias                      [3 J]
+// with E = encoder_hidden, S = slices, A = attention, J = joints.
+std::vector<TensorSpec> ExpectedTensors(const Manifest& manifest);
+
+}  // namespace duet
+
+#endif  // DUET_MODEL_CHECKPOINT_MANIFEST_H_

@@ -1,0 +1,72 @@
+#ifndef DUET_MODEL_ENGINE_CLIP_SYNTHESIS_H_
+#define DUET_MODEL_ENGINE_CLIP_SYNTHESIS_H_
+
+#include <optional>
+#include <vector>
+
+#include "model/engine/label_track.h"
+#include "model/engine/model_description.h"
+#include "model/engine/synthesizer.h"
+#include "model/motion/vec3.h"
+
+namespace duet {
+
+// A validated request: what one call asks of a model.
+struct ClipRequest {
+  std::vector<Vec3> leader;  // [frames, joints], the model's joint order, world metres, y up
+  double frame_rate_hz = 0;  // the caller's
+  LabelTrack labels;         // keyframes in the caller's frames
+  std::optional<FollowerStart> start;
+};
+
+// Turns a clip of any length into network windows and their results back into one motion.
+//
+// The leader is resampled to the model's rate and cut into overlapping windows no longer than the
+// network was trained for, spread evenly. Overlaps are cross-faded; where the model accepts a
+// follower start, each later window starts from the pose that the one before it reached. Frames at
+// the caller's rate are handed out as soon as no later window can change them.
+//
+//   ClipSynthesis clip(description, std::move(request));
+//   while (clip.HasNextWindow()) {
+//     SynthesisWindow window = clip.NextWindow();
+//     ... result = synthesizer.Synthesize({&window}) ...
+//     std::vector<Vec3> frames = clip.Accept(*result);   // [n, joints], n may be 0 but for the last
+//   }
+//
+// Cost:    time linear in the clip's length; memory beyond the leader bounded by one window.
+// Threads: not safe to call concurrently; no locks, no I/O.
+class ClipSynthesis {
+ public:
+  ClipSynthesis(const ModelDescription& model, ClipRequest request);
+
+  int window_count() const { return static_cast<int>(window_starts_.size()); }
+  int frame_count() const { return frame_count_; }
+
+  bool HasNextWindow() const { return next_window_ < window_count(); }
+  // The next window to evaluate. Calling it twice before Accept gives the same window.
+  SynthesisWindow NextWindow() const;
+  // Takes the result of NextWindow and returns the follower's frames that became final, at the
+  // caller's rate, following those returned before. Over all windows: exactly frame_count frames.
+  std::vector<Vec3> Accept(const std::vector<Vec3>& follower);
+
+ private:
+  // Frames of a window at the model's rate.
+  int WindowLength() const { return window_length_; }
+  void Blend(const std::vector<Vec3>& follower);
+  std::vector<Vec3> TakeFinalFrames();
+
+  ModelDescription model_;
+  ClipRequest request_;
+  int frame_count_;                  // caller's frames
+  int model_frames_;                 // the clip's frames at the model's rate
+  int window_length_;
+  std::vector<int> window_starts_;   // in model frames
+  int next_window_ = 0;
+  int next_frame_ = 0;               // the caller's next frame to hand out
+  int kept_from_ = 0;                // model frame of the first row of kept_
+  std::vector<Vec3> kept_;           // [n, joints] blended follower still needed, model rate
+};
+
+}  // namespace duet
+
+#endif  // DUET_MODEL_ENGINE_CLIP_SYNTHESIS_H_

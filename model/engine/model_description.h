@@ -1,0 +1,27 @@
+#ifndef DUET_MODEL_ENGINE_MODEL_DESCRIPTION_H_
+#define DUET_MODEL_ENGINE_MODEL_DESCRIPTION_H_
+
+#include <string>
+#include <vector>
+
+#include "model/motion/skeleton.h"
+
+namespace duet {
+
+// What a caller needs to know of a model: everything but its weights.
+struct ModelDescription {
+  std::string name;
+  int version = 0;  // 1 or more
+  std::string description;
+  Skeleton skeleton;
+  std::vector<std::string> classes;  // interaction classes, in the order of the label vector
+  double frame_rate_hz = 0;          // the network's own
+  int window_frames = 0;             // the longest window that the network was trained for
+  bool accepts_follower_start = false;
+
+  int class_count() const { return static_cast<int>(classes.size()); }
+};
+
+}  // namespace duet
+
+#endif  // DUET_MODEL_ENGINE_MODEL_DESCRIPTION_H_

@@ -1,0 +1,49 @@
+#ifndef DUET_MODEL_ENGINE_SYNTHESIZER_H_
+#define DUET_MODEL_ENGINE_SYNTHESIZER_H_
+
+#include <optional>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "absl/types/span.h"
+#include "model/engine/model_description.h"
+#include "model/motion/vec3.h"
+
+namespace duet {
+
+// Where the follower is at a window's first frame. World metres, y up.
+struct FollowerStart {
+  Vec3 root;
+  std::vector<Vec3> pose;  // empty (the root alone is known) or [joints]; pose[root joint] == root
+};
+
+// One network evaluation: at most window_frames frames at the model's frame rate and in its joint
+// order. World metres, y up.
+struct SynthesisWindow {
+  std::vector<Vec3> leader;   // [frames, joints], 2 frames or more
+  std::vector<float> labels;  // [frames, classes]
+  std::optional<FollowerStart> start;
+};
+
+// A follower's motion for one window: [frames, joints] in the leader's world, metres, y up.
+using WindowResult = absl::StatusOr<std::vector<Vec3>>;
+
+// A loaded model: the only thing that the server knows of the network.
+//
+// Threads: const methods are safe to call concurrently.
+class Synthesizer {
+ public:
+  virtual ~Synthesizer() = default;
+
+  virtual const ModelDescription& description() const = 0;
+
+  // Synthesises windows of any lengths together: standardise, network, inverse. Returns one result
+  // for each window, in order. A window whose result is not finite fails alone, with INTERNAL; an
+  // item's result does not depend on what else is in the batch (within 1e-5 m).
+  virtual std::vector<WindowResult> Synthesize(
+      absl::Span<const SynthesisWindow* const> windows) const = 0;
+};
+
+}  // namespace duet
+
+#endif  // DUET_MODEL_ENGINE_SYNTHESIZER_H_

@@ -1,0 +1,26 @@
+#ifndef DUET_MODEL_MOTION_COORDINATES_H_
+#define DUET_MODEL_MOTION_COORDINATES_H_
+
+#include "model/motion/vec3.h"
+
+namespace duet {
+
+enum class LengthUnit { kMetres, kMillimetres, kSbuNormalised };
+enum class UpAxis { kYUp, kZUp, kYDown };
+
+// How a file or a caller writes positions. Every combination is right-handed.
+//
+// kSbuNormalised is the anisotropic unit of the SBU Kinect Interaction data set
+// (X = 1.28 - 2.56 x, Y = 0.96 - 1.92 y, Z = 1.28 z metres); it implies kYDown.
+struct CoordinateFrame {
+  LengthUnit unit = LengthUnit::kMetres;
+  UpAxis up_axis = UpAxis::kYUp;
+};
+
+// From the caller's frame to metres, y up; and back. Exact inverses up to rounding.
+Vec3 ToWorld(const CoordinateFrame& frame, Vec3 position);
+Vec3 FromWorld(const CoordinateFrame& frame, Vec3 position);
+
+}  // namespace duet
+
+#endif  // DUET_MODEL_MOTION_COORDINATES_H_

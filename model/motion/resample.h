@@ -1,0 +1,28 @@
+#ifndef DUET_MODEL_MOTION_RESAMPLE_H_
+#define DUET_MODEL_MOTION_RESAMPLE_H_
+
+#include <vector>
+
+#include "model/motion/vec3.h"
+
+namespace duet {
+
+// Frames that a motion of `frames` at `from_hz` has at `to_hz`: enough to cover its whole duration,
+// so the last one may lie past the end. At least 2. Positive rates, frames >= 2.
+int ResampledFrameCount(int frames, double from_hz, double to_hz);
+
+// Writes the pose at a fractional frame, linearly between neighbours and held at both ends.
+// Shapes: positions [frames, joints], out [joints].
+void SampleLinear(const std::vector<Vec3>& positions, int joints, double frame, Vec3* out);
+
+// The same through a Catmull-Rom spline: continuous velocity, so that a reply at a higher rate than
+// the network's shows no kinks.
+void SampleCubic(const std::vector<Vec3>& positions, int joints, double frame, Vec3* out);
+
+// A whole motion at another rate (linear), ResampledFrameCount frames.
+std::vector<Vec3> Resample(const std::vector<Vec3>& positions, int joints, double from_hz,
+                           double to_hz);
+
+}  // namespace duet
+
+#endif  // DUET_MODEL_MOTION_RESAMPLE_H_

@@ -1,0 +1,49 @@
+#include "model/motion/standardise.h"
+
+#include <cmath>
+
+namespace duet {
+namespace {
+
+// The yaw of the left-to-right hip direction: the angle about +y that turns +x onto it.
+double HipYaw(Vec3 left_hip, Vec3 right_hip) {
+  const Vec3 across = right_hip - left_hip;
+  // Hips that coincide (a degenerate leader) have no direction: leave the clip unturned.
+  if (across.x == 0 && across.z == 0) return 0;
+  return std::atan2(-across.z, across.x);
+}
+
+}  // namespace
+
+Standardisation::Standardisation(const Skeleton& skeleton, const std::vector<Vec3>& leader,
+                                 YawDirection direction)
+    : joints_(skeleton.joint_count()) {
+  const double yaw = HipYaw(leader[static_cast<size_t>(skeleton.left_hip)],
+                            leader[static_cast<size_t>(skeleton.right_hip)]);
+  yaw_ = direction == YawDirection::kRemove ? -yaw : yaw;
+  const size_t joints = static_cast<size_t>(joints_);
+  for (size_t at = static_cast<size_t>(skeleton.root); at < leader.size(); at += joints) {
+    roots_.push_back(leader[at]);
+  }
+}
+
+std::vector<Vec3> Standardisation::Apply(const std::vector<Vec3>& world, int first_frame) const {
+  const size_t joints = static_cast<size_t>(joints_);
+  std::vector<Vec3> standard(world.size());
+  for (size_t i = 0; i < world.size(); ++i) {
+    standard[i] = RotateY(world[i] - roots_[static_cast<size_t>(first_frame) + i / joints], yaw_);
+  }
+  return standard;
+}
+
+std::vector<Vec3> Standardisation::Invert(const std::vector<Vec3>& standard,
+                                          int first_frame) const {
+  const size_t joints = static_cast<size_t>(joints_);
+  std::vector<Vec3> world(standard.size());
+  for (size_t i = 0; i < standard.size(); ++i) {
+    world[i] = RotateY(standard[i], -yaw_) + roots_[static_cast<size_t>(first_frame) + i / joints];
+  }
+  return world;
+}
+
+}  // namespace duet

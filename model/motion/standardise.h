@@ -1,0 +1,45 @@
+#ifndef DUET_MODEL_MOTION_STANDARDISE_H_
+#define DUET_MODEL_MOTION_STANDARDISE_H_
+
+#include <vector>
+
+#include "model/motion/skeleton.h"
+#include "model/motion/vec3.h"
+
+namespace duet {
+
+// Which way the yaw of the first frame is taken out.
+enum class YawDirection {
+  kRemove,         // the hips of frame 0 end on the +x axis
+  kAsReleasedCode  // the published preprocessing turns the wrong way; for exact comparison only
+};
+
+// The frame in which the network sees a clip: the leader's root at the origin in every frame, and
+// one constant yaw, such that the leader's left-to-right hip direction in frame 0 lies along +x,
+// so that the leader starts facing -z.
+//
+// Source: paper section 4 / released preprocessing. Invertible: the root track and yaw are kept.
+// Shapes: positions [frames, joints].
+class Standardisation {
+ public:
+  // Fits to the leader. `leader` holds at least one frame.
+  Standardisation(const Skeleton& skeleton, const std::vector<Vec3>& leader,
+                  YawDirection direction = YawDirection::kRemove);
+
+  // World to standard; a follower goes through the same transform as its leader. `first_frame`
+  // places a shorter run of frames within the leader's.
+  std::vector<Vec3> Apply(const std::vector<Vec3>& world, int first_frame = 0) const;
+  // Standard to world: the exact inverse of Apply.
+  std::vector<Vec3> Invert(const std::vector<Vec3>& standard, int first_frame = 0) const;
+
+  double yaw() const { return yaw_; }
+
+ private:
+  int joints_;
+  double yaw_;               // radians that Apply turns by, about +y
+  std::vector<Vec3> roots_;  // [frames] leader root in the world
+};
+
+}  // namespace duet
+
+#endif  // DUET_MODEL_MOTION_STANDARDISE_H_
