@@ -14,20 +14,23 @@ namespace duet {
 
 // Two people captured together, sorted into leader and follower.
 struct Sequence {
-  std::string id;                      // path below the data set's folder
-  int interaction_class = 0;           // index into Dataset::classes
-  std::vector<std::string> subjects;   // people in it, when the data set says
-  std::string leader_source;           // "index": the data set's index; "motion": the motion rule
-  ClipPair pair;                       // world metres, y up, joints in the skeleton's order
+  std::string id;                     // path below the data set's folder
+  int interaction_class = 0;          // index into Dataset::classes
+  std::vector<std::string> subjects;  // people in it, when the data set says
+  std::string leader_source;          // "index": the data set's index; "motion": the motion rule
+  ClipPair pair;                      // world metres, y up, joints in the skeleton's order
 };
 
 struct Dataset {
   std::string name;
   Skeleton skeleton;
   std::vector<std::string> classes;
+  // For each class: true where either person may lead, so that the two may be exchanged.
+  std::vector<bool> symmetric;
   double frame_rate_hz = 0;
   std::vector<Sequence> sequences;  // sorted by id
 
+  int class_count() const { return static_cast<int>(classes.size()); }
   // Every subject, sorted.
   std::vector<std::string> Subjects() const;
   // Frames of the longest sequence.
@@ -35,13 +38,13 @@ struct Dataset {
 };
 
 // Reads a folder of captures. The layout is recognised:
-//   SBU       sXXsYY/<class>/<sequence>/skeleton_pos.txt; classes 03 to 08 as kick, push, shake_hands,
-//             hug, exchange_object, punch; 15 frames a second
+//   SBU       sXXsYY/<class>/<sequence>/skeleton_pos.txt; classes 03 to 08 as kick, push,
+//             shake_hands, hug, exchange_object, punch; 15 frames a second
 //   K3HI      <class>/<sequence>.txt, 8 classes, 30 frames a second
 //   own data  dataset.json beside <class>/<sequence>.txt (docs/datasets.md)
-// The leader's side comes from index.tsv where it names one, else from the motion rule: the effector
-// (feet for kicks, hands otherwise) with the larger peak displacement relative to its own torso.
-// Errors: NOT_FOUND for a folder that is no data set, INVALID_ARGUMENT naming file and line.
+// The leader's side comes from index.tsv where it names one, else from the motion rule: the
+// effector (feet for kicks, hands otherwise) with the larger peak displacement relative to its own
+// torso. Errors: NOT_FOUND for a folder that is no data set, INVALID_ARGUMENT naming file and line.
 absl::StatusOr<Dataset> ReadDataset(const std::filesystem::path& folder);
 
 // Indices into Dataset::sequences.
@@ -50,11 +53,13 @@ struct Split {
   std::vector<int> test;
 };
 
-// Leave one subject out: test on every sequence with the subject in either place, train on the rest.
+// Leave one subject out: test on every sequence with the subject in either place, train on the
+// rest. Errors: NOT_FOUND for a subject that the data set does not have.
 absl::StatusOr<Split> LeaveSubjectOut(const Dataset& dataset, const std::string& subject);
 
-// Moves about `fraction` of each class from train to a validation set, chosen by `seed` alone.
-// Never looks at test.
+// Moves about `fraction` of each class from train to a validation set, chosen by `seed` alone; at
+// least one of each class and never the last of a class. Both come out sorted. `fraction` in [0,
+// 1). Never looks at test.
 std::vector<int> TakeValidation(const Dataset& dataset, double fraction, uint64_t seed,
                                 std::vector<int>* train);
 

@@ -1,0 +1,24 @@
+#include "model/dataset/dataset.h"
+
+#include <algorithm>
+#include <set>
+
+namespace duet {
+
+std::vector<std::string> Dataset::Subjects() const {
+  std::set<std::string> subjects;
+  for (const Sequence& sequence : sequences) {
+    subjects.insert(sequence.subjects.begin(), sequence.subjects.end());
+  }
+  return {subjects.begin(), subjects.end()};
+}
+
+int Dataset::LongestFrameCount() const {
+  int longest = 0;
+  for (const Sequence& sequence : sequences) {
+    longest = std::max(longest, sequence.pair.leader.frame_count());
+  }
+  return longest;
+}
+
+}  // namespace duet

@@ -1,0 +1,57 @@
+#include "model/dataset/layout.h"
+
+namespace duet {
+namespace {
+
+constexpr double kSbuFrameRateHz = 15;
+constexpr double kK3hiFrameRateHz = 30;
+
+struct ClassRow {
+  const char* name;
+  const char* folder;
+  bool symmetric;
+};
+
+// Both data sets share skeleton and units.
+DatasetLayout KinectLayout(const std::string& name, double frame_rate_hz,
+                           const std::vector<ClassRow>& rows) {
+  DatasetLayout layout;
+  layout.name = name;
+  layout.frame_rate_hz = frame_rate_hz;
+  layout.frame = {LengthUnit::kSbuNormalised, UpAxis::kYDown};
+  layout.skeleton = SbuSkeleton();
+  const std::vector<int> feet = {layout.skeleton.left_foot, layout.skeleton.right_foot};
+  const std::vector<int> hands = {layout.skeleton.Find("left_hand"),
+                                  layout.skeleton.Find("right_hand")};
+  for (const ClassRow& row : rows) {
+    const bool kick = std::string_view(row.name) == "kick";
+    layout.classes.push_back({row.name, row.folder, row.symmetric, kick ? feet : hands});
+  }
+  return layout;
+}
+
+}  // namespace
+
+DatasetLayout SbuLayout() {
+  return KinectLayout("sbu", kSbuFrameRateHz,
+                      {{"kick", "03", false},
+                       {"push", "04", false},
+                       {"shake_hands", "05", true},
+                       {"hug", "06", true},
+                       {"exchange_object", "07", true},
+                       {"punch", "08", false}});
+}
+
+DatasetLayout K3hiLayout() {
+  return KinectLayout("k3hi", kK3hiFrameRateHz,
+                      {{"approach", "approaching", false},
+                       {"depart", "departing", false},
+                       {"exchange_object", "exchanging", true},
+                       {"kick", "kicking", false},
+                       {"point", "pointing", false},
+                       {"punch", "punching", false},
+                       {"push", "pushing", false},
+                       {"shake_hands", "shaking", true}});
+}
+
+}  // namespace duet

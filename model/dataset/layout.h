@@ -1,0 +1,44 @@
+#ifndef DUET_MODEL_DATASET_LAYOUT_H_
+#define DUET_MODEL_DATASET_LAYOUT_H_
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "model/motion/coordinates.h"
+#include "model/motion/skeleton.h"
+
+namespace duet {
+
+// An interaction class of a data set and how its files are told apart.
+struct ClassLayout {
+  std::string name;
+  std::string folder;
+  bool symmetric = false;      // either person may lead
+  std::vector<int> effectors;  // joints whose motion tells the leader; empty: the index must
+};
+
+// What a data set's folder does not say itself: one value for each layout that ReadDataset knows.
+struct DatasetLayout {
+  std::string name;
+  double frame_rate_hz = 0;
+  CoordinateFrame frame;
+  Skeleton skeleton;
+  std::vector<ClassLayout> classes;
+};
+
+// SBU Kinect Interaction ("clean"): the six classes of the paper, folders 03 to 08.
+DatasetLayout SbuLayout();
+
+// K3HI in SBU's line layout. Rate and units are inferred, not documented by its authors.
+DatasetLayout K3hiLayout();
+
+// Parses the dataset.json of a data set of one's own (docs/datasets.md). Strict: unknown, missing
+// and mistyped fields, unknown joints and a skeleton that is no tree are INVALID_ARGUMENT, naming
+// the field, what came and what was wanted. `text` may come from anywhere.
+absl::StatusOr<DatasetLayout> ParseDatasetLayout(std::string_view text);
+
+}  // namespace duet
+
+#endif  // DUET_MODEL_DATASET_LAYOUT_H_

@@ -1,0 +1,111 @@
+#include "model/dataset/leader_side.h"
+
+#include <algorithm>
+
+#include "absl/status/status.h"
+#include "absl/strings/str_cat.h"
+#include "model/dataset/split_text.h"
+
+namespace duet {
+namespace {
+
+struct Columns {
+  int path = -1;
+  int leader_side = -1;
+  int subjects = -1;
+  size_t count = 0;
+};
+
+absl::Status Wrong(int line, const std::string& came, const std::string& wanted) {
+  return absl::InvalidArgumentError(
+      absl::StrCat("index.tsv: line ", line, ": ", came, ", wanted ", wanted));
+}
+
+absl::StatusOr<Columns> ParseHeader(std::string_view line) {
+  Columns columns;
+  const std::vector<std::string_view> names = SplitText(line, '\t');
+  columns.count = names.size();
+  for (size_t i = 0; i < names.size(); ++i) {
+    if (names[i] == "path") columns.path = static_cast<int>(i);
+    if (names[i] == "leader_side") columns.leader_side = static_cast<int>(i);
+    if (names[i] == "subjects") columns.subjects = static_cast<int>(i);
+  }
+  if (columns.path < 0 || columns.leader_side < 0) {
+    return Wrong(1, "no column path or leader_side",
+                 "a header of tab-separated names with both of them");
+  }
+  return columns;
+}
+
+absl::StatusOr<LeaderSide> ParseSide(int line, std::string_view text) {
+  if (text == "left") return LeaderSide::kLeft;
+  if (text == "right") return LeaderSide::kRight;
+  if (text == "unknown") return LeaderSide::kUnknown;
+  return Wrong(line, absl::StrCat("leader_side \"", std::string(text), "\""),
+               "left, right or unknown");
+}
+
+std::vector<std::string> ParseSubjects(std::string_view text) {
+  std::vector<std::string> subjects;
+  for (std::string_view subject : SplitText(text, ',')) {
+    if (!TrimText(subject).empty()) subjects.emplace_back(TrimText(subject));
+  }
+  return subjects;
+}
+
+float PeakDisplacement(const Clip& clip, int root, const std::vector<int>& effectors) {
+  float peak = 0;
+  for (const int effector : effectors) {
+    const Vec3 start = clip.at(0, effector) - clip.at(0, root);
+    for (int t = 1; t < clip.frame_count(); ++t) {
+      peak = std::max(peak, Distance(clip.at(t, effector) - clip.at(t, root), start));
+    }
+  }
+  return peak;
+}
+
+}  // namespace
+
+absl::StatusOr<std::map<std::string, IndexEntry>> ParseIndex(std::string_view text) {
+  std::map<std::string, IndexEntry> entries;
+  Columns columns;
+  int line = 0;
+  for (std::string_view row : SplitText(text, '\n')) {
+    ++line;
+    if (!row.empty() && row.back() == '\r') row.remove_suffix(1);
+    if (line == 1) {
+      absl::StatusOr<Columns> header = ParseHeader(row);
+      if (!header.ok()) return header.status();
+      columns = *header;
+      continue;
+    }
+    if (row.empty()) continue;
+    const std::vector<std::string_view> cells = SplitText(row, '\t');
+    if (cells.size() != columns.count) {
+      return Wrong(line, absl::StrCat(cells.size(), " columns"), absl::StrCat(columns.count));
+    }
+    IndexEntry entry;
+    entry.line = line;
+    absl::StatusOr<LeaderSide> side =
+        ParseSide(line, cells[static_cast<size_t>(columns.leader_side)]);
+    if (!side.ok()) return side.status();
+    entry.leader_side = *side;
+    if (columns.subjects >= 0) {
+      entry.subjects = ParseSubjects(cells[static_cast<size_t>(columns.subjects)]);
+    }
+    const std::string path(cells[static_cast<size_t>(columns.path)]);
+    if (!entries.emplace(path, std::move(entry)).second) {
+      return Wrong(line, absl::StrCat("path \"", path, "\" again"), "each file once");
+    }
+  }
+  return entries;
+}
+
+LeaderSide LeaderByMotion(const Clip& left, const Clip& right, int root,
+                          const std::vector<int>& effectors) {
+  return PeakDisplacement(right, root, effectors) > PeakDisplacement(left, root, effectors)
+             ? LeaderSide::kRight
+             : LeaderSide::kLeft;
+}
+
+}  // namespace duet

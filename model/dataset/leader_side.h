@@ -1,0 +1,39 @@
+#ifndef DUET_MODEL_DATASET_LEADER_SIDE_H_
+#define DUET_MODEL_DATASET_LEADER_SIDE_H_
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "model/motion/clip.h"
+
+namespace duet {
+
+// Which of the two people of a file leads: the one written first (left) or second (right).
+enum class LeaderSide { kLeft, kRight, kUnknown };
+
+// What an index.tsv says of one file.
+struct IndexEntry {
+  LeaderSide leader_side = LeaderSide::kUnknown;
+  std::vector<std::string> subjects;  // from the column of that name, when there is one
+  int line = 0;                       // for messages
+};
+
+// Parses index.tsv: a header naming the columns, then one file a line. `path` and `leader_side`
+// (left, right, unknown) are needed; `subjects` (names separated by commas) is optional; other
+// columns are left alone. Returns the entries by path.
+// Errors: INVALID_ARGUMENT naming the line, what came and what was wanted.
+absl::StatusOr<std::map<std::string, IndexEntry>> ParseIndex(std::string_view text);
+
+// The motion rule: the leader is whose effector has the larger peak displacement from its first
+// place, relative to its own root joint. A tie is the left person's.
+// Source: data set notes; on SBU it agrees with a hand annotation on all kicks, on 26 of 33 pushes
+// and 28 of 31 punches, and is no better than chance for symmetric classes.
+LeaderSide LeaderByMotion(const Clip& left, const Clip& right, int root,
+                          const std::vector<int>& effectors);
+
+}  // namespace duet
+
+#endif  // DUET_MODEL_DATASET_LEADER_SIDE_H_

@@ -1,0 +1,245 @@
+// ReadDataset: recognises a layout, lists its files, reads each.
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <system_error>
+
+#include "absl/strings/str_cat.h"
+#include "model/dataset/dataset.h"
+#include "model/dataset/layout.h"
+#include "model/dataset/leader_side.h"
+#include "model/dataset/pair_text.h"
+
+namespace duet {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A file of the data set, found but not read.
+struct FoundFile {
+  std::string id;  // path below the folder, with '/'
+  int interaction_class = 0;
+  std::vector<std::string> subjects;
+};
+
+constexpr uintmax_t kMaxFileBytes = uintmax_t{64} << 20;
+
+absl::StatusOr<std::string> ReadText(const fs::path& path) {
+  std::error_code error;
+  const uintmax_t bytes = fs::file_size(path, error);
+  if (error) return absl::NotFoundError(absl::StrCat(path.string(), ": ", error.message()));
+  if (bytes > kMaxFileBytes) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(path.string(), ": ", bytes, " bytes, wanted at most ", kMaxFileBytes));
+  }
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  if (!in || !text) return absl::NotFoundError(absl::StrCat(path.string(), ": cannot be read"));
+  return text.str();
+}
+
+// The names in a folder, sorted; hidden ones are not part of a data set.
+absl::StatusOr<std::vector<std::string>> ListFolder(const fs::path& folder) {
+  std::error_code error;
+  std::vector<std::string> names;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    const std::string name = it->path().filename().string();
+    if (name[0] != '.') names.push_back(name);
+  }
+  if (error) return absl::NotFoundError(absl::StrCat(folder.string(), ": ", error.message()));
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+bool IsFolder(const fs::path& path) {
+  std::error_code error;
+  return fs::is_directory(path, error);
+}
+
+bool Exists(const fs::path& path) {
+  std::error_code error;
+  return fs::exists(path, error);
+}
+
+// sXXsYY: the two subjects of an SBU set.
+bool IsSbuSet(const std::string& name) {
+  const auto digit = [&](size_t i) { return std::isdigit(static_cast<unsigned char>(name[i])); };
+  return name.size() == 6 && name[0] == 's' && name[3] == 's' && digit(1) && digit(2) && digit(4) &&
+         digit(5);
+}
+
+int FindFolder(const DatasetLayout& layout, const std::string& folder) {
+  for (size_t i = 0; i < layout.classes.size(); ++i) {
+    if (layout.classes[i].folder == folder) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+// <set>/<class>/<sequence>/skeleton_pos.txt. Other classes (approaching, departing) are passed by.
+absl::Status FindSbuSet(const fs::path& folder, const DatasetLayout& layout, const std::string& set,
+                        std::vector<FoundFile>* found) {
+  absl::StatusOr<std::vector<std::string>> classes = ListFolder(folder / set);
+  if (!classes.ok()) return classes.status();
+  for (const std::string& one : *classes) {
+    const int interaction_class = FindFolder(layout, one);
+    if (interaction_class < 0) continue;
+    absl::StatusOr<std::vector<std::string>> sequences = ListFolder(folder / set / one);
+    if (!sequences.ok()) return sequences.status();
+    for (const std::string& sequence : *sequences) {
+      if (!IsFolder(folder / set / one / sequence)) continue;
+      found->push_back({absl::StrCat(set, "/", one, "/", sequence, "/skeleton_pos.txt"),
+                        interaction_class,
+                        {set.substr(0, 3), set.substr(3, 3)}});
+    }
+  }
+  return absl::OkStatus();
+}
+
+absl::StatusOr<std::vector<FoundFile>> FindSbuFiles(const fs::path& folder,
+                                                    const DatasetLayout& layout,
+                                                    const std::vector<std::string>& names) {
+  std::vector<FoundFile> found;
+  for (const std::string& name : names) {
+    if (!IsSbuSet(name) || !IsFolder(folder / name)) continue;
+    absl::Status status = FindSbuSet(folder, layout, name, &found);
+    if (!status.ok()) return status;
+  }
+  return found;
+}
+
+// <class>/<sequence>.txt for every class of the layout that has a folder.
+absl::StatusOr<std::vector<FoundFile>> FindClassFiles(const fs::path& folder,
+                                                      const DatasetLayout& layout) {
+  std::vector<FoundFile> found;
+  for (size_t i = 0; i < layout.classes.size(); ++i) {
+    const std::string& one = layout.classes[i].folder;
+    if (!IsFolder(folder / one)) continue;
+    absl::StatusOr<std::vector<std::string>> names = ListFolder(folder / one);
+    if (!names.ok()) return names.status();
+    for (const std::string& name : *names) {
+      if (fs::path(name).extension() != ".txt") continue;
+      found.push_back({absl::StrCat(one, "/", name), static_cast<int>(i), {}});
+    }
+  }
+  return found;
+}
+
+absl::StatusOr<std::map<std::string, IndexEntry>> ReadIndex(const fs::path& folder) {
+  if (!Exists(folder / "index.tsv")) return std::map<std::string, IndexEntry>{};
+  absl::StatusOr<std::string> text = ReadText(folder / "index.tsv");
+  if (!text.ok()) return text.status();
+  absl::StatusOr<std::map<std::string, IndexEntry>> index = ParseIndex(*text);
+  if (!index.ok()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat((folder / "").string(), index.status().message()));
+  }
+  // A misspelt path would silently hand its file to the motion rule.
+  for (const auto& [path, entry] : *index) {
+    if (Exists(folder / path)) continue;
+    return absl::InvalidArgumentError(
+        absl::StrCat((folder / "index.tsv").string(), ": line ", entry.line, ": \"", path,
+                     "\" is not there, wanted a file below ", folder.string()));
+  }
+  return index;
+}
+
+absl::StatusOr<Sequence> ReadSequence(const fs::path& folder, const DatasetLayout& layout,
+                                      const std::map<std::string, IndexEntry>& index,
+                                      const FoundFile& file) {
+  const std::string path = (folder / file.id).string();
+  absl::StatusOr<std::string> text = ReadText(path);
+  if (!text.ok()) return text.status();
+  absl::StatusOr<PeoplePair> people = ParsePairText(*text, layout);
+  if (!people.ok()) {
+    return absl::InvalidArgumentError(absl::StrCat(path, ": ", people.status().message()));
+  }
+  Sequence sequence;
+  sequence.id = file.id;
+  sequence.interaction_class = file.interaction_class;
+  sequence.subjects = file.subjects;
+  sequence.leader_source = "index";
+  const auto entry = index.find(file.id);
+  LeaderSide side = LeaderSide::kUnknown;
+  if (entry != index.end()) {
+    side = entry->second.leader_side;
+    if (!entry->second.subjects.empty()) sequence.subjects = entry->second.subjects;
+  }
+  const ClassLayout& one = layout.classes[static_cast<size_t>(file.interaction_class)];
+  if (side == LeaderSide::kUnknown) {
+    if (one.effectors.empty()) {
+      return absl::InvalidArgumentError(absl::StrCat(
+          path, ": no leader_side, wanted left or right in index.tsv or effectors for class ",
+          one.name, " in dataset.json"));
+    }
+    side = LeaderByMotion(people->left, people->right, layout.skeleton.root, one.effectors);
+    sequence.leader_source = "motion";
+  }
+  if (side == LeaderSide::kRight) std::swap(people->left, people->right);
+  sequence.pair = {std::move(people->left), std::move(people->right)};
+  return sequence;
+}
+
+absl::StatusOr<Dataset> ReadFiles(const fs::path& folder, const DatasetLayout& layout,
+                                  std::vector<FoundFile> files) {
+  if (files.empty()) {
+    return absl::NotFoundError(absl::StrCat(folder.string(), ": no sequence of the classes of ",
+                                            layout.name, " (docs/datasets.md)"));
+  }
+  std::sort(files.begin(), files.end(),
+            [](const FoundFile& a, const FoundFile& b) { return a.id < b.id; });
+  absl::StatusOr<std::map<std::string, IndexEntry>> index = ReadIndex(folder);
+  if (!index.ok()) return index.status();
+  Dataset dataset;
+  dataset.name = layout.name;
+  dataset.skeleton = layout.skeleton;
+  dataset.frame_rate_hz = layout.frame_rate_hz;
+  for (const ClassLayout& one : layout.classes) {
+    dataset.classes.push_back(one.name);
+    dataset.symmetric.push_back(one.symmetric);
+  }
+  for (const FoundFile& file : files) {
+    absl::StatusOr<Sequence> sequence = ReadSequence(folder, layout, *index, file);
+    if (!sequence.ok()) return sequence.status();
+    dataset.sequences.push_back(*std::move(sequence));
+  }
+  return dataset;
+}
+
+absl::StatusOr<Dataset> ReadOwnData(const fs::path& folder) {
+  absl::StatusOr<std::string> text = ReadText(folder / "dataset.json");
+  if (!text.ok()) return text.status();
+  absl::StatusOr<DatasetLayout> layout = ParseDatasetLayout(*text);
+  if (!layout.ok()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat((folder / "").string(), layout.status().message()));
+  }
+  absl::StatusOr<std::vector<FoundFile>> files = FindClassFiles(folder, *layout);
+  if (!files.ok()) return files.status();
+  return ReadFiles(folder, *layout, *std::move(files));
+}
+
+}  // namespace
+
+absl::StatusOr<Dataset> ReadDataset(const fs::path& folder) {
+  absl::StatusOr<std::vector<std::string>> names = ListFolder(folder);
+  if (!names.ok()) return names.status();
+  if (std::count(names->begin(), names->end(), "dataset.json") > 0) return ReadOwnData(folder);
+  if (std::any_of(names->begin(), names->end(), IsSbuSet)) {
+    const DatasetLayout layout = SbuLayout();
+    absl::StatusOr<std::vector<FoundFile>> files = FindSbuFiles(folder, layout, *names);
+    if (!files.ok()) return files.status();
+    return ReadFiles(folder, layout, *std::move(files));
+  }
+  const DatasetLayout layout = K3hiLayout();
+  absl::StatusOr<std::vector<FoundFile>> files = FindClassFiles(folder, layout);
+  if (!files.ok()) return files.status();
+  if (!files->empty()) return ReadFiles(folder, layout, *std::move(files));
+  return absl::NotFoundError(absl::StrCat(
+      folder.string(), ": no data set, wanted sXXsYY/<class>/<sequence>/skeleton_pos.txt (SBU), ",
+      "<class>/<sequence>.txt (K3HI) or a dataset.json (docs/datasets.md)"));
+}
+
+}  // namespace duet

@@ -1,0 +1,67 @@
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <utility>
+
+#include "absl/status/status.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "model/dataset/dataset.h"
+
+namespace duet {
+namespace {
+
+// Fisher-Yates with plain remainders: std::shuffle's result differs between standard libraries, and
+// a split must not.
+void Shuffle(std::mt19937_64* random, std::vector<int>* values) {
+  for (size_t i = values->size(); i > 1; --i) {
+    std::swap((*values)[i - 1], (*values)[static_cast<size_t>((*random)() % i)]);
+  }
+}
+
+size_t ValidationCount(size_t available, double fraction) {
+  if (available < 2 || fraction <= 0) return 0;
+  const auto wanted = static_cast<size_t>(std::lround(fraction * static_cast<double>(available)));
+  return std::clamp<size_t>(wanted, 1, available - 1);
+}
+
+}  // namespace
+
+absl::StatusOr<Split> LeaveSubjectOut(const Dataset& dataset, const std::string& subject) {
+  Split split;
+  for (size_t i = 0; i < dataset.sequences.size(); ++i) {
+    const std::vector<std::string>& subjects = dataset.sequences[i].subjects;
+    const bool present = std::find(subjects.begin(), subjects.end(), subject) != subjects.end();
+    (present ? split.test : split.train).push_back(static_cast<int>(i));
+  }
+  if (!split.test.empty()) return split;
+  const std::vector<std::string> known = dataset.Subjects();
+  return absl::NotFoundError(
+      absl::StrCat("subject: \"", subject, "\", wanted one of ", dataset.name,
+                   "'s: ", known.empty() ? "(it names none)" : absl::StrJoin(known, ", ")));
+}
+
+std::vector<int> TakeValidation(const Dataset& dataset, double fraction, uint64_t seed,
+                                std::vector<int>* train) {
+  std::vector<std::vector<int>> by_class(dataset.classes.size());
+  std::sort(train->begin(), train->end());
+  for (const int i : *train) {
+    const Sequence& sequence = dataset.sequences[static_cast<size_t>(i)];
+    by_class[static_cast<size_t>(sequence.interaction_class)].push_back(i);
+  }
+  std::mt19937_64 random(seed);
+  std::vector<int> validation;
+  train->clear();
+  for (std::vector<int>& indices : by_class) {
+    Shuffle(&random, &indices);
+    const auto cut =
+        indices.begin() + static_cast<std::ptrdiff_t>(ValidationCount(indices.size(), fraction));
+    validation.insert(validation.end(), indices.begin(), cut);
+    train->insert(train->end(), cut, indices.end());
+  }
+  std::sort(validation.begin(), validation.end());
+  std::sort(train->begin(), train->end());
+  return validation;
+}
+
+}  // namespace duet
