@@ -28,7 +28,8 @@ absl::StatusOr<Checkpoint> ParseCheckpoint(std::string_view manifest_json,
 absl::StatusOr<Checkpoint> ReadCheckpoint(const std::filesystem::path& folder);
 
 // Writes a checkpoint folder whole or not at all (a temporary folder beside it, then a rename);
-// fills in manifest.weights. ALREADY_EXISTS when the folder exists.
+// fills in manifest.weights and an empty manifest.created. Refuses what ReadCheckpoint would
+// refuse, with its message. ALREADY_EXISTS when the folder exists.
 absl::Status WriteCheckpoint(const std::filesystem::path& folder, Checkpoint checkpoint);
 
 }  // namespace duet

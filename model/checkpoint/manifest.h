@@ -1,6 +1,7 @@
 #ifndef DUET_MODEL_CHECKPOINT_MANIFEST_H_
 #define DUET_MODEL_CHECKPOINT_MANIFEST_H_
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -14,6 +15,13 @@ namespace duet {
 
 // The version of the checkpoint format that this code writes. Older ones are read, newer refused.
 inline constexpr int kCheckpointFormatVersion = 1;
+
+// The largest manifest.json and the largest weights file that are read.
+inline constexpr std::size_t kMaxManifestBytes = std::size_t{1} << 20;
+inline constexpr std::size_t kMaxWeightsBytes = std::size_t{512} << 20;
+
+// The one standardisation of format version 1: class Standardisation, in metres, y up.
+inline constexpr char kLeaderRootAndYaw[] = "leader_root_and_yaw";
 
 // Sizes of the generator (paper section 3.1, 3.2). All else follows from skeleton and classes.
 struct GeneratorArchitecture {
@@ -41,17 +49,20 @@ struct Manifest {
   int format_version = kCheckpointFormatVersion;
   ModelDescription model;
   GeneratorArchitecture generator;
+  std::string standardisation = kLeaderRootAndYaw;
   WeightsFile weights;
   std::string git_revision;
-  std::string created;                          // RFC 3339
+  std::string created;                          // RFC 3339; WriteCheckpoint fills in an empty one
   std::map<std::string, std::string> training;  // settings and data of the run, for people
   std::map<std::string, double> metrics;        // "afd.kick": 0.61, ...
 };
 
 // Reads and writes manifest.json. Strict: unknown, missing, repeated or mistyped fields, sizes out
 // of range and inconsistent skeletons are INVALID_ARGUMENT, naming the field, what came and what
-// was wanted. `text` may come from anywhere.
+// was wanted. `text` may come from anywhere. model.accepts_follower_start is taken from
+// generator.follower_start. Fields: docs/checkpoint_format.md.
 absl::StatusOr<Manifest> ParseManifest(std::string_view text);
+// Requires a skeleton that Validate accepts.
 std::string SerializeManifest(const Manifest& manifest);
 
 // Slices of the generator: the skeleton's parts, then the whole body.

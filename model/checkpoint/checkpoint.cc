@@ -1,0 +1,109 @@
+#include "model/checkpoint/checkpoint.h"
+
+#include <algorithm>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "absl/time/clock.h"
+#include "absl/time/time.h"
+#include "model/checkpoint/file_io.h"
+#include "model/checkpoint/sha256.h"
+
+namespace duet {
+namespace {
+
+constexpr char kManifestFile[] = "manifest.json";
+
+absl::Status CheckFile(const WeightsFile& expected, std::string_view weights) {
+  if (weights.size() != expected.bytes) {
+    const std::string message = absl::StrCat("weights: ", weights.size(), " bytes, wanted ",
+                                             expected.bytes, " as in manifest weights.bytes");
+    return weights.size() < expected.bytes ? absl::DataLossError(message)
+                                           : absl::InvalidArgumentError(message);
+  }
+  if (const std::string sha256 = Sha256Hex(weights); sha256 != expected.sha256) {
+    return absl::DataLossError(absl::StrCat("weights: SHA-256 ", sha256, ", wanted ",
+                                            expected.sha256, " as in manifest weights.sha256"));
+  }
+  return absl::OkStatus();
+}
+
+std::string ShapeText(const std::vector<int64_t>& shape) {
+  return absl::StrCat("[", absl::StrJoin(shape, ", "), "]");
+}
+
+// The tensors of `specs`, in their order: all of them, no others, of their shapes.
+absl::StatusOr<std::vector<Tensor>> Arrange(std::vector<Tensor> tensors,
+                                            const std::vector<TensorSpec>& specs) {
+  std::map<std::string, Tensor> by_name;
+  for (Tensor& tensor : tensors) {
+    std::string name = tensor.name;
+    by_name.emplace(std::move(name), std::move(tensor));
+  }
+  std::vector<Tensor> arranged;
+  for (const TensorSpec& spec : specs) {
+    const auto it = by_name.find(spec.name);
+    if (it == by_name.end()) {
+      return absl::InvalidArgumentError(absl::StrCat(
+          "weights: tensor \"", spec.name, "\" is missing, wanted shape ", ShapeText(spec.shape)));
+    }
+    if (it->second.shape != spec.shape) {
+      return absl::InvalidArgumentError(absl::StrCat(
+          "weights: tensor \"", spec.name, "\" has shape ", ShapeText(it->second.shape),
+          ", wanted ", ShapeText(spec.shape), " as the manifest declares"));
+    }
+    arranged.push_back(std::move(it->second));
+    by_name.erase(it);
+  }
+  if (by_name.empty()) return arranged;
+  return absl::InvalidArgumentError(
+      absl::StrCat("weights: unknown tensor \"", by_name.begin()->first, "\""));
+}
+
+}  // namespace
+
+absl::StatusOr<Checkpoint> ParseCheckpoint(std::string_view manifest_json,
+                                           std::string_view weights) {
+  absl::StatusOr<Manifest> manifest = ParseManifest(manifest_json);
+  if (!manifest.ok()) return manifest.status();
+  if (absl::Status status = CheckFile(manifest->weights, weights); !status.ok()) return status;
+  absl::StatusOr<std::vector<Tensor>> tensors = ParseSafetensors(weights);
+  if (!tensors.ok()) return tensors.status();
+  tensors = Arrange(*std::move(tensors), ExpectedTensors(*manifest));
+  if (!tensors.ok()) return tensors.status();
+  return Checkpoint{*std::move(manifest), *std::move(tensors)};
+}
+
+absl::StatusOr<Checkpoint> ReadCheckpoint(const std::filesystem::path& folder) {
+  const absl::StatusOr<Folder> files = Folder::Open(folder);
+  if (!files.ok()) return files.status();
+  const absl::StatusOr<std::string> text = files->Read(kManifestFile, kMaxManifestBytes);
+  if (!text.ok()) return text.status();
+  const absl::StatusOr<Manifest> manifest = ParseManifest(*text);
+  if (!manifest.ok()) return manifest.status();
+  const absl::StatusOr<std::string> weights = files->Read(manifest->weights.file, kMaxWeightsBytes);
+  if (!weights.ok()) return weights.status();
+  return ParseCheckpoint(*text, *weights);
+}
+
+absl::Status WriteCheckpoint(const std::filesystem::path& folder, Checkpoint checkpoint) {
+  if (absl::Status status = Validate(checkpoint.manifest.model.skeleton); !status.ok()) {
+    return status;
+  }
+  const std::string weights = SerializeSafetensors(checkpoint.tensors, {{"format", "pt"}});
+  Manifest& manifest = checkpoint.manifest;
+  manifest.weights.bytes = weights.size();
+  manifest.weights.sha256 = Sha256Hex(weights);
+  if (manifest.created.empty()) {
+    manifest.created = absl::FormatTime("%Y-%m-%dT%H:%M:%SZ", absl::Now(), absl::UTCTimeZone());
+  }
+  const std::string text = SerializeManifest(manifest);
+  // What could not be read back must not replace a good run's result.
+  if (absl::Status status = ParseCheckpoint(text, weights).status(); !status.ok()) return status;
+  return WriteFolder(folder, {{manifest.weights.file, weights}, {kManifestFile, text}});
+}
+
+}  // namespace duet

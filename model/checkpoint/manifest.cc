@@ -1,0 +1,331 @@
+#include "model/checkpoint/manifest.h"
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <utility>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/str_cat.h"
+#include "absl/time/time.h"
+#include "model/checkpoint/strict_json.h"
+
+namespace duet {
+namespace {
+
+using nlohmann::json;
+using nlohmann::ordered_json;
+
+// Far above any character, far below what would let a small file ask for a huge network.
+constexpr int kMaxJoints = 256;
+constexpr int kMaxParts = 64;
+constexpr int kMaxClasses = 256;
+constexpr int kMaxUnits = 4096;  // of a layer
+constexpr int kMaxWindowFrames = 4096;
+constexpr int kMaxMapEntries = 1024;
+constexpr std::size_t kMaxNameBytes = 64;
+constexpr std::size_t kMaxTextBytes = 4096;
+constexpr double kMaxFrameRateHz = 240;
+constexpr int kMaxDepth = 6;
+constexpr std::size_t kSha256HexBytes = 64;
+
+// Names that serve as a file, a folder, a tensor or a metric name as they are.
+bool IsPlainName(const std::string& name) {
+  if (name.empty() || name.size() > kMaxNameBytes || name.front() == '.') return false;
+  for (char c : name) {
+    if (!absl::ascii_isalnum(static_cast<unsigned char>(c)) && c != '.' && c != '_' && c != '-') {
+      return false;
+    }
+  }
+  return true;
+}
+
+constexpr char kPlainName[] = "1 to 64 letters, digits, '_', '-' or '.', the first of them not '.'";
+
+std::string ReadName(ObjectReader* reader, const std::string& key) {
+  std::string name = reader->String(key, kMaxTextBytes);
+  if (reader->ok() && !IsPlainName(name)) {
+    reader->Fail(key, absl::StrCat(json(name).dump(), ", wanted ", kPlainName));
+  }
+  return name;
+}
+
+// A joint that the skeleton knows, given by name.
+int FindJoint(ObjectReader* reader, const std::string& key, const Skeleton& skeleton,
+              const std::string& name) {
+  const int joint = skeleton.Find(name);
+  if (joint < 0) reader->Fail(key, absl::StrCat("unknown joint ", json(name).dump()));
+  return joint;
+}
+
+int ReadJoint(ObjectReader* reader, const std::string& key, const Skeleton& skeleton) {
+  const std::string name = reader->String(key, kMaxTextBytes);
+  return reader->ok() ? FindJoint(reader, key, skeleton, name) : 0;
+}
+
+std::vector<std::string> ReadUniqueNames(ObjectReader* reader, const std::string& key,
+                                         std::size_t max_count) {
+  std::vector<std::string> names = reader->Strings(key, max_count);
+  std::set<std::string> seen;
+  for (const std::string& name : names) {
+    if (name.size() > kMaxNameBytes) {
+      reader->Fail(
+          key, absl::StrCat("a name of ", name.size(), " bytes, wanted at most ", kMaxNameBytes));
+    }
+    if (!seen.insert(name).second) {
+      reader->Fail(key, absl::StrCat(json(name).dump(), " is repeated"));
+    }
+  }
+  return names;
+}
+
+std::vector<Bone> ReadBones(ObjectReader* reader, const Skeleton& skeleton) {
+  std::vector<Bone> bones;
+  for (const json& item : reader->Array("bones", kMaxJoints)) {
+    const bool is_pair =
+        item.is_array() && item.size() == 2 && item[0].is_string() && item[1].is_string();
+    if (!is_pair) {
+      reader->Fail("bones", "wanted pairs of joint names, parent first");
+      return {};
+    }
+    bones.push_back({FindJoint(reader, "bones", skeleton, item[0].get<std::string>()),
+                     FindJoint(reader, "bones", skeleton, item[1].get<std::string>())});
+  }
+  return bones;
+}
+
+std::vector<BodyPart> ReadParts(ObjectReader* reader, const Skeleton& skeleton) {
+  std::vector<BodyPart> parts;
+  std::set<std::string> seen = {"whole_body"};  // the slice that the generator adds
+  for (const json& item : reader->Array("parts", kMaxParts)) {
+    ObjectReader fields(item, reader->PathOf("parts"));
+    BodyPart part;
+    part.name = ReadName(&fields, "name");
+    for (const std::string& joint : ReadUniqueNames(&fields, "joints", kMaxJoints)) {
+      part.joints.push_back(FindJoint(&fields, "joints", skeleton, joint));
+    }
+    if (!seen.insert(part.name).second) {
+      fields.Fail("name", absl::StrCat(json(part.name).dump(), " is repeated or reserved"));
+    }
+    reader->Update(fields.Finish());
+    parts.push_back(std::move(part));
+  }
+  return parts;
+}
+
+absl::StatusOr<Skeleton> ReadSkeleton(const json& value) {
+  ObjectReader reader(value, "skeleton");
+  Skeleton skeleton;
+  skeleton.joint_names = ReadUniqueNames(&reader, "joint_names", kMaxJoints);
+  skeleton.bones = ReadBones(&reader, skeleton);
+  skeleton.parts = ReadParts(&reader, skeleton);
+  skeleton.root = ReadJoint(&reader, "root", skeleton);
+  skeleton.left_hip = ReadJoint(&reader, "left_hip", skeleton);
+  skeleton.right_hip = ReadJoint(&reader, "right_hip", skeleton);
+  skeleton.left_foot = ReadJoint(&reader, "left_foot", skeleton);
+  skeleton.right_foot = ReadJoint(&reader, "right_foot", skeleton);
+  if (absl::Status status = reader.Finish(); !status.ok()) return status;
+  if (absl::Status status = Validate(skeleton); !status.ok()) {
+    return absl::InvalidArgumentError(absl::StrCat("skeleton.", status.message()));
+  }
+  return skeleton;
+}
+
+absl::StatusOr<GeneratorArchitecture> ReadGenerator(const json& value) {
+  ObjectReader reader(value, "generator");
+  GeneratorArchitecture generator;
+  generator.variant = reader.String("variant", kMaxTextBytes);
+  if (reader.ok() && generator.variant != "paper" && generator.variant != "released") {
+    reader.Fail("variant",
+                absl::StrCat(json(generator.variant).dump(), ", wanted \"paper\" or \"released\""));
+  }
+  generator.follower_start = reader.Bool("follower_start");
+  generator.slice_features = static_cast<int>(reader.Int("slice_features", 0, kMaxUnits));
+  generator.encoder_hidden = static_cast<int>(reader.Int("encoder_hidden", 1, kMaxUnits));
+  generator.attention = static_cast<int>(reader.Int("attention", 1, kMaxUnits));
+  if (absl::Status status = reader.Finish(); !status.ok()) return status;
+  return generator;
+}
+
+absl::StatusOr<WeightsFile> ReadWeightsFile(const json& value) {
+  ObjectReader reader(value, "weights");
+  WeightsFile weights;
+  weights.file = ReadName(&reader, "file");
+  weights.bytes = static_cast<uint64_t>(reader.Int("bytes", 1, kMaxWeightsBytes));
+  weights.sha256 = reader.String("sha256", kSha256HexBytes);
+  const bool is_hex = weights.sha256.find_first_not_of("0123456789abcdef") == std::string::npos;
+  if (reader.ok() && (!is_hex || weights.sha256.size() != kSha256HexBytes)) {
+    reader.Fail("sha256", absl::StrCat(json(weights.sha256).dump(), ", wanted ", kSha256HexBytes,
+                                       " digits of lower-case hex"));
+  }
+  if (absl::Status status = reader.Finish(); !status.ok()) return status;
+  return weights;
+}
+
+void ReadTraining(ObjectReader* reader, Manifest* manifest) {
+  const json& object = reader->Object("training");
+  if (object.size() > kMaxMapEntries) reader->Fail("training", "too many entries");
+  ObjectReader fields(object, "training");
+  for (const auto& field : object.items()) {
+    manifest->training[field.key()] = fields.String(field.key(), kMaxTextBytes);
+  }
+  reader->Update(fields.Finish());
+}
+
+void ReadMetrics(ObjectReader* reader, Manifest* manifest) {
+  constexpr double kAny = std::numeric_limits<double>::max();
+  const json& object = reader->Object("metrics");
+  if (object.size() > kMaxMapEntries) reader->Fail("metrics", "too many entries");
+  ObjectReader fields(object, "metrics");
+  for (const auto& field : object.items()) {
+    manifest->metrics[field.key()] = fields.Number(field.key(), -kAny, kAny);
+  }
+  reader->Update(fields.Finish());
+}
+
+std::string ReadTime(ObjectReader* reader, const std::string& key) {
+  std::string text = reader->String(key, kMaxNameBytes);
+  absl::Time time;
+  std::string problem;
+  if (reader->ok() && !absl::ParseTime(absl::RFC3339_full, text, &time, &problem)) {
+    reader->Fail(key, absl::StrCat(json(text).dump(), ", wanted a time as in RFC 3339"));
+  }
+  return text;
+}
+
+// Takes a section's value, or notes why there is none.
+template <typename T>
+void Take(absl::StatusOr<T> section, ObjectReader* reader, T* out) {
+  reader->Update(section.status());
+  if (section.ok()) *out = *std::move(section);
+}
+
+void ReadModel(ObjectReader* reader, ModelDescription* model) {
+  model->name = ReadName(reader, "name");
+  model->version = static_cast<int>(reader->Int("version", 1, std::numeric_limits<int>::max()));
+  model->description = reader->String("description", kMaxTextBytes);
+  model->frame_rate_hz = reader->Number("frame_rate_hz", 1, kMaxFrameRateHz);
+  model->window_frames = static_cast<int>(reader->Int("window_frames", 2, kMaxWindowFrames));
+  model->classes = ReadUniqueNames(reader, "classes", kMaxClasses);
+  if (reader->ok() && model->classes.empty()) {
+    reader->Fail("classes", "empty, wanted at least one class");
+  }
+  const json& skeleton = reader->Object("skeleton");
+  if (reader->ok()) Take(ReadSkeleton(skeleton), reader, &model->skeleton);
+}
+
+void ReadStandardisation(ObjectReader* reader, Manifest* manifest) {
+  manifest->standardisation = reader->String("standardisation", kMaxTextBytes);
+  if (reader->ok() && manifest->standardisation != kLeaderRootAndYaw) {
+    reader->Fail("standardisation", absl::StrCat(json(manifest->standardisation).dump(),
+                                                 ", wanted \"", kLeaderRootAndYaw, "\""));
+  }
+}
+
+absl::StatusOr<Manifest> ReadManifest(const json& root) {
+  ObjectReader reader(root, "");
+  Manifest manifest;
+  // First and alone: of a newer format nothing else is known, not even its fields.
+  manifest.format_version =
+      static_cast<int>(reader.Int("format_version", 1, kCheckpointFormatVersion));
+  if (!reader.ok()) return reader.Finish();
+
+  ReadModel(&reader, &manifest.model);
+  const json& generator = reader.Object("generator");
+  if (reader.ok()) Take(ReadGenerator(generator), &reader, &manifest.generator);
+  manifest.model.accepts_follower_start = manifest.generator.follower_start;
+  ReadStandardisation(&reader, &manifest);
+  const json& weights = reader.Object("weights");
+  if (reader.ok()) Take(ReadWeightsFile(weights), &reader, &manifest.weights);
+  manifest.git_revision = reader.String("git_revision", kMaxTextBytes);
+  manifest.created = ReadTime(&reader, "created");
+  ReadTraining(&reader, &manifest);
+  ReadMetrics(&reader, &manifest);
+  if (absl::Status status = reader.Finish(); !status.ok()) return status;
+  return manifest;
+}
+
+// The network that the sizes add up to must fit the cap: each size alone may be in range.
+absl::Status CheckTotalSize(const Manifest& manifest) {
+  double bytes = 0;
+  for (const TensorSpec& spec : ExpectedTensors(manifest)) {
+    double values = 1;
+    for (int64_t size : spec.shape) values *= static_cast<double>(size);
+    bytes += values * sizeof(float);
+  }
+  if (bytes <= static_cast<double>(kMaxWeightsBytes)) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat("generator: its sizes add up to ", bytes,
+                                                 " bytes of weights, wanted at most ",
+                                                 kMaxWeightsBytes));
+}
+
+ordered_json ToJson(const Skeleton& skeleton) {
+  const auto name = [&](int joint) {
+    return skeleton.joint_names[static_cast<std::size_t>(joint)];
+  };
+  ordered_json bones = ordered_json::array();
+  for (const Bone& bone : skeleton.bones) {
+    bones.push_back(ordered_json::array({name(bone.parent), name(bone.child)}));
+  }
+  ordered_json parts = ordered_json::array();
+  for (const BodyPart& part : skeleton.parts) {
+    ordered_json joints = ordered_json::array();
+    for (int joint : part.joints) joints.push_back(name(joint));
+    parts.push_back({{"name", part.name}, {"joints", joints}});
+  }
+  return {{"joint_names", skeleton.joint_names},
+          {"bones", bones},
+          {"parts", parts},
+          {"root", name(skeleton.root)},
+          {"left_hip", name(skeleton.left_hip)},
+          {"right_hip", name(skeleton.right_hip)},
+          {"left_foot", name(skeleton.left_foot)},
+          {"right_foot", name(skeleton.right_foot)}};
+}
+
+}  // namespace
+
+absl::StatusOr<Manifest> ParseManifest(std::string_view text) {
+  if (text.size() > kMaxManifestBytes) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("manifest: ", text.size(), " bytes, wanted at most ", kMaxManifestBytes));
+  }
+  const absl::StatusOr<json> root = ParseStrictJson(text, kMaxDepth);
+  absl::StatusOr<Manifest> manifest = root.ok() ? ReadManifest(*root) : root.status();
+  absl::Status status = manifest.ok() ? CheckTotalSize(*manifest) : manifest.status();
+  if (!status.ok())
+    return absl::Status(status.code(), absl::StrCat("manifest: ", status.message()));
+  return manifest;
+}
+
+std::string SerializeManifest(const Manifest& manifest) {
+  const ModelDescription& model = manifest.model;
+  const GeneratorArchitecture& generator = manifest.generator;
+  const ordered_json root = {{"format_version", manifest.format_version},
+                             {"name", model.name},
+                             {"version", model.version},
+                             {"description", model.description},
+                             {"created", manifest.created},
+                             {"git_revision", manifest.git_revision},
+                             {"frame_rate_hz", model.frame_rate_hz},
+                             {"window_frames", model.window_frames},
+                             {"classes", model.classes},
+                             {"standardisation", manifest.standardisation},
+                             {"skeleton", ToJson(model.skeleton)},
+                             {"generator",
+                              {{"variant", generator.variant},
+                               {"follower_start", generator.follower_start},
+                               {"slice_features", generator.slice_features},
+                               {"encoder_hidden", generator.encoder_hidden},
+                               {"attention", generator.attention}}},
+                             {"weights",
+                              {{"file", manifest.weights.file},
+                               {"bytes", manifest.weights.bytes},
+                               {"sha256", manifest.weights.sha256}}},
+                             {"training", manifest.training},
+                             {"metrics", manifest.metrics}};
+  return root.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace duet

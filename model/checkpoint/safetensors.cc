@@ -1,0 +1,230 @@
+// The published format, less its freedoms:
+//   bytes 0 to 7   header length, unsigned, little-endian; here at most 1 MiB
+//   header         JSON: {"name": {"dtype": "F32", "shape": [..], "data_offsets": [begin, end]},
+//   ..}
+//                  and optionally "__metadata__": {string: string}; padded with spaces
+//   data           the tensors' values, row-major, little-endian; offsets count from here
+// Here every tensor is F32 with no dimension of size 0, the ranges cover the data from first to
+// last byte without a gap or an overlap, and every value is finite.
+
+#include "model/checkpoint/safetensors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "model/checkpoint/strict_json.h"
+
+namespace duet {
+namespace {
+
+using nlohmann::json;
+
+static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "tensors are copied byte for byte");
+
+constexpr uint64_t kLengthBytes = 8;
+constexpr uint64_t kMaxHeaderBytes = 1 << 20;
+constexpr uint64_t kAlignment = 8;
+constexpr int kMaxHeaderDepth = 3;  // header, tensor, shape
+constexpr int64_t kMaxRank = 8;
+constexpr char kMetadata[] = "__metadata__";
+
+struct Entry {
+  std::string name;
+  std::vector<int64_t> shape;
+  uint64_t begin = 0;
+  uint64_t end = 0;
+};
+
+uint64_t ReadLength(std::string_view bytes) {
+  uint64_t length = 0;
+  std::memcpy(&length, bytes.data(), kLengthBytes);
+  return length;
+}
+
+absl::StatusOr<std::string_view> HeaderOf(std::string_view bytes) {
+  if (bytes.size() < kLengthBytes) {
+    return absl::DataLossError(
+        absl::StrCat("safetensors: ", bytes.size(), " bytes, wanted at least ", kLengthBytes));
+  }
+  const uint64_t length = ReadLength(bytes);
+  if (length > kMaxHeaderBytes) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("safetensors header: ", length, " bytes, wanted at most ", kMaxHeaderBytes));
+  }
+  if (length > bytes.size() - kLengthBytes) {
+    return absl::DataLossError(absl::StrCat("safetensors header: ", length, " bytes declared, ",
+                                            bytes.size() - kLengthBytes, " present"));
+  }
+  return bytes.substr(kLengthBytes, length);
+}
+
+// The size of a tensor in bytes, or nothing if it does not fit 64 bits.
+bool ByteCount(const std::vector<int64_t>& shape, uint64_t* bytes) {
+  *bytes = sizeof(float);
+  for (int64_t size : shape) {
+    if (__builtin_mul_overflow(*bytes, static_cast<uint64_t>(size), bytes)) return false;
+  }
+  return true;
+}
+
+// A JSON array of whole numbers, each from `min` up.
+std::vector<int64_t> ReadInts(ObjectReader* reader, const std::string& key, int64_t max_count,
+                              int64_t min) {
+  std::vector<int64_t> numbers;
+  for (const json& item : reader->Array(key, static_cast<std::size_t>(max_count))) {
+    const bool fits = item.is_number_unsigned() && item.get<uint64_t>() <= INT64_MAX &&
+                      item.get<int64_t>() >= min;
+    if (!fits) {
+      reader->Fail(key, absl::StrCat("wanted whole numbers from ", min, " up"));
+      return {};
+    }
+    numbers.push_back(item.get<int64_t>());
+  }
+  return numbers;
+}
+
+absl::StatusOr<Entry> ReadEntry(const std::string& name, const json& value) {
+  ObjectReader reader(value, absl::StrCat("tensor ", json(name).dump()));
+  Entry entry;
+  entry.name = name;
+  if (const std::string dtype = reader.String("dtype", 16); reader.ok() && dtype != "F32") {
+    reader.Fail("dtype", absl::StrCat(json(dtype).dump(), ", wanted \"F32\""));
+  }
+  entry.shape = ReadInts(&reader, "shape", kMaxRank, 1);
+  const std::vector<int64_t> offsets = ReadInts(&reader, "data_offsets", 2, 0);
+  if (absl::Status status = reader.Finish(); !status.ok()) return status;
+
+  if (offsets.size() != 2 || offsets[0] > offsets[1]) {
+    reader.Fail("data_offsets", "wanted a begin and an end that is not before it");
+    return reader.Finish();
+  }
+  entry.begin = static_cast<uint64_t>(offsets[0]);
+  entry.end = static_cast<uint64_t>(offsets[1]);
+  uint64_t wanted = 0;
+  if (!ByteCount(entry.shape, &wanted) || entry.end - entry.begin != wanted) {
+    reader.Fail("data_offsets",
+                absl::StrCat(entry.end - entry.begin, " bytes, wanted those of shape [",
+                             absl::StrJoin(entry.shape, ", "), "]"));
+    return reader.Finish();
+  }
+  return entry;
+}
+
+absl::Status CheckMetadata(const json& metadata) {
+  ObjectReader reader(metadata, kMetadata);
+  if (metadata.is_object()) {
+    for (const auto& field : metadata.items()) reader.String(field.key(), kMaxHeaderBytes);
+  }
+  return reader.Finish();
+}
+
+absl::StatusOr<std::vector<Entry>> ReadHeader(std::string_view header) {
+  absl::StatusOr<json> root = ParseStrictJson(header, kMaxHeaderDepth);
+  if (!root.ok()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("safetensors header: ", root.status().message()));
+  }
+  std::vector<Entry> entries;
+  for (const auto& field : root->items()) {
+    if (field.key() == kMetadata) {
+      if (absl::Status status = CheckMetadata(field.value()); !status.ok()) return status;
+      continue;
+    }
+    absl::StatusOr<Entry> entry = ReadEntry(field.key(), field.value());
+    if (!entry.ok()) return entry.status();
+    entries.push_back(*std::move(entry));
+  }
+  return entries;
+}
+
+// Contiguous from the first byte of the data to the last: no byte is unused or used twice.
+absl::Status CheckRanges(const std::vector<Entry>& entries, uint64_t data_bytes) {
+  uint64_t at = 0;
+  for (const Entry& entry : entries) {
+    if (entry.begin != at) {
+      return absl::InvalidArgumentError(absl::StrCat("tensor ", json(entry.name).dump(),
+                                                     ".data_offsets: begins at ", entry.begin,
+                                                     ", wanted ", at, ", the end of the previous"));
+    }
+    at = entry.end;
+  }
+  if (at > data_bytes) {
+    return absl::DataLossError(
+        absl::StrCat("safetensors data: ", data_bytes, " bytes present, ", at, " declared"));
+  }
+  if (at < data_bytes) {
+    return absl::InvalidArgumentError(absl::StrCat("safetensors data: ", data_bytes - at,
+                                                   " bytes after the last tensor, wanted none"));
+  }
+  return absl::OkStatus();
+}
+
+absl::StatusOr<Tensor> ReadTensor(Entry entry, std::string_view data) {
+  Tensor tensor;
+  tensor.name = std::move(entry.name);
+  tensor.shape = std::move(entry.shape);
+  tensor.values.resize((entry.end - entry.begin) / sizeof(float));
+  std::memcpy(tensor.values.data(), data.data() + entry.begin, entry.end - entry.begin);
+  for (std::size_t i = 0; i < tensor.values.size(); ++i) {
+    if (!std::isfinite(tensor.values[i])) {
+      return absl::InvalidArgumentError(absl::StrCat("tensor ", json(tensor.name).dump(),
+                                                     ": value ", i, " is ", tensor.values[i],
+                                                     ", wanted finite values"));
+    }
+  }
+  return tensor;
+}
+
+}  // namespace
+
+absl::StatusOr<std::vector<Tensor>> ParseSafetensors(std::string_view bytes) {
+  const absl::StatusOr<std::string_view> header = HeaderOf(bytes);
+  if (!header.ok()) return header.status();
+  const std::string_view data = bytes.substr(kLengthBytes + header->size());
+
+  absl::StatusOr<std::vector<Entry>> entries = ReadHeader(*header);
+  if (!entries.ok()) return entries.status();
+  std::sort(entries->begin(), entries->end(),
+            [](const Entry& a, const Entry& b) { return a.begin < b.begin; });
+  if (absl::Status status = CheckRanges(*entries, data.size()); !status.ok()) return status;
+
+  std::vector<Tensor> tensors;
+  for (Entry& entry : *entries) {
+    absl::StatusOr<Tensor> tensor = ReadTensor(std::move(entry), data);
+    if (!tensor.ok()) return tensor.status();
+    tensors.push_back(*std::move(tensor));
+  }
+  return tensors;
+}
+
+std::string SerializeSafetensors(absl::Span<const Tensor> tensors,
+                                 const std::map<std::string, std::string>& metadata) {
+  nlohmann::ordered_json header = nlohmann::ordered_json::object();
+  if (!metadata.empty()) header[kMetadata] = metadata;
+  uint64_t at = 0;
+  for (const Tensor& tensor : tensors) {
+    const uint64_t end = at + tensor.values.size() * sizeof(float);
+    header[tensor.name] = {{"dtype", "F32"}, {"shape", tensor.shape}, {"data_offsets", {at, end}}};
+    at = end;
+  }
+  std::string text = header.dump(-1, ' ', true, nlohmann::ordered_json::error_handler_t::replace);
+  text.append((kAlignment - text.size() % kAlignment) % kAlignment, ' ');
+
+  const uint64_t length = text.size();
+  std::string bytes(kLengthBytes, '\0');
+  std::memcpy(bytes.data(), &length, kLengthBytes);
+  bytes += text;
+  bytes.reserve(bytes.size() + at);
+  for (const Tensor& tensor : tensors) {
+    bytes.append(reinterpret_cast<const char*>(tensor.values.data()),
+                 tensor.values.size() * sizeof(float));
+  }
+  return bytes;
+}
+
+}  // namespace duet
