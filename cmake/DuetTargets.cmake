@@ -1,5 +1,6 @@
 # How every target of the project is made: explicit sources, aliases, no global flags.
 include(DuetWarnings)
+include(DuetTools)
 
 # duet_library(NAME motion SOURCES a.cc b.cc [DEPS duet::x absl::y] [PRIVATE_DEPS ...])
 # Makes duet_<name> with the alias duet::<name>; headers are included from the top folder.
@@ -20,6 +21,7 @@ function(duet_program)
   target_link_libraries(${A_NAME} PRIVATE ${A_DEPS})
   target_include_directories(${A_NAME} PRIVATE ${PROJECT_SOURCE_DIR})
   duet_enable_warnings(${A_NAME})
+  duet_link_fast(${A_NAME})
 endfunction()
 
 # duet_test(NAME motion_test SOURCES a_test.cc DEPS ... [LABELS ...] [ENVIRONMENT ...] [TIMEOUT s])
@@ -31,6 +33,7 @@ function(duet_test)
   target_include_directories(${A_NAME} PRIVATE ${PROJECT_SOURCE_DIR})
   set_target_properties(${A_NAME} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
   duet_enable_warnings(${A_NAME})
+  duet_link_fast(${A_NAME})
   add_test(NAME ${A_NAME} COMMAND ${A_NAME})
   if(NOT A_TIMEOUT)
     set(A_TIMEOUT 300)

@@ -1,0 +1,41 @@
+# The two commands of the README, and the chores around them. Each installs what is missing, builds
+# and runs; the build itself is CMake's (CMakePresets.json).
+SHELL := /bin/bash
+.DEFAULT_GOAL := help
+
+JOBS ?= $(shell scripts/build_jobs.sh)
+BUILD := build/release
+
+.PHONY: help
+help: ## Say what there is
+	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /  make \1\t/' | expand -t 18
+
+.PHONY: demo
+demo: ## Build, start the server, synthesise some reactions, leave pages to open in out/demo
+	@scripts/install_packages.sh build
+	@JOBS=$(JOBS) scripts/build.sh $(BUILD) duet-server duet
+	@scripts/demo.sh $(BUILD)/bin
+
+.PHONY: test
+test: ## Build everything, run every check and every test
+	@scripts/install_packages.sh build test
+	@JOBS=$(JOBS) scripts/test.sh
+
+.PHONY: build
+build: ## Build every program and library (release)
+	@scripts/install_packages.sh build
+	@JOBS=$(JOBS) scripts/build.sh $(BUILD)
+
+.PHONY: format
+format: ## Lay out the sources with clang-format
+	@scripts/install_packages.sh test
+	@scripts/format.sh
+
+.PHONY: lint
+lint: ## Run clang-tidy over what differs from main (LINT=all: over everything)
+	@scripts/install_packages.sh build test develop
+	@JOBS=$(JOBS) scripts/lint.sh $(LINT)
+
+.PHONY: clean
+clean: ## Remove everything that was built or made
+	rm -rf build out

@@ -1,0 +1,17 @@
+# Tools that only make building quicker, used where they are installed.
+
+find_program(DUET_CCACHE ccache)
+mark_as_advanced(DUET_CCACHE)
+if(DUET_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${DUET_CCACHE})
+endif()
+
+find_program(DUET_MOLD mold)
+mark_as_advanced(DUET_MOLD)
+
+# Links a program with mold: a LibTorch program has 339 libraries to resolve.
+function(duet_link_fast target)
+  if(DUET_MOLD)
+    target_link_options(${target} PRIVATE -fuse-ld=mold)
+  endif()
+endfunction()

@@ -1,0 +1,112 @@
+#!/usr/bin/env python3
+"""Shows that check_layers.py lets through what the layers allow and fails on what they do not."""
+
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import check_layers
+
+CHECKER = pathlib.Path(__file__).with_name("check_layers.py")
+
+
+class CheckLayersTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.root = pathlib.Path(folder.name)
+        self.write("model/motion/clip.h")
+        self.write("model/engine/synthesizer.h", "model/motion/clip.h")
+        self.write("model/network/generator.h", "torch/torch.h", "model/motion/clip.h")
+        self.write("model/engine/torch_synthesizer.h", "model/engine/synthesizer.h")
+        self.write("model/engine/torch_synthesizer.cc", "model/engine/torch_synthesizer.h",
+                   "model/network/generator.h")
+        self.write("server/service.h", "grpcpp/grpcpp.h", "model/engine/synthesizer.h")
+        self.write("server/main.cc", "server/service.h", "model/engine/torch_synthesizer.h")
+        self.write("client/client.cc", "duet/v1/synthesis.grpc.pb.h", "model/motion/clip.h")
+
+    def write(self, path, *includes):
+        file = self.root / path
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text("".join(f"#include <{i}>\n" for i in includes), encoding="utf-8")
+
+    def violations(self):
+        return list(check_layers.check(self.root))
+
+    def assert_violation(self, start, *parts):
+        violations = self.violations()
+        self.assertEqual(len(violations), 1, violations)
+        self.assertTrue(violations[0].startswith(start), violations[0])
+        for part in parts:
+            self.assertIn(part, violations[0])
+
+    def test_allowed_includes_pass(self):
+        self.assertEqual(self.violations(), [])
+
+    def test_inner_layer_must_not_include_outer(self):
+        self.write("model/motion/clip.h", "model/engine/synthesizer.h")
+        self.assert_violation("model/motion/clip.h:1:", '"motion"', '"engine"', "no other layer")
+
+    def test_model_must_not_know_of_grpc(self):
+        self.write("model/motion/wire.cc", "cmath", "grpcpp/grpcpp.h")
+        self.assert_violation("model/motion/wire.cc:2:", "reaches rpc")
+
+    def test_model_must_not_know_of_generated_messages(self):
+        self.write("model/motion/wire.cc", "duet/v1/motion.pb.h")
+        self.assert_violation("model/motion/wire.cc:1:", "reaches rpc")
+
+    def test_model_must_not_include_the_server(self):
+        self.write("server/limits.h")
+        self.write("model/motion/limits.cc", "server/limits.h")
+        self.assert_violation("model/motion/limits.cc:1:", '"server"')
+
+    def test_server_must_not_include_torch(self):
+        self.write("server/warm_up.cc", "torch/torch.h")
+        self.assert_violation("server/warm_up.cc:1:", "reaches torch")
+
+    def test_only_main_links_an_engine(self):
+        self.write("server/registry.cc", "model/engine/torch_synthesizer.h")
+        self.assert_violation("server/registry.cc:1:", '"torch engine"')
+
+    def test_torch_must_not_leak_through_a_header(self):
+        self.write("model/engine/torch_synthesizer.h", "model/network/generator.h")
+        self.assert_violation(
+            "server/main.cc:2:",
+            "model/engine/torch_synthesizer.h -> model/network/generator.h -> torch/torch.h")
+
+    def test_client_must_not_see_the_engine(self):
+        self.write("client/client.cc", "model/engine/synthesizer.h")
+        self.assert_violation("client/client.cc:1:", '"client"', '"engine"')
+
+    def test_unknown_folder_is_refused(self):
+        self.write("model/new_idea/idea.h")
+        self.assert_violation("model/new_idea/idea.h:1:", "belongs to no layer")
+
+    def test_missing_header_is_named(self):
+        self.write("client/client.cc", "model/motion/gone.h")
+        self.assert_violation("client/client.cc:1:", "does not exist")
+
+    def test_commented_include_is_ignored(self):
+        (self.root / "model/motion/clip.h").write_text("// #include <torch/torch.h>\n")
+        self.assertEqual(self.violations(), [])
+
+    def test_include_circle_ends(self):
+        self.write("model/motion/a.h", "model/motion/b.h")
+        self.write("model/motion/b.h", "model/motion/a.h")
+        self.assertEqual(self.violations(), [])
+
+    def test_exit_status(self):
+        def run():
+            return subprocess.run([sys.executable, CHECKER, self.root], capture_output=True,
+                                  check=False, text=True)
+        self.assertEqual(run().returncode, 0)
+        self.write("server/warm_up.cc", "torch/torch.h")
+        failed = run()
+        self.assertEqual(failed.returncode, 1)
+        self.assertIn("server/warm_up.cc:1:", failed.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

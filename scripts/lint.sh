@@ -1,0 +1,27 @@
+#!/usr/bin/env bash
+# Runs clang-tidy 14 (.clang-tidy) over the C++ files that differ from the main branch; with "all",
+# over every one.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+readonly build_dir=build/release
+
+changed_files() {
+  if [[ "${1:-}" == all ]]; then
+    find model server client tests benchmarks -name '*.cc'
+  else
+    { git diff --name-only --diff-filter=d main -- && git ls-files --others --exclude-standard; } |
+      grep '\.cc$' || true
+  fi
+}
+
+# The generated protocol headers must exist before anything that includes them can be read.
+cmake --preset release -DDUET_BUILD_TESTS=ON -DDUET_BUILD_BENCHMARKS=ON >/dev/null
+cmake --build "${build_dir}" --parallel "${JOBS:-1}" --target duet_proto
+
+mapfile -t files < <(changed_files "$@" | sort -u)
+if [[ ${#files[@]} -eq 0 ]]; then
+  echo "No C++ file differs from main; LINT=all lints everything."
+  exit 0
+fi
+run-clang-tidy-14 -quiet -p "${build_dir}" -j "${JOBS:-1}" "${files[@]/#/^$(pwd)/}"
