@@ -1,0 +1,53 @@
+#ifndef DUET_MODEL_FORMATS_JOINT_MAPPING_H_
+#define DUET_MODEL_FORMATS_JOINT_MAPPING_H_
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+#include "model/motion/clip.h"
+#include "model/motion/skeleton.h"
+
+namespace duet {
+
+// Joints that the user names: skeleton joint -> joint of the file. They win over every rule.
+using JointOverrides = std::map<std::string, std::string>;
+
+// One joint of a skeleton as a weighted mean of joints of a file.
+struct JointSource {
+  struct Term {
+    int joint = 0;
+    float weight = 1;
+  };
+  std::vector<Term> terms;
+};
+
+// How every joint of a skeleton is found in a file.
+struct JointMap {
+  std::vector<JointSource> sources;  // [skeleton joints]
+  // What was decided where the names leave a choice, for people to read:
+  // "torso: mixamorig:Spine1 (nearest to half way between hips and neck)".
+  std::vector<std::string> notes;
+};
+
+// Finds a skeleton's joints in a file by name (docs/formats.md has the table). A file with all of
+// the skeleton's names as they are is taken as it is. Otherwise a name counts without its prefix
+// (`mixamorig:`, `Bip01`), case, separators and wherever it says the side (`LeftArm`, `arm.L`,
+// `lArm`); the torso is the spine joint nearest to half way between hips and neck in the first
+// frame.
+//
+// Shapes: first_pose [names], in any unit.
+// Errors: INVALID_ARGUMENT naming `source`, the skeleton's joints without a source, the names that
+//         the file has, or an override that names no joint of the skeleton or of the file.
+absl::StatusOr<JointMap> MapJoints(absl::string_view source, const std::vector<std::string>& names,
+                                   const std::vector<Vec3>& first_pose, const Skeleton& skeleton,
+                                   const JointOverrides& overrides = {});
+
+// A clip with the file's joints as a clip with the skeleton's.
+Clip ApplyJointMap(const JointMap& map, const Skeleton& skeleton, const Clip& clip);
+
+}  // namespace duet
+
+#endif  // DUET_MODEL_FORMATS_JOINT_MAPPING_H_
