@@ -13,7 +13,8 @@ if(NOT DUET_CLIENT_ONLY)
   find_package(Torch CONFIG REQUIRED)
   # LibTorch runs on whatever libblas is installed; the reference one is 30 to 60 times slower, so
   # OpenBLAS is linked by name.
-  find_library(DUET_OPENBLAS openblas REQUIRED)
+  find_library(DUET_OPENBLAS openblas PATH_SUFFIXES openblas-openmp REQUIRED)
+  find_path(DUET_CBLAS_INCLUDE_DIR cblas.h PATH_SUFFIXES openblas-openmp REQUIRED)
 
   # LibTorch's headers, seen by the few targets that need them.
   add_library(duet_torch INTERFACE)

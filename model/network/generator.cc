@@ -1,0 +1,173 @@
+#include "model/network/generator.h"
+
+#include <cmath>
+
+#include "model/network/attentive_decoder.h"
+#include "model/network/lstm.h"
+#include "model/network/sequence.h"
+
+namespace duet::network {
+namespace {
+
+const char* const kDirections[] = {"forward", "backward"};
+
+torch::Tensor PartColumns(const BodyPart& part) {
+  std::vector<int64_t> columns;
+  for (int joint : part.joints) {
+    for (int64_t axis = 0; axis < 3; ++axis) columns.push_back(3 * int64_t{joint} + axis);
+  }
+  return torch::tensor(columns);
+}
+
+bool EndsWith(const std::string& text, const std::string& end) {
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+// Uniform in +-1/sqrt(fan in), as LibTorch initialises its own layers; an LSTM's forget gate starts
+// open (bias 1), so that early gradients reach across a clip.
+torch::Tensor InitialValue(const TensorSpec& spec) {
+  torch::Tensor value = torch::empty(spec.shape);
+  const bool bias = EndsWith(spec.name, "bias");
+  const int64_t fan_in = spec.shape.back();
+  torch::NoGradGuard no_grad;
+  if (!bias) return value.uniform_(-1, 1).div_(std::sqrt(static_cast<double>(fan_in)));
+  value.zero_();
+  const bool recurrent = EndsWith(spec.name, "ward.bias");
+  if (recurrent) value.slice(0, fan_in / 4, fan_in / 2).fill_(1);
+  return value;
+}
+
+std::string ModuleName(std::string name) {
+  for (char& c : name) c = c == '.' ? '/' : c;  // LibTorch forbids dots in a parameter's name
+  return name;
+}
+
+}  // namespace
+
+GeneratorImpl::GeneratorImpl(const Manifest& manifest)
+    : slices_(SliceShapes(manifest)),
+      whole_body_reads_leader_(manifest.generator.variant == "paper"),
+      has_start_(manifest.generator.follower_start),
+      has_fc_(manifest.generator.slice_features > 0),
+      encoder_hidden_(manifest.generator.encoder_hidden) {
+  for (const BodyPart& part : manifest.model.skeleton.parts) columns_.push_back(PartColumns(part));
+  for (const TensorSpec& spec : ExpectedTensors(manifest)) {
+    tensors_[spec.name] = register_parameter(ModuleName(spec.name), InitialValue(spec));
+  }
+}
+
+torch::Tensor GeneratorImpl::SliceInput(const GeneratorInput& input, size_t slice) const {
+  const torch::Tensor leader = input.leader.transpose(0, 1);  // [T, N, 3 J]
+  if (slice < columns_.size()) return leader.index_select(2, columns_[slice]);
+  std::vector<torch::Tensor> whole;
+  if (whole_body_reads_leader_) whole.push_back(leader);
+  whole.push_back(input.labels.transpose(0, 1));
+  if (has_start_) whole.push_back(input.start.unsqueeze(0).expand({leader.size(0), -1, -1}));
+  return torch::cat(whole, 2);
+}
+
+torch::Tensor GeneratorImpl::Features(const GeneratorInput& input, size_t slice) const {
+  torch::Tensor features = SliceInput(input, slice);
+  if (has_fc_) {
+    const std::string layer = "encoder." + slices_[slice].name + ".fc.";
+    features = torch::nn::functional::linear(features, Parameter(layer + "weight"),
+                                             Parameter(layer + "bias"));
+  }
+  return torch::dropout(features, dropout_, is_training());
+}
+
+// The input's part of a slice's LSTM gates, both directions, the backward one turned around:
+// [T, 2, N, 4 E].
+torch::Tensor GeneratorImpl::SliceGates(const GeneratorInput& input, size_t slice,
+                                        const torch::Tensor& reversed) const {
+  const std::string name = "encoder." + slices_[slice].name + ".";
+  const torch::Tensor features = Features(input, slice);
+  const int64_t frames = features.size(0), batch = features.size(1);
+  std::vector<torch::Tensor> gates;
+  for (const std::string direction : kDirections) {
+    torch::Tensor rows = features.reshape({frames * batch, -1});
+    if (direction == kDirections[1]) rows = rows.index_select(0, reversed);
+    gates.push_back(torch::addmm(Parameter(name + direction + ".bias"), rows,
+                                 Parameter(name + direction + ".weight_ih").t())
+                        .reshape({frames, batch, 4 * encoder_hidden_}));
+  }
+  return torch::stack(gates, 1);
+}
+
+GeneratorImpl::Encoded GeneratorImpl::EncodeAll(const GeneratorInput& input,
+                                                const torch::Tensor& reversed) const {
+  const int64_t frames = input.leader.size(1), batch = input.leader.size(0);
+  const int64_t slices = static_cast<int64_t>(slices_.size()), units = slices * encoder_hidden_;
+  std::vector<torch::Tensor> gates, weights;
+  for (size_t slice = 0; slice < slices_.size(); ++slice) {
+    gates.push_back(SliceGates(input, slice, reversed));
+    weights.push_back(Stack("encoder." + slices_[slice].name + ".%.weight_hh"));
+  }
+  const torch::Tensor zero = torch::zeros({2 * slices, batch, encoder_hidden_}, gates[0].options());
+  // Groups: every slice forward, then every slice backward.
+  auto [hidden, cell] = LstmSequence(torch::stack(gates, 2).reshape({frames, 2 * slices, batch, -1}),
+                                     torch::stack(weights, 1).flatten(0, 1), zero, zero);
+  const auto rows = [&](const torch::Tensor& states) {  // [T, G, N, E] -> [T N, G E]
+    return states.transpose(1, 2).reshape({frames * batch, 2 * units});
+  };
+  const auto final_states = [&](const torch::Tensor& states) {  // -> [2, N, S E]
+    return rows(states).index_select(0, LastRows(input.lengths)).reshape({batch, 2, units})
+        .transpose(0, 1);
+  };
+  const auto directions = rows(hidden).chunk(2, 1);
+  const torch::Tensor both =
+      torch::cat({directions[0], directions[1].index_select(0, reversed)}, 1);
+  return {both.reshape({frames, batch, 2 * units}), final_states(hidden), final_states(cell)};
+}
+
+torch::Tensor GeneratorImpl::Stack(const std::string& parameter) const {
+  const size_t at = parameter.find('%');
+  std::vector<torch::Tensor> both;
+  for (const std::string direction : kDirections) {
+    both.push_back(Parameter(std::string(parameter).replace(at, 1, direction)));
+  }
+  return torch::stack(both);
+}
+
+torch::Tensor GeneratorImpl::Decode(const Encoded& encoded, const GeneratorInput& input,
+                                    const torch::Tensor& reversed) const {
+  const int64_t frames = encoded.frames.size(0), batch = encoded.frames.size(1);
+  const torch::Tensor by_clip =
+      torch::dropout(encoded.frames, dropout_, is_training()).transpose(0, 1).reshape(
+          {batch * frames, -1});
+  // [2, N T, X] = h_j times each direction's matrix
+  const auto project = [&](const torch::Tensor& weights) {
+    return torch::matmul(by_clip, weights.transpose(1, 2));
+  };
+  DecoderInputs decoder;
+  decoder.encoded =
+      project(Stack("decoder.%.attention_encoded")).reshape({2, batch, frames, -1});
+  decoder.values = (project(Stack("decoder.%.weight_ih")) + Stack("decoder.%.bias").unsqueeze(1))
+                       .reshape({2, batch, frames, -1});
+  decoder.weight_hh = Stack("decoder.%.weight_hh");
+  decoder.state = Stack("decoder.%.attention_state");
+  decoder.score = Stack("decoder.%.attention_score");
+  decoder.hidden = encoded.hidden;
+  decoder.cell = encoded.cell;
+  decoder.lengths = input.lengths;
+  const auto directions = AttentiveDecoder(decoder).unbind(1);  // two of [T, N, H]
+  const torch::Tensor backward =
+      directions[1].reshape({frames * batch, -1}).index_select(0, reversed);
+  const torch::Tensor states =
+      torch::cat({directions[0].reshape({frames * batch, -1}), backward}, 1);
+  return torch::addmm(Parameter("output.bias"), torch::dropout(states, dropout_, is_training()),
+                      Parameter("output.weight").t())
+      .reshape({frames, batch, -1})
+      .transpose(0, 1);
+}
+
+torch::Tensor GeneratorImpl::Encode(const GeneratorInput& input) {
+  return EncodeAll(input, ReversedRows(input.lengths, input.leader.size(1))).frames;
+}
+
+torch::Tensor GeneratorImpl::forward(const GeneratorInput& input) {
+  const torch::Tensor reversed = ReversedRows(input.lengths, input.leader.size(1));
+  return Decode(EncodeAll(input, reversed), input, reversed);
+}
+
+}  // namespace duet::network

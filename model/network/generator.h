@@ -1,0 +1,76 @@
+#ifndef DUET_MODEL_NETWORK_GENERATOR_H_
+#define DUET_MODEL_NETWORK_GENERATOR_H_
+
+#include <torch/torch.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "model/checkpoint/manifest.h"
+
+namespace duet::network {
+
+// What the generator sees of a batch of clips, in the standard frame (model/motion/standardise.h).
+struct GeneratorInput {
+  torch::Tensor leader;   // [N, T, 3 J] metres, zero-padded
+  torch::Tensor labels;   // [N, T, C]
+  torch::Tensor start;    // [N, StartFeatureCount]; read when the architecture has a follower start
+  torch::Tensor lengths;  // [N] int64, valid frames of each clip, 1 to T
+};
+
+// The hierarchical generator: a fully connected layer and a bidirectional LSTM for each body-part
+// slice, attentive bidirectional decoder, linear output.
+//
+// Source:  paper sections 3.1 and 3.2. Deviations: attention over padding is masked; no softmax on
+//          the output; the whole-body slice may also read the follower's start.
+// Shapes:  forward returns the follower [N, T, 3 J]; frames past a clip's length are meaningless.
+// Units:   metres.
+// Threads: forward is safe to call concurrently in evaluation mode.
+class GeneratorImpl : public torch::nn::Module {
+ public:
+  // Randomly initialised, or filled from a checkpoint with LoadParameters.
+  explicit GeneratorImpl(const Manifest& manifest);
+
+  torch::Tensor forward(const GeneratorInput& input);
+
+  // The concatenated encoder output h_t, [T, N, S 2 E]: the paper's latent space (Figures 6, 7).
+  torch::Tensor Encode(const GeneratorInput& input);
+
+  // Share of the encoders' features and outputs dropped in training mode.
+  void set_dropout(double probability) { dropout_ = probability; }
+
+  // The parameters by the names of ExpectedTensors.
+  const std::map<std::string, torch::Tensor>& tensors() const { return tensors_; }
+
+ private:
+  struct Encoded {
+    torch::Tensor frames;  // [T, N, S 2 E]: every slice forward, then every slice backward
+    torch::Tensor hidden;  // [2, N, S E] final states by direction
+    torch::Tensor cell;    // [2, N, S E]
+  };
+
+  const torch::Tensor& Parameter(const std::string& name) const { return tensors_.at(name); }
+  torch::Tensor SliceInput(const GeneratorInput& input, size_t slice) const;
+  torch::Tensor SliceGates(const GeneratorInput& input, size_t slice,
+                           const torch::Tensor& reversed) const;
+  torch::Tensor Features(const GeneratorInput& input, size_t slice) const;
+  Encoded EncodeAll(const GeneratorInput& input, const torch::Tensor& reversed) const;
+  torch::Tensor Decode(const Encoded& encoded, const GeneratorInput& input,
+                       const torch::Tensor& reversed) const;
+  torch::Tensor Stack(const std::string& parameter) const;
+
+  std::vector<SliceShape> slices_;
+  std::vector<torch::Tensor> columns_;  // of each part in the leader's [3 J]
+  std::map<std::string, torch::Tensor> tensors_;
+  bool whole_body_reads_leader_;
+  bool has_start_;
+  bool has_fc_;
+  int64_t encoder_hidden_;
+  double dropout_ = 0;
+};
+TORCH_MODULE(Generator);
+
+}  // namespace duet::network
+
+#endif  // DUET_MODEL_NETWORK_GENERATOR_H_

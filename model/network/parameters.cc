@@ -1,0 +1,48 @@
+#include "model/network/parameters.h"
+
+#include <algorithm>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+
+namespace duet::network {
+namespace {
+
+std::string ShapeText(at::IntArrayRef shape) {
+  return absl::StrCat("[", absl::StrJoin(shape, ", "), "]");
+}
+
+}  // namespace
+
+absl::Status LoadParameters(const Checkpoint& checkpoint, Generator& generator) {
+  torch::NoGradGuard no_grad;
+  std::map<std::string, torch::Tensor> wanted = generator->tensors();
+  for (const Tensor& tensor : checkpoint.tensors) {
+    const auto it = wanted.find(tensor.name);
+    if (it == wanted.end()) {
+      return absl::InvalidArgumentError(absl::StrCat("tensor \"", tensor.name, "\" is unknown"));
+    }
+    if (it->second.sizes() != at::IntArrayRef(tensor.shape)) {
+      return absl::InvalidArgumentError(absl::StrCat("tensor \"", tensor.name, "\": shape ",
+                                                     ShapeText(tensor.shape), ", wanted ",
+                                                     ShapeText(it->second.sizes())));
+    }
+    std::copy(tensor.values.begin(), tensor.values.end(), it->second.data_ptr<float>());
+    wanted.erase(it);
+  }
+  if (wanted.empty()) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      absl::StrCat("tensor \"", wanted.begin()->first, "\" is missing"));
+}
+
+std::vector<Tensor> StoreParameters(const Manifest& manifest, const Generator& generator) {
+  std::vector<Tensor> tensors;
+  for (const TensorSpec& spec : ExpectedTensors(manifest)) {
+    const torch::Tensor value = generator->tensors().at(spec.name).detach().contiguous();
+    const float* data = value.data_ptr<float>();
+    tensors.push_back({spec.name, spec.shape, std::vector<float>(data, data + value.numel())});
+  }
+  return tensors;
+}
+
+}  // namespace duet::network
