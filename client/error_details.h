@@ -1,0 +1,34 @@
+#ifndef DUET_CLIENT_ERROR_DETAILS_H_
+#define DUET_CLIENT_ERROR_DETAILS_H_
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/time/time.h"
+
+namespace duet::client {
+
+// A field of a request that the server refused.
+struct FieldViolation {
+  std::string field;        // such as "leader.positions[17]"
+  std::string description;  // what came and what was wanted
+};
+
+// The details that a server's refusal carries (google.rpc.BadRequest, RetryInfo, ErrorInfo). They
+// travel as payloads of the status, under their type URLs.
+
+// Every field that was refused, in the server's order; empty where the refusal is of another kind.
+std::vector<FieldViolation> FieldViolations(const absl::Status& status);
+
+// When the server wants to be asked again; absent where it did not say.
+std::optional<absl::Duration> RetryDelay(const absl::Status& status);
+
+// A stable, machine-readable reason such as "QUEUE_FULL"; empty where the status did not come from
+// a Duet server.
+std::string ErrorReason(const absl::Status& status);
+
+}  // namespace duet::client
+
+#endif  // DUET_CLIENT_ERROR_DETAILS_H_

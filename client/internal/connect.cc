@@ -1,0 +1,92 @@
+#include "client/internal/connect.h"
+
+#include <utility>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "client/internal/connection_impl.h"
+#include "client/internal/grpc_stub.h"
+#include "grpcpp/create_channel.h"
+#include "grpcpp/security/credentials.h"
+#include "grpcpp/support/channel_arguments.h"
+
+namespace duet::client::internal {
+namespace {
+
+// Calls go round all servers behind the name, and only to those whose health service says that
+// they serve: a draining server gets no new work. "" is the server as a whole.
+constexpr char kServiceConfig[] = R"({
+  "loadBalancingConfig": [{"round_robin": {}}],
+  "healthCheckConfig": {"serviceName": ""}
+})";
+
+absl::Status Check(const ClientOptions& options) {
+  if (options.server_address.empty()) {
+    return absl::InvalidArgumentError("server_address: empty, wanted host:port");
+  }
+  if (options.deadline <= absl::ZeroDuration()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("deadline: ", absl::FormatDuration(options.deadline), ", wanted more than 0"));
+  }
+  const RetryOptions& retry = options.retry;
+  if (retry.max_attempts < 1) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("retry.max_attempts: ", retry.max_attempts, ", wanted 1 or more"));
+  }
+  if (retry.initial_backoff <= absl::ZeroDuration() || retry.max_backoff < retry.initial_backoff) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "retry: initial_backoff ", absl::FormatDuration(retry.initial_backoff), ", max_backoff ",
+        absl::FormatDuration(retry.max_backoff), ", wanted 0 < initial <= max"));
+  }
+  if (options.tls.has_value() &&
+      options.tls->certificate_chain.empty() != options.tls->private_key.empty()) {
+    return absl::InvalidArgumentError(
+        "tls: certificate_chain and private_key, wanted both or neither");
+  }
+  return absl::OkStatus();
+}
+
+std::shared_ptr<grpc::ChannelCredentials> Credentials(const ClientOptions& options) {
+  if (!options.tls.has_value()) return grpc::InsecureChannelCredentials();
+  grpc::SslCredentialsOptions ssl;
+  ssl.pem_root_certs = options.tls->root_certificates;
+  ssl.pem_cert_chain = options.tls->certificate_chain;
+  ssl.pem_private_key = options.tls->private_key;
+  return grpc::SslCredentials(ssl);
+}
+
+grpc::ChannelArguments Arguments(const ClientOptions& options) {
+  grpc::ChannelArguments arguments;
+  arguments.SetLoadBalancingPolicyName("round_robin");
+  arguments.SetServiceConfigJSON(kServiceConfig);
+  // A connection is tried again as often as a call is: gRPC's own second-long wait would spend a
+  // call's attempts on a server that is back already.
+  arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS,
+                   static_cast<int>(absl::ToInt64Milliseconds(options.retry.initial_backoff)));
+  arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS,
+                   static_cast<int>(absl::ToInt64Milliseconds(options.retry.max_backoff)));
+  if (options.tls.has_value() && !options.tls->server_name.empty()) {
+    arguments.SetSslTargetNameOverride(options.tls->server_name);
+  }
+  return arguments;
+}
+
+}  // namespace
+
+std::string GrpcTarget(std::string_view server_address) {
+  const std::string address(server_address);
+  for (const char* scheme : {"dns:", "ipv4:", "ipv6:", "unix:", "unix-abstract:", "xds:"}) {
+    if (absl::StartsWith(address, scheme)) return address;
+  }
+  return "dns:///" + address;
+}
+
+absl::StatusOr<std::shared_ptr<Connection>> Connect(const ClientOptions& options) {
+  const absl::Status status = Check(options);
+  if (!status.ok()) return status;
+  std::shared_ptr<grpc::Channel> channel = grpc::CreateCustomChannel(
+      GrpcTarget(options.server_address), Credentials(options), Arguments(options));
+  return std::make_shared<ConnectionImpl>(MakeGrpcStub(std::move(channel)), options);
+}
+
+}  // namespace duet::client::internal

@@ -1,0 +1,22 @@
+#ifndef DUET_CLIENT_INTERNAL_CONNECT_H_
+#define DUET_CLIENT_INTERNAL_CONNECT_H_
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "absl/status/statusor.h"
+#include "client/connection.h"
+#include "client/options.h"
+
+namespace duet::client::internal {
+
+// A connection over gRPC. INVALID_ARGUMENT when an option makes no sense. Connects lazily.
+absl::StatusOr<std::shared_ptr<Connection>> Connect(const ClientOptions& options);
+
+// "host:port" as a gRPC target that resolves to every server behind the name; targets are left.
+std::string GrpcTarget(std::string_view server_address);
+
+}  // namespace duet::client::internal
+
+#endif  // DUET_CLIENT_INTERNAL_CONNECT_H_

@@ -1,0 +1,117 @@
+#include "client/internal/connection_impl.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "client/internal/grpc_status.h"
+#include "client/internal/proto_conversion.h"
+
+namespace duet::client::internal {
+namespace {
+
+// Makes a re-run come from the model that the frames already handed out came from: half a motion
+// of one version and half of another would be no motion at all.
+void PinModel(const v1::SynthesisHeader& answered, v1::ModelSelector* selector) {
+  selector->set_name(answered.model_name());
+  selector->set_version(answered.model_version());
+}
+
+absl::Status ModelIsGone(const absl::Status& status, const v1::ModelSelector& pinned, int frames) {
+  return WithPayloadsOf(
+      status, absl::AbortedError(absl::StrCat("the stream broke after ", frames,
+                                              " frames and cannot be resumed: ", pinned.name(), "@",
+                                              pinned.version(), " is no longer served")));
+}
+
+}  // namespace
+
+ConnectionImpl::ConnectionImpl(std::shared_ptr<Stub> stub, const ClientOptions& options,
+                               RetryEnvironment environment)
+    : stub_(std::move(stub)),
+      deadline_(options.deadline),
+      retry_(options.retry),
+      environment_(std::move(environment)) {}
+
+absl::StatusOr<std::vector<ModelInfo>> ConnectionImpl::ListModels() {
+  const CallContext call{Deadline(), ""};
+  absl::StatusOr<v1::ListModelsResponse> response;
+  const absl::Status status =
+      Retry(retry_, environment_, Priority::kInteractive, call.deadline, [&] {
+        response = stub_->ListModels(call, {});
+        return response.status();
+      });
+  if (!status.ok()) return status;
+  std::vector<ModelInfo> models;
+  for (const v1::Model& model : response->models()) {
+    absl::StatusOr<ModelInfo> info = FromProto(model);
+    if (!info.ok()) return info.status();
+    models.push_back(*std::move(info));
+  }
+  return models;
+}
+
+absl::StatusOr<ModelDetails> ConnectionImpl::GetModel(const ModelChoice& choice) {
+  absl::StatusOr<v1::ModelSelector> selector = ToProto(choice);
+  if (!selector.ok()) return selector.status();
+  v1::GetModelRequest request;
+  *request.mutable_model() = *std::move(selector);
+  const CallContext call{Deadline(), ""};
+  absl::StatusOr<v1::GetModelResponse> response;
+  const absl::Status status =
+      Retry(retry_, environment_, Priority::kInteractive, call.deadline, [&] {
+        response = stub_->GetModel(call, request);
+        return response.status();
+      });
+  if (!status.ok()) return status;
+  absl::StatusOr<ModelInfo> model = FromProto(response->model());
+  if (!model.ok()) return model.status();
+  return ModelDetails{*std::move(model), FromProto(response->limits())};
+}
+
+absl::StatusOr<SynthesisResult> ConnectionImpl::Synthesize(const SynthesisRequest& request,
+                                                           const ChunkCallback& on_chunk) {
+  absl::StatusOr<v1::SynthesizeRequest> wire = ToProto(request);
+  if (!wire.ok()) return wire.status();
+  const absl::Time start = environment_.now();
+  const CallContext call{start + deadline_, request.request_id};
+  ReplyAssembler reply(request.leader, on_chunk);
+  absl::Time first_chunk = absl::InfiniteFuture();
+  int attempts = 0;
+  const absl::Status status = Retry(retry_, environment_, request.priority, call.deadline, [&] {
+    ++attempts;
+    const bool resumes = reply.handed_out() > 0;
+    if (resumes && reply.header().has_value()) PinModel(*reply.header(), wire->mutable_model());
+    const int handed_out = reply.handed_out();
+    absl::Status ended = RunStream(call, *wire, &reply, &first_chunk);
+    if (resumes && absl::IsNotFound(ended)) return ModelIsGone(ended, wire->model(), handed_out);
+    // The callback's own wish to stop is never taken for a failure worth another attempt.
+    return reply.callback_status().ok() ? ended : absl::OkStatus();
+  });
+  if (!reply.callback_status().ok()) return reply.callback_status();
+  if (!status.ok()) return status;
+  SynthesisResult result = std::move(reply).TakeResult();
+  result.attempt_count = attempts;
+  result.timings.first_chunk = first_chunk - start;
+  result.timings.total = environment_.now() - start;
+  return result;
+}
+
+absl::Status ConnectionImpl::RunStream(const CallContext& call,
+                                       const v1::SynthesizeRequest& request, ReplyAssembler* reply,
+                                       absl::Time* first_chunk) {
+  reply->StartStream();
+  std::unique_ptr<ResponseStream> stream = stub_->Synthesize(call, request);
+  v1::SynthesizeResponse response;
+  absl::Status accepted;
+  while (stream->Read(&response)) {
+    if (!accepted.ok()) continue;  // cancelled: what still arrives is dropped
+    accepted = reply->Accept(response);
+    if (!accepted.ok()) stream->Cancel();
+    if (reply->has_frames()) *first_chunk = std::min(*first_chunk, environment_.now());
+  }
+  const absl::Status ended = stream->Finish();
+  return accepted.ok() ? reply->EndStream(ended) : accepted;
+}
+
+}  // namespace duet::client::internal

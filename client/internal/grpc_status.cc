@@ -1,0 +1,58 @@
+#include "client/internal/grpc_status.h"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/cord.h"
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "client/error_details.h"
+#include "duet/rpc/v1/status.pb.h"
+
+namespace duet::client::internal {
+namespace {
+
+// "field: description" of each violation that `message` does not already tell.
+std::string UntoldViolations(const absl::Status& status) {
+  std::vector<std::string> untold;
+  for (const FieldViolation& violation : FieldViolations(status)) {
+    if (absl::StrContains(status.message(), violation.field) &&
+        absl::StrContains(status.message(), violation.description)) {
+      continue;
+    }
+    untold.push_back(absl::StrCat(violation.field, ": ", violation.description));
+  }
+  return absl::StrJoin(untold, "; ");
+}
+
+}  // namespace
+
+absl::Status WithPayloadsOf(const absl::Status& from, absl::Status to) {
+  from.ForEachPayload([&to](absl::string_view type_url, const absl::Cord& payload) {
+    to.SetPayload(type_url, payload);
+  });
+  return to;
+}
+
+absl::Status AppendMessage(const absl::Status& status, std::string_view more) {
+  return WithPayloadsOf(
+      status, absl::Status(status.code(), absl::StrCat(status.message(), std::string(more))));
+}
+
+absl::Status FromGrpc(const grpc::Status& status) {
+  if (status.ok()) return absl::OkStatus();
+  absl::Status result(static_cast<absl::StatusCode>(status.error_code()), status.error_message());
+  rpc::v1::Status details;
+  if (details.ParseFromString(status.error_details())) {
+    for (const google::protobuf::Any& detail : details.details()) {
+      result.SetPayload(detail.type_url(), absl::Cord(detail.value()));
+    }
+  }
+  const std::string untold = UntoldViolations(result);
+  if (untold.empty()) return result;
+  return AppendMessage(result, absl::StrCat(result.message().empty() ? "" : ": ", untold));
+}
+
+}  // namespace duet::client::internal

@@ -1,0 +1,16 @@
+#ifndef DUET_CLIENT_INTERNAL_GRPC_STUB_H_
+#define DUET_CLIENT_INTERNAL_GRPC_STUB_H_
+
+#include <memory>
+
+#include "client/internal/stub.h"
+#include "grpcpp/channel.h"
+
+namespace duet::client::internal {
+
+// The stub that really calls.
+std::shared_ptr<Stub> MakeGrpcStub(std::shared_ptr<grpc::Channel> channel);
+
+}  // namespace duet::client::internal
+
+#endif  // DUET_CLIENT_INTERNAL_GRPC_STUB_H_

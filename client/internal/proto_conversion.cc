@@ -1,0 +1,172 @@
+#include "client/internal/proto_conversion.h"
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+
+namespace duet::client::internal {
+namespace {
+
+void AppendPositions(const std::vector<Vec3>& points,
+                     google::protobuf::RepeatedField<float>* positions) {
+  positions->Reserve(positions->size() + static_cast<int>(points.size()) * 3);
+  for (const Vec3& point : points) {
+    positions->AddAlreadyReserved(point.x);
+    positions->AddAlreadyReserved(point.y);
+    positions->AddAlreadyReserved(point.z);
+  }
+}
+
+void Fill(const std::vector<ClassWeight>& weights, v1::LabelVector* labels) {
+  for (const ClassWeight& weight : weights) {
+    v1::ClassWeight* out = labels->add_weights();
+    out->set_interaction_class(weight.interaction_class);
+    out->set_weight(weight.weight);
+  }
+}
+
+absl::Status FillLeader(const Clip& clip, v1::Motion* leader) {
+  if (clip.joint_names.empty()) {
+    return absl::InvalidArgumentError("leader.joint_names: empty, wanted the model's joints");
+  }
+  if (clip.positions.size() % clip.joint_names.size() != 0) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("leader.positions: ", clip.positions.size(), " points, wanted a multiple of ",
+                     clip.joint_names.size(), " (one for each frame and joint)"));
+  }
+  // Past this the flat run of floats no longer fits a protobuf message at all.
+  constexpr size_t kMaxPoints = (size_t{1} << 31) / 16;
+  if (clip.positions.size() > kMaxPoints) {
+    return absl::InvalidArgumentError(absl::StrCat("leader.positions: ", clip.positions.size(),
+                                                   " points, wanted at most ", kMaxPoints));
+  }
+  leader->mutable_joint_names()->Assign(clip.joint_names.begin(), clip.joint_names.end());
+  leader->set_frame_rate_hz(clip.frame_rate_hz);
+  leader->set_unit(v1::LENGTH_UNIT_METRES);
+  leader->set_up_axis(v1::UP_AXIS_Y_UP);
+  leader->set_frame_count(static_cast<uint32_t>(clip.frame_count()));
+  AppendPositions(clip.positions, leader->mutable_positions());
+  return absl::OkStatus();
+}
+
+absl::Status FillLabels(const SynthesisRequest& request, v1::SynthesizeRequest* out) {
+  if (!request.weights.empty()) Fill(request.weights, out->mutable_label_vector());
+  for (size_t i = 0; i < request.keyframes.size(); ++i) {
+    const WeightKeyframe& keyframe = request.keyframes[i];
+    if (keyframe.frame < 0) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("label_keyframes[", i, "].frame: ", keyframe.frame, ", wanted 0 or more"));
+    }
+    v1::LabelKeyframe* added = out->add_label_keyframes();
+    added->set_frame(static_cast<uint32_t>(keyframe.frame));
+    Fill(keyframe.weights, added->mutable_label_vector());
+  }
+  return absl::OkStatus();
+}
+
+void Fill(const FollowerStart& start, v1::FollowerStart* out) {
+  if (const Vec3* root = std::get_if<Vec3>(&start)) {
+    out->mutable_root_position()->set_x(root->x);
+    out->mutable_root_position()->set_y(root->y);
+    out->mutable_root_position()->set_z(root->z);
+  } else {
+    AppendPositions(std::get<std::vector<Vec3>>(start), out->mutable_pose()->mutable_positions());
+  }
+}
+
+v1::Priority ToProto(Priority priority) {
+  return priority == Priority::kBulk ? v1::PRIORITY_BULK : v1::PRIORITY_INTERACTIVE;
+}
+
+bool HasJoint(const v1::Bone& bone, int joints) {
+  const auto count = static_cast<uint32_t>(joints);
+  return bone.parent_joint() < count && bone.child_joint() < count;
+}
+
+}  // namespace
+
+absl::StatusOr<v1::ModelSelector> ToProto(const ModelChoice& choice) {
+  v1::ModelSelector selector;
+  selector.set_name(choice.name);
+  if (choice.version.has_value() && !choice.version_label.empty()) {
+    return absl::InvalidArgumentError(absl::StrCat("model: version ", *choice.version,
+                                                   " and version label \"", choice.version_label,
+                                                   "\", wanted one of the two"));
+  }
+  if (choice.version.has_value()) {
+    if (*choice.version < 1) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("model.version: ", *choice.version, ", wanted 1 or more"));
+    }
+    selector.set_version(static_cast<uint32_t>(*choice.version));
+  }
+  if (!choice.version_label.empty()) selector.set_version_label(choice.version_label);
+  return selector;
+}
+
+absl::StatusOr<v1::SynthesizeRequest> ToProto(const SynthesisRequest& request) {
+  v1::SynthesizeRequest out;
+  absl::StatusOr<v1::ModelSelector> model = ToProto(request.model);
+  if (!model.ok()) return model.status();
+  *out.mutable_model() = *std::move(model);
+  absl::Status status = FillLeader(request.leader, out.mutable_leader());
+  if (status.ok()) status = FillLabels(request, &out);
+  if (!status.ok()) return status;
+  if (request.follower_start.has_value()) {
+    Fill(*request.follower_start, out.mutable_follower_start());
+  }
+  out.set_priority(ToProto(request.priority));
+  if (request.chunk_frames.has_value()) {
+    if (*request.chunk_frames < 1) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("chunk_frames: ", *request.chunk_frames, ", wanted 1 or more"));
+    }
+    out.set_chunk_frames(static_cast<uint32_t>(*request.chunk_frames));
+  }
+  return out;
+}
+
+absl::StatusOr<ModelInfo> FromProto(const v1::Model& model) {
+  ModelInfo info;
+  info.name = model.name();
+  info.version = static_cast<int>(model.version());
+  info.version_labels = {model.version_labels().begin(), model.version_labels().end()};
+  info.is_default = model.is_default();
+  info.interaction_classes = {model.interaction_classes().begin(),
+                              model.interaction_classes().end()};
+  info.joint_names = {model.joint_names().begin(), model.joint_names().end()};
+  for (const v1::Bone& bone : model.bones()) {
+    if (!HasJoint(bone, model.joint_names_size())) {
+      return absl::InternalError(absl::StrCat("the server's model ", model.name(), "@",
+                                              model.version(), " has a bone from joint ",
+                                              bone.parent_joint(), " to ", bone.child_joint(),
+                                              ", wanted 0 to ", model.joint_names_size() - 1));
+    }
+    info.bones.push_back(
+        {static_cast<int>(bone.parent_joint()), static_cast<int>(bone.child_joint())});
+  }
+  info.root_joint = model.root_joint();
+  info.frame_rate_hz = model.frame_rate_hz();
+  info.window_frames = static_cast<int>(model.window_frames());
+  info.accepts_follower_start = model.accepts_follower_start();
+  info.description = model.description();
+  return info;
+}
+
+RequestLimits FromProto(const v1::RequestLimits& limits) {
+  RequestLimits out;
+  out.min_frame_rate_hz = limits.min_frame_rate_hz();
+  out.max_frame_rate_hz = limits.max_frame_rate_hz();
+  out.min_frames = static_cast<int>(limits.min_frames());
+  out.max_duration = absl::Seconds(limits.max_duration_seconds());
+  out.max_chunk_frames = static_cast<int>(limits.max_chunk_frames());
+  out.max_keyframes = static_cast<int>(limits.max_label_keyframes());
+  out.max_abs_weight = limits.max_abs_weight();
+  out.max_request_bytes = static_cast<int64_t>(limits.max_request_bytes());
+  return out;
+}
+
+}  // namespace duet::client::internal

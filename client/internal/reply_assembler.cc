@@ -1,0 +1,173 @@
+#include "client/internal/reply_assembler.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "client/error_details.h"
+#include "client/internal/grpc_status.h"
+
+namespace duet::client::internal {
+namespace {
+
+template <typename... Parts>
+absl::Status Malformed(const Parts&... parts) {
+  return absl::InternalError(absl::StrCat("the server's reply is malformed: ", parts...));
+}
+
+// Whether the connection failed, rather than the service. A proxy or a dying server resets streams
+// under several codes; what the service itself says always carries an ErrorInfo.
+bool IsBrokenConnection(const absl::Status& status) {
+  switch (status.code()) {
+    case absl::StatusCode::kOk:
+    case absl::StatusCode::kUnavailable:
+      return true;
+    case absl::StatusCode::kInternal:
+    case absl::StatusCode::kUnknown:
+    case absl::StatusCode::kCancelled:
+      return ErrorReason(status).empty();
+    default:
+      return false;
+  }
+}
+
+}  // namespace
+
+void ReplyAssembler::StartStream() {
+  header_.reset();
+  summary_.reset();
+  positions_.clear();
+  received_ = 0;
+  chunk_count_ = 0;
+}
+
+absl::Status ReplyAssembler::Accept(const v1::SynthesizeResponse& response) {
+  if (summary_.has_value()) return Malformed("a message after the summary");
+  switch (response.payload_case()) {
+    case v1::SynthesizeResponse::kHeader:
+      return AcceptHeader(response.header());
+    case v1::SynthesizeResponse::kChunk:
+      return AcceptChunk(response.chunk());
+    case v1::SynthesizeResponse::kSummary:
+      return AcceptSummary(response.summary());
+    case v1::SynthesizeResponse::PAYLOAD_NOT_SET:
+      return Malformed("a message without a payload");
+  }
+  return Malformed("a payload of an unknown kind");
+}
+
+absl::Status ReplyAssembler::AcceptHeader(const v1::SynthesisHeader& header) {
+  if (header_.has_value()) return Malformed("a second header");
+  if (!std::equal(header.joint_names().begin(), header.joint_names().end(),
+                  leader_.joint_names.begin(), leader_.joint_names.end())) {
+    return Malformed("header.joint_names differ from the leader's");
+  }
+  if (header.frame_rate_hz() != leader_.frame_rate_hz) {
+    return Malformed("header.frame_rate_hz: ", header.frame_rate_hz(), ", wanted the leader's ",
+                     leader_.frame_rate_hz);
+  }
+  if (header.unit() != v1::LENGTH_UNIT_METRES || header.up_axis() != v1::UP_AXIS_Y_UP) {
+    return Malformed("header.unit and up_axis: ", v1::LengthUnit_Name(header.unit()), ", ",
+                     v1::UpAxis_Name(header.up_axis()), ", wanted metres, y up");
+  }
+  if (header.frame_count() != static_cast<uint32_t>(leader_.frame_count())) {
+    return Malformed("header.frame_count: ", header.frame_count(), ", wanted the leader's ",
+                     leader_.frame_count());
+  }
+  header_ = header;
+  positions_.reserve(leader_.positions.size());
+  return absl::OkStatus();
+}
+
+absl::Status ReplyAssembler::CheckChunk(const v1::MotionChunk& chunk) const {
+  if (!header_.has_value()) return Malformed("a chunk before the header");
+  if (chunk.first_frame() != static_cast<uint32_t>(received_)) {
+    return Malformed("chunk.first_frame: ", chunk.first_frame(), ", wanted ", received_);
+  }
+  const int left = leader_.frame_count() - received_;
+  if (chunk.frame_count() < 1 || chunk.frame_count() > static_cast<uint32_t>(left)) {
+    return Malformed("chunk.frame_count: ", chunk.frame_count(), ", wanted 1 to ", left);
+  }
+  const size_t wanted = size_t{chunk.frame_count()} * leader_.joint_names.size() * 3;
+  if (static_cast<size_t>(chunk.positions_size()) != wanted) {
+    return Malformed("chunk.positions: ", chunk.positions_size(), " values, wanted ", wanted,
+                     " for ", chunk.frame_count(), " frames");
+  }
+  for (int i = 0; i < chunk.positions_size(); ++i) {
+    if (!std::isfinite(chunk.positions(i))) {
+      return Malformed("chunk.positions[", i, "] is not finite, in the chunk of frame ",
+                       chunk.first_frame());
+    }
+  }
+  return absl::OkStatus();
+}
+
+absl::Status ReplyAssembler::AcceptChunk(const v1::MotionChunk& chunk) {
+  const absl::Status status = CheckChunk(chunk);
+  if (!status.ok()) return status;
+  for (int i = 0; i < chunk.positions_size(); i += 3) {
+    positions_.push_back({chunk.positions(i), chunk.positions(i + 1), chunk.positions(i + 2)});
+  }
+  received_ += static_cast<int>(chunk.frame_count());
+  ++chunk_count_;
+  return HandOut();
+}
+
+absl::Status ReplyAssembler::HandOut() {
+  if (!on_chunk_ || received_ <= handed_out_) return absl::OkStatus();
+  const auto joints = static_cast<std::ptrdiff_t>(leader_.joint_names.size());
+  FollowerChunk chunk;
+  chunk.first_frame = handed_out_;
+  chunk.frame_count = received_ - handed_out_;
+  chunk.positions.assign(positions_.begin() + handed_out_ * joints, positions_.end());
+  handed_out_ = received_;
+  callback_status_ = on_chunk_(chunk);
+  return callback_status_;
+}
+
+absl::Status ReplyAssembler::AcceptSummary(const v1::SynthesisSummary& summary) {
+  if (!header_.has_value()) return Malformed("a summary before the header");
+  if (received_ != leader_.frame_count()) {
+    return Malformed("a summary after ", received_, " of ", leader_.frame_count(), " frames");
+  }
+  if (summary.frame_count() != static_cast<uint32_t>(received_)) {
+    return Malformed("summary.frame_count: ", summary.frame_count(), ", wanted ", received_);
+  }
+  if (summary.chunk_count() != static_cast<uint32_t>(chunk_count_)) {
+    return Malformed("summary.chunk_count: ", summary.chunk_count(), ", but ", chunk_count_,
+                     " chunks came");
+  }
+  summary_ = summary;
+  return absl::OkStatus();
+}
+
+absl::Status ReplyAssembler::EndStream(const absl::Status& transport) const {
+  if (!transport.ok() && !IsBrokenConnection(transport)) return transport;
+  if (summary_.has_value()) return absl::OkStatus();  // nothing that could still break matters
+  if (!transport.ok() && !header_.has_value()) return transport;
+  absl::Status broken = absl::UnavailableError(absl::StrCat(
+      "the reply ended without a summary, after ", received_, " of ", leader_.frame_count(),
+      " frames", transport.ok() ? "" : ": ", std::string(transport.message())));
+  return WithPayloadsOf(transport, std::move(broken));
+}
+
+SynthesisResult ReplyAssembler::TakeResult() && {
+  SynthesisResult result;
+  result.pair.leader = leader_;
+  result.pair.follower.joint_names = leader_.joint_names;
+  result.pair.follower.frame_rate_hz = leader_.frame_rate_hz;
+  result.pair.follower.positions = std::move(positions_);
+  result.model_name = header_->model_name();
+  result.model_version = static_cast<int>(header_->model_version());
+  result.interaction_classes = {header_->interaction_classes().begin(),
+                                header_->interaction_classes().end()};
+  result.request_id = header_->request_id();
+  result.window_count = static_cast<int>(summary_->window_count());
+  result.timings.queue = absl::Seconds(summary_->queue_seconds());
+  result.timings.compute = absl::Seconds(summary_->compute_seconds());
+  return result;
+}
+
+}  // namespace duet::client::internal

@@ -1,0 +1,44 @@
+#ifndef DUET_CLIENT_INTERNAL_RETRY_H_
+#define DUET_CLIENT_INTERNAL_RETRY_H_
+
+#include <functional>
+
+#include "absl/functional/function_ref.h"
+#include "absl/status/status.h"
+#include "absl/time/time.h"
+#include "client/options.h"
+#include "client/request.h"
+
+namespace duet::client::internal {
+
+// The world outside, replaced in tests.
+struct RetryEnvironment {
+  std::function<absl::Time()> now;
+  std::function<void(absl::Duration)> sleep;
+  std::function<double()> uniform;  // in [0, 1)
+};
+
+// The clock on the wall, real sleep, a random seed.
+RetryEnvironment SystemEnvironment();
+
+// Whether another attempt may succeed where this one failed.
+//
+// UNAVAILABLE always. RESOURCE_EXHAUSTED only for bulk work, which has time, and only where the
+// server says when to come back (RetryInfo): the same code without it means a message that is too
+// large, today and tomorrow.
+bool IsRetryable(const absl::Status& status, Priority priority);
+
+// The wait after the `attempt`-th attempt (from 1) failed with `status`. Jitter comes on top of the
+// server's RetryInfo, so that clients sent away together do not return together.
+absl::Duration RetryWait(const RetryOptions& options, int attempt, const absl::Status& status,
+                         double uniform);
+
+// Attempts until one succeeds, fails for good, or neither attempts nor time are left. Returns the
+// last attempt's status; its message tells how many were made, if several.
+absl::Status Retry(const RetryOptions& options, const RetryEnvironment& environment,
+                   Priority priority, absl::Time deadline,
+                   absl::FunctionRef<absl::Status()> attempt);
+
+}  // namespace duet::client::internal
+
+#endif  // DUET_CLIENT_INTERNAL_RETRY_H_

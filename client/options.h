@@ -1,0 +1,46 @@
+#ifndef DUET_CLIENT_OPTIONS_H_
+#define DUET_CLIENT_OPTIONS_H_
+
+#include <optional>
+#include <string>
+
+#include "absl/time/time.h"
+
+namespace duet::client {
+
+// An encrypted connection. Every member is PEM text, not a path.
+struct TlsOptions {
+  // Who may sign the server's certificate. Empty: the system's authorities.
+  std::string root_certificates;
+  // This client's own certificate, for servers that ask for one. Both or neither.
+  std::string certificate_chain;
+  std::string private_key;
+  // The name that the server's certificate must carry, where it is not the address. Optional.
+  std::string server_name;
+};
+
+// How often and how patiently a call is attempted.
+//
+// The wait before attempt n + 1 is drawn from [0.5, 1] x min(max_backoff, initial_backoff x
+// 2^(n-1)) and is never shorter than the RetryInfo that the server sent.
+struct RetryOptions {
+  int max_attempts = 4;  // 1: never retry
+  absl::Duration initial_backoff = absl::Milliseconds(100);
+  absl::Duration max_backoff = absl::Seconds(1);
+};
+
+// How a Client reaches its server.
+struct ClientOptions {
+  // "host:port", or any gRPC target ("unix:/run/duet.sock", "ipv4:10.0.0.1:50051").
+  // A host name that resolves to several servers is balanced over all of them.
+  std::string server_address = "localhost:50051";
+  // For a whole call, all its attempts included.
+  absl::Duration deadline = absl::Minutes(2);
+  // Absent: plain text.
+  std::optional<TlsOptions> tls;
+  RetryOptions retry;
+};
+
+}  // namespace duet::client
+
+#endif  // DUET_CLIENT_OPTIONS_H_

@@ -1,0 +1,82 @@
+#ifndef DUET_CLIENT_RESULT_H_
+#define DUET_CLIENT_RESULT_H_
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/time/time.h"
+#include "model/motion/clip.h"
+#include "model/motion/skeleton.h"
+#include "model/motion/vec3.h"
+
+namespace duet::client {
+
+// A model version that the server answers with.
+struct ModelInfo {
+  std::string name;
+  int version = 0;
+  std::vector<std::string> version_labels;
+  bool is_default = false;
+  std::vector<std::string> interaction_classes;
+  std::vector<std::string> joint_names;
+  std::vector<Bone> bones;  // indices into joint_names
+  std::string root_joint;
+  double frame_rate_hz = 0;  // the network's own; any other is resampled
+  int window_frames = 0;
+  bool accepts_follower_start = false;
+  std::string description;
+};
+
+// What a request must keep to.
+struct RequestLimits {
+  double min_frame_rate_hz = 0;
+  double max_frame_rate_hz = 0;
+  int min_frames = 0;
+  absl::Duration max_duration;
+  int max_chunk_frames = 0;
+  int max_keyframes = 0;
+  float max_abs_weight = 0;
+  int64_t max_request_bytes = 0;
+};
+
+struct ModelDetails {
+  ModelInfo model;
+  RequestLimits limits;
+};
+
+// Where the time of a call went.
+struct SynthesisTimings {
+  absl::Duration first_chunk;  // from the call to its first frames, retries included
+  absl::Duration total;        // from the call to its last frame, retries included
+  absl::Duration queue;        // waiting in the server, over all windows
+  absl::Duration compute;      // in the network, over all windows
+};
+
+// A follower, and who made it.
+struct SynthesisResult {
+  ClipPair pair;  // the request's leader, and the follower in the same joints, rate and world
+  std::string model_name;
+  int model_version = 0;
+  std::vector<std::string> interaction_classes;  // every class of the model
+  std::string request_id;                        // as in the server's log
+  int window_count = 0;                          // network windows that were evaluated
+  int attempt_count = 0;
+  SynthesisTimings timings;
+};
+
+// Consecutive frames of the follower, as they arrive.
+struct FollowerChunk {
+  int first_frame = 0;
+  int frame_count = 0;
+  std::vector<Vec3> positions;  // [frame_count, joints], the leader's joint order; metres, y up
+};
+
+// Called for every chunk, in frame order, each frame once even where the call was retried. A status
+// that is not OK cancels the call, which then fails with it.
+using ChunkCallback = std::function<absl::Status(const FollowerChunk&)>;
+
+}  // namespace duet::client
+
+#endif  // DUET_CLIENT_RESULT_H_
