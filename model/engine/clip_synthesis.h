@@ -4,9 +4,11 @@
 #include <optional>
 #include <vector>
 
+#include "model/engine/cross_fade.h"
 #include "model/engine/label_track.h"
 #include "model/engine/model_description.h"
 #include "model/engine/synthesizer.h"
+#include "model/engine/window_plan.h"
 #include "model/motion/vec3.h"
 
 namespace duet {
@@ -30,7 +32,8 @@ struct ClipRequest {
 //   while (clip.HasNextWindow()) {
 //     SynthesisWindow window = clip.NextWindow();
 //     ... result = synthesizer.Synthesize({&window}) ...
-//     std::vector<Vec3> frames = clip.Accept(*result);   // [n, joints], n may be 0 but for the last
+//     std::vector<Vec3> frames = clip.Accept(*result);   // [n, joints], n may be 0 but for the
+//     last
 //   }
 //
 // Cost:    time linear in the clip's length; memory beyond the leader bounded by one window.
@@ -39,32 +42,38 @@ class ClipSynthesis {
  public:
   ClipSynthesis(const ModelDescription& model, ClipRequest request);
 
-  int window_count() const { return static_cast<int>(window_starts_.size()); }
+  int window_count() const { return static_cast<int>(plan_.starts.size()); }
   int frame_count() const { return frame_count_; }
 
   bool HasNextWindow() const { return next_window_ < window_count(); }
   // The next window to evaluate. Calling it twice before Accept gives the same window.
   SynthesisWindow NextWindow() const;
-  // Takes the result of NextWindow and returns the follower's frames that became final, at the
-  // caller's rate, following those returned before. Over all windows: exactly frame_count frames.
+  // Takes the result of NextWindow, [as many frames, joints], and returns the follower's frames
+  // that became final, at the caller's rate, following those returned before. Over all windows:
+  // exactly frame_count frames.
   std::vector<Vec3> Accept(const std::vector<Vec3>& follower);
 
  private:
-  // Frames of a window at the model's rate.
-  int WindowLength() const { return window_length_; }
-  void Blend(const std::vector<Vec3>& follower);
+  // Where a frame of the caller lies among the model's, and the reverse.
+  double ToModelFrame(int frame) const { return frame * model_frames_per_frame_; }
+  double ToCallerFrame(int model_frame) const { return model_frame / model_frames_per_frame_; }
+
+  std::optional<FollowerStart> NextStart() const;
+  // Adds the follower of the window at `start` to what is kept.
+  void Blend(int start, const std::vector<Vec3>& follower);
   std::vector<Vec3> TakeFinalFrames();
+  void DropRows();
 
   ModelDescription model_;
   ClipRequest request_;
-  int frame_count_;                  // caller's frames
-  int model_frames_;                 // the clip's frames at the model's rate
-  int window_length_;
-  std::vector<int> window_starts_;   // in model frames
+  CrossFade cross_fade_;
+  int frame_count_;                // the caller's frames
+  double model_frames_per_frame_;  // model rate / caller's rate
+  WindowPlan plan_;                // in model frames
   int next_window_ = 0;
-  int next_frame_ = 0;               // the caller's next frame to hand out
-  int kept_from_ = 0;                // model frame of the first row of kept_
-  std::vector<Vec3> kept_;           // [n, joints] blended follower still needed, model rate
+  int next_frame_ = 0;      // the caller's next frame to hand out
+  int kept_from_ = 0;       // model frame of the first row of kept_
+  std::vector<Vec3> kept_;  // [n, joints] blended follower still needed, model rate
 };
 
 }  // namespace duet

@@ -16,7 +16,7 @@ struct Position {
 
 Position Locate(int frames, double frame) {
   const double held = std::clamp(frame, 0.0, static_cast<double>(frames - 1));
-  const int whole = std::min(static_cast<int>(held), std::max(frames - 2, 0));
+  const int whole = static_cast<int>(held);
   return {whole, static_cast<float>(held - whole)};
 }
 

@@ -29,7 +29,8 @@ absl::Status CheckNames(const Skeleton& skeleton) {
 }
 
 absl::Status CheckParts(const Skeleton& skeleton) {
-  if (skeleton.parts.empty()) return absl::InvalidArgumentError("parts: empty, wanted at least one");
+  if (skeleton.parts.empty())
+    return absl::InvalidArgumentError("parts: empty, wanted at least one");
   for (const BodyPart& part : skeleton.parts) {
     if (part.joints.empty()) {
       return absl::InvalidArgumentError(absl::StrCat("parts: \"", part.name, "\" has no joints"));
@@ -104,11 +105,11 @@ absl::Status Validate(const Skeleton& skeleton) {
 
 Skeleton SbuSkeleton() {
   Skeleton skeleton;
-  skeleton.joint_names = {"head",        "neck",           "torso",       "left_shoulder",
-                          "left_elbow",  "left_hand",      "right_shoulder", "right_elbow",
-                          "right_hand",  "left_hip",       "left_knee",   "left_foot",
-                          "right_hip",   "right_knee",     "right_foot"};
-  skeleton.bones = {{1, 0}, {2, 1},  {1, 3},  {1, 6},   {2, 9},   {2, 12},  {3, 4},
+  skeleton.joint_names = {"head",       "neck",       "torso",          "left_shoulder",
+                          "left_elbow", "left_hand",  "right_shoulder", "right_elbow",
+                          "right_hand", "left_hip",   "left_knee",      "left_foot",
+                          "right_hip",  "right_knee", "right_foot"};
+  skeleton.bones = {{1, 0}, {2, 1}, {1, 3}, {1, 6},  {2, 9},   {2, 12},  {3, 4},
                     {4, 5}, {6, 7}, {7, 8}, {9, 10}, {10, 11}, {12, 13}, {13, 14}};
   skeleton.parts = {{"left_arm", {3, 4, 5}},
                     {"right_arm", {6, 7, 8}},

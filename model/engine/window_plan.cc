@@ -1,0 +1,28 @@
+#include "model/engine/window_plan.h"
+
+#include <algorithm>
+#include <cstdint>
+
+namespace duet {
+namespace {
+
+// Long enough for a cross-fade that nobody sees, short enough to cost only half as much again.
+int MinOverlap(int window) { return std::max(1, window / 3); }
+
+}  // namespace
+
+WindowPlan PlanWindows(int frames, int longest) {
+  if (frames <= longest) return {frames, {0}};
+  const int overlap = MinOverlap(longest);
+  const int step = longest - overlap;
+  const int64_t last_start = frames - longest;
+  const int64_t steps = (last_start + step - 1) / step;  // windows after the first
+  WindowPlan plan{longest, {}};
+  for (int64_t k = 0; k <= steps; ++k) {
+    // Rounded to the nearest frame; never more than `step` apart, since step is whole.
+    plan.starts.push_back(static_cast<int>((2 * k * last_start + steps) / (2 * steps)));
+  }
+  return plan;
+}
+
+}  // namespace duet
