@@ -88,7 +88,7 @@ absl::Status ReadJoint(const std::string& field, const Json& value, const Skelet
   if (!status.ok()) return status;
   *out = skeleton.Find(name);
   if (*out >= 0) return absl::OkStatus();
-  return Wrong(field, absl::StrCat("\"", name, "\""), "one of skeleton.joints");
+  return Wrong(field, absl::StrCat("\"", name, "\""), "one of skeleton.joint_names");
 }
 
 absl::Status ReadJoints(const std::string& field, const Json& value, const Skeleton& skeleton,
@@ -137,9 +137,11 @@ absl::Status ReadParts(const Json& value, Skeleton* skeleton) {
 absl::Status ReadSkeleton(const Json& json, Skeleton* skeleton) {
   absl::Status status = CheckKeys(
       "skeleton", json,
-      {"joints", "bones", "parts", "root", "left_hip", "right_hip", "left_foot", "right_foot"}, {});
+      {"joint_names", "bones", "parts", "root", "left_hip", "right_hip", "left_foot", "right_foot"},
+      {});
   if (status.ok()) {
-    status = ReadNames("skeleton.joints", json["joints"], kMaxJoints, &skeleton->joint_names);
+    status =
+        ReadNames("skeleton.joint_names", json["joint_names"], kMaxJoints, &skeleton->joint_names);
   }
   if (status.ok()) status = ReadBones(json["bones"], skeleton);
   if (status.ok()) status = ReadParts(json["parts"], skeleton);

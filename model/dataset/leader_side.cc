@@ -3,8 +3,10 @@
 #include <algorithm>
 
 #include "absl/status/status.h"
+#include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
-#include "model/dataset/split_text.h"
+#include "absl/strings/str_split.h"
+#include "absl/strings/strip.h"
 
 namespace duet {
 namespace {
@@ -21,9 +23,9 @@ absl::Status Wrong(int line, const std::string& came, const std::string& wanted)
       absl::StrCat("index.tsv: line ", line, ": ", came, ", wanted ", wanted));
 }
 
-absl::StatusOr<Columns> ParseHeader(std::string_view line) {
+absl::StatusOr<Columns> ParseHeader(absl::string_view line) {
   Columns columns;
-  const std::vector<std::string_view> names = SplitText(line, '\t');
+  const std::vector<absl::string_view> names = absl::StrSplit(line, '\t');
   columns.count = names.size();
   for (size_t i = 0; i < names.size(); ++i) {
     if (names[i] == "path") columns.path = static_cast<int>(i);
@@ -37,18 +39,18 @@ absl::StatusOr<Columns> ParseHeader(std::string_view line) {
   return columns;
 }
 
-absl::StatusOr<LeaderSide> ParseSide(int line, std::string_view text) {
+absl::StatusOr<LeaderSide> ParseSide(int line, absl::string_view text) {
   if (text == "left") return LeaderSide::kLeft;
   if (text == "right") return LeaderSide::kRight;
   if (text == "unknown") return LeaderSide::kUnknown;
-  return Wrong(line, absl::StrCat("leader_side \"", std::string(text), "\""),
-               "left, right or unknown");
+  return Wrong(line, absl::StrCat("leader_side \"", text, "\""), "left, right or unknown");
 }
 
-std::vector<std::string> ParseSubjects(std::string_view text) {
+std::vector<std::string> ParseSubjects(absl::string_view text) {
   std::vector<std::string> subjects;
-  for (std::string_view subject : SplitText(text, ',')) {
-    if (!TrimText(subject).empty()) subjects.emplace_back(TrimText(subject));
+  for (absl::string_view subject : absl::StrSplit(text, ',')) {
+    subject = absl::StripAsciiWhitespace(subject);
+    if (!subject.empty()) subjects.emplace_back(subject);
   }
   return subjects;
 }
@@ -66,13 +68,13 @@ float PeakDisplacement(const Clip& clip, int root, const std::vector<int>& effec
 
 }  // namespace
 
-absl::StatusOr<std::map<std::string, IndexEntry>> ParseIndex(std::string_view text) {
+absl::StatusOr<std::map<std::string, IndexEntry>> ParseIndex(absl::string_view text) {
   std::map<std::string, IndexEntry> entries;
   Columns columns;
   int line = 0;
-  for (std::string_view row : SplitText(text, '\n')) {
+  for (absl::string_view row : absl::StrSplit(text, '\n')) {
     ++line;
-    if (!row.empty() && row.back() == '\r') row.remove_suffix(1);
+    row = absl::StripSuffix(row, "\r");
     if (line == 1) {
       absl::StatusOr<Columns> header = ParseHeader(row);
       if (!header.ok()) return header.status();
@@ -80,7 +82,7 @@ absl::StatusOr<std::map<std::string, IndexEntry>> ParseIndex(std::string_view te
       continue;
     }
     if (row.empty()) continue;
-    const std::vector<std::string_view> cells = SplitText(row, '\t');
+    const std::vector<absl::string_view> cells = absl::StrSplit(row, '\t');
     if (cells.size() != columns.count) {
       return Wrong(line, absl::StrCat(cells.size(), " columns"), absl::StrCat(columns.count));
     }

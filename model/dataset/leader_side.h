@@ -3,10 +3,10 @@
 
 #include <map>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
 #include "model/motion/clip.h"
 
 namespace duet {
@@ -25,7 +25,7 @@ struct IndexEntry {
 // (left, right, unknown) are needed; `subjects` (names separated by commas) is optional; other
 // columns are left alone. Returns the entries by path.
 // Errors: INVALID_ARGUMENT naming the line, what came and what was wanted.
-absl::StatusOr<std::map<std::string, IndexEntry>> ParseIndex(std::string_view text);
+absl::StatusOr<std::map<std::string, IndexEntry>> ParseIndex(absl::string_view text);
 
 // The motion rule: the leader is whose effector has the larger peak displacement from its first
 // place, relative to its own root joint. A tie is the left person's.

@@ -1,16 +1,15 @@
 // ReadDataset: recognises a layout, lists its files, reads each.
 #include <algorithm>
 #include <cctype>
-#include <fstream>
 #include <map>
-#include <sstream>
 #include <system_error>
 
 #include "absl/strings/str_cat.h"
 #include "model/dataset/dataset.h"
 #include "model/dataset/layout.h"
 #include "model/dataset/leader_side.h"
-#include "model/dataset/pair_text.h"
+#include "model/formats/sbu_text.h"
+#include "model/formats/text.h"
 
 namespace duet {
 namespace {
@@ -23,23 +22,6 @@ struct FoundFile {
   int interaction_class = 0;
   std::vector<std::string> subjects;
 };
-
-constexpr uintmax_t kMaxFileBytes = uintmax_t{64} << 20;
-
-absl::StatusOr<std::string> ReadText(const fs::path& path) {
-  std::error_code error;
-  const uintmax_t bytes = fs::file_size(path, error);
-  if (error) return absl::NotFoundError(absl::StrCat(path.string(), ": ", error.message()));
-  if (bytes > kMaxFileBytes) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(path.string(), ": ", bytes, " bytes, wanted at most ", kMaxFileBytes));
-  }
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  if (!in || !text) return absl::NotFoundError(absl::StrCat(path.string(), ": cannot be read"));
-  return text.str();
-}
 
 // The names in a folder, sorted; hidden ones are not part of a data set.
 absl::StatusOr<std::vector<std::string>> ListFolder(const fs::path& folder) {
@@ -129,7 +111,7 @@ absl::StatusOr<std::vector<FoundFile>> FindClassFiles(const fs::path& folder,
 
 absl::StatusOr<std::map<std::string, IndexEntry>> ReadIndex(const fs::path& folder) {
   if (!Exists(folder / "index.tsv")) return std::map<std::string, IndexEntry>{};
-  absl::StatusOr<std::string> text = ReadText(folder / "index.tsv");
+  absl::StatusOr<std::string> text = ReadFile(folder / "index.tsv");
   if (!text.ok()) return text.status();
   absl::StatusOr<std::map<std::string, IndexEntry>> index = ParseIndex(*text);
   if (!index.ok()) {
@@ -146,35 +128,45 @@ absl::StatusOr<std::map<std::string, IndexEntry>> ReadIndex(const fs::path& fold
   return index;
 }
 
-absl::StatusOr<Sequence> ReadSequence(const fs::path& folder, const DatasetLayout& layout,
-                                      const std::map<std::string, IndexEntry>& index,
-                                      const FoundFile& file) {
-  const std::string path = (folder / file.id).string();
-  absl::StatusOr<std::string> text = ReadText(path);
-  if (!text.ok()) return text.status();
-  absl::StatusOr<PeoplePair> people = ParsePairText(*text, layout);
-  if (!people.ok()) {
-    return absl::InvalidArgumentError(absl::StrCat(path, ": ", people.status().message()));
+absl::StatusOr<SbuRecording> ReadPeople(const std::string& path, const DatasetLayout& layout) {
+  SbuOptions options;
+  options.joint_names = layout.skeleton.joint_names;
+  options.frame_rate_hz = layout.frame_rate_hz;
+  options.coordinates = layout.frame;
+  absl::StatusOr<SbuRecording> people = ReadSbu(path, options);
+  if (people.ok() && people->left.frame_count() < 2) {
+    return ErrorAt(path, 1, "came 1 frame, wanted at least 2");
   }
+  return people;
+}
+
+absl::StatusOr<LeaderSide> LeaderOf(const std::string& path, const SbuRecording& people,
+                                    const ClassLayout& interaction, int root) {
+  if (!interaction.effectors.empty()) {
+    return LeaderByMotion(people.left, people.right, root, interaction.effectors);
+  }
+  return absl::InvalidArgumentError(absl::StrCat(
+      path, ": no leader_side, wanted left or right in index.tsv or effectors for class ",
+      interaction.name, " in dataset.json"));
+}
+
+absl::StatusOr<Sequence> ReadSequence(const fs::path& folder, const DatasetLayout& layout,
+                                      const IndexEntry& entry, const FoundFile& file) {
+  const std::string path = (folder / file.id).string();
+  absl::StatusOr<SbuRecording> people = ReadPeople(path, layout);
+  if (!people.ok()) return people.status();
   Sequence sequence;
   sequence.id = file.id;
   sequence.interaction_class = file.interaction_class;
-  sequence.subjects = file.subjects;
+  sequence.subjects = entry.subjects.empty() ? file.subjects : entry.subjects;
   sequence.leader_source = "index";
-  const auto entry = index.find(file.id);
-  LeaderSide side = LeaderSide::kUnknown;
-  if (entry != index.end()) {
-    side = entry->second.leader_side;
-    if (!entry->second.subjects.empty()) sequence.subjects = entry->second.subjects;
-  }
-  const ClassLayout& one = layout.classes[static_cast<size_t>(file.interaction_class)];
+  LeaderSide side = entry.leader_side;
   if (side == LeaderSide::kUnknown) {
-    if (one.effectors.empty()) {
-      return absl::InvalidArgumentError(absl::StrCat(
-          path, ": no leader_side, wanted left or right in index.tsv or effectors for class ",
-          one.name, " in dataset.json"));
-    }
-    side = LeaderByMotion(people->left, people->right, layout.skeleton.root, one.effectors);
+    absl::StatusOr<LeaderSide> moved =
+        LeaderOf(path, *people, layout.classes[static_cast<size_t>(file.interaction_class)],
+                 layout.skeleton.root);
+    if (!moved.ok()) return moved.status();
+    side = *moved;
     sequence.leader_source = "motion";
   }
   if (side == LeaderSide::kRight) std::swap(people->left, people->right);
@@ -201,7 +193,9 @@ absl::StatusOr<Dataset> ReadFiles(const fs::path& folder, const DatasetLayout& l
     dataset.symmetric.push_back(one.symmetric);
   }
   for (const FoundFile& file : files) {
-    absl::StatusOr<Sequence> sequence = ReadSequence(folder, layout, *index, file);
+    const auto entry = index->find(file.id);
+    absl::StatusOr<Sequence> sequence =
+        ReadSequence(folder, layout, entry == index->end() ? IndexEntry{} : entry->second, file);
     if (!sequence.ok()) return sequence.status();
     dataset.sequences.push_back(*std::move(sequence));
   }
@@ -209,7 +203,7 @@ absl::StatusOr<Dataset> ReadFiles(const fs::path& folder, const DatasetLayout& l
 }
 
 absl::StatusOr<Dataset> ReadOwnData(const fs::path& folder) {
-  absl::StatusOr<std::string> text = ReadText(folder / "dataset.json");
+  absl::StatusOr<std::string> text = ReadFile(folder / "dataset.json");
   if (!text.ok()) return text.status();
   absl::StatusOr<DatasetLayout> layout = ParseDatasetLayout(*text);
   if (!layout.ok()) {

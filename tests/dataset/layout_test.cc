@@ -1,0 +1,125 @@
+#include "model/dataset/layout.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "nlohmann/json.hpp"
+
+namespace duet {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using Json = nlohmann::json;
+
+// A stick figure in the own-data layout, complete.
+Json Complete() {
+  return Json::parse(R"({
+    "name": "sticks", "frame_rate_hz": 60, "unit": "millimetres", "up_axis": "z_up",
+    "skeleton": {
+      "joint_names": ["hip", "left_hip", "right_hip", "left_foot", "right_foot"],
+      "bones": [["hip", "left_hip"], ["hip", "right_hip"],
+                ["left_hip", "left_foot"], ["right_hip", "right_foot"]],
+      "parts": [{"name": "left", "joints": ["left_hip", "left_foot"]},
+                {"name": "rest", "joints": ["hip", "right_hip", "right_foot"]}],
+      "root": "hip", "left_hip": "left_hip", "right_hip": "right_hip",
+      "left_foot": "left_foot", "right_foot": "right_foot"},
+    "classes": [{"name": "kick", "effectors": ["left_foot", "right_foot"]},
+                {"name": "hug", "symmetric": true}]
+  })");
+}
+
+std::string ErrorOf(const Json& json) {
+  const absl::StatusOr<DatasetLayout> layout = ParseDatasetLayout(json.dump());
+  EXPECT_EQ(layout.status().code(), absl::StatusCode::kInvalidArgument);
+  return std::string(layout.status().message());
+}
+
+TEST(DatasetLayoutTest, ReadsEveryField) {
+  const absl::StatusOr<DatasetLayout> layout = ParseDatasetLayout(Complete().dump());
+  ASSERT_TRUE(layout.ok()) << layout.status();
+  EXPECT_EQ(layout->name, "sticks");
+  EXPECT_EQ(layout->frame_rate_hz, 60);
+  EXPECT_EQ(layout->frame.unit, LengthUnit::kMillimetres);
+  EXPECT_EQ(layout->frame.up_axis, UpAxis::kZUp);
+  EXPECT_THAT(layout->skeleton.joint_names,
+              ElementsAre("hip", "left_hip", "right_hip", "left_foot", "right_foot"));
+  EXPECT_EQ(layout->skeleton.bones[3], (Bone{2, 4}));
+  EXPECT_EQ(layout->skeleton.parts[1].name, "rest");
+  EXPECT_THAT(layout->skeleton.parts[1].joints, ElementsAre(0, 2, 4));
+  EXPECT_EQ(layout->skeleton.right_foot, 4);
+  ASSERT_EQ(layout->classes.size(), 2u);
+  EXPECT_EQ(layout->classes[0].folder, "kick");
+  EXPECT_THAT(layout->classes[0].effectors, ElementsAre(3, 4));
+  EXPECT_FALSE(layout->classes[0].symmetric);
+  EXPECT_TRUE(layout->classes[1].symmetric);
+}
+
+TEST(DatasetLayoutTest, NamesTheFieldThatIsMissing) {
+  const Json complete = Complete();
+  for (const auto& item : complete.items()) {
+    Json json = Complete();
+    json.erase(item.key());
+    EXPECT_THAT(ErrorOf(json), HasSubstr("the field " + item.key()));
+  }
+  for (const auto& item : complete["skeleton"].items()) {
+    Json json = Complete();
+    json["skeleton"].erase(item.key());
+    EXPECT_THAT(ErrorOf(json), HasSubstr("the field " + item.key()));
+  }
+}
+
+TEST(DatasetLayoutTest, RefusesEveryWrongValueByName) {
+  struct Case {
+    const char* patch;  // JSON pointer
+    const char* value;
+    const char* message;
+  };
+  const Case cases[] = {
+      {"/name", "\"\"", "name: \"\""},
+      {"/frame_rate_hz", "0", "frame_rate_hz: 0, wanted 1 to 240"},
+      {"/frame_rate_hz", "\"fast\"", "frame_rate_hz: \"fast\""},
+      {"/unit", "\"feet\"", "unit: \"feet\", wanted metres, millimetres, sbu_normalised"},
+      {"/unit", "\"sbu_normalised\"", "y_down"},
+      {"/up_axis", "3", "up_axis: 3"},
+      {"/rate", "3", "unknown field \"rate\""},
+      {"/skeleton/tail", "3", "skeleton: unknown field \"tail\""},
+      {"/skeleton/root", "\"nose\"", "skeleton.root: \"nose\", wanted one of skeleton.joint_names"},
+      {"/skeleton/joint_names", R"(["hip","left_hip","right_hip","left_foot","right_foot","hip"])",
+       "skeleton.joint_names: \"hip\" is repeated"},
+      {"/skeleton/joint_names", "{}", "skeleton.joint_names: object"},
+      {"/skeleton/bones/1", "[\"hip\"]", "skeleton.bones[1]"},
+      {"/skeleton/bones/1", "[\"hip\", \"left_hip\"]", "skeleton.bones"},
+      {"/skeleton/bones/0/1", "\"tail\"", "skeleton.bones[0][1]: \"tail\""},
+      {"/skeleton/parts/0/joints", "[]", "skeleton.parts[0].joints"},
+      {"/classes", "[]", "classes: 0 entries"},
+      {"/classes/1/name", "\"kick\"", "classes[1].name: \"kick\" again"},
+      {"/classes/1/name", "\"../kick\"", "classes[1].name"},
+      {"/classes/1/symmetric", "1", "classes[1].symmetric: 1, wanted true or false"},
+      {"/classes/0/effectors/0", "\"tail\"", "classes[0].effectors[0]: \"tail\""},
+  };
+  for (const Case& one : cases) {
+    Json json = Complete();
+    json[Json::json_pointer(one.patch)] = Json::parse(one.value);
+    EXPECT_THAT(ErrorOf(json), HasSubstr(one.message)) << one.patch << " " << one.value;
+  }
+}
+
+TEST(DatasetLayoutTest, RefusesWhatIsNoJsonOrRepeatsAField) {
+  EXPECT_THAT(std::string(ParseDatasetLayout("{").status().message()), HasSubstr("not valid JSON"));
+  EXPECT_THAT(std::string(ParseDatasetLayout("[]").status().message()), HasSubstr("an object"));
+  EXPECT_THAT(std::string(ParseDatasetLayout(R"({"name": "a", "name": "b"})").status().message()),
+              HasSubstr("name: given twice"));
+}
+
+TEST(DatasetLayoutTest, KnowsThePapersClassesInOrder) {
+  std::vector<std::string> names;
+  for (const ClassLayout& one : SbuLayout().classes) names.push_back(one.name);
+  EXPECT_THAT(names, ElementsAre("kick", "push", "shake_hands", "hug", "exchange_object", "punch"));
+  EXPECT_THAT(SbuLayout().classes[0].effectors, ElementsAre(11, 14));
+  EXPECT_THAT(SbuLayout().classes[1].effectors, ElementsAre(5, 8));
+  EXPECT_EQ(K3hiLayout().classes.size(), 8u);
+}
+
+}  // namespace
+}  // namespace duet

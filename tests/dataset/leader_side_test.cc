@@ -1,0 +1,66 @@
+#include "model/dataset/leader_side.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace duet {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+TEST(LeaderIndexTest, ReadsSidesAndSubjectsByColumnName) {
+  const auto index = ParseIndex(
+      "frames\tleader_side\tpath\tsubjects\r\n"
+      "12\tleft\ta.txt\tann, bob\r\n"
+      "13\tright\tb.txt\t\r\n"
+      "14\tunknown\tc.txt\tcy\r\n");
+  ASSERT_TRUE(index.ok()) << index.status();
+  EXPECT_EQ(index->at("a.txt").leader_side, LeaderSide::kLeft);
+  EXPECT_THAT(index->at("a.txt").subjects, ElementsAre("ann", "bob"));
+  EXPECT_EQ(index->at("b.txt").leader_side, LeaderSide::kRight);
+  EXPECT_TRUE(index->at("b.txt").subjects.empty());
+  EXPECT_EQ(index->at("c.txt").leader_side, LeaderSide::kUnknown);
+  EXPECT_EQ(index->at("c.txt").line, 4);
+}
+
+TEST(LeaderIndexTest, NamesTheLineThatIsWrong) {
+  const auto message = [](const std::string& text) {
+    const auto index = ParseIndex(text);
+    EXPECT_EQ(index.status().code(), absl::StatusCode::kInvalidArgument);
+    return std::string(index.status().message());
+  };
+  EXPECT_THAT(message(""), HasSubstr("line 1"));
+  EXPECT_THAT(message("path\tside\n"), HasSubstr("line 1: no column path or leader_side"));
+  EXPECT_THAT(message("path\tleader_side\na\tleft\nb\n"), HasSubstr("line 3: 1 columns, wanted 2"));
+  EXPECT_THAT(message("path\tleader_side\na\tLeft\n"),
+              HasSubstr("line 2: leader_side \"Left\", wanted left, right or unknown"));
+  EXPECT_THAT(message("path\tleader_side\na\tleft\na\tleft\n"), HasSubstr("line 3: path \"a\""));
+}
+
+// Two joints: a root that walks and a hand.
+Clip Walker(float hand_peak) {
+  Clip clip;
+  clip.joint_names = {"root", "hand"};
+  clip.frame_rate_hz = 15;
+  for (const float reach : {0.0f, hand_peak, 0.0f}) {
+    const float walked = static_cast<float>(clip.positions.size());
+    clip.positions.push_back({walked, 0, 0});
+    clip.positions.push_back({walked + reach, 1, 0});
+  }
+  return clip;
+}
+
+TEST(LeaderByMotionTest, ThePeakRelativeToTheRootDecides) {
+  EXPECT_EQ(LeaderByMotion(Walker(0.5f), Walker(0.2f), 0, {1}), LeaderSide::kLeft);
+  EXPECT_EQ(LeaderByMotion(Walker(0.2f), Walker(-0.5f), 0, {1}), LeaderSide::kRight);
+}
+
+TEST(LeaderByMotionTest, WalkingAloneIsNoReach) {
+  // The right one walks as far as the left, but only the left one moves its hand.
+  EXPECT_EQ(LeaderByMotion(Walker(0.1f), Walker(0), 0, {1}), LeaderSide::kLeft);
+  EXPECT_EQ(LeaderByMotion(Walker(0), Walker(0.1f), 0, {1}), LeaderSide::kRight);
+}
+
+}  // namespace
+}  // namespace duet

@@ -1,0 +1,164 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "model/dataset/dataset.h"
+#include "tests/dataset/capture_folder.h"
+
+namespace duet {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+// The right person's left hand reaches, everything else stands still.
+std::string RightReaches() {
+  std::vector<Vec3> left(15), right(15);
+  for (Vec3& p : right) p.x = 1;
+  std::string text = CaptureLine(1, left, right);
+  right[5].y += 0.5f;
+  return text + CaptureLine(2, left, right);
+}
+
+std::string MessageOf(const CaptureFolder& folder, absl::StatusCode code) {
+  const absl::StatusOr<Dataset> dataset = ReadDataset(folder.path());
+  EXPECT_EQ(dataset.status().code(), code) << dataset.status();
+  return std::string(dataset.status().message());
+}
+
+TEST(ReadDatasetTest, ReadsSbu) {
+  CaptureFolder folder;
+  folder.Write("s01s02/04/001/skeleton_pos.txt", RightReaches());
+  folder.Write("s02s03/08/002/skeleton_pos.txt", StillCapture(4));
+  folder.Write("s02s03/01/001/skeleton_pos.txt", "approaching is not read");
+  folder.Write("index.tsv", "path\tleader_side\ns02s03/08/002/skeleton_pos.txt\tright\n");
+  const absl::StatusOr<Dataset> dataset = ReadDataset(folder.path());
+  ASSERT_TRUE(dataset.ok()) << dataset.status();
+  EXPECT_EQ(dataset->name, "sbu");
+  EXPECT_EQ(dataset->frame_rate_hz, 15);
+  EXPECT_THAT(dataset->Subjects(), ElementsAre("s01", "s02", "s03"));
+  EXPECT_EQ(dataset->LongestFrameCount(), 4);
+  EXPECT_THAT(dataset->symmetric, ElementsAre(false, false, true, true, true, false));
+  ASSERT_EQ(dataset->sequences.size(), 2u);
+
+  const Sequence& push = dataset->sequences[0];
+  EXPECT_EQ(push.id, "s01s02/04/001/skeleton_pos.txt");
+  EXPECT_EQ(dataset->classes[static_cast<size_t>(push.interaction_class)], "push");
+  EXPECT_THAT(push.subjects, ElementsAre("s01", "s02"));
+  EXPECT_EQ(push.leader_source, "motion");
+  // Raw x 1 is 1.28 - 2.56 = -1.28 m; the right person leads.
+  EXPECT_FLOAT_EQ(push.pair.leader.at(0, 0).x, -1.28f);
+  EXPECT_FLOAT_EQ(push.pair.follower.at(0, 0).x, 1.28f);
+
+  const Sequence& punch = dataset->sequences[1];
+  EXPECT_EQ(dataset->classes[static_cast<size_t>(punch.interaction_class)], "punch");
+  EXPECT_EQ(punch.leader_source, "index");
+  EXPECT_FLOAT_EQ(punch.pair.leader.at(0, 0).z, 128.0f);
+  EXPECT_FLOAT_EQ(punch.pair.follower.at(3, 14).z, 14 * 1.28f);
+  EXPECT_EQ(punch.pair.follower.frame_count(), 4);
+}
+
+TEST(ReadDatasetTest, ReadsK3hi) {
+  CaptureFolder folder;
+  folder.Write("shaking/001.txt", StillCapture(3));
+  folder.Write("kicking/001.txt", StillCapture(2));
+  folder.Write("kicking/notes.md", "not a capture");
+  const absl::StatusOr<Dataset> dataset = ReadDataset(folder.path());
+  ASSERT_TRUE(dataset.ok()) << dataset.status();
+  EXPECT_EQ(dataset->name, "k3hi");
+  EXPECT_EQ(dataset->frame_rate_hz, 30);
+  ASSERT_EQ(dataset->sequences.size(), 2u);
+  EXPECT_EQ(dataset->classes[static_cast<size_t>(dataset->sequences[0].interaction_class)], "kick");
+  EXPECT_EQ(dataset->classes[static_cast<size_t>(dataset->sequences[1].interaction_class)],
+            "shake_hands");
+  EXPECT_TRUE(dataset->Subjects().empty());
+}
+
+constexpr char kOwnLayout[] = R"({
+  "name": "own", "frame_rate_hz": 60, "unit": "millimetres", "up_axis": "y_up",
+  "skeleton": {"joint_names": ["hips", "left", "right"], "bones": [["hips", "left"], ["hips", "right"]],
+               "parts": [{"name": "all", "joints": ["hips", "left", "right"]}],
+               "root": "hips", "left_hip": "left", "right_hip": "right",
+               "left_foot": "left", "right_foot": "right"},
+  "classes": [{"name": "kick"}, {"name": "punch"}]})";
+
+TEST(ReadDatasetTest, ReadsOwnDataWithAnySkeleton) {
+  CaptureFolder folder;
+  folder.Write("dataset.json", kOwnLayout);
+  folder.Write("punch/a.txt",
+               "1, 1000,0,0, 2,0,0, 3,0,0, 4,0,0, 5,0,0, 6,0,0\r\n"
+               "2, 1000,0,0, 2,0,0, 3,0,0, 4,0,0, 5,0,0, 6000,0,0\r\n\r\n");
+  folder.Write("index.tsv", "path\tleader_side\tsubjects\npunch/a.txt\tleft\tann,bob\n");
+  const absl::StatusOr<Dataset> dataset = ReadDataset(folder.path());
+  ASSERT_TRUE(dataset.ok()) << dataset.status();
+  EXPECT_EQ(dataset->name, "own");
+  EXPECT_THAT(dataset->classes, ElementsAre("kick", "punch"));
+  ASSERT_EQ(dataset->sequences.size(), 1u);
+  const Sequence& sequence = dataset->sequences[0];
+  EXPECT_EQ(sequence.interaction_class, 1);
+  EXPECT_THAT(sequence.subjects, ElementsAre("ann", "bob"));
+  EXPECT_FLOAT_EQ(sequence.pair.leader.at(0, 0).x, 1);
+  EXPECT_FLOAT_EQ(sequence.pair.follower.at(1, 2).x, 6);
+  EXPECT_EQ(sequence.pair.follower.frame_rate_hz, 60);
+}
+
+TEST(ReadDatasetTest, OwnDataWithoutEffectorsNeedsTheIndex) {
+  CaptureFolder folder;
+  folder.Write("dataset.json", kOwnLayout);
+  const std::string still = ",1,0,0,2,0,0,3,0,0,4,0,0,5,0,0,6,0,0\n";
+  folder.Write("punch/a.txt", "1" + still + "2" + still);
+  EXPECT_THAT(MessageOf(folder, absl::StatusCode::kInvalidArgument),
+              AllOf(HasSubstr("punch/a.txt"), HasSubstr("leader_side")));
+}
+
+TEST(ReadDatasetTest, NamesFileAndLineOfABadCapture) {
+  struct Case {
+    std::string text;
+    const char* message;
+  };
+  std::string not_finite = StillCapture(3);
+  not_finite.replace(not_finite.find("\n2,") + 3, 8, "nan");
+  std::string word = StillCapture(3);
+  word.replace(word.find("\n3,") + 3, 8, "arm");
+  const Case cases[] = {
+      {StillCapture(2) + "3,0.5,0.5\n", ":3: came 3 comma-separated values, wanted 91"},
+      {StillCapture(1), "came 1 frame, wanted at least 2"},
+      {"", "no frames"},
+      {not_finite, ":2:3: left person's head x: came \"nan\", wanted a finite number"},
+      {word, ":3:3: left person's head x: came \"arm\", wanted a finite number"},
+  };
+  for (const Case& one : cases) {
+    CaptureFolder folder;
+    folder.Write("s01s02/03/001/skeleton_pos.txt", one.text);
+    EXPECT_THAT(MessageOf(folder, absl::StatusCode::kInvalidArgument),
+                AllOf(HasSubstr("s01s02/03/001/skeleton_pos.txt"), HasSubstr(one.message)));
+  }
+}
+
+TEST(ReadDatasetTest, RefusesAnIndexThatNamesAnAbsentFile) {
+  CaptureFolder folder;
+  folder.Write("s01s02/03/001/skeleton_pos.txt", StillCapture(2));
+  folder.Write("index.tsv", "path\tleader_side\ns01s02/03/01/skeleton_pos.txt\tleft\n");
+  EXPECT_THAT(MessageOf(folder, absl::StatusCode::kInvalidArgument),
+              AllOf(HasSubstr("index.tsv: line 2"), HasSubstr("is not there")));
+}
+
+TEST(ReadDatasetTest, RefusesASequenceFolderWithoutItsFile) {
+  CaptureFolder folder;
+  std::filesystem::create_directories(folder.path() / "s01s02/03/001");
+  EXPECT_THAT(MessageOf(folder, absl::StatusCode::kNotFound),
+              HasSubstr("s01s02/03/001/skeleton_pos.txt"));
+}
+
+TEST(ReadDatasetTest, RefusesAFolderThatIsNoDataSet) {
+  CaptureFolder folder;
+  EXPECT_THAT(MessageOf(folder, absl::StatusCode::kNotFound), HasSubstr("no data set"));
+  folder.Write("s01s02/01/001/skeleton_pos.txt", StillCapture(2));
+  EXPECT_THAT(MessageOf(folder, absl::StatusCode::kNotFound), HasSubstr("no sequence"));
+  EXPECT_EQ(ReadDataset(folder.path() / "nowhere").status().code(), absl::StatusCode::kNotFound);
+}
+
+}  // namespace
+}  // namespace duet
