@@ -1,0 +1,102 @@
+#include "model/network/attentive_decoder.h"
+
+#include <gtest/gtest.h>
+#include <torch/torch.h>
+
+#include "model/network/sequence.h"
+
+namespace duet::network {
+namespace {
+
+constexpr int64_t kGroups = 2, kBatch = 3, kFrames = 6, kAttention = 19, kHidden = 4, kEncoded = 5;
+
+// The decoder as Eq. 2 and 3 write it.
+struct Problem {
+  torch::Tensor encoded;  // h [N, T, E]
+  torch::Tensor u, v, w1, weight_ih, weight_hh, bias, hidden, cell;
+  torch::Tensor lengths, toward;
+
+  std::vector<torch::Tensor> Inputs() const {
+    return {encoded, u, v, w1, weight_ih, weight_hh, bias, hidden, cell};
+  }
+};
+
+Problem MakeProblem(torch::ScalarType type) {
+  torch::manual_seed(2);
+  const auto o = torch::dtype(type).requires_grad(true);
+  Problem p;
+  p.encoded = torch::randn({kBatch, kFrames, kEncoded}, o);
+  p.u = torch::randn({kGroups, kAttention, kEncoded}, o);
+  p.v = torch::randn({kGroups, kAttention, kHidden}, o);
+  p.w1 = torch::randn({kGroups, kAttention}, o);
+  p.weight_ih = torch::randn({kGroups, 4 * kHidden, kEncoded}, o);
+  p.weight_hh = torch::randn({kGroups, 4 * kHidden, kHidden}, o);
+  p.bias = torch::randn({kGroups, 4 * kHidden}, o);
+  p.hidden = torch::randn({kGroups, kBatch, kHidden}, o);
+  p.cell = torch::randn({kGroups, kBatch, kHidden}, o);
+  p.lengths = torch::tensor({6, 4, 1}, torch::kInt64);
+  p.toward = torch::randn({kFrames, kGroups, kBatch, kHidden}, torch::dtype(type));
+  return p;
+}
+
+torch::Tensor Textbook(const Problem& p) {
+  const torch::Tensor valid = FrameMask(p.lengths, kFrames).t();  // [N, T]
+  std::vector<torch::Tensor> directions;
+  for (int64_t g = 0; g < kGroups; ++g) {
+    torch::Tensor hidden = p.hidden[g], cell = p.cell[g];
+    std::vector<torch::Tensor> steps;
+    for (int64_t t = 0; t < kFrames; ++t) {
+      const torch::Tensor query = torch::matmul(hidden, p.v[g].t()).unsqueeze(1);
+      const torch::Tensor energy =
+          torch::matmul((torch::matmul(p.encoded, p.u[g].t()) + query).tanh(), p.w1[g]);
+      const torch::Tensor phi = energy.masked_fill(~valid, -1e30).softmax(1);
+      const torch::Tensor context = (phi.unsqueeze(2) * p.encoded).sum(1);
+      const auto gates = (torch::matmul(context, p.weight_ih[g].t()) +
+                          torch::matmul(hidden, p.weight_hh[g].t()) + p.bias[g])
+                             .chunk(4, -1);
+      cell = gates[1].sigmoid() * cell + gates[0].sigmoid() * gates[2].tanh();
+      hidden = gates[3].sigmoid() * cell.tanh();
+      steps.push_back(hidden);
+    }
+    directions.push_back(torch::stack(steps));
+  }
+  return torch::stack(directions, 1);
+}
+
+torch::Tensor Ours(const Problem& p) {
+  const torch::Tensor h = p.encoded.unsqueeze(0);
+  const auto project = [&](const torch::Tensor& weights) {
+    return torch::matmul(h, weights.transpose(1, 2).unsqueeze(1));
+  };
+  return AttentiveDecoder({project(p.u), project(p.weight_ih) + p.bias.view({kGroups, 1, 1, -1}),
+                           p.weight_hh, p.v, p.w1, p.hidden, p.cell, p.lengths});
+}
+
+TEST(AttentiveDecoderTest, EqualsEquations2And3) {
+  const Problem p = MakeProblem(torch::kFloat64);
+  EXPECT_TRUE(torch::allclose(Ours(p), Textbook(p), 1e-12, 1e-12));
+}
+
+TEST(AttentiveDecoderTest, FloatKernelsAreAccurate) {
+  const Problem p = MakeProblem(torch::kFloat32);
+  EXPECT_LT((Ours(p) - Textbook(p)).abs().max().item<float>(), 5e-6);
+}
+
+TEST(AttentiveDecoderTest, InferenceEqualsTraining) {
+  const Problem p = MakeProblem(torch::kFloat32);
+  const torch::Tensor training = Ours(p);
+  torch::NoGradGuard no_grad;
+  EXPECT_TRUE(torch::equal(Ours(p), training));
+}
+
+TEST(AttentiveDecoderTest, GradientsEqualAutomaticOnes) {
+  const Problem p = MakeProblem(torch::kFloat64);
+  const auto ours = torch::autograd::grad({(Ours(p) * p.toward).sum()}, p.Inputs());
+  const auto expected = torch::autograd::grad({(Textbook(p) * p.toward).sum()}, p.Inputs());
+  for (size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_TRUE(torch::allclose(ours[i], expected[i], 1e-9, 1e-11)) << "input " << i;
+  }
+}
+
+}  // namespace
+}  // namespace duet::network

@@ -1,0 +1,174 @@
+#include "model/network/generator.h"
+
+#include <gtest/gtest.h>
+
+#include "model/network/parameters.h"
+#include "tests/network/test_manifest.h"
+
+namespace duet::network {
+namespace {
+
+constexpr int64_t kFrames = 9, kBatch = 4, kJoints = 15, kClasses = 3;
+
+GeneratorInput MakeInput(const Manifest& manifest, torch::ScalarType type = torch::kFloat32) {
+  torch::manual_seed(3);
+  GeneratorInput input;
+  input.leader = torch::randn({kBatch, kFrames, 3 * kJoints}, type);
+  input.labels = torch::randn({kBatch, kFrames, kClasses}, type);
+  input.start = torch::randn({kBatch, StartFeatureCount(manifest.model.skeleton)}, type);
+  input.lengths = torch::tensor({9, 5, 2, 7}, torch::kInt64);
+  return input;
+}
+
+Generator MakeGenerator(const Manifest& manifest) {
+  torch::manual_seed(4);
+  Generator generator(manifest);
+  generator->eval();
+  return generator;
+}
+
+// One clip of a batch, without its padding.
+GeneratorInput Single(const GeneratorInput& batch, int64_t clip) {
+  const int64_t length = batch.lengths[clip].item<int64_t>();
+  return {batch.leader[clip].narrow(0, 0, length).unsqueeze(0),
+          batch.labels[clip].narrow(0, 0, length).unsqueeze(0), batch.start[clip].unsqueeze(0),
+          batch.lengths[clip].unsqueeze(0)};
+}
+
+TEST(GeneratorTest, AnswersEveryFrame) {
+  const Manifest manifest = testing::SmallManifest();
+  Generator generator = MakeGenerator(manifest);
+  const GeneratorInput input = MakeInput(manifest);
+  EXPECT_EQ(generator->forward(input).sizes(), at::IntArrayRef({kBatch, kFrames, 3 * kJoints}));
+  EXPECT_EQ(generator->Encode(input).sizes(), at::IntArrayRef({kFrames, kBatch, 6 * 2 * 4}));
+}
+
+TEST(GeneratorTest, PaperSizesFollowFromTheManifest) {
+  Manifest manifest = testing::SmallManifest(false);
+  manifest.generator = {};
+  Generator generator = MakeGenerator(manifest);
+  EXPECT_EQ(generator->tensors().at("output.weight").sizes(), at::IntArrayRef({45, 480}));
+  EXPECT_EQ(generator->tensors().at("decoder.forward.weight_hh").sizes(),
+            at::IntArrayRef({960, 240}));
+}
+
+TEST(GeneratorTest, BatchEqualsSingle) {
+  const Manifest manifest = testing::SmallManifest();
+  Generator generator = MakeGenerator(manifest);
+  const GeneratorInput input = MakeInput(manifest);
+  torch::NoGradGuard no_grad;
+  const torch::Tensor together = generator->forward(input);
+  for (int64_t clip = 0; clip < kBatch; ++clip) {
+    const int64_t length = input.lengths[clip].item<int64_t>();
+    const torch::Tensor alone = generator->forward(Single(input, clip))[0];
+    EXPECT_LT((together[clip].narrow(0, 0, length) - alone).abs().max().item<float>(), 1e-5);
+  }
+}
+
+TEST(GeneratorTest, PaddingHasNoInfluence) {
+  const Manifest manifest = testing::SmallManifest();
+  Generator generator = MakeGenerator(manifest);
+  GeneratorInput input = MakeInput(manifest);
+  torch::NoGradGuard no_grad;
+  const torch::Tensor before = generator->forward(input)[1].narrow(0, 0, 5).clone();
+  input.leader[1].narrow(0, 5, kFrames - 5).fill_(1e3);
+  input.labels[1].narrow(0, 5, kFrames - 5).fill_(-1e3);
+  EXPECT_TRUE(torch::equal(generator->forward(input)[1].narrow(0, 0, 5), before));
+}
+
+TEST(GeneratorTest, EveryParameterAndInputHasAGradient) {
+  const Manifest manifest = testing::SmallManifest();
+  Generator generator = MakeGenerator(manifest);
+  GeneratorInput input = MakeInput(manifest);
+  input.labels.requires_grad_();
+  input.start.requires_grad_();
+  generator->forward(input).square().mean().backward();
+  for (const auto& [name, tensor] : generator->tensors()) {
+    ASSERT_TRUE(tensor.grad().defined()) << name;
+    EXPECT_GT(tensor.grad().abs().max().item<float>(), 0) << name;
+  }
+  EXPECT_GT(input.labels.grad().abs().max().item<float>(), 0);
+  EXPECT_GT(input.start.grad().abs().max().item<float>(), 0);
+}
+
+TEST(GeneratorTest, GradientEqualsFiniteDifference) {
+  const Manifest manifest = testing::SmallManifest();
+  Generator generator = MakeGenerator(manifest);
+  generator->to(torch::kFloat64);
+  const GeneratorInput input = MakeInput(manifest, torch::kFloat64);
+  const torch::Tensor toward = torch::randn({kBatch, kFrames, 3 * kJoints}, torch::kFloat64);
+  const auto loss = [&] { return (generator->forward(input) * toward).sum(); };
+  loss().backward();
+  torch::NoGradGuard no_grad;
+  for (torch::Tensor parameter : generator->parameters()) {
+    torch::Tensor value = parameter.flatten()[0];
+    const double wanted = parameter.grad().flatten()[0].item<double>(), step = 1e-6;
+    value.add_(step);
+    const double above = loss().item<double>();
+    value.sub_(2 * step);
+    const double below = loss().item<double>();
+    value.add_(step);
+    EXPECT_NEAR((above - below) / (2 * step), wanted, 1e-5 * std::max(1.0, std::abs(wanted)));
+  }
+}
+
+TEST(GeneratorTest, LabelAtOneFrameReachesTheResult) {
+  const Manifest manifest = testing::SmallManifest();
+  Generator generator = MakeGenerator(manifest);
+  GeneratorInput input = MakeInput(manifest);
+  torch::NoGradGuard no_grad;
+  const torch::Tensor before = generator->forward(input);
+  input.labels[0][4][1] += 1;
+  EXPECT_FALSE(torch::allclose(generator->forward(input)[0], before[0]));
+}
+
+TEST(GeneratorTest, StoredParametersLoadBack) {
+  const Manifest manifest = testing::SmallManifest();
+  Generator generator = MakeGenerator(manifest);
+  const Checkpoint checkpoint{manifest, StoreParameters(manifest, generator)};
+  Generator other(manifest);
+  ASSERT_TRUE(LoadParameters(checkpoint, other).ok());
+  torch::NoGradGuard no_grad;
+  other->eval();
+  const GeneratorInput input = MakeInput(manifest);
+  EXPECT_TRUE(torch::equal(other->forward(input), generator->forward(input)));
+}
+
+TEST(GeneratorTest, ForeignParametersAreRefusedByName) {
+  const Manifest manifest = testing::SmallManifest();
+  Generator generator = MakeGenerator(manifest);
+  Checkpoint checkpoint{manifest, StoreParameters(manifest, generator)};
+  checkpoint.tensors.pop_back();
+  EXPECT_NE(LoadParameters(checkpoint, generator).message().find("\"output.bias\" is missing"),
+            std::string::npos);
+  checkpoint.tensors[0].shape.push_back(1);
+  EXPECT_NE(LoadParameters(checkpoint, generator).message().find(checkpoint.tensors[0].name),
+            std::string::npos);
+}
+
+TEST(GeneratorTest, ReleasedVariantGivesTheWholeBodySliceTheLabelAlone) {
+  Manifest manifest = testing::SmallManifest(false);
+  manifest.generator.variant = "released";
+  Generator generator = MakeGenerator(manifest);
+  EXPECT_EQ(generator->tensors().at("encoder.whole_body.fc.weight").size(1), kClasses);
+  EXPECT_EQ(generator->forward(MakeInput(manifest)).size(2), 3 * kJoints);
+}
+
+TEST(GeneratorTest, TwentyJointsAndTwoClassesAreAConfiguration) {
+  Manifest manifest = testing::SmallManifest(false);
+  manifest.model.classes = {"kick", "punch"};
+  manifest.model.skeleton.joint_names.clear();
+  for (int j = 0; j < 20; ++j) {
+    manifest.model.skeleton.joint_names.push_back("joint" + std::to_string(j));
+  }
+  manifest.model.skeleton.bones.clear();
+  for (int j = 1; j < 20; ++j) manifest.model.skeleton.bones.push_back({j - 1, j});
+  manifest.model.skeleton.root = 0;
+  Generator generator = MakeGenerator(manifest);
+  const torch::Tensor out = generator->forward({torch::randn({1, 6, 60}), torch::randn({1, 6, 2}),
+                                                {}, torch::tensor({6}, torch::kInt64)});
+  EXPECT_EQ(out.sizes(), at::IntArrayRef({1, 6, 60}));
+}
+
+}  // namespace
+}  // namespace duet::network

@@ -1,0 +1,29 @@
+#ifndef DUET_TESTS_NETWORK_TEST_MANIFEST_H_
+#define DUET_TESTS_NETWORK_TEST_MANIFEST_H_
+
+#include <string>
+
+#include "model/checkpoint/manifest.h"
+
+namespace duet::testing {
+
+// The SBU skeleton with a network small enough for gradient checks.
+inline Manifest SmallManifest(bool follower_start = true) {
+  Manifest manifest;
+  manifest.model.name = "small";
+  manifest.model.version = 1;
+  manifest.model.skeleton = SbuSkeleton();
+  manifest.model.classes = {"kick", "push", "hug"};
+  manifest.model.frame_rate_hz = 15;
+  manifest.model.window_frames = 12;
+  manifest.model.accepts_follower_start = follower_start;
+  manifest.generator.follower_start = follower_start;
+  manifest.generator.slice_features = 5;
+  manifest.generator.encoder_hidden = 4;
+  manifest.generator.attention = 6;
+  return manifest;
+}
+
+}  // namespace duet::testing
+
+#endif  // DUET_TESTS_NETWORK_TEST_MANIFEST_H_
