@@ -1,0 +1,44 @@
+#include "tests/support/sample_motion.h"
+
+#include <cmath>
+#include <cstddef>
+
+namespace duet {
+namespace {
+
+// Standing, facing -z (the left hip on the -x side), arms hanging. Relative to the torso.
+const std::vector<Vec3>& StandingPose() {
+  static const auto* const kPose = new std::vector<Vec3>{
+      {0, 0.43f, 0},       {0, 0.22f, 0},       {0, 0, 0},          {-0.15f, 0.22f, 0},
+      {-0.18f, -0.07f, 0}, {-0.18f, -0.35f, 0}, {0.15f, 0.22f, 0},  {0.18f, -0.07f, 0},
+      {0.18f, -0.35f, 0},  {-0.09f, -0.2f, 0},  {-0.1f, -0.62f, 0}, {-0.1f, -1.02f, 0},
+      {0.09f, -0.2f, 0},   {0.1f, -0.62f, 0},   {0.1f, -1.02f, 0}};
+  return *kPose;
+}
+
+}  // namespace
+
+std::vector<Vec3> SwayingPose(double seconds) {
+  const float t = static_cast<float>(seconds);
+  std::vector<Vec3> pose = StandingPose();
+  const Vec3 root = {0.1f + 0.2f * std::sin(0.7f * t), 1.05f + 0.02f * std::sin(3 * t),
+                     0.8f + 0.15f * std::cos(0.5f * t)};
+  for (std::size_t j = 0; j < pose.size(); ++j) {
+    // The further below the neck, the wider the swing; left and right in opposite phase.
+    const float side = pose[j].x < 0 ? 1.0f : -1.0f;
+    pose[j].z += 0.15f * side * (0.22f - pose[j].y) * std::sin(4 * t);
+    pose[j] = root + RotateY(pose[j], 0.5 + 0.3 * std::sin(0.4 * seconds));
+  }
+  return pose;
+}
+
+std::vector<Vec3> SwayingMotion(int frames, double frame_rate_hz) {
+  std::vector<Vec3> motion;
+  for (int frame = 0; frame < frames; ++frame) {
+    const std::vector<Vec3> pose = SwayingPose(frame / frame_rate_hz);
+    motion.insert(motion.end(), pose.begin(), pose.end());
+  }
+  return motion;
+}
+
+}  // namespace duet
