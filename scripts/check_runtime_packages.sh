@@ -6,7 +6,7 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 # The list names the packages of the release that the image is made from.
-if [[ "$(. /etc/os-release && echo "${ID} ${VERSION_ID:-}")" != "debian 12" ]]; then
+if ! grep -qx 'VERSION_CODENAME=bookworm' /etc/os-release; then
   echo "Not Debian 12: packages/runtime.txt is not checked."
   exit 0
 fi

@@ -1,0 +1,119 @@
+#!/usr/bin/env bash
+# The whole path once: starts the server with its built-in model, synthesises reactions to the
+# sample leaders, leaves what it made in out/demo, and shuts the server down whatever happens.
+#   scripts/demo.sh build/release/bin
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+readonly bin_dir="$1"
+readonly out_dir=out/demo
+readonly server_log="${out_dir}/server.log"
+readonly start_limit_s=60
+readonly stop_limit_s=15
+
+server_pid=""
+
+fail() {
+  echo "demo: $*" >&2
+  if [[ -s "${server_log}" ]]; then
+    echo "demo: the server's last lines (${server_log}):" >&2
+    tail -n 20 "${server_log}" >&2
+  fi
+  exit 1
+}
+
+stop_server() {
+  [[ -n "${server_pid}" ]] || return 0
+  kill -TERM "${server_pid}" 2>/dev/null || true
+  local deadline=$((SECONDS + stop_limit_s))
+  while kill -0 "${server_pid}" 2>/dev/null && ((SECONDS < deadline)); do
+    sleep 0.1
+  done
+  kill -KILL "${server_pid}" 2>/dev/null || true
+  wait "${server_pid}" 2>/dev/null || true
+  server_pid=""
+}
+
+port_is_taken() {
+  (exec 3<>"/dev/tcp/127.0.0.1/$1") 2>/dev/null
+}
+
+# Prints the first free port from the given one on.
+free_port() {
+  local port
+  for ((port = $1; port < $1 + 100; ++port)); do
+    if ! port_is_taken "${port}"; then
+      echo "${port}"
+      return
+    fi
+  done
+  fail "no free port from $1 on"
+}
+
+start_server() {
+  # With the default ports free, the server needs no flag at all.
+  local flags=() port metrics_port
+  port="$(free_port 50051)"
+  metrics_port="$(free_port 9464)"
+  [[ "${port}" == 50051 ]] || flags+=(--listen "127.0.0.1:${port}")
+  [[ "${metrics_port}" == 9464 ]] || flags+=(--metrics_listen "127.0.0.1:${metrics_port}")
+  address="127.0.0.1:${port}"
+
+  echo "\$ duet-server ${flags[*]}"
+  "${bin_dir}/duet-server" "${flags[@]}" >"${server_log}" 2>&1 &
+  server_pid=$!
+}
+
+wait_until_healthy() {
+  local deadline=$((SECONDS + start_limit_s))
+  until "${bin_dir}/duet" models --server "${address}" >/dev/null 2>&1; do
+    kill -0 "${server_pid}" 2>/dev/null || fail "the server ended before it was healthy"
+    ((SECONDS < deadline)) || fail "the server was not healthy after ${start_limit_s} s"
+    sleep 0.1
+  done
+}
+
+# Shows a client command, then runs it.
+duet() {
+  echo "\$ duet $*"
+  "${bin_dir}/duet" "$@" || fail "'duet $*' failed with status $?"
+}
+
+# synthesize <name> <leader> <label>...: a page to look at and the pair as BVH.
+synthesize() {
+  local name="$1" leader="$2" labels=() label extension
+  shift 2
+  for label in "$@"; do labels+=(--label "${label}"); done
+  for extension in html bvh; do
+    duet synthesize --server "${address}" --leader "${leader}" "${labels[@]}" \
+      --out "${out_dir}/${name}.${extension}"
+  done
+}
+
+main() {
+  rm -rf "${out_dir}"
+  mkdir -p "${out_dir}"
+  trap stop_server EXIT
+  trap 'exit 130' INT TERM
+
+  start_server
+  wait_until_healthy
+  echo
+  duet models --server "${address}"
+  echo
+  synthesize kick samples/kick.bvh kick=1
+  synthesize hug samples/hug.bvh hug=1
+  synthesize half_hug_half_push samples/hug.bvh hug=0.5 push=0.5
+  stop_server
+
+  echo
+  echo "Made in ${SECONDS} s:"
+  find "${out_dir}" -name '*.html' -o -name '*.bvh' | sort | xargs du -h | sed 's/^/  /'
+  echo
+  echo "Open a page in any browser (drag to orbit, space to play):"
+  find "$(pwd)/${out_dir}" -name '*.html' | sort | sed 's,^,  file://,'
+  echo "The BVH pairs load in Blender: File, Import, Motion Capture."
+}
+
+address=""
+main
