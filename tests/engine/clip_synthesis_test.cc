@@ -1,0 +1,293 @@
+#include "model/engine/clip_synthesis.h"
+
+#include <cmath>
+#include <utility>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "model/motion/resample.h"
+#include "tests/support/fake_synthesizer.h"
+#include "tests/support/sample_motion.h"
+
+namespace duet {
+namespace {
+
+constexpr int kJoints = 15;
+
+LabelTrack NoLabels() { return LabelTrack(std::vector<float>(6, 0)); }
+
+ClipRequest Request(int frames, double frame_rate_hz, LabelTrack labels = NoLabels()) {
+  return {SwayingMotion(frames, frame_rate_hz), frame_rate_hz, std::move(labels), std::nullopt};
+}
+
+// What one run of a whole clip gave.
+struct Outcome {
+  std::vector<Vec3> follower;
+  std::vector<SynthesisWindow> windows;
+  std::vector<std::size_t> frames_after;  // that were handed out after each window
+};
+
+Outcome RunAll(const FakeSynthesizer& fake, ClipRequest request) {
+  ClipSynthesis clip(fake.description(), std::move(request));
+  Outcome run;
+  while (clip.HasNextWindow()) {
+    run.windows.push_back(clip.NextWindow());
+    const SynthesisWindow* window = &run.windows.back();
+    const std::vector<Vec3> frames = clip.Accept(*fake.Synthesize({window}).front());
+    run.follower.insert(run.follower.end(), frames.begin(), frames.end());
+    run.frames_after.push_back(run.follower.size() / kJoints);
+  }
+  return run;
+}
+
+// The answer of a network without a window limit, brought to the caller's rate.
+std::vector<Vec3> UnwindowedAnswer(const ClipRequest& request, double model_hz) {
+  const int frames = static_cast<int>(request.leader.size()) / kJoints;
+  std::vector<Vec3> follower = Resample(request.leader, kJoints, request.frame_rate_hz, model_hz);
+  std::vector<float> labels(6);
+  for (std::size_t i = 0; i < follower.size(); ++i) {
+    request.labels.At(static_cast<double>(i / kJoints) * request.frame_rate_hz / model_hz,
+                      labels.data());
+    follower[i] = FakeAnswer(follower[i], labels);
+  }
+  std::vector<Vec3> out(static_cast<std::size_t>(frames) * kJoints);
+  for (int t = 0; t < frames; ++t) {
+    SampleCubic(follower, kJoints, t * model_hz / request.frame_rate_hz,
+                &out[static_cast<std::size_t>(t * kJoints)]);
+  }
+  return out;
+}
+
+void ExpectNear(const std::vector<Vec3>& got, const std::vector<Vec3>& wanted, float tolerance) {
+  ASSERT_EQ(got.size(), wanted.size());
+  for (std::size_t i = 0; i < got.size(); ++i) {
+    ASSERT_LE(Distance(got[i], wanted[i]), tolerance)
+        << "frame " << i / kJoints << ", joint " << i % kJoints;
+  }
+}
+
+class ClipSynthesisAtRate : public ::testing::TestWithParam<double> {};
+
+TEST_P(ClipSynthesisAtRate, EveryLengthGivesAsManyFiniteFrames) {
+  const FakeSynthesizer fake;
+  for (int frames = 2; frames <= 200; ++frames) {
+    const Outcome run = RunAll(fake, Request(frames, GetParam()));
+    ASSERT_EQ(run.follower.size(), static_cast<std::size_t>(frames) * kJoints) << frames;
+    for (const Vec3& p : run.follower) ASSERT_TRUE(IsFinite(p)) << frames;
+    for (const SynthesisWindow& window : run.windows) {
+      ASSERT_GE(window.leader.size(), 2u * kJoints);
+      ASSERT_LE(window.leader.size(), 46u * kJoints);
+      ASSERT_EQ(window.labels.size(), window.leader.size() / kJoints * 6);
+    }
+  }
+}
+
+TEST_P(ClipSynthesisAtRate, WindowsLeaveNoSeam) {
+  const FakeSynthesizer fake;
+  for (int frames : {2, 47, 61, 93, 200, 600}) {
+    const ClipRequest request = Request(frames, GetParam());
+    ExpectNear(RunAll(fake, request).follower, UnwindowedAnswer(request, 15), 1e-5f);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Rates, ClipSynthesisAtRate,
+                         ::testing::Values(1, 15, 24, 29.97, 30, 60, 120, 240));
+
+TEST(ClipSynthesis, KeepsTheNetworksOwnFramesAtItsOwnRate) {
+  // Two windows that disagree by 10 m: only where they overlap may anything be mixed.
+  FakeSynthesizer fake;
+  int window = 0;
+  fake.on_batch = [&](absl::Span<const SynthesisWindow* const>) { ++window; };
+  fake.answer = [&](Vec3 leader, absl::Span<const float>) {
+    return leader + Vec3{10.0f * static_cast<float>(window), 0, 0};
+  };
+  const ClipRequest request = Request(70, 15);
+  const Outcome run = RunAll(fake, request);
+  ASSERT_EQ(run.windows.size(), 2u);  // frames 0 to 45 and 24 to 69
+  for (std::size_t i = 0; i < run.follower.size(); ++i) {
+    const std::size_t frame = i / kJoints;
+    const float x = run.follower[i].x - request.leader[i].x;
+    if (frame < 24) {
+      EXPECT_EQ(run.follower[i], (request.leader[i] + Vec3{10, 0, 0})) << frame;
+    } else if (frame > 45) {
+      EXPECT_EQ(run.follower[i], (request.leader[i] + Vec3{20, 0, 0})) << frame;
+    } else {
+      EXPECT_GT(x, 10) << frame;
+      EXPECT_LT(x, 20) << frame;
+    }
+  }
+}
+
+TEST(ClipSynthesis, MovesSmoothlyThroughWindowsThatDisagree) {
+  FakeSynthesizer fake;
+  int window = 0;
+  fake.on_batch = [&](absl::Span<const SynthesisWindow* const>) { ++window; };
+  fake.answer = [&](Vec3 leader, absl::Span<const float>) {
+    return leader + Vec3{0.1f * static_cast<float>(window % 2), 0, 0};
+  };
+  for (int frames : {47, 60, 70, 78, 79, 100, 300}) {
+    const ClipRequest request = Request(frames, 15);
+    const Outcome run = RunAll(fake, request);
+    const std::vector<Vec3>& f = run.follower;
+    for (std::size_t i = kJoints; i < f.size(); ++i) {
+      const Vec3 extra =
+          (f[i] - f[i - kJoints]) - (request.leader[i] - request.leader[i - kJoints]);
+      // The steepest step of a smoothstep over 15 frames or more, of a difference of 0.1 m. Clips
+      // that barely need a second or third window overlap more.
+      ASSERT_LT(Norm(extra), 0.1f * 1.6f / 15) << frames << " frames, frame " << i / kJoints;
+    }
+  }
+}
+
+TEST(ClipSynthesis, HandsOutFramesAfterTheFirstWindow) {
+  const FakeSynthesizer fake;
+  const Outcome run = RunAll(fake, Request(600, 30));
+  ASSERT_GT(run.windows.size(), 5u);
+  EXPECT_GT(run.frames_after.front(), 20u);
+  for (std::size_t k = 1; k < run.frames_after.size(); ++k) {
+    EXPECT_GT(run.frames_after[k], run.frames_after[k - 1]);
+  }
+}
+
+TEST(ClipSynthesis, NeverTakesBackAFrame) {
+  // The answer changes completely from window to window, yet a frame that was handed out depends
+  // on earlier windows only: a run that is cut short gave the same frames.
+  FakeSynthesizer fake;
+  int window = 0;
+  fake.on_batch = [&](absl::Span<const SynthesisWindow* const>) { ++window; };
+  fake.answer = [&](Vec3 leader, absl::Span<const float>) {
+    return leader * std::sin(static_cast<float>(window));
+  };
+  const Outcome first = RunAll(fake, Request(300, 60));
+  window = 0;
+  fake.answer = [&](Vec3 leader, absl::Span<const float>) {
+    return leader * (window == 1 ? std::sin(1.0f) : 50.0f);
+  };
+  const Outcome second = RunAll(fake, Request(300, 60));
+  const std::size_t handed_out = first.frames_after.front() * kJoints;
+  ASSERT_GT(handed_out, 0u);
+  for (std::size_t i = 0; i < handed_out; ++i) {
+    ASSERT_EQ(first.follower[i], second.follower[i]) << "frame " << i / kJoints;
+  }
+  EXPECT_NE(first.follower[handed_out + 60 * kJoints], second.follower[handed_out + 60 * kJoints]);
+}
+
+TEST(ClipSynthesis, NextWindowIsTheSameUntilAccepted) {
+  const FakeSynthesizer fake;
+  ClipSynthesis clip(fake.description(), Request(100, 15));
+  const SynthesisWindow a = clip.NextWindow(), b = clip.NextWindow();
+  EXPECT_EQ(a.leader, b.leader);
+  EXPECT_EQ(a.labels, b.labels);
+  clip.Accept(*fake.Synthesize({&a}).front());
+  EXPECT_NE(clip.NextWindow().leader, a.leader);
+}
+
+TEST(ClipSynthesis, StartGoesToTheFirstWindow) {
+  const FakeSynthesizer fake;
+  ClipRequest request = Request(30, 15);
+  request.start = FollowerStart{{1, 2, 3}, {}};
+  const Outcome run = RunAll(fake, request);
+  ASSERT_EQ(run.windows.size(), 1u);
+  ASSERT_TRUE(run.windows[0].start.has_value());
+  EXPECT_EQ(run.windows[0].start->root, (Vec3{1, 2, 3}));
+  EXPECT_TRUE(run.windows[0].start->pose.empty());
+}
+
+TEST(ClipSynthesis, LaterWindowsStartWhereTheEarlierOnesGot) {
+  const FakeSynthesizer fake;
+  const ClipRequest request = Request(200, 15);
+  const Outcome run = RunAll(fake, request);
+  const std::vector<int> starts = PlanWindows(200, 46).starts;
+  ASSERT_EQ(run.windows.size(), starts.size());
+  EXPECT_FALSE(run.windows[0].start.has_value());
+  for (std::size_t k = 1; k < starts.size(); ++k) {
+    ASSERT_TRUE(run.windows[k].start.has_value()) << k;
+    const FollowerStart& start = *run.windows[k].start;
+    ASSERT_EQ(start.pose.size(), 15u);
+    EXPECT_EQ(start.root, start.pose[2]);
+    for (std::size_t j = 0; j < kJoints; ++j) {
+      const Vec3 wanted =
+          FakeAnswer(request.leader[static_cast<std::size_t>(starts[k]) * kJoints + j], {});
+      EXPECT_LT(Distance(start.pose[j], wanted), 1e-5f) << "window " << k << ", joint " << j;
+    }
+  }
+}
+
+TEST(ClipSynthesis, NoStartsForAModelWithoutThem) {
+  ModelDescription description = FakeDescription();
+  description.accepts_follower_start = false;
+  const Outcome run = RunAll(FakeSynthesizer(description), Request(200, 15));
+  for (const SynthesisWindow& window : run.windows) EXPECT_FALSE(window.start.has_value());
+}
+
+TEST(ClipSynthesis, LabelsFollowTheirKeyframesAtAnyRate) {
+  const FakeSynthesizer fake;
+  std::vector<float> none(6, 0), all(6, 0);
+  all[3] = 1;
+  // Rises over the caller's frames 60 to 120 at 60 Hz: the second second.
+  const LabelTrack labels(std::vector<LabelKeyframe>{{60, none}, {120, all}});
+  const ClipRequest request = Request(301, 60, labels);
+  const Outcome run = RunAll(fake, request);
+  for (int frame : {0, 30, 60, 90, 110, 120, 240, 300}) {
+    const float wanted = std::min(1.0f, std::max(0.0f, static_cast<float>(frame - 60) / 60));
+    const std::size_t i = static_cast<std::size_t>(frame) * kJoints;
+    EXPECT_NEAR(run.follower[i].y - request.leader[i].y, wanted, 0.02f) << frame;
+  }
+  ExpectNear(run.follower, UnwindowedAnswer(request, 15), 1e-5f);
+}
+
+TEST(ClipSynthesis, TwoFramesAtTheHighestRate) {
+  const Outcome run = RunAll(FakeSynthesizer(), Request(2, 240));
+  ASSERT_EQ(run.windows.size(), 1u);
+  EXPECT_EQ(run.windows[0].leader.size(), 2u * kJoints);
+  EXPECT_EQ(run.follower.size(), 2u * kJoints);
+}
+
+TEST(ClipSynthesis, TenMinutesCostTenMinutesOfFrames) {
+  const struct {
+    int frames;
+    double rate;
+  } clips[] = {{144000, 240}, {600, 1}, {9000, 15}};
+  for (const auto& clip : clips) {
+    FakeSynthesizer fake;
+    std::size_t windows = 0, network_frames = 0, most_handed_out = 0, handed_out = 0;
+    ClipSynthesis synthesis(fake.description(), Request(clip.frames, clip.rate));
+    while (synthesis.HasNextWindow()) {
+      const SynthesisWindow window = synthesis.NextWindow();
+      ++windows;
+      network_frames += window.leader.size() / kJoints;
+      const std::size_t frames =
+          synthesis.Accept(*fake.Synthesize({&window}).front()).size() / kJoints;
+      handed_out += frames;
+      most_handed_out = std::max(most_handed_out, frames);
+    }
+    EXPECT_EQ(handed_out, static_cast<std::size_t>(clip.frames));
+    // 9001 frames of the network's: each at most half as often again.
+    EXPECT_LE(network_frames, 9001u * 3 / 2 + 46) << clip.rate;
+    EXPECT_LE(windows, 291u) << clip.rate;
+    // Nothing piles up for the end: no Accept returns more than a window and the two frames that
+    // the spline waited for.
+    EXPECT_LE(static_cast<double>(most_handed_out), 48 * clip.rate / 15 + 1) << clip.rate;
+  }
+}
+
+TEST(ClipSynthesis, WorksWithTheShortestWindows) {
+  for (int longest : {2, 3, 4, 5}) {
+    ModelDescription description = FakeDescription();
+    description.window_frames = longest;
+    const FakeSynthesizer fake(description);
+    for (int frames : {2, 3, 10, 50}) {
+      const ClipRequest request = Request(frames, 30);
+      ExpectNear(RunAll(fake, request).follower, UnwindowedAnswer(request, 15), 1e-5f);
+    }
+  }
+}
+
+TEST(ClipSynthesisDeathTest, StopsAtAResultOfTheWrongSize) {
+  const FakeSynthesizer fake;
+  ClipSynthesis clip(fake.description(), Request(100, 15));
+  EXPECT_DEATH(clip.Accept(std::vector<Vec3>(kJoints)), "");
+}
+
+}  // namespace
+}  // namespace duet
