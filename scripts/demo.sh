@@ -12,6 +12,7 @@ readonly start_limit_s=60
 readonly stop_limit_s=15
 
 server_pid=""
+server_status=0
 
 fail() {
   echo "demo: $*" >&2
@@ -30,7 +31,7 @@ stop_server() {
     sleep 0.1
   done
   kill -KILL "${server_pid}" 2>/dev/null || true
-  wait "${server_pid}" 2>/dev/null || true
+  wait "${server_pid}" 2>/dev/null || server_status=$?
   server_pid=""
 }
 
@@ -59,14 +60,14 @@ start_server() {
   [[ "${metrics_port}" == 9464 ]] || flags+=(--metrics_listen "127.0.0.1:${metrics_port}")
   address="127.0.0.1:${port}"
 
-  echo "\$ duet-server ${flags[*]}"
+  echo "\$ duet-server${flags[*]:+ ${flags[*]}}"
   "${bin_dir}/duet-server" "${flags[@]}" >"${server_log}" 2>&1 &
   server_pid=$!
 }
 
 wait_until_healthy() {
   local deadline=$((SECONDS + start_limit_s))
-  until "${bin_dir}/duet" models --server "${address}" >/dev/null 2>&1; do
+  until timeout 5 "${bin_dir}/duet" models --server "${address}" >/dev/null 2>&1; do
     kill -0 "${server_pid}" 2>/dev/null || fail "the server ended before it was healthy"
     ((SECONDS < deadline)) || fail "the server was not healthy after ${start_limit_s} s"
     sleep 0.1
@@ -105,6 +106,7 @@ main() {
   synthesize hug samples/hug.bvh hug=1
   synthesize half_hug_half_push samples/hug.bvh hug=0.5 push=0.5
   stop_server
+  ((server_status == 0)) || fail "the server ended with status ${server_status} on SIGTERM"
 
   echo
   echo "Made in ${SECONDS} s:"
