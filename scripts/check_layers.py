@@ -24,7 +24,7 @@ class Layer:
     libraries: tuple = ()  # guarded libraries that it may include
 
 
-TORCH_FREE_MODEL = ("motion", "formats", "dataset", "engine", "checkpoint")
+TORCH_FREE_MODEL = ("motion", "formats", "dataset", "engine", "checkpoint", "embedded checkpoints")
 WHOLE_MODEL = TORCH_FREE_MODEL + ("network", "torch engine", "training")
 
 LAYERS = (
@@ -36,6 +36,7 @@ LAYERS = (
           sees=("motion", "engine", "checkpoint", "network"), libraries=("torch",)),
     Layer("engine", ("model/engine/*",), sees=("motion",)),
     Layer("checkpoint", ("model/checkpoint/*",), sees=("motion", "engine")),
+    Layer("embedded checkpoints", ("model/checkpoints/*",), sees=()),
     Layer("network", ("model/network/*",), sees=("motion", "engine", "checkpoint"),
           libraries=("torch",)),
     Layer("training", ("model/training/*",),
@@ -45,10 +46,10 @@ LAYERS = (
     Layer("evaluation", ("model/evaluation/*",), sees=TORCH_FREE_MODEL + ("torch evaluation",)),
     # The programs around it.
     Layer("server main", ("server/main.cc",),
-          sees=("server", "motion", "engine", "checkpoint", "torch engine"),
+          sees=("server", "motion", "engine", "checkpoint", "embedded checkpoints", "torch engine"),
           libraries=("rpc", "prometheus")),
     Layer("server", ("server/*",), sees=("motion", "engine"), libraries=("rpc", "prometheus")),
-    Layer("viewer", ("client/viewer/*",), sees=("motion",)),
+    Layer("viewer", ("client/viewer/*",), sees=("motion", "client")),
     Layer("client program", ("client/cli/*",), sees=("motion", "formats", "viewer", "client")),
     Layer("client", ("client/*",), sees=("motion",), libraries=("rpc",)),
 )
