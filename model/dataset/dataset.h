@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,9 @@ struct Sequence {
   std::vector<std::string> subjects;  // people in it, when the data set says
   std::string leader_source;          // "index": the data set's index; "motion": the motion rule
   ClipPair pair;                      // world metres, y up, joints in the skeleton's order
+  // Horizontal direction from leader to follower, where the capture's setup tells it: SBU and K3HI
+  // stand their people along the image's x axis. Never taken from the follower's motion.
+  std::optional<Vec3> partner_direction;
 };
 
 struct Dataset {

@@ -1,6 +1,7 @@
 #ifndef DUET_MODEL_DATASET_LAYOUT_H_
 #define DUET_MODEL_DATASET_LAYOUT_H_
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,6 +27,8 @@ struct DatasetLayout {
   CoordinateFrame frame;
   Skeleton skeleton;
   std::vector<ClassLayout> classes;
+  // World direction from the person on the left to the one on the right, where the setup fixes it.
+  std::optional<Vec3> left_to_right;
 };
 
 // SBU Kinect Interaction ("clean"): the six classes of the paper, folders 03 to 08.

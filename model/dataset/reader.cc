@@ -169,7 +169,11 @@ absl::StatusOr<Sequence> ReadSequence(const fs::path& folder, const DatasetLayou
     side = *moved;
     sequence.leader_source = "motion";
   }
-  if (side == LeaderSide::kRight) std::swap(people->left, people->right);
+  sequence.partner_direction = layout.left_to_right;
+  if (side == LeaderSide::kRight) {
+    std::swap(people->left, people->right);
+    if (layout.left_to_right) sequence.partner_direction = -*layout.left_to_right;
+  }
   sequence.pair = {std::move(people->left), std::move(people->right)};
   return sequence;
 }

@@ -42,6 +42,8 @@ SynthesisWindow ClipSynthesis::NextWindow() const {
     request_.labels.At(frame, window.labels.data() + t * classes);
   }
   window.start = NextStart();
+  // The characters move: later, where the follower has got to tells the direction.
+  if (next_window_ == 0 || !window.start) window.partner_direction = request_.partner_direction;
   return window;
 }
 

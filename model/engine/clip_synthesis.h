@@ -19,6 +19,7 @@ struct ClipRequest {
   double frame_rate_hz = 0;  // the caller's
   LabelTrack labels;         // keyframes in the caller's frames
   std::optional<FollowerStart> start;
+  std::optional<Vec3> partner_direction;  // horizontal, of any length but 0; see SynthesisWindow
 };
 
 // Turns a clip of any length into network windows and their results back into one motion.

@@ -23,6 +23,9 @@ struct SynthesisWindow {
   std::vector<Vec3> leader;   // [frames, joints], 2 frames or more
   std::vector<float> labels;  // [frames, classes]
   std::optional<FollowerStart> start;
+  // Horizontal direction from the leader to where the follower should be. Absent: towards `start`,
+  // or else where the leader's hips face.
+  std::optional<Vec3> partner_direction;
 };
 
 // A follower's motion for one window: [frames, joints] in the leader's world, metres, y up.

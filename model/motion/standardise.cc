@@ -13,19 +13,31 @@ double HipYaw(Vec3 left_hip, Vec3 right_hip) {
   return std::atan2(-across.z, across.x);
 }
 
+double RemovedYaw(const Skeleton& skeleton, const std::vector<Vec3>& leader,
+                  YawDirection direction) {
+  const double yaw = HipYaw(leader[static_cast<size_t>(skeleton.left_hip)],
+                            leader[static_cast<size_t>(skeleton.right_hip)]);
+  return direction == YawDirection::kRemove ? -yaw : yaw;
+}
+
 }  // namespace
+
+double FacingYaw(Vec3 direction) { return std::atan2(direction.x, -direction.z); }
 
 Standardisation::Standardisation(const Skeleton& skeleton, const std::vector<Vec3>& leader,
                                  YawDirection direction)
-    : joints_(skeleton.joint_count()) {
-  const double yaw = HipYaw(leader[static_cast<size_t>(skeleton.left_hip)],
-                            leader[static_cast<size_t>(skeleton.right_hip)]);
-  yaw_ = direction == YawDirection::kRemove ? -yaw : yaw;
+    : Standardisation(skeleton, leader, RemovedYaw(skeleton, leader, direction)) {}
+
+Standardisation::Standardisation(const Skeleton& skeleton, const std::vector<Vec3>& leader,
+                                 double yaw)
+    : joints_(skeleton.joint_count()), yaw_(yaw) {
   const size_t joints = static_cast<size_t>(joints_);
   for (size_t at = static_cast<size_t>(skeleton.root); at < leader.size(); at += joints) {
     roots_.push_back(leader[at]);
   }
 }
+
+Vec3 Standardisation::Apply(Vec3 world) const { return RotateY(world - roots_.front(), yaw_); }
 
 std::vector<Vec3> Standardisation::Apply(const std::vector<Vec3>& world, int first_frame) const {
   const size_t joints = static_cast<size_t>(joints_);

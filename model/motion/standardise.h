@@ -14,6 +14,9 @@ enum class YawDirection {
   kAsReleasedCode  // the published preprocessing turns the wrong way; for exact comparison only
 };
 
+// The yaw that turns a horizontal direction to -z, where a standardised leader faces.
+double FacingYaw(Vec3 direction);
+
 // The frame in which the network sees a clip: the leader's root at the origin in every frame, and
 // one constant yaw, such that the leader's left-to-right hip direction in frame 0 lies along +x,
 // so that the leader starts facing -z.
@@ -25,10 +28,14 @@ class Standardisation {
   // Fits to the leader. `leader` holds at least one frame.
   Standardisation(const Skeleton& skeleton, const std::vector<Vec3>& leader,
                   YawDirection direction = YawDirection::kRemove);
+  // Takes out a yaw of the caller's choice: the angle about +y, in radians, that Apply turns by.
+  Standardisation(const Skeleton& skeleton, const std::vector<Vec3>& leader, double yaw);
 
   // World to standard; a follower goes through the same transform as its leader. `first_frame`
   // places a shorter run of frames within the leader's.
   std::vector<Vec3> Apply(const std::vector<Vec3>& world, int first_frame = 0) const;
+  // One point of the first frame.
+  Vec3 Apply(Vec3 world) const;
   // Standard to world: the exact inverse of Apply.
   std::vector<Vec3> Invert(const std::vector<Vec3>& standard, int first_frame = 0) const;
 

@@ -1,0 +1,110 @@
+#include "model/engine/torch_synthesizer.h"
+
+#include <torch/torch.h>
+
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "model/checkpoints/embedded.h"
+#include "model/engine/window_frame.h"
+#include "model/network/batch.h"
+#include "model/network/parameters.h"
+
+namespace duet {
+namespace {
+
+std::optional<FollowerStart> StandardStart(const Standardisation& standard,
+                                           const std::optional<FollowerStart>& start) {
+  if (!start) return std::nullopt;
+  FollowerStart result{standard.Apply(start->root), {}};
+  for (const Vec3& joint : start->pose) result.pose.push_back(standard.Apply(joint));
+  return result;
+}
+
+class TorchSynthesizer : public Synthesizer {
+ public:
+  TorchSynthesizer(Manifest manifest, network::Generator generator)
+      : manifest_(std::move(manifest)), generator_(std::move(generator)) {}
+
+  const ModelDescription& description() const override { return manifest_.model; }
+
+  std::vector<WindowResult> Synthesize(
+      absl::Span<const SynthesisWindow* const> windows) const override {
+    if (windows.empty()) return {};
+    // LibTorch reports by exception: this is where they stop.
+    try {
+      return Run(windows);
+    } catch (const std::exception& error) {
+      return std::vector<WindowResult>(
+          windows.size(), absl::InternalError(absl::StrCat("the network failed: ", error.what())));
+    }
+  }
+
+ private:
+  std::vector<WindowResult> Run(absl::Span<const SynthesisWindow* const> windows) const {
+    torch::NoGradGuard no_grad;
+    std::vector<Standardisation> standards;
+    std::vector<network::BatchItem> items;
+    for (const SynthesisWindow* window : windows) {
+      standards.push_back(WindowFrame(manifest_.model.skeleton, *window));
+      items.push_back({standards.back().Apply(window->leader), window->labels,
+                       StandardStart(standards.back(), window->start)});
+    }
+    const torch::Tensor followers = generator_->forward(network::MakeInput(manifest_, items));
+    std::vector<WindowResult> results;
+    for (size_t n = 0; n < windows.size(); ++n) {
+      results.push_back(Take(followers, n, windows[n]->leader.size(), standards[n]));
+    }
+    return results;
+  }
+
+  WindowResult Take(const torch::Tensor& followers, size_t clip, size_t points,
+                    const Standardisation& standard) const {
+    const int64_t frames = static_cast<int64_t>(points) / manifest_.model.skeleton.joint_count();
+    const std::vector<Vec3> follower =
+        network::TakePositions(followers, static_cast<int64_t>(clip), frames);
+    for (const Vec3& point : follower) {
+      if (!IsFinite(point)) return absl::InternalError("the network's result is not finite");
+    }
+    return standard.Invert(follower);
+  }
+
+  Manifest manifest_;
+  mutable network::Generator generator_;  // forward is not const; it changes nothing
+};
+
+}  // namespace
+
+absl::StatusOr<std::unique_ptr<Synthesizer>> MakeTorchSynthesizer(const Checkpoint& checkpoint) {
+  network::Generator generator(checkpoint.manifest);
+  absl::Status status = network::LoadParameters(checkpoint, generator);
+  if (!status.ok()) return status;
+  generator->eval();
+  return std::make_unique<TorchSynthesizer>(checkpoint.manifest, std::move(generator));
+}
+
+absl::StatusOr<std::unique_ptr<Synthesizer>> LoadTorchSynthesizer(
+    const std::filesystem::path& folder) {
+  absl::StatusOr<Checkpoint> checkpoint = ReadCheckpoint(folder);
+  if (!checkpoint.ok()) return checkpoint.status();
+  return MakeTorchSynthesizer(*checkpoint);
+}
+
+absl::StatusOr<std::vector<std::unique_ptr<Synthesizer>>> LoadEmbeddedSynthesizers() {
+  std::vector<std::unique_ptr<Synthesizer>> synthesizers;
+  for (const EmbeddedCheckpoint& embedded : EmbeddedCheckpoints()) {
+    absl::StatusOr<Checkpoint> checkpoint = ParseCheckpoint(embedded.manifest, embedded.weights);
+    if (!checkpoint.ok()) return checkpoint.status();
+    absl::StatusOr<std::unique_ptr<Synthesizer>> synthesizer = MakeTorchSynthesizer(*checkpoint);
+    if (!synthesizer.ok()) return synthesizer.status();
+    synthesizers.push_back(*std::move(synthesizer));
+  }
+  return synthesizers;
+}
+
+void SetTorchThreads(int threads) {
+  torch::set_num_threads(threads);
+  if (threads == 1) torch::set_num_interop_threads(1);
+}
+
+}  // namespace duet

@@ -1,0 +1,27 @@
+#include "model/engine/window_frame.h"
+
+#include <cmath>
+
+namespace duet {
+namespace {
+
+// Closer than this the direction from root to root says little: people in a hug.
+constexpr float kMinDistanceMetres = 0.3f;
+
+}  // namespace
+
+Standardisation WindowFrame(const Skeleton& skeleton, const SynthesisWindow& window) {
+  if (window.partner_direction) {
+    return {skeleton, window.leader, FacingYaw(*window.partner_direction)};
+  }
+  if (window.start) {
+    const Vec3 root = window.leader[static_cast<size_t>(skeleton.root)];
+    const Vec3 toward = window.start->root - root;
+    if (std::hypot(toward.x, toward.z) >= kMinDistanceMetres) {
+      return {skeleton, window.leader, FacingYaw(toward)};
+    }
+  }
+  return {skeleton, window.leader};
+}
+
+}  // namespace duet
