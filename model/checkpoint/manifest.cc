@@ -144,6 +144,7 @@ absl::StatusOr<GeneratorArchitecture> ReadGenerator(const json& value) {
   generator.slice_features = static_cast<int>(reader.Int("slice_features", 0, kMaxUnits));
   generator.encoder_hidden = static_cast<int>(reader.Int("encoder_hidden", 1, kMaxUnits));
   generator.attention = static_cast<int>(reader.Int("attention", 1, kMaxUnits));
+  generator.base_pose = reader.Bool("base_pose");
   if (absl::Status status = reader.Finish(); !status.ok()) return status;
   return generator;
 }
@@ -318,7 +319,8 @@ std::string SerializeManifest(const Manifest& manifest) {
                                {"follower_start", generator.follower_start},
                                {"slice_features", generator.slice_features},
                                {"encoder_hidden", generator.encoder_hidden},
-                               {"attention", generator.attention}}},
+                               {"attention", generator.attention},
+                               {"base_pose", generator.base_pose}}},
                              {"weights",
                               {{"file", manifest.weights.file},
                                {"bytes", manifest.weights.bytes},

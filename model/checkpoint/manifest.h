@@ -35,6 +35,9 @@ struct GeneratorArchitecture {
   int encoder_hidden = 40;
   // Rows of W2 in the attention score (Eq. 2).
   int attention = 128;
+  // The output layer adds to a base: the follower's start where it is given, else a mean pose that
+  // is linear in the label vector.
+  bool base_pose = false;
 };
 
 // Where the weights are and what they must hash to.
@@ -97,7 +100,10 @@ struct TensorSpec {
 //   decoder.<dir>.bias               [4 S E]
 //   output.weight                    [3 J, S 2 E]
 //   output.bias                      [3 J]
-// with E = encoder_hidden, S = slices, A = attention, J = joints.
+//   base.weight                      [3 J, C]              (base_pose only)
+//   base.bias                        [3 J]                 (base_pose only)
+// with E = encoder_hidden, S = slices, A = attention, J = joints,
+// C = classes.
 std::vector<TensorSpec> ExpectedTensors(const Manifest& manifest);
 
 }  // namespace duet

@@ -66,6 +66,10 @@ std::vector<TensorSpec> ExpectedTensors(const Manifest& manifest) {
   }
   specs.push_back({"output.weight", {outputs, encoded}});
   specs.push_back({"output.bias", {outputs}});
+  if (manifest.generator.base_pose) {
+    specs.push_back({"base.weight", {outputs, manifest.model.class_count()}});
+    specs.push_back({"base.bias", {outputs}});
+  }
   return specs;
 }
 

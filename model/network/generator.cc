@@ -49,6 +49,8 @@ GeneratorImpl::GeneratorImpl(const Manifest& manifest)
       whole_body_reads_leader_(manifest.generator.variant == "paper"),
       has_start_(manifest.generator.follower_start),
       has_fc_(manifest.generator.slice_features > 0),
+      has_base_(manifest.generator.base_pose),
+      root_column_(3 * int64_t{manifest.model.skeleton.root}),
       encoder_hidden_(manifest.generator.encoder_hidden) {
   for (const BodyPart& part : manifest.model.skeleton.parts) columns_.push_back(PartColumns(part));
   for (const TensorSpec& spec : ExpectedTensors(manifest)) {
@@ -161,13 +163,38 @@ torch::Tensor GeneratorImpl::Decode(const Encoded& encoded, const GeneratorInput
       .transpose(0, 1);
 }
 
+// The pose that the output layer adds to, [N, T, 3 J]: root and pose relative to it, each from the
+// follower's start where that gives it, else from the label vector's mean pose.
+torch::Tensor GeneratorImpl::Base(const GeneratorInput& input) const {
+  const torch::Tensor mean = torch::nn::functional::linear(input.labels, Parameter("base.weight"),
+                                                           Parameter("base.bias"));
+  if (!has_start_) return mean;
+  const int64_t joints = mean.size(2) / 3, pose_flag = input.start.size(1) - 1;
+  const torch::Tensor start = input.start.unsqueeze(1);  // [N, 1, root, pose, flags]
+  const torch::Tensor root_known = start.narrow(2, pose_flag - 1, 1);
+  const torch::Tensor pose_known = start.narrow(2, pose_flag, 1);
+  const torch::Tensor mean_root = mean.narrow(2, root_column_, 3);
+  const torch::Tensor mean_pose = mean - mean_root.repeat({1, 1, joints});
+  const torch::Tensor root = mean_root + root_known * (start.narrow(2, 0, 3) - mean_root);
+  const torch::Tensor pose = mean_pose + pose_known * (start.narrow(2, 3, 3 * joints) - mean_pose);
+  return root.repeat({1, 1, joints}) + pose;
+}
+
+void GeneratorImpl::SetBasePoses(const torch::Tensor& means) {
+  torch::NoGradGuard no_grad;
+  const torch::Tensor overall = means.mean(0);
+  tensors_.at("base.bias").copy_(overall);
+  tensors_.at("base.weight").copy_((means - overall).t());
+}
+
 torch::Tensor GeneratorImpl::Encode(const GeneratorInput& input) {
   return EncodeAll(input, ReversedRows(input.lengths, input.leader.size(1))).frames;
 }
 
 torch::Tensor GeneratorImpl::forward(const GeneratorInput& input) {
   const torch::Tensor reversed = ReversedRows(input.lengths, input.leader.size(1));
-  return Decode(EncodeAll(input, reversed), input, reversed);
+  const torch::Tensor out = Decode(EncodeAll(input, reversed), input, reversed);
+  return has_base_ ? out + Base(input) : out;
 }
 
 }  // namespace duet::network

@@ -40,6 +40,10 @@ class GeneratorImpl : public torch::nn::Module {
   // Share of the encoders' features and outputs dropped in training mode.
   void set_dropout(double probability) { dropout_ = probability; }
 
+  // Sets the mean pose of every class that the output adds to. Shapes: means [C, 3 J]. Requires an
+  // architecture with base_pose.
+  void SetBasePoses(const torch::Tensor& means);
+
   // The parameters by the names of ExpectedTensors.
   const std::map<std::string, torch::Tensor>& tensors() const { return tensors_; }
 
@@ -58,6 +62,7 @@ class GeneratorImpl : public torch::nn::Module {
   Encoded EncodeAll(const GeneratorInput& input, const torch::Tensor& reversed) const;
   torch::Tensor Decode(const Encoded& encoded, const GeneratorInput& input,
                        const torch::Tensor& reversed) const;
+  torch::Tensor Base(const GeneratorInput& input) const;
   torch::Tensor Stack(const std::string& parameter) const;
 
   std::vector<SliceShape> slices_;
@@ -66,6 +71,8 @@ class GeneratorImpl : public torch::nn::Module {
   bool whole_body_reads_leader_;
   bool has_start_;
   bool has_fc_;
+  bool has_base_;
+  int64_t root_column_;  // of the root joint's x in [3 J]
   int64_t encoder_hidden_;
   double dropout_ = 0;
 };

@@ -146,6 +146,33 @@ TEST(GeneratorTest, ForeignParametersAreRefusedByName) {
             std::string::npos);
 }
 
+TEST(GeneratorTest, BasePoseComesFromTheStartWhereItIsKnown) {
+  Manifest manifest = testing::SmallManifest();
+  manifest.generator.base_pose = true;
+  Generator generator = MakeGenerator(manifest);
+  torch::NoGradGuard no_grad;
+  generator->tensors().at("output.weight").zero_();
+  const torch::Tensor means = torch::randn({kClasses, 3 * kJoints});
+  generator->SetBasePoses(means);
+  GeneratorInput input = MakeInput(manifest);
+  input.labels.zero_();
+  input.labels.select(2, 1).fill_(1);
+  input.start.zero_();
+  const int64_t width = input.start.size(1);
+  const torch::Tensor start = torch::randn({width - 2});
+  for (int64_t clip : {1, 2}) input.start[clip].narrow(0, 0, width - 2).copy_(start);
+  input.start[1][width - 2] = 1;  // the root alone
+  input.start[2][width - 2] = 1;  // root and pose
+  input.start[2][width - 1] = 1;
+  const torch::Tensor out = generator->forward(input).reshape({kBatch, kFrames, kJoints, 3});
+  const torch::Tensor mean = means[1].reshape({kJoints, 3}), root = start.narrow(0, 0, 3);
+  const int64_t torso = manifest.model.skeleton.root;
+  EXPECT_TRUE(torch::allclose(out[0][3], mean, 1e-5, 1e-5));
+  EXPECT_TRUE(torch::allclose(out[1][3], mean - mean[torso] + root, 1e-5, 1e-5));
+  EXPECT_TRUE(torch::allclose(out[2][3], root + start.narrow(0, 3, 45).reshape({kJoints, 3}), 1e-5,
+                              1e-5));
+}
+
 TEST(GeneratorTest, ReleasedVariantGivesTheWholeBodySliceTheLabelAlone) {
   Manifest manifest = testing::SmallManifest(false);
   manifest.generator.variant = "released";
