@@ -1,0 +1,90 @@
+#include "client/viewer/page.h"
+
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_replace.h"
+#include "absl/strings/string_view.h"
+#include "client/viewer/page_data.h"
+
+// The page's parts, linked in by duet_embed_file.
+extern "C" {
+extern const char duet_page_index[], duet_page_index_end[];
+extern const char duet_page_style[], duet_page_style_end[];
+extern const char duet_page_three[], duet_page_three_end[];
+extern const char duet_page_controls[], duet_page_controls_end[];
+extern const char duet_page_motion[], duet_page_motion_end[];
+extern const char duet_page_figure[], duet_page_figure_end[];
+extern const char duet_page_stage[], duet_page_stage_end[];
+extern const char duet_page_player[], duet_page_player_end[];
+extern const char duet_page_panel[], duet_page_panel_end[];
+extern const char duet_page_input[], duet_page_input_end[];
+extern const char duet_page_main[], duet_page_main_end[];
+}
+
+namespace duet::client {
+namespace {
+
+absl::string_view Text(const char* begin, const char* end) {
+  return {begin, static_cast<size_t>(end - begin)};
+}
+
+absl::Status Check(const PageContent& content) {
+  const Clip& leader = content.pair.leader;
+  const Clip& follower = content.pair.follower;
+  if (leader.frame_count() < 1 || leader.frame_rate_hz <= 0) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("pair.leader: ", leader.frame_count(), " frames at ", leader.frame_rate_hz,
+                     " Hz, wanted at least one frame and a rate above 0"));
+  }
+  if (leader.joint_names != follower.joint_names ||
+      leader.positions.size() != follower.positions.size() ||
+      leader.frame_rate_hz != follower.frame_rate_hz) {
+    return absl::InvalidArgumentError(
+        "pair: leader and follower differ in joints, frames or frame rate");
+  }
+  for (const Clip* clip : {&leader, &follower}) {
+    for (const Vec3& position : clip->positions) {
+      if (!IsFinite(position)) return absl::InvalidArgumentError("pair: a position is not finite");
+    }
+  }
+  for (const Bone& bone : content.bones) {
+    for (int joint : {bone.parent, bone.child}) {
+      if (joint < 0 || joint >= leader.joint_count()) {
+        return absl::InvalidArgumentError(
+            absl::StrCat("bones: joint ", joint, ", wanted 0 to ", leader.joint_count() - 1));
+      }
+    }
+  }
+  return absl::OkStatus();
+}
+
+std::string EscapeHtml(absl::string_view text) {
+  return absl::StrReplaceAll(text,
+                             {{"&", "&amp;"}, {"<", "&lt;"}, {">", "&gt;"}, {"\"", "&quot;"}});
+}
+
+std::string Script() {
+  return absl::StrCat(
+      Text(duet_page_motion, duet_page_motion_end), Text(duet_page_stage, duet_page_stage_end),
+      Text(duet_page_figure, duet_page_figure_end), Text(duet_page_player, duet_page_player_end),
+      Text(duet_page_panel, duet_page_panel_end), Text(duet_page_input, duet_page_input_end),
+      Text(duet_page_main, duet_page_main_end));
+}
+
+}  // namespace
+
+absl::StatusOr<std::string> RenderPage(const PageContent& content) {
+  const absl::Status status = Check(content);
+  if (!status.ok()) return status;
+  // One pass: what is put in is not searched again, so no title can smuggle in a part.
+  return absl::StrReplaceAll(Text(duet_page_index, duet_page_index_end),
+                             {{"{{TITLE}}", EscapeHtml(content.title)},
+                              {"{{STYLE}}", Text(duet_page_style, duet_page_style_end)},
+                              {"{{DATA}}", PageDataJson(content)},
+                              {"{{THREE}}", Text(duet_page_three, duet_page_three_end)},
+                              {"{{CONTROLS}}", Text(duet_page_controls, duet_page_controls_end)},
+                              {"{{SCRIPT}}", Script()}});
+}
+
+}  // namespace duet::client

@@ -1,0 +1,156 @@
+// One character's body: a tapered capsule on every bone, a ball on every joint, and where the joint
+// names allow it a chest, a pelvis and a head that show which way the character faces.
+class Figure {
+  constructor(motion, person, colour) {
+    this.motion = motion;
+    this.person = person;
+    this.group = new THREE.Group();
+    this.pose = motion.joints.map(() => new THREE.Vector3());
+    this.skin = new THREE.MeshStandardMaterial({color: linear(colour), roughness: 0.62, metalness: 0});
+    this.jointSkin = this.skin.clone();
+    this.jointSkin.color.multiplyScalar(0.72);
+    this.radii = motion.joints.map(Figure.radius);
+    this.bones = motion.bones.map(([parent, child]) => this.addBone(parent, child));
+    this.balls = motion.joints.map((name, joint) => this.addBall(joint));
+    this.addTrunk();
+    this.addHead();
+    // A character moves out of any box computed once.
+    this.group.traverse((object) => { object.frustumCulled = false; });
+  }
+
+  // Metres, by what a joint is called; skeletons that name them otherwise get slender limbs.
+  static radius(name) {
+    const table = [
+      [/head/, 0.05], [/neck/, 0.047], [/shoulder|clavicle/, 0.052], [/elbow/, 0.041],
+      [/hand|wrist/, 0.036], [/torso|spine|chest/, 0.066], [/hip|pelvis|root/, 0.072],
+      [/knee/, 0.054], [/foot|ankle|toe/, 0.043],
+    ];
+    const row = table.find(([pattern]) => pattern.test(name.toLowerCase()));
+    return row ? row[1] : 0.035;
+  }
+
+  addMesh(geometry, material) {
+    const mesh = new THREE.Mesh(geometry, material);
+    mesh.castShadow = true;
+    mesh.receiveShadow = true;
+    this.group.add(mesh);
+    return mesh;
+  }
+
+  addBone(parent, child) {
+    const geometry = new THREE.CylinderBufferGeometry(
+        this.radii[child] * 0.94, this.radii[parent] * 0.94, 1, 24, 1, true);
+    geometry.translate(0, 0.5, 0);
+    return {parent, child, mesh: this.addMesh(geometry, this.skin)};
+  }
+
+  addBall(joint) {
+    return this.addMesh(new THREE.SphereBufferGeometry(this.radii[joint], 28, 20), this.jointSkin);
+  }
+
+  // An ellipsoid placed by `place`, which returns {centre, right, up, size} or null.
+  addEllipsoid(material, place) {
+    const mesh = this.addMesh(new THREE.SphereBufferGeometry(1, 40, 28), material);
+    this.ellipsoids = (this.ellipsoids || []).concat({mesh, place});
+  }
+
+  joint(name) {
+    const index = this.motion.find(name);
+    return index < 0 ? null : this.pose[index];
+  }
+
+  has(...names) {
+    return names.every((name) => this.motion.find(name) >= 0);
+  }
+
+  addTrunk() {
+    const middle = (a, b, t = 0.5) => a.clone().lerp(b, t);
+    if (this.has('left_shoulder', 'right_shoulder', 'neck', 'torso')) {
+      this.addEllipsoid(this.skin, () => {
+        const [left, right] = [this.joint('left_shoulder'), this.joint('right_shoulder')];
+        const [neck, torso] = [this.joint('neck'), this.joint('torso')];
+        const height = neck.distanceTo(torso);
+        return {
+          centre: middle(middle(left, right), torso, 0.42),
+          right: right.clone().sub(left),
+          up: neck.clone().sub(torso),
+          size: [left.distanceTo(right) * 0.47, height * 0.66, 0.105],
+        };
+      });
+    }
+    if (this.has('left_hip', 'right_hip', 'torso')) {
+      this.addEllipsoid(this.skin, () => {
+        const [left, right] = [this.joint('left_hip'), this.joint('right_hip')];
+        const torso = this.joint('torso');
+        const hips = middle(left, right);
+        return {
+          centre: middle(hips, torso, 0.16),
+          right: right.clone().sub(left),
+          up: torso.clone().sub(hips),
+          size: [left.distanceTo(right) * 0.5 + 0.062, 0.12, 0.1],
+        };
+      });
+      this.addEllipsoid(this.skin, () => {
+        const [left, right] = [this.joint('left_hip'), this.joint('right_hip')];
+        const torso = this.joint('torso');
+        const hips = middle(left, right);
+        return {
+          centre: middle(hips, torso, 0.62),
+          right: right.clone().sub(left),
+          up: torso.clone().sub(hips),
+          size: [left.distanceTo(right) * 0.34 + 0.05, torso.distanceTo(hips) * 0.75, 0.088],
+        };
+      });
+    }
+  }
+
+  // A skull, and a dark visor where the face is: the direction across the hips or the shoulders.
+  addHead() {
+    if (!this.has('head', 'neck')) return;
+    const sides = [['left_shoulder', 'right_shoulder'], ['left_hip', 'right_hip']]
+                      .find(([left, right]) => this.has(left, right));
+    const frame = () => {
+      const [head, neck] = [this.joint('head'), this.joint('neck')];
+      const right = sides ? this.joint(sides[1]).clone().sub(this.joint(sides[0]))
+                          : new THREE.Vector3(1, 0, 0);
+      return {centre: head.clone(), right, up: head.clone().sub(neck), size: [0.088, 0.118, 0.102]};
+    };
+    this.addEllipsoid(this.skin, frame);
+    if (!sides) return;
+    const visor = new THREE.MeshStandardMaterial({color: linear(0x1b1d22), roughness: 0.25, metalness: 0.1});
+    this.addEllipsoid(visor, () => {
+      const place = frame();
+      const forward = place.up.clone().cross(place.right).normalize();
+      place.centre.addScaledVector(forward, 0.036)
+          .addScaledVector(place.up.clone().normalize(), 0.014);
+      place.size = [0.074, 0.042, 0.074];
+      return place;
+    });
+  }
+
+  // Takes the pose of a fractional frame.
+  update(frame) {
+    this.motion.pose(this.person, frame, this.pose);
+    const up = new THREE.Vector3(0, 1, 0);
+    for (const {parent, child, mesh} of this.bones) {
+      const along = this.pose[child].clone().sub(this.pose[parent]);
+      const length = along.length();
+      mesh.position.copy(this.pose[parent]);
+      mesh.scale.set(1, Math.max(length, 1e-4), 1);
+      if (length > 1e-6) mesh.quaternion.setFromUnitVectors(up, along.divideScalar(length));
+    }
+    this.balls.forEach((ball, joint) => ball.position.copy(this.pose[joint]));
+    for (const {mesh, place} of this.ellipsoids || []) Figure.orient(mesh, place());
+  }
+
+  static orient(mesh, {centre, right, up, size}) {
+    const y = up.clone().normalize();
+    const z = right.clone().cross(up).normalize();
+    const x = y.clone().cross(z);
+    mesh.position.copy(centre);
+    mesh.scale.set(size[0], size[1], size[2]);
+    if (x.lengthSq() > 0.5) {
+      mesh.quaternion.setFromRotationMatrix(new THREE.Matrix4().makeBasis(x, y, z));
+    }
+  }
+}

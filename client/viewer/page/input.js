@@ -1,0 +1,52 @@
+// Mouse, touch and keys of everything but the camera, which orbits by itself.
+function connectInput({player, people, chooseView, touch}) {
+  const element = (id) => document.getElementById(id);
+  const onClick = (target, action) => target.addEventListener('click', (event) => {
+    action();
+    touch();
+    // After a mouse click the space bar means play again, not this button.
+    if (event.detail > 0) target.blur();
+  });
+
+  onClick(element('play'), () => player.toggle());
+  onClick(element('loop'), () => { player.looping = !player.looping; });
+  for (const button of document.querySelectorAll('[data-speed]')) {
+    onClick(button, () => { player.speed = Number(button.dataset.speed); });
+  }
+  for (const button of document.querySelectorAll('[data-view]')) {
+    onClick(button, () => chooseView(button.dataset.view));
+  }
+  for (const button of document.querySelectorAll('[data-person]')) {
+    onClick(button, () => {
+      const {figure, path} = people[button.dataset.person];
+      figure.group.visible = path.visible = !figure.group.visible;
+      button.setAttribute('aria-pressed', figure.group.visible);
+    });
+  }
+  element('scrub').addEventListener('input', () => {
+    player.playing = false;
+    player.seek(Number(element('scrub').value));
+    touch();
+  });
+
+  const keys = {
+    ' ': () => player.toggle(),
+    ArrowLeft: () => player.step(-1),
+    ArrowRight: () => player.step(1),
+    Home: () => { player.step(0); player.seek(0); },
+    End: () => { player.step(0); player.seek(player.last); },
+    l: () => { player.looping = !player.looping; },
+    0: () => chooseView('reset'),
+    1: () => chooseView('front'),
+    2: () => chooseView('side'),
+    3: () => chooseView('top'),
+  };
+  window.addEventListener('keydown', (event) => {
+    const action = keys[event.key];
+    if (!action || event.ctrlKey || event.metaKey || event.altKey) return;
+    if (event.key === ' ' && event.target instanceof HTMLButtonElement) return;
+    event.preventDefault();
+    action();
+    touch();
+  });
+}

@@ -1,0 +1,105 @@
+// The motion of both characters, as the page carries it: positions [frames, joints, 3] in metres,
+// y up, as base64 of little-endian float32.
+class Motion {
+  constructor(data) {
+    this.joints = data.joints;
+    this.bones = data.bones;
+    this.frameRate = data.frameRate;
+    this.frames = data.frames;
+    this.classes = data.classes;
+    this.keyframes = data.keyframes;
+    this.people = {
+      leader: Motion.decode(data.leader),
+      follower: Motion.decode(data.follower),
+    };
+    for (const [name, positions] of Object.entries(this.people)) {
+      if (positions.length !== this.frames * this.joints.length * 3) {
+        throw new Error(`the ${name} has ${positions.length} values, ` +
+                        `wanted ${this.frames} × ${this.joints.length} × 3`);
+      }
+    }
+  }
+
+  static decode(base64) {
+    const bytes = Uint8Array.from(atob(base64), (character) => character.charCodeAt(0));
+    const view = new DataView(bytes.buffer);
+    const values = new Float32Array(bytes.length / 4);
+    for (let i = 0; i < values.length; ++i) values[i] = view.getFloat32(4 * i, true);
+    return values;
+  }
+
+  // Seconds from the first frame to the last.
+  get duration() {
+    return (this.frames - 1) / this.frameRate;
+  }
+
+  // A joint's index by name, or -1.
+  find(joint) {
+    return this.joints.indexOf(joint);
+  }
+
+  // Writes the pose at a fractional frame into `out` [joints] of THREE.Vector3.
+  pose(person, frame, out) {
+    const positions = this.people[person];
+    const stride = this.joints.length * 3;
+    const before = Math.min(Math.floor(frame), this.frames - 1);
+    const after = Math.min(before + 1, this.frames - 1);
+    const t = frame - before;
+    for (let joint = 0; joint < this.joints.length; ++joint) {
+      const a = before * stride + joint * 3;
+      const b = after * stride + joint * 3;
+      out[joint].set(positions[a] + (positions[b] - positions[a]) * t,
+                     positions[a + 1] + (positions[b + 1] - positions[a + 1]) * t,
+                     positions[a + 2] + (positions[b + 2] - positions[a + 2]) * t);
+    }
+  }
+
+  // Class weights at a frame: linear between keyframes, held before the first and after the last.
+  weights(frame) {
+    const keys = this.keyframes;
+    if (keys.length === 0) return [];
+    let next = keys.findIndex((key) => key.frame > frame);
+    if (next === 0) return keys[0].weights;
+    if (next < 0) return keys[keys.length - 1].weights;
+    const [a, b] = [keys[next - 1], keys[next]];
+    const t = (frame - a.frame) / (b.frame - a.frame);
+    return a.weights.map((weight, i) => weight + (b.weights[i] - weight) * t);
+  }
+
+  // The box around both characters over all frames.
+  bounds() {
+    const box = new THREE.Box3();
+    const point = new THREE.Vector3();
+    for (const positions of Object.values(this.people)) {
+      for (let i = 0; i < positions.length; i += 3) {
+        box.expandByPoint(point.fromArray(positions, i));
+      }
+    }
+    return box;
+  }
+
+  // Height of the floor under both characters: the lowest joint of nearly every frame. Captures
+  // jitter, and one bad frame should not leave everybody floating.
+  floor() {
+    const lowest = [];
+    for (const positions of Object.values(this.people)) {
+      const stride = this.joints.length * 3;
+      for (let start = 0; start < positions.length; start += stride) {
+        let low = Infinity;
+        for (let i = start + 1; i < start + stride; i += 3) low = Math.min(low, positions[i]);
+        lowest.push(low);
+      }
+    }
+    lowest.sort((a, b) => a - b);
+    return lowest[Math.floor(lowest.length * 0.02)];
+  }
+
+  // Where a person is, on average, over the clip.
+  centre(person) {
+    const positions = this.people[person];
+    const sum = new THREE.Vector3();
+    const point = new THREE.Vector3();
+    for (let i = 0; i < positions.length; i += 3) sum.add(point.fromArray(positions, i));
+    return sum.multiplyScalar(3 / positions.length);
+  }
+}

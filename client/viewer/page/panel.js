@@ -1,0 +1,70 @@
+// Everything around the stage: what it is, the class weights, the transport.
+class Panel {
+  constructor(data, motion, player) {
+    this.motion = motion;
+    this.player = player;
+    this.element = (id) => document.getElementById(id);
+    this.element('title').textContent = data.title;
+    this.element('subtitle').textContent = data.subtitle;
+    this.element('scrub').max = player.last;
+    this.element('of').textContent = ` / ${player.last}`;
+    this.addWeights();
+    this.addMarks();
+  }
+
+  addWeights() {
+    this.rows = this.motion.classes.map((name) => {
+      const row = document.createElement('div');
+      row.className = 'weight';
+      const [label, bar, value] = ['name', 'bar', 'value'].map((part) => {
+        const element = document.createElement('span');
+        element.className = part;
+        row.append(element);
+        return element;
+      });
+      label.textContent = label.title = name.replace(/_/g, ' ');
+      const fill = document.createElement('i');
+      bar.append(fill);
+      this.element('weights').append(row);
+      return {fill, value};
+    });
+  }
+
+  // A diamond on the scrub bar for every keyframe of the weights.
+  addMarks() {
+    if (this.motion.keyframes.length < 2) return;
+    for (const {frame} of this.motion.keyframes) {
+      if (frame > this.player.last) continue;
+      const mark = document.createElement('i');
+      // The thumb's centre travels 7 px inside both ends.
+      const share = frame / Math.max(1, this.player.last);
+      mark.style.left = `calc(7px + (100% - 14px) * ${share})`;
+      this.element('marks').append(mark);
+    }
+  }
+
+  update() {
+    const {player, motion} = this;
+    const shown = Math.round(player.frame);
+    const scrub = this.element('scrub');
+    scrub.value = shown;
+    scrub.style.setProperty('--done', `${100 * player.frame / Math.max(1, player.last)}%`);
+    this.element('frame').textContent = shown;
+    const seconds = (frames) => (frames / motion.frameRate).toFixed(2);
+    this.element('time').textContent = `${seconds(player.frame)} / ${seconds(player.last)} s`;
+    this.element('play').classList.toggle('playing', player.playing);
+    this.element('loop').setAttribute('aria-pressed', player.looping);
+    for (const button of document.querySelectorAll('[data-speed]')) {
+      button.classList.toggle('chosen', Number(button.dataset.speed) === player.speed);
+    }
+    motion.weights(player.frame).forEach((weight, i) => Panel.show(this.rows[i], weight));
+  }
+
+  static show({fill, value}, weight) {
+    const width = Math.min(Math.abs(weight), 2) * 25;
+    fill.style.left = `${weight < 0 ? 50 - width : 50}%`;
+    fill.style.width = `${width}%`;
+    fill.className = weight < 0 ? 'negative' : '';
+    value.textContent = weight.toFixed(2).replace('-', '−');
+  }
+}

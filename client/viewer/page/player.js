@@ -1,0 +1,42 @@
+// Time: which frame is shown, and whether it runs.
+class Player {
+  constructor(motion) {
+    this.motion = motion;
+    this.frame = 0;  // fractional while playing
+    this.playing = true;
+    this.looping = true;
+    this.speed = 1;
+  }
+
+  get last() {
+    return this.motion.frames - 1;
+  }
+
+  seek(frame) {
+    this.frame = Math.min(Math.max(frame, 0), this.last);
+  }
+
+  // Whole frames, and stops.
+  step(by) {
+    this.playing = false;
+    this.seek(Math.round(this.frame) + by);
+  }
+
+  toggle() {
+    this.playing = !this.playing;
+    if (this.playing && !this.looping && this.frame >= this.last) this.frame = 0;
+  }
+
+  // Moves on by real seconds.
+  advance(seconds) {
+    if (!this.playing) return;
+    this.frame += seconds * this.speed * this.motion.frameRate;
+    if (this.frame < this.last) return;
+    if (this.looping && this.last > 0) {
+      this.frame %= this.last;
+    } else {
+      this.frame = this.last;
+      this.playing = false;
+    }
+  }
+}

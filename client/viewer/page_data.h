@@ -1,0 +1,18 @@
+#ifndef DUET_CLIENT_VIEWER_PAGE_DATA_H_
+#define DUET_CLIENT_VIEWER_PAGE_DATA_H_
+
+#include <string>
+
+#include "client/viewer/page.h"
+
+namespace duet::client {
+
+// The page's data as JSON that is safe inside <script>, whatever the names in it hold:
+//   {title, subtitle, joints [J], bones [[parent, child]], frameRate, frames, classes [C],
+//    keyframes [{frame, weights [C]}], leader, follower}
+// with positions [frames, J, 3] as base64 of little-endian float32.
+std::string PageDataJson(const PageContent& content);
+
+}  // namespace duet::client
+
+#endif  // DUET_CLIENT_VIEWER_PAGE_DATA_H_
