@@ -10,7 +10,8 @@
 
 namespace duet {
 
-// A way to answer a leader: a row of the paper's Table 1. Each sees only what the protocol gives it.
+// A way to answer a leader: a row of the paper's Table 1. Each sees only what the protocol gives
+// it.
 class Method {
  public:
   virtual ~Method() = default;

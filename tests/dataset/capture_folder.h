@@ -1,40 +1,27 @@
 #ifndef DUET_TESTS_DATASET_CAPTURE_FOLDER_H_
 #define DUET_TESTS_DATASET_CAPTURE_FOLDER_H_
 
-#include <gtest/gtest.h>
-
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <vector>
 
 #include "model/motion/vec3.h"
+#include "tests/support/temporary_folder.h"
 
 namespace duet {
 
 // A folder of made-up captures that is gone after the test.
 class CaptureFolder {
  public:
-  CaptureFolder() {
-    const testing::TestInfo* test = testing::UnitTest::GetInstance()->current_test_info();
-    path_ = std::filesystem::temp_directory_path() /
-            (std::string("duet_") + test->test_suite_name() + "_" + test->name());
-    std::filesystem::remove_all(path_);
-    std::filesystem::create_directories(path_);
-  }
-  ~CaptureFolder() { std::filesystem::remove_all(path_); }
-  CaptureFolder(const CaptureFolder&) = delete;
-  CaptureFolder& operator=(const CaptureFolder&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
+  const std::filesystem::path& path() const { return folder_.path(); }
 
   void Write(const std::string& file, const std::string& text) const {
-    std::filesystem::create_directories((path_ / file).parent_path());
-    std::ofstream(path_ / file, std::ios::binary) << text;
+    std::filesystem::create_directories((path() / file).parent_path());
+    WriteTestFile(path() / file, text);
   }
 
  private:
-  std::filesystem::path path_;
+  TemporaryFolder folder_;
 };
 
 // A line of the SBU layout: `left` and `right` hold every joint of a person.

@@ -1,8 +1,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <fstream>
-
 #include "model/dataset/dataset.h"
 #include "tests/dataset/capture_folder.h"
 
