@@ -22,7 +22,8 @@ std::string UntoldViolations(const absl::Status& status) {
         absl::StrContains(status.message(), violation.description)) {
       continue;
     }
-    untold.push_back(absl::StrCat(violation.field, ": ", violation.description));
+    untold.push_back(
+        absl::StrCat(violation.field, violation.field.empty() ? "" : ": ", violation.description));
   }
   return absl::StrJoin(untold, "; ");
 }

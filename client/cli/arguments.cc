@@ -1,0 +1,230 @@
+#include "client/cli/arguments.h"
+
+#include <algorithm>
+#include <functional>
+#include <sstream>
+#include <utility>
+
+#include "CLI/CLI.hpp"
+#include "absl/strings/str_cat.h"
+#include "client/cli/exit_code.h"
+#include "client/cli/output.h"
+#include "client/cli/value_syntax.h"
+
+namespace duet::client {
+namespace {
+
+constexpr char kExitCodes[] = R"(
+Exit codes:
+  0   done
+  1   failed, but the same call may succeed later (server away, busy or draining)
+  2   the command line makes no sense
+  42  failed, and will again: the input, the model or the credentials are refused
+
+Example:
+  duet synthesize --leader kick.bvh --label kick=1 --out pair.html --out pair.bvh
+)";
+
+const std::map<std::string, Side> kSides = {{"left", Side::kLeft}, {"right", Side::kRight}};
+const std::map<std::string, Priority> kPriorities = {{"interactive", Priority::kInteractive},
+                                                     {"bulk", Priority::kBulk}};
+const std::map<std::string, LengthUnit> kUnits = {{"m", LengthUnit::kMetres},
+                                                  {"mm", LengthUnit::kMillimetres},
+                                                  {"sbu", LengthUnit::kSbuNormalised}};
+const std::map<std::string, UpAxis> kUpAxes = {
+    {"y", UpAxis::kYUp}, {"z", UpAxis::kZUp}, {"-y", UpAxis::kYDown}};
+
+// A flag with its own little language. Repeated flags are given one value each, so that a file name
+// after a flag is never taken for another value of it.
+template <typename T>
+CLI::Option* AddParsed(CLI::App* app, const std::string& flag,
+                       absl::StatusOr<T> (*parse)(absl::string_view), std::function<void(T)> sink,
+                       const std::string& help) {
+  const auto read = [flag, parse, sink = std::move(sink)](const std::vector<std::string>& values) {
+    for (const std::string& value : values) {
+      absl::StatusOr<T> parsed = parse(value);
+      if (!parsed.ok()) throw CLI::ValidationError(flag, std::string(parsed.status().message()));
+      sink(*std::move(parsed));
+    }
+  };
+  return app->add_option_function<std::vector<std::string>>(flag, read, help)
+      ->allow_extra_args(false);
+}
+
+// One of a few names. CLI11's own transformer would also take the enum's number.
+template <typename T>
+CLI::Option* AddChoice(CLI::App* app, const std::string& flag,
+                       const std::map<std::string, T>& names, std::function<void(T)> sink,
+                       const std::string& help) {
+  std::vector<std::string> allowed;
+  for (const auto& [name, value] : names) allowed.push_back(name);
+  return app
+      ->add_option_function<std::string>(
+          flag, [&names, sink = std::move(sink)](const std::string& name) { sink(names.at(name)); },
+          help)
+      ->check(CLI::IsMember(allowed));
+}
+
+template <typename T>
+std::function<void(T)> AppendTo(std::vector<T>* values) {
+  return [values](T value) { values->push_back(std::move(value)); };
+}
+
+void AddServerFlags(CLI::App* app, ServerArguments* server) {
+  constexpr char kGroup[] = "Server";
+  app->add_option("--server", server->address, "HOST:PORT, or a gRPC target")
+      ->capture_default_str()
+      ->group(kGroup);
+  app->add_option("--timeout", server->timeout_seconds, "Seconds for the whole call, with retries")
+      ->check(CLI::Range(0.001, 86400.0))
+      ->capture_default_str()
+      ->group(kGroup);
+  app->add_flag("--tls", server->tls, "Encrypt; trust the system's authorities")->group(kGroup);
+  app->add_option("--tls-ca", server->tls_ca_file, "Encrypt; trust the authorities in this file")
+      ->group(kGroup);
+  CLI::Option* certificate =
+      app->add_option("--tls-cert", server->tls_certificate_file, "This client's certificate")
+          ->group(kGroup);
+  CLI::Option* key = app->add_option("--tls-key", server->tls_key_file, "This client's private key")
+                         ->group(kGroup);
+  certificate->needs(key);
+  key->needs(certificate);
+  app->add_option("--tls-server-name", server->tls_server_name,
+                  "Name in the server's certificate, where it is not the address")
+      ->group(kGroup);
+}
+
+void AddInputFlags(CLI::App* app, SynthesizeArguments* arguments) {
+  constexpr char kGroup[] = "Input";
+  app->add_option("--leader", arguments->leader,
+                  "Motion of the leader: .bvh, .csv, .npy, .json or SBU .txt")
+      ->required()
+      ->group(kGroup);
+  AddChoice<Side>(
+      app, "--leader-side", kSides, [arguments](Side side) { arguments->leader_side = side; },
+      "Which person of a file with two leads (default left)")
+      ->group(kGroup);
+  InputArguments* input = &arguments->input;
+  app->add_option("--frame-rate", input->frame_rate_hz, "Hz; replaces what the file says")
+      ->check(CLI::PositiveNumber)
+      ->group(kGroup);
+  AddChoice<LengthUnit>(
+      app, "--unit", kUnits, [input](LengthUnit unit) { input->unit = unit; },
+      "Unit of positions; replaces what the file says")
+      ->group(kGroup);
+  AddChoice<UpAxis>(
+      app, "--up-axis", kUpAxes, [input](UpAxis axis) { input->up_axis = axis; },
+      "Up axis of positions; replaces what the file says")
+      ->group(kGroup);
+  app->add_option("--metres-per-unit", input->metres_per_unit,
+                  "BVH: metres in one unit of the file (0.01 for centimetres)")
+      ->check(CLI::PositiveNumber)
+      ->group(kGroup);
+  AddParsed<std::pair<std::string, std::string>>(
+      app, "--joint-map", ParseJointPair,
+      [input](std::pair<std::string, std::string> joints) { input->joints.insert(joints); },
+      "MODEL_JOINT=FILE_JOINT, where names alone do not tell; repeatable")
+      ->group(kGroup);
+}
+
+void AddReactionFlags(CLI::App* app, SynthesizeArguments* arguments) {
+  constexpr char kGroup[] = "Reaction";
+  CLI::Option* label =
+      AddParsed<ClassWeight>(app, "--label", ParseClassWeight, AppendTo(&arguments->weights),
+                             "CLASS=WEIGHT, such as kick=1 or hug=-0.5; repeatable")
+          ->group(kGroup);
+  AddParsed<WeightKeyframe>(app, "--keyframe", ParseKeyframe, AppendTo(&arguments->keyframes),
+                            "FRAME:CLASS=WEIGHT,... for weights that change; repeatable")
+      ->excludes(label)
+      ->group(kGroup);
+  AddParsed<ModelChoice>(
+      app, "--model", ParseModelChoice,
+      [arguments](ModelChoice choice) { arguments->model = std::move(choice); },
+      "NAME, NAME@VERSION or NAME:LABEL (default: the server's)")
+      ->take_last()
+      ->group(kGroup);
+  app->add_option("--follower-start", arguments->follower_start,
+                  "Where the follower begins: a motion file (its first frame), or X,Y,Z of the "
+                  "root joint in metres, y up")
+      ->group(kGroup);
+  AddChoice<Side>(
+      app, "--follower-start-side", kSides,
+      [arguments](Side side) { arguments->follower_start_side = side; },
+      "Which person of a file with two (default: not the leader where it is the leader's file, "
+      "else left)")
+      ->group(kGroup);
+  AddChoice<Priority>(
+      app, "--priority", kPriorities,
+      [arguments](Priority priority) { arguments->priority = priority; },
+      "bulk yields to interactive calls and waits when the server is full")
+      ->group(kGroup);
+  app->add_option("--chunk-frames", arguments->chunk_frames, "Frames in one chunk of the reply")
+      ->check(CLI::Range(1, 100000))
+      ->group(kGroup);
+  app->add_option("--request-id", arguments->request_id, "Names the call in the server's log")
+      ->group(kGroup);
+}
+
+void AddOutputFlags(CLI::App* app, SynthesizeArguments* arguments) {
+  constexpr char kGroup[] = "Output";
+  app->add_option("--out", arguments->outputs,
+                  "File to write: .html (a page to watch), .bvh (two files), .csv, .npy or .json; "
+                  "repeatable")
+      ->required()
+      ->allow_extra_args(false)
+      ->group(kGroup);
+  app->add_flag("--json", arguments->json, "Print the summary as JSON")->group(kGroup);
+  app->add_flag("--quiet", arguments->quiet, "Print errors alone")->group(kGroup);
+}
+
+// What no single flag can tell.
+void CheckTogether(const SynthesizeArguments& arguments) {
+  if (arguments.weights.empty() && arguments.keyframes.empty()) {
+    throw CLI::RequiredError("--label or --keyframe");
+  }
+  for (const std::filesystem::path& output : arguments.outputs) {
+    const absl::Status status = CheckOutput(output, arguments.leader);
+    if (!status.ok()) throw CLI::ValidationError("--out", std::string(status.message()));
+  }
+}
+
+}  // namespace
+
+ParsedCommandLine ParseCommandLine(const std::vector<std::string>& arguments) {
+  CLI::App app("Asks a Duet server to answer one character's motion with another's.", "duet");
+  app.set_version_flag("--version", "duet " DUET_VERSION);
+  app.require_subcommand(1);
+  app.footer(kExitCodes);
+
+  ModelsArguments models;
+  CLI::App* models_command = app.add_subcommand("models", "List the models being served");
+  AddServerFlags(models_command, &models.server);
+  models_command->add_flag("--json", models.json, "Print JSON");
+
+  SynthesizeArguments synthesize;
+  CLI::App* synthesize_command =
+      app.add_subcommand("synthesize", "Synthesise the follower of a leader");
+  AddInputFlags(synthesize_command, &synthesize);
+  AddReactionFlags(synthesize_command, &synthesize);
+  AddOutputFlags(synthesize_command, &synthesize);
+  AddServerFlags(synthesize_command, &synthesize.server);
+  synthesize_command->footer(kExitCodes);
+  synthesize_command->callback([&synthesize] { CheckTogether(synthesize); });
+
+  ParsedCommandLine parsed;
+  try {
+    // CLI11 takes the arguments in reverse.
+    app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+  } catch (const CLI::ParseError& error) {
+    std::ostringstream out;
+    const int code = app.exit(error, out, out);
+    parsed.text = out.str();
+    parsed.exit_code = code == 0 ? kExitDone : kExitUsage;
+    return parsed;
+  }
+  if (models_command->parsed()) parsed.models = std::move(models);
+  if (synthesize_command->parsed()) parsed.synthesize = std::move(synthesize);
+  return parsed;
+}
+
+}  // namespace duet::client

@@ -1,0 +1,74 @@
+#ifndef DUET_CLIENT_CLI_ARGUMENTS_H_
+#define DUET_CLIENT_CLI_ARGUMENTS_H_
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "client/request.h"
+#include "model/formats/motion_file.h"
+
+namespace duet::client {
+
+// Where the server is and how to speak to it.
+struct ServerArguments {
+  std::string address = "localhost:50051";
+  double timeout_seconds = 120;
+  bool tls = false;  // implied by any of the files
+  std::string tls_ca_file;
+  std::string tls_certificate_file;
+  std::string tls_key_file;
+  std::string tls_server_name;
+};
+
+// How a motion file is to be read where the file itself does not say.
+struct InputArguments {
+  std::optional<double> frame_rate_hz;
+  std::optional<LengthUnit> unit;
+  std::optional<UpAxis> up_axis;
+  std::optional<double> metres_per_unit;
+  JointOverrides joints;
+};
+
+// duet models
+struct ModelsArguments {
+  ServerArguments server;
+  bool json = false;
+};
+
+// duet synthesize
+struct SynthesizeArguments {
+  ServerArguments server;
+  std::filesystem::path leader;
+  Side leader_side = Side::kLeft;
+  InputArguments input;
+  ModelChoice model;
+  std::vector<ClassWeight> weights;
+  std::vector<WeightKeyframe> keyframes;
+  std::string follower_start;  // empty, "X,Y,Z" or a motion file
+  std::optional<Side> follower_start_side;
+  Priority priority = Priority::kInteractive;
+  std::optional<int> chunk_frames;
+  std::string request_id;
+  std::vector<std::filesystem::path> outputs;
+  bool json = false;
+  bool quiet = false;
+};
+
+// What the command line asks for: one of the commands, or to print `text` and exit with `exit_code`
+// (help, version, a usage error).
+struct ParsedCommandLine {
+  std::optional<ModelsArguments> models;
+  std::optional<SynthesizeArguments> synthesize;
+  std::string text;
+  int exit_code = 0;
+};
+
+// `arguments` without the program's name. Never touches the network; looks at output folders only.
+ParsedCommandLine ParseCommandLine(const std::vector<std::string>& arguments);
+
+}  // namespace duet::client
+
+#endif  // DUET_CLIENT_CLI_ARGUMENTS_H_

@@ -1,0 +1,10 @@
+// duet: the command-line client of a Duet server.
+#include <iostream>
+
+#include "client/cli/program.h"
+
+int main(int argc, char** argv) {
+  const std::vector<std::string> arguments(argv + 1, argv + argc);
+  return duet::client::RunProgram(arguments,
+                                  {duet::client::Client::Create, &std::cout, &std::cerr});
+}

@@ -1,0 +1,66 @@
+#include "client/cli/output.h"
+
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "client/viewer/page.h"
+#include "model/formats/motion_file.h"
+#include "model/formats/text.h"
+
+namespace duet::client {
+namespace {
+
+bool IsPage(const std::filesystem::path& path) {
+  const std::string extension = absl::AsciiStrToLower(path.extension().string());
+  return extension == ".html" || extension == ".htm";
+}
+
+absl::StatusOr<std::string> RenderSynthesis(const Synthesis& synthesis) {
+  const SynthesisResult& result = synthesis.result;
+  PageContent content;
+  content.pair = result.pair;
+  content.bones = synthesis.skeleton.bones;
+  content.title = synthesis.leader_file.stem().string();
+  content.subtitle =
+      absl::StrFormat("%s@%d · %d frames at %g Hz", result.model_name, result.model_version,
+                      result.pair.leader.frame_count(), result.pair.leader.frame_rate_hz);
+  content.weights = synthesis.request.keyframes;
+  if (content.weights.empty()) content.weights = {{0, synthesis.request.weights}};
+  return RenderPage(content);
+}
+
+}  // namespace
+
+absl::Status CheckOutput(const std::filesystem::path& output, const std::filesystem::path& leader) {
+  if (!IsPage(output)) {
+    const absl::Status status = CheckWritable(output);
+    if (!status.ok()) return absl::InvalidArgumentError(absl::StrCat(status.message(), ", .html"));
+  }
+  std::error_code error;
+  const std::filesystem::path folder = output.has_parent_path() ? output.parent_path() : ".";
+  if (!std::filesystem::is_directory(folder, error)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(output.string(), ": there is no folder ", folder.string()));
+  }
+  if (std::filesystem::equivalent(output, leader, error)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(output.string(), ": would replace the leader's own file"));
+  }
+  return absl::OkStatus();
+}
+
+absl::StatusOr<std::vector<std::filesystem::path>> WriteOutput(const std::filesystem::path& output,
+                                                               const Synthesis& synthesis) {
+  if (!IsPage(output)) return WritePair(output, synthesis.result.pair, synthesis.skeleton);
+  const absl::StatusOr<std::string> page = RenderSynthesis(synthesis);
+  if (!page.ok()) return page.status();
+  const absl::Status status = WriteFile(output, *page);
+  if (!status.ok()) return status;
+  return std::vector<std::filesystem::path>{output};
+}
+
+}  // namespace duet::client

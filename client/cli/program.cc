@@ -1,0 +1,28 @@
+#include "client/cli/program.h"
+
+#include <ostream>
+
+#include "client/cli/arguments.h"
+#include "client/cli/exit_code.h"
+#include "client/cli/models_command.h"
+#include "client/cli/report.h"
+#include "client/cli/synthesize_command.h"
+
+namespace duet::client {
+
+int RunProgram(const std::vector<std::string>& arguments, const ProgramEnvironment& environment) {
+  const ParsedCommandLine parsed = ParseCommandLine(arguments);
+  absl::Status status;
+  if (parsed.models.has_value()) {
+    status = RunModels(*parsed.models, environment);
+  } else if (parsed.synthesize.has_value()) {
+    status = RunSynthesize(*parsed.synthesize, environment);
+  } else {
+    (parsed.exit_code == kExitDone ? *environment.out : *environment.err) << parsed.text;
+    return parsed.exit_code;
+  }
+  if (!status.ok()) *environment.err << DescribeFailure(status);
+  return ExitCodeFor(status);
+}
+
+}  // namespace duet::client

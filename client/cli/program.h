@@ -1,0 +1,27 @@
+#ifndef DUET_CLIENT_CLI_PROGRAM_H_
+#define DUET_CLIENT_CLI_PROGRAM_H_
+
+#include <functional>
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "client/client.h"
+
+namespace duet::client {
+
+// What the program does its work with; replaced in tests.
+struct ProgramEnvironment {
+  std::function<absl::StatusOr<Client>(const ClientOptions&)> connect;
+  std::ostream* out;
+  std::ostream* err;
+};
+
+// The whole `duet` program: parses, calls, writes, prints. Returns its exit code
+// (client/cli/exit_code.h). `arguments` come without the program's name.
+int RunProgram(const std::vector<std::string>& arguments, const ProgramEnvironment& environment);
+
+}  // namespace duet::client
+
+#endif  // DUET_CLIENT_CLI_PROGRAM_H_

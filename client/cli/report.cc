@@ -1,0 +1,163 @@
+#include "client/cli/report.h"
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
+#include "client/cli/exit_code.h"
+#include "client/error_details.h"
+#include "nlohmann/json.hpp"
+
+namespace duet::client {
+namespace {
+
+using nlohmann::json;
+
+std::string Print(const json& value) {
+  return value.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+}
+
+std::string Milliseconds(absl::Duration duration) {
+  return absl::StrFormat("%.0f ms", absl::ToDoubleMilliseconds(duration));
+}
+
+std::string Plural(int count, const std::string& noun) {
+  return absl::StrCat(count, " ", noun, count == 1 ? "" : "s");
+}
+
+std::string Join(const std::vector<ClassWeight>& weights) {
+  return absl::StrJoin(weights, ", ", [](std::string* out, const ClassWeight& weight) {
+    absl::StrAppend(out, weight.interaction_class, " ", weight.weight);
+  });
+}
+
+std::string DescribeWeights(const SynthesisRequest& request) {
+  if (request.keyframes.empty()) return Join(request.weights);
+  return absl::StrJoin(request.keyframes, "; ", [](std::string* out, const WeightKeyframe& key) {
+    absl::StrAppend(out, "at frame ", key.frame, " ", Join(key.weights));
+  });
+}
+
+json WeightsJson(const std::vector<ClassWeight>& weights) {
+  json object = json::object();
+  for (const ClassWeight& weight : weights) object[weight.interaction_class] = weight.weight;
+  return object;
+}
+
+std::string DescribeModel(const ModelInfo& model) {
+  std::string text = absl::StrCat(model.name, "@", model.version);
+  if (!model.version_labels.empty()) {
+    absl::StrAppend(&text, " (", absl::StrJoin(model.version_labels, ", "), ")");
+  }
+  if (model.is_default) absl::StrAppend(&text, ", default");
+  absl::StrAppend(&text, "\n  classes   ", absl::StrJoin(model.interaction_classes, ", "));
+  absl::StrAppend(&text, "\n  joints    ", model.joint_names.size(), ", root ", model.root_joint);
+  absl::StrAppendFormat(&text, "\n  works at  %g Hz in windows of %d frames", model.frame_rate_hz,
+                        model.window_frames);
+  absl::StrAppend(&text, "\n  follower  ",
+                  model.accepts_follower_start ? "may be given a start" : "chooses its own start");
+  if (!model.description.empty()) absl::StrAppend(&text, "\n  about     ", model.description);
+  return text + "\n";
+}
+
+json ModelJson(const ModelInfo& model) {
+  json bones = json::array();
+  for (const Bone& bone : model.bones) bones.push_back({bone.parent, bone.child});
+  return {{"name", model.name},
+          {"version", model.version},
+          {"version_labels", model.version_labels},
+          {"is_default", model.is_default},
+          {"interaction_classes", model.interaction_classes},
+          {"joint_names", model.joint_names},
+          {"bones", bones},
+          {"root_joint", model.root_joint},
+          {"frame_rate_hz", model.frame_rate_hz},
+          {"window_frames", model.window_frames},
+          {"accepts_follower_start", model.accepts_follower_start},
+          {"description", model.description}};
+}
+
+}  // namespace
+
+std::string DescribeModels(const std::vector<ModelInfo>& models) {
+  if (models.empty()) return "The server serves no model.\n";
+  return absl::StrJoin(models, "", [](std::string* out, const ModelInfo& model) {
+    out->append(DescribeModel(model));
+  });
+}
+
+std::string ModelsJson(const std::vector<ModelInfo>& models) {
+  json list = json::array();
+  for (const ModelInfo& model : models) list.push_back(ModelJson(model));
+  return Print({{"models", list}});
+}
+
+std::string DescribeSynthesis(const Synthesis& synthesis,
+                              const std::vector<std::filesystem::path>& written,
+                              const std::vector<std::string>& notes) {
+  const SynthesisResult& result = synthesis.result;
+  const Clip& leader = result.pair.leader;
+  std::string text;
+  absl::StrAppendFormat(&text, "leader    %s: %s, %.2f s at %g Hz\n",
+                        synthesis.leader_file.string(), Plural(leader.frame_count(), "frame"),
+                        leader.frame_count() / leader.frame_rate_hz, leader.frame_rate_hz);
+  for (const std::string& note : notes) absl::StrAppend(&text, "          ", note, "\n");
+  absl::StrAppend(&text, "reaction  ", DescribeWeights(synthesis.request), "\n");
+  absl::StrAppendFormat(&text, "follower  from %s@%d in %s, first frames after %s (%s, %s)\n",
+                        result.model_name, result.model_version, Milliseconds(result.timings.total),
+                        Milliseconds(result.timings.first_chunk),
+                        Plural(result.window_count, "window"),
+                        absl::StrCat(Milliseconds(result.timings.compute), " in the network"));
+  if (result.attempt_count > 1) {
+    absl::StrAppend(&text, "          ", Plural(result.attempt_count, "attempt"), "\n");
+  }
+  for (size_t i = 0; i < written.size(); ++i) {
+    absl::StrAppend(&text, i == 0 ? "wrote     " : "          ", written[i].string(), "\n");
+  }
+  return text;
+}
+
+std::string SynthesisJson(const Synthesis& synthesis,
+                          const std::vector<std::filesystem::path>& written,
+                          const std::vector<std::string>& notes) {
+  const SynthesisResult& result = synthesis.result;
+  const Clip& leader = result.pair.leader;
+  json keyframes = json::array();
+  for (const WeightKeyframe& keyframe : synthesis.request.keyframes) {
+    keyframes.push_back({{"frame", keyframe.frame}, {"weights", WeightsJson(keyframe.weights)}});
+  }
+  json files = json::array();
+  for (const std::filesystem::path& file : written) files.push_back(file.string());
+  return Print({{"model", {{"name", result.model_name}, {"version", result.model_version}}},
+                {"leader", synthesis.leader_file.string()},
+                {"frames", leader.frame_count()},
+                {"frame_rate_hz", leader.frame_rate_hz},
+                {"weights", WeightsJson(synthesis.request.weights)},
+                {"keyframes", keyframes},
+                {"windows", result.window_count},
+                {"attempts", result.attempt_count},
+                {"request_id", result.request_id},
+                {"seconds",
+                 {{"first_chunk", absl::ToDoubleSeconds(result.timings.first_chunk)},
+                  {"total", absl::ToDoubleSeconds(result.timings.total)},
+                  {"queue", absl::ToDoubleSeconds(result.timings.queue)},
+                  {"compute", absl::ToDoubleSeconds(result.timings.compute)}}},
+                {"notes", notes},
+                {"files", files}});
+}
+
+std::string DescribeFailure(const absl::Status& status) {
+  const std::string code = absl::StatusCodeToString(status.code());
+  const bool may_succeed_later = ExitCodeFor(status) == kExitRetry;
+  const std::string advice = may_succeed_later ? "Trying again later may help.\n" : "";
+  const std::vector<FieldViolation> violations = FieldViolations(status);
+  if (violations.empty())
+    return absl::StrCat("duet: ", status.message(), " (", code, ")\n", advice);
+  std::string text = absl::StrCat("duet: the server refuses the request (", code, ")\n");
+  for (const FieldViolation& violation : violations) {
+    absl::StrAppend(&text, "  ", violation.field, violation.field.empty() ? "" : ": ",
+                    violation.description, "\n");
+  }
+  return text + advice;
+}
+
+}  // namespace duet::client

@@ -1,0 +1,101 @@
+#include "client/cli/request_building.h"
+
+#include <algorithm>
+#include <numeric>
+#include <system_error>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "client/cli/value_syntax.h"
+#include "model/formats/motion_file.h"
+
+namespace duet::client {
+namespace {
+
+// The joint's index; the root's where the model has no such joint.
+int FindOrRoot(const Skeleton& skeleton, const std::string& name) {
+  const int found = skeleton.Find(name);
+  return found < 0 ? skeleton.root : found;
+}
+
+ReadOptions ToReadOptions(const InputArguments& input, const Skeleton& skeleton) {
+  ReadOptions options;
+  options.skeleton = skeleton;
+  options.frame_rate_hz = input.frame_rate_hz;
+  options.metres_per_unit = input.metres_per_unit;
+  options.joint_overrides = input.joints;
+  if (input.unit.has_value() || input.up_axis.has_value()) {
+    CoordinateFrame frame;
+    frame.unit = input.unit.value_or(LengthUnit::kMetres);
+    frame.up_axis = input.up_axis.value_or(frame.unit == LengthUnit::kSbuNormalised ? UpAxis::kYDown
+                                                                                    : UpAxis::kYUp);
+    options.coordinates = frame;
+  }
+  return options;
+}
+
+// Of the leader's own file, the follower is the other person.
+Side FollowerStartSide(const SynthesizeArguments& arguments) {
+  if (arguments.follower_start_side.has_value()) return *arguments.follower_start_side;
+  std::error_code error;
+  if (!std::filesystem::equivalent(arguments.follower_start, arguments.leader, error)) {
+    return Side::kLeft;
+  }
+  return arguments.leader_side == Side::kLeft ? Side::kRight : Side::kLeft;
+}
+
+absl::StatusOr<FollowerStart> ReadStart(const SynthesizeArguments& arguments, ReadOptions options) {
+  if (const std::optional<Vec3> root = ParsePoint(arguments.follower_start); root.has_value()) {
+    return FollowerStart(*root);
+  }
+  options.side = FollowerStartSide(arguments);
+  absl::StatusOr<std::vector<Vec3>> pose = ReadFollowerStart(arguments.follower_start, options);
+  if (!pose.ok()) return pose.status();
+  return FollowerStart(*std::move(pose));
+}
+
+}  // namespace
+
+absl::StatusOr<Skeleton> ToSkeleton(const ModelInfo& model) {
+  Skeleton skeleton;
+  skeleton.joint_names = model.joint_names;
+  skeleton.bones = model.bones;
+  skeleton.root = skeleton.Find(model.root_joint);
+  skeleton.left_hip = FindOrRoot(skeleton, "left_hip");
+  skeleton.right_hip = FindOrRoot(skeleton, "right_hip");
+  skeleton.left_foot = FindOrRoot(skeleton, "left_foot");
+  skeleton.right_foot = FindOrRoot(skeleton, "right_foot");
+  // Body parts matter to the network alone.
+  skeleton.parts = {{"whole_body", std::vector<int>(skeleton.joint_names.size())}};
+  std::iota(skeleton.parts[0].joints.begin(), skeleton.parts[0].joints.end(), 0);
+  const absl::Status status = Validate(skeleton);
+  if (status.ok()) return skeleton;
+  return absl::InternalError(absl::StrCat("the server's model ", model.name, "@", model.version,
+                                          " has no usable skeleton: ", status.message()));
+}
+
+absl::StatusOr<SynthesisRequest> BuildRequest(const SynthesizeArguments& arguments,
+                                              const Skeleton& skeleton,
+                                              std::vector<std::string>* notes) {
+  ReadOptions options = ToReadOptions(arguments.input, skeleton);
+  SynthesisRequest request;
+  if (!arguments.follower_start.empty()) {
+    absl::StatusOr<FollowerStart> start = ReadStart(arguments, options);
+    if (!start.ok()) return start.status();
+    request.follower_start = *std::move(start);
+  }
+  options.side = arguments.leader_side;
+  options.notes = notes;
+  absl::StatusOr<Clip> leader = ReadLeader(arguments.leader, options);
+  if (!leader.ok()) return leader.status();
+  request.leader = *std::move(leader);
+  request.model = arguments.model;
+  request.weights = arguments.weights;
+  request.keyframes = arguments.keyframes;
+  request.priority = arguments.priority;
+  request.chunk_frames = arguments.chunk_frames;
+  request.request_id = arguments.request_id;
+  return request;
+}
+
+}  // namespace duet::client

@@ -1,0 +1,27 @@
+#ifndef DUET_CLIENT_CLI_REQUEST_BUILDING_H_
+#define DUET_CLIENT_CLI_REQUEST_BUILDING_H_
+
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "client/cli/arguments.h"
+#include "client/request.h"
+#include "client/result.h"
+#include "model/motion/skeleton.h"
+
+namespace duet::client {
+
+// A served model's joints as a skeleton, for reading and writing files. INTERNAL when they are no
+// tree.
+absl::StatusOr<Skeleton> ToSkeleton(const ModelInfo& model);
+
+// Reads the files that the flags name, in the skeleton's joints. `notes` receives what was decided
+// where the leader's file leaves a choice.
+absl::StatusOr<SynthesisRequest> BuildRequest(const SynthesizeArguments& arguments,
+                                              const Skeleton& skeleton,
+                                              std::vector<std::string>* notes);
+
+}  // namespace duet::client
+
+#endif  // DUET_CLIENT_CLI_REQUEST_BUILDING_H_

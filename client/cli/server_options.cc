@@ -1,0 +1,42 @@
+#include "client/cli/server_options.h"
+
+#include <string>
+#include <utility>
+
+#include "model/formats/text.h"
+
+namespace duet::client {
+namespace {
+
+constexpr std::size_t kMaxPemBytes = std::size_t{1} << 20;
+
+// Nothing for a file that was not named.
+absl::Status ReadPem(const std::string& path, std::string* pem) {
+  if (path.empty()) return absl::OkStatus();
+  absl::StatusOr<std::string> content = ReadFile(path, kMaxPemBytes);
+  if (!content.ok()) return content.status();
+  *pem = *std::move(content);
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+absl::StatusOr<ClientOptions> ToClientOptions(const ServerArguments& arguments) {
+  ClientOptions options;
+  options.server_address = arguments.address;
+  options.deadline = absl::Seconds(arguments.timeout_seconds);
+  const bool encrypted = arguments.tls || !arguments.tls_ca_file.empty() ||
+                         !arguments.tls_certificate_file.empty() ||
+                         !arguments.tls_server_name.empty();
+  if (!encrypted) return options;
+  TlsOptions tls;
+  tls.server_name = arguments.tls_server_name;
+  absl::Status status = ReadPem(arguments.tls_ca_file, &tls.root_certificates);
+  status.Update(ReadPem(arguments.tls_certificate_file, &tls.certificate_chain));
+  status.Update(ReadPem(arguments.tls_key_file, &tls.private_key));
+  if (!status.ok()) return status;
+  options.tls = std::move(tls);
+  return options;
+}
+
+}  // namespace duet::client

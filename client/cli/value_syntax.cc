@@ -1,0 +1,80 @@
+#include "client/cli/value_syntax.h"
+
+#include <vector>
+
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
+
+namespace duet::client {
+namespace {
+
+absl::Status Wanted(absl::string_view text, absl::string_view wanted) {
+  return absl::InvalidArgumentError(absl::StrCat("\"", text, "\", wanted ", wanted));
+}
+
+}  // namespace
+
+absl::StatusOr<ClassWeight> ParseClassWeight(absl::string_view text) {
+  const std::pair<std::string, std::string> parts = absl::StrSplit(text, absl::MaxSplits('=', 1));
+  ClassWeight weight{parts.first, 0};
+  if (weight.interaction_class.empty() || !absl::SimpleAtof(parts.second, &weight.weight)) {
+    return Wanted(text, "CLASS=WEIGHT such as kick=1");
+  }
+  return weight;
+}
+
+absl::StatusOr<WeightKeyframe> ParseKeyframe(absl::string_view text) {
+  constexpr char kForm[] = "FRAME:CLASS=WEIGHT,... such as 30:kick=1,hug=0";
+  const std::pair<std::string, std::string> parts = absl::StrSplit(text, absl::MaxSplits(':', 1));
+  WeightKeyframe keyframe;
+  if (!absl::SimpleAtoi(parts.first, &keyframe.frame) || keyframe.frame < 0) {
+    return Wanted(text, kForm);
+  }
+  for (absl::string_view item : absl::StrSplit(parts.second, ',')) {
+    absl::StatusOr<ClassWeight> weight = ParseClassWeight(item);
+    if (!weight.ok()) return Wanted(text, kForm);
+    keyframe.weights.push_back(*std::move(weight));
+  }
+  return keyframe;
+}
+
+absl::StatusOr<ModelChoice> ParseModelChoice(absl::string_view text) {
+  constexpr char kForm[] = "NAME, NAME@VERSION or NAME:LABEL";
+  ModelChoice choice;
+  const size_t mark = text.find_first_of("@:");
+  choice.name = std::string(text.substr(0, mark));
+  if (choice.name.empty()) return Wanted(text, kForm);
+  if (mark == absl::string_view::npos) return choice;
+  const absl::string_view rest = text.substr(mark + 1);
+  if (text[mark] == ':') {
+    choice.version_label = std::string(rest);
+    return rest.empty() ? absl::StatusOr<ModelChoice>(Wanted(text, kForm)) : choice;
+  }
+  int version = 0;
+  if (!absl::SimpleAtoi(rest, &version) || version < 1) {
+    return Wanted(text, absl::StrCat(kForm, ", a version being a number from 1"));
+  }
+  choice.version = version;
+  return choice;
+}
+
+absl::StatusOr<std::pair<std::string, std::string>> ParseJointPair(absl::string_view text) {
+  std::pair<std::string, std::string> joints = absl::StrSplit(text, absl::MaxSplits('=', 1));
+  if (joints.first.empty() || joints.second.empty()) {
+    return Wanted(text, "MODEL_JOINT=FILE_JOINT such as left_hand=LeftWrist");
+  }
+  return joints;
+}
+
+std::optional<Vec3> ParsePoint(absl::string_view text) {
+  const std::vector<absl::string_view> parts = absl::StrSplit(text, ',');
+  Vec3 point;
+  if (parts.size() != 3 || !absl::SimpleAtof(parts[0], &point.x) ||
+      !absl::SimpleAtof(parts[1], &point.y) || !absl::SimpleAtof(parts[2], &point.z)) {
+    return std::nullopt;
+  }
+  return point;
+}
+
+}  // namespace duet::client

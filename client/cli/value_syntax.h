@@ -1,0 +1,35 @@
+#ifndef DUET_CLIENT_CLI_VALUE_SYNTAX_H_
+#define DUET_CLIENT_CLI_VALUE_SYNTAX_H_
+
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+#include "client/request.h"
+#include "model/motion/vec3.h"
+
+namespace duet::client {
+
+// The small languages of the program's flags. Errors: INVALID_ARGUMENT with what came and what was
+// wanted. Whether a class exists or a weight is in range is the server's to say.
+
+// "kick=1"
+absl::StatusOr<ClassWeight> ParseClassWeight(absl::string_view text);
+
+// "30:kick=1,hug=0": weights at a frame
+absl::StatusOr<WeightKeyframe> ParseKeyframe(absl::string_view text);
+
+// "NAME", "NAME@VERSION" or "NAME:LABEL"
+absl::StatusOr<ModelChoice> ParseModelChoice(absl::string_view text);
+
+// "left_hand=LeftWrist": a joint of the model, and the file's joint that it is read from
+absl::StatusOr<std::pair<std::string, std::string>> ParseJointPair(absl::string_view text);
+
+// "0.5,1.1,-2" in metres; nothing when the text is no list of three numbers (but, say, a file).
+std::optional<Vec3> ParsePoint(absl::string_view text);
+
+}  // namespace duet::client
+
+#endif  // DUET_CLIENT_CLI_VALUE_SYNTAX_H_
