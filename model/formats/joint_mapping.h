@@ -7,8 +7,8 @@
 
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
-#include "model/motion/clip.h"
 #include "model/motion/skeleton.h"
+#include "model/motion/vec3.h"
 
 namespace duet {
 
@@ -28,7 +28,7 @@ struct JointSource {
 struct JointMap {
   std::vector<JointSource> sources;  // [skeleton joints]
   // What was decided where the names leave a choice, for people to read:
-  // "torso: mixamorig:Spine1 (nearest to half way between hips and neck)".
+  // "torso: mixamorig:Spine1 (the spine joint nearest to half way from hips to neck)".
   std::vector<std::string> notes;
 };
 
@@ -45,8 +45,8 @@ absl::StatusOr<JointMap> MapJoints(absl::string_view source, const std::vector<s
                                    const std::vector<Vec3>& first_pose, const Skeleton& skeleton,
                                    const JointOverrides& overrides = {});
 
-// A clip with the file's joints as a clip with the skeleton's.
-Clip ApplyJointMap(const JointMap& map, const Skeleton& skeleton, const Clip& clip);
+// A frame of the file's joints as one of the skeleton's. [names] -> [skeleton joints]
+std::vector<Vec3> ApplyJointMap(const JointMap& map, const Vec3* pose);
 
 }  // namespace duet
 

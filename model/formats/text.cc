@@ -46,6 +46,13 @@ bool ParseWhole(absl::string_view text, Number* value) {
   return error == std::errc() && stop == end && !text.empty();
 }
 
+template <typename Number>
+void AppendShortest(std::string* out, Number value) {
+  char buffer[32];
+  const auto result = std::to_chars(buffer, buffer + sizeof(buffer), value);
+  out->append(buffer, result.ptr);
+}
+
 }  // namespace
 
 absl::StatusOr<std::string> ReadFile(const fs::path& path, std::size_t max_bytes) {
@@ -106,11 +113,8 @@ bool ParseInteger(absl::string_view text, int* value) {
   return ParseWhole(text, value) && std::abs(static_cast<double>(*value)) <= kMaxInteger;
 }
 
-void AppendNumber(std::string* out, float value) {
-  char buffer[32];
-  const auto result = std::to_chars(buffer, buffer + sizeof(buffer), value);
-  out->append(buffer, result.ptr);
-}
+void AppendNumber(std::string* out, float value) { AppendShortest(out, value); }
+void AppendNumber(std::string* out, double value) { AppendShortest(out, value); }
 
 void AppendFixed(std::string* out, double value, int decimals) {
   char buffer[512];  // the largest double has 309 digits before the point

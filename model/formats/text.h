@@ -39,6 +39,7 @@ bool ParseInteger(absl::string_view text, int* value);
 
 // The shortest text that reads back as the same number.
 void AppendNumber(std::string* out, float value);
+void AppendNumber(std::string* out, double value);
 // Fixed notation; never "-0.000".
 void AppendFixed(std::string* out, double value, int decimals);
 

@@ -1,0 +1,181 @@
+#include "model/formats/motion_file.h"
+
+#include <functional>
+#include <utility>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/str_cat.h"
+#include "model/formats/bvh_document.h"
+#include "model/formats/bvh_export.h"
+#include "model/formats/bvh_import.h"
+#include "model/formats/csv.h"
+#include "model/formats/json_motion.h"
+#include "model/formats/npy.h"
+#include "model/formats/recorded_motion.h"
+#include "model/formats/sbu_text.h"
+#include "model/formats/text.h"
+
+namespace duet {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kSbuFrameRateHz = 15;
+
+enum class Format { kSbuText, kBvh, kCsv, kNpy, kJson, kUnknown };
+
+Format FormatOf(const fs::path& path) {
+  const std::string extension = absl::AsciiStrToLower(path.extension().string());
+  if (extension == ".txt") return Format::kSbuText;
+  if (extension == ".bvh") return Format::kBvh;
+  if (extension == ".csv") return Format::kCsv;
+  if (extension == ".npy") return Format::kNpy;
+  if (extension == ".json") return Format::kJson;
+  return Format::kUnknown;
+}
+
+absl::Status UnknownExtension(const fs::path& path, absl::string_view known) {
+  return absl::InvalidArgumentError(absl::StrCat(
+      path.string(), ": extension: came ", Quoted(path.extension().string()), ", wanted ", known));
+}
+
+// The joints of a file with positions as the skeleton's, in metres, y up.
+absl::StatusOr<Clip> ToSkeleton(const RecordedMotion& motion, const std::string& source,
+                                const ReadOptions& options) {
+  const bool second = options.side == Side::kRight && motion.people.size() > 1;
+  const Clip& person = motion.people[second ? 1 : 0];
+  absl::StatusOr<JointMap> map =
+      MapJoints(source, person.joint_names,
+                std::vector<Vec3>(person.frame(0), person.frame(0) + person.joint_count()),
+                options.skeleton, options.joint_overrides);
+  if (!map.ok()) return map.status();
+  if (options.notes != nullptr) {
+    options.notes->insert(options.notes->end(), map->notes.begin(), map->notes.end());
+  }
+  const CoordinateFrame coordinates = options.coordinates.value_or(motion.coordinates);
+  Clip clip;
+  clip.joint_names = options.skeleton.joint_names;
+  clip.frame_rate_hz = person.frame_rate_hz;
+  for (int frame = 0; frame < person.frame_count(); ++frame) {
+    for (Vec3 position : ApplyJointMap(*map, person.frame(frame))) {
+      clip.positions.push_back(ToWorld(coordinates, position));
+    }
+  }
+  return clip;
+}
+
+absl::StatusOr<Clip> ReadSbuPerson(const std::string& text, const std::string& source,
+                                   const ReadOptions& options) {
+  SbuOptions sbu;
+  sbu.joint_names = options.skeleton.joint_names;
+  sbu.frame_rate_hz = options.frame_rate_hz.value_or(kSbuFrameRateHz);
+  sbu.coordinates = options.coordinates.value_or(sbu.coordinates);
+  absl::StatusOr<SbuRecording> recording = ParseSbu(text, source, sbu);
+  if (!recording.ok()) return recording.status();
+  return options.side == Side::kLeft ? std::move(recording->left) : std::move(recording->right);
+}
+
+absl::StatusOr<Clip> ReadBvhPerson(const std::string& text, const std::string& source,
+                                   const ReadOptions& options) {
+  absl::StatusOr<BvhDocument> document = ParseBvh(text, source);
+  if (!document.ok()) return document.status();
+  BvhImportOptions bvh;
+  bvh.skeleton = options.skeleton;
+  bvh.joint_overrides = options.joint_overrides;
+  bvh.metres_per_unit = options.metres_per_unit;
+  if (options.coordinates.has_value()) bvh.up_axis = options.coordinates->up_axis;
+  bvh.person = options.side == Side::kLeft ? 0 : 1;
+  bvh.notes = options.notes;
+  return FromBvh(*document, source, bvh);
+}
+
+absl::StatusOr<Clip> ReadPerson(Format format, const std::string& content,
+                                const std::string& source, const ReadOptions& options) {
+  if (format == Format::kSbuText) return ReadSbuPerson(content, source, options);
+  if (format == Format::kBvh) return ReadBvhPerson(content, source, options);
+  absl::StatusOr<RecordedMotion> motion =
+      format == Format::kCsv   ? ParseCsv(content, source)
+      : format == Format::kNpy ? ParseNpy(content, source, options.skeleton.joint_names)
+                               : ParseJsonMotion(content, source);
+  if (!motion.ok()) return motion.status();
+  return ToSkeleton(*motion, source, options);
+}
+
+absl::Status WriteBvh(const fs::path& path, const Clip& clip, const Skeleton& skeleton) {
+  absl::StatusOr<BvhDocument> document = ToBvh(clip, skeleton);
+  if (!document.ok()) return document.status();
+  return WriteFile(path, FormatBvh(*document));
+}
+
+absl::StatusOr<std::vector<fs::path>> WriteBvhPair(const fs::path& path, const ClipPair& pair,
+                                                   const Skeleton& skeleton) {
+  fs::path leader = path, follower = path;
+  leader.replace_extension(".leader.bvh");
+  follower.replace_extension(".follower.bvh");
+  absl::Status status = WriteBvh(leader, pair.leader, skeleton);
+  if (status.ok()) status = WriteBvh(follower, pair.follower, skeleton);
+  if (!status.ok()) return status;
+  return std::vector<fs::path>{leader, follower};
+}
+
+absl::Status CheckJoints(const ClipPair& pair, const Skeleton& skeleton) {
+  if (pair.leader.joint_names == skeleton.joint_names) return CheckPair(pair);
+  return absl::InvalidArgumentError(absl::StrCat("pair: came ", pair.leader.joint_count(),
+                                                 " joints, wanted the skeleton's ",
+                                                 skeleton.joint_count(), " in its order"));
+}
+
+}  // namespace
+
+absl::Status CheckReadable(const fs::path& path) {
+  if (FormatOf(path) != Format::kUnknown) return absl::OkStatus();
+  return UnknownExtension(path, ".txt (SBU text), .bvh, .csv, .npy or .json");
+}
+
+absl::Status CheckWritable(const fs::path& path) {
+  const Format format = FormatOf(path);
+  if (format != Format::kUnknown && format != Format::kSbuText) return absl::OkStatus();
+  return UnknownExtension(path, ".bvh, .csv, .npy or .json");
+}
+
+absl::StatusOr<Clip> ReadLeader(const fs::path& path, const ReadOptions& options) {
+  absl::Status status = CheckReadable(path);
+  if (status.ok() && options.frame_rate_hz.has_value()) {
+    status = CheckFrameRate("frame rate given", *options.frame_rate_hz);
+  }
+  if (!status.ok()) return status;
+  absl::StatusOr<std::string> content = ReadFile(path);
+  if (!content.ok()) return content.status();
+  absl::StatusOr<Clip> clip = ReadPerson(FormatOf(path), *content, path.string(), options);
+  if (!clip.ok()) return clip.status();
+  if (options.frame_rate_hz.has_value()) clip->frame_rate_hz = *options.frame_rate_hz;
+  if (clip->frame_rate_hz > 0) return clip;
+  return absl::InvalidArgumentError(
+      absl::StrCat(path.string(), ": frame rate: the file has none, wanted one beside it"));
+}
+
+absl::StatusOr<std::vector<Vec3>> ReadFollowerStart(const fs::path& path,
+                                                    const ReadOptions& options) {
+  ReadOptions any_rate = options;
+  // A single pose has no rate; a file without one will do.
+  if (!any_rate.frame_rate_hz.has_value()) any_rate.frame_rate_hz = kSbuFrameRateHz;
+  absl::StatusOr<Clip> clip = ReadLeader(path, any_rate);
+  if (!clip.ok()) return clip.status();
+  return std::vector<Vec3>(clip->frame(0), clip->frame(0) + clip->joint_count());
+}
+
+absl::StatusOr<std::vector<fs::path>> WritePair(const fs::path& path, const ClipPair& pair,
+                                                const Skeleton& skeleton) {
+  absl::Status status = CheckWritable(path);
+  if (status.ok()) status = CheckJoints(pair, skeleton);
+  if (!status.ok()) return status;
+  const Format format = FormatOf(path);
+  if (format == Format::kBvh) return WriteBvhPair(path, pair, skeleton);
+  status = WriteFile(path, format == Format::kCsv   ? FormatCsv(pair)
+                           : format == Format::kNpy ? FormatNpy(pair)
+                                                    : FormatJsonMotion(pair, skeleton));
+  if (!status.ok()) return status;
+  return std::vector<fs::path>{path};
+}
+
+}  // namespace duet
