@@ -20,7 +20,8 @@ inline constexpr int kCheckpointFormatVersion = 1;
 inline constexpr std::size_t kMaxManifestBytes = std::size_t{1} << 20;
 inline constexpr std::size_t kMaxWeightsBytes = std::size_t{512} << 20;
 
-// The one standardisation of format version 1: class Standardisation, in metres, y up.
+// The one standardisation of format version 1: the leader's root at the origin of every frame and
+// one yaw for the window (WindowFrame in model/engine/window_frame.h), in metres, y up.
 inline constexpr char kLeaderRootAndYaw[] = "leader_root_and_yaw";
 
 // Sizes of the generator (paper section 3.1, 3.2). All else follows from skeleton and classes.

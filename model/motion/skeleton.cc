@@ -29,8 +29,9 @@ absl::Status CheckNames(const Skeleton& skeleton) {
 }
 
 absl::Status CheckParts(const Skeleton& skeleton) {
-  if (skeleton.parts.empty())
+  if (skeleton.parts.empty()) {
     return absl::InvalidArgumentError("parts: empty, wanted at least one");
+  }
   for (const BodyPart& part : skeleton.parts) {
     if (part.joints.empty()) {
       return absl::InvalidArgumentError(absl::StrCat("parts: \"", part.name, "\" has no joints"));

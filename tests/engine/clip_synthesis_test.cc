@@ -17,7 +17,8 @@ constexpr int kJoints = 15;
 LabelTrack NoLabels() { return LabelTrack(std::vector<float>(6, 0)); }
 
 ClipRequest Request(int frames, double frame_rate_hz, LabelTrack labels = NoLabels()) {
-  return {SwayingMotion(frames, frame_rate_hz), frame_rate_hz, std::move(labels), std::nullopt};
+  return {SwayingMotion(frames, frame_rate_hz), frame_rate_hz, std::move(labels), std::nullopt,
+          std::nullopt};
 }
 
 // What one run of a whole clip gave.
@@ -218,6 +219,28 @@ TEST(ClipSynthesis, NoStartsForAModelWithoutThem) {
   description.accepts_follower_start = false;
   const Outcome run = RunAll(FakeSynthesizer(description), Request(200, 15));
   for (const SynthesisWindow& window : run.windows) EXPECT_FALSE(window.start.has_value());
+}
+
+TEST(ClipSynthesis, PartnerDirectionGoesToTheFirstWindow) {
+  ClipRequest request = Request(200, 15);
+  request.partner_direction = Vec3{1, 0, 0};
+  const Outcome run = RunAll(FakeSynthesizer(), request);
+  EXPECT_EQ(run.windows[0].partner_direction, request.partner_direction);
+  // Later windows know where the follower is.
+  for (std::size_t k = 1; k < run.windows.size(); ++k) {
+    EXPECT_FALSE(run.windows[k].partner_direction.has_value()) << k;
+  }
+}
+
+TEST(ClipSynthesis, PartnerDirectionGoesToEveryWindowWithoutAStart) {
+  ModelDescription description = FakeDescription();
+  description.accepts_follower_start = false;
+  ClipRequest request = Request(200, 15);
+  request.partner_direction = Vec3{1, 0, 0};
+  const Outcome run = RunAll(FakeSynthesizer(description), request);
+  for (const SynthesisWindow& window : run.windows) {
+    EXPECT_EQ(window.partner_direction, request.partner_direction);
+  }
 }
 
 TEST(ClipSynthesis, LabelsFollowTheirKeyframesAtAnyRate) {

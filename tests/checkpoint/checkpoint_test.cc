@@ -1,0 +1,205 @@
+#include "model/checkpoint/checkpoint.h"
+
+#include <cstdlib>
+#include <limits>
+
+#include "absl/strings/str_cat.h"
+#include "gtest/gtest.h"
+#include "model/checkpoint/sha256.h"
+#include "tests/support/status_matchers.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/tiny_checkpoint.h"
+
+namespace duet {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+auto Refused(const std::string& why) {
+  return StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(why));
+}
+
+void ExpectTiny(const Checkpoint& got) {
+  const Checkpoint wanted = TinyCheckpoint();
+  ASSERT_EQ(got.tensors.size(), wanted.tensors.size());
+  for (std::size_t i = 0; i < got.tensors.size(); ++i) {
+    EXPECT_EQ(got.tensors[i].name, wanted.tensors[i].name);
+    EXPECT_EQ(got.tensors[i].shape, wanted.tensors[i].shape) << got.tensors[i].name;
+    EXPECT_EQ(got.tensors[i].values, wanted.tensors[i].values) << got.tensors[i].name;
+  }
+  Manifest manifest = got.manifest;
+  manifest.weights = wanted.manifest.weights;
+  EXPECT_EQ(SerializeManifest(manifest), SerializeManifest(wanted.manifest));
+}
+
+// Both files of a checkpoint of these tensors, hash and size right whatever they are.
+absl::StatusOr<Checkpoint> ParseWith(const std::vector<Tensor>& tensors) {
+  const std::string weights = SerializeSafetensors(tensors);
+  Manifest manifest = TinyManifest();
+  manifest.weights = {"weights.safetensors", weights.size(), Sha256Hex(weights)};
+  return ParseCheckpoint(SerializeManifest(manifest), weights);
+}
+
+class CheckpointFolder : public ::testing::Test {
+ protected:
+  void Write() { ASSERT_THAT(WriteCheckpoint(at_, TinyCheckpoint()), IsOk()); }
+
+  TemporaryFolder folder_;
+  fs::path at_ = folder_ / "tiny/3";
+};
+
+TEST_F(CheckpointFolder, RoundTrip) {
+  Write();
+  const absl::StatusOr<Checkpoint> read = ReadCheckpoint(at_);
+  ASSERT_THAT(read, IsOk());
+  ExpectTiny(*read);
+  EXPECT_EQ(read->manifest.weights.bytes, fs::file_size(at_ / "weights.safetensors"));
+}
+
+TEST_F(CheckpointFolder, HoldsTwoFilesAndLeavesNothingBeside) {
+  Write();
+  EXPECT_EQ(std::distance(fs::directory_iterator(at_), {}), 2);
+  EXPECT_EQ(std::distance(fs::directory_iterator(at_.parent_path()), {}), 1);
+  // A server under another user must be able to read it.
+  EXPECT_EQ(fs::status(at_).permissions() & fs::perms::mask, fs::perms(0755));
+}
+
+TEST_F(CheckpointFolder, IsNeverOverwritten) {
+  Write();
+  Checkpoint other = TinyCheckpoint();
+  other.tensors[0].values[0] = 99;
+  EXPECT_THAT(WriteCheckpoint(at_, other),
+              StatusIs(absl::StatusCode::kAlreadyExists, HasSubstr("tiny/3")));
+  const absl::StatusOr<Checkpoint> read = ReadCheckpoint(at_);
+  ASSERT_THAT(read, IsOk());
+  ExpectTiny(*read);
+}
+
+TEST_F(CheckpointFolder, WritesNothingThatCannotBeRead) {
+  Checkpoint not_finite = TinyCheckpoint(), no_tensor = TinyCheckpoint(),
+             no_tree = TinyCheckpoint();
+  not_finite.tensors[2].values[0] = std::numeric_limits<float>::infinity();
+  no_tensor.tensors.pop_back();
+  no_tree.manifest.model.skeleton.bones[1].child = 99;
+  EXPECT_THAT(WriteCheckpoint(at_, not_finite), Refused("value 0 is inf"));
+  EXPECT_THAT(WriteCheckpoint(at_, no_tensor), Refused("\"base.bias\" is missing"));
+  EXPECT_THAT(WriteCheckpoint(at_, no_tree), Refused("bones: joint index 99"));
+  EXPECT_FALSE(fs::exists(at_));
+}
+
+TEST_F(CheckpointFolder, FillsInTheTimeWhenThereIsNone) {
+  Checkpoint checkpoint = TinyCheckpoint();
+  checkpoint.manifest.created.clear();
+  ASSERT_THAT(WriteCheckpoint(at_, checkpoint), IsOk());
+  const absl::StatusOr<Checkpoint> read = ReadCheckpoint(at_);
+  ASSERT_THAT(read, IsOk());
+  EXPECT_THAT(read->manifest.created, ::testing::MatchesRegex("2.*T.*Z"));
+}
+
+TEST_F(CheckpointFolder, AbsentFilesAreNotFound) {
+  const auto not_found = [](const std::string& what) {
+    return StatusIs(absl::StatusCode::kNotFound, HasSubstr(what));
+  };
+  EXPECT_THAT(ReadCheckpoint(at_), not_found("tiny/3"));
+  Write();
+  fs::rename(at_ / "weights.safetensors", at_ / "moved");
+  EXPECT_THAT(ReadCheckpoint(at_), not_found("weights.safetensors"));
+  fs::remove(at_ / "manifest.json");
+  EXPECT_THAT(ReadCheckpoint(at_), not_found("manifest.json"));
+}
+
+TEST_F(CheckpointFolder, RefusesSymbolicLinks) {
+  Write();
+  fs::create_directory_symlink(at_, folder_ / "link");
+  EXPECT_THAT(ReadCheckpoint(folder_ / "link"), Refused("not a symbolic link"));
+  EXPECT_THAT(ReadCheckpoint(folder_ / "link/"), Refused("not a symbolic link"));
+  for (const char* file : {"manifest.json", "weights.safetensors"}) {
+    fs::rename(at_ / file, folder_ / "elsewhere");
+    fs::create_symlink(folder_ / "elsewhere", at_ / file);
+    EXPECT_THAT(ReadCheckpoint(at_), Refused("not a symbolic link")) << file;
+    fs::remove(at_ / file);
+    fs::rename(folder_ / "elsewhere", at_ / file);
+  }
+  EXPECT_THAT(ReadCheckpoint(at_ / ""), IsOk());
+}
+
+TEST_F(CheckpointFolder, RefusesNamesThatLeaveIt) {
+  Write();
+  std::string text = ReadTestFile(at_ / "manifest.json");
+  fs::copy(at_ / "weights.safetensors", at_.parent_path() / "weights.safetensors");
+  text.insert(text.find("weights.safetensors"), "../");
+  WriteTestFile(at_ / "manifest.json", text);
+  EXPECT_THAT(ReadCheckpoint(at_), Refused("weights.file: \"../weights.safetensors\""));
+}
+
+TEST_F(CheckpointFolder, RefusesOversizeFilesUnread) {
+  Write();
+  fs::resize_file(at_ / "weights.safetensors", kMaxWeightsBytes + 1);
+  EXPECT_THAT(ReadCheckpoint(at_), Refused("536870913 bytes, wanted at most 536870912"));
+  fs::resize_file(at_ / "manifest.json", kMaxManifestBytes + 1);
+  EXPECT_THAT(ReadCheckpoint(at_), Refused("1048577 bytes, wanted at most 1048576"));
+}
+
+TEST(ParseCheckpoint, ReturnsTensorsInTheTablesOrder) {
+  std::vector<Tensor> tensors = TinyCheckpoint().tensors;
+  std::reverse(tensors.begin(), tensors.end());
+  const absl::StatusOr<Checkpoint> read = ParseWith(tensors);
+  ASSERT_THAT(read, IsOk());
+  ExpectTiny(*read);
+}
+
+TEST(ParseCheckpoint, RefusesAnotherFile) {
+  const std::string weights = SerializeSafetensors(TinyCheckpoint().tensors);
+  Manifest manifest = TinyManifest();
+  manifest.weights = {"weights.safetensors", weights.size(), std::string(64, '0')};
+  EXPECT_THAT(ParseCheckpoint(SerializeManifest(manifest), weights),
+              StatusIs(absl::StatusCode::kDataLoss,
+                       AllOf(HasSubstr("SHA-256"), HasSubstr(Sha256Hex(weights)))));
+  manifest.weights.bytes += 1;
+  EXPECT_THAT(ParseCheckpoint(SerializeManifest(manifest), weights),
+              StatusIs(absl::StatusCode::kDataLoss, HasSubstr("weights.bytes")));
+  manifest.weights.bytes -= 2;
+  EXPECT_THAT(ParseCheckpoint(SerializeManifest(manifest), weights), Refused("weights.bytes"));
+}
+
+TEST(ParseCheckpoint, RefusesAMissingTensor) {
+  std::vector<Tensor> tensors = TinyCheckpoint().tensors;
+  tensors.erase(tensors.begin() + 3);
+  EXPECT_THAT(ParseWith(tensors),
+              Refused("\"encoder.trunk.forward.weight_hh\" is missing, wanted shape [8, 2]"));
+}
+
+TEST(ParseCheckpoint, RefusesAnUnknownTensor) {
+  std::vector<Tensor> tensors = TinyCheckpoint().tensors;
+  tensors.push_back({"output.extra", {1}, {0}});
+  EXPECT_THAT(ParseWith(tensors), Refused("unknown tensor \"output.extra\""));
+}
+
+TEST(ParseCheckpoint, RefusesAMisshapenTensor) {
+  std::vector<Tensor> tensors = TinyCheckpoint().tensors;
+  std::swap(tensors[3].shape[0], tensors[3].shape[1]);
+  EXPECT_THAT(ParseWith(tensors), Refused("\"encoder.trunk.forward.weight_hh\" has shape [2, 8], "
+                                          "wanted [8, 2]"));
+}
+
+TEST(ParseCheckpoint, RefusesNonFiniteWeights) {
+  std::vector<Tensor> tensors = TinyCheckpoint().tensors;
+  tensors.back().values[1] = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_THAT(ParseWith(tensors), Refused("\"base.bias\": value 1 is nan"));
+}
+
+// Checkpoints of every released format version must stay readable; see fixtures/README.md.
+TEST(CheckpointFixture, VersionOne) {
+  const char* source = std::getenv("DUET_SOURCE_DIR");
+  ASSERT_NE(source, nullptr) << "DUET_SOURCE_DIR is not set";
+  const absl::StatusOr<Checkpoint> read =
+      ReadCheckpoint(fs::path(source) / "tests/checkpoint/fixtures/v1");
+  ASSERT_THAT(read, IsOk());
+  EXPECT_EQ(read->manifest.format_version, 1);
+  ExpectTiny(*read);
+}
+
+}  // namespace
+}  // namespace duet

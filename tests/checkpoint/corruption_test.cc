@@ -1,0 +1,111 @@
+// An error in every byte of a small checkpoint, and a cut at every length.
+
+#include <cmath>
+#include <string>
+
+#include "gtest/gtest.h"
+#include "model/checkpoint/checkpoint.h"
+#include "model/checkpoint/sha256.h"
+#include "tests/support/status_matchers.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/tiny_checkpoint.h"
+
+namespace duet {
+namespace {
+
+using ::testing::Not;
+
+struct Files {
+  std::string manifest;
+  std::string weights;
+};
+
+Files TinyFiles() {
+  const Checkpoint checkpoint = TinyCheckpoint();
+  Files files;
+  files.weights = SerializeSafetensors(checkpoint.tensors, {{"format", "pt"}});
+  Manifest manifest = checkpoint.manifest;
+  manifest.weights = {"weights.safetensors", files.weights.size(), Sha256Hex(files.weights)};
+  files.manifest = SerializeManifest(manifest);
+  return files;
+}
+
+// Calls `check(corrupt)` for every byte of `text`, once with one bit flipped (another one from byte
+// to byte) and once with all of them.
+template <typename Check>
+void FlipEveryByte(std::string text, const Check& check) {
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    for (int mask : {1 << at % 8, 0xff}) {
+      SCOPED_TRACE(testing::Message() << "byte " << at << ", mask " << mask);
+      text[at] = static_cast<char>(text[at] ^ mask);
+      check(text);
+      text[at] = static_cast<char>(text[at] ^ mask);
+      if (testing::Test::HasFailure()) return;
+    }
+  }
+}
+
+// What the reader promises of anything that it accepts.
+void ExpectSound(const Checkpoint& checkpoint) {
+  const std::vector<TensorSpec> specs = ExpectedTensors(checkpoint.manifest);
+  ASSERT_EQ(checkpoint.tensors.size(), specs.size());
+  for (std::size_t i = 0; i < specs.size(); ++i) {
+    const Tensor& tensor = checkpoint.tensors[i];
+    EXPECT_EQ(tensor.name, specs[i].name);
+    EXPECT_EQ(tensor.shape, specs[i].shape);
+    std::size_t count = 1;
+    for (int64_t size : tensor.shape) count *= static_cast<std::size_t>(size);
+    EXPECT_EQ(tensor.values.size(), count);
+    for (float value : tensor.values) ASSERT_TRUE(std::isfinite(value));
+  }
+}
+
+TEST(Corruption, AnyByteOfTheWeightsIsNoticed) {
+  const Files files = TinyFiles();
+  ASSERT_THAT(ParseCheckpoint(files.manifest, files.weights), IsOk());
+  FlipEveryByte(files.weights, [&](const std::string& corrupt) {
+    EXPECT_THAT(ParseCheckpoint(files.manifest, corrupt), Not(IsOk()));
+  });
+}
+
+TEST(Corruption, WeightsWithAMatchingHashAreRefusedOrSound) {
+  const Files files = TinyFiles();
+  Manifest manifest = TinyManifest();
+  FlipEveryByte(files.weights, [&](const std::string& corrupt) {
+    manifest.weights = {"weights.safetensors", corrupt.size(), Sha256Hex(corrupt)};
+    const absl::StatusOr<Checkpoint> read = ParseCheckpoint(SerializeManifest(manifest), corrupt);
+    if (read.ok()) {
+      ExpectSound(*read);
+    } else {
+      EXPECT_FALSE(read.status().message().empty());
+    }
+  });
+}
+
+TEST(Corruption, AnyByteOfTheManifestIsRefusedOrSound) {
+  const Files files = TinyFiles();
+  FlipEveryByte(files.manifest, [&](const std::string& corrupt) {
+    const absl::StatusOr<Checkpoint> read = ParseCheckpoint(corrupt, files.weights);
+    if (read.ok()) {
+      ExpectSound(*read);
+      EXPECT_THAT(Validate(read->manifest.model.skeleton), IsOk());
+      // Accepted text says the same when written and read again.
+      EXPECT_EQ(SerializeManifest(*ParseManifest(SerializeManifest(read->manifest))),
+                SerializeManifest(read->manifest));
+    } else {
+      EXPECT_FALSE(read.status().message().empty());
+    }
+  });
+}
+
+TEST(Corruption, TruncatedWeightsAreDataLoss) {
+  const Files files = TinyFiles();
+  for (std::size_t size = 0; size < files.weights.size(); ++size) {
+    ASSERT_EQ(ParseCheckpoint(files.manifest, files.weights.substr(0, size)).status().code(),
+              absl::StatusCode::kDataLoss)
+        << size;
+  }
+}
+
+}  // namespace
+}  // namespace duet

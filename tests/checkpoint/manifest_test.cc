@@ -1,0 +1,290 @@
+#include "model/checkpoint/manifest.h"
+
+#include <functional>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "absl/strings/str_cat.h"
+#include "gtest/gtest.h"
+#include "tests/support/status_matchers.h"
+#include "tests/support/tiny_checkpoint.h"
+
+namespace duet {
+namespace {
+
+using nlohmann::json;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+// A manifest that is complete, with the hash of nothing in particular.
+Manifest CompleteManifest() {
+  Manifest manifest = TinyManifest();
+  manifest.weights.bytes = 1234;
+  manifest.weights.sha256 = std::string(64, 'a');
+  return manifest;
+}
+
+json CompleteJson() { return json::parse(SerializeManifest(CompleteManifest())); }
+
+auto Refused(const std::string& why) {
+  return StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(why));
+}
+
+TEST(Manifest, RoundTrip) {
+  const Manifest wanted = CompleteManifest();
+  const absl::StatusOr<Manifest> got = ParseManifest(SerializeManifest(wanted));
+  ASSERT_THAT(got, IsOk());
+  EXPECT_EQ(got->format_version, 1);
+  EXPECT_EQ(got->model.name, wanted.model.name);
+  EXPECT_EQ(got->model.version, wanted.model.version);
+  EXPECT_EQ(got->model.description, wanted.model.description);
+  EXPECT_EQ(got->model.frame_rate_hz, wanted.model.frame_rate_hz);
+  EXPECT_EQ(got->model.window_frames, wanted.model.window_frames);
+  EXPECT_EQ(got->model.classes, wanted.model.classes);
+  EXPECT_TRUE(got->model.accepts_follower_start);
+  EXPECT_EQ(got->generator.variant, "paper");
+  EXPECT_TRUE(got->generator.follower_start);
+  EXPECT_EQ(got->generator.slice_features, 1);
+  EXPECT_EQ(got->generator.encoder_hidden, 2);
+  EXPECT_EQ(got->generator.attention, 2);
+  EXPECT_TRUE(got->generator.base_pose);
+  EXPECT_EQ(got->standardisation, "leader_root_and_yaw");
+  EXPECT_EQ(got->weights.file, wanted.weights.file);
+  EXPECT_EQ(got->weights.bytes, wanted.weights.bytes);
+  EXPECT_EQ(got->weights.sha256, wanted.weights.sha256);
+  EXPECT_EQ(got->git_revision, wanted.git_revision);
+  EXPECT_EQ(got->created, wanted.created);
+  EXPECT_EQ(got->training, wanted.training);
+  EXPECT_EQ(got->metrics, wanted.metrics);
+}
+
+TEST(Manifest, SkeletonRoundTrip) {
+  Manifest manifest = CompleteManifest();
+  manifest.model.skeleton = SbuSkeleton();
+  const absl::StatusOr<Manifest> read = ParseManifest(SerializeManifest(manifest));
+  ASSERT_THAT(read, IsOk());
+  const Skeleton got = read->model.skeleton, wanted = SbuSkeleton();
+  EXPECT_EQ(got.joint_names, wanted.joint_names);
+  EXPECT_EQ(got.bones, wanted.bones);
+  ASSERT_EQ(got.parts.size(), wanted.parts.size());
+  for (std::size_t i = 0; i < got.parts.size(); ++i) {
+    EXPECT_EQ(got.parts[i].name, wanted.parts[i].name);
+    EXPECT_EQ(got.parts[i].joints, wanted.parts[i].joints);
+  }
+  EXPECT_EQ(got.root, wanted.root);
+  EXPECT_EQ(got.left_hip, wanted.left_hip);
+  EXPECT_EQ(got.right_hip, wanted.right_hip);
+  EXPECT_EQ(got.left_foot, wanted.left_foot);
+  EXPECT_EQ(got.right_foot, wanted.right_foot);
+}
+
+TEST(Manifest, FollowerStartDecidesWhatTheModelAccepts) {
+  Manifest manifest = CompleteManifest();
+  manifest.generator.follower_start = false;
+  const absl::StatusOr<Manifest> read = ParseManifest(SerializeManifest(manifest));
+  ASSERT_THAT(read, IsOk());
+  EXPECT_FALSE(read->model.accepts_follower_start);
+}
+
+TEST(Manifest, KeepsNumbersExactly) {
+  Manifest manifest = CompleteManifest();
+  manifest.model.frame_rate_hz = 29.97;
+  manifest.metrics["third"] = 1.0 / 3;
+  manifest.metrics["large"] = -1.7976931348623157e308;
+  const absl::StatusOr<Manifest> read = ParseManifest(SerializeManifest(manifest));
+  ASSERT_THAT(read, IsOk());
+  EXPECT_EQ(read->model.frame_rate_hz, 29.97);
+  EXPECT_EQ(read->metrics, manifest.metrics);
+}
+
+TEST(Manifest, KeepsAnyText) {
+  Manifest manifest = CompleteManifest();
+  manifest.model.description = "two people, \"hug\"\n\xC3\xA9\x01";
+  const absl::StatusOr<Manifest> read = ParseManifest(SerializeManifest(manifest));
+  ASSERT_THAT(read, IsOk());
+  EXPECT_EQ(read->model.description, manifest.model.description);
+}
+
+TEST(Manifest, TruncatedAtAnyLengthIsRefused) {
+  const std::string text = SerializeManifest(CompleteManifest());
+  const std::size_t last_brace = text.rfind('}');
+  for (std::size_t size = 0; size <= last_brace; ++size) {
+    EXPECT_THAT(ParseManifest(text.substr(0, size)), Refused("manifest: not")) << size;
+  }
+}
+
+TEST(Manifest, RefusesAnOversizeText) {
+  std::string text = SerializeManifest(CompleteManifest());
+  text.resize(kMaxManifestBytes, ' ');
+  EXPECT_THAT(ParseManifest(text), IsOk());
+  EXPECT_THAT(ParseManifest(text + " "), Refused("1048577 bytes, wanted at most 1048576"));
+}
+
+TEST(Manifest, RefusesRepeatedFields) {
+  std::string text = SerializeManifest(CompleteManifest());
+  text.insert(text.rfind('}'), ",\"version\": 4");
+  EXPECT_THAT(ParseManifest(text), Refused("\"version\" is repeated"));
+}
+
+// Visits every object inside `value`, the root first; `path` is for messages.
+void ForEachObject(json& value, const std::string& path,
+                   const std::function<void(json&, const std::string&)>& visit) {
+  if (!value.is_structured()) return;
+  if (value.is_object()) visit(value, path);
+  for (auto& [key, child] : value.items())
+    ForEachObject(child, absl::StrCat(path, "/", key), visit);
+}
+
+bool IsFreeMap(const std::string& path) { return path == "/training" || path == "/metrics"; }
+
+TEST(Manifest, RefusesEveryFieldThatIsMissing) {
+  json root = CompleteJson();
+  int fields = 0;
+  ForEachObject(root, "", [&](json& object, const std::string& path) {
+    if (IsFreeMap(path)) return;
+    const json whole = object;
+    for (const auto& [key, value] : whole.items()) {
+      object.erase(key);
+      EXPECT_THAT(ParseManifest(root.dump()), Refused(absl::StrCat(key, ": missing"))) << path;
+      object = whole;
+      ++fields;
+    }
+  });
+  EXPECT_EQ(fields, 15 + 8 + 2 * 2 + 6 + 3);
+  EXPECT_THAT(ParseManifest(root.dump()), IsOk());
+}
+
+TEST(Manifest, RefusesEveryUnknownField) {
+  json root = CompleteJson();
+  ForEachObject(root, "", [&](json& object, const std::string& path) {
+    if (IsFreeMap(path)) return;
+    object["surprise"] = 1;
+    EXPECT_THAT(ParseManifest(root.dump()), Refused("unknown field \"surprise\"")) << path;
+    object.erase("surprise");
+  });
+}
+
+TEST(Manifest, RefusesEveryFieldOfAWrongType) {
+  json root = CompleteJson();
+  // Of each field at least one of these is the wrong type; none is right where the others are not.
+  const json values[] = {nullptr, json::object({{"x", json::array()}}), json::array({nullptr})};
+  ForEachObject(root, "", [&](json& object, const std::string& path) {
+    const json whole = object;
+    for (const auto& [key, ignored] : whole.items()) {
+      for (const json& value : values) {
+        object[key] = value;
+        const absl::StatusOr<Manifest> read = ParseManifest(root.dump());
+        EXPECT_THAT(read, Refused("")) << path << "/" << key << " = " << value;
+      }
+      object = whole;
+    }
+  });
+}
+
+struct BadField {
+  const char* what;
+  const char* pointer;  // JSON pointer of the field to replace
+  const char* value;    // JSON
+  const char* why;
+};
+
+class ManifestField : public ::testing::TestWithParam<BadField> {};
+
+TEST_P(ManifestField, IsRefusedByName) {
+  json root = CompleteJson();
+  root[json::json_pointer(GetParam().pointer)] = json::parse(GetParam().value);
+  EXPECT_THAT(ParseManifest(root.dump()), Refused(GetParam().why));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Bad, ManifestField,
+    ::testing::Values(
+        BadField{"newer_format", "/format_version", "2", "format_version: 2, wanted"},
+        BadField{"format_0", "/format_version", "0", "format_version: 0, wanted"},
+        BadField{"name_empty", "/name", "\"\"", "name: \"\", wanted 1 to 64"},
+        BadField{"name_leaves", "/name", "\"../x\"", "name: \"../x\""},
+        BadField{"name_long", "/name",
+                 "\"0123456789012345678901234567890123456789012345678901234567890123x\"", "name:"},
+        BadField{"version_0", "/version", "0", "version: 0"},
+        BadField{"version_huge", "/version", "4294967297", "version: 4294967297"},
+        BadField{"rate_0", "/frame_rate_hz", "0", "frame_rate_hz: 0, wanted a number from 1"},
+        BadField{"rate_241", "/frame_rate_hz", "241", "frame_rate_hz: 241"},
+        BadField{"window_1", "/window_frames", "1", "window_frames: 1"},
+        BadField{"window_fraction", "/window_frames", "8.5", "window_frames: 8.5"},
+        BadField{"no_classes", "/classes", "[]", "classes: empty"},
+        BadField{"class_twice", "/classes", "[\"a\",\"a\"]", "classes: \"a\" is repeated"},
+        BadField{"class_number", "/classes", "[1]", "classes: 1"},
+        BadField{"other_standardisation", "/standardisation", "\"none\"",
+                 "standardisation: \"none\", wanted \"leader_root_and_yaw\""},
+        BadField{"joint_twice", "/skeleton/joint_names", "[\"torso\",\"torso\",\"right_hip\"]",
+                 "joint_names: \"torso\" is repeated"},
+        BadField{"no_joints", "/skeleton/joint_names", "[]", "unknown joint"},
+        BadField{"unknown_root", "/skeleton/root", "\"tail\"",
+                 "skeleton.root: unknown joint \"tail\""},
+        BadField{"root_is_a_leaf", "/skeleton/root", "\"left_hip\"", "skeleton.bones"},
+        BadField{"bone_unknown", "/skeleton/bones/0/1", "\"tail\"",
+                 "skeleton.bones: unknown joint \"tail\""},
+        BadField{"bone_of_three", "/skeleton/bones/0", "[\"torso\",\"left_hip\",\"torso\"]",
+                 "skeleton.bones: wanted pairs"},
+        BadField{"bone_missing", "/skeleton/bones", "[[\"torso\",\"left_hip\"]]",
+                 "skeleton.bones: 1, wanted 2"},
+        BadField{"bones_in_a_circle", "/skeleton/bones",
+                 R"([["left_hip","right_hip"],["right_hip","left_hip"]])", "skeleton.bones"},
+        BadField{"no_parts", "/skeleton/parts", "[]", "skeleton.parts: empty"},
+        BadField{"part_empty", "/skeleton/parts/0/joints", "[]", "has no joints"},
+        BadField{"part_joint_twice", "/skeleton/parts/1/joints", R"(["left_hip","left_hip"])",
+                 "skeleton.parts.joints: \"left_hip\" is repeated"},
+        BadField{"part_joint_unknown", "/skeleton/parts/1/joints", "[\"tail\"]",
+                 "skeleton.parts.joints: unknown joint \"tail\""},
+        BadField{"part_twice", "/skeleton/parts/1/name", "\"trunk\"",
+                 "\"trunk\" is repeated or reserved"},
+        BadField{"part_reserved", "/skeleton/parts/1/name", "\"whole_body\"",
+                 "\"whole_body\" is repeated or reserved"},
+        BadField{"part_not_a_name", "/skeleton/parts/1/name", "\"a/b\"", "parts.name: \"a/b\""},
+        BadField{"variant", "/generator/variant", "\"other\"",
+                 "generator.variant: \"other\", wanted \"paper\" or \"released\""},
+        BadField{"start_number", "/generator/follower_start", "1", "generator.follower_start: 1"},
+        BadField{"base_text", "/generator/base_pose", "\"yes\"", "generator.base_pose: \"yes\""},
+        BadField{"features_negative", "/generator/slice_features", "-1",
+                 "generator.slice_features: -1"},
+        BadField{"hidden_0", "/generator/encoder_hidden", "0", "generator.encoder_hidden: 0"},
+        BadField{"hidden_huge", "/generator/encoder_hidden", "4097",
+                 "generator.encoder_hidden: 4097"},
+        BadField{"hidden_out_of_memory", "/generator/encoder_hidden", "4096",
+                 "generator: its sizes add up to"},
+        BadField{"attention_0", "/generator/attention", "0", "generator.attention: 0"},
+        BadField{"file_elsewhere", "/weights/file", "\"../weights\"",
+                 "weights.file: \"../weights\""},
+        BadField{"file_absolute", "/weights/file", "\"/etc/passwd\"", "weights.file"},
+        BadField{"file_parent", "/weights/file", "\"..\"", "weights.file: \"..\""},
+        BadField{"file_below", "/weights/file", "\"a/b\"", "weights.file: \"a/b\""},
+        BadField{"file_backslash", "/weights/file", "\"a\\\\b\"", "weights.file"},
+        BadField{"file_nul", "/weights/file", "\"a\\u0000b\"", "weights.file"},
+        BadField{"bytes_0", "/weights/bytes", "0", "weights.bytes: 0"},
+        BadField{"bytes_over_the_cap", "/weights/bytes", "536870913",
+                 "weights.bytes: 536870913, wanted a whole number from 1 to 536870912"},
+        BadField{"sha256_short", "/weights/sha256", "\"abc\"", "weights.sha256: \"abc\""},
+        BadField{"sha256_upper_case", "/weights/sha256",
+                 "\"AAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAA\"",
+                 "lower-case hex"},
+        BadField{"created_elsewhen", "/created", "\"yesterday\"",
+                 "created: \"yesterday\", wanted a time as in RFC 3339"},
+        BadField{"training_number", "/training/epochs", "7", "training.epochs: 7"},
+        BadField{"metric_text", "/metrics/afd.kick", "\"good\"", "metrics.afd.kick: \"good\""}),
+    [](const ::testing::TestParamInfo<BadField>& bad) { return bad.param.what; });
+
+TEST(Manifest, ANewerFormatIsNamedBeforeItsNewFields) {
+  json root = CompleteJson();
+  root["format_version"] = 2;
+  root["new_field"] = true;
+  EXPECT_THAT(ParseManifest(root.dump()), Refused("format_version: 2, wanted a whole number"));
+}
+
+TEST(Manifest, ANonFiniteMetricCannotBeRead) {
+  Manifest manifest = CompleteManifest();
+  manifest.metrics["afd.kick"] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT(ParseManifest(SerializeManifest(manifest)), Refused("metrics.afd.kick: null"));
+}
+
+}  // namespace
+}  // namespace duet

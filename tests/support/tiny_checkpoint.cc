@@ -1,0 +1,52 @@
+#include "tests/support/tiny_checkpoint.h"
+
+#include <cstddef>
+#include <utility>
+
+namespace duet {
+
+Manifest TinyManifest() {
+  Manifest manifest;
+  manifest.model.name = "tiny";
+  manifest.model.version = 3;
+  manifest.model.description = "Three joints, for tests";
+  manifest.model.frame_rate_hz = 15;
+  manifest.model.window_frames = 8;
+  manifest.model.classes = {"kick", "hug"};
+  manifest.model.skeleton.joint_names = {"torso", "left_hip", "right_hip"};
+  manifest.model.skeleton.bones = {{0, 1}, {0, 2}};
+  manifest.model.skeleton.parts = {{"trunk", {0}}, {"legs", {1, 2}}};
+  manifest.model.skeleton.root = 0;
+  manifest.model.skeleton.left_hip = manifest.model.skeleton.left_foot = 1;
+  manifest.model.skeleton.right_hip = manifest.model.skeleton.right_foot = 2;
+  manifest.model.accepts_follower_start = true;
+  manifest.generator.variant = "paper";
+  manifest.generator.follower_start = true;
+  manifest.generator.slice_features = 1;
+  manifest.generator.encoder_hidden = 2;
+  manifest.generator.attention = 2;
+  manifest.generator.base_pose = true;
+  manifest.git_revision = "0123abc";
+  manifest.created = "2024-02-29T12:00:00Z";
+  manifest.training = {{"data", "none"}, {"epochs", "0"}};
+  manifest.metrics = {{"afd.kick", 0.5}, {"afd.hug", 0.625}};
+  return manifest;
+}
+
+Checkpoint TinyCheckpoint() {
+  Checkpoint checkpoint;
+  checkpoint.manifest = TinyManifest();
+  for (TensorSpec& spec : ExpectedTensors(checkpoint.manifest)) {
+    std::size_t count = 1;
+    for (int64_t size : spec.shape) count *= static_cast<std::size_t>(size);
+    const std::size_t k = checkpoint.tensors.size();
+    Tensor tensor{std::move(spec.name), std::move(spec.shape), {}};
+    for (std::size_t i = 0; i < count; ++i) {
+      tensor.values.push_back((static_cast<float>((31 * k + 7 * i) % 17) - 8) / 16);
+    }
+    checkpoint.tensors.push_back(std::move(tensor));
+  }
+  return checkpoint;
+}
+
+}  // namespace duet

@@ -1,0 +1,19 @@
+#ifndef DUET_TESTS_SUPPORT_TINY_CHECKPOINT_H_
+#define DUET_TESTS_SUPPORT_TINY_CHECKPOINT_H_
+
+#include "model/checkpoint/checkpoint.h"
+#include "model/checkpoint/manifest.h"
+
+namespace duet {
+
+// The smallest manifest with every kind of content: three joints in two parts, two classes, two
+// hidden units. Its weights are not filled in.
+Manifest TinyManifest();
+
+// The same with weights by a rule that any language can repeat: value i of tensor k (in the order
+// of ExpectedTensors) is ((31 k + 7 i) mod 17 - 8) / 16.
+Checkpoint TinyCheckpoint();
+
+}  // namespace duet
+
+#endif  // DUET_TESTS_SUPPORT_TINY_CHECKPOINT_H_
