@@ -84,9 +84,9 @@ class CheckLayersTest(unittest.TestCase):
         self.write("model/new_idea/idea.h")
         self.assert_violation("model/new_idea/idea.h:1:", "belongs to no layer")
 
-    def test_missing_header_is_named(self):
-        self.write("client/client.cc", "model/motion/gone.h")
-        self.assert_violation("client/client.cc:1:", "does not exist")
+    def test_generated_header_has_its_folder_s_layer(self):
+        self.write("client/client.cc", "model/engine/made_while_building.h")
+        self.assert_violation("client/client.cc:1:", '"engine"')
 
     def test_commented_include_is_ignored(self):
         (self.root / "model/motion/clip.h").write_text("// #include <torch/torch.h>\n")
