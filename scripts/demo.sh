@@ -80,15 +80,14 @@ duet() {
   "${bin_dir}/duet" "$@" || fail "'duet $*' failed with status $?"
 }
 
-# synthesize <name> <leader> <label>...: a page to look at and the pair as BVH.
+# synthesize <name> <leader> <label>...: a page to look at, and the pair as BVH.
 synthesize() {
-  local name="$1" leader="$2" labels=() label extension
+  local name="$1" leader="$2" labels=() label
   shift 2
   for label in "$@"; do labels+=(--label "${label}"); done
-  for extension in html bvh; do
-    duet synthesize --server "${address}" --leader "${leader}" "${labels[@]}" \
-      --out "${out_dir}/${name}.${extension}"
-  done
+  duet synthesize --server "${address}" --leader "${leader}" "${labels[@]}" \
+    --out "${out_dir}/${name}.html" --out "${out_dir}/${name}.bvh"
+  echo
 }
 
 main() {
@@ -108,7 +107,6 @@ main() {
   stop_server
   ((server_status == 0)) || fail "the server ended with status ${server_status} on SIGTERM"
 
-  echo
   echo "Made in ${SECONDS} s:"
   find "${out_dir}" -name '*.html' -o -name '*.bvh' | sort | xargs du -h | sed 's/^/  /'
   echo
