@@ -1,0 +1,48 @@
+#ifndef DUET_SERVER_BATCHING_WINDOW_QUEUE_H_
+#define DUET_SERVER_BATCHING_WINDOW_QUEUE_H_
+
+#include <cstddef>
+#include <deque>
+#include <optional>
+
+#include "server/batching/window_scheduler.h"
+
+namespace duet {
+
+// The part of a limit that bulk work may fill; the rest stays free for interactive calls.
+inline std::size_t BulkShare(std::size_t limit) { return limit - limit / 4; }
+
+// A job and when it came.
+struct QueuedWindow {
+  WindowJob job;
+  TimePoint queued_at;
+};
+
+// Two first-in first-out lines; interactive goes first. Since a call has one window in line at a
+// time, calls of the same priority take turns.
+//
+// Threads: not safe to call concurrently.
+class WindowQueue {
+ public:
+  // `capacity`: waiting windows above which no new call is taken, 1 or more.
+  explicit WindowQueue(std::size_t capacity) : capacity_(capacity) {}
+
+  // True when a job like this may join: further windows always, a call's first one while there is
+  // room, which for bulk work ends at BulkShare(capacity).
+  bool HasRoomFor(const WindowJob& job) const;
+  void Push(QueuedWindow window);
+  // The next window to start; nothing when empty.
+  std::optional<QueuedWindow> Pop();
+
+  std::size_t size() const { return interactive_.size() + bulk_.size(); }
+  std::size_t capacity() const { return capacity_; }
+
+ private:
+  std::size_t capacity_;
+  std::deque<QueuedWindow> interactive_;
+  std::deque<QueuedWindow> bulk_;
+};
+
+}  // namespace duet
+
+#endif  // DUET_SERVER_BATCHING_WINDOW_QUEUE_H_

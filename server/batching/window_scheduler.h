@@ -1,0 +1,66 @@
+#ifndef DUET_SERVER_BATCHING_WINDOW_SCHEDULER_H_
+#define DUET_SERVER_BATCHING_WINDOW_SCHEDULER_H_
+
+#include <atomic>
+#include <functional>
+#include <memory>
+
+#include "absl/status/status.h"
+#include "model/engine/synthesizer.h"
+#include "server/batching/clock.h"
+
+namespace duet {
+
+// How urgent a window is: every waiting interactive window starts before any bulk one.
+enum class Priority { kInteractive, kBulk };
+
+// Where a window's time went.
+struct WindowTimings {
+  double queue_seconds = 0;
+  double compute_seconds = 0;
+  int batch_size = 0;  // windows evaluated together; 0 when the window never started
+};
+
+struct WindowOutcome {
+  WindowResult result;
+  WindowTimings timings;
+};
+
+// One network evaluation, and whom to tell.
+struct WindowJob {
+  std::shared_ptr<const Synthesizer> model;
+  SynthesisWindow window;
+  Priority priority = Priority::kInteractive;
+  TimePoint deadline = TimePoint::max();
+  // Set by the owner when nobody wants the result any more. Required.
+  std::shared_ptr<const std::atomic<bool>> cancelled;
+  // A further window of a call that is being answered. Never refused for a full queue: what was
+  // begun is finished, and a call has one window in the queue at most.
+  bool continues_call = false;
+  // Called once, on a thread of the scheduler, under no lock. Must not throw.
+  std::function<void(WindowOutcome)> done;
+};
+
+// Decides when windows are evaluated, and with which others. A scheduler that batches windows of
+// many calls takes the place of one that does not without its callers noticing.
+//
+//   absl::Status admitted = scheduler.Submit(std::move(job));
+//   if (!admitted.ok()) return admitted;   // job.done will never run
+//
+// A job that is cancelled or past its deadline when its turn comes never starts: done gets
+// CANCELLED or DEADLINE_EXCEEDED.
+//
+// Threads: safe to call concurrently.
+class WindowScheduler {
+ public:
+  virtual ~WindowScheduler() = default;
+
+  // Takes the job: done will run exactly once, never within Submit.
+  // Fails with RESOURCE_EXHAUSTED when the queue is full, with UNAVAILABLE when shutting down;
+  // done then never runs.
+  virtual absl::Status Submit(WindowJob job) = 0;
+};
+
+}  // namespace duet
+
+#endif  // DUET_SERVER_BATCHING_WINDOW_SCHEDULER_H_

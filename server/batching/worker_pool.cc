@@ -1,0 +1,104 @@
+#include "server/batching/worker_pool.h"
+
+#include <exception>
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace duet {
+namespace {
+
+// Why a window must not start, or OK.
+absl::Status MayStart(const WindowJob& job, TimePoint now, bool stopping) {
+  if (job.cancelled->load(std::memory_order_acquire)) {
+    return absl::CancelledError("the call was cancelled before this window started");
+  }
+  if (now >= job.deadline) {
+    return absl::DeadlineExceededError("the deadline passed before this window started");
+  }
+  if (stopping) return absl::UnavailableError("the server is shutting down");
+  return absl::OkStatus();
+}
+
+// A model reports failures as a status; whatever else escapes it must not take the server down.
+WindowResult Evaluate(const WindowJob& job) {
+  try {
+    const SynthesisWindow* windows[] = {&job.window};
+    std::vector<WindowResult> results = job.model->Synthesize(windows);
+    if (results.size() == 1) return std::move(results.front());
+    return absl::InternalError("the model gave " + std::to_string(results.size()) +
+                               " results for 1 window");
+  } catch (const std::exception& error) {
+    return absl::InternalError(std::string("the model threw: ") + error.what());
+  } catch (...) {
+    return absl::InternalError("the model threw something that is no exception");
+  }
+}
+
+}  // namespace
+
+WorkerPool::WorkerPool(const WorkerPoolOptions& options, const Clock& clock, Observer observer)
+    : clock_(clock), observer_(std::move(observer)), queue_(options.max_queued_windows) {
+  for (int i = 0; i < options.workers; ++i) workers_.emplace_back([this] { Work(); });
+}
+
+WorkerPool::~WorkerPool() {
+  {
+    MutexLock lock(mutex_);
+    stopping_ = true;
+  }
+  changed_.NotifyAll();
+  for (std::thread& worker : workers_) worker.join();
+}
+
+absl::Status WorkerPool::Submit(WindowJob job) {
+  {
+    MutexLock lock(mutex_);
+    if (stopping_) return absl::UnavailableError("the server is shutting down");
+    if (!queue_.HasRoomFor(job)) {
+      return absl::ResourceExhaustedError("the queue is full: " + std::to_string(queue_.size()) +
+                                          " windows wait, at most " +
+                                          std::to_string(queue_.capacity()) + " may");
+    }
+    queue_.Push({std::move(job), clock_.Now()});
+  }
+  changed_.NotifyOne();
+  return absl::OkStatus();
+}
+
+std::size_t WorkerPool::queued_windows() const {
+  MutexLock lock(mutex_);
+  return queue_.size();
+}
+
+void WorkerPool::Work() {
+  QueuedWindow window;
+  bool stopping = false;
+  while (Next(&window, &stopping)) Run(std::move(window), stopping);
+}
+
+bool WorkerPool::Next(QueuedWindow* window, bool* stopping) {
+  MutexLock lock(mutex_);
+  while (queue_.size() == 0 && !stopping_) changed_.Wait(mutex_);
+  std::optional<QueuedWindow> next = queue_.Pop();
+  if (!next.has_value()) return false;
+  *window = *std::move(next);
+  *stopping = stopping_;
+  return true;
+}
+
+void WorkerPool::Run(QueuedWindow window, bool stopping) const {
+  const WindowJob& job = window.job;
+  const TimePoint begin = clock_.Now();
+  const absl::Status may_start = MayStart(job, begin, stopping);
+  WindowOutcome outcome{may_start.ok() ? Evaluate(job) : WindowResult(may_start), {}};
+  outcome.timings.queue_seconds = SecondsBetween(window.queued_at, begin);
+  if (may_start.ok()) {
+    outcome.timings.compute_seconds = SecondsBetween(begin, clock_.Now());
+    outcome.timings.batch_size = 1;
+  }
+  if (observer_) observer_(job.priority, outcome.timings);
+  job.done(std::move(outcome));
+}
+
+}  // namespace duet

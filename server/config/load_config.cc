@@ -1,0 +1,184 @@
+#include "server/config/load_config.h"
+
+#include <google/protobuf/io/tokenizer.h>
+#include <google/protobuf/text_format.h>
+#include <google/protobuf/util/json_util.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <fstream>
+#include <sstream>
+#include <utility>
+
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
+
+namespace duet {
+namespace {
+
+// Keeps the first error of a text-format file.
+class FirstError final : public google::protobuf::io::ErrorCollector {
+ public:
+  void AddError(int line, google::protobuf::io::ColumnNumber column,
+                const std::string& message) override {
+    // Both count from 0; -1 is the file as a whole.
+    if (text_.empty()) text_ = absl::StrCat("line ", line + 1, ":", column + 1, ": ", message);
+  }
+  const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+absl::StatusOr<v1::ServerConfig> ParseJson(std::string_view text) {
+  v1::ServerConfig config;
+  const auto status = google::protobuf::util::JsonStringToMessage(std::string(text), &config);
+  if (status.ok()) return config;
+  return absl::InvalidArgumentError(std::string(status.message()));
+}
+
+absl::StatusOr<v1::ServerConfig> ParseTextFormat(std::string_view text) {
+  v1::ServerConfig config;
+  FirstError error;
+  google::protobuf::TextFormat::Parser parser;
+  parser.RecordErrorsTo(&error);
+  if (parser.ParseFromString(std::string(text), &config)) return config;
+  return absl::InvalidArgumentError(error.text());
+}
+
+// "model:label=version"
+v1::VersionLabel ParseVersionLabel(const std::string& text) {
+  const std::vector<std::string> model = absl::StrSplit(text, absl::MaxSplits(':', 1));
+  const std::vector<std::string> label = absl::StrSplit(model.back(), absl::MaxSplits('=', 1));
+  v1::VersionLabel parsed;
+  uint32_t version = 0;
+  if (model.size() != 2 || label.size() != 2 || !absl::SimpleAtoi(label[1], &version)) {
+    throw CLI::ValidationError("--version_label", "is " + text +
+                                                      ", wanted model:label=version, such as "
+                                                      "duet:stable=3");
+  }
+  parsed.set_model(model[0]);
+  parsed.set_label(label[0]);
+  parsed.set_version(version);
+  return parsed;
+}
+
+void AddServingFlags(CLI::App& app, v1::ServerConfig& config) {
+  app.add_option_function<std::string>(
+         "--listen", [&](const std::string& value) { config.set_listen(value); },
+         "gRPC address, host:port (default 0.0.0.0:50051)")
+      ->option_text("ADDRESS");
+  app.add_option_function<std::string>(
+         "--metrics_listen", [&](const std::string& value) { config.set_metrics_listen(value); },
+         "address of /metrics, /healthz, /readyz; \"\" for none (default 0.0.0.0:9464)")
+      ->option_text("ADDRESS");
+  app.add_option_function<std::string>(
+         "--model_repository",
+         [&](const std::string& value) { config.set_model_repository(value); },
+         "folder of checkpoints <name>/<version>/ (default: the embedded checkpoint)")
+      ->option_text("DIR");
+  app.add_option_function<std::string>(
+         "--default_model", [&](const std::string& value) { config.set_default_model(value); },
+         "model that answers when a request names none (default: the first by name)")
+      ->option_text("NAME");
+  app.add_option_function<std::vector<std::string>>(
+         "--version_label",
+         [&](const std::vector<std::string>& values) {
+           for (const std::string& value : values) {
+             *config.add_version_labels() = ParseVersionLabel(value);
+           }
+         },
+         "label of a model version, model:label=version; may be repeated")
+      ->option_text("LABEL");
+  app.add_flag_function(
+      "--reflection,!--no-reflection",
+      [&](std::int64_t count) { config.set_reflection(count > 0); },
+      "gRPC server reflection (default on)");
+}
+
+void AddCapacityFlags(CLI::App& app, v1::ServerConfig& config) {
+  app.add_option_function<uint32_t>(
+         "--workers", [&](uint32_t value) { config.set_workers(value); },
+         "windows evaluated at the same time (default: the container's cores)")
+      ->option_text("N");
+  app.add_option_function<uint32_t>(
+         "--threads_per_worker", [&](uint32_t value) { config.set_threads_per_worker(value); },
+         "threads of one evaluation (default 1)")
+      ->option_text("N");
+  app.add_option_function<uint32_t>(
+         "--max_calls", [&](uint32_t value) { config.set_max_calls(value); },
+         "Synthesize calls answered at the same time (default 128)")
+      ->option_text("N");
+  app.add_option_function<uint32_t>(
+         "--max_queued_windows", [&](uint32_t value) { config.set_max_queued_windows(value); },
+         "waiting windows above which new calls are refused (default 64)")
+      ->option_text("N");
+  app.add_option_function<uint64_t>(
+         "--max_request_bytes", [&](uint64_t value) { config.set_max_request_bytes(value); },
+         "size of a request (default 33554432)")
+      ->option_text("BYTES");
+  app.add_option_function<uint32_t>(
+         "--buffered_frames", [&](uint32_t value) { config.set_buffered_frames(value); },
+         "finished frames that wait for a slow reader (default 240)")
+      ->option_text("N");
+  app.add_option_function<double>(
+         "--drain_seconds", [&](double value) { config.set_drain_seconds(value); },
+         "after SIGTERM, go on serving this long while health says NOT_SERVING (default 0)")
+      ->option_text("S");
+  app.add_option_function<double>(
+         "--grace_seconds", [&](double value) { config.set_grace_seconds(value); },
+         "after that, time for calls to finish (default 30)")
+      ->option_text("S");
+}
+
+}  // namespace
+
+absl::StatusOr<v1::ServerConfig> ParseConfigText(std::string_view text, bool json) {
+  return json ? ParseJson(text) : ParseTextFormat(text);
+}
+
+absl::StatusOr<v1::ServerConfig> ReadConfigFile(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  if (!file || !(text << file.rdbuf())) {
+    return absl::NotFoundError(absl::StrCat("--config: cannot read ", path.string()));
+  }
+  absl::StatusOr<v1::ServerConfig> config =
+      ParseConfigText(text.str(), path.extension() == ".json");
+  if (config.ok()) return config;
+  return absl::InvalidArgumentError(
+      absl::StrCat("--config: ", path.string(), ": ", config.status().message()));
+}
+
+absl::StatusOr<CommandLine> ParseCommandLine(int argc, const char* const* argv) {
+  CLI::App app("Answers one character's motion with another's, over gRPC.", "duet-server");
+  app.set_version_flag("--version", std::string("duet-server ") + DUET_VERSION);
+  std::string config_path;
+  app.add_option("--config", config_path,
+                 "configuration file: text format of duet.v1.ServerConfig, or JSON; flags win")
+      ->option_text("FILE");
+  v1::ServerConfig flags;
+  AddServingFlags(app, flags);
+  AddCapacityFlags(app, flags);
+  CommandLine command_line;
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& wanted) {
+    std::ostringstream text;
+    app.exit(wanted, text, text);
+    command_line.print = text.str();
+    return command_line;
+  } catch (const CLI::ParseError& error) {
+    return absl::InvalidArgumentError(error.what());
+  }
+  if (!config_path.empty()) {
+    absl::StatusOr<v1::ServerConfig> file = ReadConfigFile(config_path);
+    if (!file.ok()) return file.status();
+    command_line.config = *std::move(file);
+  }
+  command_line.config.MergeFrom(flags);
+  return command_line;
+}
+
+}  // namespace duet

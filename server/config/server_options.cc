@@ -1,0 +1,145 @@
+#include "server/config/server_options.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "absl/strings/match.h"
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/string_view.h"
+#include "absl/strings/strip.h"
+
+namespace duet {
+namespace {
+
+// Reads fields one after the other and keeps the first failure.
+class Reader {
+ public:
+  template <typename T, typename Limit>
+  T InRange(absl::string_view field, T value, Limit min, Limit max) {
+    // Written so that NaN is out of range.
+    if (!(value >= min && value <= max)) {
+      Fail(absl::StrCat(field, ": is ", value, ", wanted ", min, " to ", max));
+    }
+    return value;
+  }
+
+  ListenAddress Address(absl::string_view field, const std::string& text) {
+    absl::StatusOr<ListenAddress> address = ParseListenAddress(text);
+    if (address.ok()) return *std::move(address);
+    Fail(absl::StrCat(field, ": ", address.status().message()));
+    return {};
+  }
+
+  void Fail(const std::string& message) { status_.Update(absl::InvalidArgumentError(message)); }
+  const absl::Status& status() const { return status_; }
+
+ private:
+  absl::Status status_;
+};
+
+// Without `workers` and `threads_per_worker`, one-thread workers on every core: evaluations of one
+// window gain less from a second thread than from a second window. With one of them given, the
+// other uses up the cores.
+void ReadThreads(const v1::ServerConfig& config, int cores, Reader& reader,
+                 ServerOptions& options) {
+  constexpr uint32_t kMax = 1024;
+  if (config.has_workers()) {
+    options.workers =
+        static_cast<int>(reader.InRange("workers", config.workers(), uint32_t{1}, kMax));
+  }
+  if (config.has_threads_per_worker()) {
+    options.threads_per_worker = static_cast<int>(
+        reader.InRange("threads_per_worker", config.threads_per_worker(), uint32_t{1}, kMax));
+  }
+  if (!reader.status().ok()) return;
+  if (!config.has_workers()) options.workers = std::max(1, cores / options.threads_per_worker);
+  if (!config.has_threads_per_worker()) {
+    options.threads_per_worker = std::max(1, cores / options.workers);
+  }
+}
+
+void ReadLimits(const v1::ServerConfig& config, Reader& reader, ServerOptions& options) {
+  constexpr uint32_t kOne = 1;
+  if (config.has_max_calls()) {
+    options.max_calls =
+        static_cast<int>(reader.InRange("max_calls", config.max_calls(), kOne, 100000U));
+  }
+  if (config.has_max_queued_windows()) {
+    options.max_queued_windows = static_cast<int>(
+        reader.InRange("max_queued_windows", config.max_queued_windows(), kOne, 100000U));
+  }
+  if (config.has_max_request_bytes()) {
+    // Twice this is gRPC's own limit, an int.
+    options.max_request_bytes = static_cast<std::size_t>(reader.InRange(
+        "max_request_bytes", config.max_request_bytes(), uint64_t{1024}, uint64_t{1} << 29));
+  }
+  if (config.has_buffered_frames()) {
+    options.buffered_frames = static_cast<int>(
+        reader.InRange("buffered_frames", config.buffered_frames(), kOne, 1000000U));
+  }
+  if (config.has_drain_seconds()) {
+    options.drain_seconds = reader.InRange("drain_seconds", config.drain_seconds(), 0, 3600);
+  }
+  if (config.has_grace_seconds()) {
+    options.grace_seconds = reader.InRange("grace_seconds", config.grace_seconds(), 0, 3600);
+  }
+}
+
+void ReadLabels(const v1::ServerConfig& config, Reader& reader, ServerOptions& options) {
+  for (int i = 0; i < config.version_labels_size(); ++i) {
+    const v1::VersionLabel& label = config.version_labels(i);
+    if (label.model().empty() || label.label().empty() || label.version() == 0) {
+      reader.Fail(absl::StrCat("version_labels[", i, "]: is model \"", label.model(),
+                               "\", label \"", label.label(), "\", version ", label.version(),
+                               ", wanted a model, a label and a version of 1 or more"));
+    }
+    options.version_labels.push_back({label.model(), label.label(), label.version()});
+  }
+}
+
+}  // namespace
+
+absl::StatusOr<ServerOptions> ToOptions(const v1::ServerConfig& config, int cores) {
+  Reader reader;
+  ServerOptions options;
+  options.listen =
+      reader.Address("listen", config.has_listen() ? config.listen() : "0.0.0.0:50051");
+  if (!config.has_metrics_listen()) {
+    options.metrics_listen = ListenAddress{"0.0.0.0", 9464};
+  } else if (!config.metrics_listen().empty()) {
+    options.metrics_listen = reader.Address("metrics_listen", config.metrics_listen());
+  }
+  options.model_repository = config.model_repository();
+  options.default_model = config.default_model();
+  if (config.has_reflection()) options.reflection = config.reflection();
+  ReadLabels(config, reader, options);
+  ReadThreads(config, cores, reader, options);
+  ReadLimits(config, reader, options);
+  if (!reader.status().ok()) return reader.status();
+  return options;
+}
+
+absl::StatusOr<ListenAddress> ParseListenAddress(const std::string& text) {
+  const absl::Status malformed = absl::InvalidArgumentError(absl::StrCat(
+      "is \"", text, "\", wanted host:port, such as 0.0.0.0:50051, with a port of 0 to 65535"));
+  const std::size_t colon = text.rfind(':');
+  if (colon == std::string::npos) return malformed;
+  ListenAddress address;
+  absl::string_view host(text.data(), colon);
+  const bool bracketed = absl::ConsumePrefix(&host, "[") && absl::ConsumeSuffix(&host, "]");
+  if (!bracketed && absl::StrContains(host, ":")) return malformed;
+  address.host = host.empty() ? "0.0.0.0" : std::string(host);
+  const absl::string_view port = absl::string_view(text).substr(colon + 1);
+  if (!absl::SimpleAtoi(port, &address.port) || address.port < 0 || address.port > 65535) {
+    return malformed;
+  }
+  return address;
+}
+
+std::string ToString(const ListenAddress& address) {
+  const bool ipv6 = absl::StrContains(address.host, ":");
+  return absl::StrCat(ipv6 ? "[" : "", address.host, ipv6 ? "]" : "", ":", address.port);
+}
+
+}  // namespace duet

@@ -1,0 +1,56 @@
+#ifndef DUET_SERVER_CONFIG_SERVER_OPTIONS_H_
+#define DUET_SERVER_CONFIG_SERVER_OPTIONS_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "duet/v1/server_config.pb.h"
+
+namespace duet {
+
+// A host and a port to listen on.
+struct ListenAddress {
+  std::string host;
+  int port = 0;  // 0: any free one
+};
+
+struct VersionLabelOption {
+  std::string model;
+  std::string label;
+  uint32_t version = 0;
+};
+
+// Everything that an operator decides, checked. server_config.proto says what each means.
+struct ServerOptions {
+  ListenAddress listen;
+  std::optional<ListenAddress> metrics_listen;
+  std::filesystem::path model_repository;  // empty: the embedded checkpoint
+  std::string default_model;
+  std::vector<VersionLabelOption> version_labels;
+  bool reflection = true;
+  int workers = 1;
+  int threads_per_worker = 1;
+  int max_calls = 128;
+  int max_queued_windows = 64;
+  std::size_t max_request_bytes = std::size_t{32} << 20;
+  int buffered_frames = 240;
+  double drain_seconds = 0;
+  double grace_seconds = 30;
+};
+
+// Fills in defaults and checks every field. `cores` is what the container may use.
+// Fails with INVALID_ARGUMENT naming the field, what came and what was wanted.
+absl::StatusOr<ServerOptions> ToOptions(const v1::ServerConfig& config, int cores);
+
+// "host:port"; an IPv6 host is in brackets, an empty one means every interface.
+absl::StatusOr<ListenAddress> ParseListenAddress(const std::string& text);
+std::string ToString(const ListenAddress& address);
+
+}  // namespace duet
+
+#endif  // DUET_SERVER_CONFIG_SERVER_OPTIONS_H_

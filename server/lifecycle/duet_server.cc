@@ -1,0 +1,152 @@
+#include "server/lifecycle/duet_server.h"
+
+#include <grpcpp/health_check_service_interface.h>
+
+#include <algorithm>
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "server/service/refusals.h"
+
+namespace duet {
+namespace {
+
+// How long gRPC may take to hand out the statuses of calls that were ended.
+constexpr std::chrono::seconds kFlush(1);
+// How often a drain looks whether the last call has finished, or the operator is in a hurry.
+constexpr double kLookSeconds = 0.05;
+
+RequestLimits Limits(const ServerOptions& options) {
+  RequestLimits limits;
+  limits.max_request_bytes = options.max_request_bytes;
+  return limits;
+}
+
+}  // namespace
+
+absl::StatusOr<std::unique_ptr<DuetServer>> DuetServer::Start(const ServerOptions& options,
+                                                              LogSink& sink) {
+  std::unique_ptr<DuetServer> server(new DuetServer(options, sink));
+  const absl::Status listening = server->Listen();
+  if (!listening.ok()) return listening;
+  return server;
+}
+
+DuetServer::DuetServer(const ServerOptions& options, LogSink& sink)
+    : options_(options),
+      log_(sink),
+      admission_(static_cast<std::size_t>(options.max_calls)),
+      pool_({options.workers, options.max_queued_windows}, Clock::Real(),
+            [this](Priority priority, const WindowTimings& timings) {
+              metrics_.WindowFinished(priority, timings);
+            }),
+      service_(Parts()) {
+  metrics_.SetQueueLength([this] { return static_cast<double>(pool_.queued_windows()); });
+}
+
+DuetServer::~DuetServer() {
+  endpoint_.reset();
+  if (grpc_.server != nullptr) Close();
+}
+
+ServiceParts DuetServer::Parts() {
+  ServiceParts parts;
+  parts.registry = &registry_;
+  parts.scheduler = &pool_;
+  parts.admission = &admission_;
+  parts.observers = {&metrics_, &log_};
+  parts.limits = Limits(options_);
+  parts.buffered_frames = options_.buffered_frames;
+  return parts;
+}
+
+absl::Status DuetServer::Listen() {
+  absl::StatusOr<GrpcServer> grpc = StartGrpcServer(
+      {options_.listen, options_.reflection, options_.max_request_bytes, options_.max_calls},
+      service_);
+  if (!grpc.ok()) return grpc.status();
+  grpc_ = *std::move(grpc);
+  SetHealth(false);
+  if (!options_.metrics_listen.has_value()) return absl::OkStatus();
+  MetricsEndpointOptions endpoint;
+  endpoint.host = options_.metrics_listen->host;
+  endpoint.port = options_.metrics_listen->port;
+  endpoint.render = [this] { return metrics_.Render(); };
+  endpoint.ready = [this] { return admission_.state() == Admission::State::kServing; };
+  absl::StatusOr<std::unique_ptr<MetricsEndpoint>> started =
+      MetricsEndpoint::Start(std::move(endpoint));
+  if (!started.ok()) return started.status();
+  endpoint_ = *std::move(started);
+  return absl::OkStatus();
+}
+
+void DuetServer::Add(const LoadReport& report) {
+  metrics_.ModelLoaded(report.source, report.load_seconds, report.model.ok());
+  if (!report.model.ok()) {
+    log_.Error("model_refused",
+               {{"source", report.source}, {"message", report.model.status().ToString()}});
+    return;
+  }
+  registry_.Serve(*report.model);
+  const ModelDescription& model = (*report.model)->description();
+  log_.Info("model_loaded", {{"source", report.source},
+                             {"model", model.name},
+                             {"version", model.version},
+                             {"seconds", report.load_seconds}});
+}
+
+absl::Status DuetServer::Serve() {
+  if (registry_.List().empty()) return absl::FailedPreconditionError("no model could be loaded");
+  for (const VersionLabelOption& label : options_.version_labels) {
+    const absl::Status set = registry_.SetLabel(label.model, label.label, label.version);
+    if (!set.ok()) log_.Error("version_label_refused", {{"message", std::string(set.message())}});
+  }
+  if (!options_.default_model.empty()) {
+    const absl::Status set = registry_.SetDefault(options_.default_model);
+    if (!set.ok()) return set;
+  }
+  admission_.SetState(Admission::State::kServing);
+  SetHealth(true);
+  log_.Info("serving", {{"port", port()},
+                        {"metrics_port", metrics_port()},
+                        {"workers", options_.workers},
+                        {"threads_per_worker", options_.threads_per_worker}});
+  return absl::OkStatus();
+}
+
+void DuetServer::Drain(const std::function<bool(double seconds)>& wait) {
+  log_.Info("draining", {{"calls", admission_.calls()}});
+  SetHealth(false);
+  bool patient = options_.drain_seconds <= 0 || wait(options_.drain_seconds);
+  // From here on new calls are told to go elsewhere. gRPC's own Shutdown comes last: it would wait
+  // for health watches as well, which never end by themselves.
+  admission_.SetState(Admission::State::kDraining);
+  double left = options_.grace_seconds;
+  while (patient && left > 0 && admission_.calls() > 0) {
+    const double step = std::min(left, kLookSeconds);
+    patient = wait(step);
+    left -= step;
+  }
+  const std::size_t aborted = admission_.calls();
+  Close();
+  log_.Info("stopped", {{"aborted_calls", aborted}});
+}
+
+void DuetServer::Close() {
+  admission_.SetState(Admission::State::kDraining);
+  service_.AbortAll(DrainingRefusal());
+  grpc_.server->Shutdown(std::chrono::system_clock::now() + kFlush);
+}
+
+void DuetServer::SetHealth(bool serving) {
+  grpc::HealthCheckServiceInterface* health = grpc_.server->GetHealthCheckService();
+  health->SetServingStatus("", serving);
+  health->SetServingStatus(MotionSynthesisService::kServiceName, serving);
+  for (const ServedModel& served : registry_.List()) {
+    health->SetServingStatus(absl::StrCat("model:", served.model->description().name), serving);
+  }
+}
+
+}  // namespace duet

@@ -1,0 +1,79 @@
+#ifndef DUET_SERVER_LIFECYCLE_DUET_SERVER_H_
+#define DUET_SERVER_LIFECYCLE_DUET_SERVER_H_
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "server/batching/worker_pool.h"
+#include "server/config/server_options.h"
+#include "server/lifecycle/grpc_server.h"
+#include "server/metrics/json_log.h"
+#include "server/metrics/metrics_endpoint.h"
+#include "server/metrics/server_metrics.h"
+#include "server/registry/model_registry.h"
+#include "server/registry/model_repository.h"
+#include "server/service/admission.h"
+#include "server/service/motion_synthesis_service.h"
+
+namespace duet {
+
+// The whole server in one object: listens from the start, refuses calls as UNAVAILABLE until
+// Serve(), answers them until Drain().
+//
+//   auto server = DuetServer::Start(options, sink);
+//   (*server)->Add(LoadCheckpoint(folder, loader));
+//   (*server)->Serve();
+//   ... until asked to stop ...
+//   (*server)->Drain(wait);
+//
+// Threads: one thread at a time.
+class DuetServer {
+ public:
+  // `sink` outlives the server. Fails with UNAVAILABLE when an address cannot be listened on.
+  static absl::StatusOr<std::unique_ptr<DuetServer>> Start(const ServerOptions& options,
+                                                           LogSink& sink);
+  ~DuetServer();
+
+  // Serves a loaded model, or logs why it is not; both are counted.
+  void Add(const LoadReport& report);
+
+  // The model that answers when a request names none, unless the options name one. NOT_FOUND when
+  // it is not served.
+  absl::Status SetDefault(const std::string& model) { return registry_.SetDefault(model); }
+
+  // Opens the service: version labels, default model, health. Fails with FAILED_PRECONDITION when
+  // there is no model, NOT_FOUND when the default model is not among them.
+  absl::Status Serve();
+
+  // Says NOT_SERVING, serves on for drain_seconds, then lets calls finish for grace_seconds, ends
+  // the others as UNAVAILABLE and closes. `wait` sleeps for so many seconds unless the operator is
+  // in a hurry: false cuts both times short.
+  void Drain(const std::function<bool(double seconds)>& wait);
+
+  int port() const { return grpc_.port; }
+  int metrics_port() const { return endpoint_ == nullptr ? 0 : endpoint_->port(); }
+  JsonLog& log() { return log_; }
+
+ private:
+  DuetServer(const ServerOptions& options, LogSink& sink);
+  absl::Status Listen();
+  void SetHealth(bool serving);
+  void Close();
+  ServiceParts Parts();
+
+  const ServerOptions options_;
+  JsonLog log_;
+  ServerMetrics metrics_;
+  ModelRegistry registry_;
+  Admission admission_;
+  WorkerPool pool_;
+  MotionSynthesisService service_;
+  GrpcServer grpc_;
+  std::unique_ptr<MetricsEndpoint> endpoint_;
+};
+
+}  // namespace duet
+
+#endif  // DUET_SERVER_LIFECYCLE_DUET_SERVER_H_

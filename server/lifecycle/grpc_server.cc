@@ -1,0 +1,75 @@
+#include "server/lifecycle/grpc_server.h"
+
+#include <grpc/impl/codegen/compression_types.h>
+#include <grpcpp/ext/proto_server_reflection_plugin.h>
+#include <grpcpp/health_check_service_interface.h>
+#include <grpcpp/impl/server_builder_option.h>
+#include <grpcpp/security/server_credentials.h>
+#include <grpcpp/server_builder.h>
+
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+
+namespace duet {
+namespace {
+
+constexpr int kSecond = 1000;  // in channel arguments
+constexpr int kMinute = 60 * kSecond;
+
+// Reflection for one server; the library's own switch is for every server of the process.
+class WithReflection final : public grpc::ServerBuilderOption {
+ public:
+  void UpdateArguments(grpc::ChannelArguments*) override {}
+  void UpdatePlugins(std::vector<std::unique_ptr<grpc::ServerBuilderPlugin>>* plugins) override {
+    plugins->push_back(std::make_unique<grpc::reflection::ProtoServerReflectionPlugin>());
+  }
+};
+
+void SetConnectionLimits(grpc::ServerBuilder& builder, int max_calls) {
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, kMinute);
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, 20 * kSecond);
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 1);
+  builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS, 30 * kSecond);
+  builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_IDLE_MS, 5 * kMinute);
+  // Old connections go, so that clients come to know new replicas; the longest call may finish.
+  builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_AGE_MS, 30 * kMinute);
+  builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_AGE_GRACE_MS, 11 * kMinute);
+  builder.AddChannelArgument(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, 10 * kSecond);
+  builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, 2 * max_calls);
+  // A second server on the same port fails to start instead of taking half of the connections.
+  builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
+}
+
+void SetMessageLimits(grpc::ServerBuilder& builder, std::size_t max_request_bytes) {
+  // Twice the limit, so that most of what is too large still meets our own refusal with details.
+  builder.SetMaxReceiveMessageSize(static_cast<int>(2 * max_request_bytes));
+  // A small compressed message may decompress to anything before its size is looked at, and
+  // positions hardly compress.
+  builder.SetCompressionAlgorithmSupportStatus(GRPC_COMPRESS_DEFLATE, false);
+  builder.SetCompressionAlgorithmSupportStatus(GRPC_COMPRESS_GZIP, false);
+}
+
+}  // namespace
+
+absl::StatusOr<GrpcServer> StartGrpcServer(const GrpcServerOptions& options,
+                                           grpc::Service& service) {
+  grpc::EnableDefaultHealthCheckService(true);
+  grpc::ServerBuilder builder;
+  GrpcServer started;
+  builder.AddListeningPort(ToString(options.listen), grpc::InsecureServerCredentials(),
+                           &started.port);
+  builder.RegisterService(&service);
+  if (options.reflection) builder.SetOption(std::make_unique<WithReflection>());
+  SetConnectionLimits(builder, options.max_calls);
+  SetMessageLimits(builder, options.max_request_bytes);
+  started.server = builder.BuildAndStart();
+  if (started.server == nullptr || started.port == 0) {
+    return absl::UnavailableError(
+        absl::StrCat("cannot listen on ", ToString(options.listen), " for gRPC; is it in use?"));
+  }
+  return started;
+}
+
+}  // namespace duet

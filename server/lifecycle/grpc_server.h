@@ -1,0 +1,34 @@
+#ifndef DUET_SERVER_LIFECYCLE_GRPC_SERVER_H_
+#define DUET_SERVER_LIFECYCLE_GRPC_SERVER_H_
+
+#include <grpcpp/server.h>
+
+#include <cstddef>
+#include <memory>
+
+#include "absl/status/statusor.h"
+#include "server/config/server_options.h"
+
+namespace duet {
+
+struct GrpcServerOptions {
+  ListenAddress listen;
+  bool reflection = true;
+  std::size_t max_request_bytes = std::size_t{32} << 20;
+  int max_calls = 128;
+};
+
+struct GrpcServer {
+  std::unique_ptr<grpc::Server> server;
+  int port = 0;
+};
+
+// Starts gRPC with the service, Google's health service (everything SERVING at first) and, where
+// asked for, reflection. `service` outlives the server.
+// Fails with UNAVAILABLE naming the address when it cannot be listened on.
+absl::StatusOr<GrpcServer> StartGrpcServer(const GrpcServerOptions& options,
+                                           grpc::Service& service);
+
+}  // namespace duet
+
+#endif  // DUET_SERVER_LIFECYCLE_GRPC_SERVER_H_

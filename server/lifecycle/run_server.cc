@@ -1,0 +1,99 @@
+#include "server/lifecycle/run_server.h"
+
+#include <sys/resource.h>
+
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "server/config/cpu_budget.h"
+#include "server/config/load_config.h"
+#include "server/lifecycle/duet_server.h"
+
+namespace duet {
+namespace {
+
+// Each connection is a descriptor, and gRPC's listener does not come back from running out.
+void RaiseDescriptorLimit() {
+  rlimit limit = {};
+  if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
+  limit.rlim_cur = limit.rlim_max;
+  setrlimit(RLIMIT_NOFILE, &limit);
+}
+
+// The checkpoints linked into the program; the first is the default unless the operator says so.
+absl::Status LoadEmbedded(const ModelSource& source, DuetServer& server) {
+  const TimePoint begin = Clock::Real().Now();
+  const auto models = source.load_embedded();
+  const double seconds = SecondsBetween(begin, Clock::Real().Now());
+  if (!models.ok()) {
+    server.Add({"embedded", models.status(), seconds});
+    return absl::OkStatus();
+  }
+  for (const std::shared_ptr<const Synthesizer>& model : *models) {
+    const ModelDescription& description = model->description();
+    server.Add({absl::StrCat("embedded/", description.name, "/", description.version), model,
+                seconds / static_cast<double>(models->size())});
+  }
+  if (models->empty()) return absl::OkStatus();
+  return server.SetDefault(models->front()->description().name);
+}
+
+// Loads what the options name, one after the other, until told to stop.
+absl::Status LoadModels(const ServerOptions& options, const ModelSource& source, StopSignal& stop,
+                        DuetServer& server) {
+  if (options.model_repository.empty()) {
+    return LoadEmbedded(source, server);
+  }
+  const absl::StatusOr<RepositoryListing> listing = ListCheckpoints(options.model_repository);
+  if (!listing.ok()) return listing.status();
+  for (const absl::Status& unreadable : listing->unreadable) {
+    server.log().Error("folder_skipped", {{"message", std::string(unreadable.message())}});
+  }
+  for (const std::filesystem::path& folder : listing->checkpoints) {
+    if (stop.WaitFor(0)) return absl::CancelledError("told to stop while loading");
+    server.Add(LoadCheckpoint(folder, source.load_folder));
+  }
+  return absl::OkStatus();
+}
+
+int Serve(const ServerOptions& options, const ModelSource& source, StopSignal& stop,
+          LogSink& sink) {
+  JsonLog log(sink);
+  absl::StatusOr<std::unique_ptr<DuetServer>> server = DuetServer::Start(options, sink);
+  absl::Status status = server.status();
+  if (status.ok()) status = LoadModels(options, source, stop, **server);
+  if (absl::IsCancelled(status)) return kExitStopped;
+  if (status.ok()) status = (*server)->Serve();
+  if (!status.ok()) {
+    log.Error("cannot_serve", {{"message", std::string(status.message())}});
+    return kExitFailed;
+  }
+  stop.Wait();
+  (*server)->Drain([&stop](double seconds) { return !stop.WaitFor(seconds); });
+  return kExitStopped;
+}
+
+}  // namespace
+
+int RunServer(int argc, const char* const* argv, const ModelSource& source, StopSignal& stop,
+              LogSink& sink) {
+  const absl::StatusOr<CommandLine> command_line = ParseCommandLine(argc, argv);
+  if (command_line.ok() && command_line->print.has_value()) {
+    std::cout << *command_line->print;
+    return kExitStopped;
+  }
+  absl::StatusOr<ServerOptions> options = command_line.status();
+  if (command_line.ok()) options = ToOptions(command_line->config, AvailableCores());
+  if (!options.ok()) {
+    std::cerr << "duet-server: " << options.status().message() << "\n";
+    return kExitUsage;
+  }
+  RaiseDescriptorLimit();
+  source.set_threads(options->threads_per_worker);
+  return Serve(*options, source, stop, sink);
+}
+
+}  // namespace duet

@@ -1,0 +1,36 @@
+#ifndef DUET_SERVER_LIFECYCLE_RUN_SERVER_H_
+#define DUET_SERVER_LIFECYCLE_RUN_SERVER_H_
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "server/lifecycle/stop_signal.h"
+#include "server/metrics/log_sink.h"
+#include "server/registry/model_repository.h"
+
+namespace duet {
+
+// Where models come from: what main.cc knows and nobody else.
+struct ModelSource {
+  ModelLoader load_folder;
+  // The default model first.
+  std::function<absl::StatusOr<std::vector<std::shared_ptr<const Synthesizer>>>()> load_embedded;
+  // Called once before anything is loaded.
+  std::function<void(int threads)> set_threads;
+};
+
+// Exit codes of duet-server.
+inline constexpr int kExitStopped = 0;  // drained after SIGTERM or SIGINT
+inline constexpr int kExitFailed = 1;   // cannot listen, or nothing to serve
+inline constexpr int kExitUsage = 2;    // a flag or the configuration file is wrong
+
+// Everything that duet-server does, from the command line to the exit code: listen, load, serve,
+// drain. `stop` was constructed before any thread.
+int RunServer(int argc, const char* const* argv, const ModelSource& source, StopSignal& stop,
+              LogSink& sink);
+
+}  // namespace duet
+
+#endif  // DUET_SERVER_LIFECYCLE_RUN_SERVER_H_

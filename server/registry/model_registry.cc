@@ -1,0 +1,115 @@
+#include "server/registry/model_registry.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+#include "absl/strings/escaping.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+
+namespace duet {
+namespace {
+
+// Names come from requests; enough of one to recognise it.
+std::string Shown(absl::string_view name) {
+  return absl::StrCat("\"", absl::CHexEscape({name.data(), std::min<std::size_t>(name.size(), 64)}),
+                      "\"");
+}
+
+template <typename Map>
+std::string Keys(const Map& map) {
+  if (map.empty()) return "none";
+  return absl::StrJoin(
+      map, ", ", [](std::string* out, const auto& entry) { absl::StrAppend(out, entry.first); });
+}
+
+}  // namespace
+
+void ModelRegistry::Serve(std::shared_ptr<const Synthesizer> model) {
+  const ModelDescription& description = model->description();
+  MutexLock lock(mutex_);
+  entries_[description.name].versions[static_cast<uint32_t>(description.version)] =
+      std::move(model);
+}
+
+absl::Status ModelRegistry::SetLabel(absl::string_view name, absl::string_view label,
+                                     uint32_t version) {
+  MutexLock lock(mutex_);
+  const auto entry = entries_.find(name);
+  if (entry == entries_.end() || entry->second.versions.count(version) == 0) {
+    return absl::NotFoundError(absl::StrCat("version label ", Shown(label), " points at version ",
+                                            version, " of model ", Shown(name),
+                                            ", which is not served"));
+  }
+  entry->second.labels[std::string(label)] = version;
+  return absl::OkStatus();
+}
+
+absl::Status ModelRegistry::SetDefault(absl::string_view name) {
+  MutexLock lock(mutex_);
+  if (entries_.find(name) == entries_.end()) {
+    return absl::NotFoundError(absl::StrCat("the default model ", Shown(name),
+                                            " is not served; served are: ", Keys(entries_)));
+  }
+  default_name_ = std::string(name);
+  return absl::OkStatus();
+}
+
+const std::string& ModelRegistry::DefaultName() const {
+  return default_name_.empty() && !entries_.empty() ? entries_.begin()->first : default_name_;
+}
+
+ServedModel ModelRegistry::Describe(const std::string& name, const Entry& entry,
+                                    uint32_t version) const {
+  ServedModel served;
+  served.model = entry.versions.at(version);
+  served.is_default = name == DefaultName() && version == entry.versions.begin()->first;
+  for (const auto& [label, labelled] : entry.labels) {
+    if (labelled == version) served.version_labels.push_back(label);
+  }
+  return served;
+}
+
+absl::StatusOr<ServedModel> ModelRegistry::Find(const ModelQuery& query) const {
+  MutexLock lock(mutex_);
+  const std::string& name = query.name.empty() ? DefaultName() : query.name;
+  const auto found = entries_.find(name);
+  if (found == entries_.end()) {
+    return absl::NotFoundError(absl::StrCat("model.name: is ", Shown(name),
+                                            ", which is not served; served are: ", Keys(entries_)));
+  }
+  const Entry& entry = found->second;
+  uint32_t version = entry.versions.begin()->first;
+  if (query.version_label.has_value()) {
+    const auto label = entry.labels.find(*query.version_label);
+    if (label == entry.labels.end()) {
+      return absl::NotFoundError(absl::StrCat("model.version_label: is ",
+                                              Shown(*query.version_label), "; labels of model ",
+                                              name, " are: ", Keys(entry.labels)));
+    }
+    version = label->second;
+  }
+  if (query.version.has_value()) {
+    version = *query.version;
+    if (entry.versions.count(version) == 0) {
+      return absl::NotFoundError(absl::StrCat("model.version: is ", version,
+                                              "; served versions of model ", name,
+                                              " are: ", Keys(entry.versions)));
+    }
+  }
+  return Describe(found->first, entry, version);
+}
+
+std::vector<ServedModel> ModelRegistry::List() const {
+  MutexLock lock(mutex_);
+  std::vector<ServedModel> models;
+  for (const auto& [name, entry] : entries_) {
+    for (const auto& [version, model] : entry.versions) {
+      models.push_back(Describe(name, entry, version));
+    }
+  }
+  return models;
+}
+
+}  // namespace duet

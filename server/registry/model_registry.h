@@ -1,0 +1,76 @@
+#ifndef DUET_SERVER_REGISTRY_MODEL_REGISTRY_H_
+#define DUET_SERVER_REGISTRY_MODEL_REGISTRY_H_
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+#include "model/engine/synthesizer.h"
+#include "server/batching/mutex.h"
+
+namespace duet {
+
+// Which model a request asks for. All empty: the default model's newest version.
+struct ModelQuery {
+  std::string name;
+  std::optional<uint32_t> version;
+  std::optional<std::string> version_label;
+};
+
+// A model version being served.
+struct ServedModel {
+  std::shared_ptr<const Synthesizer> model;
+  std::vector<std::string> version_labels;  // sorted
+  bool is_default = false;
+};
+
+// The models being served, by name and version.
+//
+// Whoever found a model holds it: replacing or removing it never disturbs a call.
+// Threads: safe to call concurrently.
+class ModelRegistry {
+ public:
+  // Serves a model under its description's name and version, in place of one already there.
+  void Serve(std::shared_ptr<const Synthesizer> model);
+
+  // Points a label of a model at a version, in place of where it pointed before.
+  // NOT_FOUND when that version is not served.
+  absl::Status SetLabel(absl::string_view name, absl::string_view label, uint32_t version);
+
+  // The model that answers when a request names none; until set, the first name in order.
+  // NOT_FOUND when no version of it is served.
+  absl::Status SetDefault(absl::string_view name);
+
+  // NOT_FOUND: "<field of the request>: <what came; what is served>".
+  absl::StatusOr<ServedModel> Find(const ModelQuery& query) const;
+
+  // Every version, by name, newest first.
+  std::vector<ServedModel> List() const;
+
+ private:
+  using Versions = std::map<uint32_t, std::shared_ptr<const Synthesizer>, std::greater<uint32_t>>;
+  struct Entry {
+    Versions versions;
+    std::map<std::string, uint32_t, std::less<>> labels;
+  };
+  using Entries = std::map<std::string, Entry, std::less<>>;
+
+  const std::string& DefaultName() const DUET_REQUIRES(mutex_);
+  ServedModel Describe(const std::string& name, const Entry& entry, uint32_t version) const
+      DUET_REQUIRES(mutex_);
+
+  mutable Mutex mutex_;
+  Entries entries_ DUET_GUARDED_BY(mutex_);
+  std::string default_name_ DUET_GUARDED_BY(mutex_);
+};
+
+}  // namespace duet
+
+#endif  // DUET_SERVER_REGISTRY_MODEL_REGISTRY_H_

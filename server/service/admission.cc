@@ -1,0 +1,68 @@
+#include "server/service/admission.h"
+
+#include "server/batching/window_queue.h"
+#include "server/service/refusals.h"
+
+namespace duet {
+namespace {
+
+absl::Status Refusal(Admission::State state) {
+  switch (state) {
+    case Admission::State::kLoading:
+      return LoadingRefusal();
+    case Admission::State::kDraining:
+      return DrainingRefusal();
+    case Admission::State::kServing:
+      break;
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+AdmissionSlot::~AdmissionSlot() {
+  if (admission_ != nullptr) admission_->Leave();
+}
+
+void Admission::SetState(State state) {
+  MutexLock lock(mutex_);
+  state_ = state;
+}
+
+Admission::State Admission::state() const {
+  MutexLock lock(mutex_);
+  return state_;
+}
+
+absl::Status Admission::CheckServing() const { return Refusal(state()); }
+
+absl::StatusOr<AdmissionSlot> Admission::Admit(Priority priority) {
+  const std::size_t limit = priority == Priority::kBulk ? BulkShare(max_calls_) : max_calls_;
+  MutexLock lock(mutex_);
+  // Under the same lock as the count: who drains sees every call that got in.
+  const absl::Status serving = Refusal(state_);
+  if (!serving.ok()) return serving;
+  if (calls_ >= limit) return TooManyCallsRefusal(calls_, limit);
+  ++calls_;
+  return AdmissionSlot(this);
+}
+
+std::size_t Admission::calls() const {
+  MutexLock lock(mutex_);
+  return calls_;
+}
+
+bool Admission::WaitUntilIdle(TimePoint deadline) {
+  MutexLock lock(mutex_);
+  while (calls_ > 0) {
+    if (!idle_.WaitUntil(mutex_, deadline)) return calls_ == 0;
+  }
+  return true;
+}
+
+void Admission::Leave() {
+  MutexLock lock(mutex_);
+  if (--calls_ == 0) idle_.NotifyAll();
+}
+
+}  // namespace duet

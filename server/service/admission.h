@@ -1,0 +1,71 @@
+#ifndef DUET_SERVER_SERVICE_ADMISSION_H_
+#define DUET_SERVER_SERVICE_ADMISSION_H_
+
+#include <cstddef>
+#include <utility>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "server/batching/mutex.h"
+#include "server/batching/window_scheduler.h"
+
+namespace duet {
+
+class Admission;
+
+// A call's place among those being answered, given back when it goes.
+class AdmissionSlot {
+ public:
+  AdmissionSlot() = default;
+  AdmissionSlot(AdmissionSlot&& other) noexcept
+      : admission_(std::exchange(other.admission_, nullptr)) {}
+  AdmissionSlot& operator=(AdmissionSlot&& other) noexcept {
+    std::swap(admission_, other.admission_);
+    return *this;
+  }
+  ~AdmissionSlot();
+
+ private:
+  friend class Admission;
+  explicit AdmissionSlot(Admission* admission) : admission_(admission) {}
+  Admission* admission_ = nullptr;
+};
+
+// Decides whether the server takes one more Synthesize call.
+//
+// Threads: safe to call concurrently.
+class Admission {
+ public:
+  enum class State { kLoading, kServing, kDraining };
+
+  // `max_calls`: calls answered at the same time, 1 or more; bulk ones end at BulkShare of it.
+  explicit Admission(std::size_t max_calls) : max_calls_(max_calls) {}
+
+  void SetState(State state);
+  State state() const;
+
+  // Whether new calls are answered at all: UNAVAILABLE with RetryInfo while loading or draining.
+  absl::Status CheckServing() const;
+
+  // UNAVAILABLE as above; RESOURCE_EXHAUSTED with RetryInfo when there are too many calls.
+  // The slot must not outlive the admission.
+  absl::StatusOr<AdmissionSlot> Admit(Priority priority);
+
+  std::size_t calls() const;
+  // Waits until no call is left. False when the deadline came first.
+  bool WaitUntilIdle(TimePoint deadline);
+
+ private:
+  friend class AdmissionSlot;
+  void Leave();
+
+  const std::size_t max_calls_;
+  mutable Mutex mutex_;
+  CondVar idle_;
+  State state_ DUET_GUARDED_BY(mutex_) = State::kLoading;
+  std::size_t calls_ DUET_GUARDED_BY(mutex_) = 0;
+};
+
+}  // namespace duet
+
+#endif  // DUET_SERVER_SERVICE_ADMISSION_H_

@@ -1,0 +1,126 @@
+#include "server/service/clip_stream.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+namespace duet {
+
+ClipStream::ClipStream(std::shared_ptr<const Synthesizer> model, ClipRequest request,
+                       const ClipStreamOptions& options, WindowScheduler& scheduler,
+                       std::function<void()> on_progress)
+    : model_(std::move(model)),
+      joints_(static_cast<std::size_t>(model_->description().skeleton.joint_count())),
+      options_(options),
+      scheduler_(scheduler),
+      on_progress_(std::move(on_progress)),
+      cancelled_(std::make_shared<std::atomic<bool>>(false)),
+      clip_(model_->description(), std::move(request)) {}
+
+absl::Status ClipStream::Start() {
+  {
+    MutexLock lock(mutex_);
+    in_flight_ = true;
+  }
+  return ScheduleNext(/*continues_call=*/false);
+}
+
+ClipPart ClipStream::Take(int max_frames) {
+  ClipPart part;
+  {
+    MutexLock lock(mutex_);
+    const std::size_t available = (ready_.size() - taken_) / joints_;
+    if (!error_.ok()) {
+      part.kind = ClipPart::Kind::kFailed;
+      part.error = error_;
+    } else if (available > 0) {
+      const std::size_t count = std::min(available, static_cast<std::size_t>(max_frames));
+      const auto first = ready_.begin() + static_cast<std::ptrdiff_t>(taken_);
+      part.kind = ClipPart::Kind::kFrames;
+      part.frames.assign(first, first + static_cast<std::ptrdiff_t>(count * joints_));
+      taken_ += count * joints_;
+    } else if (!in_flight_ && !clip_.HasNextWindow()) {
+      part.kind = ClipPart::Kind::kEnd;
+    }
+  }
+  if (part.kind == ClipPart::Kind::kFrames) ScheduleIfWanted();
+  return part;
+}
+
+void ClipStream::Cancel() { cancelled_->store(true, std::memory_order_release); }
+
+ClipStreamStats ClipStream::stats() const {
+  MutexLock lock(mutex_);
+  return stats_;
+}
+
+bool ClipStream::WantsWindow() const {
+  if (in_flight_ || !error_.ok() || cancelled_->load(std::memory_order_acquire)) return false;
+  const std::size_t waiting = (ready_.size() - taken_) / joints_;
+  return waiting < static_cast<std::size_t>(options_.buffered_frames) && clip_.HasNextWindow();
+}
+
+void ClipStream::ScheduleIfWanted() {
+  {
+    MutexLock lock(mutex_);
+    if (!WantsWindow()) return;
+    in_flight_ = true;
+  }
+  const absl::Status scheduled = ScheduleNext(/*continues_call=*/true);
+  if (scheduled.ok()) return;
+  MutexLock lock(mutex_);
+  in_flight_ = false;
+  error_ = scheduled;
+}
+
+absl::Status ClipStream::ScheduleNext(bool continues_call) {
+  WindowJob job;
+  job.model = model_;
+  job.window = clip_.NextWindow();
+  job.priority = options_.priority;
+  job.deadline = options_.deadline;
+  job.cancelled = cancelled_;
+  job.continues_call = continues_call;
+  job.done = [self = shared_from_this()](WindowOutcome outcome) { self->OnWindow(outcome); };
+  expected_positions_ = job.window.leader.size();
+  return scheduler_.Submit(std::move(job));
+}
+
+void ClipStream::OnWindow(const WindowOutcome& outcome) {
+  if (cancelled_->load(std::memory_order_acquire)) return;
+  const absl::Status status = Check(outcome.result);
+  std::vector<Vec3> frames;
+  if (status.ok()) frames = clip_.Accept(*outcome.result);
+  Keep(status, frames, outcome.timings);
+  ScheduleIfWanted();
+  on_progress_();
+}
+
+void ClipStream::Keep(const absl::Status& status, const std::vector<Vec3>& frames,
+                      const WindowTimings& timings) {
+  MutexLock lock(mutex_);
+  in_flight_ = false;
+  error_ = status;
+  stats_.windows += status.ok() ? 1 : 0;
+  stats_.queue_seconds += timings.queue_seconds;
+  stats_.compute_seconds += timings.compute_seconds;
+  ready_.erase(ready_.begin(), ready_.begin() + static_cast<std::ptrdiff_t>(taken_));
+  taken_ = 0;
+  ready_.insert(ready_.end(), frames.begin(), frames.end());
+  const int buffered = static_cast<int>(ready_.size() / joints_);
+  stats_.peak_buffered_frames = std::max(stats_.peak_buffered_frames, buffered);
+}
+
+absl::Status ClipStream::Check(const WindowResult& result) const {
+  if (!result.ok()) return result.status();
+  if (result->size() != expected_positions_) {
+    return absl::InternalError("the model gave " + std::to_string(result->size()) +
+                               " positions, wanted " + std::to_string(expected_positions_));
+  }
+  if (!std::all_of(result->begin(), result->end(), IsFinite)) {
+    return absl::InternalError("the model gave a position that is not finite");
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace duet

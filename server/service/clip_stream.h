@@ -1,0 +1,106 @@
+#ifndef DUET_SERVER_SERVICE_CLIP_STREAM_H_
+#define DUET_SERVER_SERVICE_CLIP_STREAM_H_
+
+#include <atomic>
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "model/engine/clip_synthesis.h"
+#include "model/engine/synthesizer.h"
+#include "server/batching/mutex.h"
+#include "server/batching/window_scheduler.h"
+
+namespace duet {
+
+struct ClipStreamOptions {
+  Priority priority = Priority::kInteractive;
+  TimePoint deadline = TimePoint::max();
+  // The next window is scheduled while fewer finished frames than this wait for the reader.
+  int buffered_frames = 240;
+};
+
+// What one call did, for its summary, its metrics and its log line.
+struct ClipStreamStats {
+  int windows = 0;
+  double queue_seconds = 0;
+  double compute_seconds = 0;
+  int peak_buffered_frames = 0;
+};
+
+// The next part of a follower's motion.
+struct ClipPart {
+  enum class Kind {
+    kPending,  // nothing is ready; on_progress will be called
+    kFrames,   // frames[0, n) follow those taken before
+    kEnd,      // every frame was taken
+    kFailed    // error says why; there will be nothing more
+  };
+  Kind kind = Kind::kPending;
+  std::vector<Vec3> frames;  // [n, joints], n >= 1
+  absl::Status error;
+};
+
+// Drives one clip through the scheduler, a window at a time, and holds what is finished until the
+// reader takes it. A reader that does not take pauses its own clip: memory stays bounded by
+// buffered_frames and one window.
+//
+//   auto stream = std::make_shared<ClipStream>(model, clip, options, scheduler, on_progress);
+//   absl::Status admitted = stream->Start();
+//   ... on_progress: while ((part = stream->Take(30)).kind == kFrames) send(part.frames) ...
+//
+// Threads: safe to call concurrently. on_progress runs on the scheduler's threads, under no lock.
+class ClipStream : public std::enable_shared_from_this<ClipStream> {
+ public:
+  // `scheduler` outlives every job given to it. The model is held until the last job is done.
+  ClipStream(std::shared_ptr<const Synthesizer> model, ClipRequest request,
+             const ClipStreamOptions& options, WindowScheduler& scheduler,
+             std::function<void()> on_progress);
+
+  // Schedules the first window. A failure is the scheduler's refusal; nothing was begun then.
+  // Call once.
+  absl::Status Start();
+
+  // Takes at most `max_frames` (1 or more) of what is ready.
+  ClipPart Take(int max_frames);
+
+  // Nobody wants the rest: a window that has not started never will. on_progress is not called
+  // for it.
+  void Cancel();
+
+  int frame_count() const { return clip_.frame_count(); }
+  ClipStreamStats stats() const;
+
+ private:
+  bool WantsWindow() const DUET_REQUIRES(mutex_);
+  absl::Status ScheduleNext(bool continues_call);
+  void ScheduleIfWanted();
+  void OnWindow(const WindowOutcome& outcome);
+  absl::Status Check(const WindowResult& result) const;
+  void Keep(const absl::Status& status, const std::vector<Vec3>& frames,
+            const WindowTimings& timings) DUET_EXCLUDES(mutex_);
+
+  const std::shared_ptr<const Synthesizer> model_;
+  const std::size_t joints_;
+  const ClipStreamOptions options_;
+  WindowScheduler& scheduler_;
+  const std::function<void()> on_progress_;
+  const std::shared_ptr<std::atomic<bool>> cancelled_;
+
+  // Touched only by whoever set in_flight_, until it clears it; frame_count() is constant.
+  ClipSynthesis clip_;
+  std::size_t expected_positions_ = 0;  // of the window in flight
+
+  mutable Mutex mutex_;
+  bool in_flight_ DUET_GUARDED_BY(mutex_) = false;
+  std::vector<Vec3> ready_ DUET_GUARDED_BY(mutex_);  // [n, joints]
+  std::size_t taken_ DUET_GUARDED_BY(mutex_) = 0;    // values of ready_ already handed out
+  absl::Status error_ DUET_GUARDED_BY(mutex_);
+  ClipStreamStats stats_ DUET_GUARDED_BY(mutex_);
+};
+
+}  // namespace duet
+
+#endif  // DUET_SERVER_SERVICE_CLIP_STREAM_H_

@@ -1,0 +1,50 @@
+#include "server/service/model_message.h"
+
+#include <string>
+
+namespace duet {
+
+ModelQuery ToQuery(const v1::ModelSelector& selector) {
+  ModelQuery query;
+  query.name = selector.name();
+  if (selector.has_version()) query.version = selector.version();
+  if (selector.has_version_label()) query.version_label = selector.version_label();
+  return query;
+}
+
+v1::Model ToMessage(const ServedModel& served) {
+  const ModelDescription& model = served.model->description();
+  v1::Model message;
+  message.set_name(model.name);
+  message.set_version(static_cast<uint32_t>(model.version));
+  for (const std::string& label : served.version_labels) message.add_version_labels(label);
+  message.set_is_default(served.is_default);
+  for (const std::string& name : model.classes) message.add_interaction_classes(name);
+  for (const std::string& name : model.skeleton.joint_names) message.add_joint_names(name);
+  for (const Bone& bone : model.skeleton.bones) {
+    v1::Bone* added = message.add_bones();
+    added->set_parent_joint(static_cast<uint32_t>(bone.parent));
+    added->set_child_joint(static_cast<uint32_t>(bone.child));
+  }
+  message.set_root_joint(model.skeleton.joint_names[static_cast<std::size_t>(model.skeleton.root)]);
+  message.set_frame_rate_hz(model.frame_rate_hz);
+  message.set_window_frames(static_cast<uint32_t>(model.window_frames));
+  message.set_accepts_follower_start(model.accepts_follower_start);
+  message.set_description(model.description);
+  return message;
+}
+
+v1::RequestLimits ToMessage(const RequestLimits& limits) {
+  v1::RequestLimits message;
+  message.set_min_frame_rate_hz(limits.min_frame_rate_hz);
+  message.set_max_frame_rate_hz(limits.max_frame_rate_hz);
+  message.set_min_frames(static_cast<uint32_t>(limits.min_frames));
+  message.set_max_duration_seconds(limits.max_duration_seconds);
+  message.set_max_chunk_frames(static_cast<uint32_t>(limits.max_chunk_frames));
+  message.set_max_label_keyframes(static_cast<uint32_t>(limits.max_label_keyframes));
+  message.set_max_abs_weight(limits.max_abs_weight);
+  message.set_max_request_bytes(limits.max_request_bytes);
+  return message;
+}
+
+}  // namespace duet

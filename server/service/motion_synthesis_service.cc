@@ -1,0 +1,127 @@
+#include "server/service/motion_synthesis_service.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "server/service/call_identity.h"
+#include "server/service/call_scope.h"
+#include "server/service/grpc_status.h"
+#include "server/service/model_message.h"
+#include "server/service/refusals.h"
+#include "server/service/synthesize_reactor.h"
+#include "server/service/validator.h"
+
+namespace duet {
+namespace {
+
+constexpr MethodInfo Method(std::string_view name, std::string_view type) {
+  return {MotionSynthesisService::kServiceName, name, type};
+}
+constexpr MethodInfo kSynthesize = Method("Synthesize", "server_stream");
+constexpr MethodInfo kListModels = Method("ListModels", "unary");
+constexpr MethodInfo kGetModel = Method("GetModel", "unary");
+
+// A call's deadline on the scheduler's clock.
+TimePoint DeadlineOf(const grpc::CallbackServerContext& context, const Clock& clock) {
+  const auto left = context.deadline() - std::chrono::system_clock::now();
+  // "No deadline" is so far away that adding to it overflows; beyond a day is as good as none.
+  if (left > std::chrono::hours(24)) return TimePoint::max();
+  return clock.Now() + std::chrono::duration_cast<TimePoint::duration>(left);
+}
+
+grpc::ServerUnaryReactor* FinishUnary(grpc::CallbackServerContext* context, CallScope& scope,
+                                      const absl::Status& status) {
+  scope.Finish(status);
+  AddRetryPushback(status, *context);
+  grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
+  reactor->Finish(ToGrpcStatus(status));
+  return reactor;
+}
+
+}  // namespace
+
+grpc::ServerWriteReactor<v1::SynthesizeResponse>* MotionSynthesisService::Synthesize(
+    grpc::CallbackServerContext* context, const v1::SynthesizeRequest* request) {
+  auto scope = std::make_unique<CallScope>(kSynthesize, IdentifyCall(*context), parts_.observers,
+                                           *parts_.clock);
+  auto* reactor = new SynthesizeReactor(*context);
+  absl::StatusOr<SynthesisCall::Parts> prepared = Prepare(*context, *request);
+  if (!prepared.ok()) {
+    scope->Finish(prepared.status());
+    reactor->Refuse(prepared.status());
+    return reactor;
+  }
+  prepared->scope = std::move(scope);
+  auto call = SynthesisCall::Create(*std::move(prepared), *parts_.scheduler, *reactor);
+  Remember(call);
+  reactor->Run(std::move(call));
+  return reactor;
+}
+
+absl::StatusOr<SynthesisCall::Parts> MotionSynthesisService::Prepare(
+    const grpc::CallbackServerContext& context, const v1::SynthesizeRequest& request) {
+  const std::size_t bytes = request.ByteSizeLong();
+  if (bytes > parts_.limits.max_request_bytes) {
+    return TooLargeRefusal(bytes, parts_.limits.max_request_bytes);
+  }
+  const Priority priority =
+      request.priority() == v1::PRIORITY_BULK ? Priority::kBulk : Priority::kInteractive;
+  absl::StatusOr<AdmissionSlot> slot = parts_.admission->Admit(priority);
+  if (!slot.ok()) return slot.status();
+  absl::StatusOr<ServedModel> served = parts_.registry->Find(ToQuery(request.model()));
+  if (!served.ok()) return ModelNotFoundRefusal(served.status());
+  absl::StatusOr<ValidatedRequest> validated =
+      ValidateRequest(request, served->model->description(), parts_.limits);
+  if (!validated.ok()) return validated.status();
+  return SynthesisCall::Parts{
+      std::move(served->model),           *std::move(validated), *std::move(slot), nullptr,
+      DeadlineOf(context, *parts_.clock), parts_.buffered_frames};
+}
+
+grpc::ServerUnaryReactor* MotionSynthesisService::ListModels(grpc::CallbackServerContext* context,
+                                                             const v1::ListModelsRequest*,
+                                                             v1::ListModelsResponse* response) {
+  CallScope scope(kListModels, IdentifyCall(*context), parts_.observers, *parts_.clock);
+  const absl::Status serving = parts_.admission->CheckServing();
+  if (!serving.ok()) return FinishUnary(context, scope, serving);
+  for (const ServedModel& served : parts_.registry->List()) {
+    *response->add_models() = ToMessage(served);
+  }
+  return FinishUnary(context, scope, absl::OkStatus());
+}
+
+grpc::ServerUnaryReactor* MotionSynthesisService::GetModel(grpc::CallbackServerContext* context,
+                                                           const v1::GetModelRequest* request,
+                                                           v1::GetModelResponse* response) {
+  CallScope scope(kGetModel, IdentifyCall(*context), parts_.observers, *parts_.clock);
+  const absl::Status serving = parts_.admission->CheckServing();
+  if (!serving.ok()) return FinishUnary(context, scope, serving);
+  const absl::StatusOr<ServedModel> served = parts_.registry->Find(ToQuery(request->model()));
+  if (!served.ok()) return FinishUnary(context, scope, ModelNotFoundRefusal(served.status()));
+  *response->mutable_model() = ToMessage(*served);
+  *response->mutable_limits() = ToMessage(parts_.limits);
+  return FinishUnary(context, scope, absl::OkStatus());
+}
+
+void MotionSynthesisService::Remember(const std::shared_ptr<SynthesisCall>& call) {
+  MutexLock lock(mutex_);
+  // Admission bounds how many are alive, and so what this costs.
+  calls_.erase(
+      std::remove_if(calls_.begin(), calls_.end(), [](const auto& weak) { return weak.expired(); }),
+      calls_.end());
+  calls_.push_back(call);
+}
+
+void MotionSynthesisService::AbortAll(const absl::Status& reason) {
+  std::vector<std::weak_ptr<SynthesisCall>> calls;
+  {
+    MutexLock lock(mutex_);
+    calls = calls_;
+  }
+  for (const std::weak_ptr<SynthesisCall>& weak : calls) {
+    if (const auto call = weak.lock()) call->Abort(reason);
+  }
+}
+
+}  // namespace duet

@@ -1,0 +1,65 @@
+#ifndef DUET_SERVER_SERVICE_MOTION_SYNTHESIS_SERVICE_H_
+#define DUET_SERVER_SERVICE_MOTION_SYNTHESIS_SERVICE_H_
+
+#include <memory>
+#include <vector>
+
+#include "duet/v1/synthesis.grpc.pb.h"
+#include "server/batching/clock.h"
+#include "server/batching/mutex.h"
+#include "server/batching/window_scheduler.h"
+#include "server/metrics/call_record.h"
+#include "server/registry/model_registry.h"
+#include "server/service/admission.h"
+#include "server/service/request_limits.h"
+#include "server/service/synthesis_call.h"
+
+namespace duet {
+
+// What the service works with. Everything outlives the service and its calls.
+struct ServiceParts {
+  ModelRegistry* registry = nullptr;
+  WindowScheduler* scheduler = nullptr;
+  Admission* admission = nullptr;
+  std::vector<CallObserver*> observers;
+  const Clock* clock = &Clock::Real();
+  RequestLimits limits;
+  int buffered_frames = 240;  // see ClipStreamOptions
+};
+
+// The contract's service, on gRPC's callback API: no method blocks.
+//
+// A Synthesize request goes admission -> model -> validator -> SynthesisCall, which lives until its
+// last reply was taken or the caller went away.
+class MotionSynthesisService final : public v1::MotionSynthesis::CallbackService {
+ public:
+  static constexpr char kServiceName[] = "duet.v1.MotionSynthesis";
+
+  explicit MotionSynthesisService(ServiceParts parts) : parts_(std::move(parts)) {}
+
+  grpc::ServerWriteReactor<v1::SynthesizeResponse>* Synthesize(
+      grpc::CallbackServerContext* context, const v1::SynthesizeRequest* request) override;
+  grpc::ServerUnaryReactor* ListModels(grpc::CallbackServerContext* context,
+                                       const v1::ListModelsRequest* request,
+                                       v1::ListModelsResponse* response) override;
+  grpc::ServerUnaryReactor* GetModel(grpc::CallbackServerContext* context,
+                                     const v1::GetModelRequest* request,
+                                     v1::GetModelResponse* response) override;
+
+  // Ends every call that is still being answered.
+  void AbortAll(const absl::Status& reason);
+
+ private:
+  // Admits and checks a request. On failure the scope is left to its caller.
+  absl::StatusOr<SynthesisCall::Parts> Prepare(const grpc::CallbackServerContext& context,
+                                               const v1::SynthesizeRequest& request);
+  void Remember(const std::shared_ptr<SynthesisCall>& call);
+
+  const ServiceParts parts_;
+  Mutex mutex_;
+  std::vector<std::weak_ptr<SynthesisCall>> calls_ DUET_GUARDED_BY(mutex_);
+};
+
+}  // namespace duet
+
+#endif  // DUET_SERVER_SERVICE_MOTION_SYNTHESIS_SERVICE_H_

@@ -1,0 +1,32 @@
+#ifndef DUET_SERVER_SERVICE_REFUSALS_H_
+#define DUET_SERVER_SERVICE_REFUSALS_H_
+
+#include <cstddef>
+#include <string>
+
+#include "absl/status/status.h"
+
+namespace duet {
+
+// What callers are told when the server cannot or will not answer, complete with google.rpc
+// details. Refusals of malformed requests come from Violations.
+
+// UNAVAILABLE: models are still being loaded.
+absl::Status LoadingRefusal();
+// UNAVAILABLE: the server is going away; another replica, or this one restarted, will answer.
+absl::Status DrainingRefusal();
+// RESOURCE_EXHAUSTED: as many calls are being answered as may be.
+absl::Status TooManyCallsRefusal(std::size_t calls, std::size_t limit);
+// RESOURCE_EXHAUSTED: the scheduler's refusal with RetryInfo. Other codes: DrainingRefusal, the
+// only other cause.
+absl::Status QueueRefusal(const absl::Status& scheduler_status);
+// RESOURCE_EXHAUSTED: the message is larger than the limit.
+absl::Status TooLargeRefusal(std::size_t bytes, std::size_t limit);
+// NOT_FOUND with the violated field, from the registry's "field: what came; what is served".
+absl::Status ModelNotFoundRefusal(const absl::Status& registry_status);
+// INTERNAL: the model failed; nothing of its own words.
+absl::Status ModelFailedRefusal(const std::string& request_id);
+
+}  // namespace duet
+
+#endif  // DUET_SERVER_SERVICE_REFUSALS_H_

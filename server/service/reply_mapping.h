@@ -1,0 +1,31 @@
+#ifndef DUET_SERVER_SERVICE_REPLY_MAPPING_H_
+#define DUET_SERVER_SERVICE_REPLY_MAPPING_H_
+
+#include <string>
+#include <vector>
+
+#include "duet/v1/motion.pb.h"
+#include "duet/v1/synthesis.pb.h"
+#include "model/motion/coordinates.h"
+#include "model/motion/vec3.h"
+
+namespace duet {
+
+// How the model's follower becomes the caller's: joints, order, unit and up axis.
+struct ReplyMapping {
+  CoordinateFrame frame;
+  std::vector<int> joints;               // for every joint of the reply, its index in the model
+  std::vector<std::string> joint_names;  // the same by name
+  // The leader's, repeated in the header.
+  v1::LengthUnit unit = v1::LENGTH_UNIT_UNSPECIFIED;
+  v1::UpAxis up_axis = v1::UP_AXIS_UNSPECIFIED;
+  double frame_rate_hz = 0;
+};
+
+// Fills in a chunk. Shapes: frames [n, model_joints], the model's joint order, world metres.
+void FillChunk(const ReplyMapping& reply, const std::vector<Vec3>& frames, int model_joints,
+               int first_frame, v1::MotionChunk& chunk);
+
+}  // namespace duet
+
+#endif  // DUET_SERVER_SERVICE_REPLY_MAPPING_H_

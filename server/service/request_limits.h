@@ -1,0 +1,26 @@
+#ifndef DUET_SERVER_SERVICE_REQUEST_LIMITS_H_
+#define DUET_SERVER_SERVICE_REQUEST_LIMITS_H_
+
+#include <cstddef>
+
+namespace duet {
+
+// What a request must keep to. GetModel tells callers; every refusal names the limit it enforces.
+struct RequestLimits {
+  double min_frame_rate_hz = 1;
+  double max_frame_rate_hz = 240;
+  int min_frames = 2;
+  double max_duration_seconds = 600;
+  int max_chunk_frames = 240;
+  int default_chunk_frames = 30;
+  int max_label_keyframes = 4096;
+  float max_abs_weight = 2;
+  // Beyond any room; also keeps float arithmetic on positions meaningful.
+  float max_abs_coordinate_metres = 10000;
+  // 10 minutes of 15 joints at 240 Hz are 26 MB.
+  std::size_t max_request_bytes = std::size_t{32} << 20;
+};
+
+}  // namespace duet
+
+#endif  // DUET_SERVER_SERVICE_REQUEST_LIMITS_H_

@@ -1,0 +1,190 @@
+#include "server/service/synthesis_call.h"
+
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "server/service/refusals.h"
+
+namespace duet {
+namespace {
+
+std::string_view PriorityName(Priority priority) {
+  return priority == Priority::kBulk ? "bulk" : "interactive";
+}
+
+// Failures of a window that are the model's, not the caller's or the server's own.
+bool IsModelFailure(const absl::Status& status) {
+  return !absl::IsCancelled(status) && !absl::IsDeadlineExceeded(status) &&
+         !absl::IsUnavailable(status);
+}
+
+}  // namespace
+
+std::shared_ptr<SynthesisCall> SynthesisCall::Create(Parts parts, WindowScheduler& scheduler,
+                                                     ReplyWriter& writer) {
+  ClipStreamOptions options;
+  options.priority = parts.request.priority;
+  options.deadline = parts.deadline;
+  options.buffered_frames = parts.buffered_frames;
+  ClipRequest clip = std::move(parts.request.clip);
+  std::shared_ptr<SynthesisCall> call(new SynthesisCall(std::move(parts), writer));
+  // The clip outlives a finished call while its last window runs; it must not keep it.
+  call->stream_ = std::make_shared<ClipStream>(call->model_, std::move(clip), options, scheduler,
+                                               [weak = std::weak_ptr<SynthesisCall>(call)] {
+                                                 if (const auto alive = weak.lock())
+                                                   alive->Advance();
+                                               });
+  return call;
+}
+
+SynthesisCall::SynthesisCall(Parts parts, ReplyWriter& writer)
+    : model_(std::move(parts.model)),
+      reply_mapping_(std::move(parts.request.reply)),
+      chunk_frames_(parts.request.chunk_frames),
+      writer_(writer),
+      slot_(std::move(parts.slot)),
+      scope_(std::move(parts.scope)) {
+  CallRecord& record = scope_->record();
+  record.model = model_->description().name;
+  record.version = model_->description().version;
+  record.priority = PriorityName(parts.request.priority);
+}
+
+void SynthesisCall::Start() {
+  const absl::Status scheduled = stream_->Start();
+  if (!scheduled.ok()) Abort(QueueRefusal(scheduled));
+  Advance();
+}
+
+void SynthesisCall::OnWritten(bool ok) {
+  {
+    MutexLock lock(mutex_);
+    state_ = State::kIdle;
+    if (!ok && !end_.has_value()) end_ = absl::CancelledError("the caller went away");
+    if (!ok) stream_->Cancel();
+  }
+  Advance();
+}
+
+void SynthesisCall::Abort(const absl::Status& reason) {
+  {
+    MutexLock lock(mutex_);
+    if (!end_.has_value()) end_ = reason;
+  }
+  stream_->Cancel();
+  Advance();
+}
+
+void SynthesisCall::Advance() {
+  // The writer's Finish may drop the last other reference.
+  const std::shared_ptr<SynthesisCall> self = shared_from_this();
+  std::optional<absl::Status> end;
+  {
+    MutexLock lock(mutex_);
+    if (state_ != State::kIdle) return;
+    const bool write = !end_.has_value() && PrepareReply();
+    if (!write && !end_.has_value()) return;
+    state_ = write ? State::kWriting : State::kFinished;
+    if (!write) end = end_;
+  }
+  if (end.has_value()) {
+    Finish(*end);
+  } else {
+    writer_.Write(reply_);
+  }
+}
+
+bool SynthesisCall::PrepareReply() {
+  switch (next_) {
+    case Next::kHeader:
+      PrepareHeader();
+      next_ = Next::kFrames;
+      return true;
+    case Next::kFrames:
+      return PrepareFrames();
+    case Next::kEnd:
+      end_ = absl::OkStatus();
+      break;
+  }
+  return false;
+}
+
+bool SynthesisCall::PrepareFrames() {
+  const ClipPart part = stream_->Take(chunk_frames_);
+  switch (part.kind) {
+    case ClipPart::Kind::kPending:
+      return false;
+    case ClipPart::Kind::kFrames:
+      PrepareChunk(part);
+      return true;
+    case ClipPart::Kind::kEnd:
+      PrepareSummary();
+      next_ = Next::kEnd;
+      return true;
+    case ClipPart::Kind::kFailed:
+      break;
+  }
+  if (IsModelFailure(part.error)) {
+    scope_->record().cause = part.error.ToString();
+    end_ = ModelFailedRefusal(scope_->record().request_id);
+  } else {
+    end_ = absl::IsUnavailable(part.error) ? DrainingRefusal() : part.error;
+  }
+  return false;
+}
+
+void SynthesisCall::PrepareHeader() {
+  v1::SynthesisHeader& header = *reply_.mutable_header();
+  const ModelDescription& model = model_->description();
+  header.set_model_name(model.name);
+  header.set_model_version(static_cast<uint32_t>(model.version));
+  for (const std::string& name : reply_mapping_.joint_names) header.add_joint_names(name);
+  header.set_frame_rate_hz(reply_mapping_.frame_rate_hz);
+  header.set_unit(reply_mapping_.unit);
+  header.set_up_axis(reply_mapping_.up_axis);
+  header.set_frame_count(static_cast<uint32_t>(stream_->frame_count()));
+  for (const std::string& name : model.classes) header.add_interaction_classes(name);
+  header.set_request_id(scope_->record().request_id);
+}
+
+void SynthesisCall::PrepareChunk(const ClipPart& part) {
+  CallRecord& record = scope_->record();
+  if (record.chunks == 0) record.first_chunk_seconds = scope_->ElapsedSeconds();
+  v1::MotionChunk& chunk = *reply_.mutable_chunk();
+  chunk.Clear();
+  FillChunk(reply_mapping_, part.frames, model_->description().skeleton.joint_count(),
+            record.frames, chunk);
+  ++record.chunks;
+  record.frames += static_cast<int>(chunk.frame_count());
+}
+
+void SynthesisCall::PrepareSummary() {
+  const ClipStreamStats stats = stream_->stats();
+  const CallRecord& record = scope_->record();
+  v1::SynthesisSummary& summary = *reply_.mutable_summary();
+  summary.set_frame_count(static_cast<uint32_t>(record.frames));
+  summary.set_chunk_count(static_cast<uint32_t>(record.chunks));
+  summary.set_window_count(static_cast<uint32_t>(stats.windows));
+  summary.set_queue_seconds(stats.queue_seconds);
+  summary.set_compute_seconds(stats.compute_seconds);
+}
+
+void SynthesisCall::Finish(const absl::Status& status) {
+  const ClipStreamStats stats = stream_->stats();
+  {
+    MutexLock lock(mutex_);
+    CallRecord& record = scope_->record();
+    record.windows = stats.windows;
+    record.queue_seconds = stats.queue_seconds;
+    record.compute_seconds = stats.compute_seconds;
+    record.peak_buffered_frames = stats.peak_buffered_frames;
+    // Before the caller can know, so that whoever sees the status finds it counted, and the place
+    // free.
+    scope_->Finish(status);
+    slot_ = AdmissionSlot();
+  }
+  writer_.Finish(status);
+}
+
+}  // namespace duet

@@ -1,0 +1,94 @@
+#ifndef DUET_SERVER_SERVICE_SYNTHESIS_CALL_H_
+#define DUET_SERVER_SERVICE_SYNTHESIS_CALL_H_
+
+#include <memory>
+#include <optional>
+
+#include "absl/status/status.h"
+#include "duet/v1/synthesis.pb.h"
+#include "model/engine/synthesizer.h"
+#include "server/batching/mutex.h"
+#include "server/batching/window_scheduler.h"
+#include "server/service/admission.h"
+#include "server/service/call_scope.h"
+#include "server/service/clip_stream.h"
+#include "server/service/validator.h"
+
+namespace duet {
+
+// Where a call's replies go: a gRPC reactor, or a test.
+class ReplyWriter {
+ public:
+  virtual ~ReplyWriter() = default;
+  // Begins to write; SynthesisCall::OnWritten follows, never within Write. `reply` lives till then.
+  virtual void Write(const v1::SynthesizeResponse& reply) = 0;
+  // Ends the call. Nothing is called on the writer afterwards.
+  virtual void Finish(const absl::Status& status) = 0;
+};
+
+// One admitted Synthesize call: pulls finished frames from its clip as fast as its reader takes
+// them, and writes header, chunks and summary, one at a time.
+//
+// The writer is touched only by whoever moved the call from idle to writing or finished, so that it
+// may go as soon as it was finished, whatever a worker is still doing.
+//
+// Threads: safe to call concurrently.
+class SynthesisCall : public std::enable_shared_from_this<SynthesisCall> {
+ public:
+  // What a call is made of.
+  struct Parts {
+    std::shared_ptr<const Synthesizer> model;
+    ValidatedRequest request;
+    AdmissionSlot slot;
+    std::unique_ptr<CallScope> scope;
+    TimePoint deadline = TimePoint::max();
+    int buffered_frames = 240;
+  };
+
+  // `scheduler` and `writer` as in their comments.
+  static std::shared_ptr<SynthesisCall> Create(Parts parts, WindowScheduler& scheduler,
+                                               ReplyWriter& writer);
+
+  // Schedules the first window, and writes the header once that was taken; a refusal finishes the
+  // call before any header. Call once.
+  void Start();
+
+  // The writer's answer to Write.
+  void OnWritten(bool ok);
+
+  // Ends the call early: a window that has not started never will. The first reason counts.
+  void Abort(const absl::Status& reason);
+
+ private:
+  enum class State { kIdle, kWriting, kFinished };
+  enum class Next { kHeader, kFrames, kEnd };
+
+  SynthesisCall(Parts parts, ReplyWriter& writer);
+
+  void Advance();
+  // Moves on from kIdle where there is something to do. True: reply_ is to be written.
+  bool PrepareReply() DUET_REQUIRES(mutex_);
+  bool PrepareFrames() DUET_REQUIRES(mutex_);
+  void PrepareHeader() DUET_REQUIRES(mutex_);
+  void PrepareChunk(const ClipPart& part) DUET_REQUIRES(mutex_);
+  void PrepareSummary() DUET_REQUIRES(mutex_);
+  void Finish(const absl::Status& status);
+
+  const std::shared_ptr<const Synthesizer> model_;
+  const ReplyMapping reply_mapping_;
+  const int chunk_frames_;
+  ReplyWriter& writer_;
+  std::shared_ptr<ClipStream> stream_;
+
+  Mutex mutex_;
+  State state_ DUET_GUARDED_BY(mutex_) = State::kIdle;
+  Next next_ DUET_GUARDED_BY(mutex_) = Next::kHeader;
+  std::optional<absl::Status> end_ DUET_GUARDED_BY(mutex_);  // how the call is to finish
+  v1::SynthesizeResponse reply_;                             // owned by the writer while kWriting
+  AdmissionSlot slot_ DUET_GUARDED_BY(mutex_);
+  std::unique_ptr<CallScope> scope_ DUET_GUARDED_BY(mutex_);
+};
+
+}  // namespace duet
+
+#endif  // DUET_SERVER_SERVICE_SYNTHESIS_CALL_H_

@@ -1,0 +1,38 @@
+#ifndef DUET_SERVER_SERVICE_SYNTHESIZE_REACTOR_H_
+#define DUET_SERVER_SERVICE_SYNTHESIZE_REACTOR_H_
+
+#include <grpcpp/support/server_callback.h>
+
+#include <memory>
+
+#include "absl/status/status.h"
+#include "duet/v1/synthesis.pb.h"
+#include "server/service/synthesis_call.h"
+
+namespace duet {
+
+// Joins a SynthesisCall to gRPC. Deletes itself when gRPC is done with it.
+class SynthesizeReactor final : public grpc::ServerWriteReactor<v1::SynthesizeResponse>,
+                                public ReplyWriter {
+ public:
+  explicit SynthesizeReactor(grpc::CallbackServerContext& context) : context_(context) {}
+
+  // Call one of the two, once.
+  void Run(std::shared_ptr<SynthesisCall> call);
+  void Refuse(const absl::Status& status) { Finish(status); }
+
+  void Write(const v1::SynthesizeResponse& reply) override { StartWrite(&reply); }
+  void Finish(const absl::Status& status) override;
+
+  void OnWriteDone(bool ok) override { call_->OnWritten(ok); }
+  void OnCancel() override;
+  void OnDone() override { delete this; }
+
+ private:
+  grpc::CallbackServerContext& context_;
+  std::shared_ptr<SynthesisCall> call_;
+};
+
+}  // namespace duet
+
+#endif  // DUET_SERVER_SERVICE_SYNTHESIZE_REACTOR_H_

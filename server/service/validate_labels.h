@@ -1,0 +1,23 @@
+#ifndef DUET_SERVER_SERVICE_VALIDATE_LABELS_H_
+#define DUET_SERVER_SERVICE_VALIDATE_LABELS_H_
+
+#include <vector>
+
+#include "duet/v1/synthesis.pb.h"
+#include "model/engine/label_track.h"
+#include "model/engine/model_description.h"
+#include "server/service/request_limits.h"
+#include "server/service/violations.h"
+
+namespace duet {
+
+// Reads the request's label vector or keyframes, in the model's class order; a single label vector
+// is one keyframe at frame 0. Adds a violation for everything that is wrong, and the result is
+// meaningful only when there was none.
+std::vector<LabelKeyframe> ValidateLabels(const v1::SynthesizeRequest& request,
+                                          const ModelDescription& model,
+                                          const RequestLimits& limits, Violations& violations);
+
+}  // namespace duet
+
+#endif  // DUET_SERVER_SERVICE_VALIDATE_LABELS_H_

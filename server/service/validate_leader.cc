@@ -1,0 +1,198 @@
+#include "server/service/validate_leader.h"
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+
+namespace duet {
+namespace {
+
+// Offending values that are named one by one.
+constexpr int kNamedValues = 3;
+
+std::string At(absl::string_view field, int index) { return absl::StrCat(field, "[", index, "]"); }
+
+std::string EnumValue(const std::string& name, int number) {
+  return name.empty() ? absl::StrCat(number) : name;
+}
+
+std::optional<LengthUnit> ToUnit(v1::LengthUnit unit) {
+  switch (unit) {
+    case v1::LENGTH_UNIT_METRES:
+      return LengthUnit::kMetres;
+    case v1::LENGTH_UNIT_MILLIMETRES:
+      return LengthUnit::kMillimetres;
+    case v1::LENGTH_UNIT_SBU_NORMALISED:
+      return LengthUnit::kSbuNormalised;
+    default:
+      return std::nullopt;
+  }
+}
+
+std::optional<UpAxis> ToUpAxis(v1::UpAxis axis) {
+  switch (axis) {
+    case v1::UP_AXIS_Y_UP:
+      return UpAxis::kYUp;
+    case v1::UP_AXIS_Z_UP:
+      return UpAxis::kZUp;
+    case v1::UP_AXIS_Y_DOWN:
+      return UpAxis::kYDown;
+    default:
+      return std::nullopt;
+  }
+}
+
+void NameMissingJoints(const ModelDescription& model, const std::vector<int>& first_use,
+                       Violations& violations) {
+  std::vector<std::string> missing;
+  for (int joint = 0; joint < model.skeleton.joint_count(); ++joint) {
+    if (first_use[joint] < 0) missing.push_back(model.skeleton.joint_names[joint]);
+  }
+  if (missing.empty()) return;
+  violations.Mismatch("leader.joint_names",
+                      absl::StrCat("lacks ", absl::StrJoin(missing, ", "), "; wanted all ",
+                                   model.skeleton.joint_count(), " joints of model ", model.name));
+}
+
+}  // namespace
+
+std::optional<CoordinateFrame> ValidateCoordinateFrame(const v1::Motion& leader,
+                                                       Violations& violations) {
+  const std::optional<LengthUnit> unit = ToUnit(leader.unit());
+  const std::optional<UpAxis> up_axis = ToUpAxis(leader.up_axis());
+  if (!unit.has_value()) {
+    violations.Malformed(
+        "leader.unit",
+        absl::StrCat("is ", EnumValue(v1::LengthUnit_Name(leader.unit()), leader.unit()),
+                     ", wanted LENGTH_UNIT_METRES, LENGTH_UNIT_MILLIMETRES or "
+                     "LENGTH_UNIT_SBU_NORMALISED"));
+  }
+  if (!up_axis.has_value()) {
+    violations.Malformed(
+        "leader.up_axis",
+        absl::StrCat("is ", EnumValue(v1::UpAxis_Name(leader.up_axis()), leader.up_axis()),
+                     ", wanted UP_AXIS_Y_UP, UP_AXIS_Z_UP or UP_AXIS_Y_DOWN"));
+  }
+  if (!unit.has_value() || !up_axis.has_value()) return std::nullopt;
+  if (*unit == LengthUnit::kSbuNormalised && *up_axis != UpAxis::kYDown) {
+    violations.Malformed("leader.up_axis",
+                         absl::StrCat("is ", v1::UpAxis_Name(leader.up_axis()),
+                                      ", wanted UP_AXIS_Y_DOWN with LENGTH_UNIT_SBU_NORMALISED"));
+    return std::nullopt;
+  }
+  return CoordinateFrame{*unit, *up_axis};
+}
+
+std::vector<int> ValidateJoints(const v1::Motion& leader, const ModelDescription& model,
+                                Violations& violations) {
+  const int count = leader.joint_names_size();
+  if (count > kMaxJointNames) {
+    violations.Mismatch("leader.joint_names", absl::StrCat("has ", count, " names, wanted the ",
+                                                           model.skeleton.joint_count(),
+                                                           " joints of model ", model.name));
+    return {};
+  }
+  std::vector<int> joints;
+  std::vector<int> first_use(model.skeleton.joint_names.size(), -1);
+  bool fits = true;
+  for (int i = 0; i < count; ++i) {
+    const std::string& name = leader.joint_names(i);
+    const int joint = model.skeleton.Find(name);
+    joints.push_back(joint);
+    if (joint < 0) {
+      violations.Mismatch(At("leader.joint_names", i),
+                          absl::StrCat("is ", Quoted(name), ", which is no joint of model ",
+                                       model.name, "; GetModel lists them"));
+    } else if (first_use[joint] >= 0) {
+      violations.Mismatch(At("leader.joint_names", i),
+                          absl::StrCat("is ", Quoted(name), ", which joint_names[",
+                                       first_use[joint], "] is already; wanted each joint once"));
+    } else {
+      first_use[joint] = i;
+      continue;
+    }
+    fits = false;
+  }
+  NameMissingJoints(model, first_use, violations);
+  if (!fits || count != model.skeleton.joint_count()) return {};
+  return joints;
+}
+
+void ValidateTiming(const v1::Motion& leader, const RequestLimits& limits, Violations& violations) {
+  const double rate = leader.frame_rate_hz();
+  const bool rate_fits = rate >= limits.min_frame_rate_hz && rate <= limits.max_frame_rate_hz;
+  if (!rate_fits) {
+    violations.Malformed("leader.frame_rate_hz",
+                         absl::StrCat("is ", rate, ", wanted ", limits.min_frame_rate_hz, " to ",
+                                      limits.max_frame_rate_hz, " frames a second"));
+  }
+  const uint32_t frames = leader.frame_count();
+  if (frames < static_cast<uint32_t>(limits.min_frames)) {
+    violations.Malformed("leader.frame_count",
+                         absl::StrCat("is ", frames, ", wanted ", limits.min_frames, " or more"));
+  } else if (rate_fits && frames > limits.max_duration_seconds * rate) {
+    violations.Malformed(
+        "leader.frame_count",
+        absl::StrCat("is ", frames, ", which lasts ", frames / rate, " s at ", rate,
+                     " frames a second, wanted at most ", limits.max_duration_seconds, " s"));
+  }
+}
+
+bool ValidateFinite(absl::string_view field,
+                    const google::protobuf::RepeatedField<float>& positions,
+                    Violations& violations) {
+  int found = 0;
+  for (int i = 0; i < positions.size(); ++i) {
+    if (std::isfinite(positions[i])) continue;
+    if (++found <= kNamedValues) {
+      violations.Malformed(At(field, i),
+                           absl::StrCat("is ", positions[i], ", wanted a finite number"));
+    }
+  }
+  if (found > kNamedValues) {
+    violations.Malformed(
+        std::string(field),
+        absl::StrCat("has ", found, " values that are not finite in all, of ", positions.size()));
+  }
+  return found == 0;
+}
+
+std::vector<Vec3> ReadPositions(absl::string_view field,
+                                const google::protobuf::RepeatedField<float>& positions,
+                                const std::vector<int>& joints, const CoordinateFrame& frame,
+                                const RequestLimits& limits, Violations& violations) {
+  const int points = positions.size() / 3;
+  const int joint_count = static_cast<int>(joints.size());
+  const float limit = limits.max_abs_coordinate_metres;
+  std::vector<Vec3> world(points);
+  int too_far = 0;
+  for (int point = 0; point < points; ++point) {
+    const float* xyz = positions.data() + 3 * static_cast<std::ptrdiff_t>(point);
+    const Vec3 position = ToWorld(frame, {xyz[0], xyz[1], xyz[2]});
+    const int frame_start = point / joint_count * joint_count;
+    world[frame_start + joints[point % joint_count]] = position;
+    // Written so that a conversion that overflowed is too far as well.
+    if (std::abs(position.x) <= limit && std::abs(position.y) <= limit &&
+        std::abs(position.z) <= limit) {
+      continue;
+    }
+    if (++too_far <= kNamedValues) {
+      violations.Malformed(
+          absl::StrCat(field, "[", 3 * point, "..", 3 * point + 2, "]"),
+          absl::StrCat("is (", xyz[0], ", ", xyz[1], ", ", xyz[2], "), more than ", limit,
+                       " m from the origin along an axis; is leader.unit right?"));
+    }
+  }
+  if (too_far > kNamedValues) {
+    violations.Malformed(std::string(field),
+                         absl::StrCat("has ", too_far, " positions that are too far away in all"));
+  }
+  if (too_far > 0) world.clear();
+  return world;
+}
+
+}  // namespace duet

@@ -1,0 +1,225 @@
+#include "server/service/validator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "server/service/validate_labels.h"
+#include "server/service/validate_leader.h"
+#include "server/service/violations.h"
+
+namespace duet {
+namespace {
+
+// Walks one request; every method adds what is wrong with its field.
+class Validation {
+ public:
+  Validation(const v1::SynthesizeRequest& request, const ModelDescription& model,
+             const RequestLimits& limits)
+      : request_(request), model_(model), limits_(limits) {}
+
+  absl::StatusOr<ValidatedRequest> Run();
+
+ private:
+  void Leader();
+  std::optional<FollowerStart> Start();
+  std::optional<Vec3> PartnerDirection();
+  std::vector<Vec3> StartPositions(absl::string_view field,
+                                   const google::protobuf::RepeatedField<float>& values,
+                                   const std::vector<int>& joints);
+  void ReplyJoints();
+  int ChunkFrames();
+  Priority CallPriority();
+
+  const v1::SynthesizeRequest& request_;
+  const ModelDescription& model_;
+  const RequestLimits& limits_;
+  Violations violations_;
+
+  std::optional<CoordinateFrame> frame_;
+  std::vector<int> joints_;  // the leader's joints in the model; empty when they do not fit
+  std::vector<Vec3> leader_;
+  ReplyMapping reply_;
+};
+
+void Validation::Leader() {
+  if (!request_.has_leader()) {
+    violations_.Malformed("leader", "is missing");
+    return;
+  }
+  const v1::Motion& leader = request_.leader();
+  joints_ = ValidateJoints(leader, model_, violations_);
+  ValidateTiming(leader, limits_, violations_);
+  frame_ = ValidateCoordinateFrame(leader, violations_);
+
+  const bool finite = ValidateFinite("leader.positions", leader.positions(), violations_);
+  const uint64_t wanted =
+      uint64_t{leader.frame_count()} * static_cast<uint64_t>(leader.joint_names_size()) * 3;
+  if (static_cast<uint64_t>(leader.positions_size()) != wanted) {
+    violations_.Malformed(
+        "leader.positions",
+        absl::StrCat("has ", leader.positions_size(), " values, wanted ", wanted, ": ",
+                     leader.frame_count(), " frames x ", leader.joint_names_size(), " joints x 3"));
+    return;
+  }
+  if (!finite || !frame_.has_value() || joints_.empty()) return;
+  leader_ =
+      ReadPositions("leader.positions", leader.positions(), joints_, *frame_, limits_, violations_);
+}
+
+std::vector<Vec3> Validation::StartPositions(absl::string_view field,
+                                             const google::protobuf::RepeatedField<float>& values,
+                                             const std::vector<int>& joints) {
+  if (!ValidateFinite(field, values, violations_) || !frame_.has_value()) return {};
+  return ReadPositions(field, values, joints, *frame_, limits_, violations_);
+}
+
+std::optional<FollowerStart> Validation::Start() {
+  if (!request_.has_follower_start()) return std::nullopt;
+  if (!model_.accepts_follower_start) {
+    violations_.Mismatch("follower_start",
+                         absl::StrCat("is given, but model ", model_.name, " version ",
+                                      model_.version, " does not accept it"));
+  }
+  const v1::FollowerStart& start = request_.follower_start();
+  if (start.has_root_position()) {
+    google::protobuf::RepeatedField<float> xyz;
+    for (const float value :
+         {start.root_position().x(), start.root_position().y(), start.root_position().z()}) {
+      xyz.Add(value);
+    }
+    const std::vector<Vec3> root = StartPositions("follower_start.root_position", xyz, {0});
+    if (root.empty()) return std::nullopt;
+    return FollowerStart{root.front(), {}};
+  }
+  if (!start.has_pose()) {
+    violations_.Malformed("follower_start.start", "is missing, wanted root_position or pose");
+    return std::nullopt;
+  }
+  const auto& values = start.pose().positions();
+  const int wanted = 3 * request_.leader().joint_names_size();
+  if (values.size() != wanted) {
+    violations_.Malformed("follower_start.pose.positions",
+                          absl::StrCat("has ", values.size(), " values, wanted ", wanted, ": ",
+                                       request_.leader().joint_names_size(), " joints x 3"));
+    return std::nullopt;
+  }
+  if (joints_.empty()) return std::nullopt;
+  std::vector<Vec3> pose = StartPositions("follower_start.pose.positions", values, joints_);
+  if (pose.empty()) return std::nullopt;
+  const Vec3 root = pose[static_cast<std::size_t>(model_.skeleton.root)];
+  return FollowerStart{root, std::move(pose)};
+}
+
+std::optional<Vec3> Validation::PartnerDirection() {
+  if (!request_.has_partner_direction()) return std::nullopt;
+  const v1::Direction& direction = request_.partner_direction();
+  google::protobuf::RepeatedField<float> xyz;
+  for (const float value : {direction.x(), direction.y(), direction.z()}) xyz.Add(value);
+  if (!ValidateFinite("partner_direction", xyz, violations_) || !frame_.has_value()) {
+    return std::nullopt;
+  }
+  // Scaled first, so that neither tiny nor huge components are lost in the conversion.
+  const float largest = std::max({std::abs(xyz[0]), std::abs(xyz[1]), std::abs(xyz[2])});
+  if (largest > 0) {
+    const Vec3 unit = {xyz[0] / largest, xyz[1] / largest, xyz[2] / largest};
+    const Vec3 world = ToWorld(*frame_, unit) - ToWorld(*frame_, {});
+    const float horizontal = std::hypot(world.x, world.z);
+    if (horizontal > 1e-6F * Norm(world)) {
+      return Vec3{world.x / horizontal, 0, world.z / horizontal};
+    }
+  }
+  violations_.Malformed("partner_direction",
+                        absl::StrCat("is (", xyz[0], ", ", xyz[1], ", ", xyz[2],
+                                     "), wanted a direction that is not straight up or down, of "
+                                     "any length but 0"));
+  return std::nullopt;
+}
+
+void Validation::ReplyJoints() {
+  const v1::Motion& leader = request_.leader();
+  reply_.unit = leader.unit();
+  reply_.up_axis = leader.up_axis();
+  reply_.frame_rate_hz = leader.frame_rate_hz();
+  if (frame_.has_value()) reply_.frame = *frame_;
+  const auto& wanted = request_.reply_joint_names();
+  // Compared name by name below; a list that cannot be right must not cost its square.
+  if (leader.joint_names_size() > kMaxJointNames) return;
+  if (wanted.size() > leader.joint_names_size()) {
+    violations_.Malformed("reply_joint_names",
+                          absl::StrCat("has ", wanted.size(), " names, wanted at most the ",
+                                       leader.joint_names_size(), " of leader.joint_names"));
+    return;
+  }
+  for (const std::string& name : wanted.empty() ? leader.joint_names() : wanted) {
+    reply_.joint_names.push_back(name);
+    reply_.joints.push_back(model_.skeleton.Find(name));
+  }
+  const auto& known = leader.joint_names();
+  for (int i = 0; i < wanted.size(); ++i) {
+    const std::string field = absl::StrCat("reply_joint_names[", i, "]");
+    if (std::find(known.begin(), known.end(), wanted[i]) == known.end()) {
+      violations_.Malformed(
+          field, absl::StrCat("is ", Quoted(wanted[i]), ", wanted one of leader.joint_names"));
+    }
+    const auto first = std::find(wanted.begin(), wanted.end(), wanted[i]);
+    if (first - wanted.begin() < i) {
+      violations_.Malformed(
+          field, absl::StrCat("is ", Quoted(wanted[i]), ", which [", first - wanted.begin(),
+                              "] is already; wanted each joint at most once"));
+    }
+  }
+}
+
+int Validation::ChunkFrames() {
+  if (!request_.has_chunk_frames()) return limits_.default_chunk_frames;
+  const uint32_t frames = request_.chunk_frames();
+  if (frames < 1 || frames > static_cast<uint32_t>(limits_.max_chunk_frames)) {
+    violations_.Malformed("chunk_frames",
+                          absl::StrCat("is ", frames, ", wanted 1 to ", limits_.max_chunk_frames));
+  }
+  return static_cast<int>(frames);
+}
+
+Priority Validation::CallPriority() {
+  if (!request_.has_priority()) return Priority::kInteractive;
+  if (request_.priority() == v1::PRIORITY_BULK) return Priority::kBulk;
+  if (request_.priority() != v1::PRIORITY_INTERACTIVE) {
+    const std::string& name = v1::Priority_Name(request_.priority());
+    violations_.Malformed(
+        "priority", absl::StrCat("is ", name.empty() ? absl::StrCat(request_.priority()) : name,
+                                 ", wanted PRIORITY_INTERACTIVE, PRIORITY_BULK or no value"));
+  }
+  return Priority::kInteractive;
+}
+
+absl::StatusOr<ValidatedRequest> Validation::Run() {
+  Leader();
+  std::vector<LabelKeyframe> labels = ValidateLabels(request_, model_, limits_, violations_);
+  std::optional<FollowerStart> start = Start();
+  const std::optional<Vec3> partner_direction = PartnerDirection();
+  ReplyJoints();
+  const int chunk_frames = ChunkFrames();
+  const Priority priority = CallPriority();
+  if (!violations_.empty()) return violations_.ToStatus();
+  return ValidatedRequest{{std::move(leader_), request_.leader().frame_rate_hz(),
+                           LabelTrack(std::move(labels)), std::move(start), partner_direction},
+                          std::move(reply_),
+                          chunk_frames,
+                          priority};
+}
+
+}  // namespace
+
+absl::StatusOr<ValidatedRequest> ValidateRequest(const v1::SynthesizeRequest& request,
+                                                 const ModelDescription& model,
+                                                 const RequestLimits& limits) {
+  return Validation(request, model, limits).Run();
+}
+
+}  // namespace duet

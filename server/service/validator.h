@@ -1,0 +1,31 @@
+#ifndef DUET_SERVER_SERVICE_VALIDATOR_H_
+#define DUET_SERVER_SERVICE_VALIDATOR_H_
+
+#include "absl/status/statusor.h"
+#include "duet/v1/synthesis.pb.h"
+#include "model/engine/clip_synthesis.h"
+#include "model/engine/model_description.h"
+#include "server/batching/window_scheduler.h"
+#include "server/service/reply_mapping.h"
+#include "server/service/request_limits.h"
+
+namespace duet {
+
+// A SynthesizeRequest that was found good, in the model's terms.
+struct ValidatedRequest {
+  ClipRequest clip;
+  ReplyMapping reply;
+  int chunk_frames = 0;
+  Priority priority = Priority::kInteractive;
+};
+
+// Checks every field of a request against a model and the limits.
+// Fails with INVALID_ARGUMENT or FAILED_PRECONDITION whose BadRequest names every offending field.
+// `request` may hold anything.
+absl::StatusOr<ValidatedRequest> ValidateRequest(const v1::SynthesizeRequest& request,
+                                                 const ModelDescription& model,
+                                                 const RequestLimits& limits);
+
+}  // namespace duet
+
+#endif  // DUET_SERVER_SERVICE_VALIDATOR_H_
