@@ -20,8 +20,16 @@ struct Files {
   std::string weights;
 };
 
-Files TinyFiles() {
-  const Checkpoint checkpoint = TinyCheckpoint();
+// As few weights as there can be: every byte costs a run of the whole reader.
+Manifest TiniestManifest() {
+  Manifest manifest = TinyManifest();
+  manifest.generator.slice_features = 0;
+  manifest.generator.encoder_hidden = manifest.generator.attention = 1;
+  return manifest;
+}
+
+Files TiniestFiles() {
+  const Checkpoint checkpoint = FilledCheckpoint(TiniestManifest());
   Files files;
   files.weights = SerializeSafetensors(checkpoint.tensors, {{"format", "pt"}});
   Manifest manifest = checkpoint.manifest;
@@ -61,7 +69,7 @@ void ExpectSound(const Checkpoint& checkpoint) {
 }
 
 TEST(Corruption, AnyByteOfTheWeightsIsNoticed) {
-  const Files files = TinyFiles();
+  const Files files = TiniestFiles();
   ASSERT_THAT(ParseCheckpoint(files.manifest, files.weights), IsOk());
   FlipEveryByte(files.weights, [&](const std::string& corrupt) {
     EXPECT_THAT(ParseCheckpoint(files.manifest, corrupt), Not(IsOk()));
@@ -69,8 +77,8 @@ TEST(Corruption, AnyByteOfTheWeightsIsNoticed) {
 }
 
 TEST(Corruption, WeightsWithAMatchingHashAreRefusedOrSound) {
-  const Files files = TinyFiles();
-  Manifest manifest = TinyManifest();
+  const Files files = TiniestFiles();
+  Manifest manifest = TiniestManifest();
   FlipEveryByte(files.weights, [&](const std::string& corrupt) {
     manifest.weights = {"weights.safetensors", corrupt.size(), Sha256Hex(corrupt)};
     const absl::StatusOr<Checkpoint> read = ParseCheckpoint(SerializeManifest(manifest), corrupt);
@@ -83,7 +91,7 @@ TEST(Corruption, WeightsWithAMatchingHashAreRefusedOrSound) {
 }
 
 TEST(Corruption, AnyByteOfTheManifestIsRefusedOrSound) {
-  const Files files = TinyFiles();
+  const Files files = TiniestFiles();
   FlipEveryByte(files.manifest, [&](const std::string& corrupt) {
     const absl::StatusOr<Checkpoint> read = ParseCheckpoint(corrupt, files.weights);
     if (read.ok()) {
@@ -99,7 +107,7 @@ TEST(Corruption, AnyByteOfTheManifestIsRefusedOrSound) {
 }
 
 TEST(Corruption, TruncatedWeightsAreDataLoss) {
-  const Files files = TinyFiles();
+  const Files files = TiniestFiles();
   for (std::size_t size = 0; size < files.weights.size(); ++size) {
     ASSERT_EQ(ParseCheckpoint(files.manifest, files.weights.substr(0, size)).status().code(),
               absl::StatusCode::kDataLoss)

@@ -33,9 +33,9 @@ Manifest TinyManifest() {
   return manifest;
 }
 
-Checkpoint TinyCheckpoint() {
+Checkpoint FilledCheckpoint(Manifest manifest) {
   Checkpoint checkpoint;
-  checkpoint.manifest = TinyManifest();
+  checkpoint.manifest = std::move(manifest);
   for (TensorSpec& spec : ExpectedTensors(checkpoint.manifest)) {
     std::size_t count = 1;
     for (int64_t size : spec.shape) count *= static_cast<std::size_t>(size);

@@ -10,9 +10,11 @@ namespace duet {
 // hidden units. Its weights are not filled in.
 Manifest TinyManifest();
 
-// The same with weights by a rule that any language can repeat: value i of tensor k (in the order
-// of ExpectedTensors) is ((31 k + 7 i) mod 17 - 8) / 16.
-Checkpoint TinyCheckpoint();
+// A checkpoint with weights by a rule that any language can repeat: value i of tensor k (in the
+// order of ExpectedTensors) is ((31 k + 7 i) mod 17 - 8) / 16.
+Checkpoint FilledCheckpoint(Manifest manifest);
+
+inline Checkpoint TinyCheckpoint() { return FilledCheckpoint(TinyManifest()); }
 
 }  // namespace duet
 
