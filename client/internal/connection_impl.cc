@@ -106,9 +106,10 @@ absl::Status ConnectionImpl::RunStream(const CallContext& call,
   absl::Status accepted;
   while (stream->Read(&response)) {
     if (!accepted.ok()) continue;  // cancelled: what still arrives is dropped
+    const absl::Time arrival = environment_.now();
     accepted = reply->Accept(response);
     if (!accepted.ok()) stream->Cancel();
-    if (reply->has_frames()) *first_chunk = std::min(*first_chunk, environment_.now());
+    if (reply->has_frames()) *first_chunk = std::min(*first_chunk, arrival);
   }
   const absl::Status ended = stream->Finish();
   return accepted.ok() ? reply->EndStream(ended) : accepted;

@@ -1,0 +1,209 @@
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "client/internal/connection_impl.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/client/fake_stub.h"
+#include "tests/support/status_matchers.h"
+
+namespace duet::client::internal {
+namespace {
+
+using ::testing::Each;
+using ::testing::ElementsAre;
+using ::testing::Field;
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+
+using Reply = std::vector<v1::SynthesizeResponse>;
+
+class ConnectionTest : public ::testing::Test {
+ protected:
+  ConnectionTest() {
+    request_.leader = ThreeJointLeader(5);
+    request_.weights = {{"kick", 1}};
+    options_.deadline = absl::Seconds(30);
+  }
+
+  absl::StatusOr<SynthesisResult> Synthesize(const ChunkCallback& on_chunk = nullptr) {
+    return ConnectionImpl(stub_, options_, time_.Environment()).Synthesize(request_, on_chunk);
+  }
+
+  ScriptedStream Good(int chunk_frames = 2) {
+    return {ReplyFor(request_.leader, chunk_frames), absl::OkStatus()};
+  }
+  // Breaks after the header and the first two frames.
+  ScriptedStream Broken() {
+    return {{HeaderFor(request_.leader), ChunkFor(request_.leader, 0, 2)},
+            absl::UnavailableError("connection reset")};
+  }
+  static ScriptedStream Refused(const absl::Status& status) { return {{}, status}; }
+
+  std::shared_ptr<FakeStub> stub_ = std::make_shared<FakeStub>();
+  ClientOptions options_;
+  FakeTime time_;
+  SynthesisRequest request_;
+};
+
+TEST_F(ConnectionTest, SynthesizesInOneAttempt) {
+  stub_->streams = {Good()};
+  const absl::StatusOr<SynthesisResult> result = Synthesize();
+  ASSERT_THAT(result, IsOk());
+  EXPECT_EQ(result->pair.follower.positions, FollowerFor(request_.leader));
+  EXPECT_EQ(result->attempt_count, 1);
+}
+
+TEST_F(ConnectionTest, EveryAttemptCarriesTheSameDeadlineAndRequestId) {
+  request_.request_id = "mine";
+  stub_->streams = {Refused(absl::UnavailableError("away")), Good()};
+  const absl::Time deadline = time_.now + options_.deadline;
+  ASSERT_THAT(Synthesize(), IsOk());
+  ASSERT_THAT(stub_->contexts, SizeIs(2));
+  EXPECT_THAT(stub_->contexts, Each(Field(&CallContext::deadline, deadline)));
+  EXPECT_THAT(stub_->contexts, Each(Field(&CallContext::request_id, "mine")));
+}
+
+TEST_F(ConnectionTest, ABrokenStreamIsRunAgain) {
+  stub_->streams = {Broken(), Good()};
+  const absl::StatusOr<SynthesisResult> result = Synthesize();
+  ASSERT_THAT(result, IsOk());
+  EXPECT_EQ(result->pair.follower.positions, FollowerFor(request_.leader));
+  EXPECT_EQ(result->attempt_count, 2);
+  EXPECT_THAT(time_.sleeps, ElementsAre(absl::Milliseconds(50)));
+}
+
+TEST_F(ConnectionTest, AMissingSummaryIsRunAgainAndThenAnError) {
+  ScriptedStream unfinished = Good();
+  unfinished.responses.pop_back();
+  stub_->streams = {unfinished, unfinished, unfinished, unfinished};
+  EXPECT_THAT(Synthesize(), StatusIs(absl::StatusCode::kUnavailable,
+                                     HasSubstr("without a summary, after 5 of 5 frames")));
+}
+
+TEST_F(ConnectionTest, AMalformedReplyIsCancelledAndNotRunAgain) {
+  ScriptedStream malformed = Good();
+  malformed.responses.erase(malformed.responses.begin() + 1);
+  stub_->streams = {malformed};
+  EXPECT_THAT(Synthesize(), StatusIs(absl::StatusCode::kInternal, HasSubstr("chunk.first_frame")));
+  EXPECT_EQ(stub_->cancelled, 1);
+}
+
+TEST_F(ConnectionTest, AFullServerIsRetriedForBulkAlone) {
+  const ScriptedStream full = Refused(
+      ServiceError(absl::StatusCode::kResourceExhausted, "queue full", absl::Milliseconds(500)));
+  stub_->streams = {full};
+  EXPECT_THAT(Synthesize(), StatusIs(absl::StatusCode::kResourceExhausted, "queue full"));
+
+  stub_ = std::make_shared<FakeStub>();
+  stub_->streams = {full, Good()};
+  request_.priority = Priority::kBulk;
+  EXPECT_THAT(Synthesize(), IsOk());
+  EXPECT_THAT(time_.sleeps, ElementsAre(absl::Milliseconds(500)));
+}
+
+TEST_F(ConnectionTest, ExpiredCallsAreNotTriedAgain) {
+  stub_->streams = {Refused(absl::DeadlineExceededError("too late"))};
+  EXPECT_THAT(Synthesize(), StatusIs(absl::StatusCode::kDeadlineExceeded, "too late"));
+}
+
+TEST_F(ConnectionTest, TheCallbackSeesEveryFrameOnceAcrossRetries) {
+  stub_->streams = {Broken(), Good(3)};
+  std::vector<Vec3> frames;
+  const absl::StatusOr<SynthesisResult> result = Synthesize([&](const FollowerChunk& chunk) {
+    EXPECT_EQ(static_cast<size_t>(chunk.first_frame) * 3, frames.size());
+    frames.insert(frames.end(), chunk.positions.begin(), chunk.positions.end());
+    return absl::OkStatus();
+  });
+  ASSERT_THAT(result, IsOk());
+  EXPECT_EQ(frames, FollowerFor(request_.leader));
+}
+
+TEST_F(ConnectionTest, AResumedStreamComesFromTheSameModelVersion) {
+  stub_->streams = {Broken(), Refused(absl::UnavailableError("away")), Good()};
+  ASSERT_THAT(Synthesize([](const FollowerChunk&) { return absl::OkStatus(); }), IsOk());
+  ASSERT_THAT(stub_->synthesize_requests, SizeIs(3));
+  EXPECT_EQ(stub_->synthesize_requests[0].model().name(), "");
+  for (int attempt : {1, 2}) {
+    const auto& selector = stub_->synthesize_requests[static_cast<size_t>(attempt)].model();
+    EXPECT_EQ(selector.name(), "dancer");
+    EXPECT_EQ(selector.version(), 1u);
+  }
+}
+
+TEST_F(ConnectionTest, WithoutACallbackARerunMayComeFromAnyVersion) {
+  stub_->streams = {Broken(), Good()};
+  ASSERT_THAT(Synthesize(), IsOk());
+  EXPECT_EQ(stub_->synthesize_requests[1].model().name(), "");
+}
+
+TEST_F(ConnectionTest, AModelThatVanishedUnderAStreamIsSaidSo) {
+  stub_->streams = {Broken(), Refused(absl::NotFoundError("no version 1"))};
+  EXPECT_THAT(Synthesize([](const FollowerChunk&) { return absl::OkStatus(); }),
+              StatusIs(absl::StatusCode::kAborted,
+                       HasSubstr("broke after 2 frames and cannot be resumed: dancer@1")));
+}
+
+TEST_F(ConnectionTest, TheCallbackEndsTheCallWithItsOwnStatus) {
+  stub_->streams = {Good()};
+  int chunks = 0;
+  // Not even a code that is otherwise retried.
+  EXPECT_THAT(Synthesize([&](const FollowerChunk&) {
+                ++chunks;
+                return absl::UnavailableError("enough");
+              }),
+              StatusIs(absl::StatusCode::kUnavailable, "enough"));
+  EXPECT_EQ(chunks, 1);
+  EXPECT_EQ(stub_->cancelled, 1);
+}
+
+TEST_F(ConnectionTest, TimingsCountFromTheCall) {
+  stub_->streams = {Refused(absl::UnavailableError("away")), Good()};
+  const absl::StatusOr<SynthesisResult> result = Synthesize([this](const FollowerChunk&) {
+    time_.now += absl::Seconds(1);  // three chunks
+    return absl::OkStatus();
+  });
+  ASSERT_THAT(result, IsOk());
+  EXPECT_EQ(result->timings.first_chunk, absl::Milliseconds(50));  // the retry
+  EXPECT_EQ(result->timings.total, absl::Milliseconds(3050));
+}
+
+TEST_F(ConnectionTest, AnImpossibleRequestIsNotSent) {
+  request_.leader.joint_names.clear();
+  EXPECT_THAT(Synthesize(), StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("leader")));
+  EXPECT_THAT(stub_->synthesize_requests, SizeIs(0));
+}
+
+TEST_F(ConnectionTest, ListModelsRetriesAndReads) {
+  v1::ListModelsResponse response;
+  response.add_models()->set_name("first");
+  response.add_models()->set_name("second");
+  stub_->list_models = {absl::UnavailableError("loading"), response};
+  const auto models = ConnectionImpl(stub_, options_, time_.Environment()).ListModels();
+  ASSERT_THAT(models, IsOk());
+  EXPECT_THAT(*models,
+              ElementsAre(Field(&ModelInfo::name, "first"), Field(&ModelInfo::name, "second")));
+}
+
+TEST_F(ConnectionTest, GetModelRetriesAndReads) {
+  v1::GetModelResponse response;
+  response.mutable_model()->set_name("dancer");
+  response.mutable_limits()->set_min_frames(2);
+  stub_->get_model = {absl::UnavailableError("loading"), response};
+  const auto details =
+      ConnectionImpl(stub_, options_, time_.Environment()).GetModel({"dancer", 2, ""});
+  ASSERT_THAT(details, IsOk());
+  EXPECT_EQ(details->model.name, "dancer");
+  EXPECT_EQ(details->limits.min_frames, 2);
+  EXPECT_EQ(stub_->get_model_requests[1].model().version(), 2u);
+}
+
+TEST_F(ConnectionTest, GetModelPassesARefusalOn) {
+  stub_->get_model = {ServiceError(absl::StatusCode::kNotFound, "no such model")};
+  EXPECT_THAT(ConnectionImpl(stub_, options_, time_.Environment()).GetModel({}),
+              StatusIs(absl::StatusCode::kNotFound, "no such model"));
+}
+
+}  // namespace
+}  // namespace duet::client::internal

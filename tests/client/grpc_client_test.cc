@@ -1,0 +1,197 @@
+// The client over a real connection to an in-process server.
+#include <atomic>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "absl/synchronization/notification.h"
+#include "client/client.h"
+#include "client/error_details.h"
+#include "client/internal/connect.h"
+#include "duet/rpc/v1/status.pb.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/client/fake_service.h"
+#include "tests/client/fake_stub.h"
+#include "tests/support/status_matchers.h"
+
+namespace duet::client::internal {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+using Writer = grpc::ServerWriter<v1::SynthesizeResponse>;
+
+grpc::Status WriteAll(const std::vector<v1::SynthesizeResponse>& responses, Writer* writer) {
+  for (const v1::SynthesizeResponse& response : responses) writer->Write(response);
+  return grpc::Status::OK;
+}
+
+class GrpcClientTest : public ::testing::Test {
+ protected:
+  GrpcClientTest() {
+    request_.leader = ThreeJointLeader(5);
+    request_.weights = {{"kick", 1}};
+    options_.server_address = server_.address();
+    // Retries without noticeable waits.
+    options_.retry.initial_backoff = absl::Milliseconds(1);
+    options_.retry.max_backoff = absl::Milliseconds(2);
+  }
+
+  absl::StatusOr<SynthesisResult> Synthesize() {
+    absl::StatusOr<Client> client = Client::Create(options_);
+    return client.ok() ? client->Synthesize(request_) : client.status();
+  }
+
+  absl::Notification finished_;  // outlives the server, whose handlers may wait for it
+  FakeServer server_;
+  ClientOptions options_;
+  SynthesisRequest request_;
+};
+
+TEST_F(GrpcClientTest, SynthesizesOverTheWire) {
+  std::string request_id;
+  server_.service().on_synthesize = [&](grpc::ServerContext* context,
+                                        const v1::SynthesizeRequest& request, Writer* writer) {
+    const auto found = context->client_metadata().find("x-request-id");
+    request_id = std::string(found->second.begin(), found->second.end());
+    EXPECT_EQ(request.leader().frame_count(), 5u);
+    return WriteAll(ReplyFor(request_.leader, 2), writer);
+  };
+  request_.request_id = "job-7";
+  const absl::StatusOr<SynthesisResult> result = Synthesize();
+  ASSERT_THAT(result, IsOk());
+  EXPECT_EQ(result->pair.follower.positions, FollowerFor(request_.leader));
+  EXPECT_EQ(request_id, "job-7");
+}
+
+TEST_F(GrpcClientTest, StreamsChunksToTheCallback) {
+  server_.service().on_synthesize = [&](grpc::ServerContext*, const v1::SynthesizeRequest&,
+                                        Writer* writer) {
+    return WriteAll(ReplyFor(request_.leader, 2), writer);
+  };
+  absl::StatusOr<Client> client = Client::Create(options_);
+  ASSERT_THAT(client, IsOk());
+  std::vector<int> first_frames;
+  ASSERT_THAT(client->SynthesizeStreaming(request_,
+                                          [&](const FollowerChunk& chunk) {
+                                            first_frames.push_back(chunk.first_frame);
+                                            return absl::OkStatus();
+                                          }),
+              IsOk());
+  EXPECT_THAT(first_frames, ElementsAre(0, 2, 4));
+}
+
+TEST_F(GrpcClientTest, AStreamThatBreaksIsRunAgain) {
+  int calls = 0;
+  server_.service().on_synthesize = [&](grpc::ServerContext*, const v1::SynthesizeRequest&,
+                                        Writer* writer) {
+    if (++calls == 1) {
+      writer->Write(HeaderFor(request_.leader));
+      return grpc::Status(grpc::StatusCode::UNAVAILABLE, "going away");
+    }
+    return WriteAll(ReplyFor(request_.leader, 5), writer);
+  };
+  const absl::StatusOr<SynthesisResult> result = Synthesize();
+  ASSERT_THAT(result, IsOk());
+  EXPECT_EQ(result->attempt_count, 2);
+}
+
+TEST_F(GrpcClientTest, RefusalsNameEveryField) {
+  server_.service().on_synthesize = [](grpc::ServerContext*, const v1::SynthesizeRequest&,
+                                       Writer*) {
+    rpc::v1::BadRequest bad;
+    rpc::v1::BadRequest::FieldViolation* violation = bad.add_field_violations();
+    violation->set_field("leader.positions[3]");
+    violation->set_description("NaN, wanted a finite value");
+    rpc::v1::Status details;
+    google::protobuf::Any* any = details.add_details();
+    any->set_type_url("type.googleapis.com/google.rpc.BadRequest");
+    any->set_value(bad.SerializeAsString());
+    return grpc::Status(grpc::StatusCode::INVALID_ARGUMENT, "refused", details.SerializeAsString());
+  };
+  const absl::Status status = Synthesize().status();
+  EXPECT_THAT(status, StatusIs(absl::StatusCode::kInvalidArgument,
+                               "refused: leader.positions[3]: NaN, wanted a finite value"));
+  ASSERT_EQ(FieldViolations(status).size(), 1u);
+}
+
+TEST_F(GrpcClientTest, TheDeadlineEndsACall) {
+  server_.service().on_synthesize = [&](grpc::ServerContext*, const v1::SynthesizeRequest&,
+                                        Writer*) {
+    finished_.WaitForNotification();
+    return grpc::Status::OK;
+  };
+  options_.deadline = absl::Milliseconds(50);
+  EXPECT_THAT(Synthesize().status(), StatusIs(absl::StatusCode::kDeadlineExceeded, HasSubstr("")));
+  finished_.Notify();
+}
+
+TEST_F(GrpcClientTest, AServerThatSaysNotServingGetsNoCalls) {
+  server_.service().on_list_models = [](grpc::ServerContext*, v1::ListModelsResponse*) {
+    ADD_FAILURE() << "a call reached a server that does not serve";
+    return grpc::Status::OK;
+  };
+  server_.SetServing(false);
+  absl::StatusOr<Client> client = Client::Create(options_);
+  ASSERT_THAT(client, IsOk());
+  EXPECT_THAT(client->ListModels(), StatusIs(absl::StatusCode::kUnavailable, HasSubstr("")));
+}
+
+TEST_F(GrpcClientTest, AServerThatIsNotThereIsUnavailableAfterEveryAttempt) {
+  // Port 1 of this machine: nothing listens there.
+  options_.server_address = "127.0.0.1:1";
+  EXPECT_THAT(Synthesize(),
+              StatusIs(absl::StatusCode::kUnavailable, HasSubstr("after 4 attempts")));
+}
+
+TEST_F(GrpcClientTest, CallsRunConcurrentlyOnOneClient) {
+  server_.service().on_list_models = [](grpc::ServerContext*, v1::ListModelsResponse* response) {
+    response->add_models()->set_name("dancer");
+    return grpc::Status::OK;
+  };
+  absl::StatusOr<Client> client = Client::Create(options_);
+  ASSERT_THAT(client, IsOk());
+  std::vector<std::thread> threads;
+  std::atomic<int> good{0};
+  for (int i = 0; i < 8; ++i) {
+    threads.emplace_back([copy = *client, &good] { good += copy.ListModels().ok() ? 1 : 0; });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(good, 8);
+}
+
+TEST(GrpcTargetTest, HostsAreResolvedToEveryServerBehindThem) {
+  EXPECT_EQ(GrpcTarget("duet.example.com:50051"), "dns:///duet.example.com:50051");
+  EXPECT_EQ(GrpcTarget("[::1]:50051"), "dns:///[::1]:50051");
+  EXPECT_EQ(GrpcTarget("unix:/run/duet.sock"), "unix:/run/duet.sock");
+  EXPECT_EQ(GrpcTarget("ipv4:10.0.0.1:50051"), "ipv4:10.0.0.1:50051");
+  EXPECT_EQ(GrpcTarget("dns://8.8.8.8/duet:1"), "dns://8.8.8.8/duet:1");
+}
+
+TEST(ClientCreateTest, SenselessOptionsAreRefused) {
+  const auto refused = [](void (*spoil)(ClientOptions*)) {
+    ClientOptions options;
+    spoil(&options);
+    return Client::Create(options).status();
+  };
+  constexpr auto kInvalid = absl::StatusCode::kInvalidArgument;
+  EXPECT_THAT(refused([](ClientOptions* o) { o->server_address = ""; }),
+              StatusIs(kInvalid, HasSubstr("server_address: empty")));
+  EXPECT_THAT(refused([](ClientOptions* o) { o->deadline = absl::ZeroDuration(); }),
+              StatusIs(kInvalid, HasSubstr("deadline: 0")));
+  EXPECT_THAT(refused([](ClientOptions* o) { o->retry.max_attempts = 0; }),
+              StatusIs(kInvalid, HasSubstr("retry.max_attempts: 0")));
+  EXPECT_THAT(refused([](ClientOptions* o) { o->retry.max_backoff = absl::Milliseconds(1); }),
+              StatusIs(kInvalid, HasSubstr("initial_backoff 100ms, max_backoff 1ms")));
+  EXPECT_THAT(refused([](ClientOptions* o) {
+                o->tls.emplace();
+                o->tls->private_key = "key";
+              }),
+              StatusIs(kInvalid, HasSubstr("certificate_chain and private_key")));
+}
+
+}  // namespace
+}  // namespace duet::client::internal

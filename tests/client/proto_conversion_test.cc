@@ -1,0 +1,183 @@
+#include "client/internal/proto_conversion.h"
+
+#include <limits>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/client/fake_stub.h"
+#include "tests/support/status_matchers.h"
+
+namespace duet::client::internal {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+SynthesisRequest GoodRequest() {
+  SynthesisRequest request;
+  request.leader = ThreeJointLeader(2);
+  request.weights = {{"kick", 1.0f}, {"hug", -0.5f}};
+  return request;
+}
+
+TEST(SynthesizeRequestTest, LeaderGoesOutInMetresYUp) {
+  const absl::StatusOr<v1::SynthesizeRequest> wire = ToProto(GoodRequest());
+  ASSERT_THAT(wire, IsOk());
+  const v1::Motion& leader = wire->leader();
+  EXPECT_THAT(leader.joint_names(), ElementsAre("root", "left", "right"));
+  EXPECT_EQ(leader.frame_rate_hz(), 30);
+  EXPECT_EQ(leader.unit(), v1::LENGTH_UNIT_METRES);
+  EXPECT_EQ(leader.up_axis(), v1::UP_AXIS_Y_UP);
+  EXPECT_EQ(leader.frame_count(), 2u);
+  ASSERT_EQ(leader.positions_size(), 18);
+  EXPECT_EQ(leader.positions(15), 5.0f);   // the last joint of the last frame: x,
+  EXPECT_EQ(leader.positions(16), 2.5f);   // y,
+  EXPECT_EQ(leader.positions(17), -5.0f);  // z
+}
+
+TEST(SynthesizeRequestTest, WeightsKeepTheirOrder) {
+  const absl::StatusOr<v1::SynthesizeRequest> wire = ToProto(GoodRequest());
+  ASSERT_THAT(wire, IsOk());
+  ASSERT_EQ(wire->label_vector().weights_size(), 2);
+  EXPECT_EQ(wire->label_vector().weights(0).interaction_class(), "kick");
+  EXPECT_EQ(wire->label_vector().weights(1).weight(), -0.5f);
+  EXPECT_EQ(wire->label_keyframes_size(), 0);
+  EXPECT_FALSE(wire->has_follower_start());
+  EXPECT_FALSE(wire->has_chunk_frames());
+  EXPECT_EQ(wire->priority(), v1::PRIORITY_INTERACTIVE);
+}
+
+TEST(SynthesizeRequestTest, KeyframesReplaceTheLabelVector) {
+  SynthesisRequest request = GoodRequest();
+  request.weights.clear();
+  request.keyframes = {{0, {{"kick", 1}}}, {1, {{"hug", 1}}}};
+  const absl::StatusOr<v1::SynthesizeRequest> wire = ToProto(request);
+  ASSERT_THAT(wire, IsOk());
+  EXPECT_FALSE(wire->has_label_vector());
+  ASSERT_EQ(wire->label_keyframes_size(), 2);
+  EXPECT_EQ(wire->label_keyframes(1).frame(), 1u);
+  EXPECT_EQ(wire->label_keyframes(1).label_vector().weights(0).interaction_class(), "hug");
+}
+
+TEST(SynthesizeRequestTest, OptionalFieldsAreCarried) {
+  SynthesisRequest request = GoodRequest();
+  request.follower_start = Vec3{1, 2, 3};
+  request.chunk_frames = 8;
+  request.priority = Priority::kBulk;
+  request.model = {"dancer", 3, ""};
+  absl::StatusOr<v1::SynthesizeRequest> wire = ToProto(request);
+  ASSERT_THAT(wire, IsOk());
+  EXPECT_EQ(wire->follower_start().root_position().z(), 3);
+  EXPECT_EQ(wire->chunk_frames(), 8u);
+  EXPECT_EQ(wire->priority(), v1::PRIORITY_BULK);
+  EXPECT_EQ(wire->model().name(), "dancer");
+  EXPECT_EQ(wire->model().version(), 3u);
+
+  request.follower_start = std::vector<Vec3>{{1, 2, 3}, {4, 5, 6}, {7, 8, 9}};
+  request.model = {"dancer", std::nullopt, "canary"};
+  wire = ToProto(request);
+  ASSERT_THAT(wire, IsOk());
+  EXPECT_THAT(wire->follower_start().pose().positions(), ElementsAre(1, 2, 3, 4, 5, 6, 7, 8, 9));
+  EXPECT_EQ(wire->model().version_label(), "canary");
+}
+
+// What the wire could not carry is refused here, naming the field; the rest is the server's.
+TEST(SynthesizeRequestTest, WhatTheWireCannotCarryIsRefused) {
+  const auto refused = [](void (*spoil)(SynthesisRequest*)) {
+    SynthesisRequest request = GoodRequest();
+    spoil(&request);
+    return ToProto(request).status();
+  };
+  constexpr auto kInvalid = absl::StatusCode::kInvalidArgument;
+  EXPECT_THAT(refused([](SynthesisRequest* r) { r->leader.joint_names.clear(); }),
+              StatusIs(kInvalid, HasSubstr("leader.joint_names: empty")));
+  EXPECT_THAT(refused([](SynthesisRequest* r) { r->leader.positions.pop_back(); }),
+              StatusIs(kInvalid, HasSubstr("leader.positions: 5 points, wanted a multiple of 3")));
+  EXPECT_THAT(refused([](SynthesisRequest* r) {
+                r->keyframes = {{-1, {{"kick", 1}}}};
+              }),
+              StatusIs(kInvalid, HasSubstr("label_keyframes[0].frame: -1")));
+  EXPECT_THAT(refused([](SynthesisRequest* r) { r->chunk_frames = -8; }),
+              StatusIs(kInvalid, HasSubstr("chunk_frames: -8")));
+  EXPECT_THAT(refused([](SynthesisRequest* r) { r->model.version = 0; }),
+              StatusIs(kInvalid, HasSubstr("model.version: 0")));
+  EXPECT_THAT(refused([](SynthesisRequest* r) {
+                r->model = {"dancer", 1, "canary"};
+              }),
+              StatusIs(kInvalid, HasSubstr("version 1 and version label \"canary\"")));
+}
+
+TEST(SynthesizeRequestTest, ValuesThatOnlyTheServerJudgesPassThrough) {
+  SynthesisRequest request = GoodRequest();
+  request.leader.positions[0].x = std::numeric_limits<float>::quiet_NaN();
+  request.leader.frame_rate_hz = -1;
+  request.weights = {{"kick", 1000}, {"kick", 2}};
+  EXPECT_THAT(ToProto(request), IsOk());
+}
+
+v1::Model GoodModel() {
+  v1::Model model;
+  model.set_name("dancer");
+  model.set_version(2);
+  model.add_version_labels("stable");
+  model.set_is_default(true);
+  model.add_interaction_classes("kick");
+  for (const char* joint : {"root", "left", "right"}) model.add_joint_names(joint);
+  v1::Bone* bone = model.add_bones();
+  bone->set_parent_joint(0);
+  bone->set_child_joint(2);
+  model.set_root_joint("root");
+  model.set_frame_rate_hz(15);
+  model.set_window_frames(46);
+  model.set_accepts_follower_start(true);
+  model.set_description("A model.");
+  return model;
+}
+
+TEST(ModelTest, EveryFieldIsRead) {
+  const absl::StatusOr<ModelInfo> info = FromProto(GoodModel());
+  ASSERT_THAT(info, IsOk());
+  EXPECT_EQ(info->name, "dancer");
+  EXPECT_EQ(info->version, 2);
+  EXPECT_THAT(info->version_labels, ElementsAre("stable"));
+  EXPECT_TRUE(info->is_default);
+  EXPECT_THAT(info->interaction_classes, ElementsAre("kick"));
+  EXPECT_THAT(info->joint_names, ElementsAre("root", "left", "right"));
+  EXPECT_THAT(info->bones, ElementsAre(Bone{0, 2}));
+  EXPECT_EQ(info->root_joint, "root");
+  EXPECT_EQ(info->frame_rate_hz, 15);
+  EXPECT_EQ(info->window_frames, 46);
+  EXPECT_TRUE(info->accepts_follower_start);
+  EXPECT_EQ(info->description, "A model.");
+}
+
+TEST(ModelTest, ABoneWithoutAJointIsTheServersFault) {
+  v1::Model model = GoodModel();
+  model.mutable_bones(0)->set_child_joint(3);
+  EXPECT_THAT(FromProto(model), StatusIs(absl::StatusCode::kInternal,
+                                         HasSubstr("dancer@2 has a bone from joint 0 to 3")));
+}
+
+TEST(RequestLimitsTest, EveryFieldIsRead) {
+  v1::RequestLimits wire;
+  wire.set_min_frame_rate_hz(1);
+  wire.set_max_frame_rate_hz(240);
+  wire.set_min_frames(2);
+  wire.set_max_duration_seconds(600);
+  wire.set_max_chunk_frames(240);
+  wire.set_max_label_keyframes(100);
+  wire.set_max_abs_weight(2);
+  wire.set_max_request_bytes(16 << 20);
+  const RequestLimits limits = FromProto(wire);
+  EXPECT_EQ(limits.min_frame_rate_hz, 1);
+  EXPECT_EQ(limits.max_frame_rate_hz, 240);
+  EXPECT_EQ(limits.min_frames, 2);
+  EXPECT_EQ(limits.max_duration, absl::Minutes(10));
+  EXPECT_EQ(limits.max_chunk_frames, 240);
+  EXPECT_EQ(limits.max_keyframes, 100);
+  EXPECT_EQ(limits.max_abs_weight, 2);
+  EXPECT_EQ(limits.max_request_bytes, 16 << 20);
+}
+
+}  // namespace
+}  // namespace duet::client::internal

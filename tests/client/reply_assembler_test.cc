@@ -1,0 +1,160 @@
+#include "client/internal/reply_assembler.h"
+
+#include <functional>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/client/fake_stub.h"
+#include "tests/support/status_matchers.h"
+
+namespace duet::client::internal {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+using Reply = std::vector<v1::SynthesizeResponse>;
+
+class ReplyAssemblerTest : public ::testing::Test {
+ protected:
+  // Feeds a stream until it is refused, then ends it.
+  absl::Status Feed(const Reply& reply, const absl::Status& end = absl::OkStatus()) {
+    assembler_.StartStream();
+    for (const v1::SynthesizeResponse& response : reply) {
+      const absl::Status status = assembler_.Accept(response);
+      if (!status.ok()) return status;
+    }
+    return assembler_.EndStream(end);
+  }
+
+  // A good reply (header, frames 0-1, frames 2-3, frame 4, summary) with one thing spoilt.
+  absl::Status FeedSpoilt(const std::function<void(Reply*)>& spoil) {
+    Reply reply = ReplyFor(leader_, 2);
+    spoil(&reply);
+    return Feed(reply);
+  }
+
+  Clip leader_ = ThreeJointLeader(5);
+  std::vector<std::pair<int, int>> handed_out_;
+  std::vector<Vec3> frames_;
+  ChunkCallback on_chunk_ = [this](const FollowerChunk& chunk) {
+    handed_out_.emplace_back(chunk.first_frame, chunk.frame_count);
+    frames_.insert(frames_.end(), chunk.positions.begin(), chunk.positions.end());
+    return absl::OkStatus();
+  };
+  ReplyAssembler assembler_{leader_, on_chunk_};
+};
+
+TEST_F(ReplyAssemblerTest, GathersAGoodReply) {
+  ASSERT_THAT(Feed(ReplyFor(leader_, 2)), IsOk());
+  EXPECT_THAT(handed_out_, ElementsAre(std::pair(0, 2), std::pair(2, 2), std::pair(4, 1)));
+  EXPECT_EQ(frames_, FollowerFor(leader_));
+
+  const SynthesisResult result = std::move(assembler_).TakeResult();
+  EXPECT_EQ(result.pair.leader.positions, leader_.positions);
+  EXPECT_EQ(result.pair.follower.positions, FollowerFor(leader_));
+  EXPECT_EQ(result.pair.follower.joint_names, leader_.joint_names);
+  EXPECT_EQ(result.pair.follower.frame_rate_hz, 30);
+  EXPECT_EQ(result.model_name, "dancer");
+  EXPECT_EQ(result.model_version, 1);
+  EXPECT_THAT(result.interaction_classes, ElementsAre("kick", "hug"));
+  EXPECT_EQ(result.request_id, "request-1");
+  EXPECT_EQ(result.window_count, 2);
+  EXPECT_EQ(result.timings.queue, absl::Milliseconds(250));
+  EXPECT_EQ(result.timings.compute, absl::Milliseconds(500));
+}
+
+TEST_F(ReplyAssemblerTest, EveryBreachOfTheContractIsNamed) {
+  const std::vector<std::pair<std::string, std::function<void(Reply*)>>> breaches = {
+      {"a chunk before the header", [](Reply* r) { r->erase(r->begin()); }},
+      {"a second header", [](Reply* r) { r->insert(r->begin(), r->front()); }},
+      {"header.joint_names",
+       [](Reply* r) { r->front().mutable_header()->set_joint_names(1, "tail"); }},
+      {"header.joint_names",
+       [](Reply* r) { r->front().mutable_header()->mutable_joint_names()->RemoveLast(); }},
+      {"header.frame_rate_hz: 29",
+       [](Reply* r) { r->front().mutable_header()->set_frame_rate_hz(29); }},
+      {"LENGTH_UNIT_MILLIMETRES",
+       [](Reply* r) { r->front().mutable_header()->set_unit(v1::LENGTH_UNIT_MILLIMETRES); }},
+      {"UP_AXIS_Z_UP",
+       [](Reply* r) { r->front().mutable_header()->set_up_axis(v1::UP_AXIS_Z_UP); }},
+      {"header.frame_count: 6", [](Reply* r) { r->front().mutable_header()->set_frame_count(6); }},
+      {"chunk.first_frame: 2, wanted 0", [](Reply* r) { r->erase(r->begin() + 1); }},
+      {"chunk.first_frame: 0, wanted 2", [](Reply* r) { r->insert(r->begin() + 1, (*r)[1]); }},
+      {"chunk.frame_count: 0, wanted 1 to 5",
+       [](Reply* r) { (*r)[1].mutable_chunk()->set_frame_count(0); }},
+      {"chunk.frame_count: 4294967295, wanted 1 to 5",
+       [](Reply* r) { (*r)[1].mutable_chunk()->set_frame_count(4294967295u); }},
+      {"chunk.positions: 17 values, wanted 18",
+       [](Reply* r) { (*r)[1].mutable_chunk()->mutable_positions()->RemoveLast(); }},
+      {"chunk.positions[7] is not finite",
+       [](Reply* r) {
+         (*r)[1].mutable_chunk()->set_positions(7, std::numeric_limits<float>::quiet_NaN());
+       }},
+      {"chunk.positions[0] is not finite",
+       [](Reply* r) {
+         (*r)[2].mutable_chunk()->set_positions(0, std::numeric_limits<float>::infinity());
+       }},
+      {"a summary after 4 of 5 frames", [](Reply* r) { r->erase(r->begin() + 3); }},
+      {"summary.frame_count: 4", [](Reply* r) { r->back().mutable_summary()->set_frame_count(4); }},
+      {"summary.chunk_count: 2, but 3 chunks came",
+       [](Reply* r) { r->back().mutable_summary()->set_chunk_count(2); }},
+      {"a message after the summary", [](Reply* r) { r->push_back(r->back()); }},
+      {"a message without a payload", [](Reply* r) { (*r)[1].clear_payload(); }},
+  };
+  for (const auto& [message, spoil] : breaches) {
+    EXPECT_THAT(FeedSpoilt(spoil), StatusIs(absl::StatusCode::kInternal, HasSubstr(message)));
+  }
+}
+
+TEST_F(ReplyAssemblerTest, AStreamWithoutASummaryIsIncompleteWhateverItsStatus) {
+  Reply reply = ReplyFor(leader_, 2);
+  reply.pop_back();
+  EXPECT_THAT(Feed(reply), StatusIs(absl::StatusCode::kUnavailable,
+                                    HasSubstr("ended without a summary, after 5 of 5 frames")));
+  EXPECT_THAT(Feed({}), StatusIs(absl::StatusCode::kUnavailable, HasSubstr("after 0 of 5 frames")));
+}
+
+TEST_F(ReplyAssemblerTest, ABrokenConnectionIsUnavailableUnderEveryCodeThatItComesIn) {
+  const Reply begun = {HeaderFor(leader_), ChunkFor(leader_, 0, 2)};
+  for (absl::StatusCode code : {absl::StatusCode::kUnavailable, absl::StatusCode::kInternal,
+                                absl::StatusCode::kUnknown, absl::StatusCode::kCancelled}) {
+    EXPECT_THAT(Feed(begun, absl::Status(code, "RST_STREAM")),
+                StatusIs(absl::StatusCode::kUnavailable, HasSubstr("RST_STREAM")));
+  }
+}
+
+TEST_F(ReplyAssemblerTest, WhatTheServiceSaysIsNotABrokenConnection) {
+  const Reply begun = {HeaderFor(leader_), ChunkFor(leader_, 0, 2)};
+  for (absl::StatusCode code : {absl::StatusCode::kInternal, absl::StatusCode::kCancelled,
+                                absl::StatusCode::kDeadlineExceeded}) {
+    EXPECT_THAT(Feed(begun, ServiceError(code, "says the service")),
+                StatusIs(code, "says the service"));
+  }
+}
+
+TEST_F(ReplyAssemblerTest, ARefusalBeforeTheHeaderIsPassedOn) {
+  EXPECT_THAT(Feed({}, absl::InternalError("no method")),
+              StatusIs(absl::StatusCode::kInternal, "no method"));
+}
+
+TEST_F(ReplyAssemblerTest, NothingThatBreaksAfterTheSummaryMatters) {
+  EXPECT_THAT(Feed(ReplyFor(leader_, 2), absl::UnavailableError("closed")), IsOk());
+}
+
+TEST_F(ReplyAssemblerTest, ASecondStreamHandsOutOnlyWhatTheFirstDidNot) {
+  EXPECT_THAT(Feed({HeaderFor(leader_), ChunkFor(leader_, 0, 2)}, absl::UnavailableError("")),
+              StatusIs(absl::StatusCode::kUnavailable, HasSubstr("after 2 of 5 frames")));
+  // The second stream cuts its chunks elsewhere.
+  ASSERT_THAT(Feed(ReplyFor(leader_, 3)), IsOk());
+  EXPECT_THAT(handed_out_, ElementsAre(std::pair(0, 2), std::pair(2, 1), std::pair(3, 2)));
+  EXPECT_EQ(frames_, FollowerFor(leader_));
+  EXPECT_EQ(std::move(assembler_).TakeResult().pair.follower.positions, FollowerFor(leader_));
+}
+
+}  // namespace
+}  // namespace duet::client::internal

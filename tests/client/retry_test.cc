@@ -1,0 +1,160 @@
+#include "client/internal/retry.h"
+
+#include <vector>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/client/fake_stub.h"
+#include "tests/support/status_matchers.h"
+
+namespace duet::client::internal {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+constexpr absl::Duration kMillisecond = absl::Milliseconds(1);
+
+absl::Status Unavailable() { return ServiceError(absl::StatusCode::kUnavailable, "away"); }
+
+// Runs Retry over scripted outcomes and counts the attempts.
+class RetryTest : public ::testing::Test {
+ protected:
+  absl::Status Run(std::vector<absl::Status> outcomes, Priority priority = Priority::kInteractive) {
+    return Retry(options_, time_.Environment(), priority, time_.now + deadline_, [&] {
+      const absl::Status outcome = outcomes[static_cast<size_t>(attempts_)];
+      ++attempts_;
+      return outcome;
+    });
+  }
+
+  RetryOptions options_;
+  FakeTime time_;
+  absl::Duration deadline_ = absl::Minutes(1);
+  int attempts_ = 0;
+};
+
+TEST_F(RetryTest, FirstSuccessEndsIt) {
+  EXPECT_THAT(Run({absl::OkStatus()}), IsOk());
+  EXPECT_EQ(attempts_, 1);
+  EXPECT_THAT(time_.sleeps, IsEmpty());
+}
+
+TEST_F(RetryTest, UnavailableIsTriedFourTimesWithGrowingWaits) {
+  time_.uniform = 1;
+  const absl::Status status = Run(std::vector<absl::Status>(4, Unavailable()));
+  EXPECT_THAT(status, StatusIs(absl::StatusCode::kUnavailable, HasSubstr("after 4 attempts")));
+  EXPECT_EQ(attempts_, 4);
+  EXPECT_THAT(time_.sleeps,
+              ElementsAre(100 * kMillisecond, 200 * kMillisecond, 400 * kMillisecond));
+}
+
+TEST_F(RetryTest, RecoversInTheMiddle) {
+  EXPECT_THAT(Run({Unavailable(), Unavailable(), absl::OkStatus()}), IsOk());
+  EXPECT_EQ(attempts_, 3);
+}
+
+TEST_F(RetryTest, WaitsNeverExceedTheLongest) {
+  options_.max_attempts = 7;
+  time_.uniform = 1;
+  EXPECT_THAT(Run(std::vector<absl::Status>(7, Unavailable())), Not(IsOk()));
+  EXPECT_THAT(time_.sleeps, ElementsAre(100 * kMillisecond, 200 * kMillisecond, 400 * kMillisecond,
+                                        800 * kMillisecond, absl::Seconds(1), absl::Seconds(1)));
+}
+
+TEST_F(RetryTest, OtherCodesAreFinal) {
+  for (absl::StatusCode code :
+       {absl::StatusCode::kInvalidArgument, absl::StatusCode::kNotFound,
+        absl::StatusCode::kInternal, absl::StatusCode::kDeadlineExceeded,
+        absl::StatusCode::kCancelled, absl::StatusCode::kFailedPrecondition}) {
+    attempts_ = 0;
+    EXPECT_THAT(Run({ServiceError(code, "no", kMillisecond)}), StatusIs(code, "no"));
+    EXPECT_EQ(attempts_, 1);
+  }
+}
+
+TEST_F(RetryTest, BulkWorkWaitsForAFullServer) {
+  const absl::Status full =
+      ServiceError(absl::StatusCode::kResourceExhausted, "full", 2 * kMillisecond);
+  EXPECT_THAT(Run({full, absl::OkStatus()}, Priority::kBulk), IsOk());
+  EXPECT_EQ(attempts_, 2);
+}
+
+TEST_F(RetryTest, InteractiveWorkIsToldThatTheServerIsFull) {
+  const absl::Status full =
+      ServiceError(absl::StatusCode::kResourceExhausted, "full", 2 * kMillisecond);
+  EXPECT_THAT(Run({full}), StatusIs(absl::StatusCode::kResourceExhausted, "full"));
+}
+
+TEST_F(RetryTest, AMessageTooLargeIsNotSentAgain) {
+  const absl::Status large = ServiceError(absl::StatusCode::kResourceExhausted, "too large");
+  EXPECT_THAT(Run({large}, Priority::kBulk),
+              StatusIs(absl::StatusCode::kResourceExhausted, "too large"));
+}
+
+TEST_F(RetryTest, PushbackIsObeyed) {
+  const absl::Status later =
+      ServiceError(absl::StatusCode::kUnavailable, "later", absl::Seconds(7));
+  EXPECT_THAT(Run({later, absl::OkStatus()}), IsOk());
+  EXPECT_THAT(time_.sleeps, ElementsAre(absl::Seconds(7)));
+}
+
+TEST_F(RetryTest, PushbackNeverShortensTheWait) {
+  const absl::Status soon =
+      ServiceError(absl::StatusCode::kUnavailable, "soon", absl::ZeroDuration());
+  EXPECT_THAT(Run({soon, absl::OkStatus()}), IsOk());
+  EXPECT_THAT(time_.sleeps, ElementsAre(50 * kMillisecond));
+}
+
+TEST_F(RetryTest, StopsWhenTheWaitWouldPassTheDeadline) {
+  deadline_ = absl::Seconds(5);
+  const absl::Status later =
+      ServiceError(absl::StatusCode::kUnavailable, "later", absl::Seconds(7));
+  EXPECT_THAT(Run({later}), StatusIs(absl::StatusCode::kUnavailable,
+                                     HasSubstr("the deadline leaves no time for another")));
+  EXPECT_THAT(time_.sleeps, IsEmpty());
+}
+
+TEST_F(RetryTest, OneAttemptMeansNoRetry) {
+  options_.max_attempts = 1;
+  EXPECT_THAT(Run({Unavailable()}), StatusIs(absl::StatusCode::kUnavailable, "away"));
+}
+
+TEST(RetryWaitTest, JitterSpreadsOverTheUpperHalf) {
+  const RetryOptions options;
+  const absl::Status status = Unavailable();
+  EXPECT_EQ(RetryWait(options, 1, status, 0), 50 * kMillisecond);
+  EXPECT_EQ(RetryWait(options, 1, status, 0.5), 75 * kMillisecond);
+  EXPECT_EQ(RetryWait(options, 1, status, 1), 100 * kMillisecond);
+}
+
+TEST(RetryWaitTest, JitterComesOnTopOfPushback) {
+  const RetryOptions options;
+  const absl::Status later =
+      ServiceError(absl::StatusCode::kUnavailable, "later", absl::Seconds(3));
+  EXPECT_EQ(RetryWait(options, 1, later, 0), absl::Seconds(3));
+  EXPECT_EQ(RetryWait(options, 1, later, 1), absl::Seconds(3) + 50 * kMillisecond);
+}
+
+TEST(RetryWaitTest, ManyAttemptsDoNotOverflow) {
+  const RetryOptions options;
+  EXPECT_EQ(RetryWait(options, 1'000'000, Unavailable(), 1), options.max_backoff);
+}
+
+TEST(SystemEnvironmentTest, DrawsBetweenZeroAndOneAndNotAlwaysTheSame) {
+  const RetryEnvironment environment = SystemEnvironment();
+  const double first = environment.uniform();
+  bool varies = false;
+  for (int i = 0; i < 100; ++i) {
+    const double drawn = environment.uniform();
+    EXPECT_GE(drawn, 0);
+    EXPECT_LT(drawn, 1);
+    varies |= drawn != first;
+  }
+  EXPECT_TRUE(varies);
+}
+
+}  // namespace
+}  // namespace duet::client::internal
