@@ -13,14 +13,6 @@
 namespace duet {
 namespace {
 
-std::optional<FollowerStart> StandardStart(const Standardisation& standard,
-                                           const std::optional<FollowerStart>& start) {
-  if (!start) return std::nullopt;
-  FollowerStart result{standard.Apply(start->root), {}};
-  for (const Vec3& joint : start->pose) result.pose.push_back(standard.Apply(joint));
-  return result;
-}
-
 class TorchSynthesizer : public Synthesizer {
  public:
   TorchSynthesizer(Manifest manifest, network::Generator generator)
@@ -47,8 +39,7 @@ class TorchSynthesizer : public Synthesizer {
     std::vector<network::BatchItem> items;
     for (const SynthesisWindow* window : windows) {
       standards.push_back(WindowFrame(manifest_.model.skeleton, *window));
-      items.push_back({standards.back().Apply(window->leader), window->labels,
-                       StandardStart(standards.back(), window->start)});
+      items.push_back(network::StandardItem(standards.back(), *window));
     }
     const torch::Tensor followers = generator_->forward(network::MakeInput(manifest_, items));
     std::vector<WindowResult> results;

@@ -27,6 +27,14 @@ torch::Tensor Starts(const Manifest& manifest, const std::vector<BatchItem>& ite
 
 }  // namespace
 
+BatchItem StandardItem(const Standardisation& frame, const SynthesisWindow& window) {
+  BatchItem item{frame.Apply(window.leader), window.labels, std::nullopt};
+  if (!window.start) return item;
+  item.start = FollowerStart{frame.Apply(window.start->root), {}};
+  for (const Vec3& joint : window.start->pose) item.start->pose.push_back(frame.Apply(joint));
+  return item;
+}
+
 torch::Tensor PadPositions(const std::vector<const std::vector<Vec3>*>& clips, int joints,
                            int64_t frames) {
   torch::Tensor padded =

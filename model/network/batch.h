@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "model/engine/synthesizer.h"
+#include "model/motion/standardise.h"
 #include "model/network/generator.h"
 
 namespace duet::network {
@@ -15,6 +16,9 @@ struct BatchItem {
   std::vector<float> labels;           // [frames, classes]
   std::optional<FollowerStart> start;  // relative to the leader's first root, as all positions
 };
+
+// A window in a frame of its leader.
+BatchItem StandardItem(const Standardisation& frame, const SynthesisWindow& window);
 
 // Pads clips of different lengths into one batch. Shapes: T is the longest clip's frames.
 GeneratorInput MakeInput(const Manifest& manifest, const std::vector<BatchItem>& items);

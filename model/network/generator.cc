@@ -75,7 +75,7 @@ torch::Tensor GeneratorImpl::Features(const GeneratorInput& input, size_t slice)
     features = torch::nn::functional::linear(features, Parameter(layer + "weight"),
                                              Parameter(layer + "bias"));
   }
-  return torch::dropout(features, dropout_, is_training());
+  return torch::dropout(features, slice_dropout_, is_training());
 }
 
 // The input's part of a slice's LSTM gates, both directions, the backward one turned around:
@@ -135,7 +135,7 @@ torch::Tensor GeneratorImpl::Decode(const Encoded& encoded, const GeneratorInput
                                     const torch::Tensor& reversed) const {
   const int64_t frames = encoded.frames.size(0), batch = encoded.frames.size(1);
   const torch::Tensor by_clip =
-      torch::dropout(encoded.frames, dropout_, is_training()).transpose(0, 1).reshape(
+      torch::dropout(encoded.frames, encoded_dropout_, is_training()).transpose(0, 1).reshape(
           {batch * frames, -1});
   // [2, N T, X] = h_j times each direction's matrix
   const auto project = [&](const torch::Tensor& weights) {
@@ -157,7 +157,7 @@ torch::Tensor GeneratorImpl::Decode(const Encoded& encoded, const GeneratorInput
       directions[1].reshape({frames * batch, -1}).index_select(0, reversed);
   const torch::Tensor states =
       torch::cat({directions[0].reshape({frames * batch, -1}), backward}, 1);
-  return torch::addmm(Parameter("output.bias"), torch::dropout(states, dropout_, is_training()),
+  return torch::addmm(Parameter("output.bias"), torch::dropout(states, encoded_dropout_, is_training()),
                       Parameter("output.weight").t())
       .reshape({frames, batch, -1})
       .transpose(0, 1);

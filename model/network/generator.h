@@ -37,8 +37,12 @@ class GeneratorImpl : public torch::nn::Module {
   // The concatenated encoder output h_t, [T, N, S 2 E]: the paper's latent space (Figures 6, 7).
   torch::Tensor Encode(const GeneratorInput& input);
 
-  // Share of the encoders' features and outputs dropped in training mode.
-  void set_dropout(double probability) { dropout_ = probability; }
+  // Shares dropped in training mode: of the slices' features, and of the encoders' output h_t and
+  // the decoder's states.
+  void set_dropout(double slices, double encoded) {
+    slice_dropout_ = slices;
+    encoded_dropout_ = encoded;
+  }
 
   // Sets the mean pose of every class that the output adds to. Shapes: means [C, 3 J]. Requires an
   // architecture with base_pose.
@@ -74,7 +78,7 @@ class GeneratorImpl : public torch::nn::Module {
   bool has_base_;
   int64_t root_column_;  // of the root joint's x in [3 J]
   int64_t encoder_hidden_;
-  double dropout_ = 0;
+  double slice_dropout_ = 0, encoded_dropout_ = 0;
 };
 TORCH_MODULE(Generator);
 

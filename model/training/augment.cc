@@ -1,0 +1,167 @@
+#include "model/training/augment.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "absl/strings/str_replace.h"
+#include "model/motion/resample.h"
+
+namespace duet {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr int kMinCropFrames = 10;  // of the shortest captures
+
+// Scales both people about the leader's root, each by a factor of its own, so that the distance
+// between them scales with the follower.
+void ScaleBodies(int root, double leader_scale, double follower_scale, ClipPair* pair) {
+  const int joints = pair->leader.joint_count();
+  for (int t = 0; t < pair->leader.frame_count(); ++t) {
+    const Vec3 centre = pair->leader.at(t, root);
+    for (int j = 0; j < joints; ++j) {
+      Vec3& leader = pair->leader.at(t, j);
+      Vec3& follower = pair->follower.at(t, j);
+      leader = centre + (leader - centre) * static_cast<float>(leader_scale);
+      follower = centre + (follower - centre) * static_cast<float>(follower_scale);
+    }
+  }
+}
+
+void ShiftFollower(Vec3 by, ClipPair* pair) {
+  for (Vec3& point : pair->follower.positions) point += by;
+}
+
+void Turn(double radians, ClipPair* pair) {
+  for (Vec3& point : pair->leader.positions) point = RotateY(point, radians);
+  for (Vec3& point : pair->follower.positions) point = RotateY(point, radians);
+}
+
+void AddNoise(double deviation, EpochRandom* random, Clip* clip) {
+  for (Vec3& point : clip->positions) {
+    point += Vec3{static_cast<float>(random->Normal(deviation)),
+                  static_cast<float>(random->Normal(deviation)),
+                  static_cast<float>(random->Normal(deviation))};
+  }
+}
+
+void Keep(int first, int frames, Clip* clip) {
+  const auto begin = clip->positions.begin() + std::ptrdiff_t{first} * clip->joint_count();
+  clip->positions = {begin, begin + std::ptrdiff_t{frames} * clip->joint_count()};
+}
+
+void Crop(EpochRandom* random, ClipPair* pair) {
+  const int frames = pair->leader.frame_count();
+  const int shortest = std::max(kMinCropFrames, frames / 2);
+  if (frames <= shortest) return;
+  const int kept = shortest + static_cast<int>(random->Below(frames - shortest + 1));
+  const int first = static_cast<int>(random->Below(frames - kept + 1));
+  Keep(first, kept, &pair->leader);
+  Keep(first, kept, &pair->follower);
+}
+
+// Plays both people `speed` times as fast, no longer than `longest` frames.
+void Warp(double speed, int longest, ClipPair* pair) {
+  const int joints = pair->leader.joint_count(), frames = pair->leader.frame_count();
+  const int warped = std::clamp(static_cast<int>(std::lround(frames / speed)), 2, longest);
+  for (Clip* clip : {&pair->leader, &pair->follower}) {
+    std::vector<Vec3> positions(static_cast<size_t>(warped) * static_cast<size_t>(joints));
+    for (int t = 0; t < warped; ++t) {
+      SampleLinear(clip->positions, joints, t * (frames - 1.0) / (warped - 1.0),
+                   positions.data() + std::ptrdiff_t{t} * joints);
+    }
+    clip->positions = std::move(positions);
+  }
+}
+
+Vec3 Horizontal(Vec3 v) {
+  const Vec3 flat{v.x, 0, v.z};
+  const float length = Norm(flat);
+  return length > 0 ? flat / length : flat;
+}
+
+}  // namespace
+
+EpochRandom::EpochRandom(uint64_t seed, int64_t epoch) {
+  std::seed_seq sequence{static_cast<uint32_t>(seed), static_cast<uint32_t>(seed >> 32),
+                         static_cast<uint32_t>(epoch), static_cast<uint32_t>(epoch >> 32)};
+  bits_.seed(sequence);
+}
+
+double EpochRandom::Uniform(double low, double high) {
+  constexpr double kScale = 1.0 / (uint64_t{1} << 53);
+  return low + (high - low) * static_cast<double>(bits_() >> 11) * kScale;
+}
+
+double EpochRandom::Normal(double deviation) {
+  const double radius = std::sqrt(-2 * std::log(1 - Uniform(0, 1)));  // Box-Muller
+  return deviation * radius * std::cos(2 * kPi * Uniform(0, 1));
+}
+
+int64_t EpochRandom::Below(int64_t end) {
+  return static_cast<int64_t>(bits_() % static_cast<uint64_t>(end));
+}
+
+std::vector<int> MirroredJoints(const Skeleton& skeleton) {
+  std::vector<int> mirrored;
+  for (int joint = 0; joint < skeleton.joint_count(); ++joint) {
+    const std::string other =
+        absl::StrReplaceAll(skeleton.joint_names[static_cast<size_t>(joint)],
+                            {{"left", "right"}, {"right", "left"}});
+    const int found = skeleton.Find(other);
+    mirrored.push_back(found < 0 ? joint : found);
+  }
+  return mirrored;
+}
+
+void Mirror(const std::vector<int>& mirrored_joints, Sequence* sequence) {
+  for (Clip* clip : {&sequence->pair.leader, &sequence->pair.follower}) {
+    const std::vector<Vec3> before = clip->positions;
+    const size_t joints = mirrored_joints.size();
+    for (size_t i = 0; i < before.size(); ++i) {
+      const size_t joint = static_cast<size_t>(mirrored_joints[i % joints]);
+      const Vec3 point = before[i - i % joints + joint];
+      clip->positions[i] = {-point.x, point.y, point.z};
+    }
+  }
+  if (sequence->partner_direction) sequence->partner_direction->x *= -1;
+}
+
+void SwapRoles(Sequence* sequence) {
+  std::swap(sequence->pair.leader, sequence->pair.follower);
+  if (sequence->partner_direction) sequence->partner_direction = -*sequence->partner_direction;
+}
+
+Sequence Augment(const Dataset& dataset, const Sequence& sequence,
+                 const TrainingOptions::Augmentation& options, EpochRandom* random) {
+  Sequence variant = sequence;
+  const size_t interaction = static_cast<size_t>(sequence.interaction_class);
+  const std::vector<std::string>& mirrored = options.mirrored_classes;
+  const bool may_mirror =
+      std::find(mirrored.begin(), mirrored.end(), dataset.classes[interaction]) != mirrored.end();
+  if (dataset.symmetric[interaction] && random->Chance(options.swap_roles)) SwapRoles(&variant);
+  if (may_mirror && random->Chance(options.mirror)) {
+    Mirror(MirroredJoints(dataset.skeleton), &variant);
+  }
+  ClipPair* pair = &variant.pair;
+  if (random->Chance(options.crop)) Crop(random, pair);
+  if (options.time_warp > 0) {
+    Warp(std::exp(random->Uniform(-options.time_warp, options.time_warp)),
+         dataset.LongestFrameCount(), pair);
+  }
+  if (options.body_scale > 0) {
+    const double leader = 1 + random->Uniform(-options.body_scale, options.body_scale);
+    const double follower = 1 + random->Uniform(-options.body_scale, options.body_scale);
+    ScaleBodies(dataset.skeleton.root, leader, follower, pair);
+  }
+  if (options.root_distance > 0) {
+    const int root = dataset.skeleton.root;
+    ShiftFollower(Horizontal(pair->follower.at(0, root) - pair->leader.at(0, root)) *
+                      static_cast<float>(random->Normal(options.root_distance)),
+                  pair);
+  }
+  if (options.yaw > 0) Turn(random->Normal(options.yaw), pair);  // the partner's direction stays
+  if (options.noise > 0) AddNoise(options.noise, random, &pair->leader);
+  return variant;
+}
+
+}  // namespace duet

@@ -1,0 +1,40 @@
+#ifndef DUET_MODEL_TRAINING_OPTIMISER_H_
+#define DUET_MODEL_TRAINING_OPTIMISER_H_
+
+#include <torch/torch.h>
+
+#include <memory>
+#include <vector>
+
+#include "model/training/options.h"
+
+namespace duet {
+
+// The learning rate at a step as a share of the largest one. "one_cycle" rises over the first fifth
+// of the run from 1/25 and falls to almost nothing, both along a half cosine (Smith, Topin 2018).
+double ScheduleFactor(const TrainingOptions::Optimiser& options, int64_t step, int64_t steps);
+
+// Adam with decoupled weight decay of matrices, or RMSprop, on a schedule; clips gradients.
+class Optimiser {
+ public:
+  Optimiser(const TrainingOptions::Optimiser& options, std::vector<torch::Tensor> parameters,
+            int64_t steps);
+
+  // Applies the gradients of the parameters as step number `step` (from 0) and clears them.
+  void Step(int64_t step);
+
+  void ZeroGradients() { optimiser_->zero_grad(); }
+  torch::optim::Optimizer& state() { return *optimiser_; }
+
+ private:
+  void SetLearningRate(double rate);
+
+  TrainingOptions::Optimiser options_;
+  std::vector<torch::Tensor> parameters_;
+  int64_t steps_;
+  std::unique_ptr<torch::optim::Optimizer> optimiser_;
+};
+
+}  // namespace duet
+
+#endif  // DUET_MODEL_TRAINING_OPTIMISER_H_

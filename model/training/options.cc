@@ -1,0 +1,222 @@
+#include "model/training/options.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "absl/strings/str_split.h"
+#include "model/checkpoint/strict_json.h"
+
+namespace duet {
+namespace {
+
+using nlohmann::json;
+
+constexpr int kMaxDepth = 4;
+constexpr size_t kMaxWord = 64;
+constexpr int64_t kMaxUnits = 4096;
+constexpr int64_t kMaxEpochs = 1000000;
+
+std::string OneOf(ObjectReader* reader, const std::string& key,
+                  const std::vector<std::string>& choices) {
+  std::string value = reader->String(key, kMaxWord);
+  if (reader->ok() && std::find(choices.begin(), choices.end(), value) == choices.end()) {
+    reader->Fail(key, absl::StrCat("\"", value, "\", wanted one of ", absl::StrJoin(choices, ", ")));
+  }
+  return value;
+}
+
+double Probability(ObjectReader* reader, const std::string& key) {
+  return reader->Number(key, 0, 1);
+}
+
+void Read(ObjectReader* reader, GeneratorArchitecture* out) {
+  out->variant = OneOf(reader, "variant", {"paper", "released"});
+  out->follower_start = reader->Bool("follower_start");
+  out->slice_features = static_cast<int>(reader->Int("slice_features", 0, kMaxUnits));
+  out->encoder_hidden = static_cast<int>(reader->Int("encoder_hidden", 1, kMaxUnits));
+  out->attention = static_cast<int>(reader->Int("attention", 1, kMaxUnits));
+  out->base_pose = reader->Bool("base_pose");
+}
+
+void Read(ObjectReader* reader, TrainingOptions::Dropout* out) {
+  out->slices = reader->Number("slices", 0, 0.95);
+  out->encoded = reader->Number("encoded", 0, 0.95);
+}
+
+void Read(ObjectReader* reader, TrainingOptions::Optimiser* out) {
+  out->name = OneOf(reader, "name", {"adam", "rmsprop"});
+  out->learning_rate = reader->Number("learning_rate", 1e-9, 10);
+  out->schedule = OneOf(reader, "schedule", {"one_cycle", "constant"});
+  out->weight_decay = reader->Number("weight_decay", 0, 10);
+  out->gradient_clip = reader->Number("gradient_clip", 0, 1e9);
+  out->average_decay = reader->Number("average_decay", 0, 0.999999);
+}
+
+void Read(ObjectReader* reader, TrainingOptions::Losses* out) {
+  out->reconstruction = OneOf(reader, "reconstruction", {"l1", "l2", "norm"});
+  out->reconstruction_weight = reader->Number("reconstruction_weight", 0, 1e6);
+  out->bone = reader->Number("bone", 0, 1e6);
+  out->continuity = reader->Number("continuity", 0, 1e6);
+  out->continuity_form = OneOf(reader, "continuity_form", {"hinge", "path_length"});
+  out->continuity_gap = reader->Int("continuity_gap", 2, 64);
+  out->continuity_margin = reader->Number("continuity_margin", 0, 1e3);
+  out->adversarial = reader->Number("adversarial", 0, 1e6);
+}
+
+void Read(ObjectReader* reader, TrainingOptions::DiscriminatorSettings* out) {
+  out->hidden = reader->Int("hidden", 1, kMaxUnits);
+  out->learning_rate = reader->Number("learning_rate", 1e-9, 10);
+  out->dropout = reader->Number("dropout", 0, 0.95);
+  out->unit_norm_kernels = reader->Bool("unit_norm_kernels");
+}
+
+void Read(ObjectReader* reader, TrainingOptions::Augmentation* out) {
+  out->mirrored_classes = reader->Strings("mirrored_classes", 256);
+  out->mirror = Probability(reader, "mirror");
+  out->swap_roles = Probability(reader, "swap_roles");
+  out->body_scale = reader->Number("body_scale", 0, 0.9);
+  out->time_warp = reader->Number("time_warp", 0, 2);
+  out->root_distance = reader->Number("root_distance", 0, 10);
+  out->yaw = reader->Number("yaw", 0, 4);
+  out->noise = reader->Number("noise", 0, 10);
+  out->crop = Probability(reader, "crop");
+}
+
+void Read(ObjectReader* reader, TrainingOptions::Start* out) {
+  out->root = Probability(reader, "root");
+  out->pose = Probability(reader, "pose");
+  if (reader->ok() && out->root + out->pose > 1) {
+    reader->Fail("pose", absl::StrCat(out->pose, ", wanted at most ", 1 - out->root,
+                                      ": root and pose are shares of all clips"));
+  }
+}
+
+void Read(ObjectReader* reader, TrainingOptions::Validation* out) {
+  out->fraction = reader->Number("fraction", 0, 0.9);
+  out->patience = reader->Int("patience", 0, kMaxEpochs);
+}
+
+template <typename Section>
+absl::Status ReadSection(ObjectReader* root, const std::string& name, Section* out) {
+  const json& object = root->Object(name);
+  if (!root->ok()) return absl::OkStatus();  // the root remembers what was wrong
+  ObjectReader reader(object, name);
+  Read(&reader, out);
+  return reader.Finish();
+}
+
+absl::StatusOr<TrainingOptions> ReadOptions(const json& value) {
+  ObjectReader root(value, "");
+  TrainingOptions options;
+  absl::Status status;
+  const auto section = [&](const std::string& name, auto* out) {
+    if (status.ok()) status = ReadSection(&root, name, out);
+  };
+  section("generator", &options.generator);
+  section("dropout", &options.dropout);
+  section("optimiser", &options.optimiser);
+  options.epochs = root.Int("epochs", 1, kMaxEpochs);
+  options.batch = root.Int("batch", 1, 65536);
+  options.seed = static_cast<uint64_t>(root.Int("seed", 0, INT64_MAX));
+  section("losses", &options.losses);
+  section("discriminator", &options.discriminator);
+  section("augmentation", &options.augmentation);
+  section("start", &options.start);
+  section("validation", &options.validation);
+  if (!status.ok()) return status;
+  if (status = root.Finish(); !status.ok()) return status;
+  return options;
+}
+
+// A replacement's value: JSON where it parses as such, else the text itself.
+json ParseValue(const std::string& text) {
+  json value = json::parse(text, nullptr, false);
+  return value.is_discarded() ? json(text) : value;
+}
+
+absl::Status Replace(const std::string& path, const std::string& text, json* root) {
+  json* at = root;
+  for (const std::string& key : std::vector<std::string>(absl::StrSplit(path, '.'))) {
+    if (!at->is_object() || !at->contains(key)) {
+      return absl::InvalidArgumentError(absl::StrCat(path, ": no such setting"));
+    }
+    at = &(*at)[key];
+  }
+  *at = ParseValue(text);
+  return absl::OkStatus();
+}
+
+std::string Text(double value) { return absl::StrCat(value); }
+std::string Text(bool value) { return value ? "true" : "false"; }
+
+}  // namespace
+
+absl::StatusOr<TrainingOptions> ParseTrainingOptions(std::string_view text) {
+  return ParseTrainingOptions(text, {});
+}
+
+absl::StatusOr<TrainingOptions> ParseTrainingOptions(
+    std::string_view text, const std::vector<std::pair<std::string, std::string>>& replacements) {
+  absl::StatusOr<json> root = ParseStrictJson(text, kMaxDepth);
+  if (!root.ok()) return root.status();
+  for (const auto& [path, value] : replacements) {
+    absl::Status status = Replace(path, value, &*root);
+    if (!status.ok()) return status;
+  }
+  return ReadOptions(*root);
+}
+
+std::map<std::string, std::string> Describe(const TrainingOptions& o) {
+  return {{"dropout.slices", Text(o.dropout.slices)},
+          {"dropout.encoded", Text(o.dropout.encoded)},
+          {"optimiser.name", o.optimiser.name},
+          {"optimiser.learning_rate", Text(o.optimiser.learning_rate)},
+          {"optimiser.schedule", o.optimiser.schedule},
+          {"optimiser.weight_decay", Text(o.optimiser.weight_decay)},
+          {"optimiser.gradient_clip", Text(o.optimiser.gradient_clip)},
+          {"optimiser.average_decay", Text(o.optimiser.average_decay)},
+          {"epochs", absl::StrCat(o.epochs)},
+          {"batch", absl::StrCat(o.batch)},
+          {"seed", absl::StrCat(o.seed)},
+          {"losses.reconstruction", o.losses.reconstruction},
+          {"losses.reconstruction_weight", Text(o.losses.reconstruction_weight)},
+          {"losses.bone", Text(o.losses.bone)},
+          {"losses.continuity", Text(o.losses.continuity)},
+          {"losses.continuity_form", o.losses.continuity_form},
+          {"losses.continuity_gap", absl::StrCat(o.losses.continuity_gap)},
+          {"losses.continuity_margin", Text(o.losses.continuity_margin)},
+          {"losses.adversarial", Text(o.losses.adversarial)},
+          {"discriminator.hidden", absl::StrCat(o.discriminator.hidden)},
+          {"discriminator.learning_rate", Text(o.discriminator.learning_rate)},
+          {"discriminator.dropout", Text(o.discriminator.dropout)},
+          {"discriminator.unit_norm_kernels", Text(o.discriminator.unit_norm_kernels)},
+          {"augmentation.mirrored_classes", absl::StrJoin(o.augmentation.mirrored_classes, " ")},
+          {"augmentation.mirror", Text(o.augmentation.mirror)},
+          {"augmentation.swap_roles", Text(o.augmentation.swap_roles)},
+          {"augmentation.body_scale", Text(o.augmentation.body_scale)},
+          {"augmentation.time_warp", Text(o.augmentation.time_warp)},
+          {"augmentation.root_distance", Text(o.augmentation.root_distance)},
+          {"augmentation.yaw", Text(o.augmentation.yaw)},
+          {"augmentation.noise", Text(o.augmentation.noise)},
+          {"augmentation.crop", Text(o.augmentation.crop)},
+          {"start.root", Text(o.start.root)},
+          {"start.pose", Text(o.start.pose)},
+          {"validation.fraction", Text(o.validation.fraction)},
+          {"validation.patience", absl::StrCat(o.validation.patience)}};
+}
+
+absl::Status CheckAgainst(const TrainingOptions& options, const std::vector<std::string>& classes) {
+  for (const std::string& name : options.augmentation.mirrored_classes) {
+    if (std::find(classes.begin(), classes.end(), name) == classes.end()) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("augmentation.mirrored_classes: \"", name, "\", wanted classes of the data: ",
+                       absl::StrJoin(classes, ", ")));
+    }
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace duet

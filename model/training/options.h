@@ -1,0 +1,96 @@
+#ifndef DUET_MODEL_TRAINING_OPTIONS_H_
+#define DUET_MODEL_TRAINING_OPTIONS_H_
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "model/checkpoint/manifest.h"
+
+namespace duet {
+
+// Everything that shapes a training run; the named configurations are in model/training/configs.
+struct TrainingOptions {
+  GeneratorArchitecture generator;
+
+  struct Dropout {
+    double slices = 0;   // after each slice's fully connected layer
+    double encoded = 0;  // of the encoders' output h_t and of the decoder's state
+  } dropout;
+
+  struct Optimiser {
+    std::string name = "adam";          // "adam" (decoupled weight decay) or "rmsprop"
+    double learning_rate = 2e-3;
+    std::string schedule = "one_cycle";  // or "constant"
+    double weight_decay = 0;            // of matrices alone
+    double gradient_clip = 0;           // largest norm; 0: not clipped
+    double average_decay = 0;           // exponential average of the weights; 0: none
+  } optimiser;
+
+  int64_t epochs = 40;
+  int64_t batch = 32;
+  uint64_t seed = 0;
+
+  struct Losses {
+    std::string reconstruction = "l1";  // "l1", "l2" or "norm"
+    double reconstruction_weight = 1;
+    double bone = 0;
+    double continuity = 0;
+    std::string continuity_form = "hinge";  // or "path_length"
+    int64_t continuity_gap = 2;
+    double continuity_margin = 0.1;
+    double adversarial = 0;  // 0: no discriminator
+  } losses;
+
+  struct DiscriminatorSettings {
+    int64_t hidden = 200;
+    double learning_rate = 1e-3;
+    double dropout = 0;
+    bool unit_norm_kernels = false;
+  } discriminator;
+
+  struct Augmentation {
+    std::vector<std::string> mirrored_classes;
+    double mirror = 0;          // probability, of the mirrored classes
+    double swap_roles = 0;      // probability, of symmetric classes
+    double body_scale = 0;      // +- share, each person alone
+    double time_warp = 0;       // +- log of the speed
+    double root_distance = 0;   // metres, standard deviation
+    double yaw = 0;             // radians, standard deviation
+    double noise = 0;           // metres, standard deviation, of the leader's joints
+    double crop = 0;            // probability of a shorter piece
+  } augmentation;
+
+  // What a clip's follower start tells, by probability; the rest has none.
+  struct Start {
+    double root = 0;
+    double pose = 0;
+  } start;
+
+  struct Validation {
+    double fraction = 0;    // of the training sequences, by class; 0: no validation
+    int64_t patience = 0;   // epochs without a better error before the run stops; 0: never stops
+  } validation;
+};
+
+// Parses a configuration. Strict: every field is required, unknown ones are refused, and
+// INVALID_ARGUMENT names the field, what came and what was wanted.
+absl::StatusOr<TrainingOptions> ParseTrainingOptions(std::string_view json);
+
+// The same after replacing fields by dotted path: {"losses.bone", "0.01"}; values are JSON, or plain
+// words.
+absl::StatusOr<TrainingOptions> ParseTrainingOptions(
+    std::string_view json, const std::vector<std::pair<std::string, std::string>>& replacements);
+
+// Every setting by dotted path, as a manifest keeps it.
+std::map<std::string, std::string> Describe(const TrainingOptions& options);
+
+// Checks what depends on the data: that mirrored classes exist.
+absl::Status CheckAgainst(const TrainingOptions& options, const std::vector<std::string>& classes);
+
+}  // namespace duet
+
+#endif  // DUET_MODEL_TRAINING_OPTIONS_H_

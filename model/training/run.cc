@@ -1,0 +1,95 @@
+#include "model/training/run.h"
+
+#include <cmath>
+
+#include "absl/strings/str_cat.h"
+#include "model/network/parameters.h"
+#include "model/training/revision.h"
+#include "model/training/run_log.h"
+#include "model/training/trainer.h"
+
+namespace duet {
+namespace {
+
+namespace fs = std::filesystem;
+
+Manifest MakeManifest(const RunPlan& plan, const Dataset& dataset) {
+  Manifest manifest;
+  manifest.model.name = plan.model_name;
+  manifest.model.version = plan.model_version;
+  manifest.model.description = plan.description;
+  manifest.model.skeleton = dataset.skeleton;
+  manifest.model.classes = dataset.classes;
+  manifest.model.frame_rate_hz = dataset.frame_rate_hz;
+  manifest.model.window_frames = dataset.LongestFrameCount();
+  manifest.model.accepts_follower_start = plan.options.generator.follower_start;
+  manifest.generator = plan.options.generator;
+  manifest.training = Describe(plan.options);
+  manifest.training["data"] = dataset.name;
+  manifest.training["sequences"] = absl::StrCat(plan.train.size());
+  return manifest;
+}
+
+absl::Status Finish(const RunPlan& plan, Manifest manifest, const EpochReport& last,
+                    Trainer* trainer) {
+  manifest.git_revision = kGitRevision;
+  manifest.metrics["training.reconstruction"] = last.reconstruction;
+  if (!std::isnan(last.validation_afd)) manifest.metrics["validation.afd"] = last.validation_afd;
+  const network::Generator best = trainer->Best();
+  std::error_code error;
+  fs::create_directories(CheckpointFolder(plan).parent_path(), error);
+  std::vector<Tensor> tensors = network::StoreParameters(manifest, best);
+  return WriteCheckpoint(CheckpointFolder(plan), {std::move(manifest), std::move(tensors)});
+}
+
+void Show(const RunPlan& plan, const EpochReport& report, bool terminal, std::ostream* progress) {
+  *progress << (terminal ? "\r" : "") << ProgressLine(plan.title, report)
+            << (terminal && report.epoch < report.epochs ? "\033[K" : "\n") << std::flush;
+}
+
+}  // namespace
+
+void SetTrainingThreads(int threads) { torch::set_num_threads(threads); }
+
+fs::path CheckpointFolder(const RunPlan& plan) {
+  return plan.folder / "checkpoint" / plan.model_name / absl::StrCat(plan.model_version);
+}
+
+absl::Status Run(const RunPlan& plan, const Dataset& dataset, bool terminal,
+                 std::ostream* progress) {
+  if (absl::Status status = CheckAgainst(plan.options, dataset.classes); !status.ok()) return status;
+  if (fs::exists(CheckpointFolder(plan))) {
+    *progress << plan.title << " is finished: " << CheckpointFolder(plan).string() << "\n";
+    return absl::OkStatus();
+  }
+  std::error_code error;
+  fs::create_directories(plan.folder, error);
+  if (error) return absl::InternalError(absl::StrCat(plan.folder.string(), ": ", error.message()));
+  const Manifest manifest = MakeManifest(plan, dataset);
+  std::vector<int> train = plan.train;
+  std::vector<int> validation;
+  if (plan.options.validation.fraction > 0) {
+    validation = TakeValidation(dataset, plan.options.validation.fraction, plan.options.seed, &train);
+  }
+  Trainer trainer(plan.options, manifest, dataset, train, validation);
+  const fs::path state = plan.folder / "state";
+  absl::Status status = trainer.LoadState(state);
+  if (!status.ok() && !absl::IsNotFound(status)) return status;
+  RunLog log(plan.folder / "log.csv");
+  if (status = log.ResumeAt(trainer.epoch()); !status.ok()) return status;
+  EpochReport report;
+  while (!trainer.Finished()) {
+    report = trainer.RunEpoch();
+    if (!std::isfinite(report.generator)) {
+      return absl::InternalError(absl::StrCat(
+          plan.title, ": the loss is no longer finite at epoch ", report.epoch,
+          "; a lower optimiser.learning_rate or a gradient_clip may help"));
+    }
+    if (status = trainer.SaveState(state); !status.ok()) return status;
+    if (status = log.Append(report); !status.ok()) return status;
+    Show(plan, report, terminal, progress);
+  }
+  return Finish(plan, manifest, report, &trainer);
+}
+
+}  // namespace duet

@@ -1,0 +1,42 @@
+#ifndef DUET_MODEL_TRAINING_RUN_H_
+#define DUET_MODEL_TRAINING_RUN_H_
+
+#include <filesystem>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "model/dataset/dataset.h"
+#include "model/training/options.h"
+
+namespace duet {
+
+// One training run and its folder:
+//   state         everything to go on from after the last finished epoch
+//   log.csv       one row an epoch
+//   checkpoint/   the result, <name>/<version>/, once the run has finished
+struct RunPlan {
+  TrainingOptions options;
+  std::string model_name;
+  int model_version = 1;
+  std::string description;
+  std::string title;                  // of the progress line
+  std::filesystem::path folder;
+  std::vector<int> train;             // sequences of the data set
+};
+
+// Runs to the end, or goes on where a killed run left off; returns at once when the run has already
+// finished. Progress goes to `progress`: a line rewritten in place on a terminal.
+absl::Status Run(const RunPlan& plan, const Dataset& dataset, bool terminal,
+                 std::ostream* progress);
+
+// LibTorch's threads for the whole process. Results repeat bit for bit with one.
+void SetTrainingThreads(int threads);
+
+// Where a finished run's checkpoint is.
+std::filesystem::path CheckpointFolder(const RunPlan& plan);
+
+}  // namespace duet
+
+#endif  // DUET_MODEL_TRAINING_RUN_H_

@@ -1,0 +1,31 @@
+#ifndef DUET_MODEL_TRAINING_RUN_LOG_H_
+#define DUET_MODEL_TRAINING_RUN_LOG_H_
+
+#include <filesystem>
+#include <ostream>
+#include <string>
+
+#include "absl/status/status.h"
+#include "model/training/trainer.h"
+
+namespace duet {
+
+// Appends one row for each epoch to a CSV file; a new file starts with the column names. Rows of
+// epochs after `epoch` (left by a run that was killed before it saved its state) are dropped.
+class RunLog {
+ public:
+  explicit RunLog(std::filesystem::path file) : file_(std::move(file)) {}
+
+  absl::Status ResumeAt(int64_t epoch);
+  absl::Status Append(const EpochReport& report);
+
+ private:
+  std::filesystem::path file_;
+};
+
+// "[#####.....] epoch 12/60  loss 3.214  val 0.61  0:14 left". One line, no line end.
+std::string ProgressLine(const std::string& title, const EpochReport& report);
+
+}  // namespace duet
+
+#endif  // DUET_MODEL_TRAINING_RUN_LOG_H_

@@ -1,0 +1,138 @@
+#include "model/training/sampler.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "model/engine/window_frame.h"
+
+namespace duet {
+namespace {
+
+// Frames by which the order by length is disturbed, so that batches differ from epoch to epoch.
+constexpr double kLengthJitter = 2;
+
+StartKnowledge DrawStart(const TrainingOptions::Start& start, EpochRandom* random) {
+  const double draw = random->Uniform(0, 1);
+  if (draw < start.pose) return StartKnowledge::kPose;
+  return draw < start.pose + start.root ? StartKnowledge::kRoot : StartKnowledge::kNone;
+}
+
+std::vector<int> OrderByLength(const std::vector<Sequence>& sequences, EpochRandom* random) {
+  std::vector<double> key;
+  for (const Sequence& sequence : sequences) {
+    key.push_back(sequence.pair.leader.frame_count() + random->Normal(kLengthJitter));
+  }
+  std::vector<int> order(sequences.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](int a, int b) {
+    return key[static_cast<size_t>(a)] < key[static_cast<size_t>(b)];
+  });
+  return order;
+}
+
+// Cuts [0, count) into batches that differ by at most one in size.
+std::vector<std::vector<int>> Cut(const std::vector<int>& order, int64_t batch) {
+  const int64_t count = static_cast<int64_t>(order.size()), pieces = (count + batch - 1) / batch;
+  std::vector<std::vector<int>> cut;
+  for (int64_t i = 0; i < pieces; ++i) {
+    cut.emplace_back(order.begin() + count * i / pieces, order.begin() + count * (i + 1) / pieces);
+  }
+  return cut;
+}
+
+template <typename T>
+void Shuffle(EpochRandom* random, std::vector<T>* values) {
+  for (size_t i = values->size(); i > 1; --i) {
+    std::swap((*values)[i - 1], (*values)[static_cast<size_t>(random->Below(int64_t(i)))]);
+  }
+}
+
+std::optional<FollowerStart> StartOf(const Skeleton& skeleton, const Clip& follower,
+                                     StartKnowledge knowledge) {
+  if (knowledge == StartKnowledge::kNone) return std::nullopt;
+  FollowerStart start{follower.at(0, skeleton.root), {}};
+  if (knowledge == StartKnowledge::kPose) {
+    start.pose.assign(follower.frame(0), follower.frame(0) + skeleton.joint_count());
+  }
+  return start;
+}
+
+}  // namespace
+
+SynthesisWindow MakeWindow(const Dataset& dataset, const Sequence& sequence,
+                           StartKnowledge knowledge) {
+  SynthesisWindow window;
+  window.leader = sequence.pair.leader.positions;
+  const size_t classes = dataset.classes.size();
+  window.labels.assign(static_cast<size_t>(sequence.pair.leader.frame_count()) * classes, 0);
+  for (size_t t = 0; t < window.labels.size(); t += classes) {
+    window.labels[t + static_cast<size_t>(sequence.interaction_class)] = 1;
+  }
+  window.start = StartOf(dataset.skeleton, sequence.pair.follower, knowledge);
+  window.partner_direction = sequence.partner_direction;
+  return window;
+}
+
+TrainingBatch MakeBatch(const Manifest& manifest, const Dataset& dataset,
+                        const std::vector<Sequence>& sequences,
+                        const std::vector<StartKnowledge>& starts) {
+  std::vector<network::BatchItem> items;
+  std::vector<std::vector<Vec3>> followers;
+  std::vector<int64_t> classes;
+  for (size_t i = 0; i < sequences.size(); ++i) {
+    const SynthesisWindow window = MakeWindow(dataset, sequences[i], starts[i]);
+    const Standardisation frame = WindowFrame(dataset.skeleton, window);
+    items.push_back(network::StandardItem(frame, window));
+    followers.push_back(frame.Apply(sequences[i].pair.follower.positions));
+    classes.push_back(sequences[i].interaction_class);
+  }
+  TrainingBatch batch;
+  batch.input = network::MakeInput(manifest, items);
+  std::vector<const std::vector<Vec3>*> pointers;
+  for (const std::vector<Vec3>& follower : followers) pointers.push_back(&follower);
+  batch.follower = network::PadPositions(pointers, dataset.skeleton.joint_count(),
+                                         batch.input.leader.size(1));
+  batch.classes = torch::tensor(classes);
+  return batch;
+}
+
+std::vector<TrainingBatch> SampleEpoch(const Manifest& manifest, const Dataset& dataset,
+                                       const std::vector<int>& train,
+                                       const TrainingOptions& options, int64_t epoch) {
+  EpochRandom random(options.seed, epoch);
+  std::vector<Sequence> sequences;
+  for (int index : train) {
+    sequences.push_back(Augment(dataset, dataset.sequences[static_cast<size_t>(index)],
+                                options.augmentation, &random));
+  }
+  std::vector<std::vector<int>> pieces = Cut(OrderByLength(sequences, &random), options.batch);
+  Shuffle(&random, &pieces);
+  std::vector<TrainingBatch> batches;
+  for (const std::vector<int>& piece : pieces) {
+    std::vector<Sequence> chosen;
+    std::vector<StartKnowledge> starts;
+    for (int index : piece) {
+      chosen.push_back(sequences[static_cast<size_t>(index)]);
+      starts.push_back(manifest.generator.follower_start ? DrawStart(options.start, &random)
+                                                         : StartKnowledge::kNone);
+    }
+    batches.push_back(MakeBatch(manifest, dataset, chosen, starts));
+  }
+  return batches;
+}
+
+torch::Tensor ClassMeanPoses(const Manifest& manifest, const Dataset& dataset,
+                             const std::vector<int>& train) {
+  const int64_t joints = dataset.skeleton.joint_count();
+  const int64_t classes = static_cast<int64_t>(dataset.classes.size());
+  torch::Tensor sums = torch::zeros({classes, 3 * joints}), counts = torch::zeros({classes, 1});
+  for (int index : train) {
+    const Sequence& sequence = dataset.sequences[static_cast<size_t>(index)];
+    const TrainingBatch one = MakeBatch(manifest, dataset, {sequence}, {StartKnowledge::kNone});
+    sums[sequence.interaction_class] += one.follower[0].mean(0);
+    counts[sequence.interaction_class] += 1;
+  }
+  return sums / counts.clamp_min(1);
+}
+
+}  // namespace duet

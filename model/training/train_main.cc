@@ -1,0 +1,137 @@
+// duet-train: trains a generator on a folder of captures and writes a checkpoint.
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+
+#include "absl/strings/str_cat.h"
+#include "model/training/named_configs.h"
+#include "model/training/run.h"
+
+namespace {
+
+struct Arguments {
+  std::string data;
+  std::string config = "default";
+  std::string out;
+  std::string name = "sbu";
+  int version = 1;
+  std::string description;
+  std::string protocol = "all";
+  std::string fold;
+  std::vector<std::string> settings;
+  int threads = 1;
+};
+
+absl::StatusOr<std::string> ReadConfig(const std::string& config) {
+  std::string names;
+  for (const duet::NamedConfig& named : duet::NamedConfigs()) {
+    if (named.name == config) return std::string(named.json);
+    absl::StrAppend(&names, names.empty() ? "" : ", ", std::string(named.name));
+  }
+  std::ifstream in(config, std::ios::binary);
+  if (!in) {
+    return absl::NotFoundError(
+        absl::StrCat("--config ", config, ": no such file, and no configuration of that name (",
+                     names, ")"));
+  }
+  return std::string(std::istreambuf_iterator<char>(in), {});
+}
+
+absl::StatusOr<duet::TrainingOptions> ReadOptions(const Arguments& arguments) {
+  absl::StatusOr<std::string> json = ReadConfig(arguments.config);
+  if (!json.ok()) return json.status();
+  std::vector<std::pair<std::string, std::string>> replacements;
+  for (const std::string& setting : arguments.settings) {
+    const size_t equals = setting.find('=');
+    if (equals == std::string::npos) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("--set ", setting, ": wanted section.field=value"));
+    }
+    replacements.emplace_back(setting.substr(0, equals), setting.substr(equals + 1));
+  }
+  return duet::ParseTrainingOptions(*json, replacements);
+}
+
+// The runs that the protocol asks for: one on everything, or one for each left-out subject.
+absl::StatusOr<std::vector<duet::RunPlan>> Plans(const Arguments& arguments,
+                                                 const duet::TrainingOptions& options,
+                                                 const duet::Dataset& dataset) {
+  duet::RunPlan plan;
+  plan.options = options;
+  plan.model_name = arguments.name;
+  plan.model_version = arguments.version;
+  plan.description = arguments.description;
+  std::vector<duet::RunPlan> plans;
+  if (arguments.protocol == "all") {
+    for (size_t i = 0; i < dataset.sequences.size(); ++i) plan.train.push_back(static_cast<int>(i));
+    plan.title = "all";
+    plan.folder = std::filesystem::path(arguments.out) / "all";
+    plans.push_back(plan);
+    return plans;
+  }
+  for (const std::string& subject : dataset.Subjects()) {
+    if (!arguments.fold.empty() && subject != arguments.fold) continue;
+    absl::StatusOr<duet::Split> split = duet::LeaveSubjectOut(dataset, subject);
+    if (!split.ok()) return split.status();
+    plan.train = split->train;
+    plan.title = "without " + subject;
+    plan.folder = std::filesystem::path(arguments.out) / subject;
+    plans.push_back(plan);
+  }
+  if (!plans.empty()) return plans;
+  return absl::NotFoundError(
+      absl::StrCat("--fold ", arguments.fold, ": the data has no such subject"));
+}
+
+absl::Status Train(const Arguments& arguments) {
+  absl::StatusOr<duet::TrainingOptions> options = ReadOptions(arguments);
+  if (!options.ok()) return options.status();
+  absl::StatusOr<duet::Dataset> dataset = duet::ReadDataset(arguments.data);
+  if (!dataset.ok()) return dataset.status();
+  absl::StatusOr<std::vector<duet::RunPlan>> plans = Plans(arguments, *options, *dataset);
+  if (!plans.ok()) return plans.status();
+  for (const duet::RunPlan& plan : *plans) {
+    absl::Status status = duet::Run(plan, *dataset, isatty(STDOUT_FILENO) != 0, &std::cout);
+    if (!status.ok()) return status;
+    std::cout << "checkpoint: " << duet::CheckpointFolder(plan).string() << "\n";
+  }
+  return absl::OkStatus();
+}
+
+void Declare(Arguments* arguments, CLI::App* app) {
+  app->add_option("--data", arguments->data, "folder of captures (docs/datasets.md)")->required();
+  app->add_option("--out", arguments->out, "folder of the run; a killed run goes on from it")
+      ->required();
+  app->add_option("--config", arguments->config, "a named configuration or a JSON file")
+      ->capture_default_str();
+  app->add_option("--set", arguments->settings, "replace a setting: section.field=value");
+  app->add_option("--name", arguments->name, "the model's name")->capture_default_str();
+  app->add_option("--version_number", arguments->version, "the model's version")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  app->add_option("--description", arguments->description, "a sentence for the model's users");
+  app->add_option("--protocol", arguments->protocol, "all: on everything; loso: one subject out")
+      ->check(CLI::IsMember({"all", "loso"}))
+      ->capture_default_str();
+  app->add_option("--fold", arguments->fold, "with loso: this subject alone");
+  app->add_option("--threads", arguments->threads, "LibTorch threads")
+      ->check(CLI::Range(1, 256))
+      ->capture_default_str();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Arguments arguments;
+  CLI::App app("Trains a generator on a folder of captures and writes a checkpoint.");
+  Declare(&arguments, &app);
+  CLI11_PARSE(app, argc, argv);
+  duet::SetTrainingThreads(arguments.threads);
+  const absl::Status status = Train(arguments);
+  if (status.ok()) return 0;
+  std::cerr << "duet-train: " << status.message() << "\n";
+  return 1;
+}

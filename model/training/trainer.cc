@@ -1,0 +1,307 @@
+#include "model/training/trainer.h"
+
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "model/network/losses.h"
+
+namespace duet {
+namespace {
+
+using network::Discriminator;
+using network::DiscriminatorOptions;
+using network::Generator;
+
+int64_t Steps(size_t count, int64_t batch) { return (static_cast<int64_t>(count) + batch - 1) / batch; }
+
+Generator MakeGenerator(const TrainingOptions& options, const Manifest& manifest) {
+  torch::manual_seed(options.seed);
+  Generator generator(manifest);
+  generator->set_dropout(options.dropout.slices, options.dropout.encoded);
+  return generator;
+}
+
+Discriminator MakeDiscriminator(const TrainingOptions& options, const Manifest& manifest) {
+  DiscriminatorOptions sizes;
+  sizes.input = 3 * manifest.model.skeleton.joint_count();
+  sizes.window_frames = manifest.model.window_frames;
+  sizes.hidden = options.discriminator.hidden;
+  sizes.outputs = manifest.model.class_count() + 1;
+  Discriminator discriminator(sizes);
+  discriminator->set_dropout(options.discriminator.dropout);
+  return discriminator;
+}
+
+TrainingOptions::Optimiser DiscriminatorOptimiser(const TrainingOptions& options) {
+  TrainingOptions::Optimiser optimiser = options.optimiser;
+  optimiser.learning_rate = options.discriminator.learning_rate;
+  return optimiser;
+}
+
+std::vector<torch::Tensor> Copies(const std::vector<torch::Tensor>& tensors) {
+  std::vector<torch::Tensor> copies;
+  for (const torch::Tensor& tensor : tensors) copies.push_back(tensor.detach().clone());
+  return copies;
+}
+
+void CopyInto(const std::vector<torch::Tensor>& from, const std::vector<torch::Tensor>& to) {
+  torch::NoGradGuard no_grad;
+  for (size_t i = 0; i < from.size(); ++i) torch::Tensor(to[i]).copy_(from[i]);
+}
+
+torch::Tensor Reconstruction(const std::string& form, const torch::Tensor& predicted,
+                             const TrainingBatch& batch) {
+  const torch::Tensor& lengths = batch.input.lengths;
+  if (form == "l2") return network::L2Loss(predicted, batch.follower, lengths);
+  if (form == "norm") return network::NormLoss(predicted, batch.follower, lengths);
+  return network::L1Loss(predicted, batch.follower, lengths);
+}
+
+network::ContinuityOptions Continuity(const TrainingOptions::Losses& losses) {
+  return {losses.continuity_form == "hinge" ? network::ContinuityForm::kHinge
+                                            : network::ContinuityForm::kPathLength,
+          losses.continuity_gap, losses.continuity_margin};
+}
+
+// Turns gradients of a module's parameters off while it lives.
+class Frozen {
+ public:
+  explicit Frozen(torch::nn::Module& module) : module_(module) { Set(false); }
+  ~Frozen() { Set(true); }
+  Frozen(const Frozen&) = delete;
+  Frozen& operator=(const Frozen&) = delete;
+
+ private:
+  void Set(bool on) {
+    for (torch::Tensor& parameter : module_.parameters()) parameter.set_requires_grad(on);
+  }
+  torch::nn::Module& module_;
+};
+
+}  // namespace
+
+Trainer::Trainer(const TrainingOptions& options, const Manifest& manifest, const Dataset& dataset,
+                 std::vector<int> train, std::vector<int> validation)
+    : options_(options),
+      manifest_(manifest),
+      dataset_(dataset),
+      train_(std::move(train)),
+      validation_(std::move(validation)),
+      steps_per_epoch_(Steps(train_.size(), options.batch)),
+      generator_(MakeGenerator(options, manifest)),
+      discriminator_(MakeDiscriminator(options, manifest)),
+      generator_optimiser_(options.optimiser, generator_->parameters(),
+                           steps_per_epoch_ * options.epochs),
+      discriminator_optimiser_(DiscriminatorOptimiser(options), discriminator_->parameters(),
+                               steps_per_epoch_ * options.epochs),
+      best_afd_(std::numeric_limits<double>::infinity()) {
+  if (manifest.generator.base_pose) {
+    generator_->SetBasePoses(ClassMeanPoses(manifest, dataset, train_));
+  }
+  average_ = Copies(generator_->parameters());
+  best_ = Copies(generator_->parameters());
+}
+
+bool Trainer::Finished() const {
+  if (epoch_ >= options_.epochs) return true;
+  const bool may_stop = !validation_.empty() && options_.validation.patience > 0;
+  return may_stop && epoch_ - best_epoch_ >= options_.validation.patience;
+}
+
+torch::Tensor Trainer::GeneratorLoss(const TrainingBatch& batch, EpochReport* report) {
+  const TrainingOptions::Losses& weights = options_.losses;
+  const torch::Tensor& lengths = batch.input.lengths;
+  const torch::Tensor predicted = generator_->forward(batch.input);
+  torch::Tensor total = torch::zeros({});
+  const auto add = [&](double weight, const torch::Tensor& loss, double* mean) {
+    total = total + weight * loss;
+    *mean += loss.item<double>() / static_cast<double>(steps_per_epoch_);
+  };
+  add(weights.reconstruction_weight, Reconstruction(weights.reconstruction, predicted, batch),
+      &report->reconstruction);
+  if (weights.bone > 0) {
+    add(weights.bone,
+        network::BoneLoss(predicted, batch.follower, lengths, manifest_.model.skeleton.bones),
+        &report->bone);
+  }
+  if (weights.continuity > 0) {
+    add(weights.continuity, network::ContinuityLoss(predicted, lengths, Continuity(weights)),
+        &report->continuity);
+  }
+  if (weights.adversarial > 0) {
+    add(weights.adversarial,
+        network::AdversarialLoss(discriminator_->forward(predicted, lengths), batch.classes),
+        &report->adversarial);
+  }
+  report->generator += total.item<double>() / static_cast<double>(steps_per_epoch_);
+  return total;
+}
+
+void Trainer::TrainGenerator(const TrainingBatch& batch, EpochReport* report) {
+  const Frozen frozen(*discriminator_);
+  GeneratorLoss(batch, report).backward();
+}
+
+void Trainer::TrainDiscriminator(const TrainingBatch& batch, EpochReport* report) {
+  torch::Tensor synthesised;
+  {
+    torch::NoGradGuard no_grad;
+    synthesised = generator_->forward(batch.input);
+  }
+  const torch::Tensor loss = network::DiscriminatorLoss(
+      discriminator_->forward(batch.follower, batch.input.lengths),
+      discriminator_->forward(synthesised, batch.input.lengths), batch.classes);
+  loss.backward();
+  report->discriminator += loss.item<double>() / static_cast<double>(steps_per_epoch_);
+}
+
+void Trainer::UpdateAverage() {
+  torch::NoGradGuard no_grad;
+  const std::vector<torch::Tensor> parameters = generator_->parameters();
+  const double decay = options_.optimiser.average_decay;
+  for (size_t i = 0; i < parameters.size(); ++i) {
+    if (decay > 0) {
+      average_[i].mul_(decay).add_(parameters[i], 1 - decay);
+    } else {
+      average_[i].copy_(parameters[i]);
+    }
+  }
+}
+
+EpochReport Trainer::RunEpoch() {
+  const auto begin = std::chrono::steady_clock::now();
+  EpochReport report;
+  report.epoch = epoch_ + 1;
+  report.epochs = options_.epochs;
+  // Dropout draws from LibTorch's generator: seeded by epoch, so that a resumed run draws the same.
+  torch::manual_seed(options_.seed * 1000003 + static_cast<uint64_t>(epoch_));
+  generator_->train();
+  discriminator_->train();
+  int64_t step = epoch_ * steps_per_epoch_;
+  for (const TrainingBatch& batch : SampleEpoch(manifest_, dataset_, train_, options_, epoch_)) {
+    if (options_.losses.adversarial > 0) {
+      TrainDiscriminator(batch, &report);
+      discriminator_optimiser_.Step(step);
+      if (options_.discriminator.unit_norm_kernels) discriminator_->NormaliseKernels();
+    }
+    TrainGenerator(batch, &report);
+    generator_optimiser_.Step(step);
+    UpdateAverage();
+    ++step;
+  }
+  ++epoch_;
+  report.validation_afd = validation_.empty() ? std::numeric_limits<double>::quiet_NaN() : Validate();
+  if (validation_.empty() || report.validation_afd < best_afd_) {
+    best_afd_ = report.validation_afd;
+    best_epoch_ = epoch_;
+    CopyInto(average_, best_);
+  }
+  report.seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return report;
+}
+
+double Trainer::Validate() {
+  torch::NoGradGuard no_grad;
+  const std::vector<torch::Tensor> parameters = generator_->parameters();
+  const std::vector<torch::Tensor> trained = Copies(parameters);
+  CopyInto(average_, parameters);
+  generator_->eval();
+  double sum = 0;
+  for (int index : validation_) {
+    const TrainingBatch one = MakeBatch(
+        manifest_, dataset_, {dataset_.sequences[static_cast<size_t>(index)]}, {StartKnowledge::kNone});
+    sum += network::NormLoss(generator_->forward(one.input), one.follower, one.input.lengths)
+               .item<double>();
+  }
+  CopyInto(trained, parameters);
+  return sum / static_cast<double>(validation_.size());
+}
+
+Generator Trainer::Best() {
+  Generator best(manifest_);
+  CopyInto(best_, best->parameters());
+  best->eval();
+  return best;
+}
+
+// What a saved state must agree with.
+std::string Trainer::Identity() const {
+  return absl::StrCat(SerializeManifest(manifest_),
+                      absl::StrJoin(Describe(options_), "\n", absl::PairFormatter("=")), "\n",
+                      dataset_.name, " train ", absl::StrJoin(train_, ","), " validation ",
+                      absl::StrJoin(validation_, ","));
+}
+
+std::vector<std::pair<std::string, torch::Tensor>> Trainer::StateTensors() {
+  std::vector<std::pair<std::string, torch::Tensor>> state;
+  const auto add = [&](const std::string& name, const std::vector<torch::Tensor>& tensors) {
+    for (size_t i = 0; i < tensors.size(); ++i) {
+      state.emplace_back(absl::StrCat(name, i), tensors[i].detach());
+    }
+  };
+  add("generator", generator_->parameters());
+  add("discriminator", discriminator_->parameters());
+  add("average", average_);
+  add("best", best_);
+  return state;
+}
+
+absl::Status Trainer::SaveState(const std::filesystem::path& file) {
+  const std::filesystem::path temporary = file.string() + ".tmp";
+  try {
+    torch::serialize::OutputArchive archive, generator, discriminator;
+    for (const auto& [name, tensor] : StateTensors()) archive.write(name, tensor);
+    archive.write("identity", c10::IValue(Identity()));
+    archive.write("epoch", c10::IValue(epoch_));
+    archive.write("best_epoch", c10::IValue(best_epoch_));
+    archive.write("best_afd", c10::IValue(best_afd_));
+    generator_optimiser_.state().save(generator);
+    discriminator_optimiser_.state().save(discriminator);
+    archive.write("generator_optimiser", generator);
+    archive.write("discriminator_optimiser", discriminator);
+    archive.save_to(temporary.string());
+    std::filesystem::rename(temporary, file);
+  } catch (const std::exception& error) {
+    return absl::InternalError(absl::StrCat(file.string(), ": cannot be written: ", error.what()));
+  }
+  return absl::OkStatus();
+}
+
+absl::Status Trainer::LoadState(const std::filesystem::path& file) {
+  if (!std::filesystem::exists(file)) return absl::NotFoundError(file.string() + ": no such file");
+  try {
+    torch::serialize::InputArchive archive, generator, discriminator;
+    archive.load_from(file.string());
+    c10::IValue value;
+    archive.read("identity", value);
+    if (value.toStringRef() != Identity()) {
+      return absl::FailedPreconditionError(absl::StrCat(
+          file.string(), ": belongs to a run with other options or data; choose another folder"));
+    }
+    torch::NoGradGuard no_grad;
+    for (auto& [name, tensor] : StateTensors()) {
+      torch::Tensor saved;
+      archive.read(name, saved);
+      tensor.copy_(saved);
+    }
+    archive.read("epoch", value);
+    epoch_ = value.toInt();
+    archive.read("best_epoch", value);
+    best_epoch_ = value.toInt();
+    archive.read("best_afd", value);
+    best_afd_ = value.toDouble();
+    archive.read("generator_optimiser", generator);
+    archive.read("discriminator_optimiser", discriminator);
+    generator_optimiser_.state().load(generator);
+    discriminator_optimiser_.state().load(discriminator);
+  } catch (const std::exception& error) {
+    return absl::DataLossError(absl::StrCat(file.string(), ": cannot be read: ", error.what()));
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace duet

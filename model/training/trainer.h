@@ -1,0 +1,91 @@
+#ifndef DUET_MODEL_TRAINING_TRAINER_H_
+#define DUET_MODEL_TRAINING_TRAINER_H_
+
+#include <torch/torch.h>
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "model/checkpoint/checkpoint.h"
+#include "model/dataset/dataset.h"
+#include "model/network/discriminator.h"
+#include "model/network/generator.h"
+#include "model/training/optimiser.h"
+#include "model/training/options.h"
+#include "model/training/sampler.h"
+
+namespace duet {
+
+// The mean of every loss over an epoch, unweighted; validation figures are NaN when there is none.
+struct EpochReport {
+  int64_t epoch = 0;  // from 1
+  int64_t epochs = 0;
+  double generator = 0;  // the weighted sum
+  double reconstruction = 0;
+  double bone = 0;
+  double continuity = 0;
+  double adversarial = 0;
+  double discriminator = 0;
+  double validation_afd = 0;  // metres, without a follower start
+  double seconds = 0;
+};
+
+// Trains a generator, epoch by epoch. Every epoch is a function of the state before it, the options
+// and the data alone: a run that was stopped and resumed equals one that was not, bit for bit on
+// one thread.
+//
+// Source:  paper section 3.4 and 5. The discriminator is frozen in the generator's step.
+// Threads: not safe to call concurrently.
+class Trainer {
+ public:
+  // `manifest` describes the model to be; its generator must be options.generator. `validation`
+  // may be empty. All three must outlive the trainer.
+  Trainer(const TrainingOptions& options, const Manifest& manifest, const Dataset& dataset,
+          std::vector<int> train, std::vector<int> validation);
+
+  // Epochs done so far.
+  int64_t epoch() const { return epoch_; }
+  // True when all epochs are done or validation has stopped improving.
+  bool Finished() const;
+
+  EpochReport RunEpoch();
+
+  // Saves and restores everything that the next epoch depends on. A state of other options or data
+  // is FAILED_PRECONDITION. The file is this machine's own, never a checkpoint to pass around.
+  absl::Status SaveState(const std::filesystem::path& file);
+  absl::Status LoadState(const std::filesystem::path& file);
+
+  // The generator to keep: of the best validated epoch, or the last; averaged when so configured.
+  network::Generator Best();
+
+ private:
+  torch::Tensor GeneratorLoss(const TrainingBatch& batch, EpochReport* report);
+  void TrainGenerator(const TrainingBatch& batch, EpochReport* report);
+  void TrainDiscriminator(const TrainingBatch& batch, EpochReport* report);
+  void UpdateAverage();
+  double Validate();
+  std::string Identity() const;
+  std::vector<std::pair<std::string, torch::Tensor>> StateTensors();
+
+  const TrainingOptions& options_;
+  const Manifest& manifest_;
+  const Dataset& dataset_;
+  std::vector<int> train_, validation_;
+  int64_t steps_per_epoch_;
+  network::Generator generator_;
+  network::Discriminator discriminator_;
+  Optimiser generator_optimiser_, discriminator_optimiser_;
+  std::vector<torch::Tensor> average_;  // of the generator's parameters
+  std::vector<torch::Tensor> best_;     // parameters of the best validated epoch
+  double best_afd_;
+  int64_t best_epoch_ = 0;
+  int64_t epoch_ = 0;
+};
+
+}  // namespace duet
+
+#endif  // DUET_MODEL_TRAINING_TRAINER_H_
