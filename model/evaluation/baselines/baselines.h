@@ -1,0 +1,22 @@
+#ifndef DUET_MODEL_EVALUATION_BASELINES_BASELINES_H_
+#define DUET_MODEL_EVALUATION_BASELINES_BASELINES_H_
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "model/evaluation/method.h"
+
+namespace duet {
+
+// The rows of Table 1 that need no network, in the order of the table, after the two trivial rows.
+std::vector<std::string> BaselineNames();
+
+// A baseline by its name, untrained, with its published settings (docs/baselines.md).
+// Errors: INVALID_ARGUMENT for a name that is not in BaselineNames.
+absl::StatusOr<std::unique_ptr<Method>> MakeBaseline(const std::string& name);
+
+}  // namespace duet
+
+#endif  // DUET_MODEL_EVALUATION_BASELINES_BASELINES_H_

@@ -1,0 +1,26 @@
+#ifndef DUET_MODEL_EVALUATION_BASELINES_FROZEN_FIRST_FRAME_H_
+#define DUET_MODEL_EVALUATION_BASELINES_FROZEN_FIRST_FRAME_H_
+
+#include <string>
+#include <vector>
+
+#include "model/evaluation/method.h"
+
+namespace duet {
+
+// The trivial row of methods that are told the follower's first pose: that pose, held still in the
+// standard frame (so it moves along with the leader's root, as everything there does).
+class FrozenFirstFrame : public Method {
+ public:
+  std::string name() const override { return "frozen_first_frame"; }
+  absl::Status Train(const Dataset& dataset, const std::vector<int>& train) override;
+  std::vector<Vec3> Predict(const Sequence& sequence) const override;
+  bool reads_first_pose() const override { return true; }
+
+ private:
+  Skeleton skeleton_;
+};
+
+}  // namespace duet
+
+#endif  // DUET_MODEL_EVALUATION_BASELINES_FROZEN_FIRST_FRAME_H_

@@ -1,0 +1,31 @@
+#include "model/evaluation/baselines/pose_space.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+
+namespace duet {
+namespace {
+
+// Components with less than this share of the strongest one's variance are rounding.
+constexpr double kNoVariance = 1e-10;
+
+}  // namespace
+
+PoseSpace::PoseSpace(const Rows& rows, Eigen::Index dimensions) : mean_(rows.colwise().mean()) {
+  const Rows centred = rows.rowwise() - mean_;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(centred.transpose() * centred);
+  const Eigen::VectorXd& variance = solver.eigenvalues();  // ascending
+  const Eigen::Index values = rows.cols();
+  const double least = kNoVariance * std::max(variance(values - 1), 0.0);
+  Eigen::Index kept = std::min(dimensions, values);
+  while (kept > 1 && variance(values - kept) <= least) --kept;
+  basis_ = solver.eigenvectors().rightCols(kept).rowwise().reverse();
+}
+
+Rows PoseSpace::Project(const Rows& rows) const { return (rows.rowwise() - mean_) * basis_; }
+
+Rows PoseSpace::Reconstruct(const Rows& components) const {
+  return (components * basis_.transpose()).rowwise() + mean_;
+}
+
+}  // namespace duet
