@@ -1,0 +1,291 @@
+#include "server/service/clip_stream.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <limits>
+#include <memory>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "server/batching/worker_pool.h"
+#include "tests/server/support/puppet_scheduler.h"
+#include "tests/support/fake_synthesizer.h"
+#include "tests/support/sample_motion.h"
+#include "tests/support/status_matchers.h"
+
+namespace duet {
+namespace {
+
+using ::testing::HasSubstr;
+using Kind = ClipPart::Kind;
+
+constexpr int kJoints = 15;
+constexpr auto kInternal = absl::StatusCode::kInternal;
+
+ClipRequest Request(int frames) {
+  return {SwayingMotion(frames, 15), 15, LabelTrack(std::vector<float>{1, 0, 0, 0, 0, 0}),
+          std::nullopt, std::nullopt};
+}
+
+// A stream whose windows the test evaluates, and how often it was told of progress.
+class PuppetStream {
+ public:
+  explicit PuppetStream(
+      int frames, int buffered_frames = 1000000,
+      std::shared_ptr<FakeSynthesizer> model = std::make_shared<FakeSynthesizer>())
+      : stream_(std::make_shared<ClipStream>(std::move(model), Request(frames),
+                                             Options(buffered_frames), scheduler_,
+                                             [this] { ++progress_; })) {}
+  PuppetScheduler& scheduler() { return scheduler_; }
+  ClipStream* operator->() { return stream_.get(); }
+  int progress() const { return progress_; }
+  void Drop() { stream_.reset(); }
+  // Evaluates windows until the stream wants no more for now.
+  void RunAll() {
+    while (scheduler_.waiting() > 0) scheduler_.RunNext();
+  }
+
+ private:
+  static ClipStreamOptions Options(int buffered_frames) {
+    ClipStreamOptions options;
+    options.priority = Priority::kBulk;
+    options.deadline = TimePoint(std::chrono::seconds(7));
+    options.buffered_frames = buffered_frames;
+    return options;
+  }
+  PuppetScheduler scheduler_;
+  std::atomic<int> progress_{0};
+  std::shared_ptr<ClipStream> stream_;
+};
+
+// Takes parts until there is none; returns the frames and what ended them.
+std::pair<std::vector<Vec3>, Kind> TakeAll(PuppetStream& stream, int max_frames) {
+  std::vector<Vec3> frames;
+  while (true) {
+    const ClipPart part = stream->Take(max_frames);
+    if (part.kind != Kind::kFrames) return {frames, part.kind};
+    EXPECT_LE(part.frames.size(), static_cast<std::size_t>(max_frames * kJoints));
+    frames.insert(frames.end(), part.frames.begin(), part.frames.end());
+  }
+}
+
+TEST(ClipStreamTest, GivesEveryFrameInOrder) {
+  PuppetStream stream(200);
+  ASSERT_THAT(stream->Start(), IsOk());
+  stream.RunAll();
+  const auto [frames, end] = TakeAll(stream, 30);
+  EXPECT_EQ(end, Kind::kEnd);
+  const std::vector<Vec3> leader = SwayingMotion(200, 15);
+  ASSERT_EQ(frames.size(), leader.size());
+  for (std::size_t i = 0; i < leader.size(); ++i) {
+    const Vec3 expected = FakeAnswer(leader[i], std::vector<float>{1, 0, 0, 0, 0, 0});
+    ASSERT_LT(Distance(frames[i], expected), 1e-4F) << "position " << i;
+  }
+}
+
+TEST(ClipStreamTest, HasNothingBeforeItsFirstWindow) {
+  PuppetStream stream(200);
+  ASSERT_THAT(stream->Start(), IsOk());
+  EXPECT_EQ(stream->Take(30).kind, Kind::kPending);
+}
+
+TEST(ClipStreamTest, GivesFramesAfterItsFirstWindow) {
+  PuppetStream stream(200);
+  ASSERT_THAT(stream->Start(), IsOk());
+  stream.scheduler().RunNext();
+  EXPECT_EQ(stream->Take(8).frames.size(), 8u * kJoints);
+  EXPECT_EQ(stream.scheduler().waiting(), 1u);
+}
+
+TEST(ClipStreamTest, TellsOfProgressAfterEachWindow) {
+  PuppetStream stream(200);
+  ASSERT_THAT(stream->Start(), IsOk());
+  EXPECT_EQ(stream.progress(), 0);
+  stream.scheduler().RunNext();
+  EXPECT_EQ(stream.progress(), 1);
+}
+
+TEST(ClipStreamTest, HasOneWindowInTheQueueAtATime) {
+  PuppetStream stream(2000);
+  ASSERT_THAT(stream->Start(), IsOk());
+  for (int i = 0; i < 5; ++i) {
+    ASSERT_EQ(stream.scheduler().waiting(), 1u);
+    stream.scheduler().RunNext();
+  }
+}
+
+TEST(ClipStreamTest, PassesOnPriorityAndDeadline) {
+  PuppetStream stream(200);
+  ASSERT_THAT(stream->Start(), IsOk());
+  EXPECT_EQ(stream.scheduler().NextPriority(), Priority::kBulk);
+  EXPECT_EQ(stream.scheduler().NextDeadline(), TimePoint(std::chrono::seconds(7)));
+}
+
+TEST(ClipStreamTest, AReaderThatDoesNotTakePausesTheClip) {
+  constexpr int kBuffered = 50;
+  PuppetStream stream(3000, kBuffered);
+  ASSERT_THAT(stream->Start(), IsOk());
+  stream.RunAll();
+  const int held = stream->stats().peak_buffered_frames;
+  EXPECT_GE(held, kBuffered);
+  EXPECT_LT(held, kBuffered + FakeDescription().window_frames);
+  EXPECT_LT(stream->stats().windows, 5);
+}
+
+TEST(ClipStreamTest, APausedClipGoesOnWhenTheReaderHasDrainedIt) {
+  constexpr int kBuffered = 50;
+  PuppetStream stream(3000, kBuffered);
+  ASSERT_THAT(stream->Start(), IsOk());
+  stream.RunAll();
+  const int held = stream->stats().peak_buffered_frames;
+  stream->Take(held - kBuffered);
+  EXPECT_EQ(stream.scheduler().waiting(), 0u) << "as many as the limit are still there";
+  stream->Take(1);
+  EXPECT_EQ(stream.scheduler().waiting(), 1u) << "one fewer than the limit";
+}
+
+TEST(ClipStreamTest, HoldsLittleHoweverLongTheClip) {
+  constexpr int kBuffered = 50;
+  PuppetStream stream(9000, kBuffered);
+  ASSERT_THAT(stream->Start(), IsOk());
+  std::size_t frames = 0;
+  Kind end = Kind::kPending;
+  while (end == Kind::kPending) {
+    stream.RunAll();
+    const auto [taken, kind] = TakeAll(stream, 30);
+    frames += taken.size() / kJoints;
+    end = kind;
+  }
+  EXPECT_EQ(end, Kind::kEnd);
+  EXPECT_EQ(frames, 9000u);
+  EXPECT_LT(stream->stats().peak_buffered_frames, kBuffered + FakeDescription().window_frames);
+}
+
+TEST(ClipStreamTest, CountsWindowsAndTimes) {
+  PuppetStream stream(200);
+  ASSERT_THAT(stream->Start(), IsOk());
+  stream.RunAll();
+  const ClipStreamStats stats = stream->stats();
+  EXPECT_GT(stats.windows, 200 / 46);
+  EXPECT_DOUBLE_EQ(stats.queue_seconds, 0.25 * stats.windows);
+  EXPECT_DOUBLE_EQ(stats.compute_seconds, 0.5 * stats.windows);
+}
+
+TEST(ClipStreamTest, ReportsARefusal) {
+  PuppetStream stream(200);
+  stream.scheduler().Refuse(absl::ResourceExhaustedError("full"));
+  EXPECT_THAT(stream->Start(), StatusIs(absl::StatusCode::kResourceExhausted, "full"));
+}
+
+TEST(ClipStreamTest, FailsWhenALaterWindowIsRefused) {
+  PuppetStream stream(200, 1000000);
+  ASSERT_THAT(stream->Start(), IsOk());
+  stream.scheduler().Refuse(absl::UnavailableError("going away"));
+  stream.scheduler().RunNext();
+  EXPECT_EQ(stream.progress(), 1);
+  const ClipPart part = stream->Take(30);
+  EXPECT_EQ(part.kind, Kind::kFailed);
+  EXPECT_THAT(part.error, StatusIs(absl::StatusCode::kUnavailable, "going away"));
+}
+
+TEST(ClipStreamTest, FailsWhenAWindowFails) {
+  auto model = std::make_shared<FakeSynthesizer>();
+  model->window_status = [](const SynthesisWindow&) { return absl::InternalError("broken"); };
+  PuppetStream stream(200, 1000000, model);
+  ASSERT_THAT(stream->Start(), IsOk());
+  stream.scheduler().RunNext();
+  const ClipPart part = stream->Take(30);
+  EXPECT_EQ(part.kind, Kind::kFailed);
+  EXPECT_THAT(part.error, StatusIs(kInternal, "broken"));
+  EXPECT_EQ(stream.scheduler().waiting(), 0u) << "no further window of a failed clip";
+}
+
+TEST(ClipStreamTest, RefusesAResultThatIsNotFinite) {
+  auto model = std::make_shared<FakeSynthesizer>();
+  model->answer = [](Vec3, absl::Span<const float>) {
+    return Vec3{0, std::numeric_limits<float>::quiet_NaN(), 0};
+  };
+  PuppetStream stream(200, 1000000, model);
+  ASSERT_THAT(stream->Start(), IsOk());
+  stream.scheduler().RunNext();
+  EXPECT_THAT(stream->Take(30).error, StatusIs(kInternal, HasSubstr("not finite")));
+}
+
+// Answers with one frame too few.
+class ShortModel final : public Synthesizer {
+ public:
+  const ModelDescription& description() const override { return description_; }
+  std::vector<WindowResult> Synthesize(
+      absl::Span<const SynthesisWindow* const> windows) const override {
+    return {std::vector<Vec3>(windows[0]->leader.begin() + kJoints, windows[0]->leader.end())};
+  }
+
+ private:
+  const ModelDescription description_ = FakeDescription();
+};
+
+TEST(ClipStreamTest, RefusesAResultOfTheWrongLength) {
+  PuppetScheduler scheduler;
+  auto stream = std::make_shared<ClipStream>(std::make_shared<ShortModel>(), Request(40),
+                                             ClipStreamOptions(), scheduler, [] {});
+  ASSERT_THAT(stream->Start(), IsOk());
+  scheduler.RunNext();
+  EXPECT_THAT(stream->Take(30).error, StatusIs(kInternal, HasSubstr("wanted 600")));
+}
+
+TEST(ClipStreamTest, StartsNothingOnceCancelled) {
+  PuppetStream stream(200);
+  ASSERT_THAT(stream->Start(), IsOk());
+  stream->Cancel();
+  EXPECT_FALSE(stream.scheduler().RunNext()) << "the queued window was evaluated";
+  EXPECT_EQ(stream.scheduler().waiting(), 0u);
+  EXPECT_EQ(stream.progress(), 0);
+}
+
+TEST(ClipStreamTest, LivesUntilItsLastWindowIsDone) {
+  PuppetStream stream(200);
+  ASSERT_THAT(stream->Start(), IsOk());
+  stream->Cancel();
+  stream.Drop();
+  EXPECT_FALSE(stream.scheduler().RunNext());
+}
+
+TEST(ClipStreamTest, WorksWithManyReadersOnAPool) {
+  WorkerPool pool({3, 64}, Clock::Real());
+  const auto model = std::make_shared<FakeSynthesizer>();
+  struct Reader {
+    Mutex mutex;
+    CondVar changed;
+    bool progress DUET_GUARDED_BY(mutex) = false;
+    std::shared_ptr<ClipStream> stream;
+    std::thread thread;
+    int frames = 0;
+  };
+  std::vector<Reader> readers(6);
+  for (Reader& reader : readers) {
+    ClipStreamOptions options;
+    options.buffered_frames = 40;
+    reader.stream = std::make_shared<ClipStream>(model, Request(500), options, pool, [&reader] {
+      MutexLock lock(reader.mutex);
+      reader.progress = true;
+      reader.changed.NotifyAll();
+    });
+    ASSERT_THAT(reader.stream->Start(), IsOk());
+    reader.thread = std::thread([&reader] {
+      for (ClipPart part; part.kind != Kind::kEnd; part = reader.stream->Take(7)) {
+        reader.frames += static_cast<int>(part.frames.size()) / kJoints;
+        if (part.kind != Kind::kPending) continue;
+        MutexLock lock(reader.mutex);
+        while (!reader.progress) reader.changed.Wait(reader.mutex);
+        reader.progress = false;
+      }
+    });
+  }
+  for (Reader& reader : readers) reader.thread.join();
+  for (const Reader& reader : readers) EXPECT_EQ(reader.frames, 500);
+}
+
+}  // namespace
+}  // namespace duet

@@ -1,0 +1,25 @@
+#ifndef DUET_TESTS_SERVER_SUPPORT_FAKE_CLOCK_H_
+#define DUET_TESTS_SERVER_SUPPORT_FAKE_CLOCK_H_
+
+#include <atomic>
+#include <chrono>
+
+#include "server/batching/clock.h"
+
+namespace duet {
+
+// A clock that moves only when a test says so.
+//
+// Threads: safe to call concurrently.
+class FakeClock final : public Clock {
+ public:
+  TimePoint Now() const override { return TimePoint(now_.load()); }
+  void Advance(std::chrono::milliseconds by) { now_ = now_.load() + by; }
+
+ private:
+  std::atomic<TimePoint::duration> now_{std::chrono::hours(1)};
+};
+
+}  // namespace duet
+
+#endif  // DUET_TESTS_SERVER_SUPPORT_FAKE_CLOCK_H_

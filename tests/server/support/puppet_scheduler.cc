@@ -1,0 +1,63 @@
+#include "tests/server/support/puppet_scheduler.h"
+
+#include <utility>
+#include <vector>
+
+namespace duet {
+
+absl::Status PuppetScheduler::Submit(WindowJob job) {
+  MutexLock lock(mutex_);
+  if (refusal_.has_value()) return *refusal_;
+  jobs_.push_back(std::move(job));
+  came_.NotifyAll();
+  return absl::OkStatus();
+}
+
+void PuppetScheduler::Refuse(absl::Status status) {
+  MutexLock lock(mutex_);
+  refusal_ = std::move(status);
+}
+
+bool PuppetScheduler::RunNext() {
+  const WindowJob job = Take();
+  if (job.cancelled->load()) {
+    job.done({absl::CancelledError("cancelled"), {}});
+    return false;
+  }
+  const SynthesisWindow* windows[] = {&job.window};
+  std::vector<WindowResult> results = job.model->Synthesize(windows);
+  job.done({std::move(results.front()), {0.25, 0.5, 1}});
+  return true;
+}
+
+void PuppetScheduler::FailNext(absl::Status status) { Take().done({std::move(status), {}}); }
+
+void PuppetScheduler::WaitForJob() {
+  MutexLock lock(mutex_);
+  while (jobs_.empty()) came_.Wait(mutex_);
+}
+
+std::size_t PuppetScheduler::waiting() const {
+  MutexLock lock(mutex_);
+  return jobs_.size();
+}
+
+Priority PuppetScheduler::NextPriority() const {
+  MutexLock lock(mutex_);
+  return jobs_.front().priority;
+}
+
+TimePoint PuppetScheduler::NextDeadline() const {
+  MutexLock lock(mutex_);
+  return jobs_.front().deadline;
+}
+
+WindowJob PuppetScheduler::Take() {
+  MutexLock lock(mutex_);
+  while (jobs_.empty()) came_.Wait(mutex_);
+  WindowJob job = std::move(jobs_.front());
+  jobs_.pop_front();
+  return job;
+}
+
+}  // namespace duet

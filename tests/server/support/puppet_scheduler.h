@@ -1,0 +1,47 @@
+#ifndef DUET_TESTS_SERVER_SUPPORT_PUPPET_SCHEDULER_H_
+#define DUET_TESTS_SERVER_SUPPORT_PUPPET_SCHEDULER_H_
+
+#include <cstddef>
+#include <deque>
+#include <optional>
+
+#include "absl/status/status.h"
+#include "server/batching/mutex.h"
+#include "server/batching/window_scheduler.h"
+
+namespace duet {
+
+// A WindowScheduler by which a test decides when each window is evaluated, on the test's thread.
+//
+// Threads: safe to call concurrently.
+class PuppetScheduler final : public WindowScheduler {
+ public:
+  absl::Status Submit(WindowJob job) override;
+
+  // From now on Submit refuses with this.
+  void Refuse(absl::Status status);
+
+  // Waits for a job and evaluates the oldest, or drops it as cancelled. True when it was evaluated.
+  bool RunNext();
+  // Waits for a job and ends the oldest with an error.
+  void FailNext(absl::Status status);
+  // Waits until a job is there. A test that waits in vain runs into its time limit.
+  void WaitForJob();
+
+  std::size_t waiting() const;
+  // Looks at the oldest job's field. There is one.
+  Priority NextPriority() const;
+  TimePoint NextDeadline() const;
+
+ private:
+  WindowJob Take();
+
+  mutable Mutex mutex_;
+  CondVar came_;
+  std::deque<WindowJob> jobs_ DUET_GUARDED_BY(mutex_);
+  std::optional<absl::Status> refusal_ DUET_GUARDED_BY(mutex_);
+};
+
+}  // namespace duet
+
+#endif  // DUET_TESTS_SERVER_SUPPORT_PUPPET_SCHEDULER_H_

@@ -1,0 +1,285 @@
+#include "server/batching/worker_pool.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <future>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "tests/server/support/fake_clock.h"
+#include "tests/support/fake_synthesizer.h"
+#include "tests/support/sample_motion.h"
+#include "tests/support/status_matchers.h"
+
+namespace duet {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr auto kCancelled = absl::StatusCode::kCancelled;
+constexpr auto kDeadlineExceeded = absl::StatusCode::kDeadlineExceeded;
+constexpr auto kInternal = absl::StatusCode::kInternal;
+constexpr auto kResourceExhausted = absl::StatusCode::kResourceExhausted;
+constexpr auto kUnavailable = absl::StatusCode::kUnavailable;
+
+// A job and its outcome.
+struct Ticket {
+  std::shared_ptr<std::atomic<bool>> cancelled = std::make_shared<std::atomic<bool>>(false);
+  std::shared_ptr<std::promise<WindowOutcome>> promise =
+      std::make_shared<std::promise<WindowOutcome>>();
+  std::future<WindowOutcome> outcome = promise->get_future();
+
+  WindowJob Job(std::shared_ptr<const Synthesizer> model) {
+    WindowJob job;
+    job.window.leader = SwayingMotion(4, 15);
+    job.window.labels.assign(4 * model->description().classes.size(), 0.0F);
+    job.model = std::move(model);
+    job.cancelled = cancelled;
+    // set_value throws when called twice, which would end the test program.
+    job.done = [promise = promise](WindowOutcome result) { promise->set_value(std::move(result)); };
+    return job;
+  }
+};
+
+// A model whose evaluations wait until the test opens the gate.
+class GatedModel {
+ public:
+  GatedModel() : model_(std::make_shared<FakeSynthesizer>()) {
+    model_->on_batch = [this](absl::Span<const SynthesisWindow* const>) {
+      MutexLock lock(mutex_);
+      ++started_;
+      changed_.NotifyAll();
+      while (!open_) changed_.Wait(mutex_);
+    };
+  }
+  std::shared_ptr<const Synthesizer> get() const { return model_; }
+  void WaitUntilStarted(int count) {
+    MutexLock lock(mutex_);
+    while (started_ < count) changed_.Wait(mutex_);
+  }
+  void Open() {
+    MutexLock lock(mutex_);
+    open_ = true;
+    changed_.NotifyAll();
+  }
+  int started() {
+    MutexLock lock(mutex_);
+    return started_;
+  }
+
+ private:
+  std::shared_ptr<FakeSynthesizer> model_;
+  Mutex mutex_;
+  CondVar changed_;
+  int started_ DUET_GUARDED_BY(mutex_) = 0;
+  bool open_ DUET_GUARDED_BY(mutex_) = false;
+};
+
+TEST(WorkerPoolTest, EvaluatesAWindow) {
+  WorkerPool pool({1, 4}, Clock::Real());
+  Ticket ticket;
+  ASSERT_THAT(pool.Submit(ticket.Job(std::make_shared<FakeSynthesizer>())), IsOk());
+  const WindowOutcome outcome = ticket.outcome.get();
+  ASSERT_THAT(outcome.result, IsOk());
+  const Vec3 expected = FakeAnswer(SwayingMotion(4, 15)[7], std::vector<float>(6, 0.0F));
+  EXPECT_EQ((*outcome.result)[7], expected);
+  EXPECT_EQ(outcome.timings.batch_size, 1);
+}
+
+TEST(WorkerPoolTest, EvaluatesAsManyWindowsAtOnceAsThereAreWorkers) {
+  WorkerPool pool({2, 4}, Clock::Real());
+  GatedModel model;
+  Ticket first, second;
+  ASSERT_THAT(pool.Submit(first.Job(model.get())), IsOk());
+  ASSERT_THAT(pool.Submit(second.Job(model.get())), IsOk());
+  model.WaitUntilStarted(2);  // would wait for ever with one worker
+  model.Open();
+  EXPECT_THAT(first.outcome.get().result, IsOk());
+  EXPECT_THAT(second.outcome.get().result, IsOk());
+}
+
+TEST(WorkerPoolTest, RefusesANewCallWhenTheQueueIsFull) {
+  GatedModel model;
+  WorkerPool pool({1, 1}, Clock::Real());
+  Ticket running, waiting, refused, continued;
+  ASSERT_THAT(pool.Submit(running.Job(model.get())), IsOk());
+  model.WaitUntilStarted(1);
+  ASSERT_THAT(pool.Submit(waiting.Job(model.get())), IsOk());
+  EXPECT_EQ(pool.queued_windows(), 1u);
+  EXPECT_THAT(pool.Submit(refused.Job(model.get())),
+              StatusIs(kResourceExhausted, HasSubstr("1 windows wait, at most 1 may")));
+  WindowJob next = continued.Job(model.get());
+  next.continues_call = true;
+  EXPECT_THAT(pool.Submit(std::move(next)), IsOk());
+  model.Open();
+  EXPECT_THAT(waiting.outcome.get().result, IsOk());
+  EXPECT_THAT(continued.outcome.get().result, IsOk());
+}
+
+TEST(WorkerPoolTest, NeverStartsACancelledWindow) {
+  GatedModel model;
+  WorkerPool pool({1, 4}, Clock::Real());
+  Ticket running, cancelled;
+  ASSERT_THAT(pool.Submit(running.Job(model.get())), IsOk());
+  model.WaitUntilStarted(1);
+  ASSERT_THAT(pool.Submit(cancelled.Job(model.get())), IsOk());
+  cancelled.cancelled->store(true);
+  model.Open();
+  const WindowOutcome outcome = cancelled.outcome.get();
+  EXPECT_THAT(outcome.result, StatusIs(kCancelled, HasSubstr("before this window started")));
+  EXPECT_EQ(outcome.timings.batch_size, 0);
+  EXPECT_EQ(model.started(), 1);
+}
+
+TEST(WorkerPoolTest, NeverStartsAnExpiredWindow) {
+  FakeClock clock;
+  GatedModel model;
+  WorkerPool pool({1, 4}, clock);
+  Ticket running, expired;
+  ASSERT_THAT(pool.Submit(running.Job(model.get())), IsOk());
+  model.WaitUntilStarted(1);
+  WindowJob job = expired.Job(model.get());
+  job.deadline = clock.Now() + std::chrono::milliseconds(100);
+  ASSERT_THAT(pool.Submit(std::move(job)), IsOk());
+  clock.Advance(std::chrono::milliseconds(100));
+  model.Open();
+  EXPECT_THAT(expired.outcome.get().result,
+              StatusIs(kDeadlineExceeded, HasSubstr("before this window started")));
+  EXPECT_EQ(model.started(), 1);
+}
+
+TEST(WorkerPoolTest, StartsInteractiveWindowsFirst) {
+  GatedModel gate;
+  WorkerPool pool({1, 8}, Clock::Real());
+  Ticket running, bulk, interactive;
+  ASSERT_THAT(pool.Submit(running.Job(gate.get())), IsOk());
+  gate.WaitUntilStarted(1);
+  std::vector<std::string> order;  // written by the one worker, read after both outcomes
+  const auto naming = [&order](const char* name) {
+    auto model = std::make_shared<FakeSynthesizer>();
+    model->on_batch = [&order, name](absl::Span<const SynthesisWindow* const>) {
+      order.push_back(name);
+    };
+    return model;
+  };
+  WindowJob bulk_job = bulk.Job(naming("bulk"));
+  bulk_job.priority = Priority::kBulk;
+  ASSERT_THAT(pool.Submit(std::move(bulk_job)), IsOk());
+  ASSERT_THAT(pool.Submit(interactive.Job(naming("interactive"))), IsOk());
+  gate.Open();
+  bulk.outcome.wait();
+  interactive.outcome.wait();
+  EXPECT_THAT(order, testing::ElementsAre("interactive", "bulk"));
+}
+
+TEST(WorkerPoolTest, SaysWhereTheTimeWent) {
+  FakeClock clock;
+  std::promise<WindowTimings> observed;
+  auto model = std::make_shared<FakeSynthesizer>();
+  GatedModel gate;
+  model->on_batch = [&](absl::Span<const SynthesisWindow* const>) {
+    clock.Advance(std::chrono::milliseconds(250));
+  };
+  std::atomic<int> seen{0};
+  WorkerPool pool({1, 4}, clock, [&](Priority, const WindowTimings& timings) {
+    if (++seen == 2) observed.set_value(timings);
+  });
+  Ticket running, measured;
+  ASSERT_THAT(pool.Submit(running.Job(gate.get())), IsOk());
+  gate.WaitUntilStarted(1);
+  ASSERT_THAT(pool.Submit(measured.Job(model)), IsOk());
+  clock.Advance(std::chrono::milliseconds(125));
+  gate.Open();
+  const WindowTimings timings = measured.outcome.get().timings;
+  EXPECT_DOUBLE_EQ(timings.queue_seconds, 0.125);
+  EXPECT_DOUBLE_EQ(timings.compute_seconds, 0.25);
+  EXPECT_DOUBLE_EQ(observed.get_future().get().compute_seconds, 0.25);
+}
+
+// Fails in ways that the interface does not allow.
+class BrokenModel final : public Synthesizer {
+ public:
+  explicit BrokenModel(bool throws) : throws_(throws) {}
+  const ModelDescription& description() const override { return description_; }
+  std::vector<WindowResult> Synthesize(absl::Span<const SynthesisWindow* const>) const override {
+    if (throws_) throw std::runtime_error("out of luck");
+    return {};
+  }
+
+ private:
+  const bool throws_;
+  const ModelDescription description_ = FakeDescription();
+};
+
+TEST(WorkerPoolTest, SurvivesAModelThatThrows) {
+  WorkerPool pool({1, 4}, Clock::Real());
+  Ticket broken, sound;
+  ASSERT_THAT(pool.Submit(broken.Job(std::make_shared<BrokenModel>(true))), IsOk());
+  EXPECT_THAT(broken.outcome.get().result, StatusIs(kInternal, HasSubstr("out of luck")));
+  ASSERT_THAT(pool.Submit(sound.Job(std::make_shared<FakeSynthesizer>())), IsOk());
+  EXPECT_THAT(sound.outcome.get().result, IsOk());
+}
+
+TEST(WorkerPoolTest, SurvivesAModelThatGivesTooFewResults) {
+  WorkerPool pool({1, 4}, Clock::Real());
+  Ticket ticket;
+  ASSERT_THAT(pool.Submit(ticket.Job(std::make_shared<BrokenModel>(false))), IsOk());
+  EXPECT_THAT(ticket.outcome.get().result,
+              StatusIs(kInternal, HasSubstr("0 results for 1 window")));
+}
+
+TEST(WorkerPoolTest, ShutdownFinishesWhatRunsAndAnswersWhatWaits) {
+  GatedModel model;
+  Ticket running, waiting;
+  std::thread opener;
+  {
+    WorkerPool pool({1, 4}, Clock::Real());
+    ASSERT_THAT(pool.Submit(running.Job(model.get())), IsOk());
+    model.WaitUntilStarted(1);
+    ASSERT_THAT(pool.Submit(waiting.Job(model.get())), IsOk());
+    // Opens only once the pool refuses, which is when its destructor has begun.
+    opener = std::thread([&] {
+      Ticket probe;
+      while (pool.Submit(probe.Job(model.get())).code() != kUnavailable) probe = Ticket();
+      model.Open();
+    });
+  }
+  opener.join();
+  EXPECT_THAT(running.outcome.get().result, IsOk());
+  EXPECT_THAT(waiting.outcome.get().result, StatusIs(kUnavailable, HasSubstr("shutting down")));
+  EXPECT_EQ(model.started(), 1);
+}
+
+TEST(WorkerPoolTest, AnswersEveryWindowOnceUnderLoad) {
+  constexpr int kThreads = 4;
+  constexpr int kJobs = 50;
+  const auto model = std::make_shared<FakeSynthesizer>();
+  std::atomic<int> answered{0};
+  std::atomic<int> refused{0};
+  {
+    WorkerPool pool({3, 16}, Clock::Real());
+    std::vector<std::thread> callers;
+    for (int t = 0; t < kThreads; ++t) {
+      callers.emplace_back([&, t] {
+        for (int i = 0; i < kJobs; ++i) {
+          Ticket ticket;
+          WindowJob job = ticket.Job(model);
+          job.priority = i % 2 == 0 ? Priority::kBulk : Priority::kInteractive;
+          job.done = [&](WindowOutcome) { ++answered; };
+          if (!pool.Submit(std::move(job)).ok()) ++refused;
+          if ((i + t) % 5 == 0) ticket.cancelled->store(true);
+        }
+      });
+    }
+    for (std::thread& caller : callers) caller.join();
+  }
+  EXPECT_EQ(answered + refused, kThreads * kJobs);
+}
+
+}  // namespace
+}  // namespace duet
