@@ -17,9 +17,13 @@ namespace duet {
 namespace {
 
 constexpr std::size_t kMostNamesInError = 60;
-// How far from half way between hips and neck a spine joint may be to stand for the torso, as a
-// share of the way.
-constexpr float kTorsoTolerance = 0.25f;
+// Shares of the way from hips to neck. How far from its middle a spine joint may be to stand for
+// the torso; the shortest head with an end of its own; how near to the neck a head's joint is that
+// stands at the base of the skull; how far above that the middle of the head is.
+constexpr float kTorsoReach = 0.25f;
+constexpr float kShortestHead = 0.1f;
+constexpr float kShortestNeck = 0.05f, kLongestNeck = 0.35f;
+constexpr float kHeadRise = 0.19f;
 
 JointSource Whole(int joint) { return {{{joint, 1.0f}}}; }
 
@@ -34,11 +38,9 @@ JointSource Mix(std::initializer_list<std::pair<const JointSource*, float>> part
   return mixed;
 }
 
-Vec3 PositionOf(const JointSource& source, const std::vector<Vec3>& pose) {
+Vec3 Evaluate(const JointSource& source, const Vec3* pose) {
   Vec3 position;
-  for (const JointSource::Term& term : source.terms) {
-    position += pose[static_cast<size_t>(term.joint)] * term.weight;
-  }
+  for (const JointSource::Term& term : source.terms) position += pose[term.joint] * term.weight;
   return position;
 }
 
@@ -48,6 +50,7 @@ class Mapper {
          const std::vector<Vec3>& first_pose, const Skeleton& skeleton)
       : source_(source), names_(names), pose_(first_pose), skeleton_(skeleton) {
     found_.resize(skeleton.joint_names.size());
+    overridden_.resize(skeleton.joint_names.size(), false);
     used_.resize(names.size(), false);
     for (const std::string& name : names) parsed_.push_back(ParseJointName(name));
   }
@@ -66,6 +69,7 @@ class Mapper {
             "joint map: ", target, "=", name, ": ", source_, " has no such joint; ", ListNames()));
       }
       Take(joint, index);
+      overridden_[static_cast<size_t>(joint)] = true;
     }
     return absl::OkStatus();
   }
@@ -83,13 +87,11 @@ class Mapper {
 
   void MapByConvention() {
     for (int joint = 0; joint < skeleton_.joint_count(); ++joint) {
-      if (!Found(joint) && !IsTorso(joint)) MapByAlias(joint);
+      if (!Found(joint) && !IsPlaced(joint)) MapByAlias(joint);
     }
-    RaiseHead();
     PlaceNeck();
-    for (int joint = 0; joint < skeleton_.joint_count(); ++joint) {
-      if (!Found(joint) && IsTorso(joint)) PlaceTorso(joint);
-    }
+    PlaceTorso();
+    RaiseHead();
   }
 
   absl::StatusOr<JointMap> Finish() {
@@ -117,7 +119,10 @@ class Mapper {
   const std::string& TargetName(int joint) const {
     return skeleton_.joint_names[static_cast<size_t>(joint)];
   }
-  bool IsTorso(int joint) const { return TargetName(joint) == "torso"; }
+  // Neck and torso go by where they are: conventions differ in how many joints a spine has.
+  bool IsPlaced(int joint) const {
+    return joint == skeleton_.Find("neck") || joint == skeleton_.Find("torso");
+  }
 
   int FindExactly(absl::string_view name) const {
     const auto it = std::find(names_.begin(), names_.end(), name);
@@ -162,59 +167,90 @@ class Mapper {
         [&name](const std::string& target) { return ParseJointName(target) == name; });
   }
 
-  // Capture software puts the head's joint at the base of the skull; the skeleton's is its middle,
-  // half way to the end of the head where the file has one.
-  void RaiseHead() {
-    const int head = skeleton_.Find("head");
-    if (!Found(head)) return;
-    for (const char* end : {"headend", "headtopend", "headtop"}) {
-      const int index = FindUnused({BodySide::kMiddle, end});
-      if (index < 0) continue;
-      const JointSource base = SourceOf(head), top = Whole(index);
-      SourceOf(head) = Mix({{&base, 0.5f}, {&top, 0.5f}});
-      notes_.push_back(absl::StrCat("head: half way from ", NameOf(base), " to ", NameOf(top)));
-      return;
+  // The unused joint nearest to `point` and within `reach` of it for which `fits` holds, or -1.
+  template <typename Fits>
+  int FindNearest(Vec3 point, float reach, Fits fits) const {
+    int best = -1;
+    for (std::size_t i = 0; i < parsed_.size(); ++i) {
+      if (used_[i] || !fits(parsed_[i]) || Distance(pose_[i], point) > reach) continue;
+      best = static_cast<int>(i);
+      reach = Distance(pose_[i], point);
     }
+    return best;
   }
 
   void PlaceNeck() {
     const int neck = skeleton_.Find("neck");
     const int left = skeleton_.Find("left_shoulder"), right = skeleton_.Find("right_shoulder");
-    if (neck < 0 || Found(neck) || !Found(left) || !Found(right)) return;
-    found_[static_cast<size_t>(neck)] = Mix({{&SourceOf(left), 0.5f}, {&SourceOf(right), 0.5f}});
-    notes_.push_back("neck: half way between the shoulders (the file has none)");
+    if (neck < 0 || Found(neck)) return;
+    if (!Found(left) || !Found(right)) return MapByAlias(neck);
+    const JointSource middle = Mix({{&SourceOf(left), 0.5f}, {&SourceOf(right), 0.5f}});
+    const float width = Distance(PositionOf(SourceOf(left)), PositionOf(SourceOf(right)));
+    const int best = FindNearest(PositionOf(middle), width, IsNeck);
+    if (best >= 0) {
+      Take(neck, best);
+      Note("neck", best, "the neck joint nearest to half way between the shoulders");
+    } else {
+      found_[static_cast<size_t>(neck)] = middle;
+      notes_.push_back("neck: half way between the shoulders (no neck joint is near)");
+    }
   }
 
-  void PlaceTorso(int joint) {
-    const int neck = skeleton_.Find("neck");
-    if (!Found(neck) || !Found(skeleton_.left_hip) || !Found(skeleton_.right_hip)) return;
+  void PlaceTorso() {
+    const int neck = skeleton_.Find("neck"), torso = skeleton_.Find("torso");
+    if (torso < 0 || Found(torso) || !HasSpineEnds()) return;
     const JointSource middle = Mix({{&SourceOf(neck), 0.5f},
                                     {&SourceOf(skeleton_.left_hip), 0.25f},
                                     {&SourceOf(skeleton_.right_hip), 0.25f}});
-    const Vec3 half_way = PositionOf(middle, pose_);
-    const float way = 2 * Distance(half_way, PositionOf(SourceOf(neck), pose_));
-    int best = -1;
-    float best_distance = kTorsoTolerance * way;
-    for (std::size_t i = 0; i < parsed_.size(); ++i) {
-      if (used_[i] || !IsSpine(parsed_[i])) continue;
-      const float distance = Distance(pose_[i], half_way);
-      if (distance > best_distance) continue;
-      best = static_cast<int>(i);
-      best_distance = distance;
-    }
+    const int best = FindNearest(PositionOf(middle), kTorsoReach * SpineLength(), IsSpine);
     if (best >= 0) {
-      Take(joint, best);
-      notes_.push_back(absl::StrCat("torso: ", names_[static_cast<size_t>(best)],
-                                    " (the spine joint nearest to half way from hips to neck)"));
+      Take(torso, best);
+      Note("torso", best, "the spine joint nearest to half way from hips to neck");
     } else {
-      found_[static_cast<size_t>(joint)] = middle;
+      found_[static_cast<size_t>(torso)] = middle;
       notes_.push_back("torso: half way from hips to neck (no spine joint is near)");
     }
   }
 
-  const std::string& NameOf(const JointSource& source) const {
-    return names_[static_cast<size_t>(source.terms[0].joint)];
+  // Capture software puts the head's joint at the base of the skull; the skeleton's is its middle,
+  // half way to the end of the head. A file without that end gives the neck's direction.
+  void RaiseHead() {
+    const int head = skeleton_.Find("head"), neck = skeleton_.Find("neck");
+    if (!Found(head) || overridden_[static_cast<size_t>(head)] || !HasSpineEnds()) return;
+    const JointSource base = SourceOf(head);
+    const Vec3 at = PositionOf(base);
+    for (const char* end : {"headend", "headtopend", "headtop"}) {
+      const int index = FindUnused({BodySide::kMiddle, end});
+      if (index < 0) continue;
+      if (Distance(at, pose_[static_cast<size_t>(index)]) < kShortestHead * SpineLength()) continue;
+      const JointSource top = Whole(index);
+      SourceOf(head) = Mix({{&base, 0.5f}, {&top, 0.5f}});
+      return Note("head", index, "half way to it from the head's joint");
+    }
+    const float way = Distance(at, PositionOf(SourceOf(neck))) / SpineLength();
+    if (!(way > kShortestNeck && way < kLongestNeck)) return;
+    const float rise = kHeadRise / way;
+    SourceOf(head) = Mix({{&base, 1 + rise}, {&SourceOf(neck), -rise}});
+    notes_.push_back("head: raised from the base of the skull to its middle, away from the neck");
   }
+
+  bool HasSpineEnds() const {
+    return Found(skeleton_.Find("neck")) && Found(skeleton_.left_hip) && Found(skeleton_.right_hip);
+  }
+
+  // Hips to neck in the first frame; HasSpineEnds.
+  float SpineLength() {
+    const JointSource hips =
+        Mix({{&SourceOf(skeleton_.left_hip), 0.5f}, {&SourceOf(skeleton_.right_hip), 0.5f}});
+    return Distance(PositionOf(hips), PositionOf(SourceOf(skeleton_.Find("neck"))));
+  }
+
+  void Note(const char* target, int index, const char* reason) {
+    notes_.push_back(
+        absl::StrCat(target, ": ", names_[static_cast<size_t>(index)], " (", reason, ")"));
+  }
+
+  Vec3 PositionOf(const JointSource& source) const { return Evaluate(source, pose_.data()); }
 
   absl::string_view source_;
   const std::vector<std::string>& names_;
@@ -223,6 +259,7 @@ class Mapper {
   std::vector<ParsedJointName> parsed_;            // [names]
   std::vector<bool> used_;                         // [names]
   std::vector<std::optional<JointSource>> found_;  // [skeleton joints]
+  std::vector<bool> overridden_;                   // [skeleton joints] named by the user
   std::vector<std::string> notes_;
 };
 
@@ -241,11 +278,7 @@ absl::StatusOr<JointMap> MapJoints(absl::string_view source, const std::vector<s
 std::vector<Vec3> ApplyJointMap(const JointMap& map, const Vec3* pose) {
   std::vector<Vec3> mapped;
   mapped.reserve(map.sources.size());
-  for (const JointSource& source : map.sources) {
-    Vec3 position;
-    for (const JointSource::Term& term : source.terms) position += pose[term.joint] * term.weight;
-    mapped.push_back(position);
-  }
+  for (const JointSource& source : map.sources) mapped.push_back(Evaluate(source, pose));
   return mapped;
 }
 

@@ -35,8 +35,9 @@ struct JointMap {
 // Finds a skeleton's joints in a file by name (docs/formats.md has the table). A file with all of
 // the skeleton's names as they are is taken as it is. Otherwise a name counts without its prefix
 // (`mixamorig:`, `Bip01`), case, separators and wherever it says the side (`LeftArm`, `arm.L`,
-// `lArm`); the torso is the spine joint nearest to half way between hips and neck in the first
-// frame.
+// `lArm`). Neck and torso go by their place in the first frame: the neck joint nearest to half way
+// between the shoulders, the spine joint nearest to half way from hips to neck. A head's joint at
+// the base of the skull is raised to the head's middle.
 //
 // Shapes: first_pose [names], in any unit.
 // Errors: INVALID_ARGUMENT naming `source`, the skeleton's joints without a source, the names that

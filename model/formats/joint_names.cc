@@ -36,7 +36,7 @@ bool IsNoise(const std::string& word) {
   static const auto* const noise = new std::vector<std::string>{
       "mixamorig",  "bip",  "bip01",    "bip001", "valvebiped", "valve", "biped",
       "character1", "def",  "org",      "mch",    "jnt",        "j",     "b",
-      "bn",         "skel", "skeleton", "root",   "armature"};
+      "bn",         "skel", "skeleton", "root",   "armature",   "c"};
   return std::find(noise->begin(), noise->end(), word) != noise->end();
 }
 
@@ -123,6 +123,11 @@ std::vector<std::string> JointAliases(const std::string& base) {
     if (same_joint) aliases.insert(aliases.end(), row.aliases.begin(), row.aliases.end());
   }
   return aliases;
+}
+
+bool IsNeck(const ParsedJointName& name) {
+  return name.side == BodySide::kMiddle && absl::StrContains(name.base, "neck") &&
+         !absl::EndsWith(name.base, "end");
 }
 
 bool IsSpine(const ParsedJointName& name) {

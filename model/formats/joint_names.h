@@ -26,8 +26,9 @@ ParsedJointName ParseJointName(absl::string_view name);
 // Bases under which files have the joint that a skeleton calls `base`, the best first.
 std::vector<std::string> JointAliases(const std::string& base);
 
-// Whether a joint may be one of the spine between hips and neck.
+// Whether a joint may be one of the spine between hips and neck, or one of the neck.
 bool IsSpine(const ParsedJointName& name);
+bool IsNeck(const ParsedJointName& name);
 
 }  // namespace duet
 

@@ -1,0 +1,182 @@
+#include "model/formats/motion_file.h"
+
+#include <clocale>
+#include <cmath>
+#include <filesystem>
+#include <locale>
+#include <string>
+
+#include "absl/strings/str_cat.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "model/formats/sbu_text.h"
+#include "model/formats/text.h"
+#include "tests/formats/test_motion.h"
+
+namespace duet {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using testing::LargestDistance;
+using testing::MakePerson;
+
+class MotionFile : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::path(::testing::TempDir()) / absl::StrCat("duet_", test->name());
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  const ClipPair pair_{MakePerson(), MakePerson({60, 3, 0, {0, 1.1f, 1.2f}, 30})};
+  fs::path folder_;
+};
+
+TEST_F(MotionFile, ReadsBackWhatItWrites) {
+  for (const char* name : {"a.csv", "a.json", "a.npy", "a.CSV"}) {
+    const fs::path path = folder_ / name;
+    const absl::StatusOr<std::vector<fs::path>> written = WritePair(path, pair_, SbuSkeleton());
+    ASSERT_TRUE(written.ok()) << written.status();
+    EXPECT_THAT(*written, ElementsAre(path));
+    ReadOptions options;
+    if (path.extension() == ".npy") options.frame_rate_hz = 30;
+    for (Side side : {Side::kLeft, Side::kRight}) {
+      options.side = side;
+      const absl::StatusOr<Clip> clip = ReadLeader(path, options);
+      ASSERT_TRUE(clip.ok()) << clip.status();
+      EXPECT_EQ(clip->frame_rate_hz, 30);
+      EXPECT_EQ(clip->positions, (side == Side::kLeft ? pair_.leader : pair_.follower).positions);
+    }
+  }
+}
+
+TEST_F(MotionFile, WritesABvhForEachPersonInOneWorld) {
+  const absl::StatusOr<std::vector<fs::path>> written =
+      WritePair(folder_ / "a.b.bvh", pair_, SbuSkeleton());
+  ASSERT_TRUE(written.ok()) << written.status();
+  EXPECT_THAT(*written, ElementsAre(folder_ / "a.b.leader.bvh", folder_ / "a.b.follower.bvh"));
+  const absl::StatusOr<Clip> leader = ReadLeader((*written)[0]);
+  const absl::StatusOr<Clip> follower = ReadLeader((*written)[1]);
+  ASSERT_TRUE(leader.ok()) << leader.status();
+  ASSERT_TRUE(follower.ok()) << follower.status();
+  EXPECT_LT(LargestDistance(*leader, pair_.leader), 0.001f);
+  EXPECT_LT(LargestDistance(*follower, pair_.follower), 0.001f);
+}
+
+TEST_F(MotionFile, ReadsEitherPersonOfSbuText) {
+  const fs::path path = folder_ / "skeleton_pos.txt";
+  ASSERT_TRUE(WriteFile(path, *FormatSbu({pair_.leader, pair_.follower})).ok());
+  ReadOptions options;
+  options.side = Side::kRight;
+  const absl::StatusOr<Clip> right = ReadLeader(path, options);
+  ASSERT_TRUE(right.ok()) << right.status();
+  EXPECT_EQ(right->frame_rate_hz, 15);
+  EXPECT_LT(LargestDistance(*right, pair_.follower), 1e-5f);
+  options.frame_rate_hz = 30;
+  EXPECT_EQ(ReadLeader(path, options)->frame_rate_hz, 30);
+}
+
+TEST_F(MotionFile, LetsTheCallerSayTheCoordinates) {
+  const fs::path path = folder_ / "a.csv";
+  std::string header = "frame", row = "0";
+  for (const std::string& joint : SbuSkeleton().joint_names) {
+    absl::StrAppend(&header, ",", joint, "_x,", joint, "_y,", joint, "_z");
+    absl::StrAppend(&row, ",1000,2000,3000");
+  }
+  ASSERT_TRUE(WriteFile(path, absl::StrCat(header, "\n", row, "\n")).ok());
+  ReadOptions options;
+  EXPECT_THAT(std::string(ReadLeader(path, options).status().message()),
+              HasSubstr("frame rate: the file has none"));
+  options.frame_rate_hz = 24;
+  options.coordinates = {LengthUnit::kMillimetres, UpAxis::kZUp};
+  const absl::StatusOr<Clip> clip = ReadLeader(path, options);
+  ASSERT_TRUE(clip.ok()) << clip.status();
+  EXPECT_LT(Distance(clip->at(0, 7), {1, 3, -2}), 1e-6f);
+}
+
+TEST_F(MotionFile, TakesTheFirstFrameAsAFollowersStart) {
+  const absl::StatusOr<std::vector<fs::path>> written =
+      WritePair(folder_ / "a.npy", pair_, SbuSkeleton());
+  ASSERT_TRUE(written.ok());
+  ReadOptions options;
+  options.side = Side::kRight;
+  const absl::StatusOr<std::vector<Vec3>> start = ReadFollowerStart((*written)[0], options);
+  ASSERT_TRUE(start.ok()) << start.status();
+  ASSERT_EQ(start->size(), 15u);
+  EXPECT_EQ((*start)[14], pair_.follower.at(0, 14));
+}
+
+TEST_F(MotionFile, NamesExtensionsItKnows) {
+  EXPECT_THAT(std::string(ReadLeader("a.fbx").status().message()),
+              HasSubstr("extension: came \".fbx\", wanted .txt (SBU text), .bvh"));
+  EXPECT_THAT(std::string(WritePair("a.txt", pair_, SbuSkeleton()).status().message()),
+              HasSubstr("extension: came \".txt\", wanted .bvh, .csv"));
+  EXPECT_TRUE(CheckWritable("a.json").ok());
+  EXPECT_FALSE(CheckWritable("a").ok());
+  EXPECT_TRUE(CheckReadable("a.BVH").ok());
+}
+
+TEST_F(MotionFile, RefusesAPairThatIsNone) {
+  ClipPair shorter = pair_;
+  shorter.follower.positions.resize(15);
+  EXPECT_THAT(std::string(WritePair(folder_ / "a.csv", shorter, SbuSkeleton()).status().message()),
+              HasSubstr("wanted the same joints, frames"));
+  ClipPair broken = pair_;
+  broken.follower.at(3, 1).x = std::nanf("");
+  EXPECT_THAT(std::string(WritePair(folder_ / "a.csv", broken, SbuSkeleton()).status().message()),
+              HasSubstr("follower: frame 3 neck"));
+  ClipPair renamed = pair_;
+  renamed.leader.joint_names.pop_back();
+  EXPECT_FALSE(WritePair(folder_ / "a.csv", renamed, SbuSkeleton()).ok());
+  EXPECT_TRUE(fs::is_empty(folder_));
+}
+
+TEST_F(MotionFile, NamesAFileThatCannotBeReadOrWritten) {
+  EXPECT_EQ(ReadLeader(folder_ / "none.csv").status().code(), absl::StatusCode::kNotFound);
+  fs::create_directories(folder_ / "folder.csv");
+  EXPECT_THAT(std::string(ReadLeader(folder_ / "folder.csv").status().message()),
+              HasSubstr("is a folder"));
+  EXPECT_THAT(
+      std::string(WritePair(folder_ / "folder.csv", pair_, SbuSkeleton()).status().message()),
+      HasSubstr("is a folder"));
+  EXPECT_THAT(
+      std::string(WritePair(folder_ / "no" / "a.csv", pair_, SbuSkeleton()).status().message()),
+      HasSubstr("cannot be written"));
+}
+
+TEST_F(MotionFile, RefusesFilesThatAreTooLarge) {
+  const fs::path path = folder_ / "a.txt";
+  ASSERT_TRUE(WriteFile(path, std::string(2 << 20, 'x')).ok());
+  EXPECT_THAT(std::string(ReadFile(path, 1 << 20).status().message()),
+              HasSubstr("larger than 1 MiB"));
+}
+
+struct DecimalComma : std::numpunct<char> {
+  char do_decimal_point() const override { return ','; }
+};
+
+// A comma for the decimal point, in C++ streams and, where such a locale is installed, in C, must
+// not change what numbers mean.
+TEST_F(MotionFile, DoesNotDependOnTheLocale) {
+  const std::locale before = std::locale::global(std::locale(std::locale(), new DecimalComma));
+  for (const char* name : {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8"}) {
+    if (std::setlocale(LC_ALL, name) != nullptr) break;
+  }
+  for (const char* name : {"a.csv", "a.json", "a.bvh"}) {
+    const absl::StatusOr<std::vector<fs::path>> written =
+        WritePair(folder_ / name, pair_, SbuSkeleton());
+    EXPECT_TRUE(written.ok()) << written.status();
+    const absl::StatusOr<Clip> clip = ReadLeader(written->front());
+    EXPECT_TRUE(clip.ok()) << clip.status();
+    EXPECT_LT(LargestDistance(*clip, pair_.leader), 0.001f);
+  }
+  std::locale::global(before);
+  std::setlocale(LC_ALL, "C");
+}
+
+}  // namespace
+}  // namespace duet
