@@ -1,13 +1,13 @@
 #include "client/cli/arguments.h"
 
-#include <algorithm>
-#include <functional>
+#include <map>
 #include <sstream>
 #include <utility>
 
 #include "CLI/CLI.hpp"
 #include "absl/strings/str_cat.h"
 #include "client/cli/exit_code.h"
+#include "client/cli/flags.h"
 #include "client/cli/output.h"
 #include "client/cli/value_syntax.h"
 
@@ -32,65 +32,35 @@ const std::map<std::string, LengthUnit> kUnits = {{"m", LengthUnit::kMetres},
                                                   {"mm", LengthUnit::kMillimetres},
                                                   {"sbu", LengthUnit::kSbuNormalised}};
 const std::map<std::string, UpAxis> kUpAxes = {
-    {"y", UpAxis::kYUp}, {"z", UpAxis::kZUp}, {"-y", UpAxis::kYDown}};
-
-// A flag with its own little language. Repeated flags are given one value each, so that a file name
-// after a flag is never taken for another value of it.
-template <typename T>
-CLI::Option* AddParsed(CLI::App* app, const std::string& flag,
-                       absl::StatusOr<T> (*parse)(absl::string_view), std::function<void(T)> sink,
-                       const std::string& help) {
-  const auto read = [flag, parse, sink = std::move(sink)](const std::vector<std::string>& values) {
-    for (const std::string& value : values) {
-      absl::StatusOr<T> parsed = parse(value);
-      if (!parsed.ok()) throw CLI::ValidationError(flag, std::string(parsed.status().message()));
-      sink(*std::move(parsed));
-    }
-  };
-  return app->add_option_function<std::vector<std::string>>(flag, read, help)
-      ->allow_extra_args(false);
-}
-
-// One of a few names. CLI11's own transformer would also take the enum's number.
-template <typename T>
-CLI::Option* AddChoice(CLI::App* app, const std::string& flag,
-                       const std::map<std::string, T>& names, std::function<void(T)> sink,
-                       const std::string& help) {
-  std::vector<std::string> allowed;
-  for (const auto& [name, value] : names) allowed.push_back(name);
-  return app
-      ->add_option_function<std::string>(
-          flag, [&names, sink = std::move(sink)](const std::string& name) { sink(names.at(name)); },
-          help)
-      ->check(CLI::IsMember(allowed));
-}
-
-template <typename T>
-std::function<void(T)> AppendTo(std::vector<T>* values) {
-  return [values](T value) { values->push_back(std::move(value)); };
-}
+    {"y-up", UpAxis::kYUp}, {"z-up", UpAxis::kZUp}, {"y-down", UpAxis::kYDown}};
 
 void AddServerFlags(CLI::App* app, ServerArguments* server) {
   constexpr char kGroup[] = "Server";
-  app->add_option("--server", server->address, "HOST:PORT, or a gRPC target")
+  app->add_option("--server", server->address, "Or any gRPC target, such as unix:/run/duet.sock")
       ->capture_default_str()
+      ->type_name("HOST:PORT")
       ->group(kGroup);
   app->add_option("--timeout", server->timeout_seconds, "Seconds for the whole call, with retries")
-      ->check(CLI::Range(0.001, 86400.0))
+      ->check(Undescribed(CLI::Range(0.001, 86400.0)))
       ->capture_default_str()
+      ->type_name("SECONDS")
       ->group(kGroup);
   app->add_flag("--tls", server->tls, "Encrypt; trust the system's authorities")->group(kGroup);
   app->add_option("--tls-ca", server->tls_ca_file, "Encrypt; trust the authorities in this file")
+      ->type_name("FILE")
       ->group(kGroup);
   CLI::Option* certificate =
       app->add_option("--tls-cert", server->tls_certificate_file, "This client's certificate")
+          ->type_name("FILE")
           ->group(kGroup);
   CLI::Option* key = app->add_option("--tls-key", server->tls_key_file, "This client's private key")
+                         ->type_name("FILE")
                          ->group(kGroup);
   certificate->needs(key);
   key->needs(certificate);
   app->add_option("--tls-server-name", server->tls_server_name,
                   "Name in the server's certificate, where it is not the address")
+      ->type_name("NAME")
       ->group(kGroup);
 }
 
@@ -99,14 +69,16 @@ void AddInputFlags(CLI::App* app, SynthesizeArguments* arguments) {
   app->add_option("--leader", arguments->leader,
                   "Motion of the leader: .bvh, .csv, .npy, .json or SBU .txt")
       ->required()
+      ->type_name("FILE")
       ->group(kGroup);
   AddChoice<Side>(
       app, "--leader-side", kSides, [arguments](Side side) { arguments->leader_side = side; },
       "Which person of a file with two leads (default left)")
       ->group(kGroup);
   InputArguments* input = &arguments->input;
-  app->add_option("--frame-rate", input->frame_rate_hz, "Hz; replaces what the file says")
-      ->check(CLI::PositiveNumber)
+  app->add_option("--frame-rate", input->frame_rate_hz, "Replaces what the file says")
+      ->check(Undescribed(CLI::PositiveNumber))
+      ->type_name("HZ")
       ->group(kGroup);
   AddChoice<LengthUnit>(
       app, "--unit", kUnits, [input](LengthUnit unit) { input->unit = unit; },
@@ -118,34 +90,37 @@ void AddInputFlags(CLI::App* app, SynthesizeArguments* arguments) {
       ->group(kGroup);
   app->add_option("--metres-per-unit", input->metres_per_unit,
                   "BVH: metres in one unit of the file (0.01 for centimetres)")
-      ->check(CLI::PositiveNumber)
+      ->check(Undescribed(CLI::PositiveNumber))
+      ->type_name("METRES")
       ->group(kGroup);
   AddParsed<std::pair<std::string, std::string>>(
-      app, "--joint-map", ParseJointPair,
+      app, "--joint-map", "MODEL_JOINT=FILE_JOINT", ParseJointPair,
       [input](std::pair<std::string, std::string> joints) { input->joints.insert(joints); },
-      "MODEL_JOINT=FILE_JOINT, where names alone do not tell; repeatable")
+      "Where names alone do not tell which is which; repeatable")
       ->group(kGroup);
 }
 
 void AddReactionFlags(CLI::App* app, SynthesizeArguments* arguments) {
   constexpr char kGroup[] = "Reaction";
-  CLI::Option* label =
-      AddParsed<ClassWeight>(app, "--label", ParseClassWeight, AppendTo(&arguments->weights),
-                             "CLASS=WEIGHT, such as kick=1 or hug=-0.5; repeatable")
-          ->group(kGroup);
-  AddParsed<WeightKeyframe>(app, "--keyframe", ParseKeyframe, AppendTo(&arguments->keyframes),
-                            "FRAME:CLASS=WEIGHT,... for weights that change; repeatable")
+  CLI::Option* label = AddParsed<ClassWeight>(app, "--label", "CLASS=WEIGHT", ParseClassWeight,
+                                              AppendTo(&arguments->weights),
+                                              "Such as kick=1 or hug=-0.5; repeatable")
+                           ->group(kGroup);
+  AddParsed<WeightKeyframe>(app, "--keyframe", "FRAME:CLASS=WEIGHT,...", ParseKeyframe,
+                            AppendTo(&arguments->keyframes),
+                            "For weights that change over time; repeatable")
       ->excludes(label)
       ->group(kGroup);
   AddParsed<ModelChoice>(
-      app, "--model", ParseModelChoice,
+      app, "--model", "NAME[@VERSION|:LABEL]", ParseModelChoice,
       [arguments](ModelChoice choice) { arguments->model = std::move(choice); },
-      "NAME, NAME@VERSION or NAME:LABEL (default: the server's)")
+      "Default: the server's own")
       ->take_last()
       ->group(kGroup);
   app->add_option("--follower-start", arguments->follower_start,
                   "Where the follower begins: a motion file (its first frame), or X,Y,Z of the "
                   "root joint in metres, y up")
+      ->type_name("FILE|X,Y,Z")
       ->group(kGroup);
   AddChoice<Side>(
       app, "--follower-start-side", kSides,
@@ -159,9 +134,11 @@ void AddReactionFlags(CLI::App* app, SynthesizeArguments* arguments) {
       "bulk yields to interactive calls and waits when the server is full")
       ->group(kGroup);
   app->add_option("--chunk-frames", arguments->chunk_frames, "Frames in one chunk of the reply")
-      ->check(CLI::Range(1, 100000))
+      ->check(Undescribed(CLI::Range(1, 100000)))
+      ->type_name("FRAMES")
       ->group(kGroup);
   app->add_option("--request-id", arguments->request_id, "Names the call in the server's log")
+      ->type_name("ID")
       ->group(kGroup);
 }
 
@@ -172,6 +149,7 @@ void AddOutputFlags(CLI::App* app, SynthesizeArguments* arguments) {
                   "repeatable")
       ->required()
       ->allow_extra_args(false)
+      ->type_name("FILE")
       ->group(kGroup);
   app->add_flag("--json", arguments->json, "Print the summary as JSON")->group(kGroup);
   app->add_flag("--quiet", arguments->quiet, "Print errors alone")->group(kGroup);
@@ -195,6 +173,7 @@ ParsedCommandLine ParseCommandLine(const std::vector<std::string>& arguments) {
   app.set_version_flag("--version", "duet " DUET_VERSION);
   app.require_subcommand(1);
   app.footer(kExitCodes);
+  app.get_formatter()->column_width(34);
 
   ModelsArguments models;
   CLI::App* models_command = app.add_subcommand("models", "List the models being served");

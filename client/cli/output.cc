@@ -7,6 +7,7 @@
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/str_replace.h"
 #include "client/viewer/page.h"
 #include "model/formats/motion_file.h"
 #include "model/formats/text.h"
@@ -38,7 +39,10 @@ absl::StatusOr<std::string> RenderSynthesis(const Synthesis& synthesis) {
 absl::Status CheckOutput(const std::filesystem::path& output, const std::filesystem::path& leader) {
   if (!IsPage(output)) {
     const absl::Status status = CheckWritable(output);
-    if (!status.ok()) return absl::InvalidArgumentError(absl::StrCat(status.message(), ", .html"));
+    if (!status.ok()) {
+      return absl::InvalidArgumentError(
+          absl::StrReplaceAll(status.message(), {{"wanted ", "wanted .html, "}}));
+    }
   }
   std::error_code error;
   const std::filesystem::path folder = output.has_parent_path() ? output.parent_path() : ".";

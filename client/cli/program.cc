@@ -1,6 +1,7 @@
 #include "client/cli/program.h"
 
 #include <ostream>
+#include <string>
 
 #include "client/cli/arguments.h"
 #include "client/cli/exit_code.h"
@@ -13,15 +14,18 @@ namespace duet::client {
 int RunProgram(const std::vector<std::string>& arguments, const ProgramEnvironment& environment) {
   const ParsedCommandLine parsed = ParseCommandLine(arguments);
   absl::Status status;
+  std::string server;
   if (parsed.models.has_value()) {
+    server = parsed.models->server.address;
     status = RunModels(*parsed.models, environment);
   } else if (parsed.synthesize.has_value()) {
+    server = parsed.synthesize->server.address;
     status = RunSynthesize(*parsed.synthesize, environment);
   } else {
     (parsed.exit_code == kExitDone ? *environment.out : *environment.err) << parsed.text;
     return parsed.exit_code;
   }
-  if (!status.ok()) *environment.err << DescribeFailure(status);
+  if (!status.ok()) *environment.err << DescribeFailure(status, server);
   return ExitCodeFor(status);
 }
 

@@ -76,6 +76,15 @@ json ModelJson(const ModelInfo& model) {
           {"description", model.description}};
 }
 
+std::string Advice(const absl::Status& status, const std::string& server_address) {
+  if (ExitCodeFor(status) != kExitRetry) return "";
+  // A reason would mean that a Duet server answered.
+  if (absl::IsUnavailable(status) && ErrorReason(status).empty()) {
+    return absl::StrCat("Does a duet-server listen at ", server_address, "? (--server)\n");
+  }
+  return "Trying again later may help.\n";
+}
+
 }  // namespace
 
 std::string DescribeModels(const std::vector<ModelInfo>& models) {
@@ -145,19 +154,19 @@ std::string SynthesisJson(const Synthesis& synthesis,
                 {"files", files}});
 }
 
-std::string DescribeFailure(const absl::Status& status) {
+std::string DescribeFailure(const absl::Status& status, const std::string& server_address) {
   const std::string code = absl::StatusCodeToString(status.code());
-  const bool may_succeed_later = ExitCodeFor(status) == kExitRetry;
-  const std::string advice = may_succeed_later ? "Trying again later may help.\n" : "";
   const std::vector<FieldViolation> violations = FieldViolations(status);
-  if (violations.empty())
-    return absl::StrCat("duet: ", status.message(), " (", code, ")\n", advice);
+  if (violations.empty()) {
+    return absl::StrCat("duet: ", status.message(), " (", code, ")\n",
+                        Advice(status, server_address));
+  }
   std::string text = absl::StrCat("duet: the server refuses the request (", code, ")\n");
   for (const FieldViolation& violation : violations) {
     absl::StrAppend(&text, "  ", violation.field, violation.field.empty() ? "" : ": ",
                     violation.description, "\n");
   }
-  return text + advice;
+  return text + Advice(status, server_address);
 }
 
 }  // namespace duet::client

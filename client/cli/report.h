@@ -23,8 +23,8 @@ std::string SynthesisJson(const Synthesis& synthesis,
                           const std::vector<std::filesystem::path>& written,
                           const std::vector<std::string>& notes);
 
-// Why it failed, one line for every refused field, and whether to try again.
-std::string DescribeFailure(const absl::Status& status);
+// Why it failed, one line for every refused field, and what may help.
+std::string DescribeFailure(const absl::Status& status, const std::string& server_address);
 
 }  // namespace duet::client
 

@@ -34,6 +34,14 @@ ReadOptions ToReadOptions(const InputArguments& input, const Skeleton& skeleton)
   return options;
 }
 
+absl::Status CheckInput(const std::filesystem::path& path) {
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) {
+    return absl::NotFoundError(absl::StrCat(path.string(), ": no such file"));
+  }
+  return CheckReadable(path);
+}
+
 // Of the leader's own file, the follower is the other person.
 Side FollowerStartSide(const SynthesizeArguments& arguments) {
   if (arguments.follower_start_side.has_value()) return *arguments.follower_start_side;
@@ -72,6 +80,13 @@ absl::StatusOr<Skeleton> ToSkeleton(const ModelInfo& model) {
   if (status.ok()) return skeleton;
   return absl::InternalError(absl::StrCat("the server's model ", model.name, "@", model.version,
                                           " has no usable skeleton: ", status.message()));
+}
+
+absl::Status CheckInputs(const SynthesizeArguments& arguments) {
+  const absl::Status status = CheckInput(arguments.leader);
+  const std::string& start = arguments.follower_start;
+  if (!status.ok() || start.empty() || ParsePoint(start).has_value()) return status;
+  return CheckInput(start);
 }
 
 absl::StatusOr<SynthesisRequest> BuildRequest(const SynthesizeArguments& arguments,

@@ -16,6 +16,10 @@ namespace duet::client {
 // tree.
 absl::StatusOr<Skeleton> ToSkeleton(const ModelInfo& model);
 
+// Whether the files that the flags name are there and of a known kind: what can be refused before
+// the server is asked for its model.
+absl::Status CheckInputs(const SynthesizeArguments& arguments);
+
 // Reads the files that the flags name, in the skeleton's joints. `notes` receives what was decided
 // where the leader's file leaves a choice.
 absl::StatusOr<SynthesisRequest> BuildRequest(const SynthesizeArguments& arguments,

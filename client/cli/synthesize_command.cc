@@ -10,16 +10,16 @@
 #include "client/cli/report.h"
 #include "client/cli/request_building.h"
 #include "client/cli/server_options.h"
-#include "model/formats/motion_file.h"
 
 namespace duet::client {
 namespace {
 
 using Paths = std::vector<std::filesystem::path>;
 
-// A result that cannot be kept may be kept next time: the disk is full, the folder was closed.
+// A result that a file system does not take may be taken next time: a full disk, a closed folder.
 absl::Status NotWritten(const absl::Status& status) {
-  return absl::UnavailableError(absl::StrCat("cannot write the result: ", status.message()));
+  const auto code = absl::IsPermissionDenied(status) ? absl::StatusCode::kAborted : status.code();
+  return absl::Status(code, absl::StrCat("cannot write the result: ", status.message()));
 }
 
 absl::StatusOr<Paths> WriteAll(const Paths& outputs, const Synthesis& synthesis) {
@@ -36,8 +36,8 @@ absl::StatusOr<Paths> WriteAll(const Paths& outputs, const Synthesis& synthesis)
 
 absl::Status RunSynthesize(const SynthesizeArguments& arguments,
                            const ProgramEnvironment& environment) {
-  const absl::Status readable = CheckReadable(arguments.leader);
-  if (!readable.ok()) return readable;
+  const absl::Status inputs = CheckInputs(arguments);
+  if (!inputs.ok()) return inputs;
   const absl::StatusOr<ClientOptions> options = ToClientOptions(arguments.server);
   if (!options.ok()) return options.status();
   const absl::StatusOr<Client> client = environment.connect(*options);

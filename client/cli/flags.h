@@ -1,0 +1,67 @@
+#ifndef DUET_CLIENT_CLI_FLAGS_H_
+#define DUET_CLIENT_CLI_FLAGS_H_
+
+#include <functional>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "CLI/CLI.hpp"
+#include "absl/status/statusor.h"
+#include "absl/strings/str_join.h"
+#include "absl/strings/string_view.h"
+
+// What CLI11 lacks for this program's flags.
+
+namespace duet::client {
+
+// A validator that --help does not spell out.
+inline CLI::Validator Undescribed(CLI::Validator validator) {
+  validator.description("");
+  return validator;
+}
+
+// A flag with its own little language, shown as `form`. One value after each flag, so that a file
+// name that follows is never taken for another value.
+template <typename T>
+CLI::Option* AddParsed(CLI::App* app, const std::string& flag, const std::string& form,
+                       absl::StatusOr<T> (*parse)(absl::string_view), std::function<void(T)> sink,
+                       const std::string& help) {
+  const auto read = [flag, parse, sink = std::move(sink)](const std::vector<std::string>& values) {
+    for (const std::string& value : values) {
+      absl::StatusOr<T> parsed = parse(value);
+      if (!parsed.ok()) throw CLI::ValidationError(flag, std::string(parsed.status().message()));
+      sink(*std::move(parsed));
+    }
+  };
+  return app->add_option_function<std::vector<std::string>>(flag, read, help)
+      ->allow_extra_args(false)
+      ->type_name(form);
+}
+
+// One of a few names. CLI11's own transformer would also take the enum's number. `names` outlives
+// the app.
+template <typename T>
+CLI::Option* AddChoice(CLI::App* app, const std::string& flag,
+                       const std::map<std::string, T>& names, std::function<void(T)> sink,
+                       const std::string& help) {
+  std::vector<std::string> allowed;
+  for (const auto& [name, value] : names) allowed.push_back(name);
+  const auto read = [&names, sink = std::move(sink)](const std::string& name) {
+    sink(names.at(name));
+  };
+  return app->add_option_function<std::string>(flag, read, help)
+      ->check(Undescribed(CLI::IsMember(allowed)))
+      ->type_name(absl::StrJoin(allowed, "|"));
+}
+
+// Collects the values of a repeated flag.
+template <typename T>
+std::function<void(T)> AppendTo(std::vector<T>* values) {
+  return [values](T value) { values->push_back(std::move(value)); };
+}
+
+}  // namespace duet::client
+
+#endif  // DUET_CLIENT_CLI_FLAGS_H_
