@@ -5,19 +5,20 @@
 namespace duet {
 namespace {
 
-// The yaw of the left-to-right hip direction: the angle about +y that turns +x onto it.
-double HipYaw(Vec3 left_hip, Vec3 right_hip) {
-  const Vec3 across = right_hip - left_hip;
+// The yaw to turn by, given the leader's left-to-right hip direction in the first frame.
+double HipYaw(Vec3 across, YawDirection direction) {
   // Hips that coincide (a degenerate leader) have no direction: leave the clip unturned.
   if (across.x == 0 && across.z == 0) return 0;
-  return std::atan2(-across.z, across.x);
+  // The published code takes the arc tangent of the quotient, which does not tell a direction from
+  // its opposite, and turns by it the wrong way round.
+  if (direction == YawDirection::kAsReleasedCode) return -std::atan(across.z / across.x);
+  return std::atan2(across.z, across.x);
 }
 
-double RemovedYaw(const Skeleton& skeleton, const std::vector<Vec3>& leader,
-                  YawDirection direction) {
-  const double yaw = HipYaw(leader[static_cast<size_t>(skeleton.left_hip)],
-                            leader[static_cast<size_t>(skeleton.right_hip)]);
-  return direction == YawDirection::kRemove ? -yaw : yaw;
+double HipYaw(const Skeleton& skeleton, const std::vector<Vec3>& leader, YawDirection direction) {
+  return HipYaw(leader[static_cast<size_t>(skeleton.right_hip)] -
+                    leader[static_cast<size_t>(skeleton.left_hip)],
+                direction);
 }
 
 }  // namespace
@@ -26,7 +27,7 @@ double FacingYaw(Vec3 direction) { return std::atan2(direction.x, -direction.z);
 
 Standardisation::Standardisation(const Skeleton& skeleton, const std::vector<Vec3>& leader,
                                  YawDirection direction)
-    : Standardisation(skeleton, leader, RemovedYaw(skeleton, leader, direction)) {}
+    : Standardisation(skeleton, leader, HipYaw(skeleton, leader, direction)) {}
 
 Standardisation::Standardisation(const Skeleton& skeleton, const std::vector<Vec3>& leader,
                                  double yaw)

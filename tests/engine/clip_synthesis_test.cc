@@ -1,5 +1,6 @@
 #include "model/engine/clip_synthesis.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 

@@ -1,5 +1,7 @@
 #include "model/engine/cross_fade.h"
 
+#include <algorithm>
+
 #include "gtest/gtest.h"
 #include "tests/support/sample_motion.h"
 

@@ -1,5 +1,7 @@
 #include "model/engine/window_plan.h"
 
+#include <algorithm>
+
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 

@@ -1,0 +1,75 @@
+#include "model/motion/coordinates.h"
+
+#include <string>
+
+#include "gtest/gtest.h"
+
+namespace duet {
+namespace {
+
+struct NamedFrame {
+  const char* name;
+  CoordinateFrame frame;
+};
+
+class EveryFrame : public ::testing::TestWithParam<NamedFrame> {};
+
+INSTANTIATE_TEST_SUITE_P(
+    Coordinates, EveryFrame,
+    ::testing::Values(NamedFrame{"metres_y_up", {LengthUnit::kMetres, UpAxis::kYUp}},
+                      NamedFrame{"metres_z_up", {LengthUnit::kMetres, UpAxis::kZUp}},
+                      NamedFrame{"metres_y_down", {LengthUnit::kMetres, UpAxis::kYDown}},
+                      NamedFrame{"millimetres_y_up", {LengthUnit::kMillimetres, UpAxis::kYUp}},
+                      NamedFrame{"millimetres_z_up", {LengthUnit::kMillimetres, UpAxis::kZUp}},
+                      NamedFrame{"millimetres_y_down", {LengthUnit::kMillimetres, UpAxis::kYDown}},
+                      NamedFrame{"sbu_normalised", {LengthUnit::kSbuNormalised, UpAxis::kYDown}}),
+    [](const ::testing::TestParamInfo<NamedFrame>& frame) { return frame.param.name; });
+
+TEST_P(EveryFrame, RoundTrip) {
+  for (const Vec3 world : {Vec3{0, 0, 0}, Vec3{0.3f, 1.2f, -2.5f}, Vec3{-4, 0.01f, 7}}) {
+    EXPECT_LT(Distance(ToWorld(GetParam().frame, FromWorld(GetParam().frame, world)), world),
+              2e-6f);
+  }
+}
+
+TEST_P(EveryFrame, KeepsHandedness) {
+  const CoordinateFrame& frame = GetParam().frame;
+  const Vec3 origin = ToWorld(frame, {0, 0, 0});
+  Vec3 x = ToWorld(frame, {1, 0, 0}) - origin;
+  Vec3 y = ToWorld(frame, {0, 1, 0}) - origin;
+  Vec3 z = ToWorld(frame, {0, 0, 1}) - origin;
+  x = x / Norm(x);
+  y = y / Norm(y);
+  z = z / Norm(z);
+  EXPECT_NEAR(Dot(Cross(x, y), z), 1, 1e-6) << "determinant";
+}
+
+TEST(Coordinates, UpIsUp) {
+  EXPECT_EQ(ToWorld({LengthUnit::kMetres, UpAxis::kYUp}, {1, 2, 3}), (Vec3{1, 2, 3}));
+  EXPECT_EQ(ToWorld({LengthUnit::kMetres, UpAxis::kZUp}, {1, 3, 2}), (Vec3{1, 2, -3}));
+  EXPECT_EQ(ToWorld({LengthUnit::kMetres, UpAxis::kYDown}, {1, -2, 3}), (Vec3{1, 2, -3}));
+}
+
+TEST(Coordinates, MillimetresAreScaled) {
+  const Vec3 world = ToWorld({LengthUnit::kMillimetres, UpAxis::kZUp}, {1000, 500, 1750});
+  EXPECT_LT(Distance(world, {1, 1.75f, -0.5f}), 1e-6f);
+}
+
+// The data set's documentation, in millimetres: X = 1280 - 2560 x, Y = 960 - 1920 y,
+// Z = 10000 z / 7.8125.
+TEST(Coordinates, SbuFollowsItsDocumentation) {
+  const Vec3 world = ToWorld({LengthUnit::kSbuNormalised, UpAxis::kYDown}, {0.25f, 0.75f, 2});
+  EXPECT_NEAR(world.x, (1280 - 2560 * 0.25) / 1000, 1e-6);
+  EXPECT_NEAR(world.y, (960 - 1920 * 0.75) / 1000, 1e-6);
+  EXPECT_NEAR(world.z, 10000 * 2 / 7.8125 / 1000, 1e-6);
+}
+
+TEST(Coordinates, SbuImpliesItsUpAxis) {
+  const Vec3 position{0.1f, 0.2f, 0.3f};
+  const Vec3 wanted = ToWorld({LengthUnit::kSbuNormalised, UpAxis::kYDown}, position);
+  EXPECT_EQ(ToWorld({LengthUnit::kSbuNormalised, UpAxis::kYUp}, position), wanted);
+  EXPECT_EQ(ToWorld({LengthUnit::kSbuNormalised, UpAxis::kZUp}, position), wanted);
+}
+
+}  // namespace
+}  // namespace duet

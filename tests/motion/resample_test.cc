@@ -1,0 +1,122 @@
+#include "model/motion/resample.h"
+
+#include <cmath>
+
+#include "gtest/gtest.h"
+
+namespace duet {
+namespace {
+
+// Two joints: one that moves by a rule of time, one that stands.
+std::vector<Vec3> Motion(int frames, double hz, Vec3 (*rule)(float)) {
+  std::vector<Vec3> motion;
+  for (int t = 0; t < frames; ++t) {
+    motion.push_back(rule(static_cast<float>(t / hz)));
+    motion.push_back({7, 8, 9});
+  }
+  return motion;
+}
+
+Vec3 Line(float s) { return {s, 2 - s, 3 * s}; }
+Vec3 Parabola(float s) { return {s * s, 1, -s * s + s}; }
+Vec3 Wave(float s) { return {std::sin(3 * s), std::cos(2 * s), 0}; }
+
+using Sampler = void (*)(const std::vector<Vec3>&, int, double, Vec3*);
+
+Vec3 At(Sampler sampler, const std::vector<Vec3>& motion, double frame) {
+  Vec3 out[2];
+  sampler(motion, 2, frame, out);
+  EXPECT_LT(Distance(out[1], {7, 8, 9}), 1e-5f) << "the other joint";
+  return out[0];
+}
+
+class EverySampler : public ::testing::TestWithParam<Sampler> {};
+INSTANTIATE_TEST_SUITE_P(Resample, EverySampler, ::testing::Values(SampleLinear, SampleCubic));
+
+TEST_P(EverySampler, HitsWholeFramesExactly) {
+  const std::vector<Vec3> motion = Motion(9, 15, Wave);
+  for (int t = 0; t < 9; ++t) {
+    EXPECT_EQ(At(GetParam(), motion, t), motion[static_cast<std::size_t>(2 * t)]) << t;
+  }
+}
+
+TEST_P(EverySampler, HoldsBothEnds) {
+  const std::vector<Vec3> motion = Motion(3, 15, Wave);
+  EXPECT_EQ(At(GetParam(), motion, -5), motion[0]);
+  EXPECT_EQ(At(GetParam(), motion, 2.001), motion[4]);
+  EXPECT_EQ(At(GetParam(), motion, 1e9), motion[4]);
+}
+
+TEST_P(EverySampler, FollowsALine) {
+  const std::vector<Vec3> motion = Motion(9, 10, Line);
+  // The spline's ends are held, so it bends in the first and the last interval.
+  for (double frame = 1; frame <= 7; frame += 0.13) {
+    EXPECT_LT(Distance(At(GetParam(), motion, frame), Line(static_cast<float>(frame / 10))), 1e-5f)
+        << frame;
+  }
+}
+
+TEST_P(EverySampler, TakesASingleFrame) {
+  const std::vector<Vec3> motion = Motion(1, 15, Line);
+  for (double frame : {0.0, 0.5, 3.0}) EXPECT_EQ(At(GetParam(), motion, frame), motion[0]);
+}
+
+TEST(SampleLinear, IsLinearBetweenNeighbours) {
+  const std::vector<Vec3> motion = Motion(3, 1, Parabola);
+  EXPECT_LT(Distance(At(SampleLinear, motion, 1.25), {1.75f, 1, -0.5f}), 1e-6f);
+}
+
+TEST(SampleCubic, FollowsAParabola) {
+  const std::vector<Vec3> motion = Motion(9, 10, Parabola);
+  for (double frame = 1; frame <= 7; frame += 0.13) {
+    EXPECT_LT(Distance(At(SampleCubic, motion, frame), Parabola(static_cast<float>(frame / 10))),
+              1e-5f)
+        << frame;
+  }
+}
+
+TEST(SampleCubic, HasNoKinks) {
+  const std::vector<Vec3> motion = Motion(12, 5, Wave);
+  const double step = 1e-2;
+  for (int t = 1; t < 11; ++t) {
+    const auto velocity = [&](Sampler sampler, double from) {
+      return (At(sampler, motion, from + step) - At(sampler, motion, from)) /
+             static_cast<float>(step);
+    };
+    const Vec3 before = velocity(SampleCubic, t - step), after = velocity(SampleCubic, t);
+    EXPECT_LT(Distance(before, after), 0.05f) << "velocity jumps at frame " << t;
+  }
+}
+
+TEST(ResampledFrameCount, CoversTheWholeDuration) {
+  EXPECT_EQ(ResampledFrameCount(46, 15, 15), 46);
+  EXPECT_EQ(ResampledFrameCount(31, 30, 15), 16);
+  EXPECT_EQ(ResampledFrameCount(32, 30, 15), 17);  // the end lies between two frames
+  EXPECT_EQ(ResampledFrameCount(16, 15, 30), 31);
+  EXPECT_EQ(ResampledFrameCount(2, 240, 15), 2);  // never fewer than two
+  EXPECT_EQ(ResampledFrameCount(2, 1, 240), 241);
+  EXPECT_EQ(ResampledFrameCount(144000, 240, 15), 9001);
+}
+
+TEST(ResampledFrameCount, RoundingAddsNoFrame) {
+  for (double hz : {23.976, 24.0, 29.97, 59.94, 100.0 / 3}) {
+    for (int frames = 2; frames < 3000; ++frames) {
+      ASSERT_EQ(ResampledFrameCount(frames, hz, hz), frames) << hz;
+      ASSERT_EQ(ResampledFrameCount(frames, hz, 2 * hz), 2 * frames - 1) << hz;
+    }
+  }
+}
+
+TEST(Resample, SamplesEveryFrame) {
+  const std::vector<Vec3> motion = Motion(31, 30, Line);
+  const std::vector<Vec3> out = Resample(motion, 2, 30, 24);
+  ASSERT_EQ(out.size(), 2u * 25);
+  for (int t = 0; t < 25; ++t) {
+    EXPECT_LT(Distance(out[static_cast<std::size_t>(2 * t)], Line(static_cast<float>(t) / 24)),
+              1e-5f)
+        << t;
+  }
+}
+
+}  // namespace
+}  // namespace duet

@@ -1,0 +1,138 @@
+#include "model/motion/skeleton.h"
+
+#include <algorithm>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/support/status_matchers.h"
+
+namespace duet {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(SbuSkeleton, IsValid) { EXPECT_THAT(Validate(SbuSkeleton()), IsOk()); }
+
+TEST(SbuSkeleton, HasThePapersBones) {
+  // Section 3.4, 1-based and without direction.
+  const std::pair<int, int> paper[] = {{1, 2},   {2, 3},   {2, 4},   {2, 7},  {3, 10},
+                                       {3, 13},  {4, 5},   {5, 6},   {7, 8},  {8, 9},
+                                       {10, 11}, {11, 12}, {13, 14}, {14, 15}};
+  const Skeleton skeleton = SbuSkeleton();
+  EXPECT_EQ(skeleton.bones.size(), 14u);
+  for (const auto& [a, b] : paper) {
+    EXPECT_THAT(skeleton.bones, ::testing::AnyOf(::testing::Contains(Bone{a - 1, b - 1}),
+                                                 ::testing::Contains(Bone{b - 1, a - 1})))
+        << a << "-" << b;
+  }
+}
+
+TEST(SbuSkeleton, HasFivePartsOfThreeJoints) {
+  const Skeleton skeleton = SbuSkeleton();
+  ASSERT_EQ(skeleton.parts.size(), 5u);
+  std::vector<int> joints;
+  for (const BodyPart& part : skeleton.parts) {
+    EXPECT_EQ(part.joints.size(), 3u) << part.name;
+    joints.insert(joints.end(), part.joints.begin(), part.joints.end());
+  }
+  std::sort(joints.begin(), joints.end());
+  EXPECT_THAT(joints, ::testing::ElementsAre(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14));
+}
+
+TEST(SbuSkeleton, LandmarksAreWhatTheyAreCalled) {
+  const Skeleton skeleton = SbuSkeleton();
+  EXPECT_EQ(skeleton.root, skeleton.Find("torso"));
+  EXPECT_EQ(skeleton.left_hip, skeleton.Find("left_hip"));
+  EXPECT_EQ(skeleton.right_hip, skeleton.Find("right_hip"));
+  EXPECT_EQ(skeleton.left_foot, skeleton.Find("left_foot"));
+  EXPECT_EQ(skeleton.right_foot, skeleton.Find("right_foot"));
+}
+
+TEST(Skeleton, FindsJointsByName) {
+  EXPECT_EQ(SbuSkeleton().Find("head"), 0);
+  EXPECT_EQ(SbuSkeleton().Find("right_foot"), 14);
+  EXPECT_EQ(SbuSkeleton().Find("tail"), -1);
+  EXPECT_EQ(SbuSkeleton().Find(""), -1);
+}
+
+TEST(Skeleton, KnowsParents) {
+  EXPECT_THAT(SbuSkeleton().Parents(),
+              ::testing::ElementsAre(1, 2, -1, 1, 3, 4, 1, 6, 7, 2, 9, 10, 2, 12, 13));
+}
+
+struct Broken {
+  const char* what;
+  std::function<void(Skeleton&)> how;
+  const char* why;
+};
+
+class BrokenSkeleton : public ::testing::TestWithParam<Broken> {};
+
+TEST_P(BrokenSkeleton, IsRefusedByField) {
+  Skeleton skeleton = SbuSkeleton();
+  GetParam().how(skeleton);
+  EXPECT_THAT(Validate(skeleton),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(GetParam().why)));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Skeleton, BrokenSkeleton,
+    ::testing::Values(
+        Broken{"no_joints", [](Skeleton& s) { s.joint_names.clear(); }, "joint_names: empty"},
+        Broken{"unnamed", [](Skeleton& s) { s.joint_names[3] = ""; }, "joint_names: an empty name"},
+        Broken{"name_twice", [](Skeleton& s) { s.joint_names[3] = "head"; },
+               "joint_names: \"head\" is repeated"},
+        Broken{"root_high", [](Skeleton& s) { s.root = 15; },
+               "root: joint index 15, wanted 0 to 14"},
+        Broken{"root_low", [](Skeleton& s) { s.root = -1; }, "root: joint index -1"},
+        Broken{"left_hip", [](Skeleton& s) { s.left_hip = 99; }, "left_hip: joint index 99"},
+        Broken{"right_hip", [](Skeleton& s) { s.right_hip = 99; }, "right_hip: joint index 99"},
+        Broken{"left_foot", [](Skeleton& s) { s.left_foot = 99; }, "left_foot: joint index 99"},
+        Broken{"right_foot", [](Skeleton& s) { s.right_foot = 99; }, "right_foot: joint index 99"},
+        Broken{"no_parts", [](Skeleton& s) { s.parts.clear(); }, "parts: empty"},
+        Broken{"empty_part", [](Skeleton& s) { s.parts[4].joints.clear(); },
+               "parts: \"trunk\" has no joints"},
+        Broken{"part_joint", [](Skeleton& s) { s.parts[4].joints[0] = 15; },
+               "parts.trunk: joint index 15"},
+        Broken{"bone_missing", [](Skeleton& s) { s.bones.pop_back(); }, "bones: 13, wanted 14"},
+        Broken{"bone_more",
+               [](Skeleton& s) {
+                 s.bones.push_back({0, 1});
+               },
+               "bones: 15, wanted 14"},
+        Broken{"bone_joint", [](Skeleton& s) { s.bones[0].child = -2; }, "bones: joint index -2"},
+        Broken{"two_parents",
+               [](Skeleton& s) {
+                 s.bones[0] = {2, 3};
+               },
+               "joint 3 may not have a further parent"},
+        Broken{"root_has_a_parent",
+               [](Skeleton& s) {
+                 s.bones[0] = {0, 2};
+               },
+               "joint 2 may not have a further parent"},
+        Broken{"bone_to_itself", [](Skeleton& s) { s.bones[6].parent = 4; },
+               "is not connected to the root"},
+        Broken{"circle_of_two",
+               [](Skeleton& s) {
+                 s.bones[2].parent = 4;  // shoulder <- elbow <- shoulder
+               },
+               "is not connected to the root"}),
+    [](const ::testing::TestParamInfo<Broken>& broken) { return broken.param.what; });
+
+TEST(Skeleton, TwentyJointsAreAsGood) {
+  Skeleton skeleton;
+  for (int j = 0; j < 20; ++j) {
+    skeleton.joint_names.push_back("joint" + std::to_string(j));
+    if (j > 0) skeleton.bones.push_back({(j - 1) / 2, j});
+  }
+  skeleton.parts = {{"all", {0, 19}}};
+  EXPECT_THAT(Validate(skeleton), IsOk());
+}
+
+}  // namespace
+}  // namespace duet
