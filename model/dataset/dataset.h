@@ -21,7 +21,8 @@ struct Sequence {
   std::string leader_source;          // "index": the data set's index; "motion": the motion rule
   ClipPair pair;                      // world metres, y up, joints in the skeleton's order
   // Horizontal direction from leader to follower, where the capture's setup tells it: SBU and K3HI
-  // stand their people along the image's x axis. Never taken from the follower's motion.
+  // stand their people along the image's x axis. Which of them stands where is one bit, taken from
+  // the first frame; nothing else of the follower's motion goes into it.
   std::optional<Vec3> partner_direction;
 };
 

@@ -20,7 +20,7 @@ DatasetLayout KinectLayout(const std::string& name, double frame_rate_hz,
   layout.frame_rate_hz = frame_rate_hz;
   layout.frame = {LengthUnit::kSbuNormalised, UpAxis::kYDown};
   layout.skeleton = SbuSkeleton();
-  layout.left_to_right = Vec3{-1, 0, 0};  // the image's +x, see ToWorld
+  layout.people_axis = Vec3{1, 0, 0};  // the image's x axis
   const std::vector<int> feet = {layout.skeleton.left_foot, layout.skeleton.right_foot};
   const std::vector<int> hands = {layout.skeleton.Find("left_hand"),
                                   layout.skeleton.Find("right_hand")};

@@ -27,8 +27,8 @@ struct DatasetLayout {
   CoordinateFrame frame;
   Skeleton skeleton;
   std::vector<ClassLayout> classes;
-  // World direction from the person on the left to the one on the right, where the setup fixes it.
-  std::optional<Vec3> left_to_right;
+  // The horizontal world axis that the setup stands its people along, in either order.
+  std::optional<Vec3> people_axis;
 };
 
 // SBU Kinect Interaction ("clean"): the six classes of the paper, folders 03 to 08.

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cctype>
 #include <map>
+#include <optional>
 #include <system_error>
 
 #include "absl/strings/str_cat.h"
@@ -150,6 +151,15 @@ absl::StatusOr<LeaderSide> LeaderOf(const std::string& path, const SbuRecording&
       interaction.name, " in dataset.json"));
 }
 
+// Which end of the axis the follower stands at: the one thing read off the pair. The files' own
+// order does not tell: it differs from set to set.
+std::optional<Vec3> PartnerDirection(const DatasetLayout& layout, const ClipPair& pair) {
+  if (!layout.people_axis) return std::nullopt;
+  const int root = layout.skeleton.root;
+  const Vec3 across = pair.follower.at(0, root) - pair.leader.at(0, root);
+  return Dot(across, *layout.people_axis) < 0 ? -*layout.people_axis : *layout.people_axis;
+}
+
 absl::StatusOr<Sequence> ReadSequence(const fs::path& folder, const DatasetLayout& layout,
                                       const IndexEntry& entry, const FoundFile& file) {
   const std::string path = (folder / file.id).string();
@@ -169,12 +179,9 @@ absl::StatusOr<Sequence> ReadSequence(const fs::path& folder, const DatasetLayou
     side = *moved;
     sequence.leader_source = "motion";
   }
-  sequence.partner_direction = layout.left_to_right;
-  if (side == LeaderSide::kRight) {
-    std::swap(people->left, people->right);
-    if (layout.left_to_right) sequence.partner_direction = -*layout.left_to_right;
-  }
+  if (side == LeaderSide::kRight) std::swap(people->left, people->right);
   sequence.pair = {std::move(people->left), std::move(people->right)};
+  sequence.partner_direction = PartnerDirection(layout, sequence.pair);
   return sequence;
 }
 

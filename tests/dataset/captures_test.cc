@@ -1,6 +1,7 @@
 // The real data sets, when DUET_DATA_DIR (or ../shared/data) has them.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 
@@ -35,6 +36,19 @@ TEST(CapturesTest, SbuIsWhole) {
   const absl::StatusOr<Split> split = LeaveSubjectOut(*dataset, "s03");
   ASSERT_TRUE(split.ok()) << split.status();
   EXPECT_EQ(split->test.size(), 81u);
+}
+
+TEST(CapturesTest, SbuFollowersStandWhereTheirDirectionPoints) {
+  if (!std::filesystem::exists(DataFolder("sbu"))) GTEST_SKIP() << "no SBU data at hand";
+  const absl::StatusOr<Dataset> dataset = ReadDataset(DataFolder("sbu"));
+  ASSERT_TRUE(dataset.ok()) << dataset.status();
+  const int root = dataset->skeleton.root;
+  for (const Sequence& one : dataset->sequences) {
+    ASSERT_TRUE(one.partner_direction.has_value());
+    const Vec3 across = one.pair.follower.at(0, root) - one.pair.leader.at(0, root);
+    // Within 45 degrees of it, or the axis is not the setup's.
+    EXPECT_GT(Dot(across, *one.partner_direction), 0.7f * std::hypot(across.x, across.z)) << one.id;
+  }
 }
 
 TEST(CapturesTest, TheMotionRuleAgreesWithTheIndexOnSbu) {

@@ -58,6 +58,28 @@ TEST(ReadDatasetTest, ReadsSbu) {
   EXPECT_EQ(punch.pair.follower.frame_count(), 4);
 }
 
+TEST(ReadDatasetTest, TellsOnWhichSideTheFollowerStands) {
+  // Raw x grows towards world -x. In one file the follower is at the larger raw x, in the other at
+  // the smaller; by how much, and how far along the other axes, does not matter.
+  CaptureFolder folder;
+  std::vector<Vec3> left(15), right(15);
+  for (Vec3& p : right) p = {0.25f, 0.1f, 0.75f};
+  for (const bool swapped : {false, true}) {
+    const std::string file = swapped ? "s02s01" : "s01s02";
+    const std::vector<Vec3>& first = swapped ? right : left;
+    const std::vector<Vec3>& second = swapped ? left : right;
+    folder.Write(file + "/03/001/skeleton_pos.txt",
+                 CaptureLine(1, first, second) + CaptureLine(2, first, second));
+  }
+  folder.Write("index.tsv",
+               "path\tleader_side\ns01s02/03/001/skeleton_pos.txt\tleft\n"
+               "s02s01/03/001/skeleton_pos.txt\tleft\n");
+  const absl::StatusOr<Dataset> dataset = ReadDataset(folder.path());
+  ASSERT_TRUE(dataset.ok()) << dataset.status();
+  EXPECT_EQ(dataset->sequences[0].partner_direction, (Vec3{-1, 0, 0}));
+  EXPECT_EQ(dataset->sequences[1].partner_direction, (Vec3{1, 0, 0}));
+}
+
 TEST(ReadDatasetTest, ReadsK3hi) {
   CaptureFolder folder;
   folder.Write("shaking/001.txt", StillCapture(3));
@@ -100,6 +122,7 @@ TEST(ReadDatasetTest, ReadsOwnDataWithAnySkeleton) {
   EXPECT_FLOAT_EQ(sequence.pair.leader.at(0, 0).x, 1);
   EXPECT_FLOAT_EQ(sequence.pair.follower.at(1, 2).x, 6);
   EXPECT_EQ(sequence.pair.follower.frame_rate_hz, 60);
+  EXPECT_FALSE(sequence.partner_direction.has_value());
 }
 
 TEST(ReadDatasetTest, OwnDataWithoutEffectorsNeedsTheIndex) {
