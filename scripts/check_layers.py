@@ -44,6 +44,8 @@ LAYERS = (
           sees=TORCH_FREE_MODEL + ("network", "torch engine"), libraries=("torch",)),
     Layer("torch evaluation", ("model/evaluation/*torch*",), sees=WHOLE_MODEL + ("evaluation",),
           libraries=("torch",)),
+    Layer("evaluation program", ("model/evaluation/eval_main.cc",),
+          sees=TORCH_FREE_MODEL + ("evaluation", "torch evaluation", "torch engine")),
     Layer("evaluation", ("model/evaluation/*",), sees=TORCH_FREE_MODEL + ("torch evaluation",)),
     # The programs around it.
     Layer("server main", ("server/main.cc",),

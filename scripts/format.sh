@@ -7,7 +7,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 case "${1:-}" in
   "") mode=(-i) ;;
-  --check) mode=(--dry-run -Werror) ;;
+  --check) mode=(--dry-run -Werror --ferror-limit=1) ;;
   *) echo "usage: format.sh [--check]" >&2 && exit 2 ;;
 esac
 
