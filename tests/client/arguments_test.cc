@@ -1,0 +1,188 @@
+#include "client/cli/arguments.h"
+
+#include <string>
+#include <vector>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/support/temporary_folder.h"
+
+namespace duet::client {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Pair;
+using ::testing::SizeIs;
+
+using Strings = std::vector<std::string>;
+
+class ArgumentsTest : public ::testing::Test {
+ protected:
+  // `duet synthesize` with what it cannot do without, and `more`.
+  ParsedCommandLine Synthesize(const Strings& more) {
+    Strings arguments = {"synthesize", "--leader", "kick.bvh", "--out", Out("pair.html")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return ParseCommandLine(arguments);
+  }
+
+  // The parsed flags of a good command line.
+  SynthesizeArguments Good(const Strings& more) {
+    Strings with_label = {"--label", "kick=1"};
+    with_label.insert(with_label.end(), more.begin(), more.end());
+    const ParsedCommandLine parsed = Synthesize(with_label);
+    EXPECT_TRUE(parsed.synthesize.has_value()) << parsed.text;
+    return parsed.synthesize.value_or(SynthesizeArguments{});
+  }
+
+  void ExpectUsageError(const Strings& arguments, const std::string& message) {
+    const ParsedCommandLine parsed = ParseCommandLine(arguments);
+    EXPECT_FALSE(parsed.models.has_value() || parsed.synthesize.has_value()) << message;
+    EXPECT_EQ(parsed.exit_code, 2);
+    EXPECT_THAT(parsed.text, HasSubstr(message));
+  }
+  void ExpectRefused(const Strings& more, const std::string& message) {
+    Strings arguments = {"synthesize", "--leader", "kick.bvh", "--out", Out("pair.html")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    ExpectUsageError(arguments, message);
+  }
+
+  std::string Out(const std::string& name) const { return (folder_ / name).string(); }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(ArgumentsTest, VersionAndHelpSucceed) {
+  EXPECT_EQ(ParseCommandLine({"--version"}).exit_code, 0);
+  EXPECT_THAT(ParseCommandLine({"--version"}).text, HasSubstr("duet " DUET_VERSION));
+  for (const Strings& arguments :
+       {Strings{"--help"}, Strings{"synthesize", "--help"}, Strings{"models", "--help"}}) {
+    const ParsedCommandLine parsed = ParseCommandLine(arguments);
+    EXPECT_EQ(parsed.exit_code, 0);
+    EXPECT_THAT(parsed.text, HasSubstr("Usage: duet"));
+  }
+  EXPECT_THAT(ParseCommandLine({"synthesize", "--help"}).text, HasSubstr("  42  failed"));
+}
+
+TEST_F(ArgumentsTest, ModelsHasDefaults) {
+  const ParsedCommandLine parsed = ParseCommandLine({"models"});
+  ASSERT_TRUE(parsed.models.has_value());
+  EXPECT_EQ(parsed.models->server.address, "localhost:50051");
+  EXPECT_EQ(parsed.models->server.timeout_seconds, 120);
+  EXPECT_FALSE(parsed.models->json);
+}
+
+TEST_F(ArgumentsTest, SynthesizeHasDefaults) {
+  const SynthesizeArguments arguments = Good({});
+  EXPECT_EQ(arguments.leader, "kick.bvh");
+  EXPECT_EQ(arguments.leader_side, Side::kLeft);
+  ASSERT_THAT(arguments.weights, SizeIs(1));
+  EXPECT_EQ(arguments.weights[0].interaction_class, "kick");
+  EXPECT_EQ(arguments.model.name, "");
+  EXPECT_EQ(arguments.priority, Priority::kInteractive);
+  EXPECT_EQ(arguments.input.frame_rate_hz, std::nullopt);
+  EXPECT_EQ(arguments.input.unit, std::nullopt);
+  EXPECT_THAT(arguments.outputs, ElementsAre(Out("pair.html")));
+}
+
+TEST_F(ArgumentsTest, EveryFlagIsRead) {
+  const SynthesizeArguments arguments = Good({"--label",
+                                              "hug=-0.5",
+                                              "--leader-side",
+                                              "right",
+                                              "--frame-rate",
+                                              "30",
+                                              "--unit",
+                                              "mm",
+                                              "--up-axis",
+                                              "z-up",
+                                              "--metres-per-unit",
+                                              "0.01",
+                                              "--joint-map",
+                                              "left_hand=LHand",
+                                              "--joint-map",
+                                              "right_hand=RHand",
+                                              "--model",
+                                              "sbu@2",
+                                              "--follower-start",
+                                              "-0.5,1,2",
+                                              "--follower-start-side",
+                                              "right",
+                                              "--priority",
+                                              "bulk",
+                                              "--chunk-frames",
+                                              "8",
+                                              "--request-id",
+                                              "job-7",
+                                              "--out",
+                                              Out("pair.bvh"),
+                                              "--json",
+                                              "--quiet",
+                                              "--server",
+                                              "h:1",
+                                              "--timeout",
+                                              "2.5"});
+  ASSERT_THAT(arguments.weights, SizeIs(2));
+  EXPECT_EQ(arguments.weights[1].weight, -0.5f);
+  EXPECT_EQ(arguments.leader_side, Side::kRight);
+  EXPECT_EQ(arguments.input.frame_rate_hz, 30);
+  EXPECT_EQ(arguments.input.unit, LengthUnit::kMillimetres);
+  EXPECT_EQ(arguments.input.up_axis, UpAxis::kZUp);
+  EXPECT_EQ(arguments.input.metres_per_unit, 0.01);
+  EXPECT_THAT(arguments.input.joints,
+              ElementsAre(Pair("left_hand", "LHand"), Pair("right_hand", "RHand")));
+  EXPECT_EQ(arguments.model.name, "sbu");
+  EXPECT_EQ(arguments.model.version, 2);
+  EXPECT_EQ(arguments.follower_start, "-0.5,1,2");
+  EXPECT_EQ(arguments.follower_start_side, Side::kRight);
+  EXPECT_EQ(arguments.priority, Priority::kBulk);
+  EXPECT_EQ(arguments.chunk_frames, 8);
+  EXPECT_EQ(arguments.request_id, "job-7");
+  EXPECT_THAT(arguments.outputs, ElementsAre(Out("pair.html"), Out("pair.bvh")));
+  EXPECT_TRUE(arguments.json);
+  EXPECT_TRUE(arguments.quiet);
+  EXPECT_EQ(arguments.server.address, "h:1");
+  EXPECT_EQ(arguments.server.timeout_seconds, 2.5);
+}
+
+TEST_F(ArgumentsTest, KeyframesStandInForLabels) {
+  const ParsedCommandLine parsed =
+      Synthesize({"--keyframe", "0:kick=1", "--keyframe", "30:kick=0,hug=1"});
+  ASSERT_TRUE(parsed.synthesize.has_value()) << parsed.text;
+  ASSERT_THAT(parsed.synthesize->keyframes, SizeIs(2));
+  EXPECT_EQ(parsed.synthesize->keyframes[1].frame, 30);
+}
+
+TEST_F(ArgumentsTest, WhatIsMissingIsNamed) {
+  ExpectUsageError({}, "subcommand is required");
+  ExpectUsageError({"synthesize", "--label", "kick=1", "--out", Out("pair.html")}, "--leader");
+  ExpectUsageError({"synthesize", "--leader", "kick.bvh", "--label", "kick=1"}, "--out");
+  ExpectRefused({}, "--label or --keyframe is required");
+}
+
+TEST_F(ArgumentsTest, WhatMakesNoSenseIsNamed) {
+  ExpectUsageError({"dance"}, "subcommand is required");
+  ExpectUsageError({"models", "--frobnicate"}, "--frobnicate");
+  ExpectRefused({"--label", "kick"}, "--label: \"kick\", wanted CLASS=WEIGHT");
+  ExpectRefused({"--label", "kick=1", "hug=1"}, "hug=1");
+  ExpectRefused({"--keyframe", "kick=1"}, "--keyframe: \"kick=1\", wanted FRAME:CLASS=WEIGHT");
+  ExpectRefused({"--label", "kick=1", "--keyframe", "0:kick=1"}, "excludes");
+  ExpectRefused({"--label", "kick=1", "--leader-side", "up"}, "--leader-side: up");
+  ExpectRefused({"--label", "kick=1", "--unit", "1"}, "--unit: 1");
+  ExpectRefused({"--label", "kick=1", "--frame-rate", "-15"}, "--frame-rate");
+  ExpectRefused({"--label", "kick=1", "--timeout", "0"}, "--timeout");
+  ExpectRefused({"--label", "kick=1", "--model", "sbu@x"}, "--model: \"sbu@x\"");
+  ExpectRefused({"--label", "kick=1", "--tls-cert", "a.pem"}, "--tls-key");
+}
+
+TEST_F(ArgumentsTest, OutputsThatCannotBeWrittenAreRefusedBeforeAnyWork) {
+  ExpectRefused({"--label", "kick=1", "--out", Out("pair.fbx")}, "\".fbx\", wanted .html, .bvh");
+  ExpectRefused({"--label", "kick=1", "--out", Out("no/pair.csv")}, "there is no folder");
+  const std::string leader = Out("leader.csv");
+  WriteTestFile(leader, "");
+  ExpectUsageError({"synthesize", "--leader", leader, "--label", "kick=1", "--out", leader},
+                   "would replace the leader's own file");
+}
+
+}  // namespace
+}  // namespace duet::client

@@ -1,0 +1,91 @@
+#include "client/cli/value_syntax.h"
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/support/status_matchers.h"
+
+namespace duet::client {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+
+constexpr auto kInvalid = absl::StatusCode::kInvalidArgument;
+
+TEST(ParseClassWeightTest, ReadsNameAndWeight) {
+  const absl::StatusOr<ClassWeight> weight = ParseClassWeight("shake_hands=-0.5");
+  ASSERT_THAT(weight, IsOk());
+  EXPECT_EQ(weight->interaction_class, "shake_hands");
+  EXPECT_EQ(weight->weight, -0.5f);
+}
+
+TEST(ParseClassWeightTest, RefusesEverythingElse) {
+  for (const char* text : {"", "kick", "kick=", "=1", "kick=hard", "kick=1x", "kick=1=2"}) {
+    EXPECT_THAT(ParseClassWeight(text),
+                StatusIs(kInvalid, AllOf(HasSubstr(text), HasSubstr("wanted CLASS=WEIGHT"))));
+  }
+}
+
+TEST(ParseKeyframeTest, ReadsFrameAndWeights) {
+  const absl::StatusOr<WeightKeyframe> keyframe = ParseKeyframe("30:kick=1,hug=0");
+  ASSERT_THAT(keyframe, IsOk());
+  EXPECT_EQ(keyframe->frame, 30);
+  ASSERT_THAT(keyframe->weights, SizeIs(2));
+  EXPECT_EQ(keyframe->weights[1].interaction_class, "hug");
+  EXPECT_EQ(keyframe->weights[1].weight, 0);
+}
+
+TEST(ParseKeyframeTest, RefusesEverythingElse) {
+  for (const char* text : {"", "30", "30:", "kick=1", "-1:kick=1", "x:kick=1", "30:kick",
+                           "30:kick=1,", "30:,kick=1"}) {
+    EXPECT_THAT(ParseKeyframe(text), StatusIs(kInvalid, HasSubstr("wanted FRAME:CLASS=WEIGHT")));
+  }
+}
+
+TEST(ParseModelChoiceTest, ReadsNameVersionAndLabel) {
+  absl::StatusOr<ModelChoice> choice = ParseModelChoice("sbu");
+  ASSERT_THAT(choice, IsOk());
+  EXPECT_EQ(choice->name, "sbu");
+  EXPECT_EQ(choice->version, std::nullopt);
+  EXPECT_EQ(choice->version_label, "");
+
+  choice = ParseModelChoice("sbu@12");
+  ASSERT_THAT(choice, IsOk());
+  EXPECT_EQ(choice->name, "sbu");
+  EXPECT_EQ(choice->version, 12);
+
+  choice = ParseModelChoice("sbu:canary");
+  ASSERT_THAT(choice, IsOk());
+  EXPECT_EQ(choice->version, std::nullopt);
+  EXPECT_EQ(choice->version_label, "canary");
+}
+
+TEST(ParseModelChoiceTest, RefusesEverythingElse) {
+  for (const char* text : {"", "@1", ":stable", "sbu@", "sbu@0", "sbu@-1", "sbu@one", "sbu:"}) {
+    EXPECT_THAT(ParseModelChoice(text), StatusIs(kInvalid, HasSubstr("wanted NAME")));
+  }
+}
+
+TEST(ParseJointPairTest, ReadsBothNames) {
+  const auto joints = ParseJointPair("left_hand=mixamorig:LeftHand");
+  ASSERT_THAT(joints, IsOk());
+  EXPECT_EQ(joints->first, "left_hand");
+  EXPECT_EQ(joints->second, "mixamorig:LeftHand");
+}
+
+TEST(ParseJointPairTest, RefusesEverythingElse) {
+  for (const char* text : {"", "left_hand", "left_hand=", "=LeftHand"}) {
+    EXPECT_THAT(ParseJointPair(text), StatusIs(kInvalid, HasSubstr("wanted MODEL_JOINT")));
+  }
+}
+
+TEST(ParsePointTest, ReadsThreeNumbersAndNothingElse) {
+  EXPECT_EQ(ParsePoint("0.5,1,-2"), (Vec3{0.5f, 1, -2}));
+  for (const char* text : {"", "1,2", "1,2,3,4", "a,b,c", "start.bvh"}) {
+    EXPECT_EQ(ParsePoint(text), std::nullopt) << text;
+  }
+}
+
+}  // namespace
+}  // namespace duet::client
