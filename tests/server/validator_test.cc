@@ -1,0 +1,542 @@
+#include "server/service/validator.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "tests/server/support/refusal.h"
+#include "tests/server/support/sample_request.h"
+#include "tests/support/fake_synthesizer.h"
+#include "tests/support/status_matchers.h"
+
+namespace duet {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+
+constexpr int kJoints = 15;
+constexpr auto kInvalidArgument = absl::StatusCode::kInvalidArgument;
+constexpr auto kFailedPrecondition = absl::StatusCode::kFailedPrecondition;
+const float kNan = std::numeric_limits<float>::quiet_NaN();
+const float kInfinity = std::numeric_limits<float>::infinity();
+
+absl::StatusOr<ValidatedRequest> Validate(const v1::SynthesizeRequest& request,
+                                          const ModelDescription& model = FakeDescription()) {
+  return ValidateRequest(request, model, RequestLimits());
+}
+
+// One way to spoil a good request, and what the refusal must say.
+struct Spoiled {
+  std::string name;
+  std::function<void(v1::SynthesizeRequest&)> spoil;
+  std::string field;
+  std::string description;  // a part of it
+  absl::StatusCode code = kInvalidArgument;
+
+  friend void PrintTo(const Spoiled& spoiled, std::ostream* out) { *out << spoiled.name; }
+};
+
+class RefusalTest : public ::testing::TestWithParam<Spoiled> {};
+
+TEST_P(RefusalTest, NamesTheFieldWhatCameAndWhatWasWanted) {
+  v1::SynthesizeRequest request = SampleRequest();
+  GetParam().spoil(request);
+  const Refusal refusal = Decode(Validate(request).status());
+  EXPECT_EQ(refusal.code, GetParam().code) << refusal.message;
+  EXPECT_THAT(refusal.Fields(), ElementsAre(GetParam().field)) << "exactly this field";
+  EXPECT_THAT(refusal.Of(GetParam().field), HasSubstr(GetParam().description));
+  EXPECT_THAT(refusal.message, HasSubstr(GetParam().field));
+}
+
+void SetRoot(v1::SynthesizeRequest& request, float x, float y, float z) {
+  v1::Point& root = *request.mutable_follower_start()->mutable_root_position();
+  root.set_x(x);
+  root.set_y(y);
+  root.set_z(z);
+}
+
+void SetDirection(v1::SynthesizeRequest& request, float x, float y, float z) {
+  v1::Direction& direction = *request.mutable_partner_direction();
+  direction.set_x(x);
+  direction.set_y(y);
+  direction.set_z(z);
+}
+
+void AddKeyframe(v1::SynthesizeRequest& request, uint32_t frame) {
+  request.clear_label_vector();
+  v1::LabelKeyframe& keyframe = *request.add_label_keyframes();
+  keyframe.set_frame(frame);
+  AddWeight(*keyframe.mutable_label_vector(), "hug", 0.5F);
+}
+
+using Request = v1::SynthesizeRequest;
+
+std::string SpoiledName(const ::testing::TestParamInfo<Spoiled>& spoiled) {
+  return spoiled.param.name;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Leader, RefusalTest,
+    ::testing::Values(
+        Spoiled{"nan", [](Request& r) { r.mutable_leader()->set_positions(17, kNan); },
+                "leader.positions[17]", "is nan, wanted a finite number"},
+        Spoiled{"infinite", [](Request& r) { r.mutable_leader()->set_positions(5, -kInfinity); },
+                "leader.positions[5]", "is -inf, wanted a finite number"},
+        Spoiled{"too_few_values",
+                [](Request& r) { r.mutable_leader()->mutable_positions()->RemoveLast(); },
+                "leader.positions", "has 1799 values, wanted 1800: 40 frames x 15 joints x 3"},
+        Spoiled{"too_many_values", [](Request& r) { r.mutable_leader()->add_positions(0); },
+                "leader.positions", "has 1801 values, wanted 1800"},
+        Spoiled{"no_values", [](Request& r) { r.mutable_leader()->clear_positions(); },
+                "leader.positions", "has 0 values, wanted 1800"},
+        Spoiled{"one_frame",
+                [](Request& r) {
+                  r.mutable_leader()->set_frame_count(1);
+                  r.mutable_leader()->mutable_positions()->Truncate(kJoints * 3);
+                },
+                "leader.frame_count", "is 1, wanted 2 or more"},
+        Spoiled{"zero_frames",
+                [](Request& r) {
+                  r.mutable_leader()->set_frame_count(0);
+                  r.mutable_leader()->clear_positions();
+                },
+                "leader.frame_count", "is 0, wanted 2 or more"},
+        Spoiled{"no_rate", [](Request& r) { r.mutable_leader()->clear_frame_rate_hz(); },
+                "leader.frame_rate_hz", "is 0, wanted 1 to 240"},
+        Spoiled{"negative_rate", [](Request& r) { r.mutable_leader()->set_frame_rate_hz(-15); },
+                "leader.frame_rate_hz", "is -15, wanted 1 to 240"},
+        Spoiled{"high_rate", [](Request& r) { r.mutable_leader()->set_frame_rate_hz(240.5); },
+                "leader.frame_rate_hz", "is 240.5, wanted 1 to 240"},
+        Spoiled{"nan_rate", [](Request& r) { r.mutable_leader()->set_frame_rate_hz(kNan); },
+                "leader.frame_rate_hz", "is nan, wanted 1 to 240"},
+        Spoiled{"infinite_rate",
+                [](Request& r) { r.mutable_leader()->set_frame_rate_hz(kInfinity); },
+                "leader.frame_rate_hz", "is inf, wanted 1 to 240"},
+        Spoiled{"no_unit", [](Request& r) { r.mutable_leader()->clear_unit(); }, "leader.unit",
+                "is LENGTH_UNIT_UNSPECIFIED, wanted LENGTH_UNIT_METRES"},
+        Spoiled{"unknown_unit",
+                [](Request& r) { r.mutable_leader()->set_unit(static_cast<v1::LengthUnit>(17)); },
+                "leader.unit", "is 17, wanted LENGTH_UNIT_METRES"},
+        Spoiled{"no_up_axis", [](Request& r) { r.mutable_leader()->clear_up_axis(); },
+                "leader.up_axis", "is UP_AXIS_UNSPECIFIED, wanted UP_AXIS_Y_UP"},
+        Spoiled{"unknown_up_axis",
+                [](Request& r) { r.mutable_leader()->set_up_axis(static_cast<v1::UpAxis>(-1)); },
+                "leader.up_axis", "is -1, wanted UP_AXIS_Y_UP"},
+        Spoiled{"sbu_unit_with_y_up",
+                [](Request& r) { r.mutable_leader()->set_unit(v1::LENGTH_UNIT_SBU_NORMALISED); },
+                "leader.up_axis", "is UP_AXIS_Y_UP, wanted UP_AXIS_Y_DOWN"},
+        Spoiled{"far_away", [](Request& r) { r.mutable_leader()->set_positions(4, -20000); },
+                "leader.positions[3..5]", "more than 10000 m from the origin"},
+        Spoiled{"overflowing",
+                [](Request& r) {
+                  r.mutable_leader()->set_unit(v1::LENGTH_UNIT_SBU_NORMALISED);
+                  r.mutable_leader()->set_up_axis(v1::UP_AXIS_Y_DOWN);
+                  r.mutable_leader()->set_positions(3, 3e38F);
+                },
+                "leader.positions[3..5]", "more than 10000 m from the origin"}),
+    SpoiledName);
+
+INSTANTIATE_TEST_SUITE_P(
+    Joints, RefusalTest,
+    ::testing::Values(Spoiled{"missing",
+                              [](Request& r) {
+                                r.mutable_leader()->mutable_joint_names()->RemoveLast();
+                                r.mutable_leader()->mutable_positions()->Truncate(40 * 14 * 3);
+                              },
+                              "leader.joint_names",
+                              "lacks right_foot; wanted all 15 joints of model fake",
+                              kFailedPrecondition},
+                      Spoiled{"none",
+                              [](Request& r) {
+                                r.mutable_leader()->clear_joint_names();
+                                r.mutable_leader()->clear_positions();
+                              },
+                              "leader.joint_names", "lacks head, neck, torso", kFailedPrecondition},
+                      Spoiled{"extra",
+                              [](Request& r) {
+                                r.mutable_leader()->add_joint_names("tail");
+                                for (int i = 0; i < 40 * 3; ++i)
+                                  r.mutable_leader()->add_positions(0);
+                              },
+                              "leader.joint_names[15]",
+                              "is \"tail\", which is no joint of model fake", kFailedPrecondition},
+                      Spoiled{"repeated",
+                              [](Request& r) {
+                                r.mutable_leader()->add_joint_names("head");
+                                for (int i = 0; i < 40 * 3; ++i)
+                                  r.mutable_leader()->add_positions(0);
+                              },
+                              "leader.joint_names[15]",
+                              "is \"head\", which joint_names[0] is already", kFailedPrecondition},
+                      Spoiled{"absurdly_many",
+                              [](Request& r) {
+                                r.mutable_leader()->clear_positions();
+                                for (int i = 0; i < 100000; ++i)
+                                  r.mutable_leader()->add_joint_names("x");
+                                r.mutable_leader()->mutable_positions()->Resize(40 * 100015 * 3, 0);
+                              },
+                              "leader.joint_names", "has 100015 names, wanted the 15 joints",
+                              kFailedPrecondition}),
+    SpoiledName);
+
+INSTANTIATE_TEST_SUITE_P(
+    Labels, RefusalTest,
+    ::testing::Values(
+        Spoiled{"missing", [](Request& r) { r.clear_label_vector(); }, "label_vector",
+                "is missing, wanted label_vector or label_keyframes"},
+        Spoiled{"both_forms",
+                [](Request& r) {
+                  AddKeyframe(r, 0);
+                  AddWeight(*r.mutable_label_vector(), "kick", 1);
+                },
+                "label_keyframes", "together with label_vector, wanted one of the two"},
+        Spoiled{"empty", [](Request& r) { r.mutable_label_vector()->clear_weights(); },
+                "label_vector.weights", "is empty, wanted a weight for at least one of kick"},
+        Spoiled{"unknown_class",
+                [](Request& r) { AddWeight(*r.mutable_label_vector(), "dance", 1); },
+                "label_vector.weights[1].interaction_class", "is \"dance\", wanted one of kick"},
+        Spoiled{"unnamed_class", [](Request& r) { AddWeight(*r.mutable_label_vector(), "", 1); },
+                "label_vector.weights[1].interaction_class", "is \"\", wanted one of kick"},
+        Spoiled{"repeated_class",
+                [](Request& r) { AddWeight(*r.mutable_label_vector(), "kick", 1); },
+                "label_vector.weights[1].interaction_class",
+                "is \"kick\", which weights[0] is already"},
+        Spoiled{"too_large", [](Request& r) { AddWeight(*r.mutable_label_vector(), "hug", 2.5F); },
+                "label_vector.weights[1].weight", "is 2.5, wanted a finite value in [-2, 2]"},
+        Spoiled{"too_small", [](Request& r) { AddWeight(*r.mutable_label_vector(), "hug", -2.5F); },
+                "label_vector.weights[1].weight", "is -2.5, wanted a finite value in [-2, 2]"},
+        Spoiled{"nan", [](Request& r) { AddWeight(*r.mutable_label_vector(), "hug", kNan); },
+                "label_vector.weights[1].weight", "is nan, wanted a finite value in [-2, 2]"},
+        Spoiled{"infinite",
+                [](Request& r) { AddWeight(*r.mutable_label_vector(), "hug", kInfinity); },
+                "label_vector.weights[1].weight", "is inf, wanted a finite value in [-2, 2]"},
+        Spoiled{"absurdly_many",
+                [](Request& r) {
+                  for (int i = 0; i < 1000; ++i) AddWeight(*r.mutable_label_vector(), "x", 1);
+                },
+                "label_vector.weights", "has 1001 weights, wanted at most one for each of 6"}),
+    SpoiledName);
+
+INSTANTIATE_TEST_SUITE_P(
+    Keyframes, RefusalTest,
+    ::testing::Values(Spoiled{"past_the_end", [](Request& r) { AddKeyframe(r, 40); },
+                              "label_keyframes[0].frame", "is 40, wanted less than 40"},
+                      Spoiled{"backwards",
+                              [](Request& r) {
+                                AddKeyframe(r, 20);
+                                AddKeyframe(r, 10);
+                              },
+                              "label_keyframes[1].frame", "is 10, wanted more than 20"},
+                      Spoiled{"repeated",
+                              [](Request& r) {
+                                AddKeyframe(r, 20);
+                                AddKeyframe(r, 20);
+                              },
+                              "label_keyframes[1].frame", "is 20, wanted more than 20"},
+                      Spoiled{"empty_vector",
+                              [](Request& r) {
+                                AddKeyframe(r, 0);
+                                r.mutable_label_keyframes(0)->clear_label_vector();
+                              },
+                              "label_keyframes[0].label_vector.weights", "is empty"},
+                      Spoiled{"weight",
+                              [](Request& r) {
+                                AddKeyframe(r, 0);
+                                r.mutable_label_keyframes(0)
+                                    ->mutable_label_vector()
+                                    ->mutable_weights(0)
+                                    ->set_weight(9);
+                              },
+                              "label_keyframes[0].label_vector.weights[0].weight", "is 9, wanted"},
+                      Spoiled{"too_many",
+                              [](Request& r) {
+                                for (uint32_t i = 0; i < 4097; ++i) AddKeyframe(r, i);
+                              },
+                              "label_keyframes", "has 4097 keyframes, wanted at most 4096"}),
+    SpoiledName);
+
+INSTANTIATE_TEST_SUITE_P(
+    FollowerStart, RefusalTest,
+    ::testing::Values(
+        Spoiled{"empty", [](Request& r) { r.mutable_follower_start(); }, "follower_start.start",
+                "is missing, wanted root_position or pose"},
+        Spoiled{"nan", [](Request& r) { SetRoot(r, 0, kNan, 0); },
+                "follower_start.root_position[1]", "is nan, wanted a finite number"},
+        Spoiled{"far_away", [](Request& r) { SetRoot(r, 0, 0, 1e6F); },
+                "follower_start.root_position[0..2]", "more than 10000 m"},
+        Spoiled{"short_pose",
+                [](Request& r) { r.mutable_follower_start()->mutable_pose()->add_positions(1); },
+                "follower_start.pose.positions", "has 1 values, wanted 45: 15 joints x 3"},
+        Spoiled{"nan_pose",
+                [](Request& r) {
+                  auto* positions = r.mutable_follower_start()->mutable_pose()->mutable_positions();
+                  positions->Resize(45, 0);
+                  positions->Set(44, kNan);
+                },
+                "follower_start.pose.positions[44]", "is nan, wanted a finite number"}),
+    SpoiledName);
+
+INSTANTIATE_TEST_SUITE_P(
+    Others, RefusalTest,
+    ::testing::Values(
+        Spoiled{"no_chunk_frames", [](Request& r) { r.set_chunk_frames(0); }, "chunk_frames",
+                "is 0, wanted 1 to 240"},
+        Spoiled{"many_chunk_frames", [](Request& r) { r.set_chunk_frames(241); }, "chunk_frames",
+                "is 241, wanted 1 to 240"},
+        Spoiled{"huge_chunk_frames", [](Request& r) { r.set_chunk_frames(4294967295U); },
+                "chunk_frames", "is 4294967295, wanted 1 to 240"},
+        Spoiled{"unspecified_priority",
+                [](Request& r) { r.set_priority(v1::PRIORITY_UNSPECIFIED); }, "priority",
+                "is PRIORITY_UNSPECIFIED, wanted PRIORITY_INTERACTIVE"},
+        Spoiled{"unknown_priority",
+                [](Request& r) { r.set_priority(static_cast<v1::Priority>(9)); }, "priority",
+                "is 9, wanted PRIORITY_INTERACTIVE"},
+        Spoiled{"unknown_reply_joint", [](Request& r) { r.add_reply_joint_names("tail"); },
+                "reply_joint_names[0]", "is \"tail\", wanted one of leader.joint_names"},
+        Spoiled{"repeated_reply_joint",
+                [](Request& r) {
+                  r.add_reply_joint_names("head");
+                  r.add_reply_joint_names("head");
+                },
+                "reply_joint_names[1]", "is \"head\", which [0] is already"},
+        Spoiled{"too_many_reply_joints",
+                [](Request& r) {
+                  for (int i = 0; i < 16; ++i) r.add_reply_joint_names("head");
+                },
+                "reply_joint_names", "has 16 names, wanted at most the 15"},
+        Spoiled{"no_direction", [](Request& r) { SetDirection(r, 0, 0, 0); }, "partner_direction",
+                "is (0, 0, 0), wanted a direction"},
+        Spoiled{"vertical_direction", [](Request& r) { SetDirection(r, 0, 3, 0); },
+                "partner_direction", "is (0, 3, 0), wanted a direction that is not straight up"},
+        Spoiled{"nan_direction", [](Request& r) { SetDirection(r, kNan, 0, 1); },
+                "partner_direction[0]", "is nan, wanted a finite number"}),
+    SpoiledName);
+
+TEST(ValidateRequestTest, RefusesAnEmptyRequestByNamingAllThatIsMissing) {
+  const Refusal refusal = Decode(Validate(v1::SynthesizeRequest()).status());
+  EXPECT_EQ(refusal.code, kInvalidArgument);
+  EXPECT_THAT(refusal.Fields(), ElementsAre("leader", "label_vector"));
+}
+
+TEST(ValidateRequestTest, NamesEverythingThatIsWrongAtOnce) {
+  v1::SynthesizeRequest request = SampleRequest();
+  request.mutable_leader()->set_positions(17, kNan);
+  request.mutable_leader()->set_frame_rate_hz(1000);
+  request.mutable_leader()->clear_unit();
+  request.mutable_leader()->set_joint_names(0, "hat");
+  AddWeight(*request.mutable_label_vector(), "dance", 7);
+  request.set_chunk_frames(0);
+  request.add_reply_joint_names("tail");
+  const Refusal refusal = Decode(Validate(request).status());
+  EXPECT_EQ(refusal.code, kInvalidArgument);
+  EXPECT_THAT(
+      refusal.Fields(),
+      ElementsAre("leader.joint_names[0]", "leader.joint_names", "leader.frame_rate_hz",
+                  "leader.unit", "leader.positions[17]",
+                  "label_vector.weights[1].interaction_class", "label_vector.weights[1].weight",
+                  "reply_joint_names[0]", "chunk_frames"));
+}
+
+TEST(ValidateRequestTest, NamesTheFirstBadValuesAndCountsAll) {
+  v1::SynthesizeRequest request = SampleRequest();
+  for (int i = 100; i < 900; ++i) request.mutable_leader()->set_positions(i, kNan);
+  const Refusal refusal = Decode(Validate(request).status());
+  EXPECT_THAT(refusal.Fields(), ElementsAre("leader.positions[100]", "leader.positions[101]",
+                                            "leader.positions[102]", "leader.positions"));
+  EXPECT_THAT(refusal.Of("leader.positions"), HasSubstr("has 800 values that are not finite"));
+}
+
+TEST(ValidateRequestTest, NamesTheFirstFarPositionsAndCountsAll) {
+  v1::SynthesizeRequest request = SampleRequest();
+  for (int i = 0; i < 300; ++i) request.mutable_leader()->set_positions(i, 1e5F);
+  const Refusal refusal = Decode(Validate(request).status());
+  EXPECT_THAT(refusal.Fields(), SizeIs(4));
+  EXPECT_THAT(refusal.Of("leader.positions"), HasSubstr("has 100 positions that are too far"));
+}
+
+TEST(ValidateRequestTest, RefusesMoreThanTenMinutes) {
+  v1::SynthesizeRequest request = SampleRequest(9001);
+  const Refusal refusal = Decode(Validate(request).status());
+  EXPECT_THAT(refusal.Of("leader.frame_count"),
+              AllOf(HasSubstr("is 9001, which lasts 600.067 s"), HasSubstr("at most 600 s")));
+}
+
+TEST(ValidateRequestTest, AcceptsTenMinutesAndTwoFrames) {
+  EXPECT_THAT(Validate(SampleRequest(9000)), IsOk());
+  EXPECT_THAT(Validate(SampleRequest(2)), IsOk());
+}
+
+TEST(ValidateRequestTest, RefusesAFollowerStartThatTheModelDoesNotAccept) {
+  ModelDescription model = FakeDescription();
+  model.accepts_follower_start = false;
+  v1::SynthesizeRequest request = SampleRequest();
+  SetRoot(request, 0, 1, 1);
+  const Refusal refusal = Decode(Validate(request, model).status());
+  EXPECT_EQ(refusal.code, kFailedPrecondition);
+  EXPECT_THAT(refusal.Of("follower_start"), HasSubstr("model fake version 1 does not accept it"));
+}
+
+TEST(ValidateRequestTest, EscapesAndCutsWhatCallersCallTheirJoints) {
+  v1::SynthesizeRequest request = SampleRequest();
+  request.mutable_leader()->set_joint_names(0, "a\nb" + std::string(100000, 'x'));
+  const Refusal refusal = Decode(Validate(request).status());
+  EXPECT_THAT(refusal.Of("leader.joint_names[0]"), HasSubstr("is \"a\\nbxxx"));
+  EXPECT_LT(refusal.message.size(), 1000u);
+}
+
+TEST(ValidateRequestTest, AManyNamedRequestIsRefusedInLinearTime) {
+  // Quadratic work on this would outlast the test's time limit.
+  v1::SynthesizeRequest request;
+  for (int i = 0; i < 300000; ++i) {
+    request.mutable_leader()->add_joint_names(absl::StrCat("joint", i));
+    request.add_reply_joint_names(absl::StrCat("joint", 300000 - i));
+  }
+  EXPECT_THAT(Validate(request), StatusIs(kInvalidArgument, HasSubstr("300000 names")));
+}
+
+TEST(ValidateRequestTest, FillsInDefaults) {
+  const absl::StatusOr<ValidatedRequest> request = Validate(SampleRequest());
+  ASSERT_THAT(request, IsOk());
+  EXPECT_EQ(request->chunk_frames, 30);
+  EXPECT_EQ(request->priority, Priority::kInteractive);
+  EXPECT_FALSE(request->clip.start.has_value());
+  EXPECT_FALSE(request->clip.partner_direction.has_value());
+  EXPECT_EQ(request->reply.joint_names, FakeDescription().skeleton.joint_names);
+}
+
+TEST(ValidateRequestTest, TakesOverWhatIsGiven) {
+  v1::SynthesizeRequest request = SampleRequest();
+  request.set_chunk_frames(7);
+  request.set_priority(v1::PRIORITY_BULK);
+  const absl::StatusOr<ValidatedRequest> validated = Validate(request);
+  ASSERT_THAT(validated, IsOk());
+  EXPECT_EQ(validated->chunk_frames, 7);
+  EXPECT_EQ(validated->priority, Priority::kBulk);
+  EXPECT_EQ(validated->clip.frame_rate_hz, 15);
+}
+
+// Writes the leader's joints in reverse order.
+void ReverseJoints(v1::Motion& leader) {
+  const v1::Motion original = leader;
+  for (int joint = 0; joint < kJoints; ++joint) {
+    leader.set_joint_names(joint, original.joint_names(kJoints - 1 - joint));
+    for (uint32_t frame = 0; frame < leader.frame_count(); ++frame) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const int base = static_cast<int>(frame) * kJoints;
+        leader.set_positions((base + joint) * 3 + axis,
+                             original.positions((base + kJoints - 1 - joint) * 3 + axis));
+      }
+    }
+  }
+}
+
+TEST(ValidateRequestTest, BringsJointsIntoTheModelsOrder) {
+  v1::SynthesizeRequest request = SampleRequest();
+  const absl::StatusOr<ValidatedRequest> ordered = Validate(request);
+  ReverseJoints(*request.mutable_leader());
+  const absl::StatusOr<ValidatedRequest> reversed = Validate(request);
+  ASSERT_THAT(ordered, IsOk());
+  ASSERT_THAT(reversed, IsOk());
+  EXPECT_EQ(reversed->clip.leader, ordered->clip.leader);
+  EXPECT_EQ(reversed->reply.joint_names.front(), "right_foot");
+  EXPECT_EQ(reversed->reply.joints.front(), 14);
+}
+
+TEST(ValidateRequestTest, ConvertsUnitAndUpAxisToTheWorld) {
+  v1::SynthesizeRequest request = SampleRequest();
+  request.mutable_leader()->set_unit(v1::LENGTH_UNIT_MILLIMETRES);
+  request.mutable_leader()->set_up_axis(v1::UP_AXIS_Z_UP);
+  request.mutable_leader()->set_positions(0, 1000);
+  request.mutable_leader()->set_positions(1, 2000);
+  request.mutable_leader()->set_positions(2, 3000);
+  SetRoot(request, 1000, 2000, 3000);
+  const absl::StatusOr<ValidatedRequest> validated = Validate(request);
+  ASSERT_THAT(validated, IsOk());
+  const Vec3 expected = {1, 3, -2};
+  EXPECT_LT(Distance(validated->clip.leader[0], expected), 1e-6F);
+  EXPECT_LT(Distance(validated->clip.start->root, expected), 1e-6F);
+  EXPECT_TRUE(validated->clip.start->pose.empty());
+}
+
+TEST(ValidateRequestTest, ReadsAStartPoseInTheLeadersJointOrder) {
+  v1::SynthesizeRequest request = SampleRequest();
+  ReverseJoints(*request.mutable_leader());
+  auto* positions = request.mutable_follower_start()->mutable_pose()->mutable_positions();
+  for (int joint = 0; joint < kJoints; ++joint) {
+    for (int axis = 0; axis < 3; ++axis) positions->Add(static_cast<float>(joint + axis * 100));
+  }
+  const absl::StatusOr<ValidatedRequest> validated = Validate(request);
+  ASSERT_THAT(validated, IsOk());
+  const FollowerStart& start = *validated->clip.start;
+  ASSERT_EQ(start.pose.size(), static_cast<std::size_t>(kJoints));
+  EXPECT_EQ(start.pose[0], (Vec3{14, 114, 214}));
+  EXPECT_EQ(start.pose[14], (Vec3{0, 100, 200}));
+  EXPECT_EQ(start.root, start.pose[FakeDescription().skeleton.root]);
+}
+
+TEST(ValidateRequestTest, ReadsAPartnerDirectionInTheLeadersFrame) {
+  v1::SynthesizeRequest request = SampleRequest();
+  request.mutable_leader()->set_up_axis(v1::UP_AXIS_Z_UP);
+  SetDirection(request, 0, 3e-20F, 1e-20F);
+  absl::StatusOr<ValidatedRequest> validated = Validate(request);
+  ASSERT_THAT(validated, IsOk());
+  EXPECT_LT(Distance(*validated->clip.partner_direction, {0, 0, -1}), 1e-6F);
+
+  request.mutable_leader()->set_unit(v1::LENGTH_UNIT_SBU_NORMALISED);
+  request.mutable_leader()->set_up_axis(v1::UP_AXIS_Y_DOWN);
+  SetDirection(request, 3e38F, 1, 0);
+  validated = Validate(request);
+  ASSERT_THAT(validated, IsOk());
+  EXPECT_LT(Distance(*validated->clip.partner_direction, {-1, 0, 0}), 1e-6F);
+}
+
+TEST(ValidateRequestTest, ReadsLabelsInTheModelsClassOrder) {
+  v1::SynthesizeRequest request = SampleRequest();
+  AddWeight(*request.mutable_label_vector(), "punch", -0.5F);
+  const absl::StatusOr<ValidatedRequest> validated = Validate(request);
+  ASSERT_THAT(validated, IsOk());
+  std::vector<float> weights(6);
+  validated->clip.labels.At(20, weights.data());
+  EXPECT_EQ(weights, (std::vector<float>{1, 0, 0, 0, 0, -0.5F}));
+}
+
+TEST(ValidateRequestTest, ReadsKeyframes) {
+  v1::SynthesizeRequest request = SampleRequest();
+  AddKeyframe(request, 10);
+  AddKeyframe(request, 20);
+  request.mutable_label_keyframes(1)->mutable_label_vector()->mutable_weights(0)->set_weight(1.5F);
+  const absl::StatusOr<ValidatedRequest> validated = Validate(request);
+  ASSERT_THAT(validated, IsOk());
+  std::vector<float> weights(6);
+  validated->clip.labels.At(15, weights.data());
+  EXPECT_FLOAT_EQ(weights[3], 1.0F);
+}
+
+TEST(ValidateRequestTest, PicksReplyJoints) {
+  v1::SynthesizeRequest request = SampleRequest();
+  request.add_reply_joint_names("torso");
+  request.add_reply_joint_names("head");
+  const absl::StatusOr<ValidatedRequest> validated = Validate(request);
+  ASSERT_THAT(validated, IsOk());
+  EXPECT_THAT(validated->reply.joint_names, ElementsAre("torso", "head"));
+  EXPECT_THAT(validated->reply.joints, ElementsAre(2, 0));
+}
+
+TEST(ValidateRequestTest, AcceptsALeaderWhoseJointsCoincide) {
+  v1::SynthesizeRequest request = SampleRequest();
+  for (float& value : *request.mutable_leader()->mutable_positions()) value = 0;
+  EXPECT_THAT(Validate(request), IsOk());
+}
+
+}  // namespace
+}  // namespace duet
