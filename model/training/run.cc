@@ -1,5 +1,7 @@
 #include "model/training/run.h"
 
+#include <malloc.h>
+
 #include <cmath>
 
 #include "absl/strings/str_cat.h"
@@ -49,7 +51,13 @@ void Show(const RunPlan& plan, const EpochReport& report, bool terminal, std::os
 
 }  // namespace
 
-void SetTrainingThreads(int threads) { torch::set_num_threads(threads); }
+void SetTrainingThreads(int threads) {
+  torch::set_num_threads(threads);
+  // Every step frees what the next takes again: keep it, rather than hand pages back and fault them
+  // in anew.
+  mallopt(M_MMAP_THRESHOLD, 1 << 30);
+  mallopt(M_TRIM_THRESHOLD, 1 << 30);
+}
 
 fs::path CheckpointFolder(const RunPlan& plan) {
   return plan.folder / "checkpoint" / plan.model_name / absl::StrCat(plan.model_version);

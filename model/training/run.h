@@ -31,7 +31,7 @@ struct RunPlan {
 absl::Status Run(const RunPlan& plan, const Dataset& dataset, bool terminal,
                  std::ostream* progress);
 
-// LibTorch's threads for the whole process. Results repeat bit for bit with one.
+// Prepares the whole process for training: LibTorch's threads, and memory kept between steps. Results repeat bit for bit with one.
 void SetTrainingThreads(int threads);
 
 // Where a finished run's checkpoint is.

@@ -1,0 +1,6 @@
+#include "model/checkpoints/embedded.h"
+
+#include <cstddef>
+
+#define DUET_BYTES(symbol) {symbol, static_cast<std::size_t>(symbol##_end - symbol)}
+#include "model/checkpoints/embedded.inc"

@@ -1,0 +1,20 @@
+#ifndef DUET_MODEL_CHECKPOINTS_EMBEDDED_H_
+#define DUET_MODEL_CHECKPOINTS_EMBEDDED_H_
+
+#include <string_view>
+#include <vector>
+
+namespace duet {
+
+// A checkpoint linked into the program: what ReadCheckpoint would read from its folder.
+struct EmbeddedCheckpoint {
+  std::string_view manifest;  // manifest.json
+  std::string_view weights;   // weights.safetensors
+};
+
+// Every checkpoint of model/checkpoints, the default model first.
+std::vector<EmbeddedCheckpoint> EmbeddedCheckpoints();
+
+}  // namespace duet
+
+#endif  // DUET_MODEL_CHECKPOINTS_EMBEDDED_H_
