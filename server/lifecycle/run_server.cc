@@ -85,8 +85,9 @@ int RunServer(int argc, const char* const* argv, const ModelSource& source, Stop
     std::cout << *command_line->print;
     return kExitStopped;
   }
-  absl::StatusOr<ServerOptions> options = command_line.status();
-  if (command_line.ok()) options = ToOptions(command_line->config, AvailableCores());
+  const absl::StatusOr<ServerOptions> options =
+      command_line.ok() ? ToOptions(command_line->config, AvailableCores())
+                        : absl::StatusOr<ServerOptions>(command_line.status());
   if (!options.ok()) {
     std::cerr << "duet-server: " << options.status().message() << "\n";
     return kExitUsage;
