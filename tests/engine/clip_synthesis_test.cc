@@ -141,6 +141,23 @@ TEST(ClipSynthesis, MovesSmoothlyThroughWindowsThatDisagree) {
   }
 }
 
+TEST(ClipSynthesis, AHigherRateIsASplineThroughTheBlendedFrames) {
+  // What was handed out early must fit what the cross-fade made of the frames behind it.
+  FakeSynthesizer fake;
+  int window = 0;
+  fake.on_batch = [&](absl::Span<const SynthesisWindow* const>) { ++window; };
+  fake.answer = [&](Vec3 leader, absl::Span<const float>) {
+    return leader + Vec3{static_cast<float>(window % 3), 0, 0};
+  };
+  const std::vector<Vec3> slow = RunAll(fake, Request(151, 15)).follower;
+  window = 0;
+  const std::vector<Vec3> fast = RunAll(fake, Request(601, 60)).follower;
+  std::vector<Vec3> wanted(fast.size());
+  for (int t = 0; t < 601; ++t)
+    SampleCubic(slow, kJoints, t / 4.0, &wanted[static_cast<std::size_t>(t) * kJoints]);
+  ExpectNear(fast, wanted, 1e-5f);
+}
+
 TEST(ClipSynthesis, HandsOutFramesAfterTheFirstWindow) {
   const FakeSynthesizer fake;
   const Outcome run = RunAll(fake, Request(600, 30));

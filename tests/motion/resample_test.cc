@@ -94,6 +94,7 @@ TEST(ResampledFrameCount, CoversTheWholeDuration) {
   EXPECT_EQ(ResampledFrameCount(32, 30, 15), 17);  // the end lies between two frames
   EXPECT_EQ(ResampledFrameCount(16, 15, 30), 31);
   EXPECT_EQ(ResampledFrameCount(2, 240, 15), 2);  // never fewer than two
+  EXPECT_EQ(ResampledFrameCount(2, 1e9, 15), 2);
   EXPECT_EQ(ResampledFrameCount(2, 1, 240), 241);
   EXPECT_EQ(ResampledFrameCount(144000, 240, 15), 9001);
 }
