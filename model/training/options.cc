@@ -81,6 +81,7 @@ void Read(ObjectReader* reader, TrainingOptions::Augmentation* out) {
   out->time_warp = reader->Number("time_warp", 0, 2);
   out->root_distance = reader->Number("root_distance", 0, 10);
   out->yaw = reader->Number("yaw", 0, 4);
+  out->leader_yaw = reader->Number("leader_yaw", 0, 4);
   out->noise = reader->Number("noise", 0, 10);
   out->crop = Probability(reader, "crop");
 }
@@ -200,6 +201,7 @@ std::map<std::string, std::string> Describe(const TrainingOptions& o) {
           {"augmentation.time_warp", Text(o.augmentation.time_warp)},
           {"augmentation.root_distance", Text(o.augmentation.root_distance)},
           {"augmentation.yaw", Text(o.augmentation.yaw)},
+          {"augmentation.leader_yaw", Text(o.augmentation.leader_yaw)},
           {"augmentation.noise", Text(o.augmentation.noise)},
           {"augmentation.crop", Text(o.augmentation.crop)},
           {"start.root", Text(o.start.root)},

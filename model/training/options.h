@@ -59,7 +59,8 @@ struct TrainingOptions {
     double body_scale = 0;      // +- share, each person alone
     double time_warp = 0;       // +- log of the speed
     double root_distance = 0;   // metres, standard deviation
-    double yaw = 0;             // radians, standard deviation
+    double yaw = 0;             // radians, standard deviation, of both people
+    double leader_yaw = 0;      // radians, standard deviation, of the leader about its own root
     double noise = 0;           // metres, standard deviation, of the leader's joints
     double crop = 0;            // probability of a shorter piece
   } augmentation;
