@@ -46,6 +46,9 @@ struct SynthesisRequest {
   std::vector<ClassWeight> weights;
   std::vector<WeightKeyframe> keyframes;
   std::optional<FollowerStart> follower_start;
+  // Horizontal direction from the leader to where the follower should be; y does not count. Absent:
+  // towards follower_start, or else where the leader's hips face in its first frame.
+  std::optional<Vec3> partner_direction;
   // Bulk work yields to interactive work, and waits its turn when the server is full.
   Priority priority = Priority::kInteractive;
   // Frames in one chunk of the reply. Absent: the server chooses.

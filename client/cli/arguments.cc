@@ -128,6 +128,13 @@ void AddReactionFlags(CLI::App* app, SynthesizeArguments* arguments) {
       "Which person of a file with two (default: not the leader where it is the leader's file, "
       "else left)")
       ->group(kGroup);
+  AddParsed<Vec3>(
+      app, "--partner-direction", "X,Y,Z", ParseDirection,
+      [arguments](Vec3 direction) { arguments->partner_direction = direction; },
+      "Where the follower should be, as a horizontal direction from the leader (default: towards "
+      "--follower-start, else where the leader's hips face)")
+      ->take_last()
+      ->group(kGroup);
   AddChoice<Priority>(
       app, "--priority", kPriorities,
       [arguments](Priority priority) { arguments->priority = priority; },

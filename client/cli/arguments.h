@@ -9,6 +9,7 @@
 
 #include "client/request.h"
 #include "model/formats/motion_file.h"
+#include "model/motion/vec3.h"
 
 namespace duet::client {
 
@@ -49,6 +50,7 @@ struct SynthesizeArguments {
   std::vector<WeightKeyframe> keyframes;
   std::string follower_start;  // empty, "X,Y,Z" or a motion file
   std::optional<Side> follower_start_side;
+  std::optional<Vec3> partner_direction;
   Priority priority = Priority::kInteractive;
   std::optional<int> chunk_frames;
   std::string request_id;

@@ -107,6 +107,7 @@ absl::StatusOr<SynthesisRequest> BuildRequest(const SynthesizeArguments& argumen
   request.model = arguments.model;
   request.weights = arguments.weights;
   request.keyframes = arguments.keyframes;
+  request.partner_direction = arguments.partner_direction;
   request.priority = arguments.priority;
   request.chunk_frames = arguments.chunk_frames;
   request.request_id = arguments.request_id;

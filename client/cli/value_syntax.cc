@@ -77,4 +77,11 @@ std::optional<Vec3> ParsePoint(absl::string_view text) {
   return point;
 }
 
+absl::StatusOr<Vec3> ParseDirection(absl::string_view text) {
+  if (const std::optional<Vec3> direction = ParsePoint(text); direction.has_value()) {
+    return *direction;
+  }
+  return absl::InvalidArgumentError(absl::StrCat("\"", text, "\", wanted X,Y,Z such as 1,0,0"));
+}
+
 }  // namespace duet::client

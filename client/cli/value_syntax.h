@@ -30,6 +30,9 @@ absl::StatusOr<std::pair<std::string, std::string>> ParseJointPair(absl::string_
 // "0.5,1.1,-2" in metres; nothing when the text is no list of three numbers (but, say, a file).
 std::optional<Vec3> ParsePoint(absl::string_view text);
 
+// "1,0,0": a direction of any length
+absl::StatusOr<Vec3> ParseDirection(absl::string_view text);
+
 }  // namespace duet::client
 
 #endif  // DUET_CLIENT_CLI_VALUE_SYNTAX_H_

@@ -118,6 +118,12 @@ absl::StatusOr<v1::SynthesizeRequest> ToProto(const SynthesisRequest& request) {
   if (request.follower_start.has_value()) {
     Fill(*request.follower_start, out.mutable_follower_start());
   }
+  if (request.partner_direction.has_value()) {
+    v1::Direction* direction = out.mutable_partner_direction();
+    direction->set_x(request.partner_direction->x);
+    direction->set_y(request.partner_direction->y);
+    direction->set_z(request.partner_direction->z);
+  }
   out.set_priority(ToProto(request.priority));
   if (request.chunk_frames.has_value()) {
     if (*request.chunk_frames < 1) {

@@ -167,7 +167,8 @@ TEST_F(ProgramTest, SendsWhatTheFlagsSay) {
       });
   ASSERT_EQ(Synthesize("pair.html", {"--label", "hug=-0.5", "--model", "sbu:stable", "--priority",
                                      "bulk", "--follower-start", "1,1.1,-2", "--chunk-frames", "8",
-                                     "--request-id", "job-7", "--frame-rate", "30"}),
+                                     "--partner-direction", "1,0,-1", "--request-id", "job-7",
+                                     "--frame-rate", "30"}),
             0)
       << err_.str();
   ASSERT_EQ(sent.weights.size(), 2u);
@@ -177,6 +178,7 @@ TEST_F(ProgramTest, SendsWhatTheFlagsSay) {
   EXPECT_EQ(sent.priority, Priority::kBulk);
   ASSERT_TRUE(sent.follower_start.has_value());
   EXPECT_EQ(std::get<Vec3>(*sent.follower_start), (Vec3{1, 1.1f, -2}));
+  EXPECT_EQ(sent.partner_direction, (Vec3{1, 0, -1}));
   EXPECT_EQ(sent.chunk_frames, 8);
   EXPECT_EQ(sent.request_id, "job-7");
   EXPECT_EQ(sent.leader.frame_rate_hz, 30);

@@ -87,5 +87,10 @@ TEST(ParsePointTest, ReadsThreeNumbersAndNothingElse) {
   }
 }
 
+TEST(ParseDirectionTest, SaysWhatWasWanted) {
+  EXPECT_EQ(*ParseDirection("0,0,-3"), (Vec3{0, 0, -3}));
+  EXPECT_THAT(ParseDirection("north").status().message(), ::testing::HasSubstr("wanted X,Y,Z"));
+}
+
 }  // namespace
 }  // namespace duet::client
