@@ -2,5 +2,6 @@
 
 #include <cstddef>
 
-#define DUET_BYTES(symbol) {symbol, static_cast<std::size_t>(symbol##_end - symbol)}
+#define DUET_BYTES(symbol) \
+  { symbol, static_cast<std::size_t>(symbol##_end - symbol) }
 #include "model/checkpoints/embedded.inc"

@@ -95,7 +95,8 @@ absl::StatusOr<std::vector<std::unique_ptr<Synthesizer>>> LoadEmbeddedSynthesize
 
 void SetTorchThreads(int threads) {
   torch::set_num_threads(threads);
-  if (threads == 1) torch::set_num_interop_threads(1);
+  // LibTorch lets this one be set only once.
+  if (torch::get_num_interop_threads() != 1) torch::set_num_interop_threads(1);
 }
 
 }  // namespace duet

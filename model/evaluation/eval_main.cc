@@ -51,8 +51,7 @@ absl::StatusOr<Folds> RunFolds(const duet::Dataset& dataset,
     if (!split.ok()) return split.status();
     absl::StatusOr<std::unique_ptr<duet::Method>> method = make(subject);
     if (!method.ok()) return method.status();
-    absl::StatusOr<duet::FoldResult> fold =
-        duet::RunFold(dataset, *split, subject, method->get());
+    absl::StatusOr<duet::FoldResult> fold = duet::RunFold(dataset, *split, subject, method->get());
     if (!fold.ok()) return fold.status();
     folds.push_back(*std::move(fold));
   }
@@ -105,9 +104,9 @@ absl::Status AddModel(const duet::Dataset& dataset, const std::vector<std::strin
       {name + "+root", duet::StartGiven::kRoot},
       {name + "+pose", duet::StartGiven::kPose}};
   for (const auto& [row, start] : rows) {
-    const auto make = [&, &row = row,
-                       start = start](const std::string& subject)
-        -> absl::StatusOr<std::unique_ptr<duet::Method>> {
+    const auto make =
+        [&, &row = row, start = start](
+            const std::string& subject) -> absl::StatusOr<std::unique_ptr<duet::Method>> {
       absl::StatusOr<std::shared_ptr<const duet::Synthesizer>> synthesizer = load(subject);
       if (!synthesizer.ok()) return synthesizer.status();
       return std::make_unique<duet::SynthesizerMethod>(row, *synthesizer, start);
@@ -128,9 +127,9 @@ absl::StatusOr<std::shared_ptr<const duet::Synthesizer>> Load(const Arguments& a
     if (!all.ok()) return all.status();
     return std::shared_ptr<const duet::Synthesizer>(std::move(all->front()));
   }
-  absl::StatusOr<fs::path> folder =
-      arguments.checkpoint.empty() ? FindCheckpoint(fs::path(arguments.runs) / subject)
-                                   : absl::StatusOr<fs::path>(arguments.checkpoint);
+  absl::StatusOr<fs::path> folder = arguments.checkpoint.empty()
+                                        ? FindCheckpoint(fs::path(arguments.runs) / subject)
+                                        : absl::StatusOr<fs::path>(arguments.checkpoint);
   if (!folder.ok()) return folder.status();
   absl::StatusOr<std::unique_ptr<duet::Synthesizer>> one = duet::LoadTorchSynthesizer(*folder);
   if (!one.ok()) return one.status();
@@ -160,7 +159,8 @@ absl::Status Evaluate(const Arguments& arguments) {
   std::cout << dataset->name << ", leave one subject out over " << subjects.size()
             << " subjects; afd in SBU's raw unit (paper Eq. 6), afd_squared its square\n";
   if (arguments.embedded || !arguments.checkpoint.empty()) {
-    std::cout << "NOTE: one checkpoint for every fold: it may have been trained on what is tested\n";
+    std::cout
+        << "NOTE: one checkpoint for every fold: it may have been trained on what is tested\n";
   }
   report.Print(std::cout);
   return absl::OkStatus();
@@ -183,11 +183,14 @@ int main(int argc, char** argv) {
   source->add_option("--checkpoint", arguments.checkpoint, "one checkpoint folder for every fold");
   source->add_flag("--embedded", arguments.embedded, "the checkpoint inside this program");
   source->require_option(0, 1);
-  app.add_option("--baselines", arguments.baselines, "rows beside it")->delimiter(',')
+  app.add_option("--baselines", arguments.baselines, "rows beside it")
+      ->delimiter(',')
       ->capture_default_str();
   app.add_option("--subjects", arguments.subjects, "folds; default: every subject")->delimiter(',');
-  app.add_option("--metrics", arguments.metrics, "tables to print")->delimiter(',')
-      ->check(CLI::IsMember(MetricNames()))->capture_default_str();
+  app.add_option("--metrics", arguments.metrics, "tables to print")
+      ->delimiter(',')
+      ->check(CLI::IsMember(MetricNames()))
+      ->capture_default_str();
   CLI11_PARSE(app, argc, argv);
   duet::SetTorchThreads(1);
   const absl::Status status = Evaluate(arguments);

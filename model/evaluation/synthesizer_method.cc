@@ -51,9 +51,9 @@ SynthesizerMethod::SynthesizerMethod(std::string name,
 absl::Status SynthesizerMethod::Train(const Dataset& dataset, const std::vector<int>&) {
   const ModelDescription& model = synthesizer_->description();
   if (model.classes != dataset.classes) {
-    return absl::FailedPreconditionError(absl::StrCat(
-        "model ", model.name, ": its classes are ", absl::StrJoin(model.classes, ", "),
-        ", the data's ", absl::StrJoin(dataset.classes, ", ")));
+    return absl::FailedPreconditionError(
+        absl::StrCat("model ", model.name, ": its classes are ", absl::StrJoin(model.classes, ", "),
+                     ", the data's ", absl::StrJoin(dataset.classes, ", ")));
   }
   if (model.skeleton.joint_names != dataset.skeleton.joint_names) {
     return absl::FailedPreconditionError(

@@ -7,7 +7,8 @@
 
 // Compiles a function once for each level of the x86-64 instruction set; the loader picks.
 #if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define DUET_CPU_CLONES __attribute__((target_clones("arch=skylake-avx512", "arch=haswell", "default")))
+#define DUET_CPU_CLONES \
+  __attribute__((target_clones("arch=skylake-avx512", "arch=haswell", "default")))
 #else
 #define DUET_CPU_CLONES
 #endif

@@ -27,11 +27,11 @@ struct Inputs {
 // What the forward pass leaves behind, one block a step.
 template <typename S>
 struct Trace {
-  S *tanh_values;  // [T, G, N, T, A], or one row's [T, A] when no gradient is wanted
-  S *weights;      // [T, G, N, T]
-  S *gates;        // [T, G, N, 4 H] activations
-  S *hidden;       // [T, G, N, H]
-  S *cell;         // [T, G, N, H]
+  S* tanh_values;  // [T, G, N, T, A], or one row's [T, A] when no gradient is wanted
+  S* weights;      // [T, G, N, T]
+  S* gates;        // [T, G, N, 4 H] activations
+  S* hidden;       // [T, G, N, H]
+  S* cell;         // [T, G, N, H]
 };
 
 template <typename S>
@@ -71,12 +71,12 @@ void Forward(const Sizes& z, const Inputs<S>& in, bool keep_tanh, const Trace<S>
 template <typename S>
 struct Gradients {
   const S* d_out;  // [T, G, N, H] in
-  S *d_encoded;    // [G, N, T, A] accumulated
-  S *d_score;      // [G, A] accumulated
-  S *d_hidden;     // [G, N, H] running, in the end of the initial state
-  S *d_cell;       // [G, N, H] likewise
-  S *d_gates;      // [T, G, N, 4 H]
-  S *d_query;      // [T, G, N, A]
+  S* d_encoded;    // [G, N, T, A] accumulated
+  S* d_score;      // [G, A] accumulated
+  S* d_hidden;     // [G, N, H] running, in the end of the initial state
+  S* d_cell;       // [G, N, H] likewise
+  S* d_gates;      // [T, G, N, 4 H]
+  S* d_query;      // [T, G, N, A]
 };
 
 template <typename S>
@@ -113,8 +113,8 @@ void Backward(const Sizes& z, const Inputs<S>& in, const Trace<S>& trace, const 
 
 template <typename S>
 Inputs<S> Raw(const torch::autograd::variable_list& tensors) {
-  return {tensors[0].data_ptr<S>(), tensors[1].data_ptr<S>(), tensors[2].data_ptr<S>(),
-          tensors[3].data_ptr<S>(), tensors[4].data_ptr<S>(), tensors[5].data_ptr<S>(),
+  return {tensors[0].data_ptr<S>(), tensors[1].data_ptr<S>(),      tensors[2].data_ptr<S>(),
+          tensors[3].data_ptr<S>(), tensors[4].data_ptr<S>(),      tensors[5].data_ptr<S>(),
           tensors[6].data_ptr<S>(), tensors[7].data_ptr<int64_t>()};
 }
 
@@ -182,11 +182,11 @@ class DecoderFunction : public torch::autograd::Function<DecoderFunction> {
     at::Tensor d_query =
         at::empty({sizes.frames, sizes.groups, sizes.batch, sizes.attention}, encoded.options());
     AT_DISPATCH_FLOATING_TYPES(encoded.scalar_type(), "AttentiveDecoderBackward", [&] {
-      Backward<scalar_t>(sizes, Raw<scalar_t>(saved), Raw<scalar_t>(trace),
-                         {d_out.data_ptr<scalar_t>(), d_encoded.data_ptr<scalar_t>(),
-                          d_score.data_ptr<scalar_t>(), d_hidden.data_ptr<scalar_t>(),
-                          d_cell.data_ptr<scalar_t>(), d_gates.data_ptr<scalar_t>(),
-                          d_query.data_ptr<scalar_t>()});
+      Backward<scalar_t>(
+          sizes, Raw<scalar_t>(saved), Raw<scalar_t>(trace),
+          {d_out.data_ptr<scalar_t>(), d_encoded.data_ptr<scalar_t>(), d_score.data_ptr<scalar_t>(),
+           d_hidden.data_ptr<scalar_t>(), d_cell.data_ptr<scalar_t>(), d_gates.data_ptr<scalar_t>(),
+           d_query.data_ptr<scalar_t>()});
     });
     // What only accumulates over the steps is one product over all of them.
     const at::Tensor before = ByGroup(at::cat({hidden0.unsqueeze(0), hidden.slice(0, 0, -1)}, 0));
@@ -197,7 +197,7 @@ class DecoderFunction : public torch::autograd::Function<DecoderFunction> {
         at::bmm(weights.reshape({steps, rows, sizes.frames}).permute({1, 2, 0}),
                 d_gates.reshape({steps, rows, 4 * sizes.hidden}).transpose(0, 1))
             .reshape(values.sizes());
-    return {d_encoded, d_values, d_weight_hh, d_state, d_score,
+    return {d_encoded, d_values, d_weight_hh,  d_state,     d_score,
             d_hidden,  d_cell,   at::Tensor(), at::Tensor()};
   }
 };

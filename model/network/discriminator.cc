@@ -38,9 +38,10 @@ torch::Tensor DiscriminatorImpl::Run(const Layer& layer, const torch::Tensor& in
   const torch::Tensor zero = torch::zeros({2, batch, options_.hidden}, input.options());
   const torch::Tensor hidden = LstmSequence(gates, layer.weight_hh, zero, zero).first;
   const auto directions = hidden.unbind(1);
-  const torch::Tensor backward =
-      directions[1].reshape({frames * batch, -1}).index_select(0, reversed).reshape(
-          {frames, batch, -1});
+  const torch::Tensor backward = directions[1]
+                                     .reshape({frames * batch, -1})
+                                     .index_select(0, reversed)
+                                     .reshape({frames, batch, -1});
   return torch::cat({directions[0], backward}, 2) *
          FrameMask(lengths, frames).unsqueeze(2).to(input.scalar_type());
 }
@@ -57,8 +58,8 @@ torch::Tensor DiscriminatorImpl::RunBoth(const torch::Tensor& motion,
 torch::Tensor DiscriminatorImpl::forward(const torch::Tensor& motion,
                                          const torch::Tensor& lengths) {
   const torch::Tensor hidden = RunBoth(motion, lengths).transpose(0, 1);  // [N, T, 2 H]
-  const torch::Tensor padded = torch::constant_pad_nd(
-      hidden, {0, 0, 0, options_.window_frames - hidden.size(1)});
+  const torch::Tensor padded =
+      torch::constant_pad_nd(hidden, {0, 0, 0, options_.window_frames - hidden.size(1)});
   return output_(padded.flatten(1));
 }
 

@@ -8,10 +8,10 @@
 namespace duet::network {
 
 struct DiscriminatorOptions {
-  int64_t input = 45;        // values a frame
+  int64_t input = 45;  // values a frame
   int64_t window_frames = 46;
-  int64_t hidden = 200;      // LSTM units of each direction
-  int64_t outputs = 7;       // interaction classes, and one more for "synthesised"
+  int64_t hidden = 200;  // LSTM units of each direction
+  int64_t outputs = 7;   // interaction classes, and one more for "synthesised"
 };
 
 // The class-aware discriminator: two bidirectional LSTM layers over the follower's motion, every
@@ -19,8 +19,8 @@ struct DiscriminatorOptions {
 // is also the classifier of the paper's Table 6 and of the FID's features.
 //
 // Source:  paper section 3.3 and MSHL22 (without the binary one).
-// Shapes:  motion [N, T, input], T <= window_frames; lengths [N] int64; returns logits [N, outputs].
-// Padding: masked before the fully connected layer.
+// Shapes:  motion [N, T, input], T <= window_frames; lengths [N] int64; returns logits [N,
+// outputs]. Padding: masked before the fully connected layer.
 class DiscriminatorImpl : public torch::nn::Module {
  public:
   explicit DiscriminatorImpl(const DiscriminatorOptions& options);

@@ -107,13 +107,16 @@ GeneratorImpl::Encoded GeneratorImpl::EncodeAll(const GeneratorInput& input,
   }
   const torch::Tensor zero = torch::zeros({2 * slices, batch, encoder_hidden_}, gates[0].options());
   // Groups: every slice forward, then every slice backward.
-  auto [hidden, cell] = LstmSequence(torch::stack(gates, 2).reshape({frames, 2 * slices, batch, -1}),
-                                     torch::stack(weights, 1).flatten(0, 1), zero, zero);
+  auto [hidden, cell] =
+      LstmSequence(torch::stack(gates, 2).reshape({frames, 2 * slices, batch, -1}),
+                   torch::stack(weights, 1).flatten(0, 1), zero, zero);
   const auto rows = [&](const torch::Tensor& states) {  // [T, G, N, E] -> [T N, G E]
     return states.transpose(1, 2).reshape({frames * batch, 2 * units});
   };
   const auto final_states = [&](const torch::Tensor& states) {  // -> [2, N, S E]
-    return rows(states).index_select(0, LastRows(input.lengths)).reshape({batch, 2, units})
+    return rows(states)
+        .index_select(0, LastRows(input.lengths))
+        .reshape({batch, 2, units})
         .transpose(0, 1);
   };
   const auto directions = rows(hidden).chunk(2, 1);
@@ -134,16 +137,15 @@ torch::Tensor GeneratorImpl::Stack(const std::string& parameter) const {
 torch::Tensor GeneratorImpl::Decode(const Encoded& encoded, const GeneratorInput& input,
                                     const torch::Tensor& reversed) const {
   const int64_t frames = encoded.frames.size(0), batch = encoded.frames.size(1);
-  const torch::Tensor by_clip =
-      torch::dropout(encoded.frames, encoded_dropout_, is_training()).transpose(0, 1).reshape(
-          {batch * frames, -1});
+  const torch::Tensor by_clip = torch::dropout(encoded.frames, encoded_dropout_, is_training())
+                                    .transpose(0, 1)
+                                    .reshape({batch * frames, -1});
   // [2, N T, X] = h_j times each direction's matrix
   const auto project = [&](const torch::Tensor& weights) {
     return torch::matmul(by_clip, weights.transpose(1, 2));
   };
   DecoderInputs decoder;
-  decoder.encoded =
-      project(Stack("decoder.%.attention_encoded")).reshape({2, batch, frames, -1});
+  decoder.encoded = project(Stack("decoder.%.attention_encoded")).reshape({2, batch, frames, -1});
   decoder.values = (project(Stack("decoder.%.weight_ih")) + Stack("decoder.%.bias").unsqueeze(1))
                        .reshape({2, batch, frames, -1});
   decoder.weight_hh = Stack("decoder.%.weight_hh");
@@ -157,7 +159,8 @@ torch::Tensor GeneratorImpl::Decode(const Encoded& encoded, const GeneratorInput
       directions[1].reshape({frames * batch, -1}).index_select(0, reversed);
   const torch::Tensor states =
       torch::cat({directions[0].reshape({frames * batch, -1}), backward}, 1);
-  return torch::addmm(Parameter("output.bias"), torch::dropout(states, encoded_dropout_, is_training()),
+  return torch::addmm(Parameter("output.bias"),
+                      torch::dropout(states, encoded_dropout_, is_training()),
                       Parameter("output.weight").t())
       .reshape({frames, batch, -1})
       .transpose(0, 1);
@@ -166,8 +169,8 @@ torch::Tensor GeneratorImpl::Decode(const Encoded& encoded, const GeneratorInput
 // The pose that the output layer adds to, [N, T, 3 J]: root and pose relative to it, each from the
 // follower's start where that gives it, else from the label vector's mean pose.
 torch::Tensor GeneratorImpl::Base(const GeneratorInput& input) const {
-  const torch::Tensor mean = torch::nn::functional::linear(input.labels, Parameter("base.weight"),
-                                                           Parameter("base.bias"));
+  const torch::Tensor mean =
+      torch::nn::functional::linear(input.labels, Parameter("base.weight"), Parameter("base.bias"));
   if (!has_start_) return mean;
   const int64_t joints = mean.size(2) / 3, pose_flag = input.start.size(1) - 1;
   const torch::Tensor start = input.start.unsqueeze(1);  // [N, 1, root, pose, flags]

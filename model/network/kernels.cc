@@ -133,8 +133,7 @@ DUET_CPU_CLONES void LstmCellBackward(int rows, int hidden_size, const float* ga
   CellBackward(rows, hidden_size, gates, cell_before, cell, d_hidden, d_cell, d_gates);
 }
 void LstmCellBackward(int rows, int hidden_size, const double* gates, const double* cell_before,
-                      const double* cell, const double* d_hidden, double* d_cell,
-                      double* d_gates) {
+                      const double* cell, const double* d_hidden, double* d_cell, double* d_gates) {
   CellBackward(rows, hidden_size, gates, cell_before, cell, d_hidden, d_cell, d_gates);
 }
 
@@ -144,8 +143,7 @@ DUET_CPU_CLONES void AttentionForward(int frames, int valid, int attention, cons
   Attend(frames, valid, attention, encoded, query, score, tanh_out, weights);
 }
 void AttentionForward(int frames, int valid, int attention, const double* encoded,
-                      const double* query, const double* score, double* tanh_out,
-                      double* weights) {
+                      const double* query, const double* score, double* tanh_out, double* weights) {
   Attend(frames, valid, attention, encoded, query, score, tanh_out, weights);
 }
 

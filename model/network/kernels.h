@@ -7,7 +7,8 @@
 namespace duet::network {
 
 // One step of LSTM cells, gates in the order i, f, g, o.
-// Shapes: gates [rows, 4 H] (pre-activations in, activations out); cell_before, cell, hidden [rows, H].
+// Shapes: gates [rows, 4 H] (pre-activations in, activations out); cell_before, cell, hidden [rows,
+// H].
 void LstmCellForward(int rows, int hidden_size, float* gates, const float* cell_before, float* cell,
                      float* hidden);
 void LstmCellForward(int rows, int hidden_size, double* gates, const double* cell_before,
@@ -23,9 +24,10 @@ void LstmCellBackward(int rows, int hidden_size, const double* gates, const doub
 
 // Attention weights of one decoder row over the frames of its clip.
 //   tanh_j = tanh(encoded_j + query), weights = softmax_j(score . tanh_j), 0 from `valid` on.
-// Source: paper Eq. 2, 3. Shapes: encoded, tanh_out [frames, A]; query, score [A]; weights [frames].
-void AttentionForward(int frames, int valid, int attention, const float* encoded, const float* query,
-                      const float* score, float* tanh_out, float* weights);
+// Source: paper Eq. 2, 3. Shapes: encoded, tanh_out [frames, A]; query, score [A]; weights
+// [frames].
+void AttentionForward(int frames, int valid, int attention, const float* encoded,
+                      const float* query, const float* score, float* tanh_out, float* weights);
 void AttentionForward(int frames, int valid, int attention, const double* encoded,
                       const double* query, const double* score, double* tanh_out, double* weights);
 
@@ -39,7 +41,8 @@ void AttentionBackward(int valid, int attention, const double* tanh_values, cons
                        double* d_query, double* d_score);
 
 // c [m, n] = a [m, k] b + beta c, all row-major; b is [k, n], or [n, k] when transposed.
-void Gemm(bool transpose_b, int m, int n, int k, const float* a, const float* b, float beta, float* c);
+void Gemm(bool transpose_b, int m, int n, int k, const float* a, const float* b, float beta,
+          float* c);
 void Gemm(bool transpose_b, int m, int n, int k, const double* a, const double* b, double beta,
           double* c);
 

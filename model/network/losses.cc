@@ -70,7 +70,8 @@ torch::Tensor BoneLoss(const torch::Tensor& predicted, const torch::Tensor& real
   // Padding has bones of length 0: divide by 1 there instead.
   const torch::Tensor mask = Mask(real, lengths);
   const torch::Tensor wanted = BoneLengths(real, bones);
-  const torch::Tensor divisor = torch::where(mask.unsqueeze(2) > 0, wanted, torch::ones_like(wanted));
+  const torch::Tensor divisor =
+      torch::where(mask.unsqueeze(2) > 0, wanted, torch::ones_like(wanted));
   return FrameMean(((BoneLengths(predicted, bones) - wanted) / divisor).abs().sum(-1), mask);
 }
 

@@ -88,10 +88,10 @@ class LstmFunction : public torch::autograd::Function<LstmFunction> {
     const at::Tensor &gates = saved[0], &weight_hh = saved[1], &hidden0 = saved[2],
                      &cell0 = saved[3], &hidden = saved[4], &cell = saved[5];
     const Sizes sizes = SizesOf(gates);
-    const at::Tensor d_hidden_out = gradients[0].defined() ? gradients[0].contiguous()
-                                                           : at::zeros_like(hidden);
-    const at::Tensor d_cell_out = gradients[1].defined() ? gradients[1].contiguous()
-                                                         : at::zeros_like(cell);
+    const at::Tensor d_hidden_out =
+        gradients[0].defined() ? gradients[0].contiguous() : at::zeros_like(hidden);
+    const at::Tensor d_cell_out =
+        gradients[1].defined() ? gradients[1].contiguous() : at::zeros_like(cell);
     at::Tensor d_hidden = at::zeros_like(hidden0), d_cell = at::zeros_like(cell0);
     at::Tensor d_gates = at::empty_like(gates);
     AT_DISPATCH_FLOATING_TYPES(gates.scalar_type(), "LstmSequenceBackward", [&] {

@@ -111,9 +111,8 @@ int64_t EpochRandom::Below(int64_t end) {
 std::vector<int> MirroredJoints(const Skeleton& skeleton) {
   std::vector<int> mirrored;
   for (int joint = 0; joint < skeleton.joint_count(); ++joint) {
-    const std::string other =
-        absl::StrReplaceAll(skeleton.joint_names[static_cast<size_t>(joint)],
-                            {{"left", "right"}, {"right", "left"}});
+    const std::string other = absl::StrReplaceAll(skeleton.joint_names[static_cast<size_t>(joint)],
+                                                  {{"left", "right"}, {"right", "left"}});
     const int found = skeleton.Find(other);
     mirrored.push_back(found < 0 ? joint : found);
   }

@@ -15,7 +15,8 @@ double HalfCosine(double from, double to, double share) {
 }
 
 // Matrices decay, biases and other vectors do not.
-std::vector<torch::optim::OptimizerParamGroup> Groups(const std::vector<torch::Tensor>& parameters) {
+std::vector<torch::optim::OptimizerParamGroup> Groups(
+    const std::vector<torch::Tensor>& parameters) {
   std::vector<torch::Tensor> matrices, vectors;
   for (const torch::Tensor& parameter : parameters) {
     (parameter.dim() >= 2 ? matrices : vectors).push_back(parameter);
@@ -30,8 +31,8 @@ std::unique_ptr<torch::optim::Optimizer> Make(const TrainingOptions::Optimiser& 
                                               const std::vector<torch::Tensor>& parameters) {
   if (options.name == "rmsprop") {
     return std::make_unique<torch::optim::RMSprop>(
-        Groups(parameters), torch::optim::RMSpropOptions(options.learning_rate)
-                                .weight_decay(options.weight_decay));
+        Groups(parameters),
+        torch::optim::RMSpropOptions(options.learning_rate).weight_decay(options.weight_decay));
   }
   auto adam = std::make_unique<torch::optim::AdamW>(
       Groups(parameters),

@@ -23,7 +23,8 @@ std::string OneOf(ObjectReader* reader, const std::string& key,
                   const std::vector<std::string>& choices) {
   std::string value = reader->String(key, kMaxWord);
   if (reader->ok() && std::find(choices.begin(), choices.end(), value) == choices.end()) {
-    reader->Fail(key, absl::StrCat("\"", value, "\", wanted one of ", absl::StrJoin(choices, ", ")));
+    reader->Fail(key,
+                 absl::StrCat("\"", value, "\", wanted one of ", absl::StrJoin(choices, ", ")));
   }
   return value;
 }
@@ -214,8 +215,8 @@ absl::Status CheckAgainst(const TrainingOptions& options, const std::vector<std:
   for (const std::string& name : options.augmentation.mirrored_classes) {
     if (std::find(classes.begin(), classes.end(), name) == classes.end()) {
       return absl::InvalidArgumentError(
-          absl::StrCat("augmentation.mirrored_classes: \"", name, "\", wanted classes of the data: ",
-                       absl::StrJoin(classes, ", ")));
+          absl::StrCat("augmentation.mirrored_classes: \"", name,
+                       "\", wanted classes of the data: ", absl::StrJoin(classes, ", ")));
     }
   }
   return absl::OkStatus();

@@ -22,12 +22,12 @@ struct TrainingOptions {
   } dropout;
 
   struct Optimiser {
-    std::string name = "adam";          // "adam" (decoupled weight decay) or "rmsprop"
+    std::string name = "adam";  // "adam" (decoupled weight decay) or "rmsprop"
     double learning_rate = 2e-3;
     std::string schedule = "one_cycle";  // or "constant"
-    double weight_decay = 0;            // of matrices alone
-    double gradient_clip = 0;           // largest norm; 0: not clipped
-    double average_decay = 0;           // exponential average of the weights; 0: none
+    double weight_decay = 0;             // of matrices alone
+    double gradient_clip = 0;            // largest norm; 0: not clipped
+    double average_decay = 0;            // exponential average of the weights; 0: none
   } optimiser;
 
   int64_t epochs = 40;
@@ -54,15 +54,15 @@ struct TrainingOptions {
 
   struct Augmentation {
     std::vector<std::string> mirrored_classes;
-    double mirror = 0;          // probability, of the mirrored classes
-    double swap_roles = 0;      // probability, of symmetric classes
-    double body_scale = 0;      // +- share, each person alone
-    double time_warp = 0;       // +- log of the speed
-    double root_distance = 0;   // metres, standard deviation
-    double yaw = 0;             // radians, standard deviation, of both people
-    double leader_yaw = 0;      // radians, standard deviation, of the leader about its own root
-    double noise = 0;           // metres, standard deviation, of the leader's joints
-    double crop = 0;            // probability of a shorter piece
+    double mirror = 0;         // probability, of the mirrored classes
+    double swap_roles = 0;     // probability, of symmetric classes
+    double body_scale = 0;     // +- share, each person alone
+    double time_warp = 0;      // +- log of the speed
+    double root_distance = 0;  // metres, standard deviation
+    double yaw = 0;            // radians, standard deviation, of both people
+    double leader_yaw = 0;     // radians, standard deviation, of the leader about its own root
+    double noise = 0;          // metres, standard deviation, of the leader's joints
+    double crop = 0;           // probability of a shorter piece
   } augmentation;
 
   // What a clip's follower start tells, by probability; the rest has none.
@@ -72,8 +72,8 @@ struct TrainingOptions {
   } start;
 
   struct Validation {
-    double fraction = 0;    // of the training sequences, by class; 0: no validation
-    int64_t patience = 0;   // epochs without a better error before the run stops; 0: never stops
+    double fraction = 0;   // of the training sequences, by class; 0: no validation
+    int64_t patience = 0;  // epochs without a better error before the run stops; 0: never stops
   } validation;
 };
 
@@ -81,8 +81,8 @@ struct TrainingOptions {
 // INVALID_ARGUMENT names the field, what came and what was wanted.
 absl::StatusOr<TrainingOptions> ParseTrainingOptions(std::string_view json);
 
-// The same after replacing fields by dotted path: {"losses.bone", "0.01"}; values are JSON, or plain
-// words.
+// The same after replacing fields by dotted path: {"losses.bone", "0.01"}; values are JSON, or
+// plain words.
 absl::StatusOr<TrainingOptions> ParseTrainingOptions(
     std::string_view json, const std::vector<std::pair<std::string, std::string>>& replacements);
 

@@ -63,9 +63,10 @@ fs::path CheckpointFolder(const RunPlan& plan) {
   return plan.folder / "checkpoint" / plan.model_name / absl::StrCat(plan.model_version);
 }
 
-absl::Status Run(const RunPlan& plan, const Dataset& dataset, bool terminal,
-                 std::ostream* progress) {
-  if (absl::Status status = CheckAgainst(plan.options, dataset.classes); !status.ok()) return status;
+absl::Status RunTraining(const RunPlan& plan, const Dataset& dataset, bool terminal,
+                         std::ostream* progress) {
+  if (absl::Status status = CheckAgainst(plan.options, dataset.classes); !status.ok())
+    return status;
   if (fs::exists(CheckpointFolder(plan))) {
     *progress << plan.title << " is finished: " << CheckpointFolder(plan).string() << "\n";
     return absl::OkStatus();
@@ -77,7 +78,8 @@ absl::Status Run(const RunPlan& plan, const Dataset& dataset, bool terminal,
   std::vector<int> train = plan.train;
   std::vector<int> validation;
   if (plan.options.validation.fraction > 0) {
-    validation = TakeValidation(dataset, plan.options.validation.fraction, plan.options.seed, &train);
+    validation =
+        TakeValidation(dataset, plan.options.validation.fraction, plan.options.seed, &train);
   }
   Trainer trainer(plan.options, manifest, dataset, train, validation);
   const fs::path state = plan.folder / "state";
@@ -89,9 +91,9 @@ absl::Status Run(const RunPlan& plan, const Dataset& dataset, bool terminal,
   while (!trainer.Finished()) {
     report = trainer.RunEpoch();
     if (!std::isfinite(report.generator)) {
-      return absl::InternalError(absl::StrCat(
-          plan.title, ": the loss is no longer finite at epoch ", report.epoch,
-          "; a lower optimiser.learning_rate or a gradient_clip may help"));
+      return absl::InternalError(
+          absl::StrCat(plan.title, ": the loss is no longer finite at epoch ", report.epoch,
+                       "; a lower optimiser.learning_rate or a gradient_clip may help"));
     }
     if (status = trainer.SaveState(state); !status.ok()) return status;
     if (status = log.Append(report); !status.ok()) return status;

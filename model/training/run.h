@@ -21,17 +21,18 @@ struct RunPlan {
   std::string model_name;
   int model_version = 1;
   std::string description;
-  std::string title;                  // of the progress line
+  std::string title;  // of the progress line
   std::filesystem::path folder;
-  std::vector<int> train;             // sequences of the data set
+  std::vector<int> train;  // sequences of the data set
 };
 
 // Runs to the end, or goes on where a killed run left off; returns at once when the run has already
 // finished. Progress goes to `progress`: a line rewritten in place on a terminal.
-absl::Status Run(const RunPlan& plan, const Dataset& dataset, bool terminal,
-                 std::ostream* progress);
+absl::Status RunTraining(const RunPlan& plan, const Dataset& dataset, bool terminal,
+                         std::ostream* progress);
 
-// Prepares the whole process for training: LibTorch's threads, and memory kept between steps. Results repeat bit for bit with one.
+// Prepares the whole process for training: LibTorch's threads, and memory kept between steps.
+// Results repeat bit for bit with one.
 void SetTrainingThreads(int threads);
 
 // Where a finished run's checkpoint is.

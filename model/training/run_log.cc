@@ -56,8 +56,7 @@ std::string ProgressLine(const std::string& title, const EpochReport& report) {
   const int64_t left =
       std::llround(static_cast<double>(report.epochs - report.epoch) * report.seconds);
   const std::string validation =
-      std::isnan(report.validation_afd) ? ""
-                                        : absl::StrFormat("  val %.4f", report.validation_afd);
+      std::isnan(report.validation_afd) ? "" : absl::StrFormat("  val %.4f", report.validation_afd);
   return absl::StrFormat("%s [%s%s] epoch %d/%d  loss %.4f%s  %d:%02d left", title,
                          std::string(static_cast<size_t>(filled), '#'),
                          std::string(static_cast<size_t>(kBarWidth - filled), '.'), report.epoch,

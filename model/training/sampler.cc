@@ -90,8 +90,8 @@ TrainingBatch MakeBatch(const Manifest& manifest, const Dataset& dataset,
   batch.input = network::MakeInput(manifest, items);
   std::vector<const std::vector<Vec3>*> pointers;
   for (const std::vector<Vec3>& follower : followers) pointers.push_back(&follower);
-  batch.follower = network::PadPositions(pointers, dataset.skeleton.joint_count(),
-                                         batch.input.leader.size(1));
+  batch.follower =
+      network::PadPositions(pointers, dataset.skeleton.joint_count(), batch.input.leader.size(1));
   batch.classes = torch::tensor(classes);
   return batch;
 }

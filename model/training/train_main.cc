@@ -33,9 +33,8 @@ absl::StatusOr<std::string> ReadConfig(const std::string& config) {
   }
   std::ifstream in(config, std::ios::binary);
   if (!in) {
-    return absl::NotFoundError(
-        absl::StrCat("--config ", config, ": no such file, and no configuration of that name (",
-                     names, ")"));
+    return absl::NotFoundError(absl::StrCat(
+        "--config ", config, ": no such file, and no configuration of that name (", names, ")"));
   }
   return std::string(std::istreambuf_iterator<char>(in), {});
 }
@@ -94,7 +93,7 @@ absl::Status Train(const Arguments& arguments) {
   absl::StatusOr<std::vector<duet::RunPlan>> plans = Plans(arguments, *options, *dataset);
   if (!plans.ok()) return plans.status();
   for (const duet::RunPlan& plan : *plans) {
-    absl::Status status = duet::Run(plan, *dataset, isatty(STDOUT_FILENO) != 0, &std::cout);
+    absl::Status status = duet::RunTraining(plan, *dataset, isatty(STDOUT_FILENO) != 0, &std::cout);
     if (!status.ok()) return status;
     std::cout << "checkpoint: " << duet::CheckpointFolder(plan).string() << "\n";
   }

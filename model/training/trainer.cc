@@ -15,7 +15,9 @@ using network::Discriminator;
 using network::DiscriminatorOptions;
 using network::Generator;
 
-int64_t Steps(size_t count, int64_t batch) { return (static_cast<int64_t>(count) + batch - 1) / batch; }
+int64_t Steps(size_t count, int64_t batch) {
+  return (static_cast<int64_t>(count) + batch - 1) / batch;
+}
 
 Generator MakeGenerator(const TrainingOptions& options, const Manifest& manifest) {
   torch::manual_seed(options.seed);
@@ -193,14 +195,14 @@ EpochReport Trainer::RunEpoch() {
     ++step;
   }
   ++epoch_;
-  report.validation_afd = validation_.empty() ? std::numeric_limits<double>::quiet_NaN() : Validate();
+  report.validation_afd =
+      validation_.empty() ? std::numeric_limits<double>::quiet_NaN() : Validate();
   if (validation_.empty() || report.validation_afd < best_afd_) {
     best_afd_ = report.validation_afd;
     best_epoch_ = epoch_;
     CopyInto(average_, best_);
   }
-  report.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return report;
 }
 
@@ -212,8 +214,9 @@ double Trainer::Validate() {
   generator_->eval();
   double sum = 0;
   for (int index : validation_) {
-    const TrainingBatch one = MakeBatch(
-        manifest_, dataset_, {dataset_.sequences[static_cast<size_t>(index)]}, {StartKnowledge::kNone});
+    const TrainingBatch one =
+        MakeBatch(manifest_, dataset_, {dataset_.sequences[static_cast<size_t>(index)]},
+                  {StartKnowledge::kNone});
     sum += network::NormLoss(generator_->forward(one.input), one.follower, one.input.lengths)
                .item<double>();
   }

@@ -169,8 +169,8 @@ TEST(GeneratorTest, BasePoseComesFromTheStartWhereItIsKnown) {
   const int64_t torso = manifest.model.skeleton.root;
   EXPECT_TRUE(torch::allclose(out[0][3], mean, 1e-5, 1e-5));
   EXPECT_TRUE(torch::allclose(out[1][3], mean - mean[torso] + root, 1e-5, 1e-5));
-  EXPECT_TRUE(torch::allclose(out[2][3], root + start.narrow(0, 3, 45).reshape({kJoints, 3}), 1e-5,
-                              1e-5));
+  EXPECT_TRUE(
+      torch::allclose(out[2][3], root + start.narrow(0, 3, 45).reshape({kJoints, 3}), 1e-5, 1e-5));
 }
 
 TEST(GeneratorTest, ReleasedVariantGivesTheWholeBodySliceTheLabelAlone) {
@@ -192,8 +192,8 @@ TEST(GeneratorTest, TwentyJointsAndTwoClassesAreAConfiguration) {
   for (int j = 1; j < 20; ++j) manifest.model.skeleton.bones.push_back({j - 1, j});
   manifest.model.skeleton.root = 0;
   Generator generator = MakeGenerator(manifest);
-  const torch::Tensor out = generator->forward({torch::randn({1, 6, 60}), torch::randn({1, 6, 2}),
-                                                {}, torch::tensor({6}, torch::kInt64)});
+  const torch::Tensor out = generator->forward(
+      {torch::randn({1, 6, 60}), torch::randn({1, 6, 2}), {}, torch::tensor({6}, torch::kInt64)});
   EXPECT_EQ(out.sizes(), at::IntArrayRef({1, 6, 60}));
 }
 

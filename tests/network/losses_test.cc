@@ -59,13 +59,13 @@ TEST(LossTest, ContinuityPathLengthByHand) {
   torch::Tensor moving = WithBadPadding(Zeros());
   moving[0][1][0] = 1;
   moving[0][2][0] = 4;
-  EXPECT_NEAR(
-      ContinuityLoss(moving, kLengths, {ContinuityForm::kPathLength, 2, 0.1}).item<float>(), 2,
-      1e-5);
+  EXPECT_NEAR(ContinuityLoss(moving, kLengths, {ContinuityForm::kPathLength, 2, 0.1}).item<float>(),
+              2, 1e-5);
 }
 
 TEST(LossTest, AdversarialTermsByHand) {
-  const torch::Tensor logits = torch::zeros({2, 4});  // uniform over three classes and "synthesised"
+  const torch::Tensor logits =
+      torch::zeros({2, 4});  // uniform over three classes and "synthesised"
   const torch::Tensor classes = torch::tensor({0, 2}, torch::kInt64);
   EXPECT_NEAR(DiscriminatorLoss(logits, logits, classes).item<float>(), 2 * std::log(4.0), 1e-5);
   EXPECT_NEAR(AdversarialLoss(logits, classes).item<float>(), std::log(4.0), 1e-5);

@@ -28,8 +28,7 @@ std::pair<torch::Tensor, torch::Tensor> Textbook(const Problem& p) {
   torch::Tensor hidden = p.hidden, cell = p.cell;
   std::vector<torch::Tensor> hiddens, cells;
   for (int64_t t = 0; t < kSteps; ++t) {
-    const auto gates =
-        (p.gates[t] + torch::bmm(hidden, p.weight.transpose(1, 2))).chunk(4, -1);
+    const auto gates = (p.gates[t] + torch::bmm(hidden, p.weight.transpose(1, 2))).chunk(4, -1);
     cell = gates[1].sigmoid() * cell + gates[0].sigmoid() * gates[2].tanh();
     hidden = gates[3].sigmoid() * cell.tanh();
     hiddens.push_back(hidden);

@@ -1,0 +1,68 @@
+#include "model/training/options.h"
+
+#include <gmock/gmock.h>
+
+#include "model/training/named_configs.h"
+#include "tests/support/status_matchers.h"
+
+namespace duet {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+std::string DefaultJson() {
+  for (const NamedConfig& config : NamedConfigs()) {
+    if (config.name == "default") return std::string(config.json);
+  }
+  return "";
+}
+
+TEST(TrainingOptionsTest, EveryNamedConfigurationParses) {
+  ASSERT_FALSE(NamedConfigs().empty());
+  for (const NamedConfig& config : NamedConfigs()) {
+    EXPECT_THAT(ParseTrainingOptions(config.json), IsOk()) << config.name;
+  }
+}
+
+TEST(TrainingOptionsTest, ReplacementsReachTheirField) {
+  const auto options = ParseTrainingOptions(
+      DefaultJson(), {{"losses.bone", "0.25"}, {"optimiser.name", "rmsprop"}, {"epochs", "7"}});
+  ASSERT_THAT(options, IsOk());
+  EXPECT_EQ(options->losses.bone, 0.25);
+  EXPECT_EQ(options->optimiser.name, "rmsprop");
+  EXPECT_EQ(options->epochs, 7);
+  EXPECT_EQ(Describe(*options).at("losses.bone"), "0.25");
+}
+
+TEST(TrainingOptionsTest, EverySettingIsRequiredAndDescribed) {
+  const auto options = ParseTrainingOptions(DefaultJson());
+  ASSERT_THAT(options, IsOk());
+  for (const auto& [path, value] : Describe(*options)) {
+    EXPECT_THAT(ParseTrainingOptions(DefaultJson(), {{path, "{}"}}), Not(IsOk())) << path;
+  }
+}
+
+TEST(TrainingOptionsTest, RefusesByName) {
+  const auto refusal = [](const std::string& path, const std::string& value) {
+    return std::string(ParseTrainingOptions(DefaultJson(), {{path, value}}).status().message());
+  };
+  EXPECT_THAT(refusal("optimiser.name", "sgd"), HasSubstr("\"sgd\", wanted one of adam, rmsprop"));
+  EXPECT_THAT(refusal("epochs", "0"), HasSubstr("epochs"));
+  EXPECT_THAT(refusal("dropout.slices", "1"), HasSubstr("dropout.slices"));
+  EXPECT_THAT(refusal("losses.nothing", "1"), HasSubstr("losses.nothing: no such setting"));
+  EXPECT_THAT(refusal("start", R"({"root": 0.6, "pose": 0.6})"), HasSubstr("start.pose"));
+  EXPECT_THAT(ParseTrainingOptions("{}"),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("generator")));
+}
+
+TEST(TrainingOptionsTest, MirroredClassesMustExist) {
+  TrainingOptions options;
+  options.augmentation.mirrored_classes = {"kick", "jump"};
+  EXPECT_THAT(CheckAgainst(options, {"kick", "jump"}), IsOk());
+  EXPECT_THAT(CheckAgainst(options, {"kick"}),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("\"jump\"")));
+}
+
+}  // namespace
+}  // namespace duet

@@ -1,0 +1,101 @@
+#include "model/training/run.h"
+
+#include <gmock/gmock.h>
+
+#include <sstream>
+
+#include "model/engine/torch_synthesizer.h"
+#include "model/training/run_log.h"
+#include "tests/support/status_matchers.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/training/made_up_dataset.h"
+#include "tests/training/test_options.h"
+
+namespace duet {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class RunTest : public ::testing::Test {
+ protected:
+  RunTest() {
+    plan_.options = SmallOptions();
+    plan_.model_name = "made_up";
+    plan_.title = "all";
+    plan_.folder = folder_.path() / "run";
+    plan_.train = AllOf(dataset_);
+  }
+
+  absl::Status Go() { return RunTraining(plan_, dataset_, false, &progress_); }
+
+  Dataset dataset_ = MadeUpDataset();
+  TemporaryFolder folder_;
+  RunPlan plan_;
+  std::ostringstream progress_;
+};
+
+TEST_F(RunTest, LeavesACheckpointThatServes) {
+  ASSERT_THAT(Go(), IsOk());
+  const auto synthesizer = LoadTorchSynthesizer(CheckpointFolder(plan_));
+  ASSERT_THAT(synthesizer, IsOk());
+  const ModelDescription& model = (*synthesizer)->description();
+  EXPECT_EQ(model.classes, dataset_.classes);
+  EXPECT_EQ(model.window_frames, dataset_.LongestFrameCount());
+  EXPECT_TRUE(model.accepts_follower_start);
+  EXPECT_THAT(progress_.str(), HasSubstr("epoch 4/4"));
+  const auto checkpoint = ReadCheckpoint(CheckpointFolder(plan_));
+  ASSERT_THAT(checkpoint, IsOk());
+  EXPECT_EQ(checkpoint->manifest.training.at("losses.bone"), "0.01");
+  EXPECT_EQ(checkpoint->manifest.training.at("sequences"), "7");
+}
+
+TEST_F(RunTest, FinishedRunIsNotRepeated) {
+  ASSERT_THAT(Go(), IsOk());
+  progress_.str("");
+  ASSERT_THAT(Go(), IsOk());
+  EXPECT_THAT(progress_.str(), HasSubstr("is finished"));
+}
+
+TEST_F(RunTest, DivergenceIsReportedNotSaved) {
+  plan_.options.losses.reconstruction = "l2";
+  dataset_.sequences[0].pair.follower.at(0, 0).x = 1e30f;  // its square is beyond a float
+  EXPECT_THAT(Go(), StatusIs(absl::StatusCode::kInternal, HasSubstr("no longer finite")));
+  EXPECT_FALSE(std::filesystem::exists(CheckpointFolder(plan_)));
+  EXPECT_FALSE(std::filesystem::exists(plan_.folder / "state"));
+}
+
+TEST_F(RunTest, UnknownMirroredClassIsRefusedBeforeAnythingIsWritten) {
+  plan_.options.augmentation.mirrored_classes = {"jump"};
+  EXPECT_THAT(Go(), StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("jump")));
+  EXPECT_FALSE(std::filesystem::exists(plan_.folder));
+}
+
+TEST(RunLogTest, ResumingDropsRowsOfLostEpochs) {
+  TemporaryFolder folder;
+  RunLog log(folder / "log.csv");
+  ASSERT_THAT(log.ResumeAt(0), IsOk());
+  for (int64_t epoch : {1, 2, 3}) {
+    EpochReport report;
+    report.epoch = epoch;
+    ASSERT_THAT(log.Append(report), IsOk());
+  }
+  ASSERT_THAT(log.ResumeAt(2), IsOk());
+  const std::string text = ReadTestFile(folder / "log.csv");
+  EXPECT_THAT(text, HasSubstr("\n2,"));
+  EXPECT_THAT(text, Not(HasSubstr("\n3,")));
+}
+
+TEST(ProgressLineTest, SaysHowFarAndHowLong) {
+  EpochReport report;
+  report.epoch = 5;
+  report.epochs = 10;
+  report.generator = 1.5;
+  report.seconds = 30;
+  report.validation_afd = std::nan("");
+  EXPECT_EQ(ProgressLine("all", report),
+            "all [############............] epoch 5/10  loss 1.5000  2:30 left");
+}
+
+}  // namespace
+}  // namespace duet

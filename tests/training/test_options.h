@@ -1,0 +1,56 @@
+#ifndef DUET_TESTS_TRAINING_TEST_OPTIONS_H_
+#define DUET_TESTS_TRAINING_TEST_OPTIONS_H_
+
+#include "model/training/options.h"
+
+namespace duet {
+
+// A network and a run small enough for a test, with every loss and every augmentation on.
+inline TrainingOptions SmallOptions() {
+  TrainingOptions options;
+  options.generator.follower_start = true;
+  options.generator.base_pose = true;
+  options.generator.slice_features = 4;
+  options.generator.encoder_hidden = 4;
+  options.generator.attention = 8;
+  options.dropout = {0.1, 0.1};
+  options.optimiser.weight_decay = 0.01;
+  options.optimiser.gradient_clip = 1;
+  options.optimiser.average_decay = 0.5;
+  options.epochs = 4;
+  options.batch = 3;
+  options.seed = 5;
+  options.losses.bone = 0.01;
+  options.losses.continuity = 0.1;
+  options.losses.adversarial = 0.1;
+  options.discriminator.hidden = 4;
+  options.augmentation.mirrored_classes = {"kick"};
+  options.augmentation.mirror = 0.5;
+  options.augmentation.swap_roles = 0.5;
+  options.augmentation.body_scale = 0.05;
+  options.augmentation.time_warp = 0.1;
+  options.augmentation.root_distance = 0.05;
+  options.augmentation.yaw = 0.1;
+  options.augmentation.leader_yaw = 0.1;
+  options.augmentation.noise = 0.01;
+  options.augmentation.crop = 0.5;
+  options.start = {0.3, 0.3};
+  return options;
+}
+
+inline Manifest ManifestFor(const TrainingOptions& options, const Dataset& dataset) {
+  Manifest manifest;
+  manifest.model.name = dataset.name;
+  manifest.model.version = 1;
+  manifest.model.skeleton = dataset.skeleton;
+  manifest.model.classes = dataset.classes;
+  manifest.model.frame_rate_hz = dataset.frame_rate_hz;
+  manifest.model.window_frames = dataset.LongestFrameCount();
+  manifest.model.accepts_follower_start = options.generator.follower_start;
+  manifest.generator = options.generator;
+  return manifest;
+}
+
+}  // namespace duet
+
+#endif  // DUET_TESTS_TRAINING_TEST_OPTIONS_H_

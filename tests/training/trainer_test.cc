@@ -1,0 +1,152 @@
+#include "model/training/trainer.h"
+
+#include <gmock/gmock.h>
+
+#include <set>
+
+#include "model/network/losses.h"
+#include "tests/support/status_matchers.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/training/made_up_dataset.h"
+#include "tests/training/test_options.h"
+
+namespace duet {
+namespace {
+
+using ::testing::HasSubstr;
+
+class TrainerTest : public ::testing::Test {
+ protected:
+  TrainerTest() { torch::set_num_threads(1); }
+
+  Trainer Make() { return {options_, manifest_, dataset_, AllOf(dataset_), {}}; }
+
+  Dataset dataset_ = MadeUpDataset();
+  TrainingOptions options_ = SmallOptions();
+  Manifest manifest_ = ManifestFor(options_, dataset_);
+  TemporaryFolder folder_;
+};
+
+std::vector<torch::Tensor> Parameters(Trainer& trainer) { return trainer.Best()->parameters(); }
+
+bool Equal(const std::vector<torch::Tensor>& a, const std::vector<torch::Tensor>& b) {
+  for (size_t i = 0; i < a.size(); ++i) {
+    if (!torch::equal(a[i], b[i])) return false;
+  }
+  return a.size() == b.size();
+}
+
+TEST_F(TrainerTest, ResumedRunEqualsAnUninterruptedOneBitForBit) {
+  Trainer straight = Make();
+  for (int i = 0; i < 4; ++i) straight.RunEpoch();
+  {
+    Trainer first = Make();
+    first.RunEpoch();
+    first.RunEpoch();
+    ASSERT_THAT(first.SaveState(folder_ / "state"), IsOk());
+  }
+  Trainer resumed = Make();
+  ASSERT_THAT(resumed.LoadState(folder_ / "state"), IsOk());
+  EXPECT_EQ(resumed.epoch(), 2);
+  resumed.RunEpoch();
+  EXPECT_FALSE(Equal(Parameters(resumed), Parameters(straight)));
+  resumed.RunEpoch();
+  EXPECT_TRUE(Equal(Parameters(resumed), Parameters(straight)));
+  EXPECT_TRUE(resumed.Finished());
+}
+
+TEST_F(TrainerTest, StateOfAnotherRunIsRefused) {
+  Trainer trainer = Make();
+  ASSERT_THAT(trainer.SaveState(folder_ / "state"), IsOk());
+  options_.losses.bone = 0.5;
+  EXPECT_THAT(Make().LoadState(folder_ / "state"),
+              StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("other options or data")));
+}
+
+TEST_F(TrainerTest, TornOrMissingStateIsAnError) {
+  EXPECT_THAT(Make().LoadState(folder_ / "state"),
+              StatusIs(absl::StatusCode::kNotFound, HasSubstr("state")));
+  Trainer trainer = Make();
+  ASSERT_THAT(trainer.SaveState(folder_ / "state"), IsOk());
+  const std::string whole = ReadTestFile(folder_ / "state");
+  WriteTestFile(folder_ / "state", whole.substr(0, whole.size() / 2));
+  EXPECT_THAT(Make().LoadState(folder_ / "state"),
+              StatusIs(absl::StatusCode::kDataLoss, HasSubstr("state")));
+}
+
+TEST_F(TrainerTest, OverfitsOneClip) {
+  options_.dropout = {0, 0};
+  options_.augmentation = {};
+  options_.losses = {};
+  options_.generator.encoder_hidden = 12;
+  options_.optimiser.learning_rate = 0.01;
+  options_.epochs = 300;
+  manifest_ = ManifestFor(options_, dataset_);
+  Trainer trainer(options_, manifest_, dataset_, {2}, {});
+  const double before = trainer.RunEpoch().reconstruction;
+  double after = before;
+  while (!trainer.Finished()) after = trainer.RunEpoch().reconstruction;
+  EXPECT_LT(after, before / 5);
+}
+
+TEST_F(TrainerTest, DiscriminatorLearnsAndIsLeftOutWhenItsWeightIsZero) {
+  EXPECT_GT(Make().RunEpoch().discriminator, 0);
+  options_.losses.adversarial = 0;
+  EXPECT_EQ(Make().RunEpoch().discriminator, 0);
+}
+
+TEST_F(TrainerTest, StopsWhenValidationNoLongerImproves) {
+  options_.optimiser.learning_rate = 1e-9;  // nothing is learnt: the first epoch stays the best
+  options_.optimiser.average_decay = 0;
+  options_.epochs = 100;
+  options_.validation.patience = 3;
+  Trainer trainer(options_, manifest_, dataset_, {0, 1, 2, 3}, {4, 5});
+  while (!trainer.Finished()) EXPECT_GT(trainer.RunEpoch().validation_afd, 0);
+  EXPECT_LT(trainer.epoch(), 100);
+}
+
+TEST_F(TrainerTest, EpochShowsEverySequenceOnce) {
+  options_.augmentation = {};
+  std::multiset<float> seen;
+  for (const TrainingBatch& batch :
+       SampleEpoch(manifest_, dataset_, AllOf(dataset_), options_, 3)) {
+    for (int64_t n = 0; n < batch.classes.size(0); ++n) {
+      seen.insert(batch.input.lengths[n].item<float>());
+    }
+    EXPECT_LE(batch.classes.size(0), options_.batch);
+  }
+  std::multiset<float> wanted;
+  for (const Sequence& s : dataset_.sequences) {
+    wanted.insert(static_cast<float>(s.pair.leader.frame_count()));
+  }
+  EXPECT_EQ(seen, wanted);
+}
+
+TEST_F(TrainerTest, BatchIsInTheLeadersFrameWithItsLabelAndStart) {
+  const TrainingBatch batch =
+      MakeBatch(manifest_, dataset_, {dataset_.sequences[4]}, {StartKnowledge::kRoot});
+  const int root = dataset_.skeleton.root;
+  EXPECT_LT(batch.input.leader[0].narrow(1, 3 * root, 3).abs().max().item<float>(), 1e-6);
+  // The partner stands towards +z in the world: -z in the standard frame.
+  EXPECT_LT(batch.follower[0][0][3 * root + 2].item<float>(), -0.5);
+  EXPECT_EQ(batch.input.labels[0][0][1].item<float>(), 1);
+  EXPECT_EQ(batch.input.labels[0][0].sum().item<float>(), 1);
+  const int64_t width = batch.input.start.size(1);
+  EXPECT_EQ(batch.input.start[0][width - 2].item<float>(), 1);
+  EXPECT_EQ(batch.input.start[0][width - 1].item<float>(), 0);
+  EXPECT_TRUE(torch::allclose(batch.input.start[0].narrow(0, 0, 3),
+                              batch.follower[0][0].narrow(0, 3 * root, 3)));
+}
+
+TEST(ScheduleTest, OneCycleRisesAndFalls) {
+  TrainingOptions::Optimiser options;
+  EXPECT_NEAR(ScheduleFactor(options, 0, 100), 0.04, 1e-9);
+  EXPECT_NEAR(ScheduleFactor(options, 20, 100), 1, 1e-9);
+  EXPECT_NEAR(ScheduleFactor(options, 60, 100), 0.5, 1e-3);
+  EXPECT_LT(ScheduleFactor(options, 99, 100), 0.01);
+  options.schedule = "constant";
+  EXPECT_EQ(ScheduleFactor(options, 99, 100), 1);
+}
+
+}  // namespace
+}  // namespace duet
