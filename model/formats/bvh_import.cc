@@ -9,6 +9,7 @@ namespace {
 
 // From the foot up to the root (torso or pelvis) along the bones.
 constexpr double kShortestLeg = 0.7, kLongestLeg = 1.4;
+constexpr double kLargestUnit = 1000;
 // Frame times carry 3 to 7 digits.
 constexpr double kRateTolerance = 5e-4;
 
@@ -107,8 +108,14 @@ class Importer {
     return length;
   }
 
+  static absl::StatusOr<double> CheckUnit(double metres) {
+    if (metres > 0 && metres <= kLargestUnit) return metres;
+    return absl::InvalidArgumentError(absl::StrCat(
+        "metres per unit: came ", metres, ", wanted more than 0 and at most ", kLargestUnit));
+  }
+
   absl::StatusOr<double> MetresPerUnit(const Clip& clip) {
-    if (options_.metres_per_unit.has_value()) return *options_.metres_per_unit;
+    if (options_.metres_per_unit.has_value()) return CheckUnit(*options_.metres_per_unit);
     const double length = LegLength(clip);
     for (const Unit& unit : kUnits) {
       const double metres = length * unit.metres;

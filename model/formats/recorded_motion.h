@@ -16,8 +16,10 @@ struct RecordedMotion {
   CoordinateFrame coordinates;
 };
 
-// Refuses a pair whose people differ in joints, frames or rate, or hold no finite positions: what
-// no writer can express.
+// Refuses what no writer can express: no frame, a rate that is no rate, a position that is not
+// finite or beyond kMaxCoordinate. `name` is how the error calls the clip.
+absl::Status CheckClip(absl::string_view name, const Clip& clip);
+// The same for both people, who share joints, frames and rate.
 absl::Status CheckPair(const ClipPair& pair);
 
 }  // namespace duet

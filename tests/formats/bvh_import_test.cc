@@ -73,6 +73,11 @@ TEST(BvhImport, RefusesASizeThatIsNoPersonsUnlessTheUnitIsGiven) {
   const absl::StatusOr<Clip> read = FromBvh(giant, "a.bvh", options);
   ASSERT_TRUE(read.ok()) << read.status();
   EXPECT_LT(LargestDistance(*read, clip), kOneMillimetre);
+  for (double unit : {0.0, -1.0, 1e30, std::nan("")}) {
+    options.metres_per_unit = unit;
+    EXPECT_THAT(std::string(FromBvh(giant, "a.bvh", options).status().message()),
+                HasSubstr("metres per unit: came"));
+  }
 }
 
 TEST(BvhImport, FindsTheUpAxis) {

@@ -1,9 +1,11 @@
 #include "model/formats/motion_file.h"
 
+#include <algorithm>
 #include <clocale>
 #include <cmath>
 #include <filesystem>
 #include <locale>
+#include <random>
 #include <string>
 
 #include "absl/strings/str_cat.h"
@@ -35,6 +37,28 @@ class MotionFile : public ::testing::Test {
   const ClipPair pair_{MakePerson(), MakePerson({60, 3, 0, {0, 1.1f, 1.2f}, 30})};
   fs::path folder_;
 };
+
+std::string Damaged(std::string bytes, std::mt19937* random) {
+  const char interesting[] = "0-9.e{}[](),:#\n \"\\\xff";
+  for (int change = 0; change < 3; ++change) {
+    const std::size_t at = (*random)() % bytes.size();
+    const std::size_t length = std::min<std::size_t>((*random)() % 40, bytes.size() - at - 1);
+    switch ((*random)() % 4) {
+      case 0:
+        bytes[at] = interesting[(*random)() % (sizeof(interesting) - 1)];
+        break;
+      case 1:
+        bytes[at] = static_cast<char>((*random)());
+        break;
+      case 2:
+        bytes.erase(at, length);
+        break;
+      default:
+        bytes.insert(at, bytes.substr(at, length));
+    }
+  }
+  return bytes;
+}
 
 TEST_F(MotionFile, ReadsBackWhatItWrites) {
   for (const char* name : {"a.csv", "a.json", "a.npy", "a.CSV"}) {
@@ -124,11 +148,15 @@ TEST_F(MotionFile, RefusesAPairThatIsNone) {
   ClipPair shorter = pair_;
   shorter.follower.positions.resize(15);
   EXPECT_THAT(std::string(WritePair(folder_ / "a.csv", shorter, SbuSkeleton()).status().message()),
-              HasSubstr("wanted the same joints, frames"));
+              HasSubstr("wanted the same joints, frames and rate"));
   ClipPair broken = pair_;
   broken.follower.at(3, 1).x = std::nanf("");
   EXPECT_THAT(std::string(WritePair(folder_ / "a.csv", broken, SbuSkeleton()).status().message()),
               HasSubstr("follower: frame 3 neck"));
+  ClipPair far_away = pair_;
+  far_away.leader.at(0, 0).x = 3e38f;
+  EXPECT_THAT(std::string(WritePair(folder_ / "a.bvh", far_away, SbuSkeleton()).status().message()),
+              HasSubstr("leader: frame 0 head: came a position that is not finite or beyond"));
   ClipPair renamed = pair_;
   renamed.leader.joint_names.pop_back();
   EXPECT_FALSE(WritePair(folder_ / "a.csv", renamed, SbuSkeleton()).ok());
@@ -153,6 +181,33 @@ TEST_F(MotionFile, RefusesFilesThatAreTooLarge) {
   ASSERT_TRUE(WriteFile(path, std::string(2 << 20, 'x')).ok());
   EXPECT_THAT(std::string(ReadFile(path, 1 << 20).status().message()),
               HasSubstr("larger than 1 MiB"));
+}
+
+// Bytes changed, dropped and doubled at random: an error or a motion, never a crash.
+TEST_F(MotionFile, SurvivesDamagedFiles) {
+  const ClipPair small{MakePerson({2}), MakePerson({2})};
+  ASSERT_TRUE(WritePair(folder_ / "a.csv", small, SbuSkeleton()).ok());
+  ASSERT_TRUE(WritePair(folder_ / "a.json", small, SbuSkeleton()).ok());
+  ASSERT_TRUE(WritePair(folder_ / "a.npy", small, SbuSkeleton()).ok());
+  ASSERT_TRUE(WritePair(folder_ / "a.bvh", small, SbuSkeleton()).ok());
+  ASSERT_TRUE(WriteFile(folder_ / "a.txt", *FormatSbu({small.leader, small.follower})).ok());
+  ReadOptions options;
+  options.frame_rate_hz = 30;
+  std::mt19937 random(7);
+  int refused = 0;
+  for (const char* name : {"a.csv", "a.json", "a.npy", "a.leader.bvh", "a.txt"}) {
+    const absl::StatusOr<std::string> whole = ReadFile(folder_ / name);
+    ASSERT_TRUE(whole.ok()) << whole.status();
+    for (int round = 0; round < 200; ++round) {
+      const fs::path path = folder_ / (std::string("damaged_") + name);
+      ASSERT_TRUE(WriteFile(path, Damaged(*whole, &random)).ok());
+      const absl::StatusOr<Clip> clip = ReadLeader(path, options);
+      refused += clip.ok() ? 0 : 1;
+      if (!clip.ok()) continue;
+      for (const Vec3& position : clip->positions) EXPECT_TRUE(IsFinite(position)) << name;
+    }
+  }
+  EXPECT_GT(refused, 300);
 }
 
 struct DecimalComma : std::numpunct<char> {
