@@ -71,7 +71,7 @@ void AddServingFlags(CLI::App& app, v1::ServerConfig& config) {
       ->option_text("ADDRESS");
   app.add_option_function<std::string>(
          "--metrics_listen", [&](const std::string& value) { config.set_metrics_listen(value); },
-         "address of /metrics, /healthz, /readyz; \"\" for none (default 0.0.0.0:9464)")
+         "address of /metrics, /healthz, /readyz, or \"off\" (default 0.0.0.0:9464)")
       ->option_text("ADDRESS");
   app.add_option_function<std::string>(
          "--model_repository",

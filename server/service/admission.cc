@@ -52,17 +52,9 @@ std::size_t Admission::calls() const {
   return calls_;
 }
 
-bool Admission::WaitUntilIdle(TimePoint deadline) {
-  MutexLock lock(mutex_);
-  while (calls_ > 0) {
-    if (!idle_.WaitUntil(mutex_, deadline)) return calls_ == 0;
-  }
-  return true;
-}
-
 void Admission::Leave() {
   MutexLock lock(mutex_);
-  if (--calls_ == 0) idle_.NotifyAll();
+  --calls_;
 }
 
 }  // namespace duet

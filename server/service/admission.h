@@ -52,8 +52,6 @@ class Admission {
   absl::StatusOr<AdmissionSlot> Admit(Priority priority);
 
   std::size_t calls() const;
-  // Waits until no call is left. False when the deadline came first.
-  bool WaitUntilIdle(TimePoint deadline);
 
  private:
   friend class AdmissionSlot;
@@ -61,7 +59,6 @@ class Admission {
 
   const std::size_t max_calls_;
   mutable Mutex mutex_;
-  CondVar idle_;
   State state_ DUET_GUARDED_BY(mutex_) = State::kLoading;
   std::size_t calls_ DUET_GUARDED_BY(mutex_) = 0;
 };

@@ -51,8 +51,8 @@ struct ClipPart {
 //   absl::Status admitted = stream->Start();
 //   ... on_progress: while ((part = stream->Take(30)).kind == kFrames) send(part.frames) ...
 //
-// Threads: safe to call concurrently. on_progress runs on the scheduler's threads, under no lock, and
-// may still come when the end was taken.
+// Threads: safe to call concurrently. on_progress runs on the scheduler's threads, under no lock,
+// and may still come when the end was taken.
 class ClipStream : public std::enable_shared_from_this<ClipStream> {
  public:
   // `scheduler` outlives every job given to it. The model is held until the last job is done.

@@ -32,9 +32,9 @@ bool PuppetScheduler::RunNext() {
 
 void PuppetScheduler::FailNext(absl::Status status) { Take().done({std::move(status), {}}); }
 
-void PuppetScheduler::WaitForJob() {
+void PuppetScheduler::WaitForJobs(std::size_t count) {
   MutexLock lock(mutex_);
-  while (jobs_.empty()) came_.Wait(mutex_);
+  while (jobs_.size() < count) came_.Wait(mutex_);
 }
 
 std::size_t PuppetScheduler::waiting() const {

@@ -25,8 +25,8 @@ class PuppetScheduler final : public WindowScheduler {
   bool RunNext();
   // Waits for a job and ends the oldest with an error.
   void FailNext(absl::Status status);
-  // Waits until a job is there. A test that waits in vain runs into its time limit.
-  void WaitForJob();
+  // Waits until so many jobs are there. A test that waits in vain runs into its time limit.
+  void WaitForJobs(std::size_t count);
 
   std::size_t waiting() const;
   // Looks at the oldest job's field. There is one.

@@ -1,0 +1,49 @@
+#include "server/service/call_identity.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+
+namespace duet {
+namespace {
+
+TEST(RequestIdTest, AcceptsPrintableTextWithoutSpaces) {
+  EXPECT_TRUE(IsRequestId("a"));
+  EXPECT_TRUE(IsRequestId("shot-42/take.3#7"));
+  EXPECT_TRUE(IsRequestId(std::string(128, 'x')));
+}
+
+TEST(RequestIdTest, RefusesWhatWouldSpoilALog) {
+  EXPECT_FALSE(IsRequestId(""));
+  EXPECT_FALSE(IsRequestId(std::string(129, 'x')));
+  EXPECT_FALSE(IsRequestId("two words"));
+  EXPECT_FALSE(IsRequestId("line\nbreak"));
+  EXPECT_FALSE(IsRequestId("caf\xc3\xa9"));
+}
+
+TEST(RequestIdTest, MakesDistinctOnes) {
+  std::set<std::string> ids;
+  for (int i = 0; i < 1000; ++i) {
+    const std::string id = NewRequestId();
+    EXPECT_EQ(id.size(), 32u);
+    EXPECT_TRUE(IsRequestId(id));
+    ids.insert(id);
+  }
+  EXPECT_EQ(ids.size(), 1000u);
+}
+
+TEST(TraceparentTest, AcceptsTheW3cForm) {
+  EXPECT_TRUE(IsTraceparent("00-4bf92f3577b34da6a3ce929d0e0e4736-00f067aa0ba902b7-01"));
+}
+
+TEST(TraceparentTest, RefusesAnythingElse) {
+  EXPECT_FALSE(IsTraceparent(""));
+  EXPECT_FALSE(IsTraceparent("00-4bf92f3577b34da6a3ce929d0e0e4736-00f067aa0ba902b7-0"));
+  EXPECT_FALSE(IsTraceparent("00-4BF92F3577b34da6a3ce929d0e0e4736-00f067aa0ba902b7-01"));
+  EXPECT_FALSE(IsTraceparent("00-4bf92f3577b34da6a3ce929d0e0e473g-00f067aa0ba902b7-01"));
+  EXPECT_FALSE(IsTraceparent("00x4bf92f3577b34da6a3ce929d0e0e4736-00f067aa0ba902b7-01"));
+}
+
+}  // namespace
+}  // namespace duet

@@ -1,0 +1,146 @@
+#include "server/metrics/json_log.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "tests/support/temporary_folder.h"
+
+namespace duet {
+namespace {
+
+using nlohmann::json;
+
+class VectorSink final : public LogSink {
+ public:
+  void Write(std::string_view line) override { lines.emplace_back(line); }
+  json Last() const { return json::parse(lines.back()); }
+  std::vector<std::string> lines;
+};
+
+CallRecord Record() {
+  CallRecord record;
+  record.method = {"duet.v1.MotionSynthesis", "Synthesize", "server_stream"};
+  record.request_id = "id-1";
+  record.peer = "ipv4:10.0.0.1:4711";
+  record.model = "sbu";
+  record.version = 3;
+  record.priority = "bulk";
+  record.frames = 300;
+  record.chunks = 10;
+  record.windows = 7;
+  record.first_chunk_seconds = 0.25;
+  record.queue_seconds = 0.5;
+  record.compute_seconds = 1.5;
+  record.total_seconds = 2;
+  return record;
+}
+
+class JsonLogTest : public ::testing::Test {
+ protected:
+  VectorSink sink_;
+  JsonLog log_{sink_, [] { return absl::FromUnixMicros(1650000000123456); }};
+};
+
+TEST_F(JsonLogTest, ACallIsOneLineOfJson) {
+  log_.CallFinished(Record());
+  ASSERT_EQ(sink_.lines.size(), 1u);
+  EXPECT_EQ(sink_.lines[0].find('\n'), std::string::npos);
+  const json line = sink_.Last();
+  EXPECT_EQ(line["time"], "2022-04-15T05:20:00.123456Z");
+  EXPECT_EQ(line["severity"], "INFO");
+  EXPECT_EQ(line["event"], "call");
+  EXPECT_EQ(line["method"], "Synthesize");
+  EXPECT_EQ(line["request_id"], "id-1");
+  EXPECT_EQ(line["peer"], "ipv4:10.0.0.1:4711");
+  EXPECT_EQ(line["code"], "OK");
+  EXPECT_EQ(line["model"], "sbu");
+  EXPECT_EQ(line["version"], 3);
+  EXPECT_EQ(line["priority"], "bulk");
+  EXPECT_EQ(line["frames"], 300);
+  EXPECT_EQ(line["chunks"], 10);
+  EXPECT_EQ(line["windows"], 7);
+  EXPECT_EQ(line["first_chunk_seconds"], 0.25);
+  EXPECT_EQ(line["queue_seconds"], 0.5);
+  EXPECT_EQ(line["compute_seconds"], 1.5);
+  EXPECT_EQ(line["total_seconds"], 2);
+}
+
+TEST_F(JsonLogTest, LeavesOutWhatACallDoesNotHave) {
+  CallRecord record;
+  record.method = {"duet.v1.MotionSynthesis", "ListModels", "unary"};
+  log_.CallFinished(record);
+  const json line = sink_.Last();
+  for (const char* field : {"model", "version", "frames", "first_chunk_seconds", "traceparent",
+                            "message", "cause", "priority"}) {
+    EXPECT_FALSE(line.contains(field)) << field;
+  }
+}
+
+TEST_F(JsonLogTest, ARefusalSaysWhy) {
+  CallRecord record = Record();
+  record.status = absl::InvalidArgumentError("chunk_frames: is 0");
+  log_.CallFinished(record);
+  EXPECT_EQ(sink_.Last()["severity"], "INFO");
+  EXPECT_EQ(sink_.Last()["code"], "INVALID_ARGUMENT");
+  EXPECT_EQ(sink_.Last()["message"], "chunk_frames: is 0");
+}
+
+TEST_F(JsonLogTest, AFailureStandsOutAndNamesItsCause) {
+  CallRecord record = Record();
+  record.status = absl::InternalError("the model failed");
+  record.cause = "INTERNAL: shapes differ";
+  log_.CallFinished(record);
+  EXPECT_EQ(sink_.Last()["severity"], "ERROR");
+  EXPECT_EQ(sink_.Last()["cause"], "INTERNAL: shapes differ");
+}
+
+TEST_F(JsonLogTest, OverloadIsAWarning) {
+  CallRecord record = Record();
+  record.status = absl::ResourceExhaustedError("full");
+  log_.CallFinished(record);
+  EXPECT_EQ(sink_.Last()["severity"], "WARNING");
+}
+
+TEST_F(JsonLogTest, AnyBytesMakeAValidLine) {
+  CallRecord record = Record();
+  record.status = absl::InvalidArgumentError("a\nb\"c\xff\xfe");
+  log_.CallFinished(record);
+  EXPECT_EQ(sink_.lines[0].find('\n'), std::string::npos);
+  EXPECT_FALSE(json::parse(sink_.lines[0])["message"].get<std::string>().empty());
+}
+
+TEST_F(JsonLogTest, EventsCarryTheirFields) {
+  log_.Error("model_refused", {{"source", "sbu/3"}});
+  EXPECT_EQ(sink_.Last()["severity"], "ERROR");
+  EXPECT_EQ(sink_.Last()["event"], "model_refused");
+  EXPECT_EQ(sink_.Last()["source"], "sbu/3");
+}
+
+TEST(StreamLogSinkTest, LinesOfManyThreadsStayWhole) {
+  TemporaryFolder folder;
+  const std::string path = (folder / "log").string();
+  std::FILE* file = std::fopen(path.c_str(), "w");
+  StreamLogSink sink(file);
+  std::vector<std::thread> writers;
+  for (char c = 'a'; c < 'e'; ++c) {
+    writers.emplace_back([&sink, c] {
+      for (int i = 0; i < 200; ++i) sink.Write(std::string(300, c));
+    });
+  }
+  for (std::thread& writer : writers) writer.join();
+  std::fclose(file);
+  const std::string text = ReadTestFile(folder / "log");
+  ASSERT_EQ(text.size(), 4u * 200u * 301u);
+  for (std::size_t line = 0; line < text.size(); line += 301) {
+    EXPECT_EQ(text.substr(line, 301), std::string(300, text[line]) + "\n");
+  }
+}
+
+}  // namespace
+}  // namespace duet

@@ -1,0 +1,172 @@
+#include "server/config/load_config.h"
+
+#include <gmock/gmock.h>
+#include <google/protobuf/util/message_differencer.h>
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "tests/support/status_matchers.h"
+#include "tests/support/temporary_folder.h"
+
+namespace duet {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+constexpr auto kInvalidArgument = absl::StatusCode::kInvalidArgument;
+
+absl::StatusOr<CommandLine> Parse(std::vector<std::string> arguments) {
+  std::vector<const char*> argv = {"duet-server"};
+  for (const std::string& argument : arguments) argv.push_back(argument.c_str());
+  return ParseCommandLine(static_cast<int>(argv.size()), argv.data());
+}
+
+TEST(ParseConfigTextTest, ReadsTextFormatWithComments) {
+  const absl::StatusOr<v1::ServerConfig> config = ParseConfigText(
+      "# two replicas\nlisten: \":7\"\nversion_labels { model: \"a\" label: \"b\" version: 3 }\n",
+      /*json=*/false);
+  ASSERT_THAT(config, IsOk());
+  EXPECT_EQ(config->listen(), ":7");
+  EXPECT_EQ(config->version_labels(0).version(), 3u);
+}
+
+TEST(ParseConfigTextTest, ReadsJson) {
+  const absl::StatusOr<v1::ServerConfig> config =
+      ParseConfigText(R"({"listen": ":7", "maxCalls": 3, "drain_seconds": 1.5})", /*json=*/true);
+  ASSERT_THAT(config, IsOk());
+  EXPECT_EQ(config->listen(), ":7");
+  EXPECT_EQ(config->max_calls(), 3u);
+  EXPECT_EQ(config->drain_seconds(), 1.5);
+}
+
+TEST(ParseConfigTextTest, RefusesUnknownFieldsSayingWhere) {
+  EXPECT_THAT(ParseConfigText("listen: \":7\"\nport: 7\n", false),
+              StatusIs(kInvalidArgument, AllOf(HasSubstr("line 2"), HasSubstr("port"))));
+  EXPECT_THAT(ParseConfigText(R"({"port": 7})", true),
+              StatusIs(kInvalidArgument, HasSubstr("port")));
+}
+
+TEST(ParseConfigTextTest, RefusesMistypedFields) {
+  EXPECT_THAT(ParseConfigText("workers: \"two\"", false),
+              StatusIs(kInvalidArgument, HasSubstr("two")));
+  EXPECT_THAT(ParseConfigText(R"({"workers": -2})", true),
+              StatusIs(kInvalidArgument, HasSubstr("-2")));
+}
+
+TEST(ParseConfigTextTest, AnEmptyFileSetsNothing) {
+  EXPECT_THAT(ParseConfigText("", false), IsOk());
+  EXPECT_THAT(ParseConfigText("{}", true), IsOk());
+}
+
+TEST(ReadConfigFileTest, NamesTheFile) {
+  TemporaryFolder folder;
+  EXPECT_THAT(ReadConfigFile(folder / "absent.txtpb"),
+              StatusIs(absl::StatusCode::kNotFound, HasSubstr("absent.txtpb")));
+  EXPECT_THAT(ReadConfigFile(folder.path()),
+              StatusIs(absl::StatusCode::kNotFound, HasSubstr(folder.path().string())));
+  WriteTestFile(folder / "bad.json", "{");
+  EXPECT_THAT(ReadConfigFile(folder / "bad.json"),
+              StatusIs(kInvalidArgument, HasSubstr("bad.json")));
+}
+
+TEST(ParseCommandLineTest, NoFlagsSetNothing) {
+  const absl::StatusOr<CommandLine> line = Parse({});
+  ASSERT_THAT(line, IsOk());
+  EXPECT_FALSE(line->print.has_value());
+  EXPECT_EQ(line->config.ByteSizeLong(), 0u);
+}
+
+TEST(ParseCommandLineTest, ReadsEveryFlag) {
+  const absl::StatusOr<CommandLine> line = Parse({"--listen",
+                                                  "a:1",
+                                                  "--metrics_listen",
+                                                  "off",
+                                                  "--model_repository",
+                                                  "/models",
+                                                  "--default_model",
+                                                  "sbu",
+                                                  "--version_label",
+                                                  "sbu:stable=3",
+                                                  "--version_label",
+                                                  "sbu:canary=4",
+                                                  "--no-reflection",
+                                                  "--workers",
+                                                  "2",
+                                                  "--threads_per_worker",
+                                                  "3",
+                                                  "--max_calls",
+                                                  "4",
+                                                  "--max_queued_windows",
+                                                  "5",
+                                                  "--max_request_bytes",
+                                                  "6000",
+                                                  "--buffered_frames",
+                                                  "7",
+                                                  "--drain_seconds",
+                                                  "8",
+                                                  "--grace_seconds",
+                                                  "9"});
+  ASSERT_THAT(line, IsOk());
+  const absl::StatusOr<v1::ServerConfig> expected = ParseConfigText(
+      R"(listen: "a:1" metrics_listen: "off" model_repository: "/models" default_model: "sbu"
+         version_labels { model: "sbu" label: "stable" version: 3 }
+         version_labels { model: "sbu" label: "canary" version: 4 }
+         reflection: false workers: 2 threads_per_worker: 3 max_calls: 4 max_queued_windows: 5
+         max_request_bytes: 6000 buffered_frames: 7 drain_seconds: 8 grace_seconds: 9)",
+      false);
+  ASSERT_THAT(expected, IsOk());
+  EXPECT_TRUE(google::protobuf::util::MessageDifferencer::Equals(line->config, *expected))
+      << line->config.DebugString();
+  // A field added to the schema without a flag shows here.
+  const google::protobuf::Reflection* reflection = line->config.GetReflection();
+  std::vector<const google::protobuf::FieldDescriptor*> set;
+  reflection->ListFields(line->config, &set);
+  EXPECT_EQ(static_cast<int>(set.size()), v1::ServerConfig::descriptor()->field_count());
+}
+
+TEST(ParseCommandLineTest, HelpNamesEveryFieldOfTheSchema) {
+  const absl::StatusOr<CommandLine> line = Parse({"--help"});
+  ASSERT_THAT(line, IsOk());
+  ASSERT_TRUE(line->print.has_value());
+  for (int i = 0; i < v1::ServerConfig::descriptor()->field_count(); ++i) {
+    std::string name = v1::ServerConfig::descriptor()->field(i)->name();
+    if (name == "version_labels") name = "version_label";  // one a flag
+    EXPECT_THAT(*line->print, HasSubstr("--" + name));
+  }
+}
+
+TEST(ParseCommandLineTest, SaysItsVersion) {
+  const absl::StatusOr<CommandLine> line = Parse({"--version"});
+  ASSERT_THAT(line, IsOk());
+  EXPECT_THAT(line->print.value_or(""), HasSubstr("duet-server 0."));
+}
+
+TEST(ParseCommandLineTest, FlagsWinOverTheFile) {
+  TemporaryFolder folder;
+  WriteTestFile(folder / "server.txtpb", "listen: \"file:1\" max_calls: 9");
+  const absl::StatusOr<CommandLine> line =
+      Parse({"--config", (folder / "server.txtpb").string(), "--listen", "flag:2"});
+  ASSERT_THAT(line, IsOk());
+  EXPECT_EQ(line->config.listen(), "flag:2");
+  EXPECT_EQ(line->config.max_calls(), 9u);
+}
+
+TEST(ParseCommandLineTest, NamesAFlagThatIsWrong) {
+  EXPECT_THAT(Parse({"--prot", "7"}), StatusIs(kInvalidArgument, HasSubstr("--prot")));
+  EXPECT_THAT(Parse({"--workers", "two"}), StatusIs(kInvalidArgument, HasSubstr("--workers")));
+  EXPECT_THAT(Parse({"--workers", "-2"}), StatusIs(kInvalidArgument, HasSubstr("--workers")));
+  EXPECT_THAT(Parse({"--listen"}), StatusIs(kInvalidArgument, HasSubstr("--listen")));
+  EXPECT_THAT(Parse({"stray"}), StatusIs(kInvalidArgument, HasSubstr("stray")));
+  for (const char* label : {"stable", "sbu:stable", "sbu:stable=", "sbu:stable=x", "sbu=3"}) {
+    EXPECT_THAT(Parse({"--version_label", label}),
+                StatusIs(kInvalidArgument, HasSubstr("model:label=version")))
+        << label;
+  }
+}
+
+}  // namespace
+}  // namespace duet

@@ -1,0 +1,140 @@
+#include "server/registry/model_registry.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tests/support/fake_synthesizer.h"
+#include "tests/support/status_matchers.h"
+
+namespace duet {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+constexpr auto kNotFound = absl::StatusCode::kNotFound;
+
+std::shared_ptr<const Synthesizer> Model(const std::string& name, int version) {
+  ModelDescription description = FakeDescription();
+  description.name = name;
+  description.version = version;
+  return std::make_shared<FakeSynthesizer>(description);
+}
+
+// "name/version" of what answers a query.
+std::string Answer(const ModelRegistry& registry, const ModelQuery& query) {
+  const absl::StatusOr<ServedModel> served = registry.Find(query);
+  if (!served.ok()) return std::string(served.status().message());
+  const ModelDescription& model = served->model->description();
+  return model.name + "/" + std::to_string(model.version);
+}
+
+TEST(ModelRegistryTest, HasNothingAtFirst) {
+  EXPECT_THAT(ModelRegistry().List(), IsEmpty());
+  EXPECT_THAT(ModelRegistry().Find({}), StatusIs(kNotFound, HasSubstr("served are: none")));
+}
+
+TEST(ModelRegistryTest, AnswersWithTheNewestVersionUnlessAskedForAnother) {
+  ModelRegistry registry;
+  for (const int version : {2, 10, 9}) registry.Serve(Model("duet", version));
+  EXPECT_EQ(Answer(registry, {"duet", {}, {}}), "duet/10");
+  EXPECT_EQ(Answer(registry, {"duet", 2, {}}), "duet/2");
+  EXPECT_EQ(Answer(registry, {"", 9, {}}), "duet/9");
+}
+
+TEST(ModelRegistryTest, TheFirstNameIsTheDefaultUntilOneIsSet) {
+  ModelRegistry registry;
+  registry.Serve(Model("b", 1));
+  registry.Serve(Model("a", 1));
+  EXPECT_EQ(Answer(registry, {}), "a/1");
+  ASSERT_THAT(registry.SetDefault("b"), IsOk());
+  EXPECT_EQ(Answer(registry, {}), "b/1");
+}
+
+TEST(ModelRegistryTest, RefusesADefaultThatIsNotServed) {
+  ModelRegistry registry;
+  registry.Serve(Model("a", 1));
+  EXPECT_THAT(registry.SetDefault("z"),
+              StatusIs(kNotFound, HasSubstr("\"z\" is not served; served are: a")));
+  EXPECT_EQ(Answer(registry, {}), "a/1");
+}
+
+TEST(ModelRegistryTest, FollowsLabelsWhereTheyPointNow) {
+  ModelRegistry registry;
+  registry.Serve(Model("a", 1));
+  registry.Serve(Model("a", 2));
+  ASSERT_THAT(registry.SetLabel("a", "stable", 1), IsOk());
+  EXPECT_EQ(Answer(registry, {"a", {}, "stable"}), "a/1");
+  ASSERT_THAT(registry.SetLabel("a", "stable", 2), IsOk());
+  EXPECT_EQ(Answer(registry, {"a", {}, "stable"}), "a/2");
+}
+
+TEST(ModelRegistryTest, RefusesALabelOfAVersionThatIsNotServed) {
+  ModelRegistry registry;
+  registry.Serve(Model("a", 1));
+  EXPECT_THAT(registry.SetLabel("a", "stable", 2), StatusIs(kNotFound, HasSubstr("version 2")));
+  EXPECT_THAT(registry.SetLabel("b", "stable", 1), StatusIs(kNotFound, HasSubstr("model \"b\"")));
+}
+
+TEST(ModelRegistryTest, NamesTheFieldThatWasNotFoundAndWhatThereIs) {
+  ModelRegistry registry;
+  registry.Serve(Model("a", 1));
+  registry.Serve(Model("a", 3));
+  registry.Serve(Model("b", 1));
+  ASSERT_THAT(registry.SetLabel("a", "stable", 1), IsOk());
+  EXPECT_EQ(Answer(registry, {"z", {}, {}}),
+            "model.name: is \"z\", which is not served; served are: a, b");
+  EXPECT_EQ(Answer(registry, {"a", 2, {}}),
+            "model.version: is 2; served versions of model a are: 3, 1");
+  EXPECT_EQ(Answer(registry, {"a", 0, {}}),
+            "model.version: is 0; served versions of model a are: 3, 1");
+  EXPECT_EQ(Answer(registry, {"a", {}, "canary"}),
+            "model.version_label: is \"canary\"; labels of model a are: stable");
+}
+
+TEST(ModelRegistryTest, ShowsOnlyTheBeginningOfALongName) {
+  ModelRegistry registry;
+  registry.Serve(Model("a", 1));
+  EXPECT_LT(Answer(registry, {std::string(100000, '\n'), {}, {}}).size(), 400u);
+}
+
+TEST(ModelRegistryTest, ListsByNameNewestFirst) {
+  ModelRegistry registry;
+  registry.Serve(Model("b", 1));
+  registry.Serve(Model("a", 1));
+  registry.Serve(Model("a", 2));
+  ASSERT_THAT(registry.SetLabel("a", "stable", 1), IsOk());
+  ASSERT_THAT(registry.SetLabel("a", "old", 1), IsOk());
+  const std::vector<ServedModel> models = registry.List();
+  ASSERT_EQ(models.size(), 3u);
+  EXPECT_EQ(models[0].model->description().version, 2);
+  EXPECT_TRUE(models[0].is_default);
+  EXPECT_THAT(models[0].version_labels, IsEmpty());
+  EXPECT_EQ(models[1].model->description().version, 1);
+  EXPECT_FALSE(models[1].is_default);
+  EXPECT_THAT(models[1].version_labels, ElementsAre("old", "stable"));
+  EXPECT_EQ(models[2].model->description().name, "b");
+}
+
+TEST(ModelRegistryTest, WhoeverFoundAModelKeepsItWhenItIsReplaced) {
+  ModelRegistry registry;
+  std::weak_ptr<const Synthesizer> watched;
+  {
+    auto first = Model("a", 1);
+    watched = first;
+    registry.Serve(std::move(first));
+  }
+  absl::StatusOr<ServedModel> held = registry.Find({});
+  registry.Serve(Model("a", 1));
+  EXPECT_FALSE(watched.expired());
+  held = absl::NotFoundError("let go");
+  EXPECT_TRUE(watched.expired());
+}
+
+}  // namespace
+}  // namespace duet

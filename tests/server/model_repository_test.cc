@@ -1,0 +1,130 @@
+#include "server/registry/model_repository.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tests/support/fake_synthesizer.h"
+#include "tests/support/status_matchers.h"
+#include "tests/support/temporary_folder.h"
+
+namespace duet {
+namespace {
+
+namespace fs = std::filesystem;
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+void MakeCheckpoint(const TemporaryFolder& folder, const std::string& place) {
+  fs::create_directories(folder / place);
+  WriteTestFile(folder / (place + "/manifest.json"), "{}");
+}
+
+TEST(ListCheckpointsTest, FindsNameAndVersionFolders) {
+  TemporaryFolder folder;
+  MakeCheckpoint(folder, "sbu/1");
+  MakeCheckpoint(folder, "sbu/12");
+  MakeCheckpoint(folder, "k3hi/3");
+  const absl::StatusOr<RepositoryListing> listing = ListCheckpoints(folder.path());
+  ASSERT_THAT(listing, IsOk());
+  EXPECT_THAT(listing->checkpoints,
+              ElementsAre(folder / "k3hi/3", folder / "sbu/1", folder / "sbu/12"));
+  EXPECT_THAT(listing->unreadable, IsEmpty());
+}
+
+TEST(ListCheckpointsTest, LeavesOtherThingsAlone) {
+  TemporaryFolder folder;
+  for (const char* version : {"0", "01", "v2", "-1", "1.tmp", "99999999999"}) {
+    MakeCheckpoint(folder, std::string("sbu/") + version);
+  }
+  fs::create_directories(folder / "sbu/7");  // no manifest
+  WriteTestFile(folder / "README.md", "");
+  const absl::StatusOr<RepositoryListing> listing = ListCheckpoints(folder.path());
+  ASSERT_THAT(listing, IsOk());
+  EXPECT_THAT(listing->checkpoints, IsEmpty());
+}
+
+TEST(ListCheckpointsTest, NamesARepositoryThatIsNotThere) {
+  EXPECT_THAT(ListCheckpoints("/nonexistent/models"),
+              StatusIs(absl::StatusCode::kNotFound, HasSubstr("/nonexistent/models")));
+}
+
+TEST(ListCheckpointsTest, NamesARepositoryThatIsAFile) {
+  TemporaryFolder folder;
+  WriteTestFile(folder / "models", "");
+  EXPECT_THAT(ListCheckpoints(folder / "models"),
+              StatusIs(absl::StatusCode::kNotFound, HasSubstr("models")));
+}
+
+// Gives root's powers up for a scope, since root opens every folder.
+class Unprivileged {
+ public:
+  Unprivileged() : was_(geteuid()) {
+    if (was_ == 0) EXPECT_EQ(seteuid(65534), 0);
+  }
+  ~Unprivileged() {
+    if (was_ == 0) EXPECT_EQ(seteuid(was_), 0);
+  }
+
+ private:
+  const uid_t was_;
+};
+
+TEST(ListCheckpointsTest, GoesOnPastAFolderThatIsClosed) {
+  TemporaryFolder folder;
+  fs::permissions(folder.path(), fs::perms(0755));
+  MakeCheckpoint(folder, "sbu/1");
+  fs::create_directories(folder / "lost+found");
+  fs::permissions(folder / "lost+found", fs::perms::none);
+  absl::StatusOr<RepositoryListing> listing;
+  {
+    const Unprivileged unprivileged;
+    listing = ListCheckpoints(folder.path());
+  }
+  fs::permissions(folder / "lost+found", fs::perms::owner_all);
+  ASSERT_THAT(listing, IsOk());
+  EXPECT_THAT(listing->checkpoints, ElementsAre(folder / "sbu/1"));
+  EXPECT_THAT(listing->unreadable,
+              ElementsAre(StatusIs(absl::StatusCode::kPermissionDenied, HasSubstr("lost+found"))));
+}
+
+ModelLoader LoaderOf(const std::string& name, int version) {
+  return [=](const fs::path&) -> absl::StatusOr<std::shared_ptr<const Synthesizer>> {
+    ModelDescription description = FakeDescription();
+    description.name = name;
+    description.version = version;
+    return std::make_shared<FakeSynthesizer>(description);
+  };
+}
+
+TEST(LoadCheckpointTest, GivesTheModelAndWhereItCameFrom) {
+  const LoadReport report = LoadCheckpoint("/models/sbu/3", LoaderOf("sbu", 3));
+  ASSERT_THAT(report.model, IsOk());
+  EXPECT_EQ(report.source, "sbu/3");
+  EXPECT_GE(report.load_seconds, 0);
+}
+
+TEST(LoadCheckpointTest, RefusesAManifestThatContradictsItsFolder) {
+  EXPECT_THAT(LoadCheckpoint("/models/sbu/3", LoaderOf("sbu", 4)).model,
+              StatusIs(absl::StatusCode::kInvalidArgument,
+                       AllOf(HasSubstr("model sbu version 4"), HasSubstr("sbu version 3"))));
+  EXPECT_THAT(LoadCheckpoint("/models/sbu/3", LoaderOf("k3hi", 3)).model,
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("model k3hi version 3")));
+}
+
+TEST(LoadCheckpointTest, PassesOnWhyALoaderFailed) {
+  const ModelLoader loader = [](const fs::path&) { return absl::DataLossError("torn"); };
+  EXPECT_THAT(LoadCheckpoint("/models/sbu/3", loader).model,
+              StatusIs(absl::StatusCode::kDataLoss, "torn"));
+}
+
+}  // namespace
+}  // namespace duet

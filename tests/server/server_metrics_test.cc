@@ -1,0 +1,113 @@
+#include "server/metrics/server_metrics.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace duet {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr MethodInfo kSynthesize = {"duet.v1.MotionSynthesis", "Synthesize", "server_stream"};
+
+CallRecord Record() {
+  CallRecord record;
+  record.method = kSynthesize;
+  record.request_id = "a-request-id";
+  record.model = "sbu";
+  record.version = 3;
+  record.priority = "interactive";
+  record.frames = 300;
+  record.first_chunk_seconds = 0.02;
+  record.total_seconds = 0.3;
+  return record;
+}
+
+TEST(ServerMetricsTest, CountsCallsAsGrpcDashboardsExpect) {
+  ServerMetrics metrics;
+  metrics.CallStarted(kSynthesize);
+  metrics.CallStarted(kSynthesize);
+  metrics.CallFinished(Record());
+  const std::string labels =
+      R"(grpc_method="Synthesize",grpc_service="duet.v1.MotionSynthesis",grpc_type="server_stream"})";
+  const std::string text = metrics.Render();
+  EXPECT_THAT(text, HasSubstr("grpc_server_started_total{" + labels + " 2\n"));
+  EXPECT_THAT(text, HasSubstr(R"(grpc_server_handled_total{grpc_code="OK",)" + labels + " 1\n"));
+  EXPECT_THAT(text, HasSubstr(R"(duet_calls_in_flight{method="Synthesize"} 1)"));
+}
+
+TEST(ServerMetricsTest, SpellsCodesAsGrpcDashboardsExpect) {
+  ServerMetrics metrics;
+  CallRecord record = Record();
+  record.status = absl::CancelledError("gone");
+  metrics.CallFinished(record);
+  record.status = absl::Status(absl::StatusCode::kUnauthenticated, "who");
+  metrics.CallFinished(record);
+  EXPECT_THAT(metrics.Render(), HasSubstr(R"(grpc_code="Canceled")"));
+  EXPECT_THAT(metrics.Render(), HasSubstr(R"(grpc_code="Unauthenticated")"));
+}
+
+TEST(ServerMetricsTest, MeasuresInSecondsWithHistograms) {
+  ServerMetrics metrics;
+  metrics.CallFinished(Record());
+  const std::string text = metrics.Render();
+  EXPECT_THAT(text, HasSubstr("# TYPE grpc_server_handling_seconds histogram"));
+  EXPECT_THAT(text,
+              HasSubstr(R"(duet_first_chunk_seconds_bucket{priority="interactive",le="0.01"} 0)"));
+  EXPECT_THAT(text,
+              HasSubstr(R"(duet_first_chunk_seconds_bucket{priority="interactive",le="0.025"} 1)"));
+  EXPECT_THAT(text, HasSubstr(R"(duet_frames_total{model="sbu",version="3"} 300)"));
+}
+
+TEST(ServerMetricsTest, ARefusalHasNoFirstChunk) {
+  ServerMetrics metrics;
+  CallRecord record = Record();
+  record.first_chunk_seconds = -1;
+  record.frames = 0;
+  record.status = absl::InvalidArgumentError("no");
+  metrics.CallFinished(record);
+  EXPECT_THAT(metrics.Render(), Not(HasSubstr("duet_first_chunk_seconds_count")));
+  EXPECT_THAT(metrics.Render(), Not(HasSubstr("duet_frames_total{")));
+}
+
+TEST(ServerMetricsTest, LabelsNeverHoldWhatACallerSent) {
+  ServerMetrics metrics;
+  metrics.CallFinished(Record());
+  EXPECT_THAT(metrics.Render(), Not(HasSubstr("a-request-id")));
+}
+
+TEST(ServerMetricsTest, CountsWindowsAndThoseDropped) {
+  ServerMetrics metrics;
+  metrics.WindowFinished(Priority::kBulk, {0.2, 0.04, 1});
+  metrics.WindowFinished(Priority::kBulk, {0.2, 0, 0});
+  const std::string text = metrics.Render();
+  EXPECT_THAT(text, HasSubstr(R"(duet_queue_seconds_count{priority="bulk"} 2)"));
+  EXPECT_THAT(text, HasSubstr("duet_compute_seconds_count 1\n"));
+  EXPECT_THAT(text, HasSubstr("duet_batch_size_sum 1\n"));
+  EXPECT_THAT(text, HasSubstr(R"(duet_windows_dropped_total{priority="bulk"} 1)"));
+}
+
+TEST(ServerMetricsTest, AsksForTheQueueLengthAtEveryScrape) {
+  ServerMetrics metrics;
+  double length = 3;
+  metrics.SetQueueLength([&] { return length; });
+  EXPECT_THAT(metrics.Render(), HasSubstr("duet_queued_windows 3\n"));
+  length = 5;
+  EXPECT_THAT(metrics.Render(), HasSubstr("duet_queued_windows 5\n"));
+}
+
+TEST(ServerMetricsTest, TellsWhichCheckpointsAreServed) {
+  ServerMetrics metrics;
+  metrics.ModelLoaded("sbu/3", 1.5, true);
+  metrics.ModelLoaded("sbu/4", 0.1, false);
+  const std::string text = metrics.Render();
+  EXPECT_THAT(text, HasSubstr(R"(duet_model_state{checkpoint="sbu/3"} 1)"));
+  EXPECT_THAT(text, HasSubstr(R"(duet_model_state{checkpoint="sbu/4"} 0)"));
+  EXPECT_THAT(text, HasSubstr(R"(duet_model_load_seconds{checkpoint="sbu/3"} 1.5)"));
+}
+
+}  // namespace
+}  // namespace duet

@@ -1,0 +1,146 @@
+#include "server/config/server_options.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+#include <string>
+
+#include "tests/support/status_matchers.h"
+
+namespace duet {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr auto kInvalidArgument = absl::StatusCode::kInvalidArgument;
+
+TEST(ServerOptionsTest, DefaultsServeTheEmbeddedCheckpointOnTheWellKnownPorts) {
+  const absl::StatusOr<ServerOptions> options = ToOptions(v1::ServerConfig(), 4);
+  ASSERT_THAT(options, IsOk());
+  EXPECT_EQ(ToString(options->listen), "0.0.0.0:50051");
+  ASSERT_TRUE(options->metrics_listen.has_value());
+  EXPECT_EQ(ToString(*options->metrics_listen), "0.0.0.0:9464");
+  EXPECT_TRUE(options->model_repository.empty());
+  EXPECT_TRUE(options->reflection);
+  EXPECT_EQ(options->workers, 4);
+  EXPECT_EQ(options->threads_per_worker, 1);
+  EXPECT_EQ(options->max_request_bytes, 32u << 20);
+  EXPECT_EQ(options->drain_seconds, 0);
+  EXPECT_EQ(options->grace_seconds, 30);
+}
+
+TEST(ServerOptionsTest, TakesOverEveryField) {
+  v1::ServerConfig config;
+  config.set_listen("[::1]:1");
+  config.set_metrics_listen("off");
+  config.set_model_repository("/models");
+  config.set_default_model("sbu");
+  v1::VersionLabel& label = *config.add_version_labels();
+  label.set_model("sbu");
+  label.set_label("stable");
+  label.set_version(3);
+  config.set_reflection(false);
+  config.set_workers(2);
+  config.set_threads_per_worker(3);
+  config.set_max_calls(5);
+  config.set_max_queued_windows(6);
+  config.set_max_request_bytes(4096);
+  config.set_buffered_frames(7);
+  config.set_drain_seconds(8.5);
+  config.set_grace_seconds(9);
+  const absl::StatusOr<ServerOptions> options = ToOptions(config, 4);
+  ASSERT_THAT(options, IsOk());
+  EXPECT_EQ(ToString(options->listen), "[::1]:1");
+  EXPECT_FALSE(options->metrics_listen.has_value());
+  EXPECT_EQ(options->model_repository, "/models");
+  EXPECT_EQ(options->default_model, "sbu");
+  ASSERT_EQ(options->version_labels.size(), 1u);
+  EXPECT_EQ(options->version_labels[0].model, "sbu");
+  EXPECT_EQ(options->version_labels[0].label, "stable");
+  EXPECT_EQ(options->version_labels[0].version, 3u);
+  EXPECT_FALSE(options->reflection);
+  EXPECT_EQ(options->workers, 2);
+  EXPECT_EQ(options->threads_per_worker, 3);
+  EXPECT_EQ(options->max_calls, 5);
+  EXPECT_EQ(options->max_queued_windows, 6);
+  EXPECT_EQ(options->max_request_bytes, 4096u);
+  EXPECT_EQ(options->buffered_frames, 7);
+  EXPECT_EQ(options->drain_seconds, 8.5);
+  EXPECT_EQ(options->grace_seconds, 9);
+}
+
+TEST(ServerOptionsTest, WorkersTimesThreadsUseTheCoresAndNoMore) {
+  v1::ServerConfig config;
+  config.set_threads_per_worker(2);
+  EXPECT_EQ(ToOptions(config, 7)->workers, 3);
+  EXPECT_EQ(ToOptions(config, 1)->workers, 1);
+  config.Clear();
+  config.set_workers(2);
+  EXPECT_EQ(ToOptions(config, 7)->threads_per_worker, 3);
+  EXPECT_EQ(ToOptions(config, 1)->threads_per_worker, 1);
+}
+
+struct BadConfig {
+  std::string message;
+  std::function<void(v1::ServerConfig&)> spoil;
+};
+
+class BadConfigTest : public ::testing::TestWithParam<BadConfig> {};
+
+TEST_P(BadConfigTest, IsRefusedByName) {
+  v1::ServerConfig config;
+  GetParam().spoil(config);
+  EXPECT_THAT(ToOptions(config, 4), StatusIs(kInvalidArgument, HasSubstr(GetParam().message)));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Every, BadConfigTest,
+    ::testing::Values(
+        BadConfig{"listen: is \"50051\", wanted host:port",
+                  [](v1::ServerConfig& c) { c.set_listen("50051"); }},
+        BadConfig{"metrics_listen: is \"a:b\", wanted host:port",
+                  [](v1::ServerConfig& c) { c.set_metrics_listen("a:b"); }},
+        BadConfig{"metrics_listen: is \"\", wanted host:port",
+                  [](v1::ServerConfig& c) { c.set_metrics_listen(""); }},
+        BadConfig{"workers: is 0, wanted 1 to 1024", [](v1::ServerConfig& c) { c.set_workers(0); }},
+        BadConfig{"threads_per_worker: is 5000, wanted 1 to 1024",
+                  [](v1::ServerConfig& c) { c.set_threads_per_worker(5000); }},
+        BadConfig{"max_calls: is 0, wanted 1", [](v1::ServerConfig& c) { c.set_max_calls(0); }},
+        BadConfig{"max_queued_windows: is 0, wanted 1",
+                  [](v1::ServerConfig& c) { c.set_max_queued_windows(0); }},
+        BadConfig{"max_request_bytes: is 10, wanted 1024",
+                  [](v1::ServerConfig& c) { c.set_max_request_bytes(10); }},
+        BadConfig{"max_request_bytes: is 4294967296, wanted 1024",
+                  [](v1::ServerConfig& c) { c.set_max_request_bytes(uint64_t{1} << 32); }},
+        BadConfig{"buffered_frames: is 0, wanted 1",
+                  [](v1::ServerConfig& c) { c.set_buffered_frames(0); }},
+        BadConfig{"drain_seconds: is -1, wanted 0 to 3600",
+                  [](v1::ServerConfig& c) { c.set_drain_seconds(-1); }},
+        BadConfig{"grace_seconds: is nan, wanted 0 to 3600",
+                  [](v1::ServerConfig& c) {
+                    c.set_grace_seconds(std::numeric_limits<double>::quiet_NaN());
+                  }},
+        BadConfig{"version_labels[0]: is model \"\"",
+                  [](v1::ServerConfig& c) { c.add_version_labels(); }}));
+
+TEST(ListenAddressTest, ReadsHostAndPort) {
+  for (const char* text : {"0.0.0.0:50051", "localhost:0", "[::]:9464", "10.1.2.3:65535"}) {
+    const absl::StatusOr<ListenAddress> address = ParseListenAddress(text);
+    ASSERT_THAT(address, IsOk()) << text;
+    EXPECT_EQ(ToString(*address), text);
+  }
+  EXPECT_EQ(ToString(*ParseListenAddress(":80")), "0.0.0.0:80");
+}
+
+TEST(ListenAddressTest, RefusesAnythingElse) {
+  for (const char* text : {"", "localhost", "localhost:", "localhost:-1", "localhost:65536",
+                           "localhost:http", "::1:80", "[::1]", "[::1:80"}) {
+    EXPECT_THAT(ParseListenAddress(text), StatusIs(kInvalidArgument, HasSubstr("host:port")))
+        << text;
+  }
+}
+
+}  // namespace
+}  // namespace duet

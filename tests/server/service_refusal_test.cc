@@ -1,0 +1,447 @@
+// How calls end other than well: refusals over the wire, deadlines, cancellation, failures.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <limits>
+#include <memory>
+#include <string>
+
+#include "tests/server/support/puppet_scheduler.h"
+#include "tests/server/support/refusal.h"
+#include "tests/server/support/running_service.h"
+#include "tests/server/support/sample_request.h"
+
+namespace duet {
+namespace {
+
+using ::testing::AnyOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+using absl::StatusCode;
+
+// A service whose windows the test evaluates.
+struct PuppetService {
+  explicit PuppetService(RunningService::Setup setup = RunningService::Setup())
+      : running((setup.scheduler = &puppet, setup)) {}
+  PuppetScheduler puppet;
+  RunningService running;
+};
+
+std::string Trailer(const grpc::ClientContext& context, const std::string& key) {
+  const auto& trailers = context.GetServerTrailingMetadata();
+  const auto found = trailers.find(key);
+  return found == trailers.end() ? "" : std::string(found->second.data(), found->second.size());
+}
+
+TEST(ServiceRefusalTest, AMalformedRequestIsRefusedWithEveryField) {
+  RunningService running;
+  v1::SynthesizeRequest request = SampleRequest();
+  request.mutable_leader()->set_positions(0, std::numeric_limits<float>::quiet_NaN());
+  request.set_chunk_frames(0);
+  const Reply reply = Call(running.stub(), request);
+  EXPECT_THAT(reply.messages, IsEmpty());
+  const Refusal refusal = Decode(reply.status);
+  EXPECT_EQ(refusal.code, StatusCode::kInvalidArgument);
+  EXPECT_THAT(refusal.Fields(), ElementsAre("leader.positions[0]", "chunk_frames"));
+  EXPECT_EQ(refusal.reason, "INVALID_REQUEST");
+  EXPECT_EQ(running.calls().WaitFor(1).status.code(), StatusCode::kInvalidArgument);
+}
+
+TEST(ServiceRefusalTest, ASkeletonThatDoesNotFitIsAFailedPrecondition) {
+  RunningService running;
+  v1::SynthesizeRequest request = SampleRequest();
+  request.mutable_leader()->set_joint_names(0, "hat");
+  const Refusal refusal = Decode(Call(running.stub(), request).status);
+  EXPECT_EQ(refusal.code, StatusCode::kFailedPrecondition);
+  EXPECT_THAT(refusal.Fields(), ElementsAre("leader.joint_names[0]", "leader.joint_names"));
+}
+
+TEST(ServiceRefusalTest, TheMostDetailedRefusalReachesTheClient) {
+  RunningService running;
+  v1::SynthesizeRequest request;
+  for (int i = 0; i < 1000; ++i) {
+    AddWeight(*request.add_label_keyframes()->mutable_label_vector(), std::string(200, 'x'), 9);
+    request.add_reply_joint_names(std::string(200, '\n'));
+    request.mutable_leader()->add_joint_names(std::string(200, 'y'));
+  }
+  const Refusal refusal = Decode(Call(running.stub(), request).status);
+  // Trailers above the client's limit would turn into RESOURCE_EXHAUSTED.
+  EXPECT_EQ(refusal.code, StatusCode::kInvalidArgument);
+  EXPECT_GT(refusal.violations.size(), 5u);
+}
+
+TEST(ServiceRefusalTest, AnUnknownModelIsNamedWithThoseServed) {
+  RunningService running;
+  v1::SynthesizeRequest request = SampleRequest();
+  request.mutable_model()->set_name("nobody");
+  const Refusal refusal = Decode(Call(running.stub(), request).status);
+  EXPECT_EQ(refusal.code, StatusCode::kNotFound);
+  EXPECT_EQ(refusal.Of("model.name"), "is \"nobody\", which is not served; served are: fake");
+  EXPECT_EQ(refusal.reason, "MODEL_NOT_FOUND");
+}
+
+TEST(ServiceRefusalTest, AnUnknownVersionIsNamedWithThoseServed) {
+  RunningService running;
+  v1::SynthesizeRequest request = SampleRequest();
+  request.mutable_model()->set_version(7);
+  const Refusal refusal = Decode(Call(running.stub(), request).status);
+  EXPECT_EQ(refusal.code, StatusCode::kNotFound);
+  EXPECT_THAT(refusal.Of("model.version"), HasSubstr("is 7; served versions of model fake are: 1"));
+}
+
+TEST(ServiceRefusalTest, AnUnknownLabelIsNamedWithThoseThereAre) {
+  RunningService running;
+  v1::SynthesizeRequest request = SampleRequest();
+  request.mutable_model()->set_version_label("canary");
+  const Refusal refusal = Decode(Call(running.stub(), request).status);
+  EXPECT_EQ(refusal.code, StatusCode::kNotFound);
+  EXPECT_THAT(refusal.Of("model.version_label"),
+              HasSubstr("is \"canary\"; labels of model fake are: none"));
+}
+
+TEST(ServiceRefusalTest, AVersionLabelIsFollowed) {
+  RunningService running;
+  ASSERT_TRUE(running.registry().SetLabel("fake", "stable", 1).ok());
+  v1::SynthesizeRequest request = SampleRequest();
+  request.mutable_model()->set_version_label("stable");
+  EXPECT_TRUE(Call(running.stub(), request).status.ok());
+}
+
+RunningService::Setup SmallRequests() {
+  RunningService::Setup setup;
+  setup.limits.max_request_bytes = 8192;  // 40 frames are 7 kB
+  return setup;
+}
+
+TEST(ServiceRefusalTest, ARequestAboveTheLimitIsToldTheLimit) {
+  RunningService running(SmallRequests());
+  EXPECT_TRUE(Call(running.stub(), SampleRequest(40)).status.ok());
+  const v1::SynthesizeRequest request = SampleRequest(80);
+  const Refusal refusal = Decode(Call(running.stub(), request).status);
+  EXPECT_EQ(refusal.code, StatusCode::kResourceExhausted);
+  EXPECT_EQ(refusal.reason, "REQUEST_TOO_LARGE");
+  EXPECT_EQ(refusal.metadata.at("max_request_bytes"), "8192");
+  EXPECT_EQ(refusal.metadata.at("request_bytes"), std::to_string(request.ByteSizeLong()));
+  EXPECT_THAT(refusal.message, HasSubstr("max_request_bytes = 8192"));
+  EXPECT_LT(refusal.retry_seconds, 0) << "the same request will not fit later either";
+}
+
+TEST(ServiceRefusalTest, ARequestFarAboveTheLimitIsRefusedByTheTransport) {
+  RunningService running(SmallRequests());
+  const grpc::Status status = Call(running.stub(), SampleRequest(400)).status;
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
+  EXPECT_EQ(running.calls().started(), 0u);
+}
+
+TEST(ServiceRefusalTest, ACompressedRequestIsRefused) {
+  RunningService running;
+  grpc::ClientContext context;
+  context.set_compression_algorithm(GRPC_COMPRESS_GZIP);
+  const Reply reply = Call(running.stub(), SampleRequest(400), context);
+  EXPECT_EQ(reply.status.error_code(), grpc::StatusCode::UNIMPLEMENTED);
+}
+
+TEST(ServiceRefusalTest, AFullQueueRefusesBeforeAnyHeader) {
+  PuppetService service;
+  service.puppet.Refuse(absl::ResourceExhaustedError("the queue is full: 64 windows wait"));
+  grpc::ClientContext context;
+  const Reply reply = Call(service.running.stub(), SampleRequest(), context);
+  EXPECT_THAT(reply.messages, IsEmpty());
+  const Refusal refusal = Decode(reply.status);
+  EXPECT_EQ(refusal.code, StatusCode::kResourceExhausted);
+  EXPECT_EQ(refusal.reason, "QUEUE_FULL");
+  EXPECT_EQ(refusal.retry_seconds, 1);
+  EXPECT_EQ(Trailer(context, "grpc-retry-pushback-ms"), "1000");
+  EXPECT_EQ(service.running.admission().calls(), 0u) << "the place is free again";
+}
+
+TEST(ServiceRefusalTest, TooManyCallsAreRefusedUntilOneEnds) {
+  RunningService::Setup setup;
+  setup.max_calls = 1;
+  PuppetService service(setup);
+  grpc::ClientContext context;
+  const auto first = service.running.stub().Synthesize(&context, SampleRequest(20));
+  service.puppet.WaitForJobs(1);
+  const Refusal refusal = Decode(Call(service.running.stub(), SampleRequest()).status);
+  EXPECT_EQ(refusal.code, StatusCode::kResourceExhausted);
+  EXPECT_EQ(refusal.reason, "TOO_MANY_CALLS");
+  EXPECT_EQ(refusal.metadata.at("max_calls"), "1");
+  EXPECT_EQ(refusal.retry_seconds, 1);
+
+  service.puppet.RunNext();
+  EXPECT_TRUE(ReadAll(*first).status.ok());
+  grpc::ClientContext next_context;
+  const auto next = service.running.stub().Synthesize(&next_context, SampleRequest(20));
+  service.puppet.RunNext();
+  EXPECT_TRUE(ReadAll(*next).status.ok());
+}
+
+TEST(ServiceRefusalTest, ARefusedRequestGivesItsPlaceBack) {
+  RunningService::Setup setup;
+  setup.max_calls = 1;
+  RunningService running(setup);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(Call(running.stub(), v1::SynthesizeRequest()).status.error_code(),
+              grpc::StatusCode::INVALID_ARGUMENT);
+  }
+  EXPECT_TRUE(Call(running.stub(), SampleRequest()).status.ok());
+}
+
+class NotServingTest : public ::testing::TestWithParam<std::pair<Admission::State, std::string>> {};
+
+TEST_P(NotServingTest, EveryMethodIsUnavailableWithARetryDelay) {
+  RunningService running;
+  running.admission().SetState(GetParam().first);
+  const auto expect_refused = [](const grpc::Status& status) {
+    const Refusal refusal = Decode(status);
+    EXPECT_EQ(refusal.code, StatusCode::kUnavailable);
+    EXPECT_EQ(refusal.reason, GetParam().second);
+    EXPECT_EQ(refusal.retry_seconds, 1);
+  };
+  expect_refused(Call(running.stub(), SampleRequest()).status);
+  grpc::ClientContext list_context, get_context;
+  v1::ListModelsResponse list;
+  expect_refused(running.stub().ListModels(&list_context, v1::ListModelsRequest(), &list));
+  v1::GetModelResponse model;
+  expect_refused(running.stub().GetModel(&get_context, v1::GetModelRequest(), &model));
+}
+
+INSTANTIATE_TEST_SUITE_P(Both, NotServingTest,
+                         ::testing::Values(std::pair{Admission::State::kLoading, "SERVER_LOADING"},
+                                           std::pair{Admission::State::kDraining,
+                                                     "SERVER_DRAINING"}));
+
+TEST(ServiceEndTest, AModelsFailureIsInternalAndKeepsItsWordsToTheLog) {
+  auto model = std::make_shared<FakeSynthesizer>();
+  model->window_status = [](const SynthesisWindow&) {
+    return absl::InternalError("at::addmm in /usr/secret/generator.cc failed");
+  };
+  RunningService::Setup setup;
+  setup.model = model;
+  RunningService running(setup);
+  const Refusal refusal = Decode(Call(running.stub(), SampleRequest()).status);
+  EXPECT_EQ(refusal.code, StatusCode::kInternal);
+  EXPECT_EQ(refusal.reason, "MODEL_FAILED");
+  EXPECT_THAT(refusal.message, Not(HasSubstr("addmm")));
+  EXPECT_THAT(refusal.message, Not(HasSubstr("/usr")));
+  const CallRecord record = running.calls().WaitFor(1);
+  EXPECT_THAT(record.cause, HasSubstr("at::addmm in /usr/secret/generator.cc"));
+  EXPECT_THAT(refusal.message, HasSubstr(record.request_id));
+}
+
+TEST(ServiceEndTest, AFailedCallDoesNotFailOthers) {
+  auto model = std::make_shared<FakeSynthesizer>();
+  model->window_status = [](const SynthesisWindow& window) {
+    return window.leader.size() == 20 * 15 ? absl::InternalError("broken") : absl::OkStatus();
+  };
+  RunningService::Setup setup;
+  setup.model = model;
+  RunningService running(setup);
+  EXPECT_FALSE(Call(running.stub(), SampleRequest(20)).status.ok());
+  EXPECT_TRUE(Call(running.stub(), SampleRequest(30)).status.ok());
+}
+
+TEST(ServiceEndTest, AnExpiredCallNeverStarts) {
+  PuppetService service;
+  grpc::ClientContext context;
+  context.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(1));
+  const auto reader = service.running.stub().Synthesize(&context, SampleRequest());
+  service.puppet.WaitForJobs(1);
+  EXPECT_LT(service.puppet.NextDeadline(), TimePoint::max());
+  const Reply reply = ReadAll(*reader);
+  EXPECT_EQ(reply.status.error_code(), grpc::StatusCode::DEADLINE_EXCEEDED);
+  // The client's reset may overtake the deadline on a busy machine.
+  EXPECT_THAT(service.running.calls().WaitFor(1).status.code(),
+              AnyOf(StatusCode::kDeadlineExceeded, StatusCode::kCancelled));
+  EXPECT_FALSE(service.puppet.RunNext()) << "its window was evaluated";
+}
+
+TEST(ServiceEndTest, ACallWithoutADeadlineHasNone) {
+  PuppetService service;
+  grpc::ClientContext context;
+  const auto reader = service.running.stub().Synthesize(&context, SampleRequest());
+  service.puppet.WaitForJobs(1);
+  EXPECT_EQ(service.puppet.NextDeadline(), TimePoint::max());
+  service.puppet.RunNext();
+  EXPECT_TRUE(ReadAll(*reader).status.ok());
+}
+
+TEST(ServiceEndTest, ACancelledCallNeverStarts) {
+  PuppetService service;
+  grpc::ClientContext context;
+  const auto reader = service.running.stub().Synthesize(&context, SampleRequest());
+  service.puppet.WaitForJobs(1);
+  context.TryCancel();
+  EXPECT_EQ(ReadAll(*reader).status.error_code(), grpc::StatusCode::CANCELLED);
+  EXPECT_EQ(service.running.calls().WaitFor(1).status.code(), StatusCode::kCancelled);
+  EXPECT_FALSE(service.puppet.RunNext()) << "its window was evaluated";
+  EXPECT_EQ(service.running.admission().calls(), 0u);
+}
+
+TEST(ServiceEndTest, ACallCancelledMidwayStopsThere) {
+  PuppetService service;
+  grpc::ClientContext context;
+  const auto reader = service.running.stub().Synthesize(&context, SampleRequest(900));
+  service.puppet.RunNext();
+  v1::SynthesizeResponse message;
+  while (reader->Read(&message) && !message.has_chunk()) {
+  }
+  service.puppet.WaitForJobs(1);
+  context.TryCancel();
+  EXPECT_EQ(ReadAll(*reader).status.error_code(), grpc::StatusCode::CANCELLED);
+  const CallRecord record = service.running.calls().WaitFor(1);
+  EXPECT_EQ(record.status.code(), StatusCode::kCancelled);
+  EXPECT_EQ(record.windows, 1);
+  EXPECT_FALSE(service.puppet.RunNext()) << "its second window was evaluated";
+  EXPECT_EQ(service.puppet.waiting(), 0u);
+}
+
+TEST(ServiceEndTest, AWindowDroppedByTheSchedulerEndsTheCall) {
+  PuppetService service;
+  grpc::ClientContext context;
+  const auto reader = service.running.stub().Synthesize(&context, SampleRequest());
+  service.puppet.FailNext(absl::UnavailableError("the server is shutting down"));
+  const Refusal refusal = Decode(ReadAll(*reader).status);
+  EXPECT_EQ(refusal.code, StatusCode::kUnavailable);
+  EXPECT_EQ(refusal.reason, "SERVER_DRAINING");
+}
+
+TEST(ServiceEndTest, AbortAllEndsEveryCallWithTheReason) {
+  PuppetService service;
+  grpc::ClientContext first_context, second_context;
+  const auto first = service.running.stub().Synthesize(&first_context, SampleRequest());
+  const auto second = service.running.stub().Synthesize(&second_context, SampleRequest());
+  service.puppet.WaitForJobs(2);
+  service.running.service().AbortAll(absl::UnavailableError("going away"));
+  EXPECT_EQ(ReadAll(*first).status.error_code(), grpc::StatusCode::UNAVAILABLE);
+  EXPECT_EQ(ReadAll(*second).status.error_code(), grpc::StatusCode::UNAVAILABLE);
+  EXPECT_FALSE(service.puppet.RunNext());
+  EXPECT_FALSE(service.puppet.RunNext());
+}
+
+TEST(ServiceIdentityTest, KeepsTheCallersRequestIdAndTrace) {
+  RunningService running;
+  const std::string trace = "00-4bf92f3577b34da6a3ce929d0e0e4736-00f067aa0ba902b7-01";
+  grpc::ClientContext context;
+  context.AddMetadata("x-request-id", "shot-42/take.3");
+  context.AddMetadata("traceparent", trace);
+  const Reply reply = Call(running.stub(), SampleRequest(), context);
+  ASSERT_TRUE(reply.status.ok());
+  EXPECT_EQ(reply.messages.front().header().request_id(), "shot-42/take.3");
+  const CallRecord record = running.calls().WaitFor(1);
+  EXPECT_EQ(record.request_id, "shot-42/take.3");
+  EXPECT_EQ(record.traceparent, trace);
+  EXPECT_THAT(record.peer, HasSubstr("127.0.0.1"));
+}
+
+TEST(ServiceIdentityTest, MakesARequestIdWhereTheCallersIsUnfit) {
+  RunningService running;
+  grpc::ClientContext context;
+  context.AddMetadata("x-request-id", std::string(129, 'x'));
+  const Reply reply = Call(running.stub(), SampleRequest(), context);
+  ASSERT_TRUE(reply.status.ok());
+  EXPECT_EQ(reply.messages.front().header().request_id().size(), 32u);
+}
+
+TEST(ServiceRecordTest, SaysWhatACallDid) {
+  PuppetService service;
+  grpc::ClientContext context;
+  v1::SynthesizeRequest request = SampleRequest(46);
+  request.set_priority(v1::PRIORITY_BULK);
+  const auto reader = service.running.stub().Synthesize(&context, request);
+  service.puppet.WaitForJobs(1);
+  EXPECT_EQ(service.puppet.NextPriority(), Priority::kBulk);
+  service.puppet.RunNext();
+  ASSERT_TRUE(ReadAll(*reader).status.ok());
+  const CallRecord record = service.running.calls().WaitFor(1);
+  EXPECT_TRUE(record.status.ok());
+  EXPECT_EQ(record.method.name, "Synthesize");
+  EXPECT_EQ(record.model, "fake");
+  EXPECT_EQ(record.version, 1);
+  EXPECT_EQ(record.priority, "bulk");
+  EXPECT_EQ(record.frames, 46);
+  EXPECT_EQ(record.chunks, 2);
+  EXPECT_EQ(record.windows, 1);
+  EXPECT_DOUBLE_EQ(record.queue_seconds, 0.25);
+  EXPECT_DOUBLE_EQ(record.compute_seconds, 0.5);
+  EXPECT_GE(record.first_chunk_seconds, 0);
+  EXPECT_GE(record.total_seconds, record.first_chunk_seconds);
+}
+
+TEST(ModelMethodsTest, ListsModelsByNameNewestFirst) {
+  RunningService running;
+  for (const auto& [name, version] : {std::pair{"other", 1}, std::pair{"fake", 2}}) {
+    ModelDescription description = FakeDescription();
+    description.name = name;
+    description.version = version;
+    running.registry().Serve(std::make_shared<FakeSynthesizer>(description));
+  }
+  ASSERT_TRUE(running.registry().SetLabel("fake", "stable", 1).ok());
+  grpc::ClientContext context;
+  v1::ListModelsResponse response;
+  ASSERT_TRUE(running.stub().ListModels(&context, v1::ListModelsRequest(), &response).ok());
+  ASSERT_EQ(response.models_size(), 3);
+  EXPECT_EQ(response.models(0).name(), "fake");
+  EXPECT_EQ(response.models(0).version(), 2u);
+  EXPECT_TRUE(response.models(0).is_default());
+  EXPECT_EQ(response.models(1).version(), 1u);
+  EXPECT_FALSE(response.models(1).is_default());
+  EXPECT_THAT(response.models(1).version_labels(), ElementsAre("stable"));
+  EXPECT_EQ(response.models(2).name(), "other");
+}
+
+TEST(ModelMethodsTest, DescribesAModelAndItsLimits) {
+  RunningService running;
+  grpc::ClientContext context;
+  v1::GetModelResponse response;
+  ASSERT_TRUE(running.stub().GetModel(&context, v1::GetModelRequest(), &response).ok());
+  const ModelDescription fake = FakeDescription();
+  EXPECT_EQ(response.model().name(), "fake");
+  EXPECT_THAT(response.model().interaction_classes(), testing::ElementsAreArray(fake.classes));
+  EXPECT_THAT(response.model().joint_names(), testing::ElementsAreArray(fake.skeleton.joint_names));
+  EXPECT_EQ(response.model().bones_size(), 14);
+  EXPECT_EQ(response.model().root_joint(), "torso");
+  EXPECT_EQ(response.model().frame_rate_hz(), 15);
+  EXPECT_EQ(response.model().window_frames(), 46u);
+  EXPECT_TRUE(response.model().accepts_follower_start());
+  EXPECT_EQ(response.model().description(), fake.description);
+  EXPECT_EQ(response.limits().min_frame_rate_hz(), 1);
+  EXPECT_EQ(response.limits().max_frame_rate_hz(), 240);
+  EXPECT_EQ(response.limits().min_frames(), 2u);
+  EXPECT_EQ(response.limits().max_duration_seconds(), 600);
+  EXPECT_EQ(response.limits().max_chunk_frames(), 240u);
+  EXPECT_EQ(response.limits().max_label_keyframes(), 4096u);
+  EXPECT_EQ(response.limits().max_abs_weight(), 2);
+  EXPECT_EQ(response.limits().max_request_bytes(), 32u << 20);
+}
+
+TEST(ModelMethodsTest, GetModelNamesWhatIsNotServed) {
+  RunningService running;
+  grpc::ClientContext context;
+  v1::GetModelRequest request;
+  request.mutable_model()->set_name("nobody");
+  v1::GetModelResponse response;
+  const Refusal refusal = Decode(running.stub().GetModel(&context, request, &response));
+  EXPECT_EQ(refusal.code, StatusCode::kNotFound);
+  EXPECT_THAT(refusal.Fields(), ElementsAre("model.name"));
+}
+
+TEST(ModelMethodsTest, ACallKeepsItsModelWhenAnotherTakesItsPlace) {
+  PuppetService service;
+  grpc::ClientContext context;
+  const auto reader = service.running.stub().Synthesize(&context, SampleRequest(20));
+  service.puppet.WaitForJobs(1);
+  auto replacement = std::make_shared<FakeSynthesizer>();
+  replacement->window_status = [](const SynthesisWindow&) { return absl::InternalError("new"); };
+  service.running.registry().Serve(replacement);
+  service.puppet.RunNext();
+  EXPECT_TRUE(ReadAll(*reader).status.ok());
+}
+
+}  // namespace
+}  // namespace duet

@@ -1,0 +1,17 @@
+#ifndef DUET_TESTS_SERVER_SUPPORT_HTTP_GET_H_
+#define DUET_TESTS_SERVER_SUPPORT_HTTP_GET_H_
+
+#include <string>
+
+namespace duet {
+
+// Sends bytes to a port of this machine and returns all that comes back until it closes. Shares no
+// code with the server's HTTP library.
+std::string Exchange(int port, const std::string& request);
+
+// A whole HTTP response to GET, headers and body.
+std::string HttpGet(int port, const std::string& path);
+
+}  // namespace duet
+
+#endif  // DUET_TESTS_SERVER_SUPPORT_HTTP_GET_H_

@@ -1,0 +1,82 @@
+#include "tests/server/support/running_service.h"
+
+#include <grpcpp/create_channel.h>
+#include <grpcpp/security/credentials.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+
+namespace duet {
+
+RunningService::RunningService(Setup setup) : admission_(setup.max_calls) {
+  registry_.Serve(std::move(setup.model));
+  admission_.SetState(Admission::State::kServing);
+  if (setup.scheduler == nullptr) {
+    pool_ = std::make_unique<WorkerPool>(WorkerPoolOptions{2, 64}, Clock::Real());
+    setup.scheduler = pool_.get();
+  }
+  ServiceParts parts;
+  parts.registry = &registry_;
+  parts.scheduler = setup.scheduler;
+  parts.admission = &admission_;
+  parts.observers = {&calls_};
+  parts.limits = setup.limits;
+  parts.buffered_frames = setup.buffered_frames;
+  service_ = std::make_unique<MotionSynthesisService>(parts);
+  absl::StatusOr<GrpcServer> grpc =
+      StartGrpcServer({{"127.0.0.1", 0}, false, setup.limits.max_request_bytes, 16}, *service_);
+  if (!grpc.ok()) {
+    ADD_FAILURE() << grpc.status();
+    return;
+  }
+  grpc_ = *std::move(grpc);
+  stub_ = v1::MotionSynthesis::NewStub(grpc::CreateChannel(absl::StrCat("127.0.0.1:", grpc_.port),
+                                                           grpc::InsecureChannelCredentials()));
+}
+
+RunningService::~RunningService() {
+  if (grpc_.server == nullptr) return;
+  service_->AbortAll(absl::UnavailableError("the test is over"));
+  grpc_.server->Shutdown(std::chrono::system_clock::now());
+}
+
+std::vector<float> Reply::Positions() const {
+  std::vector<float> positions;
+  for (const v1::SynthesizeResponse& message : messages) {
+    positions.insert(positions.end(), message.chunk().positions().begin(),
+                     message.chunk().positions().end());
+  }
+  return positions;
+}
+
+std::vector<int> Reply::ChunkFrames() const {
+  std::vector<int> frames;
+  for (const v1::SynthesizeResponse& message : messages) {
+    if (message.has_chunk()) frames.push_back(static_cast<int>(message.chunk().frame_count()));
+  }
+  return frames;
+}
+
+Reply ReadAll(grpc::ClientReader<v1::SynthesizeResponse>& reader) {
+  Reply reply;
+  v1::SynthesizeResponse message;
+  while (reader.Read(&message)) reply.messages.push_back(message);
+  reply.status = reader.Finish();
+  return reply;
+}
+
+Reply Call(v1::MotionSynthesis::Stub& stub, const v1::SynthesizeRequest& request) {
+  grpc::ClientContext context;
+  return Call(stub, request, context);
+}
+
+Reply Call(v1::MotionSynthesis::Stub& stub, const v1::SynthesizeRequest& request,
+           grpc::ClientContext& context) {
+  const auto reader = stub.Synthesize(&context, request);
+  return ReadAll(*reader);
+}
+
+}  // namespace duet

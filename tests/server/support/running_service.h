@@ -1,0 +1,74 @@
+#ifndef DUET_TESTS_SERVER_SUPPORT_RUNNING_SERVICE_H_
+#define DUET_TESTS_SERVER_SUPPORT_RUNNING_SERVICE_H_
+
+#include <grpcpp/channel.h>
+#include <grpcpp/client_context.h>
+
+#include <memory>
+#include <vector>
+
+#include "duet/v1/synthesis.grpc.pb.h"
+#include "server/batching/worker_pool.h"
+#include "server/lifecycle/grpc_server.h"
+#include "server/registry/model_registry.h"
+#include "server/service/admission.h"
+#include "server/service/motion_synthesis_service.h"
+#include "tests/server/support/recording_observer.h"
+#include "tests/support/fake_synthesizer.h"
+
+namespace duet {
+
+// The service behind real gRPC on a free port, with a fake model and whatever scheduler a test
+// wants.
+class RunningService {
+ public:
+  struct Setup {
+    std::shared_ptr<const Synthesizer> model = std::make_shared<FakeSynthesizer>();
+    WindowScheduler* scheduler = nullptr;  // null: a pool with two workers
+    std::size_t max_calls = 16;
+    RequestLimits limits;
+    int buffered_frames = 240;
+  };
+
+  explicit RunningService(Setup setup);
+  RunningService() : RunningService(Setup()) {}
+  ~RunningService();
+
+  v1::MotionSynthesis::Stub& stub() { return *stub_; }
+  RecordingObserver& calls() { return calls_; }
+  ModelRegistry& registry() { return registry_; }
+  Admission& admission() { return admission_; }
+  MotionSynthesisService& service() { return *service_; }
+
+ private:
+  RecordingObserver calls_;
+  ModelRegistry registry_;
+  Admission admission_;
+  std::unique_ptr<WorkerPool> pool_;
+  std::unique_ptr<MotionSynthesisService> service_;
+  GrpcServer grpc_;
+  std::unique_ptr<v1::MotionSynthesis::Stub> stub_;
+};
+
+// A whole reply stream.
+struct Reply {
+  std::vector<v1::SynthesizeResponse> messages;
+  grpc::Status status;
+
+  // The positions of all chunks, in order.
+  std::vector<float> Positions() const;
+  // The chunks' sizes in frames.
+  std::vector<int> ChunkFrames() const;
+};
+
+// Reads what is left of a stream.
+Reply ReadAll(grpc::ClientReader<v1::SynthesizeResponse>& reader);
+
+// Makes a call and reads its reply.
+Reply Call(v1::MotionSynthesis::Stub& stub, const v1::SynthesizeRequest& request);
+Reply Call(v1::MotionSynthesis::Stub& stub, const v1::SynthesizeRequest& request,
+           grpc::ClientContext& context);
+
+}  // namespace duet
+
+#endif  // DUET_TESTS_SERVER_SUPPORT_RUNNING_SERVICE_H_

@@ -1,0 +1,218 @@
+#include "server/service/synthesis_call.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "server/service/refusals.h"
+#include "tests/server/support/fake_clock.h"
+#include "tests/server/support/puppet_scheduler.h"
+#include "tests/server/support/recording_observer.h"
+#include "tests/server/support/sample_request.h"
+#include "tests/support/fake_synthesizer.h"
+#include "tests/support/status_matchers.h"
+
+namespace duet {
+namespace {
+
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+using absl::StatusCode;
+
+// A reader that the test steps.
+class FakeWriter final : public ReplyWriter {
+ public:
+  void Write(const v1::SynthesizeResponse& reply) override {
+    EXPECT_FALSE(writing) << "two writes at once";
+    EXPECT_FALSE(finished.has_value()) << "a write after the end";
+    writing = true;
+    replies.push_back(reply);
+  }
+  void Finish(const absl::Status& status) override {
+    EXPECT_FALSE(writing) << "the end while a write is under way";
+    EXPECT_FALSE(finished.has_value()) << "two ends";
+    finished = status;
+  }
+
+  bool writing = false;
+  std::vector<v1::SynthesizeResponse> replies;
+  std::optional<absl::Status> finished;
+};
+
+class SynthesisCallTest : public ::testing::Test {
+ protected:
+  void Create(int frames,
+              std::shared_ptr<FakeSynthesizer> model = std::make_shared<FakeSynthesizer>()) {
+    absl::StatusOr<ValidatedRequest> request =
+        ValidateRequest(SampleRequest(frames), model->description(), RequestLimits());
+    ASSERT_THAT(request, IsOk());
+    absl::StatusOr<AdmissionSlot> slot = admission_.Admit(Priority::kInteractive);
+    ASSERT_THAT(slot, IsOk());
+    auto scope = std::make_unique<CallScope>(MethodInfo{"service", "Synthesize", "server_stream"},
+                                             CallIdentity{"id", "", "peer"}, observers_, clock_);
+    call_ = SynthesisCall::Create({std::move(model), *std::move(request), *std::move(slot),
+                                   std::move(scope), TimePoint::max(), 240},
+                                  scheduler_, writer_);
+  }
+
+  // The reader took the message under way.
+  void Written(bool ok = true) {
+    ASSERT_TRUE(writer_.writing);
+    writer_.writing = false;
+    call_->OnWritten(ok);
+  }
+
+  FakeClock clock_;
+  RecordingObserver observer_;
+  const std::vector<CallObserver*> observers_ = {&observer_};
+  Admission admission_{4};
+  PuppetScheduler scheduler_;
+  FakeWriter writer_;
+  std::shared_ptr<SynthesisCall> call_;
+
+  SynthesisCallTest() { admission_.SetState(Admission::State::kServing); }
+};
+
+TEST_F(SynthesisCallTest, WritesOneMessageAtATimeAndThenEnds) {
+  Create(46);
+  call_->Start();
+  ASSERT_THAT(writer_.replies, SizeIs(1));
+  EXPECT_TRUE(writer_.replies[0].has_header());
+  scheduler_.RunNext();
+  EXPECT_THAT(writer_.replies, SizeIs(1)) << "the header is still under way";
+  Written();
+  ASSERT_THAT(writer_.replies, SizeIs(2));
+  EXPECT_EQ(writer_.replies[1].chunk().frame_count(), 30u);
+  Written();
+  EXPECT_EQ(writer_.replies[2].chunk().frame_count(), 16u);
+  Written();
+  EXPECT_TRUE(writer_.replies[3].has_summary());
+  EXPECT_FALSE(writer_.finished.has_value());
+  Written();
+  ASSERT_TRUE(writer_.finished.has_value());
+  EXPECT_THAT(*writer_.finished, IsOk());
+}
+
+TEST_F(SynthesisCallTest, WaitsForTheNextWindowWithoutAMessageUnderWay) {
+  Create(46);
+  call_->Start();
+  Written();
+  EXPECT_FALSE(writer_.writing);
+  scheduler_.RunNext();
+  EXPECT_TRUE(writer_.writing);
+}
+
+TEST_F(SynthesisCallTest, ARefusalComesBeforeAnyMessage) {
+  Create(46);
+  scheduler_.Refuse(absl::ResourceExhaustedError("full"));
+  call_->Start();
+  EXPECT_THAT(writer_.replies, IsEmpty());
+  ASSERT_TRUE(writer_.finished.has_value());
+  EXPECT_THAT(*writer_.finished, StatusIs(StatusCode::kResourceExhausted, "full"));
+}
+
+TEST_F(SynthesisCallTest, GivesItsPlaceBackAndReportsBeforeTheCallerKnows) {
+  Create(46);
+  scheduler_.Refuse(absl::ResourceExhaustedError("full"));
+  EXPECT_EQ(admission_.calls(), 1u);
+  call_->Start();
+  EXPECT_EQ(admission_.calls(), 0u);
+  EXPECT_THAT(observer_.records(), SizeIs(1));
+}
+
+TEST_F(SynthesisCallTest, AnAbortWhileIdleEndsAtOnce) {
+  Create(46);
+  call_->Start();
+  Written();
+  call_->Abort(absl::CancelledError("gone"));
+  ASSERT_TRUE(writer_.finished.has_value());
+  EXPECT_THAT(*writer_.finished, StatusIs(StatusCode::kCancelled, "gone"));
+}
+
+TEST_F(SynthesisCallTest, AnAbortWaitsForTheMessageUnderWay) {
+  Create(46);
+  call_->Start();
+  call_->Abort(absl::CancelledError("gone"));
+  EXPECT_FALSE(writer_.finished.has_value());
+  Written(/*ok=*/false);
+  ASSERT_TRUE(writer_.finished.has_value());
+  EXPECT_THAT(*writer_.finished, StatusIs(StatusCode::kCancelled, "gone"));
+}
+
+TEST_F(SynthesisCallTest, TheFirstReasonToEndCounts) {
+  Create(46);
+  call_->Start();
+  call_->Abort(DrainingRefusal());
+  call_->Abort(absl::CancelledError("gone"));
+  Written(/*ok=*/false);
+  EXPECT_THAT(*writer_.finished, StatusIs(StatusCode::kUnavailable, testing::_));
+  EXPECT_THAT(observer_.records(), SizeIs(1));
+}
+
+TEST_F(SynthesisCallTest, AMessageThatCannotBeWrittenEndsTheCall) {
+  Create(46);
+  call_->Start();
+  Written(/*ok=*/false);
+  ASSERT_TRUE(writer_.finished.has_value());
+  EXPECT_THAT(*writer_.finished, StatusIs(StatusCode::kCancelled, testing::_));
+  EXPECT_FALSE(scheduler_.RunNext()) << "its window was evaluated";
+}
+
+TEST_F(SynthesisCallTest, AWindowThatEndsLateFindsNobody) {
+  auto model = std::make_shared<FakeSynthesizer>();
+  // The caller goes away, writer and all, while its window is being evaluated.
+  model->on_batch = [this](absl::Span<const SynthesisWindow* const>) {
+    call_->Abort(absl::CancelledError("gone"));
+    call_.reset();
+  };
+  Create(46, model);
+  call_->Start();
+  Written();
+  EXPECT_TRUE(scheduler_.RunNext());
+  EXPECT_THAT(writer_.replies, SizeIs(1));
+  EXPECT_THAT(*writer_.finished, StatusIs(StatusCode::kCancelled, "gone"));
+}
+
+TEST_F(SynthesisCallTest, AFailedWindowEndsTheCallThoughFramesAreLeft) {
+  auto model = std::make_shared<FakeSynthesizer>();
+  int windows = 0;
+  model->window_status = [&windows](const SynthesisWindow&) {
+    return ++windows == 2 ? absl::InternalError("broken") : absl::OkStatus();
+  };
+  Create(200, model);
+  call_->Start();
+  scheduler_.RunNext();
+  scheduler_.RunNext();
+  Written();
+  ASSERT_TRUE(writer_.finished.has_value());
+  EXPECT_EQ(writer_.finished->code(), StatusCode::kInternal);
+}
+
+TEST_F(SynthesisCallTest, MeasuresTheFirstChunkAndTheWhole) {
+  Create(46);
+  call_->Start();
+  Written();
+  clock_.Advance(std::chrono::milliseconds(200));
+  scheduler_.RunNext();
+  clock_.Advance(std::chrono::milliseconds(300));
+  while (writer_.writing) Written();
+  const CallRecord record = observer_.WaitFor(1);
+  EXPECT_DOUBLE_EQ(record.first_chunk_seconds, 0.2);
+  EXPECT_DOUBLE_EQ(record.total_seconds, 0.5);
+}
+
+TEST_F(SynthesisCallTest, ACallThatSendsNoChunkHasNoFirst) {
+  Create(46);
+  call_->Start();
+  call_->Abort(absl::CancelledError("gone"));
+  Written(/*ok=*/false);
+  EXPECT_LT(observer_.WaitFor(1).first_chunk_seconds, 0);
+}
+
+}  // namespace
+}  // namespace duet

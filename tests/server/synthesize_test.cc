@@ -1,0 +1,348 @@
+// What Synthesize answers: order of the stream, frames, units, rates, joints.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numeric>
+#include <string>
+#include <thread>
+#include <tuple>
+#include <vector>
+
+#include "tests/server/support/puppet_scheduler.h"
+#include "tests/server/support/running_service.h"
+#include "tests/server/support/sample_request.h"
+#include "tests/support/sample_motion.h"
+
+namespace duet {
+namespace {
+
+using ::testing::Each;
+using ::testing::ElementsAre;
+using ::testing::ElementsAreArray;
+using ::testing::Le;
+
+// A model whose follower does what the leader does.
+std::shared_ptr<FakeSynthesizer> Echo() {
+  auto model = std::make_shared<FakeSynthesizer>();
+  model->answer = [](Vec3 leader, absl::Span<const float>) { return leader; };
+  return model;
+}
+
+float LargestDifference(const std::vector<float>& a,
+                        const google::protobuf::RepeatedField<float>& b) {
+  float largest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    largest = std::max(largest, std::abs(a[i] - b[static_cast<int>(i)]));
+  }
+  return largest;
+}
+
+TEST(SynthesizeTest, StreamsHeaderThenChunksThenSummary) {
+  RunningService running;
+  const v1::SynthesizeRequest request = SampleRequest(200);
+  const Reply reply = Call(running.stub(), request);
+  ASSERT_TRUE(reply.status.ok()) << reply.status.error_message();
+  ASSERT_GE(reply.messages.size(), 3u);
+  EXPECT_TRUE(reply.messages.front().has_header());
+  for (std::size_t i = 1; i + 1 < reply.messages.size(); ++i) {
+    EXPECT_TRUE(reply.messages[i].has_chunk()) << "message " << i;
+  }
+  EXPECT_TRUE(reply.messages.back().has_summary());
+}
+
+TEST(SynthesizeTest, TheHeaderSaysWhoAnswersAndHow) {
+  RunningService running;
+  v1::SynthesizeRequest request = SampleRequest(50);
+  request.mutable_leader()->set_frame_rate_hz(24);
+  const Reply reply = Call(running.stub(), request);
+  ASSERT_TRUE(reply.status.ok()) << reply.status.error_message();
+  const v1::SynthesisHeader& header = reply.messages.front().header();
+  EXPECT_EQ(header.model_name(), "fake");
+  EXPECT_EQ(header.model_version(), 1u);
+  EXPECT_THAT(header.joint_names(), ElementsAreArray(request.leader().joint_names()));
+  EXPECT_EQ(header.frame_rate_hz(), 24);
+  EXPECT_EQ(header.unit(), v1::LENGTH_UNIT_METRES);
+  EXPECT_EQ(header.up_axis(), v1::UP_AXIS_Y_UP);
+  EXPECT_EQ(header.frame_count(), 50u);
+  EXPECT_THAT(header.interaction_classes(), ElementsAreArray(FakeDescription().classes));
+  EXPECT_EQ(header.request_id(), running.calls().WaitFor(1).request_id);
+}
+
+TEST(SynthesizeTest, ChunksFollowEachOtherWithoutGaps) {
+  RunningService running;
+  v1::SynthesizeRequest request = SampleRequest(200);
+  request.set_chunk_frames(7);
+  const Reply reply = Call(running.stub(), request);
+  ASSERT_TRUE(reply.status.ok()) << reply.status.error_message();
+  uint32_t next = 0;
+  for (const v1::SynthesizeResponse& message : reply.messages) {
+    if (!message.has_chunk()) continue;
+    EXPECT_EQ(message.chunk().first_frame(), next);
+    EXPECT_EQ(message.chunk().positions_size(), message.chunk().frame_count() * 15 * 3);
+    next += message.chunk().frame_count();
+  }
+  EXPECT_EQ(next, 200u);
+  EXPECT_THAT(reply.ChunkFrames(), Each(Le(7)));
+}
+
+TEST(SynthesizeTest, AChunkHasThirtyFramesUnlessToldOtherwise) {
+  PuppetScheduler puppet;
+  RunningService::Setup setup;
+  setup.scheduler = &puppet;
+  RunningService running(setup);
+  grpc::ClientContext context;
+  const auto reader = running.stub().Synthesize(&context, SampleRequest(46));
+  puppet.RunNext();  // all 46 frames are there before the first chunk is cut
+  EXPECT_THAT(ReadAll(*reader).ChunkFrames(), ElementsAre(30, 16));
+}
+
+TEST(SynthesizeTest, OneFrameAChunk) {
+  RunningService running;
+  v1::SynthesizeRequest request = SampleRequest(20);
+  request.set_chunk_frames(1);
+  EXPECT_THAT(Call(running.stub(), request).ChunkFrames(), ElementsAreArray(std::vector(20, 1)));
+}
+
+TEST(SynthesizeTest, TheSummaryCountsWhatWasSent) {
+  RunningService running;
+  const Reply reply = Call(running.stub(), SampleRequest(200));
+  ASSERT_TRUE(reply.status.ok()) << reply.status.error_message();
+  const v1::SynthesisSummary& summary = reply.messages.back().summary();
+  EXPECT_EQ(summary.frame_count(), 200u);
+  EXPECT_EQ(summary.chunk_count(), reply.messages.size() - 2);
+  EXPECT_GT(summary.window_count(), 200u / 46u);
+  EXPECT_GE(summary.queue_seconds(), 0);
+  EXPECT_GE(summary.compute_seconds(), 0);
+}
+
+TEST(SynthesizeTest, TheFirstChunkLeavesAfterTheFirstWindow) {
+  PuppetScheduler puppet;
+  RunningService::Setup setup;
+  setup.scheduler = &puppet;
+  RunningService running(setup);
+  grpc::ClientContext context;
+  const auto reader = running.stub().Synthesize(&context, SampleRequest(900));
+  puppet.RunNext();
+  v1::SynthesizeResponse message;
+  ASSERT_TRUE(reader->Read(&message));
+  EXPECT_TRUE(message.has_header());
+  ASSERT_TRUE(reader->Read(&message));
+  EXPECT_TRUE(message.has_chunk());
+  EXPECT_EQ(puppet.waiting(), 1u) << "the second of many windows has not been evaluated";
+  context.TryCancel();
+  while (reader->Read(&message)) {
+  }
+  reader->Finish();
+}
+
+TEST(SynthesizeTest, TheHeaderLeavesBeforeTheFirstWindowIsEvaluated) {
+  PuppetScheduler puppet;
+  RunningService::Setup setup;
+  setup.scheduler = &puppet;
+  RunningService running(setup);
+  grpc::ClientContext context;
+  const auto reader = running.stub().Synthesize(&context, SampleRequest(46));
+  v1::SynthesizeResponse message;
+  ASSERT_TRUE(reader->Read(&message));
+  EXPECT_TRUE(message.has_header());
+  EXPECT_EQ(puppet.waiting(), 1u);
+  puppet.RunNext();
+  EXPECT_TRUE(ReadAll(*reader).status.ok());
+}
+
+TEST(SynthesizeTest, AnswersWithTheModelsMotion) {
+  RunningService running;
+  const v1::SynthesizeRequest request = SampleRequest(100);
+  const std::vector<float> positions = Call(running.stub(), request).Positions();
+  ASSERT_EQ(positions.size(), 100u * 15u * 3u);
+  const std::vector<Vec3> leader = SwayingMotion(100, 15);
+  const std::vector<float> labels = {1, 0, 0, 0, 0, 0};
+  for (std::size_t i = 0; i < leader.size(); ++i) {
+    const Vec3 expected = FakeAnswer(leader[i], labels);
+    const Vec3 actual = {positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]};
+    ASSERT_LT(Distance(actual, expected), 1e-4F) << "position " << i;
+  }
+}
+
+TEST(SynthesizeTest, LabelKeyframesReachTheModel) {
+  RunningService running;
+  v1::SynthesizeRequest request = SampleRequest(100);
+  request.clear_label_vector();
+  for (const auto& [frame, weight] : {std::pair{0U, 0.0F}, std::pair{99U, 1.0F}}) {
+    v1::LabelKeyframe& keyframe = *request.add_label_keyframes();
+    keyframe.set_frame(frame);
+    AddWeight(*keyframe.mutable_label_vector(), "push", weight);
+  }
+  const Reply reply = Call(running.stub(), request);
+  const std::vector<float> positions = reply.Positions();
+  ASSERT_EQ(positions.size(), 100u * 45u);
+  // The fake lifts the follower by the sum of the weights.
+  const auto lift = [&](std::size_t frame) {
+    return positions[frame * 45 + 1] - request.leader().positions(static_cast<int>(frame) * 45 + 1);
+  };
+  EXPECT_NEAR(lift(0), 0, 1e-3);
+  EXPECT_NEAR(lift(50), 50.0 / 99, 1e-3);
+  EXPECT_NEAR(lift(99), 1, 1e-3);
+}
+
+TEST(SynthesizeTest, FollowerStartAndPartnerDirectionReachTheModel) {
+  PuppetScheduler puppet;
+  auto model = std::make_shared<FakeSynthesizer>();
+  std::vector<SynthesisWindow> seen;
+  model->on_batch = [&](absl::Span<const SynthesisWindow* const> windows) {
+    seen.push_back(*windows[0]);
+  };
+  RunningService::Setup setup;
+  setup.model = model;
+  setup.scheduler = &puppet;
+  RunningService running(setup);
+  v1::SynthesizeRequest request = SampleRequest(20);
+  request.mutable_follower_start()->mutable_root_position()->set_z(-2);
+  request.mutable_partner_direction()->set_z(-3);
+  grpc::ClientContext context;
+  const auto reader = running.stub().Synthesize(&context, request);
+  puppet.RunNext();
+  EXPECT_TRUE(ReadAll(*reader).status.ok());
+  ASSERT_EQ(seen.size(), 1u);
+  ASSERT_TRUE(seen[0].start.has_value());
+  EXPECT_EQ(seen[0].start->root, (Vec3{0, 0, -2}));
+  ASSERT_TRUE(seen[0].partner_direction.has_value());
+  EXPECT_EQ(*seen[0].partner_direction, (Vec3{0, 0, -1}));
+}
+
+TEST(SynthesizeTest, RepliesWithTheAskedForJointsInTheAskedForOrder) {
+  RunningService::Setup setup;
+  setup.model = Echo();
+  RunningService running(setup);
+  v1::SynthesizeRequest request = SampleRequest(30);
+  request.add_reply_joint_names("torso");
+  request.add_reply_joint_names("head");
+  const Reply reply = Call(running.stub(), request);
+  ASSERT_TRUE(reply.status.ok()) << reply.status.error_message();
+  EXPECT_THAT(reply.messages.front().header().joint_names(), ElementsAre("torso", "head"));
+  const std::vector<float> positions = reply.Positions();
+  ASSERT_EQ(positions.size(), 30u * 2u * 3u);
+  const std::vector<Vec3> leader = SwayingMotion(30, 15);
+  for (std::size_t frame = 0; frame < 30; ++frame) {
+    EXPECT_NEAR(positions[frame * 6], leader[frame * 15 + 2].x, 1e-4);      // torso
+    EXPECT_NEAR(positions[frame * 6 + 4], leader[frame * 15 + 0].y, 1e-4);  // head
+  }
+}
+
+TEST(SynthesizeTest, RepliesInTheLeadersJointOrder) {
+  RunningService::Setup setup;
+  setup.model = Echo();
+  RunningService running(setup);
+  v1::SynthesizeRequest request = SampleRequest(30);
+  v1::Motion& leader = *request.mutable_leader();
+  leader.mutable_joint_names()->SwapElements(0, 14);
+  const Reply reply = Call(running.stub(), request);
+  ASSERT_TRUE(reply.status.ok()) << reply.status.error_message();
+  EXPECT_THAT(reply.messages.front().header().joint_names(),
+              ElementsAreArray(leader.joint_names()));
+  // What was said of the joint called first must come back for the joint called first.
+  EXPECT_LT(LargestDifference(reply.Positions(), leader.positions()), 1e-4F);
+}
+
+using Frame = std::tuple<v1::LengthUnit, v1::UpAxis, float>;  // the unit's length of a metre
+
+class FrameTest : public ::testing::TestWithParam<Frame> {};
+
+TEST_P(FrameTest, TheReplyIsInTheLeadersUnitAxisAndWorld) {
+  const auto [unit, up_axis, metre] = GetParam();
+  RunningService::Setup setup;
+  setup.model = Echo();
+  RunningService running(setup);
+  v1::SynthesizeRequest request = SampleRequest(120);
+  v1::Motion& leader = *request.mutable_leader();
+  leader.set_unit(unit);
+  leader.set_up_axis(up_axis);
+  for (float& value : *leader.mutable_positions()) value *= metre;
+  const Reply reply = Call(running.stub(), request);
+  ASSERT_TRUE(reply.status.ok()) << reply.status.error_message();
+  EXPECT_EQ(reply.messages.front().header().unit(), unit);
+  EXPECT_EQ(reply.messages.front().header().up_axis(), up_axis);
+  ASSERT_EQ(reply.Positions().size(), static_cast<std::size_t>(leader.positions_size()));
+  EXPECT_LT(LargestDifference(reply.Positions(), leader.positions()), 1e-4F * metre);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Every, FrameTest,
+    ::testing::Values(Frame{v1::LENGTH_UNIT_METRES, v1::UP_AXIS_Y_UP, 1},
+                      Frame{v1::LENGTH_UNIT_METRES, v1::UP_AXIS_Z_UP, 1},
+                      Frame{v1::LENGTH_UNIT_METRES, v1::UP_AXIS_Y_DOWN, 1},
+                      Frame{v1::LENGTH_UNIT_MILLIMETRES, v1::UP_AXIS_Y_UP, 1000},
+                      Frame{v1::LENGTH_UNIT_MILLIMETRES, v1::UP_AXIS_Z_UP, 1000},
+                      Frame{v1::LENGTH_UNIT_MILLIMETRES, v1::UP_AXIS_Y_DOWN, 1000},
+                      Frame{v1::LENGTH_UNIT_SBU_NORMALISED, v1::UP_AXIS_Y_DOWN, 1}));
+
+class RateTest : public ::testing::TestWithParam<double> {};
+
+TEST_P(RateTest, TheReplyIsAtTheLeadersRate) {
+  const double rate = GetParam();
+  RunningService::Setup setup;
+  setup.model = Echo();
+  RunningService running(setup);
+  v1::SynthesizeRequest request = SampleRequest(40);
+  v1::Motion& leader = *request.mutable_leader();
+  const int frames = std::max(2, static_cast<int>(rate * 7));
+  leader.set_frame_rate_hz(rate);
+  leader.set_frame_count(static_cast<uint32_t>(frames));
+  // A straight path: resampling there and back must not change it.
+  leader.clear_positions();
+  for (int frame = 0; frame < frames; ++frame) {
+    for (int i = 0; i < 45; ++i) {
+      leader.add_positions(static_cast<float>(0.1 * i + 0.3 * frame / rate));
+    }
+  }
+  const Reply reply = Call(running.stub(), request);
+  ASSERT_TRUE(reply.status.ok()) << reply.status.error_message();
+  EXPECT_EQ(reply.messages.front().header().frame_rate_hz(), rate);
+  ASSERT_EQ(reply.Positions().size(), static_cast<std::size_t>(leader.positions_size()));
+  // Within what the held last frame does to the spline: a part of a model frame's way.
+  EXPECT_LT(LargestDifference(reply.Positions(), leader.positions()), 0.3F / 15);
+}
+
+INSTANTIATE_TEST_SUITE_P(Several, RateTest, ::testing::Values(1, 12.5, 15, 29.97, 60, 240));
+
+TEST(SynthesizeTest, AnswersTwoFrames) {
+  RunningService running;
+  const Reply reply = Call(running.stub(), SampleRequest(2));
+  EXPECT_TRUE(reply.status.ok()) << reply.status.error_message();
+  EXPECT_THAT(reply.ChunkFrames(), ElementsAre(2));
+}
+
+TEST(SynthesizeTest, AnswersTenMinutesWithinABoundedBuffer) {
+  RunningService::Setup setup;
+  setup.buffered_frames = 60;
+  RunningService running(setup);
+  const Reply reply = Call(running.stub(), SampleRequest(9000));
+  EXPECT_TRUE(reply.status.ok()) << reply.status.error_message();
+  const std::vector<int> chunks = reply.ChunkFrames();
+  EXPECT_EQ(std::accumulate(chunks.begin(), chunks.end(), 0), 9000);
+  EXPECT_LT(running.calls().WaitFor(1).peak_buffered_frames, 60 + 46);
+}
+
+TEST(SynthesizeTest, AnswersManyCallsAtOnce) {
+  RunningService running;
+  const Reply expected = Call(running.stub(), SampleRequest(150));
+  std::vector<std::thread> callers;
+  std::vector<Reply> replies(8);
+  for (Reply& reply : replies) {
+    callers.emplace_back([&] {
+      for (int i = 0; i < 5; ++i) reply = Call(running.stub(), SampleRequest(150));
+    });
+  }
+  for (std::thread& caller : callers) caller.join();
+  for (const Reply& reply : replies) {
+    EXPECT_TRUE(reply.status.ok()) << reply.status.error_message();
+    EXPECT_EQ(reply.Positions(), expected.Positions());
+  }
+}
+
+}  // namespace
+}  // namespace duet
