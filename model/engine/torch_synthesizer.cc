@@ -7,6 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "model/checkpoints/embedded.h"
 #include "model/engine/window_frame.h"
+#include "model/motion/limb_lengths.h"
 #include "model/network/batch.h"
 #include "model/network/parameters.h"
 
@@ -15,8 +16,9 @@ namespace {
 
 class TorchSynthesizer : public Synthesizer {
  public:
-  TorchSynthesizer(Manifest manifest, network::Generator generator)
-      : manifest_(std::move(manifest)), generator_(std::move(generator)) {}
+  TorchSynthesizer(Manifest manifest, network::Generator generator,
+                   const TorchSynthesizerOptions& options)
+      : manifest_(std::move(manifest)), generator_(std::move(generator)), options_(options) {}
 
   const ModelDescription& description() const override { return manifest_.model; }
 
@@ -44,49 +46,62 @@ class TorchSynthesizer : public Synthesizer {
     const torch::Tensor followers = generator_->forward(network::MakeInput(manifest_, items));
     std::vector<WindowResult> results;
     for (size_t n = 0; n < windows.size(); ++n) {
-      results.push_back(Take(followers, n, windows[n]->leader.size(), standards[n]));
+      results.push_back(Take(followers, n, *windows[n], standards[n]));
     }
     return results;
   }
 
-  WindowResult Take(const torch::Tensor& followers, size_t clip, size_t points,
+  WindowResult Take(const torch::Tensor& followers, size_t clip, const SynthesisWindow& window,
                     const Standardisation& standard) const {
-    const int64_t frames = static_cast<int64_t>(points) / manifest_.model.skeleton.joint_count();
-    const std::vector<Vec3> follower =
-        network::TakePositions(followers, static_cast<int64_t>(clip), frames);
+    const Skeleton& skeleton = manifest_.model.skeleton;
+    const int64_t frames = static_cast<int64_t>(window.leader.size()) / skeleton.joint_count();
+    std::vector<Vec3> follower =
+        standard.Invert(network::TakePositions(followers, static_cast<int64_t>(clip), frames));
     for (const Vec3& point : follower) {
       if (!IsFinite(point)) return absl::InternalError("the network's result is not finite");
     }
-    return standard.Invert(follower);
+    if (options_.keep_limb_lengths) KeepLimbLengths(window, &follower);
+    return follower;
+  }
+
+  void KeepLimbLengths(const SynthesisWindow& window, std::vector<Vec3>* follower) const {
+    const Skeleton& skeleton = manifest_.model.skeleton;
+    const bool has_pose = window.start && !window.start->pose.empty();
+    const std::vector<Vec3>& owner = has_pose ? window.start->pose : window.leader;
+    SetBoneLengths(skeleton, MedianBoneLengths(skeleton, owner), follower);
   }
 
   Manifest manifest_;
   mutable network::Generator generator_;  // forward is not const; it changes nothing
+  TorchSynthesizerOptions options_;
 };
 
 }  // namespace
 
-absl::StatusOr<std::unique_ptr<Synthesizer>> MakeTorchSynthesizer(const Checkpoint& checkpoint) {
+absl::StatusOr<std::unique_ptr<Synthesizer>> MakeTorchSynthesizer(
+    const Checkpoint& checkpoint, const TorchSynthesizerOptions& options) {
   network::Generator generator(checkpoint.manifest);
   absl::Status status = network::LoadParameters(checkpoint, generator);
   if (!status.ok()) return status;
   generator->eval();
-  return std::make_unique<TorchSynthesizer>(checkpoint.manifest, std::move(generator));
+  return std::make_unique<TorchSynthesizer>(checkpoint.manifest, std::move(generator), options);
 }
 
 absl::StatusOr<std::unique_ptr<Synthesizer>> LoadTorchSynthesizer(
-    const std::filesystem::path& folder) {
+    const std::filesystem::path& folder, const TorchSynthesizerOptions& options) {
   absl::StatusOr<Checkpoint> checkpoint = ReadCheckpoint(folder);
   if (!checkpoint.ok()) return checkpoint.status();
-  return MakeTorchSynthesizer(*checkpoint);
+  return MakeTorchSynthesizer(*checkpoint, options);
 }
 
-absl::StatusOr<std::vector<std::unique_ptr<Synthesizer>>> LoadEmbeddedSynthesizers() {
+absl::StatusOr<std::vector<std::unique_ptr<Synthesizer>>> LoadEmbeddedSynthesizers(
+    const TorchSynthesizerOptions& options) {
   std::vector<std::unique_ptr<Synthesizer>> synthesizers;
   for (const EmbeddedCheckpoint& embedded : EmbeddedCheckpoints()) {
     absl::StatusOr<Checkpoint> checkpoint = ParseCheckpoint(embedded.manifest, embedded.weights);
     if (!checkpoint.ok()) return checkpoint.status();
-    absl::StatusOr<std::unique_ptr<Synthesizer>> synthesizer = MakeTorchSynthesizer(*checkpoint);
+    absl::StatusOr<std::unique_ptr<Synthesizer>> synthesizer =
+        MakeTorchSynthesizer(*checkpoint, options);
     if (!synthesizer.ok()) return synthesizer.status();
     synthesizers.push_back(*std::move(synthesizer));
   }

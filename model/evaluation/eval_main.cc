@@ -20,6 +20,7 @@ struct Arguments {
   std::string runs;
   std::string checkpoint;
   bool embedded = false;
+  bool as_served = false;
   std::vector<std::string> baselines = {"class_mean", "frozen_first_frame"};
   std::vector<std::string> subjects;
   std::vector<std::string> metrics = {"afd", "afd_squared"};
@@ -121,9 +122,10 @@ absl::Status AddModel(const duet::Dataset& dataset, const std::vector<std::strin
 
 absl::StatusOr<std::shared_ptr<const duet::Synthesizer>> Load(const Arguments& arguments,
                                                               const std::string& subject) {
+  const duet::TorchSynthesizerOptions options{arguments.as_served};
   if (arguments.embedded) {
     absl::StatusOr<std::vector<std::unique_ptr<duet::Synthesizer>>> all =
-        duet::LoadEmbeddedSynthesizers();
+        duet::LoadEmbeddedSynthesizers(options);
     if (!all.ok()) return all.status();
     return std::shared_ptr<const duet::Synthesizer>(std::move(all->front()));
   }
@@ -131,7 +133,8 @@ absl::StatusOr<std::shared_ptr<const duet::Synthesizer>> Load(const Arguments& a
                                         ? FindCheckpoint(fs::path(arguments.runs) / subject)
                                         : absl::StatusOr<fs::path>(arguments.checkpoint);
   if (!folder.ok()) return folder.status();
-  absl::StatusOr<std::unique_ptr<duet::Synthesizer>> one = duet::LoadTorchSynthesizer(*folder);
+  absl::StatusOr<std::unique_ptr<duet::Synthesizer>> one =
+      duet::LoadTorchSynthesizer(*folder, options);
   if (!one.ok()) return one.status();
   return std::shared_ptr<const duet::Synthesizer>(*std::move(one));
 }
@@ -183,6 +186,9 @@ int main(int argc, char** argv) {
   source->add_option("--checkpoint", arguments.checkpoint, "one checkpoint folder for every fold");
   source->add_flag("--embedded", arguments.embedded, "the checkpoint inside this program");
   source->require_option(0, 1);
+  app.add_flag(
+      "--as_served", arguments.as_served,
+      "with constant limb lengths, as a server answers (default: the network's own answer)");
   app.add_option("--baselines", arguments.baselines, "rows beside it")
       ->delimiter(',')
       ->capture_default_str();

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "model/motion/limb_lengths.h"
 #include "tests/support/sample_motion.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/tiny_checkpoint.h"
@@ -114,6 +115,26 @@ TEST(TorchSynthesizerTest, LabelsChangeTheAnswer) {
   const std::vector<Vec3> kick = RunOne(*model, MakeWindow(*model, 30, 0));
   const std::vector<Vec3> hug = RunOne(*model, MakeWindow(*model, 30, 3));
   EXPECT_GT(LargestDistance(kick, hug), 0.2f);
+}
+
+TEST(TorchSynthesizerTest, LimbsKeepTheLengthsOfTheStartOrElseTheLeader) {
+  const auto model = Embedded();
+  const Skeleton& skeleton = model->description().skeleton;
+  SynthesisWindow window = MakeWindow(*model, 30);
+  const auto expect_lengths = [&](const std::vector<Vec3>& owner) {
+    const std::vector<Vec3> follower = RunOne(*model, window);
+    const std::vector<float> wanted = MedianBoneLengths(skeleton, owner);
+    for (size_t t = 0; t < 30; ++t) {
+      const auto pose = follower.begin() + static_cast<std::ptrdiff_t>(t * 15);
+      const std::vector<float> lengths = MedianBoneLengths(skeleton, {pose, pose + 15});
+      for (size_t b = 0; b < wanted.size(); ++b) EXPECT_NEAR(lengths[b], wanted[b], 1e-4f);
+    }
+  };
+  expect_lengths(window.leader);
+  std::vector<Vec3> tall = SwayingPose(0);
+  for (Vec3& joint : tall) joint = joint * 1.1f + Vec3{0, 0, -1};
+  window.start = FollowerStart{tall[static_cast<size_t>(skeleton.root)], tall};
+  expect_lengths(tall);
 }
 
 TEST(TorchSynthesizerTest, ResultThatIsNotFiniteFailsAlone) {
