@@ -39,18 +39,18 @@ class Figure {
 
   addBone(parent, child) {
     const geometry = new THREE.CylinderBufferGeometry(
-        this.radii[child] * 0.94, this.radii[parent] * 0.94, 1, 24, 1, true);
+        this.radii[child] * 0.94, this.radii[parent] * 0.94, 1, 20, 1, true);
     geometry.translate(0, 0.5, 0);
     return {parent, child, mesh: this.addMesh(geometry, this.skin)};
   }
 
   addBall(joint) {
-    return this.addMesh(new THREE.SphereBufferGeometry(this.radii[joint], 28, 20), this.jointSkin);
+    return this.addMesh(new THREE.SphereBufferGeometry(this.radii[joint], 20, 14), this.jointSkin);
   }
 
   // An ellipsoid placed by `place`, which returns {centre, right, up, size} or null.
   addEllipsoid(material, place) {
-    const mesh = this.addMesh(new THREE.SphereBufferGeometry(1, 40, 28), material);
+    const mesh = this.addMesh(new THREE.SphereBufferGeometry(1, 32, 22), material);
     this.ellipsoids = (this.ellipsoids || []).concat({mesh, place});
   }
 

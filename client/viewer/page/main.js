@@ -1,5 +1,5 @@
 // Puts the page together. `document.documentElement.dataset` tells programs how it stands: state
-// (loading, ready, failed), frames, frame, triangles, error.
+// (loading, ready, failed), frames, frame, draws, triangles, error.
 const COLOURS = {leader: 0xf0a04b, follower: 0x4fb3bf};
 const root = document.documentElement;
 
@@ -51,6 +51,7 @@ function start() {
 
   let view = 'reset';  // until the camera is moved by hand
   let stale = true;    // something changed since the last drawing
+  let draws = 0;
   const touch = () => { stale = true; };
   const chooseView = (name) => {
     view = name;
@@ -96,6 +97,7 @@ function start() {
       for (const {figure} of Object.values(people)) figure.update(player.frame);
       panel.update();
       root.dataset.triangles = stage.draw();
+      root.dataset.draws = ++draws;
       root.dataset.frame = Math.round(player.frame);
       if (root.dataset.state === 'loading') root.dataset.state = 'ready';
     }

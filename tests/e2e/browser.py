@@ -1,0 +1,173 @@
+"""A headless Chromium, driven over its DevTools protocol by a pair of pipes."""
+
+import base64
+import contextlib
+import fcntl
+import json
+import os
+import select
+import shutil
+import subprocess
+import tempfile
+import time
+
+import tools
+
+FLAGS = (
+    "--headless", "--no-sandbox", "--disable-gpu", "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader", "--disable-quic", "--no-first-run",
+    "--disable-background-networking", "--disable-component-update", "--disable-sync",
+    "--disable-extensions", "--hide-scrollbars", "--remote-debugging-pipe")
+WAIT_SECONDS = 120  # for anything at all, on a busy machine
+
+
+def find_chromium():
+    return shutil.which("chromium") or tools.skip("no chromium; install the package chromium")
+
+
+class Browser:
+    """One browser process; every page is a new tab of it."""
+
+    def __init__(self):
+        self._profile = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
+        # Chromium reads commands from descriptor 3 and writes answers to 4. Ours are kept out of
+        # their way.
+        ours = [fcntl.fcntl(fd, fcntl.F_DUPFD, 16) for fd in os.pipe() + os.pipe()]
+        theirs_in, self._commands, self._answers, theirs_out = ours
+
+        def connect():
+            os.dup2(theirs_in, 3)
+            os.dup2(theirs_out, 4)
+
+        self._process = subprocess.Popen(
+            [find_chromium(), *FLAGS, f"--user-data-dir={self._profile.name}", "about:blank"],
+            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, preexec_fn=connect,
+            pass_fds=(3, 4))
+        os.close(theirs_in)
+        os.close(theirs_out)
+        self._buffer = b""
+        self._last_id = 0
+        self.events = []
+
+    def close(self):
+        with contextlib.suppress(AssertionError, OSError):
+            self.call("Browser.close")
+        try:
+            self._process.wait(timeout=30)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+        self._profile.cleanup()
+
+    def call(self, method, session=None, **parameters):
+        """Sends a command and returns its result; events that come meanwhile are kept."""
+        self._last_id += 1
+        message = {"id": self._last_id, "method": method, "params": parameters}
+        if session:
+            message["sessionId"] = session
+        os.write(self._commands, json.dumps(message).encode() + b"\0")
+        while True:
+            answer = self.read()
+            if answer.get("id") == self._last_id:
+                assert "error" not in answer, f"{method}: {answer['error']}"
+                return answer["result"]
+            self.events.append(answer)
+
+    def read(self):
+        deadline = time.monotonic() + WAIT_SECONDS
+        while b"\0" not in self._buffer:
+            left = deadline - time.monotonic()
+            ready = left > 0 and select.select([self._answers], [], [], left)[0]
+            assert ready, f"chromium said nothing for {WAIT_SECONDS} s"
+            data = os.read(self._answers, 1 << 20)
+            assert data, "chromium ended"
+            self._buffer += data
+        message, self._buffer = self._buffer.split(b"\0", 1)
+        return json.loads(message)
+
+    def open(self, url, width=640, height=420):
+        return Page(self, url, width, height)
+
+
+class Page:
+    """A tab that has opened a URL, drawn it once or failed to."""
+
+    def __init__(self, browser, url, width, height):
+        self._browser = browser
+        target = browser.call("Target.createTarget", url="about:blank")["targetId"]
+        self._session = browser.call("Target.attachToTarget", targetId=target,
+                                     flatten=True)["sessionId"]
+        self.call("Emulation.setDeviceMetricsOverride", width=width, height=height,
+                  deviceScaleFactor=1, mobile=False)
+        for domain in ("Page", "Runtime", "Network"):
+            self.call(f"{domain}.enable")
+        self.call("Page.navigate", url=url)
+        # Until then a command may still meet the blank page that the tab began with.
+        while not self.events("Page.loadEventFired"):
+            browser.events.append(browser.read())
+        self.wait_until("['ready', 'failed'].includes(document.documentElement.dataset.state)")
+
+    def call(self, method, **parameters):
+        return self._browser.call(method, session=self._session, **parameters)
+
+    def close(self):
+        self.call("Page.close")
+
+    def evaluate(self, expression):
+        """The value of a JavaScript expression, awaited if it is a promise."""
+        result = self.call("Runtime.evaluate", expression=expression, awaitPromise=True,
+                           returnByValue=True)
+        assert "exceptionDetails" not in result, result["exceptionDetails"]
+        return result["result"].get("value")
+
+    def wait_until(self, condition):
+        deadline = time.monotonic() + WAIT_SECONDS
+        while not self.evaluate(f"Boolean({condition})"):
+            assert time.monotonic() < deadline, f"{condition} did not come true: {self.state()}"
+            self.next_frame()
+
+    def next_frame(self):
+        """Waits until the page may have drawn."""
+        self.evaluate("new Promise((resolve) => requestAnimationFrame("
+                      "() => requestAnimationFrame(() => resolve())))")
+
+    def state(self):
+        """The page's own account of itself: data-* attributes of its root element."""
+        return self.evaluate("({...document.documentElement.dataset})")
+
+    def text(self, selector):
+        return self.evaluate(f"document.querySelector({json.dumps(selector)}).textContent")
+
+    def events(self, method):
+        return [event["params"] for event in self._browser.events
+                if event.get("method") == method and event.get("sessionId") == self._session]
+
+    def press(self, key):
+        """A real key stroke."""
+        for kind in ("keyDown", "keyUp"):
+            text = key if len(key) == 1 and kind == "keyDown" else ""
+            self.call("Input.dispatchKeyEvent", type=kind, key=key, text=text)
+        self.next_frame()
+
+    def mouse(self, kind, x, y, buttons=1):
+        self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", buttons=buttons,
+                  clickCount=1)
+
+    def click(self, selector):
+        """A real click in the middle of an element."""
+        x, y = self.evaluate(
+            f"(() => {{ const box = document.querySelector({json.dumps(selector)})"
+            ".getBoundingClientRect();"
+            " return [box.left + box.width / 2, box.top + box.height / 2]; })()")
+        self.mouse("mousePressed", x, y)
+        self.mouse("mouseReleased", x, y, buttons=0)
+        self.next_frame()
+
+    def drag(self, start, end):
+        self.mouse("mousePressed", *start)
+        self.mouse("mouseMoved", *end)
+        self.mouse("mouseReleased", *end, buttons=0)
+        self.next_frame()
+
+    def picture(self):
+        return tools.Picture(base64.b64decode(
+            self.call("Page.captureScreenshot", format="png")["data"]))

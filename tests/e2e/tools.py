@@ -1,0 +1,141 @@
+"""What the end-to-end tests share: programs, a running server, pictures."""
+
+import contextlib
+import json
+import os
+import pathlib
+import struct
+import subprocess
+import sys
+import unittest
+import zlib
+
+SOURCE = pathlib.Path(os.environ["DUET_SOURCE_DIR"])
+PROGRAMS = pathlib.Path(os.environ["DUET_BIN_DIR"])
+SKIPPED = 77  # tells CTest that a test was skipped
+
+CLASSES = ("kick", "push", "shake_hands", "hug", "exchange_object", "punch")
+
+
+def sample(name):
+    return SOURCE / "samples" / f"{name}.bvh"
+
+
+def skip(reason):
+    print(f"skipped: {reason}")
+    sys.exit(SKIPPED)
+
+
+def main():
+    unittest.main(verbosity=2)
+
+
+def duet(*arguments, timeout=120):
+    """Runs the client; its exit code, standard output and standard error."""
+    return subprocess.run([PROGRAMS / "duet", *map(str, arguments)], capture_output=True,
+                          text=True, timeout=timeout, check=False)
+
+
+class Server:
+    """A duet-server on a free port, and everything that it logged."""
+
+    def __init__(self, *flags):
+        self.log = []
+        self._process = subprocess.Popen(
+            [PROGRAMS / "duet-server", "--listen", "127.0.0.1:0", "--metrics_listen", "", *flags],
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        self.port = self._wait_until_serving()
+
+    @property
+    def address(self):
+        return f"127.0.0.1:{self.port}"
+
+    def _wait_until_serving(self):
+        for line in self._process.stdout:
+            self._note(line)
+            if self.log and self.log[-1].get("event") == "serving":
+                return self.log[-1]["port"]
+        raise AssertionError(f"the server ended before it served: {self.log}")
+
+    def _note(self, line):
+        try:
+            self.log.append(json.loads(line))
+        except json.JSONDecodeError:
+            self.log.append({"text": line})  # gRPC's own words
+
+    def stop(self):
+        """Asks the server to drain; returns its exit code."""
+        self._process.terminate()
+        rest, _ = self._process.communicate(timeout=60)
+        for line in rest.splitlines():
+            self._note(line)
+        return self._process.returncode
+
+
+@contextlib.contextmanager
+def running_server(*flags):
+    server = Server(*flags)
+    try:
+        yield server
+    finally:
+        server.stop()
+
+
+class Picture:
+    """The pixels of a PNG as Chromium writes it: 8 bits, RGB or RGBA, not interlaced."""
+
+    def __init__(self, data):
+        self.width, self.height, depth, kind = struct.unpack(">IIBB", data[16:26])
+        assert depth == 8 and kind in (2, 6), "not a PNG of 8 bits a channel"
+        self.channels = 3 if kind == 2 else 4
+        self.rows = self._unfilter(zlib.decompress(b"".join(self._chunks(data, b"IDAT"))))
+
+    @staticmethod
+    def _chunks(data, wanted):
+        at = 8
+        while at < len(data):
+            length, kind = struct.unpack(">I4s", data[at:at + 8])
+            if kind == wanted:
+                yield data[at + 8:at + 8 + length]
+            at += 12 + length
+
+    def _unfilter(self, raw):
+        stride = self.width * self.channels
+        rows, above = [], bytearray(stride)
+        for start in range(0, len(raw), stride + 1):
+            above = self._unfilter_row(raw[start], bytearray(raw[start + 1:start + 1 + stride]),
+                                       above)
+            rows.append(above)
+        return rows
+
+    def _unfilter_row(self, kind, row, above):
+        step = self.channels
+        for i in range(len(row)):
+            a = row[i - step] if i >= step else 0
+            b = above[i]
+            c = above[i - step] if i >= step else 0
+            if kind == 1:
+                row[i] = (row[i] + a) & 255
+            elif kind == 2:
+                row[i] = (row[i] + b) & 255
+            elif kind == 3:
+                row[i] = (row[i] + (a + b) // 2) & 255
+            elif kind == 4:
+                nearest = min((abs(b - c), 0, a), (abs(a - c), 1, b), (abs(a + b - 2 * c), 2, c))
+                row[i] = (row[i] + nearest[2]) & 255
+        return row
+
+    def count(self, is_wanted, left=0.25, right=0.9, top=0.1, bottom=0.85):
+        """Pixels of the stage (away from the panels) whose (red, green, blue) is wanted."""
+        columns = range(int(left * self.width), int(right * self.width))
+        return sum(is_wanted(*self.rows[y][x * self.channels:x * self.channels + 3])
+                   for y in range(int(top * self.height), int(bottom * self.height))
+                   for x in columns)
+
+
+def is_leader_orange(red, green, blue):
+    return red > 1.25 * green and green > 1.2 * blue and red > 70
+
+
+def is_follower_teal(red, green, blue):
+    return green > 1.4 * red and blue > 1.4 * red and green > 50

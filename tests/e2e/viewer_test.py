@@ -1,0 +1,182 @@
+"""The viewer's page in a real browser, handled with real keys and clicks.
+
+    viewer_test.py <write_test_page program>
+"""
+
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import browser
+import tools
+
+FRAMES = 90
+
+
+class ViewerTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.folder = pathlib.Path(folder.name)
+        cls.file = cls.folder / "page.html"
+        subprocess.run([WRITE_TEST_PAGE, cls.file], check=True)
+        cls.browser = browser.Browser()
+        cls.addClassCleanup(cls.browser.close)
+
+    def open(self, suffix="", file=None, **size):
+        page = self.browser.open((file or self.file).as_uri() + suffix, **size)
+        self.addCleanup(page.close)
+        return page
+
+    def open_good(self, suffix="", **size):
+        page = self.open(suffix, **size)
+        self.assertEqual(page.state()["state"], "ready", page.state())
+        return page
+
+    def spoilt(self, old, new):
+        """A copy of the page with something replaced."""
+        html = self.file.read_text(encoding="utf-8")
+        self.assertIn(old, html)
+        copy = self.folder / f"{self.id()}.html"
+        copy.write_text(html.replace(old, new), encoding="utf-8")
+        return copy
+
+    def test_plays_when_opened(self):
+        page = self.open_good()
+        self.assertEqual(page.state()["frames"], str(FRAMES))
+        self.assertGreater(int(page.state()["triangles"]), 10_000)
+        page.wait_until("Number(document.documentElement.dataset.frame) > 2")
+        self.assertNotIn("error", page.state())
+        self.assertEqual(page.events("Runtime.exceptionThrown"), [])
+
+    def test_nothing_is_fetched(self):
+        page = self.open_good("#paused")
+        urls = [event["request"]["url"] for event in page.events("Network.requestWillBeSent")]
+        self.assertEqual(urls, [self.file.as_uri()])
+
+    def test_a_page_that_would_fetch_is_stopped(self):
+        page = self.open("#paused", self.spoilt("\nstart();\n", """
+            document.addEventListener('securitypolicyviolation', (event) => {
+              document.documentElement.dataset.violation = event.effectiveDirective;
+            });
+            new Image().src = 'http://127.0.0.1:9/picture.png';
+            start();
+            """))
+        page.wait_until("document.documentElement.dataset.violation === 'img-src'")
+
+    def test_opens_at_a_frame(self):
+        for suffix in ("#frame=7&paused", "?frame=7&paused"):
+            page = self.open_good(suffix)
+            self.assertEqual(page.state()["frame"], "7")
+            self.assertEqual(page.text("#frame"), "7")
+        self.assertEqual(self.open_good("#frame=1000&paused").state()["frame"], str(FRAMES - 1))
+        self.assertEqual(self.open_good("#frame=x&paused").state()["frame"], "0")
+
+    def test_draws_only_what_changes(self):
+        page = self.open_good("#paused")
+        drawn = page.state()["draws"]
+        page.next_frame()
+        page.next_frame()
+        self.assertEqual(page.state()["draws"], drawn)
+        page.press("ArrowRight")
+        self.assertNotEqual(page.state()["draws"], drawn)
+
+    def test_shows_both_characters_from_every_side(self):
+        for view in ("reset", "front", "side", "top"):
+            picture = self.open_good(f"#frame=10&paused&view={view}").picture()
+            self.assertGreater(picture.count(tools.is_leader_orange), 300, view)
+            self.assertGreater(picture.count(tools.is_follower_teal), 300, view)
+
+    def test_shows_both_characters_on_a_phone(self):
+        picture = self.open_good("#frame=10&paused", width=400, height=760).picture()
+        self.assertGreater(picture.count(tools.is_leader_orange, left=0, right=1), 300)
+        self.assertGreater(picture.count(tools.is_follower_teal, left=0, right=1), 300)
+
+    def test_keys_move_through_time(self):
+        page = self.open_good("#paused")
+        for key, frame in (("ArrowRight", 1), ("ArrowRight", 2), ("ArrowLeft", 1),
+                           ("End", FRAMES - 1), ("ArrowRight", FRAMES - 1), ("Home", 0)):
+            page.press(key)
+            self.assertEqual(page.text("#frame"), str(frame), key)
+        page.press("End")
+        self.assertEqual(page.text("#time"), "2.97 / 2.97 s")
+        page.press(" ")
+        page.wait_until("document.querySelector('#play.playing')"
+                        f" && Number(document.documentElement.dataset.frame) < {FRAMES - 1}")
+        page.press(" ")
+        self.assertFalse(page.evaluate("Boolean(document.querySelector('#play.playing'))"))
+
+    def test_stops_at_the_end_without_loop(self):
+        page = self.open_good(f"#frame={FRAMES - 4}&paused", width=900)
+        page.click("#loop")
+        page.click("#play")
+        page.wait_until("!document.querySelector('#play.playing')")
+        self.assertEqual(page.text("#frame"), str(FRAMES - 1))
+
+    def test_scrubbing_stops_and_shows_the_frame(self):
+        page = self.open_good()
+        page.click("#scrub")
+        self.assertFalse(page.evaluate("Boolean(document.querySelector('#play.playing'))"))
+        self.assertAlmostEqual(int(page.text("#frame")), FRAMES / 2, delta=2)
+
+    def test_weights_follow_their_keyframes(self):
+        page = self.open_good("#frame=30&paused")  # half way from 0 to 60
+        weights = page.evaluate(
+            "[...document.querySelectorAll('.weight')].map((row) => row.textContent)")
+        self.assertEqual(weights, ["kick−0.50", "hug−0.25"])
+        page.press("End")
+        self.assertEqual(page.text(".weight .value"), "−2.00")
+        self.assertEqual(page.evaluate("document.querySelectorAll('#marks i').length"), 2)
+
+    def test_names_are_text(self):
+        page = self.open_good("#paused")
+        self.assertEqual(page.text("#title"), 'two "people" & a <test>')
+
+    def test_a_character_can_be_hidden(self):
+        page = self.open_good("#frame=10&paused&view=front")
+        page.click("[data-person=leader]")
+        picture = page.picture()
+        self.assertEqual(picture.count(tools.is_leader_orange), 0)
+        self.assertGreater(picture.count(tools.is_follower_teal), 300)
+        page.click("[data-person=leader]")
+        self.assertGreater(page.picture().count(tools.is_leader_orange), 300)
+
+    def test_the_camera_orbits_and_comes_back(self):
+        page = self.open_good("#frame=10&paused", width=900)
+        def orange():
+            return page.picture().count(tools.is_leader_orange)
+        page.click("[data-view=front]")
+        self.assertEqual(page.text("[data-view].chosen"), "Front")
+        before = orange()
+        page.drag((450, 200), (600, 250))
+        self.assertNotEqual(orange(), before)
+        self.assertIsNone(page.evaluate("document.querySelector('[data-view].chosen')"))
+        page.click("[data-view=front]")
+        # What is left of the orbit's momentum may still turn the camera a little.
+        self.assertAlmostEqual(orange(), before, delta=before / 4)
+
+    def test_an_error_is_said(self):
+        page = self.open(file=self.spoilt("\nstart();\n", "\nthrow new Error('boom');\n"))
+        self.assertEqual(page.state()["state"], "failed")
+        self.assertIn("boom", page.text("#failure"))
+
+    def test_data_that_does_not_fit_is_an_error(self):
+        page = self.open(file=self.spoilt('"frames":90', '"frames":91'))
+        self.assertEqual(page.state()["state"], "failed")
+        self.assertIn("the leader has 4050 values, wanted 91", page.text("#failure"))
+
+    def test_a_browser_without_webgl_is_told(self):
+        page = self.open(file=self.spoilt(
+            "\nstart();\n", "\nHTMLCanvasElement.prototype.getContext = () => null;\nstart();\n"))
+        self.assertEqual(page.state()["state"], "failed")
+        self.assertIn("WebGL", page.text("#failure"))
+
+
+WRITE_TEST_PAGE = sys.argv.pop(1)
+
+if __name__ == "__main__":
+    browser.find_chromium()
+    tools.main()
