@@ -2,6 +2,8 @@
 
 #include <torch/torch.h>
 
+#include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -61,6 +63,7 @@ class TorchSynthesizer : public Synthesizer {
       if (!IsFinite(point)) return absl::InternalError("the network's result is not finite");
     }
     if (options_.keep_limb_lengths) KeepLimbLengths(window, &follower);
+    if (options_.share_floor && !window.start) ShareFloor(window.leader, &follower);
     return follower;
   }
 
@@ -69,6 +72,22 @@ class TorchSynthesizer : public Synthesizer {
     const bool has_pose = window.start && !window.start->pose.empty();
     const std::vector<Vec3>& owner = has_pose ? window.start->pose : window.leader;
     SetBoneLengths(skeleton, MedianBoneLengths(skeleton, owner), follower);
+  }
+
+  void ShareFloor(const std::vector<Vec3>& leader, std::vector<Vec3>* follower) const {
+    const Vec3 lift{0, LowestFoot(leader) - LowestFoot(*follower), 0};
+    for (Vec3& point : *follower) point += lift;
+  }
+
+  float LowestFoot(const std::vector<Vec3>& positions) const {
+    const Skeleton& skeleton = manifest_.model.skeleton;
+    float lowest = std::numeric_limits<float>::infinity();
+    for (size_t t = 0; t < positions.size(); t += skeleton.joint_names.size()) {
+      for (const int foot : {skeleton.left_foot, skeleton.right_foot}) {
+        lowest = std::min(lowest, positions[t + static_cast<size_t>(foot)].y);
+      }
+    }
+    return lowest;
   }
 
   Manifest manifest_;

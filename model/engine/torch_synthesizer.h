@@ -16,6 +16,8 @@ struct TorchSynthesizerOptions {
   // follower the limbs of its start, or else its leader's, in every frame. Off: the network's own
   // answer, for measuring the method.
   bool keep_limb_lengths = true;
+  // A follower without a start is set, as a whole, on the leader's floor: both reach equally low.
+  bool share_floor = true;
 };
 
 // A synthesizer that runs the generator of a checkpoint with LibTorch on the CPU.

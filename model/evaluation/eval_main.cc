@@ -122,7 +122,7 @@ absl::Status AddModel(const duet::Dataset& dataset, const std::vector<std::strin
 
 absl::StatusOr<std::shared_ptr<const duet::Synthesizer>> Load(const Arguments& arguments,
                                                               const std::string& subject) {
-  const duet::TorchSynthesizerOptions options{arguments.as_served};
+  const duet::TorchSynthesizerOptions options{arguments.as_served, arguments.as_served};
   if (arguments.embedded) {
     absl::StatusOr<std::vector<std::unique_ptr<duet::Synthesizer>>> all =
         duet::LoadEmbeddedSynthesizers(options);
@@ -188,7 +188,8 @@ int main(int argc, char** argv) {
   source->require_option(0, 1);
   app.add_flag(
       "--as_served", arguments.as_served,
-      "with constant limb lengths, as a server answers (default: the network's own answer)");
+      "with constant limb lengths on the leader's floor, as a server answers (default: the "
+      "network's own answer)");
   app.add_option("--baselines", arguments.baselines, "rows beside it")
       ->delimiter(',')
       ->capture_default_str();

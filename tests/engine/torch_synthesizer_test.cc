@@ -137,6 +137,21 @@ TEST(TorchSynthesizerTest, LimbsKeepTheLengthsOfTheStartOrElseTheLeader) {
   expect_lengths(tall);
 }
 
+TEST(TorchSynthesizerTest, FollowerWithoutAStartStandsOnTheLeadersFloor) {
+  const auto model = Embedded();
+  const Skeleton& skeleton = model->description().skeleton;
+  const SynthesisWindow window = MakeWindow(*model, 30);
+  const auto lowest = [&](const std::vector<Vec3>& positions) {
+    float y = 1e9f;
+    for (size_t t = 0; t < positions.size(); t += 15) {
+      y = std::min({y, positions[t + static_cast<size_t>(skeleton.left_foot)].y,
+                    positions[t + static_cast<size_t>(skeleton.right_foot)].y});
+    }
+    return y;
+  };
+  EXPECT_NEAR(lowest(RunOne(*model, window)), lowest(window.leader), 1e-5f);
+}
+
 TEST(TorchSynthesizerTest, ResultThatIsNotFiniteFailsAlone) {
   Checkpoint checkpoint = TinyCheckpoint();
   for (Tensor& tensor : checkpoint.tensors) {
