@@ -1,0 +1,239 @@
+"""duet-server on its embedded checkpoint and the duet client: the whole path, every kind of file,
+every kind of failure."""
+
+import json
+import math
+import pathlib
+import socket
+import struct
+import tempfile
+import unittest
+
+import tools
+
+JOINTS = 15
+
+
+def bvh_frames(path):
+    lines = pathlib.Path(path).read_text(encoding="utf-8").splitlines()
+    return int(next(line for line in lines if line.startswith("Frames:")).split()[1])
+
+
+def distance(a, b):
+    return math.dist(a, b)
+
+
+class Pair:
+    """A pair as the client's .json file holds it."""
+
+    def __init__(self, path):
+        data = json.loads(pathlib.Path(path).read_text(encoding="utf-8"))
+        self.joints = data["joint_names"]
+        self.frame_rate = data["frame_rate_hz"]
+        self.leader, self.follower = data["leader"], data["follower"]
+
+    def at(self, person, frame, joint):
+        return person[frame][self.joints.index(joint)]
+
+
+class ClientServerTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.server = tools.Server()
+        cls.addClassCleanup(cls.server.stop)
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.folder = pathlib.Path(folder.name)
+
+    def out(self, name):
+        return self.folder / f"{self.id().split('.')[-1]}.{name}"
+
+    def synthesize(self, leader, *labels, out, more=()):
+        flags = [flag for label in labels for flag in ("--label", label)]
+        return tools.duet("synthesize", "--server", self.server.address, "--leader", leader, *flags,
+                          "--out", out, *more)
+
+    def good(self, *arguments, **keywords):
+        result = self.synthesize(*arguments, **keywords)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return result
+
+    def refused(self, code, words, *arguments, **keywords):
+        result = self.synthesize(*arguments, **keywords)
+        self.assertEqual(result.returncode, code, result.stdout + result.stderr)
+        for word in words:
+            self.assertIn(word, result.stderr)
+        self.assertEqual(result.stdout, "")
+
+    def test_models_are_listed(self):
+        result = tools.duet("models", "--server", self.server.address, "--json")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        (model,) = json.loads(result.stdout)["models"]
+        self.assertTrue(model["is_default"])
+        self.assertEqual(set(model["interaction_classes"]), set(tools.CLASSES))
+        self.assertEqual(len(model["joint_names"]), JOINTS)
+        for_people = tools.duet("models", "--server", self.server.address)
+        self.assertIn(f"{model['name']}@{model['version']}, default", for_people.stdout)
+
+    def test_every_class_answers_its_sample(self):
+        for name in tools.CLASSES:
+            out = self.out(f"{name}.json")
+            self.good(tools.sample(name), f"{name}=1", out=out)
+            pair = Pair(out)
+            self.assertEqual(len(pair.leader), bvh_frames(tools.sample(name)))
+            self.assertEqual(len(pair.follower), len(pair.leader))
+            self.check_plausible(pair, name)
+
+    def check_plausible(self, pair, name):
+        """A person, upright, within reach of the leader, who looks at them at first."""
+        for frame in range(0, len(pair.follower), 5):
+            head = pair.at(pair.follower, frame, "head")
+            torso = pair.at(pair.follower, frame, "torso")
+            self.assertGreater(head[1], torso[1] + 0.2, f"{name}, frame {frame}")
+            apart = distance(torso, pair.at(pair.leader, frame, "torso"))
+            self.assertTrue(0.1 < apart < 2.5, f"{name}, frame {frame}: {apart} m apart")
+        left, right = (pair.at(pair.follower, 0, f"{side}_hip") for side in ("left", "right"))
+        facing = (right[2] - left[2], left[0] - right[0])  # (x, z) of up x (right - left)
+        torso = pair.at(pair.follower, 0, "torso")
+        leader = pair.at(pair.leader, 0, "torso")
+        towards = facing[0] * (leader[0] - torso[0]) + facing[1] * (leader[2] - torso[2])
+        self.assertGreater(towards, 0, f"{name}: the follower turns its back")
+
+    def test_a_mix_differs_from_both_of_its_classes(self):
+        followers = {}
+        for name, labels in (("hug", ["hug=1"]), ("push", ["push=1"]),
+                             ("mix", ["hug=0.5", "push=0.5"])):
+            out = self.out(f"{name}.json")
+            self.good(tools.sample("hug"), *labels, out=out)
+            followers[name] = Pair(out).follower
+        def apart(a, b):
+            pairs = [(p, q) for f, g in zip(followers[a], followers[b]) for p, q in zip(f, g)]
+            return sum(distance(p, q) for p, q in pairs) / len(pairs)
+        self.assertGreater(apart("mix", "hug"), 0.01)
+        self.assertGreater(apart("mix", "push"), 0.01)
+
+    def test_the_same_call_gives_the_same_motion(self):
+        first, second = self.out("first.json"), self.out("second.json")
+        for out in (first, second):
+            self.good(tools.sample("kick"), "kick=1", out=out)
+        for a, b in zip(Pair(first).follower, Pair(second).follower):
+            for p, q in zip(a, b):
+                self.assertLess(distance(p, q), 1e-4)
+
+    def test_every_format_holds_the_same_follower(self):
+        out = {extension: self.out(extension) for extension in ("json", "csv", "npy", "html", "bvh")}
+        more = [flag for path in list(out.values())[1:] for flag in ("--out", path)]
+        result = self.good(tools.sample("push"), "push=1", out=out["json"], more=more)
+        pair = Pair(out["json"])
+        frames = len(pair.follower)
+
+        npy = out["npy"].read_bytes()
+        self.assertTrue(npy.startswith(b"\x93NUMPY"))
+        self.assertIn(f"(2, {frames}, {JOINTS}, 3)".encode(), npy[:128])
+        last = struct.unpack("<3f", npy[-12:])
+        self.assertLess(distance(last, pair.follower[-1][-1]), 1e-4)
+
+        for person in ("leader", "follower"):
+            path = out["bvh"].with_suffix(f".{person}.bvh")
+            self.assertIn(str(path), result.stdout)
+            self.assertEqual(bvh_frames(path), frames)
+        self.assertGreaterEqual(len(out["csv"].read_text(encoding="utf-8").splitlines()), frames)
+        page = out["html"].read_text(encoding="utf-8")
+        self.assertIn(f'"frames":{frames}', page)
+        self.assertNotIn("://cdn", page)
+        # Nothing else is left behind.
+        mine = {path.name for path in self.folder.glob(out["json"].stem + ".*")}
+        self.assertEqual(len(mine), 6, mine)
+
+    def test_the_written_follower_can_lead(self):
+        out = self.out("bvh")
+        self.good(tools.sample("kick"), "kick=1", out=out)
+        again = self.out("again.json")
+        self.good(out.with_suffix(".follower.bvh"), "kick=1", out=again)
+        self.assertEqual(len(Pair(again).leader), bvh_frames(tools.sample("kick")))
+
+    def test_weights_over_time(self):
+        out = self.out("json")
+        result = tools.duet("synthesize", "--server", self.server.address, "--leader",
+                            tools.sample("hug"), "--keyframe", "0:push=1", "--keyframe",
+                            "60:push=0,hug=1", "--out", out)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("at frame 0 push 1; at frame 60 push 0, hug 1", result.stdout)
+
+    def test_the_follower_starts_where_it_is_told(self):
+        plain, told = self.out("plain.json"), self.out("told.json")
+        self.good(tools.sample("kick"), "kick=1", out=plain)
+        pair = Pair(plain)
+        start = pair.at(pair.follower, 0, "torso")
+        moved = [start[0] + 0.3, start[1], start[2] + 0.3]
+        self.good(tools.sample("kick"), "kick=1", out=told,
+                  more=("--follower-start", ",".join(map(str, moved))))
+        pair = Pair(told)
+        began = pair.at(pair.follower, 0, "torso")
+        self.assertLess(distance(began, moved), distance(began, start))
+
+    def test_summary_for_programs(self):
+        out = self.out("json")
+        result = self.good(tools.sample("punch"), "punch=1", out=out,
+                           more=("--json", "--request-id", "e2e-punch"))
+        summary = json.loads(result.stdout)
+        self.assertEqual(summary["frames"], bvh_frames(tools.sample("punch")))
+        self.assertEqual(summary["request_id"], "e2e-punch")
+        self.assertEqual(summary["attempts"], 1)
+        self.assertEqual(summary["files"], [str(out)])
+
+    def test_usage_errors_are_2(self):
+        out = self.out("html")
+        kick = tools.sample("kick")
+        self.refused(2, ["--label"], kick, "kick", out=out)
+        self.refused(2, [".fbx"], kick, "kick=1", out=self.out("fbx"))
+        self.refused(2, ["--frobnicate"], kick, "kick=1", out=out, more=("--frobnicate",))
+        self.refused(2, ["--label or --keyframe"], kick, out=out)
+        self.assertFalse(out.exists())
+
+    def test_bad_input_is_42_and_named(self):
+        out = self.out("html")
+        kick = tools.sample("kick")
+        self.refused(42, ["no-such.bvh"], self.folder / "no-such.bvh", "kick=1", out=out)
+        broken = self.folder / "broken.bvh"
+        broken.write_text("HIERARCHY\nROOT\n", encoding="utf-8")
+        self.refused(42, ["broken.bvh"], broken, "kick=1", out=out)
+        self.refused(42, ["label_vector.weights[0]", "dance", "kick, push"], kick, "dance=1",
+                     out=out)
+        self.refused(42, ["label_vector.weights[1].weight", "[-2, 2]"], kick, "hug=1", "kick=9",
+                     out=out)
+        self.refused(42, ["leader.frame_rate_hz", "1 to 240"], kick, "kick=1", out=out,
+                     more=("--frame-rate", "500"))
+        self.refused(42, ["NOT_FOUND", "nobody"], kick, "kick=1", out=out,
+                     more=("--model", "nobody"))
+        self.refused(42, ["NOT_FOUND"], kick, "kick=1", out=out, more=("--model", "sbu@99"))
+        self.assertFalse(out.exists())
+
+    def test_an_absent_server_is_1(self):
+        with socket.socket() as unused:  # bound, but nobody listens
+            unused.bind(("127.0.0.1", 0))
+            address = "127.0.0.1:%d" % unused.getsockname()[1]
+            for arguments in (("models",),
+                              ("synthesize", "--leader", tools.sample("kick"), "--label", "kick=1",
+                               "--out", self.out("html"))):
+                result = tools.duet(*arguments, "--server", address)
+                self.assertEqual(result.returncode, 1, result.stderr)
+                self.assertIn("UNAVAILABLE", result.stderr)
+                self.assertIn(f"Does a duet-server listen at {address}?", result.stderr)
+
+    def test_a_deadline_that_passes_is_1(self):
+        result = self.synthesize(tools.sample("kick"), "kick=1", out=self.out("html"),
+                                 more=("--timeout", "0.001"))
+        self.assertEqual(result.returncode, 1, result.stderr)
+
+
+class StoppingTest(unittest.TestCase):
+    def test_a_server_stops_cleanly_and_is_then_absent(self):
+        server = tools.Server()
+        self.assertEqual(tools.duet("models", "--server", server.address).returncode, 0)
+        self.assertEqual(server.stop(), 0, server.log)
+        self.assertEqual(tools.duet("models", "--server", server.address).returncode, 1)
+
+
+if __name__ == "__main__":
+    tools.main()
