@@ -40,7 +40,7 @@ std::vector<TensorSpec> ExpectedTensors(const Manifest& manifest) {
   const int64_t attention = manifest.generator.attention;
   const int64_t state = static_cast<int64_t>(slices.size()) * encoder;  // of one decoder direction
   const int64_t encoded = 2 * state;
-  const int64_t outputs = kCoordinates * manifest.model.skeleton.joint_count();
+  const int64_t outputs = int64_t{kCoordinates} * manifest.model.skeleton.joint_count();
 
   std::vector<TensorSpec> specs;
   for (const SliceShape& slice : slices) {

@@ -17,8 +17,8 @@ constexpr int kRowsAfter = 2;
 
 }  // namespace
 
-ClipSynthesis::ClipSynthesis(const ModelDescription& model, ClipRequest request)
-    : model_(model),
+ClipSynthesis::ClipSynthesis(ModelDescription model, ClipRequest request)
+    : model_(std::move(model)),
       request_(std::move(request)),
       cross_fade_(model_.skeleton),
       frame_count_(static_cast<int>(request_.leader.size()) / model_.skeleton.joint_count()),

@@ -41,7 +41,7 @@ struct ClipRequest {
 // Threads: not safe to call concurrently; no locks, no I/O.
 class ClipSynthesis {
  public:
-  ClipSynthesis(const ModelDescription& model, ClipRequest request);
+  ClipSynthesis(ModelDescription model, ClipRequest request);
 
   int window_count() const { return static_cast<int>(plan_.starts.size()); }
   int frame_count() const { return frame_count_; }
