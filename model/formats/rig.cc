@@ -56,20 +56,13 @@ class RigBuilder {
   // For every frame the rotation that takes the rest pose's trunk to the clip's.
   void FindTrunkAxes() {
     const int upper = UpperNeighbour();
-    Quaternion axes;
     for (int frame = 0; frame < clip_.frame_count(); ++frame) {
       const Vec3d left = ToDouble(clip_.at(frame, skeleton_.left_hip));
       const Vec3d right = ToDouble(clip_.at(frame, skeleton_.right_hip));
-      const Vec3d hips = (left + right) * 0.5;
-      const Vec3d up = upper < 0 ? kUp : ToDouble(clip_.at(frame, upper)) - hips;
+      const Vec3d up = upper < 0 ? kUp : ToDouble(clip_.at(frame, upper)) - (left + right) * 0.5;
       const Vec3d x = Unit(left - right, -kRight);
-      const Vec3d forward = Cross(x, up);
-      // A frame without a direction (all joints in one point) keeps the one before.
-      if (Norm(left - right) > 1e-6 && Norm(forward) > 1e-6) {
-        const Vec3d z = Unit(forward, kForward);
-        axes = FromAxes(x, Cross(z, x), z);
-      }
-      trunk_axes_.push_back(axes);
+      const Vec3d z = Unit(Cross(x, up), kForward);
+      trunk_axes_.push_back(FromAxes(x, Cross(z, x), z));
     }
   }
 

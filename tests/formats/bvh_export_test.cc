@@ -107,6 +107,36 @@ TEST(BvhExport, SwingsAnArmAcrossTheBodyWithoutAJump) {
   EXPECT_LT(LargestStep(document), 15) << "degrees a frame";
 }
 
+// A straight arm gives no plane, and around the direction opposite to its rest pose the shortest
+// arc turns twice for each turn of the arm.
+TEST(BvhExport, CirclesAStraightArmOppositeToItsRestPoseWithoutTwistingIt) {
+  Clip clip = MakePerson({121});
+  for (int frame = 0; frame < 121; ++frame) {
+    for (int j = 0; j < clip.joint_count(); ++j) clip.at(frame, j) = clip.at(0, j);
+    const float angle = static_cast<float>(2 * kPi * frame / 120);
+    const Vec3 along = {-0.96f, 0.28f * std::cos(angle), 0.28f * std::sin(angle)};
+    clip.at(frame, 4) = clip.at(frame, 3) + 0.29f * along;
+    clip.at(frame, 5) = clip.at(frame, 4) + 0.28f * along;
+  }
+  const BvhDocument document = Export(clip);
+  EXPECT_LT(LargestDistance(PlayBack(document, SbuSkeleton()), clip), kOneMillimetre);
+  EXPECT_LT(LargestStep(document), 3) << "degrees a frame";
+}
+
+// Noise bends straight knees and elbows a little the wrong way: the limb must not turn around.
+TEST(BvhExport, BendsAnElbowTheWrongWayWithoutTurningTheArm) {
+  Clip clip = MakePerson({61});
+  for (int frame = 0; frame < 61; ++frame) {
+    for (int j = 0; j < clip.joint_count(); ++j) clip.at(frame, j) = clip.at(0, j);
+    const float bend = 0.7f - 1.4f * static_cast<float>(frame) / 60;
+    clip.at(frame, 4) = clip.at(frame, 3) + Vec3{0, -0.29f, 0};
+    clip.at(frame, 5) = clip.at(frame, 4) + 0.28f * Vec3{0, -std::cos(bend), std::sin(bend)};
+  }
+  const BvhDocument document = Export(clip);
+  EXPECT_LT(LargestDistance(PlayBack(document, SbuSkeleton()), clip), kOneMillimetre);
+  EXPECT_LT(LargestStep(document), 4) << "degrees a frame";
+}
+
 TEST(BvhExport, KeepsAStraightArmsTwistWhereThePlaneIsUndetermined) {
   Clip clip = MakePerson({60});
   for (int frame = 0; frame < 60; ++frame) {
@@ -131,6 +161,20 @@ TEST(BvhExport, StaysCloseWhereBoneLengthsVary) {
   }
   const Clip played = PlayBack(Export(clip), SbuSkeleton());
   EXPECT_LT(LargestDistance(played, clip), 0.1f);
+}
+
+// An upper arm that a capture lets grow by 4 cm moves the elbow, not the hand.
+TEST(BvhExport, KeepsTheHandWhereTheUpperArmVaries) {
+  Clip clip = MakePerson({9});
+  for (int frame = 0; frame < 9; ++frame) {
+    for (int j = 0; j < clip.joint_count(); ++j) clip.at(frame, j) = clip.at(0, j);
+    clip.at(frame, 4) = clip.at(frame, 3) + Vec3{0, frame % 3 == 2 ? -0.33f : -0.29f, 0};
+    clip.at(frame, 5) = clip.at(frame, 4) + Vec3{0, 0, 0.28f};
+  }
+  const Clip played = PlayBack(Export(clip), SbuSkeleton());
+  for (int frame = 0; frame < 9; ++frame) {
+    EXPECT_LT(Distance(played.at(frame, 5), clip.at(frame, 5)), 0.005f) << frame;
+  }
 }
 
 TEST(BvhExport, SurvivesJointsInOnePoint) {
@@ -171,6 +215,35 @@ TEST(BvhExport, RestsInATPoseFacingForwards) {
   EXPECT_NEAR(offset(9, 11).y, -0.84, 1e-3);  // legs hang
   EXPECT_GT(offset(12, 9).x, 0.15);           // the left hip is at +x
   EXPECT_GT(offset(2, 0).y, 0.38);            // the head is up
+}
+
+// Hips that go sideways from a pelvis still carry legs that hang.
+TEST(BvhExport, HangsTheLegsOfASkeletonRootedAtThePelvis) {
+  Skeleton skeleton;
+  skeleton.joint_names = {"pelvis",     "left_hip",   "left_knee", "left_foot", "right_hip",
+                          "right_knee", "right_foot", "chest",     "head"};
+  skeleton.bones = {{0, 1}, {1, 2}, {2, 3}, {0, 4}, {4, 5}, {5, 6}, {0, 7}, {7, 8}};
+  skeleton.parts = {{"all", {0, 1, 2, 3, 4, 5, 6, 7, 8}}};
+  skeleton.root = 0;
+  skeleton.left_hip = 1;
+  skeleton.right_hip = 4;
+  skeleton.left_foot = 3;
+  skeleton.right_foot = 6;
+  ASSERT_TRUE(Validate(skeleton).ok());
+  Clip sitting;
+  sitting.joint_names = skeleton.joint_names;
+  sitting.frame_rate_hz = 30;
+  sitting.positions = {{0, 0.5f, 0},        {0.1f, 0.5f, 0},  {0.1f, 0.5f, 0.4f},
+                       {0.1f, 0.1f, 0.4f},  {-0.1f, 0.5f, 0}, {-0.1f, 0.5f, 0.4f},
+                       {-0.1f, 0.1f, 0.4f}, {0, 0.8f, 0},     {0, 1.1f, 0}};
+  absl::StatusOr<BvhDocument> document = ToBvh(sitting, skeleton);
+  ASSERT_TRUE(document.ok()) << document.status();
+  EXPECT_LT(LargestDistance(PlayBack(*document, skeleton), sitting), kOneMillimetre);
+  std::fill(document->values.begin(), document->values.end(), 0.0f);
+  const Clip rest = PlayBack(*document, skeleton);
+  EXPECT_NEAR(rest.at(0, 3).y, -0.8, 1e-3);
+  EXPECT_NEAR(rest.at(0, 6).y, -0.8, 1e-3);
+  EXPECT_NEAR(rest.at(0, 8).y, 0.6, 1e-3);
 }
 
 TEST(BvhExport, NamesEveryJointOnceWithoutSpaces) {
