@@ -43,6 +43,19 @@ void TurnLeader(int root, double radians, Clip* leader) {
   for (Vec3& point : leader->positions) point = centre + RotateY(point - centre, radians);
 }
 
+// A body of slightly other build: the network cannot tell a clip by its leader's.
+void AddBodyNoise(double deviation, EpochRandom* random, Clip* clip) {
+  std::vector<Vec3> offsets(static_cast<size_t>(clip->joint_count()));
+  for (Vec3& offset : offsets) {
+    offset = {static_cast<float>(random->Normal(deviation)),
+              static_cast<float>(random->Normal(deviation)),
+              static_cast<float>(random->Normal(deviation))};
+  }
+  for (size_t i = 0; i < clip->positions.size(); ++i) {
+    clip->positions[i] += offsets[i % offsets.size()];
+  }
+}
+
 void AddNoise(double deviation, EpochRandom* random, Clip* clip) {
   for (Vec3& point : clip->positions) {
     point += Vec3{static_cast<float>(random->Normal(deviation)),
@@ -170,6 +183,7 @@ Sequence Augment(const Dataset& dataset, const Sequence& sequence,
     TurnLeader(dataset.skeleton.root, random->Normal(options.leader_yaw), &pair->leader);
   }
   if (options.noise > 0) AddNoise(options.noise, random, &pair->leader);
+  if (options.body_noise > 0) AddBodyNoise(options.body_noise, random, &pair->leader);
   return variant;
 }
 

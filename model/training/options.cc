@@ -84,6 +84,7 @@ void Read(ObjectReader* reader, TrainingOptions::Augmentation* out) {
   out->yaw = reader->Number("yaw", 0, 4);
   out->leader_yaw = reader->Number("leader_yaw", 0, 4);
   out->noise = reader->Number("noise", 0, 10);
+  out->body_noise = reader->Number("body_noise", 0, 10);
   out->crop = Probability(reader, "crop");
 }
 
@@ -126,6 +127,7 @@ absl::StatusOr<TrainingOptions> ReadOptions(const json& value) {
   section("losses", &options.losses);
   section("discriminator", &options.discriminator);
   section("augmentation", &options.augmentation);
+  options.graded_labels = root.Number("graded_labels", 0, 1);
   section("start", &options.start);
   section("validation", &options.validation);
   if (!status.ok()) return status;
@@ -204,7 +206,9 @@ std::map<std::string, std::string> Describe(const TrainingOptions& o) {
           {"augmentation.yaw", Text(o.augmentation.yaw)},
           {"augmentation.leader_yaw", Text(o.augmentation.leader_yaw)},
           {"augmentation.noise", Text(o.augmentation.noise)},
+          {"augmentation.body_noise", Text(o.augmentation.body_noise)},
           {"augmentation.crop", Text(o.augmentation.crop)},
+          {"graded_labels", Text(o.graded_labels)},
           {"start.root", Text(o.start.root)},
           {"start.pose", Text(o.start.pose)},
           {"validation.fraction", Text(o.validation.fraction)},

@@ -61,9 +61,13 @@ struct TrainingOptions {
     double root_distance = 0;  // metres, standard deviation
     double yaw = 0;            // radians, standard deviation, of both people
     double leader_yaw = 0;     // radians, standard deviation, of the leader about its own root
-    double noise = 0;          // metres, standard deviation, of the leader's joints
+    double noise = 0;          // metres, standard deviation, of the leader's joints in every frame
+    double body_noise = 0;     // the same, one offset a joint for the whole clip
     double crop = 0;           // probability of a shorter piece
   } augmentation;
+
+  // Share of clips trained on a graded, negative or mixed label vector (graded_labels.h).
+  double graded_labels = 0;
 
   // What a clip's follower start tells, by probability; the rest has none.
   struct Start {

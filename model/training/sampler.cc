@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "model/engine/window_frame.h"
+#include "model/training/graded_labels.h"
 
 namespace duet {
 namespace {
@@ -57,42 +58,48 @@ std::optional<FollowerStart> StartOf(const Skeleton& skeleton, const Clip& follo
   return start;
 }
 
+std::vector<const std::vector<Vec3>*> Pointers(const std::vector<std::vector<Vec3>>& clips) {
+  std::vector<const std::vector<Vec3>*> pointers;
+  for (const std::vector<Vec3>& clip : clips) pointers.push_back(&clip);
+  return pointers;
+}
+
 }  // namespace
 
-SynthesisWindow MakeWindow(const Dataset& dataset, const Sequence& sequence,
-                           StartKnowledge knowledge) {
+SynthesisWindow MakeWindow(const Dataset& dataset, const Example& example) {
+  const Sequence& sequence = example.sequence;
   SynthesisWindow window;
   window.leader = sequence.pair.leader.positions;
-  const size_t classes = dataset.classes.size();
-  window.labels.assign(static_cast<size_t>(sequence.pair.leader.frame_count()) * classes, 0);
-  for (size_t t = 0; t < window.labels.size(); t += classes) {
-    window.labels[t + static_cast<size_t>(sequence.interaction_class)] = 1;
+  for (int t = 0; t < sequence.pair.leader.frame_count(); ++t) {
+    window.labels.insert(window.labels.end(), example.weights.begin(), example.weights.end());
   }
-  window.start = StartOf(dataset.skeleton, sequence.pair.follower, knowledge);
+  window.start = StartOf(dataset.skeleton, sequence.pair.follower, example.start);
   window.partner_direction = sequence.partner_direction;
   return window;
 }
 
 TrainingBatch MakeBatch(const Manifest& manifest, const Dataset& dataset,
-                        const std::vector<Sequence>& sequences,
-                        const std::vector<StartKnowledge>& starts) {
+                        const std::vector<Example>& examples) {
   std::vector<network::BatchItem> items;
-  std::vector<std::vector<Vec3>> followers;
-  std::vector<int64_t> classes;
-  for (size_t i = 0; i < sequences.size(); ++i) {
-    const SynthesisWindow window = MakeWindow(dataset, sequences[i], starts[i]);
+  std::vector<std::vector<Vec3>> targets, followers;
+  std::vector<int64_t> classes, single_rows;
+  for (const Example& example : examples) {
+    const SynthesisWindow window = MakeWindow(dataset, example);
     const Standardisation frame = WindowFrame(dataset.skeleton, window);
     items.push_back(network::StandardItem(frame, window));
-    followers.push_back(frame.Apply(sequences[i].pair.follower.positions));
-    classes.push_back(sequences[i].interaction_class);
+    targets.push_back(frame.Apply(example.target));
+    followers.push_back(frame.Apply(example.sequence.pair.follower.positions));
+    if (example.single) single_rows.push_back(static_cast<int64_t>(classes.size()));
+    classes.push_back(example.sequence.interaction_class);
   }
   TrainingBatch batch;
   batch.input = network::MakeInput(manifest, items);
-  std::vector<const std::vector<Vec3>*> pointers;
-  for (const std::vector<Vec3>& follower : followers) pointers.push_back(&follower);
-  batch.follower =
-      network::PadPositions(pointers, dataset.skeleton.joint_count(), batch.input.leader.size(1));
+  const int joints = dataset.skeleton.joint_count();
+  const int64_t frames = batch.input.leader.size(1);
+  batch.target = network::PadPositions(Pointers(targets), joints, frames);
+  batch.follower = network::PadPositions(Pointers(followers), joints, frames);
   batch.classes = torch::tensor(classes);
+  batch.single_rows = torch::tensor(single_rows, torch::kInt64);
   return batch;
 }
 
@@ -109,14 +116,17 @@ std::vector<TrainingBatch> SampleEpoch(const Manifest& manifest, const Dataset& 
   Shuffle(&random, &pieces);
   std::vector<TrainingBatch> batches;
   for (const std::vector<int>& piece : pieces) {
-    std::vector<Sequence> chosen;
-    std::vector<StartKnowledge> starts;
+    std::vector<Example> examples;
     for (int index : piece) {
-      chosen.push_back(sequences[static_cast<size_t>(index)]);
-      starts.push_back(manifest.generator.follower_start ? DrawStart(options.start, &random)
-                                                         : StartKnowledge::kNone);
+      const StartKnowledge start = manifest.generator.follower_start
+                                       ? DrawStart(options.start, &random)
+                                       : StartKnowledge::kNone;
+      examples.push_back(CapturedExample(dataset, sequences[static_cast<size_t>(index)], start));
+      if (random.Chance(options.graded_labels)) {
+        GradeLabels(dataset, sequences, &random, &examples.back());
+      }
     }
-    batches.push_back(MakeBatch(manifest, dataset, chosen, starts));
+    batches.push_back(MakeBatch(manifest, dataset, examples));
   }
   return batches;
 }
@@ -128,7 +138,8 @@ torch::Tensor ClassMeanPoses(const Manifest& manifest, const Dataset& dataset,
   torch::Tensor sums = torch::zeros({classes, 3 * joints}), counts = torch::zeros({classes, 1});
   for (int index : train) {
     const Sequence& sequence = dataset.sequences[static_cast<size_t>(index)];
-    const TrainingBatch one = MakeBatch(manifest, dataset, {sequence}, {StartKnowledge::kNone});
+    const TrainingBatch one =
+        MakeBatch(manifest, dataset, {CapturedExample(dataset, sequence, StartKnowledge::kNone)});
     sums[sequence.interaction_class] += one.follower[0].mean(0);
     counts[sequence.interaction_class] += 1;
   }

@@ -8,6 +8,7 @@
 #include "model/dataset/dataset.h"
 #include "model/network/batch.h"
 #include "model/training/augment.h"
+#include "model/training/example.h"
 #include "model/training/options.h"
 
 namespace duet {
@@ -15,20 +16,18 @@ namespace duet {
 // One step's clips.
 struct TrainingBatch {
   network::GeneratorInput input;
-  torch::Tensor follower;  // [N, T, 3 J] standard frame, zero-padded
-  torch::Tensor classes;   // [N] int64
+  torch::Tensor target;       // [N, T, 3 J] wanted of the generator; standard frame, zero-padded
+  torch::Tensor follower;     // [N, T, 3 J] captured: the same but for graded labels
+  torch::Tensor classes;      // [N] int64
+  torch::Tensor single_rows;  // [M] int64, the clips whose label is their class alone
 };
 
-// What of the follower's first frame a clip is told.
-enum class StartKnowledge { kNone, kRoot, kPose };
-
 // A sequence as the network is given it: the window that a server would make of it.
-SynthesisWindow MakeWindow(const Dataset& dataset, const Sequence& sequence, StartKnowledge start);
+SynthesisWindow MakeWindow(const Dataset& dataset, const Example& example);
 
-// Pads sequences into a batch; `starts` names what each is told.
+// Pads examples into a batch.
 TrainingBatch MakeBatch(const Manifest& manifest, const Dataset& dataset,
-                        const std::vector<Sequence>& sequences,
-                        const std::vector<StartKnowledge>& starts);
+                        const std::vector<Example>& examples);
 
 // The batches of one epoch: every training sequence once, augmented, clips of like length together.
 // Depends on options, data and epoch alone.

@@ -57,9 +57,9 @@ void CopyInto(const std::vector<torch::Tensor>& from, const std::vector<torch::T
 torch::Tensor Reconstruction(const std::string& form, const torch::Tensor& predicted,
                              const TrainingBatch& batch) {
   const torch::Tensor& lengths = batch.input.lengths;
-  if (form == "l2") return network::L2Loss(predicted, batch.follower, lengths);
-  if (form == "norm") return network::NormLoss(predicted, batch.follower, lengths);
-  return network::L1Loss(predicted, batch.follower, lengths);
+  if (form == "l2") return network::L2Loss(predicted, batch.target, lengths);
+  if (form == "norm") return network::NormLoss(predicted, batch.target, lengths);
+  return network::L1Loss(predicted, batch.target, lengths);
 }
 
 network::ContinuityOptions Continuity(const TrainingOptions::Losses& losses) {
@@ -133,9 +133,12 @@ torch::Tensor Trainer::GeneratorLoss(const TrainingBatch& batch, EpochReport* re
     add(weights.continuity, network::ContinuityLoss(predicted, lengths, Continuity(weights)),
         &report->continuity);
   }
-  if (weights.adversarial > 0) {
+  // A mixed answer has no one class to be taken for.
+  if (weights.adversarial > 0 && batch.single_rows.numel() > 0) {
+    const torch::Tensor logits = discriminator_->forward(
+        predicted.index_select(0, batch.single_rows), lengths.index_select(0, batch.single_rows));
     add(weights.adversarial,
-        network::AdversarialLoss(discriminator_->forward(predicted, lengths), batch.classes),
+        network::AdversarialLoss(logits, batch.classes.index_select(0, batch.single_rows)),
         &report->adversarial);
   }
   report->generator += total.item<double>() / static_cast<double>(steps_per_epoch_);
@@ -215,8 +218,9 @@ double Trainer::Validate() {
   double sum = 0;
   for (int index : validation_) {
     const TrainingBatch one =
-        MakeBatch(manifest_, dataset_, {dataset_.sequences[static_cast<size_t>(index)]},
-                  {StartKnowledge::kNone});
+        MakeBatch(manifest_, dataset_,
+                  {CapturedExample(dataset_, dataset_.sequences[static_cast<size_t>(index)],
+                                   StartKnowledge::kNone)});
     sum += network::NormLoss(generator_->forward(one.input), one.follower, one.input.lengths)
                .item<double>();
   }

@@ -34,6 +34,8 @@ inline TrainingOptions SmallOptions() {
   options.augmentation.leader_yaw = 0.1;
   options.augmentation.noise = 0.01;
   options.augmentation.crop = 0.5;
+  options.augmentation.body_noise = 0.01;
+  options.graded_labels = 0.5;
   options.start = {0.3, 0.3};
   return options;
 }

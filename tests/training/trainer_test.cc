@@ -77,6 +77,7 @@ TEST_F(TrainerTest, TornOrMissingStateIsAnError) {
 TEST_F(TrainerTest, OverfitsOneClip) {
   options_.dropout = {0, 0};
   options_.augmentation = {};
+  options_.graded_labels = 0;
   options_.losses = {};
   options_.generator.encoder_hidden = 12;
   options_.optimiser.learning_rate = 0.01;
@@ -124,7 +125,8 @@ TEST_F(TrainerTest, EpochShowsEverySequenceOnce) {
 
 TEST_F(TrainerTest, BatchIsInTheLeadersFrameWithItsLabelAndStart) {
   const TrainingBatch batch =
-      MakeBatch(manifest_, dataset_, {dataset_.sequences[4]}, {StartKnowledge::kRoot});
+      MakeBatch(manifest_, dataset_,
+                {CapturedExample(dataset_, dataset_.sequences[4], StartKnowledge::kRoot)});
   const int root = dataset_.skeleton.root;
   EXPECT_LT(batch.input.leader[0].narrow(1, 3 * root, 3).abs().max().item<float>(), 1e-6);
   // The partner stands towards +z in the world: -z in the standard frame.

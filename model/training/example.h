@@ -1,0 +1,27 @@
+#ifndef DUET_MODEL_TRAINING_EXAMPLE_H_
+#define DUET_MODEL_TRAINING_EXAMPLE_H_
+
+#include <vector>
+
+#include "model/dataset/dataset.h"
+
+namespace duet {
+
+// What of the follower's first frame a clip is told.
+enum class StartKnowledge { kNone, kRoot, kPose };
+
+// One training clip: a sequence, what is asked for and what should be answered.
+struct Example {
+  Sequence sequence;
+  StartKnowledge start = StartKnowledge::kNone;
+  std::vector<float> weights;  // [classes], the label vector
+  std::vector<Vec3> target;    // [frames, joints], world metres
+  bool single = true;          // the label vector is the sequence's class alone
+};
+
+// A sequence asked for what was captured.
+Example CapturedExample(const Dataset& dataset, Sequence sequence, StartKnowledge start);
+
+}  // namespace duet
+
+#endif  // DUET_MODEL_TRAINING_EXAMPLE_H_

@@ -1,0 +1,29 @@
+#ifndef DUET_MODEL_TRAINING_GRADED_LABELS_H_
+#define DUET_MODEL_TRAINING_GRADED_LABELS_H_
+
+#include <vector>
+
+#include "model/training/augment.h"
+#include "model/training/example.h"
+
+namespace duet {
+
+// Gives an example a graded, negative or mixed label vector and the answer that it should get. The
+// paper trains on single classes and grades at inference; that alone leaves weights between and
+// below 0 and 1 undefined. Here a weight moves the answer along the line from standing still
+// (weight 0) through the captured reaction (1):
+//
+//   30 %  own class at w in [0, 1.5]:            still + w (captured - still)
+//   15 %  own class at -w in [-1, 0]:            still + w (other - still)
+//   10 %  own class at 1, another below 0:       captured
+//   45 %  own class at p, another at q, shares:  (1 - p' - q') still + p' captured + q' other
+//
+// "other" is the follower of a random clip of another class, brought to this clip's length and
+// place; where the follower's pose is given, it begins there.
+// Requires `pool` (the epoch's sequences) to hold another class; otherwise nothing changes.
+void GradeLabels(const Dataset& dataset, const std::vector<Sequence>& pool, EpochRandom* random,
+                 Example* example);
+
+}  // namespace duet
+
+#endif  // DUET_MODEL_TRAINING_GRADED_LABELS_H_

@@ -1,0 +1,118 @@
+#include "model/training/graded_labels.h"
+
+#include <gmock/gmock.h>
+
+#include <set>
+#include <string>
+
+#include "tests/training/made_up_dataset.h"
+
+namespace duet {
+namespace {
+
+constexpr int kDraws = 300;
+
+// Every kind of label vector, drawn for one sequence.
+std::vector<Example> Draw(const Dataset& dataset, StartKnowledge start) {
+  EpochRandom random(11, 0);
+  std::vector<Example> examples;
+  for (int i = 0; i < kDraws; ++i) {
+    examples.push_back(CapturedExample(dataset, dataset.sequences[0], start));
+    GradeLabels(dataset, dataset.sequences, &random, &examples.back());
+  }
+  return examples;
+}
+
+bool Near(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  for (size_t i = 0; i < a.size(); ++i) {
+    if (Distance(a[i], b[i]) > 1e-4f) return false;
+  }
+  return a.size() == b.size();
+}
+
+std::string KindOf(const Example& example) {
+  const float own = example.weights[0], other = example.weights[1] + example.weights[2];
+  if (own < 0) return "negative";
+  if (other < 0) return "other avoided";
+  if (other == 0) return "graded";
+  return own > 0 ? "mixed" : "other alone";
+}
+
+TEST(GradedLabelsTest, EveryKindComesUpWithinTheContract) {
+  const Dataset dataset = MadeUpDataset();
+  std::set<std::string> kinds;
+  for (const Example& example : Draw(dataset, StartKnowledge::kNone)) {
+    EXPECT_FALSE(example.single);
+    EXPECT_EQ(example.target.size(), dataset.sequences[0].pair.follower.positions.size());
+    for (const float weight : example.weights) EXPECT_LE(std::abs(weight), 2);
+    kinds.insert(KindOf(example));
+  }
+  EXPECT_EQ(kinds.size(), 5u);
+}
+
+TEST(GradedLabelsTest, OwnWeightScalesTheCapturedReaction) {
+  const Dataset dataset = MadeUpDataset();
+  const Clip& follower = dataset.sequences[0].pair.follower;
+  int checked = 0;
+  for (const Example& example : Draw(dataset, StartKnowledge::kNone)) {
+    if (KindOf(example) != "graded") continue;
+    const int frame = 7, joint = 5;
+    const Vec3 still = follower.at(0, joint), captured = follower.at(frame, joint);
+    EXPECT_LT(Distance(example.target[frame * 15 + joint],
+                       still + (captured - still) * example.weights[0]),
+              1e-5f);
+    ++checked;
+  }
+  EXPECT_GT(checked, 20);
+}
+
+TEST(GradedLabelsTest, AvoidingAnotherClassLeavesTheCapturedReaction) {
+  const Dataset dataset = MadeUpDataset();
+  int checked = 0;
+  for (const Example& example : Draw(dataset, StartKnowledge::kNone)) {
+    if (KindOf(example) != "other avoided") continue;
+    EXPECT_TRUE(Near(example.target, dataset.sequences[0].pair.follower.positions));
+    ++checked;
+  }
+  EXPECT_GT(checked, 5);
+}
+
+TEST(GradedLabelsTest, EveryAnswerBeginsAtAGivenPose) {
+  const Dataset dataset = MadeUpDataset();
+  const Clip& follower = dataset.sequences[0].pair.follower;
+  const std::vector<Vec3> first(follower.frame(0), follower.frame(0) + 15);
+  for (const Example& example : Draw(dataset, StartKnowledge::kPose)) {
+    EXPECT_TRUE(Near({example.target.begin(), example.target.begin() + 15}, first));
+  }
+}
+
+TEST(GradedLabelsTest, OtherReactionsHappenWhereThisOneDoes) {
+  Dataset dataset = MadeUpDataset();
+  // The same scene, moved and turned: what is borrowed from it must come back to this place.
+  Sequence& moved = dataset.sequences[1];
+  moved = dataset.sequences[0];
+  moved.interaction_class = 1;
+  for (Clip* clip : {&moved.pair.leader, &moved.pair.follower}) {
+    for (Vec3& p : clip->positions) p = RotateY(p, 2) + Vec3{5, 0, 3};
+  }
+  moved.partner_direction = RotateY(*moved.partner_direction, 2);
+  dataset.sequences.resize(2);
+  int checked = 0;
+  for (const Example& example : Draw(dataset, StartKnowledge::kNone)) {
+    if (KindOf(example) != "other alone" || example.weights[1] < 1) continue;
+    EXPECT_TRUE(Near(example.target, dataset.sequences[0].pair.follower.positions));
+    ++checked;
+  }
+  EXPECT_GT(checked, 2);
+}
+
+TEST(GradedLabelsTest, OneClassAloneStaysSingle) {
+  Dataset dataset = MadeUpDataset(1);
+  EpochRandom random(1, 1);
+  Example example = CapturedExample(dataset, dataset.sequences[0], StartKnowledge::kNone);
+  GradeLabels(dataset, dataset.sequences, &random, &example);
+  EXPECT_TRUE(example.single);
+}
+
+}  // namespace
+}  // namespace duet
