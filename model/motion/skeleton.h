@@ -29,8 +29,8 @@ struct Skeleton {
   std::vector<std::string> joint_names;
   std::vector<Bone> bones;
   std::vector<BodyPart> parts;
-  int root = 0;       // the joint that standardisation subtracts (torso on SBU)
-  int left_hip = 0;   // left to right hip gives the facing direction
+  int root = 0;      // the joint that standardisation subtracts (torso on SBU)
+  int left_hip = 0;  // left to right hip gives the facing direction
   int right_hip = 0;
   int left_foot = 0;
   int right_foot = 0;
