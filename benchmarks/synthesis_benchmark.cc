@@ -1,0 +1,81 @@
+// How fast the engine answers: frames a second by batch, and a long clip from end to end.
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <iostream>
+
+#include "model/engine/clip_synthesis.h"
+#include "model/engine/torch_synthesizer.h"
+
+namespace {
+
+constexpr int kLongFrames = 18000;  // 10 minutes at 30 frames a second
+constexpr double kLongRateHz = 30;
+
+const duet::Synthesizer& Model() {
+  static const auto* const kModels = [] {
+    duet::SetTorchThreads(1);
+    auto loaded = duet::LoadEmbeddedSynthesizers();
+    if (!loaded.ok()) {
+      std::cerr << loaded.status().message() << "\n";
+      std::exit(1);
+    }
+    return new std::vector<std::unique_ptr<duet::Synthesizer>>(*std::move(loaded));
+  }();
+  return *kModels->front();
+}
+
+// A made-up person who sways: speed does not depend on what the leader does.
+std::vector<duet::Vec3> Leader(int frames) {
+  std::vector<duet::Vec3> leader;
+  const int joints = Model().description().skeleton.joint_count();
+  for (int t = 0; t < frames; ++t) {
+    for (int j = 0; j < joints; ++j) {
+      const float phase = 0.2f * static_cast<float>(t) + static_cast<float>(j);
+      leader.push_back(
+          {0.2f * std::sin(phase), 0.1f * static_cast<float>(j), 0.2f * std::cos(phase)});
+    }
+  }
+  return leader;
+}
+
+std::vector<float> Label() {
+  std::vector<float> label(Model().description().classes.size(), 0);
+  label[0] = 1;
+  return label;
+}
+
+void BM_Windows(benchmark::State& state) {
+  const int frames = Model().description().window_frames;
+  duet::SynthesisWindow window;
+  window.leader = Leader(frames);
+  for (int t = 0; t < frames; ++t) {
+    const std::vector<float> label = Label();
+    window.labels.insert(window.labels.end(), label.begin(), label.end());
+  }
+  const std::vector<const duet::SynthesisWindow*> batch(static_cast<size_t>(state.range(0)),
+                                                        &window);
+  for (auto _ : state) benchmark::DoNotOptimize(Model().Synthesize(batch));
+  state.counters["frames/s"] = benchmark::Counter(static_cast<double>(state.range(0)) * frames,
+                                                  benchmark::Counter::kIsIterationInvariantRate);
+}
+BENCHMARK(BM_Windows)->Arg(1)->Arg(4)->Arg(16)->Arg(32)->Unit(benchmark::kMillisecond);
+
+void BM_TenMinutes(benchmark::State& state) {
+  const duet::ClipRequest request{
+      Leader(kLongFrames), kLongRateHz, duet::LabelTrack(Label()), {}, {}};
+  for (auto _ : state) {
+    duet::ClipSynthesis clip(Model().description(), request);
+    while (clip.HasNextWindow()) {
+      const duet::SynthesisWindow window = clip.NextWindow();
+      const duet::SynthesisWindow* const one = &window;
+      benchmark::DoNotOptimize(clip.Accept(*Model().Synthesize({&one, 1}).front()));
+    }
+  }
+  state.counters["frames/s"] =
+      benchmark::Counter(kLongFrames, benchmark::Counter::kIsIterationInvariantRate);
+}
+BENCHMARK(BM_TenMinutes)->Unit(benchmark::kMillisecond);
+
+}  // namespace
