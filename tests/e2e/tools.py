@@ -4,9 +4,11 @@ import contextlib
 import json
 import os
 import pathlib
+import queue
 import struct
 import subprocess
 import sys
+import threading
 import unittest
 import zlib
 
@@ -44,32 +46,38 @@ class Server:
         self._process = subprocess.Popen(
             [PROGRAMS / "duet-server", "--listen", "127.0.0.1:0", "--metrics_listen", "", *flags],
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-        self.port = self._wait_until_serving()
+        serving = queue.Queue()
+        # Reads to the end: a server whose log nobody reads stands still.
+        self._reader = threading.Thread(target=self._read_log, args=(serving,))
+        self._reader.start()
+        self.port = serving.get(timeout=120)
+        if self.port is None:
+            raise AssertionError(f"the server ended before it served: {self.log}")
 
     @property
     def address(self):
         return f"127.0.0.1:{self.port}"
 
-    def _wait_until_serving(self):
+    def _read_log(self, serving):
         for line in self._process.stdout:
-            self._note(line)
-            if self.log and self.log[-1].get("event") == "serving":
-                return self.log[-1]["port"]
-        raise AssertionError(f"the server ended before it served: {self.log}")
-
-    def _note(self, line):
-        try:
-            self.log.append(json.loads(line))
-        except json.JSONDecodeError:
-            self.log.append({"text": line})  # gRPC's own words
+            try:
+                entry = json.loads(line)
+            except json.JSONDecodeError:
+                entry = {"text": line}  # gRPC's own words
+            self.log.append(entry)
+            if entry.get("event") == "serving":
+                serving.put(entry["port"])
+        serving.put(None)
 
     def stop(self):
         """Asks the server to drain; returns its exit code."""
         self._process.terminate()
-        rest, _ = self._process.communicate(timeout=60)
-        for line in rest.splitlines():
-            self._note(line)
-        return self._process.returncode
+        try:
+            return self._process.wait(timeout=60)
+        finally:
+            self._process.kill()
+            self._reader.join()
+            self._process.stdout.close()
 
 
 @contextlib.contextmanager
