@@ -107,7 +107,7 @@ absl::StatusOr<ServerOptions> ToOptions(const v1::ServerConfig& config, int core
       reader.Address("listen", config.has_listen() ? config.listen() : "0.0.0.0:50051");
   if (!config.has_metrics_listen()) {
     options.metrics_listen = ListenAddress{"0.0.0.0", 9464};
-  } else if (config.metrics_listen() != "off") {
+  } else if (!config.metrics_listen().empty() && config.metrics_listen() != "off") {
     options.metrics_listen = reader.Address("metrics_listen", config.metrics_listen());
   }
   options.model_repository = config.model_repository();

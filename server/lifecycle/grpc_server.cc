@@ -7,6 +7,7 @@
 #include <grpcpp/security/server_credentials.h>
 #include <grpcpp/server_builder.h>
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -18,12 +19,17 @@ namespace {
 constexpr int kSecond = 1000;  // in channel arguments
 constexpr int kMinute = 60 * kSecond;
 
-// Reflection for one server; the library's own switch is for every server of the process.
-class WithReflection final : public grpc::ServerBuilderOption {
+// Takes reflection out of one server. The library gives it to every server of a process that links
+// it, and has no other switch.
+class WithoutReflection final : public grpc::ServerBuilderOption {
  public:
   void UpdateArguments(grpc::ChannelArguments*) override {}
   void UpdatePlugins(std::vector<std::unique_ptr<grpc::ServerBuilderPlugin>>* plugins) override {
-    plugins->push_back(std::make_unique<grpc::reflection::ProtoServerReflectionPlugin>());
+    plugins->erase(std::remove_if(plugins->begin(), plugins->end(),
+                                  [](const auto& plugin) {
+                                    return plugin->name() == "proto_server_reflection";
+                                  }),
+                   plugins->end());
   }
 };
 
@@ -56,12 +62,13 @@ void SetMessageLimits(grpc::ServerBuilder& builder, std::size_t max_request_byte
 absl::StatusOr<GrpcServer> StartGrpcServer(const GrpcServerOptions& options,
                                            grpc::Service& service) {
   grpc::EnableDefaultHealthCheckService(true);
+  grpc::reflection::InitProtoReflectionServerBuilderPlugin();
   grpc::ServerBuilder builder;
   GrpcServer started;
   builder.AddListeningPort(ToString(options.listen), grpc::InsecureServerCredentials(),
                            &started.port);
   builder.RegisterService(&service);
-  if (options.reflection) builder.SetOption(std::make_unique<WithReflection>());
+  if (!options.reflection) builder.SetOption(std::make_unique<WithoutReflection>());
   SetConnectionLimits(builder, options.max_calls);
   SetMessageLimits(builder, options.max_request_bytes);
   started.server = builder.BuildAndStart();

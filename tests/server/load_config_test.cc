@@ -155,6 +155,14 @@ TEST(ParseCommandLineTest, FlagsWinOverTheFile) {
   EXPECT_EQ(line->config.max_calls(), 9u);
 }
 
+TEST(ParseCommandLineTest, TakesAnEmptyValue) {
+  const absl::StatusOr<CommandLine> line = Parse({"--metrics_listen", "", "--workers", "2"});
+  ASSERT_THAT(line, IsOk());
+  EXPECT_TRUE(line->config.has_metrics_listen());
+  EXPECT_EQ(line->config.metrics_listen(), "");
+  EXPECT_EQ(line->config.workers(), 2u);
+}
+
 TEST(ParseCommandLineTest, NamesAFlagThatIsWrong) {
   EXPECT_THAT(Parse({"--prot", "7"}), StatusIs(kInvalidArgument, HasSubstr("--prot")));
   EXPECT_THAT(Parse({"--workers", "two"}), StatusIs(kInvalidArgument, HasSubstr("--workers")));

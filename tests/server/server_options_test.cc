@@ -71,6 +71,12 @@ TEST(ServerOptionsTest, TakesOverEveryField) {
   EXPECT_EQ(options->grace_seconds, 9);
 }
 
+TEST(ServerOptionsTest, AnEmptyMetricsAddressTurnsMetricsOffAsWell) {
+  v1::ServerConfig config;
+  config.set_metrics_listen("");
+  EXPECT_FALSE(ToOptions(config, 4)->metrics_listen.has_value());
+}
+
 TEST(ServerOptionsTest, WorkersTimesThreadsUseTheCoresAndNoMore) {
   v1::ServerConfig config;
   config.set_threads_per_worker(2);
@@ -102,8 +108,6 @@ INSTANTIATE_TEST_SUITE_P(
                   [](v1::ServerConfig& c) { c.set_listen("50051"); }},
         BadConfig{"metrics_listen: is \"a:b\", wanted host:port",
                   [](v1::ServerConfig& c) { c.set_metrics_listen("a:b"); }},
-        BadConfig{"metrics_listen: is \"\", wanted host:port",
-                  [](v1::ServerConfig& c) { c.set_metrics_listen(""); }},
         BadConfig{"workers: is 0, wanted 1 to 1024", [](v1::ServerConfig& c) { c.set_workers(0); }},
         BadConfig{"threads_per_worker: is 5000, wanted 1 to 1024",
                   [](v1::ServerConfig& c) { c.set_threads_per_worker(5000); }},

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "tests/server/support/fake_clock.h"
+#include "tests/server/support/gated_model.h"
 #include "tests/support/fake_synthesizer.h"
 #include "tests/support/sample_motion.h"
 #include "tests/support/status_matchers.h"
@@ -44,40 +45,6 @@ struct Ticket {
     job.done = [promise = promise](WindowOutcome result) { promise->set_value(std::move(result)); };
     return job;
   }
-};
-
-// A model whose evaluations wait until the test opens the gate.
-class GatedModel {
- public:
-  GatedModel() : model_(std::make_shared<FakeSynthesizer>()) {
-    model_->on_batch = [this](absl::Span<const SynthesisWindow* const>) {
-      MutexLock lock(mutex_);
-      ++started_;
-      changed_.NotifyAll();
-      while (!open_) changed_.Wait(mutex_);
-    };
-  }
-  std::shared_ptr<const Synthesizer> get() const { return model_; }
-  void WaitUntilStarted(int count) {
-    MutexLock lock(mutex_);
-    while (started_ < count) changed_.Wait(mutex_);
-  }
-  void Open() {
-    MutexLock lock(mutex_);
-    open_ = true;
-    changed_.NotifyAll();
-  }
-  int started() {
-    MutexLock lock(mutex_);
-    return started_;
-  }
-
- private:
-  std::shared_ptr<FakeSynthesizer> model_;
-  Mutex mutex_;
-  CondVar changed_;
-  int started_ DUET_GUARDED_BY(mutex_) = 0;
-  bool open_ DUET_GUARDED_BY(mutex_) = false;
 };
 
 TEST(WorkerPoolTest, EvaluatesAWindow) {

@@ -1,0 +1,332 @@
+// The whole server in one process: loading, health, reflection, metrics, draining.
+
+#include <gmock/gmock.h>
+#include <grpcpp/create_channel.h>
+#include <grpcpp/security/credentials.h>
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "server/lifecycle/duet_server.h"
+#include "tests/server/support/gated_model.h"
+#include "tests/server/support/http_get.h"
+#include "tests/server/support/raw_call.h"
+#include "tests/server/support/refusal.h"
+#include "tests/server/support/running_service.h"
+#include "tests/server/support/sample_request.h"
+#include "tests/support/status_matchers.h"
+
+namespace duet {
+namespace {
+
+using ::testing::_;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+using absl::StatusCode;
+using nlohmann::json;
+
+ServerOptions TestOptions() {
+  ServerOptions options;
+  options.listen = {"127.0.0.1", 0};
+  options.metrics_listen = ListenAddress{"127.0.0.1", 0};
+  return options;
+}
+
+class EventSink final : public LogSink {
+ public:
+  void Write(std::string_view line) override {
+    MutexLock lock(mutex_);
+    lines_.push_back(json::parse(line));
+  }
+  // The lines of one event, in order.
+  std::vector<json> Events(const std::string& event) const {
+    MutexLock lock(mutex_);
+    std::vector<json> events;
+    for (const json& line : lines_) {
+      if (line["event"] == event) events.push_back(line);
+    }
+    return events;
+  }
+
+ private:
+  mutable Mutex mutex_;
+  std::vector<json> lines_ DUET_GUARDED_BY(mutex_);
+};
+
+// A server, a channel to it and its log.
+class Running {
+ public:
+  explicit Running(const ServerOptions& options = TestOptions()) {
+    absl::StatusOr<std::unique_ptr<DuetServer>> server = DuetServer::Start(options, log);
+    EXPECT_THAT(server, IsOk());
+    server_ = *std::move(server);
+    channel = grpc::CreateChannel(absl::StrCat("127.0.0.1:", server_->port()),
+                                  grpc::InsecureChannelCredentials());
+    stub = v1::MotionSynthesis::NewStub(channel);
+  }
+  DuetServer* operator->() { return server_.get(); }
+  DuetServer& operator*() { return *server_; }
+  void Load(std::shared_ptr<const Synthesizer> model = std::make_shared<FakeSynthesizer>()) {
+    server_->Add({"fake/1", std::move(model), 0.5});
+  }
+  grpc::Status List() {
+    grpc::ClientContext context;
+    v1::ListModelsResponse response;
+    return stub->ListModels(&context, v1::ListModelsRequest(), &response);
+  }
+
+  EventSink log;
+  std::shared_ptr<grpc::Channel> channel;
+  std::unique_ptr<v1::MotionSynthesis::Stub> stub;
+
+ private:
+  std::unique_ptr<DuetServer> server_;
+};
+
+const auto kPatient = [](double) { return true; };
+const auto kHurried = [](double) { return false; };
+
+TEST(LoadingTest, TheServerListensAndSaysThatItIsNotReady) {
+  Running server;
+  EXPECT_EQ(Health(server.channel, ""), "NOT_SERVING");
+  EXPECT_EQ(Health(server.channel, "duet.v1.MotionSynthesis"), "NOT_SERVING");
+  EXPECT_THAT(HttpGet(server->metrics_port(), "/readyz"), StartsWith("HTTP/1.1 503"));
+  EXPECT_THAT(HttpGet(server->metrics_port(), "/healthz"), StartsWith("HTTP/1.1 200"));
+  EXPECT_EQ(Decode(server.List()).reason, "SERVER_LOADING");
+}
+
+TEST(LoadingTest, ServesOnceItsModelsAreThere) {
+  Running server;
+  server.Load();
+  ASSERT_THAT(server->Serve(), IsOk());
+  EXPECT_EQ(Health(server.channel, ""), "SERVING");
+  EXPECT_EQ(Health(server.channel, "duet.v1.MotionSynthesis"), "SERVING");
+  EXPECT_EQ(Health(server.channel, "model:fake"), "SERVING");
+  EXPECT_EQ(Health(server.channel, "model:other"), "service name unknown");
+  EXPECT_THAT(HttpGet(server->metrics_port(), "/readyz"), StartsWith("HTTP/1.1 200"));
+  EXPECT_TRUE(Call(*server.stub, SampleRequest()).status.ok());
+  const std::vector<json> serving = server.log.Events("serving");
+  ASSERT_EQ(serving.size(), 1u);
+  EXPECT_EQ(serving[0]["port"], server->port());
+  EXPECT_EQ(serving[0]["metrics_port"], server->metrics_port());
+}
+
+TEST(LoadingTest, ABadCheckpointIsReportedAndDoesNotStopOthers) {
+  Running server;
+  server->Add({"broken/1", absl::DataLossError("weights end early"), 0.1});
+  server.Load();
+  ASSERT_THAT(server->Serve(), IsOk());
+  const std::vector<json> refused = server.log.Events("model_refused");
+  ASSERT_EQ(refused.size(), 1u);
+  EXPECT_EQ(refused[0]["source"], "broken/1");
+  EXPECT_EQ(refused[0]["severity"], "ERROR");
+  EXPECT_THAT(refused[0]["message"].get<std::string>(), HasSubstr("weights end early"));
+  const std::string metrics = HttpGet(server->metrics_port(), "/metrics");
+  EXPECT_THAT(metrics, HasSubstr(R"(duet_model_state{checkpoint="broken/1"} 0)"));
+  EXPECT_THAT(metrics, HasSubstr(R"(duet_model_state{checkpoint="fake/1"} 1)"));
+}
+
+TEST(LoadingTest, RefusesToServeNothing) {
+  Running server;
+  EXPECT_THAT(server->Serve(),
+              StatusIs(StatusCode::kFailedPrecondition, HasSubstr("no model could be loaded")));
+  EXPECT_EQ(Health(server.channel, ""), "NOT_SERVING");
+}
+
+TEST(LoadingTest, RefusesADefaultModelThatIsNotServed) {
+  ServerOptions options = TestOptions();
+  options.default_model = "other";
+  Running server(options);
+  server.Load();
+  EXPECT_THAT(server->Serve(), StatusIs(StatusCode::kNotFound, HasSubstr("\"other\"")));
+}
+
+TEST(LoadingTest, SetsVersionLabelsAndReportsThoseThatPointNowhere) {
+  ServerOptions options = TestOptions();
+  options.version_labels = {{"fake", "stable", 1}, {"fake", "canary", 2}};
+  Running server(options);
+  server.Load();
+  ASSERT_THAT(server->Serve(), IsOk());
+  v1::SynthesizeRequest request = SampleRequest();
+  request.mutable_model()->set_version_label("stable");
+  EXPECT_TRUE(Call(*server.stub, request).status.ok());
+  const std::vector<json> refused = server.log.Events("version_label_refused");
+  ASSERT_EQ(refused.size(), 1u);
+  EXPECT_THAT(refused[0]["message"].get<std::string>(), HasSubstr("canary"));
+}
+
+TEST(ListenTest, ASecondServerOnAPortFailsAndSaysWhere) {
+  Running first;
+  EventSink log;
+  ServerOptions options = TestOptions();
+  options.listen.port = first->port();
+  EXPECT_THAT(DuetServer::Start(options, log),
+              StatusIs(StatusCode::kUnavailable, HasSubstr(ToString(options.listen))));
+  options = TestOptions();
+  options.metrics_listen->port = first->metrics_port();
+  EXPECT_THAT(DuetServer::Start(options, log),
+              StatusIs(StatusCode::kUnavailable, HasSubstr(ToString(*options.metrics_listen))));
+}
+
+TEST(ListenTest, MetricsMayBeOff) {
+  ServerOptions options = TestOptions();
+  options.metrics_listen.reset();
+  Running server(options);
+  EXPECT_EQ(server->metrics_port(), 0);
+}
+
+// ServerReflectionRequest{list_services = 7: ""}.
+const std::string kListServices = std::string("\x3a\x00", 2);
+constexpr char kReflection[] = "/grpc.reflection.v1alpha.ServerReflection/ServerReflectionInfo";
+
+TEST(ReflectionTest, NamesTheServices) {
+  Running server;
+  RawCall call(server.channel, kReflection, kListServices);
+  const std::string response = call.Read().value_or("");
+  EXPECT_THAT(response, HasSubstr("duet.v1.MotionSynthesis"));
+  EXPECT_THAT(response, HasSubstr("grpc.health.v1.Health"));
+}
+
+TEST(ReflectionTest, MayBeOff) {
+  ServerOptions options = TestOptions();
+  options.reflection = false;
+  Running server(options);
+  RawCall call(server.channel, kReflection, kListServices);
+  EXPECT_FALSE(call.Read().has_value());
+  EXPECT_EQ(call.Finish().error_code(), grpc::StatusCode::UNIMPLEMENTED);
+}
+
+TEST(ReportTest, ACallIsInMetricsAndLogWhenItsCallerKnows) {
+  Running server;
+  server.Load();
+  ASSERT_THAT(server->Serve(), IsOk());
+  ASSERT_TRUE(Call(*server.stub, SampleRequest(40)).status.ok());
+  const std::string metrics = HttpGet(server->metrics_port(), "/metrics");
+  EXPECT_THAT(metrics, HasSubstr(R"(grpc_server_handled_total{grpc_code="OK")"));
+  EXPECT_THAT(metrics, HasSubstr(R"(duet_frames_total{model="fake",version="1"} 40)"));
+  EXPECT_THAT(metrics, HasSubstr("duet_compute_seconds_count 1"));
+  EXPECT_THAT(metrics, HasSubstr(R"(duet_calls_in_flight{method="Synthesize"} 0)"));
+  const std::vector<json> calls = server.log.Events("call");
+  ASSERT_EQ(calls.size(), 1u);
+  EXPECT_EQ(calls[0]["frames"], 40);
+  EXPECT_EQ(calls[0]["code"], "OK");
+}
+
+TEST(DrainTest, AnIdleServerStopsWithoutWaiting) {
+  Running server;
+  server.Load();
+  ASSERT_THAT(server->Serve(), IsOk());
+  int waits = 0;
+  server->Drain([&](double) {
+    ++waits;
+    return true;
+  });
+  EXPECT_EQ(waits, 0);
+  EXPECT_EQ(server.List().error_code(), grpc::StatusCode::UNAVAILABLE);
+  EXPECT_EQ(server.log.Events("stopped")[0]["aborted_calls"], 0);
+}
+
+TEST(DrainTest, ServesOnForDrainSecondsWhileHealthSaysNo) {
+  ServerOptions options = TestOptions();
+  options.drain_seconds = 7;
+  Running server(options);
+  server.Load();
+  ASSERT_THAT(server->Serve(), IsOk());
+  std::vector<double> waits;
+  server->Drain([&](double seconds) {
+    waits.push_back(seconds);
+    EXPECT_EQ(Health(server.channel, ""), "NOT_SERVING");
+    EXPECT_EQ(Health(server.channel, "model:fake"), "NOT_SERVING");
+    EXPECT_TRUE(Call(*server.stub, SampleRequest()).status.ok());
+    return true;
+  });
+  EXPECT_THAT(waits, ElementsAre(7));
+}
+
+TEST(DrainTest, AWatchSeesTheChange) {
+  Running server;
+  server.Load();
+  ASSERT_THAT(server->Serve(), IsOk());
+  RawCall watch(server.channel, "/grpc.health.v1.Health/Watch", "");
+  EXPECT_EQ(watch.Read().value_or(""), "\x08\x01");
+  std::thread drain([&] { server->Drain(kPatient); });
+  EXPECT_EQ(watch.Read().value_or(""), "\x08\x02");
+  drain.join();
+}
+
+TEST(DrainTest, ACallUnderWayFinishesAndNewOnesAreSentElsewhere) {
+  GatedModel model;
+  Running server;
+  server.Load(model.get());
+  ASSERT_THAT(server->Serve(), IsOk());
+  Reply reply;
+  std::thread caller([&] { reply = Call(*server.stub, SampleRequest(200)); });
+  model.WaitUntilStarted(1);
+  bool first = true;
+  server->Drain([&](double) {
+    if (!std::exchange(first, false)) return true;
+    const Refusal refusal = Decode(Call(*server.stub, SampleRequest()).status);
+    EXPECT_EQ(refusal.code, StatusCode::kUnavailable);
+    EXPECT_EQ(refusal.reason, "SERVER_DRAINING");
+    EXPECT_EQ(refusal.retry_seconds, 1);
+    model.Open();
+    caller.join();
+    return true;
+  });
+  EXPECT_FALSE(first) << "the drain did not wait for the call";
+  EXPECT_TRUE(reply.status.ok()) << reply.status.error_message();
+  EXPECT_TRUE(reply.messages.back().has_summary());
+}
+
+TEST(DrainTest, ACallThatOutlivesTheGraceEndsAsUnavailable) {
+  GatedModel model;
+  ServerOptions options = TestOptions();
+  options.grace_seconds = 0.2;
+  Running server(options);
+  server.Load(model.get());
+  ASSERT_THAT(server->Serve(), IsOk());
+  Reply reply;
+  std::thread caller([&] { reply = Call(*server.stub, SampleRequest(200)); });
+  model.WaitUntilStarted(1);
+  double waited = 0;
+  server->Drain([&](double seconds) {
+    waited += seconds;
+    return true;
+  });
+  caller.join();
+  EXPECT_NEAR(waited, 0.2, 1e-9);
+  const Refusal refusal = Decode(reply.status);
+  EXPECT_EQ(refusal.code, StatusCode::kUnavailable);
+  EXPECT_EQ(refusal.reason, "SERVER_DRAINING");
+  EXPECT_EQ(server.log.Events("stopped")[0]["aborted_calls"], 1);
+  model.Open();
+}
+
+TEST(DrainTest, AHurriedOperatorIsObeyed) {
+  GatedModel model;
+  ServerOptions options = TestOptions();
+  options.drain_seconds = 3600;
+  options.grace_seconds = 3600;
+  Running server(options);
+  server.Load(model.get());
+  ASSERT_THAT(server->Serve(), IsOk());
+  Reply reply;
+  std::thread caller([&] { reply = Call(*server.stub, SampleRequest(200)); });
+  model.WaitUntilStarted(1);
+  server->Drain(kHurried);
+  caller.join();
+  EXPECT_EQ(reply.status.error_code(), grpc::StatusCode::UNAVAILABLE);
+  model.Open();
+}
+
+}  // namespace
+}  // namespace duet
