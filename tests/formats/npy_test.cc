@@ -91,6 +91,10 @@ TEST(Npy, RefusesEveryTruncation) {
   }
 }
 
+TEST(Npy, RefusesBytesAfterTheValues) {
+  EXPECT_THAT(ParseError(FormatNpy(MakePair()) + "x"), HasSubstr("bytes of values"));
+}
+
 TEST(Npy, RefusesAHeaderLongerThanTheFile) {
   std::string bytes = FormatNpy(MakePair());
   bytes[8] = bytes[9] = '\xff';
