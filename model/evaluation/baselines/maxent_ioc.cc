@@ -44,49 +44,65 @@ Rows Thin(const Rows& rows, Eigen::Index count) {
   return kept;
 }
 
-}  // namespace
-
-MaxEntIoc::Regression MaxEntIoc::FitRegression(const Rows& cues, const Rows& poses, double ridge) {
+// Ridge regression to poses from cues and a constant, which is not drawn to zero.
+Eigen::MatrixXd FitRegression(const Rows& cues, const Rows& poses, double ridge) {
   const Rows inputs = WithConstant(cues);
   Eigen::MatrixXd normal = inputs.transpose() * inputs;
-  // The constant is not drawn to zero.
   normal.diagonal().head(cues.cols()).array() += ridge;
   return normal.ldlt().solve(inputs.transpose() * poses);
 }
 
-Rows MaxEntIoc::ApplyRegression(const Regression& regression, const Rows& cues) {
-  return WithConstant(cues) * regression;
+// All rows but `count` from `first` on.
+Rows Without(const Rows& rows, Eigen::Index first, Eigen::Index count) {
+  Rows rest(rows.rows() - count, rows.cols());
+  rest << rows.topRows(first), rows.bottomRows(rows.rows() - first - count);
+  return rest;
 }
 
-Rows MaxEntIoc::Basis(const Model& model, const Rows& poses) {
-  Rows basis(poses.rows(), 1 + poses.cols() + model.centres.rows());
-  const Eigen::MatrixXd squared = SquaredDistances(poses, model.centres);
-  basis << Eigen::VectorXd::Ones(poses.rows()), poses,
-      (-squared / (2 * model.width * model.width)).array().exp().matrix();
+// The change from each pose of a clip to the next. Shapes: [frames, n] to [frames - 1, n].
+Rows Changes(const Rows& poses) {
+  return poses.bottomRows(poses.rows() - 1) - poses.topRows(poses.rows() - 1);
+}
+
+// Every row of `b` added to every row of `a`: all of row 0 of `a` first.
+Rows OuterSum(const Rows& a, const Rows& b) {
+  Rows sums(a.rows() * b.rows(), a.cols());
+  for (Eigen::Index i = 0; i < a.rows(); ++i) {
+    sums.middleRows(i * b.rows(), b.rows()) = b.rowwise() + a.row(i);
+  }
+  return sums;
+}
+
+}  // namespace
+
+Rows MaxEntIoc::Basis(const Model& model, const Eigen::MatrixXd& squared) {
+  // Relative to the nearest centre, so that the sum never underflows. A sum of one keeps the values
+  // of poses far from all centres within those near them.
+  const Eigen::VectorXd nearest = squared.rowwise().minCoeff();
+  Rows basis = (-(squared.colwise() - nearest) / (2 * model.width * model.width)).array().exp();
+  basis.array().colwise() /= basis.rowwise().sum().array().eval();
   return basis;
 }
 
-Eigen::Matrix<double, Eigen::Dynamic, MaxEntIoc::kFeatures> MaxEntIoc::Features(
-    const Model& model, const Rows& next, const Rows& before, const Eigen::RowVectorXd& expected) {
-  Eigen::Matrix<double, Eigen::Dynamic, kFeatures> features(next.rows(), kFeatures);
-  features.col(0) = (next.rowwise() - expected).rowwise().squaredNorm();
-  features.col(1) = (next - before).rowwise().squaredNorm();
-  features.col(2) = SquaredDistances(next, model.centres).rowwise().minCoeff();
-  return features;
+void MaxEntIoc::PrepareActions(const Rows& changes, Model* model) const {
+  model->actions = KMeans(changes, options_.actions, options_.seed);
+  Eigen::VectorXd counts = Eigen::VectorXd::Ones(model->actions.rows());
+  for (const int action : NearestCentres(model->actions, changes)) counts(action) += 1;
+  model->usual = (counts / counts.sum()).array().log();
 }
 
 void MaxEntIoc::PrepareValues(const Rows& poses, Model* model) const {
   model->centres = KMeans(poses, options_.value_centres, options_.seed);
-  model->width = 2 * MeanSpacing(model->centres);
+  model->width = MeanSpacing(model->centres);
   model->samples = Thin(poses, options_.value_samples);
-  const Eigen::Index actions = model->actions.rows();
-  model->arrivals.resize(model->samples.rows() * actions, poses.cols());
-  for (Eigen::Index i = 0; i < model->samples.rows(); ++i) {
-    model->arrivals.middleRows(i * actions, actions) =
-        model->actions.rowwise() + model->samples.row(i);
-  }
-  model->arrival_basis = Basis(*model, model->arrivals);
-  const Rows basis = Basis(*model, model->samples);
+  model->arrivals = OuterSum(model->samples, model->actions);
+  const Eigen::MatrixXd squared = SquaredDistances(model->arrivals, model->centres);
+  model->arrival_basis = Basis(*model, squared);
+  model->arrival_costs = Costs::Zero(squared.rows(), kFeatures);
+  model->arrival_costs.col(1) =
+      model->actions.rowwise().squaredNorm().replicate(model->samples.rows(), 1);
+  model->arrival_costs.col(2) = model->arrivals.rowwise().squaredNorm();
+  const Rows basis = Basis(*model, SquaredDistances(model->samples, model->centres));
   Eigen::MatrixXd normal = basis.transpose() * basis;
   normal.diagonal().array() += kValueRidge;
   model->fit = normal.ldlt().solve(Eigen::MatrixXd(basis.transpose()));
@@ -94,78 +110,82 @@ void MaxEntIoc::PrepareValues(const Rows& poses, Model* model) const {
 
 Rows MaxEntIoc::SoftValues(const Model& model, const Rows& expected) {
   const Eigen::Index actions = model.actions.rows(), samples = model.samples.rows();
-  Rows before(model.arrivals.rows(), model.arrivals.cols());
-  for (Eigen::Index i = 0; i < samples; ++i) {
-    before.middleRows(i * actions, actions) = model.samples.row(i).replicate(actions, 1);
-  }
+  const Eigen::VectorXd fixed = model.arrival_costs * model.weights;
   Rows values = Rows::Zero(expected.rows(), model.arrival_basis.cols());
   for (Eigen::Index t = expected.rows() - 2; t >= 0; --t) {
-    // V_t(s) = log mean_a exp(r(s, s + a) + V_{t+1}(s + a)), fitted on the samples.
+    // V_t(s) = log sum_a p(a) exp(r(s, s + a) + V_{t+1}(s + a)), fitted on the samples.
     const Eigen::VectorXd totals =
-        model.arrival_basis * values.row(t + 1).transpose() -
-        Features(model, model.arrivals, before, expected.row(t + 1)) * model.weights;
+        model.arrival_basis * values.row(t + 1).transpose() - fixed -
+        model.weights(0) * (model.arrivals.rowwise() - expected.row(t + 1)).rowwise().squaredNorm();
     Eigen::VectorXd targets(samples);
     for (Eigen::Index i = 0; i < samples; ++i) {
-      const auto choices = totals.segment(i * actions, actions);
+      const Eigen::VectorXd choices = totals.segment(i * actions, actions) + model.usual;
       const double largest = choices.maxCoeff();
-      targets(i) = largest + std::log((choices.array() - largest).exp().mean());
+      targets(i) = largest + std::log((choices.array() - largest).exp().sum());
     }
     values.row(t) = (model.fit * targets).transpose();
   }
   return values;
 }
 
-Rows MaxEntIoc::Rollout(const Model& model, const Rows& expected, const Rows& values,
-                        std::mt19937_64* random, Weights* features) {
-  Rows path(expected.rows(), expected.cols());
-  path.row(0) = expected.row(0);
-  for (Eigen::Index t = 1; t < path.rows(); ++t) {
-    const Rows next = model.actions.rowwise() + path.row(t - 1);
-    const auto costs =
-        Features(model, next, path.row(t - 1).replicate(next.rows(), 1), expected.row(t));
+MaxEntIoc::Rollouts MaxEntIoc::Sample(const Model& model, const Rows& expected, int paths,
+                                      std::mt19937_64* random) {
+  const Rows values = SoftValues(model, expected);
+  const Eigen::Index actions = model.actions.rows();
+  const Eigen::VectorXd effort = model.actions.rowwise().squaredNorm();
+  Rollouts rollouts;
+  rollouts.mean.resize(expected.rows(), expected.cols());
+  rollouts.mean.row(0) = expected.row(0);
+  Rows poses = expected.row(0).replicate(paths, 1);
+  for (Eigen::Index t = 1; t < expected.rows(); ++t) {
+    const Rows next = OuterSum(poses, model.actions);
+    Costs costs(next.rows(), kFeatures);
+    costs.col(0) = (next.rowwise() - expected.row(t)).rowwise().squaredNorm();
+    costs.col(1) = effort.replicate(paths, 1);
+    costs.col(2) = next.rowwise().squaredNorm();
     const Eigen::VectorXd totals =
-        Basis(model, next) * values.row(t).transpose() - costs * model.weights;
-    const Eigen::VectorXd policy = (totals.array() - totals.maxCoeff()).exp();
-    const Eigen::Index action = SampleIndex(policy, random);
-    path.row(t) = next.row(action);
-    if (features != nullptr) *features += costs.row(action).transpose();
+        Basis(model, SquaredDistances(next, model.centres)) * values.row(t).transpose() -
+        costs * model.weights;
+    for (int path = 0; path < paths; ++path) {
+      const Eigen::VectorXd choices = totals.segment(path * actions, actions) + model.usual;
+      const Eigen::VectorXd policy = (choices.array() - choices.maxCoeff()).exp();
+      const Eigen::Index pick = path * actions + SampleIndex(policy, random);
+      poses.row(path) = next.row(pick);
+      rollouts.costs += costs.row(pick).transpose() / paths;
+    }
+    rollouts.mean.row(t) = poses.colwise().mean();
   }
-  return path;
+  return rollouts;
+}
+
+MaxEntIoc::Demonstration MaxEntIoc::Demonstrate(Rows expected, Rows poses) {
+  Demonstration one = {std::move(expected), std::move(poses), Weights::Zero()};
+  const Eigen::Index steps = one.poses.rows() - 1;
+  one.costs(0) = (one.poses - one.expected).bottomRows(steps).squaredNorm();
+  one.costs(1) = Changes(one.poses).squaredNorm();
+  one.costs(2) = one.poses.bottomRows(steps).squaredNorm();
+  return one;
 }
 
 void MaxEntIoc::LearnReward(const std::vector<Demonstration>& demonstrations, Model* model) const {
   std::mt19937_64 random(options_.seed);
-  // To start with, a reward as of independent Gaussians with the demonstrations' own spread.
-  Weights total = Weights::Zero();
+  // To start with, the weights of independent Gaussians with the demonstrations' own spread.
+  Weights total = Weights::Constant(kLeastFeature);
   double steps = 0;
-  std::vector<Weights> demonstrated;
   for (const Demonstration& one : demonstrations) {
-    Weights sum = Weights::Zero();
-    for (Eigen::Index t = 1; t < one.poses.rows(); ++t) {
-      sum += Features(*model, one.poses.row(t), one.poses.row(t - 1), one.expected.row(t))
-                 .row(0)
-                 .transpose();
-    }
-    demonstrated.push_back(sum);
-    total += sum;
+    total += one.costs;
     steps += static_cast<double>(one.poses.rows() - 1);
   }
-  const Weights mean = (total / std::max(steps, 1.0)).cwiseMax(kLeastFeature);
-  model->weights = (0.5 * static_cast<double>(model->samples.cols()) / mean.array()).matrix();
+  const double freedom = steps * static_cast<double>(model->samples.cols());
+  model->weights = 0.5 * freedom * total.cwiseInverse();
   for (int iteration = 0; iteration < options_.iterations; ++iteration) {
     Weights excess = Weights::Zero(), scale = Weights::Constant(kLeastFeature);
     for (int i = 0; i < options_.demonstrations; ++i) {
-      const size_t pick = random() % demonstrations.size();
-      const Rows& expected = demonstrations[pick].expected;
-      const Rows values = SoftValues(*model, expected);
-      Weights sampled = Weights::Zero();
-      for (int k = 0; k < options_.rollouts; ++k) {
-        Rollout(*model, expected, values, &random, &sampled);
-      }
-      excess += sampled / options_.rollouts - demonstrated[pick];
-      scale += demonstrated[pick];
+      const Demonstration& one = demonstrations[random() % demonstrations.size()];
+      excess += Sample(*model, one.expected, options_.rollouts, &random).costs - one.costs;
+      scale += one.costs;
     }
-    // A feature that the policy pays more of than people do must cost more.
+    // What the policy pays more of than people do must cost more.
     const Weights step = excess.cwiseQuotient(scale).cwiseMax(-1).cwiseMin(1);
     const double rate = kRate / std::sqrt(1.0 + iteration);
     model->weights = model->weights.cwiseProduct((rate * step).array().exp().matrix())
@@ -184,41 +204,38 @@ void MaxEntIoc::TrainClass(int interaction_class, const std::vector<StandardPair
   model.follower = PoseSpace(all_poses, options_.pose_components);
   const Rows cues = model.leader.Project(all_cues), poses = model.follower.Project(all_poses);
   model.regression = FitRegression(cues, poses, options_.ridge);
-  std::vector<Demonstration> demonstrations;
-  Rows changes(poses.rows(), poses.cols());
+  std::vector<Rows> changes;
   Eigen::Index first = 0;
   for (const StandardPair& pair : pairs) {
+    changes.push_back(Changes(poses.middleRows(first, pair.cues.rows())));
+    first += pair.cues.rows();
+  }
+  PrepareActions(StackRows(changes, [](const Rows& rows) -> const Rows& { return rows; }), &model);
+  PrepareValues(poses, &model);
+  std::vector<Demonstration> demonstrations;
+  first = 0;
+  for (const StandardPair& pair : pairs) {
     const Eigen::Index frames = pair.cues.rows();
-    // Without the clip itself, which the regression would know by heart.
-    Rows other_cues(cues.rows() - frames, cues.cols());
-    Rows other_poses(other_cues.rows(), poses.cols());
-    other_cues << cues.topRows(first), cues.bottomRows(cues.rows() - first - frames);
-    other_poses << poses.topRows(first), poses.bottomRows(poses.rows() - first - frames);
-    const Regression other = pairs.size() > 1
-                                 ? FitRegression(other_cues, other_poses, options_.ridge)
-                                 : model.regression;
-    demonstrations.push_back(
-        {ApplyRegression(other, cues.middleRows(first, frames)), poses.middleRows(first, frames)});
-    changes.row(first).setZero();
-    changes.middleRows(first + 1, frames - 1) =
-        poses.middleRows(first + 1, frames - 1) - poses.middleRows(first, frames - 1);
+    // The regression would know the clip by heart: expect from one without it.
+    const Eigen::MatrixXd regression =
+        pairs.size() == 1 ? model.regression
+                          : FitRegression(Without(cues, first, frames),
+                                          Without(poses, first, frames), options_.ridge);
+    demonstrations.push_back(Demonstrate(WithConstant(cues.middleRows(first, frames)) * regression,
+                                         poses.middleRows(first, frames)));
     first += frames;
   }
-  model.actions = KMeans(changes, options_.actions, options_.seed);
-  PrepareValues(poses, &model);
   LearnReward(demonstrations, &model);
+  printf("  class %d weights %g %g %g\n", interaction_class, model.weights(0), model.weights(1),
+         model.weights(2));
 }
 
 Rows MaxEntIoc::PredictClass(int interaction_class, const StandardPair& leader) const {
   const Model& model = models_[static_cast<size_t>(interaction_class)];
-  const Rows expected = ApplyRegression(model.regression, model.leader.Project(leader.cues));
-  const Rows values = SoftValues(model, expected);
+  const Rows expected = WithConstant(model.leader.Project(leader.cues)) * model.regression;
   std::mt19937_64 random(options_.seed);
-  Rows sum = Rows::Zero(expected.rows(), expected.cols());
-  for (int i = 0; i < options_.answer_rollouts; ++i) {
-    sum += Rollout(model, expected, values, &random, nullptr);
-  }
-  return model.follower.Reconstruct(sum / options_.answer_rollouts);
+  return model.follower.Reconstruct(
+      Sample(model, expected, options_.answer_rollouts, &random).mean);
 }
 
 }  // namespace duet

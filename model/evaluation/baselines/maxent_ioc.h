@@ -42,25 +42,24 @@ class MaxEntIoc : public PerClassMethod {
   Rows PredictClass(int interaction_class, const StandardPair& leader) const override;
 
  private:
-  // Costs of stepping from a pose to the next under the leader's cues, all squared distances: next
-  // to the pose expected from the cues; to the pose before; to the nearest cluster of training
-  // poses.
+  // Costs of a step under the leader's cues, all squared lengths: from the next pose to the one
+  // expected from the cues; from the pose before; from the mean pose of the class.
   static constexpr int kFeatures = 3;
   using Weights = Eigen::Matrix<double, kFeatures, 1>;
-
-  // Ridge regression from cues (with a constant) to poses.
-  using Regression = Eigen::MatrixXd;
+  using Costs = Eigen::Matrix<double, Eigen::Dynamic, kFeatures>;
 
   struct Model {
     PoseSpace leader;
     PoseSpace follower;
-    Regression regression;
-    Rows centres;         // of training poses: value function and feature
-    double width = 1;     // of the radial functions
-    Rows actions;         // displacements
-    Rows samples;         // poses that the value function is fitted on
-    Rows arrivals;        // [samples x actions] poses after every action from every sample
+    Eigen::MatrixXd regression;  // from cues and a constant to poses
+    Rows centres;                // clusters of training poses
+    double width = 1;            // of the radial functions at the centres
+    Rows actions;                // displacements to choose from
+    Eigen::VectorXd usual;       // [actions] log of how often each occurs in training
+    Rows samples;                // poses that the value function is fitted on
+    Rows arrivals;        // [samples x actions] the poses after every action from every sample
     Rows arrival_basis;   // their value basis
+    Costs arrival_costs;  // their costs but for the first, which depends on the leader
     Eigen::MatrixXd fit;  // [basis, samples]: values at the samples to coefficients
     Weights weights;
   };
@@ -68,21 +67,24 @@ class MaxEntIoc : public PerClassMethod {
   struct Demonstration {
     Rows expected;
     Rows poses;
+    Weights costs;  // of all its steps
+  };
+  // Sampled answers to one leader.
+  struct Rollouts {
+    Rows mean;                        // [frames, components]
+    Weights costs = Weights::Zero();  // of all steps, the mean over paths
   };
 
-  static Regression FitRegression(const Rows& cues, const Rows& poses, double ridge);
-  static Rows ApplyRegression(const Regression& regression, const Rows& cues);
-  // 1, the components, and a radial function at each centre.
-  static Rows Basis(const Model& model, const Rows& poses);
-  // Features of arriving at each row of `next`. Shapes: returns [rows, features].
-  static Eigen::Matrix<double, Eigen::Dynamic, kFeatures> Features(
-      const Model& model, const Rows& next, const Rows& before, const Eigen::RowVectorXd& expected);
+  // The radial functions at the centres, normalised to a sum of one. Shapes: squared [n, centres].
+  static Rows Basis(const Model& model, const Eigen::MatrixXd& squared);
+  void PrepareActions(const Rows& changes, Model* model) const;
   void PrepareValues(const Rows& poses, Model* model) const;
   // Coefficients of the soft value function of each frame. Shapes: returns [frames, basis].
   static Rows SoftValues(const Model& model, const Rows& expected);
-  // One path of the policy; adds up its features where wanted.
-  static Rows Rollout(const Model& model, const Rows& expected, const Rows& values,
-                      std::mt19937_64* random, Weights* features);
+  // Samples `paths` answers from the policy of the soft value function.
+  static Rollouts Sample(const Model& model, const Rows& expected, int paths,
+                         std::mt19937_64* random);
+  static Demonstration Demonstrate(Rows expected, Rows poses);
   void LearnReward(const std::vector<Demonstration>& demonstrations, Model* model) const;
 
   MaxEntIocOptions options_;
