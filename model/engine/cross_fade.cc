@@ -20,13 +20,8 @@ Vec3 BlendBone(Vec3 a, Vec3 b, float weight) {
 
 std::vector<Bone> ParentsFirst(const Skeleton& skeleton) {
   std::vector<Bone> ordered;
-  std::vector<int> reached = {skeleton.root};
-  for (std::size_t i = 0; i < reached.size(); ++i) {
-    for (const Bone& bone : skeleton.bones) {
-      if (bone.parent != reached[i]) continue;
-      ordered.push_back(bone);
-      reached.push_back(bone.child);
-    }
+  for (const int bone : BonesFromRoot(skeleton)) {
+    ordered.push_back(skeleton.bones[static_cast<std::size_t>(bone)]);
   }
   return ordered;
 }

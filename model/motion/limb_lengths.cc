@@ -4,24 +4,6 @@
 #include <cstddef>
 
 namespace duet {
-namespace {
-
-// Indices into skeleton.bones, every bone after the one that ends where it begins.
-std::vector<std::size_t> FromTheRoot(const Skeleton& skeleton) {
-  std::vector<std::size_t> order;
-  std::vector<int> reached = {skeleton.root};
-  for (std::size_t next = 0; next < reached.size(); ++next) {
-    for (std::size_t b = 0; b < skeleton.bones.size(); ++b) {
-      if (skeleton.bones[b].parent != reached[next]) continue;
-      order.push_back(b);
-      reached.push_back(skeleton.bones[b].child);
-    }
-  }
-  return order;
-}
-
-}  // namespace
-
 std::vector<float> MedianBoneLengths(const Skeleton& skeleton, const std::vector<Vec3>& positions) {
   const std::size_t joints = skeleton.joint_names.size(), frames = positions.size() / joints;
   std::vector<float> medians;
@@ -41,12 +23,13 @@ std::vector<float> MedianBoneLengths(const Skeleton& skeleton, const std::vector
 void SetBoneLengths(const Skeleton& skeleton, const std::vector<float>& lengths,
                     std::vector<Vec3>* positions) {
   const std::size_t joints = skeleton.joint_names.size();
-  const std::vector<std::size_t> order = FromTheRoot(skeleton);
+  const std::vector<int> order = BonesFromRoot(skeleton);
   std::vector<Vec3> before(joints);
   for (auto pose = positions->begin(); pose != positions->end();
        pose += static_cast<std::ptrdiff_t>(joints)) {
     std::copy_n(pose, joints, before.begin());
-    for (const std::size_t b : order) {
+    for (const int index : order) {
+      const std::size_t b = static_cast<std::size_t>(index);
       const std::size_t parent = static_cast<std::size_t>(skeleton.bones[b].parent);
       const std::size_t child = static_cast<std::size_t>(skeleton.bones[b].child);
       const Vec3 along = before[child] - before[parent];

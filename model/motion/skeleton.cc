@@ -104,6 +104,19 @@ absl::Status Validate(const Skeleton& skeleton) {
   return status;
 }
 
+std::vector<int> BonesFromRoot(const Skeleton& skeleton) {
+  std::vector<int> order;
+  std::vector<int> reached = {skeleton.root};
+  for (size_t next = 0; next < reached.size(); ++next) {
+    for (size_t b = 0; b < skeleton.bones.size(); ++b) {
+      if (skeleton.bones[b].parent != reached[next]) continue;
+      order.push_back(static_cast<int>(b));
+      reached.push_back(skeleton.bones[b].child);
+    }
+  }
+  return order;
+}
+
 Skeleton SbuSkeleton() {
   Skeleton skeleton;
   skeleton.joint_names = {"head",       "neck",       "torso",          "left_shoulder",

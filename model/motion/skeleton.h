@@ -46,6 +46,10 @@ struct Skeleton {
 // repeated, a part is empty, or the bones are not a tree over all joints rooted at `root`.
 absl::Status Validate(const Skeleton& skeleton);
 
+// Indices into skeleton.bones from the root outwards: every bone comes after the one that ends
+// where it begins. Requires a skeleton that Validate accepts.
+std::vector<int> BonesFromRoot(const Skeleton& skeleton);
+
 // The 15 joints of SBU Kinect Interaction (and K3HI): head, neck, torso, left_shoulder, left_elbow,
 // left_hand, right_shoulder, right_elbow, right_hand, left_hip, left_knee, left_foot, right_hip,
 // right_knee, right_foot; five parts of three joints.

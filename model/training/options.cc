@@ -98,6 +98,7 @@ void Read(ObjectReader* reader, TrainingOptions::Start* out) {
 }
 
 void Read(ObjectReader* reader, TrainingOptions::Validation* out) {
+  out->subjects = reader->Strings("subjects", 256);
   out->fraction = reader->Number("fraction", 0, 0.9);
   out->patience = reader->Int("patience", 0, kMaxEpochs);
 }
@@ -150,6 +151,17 @@ absl::Status Replace(const std::string& path, const std::string& text, json* roo
     at = &(*at)[key];
   }
   *at = ParseValue(text);
+  return absl::OkStatus();
+}
+
+absl::Status CheckAllIn(const std::string& field, const std::vector<std::string>& names,
+                        const std::string& kind, const std::vector<std::string>& known) {
+  for (const std::string& name : names) {
+    if (std::find(known.begin(), known.end(), name) == known.end()) {
+      return absl::InvalidArgumentError(absl::StrCat(field, ": \"", name, "\", wanted ", kind,
+                                                     " of the data: ", absl::StrJoin(known, ", ")));
+    }
+  }
   return absl::OkStatus();
 }
 
@@ -211,19 +223,17 @@ std::map<std::string, std::string> Describe(const TrainingOptions& o) {
           {"graded_labels", Text(o.graded_labels)},
           {"start.root", Text(o.start.root)},
           {"start.pose", Text(o.start.pose)},
+          {"validation.subjects", absl::StrJoin(o.validation.subjects, " ")},
           {"validation.fraction", Text(o.validation.fraction)},
           {"validation.patience", absl::StrCat(o.validation.patience)}};
 }
 
-absl::Status CheckAgainst(const TrainingOptions& options, const std::vector<std::string>& classes) {
-  for (const std::string& name : options.augmentation.mirrored_classes) {
-    if (std::find(classes.begin(), classes.end(), name) == classes.end()) {
-      return absl::InvalidArgumentError(
-          absl::StrCat("augmentation.mirrored_classes: \"", name,
-                       "\", wanted classes of the data: ", absl::StrJoin(classes, ", ")));
-    }
-  }
-  return absl::OkStatus();
+absl::Status CheckAgainst(const TrainingOptions& options, const std::vector<std::string>& classes,
+                          const std::vector<std::string>& subjects) {
+  absl::Status status = CheckAllIn("augmentation.mirrored_classes",
+                                   options.augmentation.mirrored_classes, "classes", classes);
+  if (!status.ok()) return status;
+  return CheckAllIn("validation.subjects", options.validation.subjects, "subjects", subjects);
 }
 
 }  // namespace duet

@@ -75,8 +75,10 @@ struct TrainingOptions {
     double pose = 0;
   } start;
 
+  // What is held back from training to judge it: whole subjects, a share of the rest, or both.
   struct Validation {
-    double fraction = 0;   // of the training sequences, by class; 0: no validation
+    std::vector<std::string> subjects;  // every sequence that they are in
+    double fraction = 0;                // of the remaining sequences, by class
     int64_t patience = 0;  // epochs without a better error before the run stops; 0: never stops
   } validation;
 };
@@ -93,8 +95,9 @@ absl::StatusOr<TrainingOptions> ParseTrainingOptions(
 // Every setting by dotted path, as a manifest keeps it.
 std::map<std::string, std::string> Describe(const TrainingOptions& options);
 
-// Checks what depends on the data: that mirrored classes exist.
-absl::Status CheckAgainst(const TrainingOptions& options, const std::vector<std::string>& classes);
+// Checks what depends on the data: that mirrored classes and held-back subjects exist.
+absl::Status CheckAgainst(const TrainingOptions& options, const std::vector<std::string>& classes,
+                          const std::vector<std::string>& subjects);
 
 }  // namespace duet
 

@@ -2,6 +2,7 @@
 
 #include <malloc.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "absl/strings/str_cat.h"
@@ -30,6 +31,28 @@ Manifest MakeManifest(const RunPlan& plan, const Dataset& dataset) {
   manifest.training["data"] = dataset.name;
   manifest.training["sequences"] = absl::StrCat(plan.train.size());
   return manifest;
+}
+
+// Moves the validation sequences out of `train`.
+std::vector<int> HoldBack(const TrainingOptions& options, const Dataset& dataset,
+                          std::vector<int>* train) {
+  std::vector<int> held, kept;
+  for (const int index : *train) {
+    const std::vector<std::string>& people = dataset.sequences[static_cast<size_t>(index)].subjects;
+    const bool is_held =
+        std::any_of(options.validation.subjects.begin(), options.validation.subjects.end(),
+                    [&](const std::string& subject) {
+                      return std::find(people.begin(), people.end(), subject) != people.end();
+                    });
+    (is_held ? held : kept).push_back(index);
+  }
+  *train = kept;
+  if (options.validation.fraction > 0) {
+    const std::vector<int> more =
+        TakeValidation(dataset, options.validation.fraction, options.seed, train);
+    held.insert(held.end(), more.begin(), more.end());
+  }
+  return held;
 }
 
 absl::Status Finish(const RunPlan& plan, Manifest manifest, const EpochReport& last,
@@ -65,8 +88,8 @@ fs::path CheckpointFolder(const RunPlan& plan) {
 
 absl::Status RunTraining(const RunPlan& plan, const Dataset& dataset, bool terminal,
                          std::ostream* progress) {
-  if (absl::Status status = CheckAgainst(plan.options, dataset.classes); !status.ok())
-    return status;
+  absl::Status status = CheckAgainst(plan.options, dataset.classes, dataset.Subjects());
+  if (!status.ok()) return status;
   if (fs::exists(CheckpointFolder(plan))) {
     *progress << plan.title << " is finished: " << CheckpointFolder(plan).string() << "\n";
     return absl::OkStatus();
@@ -76,14 +99,14 @@ absl::Status RunTraining(const RunPlan& plan, const Dataset& dataset, bool termi
   if (error) return absl::InternalError(absl::StrCat(plan.folder.string(), ": ", error.message()));
   const Manifest manifest = MakeManifest(plan, dataset);
   std::vector<int> train = plan.train;
-  std::vector<int> validation;
-  if (plan.options.validation.fraction > 0) {
-    validation =
-        TakeValidation(dataset, plan.options.validation.fraction, plan.options.seed, &train);
+  const std::vector<int> validation = HoldBack(plan.options, dataset, &train);
+  if (train.empty()) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        plan.title, ": validation holds back every sequence, wanted some to train on"));
   }
   Trainer trainer(plan.options, manifest, dataset, train, validation);
   const fs::path state = plan.folder / "state";
-  absl::Status status = trainer.LoadState(state);
+  status = trainer.LoadState(state);
   if (!status.ok() && !absl::IsNotFound(status)) return status;
   RunLog log(plan.folder / "log.csv");
   if (status = log.ResumeAt(trainer.epoch()); !status.ok()) return status;

@@ -56,12 +56,18 @@ TEST(TrainingOptionsTest, RefusesByName) {
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("generator")));
 }
 
-TEST(TrainingOptionsTest, MirroredClassesMustExist) {
+TEST(TrainingOptionsTest, NamedClassesAndSubjectsMustExist) {
   TrainingOptions options;
   options.augmentation.mirrored_classes = {"kick", "jump"};
-  EXPECT_THAT(CheckAgainst(options, {"kick", "jump"}), IsOk());
-  EXPECT_THAT(CheckAgainst(options, {"kick"}),
+  EXPECT_THAT(CheckAgainst(options, {"kick", "jump"}, {}), IsOk());
+  EXPECT_THAT(CheckAgainst(options, {"kick"}, {}),
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("\"jump\"")));
+  options.augmentation.mirrored_classes.clear();
+  options.validation.subjects = {"s09"};
+  EXPECT_THAT(
+      CheckAgainst(options, {"kick"}, {"s01", "s02"}),
+      StatusIs(absl::StatusCode::kInvalidArgument,
+               HasSubstr("validation.subjects: \"s09\", wanted subjects of the data: s01")));
 }
 
 }  // namespace

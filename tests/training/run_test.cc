@@ -65,6 +65,17 @@ TEST_F(RunTest, DivergenceIsReportedNotSaved) {
   EXPECT_FALSE(std::filesystem::exists(plan_.folder / "state"));
 }
 
+TEST_F(RunTest, HeldBackSubjectsJudgeTheRun) {
+  plan_.options.validation.subjects = {"s02"};
+  ASSERT_THAT(Go(), IsOk());
+  const auto checkpoint = ReadCheckpoint(CheckpointFolder(plan_));
+  ASSERT_THAT(checkpoint, IsOk());
+  EXPECT_GT(checkpoint->manifest.metrics.at("validation.afd"), 0);
+  plan_.folder = folder_.path() / "nothing_left";
+  plan_.options.validation.subjects = {"s01", "s02"};
+  EXPECT_THAT(Go(), StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("every sequence")));
+}
+
 TEST_F(RunTest, UnknownMirroredClassIsRefusedBeforeAnythingIsWritten) {
   plan_.options.augmentation.mirrored_classes = {"jump"};
   EXPECT_THAT(Go(), StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("jump")));
