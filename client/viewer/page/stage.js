@@ -130,7 +130,7 @@ class Stage {
     const directions = {
       reset: across.clone().multiplyScalar(0.82).addScaledVector(axis, -0.42).add(up(0.3)),
       front: across.clone().add(up(0.1)),
-      side: axis.clone().add(up(0.16)),
+      side: axis.clone().addScaledVector(across, 0.4).add(up(0.16)),
       top: up(1).addScaledVector(across, 0.002),
     };
     const direction = directions[name].normalize();
