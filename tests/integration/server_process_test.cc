@@ -103,9 +103,15 @@ std::vector<std::string> Flags(std::vector<std::string> more = {}) {
   return flags;
 }
 
+// Takes in no more than a small window of a reply before it is read: a long call whose reader waits
+// stays under way, however fast the server is.
 std::unique_ptr<v1::MotionSynthesis::Stub> Connect(const json& serving) {
-  return v1::MotionSynthesis::NewStub(grpc::CreateChannel(
-      absl::StrCat("127.0.0.1:", serving["port"].get<int>()), grpc::InsecureChannelCredentials()));
+  grpc::ChannelArguments arguments;
+  arguments.SetInt(GRPC_ARG_HTTP2_BDP_PROBE, 0);
+  arguments.SetInt(GRPC_ARG_HTTP2_STREAM_LOOKAHEAD_BYTES, 65536);
+  return v1::MotionSynthesis::NewStub(
+      grpc::CreateCustomChannel(absl::StrCat("127.0.0.1:", serving["port"].get<int>()),
+                                grpc::InsecureChannelCredentials(), arguments));
 }
 
 TEST(ServerProcessTest, ServesWithoutAnyModelFlagAndStopsOnSigterm) {
