@@ -227,11 +227,9 @@ void ReadStandardisation(ObjectReader* reader, Manifest* manifest) {
 absl::StatusOr<Manifest> ReadManifest(const json& root) {
   ObjectReader reader(root, "");
   Manifest manifest;
-  // First and alone: of a newer format nothing else is known, not even its fields.
+  // First, since the first problem is the one that is told: a newer format may differ in any field.
   manifest.format_version =
       static_cast<int>(reader.Int("format_version", 1, kCheckpointFormatVersion));
-  if (!reader.ok()) return reader.Finish();
-
   ReadModel(&reader, &manifest.model);
   const json& generator = reader.Object("generator");
   if (reader.ok()) Take(ReadGenerator(generator), &reader, &manifest.generator);
