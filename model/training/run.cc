@@ -118,8 +118,9 @@ absl::Status RunTraining(const RunPlan& plan, const Dataset& dataset, bool termi
           absl::StrCat(plan.title, ": the loss is no longer finite at epoch ", report.epoch,
                        "; a lower optimiser.learning_rate or a gradient_clip may help"));
     }
-    if (status = trainer.SaveState(state); !status.ok()) return status;
+    // In this order: a row without its state is dropped on resuming, a lost row could not be made up.
     if (status = log.Append(report); !status.ok()) return status;
+    if (status = trainer.SaveState(state); !status.ok()) return status;
     Show(plan, report, terminal, progress);
   }
   return Finish(plan, manifest, report, &trainer);
