@@ -118,7 +118,7 @@ absl::Status RunTraining(const RunPlan& plan, const Dataset& dataset, bool termi
           absl::StrCat(plan.title, ": the loss is no longer finite at epoch ", report.epoch,
                        "; a lower optimiser.learning_rate or a gradient_clip may help"));
     }
-    // In this order: a row without its state is dropped on resuming, a lost row could not be made up.
+    // In this order: resuming drops a row without its state, but could not make up a lost one.
     if (status = log.Append(report); !status.ok()) return status;
     if (status = trainer.SaveState(state); !status.ok()) return status;
     Show(plan, report, terminal, progress);
