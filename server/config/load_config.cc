@@ -118,6 +118,10 @@ void AddCapacityFlags(CLI::App& app, v1::ServerConfig& config) {
          "--max_request_bytes", [&](uint64_t value) { config.set_max_request_bytes(value); },
          "size of a request (default 33554432)")
       ->option_text("BYTES");
+  app.add_option_function<uint64_t>(
+         "--max_transport_bytes", [&](uint64_t value) { config.set_max_transport_bytes(value); },
+         "memory of requests being received (default 16 x max_request_bytes)")
+      ->option_text("BYTES");
   app.add_option_function<uint32_t>(
          "--buffered_frames", [&](uint32_t value) { config.set_buffered_frames(value); },
          "finished frames that wait for a slow reader (default 240)")

@@ -74,6 +74,11 @@ void ReadLimits(const v1::ServerConfig& config, Reader& reader, ServerOptions& o
     options.max_request_bytes = static_cast<std::size_t>(reader.InRange(
         "max_request_bytes", config.max_request_bytes(), uint64_t{1024}, uint64_t{1} << 29));
   }
+  options.max_transport_bytes = static_cast<std::size_t>(
+      config.has_max_transport_bytes()
+          ? reader.InRange("max_transport_bytes", config.max_transport_bytes(),
+                           uint64_t{2} * options.max_request_bytes, uint64_t{1} << 40)
+          : uint64_t{16} * options.max_request_bytes);
   if (config.has_buffered_frames()) {
     options.buffered_frames = static_cast<int>(
         reader.InRange("buffered_frames", config.buffered_frames(), kOne, 1000000U));

@@ -38,6 +38,7 @@ struct ServerOptions {
   int max_calls = 128;
   int max_queued_windows = 64;
   std::size_t max_request_bytes = std::size_t{32} << 20;
+  std::size_t max_transport_bytes = std::size_t{512} << 20;
   int buffered_frames = 240;
   double drain_seconds = 0;
   double grace_seconds = 30;

@@ -63,9 +63,10 @@ ServiceParts DuetServer::Parts() {
 }
 
 absl::Status DuetServer::Listen() {
-  absl::StatusOr<GrpcServer> grpc = StartGrpcServer(
-      {options_.listen, options_.reflection, options_.max_request_bytes, options_.max_calls},
-      service_);
+  absl::StatusOr<GrpcServer> grpc =
+      StartGrpcServer({options_.listen, options_.reflection, options_.max_request_bytes,
+                       options_.max_transport_bytes, options_.max_calls},
+                      service_);
   if (!grpc.ok()) return grpc.status();
   grpc_ = *std::move(grpc);
   SetHealth(false);

@@ -4,6 +4,7 @@
 #include <grpcpp/ext/proto_server_reflection_plugin.h>
 #include <grpcpp/health_check_service_interface.h>
 #include <grpcpp/impl/server_builder_option.h>
+#include <grpcpp/resource_quota.h>
 #include <grpcpp/security/server_credentials.h>
 #include <grpcpp/server_builder.h>
 
@@ -48,13 +49,15 @@ void SetConnectionLimits(grpc::ServerBuilder& builder, int max_calls) {
   builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
 }
 
-void SetMessageLimits(grpc::ServerBuilder& builder, std::size_t max_request_bytes) {
+void SetMessageLimits(grpc::ServerBuilder& builder, const GrpcServerOptions& options) {
   // Twice the limit, so that most of what is too large still meets our own refusal with details.
-  builder.SetMaxReceiveMessageSize(static_cast<int>(2 * max_request_bytes));
+  builder.SetMaxReceiveMessageSize(static_cast<int>(2 * options.max_request_bytes));
   // A small compressed message may decompress to anything before its size is looked at, and
   // positions hardly compress.
   builder.SetCompressionAlgorithmSupportStatus(GRPC_COMPRESS_DEFLATE, false);
   builder.SetCompressionAlgorithmSupportStatus(GRPC_COMPRESS_GZIP, false);
+  // gRPC receives a message whole before it looks at its size.
+  builder.SetResourceQuota(grpc::ResourceQuota("duet").Resize(options.max_transport_bytes));
 }
 
 }  // namespace
@@ -70,7 +73,7 @@ absl::StatusOr<GrpcServer> StartGrpcServer(const GrpcServerOptions& options,
   builder.RegisterService(&service);
   if (!options.reflection) builder.SetOption(std::make_unique<WithoutReflection>());
   SetConnectionLimits(builder, options.max_calls);
-  SetMessageLimits(builder, options.max_request_bytes);
+  SetMessageLimits(builder, options);
   started.server = builder.BuildAndStart();
   if (started.server == nullptr || started.port == 0) {
     return absl::UnavailableError(

@@ -15,6 +15,7 @@ struct GrpcServerOptions {
   ListenAddress listen;
   bool reflection = true;
   std::size_t max_request_bytes = std::size_t{32} << 20;
+  std::size_t max_transport_bytes = std::size_t{512} << 20;
   int max_calls = 128;
 };
 

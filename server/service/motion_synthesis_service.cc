@@ -11,6 +11,7 @@
 #include "server/service/refusals.h"
 #include "server/service/synthesize_reactor.h"
 #include "server/service/validator.h"
+#include "server/service/wire.h"
 
 namespace duet {
 namespace {
@@ -30,19 +31,23 @@ TimePoint DeadlineOf(const grpc::CallbackServerContext& context, const Clock& cl
   return clock.Now() + std::chrono::duration_cast<TimePoint::duration>(left);
 }
 
+// Answers a unary call with a message or a status.
+template <typename Response>
 grpc::ServerUnaryReactor* FinishUnary(grpc::CallbackServerContext* context, CallScope& scope,
-                                      const absl::Status& status) {
-  scope.Finish(status);
-  AddRetryPushback(status, *context);
+                                      const absl::StatusOr<Response>& answer,
+                                      grpc::ByteBuffer* response) {
+  if (answer.ok()) *response = SerializeMessage(*answer);
+  scope.Finish(answer.status());
+  AddRetryPushback(answer.status(), *context);
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
-  reactor->Finish(ToGrpcStatus(status));
+  reactor->Finish(ToGrpcStatus(answer.status()));
   return reactor;
 }
 
 }  // namespace
 
-grpc::ServerWriteReactor<v1::SynthesizeResponse>* MotionSynthesisService::Synthesize(
-    grpc::CallbackServerContext* context, const v1::SynthesizeRequest* request) {
+grpc::ServerWriteReactor<grpc::ByteBuffer>* MotionSynthesisService::Synthesize(
+    grpc::CallbackServerContext* context, const grpc::ByteBuffer* request) {
   auto scope = std::make_unique<CallScope>(kSynthesize, IdentifyCall(*context), parts_.observers,
                                            *parts_.clock);
   auto* reactor = new SynthesizeReactor(*context);
@@ -60,11 +65,13 @@ grpc::ServerWriteReactor<v1::SynthesizeResponse>* MotionSynthesisService::Synthe
 }
 
 absl::StatusOr<SynthesisCall::Parts> MotionSynthesisService::Prepare(
-    const grpc::CallbackServerContext& context, const v1::SynthesizeRequest& request) {
-  const std::size_t bytes = request.ByteSizeLong();
-  if (bytes > parts_.limits.max_request_bytes) {
-    return TooLargeRefusal(bytes, parts_.limits.max_request_bytes);
+    const grpc::CallbackServerContext& context, const grpc::ByteBuffer& bytes) {
+  if (bytes.Length() > parts_.limits.max_request_bytes) {
+    return TooLargeRefusal(bytes.Length(), parts_.limits.max_request_bytes);
   }
+  v1::SynthesizeRequest request;
+  const absl::Status parsed = ParseMessage(bytes, request);
+  if (!parsed.ok()) return parsed;
   const Priority priority =
       request.priority() == v1::PRIORITY_BULK ? Priority::kBulk : Priority::kInteractive;
   absl::StatusOr<AdmissionSlot> slot = parts_.admission->Admit(priority);
@@ -80,28 +87,44 @@ absl::StatusOr<SynthesisCall::Parts> MotionSynthesisService::Prepare(
 }
 
 grpc::ServerUnaryReactor* MotionSynthesisService::ListModels(grpc::CallbackServerContext* context,
-                                                             const v1::ListModelsRequest*,
-                                                             v1::ListModelsResponse* response) {
+                                                             const grpc::ByteBuffer* request,
+                                                             grpc::ByteBuffer* response) {
   CallScope scope(kListModels, IdentifyCall(*context), parts_.observers, *parts_.clock);
-  const absl::Status serving = parts_.admission->CheckServing();
-  if (!serving.ok()) return FinishUnary(context, scope, serving);
+  return FinishUnary(context, scope, List(*request), response);
+}
+
+absl::StatusOr<v1::ListModelsResponse> MotionSynthesisService::List(
+    const grpc::ByteBuffer& bytes) const {
+  v1::ListModelsRequest request;
+  absl::Status status = ParseMessage(bytes, request);
+  if (status.ok()) status = parts_.admission->CheckServing();
+  if (!status.ok()) return status;
+  v1::ListModelsResponse response;
   for (const ServedModel& served : parts_.registry->List()) {
-    *response->add_models() = ToMessage(served);
+    *response.add_models() = ToMessage(served);
   }
-  return FinishUnary(context, scope, absl::OkStatus());
+  return response;
 }
 
 grpc::ServerUnaryReactor* MotionSynthesisService::GetModel(grpc::CallbackServerContext* context,
-                                                           const v1::GetModelRequest* request,
-                                                           v1::GetModelResponse* response) {
+                                                           const grpc::ByteBuffer* request,
+                                                           grpc::ByteBuffer* response) {
   CallScope scope(kGetModel, IdentifyCall(*context), parts_.observers, *parts_.clock);
-  const absl::Status serving = parts_.admission->CheckServing();
-  if (!serving.ok()) return FinishUnary(context, scope, serving);
-  const absl::StatusOr<ServedModel> served = parts_.registry->Find(ToQuery(request->model()));
-  if (!served.ok()) return FinishUnary(context, scope, ModelNotFoundRefusal(served.status()));
-  *response->mutable_model() = ToMessage(*served);
-  *response->mutable_limits() = ToMessage(parts_.limits);
-  return FinishUnary(context, scope, absl::OkStatus());
+  return FinishUnary(context, scope, Get(*request), response);
+}
+
+absl::StatusOr<v1::GetModelResponse> MotionSynthesisService::Get(
+    const grpc::ByteBuffer& bytes) const {
+  v1::GetModelRequest request;
+  absl::Status status = ParseMessage(bytes, request);
+  if (status.ok()) status = parts_.admission->CheckServing();
+  if (!status.ok()) return status;
+  const absl::StatusOr<ServedModel> served = parts_.registry->Find(ToQuery(request.model()));
+  if (!served.ok()) return ModelNotFoundRefusal(served.status());
+  v1::GetModelResponse response;
+  *response.mutable_model() = ToMessage(*served);
+  *response.mutable_limits() = ToMessage(parts_.limits);
+  return response;
 }
 
 void MotionSynthesisService::Remember(const std::shared_ptr<SynthesisCall>& call) {

@@ -27,32 +27,39 @@ struct ServiceParts {
   int buffered_frames = 240;  // see ClipStreamOptions
 };
 
-// The contract's service, on gRPC's callback API: no method blocks.
+// The generated service with every method on the callback API, and bytes for messages (wire.h).
+using RawMotionSynthesis = v1::MotionSynthesis::WithRawCallbackMethod_Synthesize<
+    v1::MotionSynthesis::WithRawCallbackMethod_ListModels<
+        v1::MotionSynthesis::WithRawCallbackMethod_GetModel<v1::MotionSynthesis::Service>>>;
+
+// The contract's service: no method blocks.
 //
-// A Synthesize request goes admission -> model -> validator -> SynthesisCall, which lives until its
-// last reply was taken or the caller went away.
-class MotionSynthesisService final : public v1::MotionSynthesis::CallbackService {
+// A Synthesize request goes size -> parser -> admission -> model -> validator -> SynthesisCall,
+// which lives until its last reply was taken or the caller went away.
+class MotionSynthesisService final : public RawMotionSynthesis {
  public:
   static constexpr char kServiceName[] = "duet.v1.MotionSynthesis";
 
   explicit MotionSynthesisService(ServiceParts parts) : parts_(std::move(parts)) {}
 
-  grpc::ServerWriteReactor<v1::SynthesizeResponse>* Synthesize(
-      grpc::CallbackServerContext* context, const v1::SynthesizeRequest* request) override;
+  grpc::ServerWriteReactor<grpc::ByteBuffer>* Synthesize(grpc::CallbackServerContext* context,
+                                                         const grpc::ByteBuffer* request) override;
   grpc::ServerUnaryReactor* ListModels(grpc::CallbackServerContext* context,
-                                       const v1::ListModelsRequest* request,
-                                       v1::ListModelsResponse* response) override;
+                                       const grpc::ByteBuffer* request,
+                                       grpc::ByteBuffer* response) override;
   grpc::ServerUnaryReactor* GetModel(grpc::CallbackServerContext* context,
-                                     const v1::GetModelRequest* request,
-                                     v1::GetModelResponse* response) override;
+                                     const grpc::ByteBuffer* request,
+                                     grpc::ByteBuffer* response) override;
 
   // Ends every call that is still being answered.
   void AbortAll(const absl::Status& reason);
 
  private:
-  // Admits and checks a request. On failure the scope is left to its caller.
+  // Reads, admits and checks a request. The scope is left to the caller.
   absl::StatusOr<SynthesisCall::Parts> Prepare(const grpc::CallbackServerContext& context,
-                                               const v1::SynthesizeRequest& request);
+                                               const grpc::ByteBuffer& bytes);
+  absl::StatusOr<v1::ListModelsResponse> List(const grpc::ByteBuffer& bytes) const;
+  absl::StatusOr<v1::GetModelResponse> Get(const grpc::ByteBuffer& bytes) const;
   void Remember(const std::shared_ptr<SynthesisCall>& call);
 
   const ServiceParts parts_;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "server/service/grpc_status.h"
+#include "server/service/wire.h"
 
 namespace duet {
 namespace {
@@ -19,9 +20,14 @@ void SynthesizeReactor::Run(std::shared_ptr<SynthesisCall> call) {
   call_->Start();
 }
 
+void SynthesizeReactor::Write(const v1::SynthesizeResponse& reply) {
+  reply_ = SerializeMessage(reply);
+  StartWrite(&reply_);
+}
+
 void SynthesizeReactor::Finish(const absl::Status& status) {
   AddRetryPushback(status, context_);
-  grpc::ServerWriteReactor<v1::SynthesizeResponse>::Finish(ToGrpcStatus(status));
+  grpc::ServerWriteReactor<grpc::ByteBuffer>::Finish(ToGrpcStatus(status));
 }
 
 void SynthesizeReactor::OnCancel() {

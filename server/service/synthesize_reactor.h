@@ -1,6 +1,7 @@
 #ifndef DUET_SERVER_SERVICE_SYNTHESIZE_REACTOR_H_
 #define DUET_SERVER_SERVICE_SYNTHESIZE_REACTOR_H_
 
+#include <grpcpp/support/byte_buffer.h>
 #include <grpcpp/support/server_callback.h>
 
 #include <memory>
@@ -12,7 +13,7 @@
 namespace duet {
 
 // Joins a SynthesisCall to gRPC. Deletes itself when gRPC is done with it.
-class SynthesizeReactor final : public grpc::ServerWriteReactor<v1::SynthesizeResponse>,
+class SynthesizeReactor final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
                                 public ReplyWriter {
  public:
   explicit SynthesizeReactor(grpc::CallbackServerContext& context) : context_(context) {}
@@ -21,7 +22,7 @@ class SynthesizeReactor final : public grpc::ServerWriteReactor<v1::SynthesizeRe
   void Run(std::shared_ptr<SynthesisCall> call);
   void Refuse(const absl::Status& status) { Finish(status); }
 
-  void Write(const v1::SynthesizeResponse& reply) override { StartWrite(&reply); }
+  void Write(const v1::SynthesizeResponse& reply) override;
   void Finish(const absl::Status& status) override;
 
   void OnWriteDone(bool ok) override { call_->OnWritten(ok); }
@@ -31,6 +32,7 @@ class SynthesizeReactor final : public grpc::ServerWriteReactor<v1::SynthesizeRe
  private:
   grpc::CallbackServerContext& context_;
   std::shared_ptr<SynthesisCall> call_;
+  grpc::ByteBuffer reply_;  // being written
 };
 
 }  // namespace duet

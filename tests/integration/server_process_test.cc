@@ -13,6 +13,7 @@
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -73,6 +74,7 @@ class Process {
     for (std::string line; ReadLine(&line);) rest += line;
     return rest;
   }
+  pid_t pid() const { return pid_; }
   void Signal(int signal) { kill(pid_, signal); }
   // The exit code, or minus the signal that killed it.
   int Wait() {
@@ -230,6 +232,28 @@ TEST(ServerProcessTest, SigtermWhileLoadingStopsAfterTheCheckpointUnderWay) {
   close(manifest);
   EXPECT_EQ(server.Wait(), 0);
   EXPECT_THAT(server.Rest(), testing::Not(HasSubstr("model_loaded")));
+}
+
+// The most memory that a process has held, in bytes.
+long PeakBytes(pid_t pid) {
+  std::ifstream status(absl::StrCat("/proc/", pid, "/status"));
+  for (std::string word; status >> word;) {
+    long kilobytes = 0;
+    if (word == "VmHWM:" && status >> kilobytes) return kilobytes * 1024;
+  }
+  return 0;
+}
+
+TEST(ServerProcessTest, AGiantMessageIsRefusedInLittleMemory) {
+  constexpr long kMegabyte = 1 << 20;
+  Process server(Flags({"--max_request_bytes", "1048576", "--max_transport_bytes", "16777216"}));
+  const auto stub = Connect(server.WaitForEvent("serving"));
+  v1::SynthesizeRequest request;
+  request.mutable_leader()->mutable_positions()->Resize(static_cast<int>(40 * kMegabyte), 0);
+  EXPECT_EQ(Call(*stub, request).status.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
+  EXPECT_GT(PeakBytes(server.pid()), kMegabyte);
+  EXPECT_LT(PeakBytes(server.pid()), 100 * kMegabyte) << "the message has 160 MB";
+  EXPECT_TRUE(Call(*stub, SampleRequest()).status.ok()) << "others are answered";
 }
 
 TEST(ServerProcessTest, AWrongFlagIsNamedAndIsAUsageError) {

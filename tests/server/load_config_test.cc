@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "absl/strings/str_split.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
@@ -81,42 +82,19 @@ TEST(ParseCommandLineTest, NoFlagsSetNothing) {
 }
 
 TEST(ParseCommandLineTest, ReadsEveryFlag) {
-  const absl::StatusOr<CommandLine> line = Parse({"--listen",
-                                                  "a:1",
-                                                  "--metrics_listen",
-                                                  "off",
-                                                  "--model_repository",
-                                                  "/models",
-                                                  "--default_model",
-                                                  "sbu",
-                                                  "--version_label",
-                                                  "sbu:stable=3",
-                                                  "--version_label",
-                                                  "sbu:canary=4",
-                                                  "--no-reflection",
-                                                  "--workers",
-                                                  "2",
-                                                  "--threads_per_worker",
-                                                  "3",
-                                                  "--max_calls",
-                                                  "4",
-                                                  "--max_queued_windows",
-                                                  "5",
-                                                  "--max_request_bytes",
-                                                  "6000",
-                                                  "--buffered_frames",
-                                                  "7",
-                                                  "--drain_seconds",
-                                                  "8",
-                                                  "--grace_seconds",
-                                                  "9"});
+  const absl::StatusOr<CommandLine> line = Parse(absl::StrSplit(
+      "--listen a:1 --metrics_listen off --model_repository /models --default_model sbu "
+      "--version_label sbu:stable=3 --version_label sbu:canary=4 --no-reflection --workers 2 "
+      "--threads_per_worker 3 --max_calls 4 --max_queued_windows 5 --max_request_bytes 6000 "
+      "--max_transport_bytes 20000 --buffered_frames 7 --drain_seconds 8 --grace_seconds 9",
+      ' '));
   ASSERT_THAT(line, IsOk());
   const absl::StatusOr<v1::ServerConfig> expected = ParseConfigText(
       R"(listen: "a:1" metrics_listen: "off" model_repository: "/models" default_model: "sbu"
          version_labels { model: "sbu" label: "stable" version: 3 }
          version_labels { model: "sbu" label: "canary" version: 4 }
          reflection: false workers: 2 threads_per_worker: 3 max_calls: 4 max_queued_windows: 5
-         max_request_bytes: 6000 buffered_frames: 7 drain_seconds: 8 grace_seconds: 9)",
+         max_request_bytes: 6000 max_transport_bytes: 20000 buffered_frames: 7 drain_seconds: 8 grace_seconds: 9)",
       false);
   ASSERT_THAT(expected, IsOk());
   EXPECT_TRUE(google::protobuf::util::MessageDifferencer::Equals(line->config, *expected))

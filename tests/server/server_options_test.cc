@@ -27,6 +27,7 @@ TEST(ServerOptionsTest, DefaultsServeTheEmbeddedCheckpointOnTheWellKnownPorts) {
   EXPECT_EQ(options->workers, 4);
   EXPECT_EQ(options->threads_per_worker, 1);
   EXPECT_EQ(options->max_request_bytes, 32u << 20);
+  EXPECT_EQ(options->max_transport_bytes, 512u << 20);
   EXPECT_EQ(options->drain_seconds, 0);
   EXPECT_EQ(options->grace_seconds, 30);
 }
@@ -47,6 +48,7 @@ TEST(ServerOptionsTest, TakesOverEveryField) {
   config.set_max_calls(5);
   config.set_max_queued_windows(6);
   config.set_max_request_bytes(4096);
+  config.set_max_transport_bytes(10000);
   config.set_buffered_frames(7);
   config.set_drain_seconds(8.5);
   config.set_grace_seconds(9);
@@ -66,6 +68,7 @@ TEST(ServerOptionsTest, TakesOverEveryField) {
   EXPECT_EQ(options->max_calls, 5);
   EXPECT_EQ(options->max_queued_windows, 6);
   EXPECT_EQ(options->max_request_bytes, 4096u);
+  EXPECT_EQ(options->max_transport_bytes, 10000u);
   EXPECT_EQ(options->buffered_frames, 7);
   EXPECT_EQ(options->drain_seconds, 8.5);
   EXPECT_EQ(options->grace_seconds, 9);
@@ -118,6 +121,8 @@ INSTANTIATE_TEST_SUITE_P(
                   [](v1::ServerConfig& c) { c.set_max_request_bytes(10); }},
         BadConfig{"max_request_bytes: is 4294967296, wanted 1024",
                   [](v1::ServerConfig& c) { c.set_max_request_bytes(uint64_t{1} << 32); }},
+        BadConfig{"max_transport_bytes: is 67108863, wanted 67108864 to",
+                  [](v1::ServerConfig& c) { c.set_max_transport_bytes((64 << 20) - 1); }},
         BadConfig{"buffered_frames: is 0, wanted 1",
                   [](v1::ServerConfig& c) { c.set_buffered_frames(0); }},
         BadConfig{"drain_seconds: is -1, wanted 0 to 3600",

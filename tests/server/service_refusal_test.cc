@@ -9,6 +9,7 @@
 #include <string>
 
 #include "tests/server/support/puppet_scheduler.h"
+#include "tests/server/support/raw_call.h"
 #include "tests/server/support/refusal.h"
 #include "tests/server/support/running_service.h"
 #include "tests/server/support/sample_request.h"
@@ -74,6 +75,27 @@ TEST(ServiceRefusalTest, TheMostDetailedRefusalReachesTheClient) {
   EXPECT_EQ(refusal.code, StatusCode::kInvalidArgument);
   EXPECT_GT(refusal.violations.size(), 5u);
 }
+
+class MalformedBytesTest : public ::testing::TestWithParam<std::pair<std::string, std::string>> {};
+
+TEST_P(MalformedBytesTest, AreInvalidArgumentsWithAReason) {
+  RunningService running;
+  const auto& [method, message] = GetParam();
+  // A model name that is not UTF-8, and a length that runs past the end.
+  for (const std::string& bytes :
+       {std::string("\x0a\x04\x0a\x02\xff\xfe"), std::string("\x0a\x7f")}) {
+    RawCall call(running.channel(), "/duet.v1.MotionSynthesis/" + method, bytes);
+    EXPECT_FALSE(call.Read().has_value());
+    const Refusal refusal = Decode(call.Finish());
+    EXPECT_EQ(refusal.code, StatusCode::kInvalidArgument);
+    EXPECT_THAT(refusal.Of("duet.v1." + message),
+                HasSubstr("bytes that cannot be read: malformed, or a string that is not UTF-8"));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, MalformedBytesTest,
+                         ::testing::Values(std::pair{"Synthesize", "SynthesizeRequest"},
+                                           std::pair{"GetModel", "GetModelRequest"}));
 
 TEST(ServiceRefusalTest, AnUnknownModelIsNamedWithThoseServed) {
   RunningService running;

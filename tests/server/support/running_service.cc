@@ -26,15 +26,17 @@ RunningService::RunningService(Setup setup) : admission_(setup.max_calls) {
   parts.limits = setup.limits;
   parts.buffered_frames = setup.buffered_frames;
   service_ = std::make_unique<MotionSynthesisService>(parts);
-  absl::StatusOr<GrpcServer> grpc =
-      StartGrpcServer({{"127.0.0.1", 0}, false, setup.limits.max_request_bytes, 16}, *service_);
+  absl::StatusOr<GrpcServer> grpc = StartGrpcServer(
+      {{"127.0.0.1", 0}, false, setup.limits.max_request_bytes, std::size_t{512} << 20, 16},
+      *service_);
   if (!grpc.ok()) {
     ADD_FAILURE() << grpc.status();
     return;
   }
   grpc_ = *std::move(grpc);
-  stub_ = v1::MotionSynthesis::NewStub(grpc::CreateChannel(absl::StrCat("127.0.0.1:", grpc_.port),
-                                                           grpc::InsecureChannelCredentials()));
+  channel_ = grpc::CreateChannel(absl::StrCat("127.0.0.1:", grpc_.port),
+                                 grpc::InsecureChannelCredentials());
+  stub_ = v1::MotionSynthesis::NewStub(channel_);
 }
 
 RunningService::~RunningService() {

@@ -35,6 +35,7 @@ class RunningService {
   ~RunningService();
 
   v1::MotionSynthesis::Stub& stub() { return *stub_; }
+  const std::shared_ptr<grpc::Channel>& channel() const { return channel_; }
   RecordingObserver& calls() { return calls_; }
   ModelRegistry& registry() { return registry_; }
   Admission& admission() { return admission_; }
@@ -47,6 +48,7 @@ class RunningService {
   std::unique_ptr<WorkerPool> pool_;
   std::unique_ptr<MotionSynthesisService> service_;
   GrpcServer grpc_;
+  std::shared_ptr<grpc::Channel> channel_;
   std::unique_ptr<v1::MotionSynthesis::Stub> stub_;
 };
 

@@ -1,0 +1,31 @@
+#include "server/service/wire.h"
+
+#include <grpcpp/support/proto_buffer_reader.h>
+#include <grpcpp/support/proto_buffer_writer.h>
+
+#include "absl/strings/str_cat.h"
+#include "server/service/violations.h"
+
+namespace duet {
+
+absl::Status ParseMessage(const grpc::ByteBuffer& bytes, google::protobuf::Message& message) {
+  grpc::ByteBuffer shared = bytes;  // reading needs its own; the bytes themselves are shared
+  grpc::ProtoBufferReader reader(&shared);
+  if (reader.status().ok() && message.ParseFromZeroCopyStream(&reader)) return absl::OkStatus();
+  Violations violations;
+  violations.Malformed(
+      message.GetDescriptor()->full_name(),
+      absl::StrCat("is ", bytes.Length(),
+                   " bytes that cannot be read: malformed, or a string that is not UTF-8"));
+  return violations.ToStatus();
+}
+
+grpc::ByteBuffer SerializeMessage(const google::protobuf::Message& message) {
+  const int size = static_cast<int>(message.ByteSizeLong());
+  grpc::ByteBuffer bytes;
+  grpc::ProtoBufferWriter writer(&bytes, grpc::kProtoBufferWriterMaxBufferLength, size);
+  message.SerializeToZeroCopyStream(&writer);
+  return bytes;
+}
+
+}  // namespace duet

@@ -1,0 +1,22 @@
+#ifndef DUET_SERVER_SERVICE_WIRE_H_
+#define DUET_SERVER_SERVICE_WIRE_H_
+
+#include <google/protobuf/message.h>
+#include <grpcpp/support/byte_buffer.h>
+
+#include "absl/status/status.h"
+
+namespace duet {
+
+// Messages and the bytes that travel. The service takes bytes, because gRPC's generated code would
+// refuse malformed ones as UNIMPLEMENTED, and parses a request only once it is known to be small
+// enough.
+
+// Fails with INVALID_ARGUMENT, saying which message was wanted, when the bytes are none.
+absl::Status ParseMessage(const grpc::ByteBuffer& bytes, google::protobuf::Message& message);
+
+grpc::ByteBuffer SerializeMessage(const google::protobuf::Message& message);
+
+}  // namespace duet
+
+#endif  // DUET_SERVER_SERVICE_WIRE_H_
