@@ -19,7 +19,7 @@ struct AliasRow {
 // The table of docs/formats.md. Order matters within a row: `LeftShoulder` is the collar bone
 // beside a `LeftArm`, and the shoulder itself in files without one.
 const std::vector<AliasRow>& AliasTable() {
-  static const auto* const table = new std::vector<AliasRow>{
+  static const auto* const kTable = new std::vector<AliasRow>{
       {"head", {"head", "skull"}},
       {"neck", {"neck", "neck1", "neck01", "lowerneck", "necklower"}},
       {"shoulder",
@@ -29,15 +29,15 @@ const std::vector<AliasRow>& AliasTable() {
       {"hip", {"upleg", "upperleg", "thigh", "thighbend", "femur", "thighfk", "hip", "leg"}},
       {"knee", {"knee", "shin", "calf", "lowerleg", "lowleg", "tibia", "shinfk", "leg"}},
       {"foot", {"ankle", "foot", "footfk"}}};
-  return *table;
+  return *kTable;
 }
 
 bool IsNoise(const std::string& word) {
-  static const auto* const noise = new std::vector<std::string>{
+  static const auto* const kNoise = new std::vector<std::string>{
       "mixamorig",  "bip",  "bip01",    "bip001", "valvebiped", "valve", "biped",
       "character1", "def",  "org",      "mch",    "jnt",        "j",     "b",
       "bn",         "skel", "skeleton", "root",   "armature",   "c"};
-  return std::find(noise->begin(), noise->end(), word) != noise->end();
+  return std::find(kNoise->begin(), kNoise->end(), word) != kNoise->end();
 }
 
 bool IsSeparator(char c) { return c == ' ' || c == '_' || c == '-' || c == '.'; }
@@ -72,7 +72,7 @@ BodySide SideOf(absl::string_view word) {
 
 bool IsLimbAlias(absl::string_view base) {
   for (const AliasRow& row : AliasTable()) {
-    if (row.base == absl::string_view("head") || row.base == absl::string_view("neck")) continue;
+    if (absl::string_view(row.base) == "head" || absl::string_view(row.base) == "neck") continue;
     if (std::find(row.aliases.begin(), row.aliases.end(), base) != row.aliases.end()) return true;
   }
   return false;

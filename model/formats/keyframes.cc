@@ -41,7 +41,7 @@ struct TrackDefault {
   std::vector<double> values;
 };
 const std::vector<TrackDefault>& TrackDefaults() {
-  static const auto* const defaults =
+  static const auto* const kDefaults =
       new std::vector<TrackDefault>{{"torso", {0, 1.11, 0}},
                                     {"pelvis", {0, 0, 0}},
                                     {"chest", {0, 2, 0}},
@@ -54,7 +54,7 @@ const std::vector<TrackDefault>& TrackDefaults() {
                                     {"right_elbow", {20}},
                                     {"left_knee", {6}},
                                     {"right_knee", {6}}};
-  return *defaults;
+  return *kDefaults;
 }
 
 // Keys of one track: for each of its values the value over time.

@@ -20,6 +20,19 @@ Vec3d HingeAxis(Vec3d rest_direction) {
   return Unit(axis - rest_direction * Dot(axis, rest_direction), {0, 0, 1});
 }
 
+Quaternion FitBranch(const RigJoint& joint, Quaternion to_parent, Quaternion previous,
+                     const Vec3* positions) {
+  std::vector<Correspondence> shape;
+  double size = 0;
+  for (std::size_t k = 0; k < joint.neighbours.size(); ++k) {
+    const Vec3d offset =
+        ToDouble(positions[joint.neighbours[k]]) - ToDouble(positions[joint.joint]);
+    shape.push_back({joint.rest_shape[k], Rotate(to_parent, offset), 1});
+    size += Dot(joint.rest_shape[k], joint.rest_shape[k]);
+  }
+  return FitRotation(shape, {{previous, kBranchPrior * size + 1e-12}});
+}
+
 }  // namespace
 
 PoseFitter::PoseFitter(const Rig& rig) : rig_(rig) { pose_.rotations.resize(rig.joints.size()); }
@@ -46,19 +59,6 @@ const RigPose& PoseFitter::Fit(const Vec3* positions) {
   }
   first_ = false;
   return pose_;
-}
-
-Quaternion PoseFitter::FitBranch(const RigJoint& joint, Quaternion to_parent, Quaternion previous,
-                                 const Vec3* positions) const {
-  std::vector<Correspondence> shape;
-  double size = 0;
-  for (std::size_t k = 0; k < joint.neighbours.size(); ++k) {
-    const Vec3d offset =
-        ToDouble(positions[joint.neighbours[k]]) - ToDouble(positions[joint.joint]);
-    shape.push_back({joint.rest_shape[k], Rotate(to_parent, offset), 1});
-    size += Dot(joint.rest_shape[k], joint.rest_shape[k]);
-  }
-  return FitRotation(shape, {{previous, kBranchPrior * size + 1e-12}});
 }
 
 Quaternion PoseFitter::FitAim(const RigJoint& joint, Vec3d stands_at, Quaternion to_parent,

@@ -29,8 +29,6 @@ class PoseFitter {
   const RigPose& Fit(const Vec3* positions);
 
  private:
-  Quaternion FitBranch(const RigJoint& joint, Quaternion to_parent, Quaternion previous,
-                       const Vec3* positions) const;
   Quaternion FitAim(const RigJoint& joint, Vec3d stands_at, Quaternion to_parent,
                     Quaternion previous, const Vec3* positions) const;
   Quaternion FitBend(const RigJoint& joint, Vec3d direction, Vec3d next_bone, Quaternion swing,

@@ -56,6 +56,7 @@ class RigBuilder {
   // For every frame the rotation that takes the rest pose's trunk to the clip's.
   void FindTrunkAxes() {
     const int upper = UpperNeighbour();
+    trunk_axes_.reserve(static_cast<size_t>(clip_.frame_count()));
     for (int frame = 0; frame < clip_.frame_count(); ++frame) {
       const Vec3d left = ToDouble(clip_.at(frame, skeleton_.left_hip));
       const Vec3d right = ToDouble(clip_.at(frame, skeleton_.right_hip));
@@ -68,6 +69,7 @@ class RigBuilder {
 
   double MedianLength(int from, int to) const {
     std::vector<double> lengths;
+    lengths.reserve(static_cast<size_t>(clip_.frame_count()));
     for (int frame = 0; frame < clip_.frame_count(); ++frame) {
       lengths.push_back(Norm(ToDouble(clip_.at(frame, to)) - ToDouble(clip_.at(frame, from))));
     }

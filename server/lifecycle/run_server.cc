@@ -11,6 +11,7 @@
 #include "server/config/cpu_budget.h"
 #include "server/config/load_config.h"
 #include "server/lifecycle/duet_server.h"
+#include "server/lifecycle/library_logs.h"
 
 namespace duet {
 namespace {
@@ -62,6 +63,7 @@ absl::Status LoadModels(const ServerOptions& options, const ModelSource& source,
 int Serve(const ServerOptions& options, const ModelSource& source, StopSignal& stop,
           LogSink& sink) {
   JsonLog log(sink);
+  const LibraryLogs library_logs(log);
   absl::StatusOr<std::unique_ptr<DuetServer>> server = DuetServer::Start(options, sink);
   absl::Status status = server.status();
   if (status.ok()) status = LoadModels(options, source, stop, **server);

@@ -64,6 +64,7 @@ class Process {
   json WaitForEvent(const std::string& event) {
     for (std::string line; ReadLine(&line);) {
       const json parsed = json::parse(line, nullptr, /*allow_exceptions=*/false);
+      if (!parsed.is_object()) ++lines_without_json_;
       if (parsed.is_object() && parsed.value("event", "") == event) return parsed;
     }
     return nullptr;
@@ -75,6 +76,8 @@ class Process {
     return rest;
   }
   pid_t pid() const { return pid_; }
+  // Among those that WaitForEvent read.
+  int lines_without_json() const { return lines_without_json_; }
   void Signal(int signal) { kill(pid_, signal); }
   // The exit code, or minus the signal that killed it.
   int Wait() {
@@ -96,6 +99,7 @@ class Process {
 
   pid_t pid_ = -1;
   bool exited_ = false;
+  int lines_without_json_ = 0;
   std::FILE* output_ = nullptr;
 };
 
@@ -242,6 +246,22 @@ long PeakBytes(pid_t pid) {
     if (word == "VmHWM:" && status >> kilobytes) return kilobytes * 1024;
   }
   return 0;
+}
+
+TEST(ServerProcessTest, EveryLineOfOutputIsJson) {
+  Process server(Flags());
+  const json serving = server.WaitForEvent("serving");
+  grpc::ClientContext context;
+  context.set_compression_algorithm(GRPC_COMPRESS_GZIP);  // gRPC logs its refusal
+  EXPECT_FALSE(Call(*Connect(serving), SampleRequest(), context).status.ok());
+  v1::SynthesizeRequest request;
+  request.mutable_model()->set_name("\xff\xfe");  // Protobuf logs what it cannot read
+  EXPECT_FALSE(Call(*Connect(serving), request).status.ok());
+  EXPECT_EQ(server.WaitForEvent("library").value("library", ""), "grpc");
+  EXPECT_EQ(server.WaitForEvent("library").value("library", ""), "protobuf");
+  server.Signal(SIGTERM);
+  EXPECT_EQ(server.Wait(), 0);
+  EXPECT_EQ(server.lines_without_json(), 0);
 }
 
 TEST(ServerProcessTest, AGiantMessageIsRefusedInLittleMemory) {

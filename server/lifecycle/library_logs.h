@@ -1,0 +1,23 @@
+#ifndef DUET_SERVER_LIFECYCLE_LIBRARY_LOGS_H_
+#define DUET_SERVER_LIFECYCLE_LIBRARY_LOGS_H_
+
+#include "server/metrics/json_log.h"
+
+namespace duet {
+
+// While it lives, what gRPC and Protobuf have to say goes to the log as JSON, so that every line of
+// the server's output parses.
+//
+// Threads: construct it before gRPC starts, one at a time.
+class LibraryLogs {
+ public:
+  // `log` outlives it.
+  explicit LibraryLogs(JsonLog& log);
+  ~LibraryLogs();
+  LibraryLogs(const LibraryLogs&) = delete;
+  LibraryLogs& operator=(const LibraryLogs&) = delete;
+};
+
+}  // namespace duet
+
+#endif  // DUET_SERVER_LIFECYCLE_LIBRARY_LOGS_H_
