@@ -38,7 +38,7 @@ absl::StatusOr<std::string> RenderSynthesis(const Synthesis& synthesis) {
 
 absl::Status CheckOutput(const std::filesystem::path& output, const std::filesystem::path& leader) {
   if (!IsPage(output)) {
-    const absl::Status status = CheckWritable(output);
+    absl::Status status = CheckWritable(output);
     if (!status.ok()) {
       return absl::InvalidArgumentError(
           absl::StrReplaceAll(status.message(), {{"wanted ", "wanted .html, "}}));
@@ -62,7 +62,7 @@ absl::StatusOr<std::vector<std::filesystem::path>> WriteOutput(const std::filesy
   if (!IsPage(output)) return WritePair(output, synthesis.result.pair, synthesis.skeleton);
   const absl::StatusOr<std::string> page = RenderSynthesis(synthesis);
   if (!page.ok()) return page.status();
-  const absl::Status status = WriteFile(output, *page);
+  absl::Status status = WriteFile(output, *page);
   if (!status.ok()) return status;
   return std::vector<std::filesystem::path>{output};
 }

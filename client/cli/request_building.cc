@@ -76,14 +76,14 @@ absl::StatusOr<Skeleton> ToSkeleton(const ModelInfo& model) {
   // Body parts matter to the network alone.
   skeleton.parts = {{"whole_body", std::vector<int>(skeleton.joint_names.size())}};
   std::iota(skeleton.parts[0].joints.begin(), skeleton.parts[0].joints.end(), 0);
-  const absl::Status status = Validate(skeleton);
+  absl::Status status = Validate(skeleton);
   if (status.ok()) return skeleton;
   return absl::InternalError(absl::StrCat("the server's model ", model.name, "@", model.version,
                                           " has no usable skeleton: ", status.message()));
 }
 
 absl::Status CheckInputs(const SynthesizeArguments& arguments) {
-  const absl::Status status = CheckInput(arguments.leader);
+  absl::Status status = CheckInput(arguments.leader);
   const std::string& start = arguments.follower_start;
   if (!status.ok() || start.empty() || ParsePoint(start).has_value()) return status;
   return CheckInput(start);

@@ -36,7 +36,7 @@ absl::StatusOr<Paths> WriteAll(const Paths& outputs, const Synthesis& synthesis)
 
 absl::Status RunSynthesize(const SynthesizeArguments& arguments,
                            const ProgramEnvironment& environment) {
-  const absl::Status inputs = CheckInputs(arguments);
+  absl::Status inputs = CheckInputs(arguments);
   if (!inputs.ok()) return inputs;
   const absl::StatusOr<ClientOptions> options = ToClientOptions(arguments.server);
   if (!options.ok()) return options.status();

@@ -82,7 +82,7 @@ std::string GrpcTarget(std::string_view server_address) {
 }
 
 absl::StatusOr<std::shared_ptr<Connection>> Connect(const ClientOptions& options) {
-  const absl::Status status = Check(options);
+  absl::Status status = Check(options);
   if (!status.ok()) return status;
   std::shared_ptr<grpc::Channel> channel = grpc::CreateCustomChannel(
       GrpcTarget(options.server_address), Credentials(options), Arguments(options));

@@ -36,11 +36,10 @@ ConnectionImpl::ConnectionImpl(std::shared_ptr<Stub> stub, const ClientOptions& 
 absl::StatusOr<std::vector<ModelInfo>> ConnectionImpl::ListModels() {
   const CallContext call{Deadline(), ""};
   absl::StatusOr<v1::ListModelsResponse> response;
-  const absl::Status status =
-      Retry(retry_, environment_, Priority::kInteractive, call.deadline, [&] {
-        response = stub_->ListModels(call, {});
-        return response.status();
-      });
+  absl::Status status = Retry(retry_, environment_, Priority::kInteractive, call.deadline, [&] {
+    response = stub_->ListModels(call, {});
+    return response.status();
+  });
   if (!status.ok()) return status;
   std::vector<ModelInfo> models;
   for (const v1::Model& model : response->models()) {
@@ -58,11 +57,10 @@ absl::StatusOr<ModelDetails> ConnectionImpl::GetModel(const ModelChoice& choice)
   *request.mutable_model() = *std::move(selector);
   const CallContext call{Deadline(), ""};
   absl::StatusOr<v1::GetModelResponse> response;
-  const absl::Status status =
-      Retry(retry_, environment_, Priority::kInteractive, call.deadline, [&] {
-        response = stub_->GetModel(call, request);
-        return response.status();
-      });
+  absl::Status status = Retry(retry_, environment_, Priority::kInteractive, call.deadline, [&] {
+    response = stub_->GetModel(call, request);
+    return response.status();
+  });
   if (!status.ok()) return status;
   absl::StatusOr<ModelInfo> model = FromProto(response->model());
   if (!model.ok()) return model.status();
@@ -78,7 +76,7 @@ absl::StatusOr<SynthesisResult> ConnectionImpl::Synthesize(const SynthesisReques
   ReplyAssembler reply(request.leader, on_chunk);
   absl::Time first_chunk = absl::InfiniteFuture();
   int attempts = 0;
-  const absl::Status status = Retry(retry_, environment_, request.priority, call.deadline, [&] {
+  absl::Status status = Retry(retry_, environment_, request.priority, call.deadline, [&] {
     ++attempts;
     const bool resumes = reply.handed_out() > 0;
     if (resumes && reply.header().has_value()) PinModel(*reply.header(), wire->mutable_model());

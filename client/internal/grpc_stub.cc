@@ -42,7 +42,7 @@ class GrpcStub final : public Stub {
     grpc::ClientContext context;
     Prepare(call, &context);
     v1::ListModelsResponse response;
-    const absl::Status status = FromGrpc(stub_->ListModels(&context, request, &response));
+    absl::Status status = FromGrpc(stub_->ListModels(&context, request, &response));
     if (!status.ok()) return status;
     return response;
   }
@@ -52,7 +52,7 @@ class GrpcStub final : public Stub {
     grpc::ClientContext context;
     Prepare(call, &context);
     v1::GetModelResponse response;
-    const absl::Status status = FromGrpc(stub_->GetModel(&context, request, &response));
+    absl::Status status = FromGrpc(stub_->GetModel(&context, request, &response));
     if (!status.ok()) return status;
     return response;
   }

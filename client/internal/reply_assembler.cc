@@ -105,7 +105,7 @@ absl::Status ReplyAssembler::CheckChunk(const v1::MotionChunk& chunk) const {
 }
 
 absl::Status ReplyAssembler::AcceptChunk(const v1::MotionChunk& chunk) {
-  const absl::Status status = CheckChunk(chunk);
+  absl::Status status = CheckChunk(chunk);
   if (!status.ok()) return status;
   for (int i = 0; i < chunk.positions_size(); i += 3) {
     positions_.push_back({chunk.positions(i), chunk.positions(i + 1), chunk.positions(i + 2)});
@@ -149,7 +149,7 @@ absl::Status ReplyAssembler::EndStream(const absl::Status& transport) const {
   if (!transport.ok() && !header_.has_value()) return transport;
   absl::Status broken = absl::UnavailableError(absl::StrCat(
       "the reply ended without a summary, after ", received_, " of ", leader_.frame_count(),
-      " frames", transport.ok() ? "" : ": ", std::string(transport.message())));
+      " frames", transport.ok() ? "" : ": ", transport.message()));
   return WithPayloadsOf(transport, std::move(broken));
 }
 

@@ -65,7 +65,7 @@ absl::Status Retry(const RetryOptions& options, const RetryEnvironment& environm
                    Priority priority, absl::Time deadline,
                    absl::FunctionRef<absl::Status()> attempt) {
   for (int made = 1;; ++made) {
-    const absl::Status status = attempt();
+    absl::Status status = attempt();
     if (status.ok()) return status;
     if (!IsRetryable(status, priority) || made >= options.max_attempts) {
       return AfterAttempts(status, made, "");

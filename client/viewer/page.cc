@@ -75,7 +75,7 @@ std::string Script() {
 }  // namespace
 
 absl::StatusOr<std::string> RenderPage(const PageContent& content) {
-  const absl::Status status = Check(content);
+  absl::Status status = Check(content);
   if (!status.ok()) return status;
   // One pass: what is put in is not searched again, so no title can smuggle in a part.
   return absl::StrReplaceAll(Text(duet_page_index, duet_page_index_end),

@@ -25,7 +25,7 @@ class ReplyAssemblerTest : public ::testing::Test {
   absl::Status Feed(const Reply& reply, const absl::Status& end = absl::OkStatus()) {
     assembler_.StartStream();
     for (const v1::SynthesizeResponse& response : reply) {
-      const absl::Status status = assembler_.Accept(response);
+      absl::Status status = assembler_.Accept(response);
       if (!status.ok()) return status;
     }
     return assembler_.EndStream(end);

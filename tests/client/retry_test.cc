@@ -24,7 +24,7 @@ class RetryTest : public ::testing::Test {
  protected:
   absl::Status Run(std::vector<absl::Status> outcomes, Priority priority = Priority::kInteractive) {
     return Retry(options_, time_.Environment(), priority, time_.now + deadline_, [&] {
-      const absl::Status outcome = outcomes[static_cast<size_t>(attempts_)];
+      absl::Status outcome = outcomes[static_cast<size_t>(attempts_)];
       ++attempts_;
       return outcome;
     });
@@ -44,7 +44,7 @@ TEST_F(RetryTest, FirstSuccessEndsIt) {
 
 TEST_F(RetryTest, UnavailableIsTriedFourTimesWithGrowingWaits) {
   time_.uniform = 1;
-  const absl::Status status = Run(std::vector<absl::Status>(4, Unavailable()));
+  absl::Status status = Run(std::vector<absl::Status>(4, Unavailable()));
   EXPECT_THAT(status, StatusIs(absl::StatusCode::kUnavailable, HasSubstr("after 4 attempts")));
   EXPECT_EQ(attempts_, 4);
   EXPECT_THAT(time_.sleeps,
@@ -124,7 +124,7 @@ TEST_F(RetryTest, OneAttemptMeansNoRetry) {
 
 TEST(RetryWaitTest, JitterSpreadsOverTheUpperHalf) {
   const RetryOptions options;
-  const absl::Status status = Unavailable();
+  absl::Status status = Unavailable();
   EXPECT_EQ(RetryWait(options, 1, status, 0), 50 * kMillisecond);
   EXPECT_EQ(RetryWait(options, 1, status, 0.5), 75 * kMillisecond);
   EXPECT_EQ(RetryWait(options, 1, status, 1), 100 * kMillisecond);
