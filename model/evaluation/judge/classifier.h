@@ -1,0 +1,58 @@
+#ifndef DUET_MODEL_EVALUATION_JUDGE_CLASSIFIER_H_
+#define DUET_MODEL_EVALUATION_JUDGE_CLASSIFIER_H_
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "model/dataset/dataset.h"
+#include "model/evaluation/features.h"
+#include "model/evaluation/scores.h"
+
+namespace duet {
+
+struct ClassifierOptions {
+  int64_t hidden = 64;  // LSTM units of each direction, in both layers
+  int64_t epochs = 60;
+  int64_t batch = 16;
+  double learning_rate = 2e-3;
+  double weight_decay = 0.01;
+  double dropout = 0.3;
+  uint64_t seed = 0;
+};
+
+// A classifier of followers' motion, shaped like the discriminator with one output a class: the
+// judge of accuracy, FID and diversity, and the classifier of the paper's Table 6. It sees the
+// follower alone, in the standard frame of its leader.
+//
+// Source:  paper sections 3.3 and 4 (the paper does not describe its own extractor).
+// Threads: the const functions are safe to call concurrently.
+class MotionClassifier {
+ public:
+  // Trains on followers for sequences of the data set, captured or synthesised, each in its
+  // sequence's class (`CapturedMotions` gives the captured ones). Same input, same result on the
+  // same machine. Errors: INVALID_ARGUMENT when a class of the data set has no motion.
+  static absl::StatusOr<MotionClassifier> Train(const Dataset& dataset,
+                                                const std::vector<ScoredMotion>& motions,
+                                                const ClassifierOptions& options);
+
+  // Shapes: returns [motions][classes]; every row sums to 1.
+  std::vector<std::vector<float>> Probabilities(const Dataset& dataset,
+                                                const std::vector<ScoredMotion>& motions) const;
+  // The second layer's output averaged over the frames. Shapes: returns [motions][2 hidden].
+  FeatureSet Features(const Dataset& dataset, const std::vector<ScoredMotion>& motions) const;
+
+  // SHA-256 of the weights, in hexadecimal: which extractor a figure was measured with.
+  const std::string& hash() const;
+
+ private:
+  struct Model;
+  explicit MotionClassifier(std::shared_ptr<Model> model) : model_(std::move(model)) {}
+  std::shared_ptr<Model> model_;
+};
+
+}  // namespace duet
+
+#endif  // DUET_MODEL_EVALUATION_JUDGE_CLASSIFIER_H_
