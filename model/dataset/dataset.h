@@ -62,6 +62,11 @@ struct Split {
 // rest. Errors: NOT_FOUND for a subject that the data set does not have.
 absl::StatusOr<Split> LeaveSubjectOut(const Dataset& dataset, const std::string& subject);
 
+// Half of each class to train on and the other half to test on, chosen by `seed` alone; of an odd
+// number the larger part is trained on. Both sorted. A subject may be in both. Errors:
+// INVALID_ARGUMENT naming a class of fewer than 2 sequences.
+absl::StatusOr<Split> SplitInHalves(const Dataset& dataset, uint64_t seed);
+
 // Moves about `fraction` of each class from train to a validation set, chosen by `seed` alone; at
 // least one of each class and never the last of a class. Both come out sorted. `fraction` in [0,
 // 1). Never looks at test.

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <random>
 #include <utility>
 
@@ -17,6 +18,15 @@ void Shuffle(std::mt19937_64* random, std::vector<int>* values) {
   for (size_t i = values->size(); i > 1; --i) {
     std::swap((*values)[i - 1], (*values)[static_cast<size_t>((*random)() % i)]);
   }
+}
+
+std::vector<std::vector<int>> ByClass(const Dataset& dataset, const std::vector<int>& indices) {
+  std::vector<std::vector<int>> by_class(dataset.classes.size());
+  for (const int i : indices) {
+    const Sequence& sequence = dataset.sequences[static_cast<size_t>(i)];
+    by_class[static_cast<size_t>(sequence.interaction_class)].push_back(i);
+  }
+  return by_class;
 }
 
 size_t ValidationCount(size_t available, double fraction) {
@@ -41,14 +51,33 @@ absl::StatusOr<Split> LeaveSubjectOut(const Dataset& dataset, const std::string&
                    "'s: ", known.empty() ? "(it names none)" : absl::StrJoin(known, ", ")));
 }
 
+absl::StatusOr<Split> SplitInHalves(const Dataset& dataset, uint64_t seed) {
+  std::vector<int> all(dataset.sequences.size());
+  std::iota(all.begin(), all.end(), 0);
+  std::vector<std::vector<int>> by_class = ByClass(dataset, all);
+  std::mt19937_64 random(seed);
+  Split split;
+  for (size_t c = 0; c < by_class.size(); ++c) {
+    std::vector<int>& indices = by_class[c];
+    if (indices.size() < 2) {
+      return absl::InvalidArgumentError(
+          absl::StrCat(dataset.name, ": ", indices.size(), " sequences of ", dataset.classes[c],
+                       ", wanted 2 or more of each class to split in halves"));
+    }
+    Shuffle(&random, &indices);
+    const auto middle = indices.begin() + static_cast<std::ptrdiff_t>((indices.size() + 1) / 2);
+    split.train.insert(split.train.end(), indices.begin(), middle);
+    split.test.insert(split.test.end(), middle, indices.end());
+  }
+  std::sort(split.train.begin(), split.train.end());
+  std::sort(split.test.begin(), split.test.end());
+  return split;
+}
+
 std::vector<int> TakeValidation(const Dataset& dataset, double fraction, uint64_t seed,
                                 std::vector<int>* train) {
-  std::vector<std::vector<int>> by_class(dataset.classes.size());
   std::sort(train->begin(), train->end());
-  for (const int i : *train) {
-    const Sequence& sequence = dataset.sequences[static_cast<size_t>(i)];
-    by_class[static_cast<size_t>(sequence.interaction_class)].push_back(i);
-  }
+  std::vector<std::vector<int>> by_class = ByClass(dataset, *train);
   std::mt19937_64 random(seed);
   std::vector<int> validation;
   train->clear();

@@ -21,6 +21,7 @@ struct Arguments {
   std::string description;
   std::string protocol = "all";
   std::string fold;
+  std::vector<uint64_t> seeds = {1, 2, 3, 4, 5};
   std::vector<std::string> settings;
   int threads = 1;
 };
@@ -54,23 +55,27 @@ absl::StatusOr<duet::TrainingOptions> ReadOptions(const Arguments& arguments) {
   return duet::ParseTrainingOptions(*json, replacements);
 }
 
-// The runs that the protocol asks for: one on everything, or one for each left-out subject.
-absl::StatusOr<std::vector<duet::RunPlan>> Plans(const Arguments& arguments,
-                                                 const duet::TrainingOptions& options,
-                                                 const duet::Dataset& dataset) {
+// A run before it is said what to train on and where to.
+duet::RunPlan CommonPlan(const Arguments& arguments, const duet::TrainingOptions& options) {
   duet::RunPlan plan;
   plan.options = options;
   plan.model_name = arguments.name;
   plan.model_version = arguments.version;
   plan.description = arguments.description;
+  return plan;
+}
+
+std::vector<duet::RunPlan> PlanOnAll(const Arguments& arguments, duet::RunPlan plan,
+                                     const duet::Dataset& dataset) {
+  for (size_t i = 0; i < dataset.sequences.size(); ++i) plan.train.push_back(static_cast<int>(i));
+  plan.title = "all";
+  plan.folder = std::filesystem::path(arguments.out) / "all";
+  return {plan};
+}
+
+absl::StatusOr<std::vector<duet::RunPlan>> PlanFolds(const Arguments& arguments, duet::RunPlan plan,
+                                                     const duet::Dataset& dataset) {
   std::vector<duet::RunPlan> plans;
-  if (arguments.protocol == "all") {
-    for (size_t i = 0; i < dataset.sequences.size(); ++i) plan.train.push_back(static_cast<int>(i));
-    plan.title = "all";
-    plan.folder = std::filesystem::path(arguments.out) / "all";
-    plans.push_back(plan);
-    return plans;
-  }
   for (const std::string& subject : dataset.Subjects()) {
     if (!arguments.fold.empty() && subject != arguments.fold) continue;
     absl::StatusOr<duet::Split> split = duet::LeaveSubjectOut(dataset, subject);
@@ -83,6 +88,30 @@ absl::StatusOr<std::vector<duet::RunPlan>> Plans(const Arguments& arguments,
   if (!plans.empty()) return plans;
   return absl::NotFoundError(
       absl::StrCat("--fold ", arguments.fold, ": the data has no such subject"));
+}
+
+absl::StatusOr<std::vector<duet::RunPlan>> PlanHalves(const Arguments& arguments,
+                                                      duet::RunPlan plan,
+                                                      const duet::Dataset& dataset) {
+  std::vector<duet::RunPlan> plans;
+  for (const uint64_t seed : arguments.seeds) {
+    absl::StatusOr<duet::Split> split = duet::SplitInHalves(dataset, seed);
+    if (!split.ok()) return split.status();
+    plan.train = split->train;
+    plan.title = absl::StrCat("half ", seed);
+    plan.folder = std::filesystem::path(arguments.out) / absl::StrCat("half-", seed);
+    plans.push_back(plan);
+  }
+  return plans;
+}
+
+absl::StatusOr<std::vector<duet::RunPlan>> Plans(const Arguments& arguments,
+                                                 const duet::TrainingOptions& options,
+                                                 const duet::Dataset& dataset) {
+  const duet::RunPlan common = CommonPlan(arguments, options);
+  if (arguments.protocol == "loso") return PlanFolds(arguments, common, dataset);
+  if (arguments.protocol == "half") return PlanHalves(arguments, common, dataset);
+  return PlanOnAll(arguments, common, dataset);
 }
 
 absl::Status Train(const Arguments& arguments) {
@@ -112,10 +141,14 @@ void Declare(Arguments* arguments, CLI::App* app) {
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
   app->add_option("--description", arguments->description, "a sentence for the model's users");
-  app->add_option("--protocol", arguments->protocol, "all: on everything; loso: one subject out")
-      ->check(CLI::IsMember({"all", "loso"}))
+  app->add_option("--protocol", arguments->protocol,
+                  "all: on everything; loso: one subject out; half: half of each class")
+      ->check(CLI::IsMember({"all", "loso", "half"}))
       ->capture_default_str();
   app->add_option("--fold", arguments->fold, "with loso: this subject alone");
+  app->add_option("--seeds", arguments->seeds, "with half: a run, half-<seed>, for each")
+      ->delimiter(',')
+      ->capture_default_str();
   app->add_option("--threads", arguments->threads, "LibTorch threads")
       ->check(CLI::Range(1, 256))
       ->capture_default_str();

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <numeric>
 
@@ -52,6 +53,32 @@ TEST(LeaveSubjectOutTest, TestsOnEitherPlace) {
   const absl::Status unknown = LeaveSubjectOut(dataset, "z").status();
   EXPECT_EQ(unknown.code(), absl::StatusCode::kNotFound);
   EXPECT_THAT(std::string(unknown.message()), HasSubstr("\"z\", wanted one of made up's: a, b, c"));
+}
+
+TEST(SplitInHalvesTest, HalvesEachClass) {
+  const Dataset dataset = MadeUp({20, 7, 2});
+  const absl::StatusOr<Split> split = SplitInHalves(dataset, 5);
+  ASSERT_TRUE(split.ok()) << split.status();
+  EXPECT_EQ(CountByClass(dataset, split->train), (std::map<int, int>{{0, 10}, {1, 4}, {2, 1}}));
+  EXPECT_EQ(CountByClass(dataset, split->test), (std::map<int, int>{{0, 10}, {1, 3}, {2, 1}}));
+  EXPECT_TRUE(std::is_sorted(split->train.begin(), split->train.end()));
+  EXPECT_TRUE(std::is_sorted(split->test.begin(), split->test.end()));
+  std::vector<int> together = split->train;
+  together.insert(together.end(), split->test.begin(), split->test.end());
+  std::sort(together.begin(), together.end());
+  EXPECT_EQ(together, All(dataset));
+}
+
+TEST(SplitInHalvesTest, DependsOnTheSeed) {
+  const Dataset dataset = MadeUp({30, 30});
+  EXPECT_EQ(SplitInHalves(dataset, 5)->train, SplitInHalves(dataset, 5)->train);
+  EXPECT_NE(SplitInHalves(dataset, 5)->train, SplitInHalves(dataset, 6)->train);
+}
+
+TEST(SplitInHalvesTest, RefusesAClassThatCannotBeHalved) {
+  const absl::Status status = SplitInHalves(MadeUp({4, 1}), 5).status();
+  EXPECT_EQ(status.code(), absl::StatusCode::kInvalidArgument);
+  EXPECT_THAT(std::string(status.message()), HasSubstr("made up: 1 sequences of class1, wanted 2"));
 }
 
 TEST(TakeValidationTest, TakesTheFractionOfEachClass) {
