@@ -21,65 +21,74 @@ Eigen::MatrixXd LogConditional(const Eigen::MatrixXd& counts) {
 
 }  // namespace
 
-void DiscreteMdp::CountStatistics(const std::vector<Demonstration>& demonstrations,
-                                  Model* model) const {
-  const Eigen::Index poses = model->pose_centres.rows(), leaders = model->leader_centres.rows();
-  Eigen::MatrixXd together = Eigen::MatrixXd::Zero(poses, leaders);
-  Eigen::MatrixXd steps = Eigen::MatrixXd::Zero(poses, poses);
-  Eigen::MatrixXd starts = Eigen::MatrixXd::Zero(1, poses);
-  for (const Demonstration& one : demonstrations) {
-    ++starts(0, one.pose[0]);
-    for (size_t t = 0; t < one.pose.size(); ++t) {
-      ++together(one.pose[t], one.leader[t]);
-      if (t > 0) ++steps(one.pose[t - 1], one.pose[t]);
-    }
-  }
-  model->log_leader_given_pose = LogConditional(together).transpose();
-  model->log_step = LogConditional(steps);
-  model->log_start = LogConditional(starts);
-  model->effort.resize(poses, poses);
-  for (Eigen::Index from = 0; from < poses; ++from) {
-    model->effort.row(from) =
-        -(model->pose_centres.rowwise() - model->pose_centres.row(from)).rowwise().squaredNorm();
+DiscreteMdp::Counts::Counts(Eigen::Index poses, Eigen::Index leaders)
+    : together(Eigen::MatrixXd::Zero(poses, leaders)),
+      steps(Eigen::MatrixXd::Zero(poses, poses)),
+      starts(Eigen::MatrixXd::Zero(1, poses)) {}
+
+void DiscreteMdp::Counts::Add(const Demonstration& one, double times) {
+  starts(0, one.pose[0]) += times;
+  for (size_t t = 0; t < one.pose.size(); ++t) {
+    together(one.pose[t], one.leader[t]) += times;
+    if (t > 0) steps(one.pose[t - 1], one.pose[t]) += times;
   }
 }
 
-ChainWeights DiscreteMdp::Chain(const Model& model) {
-  return {(model.weights(1) * model.log_start).array().exp(),
-          (model.weights(1) * model.log_step + model.weights(2) * model.effort).array().exp()};
+DiscreteMdp::Tables::Tables(const Counts& counts)
+    : leader_given_pose(LogConditional(counts.together).transpose()),
+      step(LogConditional(counts.steps)),
+      start(LogConditional(counts.starts)) {}
+
+ChainWeights DiscreteMdp::Chain(const Model& model, const Tables& tables) {
+  return {(model.weights(1) * tables.start).array().exp(),
+          (model.weights(1) * tables.step + model.weights(2) * model.effort).array().exp()};
 }
 
-Rows DiscreteMdp::Arrivals(const Model& model, const std::vector<int>& leader) {
+Rows DiscreteMdp::Arrivals(const Model& model, const Tables& tables,
+                           const std::vector<int>& leader) {
   Rows arrivals(leader.size(), model.pose_centres.rows());
   for (size_t t = 0; t < leader.size(); ++t) {
     arrivals.row(static_cast<Eigen::Index>(t)) =
-        model.weights(0) * model.log_leader_given_pose.row(leader[t]);
+        model.weights(0) * tables.leader_given_pose.row(leader[t]);
   }
   return arrivals;
 }
 
+DiscreteMdp::Weights DiscreteMdp::Surplus(const Model& model, const Tables& tables,
+                                          const Demonstration& one) {
+  const ChainWeights chain = Chain(model, tables);
+  Eigen::MatrixXd steps = Eigen::MatrixXd::Zero(chain.step.rows(), chain.step.cols());
+  const Rows visits = SumOverPaths(chain, Arrivals(model, tables, one.leader), &steps).states;
+  Weights surplus(0, tables.start(one.pose[0]) - visits.row(0).dot(tables.start), 0);
+  for (size_t t = 0; t < one.pose.size(); ++t) {
+    const auto fit = tables.leader_given_pose.row(one.leader[t]);
+    surplus(0) += fit(one.pose[t]) - visits.row(static_cast<Eigen::Index>(t)).dot(fit);
+    if (t > 0) steps(one.pose[t - 1], one.pose[t]) -= 1;
+  }
+  surplus(1) -= steps.cwiseProduct(tables.step).sum();
+  surplus(2) -= steps.cwiseProduct(model.effort).sum();
+  return surplus;
+}
+
 void DiscreteMdp::LearnReward(const std::vector<Demonstration>& demonstrations,
-                              Model* model) const {
+                              const Counts& counts, Model* model) const {
+  // Each demonstration is explained by the counts of the others: by its own it would look better
+  // than any new one can.
+  std::vector<Tables> others;
+  double frames = 0;
+  for (const Demonstration& one : demonstrations) {
+    Counts rest = counts;
+    if (demonstrations.size() > 1) rest.Add(one, -1);
+    others.emplace_back(rest);
+    frames += static_cast<double>(one.pose.size());
+  }
   const Weights initial = Weights(1, 1, 0);
   model->weights = initial;
-  double frames = 0;
-  for (const Demonstration& one : demonstrations) frames += static_cast<double>(one.pose.size());
   Weights squares = Weights::Constant(1e-12);
   for (int iteration = 0; iteration < options_.iterations; ++iteration) {
-    const ChainWeights chain = Chain(*model);
-    Weights gradient = Weights::Zero();  // features of the demonstrations less the expected ones
-    for (const Demonstration& one : demonstrations) {
-      Eigen::MatrixXd steps = Eigen::MatrixXd::Zero(chain.step.rows(), chain.step.cols());
-      const PathPosterior plan = SumOverPaths(chain, Arrivals(*model, one.leader), &steps);
-      for (size_t t = 0; t < one.pose.size(); ++t) {
-        const auto fit = model->log_leader_given_pose.row(one.leader[t]);
-        gradient(0) += fit(one.pose[t]) - plan.states.row(static_cast<Eigen::Index>(t)).dot(fit);
-        if (t == 0) continue;
-        gradient(1) += model->log_step(one.pose[t - 1], one.pose[t]);
-        gradient(2) += model->effort(one.pose[t - 1], one.pose[t]);
-      }
-      gradient(1) -= steps.cwiseProduct(model->log_step).sum();
-      gradient(2) -= steps.cwiseProduct(model->effort).sum();
+    Weights gradient = Weights::Zero();
+    for (size_t i = 0; i < demonstrations.size(); ++i) {
+      gradient += Surplus(*model, others[i], demonstrations[i]);
     }
     gradient = gradient / frames - kPull * (model->weights - initial);
     squares += gradient.cwiseAbs2();
@@ -102,20 +111,27 @@ void DiscreteMdp::TrainClass(int interaction_class, const std::vector<StandardPa
         {NearestCentres(model.leader_centres, model.leader.Project(pair.cues)),
          NearestCentres(model.pose_centres, model.follower.Project(pair.follower))});
   }
-  CountStatistics(demonstrations, &model);
-  LearnReward(demonstrations, &model);
+  model.effort.resize(model.pose_centres.rows(), model.pose_centres.rows());
+  for (Eigen::Index from = 0; from < model.effort.rows(); ++from) {
+    model.effort.row(from) =
+        -(model.pose_centres.rowwise() - model.pose_centres.row(from)).rowwise().squaredNorm();
+  }
+  Counts counts(model.pose_centres.rows(), model.leader_centres.rows());
+  for (const Demonstration& one : demonstrations) counts.Add(one, 1);
+  model.tables = Tables(counts);
+  LearnReward(demonstrations, counts, &model);
 }
 
 Rows DiscreteMdp::PredictClass(int interaction_class, const StandardPair& leader) const {
   const Model& model = models_[static_cast<size_t>(interaction_class)];
   const std::vector<int> seen =
       NearestCentres(model.leader_centres, model.leader.Project(leader.cues));
-  const Rows arrivals = Arrivals(model, seen);
+  const Rows arrivals = Arrivals(model, model.tables, seen);
   if (options_.expected_pose) {
-    const Rows visits = SumOverPaths(Chain(model), arrivals).states;
+    const Rows visits = SumOverPaths(Chain(model, model.tables), arrivals).states;
     return model.follower.Reconstruct(visits * model.pose_centres);
   }
-  const std::vector<int> path = BestPath(Chain(model), arrivals);
+  const std::vector<int> path = BestPath(Chain(model, model.tables), arrivals);
   Rows poses(arrivals.rows(), model.pose_centres.cols());
   for (Eigen::Index t = 0; t < poses.rows(); ++t) {
     poses.row(t) = model.pose_centres.row(path[static_cast<size_t>(t)]);

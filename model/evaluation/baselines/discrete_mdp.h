@@ -11,10 +11,10 @@
 namespace duet {
 
 struct DiscreteMdpOptions {
-  int pose_states = 32;    // clusters of follower poses
-  int leader_states = 16;  // clusters of leader cues
-  int components = 10;     // that poses and cues are clustered in
-  int iterations = 30;     // of the reward's ascent
+  int pose_states = 16;   // clusters of follower poses
+  int leader_states = 8;  // clusters of leader cues
+  int components = 10;    // that poses and cues are clustered in
+  int iterations = 30;    // of the reward's ascent
   // The answer: the mean pose of each frame's states (true) or the most likely path's (false).
   bool expected_pose = true;
   uint64_t seed = 1;
@@ -42,27 +42,43 @@ class DiscreteMdp : public PerClassMethod {
   static constexpr int kFeatures = 3;
   using Weights = Eigen::Matrix<double, kFeatures, 1>;
 
-  struct Model {
-    PoseSpace leader;
-    PoseSpace follower;
-    Rows leader_centres;
-    Rows pose_centres;           // in the follower's components
-    Rows log_leader_given_pose;  // [leader states, pose states]
-    Eigen::RowVectorXd log_start;
-    Eigen::MatrixXd log_step;  // [from, to]
-    Eigen::MatrixXd effort;    // [from, to] minus the squared change of pose
-    Weights weights;
-  };
   // A training sequence in clusters.
   struct Demonstration {
     std::vector<int> leader;
     std::vector<int> pose;
   };
+  // How often clusters go together.
+  struct Counts {
+    Eigen::MatrixXd together;  // [pose, leader]
+    Eigen::MatrixXd steps;     // [from, to]
+    Eigen::MatrixXd starts;    // [1, pose]
+    Counts(Eigen::Index poses, Eigen::Index leaders);
+    void Add(const Demonstration& one, double times);
+  };
+  // The features that follow from counts, as logs of smoothed conditional probabilities.
+  struct Tables {
+    Rows leader_given_pose;    // [leader, pose]
+    Eigen::MatrixXd step;      // [from, to]
+    Eigen::RowVectorXd start;  // [pose]
+    Tables() = default;
+    explicit Tables(const Counts& counts);
+  };
+  struct Model {
+    PoseSpace leader;
+    PoseSpace follower;
+    Rows leader_centres;
+    Rows pose_centres;  // in the follower's components
+    Tables tables;
+    Eigen::MatrixXd effort;  // [from, to] minus the squared change of pose
+    Weights weights;
+  };
 
-  void CountStatistics(const std::vector<Demonstration>& demonstrations, Model* model) const;
-  void LearnReward(const std::vector<Demonstration>& demonstrations, Model* model) const;
-  static ChainWeights Chain(const Model& model);
-  static Rows Arrivals(const Model& model, const std::vector<int>& leader);
+  void LearnReward(const std::vector<Demonstration>& demonstrations, const Counts& counts,
+                   Model* model) const;
+  // Features of the demonstration less those expected of the policy.
+  static Weights Surplus(const Model& model, const Tables& tables, const Demonstration& one);
+  static ChainWeights Chain(const Model& model, const Tables& tables);
+  static Rows Arrivals(const Model& model, const Tables& tables, const std::vector<int>& leader);
 
   DiscreteMdpOptions options_;
   std::vector<Model> models_;

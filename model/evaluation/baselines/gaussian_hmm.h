@@ -9,9 +9,9 @@
 namespace duet {
 
 struct GaussianHmmOptions {
-  int states = 4;
+  int states = 3;
   int iterations = 15;           // of expectation maximisation
-  double prior_weight = 5;       // samples that the pooled diagonal covariance counts as
+  double prior_weight = 50;      // samples that the pooled diagonal covariance counts as
   double least_variance = 1e-4;  // added to every variance
 };
 

@@ -10,7 +10,7 @@
 namespace duet {
 
 struct HmmOptions {
-  int leader_components = 6;
+  int leader_components = 4;
   int follower_components = 8;
   GaussianHmmOptions hmm;
 };

@@ -8,9 +8,12 @@ namespace duet {
 namespace {
 
 constexpr double kNever = -1e9;  // log weight of a sample that may not be used
-constexpr double kLeastWidth = 1e-6;
-constexpr double kLeastWeight = 1e-3, kMostWeight = 1e3;
-constexpr int kBisections = 12;
+// Least width of a kernel, relative to the root mean squared distance: repeated takes of one motion
+// must not make every other motion infinitely far.
+constexpr double kLeastWidth = 0.05;
+constexpr double kTiny = 1e-9;
+// Weights tried for the reward: powers of two times that of a Gaussian of the cues' own width.
+constexpr int kLeastPower = -8, kMostPower = 4;
 constexpr int kMeanShifts = 20;
 
 // Squared distances between rows. [a rows, b rows]
@@ -32,10 +35,11 @@ double MedianNearest(const Eigen::MatrixXd& squared, const std::vector<int>& cli
     }
     if (std::isfinite(least)) nearest.push_back(std::sqrt(least));
   }
-  if (nearest.empty()) return 1;  // a single clip: any width will do
+  const double least_width = kLeastWidth * std::sqrt(squared.mean()) + kTiny;
+  if (nearest.empty()) return least_width;  // a single clip
   const auto middle = nearest.begin() + static_cast<std::ptrdiff_t>(nearest.size() / 2);
   std::nth_element(nearest.begin(), middle, nearest.end());
-  return std::max(*middle, kLeastWidth);
+  return std::max(*middle, least_width);
 }
 
 // Rows 0, n, 2 n, ...
@@ -82,56 +86,44 @@ Rows KernelRl::Cost(const Model& model, const Rows& cues) {
   return SquaredDistances(EveryNth(model.leader.Project(cues), model.stride), model.cues);
 }
 
-Rows KernelRl::Plan(const Model& model, const Rows& cost, double reward_weight, int without) {
-  Rows arrivals = -reward_weight * cost;
+PathPosterior KernelRl::Plan(const Model& model, const Rows& cost, int without) {
+  Rows arrivals = -cost;
   for (Eigen::Index i = 0; i < arrivals.cols(); ++i) {
     if (model.clip[static_cast<size_t>(i)] == without) arrivals.col(i).setConstant(kNever);
   }
-  const ChainWeights chain = {Eigen::RowVectorXd::Ones(arrivals.cols()), model.step};
-  return SumOverPaths(chain, arrivals).states;
+  return SumOverPaths({Eigen::RowVectorXd::Ones(arrivals.cols()), model.step}, arrivals);
 }
 
-// The weight at which the plan's samples cost as much, on average, as those whose poses are nearest
-// to the demonstrated ones. A clip's own samples are left out: they would cost nothing.
 void KernelRl::LearnReward(const std::vector<StandardPair>& pairs, Model* model) const {
-  struct Demonstration {
-    Rows cost;
-    double demonstrated = 0;
-    int clip = 0;
-  };
-  std::vector<Demonstration> demonstrations;
+  const double cue_width = MedianNearest(SquaredDistances(model->cues, model->cues), model->clip);
+  double best = -std::numeric_limits<double>::infinity();
+  for (int power = kLeastPower; power <= kMostPower; ++power) {
+    const double weight = std::pow(2, power) / (2 * cue_width * cue_width);
+    const double likelihood = LogLikelihood(*model, pairs, weight);
+    if (likelihood <= best) continue;
+    best = likelihood;
+    model->reward_weight = weight;
+  }
+}
+
+// Of the demonstrated poses, each seen as a sample's pose with Gaussian noise. A clip's own samples
+// are left out: they would explain it too well.
+double KernelRl::LogLikelihood(const Model& model, const std::vector<StandardPair>& pairs,
+                               double weight) const {
   const size_t stride =
       std::max<size_t>(1, pairs.size() / static_cast<size_t>(options_.demonstrations));
+  const double precision = 1 / (2 * model.pose_width * model.pose_width);
+  double sum = 0;
   for (size_t i = 0; pairs.size() > 1 && i < pairs.size(); i += stride) {
-    Demonstration one;
-    one.clip = static_cast<int>(i);
-    one.cost = Cost(*model, pairs[i].cues);
-    Eigen::MatrixXd away = SquaredDistances(
-        EveryNth(model->follower.Project(pairs[i].follower), model->stride), model->poses);
-    for (Eigen::Index k = 0; k < away.cols(); ++k) {
-      if (model->clip[static_cast<size_t>(k)] == one.clip) {
-        away.col(k).setConstant(std::numeric_limits<double>::infinity());
-      }
-    }
-    for (Eigen::Index t = 0; t < away.rows(); ++t) {
-      Eigen::Index nearest = 0;
-      away.row(t).minCoeff(&nearest);
-      one.demonstrated += one.cost(t, nearest);
-    }
-    demonstrations.push_back(std::move(one));
+    const int clip = static_cast<int>(i);
+    const Rows cost = weight * Cost(model, pairs[i].cues);
+    const Rows noise =
+        precision *
+        SquaredDistances(EveryNth(model.follower.Project(pairs[i].follower), model.stride),
+                         model.poses);
+    sum += Plan(model, cost + noise, clip).log_sum - Plan(model, cost, clip).log_sum;
   }
-  // The expected cost falls as the weight rises: bisect its logarithm.
-  double low = std::log(kLeastWeight), high = std::log(kMostWeight);
-  for (int i = 0; i < kBisections; ++i) {
-    const double middle = (low + high) / 2;
-    double excess = 0;
-    for (const Demonstration& one : demonstrations) {
-      const Rows visits = Plan(*model, one.cost, std::exp(middle), one.clip);
-      excess += visits.cwiseProduct(one.cost).sum() - one.demonstrated;
-    }
-    (excess > 0 ? low : high) = middle;
-  }
-  model->reward_weight = std::exp((low + high) / 2);
+  return sum;
 }
 
 void KernelRl::TrainClass(int interaction_class, const std::vector<StandardPair>& pairs) {
@@ -182,7 +174,8 @@ Rows KernelRl::MeanShift(const Model& model, const Rows& visits) const {
 
 Rows KernelRl::PredictClass(int interaction_class, const StandardPair& leader) const {
   const Model& model = models_[static_cast<size_t>(interaction_class)];
-  const Rows visits = Plan(model, Cost(model, leader.cues), model.reward_weight, /*without=*/-1);
+  const Rows visits =
+      Plan(model, model.reward_weight * Cost(model, leader.cues), /*without=*/-1).states;
   return model.follower.Reconstruct(
       FillBetween(MeanShift(model, visits), model.stride, leader.cues.rows()));
 }

@@ -22,8 +22,8 @@ struct KernelRlOptions {
 
 // Kernel-based reinforcement learning: the value function lives on the training samples, and what
 // follows a pose is what followed similar ones, weighted by a kernel. The reward prefers samples
-// whose leader is like the given one; its weight is learnt by matching the demonstrations' feature
-// count. Mean shift turns each frame's weighted samples into one pose.
+// whose leader is like the given one; its weight is the one under which the demonstrations are most
+// likely. Mean shift turns each frame's weighted samples into one pose.
 //
 // Source: row HK14 of the paper's Table 1: Huang, Kitani, Action-Reaction: Forecasting the Dynamics
 // of Human Interaction, ECCV 2014; Ormoneit, Sen 2002. Our reading: docs/baselines.md.
@@ -52,11 +52,13 @@ class KernelRl : public PerClassMethod {
 
   void BuildStep(const std::vector<int>& successor, Model* model) const;
   void LearnReward(const std::vector<StandardPair>& pairs, Model* model) const;
+  double LogLikelihood(const Model& model, const std::vector<StandardPair>& pairs,
+                       double weight) const;
   // How unlike each sample's the leader's cues are. Shapes: returns [frames / stride, samples].
   static Rows Cost(const Model& model, const Rows& cues);
-  // The distribution over samples for each row of cost. Samples of the clip `without` count as
-  // absent (-1: none).
-  static Rows Plan(const Model& model, const Rows& cost, double reward_weight, int without);
+  // Soft value iteration and the policy's visits, given what arriving at each sample costs in each
+  // frame. Samples of the clip `without` count as absent (-1: none).
+  static PathPosterior Plan(const Model& model, const Rows& cost, int without);
   Rows MeanShift(const Model& model, const Rows& visits) const;
 
   KernelRlOptions options_;

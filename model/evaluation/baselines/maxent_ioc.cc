@@ -44,11 +44,12 @@ Rows Thin(const Rows& rows, Eigen::Index count) {
   return kept;
 }
 
-// Ridge regression to poses from cues and a constant, which is not drawn to zero.
+// Ridge regression to poses from cues and a constant, which is not drawn to zero. `ridge` is
+// relative to the cues' mean square.
 Eigen::MatrixXd FitRegression(const Rows& cues, const Rows& poses, double ridge) {
   const Rows inputs = WithConstant(cues);
   Eigen::MatrixXd normal = inputs.transpose() * inputs;
-  normal.diagonal().head(cues.cols()).array() += ridge;
+  normal.diagonal().head(cues.cols()).array() += ridge * normal.diagonal().head(cues.cols()).mean();
   return normal.ldlt().solve(inputs.transpose() * poses);
 }
 
@@ -226,8 +227,6 @@ void MaxEntIoc::TrainClass(int interaction_class, const std::vector<StandardPair
     first += frames;
   }
   LearnReward(demonstrations, &model);
-  printf("  class %d weights %g %g %g\n", interaction_class, model.weights(0), model.weights(1),
-         model.weights(2));
 }
 
 Rows MaxEntIoc::PredictClass(int interaction_class, const StandardPair& leader) const {

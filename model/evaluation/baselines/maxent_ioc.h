@@ -13,7 +13,7 @@ namespace duet {
 struct MaxEntIocOptions {
   int leader_components = 10;
   int pose_components = 8;
-  double ridge = 20;          // of the regression from the leader's cues to the expected pose
+  double ridge = 0.2;         // of the regression from the leader's cues to the expected pose
   int actions = 24;           // displacements to choose from: clusters of those in training
   int value_samples = 150;    // poses that the value function is fitted on
   int value_centres = 32;     // radial functions of the value function
