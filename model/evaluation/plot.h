@@ -1,0 +1,48 @@
+#ifndef DUET_MODEL_EVALUATION_PLOT_H_
+#define DUET_MODEL_EVALUATION_PLOT_H_
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "model/evaluation/tsne.h"
+
+// Figures as stand-alone SVG documents, fit to print: vector text, no script, no outside file.
+// Series are told apart by colour (Okabe and Ito's palette, which colour-blind readers can tell
+// apart) and by marker or dash, so that a figure survives a grey print.
+
+namespace duet {
+
+struct PlotSeries {
+  std::string name;
+  std::vector<Point2> points;  // x, y; a point that is not finite leaves a gap
+};
+
+// Points by class, without axes: for maps whose coordinates mean nothing (t-SNE).
+struct ScatterPlot {
+  std::string title;
+  std::vector<PlotSeries> series;
+};
+std::string ToSvg(const ScatterPlot& plot);
+
+// Lines over labelled axes.
+struct LinePlot {
+  std::string title;
+  std::string x_label;
+  std::string y_label;
+  std::vector<PlotSeries> series;
+  std::optional<std::pair<double, double>> y_range;  // default: what the points need
+  bool log_y = false;                                // values that are not positive leave gaps
+  bool markers = false;                              // for sweeps with few points
+  std::vector<double> marked_x;                      // vertical dotted lines
+};
+std::string ToSvg(const LinePlot& plot);
+
+// Round numbers that cover [low, high] in about `count` steps: multiples of 1, 2 or 5 times a power
+// of ten. Requires low < high.
+std::vector<double> RoundTicks(double low, double high, int count);
+
+}  // namespace duet
+
+#endif  // DUET_MODEL_EVALUATION_PLOT_H_

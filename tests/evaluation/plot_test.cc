@@ -1,0 +1,110 @@
+#include "model/evaluation/plot.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/evaluation/svg.h"
+
+namespace duet {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+int Count(const std::string& text, const std::string& part) {
+  int count = 0;
+  for (size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+  return count;
+}
+
+TEST(RoundTicksTest, AreRoundAndInside) {
+  EXPECT_THAT(RoundTicks(0, 10, 5), ElementsAre(0, 2, 4, 6, 8, 10));
+  EXPECT_THAT(RoundTicks(-1, 2, 6), ElementsAre(-1, -0.5, 0, 0.5, 1, 1.5, 2));
+  EXPECT_THAT(RoundTicks(1203, 1297, 5), ElementsAre(1220, 1240, 1260, 1280));
+}
+
+TEST(SvgTest, NumbersAndTextAreValid) {
+  EXPECT_EQ(SvgNumber(1.5), "1.5");
+  EXPECT_EQ(SvgNumber(-0.001), "0");
+  EXPECT_EQ(SvgNumber(1e7), "10000000");
+  EXPECT_EQ(SvgEscape("a<b & c>\n"), "a&lt;b &amp; c&gt;");
+}
+
+TEST(SvgTest, SeriesDifferInColourAndDash) {
+  for (size_t i = 0; i < 8; ++i) {
+    for (size_t j = 0; j < i; ++j) {
+      EXPECT_NE(SeriesColour(i), SeriesColour(j));
+      EXPECT_NE(SeriesDash(i), SeriesDash(j));
+    }
+  }
+}
+
+TEST(ScatterPlotTest, DrawsEveryFinitePointAndALegend) {
+  ScatterPlot plot;
+  plot.title = "Latent space <test>";
+  plot.series = {{"kick", {{0, 0}, {1, 1}, {std::nan(""), 1}}}, {"punch & co", {{0, 1}}}};
+  const std::string svg = ToSvg(plot);
+  // Two finite points and the legend's one.
+  EXPECT_EQ(Count(svg, "<circle"), 3);
+  EXPECT_THAT(svg, HasSubstr("Latent space &lt;test&gt;"));
+  EXPECT_THAT(svg, HasSubstr("punch &amp; co"));
+  EXPECT_THAT(svg, Not(HasSubstr("nan")));
+  EXPECT_EQ(svg.rfind("</svg>\n"), svg.size() - 7);
+}
+
+TEST(LinePlotTest, PlacesPointsOnTheAxes) {
+  LinePlot plot;
+  plot.x_label = "weight";
+  plot.y_label = "probability";
+  plot.y_range = {0, 1};
+  plot.series = {{"kick", {{-1, 0}, {0, 0.5}, {2, 1}}}};
+  const std::string svg = ToSvg(plot);
+  // The corners of the axes' box: x 78 to 582, y 456 up to 48.
+  EXPECT_THAT(svg, HasSubstr("M78 456L246 252L582 48"));
+  EXPECT_THAT(svg, HasSubstr(">weight<"));
+  EXPECT_THAT(svg, HasSubstr(">probability<"));
+  EXPECT_THAT(svg, HasSubstr(">-1<"));
+  EXPECT_THAT(svg, HasSubstr(">0.5<"));
+}
+
+TEST(LinePlotTest, BreaksAtGapsAndHoldsToTheRange) {
+  LinePlot plot;
+  plot.y_range = {0, 1};
+  plot.series = {{"a", {{0, 0}, {1, 0}, {2, std::nan("")}, {3, 9}, {4, 9}}}};
+  const std::string svg = ToSvg(plot);
+  EXPECT_THAT(svg, HasSubstr("M78 456L204 456M456 48L582 48"));
+}
+
+TEST(LinePlotTest, LogarithmicAxisSkipsWhatIsNotPositive) {
+  LinePlot plot;
+  plot.log_y = true;
+  plot.y_range = {0.01, 100};
+  plot.series = {{"loss", {{0, 100}, {1, 0}, {2, 1}, {3, 0.01}}}};
+  const std::string svg = ToSvg(plot);
+  EXPECT_THAT(svg, HasSubstr("M78 48M414 252L582 456"));
+  EXPECT_THAT(svg, HasSubstr(">0.01<"));
+  EXPECT_THAT(svg, HasSubstr(">100<"));
+}
+
+TEST(LinePlotTest, EmptyAndConstantSeriesAreDrawn) {
+  LinePlot plot;
+  EXPECT_THAT(ToSvg(plot), HasSubstr("</svg>"));
+  plot.series = {{"none", {}}, {"flat", {{1, 3}, {1, 3}}}};
+  EXPECT_THAT(ToSvg(plot), Not(HasSubstr("nan")));
+  EXPECT_THAT(ToSvg(plot), Not(HasSubstr("inf")));
+}
+
+TEST(LinePlotTest, MarksTheGivenPlaces) {
+  LinePlot plot;
+  plot.series = {{"a", {{0, 0}, {10, 1}}}};
+  const int before = Count(ToSvg(plot), "#888888");
+  plot.marked_x = {5, 50};
+  EXPECT_EQ(Count(ToSvg(plot), "#888888"), before + 1);
+}
+
+}  // namespace
+}  // namespace duet
