@@ -136,9 +136,10 @@ absl::StatusOr<GeneratorArchitecture> ReadGenerator(const json& value) {
   ObjectReader reader(value, "generator");
   GeneratorArchitecture generator;
   generator.variant = reader.String("variant", kMaxTextBytes);
-  if (reader.ok() && generator.variant != "paper" && generator.variant != "released") {
-    reader.Fail("variant",
-                absl::StrCat(json(generator.variant).dump(), ", wanted \"paper\" or \"released\""));
+  if (reader.ok() && generator.variant != "paper" && generator.variant != "released" &&
+      generator.variant != "unlabelled") {
+    reader.Fail("variant", absl::StrCat(json(generator.variant).dump(),
+                                        ", wanted \"paper\", \"released\" or \"unlabelled\""));
   }
   generator.follower_start = reader.Bool("follower_start");
   generator.slice_features = static_cast<int>(reader.Int("slice_features", 0, kMaxUnits));

@@ -26,7 +26,8 @@ inline constexpr char kLeaderRootAndYaw[] = "leader_root_and_yaw";
 
 // Sizes of the generator (paper section 3.1, 3.2). All else follows from skeleton and classes.
 struct GeneratorArchitecture {
-  // "paper": the sixth slice is the whole body with the label vector; "released": the label alone.
+  // "paper": the sixth slice is the whole body with the label vector; "released": the label alone;
+  // "unlabelled": the whole body alone (MSHL22, and the ablation of the embedding).
   std::string variant = "paper";
   // The whole-body slice also gets the follower's start (see StartFeatureCount).
   bool follower_start = false;
@@ -37,7 +38,7 @@ struct GeneratorArchitecture {
   // Rows of W2 in the attention score (Eq. 2).
   int attention = 128;
   // The output layer adds to a base: the follower's start where it is given, else a mean pose that
-  // is linear in the label vector.
+  // is linear in the label vector (the same for all classes in an unlabelled generator).
   bool base_pose = false;
 };
 

@@ -10,8 +10,9 @@ constexpr int kStartFlags = 2;  // root known, pose known
 
 int WholeBodyInput(const Manifest& manifest) {
   const Skeleton& skeleton = manifest.model.skeleton;
-  int input = manifest.model.class_count();
-  if (manifest.generator.variant == "paper") input += kCoordinates * skeleton.joint_count();
+  int input = 0;
+  if (manifest.generator.variant != "unlabelled") input += manifest.model.class_count();
+  if (manifest.generator.variant != "released") input += kCoordinates * skeleton.joint_count();
   if (manifest.generator.follower_start) input += StartFeatureCount(skeleton);
   return input;
 }
@@ -67,7 +68,9 @@ std::vector<TensorSpec> ExpectedTensors(const Manifest& manifest) {
   specs.push_back({"output.weight", {outputs, encoded}});
   specs.push_back({"output.bias", {outputs}});
   if (manifest.generator.base_pose) {
-    specs.push_back({"base.weight", {outputs, manifest.model.class_count()}});
+    if (manifest.generator.variant != "unlabelled") {
+      specs.push_back({"base.weight", {outputs, manifest.model.class_count()}});
+    }
     specs.push_back({"base.bias", {outputs}});
   }
   return specs;

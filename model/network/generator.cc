@@ -46,7 +46,8 @@ std::string ModuleName(std::string name) {
 
 GeneratorImpl::GeneratorImpl(const Manifest& manifest)
     : slices_(SliceShapes(manifest)),
-      whole_body_reads_leader_(manifest.generator.variant == "paper"),
+      whole_body_reads_leader_(manifest.generator.variant != "released"),
+      reads_labels_(manifest.generator.variant != "unlabelled"),
       has_start_(manifest.generator.follower_start),
       has_fc_(manifest.generator.slice_features > 0),
       has_base_(manifest.generator.base_pose),
@@ -63,7 +64,7 @@ torch::Tensor GeneratorImpl::SliceInput(const GeneratorInput& input, size_t slic
   if (slice < columns_.size()) return leader.index_select(2, columns_[slice]);
   std::vector<torch::Tensor> whole;
   if (whole_body_reads_leader_) whole.push_back(leader);
-  whole.push_back(input.labels.transpose(0, 1));
+  if (reads_labels_) whole.push_back(input.labels.transpose(0, 1));
   if (has_start_) whole.push_back(input.start.unsqueeze(0).expand({leader.size(0), -1, -1}));
   return torch::cat(whole, 2);
 }
@@ -169,8 +170,10 @@ torch::Tensor GeneratorImpl::Decode(const Encoded& encoded, const GeneratorInput
 // The pose that the output layer adds to, [N, T, 3 J]: root and pose relative to it, each from the
 // follower's start where that gives it, else from the label vector's mean pose.
 torch::Tensor GeneratorImpl::Base(const GeneratorInput& input) const {
+  const torch::Tensor& bias = Parameter("base.bias");
   const torch::Tensor mean =
-      torch::nn::functional::linear(input.labels, Parameter("base.weight"), Parameter("base.bias"));
+      reads_labels_ ? torch::nn::functional::linear(input.labels, Parameter("base.weight"), bias)
+                    : bias.expand({input.labels.size(0), input.labels.size(1), bias.size(0)});
   if (!has_start_) return mean;
   const int64_t joints = mean.size(2) / 3, pose_flag = input.start.size(1) - 1;
   const torch::Tensor start = input.start.unsqueeze(1);  // [N, 1, root, pose, flags]
@@ -187,7 +190,7 @@ void GeneratorImpl::SetBasePoses(const torch::Tensor& means) {
   torch::NoGradGuard no_grad;
   const torch::Tensor overall = means.mean(0);
   tensors_.at("base.bias").copy_(overall);
-  tensors_.at("base.weight").copy_((means - overall).t());
+  if (reads_labels_) tensors_.at("base.weight").copy_((means - overall).t());
 }
 
 torch::Tensor GeneratorImpl::Encode(const GeneratorInput& input) {

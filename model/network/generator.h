@@ -73,6 +73,7 @@ class GeneratorImpl : public torch::nn::Module {
   std::vector<torch::Tensor> columns_;  // of each part in the leader's [3 J]
   std::map<std::string, torch::Tensor> tensors_;
   bool whole_body_reads_leader_;
+  bool reads_labels_;
   bool has_start_;
   bool has_fc_;
   bool has_base_;

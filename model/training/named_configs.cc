@@ -1,5 +1,52 @@
 #include "model/training/named_configs.h"
 
 #include <cstddef>
+#include <nlohmann/json.hpp>
 
+#include "absl/strings/str_cat.h"
+#include "model/checkpoint/strict_json.h"
 #include "model/training/named_configs.inc"
+
+namespace duet {
+namespace {
+
+using nlohmann::json;
+using Replacements = std::vector<std::pair<std::string, std::string>>;
+
+constexpr int kMaxDepth = 4;
+constexpr size_t kMaxName = 64;
+
+// A base and what to change in it.
+absl::StatusOr<TrainingOptions> ParseDerived(const json& value, const Replacements& replacements) {
+  ObjectReader reader(value, "");
+  const std::string name = reader.String("base", kMaxName);
+  const NamedConfig* const base = FindConfig(name);
+  if (reader.ok() && base == nullptr) {
+    reader.Fail("base", absl::StrCat("\"", name, "\", wanted a named configuration"));
+  }
+  const json& set = reader.Object("set");
+  if (absl::Status status = reader.Finish(); !status.ok()) return status;
+  Replacements all;
+  for (const auto& [path, setting] : set.items()) all.emplace_back(path, setting.dump());
+  all.insert(all.end(), replacements.begin(), replacements.end());
+  return ParseConfig(base->json, all);
+}
+
+}  // namespace
+
+const NamedConfig* FindConfig(std::string_view name) {
+  for (const NamedConfig& config : NamedConfigs()) {
+    if (config.name == name) return &config;
+  }
+  return nullptr;
+}
+
+absl::StatusOr<TrainingOptions> ParseConfig(std::string_view text,
+                                            const Replacements& replacements) {
+  absl::StatusOr<json> value = ParseStrictJson(text, kMaxDepth);
+  if (!value.ok()) return value.status();
+  if (value->is_object() && value->contains("base")) return ParseDerived(*value, replacements);
+  return ParseTrainingOptions(text, replacements);
+}
+
+}  // namespace duet

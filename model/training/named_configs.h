@@ -1,8 +1,13 @@
 #ifndef DUET_MODEL_TRAINING_NAMED_CONFIGS_H_
 #define DUET_MODEL_TRAINING_NAMED_CONFIGS_H_
 
+#include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
+
+#include "absl/status/statusor.h"
+#include "model/training/options.h"
 
 namespace duet {
 
@@ -13,6 +18,16 @@ struct NamedConfig {
 };
 
 const std::vector<NamedConfig>& NamedConfigs();
+
+// The named configuration, or null.
+const NamedConfig* FindConfig(std::string_view name);
+
+// Parses a configuration in either form: every setting (ParseTrainingOptions), or what differs from
+// a named one: {"base": "default", "set": {"losses.bone": 0}}. `replacements` come last. Errors:
+// INVALID_ARGUMENT naming the field.
+absl::StatusOr<TrainingOptions> ParseConfig(
+    std::string_view json,
+    const std::vector<std::pair<std::string, std::string>>& replacements = {});
 
 }  // namespace duet
 

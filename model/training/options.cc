@@ -34,7 +34,7 @@ double Probability(ObjectReader* reader, const std::string& key) {
 }
 
 void Read(ObjectReader* reader, GeneratorArchitecture* out) {
-  out->variant = OneOf(reader, "variant", {"paper", "released"});
+  out->variant = OneOf(reader, "variant", {"paper", "released", "unlabelled"});
   out->follower_start = reader->Bool("follower_start");
   out->slice_features = static_cast<int>(reader->Int("slice_features", 0, kMaxUnits));
   out->encoder_hidden = static_cast<int>(reader->Int("encoder_hidden", 1, kMaxUnits));
@@ -68,6 +68,7 @@ void Read(ObjectReader* reader, TrainingOptions::Losses* out) {
 }
 
 void Read(ObjectReader* reader, TrainingOptions::DiscriminatorSettings* out) {
+  out->binary = reader->Bool("binary");
   out->hidden = reader->Int("hidden", 1, kMaxUnits);
   out->learning_rate = reader->Number("learning_rate", 1e-9, 10);
   out->dropout = reader->Number("dropout", 0, 0.95);
@@ -205,6 +206,7 @@ std::map<std::string, std::string> Describe(const TrainingOptions& o) {
           {"losses.continuity_gap", absl::StrCat(o.losses.continuity_gap)},
           {"losses.continuity_margin", Text(o.losses.continuity_margin)},
           {"losses.adversarial", Text(o.losses.adversarial)},
+          {"discriminator.binary", Text(o.discriminator.binary)},
           {"discriminator.hidden", absl::StrCat(o.discriminator.hidden)},
           {"discriminator.learning_rate", Text(o.discriminator.learning_rate)},
           {"discriminator.dropout", Text(o.discriminator.dropout)},

@@ -46,6 +46,7 @@ struct TrainingOptions {
   } losses;
 
   struct DiscriminatorSettings {
+    bool binary = false;  // a second one beside it that tells real from synthesised alone (MSHL22)
     int64_t hidden = 200;
     double learning_rate = 1e-3;
     double dropout = 0;

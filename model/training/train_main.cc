@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
 #include "model/training/named_configs.h"
 #include "model/training/run.h"
 
@@ -27,13 +28,12 @@ struct Arguments {
 };
 
 absl::StatusOr<std::string> ReadConfig(const std::string& config) {
-  std::string names;
-  for (const duet::NamedConfig& named : duet::NamedConfigs()) {
-    if (named.name == config) return std::string(named.json);
-    absl::StrAppend(&names, names.empty() ? "" : ", ", std::string(named.name));
-  }
+  if (const duet::NamedConfig* named = duet::FindConfig(config)) return std::string(named->json);
   std::ifstream in(config, std::ios::binary);
   if (!in) {
+    const std::string names = absl::StrJoin(
+        duet::NamedConfigs(), ", ",
+        [](std::string* out, const duet::NamedConfig& one) { out->append(one.name); });
     return absl::NotFoundError(absl::StrCat(
         "--config ", config, ": no such file, and no configuration of that name (", names, ")"));
   }
@@ -52,7 +52,7 @@ absl::StatusOr<duet::TrainingOptions> ReadOptions(const Arguments& arguments) {
     }
     replacements.emplace_back(setting.substr(0, equals), setting.substr(equals + 1));
   }
-  return duet::ParseTrainingOptions(*json, replacements);
+  return duet::ParseConfig(*json, replacements);
 }
 
 // A run before it is said what to train on and where to.

@@ -11,8 +11,6 @@
 namespace duet {
 namespace {
 
-using network::Discriminator;
-using network::DiscriminatorOptions;
 using network::Generator;
 
 int64_t Steps(size_t count, int64_t batch) {
@@ -24,23 +22,6 @@ Generator MakeGenerator(const TrainingOptions& options, const Manifest& manifest
   Generator generator(manifest);
   generator->set_dropout(options.dropout.slices, options.dropout.encoded);
   return generator;
-}
-
-Discriminator MakeDiscriminator(const TrainingOptions& options, const Manifest& manifest) {
-  DiscriminatorOptions sizes;
-  sizes.input = 3 * manifest.model.skeleton.joint_count();
-  sizes.window_frames = manifest.model.window_frames;
-  sizes.hidden = options.discriminator.hidden;
-  sizes.outputs = manifest.model.class_count() + 1;
-  Discriminator discriminator(sizes);
-  discriminator->set_dropout(options.discriminator.dropout);
-  return discriminator;
-}
-
-TrainingOptions::Optimiser DiscriminatorOptimiser(const TrainingOptions& options) {
-  TrainingOptions::Optimiser optimiser = options.optimiser;
-  optimiser.learning_rate = options.discriminator.learning_rate;
-  return optimiser;
 }
 
 std::vector<torch::Tensor> Copies(const std::vector<torch::Tensor>& tensors) {
@@ -68,21 +49,6 @@ network::ContinuityOptions Continuity(const TrainingOptions::Losses& losses) {
           losses.continuity_gap, losses.continuity_margin};
 }
 
-// Turns gradients of a module's parameters off while it lives.
-class Frozen {
- public:
-  explicit Frozen(torch::nn::Module& module) : module_(module) { Set(false); }
-  ~Frozen() { Set(true); }
-  Frozen(const Frozen&) = delete;
-  Frozen& operator=(const Frozen&) = delete;
-
- private:
-  void Set(bool on) {
-    for (torch::Tensor& parameter : module_.parameters()) parameter.set_requires_grad(on);
-  }
-  torch::nn::Module& module_;
-};
-
 }  // namespace
 
 Trainer::Trainer(const TrainingOptions& options, const Manifest& manifest, const Dataset& dataset,
@@ -94,12 +60,12 @@ Trainer::Trainer(const TrainingOptions& options, const Manifest& manifest, const
       validation_(std::move(validation)),
       steps_per_epoch_(Steps(train_.size(), options.batch)),
       generator_(MakeGenerator(options, manifest)),
-      discriminator_(MakeDiscriminator(options, manifest)),
       generator_optimiser_(options.optimiser, generator_->parameters(),
                            steps_per_epoch_ * options.epochs),
-      discriminator_optimiser_(DiscriminatorOptimiser(options), discriminator_->parameters(),
-                               steps_per_epoch_ * options.epochs),
       best_afd_(std::numeric_limits<double>::infinity()) {
+  if (options.losses.adversarial > 0) {
+    adversary_ = std::make_unique<Adversary>(options, manifest, steps_per_epoch_ * options.epochs);
+  }
   if (manifest.generator.base_pose) {
     generator_->SetBasePoses(ClassMeanPoses(manifest, dataset, train_));
   }
@@ -133,34 +99,21 @@ torch::Tensor Trainer::GeneratorLoss(const TrainingBatch& batch, EpochReport* re
     add(weights.continuity, network::ContinuityLoss(predicted, lengths, Continuity(weights)),
         &report->continuity);
   }
-  // A mixed answer has no one class to be taken for.
-  if (weights.adversarial > 0 && batch.single_rows.numel() > 0) {
-    const torch::Tensor logits = discriminator_->forward(
-        predicted.index_select(0, batch.single_rows), lengths.index_select(0, batch.single_rows));
-    add(weights.adversarial,
-        network::AdversarialLoss(logits, batch.classes.index_select(0, batch.single_rows)),
-        &report->adversarial);
+  if (adversary_ != nullptr) {
+    add(weights.adversarial, adversary_->GeneratorLoss(batch, predicted), &report->adversarial);
   }
   report->generator += total.item<double>() / static_cast<double>(steps_per_epoch_);
   return total;
 }
 
-void Trainer::TrainGenerator(const TrainingBatch& batch, EpochReport* report) {
-  const Frozen frozen(*discriminator_);
-  GeneratorLoss(batch, report).backward();
-}
-
-void Trainer::TrainDiscriminator(const TrainingBatch& batch, EpochReport* report) {
+void Trainer::TrainAdversary(const TrainingBatch& batch, int64_t step, EpochReport* report) {
   torch::Tensor synthesised;
   {
     torch::NoGradGuard no_grad;
     synthesised = generator_->forward(batch.input);
   }
-  const torch::Tensor loss = network::DiscriminatorLoss(
-      discriminator_->forward(batch.follower, batch.input.lengths),
-      discriminator_->forward(synthesised, batch.input.lengths), batch.classes);
-  loss.backward();
-  report->discriminator += loss.item<double>() / static_cast<double>(steps_per_epoch_);
+  report->discriminator +=
+      adversary_->Train(batch, synthesised, step) / static_cast<double>(steps_per_epoch_);
 }
 
 void Trainer::UpdateAverage() {
@@ -184,15 +137,10 @@ EpochReport Trainer::RunEpoch() {
   // Dropout draws from LibTorch's generator: seeded by epoch, so that a resumed run draws the same.
   torch::manual_seed(options_.seed * 1000003 + static_cast<uint64_t>(epoch_));
   generator_->train();
-  discriminator_->train();
   int64_t step = epoch_ * steps_per_epoch_;
   for (const TrainingBatch& batch : SampleEpoch(manifest_, dataset_, train_, options_, epoch_)) {
-    if (options_.losses.adversarial > 0) {
-      TrainDiscriminator(batch, &report);
-      discriminator_optimiser_.Step(step);
-      if (options_.discriminator.unit_norm_kernels) discriminator_->NormaliseKernels();
-    }
-    TrainGenerator(batch, &report);
+    if (adversary_ != nullptr) TrainAdversary(batch, step, &report);
+    GeneratorLoss(batch, &report).backward();
     generator_optimiser_.Step(step);
     UpdateAverage();
     ++step;
@@ -251,25 +199,35 @@ std::vector<std::pair<std::string, torch::Tensor>> Trainer::StateTensors() {
     }
   };
   add("generator", generator_->parameters());
-  add("discriminator", discriminator_->parameters());
   add("average", average_);
   add("best", best_);
+  if (adversary_ != nullptr) {
+    for (auto& named : adversary_->Tensors()) state.push_back(std::move(named));
+  }
   return state;
+}
+
+std::vector<std::pair<std::string, torch::optim::Optimizer*>> Trainer::StateOptimisers() {
+  std::vector<std::pair<std::string, torch::optim::Optimizer*>> optimisers;
+  if (adversary_ != nullptr) optimisers = adversary_->Optimisers();
+  optimisers.emplace_back("generator_optimiser", &generator_optimiser_.state());
+  return optimisers;
 }
 
 absl::Status Trainer::SaveState(const std::filesystem::path& file) {
   const std::filesystem::path temporary = file.string() + ".tmp";
   try {
-    torch::serialize::OutputArchive archive, generator, discriminator;
+    torch::serialize::OutputArchive archive;
     for (const auto& [name, tensor] : StateTensors()) archive.write(name, tensor);
     archive.write("identity", c10::IValue(Identity()));
     archive.write("epoch", c10::IValue(epoch_));
     archive.write("best_epoch", c10::IValue(best_epoch_));
     archive.write("best_afd", c10::IValue(best_afd_));
-    generator_optimiser_.state().save(generator);
-    discriminator_optimiser_.state().save(discriminator);
-    archive.write("generator_optimiser", generator);
-    archive.write("discriminator_optimiser", discriminator);
+    for (const auto& [name, optimiser] : StateOptimisers()) {
+      torch::serialize::OutputArchive one;
+      optimiser->save(one);
+      archive.write(name, one);
+    }
     archive.save_to(temporary.string());
     std::filesystem::rename(temporary, file);
   } catch (const std::exception& error) {
@@ -281,7 +239,7 @@ absl::Status Trainer::SaveState(const std::filesystem::path& file) {
 absl::Status Trainer::LoadState(const std::filesystem::path& file) {
   if (!std::filesystem::exists(file)) return absl::NotFoundError(file.string() + ": no such file");
   try {
-    torch::serialize::InputArchive archive, generator, discriminator;
+    torch::serialize::InputArchive archive;
     archive.load_from(file.string());
     c10::IValue value;
     archive.read("identity", value);
@@ -301,10 +259,11 @@ absl::Status Trainer::LoadState(const std::filesystem::path& file) {
     best_epoch_ = value.toInt();
     archive.read("best_afd", value);
     best_afd_ = value.toDouble();
-    archive.read("generator_optimiser", generator);
-    archive.read("discriminator_optimiser", discriminator);
-    generator_optimiser_.state().load(generator);
-    discriminator_optimiser_.state().load(discriminator);
+    for (const auto& [name, optimiser] : StateOptimisers()) {
+      torch::serialize::InputArchive one;
+      archive.read(name, one);
+      optimiser->load(one);
+    }
   } catch (const std::exception& error) {
     return absl::DataLossError(absl::StrCat(file.string(), ": cannot be read: ", error.what()));
   }

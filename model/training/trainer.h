@@ -12,8 +12,8 @@
 #include "absl/status/statusor.h"
 #include "model/checkpoint/checkpoint.h"
 #include "model/dataset/dataset.h"
-#include "model/network/discriminator.h"
 #include "model/network/generator.h"
+#include "model/training/adversary.h"
 #include "model/training/optimiser.h"
 #include "model/training/options.h"
 #include "model/training/sampler.h"
@@ -64,12 +64,12 @@ class Trainer {
 
  private:
   torch::Tensor GeneratorLoss(const TrainingBatch& batch, EpochReport* report);
-  void TrainGenerator(const TrainingBatch& batch, EpochReport* report);
-  void TrainDiscriminator(const TrainingBatch& batch, EpochReport* report);
+  void TrainAdversary(const TrainingBatch& batch, int64_t step, EpochReport* report);
   void UpdateAverage();
   double Validate();
   std::string Identity() const;
   std::vector<std::pair<std::string, torch::Tensor>> StateTensors();
+  std::vector<std::pair<std::string, torch::optim::Optimizer*>> StateOptimisers();
 
   const TrainingOptions& options_;
   const Manifest& manifest_;
@@ -77,10 +77,10 @@ class Trainer {
   std::vector<int> train_, validation_;
   int64_t steps_per_epoch_;
   network::Generator generator_;
-  network::Discriminator discriminator_;
-  Optimiser generator_optimiser_, discriminator_optimiser_;
-  std::vector<torch::Tensor> average_;  // of the generator's parameters
-  std::vector<torch::Tensor> best_;     // parameters of the best validated epoch
+  Optimiser generator_optimiser_;
+  std::unique_ptr<Adversary> adversary_;  // null without an adversarial loss
+  std::vector<torch::Tensor> average_;    // of the generator's parameters
+  std::vector<torch::Tensor> best_;       // parameters of the best validated epoch
   double best_afd_;
   int64_t best_epoch_ = 0;
   int64_t epoch_ = 0;

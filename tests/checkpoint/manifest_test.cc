@@ -242,7 +242,7 @@ INSTANTIATE_TEST_SUITE_P(
                  "\"whole_body\" is repeated or reserved"},
         BadField{"part_not_a_name", "/skeleton/parts/1/name", "\"a/b\"", "parts.name: \"a/b\""},
         BadField{"variant", "/generator/variant", "\"other\"",
-                 "generator.variant: \"other\", wanted \"paper\" or \"released\""},
+                 "generator.variant: \"other\", wanted \"paper\", \"released\" or \"unlabelled\""},
         BadField{"start_number", "/generator/follower_start", "1", "generator.follower_start: 1"},
         BadField{"base_text", "/generator/base_pose", "\"yes\"", "generator.base_pose: \"yes\""},
         BadField{"features_negative", "/generator/slice_features", "-1",

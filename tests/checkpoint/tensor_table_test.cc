@@ -38,6 +38,15 @@ TEST(TensorTable, ReleasedVariantGetsTheLabelsAlone) {
   EXPECT_EQ(SliceShapes(manifest)[5].input, 6);
 }
 
+TEST(TensorTable, UnlabelledVariantGetsTheWholeBodyAlone) {
+  Manifest manifest = SbuManifest();
+  manifest.generator.variant = "unlabelled";
+  manifest.generator.base_pose = true;
+  EXPECT_EQ(SliceShapes(manifest)[5].input, 45);
+  EXPECT_THAT(ShapeOf(manifest, "base.weight"), ElementsAre(-1));
+  EXPECT_THAT(ShapeOf(manifest, "base.bias"), ElementsAre(45));
+}
+
 TEST(TensorTable, FollowerStartJoinsTheWholeBody) {
   Manifest manifest = SbuManifest();
   manifest.generator.follower_start = true;

@@ -181,6 +181,20 @@ TEST(GeneratorTest, ReleasedVariantGivesTheWholeBodySliceTheLabelAlone) {
   EXPECT_EQ(generator->forward(MakeInput(manifest)).size(2), 3 * kJoints);
 }
 
+TEST(GeneratorTest, UnlabelledVariantDoesNotReadTheLabel) {
+  Manifest manifest = testing::SmallManifest();
+  manifest.generator.variant = "unlabelled";
+  manifest.generator.base_pose = true;
+  Generator generator = MakeGenerator(manifest);
+  generator->SetBasePoses(torch::randn({kClasses, 3 * kJoints}));
+  GeneratorInput input = MakeInput(manifest);
+  const torch::Tensor before = generator->forward(input);
+  input.labels = input.labels + 1;
+  EXPECT_TRUE(torch::equal(generator->forward(input), before));
+  input.leader = input.leader + 0.1;
+  EXPECT_FALSE(torch::equal(generator->forward(input), before));
+}
+
 TEST(GeneratorTest, TwentyJointsAndTwoClassesAreAConfiguration) {
   Manifest manifest = testing::SmallManifest(false);
   manifest.model.classes = {"kick", "punch"};

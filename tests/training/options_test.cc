@@ -21,7 +21,7 @@ std::string DefaultJson() {
 TEST(TrainingOptionsTest, EveryNamedConfigurationParses) {
   ASSERT_FALSE(NamedConfigs().empty());
   for (const NamedConfig& config : NamedConfigs()) {
-    EXPECT_THAT(ParseTrainingOptions(config.json), IsOk()) << config.name;
+    EXPECT_THAT(ParseConfig(config.json), IsOk()) << config.name;
   }
 }
 
@@ -41,6 +41,28 @@ TEST(TrainingOptionsTest, EverySettingIsRequiredAndDescribed) {
   for (const auto& [path, value] : Describe(*options)) {
     EXPECT_THAT(ParseTrainingOptions(DefaultJson(), {{path, "{}"}}), Not(IsOk())) << path;
   }
+}
+
+TEST(TrainingOptionsTest, DerivedConfigurationChangesItsBase) {
+  const auto options = ParseConfig(
+      R"({"base": "default", "set": {"losses.bone": 0.5, "epochs": 3}})", {{"epochs", "4"}});
+  ASSERT_THAT(options, IsOk());
+  auto expected = Describe(*ParseTrainingOptions(DefaultJson()));
+  expected["losses.bone"] = "0.5";
+  expected["epochs"] = "4";
+  EXPECT_EQ(Describe(*options), expected);
+}
+
+TEST(TrainingOptionsTest, DerivedConfigurationIsCheckedByName) {
+  const auto refusal = [](const std::string& json) {
+    return std::string(ParseConfig(json).status().message());
+  };
+  EXPECT_THAT(refusal(R"({"base": "nothing", "set": {}})"),
+              HasSubstr("base: \"nothing\", wanted a named configuration"));
+  EXPECT_THAT(refusal(R"({"base": "default"})"), HasSubstr("set"));
+  EXPECT_THAT(refusal(R"({"base": "default", "set": {"losses.none": 1}})"),
+              HasSubstr("losses.none: no such setting"));
+  EXPECT_THAT(refusal(R"({"base": "default", "set": {}, "more": 1})"), HasSubstr("more"));
 }
 
 TEST(TrainingOptionsTest, RefusesByName) {

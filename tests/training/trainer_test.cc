@@ -55,6 +55,19 @@ TEST_F(TrainerTest, ResumedRunEqualsAnUninterruptedOneBitForBit) {
   EXPECT_TRUE(resumed.Finished());
 }
 
+TEST_F(TrainerTest, ResumesWithABinaryDiscriminatorToo) {
+  options_.discriminator.binary = true;
+  Trainer straight = Make();
+  for (int i = 0; i < 2; ++i) straight.RunEpoch();
+  Trainer first = Make();
+  first.RunEpoch();
+  ASSERT_THAT(first.SaveState(folder_ / "state"), IsOk());
+  Trainer resumed = Make();
+  ASSERT_THAT(resumed.LoadState(folder_ / "state"), IsOk());
+  resumed.RunEpoch();
+  EXPECT_TRUE(Equal(Parameters(resumed), Parameters(straight)));
+}
+
 TEST_F(TrainerTest, StateOfAnotherRunIsRefused) {
   Trainer trainer = Make();
   ASSERT_THAT(trainer.SaveState(folder_ / "state"), IsOk());

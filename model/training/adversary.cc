@@ -1,0 +1,106 @@
+#include "model/training/adversary.h"
+
+#include "absl/strings/str_cat.h"
+#include "model/network/losses.h"
+
+namespace duet {
+namespace {
+
+using network::Discriminator;
+
+TrainingOptions::Optimiser OptimiserOptions(const TrainingOptions& options) {
+  TrainingOptions::Optimiser optimiser = options.optimiser;
+  optimiser.learning_rate = options.discriminator.learning_rate;
+  return optimiser;
+}
+
+// Turns gradients of a module's parameters off while it lives.
+class Frozen {
+ public:
+  explicit Frozen(torch::nn::Module& module) : module_(module) { Set(false); }
+  ~Frozen() { Set(true); }
+  Frozen(const Frozen&) = delete;
+  Frozen& operator=(const Frozen&) = delete;
+
+ private:
+  void Set(bool on) {
+    for (torch::Tensor& parameter : module_.parameters()) parameter.set_requires_grad(on);
+  }
+  torch::nn::Module& module_;
+};
+
+}  // namespace
+
+Adversary::Adversary(const TrainingOptions& options, const Manifest& manifest, int64_t steps)
+    : options_(options) {
+  Add("discriminator", true, manifest, steps);
+  if (options.discriminator.binary) Add("binary_discriminator", false, manifest, steps);
+}
+
+void Adversary::Add(const std::string& name, bool class_aware, const Manifest& manifest,
+                    int64_t steps) {
+  network::DiscriminatorOptions sizes;
+  sizes.input = 3 * manifest.model.skeleton.joint_count();
+  sizes.window_frames = manifest.model.window_frames;
+  sizes.hidden = options_.discriminator.hidden;
+  sizes.outputs = class_aware ? manifest.model.class_count() + 1 : 2;
+  Discriminator network(sizes);
+  network->set_dropout(options_.discriminator.dropout);
+  auto optimiser =
+      std::make_unique<Optimiser>(OptimiserOptions(options_), network->parameters(), steps);
+  judges_.push_back({name, class_aware, network, std::move(optimiser)});
+}
+
+double Adversary::Train(const TrainingBatch& batch, const torch::Tensor& synthesised,
+                        int64_t step) {
+  double sum = 0;
+  const torch::Tensor& lengths = batch.input.lengths;
+  for (Judge& judge : judges_) {
+    const torch::Tensor classes =
+        judge.class_aware ? batch.classes : torch::zeros_like(batch.classes);
+    const torch::Tensor loss =
+        network::DiscriminatorLoss(judge.network->forward(batch.follower, lengths),
+                                   judge.network->forward(synthesised, lengths), classes);
+    loss.backward();
+    judge.optimiser->Step(step);
+    if (options_.discriminator.unit_norm_kernels) judge.network->NormaliseKernels();
+    sum += loss.item<double>();
+  }
+  return sum;
+}
+
+torch::Tensor Adversary::GeneratorLoss(const TrainingBatch& batch,
+                                       const torch::Tensor& synthesised) {
+  torch::Tensor sum = torch::zeros({});
+  if (batch.single_rows.numel() == 0) return sum;
+  const torch::Tensor motion = synthesised.index_select(0, batch.single_rows);
+  const torch::Tensor lengths = batch.input.lengths.index_select(0, batch.single_rows);
+  const torch::Tensor classes = batch.classes.index_select(0, batch.single_rows);
+  for (Judge& judge : judges_) {
+    const Frozen frozen(*judge.network);
+    sum = sum + network::AdversarialLoss(judge.network->forward(motion, lengths),
+                                         judge.class_aware ? classes : torch::zeros_like(classes));
+  }
+  return sum;
+}
+
+std::vector<std::pair<std::string, torch::Tensor>> Adversary::Tensors() {
+  std::vector<std::pair<std::string, torch::Tensor>> tensors;
+  for (Judge& judge : judges_) {
+    int64_t i = 0;
+    for (const torch::Tensor& tensor : judge.network->parameters()) {
+      tensors.emplace_back(absl::StrCat(judge.name, i++), tensor.detach());
+    }
+  }
+  return tensors;
+}
+
+std::vector<std::pair<std::string, torch::optim::Optimizer*>> Adversary::Optimisers() {
+  std::vector<std::pair<std::string, torch::optim::Optimizer*>> optimisers;
+  for (Judge& judge : judges_) {
+    optimisers.emplace_back(judge.name + "_optimiser", &judge.optimiser->state());
+  }
+  return optimisers;
+}
+
+}  // namespace duet

@@ -1,0 +1,57 @@
+#ifndef DUET_MODEL_TRAINING_ADVERSARY_H_
+#define DUET_MODEL_TRAINING_ADVERSARY_H_
+
+#include <torch/torch.h>
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "model/checkpoint/manifest.h"
+#include "model/network/discriminator.h"
+#include "model/training/optimiser.h"
+#include "model/training/options.h"
+#include "model/training/sampler.h"
+
+namespace duet {
+
+// What the generator is trained against: the class-aware discriminator and, where the options ask
+// for it, a binary one beside it that tells real from synthesised alone (MSHL22).
+//
+// Source:  paper section 3.3 and Eq. 4; MSHL22.
+// Threads: not safe to call concurrently.
+class Adversary {
+ public:
+  // Requires losses.adversarial above 0. `steps` of the whole run, for the schedule.
+  Adversary(const TrainingOptions& options, const Manifest& manifest, int64_t steps);
+
+  // One step of every discriminator on captured and synthesised followers [N, T, 3 J]. Returns the
+  // sum of their losses.
+  double Train(const TrainingBatch& batch, const torch::Tensor& synthesised, int64_t step);
+
+  // The generator's loss, summed over the discriminators, which get no gradient: a scalar. Mixed
+  // answers have no one class to be taken for: only clips of a single class count; 0 without any.
+  torch::Tensor GeneratorLoss(const TrainingBatch& batch, const torch::Tensor& synthesised);
+
+  // What a resumed run restores: parameters by name, and the optimisers.
+  std::vector<std::pair<std::string, torch::Tensor>> Tensors();
+  std::vector<std::pair<std::string, torch::optim::Optimizer*>> Optimisers();
+
+ private:
+  struct Judge {
+    std::string name;
+    bool class_aware;
+    network::Discriminator network;
+    std::unique_ptr<Optimiser> optimiser;
+  };
+
+  void Add(const std::string& name, bool class_aware, const Manifest& manifest, int64_t steps);
+
+  const TrainingOptions& options_;
+  std::vector<Judge> judges_;
+};
+
+}  // namespace duet
+
+#endif  // DUET_MODEL_TRAINING_ADVERSARY_H_
