@@ -3,16 +3,18 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
 #include <limits>
 
 #include "model/evaluation/svg.h"
+#include "model/evaluation/ticks.h"
 
 namespace duet {
 namespace {
 
+// The least size of a figure, and where its box stands; long legends make it larger.
 constexpr double kWidth = 760, kHeight = 520;
 constexpr double kTop = 48, kBottom = 64, kLeft = 78, kLegend = 178, kMargin = 20;
+constexpr double kLegendText = 46;  // from the box's right edge
 constexpr double kTitleSize = 16, kLabelSize = 13, kTickSize = 12;
 constexpr double kPointRadius = 4.5, kLegendStep = 22;
 constexpr char kAxisStyle[] = "fill=\"none\" stroke=\"#222222\" stroke-width=\"1\"";
@@ -20,6 +22,8 @@ constexpr char kGridStyle[] = "fill=\"none\" stroke=\"#dddddd\" stroke-width=\"0
 constexpr char kMarkStyle[] =
     "fill=\"none\" stroke=\"#888888\" stroke-width=\"1\" stroke-dasharray=\"2 3\"";
 constexpr int kTickCount = 6;
+// Width of a character in units of the font's size, at most, over the fonts that may be used.
+constexpr double kGlyphWidth = 0.62;
 
 bool IsDrawn(const Point2& point) { return std::isfinite(point[0]) && std::isfinite(point[1]); }
 
@@ -64,19 +68,28 @@ class Frame {
   Range x_, y_;
 };
 
-std::string TickText(double value) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.4g", std::abs(value) < 1e-12 ? 0 : value);
-  return text;
+double TextWidth(const std::string& text, double size) {
+  return kGlyphWidth * size * static_cast<double>(text.size());
 }
 
-void DrawTitle(const std::string& title, SvgWriter* svg) {
-  svg->Text(kLeft, kTop - 20, title, TextAnchor::kStart, kTitleSize, "font-weight=\"bold\"");
+// An empty figure that has room for its legend.
+SvgWriter MakeFigure(const std::string& title, const std::vector<PlotSeries>& series) {
+  double legend = kLegend;
+  for (const PlotSeries& one : series) {
+    legend = std::max(legend, kLegendText + TextWidth(one.name, kTickSize) + kMargin);
+  }
+  const double width = kWidth - kLegend + legend;
+  const double least_height = kTop + kLegendStep * static_cast<double>(series.size()) + kMargin;
+  SvgWriter svg(width, std::max(kHeight, least_height));
+  const double room = width - kLeft - kMargin;
+  const double size = std::min(kTitleSize, kTitleSize * room / TextWidth(title + " ", kTitleSize));
+  svg.Text(kLeft, kTop - 20, title, TextAnchor::kStart, size, "font-weight=\"bold\"");
+  return svg;
 }
 
 void DrawLegendText(size_t index, const std::string& name, SvgWriter* svg) {
-  svg->Text(Frame::Right() + 46, kTop + 12 + kLegendStep * static_cast<double>(index), name,
-            TextAnchor::kStart, kTickSize);
+  svg->Text(Frame::Right() + kLegendText, kTop + 12 + kLegendStep * static_cast<double>(index),
+            name, TextAnchor::kStart, kTickSize);
 }
 
 double LegendY(size_t index) { return kTop + 8 + kLegendStep * static_cast<double>(index); }
@@ -107,13 +120,9 @@ Frame FrameOf(const LinePlot& plot) {
   return {x.Usable(), y};
 }
 
-// Powers of ten on a logarithmic axis that spans at least one of them.
 std::vector<double> YTicks(const LinePlot& plot, const Range& y) {
-  std::vector<double> ticks;
-  if (plot.log_y) {
-    for (double power = std::ceil(y.low); power <= y.high; ++power) ticks.push_back(power);
-  }
-  return ticks.size() >= 2 ? ticks : RoundTicks(y.low, y.high, kTickCount);
+  if (!plot.log_y) return RoundTicks(y.low, y.high, kTickCount);
+  return LogTicks(std::pow(10, y.low), std::pow(10, y.high), kTickCount);
 }
 
 void DrawAxes(const LinePlot& plot, const Frame& frame, SvgWriter* svg) {
@@ -121,10 +130,10 @@ void DrawAxes(const LinePlot& plot, const Frame& frame, SvgWriter* svg) {
     svg->Line(frame.X(x), kTop, frame.X(x), Frame::Floor(), kGridStyle);
     svg->Text(frame.X(x), Frame::Floor() + 18, TickText(x), TextAnchor::kMiddle, kTickSize);
   }
-  for (const double y : YTicks(plot, frame.y())) {
-    svg->Line(kLeft, frame.Y(y), Frame::Right(), frame.Y(y), kGridStyle);
-    svg->Text(kLeft - 8, frame.Y(y) + 4, TickText(plot.log_y ? std::pow(10, y) : y),
-              TextAnchor::kEnd, kTickSize);
+  for (const double tick : YTicks(plot, frame.y())) {
+    const double y = frame.Y(OnAxis(plot, {0, tick})[1]);
+    svg->Line(kLeft, y, Frame::Right(), y, kGridStyle);
+    svg->Text(kLeft - 8, y + 4, TickText(tick), TextAnchor::kEnd, kTickSize);
   }
   for (const double x : plot.marked_x) {
     if (x < frame.x().low || x > frame.x().high) continue;
@@ -166,22 +175,6 @@ void DrawLine(const LinePlot& plot, const Frame& frame, size_t index, SvgWriter*
 
 }  // namespace
 
-std::vector<double> RoundTicks(double low, double high, int count) {
-  const double rough = (high - low) / count;
-  const double power = std::pow(10, std::floor(std::log10(rough)));
-  double step = 10 * power;
-  for (const double factor : {1.0, 2.0, 5.0}) {
-    if (factor * power < rough * (1 - 1e-9)) continue;
-    step = factor * power;
-    break;
-  }
-  std::vector<double> ticks;
-  // Counted, not added up: sums of steps would drift.
-  const double first = std::ceil(low / step - 1e-9), last = std::floor(high / step + 1e-9);
-  for (double i = first; i <= last; ++i) ticks.push_back(i * step);
-  return ticks;
-}
-
 std::string ToSvg(const ScatterPlot& plot) {
   Range x, y;
   for (const PlotSeries& series : plot.series) {
@@ -192,8 +185,7 @@ std::string ToSvg(const ScatterPlot& plot) {
     }
   }
   const Frame frame(x.Usable().Widened(0.05), y.Usable().Widened(0.05));
-  SvgWriter svg(kWidth, kHeight);
-  DrawTitle(plot.title, &svg);
+  SvgWriter svg = MakeFigure(plot.title, plot.series);
   svg.Path("M" + SvgNumber(kLeft) + ' ' + SvgNumber(kTop) + 'H' + SvgNumber(Frame::Right()) + 'V' +
                SvgNumber(Frame::Floor()) + 'H' + SvgNumber(kLeft) + 'Z',
            kAxisStyle);
@@ -209,8 +201,7 @@ std::string ToSvg(const ScatterPlot& plot) {
 
 std::string ToSvg(const LinePlot& plot) {
   const Frame frame = FrameOf(plot);
-  SvgWriter svg(kWidth, kHeight);
-  DrawTitle(plot.title, &svg);
+  SvgWriter svg = MakeFigure(plot.title, plot.series);
   DrawAxes(plot, frame, &svg);
   for (size_t i = 0; i < plot.series.size(); ++i) DrawLine(plot, frame, i, &svg);
   return svg.Finish();

@@ -39,10 +39,6 @@ struct LinePlot {
 };
 std::string ToSvg(const LinePlot& plot);
 
-// Round numbers that cover [low, high] in about `count` steps: multiples of 1, 2 or 5 times a power
-// of ten. Requires low < high.
-std::vector<double> RoundTicks(double low, double high, int count);
-
 }  // namespace duet
 
 #endif  // DUET_MODEL_EVALUATION_PLOT_H_

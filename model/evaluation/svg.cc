@@ -2,6 +2,8 @@
 
 #include <cstdio>
 
+#include "model/evaluation/markup.h"
+
 namespace duet {
 namespace {
 
@@ -57,23 +59,6 @@ std::string SvgNumber(double value) {
   return number == "-0" ? "0" : number;
 }
 
-std::string SvgEscape(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (static_cast<unsigned char>(c) < ' ') continue;
-    if (c == '&') {
-      out += "&amp;";
-    } else if (c == '<') {
-      out += "&lt;";
-    } else if (c == '>') {
-      out += "&gt;";
-    } else {
-      out += c;
-    }
-  }
-  return out;
-}
-
 SvgWriter::SvgWriter(double width, double height) {
   const std::string size = SvgNumber(width) + "\" height=\"" + SvgNumber(height);
   text_ = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + size + "\" viewBox=\"0 0 " +
@@ -93,7 +78,7 @@ void SvgWriter::Text(double x, double y, const std::string& text, TextAnchor anc
                      const std::string& style) {
   text_ += "<text x=\"" + SvgNumber(x) + "\" y=\"" + SvgNumber(y) + "\" font-size=\"" +
            SvgNumber(size) + "\" text-anchor=\"" + Name(anchor) + "\" fill=\"#222222\" " + style +
-           '>' + SvgEscape(text) + "</text>\n";
+           '>' + EscapeMarkup(text) + "</text>\n";
 }
 
 void SvgWriter::TextUpwards(double x, double y, const std::string& text, double size) {

@@ -37,8 +37,6 @@ std::string SeriesDash(std::size_t series);
 
 // A number for an attribute: at most two decimals, never an exponent.
 std::string SvgNumber(double value);
-// Text for an element: &, < and > escaped, control characters dropped.
-std::string SvgEscape(const std::string& text);
 
 }  // namespace duet
 

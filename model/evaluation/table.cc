@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <limits>
 
-#include "nlohmann/json.hpp"
+#include "model/evaluation/markup.h"
 
 namespace duet {
 namespace {
@@ -16,9 +16,12 @@ constexpr char kDash[] = "-";
 
 std::string Rounded(double value, int decimals) {
   if (std::isnan(value)) return kDash;
-  char text[64];
+  char text[400];  // the largest double has 309 digits before the point
   std::snprintf(text, sizeof(text), "%.*f", decimals, value);
-  return text;
+  const std::string rounded = text;
+  // "-0.00" would say less than nothing.
+  const bool is_zero = rounded.find_first_of("123456789in") == std::string::npos;
+  return is_zero && rounded[0] == '-' ? rounded.substr(1) : rounded;
 }
 
 // The shortest form that reads back as the same number; empty for a missing one.
@@ -42,36 +45,18 @@ std::string BestOf(const Table& table, size_t column) {
   return Rounded(best, table.decimals);
 }
 
-// The figures of every row as text, the best ones between the marks.
-std::vector<std::vector<std::string>> Cells(const Table& table, const std::string& before,
-                                            const std::string& after) {
-  std::vector<std::vector<std::string>> cells(table.rows.size());
-  for (size_t column = 0; column < table.columns.size(); ++column) {
-    const std::string best = BestOf(table, column);
-    for (size_t i = 0; i < table.rows.size(); ++i) {
-      std::string cell = Rounded(table.rows[i].values[column], table.decimals);
-      if (cell == best && !table.rows[i].printed) cell = before + cell + after;
-      cells[i].push_back(std::move(cell));
-    }
-  }
-  return cells;
+// Characters, not bytes: names may hold more than ASCII.
+size_t Width(const std::string& text) {
+  return static_cast<size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
 }
 
 std::string PadLeft(const std::string& text, size_t width) {
-  return std::string(width > text.size() ? width - text.size() : 0, ' ') + text;
+  return std::string(width - std::min(width, Width(text)), ' ') + text;
 }
 
 std::string PadRight(const std::string& text, size_t width) {
-  return text + std::string(width > text.size() ? width - text.size() : 0, ' ');
-}
-
-std::string EscapeMarkdown(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '|' || c == '\\') out += '\\';
-    out += c;
-  }
-  return out;
+  return text + std::string(width - std::min(width, Width(text)), ' ');
 }
 
 std::string EscapeCsv(const std::string& text) {
@@ -86,6 +71,18 @@ std::string EscapeCsv(const std::string& text) {
 
 }  // namespace
 
+std::vector<std::vector<TableCell>> FormatCells(const Table& table) {
+  std::vector<std::vector<TableCell>> cells(table.rows.size());
+  for (size_t column = 0; column < table.columns.size(); ++column) {
+    const std::string best = BestOf(table, column);
+    for (size_t i = 0; i < table.rows.size(); ++i) {
+      const std::string text = Rounded(table.rows[i].values[column], table.decimals);
+      cells[i].push_back({text, text == best && !table.rows[i].printed});
+    }
+  }
+  return cells;
+}
+
 void AddMeanColumn(Table* table) {
   table->columns.push_back("mean");
   for (TableRow& row : table->rows) {
@@ -96,23 +93,22 @@ void AddMeanColumn(Table* table) {
 }
 
 std::string ToPlainText(const Table& table) {
-  const std::vector<std::vector<std::string>> cells = Cells(table, "*", "");
-  size_t name_width = 0;
-  for (const TableRow& row : table.rows) name_width = std::max(name_width, row.name.size());
-  std::string text = table.title + "\n" + std::string(name_width, ' ');
-  std::vector<size_t> widths;
-  for (size_t column = 0; column < table.columns.size(); ++column) {
-    size_t width = table.columns[column].size();
-    for (const auto& row : cells) width = std::max(width, row[column].size());
-    widths.push_back(width);
-    text += "  " + PadLeft(table.columns[column], width);
-  }
-  text += '\n';
+  std::vector<std::vector<std::string>> lines = {{""}};
+  lines[0].insert(lines[0].end(), table.columns.begin(), table.columns.end());
+  const std::vector<std::vector<TableCell>> cells = FormatCells(table);
   for (size_t i = 0; i < table.rows.size(); ++i) {
-    text += PadRight(table.rows[i].name, name_width);
-    for (size_t column = 0; column < widths.size(); ++column) {
-      text += "  " + PadLeft(cells[i][column], widths[column]);
-    }
+    lines.push_back({table.rows[i].name});
+    for (const TableCell& cell : cells[i])
+      lines.back().push_back((cell.best ? "*" : "") + cell.text);
+  }
+  std::vector<size_t> widths(lines[0].size());
+  for (const std::vector<std::string>& line : lines) {
+    for (size_t i = 0; i < line.size(); ++i) widths[i] = std::max(widths[i], Width(line[i]));
+  }
+  std::string text = table.title + '\n';
+  for (const std::vector<std::string>& line : lines) {
+    text += PadRight(line[0], widths[0]);
+    for (size_t i = 1; i < line.size(); ++i) text += "  " + PadLeft(line[i], widths[i]);
     text += '\n';
   }
   for (const std::string& note : table.notes) text += "  " + note + '\n';
@@ -120,7 +116,6 @@ std::string ToPlainText(const Table& table) {
 }
 
 std::string ToMarkdown(const Table& table) {
-  const std::vector<std::vector<std::string>> cells = Cells(table, "**", "**");
   std::string text = "**" + EscapeMarkdown(table.title) + "**\n\n| |";
   std::string rule = "|---|";
   for (const std::string& column : table.columns) {
@@ -128,13 +123,16 @@ std::string ToMarkdown(const Table& table) {
     rule += "---:|";
   }
   text += '\n' + rule + '\n';
+  const std::vector<std::vector<TableCell>> cells = FormatCells(table);
   for (size_t i = 0; i < table.rows.size(); ++i) {
     const std::string name = EscapeMarkdown(table.rows[i].name);
     text += table.rows[i].printed ? "| *" + name + "* |" : "| " + name + " |";
-    for (const std::string& cell : cells[i]) text += ' ' + cell + " |";
+    for (const TableCell& cell : cells[i]) {
+      text += cell.best ? " **" + cell.text + "** |" : ' ' + cell.text + " |";
+    }
     text += '\n';
   }
-  for (const std::string& note : table.notes) text += "\n" + note + '\n';
+  for (const std::string& note : table.notes) text += '\n' + EscapeMarkdown(note) + '\n';
   return text;
 }
 
@@ -148,21 +146,6 @@ std::string ToCsv(const Table& table) {
     text += '\n';
   }
   return text;
-}
-
-std::string ToJson(const Table& table) {
-  nlohmann::ordered_json json = {
-      {"title", table.title}, {"columns", table.columns}, {"notes", table.notes}};
-  json["rows"] = nlohmann::ordered_json::array();
-  for (const TableRow& row : table.rows) {
-    nlohmann::ordered_json values = nlohmann::ordered_json::array();
-    for (const double value : row.values) {
-      values.push_back(std::isnan(value) ? nlohmann::ordered_json()
-                                         : nlohmann::ordered_json(value));
-    }
-    json["rows"].push_back({{"name", row.name}, {"printed", row.printed}, {"values", values}});
-  }
-  return json.dump(2) + '\n';
 }
 
 }  // namespace duet

@@ -30,6 +30,14 @@ struct Table {
 // Adds a last column "mean" with each row's mean; NaN where a figure is missing.
 void AddMeanColumn(Table* table);
 
+// A figure as it is printed.
+struct TableCell {
+  std::string text;   // rounded; a dash for a missing figure
+  bool best = false;  // ties are all best
+};
+// Shapes: returns [rows][columns].
+std::vector<std::vector<TableCell>> FormatCells(const Table& table);
+
 // The table in each form. Every row has as many values as there are columns. Figures are rounded to
 // `decimals`, but in CSV and JSON, which keep what is needed to read the same number back; a
 // missing figure is a dash, in CSV an empty field, in JSON null. Plain text and Markdown mark the

@@ -35,6 +35,26 @@ TEST(TableTest, PlainTextAlignsAndMarksTheBest) {
             "  raw unit\n");
 }
 
+TEST(TableTest, PlainTextCountsCharactersNotBytes) {
+  Table table = Example();
+  table.rows[2].name = "\u00e9t\u00e9";
+  EXPECT_THAT(ToPlainText(table), HasSubstr("\u00e9t\u00e9      0.10   0.20\n"));
+}
+
+TEST(TableTest, ZeroHasNoSign) {
+  Table table = Example();
+  table.rows[0].values = {-0.001, -0.006};
+  const std::vector<std::vector<TableCell>> cells = FormatCells(table);
+  EXPECT_EQ(cells[0][0].text, "0.00");
+  EXPECT_EQ(cells[0][1].text, "-0.01");
+}
+
+TEST(TableTest, LargeFiguresAreWhole) {
+  Table table = Example();
+  table.rows[0].values[0] = -1e300;
+  EXPECT_EQ(FormatCells(table)[0][0].text.size(), 1u + 301u + 3u);
+}
+
 TEST(TableTest, MarkdownMarksTheBestAndSetsPrintedRowsApart) {
   EXPECT_EQ(ToMarkdown(Example()),
             "**Errors \\| all**\n\n"
@@ -71,6 +91,8 @@ TEST(TableTest, JsonKeepsTheFiguresExactly) {
   EXPECT_TRUE(json["rows"][1]["values"][1].is_null());
   EXPECT_EQ(json["rows"][2]["printed"], true);
   EXPECT_EQ(json["notes"][0], "raw unit");
+  EXPECT_EQ(json["decimals"], 2);
+  EXPECT_EQ(json["best"], "lowest");
 }
 
 TEST(TableTest, MeanColumnIsMissingWhereAFigureIs) {
