@@ -12,15 +12,17 @@ namespace {
 
 constexpr char kColumns[] =
     "epoch,generator,reconstruction,bone,continuity,adversarial,discriminator,validation_afd,"
-    "seconds";
+    "validation_afd_pose,seconds";
 constexpr int kBarWidth = 24;
 
+std::string Optional(double value) {
+  return std::isnan(value) ? "" : absl::StrFormat("%.6f", value);
+}
+
 std::string Row(const EpochReport& r) {
-  const std::string validation =
-      std::isnan(r.validation_afd) ? "" : absl::StrFormat("%.6f", r.validation_afd);
-  return absl::StrFormat("%d,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%s,%.3f", r.epoch, r.generator,
+  return absl::StrFormat("%d,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%s,%s,%.3f", r.epoch, r.generator,
                          r.reconstruction, r.bone, r.continuity, r.adversarial, r.discriminator,
-                         validation, r.seconds);
+                         Optional(r.validation_afd), Optional(r.validation_afd_pose), r.seconds);
 }
 
 absl::Status WriteText(const std::filesystem::path& file, const std::string& text,

@@ -146,8 +146,10 @@ EpochReport Trainer::RunEpoch() {
     ++step;
   }
   ++epoch_;
-  report.validation_afd =
-      validation_.empty() ? std::numeric_limits<double>::quiet_NaN() : Validate();
+  report.validation_afd = Validate(StartKnowledge::kNone);
+  report.validation_afd_pose = manifest_.generator.follower_start
+                                   ? Validate(StartKnowledge::kPose)
+                                   : std::numeric_limits<double>::quiet_NaN();
   if (validation_.empty() || report.validation_afd < best_afd_) {
     best_afd_ = report.validation_afd;
     best_epoch_ = epoch_;
@@ -157,7 +159,8 @@ EpochReport Trainer::RunEpoch() {
   return report;
 }
 
-double Trainer::Validate() {
+double Trainer::Validate(StartKnowledge start) {
+  if (validation_.empty()) return std::numeric_limits<double>::quiet_NaN();
   torch::NoGradGuard no_grad;
   const std::vector<torch::Tensor> parameters = generator_->parameters();
   const std::vector<torch::Tensor> trained = Copies(parameters);
@@ -165,10 +168,9 @@ double Trainer::Validate() {
   generator_->eval();
   double sum = 0;
   for (int index : validation_) {
-    const TrainingBatch one =
-        MakeBatch(manifest_, dataset_,
-                  {CapturedExample(dataset_, dataset_.sequences[static_cast<size_t>(index)],
-                                   StartKnowledge::kNone)});
+    const TrainingBatch one = MakeBatch(
+        manifest_, dataset_,
+        {CapturedExample(dataset_, dataset_.sequences[static_cast<size_t>(index)], start)});
     sum += network::NormLoss(generator_->forward(one.input), one.follower, one.input.lengths)
                .item<double>();
   }

@@ -30,7 +30,8 @@ struct EpochReport {
   double continuity = 0;
   double adversarial = 0;
   double discriminator = 0;
-  double validation_afd = 0;  // metres, without a follower start
+  double validation_afd = 0;       // metres, without a follower start
+  double validation_afd_pose = 0;  // told the follower's first pose; NaN where a model takes none
   double seconds = 0;
 };
 
@@ -66,7 +67,7 @@ class Trainer {
   torch::Tensor GeneratorLoss(const TrainingBatch& batch, EpochReport* report);
   void TrainAdversary(const TrainingBatch& batch, int64_t step, EpochReport* report);
   void UpdateAverage();
-  double Validate();
+  double Validate(StartKnowledge start);
   std::string Identity() const;
   std::vector<std::pair<std::string, torch::Tensor>> StateTensors();
   std::vector<std::pair<std::string, torch::optim::Optimizer*>> StateOptimisers();

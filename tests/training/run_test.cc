@@ -104,6 +104,7 @@ TEST(ProgressLineTest, SaysHowFarAndHowLong) {
   report.generator = 1.5;
   report.seconds = 30;
   report.validation_afd = std::nan("");
+  report.validation_afd_pose = std::nan("");
   EXPECT_EQ(ProgressLine("all", report),
             "all [############............] epoch 5/10  loss 1.5000  2:30 left");
 }

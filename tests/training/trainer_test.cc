@@ -115,7 +115,11 @@ TEST_F(TrainerTest, StopsWhenValidationNoLongerImproves) {
   options_.epochs = 100;
   options_.validation.patience = 3;
   Trainer trainer(options_, manifest_, dataset_, {0, 1, 2, 3}, {4, 5});
-  while (!trainer.Finished()) EXPECT_GT(trainer.RunEpoch().validation_afd, 0);
+  while (!trainer.Finished()) {
+    const EpochReport report = trainer.RunEpoch();
+    EXPECT_GT(report.validation_afd_pose, 0);
+    EXPECT_NE(report.validation_afd_pose, report.validation_afd);
+  }
   EXPECT_LT(trainer.epoch(), 100);
 }
 
