@@ -5,10 +5,16 @@
 #include <string>
 #include <vector>
 
+#include "absl/status/statusor.h"
+#include "absl/types/span.h"
 #include "model/engine/synthesizer.h"
 #include "model/evaluation/method.h"
 
 namespace duet {
+
+// Whether a model answers a data set's clips: FAILED_PRECONDITION when its classes or joints are
+// not the data's.
+absl::Status CheckModelFits(const ModelDescription& model, const Dataset& dataset);
 
 // What a synthesizer is told of the follower's first frame.
 enum class StartGiven { kNone, kRoot, kPose };
@@ -40,6 +46,17 @@ absl::StatusOr<std::vector<Vec3>> SynthesizeSequence(const Synthesizer& synthesi
                                                      const Sequence& sequence,
                                                      const std::vector<float>& labels,
                                                      StartGiven start);
+
+// A leader and the label vector ([classes]) to answer it with.
+struct LabelledLeader {
+  const Sequence* sequence;
+  std::vector<float> labels;
+};
+
+// The same for many, several windows to an evaluation of the network: much faster than one by one.
+// Returns a follower each, in order; the first failure is the whole call's.
+absl::StatusOr<std::vector<std::vector<Vec3>>> SynthesizeSequences(
+    const Synthesizer& synthesizer, absl::Span<const LabelledLeader> leaders, StartGiven start);
 
 }  // namespace duet
 

@@ -1,0 +1,81 @@
+#include "model/evaluation/judge/latent.h"
+
+#include <torch/torch.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "model/evaluation/synthesizer_method.h"
+#include "model/network/generator.h"
+#include "model/network/parameters.h"
+#include "model/network/sequence.h"
+#include "model/training/sampler.h"
+
+namespace duet {
+namespace {
+
+// Sequences at a time: bounds memory.
+constexpr size_t kBatch = 64;
+
+std::vector<Example> Examples(const Dataset& dataset, const std::vector<int>& sequences,
+                              LatentLabels labels) {
+  std::vector<Example> examples;
+  for (const int index : sequences) {
+    examples.push_back(CapturedExample(dataset, dataset.sequences[static_cast<size_t>(index)],
+                                       StartKnowledge::kNone));
+    std::vector<float>& weights = examples.back().weights;
+    if (labels == LatentLabels::kNone) std::fill(weights.begin(), weights.end(), 0.0f);
+  }
+  return examples;
+}
+
+// [N, S 2 E]: the mean over each clip's own frames; what the encoders say of padding is dropped.
+torch::Tensor MeanOverFrames(const torch::Tensor& frames, const torch::Tensor& lengths) {
+  const torch::Tensor mask =
+      network::FrameMask(lengths, frames.size(0)).to(frames.dtype()).unsqueeze(2);
+  return (frames * mask).sum(0) / lengths.to(frames.dtype()).unsqueeze(1);
+}
+
+void AppendRows(const torch::Tensor& rows, FeatureSet* out) {
+  const torch::Tensor values = rows.contiguous();
+  const float* row = values.data_ptr<float>();
+  for (int64_t i = 0; i < values.size(0); ++i, row += values.size(1)) {
+    out->emplace_back(row, row + values.size(1));
+  }
+}
+
+FeatureSet Encode(const Manifest& manifest, network::Generator generator, const Dataset& dataset,
+                  const std::vector<Example>& examples) {
+  torch::NoGradGuard no_grad;
+  FeatureSet features;
+  for (size_t first = 0; first < examples.size(); first += kBatch) {
+    const auto begin = examples.begin() + static_cast<std::ptrdiff_t>(first);
+    const size_t count = std::min(kBatch, examples.size() - first);
+    const network::GeneratorInput input =
+        MakeBatch(manifest, dataset, {begin, begin + static_cast<std::ptrdiff_t>(count)}).input;
+    AppendRows(MeanOverFrames(generator->Encode(input), input.lengths), &features);
+  }
+  return features;
+}
+
+}  // namespace
+
+absl::StatusOr<FeatureSet> LatentFeatures(const Checkpoint& checkpoint, const Dataset& dataset,
+                                          const std::vector<int>& sequences, LatentLabels labels) {
+  absl::Status status = CheckModelFits(checkpoint.manifest.model, dataset);
+  if (!status.ok()) return status;
+  network::Generator generator(checkpoint.manifest);
+  if (status = network::LoadParameters(checkpoint, generator); !status.ok()) return status;
+  generator->eval();
+  // LibTorch reports by exception: this is where they stop.
+  try {
+    return Encode(checkpoint.manifest, std::move(generator), dataset,
+                  Examples(dataset, sequences, labels));
+  } catch (const std::exception& error) {
+    return absl::InternalError(absl::StrCat("the network failed: ", error.what()));
+  }
+}
+
+}  // namespace duet

@@ -1,0 +1,32 @@
+#ifndef DUET_MODEL_EVALUATION_JUDGE_LATENT_H_
+#define DUET_MODEL_EVALUATION_JUDGE_LATENT_H_
+
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "model/checkpoint/checkpoint.h"
+#include "model/dataset/dataset.h"
+#include "model/evaluation/features.h"
+
+namespace duet {
+
+// What the generator is told beside the leader's motion.
+enum class LatentLabels {
+  kOwnClass,  // the label vector of the sequence's class, as in the paper
+  kNone       // a label vector of zeros: what the leader alone tells
+};
+
+// The generator's latent space, one point a sequence: the concatenated output of the encoders h_t
+// averaged over the frames. (h_t itself is one point a frame; the paper's figures show sequences
+// but do not say how they become one.) No follower start is given.
+//
+// Source: paper section 3.1 and Figures 6, 7.
+// Shapes: returns [sequences][slices x 2 x encoder_hidden].
+// Errors: FAILED_PRECONDITION when the model's classes or joints are not the data's; INTERNAL when
+//         the network fails.
+absl::StatusOr<FeatureSet> LatentFeatures(const Checkpoint& checkpoint, const Dataset& dataset,
+                                          const std::vector<int>& sequences, LatentLabels labels);
+
+}  // namespace duet
+
+#endif  // DUET_MODEL_EVALUATION_JUDGE_LATENT_H_

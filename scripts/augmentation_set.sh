@@ -1,0 +1,110 @@
+#!/usr/bin/env bash
+# Makes the synthetic set of the augmentation experiment through the product's own path: a server
+# that serves the generator of one half of the data, and the client, once a motion.
+#   duet-train --data DATA --out runs --protocol half --seeds 1
+#   scripts/augmentation_set.sh build/release/bin runs/half-1 DATA sets/half-1 [--match 25 --mix 25]
+#   duet-eval augmentation --data DATA --runs runs --seeds 1 --synthetic sets/half-1
+# OUT then holds jobs.tsv, leaders/ and followers/. Given again after a failure, it goes on.
+set -euo pipefail
+
+readonly start_limit_s=60
+readonly stop_limit_s=15
+readonly attempts=3 # another program may take a free port first
+
+server_pid=""
+address=""
+
+fail() {
+  echo "augmentation_set: $*" >&2
+  exit 1
+}
+
+usage() {
+  echo "usage: $0 BIN_FOLDER RUN DATA OUT [flags of duet-eval augmentation]" >&2
+  exit 2
+}
+
+stop_server() {
+  [[ -n "${server_pid}" ]] || return 0
+  kill -TERM "${server_pid}" 2>/dev/null || true
+  local deadline=$((SECONDS + stop_limit_s))
+  while kill -0 "${server_pid}" 2>/dev/null && ((SECONDS < deadline)); do
+    sleep 0.1
+  done
+  kill -KILL "${server_pid}" 2>/dev/null || true
+  wait "${server_pid}" 2>/dev/null || true
+  server_pid=""
+}
+
+# Prints a port that nothing listens on, from a random place on.
+free_port() {
+  local port
+  for ((port = 20000 + RANDOM % 20000; port < 60000; ++port)); do
+    if ! (exec 3<>"/dev/tcp/127.0.0.1/${port}") 2>/dev/null; then
+      echo "${port}"
+      return
+    fi
+  done
+  fail "no free port"
+}
+
+# True when the server answers before the limit.
+is_healthy() {
+  local deadline=$((SECONDS + start_limit_s))
+  until timeout 5 "${bin}/duet" models --server "${address}" >/dev/null 2>&1; do
+    kill -0 "${server_pid}" 2>/dev/null || return 1
+    ((SECONDS < deadline)) || return 1
+    sleep 0.1
+  done
+}
+
+start_server() {
+  local attempt
+  for ((attempt = 1; attempt <= attempts; ++attempt)); do
+    address="127.0.0.1:$(free_port)"
+    "${bin}/duet-server" --listen "${address}" --metrics_listen "" \
+      --model_repository "${run}/checkpoint" >"${out}/server.log" 2>&1 &
+    server_pid=$!
+    if is_healthy; then return; fi
+    stop_server
+  done
+  tail -n 20 "${out}/server.log" >&2
+  fail "the server did not start (${out}/server.log)"
+}
+
+# synthesize <id> <label;label;...> <direction or ->
+synthesize() {
+  local id="$1" flags=() label
+  local -a labels
+  IFS=';' read -ra labels <<<"$2"
+  for label in "${labels[@]}"; do flags+=(--label "${label}"); done
+  [[ "$3" == - ]] || flags+=("--partner-direction=$3")
+  "${bin}/duet" synthesize --server "${address}" --priority bulk --quiet "${flags[@]}" \
+    --leader "${out}/leaders/${id}.json" --out "${out}/followers/${id}.json" </dev/null ||
+    fail "'duet synthesize' of ${id} failed with status $?"
+}
+
+make_followers() {
+  local id class half labels partner count=0
+  while IFS=$'\t' read -r id class half labels partner; do
+    if [[ "${id}" == id && "${class}" == class ]]; then continue; fi # the header
+    if [[ ! -e "${out}/followers/${id}.json" ]]; then
+      synthesize "${id}" "${labels}" "${partner}"
+    fi
+    count=$((count + 1))
+  done <"${out}/jobs.tsv"
+  echo "${count} followers of half ${half} in ${out}/followers, ${SECONDS} s"
+}
+
+(($# >= 4)) || usage
+readonly bin="$1" run="${2%/}" data="$3" out="${4%/}"
+shift 4
+seed="${run##*/half-}"
+[[ "${seed}" =~ ^[0-9]+$ ]] || fail "RUN: '${run}' came, wanted a folder half-<seed> of duet-train --protocol half"
+[[ -d "${run}/checkpoint" ]] || fail "RUN: ${run} has no checkpoint, wanted a finished run"
+
+"${bin}/duet-eval" augmentation --data "${data}" --seeds "${seed}" --write_jobs "${out}" "$@"
+trap stop_server EXIT
+trap 'exit 130' INT TERM
+start_server
+make_followers
