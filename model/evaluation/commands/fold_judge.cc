@@ -1,0 +1,46 @@
+#include "model/evaluation/commands/fold_judge.h"
+
+#include <chrono>
+#include <cstddef>
+#include <iostream>
+
+#include "absl/strings/str_format.h"
+
+namespace duet {
+
+std::vector<ScoredMotion> CapturedFollowers(const Dataset& dataset,
+                                            const std::vector<int>& sequences) {
+  std::vector<ScoredMotion> motions;
+  for (const int i : sequences) {
+    motions.push_back({i, dataset.sequences[static_cast<size_t>(i)].pair.follower.positions});
+  }
+  return motions;
+}
+
+absl::StatusOr<MotionClassifier> TrainFoldJudge(const Dataset& dataset,
+                                                const std::string& subject) {
+  absl::StatusOr<Split> split = LeaveSubjectOut(dataset, subject);
+  if (!split.ok()) return split.status();
+  const auto start = std::chrono::steady_clock::now();
+  absl::StatusOr<MotionClassifier> judge =
+      MotionClassifier::Train(dataset, CapturedFollowers(dataset, split->train), {});
+  const double seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  std::cerr << absl::StrFormat("judge without %s: %d motions, %.1f s\n", subject,
+                               split->train.size(), seconds);
+  return judge;
+}
+
+JudgedFold Judge(const MotionClassifier& judge, const Dataset& dataset,
+                 const std::vector<ScoredMotion>& motions) {
+  JudgedFold judged;
+  for (const ScoredMotion& motion : motions) {
+    const Sequence& sequence = dataset.sequences[static_cast<size_t>(motion.sequence)];
+    judged.classes.push_back(sequence.interaction_class);
+  }
+  judged.probabilities = judge.Probabilities(dataset, motions);
+  judged.features = judge.Features(dataset, motions);
+  return judged;
+}
+
+}  // namespace duet
