@@ -19,7 +19,8 @@ struct PlotSeries {
   std::vector<Point2> points;  // x, y; a point that is not finite leaves a gap
 };
 
-// Points by class, without axes: for maps whose coordinates mean nothing (t-SNE).
+// Points by class, without axes and with one scale: for maps whose distances alone mean something
+// (t-SNE).
 struct ScatterPlot {
   std::string title;
   std::vector<PlotSeries> series;
@@ -36,6 +37,8 @@ struct LinePlot {
   bool log_y = false;                                // values that are not positive leave gaps
   bool markers = false;                              // for sweeps with few points
   std::vector<double> marked_x;                      // vertical dotted lines
+  // Above 1: lines are means over this many points, with the points themselves faint behind.
+  int running_mean = 1;
 };
 std::string ToSvg(const LinePlot& plot);
 

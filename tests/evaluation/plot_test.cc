@@ -48,6 +48,17 @@ TEST(ScatterPlotTest, DrawsEveryFinitePointAndALegend) {
   EXPECT_EQ(svg.rfind("</svg>\n"), svg.size() - 7);
 }
 
+// A map's distances mean something: they must not be stretched.
+TEST(ScatterPlotTest, HasOneScale) {
+  ScatterPlot plot;
+  plot.series = {{"wide", {{0, 0}, {10, 0}, {0, 1}}}};
+  const std::string svg = ToSvg(plot);
+  // 10 wide, with a twentieth on either side, over 562 pixels: 51.09 each.
+  EXPECT_THAT(svg, HasSubstr("cx=\"45.55\" cy=\"299.55\""));
+  EXPECT_THAT(svg, HasSubstr("cx=\"556.45\" cy=\"299.55\""));
+  EXPECT_THAT(svg, HasSubstr("cx=\"45.55\" cy=\"248.45\""));
+}
+
 TEST(LinePlotTest, PlacesPointsOnTheAxes) {
   LinePlot plot;
   plot.x_label = "weight";
@@ -112,6 +123,18 @@ TEST(LinePlotTest, EmptyAndConstantSeriesAreDrawn) {
   plot.series = {{"none", {}}, {"flat", {{1, 3}, {1, 3}}}};
   EXPECT_THAT(ToSvg(plot), Not(HasSubstr("nan")));
   EXPECT_THAT(ToSvg(plot), Not(HasSubstr("inf")));
+}
+
+TEST(LinePlotTest, RunningMeansRunBeforeFaintPoints) {
+  LinePlot plot;
+  plot.y_range = {0, 8};
+  plot.running_mean = 3;
+  plot.series = {{"a", {{0, 8}, {1, 0}, {2, 4}, {3, std::nan("")}, {4, 2}}}};
+  const std::string svg = ToSvg(plot);
+  // Values 0 to 8 stand at y 456 to 48. Means of (8 0), (8 0 4), (0 4) and 2 alone.
+  EXPECT_THAT(svg, HasSubstr("M78 48L204 456L330 252M582 354\" fill=\"none\""));
+  EXPECT_THAT(svg, HasSubstr("M78 252L204 252L330 354M582 354\" fill=\"none\""));
+  EXPECT_LT(svg.find("stroke-opacity=\"0.3\""), svg.find("M78 252L204"));
 }
 
 TEST(LinePlotTest, MarksTheGivenPlaces) {

@@ -1,0 +1,16 @@
+#ifndef DUET_MODEL_EVALUATION_REPORT_HTML_REPORT_H_
+#define DUET_MODEL_EVALUATION_REPORT_HTML_REPORT_H_
+
+#include <string>
+
+#include "model/evaluation/report/report.h"
+
+namespace duet {
+
+// The report as one page that needs no other file: style and figures inline, for wide and narrow
+// screens, light and dark, and for print.
+std::string ToHtml(const Report& report);
+
+}  // namespace duet
+
+#endif  // DUET_MODEL_EVALUATION_REPORT_HTML_REPORT_H_

@@ -1,0 +1,16 @@
+#ifndef DUET_MODEL_EVALUATION_REPORT_HTML_TABLE_H_
+#define DUET_MODEL_EVALUATION_REPORT_HTML_TABLE_H_
+
+#include <string>
+
+#include "model/evaluation/table.h"
+
+namespace duet {
+
+// A table element with the caption "Table <number>. <title>", its notes below. Printed rows are a
+// group of their own below those measured here.
+std::string ToHtml(const Table& table, int number);
+
+}  // namespace duet
+
+#endif  // DUET_MODEL_EVALUATION_REPORT_HTML_TABLE_H_
