@@ -85,15 +85,15 @@ synthesize() {
 }
 
 make_followers() {
-  local id class half labels partner count=0
-  while IFS=$'\t' read -r id class half labels partner; do
+  local id class labels partner count=0
+  while IFS=$'\t' read -r id class _ labels partner; do
     if [[ "${id}" == id && "${class}" == class ]]; then continue; fi # the header
     if [[ ! -e "${out}/followers/${id}.json" ]]; then
       synthesize "${id}" "${labels}" "${partner}"
     fi
     count=$((count + 1))
   done <"${out}/jobs.tsv"
-  echo "${count} followers of half ${half} in ${out}/followers, ${SECONDS} s"
+  echo "${count} followers in ${out}/followers, ${SECONDS} s"
 }
 
 (($# >= 4)) || usage

@@ -69,7 +69,7 @@ absl::StatusOr<std::vector<double>> ClassifierAccuracy(const Dataset& dataset,
   }
   std::vector<double> accuracy;
   for (int c = 0; c < dataset.class_count(); ++c) accuracy.push_back(confusion.ClassAccuracy(c));
-  accuracy.push_back(confusion.Accuracy());
+  accuracy.push_back(confusion.MeanClassAccuracy());
   return accuracy;
 }
 

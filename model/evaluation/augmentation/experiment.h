@@ -23,8 +23,7 @@ struct TrainingMaterial {
 };
 
 // Trains a classifier on the material and tests it on captured followers. Returns the accuracy of
-// each class, then the share of all test motions that are recognised. Errors: those of
-// MotionClassifier::Train.
+// each class, then their mean. Errors: those of MotionClassifier::Train.
 absl::StatusOr<std::vector<double>> ClassifierAccuracy(const Dataset& dataset,
                                                        const TrainingMaterial& material,
                                                        const std::vector<int>& test,

@@ -34,7 +34,8 @@ std::string LabelText(const Dataset& dataset, const std::vector<float>& labels) 
 
 std::string PartnerText(const std::optional<Vec3>& direction) {
   if (!direction) return "-";
-  return absl::StrCat(direction->x, ",", direction->y, ",", direction->z);
+  const Vec3 plain = *direction + Vec3{};  // no minus before a zero
+  return absl::StrCat(plain.x, ",", plain.y, ",", plain.z);
 }
 
 // One person, as docs/formats.md has it: the answer is nowhere in the folder before it is given.

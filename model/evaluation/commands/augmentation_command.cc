@@ -1,6 +1,4 @@
-#include <algorithm>
 #include <iostream>
-#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
@@ -13,6 +11,7 @@
 #include "model/evaluation/commands/commands.h"
 #include "model/evaluation/commands/fold_models.h"
 #include "model/evaluation/judge/classifier.h"
+#include "model/evaluation/metric_tables.h"
 #include "model/evaluation/paper_tables.h"
 #include "model/evaluation/result_section.h"
 
@@ -81,22 +80,6 @@ absl::Status ReadSets(const Dataset& dataset, const std::vector<std::string>& fo
   return AddServedSets(sets, halves);
 }
 
-// The paper's rows, when the data has its classes.
-void AddPrintedRows(Table* table) {
-  const Table paper = PaperAugmentation();
-  if (!std::equal(paper.columns.begin(), paper.columns.end(), table->columns.begin(),
-                  table->columns.end() - 1)) {
-    return;
-  }
-  for (TableRow row : paper.rows) {
-    row.name = "paper: " + row.name;
-    row.values.push_back(std::numeric_limits<double>::quiet_NaN());
-    row.printed = true;
-    table->rows.push_back(std::move(row));
-  }
-  table->notes.insert(table->notes.end(), paper.notes.begin(), paper.notes.end());
-}
-
 ResultSection MakeSection(const Dataset& dataset, const Arguments& arguments,
                           const Trials& trials) {
   ResultSection section;
@@ -113,7 +96,7 @@ ResultSection MakeSection(const Dataset& dataset, const Arguments& arguments,
       "\"longer\" rows take the steps that the larger set needs for as many epochs. \"Synthetic "
       "alone\" never sees a captured follower."};
   Table means = trials.Means("Accuracy on captured followers, mean over the trials");
-  AddPrintedRows(&means);
+  AddPrintedRows(PaperAugmentation(), &means);
   section.tables = {std::move(means),
                     trials.Deviations("Accuracy, standard deviation over the trials"),
                     trials.Gains(kCapturedRow, "Gain over captured followers alone, paired")};
@@ -162,7 +145,7 @@ absl::Status Run(const Arguments& arguments) {
   absl::Status status = ReadSets(*dataset, arguments.synthetic, &halves);
   if (!status.ok()) return status;
   std::vector<std::string> columns = dataset->classes;
-  columns.push_back("all");
+  columns.push_back("mean");
   Trials trials(std::move(columns));
   const HalfOptions options = {MadeHere(arguments.plan), arguments.epochs, arguments.repeats};
   for (const DataHalf& half : halves) {
