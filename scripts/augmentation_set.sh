@@ -9,7 +9,6 @@ set -euo pipefail
 
 readonly start_limit_s=60
 readonly stop_limit_s=15
-readonly attempts=3 # another program may take a free port first
 
 server_pid=""
 address=""
@@ -36,40 +35,25 @@ stop_server() {
   server_pid=""
 }
 
-# Prints a port that nothing listens on, from a random place on.
-free_port() {
-  local port
-  for ((port = 20000 + RANDOM % 20000; port < 60000; ++port)); do
-    if ! (exec 3<>"/dev/tcp/127.0.0.1/${port}") 2>/dev/null; then
-      echo "${port}"
-      return
-    fi
-  done
-  fail "no free port"
-}
-
-# True when the server answers before the limit.
-is_healthy() {
-  local deadline=$((SECONDS + start_limit_s))
-  until timeout 5 "${bin}/duet" models --server "${address}" >/dev/null 2>&1; do
-    kill -0 "${server_pid}" 2>/dev/null || return 1
-    ((SECONDS < deadline)) || return 1
-    sleep 0.1
-  done
+# Prints the port that the server's log says it serves at, when it does.
+serving_port() {
+  sed -n 's/.*"event":"serving".*"port":\([0-9]*\).*/\1/p' "${out}/server.log"
 }
 
 start_server() {
-  local attempt
-  for ((attempt = 1; attempt <= attempts; ++attempt)); do
-    address="127.0.0.1:$(free_port)"
-    "${bin}/duet-server" --listen "${address}" --metrics_listen "" \
-      --model_repository "${run}/checkpoint" >"${out}/server.log" 2>&1 &
-    server_pid=$!
-    if is_healthy; then return; fi
-    stop_server
+  local deadline=$((SECONDS + start_limit_s)) port=""
+  "${bin}/duet-server" --listen 127.0.0.1:0 --metrics_listen "" \
+    --model_repository "${run}/checkpoint" >"${out}/server.log" 2>&1 &
+  server_pid=$!
+  until [[ -n "${port}" ]]; do
+    if ! kill -0 "${server_pid}" 2>/dev/null || ((SECONDS >= deadline)); then
+      tail -n 20 "${out}/server.log" >&2
+      fail "the server did not start (${out}/server.log)"
+    fi
+    sleep 0.1
+    port="$(serving_port)"
   done
-  tail -n 20 "${out}/server.log" >&2
-  fail "the server did not start (${out}/server.log)"
+  address="127.0.0.1:${port}"
 }
 
 # synthesize <id> <label;label;...> <direction or ->
