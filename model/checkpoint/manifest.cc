@@ -219,9 +219,11 @@ void ReadModel(ObjectReader* reader, ModelDescription* model) {
 
 void ReadStandardisation(ObjectReader* reader, Manifest* manifest) {
   manifest->standardisation = reader->String("standardisation", kMaxTextBytes);
-  if (reader->ok() && manifest->standardisation != kLeaderRootAndYaw) {
-    reader->Fail("standardisation", absl::StrCat(json(manifest->standardisation).dump(),
-                                                 ", wanted \"", kLeaderRootAndYaw, "\""));
+  if (reader->ok() && manifest->standardisation != kLeaderRootAndYaw &&
+      manifest->standardisation != kLeaderStartAndYaw) {
+    reader->Fail("standardisation",
+                 absl::StrCat(json(manifest->standardisation).dump(), ", wanted \"",
+                              kLeaderRootAndYaw, "\" or \"", kLeaderStartAndYaw, "\""));
   }
 }
 

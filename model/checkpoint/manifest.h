@@ -10,6 +10,7 @@
 
 #include "absl/status/statusor.h"
 #include "model/engine/model_description.h"
+#include "model/motion/standardise.h"
 
 namespace duet {
 
@@ -20,9 +21,11 @@ inline constexpr int kCheckpointFormatVersion = 1;
 inline constexpr std::size_t kMaxManifestBytes = std::size_t{1} << 20;
 inline constexpr std::size_t kMaxWeightsBytes = std::size_t{512} << 20;
 
-// The one standardisation of format version 1: the leader's root at the origin of every frame and
-// one yaw for the window (WindowFrame in model/engine/window_frame.h), in metres, y up.
+// The frame that the network works in (WindowFrame in model/engine/window_frame.h), metres, y up,
+// one yaw for the window. The origin is the leader's root: in every frame, as in the paper, or in
+// the window's first.
 inline constexpr char kLeaderRootAndYaw[] = "leader_root_and_yaw";
+inline constexpr char kLeaderStartAndYaw[] = "leader_start_and_yaw";
 
 // Sizes of the generator (paper section 3.1, 3.2). All else follows from skeleton and classes.
 struct GeneratorArchitecture {
@@ -70,6 +73,9 @@ absl::StatusOr<Manifest> ParseManifest(std::string_view text);
 // Requires a skeleton that Validate accepts.
 std::string SerializeManifest(const Manifest& manifest);
 
+// What the manifest's standardisation says of the origin.
+StandardOrigin OriginOf(const Manifest& manifest);
+
 // Slices of the generator: the skeleton's parts, then the whole body.
 struct SliceShape {
   std::string name;  // part name, or "whole_body"
@@ -102,7 +108,7 @@ struct TensorSpec {
 //   decoder.<dir>.bias               [4 S E]
 //   output.weight                    [3 J, S 2 E]
 //   output.bias                      [3 J]
-//   base.weight                      [3 J, C]              (base_pose only)
+//   base.weight                      [3 J, C]              (base_pose, labels only)
 //   base.bias                        [3 J]                 (base_pose only)
 // with E = encoder_hidden, S = slices, A = attention, J = joints,
 // C = classes.

@@ -19,6 +19,11 @@ int WholeBodyInput(const Manifest& manifest) {
 
 }  // namespace
 
+StandardOrigin OriginOf(const Manifest& manifest) {
+  return manifest.standardisation == kLeaderStartAndYaw ? StandardOrigin::kFirstFrame
+                                                        : StandardOrigin::kEveryFrame;
+}
+
 int StartFeatureCount(const Skeleton& skeleton) {
   return kCoordinates + kCoordinates * skeleton.joint_count() + kStartFlags;
 }

@@ -42,7 +42,7 @@ class TorchSynthesizer : public Synthesizer {
     std::vector<Standardisation> standards;
     std::vector<network::BatchItem> items;
     for (const SynthesisWindow* window : windows) {
-      standards.push_back(WindowFrame(manifest_.model.skeleton, *window));
+      standards.push_back(WindowFrame(manifest_.model.skeleton, *window, OriginOf(manifest_)));
       items.push_back(network::StandardItem(standards.back(), *window));
     }
     const torch::Tensor followers = generator_->forward(network::MakeInput(manifest_, items));

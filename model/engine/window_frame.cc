@@ -10,18 +10,19 @@ constexpr float kMinDistanceMetres = 0.3f;
 
 }  // namespace
 
-Standardisation WindowFrame(const Skeleton& skeleton, const SynthesisWindow& window) {
+Standardisation WindowFrame(const Skeleton& skeleton, const SynthesisWindow& window,
+                            StandardOrigin origin) {
   if (window.partner_direction) {
-    return {skeleton, window.leader, FacingYaw(*window.partner_direction)};
+    return {skeleton, window.leader, FacingYaw(*window.partner_direction), origin};
   }
   if (window.start) {
     const Vec3 root = window.leader[static_cast<size_t>(skeleton.root)];
     const Vec3 toward = window.start->root - root;
     if (std::hypot(toward.x, toward.z) >= kMinDistanceMetres) {
-      return {skeleton, window.leader, FacingYaw(toward)};
+      return {skeleton, window.leader, FacingYaw(toward), origin};
     }
   }
-  return {skeleton, window.leader};
+  return {skeleton, window.leader, YawDirection::kRemove, origin};
 }
 
 }  // namespace duet

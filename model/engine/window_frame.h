@@ -8,9 +8,11 @@
 namespace duet {
 
 // The frame in which the network sees a window, in training as in service: the leader's root at the
-// origin, and -z towards where the follower is expected: the window's partner direction; else the
-// follower's start, unless the two stand as good as on one spot; else where the leader's hips face.
-Standardisation WindowFrame(const Skeleton& skeleton, const SynthesisWindow& window);
+// origin (in every frame, or in the first one), and -z towards where the follower is expected: the
+// window's partner direction; else the follower's start, unless the two stand as good as on one
+// spot; else where the leader's hips face.
+Standardisation WindowFrame(const Skeleton& skeleton, const SynthesisWindow& window,
+                            StandardOrigin origin = StandardOrigin::kEveryFrame);
 
 }  // namespace duet
 

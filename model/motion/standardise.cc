@@ -26,15 +26,16 @@ double HipYaw(const Skeleton& skeleton, const std::vector<Vec3>& leader, YawDire
 double FacingYaw(Vec3 direction) { return std::atan2(direction.x, -direction.z); }
 
 Standardisation::Standardisation(const Skeleton& skeleton, const std::vector<Vec3>& leader,
-                                 YawDirection direction)
-    : Standardisation(skeleton, leader, HipYaw(skeleton, leader, direction)) {}
+                                 YawDirection direction, StandardOrigin origin)
+    : Standardisation(skeleton, leader, HipYaw(skeleton, leader, direction), origin) {}
 
 Standardisation::Standardisation(const Skeleton& skeleton, const std::vector<Vec3>& leader,
-                                 double yaw)
+                                 double yaw, StandardOrigin origin)
     : joints_(skeleton.joint_count()), yaw_(yaw) {
   const size_t joints = static_cast<size_t>(joints_);
-  for (size_t at = static_cast<size_t>(skeleton.root); at < leader.size(); at += joints) {
-    roots_.push_back(leader[at]);
+  const size_t first = static_cast<size_t>(skeleton.root);
+  for (size_t at = first; at < leader.size(); at += joints) {
+    roots_.push_back(leader[origin == StandardOrigin::kEveryFrame ? at : first]);
   }
 }
 

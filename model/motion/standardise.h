@@ -14,12 +14,18 @@ enum class YawDirection {
   kAsReleasedCode  // the published preprocessing turns the wrong way; for exact comparison only
 };
 
+// Whose place is the origin.
+enum class StandardOrigin {
+  kEveryFrame,  // the leader's root in that same frame (the paper): its path is taken out
+  kFirstFrame   // the leader's root in the first frame: what stands still in the world stands still
+};
+
 // The yaw that turns a horizontal direction to -z, where a standardised leader faces.
 double FacingYaw(Vec3 direction);
 
-// The frame in which the network sees a clip: the leader's root at the origin in every frame, and
-// one constant yaw, such that the leader's left-to-right hip direction in frame 0 lies along +x,
-// so that the leader starts facing -z.
+// The frame in which the network sees a clip: the leader's root at the origin, in every frame or in
+// the first one, and one constant yaw, such that the leader's left-to-right hip direction in frame
+// 0 lies along +x, so that the leader starts facing -z.
 //
 // Source: paper section 4 / released preprocessing. Invertible: the root track and yaw are kept.
 // Shapes: positions [frames, joints].
@@ -27,9 +33,11 @@ class Standardisation {
  public:
   // Fits to the leader. `leader` holds at least one frame.
   Standardisation(const Skeleton& skeleton, const std::vector<Vec3>& leader,
-                  YawDirection direction = YawDirection::kRemove);
+                  YawDirection direction = YawDirection::kRemove,
+                  StandardOrigin origin = StandardOrigin::kEveryFrame);
   // Takes out a yaw of the caller's choice: the angle about +y, in radians, that Apply turns by.
-  Standardisation(const Skeleton& skeleton, const std::vector<Vec3>& leader, double yaw);
+  Standardisation(const Skeleton& skeleton, const std::vector<Vec3>& leader, double yaw,
+                  StandardOrigin origin = StandardOrigin::kEveryFrame);
 
   // World to standard; a follower goes through the same transform as its leader. `first_frame`
   // places a shorter run of frames within the leader's.
@@ -44,7 +52,7 @@ class Standardisation {
  private:
   int joints_;
   double yaw_;               // radians that Apply turns by, about +y
-  std::vector<Vec3> roots_;  // [frames] leader root in the world
+  std::vector<Vec3> roots_;  // [frames] the origin in the world
 };
 
 }  // namespace duet

@@ -121,6 +121,8 @@ absl::StatusOr<TrainingOptions> ReadOptions(const json& value) {
     if (status.ok()) status = ReadSection(&root, name, out);
   };
   section("generator", &options.generator);
+  options.standardisation =
+      OneOf(&root, "standardisation", {kLeaderRootAndYaw, kLeaderStartAndYaw});
   section("dropout", &options.dropout);
   section("optimiser", &options.optimiser);
   options.epochs = root.Int("epochs", 1, kMaxEpochs);
@@ -187,7 +189,8 @@ absl::StatusOr<TrainingOptions> ParseTrainingOptions(
 }
 
 std::map<std::string, std::string> Describe(const TrainingOptions& o) {
-  return {{"dropout.slices", Text(o.dropout.slices)},
+  return {{"standardisation", o.standardisation},
+          {"dropout.slices", Text(o.dropout.slices)},
           {"dropout.encoded", Text(o.dropout.encoded)},
           {"optimiser.name", o.optimiser.name},
           {"optimiser.learning_rate", Text(o.optimiser.learning_rate)},

@@ -15,6 +15,7 @@ namespace duet {
 // Everything that shapes a training run; the named configurations are in model/training/configs.
 struct TrainingOptions {
   GeneratorArchitecture generator;
+  std::string standardisation = kLeaderRootAndYaw;  // or kLeaderStartAndYaw (checkpoint/manifest.h)
 
   struct Dropout {
     double slices = 0;   // after each slice's fully connected layer

@@ -27,6 +27,7 @@ Manifest MakeManifest(const RunPlan& plan, const Dataset& dataset) {
   manifest.model.window_frames = dataset.LongestFrameCount();
   manifest.model.accepts_follower_start = plan.options.generator.follower_start;
   manifest.generator = plan.options.generator;
+  manifest.standardisation = plan.options.standardisation;
   manifest.training = Describe(plan.options);
   manifest.training["data"] = dataset.name;
   manifest.training["sequences"] = absl::StrCat(plan.train.size());

@@ -85,7 +85,7 @@ TrainingBatch MakeBatch(const Manifest& manifest, const Dataset& dataset,
   std::vector<int64_t> classes, single_rows;
   for (const Example& example : examples) {
     const SynthesisWindow window = MakeWindow(dataset, example);
-    const Standardisation frame = WindowFrame(dataset.skeleton, window);
+    const Standardisation frame = WindowFrame(dataset.skeleton, window, OriginOf(manifest));
     items.push_back(network::StandardItem(frame, window));
     targets.push_back(frame.Apply(example.target));
     followers.push_back(frame.Apply(example.sequence.pair.follower.positions));

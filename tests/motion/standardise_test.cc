@@ -74,6 +74,22 @@ TEST_P(AnyYaw, KeepsTheDistanceBetweenTheTwo) {
   }
 }
 
+TEST_P(AnyYaw, FirstFrameOriginLeavesWhatStandsStillStill) {
+  std::vector<Vec3> leader = Leader(GetParam());
+  for (std::size_t i = 0; i < leader.size(); ++i) {
+    leader[i].x += 0.02f * static_cast<float>(i / kJoints);  // walks
+  }
+  const Standardisation frame(SbuSkeleton(), leader, YawDirection::kRemove,
+                              StandardOrigin::kFirstFrame);
+  const std::vector<Vec3> standard = frame.Apply(leader);
+  EXPECT_EQ(standard[kTorso], (Vec3{0, 0, 0}));
+  const std::size_t last = standard.size() - kJoints;
+  EXPECT_NEAR(Norm(standard[last + kTorso]), Distance(leader[last + kTorso], leader[kTorso]), 1e-5);
+  const std::vector<Vec3> still(leader.size(), Vec3{5, 1, 2});
+  for (const Vec3& point : frame.Apply(still)) EXPECT_EQ(point, frame.Apply(still.front()));
+  ExpectNear(frame.Invert(standard), leader, 1e-5f);
+}
+
 TEST(Standardisation, OneYawServesAllFrames) {
   // The hips turn during the clip; only the first frame's are brought to +x.
   const std::vector<Vec3> leader = Leader(0);

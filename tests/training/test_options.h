@@ -50,6 +50,7 @@ inline Manifest ManifestFor(const TrainingOptions& options, const Dataset& datas
   manifest.model.window_frames = dataset.LongestFrameCount();
   manifest.model.accepts_follower_start = options.generator.follower_start;
   manifest.generator = options.generator;
+  manifest.standardisation = options.standardisation;
   return manifest;
 }
 
