@@ -42,11 +42,14 @@ LAYERS = (
           libraries=("torch",)),
     Layer("training", ("model/training/*",),
           sees=TORCH_FREE_MODEL + ("network", "torch engine"), libraries=("torch",)),
-    Layer("torch evaluation", ("model/evaluation/*torch*",), sees=WHOLE_MODEL + ("evaluation",),
+    # The headers are the torch-free layer's.
+    Layer("torch evaluation", ("model/evaluation/judge/*.cc",), sees=WHOLE_MODEL + ("evaluation",),
           libraries=("torch",)),
-    Layer("evaluation program", ("model/evaluation/eval_main.cc",),
-          sees=TORCH_FREE_MODEL + ("evaluation", "torch evaluation", "torch engine")),
-    Layer("evaluation", ("model/evaluation/*",), sees=TORCH_FREE_MODEL + ("torch evaluation",)),
+    Layer("augmentation experiment", ("model/evaluation/augmentation/*",),
+          sees=TORCH_FREE_MODEL + ("evaluation", "training")),
+    Layer("evaluation program", ("model/evaluation/eval_main.cc", "model/evaluation/commands/*"),
+          sees=TORCH_FREE_MODEL + ("evaluation", "augmentation experiment", "torch engine")),
+    Layer("evaluation", ("model/evaluation/*",), sees=TORCH_FREE_MODEL),
     # The programs around it.
     Layer("server main", ("server/main.cc",),
           sees=("server", "motion", "engine", "checkpoint", "embedded checkpoints", "torch engine"),

@@ -3,7 +3,8 @@
 # at a time, and with each that it leaves off. Judged on validation subjects: a run leaves out one
 # subject altogether and validates on another; the left-out one is never looked at.
 #   scripts/measure_augmentations.sh BIN DATA OUT     BIN: build/release/bin; DATA: the SBU folder
-# Without the discriminator, which makes it three times as fast. Killed, it goes on where it was.
+# Without the discriminator and with half the epochs, which makes it four times as fast: for
+# comparison with one another alone. Killed, it goes on where it was.
 set -euo pipefail
 
 readonly bin_dir="$1" data="$2" out="$3"
@@ -17,8 +18,8 @@ train() { # NAME [SETTING...]
   for pair in "${pairs[@]}"; do
     read -r left_out validated <<<"${pair}"
     "${bin_dir}/duet-train" --data "${data}" --out "${out}/${name}" --config without_discriminator \
-      --protocol loso --fold "${left_out}" --set "validation.subjects=[\"${validated}\"]" \
-      "${settings[@]}" >/dev/null
+      --protocol loso --fold "${left_out}" --set epochs=50 \
+      --set "validation.subjects=[\"${validated}\"]" "${settings[@]}" >/dev/null
   done
   echo "${name}: trained"
 }

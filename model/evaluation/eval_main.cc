@@ -14,6 +14,7 @@ int main(int argc, char** argv) {
   duet::AddAugmentationCommand(&app, &chosen);
   duet::AddLatentCommand(&app, &chosen);
   duet::AddCurvesCommand(&app, &chosen);
+  duet::AddValidationCommand(&app, &chosen);
   duet::AddReportCommand(&app, &chosen);
   CLI11_PARSE(app, argc, argv);
   duet::SetTorchThreads(1);

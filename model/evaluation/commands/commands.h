@@ -17,6 +17,7 @@ void AddSweepCommand(CLI::App* app, ChosenCommand* chosen);         // label wei
 void AddAugmentationCommand(CLI::App* app, ChosenCommand* chosen);  // the paper's Table 6
 void AddLatentCommand(CLI::App* app, ChosenCommand* chosen);        // Figures 6 and 7
 void AddCurvesCommand(CLI::App* app, ChosenCommand* chosen);        // training curves
+void AddValidationCommand(CLI::App* app, ChosenCommand* chosen);    // settings on held-back data
 void AddReportCommand(CLI::App* app, ChosenCommand* chosen);        // one page of all sections
 
 }  // namespace duet
