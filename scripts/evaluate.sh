@@ -1,0 +1,74 @@
+#!/usr/bin/env bash
+# Everything that docs/results shows, with one command: trains what is not trained yet, measures it
+# and makes the report. Killed, it goes on where it was. Hours on two cores.
+#   scripts/evaluate.sh BIN DATA RUNS RESULTS REPORT
+#     BIN: build/release/bin   DATA: the SBU folder   RUNS, RESULTS, REPORT: folders to write
+# The ablation trains for half the epochs, the full method among its rows too.
+# FOLDS="s01 s02" restricts the ablation to some folds; the default is every subject.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+readonly bin="$1" data="$2" runs="$3" results="$4" report="$5"
+readonly ablations=(without_discriminator without_embedding without_bone with_paper_frame
+  with_continuity with_path_length without_fc)
+readonly methods=class_mean,frozen_first_frame,nearest_neighbour,hmm,kzbh12,hk14,hfkb15
+readonly quality=velocity_error,bone_length_drift,jitter,skating_ratio,foot_slide_cm
+readonly touch=penetration_frequency,penetration_depth_m
+readonly judged=accuracy,fid,diversity
+readonly placed=afd,afd_squared,afd_m,afd_squared_m,root_aligned_afd,root_aligned_afd_m
+export OMP_NUM_THREADS=1
+
+readonly ablation_epochs=50
+
+ablate() { # CONFIG [FOLD...]
+  local config="$1" fold
+  local command=("${bin}/duet-train" --data "${data}" --out "${runs}/ablation/${config}"
+    --config "${config}" --set "epochs=${ablation_epochs}" --protocol loso)
+  shift
+  (($#)) || "${command[@]}"
+  for fold in "$@"; do "${command[@]}" --fold "${fold}"; done
+}
+
+train() {
+  local config folds
+  read -ra folds <<<"${FOLDS:-}"
+  for config in default mshl22; do
+    "${bin}/duet-train" --data "${data}" --out "${runs}/${config}" --config "${config}" \
+      --protocol loso
+  done
+  for config in default "${ablations[@]}"; do ablate "${config}" "${folds[@]}"; done
+  "${bin}/duet-train" --data "${data}" --out "${runs}/half" --protocol half --seeds 1,2,3,4,5
+  scripts/measure_augmentations.sh "${bin}" "${data}" "${runs}/augmentations"
+  scripts/augmentation_set.sh "${bin}" "${runs}/half/half-1" "${data}" "${runs}/set-1"
+}
+
+measure() {
+  local config named=("full=${runs}/ablation/default") compared=()
+  "${bin}/duet-eval" folds --data "${data}" --out "${results}" --id 10_methods \
+    --title "Methods: leave one subject out" --baselines "${methods}" --printed afd,fid \
+    --runs "ours=${runs}/default" --runs "mshl22=${runs}/mshl22" \
+    --metrics "${placed},${quality},${touch},${judged}"
+  "${bin}/duet-eval" folds --data "${data}" --out "${results}" --id 12_as_served --as_served \
+    --title "The same model as a server answers" --baselines class_mean,frozen_first_frame \
+    --runs "ours=${runs}/default" --metrics "afd,afd_squared,${quality},${touch}"
+  for config in "${ablations[@]}"; do named+=("${config}=${runs}/ablation/${config}"); done
+  "${bin}/duet-eval" folds --data "${data}" --out "${results}" --id 20_ablation \
+    --title "Ablation (Tables 4 and 5)" --starts none,pose --baselines class_mean \
+    ${FOLDS:+--subjects "${FOLDS// /,}"} "${named[@]/#/--runs=}" \
+    --metrics "afd,afd_squared,root_aligned_afd,${quality},accuracy,fid"
+  for config in "${runs}"/augmentations/*; do
+    compared+=("$(basename "${config}")=${config}")
+  done
+  "${bin}/duet-eval" validation --runs "${compared[@]}" --out "${results}" --id 22_augmentations \
+    --title "Augmentations one by one, on validation subjects"
+  "${bin}/duet-eval" sweep --data "${data}" --runs "ours=${runs}/default" --out "${results}"
+  "${bin}/duet-eval" augmentation --data "${data}" --runs "${runs}/half" \
+    --synthetic "${runs}/set-1" --repeats 2 --out "${results}"
+  "${bin}/duet-eval" latent --data "${data}" --runs "ours=${runs}/default" \
+    --runs "mshl22=${runs}/mshl22" --out "${results}"
+  "${bin}/duet-eval" curves --run "${runs}"/default/s* --out "${results}"
+}
+
+train
+measure
+"${bin}/duet-eval" report --results "${results}" --out "${report}"
