@@ -68,12 +68,24 @@ class ClientServerTest(unittest.TestCase):
     def test_models_are_listed(self):
         result = tools.duet("models", "--server", self.server.address, "--json")
         self.assertEqual(result.returncode, 0, result.stderr)
-        (model,) = json.loads(result.stdout)["models"]
-        self.assertTrue(model["is_default"])
-        self.assertEqual(set(model["interaction_classes"]), set(tools.CLASSES))
-        self.assertEqual(len(model["joint_names"]), JOINTS)
+        models = {model["name"]: model for model in json.loads(result.stdout)["models"]}
+        self.assertEqual(set(models), {"sbu", "k3hi"})
+        self.assertTrue(models["sbu"]["is_default"])
+        self.assertFalse(models["k3hi"].get("is_default", False))
+        self.assertEqual(set(models["sbu"]["interaction_classes"]), set(tools.CLASSES))
+        self.assertIn("point", models["k3hi"]["interaction_classes"])
+        for model in models.values():
+            self.assertEqual(len(model["joint_names"]), JOINTS)
         for_people = tools.duet("models", "--server", self.server.address)
-        self.assertIn(f"{model['name']}@{model['version']}, default", for_people.stdout)
+        self.assertIn(f"sbu@{models['sbu']['version']}, default", for_people.stdout)
+        self.assertIn(f"k3hi@{models['k3hi']['version']}", for_people.stdout)
+
+    def test_the_second_model_answers_by_name(self):
+        out = self.out("k3hi.json")
+        self.good(tools.sample("punch"), "point=1", out=out, more=("--model", "k3hi"))
+        pair = Pair(out)
+        self.assertEqual(len(pair.follower), bvh_frames(tools.sample("punch")))
+        self.check_plausible(pair, "point")
 
     def test_every_class_answers_its_sample(self):
         for name in tools.CLASSES:

@@ -63,6 +63,18 @@ TEST(TorchSynthesizerTest, EmbeddedModelIsTheSixClassesOfSbu) {
   EXPECT_TRUE(model->description().accepts_follower_start);
 }
 
+TEST(TorchSynthesizerTest, K3hiIsEmbeddedBesideIt) {
+  const auto all = LoadEmbeddedSynthesizers();
+  ASSERT_THAT(all, IsOk());
+  ASSERT_EQ(all->size(), 2u);
+  const ModelDescription& model = all->back()->description();
+  EXPECT_EQ(model.name, "k3hi");
+  EXPECT_EQ(model.frame_rate_hz, 30);
+  EXPECT_THAT(model.classes, ::testing::ElementsAre("approach", "depart", "exchange_object", "kick",
+                                                    "point", "punch", "push", "shake_hands"));
+  EXPECT_EQ(RunOne(*all->back(), MakeWindow(*all->back(), 60, 4)).size(), 60u * 15);
+}
+
 TEST(TorchSynthesizerTest, BatchOfDifferentLengthsEqualsSingle) {
   const auto model = Embedded();
   const std::vector<SynthesisWindow> windows = {MakeWindow(*model, 2, 1), MakeWindow(*model, 45, 0),

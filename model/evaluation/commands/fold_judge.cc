@@ -7,6 +7,12 @@
 #include "absl/strings/str_format.h"
 
 namespace duet {
+namespace {
+
+// One network's verdict on a person it has never seen depends on its seed.
+constexpr int64_t kMembers = 4;
+
+}  // namespace
 
 std::vector<ScoredMotion> CapturedFollowers(const Dataset& dataset,
                                             const std::vector<int>& sequences) {
@@ -21,9 +27,11 @@ absl::StatusOr<MotionClassifier> TrainFoldJudge(const Dataset& dataset,
                                                 const std::string& subject) {
   absl::StatusOr<Split> split = LeaveSubjectOut(dataset, subject);
   if (!split.ok()) return split.status();
+  ClassifierOptions options;
+  options.members = kMembers;
   const auto start = std::chrono::steady_clock::now();
   absl::StatusOr<MotionClassifier> judge =
-      MotionClassifier::Train(dataset, CapturedFollowers(dataset, split->train), {});
+      MotionClassifier::Train(dataset, CapturedFollowers(dataset, split->train), options);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   std::cerr << absl::StrFormat("judge without %s: %d motions, %.1f s\n", subject,

@@ -7,7 +7,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "model/checkpoint/sha256.h"
-#include "model/engine/window_frame.h"
+#include "model/evaluation/judge/judge_input.h"
 #include "model/network/batch.h"
 #include "model/network/discriminator.h"
 #include "model/training/augment.h"
@@ -16,7 +16,7 @@
 namespace duet {
 
 struct MotionClassifier::Model {
-  network::Discriminator network{nullptr};
+  std::vector<network::Discriminator> members;
   std::string hash;
 };
 
@@ -40,27 +40,19 @@ Sequence WithFollower(const Dataset& dataset, const ScoredMotion& motion) {
   return sequence;
 }
 
-// The follower where its leader expects it: nothing of the follower's own decides the frame.
-std::vector<Vec3> StandardFollower(const Dataset& dataset, const Sequence& sequence) {
-  SynthesisWindow window;
-  window.leader = sequence.pair.leader.positions;
-  window.partner_direction = sequence.partner_direction;
-  return WindowFrame(dataset.skeleton, window).Apply(sequence.pair.follower.positions);
-}
-
 MotionBatch MakeMotionBatch(const Dataset& dataset, const std::vector<Sequence>& sequences) {
-  const int joints = dataset.skeleton.joint_count();
-  std::vector<std::vector<Vec3>> followers;
+  const int triples = kJudgeParts * dataset.skeleton.joint_count();
+  std::vector<std::vector<Vec3>> inputs;
   std::vector<int64_t> lengths, classes;
   for (const Sequence& sequence : sequences) {
-    followers.push_back(StandardFollower(dataset, sequence));
+    inputs.push_back(JudgeInput(dataset.skeleton, sequence));
     lengths.push_back(sequence.pair.follower.frame_count());
     classes.push_back(sequence.interaction_class);
   }
   std::vector<const std::vector<Vec3>*> pointers;
-  for (const std::vector<Vec3>& follower : followers) pointers.push_back(&follower);
+  for (const std::vector<Vec3>& input : inputs) pointers.push_back(&input);
   return {
-      network::PadPositions(pointers, joints, *std::max_element(lengths.begin(), lengths.end())),
+      network::PadPositions(pointers, triples, *std::max_element(lengths.begin(), lengths.end())),
       torch::tensor(lengths), torch::tensor(classes)};
 }
 
@@ -77,13 +69,35 @@ std::vector<MotionBatch> TestBatches(const Dataset& dataset,
   return batches;
 }
 
-// How people differ, and what a short capture leaves out.
+// What a judge of unseen people must not go by: who is in the clip, and when it starts and ends.
+// (kBodyNoise and label smoothing were chosen on held-back training subjects, like the defaults of
+// ClassifierOptions.)
+constexpr double kBodyNoise = 0.05;  // metres, standard deviation, one offset a joint
+constexpr double kLabelSmoothing = 0.1;
+
 TrainingOptions::Augmentation Variations() {
   TrainingOptions::Augmentation augmentation;
   augmentation.body_scale = 0.1;
-  augmentation.leader_yaw = 0;
   augmentation.crop = 0.3;
   return augmentation;
+}
+
+Vec3 RandomOffset(double deviation, EpochRandom* random) {
+  const auto x = static_cast<float>(random->Normal(deviation));
+  const auto y = static_cast<float>(random->Normal(deviation));
+  const auto z = static_cast<float>(random->Normal(deviation));
+  return {x, y, z};
+}
+
+Sequence Vary(const Dataset& dataset, const Sequence& sequence, EpochRandom* random) {
+  Sequence varied = Augment(dataset, sequence, Variations(), random);
+  std::vector<Vec3> offsets;
+  for (int j = 0; j < dataset.skeleton.joint_count(); ++j) {
+    offsets.push_back(RandomOffset(kBodyNoise, random));
+  }
+  std::vector<Vec3>& positions = varied.pair.follower.positions;
+  for (size_t i = 0; i < positions.size(); ++i) positions[i] += offsets[i % offsets.size()];
+  return varied;
 }
 
 TrainingOptions::Optimiser OptimiserSettings(const ClassifierOptions& options) {
@@ -101,7 +115,7 @@ std::vector<MotionBatch> EpochBatches(const Dataset& dataset,
   EpochRandom random(options.seed, epoch);
   std::vector<Sequence> varied;
   for (const Sequence& sequence : sequences) {
-    varied.push_back(Augment(dataset, sequence, Variations(), &random));
+    varied.push_back(Vary(dataset, sequence, &random));
   }
   for (size_t i = varied.size(); i > 1; --i) {
     std::swap(varied[i - 1], varied[static_cast<size_t>(random.Below(static_cast<int64_t>(i)))]);
@@ -116,28 +130,40 @@ std::vector<MotionBatch> EpochBatches(const Dataset& dataset,
   return batches;
 }
 
-void TrainNetwork(const Dataset& dataset, const std::vector<Sequence>& sequences,
-                  const ClassifierOptions& options, Discriminator* network) {
+Discriminator TrainNetwork(const Dataset& dataset, const std::vector<Sequence>& sequences,
+                           const ClassifierOptions& options) {
+  network::DiscriminatorOptions sizes;
+  sizes.input = 3 * kJudgeParts * dataset.skeleton.joint_count();
+  sizes.window_frames = dataset.LongestFrameCount();
+  sizes.hidden = options.hidden;
+  sizes.outputs = dataset.class_count();
+  torch::manual_seed(options.seed);
+  Discriminator network(sizes);
+  network->set_dropout(options.dropout);
   const int64_t count = static_cast<int64_t>(sequences.size());
   const int64_t steps = options.epochs * ((count + options.batch - 1) / options.batch);
-  Optimiser optimiser(OptimiserSettings(options), (*network)->parameters(), steps);
+  Optimiser optimiser(OptimiserSettings(options), network->parameters(), steps);
+  const auto smoothed =
+      torch::nn::functional::CrossEntropyFuncOptions().label_smoothing(kLabelSmoothing);
   int64_t step = 0;
-  (*network)->train();
   for (int64_t epoch = 0; epoch < options.epochs; ++epoch) {
     for (const MotionBatch& batch : EpochBatches(dataset, sequences, options, epoch)) {
-      torch::cross_entropy_loss((*network)->forward(batch.motion, batch.lengths), batch.classes)
-          .backward();
+      const torch::Tensor logits = network->forward(batch.motion, batch.lengths);
+      torch::nn::functional::cross_entropy(logits, batch.classes, smoothed).backward();
       optimiser.Step(step++);
     }
   }
-  (*network)->eval();
+  network->eval();
+  return network;
 }
 
-std::string HashOf(const Discriminator& network) {
+std::string HashOf(const std::vector<Discriminator>& members) {
   std::string bytes;
-  for (const torch::Tensor& parameter : network->parameters()) {
-    const torch::Tensor values = parameter.detach().contiguous();
-    bytes.append(reinterpret_cast<const char*>(values.data_ptr<float>()), values.nbytes());
+  for (const Discriminator& network : members) {
+    for (const torch::Tensor& parameter : network->parameters()) {
+      const torch::Tensor values = parameter.detach().contiguous();
+      bytes.append(reinterpret_cast<const char*>(values.data_ptr<float>()), values.nbytes());
+    }
   }
   return Sha256Hex(bytes);
 }
@@ -171,19 +197,15 @@ absl::StatusOr<MotionClassifier> MotionClassifier::Train(const Dataset& dataset,
                                                          const ClassifierOptions& options) {
   absl::Status status = CheckMotions(dataset, motions);
   if (!status.ok()) return status;
-  network::DiscriminatorOptions sizes;
-  sizes.input = 3 * dataset.skeleton.joint_count();
-  sizes.window_frames = dataset.LongestFrameCount();
-  sizes.hidden = options.hidden;
-  sizes.outputs = dataset.class_count();
   std::vector<Sequence> sequences;
   for (const ScoredMotion& motion : motions) sequences.push_back(WithFollower(dataset, motion));
-  torch::manual_seed(options.seed);
   auto model = std::make_shared<Model>();
-  model->network = Discriminator(sizes);
-  model->network->set_dropout(options.dropout);
-  TrainNetwork(dataset, sequences, options, &model->network);
-  model->hash = HashOf(model->network);
+  for (int64_t m = 0; m < options.members; ++m) {
+    ClassifierOptions member = options;
+    member.seed = options.seed * static_cast<uint64_t>(options.members) + static_cast<uint64_t>(m);
+    model->members.push_back(TrainNetwork(dataset, sequences, member));
+  }
+  model->hash = HashOf(model->members);
   return MotionClassifier(std::move(model));
 }
 
@@ -192,7 +214,11 @@ std::vector<std::vector<float>> MotionClassifier::Probabilities(
   torch::NoGradGuard no_grad;
   std::vector<std::vector<float>> rows;
   for (const MotionBatch& batch : TestBatches(dataset, motions)) {
-    AppendRows(model_->network->forward(batch.motion, batch.lengths).softmax(1), &rows);
+    std::vector<torch::Tensor> probabilities;
+    for (Discriminator& network : model_->members) {
+      probabilities.push_back(network->forward(batch.motion, batch.lengths).softmax(1));
+    }
+    AppendRows(torch::stack(probabilities).mean(0), &rows);
   }
   return rows;
 }
@@ -202,7 +228,11 @@ FeatureSet MotionClassifier::Features(const Dataset& dataset,
   torch::NoGradGuard no_grad;
   FeatureSet rows;
   for (const MotionBatch& batch : TestBatches(dataset, motions)) {
-    AppendRows(model_->network->Features(batch.motion, batch.lengths), &rows);
+    std::vector<torch::Tensor> features;
+    for (Discriminator& network : model_->members) {
+      features.push_back(network->Features(batch.motion, batch.lengths));
+    }
+    AppendRows(torch::cat(features, 1), &rows);
   }
   return rows;
 }

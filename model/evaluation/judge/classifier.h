@@ -14,8 +14,9 @@
 namespace duet {
 
 struct ClassifierOptions {
-  int64_t hidden = 64;  // LSTM units of each direction, in both layers
-  int64_t epochs = 60;
+  int64_t members = 1;  // networks, each from a seed of its own, whose probabilities are averaged
+  int64_t hidden = 32;  // LSTM units of each direction, in both layers
+  int64_t epochs = 20;
   int64_t batch = 16;
   double learning_rate = 2e-3;
   double weight_decay = 0.01;
@@ -25,7 +26,7 @@ struct ClassifierOptions {
 
 // A classifier of followers' motion, shaped like the discriminator with one output a class: the
 // judge of accuracy, FID and diversity, and the classifier of the paper's Table 6. It sees the
-// follower alone, in the standard frame of its leader.
+// follower alone, in the standard frame of its leader (judge_input.h).
 //
 // Source:  paper sections 3.3 and 4 (the paper does not describe its own extractor).
 // Threads: the const functions are safe to call concurrently.
@@ -41,10 +42,11 @@ class MotionClassifier {
   // Shapes: returns [motions][classes]; every row sums to 1.
   std::vector<std::vector<float>> Probabilities(const Dataset& dataset,
                                                 const std::vector<ScoredMotion>& motions) const;
-  // The second layer's output averaged over the frames. Shapes: returns [motions][2 hidden].
+  // The second layer's output averaged over the frames, the members' side by side. Shapes: returns
+  // [motions][members * 2 hidden].
   FeatureSet Features(const Dataset& dataset, const std::vector<ScoredMotion>& motions) const;
 
-  // SHA-256 of the weights, in hexadecimal: which extractor a figure was measured with.
+  // SHA-256 of all weights, in hexadecimal: which extractor a figure was measured with.
   const std::string& hash() const;
 
  private:

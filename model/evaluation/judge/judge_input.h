@@ -1,0 +1,23 @@
+#ifndef DUET_MODEL_EVALUATION_JUDGE_JUDGE_INPUT_H_
+#define DUET_MODEL_EVALUATION_JUDGE_JUDGE_INPUT_H_
+
+#include <vector>
+
+#include "model/dataset/dataset.h"
+
+namespace duet {
+
+// Values a frame, in triples for each joint, of what a judge sees: JudgeInput's middle dimension.
+inline constexpr int kJudgeParts = 3;
+
+// What a judge is shown of a sequence's follower: where each joint is from the leader's root
+// (standard frame, metres), where it is about the follower's own root, and its velocity in the
+// world (turned to the standard frame, m/s). From a hundred clips a network does not find the
+// second and third in the first by itself: with them a judge of unseen people errs a fifth less
+// often. Nothing of the follower's own decides the frame. Shapes: returns [frames, kJudgeParts,
+// joints].
+std::vector<Vec3> JudgeInput(const Skeleton& skeleton, const Sequence& sequence);
+
+}  // namespace duet
+
+#endif  // DUET_MODEL_EVALUATION_JUDGE_JUDGE_INPUT_H_
