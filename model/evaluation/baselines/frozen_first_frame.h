@@ -8,8 +8,7 @@
 
 namespace duet {
 
-// The trivial row of methods that are told the follower's first pose: that pose, held still in the
-// standard frame (so it moves along with the leader's root, as everything there does).
+// The trivial row of methods that are told the follower's first pose: that pose, held still.
 class FrozenFirstFrame : public Method {
  public:
   std::string name() const override { return "frozen_first_frame"; }

@@ -12,7 +12,7 @@ namespace duet {
 // One row a frame (or a sample), one column a value.
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-// A captured pair in the frame that every baseline works in, which is the network's: the leader's
+// A captured pair in the frame that every baseline works in, which is the paper's: the leader's
 // root at the origin in every frame, one constant yaw; -z towards the partner where the capture's
 // setup tells its direction, else where the leader's hips face.
 //
