@@ -71,6 +71,14 @@ TEST(FoldScorer, NamesASubjectThatIsNotThere) {
   EXPECT_THAT(std::string(status.message()), HasSubstr("zoe"));
 }
 
+TEST(FoldSubjects, AreThoseAskedForOrElseEverybody) {
+  Dataset dataset = MadeUpPairs(3);
+  EXPECT_THAT(*FoldSubjects(dataset, {"b"}), ElementsAre("b"));
+  EXPECT_THAT(*FoldSubjects(dataset, {}), ElementsAre("a", "b", "c"));
+  for (Sequence& sequence : dataset.sequences) sequence.subjects.clear();
+  EXPECT_TRUE(absl::IsInvalidArgument(FoldSubjects(dataset, {}).status()));
+}
+
 TEST(ParseRuns, TakesAFolderWithOrWithoutAName) {
   EXPECT_EQ(ParseRuns("ours=runs/x")->name, "ours");
   EXPECT_EQ(ParseRuns("ours=runs/x")->folder, "runs/x");

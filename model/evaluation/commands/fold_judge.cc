@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <iostream>
 
+#include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 
 namespace duet {
@@ -13,6 +14,14 @@ namespace {
 constexpr int64_t kMembers = 4;
 
 }  // namespace
+
+absl::StatusOr<std::vector<std::string>> FoldSubjects(const Dataset& dataset,
+                                                      const std::vector<std::string>& asked) {
+  std::vector<std::string> subjects = asked.empty() ? dataset.Subjects() : asked;
+  if (!subjects.empty()) return subjects;
+  return absl::InvalidArgumentError(
+      absl::StrCat(dataset.name, ": no subjects, wanted sequences that name theirs"));
+}
 
 std::vector<ScoredMotion> CapturedFollowers(const Dataset& dataset,
                                             const std::vector<int>& sequences) {

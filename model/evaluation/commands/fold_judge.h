@@ -10,6 +10,11 @@
 
 namespace duet {
 
+// Who is left out in turn: those asked for, or else every subject of the data set. Errors:
+// INVALID_ARGUMENT for a data set that names none.
+absl::StatusOr<std::vector<std::string>> FoldSubjects(const Dataset& dataset,
+                                                      const std::vector<std::string>& asked);
+
 // The captured followers of sequences of the data set, as a judge is trained on them.
 std::vector<ScoredMotion> CapturedFollowers(const Dataset& dataset,
                                             const std::vector<int>& sequences);

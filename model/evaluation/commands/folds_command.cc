@@ -19,6 +19,9 @@
 namespace duet {
 namespace {
 
+// Of --baselines: the models' rows alone.
+constexpr char kNoBaseline[] = "none";
+
 struct Arguments {
   std::string data;
   ModelChoice models;
@@ -55,17 +58,17 @@ absl::Status AddModel(const FoldScorer& scorer, const FoldModel& model,
 }
 
 absl::StatusOr<std::vector<MethodFigures>> Rows(const FoldScorer& scorer,
+                                                const std::vector<FoldModel>& models,
                                                 const Arguments& arguments) {
-  absl::StatusOr<std::vector<FoldModel>> models = OpenModels(arguments.models);
-  if (!models.ok()) return models.status();
   std::vector<MethodFigures> rows;
   for (const std::string& name : arguments.baselines) {
+    if (name == kNoBaseline) continue;
     absl::StatusOr<MethodFigures> figures =
         scorer.Score(name, [&](const std::string&) { return MakeBaseline(name); });
     if (!figures.ok()) return figures.status();
     rows.push_back(*std::move(figures));
   }
-  for (const FoldModel& model : *models) {
+  for (const FoldModel& model : models) {
     absl::Status status = AddModel(scorer, model, arguments.starts, &rows);
     if (!status.ok()) return status;
   }
@@ -151,18 +154,16 @@ bool NeedsJudge(const std::vector<std::string>& metrics) {
 absl::Status Run(const Arguments& arguments) {
   absl::StatusOr<Dataset> dataset = ReadDataset(arguments.data);
   if (!dataset.ok()) return dataset.status();
-  const std::vector<std::string> subjects =
-      arguments.subjects.empty() ? dataset->Subjects() : arguments.subjects;
-  if (subjects.empty()) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(arguments.data, ": no subjects, wanted sequences that name theirs"));
-  }
+  absl::StatusOr<std::vector<std::string>> subjects = FoldSubjects(*dataset, arguments.subjects);
+  if (!subjects.ok()) return subjects.status();
+  absl::StatusOr<std::vector<FoldModel>> models = OpenModels(arguments.models);
+  if (!models.ok()) return models.status();
   absl::StatusOr<FoldScorer> scorer =
-      FoldScorer::Create(*dataset, subjects, NeedsJudge(arguments.metrics));
+      FoldScorer::Create(*dataset, *subjects, NeedsJudge(arguments.metrics));
   if (!scorer.ok()) return scorer.status();
-  absl::StatusOr<std::vector<MethodFigures>> rows = Rows(*scorer, arguments);
+  absl::StatusOr<std::vector<MethodFigures>> rows = Rows(*scorer, *models, arguments);
   if (!rows.ok()) return rows.status();
-  ResultSection section = MakeSection(*dataset, subjects, arguments, *scorer);
+  ResultSection section = MakeSection(*dataset, *subjects, arguments, *scorer);
   section.tables = Tables(*dataset, arguments, *rows);
   for (const std::string& text : section.text) std::cout << text << "\n";
   for (const Table& table : section.tables) std::cout << "\n" << ToPlainText(table);
@@ -204,8 +205,11 @@ void AddFoldsCommand(CLI::App* app, ChosenCommand* chosen) {
       ->delimiter(',')
       ->check(CLI::IsMember(StartNames()))
       ->capture_default_str();
-  command->add_option("--baselines", arguments->baselines, "rows beside it")
+  std::vector<std::string> baselines = BaselineNames();
+  baselines.push_back(kNoBaseline);
+  command->add_option("--baselines", arguments->baselines, "rows beside it, or none")
       ->delimiter(',')
+      ->check(CLI::IsMember(baselines))
       ->capture_default_str();
   command->add_option("--subjects", arguments->subjects, "folds; default: every subject")
       ->delimiter(',');

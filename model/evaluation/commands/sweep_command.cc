@@ -62,11 +62,17 @@ absl::Status SweepLeader(const Dataset& dataset, const SweepFold& fold, int inde
 }
 
 absl::StatusOr<SweepFold> OpenFold(const Dataset& dataset, const FoldModel& model,
-                                   const std::string& subject) {
+                                   const std::string& subject,
+                                   const std::vector<std::string>& starts) {
   absl::StatusOr<Split> split = LeaveSubjectOut(dataset, subject);
   if (!split.ok()) return split.status();
   absl::StatusOr<std::shared_ptr<const Synthesizer>> synthesizer = model.load(subject);
   if (!synthesizer.ok()) return synthesizer.status();
+  for (const std::string& start : starts) {
+    absl::Status fits =
+        SynthesizerMethod(model.name, *synthesizer, ParseStart(start)).Train(dataset, split->train);
+    if (!fits.ok()) return fits;
+  }
   absl::StatusOr<MotionClassifier> judge = TrainFoldJudge(dataset, subject);
   if (!judge.ok()) return judge.status();
   return SweepFold{subject, split->test, *std::move(synthesizer), {*std::move(judge)}};
@@ -77,8 +83,6 @@ absl::StatusOr<std::vector<SweepCurve>> SweepFolds(const Dataset& dataset,
                                                    StartGiven start) {
   std::vector<SweepCurve> curves;
   for (const SweepFold& fold : folds) {
-    absl::Status fits = SynthesizerMethod("", fold.model, start).Train(dataset, {});
-    if (!fits.ok()) return fits;
     for (const int index : fold.test) {
       absl::Status status = SweepLeader(dataset, fold, index, start, &curves);
       if (!status.ok()) return status;
@@ -173,10 +177,11 @@ absl::Status Run(const Arguments& arguments) {
   absl::StatusOr<std::vector<FoldModel>> models = OpenModels(arguments.models);
   if (!models.ok()) return models.status();
   const FoldModel& model = models->front();
+  absl::StatusOr<std::vector<std::string>> subjects = FoldSubjects(*dataset, arguments.subjects);
+  if (!subjects.ok()) return subjects.status();
   std::vector<SweepFold> folds;
-  for (const std::string& subject :
-       arguments.subjects.empty() ? dataset->Subjects() : arguments.subjects) {
-    absl::StatusOr<SweepFold> fold = OpenFold(*dataset, model, subject);
+  for (const std::string& subject : *subjects) {
+    absl::StatusOr<SweepFold> fold = OpenFold(*dataset, model, subject, arguments.starts);
     if (!fold.ok()) return fold.status();
     folds.push_back(*std::move(fold));
   }

@@ -13,7 +13,7 @@ inline constexpr int kJudgeParts = 3;
 // What a judge is shown of a sequence's follower: where each joint is from the leader's root
 // (standard frame, metres), where it is about the follower's own root, and its velocity in the
 // world (turned to the standard frame, m/s). From a hundred clips a network does not find the
-// second and third in the first by itself: with them a judge of unseen people errs a fifth less
+// second and third in the first by itself: with them a judge of unseen people errs an eighth less
 // often. Nothing of the follower's own decides the frame. Shapes: returns [frames, kJudgeParts,
 // joints].
 std::vector<Vec3> JudgeInput(const Skeleton& skeleton, const Sequence& sequence);
