@@ -30,7 +30,7 @@ ablate() { # CONFIG [FOLD...]
 }
 
 train() {
-  local config folds
+  local config folds half
   read -ra folds <<<"${FOLDS:-}"
   for config in default mshl22; do
     "${bin}/duet-train" --data "${data}" --out "${runs}/${config}" --config "${config}" \
@@ -39,11 +39,14 @@ train() {
   for config in default "${ablations[@]}"; do ablate "${config}" "${folds[@]}"; done
   "${bin}/duet-train" --data "${data}" --out "${runs}/half" --protocol half --seeds 1,2,3,4,5
   scripts/measure_augmentations.sh "${bin}" "${data}" "${runs}/augmentations"
-  scripts/augmentation_set.sh "${bin}" "${runs}/half/half-1" "${data}" "${runs}/set-1"
+  for half in {1..5}; do
+    scripts/augmentation_set.sh "${bin}" "${runs}/half/half-${half}" "${data}" \
+      "${runs}/set-${half}"
+  done
 }
 
 measure() {
-  local config named=("full=${runs}/ablation/default") compared=()
+  local config half named=("full=${runs}/ablation/default") compared=() sets=()
   "${bin}/duet-eval" folds --data "${data}" --out "${results}" --id 10_methods \
     --title "Methods: leave one subject out" --baselines "${methods}" --printed afd,fid \
     --runs "ours=${runs}/default" --runs "mshl22=${runs}/mshl22" \
@@ -62,10 +65,11 @@ measure() {
   "${bin}/duet-eval" validation --runs "${compared[@]}" --out "${results}" --id 22_augmentations \
     --title "Augmentations one by one, on validation subjects"
   "${bin}/duet-eval" sweep --data "${data}" --runs "ours=${runs}/default" --out "${results}"
+  for half in {1..5}; do sets+=(--synthetic "${runs}/set-${half}"); done
   "${bin}/duet-eval" augmentation --data "${data}" --runs "${runs}/half" \
-    --synthetic "${runs}/set-1" --repeats 2 --out "${results}"
+    "${sets[@]}" --out "${results}"
   "${bin}/duet-eval" latent --data "${data}" --runs "ours=${runs}/default" \
-    --runs "mshl22=${runs}/mshl22" --out "${results}"
+    --runs "mshl22=${runs}/mshl22" --clips all --out "${results}"
   "${bin}/duet-eval" curves --run "${runs}"/default/s* --out "${results}"
 }
 
