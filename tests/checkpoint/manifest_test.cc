@@ -215,7 +215,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadField{"class_twice", "/classes", "[\"a\",\"a\"]", "classes: \"a\" is repeated"},
         BadField{"class_number", "/classes", "[1]", "classes: 1"},
         BadField{"other_standardisation", "/standardisation", "\"none\"",
-                 "standardisation: \"none\", wanted \"leader_root_and_yaw\" or \"leader_start_and_yaw\""},
+                 "standardisation: \"none\", wanted \"leader_root_and_yaw\" or "
+                 "\"leader_start_and_yaw\""},
         BadField{"joint_twice", "/skeleton/joint_names", "[\"torso\",\"torso\",\"right_hip\"]",
                  "joint_names: \"torso\" is repeated"},
         BadField{"no_joints", "/skeleton/joint_names", "[]", "unknown joint"},
