@@ -55,9 +55,11 @@ class ForeignClientTest(unittest.TestCase):
 
     def test_lists_models(self):
         models = self.stub.ListModels(synthesis_pb2.ListModelsRequest(), timeout=60).models
-        self.assertEqual([model.is_default for model in models], [True])
-        self.assertEqual(set(models[0].interaction_classes), set(tools.CLASSES))
-        self.assertEqual(len(models[0].bones), len(models[0].joint_names) - 1)
+        self.assertEqual([(model.name, model.is_default) for model in models],
+                         [("k3hi", False), ("sbu", True)])
+        self.assertEqual(set(models[1].interaction_classes), set(tools.CLASSES))
+        for model in models:
+            self.assertEqual(len(model.bones), len(model.joint_names) - 1)
 
     def test_synthesizes(self):
         request = self.request()

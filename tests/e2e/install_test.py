@@ -38,7 +38,7 @@ class InstallTest(unittest.TestCase):
             f"-DCMAKE_PREFIX_PATH={prefix}")
         run(CMAKE, "--build", build)
         with tools.running_server() as server:
-            self.assertRegex(run(build / "consumer", server.address), r"^sbu@\d+\n$")
+            self.assertRegex(run(build / "consumer", server.address), r"^k3hi@\d+\nsbu@\d+\n$")
 
     def test_the_library_is_usable_where_it_is_installed(self):
         prefix = fresh("whole")
