@@ -115,7 +115,8 @@ void AddFigures(const Dataset& dataset, const std::vector<SweepCurve>& curves, S
   for (int c = 0; c < dataset.class_count(); ++c) {
     const std::string& name = dataset.classes[static_cast<size_t>(c)];
     const LinePlot plot =
-        SweepPlot(absl::StrCat(name, ", ", told), dataset.classes, curves, kind, c);
+        SweepPlot(absl::StrCat(name, kind == SweepKind::kOwn ? " alone, " : " added, ", told),
+                  dataset.classes, curves, kind, c);
     const std::string caption =
         kind == SweepKind::kOwn
             ? absl::StrCat("Leaders of ", name, " answered with the weight of ", name, " alone, ",
