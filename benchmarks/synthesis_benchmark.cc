@@ -6,7 +6,7 @@
 #include <iostream>
 
 #include "model/engine/clip_synthesis.h"
-#include "model/engine/torch_synthesizer.h"
+#include "model/torch_engine/torch_synthesizer.h"
 
 namespace {
 

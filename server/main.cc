@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "model/engine/torch_synthesizer.h"
+#include "model/torch_engine/torch_synthesizer.h"
 #include "server/lifecycle/run_server.h"
 
 namespace {

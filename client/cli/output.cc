@@ -10,7 +10,7 @@
 #include "absl/strings/str_replace.h"
 #include "client/viewer/page.h"
 #include "model/formats/motion_file.h"
-#include "model/formats/text.h"
+#include "model/base/text.h"
 
 namespace duet::client {
 namespace {

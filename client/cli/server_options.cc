@@ -3,7 +3,7 @@
 #include <string>
 #include <utility>
 
-#include "model/formats/text.h"
+#include "model/base/text.h"
 
 namespace duet::client {
 namespace {

@@ -9,8 +9,8 @@
 #include "absl/strings/str_join.h"
 #include "absl/time/clock.h"
 #include "absl/time/time.h"
-#include "model/checkpoint/file_io.h"
-#include "model/checkpoint/sha256.h"
+#include "model/base/file_io.h"
+#include "model/base/sha256.h"
 
 namespace duet {
 namespace {

@@ -9,7 +9,7 @@
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "absl/time/time.h"
-#include "model/checkpoint/strict_json.h"
+#include "model/base/strict_json.h"
 
 namespace duet {
 namespace {

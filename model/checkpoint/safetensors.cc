@@ -17,7 +17,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
-#include "model/checkpoint/strict_json.h"
+#include "model/base/strict_json.h"
 
 namespace duet {
 namespace {

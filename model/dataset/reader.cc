@@ -9,8 +9,8 @@
 #include "model/dataset/dataset.h"
 #include "model/dataset/layout.h"
 #include "model/dataset/leader_side.h"
-#include "model/formats/sbu_text.h"
-#include "model/formats/text.h"
+#include "model/formats/flat/sbu_text.h"
+#include "model/base/text.h"
 
 namespace duet {
 namespace {

@@ -5,15 +5,15 @@
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
-#include "model/formats/bvh_document.h"
-#include "model/formats/bvh_export.h"
-#include "model/formats/bvh_import.h"
-#include "model/formats/csv.h"
-#include "model/formats/json_motion.h"
-#include "model/formats/npy.h"
-#include "model/formats/recorded_motion.h"
-#include "model/formats/sbu_text.h"
-#include "model/formats/text.h"
+#include "model/formats/bvh/bvh_document.h"
+#include "model/formats/bvh/bvh_export.h"
+#include "model/formats/bvh/bvh_import.h"
+#include "model/formats/flat/csv.h"
+#include "model/formats/flat/json_motion.h"
+#include "model/formats/flat/npy.h"
+#include "model/motion/recorded_motion.h"
+#include "model/formats/flat/sbu_text.h"
+#include "model/base/text.h"
 
 namespace duet {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "model/formats/joint_mapping.h"
+#include "model/retargeting/joint_mapping.h"
 #include "model/motion/clip.h"
 #include "model/motion/coordinates.h"
 #include "model/motion/skeleton.h"

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "absl/strings/str_cat.h"
-#include "model/checkpoint/strict_json.h"
+#include "model/base/strict_json.h"
 #include "model/training/named_configs.inc"
 
 namespace duet {

@@ -7,7 +7,7 @@
 
 #include "absl/status/status.h"
 #include "model/engine/synthesizer.h"
-#include "server/batching/clock.h"
+#include "server/common/clock.h"
 
 namespace duet {
 

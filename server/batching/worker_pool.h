@@ -6,8 +6,8 @@
 #include <thread>
 #include <vector>
 
-#include "server/batching/clock.h"
-#include "server/batching/mutex.h"
+#include "server/common/clock.h"
+#include "server/common/mutex.h"
 #include "server/batching/window_queue.h"
 #include "server/batching/window_scheduler.h"
 

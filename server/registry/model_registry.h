@@ -13,7 +13,7 @@
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
 #include "model/engine/synthesizer.h"
-#include "server/batching/mutex.h"
+#include "server/common/mutex.h"
 
 namespace duet {
 

@@ -7,7 +7,7 @@
 
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
-#include "server/batching/clock.h"
+#include "server/common/clock.h"
 
 namespace duet {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "server/batching/mutex.h"
+#include "server/common/mutex.h"
 #include "server/batching/window_scheduler.h"
 
 namespace duet {

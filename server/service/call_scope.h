@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "absl/status/status.h"
-#include "server/batching/clock.h"
+#include "server/common/clock.h"
 #include "server/metrics/call_record.h"
 #include "server/service/call_identity.h"
 

@@ -10,7 +10,7 @@
 #include "absl/status/status.h"
 #include "model/engine/clip_synthesis.h"
 #include "model/engine/synthesizer.h"
-#include "server/batching/mutex.h"
+#include "server/common/mutex.h"
 #include "server/batching/window_scheduler.h"
 
 namespace duet {

@@ -6,7 +6,7 @@
 
 #include "server/service/call_identity.h"
 #include "server/service/call_scope.h"
-#include "server/service/grpc_status.h"
+#include "server/common/grpc_status.h"
 #include "server/service/model_message.h"
 #include "server/service/refusals.h"
 #include "server/service/synthesize_reactor.h"

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "duet/v1/synthesis.grpc.pb.h"
-#include "server/batching/clock.h"
-#include "server/batching/mutex.h"
+#include "server/common/clock.h"
+#include "server/common/mutex.h"
 #include "server/batching/window_scheduler.h"
 #include "server/metrics/call_record.h"
 #include "server/registry/model_registry.h"

@@ -7,7 +7,7 @@
 #include "absl/strings/str_split.h"
 #include "absl/strings/string_view.h"
 #include "absl/time/time.h"
-#include "server/service/error_details.h"
+#include "server/common/error_details.h"
 
 namespace duet {
 namespace {

@@ -7,7 +7,7 @@
 #include "absl/status/status.h"
 #include "duet/v1/synthesis.pb.h"
 #include "model/engine/synthesizer.h"
-#include "server/batching/mutex.h"
+#include "server/common/mutex.h"
 #include "server/batching/window_scheduler.h"
 #include "server/service/admission.h"
 #include "server/service/call_scope.h"

@@ -3,7 +3,7 @@
 #include <chrono>
 #include <utility>
 
-#include "server/service/grpc_status.h"
+#include "server/common/grpc_status.h"
 #include "server/service/wire.h"
 
 namespace duet {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "absl/status/status.h"
-#include "server/service/error_details.h"
+#include "server/common/error_details.h"
 
 namespace duet {
 

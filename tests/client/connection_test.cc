@@ -5,7 +5,7 @@
 #include "client/internal/connection_impl.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "tests/client/fake_stub.h"
+#include "tests/client/support/fake_stub.h"
 #include "tests/support/status_matchers.h"
 
 namespace duet::client::internal {

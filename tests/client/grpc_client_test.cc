@@ -12,8 +12,8 @@
 #include "duet/rpc/v1/status.pb.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "tests/client/fake_service.h"
-#include "tests/client/fake_stub.h"
+#include "tests/client/support/fake_service.h"
+#include "tests/client/support/fake_stub.h"
 #include "tests/support/status_matchers.h"
 
 namespace duet::client::internal {

@@ -4,7 +4,7 @@
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "tests/client/fake_stub.h"
+#include "tests/client/support/fake_stub.h"
 #include "tests/support/status_matchers.h"
 
 namespace duet::client::internal {

@@ -4,8 +4,8 @@
 #include "client/client.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "tests/client/fake_service.h"
-#include "tests/client/test_certificate.h"
+#include "tests/client/support/fake_service.h"
+#include "tests/client/support/test_certificate.h"
 #include "tests/support/status_matchers.h"
 
 namespace duet::client::internal {

@@ -11,9 +11,9 @@
 #include "absl/strings/str_cat.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "model/formats/sbu_text.h"
-#include "model/formats/text.h"
-#include "tests/formats/test_motion.h"
+#include "model/formats/flat/sbu_text.h"
+#include "model/base/text.h"
+#include "tests/support/test_motion.h"
 
 namespace duet {
 namespace {

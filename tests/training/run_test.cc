@@ -4,7 +4,7 @@
 
 #include <sstream>
 
-#include "model/engine/torch_synthesizer.h"
+#include "model/torch_engine/torch_synthesizer.h"
 #include "model/training/run_log.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "model/evaluation/method.h"
+#include "model/evaluation/protocol/method.h"
 
 namespace duet {
 

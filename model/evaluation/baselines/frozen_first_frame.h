@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "model/evaluation/method.h"
+#include "model/evaluation/protocol/method.h"
 
 namespace duet {
 

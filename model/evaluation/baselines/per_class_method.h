@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "model/evaluation/baselines/motion_matrix.h"
-#include "model/evaluation/method.h"
+#include "model/evaluation/protocol/method.h"
 
 namespace duet {
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "model/checkpoint/sha256.h"
+#include "model/base/sha256.h"
 #include "model/evaluation/judge/judge_input.h"
 #include "model/network/batch.h"
 #include "model/network/discriminator.h"

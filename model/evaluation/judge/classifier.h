@@ -8,8 +8,8 @@
 
 #include "absl/status/statusor.h"
 #include "model/dataset/dataset.h"
-#include "model/evaluation/features.h"
-#include "model/evaluation/scores.h"
+#include "model/evaluation/metrics/features.h"
+#include "model/evaluation/metrics/scores.h"
 
 namespace duet {
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "model/evaluation/synthesizer_method.h"
+#include "model/evaluation/experiments/synthesizer_method.h"
 #include "model/network/generator.h"
 #include "model/network/parameters.h"
 #include "model/network/sequence.h"

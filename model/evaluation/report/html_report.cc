@@ -4,7 +4,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/string_view.h"
-#include "model/evaluation/markup.h"
+#include "model/evaluation/report/markup.h"
 #include "model/evaluation/report/html_table.h"
 
 // Linked in by duet_embed_file.

@@ -6,7 +6,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_replace.h"
-#include "model/evaluation/markup.h"
+#include "model/evaluation/report/markup.h"
 
 namespace duet {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "model/evaluation/table.h"
+#include "model/evaluation/report/table.h"
 
 namespace duet {
 

@@ -1,8 +1,8 @@
 #include "model/evaluation/report/markdown_report.h"
 
 #include "absl/strings/str_cat.h"
-#include "model/evaluation/markup.h"
-#include "model/evaluation/table.h"
+#include "model/evaluation/report/markup.h"
+#include "model/evaluation/report/table.h"
 
 namespace duet {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "model/evaluation/report/html_report.h"
 #include "model/evaluation/report/markdown_report.h"
-#include "model/formats/text.h"
+#include "model/base/text.h"
 
 namespace duet {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "absl/status/status.h"
-#include "model/evaluation/result_section.h"
+#include "model/evaluation/report/result_section.h"
 
 namespace duet {
 

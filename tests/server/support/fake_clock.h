@@ -4,7 +4,7 @@
 #include <atomic>
 #include <chrono>
 
-#include "server/batching/clock.h"
+#include "server/common/clock.h"
 
 namespace duet {
 

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "server/batching/mutex.h"
+#include "server/common/mutex.h"
 #include "tests/support/fake_synthesizer.h"
 
 namespace duet {

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "absl/status/status.h"
-#include "server/batching/mutex.h"
+#include "server/common/mutex.h"
 #include "server/batching/window_scheduler.h"
 
 namespace duet {

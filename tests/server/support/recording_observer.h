@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "server/batching/mutex.h"
+#include "server/common/mutex.h"
 #include "server/metrics/call_record.h"
 
 namespace duet {

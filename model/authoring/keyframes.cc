@@ -1,0 +1,220 @@
+#include "model/authoring/keyframes.h"
+
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
+#include "model/authoring/monotone_cubic.h"
+#include "model/authoring/puppet.h"
+#include "model/base/text.h"
+#include "model/motion/skeleton.h"
+
+namespace duet {
+namespace {
+
+constexpr double kLongestMotion = 60;
+constexpr double kDefaultFrameRateHz = 30;
+
+enum TrackIndex {
+  kTorso,
+  kPelvis,
+  kChest,
+  kHead,
+  kLeftFoot,
+  kRightFoot,
+  kLeftHand,
+  kRightHand,
+  kLeftElbow,
+  kRightElbow,
+  kLeftKnee,
+  kRightKnee,
+  kTrackCount
+};
+
+// A relaxed stand.
+struct TrackDefault {
+  const char* name;
+  std::vector<double> values;
+};
+const std::vector<TrackDefault>& TrackDefaults() {
+  static const auto* const kDefaults =
+      new std::vector<TrackDefault>{{"torso", {0, 1.11, 0}},
+                                    {"pelvis", {0, 0, 0}},
+                                    {"chest", {0, 2, 0}},
+                                    {"head", {0, 0, 0}},
+                                    {"left_foot", {0.11, 0.08, 0.02}},
+                                    {"right_foot", {-0.11, 0.08, -0.02}},
+                                    {"left_hand", {0.21, -0.55, 0.05}},
+                                    {"right_hand", {-0.21, -0.55, 0.05}},
+                                    {"left_elbow", {20}},
+                                    {"right_elbow", {20}},
+                                    {"left_knee", {6}},
+                                    {"right_knee", {6}}};
+  return *kDefaults;
+}
+
+// Keys of one track: for each of its values the value over time.
+using TrackKeys = std::vector<std::vector<MonotoneCubic::Key>>;
+
+class KeyframeParser {
+ public:
+  KeyframeParser(absl::string_view text, absl::string_view source) : lines_(text), source_(source) {
+    for (const TrackDefault& track : TrackDefaults()) keys_.emplace_back(track.values.size());
+  }
+
+  absl::Status Parse() {
+    for (absl::string_view line; lines_.Next(&line);) {
+      line = line.substr(0, line.find('#'));
+      const std::vector<absl::string_view> words =
+          absl::StrSplit(line, absl::ByAnyChar(" \t"), absl::SkipEmpty());
+      if (words.empty()) continue;
+      absl::Status status = ParseStatement(words);
+      if (!status.ok()) return status;
+    }
+    if (time_ > 0) return absl::OkStatus();
+    return Error("no \"at\" after 0 seconds, wanted at least two key poses");
+  }
+
+  double frame_rate_hz() const { return frame_rate_hz_; }
+  double duration() const { return time_; }
+
+  // Every track's values over time.
+  std::vector<std::vector<MonotoneCubic>> Curves() const {
+    std::vector<std::vector<MonotoneCubic>> curves(keys_.size());
+    for (std::size_t track = 0; track < keys_.size(); ++track) {
+      for (std::size_t i = 0; i < keys_[track].size(); ++i) {
+        const std::vector<MonotoneCubic::Key>& keys = keys_[track][i];
+        const MonotoneCubic::Key rest = {0, TrackDefaults()[track].values[i]};
+        curves[track].emplace_back(keys.empty() ? std::vector<MonotoneCubic::Key>{rest} : keys);
+      }
+    }
+    return curves;
+  }
+
+ private:
+  absl::Status Error(absl::string_view message) const {
+    return ErrorAt(source_, std::max(lines_.number(), 1), message);
+  }
+
+  absl::Status ParseStatement(const std::vector<absl::string_view>& words) {
+    if (words[0] == "frame_rate") return ParseFrameRate(words);
+    if (words[0] == "at") return ParseTime(words);
+    for (std::size_t track = 0; track < keys_.size(); ++track) {
+      if (words[0] == TrackDefaults()[track].name) return ParseKey(words, track);
+    }
+    return Error(absl::StrCat("came ", Quoted(words[0]),
+                              ", wanted frame_rate, at or a track such as torso"));
+  }
+
+  absl::Status ParseValues(const std::vector<absl::string_view>& words, std::size_t wanted,
+                           std::vector<double>* values) const {
+    for (std::size_t i = 1; i < words.size(); ++i) {
+      float value = 0;
+      if (!ParseCoordinate(words[i], &value)) {
+        return Error(absl::StrCat(words[0], ": came ", Quoted(words[i]), ", wanted a number"));
+      }
+      values->push_back(static_cast<double>(value));
+    }
+    if (values->size() == wanted) return absl::OkStatus();
+    return Error(absl::StrCat(words[0], ": came ", values->size(), " values, wanted ", wanted));
+  }
+
+  absl::Status ParseFrameRate(const std::vector<absl::string_view>& words) {
+    std::vector<double> values;
+    absl::Status status = ParseValues(words, 1, &values);
+    if (!status.ok()) return status;
+    if (values[0] < 1 || values[0] > 240) return Error("frame_rate: wanted 1 to 240");
+    frame_rate_hz_ = values[0];
+    return absl::OkStatus();
+  }
+
+  absl::Status ParseTime(const std::vector<absl::string_view>& words) {
+    std::vector<double> values;
+    absl::Status status = ParseValues(words, 1, &values);
+    if (!status.ok()) return status;
+    if (time_ < 0 ? values[0] != 0 : values[0] <= time_ || values[0] > kLongestMotion) {
+      return Error(absl::StrCat(
+          "at: came ", values[0],
+          time_ < 0 ? ", wanted 0 first"
+                    : absl::StrCat(", wanted more than ", time_, " and at most ", kLongestMotion)));
+    }
+    time_ = values[0];
+    return absl::OkStatus();
+  }
+
+  absl::Status ParseKey(const std::vector<absl::string_view>& words, std::size_t track) {
+    if (time_ < 0) return Error(absl::StrCat(words[0], ": wanted \"at 0\" first"));
+    std::vector<double> values;
+    absl::Status status = ParseValues(words, keys_[track].size(), &values);
+    if (!status.ok()) return status;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      std::vector<MonotoneCubic::Key>& keys = keys_[track][i];
+      if (!keys.empty() && keys.back().time == time_) {
+        return Error(absl::StrCat(words[0], ": a second key at ", time_, " s"));
+      }
+      keys.push_back({time_, values[i]});
+    }
+    return absl::OkStatus();
+  }
+
+  LineReader lines_;
+  absl::string_view source_;
+  double frame_rate_hz_ = kDefaultFrameRateHz;
+  double time_ = -1;
+  std::vector<TrackKeys> keys_;  // [tracks]
+};
+
+class Animator {
+ public:
+  explicit Animator(std::vector<std::vector<MonotoneCubic>> curves) : curves_(std::move(curves)) {}
+
+  PuppetPose At(double time) const {
+    PuppetPose pose;
+    pose.torso = Vector(kTorso, time);
+    pose.pelvis = Angles(kPelvis, time);
+    pose.chest = Angles(kChest, time);
+    pose.head = Angles(kHead, time);
+    pose.left_foot = {Vector(kLeftFoot, time), Value(kLeftKnee, 0, time)};
+    pose.right_foot = {Vector(kRightFoot, time), Value(kRightKnee, 0, time)};
+    pose.left_hand = {Vector(kLeftHand, time), Value(kLeftElbow, 0, time)};
+    pose.right_hand = {Vector(kRightHand, time), Value(kRightElbow, 0, time)};
+    return pose;
+  }
+
+ private:
+  double Value(TrackIndex track, std::size_t i, double time) const {
+    return curves_[static_cast<size_t>(track)][i].At(time);
+  }
+  Vec3d Vector(TrackIndex track, double time) const {
+    return {Value(track, 0, time), Value(track, 1, time), Value(track, 2, time)};
+  }
+  Lean Angles(TrackIndex track, double time) const {
+    return {Value(track, 0, time), Value(track, 1, time), Value(track, 2, time)};
+  }
+
+  std::vector<std::vector<MonotoneCubic>> curves_;
+};
+
+}  // namespace
+
+absl::StatusOr<Clip> ParseKeyframes(absl::string_view text, absl::string_view source) {
+  KeyframeParser parser(text, source);
+  absl::Status status = parser.Parse();
+  if (!status.ok()) return status;
+  const Animator animator(parser.Curves());
+  Clip clip;
+  clip.joint_names = SbuSkeleton().joint_names;
+  clip.frame_rate_hz = parser.frame_rate_hz();
+  const int frames = 1 + static_cast<int>(std::round(parser.duration() * clip.frame_rate_hz));
+  for (int frame = 0; frame < frames; ++frame) {
+    const std::vector<Vec3> pose = PosePuppet(animator.At(frame / clip.frame_rate_hz));
+    clip.positions.insert(clip.positions.end(), pose.begin(), pose.end());
+  }
+  return clip;
+}
+
+}  // namespace duet

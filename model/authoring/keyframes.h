@@ -1,0 +1,32 @@
+#ifndef DUET_MODEL_AUTHORING_KEYFRAMES_H_
+#define DUET_MODEL_AUTHORING_KEYFRAMES_H_
+
+#include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+#include "model/motion/clip.h"
+
+namespace duet {
+
+// A motion of one person written by hand as key poses, for samples and tests:
+//
+//   frame_rate 30           # optional, 30 when absent
+//   at 0                    # seconds; times rise, the last one ends the motion
+//     torso 0 1.1 0         # metres: x to the left, y up, z forwards, floor at 0
+//     chest 0 5 0           # degrees: yaw left, pitch forwards, roll left
+//     left_foot 0.12 0.08 0 # the ankle
+//   at 0.6
+//     right_hand -0.1 -0.2 0.4   # the wrist, from the neck
+//     right_elbow 20             # degrees outwards from its natural place
+//
+// Tracks: torso, pelvis, chest, head, left_foot, right_foot, left_hand, right_hand (three values),
+// left_elbow, right_elbow, left_knee, right_knee (one). A track goes smoothly through its own keys
+// (MonotoneCubic) and needs none: without a key it stays as in a relaxed stand. '#' starts a
+// comment.
+//
+// Returns the joints of SbuSkeleton, facing +z. At most a minute.
+// Errors: INVALID_ARGUMENT "source:line: ... came ..., wanted ...".
+absl::StatusOr<Clip> ParseKeyframes(absl::string_view text, absl::string_view source);
+
+}  // namespace duet
+
+#endif  // DUET_MODEL_AUTHORING_KEYFRAMES_H_

@@ -1,0 +1,30 @@
+#ifndef DUET_MODEL_AUTHORING_MONOTONE_CUBIC_H_
+#define DUET_MODEL_AUTHORING_MONOTONE_CUBIC_H_
+
+#include <vector>
+
+namespace duet {
+
+// A value over time through keys: eases in and out of the first and last one, never leaves the
+// range of the two keys around it (a planted foot stays planted, a reach does not overshoot),
+// continuous velocity. Held before the first key and after the last.
+//
+// Source: Fritsch and Carlson 1980, with the harmonic mean of the neighbouring slopes.
+class MonotoneCubic {
+ public:
+  struct Key {
+    double time = 0;
+    double value = 0;
+  };
+  // `keys`: at least one, times rising strictly.
+  explicit MonotoneCubic(std::vector<Key> keys);
+  double At(double time) const;
+
+ private:
+  std::vector<Key> keys_;
+  std::vector<double> slopes_;  // [keys]
+};
+
+}  // namespace duet
+
+#endif  // DUET_MODEL_AUTHORING_MONOTONE_CUBIC_H_

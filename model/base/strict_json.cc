@@ -1,0 +1,198 @@
+#include "model/base/strict_json.h"
+
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+
+namespace duet {
+namespace {
+
+using nlohmann::json;
+
+// How much of a bad value a message repeats.
+constexpr std::size_t kQuotedBytes = 40;
+
+std::string Quoted(const json& value) {
+  std::string text = value.dump(-1, ' ', true, json::error_handler_t::replace);
+  if (text.size() > kQuotedBytes) text = text.substr(0, kQuotedBytes) + "...";
+  return text;
+}
+
+// Walks the text without building anything: the parser's own tree silently keeps the last of two
+// equal keys, and a reader that keeps the first would see another file.
+class StrictnessChecker : public nlohmann::json_sax<json> {
+ public:
+  explicit StrictnessChecker(int max_depth) : max_depth_(max_depth) {}
+
+  const std::string& problem() const { return problem_; }
+
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(number_integer_t) override { return true; }
+  bool number_unsigned(number_unsigned_t) override { return true; }
+  bool number_float(number_float_t, const string_t&) override { return true; }
+  bool string(string_t&) override { return true; }
+  bool binary(binary_t&) override { return true; }
+  bool start_object(std::size_t) override { return Open(); }
+  bool start_array(std::size_t) override { return Open(); }
+  bool end_object() override { return Close(); }
+  bool end_array() override { return Close(); }
+
+  bool key(string_t& name) override {
+    if (keys_.back().insert(name).second) return true;
+    problem_ = absl::StrCat("the field ", Quoted(name), " is repeated");
+    return false;
+  }
+
+  bool parse_error(std::size_t position, const std::string&, const json::exception&) override {
+    problem_ = absl::StrCat("not JSON at byte ", position);
+    return false;
+  }
+
+ private:
+  bool Open() {
+    keys_.emplace_back();
+    if (static_cast<int>(keys_.size()) <= max_depth_) return true;
+    problem_ = absl::StrCat("nested deeper than ", max_depth_, " levels");
+    return false;
+  }
+  bool Close() {
+    keys_.pop_back();
+    return true;
+  }
+
+  int max_depth_;
+  std::vector<std::set<std::string>> keys_;  // of every object that is open
+  std::string problem_;
+};
+
+}  // namespace
+
+absl::StatusOr<json> ParseStrictJson(std::string_view text, int max_depth) {
+  if (text.empty() || text.front() != '{') {
+    return absl::InvalidArgumentError("not a JSON object: wanted '{' as the first byte");
+  }
+  // The parser takes a NUL for the end of the text and would ignore whatever follows it.
+  if (const std::size_t at = text.find('\0'); at != std::string_view::npos) {
+    return absl::InvalidArgumentError(absl::StrCat("not JSON: a NUL at byte ", at));
+  }
+  StrictnessChecker checker(max_depth);
+  if (!json::sax_parse(text.begin(), text.end(), &checker)) {
+    return absl::InvalidArgumentError(checker.problem());
+  }
+  return json::parse(text.begin(), text.end(), nullptr, /*allow_exceptions=*/false);
+}
+
+ObjectReader::ObjectReader(const json& object, std::string path)
+    : object_(object), path_(std::move(path)) {
+  if (!object_.is_object()) {
+    status_ = absl::InvalidArgumentError(
+        absl::StrCat(path_, ": ", Quoted(object_), ", wanted an object"));
+  }
+}
+
+std::string ObjectReader::PathOf(const std::string& key) const {
+  return path_.empty() ? key : absl::StrCat(path_, ".", key);
+}
+
+void ObjectReader::Fail(const std::string& key, const std::string& problem) {
+  Update(absl::InvalidArgumentError(absl::StrCat(PathOf(key), ": ", problem)));
+}
+
+void ObjectReader::Update(const absl::Status& status) { status_.Update(status); }
+
+void ObjectReader::FailType(const std::string& key, const json& value, std::string_view wanted) {
+  Fail(key, absl::StrCat(Quoted(value), ", wanted ", std::string(wanted)));
+}
+
+const json* ObjectReader::Get(const std::string& key) {
+  asked_.insert(key);
+  if (!object_.is_object()) return nullptr;
+  const auto it = object_.find(key);
+  if (it != object_.end()) return &*it;
+  Fail(key, "missing");
+  return nullptr;
+}
+
+std::string ObjectReader::String(const std::string& key, std::size_t max_bytes) {
+  const json* value = Get(key);
+  if (value == nullptr) return {};
+  if (!value->is_string() || value->get_ref<const std::string&>().size() > max_bytes) {
+    FailType(key, *value, absl::StrCat("a string of at most ", max_bytes, " bytes"));
+    return {};
+  }
+  return value->get<std::string>();
+}
+
+bool ObjectReader::Bool(const std::string& key) {
+  const json* value = Get(key);
+  if (value == nullptr) return false;
+  if (!value->is_boolean()) FailType(key, *value, "true or false");
+  return value->is_boolean() && value->get<bool>();
+}
+
+int64_t ObjectReader::Int(const std::string& key, int64_t min, int64_t max) {
+  const json* value = Get(key);
+  if (value == nullptr) return 0;
+  // An unsigned value beyond int64 would wrap to a negative one.
+  const bool fits = value->is_number_unsigned()
+                        ? value->get<uint64_t>() <= static_cast<uint64_t>(INT64_MAX)
+                        : value->is_number_integer();
+  const int64_t number = fits ? value->get<int64_t>() : 0;
+  if (fits && number >= min && number <= max) return number;
+  FailType(key, *value, absl::StrCat("a whole number from ", min, " to ", max));
+  return 0;
+}
+
+double ObjectReader::Number(const std::string& key, double min, double max) {
+  const json* value = Get(key);
+  if (value == nullptr) return 0;
+  const double number = value->is_number() ? value->get<double>() : 0;
+  if (value->is_number() && number >= min && number <= max) return number;
+  FailType(key, *value, absl::StrCat("a number from ", min, " to ", max));
+  return 0;
+}
+
+std::vector<std::string> ObjectReader::Strings(const std::string& key, std::size_t max_count) {
+  std::vector<std::string> strings;
+  for (const json& item : Array(key, max_count)) {
+    if (!item.is_string() || item.get_ref<const std::string&>().empty()) {
+      FailType(key, item, "strings that are not empty");
+      return {};
+    }
+    strings.push_back(item.get<std::string>());
+  }
+  return strings;
+}
+
+const json& ObjectReader::Array(const std::string& key, std::size_t max_count) {
+  static const json* const kEmpty = new json(json::array());
+  const json* value = Get(key);
+  if (value == nullptr) return *kEmpty;
+  if (value->is_array() && value->size() <= max_count) return *value;
+  FailType(key, *value, absl::StrCat("an array of at most ", max_count, " values"));
+  return *kEmpty;
+}
+
+const json& ObjectReader::Object(const std::string& key) {
+  static const json* const kEmpty = new json(json::object());
+  const json* value = Get(key);
+  if (value == nullptr) return *kEmpty;
+  if (value->is_object()) return *value;
+  FailType(key, *value, "an object");
+  return *kEmpty;
+}
+
+absl::Status ObjectReader::Finish() {
+  if (!status_.ok() || !object_.is_object()) return status_;
+  for (const auto& [key, value] : object_.items()) {
+    if (asked_.count(key) == 0) {
+      // Quoted: a hostile key should not write control bytes into somebody's log.
+      Update(absl::InvalidArgumentError(
+          absl::StrCat(path_.empty() ? "" : path_ + ": ", "unknown field ", Quoted(key))));
+    }
+  }
+  return status_;
+}
+
+}  // namespace duet

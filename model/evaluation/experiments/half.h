@@ -1,0 +1,51 @@
+#ifndef DUET_MODEL_EVALUATION_EXPERIMENTS_HALF_H_
+#define DUET_MODEL_EVALUATION_EXPERIMENTS_HALF_H_
+
+#include <cstdint>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "model/dataset/dataset.h"
+#include "model/evaluation/experiments/synthetic_files.h"
+#include "model/evaluation/experiments/trials.h"
+
+namespace duet {
+
+// A half of the data, and what its classifiers may learn from.
+struct DataHalf {
+  uint64_t seed = 0;  // of SplitInHalves
+  Split split;
+  std::vector<Sequence> synthetic;  // made in this process; not empty
+  std::vector<Sequence> served;     // made by a server; empty without a set
+};
+
+struct HalfOptions {
+  std::string synthetic_row;  // the name of the row with DataHalf::synthetic
+  int64_t epochs = 60;        // of a classifier on the captured half
+  int repeats = 1;            // classifiers, each with a seed of its own
+};
+
+// The rows of the experiment; HalfOptions names one more.
+inline constexpr char kCapturedRow[] = "captured";
+inline constexpr char kLonger[] = ", longer";  // what the names of two rows end in
+inline constexpr char kSyntheticAloneRow[] = "synthetic alone";
+inline constexpr char kServedRow[] = "captured + set through the server";
+
+// Gives every set to the half that it was made for. Errors: INVALID_ARGUMENT for a set whose half
+// is not among them, naming it.
+absl::Status AddServedSets(const std::vector<SyntheticSet>& sets, std::vector<DataHalf>* halves);
+
+// Trains and tests every row's classifiers on a half. More motions mean more steps an epoch, and
+// longer training alone moves the accuracy; so all rows take as many steps as the captured motions
+// do in options.epochs, but for two that end in ", longer": captured with and without synthetic
+// motions, both for the steps that the larger set takes in options.epochs. A line for each
+// classifier goes to `progress`.
+absl::Status RunHalf(const Dataset& dataset, const DataHalf& half, const HalfOptions& options,
+                     std::ostream* progress, Trials* trials);
+
+}  // namespace duet
+
+#endif  // DUET_MODEL_EVALUATION_EXPERIMENTS_HALF_H_

@@ -1,0 +1,193 @@
+#include "model/evaluation/experiments/label_sweep.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <iterator>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+namespace duet {
+namespace {
+
+constexpr double kLeastWeight = -1;
+constexpr int kStepsAUnit = 4;
+constexpr int kUnits = 3;
+// Of SweepWeights: -1, 0 and 1.
+constexpr size_t kMinusOne = 0, kZero = kStepsAUnit, kOne = 2 * kStepsAUnit;
+
+double RaisedProbability(const SweepCurve& curve, size_t weight) {
+  return curve.probabilities[weight][static_cast<size_t>(curve.raised)];
+}
+
+std::vector<double> RaisedProbabilities(const SweepCurve& curve) {
+  std::vector<double> values;
+  for (size_t i = 0; i < curve.probabilities.size(); ++i) {
+    values.push_back(RaisedProbability(curve, i));
+  }
+  return values;
+}
+
+// Ranks from 1; ties share the mean of theirs.
+std::vector<double> Ranks(const std::vector<double>& values) {
+  std::vector<size_t> order(values.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  std::sort(order.begin(), order.end(), [&](size_t a, size_t b) { return values[a] < values[b]; });
+  std::vector<double> ranks(values.size());
+  for (size_t first = 0; first < order.size();) {
+    size_t end = first + 1;
+    while (end < order.size() && values[order[end]] == values[order[first]]) ++end;
+    for (size_t i = first; i < end; ++i) {
+      ranks[order[i]] = static_cast<double>(first + end + 1) / 2;
+    }
+    first = end;
+  }
+  return ranks;
+}
+
+double Mean(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+// Figures are sums until they are divided by the number of curves.
+void AddCurve(const SweepCurve& curve, LabelControl* sums) {
+  const auto change = [&](size_t from, size_t to) {
+    return RaisedProbability(curve, to) - RaisedProbability(curve, from);
+  };
+  const auto level = [](double by) { return std::abs(by) <= kLevelChange ? 1.0 : 0.0; };
+  const auto up = [](double by) { return by > kLevelChange ? 1.0 : 0.0; };
+  sums->raised_up += up(change(kZero, kOne));
+  sums->raised_level += level(change(kZero, kOne));
+  sums->lowered_down += up(change(kMinusOne, kZero));
+  sums->lowered_level += level(change(kMinusOne, kZero));
+  for (size_t i = kZero; i < kOne; ++i) {
+    sums->steps_up += up(change(i, i + 1)) / kStepsAUnit;
+    sums->steps_level += level(change(i, i + 1)) / kStepsAUnit;
+  }
+  sums->rank_correlation += RankCorrelation(SweepWeights(), RaisedProbabilities(curve));
+}
+
+std::vector<double> Values(const LabelControl& control) {
+  return {control.raised_up, control.raised_level, control.lowered_down,    control.lowered_level,
+          control.steps_up,  control.steps_level,  control.rank_correlation};
+}
+
+// The mean over curves of one class's probability at each weight.
+PlotSeries MeanLine(const std::string& name, const std::vector<SweepCurve>& curves, int of_class) {
+  PlotSeries line{name, {}};
+  for (size_t i = 0; i < SweepWeights().size(); ++i) {
+    double sum = 0;
+    for (const SweepCurve& curve : curves) {
+      sum += curve.probabilities[i][static_cast<size_t>(of_class)];
+    }
+    line.points.push_back({SweepWeights()[i], sum / static_cast<double>(curves.size())});
+  }
+  return line;
+}
+
+std::vector<SweepCurve> WithOwn(const std::vector<SweepCurve>& curves, int own) {
+  std::vector<SweepCurve> selected;
+  std::copy_if(curves.begin(), curves.end(), std::back_inserter(selected),
+               [&](const SweepCurve& curve) { return curve.own == own; });
+  return selected;
+}
+
+}  // namespace
+
+const std::vector<double>& SweepWeights() {
+  static const auto& weights = *[] {
+    auto* all = new std::vector<double>;
+    for (int i = 0; i <= kUnits * kStepsAUnit; ++i) {
+      all->push_back(kLeastWeight + static_cast<double>(i) / kStepsAUnit);
+    }
+    return all;
+  }();
+  return weights;
+}
+
+std::vector<float> SweepLabels(int classes, int own, int raised, double weight) {
+  std::vector<float> labels(static_cast<size_t>(classes));
+  labels[static_cast<size_t>(own)] = 1;
+  labels[static_cast<size_t>(raised)] = static_cast<float>(weight);
+  return labels;
+}
+
+LabelControl MeasureControl(const std::vector<SweepCurve>& curves) {
+  LabelControl control;
+  for (const SweepCurve& curve : curves) AddCurve(curve, &control);
+  const double count = curves.empty() ? std::numeric_limits<double>::quiet_NaN()
+                                      : static_cast<double>(curves.size());
+  for (double* value :
+       {&control.raised_up, &control.raised_level, &control.lowered_down, &control.lowered_level,
+        &control.steps_up, &control.steps_level, &control.rank_correlation}) {
+    *value /= count;
+  }
+  return control;
+}
+
+double RankCorrelation(const std::vector<double>& x, const std::vector<double>& y) {
+  const std::vector<double> a = Ranks(x), b = Ranks(y);
+  const double mean_a = Mean(a), mean_b = Mean(b);
+  double ab = 0, aa = 0, bb = 0;
+  for (size_t i = 0; i < a.size(); ++i) {
+    ab += (a[i] - mean_a) * (b[i] - mean_b);
+    aa += (a[i] - mean_a) * (a[i] - mean_a);
+    bb += (b[i] - mean_b) * (b[i] - mean_b);
+  }
+  return aa * bb == 0 ? 0 : ab / std::sqrt(aa * bb);
+}
+
+std::vector<SweepCurve> Select(const std::vector<SweepCurve>& curves, SweepKind kind, int raised) {
+  std::vector<SweepCurve> selected;
+  for (const SweepCurve& curve : curves) {
+    const bool own = curve.own == curve.raised;
+    if (curve.raised == raised && own == (kind == SweepKind::kOwn)) selected.push_back(curve);
+  }
+  return selected;
+}
+
+Table ControlTable(const std::string& title, const std::vector<std::string>& classes,
+                   const std::vector<SweepCurve>& curves, SweepKind kind) {
+  Table table;
+  table.title = title;
+  table.columns = {"0 to 1: up", "level", "0 to -1: down",   "level",
+                   "a step up",  "level", "rank correlation"};
+  std::vector<SweepCurve> all;
+  for (size_t c = 0; c < classes.size(); ++c) {
+    const std::vector<SweepCurve> selected = Select(curves, kind, static_cast<int>(c));
+    table.rows.push_back({classes[c], Values(MeasureControl(selected)), false});
+    all.insert(all.end(), selected.begin(), selected.end());
+  }
+  table.rows.push_back({"all", Values(MeasureControl(all)), false});
+  table.notes = {
+      "Shares of answers whose probability of the class goes the way its weight goes. Level: by "
+      "0.001 or less, either way. Steps: by 0.25, from weight 0 to 1. Rank correlation: "
+      "Spearman's, of weight and probability from -1 to 2, the mean over answers."};
+  return table;
+}
+
+LinePlot SweepPlot(const std::string& title, const std::vector<std::string>& classes,
+                   const std::vector<SweepCurve>& curves, SweepKind kind, int raised) {
+  LinePlot plot;
+  plot.title = title;
+  plot.x_label = "weight of " + classes[static_cast<size_t>(raised)];
+  plot.y_range = {0, 1};
+  plot.markers = true;
+  plot.marked_x = {0, 1};
+  const std::vector<SweepCurve> selected = Select(curves, kind, raised);
+  for (int c = 0; c < static_cast<int>(classes.size()); ++c) {
+    const std::string& name = classes[static_cast<size_t>(c)];
+    if (kind == SweepKind::kOwn) {
+      plot.y_label = "mean probability of each class";
+      if (!selected.empty()) plot.series.push_back(MeanLine(name, selected, c));
+    } else {
+      plot.y_label = "mean probability of " + classes[static_cast<size_t>(raised)];
+      const std::vector<SweepCurve> beside = WithOwn(selected, c);
+      if (!beside.empty()) plot.series.push_back(MeanLine("beside " + name, beside, raised));
+    }
+  }
+  return plot;
+}
+
+}  // namespace duet

@@ -1,0 +1,65 @@
+#ifndef DUET_MODEL_EVALUATION_EXPERIMENTS_LABEL_SWEEP_H_
+#define DUET_MODEL_EVALUATION_EXPERIMENTS_LABEL_SWEEP_H_
+
+#include <string>
+#include <vector>
+
+#include "model/evaluation/report/plot.h"
+#include "model/evaluation/report/table.h"
+
+// How a class's weight in the label vector moves a judge's probability of that class.
+//
+// Source: the paper's graded and negative labels (section 3.1), which it shows but does not
+// measure.
+
+namespace duet {
+
+// -1, -0.75, ..., 2: the weights that a sweep tries, in order.
+const std::vector<double>& SweepWeights();
+
+// One leader answered at every weight of one class: alone (own == raised), or beside the leader's
+// own class at weight 1.
+struct SweepCurve {
+  int own = 0;                                    // the class of the leader's interaction
+  int raised = 0;                                 // the class whose weight is swept
+  std::vector<std::vector<float>> probabilities;  // [weights][classes]
+};
+
+// The label vector of a curve at a weight. Shapes: returns [classes].
+std::vector<float> SweepLabels(int classes, int own, int raised, double weight);
+
+// Changes of the probability within this much are called level.
+inline constexpr double kLevelChange = 1e-3;
+
+// How the raised class's probability follows its weight, averaged over curves; NaN without any.
+struct LabelControl {
+  double raised_up = 0, raised_level = 0;  // weight 0 to 1: share of curves that rise, that stay
+  double lowered_down = 0, lowered_level = 0;  // 0 to -1: share that fall, that stay
+  double steps_up = 0, steps_level = 0;  // single steps from 0 to 1: share that rise, that stay
+  double rank_correlation = 0;           // Spearman's, of weight and probability over all weights
+};
+LabelControl MeasureControl(const std::vector<SweepCurve>& curves);
+
+// Spearman's rank correlation, ties at their mean rank; 0 where either side is constant. Requires
+// two samples or more, as many on both sides.
+double RankCorrelation(const std::vector<double>& x, const std::vector<double>& y);
+
+// Which curves a table or a figure is about.
+enum class SweepKind {
+  kOwn,   // the leader's own class, alone
+  kAdded  // another class, beside the own one
+};
+std::vector<SweepCurve> Select(const std::vector<SweepCurve>& curves, SweepKind kind, int raised);
+
+// One row a raised class and one for all of them.
+Table ControlTable(const std::string& title, const std::vector<std::string>& classes,
+                   const std::vector<SweepCurve>& curves, SweepKind kind);
+
+// kOwn: the mean probability of every class against the weight of class `raised`. kAdded: of class
+// `raised` alone, a line for each own class.
+LinePlot SweepPlot(const std::string& title, const std::vector<std::string>& classes,
+                   const std::vector<SweepCurve>& curves, SweepKind kind, int raised);
+
+}  // namespace duet
+
+#endif  // DUET_MODEL_EVALUATION_EXPERIMENTS_LABEL_SWEEP_H_

@@ -1,0 +1,37 @@
+#ifndef DUET_MODEL_EVALUATION_METRICS_JUDGED_SCORES_H_
+#define DUET_MODEL_EVALUATION_METRICS_JUDGED_SCORES_H_
+
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "model/evaluation/metrics/features.h"
+
+// Figures by class of motions that a classifier has looked at, fold by fold: each fold has a judge
+// of its own, so that features may be compared within a fold only.
+
+namespace duet {
+
+// What its judge makes of one fold's motions.
+struct JudgedFold {
+  std::vector<int> classes;                       // [motions], what each was asked to be
+  std::vector<std::vector<float>> probabilities;  // [motions][classes]
+  FeatureSet features;                            // [motions][features]
+};
+
+// The share of each class's motions, over all folds, that the judges take for that class; NaN for a
+// class without any. Shapes: returns [classes].
+std::vector<double> AccuracyByClass(const std::vector<JudgedFold>& folds, int classes);
+
+// The Frechet distance between synthesised and captured motions of each class within a fold,
+// averaged over the folds that have 2 motions of it or more on both sides; NaN where none has.
+// Shapes: made and captured [folds]; returns [classes]. Errors: FrechetDistance's.
+absl::StatusOr<std::vector<double>> FrechetByClass(const std::vector<JudgedFold>& made,
+                                                   const std::vector<JudgedFold>& captured,
+                                                   int classes);
+
+// The mean distance between motions of a class within a fold, averaged likewise.
+std::vector<double> DiversityByClass(const std::vector<JudgedFold>& folds, int classes);
+
+}  // namespace duet
+
+#endif  // DUET_MODEL_EVALUATION_METRICS_JUDGED_SCORES_H_

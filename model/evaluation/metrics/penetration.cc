@@ -1,0 +1,99 @@
+#include "model/evaluation/metrics/penetration.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace duet {
+namespace {
+
+constexpr double kArmRadius = 0.045, kLegRadius = 0.065, kTrunkRadius = 0.11, kHeadRadius = 0.09;
+// Segments whose squared length is below this are points (a micrometre squared).
+constexpr double kPointLength = 1e-12;
+// Squared sine of the angle below which two segments count as parallel.
+constexpr double kParallel = 1e-9;
+
+double Clamp01(double value) { return std::clamp(value, 0.0, 1.0); }
+
+double RadiusOf(const Skeleton& skeleton, const Bone& bone) {
+  if (skeleton.joint_names[static_cast<size_t>(bone.child)] == "head") return kHeadRadius;
+  for (const BodyPart& part : skeleton.parts) {
+    if (std::find(part.joints.begin(), part.joints.end(), bone.child) == part.joints.end()) {
+      continue;
+    }
+    // The bones that join a limb to the trunk (neck to shoulder, torso to hip) are trunk.
+    if (std::find(part.joints.begin(), part.joints.end(), bone.parent) == part.joints.end()) {
+      return kTrunkRadius;
+    }
+    if (part.name.find("arm") != std::string::npos) return kArmRadius;
+    if (part.name.find("leg") != std::string::npos) return kLegRadius;
+  }
+  return kTrunkRadius;
+}
+
+// The deepest overlap of two bodies in one frame.
+double FrameDepth(const Vec3* leader, const Vec3* follower, const Skeleton& skeleton,
+                  const std::vector<double>& radii) {
+  double deepest = 0;
+  for (size_t i = 0; i < skeleton.bones.size(); ++i) {
+    const Bone& a = skeleton.bones[i];
+    for (size_t j = 0; j < skeleton.bones.size(); ++j) {
+      const Bone& b = skeleton.bones[j];
+      const double distance =
+          SegmentDistance(leader[a.parent], leader[a.child], follower[b.parent], follower[b.child]);
+      deepest = std::max(deepest, radii[i] + radii[j] - distance);
+    }
+  }
+  return deepest;
+}
+
+}  // namespace
+
+double SegmentDistance(Vec3 a0, Vec3 a1, Vec3 b0, Vec3 b1) {
+  // Minimises |a0 + s u - b0 - t v| over the unit square: the free optimum in s, clamped; the best
+  // t for it; if that had to be clamped, the best s for it.
+  const Vec3 u = a1 - a0, v = b1 - b0, w = a0 - b0;
+  const double uu = Dot(u, u), vv = Dot(v, v), uv = Dot(u, v), uw = Dot(u, w), vw = Dot(v, w);
+  double s = 0, t = 0;
+  if (uu > kPointLength) {
+    const double parallel = uu * vv - uv * uv;
+    if (vv <= kPointLength) {
+      s = Clamp01(-uw / uu);
+    } else {
+      if (parallel > kParallel * uu * vv) s = Clamp01((uv * vw - vv * uw) / parallel);
+      t = Clamp01((uv * s + vw) / vv);
+      s = Clamp01((uv * t - uw) / uu);
+    }
+  } else if (vv > kPointLength) {
+    t = Clamp01(vw / vv);
+  }
+  return Norm(w + u * static_cast<float>(s) - v * static_cast<float>(t));
+}
+
+std::vector<double> CapsuleRadii(const Skeleton& skeleton) {
+  std::vector<double> radii;
+  for (const Bone& bone : skeleton.bones) radii.push_back(RadiusOf(skeleton, bone));
+  return radii;
+}
+
+Penetration MeasurePenetration(const std::vector<Vec3>& leader, const std::vector<Vec3>& follower,
+                               const Skeleton& skeleton) {
+  const std::vector<double> radii = CapsuleRadii(skeleton);
+  const size_t stride = static_cast<size_t>(skeleton.joint_count());
+  Penetration result;
+  double frames = 0, touching = 0, sum = 0;
+  for (size_t first = 0; first < leader.size(); first += stride) {
+    const double depth = FrameDepth(&leader[first], &follower[first], skeleton, radii);
+    ++frames;
+    if (depth <= 0) continue;
+    ++touching;
+    sum += depth;
+    result.max_depth_metres = std::max(result.max_depth_metres, depth);
+  }
+  if (touching == 0) return result;
+  result.frequency = touching / frames;
+  result.mean_depth_metres = sum / touching;
+  return result;
+}
+
+}  // namespace duet

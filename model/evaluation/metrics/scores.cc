@@ -1,0 +1,128 @@
+#include "model/evaluation/metrics/scores.h"
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "model/evaluation/metrics/displacement.h"
+#include "model/evaluation/metrics/motion_quality.h"
+#include "model/evaluation/metrics/penetration.h"
+
+namespace duet {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace
+
+const std::vector<Metric>& AllMetrics() {
+  static const auto& metrics = *new std::vector<Metric>{
+      Metric::kAfd,
+      Metric::kAfdSquared,
+      Metric::kAfdMetres,
+      Metric::kAfdSquaredMetres,
+      Metric::kRootAlignedAfd,
+      Metric::kRootAlignedAfdMetres,
+      Metric::kVelocityError,
+      Metric::kBoneLengthDrift,
+      Metric::kJitter,
+      Metric::kSkatingRatio,
+      Metric::kFootSlide,
+      Metric::kPenetrationFrequency,
+      Metric::kPenetrationDepth,
+  };
+  return metrics;
+}
+
+std::string MetricName(Metric metric) {
+  switch (metric) {
+    case Metric::kAfd:
+      return "afd";
+    case Metric::kAfdSquared:
+      return "afd_squared";
+    case Metric::kAfdMetres:
+      return "afd_m";
+    case Metric::kAfdSquaredMetres:
+      return "afd_squared_m";
+    case Metric::kRootAlignedAfd:
+      return "root_aligned_afd";
+    case Metric::kRootAlignedAfdMetres:
+      return "root_aligned_afd_m";
+    case Metric::kVelocityError:
+      return "velocity_error";
+    case Metric::kBoneLengthDrift:
+      return "bone_length_drift";
+    case Metric::kJitter:
+      return "jitter";
+    case Metric::kSkatingRatio:
+      return "skating_ratio";
+    case Metric::kFootSlide:
+      return "foot_slide_cm";
+    case Metric::kPenetrationFrequency:
+      return "penetration_frequency";
+    case Metric::kPenetrationDepth:
+      return "penetration_depth_m";
+  }
+  return "";
+}
+
+std::vector<double> ScoreMotion(const Dataset& dataset, const ScoredMotion& motion) {
+  const Sequence& sequence = dataset.sequences[static_cast<size_t>(motion.sequence)];
+  const Skeleton& skeleton = dataset.skeleton;
+  const std::vector<Vec3>& truth = sequence.pair.follower.positions;
+  const std::vector<Vec3>& made = motion.follower;
+  const int joints = skeleton.joint_count();
+  const double rate = sequence.pair.leader.frame_rate_hz;
+  const FootSlide slide = MeasureFootSlide(made, skeleton, rate);
+  const Penetration penetration =
+      MeasurePenetration(sequence.pair.leader.positions, made, skeleton);
+  return {Afd(made, truth, joints, MetricUnit::kSbuRaw),
+          AfdSquared(made, truth, joints, MetricUnit::kSbuRaw),
+          Afd(made, truth, joints, MetricUnit::kMetres),
+          AfdSquared(made, truth, joints, MetricUnit::kMetres),
+          RootAlignedAfd(made, truth, joints, skeleton.root, MetricUnit::kSbuRaw),
+          RootAlignedAfd(made, truth, joints, skeleton.root, MetricUnit::kMetres),
+          VelocityError(made, truth, joints, rate),
+          BoneLengthDrift(made, skeleton),
+          Jitter(made, joints, rate),
+          slide.skating_ratio,
+          slide.centimetres_a_frame,
+          penetration.frequency,
+          penetration.frequency > 0 ? penetration.mean_depth_metres : kNone};
+}
+
+std::vector<std::vector<double>> ScoreByClass(const Dataset& dataset,
+                                              const std::vector<ScoredMotion>& motions) {
+  const size_t metrics = AllMetrics().size();
+  std::vector<std::vector<double>> sums(dataset.classes.size(), std::vector<double>(metrics));
+  std::vector<std::vector<double>> counts = sums;
+  for (const ScoredMotion& motion : motions) {
+    const Sequence& sequence = dataset.sequences[static_cast<size_t>(motion.sequence)];
+    const size_t c = static_cast<size_t>(sequence.interaction_class);
+    const std::vector<double> scores = ScoreMotion(dataset, motion);
+    for (size_t m = 0; m < metrics; ++m) {
+      // Not a number stands for "has none", as the depth of what never touches.
+      if (std::isnan(scores[m])) continue;
+      sums[c][m] += scores[m];
+      ++counts[c][m];
+    }
+  }
+  for (size_t c = 0; c < sums.size(); ++c) {
+    for (size_t m = 0; m < metrics; ++m) {
+      sums[c][m] = counts[c][m] == 0 ? kNone : sums[c][m] / counts[c][m];
+    }
+  }
+  return sums;
+}
+
+std::vector<ScoredMotion> CapturedMotions(const Dataset& dataset,
+                                          const std::vector<ScoredMotion>& like) {
+  std::vector<ScoredMotion> captured;
+  for (const ScoredMotion& motion : like) {
+    const Sequence& sequence = dataset.sequences[static_cast<size_t>(motion.sequence)];
+    captured.push_back({motion.sequence, sequence.pair.follower.positions});
+  }
+  return captured;
+}
+
+}  // namespace duet

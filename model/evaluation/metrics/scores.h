@@ -1,0 +1,53 @@
+#ifndef DUET_MODEL_EVALUATION_METRICS_SCORES_H_
+#define DUET_MODEL_EVALUATION_METRICS_SCORES_H_
+
+#include <string>
+#include <vector>
+
+#include "model/dataset/dataset.h"
+
+namespace duet {
+
+// A figure of a synthesised follower, as the tables print it.
+enum class Metric {
+  kAfd,                   // afd: Eq. 6, SBU's raw unit
+  kAfdSquared,            // afd_squared: squared norm, raw unit squared
+  kAfdMetres,             // afd_m
+  kAfdSquaredMetres,      // afd_squared_m: m^2
+  kRootAlignedAfd,        // root_aligned_afd: raw unit
+  kRootAlignedAfdMetres,  // root_aligned_afd_m
+  kVelocityError,         // velocity_error: m/s
+  kBoneLengthDrift,       // bone_length_drift: share of the length
+  kJitter,                // jitter: m/s^3
+  kSkatingRatio,          // skating_ratio: share of steps on the floor
+  kFootSlide,             // foot_slide_cm: centimetres a frame
+  kPenetrationFrequency,  // penetration_frequency: share of frames
+  kPenetrationDepth,      // penetration_depth_m: mean over those frames
+};
+
+const std::vector<Metric>& AllMetrics();
+// lower_snake_case, with the unit where it is not the raw one.
+std::string MetricName(Metric metric);
+
+// A follower for a sequence of the data set, synthesised or captured.
+struct ScoredMotion {
+  int sequence = 0;
+  std::vector<Vec3> follower;  // [frames, joints], world metres
+};
+
+// Every metric of one motion, in the order of AllMetrics.
+std::vector<double> ScoreMotion(const Dataset& dataset, const ScoredMotion& motion);
+
+// Means over the motions of each class, in the order of AllMetrics; NaN for a class without any.
+// Every motion counts alike, but for penetration depth, which is a mean over those motions that
+// penetrate. Shapes: returns [classes][metrics].
+std::vector<std::vector<double>> ScoreByClass(const Dataset& dataset,
+                                              const std::vector<ScoredMotion>& motions);
+
+// The captured followers themselves, as what synthesised ones are compared with.
+std::vector<ScoredMotion> CapturedMotions(const Dataset& dataset,
+                                          const std::vector<ScoredMotion>& like);
+
+}  // namespace duet
+
+#endif  // DUET_MODEL_EVALUATION_METRICS_SCORES_H_

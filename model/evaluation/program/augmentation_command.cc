@@ -1,0 +1,204 @@
+#include <iostream>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "model/evaluation/experiments/experiment.h"
+#include "model/evaluation/experiments/half.h"
+#include "model/evaluation/program/commands.h"
+#include "model/evaluation/program/fold_models.h"
+#include "model/evaluation/judge/classifier.h"
+#include "model/evaluation/report/metric_tables.h"
+#include "model/evaluation/report/paper_tables.h"
+#include "model/evaluation/report/result_section.h"
+
+namespace duet {
+namespace {
+
+struct Arguments {
+  std::string data;
+  std::string runs;
+  std::vector<uint64_t> seeds = {1, 2, 3, 4, 5};
+  int repeats = 1;
+  SyntheticPlanOptions plan;
+  bool as_served = false;
+  std::vector<std::string> synthetic;
+  std::string write_jobs;
+  int64_t epochs = ClassifierOptions().epochs;
+  std::string out;
+  std::string id = "40_augmentation";
+  std::string title = "Synthetic motion as training material (Table 6)";
+};
+
+std::string MadeHere(const SyntheticPlanOptions& plan) {
+  return absl::StrCat("captured + ", plan.match, " match + ", plan.mix, " mix");
+}
+
+absl::StatusOr<std::vector<SyntheticJob>> PlanHalf(const Dataset& dataset, const Split& split,
+                                                   const Arguments& arguments, uint64_t seed) {
+  if (arguments.plan.match + arguments.plan.mix < 1) {
+    return absl::InvalidArgumentError("--match and --mix: both 0, wanted a motion a class or more");
+  }
+  if (arguments.plan.mix > 0 && dataset.class_count() < 2) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("--mix ", arguments.plan.mix, ": the data has one class, wanted two to mix"));
+  }
+  SyntheticPlanOptions options = arguments.plan;
+  options.seed = seed;
+  return PlanSyntheticSet(dataset, split.train, options);
+}
+
+absl::StatusOr<DataHalf> PrepareHalf(const Dataset& dataset, const Arguments& arguments,
+                                     uint64_t seed) {
+  DataHalf half;
+  half.seed = seed;
+  absl::StatusOr<Split> split = SplitInHalves(dataset, seed);
+  if (!split.ok()) return split.status();
+  half.split = *std::move(split);
+  absl::StatusOr<std::vector<SyntheticJob>> jobs = PlanHalf(dataset, half.split, arguments, seed);
+  if (!jobs.ok()) return jobs.status();
+  absl::StatusOr<std::shared_ptr<const Synthesizer>> model =
+      LoadFoldModel(arguments.runs, absl::StrCat("half-", seed), arguments.as_served);
+  if (!model.ok()) return model.status();
+  absl::StatusOr<std::vector<Sequence>> synthetic = SynthesizeJobs(dataset, **model, *jobs);
+  if (!synthetic.ok()) return synthetic.status();
+  half.synthetic = *std::move(synthetic);
+  return half;
+}
+
+absl::Status ReadSets(const Dataset& dataset, const std::vector<std::string>& folders,
+                      std::vector<DataHalf>* halves) {
+  std::vector<SyntheticSet> sets;
+  for (const std::string& folder : folders) {
+    absl::StatusOr<SyntheticSet> set = ReadSyntheticSet(dataset, folder);
+    if (!set.ok()) return set.status();
+    sets.push_back(*std::move(set));
+  }
+  return AddServedSets(sets, halves);
+}
+
+ResultSection MakeSection(const Dataset& dataset, const Arguments& arguments,
+                          const Trials& trials) {
+  ResultSection section;
+  section.id = arguments.id;
+  section.title = arguments.title;
+  section.text = {
+      "A classifier shaped like the discriminator learns to name the interaction from the "
+      "follower's motion, from half of the captured clips of each class, without and with "
+      "synthetic followers, and is tested on the captured clips of the other half. The generator "
+      "that made the synthetic followers was trained on the same training half alone, and answers "
+      "varied leaders of that half. A trial is one split and one seed of the classifier; trials of "
+      "different rows are paired.",
+      "Rows take equally many training steps, since longer training alone moves the accuracy; "
+      "\"longer\" rows take the steps that the larger set needs for as many epochs. \"Synthetic "
+      "alone\" never sees a captured follower."};
+  Table means = trials.Means("Accuracy on captured followers, mean over the trials");
+  AddPrintedRows(PaperAugmentation(), &means);
+  section.tables = {std::move(means),
+                    trials.Deviations("Accuracy, standard deviation over the trials"),
+                    trials.Gains(kCapturedRow, "Gain over captured followers alone, paired")};
+  section.settings = {
+      {"data", dataset.name},
+      {"halves (seeds)", absl::StrJoin(arguments.seeds, ", ")},
+      {"classifiers a half", absl::StrCat(arguments.repeats)},
+      {"classifier epochs", absl::StrCat(arguments.epochs)},
+      {"synthetic motions a class",
+       absl::StrCat(arguments.plan.match, " match + ", arguments.plan.mix, " mix")},
+      {"in-process answers", arguments.as_served ? "as served" : "the network's own"},
+      {"sets through the server", absl::StrCat(arguments.synthetic.size())}};
+  section.command =
+      absl::StrCat("duet-eval augmentation --data DIR --runs RUNS --seeds ",
+                   absl::StrJoin(arguments.seeds, ","), " --repeats ", arguments.repeats,
+                   " --epochs ", arguments.epochs, " --match ", arguments.plan.match, " --mix ",
+                   arguments.plan.mix, arguments.as_served ? " --as_served" : "");
+  for (size_t i = 0; i < arguments.synthetic.size(); ++i) section.command += " --synthetic SET";
+  section.date = Today();
+  return section;
+}
+
+absl::Status WriteJobs(const Dataset& dataset, const Arguments& arguments) {
+  if (arguments.seeds.size() != 1) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("--seeds: ", arguments.seeds.size(), " came, wanted one with --write_jobs"));
+  }
+  const uint64_t seed = arguments.seeds.front();
+  absl::StatusOr<Split> split = SplitInHalves(dataset, seed);
+  if (!split.ok()) return split.status();
+  absl::StatusOr<std::vector<SyntheticJob>> jobs = PlanHalf(dataset, *split, arguments, seed);
+  if (!jobs.ok()) return jobs.status();
+  return WriteSyntheticJobs(dataset, *jobs, seed, arguments.write_jobs);
+}
+
+absl::Status Run(const Arguments& arguments) {
+  absl::StatusOr<Dataset> dataset = ReadDataset(arguments.data);
+  if (!dataset.ok()) return dataset.status();
+  if (!arguments.write_jobs.empty()) return WriteJobs(*dataset, arguments);
+  std::vector<DataHalf> halves;
+  for (const uint64_t seed : arguments.seeds) {
+    absl::StatusOr<DataHalf> half = PrepareHalf(*dataset, arguments, seed);
+    if (!half.ok()) return half.status();
+    halves.push_back(*std::move(half));
+  }
+  absl::Status status = ReadSets(*dataset, arguments.synthetic, &halves);
+  if (!status.ok()) return status;
+  std::vector<std::string> columns = dataset->classes;
+  columns.push_back("mean");
+  Trials trials(std::move(columns));
+  const HalfOptions options = {MadeHere(arguments.plan), arguments.epochs, arguments.repeats};
+  for (const DataHalf& half : halves) {
+    status = RunHalf(*dataset, half, options, &std::cerr, &trials);
+    if (!status.ok()) return status;
+  }
+  const ResultSection section = MakeSection(*dataset, arguments, trials);
+  for (const Table& table : section.tables) std::cout << ToPlainText(table) << "\n";
+  return arguments.out.empty() ? absl::OkStatus() : WriteSection(section, arguments.out);
+}
+
+}  // namespace
+
+void AddAugmentationCommand(CLI::App* app, ChosenCommand* chosen) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app->add_subcommand(
+      "augmentation", "A classifier with and without synthetic training motion (Table 6)");
+  command->add_option("--data", arguments->data, "folder of captures (docs/datasets.md)")
+      ->required();
+  CLI::Option* runs =
+      command->add_option("--runs", arguments->runs, "output of duet-train --protocol half");
+  command->add_option("--seeds", arguments->seeds, "halves: <runs>/half-<seed>")
+      ->delimiter(',')
+      ->capture_default_str();
+  command->add_option("--repeats", arguments->repeats, "classifiers trained on each half")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command->add_option("--epochs", arguments->epochs, "of a classifier on the captured half")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  command->add_option("--match", arguments->plan.match, "synthetic motions a class, one class each")
+      ->check(CLI::Range(0, 10000))
+      ->capture_default_str();
+  command->add_option("--mix", arguments->plan.mix, "synthetic motions a class, mixed with another")
+      ->check(CLI::Range(0, 10000))
+      ->capture_default_str();
+  command->add_flag("--as_served", arguments->as_served,
+                    "in-process answers with constant limb lengths on the leader's floor");
+  command
+      ->add_option("--synthetic", arguments->synthetic,
+                   "a folder that scripts/augmentation_set.sh filled; repeatable")
+      ->allow_extra_args(false);
+  CLI::Option* write_jobs = command->add_option(
+      "--write_jobs", arguments->write_jobs,
+      "only write the leaders and label vectors of one half's set into this folder");
+  write_jobs->excludes(runs);
+  command->add_option("--out", arguments->out, "folder of results, for duet-eval report");
+  command->add_option("--id", arguments->id, "of the section")->capture_default_str();
+  command->add_option("--title", arguments->title, "of the section")->capture_default_str();
+  command->callback([arguments, chosen, runs, write_jobs] {
+    if (runs->count() + write_jobs->count() == 0) throw CLI::RequiredError("--runs");
+    *chosen = [arguments] { return Run(*arguments); };
+  });
+}
+
+}  // namespace duet

@@ -1,0 +1,25 @@
+#ifndef DUET_MODEL_EVALUATION_PROGRAM_COMMANDS_H_
+#define DUET_MODEL_EVALUATION_PROGRAM_COMMANDS_H_
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+#include "absl/status/status.h"
+
+namespace duet {
+
+// The commands of duet-eval. Each declares itself and its flags in `app` and, when the command line
+// names it, stores what it does in `chosen`.
+using ChosenCommand = std::function<absl::Status()>;
+
+void AddFoldsCommand(CLI::App* app, ChosenCommand* chosen);         // figures of methods by class
+void AddSweepCommand(CLI::App* app, ChosenCommand* chosen);         // label weights
+void AddAugmentationCommand(CLI::App* app, ChosenCommand* chosen);  // the paper's Table 6
+void AddLatentCommand(CLI::App* app, ChosenCommand* chosen);        // Figures 6 and 7
+void AddCurvesCommand(CLI::App* app, ChosenCommand* chosen);        // training curves
+void AddValidationCommand(CLI::App* app, ChosenCommand* chosen);    // settings on held-back data
+void AddReportCommand(CLI::App* app, ChosenCommand* chosen);        // one page of all sections
+
+}  // namespace duet
+
+#endif  // DUET_MODEL_EVALUATION_PROGRAM_COMMANDS_H_

@@ -1,0 +1,58 @@
+#ifndef DUET_MODEL_EVALUATION_PROGRAM_FOLD_SCORER_H_
+#define DUET_MODEL_EVALUATION_PROGRAM_FOLD_SCORER_H_
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "model/evaluation/program/fold_judge.h"
+#include "model/evaluation/protocol/method.h"
+#include "model/evaluation/report/metric_tables.h"
+#include "model/evaluation/protocol/protocol.h"
+
+namespace duet {
+
+// Leaves one subject out at a time and scores methods against the same folds and judges. Each
+// method answers once; every figure is of the same answers. Tells stderr of each fold.
+class FoldScorer {
+ public:
+  // A method for the fold without a subject; its Train is called with the fold's sequences.
+  using MakeMethod =
+      std::function<absl::StatusOr<std::unique_ptr<Method>>(const std::string& subject)>;
+
+  // `dataset` must outlive the scorer. `judged`: train a judge for each fold, which accuracy, fid
+  // and diversity need. Errors: LeaveSubjectOut's, MotionClassifier::Train's.
+  static absl::StatusOr<FoldScorer> Create(const Dataset& dataset,
+                                           const std::vector<std::string>& subjects, bool judged);
+
+  absl::StatusOr<MethodFigures> Score(const std::string& row, const MakeMethod& make) const;
+  // The captured followers of the same tests, as a row.
+  absl::StatusOr<MethodFigures> ScoreCaptured() const;
+
+  // Which judges the figures were measured with: for the settings of a report.
+  std::vector<std::pair<std::string, std::string>> JudgeSettings() const;
+
+ private:
+  struct Fold {
+    std::string subject;
+    Split split;
+    std::vector<MotionClassifier> judge;  // one, or none
+    JudgedFold captured;                  // empty without a judge
+  };
+
+  explicit FoldScorer(const Dataset& dataset) : dataset_(&dataset) {}
+  absl::Status AddJudge(Fold* fold) const;
+  // `motions`: [folds], what was answered in each.
+  absl::StatusOr<MethodFigures> Figures(const std::string& row,
+                                        const std::vector<FoldResult>& results) const;
+
+  const Dataset* dataset_;
+  std::vector<Fold> folds_;
+};
+
+}  // namespace duet
+
+#endif  // DUET_MODEL_EVALUATION_PROGRAM_FOLD_SCORER_H_

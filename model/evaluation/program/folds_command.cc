@@ -1,0 +1,229 @@
+#include <algorithm>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "model/evaluation/baselines/baselines.h"
+#include "model/evaluation/program/commands.h"
+#include "model/evaluation/program/fold_scorer.h"
+#include "model/evaluation/program/models.h"
+#include "model/evaluation/program/named_runs.h"
+#include "model/evaluation/report/metric_tables.h"
+#include "model/evaluation/report/paper_tables.h"
+#include "model/evaluation/report/result_section.h"
+
+namespace duet {
+namespace {
+
+// Of --baselines: the models' rows alone.
+constexpr char kNoBaseline[] = "none";
+
+struct Arguments {
+  std::string data;
+  ModelChoice models;
+  std::vector<std::string> starts = StartNames();
+  std::vector<std::string> baselines = {"class_mean", "frozen_first_frame"};
+  std::vector<std::string> subjects;
+  std::vector<std::string> metrics = {"afd", "afd_squared"};
+  std::vector<std::string> printed;
+  std::string out;
+  std::string id = "10_folds";
+  std::string title = "Leave one subject out";
+};
+
+absl::Status AddModel(const FoldScorer& scorer, const FoldModel& model,
+                      const std::vector<std::string>& starts, std::vector<MethodFigures>* rows) {
+  for (const std::string& start_name : starts) {
+    const StartGiven start = ParseStart(start_name);
+    const std::string row = model.name + StartSuffix(start);
+    absl::StatusOr<MethodFigures> figures = scorer.Score(
+        row, [&](const std::string& subject) -> absl::StatusOr<std::unique_ptr<Method>> {
+          absl::StatusOr<std::shared_ptr<const Synthesizer>> synthesizer = model.load(subject);
+          if (!synthesizer.ok()) return synthesizer.status();
+          return std::make_unique<SynthesizerMethod>(row, *synthesizer, start);
+        });
+    // A model without a start input has one row alone.
+    if (absl::IsFailedPrecondition(figures.status()) && start != StartGiven::kNone) {
+      std::cerr << row << ": left out: " << figures.status().message() << "\n";
+      continue;
+    }
+    if (!figures.ok()) return figures.status();
+    rows->push_back(*std::move(figures));
+  }
+  return absl::OkStatus();
+}
+
+absl::StatusOr<std::vector<MethodFigures>> Rows(const FoldScorer& scorer,
+                                                const std::vector<FoldModel>& models,
+                                                const Arguments& arguments) {
+  std::vector<MethodFigures> rows;
+  for (const std::string& name : arguments.baselines) {
+    if (name == kNoBaseline) continue;
+    absl::StatusOr<MethodFigures> figures =
+        scorer.Score(name, [&](const std::string&) { return MakeBaseline(name); });
+    if (!figures.ok()) return figures.status();
+    rows.push_back(*std::move(figures));
+  }
+  for (const FoldModel& model : models) {
+    absl::Status status = AddModel(scorer, model, arguments.starts, &rows);
+    if (!status.ok()) return status;
+  }
+  absl::StatusOr<MethodFigures> captured = scorer.ScoreCaptured();
+  if (!captured.ok()) return captured.status();
+  rows.push_back(*std::move(captured));
+  return rows;
+}
+
+bool Contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+std::vector<Table> Tables(const Dataset& dataset, const Arguments& arguments,
+                          const std::vector<MethodFigures>& rows) {
+  std::vector<Table> tables;
+  for (const MetricStyle& style : MetricStyles()) {
+    if (!Contains(arguments.metrics, style.name)) continue;
+    tables.push_back(MetricTable(style, dataset.classes, rows));
+    const bool frame_distance = style.name == "afd" || style.name == "afd_squared";
+    if (frame_distance && Contains(arguments.printed, "afd")) {
+      AddPrintedRows(PaperAfdSbu(), &tables.back());
+    }
+    if (style.name == kFrechet && Contains(arguments.printed, "fid")) {
+      AddPrintedRows(PaperFidSbu(), &tables.back());
+    }
+  }
+  return tables;
+}
+
+// One that makes the same tables, without the folders' names.
+std::string Command(const Arguments& arguments, const std::vector<std::string>& subjects) {
+  std::string command = "duet-eval folds --data DIR";
+  for (const std::string& text : arguments.models.runs) {
+    absl::StatusOr<NamedRuns> runs = ParseRuns(text);
+    if (runs.ok()) absl::StrAppend(&command, " --runs ", runs->name, "=RUNS");
+  }
+  const auto add = [&](const std::string& flag, const std::vector<std::string>& values) {
+    absl::StrAppend(&command, " --", flag, " ", values.empty() ? "''" : absl::StrJoin(values, ","));
+  };
+  if (arguments.models.embedded) command += " --embedded";
+  if (!arguments.models.checkpoint.empty()) command += " --checkpoint CHECKPOINT";
+  if (arguments.models.as_served) command += " --as_served";
+  add("starts", arguments.starts);
+  add("baselines", arguments.baselines);
+  add("subjects", subjects);
+  add("metrics", arguments.metrics);
+  if (!arguments.printed.empty()) add("printed", arguments.printed);
+  return command;
+}
+
+ResultSection MakeSection(const Dataset& dataset, const std::vector<std::string>& subjects,
+                          const Arguments& arguments, const FoldScorer& scorer) {
+  ResultSection section;
+  section.id = arguments.id;
+  section.title = arguments.title;
+  section.text = {
+      "Each subject is left out in turn: methods learn from the sequences without that person and "
+      "answer the leaders of all those with. Figures are means over the answers of all folds; the "
+      "names of rows end in what a model was told of the follower's first frame: nothing, where "
+      "its root is (+root), or its pose (+pose)."};
+  if (arguments.models.one_for_all()) {
+    section.text.push_back(
+        "One checkpoint for every fold: it may have been trained on what is tested.");
+  }
+  section.settings = {
+      {"data", absl::StrCat(dataset.name, ", ", dataset.sequences.size(), " sequences")},
+      {"left out in turn", absl::StrJoin(subjects, ", ")},
+      {"models' answers", arguments.models.as_served ? "as served" : "the network's own"}};
+  for (auto& setting : scorer.JudgeSettings()) section.settings.push_back(std::move(setting));
+  section.command = Command(arguments, subjects);
+  section.date = Today();
+  return section;
+}
+
+bool NeedsJudge(const std::vector<std::string>& metrics) {
+  const auto& styles = MetricStyles();
+  return std::any_of(styles.begin(), styles.end(), [&](const MetricStyle& style) {
+    return style.judged && Contains(metrics, style.name);
+  });
+}
+
+absl::Status Run(const Arguments& arguments) {
+  absl::StatusOr<Dataset> dataset = ReadDataset(arguments.data);
+  if (!dataset.ok()) return dataset.status();
+  absl::StatusOr<std::vector<std::string>> subjects = FoldSubjects(*dataset, arguments.subjects);
+  if (!subjects.ok()) return subjects.status();
+  absl::StatusOr<std::vector<FoldModel>> models = OpenModels(arguments.models);
+  if (!models.ok()) return models.status();
+  absl::StatusOr<FoldScorer> scorer =
+      FoldScorer::Create(*dataset, *subjects, NeedsJudge(arguments.metrics));
+  if (!scorer.ok()) return scorer.status();
+  absl::StatusOr<std::vector<MethodFigures>> rows = Rows(*scorer, *models, arguments);
+  if (!rows.ok()) return rows.status();
+  ResultSection section = MakeSection(*dataset, *subjects, arguments, *scorer);
+  section.tables = Tables(*dataset, arguments, *rows);
+  for (const std::string& text : section.text) std::cout << text << "\n";
+  for (const Table& table : section.tables) std::cout << "\n" << ToPlainText(table);
+  return arguments.out.empty() ? absl::OkStatus() : WriteSection(section, arguments.out);
+}
+
+std::vector<std::string> MetricNames() {
+  std::vector<std::string> names;
+  for (const MetricStyle& style : MetricStyles()) names.push_back(style.name);
+  return names;
+}
+
+void AddModelFlags(ModelChoice* models, CLI::App* command) {
+  auto* source = command->add_option_group("model", "what to measure besides the baselines");
+  source
+      ->add_option("--runs", models->runs,
+                   "[NAME=]DIR, output of duet-train --protocol loso; repeatable")
+      ->allow_extra_args(false);
+  source->add_option("--checkpoint", models->checkpoint, "one checkpoint folder for every fold");
+  source->add_flag("--embedded", models->embedded, "the checkpoint inside this program");
+  source->require_option(0, 1);
+  command->add_flag("--as_served", models->as_served,
+                    "with constant limb lengths on the leader's floor, as a server answers "
+                    "(default: the network's own answer)");
+}
+
+}  // namespace
+
+void AddFoldsCommand(CLI::App* app, ChosenCommand* chosen) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command =
+      app->add_subcommand("folds", "Figures of models and baselines, leaving one subject out");
+  command->add_option("--data", arguments->data, "folder of captures (docs/datasets.md)")
+      ->required();
+  AddModelFlags(&arguments->models, command);
+  command
+      ->add_option("--starts", arguments->starts,
+                   "what a model is told of the follower's first frame, a row each")
+      ->delimiter(',')
+      ->check(CLI::IsMember(StartNames()))
+      ->capture_default_str();
+  std::vector<std::string> baselines = BaselineNames();
+  baselines.push_back(kNoBaseline);
+  command->add_option("--baselines", arguments->baselines, "rows beside it, or none")
+      ->delimiter(',')
+      ->check(CLI::IsMember(baselines))
+      ->capture_default_str();
+  command->add_option("--subjects", arguments->subjects, "folds; default: every subject")
+      ->delimiter(',');
+  command->add_option("--metrics", arguments->metrics, "tables to print")
+      ->delimiter(',')
+      ->check(CLI::IsMember(MetricNames()))
+      ->capture_default_str();
+  command->add_option("--printed", arguments->printed, "add the paper's rows: afd, fid")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"afd", "fid"}));
+  command->add_option("--out", arguments->out, "folder of results, for duet-eval report");
+  command->add_option("--id", arguments->id, "of the section")->capture_default_str();
+  command->add_option("--title", arguments->title, "of the section")->capture_default_str();
+  command->callback([arguments, chosen] { *chosen = [arguments] { return Run(*arguments); }; });
+}
+
+}  // namespace duet

@@ -1,0 +1,194 @@
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "model/dataset/dataset.h"
+#include "model/evaluation/program/commands.h"
+#include "model/evaluation/program/fold_models.h"
+#include "model/evaluation/program/named_runs.h"
+#include "model/evaluation/judge/latent.h"
+#include "model/evaluation/report/latent_map.h"
+#include "model/evaluation/report/result_section.h"
+
+namespace duet {
+namespace {
+
+struct Arguments {
+  std::string data;
+  std::vector<std::string> runs;
+  std::vector<std::string> subjects;
+  std::string clips = "test";
+  TsneOptions tsne;
+  std::string out;
+  std::string id = "50_latent";
+  std::string title = "Latent space (Figures 6 and 7)";
+};
+
+// The clips of a fold to show.
+absl::StatusOr<std::vector<int>> ChooseClips(const Dataset& dataset, const std::string& subject,
+                                             const std::string& which) {
+  absl::StatusOr<Split> split = LeaveSubjectOut(dataset, subject);
+  if (!split.ok()) return split.status();
+  if (which == "test") return split->test;
+  if (which == "train") return split->train;
+  std::vector<int> all = split->test;
+  all.insert(all.end(), split->train.begin(), split->train.end());
+  return all;
+}
+
+std::vector<int> ClassesOf(const Dataset& dataset, const std::vector<int>& sequences) {
+  std::vector<int> classes;
+  for (const int index : sequences) {
+    classes.push_back(dataset.sequences[static_cast<size_t>(index)].interaction_class);
+  }
+  return classes;
+}
+
+std::string FigureName(std::string text) {
+  for (char& c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    c = absl::ascii_isalnum(byte) ? absl::ascii_tolower(byte) : '_';
+  }
+  return text;
+}
+
+// A model of one fold.
+struct FoldCheckpoint {
+  std::string model;
+  std::string subject;
+  Checkpoint checkpoint;
+};
+
+// Draws and measures one latent space: a figure and a row of the table.
+absl::Status AddSpace(const Dataset& dataset, const FoldCheckpoint& fold, LatentLabels labels,
+                      const Arguments& arguments, ResultSection* section) {
+  absl::StatusOr<std::vector<int>> clips = ChooseClips(dataset, fold.subject, arguments.clips);
+  if (!clips.ok()) return clips.status();
+  absl::StatusOr<FeatureSet> features = LatentFeatures(fold.checkpoint, dataset, *clips, labels);
+  if (!features.ok()) return features.status();
+  const std::vector<int> classes = ClassesOf(dataset, *clips);
+  absl::StatusOr<LatentMap> map = MapLatent(*features, classes, arguments.tsne);
+  if (!map.ok()) return map.status();
+  const bool blind = labels == LatentLabels::kNone;
+  const std::string name =
+      absl::StrCat(fold.model, blind ? ", label withheld" : "", ", ", fold.subject);
+  section->tables.front().rows.push_back(
+      {name, {map->purity_of_map, map->nearest_neighbour, map->several_neighbours}});
+  section->figures.push_back({FigureName(absl::StrCat(arguments.id, "_", fold.model,
+                                                      blind ? "_no_label_" : "_", fold.subject)),
+                              absl::StrCat("Latent space of ", fold.model, " with ", fold.subject,
+                                           " left out", blind ? ", the label vector withheld" : "",
+                                           ": t-SNE of ", clips->size(), " clips, one point each."),
+                              ToSvg(PlotByClass(name, dataset.classes, map->points, classes))});
+  return absl::OkStatus();
+}
+
+// Of a fold, as duet-train --protocol loso leaves it; or the one run that the folder itself is.
+absl::StatusOr<Checkpoint> ReadFold(const std::filesystem::path& runs, const std::string& subject) {
+  std::error_code error;
+  const bool is_run = std::filesystem::exists(runs / "checkpoint", error);
+  return ReadRunCheckpoint(is_run ? runs : runs / subject);
+}
+
+// A model that reads labels is shown a second time without: its label alone tells the class apart.
+absl::Status AddModel(const Dataset& dataset, const NamedRuns& runs,
+                      const std::vector<std::string>& subjects, const Arguments& arguments,
+                      ResultSection* section) {
+  for (const std::string& subject : subjects) {
+    absl::StatusOr<Checkpoint> checkpoint = ReadFold(runs.folder, subject);
+    if (!checkpoint.ok()) return checkpoint.status();
+    const FoldCheckpoint fold = {runs.name, subject, *std::move(checkpoint)};
+    absl::Status status = AddSpace(dataset, fold, LatentLabels::kOwnClass, arguments, section);
+    if (!status.ok()) return status;
+    if (fold.checkpoint.manifest.generator.variant == "unlabelled") continue;
+    status = AddSpace(dataset, fold, LatentLabels::kNone, arguments, section);
+    if (!status.ok()) return status;
+  }
+  return absl::OkStatus();
+}
+
+ResultSection MakeSection(const Dataset& dataset, const std::vector<std::string>& subjects,
+                          const Arguments& arguments) {
+  ResultSection section;
+  section.id = arguments.id;
+  section.title = arguments.title;
+  section.text = {
+      "A clip is one point: the concatenated output of the generator's encoders, averaged over the "
+      "clip's frames, drawn by t-SNE. Each fold's model has a space of its own.",
+      "A model with a multi-hot embedding is told the class that colours the point: part of its "
+      "order is given, not learnt. The same model with the label vector withheld (all zeros) shows "
+      "what it makes of the leader alone."};
+  Table table;
+  table.title = "Share of clips whose nearest neighbours are of their class";
+  table.columns = {"1 in the map", "1 in the space",
+                   absl::StrCat(kLatentNeighbours, " in the space")};
+  table.decimals = 3;
+  section.tables.push_back(std::move(table));
+  section.settings = {{"data", dataset.name},
+                      {"left out", absl::StrJoin(subjects, ", ")},
+                      {"clips", arguments.clips},
+                      {"t-SNE perplexity", absl::StrCat(arguments.tsne.perplexity)},
+                      {"t-SNE iterations", absl::StrCat(arguments.tsne.iterations)},
+                      {"t-SNE seed", absl::StrCat(arguments.tsne.seed)}};
+  section.command =
+      absl::StrCat("duet-eval latent --data DIR --subjects ", absl::StrJoin(subjects, ","),
+                   " --clips ", arguments.clips, " --perplexity ", arguments.tsne.perplexity,
+                   " --seed ", arguments.tsne.seed);
+  section.date = Today();
+  return section;
+}
+
+absl::Status Run(const Arguments& arguments) {
+  absl::StatusOr<Dataset> dataset = ReadDataset(arguments.data);
+  if (!dataset.ok()) return dataset.status();
+  std::vector<std::string> subjects = arguments.subjects;
+  if (subjects.empty()) subjects = dataset->Subjects();
+  if (arguments.subjects.empty() && subjects.size() > 1) subjects.resize(1);
+  ResultSection section = MakeSection(*dataset, subjects, arguments);
+  for (const std::string& text : arguments.runs) {
+    absl::StatusOr<NamedRuns> runs = ParseRuns(text);
+    if (!runs.ok()) return runs.status();
+    absl::StrAppend(&section.command, " --runs ", runs->name, "=RUNS");
+    absl::Status status = AddModel(*dataset, *runs, subjects, arguments, &section);
+    if (!status.ok()) return status;
+  }
+  std::cout << ToPlainText(section.tables.front());
+  return arguments.out.empty() ? absl::OkStatus() : WriteSection(section, arguments.out);
+}
+
+}  // namespace
+
+void AddLatentCommand(CLI::App* app, ChosenCommand* chosen) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command =
+      app->add_subcommand("latent", "Maps of the generator's latent space (Figures 6 and 7)");
+  command->add_option("--data", arguments->data, "folder of captures (docs/datasets.md)")
+      ->required();
+  command
+      ->add_option("--runs", arguments->runs,
+                   "NAME=DIR, output of duet-train --protocol loso, or one run; repeatable")
+      ->required()
+      ->allow_extra_args(false);
+  command->add_option("--subjects", arguments->subjects, "folds; default: the first subject")
+      ->delimiter(',');
+  command->add_option("--clips", arguments->clips, "of the fold: test, train or all")
+      ->check(CLI::IsMember({"test", "train", "all"}))
+      ->capture_default_str();
+  command->add_option("--perplexity", arguments->tsne.perplexity, "lowered for few clips")
+      ->check(CLI::Range(1.0, 1000.0))
+      ->capture_default_str();
+  command->add_option("--seed", arguments->tsne.seed, "of the map's start")->capture_default_str();
+  command->add_option("--out", arguments->out, "folder of results, for duet-eval report");
+  command->add_option("--id", arguments->id, "of the section")->capture_default_str();
+  command->add_option("--title", arguments->title, "of the section")->capture_default_str();
+  command->callback([arguments, chosen] { *chosen = [arguments] { return Run(*arguments); }; });
+}
+
+}  // namespace duet

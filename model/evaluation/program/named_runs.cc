@@ -1,0 +1,40 @@
+#include "model/evaluation/program/named_runs.h"
+
+#include "absl/strings/str_cat.h"
+
+namespace duet {
+
+absl::StatusOr<NamedRuns> ParseRuns(const std::string& text) {
+  const size_t equals = text.find('=');
+  NamedRuns runs{text.substr(0, equals), text};
+  if (equals == std::string::npos) {
+    // "runs/" ends in an empty part.
+    const std::filesystem::path path = (std::filesystem::path(text) / "").parent_path();
+    runs.name = path.lexically_normal().filename().string();
+  } else {
+    runs.folder = text.substr(equals + 1);
+  }
+  if (!runs.name.empty() && !runs.folder.empty()) return runs;
+  return absl::InvalidArgumentError(absl::StrCat("--runs ", text, ": wanted NAME=DIR or DIR"));
+}
+
+std::vector<std::string> StartNames() { return {"none", "root", "pose"}; }
+
+StartGiven ParseStart(const std::string& name) {
+  if (name == "root") return StartGiven::kRoot;
+  return name == "pose" ? StartGiven::kPose : StartGiven::kNone;
+}
+
+std::string StartSuffix(StartGiven start) {
+  switch (start) {
+    case StartGiven::kNone:
+      return "";
+    case StartGiven::kRoot:
+      return "+root";
+    case StartGiven::kPose:
+      return "+pose";
+  }
+  return "";
+}
+
+}  // namespace duet

@@ -1,0 +1,29 @@
+#ifndef DUET_MODEL_EVALUATION_PROGRAM_NAMED_RUNS_H_
+#define DUET_MODEL_EVALUATION_PROGRAM_NAMED_RUNS_H_
+
+#include <filesystem>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "model/evaluation/experiments/synthesizer_method.h"
+
+namespace duet {
+
+// Runs of duet-train, and how the tables call them.
+struct NamedRuns {
+  std::string name;
+  std::filesystem::path folder;
+};
+
+// "ours=DIR", or a folder alone, which is named by its last part. Errors: INVALID_ARGUMENT.
+absl::StatusOr<NamedRuns> ParseRuns(const std::string& text);
+
+// "none", "root" or "pose", and what a row's name adds for it: "", "+root", "+pose". Requires one
+// of StartNames.
+StartGiven ParseStart(const std::string& name);
+std::vector<std::string> StartNames();
+std::string StartSuffix(StartGiven start);
+
+}  // namespace duet
+
+#endif  // DUET_MODEL_EVALUATION_PROGRAM_NAMED_RUNS_H_

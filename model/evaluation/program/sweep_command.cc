@@ -1,0 +1,228 @@
+#include <cstddef>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "model/evaluation/program/commands.h"
+#include "model/evaluation/program/fold_judge.h"
+#include "model/evaluation/program/models.h"
+#include "model/evaluation/program/named_runs.h"
+#include "model/evaluation/experiments/label_sweep.h"
+#include "model/evaluation/report/result_section.h"
+
+namespace duet {
+namespace {
+
+struct Arguments {
+  std::string data;
+  ModelChoice models;
+  std::vector<std::string> starts = {"none", "pose"};
+  std::vector<std::string> subjects;
+  std::string out;
+  std::string id = "30_sweep";
+  std::string title = "Mix, match and avoid: what label weights do";
+};
+
+// One fold: its generator, and its judge, who has not seen the left-out subject either.
+struct SweepFold {
+  std::string subject;
+  std::vector<int> test;
+  std::shared_ptr<const Synthesizer> model;
+  std::vector<MotionClassifier> judge;  // one
+};
+
+// A leader's answers at every weight of every class, own and added.
+absl::Status SweepLeader(const Dataset& dataset, const SweepFold& fold, int index, StartGiven start,
+                         std::vector<SweepCurve>* curves) {
+  const Sequence& sequence = dataset.sequences[static_cast<size_t>(index)];
+  const int classes = dataset.class_count(), own = sequence.interaction_class;
+  std::vector<LabelledLeader> leaders;
+  for (int raised = 0; raised < classes; ++raised) {
+    for (const double weight : SweepWeights()) {
+      leaders.push_back({&sequence, SweepLabels(classes, own, raised, weight)});
+    }
+  }
+  absl::StatusOr<std::vector<std::vector<Vec3>>> followers =
+      SynthesizeSequences(*fold.model, leaders, start);
+  if (!followers.ok()) return followers.status();
+  std::vector<ScoredMotion> motions;
+  for (std::vector<Vec3>& follower : *followers) motions.push_back({index, std::move(follower)});
+  const auto probabilities = fold.judge.front().Probabilities(dataset, motions);
+  auto row = probabilities.begin();
+  for (int raised = 0; raised < classes; ++raised) {
+    const auto end = row + static_cast<std::ptrdiff_t>(SweepWeights().size());
+    curves->push_back({own, raised, {row, end}});
+    row = end;
+  }
+  return absl::OkStatus();
+}
+
+absl::StatusOr<SweepFold> OpenFold(const Dataset& dataset, const FoldModel& model,
+                                   const std::string& subject,
+                                   const std::vector<std::string>& starts) {
+  absl::StatusOr<Split> split = LeaveSubjectOut(dataset, subject);
+  if (!split.ok()) return split.status();
+  absl::StatusOr<std::shared_ptr<const Synthesizer>> synthesizer = model.load(subject);
+  if (!synthesizer.ok()) return synthesizer.status();
+  for (const std::string& start : starts) {
+    absl::Status fits =
+        SynthesizerMethod(model.name, *synthesizer, ParseStart(start)).Train(dataset, split->train);
+    if (!fits.ok()) return fits;
+  }
+  absl::StatusOr<MotionClassifier> judge = TrainFoldJudge(dataset, subject);
+  if (!judge.ok()) return judge.status();
+  return SweepFold{subject, split->test, *std::move(synthesizer), {*std::move(judge)}};
+}
+
+absl::StatusOr<std::vector<SweepCurve>> SweepFolds(const Dataset& dataset,
+                                                   const std::vector<SweepFold>& folds,
+                                                   StartGiven start) {
+  std::vector<SweepCurve> curves;
+  for (const SweepFold& fold : folds) {
+    for (const int index : fold.test) {
+      absl::Status status = SweepLeader(dataset, fold, index, start, &curves);
+      if (!status.ok()) return status;
+    }
+    std::cerr << "sweep" << StartSuffix(start) << " without " << fold.subject << ": "
+              << fold.test.size() << " leaders\n";
+  }
+  return curves;
+}
+
+// What follows a start's name in titles and captions.
+std::string Told(StartGiven start) {
+  switch (start) {
+    case StartGiven::kNone:
+      return "without a start";
+    case StartGiven::kRoot:
+      return "given the first root";
+    case StartGiven::kPose:
+      return "given the first pose";
+  }
+  return "";
+}
+
+std::string KindTitle(SweepKind kind) {
+  return kind == SweepKind::kOwn ? "Own class alone" : "Another class beside the own one";
+}
+
+void AddFigures(const Dataset& dataset, const std::vector<SweepCurve>& curves, SweepKind kind,
+                const std::string& name_end, const std::string& told, ResultSection* section) {
+  for (int c = 0; c < dataset.class_count(); ++c) {
+    const std::string& name = dataset.classes[static_cast<size_t>(c)];
+    const LinePlot plot =
+        SweepPlot(absl::StrCat(name, kind == SweepKind::kOwn ? " alone, " : " added, ", told),
+                  dataset.classes, curves, kind, c);
+    const std::string caption =
+        kind == SweepKind::kOwn
+            ? absl::StrCat("Leaders of ", name, " answered with the weight of ", name, " alone, ",
+                           told, ": the judges' mean probability of every class.")
+            : absl::StrCat("Leaders of the other classes answered with their own class at 1 and ",
+                           name, " added, ", told, ": the judges' mean probability of ", name, ".");
+    section->figures.push_back(
+        {absl::StrCat(section->id, kind == SweepKind::kOwn ? "_own_" : "_added_", name, name_end),
+         caption, ToSvg(plot)});
+  }
+}
+
+void AddStart(const Dataset& dataset, const std::vector<SweepCurve>& curves, StartGiven start,
+              ResultSection* section) {
+  const std::string told = Told(start);
+  const std::string name_end = start == StartGiven::kNone   ? ""
+                               : start == StartGiven::kRoot ? "_root"
+                                                            : "_pose";
+  for (const SweepKind kind : {SweepKind::kOwn, SweepKind::kAdded}) {
+    section->tables.push_back(
+        ControlTable(absl::StrCat(KindTitle(kind), ", ", told), dataset.classes, curves, kind));
+    AddFigures(dataset, curves, kind, name_end, told, section);
+  }
+}
+
+ResultSection MakeSection(const Dataset& dataset, const FoldModel& model,
+                          const std::vector<SweepFold>& folds, const Arguments& arguments) {
+  ResultSection section;
+  section.id = arguments.id;
+  section.title = arguments.title;
+  section.text = {
+      "Every leader of every fold's left-out subject is answered at each weight from -1 to 2 of "
+      "its own class alone, and of each other class beside its own at 1. The fold's judge, who has "
+      "not seen the left-out subject either, says how probable it finds each class. At weight 0 "
+      "of the own class the network is asked for nothing; what it answers then is its guess from "
+      "the leader."};
+  std::vector<std::string> subjects;
+  for (const SweepFold& fold : folds) subjects.push_back(fold.subject);
+  section.settings = {
+      {"data", absl::StrCat(dataset.name, ", ", dataset.sequences.size(), " sequences")},
+      {"model", model.name},
+      {"left out in turn", absl::StrJoin(subjects, ", ")},
+      {"models' answers", arguments.models.as_served ? "as served" : "the network's own"}};
+  for (const SweepFold& fold : folds) {
+    section.settings.emplace_back(absl::StrCat("judge without ", fold.subject, ", SHA-256"),
+                                  fold.judge.front().hash());
+  }
+  section.command =
+      absl::StrCat("duet-eval sweep --data DIR --runs ", model.name, "=RUNS --subjects ",
+                   absl::StrJoin(subjects, ","), " --starts ", absl::StrJoin(arguments.starts, ","),
+                   arguments.models.as_served ? " --as_served" : "");
+  section.date = Today();
+  return section;
+}
+
+absl::Status Run(const Arguments& arguments) {
+  absl::StatusOr<Dataset> dataset = ReadDataset(arguments.data);
+  if (!dataset.ok()) return dataset.status();
+  absl::StatusOr<std::vector<FoldModel>> models = OpenModels(arguments.models);
+  if (!models.ok()) return models.status();
+  const FoldModel& model = models->front();
+  absl::StatusOr<std::vector<std::string>> subjects = FoldSubjects(*dataset, arguments.subjects);
+  if (!subjects.ok()) return subjects.status();
+  std::vector<SweepFold> folds;
+  for (const std::string& subject : *subjects) {
+    absl::StatusOr<SweepFold> fold = OpenFold(*dataset, model, subject, arguments.starts);
+    if (!fold.ok()) return fold.status();
+    folds.push_back(*std::move(fold));
+  }
+  ResultSection section = MakeSection(*dataset, model, folds, arguments);
+  for (const std::string& name : arguments.starts) {
+    const StartGiven start = ParseStart(name);
+    absl::StatusOr<std::vector<SweepCurve>> curves = SweepFolds(*dataset, folds, start);
+    if (!curves.ok()) return curves.status();
+    AddStart(*dataset, *curves, start, &section);
+  }
+  for (const Table& table : section.tables) std::cout << ToPlainText(table) << "\n";
+  return arguments.out.empty() ? absl::OkStatus() : WriteSection(section, arguments.out);
+}
+
+}  // namespace
+
+void AddSweepCommand(CLI::App* app, ChosenCommand* chosen) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app->add_subcommand("sweep", "What raising and lowering label weights does");
+  command->add_option("--data", arguments->data, "folder of captures (docs/datasets.md)")
+      ->required();
+  arguments->models.runs.resize(1);
+  command
+      ->add_option("--runs", arguments->models.runs.front(),
+                   "[NAME=]DIR, output of duet-train --protocol loso")
+      ->required();
+  command->add_flag("--as_served", arguments->models.as_served,
+                    "with constant limb lengths on the leader's floor, as a server answers");
+  command
+      ->add_option("--starts", arguments->starts,
+                   "what the model is told of the follower's first frame, two tables each")
+      ->delimiter(',')
+      ->check(CLI::IsMember(StartNames()))
+      ->capture_default_str();
+  command->add_option("--subjects", arguments->subjects, "folds; default: every subject")
+      ->delimiter(',');
+  command->add_option("--out", arguments->out, "folder of results, for duet-eval report");
+  command->add_option("--id", arguments->id, "of the section")->capture_default_str();
+  command->add_option("--title", arguments->title, "of the section")->capture_default_str();
+  command->callback([arguments, chosen] { *chosen = [arguments] { return Run(*arguments); }; });
+}
+
+}  // namespace duet

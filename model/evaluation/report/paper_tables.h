@@ -1,0 +1,18 @@
+#ifndef DUET_MODEL_EVALUATION_REPORT_PAPER_TABLES_H_
+#define DUET_MODEL_EVALUATION_REPORT_PAPER_TABLES_H_
+
+#include "model/evaluation/report/table.h"
+
+namespace duet {
+
+// The figures that Goel et al. 2022 print, every row marked as printed, each table with a note on
+// what it may be compared with. Columns bear this project's class names.
+
+Table PaperAfdSbu();        // Tables 1 and 4: average frame distance on SBU
+Table PaperFidSbu();        // Table 2
+Table PaperFid2c();         // Tables 3 and 5
+Table PaperAugmentation();  // Table 6: a classifier's accuracy without and with synthetic motion
+
+}  // namespace duet
+
+#endif  // DUET_MODEL_EVALUATION_REPORT_PAPER_TABLES_H_

@@ -1,0 +1,151 @@
+#include "model/evaluation/report/table.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <limits>
+
+#include "model/evaluation/report/markup.h"
+
+namespace duet {
+namespace {
+
+constexpr char kDash[] = "-";
+
+std::string Rounded(double value, int decimals) {
+  if (std::isnan(value)) return kDash;
+  char text[400];  // the largest double has 309 digits before the point
+  std::snprintf(text, sizeof(text), "%.*f", decimals, value);
+  const std::string rounded = text;
+  // "-0.00" would say less than nothing.
+  const bool is_zero = rounded.find_first_of("123456789in") == std::string::npos;
+  return is_zero && rounded[0] == '-' ? rounded.substr(1) : rounded;
+}
+
+// The shortest form that reads back as the same number; empty for a missing one.
+std::string Exact(double value) {
+  if (std::isnan(value)) return "";
+  char text[32];
+  const std::to_chars_result end = std::to_chars(text, text + sizeof(text), value);
+  return std::string(text, end.ptr);
+}
+
+// The best of a column among the rows measured here, as printed; empty if there is none.
+std::string BestOf(const Table& table, size_t column) {
+  double best = std::numeric_limits<double>::quiet_NaN();
+  for (const TableRow& row : table.rows) {
+    const double value = row.values[column];
+    if (row.printed || std::isnan(value)) continue;
+    const bool better = table.best == Best::kLowest ? value < best : value > best;
+    if (std::isnan(best) || better) best = value;
+  }
+  if (table.best == Best::kNone || std::isnan(best)) return "";
+  return Rounded(best, table.decimals);
+}
+
+// Characters, not bytes: names may hold more than ASCII.
+size_t Width(const std::string& text) {
+  return static_cast<size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
+}
+
+std::string PadLeft(const std::string& text, size_t width) {
+  return std::string(width - std::min(width, Width(text)), ' ') + text;
+}
+
+std::string PadRight(const std::string& text, size_t width) {
+  return text + std::string(width - std::min(width, Width(text)), ' ');
+}
+
+std::string EscapeCsv(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"') out += '"';
+    out += c;
+  }
+  return out + '"';
+}
+
+}  // namespace
+
+std::vector<std::vector<TableCell>> FormatCells(const Table& table) {
+  std::vector<std::vector<TableCell>> cells(table.rows.size());
+  for (size_t column = 0; column < table.columns.size(); ++column) {
+    const std::string best = BestOf(table, column);
+    for (size_t i = 0; i < table.rows.size(); ++i) {
+      const std::string text = Rounded(table.rows[i].values[column], table.decimals);
+      cells[i].push_back({text, text == best && !table.rows[i].printed});
+    }
+  }
+  return cells;
+}
+
+void AddMeanColumn(Table* table) {
+  table->columns.push_back("mean");
+  for (TableRow& row : table->rows) {
+    double sum = 0;
+    for (const double value : row.values) sum += value;
+    row.values.push_back(sum / static_cast<double>(row.values.size()));
+  }
+}
+
+std::string ToPlainText(const Table& table) {
+  std::vector<std::vector<std::string>> lines = {{""}};
+  lines[0].insert(lines[0].end(), table.columns.begin(), table.columns.end());
+  const std::vector<std::vector<TableCell>> cells = FormatCells(table);
+  for (size_t i = 0; i < table.rows.size(); ++i) {
+    lines.push_back({table.rows[i].name});
+    for (const TableCell& cell : cells[i])
+      lines.back().push_back((cell.best ? "*" : "") + cell.text);
+  }
+  std::vector<size_t> widths(lines[0].size());
+  for (const std::vector<std::string>& line : lines) {
+    for (size_t i = 0; i < line.size(); ++i) widths[i] = std::max(widths[i], Width(line[i]));
+  }
+  std::string text = table.title + '\n';
+  for (const std::vector<std::string>& line : lines) {
+    text += PadRight(line[0], widths[0]);
+    for (size_t i = 1; i < line.size(); ++i) text += "  " + PadLeft(line[i], widths[i]);
+    text += '\n';
+  }
+  for (const std::string& note : table.notes) text += "  " + note + '\n';
+  return text;
+}
+
+std::string ToMarkdown(const Table& table) {
+  std::string text = "**" + EscapeMarkdown(table.title) + "**\n\n| |";
+  std::string rule = "|---|";
+  for (const std::string& column : table.columns) {
+    text += ' ' + EscapeMarkdown(column) + " |";
+    rule += "---:|";
+  }
+  text += '\n' + rule + '\n';
+  const std::vector<std::vector<TableCell>> cells = FormatCells(table);
+  for (size_t i = 0; i < table.rows.size(); ++i) {
+    const std::string name = EscapeMarkdown(table.rows[i].name);
+    text += table.rows[i].printed ? "| *" + name + "* |" : "| " + name + " |";
+    for (const TableCell& cell : cells[i]) {
+      text += cell.best ? " **" + cell.text + "** |" : ' ' + cell.text + " |";
+    }
+    text += '\n';
+  }
+  for (const std::string& note : table.notes) text += '\n' + EscapeMarkdown(note) + '\n';
+  return text;
+}
+
+std::string ToCsv(const Table& table) {
+  std::string text = "row,printed";
+  for (const std::string& column : table.columns) text += ',' + EscapeCsv(column);
+  text += '\n';
+  for (const TableRow& row : table.rows) {
+    text += EscapeCsv(row.name) + (row.printed ? ",true" : ",false");
+    for (const double value : row.values) text += ',' + Exact(value);
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace duet

@@ -1,0 +1,414 @@
+#include "model/formats/bvh/bvh_document.h"
+
+#include <cmath>
+#include <utility>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "model/base/text.h"
+
+namespace duet {
+namespace {
+
+constexpr double kRadiansPerDegree = 3.14159265358979323846 / 180;
+constexpr int kMaxChannels = 6;
+constexpr int kOffsetDecimals = 6;
+constexpr int kValueDecimals = 5;
+constexpr int kFrameTimeDecimals = 9;
+
+struct ChannelName {
+  BvhChannel channel;
+  const char* name;
+};
+constexpr ChannelName kChannelNames[] = {
+    {BvhChannel::kXPosition, "Xposition"}, {BvhChannel::kYPosition, "Yposition"},
+    {BvhChannel::kZPosition, "Zposition"}, {BvhChannel::kXRotation, "Xrotation"},
+    {BvhChannel::kYRotation, "Yrotation"}, {BvhChannel::kZRotation, "Zrotation"}};
+
+const ChannelName* FindChannel(absl::string_view name) {
+  for (const ChannelName& entry : kChannelNames) {
+    if (absl::EqualsIgnoreCase(entry.name, name)) return &entry;
+  }
+  return nullptr;
+}
+
+bool IsPosition(BvhChannel channel) { return channel <= BvhChannel::kZPosition; }
+
+// Words and lines of a text, and where they stand.
+class Cursor {
+ public:
+  explicit Cursor(absl::string_view text) : rest_(text) {}
+
+  // The next word, empty at the end of the text.
+  absl::string_view Word() {
+    while (!rest_.empty() && absl::ascii_isspace(static_cast<unsigned char>(rest_[0]))) {
+      line_ += rest_[0] == '\n' ? 1 : 0;
+      rest_.remove_prefix(1);
+    }
+    std::size_t size = 0;
+    while (size < rest_.size() && !absl::ascii_isspace(static_cast<unsigned char>(rest_[size]))) {
+      ++size;
+    }
+    return Take(size);
+  }
+
+  // The rest of the line up to a brace, without blanks at its ends: names may hold spaces.
+  absl::string_view Name() {
+    const std::size_t end = rest_.find_first_of("{}\n");
+    return absl::StripAsciiWhitespace(Take(end == absl::string_view::npos ? rest_.size() : end));
+  }
+
+  absl::string_view rest() const { return rest_; }
+  int line() const { return line_; }
+
+ private:
+  absl::string_view Take(std::size_t size) {
+    const absl::string_view taken = rest_.substr(0, size);
+    rest_.remove_prefix(size);
+    return taken;
+  }
+
+  absl::string_view rest_;
+  int line_ = 1;
+};
+
+class BvhParser {
+ public:
+  BvhParser(absl::string_view text, absl::string_view source) : cursor_(text), source_(source) {}
+
+  absl::StatusOr<BvhDocument> Parse() {
+    absl::Status status = ParseHierarchy();
+    if (status.ok()) status = ParseMotionHeader();
+    if (status.ok()) status = ParseFrames();
+    if (!status.ok()) return status;
+    return std::move(document_);
+  }
+
+ private:
+  absl::Status Error(absl::string_view message) const {
+    return ErrorAt(source_, cursor_.line(), message);
+  }
+
+  absl::Status Unexpected(absl::string_view came, absl::string_view wanted) const {
+    return Error(absl::StrCat("came ", came.empty() ? "the end of the file" : Quoted(came),
+                              ", wanted ", wanted));
+  }
+
+  absl::Status ParseHierarchy() {
+    const absl::string_view first = cursor_.Word();
+    if (first != "HIERARCHY") return Unexpected(first, "HIERARCHY (is this a BVH file?)");
+    while (true) {
+      const absl::string_view word = cursor_.Word();
+      if (word == "MOTION" && open_.empty() && !document_.joints.empty()) return absl::OkStatus();
+      absl::Status status = ParseStatement(word);
+      if (!status.ok()) return status;
+    }
+  }
+
+  absl::Status ParseStatement(absl::string_view word) {
+    if (open_.empty()) {
+      if (word == "ROOT") return OpenJoint(word, /*end_site=*/false);
+      return Unexpected(word, document_.joints.empty() ? "ROOT" : "ROOT or MOTION");
+    }
+    const bool in_end_site = document_.joints[static_cast<size_t>(open_.back())].end_site;
+    if (word == "OFFSET") return ParseOffset();
+    if (word == "}") return CloseJoint();
+    if (word == "CHANNELS" && !in_end_site) return ParseChannels();
+    if (word == "JOINT" && !in_end_site) return OpenJoint(word, /*end_site=*/false);
+    if (word == "End" && !in_end_site) return OpenJoint(word, /*end_site=*/true);
+    return Unexpected(word, in_end_site ? "OFFSET or }" : "OFFSET, CHANNELS, JOINT, End Site or }");
+  }
+
+  absl::Status OpenJoint(absl::string_view keyword, bool end_site) {
+    BvhJoint joint;
+    joint.parent = open_.empty() ? -1 : open_.back();
+    joint.end_site = end_site;
+    const absl::string_view name = cursor_.Name();
+    if (name.empty()) return Error(absl::StrCat(keyword, ": no name"));
+    joint.name =
+        end_site ? absl::StrCat(document_.joints[static_cast<size_t>(joint.parent)].name, ".end")
+                 : std::string(name);
+    if (document_.joints.size() >= kMaxFileJoints) {
+      return Error(absl::StrCat("more than ", kMaxFileJoints, " joints"));
+    }
+    const absl::string_view brace = cursor_.Word();
+    if (brace != "{") return Unexpected(brace, absl::StrCat("{ after ", keyword, " ", name));
+    open_.push_back(static_cast<int>(document_.joints.size()));
+    has_offset_.push_back(false);
+    document_.joints.push_back(std::move(joint));
+    return absl::OkStatus();
+  }
+
+  absl::Status CloseJoint() {
+    const BvhJoint& joint = document_.joints[static_cast<size_t>(open_.back())];
+    if (!has_offset_[static_cast<size_t>(open_.back())]) {
+      return Error(absl::StrCat("joint ", Quoted(joint.name), ": no OFFSET"));
+    }
+    open_.pop_back();
+    return absl::OkStatus();
+  }
+
+  absl::Status ParseOffset() {
+    float values[3] = {};
+    for (float& value : values) {
+      const absl::string_view word = cursor_.Word();
+      if (!ParseCoordinate(word, &value)) return Unexpected(word, "a number of OFFSET x y z");
+    }
+    document_.joints[static_cast<size_t>(open_.back())].offset = {values[0], values[1], values[2]};
+    has_offset_[static_cast<size_t>(open_.back())] = true;
+    return absl::OkStatus();
+  }
+
+  absl::Status ParseChannels() {
+    BvhJoint& joint = document_.joints[static_cast<size_t>(open_.back())];
+    const absl::string_view word = cursor_.Word();
+    int count = 0;
+    if (!ParseInteger(word, &count) || count < 0 || count > kMaxChannels) {
+      return Unexpected(word, "a number of channels, 0 to 6");
+    }
+    if (!joint.channels.empty()) return Error("CHANNELS: given twice for one joint");
+    for (int i = 0; i < count; ++i) {
+      const absl::string_view name = cursor_.Word();
+      const ChannelName* entry = FindChannel(name);
+      if (entry == nullptr) return Unexpected(name, "a channel such as Xposition or Zrotation");
+      for (BvhChannel earlier : joint.channels) {
+        if (earlier == entry->channel)
+          return Error(absl::StrCat("channel ", name, ": given twice"));
+      }
+      joint.channels.push_back(entry->channel);
+    }
+    return absl::OkStatus();
+  }
+
+  absl::Status ParseMotionHeader() {
+    absl::string_view word = cursor_.Word();
+    if (word != "Frames:") return Unexpected(word, "Frames:");
+    word = cursor_.Word();
+    if (!ParseInteger(word, &document_.frame_count) || document_.frame_count < 1 ||
+        document_.frame_count > kMaxMotionFrames) {
+      return Unexpected(word, absl::StrCat("a number of frames, 1 to ", kMaxMotionFrames));
+    }
+    word = cursor_.Word();
+    if (word == "Frame") word = cursor_.Word();
+    if (word != "Time:") return Unexpected(word, "Frame Time:");
+    word = cursor_.Word();
+    if (!ParseNumber(word, &document_.frame_time_s) ||
+        !(document_.frame_time_s >= 1 / kMaxFrameRateHz && document_.frame_time_s <= 10)) {
+      return Unexpected(word, "a frame time of 0.001 to 10 seconds");
+    }
+    return absl::OkStatus();
+  }
+
+  absl::Status ParseFrames() {
+    const int first_line = cursor_.line();
+    LineReader lines(cursor_.rest());
+    int frames = 0;
+    for (absl::string_view line; lines.Next(&line);) {
+      line = absl::StripAsciiWhitespace(line);
+      if (line.empty()) continue;
+      const int number = first_line + lines.number() - 1;
+      if (frames == document_.frame_count) {
+        return ErrorAt(source_, number,
+                       absl::StrCat("came more frames than the ", frames, " of Frames:"));
+      }
+      absl::Status status = ParseFrame(line, number);
+      if (!status.ok()) return status;
+      ++frames;
+    }
+    if (frames == document_.frame_count) return absl::OkStatus();
+    return ErrorAt(source_, first_line + lines.number(),
+                   absl::StrCat("came ", frames, " frames, wanted the ", document_.frame_count,
+                                " of Frames:"));
+  }
+
+  absl::Status ParseFrame(absl::string_view line, int number) {
+    const int wanted = document_.ChannelCount();
+    Cursor words(line);
+    int count = 0;
+    for (absl::string_view word = words.Word(); !word.empty(); word = words.Word(), ++count) {
+      float value = 0;
+      if (!ParseCoordinate(word, &value)) {
+        return ErrorAt(source_, number,
+                       absl::StrCat("channel value ", count + 1, ": came ", Quoted(word),
+                                    ", wanted a finite number"));
+      }
+      if (count < wanted) document_.values.push_back(value);
+    }
+    if (count == wanted) return absl::OkStatus();
+    return ErrorAt(source_, number,
+                   absl::StrCat("came ", count, " channel values, wanted ", wanted));
+  }
+
+  Cursor cursor_;
+  absl::string_view source_;
+  BvhDocument document_;
+  std::vector<int> open_;         // joints whose brace is open, outermost first
+  std::vector<bool> has_offset_;  // [joints]
+};
+
+class BvhFormatter {
+ public:
+  explicit BvhFormatter(const BvhDocument& document) : document_(document) {}
+
+  std::string Format() {
+    out_ = "HIERARCHY\n";
+    std::vector<int> open;
+    for (std::size_t joint = 0; joint < document_.joints.size(); ++joint) {
+      const int parent = document_.joints[joint].parent;
+      while (!open.empty() && open.back() != parent) Close(&open);
+      Open(document_.joints[joint], open.size());
+      open.push_back(static_cast<int>(joint));
+    }
+    while (!open.empty()) Close(&open);
+    AppendMotion();
+    return std::move(out_);
+  }
+
+ private:
+  void Indent(std::size_t depth) { out_.append(2 * depth, ' '); }
+
+  void Open(const BvhJoint& joint, std::size_t depth) {
+    Indent(depth);
+    if (joint.end_site) {
+      out_ += "End Site\n";
+    } else {
+      absl::StrAppend(&out_, joint.parent < 0 ? "ROOT " : "JOINT ", joint.name, "\n");
+    }
+    Indent(depth);
+    out_ += "{\n";
+    Indent(depth + 1);
+    out_ += "OFFSET";
+    for (double value : {joint.offset.x, joint.offset.y, joint.offset.z}) {
+      out_ += ' ';
+      AppendFixed(&out_, value, kOffsetDecimals);
+    }
+    out_ += '\n';
+    if (!joint.end_site) AppendChannels(joint, depth + 1);
+  }
+
+  void Close(std::vector<int>* open) {
+    open->pop_back();
+    Indent(open->size());
+    out_ += "}\n";
+  }
+
+  void AppendChannels(const BvhJoint& joint, std::size_t depth) {
+    Indent(depth);
+    absl::StrAppend(&out_, "CHANNELS ", joint.channels.size());
+    for (BvhChannel channel : joint.channels) {
+      for (const ChannelName& entry : kChannelNames) {
+        if (entry.channel == channel) absl::StrAppend(&out_, " ", entry.name);
+      }
+    }
+    out_ += '\n';
+  }
+
+  void AppendMotion() {
+    absl::StrAppend(&out_, "MOTION\nFrames: ", document_.frame_count, "\nFrame Time: ");
+    AppendFixed(&out_, document_.frame_time_s, kFrameTimeDecimals);
+    out_ += '\n';
+    const std::size_t channels = static_cast<std::size_t>(document_.ChannelCount());
+    for (std::size_t i = 0; i < document_.values.size(); ++i) {
+      AppendFixed(&out_, static_cast<double>(document_.values[i]), kValueDecimals);
+      out_ += (i + 1) % channels == 0 ? '\n' : ' ';
+    }
+  }
+
+  const BvhDocument& document_;
+  std::string out_;
+};
+
+Quaternion ChannelRotation(BvhChannel channel, double degrees) {
+  const double radians = degrees * kRadiansPerDegree;
+  switch (channel) {
+    case BvhChannel::kXRotation:
+      return AxisAngle({1, 0, 0}, radians);
+    case BvhChannel::kYRotation:
+      return AxisAngle({0, 1, 0}, radians);
+    default:
+      return AxisAngle({0, 0, 1}, radians);
+  }
+}
+
+double* Axis(BvhChannel position_channel, Vec3d* vector) {
+  switch (position_channel) {
+    case BvhChannel::kXPosition:
+      return &vector->x;
+    case BvhChannel::kYPosition:
+      return &vector->y;
+    default:
+      return &vector->z;
+  }
+}
+
+}  // namespace
+
+int BvhDocument::ChannelCount() const {
+  std::size_t count = 0;
+  for (const BvhJoint& joint : joints) count += joint.channels.size();
+  return static_cast<int>(count);
+}
+
+absl::StatusOr<BvhDocument> ParseBvh(absl::string_view text, absl::string_view source) {
+  return BvhParser(text, source).Parse();
+}
+
+std::string FormatBvh(const BvhDocument& document) { return BvhFormatter(document).Format(); }
+
+BvhKinematics::BvhKinematics(const BvhDocument& document)
+    : document_(document), adds_to_offset_(document.joints.size(), false) {
+  const float* value = document.values.data();
+  for (std::size_t j = 0; j < document.joints.size(); ++j) {
+    const BvhJoint& joint = document.joints[j];
+    double to_zero = 0, to_offset = 0;
+    for (BvhChannel channel : joint.channels) {
+      const double v = static_cast<double>(*value++);
+      if (!IsPosition(channel)) continue;
+      Vec3d offset = joint.offset;
+      to_zero += std::abs(v);
+      to_offset += std::abs(v - *Axis(channel, &offset));
+    }
+    adds_to_offset_[j] = joint.parent >= 0 && to_zero < to_offset;
+  }
+}
+
+BvhKinematics::Local BvhKinematics::LocalTransform(std::size_t joint, const float* values) const {
+  Local local{document_.joints[joint].offset, {}};
+  for (BvhChannel channel : document_.joints[joint].channels) {
+    const double value = static_cast<double>(*values++);
+    if (!IsPosition(channel)) {
+      local.rotation = local.rotation * ChannelRotation(channel, value);
+    } else if (adds_to_offset_[joint]) {
+      *Axis(channel, &local.translation) += value;
+    } else {
+      *Axis(channel, &local.translation) = value;
+    }
+  }
+  return local;
+}
+
+std::vector<Vec3d> BvhKinematics::Positions(int frame) const {
+  const std::size_t count = document_.joints.size();
+  std::vector<Vec3d> positions(count);
+  std::vector<Quaternion> rotations(count);
+  const float* values =
+      document_.values.data() +
+      static_cast<std::size_t>(frame) * static_cast<std::size_t>(document_.ChannelCount());
+  for (std::size_t j = 0; j < count; ++j) {
+    const BvhJoint& joint = document_.joints[j];
+    const Local local = LocalTransform(j, values);
+    values += joint.channels.size();
+    if (joint.parent < 0) {
+      positions[j] = local.translation;
+      rotations[j] = local.rotation;
+      continue;
+    }
+    const std::size_t parent = static_cast<std::size_t>(joint.parent);
+    positions[j] = positions[parent] + Rotate(rotations[parent], local.translation);
+    rotations[j] = rotations[parent] * local.rotation;
+  }
+  return positions;
+}
+
+}  // namespace duet

@@ -1,0 +1,22 @@
+#ifndef DUET_MODEL_FORMATS_BVH_BVH_EXPORT_H_
+#define DUET_MODEL_FORMATS_BVH_BVH_EXPORT_H_
+
+#include "absl/status/statusor.h"
+#include "model/formats/bvh/bvh_document.h"
+#include "model/motion/clip.h"
+#include "model/motion/skeleton.h"
+
+namespace duet {
+
+// One person as joint angles: centimetres, y up, the clip's world frame, the rest pose of MakeRig.
+// The root has six channels, every other joint three; rotations apply as Rz Rx Ry; angles are
+// continuous from frame to frame. Positions are kept exactly where bone lengths are constant, and
+// closely where they vary.
+//
+// Errors: INVALID_ARGUMENT when the clip's joints are not the skeleton's, it has no frame, its rate
+//         is no rate or a position is not finite.
+absl::StatusOr<BvhDocument> ToBvh(const Clip& clip, const Skeleton& skeleton);
+
+}  // namespace duet
+
+#endif  // DUET_MODEL_FORMATS_BVH_BVH_EXPORT_H_

@@ -1,0 +1,31 @@
+#ifndef DUET_MODEL_FORMATS_FLAT_CSV_H_
+#define DUET_MODEL_FORMATS_FLAT_CSV_H_
+
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+#include "model/motion/recorded_motion.h"
+#include "model/motion/clip.h"
+
+namespace duet {
+
+// Positions by column, one row a frame, for scripts and spreadsheets:
+//
+//   # duet motion: frame_rate_hz=30 unit=metres up_axis=y
+//   frame,leader.head_x,leader.head_y,leader.head_z,...,follower.head_x,...
+//   0,0.01,1.62,-0.3,...
+//
+// A file of one person has columns without `leader.` and `follower.`. Reading: comment lines start
+// with '#'; frame_rate_hz (or fps), unit (metres, millimetres) and up_axis (y, z, -y) count, other
+// words do not; columns may come in any order, `frame` and `time` are passed over.
+//
+// Errors: INVALID_ARGUMENT "source:line:column: ... came ..., wanted ...".
+absl::StatusOr<RecordedMotion> ParseCsv(absl::string_view text, absl::string_view source);
+
+// Metres, y up. The pair is as CheckPair wants it.
+std::string FormatCsv(const ClipPair& pair);
+
+}  // namespace duet
+
+#endif  // DUET_MODEL_FORMATS_FLAT_CSV_H_

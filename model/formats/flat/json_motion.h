@@ -1,0 +1,31 @@
+#ifndef DUET_MODEL_FORMATS_FLAT_JSON_MOTION_H_
+#define DUET_MODEL_FORMATS_FLAT_JSON_MOTION_H_
+
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+#include "model/motion/recorded_motion.h"
+#include "model/motion/clip.h"
+#include "model/motion/skeleton.h"
+
+namespace duet {
+
+// One JSON document:
+//
+//   {"format": "duet-motion", "version": 1, "frame_rate_hz": 30, "unit": "metres", "up_axis": "y",
+//    "joint_names": ["head", ...], "bones": [[1, 0], ...],
+//    "leader": [[[x, y, z], ... joints], ... frames], "follower": [...]}
+//
+// Reading: joint_names and leader are required, follower is optional, the rest as in CSV; unknown
+// fields are passed over. bones (parent, child as indices into joint_names) are for other programs.
+//
+// Errors: INVALID_ARGUMENT naming `source`, the field, what came and what was wanted.
+absl::StatusOr<RecordedMotion> ParseJsonMotion(absl::string_view text, absl::string_view source);
+
+// Metres, y up. The pair is as CheckPair wants it, with the skeleton's joints.
+std::string FormatJsonMotion(const ClipPair& pair, const Skeleton& skeleton);
+
+}  // namespace duet
+
+#endif  // DUET_MODEL_FORMATS_FLAT_JSON_MOTION_H_

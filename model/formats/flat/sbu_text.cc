@@ -1,0 +1,172 @@
+#include "model/formats/flat/sbu_text.h"
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/str_cat.h"
+#include "model/base/text.h"
+
+namespace duet {
+namespace {
+
+constexpr int kPeople = 2;
+constexpr const char* kAxes[] = {"x", "y", "z"};
+
+// Splits one line of a file into values, knowing where each stands.
+class SbuLine {
+ public:
+  SbuLine(absl::string_view source, int number, absl::string_view text,
+          const std::vector<std::string>& joint_names)
+      : source_(source), number_(number), text_(text), joint_names_(joint_names) {}
+
+  absl::Status CheckCount() const {
+    const std::size_t wanted = 1 + joint_names_.size() * 3 * kPeople;
+    std::size_t count = 1;
+    for (char c : text_) count += c == ',' ? 1 : 0;
+    if (count == wanted) return absl::OkStatus();
+    return ErrorAt(source_, number_,
+                   absl::StrCat("came ", count, " comma-separated values, wanted ", wanted,
+                                ": a frame number, then ", joint_names_.size(),
+                                " joints x (x, y, z) of the left and of the right person"));
+  }
+
+  absl::Status ReadFrameNumber(int* value) {
+    const absl::string_view field = NextField();
+    if (ParseInteger(field, value)) return absl::OkStatus();
+    return ErrorAt(source_, number_, 1,
+                   absl::StrCat("frame number: came ", Quoted(field), ", wanted a whole number"));
+  }
+
+  absl::Status ReadPosition(int person, std::size_t joint, Vec3* position) {
+    float* const axes[] = {&position->x, &position->y, &position->z};
+    for (int axis = 0; axis < 3; ++axis) {
+      const int column = column_;
+      const absl::string_view field = NextField();
+      if (!ParseCoordinate(field, axes[axis])) {
+        return ErrorAt(
+            source_, number_, column,
+            absl::StrCat(person == 0 ? "left" : "right", " person's ", joint_names_[joint], " ",
+                         kAxes[axis], ": came ", Quoted(field), ", wanted a finite number"));
+      }
+    }
+    return absl::OkStatus();
+  }
+
+ private:
+  absl::string_view NextField() {
+    const std::size_t start = static_cast<std::size_t>(column_ - 1);
+    const absl::string_view rest = text_.substr(start);
+    const absl::string_view field = rest.substr(0, rest.find(','));
+    column_ += static_cast<int>(field.size()) + 1;
+    return field;
+  }
+
+  absl::string_view source_;
+  int number_;
+  absl::string_view text_;
+  const std::vector<std::string>& joint_names_;
+  int column_ = 1;
+};
+
+// Frame numbers rise by the step between the first two.
+class FrameNumbers {
+ public:
+  absl::Status Accept(absl::string_view source, int line, int number) {
+    if (count_ == 1) step_ = number - last_;
+    if (count_ >= 1 && (step_ <= 0 || number - last_ != step_)) {
+      return ErrorAt(source, line, 1,
+                     absl::StrCat("frame number: came ", number, " after ", last_, ", wanted ",
+                                  step_ > 0 ? absl::StrCat(last_ + step_) : "a larger one"));
+    }
+    last_ = number;
+    ++count_;
+    return absl::OkStatus();
+  }
+
+ private:
+  int count_ = 0, last_ = 0, step_ = 0;
+};
+
+absl::Status ReadPeople(SbuLine* line, const SbuOptions& options, SbuRecording* recording) {
+  for (int person = 0; person < kPeople; ++person) {
+    Clip& clip = person == 0 ? recording->left : recording->right;
+    for (std::size_t joint = 0; joint < options.joint_names.size(); ++joint) {
+      Vec3 position;
+      absl::Status status = line->ReadPosition(person, joint, &position);
+      if (!status.ok()) return status;
+      clip.positions.push_back(ToWorld(options.coordinates, position));
+    }
+  }
+  return absl::OkStatus();
+}
+
+SbuRecording EmptyRecording(const SbuOptions& options) {
+  Clip empty;
+  empty.joint_names = options.joint_names;
+  empty.frame_rate_hz = options.frame_rate_hz;
+  return {empty, empty};
+}
+
+void AppendPerson(const SbuOptions& options, const Clip& clip, int frame, std::string* out) {
+  for (int joint = 0; joint < clip.joint_count(); ++joint) {
+    const Vec3 position = FromWorld(options.coordinates, clip.at(frame, joint));
+    for (float value : {position.x, position.y, position.z}) {
+      out->push_back(',');
+      AppendNumber(out, value);
+    }
+  }
+}
+
+}  // namespace
+
+absl::StatusOr<SbuRecording> ParseSbu(absl::string_view text, absl::string_view source,
+                                      const SbuOptions& options) {
+  absl::Status status = CheckFrameRate(source, options.frame_rate_hz);
+  if (!status.ok()) return status;
+  SbuRecording recording = EmptyRecording(options);
+  FrameNumbers frame_numbers;
+  LineReader lines(text);
+  for (absl::string_view content; lines.Next(&content);) {
+    if (absl::StripAsciiWhitespace(content).empty()) continue;
+    if (recording.left.frame_count() >= kMaxMotionFrames) {
+      return ErrorAt(source, lines.number(),
+                     absl::StrCat("more than ", kMaxMotionFrames, " frames"));
+    }
+    SbuLine line(source, lines.number(), content, options.joint_names);
+    int number = 0;
+    status = line.CheckCount();
+    if (status.ok()) status = line.ReadFrameNumber(&number);
+    if (status.ok()) status = frame_numbers.Accept(source, lines.number(), number);
+    if (status.ok()) status = ReadPeople(&line, options, &recording);
+    if (!status.ok()) return status;
+  }
+  if (recording.left.positions.empty()) {
+    return ErrorAt(source, 1, "no frames, wanted at least one line");
+  }
+  return recording;
+}
+
+absl::StatusOr<SbuRecording> ReadSbu(const std::filesystem::path& path, const SbuOptions& options) {
+  absl::StatusOr<std::string> text = ReadFile(path);
+  if (!text.ok()) return text.status();
+  return ParseSbu(*text, path.string(), options);
+}
+
+absl::StatusOr<std::string> FormatSbu(const SbuRecording& recording, const SbuOptions& options) {
+  const Clip& left = recording.left;
+  const Clip& right = recording.right;
+  if (left.positions.size() != right.positions.size() || left.joint_names != right.joint_names) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("recording: came ", left.frame_count(), " frames of ", left.joint_count(),
+                     " joints on the left and ", right.frame_count(), " of ", right.joint_count(),
+                     " on the right, wanted the same on both sides"));
+  }
+  std::string text;
+  for (int frame = 0; frame < left.frame_count(); ++frame) {
+    absl::StrAppend(&text, frame + 1);
+    AppendPerson(options, left, frame, &text);
+    AppendPerson(options, right, frame, &text);
+    text.push_back('\n');
+  }
+  return text;
+}
+
+}  // namespace duet

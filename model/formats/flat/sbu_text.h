@@ -1,0 +1,51 @@
+#ifndef DUET_MODEL_FORMATS_FLAT_SBU_TEXT_H_
+#define DUET_MODEL_FORMATS_FLAT_SBU_TEXT_H_
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+#include "model/motion/clip.h"
+#include "model/motion/coordinates.h"
+#include "model/motion/skeleton.h"
+
+namespace duet {
+
+// What the text itself does not say. The defaults are those of SBU Kinect Interaction; K3HI differs
+// in its frame rate (30) alone.
+struct SbuOptions {
+  std::vector<std::string> joint_names = SbuSkeleton().joint_names;
+  double frame_rate_hz = 15;
+  CoordinateFrame coordinates = {LengthUnit::kSbuNormalised, UpAxis::kYDown};
+};
+
+// The two people of a file, by their place in the image. Which of them leads is not in the file.
+struct SbuRecording {
+  Clip left;
+  Clip right;
+};
+
+// Reads `skeleton_pos.txt` and everything in its line layout: a frame number, then joints x 3
+// values of the person on the left, then those of the person on the right, all separated by commas.
+//
+// Shapes: both clips [frames >= 1, joint_names].
+// Units:  the text in options.coordinates; the clips in world metres, y up.
+// Errors: INVALID_ARGUMENT naming source, line, column, what came and what was wanted: a line with
+// a
+//         wrong number of values, a value that is no finite number, frame numbers that do not rise
+//         by a constant step, no line at all.
+absl::StatusOr<SbuRecording> ParseSbu(absl::string_view text, absl::string_view source,
+                                      const SbuOptions& options = {});
+absl::StatusOr<SbuRecording> ReadSbu(const std::filesystem::path& path,
+                                     const SbuOptions& options = {});
+
+// The same layout written; frame numbers from 1. Both clips have the same joints and frames.
+absl::StatusOr<std::string> FormatSbu(const SbuRecording& recording,
+                                      const SbuOptions& options = {});
+
+}  // namespace duet
+
+#endif  // DUET_MODEL_FORMATS_FLAT_SBU_TEXT_H_

@@ -1,0 +1,48 @@
+#include "model/motion/recorded_motion.h"
+
+#include <cmath>
+
+#include "absl/strings/str_cat.h"
+#include "model/base/text.h"
+
+namespace duet {
+namespace {
+
+bool IsWritable(Vec3 position) {
+  for (float value : {position.x, position.y, position.z}) {
+    if (!(std::abs(value) <= static_cast<float>(kMaxCoordinate))) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+absl::Status CheckClip(absl::string_view name, const Clip& clip) {
+  if (clip.frame_count() < 1) {
+    return absl::InvalidArgumentError(absl::StrCat(name, ": no frames, wanted at least 1"));
+  }
+  const std::size_t joints = clip.joint_names.size();
+  for (std::size_t i = 0; i < clip.positions.size(); ++i) {
+    if (IsWritable(clip.positions[i])) continue;
+    return absl::InvalidArgumentError(
+        absl::StrCat(name, ": frame ", i / joints, " ", clip.joint_names[i % joints],
+                     ": came a position that is not finite or beyond +-", kMaxCoordinate, " m"));
+  }
+  return CheckFrameRate(name, clip.frame_rate_hz);
+}
+
+absl::Status CheckPair(const ClipPair& pair) {
+  const Clip& a = pair.leader;
+  const Clip& b = pair.follower;
+  if (a.joint_names != b.joint_names || a.positions.size() != b.positions.size() ||
+      a.frame_rate_hz != b.frame_rate_hz) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "pair: came a leader of ", a.frame_count(), " frames x ", a.joint_count(), " joints at ",
+        a.frame_rate_hz, " Hz and a follower of ", b.frame_count(), " x ", b.joint_count(), " at ",
+        b.frame_rate_hz, ", wanted the same joints, frames and rate"));
+  }
+  absl::Status status = CheckClip("leader", a);
+  return status.ok() ? CheckClip("follower", b) : status;
+}
+
+}  // namespace duet

@@ -1,0 +1,27 @@
+#ifndef DUET_MODEL_MOTION_RECORDED_MOTION_H_
+#define DUET_MODEL_MOTION_RECORDED_MOTION_H_
+
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/strings/string_view.h"
+#include "model/motion/clip.h"
+#include "model/motion/coordinates.h"
+
+namespace duet {
+
+// Positions as a file has them: the file's joints in its order, in its own unit and axes.
+struct RecordedMotion {
+  std::vector<Clip> people;  // one or two, the same joints and frames; frame rate 0 when unknown
+  CoordinateFrame coordinates;
+};
+
+// Refuses what no writer can express: no frame, a rate that is no rate, a position that is not
+// finite or beyond kMaxCoordinate. `name` is how the error calls the clip.
+absl::Status CheckClip(absl::string_view name, const Clip& clip);
+// The same for both people, who share joints, frames and rate.
+absl::Status CheckPair(const ClipPair& pair);
+
+}  // namespace duet
+
+#endif  // DUET_MODEL_MOTION_RECORDED_MOTION_H_

@@ -1,0 +1,54 @@
+#ifndef DUET_MODEL_RETARGETING_JOINT_MAPPING_H_
+#define DUET_MODEL_RETARGETING_JOINT_MAPPING_H_
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+#include "model/motion/skeleton.h"
+#include "model/motion/vec3.h"
+
+namespace duet {
+
+// Joints that the user names: skeleton joint -> joint of the file. They win over every rule.
+using JointOverrides = std::map<std::string, std::string>;
+
+// One joint of a skeleton as a weighted mean of joints of a file.
+struct JointSource {
+  struct Term {
+    int joint = 0;
+    float weight = 1;
+  };
+  std::vector<Term> terms;
+};
+
+// How every joint of a skeleton is found in a file.
+struct JointMap {
+  std::vector<JointSource> sources;  // [skeleton joints]
+  // What was decided where the names leave a choice, for people to read:
+  // "torso: mixamorig:Spine1 (the spine joint nearest to half way from hips to neck)".
+  std::vector<std::string> notes;
+};
+
+// Finds a skeleton's joints in a file by name (docs/formats.md has the table). A file with all of
+// the skeleton's names as they are is taken as it is. Otherwise a name counts without its prefix
+// (`mixamorig:`, `Bip01`), case, separators and wherever it says the side (`LeftArm`, `arm.L`,
+// `lArm`). Neck and torso go by their place in the first frame: the neck joint nearest to half way
+// between the shoulders, the spine joint nearest to half way from hips to neck. A head's joint at
+// the base of the skull is raised to the head's middle.
+//
+// Shapes: first_pose [names], in any unit.
+// Errors: INVALID_ARGUMENT naming `source`, the skeleton's joints without a source, the names that
+//         the file has, or an override that names no joint of the skeleton or of the file.
+absl::StatusOr<JointMap> MapJoints(absl::string_view source, const std::vector<std::string>& names,
+                                   const std::vector<Vec3>& first_pose, const Skeleton& skeleton,
+                                   const JointOverrides& overrides = {});
+
+// A frame of the file's joints as one of the skeleton's. [names] -> [skeleton joints]
+std::vector<Vec3> ApplyJointMap(const JointMap& map, const Vec3* pose);
+
+}  // namespace duet
+
+#endif  // DUET_MODEL_RETARGETING_JOINT_MAPPING_H_

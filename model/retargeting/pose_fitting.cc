@@ -1,0 +1,93 @@
+#include "model/retargeting/pose_fitting.h"
+
+#include <cmath>
+
+namespace duet {
+namespace {
+
+// Decides a branch's turn only where its neighbours leave it open (all on one line).
+constexpr double kBranchPrior = 1e-3;
+// The upper limb's direction is kept whatever the plane says; the plane weighs sin^2 of the bend,
+// so that below some 10 degrees, where noise turns it, the past and the plain swing decide.
+constexpr double kDirectionWeight = 10;
+constexpr double kPreviousPrior = 0.05;
+constexpr double kSwingPrior = 0.02;
+
+// The axis about which a limb's next joint bends in the rest pose: elbows of a T pose bend about
+// the vertical, knees about the line through both.
+Vec3d HingeAxis(Vec3d rest_direction) {
+  const Vec3d axis = std::abs(rest_direction.y) > 0.7 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
+  return Unit(axis - rest_direction * Dot(axis, rest_direction), {0, 0, 1});
+}
+
+Quaternion FitBranch(const RigJoint& joint, Quaternion to_parent, Quaternion previous,
+                     const Vec3* positions) {
+  std::vector<Correspondence> shape;
+  double size = 0;
+  for (std::size_t k = 0; k < joint.neighbours.size(); ++k) {
+    const Vec3d offset =
+        ToDouble(positions[joint.neighbours[k]]) - ToDouble(positions[joint.joint]);
+    shape.push_back({joint.rest_shape[k], Rotate(to_parent, offset), 1});
+    size += Dot(joint.rest_shape[k], joint.rest_shape[k]);
+  }
+  return FitRotation(shape, {{previous, kBranchPrior * size + 1e-12}});
+}
+
+}  // namespace
+
+PoseFitter::PoseFitter(const Rig& rig) : rig_(rig) { pose_.rotations.resize(rig.joints.size()); }
+
+const RigPose& PoseFitter::Fit(const Vec3* positions) {
+  const std::size_t count = rig_.joints.size();
+  std::vector<Vec3d> stands_at(count);
+  std::vector<Quaternion> world(count);
+  pose_.root_position = ToDouble(positions[rig_.joints[0].joint]);
+  for (std::size_t j = 0; j < count; ++j) {
+    const RigJoint& joint = rig_.joints[j];
+    const std::size_t parent = static_cast<std::size_t>(joint.parent);
+    const Quaternion parent_world = joint.parent < 0 ? Quaternion{} : world[parent];
+    stands_at[j] = joint.parent < 0 ? pose_.root_position
+                                    : stands_at[parent] + Rotate(parent_world, joint.offset);
+    Quaternion& rotation = pose_.rotations[j];
+    const Quaternion to_parent = Inverse(parent_world);
+    if (joint.kind == RigJoint::Kind::kBranch) {
+      rotation = FitBranch(joint, to_parent, rotation, positions);
+    } else if (joint.kind == RigJoint::Kind::kAim) {
+      rotation = FitAim(joint, stands_at[j], to_parent, rotation, positions);
+    }
+    world[j] = parent_world * rotation;
+  }
+  first_ = false;
+  return pose_;
+}
+
+Quaternion PoseFitter::FitAim(const RigJoint& joint, Vec3d stands_at, Quaternion to_parent,
+                              Quaternion previous, const Vec3* positions) const {
+  const Vec3d target = ToDouble(positions[joint.aim]);
+  const Vec3d direction =
+      Unit(Rotate(to_parent, target - stands_at), Rotate(previous, joint.rest_direction));
+  const Quaternion swing =
+      ShortestArc(joint.rest_direction, direction, HingeAxis(joint.rest_direction));
+  if (joint.bend < 0) return swing;
+  const Vec3d next_bone = Rotate(to_parent, ToDouble(positions[joint.bend]) - target);
+  return FitBend(joint, direction, next_bone, swing, previous);
+}
+
+Quaternion PoseFitter::FitBend(const RigJoint& joint, Vec3d direction, Vec3d next_bone,
+                               Quaternion swing, Quaternion previous) const {
+  const Vec3d rest_axis = HingeAxis(joint.rest_direction);
+  Vec3d axis = Cross(direction, Unit(next_bone, direction));
+  const double plane_weight = Dot(axis, axis);
+  // A noisy capture bends straight limbs the wrong way: the plane counts, not its sign.
+  const Vec3d expected = Rotate(first_ ? swing : previous, rest_axis);
+  axis = Unit(Dot(axis, expected) < 0 ? -axis : axis, expected);
+  // The swing's own twist flips where the limb points away from its rest direction: it fades there.
+  const double swing_weight = kSwingPrior * (1 + Dot(joint.rest_direction, direction)) / 2;
+  const Quaternion fit = FitRotation(
+      {{joint.rest_direction, direction, kDirectionWeight}, {rest_axis, axis, plane_weight}},
+      {{previous, first_ ? 0 : kPreviousPrior}, {swing, swing_weight}});
+  // Exactly onto the direction, with the twist of the fit.
+  return ShortestArc(Rotate(fit, joint.rest_direction), direction, axis) * fit;
+}
+
+}  // namespace duet

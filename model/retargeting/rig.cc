@@ -1,0 +1,191 @@
+#include "model/retargeting/rig.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+
+namespace duet {
+namespace {
+
+constexpr Vec3d kRight = {-1, 0, 0}, kUp = {0, 1, 0}, kDown = {0, -1, 0}, kForward = {0, 0, 1};
+// Of the last bone: a hand, a foot, the upper half of the head.
+constexpr double kEndSiteLength = 0.35;
+
+class RigBuilder {
+ public:
+  RigBuilder(const Skeleton& skeleton, const Clip& clip)
+      : skeleton_(skeleton), clip_(clip), parents_(skeleton.Parents()) {
+    children_.resize(parents_.size());
+    for (const Bone& bone : skeleton.bones) {
+      children_[static_cast<size_t>(bone.parent)].push_back(bone.child);
+    }
+    FindTrunkAxes();
+  }
+
+  Rig Build() {
+    AddJoint(skeleton_.root, -1, {}, kUp);
+    return std::move(rig_);
+  }
+
+ private:
+  const std::vector<int>& Children(int joint) const {
+    return children_[static_cast<size_t>(joint)];
+  }
+
+  bool IsAtOrBelow(int joint, int ancestor) const {
+    while (joint != ancestor && joint >= 0) joint = parents_[static_cast<size_t>(joint)];
+    return joint == ancestor;
+  }
+
+  bool IsLeg(int joint) const {
+    return IsAtOrBelow(joint, skeleton_.left_hip) || IsAtOrBelow(joint, skeleton_.right_hip);
+  }
+
+  // The root's child that leads upwards, -1 when every child leads to a hip.
+  int UpperNeighbour() const {
+    for (int child : Children(skeleton_.root)) {
+      if (!IsAtOrBelow(skeleton_.left_hip, child) && !IsAtOrBelow(skeleton_.right_hip, child)) {
+        return child;
+      }
+    }
+    return -1;
+  }
+
+  // For every frame the rotation that takes the rest pose's trunk to the clip's.
+  void FindTrunkAxes() {
+    const int upper = UpperNeighbour();
+    trunk_axes_.reserve(static_cast<size_t>(clip_.frame_count()));
+    for (int frame = 0; frame < clip_.frame_count(); ++frame) {
+      const Vec3d left = ToDouble(clip_.at(frame, skeleton_.left_hip));
+      const Vec3d right = ToDouble(clip_.at(frame, skeleton_.right_hip));
+      const Vec3d up = upper < 0 ? kUp : ToDouble(clip_.at(frame, upper)) - (left + right) * 0.5;
+      const Vec3d x = Unit(left - right, -kRight);
+      const Vec3d z = Unit(Cross(x, up), kForward);
+      trunk_axes_.push_back(FromAxes(x, Cross(z, x), z));
+    }
+  }
+
+  double MedianLength(int from, int to) const {
+    std::vector<double> lengths;
+    lengths.reserve(static_cast<size_t>(clip_.frame_count()));
+    for (int frame = 0; frame < clip_.frame_count(); ++frame) {
+      lengths.push_back(Norm(ToDouble(clip_.at(frame, to)) - ToDouble(clip_.at(frame, from))));
+    }
+    const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+    std::nth_element(lengths.begin(), middle, lengths.end());
+    return *middle;
+  }
+
+  // Where `to` is from `from` in the trunk's frame, on average.
+  Vec3d MeanOffset(int from, int to) const {
+    Vec3d sum;
+    for (int frame = 0; frame < clip_.frame_count(); ++frame) {
+      const Vec3d offset = ToDouble(clip_.at(frame, to)) - ToDouble(clip_.at(frame, from));
+      sum += Rotate(Inverse(trunk_axes_[static_cast<size_t>(frame)]), offset);
+    }
+    return sum * (1.0 / clip_.frame_count());
+  }
+
+  // The way that the limb starting at `joint` goes in the rest pose; `first` leads to its start.
+  Vec3d LimbDirection(int joint, Vec3d first) const {
+    if (IsLeg(joint)) return kDown;
+    if (std::abs(first.x) > std::abs(first.y)) return first.x > 0 ? -kRight : kRight;
+    return first.y < 0 ? kDown : kUp;
+  }
+
+  // Children and parent; at the root also the children of branching children, so that the shoulders
+  // have a say in where the chest faces.
+  std::vector<int> Neighbours(int joint) const {
+    std::vector<int> neighbours = Children(joint);
+    const int parent = parents_[static_cast<size_t>(joint)];
+    if (parent >= 0) neighbours.push_back(parent);
+    if (joint != skeleton_.root) return neighbours;
+    for (int child : Children(joint)) {
+      const std::vector<int>& further = Children(child);
+      if (further.size() > 1) neighbours.insert(neighbours.end(), further.begin(), further.end());
+    }
+    return neighbours;
+  }
+
+  int Push(RigJoint joint) {
+    rig_.joints.push_back(std::move(joint));
+    return static_cast<int>(rig_.joints.size()) - 1;
+  }
+
+  // `limb` is the direction in which a chain of single children goes on from here.
+  void AddJoint(int joint, int parent, Vec3d offset, Vec3d limb) {
+    RigJoint added;
+    added.name = skeleton_.joint_names[static_cast<size_t>(joint)];
+    added.parent = parent;
+    added.joint = joint;
+    added.offset = offset;
+    switch (Children(joint).size()) {
+      case 0:
+        return AddLeaf(std::move(added), limb);
+      case 1:
+        return AddLimbJoint(std::move(added), limb);
+      default:
+        return AddBranch(std::move(added));
+    }
+  }
+
+  void AddLeaf(RigJoint leaf, Vec3d limb) {
+    const bool foot = leaf.joint == skeleton_.left_foot || leaf.joint == skeleton_.right_foot;
+    const double length = kEndSiteLength * Norm(leaf.offset);
+    leaf.kind = RigJoint::Kind::kLeaf;
+    leaf.end_offset = (foot ? kForward : limb) * length;
+    Push(std::move(leaf));
+  }
+
+  void AddLimbJoint(RigJoint added, Vec3d limb) {
+    const int joint = added.joint, child = Children(joint)[0];
+    added.kind = RigJoint::Kind::kAim;
+    added.aim = child;
+    added.rest_direction = limb;
+    if (Children(child).size() == 1) added.bend = Children(child)[0];
+    const int index = Push(std::move(added));
+    AddJoint(child, index, limb * MedianLength(joint, child), limb);
+  }
+
+  void AddBranch(RigJoint branch) {
+    const int joint = branch.joint;
+    branch.kind = RigJoint::Kind::kBranch;
+    branch.neighbours = Neighbours(joint);
+    for (int neighbour : branch.neighbours) {
+      branch.rest_shape.push_back(MeanOffset(joint, neighbour));
+    }
+    const int index = Push(std::move(branch));
+    for (int child : Children(joint)) AddHelper(joint, index, child);
+  }
+
+  void AddHelper(int joint, int parent, int child) {
+    RigJoint helper;
+    helper.name = absl::StrCat(skeleton_.joint_names[static_cast<size_t>(joint)], "_to_",
+                               skeleton_.joint_names[static_cast<size_t>(child)]);
+    helper.kind = RigJoint::Kind::kAim;
+    helper.parent = parent;
+    helper.joint = joint;
+    helper.aim = child;
+    helper.rest_direction = Unit(MeanOffset(joint, child), kUp);
+    const Vec3d direction = helper.rest_direction;
+    const int index = Push(std::move(helper));
+    AddJoint(child, index, direction * MedianLength(joint, child), LimbDirection(child, direction));
+  }
+
+  const Skeleton& skeleton_;
+  const Clip& clip_;
+  std::vector<int> parents_;
+  std::vector<std::vector<int>> children_;
+  std::vector<Quaternion> trunk_axes_;  // [frames]
+  Rig rig_;
+};
+
+}  // namespace
+
+Rig MakeRig(const Skeleton& skeleton, const Clip& clip) {
+  return RigBuilder(skeleton, clip).Build();
+}
+
+}  // namespace duet

@@ -1,0 +1,83 @@
+#ifndef DUET_MODEL_RETARGETING_ROTATION_H_
+#define DUET_MODEL_RETARGETING_ROTATION_H_
+
+#include <cmath>
+#include <vector>
+
+#include "model/motion/vec3.h"
+
+// Rotations in double precision: joint angles accumulate along a chain.
+
+namespace duet {
+
+struct Vec3d {
+  double x = 0, y = 0, z = 0;
+
+  friend Vec3d operator+(Vec3d a, Vec3d b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+  friend Vec3d operator-(Vec3d a, Vec3d b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+  friend Vec3d operator-(Vec3d a) { return {-a.x, -a.y, -a.z}; }
+  friend Vec3d operator*(Vec3d a, double s) { return {a.x * s, a.y * s, a.z * s}; }
+  Vec3d& operator+=(Vec3d o) { return *this = *this + o; }
+};
+
+inline Vec3d ToDouble(Vec3 a) { return {a.x, a.y, a.z}; }
+inline Vec3 ToFloat(Vec3d a) {
+  return {static_cast<float>(a.x), static_cast<float>(a.y), static_cast<float>(a.z)};
+}
+inline double Dot(Vec3d a, Vec3d b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline Vec3d Cross(Vec3d a, Vec3d b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+inline double Norm(Vec3d a) { return std::sqrt(Dot(a, a)); }
+// `a` at length 1, or `fallback` when it is too short to have a direction.
+Vec3d Unit(Vec3d a, Vec3d fallback);
+
+// A unit quaternion; q and -q are the same rotation.
+struct Quaternion {
+  double w = 1, x = 0, y = 0, z = 0;
+
+  friend Quaternion operator*(Quaternion a, Quaternion b);  // b first, then a
+};
+
+double Dot(Quaternion a, Quaternion b);
+Quaternion Inverse(Quaternion q);
+Vec3d Rotate(Quaternion q, Vec3d a);
+// The angle between two rotations, 0 to pi.
+double Angle(Quaternion a, Quaternion b);
+Quaternion AxisAngle(Vec3d unit_axis, double radians);
+// The rotation that takes the right-handed orthonormal axes x, y, z to these.
+Quaternion FromAxes(Vec3d x, Vec3d y, Vec3d z);
+// The smallest rotation between two unit directions; opposite ones turn about `axis_if_opposite`, a
+// unit vector across `from`.
+Quaternion ShortestArc(Vec3d from, Vec3d to, Vec3d axis_if_opposite);
+
+// A direction or point `from` that a rotation should take to `to`.
+struct Correspondence {
+  Vec3d from;
+  Vec3d to;
+  double weight = 1;
+};
+// A rotation that the answer should be near to; it decides what the correspondences leave open.
+struct RotationPrior {
+  Quaternion rotation;
+  double weight = 0;
+};
+// The rotation R that maximises sum weight dot(to, R from) + sum prior weight trace(R^T prior).
+//
+// Source: Horn 1987 (quaternion form of Kabsch's problem): the largest eigenvector of a 4 x 4
+// matrix.
+Quaternion FitRotation(const std::vector<Correspondence>& correspondences,
+                       const std::vector<RotationPrior>& priors);
+
+// R = Rz Rx Ry, radians.
+struct EulerZxy {
+  double z = 0, x = 0, y = 0;
+};
+Quaternion FromEuler(EulerZxy angles);
+// The angles of `q` nearest to `previous`: of the two solutions and all their whole turns, so that
+// a smooth motion has smooth angles.
+EulerZxy ToEuler(Quaternion q, EulerZxy previous);
+
+}  // namespace duet
+
+#endif  // DUET_MODEL_RETARGETING_ROTATION_H_

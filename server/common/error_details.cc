@@ -1,0 +1,57 @@
+#include "server/common/error_details.h"
+
+#include <cstddef>
+#include <cstdint>
+
+#include "absl/strings/cord.h"
+#include "absl/strings/escaping.h"
+#include "absl/strings/str_cat.h"
+#include "duet/rpc/v1/status.pb.h"
+
+namespace duet {
+namespace {
+
+constexpr std::size_t kQuotedBytes = 64;
+
+void AddPayload(absl::Status& status, absl::string_view url,
+                const google::protobuf::MessageLite& detail) {
+  status.SetPayload({url.data(), url.size()}, absl::Cord(detail.SerializeAsString()));
+}
+
+}  // namespace
+
+void AddBadRequest(absl::Status& status, const std::vector<FieldViolation>& violations) {
+  rpc::v1::BadRequest detail;
+  for (const FieldViolation& violation : violations) {
+    auto* added = detail.add_field_violations();
+    added->set_field(violation.field);
+    added->set_description(violation.description);
+  }
+  AddPayload(status, kBadRequestUrl, detail);
+}
+
+void AddRetryInfo(absl::Status& status, absl::Duration delay) {
+  rpc::v1::RetryInfo detail;
+  const int64_t nanoseconds = absl::ToInt64Nanoseconds(delay);
+  detail.mutable_retry_delay()->set_seconds(nanoseconds / 1'000'000'000);
+  detail.mutable_retry_delay()->set_nanos(static_cast<int32_t>(nanoseconds % 1'000'000'000));
+  AddPayload(status, kRetryInfoUrl, detail);
+}
+
+void AddErrorInfo(absl::Status& status, absl::string_view reason,
+                  const std::map<std::string, std::string>& metadata) {
+  rpc::v1::ErrorInfo detail;
+  detail.set_reason(std::string(reason));
+  detail.set_domain("duet.v1");
+  for (const auto& [key, value] : metadata) (*detail.mutable_metadata())[key] = value;
+  AddPayload(status, kErrorInfoUrl, detail);
+}
+
+std::string Quoted(absl::string_view text) {
+  const bool cut = text.size() > kQuotedBytes;
+  const absl::string_view shown = text.substr(0, kQuotedBytes);
+  // Escapes every byte that is not printable ASCII, so a cut UTF-8 sequence stays readable.
+  return absl::StrCat("\"", absl::CHexEscape({shown.data(), shown.size()}), cut ? "..." : "", "\"");
+}
+
+}  // namespace duet

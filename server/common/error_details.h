@@ -1,0 +1,46 @@
+#ifndef DUET_SERVER_COMMON_ERROR_DETAILS_H_
+#define DUET_SERVER_COMMON_ERROR_DETAILS_H_
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/strings/string_view.h"
+#include "absl/time/time.h"
+
+namespace duet {
+
+// A field of a request that was refused.
+struct FieldViolation {
+  std::string field;        // path, such as "leader.positions[17]"
+  std::string description;  // what came and what was wanted
+};
+
+// google.rpc error details, attached to a status as payloads under their type URLs.
+inline constexpr absl::string_view kBadRequestUrl = "type.googleapis.com/google.rpc.BadRequest";
+inline constexpr absl::string_view kRetryInfoUrl = "type.googleapis.com/google.rpc.RetryInfo";
+inline constexpr absl::string_view kErrorInfoUrl = "type.googleapis.com/google.rpc.ErrorInfo";
+
+// Stable reasons of ErrorInfo. Part of the contract: never renamed.
+inline constexpr absl::string_view kReasonInvalidRequest = "INVALID_REQUEST";
+inline constexpr absl::string_view kReasonModelMismatch = "MODEL_MISMATCH";
+inline constexpr absl::string_view kReasonModelNotFound = "MODEL_NOT_FOUND";
+inline constexpr absl::string_view kReasonRequestTooLarge = "REQUEST_TOO_LARGE";
+inline constexpr absl::string_view kReasonTooManyCalls = "TOO_MANY_CALLS";
+inline constexpr absl::string_view kReasonQueueFull = "QUEUE_FULL";
+inline constexpr absl::string_view kReasonLoading = "SERVER_LOADING";
+inline constexpr absl::string_view kReasonDraining = "SERVER_DRAINING";
+inline constexpr absl::string_view kReasonModelFailed = "MODEL_FAILED";
+
+void AddBadRequest(absl::Status& status, const std::vector<FieldViolation>& violations);
+void AddRetryInfo(absl::Status& status, absl::Duration delay);
+void AddErrorInfo(absl::Status& status, absl::string_view reason,
+                  const std::map<std::string, std::string>& metadata = {});
+
+// A caller's string made fit for a message: quoted, escaped, at most 64 bytes of it.
+std::string Quoted(absl::string_view text);
+
+}  // namespace duet
+
+#endif  // DUET_SERVER_COMMON_ERROR_DETAILS_H_

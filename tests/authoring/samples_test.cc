@@ -1,0 +1,120 @@
+// The sample leaders that ship with the project: made from the key-frame texts beside them, and
+// such as a person could move.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "model/formats/bvh/bvh_document.h"
+#include "model/formats/bvh/bvh_export.h"
+#include "model/authoring/keyframes.h"
+#include "model/formats/motion_file.h"
+#include "model/base/text.h"
+
+namespace duet {
+namespace {
+
+constexpr int kLeftHip = 9, kRightHip = 12;
+
+std::filesystem::path SamplesFolder() {
+  const char* source = std::getenv("DUET_SOURCE_DIR");
+  return std::filesystem::path(source != nullptr ? source : ".") / "samples";
+}
+
+class Sample : public ::testing::TestWithParam<const char*> {
+ protected:
+  void SetUp() override {
+    bvh_ = SamplesFolder() / (std::string(GetParam()) + ".bvh");
+    keyframes_ = SamplesFolder() / "keyframes" / (std::string(GetParam()) + ".txt");
+    absl::StatusOr<Clip> clip = ReadLeader(bvh_);
+    ASSERT_TRUE(clip.ok()) << clip.status();
+    clip_ = *std::move(clip);
+  }
+
+  std::filesystem::path bvh_, keyframes_;
+  Clip clip_;
+};
+
+TEST_P(Sample, IsWhatItsKeyFramesSay) {
+  const absl::StatusOr<std::string> text = ReadFile(keyframes_), committed = ReadFile(bvh_);
+  ASSERT_TRUE(text.ok()) << text.status();
+  ASSERT_TRUE(committed.ok()) << committed.status();
+  const absl::StatusOr<Clip> clip = ParseKeyframes(*text, keyframes_.string());
+  ASSERT_TRUE(clip.ok()) << clip.status();
+  const absl::StatusOr<BvhDocument> made = ToBvh(*clip, SbuSkeleton());
+  const absl::StatusOr<BvhDocument> there = ParseBvh(*committed, bvh_.string());
+  ASSERT_TRUE(made.ok()) << made.status();
+  ASSERT_TRUE(there.ok()) << there.status();
+  const std::string advice = "run duet-keyframe " + keyframes_.string() + " --out " + bvh_.string();
+  const auto hierarchy = [](const std::string& bvh) { return bvh.substr(0, bvh.find("MOTION")); };
+  EXPECT_EQ(hierarchy(FormatBvh(*made)), hierarchy(*committed)) << advice;
+  // The last digits may differ from one processor to another.
+  EXPECT_THAT(made->values, ::testing::Pointwise(::testing::FloatNear(1e-3f), there->values))
+      << advice;
+}
+
+TEST_P(Sample, LastsAsLongAsTheAction) {
+  EXPECT_EQ(clip_.frame_rate_hz, 30);
+  EXPECT_GE(clip_.frame_count(), 45);
+  EXPECT_LE(clip_.frame_count(), 91);
+}
+
+TEST_P(Sample, KeepsItsBoneLengths) {
+  for (const Bone& bone : SbuSkeleton().bones) {
+    const float first = Distance(clip_.at(0, bone.parent), clip_.at(0, bone.child));
+    for (int frame = 1; frame < clip_.frame_count(); ++frame) {
+      EXPECT_NEAR(Distance(clip_.at(frame, bone.parent), clip_.at(frame, bone.child)), first, 1e-4);
+    }
+  }
+}
+
+TEST_P(Sample, MovesWithoutJumps) {
+  const float rate = static_cast<float>(clip_.frame_rate_hz);
+  for (int frame = 1; frame < clip_.frame_count(); ++frame) {
+    for (int joint = 0; joint < clip_.joint_count(); ++joint) {
+      const Vec3 velocity = (clip_.at(frame, joint) - clip_.at(frame - 1, joint)) * rate;
+      EXPECT_LT(Norm(velocity), 7) << clip_.joint_names[static_cast<size_t>(joint)] << " " << frame;
+      if (frame < 2) continue;
+      const Vec3 before = (clip_.at(frame - 1, joint) - clip_.at(frame - 2, joint)) * rate;
+      EXPECT_LT(Norm(velocity - before) * rate, 160)
+          << clip_.joint_names[static_cast<size_t>(joint)] << " " << frame;
+    }
+  }
+}
+
+TEST_P(Sample, StandsOnTheFloorWithKneesThatBendForwards) {
+  for (int frame = 0; frame < clip_.frame_count(); ++frame) {
+    EXPECT_LT(std::min(clip_.at(frame, 11).y, clip_.at(frame, 14).y), 0.085f) << frame;
+    const Vec3 across = clip_.at(frame, kLeftHip) - clip_.at(frame, kRightHip);
+    for (int hip : {kLeftHip, kRightHip}) {
+      EXPECT_GT(std::min(clip_.at(frame, hip + 1).y, clip_.at(frame, hip + 2).y), 0.07f) << frame;
+      const Vec3 bend = Cross(clip_.at(frame, hip + 1) - clip_.at(frame, hip),
+                              clip_.at(frame, hip + 2) - clip_.at(frame, hip + 1));
+      EXPECT_GT(Dot(bend, across), 0) << frame;
+    }
+  }
+}
+
+TEST_P(Sample, ActsTowardsAPartnerAhead) {
+  // The end that acts comes at least 25 cm further forwards than it starts.
+  float furthest = -1;
+  for (int frame = 0; frame < clip_.frame_count(); ++frame) {
+    for (int joint : {5, 8, 11, 14}) {
+      furthest = std::max(furthest, clip_.at(frame, joint).z - clip_.at(0, joint).z);
+    }
+  }
+  EXPECT_GT(furthest, 0.25f);
+  EXPECT_LT(Distance(clip_.at(clip_.frame_count() - 1, 2), clip_.at(0, 2)), 0.05f)
+      << "returns to where it began";
+}
+
+INSTANTIATE_TEST_SUITE_P(Classes, Sample,
+                         ::testing::Values("kick", "push", "shake_hands", "hug", "exchange_object",
+                                           "punch"));
+
+}  // namespace
+}  // namespace duet

@@ -1,0 +1,108 @@
+#include "model/base/file_io.h"
+
+#include <sys/stat.h>
+
+#include "gtest/gtest.h"
+#include "tests/support/status_matchers.h"
+#include "tests/support/temporary_folder.h"
+
+namespace duet {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::_;
+using ::testing::HasSubstr;
+
+constexpr std::size_t kMax = 100;
+
+auto Refused(const std::string& why) {
+  return StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(why));
+}
+
+absl::StatusOr<std::string> ReadIn(const fs::path& folder, const std::string& name) {
+  const absl::StatusOr<Folder> files = Folder::Open(folder);
+  if (!files.ok()) return files.status();
+  return files->Read(name, kMax);
+}
+
+TEST(Folder, ReadsFilesUpToTheLimit) {
+  const TemporaryFolder folder;
+  WriteTestFile(folder / "empty", "");
+  WriteTestFile(folder / "full", std::string(kMax, 'x'));
+  WriteTestFile(folder / "over", std::string(kMax + 1, 'x'));
+  EXPECT_EQ(*ReadIn(folder.path(), "empty"), "");
+  EXPECT_EQ(*ReadIn(folder.path(), "full"), std::string(kMax, 'x'));
+  EXPECT_THAT(ReadIn(folder.path(), "over"), Refused("101 bytes, wanted at most 100"));
+}
+
+TEST(Folder, StaysInTheFolderThatWasOpened) {
+  const TemporaryFolder folder;
+  fs::create_directory(folder / "a");
+  WriteTestFile(folder / "a/file", "first");
+  const absl::StatusOr<Folder> open = Folder::Open(folder / "a");
+  ASSERT_THAT(open, IsOk());
+  fs::rename(folder / "a", folder / "b");
+  fs::create_directory(folder / "a");
+  WriteTestFile(folder / "a/file", "second");
+  EXPECT_EQ(*open->Read("file", kMax), "first");
+}
+
+TEST(Folder, RefusesWhatIsNoRegularFile) {
+  const TemporaryFolder folder;
+  fs::create_directory(folder / "folder");
+  // A reader that opened it as a file would wait for ever.
+  ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
+  EXPECT_THAT(ReadIn(folder.path(), "folder"), Refused("wanted a regular file"));
+  EXPECT_THAT(ReadIn(folder.path(), "pipe"), Refused("wanted a regular file"));
+}
+
+TEST(Folder, RefusesWhatIsNoFolder) {
+  const TemporaryFolder folder;
+  WriteTestFile(folder / "file", "");
+  EXPECT_THAT(Folder::Open(folder / "file"), Refused("wanted a folder"));
+  EXPECT_THAT(Folder::Open(folder / "absent"), StatusIs(absl::StatusCode::kNotFound, _));
+}
+
+TEST(WriteFolder, CreatesParentsAndFiles) {
+  const TemporaryFolder folder;
+  ASSERT_THAT(WriteFolder(folder / "x/y/z", {{"a", "1"}, {"b", ""}}), IsOk());
+  EXPECT_EQ(ReadTestFile(folder / "x/y/z/a"), "1");
+  EXPECT_EQ(ReadTestFile(folder / "x/y/z/b"), "");
+}
+
+TEST(WriteFolder, AcceptsATrailingSeparator) {
+  const TemporaryFolder folder;
+  ASSERT_THAT(WriteFolder(folder / "x/", {{"a", "1"}}), IsOk());
+  EXPECT_EQ(ReadTestFile(folder / "x/a"), "1");
+}
+
+TEST(WriteFolder, ReplacesNothing) {
+  const TemporaryFolder folder;
+  fs::create_directory(folder / "empty");
+  WriteTestFile(folder / "file", "kept");
+  fs::create_directory_symlink(folder / "nowhere", folder / "link");
+  for (const char* name : {"empty", "file", "link"}) {
+    EXPECT_THAT(WriteFolder(folder / name, {{"a", "1"}}),
+                StatusIs(absl::StatusCode::kAlreadyExists, HasSubstr(name)));
+  }
+  EXPECT_TRUE(fs::is_empty(folder / "empty"));
+  EXPECT_EQ(ReadTestFile(folder / "file"), "kept");
+}
+
+TEST(WriteFolder, LeavesNothingWhenAFileCannotBeWritten) {
+  const TemporaryFolder folder;
+  EXPECT_THAT(WriteFolder(folder / "x", {{"a", "1"}, {"no/such/folder", "2"}}),
+              StatusIs(absl::StatusCode::kNotFound, HasSubstr("no/such/folder")));
+  EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
+TEST(WriteFolder, NamesAParentThatIsNoFolder) {
+  const TemporaryFolder folder;
+  WriteTestFile(folder / "file", "");
+  const absl::Status status = WriteFolder(folder / "file/x", {{"a", "1"}});
+  EXPECT_FALSE(status.ok());
+  EXPECT_THAT(std::string(status.message()), HasSubstr("file"));
+}
+
+}  // namespace
+}  // namespace duet

@@ -1,0 +1,143 @@
+#include "model/base/strict_json.h"
+
+#include <limits>
+
+#include "absl/strings/str_cat.h"
+#include "gtest/gtest.h"
+#include "tests/support/status_matchers.h"
+
+namespace duet {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+auto Refused(const std::string& why) {
+  return StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(why));
+}
+
+TEST(ParseStrictJson, TakesAnObject) {
+  const absl::StatusOr<json> parsed = ParseStrictJson("{\"a\": [1, {\"a\": 2}]} \n", 3);
+  ASSERT_THAT(parsed, IsOk());
+  EXPECT_EQ((*parsed)["a"][1]["a"], 2);
+}
+
+TEST(ParseStrictJson, RefusesWhatIsNotAnObject) {
+  for (const char* text : {"", "[]", "1", " {}", "\xEF\xBB\xBF{}", "null"}) {
+    EXPECT_THAT(ParseStrictJson(text, 3), Refused("first byte")) << text;
+  }
+}
+
+TEST(ParseStrictJson, RefusesBrokenJson) {
+  for (const char* text : {"{", "{}}", "{} x", "{\"a\":}", "{\"a\":1,}", "{'a':1}", "{\"a\":01}",
+                           "{\"a\":NaN}", "{\"a\":1e999}", "{\"a\":\"\xff\"}", "{/**/}"}) {
+    EXPECT_THAT(ParseStrictJson(text, 3), Refused("not JSON")) << text;
+  }
+}
+
+TEST(ParseStrictJson, RefusesTextBehindANul) {
+  using std::string_literals::operator""s;
+  EXPECT_THAT(ParseStrictJson("{}\0x"s, 3), Refused("NUL"));
+  EXPECT_THAT(ParseStrictJson("{}\0"s, 3), Refused("NUL"));
+}
+
+TEST(ParseStrictJson, RefusesRepeatedKeysAtAnyLevel) {
+  EXPECT_THAT(ParseStrictJson("{\"a\":1,\"a\":1}", 3), Refused("\"a\" is repeated"));
+  EXPECT_THAT(ParseStrictJson("{\"x\":[{\"b\":1,\"b\":2}]}", 3), Refused("\"b\" is repeated"));
+  // The same key, written in two ways.
+  EXPECT_THAT(ParseStrictJson("{\"a\":1,\"\\u0061\":1}", 3), Refused("\"a\" is repeated"));
+  // Equal keys of different objects are none.
+  EXPECT_THAT(ParseStrictJson("{\"x\":{\"a\":1},\"y\":{\"a\":1},\"a\":1}", 3), IsOk());
+}
+
+TEST(ParseStrictJson, LimitsTheDepth) {
+  EXPECT_THAT(ParseStrictJson("{\"a\":[[]]}", 3), IsOk());
+  EXPECT_THAT(ParseStrictJson("{\"a\":[[[]]]}", 3), Refused("deeper than 3"));
+  const std::string deep = "{\"a\":" + std::string(1000000, '[');
+  EXPECT_THAT(ParseStrictJson(deep, 3), Refused("deeper than 3"));
+}
+
+class ObjectReaderTest : public ::testing::Test {
+ protected:
+  json object_ = json::parse(R"({"s": "text", "b": true, "i": 7, "n": 1.5, "list": ["x", "y"],
+                                 "o": {}, "big": 18446744073709551615})");
+  ObjectReader reader_{object_, "part"};
+};
+
+TEST_F(ObjectReaderTest, ReadsEveryType) {
+  EXPECT_EQ(reader_.String("s", 4), "text");
+  EXPECT_TRUE(reader_.Bool("b"));
+  EXPECT_EQ(reader_.Int("i", 7, 7), 7);
+  EXPECT_EQ(reader_.Number("n", 1.5, 1.5), 1.5);
+  EXPECT_THAT(reader_.Strings("list", 2), ::testing::ElementsAre("x", "y"));
+  EXPECT_THAT(reader_.Object("o"), IsEmpty());
+  EXPECT_EQ(reader_.Number("big", 0, 1e20), 18446744073709551615.0);
+  EXPECT_THAT(reader_.Finish(), IsOk());
+}
+
+TEST_F(ObjectReaderTest, NamesAMissingField) {
+  EXPECT_EQ(reader_.Int("absent", 0, 9), 0);
+  EXPECT_THAT(reader_.Finish(), Refused("part.absent: missing"));
+}
+
+TEST_F(ObjectReaderTest, NamesAnUnknownField) {
+  for (const char* key : {"s", "b", "i", "n", "list", "o"}) reader_.Has(key);
+  reader_.String("s", 9);
+  EXPECT_THAT(reader_.Finish(), Refused("part: unknown field"));
+}
+
+TEST_F(ObjectReaderTest, SaysWhatCameAndWhatWasWanted) {
+  EXPECT_EQ(reader_.Int("n", 0, 9), 0);
+  EXPECT_THAT(reader_.Finish(), Refused("part.n: 1.5, wanted a whole number from 0 to 9"));
+}
+
+TEST_F(ObjectReaderTest, KeepsTheFirstProblem) {
+  reader_.Int("absent", 0, 9);
+  reader_.String("i", 9);
+  EXPECT_THAT(reader_.Finish(), Refused("absent"));
+}
+
+TEST_F(ObjectReaderTest, ChecksRanges) {
+  constexpr int64_t kMax = std::numeric_limits<int64_t>::max();
+  ObjectReader too_big(object_, ""), too_small(object_, ""), wraps(object_, "");
+  EXPECT_EQ(too_big.Int("i", 0, 6), 0);
+  EXPECT_THAT(too_big.Finish(), Refused("i: 7"));
+  EXPECT_EQ(too_small.Int("i", 8, 9), 0);
+  EXPECT_THAT(too_small.Finish(), Refused("i: 7"));
+  EXPECT_EQ(wraps.Int("big", -kMax, kMax), 0);
+  EXPECT_THAT(wraps.Finish(), Refused("big: 18446744073709551615"));
+  EXPECT_EQ(reader_.Number("n", 2, 3), 0);
+  EXPECT_THAT(reader_.Finish(), Refused("n: 1.5"));
+}
+
+TEST_F(ObjectReaderTest, ChecksLengths) {
+  ObjectReader text(object_, ""), list(object_, "");
+  EXPECT_EQ(text.String("s", 3), "");
+  EXPECT_THAT(text.Finish(), Refused("at most 3 bytes"));
+  EXPECT_THAT(list.Strings("list", 1), IsEmpty());
+  EXPECT_THAT(list.Finish(), Refused("at most 1 values"));
+}
+
+TEST_F(ObjectReaderTest, RefusesEmptyStringsInAList) {
+  object_["list"].push_back("");
+  reader_.Strings("list", 9);
+  EXPECT_THAT(reader_.Finish(), Refused("list: \"\", wanted strings"));
+}
+
+TEST(ObjectReader, RefusesWhatIsNoObject) {
+  const json list = json::array({1, 2});
+  ObjectReader reader(list, "part");
+  EXPECT_EQ(reader.Int("x", 0, 1), 0);
+  EXPECT_THAT(reader.Finish(), Refused("part: [1,2], wanted an object"));
+}
+
+TEST(ObjectReader, ShortensWhatItQuotes) {
+  const json object = {{"s", std::string(100000, 'x')}};
+  ObjectReader reader(object, "");
+  reader.Int("s", 0, 1);
+  EXPECT_LT(reader.Finish().message().size(), 200u);
+}
+
+}  // namespace
+}  // namespace duet

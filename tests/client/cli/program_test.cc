@@ -1,0 +1,335 @@
+// The whole program against a connection that a test scripts.
+#include "client/cli/program.h"
+
+#include <memory>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "client/mocks/mock_connection.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "model/formats/motion_file.h"
+#include "model/motion/skeleton.h"
+#include "nlohmann/json.hpp"
+#include "tests/client/support/fake_stub.h"
+#include "tests/support/sample_motion.h"
+#include "tests/support/status_matchers.h"
+#include "tests/support/temporary_folder.h"
+
+namespace duet::client {
+namespace {
+
+using ::testing::_;
+using ::testing::AllOf;
+using ::testing::Field;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::Return;
+using ::testing::StartsWith;
+
+constexpr int kFrames = 20;
+
+ModelDetails SbuModel() {
+  ModelDetails details;
+  details.model.name = "sbu";
+  details.model.version = 1;
+  details.model.version_labels = {"stable"};
+  details.model.is_default = true;
+  details.model.interaction_classes = {"kick", "hug"};
+  details.model.joint_names = SbuSkeleton().joint_names;
+  details.model.bones = SbuSkeleton().bones;
+  details.model.root_joint = "torso";
+  details.model.frame_rate_hz = 15;
+  details.model.window_frames = 46;
+  details.model.description = "A test's model.";
+  return details;
+}
+
+// The follower stands two metres behind the leader.
+absl::StatusOr<SynthesisResult> Follow(const SynthesisRequest& request) {
+  SynthesisResult result;
+  result.pair.leader = request.leader;
+  result.pair.follower = request.leader;
+  for (Vec3& position : result.pair.follower.positions) position.z -= 2;
+  result.model_name = "sbu";
+  result.model_version = 1;
+  result.window_count = 1;
+  result.attempt_count = 1;
+  result.request_id = "request-1";
+  result.timings.first_chunk = absl::Milliseconds(12);
+  result.timings.total = absl::Milliseconds(34);
+  return result;
+}
+
+class ProgramTest : public ::testing::Test {
+ protected:
+  ProgramTest() {
+    leader_.joint_names = SbuSkeleton().joint_names;
+    leader_.frame_rate_hz = 15;
+    leader_.positions = SwayingMotion(kFrames, 15);
+    const ClipPair pair{leader_, leader_};
+    EXPECT_THAT(WritePair(folder_ / "leader.csv", pair, SbuSkeleton()), IsOk());
+    ON_CALL(*connection_, GetModel).WillByDefault(Return(SbuModel()));
+    ON_CALL(*connection_, Synthesize)
+        .WillByDefault(
+            [](const SynthesisRequest& request, const ChunkCallback&) { return Follow(request); });
+  }
+
+  int Run(const std::vector<std::string>& arguments) {
+    out_.str("");
+    err_.str("");
+    return RunProgram(arguments, {[this](const ClientOptions& options) {
+                                    options_ = options;
+                                    return absl::StatusOr<Client>(Client(connection_));
+                                  },
+                                  &out_, &err_});
+  }
+
+  // duet synthesize --leader leader.csv --label kick=1 ... --out <name>
+  int Synthesize(const std::string& out, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> arguments = {
+        "synthesize", "--leader", Path("leader.csv"), "--out", Path(out), "--label", "kick=1"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return Run(arguments);
+  }
+
+  std::string Path(const std::string& name) const { return (folder_ / name).string(); }
+  bool Exists(const std::string& name) const { return std::filesystem::exists(folder_ / name); }
+
+  TemporaryFolder folder_;
+  Clip leader_;
+  std::shared_ptr<::testing::NiceMock<MockConnection>> connection_ =
+      std::make_shared<::testing::NiceMock<MockConnection>>();
+  ClientOptions options_;
+  std::ostringstream out_;
+  std::ostringstream err_;
+};
+
+TEST_F(ProgramTest, ListsModelsForPeople) {
+  EXPECT_CALL(*connection_, ListModels).WillOnce(Return(std::vector{SbuModel().model}));
+  EXPECT_EQ(Run({"models", "--server", "duet:1", "--timeout", "3"}), 0);
+  EXPECT_EQ(out_.str(),
+            "sbu@1 (stable), default\n"
+            "  classes   kick, hug\n"
+            "  joints    15, root torso\n"
+            "  works at  15 Hz in windows of 46 frames\n"
+            "  follower  chooses its own start\n"
+            "  about     A test's model.\n");
+  EXPECT_EQ(options_.server_address, "duet:1");
+  EXPECT_EQ(options_.deadline, absl::Seconds(3));
+  EXPECT_FALSE(options_.tls.has_value());
+}
+
+TEST_F(ProgramTest, ListsModelsForPrograms) {
+  EXPECT_CALL(*connection_, ListModels).WillOnce(Return(std::vector{SbuModel().model}));
+  EXPECT_EQ(Run({"models", "--json"}), 0);
+  const nlohmann::json json = nlohmann::json::parse(out_.str());
+  ASSERT_EQ(json["models"].size(), 1u);
+  const nlohmann::json& model = json["models"][0];
+  EXPECT_EQ(model["name"], "sbu");
+  EXPECT_EQ(model["interaction_classes"], (std::vector<std::string>{"kick", "hug"}));
+  EXPECT_EQ(model["bones"].size(), 14u);
+}
+
+TEST_F(ProgramTest, WritesEveryKindOfOutput) {
+  EXPECT_EQ(Synthesize("pair.html", {"--out", Path("pair.bvh"), "--out", Path("pair.csv"), "--out",
+                                     Path("pair.npy"), "--out", Path("pair.json")}),
+            0)
+      << err_.str();
+  for (const char* name :
+       {"pair.html", "pair.leader.bvh", "pair.follower.bvh", "pair.csv", "pair.npy", "pair.json"}) {
+    EXPECT_TRUE(Exists(name)) << name;
+    EXPECT_THAT(out_.str(), HasSubstr(Path(name)));
+  }
+  EXPECT_THAT(ReadTestFile(folder_ / "pair.html"),
+              AllOf(StartsWith("<!doctype html>"), HasSubstr("\"kick\"")));
+}
+
+TEST_F(ProgramTest, TheWrittenFollowerIsTheSynthesisedOne) {
+  ASSERT_EQ(Synthesize("pair.csv"), 0) << err_.str();
+  ReadOptions options;
+  options.side = Side::kRight;
+  const absl::StatusOr<Clip> follower = ReadLeader(folder_ / "pair.csv", options);
+  ASSERT_THAT(follower, IsOk());
+  ASSERT_EQ(follower->frame_count(), kFrames);
+  EXPECT_NEAR(follower->at(3, 0).z, leader_.at(3, 0).z - 2, 1e-5);
+}
+
+TEST_F(ProgramTest, SendsWhatTheFlagsSay) {
+  SynthesisRequest sent;
+  EXPECT_CALL(*connection_, GetModel(Field(&ModelChoice::name, "sbu")));
+  EXPECT_CALL(*connection_, Synthesize)
+      .WillOnce([&](const SynthesisRequest& request, const ChunkCallback&) {
+        sent = request;
+        return Follow(request);
+      });
+  ASSERT_EQ(Synthesize("pair.html", {"--label", "hug=-0.5", "--model", "sbu:stable", "--priority",
+                                     "bulk", "--follower-start", "1,1.1,-2", "--chunk-frames", "8",
+                                     "--partner-direction", "1,0,-1", "--request-id", "job-7",
+                                     "--frame-rate", "30"}),
+            0)
+      << err_.str();
+  ASSERT_EQ(sent.weights.size(), 2u);
+  EXPECT_EQ(sent.weights[1].interaction_class, "hug");
+  EXPECT_EQ(sent.weights[1].weight, -0.5f);
+  EXPECT_EQ(sent.model.version_label, "stable");
+  EXPECT_EQ(sent.priority, Priority::kBulk);
+  ASSERT_TRUE(sent.follower_start.has_value());
+  EXPECT_EQ(std::get<Vec3>(*sent.follower_start), (Vec3{1, 1.1f, -2}));
+  EXPECT_EQ(sent.partner_direction, (Vec3{1, 0, -1}));
+  EXPECT_EQ(sent.chunk_frames, 8);
+  EXPECT_EQ(sent.request_id, "job-7");
+  EXPECT_EQ(sent.leader.frame_rate_hz, 30);
+  ASSERT_EQ(sent.leader.frame_count(), kFrames);
+  EXPECT_NEAR(sent.leader.at(5, 2).y, leader_.at(5, 2).y, 1e-5);
+}
+
+TEST_F(ProgramTest, OfTheLeadersOwnFileTheFollowerStartsAsTheOther) {
+  ClipPair pair{leader_, leader_};
+  for (Vec3& position : pair.follower.positions) position.x += 3;
+  ASSERT_THAT(WritePair(folder_ / "leader.csv", pair, SbuSkeleton()), IsOk());
+  SynthesisRequest sent;
+  EXPECT_CALL(*connection_, Synthesize)
+      .WillRepeatedly([&](const SynthesisRequest& request, const ChunkCallback&) {
+        sent = request;
+        return Follow(request);
+      });
+  ASSERT_EQ(Synthesize("pair.html", {"--follower-start", Path("leader.csv")}), 0) << err_.str();
+  const auto& other = std::get<std::vector<Vec3>>(*sent.follower_start);
+  ASSERT_EQ(other.size(), 15u);
+  EXPECT_NEAR(other[0].x, leader_.at(0, 0).x + 3, 1e-5);
+
+  ASSERT_EQ(Synthesize("pair.html",
+                       {"--follower-start", Path("leader.csv"), "--follower-start-side", "left"}),
+            0)
+      << err_.str();
+  const auto& same = std::get<std::vector<Vec3>>(*sent.follower_start);
+  EXPECT_NEAR(same[0].x, leader_.at(0, 0).x, 1e-5);
+}
+
+TEST_F(ProgramTest, SummaryForPeople) {
+  ASSERT_EQ(Synthesize("pair.html", {"--label", "hug=0.5"}), 0);
+  EXPECT_THAT(out_.str(),
+              HasSubstr("leader    " + Path("leader.csv") + ": 20 frames, 1.33 s at 15 Hz\n"));
+  EXPECT_THAT(out_.str(), HasSubstr("reaction  kick 1, hug 0.5\n"));
+  EXPECT_THAT(out_.str(), HasSubstr("follower  from sbu@1 in 34 ms, first frames after 12 ms"));
+  EXPECT_THAT(out_.str(), HasSubstr("wrote     " + Path("pair.html") + "\n"));
+}
+
+TEST_F(ProgramTest, SummaryForPrograms) {
+  ASSERT_EQ(Synthesize("pair.html", {"--json"}), 0);
+  const nlohmann::json json = nlohmann::json::parse(out_.str());
+  EXPECT_EQ(json["frames"], kFrames);
+  EXPECT_EQ(json["model"]["name"], "sbu");
+  EXPECT_EQ(json["weights"]["kick"], 1);
+  EXPECT_EQ(json["seconds"]["total"], 0.034);
+  EXPECT_EQ(json["files"], std::vector<std::string>{Path("pair.html")});
+}
+
+TEST_F(ProgramTest, QuietPrintsNothing) {
+  ASSERT_EQ(Synthesize("pair.html", {"--quiet"}), 0);
+  EXPECT_EQ(out_.str() + err_.str(), "");
+}
+
+TEST_F(ProgramTest, AUsageErrorNeverReachesTheServer) {
+  EXPECT_CALL(*connection_, GetModel).Times(0);
+  EXPECT_EQ(Synthesize("pair.fbx"), 2);
+  EXPECT_THAT(err_.str(), HasSubstr(".fbx"));
+  EXPECT_EQ(out_.str(), "");
+}
+
+TEST_F(ProgramTest, AMissingLeaderNeverReachesTheServer) {
+  EXPECT_CALL(*connection_, GetModel).Times(0);
+  EXPECT_EQ(Run({"synthesize", "--leader", Path("no.bvh"), "--label", "kick=1", "--out",
+                 Path("pair.html")}),
+            42);
+  EXPECT_THAT(err_.str(), HasSubstr("no.bvh: no such file"));
+}
+
+TEST_F(ProgramTest, AMissingFollowerStartNeverReachesTheServer) {
+  EXPECT_CALL(*connection_, GetModel).Times(0);
+  EXPECT_EQ(Synthesize("pair.html", {"--follower-start", Path("no.bvh")}), 42);
+  EXPECT_THAT(err_.str(), HasSubstr("no.bvh: no such file"));
+}
+
+TEST_F(ProgramTest, AMalformedLeaderIsBadInput) {
+  WriteTestFile(folder_ / "leader.csv", "not,a,motion\n1,2,3\n");
+  EXPECT_CALL(*connection_, Synthesize).Times(0);
+  EXPECT_EQ(Synthesize("pair.html"), 42);
+  EXPECT_THAT(err_.str(), HasSubstr("leader.csv"));
+  EXPECT_FALSE(Exists("pair.html"));
+}
+
+TEST_F(ProgramTest, ARefusalListsEveryField) {
+  absl::Status refusal = internal::ServiceError(absl::StatusCode::kInvalidArgument, "refused");
+  refusal.SetPayload("type.googleapis.com/google.rpc.BadRequest", absl::Cord("\x0a\x07\x0a\x01"
+                                                                             "a\x12\x02"
+                                                                             "b1\x0a\x07\x0a\x01"
+                                                                             "c\x12\x02"
+                                                                             "d2"));
+  EXPECT_CALL(*connection_, Synthesize).WillOnce(Return(refusal));
+  EXPECT_EQ(Synthesize("pair.html"), 42);
+  EXPECT_EQ(err_.str(),
+            "duet: the server refuses the request (INVALID_ARGUMENT)\n  a: b1\n  c: d2\n");
+}
+
+TEST_F(ProgramTest, AnAbsentServerIsWorthRetryingAndNamed) {
+  EXPECT_CALL(*connection_, GetModel).WillOnce(Return(absl::UnavailableError("refused")));
+  EXPECT_EQ(Synthesize("pair.html", {"--server", "duet:1"}), 1);
+  EXPECT_EQ(err_.str(),
+            "duet: refused (UNAVAILABLE)\nDoes a duet-server listen at duet:1? (--server)\n");
+}
+
+TEST_F(ProgramTest, ADrainingServerIsWorthRetrying) {
+  EXPECT_CALL(*connection_, Synthesize)
+      .WillOnce(Return(internal::ServiceError(absl::StatusCode::kUnavailable, "draining")));
+  EXPECT_EQ(Synthesize("pair.html"), 1);
+  EXPECT_THAT(err_.str(), AllOf(HasSubstr("draining"), HasSubstr("Trying again later may help"),
+                                Not(HasSubstr("--server"))));
+}
+
+TEST_F(ProgramTest, AResultThatCannotBeWrittenIsWorthRetrying) {
+  // A folder in the place of the file is only there once the command line has been checked.
+  EXPECT_CALL(*connection_, Synthesize)
+      .WillOnce([this](const SynthesisRequest& request, const ChunkCallback&) {
+        std::filesystem::remove_all(folder_ / "out");
+        return Follow(request);
+      });
+  std::filesystem::create_directory(folder_ / "out");
+  EXPECT_EQ(Synthesize("out/pair.html"), 1);
+  EXPECT_THAT(err_.str(), HasSubstr("cannot write the result"));
+}
+
+TEST_F(ProgramTest, AModelWithoutASkeletonIsTheServersFault) {
+  ModelDetails details = SbuModel();
+  details.model.root_joint = "tail";
+  EXPECT_CALL(*connection_, GetModel).WillOnce(Return(details));
+  EXPECT_EQ(Synthesize("pair.html"), 1);
+  EXPECT_THAT(err_.str(), HasSubstr("the server's model sbu@1 has no usable skeleton"));
+}
+
+TEST_F(ProgramTest, CertificatesAreReadFromTheirFiles) {
+  WriteTestFile(folder_ / "ca.pem", "authority");
+  WriteTestFile(folder_ / "cert.pem", "certificate");
+  WriteTestFile(folder_ / "key.pem", "key");
+  EXPECT_CALL(*connection_, ListModels).WillOnce(Return(std::vector<ModelInfo>{}));
+  EXPECT_EQ(Run({"models", "--tls-ca", Path("ca.pem"), "--tls-cert", Path("cert.pem"), "--tls-key",
+                 Path("key.pem"), "--tls-server-name", "duet"}),
+            0);
+  ASSERT_TRUE(options_.tls.has_value());
+  EXPECT_EQ(options_.tls->root_certificates, "authority");
+  EXPECT_EQ(options_.tls->certificate_chain, "certificate");
+  EXPECT_EQ(options_.tls->private_key, "key");
+  EXPECT_EQ(options_.tls->server_name, "duet");
+  EXPECT_EQ(out_.str(), "The server serves no model.\n");
+}
+
+TEST_F(ProgramTest, AMissingCertificateIsBadInput) {
+  EXPECT_EQ(Run({"models", "--tls-ca", Path("no.pem")}), 42);
+  EXPECT_THAT(err_.str(), HasSubstr("no.pem"));
+}
+
+}  // namespace
+}  // namespace duet::client

@@ -1,0 +1,53 @@
+#ifndef DUET_TESTS_CLIENT_SUPPORT_FAKE_SERVICE_H_
+#define DUET_TESTS_CLIENT_SUPPORT_FAKE_SERVICE_H_
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "duet/v1/synthesis.grpc.pb.h"
+#include "grpcpp/security/server_credentials.h"
+#include "grpcpp/server.h"
+#include "grpcpp/server_context.h"
+
+namespace duet::client::internal {
+
+// A service whose answers a test writes.
+class FakeService final : public v1::MotionSynthesis::Service {
+ public:
+  std::function<grpc::Status(grpc::ServerContext*, v1::ListModelsResponse*)> on_list_models;
+  std::function<grpc::Status(grpc::ServerContext*, const v1::SynthesizeRequest&,
+                             grpc::ServerWriter<v1::SynthesizeResponse>*)>
+      on_synthesize;
+
+  grpc::Status ListModels(grpc::ServerContext* context, const v1::ListModelsRequest*,
+                          v1::ListModelsResponse* response) override {
+    return on_list_models(context, response);
+  }
+  grpc::Status Synthesize(grpc::ServerContext* context, const v1::SynthesizeRequest* request,
+                          grpc::ServerWriter<v1::SynthesizeResponse>* writer) override {
+    return on_synthesize(context, *request, writer);
+  }
+};
+
+// A FakeService on a free port of this machine, with gRPC's own health service.
+class FakeServer {
+ public:
+  explicit FakeServer(
+      std::shared_ptr<grpc::ServerCredentials> credentials = grpc::InsecureServerCredentials());
+  ~FakeServer();
+
+  FakeService& service() { return service_; }
+  // What the health service says of the server as a whole; true at first.
+  void SetServing(bool serving);
+  std::string address() const { return "127.0.0.1:" + std::to_string(port_); }
+
+ private:
+  FakeService service_;
+  int port_ = 0;
+  std::unique_ptr<grpc::Server> server_;
+};
+
+}  // namespace duet::client::internal
+
+#endif  // DUET_TESTS_CLIENT_SUPPORT_FAKE_SERVICE_H_

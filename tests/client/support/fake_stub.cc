@@ -1,0 +1,169 @@
+#include "tests/client/support/fake_stub.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "absl/strings/cord.h"
+#include "duet/rpc/v1/status.pb.h"
+#include "gtest/gtest.h"
+
+namespace duet::client::internal {
+namespace {
+
+class ScriptedResponseStream final : public ResponseStream {
+ public:
+  ScriptedResponseStream(ScriptedStream script, int* cancelled)
+      : script_(std::move(script)), cancelled_(cancelled) {}
+
+  bool Read(v1::SynthesizeResponse* response) override {
+    if (stopped_ || next_ >= script_.responses.size()) return false;
+    *response = script_.responses[next_++];
+    return true;
+  }
+  void Cancel() override {
+    stopped_ = true;
+    ++*cancelled_;
+  }
+  absl::Status Finish() override {
+    return stopped_ ? absl::CancelledError("cancelled by the client") : script_.end;
+  }
+
+ private:
+  ScriptedStream script_;
+  int* cancelled_;
+  size_t next_ = 0;
+  bool stopped_ = false;
+};
+
+}  // namespace
+
+absl::StatusOr<v1::ListModelsResponse> FakeStub::ListModels(const CallContext& context,
+                                                            const v1::ListModelsRequest&) {
+  contexts.push_back(context);
+  const size_t attempt = list_models_calls_++;
+  if (attempt < list_models.size()) return list_models[attempt];
+  ADD_FAILURE() << "ListModels: attempt " << attempt + 1 << " was not expected";
+  return absl::InternalError("not scripted");
+}
+
+absl::StatusOr<v1::GetModelResponse> FakeStub::GetModel(const CallContext& context,
+                                                        const v1::GetModelRequest& request) {
+  contexts.push_back(context);
+  get_model_requests.push_back(request);
+  if (get_model_requests.size() <= get_model.size()) {
+    return get_model[get_model_requests.size() - 1];
+  }
+  ADD_FAILURE() << "GetModel: attempt " << get_model_requests.size() << " was not expected";
+  return absl::InternalError("not scripted");
+}
+
+std::unique_ptr<ResponseStream> FakeStub::Synthesize(const CallContext& context,
+                                                     const v1::SynthesizeRequest& request) {
+  contexts.push_back(context);
+  synthesize_requests.push_back(request);
+  const size_t attempt = synthesize_requests.size();
+  ScriptedStream script{{}, absl::InternalError("not scripted")};
+  if (attempt <= streams.size()) {
+    script = streams[attempt - 1];
+  } else {
+    ADD_FAILURE() << "Synthesize: attempt " << attempt << " was not expected";
+  }
+  return std::make_unique<ScriptedResponseStream>(std::move(script), &cancelled);
+}
+
+RetryEnvironment FakeTime::Environment() {
+  return {[this] { return now; },
+          [this](absl::Duration wait) {
+            sleeps.push_back(wait);
+            now += wait;
+          },
+          [this] { return uniform; }};
+}
+
+Clip ThreeJointLeader(int frames) {
+  Clip clip;
+  clip.joint_names = {"root", "left", "right"};
+  clip.frame_rate_hz = 30;
+  for (int i = 0; i < frames * 3; ++i) {
+    const auto value = static_cast<float>(i);
+    clip.positions.push_back({value, 0.5f * value, -value});
+  }
+  return clip;
+}
+
+std::vector<Vec3> FollowerFor(const Clip& leader) {
+  std::vector<Vec3> follower = leader.positions;
+  for (Vec3& position : follower) position.x += 1;
+  return follower;
+}
+
+v1::SynthesizeResponse HeaderFor(const Clip& leader, uint32_t version) {
+  v1::SynthesizeResponse response;
+  v1::SynthesisHeader* header = response.mutable_header();
+  header->set_model_name("dancer");
+  header->set_model_version(version);
+  header->mutable_joint_names()->Assign(leader.joint_names.begin(), leader.joint_names.end());
+  header->set_frame_rate_hz(leader.frame_rate_hz);
+  header->set_unit(v1::LENGTH_UNIT_METRES);
+  header->set_up_axis(v1::UP_AXIS_Y_UP);
+  header->set_frame_count(static_cast<uint32_t>(leader.frame_count()));
+  header->add_interaction_classes("kick");
+  header->add_interaction_classes("hug");
+  header->set_request_id("request-1");
+  return response;
+}
+
+v1::SynthesizeResponse ChunkFor(const Clip& leader, int first_frame, int frames) {
+  const std::vector<Vec3> follower = FollowerFor(leader);
+  v1::SynthesizeResponse response;
+  v1::MotionChunk* chunk = response.mutable_chunk();
+  chunk->set_first_frame(static_cast<uint32_t>(first_frame));
+  chunk->set_frame_count(static_cast<uint32_t>(frames));
+  const int joints = leader.joint_count();
+  for (int i = first_frame * joints; i < (first_frame + frames) * joints; ++i) {
+    const Vec3& position = follower[static_cast<size_t>(i)];
+    for (float value : {position.x, position.y, position.z}) chunk->add_positions(value);
+  }
+  return response;
+}
+
+v1::SynthesizeResponse SummaryFor(const Clip& leader, int chunks) {
+  v1::SynthesizeResponse response;
+  v1::SynthesisSummary* summary = response.mutable_summary();
+  summary->set_frame_count(static_cast<uint32_t>(leader.frame_count()));
+  summary->set_chunk_count(static_cast<uint32_t>(chunks));
+  summary->set_window_count(2);
+  summary->set_queue_seconds(0.25);
+  summary->set_compute_seconds(0.5);
+  return response;
+}
+
+std::vector<v1::SynthesizeResponse> ReplyFor(const Clip& leader, int chunk_frames) {
+  std::vector<v1::SynthesizeResponse> reply = {HeaderFor(leader)};
+  int chunks = 0;
+  for (int frame = 0; frame < leader.frame_count(); frame += chunk_frames) {
+    reply.push_back(ChunkFor(leader, frame, std::min(chunk_frames, leader.frame_count() - frame)));
+    ++chunks;
+  }
+  reply.push_back(SummaryFor(leader, chunks));
+  return reply;
+}
+
+absl::Status ServiceError(absl::StatusCode code, const std::string& message, absl::Duration delay) {
+  absl::Status status(code, message);
+  rpc::v1::ErrorInfo info;
+  info.set_reason("TEST_REASON");
+  info.set_domain("duet.v1");
+  status.SetPayload("type.googleapis.com/google.rpc.ErrorInfo",
+                    absl::Cord(info.SerializeAsString()));
+  if (delay == absl::InfiniteDuration()) return status;
+  rpc::v1::RetryInfo retry;
+  retry.mutable_retry_delay()->set_seconds(absl::ToInt64Seconds(delay));
+  retry.mutable_retry_delay()->set_nanos(
+      static_cast<int32_t>(absl::ToInt64Nanoseconds(delay % absl::Seconds(1))));
+  status.SetPayload("type.googleapis.com/google.rpc.RetryInfo",
+                    absl::Cord(retry.SerializeAsString()));
+  return status;
+}
+
+}  // namespace duet::client::internal

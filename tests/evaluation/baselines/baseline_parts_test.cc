@@ -1,0 +1,229 @@
+// The pieces that the baselines are made of, against closed forms.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "model/evaluation/baselines/chain.h"
+#include "model/evaluation/baselines/gaussian_hmm.h"
+#include "model/evaluation/baselines/kmeans.h"
+#include "model/evaluation/baselines/motion_matrix.h"
+#include "model/evaluation/baselines/nearest_neighbour.h"
+#include "model/evaluation/baselines/pose_space.h"
+#include "tests/evaluation/support/made_up_pairs.h"
+
+namespace duet {
+namespace {
+
+using testing::ElementsAre;
+
+// Every path of three frames through two states, weighed one by one.
+struct Enumerated {
+  double sum = 0;
+  Rows states = Rows::Zero(3, 2);
+  Eigen::MatrixXd steps = Eigen::MatrixXd::Zero(2, 2);
+  std::vector<int> best;
+};
+
+Enumerated Enumerate(const ChainWeights& chain, const Rows& log_arrivals) {
+  Enumerated all;
+  double most = 0;
+  for (int code = 0; code < 8; ++code) {
+    const int s[] = {code & 1, (code >> 1) & 1, (code >> 2) & 1};
+    double weight = chain.start(s[0]);
+    for (int t = 0; t < 3; ++t) weight *= std::exp(log_arrivals(t, s[t]));
+    for (int t = 1; t < 3; ++t) weight *= chain.step(s[t - 1], s[t]);
+    all.sum += weight;
+    for (int t = 0; t < 3; ++t) all.states(t, s[t]) += weight;
+    for (int t = 1; t < 3; ++t) all.steps(s[t - 1], s[t]) += weight;
+    if (weight <= most) continue;
+    most = weight;
+    all.best = {s[0], s[1], s[2]};
+  }
+  all.states /= all.sum;
+  all.steps /= all.sum;
+  return all;
+}
+
+TEST(ChainTest, AgreesWithEnumeration) {
+  ChainWeights chain;
+  chain.start = Eigen::RowVector2d(0.3, 2.0);
+  chain.step = (Eigen::Matrix2d() << 0.9, 0.4, 0.2, 1.5).finished();
+  Rows log_arrivals(3, 2);
+  log_arrivals << 0.5, -1, -700, -702, 2, 0.3;
+  const Enumerated all = Enumerate(chain, log_arrivals);
+  Eigen::MatrixXd steps = Eigen::MatrixXd::Zero(2, 2);
+  const PathPosterior posterior = SumOverPaths(chain, log_arrivals, &steps);
+  EXPECT_NEAR(posterior.log_sum, std::log(all.sum), 1e-9);
+  EXPECT_LT((posterior.states - all.states).norm(), 1e-12);
+  EXPECT_LT((steps - all.steps).norm(), 1e-12);
+  EXPECT_EQ(BestPath(chain, log_arrivals), all.best);
+}
+
+TEST(ChainTest, DoesNotUnderflow) {
+  ChainWeights chain;
+  chain.start = Eigen::RowVector2d(0.5, 0.5);
+  chain.step = Eigen::Matrix2d::Constant(0.5);
+  const Rows log_arrivals = Rows::Constant(500, 2, -1e4);
+  EXPECT_NEAR(SumOverPaths(chain, log_arrivals).log_sum, -5e6, 1e-3);
+}
+
+// Sequences that stay in state 0 (outputs near (0, 5)), then in state 1 (near (10, -5)).
+std::vector<Rows> TwoStateSequences() {
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal(0, 0.3);
+  std::vector<Rows> sequences;
+  for (int i = 0; i < 12; ++i) {
+    Rows one(20, 2);
+    for (Eigen::Index t = 0; t < 20; ++t) {
+      const bool late = t >= 5 + i % 9;
+      const double shared = normal(random);
+      one.row(t) << (late ? 10 : 0) + shared, (late ? -5 : 5) + 2 * shared;
+    }
+    sequences.push_back(one);
+  }
+  return sequences;
+}
+
+TEST(GaussianHmmTest, FindsStatesAndTheDependenceBetweenOutputs) {
+  GaussianHmmOptions options;
+  options.states = 2;
+  options.prior_weight = 0.01;
+  const std::vector<Rows> sequences = TwoStateSequences();
+  const GaussianHmm hmm(sequences, options);
+  // Given the first output alone: the state, and the second one by its slope of 2 within the state.
+  Rows known(4, 1);
+  known << 0, 0.2, 10.1, 9.9;
+  EXPECT_GT(hmm.Posterior(known)(1, 0), 0.99);
+  EXPECT_GT(hmm.Posterior(known)(2, 1), 0.99);
+  const Rows rest = hmm.ExpectRest(known);
+  EXPECT_NEAR(rest(0, 0), 5, 0.2);
+  EXPECT_NEAR(rest(1, 0), 5.4, 0.2);
+  EXPECT_NEAR(rest(2, 0), -4.8, 0.2);
+  EXPECT_NEAR(rest(3, 0), -5.2, 0.2);
+}
+
+TEST(GaussianHmmTest, MaximisationRaisesTheLikelihood) {
+  const std::vector<Rows> sequences = TwoStateSequences();
+  GaussianHmmOptions options;
+  options.states = 2;
+  options.prior_weight = 0.01;
+  std::vector<double> totals;
+  for (const int iterations : {0, 1, 2, 10}) {
+    options.iterations = iterations;
+    const GaussianHmm hmm(sequences, options);
+    double total = 0;
+    for (const Rows& sequence : sequences) total += hmm.LogLikelihood(sequence);
+    totals.push_back(total);
+  }
+  EXPECT_GT(totals[1], totals[0] + 1);
+  EXPECT_GT(totals[2], totals[1]);
+  // Converged, up to what the prior takes.
+  EXPECT_GT(totals[3], totals[2] - 0.01);
+}
+
+TEST(KMeansTest, FindsSeparateClusters) {
+  Rows rows(6, 2);
+  rows << 0, 0, 0, 1, 10, 10, 10, 11, -9, 5, -9, 6;
+  Rows centres = KMeans(rows, 3, 1);
+  ASSERT_EQ(centres.rows(), 3);
+  std::vector<double> xs = {centres(0, 0), centres(1, 0), centres(2, 0)};
+  EXPECT_THAT(xs, testing::UnorderedElementsAre(0, 10, -9));
+  const std::vector<int> nearest = NearestCentres(centres, rows);
+  EXPECT_EQ(nearest[0], nearest[1]);
+  EXPECT_EQ(nearest[2], nearest[3]);
+  EXPECT_NE(nearest[0], nearest[2]);
+}
+
+TEST(KMeansTest, HasNoMoreCentresThanDifferentRows) {
+  Rows rows(4, 1);
+  rows << 1, 1, 2, 2;
+  EXPECT_EQ(KMeans(rows, 10, 1).rows(), 2);
+}
+
+TEST(PoseSpaceTest, KeepsWhatTheComponentsSpan) {
+  // Rows in a plane of three dimensions.
+  Rows rows(5, 3);
+  rows << 1, 2, 5, 2, 1, 5, 3, 3, 5, -1, 0, 5, 0, 4, 5;
+  const PoseSpace plane(rows, 3);
+  EXPECT_EQ(plane.dimensions(), 2);
+  EXPECT_LT((plane.Reconstruct(plane.Project(rows)) - rows).norm(), 1e-9);
+  const PoseSpace line(rows, 1);
+  EXPECT_EQ(line.dimensions(), 1);
+  EXPECT_GT((line.Reconstruct(line.Project(rows)) - rows).norm(), 0.1);
+}
+
+TEST(TimeWarpedDistanceTest, ForgivesTempo) {
+  Rows slow(6, 1), fast(3, 1), off(3, 1);
+  slow << 0, 0, 1, 1, 2, 2;
+  fast << 0, 1, 2;
+  off << 0.5, 1.5, 2.5;
+  EXPECT_DOUBLE_EQ(TimeWarpedDistance(slow, fast), 0);
+  EXPECT_DOUBLE_EQ(TimeWarpedDistance(fast, off), 0.5);
+}
+
+TEST(StretchToTest, KeepsBothEnds) {
+  Rows motion(3, 1);
+  motion << 0, 1, 4;
+  const Rows longer = StretchTo(motion, 5);
+  EXPECT_THAT(std::vector<double>(longer.data(), longer.data() + 5), ElementsAre(0, .5, 1, 2.5, 4));
+  const Rows shorter = StretchTo(motion, 2);
+  EXPECT_THAT(std::vector<double>(shorter.data(), shorter.data() + 2), ElementsAre(0, 4));
+  EXPECT_EQ(StretchTo(motion.topRows(1), 3).rows(), 3);
+}
+
+TEST(MotionMatrixTest, TheStandardFrameIsTheSameWhereverThePairStands) {
+  const Dataset dataset = MadeUpPairs(6);
+  // Sequences 0 and 5 differ in place and yaw alone at their first frames.
+  const StandardPair a = StandardiseSequence(dataset.skeleton, dataset.sequences[0]);
+  const StandardPair b = StandardiseSequence(dataset.skeleton, dataset.sequences[5]);
+  EXPECT_LT((a.leader.row(0) - b.leader.row(0)).norm(), 1e-4);
+  EXPECT_LT((a.follower.row(0) - b.follower.row(0)).norm(), 1e-4);
+  // The follower stands in front, at -z.
+  const Eigen::Index root = 3 * dataset.skeleton.root;
+  EXPECT_NEAR(a.follower(0, root + 2), -1.2, 1e-4);
+  EXPECT_NEAR(a.follower(0, root), 0, 1e-4);
+}
+
+TEST(MotionMatrixTest, TheWorldComesBack) {
+  const Dataset dataset = MadeUpPairs(3);
+  const Sequence& sequence = dataset.sequences[2];
+  const StandardPair pair = StandardiseSequence(dataset.skeleton, sequence);
+  const std::vector<Vec3> world = FollowerToWorld(dataset.skeleton, sequence, pair.follower);
+  for (size_t i = 0; i < world.size(); ++i) {
+    EXPECT_LT(Distance(world[i], sequence.pair.follower.positions[i]), 1e-5);
+  }
+}
+
+TEST(MotionMatrixTest, AKnownPartnerDirectionTurnsTheFrame) {
+  const Dataset dataset = MadeUpPairs(1);
+  Sequence sequence = dataset.sequences[0];
+  const Vec3 across = sequence.pair.follower.at(0, dataset.skeleton.root) -
+                      sequence.pair.leader.at(0, dataset.skeleton.root);
+  sequence.partner_direction = RotateY(across, 0.5);
+  const StandardPair pair = StandardiseSequence(dataset.skeleton, sequence);
+  const Eigen::Index root = 3 * dataset.skeleton.root;
+  // Half a radian beside -z now.
+  EXPECT_NEAR(std::abs(pair.follower(0, root)), 1.2 * std::sin(0.5), 1e-4);
+  EXPECT_NEAR(pair.follower(0, root + 2), -1.2 * std::cos(0.5), 1e-4);
+}
+
+TEST(MotionMatrixTest, CuesTellTheLeadersWay) {
+  const Dataset dataset = MadeUpPairs(1);
+  Sequence sequence = dataset.sequences[0];
+  const int joints = dataset.skeleton.joint_count();
+  const StandardPair before = StandardLeader(dataset.skeleton, sequence);
+  for (size_t i = 0; i < sequence.pair.leader.positions.size(); ++i) {
+    sequence.pair.leader.positions[i].y += 0.01f * static_cast<float>(i / 15);
+  }
+  const StandardPair after = StandardLeader(dataset.skeleton, sequence);
+  const Eigen::Index way = 2 * 3 * joints, last = after.cues.rows() - 1;
+  EXPECT_NEAR(before.cues(last, way + 1), 0, 1e-6);
+  EXPECT_NEAR(after.cues(last, way + 1), 2 * 0.01 * static_cast<double>(last), 1e-5);
+  EXPECT_NEAR(after.cues(last, way + 3), 1, 1e-9);  // the end of the time
+  EXPECT_LT((before.leader - after.leader).norm(), 1e-4);
+}
+
+}  // namespace
+}  // namespace duet

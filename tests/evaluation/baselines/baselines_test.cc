@@ -1,0 +1,95 @@
+#include "model/evaluation/baselines/baselines.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "model/evaluation/protocol/protocol.h"
+#include "tests/evaluation/support/made_up_pairs.h"
+#include "tests/support/status_matchers.h"
+
+namespace duet {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+double MeanAfd(const Dataset& dataset, const std::string& name) {
+  auto method = MakeBaseline(name);
+  EXPECT_THAT(method, IsOk());
+  const auto folds = RunLeaveOneSubjectOut(dataset, {"a"}, method->get());
+  EXPECT_THAT(folds, IsOk());
+  if (!folds.ok()) return 1e9;
+  const auto scores = ScoreByClass(dataset, PoolMotions(*folds));
+  return (scores[0][0] + scores[1][0]) / 2;
+}
+
+TEST(BaselinesTest, AreTheRowsOfTheTable) {
+  EXPECT_THAT(BaselineNames(), ElementsAre("class_mean", "frozen_first_frame", "nearest_neighbour",
+                                           "hmm", "kzbh12", "hk14", "hfkb15"));
+  for (const std::string& name : BaselineNames()) {
+    const auto method = MakeBaseline(name);
+    ASSERT_THAT(method, IsOk());
+    EXPECT_EQ((*method)->name(), name);
+    EXPECT_EQ((*method)->reads_first_pose(), name == "frozen_first_frame");
+  }
+  EXPECT_THAT(MakeBaseline("magic"),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("class_mean, frozen")));
+}
+
+// Every method that reads the leader answers a leader that it never saw, anywhere in the world,
+// much better than the pose held still that ignores it.
+TEST(BaselinesTest, LearnTheMadeUpAnswer) {
+  const Dataset dataset = MadeUpPairs(12);
+  const double still = MeanAfd(dataset, "class_mean");
+  EXPECT_GT(still, 0.1);
+  EXPECT_LT(MeanAfd(dataset, "nearest_neighbour"), 0.5 * still);
+  EXPECT_LT(MeanAfd(dataset, "hmm"), 0.5 * still);
+  EXPECT_LT(MeanAfd(dataset, "kzbh12"), 0.7 * still);
+  EXPECT_LT(MeanAfd(dataset, "hk14"), 0.5 * still);
+  EXPECT_LT(MeanAfd(dataset, "hfkb15"), 0.7 * still);
+}
+
+TEST(BaselinesTest, TheFirstPoseFrozenIsRightWhereNothingMoved) {
+  const Dataset dataset = MadeUpPairs(3);
+  auto method = MakeBaseline("frozen_first_frame");
+  ASSERT_THAT(method, IsOk());
+  const auto folds = RunLeaveOneSubjectOut(dataset, {"a"}, method->get());
+  ASSERT_THAT(folds, IsOk());
+  const ScoredMotion& motion = (*folds)[0].motions[0];
+  const Clip& truth = dataset.sequences[0].pair.follower;
+  // The made-up leader's root never moves: the answer stands still in the world.
+  for (int t : {0, 7, truth.frame_count() - 1}) {
+    for (int j = 0; j < 15; ++j) {
+      EXPECT_LT(Distance(motion.follower[static_cast<size_t>(t * 15 + j)], truth.at(0, j)), 1e-5);
+    }
+  }
+}
+
+TEST(BaselinesTest, AnswerTheSameEveryTime) {
+  const Dataset dataset = MadeUpPairs(6);
+  for (const char* name : {"kzbh12", "hfkb15"}) {
+    EXPECT_EQ(MeanAfd(dataset, name), MeanAfd(dataset, name)) << name;
+  }
+}
+
+TEST(BaselinesTest, WorkWithOneSequenceAClass) {
+  // Leaving a out of two subjects leaves one sequence of each class.
+  const Dataset dataset = MadeUpPairs(2);
+  for (const std::string& name : BaselineNames()) {
+    EXPECT_LT(MeanAfd(dataset, name), 3) << name;
+  }
+}
+
+TEST(BaselinesTest, NameTheClassWithoutSequences) {
+  const Dataset dataset = MadeUpPairs(2);
+  for (const std::string& name : BaselineNames()) {
+    if (name == "frozen_first_frame") continue;  // learns nothing
+    auto method = MakeBaseline(name);
+    ASSERT_THAT(method, IsOk());
+    EXPECT_THAT((*method)->Train(dataset, {0, 1}),
+                StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("class flinch")));
+  }
+}
+
+}  // namespace
+}  // namespace duet

@@ -1,0 +1,169 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <set>
+#include <sstream>
+
+#include "model/evaluation/experiments/experiment.h"
+#include "model/evaluation/experiments/half.h"
+#include "tests/evaluation/support/made_up_pairs.h"
+#include "tests/support/fake_synthesizer.h"
+#include "tests/support/status_matchers.h"
+
+namespace duet {
+namespace {
+
+using testing::HasSubstr;
+
+std::vector<int> AllOf(const Dataset& dataset) {
+  std::vector<int> all(dataset.sequences.size());
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
+float Own(const SyntheticJob& job) {
+  return job.labels[static_cast<size_t>(job.sequence.interaction_class)];
+}
+
+float Other(const SyntheticJob& job) {
+  return job.labels[static_cast<size_t>(1 - job.sequence.interaction_class)];
+}
+
+TEST(PlanSyntheticSetTest, AsksForMatchesAndMixesOfEveryClass) {
+  const Dataset dataset = MadeUpPairs(5);
+  const std::vector<SyntheticJob> jobs = PlanSyntheticSet(dataset, AllOf(dataset), {6, 4, 3});
+  ASSERT_EQ(jobs.size(), 20u);
+  std::map<int, int> matches, mixes;
+  std::set<std::string> ids;
+  for (const SyntheticJob& job : jobs) {
+    ids.insert(job.sequence.id);
+    ++(Other(job) == 0 ? matches : mixes)[job.sequence.interaction_class];
+    EXPECT_GE(Own(job), 0.75f);
+    EXPECT_LE(Own(job), Other(job) == 0 ? 1.25f : 1.0f);
+    if (Other(job) != 0) {
+      EXPECT_GE(Other(job), 0.1f);
+      EXPECT_LE(Other(job), 0.35f);
+    }
+  }
+  EXPECT_EQ(ids.size(), jobs.size());
+  EXPECT_EQ(matches, (std::map<int, int>{{0, 6}, {1, 6}}));
+  EXPECT_EQ(mixes, (std::map<int, int>{{0, 4}, {1, 4}}));
+}
+
+TEST(PlanSyntheticSetTest, NeverLooksOutsideTheTrainingHalfNorAtFollowers) {
+  Dataset dataset = MadeUpPairs(6);
+  const Split split = *SplitInHalves(dataset, 1);
+  for (const int test : split.test) {  // would show in what is drawn
+    for (Vec3& point : dataset.sequences[static_cast<size_t>(test)].pair.leader.positions) {
+      point = {1e6f, 1e6f, 1e6f};
+    }
+  }
+  for (const SyntheticJob& job : PlanSyntheticSet(dataset, split.train, {5, 5, 2})) {
+    EXPECT_TRUE(job.sequence.pair.follower.positions.empty());
+    for (const Vec3& point : job.sequence.pair.leader.positions) ASSERT_LT(Norm(point), 1e3f);
+  }
+}
+
+TEST(PlanSyntheticSetTest, VariesLeadersByTheSeedAlone) {
+  const Dataset dataset = MadeUpPairs(4);
+  const auto first = PlanSyntheticSet(dataset, AllOf(dataset), {4, 4, 1});
+  const auto again = PlanSyntheticSet(dataset, AllOf(dataset), {4, 4, 1});
+  const auto other = PlanSyntheticSet(dataset, AllOf(dataset), {4, 4, 2});
+  std::set<float> seen;
+  for (size_t i = 0; i < first.size(); ++i) {
+    EXPECT_EQ(first[i].labels, again[i].labels);
+    EXPECT_EQ(first[i].sequence.pair.leader.positions, again[i].sequence.pair.leader.positions);
+    EXPECT_NE(first[i].labels, other[i].labels);
+    seen.insert(first[i].sequence.pair.leader.positions.back().x);
+  }
+  EXPECT_EQ(seen.size(), first.size());  // no leader twice
+}
+
+TEST(SynthesizeJobsTest, AnswersEveryJobAndRefusesAModelOfOtherClasses) {
+  Dataset dataset = MadeUpPairs(2);
+  const std::vector<SyntheticJob> jobs = PlanSyntheticSet(dataset, AllOf(dataset), {1, 1, 1});
+  ModelDescription description;
+  description.name = "fake";
+  description.skeleton = dataset.skeleton;
+  description.classes = dataset.classes;
+  description.frame_rate_hz = dataset.frame_rate_hz;
+  description.window_frames = dataset.LongestFrameCount();
+  const FakeSynthesizer model(description);
+  const absl::StatusOr<std::vector<Sequence>> answers = SynthesizeJobs(dataset, model, jobs);
+  ASSERT_THAT(answers, IsOk());
+  ASSERT_EQ(answers->size(), jobs.size());
+  for (const Sequence& answer : *answers) {
+    EXPECT_EQ(answer.pair.follower.frame_count(), answer.pair.leader.frame_count());
+  }
+  dataset.classes[0] = "shove";
+  EXPECT_THAT(SynthesizeJobs(dataset, model, jobs),
+              StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("shove")));
+}
+
+// Two classes that any classifier tells apart: give steps back, flinch steps back four times as
+// far.
+TEST(ClassifierAccuracyTest, LearnsFromSyntheticMotionAlone) {
+  const Dataset dataset = MadeUpPairs(8);
+  const Split split = *SplitInHalves(dataset, 1);
+  ClassifierOptions options;
+  options.hidden = 8;
+  options.epochs = 60;
+  TrainingMaterial material;
+  for (const int index : split.train) {
+    material.synthetic.push_back(dataset.sequences[static_cast<size_t>(index)]);
+  }
+  const absl::StatusOr<std::vector<double>> right =
+      ClassifierAccuracy(dataset, material, split.test, options);
+  ASSERT_THAT(right, IsOk());
+  ASSERT_EQ(right->size(), 3u);
+  EXPECT_GE(right->back(), 0.9);
+  // Each labelled as the other: what is learnt is what is taught.
+  for (Sequence& sequence : material.synthetic) {
+    sequence.interaction_class = 1 - sequence.interaction_class;
+  }
+  const absl::StatusOr<std::vector<double>> wrong =
+      ClassifierAccuracy(dataset, material, split.test, options);
+  ASSERT_THAT(wrong, IsOk());
+  EXPECT_LE(wrong->back(), 0.1);
+}
+
+TEST(RunHalfTest, TrainsEveryRowAndKeepsServedSetsToTheirHalf) {
+  const Dataset dataset = MadeUpPairs(4);
+  std::vector<DataHalf> halves(2);
+  for (uint64_t seed : {1, 2}) {
+    DataHalf& half = halves[seed - 1];
+    half.seed = seed;
+    half.split = *SplitInHalves(dataset, seed);
+    half.synthetic = dataset.sequences;
+  }
+  ASSERT_THAT(AddServedSets({{2, dataset.sequences}}, &halves), IsOk());
+  EXPECT_TRUE(halves[0].served.empty());
+  EXPECT_EQ(halves[1].served.size(), dataset.sequences.size());
+  EXPECT_THAT(AddServedSets({{3, dataset.sequences}}, &halves),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("made for half 3")));
+
+  Trials trials({"give", "flinch", "all"});
+  std::ostringstream progress;
+  for (const DataHalf& half : halves) {
+    ASSERT_THAT(RunHalf(dataset, half, {"with synthetic", 1, 2}, &progress, &trials), IsOk());
+  }
+  const Table means = trials.Means("accuracy");
+  std::vector<std::string> rows;
+  for (const TableRow& row : means.rows) rows.push_back(row.name);
+  EXPECT_THAT(rows, testing::ElementsAre("captured", "with synthetic", "captured, longer",
+                                         "with synthetic, longer", "synthetic alone",
+                                         "captured + set through the server"));
+  for (const TableRow& row : means.rows) {
+    EXPECT_GE(row.values.back(), 0);
+    EXPECT_LE(row.values.back(), 1);
+  }
+  // 5 rows for half 1 and 6 for half 2, two classifiers each.
+  const std::string lines = progress.str();
+  EXPECT_EQ(std::count(lines.begin(), lines.end(), '\n'), 22);
+}
+
+}  // namespace
+}  // namespace duet

@@ -1,0 +1,120 @@
+#include "model/evaluation/judge/classifier.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "model/motion/vec3.h"
+#include "tests/evaluation/support/made_up_pairs.h"
+
+namespace duet {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+
+constexpr int kPairsAClass = 12;
+
+ClassifierOptions Small() {
+  ClassifierOptions options;
+  options.hidden = 12;
+  options.epochs = 15;
+  return options;
+}
+
+// The captured followers of subject "c", or of all others.
+std::vector<ScoredMotion> Followers(const Dataset& dataset, bool of_c) {
+  std::vector<ScoredMotion> motions;
+  for (size_t i = 0; i < dataset.sequences.size(); ++i) {
+    const Sequence& sequence = dataset.sequences[i];
+    if ((sequence.subjects.front() == "c") != of_c) continue;
+    motions.push_back({static_cast<int>(i), sequence.pair.follower.positions});
+  }
+  return motions;
+}
+
+MotionClassifier Trained(const Dataset& dataset, const ClassifierOptions& options) {
+  absl::StatusOr<MotionClassifier> judge =
+      MotionClassifier::Train(dataset, Followers(dataset, false), options);
+  EXPECT_TRUE(judge.ok()) << judge.status();
+  return *std::move(judge);
+}
+
+TEST(MotionClassifier, TellsTheClassesOfAnotherSubjectApart) {
+  const Dataset dataset = MadeUpPairs(kPairsAClass);
+  const MotionClassifier judge = Trained(dataset, Small());
+  const std::vector<ScoredMotion> test = Followers(dataset, true);
+  ASSERT_THAT(test, SizeIs(2 * kPairsAClass / 3));
+  const std::vector<std::vector<float>> probabilities = judge.Probabilities(dataset, test);
+  ASSERT_THAT(probabilities, SizeIs(test.size()));
+  int right = 0;
+  for (size_t i = 0; i < test.size(); ++i) {
+    ASSERT_THAT(probabilities[i], SizeIs(2));
+    EXPECT_NEAR(probabilities[i][0] + probabilities[i][1], 1, 1e-5);
+    const int asked = dataset.sequences[static_cast<size_t>(test[i].sequence)].interaction_class;
+    right += probabilities[i][static_cast<size_t>(asked)] > 0.5f ? 1 : 0;
+  }
+  EXPECT_GE(right, static_cast<int>(test.size()) - 1);
+}
+
+TEST(MotionClassifier, IsDeterministic) {
+  const Dataset dataset = MadeUpPairs(3);
+  ClassifierOptions options = Small();
+  options.epochs = 2;
+  const MotionClassifier a = Trained(dataset, options), b = Trained(dataset, options);
+  EXPECT_THAT(a.hash(), SizeIs(64));
+  EXPECT_EQ(a.hash(), b.hash());
+  EXPECT_EQ(a.Probabilities(dataset, Followers(dataset, true)),
+            b.Probabilities(dataset, Followers(dataset, true)));
+  options.seed = 1;
+  EXPECT_NE(Trained(dataset, options).hash(), a.hash());
+}
+
+// Lengths differ: what is padded beside a motion must not reach it.
+TEST(MotionClassifier, JudgesAMotionAloneAsAmongOthers) {
+  const Dataset dataset = MadeUpPairs(6);
+  const MotionClassifier judge = Trained(dataset, Small());
+  const std::vector<ScoredMotion> all = Followers(dataset, false);
+  const auto together = judge.Probabilities(dataset, all);
+  const FeatureSet features = judge.Features(dataset, all);
+  ASSERT_THAT(features, SizeIs(all.size()));
+  for (size_t i = 0; i < all.size(); ++i) {
+    const auto alone = judge.Probabilities(dataset, {all[i]});
+    EXPECT_NEAR(alone[0][0], together[i][0], 1e-5) << i;
+    const FeatureSet own = judge.Features(dataset, {all[i]});
+    ASSERT_EQ(own[0].size(), features[i].size());
+    for (size_t f = 0; f < own[0].size(); ++f) EXPECT_NEAR(own[0][f], features[i][f], 1e-5);
+  }
+}
+
+TEST(MotionClassifier, DoesNotMindWhereThePairStandsInTheWorld) {
+  const Dataset dataset = MadeUpPairs(6);
+  Dataset moved = dataset;
+  for (Sequence& sequence : moved.sequences) {
+    for (Clip* clip : {&sequence.pair.leader, &sequence.pair.follower}) {
+      for (Vec3& p : clip->positions) p = RotateY(p, 2.5) + Vec3{4, 0, -3};
+    }
+  }
+  const MotionClassifier judge = Trained(dataset, Small());
+  const auto here = judge.Probabilities(dataset, Followers(dataset, true));
+  const auto there = judge.Probabilities(moved, Followers(moved, true));
+  for (size_t i = 0; i < here.size(); ++i) EXPECT_NEAR(here[i][0], there[i][0], 1e-3) << i;
+}
+
+TEST(MotionClassifier, RefusesAClassWithoutMotion) {
+  const Dataset dataset = MadeUpPairs(3);
+  std::vector<ScoredMotion> motions = Followers(dataset, false);
+  motions.erase(std::remove_if(motions.begin(), motions.end(),
+                               [&](const ScoredMotion& motion) {
+                                 const size_t i = static_cast<size_t>(motion.sequence);
+                                 return dataset.sequences[i].interaction_class == 1;
+                               }),
+                motions.end());
+  const absl::Status status = MotionClassifier::Train(dataset, motions, Small()).status();
+  EXPECT_TRUE(absl::IsInvalidArgument(status)) << status;
+  EXPECT_THAT(std::string(status.message()), HasSubstr("flinch"));
+}
+
+}  // namespace
+}  // namespace duet

@@ -1,0 +1,91 @@
+#include "model/evaluation/metrics/scores.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "tests/evaluation/support/made_up_pairs.h"
+
+namespace duet {
+namespace {
+
+size_t ColumnOf(const std::string& name) {
+  for (size_t i = 0; i < AllMetrics().size(); ++i) {
+    if (MetricName(AllMetrics()[i]) == name) return i;
+  }
+  ADD_FAILURE() << "no metric " << name;
+  return 0;
+}
+
+TEST(ScoresTest, EveryMetricHasItsName) {
+  std::set<std::string> names;
+  for (Metric metric : AllMetrics()) names.insert(MetricName(metric));
+  EXPECT_EQ(names.size(), AllMetrics().size());
+  EXPECT_EQ(names.count(""), 0u);
+}
+
+TEST(ScoresTest, TheCapturedFollowerHasNoErrors) {
+  const Dataset dataset = MadeUpPairs(1);
+  const ScoredMotion captured = {0, dataset.sequences[0].pair.follower.positions};
+  const std::vector<double> scores = ScoreMotion(dataset, captured);
+  ASSERT_EQ(scores.size(), AllMetrics().size());
+  for (const char* error : {"afd", "afd_squared", "afd_m", "root_aligned_afd", "velocity_error"}) {
+    EXPECT_EQ(scores[ColumnOf(error)], 0) << error;
+  }
+  EXPECT_GT(scores[ColumnOf("jitter")], 0);
+}
+
+TEST(ScoresTest, EachColumnHoldsItsOwnMetric) {
+  const Dataset dataset = MadeUpPairs(1);
+  ScoredMotion moved = {0, dataset.sequences[0].pair.follower.positions};
+  // Everyone 1.28 m along z: one raw unit, for each of 15 joints.
+  for (Vec3& p : moved.follower) p.z += 1.28f;
+  const std::vector<double> scores = ScoreMotion(dataset, moved);
+  EXPECT_NEAR(scores[ColumnOf("afd")], std::sqrt(15), 1e-4);
+  EXPECT_NEAR(scores[ColumnOf("afd_squared")], 15, 1e-3);
+  EXPECT_NEAR(scores[ColumnOf("afd_m")], 1.28 * std::sqrt(15), 1e-4);
+  EXPECT_NEAR(scores[ColumnOf("afd_squared_m")], 1.28 * 1.28 * 15, 1e-3);
+  EXPECT_NEAR(scores[ColumnOf("root_aligned_afd")], 0, 1e-4);
+  EXPECT_NEAR(scores[ColumnOf("root_aligned_afd_m")], 0, 1e-4);
+  EXPECT_NEAR(scores[ColumnOf("velocity_error")], 0, 1e-4);
+}
+
+TEST(ScoresTest, AveragesOverTheMotionsOfAClass) {
+  const Dataset dataset = MadeUpPairs(2);
+  std::vector<ScoredMotion> motions;
+  for (const int i : {0, 1}) {
+    motions.push_back({i, dataset.sequences[static_cast<size_t>(i)].pair.follower.positions});
+  }
+  for (Vec3& p : motions[1].follower) p.z += 1.28f;
+  const auto by_class = ScoreByClass(dataset, motions);
+  EXPECT_NEAR(by_class[0][ColumnOf("afd_squared")], 7.5, 1e-3);
+  EXPECT_TRUE(std::isnan(by_class[1][ColumnOf("afd_squared")]));
+}
+
+TEST(ScoresTest, DepthIsAveragedOverPenetratingMotionsAlone) {
+  const Dataset dataset = MadeUpPairs(2);
+  std::vector<ScoredMotion> motions;
+  for (const int i : {0, 1}) {
+    motions.push_back({i, dataset.sequences[static_cast<size_t>(i)].pair.follower.positions});
+  }
+  const size_t frequency = ColumnOf("penetration_frequency");
+  const size_t depth = ColumnOf("penetration_depth_m");
+  EXPECT_EQ(ScoreByClass(dataset, motions)[0][frequency], 0);
+  EXPECT_TRUE(std::isnan(ScoreByClass(dataset, motions)[0][depth]));
+  // On the leader's very spot: the trunks' capsules overlap by both radii.
+  motions[0].follower = dataset.sequences[0].pair.leader.positions;
+  EXPECT_NEAR(ScoreByClass(dataset, motions)[0][frequency], 0.5, 1e-6);
+  EXPECT_NEAR(ScoreByClass(dataset, motions)[0][depth], 0.22, 1e-6);
+}
+
+TEST(ScoresTest, CapturedMotionsAnswerTheSameSequences) {
+  const Dataset dataset = MadeUpPairs(2);
+  const std::vector<ScoredMotion> captured = CapturedMotions(dataset, {{3, {}}, {1, {}}, {3, {}}});
+  ASSERT_EQ(captured.size(), 3u);
+  EXPECT_EQ(captured[2].sequence, 3);
+  EXPECT_EQ(captured[1].follower, dataset.sequences[1].pair.follower.positions);
+}
+
+}  // namespace
+}  // namespace duet

@@ -1,0 +1,31 @@
+#include "tests/evaluation/support/example_section.h"
+
+#include <cmath>
+
+namespace duet {
+
+ResultSection ExampleSection(const std::string& id) {
+  Table table;
+  table.title = "Errors <raw> & all";
+  table.columns = {"kick", "shake_hands"};
+  table.rows = {{"ours", {0.504, 1.0 / 3}, false},
+                {"paper", {0.1, 0.2}, true},
+                {"frozen_first_frame", {0.7, std::nan("")}, false}};
+  table.notes = {"lower is better"};
+  table.decimals = 3;
+  table.best = Best::kLowest;
+  ResultSection section;
+  section.id = id;
+  section.title = "Methods & classes";
+  section.text = {"First <paragraph>.", "Second one."};
+  section.tables = {table};
+  section.figures = {{id + "_curve", "A curve of \"errors\".",
+                      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 10 10\">"
+                      "<path d=\"M0 0L9 9\" stroke=\"#0072B2\"/></svg>\n"}};
+  section.settings = {{"data", "SBU"}, {"seeds", "1, 2"}};
+  section.command = "duet-eval folds --data DIR";
+  section.date = "2024-02-29";
+  return section;
+}
+
+}  // namespace duet

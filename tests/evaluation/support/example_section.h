@@ -1,0 +1,16 @@
+#ifndef DUET_TESTS_EVALUATION_SUPPORT_EXAMPLE_SECTION_H_
+#define DUET_TESTS_EVALUATION_SUPPORT_EXAMPLE_SECTION_H_
+
+#include <string>
+
+#include "model/evaluation/report/result_section.h"
+
+namespace duet {
+
+// A section with everything that one can have: texts that need escaping, a table with best, missing
+// and printed figures, a figure "<id>_curve", settings. Its id is `id`.
+ResultSection ExampleSection(const std::string& id);
+
+}  // namespace duet
+
+#endif  // DUET_TESTS_EVALUATION_SUPPORT_EXAMPLE_SECTION_H_

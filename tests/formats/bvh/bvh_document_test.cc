@@ -1,0 +1,172 @@
+#include "model/formats/bvh/bvh_document.h"
+
+#include <string>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_replace.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+
+namespace duet {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+// Other spacing, order and names than ours: what exporters write.
+constexpr char kArm[] =
+    "HIERARCHY\n"
+    "ROOT Bip01 L UpperArm {\n"
+    "\tOFFSET 1 2 3\n"
+    "\tCHANNELS 6 Yrotation Xrotation Zrotation Zposition Yposition Xposition\n"
+    "\tJOINT Fore Arm\n"
+    "\t{\n"
+    "\t\tOFFSET 10 0 0\n"
+    "\t\tCHANNELS 1 zrotation\n"
+    "\t\tEnd Site\n"
+    "\t\t{\n"
+    "\t\t\tOFFSET 0 0 5\n"
+    "\t\t}\n"
+    "\t}\n"
+    "}\n"
+    "MOTION\n"
+    "Frames:\t2\n"
+    "Frame Time: 0.04\n"
+    "90 0 0 7 8 9 0\r\n"
+    "0 0 90 0 0 0 90\n"
+    "\n";
+
+std::string ParseError(const std::string& text) {
+  const absl::StatusOr<BvhDocument> document = ParseBvh(text, "a.bvh");
+  EXPECT_EQ(document.status().code(), absl::StatusCode::kInvalidArgument) << document.status();
+  return std::string(document.status().message());
+}
+
+std::string ErrorWith(const std::string& from, const std::string& to) {
+  EXPECT_THAT(kArm, HasSubstr(from));
+  return ParseError(absl::StrReplaceAll(kArm, {{from, to}}));
+}
+
+void ExpectNear(Vec3d a, Vec3d b) {
+  EXPECT_NEAR(a.x, b.x, 1e-6);
+  EXPECT_NEAR(a.y, b.y, 1e-6);
+  EXPECT_NEAR(a.z, b.z, 1e-6);
+}
+
+TEST(BvhDocument, ReadsAnyHierarchy) {
+  const absl::StatusOr<BvhDocument> document = ParseBvh(kArm, "a.bvh");
+  ASSERT_TRUE(document.ok()) << document.status();
+  ASSERT_EQ(document->joints.size(), 3u);
+  EXPECT_EQ(document->joints[0].name, "Bip01 L UpperArm");
+  EXPECT_EQ(document->joints[1].name, "Fore Arm");
+  EXPECT_EQ(document->joints[2].name, "Fore Arm.end");
+  EXPECT_TRUE(document->joints[2].end_site);
+  EXPECT_EQ(document->joints[2].parent, 1);
+  EXPECT_THAT(document->joints[1].channels, ElementsAre(BvhChannel::kZRotation));
+  EXPECT_EQ(document->ChannelCount(), 7);
+  EXPECT_EQ(document->frame_count, 2);
+  EXPECT_DOUBLE_EQ(document->frame_time_s, 0.04);
+}
+
+TEST(BvhDocument, AppliesChannelsInTheFilesOrder) {
+  const absl::StatusOr<BvhDocument> document = ParseBvh(kArm, "a.bvh");
+  ASSERT_TRUE(document.ok()) << document.status();
+  const BvhKinematics kinematics(*document);
+  // Yaw 90: +x goes to -z, +z to +x. The root stands where its channels say, not at OFFSET.
+  std::vector<Vec3d> at = kinematics.Positions(0);
+  ExpectNear(at[0], {9, 8, 7});
+  ExpectNear(at[1], {9, 8, -3});
+  ExpectNear(at[2], {14, 8, -3});
+  at = kinematics.Positions(1);
+  ExpectNear(at[1], {0, 10, 0});
+  ExpectNear(at[2], {0, 10, 5});
+}
+
+// Rx 90 after (inside) Rz 90 is not Rz 90 after Rx 90.
+TEST(BvhDocument, PutsTheFirstChannelOutermost) {
+  const auto end_of = [](const std::string& channels) {
+    const absl::StatusOr<BvhDocument> document = ParseBvh(
+        absl::StrCat(
+            "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 2 ", channels,
+            "\nEnd Site\n{\nOFFSET 0 1 0\n}\n}\nMOTION\nFrames: 1\nFrame Time: 1\n90 90\n"),
+        "a.bvh");
+    EXPECT_TRUE(document.ok()) << document.status();
+    return BvhKinematics(*document).Positions(0)[1];
+  };
+  ExpectNear(end_of("Zrotation Xrotation"), {0, 0, 1});
+  ExpectNear(end_of("Xrotation Zrotation"), {-1, 0, 0});
+}
+
+// Some programs write a joint's position channels in place of OFFSET, others in addition to it.
+TEST(BvhDocument, ReadsPositionChannelsBelowTheRootOfBothKinds) {
+  const auto end_of = [](const std::string& values) {
+    const absl::StatusOr<BvhDocument> document = ParseBvh(
+        absl::StrCat(
+            "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 0\nJOINT b\n{\nOFFSET 0 10 0\n"
+            "CHANNELS 3 Xposition Yposition Zposition\nEnd Site\n{\nOFFSET 0 1 0\n}\n}\n}\n"
+            "MOTION\nFrames: 1\nFrame Time: 1\n",
+            values, "\n"),
+        "a.bvh");
+    EXPECT_TRUE(document.ok()) << document.status();
+    return BvhKinematics(*document).Positions(0)[2];
+  };
+  ExpectNear(end_of("0 10.5 0"), {0, 11.5, 0});
+  ExpectNear(end_of("0 0.5 0"), {0, 11.5, 0});
+}
+
+TEST(BvhDocument, WritesWhatItReads) {
+  const absl::StatusOr<BvhDocument> document = ParseBvh(kArm, "a.bvh");
+  ASSERT_TRUE(document.ok());
+  const std::string text = FormatBvh(*document);
+  const absl::StatusOr<BvhDocument> again = ParseBvh(text, "b.bvh");
+  ASSERT_TRUE(again.ok()) << again.status();
+  EXPECT_EQ(FormatBvh(*again), text);
+  EXPECT_EQ(again->values, document->values);
+  EXPECT_EQ(again->joints[1].name, "Fore Arm");
+}
+
+TEST(BvhDocument, NamesThePlaceOfAnError) {
+  EXPECT_THAT(ErrorWith("HIERARCHY", "hello"),
+              HasSubstr("a.bvh:1: came \"hello\", wanted HIERARCHY"));
+  EXPECT_THAT(ErrorWith("OFFSET 10 0 0", "OFFSET 10 x 0"), HasSubstr("a.bvh:7: came \"x\""));
+  EXPECT_THAT(ErrorWith("OFFSET 10 0 0", ""), HasSubstr("joint \"Fore Arm\": no OFFSET"));
+  EXPECT_THAT(ErrorWith("CHANNELS 1 z", "CHANNELS 7 z"), HasSubstr("a.bvh:8: came \"7\""));
+  EXPECT_THAT(ErrorWith("CHANNELS 1 z", "CHANNELS 1 w"), HasSubstr("came \"wrotation\""));
+  EXPECT_THAT(ErrorWith("Xrotation", "Yrotation"), HasSubstr("channel Yrotation: given twice"));
+  EXPECT_THAT(ErrorWith("JOINT Fore Arm", "JOINT"), HasSubstr("a.bvh:5: JOINT: no name"));
+  EXPECT_THAT(ErrorWith("End Site", "End"), HasSubstr("End: no name"));
+  EXPECT_THAT(ErrorWith("ROOT", "JOINT"), HasSubstr("wanted ROOT"));
+  EXPECT_THAT(ErrorWith("Frames:\t2", "Frames: 0"), HasSubstr("a.bvh:16: came \"0\""));
+  EXPECT_THAT(ErrorWith("Frames:\t2", "Frames: 999999999"), HasSubstr("a number of frames"));
+  EXPECT_THAT(ErrorWith("Time: 0.04", "Time: 0"), HasSubstr("a frame time of"));
+  EXPECT_THAT(ErrorWith("90 0 0 7 8 9 0", "90 0 0 7 8 9"),
+              HasSubstr("a.bvh:18: came 6 channel values, wanted 7"));
+  EXPECT_THAT(ErrorWith("90 0 0 7 8 9 0", "90 0 0 7 8 nan 0"),
+              HasSubstr("a.bvh:18: channel value 6: came \"nan\""));
+  EXPECT_THAT(ErrorWith("Frames:\t2", "Frames: 3"), HasSubstr("came 2 frames, wanted the 3"));
+  EXPECT_THAT(ErrorWith("Frames:\t2", "Frames: 1"), HasSubstr("came more frames than the 1"));
+}
+
+TEST(BvhDocument, RefusesEveryTruncation) {
+  const std::string text(kArm, sizeof(kArm) - 6);  // without the last value and what follows
+  for (std::size_t size = 0; size < text.size(); ++size) ParseError(text.substr(0, size));
+}
+
+TEST(BvhDocument, RefusesEndlessNesting) {
+  std::string text = "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\n";
+  for (int i = 0; i < 100000; ++i) text += "JOINT a\n{\nOFFSET 0 0 0\n";
+  EXPECT_THAT(ParseError(text), HasSubstr("more than 1024 joints"));
+}
+
+TEST(BvhDocument, ReadsSeveralRoots) {
+  const std::string root = "{\nOFFSET 0 0 0\nCHANNELS 3 Xposition Yposition Zposition\n}\n";
+  const absl::StatusOr<BvhDocument> document =
+      ParseBvh(absl::StrCat("HIERARCHY\nROOT a\n", root, "ROOT b\n", root,
+                            "MOTION\nFrames: 1\nFrame Time: 1\n1 2 3 4 5 6\n"),
+               "a.bvh");
+  ASSERT_TRUE(document.ok()) << document.status();
+  ExpectNear(BvhKinematics(*document).Positions(0)[1], {4, 5, 6});
+}
+
+}  // namespace
+}  // namespace duet

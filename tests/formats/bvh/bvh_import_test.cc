@@ -1,0 +1,141 @@
+#include "model/formats/bvh/bvh_import.h"
+
+#include <cmath>
+#include <string>
+
+#include "absl/strings/str_cat.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "model/formats/bvh/bvh_export.h"
+#include "tests/support/test_motion.h"
+
+namespace duet {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using testing::LargestDistance;
+using testing::MakePerson;
+
+constexpr float kOneMillimetre = 0.001f;
+
+BvhDocument Export(const Clip& clip) {
+  absl::StatusOr<BvhDocument> document = ToBvh(clip, SbuSkeleton());
+  EXPECT_TRUE(document.ok()) << document.status();
+  return *std::move(document);
+}
+
+// The document in another unit.
+BvhDocument Scaled(BvhDocument document, double factor) {
+  for (BvhJoint& joint : document.joints) joint.offset = joint.offset * factor;
+  const std::size_t channels = static_cast<std::size_t>(document.ChannelCount());
+  for (std::size_t i = 0; i < document.values.size(); ++i) {
+    if (i % channels < 3) document.values[i] *= static_cast<float>(factor);
+  }
+  return document;
+}
+
+TEST(BvhImport, ReadsWhatWeWrite) {
+  const Clip clip = MakePerson();
+  const absl::StatusOr<Clip> read = FromBvh(Export(clip), "a.bvh");
+  ASSERT_TRUE(read.ok()) << read.status();
+  EXPECT_EQ(read->joint_names, clip.joint_names);
+  EXPECT_EQ(read->frame_rate_hz, 30);
+  EXPECT_LT(LargestDistance(*read, clip), kOneMillimetre);
+}
+
+TEST(BvhImport, FindsTheUnitFromThePersonsSize) {
+  const Clip clip = MakePerson();
+  const std::pair<double, const char*> units[] = {{1, "unit: centimetres"},
+                                                  {0.01, "unit: metres"},
+                                                  {10, "unit: millimetres"},
+                                                  {1 / 2.54, "unit: inches"},
+                                                  {0.45 / 2.54, "unit: CMU's unit"}};
+  for (const auto& [factor, note] : units) {
+    std::vector<std::string> notes;
+    BvhImportOptions options;
+    options.notes = &notes;
+    const absl::StatusOr<Clip> read = FromBvh(Scaled(Export(clip), factor), "a.bvh", options);
+    ASSERT_TRUE(read.ok()) << read.status();
+    EXPECT_LT(LargestDistance(*read, clip), kOneMillimetre) << note;
+    EXPECT_THAT(notes, Contains(HasSubstr(note)));
+  }
+}
+
+TEST(BvhImport, RefusesASizeThatIsNoPersonsUnlessTheUnitIsGiven) {
+  const Clip clip = MakePerson();
+  const BvhDocument giant = Scaled(Export(clip), 77);
+  const absl::StatusOr<Clip> refused = FromBvh(giant, "a.bvh");
+  EXPECT_EQ(refused.status().code(), absl::StatusCode::kInvalidArgument);
+  EXPECT_THAT(std::string(refused.status().message()), HasSubstr("a.bvh: size: foot to root came"));
+  BvhImportOptions options;
+  options.metres_per_unit = 0.01 / 77;
+  const absl::StatusOr<Clip> read = FromBvh(giant, "a.bvh", options);
+  ASSERT_TRUE(read.ok()) << read.status();
+  EXPECT_LT(LargestDistance(*read, clip), kOneMillimetre);
+  for (double unit : {0.0, -1.0, 1e30, std::nan("")}) {
+    options.metres_per_unit = unit;
+    EXPECT_THAT(std::string(FromBvh(giant, "a.bvh", options).status().message()),
+                HasSubstr("metres per unit: came"));
+  }
+}
+
+TEST(BvhImport, FindsTheUpAxis) {
+  const Clip clip = MakePerson();
+  Clip z_up = clip, y_down = clip;
+  for (Vec3& p : z_up.positions) p = {p.x, -p.z, p.y};
+  for (Vec3& p : y_down.positions) p = {p.x, -p.y, -p.z};
+  for (const Clip* turned : {&z_up, &y_down}) {
+    std::vector<std::string> notes;
+    BvhImportOptions options;
+    options.notes = &notes;
+    const absl::StatusOr<Clip> read = FromBvh(Export(*turned), "a.bvh", options);
+    ASSERT_TRUE(read.ok()) << read.status();
+    EXPECT_LT(LargestDistance(*read, clip), kOneMillimetre);
+    EXPECT_THAT(notes, Contains(HasSubstr("up axis:")));
+  }
+  BvhImportOptions as_it_is;
+  as_it_is.up_axis = UpAxis::kYUp;
+  const absl::StatusOr<Clip> read = FromBvh(Export(z_up), "a.bvh", as_it_is);
+  ASSERT_TRUE(read.ok()) << read.status();
+  EXPECT_LT(LargestDistance(*read, z_up), kOneMillimetre);
+}
+
+TEST(BvhImport, RoundsFrameTimesToTheRateThatIsMeant) {
+  const std::pair<double, double> rates[] = {{0.0333333, 30}, {0.033333, 30},  {0.0083333, 120},
+                                             {0.041667, 24},  {0.0166667, 60}, {0.04, 25}};
+  for (const auto& [frame_time, rate] : rates) {
+    BvhDocument document = Export(MakePerson({2}));
+    document.frame_time_s = frame_time;
+    EXPECT_EQ(FromBvh(document, "a.bvh")->frame_rate_hz, rate) << frame_time;
+  }
+  BvhDocument broadcast = Export(MakePerson({2}));
+  broadcast.frame_time_s = 1 / 29.97;
+  EXPECT_NEAR(FromBvh(broadcast, "a.bvh")->frame_rate_hz, 29.97, 1e-6);
+}
+
+TEST(BvhImport, ReadsTheSecondPersonOfAFileWithTwo) {
+  const Clip first = MakePerson({2}), second = MakePerson({2, 3, 0, {0, 1, 1.5f}, 30});
+  BvhDocument both = Export(first);
+  const BvhDocument other = Export(second);
+  const std::size_t shift = both.joints.size(), channels = other.values.size() / 2;
+  for (BvhJoint joint : other.joints) {
+    if (joint.parent >= 0) joint.parent += static_cast<int>(shift);
+    both.joints.push_back(joint);
+  }
+  std::vector<float> values;
+  for (std::size_t frame = 0; frame < 2; ++frame) {
+    for (const BvhDocument* from : {static_cast<const BvhDocument*>(&both), &other}) {
+      const auto row = from->values.begin() + static_cast<std::ptrdiff_t>(frame * channels);
+      values.insert(values.end(), row, row + static_cast<std::ptrdiff_t>(channels));
+    }
+  }
+  both.values = values;
+  BvhImportOptions options;
+  EXPECT_LT(LargestDistance(*FromBvh(both, "a.bvh", options), first), kOneMillimetre);
+  options.person = 1;
+  EXPECT_LT(LargestDistance(*FromBvh(both, "a.bvh", options), second), kOneMillimetre);
+}
+
+}  // namespace
+}  // namespace duet

@@ -1,0 +1,103 @@
+#include "model/formats/flat/json_motion.h"
+
+#include <string>
+
+#include "absl/strings/str_cat.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "nlohmann/json.hpp"
+#include "tests/support/test_motion.h"
+
+namespace duet {
+namespace {
+
+using ::testing::HasSubstr;
+using Json = nlohmann::json;
+
+Json OnePerson() {
+  return {{"frame_rate_hz", 20},
+          {"joint_names", {"a", "b"}},
+          {"leader", {{{1, 2, 3}, {4, 5, 6}}, {{7, 8, 9}, {10, 11, 12.5}}}}};
+}
+
+std::string ParseError(const std::string& text) {
+  const absl::StatusOr<RecordedMotion> motion = ParseJsonMotion(text, "a.json");
+  EXPECT_EQ(motion.status().code(), absl::StatusCode::kInvalidArgument) << motion.status();
+  return std::string(motion.status().message());
+}
+
+std::string ErrorWith(const std::string& pointer, const Json& value) {
+  Json document = OnePerson();
+  document[Json::json_pointer(pointer)] = value;
+  return ParseError(document.dump());
+}
+
+TEST(JsonMotion, ReadsOnePerson) {
+  const absl::StatusOr<RecordedMotion> motion = ParseJsonMotion(OnePerson().dump(), "a.json");
+  ASSERT_TRUE(motion.ok()) << motion.status();
+  ASSERT_EQ(motion->people.size(), 1u);
+  EXPECT_EQ(motion->people[0].frame_rate_hz, 20);
+  EXPECT_EQ(motion->people[0].at(1, 1), (Vec3{10, 11, 12.5f}));
+}
+
+TEST(JsonMotion, ReadsBackAPairExactly) {
+  const ClipPair pair{testing::MakePerson(), testing::MakePerson({60, 3, 0, {0, 1, 1.2f}, 30})};
+  const std::string text = FormatJsonMotion(pair, SbuSkeleton());
+  const absl::StatusOr<RecordedMotion> motion = ParseJsonMotion(text, "a.json");
+  ASSERT_TRUE(motion.ok()) << motion.status();
+  ASSERT_EQ(motion->people.size(), 2u);
+  EXPECT_EQ(motion->people[0].joint_names, pair.leader.joint_names);
+  EXPECT_EQ(motion->people[0].positions, pair.leader.positions);
+  EXPECT_EQ(motion->people[1].positions, pair.follower.positions);
+  const Json document = Json::parse(text);
+  EXPECT_EQ(document["format"], "duet-motion");
+  EXPECT_EQ(document["unit"], "metres");
+  EXPECT_EQ(document["bones"].size(), 14u);
+  EXPECT_EQ(document["bones"][0], Json({1, 0}));
+}
+
+TEST(JsonMotion, HonoursUnitAndAxis) {
+  Json document = OnePerson();
+  document["unit"] = "millimetres";
+  document["up_axis"] = "-y";
+  const absl::StatusOr<RecordedMotion> motion = ParseJsonMotion(document.dump(), "a.json");
+  ASSERT_TRUE(motion.ok()) << motion.status();
+  EXPECT_EQ(motion->coordinates.unit, LengthUnit::kMillimetres);
+  EXPECT_EQ(motion->coordinates.up_axis, UpAxis::kYDown);
+}
+
+TEST(JsonMotion, NamesTheFieldThatIsWrong) {
+  EXPECT_THAT(ErrorWith("/frame_rate_hz", -1), HasSubstr("a.json: frame_rate_hz: came \"-1\""));
+  EXPECT_THAT(ErrorWith("/frame_rate_hz", "x"), HasSubstr("frame_rate_hz: came"));
+  EXPECT_THAT(ErrorWith("/unit", "feet"), HasSubstr("unit: came"));
+  EXPECT_THAT(ErrorWith("/up_axis", 3), HasSubstr("up_axis: came \"3\", wanted y, z or -y"));
+  EXPECT_THAT(ErrorWith("/format", "glTF"), HasSubstr("format: came"));
+  EXPECT_THAT(ErrorWith("/version", 2), HasSubstr("version: came \"2\", wanted 1"));
+  EXPECT_THAT(ErrorWith("/joint_names", Json::array()), HasSubstr("joint_names: came"));
+  EXPECT_THAT(ErrorWith("/joint_names/1", 7), HasSubstr("joint_names: came \"7\", wanted a name"));
+  EXPECT_THAT(ErrorWith("/leader", Json::array()), HasSubstr("leader: came"));
+  EXPECT_THAT(ErrorWith("/leader/1", {{1, 2, 3}}), HasSubstr("leader[1]: came"));
+  EXPECT_THAT(ErrorWith("/leader/1/0", {1, 2}), HasSubstr("leader[1][0]: came"));
+  EXPECT_THAT(ErrorWith("/leader/1/0/2", 1e30), HasSubstr("leader[1][0]: came"));
+  EXPECT_THAT(ErrorWith("/leader/1/0/2", nullptr), HasSubstr("leader[1][0]: came"));
+  EXPECT_THAT(ErrorWith("/follower", "none"), HasSubstr("follower: came"));
+}
+
+TEST(JsonMotion, RefusesWhatIsNoDocument) {
+  EXPECT_THAT(ParseError(""), HasSubstr("no valid JSON"));
+  EXPECT_THAT(ParseError("{\"leader\": [[[1e999"), HasSubstr("no valid JSON"));
+  EXPECT_THAT(ParseError("[1, 2]"), HasSubstr("wanted {...}"));
+  EXPECT_THAT(ParseError("{}"), HasSubstr("joint_names: missing"));
+  EXPECT_THAT(ParseError("{\"joint_names\": [\"a\"]}"), HasSubstr("leader: missing"));
+  EXPECT_THAT(ParseError("{\"unit\": \"\xff\xfe\"}"), HasSubstr("a.json"));
+}
+
+TEST(JsonMotion, RefusesDeepNestingBeforeItCostsMemory) {
+  EXPECT_THAT(ParseError(std::string(2'000'000, '[')), HasSubstr("deep"));
+  Json document = OnePerson();
+  document["joint_names"][0] = "[[[[[[[[[[[[";
+  EXPECT_TRUE(ParseJsonMotion(document.dump(), "a.json").ok());
+}
+
+}  // namespace
+}  // namespace duet

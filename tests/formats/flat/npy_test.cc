@@ -1,0 +1,112 @@
+#include "model/formats/flat/npy.h"
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_replace.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "model/base/text.h"
+#include "tests/support/test_motion.h"
+
+namespace duet {
+namespace {
+
+using ::testing::HasSubstr;
+
+ClipPair MakePair() {
+  return {testing::MakePerson({12}), testing::MakePerson({12, 3, 0, {0, 1, 1.2f}, 30})};
+}
+
+std::string ParseError(const std::string& bytes) {
+  const absl::StatusOr<RecordedMotion> motion = ParseNpy(bytes, "a.npy", SbuSkeleton().joint_names);
+  EXPECT_EQ(motion.status().code(), absl::StatusCode::kInvalidArgument) << motion.status();
+  return std::string(motion.status().message());
+}
+
+std::string Replaced(const std::string& from, const std::string& to) {
+  return absl::StrReplaceAll(FormatNpy(MakePair()), {{from, to}});
+}
+
+TEST(Npy, ReadsBackAPairExactly) {
+  const ClipPair pair = MakePair();
+  const absl::StatusOr<RecordedMotion> motion =
+      ParseNpy(FormatNpy(pair), "a.npy", pair.leader.joint_names);
+  ASSERT_TRUE(motion.ok()) << motion.status();
+  ASSERT_EQ(motion->people.size(), 2u);
+  EXPECT_EQ(motion->people[0].positions, pair.leader.positions);
+  EXPECT_EQ(motion->people[1].positions, pair.follower.positions);
+  EXPECT_EQ(motion->people[0].frame_rate_hz, 0);
+}
+
+TEST(Npy, AlignsItsValues) {
+  const std::string bytes = FormatNpy(MakePair());
+  EXPECT_EQ((bytes.find('\n') + 1) % 64, 0u);
+  EXPECT_EQ(bytes.size() - bytes.find('\n') - 1, 2u * 12 * 15 * 3 * 4);
+}
+
+// The format's own reader and writer, where this machine has them.
+TEST(Npy, IsReadAndWrittenByNumPy) {
+  if (std::system("/usr/bin/python3 -c 'import numpy' >/dev/null 2>&1") != 0) {
+    GTEST_SKIP() << "no /usr/bin/python3 with numpy";
+  }
+  const std::filesystem::path folder = ::testing::TempDir();
+  const std::filesystem::path ours = folder / "duet_ours.npy", theirs = folder / "duet_theirs.npy";
+  const ClipPair pair = MakePair();
+  ASSERT_TRUE(WriteFile(ours, FormatNpy(pair)).ok());
+  const std::string script =
+      absl::StrCat("import numpy as n; a = n.load('", ours.string(),
+                   "'); assert a.shape == (2, 12, 15, 3) and a.dtype == n.float32; n.save('",
+                   theirs.string(), "', a[1].astype(n.float64) * 2)");
+  ASSERT_EQ(std::system(absl::StrCat("/usr/bin/python3 -c \"", script, "\"").c_str()), 0);
+  const absl::StatusOr<std::string> bytes = ReadFile(theirs);
+  ASSERT_TRUE(bytes.ok()) << bytes.status();
+  const absl::StatusOr<RecordedMotion> motion = ParseNpy(*bytes, "b.npy", pair.leader.joint_names);
+  ASSERT_TRUE(motion.ok()) << motion.status();
+  ASSERT_EQ(motion->people.size(), 1u);
+  ASSERT_EQ(motion->people[0].frame_count(), 12);
+  EXPECT_EQ(motion->people[0].at(11, 14), 2 * pair.follower.at(11, 14));
+}
+
+TEST(Npy, RefusesOtherArrays) {
+  EXPECT_THAT(ParseError(Replaced("<f4", "<i4")), HasSubstr("descr: came"));
+  EXPECT_THAT(ParseError(Replaced("<f4", ">f4")), HasSubstr("descr: came"));
+  EXPECT_THAT(ParseError(Replaced("False", "True ")), HasSubstr("fortran_order: came"));
+  EXPECT_THAT(ParseError(Replaced("(2, 12, 15, 3)", "(2, 15, 12, 3)")), HasSubstr("shape: came"));
+  EXPECT_THAT(ParseError(Replaced("(2, 12, 15, 3)", "(3, 12, 15, 3)")), HasSubstr("shape: came"));
+  EXPECT_THAT(ParseError(Replaced("(2, 12, 15, 3)", "(2, 00, 15, 3)")), HasSubstr("shape: came"));
+  EXPECT_THAT(ParseError(Replaced("(2, 12, 15, 3)", "(2, 13, 15, 3)")),
+              HasSubstr("bytes of values"));
+  EXPECT_THAT(ParseError(Replaced("(2, 12, 15, 3)", "(2, xx, 15, 3)")), HasSubstr("whole numbers"));
+  EXPECT_THAT(ParseError(Replaced("shape", "shade")), HasSubstr("shape: came ()"));
+}
+
+TEST(Npy, RefusesEveryTruncation) {
+  const std::string bytes = FormatNpy(MakePair());
+  for (std::size_t size = 0; size < bytes.size(); size += size < 200 ? 1 : 97) {
+    ParseError(bytes.substr(0, size));
+  }
+}
+
+TEST(Npy, RefusesBytesAfterTheValues) {
+  EXPECT_THAT(ParseError(FormatNpy(MakePair()) + "x"), HasSubstr("bytes of values"));
+}
+
+TEST(Npy, RefusesAHeaderLongerThanTheFile) {
+  std::string bytes = FormatNpy(MakePair());
+  bytes[8] = bytes[9] = '\xff';
+  EXPECT_THAT(ParseError(bytes), HasSubstr("header of 65535 bytes"));
+}
+
+TEST(Npy, NamesAPositionThatIsNotFinite) {
+  std::string bytes = FormatNpy(MakePair());
+  const std::size_t second_joint = bytes.find('\n') + 1 + (15 * 3 + 3) * 4;
+  bytes.replace(second_joint, 4, std::string("\0\0\xc0\x7f", 4));
+  EXPECT_THAT(ParseError(bytes), HasSubstr("frame 1 neck: came nan"));
+}
+
+}  // namespace
+}  // namespace duet

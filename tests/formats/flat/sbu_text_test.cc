@@ -1,0 +1,151 @@
+#include "model/formats/flat/sbu_text.h"
+
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_replace.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+
+namespace duet {
+namespace {
+
+using ::testing::HasSubstr;
+
+// Two joints in metres: what a person with their own data writes.
+SbuOptions TwoJoints() {
+  SbuOptions options;
+  options.joint_names = {"torso", "head"};
+  options.frame_rate_hz = 25;
+  options.coordinates = {LengthUnit::kMetres, UpAxis::kYUp};
+  return options;
+}
+
+constexpr char kTwoFrames[] =
+    "7,0,1,0,0,1.5,0,1,1,0,1,1.5,0\n"
+    "8,0,1,0.1,0,1.5,0.1,1,1,0,1,1.5,-2e-1\n";
+
+std::string ParseError(const std::string& text) {
+  const absl::StatusOr<SbuRecording> recording = ParseSbu(text, "a.txt", TwoJoints());
+  EXPECT_EQ(recording.status().code(), absl::StatusCode::kInvalidArgument) << recording.status();
+  return std::string(recording.status().message());
+}
+
+TEST(SbuText, ReadsBothPeople) {
+  const absl::StatusOr<SbuRecording> recording = ParseSbu(kTwoFrames, "a.txt", TwoJoints());
+  ASSERT_TRUE(recording.ok()) << recording.status();
+  EXPECT_EQ(recording->left.frame_count(), 2);
+  EXPECT_EQ(recording->right.frame_count(), 2);
+  EXPECT_EQ(recording->left.frame_rate_hz, 25);
+  EXPECT_EQ(recording->left.at(1, 0), (Vec3{0, 1, 0.1f}));
+  EXPECT_EQ(recording->right.at(1, 1), (Vec3{1, 1.5f, -0.2f}));
+}
+
+TEST(SbuText, DefaultsToSbuJointsUnitAndRate) {
+  std::string line = "180";
+  for (int value = 0; value < 90; ++value) absl::StrAppend(&line, ",", value < 45 ? "0.5" : "0.25");
+  const absl::StatusOr<SbuRecording> recording = ParseSbu(line, "a.txt");
+  ASSERT_TRUE(recording.ok()) << recording.status();
+  EXPECT_EQ(recording->left.joint_names, SbuSkeleton().joint_names);
+  EXPECT_EQ(recording->left.frame_rate_hz, 15);
+  EXPECT_NEAR(recording->left.at(0, 0).x, 0, 1e-6);
+  EXPECT_NEAR(recording->left.at(0, 0).y, 0, 1e-6);
+  EXPECT_NEAR(recording->left.at(0, 0).z, 0.64, 1e-6);
+  EXPECT_NEAR(recording->right.at(0, 14).x, 0.64, 1e-6);
+  EXPECT_NEAR(recording->right.at(0, 14).y, 0.48, 1e-6);
+}
+
+TEST(SbuText, AcceptsWindowsLineEndsAndBlankLinesAtTheEnd) {
+  const std::string text = absl::StrReplaceAll(kTwoFrames, {{"\n", "\r\n"}}) + "\r\n\n";
+  const absl::StatusOr<SbuRecording> recording = ParseSbu(text, "a.txt", TwoJoints());
+  ASSERT_TRUE(recording.ok()) << recording.status();
+  EXPECT_EQ(recording->left.frame_count(), 2);
+}
+
+TEST(SbuText, NamesThePlaceOfABadValue) {
+  const std::string text = absl::StrReplaceAll(kTwoFrames, {{"-2e-1", "abc"}});
+  const std::string error = ParseError(text);
+  EXPECT_THAT(error, HasSubstr("a.txt:2:33: right person's head z"));
+  EXPECT_THAT(error, HasSubstr("came \"abc\", wanted a finite number"));
+}
+
+TEST(SbuText, RefusesNumbersThatAreNoPosition) {
+  for (const char* bad :
+       {"nan", "inf", "1e400", "1e30", "0x10", "1.5.2", "1,5", "", "1 2", "--1"}) {
+    const std::string text = absl::StrReplaceAll(kTwoFrames, {{"-2e-1", bad}});
+    EXPECT_THAT(ParseError(text), HasSubstr("a.txt:2")) << bad;
+  }
+}
+
+TEST(SbuText, RefusesAWrongNumberOfValues) {
+  EXPECT_THAT(ParseError("1,0,1,0\n"),
+              HasSubstr("a.txt:1: came 4 comma-separated values, wanted 13"));
+}
+
+TEST(SbuText, RefusesFrameNumbersThatSkip) {
+  const std::string text = absl::StrCat(kTwoFrames, "10,0,1,0,0,1.5,0,1,1,0,1,1.5,0\n");
+  EXPECT_THAT(ParseError(text), HasSubstr("a.txt:3:1: frame number: came 10 after 8, wanted 9"));
+  EXPECT_THAT(ParseError(absl::StrReplaceAll(kTwoFrames, {{"8,", "7,"}})),
+              HasSubstr("came 7 after 7, wanted a larger one"));
+  EXPECT_THAT(ParseError(absl::StrReplaceAll(kTwoFrames, {{"8,", "99999999999999999999,"}})),
+              HasSubstr("wanted a whole number"));
+}
+
+TEST(SbuText, RefusesAnEmptyText) {
+  EXPECT_THAT(ParseError(""), HasSubstr("no frames"));
+  EXPECT_THAT(ParseError("\n\n"), HasSubstr("no frames"));
+}
+
+TEST(SbuText, RefusesARateThatIsNoRate) {
+  SbuOptions options = TwoJoints();
+  options.frame_rate_hz = -1;
+  EXPECT_THAT(std::string(ParseSbu(kTwoFrames, "a.txt", options).status().message()),
+              HasSubstr("frame rate: came -1"));
+}
+
+TEST(SbuText, WritesWhatItReads) {
+  const absl::StatusOr<SbuRecording> recording = ParseSbu(kTwoFrames, "a.txt", TwoJoints());
+  ASSERT_TRUE(recording.ok());
+  const absl::StatusOr<std::string> text = FormatSbu(*recording, TwoJoints());
+  ASSERT_TRUE(text.ok());
+  const absl::StatusOr<SbuRecording> again = ParseSbu(*text, "b.txt", TwoJoints());
+  ASSERT_TRUE(again.ok()) << again.status();
+  EXPECT_EQ(again->left.positions, recording->left.positions);
+  EXPECT_EQ(again->right.positions, recording->right.positions);
+}
+
+TEST(SbuText, NamesAMissingFile) {
+  const absl::StatusOr<SbuRecording> recording = ReadSbu("/nowhere/skeleton_pos.txt");
+  EXPECT_EQ(recording.status().code(), absl::StatusCode::kNotFound);
+  EXPECT_THAT(std::string(recording.status().message()), HasSubstr("/nowhere/skeleton_pos.txt"));
+}
+
+// Every real capture, where somebody has them.
+TEST(SbuText, ReadsEveryCaptureOfTheDataSet) {
+  const char* folder = std::getenv("DUET_DATA_DIR");
+  const char* source = std::getenv("DUET_SOURCE_DIR");
+  const std::filesystem::path data =
+      folder != nullptr
+          ? std::filesystem::path(folder)
+          : std::filesystem::path(source != nullptr ? source : ".") / "../shared/data";
+  if (!std::filesystem::is_directory(data / "sbu")) {
+    GTEST_SKIP() << "no captures at " << data << "; set DUET_DATA_DIR to read them";
+  }
+  int files = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(data)) {
+    const bool sbu = entry.path().filename() == "skeleton_pos.txt";
+    const bool k3hi = entry.path().string().find("k3hi") != std::string::npos &&
+                      entry.path().extension() == ".txt";
+    if (!sbu && !k3hi) continue;
+    const absl::StatusOr<SbuRecording> recording = ReadSbu(entry.path());
+    ASSERT_TRUE(recording.ok()) << recording.status();
+    EXPECT_GE(recording->left.frame_count(), 10);
+    ++files;
+  }
+  EXPECT_GT(files, 200);
+}
+
+}  // namespace
+}  // namespace duet

@@ -1,0 +1,417 @@
+#include "model/retargeting/joint_mapping.h"
+
+#include <map>
+#include <string>
+
+#include "absl/strings/str_replace.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "model/retargeting/joint_names.h"
+
+namespace duet {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+void ExpectName(const char* name, BodySide side, const char* base) {
+  const ParsedJointName parsed = ParseJointName(name);
+  EXPECT_EQ(parsed.side, side) << name;
+  EXPECT_EQ(parsed.base, base) << name;
+}
+
+TEST(JointNames, LoseSidePrefixCaseAndSeparators) {
+  ExpectName("mixamorig:LeftUpLeg", BodySide::kLeft, "upleg");
+  ExpectName("mixamorig1:Spine2", BodySide::kMiddle, "spine2");
+  ExpectName("Bip01 L UpperArm", BodySide::kLeft, "upperarm");
+  ExpectName("Bip01_R_Calf", BodySide::kRight, "calf");
+  ExpectName("upper_arm.L", BodySide::kLeft, "upperarm");
+  ExpectName("DEF-forearm.R", BodySide::kRight, "forearm");
+  ExpectName("thigh_r", BodySide::kRight, "thigh");
+  ExpectName("rShldr", BodySide::kRight, "shldr");
+  ExpectName("LHipJoint", BodySide::kLeft, "hipjoint");
+  ExpectName("RIGHT_KNEE", BodySide::kRight, "knee");
+  ExpectName("lfemur", BodySide::kLeft, "femur");
+  ExpectName("leftarm", BodySide::kLeft, "arm");
+  ExpectName("J_Bip_L_UpperArm", BodySide::kLeft, "upperarm");
+  ExpectName("J_Bip_C_Head", BodySide::kMiddle, "head");
+  ExpectName("left_hand", BodySide::kLeft, "hand");
+}
+
+TEST(JointNames, DoNotReadASideWhereThereIsNone) {
+  ExpectName("root", BodySide::kMiddle, "root");
+  ExpectName("LowerBack", BodySide::kMiddle, "lowerback");
+  ExpectName("lowerback", BodySide::kMiddle, "lowerback");
+  ExpectName("leg", BodySide::kMiddle, "leg");
+  ExpectName("L", BodySide::kMiddle, "l");
+  ExpectName("", BodySide::kMiddle, "");
+}
+
+// What one program calls the joints of a person in a T pose. '@' is the side.
+struct Convention {
+  const char* name;
+  const char* left;
+  const char* right;
+  // Height of the joints of the middle, metres.
+  std::map<std::string, float> middle;
+  const char *collar, *shoulder, *elbow, *hand, *hip, *knee, *foot, *toe;
+  const char* torso;  // expected
+};
+
+void PrintTo(const Convention& convention, std::ostream* out) { *out << convention.name; }
+
+struct NamedPose {
+  std::vector<std::string> names;
+  std::vector<Vec3> positions;
+};
+
+NamedPose MakePose(const Convention& c) {
+  NamedPose pose;
+  const auto add = [&pose](const std::string& name, Vec3 at) {
+    if (name.empty()) return;
+    pose.names.push_back(name);
+    pose.positions.push_back(at);
+  };
+  for (const auto& [name, height] : c.middle) add(name, {0, height, 0});
+  for (const float side : {1.0f, -1.0f}) {
+    const auto add_limb = [&](const char* name, float x, float y, float z) {
+      add(absl::StrReplaceAll(name, {{"@", side > 0 ? c.left : c.right}}), {x * side, y, z});
+    };
+    add_limb(c.collar, 0.05f, 1.42f, 0);
+    add_limb(c.shoulder, 0.17f, 1.4f, 0);
+    add_limb(c.elbow, 0.46f, 1.4f, 0);
+    add_limb(c.hand, 0.72f, 1.4f, 0);
+    add_limb(c.hip, 0.1f, 0.92f, 0);
+    add_limb(c.knee, 0.1f, 0.5f, 0);
+    add_limb(c.foot, 0.1f, 0.08f, 0);
+    add_limb(c.toe, 0.1f, 0.02f, 0.15f);
+  }
+  return pose;
+}
+
+const Convention kConventions[] = {
+    {"Mixamo",
+     "Left",
+     "Right",
+     {{"mixamorig:Hips", 0.97f},
+      {"mixamorig:Spine", 1.07f},
+      {"mixamorig:Spine1", 1.18f},
+      {"mixamorig:Spine2", 1.3f},
+      {"mixamorig:Neck", 1.46f},
+      {"mixamorig:Head", 1.55f},
+      {"mixamorig:HeadTop_End", 1.74f}},
+     "mixamorig:@Shoulder",
+     "mixamorig:@Arm",
+     "mixamorig:@ForeArm",
+     "mixamorig:@Hand",
+     "mixamorig:@UpLeg",
+     "mixamorig:@Leg",
+     "mixamorig:@Foot",
+     "mixamorig:@ToeBase",
+     "mixamorig:Spine1"},
+    {"CMU by cgspeed",
+     "Left",
+     "Right",
+     {{"Hips", 0.97f},
+      {"LowerBack", 0.97f},
+      {"Spine", 1.14f},
+      {"Spine1", 1.28f},
+      {"Neck", 1.28f},
+      {"Neck1", 1.44f},
+      {"Head", 1.53f},
+      {"Head.end", 1.53f}},
+     "@Shoulder",
+     "@Arm",
+     "@ForeArm",
+     "@Hand",
+     "@UpLeg",
+     "@Leg",
+     "@Foot",
+     "@ToeBase",
+     "Spine"},
+    {"3ds Max Biped",
+     "L",
+     "R",
+     {{"Bip01 Pelvis", 0.97f},
+      {"Bip01 Spine", 1.05f},
+      {"Bip01 Spine1", 1.17f},
+      {"Bip01 Spine2", 1.3f},
+      {"Bip01 Neck", 1.45f},
+      {"Bip01 Head", 1.53f},
+      {"Bip01 Head.end", 1.72f}},
+     "Bip01 @ Clavicle",
+     "Bip01 @ UpperArm",
+     "Bip01 @ Forearm",
+     "Bip01 @ Hand",
+     "Bip01 @ Thigh",
+     "Bip01 @ Calf",
+     "Bip01 @ Foot",
+     "Bip01 @ Toe0",
+     "Bip01 Spine1"},
+    {"Perception Neuron",
+     "Left",
+     "Right",
+     {{"Hips", 0.97f},
+      {"Spine", 1.07f},
+      {"Spine1", 1.17f},
+      {"Spine2", 1.27f},
+      {"Spine3", 1.37f},
+      {"Neck", 1.45f},
+      {"Head", 1.54f},
+      {"Head.end", 1.72f}},
+     "@Shoulder",
+     "@Arm",
+     "@ForeArm",
+     "@Hand",
+     "@UpLeg",
+     "@Leg",
+     "@Foot",
+     "",
+     "Spine1"},
+    {"SMPL",
+     "L",
+     "R",
+     {{"Pelvis", 0.95f},
+      {"Spine1", 1.05f},
+      {"Spine2", 1.18f},
+      {"Spine3", 1.24f},
+      {"Neck", 1.45f},
+      {"Head", 1.54f}},
+     "@_Collar",
+     "@_Shoulder",
+     "@_Elbow",
+     "@_Wrist",
+     "@_Hip",
+     "@_Knee",
+     "@_Ankle",
+     "@_Foot",
+     "Spine2"},
+    {"Poser, DAZ, Second Life",
+     "l",
+     "r",
+     {{"hip", 0.97f},
+      {"abdomen", 0.98f},
+      {"chest", 1.16f},
+      {"neck", 1.42f},
+      {"head", 1.52f},
+      {"head.end", 1.7f}},
+     "@Collar",
+     "@Shldr",
+     "@ForeArm",
+     "@Hand",
+     "@Thigh",
+     "@Shin",
+     "@Foot",
+     "",
+     "chest"},
+    {"Blender Rigify",
+     "L",
+     "R",
+     {{"spine", 0.95f},
+      {"spine.001", 1.07f},
+      {"spine.002", 1.19f},
+      {"spine.003", 1.3f},
+      {"neck", 1.45f},
+      {"head", 1.54f},
+      {"head.end", 1.74f}},
+     "shoulder.@",
+     "upper_arm.@",
+     "forearm.@",
+     "hand.@",
+     "thigh.@",
+     "shin.@",
+     "foot.@",
+     "toe.@",
+     "spine.002"},
+    {"Unreal",
+     "l",
+     "r",
+     {{"pelvis", 0.95f},
+      {"spine_01", 1.06f},
+      {"spine_02", 1.19f},
+      {"spine_03", 1.28f},
+      {"neck_01", 1.45f},
+      {"head", 1.54f}},
+     "clavicle_@",
+     "upperarm_@",
+     "lowerarm_@",
+     "hand_@",
+     "thigh_@",
+     "calf_@",
+     "foot_@",
+     "ball_@",
+     "spine_02"},
+    {"VRM",
+     "L",
+     "R",
+     {{"J_Bip_C_Hips", 0.97f},
+      {"J_Bip_C_Spine", 1.03f},
+      {"J_Bip_C_Chest", 1.15f},
+      {"J_Bip_C_UpperChest", 1.27f},
+      {"J_Bip_C_Neck", 1.43f},
+      {"J_Bip_C_Head", 1.51f}},
+     "J_Bip_@_Shoulder",
+     "J_Bip_@_UpperArm",
+     "J_Bip_@_LowerArm",
+     "J_Bip_@_Hand",
+     "J_Bip_@_UpperLeg",
+     "J_Bip_@_LowerLeg",
+     "J_Bip_@_Foot",
+     "J_Bip_@_ToeBase",
+     "J_Bip_C_Chest"},
+    {"Biovision",
+     "Left",
+     "Right",
+     {{"Hips", 0.97f}, {"Chest", 1.12f}, {"Neck", 1.42f}, {"Head", 1.5f}, {"Head.end", 1.72f}},
+     "@Collar",
+     "@Shoulder",
+     "@Elbow",
+     "@Wrist",
+     "@Hip",
+     "@Knee",
+     "@Ankle",
+     "@Toe",
+     "Chest"},
+    {"Acclaim",
+     "l",
+     "r",
+     {{"root", 0.95f},
+      {"lowerback", 1.02f},
+      {"upperback", 1.14f},
+      {"thorax", 1.26f},
+      {"lowerneck", 1.4f},
+      {"upperneck", 1.48f},
+      {"head", 1.55f},
+      {"head.end", 1.72f}},
+     "@clavicle",
+     "@humerus",
+     "@radius",
+     "@wrist",
+     "@femur",
+     "@tibia",
+     "@foot",
+     "@toes",
+     "upperback"},
+    {"Unity, VRChat",
+     "Left",
+     "Right",
+     {{"Hips", 0.97f}, {"Spine", 1.07f}, {"Chest", 1.2f}, {"Neck", 1.43f}, {"Head", 1.54f}},
+     "@ shoulder",
+     "@ arm",
+     "@ elbow",
+     "@ wrist",
+     "@ leg",
+     "@ knee",
+     "@ ankle",
+     "@ toe",
+     "Chest"}};
+
+class Conventions : public ::testing::TestWithParam<Convention> {};
+
+TEST_P(Conventions, FindEveryJoint) {
+  const NamedPose pose = MakePose(GetParam());
+  const Skeleton skeleton = SbuSkeleton();
+  const absl::StatusOr<JointMap> map = MapJoints("a.bvh", pose.names, pose.positions, skeleton);
+  ASSERT_TRUE(map.ok()) << map.status();
+  const std::vector<Vec3> mapped = ApplyJointMap(*map, pose.positions.data());
+  ASSERT_EQ(mapped.size(), 15u);
+  const Vec3 limbs[] = {{0.17f, 1.4f, 0}, {0.46f, 1.4f, 0}, {0.72f, 1.4f, 0},
+                        {0.1f, 0.92f, 0}, {0.1f, 0.5f, 0},  {0.1f, 0.08f, 0}};
+  for (int i = 0; i < 6; ++i) {
+    const size_t left = i < 3 ? 3u + i : 6u + i, right = left + 3;
+    const Vec3 mirrored = {-limbs[i].x, limbs[i].y, limbs[i].z};
+    EXPECT_LT(Distance(mapped[left], limbs[i]), 1e-5f) << skeleton.joint_names[left];
+    EXPECT_LT(Distance(mapped[right], mirrored), 1e-5f) << skeleton.joint_names[right];
+  }
+  EXPECT_NEAR(mapped[0].y, 1.63, 0.04) << "head";
+  EXPECT_NEAR(mapped[1].y, 1.42, 0.05) << "neck";
+  EXPECT_THAT(map->notes, Contains(HasSubstr(std::string("torso: ") + GetParam().torso + " (")));
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Conventions, ::testing::ValuesIn(kConventions));
+
+TEST(JointMapping, TakesTheSkeletonsOwnNamesAsTheyAre) {
+  const Skeleton skeleton = SbuSkeleton();
+  std::vector<std::string> names = {"head.end"};
+  names.insert(names.end(), skeleton.joint_names.rbegin(), skeleton.joint_names.rend());
+  std::vector<Vec3> pose;
+  for (std::size_t i = 0; i < names.size(); ++i) pose.push_back({static_cast<float>(i), 0, 0});
+  const absl::StatusOr<JointMap> map = MapJoints("a.csv", names, pose, skeleton);
+  ASSERT_TRUE(map.ok()) << map.status();
+  EXPECT_TRUE(map->notes.empty());
+  const std::vector<Vec3> mapped = ApplyJointMap(*map, pose.data());
+  for (std::size_t i = 0; i < 15; ++i) EXPECT_EQ(mapped[i].x, 15.0f - static_cast<float>(i));
+}
+
+TEST(JointMapping, SaysWhichJointsAreMissingAndWhatThereIs) {
+  NamedPose pose = MakePose(kConventions[0]);
+  for (std::string& name : pose.names) {
+    if (name == "mixamorig:LeftHand") name = "paw";
+  }
+  const absl::StatusOr<JointMap> map =
+      MapJoints("a.bvh", pose.names, pose.positions, SbuSkeleton());
+  EXPECT_EQ(map.status().code(), absl::StatusCode::kInvalidArgument);
+  EXPECT_THAT(std::string(map.status().message()),
+              AllOf(HasSubstr("a.bvh: joints: nothing stands for left_hand;"), HasSubstr("paw"),
+                    HasSubstr("left_hand=NAME")));
+}
+
+TEST(JointMapping, LetsTheUserNameJoints) {
+  NamedPose pose = MakePose(kConventions[0]);
+  for (std::string& name : pose.names) {
+    if (name == "mixamorig:LeftHand") name = "paw";
+  }
+  const absl::StatusOr<JointMap> map =
+      MapJoints("a.bvh", pose.names, pose.positions, SbuSkeleton(),
+                {{"left_hand", "paw"}, {"head", "mixamorig:Head"}});
+  ASSERT_TRUE(map.ok()) << map.status();
+  const std::vector<Vec3> mapped = ApplyJointMap(*map, pose.positions.data());
+  EXPECT_NEAR(mapped[5].x, 0.72, 1e-5);
+  EXPECT_NEAR(mapped[0].y, 1.55, 1e-5) << "a joint that the user names is taken as it is";
+}
+
+TEST(JointMapping, RefusesOverridesThatNameNothing) {
+  const NamedPose pose = MakePose(kConventions[0]);
+  const absl::StatusOr<JointMap> tail =
+      MapJoints("a.bvh", pose.names, pose.positions, SbuSkeleton(), {{"tail", "mixamorig:Hips"}});
+  EXPECT_THAT(std::string(tail.status().message()),
+              HasSubstr("came target \"tail\", wanted one of"));
+  const absl::StatusOr<JointMap> nothing =
+      MapJoints("a.bvh", pose.names, pose.positions, SbuSkeleton(), {{"torso", "Nothing"}});
+  EXPECT_THAT(std::string(nothing.status().message()),
+              HasSubstr("torso=Nothing: a.bvh has no such joint"));
+}
+
+TEST(JointMapping, PlacesTheTorsoWhereNoSpineJointIsNear) {
+  NamedPose pose = MakePose(kConventions[0]);
+  for (std::string& name : pose.names) {
+    if (name.find("Spine") != std::string::npos) name = "part of " + name;
+  }
+  const absl::StatusOr<JointMap> map =
+      MapJoints("a.bvh", pose.names, pose.positions, SbuSkeleton());
+  ASSERT_TRUE(map.ok()) << map.status();
+  EXPECT_THAT(map->notes, Contains(HasSubstr("torso:")));
+}
+
+TEST(JointMapping, KeepsWristAndHandApartForASkeletonWithBoth) {
+  Skeleton skeleton;
+  skeleton.joint_names = {"left_hand", "left_wrist"};
+  const std::vector<std::string> names = {"LeftWrist", "LeftHand"};
+  const std::vector<Vec3> pose = {{1, 0, 0}, {2, 0, 0}};
+  const absl::StatusOr<JointMap> map = MapJoints("a.bvh", names, pose, skeleton);
+  ASSERT_TRUE(map.ok()) << map.status();
+  EXPECT_EQ(ApplyJointMap(*map, pose.data())[0].x, 2);
+}
+
+TEST(JointMapping, SurvivesNamesOfEveryKind) {
+  const std::vector<std::string> names = {"",     ":",        "_",    "l",
+                                          "Left", "\xff\xfe", "head", "head.end"};
+  const std::vector<Vec3> pose(names.size());
+  const absl::StatusOr<JointMap> map = MapJoints("a.bvh", names, pose, SbuSkeleton());
+  EXPECT_THAT(std::string(map.status().message()), Not(HasSubstr("for head")));
+}
+
+}  // namespace
+}  // namespace duet

@@ -1,0 +1,84 @@
+#include "model/retargeting/rotation.h"
+
+#include <cmath>
+#include <vector>
+
+#include "gtest/gtest.h"
+
+namespace duet {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+void ExpectNear(Vec3d a, Vec3d b, double tolerance = 1e-9) {
+  EXPECT_NEAR(a.x, b.x, tolerance);
+  EXPECT_NEAR(a.y, b.y, tolerance);
+  EXPECT_NEAR(a.z, b.z, tolerance);
+}
+
+TEST(Rotation, TurnsCounterClockwise) {
+  ExpectNear(Rotate(AxisAngle({0, 0, 1}, kPi / 2), {1, 0, 0}), {0, 1, 0});
+  ExpectNear(Rotate(AxisAngle({1, 0, 0}, kPi / 2), {0, 1, 0}), {0, 0, 1});
+  ExpectNear(Rotate(AxisAngle({0, 1, 0}, kPi / 2), {0, 0, 1}), {1, 0, 0});
+  // The right factor applies first.
+  ExpectNear(Rotate(AxisAngle({0, 0, 1}, kPi / 2) * AxisAngle({1, 0, 0}, kPi / 2), {0, 1, 0}),
+             {0, 0, 1});
+}
+
+TEST(Rotation, TakesTheShortestArcEvenBetweenOppositeDirections) {
+  const Vec3d directions[] = {{1, 0, 0}, {0, -1, 0}, {0.6, 0, 0.8}, {-1, 0, 0}, {-1 + 1e-13, 0, 0}};
+  for (const Vec3d& from : directions) {
+    for (const Vec3d& to : directions) {
+      const Vec3d axis = Unit(Cross(from, {0.1, 0.2, 0.3}), {0, 0, 1});
+      const Quaternion q = ShortestArc(from, to, axis);
+      ExpectNear(Rotate(q, from), to, 1e-8);
+      EXPECT_NEAR(Angle(q, {}), std::acos(std::min(1.0, std::max(-1.0, Dot(from, to)))), 1e-6);
+    }
+  }
+}
+
+TEST(Rotation, FitsARotationExactly) {
+  const Quaternion truth = AxisAngle(Unit({1, -2, 3}, {}), 2.8);
+  std::vector<Correspondence> points;
+  for (const Vec3d& p : {Vec3d{1, 0, 0}, Vec3d{0, 2, 0}, Vec3d{0.3, 0.1, 0.7}}) {
+    points.push_back({p, Rotate(truth, p)});
+  }
+  EXPECT_LT(Angle(FitRotation(points, {}), truth), 1e-7);
+}
+
+TEST(Rotation, LeavesWhatThePointsLeaveOpenToThePrior) {
+  const Quaternion prior = AxisAngle({0, 1, 0}, 0.7);
+  EXPECT_LT(Angle(FitRotation({}, {{prior, 1}}), prior), 1e-7);
+  // One direction fixes two of three angles; the third is the prior's.
+  EXPECT_LT(Angle(FitRotation({{{0, 1, 0}, {0, 1, 0}}}, {{prior, 0.01}}), prior), 1e-7);
+  EXPECT_LT(Angle(FitRotation({}, {}), {}), 1e-7);
+}
+
+TEST(Rotation, GivesAnglesThatMakeTheRotationAgain) {
+  for (double z = -7; z < 7; z += 0.9) {
+    for (double x : {-kPi / 2, -1.5707, -1.0, 0.0, 0.4, 1.57079, kPi / 2, 2.5}) {
+      for (double y = -4; y < 4; y += 0.7) {
+        const Quaternion q = FromEuler({z, x, y});
+        EXPECT_LT(Angle(FromEuler(ToEuler(q, {})), q), 2e-5) << z << " " << x << " " << y;
+        EXPECT_LT(Angle(FromEuler(ToEuler(q, {1, 2, 3})), q), 2e-5) << z << " " << x << " " << y;
+      }
+    }
+  }
+}
+
+TEST(Rotation, KeepsAnglesNearThoseBefore) {
+  EulerZxy angles;
+  for (int step = 0; step <= 1000; ++step) {
+    // Four whole turns about y and a pitch that passes over the top.
+    const EulerZxy truth = {0.2, step * 0.003, step * 0.025};
+    const EulerZxy next = ToEuler(FromEuler(truth), angles);
+    EXPECT_LT(std::abs(next.y - angles.y), 0.1) << step;
+    EXPECT_LT(std::abs(next.x - angles.x), 0.1) << step;
+    angles = next;
+  }
+  EXPECT_NEAR(angles.y, 25, 1e-6);
+  EXPECT_NEAR(angles.x, 3, 1e-6);
+}
+
+}  // namespace
+}  // namespace duet

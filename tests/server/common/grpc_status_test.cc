@@ -1,0 +1,70 @@
+#include "server/common/grpc_status.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "absl/time/time.h"
+#include "server/common/error_details.h"
+#include "tests/server/support/refusal.h"
+
+namespace duet {
+namespace {
+
+TEST(ToGrpcStatusTest, OkIsOk) { EXPECT_TRUE(ToGrpcStatus(absl::OkStatus()).ok()); }
+
+TEST(ToGrpcStatusTest, KeepsEveryCode) {
+  for (int code = 1; code <= 16; ++code) {
+    const grpc::Status status =
+        ToGrpcStatus(absl::Status(static_cast<absl::StatusCode>(code), "why"));
+    EXPECT_EQ(status.error_code(), code);
+    EXPECT_EQ(status.error_message(), "why");
+    EXPECT_EQ(status.error_details(), "") << "nothing to tell beyond code and message";
+  }
+}
+
+TEST(ToGrpcStatusTest, CarriesEveryDetail) {
+  absl::Status status = absl::UnavailableError("later");
+  AddBadRequest(status, {{"a.b[0]", "is 1"}, {"c", "is 2"}});
+  AddErrorInfo(status, kReasonDraining, {{"key", "value"}});
+  AddRetryInfo(status, absl::Milliseconds(1500));
+  const Refusal refusal = Decode(ToGrpcStatus(status));
+  EXPECT_EQ(refusal.code, absl::StatusCode::kUnavailable);
+  EXPECT_EQ(refusal.message, "later");
+  EXPECT_EQ(refusal.Of("a.b[0]"), "is 1");
+  EXPECT_EQ(refusal.Of("c"), "is 2");
+  EXPECT_EQ(refusal.reason, "SERVER_DRAINING");
+  EXPECT_EQ(refusal.metadata.at("key"), "value");
+  EXPECT_DOUBLE_EQ(refusal.retry_seconds, 1.5);
+}
+
+// Byte for byte what google.rpc's own protos would give, so that any client decodes it:
+// Status{code: 3, message: "m", details: [Any{type_url, BadRequest{[{field: "f",
+// description: "d"}]}}]}.
+TEST(ToGrpcStatusTest, HasTheWireFormOfGoogleRpc) {
+  absl::Status status = absl::InvalidArgumentError("m");
+  AddBadRequest(status, {{"f", "d"}});
+  const std::string url = "type.googleapis.com/google.rpc.BadRequest";
+  const std::string bad_request =
+      "\x0a\x06\x0a\x01"
+      "f"
+      "\x12\x01"
+      "d";
+  const std::string any = "\x0a" + std::string(1, static_cast<char>(url.size())) + url + "\x12" +
+                          std::string(1, static_cast<char>(bad_request.size())) + bad_request;
+  EXPECT_EQ(ToGrpcStatus(status).error_details(),
+            "\x08\x03\x12\x01m\x1a" + std::string(1, static_cast<char>(any.size())) + any);
+}
+
+TEST(QuotedTest, QuotesAndEscapes) {
+  EXPECT_EQ(Quoted("head"), "\"head\"");
+  EXPECT_EQ(Quoted("a\nb\"c\xff"), R"("a\nb\"c\xff")");
+}
+
+TEST(QuotedTest, ShowsOnlyTheBeginningOfALongText) {
+  EXPECT_EQ(Quoted(std::string(1000, 'x')), "\"" + std::string(64, 'x') + "...\"");
+}
+
+}  // namespace
+}  // namespace duet

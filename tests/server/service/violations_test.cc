@@ -1,0 +1,68 @@
+#include "server/service/violations.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "absl/strings/str_cat.h"
+#include "server/common/grpc_status.h"
+#include "tests/server/support/refusal.h"
+#include "tests/support/status_matchers.h"
+
+namespace duet {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Pair;
+
+TEST(ViolationsTest, NoneIsOk) { EXPECT_THAT(Violations().ToStatus(), IsOk()); }
+
+TEST(ViolationsTest, NamesEveryFieldInOrder) {
+  Violations violations;
+  violations.Malformed("a", "is 1, wanted 2");
+  violations.Malformed("b[3]", "is nan");
+  const Refusal refusal = Decode(violations.ToStatus());
+  EXPECT_EQ(refusal.code, absl::StatusCode::kInvalidArgument);
+  EXPECT_THAT(refusal.violations, ElementsAre(Pair("a", "is 1, wanted 2"), Pair("b[3]", "is nan")));
+  EXPECT_EQ(refusal.reason, "INVALID_REQUEST");
+  EXPECT_EQ(refusal.message, "a: is 1, wanted 2; b[3]: is nan");
+}
+
+TEST(ViolationsTest, AMismatchAloneIsAFailedPrecondition) {
+  Violations violations;
+  violations.Mismatch("leader.joint_names", "lacks head");
+  const Refusal refusal = Decode(violations.ToStatus());
+  EXPECT_EQ(refusal.code, absl::StatusCode::kFailedPrecondition);
+  EXPECT_EQ(refusal.reason, "MODEL_MISMATCH");
+}
+
+TEST(ViolationsTest, WhatIsMalformedOutweighsAMismatch) {
+  Violations violations;
+  violations.Mismatch("leader.joint_names", "lacks head");
+  violations.Malformed("chunk_frames", "is 0");
+  const Refusal refusal = Decode(violations.ToStatus());
+  EXPECT_EQ(refusal.code, absl::StatusCode::kInvalidArgument);
+  EXPECT_EQ(refusal.violations.size(), 2u);
+}
+
+TEST(ViolationsTest, ManyFitIntoTrailersAndAreCounted) {
+  Violations violations;
+  for (int i = 0; i < 1000; ++i) {
+    violations.Malformed(absl::StrCat("field[", i, "]"), std::string(1000, 'x'));
+  }
+  const grpc::Status status = ToGrpcStatus(violations.ToStatus());
+  // As base64 and together with the message; clients take 8 KiB of trailers.
+  EXPECT_LT(status.error_details().size() * 4 / 3 + status.error_message().size(), 6000u);
+  const Refusal refusal = Decode(status);
+  ASSERT_FALSE(refusal.violations.empty());
+  EXPECT_EQ(refusal.violations.front().first, "field[0]");
+  const std::size_t listed = refusal.violations.size() - 1;
+  EXPECT_THAT(refusal.violations.back(),
+              Pair("", absl::StrCat(1000 - listed, " further violations are not listed")));
+  EXPECT_THAT(refusal.message, HasSubstr("and 998 more"));
+}
+
+}  // namespace
+}  // namespace duet
