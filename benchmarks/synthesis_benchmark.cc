@@ -13,22 +13,22 @@ namespace {
 constexpr int kLongFrames = 18000;  // 10 minutes at 30 frames a second
 constexpr double kLongRateHz = 30;
 
-const duet::Synthesizer& Model() {
+const duet::engine::Synthesizer& Model() {
   static const auto* const kModels = [] {
-    duet::SetTorchThreads(1);
-    auto loaded = duet::LoadEmbeddedSynthesizers();
+    duet::torch_engine::SetTorchThreads(1);
+    auto loaded = duet::torch_engine::LoadEmbeddedSynthesizers();
     if (!loaded.ok()) {
       std::cerr << loaded.status().message() << "\n";
       std::exit(1);
     }
-    return new std::vector<std::unique_ptr<duet::Synthesizer>>(*std::move(loaded));
+    return new std::vector<std::unique_ptr<duet::engine::Synthesizer>>(*std::move(loaded));
   }();
   return *kModels->front();
 }
 
 // A made-up person who sways: speed does not depend on what the leader does.
-std::vector<duet::Vec3> Leader(int frames) {
-  std::vector<duet::Vec3> leader;
+std::vector<duet::motion::Vec3> Leader(int frames) {
+  std::vector<duet::motion::Vec3> leader;
   const int joints = Model().description().skeleton.joint_count();
   for (int t = 0; t < frames; ++t) {
     for (int j = 0; j < joints; ++j) {
@@ -48,14 +48,14 @@ std::vector<float> Label() {
 
 void BM_Windows(benchmark::State& state) {
   const int frames = Model().description().window_frames;
-  duet::SynthesisWindow window;
+  duet::engine::SynthesisWindow window;
   window.leader = Leader(frames);
   for (int t = 0; t < frames; ++t) {
     const std::vector<float> label = Label();
     window.labels.insert(window.labels.end(), label.begin(), label.end());
   }
-  const std::vector<const duet::SynthesisWindow*> batch(static_cast<size_t>(state.range(0)),
-                                                        &window);
+  const std::vector<const duet::engine::SynthesisWindow*> batch(static_cast<size_t>(state.range(0)),
+                                                                &window);
   for (auto _ : state) benchmark::DoNotOptimize(Model().Synthesize(batch));
   state.counters["frames/s"] = benchmark::Counter(static_cast<double>(state.range(0)) * frames,
                                                   benchmark::Counter::kIsIterationInvariantRate);
@@ -63,13 +63,13 @@ void BM_Windows(benchmark::State& state) {
 BENCHMARK(BM_Windows)->Arg(1)->Arg(4)->Arg(16)->Arg(32)->Unit(benchmark::kMillisecond);
 
 void BM_TenMinutes(benchmark::State& state) {
-  const duet::ClipRequest request{
-      Leader(kLongFrames), kLongRateHz, duet::LabelTrack(Label()), {}, {}};
+  const duet::engine::ClipRequest request{
+      Leader(kLongFrames), kLongRateHz, duet::engine::LabelTrack(Label()), {}, {}};
   for (auto _ : state) {
-    duet::ClipSynthesis clip(Model().description(), request);
+    duet::engine::ClipSynthesis clip(Model().description(), request);
     while (clip.HasNextWindow()) {
-      const duet::SynthesisWindow window = clip.NextWindow();
-      const duet::SynthesisWindow* const one = &window;
+      const duet::engine::SynthesisWindow window = clip.NextWindow();
+      const duet::engine::SynthesisWindow* const one = &window;
       benchmark::DoNotOptimize(clip.Accept(*Model().Synthesize({&one, 1}).front()));
     }
   }

@@ -11,11 +11,11 @@ namespace {
 
 constexpr int64_t kBatch = 16, kFrames = 45, kJoints = 15;
 
-duet::Manifest PaperManifest() {
-  duet::Manifest manifest;
+duet::checkpoint::Manifest PaperManifest() {
+  duet::checkpoint::Manifest manifest;
   manifest.model.name = "benchmark";
   manifest.model.version = 1;
-  manifest.model.skeleton = duet::SbuSkeleton();
+  manifest.model.skeleton = duet::motion::SbuSkeleton();
   manifest.model.classes = {"kick", "push", "shake_hands", "hug", "exchange_object", "punch"};
   manifest.model.frame_rate_hz = 15;
   manifest.model.window_frames = static_cast<int>(kFrames);
@@ -25,11 +25,11 @@ duet::Manifest PaperManifest() {
 void BM_TrainingStep(benchmark::State& state) {
   torch::set_num_threads(static_cast<int>(state.range(0)));
   torch::manual_seed(0);
-  const duet::Manifest manifest = PaperManifest();
+  const duet::checkpoint::Manifest manifest = PaperManifest();
   duet::network::Generator generator(manifest);
-  duet::TrainingOptions::Optimiser options;
+  duet::training::TrainingOptions::Optimiser options;
   options.schedule = "constant";
-  duet::Optimiser optimiser(options, generator->parameters(), 1);
+  duet::training::Optimiser optimiser(options, generator->parameters(), 1);
   duet::network::GeneratorInput input;
   input.leader = torch::randn({kBatch, kFrames, 3 * kJoints});
   input.labels = torch::zeros({kBatch, kFrames, 6});

@@ -32,7 +32,7 @@ struct WeightKeyframe {
 
 // Where the follower is at the leader's first frame, in the leader's world: its root joint alone,
 // or every joint in the order of the leader's joint_names.
-using FollowerStart = std::variant<Vec3, std::vector<Vec3>>;
+using FollowerStart = std::variant<motion::Vec3, std::vector<motion::Vec3>>;
 
 enum class Priority { kInteractive, kBulk };
 
@@ -40,7 +40,7 @@ enum class Priority { kInteractive, kBulk };
 struct SynthesisRequest {
   ModelChoice model;
   // Metres, y up. Its joints are those of the model (GetModel lists them), in any order.
-  Clip leader;
+  motion::Clip leader;
   // One of the two: weights for the whole clip, or weights that change over time (linear between
   // keyframes, held before the first and after the last).
   std::vector<ClassWeight> weights;
@@ -48,7 +48,7 @@ struct SynthesisRequest {
   std::optional<FollowerStart> follower_start;
   // Horizontal direction from the leader to where the follower should be; y does not count. Absent:
   // towards follower_start, or else where the leader's hips face in its first frame.
-  std::optional<Vec3> partner_direction;
+  std::optional<motion::Vec3> partner_direction;
   // Bulk work yields to interactive work, and waits its turn when the server is full.
   Priority priority = Priority::kInteractive;
   // Frames in one chunk of the reply. Absent: the server chooses.

@@ -21,7 +21,7 @@ struct ModelInfo {
   bool is_default = false;
   std::vector<std::string> interaction_classes;
   std::vector<std::string> joint_names;
-  std::vector<Bone> bones;  // indices into joint_names
+  std::vector<motion::Bone> bones;  // indices into joint_names
   std::string root_joint;
   double frame_rate_hz = 0;  // the network's own; any other is resampled
   int window_frames = 0;
@@ -56,7 +56,8 @@ struct SynthesisTimings {
 
 // A follower, and who made it.
 struct SynthesisResult {
-  ClipPair pair;  // the request's leader, and the follower in the same joints, rate and world
+  motion::ClipPair
+      pair;  // the request's leader, and the follower in the same joints, rate and world
   std::string model_name;
   int model_version = 0;
   std::vector<std::string> interaction_classes;  // every class of the model
@@ -70,7 +71,8 @@ struct SynthesisResult {
 struct FollowerChunk {
   int first_frame = 0;
   int frame_count = 0;
-  std::vector<Vec3> positions;  // [frame_count, joints], the leader's joint order; metres, y up
+  std::vector<motion::Vec3>
+      positions;  // [frame_count, joints], the leader's joint order; metres, y up
 };
 
 // Called for every chunk, in frame order, each frame once even where the call was retried. A status

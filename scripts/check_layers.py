@@ -2,15 +2,15 @@
 """Checks who includes whom: fails, naming file and line, when an include crosses a layer.
 
 LAYERS is the whole rule book; ARCHITECTURE.md explains it. A file belongs to the first layer whose
-pattern matches its path. It may include its own layer, the layers in `sees`, and of the guarded
-libraries only those in `libraries`, directly or through any header of the project. Tests and
-benchmarks may include everything.
+folder holds it. It may include its own layer, the layers in `sees`, and of the guarded libraries
+only those in `libraries` (in `source_libraries`: from .cc files alone), directly or through any
+header of the project. Its namespace is its folder's path. Tests and benchmarks may include
+everything.
 
     scripts/check_layers.py [source folder]
 """
 
 import dataclasses
-import fnmatch
 import pathlib
 import re
 import sys
@@ -19,45 +19,77 @@ import sys
 @dataclasses.dataclass(frozen=True)
 class Layer:
     name: str
-    files: tuple  # patterns; * also matches /
+    folder: str  # with all below it that is not an earlier layer's
     sees: tuple  # other layers that it may include
     libraries: tuple = ()  # guarded libraries that it may include
+    source_libraries: tuple = ()  # the same, but not from its headers
 
 
-TORCH_FREE_MODEL = ("motion", "formats", "dataset", "engine", "checkpoint", "embedded checkpoints")
-WHOLE_MODEL = TORCH_FREE_MODEL + ("network", "torch engine", "training")
+MOTION_FILES = ("base", "motion", "retargeting", "flat formats", "bvh format", "formats")
+MODELS = ("engine", "checkpoint", "embedded checkpoints", "network", "torch engine", "training")
+MEASURING = ("metrics", "protocol", "baselines", "judge", "experiments")
+SERVER = ("server common", "batching", "registry", "server metrics", "server config", "service",
+          "lifecycle")
 
 LAYERS = (
     # The method, innermost first.
-    Layer("motion", ("model/motion/*",), sees=()),
-    Layer("formats", ("model/formats/*",), sees=("motion",)),
-    Layer("dataset", ("model/dataset/*",), sees=("motion", "formats")),
-    Layer("torch engine", ("model/engine/torch_*",),
-          sees=("motion", "engine", "checkpoint", "embedded checkpoints", "network"),
+    Layer("base", "model/base", sees=()),
+    Layer("motion", "model/motion", sees=("base",)),
+    Layer("retargeting", "model/retargeting", sees=("base", "motion")),
+    Layer("flat formats", "model/formats/flat", sees=("base", "motion")),
+    Layer("bvh format", "model/formats/bvh", sees=("base", "motion", "retargeting")),
+    Layer("formats", "model/formats",
+          sees=("base", "motion", "retargeting", "flat formats", "bvh format")),
+    Layer("authoring", "model/authoring", sees=("base", "motion", "retargeting", "bvh format")),
+    Layer("dataset", "model/dataset", sees=MOTION_FILES),
+    Layer("engine", "model/engine", sees=("base", "motion")),
+    Layer("checkpoint", "model/checkpoint", sees=("base", "motion", "engine")),
+    Layer("embedded checkpoints", "model/checkpoints", sees=()),
+    Layer("network", "model/network", sees=("base", "motion", "engine", "checkpoint"),
           libraries=("torch",)),
-    Layer("engine", ("model/engine/*",), sees=("motion",)),
-    Layer("checkpoint", ("model/checkpoint/*",), sees=("motion", "engine")),
-    Layer("embedded checkpoints", ("model/checkpoints/*",), sees=()),
-    Layer("network", ("model/network/*",), sees=("motion", "engine", "checkpoint"),
+    Layer("torch engine", "model/torch_engine",
+          sees=("base", "motion", "engine", "checkpoint", "embedded checkpoints", "network"),
+          source_libraries=("torch",)),
+    Layer("training", "model/training",
+          sees=("base", "motion", "dataset", "engine", "checkpoint", "network"),
           libraries=("torch",)),
-    Layer("training", ("model/training/*",),
-          sees=TORCH_FREE_MODEL + ("network", "torch engine"), libraries=("torch",)),
-    # The headers are the torch-free layer's.
-    Layer("torch evaluation", ("model/evaluation/judge/*.cc",), sees=WHOLE_MODEL + ("evaluation",),
-          libraries=("torch",)),
-    Layer("augmentation experiment", ("model/evaluation/augmentation/*",),
-          sees=TORCH_FREE_MODEL + ("evaluation", "training")),
-    Layer("evaluation program", ("model/evaluation/eval_main.cc", "model/evaluation/commands/*"),
-          sees=TORCH_FREE_MODEL + ("evaluation", "augmentation experiment", "torch engine")),
-    Layer("evaluation", ("model/evaluation/*",), sees=TORCH_FREE_MODEL),
-    # The programs around it.
-    Layer("server main", ("server/main.cc",),
-          sees=("server", "motion", "engine", "checkpoint", "embedded checkpoints", "torch engine"),
+    # How good it is.
+    Layer("metrics", "model/evaluation/metrics", sees=("base", "motion", "dataset")),
+    Layer("protocol", "model/evaluation/protocol", sees=("base", "motion", "dataset", "metrics")),
+    Layer("baselines", "model/evaluation/baselines",
+          sees=("base", "motion", "dataset", "metrics", "protocol")),
+    Layer("judge", "model/evaluation/judge",
+          sees=("base", "motion", "dataset", "engine", "checkpoint", "network", "training",
+                "metrics", "protocol"),
+          source_libraries=("torch",)),
+    Layer("experiments", "model/evaluation/experiments",
+          sees=MOTION_FILES + MODELS + ("dataset", "metrics", "protocol", "baselines", "judge"),
+          source_libraries=("torch",)),
+    Layer("report", "model/evaluation/report", sees=("base", "motion", "dataset") + MEASURING),
+    Layer("evaluation program", "model/evaluation/program",
+          sees=MOTION_FILES + ("dataset", "engine", "checkpoint", "torch engine", "report")
+          + MEASURING),
+    # The server, innermost first.
+    Layer("server common", "server/common", sees=("base",), libraries=("rpc",)),
+    Layer("batching", "server/batching", sees=("base", "motion", "engine", "server common")),
+    Layer("registry", "server/registry", sees=("base", "motion", "engine", "server common")),
+    Layer("server metrics", "server/metrics", sees=("base", "batching", "server common"),
+          libraries=("prometheus",)),
+    Layer("server config", "server/config", sees=("base", "server common"), libraries=("rpc",)),
+    Layer("service", "server/service",
+          sees=("base", "motion", "engine", "server common", "batching", "registry",
+                "server metrics"),
           libraries=("rpc", "prometheus")),
-    Layer("server", ("server/*",), sees=("motion", "engine"), libraries=("rpc", "prometheus")),
-    Layer("viewer", ("client/viewer/*",), sees=("motion", "client")),
-    Layer("client program", ("client/cli/*",), sees=("motion", "formats", "viewer", "client")),
-    Layer("client", ("client/*",), sees=("motion",), libraries=("rpc",)),
+    Layer("lifecycle", "server/lifecycle", sees=("base", "motion", "engine") + SERVER,
+          libraries=("rpc", "prometheus")),
+    Layer("server program", "server/program",
+          sees=("base", "motion", "engine", "checkpoint", "embedded checkpoints", "torch engine")
+          + SERVER,
+          libraries=("rpc", "prometheus")),
+    # The client.
+    Layer("viewer", "client/viewer", sees=("base", "motion", "client")),
+    Layer("client program", "client/cli", sees=MOTION_FILES + ("viewer", "client")),
+    Layer("client", "client", sees=("base", "motion"), libraries=("rpc",)),
 )
 
 # Libraries that only some layers may know, by the start of the include path.
@@ -68,12 +100,15 @@ GUARDED_LIBRARIES = {
 }
 
 SOURCE_FOLDERS = ("model", "server", "client")
+# Folders whose namespace is not their path.
+NAMESPACES = {"model/checkpoints": "duet::embedded", "client/mocks": "duet::client"}
+NAMESPACE = re.compile(r"^namespace (duet[\w:]*) \{")
 INCLUDE = re.compile(r'^\s*#\s*include\s*["<]([^">]+)[">]')
 
 
 def layer_of(path):
     for layer in LAYERS:
-        if any(fnmatch.fnmatchcase(path, pattern) for pattern in layer.files):
+        if path.startswith(layer.folder + "/"):
             return layer
     return None
 
@@ -111,8 +146,8 @@ def way_to_library(include, library, includes, seen):
     return None
 
 
-def check_include(layer, include, includes):
-    """What is wrong with a file of `layer` including `include`, as messages."""
+def check_include(layer, path, include, includes):
+    """What is wrong with the file at `path`, of `layer`, including `include`, as messages."""
     if include.startswith(tuple(f"{folder}/" for folder in SOURCE_FOLDERS)):
         target = layer_of(include)
         if target and target is not layer and target.name not in layer.sees:
@@ -120,10 +155,26 @@ def check_include(layer, include, includes):
             yield (f'layer "{layer.name}" includes {include} of layer "{target.name}"; '
                    f"it sees {sees}")
     for library in GUARDED_LIBRARIES:
-        if library not in layer.libraries:
+        libraries = layer.libraries + (layer.source_libraries if path.endswith(".cc") else ())
+        if library not in libraries:
             way = way_to_library(include, library, includes, seen=set())
             if way:
                 yield f'layer "{layer.name}" reaches {library} by ' + " -> ".join(way)
+
+
+def namespace_of(path):
+    """The namespace that a file's folder stands for: duet::formats::bvh for model/formats/bvh."""
+    folders = pathlib.PurePosixPath(path).parent.parts
+    return "::".join(("duet",) + (folders[1:] if folders[0] == "model" else folders))
+
+
+def check_namespaces(root, path):
+    """The namespaces that a file opens other than its folder's, as (line, message)."""
+    wanted = NAMESPACES.get(str(pathlib.PurePosixPath(path).parent)) or namespace_of(path)
+    for number, line in enumerate((root / path).read_text(encoding="utf-8").splitlines(), start=1):
+        opened = NAMESPACE.match(line)
+        if opened and opened[1] != wanted:
+            yield number, f"opens namespace {opened[1]}, wanted {wanted}"
 
 
 def check(root):
@@ -135,8 +186,10 @@ def check(root):
             yield f"{path}:1: belongs to no layer; add its folder to LAYERS in check_layers.py"
             continue
         for line, include in lines:
-            for message in check_include(layer, include, includes):
+            for message in check_include(layer, path, include, includes):
                 yield f"{path}:{line}: {message}"
+        for line, message in check_namespaces(root, path):
+            yield f"{path}:{line}: {message}"
 
 
 def main(arguments):

@@ -20,11 +20,11 @@ class CheckLayersTest(unittest.TestCase):
         self.write("model/motion/clip.h")
         self.write("model/engine/synthesizer.h", "model/motion/clip.h")
         self.write("model/network/generator.h", "torch/torch.h", "model/motion/clip.h")
-        self.write("model/engine/torch_synthesizer.h", "model/engine/synthesizer.h")
-        self.write("model/engine/torch_synthesizer.cc", "model/engine/torch_synthesizer.h",
+        self.write("model/torch_engine/torch_synthesizer.h", "model/engine/synthesizer.h")
+        self.write("model/torch_engine/torch_synthesizer.cc", "model/torch_engine/torch_synthesizer.h",
                    "model/network/generator.h")
-        self.write("server/service.h", "grpcpp/grpcpp.h", "model/engine/synthesizer.h")
-        self.write("server/main.cc", "server/service.h", "model/engine/torch_synthesizer.h")
+        self.write("server/service/service.h", "grpcpp/grpcpp.h", "model/engine/synthesizer.h")
+        self.write("server/program/main.cc", "server/service/service.h", "model/torch_engine/torch_synthesizer.h")
         self.write("client/client.cc", "duet/v1/synthesis.grpc.pb.h", "model/motion/clip.h")
 
     def write(self, path, *includes):
@@ -58,23 +58,23 @@ class CheckLayersTest(unittest.TestCase):
         self.assert_violation("model/motion/wire.cc:1:", "reaches rpc")
 
     def test_model_must_not_include_the_server(self):
-        self.write("server/limits.h")
-        self.write("model/motion/limits.cc", "server/limits.h")
-        self.assert_violation("model/motion/limits.cc:1:", '"server"')
+        self.write("server/service/limits.h")
+        self.write("model/motion/limits.cc", "server/service/limits.h")
+        self.assert_violation("model/motion/limits.cc:1:", '"service"')
 
     def test_server_must_not_include_torch(self):
-        self.write("server/warm_up.cc", "torch/torch.h")
-        self.assert_violation("server/warm_up.cc:1:", "reaches torch")
+        self.write("server/service/warm_up.cc", "torch/torch.h")
+        self.assert_violation("server/service/warm_up.cc:1:", "reaches torch")
 
     def test_only_main_links_an_engine(self):
-        self.write("server/registry.cc", "model/engine/torch_synthesizer.h")
-        self.assert_violation("server/registry.cc:1:", '"torch engine"')
+        self.write("server/registry/registry.cc", "model/torch_engine/torch_synthesizer.h")
+        self.assert_violation("server/registry/registry.cc:1:", '"torch engine"')
 
     def test_torch_must_not_leak_through_a_header(self):
-        self.write("model/engine/torch_synthesizer.h", "model/network/generator.h")
+        self.write("model/torch_engine/torch_synthesizer.h", "model/network/generator.h")
         self.assert_violation(
-            "server/main.cc:2:",
-            "model/engine/torch_synthesizer.h -> model/network/generator.h -> torch/torch.h")
+            "server/program/main.cc:2:",
+            "model/torch_engine/torch_synthesizer.h -> model/network/generator.h -> torch/torch.h")
 
     def test_client_must_not_see_the_engine(self):
         self.write("client/client.cc", "model/engine/synthesizer.h")
@@ -92,6 +92,23 @@ class CheckLayersTest(unittest.TestCase):
         (self.root / "model/motion/clip.h").write_text("// #include <torch/torch.h>\n")
         self.assertEqual(self.violations(), [])
 
+    def test_a_source_may_reach_what_its_header_may_not(self):
+        self.write("model/torch_engine/torch_synthesizer.h", "torch/torch.h")
+        self.assertIn('model/torch_engine/torch_synthesizer.h:1: layer "torch engine" reaches torch',
+                      self.violations()[0])
+
+    def test_namespace_is_the_folder_s_path(self):
+        clip = self.root / "model/motion/clip.h"
+        clip.write_text("namespace duet::motion {\n}\n", encoding="utf-8")
+        self.assertEqual(self.violations(), [])
+        clip.write_text("#include <cmath>\nnamespace duet {\n}\n", encoding="utf-8")
+        self.assert_violation("model/motion/clip.h:2:", "opens namespace duet", "duet::motion")
+
+    def test_a_room_inside_a_room_is_a_layer_of_its_own(self):
+        self.write("model/formats/flat/csv.h", "model/formats/bvh/bvh_document.h")
+        self.write("model/formats/bvh/bvh_document.h")
+        self.assert_violation("model/formats/flat/csv.h:1:", '"flat formats"', '"bvh format"')
+
     def test_include_circle_ends(self):
         self.write("model/motion/a.h", "model/motion/b.h")
         self.write("model/motion/b.h", "model/motion/a.h")
@@ -102,10 +119,10 @@ class CheckLayersTest(unittest.TestCase):
             return subprocess.run([sys.executable, CHECKER, self.root], capture_output=True,
                                   check=False, text=True)
         self.assertEqual(run().returncode, 0)
-        self.write("server/warm_up.cc", "torch/torch.h")
+        self.write("server/service/warm_up.cc", "torch/torch.h")
         failed = run()
         self.assertEqual(failed.returncode, 1)
-        self.assertIn("server/warm_up.cc:1:", failed.stderr)
+        self.assertIn("server/service/warm_up.cc:1:", failed.stderr)
 
 
 if __name__ == "__main__":

@@ -11,7 +11,7 @@
 #include "client/cli/output.h"
 #include "client/cli/value_syntax.h"
 
-namespace duet::client {
+namespace duet::client::cli {
 namespace {
 
 constexpr char kExitCodes[] = R"(
@@ -25,14 +25,17 @@ Example:
   duet synthesize --leader kick.bvh --label kick=1 --out pair.html --out pair.bvh
 )";
 
-const std::map<std::string, Side> kSides = {{"left", Side::kLeft}, {"right", Side::kRight}};
+const std::map<std::string, formats::Side> kSides = {{"left", formats::Side::kLeft},
+                                                     {"right", formats::Side::kRight}};
 const std::map<std::string, Priority> kPriorities = {{"interactive", Priority::kInteractive},
                                                      {"bulk", Priority::kBulk}};
-const std::map<std::string, LengthUnit> kUnits = {{"m", LengthUnit::kMetres},
-                                                  {"mm", LengthUnit::kMillimetres},
-                                                  {"sbu", LengthUnit::kSbuNormalised}};
-const std::map<std::string, UpAxis> kUpAxes = {
-    {"y-up", UpAxis::kYUp}, {"z-up", UpAxis::kZUp}, {"y-down", UpAxis::kYDown}};
+const std::map<std::string, motion::LengthUnit> kUnits = {
+    {"m", motion::LengthUnit::kMetres},
+    {"mm", motion::LengthUnit::kMillimetres},
+    {"sbu", motion::LengthUnit::kSbuNormalised}};
+const std::map<std::string, motion::UpAxis> kUpAxes = {{"y-up", motion::UpAxis::kYUp},
+                                                       {"z-up", motion::UpAxis::kZUp},
+                                                       {"y-down", motion::UpAxis::kYDown}};
 
 void AddServerFlags(CLI::App* app, ServerArguments* server) {
   constexpr char kGroup[] = "Server";
@@ -71,8 +74,9 @@ void AddInputFlags(CLI::App* app, SynthesizeArguments* arguments) {
       ->required()
       ->type_name("FILE")
       ->group(kGroup);
-  AddChoice<Side>(
-      app, "--leader-side", kSides, [arguments](Side side) { arguments->leader_side = side; },
+  AddChoice<formats::Side>(
+      app, "--leader-side", kSides,
+      [arguments](formats::Side side) { arguments->leader_side = side; },
       "Which person of a file with two leads (default left)")
       ->group(kGroup);
   InputArguments* input = &arguments->input;
@@ -80,12 +84,12 @@ void AddInputFlags(CLI::App* app, SynthesizeArguments* arguments) {
       ->check(Undescribed(CLI::PositiveNumber))
       ->type_name("HZ")
       ->group(kGroup);
-  AddChoice<LengthUnit>(
-      app, "--unit", kUnits, [input](LengthUnit unit) { input->unit = unit; },
+  AddChoice<motion::LengthUnit>(
+      app, "--unit", kUnits, [input](motion::LengthUnit unit) { input->unit = unit; },
       "Unit of positions; replaces what the file says")
       ->group(kGroup);
-  AddChoice<UpAxis>(
-      app, "--up-axis", kUpAxes, [input](UpAxis axis) { input->up_axis = axis; },
+  AddChoice<motion::UpAxis>(
+      app, "--up-axis", kUpAxes, [input](motion::UpAxis axis) { input->up_axis = axis; },
       "Up axis of positions; replaces what the file says")
       ->group(kGroup);
   app->add_option("--metres-per-unit", input->metres_per_unit,
@@ -122,15 +126,15 @@ void AddReactionFlags(CLI::App* app, SynthesizeArguments* arguments) {
                   "root joint in metres, y up")
       ->type_name("FILE|X,Y,Z")
       ->group(kGroup);
-  AddChoice<Side>(
+  AddChoice<formats::Side>(
       app, "--follower-start-side", kSides,
-      [arguments](Side side) { arguments->follower_start_side = side; },
+      [arguments](formats::Side side) { arguments->follower_start_side = side; },
       "Which person of a file with two (default: not the leader where it is the leader's file, "
       "else left)")
       ->group(kGroup);
-  AddParsed<Vec3>(
+  AddParsed<motion::Vec3>(
       app, "--partner-direction", "X,Y,Z", ParseDirection,
-      [arguments](Vec3 direction) { arguments->partner_direction = direction; },
+      [arguments](motion::Vec3 direction) { arguments->partner_direction = direction; },
       "Where the follower should be, as a horizontal direction from the leader (default: towards "
       "--follower-start, else where the leader's hips face)")
       ->take_last()
@@ -213,4 +217,4 @@ ParsedCommandLine ParseCommandLine(const std::vector<std::string>& arguments) {
   return parsed;
 }
 
-}  // namespace duet::client
+}  // namespace duet::client::cli

@@ -11,7 +11,7 @@
 #include "model/formats/motion_file.h"
 #include "model/motion/vec3.h"
 
-namespace duet::client {
+namespace duet::client::cli {
 
 // Where the server is and how to speak to it.
 struct ServerArguments {
@@ -27,10 +27,10 @@ struct ServerArguments {
 // How a motion file is to be read where the file itself does not say.
 struct InputArguments {
   std::optional<double> frame_rate_hz;
-  std::optional<LengthUnit> unit;
-  std::optional<UpAxis> up_axis;
+  std::optional<motion::LengthUnit> unit;
+  std::optional<motion::UpAxis> up_axis;
   std::optional<double> metres_per_unit;
-  JointOverrides joints;
+  retargeting::JointOverrides joints;
 };
 
 // duet models
@@ -43,14 +43,14 @@ struct ModelsArguments {
 struct SynthesizeArguments {
   ServerArguments server;
   std::filesystem::path leader;
-  Side leader_side = Side::kLeft;
+  formats::Side leader_side = formats::Side::kLeft;
   InputArguments input;
   ModelChoice model;
   std::vector<ClassWeight> weights;
   std::vector<WeightKeyframe> keyframes;
   std::string follower_start;  // empty, "X,Y,Z" or a motion file
-  std::optional<Side> follower_start_side;
-  std::optional<Vec3> partner_direction;
+  std::optional<formats::Side> follower_start_side;
+  std::optional<motion::Vec3> partner_direction;
   Priority priority = Priority::kInteractive;
   std::optional<int> chunk_frames;
   std::string request_id;
@@ -71,6 +71,6 @@ struct ParsedCommandLine {
 // `arguments` without the program's name. Never touches the network; looks at output folders only.
 ParsedCommandLine ParseCommandLine(const std::vector<std::string>& arguments);
 
-}  // namespace duet::client
+}  // namespace duet::client::cli
 
 #endif  // DUET_CLIENT_CLI_ARGUMENTS_H_

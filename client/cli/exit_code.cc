@@ -2,7 +2,7 @@
 
 #include "client/error_details.h"
 
-namespace duet::client {
+namespace duet::client::cli {
 
 ExitCode ExitCodeFor(const absl::Status& status) {
   switch (status.code()) {
@@ -24,4 +24,4 @@ ExitCode ExitCodeFor(const absl::Status& status) {
   }
 }
 
-}  // namespace duet::client
+}  // namespace duet::client::cli

@@ -3,7 +3,7 @@
 
 #include "absl/status/status.h"
 
-namespace duet::client {
+namespace duet::client::cli {
 
 // What the program tells its caller, such as a job scheduler.
 enum ExitCode : int {
@@ -22,6 +22,6 @@ enum ExitCode : int {
 //   1   everything else
 ExitCode ExitCodeFor(const absl::Status& status);
 
-}  // namespace duet::client
+}  // namespace duet::client::cli
 
 #endif  // DUET_CLIENT_CLI_EXIT_CODE_H_

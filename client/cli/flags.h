@@ -14,7 +14,7 @@
 
 // What CLI11 lacks for this program's flags.
 
-namespace duet::client {
+namespace duet::client::cli {
 
 // A validator that --help does not spell out.
 inline CLI::Validator Undescribed(CLI::Validator validator) {
@@ -62,6 +62,6 @@ std::function<void(T)> AppendTo(std::vector<T>* values) {
   return [values](T value) { values->push_back(std::move(value)); };
 }
 
-}  // namespace duet::client
+}  // namespace duet::client::cli
 
 #endif  // DUET_CLIENT_CLI_FLAGS_H_

@@ -5,6 +5,6 @@
 
 int main(int argc, char** argv) {
   const std::vector<std::string> arguments(argv + 1, argv + argc);
-  return duet::client::RunProgram(arguments,
-                                  {duet::client::Client::Create, &std::cout, &std::cerr});
+  return duet::client::cli::RunProgram(arguments,
+                                       {duet::client::Client::Create, &std::cout, &std::cerr});
 }

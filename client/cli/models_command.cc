@@ -6,7 +6,7 @@
 #include "client/cli/report.h"
 #include "client/cli/server_options.h"
 
-namespace duet::client {
+namespace duet::client::cli {
 
 absl::Status RunModels(const ModelsArguments& arguments, const ProgramEnvironment& environment) {
   const absl::StatusOr<ClientOptions> options = ToClientOptions(arguments.server);
@@ -19,4 +19,4 @@ absl::Status RunModels(const ModelsArguments& arguments, const ProgramEnvironmen
   return absl::OkStatus();
 }
 
-}  // namespace duet::client
+}  // namespace duet::client::cli

@@ -9,10 +9,10 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_replace.h"
 #include "client/viewer/page.h"
-#include "model/formats/motion_file.h"
 #include "model/base/text.h"
+#include "model/formats/motion_file.h"
 
-namespace duet::client {
+namespace duet::client::cli {
 namespace {
 
 bool IsPage(const std::filesystem::path& path) {
@@ -22,7 +22,7 @@ bool IsPage(const std::filesystem::path& path) {
 
 absl::StatusOr<std::string> RenderSynthesis(const Synthesis& synthesis) {
   const SynthesisResult& result = synthesis.result;
-  PageContent content;
+  viewer::PageContent content;
   content.pair = result.pair;
   content.bones = synthesis.skeleton.bones;
   content.title = synthesis.leader_file.stem().string();
@@ -38,7 +38,7 @@ absl::StatusOr<std::string> RenderSynthesis(const Synthesis& synthesis) {
 
 absl::Status CheckOutput(const std::filesystem::path& output, const std::filesystem::path& leader) {
   if (!IsPage(output)) {
-    absl::Status status = CheckWritable(output);
+    absl::Status status = formats::CheckWritable(output);
     if (!status.ok()) {
       return absl::InvalidArgumentError(
           absl::StrReplaceAll(status.message(), {{"wanted ", "wanted .html, "}}));
@@ -59,12 +59,12 @@ absl::Status CheckOutput(const std::filesystem::path& output, const std::filesys
 
 absl::StatusOr<std::vector<std::filesystem::path>> WriteOutput(const std::filesystem::path& output,
                                                                const Synthesis& synthesis) {
-  if (!IsPage(output)) return WritePair(output, synthesis.result.pair, synthesis.skeleton);
+  if (!IsPage(output)) return formats::WritePair(output, synthesis.result.pair, synthesis.skeleton);
   const absl::StatusOr<std::string> page = RenderSynthesis(synthesis);
   if (!page.ok()) return page.status();
-  absl::Status status = WriteFile(output, *page);
+  absl::Status status = base::WriteFile(output, *page);
   if (!status.ok()) return status;
   return std::vector<std::filesystem::path>{output};
 }
 
-}  // namespace duet::client
+}  // namespace duet::client::cli

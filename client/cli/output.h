@@ -10,13 +10,13 @@
 #include "client/result.h"
 #include "model/motion/skeleton.h"
 
-namespace duet::client {
+namespace duet::client::cli {
 
 // Everything that any kind of output shows.
 struct Synthesis {
   SynthesisRequest request;
   SynthesisResult result;
-  Skeleton skeleton;
+  motion::Skeleton skeleton;
   std::filesystem::path leader_file;
 };
 
@@ -28,6 +28,6 @@ absl::Status CheckOutput(const std::filesystem::path& output, const std::filesys
 absl::StatusOr<std::vector<std::filesystem::path>> WriteOutput(const std::filesystem::path& output,
                                                                const Synthesis& synthesis);
 
-}  // namespace duet::client
+}  // namespace duet::client::cli
 
 #endif  // DUET_CLIENT_CLI_OUTPUT_H_

@@ -9,7 +9,7 @@
 #include "client/cli/report.h"
 #include "client/cli/synthesize_command.h"
 
-namespace duet::client {
+namespace duet::client::cli {
 
 int RunProgram(const std::vector<std::string>& arguments, const ProgramEnvironment& environment) {
   const ParsedCommandLine parsed = ParseCommandLine(arguments);
@@ -29,4 +29,4 @@ int RunProgram(const std::vector<std::string>& arguments, const ProgramEnvironme
   return ExitCodeFor(status);
 }
 
-}  // namespace duet::client
+}  // namespace duet::client::cli

@@ -9,7 +9,7 @@
 #include "absl/status/statusor.h"
 #include "client/client.h"
 
-namespace duet::client {
+namespace duet::client::cli {
 
 // What the program does its work with; replaced in tests.
 struct ProgramEnvironment {
@@ -22,6 +22,6 @@ struct ProgramEnvironment {
 // (client/cli/exit_code.h). `arguments` come without the program's name.
 int RunProgram(const std::vector<std::string>& arguments, const ProgramEnvironment& environment);
 
-}  // namespace duet::client
+}  // namespace duet::client::cli
 
 #endif  // DUET_CLIENT_CLI_PROGRAM_H_

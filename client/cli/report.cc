@@ -7,7 +7,7 @@
 #include "client/error_details.h"
 #include "nlohmann/json.hpp"
 
-namespace duet::client {
+namespace duet::client::cli {
 namespace {
 
 using nlohmann::json;
@@ -61,7 +61,7 @@ std::string DescribeModel(const ModelInfo& model) {
 
 json ModelJson(const ModelInfo& model) {
   json bones = json::array();
-  for (const Bone& bone : model.bones) bones.push_back({bone.parent, bone.child});
+  for (const motion::Bone& bone : model.bones) bones.push_back({bone.parent, bone.child});
   return {{"name", model.name},
           {"version", model.version},
           {"version_labels", model.version_labels},
@@ -104,7 +104,7 @@ std::string DescribeSynthesis(const Synthesis& synthesis,
                               const std::vector<std::filesystem::path>& written,
                               const std::vector<std::string>& notes) {
   const SynthesisResult& result = synthesis.result;
-  const Clip& leader = result.pair.leader;
+  const motion::Clip& leader = result.pair.leader;
   std::string text;
   absl::StrAppendFormat(&text, "leader    %s: %s, %.2f s at %g Hz\n",
                         synthesis.leader_file.string(), Plural(leader.frame_count(), "frame"),
@@ -129,7 +129,7 @@ std::string SynthesisJson(const Synthesis& synthesis,
                           const std::vector<std::filesystem::path>& written,
                           const std::vector<std::string>& notes) {
   const SynthesisResult& result = synthesis.result;
-  const Clip& leader = result.pair.leader;
+  const motion::Clip& leader = result.pair.leader;
   json keyframes = json::array();
   for (const WeightKeyframe& keyframe : synthesis.request.keyframes) {
     keyframes.push_back({{"frame", keyframe.frame}, {"weights", WeightsJson(keyframe.weights)}});
@@ -169,4 +169,4 @@ std::string DescribeFailure(const absl::Status& status, const std::string& serve
   return text + Advice(status, server_address);
 }
 
-}  // namespace duet::client
+}  // namespace duet::client::cli

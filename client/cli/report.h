@@ -9,7 +9,7 @@
 #include "client/cli/output.h"
 #include "client/result.h"
 
-namespace duet::client {
+namespace duet::client::cli {
 
 // What the program prints: text for people, JSON for programs. Every text ends with a line end.
 
@@ -26,6 +26,6 @@ std::string SynthesisJson(const Synthesis& synthesis,
 // Why it failed, one line for every refused field, and what may help.
 std::string DescribeFailure(const absl::Status& status, const std::string& server_address);
 
-}  // namespace duet::client
+}  // namespace duet::client::cli
 
 #endif  // DUET_CLIENT_CLI_REPORT_H_

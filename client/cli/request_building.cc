@@ -9,26 +9,27 @@
 #include "client/cli/value_syntax.h"
 #include "model/formats/motion_file.h"
 
-namespace duet::client {
+namespace duet::client::cli {
 namespace {
 
 // The joint's index; the root's where the model has no such joint.
-int FindOrRoot(const Skeleton& skeleton, const std::string& name) {
+int FindOrRoot(const motion::Skeleton& skeleton, const std::string& name) {
   const int found = skeleton.Find(name);
   return found < 0 ? skeleton.root : found;
 }
 
-ReadOptions ToReadOptions(const InputArguments& input, const Skeleton& skeleton) {
-  ReadOptions options;
+formats::ReadOptions ToReadOptions(const InputArguments& input, const motion::Skeleton& skeleton) {
+  formats::ReadOptions options;
   options.skeleton = skeleton;
   options.frame_rate_hz = input.frame_rate_hz;
   options.metres_per_unit = input.metres_per_unit;
   options.joint_overrides = input.joints;
   if (input.unit.has_value() || input.up_axis.has_value()) {
-    CoordinateFrame frame;
-    frame.unit = input.unit.value_or(LengthUnit::kMetres);
-    frame.up_axis = input.up_axis.value_or(frame.unit == LengthUnit::kSbuNormalised ? UpAxis::kYDown
-                                                                                    : UpAxis::kYUp);
+    motion::CoordinateFrame frame;
+    frame.unit = input.unit.value_or(motion::LengthUnit::kMetres);
+    frame.up_axis = input.up_axis.value_or(frame.unit == motion::LengthUnit::kSbuNormalised
+                                               ? motion::UpAxis::kYDown
+                                               : motion::UpAxis::kYUp);
     options.coordinates = frame;
   }
   return options;
@@ -39,33 +40,37 @@ absl::Status CheckInput(const std::filesystem::path& path) {
   if (!std::filesystem::exists(path, error)) {
     return absl::NotFoundError(absl::StrCat(path.string(), ": no such file"));
   }
-  return CheckReadable(path);
+  return formats::CheckReadable(path);
 }
 
 // Of the leader's own file, the follower is the other person.
-Side FollowerStartSide(const SynthesizeArguments& arguments) {
+formats::Side FollowerStartSide(const SynthesizeArguments& arguments) {
   if (arguments.follower_start_side.has_value()) return *arguments.follower_start_side;
   std::error_code error;
   if (!std::filesystem::equivalent(arguments.follower_start, arguments.leader, error)) {
-    return Side::kLeft;
+    return formats::Side::kLeft;
   }
-  return arguments.leader_side == Side::kLeft ? Side::kRight : Side::kLeft;
+  return arguments.leader_side == formats::Side::kLeft ? formats::Side::kRight
+                                                       : formats::Side::kLeft;
 }
 
-absl::StatusOr<FollowerStart> ReadStart(const SynthesizeArguments& arguments, ReadOptions options) {
-  if (const std::optional<Vec3> root = ParsePoint(arguments.follower_start); root.has_value()) {
+absl::StatusOr<FollowerStart> ReadStart(const SynthesizeArguments& arguments,
+                                        formats::ReadOptions options) {
+  if (const std::optional<motion::Vec3> root = ParsePoint(arguments.follower_start);
+      root.has_value()) {
     return FollowerStart(*root);
   }
   options.side = FollowerStartSide(arguments);
-  absl::StatusOr<std::vector<Vec3>> pose = ReadFollowerStart(arguments.follower_start, options);
+  absl::StatusOr<std::vector<motion::Vec3>> pose =
+      ReadFollowerStart(arguments.follower_start, options);
   if (!pose.ok()) return pose.status();
   return FollowerStart(*std::move(pose));
 }
 
 }  // namespace
 
-absl::StatusOr<Skeleton> ToSkeleton(const ModelInfo& model) {
-  Skeleton skeleton;
+absl::StatusOr<motion::Skeleton> ToSkeleton(const ModelInfo& model) {
+  motion::Skeleton skeleton;
   skeleton.joint_names = model.joint_names;
   skeleton.bones = model.bones;
   skeleton.root = skeleton.Find(model.root_joint);
@@ -90,9 +95,9 @@ absl::Status CheckInputs(const SynthesizeArguments& arguments) {
 }
 
 absl::StatusOr<SynthesisRequest> BuildRequest(const SynthesizeArguments& arguments,
-                                              const Skeleton& skeleton,
+                                              const motion::Skeleton& skeleton,
                                               std::vector<std::string>* notes) {
-  ReadOptions options = ToReadOptions(arguments.input, skeleton);
+  formats::ReadOptions options = ToReadOptions(arguments.input, skeleton);
   SynthesisRequest request;
   if (!arguments.follower_start.empty()) {
     absl::StatusOr<FollowerStart> start = ReadStart(arguments, options);
@@ -101,7 +106,7 @@ absl::StatusOr<SynthesisRequest> BuildRequest(const SynthesizeArguments& argumen
   }
   options.side = arguments.leader_side;
   options.notes = notes;
-  absl::StatusOr<Clip> leader = ReadLeader(arguments.leader, options);
+  absl::StatusOr<motion::Clip> leader = ReadLeader(arguments.leader, options);
   if (!leader.ok()) return leader.status();
   request.leader = *std::move(leader);
   request.model = arguments.model;
@@ -114,4 +119,4 @@ absl::StatusOr<SynthesisRequest> BuildRequest(const SynthesizeArguments& argumen
   return request;
 }
 
-}  // namespace duet::client
+}  // namespace duet::client::cli

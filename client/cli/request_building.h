@@ -10,11 +10,11 @@
 #include "client/result.h"
 #include "model/motion/skeleton.h"
 
-namespace duet::client {
+namespace duet::client::cli {
 
 // A served model's joints as a skeleton, for reading and writing files. INTERNAL when they are no
 // tree.
-absl::StatusOr<Skeleton> ToSkeleton(const ModelInfo& model);
+absl::StatusOr<motion::Skeleton> ToSkeleton(const ModelInfo& model);
 
 // Whether the files that the flags name are there and of a known kind: what can be refused before
 // the server is asked for its model.
@@ -23,9 +23,9 @@ absl::Status CheckInputs(const SynthesizeArguments& arguments);
 // Reads the files that the flags name, in the skeleton's joints. `notes` receives what was decided
 // where the leader's file leaves a choice.
 absl::StatusOr<SynthesisRequest> BuildRequest(const SynthesizeArguments& arguments,
-                                              const Skeleton& skeleton,
+                                              const motion::Skeleton& skeleton,
                                               std::vector<std::string>* notes);
 
-}  // namespace duet::client
+}  // namespace duet::client::cli
 
 #endif  // DUET_CLIENT_CLI_REQUEST_BUILDING_H_

@@ -5,7 +5,7 @@
 
 #include "model/base/text.h"
 
-namespace duet::client {
+namespace duet::client::cli {
 namespace {
 
 constexpr std::size_t kMaxPemBytes = std::size_t{1} << 20;
@@ -13,7 +13,7 @@ constexpr std::size_t kMaxPemBytes = std::size_t{1} << 20;
 // Nothing for a file that was not named.
 absl::Status ReadPem(const std::string& path, std::string* pem) {
   if (path.empty()) return absl::OkStatus();
-  absl::StatusOr<std::string> content = ReadFile(path, kMaxPemBytes);
+  absl::StatusOr<std::string> content = base::ReadFile(path, kMaxPemBytes);
   if (!content.ok()) return content.status();
   *pem = *std::move(content);
   return absl::OkStatus();
@@ -39,4 +39,4 @@ absl::StatusOr<ClientOptions> ToClientOptions(const ServerArguments& arguments) 
   return options;
 }
 
-}  // namespace duet::client
+}  // namespace duet::client::cli

@@ -11,7 +11,7 @@
 #include "client/cli/request_building.h"
 #include "client/cli/server_options.h"
 
-namespace duet::client {
+namespace duet::client::cli {
 namespace {
 
 using Paths = std::vector<std::filesystem::path>;
@@ -45,7 +45,7 @@ absl::Status RunSynthesize(const SynthesizeArguments& arguments,
   const absl::StatusOr<ModelDetails> details = client->GetModel(arguments.model);
   if (!details.ok()) return details.status();
 
-  absl::StatusOr<Skeleton> skeleton = ToSkeleton(details->model);
+  absl::StatusOr<motion::Skeleton> skeleton = ToSkeleton(details->model);
   if (!skeleton.ok()) return skeleton.status();
   std::vector<std::string> notes;
   absl::StatusOr<SynthesisRequest> request = BuildRequest(arguments, *skeleton, &notes);
@@ -63,4 +63,4 @@ absl::Status RunSynthesize(const SynthesizeArguments& arguments,
   return absl::OkStatus();
 }
 
-}  // namespace duet::client
+}  // namespace duet::client::cli

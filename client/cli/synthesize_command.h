@@ -5,12 +5,12 @@
 #include "client/cli/arguments.h"
 #include "client/cli/program.h"
 
-namespace duet::client {
+namespace duet::client::cli {
 
 // duet synthesize: reads the leader in the joints of the model, calls, writes every output.
 absl::Status RunSynthesize(const SynthesizeArguments& arguments,
                            const ProgramEnvironment& environment);
 
-}  // namespace duet::client
+}  // namespace duet::client::cli
 
 #endif  // DUET_CLIENT_CLI_SYNTHESIZE_COMMAND_H_

@@ -6,7 +6,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 
-namespace duet::client {
+namespace duet::client::cli {
 namespace {
 
 absl::Status Wanted(absl::string_view text, absl::string_view wanted) {
@@ -67,9 +67,9 @@ absl::StatusOr<std::pair<std::string, std::string>> ParseJointPair(absl::string_
   return joints;
 }
 
-std::optional<Vec3> ParsePoint(absl::string_view text) {
+std::optional<motion::Vec3> ParsePoint(absl::string_view text) {
   const std::vector<absl::string_view> parts = absl::StrSplit(text, ',');
-  Vec3 point;
+  motion::Vec3 point;
   if (parts.size() != 3 || !absl::SimpleAtof(parts[0], &point.x) ||
       !absl::SimpleAtof(parts[1], &point.y) || !absl::SimpleAtof(parts[2], &point.z)) {
     return std::nullopt;
@@ -77,11 +77,11 @@ std::optional<Vec3> ParsePoint(absl::string_view text) {
   return point;
 }
 
-absl::StatusOr<Vec3> ParseDirection(absl::string_view text) {
-  if (const std::optional<Vec3> direction = ParsePoint(text); direction.has_value()) {
+absl::StatusOr<motion::Vec3> ParseDirection(absl::string_view text) {
+  if (const std::optional<motion::Vec3> direction = ParsePoint(text); direction.has_value()) {
     return *direction;
   }
   return absl::InvalidArgumentError(absl::StrCat("\"", text, "\", wanted X,Y,Z such as 1,0,0"));
 }
 
-}  // namespace duet::client
+}  // namespace duet::client::cli

@@ -10,7 +10,7 @@
 #include "client/request.h"
 #include "model/motion/vec3.h"
 
-namespace duet::client {
+namespace duet::client::cli {
 
 // The small languages of the program's flags. Errors: INVALID_ARGUMENT with what came and what was
 // wanted. Whether a class exists or a weight is in range is the server's to say.
@@ -28,11 +28,11 @@ absl::StatusOr<ModelChoice> ParseModelChoice(absl::string_view text);
 absl::StatusOr<std::pair<std::string, std::string>> ParseJointPair(absl::string_view text);
 
 // "0.5,1.1,-2" in metres; nothing when the text is no list of three numbers (but, say, a file).
-std::optional<Vec3> ParsePoint(absl::string_view text);
+std::optional<motion::Vec3> ParsePoint(absl::string_view text);
 
 // "1,0,0": a direction of any length
-absl::StatusOr<Vec3> ParseDirection(absl::string_view text);
+absl::StatusOr<motion::Vec3> ParseDirection(absl::string_view text);
 
-}  // namespace duet::client
+}  // namespace duet::client::cli
 
 #endif  // DUET_CLIENT_CLI_VALUE_SYNTAX_H_

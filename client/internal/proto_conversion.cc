@@ -10,10 +10,10 @@
 namespace duet::client::internal {
 namespace {
 
-void AppendPositions(const std::vector<Vec3>& points,
+void AppendPositions(const std::vector<motion::Vec3>& points,
                      google::protobuf::RepeatedField<float>* positions) {
   positions->Reserve(positions->size() + static_cast<int>(points.size()) * 3);
-  for (const Vec3& point : points) {
+  for (const motion::Vec3& point : points) {
     positions->AddAlreadyReserved(point.x);
     positions->AddAlreadyReserved(point.y);
     positions->AddAlreadyReserved(point.z);
@@ -28,7 +28,7 @@ void Fill(const std::vector<ClassWeight>& weights, v1::LabelVector* labels) {
   }
 }
 
-absl::Status FillLeader(const Clip& clip, v1::Motion* leader) {
+absl::Status FillLeader(const motion::Clip& clip, v1::Motion* leader) {
   if (clip.joint_names.empty()) {
     return absl::InvalidArgumentError("leader.joint_names: empty, wanted the model's joints");
   }
@@ -68,12 +68,13 @@ absl::Status FillLabels(const SynthesisRequest& request, v1::SynthesizeRequest* 
 }
 
 void Fill(const FollowerStart& start, v1::FollowerStart* out) {
-  if (const Vec3* root = std::get_if<Vec3>(&start)) {
+  if (const motion::Vec3* root = std::get_if<motion::Vec3>(&start)) {
     out->mutable_root_position()->set_x(root->x);
     out->mutable_root_position()->set_y(root->y);
     out->mutable_root_position()->set_z(root->z);
   } else {
-    AppendPositions(std::get<std::vector<Vec3>>(start), out->mutable_pose()->mutable_positions());
+    AppendPositions(std::get<std::vector<motion::Vec3>>(start),
+                    out->mutable_pose()->mutable_positions());
   }
 }
 

@@ -22,7 +22,7 @@ namespace duet::client::internal {
 class ReplyAssembler {
  public:
   // `leader` and `on_chunk` outlive the assembler; `on_chunk` may be empty.
-  ReplyAssembler(const Clip& leader, const ChunkCallback& on_chunk)
+  ReplyAssembler(const motion::Clip& leader, const ChunkCallback& on_chunk)
       : leader_(leader), on_chunk_(on_chunk) {}
 
   void StartStream();
@@ -47,11 +47,11 @@ class ReplyAssembler {
   absl::Status AcceptSummary(const v1::SynthesisSummary& summary);
   absl::Status HandOut();
 
-  const Clip& leader_;
+  const motion::Clip& leader_;
   const ChunkCallback& on_chunk_;
   std::optional<v1::SynthesisHeader> header_;
   std::optional<v1::SynthesisSummary> summary_;
-  std::vector<Vec3> positions_;  // [received_, joints] of the stream in progress
+  std::vector<motion::Vec3> positions_;  // [received_, joints] of the stream in progress
   int received_ = 0;
   int chunk_count_ = 0;
   int handed_out_ = 0;

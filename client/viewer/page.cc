@@ -22,7 +22,7 @@ extern const char duet_page_input[], duet_page_input_end[];
 extern const char duet_page_main[], duet_page_main_end[];
 }
 
-namespace duet::client {
+namespace duet::client::viewer {
 namespace {
 
 absl::string_view Text(const char* begin, const char* end) {
@@ -30,8 +30,8 @@ absl::string_view Text(const char* begin, const char* end) {
 }
 
 absl::Status Check(const PageContent& content) {
-  const Clip& leader = content.pair.leader;
-  const Clip& follower = content.pair.follower;
+  const motion::Clip& leader = content.pair.leader;
+  const motion::Clip& follower = content.pair.follower;
   if (leader.frame_count() < 1 || leader.frame_rate_hz <= 0) {
     return absl::InvalidArgumentError(
         absl::StrCat("pair.leader: ", leader.frame_count(), " frames at ", leader.frame_rate_hz,
@@ -43,12 +43,12 @@ absl::Status Check(const PageContent& content) {
     return absl::InvalidArgumentError(
         "pair: leader and follower differ in joints, frames or frame rate");
   }
-  for (const Clip* clip : {&leader, &follower}) {
-    for (const Vec3& position : clip->positions) {
+  for (const motion::Clip* clip : {&leader, &follower}) {
+    for (const motion::Vec3& position : clip->positions) {
       if (!IsFinite(position)) return absl::InvalidArgumentError("pair: a position is not finite");
     }
   }
-  for (const Bone& bone : content.bones) {
+  for (const motion::Bone& bone : content.bones) {
     for (int joint : {bone.parent, bone.child}) {
       if (joint < 0 || joint >= leader.joint_count()) {
         return absl::InvalidArgumentError(
@@ -87,4 +87,4 @@ absl::StatusOr<std::string> RenderPage(const PageContent& content) {
                               {"{{SCRIPT}}", Script()}});
 }
 
-}  // namespace duet::client
+}  // namespace duet::client::viewer

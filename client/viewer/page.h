@@ -9,12 +9,12 @@
 #include "model/motion/clip.h"
 #include "model/motion/skeleton.h"
 
-namespace duet::client {
+namespace duet::client::viewer {
 
 // What a page shows.
 struct PageContent {
-  ClipPair pair;  // same joints, rate and frames; metres, y up
-  std::vector<Bone> bones;
+  motion::ClipPair pair;  // same joints, rate and frames; metres, y up
+  std::vector<motion::Bone> bones;
   std::string title;
   std::string subtitle;
   // Class weights over time; one keyframe for weights that never change, none to show no weights.
@@ -28,6 +28,6 @@ struct PageContent {
 //         there is no frame, or a position is not finite.
 absl::StatusOr<std::string> RenderPage(const PageContent& content);
 
-}  // namespace duet::client
+}  // namespace duet::client::viewer
 
 #endif  // DUET_CLIENT_VIEWER_PAGE_H_

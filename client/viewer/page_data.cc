@@ -8,7 +8,7 @@
 #include "absl/strings/str_replace.h"
 #include "nlohmann/json.hpp"
 
-namespace duet::client {
+namespace duet::client::viewer {
 namespace {
 
 void AppendLittleEndian(float value, std::string* bytes) {
@@ -17,10 +17,10 @@ void AppendLittleEndian(float value, std::string* bytes) {
   for (int shift = 0; shift < 32; shift += 8) bytes->push_back(static_cast<char>(bits >> shift));
 }
 
-std::string EncodePositions(const Clip& clip) {
+std::string EncodePositions(const motion::Clip& clip) {
   std::string bytes;
-  bytes.reserve(clip.positions.size() * sizeof(Vec3));
-  for (const Vec3& position : clip.positions) {
+  bytes.reserve(clip.positions.size() * sizeof(motion::Vec3));
+  for (const motion::Vec3& position : clip.positions) {
     AppendLittleEndian(position.x, &bytes);
     AppendLittleEndian(position.y, &bytes);
     AppendLittleEndian(position.z, &bytes);
@@ -55,10 +55,10 @@ nlohmann::json WeightsJson(const WeightKeyframe& keyframe,
 }  // namespace
 
 std::string PageDataJson(const PageContent& content) {
-  const Clip& leader = content.pair.leader;
+  const motion::Clip& leader = content.pair.leader;
   const std::vector<std::string> classes = Classes(content.weights);
   nlohmann::json bones = nlohmann::json::array();
-  for (const Bone& bone : content.bones) bones.push_back({bone.parent, bone.child});
+  for (const motion::Bone& bone : content.bones) bones.push_back({bone.parent, bone.child});
   nlohmann::json keyframes = nlohmann::json::array();
   for (const WeightKeyframe& keyframe : content.weights) {
     keyframes.push_back(WeightsJson(keyframe, classes));
@@ -78,4 +78,4 @@ std::string PageDataJson(const PageContent& content) {
                              {{"<", "\\u003c"}});
 }
 
-}  // namespace duet::client
+}  // namespace duet::client::viewer

@@ -5,7 +5,7 @@
 
 #include "client/viewer/page.h"
 
-namespace duet::client {
+namespace duet::client::viewer {
 
 // The page's data as JSON that is safe inside <script>, whatever the names in it hold:
 //   {title, subtitle, joints [J], bones [[parent, child]], frameRate, frames, classes [C],
@@ -13,6 +13,6 @@ namespace duet::client {
 // with positions [frames, J, 3] as base64 of little-endian float32.
 std::string PageDataJson(const PageContent& content);
 
-}  // namespace duet::client
+}  // namespace duet::client::viewer
 
 #endif  // DUET_CLIENT_VIEWER_PAGE_DATA_H_

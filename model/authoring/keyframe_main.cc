@@ -7,26 +7,27 @@
 
 #include "CLI/CLI.hpp"
 #include "absl/status/status.h"
-#include "model/formats/bvh/bvh_export.h"
 #include "model/authoring/keyframes.h"
 #include "model/base/text.h"
+#include "model/formats/bvh/bvh_export.h"
 #include "model/motion/skeleton.h"
 
-namespace duet {
+namespace duet::authoring {
 namespace {
 
 absl::Status Convert(const std::string& keyframes, const std::string& out) {
-  const absl::StatusOr<std::string> text = ReadFile(keyframes);
+  const absl::StatusOr<std::string> text = base::ReadFile(keyframes);
   if (!text.ok()) return text.status();
-  const absl::StatusOr<Clip> clip = ParseKeyframes(*text, keyframes);
+  const absl::StatusOr<motion::Clip> clip = ParseKeyframes(*text, keyframes);
   if (!clip.ok()) return clip.status();
-  const absl::StatusOr<BvhDocument> document = ToBvh(*clip, SbuSkeleton());
+  const absl::StatusOr<formats::bvh::BvhDocument> document =
+      formats::bvh::ToBvh(*clip, motion::SbuSkeleton());
   if (!document.ok()) return document.status();
-  return WriteFile(out, FormatBvh(*document));
+  return base::WriteFile(out, FormatBvh(*document));
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::authoring
 
 int main(int argc, char** argv) {
   CLI::App app("Makes a BVH clip from a hand-written key-frame file.", "duet-keyframe");
@@ -34,7 +35,7 @@ int main(int argc, char** argv) {
   app.add_option("keyframes", keyframes, "Key-frame text (docs/formats.md)")->required();
   app.add_option("--out", out, "The BVH file to write")->required();
   CLI11_PARSE(app, argc, argv);
-  const absl::Status status = duet::Convert(keyframes, out);
+  const absl::Status status = duet::authoring::Convert(keyframes, out);
   if (status.ok()) return 0;
   std::cerr << "duet-keyframe: " << status.message() << "\n";
   return 1;

@@ -13,7 +13,7 @@
 #include "model/base/text.h"
 #include "model/motion/skeleton.h"
 
-namespace duet {
+namespace duet::authoring {
 namespace {
 
 constexpr double kLongestMotion = 60;
@@ -97,7 +97,7 @@ class KeyframeParser {
 
  private:
   absl::Status Error(absl::string_view message) const {
-    return ErrorAt(source_, std::max(lines_.number(), 1), message);
+    return base::ErrorAt(source_, std::max(lines_.number(), 1), message);
   }
 
   absl::Status ParseStatement(const std::vector<absl::string_view>& words) {
@@ -106,7 +106,7 @@ class KeyframeParser {
     for (std::size_t track = 0; track < keys_.size(); ++track) {
       if (words[0] == TrackDefaults()[track].name) return ParseKey(words, track);
     }
-    return Error(absl::StrCat("came ", Quoted(words[0]),
+    return Error(absl::StrCat("came ", base::Quoted(words[0]),
                               ", wanted frame_rate, at or a track such as torso"));
   }
 
@@ -114,8 +114,9 @@ class KeyframeParser {
                            std::vector<double>* values) const {
     for (std::size_t i = 1; i < words.size(); ++i) {
       float value = 0;
-      if (!ParseCoordinate(words[i], &value)) {
-        return Error(absl::StrCat(words[0], ": came ", Quoted(words[i]), ", wanted a number"));
+      if (!base::ParseCoordinate(words[i], &value)) {
+        return Error(
+            absl::StrCat(words[0], ": came ", base::Quoted(words[i]), ", wanted a number"));
       }
       values->push_back(static_cast<double>(value));
     }
@@ -161,7 +162,7 @@ class KeyframeParser {
     return absl::OkStatus();
   }
 
-  LineReader lines_;
+  base::LineReader lines_;
   absl::string_view source_;
   double frame_rate_hz_ = kDefaultFrameRateHz;
   double time_ = -1;
@@ -189,7 +190,7 @@ class Animator {
   double Value(TrackIndex track, std::size_t i, double time) const {
     return curves_[static_cast<size_t>(track)][i].At(time);
   }
-  Vec3d Vector(TrackIndex track, double time) const {
+  retargeting::Vec3d Vector(TrackIndex track, double time) const {
     return {Value(track, 0, time), Value(track, 1, time), Value(track, 2, time)};
   }
   Lean Angles(TrackIndex track, double time) const {
@@ -201,20 +202,20 @@ class Animator {
 
 }  // namespace
 
-absl::StatusOr<Clip> ParseKeyframes(absl::string_view text, absl::string_view source) {
+absl::StatusOr<motion::Clip> ParseKeyframes(absl::string_view text, absl::string_view source) {
   KeyframeParser parser(text, source);
   absl::Status status = parser.Parse();
   if (!status.ok()) return status;
   const Animator animator(parser.Curves());
-  Clip clip;
-  clip.joint_names = SbuSkeleton().joint_names;
+  motion::Clip clip;
+  clip.joint_names = motion::SbuSkeleton().joint_names;
   clip.frame_rate_hz = parser.frame_rate_hz();
   const int frames = 1 + static_cast<int>(std::round(parser.duration() * clip.frame_rate_hz));
   for (int frame = 0; frame < frames; ++frame) {
-    const std::vector<Vec3> pose = PosePuppet(animator.At(frame / clip.frame_rate_hz));
+    const std::vector<motion::Vec3> pose = PosePuppet(animator.At(frame / clip.frame_rate_hz));
     clip.positions.insert(clip.positions.end(), pose.begin(), pose.end());
   }
   return clip;
 }
 
-}  // namespace duet
+}  // namespace duet::authoring

@@ -5,7 +5,7 @@
 #include "absl/strings/string_view.h"
 #include "model/motion/clip.h"
 
-namespace duet {
+namespace duet::authoring {
 
 // A motion of one person written by hand as key poses, for samples and tests:
 //
@@ -25,8 +25,8 @@ namespace duet {
 //
 // Returns the joints of SbuSkeleton, facing +z. At most a minute.
 // Errors: INVALID_ARGUMENT "source:line: ... came ..., wanted ...".
-absl::StatusOr<Clip> ParseKeyframes(absl::string_view text, absl::string_view source);
+absl::StatusOr<motion::Clip> ParseKeyframes(absl::string_view text, absl::string_view source);
 
-}  // namespace duet
+}  // namespace duet::authoring
 
 #endif  // DUET_MODEL_AUTHORING_KEYFRAMES_H_

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace duet {
+namespace duet::authoring {
 
 MonotoneCubic::MonotoneCubic(std::vector<Key> keys)
     : keys_(std::move(keys)), slopes_(keys_.size(), 0.0) {
@@ -31,4 +31,4 @@ double MonotoneCubic::At(double time) const {
          (3 * t2 - 2 * t3) * b.value + (t3 - t2) * span * slopes_[k + 1];
 }
 
-}  // namespace duet
+}  // namespace duet::authoring

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-namespace duet {
+namespace duet::authoring {
 
 // A value over time through keys: eases in and out of the first and last one, never leaves the
 // range of the two keys around it (a planted foot stays planted, a reach does not overshoot),
@@ -25,6 +25,6 @@ class MonotoneCubic {
   std::vector<double> slopes_;  // [keys]
 };
 
-}  // namespace duet
+}  // namespace duet::authoring
 
 #endif  // DUET_MODEL_AUTHORING_MONOTONE_CUBIC_H_

@@ -3,33 +3,34 @@
 #include <algorithm>
 #include <cmath>
 
-namespace duet {
+namespace duet::authoring {
 namespace {
 
 constexpr double kRadians = 3.14159265358979323846 / 180;
 
 // Metres. Hips from the torso, shoulders and head from the neck; x is the left side's.
-constexpr Vec3d kHip = {0.1, -0.215, 0};
-constexpr Vec3d kNeck = {0, 0.216, 0};
-constexpr Vec3d kShoulder = {0.15, -0.01, 0};
-constexpr Vec3d kHead = {0, 0.208, 0.035};
+constexpr retargeting::Vec3d kHip = {0.1, -0.215, 0};
+constexpr retargeting::Vec3d kNeck = {0, 0.216, 0};
+constexpr retargeting::Vec3d kShoulder = {0.15, -0.01, 0};
+constexpr retargeting::Vec3d kHead = {0, 0.208, 0.035};
 constexpr double kThigh = 0.43, kShin = 0.41;
 constexpr double kUpperArm = 0.29, kForearm = 0.28;
 // Limbs never stretch out completely: a last bend keeps the plane of elbow and knee.
 constexpr double kReach = 0.995;
 constexpr double kFold = 1.1;
 
-constexpr Vec3d kUp = {0, 1, 0}, kForward = {0, 0, 1};
+constexpr retargeting::Vec3d kUp = {0, 1, 0}, kForward = {0, 0, 1};
 
 enum Side { kLeft, kRight };
 
-Vec3d OnSide(Vec3d left, Side side) {
-  return side == kLeft ? left : Vec3d{-left.x, left.y, left.z};
+retargeting::Vec3d OnSide(retargeting::Vec3d left, Side side) {
+  return side == kLeft ? left : retargeting::Vec3d{-left.x, left.y, left.z};
 }
 
-Quaternion Turn(Lean lean) {
-  return AxisAngle({0, 1, 0}, lean.yaw * kRadians) * AxisAngle({1, 0, 0}, lean.pitch * kRadians) *
-         AxisAngle({0, 0, 1}, -lean.roll * kRadians);
+retargeting::Quaternion Turn(Lean lean) {
+  return retargeting::AxisAngle({0, 1, 0}, lean.yaw * kRadians) *
+         retargeting::AxisAngle({1, 0, 0}, lean.pitch * kRadians) *
+         retargeting::AxisAngle({0, 0, 1}, -lean.roll * kRadians);
 }
 
 struct Bones {
@@ -41,9 +42,10 @@ struct Bones {
 //
 // Source: law of cosines.
 struct LimbPoints {
-  Vec3d middle, end;
+  retargeting::Vec3d middle, end;
 };
-LimbPoints Reach(Vec3d start, Vec3d target, Bones bones, Vec3d direction, Vec3d pole) {
+LimbPoints Reach(retargeting::Vec3d start, retargeting::Vec3d target, Bones bones,
+                 retargeting::Vec3d direction, retargeting::Vec3d pole) {
   const double shortest = std::abs(bones.upper - bones.lower) * kFold + 0.01;
   const double way =
       std::clamp(Norm(target - start), shortest, (bones.upper + bones.lower) * kReach);
@@ -56,13 +58,13 @@ LimbPoints Reach(Vec3d start, Vec3d target, Bones bones, Vec3d direction, Vec3d 
 
 // A limb hangs down with its bend towards `hanging_pole`; the shortest arc from there to the target
 // carries the bend along: a hand that reaches forwards has its elbow below.
-LimbPoints PoseLimb(Vec3d start, Vec3d target, Bones bones, Quaternion body, Vec3d hanging_pole,
-                    double swivel) {
-  const Vec3d down = Rotate(body, -kUp);
-  const Vec3d direction = Unit(target - start, down);
-  const Vec3d hinge = Cross(hanging_pole, -kUp);
-  const Quaternion swing = ShortestArc(down, direction, Rotate(body, hinge));
-  const Vec3d pole =
+LimbPoints PoseLimb(retargeting::Vec3d start, retargeting::Vec3d target, Bones bones,
+                    retargeting::Quaternion body, retargeting::Vec3d hanging_pole, double swivel) {
+  const retargeting::Vec3d down = Rotate(body, -kUp);
+  const retargeting::Vec3d direction = Unit(target - start, down);
+  const retargeting::Vec3d hinge = Cross(hanging_pole, -kUp);
+  const retargeting::Quaternion swing = ShortestArc(down, direction, Rotate(body, hinge));
+  const retargeting::Vec3d pole =
       Rotate(AxisAngle(direction, swivel * kRadians), Rotate(swing, Rotate(body, hanging_pole)));
   return Reach(start, target, bones, direction, pole);
 }
@@ -75,8 +77,8 @@ class Puppet {
   explicit Puppet(const PuppetPose& pose)
       : pose_(pose), pelvis_(Turn(pose.pelvis)), chest_(Turn(pose.chest)), joints_(15) {}
 
-  std::vector<Vec3> Pose() {
-    const Vec3d neck = pose_.torso + Rotate(chest_, kNeck);
+  std::vector<motion::Vec3> Pose() {
+    const retargeting::Vec3d neck = pose_.torso + Rotate(chest_, kNeck);
     Set(0, neck + Rotate(Turn(pose_.head), kHead));
     Set(1, neck);
     Set(2, pose_.torso);
@@ -88,35 +90,36 @@ class Puppet {
   }
 
  private:
-  void Set(std::size_t joint, Vec3d position) { joints_[joint] = ToFloat(position); }
+  void Set(std::size_t joint, retargeting::Vec3d position) { joints_[joint] = ToFloat(position); }
 
-  void SetLimb(std::size_t first, Vec3d start, const LimbPoints& points) {
+  void SetLimb(std::size_t first, retargeting::Vec3d start, const LimbPoints& points) {
     Set(first, start);
     Set(first + 1, points.middle);
     Set(first + 2, points.end);
   }
 
-  void PoseArm(std::size_t first, Vec3d neck, const PuppetPose::Limb& hand, Side side) {
-    const Vec3d shoulder = neck + Rotate(chest_, OnSide(kShoulder, side));
+  void PoseArm(std::size_t first, retargeting::Vec3d neck, const PuppetPose::Limb& hand,
+               Side side) {
+    const retargeting::Vec3d shoulder = neck + Rotate(chest_, OnSide(kShoulder, side));
     SetLimb(first, shoulder,
             PoseLimb(shoulder, neck + hand.target, {kUpperArm, kForearm}, chest_, -kForward,
                      Outwards(hand.swivel, side)));
   }
 
   void PoseLeg(std::size_t first, const PuppetPose::Limb& foot, Side side) {
-    const Vec3d hip = pose_.torso + Rotate(pelvis_, OnSide(kHip, side));
+    const retargeting::Vec3d hip = pose_.torso + Rotate(pelvis_, OnSide(kHip, side));
     SetLimb(first, hip,
             PoseLimb(hip, foot.target, {kThigh, kShin}, pelvis_, kForward,
                      Outwards(-foot.swivel, side)));
   }
 
   const PuppetPose& pose_;
-  Quaternion pelvis_, chest_;
-  std::vector<Vec3> joints_;
+  retargeting::Quaternion pelvis_, chest_;
+  std::vector<motion::Vec3> joints_;
 };
 
 }  // namespace
 
-std::vector<Vec3> PosePuppet(const PuppetPose& pose) { return Puppet(pose).Pose(); }
+std::vector<motion::Vec3> PosePuppet(const PuppetPose& pose) { return Puppet(pose).Pose(); }
 
-}  // namespace duet
+}  // namespace duet::authoring

@@ -3,10 +3,10 @@
 
 #include <vector>
 
-#include "model/retargeting/rotation.h"
 #include "model/motion/vec3.h"
+#include "model/retargeting/rotation.h"
 
-namespace duet {
+namespace duet::authoring {
 
 // Degrees: yaw to the left, pitch forwards, roll to the left.
 struct Lean {
@@ -16,11 +16,11 @@ struct Lean {
 // One pose of a puppet as a hand would set it. Axes: x to its left, y up, z forwards; metres, the
 // floor at y = 0.
 struct PuppetPose {
-  Vec3d torso;
+  retargeting::Vec3d torso;
   Lean pelvis, chest, head;  // each from upright, facing +z
   struct Limb {
-    Vec3d target;       // feet: the ankle; hands: the wrist, from the neck
-    double swivel = 0;  // degrees that elbow or knee turns outwards from its natural place
+    retargeting::Vec3d target;  // feet: the ankle; hands: the wrist, from the neck
+    double swivel = 0;          // degrees that elbow or knee turns outwards from its natural place
   };
   Limb left_foot, right_foot, left_hand, right_hand;
 };
@@ -28,8 +28,8 @@ struct PuppetPose {
 // The joints of SbuSkeleton for a pose. Bones have the lengths of a grown person, always the same:
 // a target out of reach is approached as far as limbs go. Knees bend forwards, elbows backwards and
 // down. [15]
-std::vector<Vec3> PosePuppet(const PuppetPose& pose);
+std::vector<motion::Vec3> PosePuppet(const PuppetPose& pose);
 
-}  // namespace duet
+}  // namespace duet::authoring
 
 #endif  // DUET_MODEL_AUTHORING_PUPPET_H_

@@ -11,7 +11,7 @@
 
 #include "absl/strings/str_cat.h"
 
-namespace duet {
+namespace duet::base {
 namespace {
 
 namespace fs = std::filesystem;
@@ -152,4 +152,4 @@ absl::Status WriteFolder(const fs::path& path, const std::vector<NamedContent>& 
   return status;
 }
 
-}  // namespace duet
+}  // namespace duet::base

@@ -10,7 +10,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 
-namespace duet {
+namespace duet::base {
 
 // A file's name and content.
 using NamedContent = std::pair<std::string, std::string>;
@@ -39,6 +39,6 @@ class Folder {
 // sees no folder or all of it. ALREADY_EXISTS when there is something at `path`.
 absl::Status WriteFolder(const std::filesystem::path& path, const std::vector<NamedContent>& files);
 
-}  // namespace duet
+}  // namespace duet::base
 
 #endif  // DUET_MODEL_BASE_FILE_IO_H_

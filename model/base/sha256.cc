@@ -6,7 +6,7 @@
 
 #include "absl/strings/escaping.h"
 
-namespace duet {
+namespace duet::base {
 
 std::string Sha256Hex(std::string_view bytes) {
   unsigned char digest[EVP_MAX_MD_SIZE];
@@ -18,4 +18,4 @@ std::string Sha256Hex(std::string_view bytes) {
   return absl::BytesToHexString({reinterpret_cast<const char*>(digest), size});
 }
 
-}  // namespace duet
+}  // namespace duet::base

@@ -4,7 +4,7 @@
 
 #include "absl/strings/str_cat.h"
 
-namespace duet {
+namespace duet::base {
 namespace {
 
 using nlohmann::json;
@@ -195,4 +195,4 @@ absl::Status ObjectReader::Finish() {
   return status_;
 }
 
-}  // namespace duet
+}  // namespace duet::base

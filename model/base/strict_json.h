@@ -12,7 +12,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 
-namespace duet {
+namespace duet::base {
 
 // Parses JSON text that may come from anywhere. On top of the JSON grammar: the root is an object
 // and the very first byte its brace, no object repeats a key, nothing is nested deeper than
@@ -65,6 +65,6 @@ class ObjectReader {
   absl::Status status_;
 };
 
-}  // namespace duet
+}  // namespace duet::base
 
 #endif  // DUET_MODEL_BASE_STRICT_JSON_H_

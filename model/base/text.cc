@@ -10,7 +10,7 @@
 #include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
 
-namespace duet {
+namespace duet::base {
 namespace {
 
 namespace fs = std::filesystem;
@@ -157,4 +157,4 @@ bool LineReader::Next(absl::string_view* line) {
   return true;
 }
 
-}  // namespace duet
+}  // namespace duet::base

@@ -12,7 +12,7 @@
 // What every reader and writer of this folder shares: files as strings, strict numbers that do not
 // depend on the locale, and errors that point at a place in a file.
 
-namespace duet {
+namespace duet::base {
 
 // Above every motion that the service accepts (10 minutes at 240 Hz), so that a wrong file is
 // refused before it fills the memory.
@@ -70,6 +70,6 @@ class LineReader {
   int number_ = 0;
 };
 
-}  // namespace duet
+}  // namespace duet::base
 
 #endif  // DUET_MODEL_BASE_TEXT_H_

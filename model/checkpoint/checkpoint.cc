@@ -12,7 +12,7 @@
 #include "model/base/file_io.h"
 #include "model/base/sha256.h"
 
-namespace duet {
+namespace duet::checkpoint {
 namespace {
 
 constexpr char kManifestFile[] = "manifest.json";
@@ -24,7 +24,7 @@ absl::Status CheckFile(const WeightsFile& expected, std::string_view weights) {
     return weights.size() < expected.bytes ? absl::DataLossError(message)
                                            : absl::InvalidArgumentError(message);
   }
-  if (const std::string sha256 = Sha256Hex(weights); sha256 != expected.sha256) {
+  if (const std::string sha256 = base::Sha256Hex(weights); sha256 != expected.sha256) {
     return absl::DataLossError(absl::StrCat("weights: SHA-256 ", sha256, ", wanted ",
                                             expected.sha256, " as in manifest weights.sha256"));
   }
@@ -78,7 +78,7 @@ absl::StatusOr<Checkpoint> ParseCheckpoint(std::string_view manifest_json,
 }
 
 absl::StatusOr<Checkpoint> ReadCheckpoint(const std::filesystem::path& folder) {
-  const absl::StatusOr<Folder> files = Folder::Open(folder);
+  const absl::StatusOr<base::Folder> files = base::Folder::Open(folder);
   if (!files.ok()) return files.status();
   const absl::StatusOr<std::string> text = files->Read(kManifestFile, kMaxManifestBytes);
   if (!text.ok()) return text.status();
@@ -96,14 +96,14 @@ absl::Status WriteCheckpoint(const std::filesystem::path& folder, Checkpoint che
   const std::string weights = SerializeSafetensors(checkpoint.tensors, {{"format", "pt"}});
   Manifest& manifest = checkpoint.manifest;
   manifest.weights.bytes = weights.size();
-  manifest.weights.sha256 = Sha256Hex(weights);
+  manifest.weights.sha256 = base::Sha256Hex(weights);
   if (manifest.created.empty()) {
     manifest.created = absl::FormatTime("%Y-%m-%dT%H:%M:%SZ", absl::Now(), absl::UTCTimeZone());
   }
   const std::string text = SerializeManifest(manifest);
   // What could not be read back must not replace a good run's result.
   if (absl::Status status = ParseCheckpoint(text, weights).status(); !status.ok()) return status;
-  return WriteFolder(folder, {{manifest.weights.file, weights}, {kManifestFile, text}});
+  return base::WriteFolder(folder, {{manifest.weights.file, weights}, {kManifestFile, text}});
 }
 
-}  // namespace duet
+}  // namespace duet::checkpoint

@@ -10,7 +10,7 @@
 #include "model/checkpoint/manifest.h"
 #include "model/checkpoint/safetensors.h"
 
-namespace duet {
+namespace duet::checkpoint {
 
 // A generator at rest: data only, never code.
 struct Checkpoint {
@@ -32,6 +32,6 @@ absl::StatusOr<Checkpoint> ReadCheckpoint(const std::filesystem::path& folder);
 // refuse, with its message. ALREADY_EXISTS when the folder exists.
 absl::Status WriteCheckpoint(const std::filesystem::path& folder, Checkpoint checkpoint);
 
-}  // namespace duet
+}  // namespace duet::checkpoint
 
 #endif  // DUET_MODEL_CHECKPOINT_CHECKPOINT_H_

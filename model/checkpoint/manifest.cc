@@ -11,7 +11,7 @@
 #include "absl/time/time.h"
 #include "model/base/strict_json.h"
 
-namespace duet {
+namespace duet::checkpoint {
 namespace {
 
 using nlohmann::json;
@@ -43,7 +43,7 @@ bool IsPlainName(const std::string& name) {
 
 constexpr char kPlainName[] = "1 to 64 letters, digits, '_', '-' or '.', the first of them not '.'";
 
-std::string ReadName(ObjectReader* reader, const std::string& key) {
+std::string ReadName(base::ObjectReader* reader, const std::string& key) {
   std::string name = reader->String(key, kMaxTextBytes);
   if (reader->ok() && !IsPlainName(name)) {
     reader->Fail(key, absl::StrCat(json(name).dump(), ", wanted ", kPlainName));
@@ -52,19 +52,20 @@ std::string ReadName(ObjectReader* reader, const std::string& key) {
 }
 
 // A joint that the skeleton knows, given by name.
-int FindJoint(ObjectReader* reader, const std::string& key, const Skeleton& skeleton,
+int FindJoint(base::ObjectReader* reader, const std::string& key, const motion::Skeleton& skeleton,
               const std::string& name) {
   const int joint = skeleton.Find(name);
   if (joint < 0) reader->Fail(key, absl::StrCat("unknown joint ", json(name).dump()));
   return joint;
 }
 
-int ReadJoint(ObjectReader* reader, const std::string& key, const Skeleton& skeleton) {
+int ReadJoint(base::ObjectReader* reader, const std::string& key,
+              const motion::Skeleton& skeleton) {
   const std::string name = reader->String(key, kMaxTextBytes);
   return reader->ok() ? FindJoint(reader, key, skeleton, name) : 0;
 }
 
-std::vector<std::string> ReadUniqueNames(ObjectReader* reader, const std::string& key,
+std::vector<std::string> ReadUniqueNames(base::ObjectReader* reader, const std::string& key,
                                          std::size_t max_count) {
   std::vector<std::string> names = reader->Strings(key, max_count);
   std::set<std::string> seen;
@@ -80,8 +81,8 @@ std::vector<std::string> ReadUniqueNames(ObjectReader* reader, const std::string
   return names;
 }
 
-std::vector<Bone> ReadBones(ObjectReader* reader, const Skeleton& skeleton) {
-  std::vector<Bone> bones;
+std::vector<motion::Bone> ReadBones(base::ObjectReader* reader, const motion::Skeleton& skeleton) {
+  std::vector<motion::Bone> bones;
   for (const json& item : reader->Array("bones", kMaxJoints)) {
     const bool is_pair =
         item.is_array() && item.size() == 2 && item[0].is_string() && item[1].is_string();
@@ -95,12 +96,13 @@ std::vector<Bone> ReadBones(ObjectReader* reader, const Skeleton& skeleton) {
   return bones;
 }
 
-std::vector<BodyPart> ReadParts(ObjectReader* reader, const Skeleton& skeleton) {
-  std::vector<BodyPart> parts;
+std::vector<motion::BodyPart> ReadParts(base::ObjectReader* reader,
+                                        const motion::Skeleton& skeleton) {
+  std::vector<motion::BodyPart> parts;
   std::set<std::string> seen = {"whole_body"};  // the slice that the generator adds
   for (const json& item : reader->Array("parts", kMaxParts)) {
-    ObjectReader fields(item, reader->PathOf("parts"));
-    BodyPart part;
+    base::ObjectReader fields(item, reader->PathOf("parts"));
+    motion::BodyPart part;
     part.name = ReadName(&fields, "name");
     for (const std::string& joint : ReadUniqueNames(&fields, "joints", kMaxJoints)) {
       part.joints.push_back(FindJoint(&fields, "joints", skeleton, joint));
@@ -114,9 +116,9 @@ std::vector<BodyPart> ReadParts(ObjectReader* reader, const Skeleton& skeleton) 
   return parts;
 }
 
-absl::StatusOr<Skeleton> ReadSkeleton(const json& value) {
-  ObjectReader reader(value, "skeleton");
-  Skeleton skeleton;
+absl::StatusOr<motion::Skeleton> ReadSkeleton(const json& value) {
+  base::ObjectReader reader(value, "skeleton");
+  motion::Skeleton skeleton;
   skeleton.joint_names = ReadUniqueNames(&reader, "joint_names", kMaxJoints);
   skeleton.bones = ReadBones(&reader, skeleton);
   skeleton.parts = ReadParts(&reader, skeleton);
@@ -133,7 +135,7 @@ absl::StatusOr<Skeleton> ReadSkeleton(const json& value) {
 }
 
 absl::StatusOr<GeneratorArchitecture> ReadGenerator(const json& value) {
-  ObjectReader reader(value, "generator");
+  base::ObjectReader reader(value, "generator");
   GeneratorArchitecture generator;
   generator.variant = reader.String("variant", kMaxTextBytes);
   if (reader.ok() && generator.variant != "paper" && generator.variant != "released" &&
@@ -151,7 +153,7 @@ absl::StatusOr<GeneratorArchitecture> ReadGenerator(const json& value) {
 }
 
 absl::StatusOr<WeightsFile> ReadWeightsFile(const json& value) {
-  ObjectReader reader(value, "weights");
+  base::ObjectReader reader(value, "weights");
   WeightsFile weights;
   weights.file = ReadName(&reader, "file");
   weights.bytes = static_cast<uint64_t>(reader.Int("bytes", 1, kMaxWeightsBytes));
@@ -165,28 +167,28 @@ absl::StatusOr<WeightsFile> ReadWeightsFile(const json& value) {
   return weights;
 }
 
-void ReadTraining(ObjectReader* reader, Manifest* manifest) {
+void ReadTraining(base::ObjectReader* reader, Manifest* manifest) {
   const json& object = reader->Object("training");
   if (object.size() > kMaxMapEntries) reader->Fail("training", "too many entries");
-  ObjectReader fields(object, "training");
+  base::ObjectReader fields(object, "training");
   for (const auto& field : object.items()) {
     manifest->training[field.key()] = fields.String(field.key(), kMaxTextBytes);
   }
   reader->Update(fields.Finish());
 }
 
-void ReadMetrics(ObjectReader* reader, Manifest* manifest) {
+void ReadMetrics(base::ObjectReader* reader, Manifest* manifest) {
   constexpr double kAny = std::numeric_limits<double>::max();
   const json& object = reader->Object("metrics");
   if (object.size() > kMaxMapEntries) reader->Fail("metrics", "too many entries");
-  ObjectReader fields(object, "metrics");
+  base::ObjectReader fields(object, "metrics");
   for (const auto& field : object.items()) {
     manifest->metrics[field.key()] = fields.Number(field.key(), -kAny, kAny);
   }
   reader->Update(fields.Finish());
 }
 
-std::string ReadTime(ObjectReader* reader, const std::string& key) {
+std::string ReadTime(base::ObjectReader* reader, const std::string& key) {
   std::string text = reader->String(key, kMaxNameBytes);
   absl::Time time;
   std::string problem;
@@ -198,12 +200,12 @@ std::string ReadTime(ObjectReader* reader, const std::string& key) {
 
 // Takes a section's value, or notes why there is none.
 template <typename T>
-void Take(absl::StatusOr<T> section, ObjectReader* reader, T* out) {
+void Take(absl::StatusOr<T> section, base::ObjectReader* reader, T* out) {
   reader->Update(section.status());
   if (section.ok()) *out = *std::move(section);
 }
 
-void ReadModel(ObjectReader* reader, ModelDescription* model) {
+void ReadModel(base::ObjectReader* reader, engine::ModelDescription* model) {
   model->name = ReadName(reader, "name");
   model->version = static_cast<int>(reader->Int("version", 1, std::numeric_limits<int>::max()));
   model->description = reader->String("description", kMaxTextBytes);
@@ -217,7 +219,7 @@ void ReadModel(ObjectReader* reader, ModelDescription* model) {
   if (reader->ok()) Take(ReadSkeleton(skeleton), reader, &model->skeleton);
 }
 
-void ReadStandardisation(ObjectReader* reader, Manifest* manifest) {
+void ReadStandardisation(base::ObjectReader* reader, Manifest* manifest) {
   manifest->standardisation = reader->String("standardisation", kMaxTextBytes);
   if (reader->ok() && manifest->standardisation != kLeaderRootAndYaw &&
       manifest->standardisation != kLeaderStartAndYaw) {
@@ -228,7 +230,7 @@ void ReadStandardisation(ObjectReader* reader, Manifest* manifest) {
 }
 
 absl::StatusOr<Manifest> ReadManifest(const json& root) {
-  ObjectReader reader(root, "");
+  base::ObjectReader reader(root, "");
   Manifest manifest;
   // First, since the first problem is the one that is told: a newer format may differ in any field.
   manifest.format_version =
@@ -262,16 +264,16 @@ absl::Status CheckTotalSize(const Manifest& manifest) {
                                                  kMaxWeightsBytes));
 }
 
-ordered_json ToJson(const Skeleton& skeleton) {
+ordered_json ToJson(const motion::Skeleton& skeleton) {
   const auto name = [&](int joint) {
     return skeleton.joint_names[static_cast<std::size_t>(joint)];
   };
   ordered_json bones = ordered_json::array();
-  for (const Bone& bone : skeleton.bones) {
+  for (const motion::Bone& bone : skeleton.bones) {
     bones.push_back(ordered_json::array({name(bone.parent), name(bone.child)}));
   }
   ordered_json parts = ordered_json::array();
-  for (const BodyPart& part : skeleton.parts) {
+  for (const motion::BodyPart& part : skeleton.parts) {
     ordered_json joints = ordered_json::array();
     for (int joint : part.joints) joints.push_back(name(joint));
     parts.push_back({{"name", part.name}, {"joints", joints}});
@@ -293,7 +295,7 @@ absl::StatusOr<Manifest> ParseManifest(std::string_view text) {
     return absl::InvalidArgumentError(
         absl::StrCat("manifest: ", text.size(), " bytes, wanted at most ", kMaxManifestBytes));
   }
-  const absl::StatusOr<json> root = ParseStrictJson(text, kMaxDepth);
+  const absl::StatusOr<json> root = base::ParseStrictJson(text, kMaxDepth);
   absl::StatusOr<Manifest> manifest = root.ok() ? ReadManifest(*root) : root.status();
   absl::Status status = manifest.ok() ? CheckTotalSize(*manifest) : manifest.status();
   if (!status.ok())
@@ -302,7 +304,7 @@ absl::StatusOr<Manifest> ParseManifest(std::string_view text) {
 }
 
 std::string SerializeManifest(const Manifest& manifest) {
-  const ModelDescription& model = manifest.model;
+  const engine::ModelDescription& model = manifest.model;
   const GeneratorArchitecture& generator = manifest.generator;
   const ordered_json root = {{"format_version", manifest.format_version},
                              {"name", model.name},
@@ -331,4 +333,4 @@ std::string SerializeManifest(const Manifest& manifest) {
   return root.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
-}  // namespace duet
+}  // namespace duet::checkpoint

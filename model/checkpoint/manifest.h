@@ -12,7 +12,7 @@
 #include "model/engine/model_description.h"
 #include "model/motion/standardise.h"
 
-namespace duet {
+namespace duet::checkpoint {
 
 // The version of the checkpoint format that this code writes. Older ones are read, newer refused.
 inline constexpr int kCheckpointFormatVersion = 1;
@@ -55,7 +55,7 @@ struct WeightsFile {
 // manifest.json of a checkpoint folder <name>/<version>/.
 struct Manifest {
   int format_version = kCheckpointFormatVersion;
-  ModelDescription model;
+  engine::ModelDescription model;
   GeneratorArchitecture generator;
   std::string standardisation = kLeaderRootAndYaw;
   WeightsFile weights;
@@ -74,7 +74,7 @@ absl::StatusOr<Manifest> ParseManifest(std::string_view text);
 std::string SerializeManifest(const Manifest& manifest);
 
 // What the manifest's standardisation says of the origin.
-StandardOrigin OriginOf(const Manifest& manifest);
+motion::StandardOrigin OriginOf(const Manifest& manifest);
 
 // Slices of the generator: the skeleton's parts, then the whole body.
 struct SliceShape {
@@ -86,7 +86,7 @@ std::vector<SliceShape> SliceShapes(const Manifest& manifest);
 
 // Values that describe a follower start: root (3), pose relative to the root (3 x joints), and two
 // flags (root known, pose known).
-int StartFeatureCount(const Skeleton& skeleton);
+int StartFeatureCount(const motion::Skeleton& skeleton);
 
 // A tensor that a checkpoint must hold, float32.
 struct TensorSpec {
@@ -114,6 +114,6 @@ struct TensorSpec {
 // C = classes.
 std::vector<TensorSpec> ExpectedTensors(const Manifest& manifest);
 
-}  // namespace duet
+}  // namespace duet::checkpoint
 
 #endif  // DUET_MODEL_CHECKPOINT_MANIFEST_H_

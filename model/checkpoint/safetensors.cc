@@ -19,7 +19,7 @@
 #include "absl/strings/str_join.h"
 #include "model/base/strict_json.h"
 
-namespace duet {
+namespace duet::checkpoint {
 namespace {
 
 using nlohmann::json;
@@ -73,7 +73,7 @@ bool ByteCount(const std::vector<int64_t>& shape, uint64_t* bytes) {
 }
 
 // A JSON array of whole numbers, each from `min` up.
-std::vector<int64_t> ReadInts(ObjectReader* reader, const std::string& key, int64_t max_count,
+std::vector<int64_t> ReadInts(base::ObjectReader* reader, const std::string& key, int64_t max_count,
                               int64_t min) {
   std::vector<int64_t> numbers;
   for (const json& item : reader->Array(key, static_cast<std::size_t>(max_count))) {
@@ -89,7 +89,7 @@ std::vector<int64_t> ReadInts(ObjectReader* reader, const std::string& key, int6
 }
 
 absl::StatusOr<Entry> ReadEntry(const std::string& name, const json& value) {
-  ObjectReader reader(value, absl::StrCat("tensor ", json(name).dump()));
+  base::ObjectReader reader(value, absl::StrCat("tensor ", json(name).dump()));
   Entry entry;
   entry.name = name;
   if (const std::string dtype = reader.String("dtype", 16); reader.ok() && dtype != "F32") {
@@ -116,7 +116,7 @@ absl::StatusOr<Entry> ReadEntry(const std::string& name, const json& value) {
 }
 
 absl::Status CheckMetadata(const json& metadata) {
-  ObjectReader reader(metadata, kMetadata);
+  base::ObjectReader reader(metadata, kMetadata);
   if (metadata.is_object()) {
     for (const auto& field : metadata.items()) reader.String(field.key(), kMaxHeaderBytes);
   }
@@ -124,7 +124,7 @@ absl::Status CheckMetadata(const json& metadata) {
 }
 
 absl::StatusOr<std::vector<Entry>> ReadHeader(std::string_view header) {
-  absl::StatusOr<json> root = ParseStrictJson(header, kMaxHeaderDepth);
+  absl::StatusOr<json> root = base::ParseStrictJson(header, kMaxHeaderDepth);
   if (!root.ok()) {
     return absl::InvalidArgumentError(
         absl::StrCat("safetensors header: ", root.status().message()));
@@ -227,4 +227,4 @@ std::string SerializeSafetensors(absl::Span<const Tensor> tensors,
   return bytes;
 }
 
-}  // namespace duet
+}  // namespace duet::checkpoint

@@ -10,7 +10,7 @@
 #include "absl/status/statusor.h"
 #include "absl/types/span.h"
 
-namespace duet {
+namespace duet::checkpoint {
 
 // A float32 tensor in memory.
 struct Tensor {
@@ -26,6 +26,6 @@ absl::StatusOr<std::vector<Tensor>> ParseSafetensors(std::string_view bytes);
 std::string SerializeSafetensors(absl::Span<const Tensor> tensors,
                                  const std::map<std::string, std::string>& metadata = {});
 
-}  // namespace duet
+}  // namespace duet::checkpoint
 
 #endif  // DUET_MODEL_CHECKPOINT_SAFETENSORS_H_

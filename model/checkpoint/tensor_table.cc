@@ -1,7 +1,7 @@
 #include "absl/strings/str_cat.h"
 #include "model/checkpoint/manifest.h"
 
-namespace duet {
+namespace duet::checkpoint {
 namespace {
 
 constexpr char kWholeBody[] = "whole_body";
@@ -9,7 +9,7 @@ constexpr int kCoordinates = 3;
 constexpr int kStartFlags = 2;  // root known, pose known
 
 int WholeBodyInput(const Manifest& manifest) {
-  const Skeleton& skeleton = manifest.model.skeleton;
+  const motion::Skeleton& skeleton = manifest.model.skeleton;
   int input = 0;
   if (manifest.generator.variant != "unlabelled") input += manifest.model.class_count();
   if (manifest.generator.variant != "released") input += kCoordinates * skeleton.joint_count();
@@ -19,18 +19,18 @@ int WholeBodyInput(const Manifest& manifest) {
 
 }  // namespace
 
-StandardOrigin OriginOf(const Manifest& manifest) {
-  return manifest.standardisation == kLeaderStartAndYaw ? StandardOrigin::kFirstFrame
-                                                        : StandardOrigin::kEveryFrame;
+motion::StandardOrigin OriginOf(const Manifest& manifest) {
+  return manifest.standardisation == kLeaderStartAndYaw ? motion::StandardOrigin::kFirstFrame
+                                                        : motion::StandardOrigin::kEveryFrame;
 }
 
-int StartFeatureCount(const Skeleton& skeleton) {
+int StartFeatureCount(const motion::Skeleton& skeleton) {
   return kCoordinates + kCoordinates * skeleton.joint_count() + kStartFlags;
 }
 
 std::vector<SliceShape> SliceShapes(const Manifest& manifest) {
   std::vector<SliceShape> slices;
-  for (const BodyPart& part : manifest.model.skeleton.parts) {
+  for (const motion::BodyPart& part : manifest.model.skeleton.parts) {
     slices.push_back({part.name, kCoordinates * static_cast<int>(part.joints.size()), 0});
   }
   slices.push_back({kWholeBody, WholeBodyInput(manifest), 0});
@@ -81,4 +81,4 @@ std::vector<TensorSpec> ExpectedTensors(const Manifest& manifest) {
   return specs;
 }
 
-}  // namespace duet
+}  // namespace duet::checkpoint

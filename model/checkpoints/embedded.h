@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-namespace duet {
+namespace duet::embedded {
 
 // A checkpoint linked into the program: what ReadCheckpoint would read from its folder.
 struct EmbeddedCheckpoint {
@@ -15,6 +15,6 @@ struct EmbeddedCheckpoint {
 // Every checkpoint of model/checkpoints, the default model first.
 std::vector<EmbeddedCheckpoint> EmbeddedCheckpoints();
 
-}  // namespace duet
+}  // namespace duet::embedded
 
 #endif  // DUET_MODEL_CHECKPOINTS_EMBEDDED_H_

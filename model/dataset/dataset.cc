@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <set>
 
-namespace duet {
+namespace duet::dataset {
 
 std::vector<std::string> Dataset::Subjects() const {
   std::set<std::string> subjects;
@@ -21,4 +21,4 @@ int Dataset::LongestFrameCount() const {
   return longest;
 }
 
-}  // namespace duet
+}  // namespace duet::dataset

@@ -11,7 +11,7 @@
 #include "model/motion/clip.h"
 #include "model/motion/skeleton.h"
 
-namespace duet {
+namespace duet::dataset {
 
 // Two people captured together, sorted into leader and follower.
 struct Sequence {
@@ -19,16 +19,16 @@ struct Sequence {
   int interaction_class = 0;          // index into Dataset::classes
   std::vector<std::string> subjects;  // people in it, when the data set says
   std::string leader_source;          // "index": the data set's index; "motion": the motion rule
-  ClipPair pair;                      // world metres, y up, joints in the skeleton's order
+  motion::ClipPair pair;              // world metres, y up, joints in the skeleton's order
   // Horizontal direction from leader to follower, where the capture's setup tells it: SBU and K3HI
   // stand their people along the image's x axis. Which of them stands where is one bit, taken from
   // the first frame; nothing else of the follower's motion goes into it.
-  std::optional<Vec3> partner_direction;
+  std::optional<motion::Vec3> partner_direction;
 };
 
 struct Dataset {
   std::string name;
-  Skeleton skeleton;
+  motion::Skeleton skeleton;
   std::vector<std::string> classes;
   // For each class: true where either person may lead, so that the two may be exchanged.
   std::vector<bool> symmetric;
@@ -73,6 +73,6 @@ absl::StatusOr<Split> SplitInHalves(const Dataset& dataset, uint64_t seed);
 std::vector<int> TakeValidation(const Dataset& dataset, double fraction, uint64_t seed,
                                 std::vector<int>* train);
 
-}  // namespace duet
+}  // namespace duet::dataset
 
 #endif  // DUET_MODEL_DATASET_DATASET_H_

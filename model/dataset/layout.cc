@@ -1,6 +1,6 @@
 #include "model/dataset/layout.h"
 
-namespace duet {
+namespace duet::dataset {
 namespace {
 
 constexpr double kSbuFrameRateHz = 15;
@@ -18,9 +18,9 @@ DatasetLayout KinectLayout(const std::string& name, double frame_rate_hz,
   DatasetLayout layout;
   layout.name = name;
   layout.frame_rate_hz = frame_rate_hz;
-  layout.frame = {LengthUnit::kSbuNormalised, UpAxis::kYDown};
-  layout.skeleton = SbuSkeleton();
-  layout.people_axis = Vec3{1, 0, 0};  // the image's x axis
+  layout.frame = {motion::LengthUnit::kSbuNormalised, motion::UpAxis::kYDown};
+  layout.skeleton = motion::SbuSkeleton();
+  layout.people_axis = motion::Vec3{1, 0, 0};  // the image's x axis
   const std::vector<int> feet = {layout.skeleton.left_foot, layout.skeleton.right_foot};
   const std::vector<int> hands = {layout.skeleton.Find("left_hand"),
                                   layout.skeleton.Find("right_hand")};
@@ -55,4 +55,4 @@ DatasetLayout K3hiLayout() {
                        {"shake_hands", "shaking", true}});
 }
 
-}  // namespace duet
+}  // namespace duet::dataset

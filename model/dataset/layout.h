@@ -10,7 +10,7 @@
 #include "model/motion/coordinates.h"
 #include "model/motion/skeleton.h"
 
-namespace duet {
+namespace duet::dataset {
 
 // An interaction class of a data set and how its files are told apart.
 struct ClassLayout {
@@ -24,11 +24,11 @@ struct ClassLayout {
 struct DatasetLayout {
   std::string name;
   double frame_rate_hz = 0;
-  CoordinateFrame frame;
-  Skeleton skeleton;
+  motion::CoordinateFrame frame;
+  motion::Skeleton skeleton;
   std::vector<ClassLayout> classes;
   // The horizontal world axis that the setup stands its people along, in either order.
-  std::optional<Vec3> people_axis;
+  std::optional<motion::Vec3> people_axis;
 };
 
 // SBU Kinect Interaction ("clean"): the six classes of the paper, folders 03 to 08.
@@ -42,6 +42,6 @@ DatasetLayout K3hiLayout();
 // the field, what came and what was wanted. `text` may come from anywhere.
 absl::StatusOr<DatasetLayout> ParseDatasetLayout(std::string_view text);
 
-}  // namespace duet
+}  // namespace duet::dataset
 
 #endif  // DUET_MODEL_DATASET_LAYOUT_H_

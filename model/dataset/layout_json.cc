@@ -7,7 +7,7 @@
 #include "model/dataset/layout.h"
 #include "nlohmann/json.hpp"
 
-namespace duet {
+namespace duet::dataset {
 namespace {
 
 using Json = nlohmann::json;
@@ -81,8 +81,8 @@ absl::Status ReadNames(const std::string& field, const Json& value, int most,
   return absl::OkStatus();
 }
 
-absl::Status ReadJoint(const std::string& field, const Json& value, const Skeleton& skeleton,
-                       int* out) {
+absl::Status ReadJoint(const std::string& field, const Json& value,
+                       const motion::Skeleton& skeleton, int* out) {
   std::string name;
   absl::Status status = ReadName(field, value, &name);
   if (!status.ok()) return status;
@@ -91,8 +91,8 @@ absl::Status ReadJoint(const std::string& field, const Json& value, const Skelet
   return Wrong(field, absl::StrCat("\"", name, "\""), "one of skeleton.joint_names");
 }
 
-absl::Status ReadJoints(const std::string& field, const Json& value, const Skeleton& skeleton,
-                        std::vector<int>* out) {
+absl::Status ReadJoints(const std::string& field, const Json& value,
+                        const motion::Skeleton& skeleton, std::vector<int>* out) {
   if (!value.is_array() || value.empty() || value.size() > kMaxJoints) {
     return Wrong(field, value.dump(), absl::StrCat("a list of 1 to ", kMaxJoints, " joints"));
   }
@@ -105,7 +105,7 @@ absl::Status ReadJoints(const std::string& field, const Json& value, const Skele
   return absl::OkStatus();
 }
 
-absl::Status ReadBones(const Json& value, Skeleton* skeleton) {
+absl::Status ReadBones(const Json& value, motion::Skeleton* skeleton) {
   if (!value.is_array()) return Wrong("skeleton.bones", value.type_name(), "a list");
   for (size_t i = 0; i < value.size(); ++i) {
     const std::string field = absl::StrCat("skeleton.bones[", i, "]");
@@ -118,11 +118,11 @@ absl::Status ReadBones(const Json& value, Skeleton* skeleton) {
   return absl::OkStatus();
 }
 
-absl::Status ReadParts(const Json& value, Skeleton* skeleton) {
+absl::Status ReadParts(const Json& value, motion::Skeleton* skeleton) {
   if (!value.is_array()) return Wrong("skeleton.parts", value.type_name(), "a list");
   for (size_t i = 0; i < value.size(); ++i) {
     const std::string field = absl::StrCat("skeleton.parts[", i, "]");
-    BodyPart part;
+    motion::BodyPart part;
     absl::Status status = CheckKeys(field, value[i], {"name", "joints"}, {});
     if (status.ok()) status = ReadName(field + ".name", value[i]["name"], &part.name);
     if (status.ok()) {
@@ -134,7 +134,7 @@ absl::Status ReadParts(const Json& value, Skeleton* skeleton) {
   return absl::OkStatus();
 }
 
-absl::Status ReadSkeleton(const Json& json, Skeleton* skeleton) {
+absl::Status ReadSkeleton(const Json& json, motion::Skeleton* skeleton) {
   absl::Status status = CheckKeys(
       "skeleton", json,
       {"joint_names", "bones", "parts", "root", "left_hip", "right_hip", "left_foot", "right_foot"},
@@ -165,7 +165,7 @@ bool IsPlainFolderName(const std::string& name) {
   return name.find_first_of("/\\") == std::string::npos && name[0] != '.';
 }
 
-absl::Status ReadClass(const std::string& field, const Json& json, const Skeleton& skeleton,
+absl::Status ReadClass(const std::string& field, const Json& json, const motion::Skeleton& skeleton,
                        ClassLayout* out) {
   absl::Status status = CheckKeys(field, json, {"name"}, {"symmetric", "effectors"});
   if (status.ok()) status = ReadName(field + ".name", json["name"], &out->name);
@@ -218,19 +218,22 @@ absl::Status ReadChoice(const std::string& field, const Json& value,
   return absl::OkStatus();
 }
 
-absl::Status ReadCoordinates(const Json& json, CoordinateFrame* frame) {
-  absl::Status status = ReadChoice<LengthUnit>("unit", json["unit"],
-                                               {{"metres", LengthUnit::kMetres},
-                                                {"millimetres", LengthUnit::kMillimetres},
-                                                {"sbu_normalised", LengthUnit::kSbuNormalised}},
-                                               &frame->unit);
+absl::Status ReadCoordinates(const Json& json, motion::CoordinateFrame* frame) {
+  absl::Status status =
+      ReadChoice<motion::LengthUnit>("unit", json["unit"],
+                                     {{"metres", motion::LengthUnit::kMetres},
+                                      {"millimetres", motion::LengthUnit::kMillimetres},
+                                      {"sbu_normalised", motion::LengthUnit::kSbuNormalised}},
+                                     &frame->unit);
   if (!status.ok()) return status;
-  status = ReadChoice<UpAxis>(
-      "up_axis", json["up_axis"],
-      {{"y_up", UpAxis::kYUp}, {"z_up", UpAxis::kZUp}, {"y_down", UpAxis::kYDown}},
-      &frame->up_axis);
+  status = ReadChoice<motion::UpAxis>("up_axis", json["up_axis"],
+                                      {{"y_up", motion::UpAxis::kYUp},
+                                       {"z_up", motion::UpAxis::kZUp},
+                                       {"y_down", motion::UpAxis::kYDown}},
+                                      &frame->up_axis);
   if (!status.ok()) return status;
-  if (frame->unit == LengthUnit::kSbuNormalised && frame->up_axis != UpAxis::kYDown) {
+  if (frame->unit == motion::LengthUnit::kSbuNormalised &&
+      frame->up_axis != motion::UpAxis::kYDown) {
     return Wrong("up_axis", json["up_axis"].dump(), "y_down, which sbu_normalised implies");
   }
   return absl::OkStatus();
@@ -262,4 +265,4 @@ absl::StatusOr<DatasetLayout> ParseDatasetLayout(std::string_view text) {
   return layout;
 }
 
-}  // namespace duet
+}  // namespace duet::dataset

@@ -8,7 +8,7 @@
 #include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
 
-namespace duet {
+namespace duet::dataset {
 namespace {
 
 struct Columns {
@@ -55,10 +55,10 @@ std::vector<std::string> ParseSubjects(absl::string_view text) {
   return subjects;
 }
 
-float PeakDisplacement(const Clip& clip, int root, const std::vector<int>& effectors) {
+float PeakDisplacement(const motion::Clip& clip, int root, const std::vector<int>& effectors) {
   float peak = 0;
   for (const int effector : effectors) {
-    const Vec3 start = clip.at(0, effector) - clip.at(0, root);
+    const motion::Vec3 start = clip.at(0, effector) - clip.at(0, root);
     for (int t = 1; t < clip.frame_count(); ++t) {
       peak = std::max(peak, Distance(clip.at(t, effector) - clip.at(t, root), start));
     }
@@ -103,11 +103,11 @@ absl::StatusOr<std::map<std::string, IndexEntry>> ParseIndex(absl::string_view t
   return entries;
 }
 
-LeaderSide LeaderByMotion(const Clip& left, const Clip& right, int root,
+LeaderSide LeaderByMotion(const motion::Clip& left, const motion::Clip& right, int root,
                           const std::vector<int>& effectors) {
   return PeakDisplacement(right, root, effectors) > PeakDisplacement(left, root, effectors)
              ? LeaderSide::kRight
              : LeaderSide::kLeft;
 }
 
-}  // namespace duet
+}  // namespace duet::dataset

@@ -9,7 +9,7 @@
 #include "absl/strings/string_view.h"
 #include "model/motion/clip.h"
 
-namespace duet {
+namespace duet::dataset {
 
 // Which of the two people of a file leads: the one written first (left) or second (right).
 enum class LeaderSide { kLeft, kRight, kUnknown };
@@ -31,9 +31,9 @@ absl::StatusOr<std::map<std::string, IndexEntry>> ParseIndex(absl::string_view t
 // place, relative to its own root joint. A tie is the left person's.
 // Source: data set notes; on SBU it agrees with a hand annotation on all kicks, on 26 of 33 pushes
 // and 28 of 31 punches, and is no better than chance for symmetric classes.
-LeaderSide LeaderByMotion(const Clip& left, const Clip& right, int root,
+LeaderSide LeaderByMotion(const motion::Clip& left, const motion::Clip& right, int root,
                           const std::vector<int>& effectors);
 
-}  // namespace duet
+}  // namespace duet::dataset
 
 #endif  // DUET_MODEL_DATASET_LEADER_SIDE_H_

@@ -6,13 +6,13 @@
 #include <system_error>
 
 #include "absl/strings/str_cat.h"
+#include "model/base/text.h"
 #include "model/dataset/dataset.h"
 #include "model/dataset/layout.h"
 #include "model/dataset/leader_side.h"
 #include "model/formats/flat/sbu_text.h"
-#include "model/base/text.h"
 
-namespace duet {
+namespace duet::dataset {
 namespace {
 
 namespace fs = std::filesystem;
@@ -112,7 +112,7 @@ absl::StatusOr<std::vector<FoundFile>> FindClassFiles(const fs::path& folder,
 
 absl::StatusOr<std::map<std::string, IndexEntry>> ReadIndex(const fs::path& folder) {
   if (!Exists(folder / "index.tsv")) return std::map<std::string, IndexEntry>{};
-  absl::StatusOr<std::string> text = ReadFile(folder / "index.tsv");
+  absl::StatusOr<std::string> text = base::ReadFile(folder / "index.tsv");
   if (!text.ok()) return text.status();
   absl::StatusOr<std::map<std::string, IndexEntry>> index = ParseIndex(*text);
   if (!index.ok()) {
@@ -129,19 +129,21 @@ absl::StatusOr<std::map<std::string, IndexEntry>> ReadIndex(const fs::path& fold
   return index;
 }
 
-absl::StatusOr<SbuRecording> ReadPeople(const std::string& path, const DatasetLayout& layout) {
-  SbuOptions options;
+absl::StatusOr<formats::flat::SbuRecording> ReadPeople(const std::string& path,
+                                                       const DatasetLayout& layout) {
+  formats::flat::SbuOptions options;
   options.joint_names = layout.skeleton.joint_names;
   options.frame_rate_hz = layout.frame_rate_hz;
   options.coordinates = layout.frame;
-  absl::StatusOr<SbuRecording> people = ReadSbu(path, options);
+  absl::StatusOr<formats::flat::SbuRecording> people = ReadSbu(path, options);
   if (people.ok() && people->left.frame_count() < 2) {
-    return ErrorAt(path, 1, "came 1 frame, wanted at least 2");
+    return base::ErrorAt(path, 1, "came 1 frame, wanted at least 2");
   }
   return people;
 }
 
-absl::StatusOr<LeaderSide> LeaderOf(const std::string& path, const SbuRecording& people,
+absl::StatusOr<LeaderSide> LeaderOf(const std::string& path,
+                                    const formats::flat::SbuRecording& people,
                                     const ClassLayout& interaction, int root) {
   if (!interaction.effectors.empty()) {
     return LeaderByMotion(people.left, people.right, root, interaction.effectors);
@@ -153,17 +155,18 @@ absl::StatusOr<LeaderSide> LeaderOf(const std::string& path, const SbuRecording&
 
 // Which end of the axis the follower stands at: the one thing read off the pair. The files' own
 // order does not tell: it differs from set to set.
-std::optional<Vec3> PartnerDirection(const DatasetLayout& layout, const ClipPair& pair) {
+std::optional<motion::Vec3> PartnerDirection(const DatasetLayout& layout,
+                                             const motion::ClipPair& pair) {
   if (!layout.people_axis) return std::nullopt;
   const int root = layout.skeleton.root;
-  const Vec3 across = pair.follower.at(0, root) - pair.leader.at(0, root);
+  const motion::Vec3 across = pair.follower.at(0, root) - pair.leader.at(0, root);
   return Dot(across, *layout.people_axis) < 0 ? -*layout.people_axis : *layout.people_axis;
 }
 
 absl::StatusOr<Sequence> ReadSequence(const fs::path& folder, const DatasetLayout& layout,
                                       const IndexEntry& entry, const FoundFile& file) {
   const std::string path = (folder / file.id).string();
-  absl::StatusOr<SbuRecording> people = ReadPeople(path, layout);
+  absl::StatusOr<formats::flat::SbuRecording> people = ReadPeople(path, layout);
   if (!people.ok()) return people.status();
   Sequence sequence;
   sequence.id = file.id;
@@ -214,7 +217,7 @@ absl::StatusOr<Dataset> ReadFiles(const fs::path& folder, const DatasetLayout& l
 }
 
 absl::StatusOr<Dataset> ReadOwnData(const fs::path& folder) {
-  absl::StatusOr<std::string> text = ReadFile(folder / "dataset.json");
+  absl::StatusOr<std::string> text = base::ReadFile(folder / "dataset.json");
   if (!text.ok()) return text.status();
   absl::StatusOr<DatasetLayout> layout = ParseDatasetLayout(*text);
   if (!layout.ok()) {
@@ -247,4 +250,4 @@ absl::StatusOr<Dataset> ReadDataset(const fs::path& folder) {
       "<class>/<sequence>.txt (K3HI) or a dataset.json (docs/datasets.md)"));
 }
 
-}  // namespace duet
+}  // namespace duet::dataset

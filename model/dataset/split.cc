@@ -9,7 +9,7 @@
 #include "absl/strings/str_join.h"
 #include "model/dataset/dataset.h"
 
-namespace duet {
+namespace duet::dataset {
 namespace {
 
 // Fisher-Yates with plain remainders: std::shuffle's result differs between standard libraries, and
@@ -93,4 +93,4 @@ std::vector<int> TakeValidation(const Dataset& dataset, double fraction, uint64_
   return validation;
 }
 
-}  // namespace duet
+}  // namespace duet::dataset

@@ -8,7 +8,7 @@
 
 #include "model/motion/resample.h"
 
-namespace duet {
+namespace duet::engine {
 namespace {
 
 // Rows of a spline before and after the one that a time falls in.
@@ -24,7 +24,7 @@ ClipSynthesis::ClipSynthesis(ModelDescription model, ClipRequest request)
       frame_count_(static_cast<int>(request_.leader.size()) / model_.skeleton.joint_count()),
       model_frames_per_frame_(model_.frame_rate_hz / request_.frame_rate_hz),
       plan_(PlanWindows(
-          ResampledFrameCount(frame_count_, request_.frame_rate_hz, model_.frame_rate_hz),
+          motion::ResampledFrameCount(frame_count_, request_.frame_rate_hz, model_.frame_rate_hz),
           model_.window_frames)) {}
 
 SynthesisWindow ClipSynthesis::NextWindow() const {
@@ -56,7 +56,7 @@ std::optional<FollowerStart> ClipSynthesis::NextStart() const {
   return FollowerStart{pose[model_.skeleton.root], {pose, pose + joints}};
 }
 
-std::vector<Vec3> ClipSynthesis::Accept(const std::vector<Vec3>& follower) {
+std::vector<motion::Vec3> ClipSynthesis::Accept(const std::vector<motion::Vec3>& follower) {
   const std::size_t joints = static_cast<std::size_t>(model_.skeleton.joint_count());
   // Only an engine that breaks its contract gets here; going on would read past its result.
   if (!HasNextWindow() || follower.size() != static_cast<std::size_t>(plan_.length) * joints) {
@@ -64,12 +64,12 @@ std::vector<Vec3> ClipSynthesis::Accept(const std::vector<Vec3>& follower) {
   }
   Blend(plan_.starts[static_cast<std::size_t>(next_window_)], follower);
   ++next_window_;
-  std::vector<Vec3> frames = TakeFinalFrames();
+  std::vector<motion::Vec3> frames = TakeFinalFrames();
   DropRows();
   return frames;
 }
 
-void ClipSynthesis::Blend(int start, const std::vector<Vec3>& follower) {
+void ClipSynthesis::Blend(int start, const std::vector<motion::Vec3>& follower) {
   const std::ptrdiff_t joints = model_.skeleton.joint_count();
   const std::ptrdiff_t rows = static_cast<std::ptrdiff_t>(kept_.size()) / joints;
   const std::ptrdiff_t first = start - kept_from_;  // row of kept_ where the window begins
@@ -78,13 +78,13 @@ void ClipSynthesis::Blend(int start, const std::vector<Vec3>& follower) {
   kept_.insert(kept_.end(), follower.begin() + shared * joints, follower.end());
 }
 
-std::vector<Vec3> ClipSynthesis::TakeFinalFrames() {
+std::vector<motion::Vec3> ClipSynthesis::TakeFinalFrames() {
   const int joints = model_.skeleton.joint_count();
   // The next window may change its first frame and all that follow.
   const int final_end = HasNextWindow() ? plan_.starts[static_cast<std::size_t>(next_window_)]
                                         : std::numeric_limits<int>::max();
-  std::vector<Vec3> frames;
-  std::vector<Vec3> pose(static_cast<std::size_t>(joints));
+  std::vector<motion::Vec3> frames;
+  std::vector<motion::Vec3> pose(static_cast<std::size_t>(joints));
   for (; next_frame_ < frame_count_; ++next_frame_) {
     const double at = ToModelFrame(next_frame_);
     if (static_cast<int>(at) >= final_end - kRowsAfter) break;
@@ -107,4 +107,4 @@ void ClipSynthesis::DropRows() {
   kept_from_ = keep_from;
 }
 
-}  // namespace duet
+}  // namespace duet::engine

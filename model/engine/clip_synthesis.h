@@ -11,15 +11,17 @@
 #include "model/engine/window_plan.h"
 #include "model/motion/vec3.h"
 
-namespace duet {
+namespace duet::engine {
 
 // A validated request: what one call asks of a model.
 struct ClipRequest {
-  std::vector<Vec3> leader;  // [frames, joints], the model's joint order, world metres, y up
+  std::vector<motion::Vec3>
+      leader;                // [frames, joints], the model's joint order, world metres, y up
   double frame_rate_hz = 0;  // the caller's
   LabelTrack labels;         // keyframes in the caller's frames
   std::optional<FollowerStart> start;
-  std::optional<Vec3> partner_direction;  // horizontal, of any length but 0; see SynthesisWindow
+  std::optional<motion::Vec3>
+      partner_direction;  // horizontal, of any length but 0; see SynthesisWindow
 };
 
 // Turns a clip of any length into network windows and their results back into one motion.
@@ -52,7 +54,7 @@ class ClipSynthesis {
   // Takes the result of NextWindow, [as many frames, joints], and returns the follower's frames
   // that became final, at the caller's rate, following those returned before. Over all windows:
   // exactly frame_count frames.
-  std::vector<Vec3> Accept(const std::vector<Vec3>& follower);
+  std::vector<motion::Vec3> Accept(const std::vector<motion::Vec3>& follower);
 
  private:
   // Where a frame of the caller lies among the model's, and the reverse.
@@ -61,8 +63,8 @@ class ClipSynthesis {
 
   std::optional<FollowerStart> NextStart() const;
   // Adds the follower of the window at `start` to what is kept.
-  void Blend(int start, const std::vector<Vec3>& follower);
-  std::vector<Vec3> TakeFinalFrames();
+  void Blend(int start, const std::vector<motion::Vec3>& follower);
+  std::vector<motion::Vec3> TakeFinalFrames();
   void DropRows();
 
   ModelDescription model_;
@@ -72,11 +74,11 @@ class ClipSynthesis {
   double model_frames_per_frame_;  // model rate / caller's rate
   WindowPlan plan_;                // in model frames
   int next_window_ = 0;
-  int next_frame_ = 0;      // the caller's next frame to hand out
-  int kept_from_ = 0;       // model frame of the first row of kept_
-  std::vector<Vec3> kept_;  // [n, joints] blended follower still needed, model rate
+  int next_frame_ = 0;              // the caller's next frame to hand out
+  int kept_from_ = 0;               // model frame of the first row of kept_
+  std::vector<motion::Vec3> kept_;  // [n, joints] blended follower still needed, model rate
 };
 
-}  // namespace duet
+}  // namespace duet::engine
 
 #endif  // DUET_MODEL_ENGINE_CLIP_SYNTHESIS_H_

@@ -6,7 +6,7 @@
 #include "model/motion/skeleton.h"
 #include "model/motion/vec3.h"
 
-namespace duet {
+namespace duet::engine {
 
 // Turns one motion into another over the frames that they share, keeping limb lengths.
 //
@@ -15,21 +15,21 @@ namespace duet {
 class CrossFade {
  public:
   // Requires a skeleton that Validate accepts.
-  explicit CrossFade(const Skeleton& skeleton);
+  explicit CrossFade(const motion::Skeleton& skeleton);
 
   // Replaces `poses` by a blend that leaves them smoothly and arrives at `next`: even the first
   // frame has some of `next`, even the last some of `poses`.
   // Shapes: poses, next [frames, joints].
-  void Blend(Vec3* poses, const Vec3* next, int frames) const;
+  void Blend(motion::Vec3* poses, const motion::Vec3* next, int frames) const;
 
  private:
-  void BlendPose(Vec3* pose, const Vec3* next, float weight) const;
+  void BlendPose(motion::Vec3* pose, const motion::Vec3* next, float weight) const;
 
   int joints_;
   int root_;
-  std::vector<Bone> bones_;  // parents before their children
+  std::vector<motion::Bone> bones_;  // parents before their children
 };
 
-}  // namespace duet
+}  // namespace duet::engine
 
 #endif  // DUET_MODEL_ENGINE_CROSS_FADE_H_

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace duet {
+namespace duet::engine {
 
 LabelTrack::LabelTrack(std::vector<float> weights) {
   keyframes_.push_back({0, std::move(weights)});
@@ -26,4 +26,4 @@ void LabelTrack::At(double frame, float* out) const {
   }
 }
 
-}  // namespace duet
+}  // namespace duet::engine

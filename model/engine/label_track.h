@@ -3,7 +3,7 @@
 
 #include <vector>
 
-namespace duet {
+namespace duet::engine {
 
 // The label vector at one frame of the leader, at the leader's own rate.
 struct LabelKeyframe {
@@ -26,6 +26,6 @@ class LabelTrack {
   std::vector<LabelKeyframe> keyframes_;
 };
 
-}  // namespace duet
+}  // namespace duet::engine
 
 #endif  // DUET_MODEL_ENGINE_LABEL_TRACK_H_

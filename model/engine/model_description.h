@@ -6,14 +6,14 @@
 
 #include "model/motion/skeleton.h"
 
-namespace duet {
+namespace duet::engine {
 
 // What a caller needs to know of a model: everything but its weights.
 struct ModelDescription {
   std::string name;
   int version = 0;  // 1 or more
   std::string description;
-  Skeleton skeleton;
+  motion::Skeleton skeleton;
   std::vector<std::string> classes;  // interaction classes, in the order of the label vector
   double frame_rate_hz = 0;          // the network's own
   int window_frames = 0;             // the longest window that the network was trained for
@@ -22,6 +22,6 @@ struct ModelDescription {
   int class_count() const { return static_cast<int>(classes.size()); }
 };
 
-}  // namespace duet
+}  // namespace duet::engine
 
 #endif  // DUET_MODEL_ENGINE_MODEL_DESCRIPTION_H_

@@ -9,27 +9,28 @@
 #include "model/engine/model_description.h"
 #include "model/motion/vec3.h"
 
-namespace duet {
+namespace duet::engine {
 
 // Where the follower is at a window's first frame. World metres, y up.
 struct FollowerStart {
-  Vec3 root;
-  std::vector<Vec3> pose;  // empty (the root alone is known) or [joints]; pose[root joint] == root
+  motion::Vec3 root;
+  std::vector<motion::Vec3>
+      pose;  // empty (the root alone is known) or [joints]; pose[root joint] == root
 };
 
 // One network evaluation: at most window_frames frames at the model's frame rate and in its joint
 // order. World metres, y up.
 struct SynthesisWindow {
-  std::vector<Vec3> leader;   // [frames, joints], 2 frames or more
-  std::vector<float> labels;  // [frames, classes]
+  std::vector<motion::Vec3> leader;  // [frames, joints], 2 frames or more
+  std::vector<float> labels;         // [frames, classes]
   std::optional<FollowerStart> start;
   // Horizontal direction from the leader to where the follower should be. Absent: towards `start`,
   // or else where the leader's hips face.
-  std::optional<Vec3> partner_direction;
+  std::optional<motion::Vec3> partner_direction;
 };
 
 // A follower's motion for one window: [frames, joints] in the leader's world, metres, y up.
-using WindowResult = absl::StatusOr<std::vector<Vec3>>;
+using WindowResult = absl::StatusOr<std::vector<motion::Vec3>>;
 
 // A loaded model: the only thing that the server knows of the network.
 //
@@ -47,6 +48,6 @@ class Synthesizer {
       absl::Span<const SynthesisWindow* const> windows) const = 0;
 };
 
-}  // namespace duet
+}  // namespace duet::engine
 
 #endif  // DUET_MODEL_ENGINE_SYNTHESIZER_H_

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace duet {
+namespace duet::engine {
 namespace {
 
 // Closer than this the direction from root to root says little: people in a hug.
@@ -10,19 +10,19 @@ constexpr float kMinDistanceMetres = 0.3f;
 
 }  // namespace
 
-Standardisation WindowFrame(const Skeleton& skeleton, const SynthesisWindow& window,
-                            StandardOrigin origin) {
+motion::Standardisation WindowFrame(const motion::Skeleton& skeleton, const SynthesisWindow& window,
+                                    motion::StandardOrigin origin) {
   if (window.partner_direction) {
     return {skeleton, window.leader, FacingYaw(*window.partner_direction), origin};
   }
   if (window.start) {
-    const Vec3 root = window.leader[static_cast<size_t>(skeleton.root)];
-    const Vec3 toward = window.start->root - root;
+    const motion::Vec3 root = window.leader[static_cast<size_t>(skeleton.root)];
+    const motion::Vec3 toward = window.start->root - root;
     if (std::hypot(toward.x, toward.z) >= kMinDistanceMetres) {
       return {skeleton, window.leader, FacingYaw(toward), origin};
     }
   }
-  return {skeleton, window.leader, YawDirection::kRemove, origin};
+  return {skeleton, window.leader, motion::YawDirection::kRemove, origin};
 }
 
-}  // namespace duet
+}  // namespace duet::engine

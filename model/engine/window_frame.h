@@ -5,15 +5,16 @@
 #include "model/motion/skeleton.h"
 #include "model/motion/standardise.h"
 
-namespace duet {
+namespace duet::engine {
 
 // The frame in which the network sees a window, in training as in service: the leader's root at the
 // origin (in every frame, or in the first one), and -z towards where the follower is expected: the
 // window's partner direction; else the follower's start, unless the two stand as good as on one
 // spot; else where the leader's hips face.
-Standardisation WindowFrame(const Skeleton& skeleton, const SynthesisWindow& window,
-                            StandardOrigin origin = StandardOrigin::kEveryFrame);
+motion::Standardisation WindowFrame(
+    const motion::Skeleton& skeleton, const SynthesisWindow& window,
+    motion::StandardOrigin origin = motion::StandardOrigin::kEveryFrame);
 
-}  // namespace duet
+}  // namespace duet::engine
 
 #endif  // DUET_MODEL_ENGINE_WINDOW_FRAME_H_

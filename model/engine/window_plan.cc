@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 
-namespace duet {
+namespace duet::engine {
 namespace {
 
 // Long enough for a cross-fade that nobody sees, short enough to cost only half as much again.
@@ -25,4 +25,4 @@ WindowPlan PlanWindows(int frames, int longest) {
   return plan;
 }
 
-}  // namespace duet
+}  // namespace duet::engine

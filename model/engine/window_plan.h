@@ -3,7 +3,7 @@
 
 #include <vector>
 
-namespace duet {
+namespace duet::engine {
 
 // How a long clip is cut for a network that was trained on short ones: the first frame of every
 // window, all of one length, overlapping by about a third or more and spread evenly, so that no
@@ -16,6 +16,6 @@ struct WindowPlan {
 // Fewest windows of at most `longest` frames over `frames`. Both at least 2.
 WindowPlan PlanWindows(int frames, int longest);
 
-}  // namespace duet
+}  // namespace duet::engine
 
 #endif  // DUET_MODEL_ENGINE_WINDOW_PLAN_H_

@@ -5,17 +5,17 @@
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
+#include "model/base/text.h"
 #include "model/formats/bvh/bvh_document.h"
 #include "model/formats/bvh/bvh_export.h"
 #include "model/formats/bvh/bvh_import.h"
 #include "model/formats/flat/csv.h"
 #include "model/formats/flat/json_motion.h"
 #include "model/formats/flat/npy.h"
-#include "model/motion/recorded_motion.h"
 #include "model/formats/flat/sbu_text.h"
-#include "model/base/text.h"
+#include "model/motion/recorded_motion.h"
 
-namespace duet {
+namespace duet::formats {
 namespace {
 
 namespace fs = std::filesystem;
@@ -35,51 +35,52 @@ Format FormatOf(const fs::path& path) {
 }
 
 absl::Status UnknownExtension(const fs::path& path, absl::string_view known) {
-  return absl::InvalidArgumentError(absl::StrCat(
-      path.string(), ": extension: came ", Quoted(path.extension().string()), ", wanted ", known));
+  return absl::InvalidArgumentError(absl::StrCat(path.string(), ": extension: came ",
+                                                 base::Quoted(path.extension().string()),
+                                                 ", wanted ", known));
 }
 
 // The joints of a file with positions as the skeleton's, in metres, y up.
-absl::StatusOr<Clip> ToSkeleton(const RecordedMotion& motion, const std::string& source,
-                                const ReadOptions& options) {
+absl::StatusOr<motion::Clip> ToSkeleton(const motion::RecordedMotion& motion,
+                                        const std::string& source, const ReadOptions& options) {
   const bool second = options.side == Side::kRight && motion.people.size() > 1;
-  const Clip& person = motion.people[second ? 1 : 0];
-  absl::StatusOr<JointMap> map =
-      MapJoints(source, person.joint_names,
-                std::vector<Vec3>(person.frame(0), person.frame(0) + person.joint_count()),
-                options.skeleton, options.joint_overrides);
+  const motion::Clip& person = motion.people[second ? 1 : 0];
+  absl::StatusOr<retargeting::JointMap> map = retargeting::MapJoints(
+      source, person.joint_names,
+      std::vector<motion::Vec3>(person.frame(0), person.frame(0) + person.joint_count()),
+      options.skeleton, options.joint_overrides);
   if (!map.ok()) return map.status();
   if (options.notes != nullptr) {
     options.notes->insert(options.notes->end(), map->notes.begin(), map->notes.end());
   }
-  const CoordinateFrame coordinates = options.coordinates.value_or(motion.coordinates);
-  Clip clip;
+  const motion::CoordinateFrame coordinates = options.coordinates.value_or(motion.coordinates);
+  motion::Clip clip;
   clip.joint_names = options.skeleton.joint_names;
   clip.frame_rate_hz = person.frame_rate_hz;
   for (int frame = 0; frame < person.frame_count(); ++frame) {
-    for (Vec3 position : ApplyJointMap(*map, person.frame(frame))) {
+    for (motion::Vec3 position : ApplyJointMap(*map, person.frame(frame))) {
       clip.positions.push_back(ToWorld(coordinates, position));
     }
   }
   return clip;
 }
 
-absl::StatusOr<Clip> ReadSbuPerson(const std::string& text, const std::string& source,
-                                   const ReadOptions& options) {
-  SbuOptions sbu;
+absl::StatusOr<motion::Clip> ReadSbuPerson(const std::string& text, const std::string& source,
+                                           const ReadOptions& options) {
+  flat::SbuOptions sbu;
   sbu.joint_names = options.skeleton.joint_names;
   sbu.frame_rate_hz = options.frame_rate_hz.value_or(kSbuFrameRateHz);
   sbu.coordinates = options.coordinates.value_or(sbu.coordinates);
-  absl::StatusOr<SbuRecording> recording = ParseSbu(text, source, sbu);
+  absl::StatusOr<flat::SbuRecording> recording = ParseSbu(text, source, sbu);
   if (!recording.ok()) return recording.status();
   return options.side == Side::kLeft ? std::move(recording->left) : std::move(recording->right);
 }
 
-absl::StatusOr<Clip> ReadBvhPerson(const std::string& text, const std::string& source,
-                                   const ReadOptions& options) {
-  absl::StatusOr<BvhDocument> document = ParseBvh(text, source);
+absl::StatusOr<motion::Clip> ReadBvhPerson(const std::string& text, const std::string& source,
+                                           const ReadOptions& options) {
+  absl::StatusOr<bvh::BvhDocument> document = bvh::ParseBvh(text, source);
   if (!document.ok()) return document.status();
-  BvhImportOptions bvh;
+  bvh::BvhImportOptions bvh;
   bvh.skeleton = options.skeleton;
   bvh.joint_overrides = options.joint_overrides;
   bvh.metres_per_unit = options.metres_per_unit;
@@ -89,26 +90,28 @@ absl::StatusOr<Clip> ReadBvhPerson(const std::string& text, const std::string& s
   return FromBvh(*document, source, bvh);
 }
 
-absl::StatusOr<Clip> ReadPerson(Format format, const std::string& content,
-                                const std::string& source, const ReadOptions& options) {
+absl::StatusOr<motion::Clip> ReadPerson(Format format, const std::string& content,
+                                        const std::string& source, const ReadOptions& options) {
   if (format == Format::kSbuText) return ReadSbuPerson(content, source, options);
   if (format == Format::kBvh) return ReadBvhPerson(content, source, options);
-  absl::StatusOr<RecordedMotion> motion =
-      format == Format::kCsv   ? ParseCsv(content, source)
-      : format == Format::kNpy ? ParseNpy(content, source, options.skeleton.joint_names)
-                               : ParseJsonMotion(content, source);
+  absl::StatusOr<motion::RecordedMotion> motion =
+      format == Format::kCsv   ? flat::ParseCsv(content, source)
+      : format == Format::kNpy ? flat::ParseNpy(content, source, options.skeleton.joint_names)
+                               : flat::ParseJsonMotion(content, source);
   if (!motion.ok()) return motion.status();
   return ToSkeleton(*motion, source, options);
 }
 
-absl::Status WriteBvh(const fs::path& path, const Clip& clip, const Skeleton& skeleton) {
-  absl::StatusOr<BvhDocument> document = ToBvh(clip, skeleton);
+absl::Status WriteBvh(const fs::path& path, const motion::Clip& clip,
+                      const motion::Skeleton& skeleton) {
+  absl::StatusOr<bvh::BvhDocument> document = bvh::ToBvh(clip, skeleton);
   if (!document.ok()) return document.status();
-  return WriteFile(path, FormatBvh(*document));
+  return base::WriteFile(path, FormatBvh(*document));
 }
 
-absl::StatusOr<std::vector<fs::path>> WriteBvhPair(const fs::path& path, const ClipPair& pair,
-                                                   const Skeleton& skeleton) {
+absl::StatusOr<std::vector<fs::path>> WriteBvhPair(const fs::path& path,
+                                                   const motion::ClipPair& pair,
+                                                   const motion::Skeleton& skeleton) {
   fs::path leader = path, follower = path;
   leader.replace_extension(".leader.bvh");
   follower.replace_extension(".follower.bvh");
@@ -118,7 +121,7 @@ absl::StatusOr<std::vector<fs::path>> WriteBvhPair(const fs::path& path, const C
   return std::vector<fs::path>{leader, follower};
 }
 
-absl::Status CheckJoints(const ClipPair& pair, const Skeleton& skeleton) {
+absl::Status CheckJoints(const motion::ClipPair& pair, const motion::Skeleton& skeleton) {
   if (pair.leader.joint_names == skeleton.joint_names) return CheckPair(pair);
   return absl::InvalidArgumentError(absl::StrCat("pair: came ", pair.leader.joint_count(),
                                                  " joints, wanted the skeleton's ",
@@ -138,15 +141,15 @@ absl::Status CheckWritable(const fs::path& path) {
   return UnknownExtension(path, ".bvh, .csv, .npy or .json");
 }
 
-absl::StatusOr<Clip> ReadLeader(const fs::path& path, const ReadOptions& options) {
+absl::StatusOr<motion::Clip> ReadLeader(const fs::path& path, const ReadOptions& options) {
   absl::Status status = CheckReadable(path);
   if (status.ok() && options.frame_rate_hz.has_value()) {
-    status = CheckFrameRate("frame rate given", *options.frame_rate_hz);
+    status = base::CheckFrameRate("frame rate given", *options.frame_rate_hz);
   }
   if (!status.ok()) return status;
-  absl::StatusOr<std::string> content = ReadFile(path);
+  absl::StatusOr<std::string> content = base::ReadFile(path);
   if (!content.ok()) return content.status();
-  absl::StatusOr<Clip> clip = ReadPerson(FormatOf(path), *content, path.string(), options);
+  absl::StatusOr<motion::Clip> clip = ReadPerson(FormatOf(path), *content, path.string(), options);
   if (!clip.ok()) return clip.status();
   if (options.frame_rate_hz.has_value()) clip->frame_rate_hz = *options.frame_rate_hz;
   if (clip->frame_rate_hz > 0) return clip;
@@ -154,28 +157,28 @@ absl::StatusOr<Clip> ReadLeader(const fs::path& path, const ReadOptions& options
       absl::StrCat(path.string(), ": frame rate: the file has none, wanted one beside it"));
 }
 
-absl::StatusOr<std::vector<Vec3>> ReadFollowerStart(const fs::path& path,
-                                                    const ReadOptions& options) {
+absl::StatusOr<std::vector<motion::Vec3>> ReadFollowerStart(const fs::path& path,
+                                                            const ReadOptions& options) {
   ReadOptions any_rate = options;
   // A single pose has no rate; a file without one will do.
   if (!any_rate.frame_rate_hz.has_value()) any_rate.frame_rate_hz = kSbuFrameRateHz;
-  absl::StatusOr<Clip> clip = ReadLeader(path, any_rate);
+  absl::StatusOr<motion::Clip> clip = ReadLeader(path, any_rate);
   if (!clip.ok()) return clip.status();
-  return std::vector<Vec3>(clip->frame(0), clip->frame(0) + clip->joint_count());
+  return std::vector<motion::Vec3>(clip->frame(0), clip->frame(0) + clip->joint_count());
 }
 
-absl::StatusOr<std::vector<fs::path>> WritePair(const fs::path& path, const ClipPair& pair,
-                                                const Skeleton& skeleton) {
+absl::StatusOr<std::vector<fs::path>> WritePair(const fs::path& path, const motion::ClipPair& pair,
+                                                const motion::Skeleton& skeleton) {
   absl::Status status = CheckWritable(path);
   if (status.ok()) status = CheckJoints(pair, skeleton);
   if (!status.ok()) return status;
   const Format format = FormatOf(path);
   if (format == Format::kBvh) return WriteBvhPair(path, pair, skeleton);
-  status = WriteFile(path, format == Format::kCsv   ? FormatCsv(pair)
-                           : format == Format::kNpy ? FormatNpy(pair)
-                                                    : FormatJsonMotion(pair, skeleton));
+  status = base::WriteFile(path, format == Format::kCsv   ? flat::FormatCsv(pair)
+                                 : format == Format::kNpy ? flat::FormatNpy(pair)
+                                                          : flat::FormatJsonMotion(pair, skeleton));
   if (!status.ok()) return status;
   return std::vector<fs::path>{path};
 }
 
-}  // namespace duet
+}  // namespace duet::formats

@@ -8,10 +8,10 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "model/retargeting/joint_mapping.h"
 #include "model/motion/clip.h"
 #include "model/motion/coordinates.h"
 #include "model/motion/skeleton.h"
+#include "model/retargeting/joint_mapping.h"
 
 // The front door of motion files: the extension decides the format (docs/formats.md).
 //
@@ -19,7 +19,7 @@
 //   .bvh   joint angles              .npy   float array [frames, joints, 3] or [2, frames, joints,
 //   3] .json  positions, one or two people
 
-namespace duet {
+namespace duet::formats {
 
 // Which person of a file with two. SBU text: their place in the image. Every other format: left is
 // the first person (the leader of a pair), right the second.
@@ -28,15 +28,15 @@ enum class Side { kLeft, kRight };
 struct ReadOptions {
   Side side = Side::kLeft;
   // The joints wanted, in their order.
-  Skeleton skeleton = SbuSkeleton();
+  motion::Skeleton skeleton = motion::SbuSkeleton();
   // Replaces the file's frame rate. Required for .npy; SBU text without it counts as 15.
   std::optional<double> frame_rate_hz;
   // Replaces what the file says or its format implies: SBU text the data set's normalised unit;
   // CSV and JSON what they state, else metres, y up; NPY metres, y up.
-  std::optional<CoordinateFrame> coordinates;
+  std::optional<motion::CoordinateFrame> coordinates;
   // BVH: metres in one unit of the file (0.01 for centimetres). Found from the height when absent.
   std::optional<double> metres_per_unit;
-  JointOverrides joint_overrides;
+  retargeting::JointOverrides joint_overrides;
   // Receives what was decided (unit, up axis, torso joint), for people to read. May be null.
   std::vector<std::string>* notes = nullptr;
 };
@@ -47,11 +47,12 @@ struct ReadOptions {
 // Errors: NOT_FOUND, PERMISSION_DENIED; INVALID_ARGUMENT naming the file, the place in it, what
 // came
 //         and what was wanted.
-absl::StatusOr<Clip> ReadLeader(const std::filesystem::path& path, const ReadOptions& options = {});
+absl::StatusOr<motion::Clip> ReadLeader(const std::filesystem::path& path,
+                                        const ReadOptions& options = {});
 
 // The first frame of any file that ReadLeader reads: where a follower starts. [skeleton joints]
-absl::StatusOr<std::vector<Vec3>> ReadFollowerStart(const std::filesystem::path& path,
-                                                    const ReadOptions& options = {});
+absl::StatusOr<std::vector<motion::Vec3>> ReadFollowerStart(const std::filesystem::path& path,
+                                                            const ReadOptions& options = {});
 
 // Writes a pair: .csv, .npy, .json as one file; .bvh as <stem>.leader.bvh and <stem>.follower.bvh
 // in one shared world. Returns the files written.
@@ -59,14 +60,14 @@ absl::StatusOr<std::vector<Vec3>> ReadFollowerStart(const std::filesystem::path&
 // Errors: INVALID_ARGUMENT for an unknown extension, joints other than the skeleton's, people of
 //         different length, positions that are not finite; PERMISSION_DENIED.
 absl::StatusOr<std::vector<std::filesystem::path>> WritePair(const std::filesystem::path& path,
-                                                             const ClipPair& pair,
-                                                             const Skeleton& skeleton);
+                                                             const motion::ClipPair& pair,
+                                                             const motion::Skeleton& skeleton);
 
 // Whether WritePair (ReadLeader) knows the extension, without the file; the error lists those
 // known.
 absl::Status CheckWritable(const std::filesystem::path& path);
 absl::Status CheckReadable(const std::filesystem::path& path);
 
-}  // namespace duet
+}  // namespace duet::formats
 
 #endif  // DUET_MODEL_FORMATS_MOTION_FILE_H_

@@ -7,7 +7,7 @@
 
 #include "model/motion/vec3.h"
 
-namespace duet {
+namespace duet::motion {
 
 // The motion of one character.
 //
@@ -38,6 +38,6 @@ struct ClipPair {
   Clip follower;
 };
 
-}  // namespace duet
+}  // namespace duet::motion
 
 #endif  // DUET_MODEL_MOTION_CLIP_H_

@@ -1,6 +1,6 @@
 #include "model/motion/coordinates.h"
 
-namespace duet {
+namespace duet::motion {
 namespace {
 
 // The data set's own conversion to millimetres, in metres.
@@ -60,4 +60,4 @@ Vec3 FromWorld(const CoordinateFrame& frame, Vec3 p) {
   return p;
 }
 
-}  // namespace duet
+}  // namespace duet::motion

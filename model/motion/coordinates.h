@@ -3,7 +3,7 @@
 
 #include "model/motion/vec3.h"
 
-namespace duet {
+namespace duet::motion {
 
 enum class LengthUnit { kMetres, kMillimetres, kSbuNormalised };
 enum class UpAxis { kYUp, kZUp, kYDown };
@@ -21,6 +21,6 @@ struct CoordinateFrame {
 Vec3 ToWorld(const CoordinateFrame& frame, Vec3 position);
 Vec3 FromWorld(const CoordinateFrame& frame, Vec3 position);
 
-}  // namespace duet
+}  // namespace duet::motion
 
 #endif  // DUET_MODEL_MOTION_COORDINATES_H_

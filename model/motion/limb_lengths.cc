@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
-namespace duet {
+namespace duet::motion {
 std::vector<float> MedianBoneLengths(const Skeleton& skeleton, const std::vector<Vec3>& positions) {
   const std::size_t joints = skeleton.joint_names.size(), frames = positions.size() / joints;
   std::vector<float> medians;
@@ -40,4 +40,4 @@ void SetBoneLengths(const Skeleton& skeleton, const std::vector<float>& lengths,
   }
 }
 
-}  // namespace duet
+}  // namespace duet::motion

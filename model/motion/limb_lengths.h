@@ -6,7 +6,7 @@
 #include "model/motion/skeleton.h"
 #include "model/motion/vec3.h"
 
-namespace duet {
+namespace duet::motion {
 
 // The median length of every bone, in the order of skeleton.bones. Requires at least one frame.
 // Shapes: positions [frames, joints]; returns [bones]. Units: those of positions.
@@ -18,6 +18,6 @@ std::vector<float> MedianBoneLengths(const Skeleton& skeleton, const std::vector
 void SetBoneLengths(const Skeleton& skeleton, const std::vector<float>& lengths,
                     std::vector<Vec3>* positions);
 
-}  // namespace duet
+}  // namespace duet::motion
 
 #endif  // DUET_MODEL_MOTION_LIMB_LENGTHS_H_

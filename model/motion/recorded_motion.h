@@ -8,7 +8,7 @@
 #include "model/motion/clip.h"
 #include "model/motion/coordinates.h"
 
-namespace duet {
+namespace duet::motion {
 
 // Positions as a file has them: the file's joints in its order, in its own unit and axes.
 struct RecordedMotion {
@@ -22,6 +22,6 @@ absl::Status CheckClip(absl::string_view name, const Clip& clip);
 // The same for both people, who share joints, frames and rate.
 absl::Status CheckPair(const ClipPair& pair);
 
-}  // namespace duet
+}  // namespace duet::motion
 
 #endif  // DUET_MODEL_MOTION_RECORDED_MOTION_H_

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace duet {
+namespace duet::motion {
 namespace {
 
 // Keeps a time that is a whole number of frames from being rounded up to one more.
@@ -66,4 +66,4 @@ std::vector<Vec3> Resample(const std::vector<Vec3>& positions, int joints, doubl
   return out;
 }
 
-}  // namespace duet
+}  // namespace duet::motion

@@ -5,7 +5,7 @@
 
 #include "model/motion/vec3.h"
 
-namespace duet {
+namespace duet::motion {
 
 // Frames that a motion of `frames` at `from_hz` has at `to_hz`: enough to cover its whole duration,
 // so the last one may lie past the end. At least 2. Positive rates, frames >= 2.
@@ -23,6 +23,6 @@ void SampleCubic(const std::vector<Vec3>& positions, int joints, double frame, V
 std::vector<Vec3> Resample(const std::vector<Vec3>& positions, int joints, double from_hz,
                            double to_hz);
 
-}  // namespace duet
+}  // namespace duet::motion
 
 #endif  // DUET_MODEL_MOTION_RESAMPLE_H_

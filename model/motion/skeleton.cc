@@ -5,7 +5,7 @@
 
 #include "absl/strings/str_cat.h"
 
-namespace duet {
+namespace duet::motion {
 namespace {
 
 absl::Status CheckIndex(std::string_view field, int index, int count) {
@@ -138,4 +138,4 @@ Skeleton SbuSkeleton() {
   return skeleton;
 }
 
-}  // namespace duet
+}  // namespace duet::motion

@@ -7,7 +7,7 @@
 
 #include "absl/status/status.h"
 
-namespace duet {
+namespace duet::motion {
 
 // Two joints held at a fixed distance, as joint indices.
 struct Bone {
@@ -57,6 +57,6 @@ std::vector<int> BonesFromRoot(const Skeleton& skeleton);
 // Source: paper section 3.4 (bones) and 3.1 (parts). Bones are directed away from the torso.
 Skeleton SbuSkeleton();
 
-}  // namespace duet
+}  // namespace duet::motion
 
 #endif  // DUET_MODEL_MOTION_SKELETON_H_

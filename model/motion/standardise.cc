@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace duet {
+namespace duet::motion {
 namespace {
 
 // The yaw to turn by, given the leader's left-to-right hip direction in the first frame.
@@ -60,4 +60,4 @@ std::vector<Vec3> Standardisation::Invert(const std::vector<Vec3>& standard,
   return world;
 }
 
-}  // namespace duet
+}  // namespace duet::motion

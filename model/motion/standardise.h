@@ -6,7 +6,7 @@
 #include "model/motion/skeleton.h"
 #include "model/motion/vec3.h"
 
-namespace duet {
+namespace duet::motion {
 
 // Which way the yaw of the first frame is taken out.
 enum class YawDirection {
@@ -55,6 +55,6 @@ class Standardisation {
   std::vector<Vec3> roots_;  // [frames] the origin in the world
 };
 
-}  // namespace duet
+}  // namespace duet::motion
 
 #endif  // DUET_MODEL_MOTION_STANDARDISE_H_

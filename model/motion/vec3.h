@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace duet {
+namespace duet::motion {
 
 // A point or direction. Metres in a right-handed, y-up world unless the owner says otherwise.
 struct Vec3 {
@@ -44,6 +44,6 @@ inline Vec3 RotateY(Vec3 a, double radians) {
 // Positions are read and written as flat runs of x, y, z.
 static_assert(sizeof(Vec3) == 3 * sizeof(float), "Vec3 must be three packed floats");
 
-}  // namespace duet
+}  // namespace duet::motion
 
 #endif  // DUET_MODEL_MOTION_VEC3_H_

@@ -6,14 +6,14 @@ namespace duet::network {
 namespace {
 
 // Root, pose relative to the root, and two flags: what is known.
-void WriteStart(const FollowerStart& start, float* out) {
-  Vec3* points = reinterpret_cast<Vec3*>(out);
+void WriteStart(const engine::FollowerStart& start, float* out) {
+  motion::Vec3* points = reinterpret_cast<motion::Vec3*>(out);
   *points++ = start.root;
-  for (const Vec3& joint : start.pose) *points++ = joint - start.root;
+  for (const motion::Vec3& joint : start.pose) *points++ = joint - start.root;
 }
 
-torch::Tensor Starts(const Manifest& manifest, const std::vector<BatchItem>& items) {
-  const int64_t width = StartFeatureCount(manifest.model.skeleton);
+torch::Tensor Starts(const checkpoint::Manifest& manifest, const std::vector<BatchItem>& items) {
+  const int64_t width = checkpoint::StartFeatureCount(manifest.model.skeleton);
   torch::Tensor starts = torch::zeros({static_cast<int64_t>(items.size()), width});
   for (size_t n = 0; n < items.size(); ++n) {
     if (!items[n].start) continue;
@@ -27,15 +27,17 @@ torch::Tensor Starts(const Manifest& manifest, const std::vector<BatchItem>& ite
 
 }  // namespace
 
-BatchItem StandardItem(const Standardisation& frame, const SynthesisWindow& window) {
+BatchItem StandardItem(const motion::Standardisation& frame,
+                       const engine::SynthesisWindow& window) {
   BatchItem item{frame.Apply(window.leader), window.labels, std::nullopt};
   if (!window.start) return item;
-  item.start = FollowerStart{frame.Apply(window.start->root), {}};
-  for (const Vec3& joint : window.start->pose) item.start->pose.push_back(frame.Apply(joint));
+  item.start = engine::FollowerStart{frame.Apply(window.start->root), {}};
+  for (const motion::Vec3& joint : window.start->pose)
+    item.start->pose.push_back(frame.Apply(joint));
   return item;
 }
 
-torch::Tensor PadPositions(const std::vector<const std::vector<Vec3>*>& clips, int joints,
+torch::Tensor PadPositions(const std::vector<const std::vector<motion::Vec3>*>& clips, int joints,
                            int64_t frames) {
   torch::Tensor padded =
       torch::zeros({static_cast<int64_t>(clips.size()), frames, 3 * int64_t{joints}});
@@ -47,17 +49,18 @@ torch::Tensor PadPositions(const std::vector<const std::vector<Vec3>*>& clips, i
   return padded;
 }
 
-std::vector<Vec3> TakePositions(const torch::Tensor& batch, int64_t clip, int64_t frames) {
+std::vector<motion::Vec3> TakePositions(const torch::Tensor& batch, int64_t clip, int64_t frames) {
   const torch::Tensor rows = batch[clip].narrow(0, 0, frames).contiguous();
-  std::vector<Vec3> positions(static_cast<size_t>(rows.numel() / 3));
+  std::vector<motion::Vec3> positions(static_cast<size_t>(rows.numel() / 3));
   std::copy_n(rows.data_ptr<float>(), rows.numel(), &positions.front().x);
   return positions;
 }
 
-GeneratorInput MakeInput(const Manifest& manifest, const std::vector<BatchItem>& items) {
+GeneratorInput MakeInput(const checkpoint::Manifest& manifest,
+                         const std::vector<BatchItem>& items) {
   const int joints = manifest.model.skeleton.joint_count();
   const int64_t classes = manifest.model.class_count();
-  std::vector<const std::vector<Vec3>*> leaders;
+  std::vector<const std::vector<motion::Vec3>*> leaders;
   std::vector<int64_t> lengths;
   for (const BatchItem& item : items) {
     leaders.push_back(&item.leader);

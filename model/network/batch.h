@@ -12,23 +12,24 @@ namespace duet::network {
 
 // One clip as the network sees it, in the standard frame of its leader.
 struct BatchItem {
-  std::vector<Vec3> leader;            // [frames, joints]
-  std::vector<float> labels;           // [frames, classes]
-  std::optional<FollowerStart> start;  // relative to the leader's first root, as all positions
+  std::vector<motion::Vec3> leader;  // [frames, joints]
+  std::vector<float> labels;         // [frames, classes]
+  std::optional<engine::FollowerStart>
+      start;  // relative to the leader's first root, as all positions
 };
 
 // A window in a frame of its leader.
-BatchItem StandardItem(const Standardisation& frame, const SynthesisWindow& window);
+BatchItem StandardItem(const motion::Standardisation& frame, const engine::SynthesisWindow& window);
 
 // Pads clips of different lengths into one batch. Shapes: T is the longest clip's frames.
-GeneratorInput MakeInput(const Manifest& manifest, const std::vector<BatchItem>& items);
+GeneratorInput MakeInput(const checkpoint::Manifest& manifest, const std::vector<BatchItem>& items);
 
 // Positions padded with zeros: [N, T, 3 J].
-torch::Tensor PadPositions(const std::vector<const std::vector<Vec3>*>& clips, int joints,
+torch::Tensor PadPositions(const std::vector<const std::vector<motion::Vec3>*>& clips, int joints,
                            int64_t frames);
 
 // The first `frames` frames of one clip of a batch [N, T, 3 J].
-std::vector<Vec3> TakePositions(const torch::Tensor& batch, int64_t clip, int64_t frames);
+std::vector<motion::Vec3> TakePositions(const torch::Tensor& batch, int64_t clip, int64_t frames);
 
 }  // namespace duet::network
 

@@ -11,7 +11,7 @@ namespace {
 
 const char* const kDirections[] = {"forward", "backward"};
 
-torch::Tensor PartColumns(const BodyPart& part) {
+torch::Tensor PartColumns(const motion::BodyPart& part) {
   std::vector<int64_t> columns;
   for (int joint : part.joints) {
     for (int64_t axis = 0; axis < 3; ++axis) columns.push_back(3 * int64_t{joint} + axis);
@@ -25,7 +25,7 @@ bool EndsWith(const std::string& text, const std::string& end) {
 
 // Uniform in +-1/sqrt(fan in), as LibTorch initialises its own layers; an LSTM's forget gate starts
 // open (bias 1), so that early gradients reach across a clip.
-torch::Tensor InitialValue(const TensorSpec& spec) {
+torch::Tensor InitialValue(const checkpoint::TensorSpec& spec) {
   torch::Tensor value = torch::empty(spec.shape);
   const bool bias = EndsWith(spec.name, "bias");
   const int64_t fan_in = spec.shape.back();
@@ -44,7 +44,7 @@ std::string ModuleName(std::string name) {
 
 }  // namespace
 
-GeneratorImpl::GeneratorImpl(const Manifest& manifest)
+GeneratorImpl::GeneratorImpl(const checkpoint::Manifest& manifest)
     : slices_(SliceShapes(manifest)),
       whole_body_reads_leader_(manifest.generator.variant != "released"),
       reads_labels_(manifest.generator.variant != "unlabelled"),
@@ -53,8 +53,9 @@ GeneratorImpl::GeneratorImpl(const Manifest& manifest)
       has_base_(manifest.generator.base_pose),
       root_column_(3 * int64_t{manifest.model.skeleton.root}),
       encoder_hidden_(manifest.generator.encoder_hidden) {
-  for (const BodyPart& part : manifest.model.skeleton.parts) columns_.push_back(PartColumns(part));
-  for (const TensorSpec& spec : ExpectedTensors(manifest)) {
+  for (const motion::BodyPart& part : manifest.model.skeleton.parts)
+    columns_.push_back(PartColumns(part));
+  for (const checkpoint::TensorSpec& spec : ExpectedTensors(manifest)) {
     tensors_[spec.name] = register_parameter(ModuleName(spec.name), InitialValue(spec));
   }
 }

@@ -30,7 +30,7 @@ struct GeneratorInput {
 class GeneratorImpl : public torch::nn::Module {
  public:
   // Randomly initialised, or filled from a checkpoint with LoadParameters.
-  explicit GeneratorImpl(const Manifest& manifest);
+  explicit GeneratorImpl(const checkpoint::Manifest& manifest);
 
   torch::Tensor forward(const GeneratorInput& input);
 
@@ -69,7 +69,7 @@ class GeneratorImpl : public torch::nn::Module {
   torch::Tensor Base(const GeneratorInput& input) const;
   torch::Tensor Stack(const std::string& parameter) const;
 
-  std::vector<SliceShape> slices_;
+  std::vector<checkpoint::SliceShape> slices_;
   std::vector<torch::Tensor> columns_;  // of each part in the leader's [3 J]
   std::map<std::string, torch::Tensor> tensors_;
   bool whole_body_reads_leader_;

@@ -30,9 +30,9 @@ torch::Tensor Length(const torch::Tensor& vectors) {
 }
 
 // [N, T, B]
-torch::Tensor BoneLengths(const torch::Tensor& motion, const std::vector<Bone>& bones) {
+torch::Tensor BoneLengths(const torch::Tensor& motion, const std::vector<motion::Bone>& bones) {
   std::vector<int64_t> parents, children;
-  for (const Bone& bone : bones) {
+  for (const motion::Bone& bone : bones) {
     parents.push_back(bone.parent);
     children.push_back(bone.child);
   }
@@ -66,7 +66,7 @@ torch::Tensor NormLoss(const torch::Tensor& predicted, const torch::Tensor& real
 }
 
 torch::Tensor BoneLoss(const torch::Tensor& predicted, const torch::Tensor& real,
-                       const torch::Tensor& lengths, const std::vector<Bone>& bones) {
+                       const torch::Tensor& lengths, const std::vector<motion::Bone>& bones) {
   // Padding has bones of length 0: divide by 1 there instead.
   const torch::Tensor mask = Mask(real, lengths);
   const torch::Tensor wanted = BoneLengths(real, bones);

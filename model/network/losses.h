@@ -27,7 +27,7 @@ torch::Tensor NormLoss(const torch::Tensor& predicted, const torch::Tensor& real
 // Mean over the valid frames of sum over the bones of |l^ - l| / l.
 // Source: paper section 3.4 (L_b).
 torch::Tensor BoneLoss(const torch::Tensor& predicted, const torch::Tensor& real,
-                       const torch::Tensor& lengths, const std::vector<Bone>& bones);
+                       const torch::Tensor& lengths, const std::vector<motion::Bone>& bones);
 
 enum class ContinuityForm {
   kHinge,      // sum_t [ |x^_t - x^_{t-1}| - |x^_t - x^_{t-gap}| + margin ]_+ (YXN17; the paper)

@@ -14,10 +14,10 @@ std::string ShapeText(at::IntArrayRef shape) {
 
 }  // namespace
 
-absl::Status LoadParameters(const Checkpoint& checkpoint, Generator& generator) {
+absl::Status LoadParameters(const checkpoint::Checkpoint& checkpoint, Generator& generator) {
   torch::NoGradGuard no_grad;
   std::map<std::string, torch::Tensor> wanted = generator->tensors();
-  for (const Tensor& tensor : checkpoint.tensors) {
+  for (const checkpoint::Tensor& tensor : checkpoint.tensors) {
     const auto it = wanted.find(tensor.name);
     if (it == wanted.end()) {
       return absl::InvalidArgumentError(absl::StrCat("tensor \"", tensor.name, "\" is unknown"));
@@ -35,9 +35,10 @@ absl::Status LoadParameters(const Checkpoint& checkpoint, Generator& generator) 
       absl::StrCat("tensor \"", wanted.begin()->first, "\" is missing"));
 }
 
-std::vector<Tensor> StoreParameters(const Manifest& manifest, const Generator& generator) {
-  std::vector<Tensor> tensors;
-  for (const TensorSpec& spec : ExpectedTensors(manifest)) {
+std::vector<checkpoint::Tensor> StoreParameters(const checkpoint::Manifest& manifest,
+                                                const Generator& generator) {
+  std::vector<checkpoint::Tensor> tensors;
+  for (const checkpoint::TensorSpec& spec : ExpectedTensors(manifest)) {
     const torch::Tensor value = generator->tensors().at(spec.name).detach().contiguous();
     const float* data = value.data_ptr<float>();
     tensors.push_back({spec.name, spec.shape, std::vector<float>(data, data + value.numel())});

@@ -9,10 +9,11 @@ namespace duet::network {
 
 // Copies a checkpoint's tensors into a generator made from the same manifest. INVALID_ARGUMENT
 // names a tensor that is missing or of another shape.
-absl::Status LoadParameters(const Checkpoint& checkpoint, Generator& generator);
+absl::Status LoadParameters(const checkpoint::Checkpoint& checkpoint, Generator& generator);
 
 // A generator's parameters, in the order of ExpectedTensors.
-std::vector<Tensor> StoreParameters(const Manifest& manifest, const Generator& generator);
+std::vector<checkpoint::Tensor> StoreParameters(const checkpoint::Manifest& manifest,
+                                                const Generator& generator);
 
 }  // namespace duet::network
 

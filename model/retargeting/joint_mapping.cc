@@ -10,10 +10,10 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
-#include "model/retargeting/joint_names.h"
 #include "model/base/text.h"
+#include "model/retargeting/joint_names.h"
 
-namespace duet {
+namespace duet::retargeting {
 namespace {
 
 constexpr std::size_t kMostNamesInError = 60;
@@ -38,8 +38,8 @@ JointSource Mix(std::initializer_list<std::pair<const JointSource*, float>> part
   return mixed;
 }
 
-Vec3 Evaluate(const JointSource& source, const Vec3* pose) {
-  Vec3 position;
+motion::Vec3 Evaluate(const JointSource& source, const motion::Vec3* pose) {
+  motion::Vec3 position;
   for (const JointSource::Term& term : source.terms) position += pose[term.joint] * term.weight;
   return position;
 }
@@ -47,7 +47,7 @@ Vec3 Evaluate(const JointSource& source, const Vec3* pose) {
 class Mapper {
  public:
   Mapper(absl::string_view source, const std::vector<std::string>& names,
-         const std::vector<Vec3>& first_pose, const Skeleton& skeleton)
+         const std::vector<motion::Vec3>& first_pose, const motion::Skeleton& skeleton)
       : source_(source), names_(names), pose_(first_pose), skeleton_(skeleton) {
     found_.resize(skeleton.joint_names.size());
     overridden_.resize(skeleton.joint_names.size(), false);
@@ -60,7 +60,7 @@ class Mapper {
       const int joint = skeleton_.Find(target);
       if (joint < 0) {
         return absl::InvalidArgumentError(
-            absl::StrCat("joint map: came target ", Quoted(target),
+            absl::StrCat("joint map: came target ", base::Quoted(target),
                          ", wanted one of: ", absl::StrJoin(skeleton_.joint_names, ", ")));
       }
       const int index = FindExactly(name);
@@ -169,7 +169,7 @@ class Mapper {
 
   // The unused joint nearest to `point` and within `reach` of it for which `fits` holds, or -1.
   template <typename Fits>
-  int FindNearest(Vec3 point, float reach, Fits fits) const {
+  int FindNearest(motion::Vec3 point, float reach, Fits fits) const {
     int best = -1;
     for (std::size_t i = 0; i < parsed_.size(); ++i) {
       if (used_[i] || !fits(parsed_[i]) || Distance(pose_[i], point) > reach) continue;
@@ -218,7 +218,7 @@ class Mapper {
     const int head = skeleton_.Find("head"), neck = skeleton_.Find("neck");
     if (!Found(head) || overridden_[static_cast<size_t>(head)] || !HasSpineEnds()) return;
     const JointSource base = SourceOf(head);
-    const Vec3 at = PositionOf(base);
+    const motion::Vec3 at = PositionOf(base);
     for (const char* end : {"headend", "headtopend", "headtop"}) {
       const int index = FindUnused({BodySide::kMiddle, end});
       if (index < 0) continue;
@@ -250,12 +250,14 @@ class Mapper {
         absl::StrCat(target, ": ", names_[static_cast<size_t>(index)], " (", reason, ")"));
   }
 
-  Vec3 PositionOf(const JointSource& source) const { return Evaluate(source, pose_.data()); }
+  motion::Vec3 PositionOf(const JointSource& source) const {
+    return Evaluate(source, pose_.data());
+  }
 
   absl::string_view source_;
   const std::vector<std::string>& names_;
-  const std::vector<Vec3>& pose_;
-  const Skeleton& skeleton_;
+  const std::vector<motion::Vec3>& pose_;
+  const motion::Skeleton& skeleton_;
   std::vector<ParsedJointName> parsed_;            // [names]
   std::vector<bool> used_;                         // [names]
   std::vector<std::optional<JointSource>> found_;  // [skeleton joints]
@@ -266,7 +268,8 @@ class Mapper {
 }  // namespace
 
 absl::StatusOr<JointMap> MapJoints(absl::string_view source, const std::vector<std::string>& names,
-                                   const std::vector<Vec3>& first_pose, const Skeleton& skeleton,
+                                   const std::vector<motion::Vec3>& first_pose,
+                                   const motion::Skeleton& skeleton,
                                    const JointOverrides& overrides) {
   Mapper mapper(source, names, first_pose, skeleton);
   absl::Status status = mapper.ApplyOverrides(overrides);
@@ -275,11 +278,11 @@ absl::StatusOr<JointMap> MapJoints(absl::string_view source, const std::vector<s
   return mapper.Finish();
 }
 
-std::vector<Vec3> ApplyJointMap(const JointMap& map, const Vec3* pose) {
-  std::vector<Vec3> mapped;
+std::vector<motion::Vec3> ApplyJointMap(const JointMap& map, const motion::Vec3* pose) {
+  std::vector<motion::Vec3> mapped;
   mapped.reserve(map.sources.size());
   for (const JointSource& source : map.sources) mapped.push_back(Evaluate(source, pose));
   return mapped;
 }
 
-}  // namespace duet
+}  // namespace duet::retargeting

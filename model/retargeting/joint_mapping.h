@@ -10,7 +10,7 @@
 #include "model/motion/skeleton.h"
 #include "model/motion/vec3.h"
 
-namespace duet {
+namespace duet::retargeting {
 
 // Joints that the user names: skeleton joint -> joint of the file. They win over every rule.
 using JointOverrides = std::map<std::string, std::string>;
@@ -43,12 +43,13 @@ struct JointMap {
 // Errors: INVALID_ARGUMENT naming `source`, the skeleton's joints without a source, the names that
 //         the file has, or an override that names no joint of the skeleton or of the file.
 absl::StatusOr<JointMap> MapJoints(absl::string_view source, const std::vector<std::string>& names,
-                                   const std::vector<Vec3>& first_pose, const Skeleton& skeleton,
+                                   const std::vector<motion::Vec3>& first_pose,
+                                   const motion::Skeleton& skeleton,
                                    const JointOverrides& overrides = {});
 
 // A frame of the file's joints as one of the skeleton's. [names] -> [skeleton joints]
-std::vector<Vec3> ApplyJointMap(const JointMap& map, const Vec3* pose);
+std::vector<motion::Vec3> ApplyJointMap(const JointMap& map, const motion::Vec3* pose);
 
-}  // namespace duet
+}  // namespace duet::retargeting
 
 #endif  // DUET_MODEL_RETARGETING_JOINT_MAPPING_H_

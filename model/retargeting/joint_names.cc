@@ -8,7 +8,7 @@
 #include "absl/strings/str_join.h"
 #include "absl/strings/strip.h"
 
-namespace duet {
+namespace duet::retargeting {
 namespace {
 
 struct AliasRow {
@@ -138,4 +138,4 @@ bool IsSpine(const ParsedJointName& name) {
   return false;
 }
 
-}  // namespace duet
+}  // namespace duet::retargeting

@@ -6,7 +6,7 @@
 
 #include "absl/strings/string_view.h"
 
-namespace duet {
+namespace duet::retargeting {
 
 enum class BodySide { kMiddle, kLeft, kRight };
 
@@ -30,6 +30,6 @@ std::vector<std::string> JointAliases(const std::string& base);
 bool IsSpine(const ParsedJointName& name);
 bool IsNeck(const ParsedJointName& name);
 
-}  // namespace duet
+}  // namespace duet::retargeting
 
 #endif  // DUET_MODEL_RETARGETING_JOINT_NAMES_H_

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace duet {
+namespace duet::retargeting {
 namespace {
 
 // Decides a branch's turn only where its neighbours leave it open (all on one line).
@@ -21,7 +21,7 @@ Vec3d HingeAxis(Vec3d rest_direction) {
 }
 
 Quaternion FitBranch(const RigJoint& joint, Quaternion to_parent, Quaternion previous,
-                     const Vec3* positions) {
+                     const motion::Vec3* positions) {
   std::vector<Correspondence> shape;
   double size = 0;
   for (std::size_t k = 0; k < joint.neighbours.size(); ++k) {
@@ -37,7 +37,7 @@ Quaternion FitBranch(const RigJoint& joint, Quaternion to_parent, Quaternion pre
 
 PoseFitter::PoseFitter(const Rig& rig) : rig_(rig) { pose_.rotations.resize(rig.joints.size()); }
 
-const RigPose& PoseFitter::Fit(const Vec3* positions) {
+const RigPose& PoseFitter::Fit(const motion::Vec3* positions) {
   const std::size_t count = rig_.joints.size();
   std::vector<Vec3d> stands_at(count);
   std::vector<Quaternion> world(count);
@@ -62,7 +62,7 @@ const RigPose& PoseFitter::Fit(const Vec3* positions) {
 }
 
 Quaternion PoseFitter::FitAim(const RigJoint& joint, Vec3d stands_at, Quaternion to_parent,
-                              Quaternion previous, const Vec3* positions) const {
+                              Quaternion previous, const motion::Vec3* positions) const {
   const Vec3d target = ToDouble(positions[joint.aim]);
   const Vec3d direction =
       Unit(Rotate(to_parent, target - stands_at), Rotate(previous, joint.rest_direction));
@@ -90,4 +90,4 @@ Quaternion PoseFitter::FitBend(const RigJoint& joint, Vec3d direction, Vec3d nex
   return ShortestArc(Rotate(fit, joint.rest_direction), direction, axis) * fit;
 }
 
-}  // namespace duet
+}  // namespace duet::retargeting

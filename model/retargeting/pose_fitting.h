@@ -3,11 +3,11 @@
 
 #include <vector>
 
+#include "model/motion/vec3.h"
 #include "model/retargeting/rig.h"
 #include "model/retargeting/rotation.h"
-#include "model/motion/vec3.h"
 
-namespace duet {
+namespace duet::retargeting {
 
 // One frame as angles: each joint's rotation in its parent's frame.
 struct RigPose {
@@ -26,11 +26,11 @@ class PoseFitter {
   // `rig` outlives the fitter.
   explicit PoseFitter(const Rig& rig);
   // positions: [skeleton joints], metres.
-  const RigPose& Fit(const Vec3* positions);
+  const RigPose& Fit(const motion::Vec3* positions);
 
  private:
   Quaternion FitAim(const RigJoint& joint, Vec3d stands_at, Quaternion to_parent,
-                    Quaternion previous, const Vec3* positions) const;
+                    Quaternion previous, const motion::Vec3* positions) const;
   Quaternion FitBend(const RigJoint& joint, Vec3d direction, Vec3d next_bone, Quaternion swing,
                      Quaternion previous) const;
 
@@ -39,6 +39,6 @@ class PoseFitter {
   RigPose pose_;
 };
 
-}  // namespace duet
+}  // namespace duet::retargeting
 
 #endif  // DUET_MODEL_RETARGETING_POSE_FITTING_H_

@@ -6,7 +6,7 @@
 
 #include "absl/strings/str_cat.h"
 
-namespace duet {
+namespace duet::retargeting {
 namespace {
 
 constexpr Vec3d kRight = {-1, 0, 0}, kUp = {0, 1, 0}, kDown = {0, -1, 0}, kForward = {0, 0, 1};
@@ -15,10 +15,10 @@ constexpr double kEndSiteLength = 0.35;
 
 class RigBuilder {
  public:
-  RigBuilder(const Skeleton& skeleton, const Clip& clip)
+  RigBuilder(const motion::Skeleton& skeleton, const motion::Clip& clip)
       : skeleton_(skeleton), clip_(clip), parents_(skeleton.Parents()) {
     children_.resize(parents_.size());
-    for (const Bone& bone : skeleton.bones) {
+    for (const motion::Bone& bone : skeleton.bones) {
       children_[static_cast<size_t>(bone.parent)].push_back(bone.child);
     }
     FindTrunkAxes();
@@ -174,8 +174,8 @@ class RigBuilder {
     AddJoint(child, index, direction * MedianLength(joint, child), LimbDirection(child, direction));
   }
 
-  const Skeleton& skeleton_;
-  const Clip& clip_;
+  const motion::Skeleton& skeleton_;
+  const motion::Clip& clip_;
   std::vector<int> parents_;
   std::vector<std::vector<int>> children_;
   std::vector<Quaternion> trunk_axes_;  // [frames]
@@ -184,8 +184,8 @@ class RigBuilder {
 
 }  // namespace
 
-Rig MakeRig(const Skeleton& skeleton, const Clip& clip) {
+Rig MakeRig(const motion::Skeleton& skeleton, const motion::Clip& clip) {
   return RigBuilder(skeleton, clip).Build();
 }
 
-}  // namespace duet
+}  // namespace duet::retargeting

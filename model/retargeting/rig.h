@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "model/retargeting/rotation.h"
 #include "model/motion/clip.h"
 #include "model/motion/skeleton.h"
+#include "model/retargeting/rotation.h"
 
-namespace duet {
+namespace duet::retargeting {
 
 // A joint of a rig: a skeleton's joint, or a helper that stands on a joint with several children
 // and points at one of them, so that hips, shoulders and neck may move against each other.
@@ -48,8 +48,8 @@ struct Rig {
 };
 
 // `clip` has the skeleton's joints, at least one frame and finite positions.
-Rig MakeRig(const Skeleton& skeleton, const Clip& clip);
+Rig MakeRig(const motion::Skeleton& skeleton, const motion::Clip& clip);
 
-}  // namespace duet
+}  // namespace duet::retargeting
 
 #endif  // DUET_MODEL_RETARGETING_RIG_H_

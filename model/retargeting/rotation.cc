@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-namespace duet {
+namespace duet::retargeting {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -181,4 +181,4 @@ EulerZxy ToEuler(Quaternion q, EulerZxy previous) {
   return SquaredDifference(a, previous) <= SquaredDifference(b, previous) ? a : b;
 }
 
-}  // namespace duet
+}  // namespace duet::retargeting

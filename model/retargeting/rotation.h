@@ -8,7 +8,7 @@
 
 // Rotations in double precision: joint angles accumulate along a chain.
 
-namespace duet {
+namespace duet::retargeting {
 
 struct Vec3d {
   double x = 0, y = 0, z = 0;
@@ -20,8 +20,8 @@ struct Vec3d {
   Vec3d& operator+=(Vec3d o) { return *this = *this + o; }
 };
 
-inline Vec3d ToDouble(Vec3 a) { return {a.x, a.y, a.z}; }
-inline Vec3 ToFloat(Vec3d a) {
+inline Vec3d ToDouble(motion::Vec3 a) { return {a.x, a.y, a.z}; }
+inline motion::Vec3 ToFloat(Vec3d a) {
   return {static_cast<float>(a.x), static_cast<float>(a.y), static_cast<float>(a.z)};
 }
 inline double Dot(Vec3d a, Vec3d b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
@@ -78,6 +78,6 @@ Quaternion FromEuler(EulerZxy angles);
 // a smooth motion has smooth angles.
 EulerZxy ToEuler(Quaternion q, EulerZxy previous);
 
-}  // namespace duet
+}  // namespace duet::retargeting
 
 #endif  // DUET_MODEL_RETARGETING_ROTATION_H_

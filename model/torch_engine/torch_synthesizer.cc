@@ -13,53 +13,55 @@
 #include "model/network/batch.h"
 #include "model/network/parameters.h"
 
-namespace duet {
+namespace duet::torch_engine {
 namespace {
 
-class TorchSynthesizer : public Synthesizer {
+class TorchSynthesizer : public engine::Synthesizer {
  public:
-  TorchSynthesizer(Manifest manifest, network::Generator generator,
+  TorchSynthesizer(checkpoint::Manifest manifest, network::Generator generator,
                    const TorchSynthesizerOptions& options)
       : manifest_(std::move(manifest)), generator_(std::move(generator)), options_(options) {}
 
-  const ModelDescription& description() const override { return manifest_.model; }
+  const engine::ModelDescription& description() const override { return manifest_.model; }
 
-  std::vector<WindowResult> Synthesize(
-      absl::Span<const SynthesisWindow* const> windows) const override {
+  std::vector<engine::WindowResult> Synthesize(
+      absl::Span<const engine::SynthesisWindow* const> windows) const override {
     if (windows.empty()) return {};
     // LibTorch reports by exception: this is where they stop.
     try {
       return Run(windows);
     } catch (const std::exception& error) {
-      return std::vector<WindowResult>(
+      return std::vector<engine::WindowResult>(
           windows.size(), absl::InternalError(absl::StrCat("the network failed: ", error.what())));
     }
   }
 
  private:
-  std::vector<WindowResult> Run(absl::Span<const SynthesisWindow* const> windows) const {
+  std::vector<engine::WindowResult> Run(
+      absl::Span<const engine::SynthesisWindow* const> windows) const {
     torch::NoGradGuard no_grad;
-    std::vector<Standardisation> standards;
+    std::vector<motion::Standardisation> standards;
     std::vector<network::BatchItem> items;
-    for (const SynthesisWindow* window : windows) {
+    for (const engine::SynthesisWindow* window : windows) {
       standards.push_back(WindowFrame(manifest_.model.skeleton, *window, OriginOf(manifest_)));
       items.push_back(network::StandardItem(standards.back(), *window));
     }
     const torch::Tensor followers = generator_->forward(network::MakeInput(manifest_, items));
-    std::vector<WindowResult> results;
+    std::vector<engine::WindowResult> results;
     for (size_t n = 0; n < windows.size(); ++n) {
       results.push_back(Take(followers, n, *windows[n], standards[n]));
     }
     return results;
   }
 
-  WindowResult Take(const torch::Tensor& followers, size_t clip, const SynthesisWindow& window,
-                    const Standardisation& standard) const {
-    const Skeleton& skeleton = manifest_.model.skeleton;
+  engine::WindowResult Take(const torch::Tensor& followers, size_t clip,
+                            const engine::SynthesisWindow& window,
+                            const motion::Standardisation& standard) const {
+    const motion::Skeleton& skeleton = manifest_.model.skeleton;
     const int64_t frames = static_cast<int64_t>(window.leader.size()) / skeleton.joint_count();
-    std::vector<Vec3> follower =
+    std::vector<motion::Vec3> follower =
         standard.Invert(network::TakePositions(followers, static_cast<int64_t>(clip), frames));
-    for (const Vec3& point : follower) {
+    for (const motion::Vec3& point : follower) {
       if (!IsFinite(point)) return absl::InternalError("the network's result is not finite");
     }
     if (options_.keep_limb_lengths) KeepLimbLengths(window, &follower);
@@ -67,20 +69,22 @@ class TorchSynthesizer : public Synthesizer {
     return follower;
   }
 
-  void KeepLimbLengths(const SynthesisWindow& window, std::vector<Vec3>* follower) const {
-    const Skeleton& skeleton = manifest_.model.skeleton;
+  void KeepLimbLengths(const engine::SynthesisWindow& window,
+                       std::vector<motion::Vec3>* follower) const {
+    const motion::Skeleton& skeleton = manifest_.model.skeleton;
     const bool has_pose = window.start && !window.start->pose.empty();
-    const std::vector<Vec3>& owner = has_pose ? window.start->pose : window.leader;
+    const std::vector<motion::Vec3>& owner = has_pose ? window.start->pose : window.leader;
     SetBoneLengths(skeleton, MedianBoneLengths(skeleton, owner), follower);
   }
 
-  void ShareFloor(const std::vector<Vec3>& leader, std::vector<Vec3>* follower) const {
-    const Vec3 lift{0, LowestFoot(leader) - LowestFoot(*follower), 0};
-    for (Vec3& point : *follower) point += lift;
+  void ShareFloor(const std::vector<motion::Vec3>& leader,
+                  std::vector<motion::Vec3>* follower) const {
+    const motion::Vec3 lift{0, LowestFoot(leader) - LowestFoot(*follower), 0};
+    for (motion::Vec3& point : *follower) point += lift;
   }
 
-  float LowestFoot(const std::vector<Vec3>& positions) const {
-    const Skeleton& skeleton = manifest_.model.skeleton;
+  float LowestFoot(const std::vector<motion::Vec3>& positions) const {
+    const motion::Skeleton& skeleton = manifest_.model.skeleton;
     float lowest = std::numeric_limits<float>::infinity();
     for (size_t t = 0; t < positions.size(); t += skeleton.joint_names.size()) {
       for (const int foot : {skeleton.left_foot, skeleton.right_foot}) {
@@ -90,15 +94,15 @@ class TorchSynthesizer : public Synthesizer {
     return lowest;
   }
 
-  Manifest manifest_;
+  checkpoint::Manifest manifest_;
   mutable network::Generator generator_;  // forward is not const; it changes nothing
   TorchSynthesizerOptions options_;
 };
 
 }  // namespace
 
-absl::StatusOr<std::unique_ptr<Synthesizer>> MakeTorchSynthesizer(
-    const Checkpoint& checkpoint, const TorchSynthesizerOptions& options) {
+absl::StatusOr<std::unique_ptr<engine::Synthesizer>> MakeTorchSynthesizer(
+    const checkpoint::Checkpoint& checkpoint, const TorchSynthesizerOptions& options) {
   network::Generator generator(checkpoint.manifest);
   absl::Status status = network::LoadParameters(checkpoint, generator);
   if (!status.ok()) return status;
@@ -106,20 +110,21 @@ absl::StatusOr<std::unique_ptr<Synthesizer>> MakeTorchSynthesizer(
   return std::make_unique<TorchSynthesizer>(checkpoint.manifest, std::move(generator), options);
 }
 
-absl::StatusOr<std::unique_ptr<Synthesizer>> LoadTorchSynthesizer(
+absl::StatusOr<std::unique_ptr<engine::Synthesizer>> LoadTorchSynthesizer(
     const std::filesystem::path& folder, const TorchSynthesizerOptions& options) {
-  absl::StatusOr<Checkpoint> checkpoint = ReadCheckpoint(folder);
+  absl::StatusOr<checkpoint::Checkpoint> checkpoint = checkpoint::ReadCheckpoint(folder);
   if (!checkpoint.ok()) return checkpoint.status();
   return MakeTorchSynthesizer(*checkpoint, options);
 }
 
-absl::StatusOr<std::vector<std::unique_ptr<Synthesizer>>> LoadEmbeddedSynthesizers(
+absl::StatusOr<std::vector<std::unique_ptr<engine::Synthesizer>>> LoadEmbeddedSynthesizers(
     const TorchSynthesizerOptions& options) {
-  std::vector<std::unique_ptr<Synthesizer>> synthesizers;
-  for (const EmbeddedCheckpoint& embedded : EmbeddedCheckpoints()) {
-    absl::StatusOr<Checkpoint> checkpoint = ParseCheckpoint(embedded.manifest, embedded.weights);
+  std::vector<std::unique_ptr<engine::Synthesizer>> synthesizers;
+  for (const embedded::EmbeddedCheckpoint& embedded : embedded::EmbeddedCheckpoints()) {
+    absl::StatusOr<checkpoint::Checkpoint> checkpoint =
+        checkpoint::ParseCheckpoint(embedded.manifest, embedded.weights);
     if (!checkpoint.ok()) return checkpoint.status();
-    absl::StatusOr<std::unique_ptr<Synthesizer>> synthesizer =
+    absl::StatusOr<std::unique_ptr<engine::Synthesizer>> synthesizer =
         MakeTorchSynthesizer(*checkpoint, options);
     if (!synthesizer.ok()) return synthesizer.status();
     synthesizers.push_back(*std::move(synthesizer));
@@ -133,4 +138,4 @@ void SetTorchThreads(int threads) {
   if (torch::get_num_interop_threads() != 1) torch::set_num_interop_threads(1);
 }
 
-}  // namespace duet
+}  // namespace duet::torch_engine

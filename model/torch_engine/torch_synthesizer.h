@@ -9,7 +9,7 @@
 #include "model/checkpoint/checkpoint.h"
 #include "model/engine/synthesizer.h"
 
-namespace duet {
+namespace duet::torch_engine {
 
 struct TorchSynthesizerOptions {
   // The network works on positions, and the limbs of captured people change their lengths: give the
@@ -22,15 +22,15 @@ struct TorchSynthesizerOptions {
 
 // A synthesizer that runs the generator of a checkpoint with LibTorch on the CPU.
 // Threads: Synthesize is safe to call concurrently.
-absl::StatusOr<std::unique_ptr<Synthesizer>> MakeTorchSynthesizer(
-    const Checkpoint& checkpoint, const TorchSynthesizerOptions& options = {});
+absl::StatusOr<std::unique_ptr<engine::Synthesizer>> MakeTorchSynthesizer(
+    const checkpoint::Checkpoint& checkpoint, const TorchSynthesizerOptions& options = {});
 
 // Reads a checkpoint folder (see ReadCheckpoint for the errors).
-absl::StatusOr<std::unique_ptr<Synthesizer>> LoadTorchSynthesizer(
+absl::StatusOr<std::unique_ptr<engine::Synthesizer>> LoadTorchSynthesizer(
     const std::filesystem::path& folder, const TorchSynthesizerOptions& options = {});
 
 // The checkpoints linked into the program, the default model first.
-absl::StatusOr<std::vector<std::unique_ptr<Synthesizer>>> LoadEmbeddedSynthesizers(
+absl::StatusOr<std::vector<std::unique_ptr<engine::Synthesizer>>> LoadEmbeddedSynthesizers(
     const TorchSynthesizerOptions& options = {});
 
 // LibTorch's and OpenBLAS's threads for one call of Synthesize. Once, at start, before any other
@@ -38,6 +38,6 @@ absl::StatusOr<std::vector<std::unique_ptr<Synthesizer>>> LoadEmbeddedSynthesize
 // that contend are several times slower than one.
 void SetTorchThreads(int threads);
 
-}  // namespace duet
+}  // namespace duet::torch_engine
 
 #endif  // DUET_MODEL_TORCH_ENGINE_TORCH_SYNTHESIZER_H_

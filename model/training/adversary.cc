@@ -3,7 +3,7 @@
 #include "absl/strings/str_cat.h"
 #include "model/network/losses.h"
 
-namespace duet {
+namespace duet::training {
 namespace {
 
 using network::Discriminator;
@@ -31,20 +31,21 @@ class Frozen {
 
 }  // namespace
 
-Adversary::Adversary(const TrainingOptions& options, const Manifest& manifest, int64_t steps)
+Adversary::Adversary(const TrainingOptions& options, const checkpoint::Manifest& manifest,
+                     int64_t steps)
     : options_(options) {
   Add("discriminator", true, manifest, steps);
   if (options.discriminator.binary) Add("binary_discriminator", false, manifest, steps);
 }
 
-void Adversary::Add(const std::string& name, bool class_aware, const Manifest& manifest,
+void Adversary::Add(const std::string& name, bool class_aware, const checkpoint::Manifest& manifest,
                     int64_t steps) {
   network::DiscriminatorOptions sizes;
   sizes.input = 3 * manifest.model.skeleton.joint_count();
   sizes.window_frames = manifest.model.window_frames;
   sizes.hidden = options_.discriminator.hidden;
   sizes.outputs = class_aware ? manifest.model.class_count() + 1 : 2;
-  Discriminator network(sizes);
+  network::Discriminator network(sizes);
   network->set_dropout(options_.discriminator.dropout);
   auto optimiser =
       std::make_unique<Optimiser>(OptimiserOptions(options_), network->parameters(), steps);
@@ -103,4 +104,4 @@ std::vector<std::pair<std::string, torch::optim::Optimizer*>> Adversary::Optimis
   return optimisers;
 }
 
-}  // namespace duet
+}  // namespace duet::training

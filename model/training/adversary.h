@@ -14,7 +14,7 @@
 #include "model/training/options.h"
 #include "model/training/sampler.h"
 
-namespace duet {
+namespace duet::training {
 
 // What the generator is trained against: the class-aware discriminator and, where the options ask
 // for it, a binary one beside it that tells real from synthesised alone (MSHL22).
@@ -24,7 +24,7 @@ namespace duet {
 class Adversary {
  public:
   // Requires losses.adversarial above 0. `steps` of the whole run, for the schedule.
-  Adversary(const TrainingOptions& options, const Manifest& manifest, int64_t steps);
+  Adversary(const TrainingOptions& options, const checkpoint::Manifest& manifest, int64_t steps);
 
   // One step of every discriminator on captured and synthesised followers [N, T, 3 J]. Returns the
   // sum of their losses.
@@ -46,12 +46,13 @@ class Adversary {
     std::unique_ptr<Optimiser> optimiser;
   };
 
-  void Add(const std::string& name, bool class_aware, const Manifest& manifest, int64_t steps);
+  void Add(const std::string& name, bool class_aware, const checkpoint::Manifest& manifest,
+           int64_t steps);
 
   const TrainingOptions& options_;
   std::vector<Judge> judges_;
 };
 
-}  // namespace duet
+}  // namespace duet::training
 
 #endif  // DUET_MODEL_TRAINING_ADVERSARY_H_

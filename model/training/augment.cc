@@ -6,7 +6,7 @@
 #include "absl/strings/str_replace.h"
 #include "model/motion/resample.h"
 
-namespace duet {
+namespace duet::training {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -14,39 +14,39 @@ constexpr int kMinCropFrames = 10;  // of the shortest captures
 
 // Scales both people about the leader's root, each by a factor of its own, so that the distance
 // between them scales with the follower.
-void ScaleBodies(int root, double leader_scale, double follower_scale, ClipPair* pair) {
+void ScaleBodies(int root, double leader_scale, double follower_scale, motion::ClipPair* pair) {
   const int joints = pair->leader.joint_count();
   for (int t = 0; t < pair->leader.frame_count(); ++t) {
-    const Vec3 centre = pair->leader.at(t, root);
+    const motion::Vec3 centre = pair->leader.at(t, root);
     for (int j = 0; j < joints; ++j) {
-      Vec3& leader = pair->leader.at(t, j);
-      Vec3& follower = pair->follower.at(t, j);
+      motion::Vec3& leader = pair->leader.at(t, j);
+      motion::Vec3& follower = pair->follower.at(t, j);
       leader = centre + (leader - centre) * static_cast<float>(leader_scale);
       follower = centre + (follower - centre) * static_cast<float>(follower_scale);
     }
   }
 }
 
-void ShiftFollower(Vec3 by, ClipPair* pair) {
-  for (Vec3& point : pair->follower.positions) point += by;
+void ShiftFollower(motion::Vec3 by, motion::ClipPair* pair) {
+  for (motion::Vec3& point : pair->follower.positions) point += by;
 }
 
-void Turn(double radians, ClipPair* pair) {
-  for (Vec3& point : pair->leader.positions) point = RotateY(point, radians);
-  for (Vec3& point : pair->follower.positions) point = RotateY(point, radians);
+void Turn(double radians, motion::ClipPair* pair) {
+  for (motion::Vec3& point : pair->leader.positions) point = RotateY(point, radians);
+  for (motion::Vec3& point : pair->follower.positions) point = RotateY(point, radians);
 }
 
 // About the vertical through the root's place in the first frame: captured hips face up to 30
 // degrees off the partner, those of a clean leader do not.
-void TurnLeader(int root, double radians, Clip* leader) {
-  const Vec3 centre = leader->at(0, root);
-  for (Vec3& point : leader->positions) point = centre + RotateY(point - centre, radians);
+void TurnLeader(int root, double radians, motion::Clip* leader) {
+  const motion::Vec3 centre = leader->at(0, root);
+  for (motion::Vec3& point : leader->positions) point = centre + RotateY(point - centre, radians);
 }
 
 // A body of slightly other build: the network cannot tell a clip by its leader's.
-void AddBodyNoise(double deviation, EpochRandom* random, Clip* clip) {
-  std::vector<Vec3> offsets(static_cast<size_t>(clip->joint_count()));
-  for (Vec3& offset : offsets) {
+void AddBodyNoise(double deviation, EpochRandom* random, motion::Clip* clip) {
+  std::vector<motion::Vec3> offsets(static_cast<size_t>(clip->joint_count()));
+  for (motion::Vec3& offset : offsets) {
     offset = {static_cast<float>(random->Normal(deviation)),
               static_cast<float>(random->Normal(deviation)),
               static_cast<float>(random->Normal(deviation))};
@@ -56,20 +56,20 @@ void AddBodyNoise(double deviation, EpochRandom* random, Clip* clip) {
   }
 }
 
-void AddNoise(double deviation, EpochRandom* random, Clip* clip) {
-  for (Vec3& point : clip->positions) {
-    point += Vec3{static_cast<float>(random->Normal(deviation)),
-                  static_cast<float>(random->Normal(deviation)),
-                  static_cast<float>(random->Normal(deviation))};
+void AddNoise(double deviation, EpochRandom* random, motion::Clip* clip) {
+  for (motion::Vec3& point : clip->positions) {
+    point += motion::Vec3{static_cast<float>(random->Normal(deviation)),
+                          static_cast<float>(random->Normal(deviation)),
+                          static_cast<float>(random->Normal(deviation))};
   }
 }
 
-void Keep(int first, int frames, Clip* clip) {
+void Keep(int first, int frames, motion::Clip* clip) {
   const auto begin = clip->positions.begin() + std::ptrdiff_t{first} * clip->joint_count();
   clip->positions = {begin, begin + std::ptrdiff_t{frames} * clip->joint_count()};
 }
 
-void Crop(EpochRandom* random, ClipPair* pair) {
+void Crop(EpochRandom* random, motion::ClipPair* pair) {
   const int frames = pair->leader.frame_count();
   const int shortest = std::max(kMinCropFrames, frames / 2);
   if (frames <= shortest) return;
@@ -80,11 +80,11 @@ void Crop(EpochRandom* random, ClipPair* pair) {
 }
 
 // Plays both people `speed` times as fast, no longer than `longest` frames.
-void Warp(double speed, int longest, ClipPair* pair) {
+void Warp(double speed, int longest, motion::ClipPair* pair) {
   const int joints = pair->leader.joint_count(), frames = pair->leader.frame_count();
   const int warped = std::clamp(static_cast<int>(std::lround(frames / speed)), 2, longest);
-  for (Clip* clip : {&pair->leader, &pair->follower}) {
-    std::vector<Vec3> positions(static_cast<size_t>(warped) * static_cast<size_t>(joints));
+  for (motion::Clip* clip : {&pair->leader, &pair->follower}) {
+    std::vector<motion::Vec3> positions(static_cast<size_t>(warped) * static_cast<size_t>(joints));
     for (int t = 0; t < warped; ++t) {
       SampleLinear(clip->positions, joints, t * (frames - 1.0) / (warped - 1.0),
                    positions.data() + std::ptrdiff_t{t} * joints);
@@ -93,8 +93,8 @@ void Warp(double speed, int longest, ClipPair* pair) {
   }
 }
 
-Vec3 Horizontal(Vec3 v) {
-  const Vec3 flat{v.x, 0, v.z};
+motion::Vec3 Horizontal(motion::Vec3 v) {
+  const motion::Vec3 flat{v.x, 0, v.z};
   const float length = Norm(flat);
   return length > 0 ? flat / length : flat;
 }
@@ -121,7 +121,7 @@ int64_t EpochRandom::Below(int64_t end) {
   return static_cast<int64_t>(bits_() % static_cast<uint64_t>(end));
 }
 
-std::vector<int> MirroredJoints(const Skeleton& skeleton) {
+std::vector<int> MirroredJoints(const motion::Skeleton& skeleton) {
   std::vector<int> mirrored;
   for (int joint = 0; joint < skeleton.joint_count(); ++joint) {
     const std::string other = absl::StrReplaceAll(skeleton.joint_names[static_cast<size_t>(joint)],
@@ -132,27 +132,27 @@ std::vector<int> MirroredJoints(const Skeleton& skeleton) {
   return mirrored;
 }
 
-void Mirror(const std::vector<int>& mirrored_joints, Sequence* sequence) {
-  for (Clip* clip : {&sequence->pair.leader, &sequence->pair.follower}) {
-    const std::vector<Vec3> before = clip->positions;
+void Mirror(const std::vector<int>& mirrored_joints, dataset::Sequence* sequence) {
+  for (motion::Clip* clip : {&sequence->pair.leader, &sequence->pair.follower}) {
+    const std::vector<motion::Vec3> before = clip->positions;
     const size_t joints = mirrored_joints.size();
     for (size_t i = 0; i < before.size(); ++i) {
       const size_t joint = static_cast<size_t>(mirrored_joints[i % joints]);
-      const Vec3 point = before[i - i % joints + joint];
+      const motion::Vec3 point = before[i - i % joints + joint];
       clip->positions[i] = {-point.x, point.y, point.z};
     }
   }
   if (sequence->partner_direction) sequence->partner_direction->x *= -1;
 }
 
-void SwapRoles(Sequence* sequence) {
+void SwapRoles(dataset::Sequence* sequence) {
   std::swap(sequence->pair.leader, sequence->pair.follower);
   if (sequence->partner_direction) sequence->partner_direction = -*sequence->partner_direction;
 }
 
-Sequence Augment(const Dataset& dataset, const Sequence& sequence,
-                 const TrainingOptions::Augmentation& options, EpochRandom* random) {
-  Sequence variant = sequence;
+dataset::Sequence Augment(const dataset::Dataset& dataset, const dataset::Sequence& sequence,
+                          const TrainingOptions::Augmentation& options, EpochRandom* random) {
+  dataset::Sequence variant = sequence;
   const size_t interaction = static_cast<size_t>(sequence.interaction_class);
   const std::vector<std::string>& mirrored = options.mirrored_classes;
   const bool may_mirror =
@@ -161,7 +161,7 @@ Sequence Augment(const Dataset& dataset, const Sequence& sequence,
   if (may_mirror && random->Chance(options.mirror)) {
     Mirror(MirroredJoints(dataset.skeleton), &variant);
   }
-  ClipPair* pair = &variant.pair;
+  motion::ClipPair* pair = &variant.pair;
   if (random->Chance(options.crop)) Crop(random, pair);
   if (options.time_warp > 0) {
     Warp(std::exp(random->Uniform(-options.time_warp, options.time_warp)),
@@ -187,4 +187,4 @@ Sequence Augment(const Dataset& dataset, const Sequence& sequence,
   return variant;
 }
 
-}  // namespace duet
+}  // namespace duet::training

@@ -7,7 +7,7 @@
 #include "model/dataset/dataset.h"
 #include "model/training/options.h"
 
-namespace duet {
+namespace duet::training {
 
 // Random numbers of one epoch: seeded by run and epoch alone, so that a resumed run draws what an
 // uninterrupted one would. The distributions are our own: the standard library's differ.
@@ -25,18 +25,18 @@ class EpochRandom {
 };
 
 // The joint that takes each joint's place in a mirror: left and right exchanged by name.
-std::vector<int> MirroredJoints(const Skeleton& skeleton);
+std::vector<int> MirroredJoints(const motion::Skeleton& skeleton);
 
 // Reflects both people in the plane x = 0 and exchanges their left and right joints.
-void Mirror(const std::vector<int>& mirrored_joints, Sequence* sequence);
+void Mirror(const std::vector<int>& mirrored_joints, dataset::Sequence* sequence);
 
 // Exchanges leader and follower.
-void SwapRoles(Sequence* sequence);
+void SwapRoles(dataset::Sequence* sequence);
 
 // A random variant of a sequence. Requires options that CheckAgainst accepts.
-Sequence Augment(const Dataset& dataset, const Sequence& sequence,
-                 const TrainingOptions::Augmentation& options, EpochRandom* random);
+dataset::Sequence Augment(const dataset::Dataset& dataset, const dataset::Sequence& sequence,
+                          const TrainingOptions::Augmentation& options, EpochRandom* random);
 
-}  // namespace duet
+}  // namespace duet::training
 
 #endif  // DUET_MODEL_TRAINING_AUGMENT_H_

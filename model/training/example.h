@@ -5,23 +5,24 @@
 
 #include "model/dataset/dataset.h"
 
-namespace duet {
+namespace duet::training {
 
 // What of the follower's first frame a clip is told.
 enum class StartKnowledge { kNone, kRoot, kPose };
 
 // One training clip: a sequence, what is asked for and what should be answered.
 struct Example {
-  Sequence sequence;
+  dataset::Sequence sequence;
   StartKnowledge start = StartKnowledge::kNone;
-  std::vector<float> weights;  // [classes], the label vector
-  std::vector<Vec3> target;    // [frames, joints], world metres
-  bool single = true;          // the label vector is the sequence's class alone
+  std::vector<float> weights;        // [classes], the label vector
+  std::vector<motion::Vec3> target;  // [frames, joints], world metres
+  bool single = true;                // the label vector is the sequence's class alone
 };
 
 // A sequence asked for what was captured.
-Example CapturedExample(const Dataset& dataset, Sequence sequence, StartKnowledge start);
+Example CapturedExample(const dataset::Dataset& dataset, dataset::Sequence sequence,
+                        StartKnowledge start);
 
-}  // namespace duet
+}  // namespace duet::training
 
 #endif  // DUET_MODEL_TRAINING_EXAMPLE_H_

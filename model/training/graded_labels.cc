@@ -5,7 +5,7 @@
 #include "model/engine/window_frame.h"
 #include "model/motion/resample.h"
 
-namespace duet {
+namespace duet::training {
 namespace {
 
 constexpr double kGraded = 0.30, kNegative = 0.15, kOtherAvoided = 0.10;  // the rest is mixed
@@ -15,10 +15,10 @@ constexpr double kLargestOwn = 1.5, kLargestOther = 1.2;
 // A bound on tries instead of a list of candidates: no class is rare.
 constexpr int kTries = 64;
 
-const Sequence* DrawOther(const std::vector<Sequence>& pool, int interaction_class,
-                          EpochRandom* random) {
+const dataset::Sequence* DrawOther(const std::vector<dataset::Sequence>& pool,
+                                   int interaction_class, EpochRandom* random) {
   for (int i = 0; i < kTries; ++i) {
-    const Sequence& drawn =
+    const dataset::Sequence& drawn =
         pool[static_cast<size_t>(random->Below(static_cast<int64_t>(pool.size())))];
     if (drawn.interaction_class != interaction_class) return &drawn;
   }
@@ -27,12 +27,12 @@ const Sequence* DrawOther(const std::vector<Sequence>& pool, int interaction_cla
 
 // Where a sequence happens: the leader's first root and the yaw of its frame.
 struct Place {
-  Vec3 origin;
+  motion::Vec3 origin;
   double yaw;
 };
 
-Place PlaceOf(const Dataset& dataset, const Sequence& sequence) {
-  SynthesisWindow window;
+Place PlaceOf(const dataset::Dataset& dataset, const dataset::Sequence& sequence) {
+  engine::SynthesisWindow window;
   window.leader = sequence.pair.leader.positions;
   window.partner_direction = sequence.partner_direction;
   return {sequence.pair.leader.at(0, dataset.skeleton.root),
@@ -40,8 +40,8 @@ Place PlaceOf(const Dataset& dataset, const Sequence& sequence) {
 }
 
 // The first pose, held.
-std::vector<Vec3> Still(const Clip& follower) {
-  std::vector<Vec3> still;
+std::vector<motion::Vec3> Still(const motion::Clip& follower) {
+  std::vector<motion::Vec3> still;
   for (int t = 0; t < follower.frame_count(); ++t) {
     still.insert(still.end(), follower.frame(0), follower.frame(0) + follower.joint_count());
   }
@@ -49,22 +49,22 @@ std::vector<Vec3> Still(const Clip& follower) {
 }
 
 // The follower of `other` played in the length and place of `sequence`.
-std::vector<Vec3> Borrow(const Dataset& dataset, const Sequence& other, const Sequence& sequence,
-                         bool begin_at_pose) {
-  const Clip& source = other.pair.follower;
-  const Clip& own = sequence.pair.follower;
+std::vector<motion::Vec3> Borrow(const dataset::Dataset& dataset, const dataset::Sequence& other,
+                                 const dataset::Sequence& sequence, bool begin_at_pose) {
+  const motion::Clip& source = other.pair.follower;
+  const motion::Clip& own = sequence.pair.follower;
   const int joints = own.joint_count(), frames = own.frame_count();
   const double step = frames > 1 ? (source.frame_count() - 1.0) / (frames - 1.0) : 0;
-  std::vector<Vec3> borrowed(own.positions.size());
+  std::vector<motion::Vec3> borrowed(own.positions.size());
   for (int t = 0; t < frames; ++t) {
     SampleLinear(source.positions, joints, t * step, borrowed.data() + std::ptrdiff_t{t} * joints);
   }
   const Place from = PlaceOf(dataset, other), to = PlaceOf(dataset, sequence);
-  for (Vec3& point : borrowed) {
+  for (motion::Vec3& point : borrowed) {
     point = to.origin + RotateY(point - from.origin, from.yaw - to.yaw);
   }
   if (!begin_at_pose) return borrowed;
-  const std::vector<Vec3> first(borrowed.begin(), borrowed.begin() + joints);
+  const std::vector<motion::Vec3> first(borrowed.begin(), borrowed.begin() + joints);
   for (size_t i = 0; i < borrowed.size(); ++i) {
     const size_t joint = i % static_cast<size_t>(joints);
     borrowed[i] += own.positions[joint] - first[joint];
@@ -73,9 +73,10 @@ std::vector<Vec3> Borrow(const Dataset& dataset, const Sequence& other, const Se
 }
 
 // still + own_share (captured - still) + other_share (other - still)
-std::vector<Vec3> Combine(const std::vector<Vec3>& still, const std::vector<Vec3>& captured,
-                          double own_share, const std::vector<Vec3>& other, double other_share) {
-  std::vector<Vec3> combined(still.size());
+std::vector<motion::Vec3> Combine(const std::vector<motion::Vec3>& still,
+                                  const std::vector<motion::Vec3>& captured, double own_share,
+                                  const std::vector<motion::Vec3>& other, double other_share) {
+  std::vector<motion::Vec3> combined(still.size());
   for (size_t i = 0; i < still.size(); ++i) {
     combined[i] = still[i] + (captured[i] - still[i]) * static_cast<float>(own_share) +
                   (other[i] - still[i]) * static_cast<float>(other_share);
@@ -85,7 +86,8 @@ std::vector<Vec3> Combine(const std::vector<Vec3>& still, const std::vector<Vec3
 
 }  // namespace
 
-Example CapturedExample(const Dataset& dataset, Sequence sequence, StartKnowledge start) {
+Example CapturedExample(const dataset::Dataset& dataset, dataset::Sequence sequence,
+                        StartKnowledge start) {
   Example example;
   example.start = start;
   example.weights.assign(dataset.classes.size(), 0);
@@ -95,17 +97,17 @@ Example CapturedExample(const Dataset& dataset, Sequence sequence, StartKnowledg
   return example;
 }
 
-void GradeLabels(const Dataset& dataset, const std::vector<Sequence>& pool, EpochRandom* random,
-                 Example* example) {
-  const Sequence& sequence = example->sequence;
-  const Sequence* drawn = DrawOther(pool, sequence.interaction_class, random);
+void GradeLabels(const dataset::Dataset& dataset, const std::vector<dataset::Sequence>& pool,
+                 EpochRandom* random, Example* example) {
+  const dataset::Sequence& sequence = example->sequence;
+  const dataset::Sequence* drawn = DrawOther(pool, sequence.interaction_class, random);
   if (drawn == nullptr) return;
   example->single = false;
   float& own = example->weights[static_cast<size_t>(sequence.interaction_class)];
   float& another = example->weights[static_cast<size_t>(drawn->interaction_class)];
-  const std::vector<Vec3>& captured = sequence.pair.follower.positions;
-  const std::vector<Vec3> still = Still(sequence.pair.follower);
-  const std::vector<Vec3> other =
+  const std::vector<motion::Vec3>& captured = sequence.pair.follower.positions;
+  const std::vector<motion::Vec3> still = Still(sequence.pair.follower);
+  const std::vector<motion::Vec3> other =
       Borrow(dataset, *drawn, sequence, example->start == StartKnowledge::kPose);
 
   const double kind = random->Uniform(0, 1);
@@ -131,4 +133,4 @@ void GradeLabels(const Dataset& dataset, const std::vector<Sequence>& pool, Epoc
   example->target = Combine(still, captured, own_share, other, other_share);
 }
 
-}  // namespace duet
+}  // namespace duet::training

@@ -6,7 +6,7 @@
 #include "model/training/augment.h"
 #include "model/training/example.h"
 
-namespace duet {
+namespace duet::training {
 
 // Gives an example a graded, negative or mixed label vector and the answer that it should get. The
 // paper trains on single classes and grades at inference; that alone leaves weights between and
@@ -21,9 +21,9 @@ namespace duet {
 // "other" is the follower of a random clip of another class, brought to this clip's length and
 // place; where the follower's pose is given, it begins there.
 // Requires `pool` (the epoch's sequences) to hold another class; otherwise nothing changes.
-void GradeLabels(const Dataset& dataset, const std::vector<Sequence>& pool, EpochRandom* random,
-                 Example* example);
+void GradeLabels(const dataset::Dataset& dataset, const std::vector<dataset::Sequence>& pool,
+                 EpochRandom* random, Example* example);
 
-}  // namespace duet
+}  // namespace duet::training
 
 #endif  // DUET_MODEL_TRAINING_GRADED_LABELS_H_

@@ -7,7 +7,7 @@
 #include "model/base/strict_json.h"
 #include "model/training/named_configs.inc"
 
-namespace duet {
+namespace duet::training {
 namespace {
 
 using nlohmann::json;
@@ -18,7 +18,7 @@ constexpr size_t kMaxName = 64;
 
 // A base and what to change in it.
 absl::StatusOr<TrainingOptions> ParseDerived(const json& value, const Replacements& replacements) {
-  ObjectReader reader(value, "");
+  base::ObjectReader reader(value, "");
   const std::string name = reader.String("base", kMaxName);
   const NamedConfig* const base = FindConfig(name);
   if (reader.ok() && base == nullptr) {
@@ -43,10 +43,10 @@ const NamedConfig* FindConfig(std::string_view name) {
 
 absl::StatusOr<TrainingOptions> ParseConfig(std::string_view text,
                                             const Replacements& replacements) {
-  absl::StatusOr<json> value = ParseStrictJson(text, kMaxDepth);
+  absl::StatusOr<json> value = base::ParseStrictJson(text, kMaxDepth);
   if (!value.ok()) return value.status();
   if (value->is_object() && value->contains("base")) return ParseDerived(*value, replacements);
   return ParseTrainingOptions(text, replacements);
 }
 
-}  // namespace duet
+}  // namespace duet::training

@@ -9,7 +9,7 @@
 #include "absl/status/statusor.h"
 #include "model/training/options.h"
 
-namespace duet {
+namespace duet::training {
 
 // A configuration of model/training/configs, linked into the program.
 struct NamedConfig {
@@ -29,6 +29,6 @@ absl::StatusOr<TrainingOptions> ParseConfig(
     std::string_view json,
     const std::vector<std::pair<std::string, std::string>>& replacements = {});
 
-}  // namespace duet
+}  // namespace duet::training
 
 #endif  // DUET_MODEL_TRAINING_NAMED_CONFIGS_H_

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace duet {
+namespace duet::training {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -72,4 +72,4 @@ void Optimiser::Step(int64_t step) {
   optimiser_->zero_grad();
 }
 
-}  // namespace duet
+}  // namespace duet::training

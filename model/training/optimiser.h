@@ -8,7 +8,7 @@
 
 #include "model/training/options.h"
 
-namespace duet {
+namespace duet::training {
 
 // The learning rate at a step as a share of the largest one. "one_cycle" rises over the first fifth
 // of the run from 1/25 and falls to almost nothing, both along a half cosine (Smith, Topin 2018).
@@ -35,6 +35,6 @@ class Optimiser {
   std::unique_ptr<torch::optim::Optimizer> optimiser_;
 };
 
-}  // namespace duet
+}  // namespace duet::training
 
 #endif  // DUET_MODEL_TRAINING_OPTIMISER_H_

@@ -9,7 +9,7 @@
 #include "absl/strings/str_split.h"
 #include "model/base/strict_json.h"
 
-namespace duet {
+namespace duet::training {
 namespace {
 
 using nlohmann::json;
@@ -19,7 +19,7 @@ constexpr size_t kMaxWord = 64;
 constexpr int64_t kMaxUnits = 4096;
 constexpr int64_t kMaxEpochs = 1000000;
 
-std::string OneOf(ObjectReader* reader, const std::string& key,
+std::string OneOf(base::ObjectReader* reader, const std::string& key,
                   const std::vector<std::string>& choices) {
   std::string value = reader->String(key, kMaxWord);
   if (reader->ok() && std::find(choices.begin(), choices.end(), value) == choices.end()) {
@@ -29,11 +29,11 @@ std::string OneOf(ObjectReader* reader, const std::string& key,
   return value;
 }
 
-double Probability(ObjectReader* reader, const std::string& key) {
+double Probability(base::ObjectReader* reader, const std::string& key) {
   return reader->Number(key, 0, 1);
 }
 
-void Read(ObjectReader* reader, GeneratorArchitecture* out) {
+void Read(base::ObjectReader* reader, checkpoint::GeneratorArchitecture* out) {
   out->variant = OneOf(reader, "variant", {"paper", "released", "unlabelled"});
   out->follower_start = reader->Bool("follower_start");
   out->slice_features = static_cast<int>(reader->Int("slice_features", 0, kMaxUnits));
@@ -42,12 +42,12 @@ void Read(ObjectReader* reader, GeneratorArchitecture* out) {
   out->base_pose = reader->Bool("base_pose");
 }
 
-void Read(ObjectReader* reader, TrainingOptions::Dropout* out) {
+void Read(base::ObjectReader* reader, TrainingOptions::Dropout* out) {
   out->slices = reader->Number("slices", 0, 0.95);
   out->encoded = reader->Number("encoded", 0, 0.95);
 }
 
-void Read(ObjectReader* reader, TrainingOptions::Optimiser* out) {
+void Read(base::ObjectReader* reader, TrainingOptions::Optimiser* out) {
   out->name = OneOf(reader, "name", {"adam", "rmsprop"});
   out->learning_rate = reader->Number("learning_rate", 1e-9, 10);
   out->schedule = OneOf(reader, "schedule", {"one_cycle", "constant"});
@@ -56,7 +56,7 @@ void Read(ObjectReader* reader, TrainingOptions::Optimiser* out) {
   out->average_decay = reader->Number("average_decay", 0, 0.999999);
 }
 
-void Read(ObjectReader* reader, TrainingOptions::Losses* out) {
+void Read(base::ObjectReader* reader, TrainingOptions::Losses* out) {
   out->reconstruction = OneOf(reader, "reconstruction", {"l1", "l2", "norm"});
   out->reconstruction_weight = reader->Number("reconstruction_weight", 0, 1e6);
   out->bone = reader->Number("bone", 0, 1e6);
@@ -67,7 +67,7 @@ void Read(ObjectReader* reader, TrainingOptions::Losses* out) {
   out->adversarial = reader->Number("adversarial", 0, 1e6);
 }
 
-void Read(ObjectReader* reader, TrainingOptions::DiscriminatorSettings* out) {
+void Read(base::ObjectReader* reader, TrainingOptions::DiscriminatorSettings* out) {
   out->binary = reader->Bool("binary");
   out->hidden = reader->Int("hidden", 1, kMaxUnits);
   out->learning_rate = reader->Number("learning_rate", 1e-9, 10);
@@ -75,7 +75,7 @@ void Read(ObjectReader* reader, TrainingOptions::DiscriminatorSettings* out) {
   out->unit_norm_kernels = reader->Bool("unit_norm_kernels");
 }
 
-void Read(ObjectReader* reader, TrainingOptions::Augmentation* out) {
+void Read(base::ObjectReader* reader, TrainingOptions::Augmentation* out) {
   out->mirrored_classes = reader->Strings("mirrored_classes", 256);
   out->mirror = Probability(reader, "mirror");
   out->swap_roles = Probability(reader, "swap_roles");
@@ -89,7 +89,7 @@ void Read(ObjectReader* reader, TrainingOptions::Augmentation* out) {
   out->crop = Probability(reader, "crop");
 }
 
-void Read(ObjectReader* reader, TrainingOptions::Start* out) {
+void Read(base::ObjectReader* reader, TrainingOptions::Start* out) {
   out->root = Probability(reader, "root");
   out->pose = Probability(reader, "pose");
   if (reader->ok() && out->root + out->pose > 1) {
@@ -98,31 +98,31 @@ void Read(ObjectReader* reader, TrainingOptions::Start* out) {
   }
 }
 
-void Read(ObjectReader* reader, TrainingOptions::Validation* out) {
+void Read(base::ObjectReader* reader, TrainingOptions::Validation* out) {
   out->subjects = reader->Strings("subjects", 256);
   out->fraction = reader->Number("fraction", 0, 0.9);
   out->patience = reader->Int("patience", 0, kMaxEpochs);
 }
 
 template <typename Section>
-absl::Status ReadSection(ObjectReader* root, const std::string& name, Section* out) {
+absl::Status ReadSection(base::ObjectReader* root, const std::string& name, Section* out) {
   const json& object = root->Object(name);
   if (!root->ok()) return absl::OkStatus();  // the root remembers what was wrong
-  ObjectReader reader(object, name);
+  base::ObjectReader reader(object, name);
   Read(&reader, out);
   return reader.Finish();
 }
 
 absl::StatusOr<TrainingOptions> ReadOptions(const json& value) {
-  ObjectReader root(value, "");
+  base::ObjectReader root(value, "");
   TrainingOptions options;
   absl::Status status;
   const auto section = [&](const std::string& name, auto* out) {
     if (status.ok()) status = ReadSection(&root, name, out);
   };
   section("generator", &options.generator);
-  options.standardisation =
-      OneOf(&root, "standardisation", {kLeaderRootAndYaw, kLeaderStartAndYaw});
+  options.standardisation = OneOf(&root, "standardisation",
+                                  {checkpoint::kLeaderRootAndYaw, checkpoint::kLeaderStartAndYaw});
   section("dropout", &options.dropout);
   section("optimiser", &options.optimiser);
   options.epochs = root.Int("epochs", 1, kMaxEpochs);
@@ -179,7 +179,7 @@ absl::StatusOr<TrainingOptions> ParseTrainingOptions(std::string_view text) {
 
 absl::StatusOr<TrainingOptions> ParseTrainingOptions(
     std::string_view text, const std::vector<std::pair<std::string, std::string>>& replacements) {
-  absl::StatusOr<json> root = ParseStrictJson(text, kMaxDepth);
+  absl::StatusOr<json> root = base::ParseStrictJson(text, kMaxDepth);
   if (!root.ok()) return root.status();
   for (const auto& [path, value] : replacements) {
     absl::Status status = Replace(path, value, &*root);
@@ -241,4 +241,4 @@ absl::Status CheckAgainst(const TrainingOptions& options, const std::vector<std:
   return CheckAllIn("validation.subjects", options.validation.subjects, "subjects", subjects);
 }
 
-}  // namespace duet
+}  // namespace duet::training

@@ -10,12 +10,13 @@
 #include "absl/status/statusor.h"
 #include "model/checkpoint/manifest.h"
 
-namespace duet {
+namespace duet::training {
 
 // Everything that shapes a training run; the named configurations are in model/training/configs.
 struct TrainingOptions {
-  GeneratorArchitecture generator;
-  std::string standardisation = kLeaderRootAndYaw;  // or kLeaderStartAndYaw (checkpoint/manifest.h)
+  checkpoint::GeneratorArchitecture generator;
+  std::string standardisation =
+      checkpoint::kLeaderRootAndYaw;  // or kLeaderStartAndYaw (checkpoint/manifest.h)
 
   struct Dropout {
     double slices = 0;   // after each slice's fully connected layer
@@ -101,6 +102,6 @@ std::map<std::string, std::string> Describe(const TrainingOptions& options);
 absl::Status CheckAgainst(const TrainingOptions& options, const std::vector<std::string>& classes,
                           const std::vector<std::string>& subjects);
 
-}  // namespace duet
+}  // namespace duet::training
 
 #endif  // DUET_MODEL_TRAINING_OPTIONS_H_

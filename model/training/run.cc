@@ -11,13 +11,13 @@
 #include "model/training/run_log.h"
 #include "model/training/trainer.h"
 
-namespace duet {
+namespace duet::training {
 namespace {
 
 namespace fs = std::filesystem;
 
-Manifest MakeManifest(const RunPlan& plan, const Dataset& dataset) {
-  Manifest manifest;
+checkpoint::Manifest MakeManifest(const RunPlan& plan, const dataset::Dataset& dataset) {
+  checkpoint::Manifest manifest;
   manifest.model.name = plan.model_name;
   manifest.model.version = plan.model_version;
   manifest.model.description = plan.description;
@@ -35,7 +35,7 @@ Manifest MakeManifest(const RunPlan& plan, const Dataset& dataset) {
 }
 
 // Moves the validation sequences out of `train`.
-std::vector<int> HoldBack(const TrainingOptions& options, const Dataset& dataset,
+std::vector<int> HoldBack(const TrainingOptions& options, const dataset::Dataset& dataset,
                           std::vector<int>* train) {
   std::vector<int> held, kept;
   for (const int index : *train) {
@@ -56,7 +56,7 @@ std::vector<int> HoldBack(const TrainingOptions& options, const Dataset& dataset
   return held;
 }
 
-absl::Status Finish(const RunPlan& plan, Manifest manifest, const EpochReport& last,
+absl::Status Finish(const RunPlan& plan, checkpoint::Manifest manifest, const EpochReport& last,
                     Trainer* trainer) {
   manifest.git_revision = kGitRevision;
   manifest.metrics["training.reconstruction"] = last.reconstruction;
@@ -64,8 +64,9 @@ absl::Status Finish(const RunPlan& plan, Manifest manifest, const EpochReport& l
   const network::Generator best = trainer->Best();
   std::error_code error;
   fs::create_directories(CheckpointFolder(plan).parent_path(), error);
-  std::vector<Tensor> tensors = network::StoreParameters(manifest, best);
-  return WriteCheckpoint(CheckpointFolder(plan), {std::move(manifest), std::move(tensors)});
+  std::vector<checkpoint::Tensor> tensors = network::StoreParameters(manifest, best);
+  return checkpoint::WriteCheckpoint(CheckpointFolder(plan),
+                                     {std::move(manifest), std::move(tensors)});
 }
 
 void Show(const RunPlan& plan, const EpochReport& report, bool terminal, std::ostream* progress) {
@@ -87,7 +88,7 @@ fs::path CheckpointFolder(const RunPlan& plan) {
   return plan.folder / "checkpoint" / plan.model_name / absl::StrCat(plan.model_version);
 }
 
-absl::Status RunTraining(const RunPlan& plan, const Dataset& dataset, bool terminal,
+absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& dataset, bool terminal,
                          std::ostream* progress) {
   absl::Status status = CheckAgainst(plan.options, dataset.classes, dataset.Subjects());
   if (!status.ok()) return status;
@@ -98,7 +99,7 @@ absl::Status RunTraining(const RunPlan& plan, const Dataset& dataset, bool termi
   std::error_code error;
   fs::create_directories(plan.folder, error);
   if (error) return absl::InternalError(absl::StrCat(plan.folder.string(), ": ", error.message()));
-  const Manifest manifest = MakeManifest(plan, dataset);
+  const checkpoint::Manifest manifest = MakeManifest(plan, dataset);
   std::vector<int> train = plan.train;
   const std::vector<int> validation = HoldBack(plan.options, dataset, &train);
   if (train.empty()) {
@@ -127,4 +128,4 @@ absl::Status RunTraining(const RunPlan& plan, const Dataset& dataset, bool termi
   return Finish(plan, manifest, report, &trainer);
 }
 
-}  // namespace duet
+}  // namespace duet::training

@@ -10,7 +10,7 @@
 #include "model/dataset/dataset.h"
 #include "model/training/options.h"
 
-namespace duet {
+namespace duet::training {
 
 // One training run and its folder:
 //   state         everything to go on from after the last finished epoch
@@ -28,7 +28,7 @@ struct RunPlan {
 
 // Runs to the end, or goes on where a killed run left off; returns at once when the run has already
 // finished. Progress goes to `progress`: a line rewritten in place on a terminal.
-absl::Status RunTraining(const RunPlan& plan, const Dataset& dataset, bool terminal,
+absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& dataset, bool terminal,
                          std::ostream* progress);
 
 // Prepares the whole process for training: LibTorch's threads, and memory kept between steps.
@@ -38,6 +38,6 @@ void SetTrainingThreads(int threads);
 // Where a finished run's checkpoint is.
 std::filesystem::path CheckpointFolder(const RunPlan& plan);
 
-}  // namespace duet
+}  // namespace duet::training
 
 #endif  // DUET_MODEL_TRAINING_RUN_H_

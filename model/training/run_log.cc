@@ -7,7 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 
-namespace duet {
+namespace duet::training {
 namespace {
 
 constexpr char kColumns[] =
@@ -65,4 +65,4 @@ std::string ProgressLine(const std::string& title, const EpochReport& report) {
                          report.epochs, report.generator, validation, left / 60, left % 60);
 }
 
-}  // namespace duet
+}  // namespace duet::training

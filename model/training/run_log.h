@@ -8,7 +8,7 @@
 #include "absl/status/status.h"
 #include "model/training/trainer.h"
 
-namespace duet {
+namespace duet::training {
 
 // Appends one row for each epoch to a CSV file; a new file starts with the column names. Rows of
 // epochs after `epoch` (left by a run that was killed before it saved its state) are dropped.
@@ -26,6 +26,6 @@ class RunLog {
 // "[#####.....] epoch 12/60  loss 3.214  val 0.61  0:14 left". One line, no line end.
 std::string ProgressLine(const std::string& title, const EpochReport& report);
 
-}  // namespace duet
+}  // namespace duet::training
 
 #endif  // DUET_MODEL_TRAINING_RUN_LOG_H_

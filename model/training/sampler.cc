@@ -6,7 +6,7 @@
 #include "model/engine/window_frame.h"
 #include "model/training/graded_labels.h"
 
-namespace duet {
+namespace duet::training {
 namespace {
 
 // Frames by which the order by length is disturbed, so that batches differ from epoch to epoch.
@@ -18,9 +18,10 @@ StartKnowledge DrawStart(const TrainingOptions::Start& start, EpochRandom* rando
   return draw < start.pose + start.root ? StartKnowledge::kRoot : StartKnowledge::kNone;
 }
 
-std::vector<int> OrderByLength(const std::vector<Sequence>& sequences, EpochRandom* random) {
+std::vector<int> OrderByLength(const std::vector<dataset::Sequence>& sequences,
+                               EpochRandom* random) {
   std::vector<double> key;
-  for (const Sequence& sequence : sequences) {
+  for (const dataset::Sequence& sequence : sequences) {
     key.push_back(sequence.pair.leader.frame_count() + random->Normal(kLengthJitter));
   }
   std::vector<int> order(sequences.size());
@@ -48,27 +49,29 @@ void Shuffle(EpochRandom* random, std::vector<T>* values) {
   }
 }
 
-std::optional<FollowerStart> StartOf(const Skeleton& skeleton, const Clip& follower,
-                                     StartKnowledge knowledge) {
+std::optional<engine::FollowerStart> StartOf(const motion::Skeleton& skeleton,
+                                             const motion::Clip& follower,
+                                             StartKnowledge knowledge) {
   if (knowledge == StartKnowledge::kNone) return std::nullopt;
-  FollowerStart start{follower.at(0, skeleton.root), {}};
+  engine::FollowerStart start{follower.at(0, skeleton.root), {}};
   if (knowledge == StartKnowledge::kPose) {
     start.pose.assign(follower.frame(0), follower.frame(0) + skeleton.joint_count());
   }
   return start;
 }
 
-std::vector<const std::vector<Vec3>*> Pointers(const std::vector<std::vector<Vec3>>& clips) {
-  std::vector<const std::vector<Vec3>*> pointers;
-  for (const std::vector<Vec3>& clip : clips) pointers.push_back(&clip);
+std::vector<const std::vector<motion::Vec3>*> Pointers(
+    const std::vector<std::vector<motion::Vec3>>& clips) {
+  std::vector<const std::vector<motion::Vec3>*> pointers;
+  for (const std::vector<motion::Vec3>& clip : clips) pointers.push_back(&clip);
   return pointers;
 }
 
 }  // namespace
 
-SynthesisWindow MakeWindow(const Dataset& dataset, const Example& example) {
-  const Sequence& sequence = example.sequence;
-  SynthesisWindow window;
+engine::SynthesisWindow MakeWindow(const dataset::Dataset& dataset, const Example& example) {
+  const dataset::Sequence& sequence = example.sequence;
+  engine::SynthesisWindow window;
   window.leader = sequence.pair.leader.positions;
   for (int t = 0; t < sequence.pair.leader.frame_count(); ++t) {
     window.labels.insert(window.labels.end(), example.weights.begin(), example.weights.end());
@@ -78,14 +81,14 @@ SynthesisWindow MakeWindow(const Dataset& dataset, const Example& example) {
   return window;
 }
 
-TrainingBatch MakeBatch(const Manifest& manifest, const Dataset& dataset,
+TrainingBatch MakeBatch(const checkpoint::Manifest& manifest, const dataset::Dataset& dataset,
                         const std::vector<Example>& examples) {
   std::vector<network::BatchItem> items;
-  std::vector<std::vector<Vec3>> targets, followers;
+  std::vector<std::vector<motion::Vec3>> targets, followers;
   std::vector<int64_t> classes, single_rows;
   for (const Example& example : examples) {
-    const SynthesisWindow window = MakeWindow(dataset, example);
-    const Standardisation frame = WindowFrame(dataset.skeleton, window, OriginOf(manifest));
+    const engine::SynthesisWindow window = MakeWindow(dataset, example);
+    const motion::Standardisation frame = WindowFrame(dataset.skeleton, window, OriginOf(manifest));
     items.push_back(network::StandardItem(frame, window));
     targets.push_back(frame.Apply(example.target));
     followers.push_back(frame.Apply(example.sequence.pair.follower.positions));
@@ -103,11 +106,12 @@ TrainingBatch MakeBatch(const Manifest& manifest, const Dataset& dataset,
   return batch;
 }
 
-std::vector<TrainingBatch> SampleEpoch(const Manifest& manifest, const Dataset& dataset,
+std::vector<TrainingBatch> SampleEpoch(const checkpoint::Manifest& manifest,
+                                       const dataset::Dataset& dataset,
                                        const std::vector<int>& train,
                                        const TrainingOptions& options, int64_t epoch) {
   EpochRandom random(options.seed, epoch);
-  std::vector<Sequence> sequences;
+  std::vector<dataset::Sequence> sequences;
   for (int index : train) {
     sequences.push_back(Augment(dataset, dataset.sequences[static_cast<size_t>(index)],
                                 options.augmentation, &random));
@@ -131,13 +135,13 @@ std::vector<TrainingBatch> SampleEpoch(const Manifest& manifest, const Dataset& 
   return batches;
 }
 
-torch::Tensor ClassMeanPoses(const Manifest& manifest, const Dataset& dataset,
+torch::Tensor ClassMeanPoses(const checkpoint::Manifest& manifest, const dataset::Dataset& dataset,
                              const std::vector<int>& train) {
   const int64_t joints = dataset.skeleton.joint_count();
   const int64_t classes = static_cast<int64_t>(dataset.classes.size());
   torch::Tensor sums = torch::zeros({classes, 3 * joints}), counts = torch::zeros({classes, 1});
   for (int index : train) {
-    const Sequence& sequence = dataset.sequences[static_cast<size_t>(index)];
+    const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(index)];
     const TrainingBatch one =
         MakeBatch(manifest, dataset, {CapturedExample(dataset, sequence, StartKnowledge::kNone)});
     sums[sequence.interaction_class] += one.follower[0].mean(0);
@@ -146,4 +150,4 @@ torch::Tensor ClassMeanPoses(const Manifest& manifest, const Dataset& dataset,
   return sums / counts.clamp_min(1);
 }
 
-}  // namespace duet
+}  // namespace duet::training

@@ -11,7 +11,7 @@
 #include "model/training/example.h"
 #include "model/training/options.h"
 
-namespace duet {
+namespace duet::training {
 
 // One step's clips.
 struct TrainingBatch {
@@ -23,22 +23,23 @@ struct TrainingBatch {
 };
 
 // A sequence as the network is given it: the window that a server would make of it.
-SynthesisWindow MakeWindow(const Dataset& dataset, const Example& example);
+engine::SynthesisWindow MakeWindow(const dataset::Dataset& dataset, const Example& example);
 
 // Pads examples into a batch.
-TrainingBatch MakeBatch(const Manifest& manifest, const Dataset& dataset,
+TrainingBatch MakeBatch(const checkpoint::Manifest& manifest, const dataset::Dataset& dataset,
                         const std::vector<Example>& examples);
 
 // The batches of one epoch: every training sequence once, augmented, clips of like length together.
 // Depends on options, data and epoch alone.
-std::vector<TrainingBatch> SampleEpoch(const Manifest& manifest, const Dataset& dataset,
+std::vector<TrainingBatch> SampleEpoch(const checkpoint::Manifest& manifest,
+                                       const dataset::Dataset& dataset,
                                        const std::vector<int>& train,
                                        const TrainingOptions& options, int64_t epoch);
 
 // The mean pose of each class's followers, [C, 3 J], in the standard frame.
-torch::Tensor ClassMeanPoses(const Manifest& manifest, const Dataset& dataset,
+torch::Tensor ClassMeanPoses(const checkpoint::Manifest& manifest, const dataset::Dataset& dataset,
                              const std::vector<int>& train);
 
-}  // namespace duet
+}  // namespace duet::training
 
 #endif  // DUET_MODEL_TRAINING_SAMPLER_H_

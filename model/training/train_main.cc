@@ -28,19 +28,20 @@ struct Arguments {
 };
 
 absl::StatusOr<std::string> ReadConfig(const std::string& config) {
-  if (const duet::NamedConfig* named = duet::FindConfig(config)) return std::string(named->json);
+  if (const duet::training::NamedConfig* named = duet::training::FindConfig(config))
+    return std::string(named->json);
   std::ifstream in(config, std::ios::binary);
   if (!in) {
     const std::string names = absl::StrJoin(
-        duet::NamedConfigs(), ", ",
-        [](std::string* out, const duet::NamedConfig& one) { out->append(one.name); });
+        duet::training::NamedConfigs(), ", ",
+        [](std::string* out, const duet::training::NamedConfig& one) { out->append(one.name); });
     return absl::NotFoundError(absl::StrCat(
         "--config ", config, ": no such file, and no configuration of that name (", names, ")"));
   }
   return std::string(std::istreambuf_iterator<char>(in), {});
 }
 
-absl::StatusOr<duet::TrainingOptions> ReadOptions(const Arguments& arguments) {
+absl::StatusOr<duet::training::TrainingOptions> ReadOptions(const Arguments& arguments) {
   absl::StatusOr<std::string> json = ReadConfig(arguments.config);
   if (!json.ok()) return json.status();
   std::vector<std::pair<std::string, std::string>> replacements;
@@ -52,12 +53,13 @@ absl::StatusOr<duet::TrainingOptions> ReadOptions(const Arguments& arguments) {
     }
     replacements.emplace_back(setting.substr(0, equals), setting.substr(equals + 1));
   }
-  return duet::ParseConfig(*json, replacements);
+  return duet::training::ParseConfig(*json, replacements);
 }
 
 // A run before it is said what to train on and where to.
-duet::RunPlan CommonPlan(const Arguments& arguments, const duet::TrainingOptions& options) {
-  duet::RunPlan plan;
+duet::training::RunPlan CommonPlan(const Arguments& arguments,
+                                   const duet::training::TrainingOptions& options) {
+  duet::training::RunPlan plan;
   plan.options = options;
   plan.model_name = arguments.name;
   plan.model_version = arguments.version;
@@ -65,20 +67,22 @@ duet::RunPlan CommonPlan(const Arguments& arguments, const duet::TrainingOptions
   return plan;
 }
 
-std::vector<duet::RunPlan> PlanOnAll(const Arguments& arguments, duet::RunPlan plan,
-                                     const duet::Dataset& dataset) {
+std::vector<duet::training::RunPlan> PlanOnAll(const Arguments& arguments,
+                                               duet::training::RunPlan plan,
+                                               const duet::dataset::Dataset& dataset) {
   for (size_t i = 0; i < dataset.sequences.size(); ++i) plan.train.push_back(static_cast<int>(i));
   plan.title = "all";
   plan.folder = std::filesystem::path(arguments.out) / "all";
   return {plan};
 }
 
-absl::StatusOr<std::vector<duet::RunPlan>> PlanFolds(const Arguments& arguments, duet::RunPlan plan,
-                                                     const duet::Dataset& dataset) {
-  std::vector<duet::RunPlan> plans;
+absl::StatusOr<std::vector<duet::training::RunPlan>> PlanFolds(
+    const Arguments& arguments, duet::training::RunPlan plan,
+    const duet::dataset::Dataset& dataset) {
+  std::vector<duet::training::RunPlan> plans;
   for (const std::string& subject : dataset.Subjects()) {
     if (!arguments.fold.empty() && subject != arguments.fold) continue;
-    absl::StatusOr<duet::Split> split = duet::LeaveSubjectOut(dataset, subject);
+    absl::StatusOr<duet::dataset::Split> split = duet::dataset::LeaveSubjectOut(dataset, subject);
     if (!split.ok()) return split.status();
     plan.train = split->train;
     plan.title = "without " + subject;
@@ -90,12 +94,12 @@ absl::StatusOr<std::vector<duet::RunPlan>> PlanFolds(const Arguments& arguments,
       absl::StrCat("--fold ", arguments.fold, ": the data has no such subject"));
 }
 
-absl::StatusOr<std::vector<duet::RunPlan>> PlanHalves(const Arguments& arguments,
-                                                      duet::RunPlan plan,
-                                                      const duet::Dataset& dataset) {
-  std::vector<duet::RunPlan> plans;
+absl::StatusOr<std::vector<duet::training::RunPlan>> PlanHalves(
+    const Arguments& arguments, duet::training::RunPlan plan,
+    const duet::dataset::Dataset& dataset) {
+  std::vector<duet::training::RunPlan> plans;
   for (const uint64_t seed : arguments.seeds) {
-    absl::StatusOr<duet::Split> split = duet::SplitInHalves(dataset, seed);
+    absl::StatusOr<duet::dataset::Split> split = duet::dataset::SplitInHalves(dataset, seed);
     if (!split.ok()) return split.status();
     plan.train = split->train;
     plan.title = absl::StrCat("half ", seed);
@@ -105,26 +109,27 @@ absl::StatusOr<std::vector<duet::RunPlan>> PlanHalves(const Arguments& arguments
   return plans;
 }
 
-absl::StatusOr<std::vector<duet::RunPlan>> Plans(const Arguments& arguments,
-                                                 const duet::TrainingOptions& options,
-                                                 const duet::Dataset& dataset) {
-  const duet::RunPlan common = CommonPlan(arguments, options);
+absl::StatusOr<std::vector<duet::training::RunPlan>> Plans(
+    const Arguments& arguments, const duet::training::TrainingOptions& options,
+    const duet::dataset::Dataset& dataset) {
+  const duet::training::RunPlan common = CommonPlan(arguments, options);
   if (arguments.protocol == "loso") return PlanFolds(arguments, common, dataset);
   if (arguments.protocol == "half") return PlanHalves(arguments, common, dataset);
   return PlanOnAll(arguments, common, dataset);
 }
 
 absl::Status Train(const Arguments& arguments) {
-  absl::StatusOr<duet::TrainingOptions> options = ReadOptions(arguments);
+  absl::StatusOr<duet::training::TrainingOptions> options = ReadOptions(arguments);
   if (!options.ok()) return options.status();
-  absl::StatusOr<duet::Dataset> dataset = duet::ReadDataset(arguments.data);
+  absl::StatusOr<duet::dataset::Dataset> dataset = duet::dataset::ReadDataset(arguments.data);
   if (!dataset.ok()) return dataset.status();
-  absl::StatusOr<std::vector<duet::RunPlan>> plans = Plans(arguments, *options, *dataset);
+  absl::StatusOr<std::vector<duet::training::RunPlan>> plans = Plans(arguments, *options, *dataset);
   if (!plans.ok()) return plans.status();
-  for (const duet::RunPlan& plan : *plans) {
-    absl::Status status = duet::RunTraining(plan, *dataset, isatty(STDOUT_FILENO) != 0, &std::cout);
+  for (const duet::training::RunPlan& plan : *plans) {
+    absl::Status status =
+        duet::training::RunTraining(plan, *dataset, isatty(STDOUT_FILENO) != 0, &std::cout);
     if (!status.ok()) return status;
-    std::cout << "checkpoint: " << duet::CheckpointFolder(plan).string() << "\n";
+    std::cout << "checkpoint: " << duet::training::CheckpointFolder(plan).string() << "\n";
   }
   return absl::OkStatus();
 }
@@ -161,7 +166,7 @@ int main(int argc, char** argv) {
   CLI::App app("Trains a generator on a folder of captures and writes a checkpoint.");
   Declare(&arguments, &app);
   CLI11_PARSE(app, argc, argv);
-  duet::SetTrainingThreads(arguments.threads);
+  duet::training::SetTrainingThreads(arguments.threads);
   const absl::Status status = Train(arguments);
   if (status.ok()) return 0;
   std::cerr << "duet-train: " << status.message() << "\n";

@@ -8,7 +8,7 @@
 #include "absl/strings/str_join.h"
 #include "model/network/losses.h"
 
-namespace duet {
+namespace duet::training {
 namespace {
 
 using network::Generator;
@@ -17,9 +17,10 @@ int64_t Steps(size_t count, int64_t batch) {
   return (static_cast<int64_t>(count) + batch - 1) / batch;
 }
 
-Generator MakeGenerator(const TrainingOptions& options, const Manifest& manifest) {
+network::Generator MakeGenerator(const TrainingOptions& options,
+                                 const checkpoint::Manifest& manifest) {
   torch::manual_seed(options.seed);
-  Generator generator(manifest);
+  network::Generator generator(manifest);
   generator->set_dropout(options.dropout.slices, options.dropout.encoded);
   return generator;
 }
@@ -51,8 +52,9 @@ network::ContinuityOptions Continuity(const TrainingOptions::Losses& losses) {
 
 }  // namespace
 
-Trainer::Trainer(const TrainingOptions& options, const Manifest& manifest, const Dataset& dataset,
-                 std::vector<int> train, std::vector<int> validation)
+Trainer::Trainer(const TrainingOptions& options, const checkpoint::Manifest& manifest,
+                 const dataset::Dataset& dataset, std::vector<int> train,
+                 std::vector<int> validation)
     : options_(options),
       manifest_(manifest),
       dataset_(dataset),
@@ -178,8 +180,8 @@ double Trainer::Validate(StartKnowledge start) {
   return sum / static_cast<double>(validation_.size());
 }
 
-Generator Trainer::Best() {
-  Generator best(manifest_);
+network::Generator Trainer::Best() {
+  network::Generator best(manifest_);
   CopyInto(best_, best->parameters());
   best->eval();
   return best;
@@ -272,4 +274,4 @@ absl::Status Trainer::LoadState(const std::filesystem::path& file) {
   return absl::OkStatus();
 }
 
-}  // namespace duet
+}  // namespace duet::training

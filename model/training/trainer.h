@@ -18,7 +18,7 @@
 #include "model/training/options.h"
 #include "model/training/sampler.h"
 
-namespace duet {
+namespace duet::training {
 
 // The mean of every loss over an epoch, unweighted; validation figures are NaN when there is none.
 struct EpochReport {
@@ -45,8 +45,8 @@ class Trainer {
  public:
   // `manifest` describes the model to be; its generator must be options.generator. `validation`
   // may be empty. All three must outlive the trainer.
-  Trainer(const TrainingOptions& options, const Manifest& manifest, const Dataset& dataset,
-          std::vector<int> train, std::vector<int> validation);
+  Trainer(const TrainingOptions& options, const checkpoint::Manifest& manifest,
+          const dataset::Dataset& dataset, std::vector<int> train, std::vector<int> validation);
 
   // Epochs done so far.
   int64_t epoch() const { return epoch_; }
@@ -73,8 +73,8 @@ class Trainer {
   std::vector<std::pair<std::string, torch::optim::Optimizer*>> StateOptimisers();
 
   const TrainingOptions& options_;
-  const Manifest& manifest_;
-  const Dataset& dataset_;
+  const checkpoint::Manifest& manifest_;
+  const dataset::Dataset& dataset_;
   std::vector<int> train_, validation_;
   int64_t steps_per_epoch_;
   network::Generator generator_;
@@ -87,6 +87,6 @@ class Trainer {
   int64_t epoch_ = 0;
 };
 
-}  // namespace duet
+}  // namespace duet::training
 
 #endif  // DUET_MODEL_TRAINING_TRAINER_H_

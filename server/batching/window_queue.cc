@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace duet {
+namespace duet::server::batching {
 
 bool WindowQueue::HasRoomFor(const WindowJob& job) const {
   if (job.continues_call) return true;
@@ -22,4 +22,4 @@ std::optional<QueuedWindow> WindowQueue::Pop() {
   return next;
 }
 
-}  // namespace duet
+}  // namespace duet::server::batching

@@ -7,7 +7,7 @@
 
 #include "server/batching/window_scheduler.h"
 
-namespace duet {
+namespace duet::server::batching {
 
 // The part of a limit that bulk work may fill; the rest stays free for interactive calls.
 inline std::size_t BulkShare(std::size_t limit) { return limit - limit / 4; }
@@ -15,7 +15,7 @@ inline std::size_t BulkShare(std::size_t limit) { return limit - limit / 4; }
 // A job and when it came.
 struct QueuedWindow {
   WindowJob job;
-  TimePoint queued_at;
+  common::TimePoint queued_at;
 };
 
 // Two first-in first-out lines; interactive goes first. Since a call has one window in line at a
@@ -43,6 +43,6 @@ class WindowQueue {
   std::deque<QueuedWindow> bulk_;
 };
 
-}  // namespace duet
+}  // namespace duet::server::batching
 
 #endif  // DUET_SERVER_BATCHING_WINDOW_QUEUE_H_

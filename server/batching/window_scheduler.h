@@ -9,7 +9,7 @@
 #include "model/engine/synthesizer.h"
 #include "server/common/clock.h"
 
-namespace duet {
+namespace duet::server::batching {
 
 // How urgent a window is: every waiting interactive window starts before any bulk one.
 enum class Priority { kInteractive, kBulk };
@@ -22,16 +22,16 @@ struct WindowTimings {
 };
 
 struct WindowOutcome {
-  WindowResult result;
+  engine::WindowResult result;
   WindowTimings timings;
 };
 
 // One network evaluation, and whom to tell.
 struct WindowJob {
-  std::shared_ptr<const Synthesizer> model;
-  SynthesisWindow window;
+  std::shared_ptr<const engine::Synthesizer> model;
+  engine::SynthesisWindow window;
   Priority priority = Priority::kInteractive;
-  TimePoint deadline = TimePoint::max();
+  common::TimePoint deadline = common::TimePoint::max();
   // Set by the owner when nobody wants the result any more. Required.
   std::shared_ptr<const std::atomic<bool>> cancelled;
   // A further window of a call that is being answered. Never refused for a full queue: what was
@@ -61,6 +61,6 @@ class WindowScheduler {
   virtual absl::Status Submit(WindowJob job) = 0;
 };
 
-}  // namespace duet
+}  // namespace duet::server::batching
 
 #endif  // DUET_SERVER_BATCHING_WINDOW_SCHEDULER_H_

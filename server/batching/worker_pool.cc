@@ -5,11 +5,11 @@
 #include <string>
 #include <utility>
 
-namespace duet {
+namespace duet::server::batching {
 namespace {
 
 // Why a window must not start, or OK.
-absl::Status MayStart(const WindowJob& job, TimePoint now, bool stopping) {
+absl::Status MayStart(const WindowJob& job, common::TimePoint now, bool stopping) {
   if (job.cancelled->load(std::memory_order_acquire)) {
     return absl::CancelledError("the call was cancelled before this window started");
   }
@@ -21,10 +21,10 @@ absl::Status MayStart(const WindowJob& job, TimePoint now, bool stopping) {
 }
 
 // A model reports failures as a status; whatever else escapes it must not take the server down.
-WindowResult Evaluate(const WindowJob& job) {
+engine::WindowResult Evaluate(const WindowJob& job) {
   try {
-    const SynthesisWindow* windows[] = {&job.window};
-    std::vector<WindowResult> results = job.model->Synthesize(windows);
+    const engine::SynthesisWindow* windows[] = {&job.window};
+    std::vector<engine::WindowResult> results = job.model->Synthesize(windows);
     if (results.size() == 1) return std::move(results.front());
     return absl::InternalError("the model gave " + std::to_string(results.size()) +
                                " results for 1 window");
@@ -37,14 +37,15 @@ WindowResult Evaluate(const WindowJob& job) {
 
 }  // namespace
 
-WorkerPool::WorkerPool(const WorkerPoolOptions& options, const Clock& clock, Observer observer)
+WorkerPool::WorkerPool(const WorkerPoolOptions& options, const common::Clock& clock,
+                       Observer observer)
     : clock_(clock), observer_(std::move(observer)), queue_(options.max_queued_windows) {
   for (int i = 0; i < options.workers; ++i) workers_.emplace_back([this] { Work(); });
 }
 
 WorkerPool::~WorkerPool() {
   {
-    MutexLock lock(mutex_);
+    common::MutexLock lock(mutex_);
     stopping_ = true;
   }
   changed_.NotifyAll();
@@ -53,7 +54,7 @@ WorkerPool::~WorkerPool() {
 
 absl::Status WorkerPool::Submit(WindowJob job) {
   {
-    MutexLock lock(mutex_);
+    common::MutexLock lock(mutex_);
     if (stopping_) return absl::UnavailableError("the server is shutting down");
     if (!queue_.HasRoomFor(job)) {
       return absl::ResourceExhaustedError("the queue is full: " + std::to_string(queue_.size()) +
@@ -67,7 +68,7 @@ absl::Status WorkerPool::Submit(WindowJob job) {
 }
 
 std::size_t WorkerPool::queued_windows() const {
-  MutexLock lock(mutex_);
+  common::MutexLock lock(mutex_);
   return queue_.size();
 }
 
@@ -78,7 +79,7 @@ void WorkerPool::Work() {
 }
 
 bool WorkerPool::Next(QueuedWindow* window, bool* stopping) {
-  MutexLock lock(mutex_);
+  common::MutexLock lock(mutex_);
   while (queue_.size() == 0 && !stopping_) changed_.Wait(mutex_);
   std::optional<QueuedWindow> next = queue_.Pop();
   if (!next.has_value()) return false;
@@ -89,16 +90,16 @@ bool WorkerPool::Next(QueuedWindow* window, bool* stopping) {
 
 void WorkerPool::Run(QueuedWindow window, bool stopping) const {
   const WindowJob& job = window.job;
-  const TimePoint begin = clock_.Now();
+  const common::TimePoint begin = clock_.Now();
   const absl::Status may_start = MayStart(job, begin, stopping);
-  WindowOutcome outcome{may_start.ok() ? Evaluate(job) : WindowResult(may_start), {}};
-  outcome.timings.queue_seconds = SecondsBetween(window.queued_at, begin);
+  WindowOutcome outcome{may_start.ok() ? Evaluate(job) : engine::WindowResult(may_start), {}};
+  outcome.timings.queue_seconds = common::SecondsBetween(window.queued_at, begin);
   if (may_start.ok()) {
-    outcome.timings.compute_seconds = SecondsBetween(begin, clock_.Now());
+    outcome.timings.compute_seconds = common::SecondsBetween(begin, clock_.Now());
     outcome.timings.batch_size = 1;
   }
   if (observer_) observer_(job.priority, outcome.timings);
   job.done(std::move(outcome));
 }
 
-}  // namespace duet
+}  // namespace duet::server::batching

@@ -6,12 +6,12 @@
 #include <thread>
 #include <vector>
 
-#include "server/common/clock.h"
-#include "server/common/mutex.h"
 #include "server/batching/window_queue.h"
 #include "server/batching/window_scheduler.h"
+#include "server/common/clock.h"
+#include "server/common/mutex.h"
 
-namespace duet {
+namespace duet::server::batching {
 
 struct WorkerPoolOptions {
   int workers = 1;
@@ -26,7 +26,8 @@ class WorkerPool final : public WindowScheduler {
   // Told of every window that left the queue, on a worker, under no lock.
   using Observer = std::function<void(Priority, const WindowTimings&)>;
 
-  WorkerPool(const WorkerPoolOptions& options, const Clock& clock, Observer observer = nullptr);
+  WorkerPool(const WorkerPoolOptions& options, const common::Clock& clock,
+             Observer observer = nullptr);
   // Finishes the windows that have started; those still waiting get UNAVAILABLE.
   ~WorkerPool() override;
 
@@ -40,15 +41,15 @@ class WorkerPool final : public WindowScheduler {
   bool Next(QueuedWindow* window, bool* stopping);
   void Run(QueuedWindow window, bool stopping) const;
 
-  const Clock& clock_;
+  const common::Clock& clock_;
   const Observer observer_;
-  mutable Mutex mutex_;
-  CondVar changed_;
+  mutable common::Mutex mutex_;
+  common::CondVar changed_;
   WindowQueue queue_ DUET_GUARDED_BY(mutex_);
   bool stopping_ DUET_GUARDED_BY(mutex_) = false;
   std::vector<std::thread> workers_;
 };
 
-}  // namespace duet
+}  // namespace duet::server::batching
 
 #endif  // DUET_SERVER_BATCHING_WORKER_POOL_H_

@@ -1,6 +1,6 @@
 #include "server/common/clock.h"
 
-namespace duet {
+namespace duet::server::common {
 namespace {
 
 class RealClock final : public Clock {
@@ -15,4 +15,4 @@ const Clock& Clock::Real() {
   return clock;
 }
 
-}  // namespace duet
+}  // namespace duet::server::common

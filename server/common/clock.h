@@ -3,7 +3,7 @@
 
 #include <chrono>
 
-namespace duet {
+namespace duet::server::common {
 
 using TimePoint = std::chrono::steady_clock::time_point;
 
@@ -23,6 +23,6 @@ inline double SecondsBetween(TimePoint from, TimePoint to) {
   return std::chrono::duration<double>(to - from).count();
 }
 
-}  // namespace duet
+}  // namespace duet::server::common
 
 #endif  // DUET_SERVER_COMMON_CLOCK_H_

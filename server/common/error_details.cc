@@ -8,7 +8,7 @@
 #include "absl/strings/str_cat.h"
 #include "duet/rpc/v1/status.pb.h"
 
-namespace duet {
+namespace duet::server::common {
 namespace {
 
 constexpr std::size_t kQuotedBytes = 64;
@@ -54,4 +54,4 @@ std::string Quoted(absl::string_view text) {
   return absl::StrCat("\"", absl::CHexEscape({shown.data(), shown.size()}), cut ? "..." : "", "\"");
 }
 
-}  // namespace duet
+}  // namespace duet::server::common

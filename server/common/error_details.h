@@ -9,7 +9,7 @@
 #include "absl/strings/string_view.h"
 #include "absl/time/time.h"
 
-namespace duet {
+namespace duet::server::common {
 
 // A field of a request that was refused.
 struct FieldViolation {
@@ -41,6 +41,6 @@ void AddErrorInfo(absl::Status& status, absl::string_view reason,
 // A caller's string made fit for a message: quoted, escaped, at most 64 bytes of it.
 std::string Quoted(absl::string_view text);
 
-}  // namespace duet
+}  // namespace duet::server::common
 
 #endif  // DUET_SERVER_COMMON_ERROR_DETAILS_H_

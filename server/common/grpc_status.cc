@@ -7,7 +7,7 @@
 #include "duet/rpc/v1/status.pb.h"
 #include "server/common/error_details.h"
 
-namespace duet {
+namespace duet::server::common {
 
 grpc::Status ToGrpcStatus(const absl::Status& status) {
   if (status.ok()) return grpc::Status::OK;
@@ -34,4 +34,4 @@ void AddRetryPushback(const absl::Status& status, grpc::ServerContextBase& conte
   context.AddTrailingMetadata("grpc-retry-pushback-ms", absl::StrCat(milliseconds));
 }
 
-}  // namespace duet
+}  // namespace duet::server::common

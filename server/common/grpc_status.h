@@ -6,7 +6,7 @@
 
 #include "absl/status/status.h"
 
-namespace duet {
+namespace duet::server::common {
 
 // The one place where a status goes on the wire: code and message as they are, payloads as
 // google.rpc.Status in grpc-status-details-bin.
@@ -16,6 +16,6 @@ grpc::Status ToGrpcStatus(const absl::Status& status);
 // (grpc-retry-pushback-ms). Nothing when the status carries no RetryInfo.
 void AddRetryPushback(const absl::Status& status, grpc::ServerContextBase& context);
 
-}  // namespace duet
+}  // namespace duet::server::common
 
 #endif  // DUET_SERVER_COMMON_GRPC_STATUS_H_

@@ -19,7 +19,7 @@
 #define DUET_ACQUIRE(...) DUET_THREAD_ANNOTATION(acquire_capability(__VA_ARGS__))
 #define DUET_RELEASE(...) DUET_THREAD_ANNOTATION(release_capability(__VA_ARGS__))
 
-namespace duet {
+namespace duet::server::common {
 
 // std::mutex with thread-safety annotations. The server's threaded parts use it rather than
 // absl::Mutex because ThreadSanitizer understands it in a distribution's uninstrumented libraries.
@@ -60,6 +60,6 @@ class CondVar {
   std::condition_variable condition_;
 };
 
-}  // namespace duet
+}  // namespace duet::server::common
 
 #endif  // DUET_SERVER_COMMON_MUTEX_H_

@@ -6,7 +6,7 @@
 #include <sstream>
 #include <thread>
 
-namespace duet {
+namespace duet::server::config {
 namespace {
 
 namespace fs = std::filesystem;
@@ -53,4 +53,4 @@ int AvailableCores(const fs::path& system_root) {
   return std::max(1, static_cast<int>(std::floor(cores)));
 }
 
-}  // namespace duet
+}  // namespace duet::server::config

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-namespace duet {
+namespace duet::server::config {
 
 // The cores that a cgroup's cpu.max ("<quota> <period>" microseconds, or "max <period>") grants;
 // nothing when it sets no limit or is malformed.
@@ -18,6 +18,6 @@ std::optional<double> ParseCpuMax(const std::string& text);
 // `system_root` is "/" but in tests.
 int AvailableCores(const std::filesystem::path& system_root = "/");
 
-}  // namespace duet
+}  // namespace duet::server::config
 
 #endif  // DUET_SERVER_CONFIG_CPU_BUDGET_H_

@@ -14,7 +14,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 
-namespace duet {
+namespace duet::server::config {
 namespace {
 
 // Keeps the first error of a text-format file.
@@ -185,4 +185,4 @@ absl::StatusOr<CommandLine> ParseCommandLine(int argc, const char* const* argv) 
   return command_line;
 }
 
-}  // namespace duet
+}  // namespace duet::server::config

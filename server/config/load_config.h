@@ -9,7 +9,7 @@
 #include "absl/status/statusor.h"
 #include "duet/v1/server_config.pb.h"
 
-namespace duet {
+namespace duet::server::config {
 
 // Parses a configuration file's text: JSON or text format. Unknown fields are refused.
 // Fails with INVALID_ARGUMENT saying where and why.
@@ -29,6 +29,6 @@ struct CommandLine {
 // Fails with INVALID_ARGUMENT naming the flag, or as ReadConfigFile.
 absl::StatusOr<CommandLine> ParseCommandLine(int argc, const char* const* argv);
 
-}  // namespace duet
+}  // namespace duet::server::config
 
 #endif  // DUET_SERVER_CONFIG_LOAD_CONFIG_H_

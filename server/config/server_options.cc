@@ -9,7 +9,7 @@
 #include "absl/strings/string_view.h"
 #include "absl/strings/strip.h"
 
-namespace duet {
+namespace duet::server::config {
 namespace {
 
 // Reads fields one after the other and keeps the first failure.
@@ -147,4 +147,4 @@ std::string ToString(const ListenAddress& address) {
   return absl::StrCat(ipv6 ? "[" : "", address.host, ipv6 ? "]" : "", ":", address.port);
 }
 
-}  // namespace duet
+}  // namespace duet::server::config

@@ -11,7 +11,7 @@
 #include "absl/status/statusor.h"
 #include "duet/v1/server_config.pb.h"
 
-namespace duet {
+namespace duet::server::config {
 
 // A host and a port to listen on.
 struct ListenAddress {
@@ -52,6 +52,6 @@ absl::StatusOr<ServerOptions> ToOptions(const v1::ServerConfig& config, int core
 absl::StatusOr<ListenAddress> ParseListenAddress(const std::string& text);
 std::string ToString(const ListenAddress& address);
 
-}  // namespace duet
+}  // namespace duet::server::config
 
 #endif  // DUET_SERVER_CONFIG_SERVER_OPTIONS_H_

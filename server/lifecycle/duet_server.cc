@@ -10,7 +10,7 @@
 #include "absl/strings/str_cat.h"
 #include "server/service/refusals.h"
 
-namespace duet {
+namespace duet::server::lifecycle {
 namespace {
 
 // How long gRPC may take to hand out the statuses of calls that were ended.
@@ -18,28 +18,28 @@ constexpr std::chrono::seconds kFlush(1);
 // How often a drain looks whether the last call has finished, or the operator is in a hurry.
 constexpr double kLookSeconds = 0.05;
 
-RequestLimits Limits(const ServerOptions& options) {
-  RequestLimits limits;
+service::RequestLimits Limits(const config::ServerOptions& options) {
+  service::RequestLimits limits;
   limits.max_request_bytes = options.max_request_bytes;
   return limits;
 }
 
 }  // namespace
 
-absl::StatusOr<std::unique_ptr<DuetServer>> DuetServer::Start(const ServerOptions& options,
-                                                              LogSink& sink) {
+absl::StatusOr<std::unique_ptr<DuetServer>> DuetServer::Start(const config::ServerOptions& options,
+                                                              metrics::LogSink& sink) {
   std::unique_ptr<DuetServer> server(new DuetServer(options, sink));
   const absl::Status listening = server->Listen();
   if (!listening.ok()) return listening;
   return server;
 }
 
-DuetServer::DuetServer(const ServerOptions& options, LogSink& sink)
+DuetServer::DuetServer(const config::ServerOptions& options, metrics::LogSink& sink)
     : options_(options),
       log_(sink),
       admission_(static_cast<std::size_t>(options.max_calls)),
-      pool_({options.workers, options.max_queued_windows}, Clock::Real(),
-            [this](Priority priority, const WindowTimings& timings) {
+      pool_({options.workers, options.max_queued_windows}, common::Clock::Real(),
+            [this](batching::Priority priority, const batching::WindowTimings& timings) {
               metrics_.WindowFinished(priority, timings);
             }),
       service_(Parts()) {
@@ -51,8 +51,8 @@ DuetServer::~DuetServer() {
   if (grpc_.server != nullptr) Close();
 }
 
-ServiceParts DuetServer::Parts() {
-  ServiceParts parts;
+service::ServiceParts DuetServer::Parts() {
+  service::ServiceParts parts;
   parts.registry = &registry_;
   parts.scheduler = &pool_;
   parts.admission = &admission_;
@@ -71,19 +71,19 @@ absl::Status DuetServer::Listen() {
   grpc_ = *std::move(grpc);
   SetHealth(false);
   if (!options_.metrics_listen.has_value()) return absl::OkStatus();
-  MetricsEndpointOptions endpoint;
+  metrics::MetricsEndpointOptions endpoint;
   endpoint.host = options_.metrics_listen->host;
   endpoint.port = options_.metrics_listen->port;
   endpoint.render = [this] { return metrics_.Render(); };
-  endpoint.ready = [this] { return admission_.state() == Admission::State::kServing; };
-  absl::StatusOr<std::unique_ptr<MetricsEndpoint>> started =
-      MetricsEndpoint::Start(std::move(endpoint));
+  endpoint.ready = [this] { return admission_.state() == service::Admission::State::kServing; };
+  absl::StatusOr<std::unique_ptr<metrics::MetricsEndpoint>> started =
+      metrics::MetricsEndpoint::Start(std::move(endpoint));
   if (!started.ok()) return started.status();
   endpoint_ = *std::move(started);
   return absl::OkStatus();
 }
 
-void DuetServer::Add(const LoadReport& report) {
+void DuetServer::Add(const registry::LoadReport& report) {
   metrics_.ModelLoaded(report.source, report.load_seconds, report.model.ok());
   if (!report.model.ok()) {
     log_.Error("model_refused",
@@ -91,7 +91,7 @@ void DuetServer::Add(const LoadReport& report) {
     return;
   }
   registry_.Serve(*report.model);
-  const ModelDescription& model = (*report.model)->description();
+  const engine::ModelDescription& model = (*report.model)->description();
   log_.Info("model_loaded", {{"source", report.source},
                              {"model", model.name},
                              {"version", model.version},
@@ -100,7 +100,7 @@ void DuetServer::Add(const LoadReport& report) {
 
 absl::Status DuetServer::Serve() {
   if (registry_.List().empty()) return absl::FailedPreconditionError("no model could be loaded");
-  for (const VersionLabelOption& label : options_.version_labels) {
+  for (const config::VersionLabelOption& label : options_.version_labels) {
     const absl::Status set = registry_.SetLabel(label.model, label.label, label.version);
     if (!set.ok()) log_.Error("version_label_refused", {{"message", std::string(set.message())}});
   }
@@ -108,7 +108,7 @@ absl::Status DuetServer::Serve() {
     const absl::Status set = registry_.SetDefault(options_.default_model);
     if (!set.ok()) return set;
   }
-  admission_.SetState(Admission::State::kServing);
+  admission_.SetState(service::Admission::State::kServing);
   SetHealth(true);
   log_.Info("serving", {{"port", port()},
                         {"metrics_port", metrics_port()},
@@ -123,7 +123,7 @@ void DuetServer::Drain(const std::function<bool(double seconds)>& wait) {
   bool patient = options_.drain_seconds <= 0 || wait(options_.drain_seconds);
   // From here on new calls are told to go elsewhere. gRPC's own Shutdown comes last: it would wait
   // for health watches as well, which never end by themselves.
-  admission_.SetState(Admission::State::kDraining);
+  admission_.SetState(service::Admission::State::kDraining);
   double left = options_.grace_seconds;
   while (patient && left > 0 && admission_.calls() > 0) {
     const double step = std::min(left, kLookSeconds);
@@ -136,18 +136,18 @@ void DuetServer::Drain(const std::function<bool(double seconds)>& wait) {
 }
 
 void DuetServer::Close() {
-  admission_.SetState(Admission::State::kDraining);
-  service_.AbortAll(DrainingRefusal());
+  admission_.SetState(service::Admission::State::kDraining);
+  service_.AbortAll(service::DrainingRefusal());
   grpc_.server->Shutdown(std::chrono::system_clock::now() + kFlush);
 }
 
 void DuetServer::SetHealth(bool serving) {
   grpc::HealthCheckServiceInterface* health = grpc_.server->GetHealthCheckService();
   health->SetServingStatus("", serving);
-  health->SetServingStatus(MotionSynthesisService::kServiceName, serving);
-  for (const ServedModel& served : registry_.List()) {
+  health->SetServingStatus(service::MotionSynthesisService::kServiceName, serving);
+  for (const registry::ServedModel& served : registry_.List()) {
     health->SetServingStatus(absl::StrCat("model:", served.model->description().name), serving);
   }
 }
 
-}  // namespace duet
+}  // namespace duet::server::lifecycle

@@ -17,7 +17,7 @@
 #include "server/service/admission.h"
 #include "server/service/motion_synthesis_service.h"
 
-namespace duet {
+namespace duet::server::lifecycle {
 
 // The whole server in one object: listens from the start, refuses calls as UNAVAILABLE until
 // Serve(), answers them until Drain().
@@ -32,12 +32,12 @@ namespace duet {
 class DuetServer {
  public:
   // `sink` outlives the server. Fails with UNAVAILABLE when an address cannot be listened on.
-  static absl::StatusOr<std::unique_ptr<DuetServer>> Start(const ServerOptions& options,
-                                                           LogSink& sink);
+  static absl::StatusOr<std::unique_ptr<DuetServer>> Start(const config::ServerOptions& options,
+                                                           metrics::LogSink& sink);
   ~DuetServer();
 
   // Serves a loaded model, or logs why it is not; both are counted.
-  void Add(const LoadReport& report);
+  void Add(const registry::LoadReport& report);
 
   // The model that answers when a request names none, unless the options name one. NOT_FOUND when
   // it is not served.
@@ -54,26 +54,26 @@ class DuetServer {
 
   int port() const { return grpc_.port; }
   int metrics_port() const { return endpoint_ == nullptr ? 0 : endpoint_->port(); }
-  JsonLog& log() { return log_; }
+  metrics::JsonLog& log() { return log_; }
 
  private:
-  DuetServer(const ServerOptions& options, LogSink& sink);
+  DuetServer(const config::ServerOptions& options, metrics::LogSink& sink);
   absl::Status Listen();
   void SetHealth(bool serving);
   void Close();
-  ServiceParts Parts();
+  service::ServiceParts Parts();
 
-  const ServerOptions options_;
-  JsonLog log_;
-  ServerMetrics metrics_;
-  ModelRegistry registry_;
-  Admission admission_;
-  WorkerPool pool_;
-  MotionSynthesisService service_;
+  const config::ServerOptions options_;
+  metrics::JsonLog log_;
+  metrics::ServerMetrics metrics_;
+  registry::ModelRegistry registry_;
+  service::Admission admission_;
+  batching::WorkerPool pool_;
+  service::MotionSynthesisService service_;
   GrpcServer grpc_;
-  std::unique_ptr<MetricsEndpoint> endpoint_;
+  std::unique_ptr<metrics::MetricsEndpoint> endpoint_;
 };
 
-}  // namespace duet
+}  // namespace duet::server::lifecycle
 
 #endif  // DUET_SERVER_LIFECYCLE_DUET_SERVER_H_

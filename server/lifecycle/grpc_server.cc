@@ -14,7 +14,7 @@
 
 #include "absl/strings/str_cat.h"
 
-namespace duet {
+namespace duet::server::lifecycle {
 namespace {
 
 constexpr int kSecond = 1000;  // in channel arguments
@@ -82,4 +82,4 @@ absl::StatusOr<GrpcServer> StartGrpcServer(const GrpcServerOptions& options,
   return started;
 }
 
-}  // namespace duet
+}  // namespace duet::server::lifecycle

@@ -9,10 +9,10 @@
 #include "absl/status/statusor.h"
 #include "server/config/server_options.h"
 
-namespace duet {
+namespace duet::server::lifecycle {
 
 struct GrpcServerOptions {
-  ListenAddress listen;
+  config::ListenAddress listen;
   bool reflection = true;
   std::size_t max_request_bytes = std::size_t{32} << 20;
   std::size_t max_transport_bytes = std::size_t{512} << 20;
@@ -30,6 +30,6 @@ struct GrpcServer {
 absl::StatusOr<GrpcServer> StartGrpcServer(const GrpcServerOptions& options,
                                            grpc::Service& service);
 
-}  // namespace duet
+}  // namespace duet::server::lifecycle
 
 #endif  // DUET_SERVER_LIFECYCLE_GRPC_SERVER_H_

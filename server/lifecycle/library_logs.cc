@@ -8,14 +8,14 @@
 #include <string>
 #include <utility>
 
-namespace duet {
+namespace duet::server::lifecycle {
 namespace {
 
 // The libraries take plain functions.
-std::atomic<JsonLog*> current_log{nullptr};
+std::atomic<metrics::JsonLog*> current_log{nullptr};
 
 void Log(const char* library, bool error, const std::string& message) {
-  JsonLog* log = current_log.load(std::memory_order_acquire);
+  metrics::JsonLog* log = current_log.load(std::memory_order_acquire);
   if (log == nullptr) return;
   nlohmann::ordered_json fields = {{"library", library}, {"message", message}};
   if (error) {
@@ -36,7 +36,7 @@ void LogProtobuf(google::protobuf::LogLevel level, const char*, int, const std::
 
 }  // namespace
 
-LibraryLogs::LibraryLogs(JsonLog& log) {
+LibraryLogs::LibraryLogs(metrics::JsonLog& log) {
   current_log.store(&log, std::memory_order_release);
   gpr_set_log_function(LogGrpc);
   google::protobuf::SetLogHandler(LogProtobuf);
@@ -48,4 +48,4 @@ LibraryLogs::~LibraryLogs() {
   current_log.store(nullptr, std::memory_order_release);
 }
 
-}  // namespace duet
+}  // namespace duet::server::lifecycle

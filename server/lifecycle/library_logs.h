@@ -3,7 +3,7 @@
 
 #include "server/metrics/json_log.h"
 
-namespace duet {
+namespace duet::server::lifecycle {
 
 // While it lives, what gRPC and Protobuf have to say goes to the log as JSON, so that every line of
 // the server's output parses.
@@ -12,12 +12,12 @@ namespace duet {
 class LibraryLogs {
  public:
   // `log` outlives it.
-  explicit LibraryLogs(JsonLog& log);
+  explicit LibraryLogs(metrics::JsonLog& log);
   ~LibraryLogs();
   LibraryLogs(const LibraryLogs&) = delete;
   LibraryLogs& operator=(const LibraryLogs&) = delete;
 };
 
-}  // namespace duet
+}  // namespace duet::server::lifecycle
 
 #endif  // DUET_SERVER_LIFECYCLE_LIBRARY_LOGS_H_

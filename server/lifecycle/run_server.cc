@@ -13,7 +13,7 @@
 #include "server/lifecycle/duet_server.h"
 #include "server/lifecycle/library_logs.h"
 
-namespace duet {
+namespace duet::server::lifecycle {
 namespace {
 
 // Each connection is a descriptor, and gRPC's listener does not come back from running out.
@@ -26,15 +26,15 @@ void RaiseDescriptorLimit() {
 
 // The checkpoints linked into the program; the first is the default unless the operator says so.
 absl::Status LoadEmbedded(const ModelSource& source, DuetServer& server) {
-  const TimePoint begin = Clock::Real().Now();
+  const common::TimePoint begin = common::Clock::Real().Now();
   const auto models = source.load_embedded();
-  const double seconds = SecondsBetween(begin, Clock::Real().Now());
+  const double seconds = common::SecondsBetween(begin, common::Clock::Real().Now());
   if (!models.ok()) {
     server.Add({"embedded", models.status(), seconds});
     return absl::OkStatus();
   }
-  for (const std::shared_ptr<const Synthesizer>& model : *models) {
-    const ModelDescription& description = model->description();
+  for (const std::shared_ptr<const engine::Synthesizer>& model : *models) {
+    const engine::ModelDescription& description = model->description();
     server.Add({absl::StrCat("embedded/", description.name, "/", description.version), model,
                 seconds / static_cast<double>(models->size())});
   }
@@ -43,26 +43,27 @@ absl::Status LoadEmbedded(const ModelSource& source, DuetServer& server) {
 }
 
 // Loads what the options name, one after the other, until told to stop.
-absl::Status LoadModels(const ServerOptions& options, const ModelSource& source, StopSignal& stop,
-                        DuetServer& server) {
+absl::Status LoadModels(const config::ServerOptions& options, const ModelSource& source,
+                        StopSignal& stop, DuetServer& server) {
   if (options.model_repository.empty()) {
     return LoadEmbedded(source, server);
   }
-  const absl::StatusOr<RepositoryListing> listing = ListCheckpoints(options.model_repository);
+  const absl::StatusOr<registry::RepositoryListing> listing =
+      registry::ListCheckpoints(options.model_repository);
   if (!listing.ok()) return listing.status();
   for (const absl::Status& unreadable : listing->unreadable) {
     server.log().Error("folder_skipped", {{"message", std::string(unreadable.message())}});
   }
   for (const std::filesystem::path& folder : listing->checkpoints) {
     if (stop.WaitFor(0)) return absl::CancelledError("told to stop while loading");
-    server.Add(LoadCheckpoint(folder, source.load_folder));
+    server.Add(registry::LoadCheckpoint(folder, source.load_folder));
   }
   return absl::OkStatus();
 }
 
-int Serve(const ServerOptions& options, const ModelSource& source, StopSignal& stop,
-          LogSink& sink) {
-  JsonLog log(sink);
+int Serve(const config::ServerOptions& options, const ModelSource& source, StopSignal& stop,
+          metrics::LogSink& sink) {
+  metrics::JsonLog log(sink);
   const LibraryLogs library_logs(log);
   absl::StatusOr<std::unique_ptr<DuetServer>> server = DuetServer::Start(options, sink);
   absl::Status status = server.status();
@@ -81,15 +82,15 @@ int Serve(const ServerOptions& options, const ModelSource& source, StopSignal& s
 }  // namespace
 
 int RunServer(int argc, const char* const* argv, const ModelSource& source, StopSignal& stop,
-              LogSink& sink) {
-  const absl::StatusOr<CommandLine> command_line = ParseCommandLine(argc, argv);
+              metrics::LogSink& sink) {
+  const absl::StatusOr<config::CommandLine> command_line = config::ParseCommandLine(argc, argv);
   if (command_line.ok() && command_line->print.has_value()) {
     std::cout << *command_line->print;
     return kExitStopped;
   }
-  const absl::StatusOr<ServerOptions> options =
-      command_line.ok() ? ToOptions(command_line->config, AvailableCores())
-                        : absl::StatusOr<ServerOptions>(command_line.status());
+  const absl::StatusOr<config::ServerOptions> options =
+      command_line.ok() ? config::ToOptions(command_line->config, config::AvailableCores())
+                        : absl::StatusOr<config::ServerOptions>(command_line.status());
   if (!options.ok()) {
     std::cerr << "duet-server: " << options.status().message() << "\n";
     return kExitUsage;
@@ -99,4 +100,4 @@ int RunServer(int argc, const char* const* argv, const ModelSource& source, Stop
   return Serve(*options, source, stop, sink);
 }
 
-}  // namespace duet
+}  // namespace duet::server::lifecycle

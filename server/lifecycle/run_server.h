@@ -10,13 +10,14 @@
 #include "server/metrics/log_sink.h"
 #include "server/registry/model_repository.h"
 
-namespace duet {
+namespace duet::server::lifecycle {
 
 // Where models come from: what main.cc knows and nobody else.
 struct ModelSource {
-  ModelLoader load_folder;
+  registry::ModelLoader load_folder;
   // The default model first.
-  std::function<absl::StatusOr<std::vector<std::shared_ptr<const Synthesizer>>>()> load_embedded;
+  std::function<absl::StatusOr<std::vector<std::shared_ptr<const engine::Synthesizer>>>()>
+      load_embedded;
   // Called once before anything is loaded.
   std::function<void(int threads)> set_threads;
 };
@@ -29,8 +30,8 @@ inline constexpr int kExitUsage = 2;    // a flag or the configuration file is w
 // Everything that duet-server does, from the command line to the exit code: listen, load, serve,
 // drain. `stop` was constructed before any thread.
 int RunServer(int argc, const char* const* argv, const ModelSource& source, StopSignal& stop,
-              LogSink& sink);
+              metrics::LogSink& sink);
 
-}  // namespace duet
+}  // namespace duet::server::lifecycle
 
 #endif  // DUET_SERVER_LIFECYCLE_RUN_SERVER_H_

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <ctime>
 
-namespace duet {
+namespace duet::server::lifecycle {
 namespace {
 
 sigset_t StopSignals() {
@@ -50,4 +50,4 @@ bool StopSignal::WaitFor(double seconds) {
   }
 }
 
-}  // namespace duet
+}  // namespace duet::server::lifecycle

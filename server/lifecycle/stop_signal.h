@@ -1,7 +1,7 @@
 #ifndef DUET_SERVER_LIFECYCLE_STOP_SIGNAL_H_
 #define DUET_SERVER_LIFECYCLE_STOP_SIGNAL_H_
 
-namespace duet {
+namespace duet::server::lifecycle {
 
 // Waits for SIGTERM and SIGINT without signal handlers.
 //
@@ -18,6 +18,6 @@ class StopSignal {
   bool WaitFor(double seconds);
 };
 
-}  // namespace duet
+}  // namespace duet::server::lifecycle
 
 #endif  // DUET_SERVER_LIFECYCLE_STOP_SIGNAL_H_

@@ -6,7 +6,7 @@
 
 #include "absl/status/status.h"
 
-namespace duet {
+namespace duet::server::metrics {
 
 // A method of the service.
 struct MethodInfo {
@@ -49,6 +49,6 @@ class CallObserver {
   virtual void CallFinished(const CallRecord& record) = 0;
 };
 
-}  // namespace duet
+}  // namespace duet::server::metrics
 
 #endif  // DUET_SERVER_METRICS_CALL_RECORD_H_

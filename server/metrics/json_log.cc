@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace duet {
+namespace duet::server::metrics {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -68,4 +68,4 @@ void JsonLog::Write(std::string_view severity, std::string_view event, const Jso
   sink_.Write(line.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
-}  // namespace duet
+}  // namespace duet::server::metrics

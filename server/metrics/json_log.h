@@ -10,7 +10,7 @@
 #include "server/metrics/call_record.h"
 #include "server/metrics/log_sink.h"
 
-namespace duet {
+namespace duet::server::metrics {
 
 // One line of JSON for each call and each event of the server's life.
 //
@@ -39,6 +39,6 @@ class JsonLog final : public CallObserver {
   const std::function<absl::Time()> now_;
 };
 
-}  // namespace duet
+}  // namespace duet::server::metrics
 
 #endif  // DUET_SERVER_METRICS_JSON_LOG_H_

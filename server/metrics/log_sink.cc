@@ -1,6 +1,6 @@
 #include "server/metrics/log_sink.h"
 
-namespace duet {
+namespace duet::server::metrics {
 
 void StreamLogSink::Write(std::string_view line) {
   std::string whole(line);
@@ -10,4 +10,4 @@ void StreamLogSink::Write(std::string_view line) {
   std::fflush(stream_);
 }
 
-}  // namespace duet
+}  // namespace duet::server::metrics

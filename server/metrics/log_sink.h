@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace duet {
+namespace duet::server::metrics {
 
 // Takes finished log lines.
 //
@@ -27,6 +27,6 @@ class StreamLogSink final : public LogSink {
   std::FILE* const stream_;
 };
 
-}  // namespace duet
+}  // namespace duet::server::metrics
 
 #endif  // DUET_SERVER_METRICS_LOG_SINK_H_

@@ -8,7 +8,7 @@
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
 
-namespace duet {
+namespace duet::server::metrics {
 namespace {
 
 // Scrapes are rare and short; more threads would only hold slow clients.
@@ -83,4 +83,4 @@ absl::StatusOr<std::unique_ptr<MetricsEndpoint>> MetricsEndpoint::Start(
   return endpoint;
 }
 
-}  // namespace duet
+}  // namespace duet::server::metrics

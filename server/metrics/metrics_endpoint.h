@@ -7,7 +7,7 @@
 
 #include "absl/status/statusor.h"
 
-namespace duet {
+namespace duet::server::metrics {
 
 struct MetricsEndpointOptions {
   std::string host = "0.0.0.0";
@@ -30,6 +30,6 @@ class MetricsEndpoint {
   virtual int port() const = 0;
 };
 
-}  // namespace duet
+}  // namespace duet::server::metrics
 
 #endif  // DUET_SERVER_METRICS_METRICS_ENDPOINT_H_

@@ -6,7 +6,7 @@
 
 #include "absl/status/status.h"
 
-namespace duet {
+namespace duet::server::metrics {
 namespace {
 
 using prometheus::BuildCounter;
@@ -43,8 +43,8 @@ std::string CodeLabel(absl::StatusCode code) {
   return kNames[static_cast<int>(code)];
 }
 
-Labels PriorityLabels(Priority priority) {
-  return {{"priority", priority == Priority::kBulk ? "bulk" : "interactive"}};
+Labels PriorityLabels(batching::Priority priority) {
+  return {{"priority", priority == batching::Priority::kBulk ? "bulk" : "interactive"}};
 }
 
 }  // namespace
@@ -127,7 +127,8 @@ void ServerMetrics::CallFinished(const CallRecord& record) {
   }
 }
 
-void ServerMetrics::WindowFinished(Priority priority, const WindowTimings& timings) {
+void ServerMetrics::WindowFinished(batching::Priority priority,
+                                   const batching::WindowTimings& timings) {
   queue_seconds_.Add(PriorityLabels(priority), SecondsBuckets()).Observe(timings.queue_seconds);
   if (timings.batch_size == 0) {
     windows_dropped_.Add(PriorityLabels(priority)).Increment();
@@ -152,4 +153,4 @@ std::string ServerMetrics::Render() {
   return prometheus::TextSerializer().Serialize(registry_.Collect());
 }
 
-}  // namespace duet
+}  // namespace duet::server::metrics

@@ -13,7 +13,7 @@
 #include "server/batching/window_scheduler.h"
 #include "server/metrics/call_record.h"
 
-namespace duet {
+namespace duet::server::metrics {
 
 // Every number that the server gives to Prometheus. Durations are histograms in seconds; labels
 // take their values from what is served, never from a request.
@@ -41,7 +41,7 @@ class ServerMetrics final : public CallObserver {
   void CallFinished(const CallRecord& record) override;
 
   // A window left the queue.
-  void WindowFinished(Priority priority, const WindowTimings& timings);
+  void WindowFinished(batching::Priority priority, const batching::WindowTimings& timings);
   // A checkpoint was loaded, or was refused.
   void ModelLoaded(const std::string& checkpoint, double seconds, bool served);
   // Asks for the number of waiting windows at every scrape.
@@ -68,6 +68,6 @@ class ServerMetrics final : public CallObserver {
   std::function<double()> queue_length_;
 };
 
-}  // namespace duet
+}  // namespace duet::server::metrics
 
 #endif  // DUET_SERVER_METRICS_SERVER_METRICS_H_

@@ -8,7 +8,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 
-namespace duet {
+namespace duet::server::registry {
 namespace {
 
 // Names come from requests; enough of one to recognise it.
@@ -26,16 +26,16 @@ std::string Keys(const Map& map) {
 
 }  // namespace
 
-void ModelRegistry::Serve(std::shared_ptr<const Synthesizer> model) {
-  const ModelDescription& description = model->description();
-  MutexLock lock(mutex_);
+void ModelRegistry::Serve(std::shared_ptr<const engine::Synthesizer> model) {
+  const engine::ModelDescription& description = model->description();
+  common::MutexLock lock(mutex_);
   entries_[description.name].versions[static_cast<uint32_t>(description.version)] =
       std::move(model);
 }
 
 absl::Status ModelRegistry::SetLabel(absl::string_view name, absl::string_view label,
                                      uint32_t version) {
-  MutexLock lock(mutex_);
+  common::MutexLock lock(mutex_);
   const auto entry = entries_.find(name);
   if (entry == entries_.end() || entry->second.versions.count(version) == 0) {
     return absl::NotFoundError(absl::StrCat("version label ", Shown(label), " points at version ",
@@ -47,7 +47,7 @@ absl::Status ModelRegistry::SetLabel(absl::string_view name, absl::string_view l
 }
 
 absl::Status ModelRegistry::SetDefault(absl::string_view name) {
-  MutexLock lock(mutex_);
+  common::MutexLock lock(mutex_);
   if (entries_.find(name) == entries_.end()) {
     return absl::NotFoundError(absl::StrCat("the default model ", Shown(name),
                                             " is not served; served are: ", Keys(entries_)));
@@ -72,7 +72,7 @@ ServedModel ModelRegistry::Describe(const std::string& name, const Entry& entry,
 }
 
 absl::StatusOr<ServedModel> ModelRegistry::Find(const ModelQuery& query) const {
-  MutexLock lock(mutex_);
+  common::MutexLock lock(mutex_);
   const std::string& name = query.name.empty() ? DefaultName() : query.name;
   const auto found = entries_.find(name);
   if (found == entries_.end()) {
@@ -102,7 +102,7 @@ absl::StatusOr<ServedModel> ModelRegistry::Find(const ModelQuery& query) const {
 }
 
 std::vector<ServedModel> ModelRegistry::List() const {
-  MutexLock lock(mutex_);
+  common::MutexLock lock(mutex_);
   std::vector<ServedModel> models;
   for (const auto& [name, entry] : entries_) {
     for (const auto& [version, model] : entry.versions) {
@@ -112,4 +112,4 @@ std::vector<ServedModel> ModelRegistry::List() const {
   return models;
 }
 
-}  // namespace duet
+}  // namespace duet::server::registry

@@ -15,7 +15,7 @@
 #include "model/engine/synthesizer.h"
 #include "server/common/mutex.h"
 
-namespace duet {
+namespace duet::server::registry {
 
 // Which model a request asks for. All empty: the default model's newest version.
 struct ModelQuery {
@@ -26,7 +26,7 @@ struct ModelQuery {
 
 // A model version being served.
 struct ServedModel {
-  std::shared_ptr<const Synthesizer> model;
+  std::shared_ptr<const engine::Synthesizer> model;
   std::vector<std::string> version_labels;  // sorted
   bool is_default = false;
 };
@@ -38,7 +38,7 @@ struct ServedModel {
 class ModelRegistry {
  public:
   // Serves a model under its description's name and version, in place of one already there.
-  void Serve(std::shared_ptr<const Synthesizer> model);
+  void Serve(std::shared_ptr<const engine::Synthesizer> model);
 
   // Points a label of a model at a version, in place of where it pointed before.
   // NOT_FOUND when that version is not served.
@@ -55,7 +55,8 @@ class ModelRegistry {
   std::vector<ServedModel> List() const;
 
  private:
-  using Versions = std::map<uint32_t, std::shared_ptr<const Synthesizer>, std::greater<uint32_t>>;
+  using Versions =
+      std::map<uint32_t, std::shared_ptr<const engine::Synthesizer>, std::greater<uint32_t>>;
   struct Entry {
     Versions versions;
     std::map<std::string, uint32_t, std::less<>> labels;
@@ -66,11 +67,11 @@ class ModelRegistry {
   ServedModel Describe(const std::string& name, const Entry& entry, uint32_t version) const
       DUET_REQUIRES(mutex_);
 
-  mutable Mutex mutex_;
+  mutable common::Mutex mutex_;
   Entries entries_ DUET_GUARDED_BY(mutex_);
   std::string default_name_ DUET_GUARDED_BY(mutex_);
 };
 
-}  // namespace duet
+}  // namespace duet::server::registry
 
 #endif  // DUET_SERVER_REGISTRY_MODEL_REGISTRY_H_

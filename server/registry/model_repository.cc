@@ -9,7 +9,7 @@
 #include "absl/strings/str_cat.h"
 #include "server/common/clock.h"
 
-namespace duet {
+namespace duet::server::registry {
 namespace {
 
 namespace fs = std::filesystem;
@@ -36,7 +36,7 @@ absl::StatusOr<std::vector<fs::path>> Subfolders(const fs::path& folder) {
   return absl::NotFoundError(message);
 }
 
-absl::Status CheckPlace(const fs::path& folder, const ModelDescription& model) {
+absl::Status CheckPlace(const fs::path& folder, const engine::ModelDescription& model) {
   const std::string name = folder.parent_path().filename().string();
   const std::string version = folder.filename().string();
   if (model.name == name && absl::StrCat(model.version) == version) return absl::OkStatus();
@@ -70,10 +70,10 @@ absl::StatusOr<RepositoryListing> ListCheckpoints(const fs::path& repository) {
 }
 
 LoadReport LoadCheckpoint(const fs::path& folder, const ModelLoader& loader) {
-  const TimePoint begin = Clock::Real().Now();
+  const common::TimePoint begin = common::Clock::Real().Now();
   LoadReport report{(folder.parent_path().filename() / folder.filename()).string(), loader(folder),
                     0};
-  report.load_seconds = SecondsBetween(begin, Clock::Real().Now());
+  report.load_seconds = common::SecondsBetween(begin, common::Clock::Real().Now());
   if (report.model.ok()) {
     const absl::Status placed = CheckPlace(folder, (*report.model)->description());
     if (!placed.ok()) report.model = placed;
@@ -81,4 +81,4 @@ LoadReport LoadCheckpoint(const fs::path& folder, const ModelLoader& loader) {
   return report;
 }
 
-}  // namespace duet
+}  // namespace duet::server::registry

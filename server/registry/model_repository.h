@@ -11,16 +11,16 @@
 #include "absl/status/statusor.h"
 #include "model/engine/synthesizer.h"
 
-namespace duet {
+namespace duet::server::registry {
 
 // Turns a checkpoint folder into a model. Only main.cc knows which engine that is.
-using ModelLoader = std::function<absl::StatusOr<std::shared_ptr<const Synthesizer>>(
+using ModelLoader = std::function<absl::StatusOr<std::shared_ptr<const engine::Synthesizer>>(
     const std::filesystem::path& folder)>;
 
 // What became of one checkpoint.
 struct LoadReport {
   std::string source;  // <name>/<version>, or "embedded"
-  absl::StatusOr<std::shared_ptr<const Synthesizer>> model;
+  absl::StatusOr<std::shared_ptr<const engine::Synthesizer>> model;
   double load_seconds = 0;
 };
 
@@ -38,6 +38,6 @@ absl::StatusOr<RepositoryListing> ListCheckpoints(const std::filesystem::path& r
 // its folder says is refused: one of the two is wrong.
 LoadReport LoadCheckpoint(const std::filesystem::path& folder, const ModelLoader& loader);
 
-}  // namespace duet
+}  // namespace duet::server::registry
 
 #endif  // DUET_SERVER_REGISTRY_MODEL_REPOSITORY_H_

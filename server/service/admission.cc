@@ -3,7 +3,7 @@
 #include "server/batching/window_queue.h"
 #include "server/service/refusals.h"
 
-namespace duet {
+namespace duet::server::service {
 namespace {
 
 absl::Status Refusal(Admission::State state) {
@@ -25,20 +25,21 @@ AdmissionSlot::~AdmissionSlot() {
 }
 
 void Admission::SetState(State state) {
-  MutexLock lock(mutex_);
+  common::MutexLock lock(mutex_);
   state_ = state;
 }
 
 Admission::State Admission::state() const {
-  MutexLock lock(mutex_);
+  common::MutexLock lock(mutex_);
   return state_;
 }
 
 absl::Status Admission::CheckServing() const { return Refusal(state()); }
 
-absl::StatusOr<AdmissionSlot> Admission::Admit(Priority priority) {
-  const std::size_t limit = priority == Priority::kBulk ? BulkShare(max_calls_) : max_calls_;
-  MutexLock lock(mutex_);
+absl::StatusOr<AdmissionSlot> Admission::Admit(batching::Priority priority) {
+  const std::size_t limit =
+      priority == batching::Priority::kBulk ? batching::BulkShare(max_calls_) : max_calls_;
+  common::MutexLock lock(mutex_);
   // Under the same lock as the count: who drains sees every call that got in.
   const absl::Status serving = Refusal(state_);
   if (!serving.ok()) return serving;
@@ -48,13 +49,13 @@ absl::StatusOr<AdmissionSlot> Admission::Admit(Priority priority) {
 }
 
 std::size_t Admission::calls() const {
-  MutexLock lock(mutex_);
+  common::MutexLock lock(mutex_);
   return calls_;
 }
 
 void Admission::Leave() {
-  MutexLock lock(mutex_);
+  common::MutexLock lock(mutex_);
   --calls_;
 }
 
-}  // namespace duet
+}  // namespace duet::server::service

@@ -6,10 +6,10 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "server/common/mutex.h"
 #include "server/batching/window_scheduler.h"
+#include "server/common/mutex.h"
 
-namespace duet {
+namespace duet::server::service {
 
 class Admission;
 
@@ -49,7 +49,7 @@ class Admission {
 
   // UNAVAILABLE as above; RESOURCE_EXHAUSTED with RetryInfo when there are too many calls.
   // The slot must not outlive the admission.
-  absl::StatusOr<AdmissionSlot> Admit(Priority priority);
+  absl::StatusOr<AdmissionSlot> Admit(batching::Priority priority);
 
   std::size_t calls() const;
 
@@ -58,11 +58,11 @@ class Admission {
   void Leave();
 
   const std::size_t max_calls_;
-  mutable Mutex mutex_;
+  mutable common::Mutex mutex_;
   State state_ DUET_GUARDED_BY(mutex_) = State::kLoading;
   std::size_t calls_ DUET_GUARDED_BY(mutex_) = 0;
 };
 
-}  // namespace duet
+}  // namespace duet::server::service
 
 #endif  // DUET_SERVER_SERVICE_ADMISSION_H_

@@ -8,7 +8,7 @@
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 
-namespace duet {
+namespace duet::server::service {
 namespace {
 
 constexpr std::size_t kMaxRequestIdBytes = 128;
@@ -57,4 +57,4 @@ std::string NewRequestId() {
   return absl::StrCat(absl::Hex(high, absl::kZeroPad16), absl::Hex(low, absl::kZeroPad16));
 }
 
-}  // namespace duet
+}  // namespace duet::server::service

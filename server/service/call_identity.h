@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace duet {
+namespace duet::server::service {
 
 // By what a call is recognised in logs and traces.
 struct CallIdentity {
@@ -25,6 +25,6 @@ bool IsTraceparent(std::string_view text);
 // 128 random bits in hexadecimal.
 std::string NewRequestId();
 
-}  // namespace duet
+}  // namespace duet::server::service
 
 #endif  // DUET_SERVER_SERVICE_CALL_IDENTITY_H_

@@ -8,7 +8,7 @@
 #include "server/metrics/call_record.h"
 #include "server/service/call_identity.h"
 
-namespace duet {
+namespace duet::server::service {
 
 // One call as its observers see it: begun here, ended by Finish, once.
 //
@@ -16,22 +16,22 @@ namespace duet {
 class CallScope {
  public:
   // Everything outlives the scope.
-  CallScope(const MethodInfo& method, CallIdentity identity,
-            const std::vector<CallObserver*>& observers, const Clock& clock);
+  CallScope(const metrics::MethodInfo& method, CallIdentity identity,
+            const std::vector<metrics::CallObserver*>& observers, const common::Clock& clock);
 
   // Filled in as the call goes on.
-  CallRecord& record() { return record_; }
-  double ElapsedSeconds() const { return SecondsBetween(begin_, clock_.Now()); }
+  metrics::CallRecord& record() { return record_; }
+  double ElapsedSeconds() const { return common::SecondsBetween(begin_, clock_.Now()); }
 
   void Finish(const absl::Status& status);
 
  private:
-  const std::vector<CallObserver*>& observers_;
-  const Clock& clock_;
-  const TimePoint begin_;
-  CallRecord record_;
+  const std::vector<metrics::CallObserver*>& observers_;
+  const common::Clock& clock_;
+  const common::TimePoint begin_;
+  metrics::CallRecord record_;
 };
 
-}  // namespace duet
+}  // namespace duet::server::service
 
 #endif  // DUET_SERVER_SERVICE_CALL_SCOPE_H_

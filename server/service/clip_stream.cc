@@ -4,11 +4,11 @@
 #include <string>
 #include <utility>
 
-namespace duet {
+namespace duet::server::service {
 
-ClipStream::ClipStream(std::shared_ptr<const Synthesizer> model, ClipRequest request,
-                       const ClipStreamOptions& options, WindowScheduler& scheduler,
-                       std::function<void()> on_progress)
+ClipStream::ClipStream(std::shared_ptr<const engine::Synthesizer> model,
+                       engine::ClipRequest request, const ClipStreamOptions& options,
+                       batching::WindowScheduler& scheduler, std::function<void()> on_progress)
     : model_(std::move(model)),
       joints_(static_cast<std::size_t>(model_->description().skeleton.joint_count())),
       options_(options),
@@ -19,7 +19,7 @@ ClipStream::ClipStream(std::shared_ptr<const Synthesizer> model, ClipRequest req
 
 absl::Status ClipStream::Start() {
   {
-    MutexLock lock(mutex_);
+    common::MutexLock lock(mutex_);
     in_flight_ = true;
   }
   return ScheduleNext(/*continues_call=*/false);
@@ -28,7 +28,7 @@ absl::Status ClipStream::Start() {
 ClipPart ClipStream::Take(int max_frames) {
   ClipPart part;
   {
-    MutexLock lock(mutex_);
+    common::MutexLock lock(mutex_);
     const std::size_t available = (ready_.size() - taken_) / joints_;
     if (!error_.ok()) {
       part.kind = ClipPart::Kind::kFailed;
@@ -50,7 +50,7 @@ ClipPart ClipStream::Take(int max_frames) {
 void ClipStream::Cancel() { cancelled_->store(true, std::memory_order_release); }
 
 ClipStreamStats ClipStream::stats() const {
-  MutexLock lock(mutex_);
+  common::MutexLock lock(mutex_);
   return stats_;
 }
 
@@ -62,43 +62,45 @@ bool ClipStream::WantsWindow() const {
 
 void ClipStream::ScheduleIfWanted() {
   {
-    MutexLock lock(mutex_);
+    common::MutexLock lock(mutex_);
     if (!WantsWindow()) return;
     in_flight_ = true;
   }
   const absl::Status scheduled = ScheduleNext(/*continues_call=*/true);
   if (scheduled.ok()) return;
-  MutexLock lock(mutex_);
+  common::MutexLock lock(mutex_);
   in_flight_ = false;
   error_ = scheduled;
 }
 
 absl::Status ClipStream::ScheduleNext(bool continues_call) {
-  WindowJob job;
+  batching::WindowJob job;
   job.model = model_;
   job.window = clip_.NextWindow();
   job.priority = options_.priority;
   job.deadline = options_.deadline;
   job.cancelled = cancelled_;
   job.continues_call = continues_call;
-  job.done = [self = shared_from_this()](WindowOutcome outcome) { self->OnWindow(outcome); };
+  job.done = [self = shared_from_this()](batching::WindowOutcome outcome) {
+    self->OnWindow(outcome);
+  };
   expected_positions_ = job.window.leader.size();
   return scheduler_.Submit(std::move(job));
 }
 
-void ClipStream::OnWindow(const WindowOutcome& outcome) {
+void ClipStream::OnWindow(const batching::WindowOutcome& outcome) {
   if (cancelled_->load(std::memory_order_acquire)) return;
   const absl::Status status = Check(outcome.result);
-  std::vector<Vec3> frames;
+  std::vector<motion::Vec3> frames;
   if (status.ok()) frames = clip_.Accept(*outcome.result);
   Keep(status, frames, outcome.timings);
   ScheduleIfWanted();
   on_progress_();
 }
 
-void ClipStream::Keep(const absl::Status& status, const std::vector<Vec3>& frames,
-                      const WindowTimings& timings) {
-  MutexLock lock(mutex_);
+void ClipStream::Keep(const absl::Status& status, const std::vector<motion::Vec3>& frames,
+                      const batching::WindowTimings& timings) {
+  common::MutexLock lock(mutex_);
   in_flight_ = false;
   error_ = status;
   stats_.windows += status.ok() ? 1 : 0;
@@ -111,16 +113,16 @@ void ClipStream::Keep(const absl::Status& status, const std::vector<Vec3>& frame
   stats_.peak_buffered_frames = std::max(stats_.peak_buffered_frames, buffered);
 }
 
-absl::Status ClipStream::Check(const WindowResult& result) const {
+absl::Status ClipStream::Check(const engine::WindowResult& result) const {
   if (!result.ok()) return result.status();
   if (result->size() != expected_positions_) {
     return absl::InternalError("the model gave " + std::to_string(result->size()) +
                                " positions, wanted " + std::to_string(expected_positions_));
   }
-  if (!std::all_of(result->begin(), result->end(), IsFinite)) {
+  if (!std::all_of(result->begin(), result->end(), motion::IsFinite)) {
     return absl::InternalError("the model gave a position that is not finite");
   }
   return absl::OkStatus();
 }
 
-}  // namespace duet
+}  // namespace duet::server::service

@@ -10,14 +10,14 @@
 #include "absl/status/status.h"
 #include "model/engine/clip_synthesis.h"
 #include "model/engine/synthesizer.h"
-#include "server/common/mutex.h"
 #include "server/batching/window_scheduler.h"
+#include "server/common/mutex.h"
 
-namespace duet {
+namespace duet::server::service {
 
 struct ClipStreamOptions {
-  Priority priority = Priority::kInteractive;
-  TimePoint deadline = TimePoint::max();
+  batching::Priority priority = batching::Priority::kInteractive;
+  common::TimePoint deadline = common::TimePoint::max();
   // The next window is scheduled while fewer finished frames than this wait for the reader.
   int buffered_frames = 240;
 };
@@ -39,7 +39,7 @@ struct ClipPart {
     kFailed    // error says why; there will be nothing more
   };
   Kind kind = Kind::kPending;
-  std::vector<Vec3> frames;  // [n, joints], n >= 1
+  std::vector<motion::Vec3> frames;  // [n, joints], n >= 1
   absl::Status error;
 };
 
@@ -56,8 +56,8 @@ struct ClipPart {
 class ClipStream : public std::enable_shared_from_this<ClipStream> {
  public:
   // `scheduler` outlives every job given to it. The model is held until the last job is done.
-  ClipStream(std::shared_ptr<const Synthesizer> model, ClipRequest request,
-             const ClipStreamOptions& options, WindowScheduler& scheduler,
+  ClipStream(std::shared_ptr<const engine::Synthesizer> model, engine::ClipRequest request,
+             const ClipStreamOptions& options, batching::WindowScheduler& scheduler,
              std::function<void()> on_progress);
 
   // Schedules the first window. A failure is the scheduler's refusal; nothing was begun then.
@@ -78,30 +78,30 @@ class ClipStream : public std::enable_shared_from_this<ClipStream> {
   bool WantsWindow() const DUET_REQUIRES(mutex_);
   absl::Status ScheduleNext(bool continues_call);
   void ScheduleIfWanted();
-  void OnWindow(const WindowOutcome& outcome);
-  absl::Status Check(const WindowResult& result) const;
-  void Keep(const absl::Status& status, const std::vector<Vec3>& frames,
-            const WindowTimings& timings) DUET_EXCLUDES(mutex_);
+  void OnWindow(const batching::WindowOutcome& outcome);
+  absl::Status Check(const engine::WindowResult& result) const;
+  void Keep(const absl::Status& status, const std::vector<motion::Vec3>& frames,
+            const batching::WindowTimings& timings) DUET_EXCLUDES(mutex_);
 
-  const std::shared_ptr<const Synthesizer> model_;
+  const std::shared_ptr<const engine::Synthesizer> model_;
   const std::size_t joints_;
   const ClipStreamOptions options_;
-  WindowScheduler& scheduler_;
+  batching::WindowScheduler& scheduler_;
   const std::function<void()> on_progress_;
   const std::shared_ptr<std::atomic<bool>> cancelled_;
 
   // Touched only by whoever set in_flight_, until it clears it; frame_count() is constant.
-  ClipSynthesis clip_;
+  engine::ClipSynthesis clip_;
   std::size_t expected_positions_ = 0;  // of the window in flight
 
-  mutable Mutex mutex_;
+  mutable common::Mutex mutex_;
   bool in_flight_ DUET_GUARDED_BY(mutex_) = false;
-  std::vector<Vec3> ready_ DUET_GUARDED_BY(mutex_);  // [n, joints]
-  std::size_t taken_ DUET_GUARDED_BY(mutex_) = 0;    // values of ready_ already handed out
+  std::vector<motion::Vec3> ready_ DUET_GUARDED_BY(mutex_);  // [n, joints]
+  std::size_t taken_ DUET_GUARDED_BY(mutex_) = 0;            // values of ready_ already handed out
   absl::Status error_ DUET_GUARDED_BY(mutex_);
   ClipStreamStats stats_ DUET_GUARDED_BY(mutex_);
 };
 
-}  // namespace duet
+}  // namespace duet::server::service
 
 #endif  // DUET_SERVER_SERVICE_CLIP_STREAM_H_

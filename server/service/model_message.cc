@@ -2,18 +2,18 @@
 
 #include <string>
 
-namespace duet {
+namespace duet::server::service {
 
-ModelQuery ToQuery(const v1::ModelSelector& selector) {
-  ModelQuery query;
+registry::ModelQuery ToQuery(const v1::ModelSelector& selector) {
+  registry::ModelQuery query;
   query.name = selector.name();
   if (selector.has_version()) query.version = selector.version();
   if (selector.has_version_label()) query.version_label = selector.version_label();
   return query;
 }
 
-v1::Model ToMessage(const ServedModel& served) {
-  const ModelDescription& model = served.model->description();
+v1::Model ToMessage(const registry::ServedModel& served) {
+  const engine::ModelDescription& model = served.model->description();
   v1::Model message;
   message.set_name(model.name);
   message.set_version(static_cast<uint32_t>(model.version));
@@ -21,7 +21,7 @@ v1::Model ToMessage(const ServedModel& served) {
   message.set_is_default(served.is_default);
   for (const std::string& name : model.classes) message.add_interaction_classes(name);
   for (const std::string& name : model.skeleton.joint_names) message.add_joint_names(name);
-  for (const Bone& bone : model.skeleton.bones) {
+  for (const motion::Bone& bone : model.skeleton.bones) {
     v1::Bone* added = message.add_bones();
     added->set_parent_joint(static_cast<uint32_t>(bone.parent));
     added->set_child_joint(static_cast<uint32_t>(bone.child));
@@ -47,4 +47,4 @@ v1::RequestLimits ToMessage(const RequestLimits& limits) {
   return message;
 }
 
-}  // namespace duet
+}  // namespace duet::server::service

@@ -6,13 +6,13 @@
 #include "server/registry/model_registry.h"
 #include "server/service/request_limits.h"
 
-namespace duet {
+namespace duet::server::service {
 
 // Between the registry's and the limits' types and the contract's messages.
-ModelQuery ToQuery(const v1::ModelSelector& selector);
-v1::Model ToMessage(const ServedModel& served);
+registry::ModelQuery ToQuery(const v1::ModelSelector& selector);
+v1::Model ToMessage(const registry::ServedModel& served);
 v1::RequestLimits ToMessage(const RequestLimits& limits);
 
-}  // namespace duet
+}  // namespace duet::server::service
 
 #endif  // DUET_SERVER_SERVICE_MODEL_MESSAGE_H_

@@ -4,31 +4,32 @@
 #include <chrono>
 #include <utility>
 
+#include "server/common/grpc_status.h"
 #include "server/service/call_identity.h"
 #include "server/service/call_scope.h"
-#include "server/common/grpc_status.h"
 #include "server/service/model_message.h"
 #include "server/service/refusals.h"
 #include "server/service/synthesize_reactor.h"
 #include "server/service/validator.h"
 #include "server/service/wire.h"
 
-namespace duet {
+namespace duet::server::service {
 namespace {
 
-constexpr MethodInfo Method(std::string_view name, std::string_view type) {
+constexpr metrics::MethodInfo Method(std::string_view name, std::string_view type) {
   return {MotionSynthesisService::kServiceName, name, type};
 }
-constexpr MethodInfo kSynthesize = Method("Synthesize", "server_stream");
-constexpr MethodInfo kListModels = Method("ListModels", "unary");
-constexpr MethodInfo kGetModel = Method("GetModel", "unary");
+constexpr metrics::MethodInfo kSynthesize = Method("Synthesize", "server_stream");
+constexpr metrics::MethodInfo kListModels = Method("ListModels", "unary");
+constexpr metrics::MethodInfo kGetModel = Method("GetModel", "unary");
 
 // A call's deadline on the scheduler's clock.
-TimePoint DeadlineOf(const grpc::CallbackServerContext& context, const Clock& clock) {
+common::TimePoint DeadlineOf(const grpc::CallbackServerContext& context,
+                             const common::Clock& clock) {
   const auto left = context.deadline() - std::chrono::system_clock::now();
   // "No deadline" is so far away that adding to it overflows; beyond a day is as good as none.
-  if (left > std::chrono::hours(24)) return TimePoint::max();
-  return clock.Now() + std::chrono::duration_cast<TimePoint::duration>(left);
+  if (left > std::chrono::hours(24)) return common::TimePoint::max();
+  return clock.Now() + std::chrono::duration_cast<common::TimePoint::duration>(left);
 }
 
 // Answers a unary call with a message or a status.
@@ -38,9 +39,9 @@ grpc::ServerUnaryReactor* FinishUnary(grpc::CallbackServerContext* context, Call
                                       grpc::ByteBuffer* response) {
   if (answer.ok()) *response = SerializeMessage(*answer);
   scope.Finish(answer.status());
-  AddRetryPushback(answer.status(), *context);
+  common::AddRetryPushback(answer.status(), *context);
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
-  reactor->Finish(ToGrpcStatus(answer.status()));
+  reactor->Finish(common::ToGrpcStatus(answer.status()));
   return reactor;
 }
 
@@ -72,11 +73,12 @@ absl::StatusOr<SynthesisCall::Parts> MotionSynthesisService::Prepare(
   v1::SynthesizeRequest request;
   const absl::Status parsed = ParseMessage(bytes, request);
   if (!parsed.ok()) return parsed;
-  const Priority priority =
-      request.priority() == v1::PRIORITY_BULK ? Priority::kBulk : Priority::kInteractive;
+  const batching::Priority priority = request.priority() == v1::PRIORITY_BULK
+                                          ? batching::Priority::kBulk
+                                          : batching::Priority::kInteractive;
   absl::StatusOr<AdmissionSlot> slot = parts_.admission->Admit(priority);
   if (!slot.ok()) return slot.status();
-  absl::StatusOr<ServedModel> served = parts_.registry->Find(ToQuery(request.model()));
+  absl::StatusOr<registry::ServedModel> served = parts_.registry->Find(ToQuery(request.model()));
   if (!served.ok()) return ModelNotFoundRefusal(served.status());
   absl::StatusOr<ValidatedRequest> validated =
       ValidateRequest(request, served->model->description(), parts_.limits);
@@ -100,7 +102,7 @@ absl::StatusOr<v1::ListModelsResponse> MotionSynthesisService::List(
   if (status.ok()) status = parts_.admission->CheckServing();
   if (!status.ok()) return status;
   v1::ListModelsResponse response;
-  for (const ServedModel& served : parts_.registry->List()) {
+  for (const registry::ServedModel& served : parts_.registry->List()) {
     *response.add_models() = ToMessage(served);
   }
   return response;
@@ -119,7 +121,8 @@ absl::StatusOr<v1::GetModelResponse> MotionSynthesisService::Get(
   absl::Status status = ParseMessage(bytes, request);
   if (status.ok()) status = parts_.admission->CheckServing();
   if (!status.ok()) return status;
-  const absl::StatusOr<ServedModel> served = parts_.registry->Find(ToQuery(request.model()));
+  const absl::StatusOr<registry::ServedModel> served =
+      parts_.registry->Find(ToQuery(request.model()));
   if (!served.ok()) return ModelNotFoundRefusal(served.status());
   v1::GetModelResponse response;
   *response.mutable_model() = ToMessage(*served);
@@ -128,7 +131,7 @@ absl::StatusOr<v1::GetModelResponse> MotionSynthesisService::Get(
 }
 
 void MotionSynthesisService::Remember(const std::shared_ptr<SynthesisCall>& call) {
-  MutexLock lock(mutex_);
+  common::MutexLock lock(mutex_);
   // Admission bounds how many are alive, and so what this costs.
   calls_.erase(
       std::remove_if(calls_.begin(), calls_.end(), [](const auto& weak) { return weak.expired(); }),
@@ -139,7 +142,7 @@ void MotionSynthesisService::Remember(const std::shared_ptr<SynthesisCall>& call
 void MotionSynthesisService::AbortAll(const absl::Status& reason) {
   std::vector<std::weak_ptr<SynthesisCall>> calls;
   {
-    MutexLock lock(mutex_);
+    common::MutexLock lock(mutex_);
     calls = calls_;
   }
   for (const std::weak_ptr<SynthesisCall>& weak : calls) {
@@ -147,4 +150,4 @@ void MotionSynthesisService::AbortAll(const absl::Status& reason) {
   }
 }
 
-}  // namespace duet
+}  // namespace duet::server::service

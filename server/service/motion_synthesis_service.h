@@ -5,24 +5,24 @@
 #include <vector>
 
 #include "duet/v1/synthesis.grpc.pb.h"
+#include "server/batching/window_scheduler.h"
 #include "server/common/clock.h"
 #include "server/common/mutex.h"
-#include "server/batching/window_scheduler.h"
 #include "server/metrics/call_record.h"
 #include "server/registry/model_registry.h"
 #include "server/service/admission.h"
 #include "server/service/request_limits.h"
 #include "server/service/synthesis_call.h"
 
-namespace duet {
+namespace duet::server::service {
 
 // What the service works with. Everything outlives the service and its calls.
 struct ServiceParts {
-  ModelRegistry* registry = nullptr;
-  WindowScheduler* scheduler = nullptr;
+  registry::ModelRegistry* registry = nullptr;
+  batching::WindowScheduler* scheduler = nullptr;
   Admission* admission = nullptr;
-  std::vector<CallObserver*> observers;
-  const Clock* clock = &Clock::Real();
+  std::vector<metrics::CallObserver*> observers;
+  const common::Clock* clock = &common::Clock::Real();
   RequestLimits limits;
   int buffered_frames = 240;  // see ClipStreamOptions
 };
@@ -63,10 +63,10 @@ class MotionSynthesisService final : public RawMotionSynthesis {
   void Remember(const std::shared_ptr<SynthesisCall>& call);
 
   const ServiceParts parts_;
-  Mutex mutex_;
+  common::Mutex mutex_;
   std::vector<std::weak_ptr<SynthesisCall>> calls_ DUET_GUARDED_BY(mutex_);
 };
 
-}  // namespace duet
+}  // namespace duet::server::service
 
 #endif  // DUET_SERVER_SERVICE_MOTION_SYNTHESIS_SERVICE_H_

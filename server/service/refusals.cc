@@ -9,7 +9,7 @@
 #include "absl/time/time.h"
 #include "server/common/error_details.h"
 
-namespace duet {
+namespace duet::server::service {
 namespace {
 
 // Long enough for a queue to move or a replica to start, short enough for a person.
@@ -17,38 +17,39 @@ constexpr absl::Duration kRetryDelay = absl::Seconds(1);
 
 absl::Status Retryable(absl::Status status, absl::string_view reason,
                        const std::map<std::string, std::string>& metadata = {}) {
-  AddErrorInfo(status, reason, metadata);
-  AddRetryInfo(status, kRetryDelay);
+  common::AddErrorInfo(status, reason, metadata);
+  common::AddRetryInfo(status, kRetryDelay);
   return status;
 }
 
 }  // namespace
 
 absl::Status LoadingRefusal() {
-  return Retryable(absl::UnavailableError("the server is loading its models"), kReasonLoading);
+  return Retryable(absl::UnavailableError("the server is loading its models"),
+                   common::kReasonLoading);
 }
 
 absl::Status DrainingRefusal() {
-  return Retryable(absl::UnavailableError("the server is shutting down"), kReasonDraining);
+  return Retryable(absl::UnavailableError("the server is shutting down"), common::kReasonDraining);
 }
 
 absl::Status TooManyCallsRefusal(std::size_t calls, std::size_t limit) {
   return Retryable(
       absl::ResourceExhaustedError(absl::StrCat(calls, " calls are being answered, at most ", limit,
                                                 " of this priority may")),
-      kReasonTooManyCalls, {{"max_calls", absl::StrCat(limit)}});
+      common::kReasonTooManyCalls, {{"max_calls", absl::StrCat(limit)}});
 }
 
 absl::Status QueueRefusal(const absl::Status& scheduler_status) {
   if (!absl::IsResourceExhausted(scheduler_status)) return DrainingRefusal();
-  return Retryable(scheduler_status, kReasonQueueFull);
+  return Retryable(scheduler_status, common::kReasonQueueFull);
 }
 
 absl::Status TooLargeRefusal(std::size_t bytes, std::size_t limit) {
   absl::Status status = absl::ResourceExhaustedError(absl::StrCat(
       "the request has ", bytes, " bytes, wanted at most max_request_bytes = ", limit));
-  AddErrorInfo(
-      status, kReasonRequestTooLarge,
+  common::AddErrorInfo(
+      status, common::kReasonRequestTooLarge,
       {{"max_request_bytes", absl::StrCat(limit)}, {"request_bytes", absl::StrCat(bytes)}});
   return status;
 }
@@ -57,16 +58,16 @@ absl::Status ModelNotFoundRefusal(const absl::Status& registry_status) {
   const std::pair<std::string, std::string> violation =
       absl::StrSplit(registry_status.message(), absl::MaxSplits(": ", 1));
   absl::Status status = registry_status;
-  AddBadRequest(status, {{violation.first, violation.second}});
-  AddErrorInfo(status, kReasonModelNotFound);
+  common::AddBadRequest(status, {{violation.first, violation.second}});
+  common::AddErrorInfo(status, common::kReasonModelNotFound);
   return status;
 }
 
 absl::Status ModelFailedRefusal(const std::string& request_id) {
   absl::Status status = absl::InternalError(absl::StrCat(
       "the model failed to answer; the server's log tells why under request_id ", request_id));
-  AddErrorInfo(status, kReasonModelFailed, {{"request_id", request_id}});
+  common::AddErrorInfo(status, common::kReasonModelFailed, {{"request_id", request_id}});
   return status;
 }
 
-}  // namespace duet
+}  // namespace duet::server::service

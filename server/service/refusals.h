@@ -6,7 +6,7 @@
 
 #include "absl/status/status.h"
 
-namespace duet {
+namespace duet::server::service {
 
 // What callers are told when the server cannot or will not answer, complete with google.rpc
 // details. Refusals of malformed requests come from Violations.
@@ -27,6 +27,6 @@ absl::Status ModelNotFoundRefusal(const absl::Status& registry_status);
 // INTERNAL: the model failed; nothing of its own words.
 absl::Status ModelFailedRefusal(const std::string& request_id);
 
-}  // namespace duet
+}  // namespace duet::server::service
 
 #endif  // DUET_SERVER_SERVICE_REFUSALS_H_

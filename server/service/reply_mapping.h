@@ -9,11 +9,11 @@
 #include "model/motion/coordinates.h"
 #include "model/motion/vec3.h"
 
-namespace duet {
+namespace duet::server::service {
 
 // How the model's follower becomes the caller's: joints, order, unit and up axis.
 struct ReplyMapping {
-  CoordinateFrame frame;
+  motion::CoordinateFrame frame;
   std::vector<int> joints;               // for every joint of the reply, its index in the model
   std::vector<std::string> joint_names;  // the same by name
   // The leader's, repeated in the header.
@@ -23,9 +23,9 @@ struct ReplyMapping {
 };
 
 // Fills in a chunk. Shapes: frames [n, model_joints], the model's joint order, world metres.
-void FillChunk(const ReplyMapping& reply, const std::vector<Vec3>& frames, int model_joints,
+void FillChunk(const ReplyMapping& reply, const std::vector<motion::Vec3>& frames, int model_joints,
                int first_frame, v1::MotionChunk& chunk);
 
-}  // namespace duet
+}  // namespace duet::server::service
 
 #endif  // DUET_SERVER_SERVICE_REPLY_MAPPING_H_

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-namespace duet {
+namespace duet::server::service {
 
 // What a request must keep to. GetModel tells callers; every refusal names the limit it enforces.
 struct RequestLimits {
@@ -21,6 +21,6 @@ struct RequestLimits {
   std::size_t max_request_bytes = std::size_t{32} << 20;
 };
 
-}  // namespace duet
+}  // namespace duet::server::service
 
 #endif  // DUET_SERVER_SERVICE_REQUEST_LIMITS_H_

@@ -6,11 +6,11 @@
 
 #include "server/service/refusals.h"
 
-namespace duet {
+namespace duet::server::service {
 namespace {
 
-std::string_view PriorityName(Priority priority) {
-  return priority == Priority::kBulk ? "bulk" : "interactive";
+std::string_view PriorityName(batching::Priority priority) {
+  return priority == batching::Priority::kBulk ? "bulk" : "interactive";
 }
 
 // Failures of a window that are the model's, not the caller's or the server's own.
@@ -21,13 +21,14 @@ bool IsModelFailure(const absl::Status& status) {
 
 }  // namespace
 
-std::shared_ptr<SynthesisCall> SynthesisCall::Create(Parts parts, WindowScheduler& scheduler,
+std::shared_ptr<SynthesisCall> SynthesisCall::Create(Parts parts,
+                                                     batching::WindowScheduler& scheduler,
                                                      ReplyWriter& writer) {
   ClipStreamOptions options;
   options.priority = parts.request.priority;
   options.deadline = parts.deadline;
   options.buffered_frames = parts.buffered_frames;
-  ClipRequest clip = std::move(parts.request.clip);
+  engine::ClipRequest clip = std::move(parts.request.clip);
   std::shared_ptr<SynthesisCall> call(new SynthesisCall(std::move(parts), writer));
   // The clip outlives a finished call while its last window runs; it must not keep it.
   call->stream_ = std::make_shared<ClipStream>(call->model_, std::move(clip), options, scheduler,
@@ -45,7 +46,7 @@ SynthesisCall::SynthesisCall(Parts parts, ReplyWriter& writer)
       writer_(writer),
       slot_(std::move(parts.slot)),
       scope_(std::move(parts.scope)) {
-  CallRecord& record = scope_->record();
+  metrics::CallRecord& record = scope_->record();
   record.model = model_->description().name;
   record.version = model_->description().version;
   record.priority = PriorityName(parts.request.priority);
@@ -59,7 +60,7 @@ void SynthesisCall::Start() {
 
 void SynthesisCall::OnWritten(bool ok) {
   {
-    MutexLock lock(mutex_);
+    common::MutexLock lock(mutex_);
     state_ = State::kIdle;
     if (!ok && !end_.has_value()) end_ = absl::CancelledError("the caller went away");
     if (!ok) stream_->Cancel();
@@ -69,7 +70,7 @@ void SynthesisCall::OnWritten(bool ok) {
 
 void SynthesisCall::Abort(const absl::Status& reason) {
   {
-    MutexLock lock(mutex_);
+    common::MutexLock lock(mutex_);
     if (!end_.has_value()) end_ = reason;
   }
   stream_->Cancel();
@@ -81,7 +82,7 @@ void SynthesisCall::Advance() {
   const std::shared_ptr<SynthesisCall> self = shared_from_this();
   std::optional<absl::Status> end;
   {
-    MutexLock lock(mutex_);
+    common::MutexLock lock(mutex_);
     if (state_ != State::kIdle) return;
     const bool write = !end_.has_value() && PrepareReply();
     if (!write && !end_.has_value()) return;
@@ -136,7 +137,7 @@ bool SynthesisCall::PrepareFrames() {
 
 void SynthesisCall::PrepareHeader() {
   v1::SynthesisHeader& header = *reply_.mutable_header();
-  const ModelDescription& model = model_->description();
+  const engine::ModelDescription& model = model_->description();
   header.set_model_name(model.name);
   header.set_model_version(static_cast<uint32_t>(model.version));
   for (const std::string& name : reply_mapping_.joint_names) header.add_joint_names(name);
@@ -149,7 +150,7 @@ void SynthesisCall::PrepareHeader() {
 }
 
 void SynthesisCall::PrepareChunk(const ClipPart& part) {
-  CallRecord& record = scope_->record();
+  metrics::CallRecord& record = scope_->record();
   if (record.chunks == 0) record.first_chunk_seconds = scope_->ElapsedSeconds();
   v1::MotionChunk& chunk = *reply_.mutable_chunk();
   chunk.Clear();
@@ -161,7 +162,7 @@ void SynthesisCall::PrepareChunk(const ClipPart& part) {
 
 void SynthesisCall::PrepareSummary() {
   const ClipStreamStats stats = stream_->stats();
-  const CallRecord& record = scope_->record();
+  const metrics::CallRecord& record = scope_->record();
   v1::SynthesisSummary& summary = *reply_.mutable_summary();
   summary.set_frame_count(static_cast<uint32_t>(record.frames));
   summary.set_chunk_count(static_cast<uint32_t>(record.chunks));
@@ -173,8 +174,8 @@ void SynthesisCall::PrepareSummary() {
 void SynthesisCall::Finish(const absl::Status& status) {
   const ClipStreamStats stats = stream_->stats();
   {
-    MutexLock lock(mutex_);
-    CallRecord& record = scope_->record();
+    common::MutexLock lock(mutex_);
+    metrics::CallRecord& record = scope_->record();
     record.windows = stats.windows;
     record.queue_seconds = stats.queue_seconds;
     record.compute_seconds = stats.compute_seconds;
@@ -187,4 +188,4 @@ void SynthesisCall::Finish(const absl::Status& status) {
   writer_.Finish(status);
 }
 
-}  // namespace duet
+}  // namespace duet::server::service

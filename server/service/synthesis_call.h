@@ -7,14 +7,14 @@
 #include "absl/status/status.h"
 #include "duet/v1/synthesis.pb.h"
 #include "model/engine/synthesizer.h"
-#include "server/common/mutex.h"
 #include "server/batching/window_scheduler.h"
+#include "server/common/mutex.h"
 #include "server/service/admission.h"
 #include "server/service/call_scope.h"
 #include "server/service/clip_stream.h"
 #include "server/service/validator.h"
 
-namespace duet {
+namespace duet::server::service {
 
 // Where a call's replies go: a gRPC reactor, or a test.
 class ReplyWriter {
@@ -37,16 +37,16 @@ class SynthesisCall : public std::enable_shared_from_this<SynthesisCall> {
  public:
   // What a call is made of.
   struct Parts {
-    std::shared_ptr<const Synthesizer> model;
+    std::shared_ptr<const engine::Synthesizer> model;
     ValidatedRequest request;
     AdmissionSlot slot;
     std::unique_ptr<CallScope> scope;
-    TimePoint deadline = TimePoint::max();
+    common::TimePoint deadline = common::TimePoint::max();
     int buffered_frames = 240;
   };
 
   // `scheduler` and `writer` as in their comments.
-  static std::shared_ptr<SynthesisCall> Create(Parts parts, WindowScheduler& scheduler,
+  static std::shared_ptr<SynthesisCall> Create(Parts parts, batching::WindowScheduler& scheduler,
                                                ReplyWriter& writer);
 
   // Schedules the first window, and writes the header once that was taken; a refusal finishes the
@@ -74,13 +74,13 @@ class SynthesisCall : public std::enable_shared_from_this<SynthesisCall> {
   void PrepareSummary() DUET_REQUIRES(mutex_);
   void Finish(const absl::Status& status);
 
-  const std::shared_ptr<const Synthesizer> model_;
+  const std::shared_ptr<const engine::Synthesizer> model_;
   const ReplyMapping reply_mapping_;
   const int chunk_frames_;
   ReplyWriter& writer_;
   std::shared_ptr<ClipStream> stream_;
 
-  Mutex mutex_;
+  common::Mutex mutex_;
   State state_ DUET_GUARDED_BY(mutex_) = State::kIdle;
   Next next_ DUET_GUARDED_BY(mutex_) = Next::kHeader;
   std::optional<absl::Status> end_ DUET_GUARDED_BY(mutex_);  // how the call is to finish
@@ -89,6 +89,6 @@ class SynthesisCall : public std::enable_shared_from_this<SynthesisCall> {
   std::unique_ptr<CallScope> scope_ DUET_GUARDED_BY(mutex_);
 };
 
-}  // namespace duet
+}  // namespace duet::server::service
 
 #endif  // DUET_SERVER_SERVICE_SYNTHESIS_CALL_H_

@@ -6,7 +6,7 @@
 #include "server/common/grpc_status.h"
 #include "server/service/wire.h"
 
-namespace duet {
+namespace duet::server::service {
 namespace {
 
 // A client whose deadline passes resets the call; that may arrive a little before the deadline
@@ -26,8 +26,8 @@ void SynthesizeReactor::Write(const v1::SynthesizeResponse& reply) {
 }
 
 void SynthesizeReactor::Finish(const absl::Status& status) {
-  AddRetryPushback(status, context_);
-  grpc::ServerWriteReactor<grpc::ByteBuffer>::Finish(ToGrpcStatus(status));
+  common::AddRetryPushback(status, context_);
+  grpc::ServerWriteReactor<grpc::ByteBuffer>::Finish(common::ToGrpcStatus(status));
 }
 
 void SynthesizeReactor::OnCancel() {
@@ -37,4 +37,4 @@ void SynthesizeReactor::OnCancel() {
                        : absl::CancelledError("the caller cancelled"));
 }
 
-}  // namespace duet
+}  // namespace duet::server::service

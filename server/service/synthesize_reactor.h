@@ -10,7 +10,7 @@
 #include "duet/v1/synthesis.pb.h"
 #include "server/service/synthesis_call.h"
 
-namespace duet {
+namespace duet::server::service {
 
 // Joins a SynthesisCall to gRPC. Deletes itself when gRPC is done with it.
 class SynthesizeReactor final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
@@ -35,6 +35,6 @@ class SynthesizeReactor final : public grpc::ServerWriteReactor<grpc::ByteBuffer
   grpc::ByteBuffer reply_;  // being written
 };
 
-}  // namespace duet
+}  // namespace duet::server::service
 
 #endif  // DUET_SERVER_SERVICE_SYNTHESIZE_REACTOR_H_

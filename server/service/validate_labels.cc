@@ -9,15 +9,15 @@
 #include "absl/strings/str_join.h"
 #include "absl/strings/string_view.h"
 
-namespace duet {
+namespace duet::server::service {
 namespace {
 
 // A label vector longer than the classes and this many mistakes is not looked at one by one.
 constexpr int kMaxExtraWeights = 64;
 
 std::vector<float> ReadLabelVector(const std::string& field, const v1::LabelVector& label_vector,
-                                   const ModelDescription& model, const RequestLimits& limits,
-                                   Violations& violations) {
+                                   const engine::ModelDescription& model,
+                                   const RequestLimits& limits, Violations& violations) {
   std::vector<float> weights(model.classes.size(), 0.0F);
   std::vector<int> first_use(model.classes.size(), -1);
   const std::string list = absl::StrCat(field, ".weights");
@@ -38,7 +38,7 @@ std::vector<float> ReadLabelVector(const std::string& field, const v1::LabelVect
         std::find(model.classes.begin(), model.classes.end(), entry.interaction_class());
     if (found == model.classes.end()) {
       violations.Malformed(absl::StrCat(at, ".interaction_class"),
-                           absl::StrCat("is ", Quoted(entry.interaction_class()),
+                           absl::StrCat("is ", common::Quoted(entry.interaction_class()),
                                         ", wanted one of ", absl::StrJoin(model.classes, ", ")));
     }
     // Also false for NaN.
@@ -52,7 +52,7 @@ std::vector<float> ReadLabelVector(const std::string& field, const v1::LabelVect
     if (first_use[index] >= 0) {
       violations.Malformed(
           absl::StrCat(at, ".interaction_class"),
-          absl::StrCat("is ", Quoted(entry.interaction_class()), ", which weights[",
+          absl::StrCat("is ", common::Quoted(entry.interaction_class()), ", which weights[",
                        first_use[index], "] is already; wanted each class at most once"));
       continue;
     }
@@ -62,10 +62,11 @@ std::vector<float> ReadLabelVector(const std::string& field, const v1::LabelVect
   return weights;
 }
 
-std::vector<LabelKeyframe> ReadKeyframes(const v1::SynthesizeRequest& request,
-                                         const ModelDescription& model, const RequestLimits& limits,
-                                         Violations& violations) {
-  std::vector<LabelKeyframe> keyframes;
+std::vector<engine::LabelKeyframe> ReadKeyframes(const v1::SynthesizeRequest& request,
+                                                 const engine::ModelDescription& model,
+                                                 const RequestLimits& limits,
+                                                 Violations& violations) {
+  std::vector<engine::LabelKeyframe> keyframes;
   if (request.label_keyframes_size() > limits.max_label_keyframes) {
     violations.Malformed("label_keyframes",
                          absl::StrCat("has ", request.label_keyframes_size(),
@@ -96,9 +97,10 @@ std::vector<LabelKeyframe> ReadKeyframes(const v1::SynthesizeRequest& request,
 
 }  // namespace
 
-std::vector<LabelKeyframe> ValidateLabels(const v1::SynthesizeRequest& request,
-                                          const ModelDescription& model,
-                                          const RequestLimits& limits, Violations& violations) {
+std::vector<engine::LabelKeyframe> ValidateLabels(const v1::SynthesizeRequest& request,
+                                                  const engine::ModelDescription& model,
+                                                  const RequestLimits& limits,
+                                                  Violations& violations) {
   const bool has_keyframes = !request.label_keyframes().empty();
   if (request.has_label_vector() && has_keyframes) {
     violations.Malformed("label_keyframes",
@@ -107,7 +109,7 @@ std::vector<LabelKeyframe> ValidateLabels(const v1::SynthesizeRequest& request,
   if (!request.has_label_vector() && !has_keyframes) {
     violations.Malformed("label_vector", "is missing, wanted label_vector or label_keyframes");
   }
-  std::vector<LabelKeyframe> keyframes;
+  std::vector<engine::LabelKeyframe> keyframes;
   if (has_keyframes) keyframes = ReadKeyframes(request, model, limits, violations);
   if (request.has_label_vector()) {
     keyframes.push_back(
@@ -116,4 +118,4 @@ std::vector<LabelKeyframe> ValidateLabels(const v1::SynthesizeRequest& request,
   return keyframes;
 }
 
-}  // namespace duet
+}  // namespace duet::server::service

@@ -9,15 +9,16 @@
 #include "server/service/request_limits.h"
 #include "server/service/violations.h"
 
-namespace duet {
+namespace duet::server::service {
 
 // Reads the request's label vector or keyframes, in the model's class order; a single label vector
 // is one keyframe at frame 0. Adds a violation for everything that is wrong, and the result is
 // meaningful only when there was none.
-std::vector<LabelKeyframe> ValidateLabels(const v1::SynthesizeRequest& request,
-                                          const ModelDescription& model,
-                                          const RequestLimits& limits, Violations& violations);
+std::vector<engine::LabelKeyframe> ValidateLabels(const v1::SynthesizeRequest& request,
+                                                  const engine::ModelDescription& model,
+                                                  const RequestLimits& limits,
+                                                  Violations& violations);
 
-}  // namespace duet
+}  // namespace duet::server::service
 
 #endif  // DUET_SERVER_SERVICE_VALIDATE_LABELS_H_

@@ -8,7 +8,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 
-namespace duet {
+namespace duet::server::service {
 namespace {
 
 // Offending values that are named one by one.
@@ -20,33 +20,33 @@ std::string EnumValue(const std::string& name, int number) {
   return name.empty() ? absl::StrCat(number) : name;
 }
 
-std::optional<LengthUnit> ToUnit(v1::LengthUnit unit) {
+std::optional<motion::LengthUnit> ToUnit(v1::LengthUnit unit) {
   switch (unit) {
     case v1::LENGTH_UNIT_METRES:
-      return LengthUnit::kMetres;
+      return motion::LengthUnit::kMetres;
     case v1::LENGTH_UNIT_MILLIMETRES:
-      return LengthUnit::kMillimetres;
+      return motion::LengthUnit::kMillimetres;
     case v1::LENGTH_UNIT_SBU_NORMALISED:
-      return LengthUnit::kSbuNormalised;
+      return motion::LengthUnit::kSbuNormalised;
     default:
       return std::nullopt;
   }
 }
 
-std::optional<UpAxis> ToUpAxis(v1::UpAxis axis) {
+std::optional<motion::UpAxis> ToUpAxis(v1::UpAxis axis) {
   switch (axis) {
     case v1::UP_AXIS_Y_UP:
-      return UpAxis::kYUp;
+      return motion::UpAxis::kYUp;
     case v1::UP_AXIS_Z_UP:
-      return UpAxis::kZUp;
+      return motion::UpAxis::kZUp;
     case v1::UP_AXIS_Y_DOWN:
-      return UpAxis::kYDown;
+      return motion::UpAxis::kYDown;
     default:
       return std::nullopt;
   }
 }
 
-void NameMissingJoints(const ModelDescription& model, const std::vector<int>& first_use,
+void NameMissingJoints(const engine::ModelDescription& model, const std::vector<int>& first_use,
                        Violations& violations) {
   std::vector<std::string> missing;
   for (int joint = 0; joint < model.skeleton.joint_count(); ++joint) {
@@ -60,10 +60,10 @@ void NameMissingJoints(const ModelDescription& model, const std::vector<int>& fi
 
 }  // namespace
 
-std::optional<CoordinateFrame> ValidateCoordinateFrame(const v1::Motion& leader,
-                                                       Violations& violations) {
-  const std::optional<LengthUnit> unit = ToUnit(leader.unit());
-  const std::optional<UpAxis> up_axis = ToUpAxis(leader.up_axis());
+std::optional<motion::CoordinateFrame> ValidateCoordinateFrame(const v1::Motion& leader,
+                                                               Violations& violations) {
+  const std::optional<motion::LengthUnit> unit = ToUnit(leader.unit());
+  const std::optional<motion::UpAxis> up_axis = ToUpAxis(leader.up_axis());
   if (!unit.has_value()) {
     violations.Malformed(
         "leader.unit",
@@ -78,16 +78,16 @@ std::optional<CoordinateFrame> ValidateCoordinateFrame(const v1::Motion& leader,
                      ", wanted UP_AXIS_Y_UP, UP_AXIS_Z_UP or UP_AXIS_Y_DOWN"));
   }
   if (!unit.has_value() || !up_axis.has_value()) return std::nullopt;
-  if (*unit == LengthUnit::kSbuNormalised && *up_axis != UpAxis::kYDown) {
+  if (*unit == motion::LengthUnit::kSbuNormalised && *up_axis != motion::UpAxis::kYDown) {
     violations.Malformed("leader.up_axis",
                          absl::StrCat("is ", v1::UpAxis_Name(leader.up_axis()),
                                       ", wanted UP_AXIS_Y_DOWN with LENGTH_UNIT_SBU_NORMALISED"));
     return std::nullopt;
   }
-  return CoordinateFrame{*unit, *up_axis};
+  return motion::CoordinateFrame{*unit, *up_axis};
 }
 
-std::vector<int> ValidateJoints(const v1::Motion& leader, const ModelDescription& model,
+std::vector<int> ValidateJoints(const v1::Motion& leader, const engine::ModelDescription& model,
                                 Violations& violations) {
   const int count = leader.joint_names_size();
   if (count > kMaxJointNames) {
@@ -105,11 +105,11 @@ std::vector<int> ValidateJoints(const v1::Motion& leader, const ModelDescription
     joints.push_back(joint);
     if (joint < 0) {
       violations.Mismatch(At("leader.joint_names", i),
-                          absl::StrCat("is ", Quoted(name), ", which is no joint of model ",
+                          absl::StrCat("is ", common::Quoted(name), ", which is no joint of model ",
                                        model.name, "; GetModel lists them"));
     } else if (first_use[joint] >= 0) {
       violations.Mismatch(At("leader.joint_names", i),
-                          absl::StrCat("is ", Quoted(name), ", which joint_names[",
+                          absl::StrCat("is ", common::Quoted(name), ", which joint_names[",
                                        first_use[joint], "] is already; wanted each joint once"));
     } else {
       first_use[joint] = i;
@@ -161,18 +161,19 @@ bool ValidateFinite(absl::string_view field,
   return found == 0;
 }
 
-std::vector<Vec3> ReadPositions(absl::string_view field,
-                                const google::protobuf::RepeatedField<float>& positions,
-                                const std::vector<int>& joints, const CoordinateFrame& frame,
-                                const RequestLimits& limits, Violations& violations) {
+std::vector<motion::Vec3> ReadPositions(absl::string_view field,
+                                        const google::protobuf::RepeatedField<float>& positions,
+                                        const std::vector<int>& joints,
+                                        const motion::CoordinateFrame& frame,
+                                        const RequestLimits& limits, Violations& violations) {
   const int points = positions.size() / 3;
   const int joint_count = static_cast<int>(joints.size());
   const float limit = limits.max_abs_coordinate_metres;
-  std::vector<Vec3> world(points);
+  std::vector<motion::Vec3> world(points);
   int too_far = 0;
   for (int point = 0; point < points; ++point) {
     const float* xyz = positions.data() + 3 * static_cast<std::ptrdiff_t>(point);
-    const Vec3 position = ToWorld(frame, {xyz[0], xyz[1], xyz[2]});
+    const motion::Vec3 position = ToWorld(frame, {xyz[0], xyz[1], xyz[2]});
     const int frame_start = point / joint_count * joint_count;
     world[frame_start + joints[point % joint_count]] = position;
     // Written so that a conversion that overflowed is too far as well.
@@ -195,4 +196,4 @@ std::vector<Vec3> ReadPositions(absl::string_view field,
   return world;
 }
 
-}  // namespace duet
+}  // namespace duet::server::service

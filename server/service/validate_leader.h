@@ -12,18 +12,18 @@
 #include "server/service/request_limits.h"
 #include "server/service/violations.h"
 
-namespace duet {
+namespace duet::server::service {
 
 // Joint names beyond this number are not looked at one by one.
 inline constexpr int kMaxJointNames = 1024;
 
 // The unit and up axis of a motion; nothing, and violations, when they cannot be interpreted.
-std::optional<CoordinateFrame> ValidateCoordinateFrame(const v1::Motion& leader,
-                                                       Violations& violations);
+std::optional<motion::CoordinateFrame> ValidateCoordinateFrame(const v1::Motion& leader,
+                                                               Violations& violations);
 
 // For every joint of the leader, its index in the model; empty, and violations, unless the names
 // are the model's joints in some order.
-std::vector<int> ValidateJoints(const v1::Motion& leader, const ModelDescription& model,
+std::vector<int> ValidateJoints(const v1::Motion& leader, const engine::ModelDescription& model,
                                 Violations& violations);
 
 // Rate, frame count and duration.
@@ -32,16 +32,17 @@ void ValidateTiming(const v1::Motion& leader, const RequestLimits& limits, Viola
 // Reads flat positions [frames, joints, 3] of the caller into world positions [frames, joints] in
 // the model's joint order. Empty, and violations under `field`, when a value is not finite or
 // absurdly far away. `positions` holds a whole number of frames of `joints`.
-std::vector<Vec3> ReadPositions(absl::string_view field,
-                                const google::protobuf::RepeatedField<float>& positions,
-                                const std::vector<int>& joints, const CoordinateFrame& frame,
-                                const RequestLimits& limits, Violations& violations);
+std::vector<motion::Vec3> ReadPositions(absl::string_view field,
+                                        const google::protobuf::RepeatedField<float>& positions,
+                                        const std::vector<int>& joints,
+                                        const motion::CoordinateFrame& frame,
+                                        const RequestLimits& limits, Violations& violations);
 
 // Names the first few values that are not finite, and counts them all. True when there are none.
 bool ValidateFinite(absl::string_view field,
                     const google::protobuf::RepeatedField<float>& positions,
                     Violations& violations);
 
-}  // namespace duet
+}  // namespace duet::server::service
 
 #endif  // DUET_SERVER_SERVICE_VALIDATE_LEADER_H_

@@ -13,13 +13,13 @@
 #include "server/service/validate_leader.h"
 #include "server/service/violations.h"
 
-namespace duet {
+namespace duet::server::service {
 namespace {
 
 // Walks one request; every method adds what is wrong with its field.
 class Validation {
  public:
-  Validation(const v1::SynthesizeRequest& request, const ModelDescription& model,
+  Validation(const v1::SynthesizeRequest& request, const engine::ModelDescription& model,
              const RequestLimits& limits)
       : request_(request), model_(model), limits_(limits) {}
 
@@ -27,23 +27,23 @@ class Validation {
 
  private:
   void Leader();
-  std::optional<FollowerStart> Start();
-  std::optional<Vec3> PartnerDirection();
-  std::vector<Vec3> StartPositions(absl::string_view field,
-                                   const google::protobuf::RepeatedField<float>& values,
-                                   const std::vector<int>& joints);
+  std::optional<engine::FollowerStart> Start();
+  std::optional<motion::Vec3> PartnerDirection();
+  std::vector<motion::Vec3> StartPositions(absl::string_view field,
+                                           const google::protobuf::RepeatedField<float>& values,
+                                           const std::vector<int>& joints);
   void ReplyJoints();
   int ChunkFrames();
-  Priority CallPriority();
+  batching::Priority CallPriority();
 
   const v1::SynthesizeRequest& request_;
-  const ModelDescription& model_;
+  const engine::ModelDescription& model_;
   const RequestLimits& limits_;
   Violations violations_;
 
-  std::optional<CoordinateFrame> frame_;
+  std::optional<motion::CoordinateFrame> frame_;
   std::vector<int> joints_;  // the leader's joints in the model; empty when they do not fit
-  std::vector<Vec3> leader_;
+  std::vector<motion::Vec3> leader_;
   ReplyMapping reply_;
 };
 
@@ -72,14 +72,14 @@ void Validation::Leader() {
       ReadPositions("leader.positions", leader.positions(), joints_, *frame_, limits_, violations_);
 }
 
-std::vector<Vec3> Validation::StartPositions(absl::string_view field,
-                                             const google::protobuf::RepeatedField<float>& values,
-                                             const std::vector<int>& joints) {
+std::vector<motion::Vec3> Validation::StartPositions(
+    absl::string_view field, const google::protobuf::RepeatedField<float>& values,
+    const std::vector<int>& joints) {
   if (!ValidateFinite(field, values, violations_) || !frame_.has_value()) return {};
   return ReadPositions(field, values, joints, *frame_, limits_, violations_);
 }
 
-std::optional<FollowerStart> Validation::Start() {
+std::optional<engine::FollowerStart> Validation::Start() {
   if (!request_.has_follower_start()) return std::nullopt;
   if (!model_.accepts_follower_start) {
     violations_.Mismatch("follower_start",
@@ -93,9 +93,9 @@ std::optional<FollowerStart> Validation::Start() {
          {start.root_position().x(), start.root_position().y(), start.root_position().z()}) {
       xyz.Add(value);
     }
-    const std::vector<Vec3> root = StartPositions("follower_start.root_position", xyz, {0});
+    const std::vector<motion::Vec3> root = StartPositions("follower_start.root_position", xyz, {0});
     if (root.empty()) return std::nullopt;
-    return FollowerStart{root.front(), {}};
+    return engine::FollowerStart{root.front(), {}};
   }
   if (!start.has_pose()) {
     violations_.Malformed("follower_start.start", "is missing, wanted root_position or pose");
@@ -110,13 +110,13 @@ std::optional<FollowerStart> Validation::Start() {
     return std::nullopt;
   }
   if (joints_.empty()) return std::nullopt;
-  std::vector<Vec3> pose = StartPositions("follower_start.pose.positions", values, joints_);
+  std::vector<motion::Vec3> pose = StartPositions("follower_start.pose.positions", values, joints_);
   if (pose.empty()) return std::nullopt;
-  const Vec3 root = pose[static_cast<std::size_t>(model_.skeleton.root)];
-  return FollowerStart{root, std::move(pose)};
+  const motion::Vec3 root = pose[static_cast<std::size_t>(model_.skeleton.root)];
+  return engine::FollowerStart{root, std::move(pose)};
 }
 
-std::optional<Vec3> Validation::PartnerDirection() {
+std::optional<motion::Vec3> Validation::PartnerDirection() {
   if (!request_.has_partner_direction()) return std::nullopt;
   const v1::Direction& direction = request_.partner_direction();
   google::protobuf::RepeatedField<float> xyz;
@@ -127,11 +127,11 @@ std::optional<Vec3> Validation::PartnerDirection() {
   // Scaled first, so that neither tiny nor huge components are lost in the conversion.
   const float largest = std::max({std::abs(xyz[0]), std::abs(xyz[1]), std::abs(xyz[2])});
   if (largest > 0) {
-    const Vec3 unit = {xyz[0] / largest, xyz[1] / largest, xyz[2] / largest};
-    const Vec3 world = ToWorld(*frame_, unit) - ToWorld(*frame_, {});
+    const motion::Vec3 unit = {xyz[0] / largest, xyz[1] / largest, xyz[2] / largest};
+    const motion::Vec3 world = ToWorld(*frame_, unit) - ToWorld(*frame_, {});
     const float horizontal = std::hypot(world.x, world.z);
     if (horizontal > 1e-6F * Norm(world)) {
-      return Vec3{world.x / horizontal, 0, world.z / horizontal};
+      return motion::Vec3{world.x / horizontal, 0, world.z / horizontal};
     }
   }
   violations_.Malformed("partner_direction",
@@ -164,13 +164,13 @@ void Validation::ReplyJoints() {
   for (int i = 0; i < wanted.size(); ++i) {
     const std::string field = absl::StrCat("reply_joint_names[", i, "]");
     if (std::find(known.begin(), known.end(), wanted[i]) == known.end()) {
-      violations_.Malformed(
-          field, absl::StrCat("is ", Quoted(wanted[i]), ", wanted one of leader.joint_names"));
+      violations_.Malformed(field, absl::StrCat("is ", common::Quoted(wanted[i]),
+                                                ", wanted one of leader.joint_names"));
     }
     const auto first = std::find(wanted.begin(), wanted.end(), wanted[i]);
     if (first - wanted.begin() < i) {
       violations_.Malformed(
-          field, absl::StrCat("is ", Quoted(wanted[i]), ", which [", first - wanted.begin(),
+          field, absl::StrCat("is ", common::Quoted(wanted[i]), ", which [", first - wanted.begin(),
                               "] is already; wanted each joint at most once"));
     }
   }
@@ -186,40 +186,42 @@ int Validation::ChunkFrames() {
   return static_cast<int>(frames);
 }
 
-Priority Validation::CallPriority() {
-  if (!request_.has_priority()) return Priority::kInteractive;
-  if (request_.priority() == v1::PRIORITY_BULK) return Priority::kBulk;
+batching::Priority Validation::CallPriority() {
+  if (!request_.has_priority()) return batching::Priority::kInteractive;
+  if (request_.priority() == v1::PRIORITY_BULK) return batching::Priority::kBulk;
   if (request_.priority() != v1::PRIORITY_INTERACTIVE) {
     const std::string& name = v1::Priority_Name(request_.priority());
     violations_.Malformed(
         "priority", absl::StrCat("is ", name.empty() ? absl::StrCat(request_.priority()) : name,
                                  ", wanted PRIORITY_INTERACTIVE, PRIORITY_BULK or no value"));
   }
-  return Priority::kInteractive;
+  return batching::Priority::kInteractive;
 }
 
 absl::StatusOr<ValidatedRequest> Validation::Run() {
   Leader();
-  std::vector<LabelKeyframe> labels = ValidateLabels(request_, model_, limits_, violations_);
-  std::optional<FollowerStart> start = Start();
-  const std::optional<Vec3> partner_direction = PartnerDirection();
+  std::vector<engine::LabelKeyframe> labels =
+      ValidateLabels(request_, model_, limits_, violations_);
+  std::optional<engine::FollowerStart> start = Start();
+  const std::optional<motion::Vec3> partner_direction = PartnerDirection();
   ReplyJoints();
   const int chunk_frames = ChunkFrames();
-  const Priority priority = CallPriority();
+  const batching::Priority priority = CallPriority();
   if (!violations_.empty()) return violations_.ToStatus();
-  return ValidatedRequest{{std::move(leader_), request_.leader().frame_rate_hz(),
-                           LabelTrack(std::move(labels)), std::move(start), partner_direction},
-                          std::move(reply_),
-                          chunk_frames,
-                          priority};
+  return ValidatedRequest{
+      {std::move(leader_), request_.leader().frame_rate_hz(), engine::LabelTrack(std::move(labels)),
+       std::move(start), partner_direction},
+      std::move(reply_),
+      chunk_frames,
+      priority};
 }
 
 }  // namespace
 
 absl::StatusOr<ValidatedRequest> ValidateRequest(const v1::SynthesizeRequest& request,
-                                                 const ModelDescription& model,
+                                                 const engine::ModelDescription& model,
                                                  const RequestLimits& limits) {
   return Validation(request, model, limits).Run();
 }
 
-}  // namespace duet
+}  // namespace duet::server::service

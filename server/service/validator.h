@@ -9,23 +9,23 @@
 #include "server/service/reply_mapping.h"
 #include "server/service/request_limits.h"
 
-namespace duet {
+namespace duet::server::service {
 
 // A SynthesizeRequest that was found good, in the model's terms.
 struct ValidatedRequest {
-  ClipRequest clip;
+  engine::ClipRequest clip;
   ReplyMapping reply;
   int chunk_frames = 0;
-  Priority priority = Priority::kInteractive;
+  batching::Priority priority = batching::Priority::kInteractive;
 };
 
 // Checks every field of a request against a model and the limits.
 // Fails with INVALID_ARGUMENT or FAILED_PRECONDITION whose BadRequest names every offending field.
 // `request` may hold anything.
 absl::StatusOr<ValidatedRequest> ValidateRequest(const v1::SynthesizeRequest& request,
-                                                 const ModelDescription& model,
+                                                 const engine::ModelDescription& model,
                                                  const RequestLimits& limits);
 
-}  // namespace duet
+}  // namespace duet::server::service
 
 #endif  // DUET_SERVER_SERVICE_VALIDATOR_H_

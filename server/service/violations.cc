@@ -4,7 +4,7 @@
 
 #include "absl/strings/str_cat.h"
 
-namespace duet {
+namespace duet::server::service {
 namespace {
 
 constexpr std::size_t kMaxKept = 24;
@@ -46,7 +46,7 @@ absl::Status Violations::ToStatus() const {
   }
   if (count > kInMessage) absl::StrAppend(&message, "; and ", count - kInMessage, " more");
 
-  std::vector<FieldViolation> violations = kept_;
+  std::vector<common::FieldViolation> violations = kept_;
   if (count > kept_.size()) {
     violations.push_back(
         {"", absl::StrCat(count - kept_.size(), " further violations are not listed")});
@@ -54,8 +54,9 @@ absl::Status Violations::ToStatus() const {
   absl::Status status =
       malformed_ > 0 ? absl::InvalidArgumentError(message) : absl::FailedPreconditionError(message);
   AddBadRequest(status, violations);
-  AddErrorInfo(status, malformed_ > 0 ? kReasonInvalidRequest : kReasonModelMismatch);
+  common::AddErrorInfo(
+      status, malformed_ > 0 ? common::kReasonInvalidRequest : common::kReasonModelMismatch);
   return status;
 }
 
-}  // namespace duet
+}  // namespace duet::server::service

@@ -8,7 +8,7 @@
 #include "absl/status/status.h"
 #include "server/common/error_details.h"
 
-namespace duet {
+namespace duet::server::service {
 
 // Collects everything that is wrong with a request, so that a caller can put it right in one go.
 //
@@ -30,12 +30,12 @@ class Violations {
  private:
   void Keep(std::string field, std::string description);
 
-  std::vector<FieldViolation> kept_;
+  std::vector<common::FieldViolation> kept_;
   std::size_t kept_bytes_ = 0;
   std::size_t malformed_ = 0;
   std::size_t mismatched_ = 0;
 };
 
-}  // namespace duet
+}  // namespace duet::server::service
 
 #endif  // DUET_SERVER_SERVICE_VIOLATIONS_H_

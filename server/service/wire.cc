@@ -6,7 +6,7 @@
 #include "absl/strings/str_cat.h"
 #include "server/service/violations.h"
 
-namespace duet {
+namespace duet::server::service {
 
 absl::Status ParseMessage(const grpc::ByteBuffer& bytes, google::protobuf::Message& message) {
   grpc::ByteBuffer shared = bytes;  // reading needs its own; the bytes themselves are shared
@@ -28,4 +28,4 @@ grpc::ByteBuffer SerializeMessage(const google::protobuf::Message& message) {
   return bytes;
 }
 
-}  // namespace duet
+}  // namespace duet::server::service

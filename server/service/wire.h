@@ -6,7 +6,7 @@
 
 #include "absl/status/status.h"
 
-namespace duet {
+namespace duet::server::service {
 
 // Messages and the bytes that travel. The service takes bytes, because gRPC's generated code would
 // refuse malformed ones as UNIMPLEMENTED, and parses a request only once it is known to be small
@@ -17,6 +17,6 @@ absl::Status ParseMessage(const grpc::ByteBuffer& bytes, google::protobuf::Messa
 
 grpc::ByteBuffer SerializeMessage(const google::protobuf::Message& message);
 
-}  // namespace duet
+}  // namespace duet::server::service
 
 #endif  // DUET_SERVER_SERVICE_WIRE_H_

@@ -9,18 +9,18 @@
 #include "model/authoring/puppet.h"
 #include "model/motion/skeleton.h"
 
-namespace duet {
+namespace duet::authoring {
 namespace {
 
 using ::testing::HasSubstr;
 
 std::string ParseError(const std::string& text) {
-  const absl::StatusOr<Clip> clip = ParseKeyframes(text, "a.txt");
+  const absl::StatusOr<motion::Clip> clip = ParseKeyframes(text, "a.txt");
   EXPECT_EQ(clip.status().code(), absl::StatusCode::kInvalidArgument) << clip.status();
   return std::string(clip.status().message());
 }
 
-float BoneLength(const std::vector<Vec3>& pose, const Bone& bone) {
+float BoneLength(const std::vector<motion::Vec3>& pose, const motion::Bone& bone) {
   return Distance(pose[static_cast<size_t>(bone.parent)], pose[static_cast<size_t>(bone.child)]);
 }
 
@@ -31,7 +31,7 @@ TEST(Puppet, ReachesItsTargets) {
   pose.right_foot.target = {-0.1, 0.3, 0.1};
   pose.left_hand.target = {0.2, -0.2, 0.4};
   pose.right_hand.target = {-0.2, -0.5, 0.05};
-  const std::vector<Vec3> joints = PosePuppet(pose);
+  const std::vector<motion::Vec3> joints = PosePuppet(pose);
   EXPECT_LT(Distance(joints[11], {0.1f, 0.08f, 0.3f}), 1e-5f);
   EXPECT_LT(Distance(joints[14], {-0.1f, 0.3f, 0.1f}), 1e-5f);
   EXPECT_LT(Distance(joints[5] - joints[1], {0.2f, -0.2f, 0.4f}), 1e-5f);
@@ -43,19 +43,20 @@ TEST(Puppet, KeepsBoneLengthsWhereverTheTargetsAre) {
   rest.torso = {0, 1.1, 0};
   rest.left_foot.target = {0.1, 0.08, 0};
   rest.right_foot.target = {-0.1, 0.08, 0};
-  const std::vector<Vec3> reference = PosePuppet(rest);
-  const std::vector<Bone> bones = SbuSkeleton().bones;
+  const std::vector<motion::Vec3> reference = PosePuppet(rest);
+  const std::vector<motion::Bone> bones = motion::SbuSkeleton().bones;
   EXPECT_NEAR(BoneLength(reference, {9, 10}), 0.43, 1e-5);
   EXPECT_NEAR(BoneLength(reference, {4, 5}), 0.28, 1e-5);
-  for (const Vec3d target : {Vec3d{0, 0, 0}, {5, 5, 5}, {0.15, -0.01, 0}, {0, 3, 0}, {0, -9, 0}}) {
+  for (const retargeting::Vec3d target :
+       {retargeting::Vec3d{0, 0, 0}, {5, 5, 5}, {0.15, -0.01, 0}, {0, 3, 0}, {0, -9, 0}}) {
     PuppetPose pose = rest;
     pose.left_hand.target = pose.right_hand.target = target;
     pose.left_foot.target = pose.right_foot.target = target;
     pose.chest = {70, -30, 20};
     pose.pelvis = {-40, 20, 10};
     pose.left_hand.swivel = 200;
-    const std::vector<Vec3> joints = PosePuppet(pose);
-    for (const Bone& bone : bones) {
+    const std::vector<motion::Vec3> joints = PosePuppet(pose);
+    for (const motion::Bone& bone : bones) {
       EXPECT_NEAR(BoneLength(joints, bone), BoneLength(reference, bone), 1e-5)
           << bone.parent << "-" << bone.child;
     }
@@ -69,7 +70,7 @@ TEST(Puppet, BendsKneesForwardsAndElbowsBackOrDown) {
   pose.right_foot.target = {-0.1, 0.08, 0};
   pose.left_hand.target = {0.15, -0.45, 0};   // hanging
   pose.right_hand.target = {-0.15, 0, 0.45};  // reaching forwards
-  const std::vector<Vec3> joints = PosePuppet(pose);
+  const std::vector<motion::Vec3> joints = PosePuppet(pose);
   EXPECT_GT(joints[10].z, 0.1f);
   EXPECT_GT(joints[13].z, 0.1f);
   EXPECT_LT(joints[4].z, -0.1f);
@@ -90,14 +91,14 @@ TEST(Puppet, LeansAsItsDocumentationSays) {
 }
 
 TEST(Keyframes, GoesThroughItsKeyPoses) {
-  const absl::StatusOr<Clip> clip = ParseKeyframes(
+  const absl::StatusOr<motion::Clip> clip = ParseKeyframes(
       "frame_rate 20 # slow\nat 0\n torso 0 1.1 0\nat 0.5\n\ttorso 0.1 1.0 0\nat 1\ntorso 0 1.1 "
       "0\n",
       "a.txt");
   ASSERT_TRUE(clip.ok()) << clip.status();
   EXPECT_EQ(clip->frame_rate_hz, 20);
   ASSERT_EQ(clip->frame_count(), 21);
-  EXPECT_EQ(clip->joint_names, SbuSkeleton().joint_names);
+  EXPECT_EQ(clip->joint_names, motion::SbuSkeleton().joint_names);
   EXPECT_NEAR(clip->at(0, 2).y, 1.1, 1e-6);
   EXPECT_NEAR(clip->at(10, 2).x, 0.1, 1e-6);
   EXPECT_NEAR(clip->at(20, 2).x, 0, 1e-6);
@@ -123,4 +124,4 @@ TEST(Keyframes, NamesThePlaceOfAnError) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::authoring

@@ -5,7 +5,7 @@
 
 #include "gtest/gtest.h"
 
-namespace duet {
+namespace duet::authoring {
 namespace {
 
 const std::vector<MonotoneCubic::Key> kKeys = {{0, 1}, {1, 3}, {1.5, 3}, {2, 7}, {4, 8}, {5, -2}};
@@ -42,4 +42,4 @@ TEST(MonotoneCubic, HasContinuousVelocityAndEasesAtTheEnds) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::authoring

@@ -9,13 +9,13 @@
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "model/authoring/keyframes.h"
+#include "model/base/text.h"
 #include "model/formats/bvh/bvh_document.h"
 #include "model/formats/bvh/bvh_export.h"
-#include "model/authoring/keyframes.h"
 #include "model/formats/motion_file.h"
-#include "model/base/text.h"
 
-namespace duet {
+namespace duet::authoring {
 namespace {
 
 constexpr int kLeftHip = 9, kRightHip = 12;
@@ -30,23 +30,26 @@ class Sample : public ::testing::TestWithParam<const char*> {
   void SetUp() override {
     bvh_ = SamplesFolder() / (std::string(GetParam()) + ".bvh");
     keyframes_ = SamplesFolder() / "keyframes" / (std::string(GetParam()) + ".txt");
-    absl::StatusOr<Clip> clip = ReadLeader(bvh_);
+    absl::StatusOr<motion::Clip> clip = formats::ReadLeader(bvh_);
     ASSERT_TRUE(clip.ok()) << clip.status();
     clip_ = *std::move(clip);
   }
 
   std::filesystem::path bvh_, keyframes_;
-  Clip clip_;
+  motion::Clip clip_;
 };
 
 TEST_P(Sample, IsWhatItsKeyFramesSay) {
-  const absl::StatusOr<std::string> text = ReadFile(keyframes_), committed = ReadFile(bvh_);
+  const absl::StatusOr<std::string> text = base::ReadFile(keyframes_),
+                                    committed = base::ReadFile(bvh_);
   ASSERT_TRUE(text.ok()) << text.status();
   ASSERT_TRUE(committed.ok()) << committed.status();
-  const absl::StatusOr<Clip> clip = ParseKeyframes(*text, keyframes_.string());
+  const absl::StatusOr<motion::Clip> clip = ParseKeyframes(*text, keyframes_.string());
   ASSERT_TRUE(clip.ok()) << clip.status();
-  const absl::StatusOr<BvhDocument> made = ToBvh(*clip, SbuSkeleton());
-  const absl::StatusOr<BvhDocument> there = ParseBvh(*committed, bvh_.string());
+  const absl::StatusOr<formats::bvh::BvhDocument> made =
+      formats::bvh::ToBvh(*clip, motion::SbuSkeleton());
+  const absl::StatusOr<formats::bvh::BvhDocument> there =
+      formats::bvh::ParseBvh(*committed, bvh_.string());
   ASSERT_TRUE(made.ok()) << made.status();
   ASSERT_TRUE(there.ok()) << there.status();
   const std::string advice = "run duet-keyframe " + keyframes_.string() + " --out " + bvh_.string();
@@ -64,7 +67,7 @@ TEST_P(Sample, LastsAsLongAsTheAction) {
 }
 
 TEST_P(Sample, KeepsItsBoneLengths) {
-  for (const Bone& bone : SbuSkeleton().bones) {
+  for (const motion::Bone& bone : motion::SbuSkeleton().bones) {
     const float first = Distance(clip_.at(0, bone.parent), clip_.at(0, bone.child));
     for (int frame = 1; frame < clip_.frame_count(); ++frame) {
       EXPECT_NEAR(Distance(clip_.at(frame, bone.parent), clip_.at(frame, bone.child)), first, 1e-4);
@@ -76,10 +79,10 @@ TEST_P(Sample, MovesWithoutJumps) {
   const float rate = static_cast<float>(clip_.frame_rate_hz);
   for (int frame = 1; frame < clip_.frame_count(); ++frame) {
     for (int joint = 0; joint < clip_.joint_count(); ++joint) {
-      const Vec3 velocity = (clip_.at(frame, joint) - clip_.at(frame - 1, joint)) * rate;
+      const motion::Vec3 velocity = (clip_.at(frame, joint) - clip_.at(frame - 1, joint)) * rate;
       EXPECT_LT(Norm(velocity), 7) << clip_.joint_names[static_cast<size_t>(joint)] << " " << frame;
       if (frame < 2) continue;
-      const Vec3 before = (clip_.at(frame - 1, joint) - clip_.at(frame - 2, joint)) * rate;
+      const motion::Vec3 before = (clip_.at(frame - 1, joint) - clip_.at(frame - 2, joint)) * rate;
       EXPECT_LT(Norm(velocity - before) * rate, 160)
           << clip_.joint_names[static_cast<size_t>(joint)] << " " << frame;
     }
@@ -89,11 +92,11 @@ TEST_P(Sample, MovesWithoutJumps) {
 TEST_P(Sample, StandsOnTheFloorWithKneesThatBendForwards) {
   for (int frame = 0; frame < clip_.frame_count(); ++frame) {
     EXPECT_LT(std::min(clip_.at(frame, 11).y, clip_.at(frame, 14).y), 0.085f) << frame;
-    const Vec3 across = clip_.at(frame, kLeftHip) - clip_.at(frame, kRightHip);
+    const motion::Vec3 across = clip_.at(frame, kLeftHip) - clip_.at(frame, kRightHip);
     for (int hip : {kLeftHip, kRightHip}) {
       EXPECT_GT(std::min(clip_.at(frame, hip + 1).y, clip_.at(frame, hip + 2).y), 0.07f) << frame;
-      const Vec3 bend = Cross(clip_.at(frame, hip + 1) - clip_.at(frame, hip),
-                              clip_.at(frame, hip + 2) - clip_.at(frame, hip + 1));
+      const motion::Vec3 bend = Cross(clip_.at(frame, hip + 1) - clip_.at(frame, hip),
+                                      clip_.at(frame, hip + 2) - clip_.at(frame, hip + 1));
       EXPECT_GT(Dot(bend, across), 0) << frame;
     }
   }
@@ -117,4 +120,4 @@ INSTANTIATE_TEST_SUITE_P(Classes, Sample,
                                            "punch"));
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::authoring

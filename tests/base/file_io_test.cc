@@ -6,8 +6,14 @@
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
-namespace duet {
+namespace duet::base {
 namespace {
+
+using test::IsOk;
+using test::ReadTestFile;
+using test::StatusIs;
+using test::TemporaryFolder;
+using test::WriteTestFile;
 
 namespace fs = std::filesystem;
 using ::testing::_;
@@ -105,4 +111,4 @@ TEST(WriteFolder, NamesAParentThatIsNoFolder) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::base

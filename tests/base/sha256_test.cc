@@ -2,7 +2,7 @@
 
 #include "gtest/gtest.h"
 
-namespace duet {
+namespace duet::base {
 namespace {
 
 // Test vectors of FIPS 180-2, appendix B.
@@ -14,4 +14,4 @@ TEST(Sha256, PublishedVectors) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::base

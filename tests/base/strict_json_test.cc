@@ -6,8 +6,11 @@
 #include "gtest/gtest.h"
 #include "tests/support/status_matchers.h"
 
-namespace duet {
+namespace duet::base {
 namespace {
+
+using test::IsOk;
+using test::StatusIs;
 
 using nlohmann::json;
 using ::testing::HasSubstr;
@@ -140,4 +143,4 @@ TEST(ObjectReader, ShortensWhatItQuotes) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::base

@@ -11,8 +11,16 @@
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tiny_checkpoint.h"
 
-namespace duet {
+namespace duet::checkpoint {
 namespace {
+
+using test::IsOk;
+using test::ReadTestFile;
+using test::StatusIs;
+using test::TemporaryFolder;
+using test::TinyCheckpoint;
+using test::TinyManifest;
+using test::WriteTestFile;
 
 namespace fs = std::filesystem;
 using ::testing::AllOf;
@@ -39,7 +47,7 @@ void ExpectTiny(const Checkpoint& got) {
 absl::StatusOr<Checkpoint> ParseWith(const std::vector<Tensor>& tensors) {
   const std::string weights = SerializeSafetensors(tensors);
   Manifest manifest = TinyManifest();
-  manifest.weights = {"weights.safetensors", weights.size(), Sha256Hex(weights)};
+  manifest.weights = {"weights.safetensors", weights.size(), base::Sha256Hex(weights)};
   return ParseCheckpoint(SerializeManifest(manifest), weights);
 }
 
@@ -157,7 +165,7 @@ TEST(ParseCheckpoint, RefusesAnotherFile) {
   manifest.weights = {"weights.safetensors", weights.size(), std::string(64, '0')};
   EXPECT_THAT(ParseCheckpoint(SerializeManifest(manifest), weights),
               StatusIs(absl::StatusCode::kDataLoss,
-                       AllOf(HasSubstr("SHA-256"), HasSubstr(Sha256Hex(weights)))));
+                       AllOf(HasSubstr("SHA-256"), HasSubstr(base::Sha256Hex(weights)))));
   manifest.weights.bytes += 1;
   EXPECT_THAT(ParseCheckpoint(SerializeManifest(manifest), weights),
               StatusIs(absl::StatusCode::kDataLoss, HasSubstr("weights.bytes")));
@@ -217,4 +225,4 @@ TEST_F(CheckpointFixture, DISABLED_Write) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::checkpoint

@@ -4,14 +4,18 @@
 #include <string>
 
 #include "gtest/gtest.h"
-#include "model/checkpoint/checkpoint.h"
 #include "model/base/sha256.h"
+#include "model/checkpoint/checkpoint.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tiny_checkpoint.h"
 
-namespace duet {
+namespace duet::checkpoint {
 namespace {
+
+using test::FilledCheckpoint;
+using test::IsOk;
+using test::TinyManifest;
 
 using ::testing::Not;
 
@@ -33,7 +37,7 @@ Files TiniestFiles() {
   Files files;
   files.weights = SerializeSafetensors(checkpoint.tensors, {{"format", "pt"}});
   Manifest manifest = checkpoint.manifest;
-  manifest.weights = {"weights.safetensors", files.weights.size(), Sha256Hex(files.weights)};
+  manifest.weights = {"weights.safetensors", files.weights.size(), base::Sha256Hex(files.weights)};
   files.manifest = SerializeManifest(manifest);
   return files;
 }
@@ -80,7 +84,7 @@ TEST(Corruption, WeightsWithAMatchingHashAreRefusedOrSound) {
   const Files files = TiniestFiles();
   Manifest manifest = TiniestManifest();
   FlipEveryByte(files.weights, [&](const std::string& corrupt) {
-    manifest.weights = {"weights.safetensors", corrupt.size(), Sha256Hex(corrupt)};
+    manifest.weights = {"weights.safetensors", corrupt.size(), base::Sha256Hex(corrupt)};
     const absl::StatusOr<Checkpoint> read = ParseCheckpoint(SerializeManifest(manifest), corrupt);
     if (read.ok()) {
       ExpectSound(*read);
@@ -116,4 +120,4 @@ TEST(Corruption, TruncatedWeightsAreDataLoss) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::checkpoint

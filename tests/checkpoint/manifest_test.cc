@@ -9,8 +9,12 @@
 #include "tests/support/status_matchers.h"
 #include "tests/support/tiny_checkpoint.h"
 
-namespace duet {
+namespace duet::checkpoint {
 namespace {
+
+using test::IsOk;
+using test::StatusIs;
+using test::TinyManifest;
 
 using nlohmann::json;
 using ::testing::AllOf;
@@ -60,10 +64,10 @@ TEST(Manifest, RoundTrip) {
 
 TEST(Manifest, SkeletonRoundTrip) {
   Manifest manifest = CompleteManifest();
-  manifest.model.skeleton = SbuSkeleton();
+  manifest.model.skeleton = motion::SbuSkeleton();
   const absl::StatusOr<Manifest> read = ParseManifest(SerializeManifest(manifest));
   ASSERT_THAT(read, IsOk());
-  const Skeleton got = read->model.skeleton, wanted = SbuSkeleton();
+  const motion::Skeleton got = read->model.skeleton, wanted = motion::SbuSkeleton();
   EXPECT_EQ(got.joint_names, wanted.joint_names);
   EXPECT_EQ(got.bones, wanted.bones);
   ASSERT_EQ(got.parts.size(), wanted.parts.size());
@@ -288,4 +292,4 @@ TEST(Manifest, ANonFiniteMetricCannotBeRead) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::checkpoint

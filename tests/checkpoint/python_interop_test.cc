@@ -14,8 +14,14 @@
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tiny_checkpoint.h"
 
-namespace duet {
+namespace duet::checkpoint {
 namespace {
+
+using test::IsOk;
+using test::ReadTestFile;
+using test::TemporaryFolder;
+using test::TinyCheckpoint;
+using test::WriteTestFile;
 
 constexpr char kPython[] = "/usr/bin/python3";
 
@@ -108,4 +114,4 @@ TEST_F(PythonInterop, WeReadPythonsFile) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::checkpoint

@@ -8,8 +8,11 @@
 #include "gtest/gtest.h"
 #include "tests/support/status_matchers.h"
 
-namespace duet {
+namespace duet::checkpoint {
 namespace {
+
+using test::IsOk;
+using test::StatusIs;
 
 using ::testing::HasSubstr;
 
@@ -186,4 +189,4 @@ TEST(Safetensors, DeclaringMoreThanIsThereIsDataLoss) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::checkpoint

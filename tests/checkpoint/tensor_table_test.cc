@@ -3,14 +3,16 @@
 #include "model/checkpoint/manifest.h"
 #include "tests/support/tiny_checkpoint.h"
 
-namespace duet {
+namespace duet::checkpoint {
 namespace {
+
+using test::TinyManifest;
 
 using ::testing::ElementsAre;
 
 Manifest SbuManifest() {
   Manifest manifest;
-  manifest.model.skeleton = SbuSkeleton();
+  manifest.model.skeleton = motion::SbuSkeleton();
   manifest.model.classes = {"kick", "push", "shake_hands", "hug", "exchange_object", "punch"};
   return manifest;
 }
@@ -50,7 +52,7 @@ TEST(TensorTable, UnlabelledVariantGetsTheWholeBodyAlone) {
 TEST(TensorTable, FollowerStartJoinsTheWholeBody) {
   Manifest manifest = SbuManifest();
   manifest.generator.follower_start = true;
-  EXPECT_EQ(StartFeatureCount(SbuSkeleton()), 3 + 45 + 2);
+  EXPECT_EQ(StartFeatureCount(motion::SbuSkeleton()), 3 + 45 + 2);
   EXPECT_EQ(SliceShapes(manifest)[5].input, 45 + 6 + 50);
 }
 
@@ -97,4 +99,4 @@ TEST(TensorTable, AnotherSkeletonIsAConfiguration) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::checkpoint

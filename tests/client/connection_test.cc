@@ -11,6 +11,18 @@
 namespace duet::client::internal {
 namespace {
 
+using test::ChunkFor;
+using test::FakeStub;
+using test::FakeTime;
+using test::FollowerFor;
+using test::HeaderFor;
+using test::IsOk;
+using test::ReplyFor;
+using test::ScriptedStream;
+using test::ServiceError;
+using test::StatusIs;
+using test::ThreeJointLeader;
+
 using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::Field;
@@ -110,7 +122,7 @@ TEST_F(ConnectionTest, ExpiredCallsAreNotTriedAgain) {
 
 TEST_F(ConnectionTest, TheCallbackSeesEveryFrameOnceAcrossRetries) {
   stub_->streams = {Broken(), Good(3)};
-  std::vector<Vec3> frames;
+  std::vector<motion::Vec3> frames;
   const absl::StatusOr<SynthesisResult> result = Synthesize([&](const FollowerChunk& chunk) {
     EXPECT_EQ(static_cast<size_t>(chunk.first_frame) * 3, frames.size());
     frames.insert(frames.end(), chunk.positions.begin(), chunk.positions.end());

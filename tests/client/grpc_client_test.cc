@@ -19,6 +19,14 @@
 namespace duet::client::internal {
 namespace {
 
+using test::FakeServer;
+using test::FollowerFor;
+using test::HeaderFor;
+using test::IsOk;
+using test::ReplyFor;
+using test::StatusIs;
+using test::ThreeJointLeader;
+
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 

@@ -11,6 +11,9 @@
 namespace duet::client::internal {
 namespace {
 
+using test::IsOk;
+using test::StatusIs;
+
 using ::testing::Eq;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;

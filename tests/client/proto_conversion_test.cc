@@ -10,6 +10,10 @@
 namespace duet::client::internal {
 namespace {
 
+using test::IsOk;
+using test::StatusIs;
+using test::ThreeJointLeader;
+
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
@@ -61,8 +65,8 @@ TEST(SynthesizeRequestTest, KeyframesReplaceTheLabelVector) {
 
 TEST(SynthesizeRequestTest, OptionalFieldsAreCarried) {
   SynthesisRequest request = GoodRequest();
-  request.follower_start = Vec3{1, 2, 3};
-  request.partner_direction = Vec3{-1, 0, 0.5f};
+  request.follower_start = motion::Vec3{1, 2, 3};
+  request.partner_direction = motion::Vec3{-1, 0, 0.5f};
   request.chunk_frames = 8;
   request.priority = Priority::kBulk;
   request.model = {"dancer", 3, ""};
@@ -76,7 +80,7 @@ TEST(SynthesizeRequestTest, OptionalFieldsAreCarried) {
   EXPECT_EQ(wire->model().name(), "dancer");
   EXPECT_EQ(wire->model().version(), 3u);
 
-  request.follower_start = std::vector<Vec3>{{1, 2, 3}, {4, 5, 6}, {7, 8, 9}};
+  request.follower_start = std::vector<motion::Vec3>{{1, 2, 3}, {4, 5, 6}, {7, 8, 9}};
   request.model = {"dancer", std::nullopt, "canary"};
   wire = ToProto(request);
   ASSERT_THAT(wire, IsOk());
@@ -146,7 +150,7 @@ TEST(ModelTest, EveryFieldIsRead) {
   EXPECT_TRUE(info->is_default);
   EXPECT_THAT(info->interaction_classes, ElementsAre("kick"));
   EXPECT_THAT(info->joint_names, ElementsAre("root", "left", "right"));
-  EXPECT_THAT(info->bones, ElementsAre(Bone{0, 2}));
+  EXPECT_THAT(info->bones, ElementsAre(motion::Bone{0, 2}));
   EXPECT_EQ(info->root_joint, "root");
   EXPECT_EQ(info->frame_rate_hz, 15);
   EXPECT_EQ(info->window_frames, 46);

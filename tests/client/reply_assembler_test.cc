@@ -14,6 +14,15 @@
 namespace duet::client::internal {
 namespace {
 
+using test::ChunkFor;
+using test::FollowerFor;
+using test::HeaderFor;
+using test::IsOk;
+using test::ReplyFor;
+using test::ServiceError;
+using test::StatusIs;
+using test::ThreeJointLeader;
+
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
@@ -38,9 +47,9 @@ class ReplyAssemblerTest : public ::testing::Test {
     return Feed(reply);
   }
 
-  Clip leader_ = ThreeJointLeader(5);
+  motion::Clip leader_ = ThreeJointLeader(5);
   std::vector<std::pair<int, int>> handed_out_;
-  std::vector<Vec3> frames_;
+  std::vector<motion::Vec3> frames_;
   ChunkCallback on_chunk_ = [this](const FollowerChunk& chunk) {
     handed_out_.emplace_back(chunk.first_frame, chunk.frame_count);
     frames_.insert(frames_.end(), chunk.positions.begin(), chunk.positions.end());

@@ -10,6 +10,11 @@
 namespace duet::client::internal {
 namespace {
 
+using test::FakeTime;
+using test::IsOk;
+using test::ServiceError;
+using test::StatusIs;
+
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;

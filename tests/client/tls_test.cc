@@ -11,6 +11,12 @@
 namespace duet::client::internal {
 namespace {
 
+using test::FakeServer;
+using test::IsOk;
+using test::MakeTestCertificate;
+using test::StatusIs;
+using test::TestCertificate;
+
 using ::testing::HasSubstr;
 
 class TlsTest : public ::testing::Test {

@@ -8,7 +8,10 @@
 #include "model/motion/vec3.h"
 #include "tests/support/temporary_folder.h"
 
-namespace duet {
+namespace duet::dataset {
+
+using test::TemporaryFolder;
+using test::WriteTestFile;
 
 // A folder of made-up captures that is gone after the test.
 class CaptureFolder {
@@ -25,11 +28,11 @@ class CaptureFolder {
 };
 
 // A line of the SBU layout: `left` and `right` hold every joint of a person.
-inline std::string CaptureLine(int frame, const std::vector<Vec3>& left,
-                               const std::vector<Vec3>& right) {
+inline std::string CaptureLine(int frame, const std::vector<motion::Vec3>& left,
+                               const std::vector<motion::Vec3>& right) {
   std::string line = std::to_string(frame);
-  for (const std::vector<Vec3>* person : {&left, &right}) {
-    for (const Vec3& p : *person) {
+  for (const std::vector<motion::Vec3>* person : {&left, &right}) {
+    for (const motion::Vec3& p : *person) {
       for (float value : {p.x, p.y, p.z}) line += "," + std::to_string(value);
     }
   }
@@ -39,7 +42,7 @@ inline std::string CaptureLine(int frame, const std::vector<Vec3>& left,
 // Two people of 15 joints, standing still for `frames` frames; every value is the joint's number
 // plus the person's offset (100 for the right one).
 inline std::string StillCapture(int frames) {
-  std::vector<Vec3> left(15), right(15);
+  std::vector<motion::Vec3> left(15), right(15);
   for (size_t j = 0; j < 15; ++j) {
     const float value = static_cast<float>(j);
     left[j] = {value, value, value};
@@ -50,6 +53,6 @@ inline std::string StillCapture(int frames) {
   return text;
 }
 
-}  // namespace duet
+}  // namespace duet::dataset
 
 #endif  // DUET_TESTS_DATASET_CAPTURE_FOLDER_H_

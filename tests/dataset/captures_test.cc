@@ -8,7 +8,7 @@
 #include "model/dataset/dataset.h"
 #include "model/dataset/leader_side.h"
 
-namespace duet {
+namespace duet::dataset {
 namespace {
 
 std::filesystem::path DataFolder(const std::string& name) {
@@ -45,7 +45,7 @@ TEST(CapturesTest, SbuFollowersStandWhereTheirDirectionPoints) {
   const int root = dataset->skeleton.root;
   for (const Sequence& one : dataset->sequences) {
     ASSERT_TRUE(one.partner_direction.has_value());
-    const Vec3 across = one.pair.follower.at(0, root) - one.pair.leader.at(0, root);
+    const motion::Vec3 across = one.pair.follower.at(0, root) - one.pair.leader.at(0, root);
     // Within 45 degrees of it, or the axis is not the setup's.
     EXPECT_GT(Dot(across, *one.partner_direction), 0.7f * std::hypot(across.x, across.z)) << one.id;
   }
@@ -79,4 +79,4 @@ TEST(CapturesTest, K3hiIsWhole) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::dataset

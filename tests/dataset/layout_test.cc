@@ -5,7 +5,7 @@
 
 #include "nlohmann/json.hpp"
 
-namespace duet {
+namespace duet::dataset {
 namespace {
 
 using testing::ElementsAre;
@@ -40,11 +40,11 @@ TEST(DatasetLayoutTest, ReadsEveryField) {
   ASSERT_TRUE(layout.ok()) << layout.status();
   EXPECT_EQ(layout->name, "sticks");
   EXPECT_EQ(layout->frame_rate_hz, 60);
-  EXPECT_EQ(layout->frame.unit, LengthUnit::kMillimetres);
-  EXPECT_EQ(layout->frame.up_axis, UpAxis::kZUp);
+  EXPECT_EQ(layout->frame.unit, motion::LengthUnit::kMillimetres);
+  EXPECT_EQ(layout->frame.up_axis, motion::UpAxis::kZUp);
   EXPECT_THAT(layout->skeleton.joint_names,
               ElementsAre("hip", "left_hip", "right_hip", "left_foot", "right_foot"));
-  EXPECT_EQ(layout->skeleton.bones[3], (Bone{2, 4}));
+  EXPECT_EQ(layout->skeleton.bones[3], (motion::Bone{2, 4}));
   EXPECT_EQ(layout->skeleton.parts[1].name, "rest");
   EXPECT_THAT(layout->skeleton.parts[1].joints, ElementsAre(0, 2, 4));
   EXPECT_EQ(layout->skeleton.right_foot, 4);
@@ -122,4 +122,4 @@ TEST(DatasetLayoutTest, KnowsThePapersClassesInOrder) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::dataset

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace duet {
+namespace duet::dataset {
 namespace {
 
 using testing::ElementsAre;
@@ -39,8 +39,8 @@ TEST(LeaderIndexTest, NamesTheLineThatIsWrong) {
 }
 
 // Two joints: a root that walks and a hand.
-Clip Walker(float hand_peak) {
-  Clip clip;
+motion::Clip Walker(float hand_peak) {
+  motion::Clip clip;
   clip.joint_names = {"root", "hand"};
   clip.frame_rate_hz = 15;
   for (const float reach : {0.0f, hand_peak, 0.0f}) {
@@ -63,4 +63,4 @@ TEST(LeaderByMotionTest, WalkingAloneIsNoReach) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::dataset

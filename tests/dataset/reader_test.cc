@@ -4,7 +4,7 @@
 #include "model/dataset/dataset.h"
 #include "tests/dataset/capture_folder.h"
 
-namespace duet {
+namespace duet::dataset {
 namespace {
 
 using testing::AllOf;
@@ -13,8 +13,8 @@ using testing::HasSubstr;
 
 // The right person's left hand reaches, everything else stands still.
 std::string RightReaches() {
-  std::vector<Vec3> left(15), right(15);
-  for (Vec3& p : right) p.x = 1;
+  std::vector<motion::Vec3> left(15), right(15);
+  for (motion::Vec3& p : right) p.x = 1;
   std::string text = CaptureLine(1, left, right);
   right[5].y += 0.5f;
   return text + CaptureLine(2, left, right);
@@ -62,12 +62,12 @@ TEST(ReadDatasetTest, TellsOnWhichSideTheFollowerStands) {
   // Raw x grows towards world -x. In one file the follower is at the larger raw x, in the other at
   // the smaller; by how much, and how far along the other axes, does not matter.
   CaptureFolder folder;
-  std::vector<Vec3> left(15), right(15);
-  for (Vec3& p : right) p = {0.25f, 0.1f, 0.75f};
+  std::vector<motion::Vec3> left(15), right(15);
+  for (motion::Vec3& p : right) p = {0.25f, 0.1f, 0.75f};
   for (const bool swapped : {false, true}) {
     const std::string file = swapped ? "s02s01" : "s01s02";
-    const std::vector<Vec3>& first = swapped ? right : left;
-    const std::vector<Vec3>& second = swapped ? left : right;
+    const std::vector<motion::Vec3>& first = swapped ? right : left;
+    const std::vector<motion::Vec3>& second = swapped ? left : right;
     folder.Write(file + "/03/001/skeleton_pos.txt",
                  CaptureLine(1, first, second) + CaptureLine(2, first, second));
   }
@@ -76,8 +76,8 @@ TEST(ReadDatasetTest, TellsOnWhichSideTheFollowerStands) {
                "s02s01/03/001/skeleton_pos.txt\tleft\n");
   const absl::StatusOr<Dataset> dataset = ReadDataset(folder.path());
   ASSERT_TRUE(dataset.ok()) << dataset.status();
-  EXPECT_EQ(dataset->sequences[0].partner_direction, (Vec3{-1, 0, 0}));
-  EXPECT_EQ(dataset->sequences[1].partner_direction, (Vec3{1, 0, 0}));
+  EXPECT_EQ(dataset->sequences[0].partner_direction, (motion::Vec3{-1, 0, 0}));
+  EXPECT_EQ(dataset->sequences[1].partner_direction, (motion::Vec3{1, 0, 0}));
 }
 
 TEST(ReadDatasetTest, ReadsK3hi) {
@@ -182,4 +182,4 @@ TEST(ReadDatasetTest, RefusesAFolderThatIsNoDataSet) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::dataset

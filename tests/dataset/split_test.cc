@@ -7,7 +7,7 @@
 
 #include "model/dataset/dataset.h"
 
-namespace duet {
+namespace duet::dataset {
 namespace {
 
 using testing::ElementsAre;
@@ -115,4 +115,4 @@ TEST(TakeValidationTest, NeverTakesWhatIsNotInTrain) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::dataset

@@ -12,19 +12,19 @@ int main(int argc, char** argv) {
     std::cerr << "usage: write_test_page <file>\n";
     return 2;
   }
-  duet::client::PageContent content;
-  content.pair.leader.joint_names = duet::SbuSkeleton().joint_names;
+  duet::client::viewer::PageContent content;
+  content.pair.leader.joint_names = duet::motion::SbuSkeleton().joint_names;
   content.pair.leader.frame_rate_hz = 30;
-  content.pair.leader.positions = duet::SwayingMotion(90, 30);
+  content.pair.leader.positions = duet::test::SwayingMotion(90, 30);
   content.pair.follower = content.pair.leader;
-  for (duet::Vec3& position : content.pair.follower.positions) {
+  for (duet::motion::Vec3& position : content.pair.follower.positions) {
     position = {-position.x, position.y, 1.2f - position.z};
   }
-  content.bones = duet::SbuSkeleton().bones;
+  content.bones = duet::motion::SbuSkeleton().bones;
   content.title = "two \"people\" & a <test>";
   content.subtitle = "90 frames";
   content.weights = {{0, {{"kick", 1}, {"hug", -1}}}, {60, {{"kick", -2}, {"hug", 0.5f}}}};
-  const absl::StatusOr<std::string> page = duet::client::RenderPage(content);
+  const absl::StatusOr<std::string> page = duet::client::viewer::RenderPage(content);
   if (!page.ok()) {
     std::cerr << page.status() << "\n";
     return 1;

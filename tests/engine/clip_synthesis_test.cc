@@ -10,8 +10,13 @@
 #include "tests/support/fake_synthesizer.h"
 #include "tests/support/sample_motion.h"
 
-namespace duet {
+namespace duet::engine {
 namespace {
+
+using test::FakeAnswer;
+using test::FakeDescription;
+using test::FakeSynthesizer;
+using test::SwayingMotion;
 
 constexpr int kJoints = 15;
 
@@ -24,7 +29,7 @@ ClipRequest Request(int frames, double frame_rate_hz, LabelTrack labels = NoLabe
 
 // What one run of a whole clip gave.
 struct Outcome {
-  std::vector<Vec3> follower;
+  std::vector<motion::Vec3> follower;
   std::vector<SynthesisWindow> windows;
   std::vector<std::size_t> frames_after;  // that were handed out after each window
 };
@@ -35,7 +40,7 @@ Outcome RunAll(const FakeSynthesizer& fake, ClipRequest request) {
   while (clip.HasNextWindow()) {
     run.windows.push_back(clip.NextWindow());
     const SynthesisWindow* window = &run.windows.back();
-    const std::vector<Vec3> frames = clip.Accept(*fake.Synthesize({window}).front());
+    const std::vector<motion::Vec3> frames = clip.Accept(*fake.Synthesize({window}).front());
     run.follower.insert(run.follower.end(), frames.begin(), frames.end());
     run.frames_after.push_back(run.follower.size() / kJoints);
   }
@@ -43,16 +48,17 @@ Outcome RunAll(const FakeSynthesizer& fake, ClipRequest request) {
 }
 
 // The answer of a network without a window limit, brought to the caller's rate.
-std::vector<Vec3> UnwindowedAnswer(const ClipRequest& request, double model_hz) {
+std::vector<motion::Vec3> UnwindowedAnswer(const ClipRequest& request, double model_hz) {
   const int frames = static_cast<int>(request.leader.size()) / kJoints;
-  std::vector<Vec3> follower = Resample(request.leader, kJoints, request.frame_rate_hz, model_hz);
+  std::vector<motion::Vec3> follower =
+      Resample(request.leader, kJoints, request.frame_rate_hz, model_hz);
   std::vector<float> labels(6);
   for (std::size_t i = 0; i < follower.size(); ++i) {
     request.labels.At(static_cast<double>(i / kJoints) * request.frame_rate_hz / model_hz,
                       labels.data());
     follower[i] = FakeAnswer(follower[i], labels);
   }
-  std::vector<Vec3> out(static_cast<std::size_t>(frames) * kJoints);
+  std::vector<motion::Vec3> out(static_cast<std::size_t>(frames) * kJoints);
   for (int t = 0; t < frames; ++t) {
     SampleCubic(follower, kJoints, t * model_hz / request.frame_rate_hz,
                 &out[static_cast<std::size_t>(t * kJoints)]);
@@ -60,7 +66,8 @@ std::vector<Vec3> UnwindowedAnswer(const ClipRequest& request, double model_hz) 
   return out;
 }
 
-void ExpectNear(const std::vector<Vec3>& got, const std::vector<Vec3>& wanted, float tolerance) {
+void ExpectNear(const std::vector<motion::Vec3>& got, const std::vector<motion::Vec3>& wanted,
+                float tolerance) {
   ASSERT_EQ(got.size(), wanted.size());
   for (std::size_t i = 0; i < got.size(); ++i) {
     ASSERT_LE(Distance(got[i], wanted[i]), tolerance)
@@ -75,7 +82,7 @@ TEST_P(ClipSynthesisAtRate, EveryLengthGivesAsManyFiniteFrames) {
   for (int frames = 2; frames <= 200; ++frames) {
     const Outcome run = RunAll(fake, Request(frames, GetParam()));
     ASSERT_EQ(run.follower.size(), static_cast<std::size_t>(frames) * kJoints) << frames;
-    for (const Vec3& p : run.follower) ASSERT_TRUE(IsFinite(p)) << frames;
+    for (const motion::Vec3& p : run.follower) ASSERT_TRUE(IsFinite(p)) << frames;
     for (const SynthesisWindow& window : run.windows) {
       ASSERT_GE(window.leader.size(), 2u * kJoints);
       ASSERT_LE(window.leader.size(), 46u * kJoints);
@@ -100,8 +107,8 @@ TEST(ClipSynthesis, KeepsTheNetworksOwnFramesAtItsOwnRate) {
   FakeSynthesizer fake;
   int window = 0;
   fake.on_batch = [&](absl::Span<const SynthesisWindow* const>) { ++window; };
-  fake.answer = [&](Vec3 leader, absl::Span<const float>) {
-    return leader + Vec3{10.0f * static_cast<float>(window), 0, 0};
+  fake.answer = [&](motion::Vec3 leader, absl::Span<const float>) {
+    return leader + motion::Vec3{10.0f * static_cast<float>(window), 0, 0};
   };
   const ClipRequest request = Request(70, 15);
   const Outcome run = RunAll(fake, request);
@@ -110,9 +117,9 @@ TEST(ClipSynthesis, KeepsTheNetworksOwnFramesAtItsOwnRate) {
     const std::size_t frame = i / kJoints;
     const float x = run.follower[i].x - request.leader[i].x;
     if (frame < 24) {
-      EXPECT_EQ(run.follower[i], (request.leader[i] + Vec3{10, 0, 0})) << frame;
+      EXPECT_EQ(run.follower[i], (request.leader[i] + motion::Vec3{10, 0, 0})) << frame;
     } else if (frame > 45) {
-      EXPECT_EQ(run.follower[i], (request.leader[i] + Vec3{20, 0, 0})) << frame;
+      EXPECT_EQ(run.follower[i], (request.leader[i] + motion::Vec3{20, 0, 0})) << frame;
     } else {
       EXPECT_GT(x, 10) << frame;
       EXPECT_LT(x, 20) << frame;
@@ -124,15 +131,15 @@ TEST(ClipSynthesis, MovesSmoothlyThroughWindowsThatDisagree) {
   FakeSynthesizer fake;
   int window = 0;
   fake.on_batch = [&](absl::Span<const SynthesisWindow* const>) { ++window; };
-  fake.answer = [&](Vec3 leader, absl::Span<const float>) {
-    return leader + Vec3{0.1f * static_cast<float>(window % 2), 0, 0};
+  fake.answer = [&](motion::Vec3 leader, absl::Span<const float>) {
+    return leader + motion::Vec3{0.1f * static_cast<float>(window % 2), 0, 0};
   };
   for (int frames : {47, 60, 70, 78, 79, 100, 300}) {
     const ClipRequest request = Request(frames, 15);
     const Outcome run = RunAll(fake, request);
-    const std::vector<Vec3>& f = run.follower;
+    const std::vector<motion::Vec3>& f = run.follower;
     for (std::size_t i = kJoints; i < f.size(); ++i) {
-      const Vec3 extra =
+      const motion::Vec3 extra =
           (f[i] - f[i - kJoints]) - (request.leader[i] - request.leader[i - kJoints]);
       // The steepest step of a smoothstep over 15 frames or more, of a difference of 0.1 m. Clips
       // that barely need a second or third window overlap more.
@@ -146,13 +153,13 @@ TEST(ClipSynthesis, AHigherRateIsASplineThroughTheBlendedFrames) {
   FakeSynthesizer fake;
   int window = 0;
   fake.on_batch = [&](absl::Span<const SynthesisWindow* const>) { ++window; };
-  fake.answer = [&](Vec3 leader, absl::Span<const float>) {
-    return leader + Vec3{static_cast<float>(window % 3), 0, 0};
+  fake.answer = [&](motion::Vec3 leader, absl::Span<const float>) {
+    return leader + motion::Vec3{static_cast<float>(window % 3), 0, 0};
   };
-  const std::vector<Vec3> slow = RunAll(fake, Request(151, 15)).follower;
+  const std::vector<motion::Vec3> slow = RunAll(fake, Request(151, 15)).follower;
   window = 0;
-  const std::vector<Vec3> fast = RunAll(fake, Request(601, 60)).follower;
-  std::vector<Vec3> wanted(fast.size());
+  const std::vector<motion::Vec3> fast = RunAll(fake, Request(601, 60)).follower;
+  std::vector<motion::Vec3> wanted(fast.size());
   for (int t = 0; t < 601; ++t)
     SampleCubic(slow, kJoints, t / 4.0, &wanted[static_cast<std::size_t>(t) * kJoints]);
   ExpectNear(fast, wanted, 1e-5f);
@@ -174,12 +181,12 @@ TEST(ClipSynthesis, NeverTakesBackAFrame) {
   FakeSynthesizer fake;
   int window = 0;
   fake.on_batch = [&](absl::Span<const SynthesisWindow* const>) { ++window; };
-  fake.answer = [&](Vec3 leader, absl::Span<const float>) {
+  fake.answer = [&](motion::Vec3 leader, absl::Span<const float>) {
     return leader * std::sin(static_cast<float>(window));
   };
   const Outcome first = RunAll(fake, Request(300, 60));
   window = 0;
-  fake.answer = [&](Vec3 leader, absl::Span<const float>) {
+  fake.answer = [&](motion::Vec3 leader, absl::Span<const float>) {
     return leader * (window == 1 ? std::sin(1.0f) : 50.0f);
   };
   const Outcome second = RunAll(fake, Request(300, 60));
@@ -208,7 +215,7 @@ TEST(ClipSynthesis, StartGoesToTheFirstWindow) {
   const Outcome run = RunAll(fake, request);
   ASSERT_EQ(run.windows.size(), 1u);
   ASSERT_TRUE(run.windows[0].start.has_value());
-  EXPECT_EQ(run.windows[0].start->root, (Vec3{1, 2, 3}));
+  EXPECT_EQ(run.windows[0].start->root, (motion::Vec3{1, 2, 3}));
   EXPECT_TRUE(run.windows[0].start->pose.empty());
 }
 
@@ -225,7 +232,7 @@ TEST(ClipSynthesis, LaterWindowsStartWhereTheEarlierOnesGot) {
     ASSERT_EQ(start.pose.size(), 15u);
     EXPECT_EQ(start.root, start.pose[2]);
     for (std::size_t j = 0; j < kJoints; ++j) {
-      const Vec3 wanted =
+      const motion::Vec3 wanted =
           FakeAnswer(request.leader[static_cast<std::size_t>(starts[k]) * kJoints + j], {});
       EXPECT_LT(Distance(start.pose[j], wanted), 1e-5f) << "window " << k << ", joint " << j;
     }
@@ -241,7 +248,7 @@ TEST(ClipSynthesis, NoStartsForAModelWithoutThem) {
 
 TEST(ClipSynthesis, PartnerDirectionGoesToTheFirstWindow) {
   ClipRequest request = Request(200, 15);
-  request.partner_direction = Vec3{1, 0, 0};
+  request.partner_direction = motion::Vec3{1, 0, 0};
   const Outcome run = RunAll(FakeSynthesizer(), request);
   EXPECT_EQ(run.windows[0].partner_direction, request.partner_direction);
   // Later windows know where the follower is.
@@ -254,7 +261,7 @@ TEST(ClipSynthesis, PartnerDirectionGoesToEveryWindowWithoutAStart) {
   ModelDescription description = FakeDescription();
   description.accepts_follower_start = false;
   ClipRequest request = Request(200, 15);
-  request.partner_direction = Vec3{1, 0, 0};
+  request.partner_direction = motion::Vec3{1, 0, 0};
   const Outcome run = RunAll(FakeSynthesizer(description), request);
   for (const SynthesisWindow& window : run.windows) {
     EXPECT_EQ(window.partner_direction, request.partner_direction);
@@ -327,8 +334,8 @@ TEST(ClipSynthesis, WorksWithTheShortestWindows) {
 TEST(ClipSynthesisDeathTest, StopsAtAResultOfTheWrongSize) {
   const FakeSynthesizer fake;
   ClipSynthesis clip(fake.description(), Request(100, 15));
-  EXPECT_DEATH(clip.Accept(std::vector<Vec3>(kJoints)), "");
+  EXPECT_DEATH(clip.Accept(std::vector<motion::Vec3>(kJoints)), "");
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::engine

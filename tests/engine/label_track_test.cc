@@ -3,7 +3,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 
-namespace duet {
+namespace duet::engine {
 namespace {
 
 using ::testing::ElementsAre;
@@ -41,4 +41,4 @@ TEST(LabelTrack, HoldsBeforeTheFirstAndAfterTheLast) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::engine

@@ -3,8 +3,10 @@
 #include "gtest/gtest.h"
 #include "tests/support/sample_motion.h"
 
-namespace duet {
+namespace duet::engine {
 namespace {
+
+using test::SwayingMotion;
 
 constexpr std::size_t kTorso = 2, kLeftHip = 9, kRightHip = 12;
 
@@ -15,50 +17,50 @@ SynthesisWindow Window() {
 }
 
 // Where a point that lies at `offset` from the leader's root comes to lie.
-Vec3 Standard(const SynthesisWindow& window, Vec3 offset) {
-  return WindowFrame(SbuSkeleton(), window).Apply(window.leader[kTorso] + offset);
+motion::Vec3 Standard(const SynthesisWindow& window, motion::Vec3 offset) {
+  return WindowFrame(motion::SbuSkeleton(), window).Apply(window.leader[kTorso] + offset);
 }
 
-void ExpectNear(Vec3 got, Vec3 wanted) {
+void ExpectNear(motion::Vec3 got, motion::Vec3 wanted) {
   EXPECT_LT(Distance(got, wanted), 1e-5f) << got.x << " " << got.y << " " << got.z << ", wanted "
                                           << wanted.x << " " << wanted.y << " " << wanted.z;
 }
 
 TEST(WindowFrame, TurnsTheFacingDirectionToMinusZ) {
   const SynthesisWindow window = Window();
-  Vec3 across = window.leader[kRightHip] - window.leader[kLeftHip];
+  motion::Vec3 across = window.leader[kRightHip] - window.leader[kLeftHip];
   across.y = 0;
-  const Vec3 facing = Cross(Vec3{0, 1, 0}, across) / Norm(across);
+  const motion::Vec3 facing = Cross(motion::Vec3{0, 1, 0}, across) / Norm(across);
   ExpectNear(Standard(window, facing), {0, 0, -1});
 }
 
 TEST(WindowFrame, TurnsTheStartToMinusZ) {
   SynthesisWindow window = Window();
-  window.start = FollowerStart{window.leader[kTorso] + Vec3{0.3f, 0.1f, 0.4f}, {}};
+  window.start = FollowerStart{window.leader[kTorso] + motion::Vec3{0.3f, 0.1f, 0.4f}, {}};
   ExpectNear(Standard(window, {0.3f, 0.1f, 0.4f}), {0, 0.1f, -0.5f});
 }
 
 TEST(WindowFrame, PartnerDirectionGoesBeforeTheStart) {
   SynthesisWindow window = Window();
-  window.start = FollowerStart{window.leader[kTorso] + Vec3{0, 0, 1}, {}};
-  window.partner_direction = Vec3{-5, 0, 0};
+  window.start = FollowerStart{window.leader[kTorso] + motion::Vec3{0, 0, 1}, {}};
+  window.partner_direction = motion::Vec3{-5, 0, 0};
   ExpectNear(Standard(window, {-1, 0, 0}), {0, 0, -1});
 }
 
 TEST(WindowFrame, AStartOnTheSpotHasNoDirection) {
   const SynthesisWindow without = Window();
   SynthesisWindow close = Window();
-  close.start = FollowerStart{close.leader[kTorso] + Vec3{0.2f, 0.9f, 0}, {}};
+  close.start = FollowerStart{close.leader[kTorso] + motion::Vec3{0.2f, 0.9f, 0}, {}};
   ExpectNear(Standard(close, {1, 2, 3}), Standard(without, {1, 2, 3}));
 }
 
 TEST(WindowFrame, InvertsExactly) {
   SynthesisWindow window = Window();
-  window.partner_direction = Vec3{1, 0, 2};
-  const Standardisation frame = WindowFrame(SbuSkeleton(), window);
-  const std::vector<Vec3> back = frame.Invert(frame.Apply(window.leader));
+  window.partner_direction = motion::Vec3{1, 0, 2};
+  const motion::Standardisation frame = WindowFrame(motion::SbuSkeleton(), window);
+  const std::vector<motion::Vec3> back = frame.Invert(frame.Apply(window.leader));
   for (std::size_t i = 0; i < back.size(); ++i) ExpectNear(back[i], window.leader[i]);
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::engine

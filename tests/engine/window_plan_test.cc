@@ -5,7 +5,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 
-namespace duet {
+namespace duet::engine {
 namespace {
 
 using ::testing::ElementsAre;
@@ -58,4 +58,4 @@ TEST(WindowPlan, UsesNoMoreWindowsThanNeeded) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::engine

@@ -11,18 +11,21 @@
 #include "absl/strings/str_cat.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "model/formats/flat/sbu_text.h"
 #include "model/base/text.h"
+#include "model/formats/flat/sbu_text.h"
 #include "tests/support/test_motion.h"
 
-namespace duet {
+namespace duet::formats {
 namespace {
 
+using test::LargestDistance;
+using test::MakePerson;
+
 namespace fs = std::filesystem;
+using test::LargestDistance;
+using test::MakePerson;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using testing::LargestDistance;
-using testing::MakePerson;
 
 class MotionFile : public ::testing::Test {
  protected:
@@ -34,7 +37,7 @@ class MotionFile : public ::testing::Test {
   }
   void TearDown() override { fs::remove_all(folder_); }
 
-  const ClipPair pair_{MakePerson(), MakePerson({60, 3, 0, {0, 1.1f, 1.2f}, 30})};
+  const motion::ClipPair pair_{MakePerson(), MakePerson({60, 3, 0, {0, 1.1f, 1.2f}, 30})};
   fs::path folder_;
 };
 
@@ -63,14 +66,15 @@ std::string Damaged(std::string bytes, std::mt19937* random) {
 TEST_F(MotionFile, ReadsBackWhatItWrites) {
   for (const char* name : {"a.csv", "a.json", "a.npy", "a.CSV"}) {
     const fs::path path = folder_ / name;
-    const absl::StatusOr<std::vector<fs::path>> written = WritePair(path, pair_, SbuSkeleton());
+    const absl::StatusOr<std::vector<fs::path>> written =
+        WritePair(path, pair_, motion::SbuSkeleton());
     ASSERT_TRUE(written.ok()) << written.status();
     EXPECT_THAT(*written, ElementsAre(path));
     ReadOptions options;
     if (path.extension() == ".npy") options.frame_rate_hz = 30;
     for (Side side : {Side::kLeft, Side::kRight}) {
       options.side = side;
-      const absl::StatusOr<Clip> clip = ReadLeader(path, options);
+      const absl::StatusOr<motion::Clip> clip = ReadLeader(path, options);
       ASSERT_TRUE(clip.ok()) << clip.status();
       EXPECT_EQ(clip->frame_rate_hz, 30);
       EXPECT_EQ(clip->positions, (side == Side::kLeft ? pair_.leader : pair_.follower).positions);
@@ -80,11 +84,11 @@ TEST_F(MotionFile, ReadsBackWhatItWrites) {
 
 TEST_F(MotionFile, WritesABvhForEachPersonInOneWorld) {
   const absl::StatusOr<std::vector<fs::path>> written =
-      WritePair(folder_ / "a.b.bvh", pair_, SbuSkeleton());
+      WritePair(folder_ / "a.b.bvh", pair_, motion::SbuSkeleton());
   ASSERT_TRUE(written.ok()) << written.status();
   EXPECT_THAT(*written, ElementsAre(folder_ / "a.b.leader.bvh", folder_ / "a.b.follower.bvh"));
-  const absl::StatusOr<Clip> leader = ReadLeader((*written)[0]);
-  const absl::StatusOr<Clip> follower = ReadLeader((*written)[1]);
+  const absl::StatusOr<motion::Clip> leader = ReadLeader((*written)[0]);
+  const absl::StatusOr<motion::Clip> follower = ReadLeader((*written)[1]);
   ASSERT_TRUE(leader.ok()) << leader.status();
   ASSERT_TRUE(follower.ok()) << follower.status();
   EXPECT_LT(LargestDistance(*leader, pair_.leader), 0.001f);
@@ -93,10 +97,10 @@ TEST_F(MotionFile, WritesABvhForEachPersonInOneWorld) {
 
 TEST_F(MotionFile, ReadsEitherPersonOfSbuText) {
   const fs::path path = folder_ / "skeleton_pos.txt";
-  ASSERT_TRUE(WriteFile(path, *FormatSbu({pair_.leader, pair_.follower})).ok());
+  ASSERT_TRUE(base::WriteFile(path, *flat::FormatSbu({pair_.leader, pair_.follower})).ok());
   ReadOptions options;
   options.side = Side::kRight;
-  const absl::StatusOr<Clip> right = ReadLeader(path, options);
+  const absl::StatusOr<motion::Clip> right = ReadLeader(path, options);
   ASSERT_TRUE(right.ok()) << right.status();
   EXPECT_EQ(right->frame_rate_hz, 15);
   EXPECT_LT(LargestDistance(*right, pair_.follower), 1e-5f);
@@ -107,28 +111,28 @@ TEST_F(MotionFile, ReadsEitherPersonOfSbuText) {
 TEST_F(MotionFile, LetsTheCallerSayTheCoordinates) {
   const fs::path path = folder_ / "a.csv";
   std::string header = "frame", row = "0";
-  for (const std::string& joint : SbuSkeleton().joint_names) {
+  for (const std::string& joint : motion::SbuSkeleton().joint_names) {
     absl::StrAppend(&header, ",", joint, "_x,", joint, "_y,", joint, "_z");
     absl::StrAppend(&row, ",1000,2000,3000");
   }
-  ASSERT_TRUE(WriteFile(path, absl::StrCat(header, "\n", row, "\n")).ok());
+  ASSERT_TRUE(base::WriteFile(path, absl::StrCat(header, "\n", row, "\n")).ok());
   ReadOptions options;
   EXPECT_THAT(std::string(ReadLeader(path, options).status().message()),
               HasSubstr("frame rate: the file has none"));
   options.frame_rate_hz = 24;
-  options.coordinates = {LengthUnit::kMillimetres, UpAxis::kZUp};
-  const absl::StatusOr<Clip> clip = ReadLeader(path, options);
+  options.coordinates = {motion::LengthUnit::kMillimetres, motion::UpAxis::kZUp};
+  const absl::StatusOr<motion::Clip> clip = ReadLeader(path, options);
   ASSERT_TRUE(clip.ok()) << clip.status();
   EXPECT_LT(Distance(clip->at(0, 7), {1, 3, -2}), 1e-6f);
 }
 
 TEST_F(MotionFile, TakesTheFirstFrameAsAFollowersStart) {
   const absl::StatusOr<std::vector<fs::path>> written =
-      WritePair(folder_ / "a.npy", pair_, SbuSkeleton());
+      WritePair(folder_ / "a.npy", pair_, motion::SbuSkeleton());
   ASSERT_TRUE(written.ok());
   ReadOptions options;
   options.side = Side::kRight;
-  const absl::StatusOr<std::vector<Vec3>> start = ReadFollowerStart((*written)[0], options);
+  const absl::StatusOr<std::vector<motion::Vec3>> start = ReadFollowerStart((*written)[0], options);
   ASSERT_TRUE(start.ok()) << start.status();
   ASSERT_EQ(start->size(), 15u);
   EXPECT_EQ((*start)[14], pair_.follower.at(0, 14));
@@ -137,7 +141,7 @@ TEST_F(MotionFile, TakesTheFirstFrameAsAFollowersStart) {
 TEST_F(MotionFile, NamesExtensionsItKnows) {
   EXPECT_THAT(std::string(ReadLeader("a.fbx").status().message()),
               HasSubstr("extension: came \".fbx\", wanted .txt (SBU text), .bvh"));
-  EXPECT_THAT(std::string(WritePair("a.txt", pair_, SbuSkeleton()).status().message()),
+  EXPECT_THAT(std::string(WritePair("a.txt", pair_, motion::SbuSkeleton()).status().message()),
               HasSubstr("extension: came \".txt\", wanted .bvh, .csv"));
   EXPECT_TRUE(CheckWritable("a.json").ok());
   EXPECT_FALSE(CheckWritable("a").ok());
@@ -145,21 +149,24 @@ TEST_F(MotionFile, NamesExtensionsItKnows) {
 }
 
 TEST_F(MotionFile, RefusesAPairThatIsNone) {
-  ClipPair shorter = pair_;
+  motion::ClipPair shorter = pair_;
   shorter.follower.positions.resize(15);
-  EXPECT_THAT(std::string(WritePair(folder_ / "a.csv", shorter, SbuSkeleton()).status().message()),
-              HasSubstr("wanted the same joints, frames and rate"));
-  ClipPair broken = pair_;
+  EXPECT_THAT(
+      std::string(WritePair(folder_ / "a.csv", shorter, motion::SbuSkeleton()).status().message()),
+      HasSubstr("wanted the same joints, frames and rate"));
+  motion::ClipPair broken = pair_;
   broken.follower.at(3, 1).x = std::nanf("");
-  EXPECT_THAT(std::string(WritePair(folder_ / "a.csv", broken, SbuSkeleton()).status().message()),
-              HasSubstr("follower: frame 3 neck"));
-  ClipPair far_away = pair_;
+  EXPECT_THAT(
+      std::string(WritePair(folder_ / "a.csv", broken, motion::SbuSkeleton()).status().message()),
+      HasSubstr("follower: frame 3 neck"));
+  motion::ClipPair far_away = pair_;
   far_away.leader.at(0, 0).x = 3e38f;
-  EXPECT_THAT(std::string(WritePair(folder_ / "a.bvh", far_away, SbuSkeleton()).status().message()),
-              HasSubstr("leader: frame 0 head: came a position that is not finite or beyond"));
-  ClipPair renamed = pair_;
+  EXPECT_THAT(
+      std::string(WritePair(folder_ / "a.bvh", far_away, motion::SbuSkeleton()).status().message()),
+      HasSubstr("leader: frame 0 head: came a position that is not finite or beyond"));
+  motion::ClipPair renamed = pair_;
   renamed.leader.joint_names.pop_back();
-  EXPECT_FALSE(WritePair(folder_ / "a.csv", renamed, SbuSkeleton()).ok());
+  EXPECT_FALSE(WritePair(folder_ / "a.csv", renamed, motion::SbuSkeleton()).ok());
   EXPECT_TRUE(fs::is_empty(folder_));
 }
 
@@ -169,42 +176,45 @@ TEST_F(MotionFile, NamesAFileThatCannotBeReadOrWritten) {
   EXPECT_THAT(std::string(ReadLeader(folder_ / "folder.csv").status().message()),
               HasSubstr("is a folder"));
   EXPECT_THAT(
-      std::string(WritePair(folder_ / "folder.csv", pair_, SbuSkeleton()).status().message()),
+      std::string(
+          WritePair(folder_ / "folder.csv", pair_, motion::SbuSkeleton()).status().message()),
       HasSubstr("is a folder"));
   EXPECT_THAT(
-      std::string(WritePair(folder_ / "no" / "a.csv", pair_, SbuSkeleton()).status().message()),
+      std::string(
+          WritePair(folder_ / "no" / "a.csv", pair_, motion::SbuSkeleton()).status().message()),
       HasSubstr("cannot be written"));
 }
 
 TEST_F(MotionFile, RefusesFilesThatAreTooLarge) {
   const fs::path path = folder_ / "a.txt";
-  ASSERT_TRUE(WriteFile(path, std::string(2 << 20, 'x')).ok());
-  EXPECT_THAT(std::string(ReadFile(path, 1 << 20).status().message()),
+  ASSERT_TRUE(base::WriteFile(path, std::string(2 << 20, 'x')).ok());
+  EXPECT_THAT(std::string(base::ReadFile(path, 1 << 20).status().message()),
               HasSubstr("larger than 1 MiB"));
 }
 
 // Bytes changed, dropped and doubled at random: an error or a motion, never a crash.
 TEST_F(MotionFile, SurvivesDamagedFiles) {
-  const ClipPair small{MakePerson({2}), MakePerson({2})};
-  ASSERT_TRUE(WritePair(folder_ / "a.csv", small, SbuSkeleton()).ok());
-  ASSERT_TRUE(WritePair(folder_ / "a.json", small, SbuSkeleton()).ok());
-  ASSERT_TRUE(WritePair(folder_ / "a.npy", small, SbuSkeleton()).ok());
-  ASSERT_TRUE(WritePair(folder_ / "a.bvh", small, SbuSkeleton()).ok());
-  ASSERT_TRUE(WriteFile(folder_ / "a.txt", *FormatSbu({small.leader, small.follower})).ok());
+  const motion::ClipPair small{MakePerson({2}), MakePerson({2})};
+  ASSERT_TRUE(WritePair(folder_ / "a.csv", small, motion::SbuSkeleton()).ok());
+  ASSERT_TRUE(WritePair(folder_ / "a.json", small, motion::SbuSkeleton()).ok());
+  ASSERT_TRUE(WritePair(folder_ / "a.npy", small, motion::SbuSkeleton()).ok());
+  ASSERT_TRUE(WritePair(folder_ / "a.bvh", small, motion::SbuSkeleton()).ok());
+  ASSERT_TRUE(
+      base::WriteFile(folder_ / "a.txt", *flat::FormatSbu({small.leader, small.follower})).ok());
   ReadOptions options;
   options.frame_rate_hz = 30;
   std::mt19937 random(7);
   int refused = 0;
   for (const char* name : {"a.csv", "a.json", "a.npy", "a.leader.bvh", "a.txt"}) {
-    const absl::StatusOr<std::string> whole = ReadFile(folder_ / name);
+    const absl::StatusOr<std::string> whole = base::ReadFile(folder_ / name);
     ASSERT_TRUE(whole.ok()) << whole.status();
     for (int round = 0; round < 200; ++round) {
       const fs::path path = folder_ / (std::string("damaged_") + name);
-      ASSERT_TRUE(WriteFile(path, Damaged(*whole, &random)).ok());
-      const absl::StatusOr<Clip> clip = ReadLeader(path, options);
+      ASSERT_TRUE(base::WriteFile(path, Damaged(*whole, &random)).ok());
+      const absl::StatusOr<motion::Clip> clip = ReadLeader(path, options);
       refused += clip.ok() ? 0 : 1;
       if (!clip.ok()) continue;
-      for (const Vec3& position : clip->positions) EXPECT_TRUE(IsFinite(position)) << name;
+      for (const motion::Vec3& position : clip->positions) EXPECT_TRUE(IsFinite(position)) << name;
     }
   }
   EXPECT_GT(refused, 300);
@@ -223,9 +233,9 @@ TEST_F(MotionFile, DoesNotDependOnTheLocale) {
   }
   for (const char* name : {"a.csv", "a.json", "a.bvh"}) {
     const absl::StatusOr<std::vector<fs::path>> written =
-        WritePair(folder_ / name, pair_, SbuSkeleton());
+        WritePair(folder_ / name, pair_, motion::SbuSkeleton());
     EXPECT_TRUE(written.ok()) << written.status();
-    const absl::StatusOr<Clip> clip = ReadLeader(written->front());
+    const absl::StatusOr<motion::Clip> clip = ReadLeader(written->front());
     EXPECT_TRUE(clip.ok()) << clip.status();
     EXPECT_LT(LargestDistance(*clip, pair_.leader), 0.001f);
   }
@@ -234,4 +244,4 @@ TEST_F(MotionFile, DoesNotDependOnTheLocale) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::formats

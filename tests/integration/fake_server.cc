@@ -13,28 +13,29 @@
 
 namespace {
 
-using duet::Synthesizer;
+using duet::engine::Synthesizer;
 
 absl::StatusOr<std::shared_ptr<const Synthesizer>> LoadFolder(const std::filesystem::path& folder) {
   std::string word;
   std::ifstream(folder / "manifest.json") >> word;
   if (word != "good") return absl::InvalidArgumentError("the manifest is not good");
-  duet::ModelDescription description = duet::FakeDescription();
+  duet::engine::ModelDescription description = duet::test::FakeDescription();
   description.name = folder.parent_path().filename().string();
   description.version = std::stoi(folder.filename().string());
-  return std::make_shared<duet::FakeSynthesizer>(description);
+  return std::make_shared<duet::test::FakeSynthesizer>(description);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  duet::StopSignal stop;
-  duet::StreamLogSink log(stderr);
-  const duet::ModelSource source{LoadFolder,
-                                 [] {
-                                   return std::vector<std::shared_ptr<const Synthesizer>>{
-                                       std::make_shared<duet::FakeSynthesizer>()};
-                                 },
-                                 [](int) {}};
-  return duet::RunServer(argc, argv, source, stop, log);
+  duet::server::lifecycle::StopSignal stop;
+  duet::server::metrics::StreamLogSink log(stderr);
+  const duet::server::lifecycle::ModelSource source{
+      LoadFolder,
+      [] {
+        return std::vector<std::shared_ptr<const Synthesizer>>{
+            std::make_shared<duet::test::FakeSynthesizer>()};
+      },
+      [](int) {}};
+  return duet::server::lifecycle::RunServer(argc, argv, source, stop, log);
 }

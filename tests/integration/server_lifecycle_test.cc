@@ -22,7 +22,7 @@
 #include "tests/server/support/sample_request.h"
 #include "tests/support/status_matchers.h"
 
-namespace duet {
+namespace duet::test {
 namespace {
 
 using ::testing::_;
@@ -34,22 +34,22 @@ using ::testing::StartsWith;
 using absl::StatusCode;
 using nlohmann::json;
 
-ServerOptions TestOptions() {
-  ServerOptions options;
+server::config::ServerOptions TestOptions() {
+  server::config::ServerOptions options;
   options.listen = {"127.0.0.1", 0};
-  options.metrics_listen = ListenAddress{"127.0.0.1", 0};
+  options.metrics_listen = server::config::ListenAddress{"127.0.0.1", 0};
   return options;
 }
 
-class EventSink final : public LogSink {
+class EventSink final : public server::metrics::LogSink {
  public:
   void Write(std::string_view line) override {
-    MutexLock lock(mutex_);
+    server::common::MutexLock lock(mutex_);
     lines_.push_back(json::parse(line));
   }
   // The lines of one event, in order.
   std::vector<json> Events(const std::string& event) const {
-    MutexLock lock(mutex_);
+    server::common::MutexLock lock(mutex_);
     std::vector<json> events;
     for (const json& line : lines_) {
       if (line["event"] == event) events.push_back(line);
@@ -58,24 +58,26 @@ class EventSink final : public LogSink {
   }
 
  private:
-  mutable Mutex mutex_;
+  mutable server::common::Mutex mutex_;
   std::vector<json> lines_ DUET_GUARDED_BY(mutex_);
 };
 
 // A server, a channel to it and its log.
 class Running {
  public:
-  explicit Running(const ServerOptions& options = TestOptions()) {
-    absl::StatusOr<std::unique_ptr<DuetServer>> server = DuetServer::Start(options, log);
+  explicit Running(const server::config::ServerOptions& options = TestOptions()) {
+    absl::StatusOr<std::unique_ptr<server::lifecycle::DuetServer>> server =
+        server::lifecycle::DuetServer::Start(options, log);
     EXPECT_THAT(server, IsOk());
     server_ = *std::move(server);
     channel = grpc::CreateChannel(absl::StrCat("127.0.0.1:", server_->port()),
                                   grpc::InsecureChannelCredentials());
     stub = v1::MotionSynthesis::NewStub(channel);
   }
-  DuetServer* operator->() { return server_.get(); }
-  DuetServer& operator*() { return *server_; }
-  void Load(std::shared_ptr<const Synthesizer> model = std::make_shared<FakeSynthesizer>()) {
+  server::lifecycle::DuetServer* operator->() { return server_.get(); }
+  server::lifecycle::DuetServer& operator*() { return *server_; }
+  void Load(
+      std::shared_ptr<const engine::Synthesizer> model = std::make_shared<FakeSynthesizer>()) {
     server_->Add({"fake/1", std::move(model), 0.5});
   }
   grpc::Status List() {
@@ -89,7 +91,7 @@ class Running {
   std::unique_ptr<v1::MotionSynthesis::Stub> stub;
 
  private:
-  std::unique_ptr<DuetServer> server_;
+  std::unique_ptr<server::lifecycle::DuetServer> server_;
 };
 
 const auto kPatient = [](double) { return true; };
@@ -143,7 +145,7 @@ TEST(LoadingTest, RefusesToServeNothing) {
 }
 
 TEST(LoadingTest, RefusesADefaultModelThatIsNotServed) {
-  ServerOptions options = TestOptions();
+  server::config::ServerOptions options = TestOptions();
   options.default_model = "other";
   Running server(options);
   server.Load();
@@ -151,7 +153,7 @@ TEST(LoadingTest, RefusesADefaultModelThatIsNotServed) {
 }
 
 TEST(LoadingTest, SetsVersionLabelsAndReportsThoseThatPointNowhere) {
-  ServerOptions options = TestOptions();
+  server::config::ServerOptions options = TestOptions();
   options.version_labels = {{"fake", "stable", 1}, {"fake", "canary", 2}};
   Running server(options);
   server.Load();
@@ -167,18 +169,18 @@ TEST(LoadingTest, SetsVersionLabelsAndReportsThoseThatPointNowhere) {
 TEST(ListenTest, ASecondServerOnAPortFailsAndSaysWhere) {
   Running first;
   EventSink log;
-  ServerOptions options = TestOptions();
+  server::config::ServerOptions options = TestOptions();
   options.listen.port = first->port();
-  EXPECT_THAT(DuetServer::Start(options, log),
+  EXPECT_THAT(server::lifecycle::DuetServer::Start(options, log),
               StatusIs(StatusCode::kUnavailable, HasSubstr(ToString(options.listen))));
   options = TestOptions();
   options.metrics_listen->port = first->metrics_port();
-  EXPECT_THAT(DuetServer::Start(options, log),
+  EXPECT_THAT(server::lifecycle::DuetServer::Start(options, log),
               StatusIs(StatusCode::kUnavailable, HasSubstr(ToString(*options.metrics_listen))));
 }
 
 TEST(ListenTest, MetricsMayBeOff) {
-  ServerOptions options = TestOptions();
+  server::config::ServerOptions options = TestOptions();
   options.metrics_listen.reset();
   Running server(options);
   EXPECT_EQ(server->metrics_port(), 0);
@@ -197,7 +199,7 @@ TEST(ReflectionTest, NamesTheServices) {
 }
 
 TEST(ReflectionTest, MayBeOff) {
-  ServerOptions options = TestOptions();
+  server::config::ServerOptions options = TestOptions();
   options.reflection = false;
   Running server(options);
   RawCall call(server.channel, kReflection, kListServices);
@@ -236,7 +238,7 @@ TEST(DrainTest, AnIdleServerStopsWithoutWaiting) {
 }
 
 TEST(DrainTest, ServesOnForDrainSecondsWhileHealthSaysNo) {
-  ServerOptions options = TestOptions();
+  server::config::ServerOptions options = TestOptions();
   options.drain_seconds = 7;
   Running server(options);
   server.Load();
@@ -289,7 +291,7 @@ TEST(DrainTest, ACallUnderWayFinishesAndNewOnesAreSentElsewhere) {
 
 TEST(DrainTest, ACallThatOutlivesTheGraceEndsAsUnavailable) {
   GatedModel model;
-  ServerOptions options = TestOptions();
+  server::config::ServerOptions options = TestOptions();
   options.grace_seconds = 0.2;
   Running server(options);
   server.Load(model.get());
@@ -313,7 +315,7 @@ TEST(DrainTest, ACallThatOutlivesTheGraceEndsAsUnavailable) {
 
 TEST(DrainTest, AHurriedOperatorIsObeyed) {
   GatedModel model;
-  ServerOptions options = TestOptions();
+  server::config::ServerOptions options = TestOptions();
   options.drain_seconds = 3600;
   options.grace_seconds = 3600;
   Running server(options);
@@ -329,4 +331,4 @@ TEST(DrainTest, AHurriedOperatorIsObeyed) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::test

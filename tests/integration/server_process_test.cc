@@ -25,7 +25,7 @@
 #include "tests/server/support/sample_request.h"
 #include "tests/support/temporary_folder.h"
 
-namespace duet {
+namespace duet::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -289,4 +289,4 @@ TEST(ServerProcessTest, HelpIsPrinted) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::test

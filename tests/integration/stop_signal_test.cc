@@ -5,19 +5,19 @@
 
 #include <csignal>
 
-namespace duet {
+namespace duet::test {
 namespace {
 
 // No other thread may run in this program: it would take the signals.
 
 TEST(StopSignalTest, SeesNothingBeforeASignal) {
-  StopSignal stop;
+  server::lifecycle::StopSignal stop;
   EXPECT_FALSE(stop.WaitFor(0));
   EXPECT_FALSE(stop.WaitFor(0.001));
 }
 
 TEST(StopSignalTest, SeesSignalsThatCameWhileNobodyWaited) {
-  StopSignal stop;
+  server::lifecycle::StopSignal stop;
   for (const int signal : {SIGTERM, SIGINT}) {
     kill(getpid(), signal);
     EXPECT_TRUE(stop.WaitFor(60));
@@ -26,11 +26,11 @@ TEST(StopSignalTest, SeesSignalsThatCameWhileNobodyWaited) {
 }
 
 TEST(StopSignalTest, WaitEndsWithASignal) {
-  StopSignal stop;
+  server::lifecycle::StopSignal stop;
   kill(getpid(), SIGTERM);
   stop.Wait();
   EXPECT_FALSE(stop.WaitFor(0));
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::test

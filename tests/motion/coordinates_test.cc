@@ -4,7 +4,7 @@
 
 #include "gtest/gtest.h"
 
-namespace duet {
+namespace duet::motion {
 namespace {
 
 struct NamedFrame {
@@ -72,4 +72,4 @@ TEST(Coordinates, SbuImpliesItsUpAxis) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::motion

@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-namespace duet {
+namespace duet::motion {
 namespace {
 
 using ::testing::ElementsAre;
@@ -37,4 +37,4 @@ TEST(LimbLengthsTest, BoneWithoutDirectionStaysPut) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::motion

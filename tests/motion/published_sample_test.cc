@@ -11,8 +11,12 @@
 #include "tests/support/data_folder.h"
 #include "tests/support/temporary_folder.h"
 
-namespace duet {
+namespace duet::motion {
 namespace {
+
+using test::FindData;
+using test::kNoData;
+using test::ReadTestFile;
 
 constexpr std::size_t kJoints = 15;
 constexpr std::size_t kFrames = 17;
@@ -77,4 +81,4 @@ TEST(PublishedSample, OursTurnsTheRightWay) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::motion

@@ -4,7 +4,7 @@
 
 #include "gtest/gtest.h"
 
-namespace duet {
+namespace duet::motion {
 namespace {
 
 // Two joints: one that moves by a rule of time, one that stands.
@@ -120,4 +120,4 @@ TEST(Resample, SamplesEveryFrame) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::motion

@@ -10,8 +10,11 @@
 #include "gtest/gtest.h"
 #include "tests/support/status_matchers.h"
 
-namespace duet {
+namespace duet::motion {
 namespace {
+
+using test::IsOk;
+using test::StatusIs;
 
 using ::testing::HasSubstr;
 
@@ -135,4 +138,4 @@ TEST(Skeleton, TwentyJointsAreAsGood) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::motion

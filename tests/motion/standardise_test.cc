@@ -5,8 +5,10 @@
 #include "gtest/gtest.h"
 #include "tests/support/sample_motion.h"
 
-namespace duet {
+namespace duet::motion {
 namespace {
+
+using test::SwayingMotion;
 
 constexpr std::size_t kJoints = 15, kTorso = 2, kLeftHip = 9, kRightHip = 12;
 
@@ -147,4 +149,4 @@ TEST(Standardisation, ReleasedCodeTurnsTheWrongWay) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::motion

@@ -5,7 +5,7 @@
 
 #include "gtest/gtest.h"
 
-namespace duet {
+namespace duet::motion {
 namespace {
 
 constexpr double kQuarterTurn = M_PI / 2;
@@ -40,4 +40,4 @@ TEST(Vec3, IsFiniteLooksAtEveryCoordinate) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::motion

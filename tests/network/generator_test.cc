@@ -10,17 +10,19 @@ namespace {
 
 constexpr int64_t kFrames = 9, kBatch = 4, kJoints = 15, kClasses = 3;
 
-GeneratorInput MakeInput(const Manifest& manifest, torch::ScalarType type = torch::kFloat32) {
+GeneratorInput MakeInput(const checkpoint::Manifest& manifest,
+                         torch::ScalarType type = torch::kFloat32) {
   torch::manual_seed(3);
   GeneratorInput input;
   input.leader = torch::randn({kBatch, kFrames, 3 * kJoints}, type);
   input.labels = torch::randn({kBatch, kFrames, kClasses}, type);
-  input.start = torch::randn({kBatch, StartFeatureCount(manifest.model.skeleton)}, type);
+  input.start =
+      torch::randn({kBatch, checkpoint::StartFeatureCount(manifest.model.skeleton)}, type);
   input.lengths = torch::tensor({9, 5, 2, 7}, torch::kInt64);
   return input;
 }
 
-Generator MakeGenerator(const Manifest& manifest) {
+Generator MakeGenerator(const checkpoint::Manifest& manifest) {
   torch::manual_seed(4);
   Generator generator(manifest);
   generator->eval();
@@ -36,7 +38,7 @@ GeneratorInput Single(const GeneratorInput& batch, int64_t clip) {
 }
 
 TEST(GeneratorTest, AnswersEveryFrame) {
-  const Manifest manifest = testing::SmallManifest();
+  const checkpoint::Manifest manifest = SmallManifest();
   Generator generator = MakeGenerator(manifest);
   const GeneratorInput input = MakeInput(manifest);
   EXPECT_EQ(generator->forward(input).sizes(), at::IntArrayRef({kBatch, kFrames, 3 * kJoints}));
@@ -44,7 +46,7 @@ TEST(GeneratorTest, AnswersEveryFrame) {
 }
 
 TEST(GeneratorTest, PaperSizesFollowFromTheManifest) {
-  Manifest manifest = testing::SmallManifest(false);
+  checkpoint::Manifest manifest = SmallManifest(false);
   manifest.generator = {};
   Generator generator = MakeGenerator(manifest);
   EXPECT_EQ(generator->tensors().at("output.weight").sizes(), at::IntArrayRef({45, 480}));
@@ -53,7 +55,7 @@ TEST(GeneratorTest, PaperSizesFollowFromTheManifest) {
 }
 
 TEST(GeneratorTest, BatchEqualsSingle) {
-  const Manifest manifest = testing::SmallManifest();
+  const checkpoint::Manifest manifest = SmallManifest();
   Generator generator = MakeGenerator(manifest);
   const GeneratorInput input = MakeInput(manifest);
   torch::NoGradGuard no_grad;
@@ -66,7 +68,7 @@ TEST(GeneratorTest, BatchEqualsSingle) {
 }
 
 TEST(GeneratorTest, PaddingHasNoInfluence) {
-  const Manifest manifest = testing::SmallManifest();
+  const checkpoint::Manifest manifest = SmallManifest();
   Generator generator = MakeGenerator(manifest);
   GeneratorInput input = MakeInput(manifest);
   torch::NoGradGuard no_grad;
@@ -77,7 +79,7 @@ TEST(GeneratorTest, PaddingHasNoInfluence) {
 }
 
 TEST(GeneratorTest, EveryParameterAndInputHasAGradient) {
-  const Manifest manifest = testing::SmallManifest();
+  const checkpoint::Manifest manifest = SmallManifest();
   Generator generator = MakeGenerator(manifest);
   GeneratorInput input = MakeInput(manifest);
   input.labels.requires_grad_();
@@ -92,7 +94,7 @@ TEST(GeneratorTest, EveryParameterAndInputHasAGradient) {
 }
 
 TEST(GeneratorTest, GradientEqualsFiniteDifference) {
-  const Manifest manifest = testing::SmallManifest();
+  const checkpoint::Manifest manifest = SmallManifest();
   Generator generator = MakeGenerator(manifest);
   generator->to(torch::kFloat64);
   const GeneratorInput input = MakeInput(manifest, torch::kFloat64);
@@ -113,7 +115,7 @@ TEST(GeneratorTest, GradientEqualsFiniteDifference) {
 }
 
 TEST(GeneratorTest, LabelAtOneFrameReachesTheResult) {
-  const Manifest manifest = testing::SmallManifest();
+  const checkpoint::Manifest manifest = SmallManifest();
   Generator generator = MakeGenerator(manifest);
   GeneratorInput input = MakeInput(manifest);
   torch::NoGradGuard no_grad;
@@ -123,9 +125,9 @@ TEST(GeneratorTest, LabelAtOneFrameReachesTheResult) {
 }
 
 TEST(GeneratorTest, StoredParametersLoadBack) {
-  const Manifest manifest = testing::SmallManifest();
+  const checkpoint::Manifest manifest = SmallManifest();
   Generator generator = MakeGenerator(manifest);
-  const Checkpoint checkpoint{manifest, StoreParameters(manifest, generator)};
+  const checkpoint::Checkpoint checkpoint{manifest, StoreParameters(manifest, generator)};
   Generator other(manifest);
   ASSERT_TRUE(LoadParameters(checkpoint, other).ok());
   torch::NoGradGuard no_grad;
@@ -135,9 +137,9 @@ TEST(GeneratorTest, StoredParametersLoadBack) {
 }
 
 TEST(GeneratorTest, ForeignParametersAreRefusedByName) {
-  const Manifest manifest = testing::SmallManifest();
+  const checkpoint::Manifest manifest = SmallManifest();
   Generator generator = MakeGenerator(manifest);
-  Checkpoint checkpoint{manifest, StoreParameters(manifest, generator)};
+  checkpoint::Checkpoint checkpoint{manifest, StoreParameters(manifest, generator)};
   checkpoint.tensors.pop_back();
   EXPECT_NE(LoadParameters(checkpoint, generator).message().find("\"output.bias\" is missing"),
             std::string::npos);
@@ -147,7 +149,7 @@ TEST(GeneratorTest, ForeignParametersAreRefusedByName) {
 }
 
 TEST(GeneratorTest, BasePoseComesFromTheStartWhereItIsKnown) {
-  Manifest manifest = testing::SmallManifest();
+  checkpoint::Manifest manifest = SmallManifest();
   manifest.generator.base_pose = true;
   Generator generator = MakeGenerator(manifest);
   torch::NoGradGuard no_grad;
@@ -174,7 +176,7 @@ TEST(GeneratorTest, BasePoseComesFromTheStartWhereItIsKnown) {
 }
 
 TEST(GeneratorTest, ReleasedVariantGivesTheWholeBodySliceTheLabelAlone) {
-  Manifest manifest = testing::SmallManifest(false);
+  checkpoint::Manifest manifest = SmallManifest(false);
   manifest.generator.variant = "released";
   Generator generator = MakeGenerator(manifest);
   EXPECT_EQ(generator->tensors().at("encoder.whole_body.fc.weight").size(1), kClasses);
@@ -182,7 +184,7 @@ TEST(GeneratorTest, ReleasedVariantGivesTheWholeBodySliceTheLabelAlone) {
 }
 
 TEST(GeneratorTest, UnlabelledVariantDoesNotReadTheLabel) {
-  Manifest manifest = testing::SmallManifest();
+  checkpoint::Manifest manifest = SmallManifest();
   manifest.generator.variant = "unlabelled";
   manifest.generator.base_pose = true;
   Generator generator = MakeGenerator(manifest);
@@ -196,7 +198,7 @@ TEST(GeneratorTest, UnlabelledVariantDoesNotReadTheLabel) {
 }
 
 TEST(GeneratorTest, TwentyJointsAndTwoClassesAreAConfiguration) {
-  Manifest manifest = testing::SmallManifest(false);
+  checkpoint::Manifest manifest = SmallManifest(false);
   manifest.model.classes = {"kick", "punch"};
   manifest.model.skeleton.joint_names.clear();
   for (int j = 0; j < 20; ++j) {

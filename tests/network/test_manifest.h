@@ -5,14 +5,14 @@
 
 #include "model/checkpoint/manifest.h"
 
-namespace duet::testing {
+namespace duet::network {
 
 // The SBU skeleton with a network small enough for gradient checks.
-inline Manifest SmallManifest(bool follower_start = true) {
-  Manifest manifest;
+inline checkpoint::Manifest SmallManifest(bool follower_start = true) {
+  checkpoint::Manifest manifest;
   manifest.model.name = "small";
   manifest.model.version = 1;
-  manifest.model.skeleton = SbuSkeleton();
+  manifest.model.skeleton = motion::SbuSkeleton();
   manifest.model.classes = {"kick", "push", "hug"};
   manifest.model.frame_rate_hz = 15;
   manifest.model.window_frames = 12;
@@ -24,6 +24,6 @@ inline Manifest SmallManifest(bool follower_start = true) {
   return manifest;
 }
 
-}  // namespace duet::testing
+}  // namespace duet::network
 
 #endif  // DUET_TESTS_NETWORK_TEST_MANIFEST_H_

@@ -8,7 +8,7 @@
 #include "gtest/gtest.h"
 #include "model/retargeting/joint_names.h"
 
-namespace duet {
+namespace duet::retargeting {
 namespace {
 
 using ::testing::AllOf;
@@ -64,12 +64,12 @@ void PrintTo(const Convention& convention, std::ostream* out) { *out << conventi
 
 struct NamedPose {
   std::vector<std::string> names;
-  std::vector<Vec3> positions;
+  std::vector<motion::Vec3> positions;
 };
 
 NamedPose MakePose(const Convention& c) {
   NamedPose pose;
-  const auto add = [&pose](const std::string& name, Vec3 at) {
+  const auto add = [&pose](const std::string& name, motion::Vec3 at) {
     if (name.empty()) return;
     pose.names.push_back(name);
     pose.positions.push_back(at);
@@ -312,16 +312,16 @@ class Conventions : public ::testing::TestWithParam<Convention> {};
 
 TEST_P(Conventions, FindEveryJoint) {
   const NamedPose pose = MakePose(GetParam());
-  const Skeleton skeleton = SbuSkeleton();
+  const motion::Skeleton skeleton = motion::SbuSkeleton();
   const absl::StatusOr<JointMap> map = MapJoints("a.bvh", pose.names, pose.positions, skeleton);
   ASSERT_TRUE(map.ok()) << map.status();
-  const std::vector<Vec3> mapped = ApplyJointMap(*map, pose.positions.data());
+  const std::vector<motion::Vec3> mapped = ApplyJointMap(*map, pose.positions.data());
   ASSERT_EQ(mapped.size(), 15u);
-  const Vec3 limbs[] = {{0.17f, 1.4f, 0}, {0.46f, 1.4f, 0}, {0.72f, 1.4f, 0},
-                        {0.1f, 0.92f, 0}, {0.1f, 0.5f, 0},  {0.1f, 0.08f, 0}};
+  const motion::Vec3 limbs[] = {{0.17f, 1.4f, 0}, {0.46f, 1.4f, 0}, {0.72f, 1.4f, 0},
+                                {0.1f, 0.92f, 0}, {0.1f, 0.5f, 0},  {0.1f, 0.08f, 0}};
   for (int i = 0; i < 6; ++i) {
     const size_t left = i < 3 ? 3u + i : 6u + i, right = left + 3;
-    const Vec3 mirrored = {-limbs[i].x, limbs[i].y, limbs[i].z};
+    const motion::Vec3 mirrored = {-limbs[i].x, limbs[i].y, limbs[i].z};
     EXPECT_LT(Distance(mapped[left], limbs[i]), 1e-5f) << skeleton.joint_names[left];
     EXPECT_LT(Distance(mapped[right], mirrored), 1e-5f) << skeleton.joint_names[right];
   }
@@ -333,15 +333,15 @@ TEST_P(Conventions, FindEveryJoint) {
 INSTANTIATE_TEST_SUITE_P(All, Conventions, ::testing::ValuesIn(kConventions));
 
 TEST(JointMapping, TakesTheSkeletonsOwnNamesAsTheyAre) {
-  const Skeleton skeleton = SbuSkeleton();
+  const motion::Skeleton skeleton = motion::SbuSkeleton();
   std::vector<std::string> names = {"head.end"};
   names.insert(names.end(), skeleton.joint_names.rbegin(), skeleton.joint_names.rend());
-  std::vector<Vec3> pose;
+  std::vector<motion::Vec3> pose;
   for (std::size_t i = 0; i < names.size(); ++i) pose.push_back({static_cast<float>(i), 0, 0});
   const absl::StatusOr<JointMap> map = MapJoints("a.csv", names, pose, skeleton);
   ASSERT_TRUE(map.ok()) << map.status();
   EXPECT_TRUE(map->notes.empty());
-  const std::vector<Vec3> mapped = ApplyJointMap(*map, pose.data());
+  const std::vector<motion::Vec3> mapped = ApplyJointMap(*map, pose.data());
   for (std::size_t i = 0; i < 15; ++i) EXPECT_EQ(mapped[i].x, 15.0f - static_cast<float>(i));
 }
 
@@ -351,7 +351,7 @@ TEST(JointMapping, SaysWhichJointsAreMissingAndWhatThereIs) {
     if (name == "mixamorig:LeftHand") name = "paw";
   }
   const absl::StatusOr<JointMap> map =
-      MapJoints("a.bvh", pose.names, pose.positions, SbuSkeleton());
+      MapJoints("a.bvh", pose.names, pose.positions, motion::SbuSkeleton());
   EXPECT_EQ(map.status().code(), absl::StatusCode::kInvalidArgument);
   EXPECT_THAT(std::string(map.status().message()),
               AllOf(HasSubstr("a.bvh: joints: nothing stands for left_hand;"), HasSubstr("paw"),
@@ -364,22 +364,22 @@ TEST(JointMapping, LetsTheUserNameJoints) {
     if (name == "mixamorig:LeftHand") name = "paw";
   }
   const absl::StatusOr<JointMap> map =
-      MapJoints("a.bvh", pose.names, pose.positions, SbuSkeleton(),
+      MapJoints("a.bvh", pose.names, pose.positions, motion::SbuSkeleton(),
                 {{"left_hand", "paw"}, {"head", "mixamorig:Head"}});
   ASSERT_TRUE(map.ok()) << map.status();
-  const std::vector<Vec3> mapped = ApplyJointMap(*map, pose.positions.data());
+  const std::vector<motion::Vec3> mapped = ApplyJointMap(*map, pose.positions.data());
   EXPECT_NEAR(mapped[5].x, 0.72, 1e-5);
   EXPECT_NEAR(mapped[0].y, 1.55, 1e-5) << "a joint that the user names is taken as it is";
 }
 
 TEST(JointMapping, RefusesOverridesThatNameNothing) {
   const NamedPose pose = MakePose(kConventions[0]);
-  const absl::StatusOr<JointMap> tail =
-      MapJoints("a.bvh", pose.names, pose.positions, SbuSkeleton(), {{"tail", "mixamorig:Hips"}});
+  const absl::StatusOr<JointMap> tail = MapJoints(
+      "a.bvh", pose.names, pose.positions, motion::SbuSkeleton(), {{"tail", "mixamorig:Hips"}});
   EXPECT_THAT(std::string(tail.status().message()),
               HasSubstr("came target \"tail\", wanted one of"));
   const absl::StatusOr<JointMap> nothing =
-      MapJoints("a.bvh", pose.names, pose.positions, SbuSkeleton(), {{"torso", "Nothing"}});
+      MapJoints("a.bvh", pose.names, pose.positions, motion::SbuSkeleton(), {{"torso", "Nothing"}});
   EXPECT_THAT(std::string(nothing.status().message()),
               HasSubstr("torso=Nothing: a.bvh has no such joint"));
 }
@@ -390,16 +390,16 @@ TEST(JointMapping, PlacesTheTorsoWhereNoSpineJointIsNear) {
     if (name.find("Spine") != std::string::npos) name = "part of " + name;
   }
   const absl::StatusOr<JointMap> map =
-      MapJoints("a.bvh", pose.names, pose.positions, SbuSkeleton());
+      MapJoints("a.bvh", pose.names, pose.positions, motion::SbuSkeleton());
   ASSERT_TRUE(map.ok()) << map.status();
   EXPECT_THAT(map->notes, Contains(HasSubstr("torso:")));
 }
 
 TEST(JointMapping, KeepsWristAndHandApartForASkeletonWithBoth) {
-  Skeleton skeleton;
+  motion::Skeleton skeleton;
   skeleton.joint_names = {"left_hand", "left_wrist"};
   const std::vector<std::string> names = {"LeftWrist", "LeftHand"};
-  const std::vector<Vec3> pose = {{1, 0, 0}, {2, 0, 0}};
+  const std::vector<motion::Vec3> pose = {{1, 0, 0}, {2, 0, 0}};
   const absl::StatusOr<JointMap> map = MapJoints("a.bvh", names, pose, skeleton);
   ASSERT_TRUE(map.ok()) << map.status();
   EXPECT_EQ(ApplyJointMap(*map, pose.data())[0].x, 2);
@@ -408,10 +408,10 @@ TEST(JointMapping, KeepsWristAndHandApartForASkeletonWithBoth) {
 TEST(JointMapping, SurvivesNamesOfEveryKind) {
   const std::vector<std::string> names = {"",     ":",        "_",    "l",
                                           "Left", "\xff\xfe", "head", "head.end"};
-  const std::vector<Vec3> pose(names.size());
-  const absl::StatusOr<JointMap> map = MapJoints("a.bvh", names, pose, SbuSkeleton());
+  const std::vector<motion::Vec3> pose(names.size());
+  const absl::StatusOr<JointMap> map = MapJoints("a.bvh", names, pose, motion::SbuSkeleton());
   EXPECT_THAT(std::string(map.status().message()), Not(HasSubstr("for head")));
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::retargeting

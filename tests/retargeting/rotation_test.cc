@@ -5,7 +5,7 @@
 
 #include "gtest/gtest.h"
 
-namespace duet {
+namespace duet::retargeting {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -81,4 +81,4 @@ TEST(Rotation, KeepsAnglesNearThoseBefore) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::retargeting

@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <system_error>
 
-namespace duet {
+namespace duet::test {
 
 namespace fs = std::filesystem;
 
@@ -20,4 +20,4 @@ std::optional<fs::path> FindData(const std::string& relative_path) {
   return path;
 }
 
-}  // namespace duet
+}  // namespace duet::test

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-namespace duet {
+namespace duet::test {
 
 // A file or folder of the optional real captures, which are never part of the project: under
 // $DUET_DATA_DIR, else ../shared/data beside the project. Nothing when it is not there: the test
@@ -17,6 +17,6 @@ std::optional<std::filesystem::path> FindData(const std::string& relative_path);
 
 inline constexpr char kNoData[] = "needs real captures; set DUET_DATA_DIR to a folder with them";
 
-}  // namespace duet
+}  // namespace duet::test
 
 #endif  // DUET_TESTS_SUPPORT_DATA_FOLDER_H_

@@ -5,7 +5,7 @@
 #include "gtest/gtest.h"
 #include "tests/support/temporary_folder.h"
 
-namespace duet {
+namespace duet::test {
 namespace {
 
 TEST(FindData, LooksWhereTheEnvironmentSays) {
@@ -24,4 +24,4 @@ TEST(FindData, FindsNothingWhereThereIsNothing) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::test

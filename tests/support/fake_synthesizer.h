@@ -10,15 +10,15 @@
 #include "model/engine/synthesizer.h"
 #include "model/motion/vec3.h"
 
-namespace duet {
+namespace duet::test {
 
 // A model named "fake", version 1, of the SBU skeleton and classes: 15 Hz, windows of 46 frames.
-ModelDescription FakeDescription();
+engine::ModelDescription FakeDescription();
 
 // The follower that a FakeSynthesizer answers with unless told otherwise: every leader position
 // turned by half a turn about the world's y axis and moved by (0.25, 0, -1.5), plus the sum of the
 // label weights in y. A test can compute what must come out, in any unit and at any length.
-Vec3 FakeAnswer(Vec3 leader, absl::Span<const float> labels);
+motion::Vec3 FakeAnswer(motion::Vec3 leader, absl::Span<const float> labels);
 
 // A Synthesizer whose answer is known: the follower of a frame depends on that frame alone.
 //
@@ -26,27 +26,27 @@ Vec3 FakeAnswer(Vec3 leader, absl::Span<const float> labels);
 //   fake.on_batch = [&](auto windows) { sizes.push_back(windows.size()); };
 //
 // Threads: as Synthesizer, as long as the hooks are and nobody replaces them meanwhile.
-class FakeSynthesizer : public Synthesizer {
+class FakeSynthesizer : public engine::Synthesizer {
  public:
-  explicit FakeSynthesizer(ModelDescription description = FakeDescription());
+  explicit FakeSynthesizer(engine::ModelDescription description = FakeDescription());
 
-  const ModelDescription& description() const override { return description_; }
-  std::vector<WindowResult> Synthesize(
-      absl::Span<const SynthesisWindow* const> windows) const override;
+  const engine::ModelDescription& description() const override { return description_; }
+  std::vector<engine::WindowResult> Synthesize(
+      absl::Span<const engine::SynthesisWindow* const> windows) const override;
 
   // The follower's position for a leader's, and the frame's label vector.
-  std::function<Vec3(Vec3, absl::Span<const float>)> answer = FakeAnswer;
+  std::function<motion::Vec3(motion::Vec3, absl::Span<const float>)> answer = FakeAnswer;
   // Called at the start of every Synthesize: to record, or to block until the test says so.
-  std::function<void(absl::Span<const SynthesisWindow* const>)> on_batch;
+  std::function<void(absl::Span<const engine::SynthesisWindow* const>)> on_batch;
   // A window for which this returns an error fails alone, with it.
-  std::function<absl::Status(const SynthesisWindow&)> window_status;
+  std::function<absl::Status(const engine::SynthesisWindow&)> window_status;
 
  private:
-  WindowResult Answer(const SynthesisWindow& window) const;
+  engine::WindowResult Answer(const engine::SynthesisWindow& window) const;
 
-  ModelDescription description_;
+  engine::ModelDescription description_;
 };
 
-}  // namespace duet
+}  // namespace duet::test
 
 #endif  // DUET_TESTS_SUPPORT_FAKE_SYNTHESIZER_H_

@@ -4,13 +4,13 @@
 #include "tests/support/sample_motion.h"
 #include "tests/support/status_matchers.h"
 
-namespace duet {
+namespace duet::test {
 namespace {
 
 using ::testing::HasSubstr;
 
-SynthesisWindow Window(int frames) {
-  SynthesisWindow window;
+engine::SynthesisWindow Window(int frames) {
+  engine::SynthesisWindow window;
   window.leader = SwayingMotion(frames, 15);
   window.labels.assign(static_cast<std::size_t>(frames) * 6, 0);
   return window;
@@ -18,23 +18,23 @@ SynthesisWindow Window(int frames) {
 
 TEST(FakeSynthesizer, AnswersEachFrameByItsRule) {
   const FakeSynthesizer fake;
-  SynthesisWindow window = Window(2);
+  engine::SynthesisWindow window = Window(2);
   window.labels[6] = 0.5f;  // the second frame's first class
-  const std::vector<WindowResult> results = fake.Synthesize({&window});
+  const std::vector<engine::WindowResult> results = fake.Synthesize({&window});
   ASSERT_EQ(results.size(), 1u);
   ASSERT_THAT(results[0], IsOk());
-  const Vec3 leader = window.leader[15];
-  EXPECT_EQ((*results[0])[15], (Vec3{0.25f - leader.x, leader.y + 0.5f, -1.5f - leader.z}));
+  const motion::Vec3 leader = window.leader[15];
+  EXPECT_EQ((*results[0])[15], (motion::Vec3{0.25f - leader.x, leader.y + 0.5f, -1.5f - leader.z}));
   EXPECT_EQ((*results[0])[0].y, window.leader[0].y);
 }
 
 TEST(FakeSynthesizer, FailsOneWindowAlone) {
   FakeSynthesizer fake;
-  fake.window_status = [](const SynthesisWindow& window) {
+  fake.window_status = [](const engine::SynthesisWindow& window) {
     return window.leader.size() == 45 ? absl::InternalError("three frames") : absl::OkStatus();
   };
-  const SynthesisWindow two = Window(2), three = Window(3);
-  const std::vector<WindowResult> results = fake.Synthesize({&two, &three});
+  const engine::SynthesisWindow two = Window(2), three = Window(3);
+  const std::vector<engine::WindowResult> results = fake.Synthesize({&two, &three});
   ASSERT_EQ(results.size(), 2u);
   EXPECT_THAT(results[0], IsOk());
   EXPECT_THAT(results[1], StatusIs(absl::StatusCode::kInternal, HasSubstr("three frames")));
@@ -43,17 +43,17 @@ TEST(FakeSynthesizer, FailsOneWindowAlone) {
 TEST(FakeSynthesizer, ReportsEveryBatch) {
   FakeSynthesizer fake;
   std::vector<std::size_t> sizes;
-  fake.on_batch = [&](absl::Span<const SynthesisWindow* const> windows) {
+  fake.on_batch = [&](absl::Span<const engine::SynthesisWindow* const> windows) {
     sizes.push_back(windows.size());
   };
-  const SynthesisWindow window = Window(2);
+  const engine::SynthesisWindow window = Window(2);
   fake.Synthesize({&window, &window});
   fake.Synthesize({&window});
   EXPECT_THAT(sizes, ::testing::ElementsAre(2, 1));
 }
 
 TEST(SampleMotion, MovesSmoothlyAndStandsUpright) {
-  const std::vector<Vec3> motion = SwayingMotion(60, 15);
+  const std::vector<motion::Vec3> motion = SwayingMotion(60, 15);
   for (std::size_t i = 15; i < motion.size(); ++i) {
     ASSERT_LT(Distance(motion[i], motion[i - 15]), 0.1f) << "frame " << i / 15;
   }
@@ -62,4 +62,4 @@ TEST(SampleMotion, MovesSmoothlyAndStandsUpright) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::test

@@ -3,12 +3,12 @@
 #include <cmath>
 #include <cstddef>
 
-namespace duet {
+namespace duet::test {
 namespace {
 
 // Standing, facing -z (the left hip on the -x side), arms hanging. Relative to the torso.
-const std::vector<Vec3>& StandingPose() {
-  static const auto* const kPose = new std::vector<Vec3>{
+const std::vector<motion::Vec3>& StandingPose() {
+  static const auto* const kPose = new std::vector<motion::Vec3>{
       {0, 0.43f, 0},       {0, 0.22f, 0},       {0, 0, 0},          {-0.15f, 0.22f, 0},
       {-0.18f, -0.07f, 0}, {-0.18f, -0.35f, 0}, {0.15f, 0.22f, 0},  {0.18f, -0.07f, 0},
       {0.18f, -0.35f, 0},  {-0.09f, -0.2f, 0},  {-0.1f, -0.62f, 0}, {-0.1f, -1.02f, 0},
@@ -18,11 +18,11 @@ const std::vector<Vec3>& StandingPose() {
 
 }  // namespace
 
-std::vector<Vec3> SwayingPose(double seconds) {
+std::vector<motion::Vec3> SwayingPose(double seconds) {
   const float t = static_cast<float>(seconds);
-  std::vector<Vec3> pose = StandingPose();
-  const Vec3 root = {0.1f + 0.2f * std::sin(0.7f * t), 1.05f + 0.02f * std::sin(3 * t),
-                     0.8f + 0.15f * std::cos(0.5f * t)};
+  std::vector<motion::Vec3> pose = StandingPose();
+  const motion::Vec3 root = {0.1f + 0.2f * std::sin(0.7f * t), 1.05f + 0.02f * std::sin(3 * t),
+                             0.8f + 0.15f * std::cos(0.5f * t)};
   for (std::size_t j = 0; j < pose.size(); ++j) {
     // The further below the neck, the wider the swing; left and right in opposite phase.
     const float side = pose[j].x < 0 ? 1.0f : -1.0f;
@@ -32,13 +32,13 @@ std::vector<Vec3> SwayingPose(double seconds) {
   return pose;
 }
 
-std::vector<Vec3> SwayingMotion(int frames, double frame_rate_hz) {
-  std::vector<Vec3> motion;
+std::vector<motion::Vec3> SwayingMotion(int frames, double frame_rate_hz) {
+  std::vector<motion::Vec3> motion;
   for (int frame = 0; frame < frames; ++frame) {
-    const std::vector<Vec3> pose = SwayingPose(frame / frame_rate_hz);
+    const std::vector<motion::Vec3> pose = SwayingPose(frame / frame_rate_hz);
     motion.insert(motion.end(), pose.begin(), pose.end());
   }
   return motion;
 }
 
-}  // namespace duet
+}  // namespace duet::test

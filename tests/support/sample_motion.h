@@ -6,16 +6,16 @@
 #include "model/motion/skeleton.h"
 #include "model/motion/vec3.h"
 
-namespace duet {
+namespace duet::test {
 
 // A smooth made-up pose of the SBU skeleton at a time: a person of plausible size who walks slowly,
 // turns and swings the limbs. The same at every frame rate.
 // Shapes: [15]. Units: metres, y up.
-std::vector<Vec3> SwayingPose(double seconds);
+std::vector<motion::Vec3> SwayingPose(double seconds);
 
 // The same as a motion from time 0. Shapes: [frames, 15].
-std::vector<Vec3> SwayingMotion(int frames, double frame_rate_hz);
+std::vector<motion::Vec3> SwayingMotion(int frames, double frame_rate_hz);
 
-}  // namespace duet
+}  // namespace duet::test
 
 #endif  // DUET_TESTS_SUPPORT_SAMPLE_MOTION_H_

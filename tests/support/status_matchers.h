@@ -8,7 +8,7 @@
 #include "absl/strings/str_cat.h"
 #include "gmock/gmock.h"
 
-namespace duet {
+namespace duet::test {
 
 inline const absl::Status& StatusOf(const absl::Status& status) { return status; }
 template <typename T>
@@ -34,6 +34,6 @@ MATCHER_P2(StatusIs, code, message,
          ::testing::Matches(message)(std::string(StatusOf(arg).message()));
 }
 
-}  // namespace duet
+}  // namespace duet::test
 
 #endif  // DUET_TESTS_SUPPORT_STATUS_MATCHERS_H_

@@ -2,7 +2,7 @@
 
 #include "gtest/gtest.h"
 
-namespace duet {
+namespace duet::test {
 namespace {
 
 using ::testing::_;
@@ -24,4 +24,4 @@ TEST(StatusMatchers, StatusIsComparesCodeAndMessage) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::test

@@ -8,7 +8,7 @@
 
 #include "gtest/gtest.h"
 
-namespace duet {
+namespace duet::test {
 
 TemporaryFolder::TemporaryFolder() {
   std::string name = std::filesystem::path(::testing::TempDir()) / "duet.XXXXXX";
@@ -33,4 +33,4 @@ void WriteTestFile(const std::filesystem::path& path, std::string_view content) 
   if (!file.flush()) ADD_FAILURE() << "cannot write " << path;
 }
 
-}  // namespace duet
+}  // namespace duet::test

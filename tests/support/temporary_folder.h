@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace duet {
+namespace duet::test {
 
 // An empty folder of one test, removed with all that is in it.
 class TemporaryFolder {
@@ -27,6 +27,6 @@ std::string ReadTestFile(const std::filesystem::path& path);
 // Writes or replaces a file; a test failure if it cannot be written.
 void WriteTestFile(const std::filesystem::path& path, std::string_view content);
 
-}  // namespace duet
+}  // namespace duet::test
 
 #endif  // DUET_TESTS_SUPPORT_TEMPORARY_FOLDER_H_

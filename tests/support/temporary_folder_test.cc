@@ -2,7 +2,7 @@
 
 #include "gtest/gtest.h"
 
-namespace duet {
+namespace duet::test {
 namespace {
 
 TEST(TemporaryFolder, LeavesNothingBehind) {
@@ -22,4 +22,4 @@ TEST(TemporaryFolder, IsNotShared) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::test

@@ -3,10 +3,10 @@
 #include <cstddef>
 #include <utility>
 
-namespace duet {
+namespace duet::test {
 
-Manifest TinyManifest() {
-  Manifest manifest;
+checkpoint::Manifest TinyManifest() {
+  checkpoint::Manifest manifest;
   manifest.model.name = "tiny";
   manifest.model.version = 3;
   manifest.model.description = "Three joints, for tests";
@@ -33,14 +33,14 @@ Manifest TinyManifest() {
   return manifest;
 }
 
-Checkpoint FilledCheckpoint(Manifest manifest) {
-  Checkpoint checkpoint;
+checkpoint::Checkpoint FilledCheckpoint(checkpoint::Manifest manifest) {
+  checkpoint::Checkpoint checkpoint;
   checkpoint.manifest = std::move(manifest);
-  for (TensorSpec& spec : ExpectedTensors(checkpoint.manifest)) {
+  for (checkpoint::TensorSpec& spec : ExpectedTensors(checkpoint.manifest)) {
     std::size_t count = 1;
     for (int64_t size : spec.shape) count *= static_cast<std::size_t>(size);
     const std::size_t k = checkpoint.tensors.size();
-    Tensor tensor{std::move(spec.name), std::move(spec.shape), {}};
+    checkpoint::Tensor tensor{std::move(spec.name), std::move(spec.shape), {}};
     for (std::size_t i = 0; i < count; ++i) {
       tensor.values.push_back((static_cast<float>((31 * k + 7 * i) % 17) - 8) / 16);
     }
@@ -49,4 +49,4 @@ Checkpoint FilledCheckpoint(Manifest manifest) {
   return checkpoint;
 }
 
-}  // namespace duet
+}  // namespace duet::test

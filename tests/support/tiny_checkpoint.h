@@ -4,18 +4,18 @@
 #include "model/checkpoint/checkpoint.h"
 #include "model/checkpoint/manifest.h"
 
-namespace duet {
+namespace duet::test {
 
 // The smallest manifest with every kind of content: three joints in two parts, two classes, two
 // hidden units. Its weights are not filled in.
-Manifest TinyManifest();
+checkpoint::Manifest TinyManifest();
 
 // A checkpoint with weights by a rule that any language can repeat: value i of tensor k (in the
 // order of ExpectedTensors) is ((31 k + 7 i) mod 17 - 8) / 16.
-Checkpoint FilledCheckpoint(Manifest manifest);
+checkpoint::Checkpoint FilledCheckpoint(checkpoint::Manifest manifest);
 
-inline Checkpoint TinyCheckpoint() { return FilledCheckpoint(TinyManifest()); }
+inline checkpoint::Checkpoint TinyCheckpoint() { return FilledCheckpoint(TinyManifest()); }
 
-}  // namespace duet
+}  // namespace duet::test
 
 #endif  // DUET_TESTS_SUPPORT_TINY_CHECKPOINT_H_

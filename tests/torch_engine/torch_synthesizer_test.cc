@@ -9,20 +9,27 @@
 #include "tests/support/status_matchers.h"
 #include "tests/support/tiny_checkpoint.h"
 
-namespace duet {
+namespace duet::torch_engine {
 namespace {
+
+using test::IsOk;
+using test::StatusIs;
+using test::SwayingMotion;
+using test::SwayingPose;
+using test::TinyCheckpoint;
 
 using ::testing::HasSubstr;
 
-std::shared_ptr<const Synthesizer> Embedded() {
+std::shared_ptr<const engine::Synthesizer> Embedded() {
   SetTorchThreads(1);
   auto all = LoadEmbeddedSynthesizers();
   EXPECT_THAT(all, IsOk());
   return all.ok() ? std::move(all->front()) : nullptr;
 }
 
-SynthesisWindow MakeWindow(const Synthesizer& model, int frames, int interaction_class = 0) {
-  SynthesisWindow window;
+engine::SynthesisWindow MakeWindow(const engine::Synthesizer& model, int frames,
+                                   int interaction_class = 0) {
+  engine::SynthesisWindow window;
   window.leader = SwayingMotion(frames, model.description().frame_rate_hz);
   const size_t classes = model.description().classes.size();
   window.labels.assign(static_cast<size_t>(frames) * classes, 0);
@@ -32,20 +39,21 @@ SynthesisWindow MakeWindow(const Synthesizer& model, int frames, int interaction
   return window;
 }
 
-std::vector<WindowResult> SynthesizeAll(const Synthesizer& model,
-                                        const std::vector<SynthesisWindow>& windows) {
-  std::vector<const SynthesisWindow*> pointers;
-  for (const SynthesisWindow& window : windows) pointers.push_back(&window);
+std::vector<engine::WindowResult> SynthesizeAll(
+    const engine::Synthesizer& model, const std::vector<engine::SynthesisWindow>& windows) {
+  std::vector<const engine::SynthesisWindow*> pointers;
+  for (const engine::SynthesisWindow& window : windows) pointers.push_back(&window);
   return model.Synthesize(pointers);
 }
 
-std::vector<Vec3> RunOne(const Synthesizer& model, const SynthesisWindow& window) {
-  WindowResult result = SynthesizeAll(model, {window}).front();
+std::vector<motion::Vec3> RunOne(const engine::Synthesizer& model,
+                                 const engine::SynthesisWindow& window) {
+  engine::WindowResult result = SynthesizeAll(model, {window}).front();
   EXPECT_THAT(result, IsOk());
-  return result.ok() ? *result : std::vector<Vec3>{};
+  return result.ok() ? *result : std::vector<motion::Vec3>{};
 }
 
-float LargestDistance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+float LargestDistance(const std::vector<motion::Vec3>& a, const std::vector<motion::Vec3>& b) {
   EXPECT_EQ(a.size(), b.size());
   float largest = 0;
   for (size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
@@ -59,7 +67,7 @@ TEST(TorchSynthesizerTest, EmbeddedModelIsTheSixClassesOfSbu) {
   EXPECT_THAT(
       model->description().classes,
       ::testing::ElementsAre("kick", "push", "shake_hands", "hug", "exchange_object", "punch"));
-  EXPECT_EQ(model->description().skeleton.joint_names, SbuSkeleton().joint_names);
+  EXPECT_EQ(model->description().skeleton.joint_names, motion::SbuSkeleton().joint_names);
   EXPECT_TRUE(model->description().accepts_follower_start);
 }
 
@@ -67,7 +75,7 @@ TEST(TorchSynthesizerTest, K3hiIsEmbeddedBesideIt) {
   const auto all = LoadEmbeddedSynthesizers();
   ASSERT_THAT(all, IsOk());
   ASSERT_EQ(all->size(), 2u);
-  const ModelDescription& model = all->back()->description();
+  const engine::ModelDescription& model = all->back()->description();
   EXPECT_EQ(model.name, "k3hi");
   EXPECT_EQ(model.frame_rate_hz, 30);
   EXPECT_THAT(model.classes, ::testing::ElementsAre("approach", "depart", "exchange_object", "kick",
@@ -77,9 +85,9 @@ TEST(TorchSynthesizerTest, K3hiIsEmbeddedBesideIt) {
 
 TEST(TorchSynthesizerTest, BatchOfDifferentLengthsEqualsSingle) {
   const auto model = Embedded();
-  const std::vector<SynthesisWindow> windows = {MakeWindow(*model, 2, 1), MakeWindow(*model, 45, 0),
-                                                MakeWindow(*model, 17, 3)};
-  const std::vector<WindowResult> together = SynthesizeAll(*model, windows);
+  const std::vector<engine::SynthesisWindow> windows = {
+      MakeWindow(*model, 2, 1), MakeWindow(*model, 45, 0), MakeWindow(*model, 17, 3)};
+  const std::vector<engine::WindowResult> together = SynthesizeAll(*model, windows);
   for (size_t i = 0; i < windows.size(); ++i) {
     ASSERT_THAT(together[i], IsOk());
     EXPECT_LT(LargestDistance(*together[i], RunOne(*model, windows[i])), 1e-5f) << i;
@@ -88,13 +96,13 @@ TEST(TorchSynthesizerTest, BatchOfDifferentLengthsEqualsSingle) {
 
 TEST(TorchSynthesizerTest, MovesAndTurnsWithTheLeader) {
   const auto model = Embedded();
-  SynthesisWindow window = MakeWindow(*model, 20);
-  window.start = FollowerStart{{0.3f, 1, 1}, {}};
-  window.partner_direction = Vec3{0.2f, 0, 1};
-  const auto move = [](Vec3 p) { return RotateY(p, 1.1) + Vec3{3, 0.5f, -2}; };
-  std::vector<Vec3> expected = RunOne(*model, window);
-  for (Vec3& p : expected) p = move(p);
-  for (Vec3& p : window.leader) p = move(p);
+  engine::SynthesisWindow window = MakeWindow(*model, 20);
+  window.start = engine::FollowerStart{{0.3f, 1, 1}, {}};
+  window.partner_direction = motion::Vec3{0.2f, 0, 1};
+  const auto move = [](motion::Vec3 p) { return RotateY(p, 1.1) + motion::Vec3{3, 0.5f, -2}; };
+  std::vector<motion::Vec3> expected = RunOne(*model, window);
+  for (motion::Vec3& p : expected) p = move(p);
+  for (motion::Vec3& p : window.leader) p = move(p);
   window.start->root = move(window.start->root);
   window.partner_direction = RotateY(*window.partner_direction, 1.1);
   EXPECT_LT(LargestDistance(RunOne(*model, window), expected), 1e-4f);
@@ -102,39 +110,40 @@ TEST(TorchSynthesizerTest, MovesAndTurnsWithTheLeader) {
 
 TEST(TorchSynthesizerTest, FollowerStandsWhereItsStartSays) {
   const auto model = Embedded();
-  SynthesisWindow window = MakeWindow(*model, 30);
+  engine::SynthesisWindow window = MakeWindow(*model, 30);
   const int root = model->description().skeleton.root;
-  for (const Vec3 offset : {Vec3{0, 0, 0.9f}, Vec3{1.2f, 0, 0}}) {
-    window.start = FollowerStart{window.leader[static_cast<size_t>(root)] + offset, {}};
-    const std::vector<Vec3> follower = RunOne(*model, window);
+  for (const motion::Vec3 offset : {motion::Vec3{0, 0, 0.9f}, motion::Vec3{1.2f, 0, 0}}) {
+    window.start = engine::FollowerStart{window.leader[static_cast<size_t>(root)] + offset, {}};
+    const std::vector<motion::Vec3> follower = RunOne(*model, window);
     EXPECT_LT(Distance(follower[static_cast<size_t>(root)], window.start->root), 0.4f);
   }
 }
 
 TEST(TorchSynthesizerTest, PartnerDirectionPlacesTheFollower) {
   const auto model = Embedded();
-  SynthesisWindow window = MakeWindow(*model, 30);
+  engine::SynthesisWindow window = MakeWindow(*model, 30);
   const size_t root = static_cast<size_t>(model->description().skeleton.root);
-  for (const Vec3 direction : {Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, 0, 1}}) {
+  for (const motion::Vec3 direction :
+       {motion::Vec3{1, 0, 0}, motion::Vec3{-1, 0, 0}, motion::Vec3{0, 0, 1}}) {
     window.partner_direction = direction;
-    const Vec3 across = RunOne(*model, window)[root] - window.leader[root];
+    const motion::Vec3 across = RunOne(*model, window)[root] - window.leader[root];
     EXPECT_GT(Dot(across, direction) / Norm(across), 0.8f);
   }
 }
 
 TEST(TorchSynthesizerTest, LabelsChangeTheAnswer) {
   const auto model = Embedded();
-  const std::vector<Vec3> kick = RunOne(*model, MakeWindow(*model, 30, 0));
-  const std::vector<Vec3> hug = RunOne(*model, MakeWindow(*model, 30, 3));
+  const std::vector<motion::Vec3> kick = RunOne(*model, MakeWindow(*model, 30, 0));
+  const std::vector<motion::Vec3> hug = RunOne(*model, MakeWindow(*model, 30, 3));
   EXPECT_GT(LargestDistance(kick, hug), 0.2f);
 }
 
 TEST(TorchSynthesizerTest, LimbsKeepTheLengthsOfTheStartOrElseTheLeader) {
   const auto model = Embedded();
-  const Skeleton& skeleton = model->description().skeleton;
-  SynthesisWindow window = MakeWindow(*model, 30);
-  const auto expect_lengths = [&](const std::vector<Vec3>& owner) {
-    const std::vector<Vec3> follower = RunOne(*model, window);
+  const motion::Skeleton& skeleton = model->description().skeleton;
+  engine::SynthesisWindow window = MakeWindow(*model, 30);
+  const auto expect_lengths = [&](const std::vector<motion::Vec3>& owner) {
+    const std::vector<motion::Vec3> follower = RunOne(*model, window);
     const std::vector<float> wanted = MedianBoneLengths(skeleton, owner);
     for (size_t t = 0; t < 30; ++t) {
       const auto pose = follower.begin() + static_cast<std::ptrdiff_t>(t * 15);
@@ -143,17 +152,17 @@ TEST(TorchSynthesizerTest, LimbsKeepTheLengthsOfTheStartOrElseTheLeader) {
     }
   };
   expect_lengths(window.leader);
-  std::vector<Vec3> tall = SwayingPose(0);
-  for (Vec3& joint : tall) joint = joint * 1.1f + Vec3{0, 0, -1};
-  window.start = FollowerStart{tall[static_cast<size_t>(skeleton.root)], tall};
+  std::vector<motion::Vec3> tall = SwayingPose(0);
+  for (motion::Vec3& joint : tall) joint = joint * 1.1f + motion::Vec3{0, 0, -1};
+  window.start = engine::FollowerStart{tall[static_cast<size_t>(skeleton.root)], tall};
   expect_lengths(tall);
 }
 
 TEST(TorchSynthesizerTest, FollowerWithoutAStartStandsOnTheLeadersFloor) {
   const auto model = Embedded();
-  const Skeleton& skeleton = model->description().skeleton;
-  const SynthesisWindow window = MakeWindow(*model, 30);
-  const auto lowest = [&](const std::vector<Vec3>& positions) {
+  const motion::Skeleton& skeleton = model->description().skeleton;
+  const engine::SynthesisWindow window = MakeWindow(*model, 30);
+  const auto lowest = [&](const std::vector<motion::Vec3>& positions) {
     float y = 1e9f;
     for (size_t t = 0; t < positions.size(); t += 15) {
       y = std::min({y, positions[t + static_cast<size_t>(skeleton.left_foot)].y,
@@ -165,24 +174,24 @@ TEST(TorchSynthesizerTest, FollowerWithoutAStartStandsOnTheLeadersFloor) {
 }
 
 TEST(TorchSynthesizerTest, ResultThatIsNotFiniteFailsAlone) {
-  Checkpoint checkpoint = TinyCheckpoint();
-  for (Tensor& tensor : checkpoint.tensors) {
+  checkpoint::Checkpoint checkpoint = TinyCheckpoint();
+  for (checkpoint::Tensor& tensor : checkpoint.tensors) {
     for (float& value : tensor.values) value = 3e38f;  // finite, but not what comes of it
   }
   const auto model = MakeTorchSynthesizer(checkpoint);
   ASSERT_THAT(model, IsOk());
   const size_t joints = checkpoint.manifest.model.skeleton.joint_names.size();
-  SynthesisWindow window;
+  engine::SynthesisWindow window;
   for (size_t i = 0; i < 4 * joints; ++i) {
     window.leader.push_back({static_cast<float>(i), static_cast<float>(i % 3), 1});
   }
   window.labels.assign(4 * checkpoint.manifest.model.classes.size(), 1);
-  const std::vector<WindowResult> results = SynthesizeAll(**model, {window});
+  const std::vector<engine::WindowResult> results = SynthesizeAll(**model, {window});
   EXPECT_THAT(results[0], StatusIs(absl::StatusCode::kInternal, HasSubstr("not finite")));
 }
 
 TEST(TorchSynthesizerTest, CheckpointOfOtherShapesIsRefused) {
-  Checkpoint checkpoint = TinyCheckpoint();
+  checkpoint::Checkpoint checkpoint = TinyCheckpoint();
   checkpoint.tensors[0].shape[0] += 1;
   EXPECT_THAT(MakeTorchSynthesizer(checkpoint),
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(checkpoint.tensors[0].name)));
@@ -191,4 +200,4 @@ TEST(TorchSynthesizerTest, CheckpointOfOtherShapesIsRefused) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::torch_engine

@@ -5,7 +5,7 @@
 #include "tests/training/made_up_dataset.h"
 #include "tests/training/test_options.h"
 
-namespace duet {
+namespace duet::training {
 namespace {
 
 class AdversaryTest : public ::testing::Test {
@@ -20,9 +20,9 @@ class AdversaryTest : public ::testing::Test {
 
   Adversary Make() { return {options_, manifest_, 100}; }
 
-  Dataset dataset_ = MadeUpDataset();
+  dataset::Dataset dataset_ = MadeUpDataset();
   TrainingOptions options_ = SmallOptions();
-  Manifest manifest_ = ManifestFor(options_, dataset_);
+  checkpoint::Manifest manifest_ = ManifestFor(options_, dataset_);
   TrainingBatch batch_;
   torch::Tensor synthesised_;
 };
@@ -67,4 +67,4 @@ TEST_F(AdversaryTest, MixedAnswersDoNotCount) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::training

@@ -4,10 +4,10 @@
 
 #include "tests/training/made_up_dataset.h"
 
-namespace duet {
+namespace duet::training {
 namespace {
 
-double LengthOfBone(const Clip& clip, int frame, const Bone& bone) {
+double LengthOfBone(const motion::Clip& clip, int frame, const motion::Bone& bone) {
   return Distance(clip.at(frame, bone.parent), clip.at(frame, bone.child));
 }
 
@@ -37,36 +37,36 @@ TEST(EpochRandomTest, DrawsWhatItSays) {
 }
 
 TEST(MirrorTest, ExchangesSidesAndIsItsOwnInverse) {
-  const Dataset dataset = MadeUpDataset();
-  const Skeleton& skeleton = dataset.skeleton;
-  Sequence mirrored = dataset.sequences[0];
-  mirrored.partner_direction = Vec3{1, 0, 0};
-  const Vec3 left_hand = mirrored.pair.leader.at(3, skeleton.Find("left_hand"));
+  const dataset::Dataset dataset = MadeUpDataset();
+  const motion::Skeleton& skeleton = dataset.skeleton;
+  dataset::Sequence mirrored = dataset.sequences[0];
+  mirrored.partner_direction = motion::Vec3{1, 0, 0};
+  const motion::Vec3 left_hand = mirrored.pair.leader.at(3, skeleton.Find("left_hand"));
   Mirror(MirroredJoints(skeleton), &mirrored);
   EXPECT_EQ(mirrored.pair.leader.at(3, skeleton.Find("right_hand")),
-            (Vec3{-left_hand.x, left_hand.y, left_hand.z}));
-  EXPECT_EQ(*mirrored.partner_direction, (Vec3{-1, 0, 0}));
+            (motion::Vec3{-left_hand.x, left_hand.y, left_hand.z}));
+  EXPECT_EQ(*mirrored.partner_direction, (motion::Vec3{-1, 0, 0}));
   Mirror(MirroredJoints(skeleton), &mirrored);
   EXPECT_EQ(mirrored.pair.leader.positions, dataset.sequences[0].pair.leader.positions);
   EXPECT_EQ(mirrored.pair.follower.positions, dataset.sequences[0].pair.follower.positions);
 }
 
 TEST(SwapRolesTest, TurnsTheDirectionRound) {
-  const Dataset dataset = MadeUpDataset();
-  Sequence swapped = dataset.sequences[1];
+  const dataset::Dataset dataset = MadeUpDataset();
+  dataset::Sequence swapped = dataset.sequences[1];
   SwapRoles(&swapped);
   EXPECT_EQ(swapped.pair.leader.positions, dataset.sequences[1].pair.follower.positions);
-  EXPECT_EQ(*swapped.partner_direction, (Vec3{0, 0, -1}));
+  EXPECT_EQ(*swapped.partner_direction, (motion::Vec3{0, 0, -1}));
 }
 
-Sequence AugmentedBy(const TrainingOptions::Augmentation& options, int index) {
-  const Dataset dataset = MadeUpDataset();
+dataset::Sequence AugmentedBy(const TrainingOptions::Augmentation& options, int index) {
+  const dataset::Dataset dataset = MadeUpDataset();
   EpochRandom random(3, 1);
   return Augment(dataset, dataset.sequences[static_cast<size_t>(index)], options, &random);
 }
 
 TEST(AugmentTest, NothingOnChangesNothing) {
-  const Sequence before = MadeUpDataset().sequences[2], after = AugmentedBy({}, 2);
+  const dataset::Sequence before = MadeUpDataset().sequences[2], after = AugmentedBy({}, 2);
   EXPECT_EQ(after.pair.leader.positions, before.pair.leader.positions);
   EXPECT_EQ(after.pair.follower.positions, before.pair.follower.positions);
 }
@@ -74,7 +74,7 @@ TEST(AugmentTest, NothingOnChangesNothing) {
 TEST(AugmentTest, RolesSwapInSymmetricClassesAlone) {
   TrainingOptions::Augmentation options;
   options.swap_roles = 1;
-  const Dataset dataset = MadeUpDataset();
+  const dataset::Dataset dataset = MadeUpDataset();
   EXPECT_EQ(AugmentedBy(options, 1).pair.leader.positions,
             dataset.sequences[1].pair.follower.positions);
   EXPECT_EQ(AugmentedBy(options, 0).pair.leader.positions,
@@ -85,7 +85,7 @@ TEST(AugmentTest, MirrorsTheNamedClassesAlone) {
   TrainingOptions::Augmentation options;
   options.mirror = 1;
   options.mirrored_classes = {"punch"};
-  const Dataset dataset = MadeUpDataset();
+  const dataset::Dataset dataset = MadeUpDataset();
   EXPECT_NE(AugmentedBy(options, 2).pair.leader.positions,
             dataset.sequences[2].pair.leader.positions);
   EXPECT_EQ(AugmentedBy(options, 0).pair.leader.positions,
@@ -95,13 +95,13 @@ TEST(AugmentTest, MirrorsTheNamedClassesAlone) {
 TEST(AugmentTest, BodyScaleKeepsProportionsOfEachPerson) {
   TrainingOptions::Augmentation options;
   options.body_scale = 0.2;
-  const Sequence before = MadeUpDataset().sequences[0], after = AugmentedBy(options, 0);
-  const std::vector<Bone> bones = SbuSkeleton().bones;
+  const dataset::Sequence before = MadeUpDataset().sequences[0], after = AugmentedBy(options, 0);
+  const std::vector<motion::Bone> bones = motion::SbuSkeleton().bones;
   const double scale = LengthOfBone(after.pair.follower, 0, bones[0]) /
                        LengthOfBone(before.pair.follower, 0, bones[0]);
   EXPECT_GT(std::abs(scale - 1), 1e-3);
   EXPECT_LE(std::abs(scale - 1), 0.2 + 1e-5);
-  for (const Bone& bone : bones) {
+  for (const motion::Bone& bone : bones) {
     EXPECT_NEAR(
         LengthOfBone(after.pair.follower, 5, bone) / LengthOfBone(before.pair.follower, 5, bone),
         scale, 1e-4);
@@ -111,7 +111,7 @@ TEST(AugmentTest, BodyScaleKeepsProportionsOfEachPerson) {
 TEST(AugmentTest, CropKeepsAPieceOfBoth) {
   TrainingOptions::Augmentation options;
   options.crop = 1;
-  const Sequence before = MadeUpDataset().sequences[6], after = AugmentedBy(options, 6);
+  const dataset::Sequence before = MadeUpDataset().sequences[6], after = AugmentedBy(options, 6);
   const int frames = after.pair.leader.frame_count();
   EXPECT_EQ(after.pair.follower.frame_count(), frames);
   EXPECT_LT(frames, before.pair.leader.frame_count());
@@ -124,7 +124,7 @@ TEST(AugmentTest, CropKeepsAPieceOfBoth) {
 TEST(AugmentTest, TimeWarpKeepsBothEnds) {
   TrainingOptions::Augmentation options;
   options.time_warp = 0.5;
-  const Sequence before = MadeUpDataset().sequences[0], after = AugmentedBy(options, 0);
+  const dataset::Sequence before = MadeUpDataset().sequences[0], after = AugmentedBy(options, 0);
   EXPECT_NE(after.pair.leader.frame_count(), before.pair.leader.frame_count());
   EXPECT_EQ(after.pair.leader.frame_count(), after.pair.follower.frame_count());
   EXPECT_EQ(after.pair.leader.at(0, 3), before.pair.leader.at(0, 3));
@@ -136,12 +136,12 @@ TEST(AugmentTest, TimeWarpKeepsBothEnds) {
 TEST(AugmentTest, LeaderYawLeavesTheFollowerAlone) {
   TrainingOptions::Augmentation options;
   options.leader_yaw = 0.5;
-  const Sequence before = MadeUpDataset().sequences[0], after = AugmentedBy(options, 0);
+  const dataset::Sequence before = MadeUpDataset().sequences[0], after = AugmentedBy(options, 0);
   EXPECT_EQ(after.pair.follower.positions, before.pair.follower.positions);
   EXPECT_NE(after.pair.leader.at(0, 5), before.pair.leader.at(0, 5));
-  const int root = SbuSkeleton().root;
+  const int root = motion::SbuSkeleton().root;
   EXPECT_LT(Distance(after.pair.leader.at(0, root), before.pair.leader.at(0, root)), 1e-5);
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::training

@@ -7,13 +7,13 @@
 
 #include "tests/training/made_up_dataset.h"
 
-namespace duet {
+namespace duet::training {
 namespace {
 
 constexpr int kDraws = 300;
 
 // Every kind of label vector, drawn for one sequence.
-std::vector<Example> Draw(const Dataset& dataset, StartKnowledge start) {
+std::vector<Example> Draw(const dataset::Dataset& dataset, StartKnowledge start) {
   EpochRandom random(11, 0);
   std::vector<Example> examples;
   for (int i = 0; i < kDraws; ++i) {
@@ -23,7 +23,7 @@ std::vector<Example> Draw(const Dataset& dataset, StartKnowledge start) {
   return examples;
 }
 
-bool Near(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+bool Near(const std::vector<motion::Vec3>& a, const std::vector<motion::Vec3>& b) {
   for (size_t i = 0; i < a.size(); ++i) {
     if (Distance(a[i], b[i]) > 1e-4f) return false;
   }
@@ -39,7 +39,7 @@ std::string KindOf(const Example& example) {
 }
 
 TEST(GradedLabelsTest, EveryKindComesUpWithinTheContract) {
-  const Dataset dataset = MadeUpDataset();
+  const dataset::Dataset dataset = MadeUpDataset();
   std::set<std::string> kinds;
   for (const Example& example : Draw(dataset, StartKnowledge::kNone)) {
     EXPECT_FALSE(example.single);
@@ -51,13 +51,13 @@ TEST(GradedLabelsTest, EveryKindComesUpWithinTheContract) {
 }
 
 TEST(GradedLabelsTest, OwnWeightScalesTheCapturedReaction) {
-  const Dataset dataset = MadeUpDataset();
-  const Clip& follower = dataset.sequences[0].pair.follower;
+  const dataset::Dataset dataset = MadeUpDataset();
+  const motion::Clip& follower = dataset.sequences[0].pair.follower;
   int checked = 0;
   for (const Example& example : Draw(dataset, StartKnowledge::kNone)) {
     if (KindOf(example) != "graded") continue;
     const int frame = 7, joint = 5;
-    const Vec3 still = follower.at(0, joint), captured = follower.at(frame, joint);
+    const motion::Vec3 still = follower.at(0, joint), captured = follower.at(frame, joint);
     EXPECT_LT(Distance(example.target[frame * 15 + joint],
                        still + (captured - still) * example.weights[0]),
               1e-5f);
@@ -67,7 +67,7 @@ TEST(GradedLabelsTest, OwnWeightScalesTheCapturedReaction) {
 }
 
 TEST(GradedLabelsTest, AvoidingAnotherClassLeavesTheCapturedReaction) {
-  const Dataset dataset = MadeUpDataset();
+  const dataset::Dataset dataset = MadeUpDataset();
   int checked = 0;
   for (const Example& example : Draw(dataset, StartKnowledge::kNone)) {
     if (KindOf(example) != "other avoided") continue;
@@ -78,22 +78,22 @@ TEST(GradedLabelsTest, AvoidingAnotherClassLeavesTheCapturedReaction) {
 }
 
 TEST(GradedLabelsTest, EveryAnswerBeginsAtAGivenPose) {
-  const Dataset dataset = MadeUpDataset();
-  const Clip& follower = dataset.sequences[0].pair.follower;
-  const std::vector<Vec3> first(follower.frame(0), follower.frame(0) + 15);
+  const dataset::Dataset dataset = MadeUpDataset();
+  const motion::Clip& follower = dataset.sequences[0].pair.follower;
+  const std::vector<motion::Vec3> first(follower.frame(0), follower.frame(0) + 15);
   for (const Example& example : Draw(dataset, StartKnowledge::kPose)) {
     EXPECT_TRUE(Near({example.target.begin(), example.target.begin() + 15}, first));
   }
 }
 
 TEST(GradedLabelsTest, OtherReactionsHappenWhereThisOneDoes) {
-  Dataset dataset = MadeUpDataset();
+  dataset::Dataset dataset = MadeUpDataset();
   // The same scene, moved and turned: what is borrowed from it must come back to this place.
-  Sequence& moved = dataset.sequences[1];
+  dataset::Sequence& moved = dataset.sequences[1];
   moved = dataset.sequences[0];
   moved.interaction_class = 1;
-  for (Clip* clip : {&moved.pair.leader, &moved.pair.follower}) {
-    for (Vec3& p : clip->positions) p = RotateY(p, 2) + Vec3{5, 0, 3};
+  for (motion::Clip* clip : {&moved.pair.leader, &moved.pair.follower}) {
+    for (motion::Vec3& p : clip->positions) p = RotateY(p, 2) + motion::Vec3{5, 0, 3};
   }
   moved.partner_direction = RotateY(*moved.partner_direction, 2);
   dataset.sequences.resize(2);
@@ -107,7 +107,7 @@ TEST(GradedLabelsTest, OtherReactionsHappenWhereThisOneDoes) {
 }
 
 TEST(GradedLabelsTest, OneClassAloneStaysSingle) {
-  Dataset dataset = MadeUpDataset(1);
+  dataset::Dataset dataset = MadeUpDataset(1);
   EpochRandom random(1, 1);
   Example example = CapturedExample(dataset, dataset.sequences[0], StartKnowledge::kNone);
   GradeLabels(dataset, dataset.sequences, &random, &example);
@@ -115,4 +115,4 @@ TEST(GradedLabelsTest, OneClassAloneStaysSingle) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::training

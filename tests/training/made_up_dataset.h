@@ -7,46 +7,49 @@
 #include "model/dataset/dataset.h"
 #include "tests/support/sample_motion.h"
 
-namespace duet {
+namespace duet::training {
+
+using test::SwayingMotion;
+using test::SwayingPose;
 
 // Sequences of two made-up people in three classes, the second of them symmetric: the follower
 // stands 1 m along +z of the leader and sways later and, by class, higher.
-inline Dataset MadeUpDataset(int sequences = 7) {
-  Dataset dataset;
+inline dataset::Dataset MadeUpDataset(int sequences = 7) {
+  dataset::Dataset dataset;
   dataset.name = "made_up";
-  dataset.skeleton = SbuSkeleton();
+  dataset.skeleton = motion::SbuSkeleton();
   dataset.classes = {"kick", "hug", "punch"};
   dataset.symmetric = {false, true, false};
   dataset.frame_rate_hz = 15;
   for (int i = 0; i < sequences; ++i) {
-    Sequence sequence;
+    dataset::Sequence sequence;
     sequence.id = "sequence" + std::to_string(i);
     sequence.interaction_class = i % 3;
     sequence.subjects = {i % 2 == 0 ? "s01" : "s02"};
     const int frames = 12 + i;
-    Clip& leader = sequence.pair.leader;
+    motion::Clip& leader = sequence.pair.leader;
     leader.joint_names = dataset.skeleton.joint_names;
     leader.frame_rate_hz = dataset.frame_rate_hz;
     sequence.pair.follower = leader;
     leader.positions = SwayingMotion(frames, dataset.frame_rate_hz);
     for (int t = 0; t < frames; ++t) {
-      for (Vec3 point : SwayingPose((t + i) / dataset.frame_rate_hz)) {
+      for (motion::Vec3 point : SwayingPose((t + i) / dataset.frame_rate_hz)) {
         sequence.pair.follower.positions.push_back(
-            point + Vec3{0, 0.1f * static_cast<float>(sequence.interaction_class), 1});
+            point + motion::Vec3{0, 0.1f * static_cast<float>(sequence.interaction_class), 1});
       }
     }
-    sequence.partner_direction = Vec3{0, 0, 1};
+    sequence.partner_direction = motion::Vec3{0, 0, 1};
     dataset.sequences.push_back(sequence);
   }
   return dataset;
 }
 
-inline std::vector<int> AllOf(const Dataset& dataset) {
+inline std::vector<int> AllOf(const dataset::Dataset& dataset) {
   std::vector<int> all(dataset.sequences.size());
   for (size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
   return all;
 }
 
-}  // namespace duet
+}  // namespace duet::training
 
 #endif  // DUET_TESTS_TRAINING_MADE_UP_DATASET_H_

@@ -5,8 +5,11 @@
 #include "model/training/named_configs.h"
 #include "tests/support/status_matchers.h"
 
-namespace duet {
+namespace duet::training {
 namespace {
+
+using test::IsOk;
+using test::StatusIs;
 
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -93,4 +96,4 @@ TEST(TrainingOptionsTest, NamedClassesAndSubjectsMustExist) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::training

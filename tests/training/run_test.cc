@@ -11,8 +11,13 @@
 #include "tests/training/made_up_dataset.h"
 #include "tests/training/test_options.h"
 
-namespace duet {
+namespace duet::training {
 namespace {
+
+using test::IsOk;
+using test::ReadTestFile;
+using test::StatusIs;
+using test::TemporaryFolder;
 
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -29,7 +34,7 @@ class RunTest : public ::testing::Test {
 
   absl::Status Go() { return RunTraining(plan_, dataset_, false, &progress_); }
 
-  Dataset dataset_ = MadeUpDataset();
+  dataset::Dataset dataset_ = MadeUpDataset();
   TemporaryFolder folder_;
   RunPlan plan_;
   std::ostringstream progress_;
@@ -37,14 +42,14 @@ class RunTest : public ::testing::Test {
 
 TEST_F(RunTest, LeavesACheckpointThatServes) {
   ASSERT_THAT(Go(), IsOk());
-  const auto synthesizer = LoadTorchSynthesizer(CheckpointFolder(plan_));
+  const auto synthesizer = torch_engine::LoadTorchSynthesizer(CheckpointFolder(plan_));
   ASSERT_THAT(synthesizer, IsOk());
-  const ModelDescription& model = (*synthesizer)->description();
+  const engine::ModelDescription& model = (*synthesizer)->description();
   EXPECT_EQ(model.classes, dataset_.classes);
   EXPECT_EQ(model.window_frames, dataset_.LongestFrameCount());
   EXPECT_TRUE(model.accepts_follower_start);
   EXPECT_THAT(progress_.str(), HasSubstr("epoch 4/4"));
-  const auto checkpoint = ReadCheckpoint(CheckpointFolder(plan_));
+  const auto checkpoint = checkpoint::ReadCheckpoint(CheckpointFolder(plan_));
   ASSERT_THAT(checkpoint, IsOk());
   EXPECT_EQ(checkpoint->manifest.training.at("losses.bone"), "0.01");
   EXPECT_EQ(checkpoint->manifest.training.at("sequences"), "7");
@@ -68,7 +73,7 @@ TEST_F(RunTest, DivergenceIsReportedNotSaved) {
 TEST_F(RunTest, HeldBackSubjectsJudgeTheRun) {
   plan_.options.validation.subjects = {"s02"};
   ASSERT_THAT(Go(), IsOk());
-  const auto checkpoint = ReadCheckpoint(CheckpointFolder(plan_));
+  const auto checkpoint = checkpoint::ReadCheckpoint(CheckpointFolder(plan_));
   ASSERT_THAT(checkpoint, IsOk());
   EXPECT_GT(checkpoint->manifest.metrics.at("validation.afd"), 0);
   plan_.folder = folder_.path() / "nothing_left";
@@ -110,4 +115,4 @@ TEST(ProgressLineTest, SaysHowFarAndHowLong) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::training

@@ -3,7 +3,7 @@
 
 #include "model/training/options.h"
 
-namespace duet {
+namespace duet::training {
 
 // A network and a run small enough for a test, with every loss and every augmentation on.
 inline TrainingOptions SmallOptions() {
@@ -40,8 +40,9 @@ inline TrainingOptions SmallOptions() {
   return options;
 }
 
-inline Manifest ManifestFor(const TrainingOptions& options, const Dataset& dataset) {
-  Manifest manifest;
+inline checkpoint::Manifest ManifestFor(const TrainingOptions& options,
+                                        const dataset::Dataset& dataset) {
+  checkpoint::Manifest manifest;
   manifest.model.name = dataset.name;
   manifest.model.version = 1;
   manifest.model.skeleton = dataset.skeleton;
@@ -54,6 +55,6 @@ inline Manifest ManifestFor(const TrainingOptions& options, const Dataset& datas
   return manifest;
 }
 
-}  // namespace duet
+}  // namespace duet::training
 
 #endif  // DUET_TESTS_TRAINING_TEST_OPTIONS_H_

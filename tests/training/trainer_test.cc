@@ -10,8 +10,14 @@
 #include "tests/training/made_up_dataset.h"
 #include "tests/training/test_options.h"
 
-namespace duet {
+namespace duet::training {
 namespace {
+
+using test::IsOk;
+using test::ReadTestFile;
+using test::StatusIs;
+using test::TemporaryFolder;
+using test::WriteTestFile;
 
 using ::testing::HasSubstr;
 
@@ -21,9 +27,9 @@ class TrainerTest : public ::testing::Test {
 
   Trainer Make() { return {options_, manifest_, dataset_, AllOf(dataset_), {}}; }
 
-  Dataset dataset_ = MadeUpDataset();
+  dataset::Dataset dataset_ = MadeUpDataset();
   TrainingOptions options_ = SmallOptions();
-  Manifest manifest_ = ManifestFor(options_, dataset_);
+  checkpoint::Manifest manifest_ = ManifestFor(options_, dataset_);
   TemporaryFolder folder_;
 };
 
@@ -134,7 +140,7 @@ TEST_F(TrainerTest, EpochShowsEverySequenceOnce) {
     EXPECT_LE(batch.classes.size(0), options_.batch);
   }
   std::multiset<float> wanted;
-  for (const Sequence& s : dataset_.sequences) {
+  for (const dataset::Sequence& s : dataset_.sequences) {
     wanted.insert(static_cast<float>(s.pair.leader.frame_count()));
   }
   EXPECT_EQ(seen, wanted);
@@ -168,4 +174,4 @@ TEST(ScheduleTest, OneCycleRisesAndFalls) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::training

@@ -11,13 +11,13 @@
 #include "model/evaluation/baselines/maxent_ioc.h"
 #include "model/evaluation/baselines/nearest_neighbour.h"
 
-namespace duet {
+namespace duet::evaluation::baselines {
 namespace {
 
-using Maker = std::unique_ptr<Method> (*)();
+using Maker = std::unique_ptr<protocol::Method> (*)();
 
 template <typename T>
-std::unique_ptr<Method> Make() {
+std::unique_ptr<protocol::Method> Make() {
   return std::make_unique<T>();
 }
 
@@ -44,7 +44,7 @@ std::vector<std::string> BaselineNames() {
   return names;
 }
 
-absl::StatusOr<std::unique_ptr<Method>> MakeBaseline(const std::string& name) {
+absl::StatusOr<std::unique_ptr<protocol::Method>> MakeBaseline(const std::string& name) {
   for (const Entry& entry : kBaselines) {
     if (name == entry.name) return entry.make();
   }
@@ -52,4 +52,4 @@ absl::StatusOr<std::unique_ptr<Method>> MakeBaseline(const std::string& name) {
       absl::StrCat("method: \"", name, "\", wanted one of ", absl::StrJoin(BaselineNames(), ", ")));
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::baselines

@@ -8,15 +8,15 @@
 #include "absl/status/statusor.h"
 #include "model/evaluation/protocol/method.h"
 
-namespace duet {
+namespace duet::evaluation::baselines {
 
 // The rows of Table 1 that need no network, in the order of the table, after the two trivial rows.
 std::vector<std::string> BaselineNames();
 
 // A baseline by its name, untrained, with its published settings (docs/baselines.md).
 // Errors: INVALID_ARGUMENT for a name that is not in BaselineNames.
-absl::StatusOr<std::unique_ptr<Method>> MakeBaseline(const std::string& name);
+absl::StatusOr<std::unique_ptr<protocol::Method>> MakeBaseline(const std::string& name);
 
-}  // namespace duet
+}  // namespace duet::evaluation::baselines
 
 #endif  // DUET_MODEL_EVALUATION_BASELINES_BASELINES_H_

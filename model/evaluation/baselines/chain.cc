@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace duet {
+namespace duet::evaluation::baselines {
 
 PathPosterior SumOverPaths(const ChainWeights& chain, const Rows& log_arrivals,
                            Eigen::MatrixXd* steps) {
@@ -65,4 +65,4 @@ std::vector<int> BestPath(const ChainWeights& chain, const Rows& log_arrivals) {
   return path;
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::baselines

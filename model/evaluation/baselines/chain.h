@@ -5,7 +5,7 @@
 
 #include "model/evaluation/baselines/motion_matrix.h"
 
-namespace duet {
+namespace duet::evaluation::baselines {
 
 // Weights of the paths through a chain of states: a path s_0 .. s_{T-1} weighs
 //   start(s_0) exp(arrival_0(s_0)) prod_t step(s_{t-1}, s_t) exp(arrival_t(s_t)).
@@ -34,6 +34,6 @@ PathPosterior SumOverPaths(const ChainWeights& chain, const Rows& log_arrivals,
 // The path of the largest weight (Viterbi; value iteration with max in place of log-sum-exp).
 std::vector<int> BestPath(const ChainWeights& chain, const Rows& log_arrivals);
 
-}  // namespace duet
+}  // namespace duet::evaluation::baselines
 
 #endif  // DUET_MODEL_EVALUATION_BASELINES_CHAIN_H_

@@ -1,6 +1,6 @@
 #include "model/evaluation/baselines/class_mean.h"
 
-namespace duet {
+namespace duet::evaluation::baselines {
 
 void ClassMean::TrainClass(int interaction_class, const std::vector<StandardPair>& pairs) {
   // Each frame counts alike, as in the metric.
@@ -17,4 +17,4 @@ Rows ClassMean::PredictClass(int interaction_class, const StandardPair& leader) 
   return means_[static_cast<size_t>(interaction_class)].replicate(leader.leader.rows(), 1);
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::baselines

@@ -5,7 +5,7 @@
 
 #include "model/evaluation/baselines/per_class_method.h"
 
-namespace duet {
+namespace duet::evaluation::baselines {
 
 // The trivial row: the mean follower pose of the class, held still in the standard frame.
 class ClassMean : public PerClassMethod {
@@ -21,6 +21,6 @@ class ClassMean : public PerClassMethod {
   std::vector<Eigen::RowVectorXd> means_;
 };
 
-}  // namespace duet
+}  // namespace duet::evaluation::baselines
 
 #endif  // DUET_MODEL_EVALUATION_BASELINES_CLASS_MEAN_H_

@@ -4,7 +4,7 @@
 
 #include "model/evaluation/baselines/kmeans.h"
 
-namespace duet {
+namespace duet::evaluation::baselines {
 namespace {
 
 // Pseudo-counts: what was never seen stays possible.
@@ -139,4 +139,4 @@ Rows DiscreteMdp::PredictClass(int interaction_class, const StandardPair& leader
   return model.follower.Reconstruct(poses);
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::baselines

@@ -8,7 +8,7 @@
 #include "model/evaluation/baselines/per_class_method.h"
 #include "model/evaluation/baselines/pose_space.h"
 
-namespace duet {
+namespace duet::evaluation::baselines {
 
 struct DiscreteMdpOptions {
   int pose_states = 16;   // clusters of follower poses
@@ -84,6 +84,6 @@ class DiscreteMdp : public PerClassMethod {
   std::vector<Model> models_;
 };
 
-}  // namespace duet
+}  // namespace duet::evaluation::baselines
 
 #endif  // DUET_MODEL_EVALUATION_BASELINES_DISCRETE_MDP_H_

@@ -6,20 +6,20 @@
 
 #include "model/evaluation/protocol/method.h"
 
-namespace duet {
+namespace duet::evaluation::baselines {
 
 // The trivial row of methods that are told the follower's first pose: that pose, held still.
-class FrozenFirstFrame : public Method {
+class FrozenFirstFrame : public protocol::Method {
  public:
   std::string name() const override { return "frozen_first_frame"; }
-  absl::Status Train(const Dataset& dataset, const std::vector<int>& train) override;
-  std::vector<Vec3> Predict(const Sequence& sequence) const override;
+  absl::Status Train(const dataset::Dataset& dataset, const std::vector<int>& train) override;
+  std::vector<motion::Vec3> Predict(const dataset::Sequence& sequence) const override;
   bool reads_first_pose() const override { return true; }
 
  private:
-  Skeleton skeleton_;
+  motion::Skeleton skeleton_;
 };
 
-}  // namespace duet
+}  // namespace duet::evaluation::baselines
 
 #endif  // DUET_MODEL_EVALUATION_BASELINES_FROZEN_FIRST_FRAME_H_

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace duet {
+namespace duet::evaluation::baselines {
 namespace {
 
 constexpr double kLogTwoPi = 1.8378770664093453;
@@ -138,4 +138,4 @@ Rows GaussianHmm::ExpectRest(const Rows& known) const {
   return expected;
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::baselines

@@ -6,7 +6,7 @@
 #include "model/evaluation/baselines/chain.h"
 #include "model/evaluation/baselines/motion_matrix.h"
 
-namespace duet {
+namespace duet::evaluation::baselines {
 
 struct GaussianHmmOptions {
   int states = 3;
@@ -55,6 +55,6 @@ class GaussianHmm {
   ChainWeights chain_;
 };
 
-}  // namespace duet
+}  // namespace duet::evaluation::baselines
 
 #endif  // DUET_MODEL_EVALUATION_BASELINES_GAUSSIAN_HMM_H_

@@ -1,6 +1,6 @@
 #include "model/evaluation/baselines/hmm.h"
 
-namespace duet {
+namespace duet::evaluation::baselines {
 
 void Hmm::TrainClass(int interaction_class, const std::vector<StandardPair>& pairs) {
   Model& model = models_[static_cast<size_t>(interaction_class)];
@@ -24,4 +24,4 @@ Rows Hmm::PredictClass(int interaction_class, const StandardPair& leader) const 
   return model.follower.Reconstruct(model.hmm.ExpectRest(model.leader.Project(leader.cues)));
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::baselines

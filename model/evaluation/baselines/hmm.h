@@ -7,7 +7,7 @@
 #include "model/evaluation/baselines/per_class_method.h"
 #include "model/evaluation/baselines/pose_space.h"
 
-namespace duet {
+namespace duet::evaluation::baselines {
 
 struct HmmOptions {
   int leader_components = 4;
@@ -39,6 +39,6 @@ class Hmm : public PerClassMethod {
   std::vector<Model> models_;
 };
 
-}  // namespace duet
+}  // namespace duet::evaluation::baselines
 
 #endif  // DUET_MODEL_EVALUATION_BASELINES_HMM_H_

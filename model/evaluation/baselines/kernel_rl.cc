@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace duet {
+namespace duet::evaluation::baselines {
 namespace {
 
 constexpr double kNever = -1e9;  // log weight of a sample that may not be used
@@ -180,4 +180,4 @@ Rows KernelRl::PredictClass(int interaction_class, const StandardPair& leader) c
       FillBetween(MeanShift(model, visits), model.stride, leader.cues.rows()));
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::baselines

@@ -7,7 +7,7 @@
 #include "model/evaluation/baselines/per_class_method.h"
 #include "model/evaluation/baselines/pose_space.h"
 
-namespace duet {
+namespace duet::evaluation::baselines {
 
 struct KernelRlOptions {
   int components = 10;
@@ -65,6 +65,6 @@ class KernelRl : public PerClassMethod {
   std::vector<Model> models_;
 };
 
-}  // namespace duet
+}  // namespace duet::evaluation::baselines
 
 #endif  // DUET_MODEL_EVALUATION_BASELINES_KERNEL_RL_H_

@@ -6,7 +6,7 @@
 
 #include "model/evaluation/baselines/uniform.h"
 
-namespace duet {
+namespace duet::evaluation::baselines {
 namespace {
 
 constexpr int kMaxIterations = 100;
@@ -70,4 +70,4 @@ Rows KMeans(const Rows& rows, int clusters, uint64_t seed) {
   return centres;
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::baselines

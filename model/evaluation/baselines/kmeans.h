@@ -6,7 +6,7 @@
 
 #include "model/evaluation/baselines/motion_matrix.h"
 
-namespace duet {
+namespace duet::evaluation::baselines {
 
 // Centres of clusters of rows: k-means++ seeding (Arthur, Vassilvitskii 2007), then Lloyd's
 // iterations until nothing changes. At most `clusters` centres, fewer where there are fewer
@@ -18,6 +18,6 @@ int NearestCentre(const Rows& centres, const Eigen::RowVectorXd& row);
 // The same for every row.
 std::vector<int> NearestCentres(const Rows& centres, const Rows& rows);
 
-}  // namespace duet
+}  // namespace duet::evaluation::baselines
 
 #endif  // DUET_MODEL_EVALUATION_BASELINES_KMEANS_H_

@@ -7,7 +7,7 @@
 #include "model/evaluation/baselines/kmeans.h"
 #include "model/evaluation/baselines/uniform.h"
 
-namespace duet {
+namespace duet::evaluation::baselines {
 namespace {
 
 constexpr double kValueRidge = 1e-3;
@@ -237,4 +237,4 @@ Rows MaxEntIoc::PredictClass(int interaction_class, const StandardPair& leader) 
       Sample(model, expected, options_.answer_rollouts, &random).mean);
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::baselines

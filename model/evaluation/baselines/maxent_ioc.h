@@ -8,7 +8,7 @@
 #include "model/evaluation/baselines/per_class_method.h"
 #include "model/evaluation/baselines/pose_space.h"
 
-namespace duet {
+namespace duet::evaluation::baselines {
 
 struct MaxEntIocOptions {
   int leader_components = 10;
@@ -91,6 +91,6 @@ class MaxEntIoc : public PerClassMethod {
   std::vector<Model> models_;
 };
 
-}  // namespace duet
+}  // namespace duet::evaluation::baselines
 
 #endif  // DUET_MODEL_EVALUATION_BASELINES_MAXENT_IOC_H_

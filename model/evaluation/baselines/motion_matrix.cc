@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace duet {
+namespace duet::evaluation::baselines {
 namespace {
 
 // Frames on either side that a velocity is taken over.
@@ -16,15 +16,16 @@ constexpr double kWayWeight = 2.0;
 
 }  // namespace
 
-Standardisation BaselineFrame(const Skeleton& skeleton, const Sequence& sequence) {
-  const std::vector<Vec3>& leader = sequence.pair.leader.positions;
+motion::Standardisation BaselineFrame(const motion::Skeleton& skeleton,
+                                      const dataset::Sequence& sequence) {
+  const std::vector<motion::Vec3>& leader = sequence.pair.leader.positions;
   if (sequence.partner_direction) {
     return {skeleton, leader, FacingYaw(*sequence.partner_direction)};
   }
   return {skeleton, leader};
 }
 
-Rows ToRows(const std::vector<Vec3>& positions, int joints) {
+Rows ToRows(const std::vector<motion::Vec3>& positions, int joints) {
   const Eigen::Index width = 3 * static_cast<Eigen::Index>(joints);
   const Eigen::Index frames = static_cast<Eigen::Index>(positions.size()) * 3 / width;
   Rows rows(frames, width);
@@ -37,8 +38,8 @@ Rows ToRows(const std::vector<Vec3>& positions, int joints) {
   return rows;
 }
 
-std::vector<Vec3> FromRows(const Rows& rows) {
-  std::vector<Vec3> positions(static_cast<size_t>(rows.size()) / 3);
+std::vector<motion::Vec3> FromRows(const Rows& rows) {
+  std::vector<motion::Vec3> positions(static_cast<size_t>(rows.size()) / 3);
   for (size_t i = 0; i < positions.size(); ++i) {
     const double* p = rows.data() + 3 * i;
     positions[i] = {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])};
@@ -46,7 +47,8 @@ std::vector<Vec3> FromRows(const Rows& rows) {
   return positions;
 }
 
-Rows LeaderCues(const Standardisation& frame, const std::vector<Vec3>& world, int joints) {
+Rows LeaderCues(const motion::Standardisation& frame, const std::vector<motion::Vec3>& world,
+                int joints) {
   const Rows pose = ToRows(frame.Apply(world), joints);
   const Eigen::Index frames = pose.rows(), width = pose.cols();
   Rows cues(frames, 2 * width + 4);
@@ -57,9 +59,10 @@ Rows LeaderCues(const Standardisation& frame, const std::vector<Vec3>& world, in
     cues.row(t).segment(width, width) = pose.row(after) - pose.row(before);
     // Standard and world differ by the root's way, turned: any joint tells it.
     const size_t joint = static_cast<size_t>(t) * static_cast<size_t>(joints);
-    const Vec3 way = frame.Apply(world[joint]) - Vec3{static_cast<float>(pose(t, 0)),
-                                                      static_cast<float>(pose(t, 1)),
-                                                      static_cast<float>(pose(t, 2))};
+    const motion::Vec3 way =
+        frame.Apply(world[joint]) - motion::Vec3{static_cast<float>(pose(t, 0)),
+                                                 static_cast<float>(pose(t, 1)),
+                                                 static_cast<float>(pose(t, 2))};
     cues.row(t).segment(2 * width, 3) = kWayWeight * Eigen::RowVector3d(way.x, way.y, way.z);
     cues(t, 2 * width + 3) = kTimeWeight * static_cast<double>(t) /
                              static_cast<double>(std::max<Eigen::Index>(frames - 1, 1));
@@ -67,24 +70,25 @@ Rows LeaderCues(const Standardisation& frame, const std::vector<Vec3>& world, in
   return cues;
 }
 
-StandardPair StandardLeader(const Skeleton& skeleton, const Sequence& sequence) {
-  const Standardisation frame = BaselineFrame(skeleton, sequence);
-  const std::vector<Vec3>& leader = sequence.pair.leader.positions;
+StandardPair StandardLeader(const motion::Skeleton& skeleton, const dataset::Sequence& sequence) {
+  const motion::Standardisation frame = BaselineFrame(skeleton, sequence);
+  const std::vector<motion::Vec3>& leader = sequence.pair.leader.positions;
   StandardPair pair;
   pair.leader = ToRows(frame.Apply(leader), skeleton.joint_count());
   pair.cues = LeaderCues(frame, leader, skeleton.joint_count());
   return pair;
 }
 
-StandardPair StandardiseSequence(const Skeleton& skeleton, const Sequence& sequence) {
+StandardPair StandardiseSequence(const motion::Skeleton& skeleton,
+                                 const dataset::Sequence& sequence) {
   StandardPair pair = StandardLeader(skeleton, sequence);
-  const Standardisation frame = BaselineFrame(skeleton, sequence);
+  const motion::Standardisation frame = BaselineFrame(skeleton, sequence);
   pair.follower = ToRows(frame.Apply(sequence.pair.follower.positions), skeleton.joint_count());
   return pair;
 }
 
-std::vector<Vec3> FollowerToWorld(const Skeleton& skeleton, const Sequence& sequence,
-                                  const Rows& follower) {
+std::vector<motion::Vec3> FollowerToWorld(const motion::Skeleton& skeleton,
+                                          const dataset::Sequence& sequence, const Rows& follower) {
   return BaselineFrame(skeleton, sequence).Invert(FromRows(follower));
 }
 
@@ -102,4 +106,4 @@ Rows StretchTo(const Rows& motion, Eigen::Index frames) {
   return out;
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::baselines

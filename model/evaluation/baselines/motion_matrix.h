@@ -7,7 +7,7 @@
 #include "model/dataset/dataset.h"
 #include "model/motion/standardise.h"
 
-namespace duet {
+namespace duet::evaluation::baselines {
 
 // One row a frame (or a sample), one column a value.
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -24,27 +24,30 @@ struct StandardPair {
 };
 
 // The yaw is taken from the leader and the setup alone, never from the follower.
-Standardisation BaselineFrame(const Skeleton& skeleton, const Sequence& sequence);
+motion::Standardisation BaselineFrame(const motion::Skeleton& skeleton,
+                                      const dataset::Sequence& sequence);
 
 // The leader's half of a pair; `follower` stays empty and sequence.pair.follower is not read.
-StandardPair StandardLeader(const Skeleton& skeleton, const Sequence& sequence);
-StandardPair StandardiseSequence(const Skeleton& skeleton, const Sequence& sequence);
+StandardPair StandardLeader(const motion::Skeleton& skeleton, const dataset::Sequence& sequence);
+StandardPair StandardiseSequence(const motion::Skeleton& skeleton,
+                                 const dataset::Sequence& sequence);
 
 // A follower in the standard frame of its sequence, back in the world. [frames, joints]
-std::vector<Vec3> FollowerToWorld(const Skeleton& skeleton, const Sequence& sequence,
-                                  const Rows& follower);
+std::vector<motion::Vec3> FollowerToWorld(const motion::Skeleton& skeleton,
+                                          const dataset::Sequence& sequence, const Rows& follower);
 
-Rows ToRows(const std::vector<Vec3>& positions, int joints);
-std::vector<Vec3> FromRows(const Rows& rows);
+Rows ToRows(const std::vector<motion::Vec3>& positions, int joints);
+std::vector<motion::Vec3> FromRows(const Rows& rows);
 
 // What a method sees of the leader in each frame: pose, velocity over four frames, the root's way
 // since the first frame, and the time, from 0 to 1 (the leader is known as a whole); each scaled so
 // that typical changes weigh about the same. Shapes: positions [frames, joints] in the world.
-Rows LeaderCues(const Standardisation& frame, const std::vector<Vec3>& world, int joints);
+Rows LeaderCues(const motion::Standardisation& frame, const std::vector<motion::Vec3>& world,
+                int joints);
 
 // Motion stretched or shrunk to another number of frames, linearly. Both at least 1.
 Rows StretchTo(const Rows& motion, Eigen::Index frames);
 
-}  // namespace duet
+}  // namespace duet::evaluation::baselines
 
 #endif  // DUET_MODEL_EVALUATION_BASELINES_MOTION_MATRIX_H_

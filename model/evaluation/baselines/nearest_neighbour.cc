@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace duet {
+namespace duet::evaluation::baselines {
 namespace {
 
 // A matching's cost so far and its number of matched rows.
@@ -53,4 +53,4 @@ Rows NearestNeighbour::PredictClass(int interaction_class, const StandardPair& l
   return StretchTo(nearest->follower, leader.leader.rows());
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::baselines

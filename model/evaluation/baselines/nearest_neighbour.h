@@ -5,7 +5,7 @@
 
 #include "model/evaluation/baselines/per_class_method.h"
 
-namespace duet {
+namespace duet::evaluation::baselines {
 
 // Answers with the follower of the most similar leader of the same class (time-warped distance over
 // the whole clip), stretched to the leader's length.
@@ -30,6 +30,6 @@ class NearestNeighbour : public PerClassMethod {
 // row each.
 double TimeWarpedDistance(const Rows& a, const Rows& b);
 
-}  // namespace duet
+}  // namespace duet::evaluation::baselines
 
 #endif  // DUET_MODEL_EVALUATION_BASELINES_NEAREST_NEIGHBOUR_H_

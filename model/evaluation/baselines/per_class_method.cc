@@ -3,13 +3,13 @@
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
 
-namespace duet {
+namespace duet::evaluation::baselines {
 
-absl::Status PerClassMethod::Train(const Dataset& dataset, const std::vector<int>& train) {
+absl::Status PerClassMethod::Train(const dataset::Dataset& dataset, const std::vector<int>& train) {
   skeleton_ = dataset.skeleton;
   std::vector<std::vector<StandardPair>> by_class(dataset.classes.size());
   for (const int i : train) {
-    const Sequence& sequence = dataset.sequences[static_cast<size_t>(i)];
+    const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(i)];
     by_class[static_cast<size_t>(sequence.interaction_class)].push_back(
         StandardiseSequence(skeleton_, sequence));
   }
@@ -24,9 +24,9 @@ absl::Status PerClassMethod::Train(const Dataset& dataset, const std::vector<int
   return absl::OkStatus();
 }
 
-std::vector<Vec3> PerClassMethod::Predict(const Sequence& sequence) const {
+std::vector<motion::Vec3> PerClassMethod::Predict(const dataset::Sequence& sequence) const {
   const StandardPair leader = StandardLeader(skeleton_, sequence);
   return FollowerToWorld(skeleton_, sequence, PredictClass(sequence.interaction_class, leader));
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::baselines

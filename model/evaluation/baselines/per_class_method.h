@@ -8,19 +8,19 @@
 #include "model/evaluation/baselines/motion_matrix.h"
 #include "model/evaluation/protocol/method.h"
 
-namespace duet {
+namespace duet::evaluation::baselines {
 
 // A method that learns one model for each interaction class, in the standard frame. What differs
 // between the baselines is in TrainClass and PredictClass.
-class PerClassMethod : public Method {
+class PerClassMethod : public protocol::Method {
  public:
   explicit PerClassMethod(std::string name) : name_(std::move(name)) {}
 
   std::string name() const override { return name_; }
 
   // Errors: INVALID_ARGUMENT when a class of the data set has no training sequence.
-  absl::Status Train(const Dataset& dataset, const std::vector<int>& train) override;
-  std::vector<Vec3> Predict(const Sequence& sequence) const override;
+  absl::Status Train(const dataset::Dataset& dataset, const std::vector<int>& train) override;
+  std::vector<motion::Vec3> Predict(const dataset::Sequence& sequence) const override;
 
  protected:
   // Forgets what an earlier Train learned.
@@ -32,9 +32,9 @@ class PerClassMethod : public Method {
 
  private:
   std::string name_;
-  Skeleton skeleton_;
+  motion::Skeleton skeleton_;
 };
 
-}  // namespace duet
+}  // namespace duet::evaluation::baselines
 
 #endif  // DUET_MODEL_EVALUATION_BASELINES_PER_CLASS_METHOD_H_

@@ -3,7 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
-namespace duet {
+namespace duet::evaluation::baselines {
 namespace {
 
 // Components with less than this share of the strongest one's variance are rounding.
@@ -28,4 +28,4 @@ Rows PoseSpace::Reconstruct(const Rows& components) const {
   return (components * basis_.transpose()).rowwise() + mean_;
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::baselines

@@ -3,7 +3,7 @@
 
 #include "model/evaluation/baselines/motion_matrix.h"
 
-namespace duet {
+namespace duet::evaluation::baselines {
 
 // The principal components of a set of rows.
 class PoseSpace {
@@ -36,6 +36,6 @@ Rows StackRows(const Elements& elements, Get get) {
   return out;
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::baselines
 
 #endif  // DUET_MODEL_EVALUATION_BASELINES_POSE_SPACE_H_

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <random>
 
-namespace duet {
+namespace duet::evaluation::baselines {
 
 // A number in [0, 1). The standard library's distributions differ from one library to the next;
 // published figures must not.
@@ -22,6 +22,6 @@ inline Eigen::Index SampleIndex(const Eigen::Ref<const Eigen::VectorXd>& weights
   return pick;
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::baselines
 
 #endif  // DUET_MODEL_EVALUATION_BASELINES_UNIFORM_H_

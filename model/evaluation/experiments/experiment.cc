@@ -5,18 +5,19 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "model/evaluation/metrics/confusion.h"
 #include "model/evaluation/experiments/synthesizer_method.h"
+#include "model/evaluation/metrics/confusion.h"
 
-namespace duet {
+namespace duet::evaluation::experiments {
 namespace {
 
-ScoredMotion Motion(const Dataset& dataset, int sequence) {
+metrics::ScoredMotion Motion(const dataset::Dataset& dataset, int sequence) {
   return {sequence, dataset.sequences[static_cast<size_t>(sequence)].pair.follower.positions};
 }
 
-std::vector<ScoredMotion> Motions(const Dataset& dataset, const std::vector<int>& sequences) {
-  std::vector<ScoredMotion> motions;
+std::vector<metrics::ScoredMotion> Motions(const dataset::Dataset& dataset,
+                                           const std::vector<int>& sequences) {
+  std::vector<metrics::ScoredMotion> motions;
   for (const int sequence : sequences) motions.push_back(Motion(dataset, sequence));
   return motions;
 }
@@ -27,14 +28,14 @@ int Largest(const std::vector<float>& values) {
 
 }  // namespace
 
-absl::StatusOr<std::vector<Sequence>> SynthesizeJobs(const Dataset& dataset,
-                                                     const Synthesizer& synthesizer,
-                                                     const std::vector<SyntheticJob>& jobs) {
+absl::StatusOr<std::vector<dataset::Sequence>> SynthesizeJobs(
+    const dataset::Dataset& dataset, const engine::Synthesizer& synthesizer,
+    const std::vector<SyntheticJob>& jobs) {
   absl::Status status = CheckModelFits(synthesizer.description(), dataset);
   if (!status.ok()) return status;
-  std::vector<Sequence> answered;
+  std::vector<dataset::Sequence> answered;
   for (const SyntheticJob& job : jobs) {
-    absl::StatusOr<std::vector<Vec3>> follower =
+    absl::StatusOr<std::vector<motion::Vec3>> follower =
         SynthesizeSequence(synthesizer, job.sequence, job.labels, StartGiven::kNone);
     if (!follower.ok()) {
       return absl::Status(follower.status().code(),
@@ -46,23 +47,23 @@ absl::StatusOr<std::vector<Sequence>> SynthesizeJobs(const Dataset& dataset,
   return answered;
 }
 
-absl::StatusOr<std::vector<double>> ClassifierAccuracy(const Dataset& dataset,
+absl::StatusOr<std::vector<double>> ClassifierAccuracy(const dataset::Dataset& dataset,
                                                        const TrainingMaterial& material,
                                                        const std::vector<int>& test,
-                                                       const ClassifierOptions& options) {
+                                                       const judge::ClassifierOptions& options) {
   // Synthetic pairs become sequences of their own: their leaders are not the captured ones.
-  Dataset all = dataset;
+  dataset::Dataset all = dataset;
   std::vector<int> train = material.captured;
-  for (const Sequence& sequence : material.synthetic) {
+  for (const dataset::Sequence& sequence : material.synthetic) {
     train.push_back(static_cast<int>(all.sequences.size()));
     all.sequences.push_back(sequence);
   }
-  absl::StatusOr<MotionClassifier> classifier =
-      MotionClassifier::Train(all, Motions(all, train), options);
+  absl::StatusOr<judge::MotionClassifier> classifier =
+      judge::MotionClassifier::Train(all, Motions(all, train), options);
   if (!classifier.ok()) return classifier.status();
   const std::vector<std::vector<float>> probabilities =
       classifier->Probabilities(all, Motions(all, test));
-  Confusion confusion(dataset.class_count());
+  metrics::Confusion confusion(dataset.class_count());
   for (size_t i = 0; i < test.size(); ++i) {
     confusion.Add(all.sequences[static_cast<size_t>(test[i])].interaction_class,
                   Largest(probabilities[i]));
@@ -73,4 +74,4 @@ absl::StatusOr<std::vector<double>> ClassifierAccuracy(const Dataset& dataset,
   return accuracy;
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::experiments

@@ -8,7 +8,7 @@
 #include "absl/strings/str_cat.h"
 #include "model/evaluation/experiments/experiment.h"
 
-namespace duet {
+namespace duet::evaluation::experiments {
 namespace {
 
 // A row of the tables: what a classifier learns from, and for how many epochs.
@@ -60,11 +60,11 @@ absl::Status AddServedSets(const std::vector<SyntheticSet>& sets, std::vector<Da
   return absl::OkStatus();
 }
 
-absl::Status RunHalf(const Dataset& dataset, const DataHalf& half, const HalfOptions& options,
-                     std::ostream* progress, Trials* trials) {
+absl::Status RunHalf(const dataset::Dataset& dataset, const DataHalf& half,
+                     const HalfOptions& options, std::ostream* progress, Trials* trials) {
   for (int repeat = 1; repeat <= options.repeats; ++repeat) {
     for (const Condition& condition : Conditions(half, options)) {
-      ClassifierOptions classifier;
+      judge::ClassifierOptions classifier;
       classifier.epochs = condition.epochs;
       classifier.seed = static_cast<uint64_t>(repeat);
       absl::StatusOr<std::vector<double>> accuracy =
@@ -78,4 +78,4 @@ absl::Status RunHalf(const Dataset& dataset, const DataHalf& half, const HalfOpt
   return absl::OkStatus();
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::experiments

@@ -12,14 +12,14 @@
 #include "model/evaluation/experiments/synthetic_files.h"
 #include "model/evaluation/experiments/trials.h"
 
-namespace duet {
+namespace duet::evaluation::experiments {
 
 // A half of the data, and what its classifiers may learn from.
 struct DataHalf {
   uint64_t seed = 0;  // of SplitInHalves
-  Split split;
-  std::vector<Sequence> synthetic;  // made in this process; not empty
-  std::vector<Sequence> served;     // made by a server; empty without a set
+  dataset::Split split;
+  std::vector<dataset::Sequence> synthetic;  // made in this process; not empty
+  std::vector<dataset::Sequence> served;     // made by a server; empty without a set
 };
 
 struct HalfOptions {
@@ -43,9 +43,9 @@ absl::Status AddServedSets(const std::vector<SyntheticSet>& sets, std::vector<Da
 // do in options.epochs, but for two that end in ", longer": captured with and without synthetic
 // motions, both for the steps that the larger set takes in options.epochs. A line for each
 // classifier goes to `progress`.
-absl::Status RunHalf(const Dataset& dataset, const DataHalf& half, const HalfOptions& options,
-                     std::ostream* progress, Trials* trials);
+absl::Status RunHalf(const dataset::Dataset& dataset, const DataHalf& half,
+                     const HalfOptions& options, std::ostream* progress, Trials* trials);
 
-}  // namespace duet
+}  // namespace duet::evaluation::experiments
 
 #endif  // DUET_MODEL_EVALUATION_EXPERIMENTS_HALF_H_

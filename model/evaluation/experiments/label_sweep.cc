@@ -8,7 +8,7 @@
 #include <numeric>
 #include <utility>
 
-namespace duet {
+namespace duet::evaluation::experiments {
 namespace {
 
 constexpr double kLeastWeight = -1;
@@ -74,8 +74,9 @@ std::vector<double> Values(const LabelControl& control) {
 }
 
 // The mean over curves of one class's probability at each weight.
-PlotSeries MeanLine(const std::string& name, const std::vector<SweepCurve>& curves, int of_class) {
-  PlotSeries line{name, {}};
+report::PlotSeries MeanLine(const std::string& name, const std::vector<SweepCurve>& curves,
+                            int of_class) {
+  report::PlotSeries line{name, {}};
   for (size_t i = 0; i < SweepWeights().size(); ++i) {
     double sum = 0;
     for (const SweepCurve& curve : curves) {
@@ -147,9 +148,9 @@ std::vector<SweepCurve> Select(const std::vector<SweepCurve>& curves, SweepKind 
   return selected;
 }
 
-Table ControlTable(const std::string& title, const std::vector<std::string>& classes,
-                   const std::vector<SweepCurve>& curves, SweepKind kind) {
-  Table table;
+report::Table ControlTable(const std::string& title, const std::vector<std::string>& classes,
+                           const std::vector<SweepCurve>& curves, SweepKind kind) {
+  report::Table table;
   table.title = title;
   table.columns = {"0 to 1: up", "level", "0 to -1: down",   "level",
                    "a step up",  "level", "rank correlation"};
@@ -167,9 +168,9 @@ Table ControlTable(const std::string& title, const std::vector<std::string>& cla
   return table;
 }
 
-LinePlot SweepPlot(const std::string& title, const std::vector<std::string>& classes,
-                   const std::vector<SweepCurve>& curves, SweepKind kind, int raised) {
-  LinePlot plot;
+report::LinePlot SweepPlot(const std::string& title, const std::vector<std::string>& classes,
+                           const std::vector<SweepCurve>& curves, SweepKind kind, int raised) {
+  report::LinePlot plot;
   plot.title = title;
   plot.x_label = "weight of " + classes[static_cast<size_t>(raised)];
   plot.y_range = {0, 1};
@@ -190,4 +191,4 @@ LinePlot SweepPlot(const std::string& title, const std::vector<std::string>& cla
   return plot;
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::experiments

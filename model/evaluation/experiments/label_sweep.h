@@ -12,7 +12,7 @@
 // Source: the paper's graded and negative labels (section 3.1), which it shows but does not
 // measure.
 
-namespace duet {
+namespace duet::evaluation::experiments {
 
 // -1, -0.75, ..., 2: the weights that a sweep tries, in order.
 const std::vector<double>& SweepWeights();
@@ -52,14 +52,14 @@ enum class SweepKind {
 std::vector<SweepCurve> Select(const std::vector<SweepCurve>& curves, SweepKind kind, int raised);
 
 // One row a raised class and one for all of them.
-Table ControlTable(const std::string& title, const std::vector<std::string>& classes,
-                   const std::vector<SweepCurve>& curves, SweepKind kind);
+report::Table ControlTable(const std::string& title, const std::vector<std::string>& classes,
+                           const std::vector<SweepCurve>& curves, SweepKind kind);
 
 // kOwn: the mean probability of every class against the weight of class `raised`. kAdded: of class
 // `raised` alone, a line for each own class.
-LinePlot SweepPlot(const std::string& title, const std::vector<std::string>& classes,
-                   const std::vector<SweepCurve>& curves, SweepKind kind, int raised);
+report::LinePlot SweepPlot(const std::string& title, const std::vector<std::string>& classes,
+                           const std::vector<SweepCurve>& curves, SweepKind kind, int raised);
 
-}  // namespace duet
+}  // namespace duet::evaluation::experiments
 
 #endif  // DUET_MODEL_EVALUATION_EXPERIMENTS_LABEL_SWEEP_H_

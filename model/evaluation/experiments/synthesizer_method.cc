@@ -9,20 +9,20 @@
 #include "absl/strings/str_join.h"
 #include "model/engine/clip_synthesis.h"
 
-namespace duet {
+namespace duet::evaluation::experiments {
 namespace {
 
 // Bounds the memory of one evaluation; beyond it batches gain little.
 constexpr size_t kClipsTogether = 64;
 
-ClipRequest MakeRequest(const Skeleton& skeleton, const Sequence& sequence,
-                        const std::vector<float>& labels, StartGiven start) {
-  const Clip& leader = sequence.pair.leader;
-  const Clip& follower = sequence.pair.follower;
-  ClipRequest request{leader.positions, leader.frame_rate_hz, LabelTrack(labels), std::nullopt,
-                      sequence.partner_direction};
+engine::ClipRequest MakeRequest(const motion::Skeleton& skeleton, const dataset::Sequence& sequence,
+                                const std::vector<float>& labels, StartGiven start) {
+  const motion::Clip& leader = sequence.pair.leader;
+  const motion::Clip& follower = sequence.pair.follower;
+  engine::ClipRequest request{leader.positions, leader.frame_rate_hz, engine::LabelTrack(labels),
+                              std::nullopt, sequence.partner_direction};
   if (start == StartGiven::kNone) return request;
-  request.start = FollowerStart{follower.at(0, skeleton.root), {}};
+  request.start = engine::FollowerStart{follower.at(0, skeleton.root), {}};
   if (start == StartGiven::kPose) {
     request.start->pose.assign(follower.frame(0), follower.frame(0) + skeleton.joint_count());
   }
@@ -30,38 +30,39 @@ ClipRequest MakeRequest(const Skeleton& skeleton, const Sequence& sequence,
 }
 
 // Of all clips that are not finished the next window, evaluated together.
-absl::Status NextWindows(const Synthesizer& synthesizer, std::vector<ClipSynthesis>* clips,
-                         std::vector<std::vector<Vec3>>* followers) {
+absl::Status NextWindows(const engine::Synthesizer& synthesizer,
+                         std::vector<engine::ClipSynthesis>* clips,
+                         std::vector<std::vector<motion::Vec3>>* followers) {
   std::vector<size_t> waiting;
-  std::vector<SynthesisWindow> windows;
+  std::vector<engine::SynthesisWindow> windows;
   for (size_t i = 0; i < clips->size(); ++i) {
     if (!(*clips)[i].HasNextWindow()) continue;
     waiting.push_back(i);
     windows.push_back((*clips)[i].NextWindow());
   }
-  std::vector<const SynthesisWindow*> pointers;
-  for (const SynthesisWindow& window : windows) pointers.push_back(&window);
-  const std::vector<WindowResult> results = synthesizer.Synthesize(pointers);
+  std::vector<const engine::SynthesisWindow*> pointers;
+  for (const engine::SynthesisWindow& window : windows) pointers.push_back(&window);
+  const std::vector<engine::WindowResult> results = synthesizer.Synthesize(pointers);
   for (size_t n = 0; n < waiting.size(); ++n) {
     if (!results[n].ok()) return results[n].status();
-    const std::vector<Vec3> frames = (*clips)[waiting[n]].Accept(*results[n]);
-    std::vector<Vec3>& follower = (*followers)[waiting[n]];
+    const std::vector<motion::Vec3> frames = (*clips)[waiting[n]].Accept(*results[n]);
+    std::vector<motion::Vec3>& follower = (*followers)[waiting[n]];
     follower.insert(follower.end(), frames.begin(), frames.end());
   }
   return absl::OkStatus();
 }
 
-absl::Status SynthesizeTogether(const Synthesizer& synthesizer,
+absl::Status SynthesizeTogether(const engine::Synthesizer& synthesizer,
                                 absl::Span<const LabelledLeader> leaders, StartGiven start,
-                                std::vector<std::vector<Vec3>>* followers) {
-  const ModelDescription& model = synthesizer.description();
-  std::vector<ClipSynthesis> clips;
+                                std::vector<std::vector<motion::Vec3>>* followers) {
+  const engine::ModelDescription& model = synthesizer.description();
+  std::vector<engine::ClipSynthesis> clips;
   for (const LabelledLeader& leader : leaders) {
     clips.emplace_back(model, MakeRequest(model.skeleton, *leader.sequence, leader.labels, start));
   }
-  std::vector<std::vector<Vec3>> made(clips.size());
+  std::vector<std::vector<motion::Vec3>> made(clips.size());
   while (std::any_of(clips.begin(), clips.end(),
-                     [](const ClipSynthesis& clip) { return clip.HasNextWindow(); })) {
+                     [](const engine::ClipSynthesis& clip) { return clip.HasNextWindow(); })) {
     absl::Status status = NextWindows(synthesizer, &clips, &made);
     if (!status.ok()) return status;
   }
@@ -71,7 +72,8 @@ absl::Status SynthesizeTogether(const Synthesizer& synthesizer,
 
 }  // namespace
 
-absl::Status CheckModelFits(const ModelDescription& model, const Dataset& dataset) {
+absl::Status CheckModelFits(const engine::ModelDescription& model,
+                            const dataset::Dataset& dataset) {
   if (model.classes != dataset.classes) {
     return absl::FailedPreconditionError(
         absl::StrCat("model ", model.name, ": its classes are ", absl::StrJoin(model.classes, ", "),
@@ -84,20 +86,21 @@ absl::Status CheckModelFits(const ModelDescription& model, const Dataset& datase
   return absl::OkStatus();
 }
 
-absl::StatusOr<std::vector<Vec3>> SynthesizeSequence(const Synthesizer& synthesizer,
-                                                     const Sequence& sequence,
-                                                     const std::vector<float>& labels,
-                                                     StartGiven start) {
+absl::StatusOr<std::vector<motion::Vec3>> SynthesizeSequence(const engine::Synthesizer& synthesizer,
+                                                             const dataset::Sequence& sequence,
+                                                             const std::vector<float>& labels,
+                                                             StartGiven start) {
   const LabelledLeader leader = {&sequence, labels};
-  absl::StatusOr<std::vector<std::vector<Vec3>>> followers =
+  absl::StatusOr<std::vector<std::vector<motion::Vec3>>> followers =
       SynthesizeSequences(synthesizer, {&leader, 1}, start);
   if (!followers.ok()) return followers.status();
   return std::move(followers->front());
 }
 
-absl::StatusOr<std::vector<std::vector<Vec3>>> SynthesizeSequences(
-    const Synthesizer& synthesizer, absl::Span<const LabelledLeader> leaders, StartGiven start) {
-  std::vector<std::vector<Vec3>> followers;
+absl::StatusOr<std::vector<std::vector<motion::Vec3>>> SynthesizeSequences(
+    const engine::Synthesizer& synthesizer, absl::Span<const LabelledLeader> leaders,
+    StartGiven start) {
+  std::vector<std::vector<motion::Vec3>> followers;
   for (size_t first = 0; first < leaders.size(); first += kClipsTogether) {
     absl::Status status =
         SynthesizeTogether(synthesizer, leaders.subspan(first, kClipsTogether), start, &followers);
@@ -107,12 +110,12 @@ absl::StatusOr<std::vector<std::vector<Vec3>>> SynthesizeSequences(
 }
 
 SynthesizerMethod::SynthesizerMethod(std::string name,
-                                     std::shared_ptr<const Synthesizer> synthesizer,
+                                     std::shared_ptr<const engine::Synthesizer> synthesizer,
                                      StartGiven start)
     : name_(std::move(name)), synthesizer_(std::move(synthesizer)), start_(start) {}
 
-absl::Status SynthesizerMethod::Train(const Dataset& dataset, const std::vector<int>&) {
-  const ModelDescription& model = synthesizer_->description();
+absl::Status SynthesizerMethod::Train(const dataset::Dataset& dataset, const std::vector<int>&) {
+  const engine::ModelDescription& model = synthesizer_->description();
   absl::Status status = CheckModelFits(model, dataset);
   if (!status.ok()) return status;
   if (start_ != StartGiven::kNone && !model.accepts_follower_start) {
@@ -122,12 +125,12 @@ absl::Status SynthesizerMethod::Train(const Dataset& dataset, const std::vector<
   return absl::OkStatus();
 }
 
-std::vector<Vec3> SynthesizerMethod::Predict(const Sequence& sequence) const {
+std::vector<motion::Vec3> SynthesizerMethod::Predict(const dataset::Sequence& sequence) const {
   std::vector<float> labels(synthesizer_->description().classes.size(), 0);
   labels[static_cast<size_t>(sequence.interaction_class)] = 1;
-  absl::StatusOr<std::vector<Vec3>> follower =
+  absl::StatusOr<std::vector<motion::Vec3>> follower =
       SynthesizeSequence(*synthesizer_, sequence, labels, start_);
-  return follower.ok() ? *std::move(follower) : std::vector<Vec3>{};
+  return follower.ok() ? *std::move(follower) : std::vector<motion::Vec3>{};
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::experiments

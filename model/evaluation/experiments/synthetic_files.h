@@ -18,24 +18,25 @@
 // labels are "kick=1.1;hug=0.2"; partner is "x,y,z", the direction from leader to follower, or "-";
 // half is the seed of SplitInHalves whose training half the generator and the leaders come from.
 
-namespace duet {
+namespace duet::evaluation::experiments {
 
 // Writes jobs.tsv and the leaders; makes the three folders where they are missing.
-absl::Status WriteSyntheticJobs(const Dataset& dataset, const std::vector<SyntheticJob>& jobs,
-                                uint64_t half, const std::filesystem::path& folder);
+absl::Status WriteSyntheticJobs(const dataset::Dataset& dataset,
+                                const std::vector<SyntheticJob>& jobs, uint64_t half,
+                                const std::filesystem::path& folder);
 
 struct SyntheticSet {
   uint64_t half = 0;
-  std::vector<Sequence> sequences;  // the leader as asked and the follower as answered
+  std::vector<dataset::Sequence> sequences;  // the leader as asked and the follower as answered
 };
 
 // Reads jobs.tsv and every follower. Strict. Errors: NOT_FOUND for a missing file;
 // INVALID_ARGUMENT naming file, line, what came and what was wanted: an unknown class, an id that
 // is no file name, halves that differ, no job at all; an answer of one person alone, of other
 // joints or another frame rate than the data's.
-absl::StatusOr<SyntheticSet> ReadSyntheticSet(const Dataset& dataset,
+absl::StatusOr<SyntheticSet> ReadSyntheticSet(const dataset::Dataset& dataset,
                                               const std::filesystem::path& folder);
 
-}  // namespace duet
+}  // namespace duet::evaluation::experiments
 
 #endif  // DUET_MODEL_EVALUATION_EXPERIMENTS_SYNTHETIC_FILES_H_

@@ -8,14 +8,14 @@
 #include "absl/strings/str_format.h"
 #include "model/training/augment.h"
 
-namespace duet {
+namespace duet::evaluation::experiments {
 namespace {
 
 constexpr double kLeastOwn = 0.75, kMostOwn = 1.25, kMostOwnMixed = 1;
 constexpr double kLeastOther = 0.1, kMostOther = 0.35;
 
-TrainingOptions::Augmentation Variations() {
-  TrainingOptions::Augmentation augmentation;
+training::TrainingOptions::Augmentation Variations() {
+  training::TrainingOptions::Augmentation augmentation;
   augmentation.swap_roles = 0.5;
   augmentation.body_scale = 0.08;
   augmentation.time_warp = 0.1;
@@ -23,29 +23,29 @@ TrainingOptions::Augmentation Variations() {
   return augmentation;
 }
 
-std::vector<int> OfClass(const Dataset& dataset, const std::vector<int>& sequences,
+std::vector<int> OfClass(const dataset::Dataset& dataset, const std::vector<int>& sequences,
                          int interaction_class) {
   std::vector<int> found;
   for (const int index : sequences) {
-    const Sequence& sequence = dataset.sequences[static_cast<size_t>(index)];
+    const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(index)];
     if (sequence.interaction_class == interaction_class) found.push_back(index);
   }
   return found;
 }
 
-void Shuffle(EpochRandom* random, std::vector<int>* values) {
+void Shuffle(training::EpochRandom* random, std::vector<int>* values) {
   for (size_t i = values->size(); i > 1; --i) {
     std::swap((*values)[i - 1],
               (*values)[static_cast<size_t>(random->Below(static_cast<int64_t>(i)))]);
   }
 }
 
-int DrawOtherClass(int classes, int own, EpochRandom* random) {
+int DrawOtherClass(int classes, int own, training::EpochRandom* random) {
   const int drawn = static_cast<int>(random->Below(classes - 1));
   return drawn < own ? drawn : drawn + 1;
 }
 
-std::vector<float> DrawLabels(int classes, int own, bool mix, EpochRandom* random) {
+std::vector<float> DrawLabels(int classes, int own, bool mix, training::EpochRandom* random) {
   std::vector<float> labels(static_cast<size_t>(classes), 0);
   const double weight = random->Uniform(kLeastOwn, mix ? kMostOwnMixed : kMostOwn);
   labels[static_cast<size_t>(own)] = static_cast<float>(weight);
@@ -63,17 +63,19 @@ std::string FileName(std::string name) {
   return name;
 }
 
-Sequence DrawLeader(const Dataset& dataset, const Sequence& captured, EpochRandom* random) {
-  Sequence sequence = Augment(dataset, captured, Variations(), random);
+dataset::Sequence DrawLeader(const dataset::Dataset& dataset, const dataset::Sequence& captured,
+                             training::EpochRandom* random) {
+  dataset::Sequence sequence = Augment(dataset, captured, Variations(), random);
   sequence.pair.follower.positions.clear();
   return sequence;
 }
 
 }  // namespace
 
-std::vector<SyntheticJob> PlanSyntheticSet(const Dataset& dataset, const std::vector<int>& train,
+std::vector<SyntheticJob> PlanSyntheticSet(const dataset::Dataset& dataset,
+                                           const std::vector<int>& train,
                                            const SyntheticPlanOptions& options) {
-  EpochRandom random(options.seed, 0);
+  training::EpochRandom random(options.seed, 0);
   std::vector<SyntheticJob> jobs;
   for (int c = 0; c < dataset.class_count(); ++c) {
     std::vector<int> leaders = OfClass(dataset, train, c);
@@ -91,4 +93,4 @@ std::vector<SyntheticJob> PlanSyntheticSet(const Dataset& dataset, const std::ve
   return jobs;
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::experiments

@@ -6,12 +6,12 @@
 
 #include "model/dataset/dataset.h"
 
-namespace duet {
+namespace duet::evaluation::experiments {
 
 // A synthetic motion to be: what is asked of the generator.
 struct SyntheticJob {
-  Sequence sequence;          // a leader of its class; the follower has no positions
-  std::vector<float> labels;  // [classes], the label vector
+  dataset::Sequence sequence;  // a leader of its class; the follower has no positions
+  std::vector<float> labels;   // [classes], the label vector
 };
 
 struct SyntheticPlanOptions {
@@ -32,9 +32,10 @@ struct SyntheticPlanOptions {
 //         varies leaders and weights; read as 25 by interaction match and 25 by interaction mix.
 // Shapes: returns match + mix jobs a class, sorted by class; ids "<class>-<place in the set>".
 // Requires a sequence of every class in `train`; mix above 0 requires two classes.
-std::vector<SyntheticJob> PlanSyntheticSet(const Dataset& dataset, const std::vector<int>& train,
+std::vector<SyntheticJob> PlanSyntheticSet(const dataset::Dataset& dataset,
+                                           const std::vector<int>& train,
                                            const SyntheticPlanOptions& options);
 
-}  // namespace duet
+}  // namespace duet::evaluation::experiments
 
 #endif  // DUET_MODEL_EVALUATION_EXPERIMENTS_SYNTHETIC_PLAN_H_

@@ -8,7 +8,7 @@
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
 
-namespace duet {
+namespace duet::evaluation::experiments {
 
 // The figures that duet-train logs, one a column and epoch.
 struct TrainingLog {
@@ -24,6 +24,6 @@ struct TrainingLog {
 // Errors: INVALID_ARGUMENT "source:line: ... came ..., wanted ...".
 absl::StatusOr<TrainingLog> ParseTrainingLog(absl::string_view text, absl::string_view source);
 
-}  // namespace duet
+}  // namespace duet::evaluation::experiments
 
 #endif  // DUET_MODEL_EVALUATION_EXPERIMENTS_TRAINING_LOG_H_

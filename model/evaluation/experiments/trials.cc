@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace duet {
+namespace duet::evaluation::experiments {
 namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
@@ -16,8 +16,8 @@ double ShareAboveZero(const std::vector<double>& values) {
   return static_cast<double>(above) / static_cast<double>(values.size());
 }
 
-Table EmptyTable(std::string title, const std::vector<std::string>& columns) {
-  Table table;
+report::Table EmptyTable(std::string title, const std::vector<std::string>& columns) {
+  report::Table table;
   table.title = std::move(title);
   table.columns = columns;
   table.decimals = kDecimals;
@@ -60,9 +60,9 @@ Trials::Row Trials::Differences(const Row& row, const Row& base) const {
   return differences;
 }
 
-Table Trials::Means(std::string title) const {
-  Table table = EmptyTable(std::move(title), columns_);
-  table.best = Best::kHighest;
+report::Table Trials::Means(std::string title) const {
+  report::Table table = EmptyTable(std::move(title), columns_);
+  table.best = report::Best::kHighest;
   for (const auto& [name, row] : rows_) {
     table.rows.push_back({name, {}});
     for (size_t c = 0; c < columns_.size(); ++c) {
@@ -72,8 +72,8 @@ Table Trials::Means(std::string title) const {
   return table;
 }
 
-Table Trials::Deviations(std::string title) const {
-  Table table = EmptyTable(std::move(title), columns_);
+report::Table Trials::Deviations(std::string title) const {
+  report::Table table = EmptyTable(std::move(title), columns_);
   for (const auto& [name, row] : rows_) {
     table.rows.push_back({name, {}});
     for (size_t c = 0; c < columns_.size(); ++c) {
@@ -83,15 +83,15 @@ Table Trials::Deviations(std::string title) const {
   return table;
 }
 
-Table Trials::Gains(const std::string& base, std::string title) const {
-  Table table = EmptyTable(std::move(title), columns_);
+report::Table Trials::Gains(const std::string& base, std::string title) const {
+  report::Table table = EmptyTable(std::move(title), columns_);
   const auto found =
       std::find_if(rows_.begin(), rows_.end(), [&](const auto& one) { return one.first == base; });
   if (found == rows_.end()) return table;
   for (const auto& [name, row] : rows_) {
     if (name == base) continue;
     const Row differences = Differences(row, found->second);
-    TableRow mean{name, {}}, deviation{name + ", deviation", {}},
+    report::TableRow mean{name, {}}, deviation{name + ", deviation", {}},
         share{name + ", share above 0", {}};
     for (size_t c = 0; c < columns_.size(); ++c) {
       const std::vector<double> values = Column(differences, c);
@@ -100,9 +100,9 @@ Table Trials::Gains(const std::string& base, std::string title) const {
       deviation.values.push_back(summary.deviation);
       share.values.push_back(ShareAboveZero(values));
     }
-    for (TableRow* one : {&mean, &deviation, &share}) table.rows.push_back(std::move(*one));
+    for (report::TableRow* one : {&mean, &deviation, &share}) table.rows.push_back(std::move(*one));
   }
   return table;
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::experiments

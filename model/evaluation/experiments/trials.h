@@ -8,7 +8,7 @@
 
 #include "model/evaluation/report/table.h"
 
-namespace duet {
+namespace duet::evaluation::experiments {
 
 struct MeanAndDeviation {
   double mean = 0;
@@ -28,13 +28,13 @@ class Trials {
   void Add(const std::string& row, const std::string& trial, std::vector<double> values);
 
   // Over a row's trials, rows in the order of their first Add.
-  Table Means(std::string title) const;
-  Table Deviations(std::string title) const;
+  report::Table Means(std::string title) const;
+  report::Table Deviations(std::string title) const;
 
   // Each row's difference to `base`, over the trials that both have: its mean, its deviation, the
   // share of trials in which it is above 0. A row of each: "+ synthetic", "+ synthetic, deviation",
   // "+ synthetic, share above 0".
-  Table Gains(const std::string& base, std::string title) const;
+  report::Table Gains(const std::string& base, std::string title) const;
 
  private:
   using Row = std::map<std::string, std::vector<double>>;  // by trial
@@ -46,6 +46,6 @@ class Trials {
   std::vector<std::pair<std::string, Row>> rows_;
 };
 
-}  // namespace duet
+}  // namespace duet::evaluation::experiments
 
 #endif  // DUET_MODEL_EVALUATION_EXPERIMENTS_TRIALS_H_

@@ -13,7 +13,7 @@
 #include "model/training/augment.h"
 #include "model/training/optimiser.h"
 
-namespace duet {
+namespace duet::evaluation::judge {
 
 struct MotionClassifier::Model {
   std::vector<network::Discriminator> members;
@@ -34,33 +34,35 @@ struct MotionBatch {
 };
 
 // The sequence with its captured follower replaced.
-Sequence WithFollower(const Dataset& dataset, const ScoredMotion& motion) {
-  Sequence sequence = dataset.sequences[static_cast<size_t>(motion.sequence)];
+dataset::Sequence WithFollower(const dataset::Dataset& dataset,
+                               const metrics::ScoredMotion& motion) {
+  dataset::Sequence sequence = dataset.sequences[static_cast<size_t>(motion.sequence)];
   sequence.pair.follower.positions = motion.follower;
   return sequence;
 }
 
-MotionBatch MakeMotionBatch(const Dataset& dataset, const std::vector<Sequence>& sequences) {
+MotionBatch MakeMotionBatch(const dataset::Dataset& dataset,
+                            const std::vector<dataset::Sequence>& sequences) {
   const int triples = kJudgeParts * dataset.skeleton.joint_count();
-  std::vector<std::vector<Vec3>> inputs;
+  std::vector<std::vector<motion::Vec3>> inputs;
   std::vector<int64_t> lengths, classes;
-  for (const Sequence& sequence : sequences) {
+  for (const dataset::Sequence& sequence : sequences) {
     inputs.push_back(JudgeInput(dataset.skeleton, sequence));
     lengths.push_back(sequence.pair.follower.frame_count());
     classes.push_back(sequence.interaction_class);
   }
-  std::vector<const std::vector<Vec3>*> pointers;
-  for (const std::vector<Vec3>& input : inputs) pointers.push_back(&input);
+  std::vector<const std::vector<motion::Vec3>*> pointers;
+  for (const std::vector<motion::Vec3>& input : inputs) pointers.push_back(&input);
   return {
       network::PadPositions(pointers, triples, *std::max_element(lengths.begin(), lengths.end())),
       torch::tensor(lengths), torch::tensor(classes)};
 }
 
-std::vector<MotionBatch> TestBatches(const Dataset& dataset,
-                                     const std::vector<ScoredMotion>& motions) {
+std::vector<MotionBatch> TestBatches(const dataset::Dataset& dataset,
+                                     const std::vector<metrics::ScoredMotion>& motions) {
   std::vector<MotionBatch> batches;
   for (size_t first = 0; first < motions.size(); first += kTestBatch) {
-    std::vector<Sequence> sequences;
+    std::vector<dataset::Sequence> sequences;
     for (size_t i = first; i < std::min(first + kTestBatch, motions.size()); ++i) {
       sequences.push_back(WithFollower(dataset, motions[i]));
     }
@@ -75,33 +77,34 @@ std::vector<MotionBatch> TestBatches(const Dataset& dataset,
 constexpr double kBodyNoise = 0.05;  // metres, standard deviation, one offset a joint
 constexpr double kLabelSmoothing = 0.1;
 
-TrainingOptions::Augmentation Variations() {
-  TrainingOptions::Augmentation augmentation;
+training::TrainingOptions::Augmentation Variations() {
+  training::TrainingOptions::Augmentation augmentation;
   augmentation.body_scale = 0.1;
   augmentation.crop = 0.3;
   return augmentation;
 }
 
-Vec3 RandomOffset(double deviation, EpochRandom* random) {
+motion::Vec3 RandomOffset(double deviation, training::EpochRandom* random) {
   const auto x = static_cast<float>(random->Normal(deviation));
   const auto y = static_cast<float>(random->Normal(deviation));
   const auto z = static_cast<float>(random->Normal(deviation));
   return {x, y, z};
 }
 
-Sequence Vary(const Dataset& dataset, const Sequence& sequence, EpochRandom* random) {
-  Sequence varied = Augment(dataset, sequence, Variations(), random);
-  std::vector<Vec3> offsets;
+dataset::Sequence Vary(const dataset::Dataset& dataset, const dataset::Sequence& sequence,
+                       training::EpochRandom* random) {
+  dataset::Sequence varied = Augment(dataset, sequence, Variations(), random);
+  std::vector<motion::Vec3> offsets;
   for (int j = 0; j < dataset.skeleton.joint_count(); ++j) {
     offsets.push_back(RandomOffset(kBodyNoise, random));
   }
-  std::vector<Vec3>& positions = varied.pair.follower.positions;
+  std::vector<motion::Vec3>& positions = varied.pair.follower.positions;
   for (size_t i = 0; i < positions.size(); ++i) positions[i] += offsets[i % offsets.size()];
   return varied;
 }
 
-TrainingOptions::Optimiser OptimiserSettings(const ClassifierOptions& options) {
-  TrainingOptions::Optimiser settings;
+training::TrainingOptions::Optimiser OptimiserSettings(const ClassifierOptions& options) {
+  training::TrainingOptions::Optimiser settings;
   settings.learning_rate = options.learning_rate;
   settings.weight_decay = options.weight_decay;
   settings.gradient_clip = 1;
@@ -109,12 +112,12 @@ TrainingOptions::Optimiser OptimiserSettings(const ClassifierOptions& options) {
 }
 
 // The batches of one epoch: every motion once, varied, in an order drawn anew.
-std::vector<MotionBatch> EpochBatches(const Dataset& dataset,
-                                      const std::vector<Sequence>& sequences,
+std::vector<MotionBatch> EpochBatches(const dataset::Dataset& dataset,
+                                      const std::vector<dataset::Sequence>& sequences,
                                       const ClassifierOptions& options, int64_t epoch) {
-  EpochRandom random(options.seed, epoch);
-  std::vector<Sequence> varied;
-  for (const Sequence& sequence : sequences) {
+  training::EpochRandom random(options.seed, epoch);
+  std::vector<dataset::Sequence> varied;
+  for (const dataset::Sequence& sequence : sequences) {
     varied.push_back(Vary(dataset, sequence, &random));
   }
   for (size_t i = varied.size(); i > 1; --i) {
@@ -130,19 +133,20 @@ std::vector<MotionBatch> EpochBatches(const Dataset& dataset,
   return batches;
 }
 
-Discriminator TrainNetwork(const Dataset& dataset, const std::vector<Sequence>& sequences,
-                           const ClassifierOptions& options) {
+network::Discriminator TrainNetwork(const dataset::Dataset& dataset,
+                                    const std::vector<dataset::Sequence>& sequences,
+                                    const ClassifierOptions& options) {
   network::DiscriminatorOptions sizes;
   sizes.input = 3 * kJudgeParts * dataset.skeleton.joint_count();
   sizes.window_frames = dataset.LongestFrameCount();
   sizes.hidden = options.hidden;
   sizes.outputs = dataset.class_count();
   torch::manual_seed(options.seed);
-  Discriminator network(sizes);
+  network::Discriminator network(sizes);
   network->set_dropout(options.dropout);
   const int64_t count = static_cast<int64_t>(sequences.size());
   const int64_t steps = options.epochs * ((count + options.batch - 1) / options.batch);
-  Optimiser optimiser(OptimiserSettings(options), network->parameters(), steps);
+  training::Optimiser optimiser(OptimiserSettings(options), network->parameters(), steps);
   const auto smoothed =
       torch::nn::functional::CrossEntropyFuncOptions().label_smoothing(kLabelSmoothing);
   int64_t step = 0;
@@ -157,21 +161,22 @@ Discriminator TrainNetwork(const Dataset& dataset, const std::vector<Sequence>& 
   return network;
 }
 
-std::string HashOf(const std::vector<Discriminator>& members) {
+std::string HashOf(const std::vector<network::Discriminator>& members) {
   std::string bytes;
-  for (const Discriminator& network : members) {
+  for (const network::Discriminator& network : members) {
     for (const torch::Tensor& parameter : network->parameters()) {
       const torch::Tensor values = parameter.detach().contiguous();
       bytes.append(reinterpret_cast<const char*>(values.data_ptr<float>()), values.nbytes());
     }
   }
-  return Sha256Hex(bytes);
+  return base::Sha256Hex(bytes);
 }
 
-absl::Status CheckMotions(const Dataset& dataset, const std::vector<ScoredMotion>& motions) {
+absl::Status CheckMotions(const dataset::Dataset& dataset,
+                          const std::vector<metrics::ScoredMotion>& motions) {
   std::vector<int> counts(dataset.classes.size());
-  for (const ScoredMotion& motion : motions) {
-    const Sequence& sequence = dataset.sequences[static_cast<size_t>(motion.sequence)];
+  for (const metrics::ScoredMotion& motion : motions) {
+    const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(motion.sequence)];
     ++counts[static_cast<size_t>(sequence.interaction_class)];
   }
   for (size_t c = 0; c < counts.size(); ++c) {
@@ -192,13 +197,14 @@ void AppendRows(const torch::Tensor& rows, std::vector<std::vector<float>>* out)
 
 }  // namespace
 
-absl::StatusOr<MotionClassifier> MotionClassifier::Train(const Dataset& dataset,
-                                                         const std::vector<ScoredMotion>& motions,
-                                                         const ClassifierOptions& options) {
+absl::StatusOr<MotionClassifier> MotionClassifier::Train(
+    const dataset::Dataset& dataset, const std::vector<metrics::ScoredMotion>& motions,
+    const ClassifierOptions& options) {
   absl::Status status = CheckMotions(dataset, motions);
   if (!status.ok()) return status;
-  std::vector<Sequence> sequences;
-  for (const ScoredMotion& motion : motions) sequences.push_back(WithFollower(dataset, motion));
+  std::vector<dataset::Sequence> sequences;
+  for (const metrics::ScoredMotion& motion : motions)
+    sequences.push_back(WithFollower(dataset, motion));
   auto model = std::make_shared<Model>();
   for (int64_t m = 0; m < options.members; ++m) {
     ClassifierOptions member = options;
@@ -210,12 +216,12 @@ absl::StatusOr<MotionClassifier> MotionClassifier::Train(const Dataset& dataset,
 }
 
 std::vector<std::vector<float>> MotionClassifier::Probabilities(
-    const Dataset& dataset, const std::vector<ScoredMotion>& motions) const {
+    const dataset::Dataset& dataset, const std::vector<metrics::ScoredMotion>& motions) const {
   torch::NoGradGuard no_grad;
   std::vector<std::vector<float>> rows;
   for (const MotionBatch& batch : TestBatches(dataset, motions)) {
     std::vector<torch::Tensor> probabilities;
-    for (Discriminator& network : model_->members) {
+    for (network::Discriminator& network : model_->members) {
       probabilities.push_back(network->forward(batch.motion, batch.lengths).softmax(1));
     }
     AppendRows(torch::stack(probabilities).mean(0), &rows);
@@ -223,13 +229,13 @@ std::vector<std::vector<float>> MotionClassifier::Probabilities(
   return rows;
 }
 
-FeatureSet MotionClassifier::Features(const Dataset& dataset,
-                                      const std::vector<ScoredMotion>& motions) const {
+metrics::FeatureSet MotionClassifier::Features(
+    const dataset::Dataset& dataset, const std::vector<metrics::ScoredMotion>& motions) const {
   torch::NoGradGuard no_grad;
-  FeatureSet rows;
+  metrics::FeatureSet rows;
   for (const MotionBatch& batch : TestBatches(dataset, motions)) {
     std::vector<torch::Tensor> features;
-    for (Discriminator& network : model_->members) {
+    for (network::Discriminator& network : model_->members) {
       features.push_back(network->Features(batch.motion, batch.lengths));
     }
     AppendRows(torch::cat(features, 1), &rows);
@@ -239,4 +245,4 @@ FeatureSet MotionClassifier::Features(const Dataset& dataset,
 
 const std::string& MotionClassifier::hash() const { return model_->hash; }
 
-}  // namespace duet
+}  // namespace duet::evaluation::judge

@@ -11,7 +11,7 @@
 #include "model/evaluation/metrics/features.h"
 #include "model/evaluation/metrics/scores.h"
 
-namespace duet {
+namespace duet::evaluation::judge {
 
 struct ClassifierOptions {
   int64_t members = 1;  // networks, each from a seed of its own, whose probabilities are averaged
@@ -35,16 +35,17 @@ class MotionClassifier {
   // Trains on followers for sequences of the data set, captured or synthesised, each in its
   // sequence's class (`CapturedMotions` gives the captured ones). Same input, same result on the
   // same machine. Errors: INVALID_ARGUMENT when a class of the data set has no motion.
-  static absl::StatusOr<MotionClassifier> Train(const Dataset& dataset,
-                                                const std::vector<ScoredMotion>& motions,
+  static absl::StatusOr<MotionClassifier> Train(const dataset::Dataset& dataset,
+                                                const std::vector<metrics::ScoredMotion>& motions,
                                                 const ClassifierOptions& options);
 
   // Shapes: returns [motions][classes]; every row sums to 1.
-  std::vector<std::vector<float>> Probabilities(const Dataset& dataset,
-                                                const std::vector<ScoredMotion>& motions) const;
+  std::vector<std::vector<float>> Probabilities(
+      const dataset::Dataset& dataset, const std::vector<metrics::ScoredMotion>& motions) const;
   // The second layer's output averaged over the frames, the members' side by side. Shapes: returns
   // [motions][members * 2 hidden].
-  FeatureSet Features(const Dataset& dataset, const std::vector<ScoredMotion>& motions) const;
+  metrics::FeatureSet Features(const dataset::Dataset& dataset,
+                               const std::vector<metrics::ScoredMotion>& motions) const;
 
   // SHA-256 of all weights, in hexadecimal: which extractor a figure was measured with.
   const std::string& hash() const;
@@ -55,6 +56,6 @@ class MotionClassifier {
   std::shared_ptr<Model> model_;
 };
 
-}  // namespace duet
+}  // namespace duet::evaluation::judge
 
 #endif  // DUET_MODEL_EVALUATION_JUDGE_CLASSIFIER_H_

@@ -4,12 +4,13 @@
 
 #include "model/engine/window_frame.h"
 
-namespace duet {
+namespace duet::evaluation::judge {
 namespace {
 
-std::vector<Vec3> StandardFollower(const Skeleton& skeleton, const Sequence& sequence,
-                                   StandardOrigin origin) {
-  SynthesisWindow window;
+std::vector<motion::Vec3> StandardFollower(const motion::Skeleton& skeleton,
+                                           const dataset::Sequence& sequence,
+                                           motion::StandardOrigin origin) {
+  engine::SynthesisWindow window;
   window.leader = sequence.pair.leader.positions;
   window.partner_direction = sequence.partner_direction;
   return WindowFrame(skeleton, window, origin).Apply(sequence.pair.follower.positions);
@@ -17,19 +18,20 @@ std::vector<Vec3> StandardFollower(const Skeleton& skeleton, const Sequence& seq
 
 }  // namespace
 
-std::vector<Vec3> JudgeInput(const Skeleton& skeleton, const Sequence& sequence) {
-  const Clip& follower = sequence.pair.follower;
+std::vector<motion::Vec3> JudgeInput(const motion::Skeleton& skeleton,
+                                     const dataset::Sequence& sequence) {
+  const motion::Clip& follower = sequence.pair.follower;
   const int joints = skeleton.joint_count(), frames = follower.frame_count();
-  const std::vector<Vec3> from_leader =
-      StandardFollower(skeleton, sequence, StandardOrigin::kEveryFrame);
-  const std::vector<Vec3> in_world =
-      StandardFollower(skeleton, sequence, StandardOrigin::kFirstFrame);
+  const std::vector<motion::Vec3> from_leader =
+      StandardFollower(skeleton, sequence, motion::StandardOrigin::kEveryFrame);
+  const std::vector<motion::Vec3> in_world =
+      StandardFollower(skeleton, sequence, motion::StandardOrigin::kFirstFrame);
   const auto index = [&](int frame, int joint) {
     return static_cast<size_t>(frame * joints + joint);
   };
-  std::vector<Vec3> input;
+  std::vector<motion::Vec3> input;
   for (int t = 0; t < frames; ++t) {
-    const Vec3 root = from_leader[index(t, skeleton.root)];
+    const motion::Vec3 root = from_leader[index(t, skeleton.root)];
     for (int j = 0; j < joints; ++j) input.push_back(from_leader[index(t, j)]);
     for (int j = 0; j < joints; ++j) input.push_back(from_leader[index(t, j)] - root);
     const int before = std::max(t - 1, 0), after = std::min(t + 1, frames - 1);
@@ -43,4 +45,4 @@ std::vector<Vec3> JudgeInput(const Skeleton& skeleton, const Sequence& sequence)
   return input;
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::judge

@@ -5,7 +5,7 @@
 
 #include "model/dataset/dataset.h"
 
-namespace duet {
+namespace duet::evaluation::judge {
 
 // Values a frame, in triples for each joint, of what a judge sees: JudgeInput's middle dimension.
 inline constexpr int kJudgeParts = 3;
@@ -16,8 +16,9 @@ inline constexpr int kJudgeParts = 3;
 // second and third in the first by itself: with them a judge of unseen people errs an eighth less
 // often. Nothing of the follower's own decides the frame. Shapes: returns [frames, kJudgeParts,
 // joints].
-std::vector<Vec3> JudgeInput(const Skeleton& skeleton, const Sequence& sequence);
+std::vector<motion::Vec3> JudgeInput(const motion::Skeleton& skeleton,
+                                     const dataset::Sequence& sequence);
 
-}  // namespace duet
+}  // namespace duet::evaluation::judge
 
 #endif  // DUET_MODEL_EVALUATION_JUDGE_JUDGE_INPUT_H_

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <limits>
 
-namespace duet {
+namespace duet::evaluation::metrics {
 namespace {
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 }  // namespace
@@ -49,4 +49,4 @@ double Confusion::MeanClassAccuracy() const {
   return present == 0 ? kNone : sum / present;
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::metrics

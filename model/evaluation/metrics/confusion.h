@@ -3,7 +3,7 @@
 
 #include <vector>
 
-namespace duet {
+namespace duet::evaluation::metrics {
 
 // How often motions meant as one class were taken for another.
 class Confusion {
@@ -29,6 +29,6 @@ class Confusion {
   std::vector<int> counts_;  // [meant, taken_for]
 };
 
-}  // namespace duet
+}  // namespace duet::evaluation::metrics
 
 #endif  // DUET_MODEL_EVALUATION_METRICS_CONFUSION_H_

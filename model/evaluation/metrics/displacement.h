@@ -14,7 +14,7 @@
 // raw unit the second holds for the paper as well: it turns after the anisotropic scaling, and a
 // turn keeps a norm.)
 
-namespace duet {
+namespace duet::evaluation::metrics {
 
 // The unit that a displacement is measured in.
 enum class MetricUnit {
@@ -26,23 +26,24 @@ enum class MetricUnit {
 
 // Average frame distance: (1/T) sum_t | x^_t - x_t |, the Euclidean norm over all 3 J coordinates.
 // Source: paper, Eq. 6.
-double Afd(const std::vector<Vec3>& predicted, const std::vector<Vec3>& truth, int joints,
-           MetricUnit unit);
+double Afd(const std::vector<motion::Vec3>& predicted, const std::vector<motion::Vec3>& truth,
+           int joints, MetricUnit unit);
 
 // The same with the squared norm, as the authors' released code averages it. Unit: square of
 // `unit`.
-double AfdSquared(const std::vector<Vec3>& predicted, const std::vector<Vec3>& truth, int joints,
-                  MetricUnit unit);
+double AfdSquared(const std::vector<motion::Vec3>& predicted,
+                  const std::vector<motion::Vec3>& truth, int joints, MetricUnit unit);
 
 // Afd after each follower's own root joint is subtracted in every frame: the pose apart from where
 // the follower stands.
-double RootAlignedAfd(const std::vector<Vec3>& predicted, const std::vector<Vec3>& truth,
-                      int joints, int root, MetricUnit unit);
+double RootAlignedAfd(const std::vector<motion::Vec3>& predicted,
+                      const std::vector<motion::Vec3>& truth, int joints, int root,
+                      MetricUnit unit);
 
 // The mean over frames and joints of | v^ - v |, v the difference of successive frames. Unit: m/s.
-double VelocityError(const std::vector<Vec3>& predicted, const std::vector<Vec3>& truth, int joints,
-                     double frame_rate_hz);
+double VelocityError(const std::vector<motion::Vec3>& predicted,
+                     const std::vector<motion::Vec3>& truth, int joints, double frame_rate_hz);
 
-}  // namespace duet
+}  // namespace duet::evaluation::metrics
 
 #endif  // DUET_MODEL_EVALUATION_METRICS_DISPLACEMENT_H_

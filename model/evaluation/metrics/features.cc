@@ -9,7 +9,7 @@
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
 
-namespace duet {
+namespace duet::evaluation::metrics {
 namespace {
 
 absl::Status CheckFeatures(const char* set, const FeatureSet& features, size_t width) {
@@ -90,4 +90,4 @@ double Diversity(const FeatureSet& features) {
   return pairs == 0 ? 0 : sum / pairs;
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::metrics

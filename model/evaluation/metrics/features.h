@@ -8,7 +8,7 @@
 // Distances between sets of feature vectors, as a classifier gives them for motions.
 // Shapes: [samples][features].
 
-namespace duet {
+namespace duet::evaluation::metrics {
 
 using FeatureSet = std::vector<std::vector<float>>;
 
@@ -25,6 +25,6 @@ absl::StatusOr<double> FrechetDistance(const FeatureSet& a, const FeatureSet& b)
 // The mean Euclidean distance over all pairs of different samples. 0 for fewer than 2.
 double Diversity(const FeatureSet& features);
 
-}  // namespace duet
+}  // namespace duet::evaluation::metrics
 
 #endif  // DUET_MODEL_EVALUATION_METRICS_FEATURES_H_

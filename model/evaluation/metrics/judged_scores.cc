@@ -6,7 +6,7 @@
 
 #include "model/evaluation/metrics/confusion.h"
 
-namespace duet {
+namespace duet::evaluation::metrics {
 namespace {
 
 // Of fewer motions there is neither a covariance nor a pair.
@@ -86,4 +86,4 @@ std::vector<double> DiversityByClass(const std::vector<JudgedFold>& folds, int c
   return diversities;
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::metrics

@@ -9,7 +9,7 @@
 // Figures by class of motions that a classifier has looked at, fold by fold: each fold has a judge
 // of its own, so that features may be compared within a fold only.
 
-namespace duet {
+namespace duet::evaluation::metrics {
 
 // What its judge makes of one fold's motions.
 struct JudgedFold {
@@ -32,6 +32,6 @@ absl::StatusOr<std::vector<double>> FrechetByClass(const std::vector<JudgedFold>
 // The mean distance between motions of a class within a fold, averaged likewise.
 std::vector<double> DiversityByClass(const std::vector<JudgedFold>& folds, int classes);
 
-}  // namespace duet
+}  // namespace duet::evaluation::metrics
 
 #endif  // DUET_MODEL_EVALUATION_METRICS_JUDGED_SCORES_H_

@@ -11,15 +11,16 @@
 //
 // Shapes: positions [frames, joints], world metres, y up.
 
-namespace duet {
+namespace duet::evaluation::metrics {
 
 // The mean over bones of (standard deviation over time) / (mean over time) of the bone's length.
 // 0 for a body whose bones keep their lengths. Dimensionless. Bones of mean length 0 count as 0.
-double BoneLengthDrift(const std::vector<Vec3>& positions, const Skeleton& skeleton);
+double BoneLengthDrift(const std::vector<motion::Vec3>& positions,
+                       const motion::Skeleton& skeleton);
 
 // The mean over joints and frames of the norm of the third difference, times rate^3. Unit: m/s^3.
 // 0 for fewer than four frames.
-double Jitter(const std::vector<Vec3>& positions, int joints, double frame_rate_hz);
+double Jitter(const std::vector<motion::Vec3>& positions, int joints, double frame_rate_hz);
 
 // How feet move while they should stand. Both consider the time a foot spends within 5 cm of the
 // lowest point that either foot reaches, and movement along the floor alone.
@@ -31,9 +32,9 @@ struct FootSlide {
   // Mean movement in such a step. Unit: centimetres a frame; depends on the frame rate.
   double centimetres_a_frame = 0;
 };
-FootSlide MeasureFootSlide(const std::vector<Vec3>& positions, const Skeleton& skeleton,
-                           double frame_rate_hz);
+FootSlide MeasureFootSlide(const std::vector<motion::Vec3>& positions,
+                           const motion::Skeleton& skeleton, double frame_rate_hz);
 
-}  // namespace duet
+}  // namespace duet::evaluation::metrics
 
 #endif  // DUET_MODEL_EVALUATION_METRICS_MOTION_QUALITY_H_

@@ -7,7 +7,7 @@
 
 #include "absl/strings/str_cat.h"
 
-namespace duet {
+namespace duet::evaluation::metrics {
 namespace {
 
 double SquaredDistance(const std::vector<float>& a, const std::vector<float>& b) {
@@ -76,4 +76,4 @@ absl::StatusOr<double> NeighbourAccuracy(const FeatureSet& features,
   return right / static_cast<double>(features.size());
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::metrics

@@ -6,7 +6,7 @@
 #include "absl/status/statusor.h"
 #include "model/evaluation/metrics/features.h"
 
-namespace duet {
+namespace duet::evaluation::metrics {
 
 // The share of samples whose class is the most frequent one among their `neighbours` nearest other
 // samples (Euclidean): how far classes lie apart in the space itself, whatever a map of it shows.
@@ -17,6 +17,6 @@ namespace duet {
 absl::StatusOr<double> NeighbourAccuracy(const FeatureSet& features,
                                          const std::vector<int>& classes, int neighbours);
 
-}  // namespace duet
+}  // namespace duet::evaluation::metrics
 
 #endif  // DUET_MODEL_EVALUATION_METRICS_NEIGHBOURS_H_

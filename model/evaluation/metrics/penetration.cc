@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace duet {
+namespace duet::evaluation::metrics {
 namespace {
 
 constexpr double kArmRadius = 0.045, kLegRadius = 0.065, kTrunkRadius = 0.11, kHeadRadius = 0.09;
@@ -15,9 +15,9 @@ constexpr double kParallel = 1e-9;
 
 double Clamp01(double value) { return std::clamp(value, 0.0, 1.0); }
 
-double RadiusOf(const Skeleton& skeleton, const Bone& bone) {
+double RadiusOf(const motion::Skeleton& skeleton, const motion::Bone& bone) {
   if (skeleton.joint_names[static_cast<size_t>(bone.child)] == "head") return kHeadRadius;
-  for (const BodyPart& part : skeleton.parts) {
+  for (const motion::BodyPart& part : skeleton.parts) {
     if (std::find(part.joints.begin(), part.joints.end(), bone.child) == part.joints.end()) {
       continue;
     }
@@ -32,13 +32,13 @@ double RadiusOf(const Skeleton& skeleton, const Bone& bone) {
 }
 
 // The deepest overlap of two bodies in one frame.
-double FrameDepth(const Vec3* leader, const Vec3* follower, const Skeleton& skeleton,
-                  const std::vector<double>& radii) {
+double FrameDepth(const motion::Vec3* leader, const motion::Vec3* follower,
+                  const motion::Skeleton& skeleton, const std::vector<double>& radii) {
   double deepest = 0;
   for (size_t i = 0; i < skeleton.bones.size(); ++i) {
-    const Bone& a = skeleton.bones[i];
+    const motion::Bone& a = skeleton.bones[i];
     for (size_t j = 0; j < skeleton.bones.size(); ++j) {
-      const Bone& b = skeleton.bones[j];
+      const motion::Bone& b = skeleton.bones[j];
       const double distance =
           SegmentDistance(leader[a.parent], leader[a.child], follower[b.parent], follower[b.child]);
       deepest = std::max(deepest, radii[i] + radii[j] - distance);
@@ -49,10 +49,10 @@ double FrameDepth(const Vec3* leader, const Vec3* follower, const Skeleton& skel
 
 }  // namespace
 
-double SegmentDistance(Vec3 a0, Vec3 a1, Vec3 b0, Vec3 b1) {
+double SegmentDistance(motion::Vec3 a0, motion::Vec3 a1, motion::Vec3 b0, motion::Vec3 b1) {
   // Minimises |a0 + s u - b0 - t v| over the unit square: the free optimum in s, clamped; the best
   // t for it; if that had to be clamped, the best s for it.
-  const Vec3 u = a1 - a0, v = b1 - b0, w = a0 - b0;
+  const motion::Vec3 u = a1 - a0, v = b1 - b0, w = a0 - b0;
   const double uu = Dot(u, u), vv = Dot(v, v), uv = Dot(u, v), uw = Dot(u, w), vw = Dot(v, w);
   double s = 0, t = 0;
   if (uu > kPointLength) {
@@ -70,14 +70,15 @@ double SegmentDistance(Vec3 a0, Vec3 a1, Vec3 b0, Vec3 b1) {
   return Norm(w + u * static_cast<float>(s) - v * static_cast<float>(t));
 }
 
-std::vector<double> CapsuleRadii(const Skeleton& skeleton) {
+std::vector<double> CapsuleRadii(const motion::Skeleton& skeleton) {
   std::vector<double> radii;
-  for (const Bone& bone : skeleton.bones) radii.push_back(RadiusOf(skeleton, bone));
+  for (const motion::Bone& bone : skeleton.bones) radii.push_back(RadiusOf(skeleton, bone));
   return radii;
 }
 
-Penetration MeasurePenetration(const std::vector<Vec3>& leader, const std::vector<Vec3>& follower,
-                               const Skeleton& skeleton) {
+Penetration MeasurePenetration(const std::vector<motion::Vec3>& leader,
+                               const std::vector<motion::Vec3>& follower,
+                               const motion::Skeleton& skeleton) {
   const std::vector<double> radii = CapsuleRadii(skeleton);
   const size_t stride = static_cast<size_t>(skeleton.joint_count());
   Penetration result;
@@ -96,4 +97,4 @@ Penetration MeasurePenetration(const std::vector<Vec3>& leader, const std::vecto
   return result;
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::metrics

@@ -6,17 +6,17 @@
 #include "model/motion/skeleton.h"
 #include "model/motion/vec3.h"
 
-namespace duet {
+namespace duet::evaluation::metrics {
 
 // The distance of the closest points of the segments a0-a1 and b0-b1; either may be a point.
-double SegmentDistance(Vec3 a0, Vec3 a1, Vec3 b0, Vec3 b1);
+double SegmentDistance(motion::Vec3 a0, motion::Vec3 a1, motion::Vec3 b0, motion::Vec3 b1);
 
 // The radius of the capsule around each bone, metres: 0.045 for a bone within a part with "arm" in
 // its name, 0.065 with "leg", 0.09 for the bone that ends in a joint called "head", 0.11 for any
 // other (trunk, shoulders, hips). Source: half the breadth of adult limbs, and rather less than
 // that of the trunk, whose bones fan out from the middle. Rough: compare figures with those of
 // captured pairs, not with zero.
-std::vector<double> CapsuleRadii(const Skeleton& skeleton);
+std::vector<double> CapsuleRadii(const motion::Skeleton& skeleton);
 
 // How far two bodies reach into each other. A frame's depth is the largest max(0, r1 + r2 - d) over
 // all pairs of a leader's and a follower's bone. Less is not automatically better (a hug touches):
@@ -26,9 +26,10 @@ struct Penetration {
   double mean_depth_metres = 0;  // over those frames; 0 without any
   double max_depth_metres = 0;
 };
-Penetration MeasurePenetration(const std::vector<Vec3>& leader, const std::vector<Vec3>& follower,
-                               const Skeleton& skeleton);
+Penetration MeasurePenetration(const std::vector<motion::Vec3>& leader,
+                               const std::vector<motion::Vec3>& follower,
+                               const motion::Skeleton& skeleton);
 
-}  // namespace duet
+}  // namespace duet::evaluation::metrics
 
 #endif  // DUET_MODEL_EVALUATION_METRICS_PENETRATION_H_

@@ -8,7 +8,7 @@
 #include "model/evaluation/metrics/motion_quality.h"
 #include "model/evaluation/metrics/penetration.h"
 
-namespace duet {
+namespace duet::evaluation::metrics {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -66,11 +66,11 @@ std::string MetricName(Metric metric) {
   return "";
 }
 
-std::vector<double> ScoreMotion(const Dataset& dataset, const ScoredMotion& motion) {
-  const Sequence& sequence = dataset.sequences[static_cast<size_t>(motion.sequence)];
-  const Skeleton& skeleton = dataset.skeleton;
-  const std::vector<Vec3>& truth = sequence.pair.follower.positions;
-  const std::vector<Vec3>& made = motion.follower;
+std::vector<double> ScoreMotion(const dataset::Dataset& dataset, const ScoredMotion& motion) {
+  const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(motion.sequence)];
+  const motion::Skeleton& skeleton = dataset.skeleton;
+  const std::vector<motion::Vec3>& truth = sequence.pair.follower.positions;
+  const std::vector<motion::Vec3>& made = motion.follower;
   const int joints = skeleton.joint_count();
   const double rate = sequence.pair.leader.frame_rate_hz;
   const FootSlide slide = MeasureFootSlide(made, skeleton, rate);
@@ -91,13 +91,13 @@ std::vector<double> ScoreMotion(const Dataset& dataset, const ScoredMotion& moti
           penetration.frequency > 0 ? penetration.mean_depth_metres : kNone};
 }
 
-std::vector<std::vector<double>> ScoreByClass(const Dataset& dataset,
+std::vector<std::vector<double>> ScoreByClass(const dataset::Dataset& dataset,
                                               const std::vector<ScoredMotion>& motions) {
   const size_t metrics = AllMetrics().size();
   std::vector<std::vector<double>> sums(dataset.classes.size(), std::vector<double>(metrics));
   std::vector<std::vector<double>> counts = sums;
   for (const ScoredMotion& motion : motions) {
-    const Sequence& sequence = dataset.sequences[static_cast<size_t>(motion.sequence)];
+    const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(motion.sequence)];
     const size_t c = static_cast<size_t>(sequence.interaction_class);
     const std::vector<double> scores = ScoreMotion(dataset, motion);
     for (size_t m = 0; m < metrics; ++m) {
@@ -115,14 +115,14 @@ std::vector<std::vector<double>> ScoreByClass(const Dataset& dataset,
   return sums;
 }
 
-std::vector<ScoredMotion> CapturedMotions(const Dataset& dataset,
+std::vector<ScoredMotion> CapturedMotions(const dataset::Dataset& dataset,
                                           const std::vector<ScoredMotion>& like) {
   std::vector<ScoredMotion> captured;
   for (const ScoredMotion& motion : like) {
-    const Sequence& sequence = dataset.sequences[static_cast<size_t>(motion.sequence)];
+    const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(motion.sequence)];
     captured.push_back({motion.sequence, sequence.pair.follower.positions});
   }
   return captured;
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::metrics

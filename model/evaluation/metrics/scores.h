@@ -6,7 +6,7 @@
 
 #include "model/dataset/dataset.h"
 
-namespace duet {
+namespace duet::evaluation::metrics {
 
 // A figure of a synthesised follower, as the tables print it.
 enum class Metric {
@@ -32,22 +32,22 @@ std::string MetricName(Metric metric);
 // A follower for a sequence of the data set, synthesised or captured.
 struct ScoredMotion {
   int sequence = 0;
-  std::vector<Vec3> follower;  // [frames, joints], world metres
+  std::vector<motion::Vec3> follower;  // [frames, joints], world metres
 };
 
 // Every metric of one motion, in the order of AllMetrics.
-std::vector<double> ScoreMotion(const Dataset& dataset, const ScoredMotion& motion);
+std::vector<double> ScoreMotion(const dataset::Dataset& dataset, const ScoredMotion& motion);
 
 // Means over the motions of each class, in the order of AllMetrics; NaN for a class without any.
 // Every motion counts alike, but for penetration depth, which is a mean over those motions that
 // penetrate. Shapes: returns [classes][metrics].
-std::vector<std::vector<double>> ScoreByClass(const Dataset& dataset,
+std::vector<std::vector<double>> ScoreByClass(const dataset::Dataset& dataset,
                                               const std::vector<ScoredMotion>& motions);
 
 // The captured followers themselves, as what synthesised ones are compared with.
-std::vector<ScoredMotion> CapturedMotions(const Dataset& dataset,
+std::vector<ScoredMotion> CapturedMotions(const dataset::Dataset& dataset,
                                           const std::vector<ScoredMotion>& like);
 
-}  // namespace duet
+}  // namespace duet::evaluation::metrics
 
 #endif  // DUET_MODEL_EVALUATION_METRICS_SCORES_H_

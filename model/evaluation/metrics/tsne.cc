@@ -10,7 +10,7 @@
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
 
-namespace duet {
+namespace duet::evaluation::metrics {
 namespace {
 
 constexpr int kExaggeratedIterations = 250;
@@ -179,4 +179,4 @@ double NeighbourPurity(const std::vector<Point2>& points, const std::vector<int>
   return same / static_cast<double>(points.size());
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::metrics

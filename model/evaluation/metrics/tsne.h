@@ -8,7 +8,7 @@
 #include "absl/status/statusor.h"
 #include "model/evaluation/metrics/features.h"
 
-namespace duet {
+namespace duet::evaluation::metrics {
 
 struct TsneOptions {
   double perplexity = 30;  // effective number of neighbours; at most (samples - 1) / 3
@@ -35,6 +35,6 @@ absl::StatusOr<std::vector<Point2>> Tsne(const FeatureSet& features,
 // keeps classes together. Shapes: points and classes of the same length, 2 or more.
 double NeighbourPurity(const std::vector<Point2>& points, const std::vector<int>& classes);
 
-}  // namespace duet
+}  // namespace duet::evaluation::metrics
 
 #endif  // DUET_MODEL_EVALUATION_METRICS_TSNE_H_

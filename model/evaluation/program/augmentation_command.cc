@@ -8,14 +8,14 @@
 #include "absl/strings/str_join.h"
 #include "model/evaluation/experiments/experiment.h"
 #include "model/evaluation/experiments/half.h"
+#include "model/evaluation/judge/classifier.h"
 #include "model/evaluation/program/commands.h"
 #include "model/evaluation/program/fold_models.h"
-#include "model/evaluation/judge/classifier.h"
 #include "model/evaluation/report/metric_tables.h"
 #include "model/evaluation/report/paper_tables.h"
 #include "model/evaluation/report/result_section.h"
 
-namespace duet {
+namespace duet::evaluation::program {
 namespace {
 
 struct Arguments {
@@ -23,22 +23,24 @@ struct Arguments {
   std::string runs;
   std::vector<uint64_t> seeds = {1, 2, 3, 4, 5};
   int repeats = 1;
-  SyntheticPlanOptions plan;
+  experiments::SyntheticPlanOptions plan;
   bool as_served = false;
   std::vector<std::string> synthetic;
   std::string write_jobs;
-  int64_t epochs = ClassifierOptions().epochs;
+  int64_t epochs = judge::ClassifierOptions().epochs;
   std::string out;
   std::string id = "40_augmentation";
   std::string title = "Synthetic motion as training material (Table 6)";
 };
 
-std::string MadeHere(const SyntheticPlanOptions& plan) {
+std::string MadeHere(const experiments::SyntheticPlanOptions& plan) {
   return absl::StrCat("captured + ", plan.match, " match + ", plan.mix, " mix");
 }
 
-absl::StatusOr<std::vector<SyntheticJob>> PlanHalf(const Dataset& dataset, const Split& split,
-                                                   const Arguments& arguments, uint64_t seed) {
+absl::StatusOr<std::vector<experiments::SyntheticJob>> PlanHalf(const dataset::Dataset& dataset,
+                                                                const dataset::Split& split,
+                                                                const Arguments& arguments,
+                                                                uint64_t seed) {
   if (arguments.plan.match + arguments.plan.mix < 1) {
     return absl::InvalidArgumentError("--match and --mix: both 0, wanted a motion a class or more");
   }
@@ -46,43 +48,45 @@ absl::StatusOr<std::vector<SyntheticJob>> PlanHalf(const Dataset& dataset, const
     return absl::InvalidArgumentError(
         absl::StrCat("--mix ", arguments.plan.mix, ": the data has one class, wanted two to mix"));
   }
-  SyntheticPlanOptions options = arguments.plan;
+  experiments::SyntheticPlanOptions options = arguments.plan;
   options.seed = seed;
   return PlanSyntheticSet(dataset, split.train, options);
 }
 
-absl::StatusOr<DataHalf> PrepareHalf(const Dataset& dataset, const Arguments& arguments,
-                                     uint64_t seed) {
-  DataHalf half;
+absl::StatusOr<experiments::DataHalf> PrepareHalf(const dataset::Dataset& dataset,
+                                                  const Arguments& arguments, uint64_t seed) {
+  experiments::DataHalf half;
   half.seed = seed;
-  absl::StatusOr<Split> split = SplitInHalves(dataset, seed);
+  absl::StatusOr<dataset::Split> split = SplitInHalves(dataset, seed);
   if (!split.ok()) return split.status();
   half.split = *std::move(split);
-  absl::StatusOr<std::vector<SyntheticJob>> jobs = PlanHalf(dataset, half.split, arguments, seed);
+  absl::StatusOr<std::vector<experiments::SyntheticJob>> jobs =
+      PlanHalf(dataset, half.split, arguments, seed);
   if (!jobs.ok()) return jobs.status();
-  absl::StatusOr<std::shared_ptr<const Synthesizer>> model =
+  absl::StatusOr<std::shared_ptr<const engine::Synthesizer>> model =
       LoadFoldModel(arguments.runs, absl::StrCat("half-", seed), arguments.as_served);
   if (!model.ok()) return model.status();
-  absl::StatusOr<std::vector<Sequence>> synthetic = SynthesizeJobs(dataset, **model, *jobs);
+  absl::StatusOr<std::vector<dataset::Sequence>> synthetic =
+      SynthesizeJobs(dataset, **model, *jobs);
   if (!synthetic.ok()) return synthetic.status();
   half.synthetic = *std::move(synthetic);
   return half;
 }
 
-absl::Status ReadSets(const Dataset& dataset, const std::vector<std::string>& folders,
-                      std::vector<DataHalf>* halves) {
-  std::vector<SyntheticSet> sets;
+absl::Status ReadSets(const dataset::Dataset& dataset, const std::vector<std::string>& folders,
+                      std::vector<experiments::DataHalf>* halves) {
+  std::vector<experiments::SyntheticSet> sets;
   for (const std::string& folder : folders) {
-    absl::StatusOr<SyntheticSet> set = ReadSyntheticSet(dataset, folder);
+    absl::StatusOr<experiments::SyntheticSet> set = experiments::ReadSyntheticSet(dataset, folder);
     if (!set.ok()) return set.status();
     sets.push_back(*std::move(set));
   }
   return AddServedSets(sets, halves);
 }
 
-ResultSection MakeSection(const Dataset& dataset, const Arguments& arguments,
-                          const Trials& trials) {
-  ResultSection section;
+report::ResultSection MakeSection(const dataset::Dataset& dataset, const Arguments& arguments,
+                                  const experiments::Trials& trials) {
+  report::ResultSection section;
   section.id = arguments.id;
   section.title = arguments.title;
   section.text = {
@@ -95,11 +99,11 @@ ResultSection MakeSection(const Dataset& dataset, const Arguments& arguments,
       "Rows take equally many training steps, since longer training alone moves the accuracy; "
       "\"longer\" rows take the steps that the larger set needs for as many epochs. \"Synthetic "
       "alone\" never sees a captured follower."};
-  Table means = trials.Means("Accuracy on captured followers, mean over the trials");
-  AddPrintedRows(PaperAugmentation(), &means);
-  section.tables = {std::move(means),
-                    trials.Deviations("Accuracy, standard deviation over the trials"),
-                    trials.Gains(kCapturedRow, "Gain over captured followers alone, paired")};
+  report::Table means = trials.Means("Accuracy on captured followers, mean over the trials");
+  AddPrintedRows(report::PaperAugmentation(), &means);
+  section.tables = {
+      std::move(means), trials.Deviations("Accuracy, standard deviation over the trials"),
+      trials.Gains(experiments::kCapturedRow, "Gain over captured followers alone, paired")};
   section.settings = {
       {"data", dataset.name},
       {"halves (seeds)", absl::StrJoin(arguments.seeds, ", ")},
@@ -115,30 +119,31 @@ ResultSection MakeSection(const Dataset& dataset, const Arguments& arguments,
                    " --epochs ", arguments.epochs, " --match ", arguments.plan.match, " --mix ",
                    arguments.plan.mix, arguments.as_served ? " --as_served" : "");
   for (size_t i = 0; i < arguments.synthetic.size(); ++i) section.command += " --synthetic SET";
-  section.date = Today();
+  section.date = report::Today();
   return section;
 }
 
-absl::Status WriteJobs(const Dataset& dataset, const Arguments& arguments) {
+absl::Status WriteJobs(const dataset::Dataset& dataset, const Arguments& arguments) {
   if (arguments.seeds.size() != 1) {
     return absl::InvalidArgumentError(
         absl::StrCat("--seeds: ", arguments.seeds.size(), " came, wanted one with --write_jobs"));
   }
   const uint64_t seed = arguments.seeds.front();
-  absl::StatusOr<Split> split = SplitInHalves(dataset, seed);
+  absl::StatusOr<dataset::Split> split = SplitInHalves(dataset, seed);
   if (!split.ok()) return split.status();
-  absl::StatusOr<std::vector<SyntheticJob>> jobs = PlanHalf(dataset, *split, arguments, seed);
+  absl::StatusOr<std::vector<experiments::SyntheticJob>> jobs =
+      PlanHalf(dataset, *split, arguments, seed);
   if (!jobs.ok()) return jobs.status();
   return WriteSyntheticJobs(dataset, *jobs, seed, arguments.write_jobs);
 }
 
 absl::Status Run(const Arguments& arguments) {
-  absl::StatusOr<Dataset> dataset = ReadDataset(arguments.data);
+  absl::StatusOr<dataset::Dataset> dataset = dataset::ReadDataset(arguments.data);
   if (!dataset.ok()) return dataset.status();
   if (!arguments.write_jobs.empty()) return WriteJobs(*dataset, arguments);
-  std::vector<DataHalf> halves;
+  std::vector<experiments::DataHalf> halves;
   for (const uint64_t seed : arguments.seeds) {
-    absl::StatusOr<DataHalf> half = PrepareHalf(*dataset, arguments, seed);
+    absl::StatusOr<experiments::DataHalf> half = PrepareHalf(*dataset, arguments, seed);
     if (!half.ok()) return half.status();
     halves.push_back(*std::move(half));
   }
@@ -146,14 +151,15 @@ absl::Status Run(const Arguments& arguments) {
   if (!status.ok()) return status;
   std::vector<std::string> columns = dataset->classes;
   columns.push_back("mean");
-  Trials trials(std::move(columns));
-  const HalfOptions options = {MadeHere(arguments.plan), arguments.epochs, arguments.repeats};
-  for (const DataHalf& half : halves) {
+  experiments::Trials trials(std::move(columns));
+  const experiments::HalfOptions options = {MadeHere(arguments.plan), arguments.epochs,
+                                            arguments.repeats};
+  for (const experiments::DataHalf& half : halves) {
     status = RunHalf(*dataset, half, options, &std::cerr, &trials);
     if (!status.ok()) return status;
   }
-  const ResultSection section = MakeSection(*dataset, arguments, trials);
-  for (const Table& table : section.tables) std::cout << ToPlainText(table) << "\n";
+  const report::ResultSection section = MakeSection(*dataset, arguments, trials);
+  for (const report::Table& table : section.tables) std::cout << ToPlainText(table) << "\n";
   return arguments.out.empty() ? absl::OkStatus() : WriteSection(section, arguments.out);
 }
 
@@ -201,4 +207,4 @@ void AddAugmentationCommand(CLI::App* app, ChosenCommand* chosen) {
   });
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::program

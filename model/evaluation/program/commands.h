@@ -6,7 +6,7 @@
 
 #include "absl/status/status.h"
 
-namespace duet {
+namespace duet::evaluation::program {
 
 // The commands of duet-eval. Each declares itself and its flags in `app` and, when the command line
 // names it, stores what it does in `chosen`.
@@ -20,6 +20,6 @@ void AddCurvesCommand(CLI::App* app, ChosenCommand* chosen);        // training 
 void AddValidationCommand(CLI::App* app, ChosenCommand* chosen);    // settings on held-back data
 void AddReportCommand(CLI::App* app, ChosenCommand* chosen);        // one page of all sections
 
-}  // namespace duet
+}  // namespace duet::evaluation::program
 
 #endif  // DUET_MODEL_EVALUATION_PROGRAM_COMMANDS_H_

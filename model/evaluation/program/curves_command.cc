@@ -4,13 +4,13 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "model/base/text.h"
 #include "model/evaluation/program/commands.h"
 #include "model/evaluation/program/named_runs.h"
 #include "model/evaluation/report/result_section.h"
 #include "model/evaluation/report/training_curves.h"
-#include "model/base/text.h"
 
-namespace duet {
+namespace duet::evaluation::program {
 namespace {
 
 struct Arguments {
@@ -20,35 +20,36 @@ struct Arguments {
   std::string title = "Training curves";
 };
 
-absl::StatusOr<LoggedRun> ReadRun(const std::string& argument) {
+absl::StatusOr<report::LoggedRun> ReadRun(const std::string& argument) {
   absl::StatusOr<NamedRuns> run = ParseRuns(argument);
   if (!run.ok()) return run.status();
   const std::filesystem::path file = run->folder / "log.csv";
-  const absl::StatusOr<std::string> text = ReadFile(file);
+  const absl::StatusOr<std::string> text = base::ReadFile(file);
   if (!text.ok()) return text.status();
-  absl::StatusOr<TrainingLog> log = ParseTrainingLog(*text, file.string());
+  absl::StatusOr<experiments::TrainingLog> log =
+      experiments::ParseTrainingLog(*text, file.string());
   if (!log.ok()) return log.status();
-  return LoggedRun{run->name, *std::move(log)};
+  return report::LoggedRun{run->name, *std::move(log)};
 }
 
 absl::Status Run(const Arguments& arguments) {
-  std::vector<LoggedRun> runs;
+  std::vector<report::LoggedRun> runs;
   std::string command = "duet-eval curves --run";
   for (const std::string& argument : arguments.runs) {
-    absl::StatusOr<LoggedRun> run = ReadRun(argument);
+    absl::StatusOr<report::LoggedRun> run = ReadRun(argument);
     if (!run.ok()) return run.status();
     absl::StrAppend(&command, " ", run->name, "=RUN");
     runs.push_back(*std::move(run));
   }
-  ResultSection section = DrawTrainingCurves(runs, arguments.id);
+  report::ResultSection section = DrawTrainingCurves(runs, arguments.id);
   section.title = arguments.title;
   section.text = {
       "What duet-train logged. Losses are means over an epoch's batches, before their weights, but "
       "for the generator's weighted sum; a loss that was switched off is not shown."};
   section.settings = {{"runs", absl::StrCat(runs.size())}};
   section.command = command;
-  section.date = Today();
-  for (const Table& table : section.tables) std::cout << ToPlainText(table) << "\n";
+  section.date = report::Today();
+  for (const report::Table& table : section.tables) std::cout << ToPlainText(table) << "\n";
   return arguments.out.empty() ? absl::OkStatus() : WriteSection(section, arguments.out);
 }
 
@@ -67,4 +68,4 @@ void AddCurvesCommand(CLI::App* app, ChosenCommand* chosen) {
   command->callback([arguments, chosen] { *chosen = [arguments] { return Run(*arguments); }; });
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::program

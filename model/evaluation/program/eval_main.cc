@@ -2,22 +2,22 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 
-#include "model/torch_engine/torch_synthesizer.h"
 #include "model/evaluation/program/commands.h"
+#include "model/torch_engine/torch_synthesizer.h"
 
 int main(int argc, char** argv) {
   CLI::App app("Measures trained models and baselines on captures.");
   app.require_subcommand(1);
-  duet::ChosenCommand chosen;
-  duet::AddFoldsCommand(&app, &chosen);
-  duet::AddSweepCommand(&app, &chosen);
-  duet::AddAugmentationCommand(&app, &chosen);
-  duet::AddLatentCommand(&app, &chosen);
-  duet::AddCurvesCommand(&app, &chosen);
-  duet::AddValidationCommand(&app, &chosen);
-  duet::AddReportCommand(&app, &chosen);
+  duet::evaluation::program::ChosenCommand chosen;
+  duet::evaluation::program::AddFoldsCommand(&app, &chosen);
+  duet::evaluation::program::AddSweepCommand(&app, &chosen);
+  duet::evaluation::program::AddAugmentationCommand(&app, &chosen);
+  duet::evaluation::program::AddLatentCommand(&app, &chosen);
+  duet::evaluation::program::AddCurvesCommand(&app, &chosen);
+  duet::evaluation::program::AddValidationCommand(&app, &chosen);
+  duet::evaluation::program::AddReportCommand(&app, &chosen);
   CLI11_PARSE(app, argc, argv);
-  duet::SetTorchThreads(1);
+  duet::torch_engine::SetTorchThreads(1);
   const absl::Status status = chosen();
   if (status.ok()) return 0;
   std::cerr << "duet-eval: " << status.message() << "\n";

@@ -7,7 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 
-namespace duet {
+namespace duet::evaluation::program {
 namespace {
 
 // One network's verdict on a person it has never seen depends on its seed.
@@ -15,7 +15,7 @@ constexpr int64_t kMembers = 4;
 
 }  // namespace
 
-absl::StatusOr<std::vector<std::string>> FoldSubjects(const Dataset& dataset,
+absl::StatusOr<std::vector<std::string>> FoldSubjects(const dataset::Dataset& dataset,
                                                       const std::vector<std::string>& asked) {
   std::vector<std::string> subjects = asked.empty() ? dataset.Subjects() : asked;
   if (!subjects.empty()) return subjects;
@@ -23,24 +23,24 @@ absl::StatusOr<std::vector<std::string>> FoldSubjects(const Dataset& dataset,
       absl::StrCat(dataset.name, ": no subjects, wanted sequences that name theirs"));
 }
 
-std::vector<ScoredMotion> CapturedFollowers(const Dataset& dataset,
-                                            const std::vector<int>& sequences) {
-  std::vector<ScoredMotion> motions;
+std::vector<metrics::ScoredMotion> CapturedFollowers(const dataset::Dataset& dataset,
+                                                     const std::vector<int>& sequences) {
+  std::vector<metrics::ScoredMotion> motions;
   for (const int i : sequences) {
     motions.push_back({i, dataset.sequences[static_cast<size_t>(i)].pair.follower.positions});
   }
   return motions;
 }
 
-absl::StatusOr<MotionClassifier> TrainFoldJudge(const Dataset& dataset,
-                                                const std::string& subject) {
-  absl::StatusOr<Split> split = LeaveSubjectOut(dataset, subject);
+absl::StatusOr<judge::MotionClassifier> TrainFoldJudge(const dataset::Dataset& dataset,
+                                                       const std::string& subject) {
+  absl::StatusOr<dataset::Split> split = LeaveSubjectOut(dataset, subject);
   if (!split.ok()) return split.status();
-  ClassifierOptions options;
+  judge::ClassifierOptions options;
   options.members = kMembers;
   const auto start = std::chrono::steady_clock::now();
-  absl::StatusOr<MotionClassifier> judge =
-      MotionClassifier::Train(dataset, CapturedFollowers(dataset, split->train), options);
+  absl::StatusOr<judge::MotionClassifier> judge =
+      judge::MotionClassifier::Train(dataset, CapturedFollowers(dataset, split->train), options);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   std::cerr << absl::StrFormat("judge without %s: %d motions, %.1f s\n", subject,
@@ -48,11 +48,11 @@ absl::StatusOr<MotionClassifier> TrainFoldJudge(const Dataset& dataset,
   return judge;
 }
 
-JudgedFold Judge(const MotionClassifier& judge, const Dataset& dataset,
-                 const std::vector<ScoredMotion>& motions) {
-  JudgedFold judged;
-  for (const ScoredMotion& motion : motions) {
-    const Sequence& sequence = dataset.sequences[static_cast<size_t>(motion.sequence)];
+metrics::JudgedFold Judge(const judge::MotionClassifier& judge, const dataset::Dataset& dataset,
+                          const std::vector<metrics::ScoredMotion>& motions) {
+  metrics::JudgedFold judged;
+  for (const metrics::ScoredMotion& motion : motions) {
+    const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(motion.sequence)];
     judged.classes.push_back(sequence.interaction_class);
   }
   judged.probabilities = judge.Probabilities(dataset, motions);
@@ -60,4 +60,4 @@ JudgedFold Judge(const MotionClassifier& judge, const Dataset& dataset,
   return judged;
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::program

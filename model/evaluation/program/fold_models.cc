@@ -7,7 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "model/torch_engine/torch_synthesizer.h"
 
-namespace duet {
+namespace duet::evaluation::program {
 namespace {
 
 namespace fs = std::filesystem;
@@ -28,21 +28,21 @@ absl::StatusOr<fs::path> FindCheckpoint(const fs::path& run) {
 
 }  // namespace
 
-absl::StatusOr<Checkpoint> ReadRunCheckpoint(const fs::path& run) {
+absl::StatusOr<checkpoint::Checkpoint> ReadRunCheckpoint(const fs::path& run) {
   absl::StatusOr<fs::path> folder = FindCheckpoint(run);
   if (!folder.ok()) return folder.status();
-  return ReadCheckpoint(*folder);
+  return checkpoint::ReadCheckpoint(*folder);
 }
 
-absl::StatusOr<std::shared_ptr<const Synthesizer>> LoadFoldModel(const fs::path& runs,
-                                                                 const std::string& subject,
-                                                                 bool as_served) {
-  absl::StatusOr<Checkpoint> checkpoint = ReadRunCheckpoint(runs / subject);
+absl::StatusOr<std::shared_ptr<const engine::Synthesizer>> LoadFoldModel(const fs::path& runs,
+                                                                         const std::string& subject,
+                                                                         bool as_served) {
+  absl::StatusOr<checkpoint::Checkpoint> checkpoint = ReadRunCheckpoint(runs / subject);
   if (!checkpoint.ok()) return checkpoint.status();
-  absl::StatusOr<std::unique_ptr<Synthesizer>> synthesizer =
-      MakeTorchSynthesizer(*checkpoint, {as_served, as_served});
+  absl::StatusOr<std::unique_ptr<engine::Synthesizer>> synthesizer =
+      torch_engine::MakeTorchSynthesizer(*checkpoint, {as_served, as_served});
   if (!synthesizer.ok()) return synthesizer.status();
-  return std::shared_ptr<const Synthesizer>(*std::move(synthesizer));
+  return std::shared_ptr<const engine::Synthesizer>(*std::move(synthesizer));
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::program

@@ -10,10 +10,10 @@
 #include "absl/status/statusor.h"
 #include "model/evaluation/program/fold_judge.h"
 #include "model/evaluation/protocol/method.h"
-#include "model/evaluation/report/metric_tables.h"
 #include "model/evaluation/protocol/protocol.h"
+#include "model/evaluation/report/metric_tables.h"
 
-namespace duet {
+namespace duet::evaluation::program {
 
 // Leaves one subject out at a time and scores methods against the same folds and judges. Each
 // method answers once; every figure is of the same answers. Tells stderr of each fold.
@@ -21,16 +21,16 @@ class FoldScorer {
  public:
   // A method for the fold without a subject; its Train is called with the fold's sequences.
   using MakeMethod =
-      std::function<absl::StatusOr<std::unique_ptr<Method>>(const std::string& subject)>;
+      std::function<absl::StatusOr<std::unique_ptr<protocol::Method>>(const std::string& subject)>;
 
   // `dataset` must outlive the scorer. `judged`: train a judge for each fold, which accuracy, fid
   // and diversity need. Errors: LeaveSubjectOut's, MotionClassifier::Train's.
-  static absl::StatusOr<FoldScorer> Create(const Dataset& dataset,
+  static absl::StatusOr<FoldScorer> Create(const dataset::Dataset& dataset,
                                            const std::vector<std::string>& subjects, bool judged);
 
-  absl::StatusOr<MethodFigures> Score(const std::string& row, const MakeMethod& make) const;
+  absl::StatusOr<report::MethodFigures> Score(const std::string& row, const MakeMethod& make) const;
   // The captured followers of the same tests, as a row.
-  absl::StatusOr<MethodFigures> ScoreCaptured() const;
+  absl::StatusOr<report::MethodFigures> ScoreCaptured() const;
 
   // Which judges the figures were measured with: for the settings of a report.
   std::vector<std::pair<std::string, std::string>> JudgeSettings() const;
@@ -38,21 +38,21 @@ class FoldScorer {
  private:
   struct Fold {
     std::string subject;
-    Split split;
-    std::vector<MotionClassifier> judge;  // one, or none
-    JudgedFold captured;                  // empty without a judge
+    dataset::Split split;
+    std::vector<judge::MotionClassifier> judge;  // one, or none
+    metrics::JudgedFold captured;                // empty without a judge
   };
 
-  explicit FoldScorer(const Dataset& dataset) : dataset_(&dataset) {}
+  explicit FoldScorer(const dataset::Dataset& dataset) : dataset_(&dataset) {}
   absl::Status AddJudge(Fold* fold) const;
   // `motions`: [folds], what was answered in each.
-  absl::StatusOr<MethodFigures> Figures(const std::string& row,
-                                        const std::vector<FoldResult>& results) const;
+  absl::StatusOr<report::MethodFigures> Figures(
+      const std::string& row, const std::vector<protocol::FoldResult>& results) const;
 
-  const Dataset* dataset_;
+  const dataset::Dataset* dataset_;
   std::vector<Fold> folds_;
 };
 
-}  // namespace duet
+}  // namespace duet::evaluation::program
 
 #endif  // DUET_MODEL_EVALUATION_PROGRAM_FOLD_SCORER_H_

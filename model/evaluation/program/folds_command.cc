@@ -16,7 +16,7 @@
 #include "model/evaluation/report/paper_tables.h"
 #include "model/evaluation/report/result_section.h"
 
-namespace duet {
+namespace duet::evaluation::program {
 namespace {
 
 // Of --baselines: the models' rows alone.
@@ -36,18 +36,20 @@ struct Arguments {
 };
 
 absl::Status AddModel(const FoldScorer& scorer, const FoldModel& model,
-                      const std::vector<std::string>& starts, std::vector<MethodFigures>* rows) {
+                      const std::vector<std::string>& starts,
+                      std::vector<report::MethodFigures>* rows) {
   for (const std::string& start_name : starts) {
-    const StartGiven start = ParseStart(start_name);
+    const experiments::StartGiven start = ParseStart(start_name);
     const std::string row = model.name + StartSuffix(start);
-    absl::StatusOr<MethodFigures> figures = scorer.Score(
-        row, [&](const std::string& subject) -> absl::StatusOr<std::unique_ptr<Method>> {
-          absl::StatusOr<std::shared_ptr<const Synthesizer>> synthesizer = model.load(subject);
+    absl::StatusOr<report::MethodFigures> figures = scorer.Score(
+        row, [&](const std::string& subject) -> absl::StatusOr<std::unique_ptr<protocol::Method>> {
+          absl::StatusOr<std::shared_ptr<const engine::Synthesizer>> synthesizer =
+              model.load(subject);
           if (!synthesizer.ok()) return synthesizer.status();
-          return std::make_unique<SynthesizerMethod>(row, *synthesizer, start);
+          return std::make_unique<experiments::SynthesizerMethod>(row, *synthesizer, start);
         });
     // A model without a start input has one row alone.
-    if (absl::IsFailedPrecondition(figures.status()) && start != StartGiven::kNone) {
+    if (absl::IsFailedPrecondition(figures.status()) && start != experiments::StartGiven::kNone) {
       std::cerr << row << ": left out: " << figures.status().message() << "\n";
       continue;
     }
@@ -57,14 +59,14 @@ absl::Status AddModel(const FoldScorer& scorer, const FoldModel& model,
   return absl::OkStatus();
 }
 
-absl::StatusOr<std::vector<MethodFigures>> Rows(const FoldScorer& scorer,
-                                                const std::vector<FoldModel>& models,
-                                                const Arguments& arguments) {
-  std::vector<MethodFigures> rows;
+absl::StatusOr<std::vector<report::MethodFigures>> Rows(const FoldScorer& scorer,
+                                                        const std::vector<FoldModel>& models,
+                                                        const Arguments& arguments) {
+  std::vector<report::MethodFigures> rows;
   for (const std::string& name : arguments.baselines) {
     if (name == kNoBaseline) continue;
-    absl::StatusOr<MethodFigures> figures =
-        scorer.Score(name, [&](const std::string&) { return MakeBaseline(name); });
+    absl::StatusOr<report::MethodFigures> figures =
+        scorer.Score(name, [&](const std::string&) { return baselines::MakeBaseline(name); });
     if (!figures.ok()) return figures.status();
     rows.push_back(*std::move(figures));
   }
@@ -72,7 +74,7 @@ absl::StatusOr<std::vector<MethodFigures>> Rows(const FoldScorer& scorer,
     absl::Status status = AddModel(scorer, model, arguments.starts, &rows);
     if (!status.ok()) return status;
   }
-  absl::StatusOr<MethodFigures> captured = scorer.ScoreCaptured();
+  absl::StatusOr<report::MethodFigures> captured = scorer.ScoreCaptured();
   if (!captured.ok()) return captured.status();
   rows.push_back(*std::move(captured));
   return rows;
@@ -82,18 +84,18 @@ bool Contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-std::vector<Table> Tables(const Dataset& dataset, const Arguments& arguments,
-                          const std::vector<MethodFigures>& rows) {
-  std::vector<Table> tables;
-  for (const MetricStyle& style : MetricStyles()) {
+std::vector<report::Table> Tables(const dataset::Dataset& dataset, const Arguments& arguments,
+                                  const std::vector<report::MethodFigures>& rows) {
+  std::vector<report::Table> tables;
+  for (const report::MetricStyle& style : report::MetricStyles()) {
     if (!Contains(arguments.metrics, style.name)) continue;
     tables.push_back(MetricTable(style, dataset.classes, rows));
     const bool frame_distance = style.name == "afd" || style.name == "afd_squared";
     if (frame_distance && Contains(arguments.printed, "afd")) {
-      AddPrintedRows(PaperAfdSbu(), &tables.back());
+      AddPrintedRows(report::PaperAfdSbu(), &tables.back());
     }
-    if (style.name == kFrechet && Contains(arguments.printed, "fid")) {
-      AddPrintedRows(PaperFidSbu(), &tables.back());
+    if (style.name == report::kFrechet && Contains(arguments.printed, "fid")) {
+      AddPrintedRows(report::PaperFidSbu(), &tables.back());
     }
   }
   return tables;
@@ -120,9 +122,10 @@ std::string Command(const Arguments& arguments, const std::vector<std::string>& 
   return command;
 }
 
-ResultSection MakeSection(const Dataset& dataset, const std::vector<std::string>& subjects,
-                          const Arguments& arguments, const FoldScorer& scorer) {
-  ResultSection section;
+report::ResultSection MakeSection(const dataset::Dataset& dataset,
+                                  const std::vector<std::string>& subjects,
+                                  const Arguments& arguments, const FoldScorer& scorer) {
+  report::ResultSection section;
   section.id = arguments.id;
   section.title = arguments.title;
   section.text = {
@@ -140,19 +143,19 @@ ResultSection MakeSection(const Dataset& dataset, const std::vector<std::string>
       {"models' answers", arguments.models.as_served ? "as served" : "the network's own"}};
   for (auto& setting : scorer.JudgeSettings()) section.settings.push_back(std::move(setting));
   section.command = Command(arguments, subjects);
-  section.date = Today();
+  section.date = report::Today();
   return section;
 }
 
 bool NeedsJudge(const std::vector<std::string>& metrics) {
-  const auto& styles = MetricStyles();
-  return std::any_of(styles.begin(), styles.end(), [&](const MetricStyle& style) {
+  const auto& styles = report::MetricStyles();
+  return std::any_of(styles.begin(), styles.end(), [&](const report::MetricStyle& style) {
     return style.judged && Contains(metrics, style.name);
   });
 }
 
 absl::Status Run(const Arguments& arguments) {
-  absl::StatusOr<Dataset> dataset = ReadDataset(arguments.data);
+  absl::StatusOr<dataset::Dataset> dataset = dataset::ReadDataset(arguments.data);
   if (!dataset.ok()) return dataset.status();
   absl::StatusOr<std::vector<std::string>> subjects = FoldSubjects(*dataset, arguments.subjects);
   if (!subjects.ok()) return subjects.status();
@@ -161,18 +164,18 @@ absl::Status Run(const Arguments& arguments) {
   absl::StatusOr<FoldScorer> scorer =
       FoldScorer::Create(*dataset, *subjects, NeedsJudge(arguments.metrics));
   if (!scorer.ok()) return scorer.status();
-  absl::StatusOr<std::vector<MethodFigures>> rows = Rows(*scorer, *models, arguments);
+  absl::StatusOr<std::vector<report::MethodFigures>> rows = Rows(*scorer, *models, arguments);
   if (!rows.ok()) return rows.status();
-  ResultSection section = MakeSection(*dataset, *subjects, arguments, *scorer);
+  report::ResultSection section = MakeSection(*dataset, *subjects, arguments, *scorer);
   section.tables = Tables(*dataset, arguments, *rows);
   for (const std::string& text : section.text) std::cout << text << "\n";
-  for (const Table& table : section.tables) std::cout << "\n" << ToPlainText(table);
+  for (const report::Table& table : section.tables) std::cout << "\n" << ToPlainText(table);
   return arguments.out.empty() ? absl::OkStatus() : WriteSection(section, arguments.out);
 }
 
 std::vector<std::string> MetricNames() {
   std::vector<std::string> names;
-  for (const MetricStyle& style : MetricStyles()) names.push_back(style.name);
+  for (const report::MetricStyle& style : report::MetricStyles()) names.push_back(style.name);
   return names;
 }
 
@@ -205,7 +208,7 @@ void AddFoldsCommand(CLI::App* app, ChosenCommand* chosen) {
       ->delimiter(',')
       ->check(CLI::IsMember(StartNames()))
       ->capture_default_str();
-  std::vector<std::string> baselines = BaselineNames();
+  std::vector<std::string> baselines = baselines::BaselineNames();
   baselines.push_back(kNoBaseline);
   command->add_option("--baselines", arguments->baselines, "rows beside it, or none")
       ->delimiter(',')
@@ -226,4 +229,4 @@ void AddFoldsCommand(CLI::App* app, ChosenCommand* chosen) {
   command->callback([arguments, chosen] { *chosen = [arguments] { return Run(*arguments); }; });
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::program

@@ -10,14 +10,14 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "model/dataset/dataset.h"
+#include "model/evaluation/experiments/latent.h"
 #include "model/evaluation/program/commands.h"
 #include "model/evaluation/program/fold_models.h"
 #include "model/evaluation/program/named_runs.h"
-#include "model/evaluation/judge/latent.h"
 #include "model/evaluation/report/latent_map.h"
 #include "model/evaluation/report/result_section.h"
 
-namespace duet {
+namespace duet::evaluation::program {
 namespace {
 
 struct Arguments {
@@ -25,16 +25,16 @@ struct Arguments {
   std::vector<std::string> runs;
   std::vector<std::string> subjects;
   std::string clips = "test";
-  TsneOptions tsne;
+  metrics::TsneOptions tsne;
   std::string out;
   std::string id = "50_latent";
   std::string title = "Latent space (Figures 6 and 7)";
 };
 
 // The clips of a fold to show.
-absl::StatusOr<std::vector<int>> ChooseClips(const Dataset& dataset, const std::string& subject,
-                                             const std::string& which) {
-  absl::StatusOr<Split> split = LeaveSubjectOut(dataset, subject);
+absl::StatusOr<std::vector<int>> ChooseClips(const dataset::Dataset& dataset,
+                                             const std::string& subject, const std::string& which) {
+  absl::StatusOr<dataset::Split> split = LeaveSubjectOut(dataset, subject);
   if (!split.ok()) return split.status();
   if (which == "test") return split->test;
   if (which == "train") return split->train;
@@ -43,7 +43,7 @@ absl::StatusOr<std::vector<int>> ChooseClips(const Dataset& dataset, const std::
   return all;
 }
 
-std::vector<int> ClassesOf(const Dataset& dataset, const std::vector<int>& sequences) {
+std::vector<int> ClassesOf(const dataset::Dataset& dataset, const std::vector<int>& sequences) {
   std::vector<int> classes;
   for (const int index : sequences) {
     classes.push_back(dataset.sequences[static_cast<size_t>(index)].interaction_class);
@@ -63,60 +63,66 @@ std::string FigureName(std::string text) {
 struct FoldCheckpoint {
   std::string model;
   std::string subject;
-  Checkpoint checkpoint;
+  checkpoint::Checkpoint checkpoint;
 };
 
 // Draws and measures one latent space: a figure and a row of the table.
-absl::Status AddSpace(const Dataset& dataset, const FoldCheckpoint& fold, LatentLabels labels,
-                      const Arguments& arguments, ResultSection* section) {
+absl::Status AddSpace(const dataset::Dataset& dataset, const FoldCheckpoint& fold,
+                      experiments::LatentLabels labels, const Arguments& arguments,
+                      report::ResultSection* section) {
   absl::StatusOr<std::vector<int>> clips = ChooseClips(dataset, fold.subject, arguments.clips);
   if (!clips.ok()) return clips.status();
-  absl::StatusOr<FeatureSet> features = LatentFeatures(fold.checkpoint, dataset, *clips, labels);
+  absl::StatusOr<metrics::FeatureSet> features =
+      LatentFeatures(fold.checkpoint, dataset, *clips, labels);
   if (!features.ok()) return features.status();
   const std::vector<int> classes = ClassesOf(dataset, *clips);
-  absl::StatusOr<LatentMap> map = MapLatent(*features, classes, arguments.tsne);
+  absl::StatusOr<report::LatentMap> map = report::MapLatent(*features, classes, arguments.tsne);
   if (!map.ok()) return map.status();
-  const bool blind = labels == LatentLabels::kNone;
+  const bool blind = labels == experiments::LatentLabels::kNone;
   const std::string name =
       absl::StrCat(fold.model, blind ? ", label withheld" : "", ", ", fold.subject);
   section->tables.front().rows.push_back(
       {name, {map->purity_of_map, map->nearest_neighbour, map->several_neighbours}});
-  section->figures.push_back({FigureName(absl::StrCat(arguments.id, "_", fold.model,
-                                                      blind ? "_no_label_" : "_", fold.subject)),
-                              absl::StrCat("Latent space of ", fold.model, " with ", fold.subject,
-                                           " left out", blind ? ", the label vector withheld" : "",
-                                           ": t-SNE of ", clips->size(), " clips, one point each."),
-                              ToSvg(PlotByClass(name, dataset.classes, map->points, classes))});
+  section->figures.push_back(
+      {FigureName(
+           absl::StrCat(arguments.id, "_", fold.model, blind ? "_no_label_" : "_", fold.subject)),
+       absl::StrCat("Latent space of ", fold.model, " with ", fold.subject, " left out",
+                    blind ? ", the label vector withheld" : "", ": t-SNE of ", clips->size(),
+                    " clips, one point each."),
+       report::ToSvg(report::PlotByClass(name, dataset.classes, map->points, classes))});
   return absl::OkStatus();
 }
 
 // Of a fold, as duet-train --protocol loso leaves it; or the one run that the folder itself is.
-absl::StatusOr<Checkpoint> ReadFold(const std::filesystem::path& runs, const std::string& subject) {
+absl::StatusOr<checkpoint::Checkpoint> ReadFold(const std::filesystem::path& runs,
+                                                const std::string& subject) {
   std::error_code error;
   const bool is_run = std::filesystem::exists(runs / "checkpoint", error);
   return ReadRunCheckpoint(is_run ? runs : runs / subject);
 }
 
 // A model that reads labels is shown a second time without: its label alone tells the class apart.
-absl::Status AddModel(const Dataset& dataset, const NamedRuns& runs,
+absl::Status AddModel(const dataset::Dataset& dataset, const NamedRuns& runs,
                       const std::vector<std::string>& subjects, const Arguments& arguments,
-                      ResultSection* section) {
+                      report::ResultSection* section) {
   for (const std::string& subject : subjects) {
-    absl::StatusOr<Checkpoint> checkpoint = ReadFold(runs.folder, subject);
+    absl::StatusOr<checkpoint::Checkpoint> checkpoint = ReadFold(runs.folder, subject);
     if (!checkpoint.ok()) return checkpoint.status();
     const FoldCheckpoint fold = {runs.name, subject, *std::move(checkpoint)};
-    absl::Status status = AddSpace(dataset, fold, LatentLabels::kOwnClass, arguments, section);
+    absl::Status status =
+        AddSpace(dataset, fold, experiments::LatentLabels::kOwnClass, arguments, section);
     if (!status.ok()) return status;
     if (fold.checkpoint.manifest.generator.variant == "unlabelled") continue;
-    status = AddSpace(dataset, fold, LatentLabels::kNone, arguments, section);
+    status = AddSpace(dataset, fold, experiments::LatentLabels::kNone, arguments, section);
     if (!status.ok()) return status;
   }
   return absl::OkStatus();
 }
 
-ResultSection MakeSection(const Dataset& dataset, const std::vector<std::string>& subjects,
-                          const Arguments& arguments) {
-  ResultSection section;
+report::ResultSection MakeSection(const dataset::Dataset& dataset,
+                                  const std::vector<std::string>& subjects,
+                                  const Arguments& arguments) {
+  report::ResultSection section;
   section.id = arguments.id;
   section.title = arguments.title;
   section.text = {
@@ -125,10 +131,10 @@ ResultSection MakeSection(const Dataset& dataset, const std::vector<std::string>
       "A model with a multi-hot embedding is told the class that colours the point: part of its "
       "order is given, not learnt. The same model with the label vector withheld (all zeros) shows "
       "what it makes of the leader alone."};
-  Table table;
+  report::Table table;
   table.title = "Share of clips whose nearest neighbours are of their class";
   table.columns = {"1 in the map", "1 in the space",
-                   absl::StrCat(kLatentNeighbours, " in the space")};
+                   absl::StrCat(report::kLatentNeighbours, " in the space")};
   table.decimals = 3;
   section.tables.push_back(std::move(table));
   section.settings = {{"data", dataset.name},
@@ -141,17 +147,17 @@ ResultSection MakeSection(const Dataset& dataset, const std::vector<std::string>
       absl::StrCat("duet-eval latent --data DIR --subjects ", absl::StrJoin(subjects, ","),
                    " --clips ", arguments.clips, " --perplexity ", arguments.tsne.perplexity,
                    " --seed ", arguments.tsne.seed);
-  section.date = Today();
+  section.date = report::Today();
   return section;
 }
 
 absl::Status Run(const Arguments& arguments) {
-  absl::StatusOr<Dataset> dataset = ReadDataset(arguments.data);
+  absl::StatusOr<dataset::Dataset> dataset = dataset::ReadDataset(arguments.data);
   if (!dataset.ok()) return dataset.status();
   std::vector<std::string> subjects = arguments.subjects;
   if (subjects.empty()) subjects = dataset->Subjects();
   if (arguments.subjects.empty() && subjects.size() > 1) subjects.resize(1);
-  ResultSection section = MakeSection(*dataset, subjects, arguments);
+  report::ResultSection section = MakeSection(*dataset, subjects, arguments);
   for (const std::string& text : arguments.runs) {
     absl::StatusOr<NamedRuns> runs = ParseRuns(text);
     if (!runs.ok()) return runs.status();
@@ -191,4 +197,4 @@ void AddLatentCommand(CLI::App* app, ChosenCommand* chosen) {
   command->callback([arguments, chosen] { *chosen = [arguments] { return Run(*arguments); }; });
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::program

@@ -2,24 +2,24 @@
 
 #include <utility>
 
-#include "model/torch_engine/torch_synthesizer.h"
 #include "model/evaluation/program/fold_models.h"
 #include "model/evaluation/program/named_runs.h"
+#include "model/torch_engine/torch_synthesizer.h"
 
-namespace duet {
+namespace duet::evaluation::program {
 namespace {
 
-using SharedSynthesizer = std::shared_ptr<const Synthesizer>;
+using SharedSynthesizer = std::shared_ptr<const engine::Synthesizer>;
 
 absl::StatusOr<SharedSynthesizer> LoadOne(const ModelChoice& choice) {
-  const TorchSynthesizerOptions options{choice.as_served, choice.as_served};
+  const torch_engine::TorchSynthesizerOptions options{choice.as_served, choice.as_served};
   if (choice.embedded) {
-    absl::StatusOr<std::vector<std::unique_ptr<Synthesizer>>> all =
+    absl::StatusOr<std::vector<std::unique_ptr<engine::Synthesizer>>> all =
         LoadEmbeddedSynthesizers(options);
     if (!all.ok()) return all.status();
     return SharedSynthesizer(std::move(all->front()));
   }
-  absl::StatusOr<std::unique_ptr<Synthesizer>> one =
+  absl::StatusOr<std::unique_ptr<engine::Synthesizer>> one =
       LoadTorchSynthesizer(choice.checkpoint, options);
   if (!one.ok()) return one.status();
   return SharedSynthesizer(*std::move(one));
@@ -45,4 +45,4 @@ absl::StatusOr<std::vector<FoldModel>> OpenModels(const ModelChoice& choice) {
   return models;
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::program

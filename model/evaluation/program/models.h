@@ -9,7 +9,7 @@
 #include "absl/status/statusor.h"
 #include "model/engine/synthesizer.h"
 
-namespace duet {
+namespace duet::evaluation::program {
 
 // The models that a command line names.
 struct ModelChoice {
@@ -24,13 +24,14 @@ struct ModelChoice {
 // A model by its name in the tables, and its generator for the fold without a subject.
 struct FoldModel {
   std::string name;
-  std::function<absl::StatusOr<std::shared_ptr<const Synthesizer>>(const std::string& subject)>
+  std::function<absl::StatusOr<std::shared_ptr<const engine::Synthesizer>>(
+      const std::string& subject)>
       load;
 };
 
 // Errors: INVALID_ARGUMENT for runs without a name; those of reading a checkpoint.
 absl::StatusOr<std::vector<FoldModel>> OpenModels(const ModelChoice& choice);
 
-}  // namespace duet
+}  // namespace duet::evaluation::program
 
 #endif  // DUET_MODEL_EVALUATION_PROGRAM_MODELS_H_

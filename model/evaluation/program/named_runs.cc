@@ -2,7 +2,7 @@
 
 #include "absl/strings/str_cat.h"
 
-namespace duet {
+namespace duet::evaluation::program {
 
 absl::StatusOr<NamedRuns> ParseRuns(const std::string& text) {
   const size_t equals = text.find('=');
@@ -20,21 +20,21 @@ absl::StatusOr<NamedRuns> ParseRuns(const std::string& text) {
 
 std::vector<std::string> StartNames() { return {"none", "root", "pose"}; }
 
-StartGiven ParseStart(const std::string& name) {
-  if (name == "root") return StartGiven::kRoot;
-  return name == "pose" ? StartGiven::kPose : StartGiven::kNone;
+experiments::StartGiven ParseStart(const std::string& name) {
+  if (name == "root") return experiments::StartGiven::kRoot;
+  return name == "pose" ? experiments::StartGiven::kPose : experiments::StartGiven::kNone;
 }
 
-std::string StartSuffix(StartGiven start) {
+std::string StartSuffix(experiments::StartGiven start) {
   switch (start) {
-    case StartGiven::kNone:
+    case experiments::StartGiven::kNone:
       return "";
-    case StartGiven::kRoot:
+    case experiments::StartGiven::kRoot:
       return "+root";
-    case StartGiven::kPose:
+    case experiments::StartGiven::kPose:
       return "+pose";
   }
   return "";
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::program

@@ -7,7 +7,7 @@
 #include "absl/status/statusor.h"
 #include "model/evaluation/experiments/synthesizer_method.h"
 
-namespace duet {
+namespace duet::evaluation::program {
 
 // Runs of duet-train, and how the tables call them.
 struct NamedRuns {
@@ -20,10 +20,10 @@ absl::StatusOr<NamedRuns> ParseRuns(const std::string& text);
 
 // "none", "root" or "pose", and what a row's name adds for it: "", "+root", "+pose". Requires one
 // of StartNames.
-StartGiven ParseStart(const std::string& name);
+experiments::StartGiven ParseStart(const std::string& name);
 std::vector<std::string> StartNames();
-std::string StartSuffix(StartGiven start);
+std::string StartSuffix(experiments::StartGiven start);
 
-}  // namespace duet
+}  // namespace duet::evaluation::program
 
 #endif  // DUET_MODEL_EVALUATION_PROGRAM_NAMED_RUNS_H_

@@ -10,7 +10,7 @@
 #include "model/evaluation/report/report.h"
 #include "model/evaluation/report/result_section.h"
 
-namespace duet {
+namespace duet::evaluation::program {
 namespace {
 
 namespace fs = std::filesystem;
@@ -22,11 +22,11 @@ struct Arguments {
 };
 
 // Every figure as PNG too. Without the program that draws them, the report is whole all the same.
-absl::Status RenderFigures(const Report& report, const fs::path& folder) {
-  for (const ResultSection& section : report.sections) {
-    for (const ResultFigure& figure : section.figures) {
+absl::Status RenderFigures(const report::Report& report, const fs::path& folder) {
+  for (const report::ResultSection& section : report.sections) {
+    for (const report::ResultFigure& figure : section.figures) {
       const absl::Status status =
-          RenderPng(folder / (figure.name + ".svg"), folder / (figure.name + ".png"));
+          report::RenderPng(folder / (figure.name + ".svg"), folder / (figure.name + ".png"));
       if (absl::IsNotFound(status)) {
         std::cerr << "duet-eval: " << status.message()
                   << " (Debian: librsvg2-bin): no figure was written as PNG\n";
@@ -39,9 +39,10 @@ absl::Status RenderFigures(const Report& report, const fs::path& folder) {
 }
 
 absl::Status Run(const Arguments& arguments) {
-  absl::StatusOr<std::vector<ResultSection>> sections = ReadSections(arguments.results);
+  absl::StatusOr<std::vector<report::ResultSection>> sections =
+      report::ReadSections(arguments.results);
   if (!sections.ok()) return sections.status();
-  const Report report = {arguments.title, *std::move(sections)};
+  const report::Report report = {arguments.title, *std::move(sections)};
   absl::Status status = WriteReport(report, arguments.out);
   if (!status.ok()) return status;
   status = RenderFigures(report, arguments.out);
@@ -66,4 +67,4 @@ void AddReportCommand(CLI::App* app, ChosenCommand* chosen) {
   command->callback([arguments, chosen] { *chosen = [arguments] { return Run(*arguments); }; });
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::program

@@ -7,14 +7,14 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "model/evaluation/experiments/label_sweep.h"
 #include "model/evaluation/program/commands.h"
 #include "model/evaluation/program/fold_judge.h"
 #include "model/evaluation/program/models.h"
 #include "model/evaluation/program/named_runs.h"
-#include "model/evaluation/experiments/label_sweep.h"
 #include "model/evaluation/report/result_section.h"
 
-namespace duet {
+namespace duet::evaluation::program {
 namespace {
 
 struct Arguments {
@@ -31,57 +31,59 @@ struct Arguments {
 struct SweepFold {
   std::string subject;
   std::vector<int> test;
-  std::shared_ptr<const Synthesizer> model;
-  std::vector<MotionClassifier> judge;  // one
+  std::shared_ptr<const engine::Synthesizer> model;
+  std::vector<judge::MotionClassifier> judge;  // one
 };
 
 // A leader's answers at every weight of every class, own and added.
-absl::Status SweepLeader(const Dataset& dataset, const SweepFold& fold, int index, StartGiven start,
-                         std::vector<SweepCurve>* curves) {
-  const Sequence& sequence = dataset.sequences[static_cast<size_t>(index)];
+absl::Status SweepLeader(const dataset::Dataset& dataset, const SweepFold& fold, int index,
+                         experiments::StartGiven start,
+                         std::vector<experiments::SweepCurve>* curves) {
+  const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(index)];
   const int classes = dataset.class_count(), own = sequence.interaction_class;
-  std::vector<LabelledLeader> leaders;
+  std::vector<experiments::LabelledLeader> leaders;
   for (int raised = 0; raised < classes; ++raised) {
-    for (const double weight : SweepWeights()) {
-      leaders.push_back({&sequence, SweepLabels(classes, own, raised, weight)});
+    for (const double weight : experiments::SweepWeights()) {
+      leaders.push_back({&sequence, experiments::SweepLabels(classes, own, raised, weight)});
     }
   }
-  absl::StatusOr<std::vector<std::vector<Vec3>>> followers =
+  absl::StatusOr<std::vector<std::vector<motion::Vec3>>> followers =
       SynthesizeSequences(*fold.model, leaders, start);
   if (!followers.ok()) return followers.status();
-  std::vector<ScoredMotion> motions;
-  for (std::vector<Vec3>& follower : *followers) motions.push_back({index, std::move(follower)});
+  std::vector<metrics::ScoredMotion> motions;
+  for (std::vector<motion::Vec3>& follower : *followers)
+    motions.push_back({index, std::move(follower)});
   const auto probabilities = fold.judge.front().Probabilities(dataset, motions);
   auto row = probabilities.begin();
   for (int raised = 0; raised < classes; ++raised) {
-    const auto end = row + static_cast<std::ptrdiff_t>(SweepWeights().size());
+    const auto end = row + static_cast<std::ptrdiff_t>(experiments::SweepWeights().size());
     curves->push_back({own, raised, {row, end}});
     row = end;
   }
   return absl::OkStatus();
 }
 
-absl::StatusOr<SweepFold> OpenFold(const Dataset& dataset, const FoldModel& model,
+absl::StatusOr<SweepFold> OpenFold(const dataset::Dataset& dataset, const FoldModel& model,
                                    const std::string& subject,
                                    const std::vector<std::string>& starts) {
-  absl::StatusOr<Split> split = LeaveSubjectOut(dataset, subject);
+  absl::StatusOr<dataset::Split> split = LeaveSubjectOut(dataset, subject);
   if (!split.ok()) return split.status();
-  absl::StatusOr<std::shared_ptr<const Synthesizer>> synthesizer = model.load(subject);
+  absl::StatusOr<std::shared_ptr<const engine::Synthesizer>> synthesizer = model.load(subject);
   if (!synthesizer.ok()) return synthesizer.status();
   for (const std::string& start : starts) {
-    absl::Status fits =
-        SynthesizerMethod(model.name, *synthesizer, ParseStart(start)).Train(dataset, split->train);
+    absl::Status fits = experiments::SynthesizerMethod(model.name, *synthesizer, ParseStart(start))
+                            .Train(dataset, split->train);
     if (!fits.ok()) return fits;
   }
-  absl::StatusOr<MotionClassifier> judge = TrainFoldJudge(dataset, subject);
+  absl::StatusOr<judge::MotionClassifier> judge = TrainFoldJudge(dataset, subject);
   if (!judge.ok()) return judge.status();
   return SweepFold{subject, split->test, *std::move(synthesizer), {*std::move(judge)}};
 }
 
-absl::StatusOr<std::vector<SweepCurve>> SweepFolds(const Dataset& dataset,
-                                                   const std::vector<SweepFold>& folds,
-                                                   StartGiven start) {
-  std::vector<SweepCurve> curves;
+absl::StatusOr<std::vector<experiments::SweepCurve>> SweepFolds(const dataset::Dataset& dataset,
+                                                                const std::vector<SweepFold>& folds,
+                                                                experiments::StartGiven start) {
+  std::vector<experiments::SweepCurve> curves;
   for (const SweepFold& fold : folds) {
     for (const int index : fold.test) {
       absl::Status status = SweepLeader(dataset, fold, index, start, &curves);
@@ -94,57 +96,61 @@ absl::StatusOr<std::vector<SweepCurve>> SweepFolds(const Dataset& dataset,
 }
 
 // What follows a start's name in titles and captions.
-std::string Told(StartGiven start) {
+std::string Told(experiments::StartGiven start) {
   switch (start) {
-    case StartGiven::kNone:
+    case experiments::StartGiven::kNone:
       return "without a start";
-    case StartGiven::kRoot:
+    case experiments::StartGiven::kRoot:
       return "given the first root";
-    case StartGiven::kPose:
+    case experiments::StartGiven::kPose:
       return "given the first pose";
   }
   return "";
 }
 
-std::string KindTitle(SweepKind kind) {
-  return kind == SweepKind::kOwn ? "Own class alone" : "Another class beside the own one";
+std::string KindTitle(experiments::SweepKind kind) {
+  return kind == experiments::SweepKind::kOwn ? "Own class alone"
+                                              : "Another class beside the own one";
 }
 
-void AddFigures(const Dataset& dataset, const std::vector<SweepCurve>& curves, SweepKind kind,
-                const std::string& name_end, const std::string& told, ResultSection* section) {
+void AddFigures(const dataset::Dataset& dataset, const std::vector<experiments::SweepCurve>& curves,
+                experiments::SweepKind kind, const std::string& name_end, const std::string& told,
+                report::ResultSection* section) {
   for (int c = 0; c < dataset.class_count(); ++c) {
     const std::string& name = dataset.classes[static_cast<size_t>(c)];
-    const LinePlot plot =
-        SweepPlot(absl::StrCat(name, kind == SweepKind::kOwn ? " alone, " : " added, ", told),
-                  dataset.classes, curves, kind, c);
+    const report::LinePlot plot = SweepPlot(
+        absl::StrCat(name, kind == experiments::SweepKind::kOwn ? " alone, " : " added, ", told),
+        dataset.classes, curves, kind, c);
     const std::string caption =
-        kind == SweepKind::kOwn
+        kind == experiments::SweepKind::kOwn
             ? absl::StrCat("Leaders of ", name, " answered with the weight of ", name, " alone, ",
                            told, ": the judges' mean probability of every class.")
             : absl::StrCat("Leaders of the other classes answered with their own class at 1 and ",
                            name, " added, ", told, ": the judges' mean probability of ", name, ".");
     section->figures.push_back(
-        {absl::StrCat(section->id, kind == SweepKind::kOwn ? "_own_" : "_added_", name, name_end),
+        {absl::StrCat(section->id, kind == experiments::SweepKind::kOwn ? "_own_" : "_added_", name,
+                      name_end),
          caption, ToSvg(plot)});
   }
 }
 
-void AddStart(const Dataset& dataset, const std::vector<SweepCurve>& curves, StartGiven start,
-              ResultSection* section) {
+void AddStart(const dataset::Dataset& dataset, const std::vector<experiments::SweepCurve>& curves,
+              experiments::StartGiven start, report::ResultSection* section) {
   const std::string told = Told(start);
-  const std::string name_end = start == StartGiven::kNone   ? ""
-                               : start == StartGiven::kRoot ? "_root"
-                                                            : "_pose";
-  for (const SweepKind kind : {SweepKind::kOwn, SweepKind::kAdded}) {
+  const std::string name_end = start == experiments::StartGiven::kNone   ? ""
+                               : start == experiments::StartGiven::kRoot ? "_root"
+                                                                         : "_pose";
+  for (const experiments::SweepKind kind :
+       {experiments::SweepKind::kOwn, experiments::SweepKind::kAdded}) {
     section->tables.push_back(
         ControlTable(absl::StrCat(KindTitle(kind), ", ", told), dataset.classes, curves, kind));
     AddFigures(dataset, curves, kind, name_end, told, section);
   }
 }
 
-ResultSection MakeSection(const Dataset& dataset, const FoldModel& model,
-                          const std::vector<SweepFold>& folds, const Arguments& arguments) {
-  ResultSection section;
+report::ResultSection MakeSection(const dataset::Dataset& dataset, const FoldModel& model,
+                                  const std::vector<SweepFold>& folds, const Arguments& arguments) {
+  report::ResultSection section;
   section.id = arguments.id;
   section.title = arguments.title;
   section.text = {
@@ -168,12 +174,12 @@ ResultSection MakeSection(const Dataset& dataset, const FoldModel& model,
       absl::StrCat("duet-eval sweep --data DIR --runs ", model.name, "=RUNS --subjects ",
                    absl::StrJoin(subjects, ","), " --starts ", absl::StrJoin(arguments.starts, ","),
                    arguments.models.as_served ? " --as_served" : "");
-  section.date = Today();
+  section.date = report::Today();
   return section;
 }
 
 absl::Status Run(const Arguments& arguments) {
-  absl::StatusOr<Dataset> dataset = ReadDataset(arguments.data);
+  absl::StatusOr<dataset::Dataset> dataset = dataset::ReadDataset(arguments.data);
   if (!dataset.ok()) return dataset.status();
   absl::StatusOr<std::vector<FoldModel>> models = OpenModels(arguments.models);
   if (!models.ok()) return models.status();
@@ -186,14 +192,15 @@ absl::Status Run(const Arguments& arguments) {
     if (!fold.ok()) return fold.status();
     folds.push_back(*std::move(fold));
   }
-  ResultSection section = MakeSection(*dataset, model, folds, arguments);
+  report::ResultSection section = MakeSection(*dataset, model, folds, arguments);
   for (const std::string& name : arguments.starts) {
-    const StartGiven start = ParseStart(name);
-    absl::StatusOr<std::vector<SweepCurve>> curves = SweepFolds(*dataset, folds, start);
+    const experiments::StartGiven start = ParseStart(name);
+    absl::StatusOr<std::vector<experiments::SweepCurve>> curves =
+        SweepFolds(*dataset, folds, start);
     if (!curves.ok()) return curves.status();
     AddStart(*dataset, *curves, start, &section);
   }
-  for (const Table& table : section.tables) std::cout << ToPlainText(table) << "\n";
+  for (const report::Table& table : section.tables) std::cout << ToPlainText(table) << "\n";
   return arguments.out.empty() ? absl::OkStatus() : WriteSection(section, arguments.out);
 }
 
@@ -225,4 +232,4 @@ void AddSweepCommand(CLI::App* app, ChosenCommand* chosen) {
   command->callback([arguments, chosen] { *chosen = [arguments] { return Run(*arguments); }; });
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::program

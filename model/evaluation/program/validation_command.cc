@@ -6,13 +6,13 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "model/base/text.h"
 #include "model/evaluation/program/commands.h"
 #include "model/evaluation/program/named_runs.h"
 #include "model/evaluation/report/result_section.h"
 #include "model/evaluation/report/validation_table.h"
-#include "model/base/text.h"
 
-namespace duet {
+namespace duet::evaluation::program {
 namespace {
 
 namespace fs = std::filesystem;
@@ -36,17 +36,18 @@ absl::StatusOr<std::vector<fs::path>> RunFolders(const fs::path& folder) {
       absl::StrCat(folder.string(), ": no <run>/log.csv, wanted output of duet-train"));
 }
 
-absl::StatusOr<ValidatedRuns> ReadRuns(const std::string& argument) {
+absl::StatusOr<report::ValidatedRuns> ReadRuns(const std::string& argument) {
   absl::StatusOr<NamedRuns> named = ParseRuns(argument);
   if (!named.ok()) return named.status();
   absl::StatusOr<std::vector<fs::path>> folders = RunFolders(named->folder);
   if (!folders.ok()) return folders.status();
-  ValidatedRuns runs = {named->name, {}};
+  report::ValidatedRuns runs = {named->name, {}};
   for (const fs::path& folder : *folders) {
     const fs::path file = folder / "log.csv";
-    absl::StatusOr<std::string> text = ReadFile(file);
+    absl::StatusOr<std::string> text = base::ReadFile(file);
     if (!text.ok()) return text.status();
-    absl::StatusOr<TrainingLog> log = ParseTrainingLog(*text, file.string());
+    absl::StatusOr<experiments::TrainingLog> log =
+        experiments::ParseTrainingLog(*text, file.string());
     if (!log.ok()) return log.status();
     runs.runs.push_back({folder.filename().string(), *std::move(log)});
   }
@@ -54,15 +55,15 @@ absl::StatusOr<ValidatedRuns> ReadRuns(const std::string& argument) {
 }
 
 absl::Status Run(const Arguments& arguments) {
-  std::vector<ValidatedRuns> all;
+  std::vector<report::ValidatedRuns> all;
   std::string command = "duet-eval validation --runs";
   for (const std::string& argument : arguments.runs) {
-    absl::StatusOr<ValidatedRuns> runs = ReadRuns(argument);
+    absl::StatusOr<report::ValidatedRuns> runs = ReadRuns(argument);
     if (!runs.ok()) return runs.status();
     absl::StrAppend(&command, " ", runs->name, "=RUNS");
     all.push_back(*std::move(runs));
   }
-  ResultSection section;
+  report::ResultSection section;
   section.id = arguments.id;
   section.title = arguments.title;
   section.text = {
@@ -73,8 +74,8 @@ absl::Status Run(const Arguments& arguments) {
       ValidationTable("Without a start: afd, metres", "validation_afd", all),
       ValidationTable("Told the first pose: afd, metres", "validation_afd_pose", all)};
   section.command = command;
-  section.date = Today();
-  for (const Table& table : section.tables) std::cout << ToPlainText(table) << "\n";
+  section.date = report::Today();
+  for (const report::Table& table : section.tables) std::cout << ToPlainText(table) << "\n";
   return arguments.out.empty() ? absl::OkStatus() : WriteSection(section, arguments.out);
 }
 
@@ -94,4 +95,4 @@ void AddValidationCommand(CLI::App* app, ChosenCommand* chosen) {
   command->callback([arguments, chosen] { *chosen = [arguments] { return Run(*arguments); }; });
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::program

@@ -7,7 +7,7 @@
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
 
-namespace duet {
+namespace duet::evaluation::protocol {
 namespace {
 
 double SecondsSince(std::chrono::steady_clock::time_point start) {
@@ -16,9 +16,10 @@ double SecondsSince(std::chrono::steady_clock::time_point start) {
 
 // The sequence as a method may see it: all of the follower but its first pose is made unusable, so
 // that a method that peeks fails loudly instead of scoring well.
-Sequence WithoutAnswer(const Sequence& sequence, int joints, bool keep_first_pose) {
-  Sequence hidden = sequence;
-  std::vector<Vec3>& follower = hidden.pair.follower.positions;
+dataset::Sequence WithoutAnswer(const dataset::Sequence& sequence, int joints,
+                                bool keep_first_pose) {
+  dataset::Sequence hidden = sequence;
+  std::vector<motion::Vec3>& follower = hidden.pair.follower.positions;
   if (!keep_first_pose) {
     follower.clear();
   } else {
@@ -27,14 +28,14 @@ Sequence WithoutAnswer(const Sequence& sequence, int joints, bool keep_first_pos
   return hidden;
 }
 
-absl::Status CheckAnswer(const Method& method, const Sequence& sequence,
-                         const std::vector<Vec3>& answer) {
+absl::Status CheckAnswer(const Method& method, const dataset::Sequence& sequence,
+                         const std::vector<motion::Vec3>& answer) {
   const size_t wanted = sequence.pair.leader.positions.size();
   if (answer.size() != wanted) {
     return absl::InternalError(absl::StrCat(method.name(), ": ", sequence.id, ": ", answer.size(),
                                             " positions, wanted ", wanted));
   }
-  if (std::all_of(answer.begin(), answer.end(), [](Vec3 p) { return IsFinite(p); })) {
+  if (std::all_of(answer.begin(), answer.end(), [](motion::Vec3 p) { return IsFinite(p); })) {
     return absl::OkStatus();
   }
   return absl::InternalError(
@@ -43,7 +44,7 @@ absl::Status CheckAnswer(const Method& method, const Sequence& sequence,
 
 }  // namespace
 
-absl::StatusOr<FoldResult> RunFold(const Dataset& dataset, const Split& split,
+absl::StatusOr<FoldResult> RunFold(const dataset::Dataset& dataset, const dataset::Split& split,
                                    const std::string& subject, Method* method) {
   FoldResult result;
   result.subject = subject;
@@ -53,10 +54,10 @@ absl::StatusOr<FoldResult> RunFold(const Dataset& dataset, const Split& split,
   result.train_seconds = SecondsSince(start);
   start = std::chrono::steady_clock::now();
   for (const int i : split.test) {
-    const Sequence& sequence = dataset.sequences[static_cast<size_t>(i)];
-    ScoredMotion motion = {i,
-                           method->Predict(WithoutAnswer(sequence, dataset.skeleton.joint_count(),
-                                                         method->reads_first_pose()))};
+    const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(i)];
+    metrics::ScoredMotion motion = {
+        i, method->Predict(WithoutAnswer(sequence, dataset.skeleton.joint_count(),
+                                         method->reads_first_pose()))};
     status = CheckAnswer(*method, sequence, motion.follower);
     if (!status.ok()) return status;
     result.motions.push_back(std::move(motion));
@@ -66,7 +67,7 @@ absl::StatusOr<FoldResult> RunFold(const Dataset& dataset, const Split& split,
 }
 
 absl::StatusOr<std::vector<FoldResult>> RunLeaveOneSubjectOut(
-    const Dataset& dataset, std::vector<std::string> subjects, Method* method,
+    const dataset::Dataset& dataset, std::vector<std::string> subjects, Method* method,
     const std::function<void(const FoldResult&)>& done) {
   if (subjects.empty()) subjects = dataset.Subjects();
   if (subjects.empty()) {
@@ -75,7 +76,7 @@ absl::StatusOr<std::vector<FoldResult>> RunLeaveOneSubjectOut(
   }
   std::vector<FoldResult> folds;
   for (const std::string& subject : subjects) {
-    absl::StatusOr<Split> split = LeaveSubjectOut(dataset, subject);
+    absl::StatusOr<dataset::Split> split = LeaveSubjectOut(dataset, subject);
     if (!split.ok()) return split.status();
     absl::StatusOr<FoldResult> fold = RunFold(dataset, *split, subject, method);
     if (!fold.ok()) return fold.status();
@@ -85,12 +86,12 @@ absl::StatusOr<std::vector<FoldResult>> RunLeaveOneSubjectOut(
   return folds;
 }
 
-std::vector<ScoredMotion> PoolMotions(const std::vector<FoldResult>& folds) {
-  std::vector<ScoredMotion> motions;
+std::vector<metrics::ScoredMotion> PoolMotions(const std::vector<FoldResult>& folds) {
+  std::vector<metrics::ScoredMotion> motions;
   for (const FoldResult& fold : folds) {
     motions.insert(motions.end(), fold.motions.begin(), fold.motions.end());
   }
   return motions;
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::protocol

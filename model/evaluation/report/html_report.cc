@@ -4,15 +4,15 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/string_view.h"
-#include "model/evaluation/report/markup.h"
 #include "model/evaluation/report/html_table.h"
+#include "model/evaluation/report/markup.h"
 
 // Linked in by duet_embed_file.
 extern "C" {
 extern const char duet_report_style[], duet_report_style_end[];
 }
 
-namespace duet {
+namespace duet::evaluation::report {
 namespace {
 
 // Folded settings would be missing on paper.
@@ -86,4 +86,4 @@ std::string ToHtml(const Report& report) {
   return absl::StrCat(out, "</main>\n", kPrintScript, "</body>\n</html>\n");
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::report

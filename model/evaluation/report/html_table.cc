@@ -8,7 +8,7 @@
 #include "absl/strings/str_replace.h"
 #include "model/evaluation/report/markup.h"
 
-namespace duet {
+namespace duet::evaluation::report {
 namespace {
 
 // Long identifiers may break after an underscore.
@@ -71,4 +71,4 @@ std::string ToHtml(const Table& table, int number) {
   return out + "</figure>\n";
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::report

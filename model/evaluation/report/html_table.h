@@ -5,12 +5,12 @@
 
 #include "model/evaluation/report/table.h"
 
-namespace duet {
+namespace duet::evaluation::report {
 
 // A table element with the caption "Table <number>. <title>", its notes below. Printed rows are a
 // group of their own below those measured here.
 std::string ToHtml(const Table& table, int number);
 
-}  // namespace duet
+}  // namespace duet::evaluation::report
 
 #endif  // DUET_MODEL_EVALUATION_REPORT_HTML_TABLE_H_

@@ -6,27 +6,28 @@
 
 #include "model/evaluation/metrics/neighbours.h"
 
-namespace duet {
+namespace duet::evaluation::report {
 
-absl::StatusOr<LatentMap> MapLatent(const FeatureSet& features, const std::vector<int>& classes,
-                                    TsneOptions options) {
+absl::StatusOr<LatentMap> MapLatent(const metrics::FeatureSet& features,
+                                    const std::vector<int>& classes, metrics::TsneOptions options) {
   LatentMap map;
-  absl::StatusOr<double> accuracy = NeighbourAccuracy(features, classes, 1);
+  absl::StatusOr<double> accuracy = metrics::NeighbourAccuracy(features, classes, 1);
   if (!accuracy.ok()) return accuracy.status();
   map.nearest_neighbour = *accuracy;
-  accuracy = NeighbourAccuracy(features, classes, kLatentNeighbours);
+  accuracy = metrics::NeighbourAccuracy(features, classes, kLatentNeighbours);
   if (!accuracy.ok()) return accuracy.status();
   map.several_neighbours = *accuracy;
   options.perplexity = std::min(options.perplexity, (static_cast<double>(features.size()) - 1) / 3);
-  absl::StatusOr<std::vector<Point2>> points = Tsne(features, options);
+  absl::StatusOr<std::vector<metrics::Point2>> points = Tsne(features, options);
   if (!points.ok()) return points.status();
   map.points = *std::move(points);
-  map.purity_of_map = NeighbourPurity(map.points, classes);
+  map.purity_of_map = metrics::NeighbourPurity(map.points, classes);
   return map;
 }
 
 ScatterPlot PlotByClass(std::string title, const std::vector<std::string>& class_names,
-                        const std::vector<Point2>& points, const std::vector<int>& classes) {
+                        const std::vector<metrics::Point2>& points,
+                        const std::vector<int>& classes) {
   ScatterPlot plot{std::move(title), {}};
   for (const std::string& name : class_names) plot.series.push_back({name, {}});
   for (size_t i = 0; i < points.size(); ++i) {
@@ -35,4 +36,4 @@ ScatterPlot PlotByClass(std::string title, const std::vector<std::string>& class
   return plot;
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::report

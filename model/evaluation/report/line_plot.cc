@@ -6,7 +6,7 @@
 #include "model/evaluation/report/plot_frame.h"
 #include "model/evaluation/report/ticks.h"
 
-namespace duet {
+namespace duet::evaluation::report {
 namespace {
 
 constexpr double kLabelSize = 13;
@@ -20,16 +20,16 @@ constexpr double kRoom = 0.04;  // above and below the points
 constexpr double kLegendHalfLine = 14;
 
 // Where the values of a plot stand on its y axis; not finite: a gap.
-Point2 OnAxis(const LinePlot& plot, Point2 point) {
+metrics::Point2 OnAxis(const LinePlot& plot, metrics::Point2 point) {
   if (plot.log_y) point[1] = point[1] > 0 ? std::log10(point[1]) : std::nan("");
-  return std::isfinite(point[0]) ? point : Point2{point[0], std::nan("")};
+  return std::isfinite(point[0]) ? point : metrics::Point2{point[0], std::nan("")};
 }
 
 Frame FrameOf(const LinePlot& plot) {
   Range x, y;
   for (const PlotSeries& series : plot.series) {
-    for (const Point2& point : series.points) {
-      const Point2 at = OnAxis(plot, point);
+    for (const metrics::Point2& point : series.points) {
+      const metrics::Point2 at = OnAxis(plot, point);
       if (!std::isfinite(at[1])) continue;
       x.Add(at[0]);
       y.Add(at[1]);
@@ -37,8 +37,8 @@ Frame FrameOf(const LinePlot& plot) {
   }
   y = y.Usable().Widened(kRoom);
   if (plot.y_range) {
-    const Point2 low = OnAxis(plot, {0, plot.y_range->first});
-    const Point2 high = OnAxis(plot, {0, plot.y_range->second});
+    const metrics::Point2 low = OnAxis(plot, {0, plot.y_range->first});
+    const metrics::Point2 high = OnAxis(plot, {0, plot.y_range->second});
     y = Range{low[1], high[1]}.Usable();
   }
   return {BoxWithAxes(), x.Usable(), y};
@@ -73,11 +73,12 @@ void DrawAxes(const LinePlot& plot, const Frame& frame, SvgWriter* svg) {
 }
 
 // The content of a d attribute; empty without a point.
-std::string PathOf(const LinePlot& plot, const Frame& frame, const std::vector<Point2>& points) {
+std::string PathOf(const LinePlot& plot, const Frame& frame,
+                   const std::vector<metrics::Point2>& points) {
   std::string path;
   bool pen_down = false;
-  for (const Point2& point : points) {
-    Point2 at = OnAxis(plot, point);
+  for (const metrics::Point2& point : points) {
+    metrics::Point2 at = OnAxis(plot, point);
     if (!std::isfinite(at[1])) {
       pen_down = false;
       continue;
@@ -91,8 +92,8 @@ std::string PathOf(const LinePlot& plot, const Frame& frame, const std::vector<P
 }
 
 // Each point's mean with those up to half a window away; gaps stay.
-std::vector<Point2> RunningMean(const std::vector<Point2>& points, int window) {
-  std::vector<Point2> smooth = points;
+std::vector<metrics::Point2> RunningMean(const std::vector<metrics::Point2>& points, int window) {
+  std::vector<metrics::Point2> smooth = points;
   const size_t reach = static_cast<size_t>(window) / 2;
   for (size_t i = 0; i < points.size(); ++i) {
     if (!std::isfinite(points[i][1])) continue;
@@ -108,8 +109,8 @@ std::vector<Point2> RunningMean(const std::vector<Point2>& points, int window) {
 }
 
 void DrawMarkers(const LinePlot& plot, const Frame& frame, size_t index, SvgWriter* svg) {
-  for (const Point2& point : plot.series[index].points) {
-    const Point2 at = OnAxis(plot, point);
+  for (const metrics::Point2& point : plot.series[index].points) {
+    const metrics::Point2 at = OnAxis(plot, point);
     if (!std::isfinite(at[1])) continue;
     const double y = std::clamp(at[1], frame.y().low, frame.y().high);
     svg->Marker(index, frame.X(at[0]), frame.Y(y), kPointRadius * 0.8);
@@ -146,4 +147,4 @@ std::string ToSvg(const LinePlot& plot) {
   return svg.Finish();
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::report

@@ -4,7 +4,7 @@
 #include "model/evaluation/report/markup.h"
 #include "model/evaluation/report/table.h"
 
-namespace duet {
+namespace duet::evaluation::report {
 namespace {
 
 // Numbers run through the whole report.
@@ -63,4 +63,4 @@ std::string ToMarkdown(const Report& report) {
   return out;
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::report

@@ -5,11 +5,11 @@
 
 #include "model/evaluation/report/report.h"
 
-namespace duet {
+namespace duet::evaluation::report {
 
 // The report in GitHub's Markdown. Figures are <name>.svg beside it.
 std::string ToMarkdown(const Report& report);
 
-}  // namespace duet
+}  // namespace duet::evaluation::report
 
 #endif  // DUET_MODEL_EVALUATION_REPORT_MARKDOWN_REPORT_H_

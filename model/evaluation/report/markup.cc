@@ -5,7 +5,7 @@
 
 #include "absl/strings/ascii.h"
 
-namespace duet {
+namespace duet::evaluation::report {
 namespace {
 
 bool IsWord(const std::string& text, std::size_t at) {
@@ -47,4 +47,4 @@ std::string EscapeMarkup(const std::string& text) {
   return out;
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::report

@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace duet {
+namespace duet::evaluation::report {
 
 // Text that reads as itself within GitHub's Markdown, also in a cell of a table; line ends become
 // blanks.
@@ -13,6 +13,6 @@ std::string EscapeMarkdown(const std::string& text);
 // control characters dropped.
 std::string EscapeMarkup(const std::string& text);
 
-}  // namespace duet
+}  // namespace duet::evaluation::report
 
 #endif  // DUET_MODEL_EVALUATION_REPORT_MARKUP_H_

@@ -5,7 +5,7 @@
 
 #include "absl/strings/str_cat.h"
 
-namespace duet {
+namespace duet::evaluation::report {
 namespace {
 
 std::vector<MetricStyle> Styles() {
@@ -87,4 +87,4 @@ void AddPrintedRows(const Table& paper, Table* table) {
   table->notes.insert(table->notes.end(), printed.notes.begin(), printed.notes.end());
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::report

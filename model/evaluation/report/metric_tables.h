@@ -7,7 +7,7 @@
 
 #include "model/evaluation/report/table.h"
 
-namespace duet {
+namespace duet::evaluation::report {
 
 inline constexpr char kAccuracy[] = "accuracy";
 inline constexpr char kFrechet[] = "fid";
@@ -42,6 +42,6 @@ Table MetricTable(const MetricStyle& style, const std::vector<std::string>& clas
 // table's classes; otherwise a note that they are not. `table` ends in a mean column.
 void AddPrintedRows(const Table& paper, Table* table);
 
-}  // namespace duet
+}  // namespace duet::evaluation::report
 
 #endif  // DUET_MODEL_EVALUATION_REPORT_METRIC_TABLES_H_

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace duet {
+namespace duet::evaluation::report {
 namespace {
 
 const std::vector<std::string>& SbuClasses() {
@@ -85,4 +85,4 @@ Table PaperAugmentation() {
       3, Best::kHighest);
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::report

@@ -3,7 +3,7 @@
 
 #include "model/evaluation/report/table.h"
 
-namespace duet {
+namespace duet::evaluation::report {
 
 // The figures that Goel et al. 2022 print, every row marked as printed, each table with a note on
 // what it may be compared with. Columns bear this project's class names.
@@ -13,6 +13,6 @@ Table PaperFidSbu();        // Table 2
 Table PaperFid2c();         // Tables 3 and 5
 Table PaperAugmentation();  // Table 6: a classifier's accuracy without and with synthetic motion
 
-}  // namespace duet
+}  // namespace duet::evaluation::report
 
 #endif  // DUET_MODEL_EVALUATION_REPORT_PAPER_TABLES_H_

@@ -12,11 +12,11 @@
 // Series are told apart by colour (Okabe and Ito's palette, which colour-blind readers can tell
 // apart) and by marker or dash, so that a figure survives a grey print.
 
-namespace duet {
+namespace duet::evaluation::report {
 
 struct PlotSeries {
   std::string name;
-  std::vector<Point2> points;  // x, y; a point that is not finite leaves a gap
+  std::vector<metrics::Point2> points;  // x, y; a point that is not finite leaves a gap
 };
 
 // Points by class, without axes and with one scale: for maps whose distances alone mean something
@@ -42,6 +42,6 @@ struct LinePlot {
 };
 std::string ToSvg(const LinePlot& plot);
 
-}  // namespace duet
+}  // namespace duet::evaluation::report
 
 #endif  // DUET_MODEL_EVALUATION_REPORT_PLOT_H_

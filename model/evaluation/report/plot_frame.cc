@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace duet {
+namespace duet::evaluation::report {
 namespace {
 
 constexpr double kWidth = 760, kHeight = 520;  // of a figure, at least
@@ -71,4 +71,4 @@ void DrawLegendText(const Box& box, size_t index, const std::string& name, SvgWr
             kTickSize);
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::report

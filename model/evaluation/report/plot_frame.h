@@ -11,7 +11,7 @@
 
 // What all kinds of plots share: title, box and legend. Units: pixels.
 
-namespace duet {
+namespace duet::evaluation::report {
 
 // The least interval that holds what was added.
 struct Range {
@@ -64,6 +64,6 @@ struct LegendPlace {
 LegendPlace LegendSample(const Box& box, size_t index);
 void DrawLegendText(const Box& box, size_t index, const std::string& name, SvgWriter* svg);
 
-}  // namespace duet
+}  // namespace duet::evaluation::report
 
 #endif  // DUET_MODEL_EVALUATION_REPORT_PLOT_FRAME_H_

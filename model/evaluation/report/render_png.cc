@@ -11,7 +11,7 @@
 
 extern char** environ;
 
-namespace duet {
+namespace duet::evaluation::report {
 namespace {
 
 constexpr char kZoom[] = "--zoom=3.125";  // 300 / 96
@@ -53,4 +53,4 @@ absl::Status RenderPng(const std::filesystem::path& svg, const std::filesystem::
       absl::StrCat(program, " ", svg.string(), ": ended with status ", status, ", wanted 0"));
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::report

@@ -6,7 +6,7 @@
 
 #include "absl/status/status.h"
 
-namespace duet {
+namespace duet::evaluation::report {
 
 // Renders an SVG file as PNG on white, at 300 dots an inch (an SVG pixel is 1/96 inch), with
 // `program`, which is looked for in PATH: Debian's rsvg-convert.
@@ -14,6 +14,6 @@ namespace duet {
 absl::Status RenderPng(const std::filesystem::path& svg, const std::filesystem::path& png,
                        const std::string& program = "rsvg-convert");
 
-}  // namespace duet
+}  // namespace duet::evaluation::report
 
 #endif  // DUET_MODEL_EVALUATION_REPORT_RENDER_PNG_H_

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <system_error>
 
+#include "model/base/text.h"
 #include "model/evaluation/report/html_report.h"
 #include "model/evaluation/report/markdown_report.h"
-#include "model/base/text.h"
 
-namespace duet {
+namespace duet::evaluation::report {
 
 std::string ReadingGuide() {
   return "The best figures of a column are bold, ties included. Rows marked as printed are the "
@@ -26,13 +26,13 @@ absl::Status WriteReport(const Report& report, const std::filesystem::path& fold
   std::filesystem::create_directories(folder, error);
   for (const ResultSection& section : report.sections) {
     for (const ResultFigure& figure : section.figures) {
-      absl::Status status = WriteFile(folder / (figure.name + ".svg"), figure.svg);
+      absl::Status status = base::WriteFile(folder / (figure.name + ".svg"), figure.svg);
       if (!status.ok()) return status;
     }
   }
-  absl::Status status = WriteFile(folder / "report.md", ToMarkdown(report));
+  absl::Status status = base::WriteFile(folder / "report.md", ToMarkdown(report));
   if (!status.ok()) return status;
-  return WriteFile(folder / "index.html", ToHtml(report));
+  return base::WriteFile(folder / "index.html", ToHtml(report));
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::report

@@ -8,7 +8,7 @@
 #include "absl/status/status.h"
 #include "model/evaluation/report/result_section.h"
 
-namespace duet {
+namespace duet::evaluation::report {
 
 // What a report is made of. Tables and figures are numbered through all sections, in their order.
 struct Report {
@@ -26,6 +26,6 @@ std::string LatestDate(const Report& report);
 // at all.
 absl::Status WriteReport(const Report& report, const std::filesystem::path& folder);
 
-}  // namespace duet
+}  // namespace duet::evaluation::report
 
 #endif  // DUET_MODEL_EVALUATION_REPORT_REPORT_H_

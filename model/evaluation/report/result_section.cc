@@ -10,10 +10,10 @@
 #include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
 #include "absl/time/time.h"
-#include "model/evaluation/report/section_json.h"
 #include "model/base/text.h"
+#include "model/evaluation/report/section_json.h"
 
-namespace duet {
+namespace duet::evaluation::report {
 namespace {
 
 namespace fs = std::filesystem;
@@ -28,8 +28,8 @@ absl::Status CheckSvg(const std::string& svg) {
   const bool is_whole = absl::StartsWith(svg, "<svg ") &&
                         absl::EndsWith(absl::StripTrailingAsciiWhitespace(svg), "</svg>");
   if (is_whole) return absl::OkStatus();
-  return absl::InvalidArgumentError(
-      absl::StrCat("begins with ", Quoted(svg.substr(0, 16)), ", wanted one whole <svg> element"));
+  return absl::InvalidArgumentError(absl::StrCat("begins with ", base::Quoted(svg.substr(0, 16)),
+                                                 ", wanted one whole <svg> element"));
 }
 
 absl::StatusOr<std::string> ReadBounded(const fs::path& file) {
@@ -39,7 +39,7 @@ absl::StatusOr<std::string> ReadBounded(const fs::path& file) {
     return absl::InvalidArgumentError(
         absl::StrCat(file.string(), ": ", bytes, " bytes, wanted at most ", kMaxFileBytes));
   }
-  return ReadFile(file);
+  return base::ReadFile(file);
 }
 
 absl::StatusOr<ResultSection> ReadSection(const fs::path& file) {
@@ -48,8 +48,8 @@ absl::StatusOr<ResultSection> ReadSection(const fs::path& file) {
   absl::StatusOr<ResultSection> section = SectionFromJson(*text);
   if (!section.ok()) return Prefixed(file.string(), section.status());
   if (section->id != file.stem().string()) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(file.string(), ": id: ", Quoted(section->id), ", wanted the file's own name"));
+    return absl::InvalidArgumentError(absl::StrCat(
+        file.string(), ": id: ", base::Quoted(section->id), ", wanted the file's own name"));
   }
   for (ResultFigure& figure : section->figures) {
     const fs::path svg_file = file.parent_path() / (figure.name + ".svg");
@@ -69,7 +69,7 @@ absl::Status CheckFigureNames(const std::vector<ResultSection>& sections) {
     for (const ResultFigure& figure : section.figures) {
       if (seen.insert(figure.name).second) continue;
       return absl::InvalidArgumentError(
-          absl::StrCat(section.id, ".json: figures: ", Quoted(figure.name),
+          absl::StrCat(section.id, ".json: figures: ", base::Quoted(figure.name),
                        " is a figure of an earlier section, wanted a name of its own"));
     }
   }
@@ -100,19 +100,19 @@ absl::Status WriteSection(const ResultSection& section, const fs::path& folder) 
   // What the reader would refuse must not be written: there is one set of rules.
   const std::string text = SectionToJson(section);
   if (absl::StatusOr<ResultSection> again = SectionFromJson(text); !again.ok()) {
-    return Prefixed(absl::StrCat("section ", Quoted(section.id)), again.status());
+    return Prefixed(absl::StrCat("section ", base::Quoted(section.id)), again.status());
   }
   std::error_code error;
   fs::create_directories(folder, error);
   // The figures first: a section never names one that is not there.
   for (const ResultFigure& figure : section.figures) {
     if (absl::Status status = CheckSvg(figure.svg); !status.ok()) {
-      return Prefixed(absl::StrCat("figure ", Quoted(figure.name)), status);
+      return Prefixed(absl::StrCat("figure ", base::Quoted(figure.name)), status);
     }
-    absl::Status status = WriteFile(folder / (figure.name + ".svg"), figure.svg);
+    absl::Status status = base::WriteFile(folder / (figure.name + ".svg"), figure.svg);
     if (!status.ok()) return status;
   }
-  return WriteFile(folder / (section.id + ".json"), text);
+  return base::WriteFile(folder / (section.id + ".json"), text);
 }
 
 absl::StatusOr<std::vector<ResultSection>> ReadSections(const fs::path& folder) {
@@ -132,4 +132,4 @@ absl::StatusOr<std::vector<ResultSection>> ReadSections(const fs::path& folder) 
 
 std::string Today() { return absl::FormatTime("%Y-%m-%d", absl::Now(), absl::UTCTimeZone()); }
 
-}  // namespace duet
+}  // namespace duet::evaluation::report

@@ -10,7 +10,7 @@
 #include "absl/status/statusor.h"
 #include "model/evaluation/report/table.h"
 
-namespace duet {
+namespace duet::evaluation::report {
 
 // A figure of a report: one SVG document.
 struct ResultFigure {
@@ -42,6 +42,6 @@ absl::StatusOr<std::vector<ResultSection>> ReadSections(const std::filesystem::p
 // Today, YYYY-MM-DD, in UTC.
 std::string Today();
 
-}  // namespace duet
+}  // namespace duet::evaluation::report
 
 #endif  // DUET_MODEL_EVALUATION_REPORT_RESULT_SECTION_H_

@@ -4,19 +4,21 @@
 #include "model/evaluation/report/plot.h"
 #include "model/evaluation/report/plot_frame.h"
 
-namespace duet {
+namespace duet::evaluation::report {
 namespace {
 
 constexpr char kBoxStyle[] = "fill=\"none\" stroke=\"#222222\" stroke-width=\"1\"";
 constexpr double kRoom = 0.05;  // on either side of the points
 
-bool IsDrawn(const Point2& point) { return std::isfinite(point[0]) && std::isfinite(point[1]); }
+bool IsDrawn(const metrics::Point2& point) {
+  return std::isfinite(point[0]) && std::isfinite(point[1]);
+}
 
 // One scale for both directions: distances are all that a map of points shows.
 Frame FrameOf(const ScatterPlot& plot) {
   Range x, y;
   for (const PlotSeries& series : plot.series) {
-    for (const Point2& point : series.points) {
+    for (const metrics::Point2& point : series.points) {
       if (!IsDrawn(point)) continue;
       x.Add(point[0]);
       y.Add(point[1]);
@@ -42,7 +44,7 @@ std::string ToSvg(const ScatterPlot& plot) {
                SvgNumber(box.floor) + 'H' + SvgNumber(box.left) + 'Z',
            kBoxStyle);
   for (size_t i = 0; i < plot.series.size(); ++i) {
-    for (const Point2& point : plot.series[i].points) {
+    for (const metrics::Point2& point : plot.series[i].points) {
       if (IsDrawn(point)) svg.Marker(i, frame.X(point[0]), frame.Y(point[1]), kPointRadius);
     }
     const LegendPlace sample = LegendSample(box, i);
@@ -52,4 +54,4 @@ std::string ToSvg(const ScatterPlot& plot) {
   return svg.Finish();
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::report

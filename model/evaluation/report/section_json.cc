@@ -11,10 +11,10 @@
 #include "absl/strings/str_cat.h"
 #include "absl/time/civil_time.h"
 #include "model/base/strict_json.h"
-#include "model/evaluation/report/table_json.h"
 #include "model/base/text.h"
+#include "model/evaluation/report/table_json.h"
 
-namespace duet {
+namespace duet::evaluation::report {
 namespace {
 
 using nlohmann::json;
@@ -34,25 +34,25 @@ bool IsName(const std::string& name) {
          });
 }
 
-std::string ReadName(ObjectReader* reader, const std::string& key) {
+std::string ReadName(base::ObjectReader* reader, const std::string& key) {
   std::string name = reader->String(key, kMaxTextBytes);
   if (reader->ok() && !IsName(name)) {
-    reader->Fail(key, absl::StrCat(Quoted(name), ", wanted ", kWantedName));
+    reader->Fail(key, absl::StrCat(base::Quoted(name), ", wanted ", kWantedName));
   }
   return name;
 }
 
-std::string ReadDate(ObjectReader* reader) {
+std::string ReadDate(base::ObjectReader* reader) {
   std::string date = reader->String("date", kMaxTextBytes);
   absl::CivilDay day;
   const bool is_date = absl::ParseCivilTime(date, &day) && absl::FormatCivilTime(day) == date;
   if (reader->ok() && !is_date) {
-    reader->Fail("date", absl::StrCat(Quoted(date), ", wanted YYYY-MM-DD"));
+    reader->Fail("date", absl::StrCat(base::Quoted(date), ", wanted YYYY-MM-DD"));
   }
   return date;
 }
 
-std::vector<Table> ReadTables(ObjectReader* reader) {
+std::vector<Table> ReadTables(base::ObjectReader* reader) {
   std::vector<Table> tables;
   for (const json& item : reader->Array("tables", kMaxItems)) {
     absl::StatusOr<Table> table = TableFromJson(item, absl::StrCat("tables[", tables.size(), "]"));
@@ -62,25 +62,26 @@ std::vector<Table> ReadTables(ObjectReader* reader) {
   return tables;
 }
 
-std::vector<ResultFigure> ReadFigures(ObjectReader* reader) {
+std::vector<ResultFigure> ReadFigures(base::ObjectReader* reader) {
   std::vector<ResultFigure> figures;
   std::set<std::string> seen;
   for (const json& item : reader->Array("figures", kMaxItems)) {
-    ObjectReader fields(item, absl::StrCat("figures[", figures.size(), "]"));
+    base::ObjectReader fields(item, absl::StrCat("figures[", figures.size(), "]"));
     ResultFigure figure;
     figure.name = ReadName(&fields, "name");
     figure.caption = fields.String("caption", kMaxTextBytes);
-    if (!seen.insert(figure.name).second) fields.Fail("name", Quoted(figure.name) + " is repeated");
+    if (!seen.insert(figure.name).second)
+      fields.Fail("name", base::Quoted(figure.name) + " is repeated");
     reader->Update(fields.Finish());
     figures.push_back(std::move(figure));
   }
   return figures;
 }
 
-std::vector<std::pair<std::string, std::string>> ReadSettings(ObjectReader* reader) {
+std::vector<std::pair<std::string, std::string>> ReadSettings(base::ObjectReader* reader) {
   std::vector<std::pair<std::string, std::string>> settings;
   for (const json& item : reader->Array("settings", kMaxItems)) {
-    ObjectReader fields(item, absl::StrCat("settings[", settings.size(), "]"));
+    base::ObjectReader fields(item, absl::StrCat("settings[", settings.size(), "]"));
     settings.emplace_back(fields.String("name", kMaxTextBytes),
                           fields.String("value", kMaxTextBytes));
     reader->Update(fields.Finish());
@@ -114,9 +115,9 @@ std::string SectionToJson(const ResultSection& section) {
 }
 
 absl::StatusOr<ResultSection> SectionFromJson(const std::string& text) {
-  const absl::StatusOr<json> whole = ParseStrictJson(text, kMaxDepth);
+  const absl::StatusOr<json> whole = base::ParseStrictJson(text, kMaxDepth);
   if (!whole.ok()) return whole.status();
-  ObjectReader reader(*whole, "");
+  base::ObjectReader reader(*whole, "");
   reader.Int("format_version", kFormatVersion, kFormatVersion);
   ResultSection section;
   section.id = ReadName(&reader, "id");
@@ -131,4 +132,4 @@ absl::StatusOr<ResultSection> SectionFromJson(const std::string& text) {
   return section;
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::report

@@ -4,7 +4,7 @@
 
 #include "model/evaluation/report/markup.h"
 
-namespace duet {
+namespace duet::evaluation::report {
 namespace {
 
 // Okabe and Ito 2008, without the yellow that white paper swallows.
@@ -104,4 +104,4 @@ void SvgWriter::Marker(std::size_t series, double x, double y, double radius) {
 
 std::string SvgWriter::Finish() const { return text_ + "</svg>\n"; }
 
-}  // namespace duet
+}  // namespace duet::evaluation::report

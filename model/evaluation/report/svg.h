@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <string>
 
-namespace duet {
+namespace duet::evaluation::report {
 
 // Where a text is held.
 enum class TextAnchor { kStart, kMiddle, kEnd };
@@ -38,6 +38,6 @@ std::string SeriesDash(std::size_t series);
 // A number for an attribute: at most two decimals, never an exponent.
 std::string SvgNumber(double value);
 
-}  // namespace duet
+}  // namespace duet::evaluation::report
 
 #endif  // DUET_MODEL_EVALUATION_REPORT_SVG_H_

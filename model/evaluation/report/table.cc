@@ -9,7 +9,7 @@
 
 #include "model/evaluation/report/markup.h"
 
-namespace duet {
+namespace duet::evaluation::report {
 namespace {
 
 constexpr char kDash[] = "-";
@@ -148,4 +148,4 @@ std::string ToCsv(const Table& table) {
   return text;
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::report

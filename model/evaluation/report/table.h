@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace duet {
+namespace duet::evaluation::report {
 
 struct TableRow {
   std::string name;
@@ -47,6 +47,6 @@ std::string ToMarkdown(const Table& table);   // marked in bold
 std::string ToCsv(const Table& table);        // RFC 4180; a column "printed" tells the rows apart
 std::string ToJson(const Table& table);
 
-}  // namespace duet
+}  // namespace duet::evaluation::report
 
 #endif  // DUET_MODEL_EVALUATION_REPORT_TABLE_H_

@@ -11,7 +11,7 @@
 #include "absl/strings/str_cat.h"
 #include "model/base/strict_json.h"
 
-namespace duet {
+namespace duet::evaluation::report {
 namespace {
 
 using nlohmann::json;
@@ -30,7 +30,7 @@ ordered_json FigureToJson(double value) {
   return value;
 }
 
-Best ReadBest(ObjectReader* reader) {
+Best ReadBest(base::ObjectReader* reader) {
   const std::string name = reader->String("best", kMaxTextBytes);
   const auto found = std::find(kBestNames.begin(), kBestNames.end(), name);
   if (found != kBestNames.end()) return static_cast<Best>(found - kBestNames.begin());
@@ -39,7 +39,7 @@ Best ReadBest(ObjectReader* reader) {
   return Best::kNone;
 }
 
-std::vector<double> ReadFigures(ObjectReader* reader, size_t columns) {
+std::vector<double> ReadFigures(base::ObjectReader* reader, size_t columns) {
   std::vector<double> figures;
   for (const json& value : reader->Array("values", kMaxColumns)) {
     if (!value.is_null() && !value.is_number()) {
@@ -71,12 +71,12 @@ ordered_json TableToJson(const Table& table) {
 }
 
 absl::StatusOr<Table> TableFromJson(const json& value, const std::string& path) {
-  ObjectReader reader(value, path);
+  base::ObjectReader reader(value, path);
   Table table;
   table.title = reader.String("title", kMaxTextBytes);
   table.columns = reader.Strings("columns", kMaxColumns);
   for (const json& item : reader.Array("rows", kMaxRows)) {
-    ObjectReader fields(item, absl::StrCat(path, ".rows[", table.rows.size(), "]"));
+    base::ObjectReader fields(item, absl::StrCat(path, ".rows[", table.rows.size(), "]"));
     TableRow row;
     row.name = fields.String("name", kMaxTextBytes);
     row.printed = fields.Bool("printed");
@@ -95,4 +95,4 @@ std::string ToJson(const Table& table) {
   return TableToJson(table).dump(2, ' ', false, json::error_handler_t::replace) + '\n';
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::report

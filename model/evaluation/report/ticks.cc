@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdio>
 
-namespace duet {
+namespace duet::evaluation::report {
 namespace {
 
 constexpr double kRounding = 1e-9;
@@ -54,4 +54,4 @@ std::string TickText(double value) {
   return text;
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::report

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace duet {
+namespace duet::evaluation::report {
 
 // Round numbers within [low, high] in about `count` steps: multiples of 1, 2 or 5 times a power of
 // ten. Requires low < high.
@@ -17,6 +17,6 @@ std::vector<double> LogTicks(double low, double high, int count);
 // As short as it can be read: "0", "0.25", "1e+06".
 std::string TickText(double value);
 
-}  // namespace duet
+}  // namespace duet::evaluation::report
 
 #endif  // DUET_MODEL_EVALUATION_REPORT_TICKS_H_

@@ -9,7 +9,7 @@
 #include "absl/strings/str_cat.h"
 #include "model/evaluation/report/plot.h"
 
-namespace duet {
+namespace duet::evaluation::report {
 namespace {
 
 struct Loss {
@@ -30,7 +30,8 @@ constexpr int kRunningMean = 9;  // epochs
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 // Null unless the loss was on.
-const std::vector<double>* FindLoss(const TrainingLog& log, const std::string& column) {
+const std::vector<double>* FindLoss(const experiments::TrainingLog& log,
+                                    const std::string& column) {
   const std::vector<double>* values = log.Find(column);
   if (values == nullptr) return nullptr;
   const bool is_on =
@@ -38,7 +39,7 @@ const std::vector<double>* FindLoss(const TrainingLog& log, const std::string& c
   return is_on ? values : nullptr;
 }
 
-PlotSeries Line(const std::string& name, const TrainingLog& log,
+PlotSeries Line(const std::string& name, const experiments::TrainingLog& log,
                 const std::vector<double>& values) {
   PlotSeries line = {name, {}};
   for (size_t i = 0; i < values.size(); ++i) {
@@ -167,4 +168,4 @@ ResultSection DrawTrainingCurves(const std::vector<LoggedRun>& runs, const std::
   return section;
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::report

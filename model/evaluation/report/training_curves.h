@@ -4,15 +4,15 @@
 #include <string>
 #include <vector>
 
-#include "model/evaluation/report/result_section.h"
 #include "model/evaluation/experiments/training_log.h"
+#include "model/evaluation/report/result_section.h"
 
-namespace duet {
+namespace duet::evaluation::report {
 
 // A run of duet-train, and how figures and tables call it.
 struct LoggedRun {
   std::string name;
-  TrainingLog log;
+  experiments::TrainingLog log;
 };
 
 // How runs went: of one run, its losses in one figure; of several, a figure for each loss with a
@@ -21,6 +21,6 @@ struct LoggedRun {
 // <id>_<loss>; text, settings and command are left to the caller.
 ResultSection DrawTrainingCurves(const std::vector<LoggedRun>& runs, const std::string& id);
 
-}  // namespace duet
+}  // namespace duet::evaluation::report
 
 #endif  // DUET_MODEL_EVALUATION_REPORT_TRAINING_CURVES_H_

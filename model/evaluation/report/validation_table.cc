@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace duet {
+namespace duet::evaluation::report {
 namespace {
 
 constexpr int kDecimals = 4;
@@ -48,4 +48,4 @@ Table ValidationTable(const std::string& title, const std::string& column,
   return table;
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::report

@@ -7,7 +7,7 @@
 #include "model/evaluation/report/table.h"
 #include "model/evaluation/report/training_curves.h"
 
-namespace duet {
+namespace duet::evaluation::report {
 
 // Runs of one configuration, each with people of its own left out and held back.
 struct ValidatedRuns {
@@ -21,6 +21,6 @@ struct ValidatedRuns {
 Table ValidationTable(const std::string& title, const std::string& column,
                       const std::vector<ValidatedRuns>& configurations);
 
-}  // namespace duet
+}  // namespace duet::evaluation::report
 
 #endif  // DUET_MODEL_EVALUATION_REPORT_VALIDATION_TABLE_H_

@@ -8,7 +8,7 @@
 #include "absl/strings/str_cat.h"
 #include "model/base/text.h"
 
-namespace duet {
+namespace duet::formats::bvh {
 namespace {
 
 constexpr double kRadiansPerDegree = 3.14159265358979323846 / 180;
@@ -87,11 +87,11 @@ class BvhParser {
 
  private:
   absl::Status Error(absl::string_view message) const {
-    return ErrorAt(source_, cursor_.line(), message);
+    return base::ErrorAt(source_, cursor_.line(), message);
   }
 
   absl::Status Unexpected(absl::string_view came, absl::string_view wanted) const {
-    return Error(absl::StrCat("came ", came.empty() ? "the end of the file" : Quoted(came),
+    return Error(absl::StrCat("came ", came.empty() ? "the end of the file" : base::Quoted(came),
                               ", wanted ", wanted));
   }
 
@@ -129,8 +129,8 @@ class BvhParser {
     joint.name =
         end_site ? absl::StrCat(document_.joints[static_cast<size_t>(joint.parent)].name, ".end")
                  : std::string(name);
-    if (document_.joints.size() >= kMaxFileJoints) {
-      return Error(absl::StrCat("more than ", kMaxFileJoints, " joints"));
+    if (document_.joints.size() >= base::kMaxFileJoints) {
+      return Error(absl::StrCat("more than ", base::kMaxFileJoints, " joints"));
     }
     const absl::string_view brace = cursor_.Word();
     if (brace != "{") return Unexpected(brace, absl::StrCat("{ after ", keyword, " ", name));
@@ -143,7 +143,7 @@ class BvhParser {
   absl::Status CloseJoint() {
     const BvhJoint& joint = document_.joints[static_cast<size_t>(open_.back())];
     if (!has_offset_[static_cast<size_t>(open_.back())]) {
-      return Error(absl::StrCat("joint ", Quoted(joint.name), ": no OFFSET"));
+      return Error(absl::StrCat("joint ", base::Quoted(joint.name), ": no OFFSET"));
     }
     open_.pop_back();
     return absl::OkStatus();
@@ -153,7 +153,7 @@ class BvhParser {
     float values[3] = {};
     for (float& value : values) {
       const absl::string_view word = cursor_.Word();
-      if (!ParseCoordinate(word, &value)) return Unexpected(word, "a number of OFFSET x y z");
+      if (!base::ParseCoordinate(word, &value)) return Unexpected(word, "a number of OFFSET x y z");
     }
     document_.joints[static_cast<size_t>(open_.back())].offset = {values[0], values[1], values[2]};
     has_offset_[static_cast<size_t>(open_.back())] = true;
@@ -164,7 +164,7 @@ class BvhParser {
     BvhJoint& joint = document_.joints[static_cast<size_t>(open_.back())];
     const absl::string_view word = cursor_.Word();
     int count = 0;
-    if (!ParseInteger(word, &count) || count < 0 || count > kMaxChannels) {
+    if (!base::ParseInteger(word, &count) || count < 0 || count > kMaxChannels) {
       return Unexpected(word, "a number of channels, 0 to 6");
     }
     if (!joint.channels.empty()) return Error("CHANNELS: given twice for one joint");
@@ -185,16 +185,16 @@ class BvhParser {
     absl::string_view word = cursor_.Word();
     if (word != "Frames:") return Unexpected(word, "Frames:");
     word = cursor_.Word();
-    if (!ParseInteger(word, &document_.frame_count) || document_.frame_count < 1 ||
-        document_.frame_count > kMaxMotionFrames) {
-      return Unexpected(word, absl::StrCat("a number of frames, 1 to ", kMaxMotionFrames));
+    if (!base::ParseInteger(word, &document_.frame_count) || document_.frame_count < 1 ||
+        document_.frame_count > base::kMaxMotionFrames) {
+      return Unexpected(word, absl::StrCat("a number of frames, 1 to ", base::kMaxMotionFrames));
     }
     word = cursor_.Word();
     if (word == "Frame") word = cursor_.Word();
     if (word != "Time:") return Unexpected(word, "Frame Time:");
     word = cursor_.Word();
-    if (!ParseNumber(word, &document_.frame_time_s) ||
-        !(document_.frame_time_s >= 1 / kMaxFrameRateHz && document_.frame_time_s <= 10)) {
+    if (!base::ParseNumber(word, &document_.frame_time_s) ||
+        !(document_.frame_time_s >= 1 / base::kMaxFrameRateHz && document_.frame_time_s <= 10)) {
       return Unexpected(word, "a frame time of 0.001 to 10 seconds");
     }
     return absl::OkStatus();
@@ -202,24 +202,24 @@ class BvhParser {
 
   absl::Status ParseFrames() {
     const int first_line = cursor_.line();
-    LineReader lines(cursor_.rest());
+    base::LineReader lines(cursor_.rest());
     int frames = 0;
     for (absl::string_view line; lines.Next(&line);) {
       line = absl::StripAsciiWhitespace(line);
       if (line.empty()) continue;
       const int number = first_line + lines.number() - 1;
       if (frames == document_.frame_count) {
-        return ErrorAt(source_, number,
-                       absl::StrCat("came more frames than the ", frames, " of Frames:"));
+        return base::ErrorAt(source_, number,
+                             absl::StrCat("came more frames than the ", frames, " of Frames:"));
       }
       absl::Status status = ParseFrame(line, number);
       if (!status.ok()) return status;
       ++frames;
     }
     if (frames == document_.frame_count) return absl::OkStatus();
-    return ErrorAt(source_, first_line + lines.number(),
-                   absl::StrCat("came ", frames, " frames, wanted the ", document_.frame_count,
-                                " of Frames:"));
+    return base::ErrorAt(source_, first_line + lines.number(),
+                         absl::StrCat("came ", frames, " frames, wanted the ",
+                                      document_.frame_count, " of Frames:"));
   }
 
   absl::Status ParseFrame(absl::string_view line, int number) {
@@ -228,16 +228,16 @@ class BvhParser {
     int count = 0;
     for (absl::string_view word = words.Word(); !word.empty(); word = words.Word(), ++count) {
       float value = 0;
-      if (!ParseCoordinate(word, &value)) {
-        return ErrorAt(source_, number,
-                       absl::StrCat("channel value ", count + 1, ": came ", Quoted(word),
-                                    ", wanted a finite number"));
+      if (!base::ParseCoordinate(word, &value)) {
+        return base::ErrorAt(source_, number,
+                             absl::StrCat("channel value ", count + 1, ": came ",
+                                          base::Quoted(word), ", wanted a finite number"));
       }
       if (count < wanted) document_.values.push_back(value);
     }
     if (count == wanted) return absl::OkStatus();
-    return ErrorAt(source_, number,
-                   absl::StrCat("came ", count, " channel values, wanted ", wanted));
+    return base::ErrorAt(source_, number,
+                         absl::StrCat("came ", count, " channel values, wanted ", wanted));
   }
 
   Cursor cursor_;
@@ -281,7 +281,7 @@ class BvhFormatter {
     out_ += "OFFSET";
     for (double value : {joint.offset.x, joint.offset.y, joint.offset.z}) {
       out_ += ' ';
-      AppendFixed(&out_, value, kOffsetDecimals);
+      base::AppendFixed(&out_, value, kOffsetDecimals);
     }
     out_ += '\n';
     if (!joint.end_site) AppendChannels(joint, depth + 1);
@@ -306,11 +306,11 @@ class BvhFormatter {
 
   void AppendMotion() {
     absl::StrAppend(&out_, "MOTION\nFrames: ", document_.frame_count, "\nFrame Time: ");
-    AppendFixed(&out_, document_.frame_time_s, kFrameTimeDecimals);
+    base::AppendFixed(&out_, document_.frame_time_s, kFrameTimeDecimals);
     out_ += '\n';
     const std::size_t channels = static_cast<std::size_t>(document_.ChannelCount());
     for (std::size_t i = 0; i < document_.values.size(); ++i) {
-      AppendFixed(&out_, static_cast<double>(document_.values[i]), kValueDecimals);
+      base::AppendFixed(&out_, static_cast<double>(document_.values[i]), kValueDecimals);
       out_ += (i + 1) % channels == 0 ? '\n' : ' ';
     }
   }
@@ -319,19 +319,19 @@ class BvhFormatter {
   std::string out_;
 };
 
-Quaternion ChannelRotation(BvhChannel channel, double degrees) {
+retargeting::Quaternion ChannelRotation(BvhChannel channel, double degrees) {
   const double radians = degrees * kRadiansPerDegree;
   switch (channel) {
     case BvhChannel::kXRotation:
-      return AxisAngle({1, 0, 0}, radians);
+      return retargeting::AxisAngle({1, 0, 0}, radians);
     case BvhChannel::kYRotation:
-      return AxisAngle({0, 1, 0}, radians);
+      return retargeting::AxisAngle({0, 1, 0}, radians);
     default:
-      return AxisAngle({0, 0, 1}, radians);
+      return retargeting::AxisAngle({0, 0, 1}, radians);
   }
 }
 
-double* Axis(BvhChannel position_channel, Vec3d* vector) {
+double* Axis(BvhChannel position_channel, retargeting::Vec3d* vector) {
   switch (position_channel) {
     case BvhChannel::kXPosition:
       return &vector->x;
@@ -365,7 +365,7 @@ BvhKinematics::BvhKinematics(const BvhDocument& document)
     for (BvhChannel channel : joint.channels) {
       const double v = static_cast<double>(*value++);
       if (!IsPosition(channel)) continue;
-      Vec3d offset = joint.offset;
+      retargeting::Vec3d offset = joint.offset;
       to_zero += std::abs(v);
       to_offset += std::abs(v - *Axis(channel, &offset));
     }
@@ -388,10 +388,10 @@ BvhKinematics::Local BvhKinematics::LocalTransform(std::size_t joint, const floa
   return local;
 }
 
-std::vector<Vec3d> BvhKinematics::Positions(int frame) const {
+std::vector<retargeting::Vec3d> BvhKinematics::Positions(int frame) const {
   const std::size_t count = document_.joints.size();
-  std::vector<Vec3d> positions(count);
-  std::vector<Quaternion> rotations(count);
+  std::vector<retargeting::Vec3d> positions(count);
+  std::vector<retargeting::Quaternion> rotations(count);
   const float* values =
       document_.values.data() +
       static_cast<std::size_t>(frame) * static_cast<std::size_t>(document_.ChannelCount());
@@ -411,4 +411,4 @@ std::vector<Vec3d> BvhKinematics::Positions(int frame) const {
   return positions;
 }
 
-}  // namespace duet
+}  // namespace duet::formats::bvh

@@ -9,7 +9,7 @@
 #include "absl/strings/string_view.h"
 #include "model/retargeting/rotation.h"
 
-namespace duet {
+namespace duet::formats::bvh {
 
 enum class BvhChannel {
   kXPosition,
@@ -24,7 +24,7 @@ enum class BvhChannel {
 struct BvhJoint {
   std::string name;
   int parent = -1;  // an earlier joint; -1 for a ROOT
-  Vec3d offset;
+  retargeting::Vec3d offset;
   std::vector<BvhChannel> channels;  // in the file's order
   bool end_site = false;
 };
@@ -56,12 +56,12 @@ std::string FormatBvh(const BvhDocument& document);
 class BvhKinematics {
  public:
   explicit BvhKinematics(const BvhDocument& document);
-  std::vector<Vec3d> Positions(int frame) const;
+  std::vector<retargeting::Vec3d> Positions(int frame) const;
 
  private:
   struct Local {
-    Vec3d translation;
-    Quaternion rotation;
+    retargeting::Vec3d translation;
+    retargeting::Quaternion rotation;
   };
   Local LocalTransform(std::size_t joint, const float* values) const;
 
@@ -69,6 +69,6 @@ class BvhKinematics {
   std::vector<bool> adds_to_offset_;  // [joints]
 };
 
-}  // namespace duet
+}  // namespace duet::formats::bvh
 
 #endif  // DUET_MODEL_FORMATS_BVH_BVH_DOCUMENT_H_

@@ -5,28 +5,28 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "model/retargeting/pose_fitting.h"
 #include "model/motion/recorded_motion.h"
+#include "model/retargeting/pose_fitting.h"
 #include "model/retargeting/rig.h"
 
-namespace duet {
+namespace duet::formats::bvh {
 namespace {
 
 constexpr double kCentimetres = 100;
 constexpr double kDegreesPerRadian = 180 / 3.14159265358979323846;
 
-absl::Status CheckJoints(const Clip& clip, const Skeleton& skeleton) {
+absl::Status CheckJoints(const motion::Clip& clip, const motion::Skeleton& skeleton) {
   if (clip.joint_names == skeleton.joint_names) return CheckClip("clip", clip);
   return absl::InvalidArgumentError(absl::StrCat("clip: joints: came ", clip.joint_count(),
                                                  ", wanted the skeleton's ", skeleton.joint_count(),
                                                  " in its order"));
 }
 
-BvhDocument MakeHierarchy(const Rig& rig, std::vector<int>* document_joints) {
+BvhDocument MakeHierarchy(const retargeting::Rig& rig, std::vector<int>* document_joints) {
   const std::vector<BvhChannel> turns = {BvhChannel::kZRotation, BvhChannel::kXRotation,
                                          BvhChannel::kYRotation};
   BvhDocument document;
-  for (const RigJoint& joint : rig.joints) {
+  for (const retargeting::RigJoint& joint : rig.joints) {
     BvhJoint written;
     written.name = joint.name;
     if (joint.parent < 0) {
@@ -38,7 +38,7 @@ BvhDocument MakeHierarchy(const Rig& rig, std::vector<int>* document_joints) {
     written.channels.insert(written.channels.end(), turns.begin(), turns.end());
     document_joints->push_back(static_cast<int>(document.joints.size()));
     document.joints.push_back(std::move(written));
-    if (joint.kind != RigJoint::Kind::kLeaf) continue;
+    if (joint.kind != retargeting::RigJoint::Kind::kLeaf) continue;
     BvhJoint end;
     end.name = joint.name + ".end";
     end.parent = document_joints->back();
@@ -49,11 +49,12 @@ BvhDocument MakeHierarchy(const Rig& rig, std::vector<int>* document_joints) {
   return document;
 }
 
-void AppendFrame(const RigPose& pose, std::vector<EulerZxy>* angles, std::vector<float>* values) {
-  const Vec3d root = pose.root_position * kCentimetres;
+void AppendFrame(const retargeting::RigPose& pose, std::vector<retargeting::EulerZxy>* angles,
+                 std::vector<float>* values) {
+  const retargeting::Vec3d root = pose.root_position * kCentimetres;
   for (double value : {root.x, root.y, root.z}) values->push_back(static_cast<float>(value));
   for (std::size_t j = 0; j < pose.rotations.size(); ++j) {
-    EulerZxy& angle = (*angles)[j];
+    retargeting::EulerZxy& angle = (*angles)[j];
     angle = ToEuler(pose.rotations[j], angle);
     for (double value : {angle.z, angle.x, angle.y}) {
       values->push_back(static_cast<float>(value * kDegreesPerRadian));
@@ -63,19 +64,19 @@ void AppendFrame(const RigPose& pose, std::vector<EulerZxy>* angles, std::vector
 
 }  // namespace
 
-absl::StatusOr<BvhDocument> ToBvh(const Clip& clip, const Skeleton& skeleton) {
+absl::StatusOr<BvhDocument> ToBvh(const motion::Clip& clip, const motion::Skeleton& skeleton) {
   if (absl::Status status = CheckJoints(clip, skeleton); !status.ok()) return status;
-  const Rig rig = MakeRig(skeleton, clip);
+  const retargeting::Rig rig = retargeting::MakeRig(skeleton, clip);
   std::vector<int> document_joints;
   BvhDocument document = MakeHierarchy(rig, &document_joints);
   document.frame_time_s = 1 / clip.frame_rate_hz;
   document.frame_count = clip.frame_count();
-  PoseFitter fitter(rig);
-  std::vector<EulerZxy> angles(rig.joints.size());
+  retargeting::PoseFitter fitter(rig);
+  std::vector<retargeting::EulerZxy> angles(rig.joints.size());
   for (int frame = 0; frame < clip.frame_count(); ++frame) {
     AppendFrame(fitter.Fit(clip.frame(frame)), &angles, &document.values);
   }
   return document;
 }
 
-}  // namespace duet
+}  // namespace duet::formats::bvh

@@ -6,7 +6,7 @@
 #include "model/motion/clip.h"
 #include "model/motion/skeleton.h"
 
-namespace duet {
+namespace duet::formats::bvh {
 
 // One person as joint angles: centimetres, y up, the clip's world frame, the rest pose of MakeRig.
 // The root has six channels, every other joint three; rotations apply as Rz Rx Ry; angles are
@@ -15,8 +15,8 @@ namespace duet {
 //
 // Errors: INVALID_ARGUMENT when the clip's joints are not the skeleton's, it has no frame, its rate
 //         is no rate or a position is not finite.
-absl::StatusOr<BvhDocument> ToBvh(const Clip& clip, const Skeleton& skeleton);
+absl::StatusOr<BvhDocument> ToBvh(const motion::Clip& clip, const motion::Skeleton& skeleton);
 
-}  // namespace duet
+}  // namespace duet::formats::bvh
 
 #endif  // DUET_MODEL_FORMATS_BVH_BVH_EXPORT_H_

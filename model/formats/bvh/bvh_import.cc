@@ -4,7 +4,7 @@
 
 #include "absl/strings/str_cat.h"
 
-namespace duet {
+namespace duet::formats::bvh {
 namespace {
 
 // From the foot up to the root (torso or pelvis) along the bones.
@@ -47,16 +47,16 @@ class Importer {
         options_(options),
         joints_(JointsOfPerson(document, options.person)) {}
 
-  absl::StatusOr<Clip> Import() {
-    absl::StatusOr<JointMap> map =
-        MapJoints(source_, Names(), Pose(0), options_.skeleton, options_.joint_overrides);
+  absl::StatusOr<motion::Clip> Import() {
+    absl::StatusOr<retargeting::JointMap> map = retargeting::MapJoints(
+        source_, Names(), Pose(0), options_.skeleton, options_.joint_overrides);
     if (!map.ok()) return map.status();
     for (const std::string& note : map->notes) Note(note);
-    Clip clip;
+    motion::Clip clip;
     clip.joint_names = options_.skeleton.joint_names;
     clip.frame_rate_hz = FrameRate();
     for (int frame = 0; frame < document_.frame_count; ++frame) {
-      const std::vector<Vec3> pose = ApplyJointMap(*map, Pose(frame).data());
+      const std::vector<motion::Vec3> pose = ApplyJointMap(*map, Pose(frame).data());
       clip.positions.insert(clip.positions.end(), pose.begin(), pose.end());
     }
     return ToMetres(std::move(clip));
@@ -73,9 +73,9 @@ class Importer {
     return names;
   }
 
-  std::vector<Vec3> Pose(int frame) const {
-    const std::vector<Vec3d> all = kinematics_.Positions(frame);
-    std::vector<Vec3> pose;
+  std::vector<motion::Vec3> Pose(int frame) const {
+    const std::vector<retargeting::Vec3d> all = kinematics_.Positions(frame);
+    std::vector<motion::Vec3> pose;
     for (int joint : joints_) pose.push_back(ToFloat(all[static_cast<size_t>(joint)]));
     return pose;
   }
@@ -86,18 +86,18 @@ class Importer {
     return whole >= 1 && std::abs(rate - whole) < kRateTolerance * whole ? whole : rate;
   }
 
-  absl::StatusOr<Clip> ToMetres(Clip clip) {
+  absl::StatusOr<motion::Clip> ToMetres(motion::Clip clip) {
     absl::StatusOr<double> scale = MetresPerUnit(clip);
     if (!scale.ok()) return scale.status();
-    const CoordinateFrame frame{LengthUnit::kMetres, FindUpAxis(clip)};
-    for (Vec3& position : clip.positions) {
+    const motion::CoordinateFrame frame{motion::LengthUnit::kMetres, FindUpAxis(clip)};
+    for (motion::Vec3& position : clip.positions) {
       position = ToWorld(frame, position * static_cast<float>(*scale));
     }
     return clip;
   }
 
   // Along the bones from the left foot to the root, in the file's unit.
-  double LegLength(const Clip& clip) const {
+  double LegLength(const motion::Clip& clip) const {
     const std::vector<int> parents = options_.skeleton.Parents();
     double length = 0;
     for (int joint = options_.skeleton.left_foot; joint != options_.skeleton.root;) {
@@ -114,7 +114,7 @@ class Importer {
         "metres per unit: came ", metres, ", wanted more than 0 and at most ", kLargestUnit));
   }
 
-  absl::StatusOr<double> MetresPerUnit(const Clip& clip) {
+  absl::StatusOr<double> MetresPerUnit(const motion::Clip& clip) {
     if (options_.metres_per_unit.has_value()) return CheckUnit(*options_.metres_per_unit);
     const double length = LegLength(clip);
     for (const Unit& unit : kUnits) {
@@ -132,25 +132,25 @@ class Importer {
                      "metres a unit has"));
   }
 
-  UpAxis FindUpAxis(const Clip& clip) {
+  motion::UpAxis FindUpAxis(const motion::Clip& clip) {
     if (options_.up_axis.has_value()) return *options_.up_axis;
-    const Skeleton& skeleton = options_.skeleton;
-    Vec3 up;
+    const motion::Skeleton& skeleton = options_.skeleton;
+    motion::Vec3 up;
     for (int frame = 0; frame < clip.frame_count(); ++frame) {
-      const Vec3 feet =
+      const motion::Vec3 feet =
           (clip.at(frame, skeleton.left_foot) + clip.at(frame, skeleton.right_foot)) / 2;
-      const Vec3 body = clip.at(frame, skeleton.root) - feet;
+      const motion::Vec3 body = clip.at(frame, skeleton.root) - feet;
       if (Norm(body) > 0) up += body / Norm(body);
     }
     if (up.z > std::abs(up.y)) {
       Note("up axis: z (the feet are below the root along it)");
-      return UpAxis::kZUp;
+      return motion::UpAxis::kZUp;
     }
     if (-up.y > std::abs(up.z)) {
       Note("up axis: y pointing down (the feet are above the root along it)");
-      return UpAxis::kYDown;
+      return motion::UpAxis::kYDown;
     }
-    return UpAxis::kYUp;
+    return motion::UpAxis::kYUp;
   }
 
   const BvhDocument& document_;
@@ -162,9 +162,9 @@ class Importer {
 
 }  // namespace
 
-absl::StatusOr<Clip> FromBvh(const BvhDocument& document, absl::string_view source,
-                             const BvhImportOptions& options) {
+absl::StatusOr<motion::Clip> FromBvh(const BvhDocument& document, absl::string_view source,
+                                     const BvhImportOptions& options) {
   return Importer(document, source, options).Import();
 }
 
-}  // namespace duet
+}  // namespace duet::formats::bvh

@@ -12,12 +12,12 @@
 #include "absl/strings/strip.h"
 #include "model/base/text.h"
 
-namespace duet {
+namespace duet::formats::flat {
 namespace {
 
 constexpr absl::string_view kPrefixes[] = {"leader.", "follower."};
 constexpr const char* kSuffixes[] = {"_x", "_y", "_z"};
-constexpr std::size_t kMaxColumns = std::size_t{kMaxFileJoints} * 6 + 2;
+constexpr std::size_t kMaxColumns = std::size_t{base::kMaxFileJoints} * 6 + 2;
 
 // Where a column's values go; person -1: nowhere.
 struct Column {
@@ -38,7 +38,7 @@ class CsvParser {
  public:
   CsvParser(absl::string_view text, absl::string_view source) : lines_(text), source_(source) {}
 
-  absl::StatusOr<RecordedMotion> Parse() {
+  absl::StatusOr<motion::RecordedMotion> Parse() {
     // Spreadsheets write a byte order mark.
     for (absl::string_view line; lines_.Next(&line);) {
       if (lines_.number() == 1) absl::ConsumePrefix(&line, "\xEF\xBB\xBF");
@@ -49,13 +49,13 @@ class CsvParser {
     }
     if (columns_.empty()) return Error("no header line, wanted frame,head_x,head_y,head_z,...");
     if (motion_.people[0].positions.empty()) return Error("no frames after the header line");
-    for (Clip& person : motion_.people) person.frame_rate_hz = frame_rate_hz_;
+    for (motion::Clip& person : motion_.people) person.frame_rate_hz = frame_rate_hz_;
     return std::move(motion_);
   }
 
  private:
   absl::Status Error(absl::string_view message) const {
-    return ErrorAt(source_, std::max(lines_.number(), 1), message);
+    return base::ErrorAt(source_, std::max(lines_.number(), 1), message);
   }
   // `column` counts fields, from 1.
   absl::Status ErrorInColumn(std::size_t column, absl::string_view message) const {
@@ -80,22 +80,25 @@ class CsvParser {
 
   absl::Status ParseSetting(absl::string_view key, absl::string_view value) {
     if (key == "frame_rate_hz" || key == "fps") {
-      if (!ParseNumber(value, &frame_rate_hz_) || !CheckFrameRate("", frame_rate_hz_).ok()) {
-        return Error(absl::StrCat(key, ": came ", Quoted(value),
-                                  ", wanted more than 0 and at most ", kMaxFrameRateHz));
+      if (!base::ParseNumber(value, &frame_rate_hz_) ||
+          !base::CheckFrameRate("", frame_rate_hz_).ok()) {
+        return Error(absl::StrCat(key, ": came ", base::Quoted(value),
+                                  ", wanted more than 0 and at most ", base::kMaxFrameRateHz));
       }
     } else if (key == "unit") {
       if (value != "metres" && value != "millimetres") {
-        return Error(absl::StrCat("unit: came ", Quoted(value), ", wanted metres or millimetres"));
+        return Error(
+            absl::StrCat("unit: came ", base::Quoted(value), ", wanted metres or millimetres"));
       }
-      motion_.coordinates.unit = value == "metres" ? LengthUnit::kMetres : LengthUnit::kMillimetres;
+      motion_.coordinates.unit =
+          value == "metres" ? motion::LengthUnit::kMetres : motion::LengthUnit::kMillimetres;
     } else if (key == "up_axis") {
       if (value != "y" && value != "z" && value != "-y") {
-        return Error(absl::StrCat("up_axis: came ", Quoted(value), ", wanted y, z or -y"));
+        return Error(absl::StrCat("up_axis: came ", base::Quoted(value), ", wanted y, z or -y"));
       }
-      motion_.coordinates.up_axis = value == "y"   ? UpAxis::kYUp
-                                    : value == "z" ? UpAxis::kZUp
-                                                   : UpAxis::kYDown;
+      motion_.coordinates.up_axis = value == "y"   ? motion::UpAxis::kYUp
+                                    : value == "z" ? motion::UpAxis::kZUp
+                                                   : motion::UpAxis::kYDown;
     }
     return absl::OkStatus();
   }
@@ -109,7 +112,7 @@ class CsvParser {
     for (std::size_t i = 0; i < fields.size(); ++i) {
       const std::string name(Unquoted(fields[i]));
       if (!seen.insert(name).second) {
-        return ErrorInColumn(i + 1, absl::StrCat(Quoted(name), " comes twice"));
+        return ErrorInColumn(i + 1, absl::StrCat(base::Quoted(name), " comes twice"));
       }
       absl::Status status = AddColumn(i + 1, name);
       if (!status.ok()) return status;
@@ -131,9 +134,9 @@ class CsvParser {
       if (absl::ConsumeSuffix(&joint, kSuffixes[axis])) column.axis = axis;
     }
     if (column.axis < 0 || joint.empty()) {
-      return ErrorInColumn(
-          number,
-          absl::StrCat("came ", Quoted(name), ", wanted frame, time or JOINT_x, JOINT_y, JOINT_z"));
+      return ErrorInColumn(number,
+                           absl::StrCat("came ", base::Quoted(name),
+                                        ", wanted frame, time or JOINT_x, JOINT_y, JOINT_z"));
     }
     (prefixed ? has_prefixed_ : has_plain_) = true;
     column.joint = JointIndex(static_cast<size_t>(column.person), joint);
@@ -184,61 +187,61 @@ class CsvParser {
       return Error(absl::StrCat("came ", fields.size(), " values, wanted ", columns_.size(),
                                 " as in the header line"));
     }
-    if (motion_.people[0].frame_count() >= kMaxMotionFrames) {
-      return Error(absl::StrCat("more than ", kMaxMotionFrames, " frames"));
+    if (motion_.people[0].frame_count() >= base::kMaxMotionFrames) {
+      return Error(absl::StrCat("more than ", base::kMaxMotionFrames, " frames"));
     }
-    for (Clip& person : motion_.people) {
+    for (motion::Clip& person : motion_.people) {
       person.positions.resize(person.positions.size() + person.joint_names.size());
     }
     for (std::size_t i = 0; i < fields.size(); ++i) {
       if (columns_[i].person < 0) continue;
-      if (!ParseCoordinate(Unquoted(fields[i]), Destination(columns_[i]))) {
-        return ErrorInColumn(i + 1,
-                             absl::StrCat("came ", Quoted(fields[i]), ", wanted a finite number"));
+      if (!base::ParseCoordinate(Unquoted(fields[i]), Destination(columns_[i]))) {
+        return ErrorInColumn(
+            i + 1, absl::StrCat("came ", base::Quoted(fields[i]), ", wanted a finite number"));
       }
     }
     return absl::OkStatus();
   }
 
   float* Destination(const Column& column) {
-    Clip& person = motion_.people[static_cast<size_t>(column.person)];
-    Vec3& position = person.at(person.frame_count() - 1, column.joint);
+    motion::Clip& person = motion_.people[static_cast<size_t>(column.person)];
+    motion::Vec3& position = person.at(person.frame_count() - 1, column.joint);
     return column.axis == 0 ? &position.x : column.axis == 1 ? &position.y : &position.z;
   }
 
-  LineReader lines_;
+  base::LineReader lines_;
   absl::string_view source_;
-  RecordedMotion motion_;
+  motion::RecordedMotion motion_;
   double frame_rate_hz_ = 0;
   std::vector<Column> columns_;
   bool has_prefixed_ = false, has_plain_ = false;
 };
 
-void AppendHeader(absl::string_view prefix, const Clip& clip, std::string* out) {
+void AppendHeader(absl::string_view prefix, const motion::Clip& clip, std::string* out) {
   for (const std::string& joint : clip.joint_names) {
     for (const char* suffix : kSuffixes) absl::StrAppend(out, ",", prefix, joint, suffix);
   }
 }
 
-void AppendFrame(const Clip& clip, int frame, std::string* out) {
+void AppendFrame(const motion::Clip& clip, int frame, std::string* out) {
   for (int joint = 0; joint < clip.joint_count(); ++joint) {
-    const Vec3 position = clip.at(frame, joint);
+    const motion::Vec3 position = clip.at(frame, joint);
     for (float value : {position.x, position.y, position.z}) {
       out->push_back(',');
-      AppendNumber(out, value);
+      base::AppendNumber(out, value);
     }
   }
 }
 
 }  // namespace
 
-absl::StatusOr<RecordedMotion> ParseCsv(absl::string_view text, absl::string_view source) {
+absl::StatusOr<motion::RecordedMotion> ParseCsv(absl::string_view text, absl::string_view source) {
   return CsvParser(text, source).Parse();
 }
 
-std::string FormatCsv(const ClipPair& pair) {
+std::string FormatCsv(const motion::ClipPair& pair) {
   std::string text = "# duet motion: frame_rate_hz=";
-  AppendNumber(&text, pair.leader.frame_rate_hz);
+  base::AppendNumber(&text, pair.leader.frame_rate_hz);
   text += " unit=metres up_axis=y\nframe";
   AppendHeader(kPrefixes[0], pair.leader, &text);
   AppendHeader(kPrefixes[1], pair.follower, &text);
@@ -252,4 +255,4 @@ std::string FormatCsv(const ClipPair& pair) {
   return text;
 }
 
-}  // namespace duet
+}  // namespace duet::formats::flat

@@ -5,10 +5,10 @@
 
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
-#include "model/motion/recorded_motion.h"
 #include "model/motion/clip.h"
+#include "model/motion/recorded_motion.h"
 
-namespace duet {
+namespace duet::formats::flat {
 
 // Positions by column, one row a frame, for scripts and spreadsheets:
 //
@@ -21,11 +21,11 @@ namespace duet {
 // words do not; columns may come in any order, `frame` and `time` are passed over.
 //
 // Errors: INVALID_ARGUMENT "source:line:column: ... came ..., wanted ...".
-absl::StatusOr<RecordedMotion> ParseCsv(absl::string_view text, absl::string_view source);
+absl::StatusOr<motion::RecordedMotion> ParseCsv(absl::string_view text, absl::string_view source);
 
 // Metres, y up. The pair is as CheckPair wants it.
-std::string FormatCsv(const ClipPair& pair);
+std::string FormatCsv(const motion::ClipPair& pair);
 
-}  // namespace duet
+}  // namespace duet::formats::flat
 
 #endif  // DUET_MODEL_FORMATS_FLAT_CSV_H_

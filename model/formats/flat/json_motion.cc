@@ -8,7 +8,7 @@
 #include "model/base/text.h"
 #include "nlohmann/json.hpp"
 
-namespace duet {
+namespace duet::formats::flat {
 namespace {
 
 using Json = nlohmann::json;
@@ -24,7 +24,7 @@ class JsonReader {
   JsonReader(const Json& document, absl::string_view source)
       : document_(document), source_(source) {}
 
-  absl::StatusOr<RecordedMotion> Read() {
+  absl::StatusOr<motion::RecordedMotion> Read() {
     if (!document_.is_object()) return Error("came no JSON object, wanted {...}");
     absl::Status status = ReadSettings();
     if (status.ok()) status = ReadJointNames();
@@ -49,7 +49,7 @@ class JsonReader {
     const std::string text = came.is_structured()
                                  ? absl::StrCat("an ", came.type_name())
                                  : came.dump(-1, ' ', false, Json::error_handler_t::replace);
-    return Error(absl::StrCat(field, ": came ", Quoted(text), ", wanted ", wanted));
+    return Error(absl::StrCat(field, ": came ", base::Quoted(text), ", wanted ", wanted));
   }
 
   absl::Status ReadSettings() {
@@ -62,9 +62,9 @@ class JsonReader {
       return Unexpected("version", *version, "1");
     }
     if (const auto rate = document_.find("frame_rate_hz"); rate != document_.end()) {
-      if (!rate->is_number() || !CheckFrameRate("", rate->get<double>()).ok()) {
+      if (!rate->is_number() || !base::CheckFrameRate("", rate->get<double>()).ok()) {
         return Unexpected("frame_rate_hz", *rate,
-                          absl::StrCat("a number above 0 and at most ", kMaxFrameRateHz));
+                          absl::StrCat("a number above 0 and at most ", base::kMaxFrameRateHz));
       }
       empty_.frame_rate_hz = rate->get<double>();
     }
@@ -76,13 +76,14 @@ class JsonReader {
       if (*unit != "metres" && *unit != "millimetres") {
         return Unexpected("unit", *unit, "metres or millimetres");
       }
-      motion_.coordinates.unit = *unit == "metres" ? LengthUnit::kMetres : LengthUnit::kMillimetres;
+      motion_.coordinates.unit =
+          *unit == "metres" ? motion::LengthUnit::kMetres : motion::LengthUnit::kMillimetres;
     }
     if (const auto up = document_.find("up_axis"); up != document_.end()) {
       if (*up != "y" && *up != "z" && *up != "-y") return Unexpected("up_axis", *up, "y, z or -y");
-      motion_.coordinates.up_axis = *up == "y"   ? UpAxis::kYUp
-                                    : *up == "z" ? UpAxis::kZUp
-                                                 : UpAxis::kYDown;
+      motion_.coordinates.up_axis = *up == "y"   ? motion::UpAxis::kYUp
+                                    : *up == "z" ? motion::UpAxis::kZUp
+                                                 : motion::UpAxis::kYDown;
     }
     return absl::OkStatus();
   }
@@ -90,8 +91,9 @@ class JsonReader {
   absl::Status ReadJointNames() {
     const auto names = document_.find("joint_names");
     if (names == document_.end()) return Error("joint_names: missing, wanted a list of names");
-    if (!names->is_array() || names->empty() || names->size() > kMaxFileJoints) {
-      return Unexpected("joint_names", *names, absl::StrCat("1 to ", kMaxFileJoints, " names"));
+    if (!names->is_array() || names->empty() || names->size() > base::kMaxFileJoints) {
+      return Unexpected("joint_names", *names,
+                        absl::StrCat("1 to ", base::kMaxFileJoints, " names"));
     }
     for (const Json& name : *names) {
       if (!name.is_string()) return Unexpected("joint_names", name, "a name");
@@ -100,11 +102,11 @@ class JsonReader {
     return absl::OkStatus();
   }
 
-  absl::Status ReadPerson(const char* field, Clip* clip) const {
+  absl::Status ReadPerson(const char* field, motion::Clip* clip) const {
     const auto frames = document_.find(field);
     if (frames == document_.end()) return Error(absl::StrCat(field, ": missing, wanted frames"));
-    if (!frames->is_array() || frames->empty() || frames->size() > kMaxMotionFrames) {
-      return Unexpected(field, *frames, absl::StrCat("1 to ", kMaxMotionFrames, " frames"));
+    if (!frames->is_array() || frames->empty() || frames->size() > base::kMaxMotionFrames) {
+      return Unexpected(field, *frames, absl::StrCat("1 to ", base::kMaxMotionFrames, " frames"));
     }
     for (std::size_t frame = 0; frame < frames->size(); ++frame) {
       absl::Status status = ReadFrame(absl::StrCat(field, "[", frame, "]"), (*frames)[frame], clip);
@@ -113,13 +115,13 @@ class JsonReader {
     return absl::OkStatus();
   }
 
-  absl::Status ReadFrame(const std::string& field, const Json& frame, Clip* clip) const {
+  absl::Status ReadFrame(const std::string& field, const Json& frame, motion::Clip* clip) const {
     const std::size_t joints = clip->joint_names.size();
     if (!frame.is_array() || frame.size() != joints) {
       return Unexpected(field, frame, absl::StrCat("a list of ", joints, " positions"));
     }
     for (std::size_t joint = 0; joint < joints; ++joint) {
-      Vec3 position;
+      motion::Vec3 position;
       if (!ReadPosition(frame[joint], &position)) {
         return Unexpected(absl::StrCat(field, "[", joint, "]"), frame[joint],
                           "[x, y, z], finite numbers");
@@ -129,13 +131,13 @@ class JsonReader {
     return absl::OkStatus();
   }
 
-  static bool ReadPosition(const Json& value, Vec3* position) {
+  static bool ReadPosition(const Json& value, motion::Vec3* position) {
     if (!value.is_array() || value.size() != 3) return false;
     float* const axes[] = {&position->x, &position->y, &position->z};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (!value[axis].is_number()) return false;
       const double number = value[axis].get<double>();
-      if (!(std::abs(number) <= kMaxCoordinate)) return false;
+      if (!(std::abs(number) <= base::kMaxCoordinate)) return false;
       *axes[axis] = static_cast<float>(number);
     }
     return true;
@@ -143,8 +145,8 @@ class JsonReader {
 
   const Json& document_;
   absl::string_view source_;
-  Clip empty_;
-  RecordedMotion motion_;
+  motion::Clip empty_;
+  motion::RecordedMotion motion_;
 };
 
 // The deepest nesting of brackets outside strings.
@@ -166,17 +168,17 @@ int NestingDepth(absl::string_view text) {
   return deepest;
 }
 
-void AppendPerson(const char* field, const Clip& clip, std::string* out) {
+void AppendPerson(const char* field, const motion::Clip& clip, std::string* out) {
   absl::StrAppend(out, ",\n\"", field, "\": [");
   for (int frame = 0; frame < clip.frame_count(); ++frame) {
     *out += frame == 0 ? "\n[" : ",\n[";
     for (int joint = 0; joint < clip.joint_count(); ++joint) {
-      const Vec3 position = clip.at(frame, joint);
+      const motion::Vec3 position = clip.at(frame, joint);
       char before = '[';
       if (joint > 0) *out += ", ";
       for (float value : {position.x, position.y, position.z}) {
         *out += before;
-        AppendNumber(out, value);
+        base::AppendNumber(out, value);
         before = ',';
       }
       *out += ']';
@@ -188,7 +190,8 @@ void AppendPerson(const char* field, const Clip& clip, std::string* out) {
 
 }  // namespace
 
-absl::StatusOr<RecordedMotion> ParseJsonMotion(absl::string_view text, absl::string_view source) {
+absl::StatusOr<motion::RecordedMotion> ParseJsonMotion(absl::string_view text,
+                                                       absl::string_view source) {
   if (const int depth = NestingDepth(text); depth > kMaxDepth) {
     return absl::InvalidArgumentError(
         absl::StrCat(source, ": brackets ", depth, " deep, wanted at most ", kMaxDepth));
@@ -200,12 +203,12 @@ absl::StatusOr<RecordedMotion> ParseJsonMotion(absl::string_view text, absl::str
   return JsonReader(document, source).Read();
 }
 
-std::string FormatJsonMotion(const ClipPair& pair, const Skeleton& skeleton) {
+std::string FormatJsonMotion(const motion::ClipPair& pair, const motion::Skeleton& skeleton) {
   Json bones = Json::array();
-  for (const Bone& bone : skeleton.bones) bones.push_back({bone.parent, bone.child});
+  for (const motion::Bone& bone : skeleton.bones) bones.push_back({bone.parent, bone.child});
   std::string text = absl::StrCat("{\"format\": \"", kFormat, "\", \"version\": ", kVersion,
                                   ", \"frame_rate_hz\": ");
-  AppendNumber(&text, pair.leader.frame_rate_hz);
+  base::AppendNumber(&text, pair.leader.frame_rate_hz);
   absl::StrAppend(&text, ", \"unit\": \"metres\", \"up_axis\": \"y\",\n\"joint_names\": ",
                   Json(pair.leader.joint_names).dump(), ",\n\"bones\": ", bones.dump());
   AppendPerson(kPeople[0], pair.leader, &text);
@@ -214,4 +217,4 @@ std::string FormatJsonMotion(const ClipPair& pair, const Skeleton& skeleton) {
   return text;
 }
 
-}  // namespace duet
+}  // namespace duet::formats::flat

@@ -5,11 +5,11 @@
 
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
-#include "model/motion/recorded_motion.h"
 #include "model/motion/clip.h"
+#include "model/motion/recorded_motion.h"
 #include "model/motion/skeleton.h"
 
-namespace duet {
+namespace duet::formats::flat {
 
 // One JSON document:
 //
@@ -21,11 +21,12 @@ namespace duet {
 // fields are passed over. bones (parent, child as indices into joint_names) are for other programs.
 //
 // Errors: INVALID_ARGUMENT naming `source`, the field, what came and what was wanted.
-absl::StatusOr<RecordedMotion> ParseJsonMotion(absl::string_view text, absl::string_view source);
+absl::StatusOr<motion::RecordedMotion> ParseJsonMotion(absl::string_view text,
+                                                       absl::string_view source);
 
 // Metres, y up. The pair is as CheckPair wants it, with the skeleton's joints.
-std::string FormatJsonMotion(const ClipPair& pair, const Skeleton& skeleton);
+std::string FormatJsonMotion(const motion::ClipPair& pair, const motion::Skeleton& skeleton);
 
-}  // namespace duet
+}  // namespace duet::formats::flat
 
 #endif  // DUET_MODEL_FORMATS_FLAT_JSON_MOTION_H_

@@ -13,7 +13,7 @@
 #include "absl/strings/strip.h"
 #include "model/base/text.h"
 
-namespace duet {
+namespace duet::formats::flat {
 namespace {
 
 constexpr absl::string_view kMagic("\x93NUMPY", 6);
@@ -43,14 +43,14 @@ class NpyParser {
  public:
   NpyParser(absl::string_view bytes, absl::string_view source) : bytes_(bytes), source_(source) {}
 
-  absl::StatusOr<RecordedMotion> Parse(const std::vector<std::string>& joint_names) {
+  absl::StatusOr<motion::RecordedMotion> Parse(const std::vector<std::string>& joint_names) {
     absl::Status status = ParseHeader();
     if (status.ok()) status = CheckHeader(static_cast<int>(joint_names.size()));
     if (!status.ok()) return status;
-    RecordedMotion motion;
+    motion::RecordedMotion motion;
     const int frames = header_.shape[header_.shape.size() - 3];
     motion.people.resize(header_.shape.size() == 4 ? static_cast<size_t>(header_.shape[0]) : 1);
-    for (Clip& person : motion.people) {
+    for (motion::Clip& person : motion.people) {
       person.joint_names = joint_names;
       person.positions.resize(static_cast<size_t>(frames) * joint_names.size());
       status = ReadPositions(&person);
@@ -92,8 +92,8 @@ class NpyParser {
     for (absl::string_view field : absl::StrSplit(tuple, ',')) {
       if (absl::StripAsciiWhitespace(field).empty()) continue;
       int size = 0;
-      if (!ParseInteger(field, &size)) {
-        return Error(absl::StrCat("shape: came ", Quoted(tuple), ", wanted whole numbers"));
+      if (!base::ParseInteger(field, &size)) {
+        return Error(absl::StrCat("shape: came ", base::Quoted(tuple), ", wanted whole numbers"));
       }
       header_.shape.push_back(size);
     }
@@ -102,21 +102,21 @@ class NpyParser {
 
   absl::Status CheckHeader(int joints) const {
     if (header_.descr != "'<f4'" && header_.descr != "'<f8'") {
-      return Error(absl::StrCat("descr: came ", Quoted(header_.descr),
+      return Error(absl::StrCat("descr: came ", base::Quoted(header_.descr),
                                 ", wanted '<f4' or '<f8' (float32 or float64, little-endian)"));
     }
     if (header_.fortran_order != "False") {
-      return Error(absl::StrCat("fortran_order: came ", Quoted(header_.fortran_order),
+      return Error(absl::StrCat("fortran_order: came ", base::Quoted(header_.fortran_order),
                                 ", wanted False (C order)"));
     }
     const std::vector<int>& shape = header_.shape;
     const std::size_t rank = shape.size();
     const bool people = rank == 4 && (shape[0] == 1 || shape[0] == 2);
     if ((rank != 3 && !people) || shape[rank - 1] != 3 || shape[rank - 2] != joints ||
-        shape[rank - 3] < 1 || shape[rank - 3] > kMaxMotionFrames) {
+        shape[rank - 3] < 1 || shape[rank - 3] > base::kMaxMotionFrames) {
       return Error(absl::StrCat("shape: came (", absl::StrJoin(shape, ", "), "), wanted (frames, ",
                                 joints, ", 3) or (2, frames, ", joints, ", 3) with 1 to ",
-                                kMaxMotionFrames, " frames"));
+                                base::kMaxMotionFrames, " frames"));
     }
     std::size_t wanted = ValueBytes();
     for (int size : shape) wanted *= static_cast<std::size_t>(size);
@@ -139,12 +139,12 @@ class NpyParser {
     return value;
   }
 
-  absl::Status ReadPositions(Clip* person) {
+  absl::Status ReadPositions(motion::Clip* person) {
     for (std::size_t i = 0; i < person->positions.size(); ++i) {
-      Vec3& position = person->positions[i];
+      motion::Vec3& position = person->positions[i];
       for (float* axis : {&position.x, &position.y, &position.z}) {
         const double value = TakeValue();
-        if (!(std::abs(value) <= kMaxCoordinate)) {
+        if (!(std::abs(value) <= base::kMaxCoordinate)) {
           const std::size_t joints = person->joint_names.size();
           return Error(absl::StrCat("frame ", i / joints, " ", person->joint_names[i % joints],
                                     ": came ", value, ", wanted a finite position"));
@@ -160,19 +160,19 @@ class NpyParser {
   Header header_;
 };
 
-void AppendPositions(const Clip& clip, std::string* out) {
+void AppendPositions(const motion::Clip& clip, std::string* out) {
   out->append(reinterpret_cast<const char*>(clip.positions.data()),
-              clip.positions.size() * sizeof(Vec3));
+              clip.positions.size() * sizeof(motion::Vec3));
 }
 
 }  // namespace
 
-absl::StatusOr<RecordedMotion> ParseNpy(absl::string_view bytes, absl::string_view source,
-                                        const std::vector<std::string>& joint_names) {
+absl::StatusOr<motion::RecordedMotion> ParseNpy(absl::string_view bytes, absl::string_view source,
+                                                const std::vector<std::string>& joint_names) {
   return NpyParser(bytes, source).Parse(joint_names);
 }
 
-std::string FormatNpy(const ClipPair& pair) {
+std::string FormatNpy(const motion::ClipPair& pair) {
   std::string dict =
       absl::StrCat("{'descr': '<f4', 'fortran_order': False, 'shape': (2, ",
                    pair.leader.frame_count(), ", ", pair.leader.joint_count(), ", 3), }");
@@ -188,4 +188,4 @@ std::string FormatNpy(const ClipPair& pair) {
   return bytes;
 }
 
-}  // namespace duet
+}  // namespace duet::formats::flat

@@ -6,10 +6,10 @@
 
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
-#include "model/motion/recorded_motion.h"
 #include "model/motion/clip.h"
+#include "model/motion/recorded_motion.h"
 
-namespace duet {
+namespace duet::formats::flat {
 
 // NumPy's array file: float32 or float64, little-endian, C order, [frames, joints, 3] or
 // [people, frames, joints, 3] with one or two people. It names no joints and no frame rate: the
@@ -17,12 +17,12 @@ namespace duet {
 //
 // Source: the .npy format, versions 1.0 to 3.0 (numpy.lib.format).
 // Errors: INVALID_ARGUMENT naming `source`, what came and what was wanted.
-absl::StatusOr<RecordedMotion> ParseNpy(absl::string_view bytes, absl::string_view source,
-                                        const std::vector<std::string>& joint_names);
+absl::StatusOr<motion::RecordedMotion> ParseNpy(absl::string_view bytes, absl::string_view source,
+                                                const std::vector<std::string>& joint_names);
 
 // float32 [2, frames, joints, 3], leader first. The pair is as CheckPair wants it.
-std::string FormatNpy(const ClipPair& pair);
+std::string FormatNpy(const motion::ClipPair& pair);
 
-}  // namespace duet
+}  // namespace duet::formats::flat
 
 #endif  // DUET_MODEL_FORMATS_FLAT_NPY_H_

@@ -4,7 +4,7 @@
 #include "absl/strings/str_cat.h"
 #include "model/base/text.h"
 
-namespace duet {
+namespace duet::formats::flat {
 namespace {
 
 constexpr int kPeople = 2;
@@ -22,29 +22,30 @@ class SbuLine {
     std::size_t count = 1;
     for (char c : text_) count += c == ',' ? 1 : 0;
     if (count == wanted) return absl::OkStatus();
-    return ErrorAt(source_, number_,
-                   absl::StrCat("came ", count, " comma-separated values, wanted ", wanted,
-                                ": a frame number, then ", joint_names_.size(),
-                                " joints x (x, y, z) of the left and of the right person"));
+    return base::ErrorAt(source_, number_,
+                         absl::StrCat("came ", count, " comma-separated values, wanted ", wanted,
+                                      ": a frame number, then ", joint_names_.size(),
+                                      " joints x (x, y, z) of the left and of the right person"));
   }
 
   absl::Status ReadFrameNumber(int* value) {
     const absl::string_view field = NextField();
-    if (ParseInteger(field, value)) return absl::OkStatus();
-    return ErrorAt(source_, number_, 1,
-                   absl::StrCat("frame number: came ", Quoted(field), ", wanted a whole number"));
+    if (base::ParseInteger(field, value)) return absl::OkStatus();
+    return base::ErrorAt(
+        source_, number_, 1,
+        absl::StrCat("frame number: came ", base::Quoted(field), ", wanted a whole number"));
   }
 
-  absl::Status ReadPosition(int person, std::size_t joint, Vec3* position) {
+  absl::Status ReadPosition(int person, std::size_t joint, motion::Vec3* position) {
     float* const axes[] = {&position->x, &position->y, &position->z};
     for (int axis = 0; axis < 3; ++axis) {
       const int column = column_;
       const absl::string_view field = NextField();
-      if (!ParseCoordinate(field, axes[axis])) {
-        return ErrorAt(
+      if (!base::ParseCoordinate(field, axes[axis])) {
+        return base::ErrorAt(
             source_, number_, column,
             absl::StrCat(person == 0 ? "left" : "right", " person's ", joint_names_[joint], " ",
-                         kAxes[axis], ": came ", Quoted(field), ", wanted a finite number"));
+                         kAxes[axis], ": came ", base::Quoted(field), ", wanted a finite number"));
       }
     }
     return absl::OkStatus();
@@ -72,9 +73,10 @@ class FrameNumbers {
   absl::Status Accept(absl::string_view source, int line, int number) {
     if (count_ == 1) step_ = number - last_;
     if (count_ >= 1 && (step_ <= 0 || number - last_ != step_)) {
-      return ErrorAt(source, line, 1,
-                     absl::StrCat("frame number: came ", number, " after ", last_, ", wanted ",
-                                  step_ > 0 ? absl::StrCat(last_ + step_) : "a larger one"));
+      return base::ErrorAt(
+          source, line, 1,
+          absl::StrCat("frame number: came ", number, " after ", last_, ", wanted ",
+                       step_ > 0 ? absl::StrCat(last_ + step_) : "a larger one"));
     }
     last_ = number;
     ++count_;
@@ -87,9 +89,9 @@ class FrameNumbers {
 
 absl::Status ReadPeople(SbuLine* line, const SbuOptions& options, SbuRecording* recording) {
   for (int person = 0; person < kPeople; ++person) {
-    Clip& clip = person == 0 ? recording->left : recording->right;
+    motion::Clip& clip = person == 0 ? recording->left : recording->right;
     for (std::size_t joint = 0; joint < options.joint_names.size(); ++joint) {
-      Vec3 position;
+      motion::Vec3 position;
       absl::Status status = line->ReadPosition(person, joint, &position);
       if (!status.ok()) return status;
       clip.positions.push_back(ToWorld(options.coordinates, position));
@@ -99,18 +101,19 @@ absl::Status ReadPeople(SbuLine* line, const SbuOptions& options, SbuRecording* 
 }
 
 SbuRecording EmptyRecording(const SbuOptions& options) {
-  Clip empty;
+  motion::Clip empty;
   empty.joint_names = options.joint_names;
   empty.frame_rate_hz = options.frame_rate_hz;
   return {empty, empty};
 }
 
-void AppendPerson(const SbuOptions& options, const Clip& clip, int frame, std::string* out) {
+void AppendPerson(const SbuOptions& options, const motion::Clip& clip, int frame,
+                  std::string* out) {
   for (int joint = 0; joint < clip.joint_count(); ++joint) {
-    const Vec3 position = FromWorld(options.coordinates, clip.at(frame, joint));
+    const motion::Vec3 position = FromWorld(options.coordinates, clip.at(frame, joint));
     for (float value : {position.x, position.y, position.z}) {
       out->push_back(',');
-      AppendNumber(out, value);
+      base::AppendNumber(out, value);
     }
   }
 }
@@ -119,16 +122,16 @@ void AppendPerson(const SbuOptions& options, const Clip& clip, int frame, std::s
 
 absl::StatusOr<SbuRecording> ParseSbu(absl::string_view text, absl::string_view source,
                                       const SbuOptions& options) {
-  absl::Status status = CheckFrameRate(source, options.frame_rate_hz);
+  absl::Status status = base::CheckFrameRate(source, options.frame_rate_hz);
   if (!status.ok()) return status;
   SbuRecording recording = EmptyRecording(options);
   FrameNumbers frame_numbers;
-  LineReader lines(text);
+  base::LineReader lines(text);
   for (absl::string_view content; lines.Next(&content);) {
     if (absl::StripAsciiWhitespace(content).empty()) continue;
-    if (recording.left.frame_count() >= kMaxMotionFrames) {
-      return ErrorAt(source, lines.number(),
-                     absl::StrCat("more than ", kMaxMotionFrames, " frames"));
+    if (recording.left.frame_count() >= base::kMaxMotionFrames) {
+      return base::ErrorAt(source, lines.number(),
+                           absl::StrCat("more than ", base::kMaxMotionFrames, " frames"));
     }
     SbuLine line(source, lines.number(), content, options.joint_names);
     int number = 0;
@@ -139,20 +142,20 @@ absl::StatusOr<SbuRecording> ParseSbu(absl::string_view text, absl::string_view 
     if (!status.ok()) return status;
   }
   if (recording.left.positions.empty()) {
-    return ErrorAt(source, 1, "no frames, wanted at least one line");
+    return base::ErrorAt(source, 1, "no frames, wanted at least one line");
   }
   return recording;
 }
 
 absl::StatusOr<SbuRecording> ReadSbu(const std::filesystem::path& path, const SbuOptions& options) {
-  absl::StatusOr<std::string> text = ReadFile(path);
+  absl::StatusOr<std::string> text = base::ReadFile(path);
   if (!text.ok()) return text.status();
   return ParseSbu(*text, path.string(), options);
 }
 
 absl::StatusOr<std::string> FormatSbu(const SbuRecording& recording, const SbuOptions& options) {
-  const Clip& left = recording.left;
-  const Clip& right = recording.right;
+  const motion::Clip& left = recording.left;
+  const motion::Clip& right = recording.right;
   if (left.positions.size() != right.positions.size() || left.joint_names != right.joint_names) {
     return absl::InvalidArgumentError(
         absl::StrCat("recording: came ", left.frame_count(), " frames of ", left.joint_count(),
@@ -169,4 +172,4 @@ absl::StatusOr<std::string> FormatSbu(const SbuRecording& recording, const SbuOp
   return text;
 }
 
-}  // namespace duet
+}  // namespace duet::formats::flat

@@ -12,20 +12,21 @@
 #include "model/motion/coordinates.h"
 #include "model/motion/skeleton.h"
 
-namespace duet {
+namespace duet::formats::flat {
 
 // What the text itself does not say. The defaults are those of SBU Kinect Interaction; K3HI differs
 // in its frame rate (30) alone.
 struct SbuOptions {
-  std::vector<std::string> joint_names = SbuSkeleton().joint_names;
+  std::vector<std::string> joint_names = motion::SbuSkeleton().joint_names;
   double frame_rate_hz = 15;
-  CoordinateFrame coordinates = {LengthUnit::kSbuNormalised, UpAxis::kYDown};
+  motion::CoordinateFrame coordinates = {motion::LengthUnit::kSbuNormalised,
+                                         motion::UpAxis::kYDown};
 };
 
 // The two people of a file, by their place in the image. Which of them leads is not in the file.
 struct SbuRecording {
-  Clip left;
-  Clip right;
+  motion::Clip left;
+  motion::Clip right;
 };
 
 // Reads `skeleton_pos.txt` and everything in its line layout: a frame number, then joints x 3
@@ -46,6 +47,6 @@ absl::StatusOr<SbuRecording> ReadSbu(const std::filesystem::path& path,
 absl::StatusOr<std::string> FormatSbu(const SbuRecording& recording,
                                       const SbuOptions& options = {});
 
-}  // namespace duet
+}  // namespace duet::formats::flat
 
 #endif  // DUET_MODEL_FORMATS_FLAT_SBU_TEXT_H_

@@ -7,8 +7,11 @@
 #include "gtest/gtest.h"
 #include "tests/support/temporary_folder.h"
 
-namespace duet::client {
+namespace duet::client::cli {
 namespace {
+
+using test::TemporaryFolder;
+using test::WriteTestFile;
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -75,7 +78,7 @@ TEST_F(ArgumentsTest, ModelsHasDefaults) {
 TEST_F(ArgumentsTest, SynthesizeHasDefaults) {
   const SynthesizeArguments arguments = Good({});
   EXPECT_EQ(arguments.leader, "kick.bvh");
-  EXPECT_EQ(arguments.leader_side, Side::kLeft);
+  EXPECT_EQ(arguments.leader_side, formats::Side::kLeft);
   ASSERT_THAT(arguments.weights, SizeIs(1));
   EXPECT_EQ(arguments.weights[0].interaction_class, "kick");
   EXPECT_EQ(arguments.model.name, "");
@@ -124,17 +127,17 @@ TEST_F(ArgumentsTest, EveryFlagIsRead) {
                                               "2.5"});
   ASSERT_THAT(arguments.weights, SizeIs(2));
   EXPECT_EQ(arguments.weights[1].weight, -0.5f);
-  EXPECT_EQ(arguments.leader_side, Side::kRight);
+  EXPECT_EQ(arguments.leader_side, formats::Side::kRight);
   EXPECT_EQ(arguments.input.frame_rate_hz, 30);
-  EXPECT_EQ(arguments.input.unit, LengthUnit::kMillimetres);
-  EXPECT_EQ(arguments.input.up_axis, UpAxis::kZUp);
+  EXPECT_EQ(arguments.input.unit, motion::LengthUnit::kMillimetres);
+  EXPECT_EQ(arguments.input.up_axis, motion::UpAxis::kZUp);
   EXPECT_EQ(arguments.input.metres_per_unit, 0.01);
   EXPECT_THAT(arguments.input.joints,
               ElementsAre(Pair("left_hand", "LHand"), Pair("right_hand", "RHand")));
   EXPECT_EQ(arguments.model.name, "sbu");
   EXPECT_EQ(arguments.model.version, 2);
   EXPECT_EQ(arguments.follower_start, "-0.5,1,2");
-  EXPECT_EQ(arguments.follower_start_side, Side::kRight);
+  EXPECT_EQ(arguments.follower_start_side, formats::Side::kRight);
   EXPECT_EQ(arguments.priority, Priority::kBulk);
   EXPECT_EQ(arguments.chunk_frames, 8);
   EXPECT_EQ(arguments.request_id, "job-7");
@@ -185,4 +188,4 @@ TEST_F(ArgumentsTest, OutputsThatCannotBeWrittenAreRefusedBeforeAnyWork) {
 }
 
 }  // namespace
-}  // namespace duet::client
+}  // namespace duet::client::cli

@@ -3,7 +3,7 @@
 #include "gtest/gtest.h"
 #include "tests/client/support/fake_stub.h"
 
-namespace duet::client {
+namespace duet::client::cli {
 namespace {
 
 ExitCode CodeFor(absl::StatusCode code) { return ExitCodeFor(absl::Status(code, "")); }
@@ -37,4 +37,4 @@ TEST(ExitCodeTest, AFullServerIsWorthRetryingAndATooLargeMessageIsNot) {
 }
 
 }  // namespace
-}  // namespace duet::client
+}  // namespace duet::client::cli

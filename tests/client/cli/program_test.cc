@@ -18,8 +18,14 @@
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
-namespace duet::client {
+namespace duet::client::cli {
 namespace {
+
+using test::IsOk;
+using test::ReadTestFile;
+using test::SwayingMotion;
+using test::TemporaryFolder;
+using test::WriteTestFile;
 
 using ::testing::_;
 using ::testing::AllOf;
@@ -38,8 +44,8 @@ ModelDetails SbuModel() {
   details.model.version_labels = {"stable"};
   details.model.is_default = true;
   details.model.interaction_classes = {"kick", "hug"};
-  details.model.joint_names = SbuSkeleton().joint_names;
-  details.model.bones = SbuSkeleton().bones;
+  details.model.joint_names = motion::SbuSkeleton().joint_names;
+  details.model.bones = motion::SbuSkeleton().bones;
   details.model.root_joint = "torso";
   details.model.frame_rate_hz = 15;
   details.model.window_frames = 46;
@@ -52,7 +58,7 @@ absl::StatusOr<SynthesisResult> Follow(const SynthesisRequest& request) {
   SynthesisResult result;
   result.pair.leader = request.leader;
   result.pair.follower = request.leader;
-  for (Vec3& position : result.pair.follower.positions) position.z -= 2;
+  for (motion::Vec3& position : result.pair.follower.positions) position.z -= 2;
   result.model_name = "sbu";
   result.model_version = 1;
   result.window_count = 1;
@@ -66,11 +72,11 @@ absl::StatusOr<SynthesisResult> Follow(const SynthesisRequest& request) {
 class ProgramTest : public ::testing::Test {
  protected:
   ProgramTest() {
-    leader_.joint_names = SbuSkeleton().joint_names;
+    leader_.joint_names = motion::SbuSkeleton().joint_names;
     leader_.frame_rate_hz = 15;
     leader_.positions = SwayingMotion(kFrames, 15);
-    const ClipPair pair{leader_, leader_};
-    EXPECT_THAT(WritePair(folder_ / "leader.csv", pair, SbuSkeleton()), IsOk());
+    const motion::ClipPair pair{leader_, leader_};
+    EXPECT_THAT(formats::WritePair(folder_ / "leader.csv", pair, motion::SbuSkeleton()), IsOk());
     ON_CALL(*connection_, GetModel).WillByDefault(Return(SbuModel()));
     ON_CALL(*connection_, Synthesize)
         .WillByDefault(
@@ -99,7 +105,7 @@ class ProgramTest : public ::testing::Test {
   bool Exists(const std::string& name) const { return std::filesystem::exists(folder_ / name); }
 
   TemporaryFolder folder_;
-  Clip leader_;
+  motion::Clip leader_;
   std::shared_ptr<::testing::NiceMock<MockConnection>> connection_ =
       std::make_shared<::testing::NiceMock<MockConnection>>();
   ClientOptions options_;
@@ -149,9 +155,9 @@ TEST_F(ProgramTest, WritesEveryKindOfOutput) {
 
 TEST_F(ProgramTest, TheWrittenFollowerIsTheSynthesisedOne) {
   ASSERT_EQ(Synthesize("pair.csv"), 0) << err_.str();
-  ReadOptions options;
-  options.side = Side::kRight;
-  const absl::StatusOr<Clip> follower = ReadLeader(folder_ / "pair.csv", options);
+  formats::ReadOptions options;
+  options.side = formats::Side::kRight;
+  const absl::StatusOr<motion::Clip> follower = ReadLeader(folder_ / "pair.csv", options);
   ASSERT_THAT(follower, IsOk());
   ASSERT_EQ(follower->frame_count(), kFrames);
   EXPECT_NEAR(follower->at(3, 0).z, leader_.at(3, 0).z - 2, 1e-5);
@@ -177,8 +183,8 @@ TEST_F(ProgramTest, SendsWhatTheFlagsSay) {
   EXPECT_EQ(sent.model.version_label, "stable");
   EXPECT_EQ(sent.priority, Priority::kBulk);
   ASSERT_TRUE(sent.follower_start.has_value());
-  EXPECT_EQ(std::get<Vec3>(*sent.follower_start), (Vec3{1, 1.1f, -2}));
-  EXPECT_EQ(sent.partner_direction, (Vec3{1, 0, -1}));
+  EXPECT_EQ(std::get<motion::Vec3>(*sent.follower_start), (motion::Vec3{1, 1.1f, -2}));
+  EXPECT_EQ(sent.partner_direction, (motion::Vec3{1, 0, -1}));
   EXPECT_EQ(sent.chunk_frames, 8);
   EXPECT_EQ(sent.request_id, "job-7");
   EXPECT_EQ(sent.leader.frame_rate_hz, 30);
@@ -187,9 +193,9 @@ TEST_F(ProgramTest, SendsWhatTheFlagsSay) {
 }
 
 TEST_F(ProgramTest, OfTheLeadersOwnFileTheFollowerStartsAsTheOther) {
-  ClipPair pair{leader_, leader_};
-  for (Vec3& position : pair.follower.positions) position.x += 3;
-  ASSERT_THAT(WritePair(folder_ / "leader.csv", pair, SbuSkeleton()), IsOk());
+  motion::ClipPair pair{leader_, leader_};
+  for (motion::Vec3& position : pair.follower.positions) position.x += 3;
+  ASSERT_THAT(formats::WritePair(folder_ / "leader.csv", pair, motion::SbuSkeleton()), IsOk());
   SynthesisRequest sent;
   EXPECT_CALL(*connection_, Synthesize)
       .WillRepeatedly([&](const SynthesisRequest& request, const ChunkCallback&) {
@@ -197,7 +203,7 @@ TEST_F(ProgramTest, OfTheLeadersOwnFileTheFollowerStartsAsTheOther) {
         return Follow(request);
       });
   ASSERT_EQ(Synthesize("pair.html", {"--follower-start", Path("leader.csv")}), 0) << err_.str();
-  const auto& other = std::get<std::vector<Vec3>>(*sent.follower_start);
+  const auto& other = std::get<std::vector<motion::Vec3>>(*sent.follower_start);
   ASSERT_EQ(other.size(), 15u);
   EXPECT_NEAR(other[0].x, leader_.at(0, 0).x + 3, 1e-5);
 
@@ -205,7 +211,7 @@ TEST_F(ProgramTest, OfTheLeadersOwnFileTheFollowerStartsAsTheOther) {
                        {"--follower-start", Path("leader.csv"), "--follower-start-side", "left"}),
             0)
       << err_.str();
-  const auto& same = std::get<std::vector<Vec3>>(*sent.follower_start);
+  const auto& same = std::get<std::vector<motion::Vec3>>(*sent.follower_start);
   EXPECT_NEAR(same[0].x, leader_.at(0, 0).x, 1e-5);
 }
 
@@ -332,4 +338,4 @@ TEST_F(ProgramTest, AMissingCertificateIsBadInput) {
 }
 
 }  // namespace
-}  // namespace duet::client
+}  // namespace duet::client::cli

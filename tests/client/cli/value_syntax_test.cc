@@ -4,8 +4,11 @@
 #include "gtest/gtest.h"
 #include "tests/support/status_matchers.h"
 
-namespace duet::client {
+namespace duet::client::cli {
 namespace {
+
+using test::IsOk;
+using test::StatusIs;
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
@@ -81,16 +84,16 @@ TEST(ParseJointPairTest, RefusesEverythingElse) {
 }
 
 TEST(ParsePointTest, ReadsThreeNumbersAndNothingElse) {
-  EXPECT_EQ(ParsePoint("0.5,1,-2"), (Vec3{0.5f, 1, -2}));
+  EXPECT_EQ(ParsePoint("0.5,1,-2"), (motion::Vec3{0.5f, 1, -2}));
   for (const char* text : {"", "1,2", "1,2,3,4", "a,b,c", "start.bvh"}) {
     EXPECT_EQ(ParsePoint(text), std::nullopt) << text;
   }
 }
 
 TEST(ParseDirectionTest, SaysWhatWasWanted) {
-  EXPECT_EQ(*ParseDirection("0,0,-3"), (Vec3{0, 0, -3}));
+  EXPECT_EQ(*ParseDirection("0,0,-3"), (motion::Vec3{0, 0, -3}));
   EXPECT_THAT(ParseDirection("north").status().message(), ::testing::HasSubstr("wanted X,Y,Z"));
 }
 
 }  // namespace
-}  // namespace duet::client
+}  // namespace duet::client::cli

@@ -10,7 +10,7 @@
 #include "grpcpp/server.h"
 #include "grpcpp/server_context.h"
 
-namespace duet::client::internal {
+namespace duet::test {
 
 // A service whose answers a test writes.
 class FakeService final : public v1::MotionSynthesis::Service {
@@ -48,6 +48,6 @@ class FakeServer {
   std::unique_ptr<grpc::Server> server_;
 };
 
-}  // namespace duet::client::internal
+}  // namespace duet::test
 
 #endif  // DUET_TESTS_CLIENT_SUPPORT_FAKE_SERVICE_H_

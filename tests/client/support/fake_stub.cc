@@ -7,10 +7,10 @@
 #include "duet/rpc/v1/status.pb.h"
 #include "gtest/gtest.h"
 
-namespace duet::client::internal {
+namespace duet::test {
 namespace {
 
-class ScriptedResponseStream final : public ResponseStream {
+class ScriptedResponseStream final : public client::internal::ResponseStream {
  public:
   ScriptedResponseStream(ScriptedStream script, int* cancelled)
       : script_(std::move(script)), cancelled_(cancelled) {}
@@ -37,8 +37,8 @@ class ScriptedResponseStream final : public ResponseStream {
 
 }  // namespace
 
-absl::StatusOr<v1::ListModelsResponse> FakeStub::ListModels(const CallContext& context,
-                                                            const v1::ListModelsRequest&) {
+absl::StatusOr<v1::ListModelsResponse> FakeStub::ListModels(
+    const client::internal::CallContext& context, const v1::ListModelsRequest&) {
   contexts.push_back(context);
   const size_t attempt = list_models_calls_++;
   if (attempt < list_models.size()) return list_models[attempt];
@@ -46,8 +46,8 @@ absl::StatusOr<v1::ListModelsResponse> FakeStub::ListModels(const CallContext& c
   return absl::InternalError("not scripted");
 }
 
-absl::StatusOr<v1::GetModelResponse> FakeStub::GetModel(const CallContext& context,
-                                                        const v1::GetModelRequest& request) {
+absl::StatusOr<v1::GetModelResponse> FakeStub::GetModel(
+    const client::internal::CallContext& context, const v1::GetModelRequest& request) {
   contexts.push_back(context);
   get_model_requests.push_back(request);
   if (get_model_requests.size() <= get_model.size()) {
@@ -57,8 +57,8 @@ absl::StatusOr<v1::GetModelResponse> FakeStub::GetModel(const CallContext& conte
   return absl::InternalError("not scripted");
 }
 
-std::unique_ptr<ResponseStream> FakeStub::Synthesize(const CallContext& context,
-                                                     const v1::SynthesizeRequest& request) {
+std::unique_ptr<client::internal::ResponseStream> FakeStub::Synthesize(
+    const client::internal::CallContext& context, const v1::SynthesizeRequest& request) {
   contexts.push_back(context);
   synthesize_requests.push_back(request);
   const size_t attempt = synthesize_requests.size();
@@ -71,7 +71,7 @@ std::unique_ptr<ResponseStream> FakeStub::Synthesize(const CallContext& context,
   return std::make_unique<ScriptedResponseStream>(std::move(script), &cancelled);
 }
 
-RetryEnvironment FakeTime::Environment() {
+client::internal::RetryEnvironment FakeTime::Environment() {
   return {[this] { return now; },
           [this](absl::Duration wait) {
             sleeps.push_back(wait);
@@ -80,8 +80,8 @@ RetryEnvironment FakeTime::Environment() {
           [this] { return uniform; }};
 }
 
-Clip ThreeJointLeader(int frames) {
-  Clip clip;
+motion::Clip ThreeJointLeader(int frames) {
+  motion::Clip clip;
   clip.joint_names = {"root", "left", "right"};
   clip.frame_rate_hz = 30;
   for (int i = 0; i < frames * 3; ++i) {
@@ -91,13 +91,13 @@ Clip ThreeJointLeader(int frames) {
   return clip;
 }
 
-std::vector<Vec3> FollowerFor(const Clip& leader) {
-  std::vector<Vec3> follower = leader.positions;
-  for (Vec3& position : follower) position.x += 1;
+std::vector<motion::Vec3> FollowerFor(const motion::Clip& leader) {
+  std::vector<motion::Vec3> follower = leader.positions;
+  for (motion::Vec3& position : follower) position.x += 1;
   return follower;
 }
 
-v1::SynthesizeResponse HeaderFor(const Clip& leader, uint32_t version) {
+v1::SynthesizeResponse HeaderFor(const motion::Clip& leader, uint32_t version) {
   v1::SynthesizeResponse response;
   v1::SynthesisHeader* header = response.mutable_header();
   header->set_model_name("dancer");
@@ -113,21 +113,21 @@ v1::SynthesizeResponse HeaderFor(const Clip& leader, uint32_t version) {
   return response;
 }
 
-v1::SynthesizeResponse ChunkFor(const Clip& leader, int first_frame, int frames) {
-  const std::vector<Vec3> follower = FollowerFor(leader);
+v1::SynthesizeResponse ChunkFor(const motion::Clip& leader, int first_frame, int frames) {
+  const std::vector<motion::Vec3> follower = FollowerFor(leader);
   v1::SynthesizeResponse response;
   v1::MotionChunk* chunk = response.mutable_chunk();
   chunk->set_first_frame(static_cast<uint32_t>(first_frame));
   chunk->set_frame_count(static_cast<uint32_t>(frames));
   const int joints = leader.joint_count();
   for (int i = first_frame * joints; i < (first_frame + frames) * joints; ++i) {
-    const Vec3& position = follower[static_cast<size_t>(i)];
+    const motion::Vec3& position = follower[static_cast<size_t>(i)];
     for (float value : {position.x, position.y, position.z}) chunk->add_positions(value);
   }
   return response;
 }
 
-v1::SynthesizeResponse SummaryFor(const Clip& leader, int chunks) {
+v1::SynthesizeResponse SummaryFor(const motion::Clip& leader, int chunks) {
   v1::SynthesizeResponse response;
   v1::SynthesisSummary* summary = response.mutable_summary();
   summary->set_frame_count(static_cast<uint32_t>(leader.frame_count()));
@@ -138,7 +138,7 @@ v1::SynthesizeResponse SummaryFor(const Clip& leader, int chunks) {
   return response;
 }
 
-std::vector<v1::SynthesizeResponse> ReplyFor(const Clip& leader, int chunk_frames) {
+std::vector<v1::SynthesizeResponse> ReplyFor(const motion::Clip& leader, int chunk_frames) {
   std::vector<v1::SynthesizeResponse> reply = {HeaderFor(leader)};
   int chunks = 0;
   for (int frame = 0; frame < leader.frame_count(); frame += chunk_frames) {
@@ -166,4 +166,4 @@ absl::Status ServiceError(absl::StatusCode code, const std::string& message, abs
   return status;
 }
 
-}  // namespace duet::client::internal
+}  // namespace duet::test

@@ -11,7 +11,7 @@
 #include "duet/v1/synthesis.pb.h"
 #include "model/motion/clip.h"
 
-namespace duet::client::internal {
+namespace duet::test {
 
 // What one stream brings, and how it ends.
 struct ScriptedStream {
@@ -21,20 +21,20 @@ struct ScriptedStream {
 
 // A stub that answers as scripted, one entry for each attempt, and remembers what it was asked. An
 // attempt beyond the script fails the test.
-class FakeStub : public Stub {
+class FakeStub : public client::internal::Stub {
  public:
-  absl::StatusOr<v1::ListModelsResponse> ListModels(const CallContext& context,
+  absl::StatusOr<v1::ListModelsResponse> ListModels(const client::internal::CallContext& context,
                                                     const v1::ListModelsRequest& request) override;
-  absl::StatusOr<v1::GetModelResponse> GetModel(const CallContext& context,
+  absl::StatusOr<v1::GetModelResponse> GetModel(const client::internal::CallContext& context,
                                                 const v1::GetModelRequest& request) override;
-  std::unique_ptr<ResponseStream> Synthesize(const CallContext& context,
-                                             const v1::SynthesizeRequest& request) override;
+  std::unique_ptr<client::internal::ResponseStream> Synthesize(
+      const client::internal::CallContext& context, const v1::SynthesizeRequest& request) override;
 
   std::vector<absl::StatusOr<v1::ListModelsResponse>> list_models;
   std::vector<absl::StatusOr<v1::GetModelResponse>> get_model;
   std::vector<ScriptedStream> streams;
 
-  std::vector<CallContext> contexts;
+  std::vector<client::internal::CallContext> contexts;
   std::vector<v1::GetModelRequest> get_model_requests;
   std::vector<v1::SynthesizeRequest> synthesize_requests;
   int cancelled = 0;
@@ -49,26 +49,26 @@ struct FakeTime {
   std::vector<absl::Duration> sleeps;
   double uniform = 0;  // what the jitter draws
 
-  RetryEnvironment Environment();
+  client::internal::RetryEnvironment Environment();
 };
 
 // A leader of three joints: "root", "left", "right". Every position is different.
-Clip ThreeJointLeader(int frames);
+motion::Clip ThreeJointLeader(int frames);
 
 // The messages of a good reply to `leader`: the follower is the leader moved by one metre in x.
-v1::SynthesizeResponse HeaderFor(const Clip& leader, uint32_t version = 1);
-v1::SynthesizeResponse ChunkFor(const Clip& leader, int first_frame, int frames);
-v1::SynthesizeResponse SummaryFor(const Clip& leader, int chunks);
+v1::SynthesizeResponse HeaderFor(const motion::Clip& leader, uint32_t version = 1);
+v1::SynthesizeResponse ChunkFor(const motion::Clip& leader, int first_frame, int frames);
+v1::SynthesizeResponse SummaryFor(const motion::Clip& leader, int chunks);
 // Header, chunks of `chunk_frames`, summary.
-std::vector<v1::SynthesizeResponse> ReplyFor(const Clip& leader, int chunk_frames);
+std::vector<v1::SynthesizeResponse> ReplyFor(const motion::Clip& leader, int chunk_frames);
 
 // The follower that these replies carry.
-std::vector<Vec3> FollowerFor(const Clip& leader);
+std::vector<motion::Vec3> FollowerFor(const motion::Clip& leader);
 
 // A status as the server sends it, with an ErrorInfo; with a RetryInfo where `delay` is given.
 absl::Status ServiceError(absl::StatusCode code, const std::string& message,
                           absl::Duration delay = absl::InfiniteDuration());
 
-}  // namespace duet::client::internal
+}  // namespace duet::test
 
 #endif  // DUET_TESTS_CLIENT_SUPPORT_FAKE_STUB_H_

@@ -8,7 +8,7 @@
 
 #include "gtest/gtest.h"
 
-namespace duet::client::internal {
+namespace duet::test {
 namespace {
 
 using Key = std::unique_ptr<EVP_PKEY, decltype(&EVP_PKEY_free)>;
@@ -52,4 +52,4 @@ TestCertificate MakeTestCertificate(const std::string& name) {
           })};
 }
 
-}  // namespace duet::client::internal
+}  // namespace duet::test

@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace duet::client::internal {
+namespace duet::test {
 
 // A certificate that vouches for itself, and its private key; PEM.
 struct TestCertificate {
@@ -14,6 +14,6 @@ struct TestCertificate {
 // For the host `name`; valid for an hour around now. Another one at every call.
 TestCertificate MakeTestCertificate(const std::string& name);
 
-}  // namespace duet::client::internal
+}  // namespace duet::test
 
 #endif  // DUET_TESTS_CLIENT_SUPPORT_TEST_CERTIFICATE_H_

@@ -11,8 +11,11 @@
 #include "nlohmann/json.hpp"
 #include "tests/support/status_matchers.h"
 
-namespace duet::client {
+namespace duet::client::viewer {
 namespace {
+
+using test::IsOk;
+using test::StatusIs;
 
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -131,4 +134,4 @@ TEST(RenderPageTest, WhatCannotBeShownIsRefused) {
 }
 
 }  // namespace
-}  // namespace duet::client
+}  // namespace duet::client::viewer

@@ -13,8 +13,10 @@
 #include "model/evaluation/baselines/pose_space.h"
 #include "tests/evaluation/support/made_up_pairs.h"
 
-namespace duet {
+namespace duet::evaluation::baselines {
 namespace {
+
+using test::MadeUpPairs;
 
 using testing::ElementsAre;
 
@@ -174,7 +176,7 @@ TEST(StretchToTest, KeepsBothEnds) {
 }
 
 TEST(MotionMatrixTest, TheStandardFrameIsTheSameWhereverThePairStands) {
-  const Dataset dataset = MadeUpPairs(6);
+  const dataset::Dataset dataset = MadeUpPairs(6);
   // Sequences 0 and 5 differ in place and yaw alone at their first frames.
   const StandardPair a = StandardiseSequence(dataset.skeleton, dataset.sequences[0]);
   const StandardPair b = StandardiseSequence(dataset.skeleton, dataset.sequences[5]);
@@ -187,20 +189,21 @@ TEST(MotionMatrixTest, TheStandardFrameIsTheSameWhereverThePairStands) {
 }
 
 TEST(MotionMatrixTest, TheWorldComesBack) {
-  const Dataset dataset = MadeUpPairs(3);
-  const Sequence& sequence = dataset.sequences[2];
+  const dataset::Dataset dataset = MadeUpPairs(3);
+  const dataset::Sequence& sequence = dataset.sequences[2];
   const StandardPair pair = StandardiseSequence(dataset.skeleton, sequence);
-  const std::vector<Vec3> world = FollowerToWorld(dataset.skeleton, sequence, pair.follower);
+  const std::vector<motion::Vec3> world =
+      FollowerToWorld(dataset.skeleton, sequence, pair.follower);
   for (size_t i = 0; i < world.size(); ++i) {
     EXPECT_LT(Distance(world[i], sequence.pair.follower.positions[i]), 1e-5);
   }
 }
 
 TEST(MotionMatrixTest, AKnownPartnerDirectionTurnsTheFrame) {
-  const Dataset dataset = MadeUpPairs(1);
-  Sequence sequence = dataset.sequences[0];
-  const Vec3 across = sequence.pair.follower.at(0, dataset.skeleton.root) -
-                      sequence.pair.leader.at(0, dataset.skeleton.root);
+  const dataset::Dataset dataset = MadeUpPairs(1);
+  dataset::Sequence sequence = dataset.sequences[0];
+  const motion::Vec3 across = sequence.pair.follower.at(0, dataset.skeleton.root) -
+                              sequence.pair.leader.at(0, dataset.skeleton.root);
   sequence.partner_direction = RotateY(across, 0.5);
   const StandardPair pair = StandardiseSequence(dataset.skeleton, sequence);
   const Eigen::Index root = 3 * dataset.skeleton.root;
@@ -210,8 +213,8 @@ TEST(MotionMatrixTest, AKnownPartnerDirectionTurnsTheFrame) {
 }
 
 TEST(MotionMatrixTest, CuesTellTheLeadersWay) {
-  const Dataset dataset = MadeUpPairs(1);
-  Sequence sequence = dataset.sequences[0];
+  const dataset::Dataset dataset = MadeUpPairs(1);
+  dataset::Sequence sequence = dataset.sequences[0];
   const int joints = dataset.skeleton.joint_count();
   const StandardPair before = StandardLeader(dataset.skeleton, sequence);
   for (size_t i = 0; i < sequence.pair.leader.positions.size(); ++i) {
@@ -226,4 +229,4 @@ TEST(MotionMatrixTest, CuesTellTheLeadersWay) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::evaluation::baselines

@@ -7,13 +7,17 @@
 #include "tests/evaluation/support/made_up_pairs.h"
 #include "tests/support/status_matchers.h"
 
-namespace duet {
+namespace duet::evaluation::baselines {
 namespace {
+
+using test::IsOk;
+using test::MadeUpPairs;
+using test::StatusIs;
 
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-double MeanAfd(const Dataset& dataset, const std::string& name) {
+double MeanAfd(const dataset::Dataset& dataset, const std::string& name) {
   auto method = MakeBaseline(name);
   EXPECT_THAT(method, IsOk());
   const auto folds = RunLeaveOneSubjectOut(dataset, {"a"}, method->get());
@@ -39,7 +43,7 @@ TEST(BaselinesTest, AreTheRowsOfTheTable) {
 // Every method that reads the leader answers a leader that it never saw, anywhere in the world,
 // much better than the pose held still that ignores it.
 TEST(BaselinesTest, LearnTheMadeUpAnswer) {
-  const Dataset dataset = MadeUpPairs(12);
+  const dataset::Dataset dataset = MadeUpPairs(12);
   const double still = MeanAfd(dataset, "class_mean");
   EXPECT_GT(still, 0.1);
   EXPECT_LT(MeanAfd(dataset, "nearest_neighbour"), 0.5 * still);
@@ -50,13 +54,13 @@ TEST(BaselinesTest, LearnTheMadeUpAnswer) {
 }
 
 TEST(BaselinesTest, TheFirstPoseFrozenIsRightWhereNothingMoved) {
-  const Dataset dataset = MadeUpPairs(3);
+  const dataset::Dataset dataset = MadeUpPairs(3);
   auto method = MakeBaseline("frozen_first_frame");
   ASSERT_THAT(method, IsOk());
   const auto folds = RunLeaveOneSubjectOut(dataset, {"a"}, method->get());
   ASSERT_THAT(folds, IsOk());
-  const ScoredMotion& motion = (*folds)[0].motions[0];
-  const Clip& truth = dataset.sequences[0].pair.follower;
+  const metrics::ScoredMotion& motion = (*folds)[0].motions[0];
+  const motion::Clip& truth = dataset.sequences[0].pair.follower;
   // The made-up leader's root never moves: the answer stands still in the world.
   for (int t : {0, 7, truth.frame_count() - 1}) {
     for (int j = 0; j < 15; ++j) {
@@ -66,7 +70,7 @@ TEST(BaselinesTest, TheFirstPoseFrozenIsRightWhereNothingMoved) {
 }
 
 TEST(BaselinesTest, AnswerTheSameEveryTime) {
-  const Dataset dataset = MadeUpPairs(6);
+  const dataset::Dataset dataset = MadeUpPairs(6);
   for (const char* name : {"kzbh12", "hfkb15"}) {
     EXPECT_EQ(MeanAfd(dataset, name), MeanAfd(dataset, name)) << name;
   }
@@ -74,14 +78,14 @@ TEST(BaselinesTest, AnswerTheSameEveryTime) {
 
 TEST(BaselinesTest, WorkWithOneSequenceAClass) {
   // Leaving a out of two subjects leaves one sequence of each class.
-  const Dataset dataset = MadeUpPairs(2);
+  const dataset::Dataset dataset = MadeUpPairs(2);
   for (const std::string& name : BaselineNames()) {
     EXPECT_LT(MeanAfd(dataset, name), 3) << name;
   }
 }
 
 TEST(BaselinesTest, NameTheClassWithoutSequences) {
-  const Dataset dataset = MadeUpPairs(2);
+  const dataset::Dataset dataset = MadeUpPairs(2);
   for (const std::string& name : BaselineNames()) {
     if (name == "frozen_first_frame") continue;  // learns nothing
     auto method = MakeBaseline(name);
@@ -92,4 +96,4 @@ TEST(BaselinesTest, NameTheClassWithoutSequences) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::evaluation::baselines

@@ -13,12 +13,17 @@
 #include "tests/support/fake_synthesizer.h"
 #include "tests/support/status_matchers.h"
 
-namespace duet {
+namespace duet::evaluation::experiments {
 namespace {
+
+using test::FakeSynthesizer;
+using test::IsOk;
+using test::MadeUpPairs;
+using test::StatusIs;
 
 using testing::HasSubstr;
 
-std::vector<int> AllOf(const Dataset& dataset) {
+std::vector<int> AllOf(const dataset::Dataset& dataset) {
   std::vector<int> all(dataset.sequences.size());
   std::iota(all.begin(), all.end(), 0);
   return all;
@@ -33,7 +38,7 @@ float Other(const SyntheticJob& job) {
 }
 
 TEST(PlanSyntheticSetTest, AsksForMatchesAndMixesOfEveryClass) {
-  const Dataset dataset = MadeUpPairs(5);
+  const dataset::Dataset dataset = MadeUpPairs(5);
   const std::vector<SyntheticJob> jobs = PlanSyntheticSet(dataset, AllOf(dataset), {6, 4, 3});
   ASSERT_EQ(jobs.size(), 20u);
   std::map<int, int> matches, mixes;
@@ -54,21 +59,22 @@ TEST(PlanSyntheticSetTest, AsksForMatchesAndMixesOfEveryClass) {
 }
 
 TEST(PlanSyntheticSetTest, NeverLooksOutsideTheTrainingHalfNorAtFollowers) {
-  Dataset dataset = MadeUpPairs(6);
-  const Split split = *SplitInHalves(dataset, 1);
+  dataset::Dataset dataset = MadeUpPairs(6);
+  const dataset::Split split = *SplitInHalves(dataset, 1);
   for (const int test : split.test) {  // would show in what is drawn
-    for (Vec3& point : dataset.sequences[static_cast<size_t>(test)].pair.leader.positions) {
+    for (motion::Vec3& point : dataset.sequences[static_cast<size_t>(test)].pair.leader.positions) {
       point = {1e6f, 1e6f, 1e6f};
     }
   }
   for (const SyntheticJob& job : PlanSyntheticSet(dataset, split.train, {5, 5, 2})) {
     EXPECT_TRUE(job.sequence.pair.follower.positions.empty());
-    for (const Vec3& point : job.sequence.pair.leader.positions) ASSERT_LT(Norm(point), 1e3f);
+    for (const motion::Vec3& point : job.sequence.pair.leader.positions)
+      ASSERT_LT(Norm(point), 1e3f);
   }
 }
 
 TEST(PlanSyntheticSetTest, VariesLeadersByTheSeedAlone) {
-  const Dataset dataset = MadeUpPairs(4);
+  const dataset::Dataset dataset = MadeUpPairs(4);
   const auto first = PlanSyntheticSet(dataset, AllOf(dataset), {4, 4, 1});
   const auto again = PlanSyntheticSet(dataset, AllOf(dataset), {4, 4, 1});
   const auto other = PlanSyntheticSet(dataset, AllOf(dataset), {4, 4, 2});
@@ -83,19 +89,20 @@ TEST(PlanSyntheticSetTest, VariesLeadersByTheSeedAlone) {
 }
 
 TEST(SynthesizeJobsTest, AnswersEveryJobAndRefusesAModelOfOtherClasses) {
-  Dataset dataset = MadeUpPairs(2);
+  dataset::Dataset dataset = MadeUpPairs(2);
   const std::vector<SyntheticJob> jobs = PlanSyntheticSet(dataset, AllOf(dataset), {1, 1, 1});
-  ModelDescription description;
+  engine::ModelDescription description;
   description.name = "fake";
   description.skeleton = dataset.skeleton;
   description.classes = dataset.classes;
   description.frame_rate_hz = dataset.frame_rate_hz;
   description.window_frames = dataset.LongestFrameCount();
   const FakeSynthesizer model(description);
-  const absl::StatusOr<std::vector<Sequence>> answers = SynthesizeJobs(dataset, model, jobs);
+  const absl::StatusOr<std::vector<dataset::Sequence>> answers =
+      SynthesizeJobs(dataset, model, jobs);
   ASSERT_THAT(answers, IsOk());
   ASSERT_EQ(answers->size(), jobs.size());
-  for (const Sequence& answer : *answers) {
+  for (const dataset::Sequence& answer : *answers) {
     EXPECT_EQ(answer.pair.follower.frame_count(), answer.pair.leader.frame_count());
   }
   dataset.classes[0] = "shove";
@@ -106,9 +113,9 @@ TEST(SynthesizeJobsTest, AnswersEveryJobAndRefusesAModelOfOtherClasses) {
 // Two classes that any classifier tells apart: give steps back, flinch steps back four times as
 // far.
 TEST(ClassifierAccuracyTest, LearnsFromSyntheticMotionAlone) {
-  const Dataset dataset = MadeUpPairs(8);
-  const Split split = *SplitInHalves(dataset, 1);
-  ClassifierOptions options;
+  const dataset::Dataset dataset = MadeUpPairs(8);
+  const dataset::Split split = *SplitInHalves(dataset, 1);
+  judge::ClassifierOptions options;
   options.hidden = 8;
   options.epochs = 60;
   TrainingMaterial material;
@@ -121,7 +128,7 @@ TEST(ClassifierAccuracyTest, LearnsFromSyntheticMotionAlone) {
   ASSERT_EQ(right->size(), 3u);
   EXPECT_GE(right->back(), 0.9);
   // Each labelled as the other: what is learnt is what is taught.
-  for (Sequence& sequence : material.synthetic) {
+  for (dataset::Sequence& sequence : material.synthetic) {
     sequence.interaction_class = 1 - sequence.interaction_class;
   }
   const absl::StatusOr<std::vector<double>> wrong =
@@ -131,7 +138,7 @@ TEST(ClassifierAccuracyTest, LearnsFromSyntheticMotionAlone) {
 }
 
 TEST(RunHalfTest, TrainsEveryRowAndKeepsServedSetsToTheirHalf) {
-  const Dataset dataset = MadeUpPairs(4);
+  const dataset::Dataset dataset = MadeUpPairs(4);
   std::vector<DataHalf> halves(2);
   for (uint64_t seed : {1, 2}) {
     DataHalf& half = halves[seed - 1];
@@ -150,13 +157,13 @@ TEST(RunHalfTest, TrainsEveryRowAndKeepsServedSetsToTheirHalf) {
   for (const DataHalf& half : halves) {
     ASSERT_THAT(RunHalf(dataset, half, {"with synthetic", 1, 2}, &progress, &trials), IsOk());
   }
-  const Table means = trials.Means("accuracy");
+  const report::Table means = trials.Means("accuracy");
   std::vector<std::string> rows;
-  for (const TableRow& row : means.rows) rows.push_back(row.name);
+  for (const report::TableRow& row : means.rows) rows.push_back(row.name);
   EXPECT_THAT(rows, testing::ElementsAre("captured", "with synthetic", "captured, longer",
                                          "with synthetic, longer", "synthetic alone",
                                          "captured + set through the server"));
-  for (const TableRow& row : means.rows) {
+  for (const report::TableRow& row : means.rows) {
     EXPECT_GE(row.values.back(), 0);
     EXPECT_LE(row.values.back(), 1);
   }
@@ -166,4 +173,4 @@ TEST(RunHalfTest, TrainsEveryRowAndKeepsServedSetsToTheirHalf) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::evaluation::experiments

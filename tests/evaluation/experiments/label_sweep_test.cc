@@ -6,7 +6,7 @@
 #include <cmath>
 #include <functional>
 
-namespace duet {
+namespace duet::evaluation::experiments {
 namespace {
 
 using ::testing::DoubleNear;
@@ -91,13 +91,13 @@ TEST(RankCorrelation, SharesTheRanksOfTies) {
 TEST(ControlTable, HasARowForEachRaisedClass) {
   const std::vector<SweepCurve> curves = {Curve(0, 0, Rising), Curve(1, 1, Falling),
                                           Curve(1, 0, Falling)};
-  const Table own = ControlTable("own", {"a", "b"}, curves, SweepKind::kOwn);
+  const report::Table own = ControlTable("own", {"a", "b"}, curves, SweepKind::kOwn);
   ASSERT_THAT(own.rows, SizeIs(3));
   EXPECT_EQ(own.rows[0].values.front(), 1);
   EXPECT_EQ(own.rows[1].values.front(), 0);
   EXPECT_EQ(own.rows[2].name, "all");
   EXPECT_EQ(own.rows[2].values.front(), 0.5);
-  const Table added = ControlTable("added", {"a", "b"}, curves, SweepKind::kAdded);
+  const report::Table added = ControlTable("added", {"a", "b"}, curves, SweepKind::kAdded);
   EXPECT_EQ(added.rows[0].values.front(), 0);
   EXPECT_TRUE(std::isnan(added.rows[1].values.front()));
 }
@@ -105,7 +105,7 @@ TEST(ControlTable, HasARowForEachRaisedClass) {
 TEST(SweepPlot, DrawsTheMeanOfEveryClassAgainstTheOwnWeight) {
   const std::vector<SweepCurve> curves = {Curve(0, 0, Rising), Curve(0, 0, Level),
                                           Curve(1, 0, Falling)};
-  const LinePlot plot = SweepPlot("t", {"a", "b"}, curves, SweepKind::kOwn, 0);
+  const report::LinePlot plot = SweepPlot("t", {"a", "b"}, curves, SweepKind::kOwn, 0);
   ASSERT_THAT(plot.series, SizeIs(2));
   EXPECT_EQ(plot.series[0].name, "a");
   EXPECT_THAT(plot.series[0].points.back(), ElementsAre(2, DoubleNear((0.8 + 0.5) / 2, 1e-6)));
@@ -114,11 +114,11 @@ TEST(SweepPlot, DrawsTheMeanOfEveryClassAgainstTheOwnWeight) {
 
 TEST(SweepPlot, DrawsTheAddedClassForEachOwnOne) {
   const std::vector<SweepCurve> curves = {Curve(0, 0, Level), Curve(1, 0, Falling)};
-  const LinePlot plot = SweepPlot("t", {"a", "b"}, curves, SweepKind::kAdded, 0);
+  const report::LinePlot plot = SweepPlot("t", {"a", "b"}, curves, SweepKind::kAdded, 0);
   ASSERT_THAT(plot.series, SizeIs(1));
   EXPECT_EQ(plot.series[0].name, "beside b");
   EXPECT_THAT(plot.series[0].points.front(), ElementsAre(-1, DoubleNear(0.6, 1e-6)));
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::evaluation::experiments

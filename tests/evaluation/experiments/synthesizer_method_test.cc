@@ -8,17 +8,21 @@
 #include "tests/evaluation/support/made_up_pairs.h"
 #include "tests/support/fake_synthesizer.h"
 
-namespace duet {
+namespace duet::evaluation::experiments {
 namespace {
+
+using test::FakeAnswer;
+using test::FakeSynthesizer;
+using test::MadeUpPairs;
 
 using ::testing::ElementsAre;
 using ::testing::SizeIs;
 
 // A leader that takes several windows of the model's.
-Sequence Repeated(const Sequence& sequence, int times) {
-  Sequence longer = sequence;
+dataset::Sequence Repeated(const dataset::Sequence& sequence, int times) {
+  dataset::Sequence longer = sequence;
   for (int i = 1; i < times; ++i) {
-    const std::vector<Vec3>& once = sequence.pair.leader.positions;
+    const std::vector<motion::Vec3>& once = sequence.pair.leader.positions;
     longer.pair.leader.positions.insert(longer.pair.leader.positions.end(), once.begin(),
                                         once.end());
   }
@@ -26,8 +30,9 @@ Sequence Repeated(const Sequence& sequence, int times) {
 }
 
 TEST(SynthesizeSequences, AnswersClipsOfAnyLengthTogether) {
-  const Dataset dataset = MadeUpPairs(2);
-  const Sequence longer = Repeated(dataset.sequences[1], 4);  // 68 frames: two windows of 46
+  const dataset::Dataset dataset = MadeUpPairs(2);
+  const dataset::Sequence longer =
+      Repeated(dataset.sequences[1], 4);  // 68 frames: two windows of 46
   std::vector<size_t> batches;
   FakeSynthesizer model;
   model.on_batch = [&](auto windows) { batches.push_back(windows.size()); };
@@ -39,19 +44,19 @@ TEST(SynthesizeSequences, AnswersClipsOfAnyLengthTogether) {
   EXPECT_THAT(batches, ElementsAre(3, 1));
   ASSERT_THAT(*followers, SizeIs(3));
   for (size_t i = 0; i < leaders.size(); ++i) {
-    const std::vector<Vec3>& leader = leaders[i].sequence->pair.leader.positions;
+    const std::vector<motion::Vec3>& leader = leaders[i].sequence->pair.leader.positions;
     ASSERT_EQ((*followers)[i].size(), leader.size());
     for (size_t p = 0; p < leader.size(); ++p) {
-      const Vec3 wanted = FakeAnswer(leader[p], leaders[i].labels);
+      const motion::Vec3 wanted = FakeAnswer(leader[p], leaders[i].labels);
       ASSERT_NEAR(Norm((*followers)[i][p] - wanted), 0, 1e-4) << i << ", " << p;
     }
   }
 }
 
 TEST(SynthesizeSequences, PassesAFailureOn) {
-  const Dataset dataset = MadeUpPairs(2);
+  const dataset::Dataset dataset = MadeUpPairs(2);
   FakeSynthesizer model;
-  model.window_status = [](const SynthesisWindow& window) {
+  model.window_status = [](const engine::SynthesisWindow& window) {
     return window.labels[1] > 0 ? absl::InternalError("no") : absl::OkStatus();
   };
   const std::vector<LabelledLeader> leaders = {{&dataset.sequences[0], {1, 0, 0, 0, 0, 0}},
@@ -61,4 +66,4 @@ TEST(SynthesizeSequences, PassesAFailureOn) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::evaluation::experiments

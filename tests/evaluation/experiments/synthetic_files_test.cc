@@ -9,8 +9,15 @@
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
-namespace duet {
+namespace duet::evaluation::experiments {
 namespace {
+
+using test::IsOk;
+using test::MadeUpPairs;
+using test::ReadTestFile;
+using test::StatusIs;
+using test::TemporaryFolder;
+using test::WriteTestFile;
 
 using testing::HasSubstr;
 
@@ -18,18 +25,18 @@ using testing::HasSubstr;
 class SyntheticFilesTest : public testing::Test {
  protected:
   void SetUp() override {
-    dataset_.sequences[0].partner_direction = Vec3{0, 0, -1};
+    dataset_.sequences[0].partner_direction = motion::Vec3{0, 0, -1};
     jobs_ = PlanSyntheticSet(dataset_, {0, 2}, {1, 1, 7});
     ASSERT_THAT(WriteSyntheticJobs(dataset_, jobs_, 7, folder_.path()), IsOk());
   }
 
   // What `duet synthesize` leaves for a job: here the leader, moved by a metre.
-  void Answer(const SyntheticJob& job, const Skeleton& skeleton, double frame_rate_hz) {
-    ClipPair pair = job.sequence.pair;
+  void Answer(const SyntheticJob& job, const motion::Skeleton& skeleton, double frame_rate_hz) {
+    motion::ClipPair pair = job.sequence.pair;
     pair.follower = pair.leader;
-    for (Vec3& point : pair.follower.positions) point.x += 1;
+    for (motion::Vec3& point : pair.follower.positions) point.x += 1;
     pair.leader.frame_rate_hz = pair.follower.frame_rate_hz = frame_rate_hz;
-    ASSERT_THAT(WritePair(FollowerFile(job), pair, skeleton), IsOk());
+    ASSERT_THAT(formats::WritePair(FollowerFile(job), pair, skeleton), IsOk());
   }
 
   void AnswerAll() {
@@ -48,7 +55,7 @@ class SyntheticFilesTest : public testing::Test {
     return ReadSyntheticSet(dataset_, folder_.path()).status();
   }
 
-  Dataset dataset_ = MadeUpPairs(2);
+  dataset::Dataset dataset_ = MadeUpPairs(2);
   std::vector<SyntheticJob> jobs_;
   TemporaryFolder folder_;
 };
@@ -56,7 +63,7 @@ class SyntheticFilesTest : public testing::Test {
 TEST_F(SyntheticFilesTest, LeadersAreFilesThatTheClientReads) {
   for (const SyntheticJob& job : jobs_) {
     const std::filesystem::path file = folder_ / "leaders" / (job.sequence.id + ".json");
-    const absl::StatusOr<Clip> leader = ReadLeader(file);
+    const absl::StatusOr<motion::Clip> leader = formats::ReadLeader(file);
     ASSERT_THAT(leader, IsOk());
     EXPECT_EQ(leader->frame_rate_hz, dataset_.frame_rate_hz);
     ASSERT_EQ(leader->positions.size(), job.sequence.pair.leader.positions.size());
@@ -74,10 +81,10 @@ TEST_F(SyntheticFilesTest, ReadsBackWhatWasAnswered) {
   EXPECT_EQ(set->half, 7u);
   ASSERT_EQ(set->sequences.size(), jobs_.size());
   for (size_t i = 0; i < jobs_.size(); ++i) {
-    const Sequence& sequence = set->sequences[i];
+    const dataset::Sequence& sequence = set->sequences[i];
     EXPECT_EQ(sequence.interaction_class, jobs_[i].sequence.interaction_class);
     EXPECT_EQ(sequence.partner_direction, jobs_[i].sequence.partner_direction);
-    const Vec3 apart = sequence.pair.follower.at(3, 4) - sequence.pair.leader.at(3, 4);
+    const motion::Vec3 apart = sequence.pair.follower.at(3, 4) - sequence.pair.leader.at(3, 4);
     EXPECT_NEAR(apart.x, 1, 1e-5);
   }
   EXPECT_TRUE(set->sequences[0].partner_direction.has_value());
@@ -115,4 +122,4 @@ TEST_F(SyntheticFilesTest, RefusesAnswersThatDoNotFit) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::evaluation::experiments

@@ -7,8 +7,11 @@
 
 #include "tests/support/status_matchers.h"
 
-namespace duet {
+namespace duet::evaluation::experiments {
 namespace {
+
+using test::IsOk;
+using test::StatusIs;
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -46,4 +49,4 @@ TEST(TrainingLogTest, SaysWhereAndWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::evaluation::experiments

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace duet {
+namespace duet::evaluation::experiments {
 namespace {
 
 TEST(SummariseTest, MeanAndSampleDeviation) {
@@ -30,7 +30,7 @@ Trials ThreeTrials() {
 }
 
 TEST(TrialsTest, TablesKeepTheRowsInOrder) {
-  const Table means = ThreeTrials().Means("means");
+  const report::Table means = ThreeTrials().Means("means");
   ASSERT_EQ(means.rows.size(), 2u);
   EXPECT_EQ(means.rows[0].name, "real");
   EXPECT_DOUBLE_EQ(means.rows[0].values[0], 0.7);
@@ -39,7 +39,7 @@ TEST(TrialsTest, TablesKeepTheRowsInOrder) {
 }
 
 TEST(TrialsTest, GainsArePairedOverCommonTrials) {
-  const Table gains = ThreeTrials().Gains("real", "gains");
+  const report::Table gains = ThreeTrials().Gains("real", "gains");
   ASSERT_EQ(gains.rows.size(), 3u);
   EXPECT_EQ(gains.rows[0].name, "more");
   EXPECT_NEAR(gains.rows[0].values[0], 0.1, 1e-12);   // .1 and .1
@@ -55,4 +55,4 @@ TEST(TrialsTest, GainsWithoutTheBaseAreEmpty) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::evaluation::experiments

@@ -8,8 +8,10 @@
 #include "model/motion/vec3.h"
 #include "tests/evaluation/support/made_up_pairs.h"
 
-namespace duet {
+namespace duet::evaluation::judge {
 namespace {
+
+using test::MadeUpPairs;
 
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
@@ -24,17 +26,17 @@ ClassifierOptions Small() {
 }
 
 // The captured followers of subject "c", or of all others.
-std::vector<ScoredMotion> Followers(const Dataset& dataset, bool of_c) {
-  std::vector<ScoredMotion> motions;
+std::vector<metrics::ScoredMotion> Followers(const dataset::Dataset& dataset, bool of_c) {
+  std::vector<metrics::ScoredMotion> motions;
   for (size_t i = 0; i < dataset.sequences.size(); ++i) {
-    const Sequence& sequence = dataset.sequences[i];
+    const dataset::Sequence& sequence = dataset.sequences[i];
     if ((sequence.subjects.front() == "c") != of_c) continue;
     motions.push_back({static_cast<int>(i), sequence.pair.follower.positions});
   }
   return motions;
 }
 
-MotionClassifier Trained(const Dataset& dataset, const ClassifierOptions& options) {
+MotionClassifier Trained(const dataset::Dataset& dataset, const ClassifierOptions& options) {
   absl::StatusOr<MotionClassifier> judge =
       MotionClassifier::Train(dataset, Followers(dataset, false), options);
   EXPECT_TRUE(judge.ok()) << judge.status();
@@ -42,9 +44,9 @@ MotionClassifier Trained(const Dataset& dataset, const ClassifierOptions& option
 }
 
 TEST(MotionClassifier, TellsTheClassesOfAnotherSubjectApart) {
-  const Dataset dataset = MadeUpPairs(kPairsAClass);
+  const dataset::Dataset dataset = MadeUpPairs(kPairsAClass);
   const MotionClassifier judge = Trained(dataset, Small());
-  const std::vector<ScoredMotion> test = Followers(dataset, true);
+  const std::vector<metrics::ScoredMotion> test = Followers(dataset, true);
   ASSERT_THAT(test, SizeIs(2 * kPairsAClass / 3));
   const std::vector<std::vector<float>> probabilities = judge.Probabilities(dataset, test);
   ASSERT_THAT(probabilities, SizeIs(test.size()));
@@ -59,7 +61,7 @@ TEST(MotionClassifier, TellsTheClassesOfAnotherSubjectApart) {
 }
 
 TEST(MotionClassifier, IsDeterministic) {
-  const Dataset dataset = MadeUpPairs(3);
+  const dataset::Dataset dataset = MadeUpPairs(3);
   ClassifierOptions options = Small();
   options.epochs = 2;
   const MotionClassifier a = Trained(dataset, options), b = Trained(dataset, options);
@@ -73,27 +75,27 @@ TEST(MotionClassifier, IsDeterministic) {
 
 // Lengths differ: what is padded beside a motion must not reach it.
 TEST(MotionClassifier, JudgesAMotionAloneAsAmongOthers) {
-  const Dataset dataset = MadeUpPairs(6);
+  const dataset::Dataset dataset = MadeUpPairs(6);
   const MotionClassifier judge = Trained(dataset, Small());
-  const std::vector<ScoredMotion> all = Followers(dataset, false);
+  const std::vector<metrics::ScoredMotion> all = Followers(dataset, false);
   const auto together = judge.Probabilities(dataset, all);
-  const FeatureSet features = judge.Features(dataset, all);
+  const metrics::FeatureSet features = judge.Features(dataset, all);
   ASSERT_THAT(features, SizeIs(all.size()));
   for (size_t i = 0; i < all.size(); ++i) {
     const auto alone = judge.Probabilities(dataset, {all[i]});
     EXPECT_NEAR(alone[0][0], together[i][0], 1e-5) << i;
-    const FeatureSet own = judge.Features(dataset, {all[i]});
+    const metrics::FeatureSet own = judge.Features(dataset, {all[i]});
     ASSERT_EQ(own[0].size(), features[i].size());
     for (size_t f = 0; f < own[0].size(); ++f) EXPECT_NEAR(own[0][f], features[i][f], 1e-5);
   }
 }
 
 TEST(MotionClassifier, DoesNotMindWhereThePairStandsInTheWorld) {
-  const Dataset dataset = MadeUpPairs(6);
-  Dataset moved = dataset;
-  for (Sequence& sequence : moved.sequences) {
-    for (Clip* clip : {&sequence.pair.leader, &sequence.pair.follower}) {
-      for (Vec3& p : clip->positions) p = RotateY(p, 2.5) + Vec3{4, 0, -3};
+  const dataset::Dataset dataset = MadeUpPairs(6);
+  dataset::Dataset moved = dataset;
+  for (dataset::Sequence& sequence : moved.sequences) {
+    for (motion::Clip* clip : {&sequence.pair.leader, &sequence.pair.follower}) {
+      for (motion::Vec3& p : clip->positions) p = RotateY(p, 2.5) + motion::Vec3{4, 0, -3};
     }
   }
   const MotionClassifier judge = Trained(dataset, Small());
@@ -103,10 +105,10 @@ TEST(MotionClassifier, DoesNotMindWhereThePairStandsInTheWorld) {
 }
 
 TEST(MotionClassifier, RefusesAClassWithoutMotion) {
-  const Dataset dataset = MadeUpPairs(3);
-  std::vector<ScoredMotion> motions = Followers(dataset, false);
+  const dataset::Dataset dataset = MadeUpPairs(3);
+  std::vector<metrics::ScoredMotion> motions = Followers(dataset, false);
   motions.erase(std::remove_if(motions.begin(), motions.end(),
-                               [&](const ScoredMotion& motion) {
+                               [&](const metrics::ScoredMotion& motion) {
                                  const size_t i = static_cast<size_t>(motion.sequence);
                                  return dataset.sequences[i].interaction_class == 1;
                                }),
@@ -117,4 +119,4 @@ TEST(MotionClassifier, RefusesAClassWithoutMotion) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::evaluation::judge

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace duet {
+namespace duet::evaluation::metrics {
 namespace {
 
 TEST(ConfusionTest, CountsAndAccuracies) {
@@ -29,4 +29,4 @@ TEST(ConfusionTest, HasNoAccuracyWithoutMotions) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::evaluation::metrics

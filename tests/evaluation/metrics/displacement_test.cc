@@ -6,12 +6,12 @@
 
 #include "model/motion/coordinates.h"
 
-namespace duet {
+namespace duet::evaluation::metrics {
 namespace {
 
 // Two frames of two joints. Frame 0 is off by (3, 4, 0) and (0, 0, 12): norm 13. Frame 1 is exact.
-const std::vector<Vec3> kTruth = {{0, 0, 0}, {1, 1, 1}, {2, 0, 0}, {1, 2, 1}};
-const std::vector<Vec3> kPredicted = {{3, 4, 0}, {1, 1, 13}, {2, 0, 0}, {1, 2, 1}};
+const std::vector<motion::Vec3> kTruth = {{0, 0, 0}, {1, 1, 1}, {2, 0, 0}, {1, 2, 1}};
+const std::vector<motion::Vec3> kPredicted = {{3, 4, 0}, {1, 1, 13}, {2, 0, 0}, {1, 2, 1}};
 
 TEST(AfdTest, AveragesTheNormOverAllCoordinates) {
   EXPECT_DOUBLE_EQ(Afd(kPredicted, kTruth, 2, MetricUnit::kMetres), 13.0 / 2);
@@ -20,8 +20,8 @@ TEST(AfdTest, AveragesTheNormOverAllCoordinates) {
 }
 
 TEST(AfdTest, RawUnitsScaleEachAxis) {
-  const std::vector<Vec3> truth = {{0.3f, 0.4f, 0.5f}};
-  const auto off_by = [&](Vec3 d) { return std::vector<Vec3>{truth[0] + d}; };
+  const std::vector<motion::Vec3> truth = {{0.3f, 0.4f, 0.5f}};
+  const auto off_by = [&](motion::Vec3 d) { return std::vector<motion::Vec3>{truth[0] + d}; };
   EXPECT_NEAR(Afd(off_by({2.56f, 0, 0}), truth, 1, MetricUnit::kSbuRaw), 1, 1e-6);
   EXPECT_NEAR(Afd(off_by({0, 1.92f, 0}), truth, 1, MetricUnit::kSbuRaw), 1, 1e-6);
   EXPECT_NEAR(Afd(off_by({0, 0, 1.28f}), truth, 1, MetricUnit::kSbuRaw), 1, 1e-6);
@@ -31,40 +31,41 @@ TEST(AfdTest, RawUnitsScaleEachAxis) {
 
 // The paper's pipeline: everything in the raw unit, the leader's torso subtracted, one yaw removed.
 TEST(AfdTest, RawUnitsEqualThePapersPipeline) {
-  const CoordinateFrame raw_frame = {LengthUnit::kSbuNormalised, UpAxis::kYDown};
-  const std::vector<Vec3> truth = {{0.4f, 1.2f, 1.7f}, {0.5f, 0.3f, 1.9f}};
-  const std::vector<Vec3> predicted = {{0.6f, 1.1f, 1.6f}, {0.1f, 0.35f, 2.2f}};
-  const Vec3 torso = {0.2f, 0.4f, 1.1f};
+  const motion::CoordinateFrame raw_frame = {motion::LengthUnit::kSbuNormalised,
+                                             motion::UpAxis::kYDown};
+  const std::vector<motion::Vec3> truth = {{0.4f, 1.2f, 1.7f}, {0.5f, 0.3f, 1.9f}};
+  const std::vector<motion::Vec3> predicted = {{0.6f, 1.1f, 1.6f}, {0.1f, 0.35f, 2.2f}};
+  const motion::Vec3 torso = {0.2f, 0.4f, 1.1f};
   const double yaw = 0.7;
   double squared = 0;
   for (size_t i = 0; i < truth.size(); ++i) {
-    const Vec3 a = RotateY(predicted[i] - torso, yaw), b = RotateY(truth[i] - torso, yaw);
+    const motion::Vec3 a = RotateY(predicted[i] - torso, yaw), b = RotateY(truth[i] - torso, yaw);
     squared += Dot(a - b, a - b);
   }
-  std::vector<Vec3> truth_world, predicted_world;
-  for (Vec3 p : truth) truth_world.push_back(ToWorld(raw_frame, p));
-  for (Vec3 p : predicted) predicted_world.push_back(ToWorld(raw_frame, p));
+  std::vector<motion::Vec3> truth_world, predicted_world;
+  for (motion::Vec3 p : truth) truth_world.push_back(ToWorld(raw_frame, p));
+  for (motion::Vec3 p : predicted) predicted_world.push_back(ToWorld(raw_frame, p));
   EXPECT_NEAR(Afd(predicted_world, truth_world, 2, MetricUnit::kSbuRaw), std::sqrt(squared), 1e-5);
 }
 
 TEST(RootAlignedAfdTest, ForgivesPlacementAlone) {
-  std::vector<Vec3> moved = kTruth;
-  for (size_t i = 0; i < 2; ++i) moved[i] += Vec3{5, 6, 7};
-  for (size_t i = 2; i < 4; ++i) moved[i] += Vec3{-1, 0, 2};
+  std::vector<motion::Vec3> moved = kTruth;
+  for (size_t i = 0; i < 2; ++i) moved[i] += motion::Vec3{5, 6, 7};
+  for (size_t i = 2; i < 4; ++i) moved[i] += motion::Vec3{-1, 0, 2};
   EXPECT_DOUBLE_EQ(RootAlignedAfd(moved, kTruth, 2, 0, MetricUnit::kMetres), 0);
-  moved[3] += Vec3{0, 3, 0};
+  moved[3] += motion::Vec3{0, 3, 0};
   EXPECT_DOUBLE_EQ(RootAlignedAfd(moved, kTruth, 2, 0, MetricUnit::kMetres), 1.5);
   // Relative to the other joint, the root is what is off.
   EXPECT_DOUBLE_EQ(RootAlignedAfd(moved, kTruth, 2, 1, MetricUnit::kMetres), 1.5);
 }
 
 TEST(VelocityErrorTest, ComparesStepsInMetresASecond) {
-  const std::vector<Vec3> still = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
-  const std::vector<Vec3> moving = {{9, 9, 9}, {9, 9, 10}, {9, 9, 10}};
+  const std::vector<motion::Vec3> still = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+  const std::vector<motion::Vec3> moving = {{9, 9, 9}, {9, 9, 10}, {9, 9, 10}};
   // One step of 1 m among two, at 15 frames a second.
   EXPECT_DOUBLE_EQ(VelocityError(moving, still, 1, 15), 7.5);
   EXPECT_DOUBLE_EQ(VelocityError(moving, moving, 1, 15), 0);
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::evaluation::metrics

@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-namespace duet {
+namespace duet::evaluation::metrics {
 namespace {
 
 double Frechet(const FeatureSet& a, const FeatureSet& b) {
@@ -107,4 +107,4 @@ TEST(DiversityTest, IsTheMeanPairwiseDistance) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::evaluation::metrics

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace duet {
+namespace duet::evaluation::metrics {
 namespace {
 
 using ::testing::DoubleNear;
@@ -56,4 +56,4 @@ TEST(DiversityByClass, NeverComparesAcrossFolds) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::evaluation::metrics

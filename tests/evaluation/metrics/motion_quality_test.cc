@@ -4,12 +4,12 @@
 
 #include <cmath>
 
-namespace duet {
+namespace duet::evaluation::metrics {
 namespace {
 
 // A root with two feet.
-Skeleton Stilts() {
-  Skeleton skeleton;
+motion::Skeleton Stilts() {
+  motion::Skeleton skeleton;
   skeleton.joint_names = {"hips", "left", "right"};
   skeleton.bones = {{0, 1}, {0, 2}};
   skeleton.parts = {{"all", {0, 1, 2}}};
@@ -20,19 +20,19 @@ Skeleton Stilts() {
 
 TEST(BoneLengthDriftTest, IsTheCoefficientOfVariationOfEachBone) {
   // The left bone has lengths 1 and 3 (mean 2, deviation 1), the right one keeps its 2.
-  const std::vector<Vec3> positions = {{0, 0, 0}, {1, 0, 0}, {0, 2, 0},
-                                       {5, 0, 0}, {8, 0, 0}, {5, 0, 2}};
+  const std::vector<motion::Vec3> positions = {{0, 0, 0}, {1, 0, 0}, {0, 2, 0},
+                                               {5, 0, 0}, {8, 0, 0}, {5, 0, 2}};
   EXPECT_NEAR(BoneLengthDrift(positions, Stilts()), (0.5 + 0) / 2, 1e-6);
 }
 
 TEST(BoneLengthDriftTest, ToleratesACollapsedBone) {
-  const std::vector<Vec3> positions(6, Vec3{1, 1, 1});
+  const std::vector<motion::Vec3> positions(6, motion::Vec3{1, 1, 1});
   EXPECT_EQ(BoneLengthDrift(positions, Stilts()), 0);
 }
 
 TEST(JitterTest, IsTheThirdDifferenceTimesRateCubed) {
   // t^3 / 6 has the third difference 1; constant acceleration has none.
-  std::vector<Vec3> cubic, parabola;
+  std::vector<motion::Vec3> cubic, parabola;
   for (int t = 0; t < 8; ++t) {
     const float s = static_cast<float>(t);
     cubic.push_back({s * s * s / 6, 0, 0});
@@ -46,7 +46,7 @@ TEST(JitterTest, IsTheThirdDifferenceTimesRateCubed) {
 TEST(FootSlideTest, CountsFastStepsOfFeetOnTheFloor) {
   // At 10 Hz. Left: a step of 10 cm (1 m/s, skating), then one of 1 cm. Right: at 0.5 m, never
   // down.
-  const std::vector<Vec3> positions = {
+  const std::vector<motion::Vec3> positions = {
       {0, 1, 0}, {0, 0, 0},        {0, 0.5f, 0},  //
       {0, 1, 0}, {0.1f, 0.04f, 0}, {1, 0.5f, 0},  //
       {0, 1, 0}, {0.1f, 0, 0.01f}, {2, 0.5f, 0},
@@ -57,14 +57,14 @@ TEST(FootSlideTest, CountsFastStepsOfFeetOnTheFloor) {
 }
 
 TEST(FootSlideTest, IgnoresLiftedFeetAndVerticalMovement) {
-  const std::vector<Vec3> lifted = {{0, 1, 0}, {0, 0, 0},     {0, 0.3f, 0},
-                                    {0, 1, 0}, {1, 0.06f, 0}, {1, 0.3f, 0}};
+  const std::vector<motion::Vec3> lifted = {{0, 1, 0}, {0, 0, 0},     {0, 0.3f, 0},
+                                            {0, 1, 0}, {1, 0.06f, 0}, {1, 0.3f, 0}};
   EXPECT_EQ(MeasureFootSlide(lifted, Stilts(), 10).skating_ratio, 0);
   EXPECT_EQ(MeasureFootSlide(lifted, Stilts(), 10).centimetres_a_frame, 0);
-  const std::vector<Vec3> stamped = {{0, 1, 0}, {0, 0.04f, 0}, {0, 0.3f, 0},
-                                     {0, 1, 0}, {0, 0, 0},     {0, 0.3f, 0}};
+  const std::vector<motion::Vec3> stamped = {{0, 1, 0}, {0, 0.04f, 0}, {0, 0.3f, 0},
+                                             {0, 1, 0}, {0, 0, 0},     {0, 0.3f, 0}};
   EXPECT_EQ(MeasureFootSlide(stamped, Stilts(), 100).centimetres_a_frame, 0);
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::evaluation::metrics

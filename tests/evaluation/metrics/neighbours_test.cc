@@ -5,8 +5,10 @@
 
 #include "tests/support/status_matchers.h"
 
-namespace duet {
+namespace duet::evaluation::metrics {
 namespace {
+
+using test::StatusIs;
 
 using testing::HasSubstr;
 
@@ -48,4 +50,4 @@ TEST(NeighbourAccuracyTest, RefusesWhatDoesNotFitTogether) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::evaluation::metrics

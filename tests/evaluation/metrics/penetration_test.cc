@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <random>
 
-namespace duet {
+namespace duet::evaluation::metrics {
 namespace {
 
 TEST(SegmentDistanceTest, KnownCases) {
-  const Vec3 o = {0, 0, 0}, x = {1, 0, 0};
+  const motion::Vec3 o = {0, 0, 0}, x = {1, 0, 0};
   EXPECT_NEAR(SegmentDistance(o, x, {0.5f, -1, 2}, {0.5f, 1, 2}), 2, 1e-6);      // crossing
   EXPECT_NEAR(SegmentDistance(o, x, {0, 3, 0}, {1, 3, 0}), 3, 1e-6);             // parallel
   EXPECT_NEAR(SegmentDistance(o, x, {4, 4, 0}, {9, 4, 0}), 5, 1e-6);             // parallel, apart
@@ -24,10 +24,12 @@ TEST(SegmentDistanceTest, KnownCases) {
 TEST(SegmentDistanceTest, AgreesWithAFineGrid) {
   std::mt19937 random(1);
   std::uniform_real_distribution<float> uniform(-1, 1);
-  const auto point = [&] { return Vec3{uniform(random), uniform(random), uniform(random)}; };
+  const auto point = [&] {
+    return motion::Vec3{uniform(random), uniform(random), uniform(random)};
+  };
   constexpr int kSteps = 100;
   for (int trial = 0; trial < 30; ++trial) {
-    const Vec3 a0 = point(), a1 = point(), b0 = point(), b1 = point();
+    const motion::Vec3 a0 = point(), a1 = point(), b0 = point(), b1 = point();
     double best = 10;
     for (int s = 0; s <= kSteps; ++s) {
       for (int t = 0; t <= kSteps; ++t) {
@@ -42,11 +44,12 @@ TEST(SegmentDistanceTest, AgreesWithAFineGrid) {
 }
 
 TEST(CapsuleRadiiTest, FollowTheBodyParts) {
-  const Skeleton skeleton = SbuSkeleton();
+  const motion::Skeleton skeleton = motion::SbuSkeleton();
   const std::vector<double> radii = CapsuleRadii(skeleton);
   const auto radius = [&](const char* parent, const char* child) {
     for (size_t i = 0; i < skeleton.bones.size(); ++i) {
-      if (skeleton.bones[i] == Bone{skeleton.Find(parent), skeleton.Find(child)}) return radii[i];
+      if (skeleton.bones[i] == motion::Bone{skeleton.Find(parent), skeleton.Find(child)})
+        return radii[i];
     }
     return -1.0;
   };
@@ -59,13 +62,13 @@ TEST(CapsuleRadiiTest, FollowTheBodyParts) {
 }
 
 TEST(PenetrationTest, MeasuresDepthAndFrequency) {
-  Skeleton skeleton;
+  motion::Skeleton skeleton;
   skeleton.joint_names = {"a", "b"};
   skeleton.bones = {{0, 1}};
   skeleton.parts = {{"left_arm", {0, 1}}};
   // Parallel bones (radius 0.045 each) at 1 m, 0.05 m, 0.08 m and exactly touching at 0.09 m or
   // more.
-  std::vector<Vec3> leader, follower;
+  std::vector<motion::Vec3> leader, follower;
   for (const float distance : {1.0f, 0.05f, 0.08f, 0.1f}) {
     leader.insert(leader.end(), {{0, 0, 0}, {0, 1, 0}});
     follower.insert(follower.end(), {{distance, 0, 0}, {distance, 1, 0}});
@@ -77,12 +80,13 @@ TEST(PenetrationTest, MeasuresDepthAndFrequency) {
 }
 
 TEST(PenetrationTest, IsZeroForBodiesApart) {
-  const std::vector<Vec3> leader(15, Vec3{0, 0, 0}), follower(15, Vec3{1, 0, 0});
-  const Penetration penetration = MeasurePenetration(leader, follower, SbuSkeleton());
+  const std::vector<motion::Vec3> leader(15, motion::Vec3{0, 0, 0}),
+      follower(15, motion::Vec3{1, 0, 0});
+  const Penetration penetration = MeasurePenetration(leader, follower, motion::SbuSkeleton());
   EXPECT_EQ(penetration.frequency, 0);
   EXPECT_EQ(penetration.mean_depth_metres, 0);
   EXPECT_EQ(penetration.max_depth_metres, 0);
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::evaluation::metrics

@@ -7,8 +7,10 @@
 
 #include "tests/evaluation/support/made_up_pairs.h"
 
-namespace duet {
+namespace duet::evaluation::metrics {
 namespace {
+
+using test::MadeUpPairs;
 
 size_t ColumnOf(const std::string& name) {
   for (size_t i = 0; i < AllMetrics().size(); ++i) {
@@ -26,7 +28,7 @@ TEST(ScoresTest, EveryMetricHasItsName) {
 }
 
 TEST(ScoresTest, TheCapturedFollowerHasNoErrors) {
-  const Dataset dataset = MadeUpPairs(1);
+  const dataset::Dataset dataset = MadeUpPairs(1);
   const ScoredMotion captured = {0, dataset.sequences[0].pair.follower.positions};
   const std::vector<double> scores = ScoreMotion(dataset, captured);
   ASSERT_EQ(scores.size(), AllMetrics().size());
@@ -37,10 +39,10 @@ TEST(ScoresTest, TheCapturedFollowerHasNoErrors) {
 }
 
 TEST(ScoresTest, EachColumnHoldsItsOwnMetric) {
-  const Dataset dataset = MadeUpPairs(1);
+  const dataset::Dataset dataset = MadeUpPairs(1);
   ScoredMotion moved = {0, dataset.sequences[0].pair.follower.positions};
   // Everyone 1.28 m along z: one raw unit, for each of 15 joints.
-  for (Vec3& p : moved.follower) p.z += 1.28f;
+  for (motion::Vec3& p : moved.follower) p.z += 1.28f;
   const std::vector<double> scores = ScoreMotion(dataset, moved);
   EXPECT_NEAR(scores[ColumnOf("afd")], std::sqrt(15), 1e-4);
   EXPECT_NEAR(scores[ColumnOf("afd_squared")], 15, 1e-3);
@@ -52,19 +54,19 @@ TEST(ScoresTest, EachColumnHoldsItsOwnMetric) {
 }
 
 TEST(ScoresTest, AveragesOverTheMotionsOfAClass) {
-  const Dataset dataset = MadeUpPairs(2);
+  const dataset::Dataset dataset = MadeUpPairs(2);
   std::vector<ScoredMotion> motions;
   for (const int i : {0, 1}) {
     motions.push_back({i, dataset.sequences[static_cast<size_t>(i)].pair.follower.positions});
   }
-  for (Vec3& p : motions[1].follower) p.z += 1.28f;
+  for (motion::Vec3& p : motions[1].follower) p.z += 1.28f;
   const auto by_class = ScoreByClass(dataset, motions);
   EXPECT_NEAR(by_class[0][ColumnOf("afd_squared")], 7.5, 1e-3);
   EXPECT_TRUE(std::isnan(by_class[1][ColumnOf("afd_squared")]));
 }
 
 TEST(ScoresTest, DepthIsAveragedOverPenetratingMotionsAlone) {
-  const Dataset dataset = MadeUpPairs(2);
+  const dataset::Dataset dataset = MadeUpPairs(2);
   std::vector<ScoredMotion> motions;
   for (const int i : {0, 1}) {
     motions.push_back({i, dataset.sequences[static_cast<size_t>(i)].pair.follower.positions});
@@ -80,7 +82,7 @@ TEST(ScoresTest, DepthIsAveragedOverPenetratingMotionsAlone) {
 }
 
 TEST(ScoresTest, CapturedMotionsAnswerTheSameSequences) {
-  const Dataset dataset = MadeUpPairs(2);
+  const dataset::Dataset dataset = MadeUpPairs(2);
   const std::vector<ScoredMotion> captured = CapturedMotions(dataset, {{3, {}}, {1, {}}, {3, {}}});
   ASSERT_EQ(captured.size(), 3u);
   EXPECT_EQ(captured[2].sequence, 3);
@@ -88,4 +90,4 @@ TEST(ScoresTest, CapturedMotionsAnswerTheSameSequences) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::evaluation::metrics

@@ -9,8 +9,11 @@
 
 #include "tests/support/status_matchers.h"
 
-namespace duet {
+namespace duet::evaluation::metrics {
 namespace {
+
+using test::IsOk;
+using test::StatusIs;
 
 using testing::HasSubstr;
 
@@ -104,4 +107,4 @@ TEST(NeighbourPurityTest, CountsNearestNeighboursOfTheSameClass) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::evaluation::metrics

@@ -12,8 +12,15 @@
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
-namespace duet {
+namespace duet::evaluation::program {
 namespace {
+
+using test::ExampleSection;
+using test::IsOk;
+using test::ReadTestFile;
+using test::StatusIs;
+using test::TemporaryFolder;
+using test::WriteTestFile;
 
 using testing::HasSubstr;
 
@@ -41,9 +48,9 @@ TEST(CurvesCommandTest, WritesASectionThatNamesTheRuns) {
   const std::string run = folder / "runs/s01/";
   ASSERT_THAT(RunCommand({"curves", "--run", run, "other=" + run, "--out", folder / "results"}),
               IsOk());
-  const auto sections = ReadSections(folder / "results");
+  const auto sections = report::ReadSections(folder / "results");
   ASSERT_THAT(sections, IsOk());
-  const ResultSection& section = sections->at(0);
+  const report::ResultSection& section = sections->at(0);
   EXPECT_EQ(section.id, "60_curves");
   EXPECT_EQ(section.title, "Training curves");
   EXPECT_EQ(section.tables.at(0).rows.at(0).name, "s01");
@@ -58,7 +65,7 @@ TEST(CurvesCommandTest, IdAndTitleCanBeGiven) {
   ASSERT_THAT(RunCommand({"curves", "--run", "a=" + folder.path().string(), "--id", "61_more",
                           "--title", "More", "--out", folder / "results"}),
               IsOk());
-  const auto sections = ReadSections(folder / "results");
+  const auto sections = report::ReadSections(folder / "results");
   ASSERT_THAT(sections, IsOk());
   EXPECT_EQ(sections->at(0).id, "61_more");
   EXPECT_EQ(sections->at(0).title, "More");
@@ -109,4 +116,4 @@ TEST(ReportCommandTest, SaysThatThereIsNothingToReport) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::evaluation::program

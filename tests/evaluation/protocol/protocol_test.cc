@@ -8,8 +8,12 @@
 #include "tests/evaluation/support/made_up_pairs.h"
 #include "tests/support/status_matchers.h"
 
-namespace duet {
+namespace duet::evaluation::protocol {
 namespace {
+
+using test::IsOk;
+using test::MadeUpPairs;
+using test::StatusIs;
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -18,13 +22,13 @@ using testing::HasSubstr;
 class Recorder : public Method {
  public:
   std::string name() const override { return "recorder"; }
-  absl::Status Train(const Dataset&, const std::vector<int>& train) override {
+  absl::Status Train(const dataset::Dataset&, const std::vector<int>& train) override {
     trained.push_back(train);
     return status;
   }
-  std::vector<Vec3> Predict(const Sequence& sequence) const override {
+  std::vector<motion::Vec3> Predict(const dataset::Sequence& sequence) const override {
     follower_sizes.push_back(sequence.pair.follower.positions.size());
-    std::vector<Vec3> answer = sequence.pair.leader.positions;
+    std::vector<motion::Vec3> answer = sequence.pair.leader.positions;
     if (spoil) spoil(&answer);
     return answer;
   }
@@ -32,13 +36,13 @@ class Recorder : public Method {
 
   bool told_first_pose = false;
   absl::Status status;
-  std::function<void(std::vector<Vec3>*)> spoil;
+  std::function<void(std::vector<motion::Vec3>*)> spoil;
   std::vector<std::vector<int>> trained;
   mutable std::vector<size_t> follower_sizes;
 };
 
 TEST(ProtocolTest, LeavesEachSubjectOutOnce) {
-  const Dataset dataset = MadeUpPairs(3);
+  const dataset::Dataset dataset = MadeUpPairs(3);
   Recorder method;
   std::vector<std::string> heard;
   const auto folds = RunLeaveOneSubjectOut(
@@ -52,7 +56,7 @@ TEST(ProtocolTest, LeavesEachSubjectOutOnce) {
 }
 
 TEST(ProtocolTest, HidesTheAnswer) {
-  const Dataset dataset = MadeUpPairs(3);
+  const dataset::Dataset dataset = MadeUpPairs(3);
   Recorder method;
   ASSERT_THAT(RunLeaveOneSubjectOut(dataset, {"a"}, &method), IsOk());
   EXPECT_THAT(method.follower_sizes, ElementsAre(0, 0));
@@ -63,29 +67,29 @@ TEST(ProtocolTest, HidesTheAnswer) {
 }
 
 TEST(ProtocolTest, RefusesWrongAnswersByName) {
-  const Dataset dataset = MadeUpPairs(3);
+  const dataset::Dataset dataset = MadeUpPairs(3);
   Recorder method;
-  method.spoil = [](std::vector<Vec3>* answer) { answer->pop_back(); };
+  method.spoil = [](std::vector<motion::Vec3>* answer) { answer->pop_back(); };
   EXPECT_THAT(RunLeaveOneSubjectOut(dataset, {"a"}, &method),
               StatusIs(absl::StatusCode::kInternal, HasSubstr("recorder: 0/0: 239 positions")));
-  method.spoil = [](std::vector<Vec3>* answer) { answer->back().y = std::nanf(""); };
+  method.spoil = [](std::vector<motion::Vec3>* answer) { answer->back().y = std::nanf(""); };
   EXPECT_THAT(RunLeaveOneSubjectOut(dataset, {"a"}, &method),
               StatusIs(absl::StatusCode::kInternal, HasSubstr("not finite")));
 }
 
 TEST(ProtocolTest, PassesErrorsOn) {
-  const Dataset dataset = MadeUpPairs(3);
+  const dataset::Dataset dataset = MadeUpPairs(3);
   Recorder method;
   EXPECT_THAT(RunLeaveOneSubjectOut(dataset, {"z"}, &method),
               StatusIs(absl::StatusCode::kNotFound, HasSubstr("\"z\"")));
   method.status = absl::ResourceExhaustedError("too much");
   EXPECT_THAT(RunLeaveOneSubjectOut(dataset, {}, &method),
               StatusIs(absl::StatusCode::kResourceExhausted, HasSubstr("too much")));
-  Dataset nobody = dataset;
-  for (Sequence& sequence : nobody.sequences) sequence.subjects.clear();
+  dataset::Dataset nobody = dataset;
+  for (dataset::Sequence& sequence : nobody.sequences) sequence.subjects.clear();
   EXPECT_THAT(RunLeaveOneSubjectOut(nobody, {}, &method),
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("no subjects")));
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::evaluation::protocol

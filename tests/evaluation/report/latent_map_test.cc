@@ -5,12 +5,15 @@
 
 #include "tests/support/status_matchers.h"
 
-namespace duet {
+namespace duet::evaluation::report {
 namespace {
 
+using test::IsOk;
+using test::StatusIs;
+
 // Two groups of ten on lines far apart.
-FeatureSet TwoGroups() {
-  FeatureSet features;
+metrics::FeatureSet TwoGroups() {
+  metrics::FeatureSet features;
   for (int i = 0; i < 20; ++i) {
     features.push_back({static_cast<float>(i % 10), i < 10 ? 0.0f : 100.0f, 1});
   }
@@ -24,7 +27,7 @@ std::vector<int> Classes() {
 }
 
 TEST(MapLatentTest, MeasuresGroupsInTheSpaceAndInTheMap) {
-  TsneOptions options;
+  metrics::TsneOptions options;
   options.perplexity = 30;  // more than 20 samples allow
   const absl::StatusOr<LatentMap> map = MapLatent(TwoGroups(), Classes(), options);
   ASSERT_THAT(map, IsOk());
@@ -46,11 +49,11 @@ TEST(PlotByClassTest, PutsEveryPointInTheSeriesOfItsClass) {
   const ScatterPlot plot =
       PlotByClass("map", {"kick", "push", "hug"}, {{1, 2}, {3, 4}, {5, 6}}, {2, 0, 2});
   ASSERT_EQ(plot.series.size(), 3u);
-  EXPECT_EQ(plot.series[0].points, (std::vector<Point2>{{3, 4}}));
+  EXPECT_EQ(plot.series[0].points, (std::vector<metrics::Point2>{{3, 4}}));
   EXPECT_EQ(plot.series[1].name, "push");
   EXPECT_TRUE(plot.series[1].points.empty());
-  EXPECT_EQ(plot.series[2].points, (std::vector<Point2>{{1, 2}, {5, 6}}));
+  EXPECT_EQ(plot.series[2].points, (std::vector<metrics::Point2>{{1, 2}, {5, 6}}));
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::evaluation::report

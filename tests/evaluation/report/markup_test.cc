@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace duet {
+namespace duet::evaluation::report {
 namespace {
 
 TEST(EscapeMarkupTest, EscapesWhatWouldBeMarkup) {
@@ -23,4 +23,4 @@ TEST(EscapeMarkdownTest, KeepsUnderscoresWithinWords) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::evaluation::report

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <set>
 
-#include "model/evaluation/report/paper_tables.h"
 #include "model/evaluation/metrics/scores.h"
+#include "model/evaluation/report/paper_tables.h"
 
-namespace duet {
+namespace duet::evaluation::report {
 namespace {
 
 using ::testing::ElementsAre;
@@ -33,7 +33,7 @@ TEST(MetricStyles, CoverEveryFigureOnce) {
   std::multiset<std::string> styled;
   for (const MetricStyle& style : MetricStyles()) styled.insert(style.name);
   std::multiset<std::string> wanted = {kAccuracy, kFrechet, kDiversity};
-  for (const Metric metric : AllMetrics()) wanted.insert(MetricName(metric));
+  for (const metrics::Metric metric : metrics::AllMetrics()) wanted.insert(MetricName(metric));
   EXPECT_EQ(styled, wanted);
 }
 
@@ -73,4 +73,4 @@ TEST(AddPrintedRows, SaysWhenTheClassesAreOthers) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::evaluation::report

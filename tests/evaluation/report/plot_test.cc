@@ -8,7 +8,7 @@
 
 #include "model/evaluation/report/svg.h"
 
-namespace duet {
+namespace duet::evaluation::report {
 namespace {
 
 using testing::HasSubstr;
@@ -146,4 +146,4 @@ TEST(LinePlotTest, MarksTheGivenPlaces) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::evaluation::report

@@ -11,8 +11,15 @@
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
-namespace duet {
+namespace duet::evaluation::report {
 namespace {
+
+using test::ExampleSection;
+using test::IsOk;
+using test::ReadTestFile;
+using test::StatusIs;
+using test::TemporaryFolder;
+using test::WriteTestFile;
 
 using testing::HasSubstr;
 using testing::Not;
@@ -148,4 +155,4 @@ TEST(RenderPngTest, SaysWhichFigureFailed) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::evaluation::report

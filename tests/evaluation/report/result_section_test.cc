@@ -13,8 +13,14 @@
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
-namespace duet {
+namespace duet::evaluation::report {
 namespace {
+
+using test::ExampleSection;
+using test::IsOk;
+using test::StatusIs;
+using test::TemporaryFolder;
+using test::WriteTestFile;
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -178,4 +184,4 @@ TEST(TodayTest, IsADate) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::evaluation::report

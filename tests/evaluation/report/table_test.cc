@@ -8,7 +8,7 @@
 #include "model/evaluation/report/paper_tables.h"
 #include "nlohmann/json.hpp"
 
-namespace duet {
+namespace duet::evaluation::report {
 namespace {
 
 using testing::HasSubstr;
@@ -120,4 +120,4 @@ TEST(PaperTablesTest, AreWholeAndMarkedAsPrinted) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::evaluation::report

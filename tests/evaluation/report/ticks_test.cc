@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace duet {
+namespace duet::evaluation::report {
 namespace {
 
 using testing::DoubleEq;
@@ -34,4 +34,4 @@ TEST(TickTextTest, IsShort) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::evaluation::report

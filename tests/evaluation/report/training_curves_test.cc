@@ -7,8 +7,10 @@
 
 #include "tests/support/status_matchers.h"
 
-namespace duet {
+namespace duet::evaluation::report {
 namespace {
+
+using test::IsOk;
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -16,7 +18,7 @@ using testing::NanSensitiveDoubleEq;
 using testing::Not;
 
 LoggedRun Logged(const std::string& name, const std::string& rows) {
-  const auto log = ParseTrainingLog(
+  const auto log = experiments::ParseTrainingLog(
       "epoch,generator,reconstruction,bone,continuity,validation_afd,seconds\n" + rows, name);
   EXPECT_THAT(log, IsOk());
   return {name, *log};
@@ -75,4 +77,4 @@ TEST(TrainingCurvesTest, TablesTellWhatRunsTookAndReached) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::evaluation::report

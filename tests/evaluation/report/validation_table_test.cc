@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace duet {
+namespace duet::evaluation::report {
 namespace {
 
 using ::testing::ElementsAre;
@@ -39,4 +39,4 @@ TEST(ValidationTableTest, MissingRunsAndColumnsAreNoFigures) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::evaluation::report

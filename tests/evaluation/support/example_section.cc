@@ -2,10 +2,10 @@
 
 #include <cmath>
 
-namespace duet {
+namespace duet::test {
 
-ResultSection ExampleSection(const std::string& id) {
-  Table table;
+evaluation::report::ResultSection ExampleSection(const std::string& id) {
+  evaluation::report::Table table;
   table.title = "Errors <raw> & all";
   table.columns = {"kick", "shake_hands"};
   table.rows = {{"ours", {0.504, 1.0 / 3}, false},
@@ -13,8 +13,8 @@ ResultSection ExampleSection(const std::string& id) {
                 {"frozen_first_frame", {0.7, std::nan("")}, false}};
   table.notes = {"lower is better"};
   table.decimals = 3;
-  table.best = Best::kLowest;
-  ResultSection section;
+  table.best = evaluation::report::Best::kLowest;
+  evaluation::report::ResultSection section;
   section.id = id;
   section.title = "Methods & classes";
   section.text = {"First <paragraph>.", "Second one."};
@@ -28,4 +28,4 @@ ResultSection ExampleSection(const std::string& id) {
   return section;
 }
 
-}  // namespace duet
+}  // namespace duet::test

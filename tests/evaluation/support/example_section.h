@@ -5,12 +5,12 @@
 
 #include "model/evaluation/report/result_section.h"
 
-namespace duet {
+namespace duet::test {
 
 // A section with everything that one can have: texts that need escaping, a table with best, missing
 // and printed figures, a figure "<id>_curve", settings. Its id is `id`.
-ResultSection ExampleSection(const std::string& id);
+evaluation::report::ResultSection ExampleSection(const std::string& id);
 
-}  // namespace duet
+}  // namespace duet::test
 
 #endif  // DUET_TESTS_EVALUATION_SUPPORT_EXAMPLE_SECTION_H_

@@ -4,58 +4,60 @@
 
 #include "tests/support/sample_motion.h"
 
-namespace duet {
+namespace duet::test {
 namespace {
 
 constexpr int kLeastFrames = 16;
 constexpr float kDistance = 1.2f;
 
 // A figure in the standard frame: the root at the origin of the floor plan, facing -z.
-std::vector<Vec3> Figure(const Skeleton& skeleton) {
-  std::vector<Vec3> pose = SwayingPose(0);
-  const Vec3 root = pose[static_cast<size_t>(skeleton.root)];
-  const Vec3 across =
+std::vector<motion::Vec3> Figure(const motion::Skeleton& skeleton) {
+  std::vector<motion::Vec3> pose = SwayingPose(0);
+  const motion::Vec3 root = pose[static_cast<size_t>(skeleton.root)];
+  const motion::Vec3 across =
       pose[static_cast<size_t>(skeleton.right_hip)] - pose[static_cast<size_t>(skeleton.left_hip)];
   const double yaw = std::atan2(across.z, across.x);
-  for (Vec3& p : pose) p = RotateY(p - root, yaw) + Vec3{0, root.y, 0};
+  for (motion::Vec3& p : pose) p = RotateY(p - root, yaw) + motion::Vec3{0, root.y, 0};
   return pose;
 }
 
 struct Placement {
   double yaw;
-  Vec3 at;
+  motion::Vec3 at;
 };
 
-void AddFrame(const Placement& placement, const std::vector<Vec3>& pose, Clip* clip) {
-  for (Vec3 p : pose) clip->positions.push_back(RotateY(p, placement.yaw) + placement.at);
+void AddFrame(const Placement& placement, const std::vector<motion::Vec3>& pose,
+              motion::Clip* clip) {
+  for (motion::Vec3 p : pose) clip->positions.push_back(RotateY(p, placement.yaw) + placement.at);
 }
 
-Sequence MakeSequence(const Skeleton& skeleton, int interaction_class, int number) {
+dataset::Sequence MakeSequence(const motion::Skeleton& skeleton, int interaction_class,
+                               int number) {
   const size_t hand = static_cast<size_t>(skeleton.Find("right_hand"));
-  const std::vector<Vec3> figure = Figure(skeleton);
+  const std::vector<motion::Vec3> figure = Figure(skeleton);
   // No two alike, evenly spread (the golden ratio's multiples).
   const float reach = 0.2f + 0.5f * static_cast<float>(std::fmod(0.618034 * number, 1.0));
   const int frames = kLeastFrames + number % 4;
   const Placement placement = {0.9 * number, {0.3f * static_cast<float>(number), 0, -1}};
-  Sequence sequence;
+  dataset::Sequence sequence;
   sequence.id = std::to_string(interaction_class) + "/" + std::to_string(number);
   sequence.interaction_class = interaction_class;
   sequence.subjects = {std::string(1, static_cast<char>('a' + number % 3))};
-  Clip& leader = sequence.pair.leader;
+  motion::Clip& leader = sequence.pair.leader;
   leader.joint_names = skeleton.joint_names;
   leader.frame_rate_hz = 15;
   sequence.pair.follower = leader;
   for (int t = 0; t < frames; ++t) {
     const float raised =
         reach * static_cast<float>(std::sin(M_PI * t / static_cast<double>(frames - 1)));
-    std::vector<Vec3> pose = figure;
+    std::vector<motion::Vec3> pose = figure;
     pose[hand].y += raised;
     AddFrame(placement, pose, &leader);
     const bool give = interaction_class == 0;
-    std::vector<Vec3> answer = figure;
+    std::vector<motion::Vec3> answer = figure;
     answer[hand].y += give ? raised : -raised;
-    for (Vec3& p : answer) {
-      p = RotateY(p, M_PI) + Vec3{0, 0, -kDistance - (give ? 0.5f : 2.0f) * raised};
+    for (motion::Vec3& p : answer) {
+      p = RotateY(p, M_PI) + motion::Vec3{0, 0, -kDistance - (give ? 0.5f : 2.0f) * raised};
     }
     AddFrame(placement, answer, &sequence.pair.follower);
   }
@@ -64,10 +66,10 @@ Sequence MakeSequence(const Skeleton& skeleton, int interaction_class, int numbe
 
 }  // namespace
 
-Dataset MadeUpPairs(int sequences_a_class) {
-  Dataset dataset;
+dataset::Dataset MadeUpPairs(int sequences_a_class) {
+  dataset::Dataset dataset;
   dataset.name = "made up";
-  dataset.skeleton = SbuSkeleton();
+  dataset.skeleton = motion::SbuSkeleton();
   dataset.classes = {"give", "flinch"};
   dataset.symmetric = {false, false};
   dataset.frame_rate_hz = 15;
@@ -79,4 +81,4 @@ Dataset MadeUpPairs(int sequences_a_class) {
   return dataset;
 }
 
-}  // namespace duet
+}  // namespace duet::test

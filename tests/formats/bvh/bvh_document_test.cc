@@ -7,7 +7,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 
-namespace duet {
+namespace duet::formats::bvh {
 namespace {
 
 using ::testing::ElementsAre;
@@ -47,7 +47,7 @@ std::string ErrorWith(const std::string& from, const std::string& to) {
   return ParseError(absl::StrReplaceAll(kArm, {{from, to}}));
 }
 
-void ExpectNear(Vec3d a, Vec3d b) {
+void ExpectNear(retargeting::Vec3d a, retargeting::Vec3d b) {
   EXPECT_NEAR(a.x, b.x, 1e-6);
   EXPECT_NEAR(a.y, b.y, 1e-6);
   EXPECT_NEAR(a.z, b.z, 1e-6);
@@ -73,7 +73,7 @@ TEST(BvhDocument, AppliesChannelsInTheFilesOrder) {
   ASSERT_TRUE(document.ok()) << document.status();
   const BvhKinematics kinematics(*document);
   // Yaw 90: +x goes to -z, +z to +x. The root stands where its channels say, not at OFFSET.
-  std::vector<Vec3d> at = kinematics.Positions(0);
+  std::vector<retargeting::Vec3d> at = kinematics.Positions(0);
   ExpectNear(at[0], {9, 8, 7});
   ExpectNear(at[1], {9, 8, -3});
   ExpectNear(at[2], {14, 8, -3});
@@ -169,4 +169,4 @@ TEST(BvhDocument, ReadsSeveralRoots) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::formats::bvh

@@ -12,27 +12,31 @@
 #include "model/formats/bvh/bvh_document.h"
 #include "tests/support/test_motion.h"
 
-namespace duet {
+namespace duet::formats::bvh {
 namespace {
 
+using test::LargestDistance;
+using test::MakePerson;
+using test::PersonOptions;
+
+using test::LargestDistance;
+using test::MakePerson;
+using test::PersonOptions;
 using ::testing::HasSubstr;
-using testing::LargestDistance;
-using testing::MakePerson;
-using testing::PersonOptions;
 
 constexpr double kPi = 3.14159265358979323846;
 constexpr float kOneMillimetre = 0.001f;
 
 // The clip's joints again, in metres, from the document's text through forward kinematics.
-Clip PlayBack(const BvhDocument& written, const Skeleton& skeleton) {
+motion::Clip PlayBack(const BvhDocument& written, const motion::Skeleton& skeleton) {
   const absl::StatusOr<BvhDocument> document = ParseBvh(FormatBvh(written), "written");
   EXPECT_TRUE(document.ok()) << document.status();
-  Clip clip;
+  motion::Clip clip;
   clip.joint_names = skeleton.joint_names;
   clip.frame_rate_hz = 1 / document->frame_time_s;
   const BvhKinematics kinematics(*document);
   for (int frame = 0; frame < document->frame_count; ++frame) {
-    const std::vector<Vec3d> positions = kinematics.Positions(frame);
+    const std::vector<retargeting::Vec3d> positions = kinematics.Positions(frame);
     for (const std::string& name : skeleton.joint_names) {
       for (std::size_t j = 0; j < positions.size(); ++j) {
         if (document->joints[j].name == name)
@@ -43,8 +47,8 @@ Clip PlayBack(const BvhDocument& written, const Skeleton& skeleton) {
   return clip;
 }
 
-BvhDocument Export(const Clip& clip) {
-  absl::StatusOr<BvhDocument> document = ToBvh(clip, SbuSkeleton());
+BvhDocument Export(const motion::Clip& clip) {
+  absl::StatusOr<BvhDocument> document = ToBvh(clip, motion::SbuSkeleton());
   EXPECT_TRUE(document.ok()) << document.status();
   return *std::move(document);
 }
@@ -66,9 +70,9 @@ TEST_P(Facing, PlaysBackWithinAMillimetre) {
   PersonOptions options;
   options.yaw = GetParam() * kPi / 180;
   options.at = {3, 1.2f, -2};
-  const Clip clip = MakePerson(options);
+  const motion::Clip clip = MakePerson(options);
   const BvhDocument document = Export(clip);
-  EXPECT_LT(LargestDistance(PlayBack(document, SbuSkeleton()), clip), kOneMillimetre);
+  EXPECT_LT(LargestDistance(PlayBack(document, motion::SbuSkeleton()), clip), kOneMillimetre);
   EXPECT_LT(LargestStep(document), 12) << "degrees a frame";
 }
 
@@ -80,9 +84,9 @@ TEST(BvhExport, TurnsThroughFullCirclesWithoutAJump) {
     PersonOptions options;
     options.frames = 241;
     options.turn = 2 * kPi * turns;
-    const Clip clip = MakePerson(options);
+    const motion::Clip clip = MakePerson(options);
     const BvhDocument document = Export(clip);
-    EXPECT_LT(LargestDistance(PlayBack(document, SbuSkeleton()), clip), kOneMillimetre);
+    EXPECT_LT(LargestDistance(PlayBack(document, motion::SbuSkeleton()), clip), kOneMillimetre);
     EXPECT_LT(LargestStep(document), 8) << turns << " turns, degrees a frame";
     // The root's Y channel carries the whole turn.
     const std::size_t channels = static_cast<std::size_t>(document.ChannelCount());
@@ -93,103 +97,105 @@ TEST(BvhExport, TurnsThroughFullCirclesWithoutAJump) {
 // An arm that goes straight across the body passes the place where the shortest arc from the rest
 // pose flips.
 TEST(BvhExport, SwingsAnArmAcrossTheBodyWithoutAJump) {
-  Clip clip = MakePerson({121});
+  motion::Clip clip = MakePerson({121});
   for (int frame = 0; frame < 121; ++frame) {
     for (int j = 0; j < clip.joint_count(); ++j) clip.at(frame, j) = clip.at(0, j);
     // Horizontally, from forwards (+z) across the chest to the right (-x) and further back.
     const double angle = kPi * 1.2 * frame / 120;
-    const Vec3 along = RotateY({0, 0, 1}, -angle);
+    const motion::Vec3 along = motion::RotateY({0, 0, 1}, -angle);
     clip.at(frame, 4) = clip.at(frame, 3) + 0.29f * along;
     clip.at(frame, 5) = clip.at(frame, 4) + 0.28f * RotateY(along, -0.5);
   }
   const BvhDocument document = Export(clip);
-  EXPECT_LT(LargestDistance(PlayBack(document, SbuSkeleton()), clip), kOneMillimetre);
+  EXPECT_LT(LargestDistance(PlayBack(document, motion::SbuSkeleton()), clip), kOneMillimetre);
   EXPECT_LT(LargestStep(document), 15) << "degrees a frame";
 }
 
 // A straight arm gives no plane, and around the direction opposite to its rest pose the shortest
 // arc turns twice for each turn of the arm.
 TEST(BvhExport, CirclesAStraightArmOppositeToItsRestPoseWithoutTwistingIt) {
-  Clip clip = MakePerson({121});
+  motion::Clip clip = MakePerson({121});
   for (int frame = 0; frame < 121; ++frame) {
     for (int j = 0; j < clip.joint_count(); ++j) clip.at(frame, j) = clip.at(0, j);
     const float angle = static_cast<float>(2 * kPi * frame / 120);
-    const Vec3 along = {-0.96f, 0.28f * std::cos(angle), 0.28f * std::sin(angle)};
+    const motion::Vec3 along = {-0.96f, 0.28f * std::cos(angle), 0.28f * std::sin(angle)};
     clip.at(frame, 4) = clip.at(frame, 3) + 0.29f * along;
     clip.at(frame, 5) = clip.at(frame, 4) + 0.28f * along;
   }
   const BvhDocument document = Export(clip);
-  EXPECT_LT(LargestDistance(PlayBack(document, SbuSkeleton()), clip), kOneMillimetre);
+  EXPECT_LT(LargestDistance(PlayBack(document, motion::SbuSkeleton()), clip), kOneMillimetre);
   EXPECT_LT(LargestStep(document), 3) << "degrees a frame";
 }
 
 // Noise bends straight knees and elbows a little the wrong way: the limb must not turn around.
 TEST(BvhExport, BendsAnElbowTheWrongWayWithoutTurningTheArm) {
-  Clip clip = MakePerson({61});
+  motion::Clip clip = MakePerson({61});
   for (int frame = 0; frame < 61; ++frame) {
     for (int j = 0; j < clip.joint_count(); ++j) clip.at(frame, j) = clip.at(0, j);
     const float bend = 0.7f - 1.4f * static_cast<float>(frame) / 60;
-    clip.at(frame, 4) = clip.at(frame, 3) + Vec3{0, -0.29f, 0};
-    clip.at(frame, 5) = clip.at(frame, 4) + 0.28f * Vec3{0, -std::cos(bend), std::sin(bend)};
+    clip.at(frame, 4) = clip.at(frame, 3) + motion::Vec3{0, -0.29f, 0};
+    clip.at(frame, 5) =
+        clip.at(frame, 4) + 0.28f * motion::Vec3{0, -std::cos(bend), std::sin(bend)};
   }
   const BvhDocument document = Export(clip);
-  EXPECT_LT(LargestDistance(PlayBack(document, SbuSkeleton()), clip), kOneMillimetre);
+  EXPECT_LT(LargestDistance(PlayBack(document, motion::SbuSkeleton()), clip), kOneMillimetre);
   EXPECT_LT(LargestStep(document), 4) << "degrees a frame";
 }
 
 TEST(BvhExport, KeepsAStraightArmsTwistWhereThePlaneIsUndetermined) {
-  Clip clip = MakePerson({60});
+  motion::Clip clip = MakePerson({60});
   for (int frame = 0; frame < 60; ++frame) {
     for (int j = 0; j < clip.joint_count(); ++j) clip.at(frame, j) = clip.at(0, j);
-    const Vec3 along = Vec3{0, -1, 0};
+    const motion::Vec3 along = motion::Vec3{0, -1, 0};
     // A straight arm with a millimetre of noise at the hand: its plane turns at random.
     const float noise = 0.001f;
     clip.at(frame, 4) = clip.at(frame, 3) + 0.29f * along;
-    clip.at(frame, 5) = clip.at(frame, 4) + 0.28f * along + RotateY({noise, 0, 0}, 2.4 * frame);
+    clip.at(frame, 5) =
+        clip.at(frame, 4) + 0.28f * along + motion::RotateY({noise, 0, 0}, 2.4 * frame);
   }
   EXPECT_LT(LargestStep(Export(clip)), 3) << "degrees a frame";
 }
 
 TEST(BvhExport, StaysCloseWhereBoneLengthsVary) {
-  Clip clip = MakePerson({60});
+  motion::Clip clip = MakePerson({60});
   uint32_t state = 1;
-  for (Vec3& p : clip.positions) {
+  for (motion::Vec3& p : clip.positions) {
     for (float* axis : {&p.x, &p.y, &p.z}) {
       state = state * 1664525u + 1013904223u;
       *axis += 0.02f * (static_cast<float>(state >> 8) / 8388608.0f - 1);
     }
   }
-  const Clip played = PlayBack(Export(clip), SbuSkeleton());
+  const motion::Clip played = PlayBack(Export(clip), motion::SbuSkeleton());
   EXPECT_LT(LargestDistance(played, clip), 0.1f);
 }
 
 // An upper arm that a capture lets grow by 4 cm moves the elbow, not the hand.
 TEST(BvhExport, KeepsTheHandWhereTheUpperArmVaries) {
-  Clip clip = MakePerson({9});
+  motion::Clip clip = MakePerson({9});
   for (int frame = 0; frame < 9; ++frame) {
     for (int j = 0; j < clip.joint_count(); ++j) clip.at(frame, j) = clip.at(0, j);
-    clip.at(frame, 4) = clip.at(frame, 3) + Vec3{0, frame % 3 == 2 ? -0.33f : -0.29f, 0};
-    clip.at(frame, 5) = clip.at(frame, 4) + Vec3{0, 0, 0.28f};
+    clip.at(frame, 4) = clip.at(frame, 3) + motion::Vec3{0, frame % 3 == 2 ? -0.33f : -0.29f, 0};
+    clip.at(frame, 5) = clip.at(frame, 4) + motion::Vec3{0, 0, 0.28f};
   }
-  const Clip played = PlayBack(Export(clip), SbuSkeleton());
+  const motion::Clip played = PlayBack(Export(clip), motion::SbuSkeleton());
   for (int frame = 0; frame < 9; ++frame) {
     EXPECT_LT(Distance(played.at(frame, 5), clip.at(frame, 5)), 0.005f) << frame;
   }
 }
 
 TEST(BvhExport, SurvivesJointsInOnePoint) {
-  Clip clip = MakePerson({3});
-  for (Vec3& p : clip.positions) p = {1, 2, 3};
-  const Clip played = PlayBack(Export(clip), SbuSkeleton());
+  motion::Clip clip = MakePerson({3});
+  for (motion::Vec3& p : clip.positions) p = {1, 2, 3};
+  const motion::Clip played = PlayBack(Export(clip), motion::SbuSkeleton());
   EXPECT_LT(LargestDistance(played, clip), kOneMillimetre);
 }
 
 TEST(BvhExport, SurvivesBodiesOnOneLine) {
-  Clip clip = MakePerson({3});
+  motion::Clip clip = MakePerson({3});
   for (int frame = 0; frame < 3; ++frame) {
     for (int j = 0; j < clip.joint_count(); ++j) clip.at(frame, j) = {0, 0.1f * j, 0};
   }
-  const Clip played = PlayBack(Export(clip), SbuSkeleton());
+  const motion::Clip played = PlayBack(Export(clip), motion::SbuSkeleton());
   EXPECT_LT(LargestDistance(played, clip), kOneMillimetre);
 }
 
@@ -208,7 +214,7 @@ TEST(BvhExport, RestsInATPoseFacingForwards) {
   options.yaw = 2;
   BvhDocument document = Export(MakePerson(options));
   std::fill(document.values.begin(), document.values.end(), 0.0f);
-  const Clip rest = PlayBack(document, SbuSkeleton());
+  const motion::Clip rest = PlayBack(document, motion::SbuSkeleton());
   const auto offset = [&rest](int from, int to) { return rest.at(0, to) - rest.at(0, from); };
   EXPECT_NEAR(offset(3, 5).x, 0.57, 1e-3);    // the left arm reaches out to +x
   EXPECT_NEAR(offset(6, 8).x, -0.57, 1e-3);   // the right one to -x
@@ -219,7 +225,7 @@ TEST(BvhExport, RestsInATPoseFacingForwards) {
 
 // Hips that go sideways from a pelvis still carry legs that hang.
 TEST(BvhExport, HangsTheLegsOfASkeletonRootedAtThePelvis) {
-  Skeleton skeleton;
+  motion::Skeleton skeleton;
   skeleton.joint_names = {"pelvis",     "left_hip",   "left_knee", "left_foot", "right_hip",
                           "right_knee", "right_foot", "chest",     "head"};
   skeleton.bones = {{0, 1}, {1, 2}, {2, 3}, {0, 4}, {4, 5}, {5, 6}, {0, 7}, {7, 8}};
@@ -230,7 +236,7 @@ TEST(BvhExport, HangsTheLegsOfASkeletonRootedAtThePelvis) {
   skeleton.left_foot = 3;
   skeleton.right_foot = 6;
   ASSERT_TRUE(Validate(skeleton).ok());
-  Clip sitting;
+  motion::Clip sitting;
   sitting.joint_names = skeleton.joint_names;
   sitting.frame_rate_hz = 30;
   sitting.positions = {{0, 0.5f, 0},        {0.1f, 0.5f, 0},  {0.1f, 0.5f, 0.4f},
@@ -240,7 +246,7 @@ TEST(BvhExport, HangsTheLegsOfASkeletonRootedAtThePelvis) {
   ASSERT_TRUE(document.ok()) << document.status();
   EXPECT_LT(LargestDistance(PlayBack(*document, skeleton), sitting), kOneMillimetre);
   std::fill(document->values.begin(), document->values.end(), 0.0f);
-  const Clip rest = PlayBack(*document, skeleton);
+  const motion::Clip rest = PlayBack(*document, skeleton);
   EXPECT_NEAR(rest.at(0, 3).y, -0.8, 1e-3);
   EXPECT_NEAR(rest.at(0, 6).y, -0.8, 1e-3);
   EXPECT_NEAR(rest.at(0, 8).y, 0.6, 1e-3);
@@ -252,22 +258,24 @@ TEST(BvhExport, NamesEveryJointOnceWithoutSpaces) {
     EXPECT_TRUE(names.insert(joint.name).second) << joint.name;
     EXPECT_EQ(joint.name.find(' '), std::string::npos);
   }
-  for (const std::string& name : SbuSkeleton().joint_names)
+  for (const std::string& name : motion::SbuSkeleton().joint_names)
     EXPECT_EQ(names.count(name), 1u) << name;
 }
 
 TEST(BvhExport, RefusesWhatIsNoMotionOfTheSkeleton) {
-  Clip renamed = MakePerson();
+  motion::Clip renamed = MakePerson();
   renamed.joint_names[0] = "tail";
-  EXPECT_EQ(ToBvh(renamed, SbuSkeleton()).status().code(), absl::StatusCode::kInvalidArgument);
-  Clip broken = MakePerson();
+  EXPECT_EQ(ToBvh(renamed, motion::SbuSkeleton()).status().code(),
+            absl::StatusCode::kInvalidArgument);
+  motion::Clip broken = MakePerson();
   broken.at(4, 5).y = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_THAT(std::string(ToBvh(broken, SbuSkeleton()).status().message()),
+  EXPECT_THAT(std::string(ToBvh(broken, motion::SbuSkeleton()).status().message()),
               HasSubstr("frame 4 left_hand"));
-  Clip empty = MakePerson();
+  motion::Clip empty = MakePerson();
   empty.positions.clear();
-  EXPECT_THAT(std::string(ToBvh(empty, SbuSkeleton()).status().message()), HasSubstr("no frames"));
+  EXPECT_THAT(std::string(ToBvh(empty, motion::SbuSkeleton()).status().message()),
+              HasSubstr("no frames"));
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::formats::bvh

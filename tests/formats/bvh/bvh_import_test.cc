@@ -9,18 +9,21 @@
 #include "model/formats/bvh/bvh_export.h"
 #include "tests/support/test_motion.h"
 
-namespace duet {
+namespace duet::formats::bvh {
 namespace {
 
+using test::LargestDistance;
+using test::MakePerson;
+
+using test::LargestDistance;
+using test::MakePerson;
 using ::testing::Contains;
 using ::testing::HasSubstr;
-using testing::LargestDistance;
-using testing::MakePerson;
 
 constexpr float kOneMillimetre = 0.001f;
 
-BvhDocument Export(const Clip& clip) {
-  absl::StatusOr<BvhDocument> document = ToBvh(clip, SbuSkeleton());
+BvhDocument Export(const motion::Clip& clip) {
+  absl::StatusOr<BvhDocument> document = ToBvh(clip, motion::SbuSkeleton());
   EXPECT_TRUE(document.ok()) << document.status();
   return *std::move(document);
 }
@@ -36,8 +39,8 @@ BvhDocument Scaled(BvhDocument document, double factor) {
 }
 
 TEST(BvhImport, ReadsWhatWeWrite) {
-  const Clip clip = MakePerson();
-  const absl::StatusOr<Clip> read = FromBvh(Export(clip), "a.bvh");
+  const motion::Clip clip = MakePerson();
+  const absl::StatusOr<motion::Clip> read = FromBvh(Export(clip), "a.bvh");
   ASSERT_TRUE(read.ok()) << read.status();
   EXPECT_EQ(read->joint_names, clip.joint_names);
   EXPECT_EQ(read->frame_rate_hz, 30);
@@ -45,7 +48,7 @@ TEST(BvhImport, ReadsWhatWeWrite) {
 }
 
 TEST(BvhImport, FindsTheUnitFromThePersonsSize) {
-  const Clip clip = MakePerson();
+  const motion::Clip clip = MakePerson();
   const std::pair<double, const char*> units[] = {{1, "unit: centimetres"},
                                                   {0.01, "unit: metres"},
                                                   {10, "unit: millimetres"},
@@ -55,7 +58,8 @@ TEST(BvhImport, FindsTheUnitFromThePersonsSize) {
     std::vector<std::string> notes;
     BvhImportOptions options;
     options.notes = &notes;
-    const absl::StatusOr<Clip> read = FromBvh(Scaled(Export(clip), factor), "a.bvh", options);
+    const absl::StatusOr<motion::Clip> read =
+        FromBvh(Scaled(Export(clip), factor), "a.bvh", options);
     ASSERT_TRUE(read.ok()) << read.status();
     EXPECT_LT(LargestDistance(*read, clip), kOneMillimetre) << note;
     EXPECT_THAT(notes, Contains(HasSubstr(note)));
@@ -63,14 +67,14 @@ TEST(BvhImport, FindsTheUnitFromThePersonsSize) {
 }
 
 TEST(BvhImport, RefusesASizeThatIsNoPersonsUnlessTheUnitIsGiven) {
-  const Clip clip = MakePerson();
+  const motion::Clip clip = MakePerson();
   const BvhDocument giant = Scaled(Export(clip), 77);
-  const absl::StatusOr<Clip> refused = FromBvh(giant, "a.bvh");
+  const absl::StatusOr<motion::Clip> refused = FromBvh(giant, "a.bvh");
   EXPECT_EQ(refused.status().code(), absl::StatusCode::kInvalidArgument);
   EXPECT_THAT(std::string(refused.status().message()), HasSubstr("a.bvh: size: foot to root came"));
   BvhImportOptions options;
   options.metres_per_unit = 0.01 / 77;
-  const absl::StatusOr<Clip> read = FromBvh(giant, "a.bvh", options);
+  const absl::StatusOr<motion::Clip> read = FromBvh(giant, "a.bvh", options);
   ASSERT_TRUE(read.ok()) << read.status();
   EXPECT_LT(LargestDistance(*read, clip), kOneMillimetre);
   for (double unit : {0.0, -1.0, 1e30, std::nan("")}) {
@@ -81,22 +85,22 @@ TEST(BvhImport, RefusesASizeThatIsNoPersonsUnlessTheUnitIsGiven) {
 }
 
 TEST(BvhImport, FindsTheUpAxis) {
-  const Clip clip = MakePerson();
-  Clip z_up = clip, y_down = clip;
-  for (Vec3& p : z_up.positions) p = {p.x, -p.z, p.y};
-  for (Vec3& p : y_down.positions) p = {p.x, -p.y, -p.z};
-  for (const Clip* turned : {&z_up, &y_down}) {
+  const motion::Clip clip = MakePerson();
+  motion::Clip z_up = clip, y_down = clip;
+  for (motion::Vec3& p : z_up.positions) p = {p.x, -p.z, p.y};
+  for (motion::Vec3& p : y_down.positions) p = {p.x, -p.y, -p.z};
+  for (const motion::Clip* turned : {&z_up, &y_down}) {
     std::vector<std::string> notes;
     BvhImportOptions options;
     options.notes = &notes;
-    const absl::StatusOr<Clip> read = FromBvh(Export(*turned), "a.bvh", options);
+    const absl::StatusOr<motion::Clip> read = FromBvh(Export(*turned), "a.bvh", options);
     ASSERT_TRUE(read.ok()) << read.status();
     EXPECT_LT(LargestDistance(*read, clip), kOneMillimetre);
     EXPECT_THAT(notes, Contains(HasSubstr("up axis:")));
   }
   BvhImportOptions as_it_is;
-  as_it_is.up_axis = UpAxis::kYUp;
-  const absl::StatusOr<Clip> read = FromBvh(Export(z_up), "a.bvh", as_it_is);
+  as_it_is.up_axis = motion::UpAxis::kYUp;
+  const absl::StatusOr<motion::Clip> read = FromBvh(Export(z_up), "a.bvh", as_it_is);
   ASSERT_TRUE(read.ok()) << read.status();
   EXPECT_LT(LargestDistance(*read, z_up), kOneMillimetre);
 }
@@ -115,7 +119,7 @@ TEST(BvhImport, RoundsFrameTimesToTheRateThatIsMeant) {
 }
 
 TEST(BvhImport, ReadsTheSecondPersonOfAFileWithTwo) {
-  const Clip first = MakePerson({2}), second = MakePerson({2, 3, 0, {0, 1, 1.5f}, 30});
+  const motion::Clip first = MakePerson({2}), second = MakePerson({2, 3, 0, {0, 1, 1.5f}, 30});
   BvhDocument both = Export(first);
   const BvhDocument other = Export(second);
   const std::size_t shift = both.joints.size(), channels = other.values.size() / 2;
@@ -138,4 +142,4 @@ TEST(BvhImport, ReadsTheSecondPersonOfAFileWithTwo) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::formats::bvh

@@ -7,7 +7,7 @@
 #include "gtest/gtest.h"
 #include "tests/support/test_motion.h"
 
-namespace duet {
+namespace duet::formats::flat {
 namespace {
 
 using ::testing::HasSubstr;
@@ -19,37 +19,37 @@ constexpr char kOnePerson[] =
     "0.04,-1,-2,-3,+4e1,-5,-6\n";
 
 std::string ParseError(const std::string& text) {
-  const absl::StatusOr<RecordedMotion> motion = ParseCsv(text, "a.csv");
+  const absl::StatusOr<motion::RecordedMotion> motion = ParseCsv(text, "a.csv");
   EXPECT_EQ(motion.status().code(), absl::StatusCode::kInvalidArgument) << motion.status();
   return std::string(motion.status().message());
 }
 
 TEST(Csv, ReadsColumnsInAnyOrder) {
-  const absl::StatusOr<RecordedMotion> motion = ParseCsv(kOnePerson, "a.csv");
+  const absl::StatusOr<motion::RecordedMotion> motion = ParseCsv(kOnePerson, "a.csv");
   ASSERT_TRUE(motion.ok()) << motion.status();
   ASSERT_EQ(motion->people.size(), 1u);
-  const Clip& clip = motion->people[0];
+  const motion::Clip& clip = motion->people[0];
   EXPECT_THAT(clip.joint_names, ::testing::ElementsAre("neck", "head"));
   EXPECT_EQ(clip.frame_rate_hz, 25);
   ASSERT_EQ(clip.frame_count(), 2);
-  EXPECT_EQ(clip.at(0, 0), (Vec3{1, 6, 5}));
-  EXPECT_EQ(clip.at(1, 1), (Vec3{-2, -3, 40}));
-  EXPECT_EQ(motion->coordinates.unit, LengthUnit::kMillimetres);
-  EXPECT_EQ(motion->coordinates.up_axis, UpAxis::kZUp);
+  EXPECT_EQ(clip.at(0, 0), (motion::Vec3{1, 6, 5}));
+  EXPECT_EQ(clip.at(1, 1), (motion::Vec3{-2, -3, 40}));
+  EXPECT_EQ(motion->coordinates.unit, motion::LengthUnit::kMillimetres);
+  EXPECT_EQ(motion->coordinates.up_axis, motion::UpAxis::kZUp);
 }
 
 TEST(Csv, LeavesTheRateOpenWhereTheFileHasNone) {
-  const absl::StatusOr<RecordedMotion> motion = ParseCsv("a_x,a_y,a_z\n1,2,3\n", "a.csv");
+  const absl::StatusOr<motion::RecordedMotion> motion = ParseCsv("a_x,a_y,a_z\n1,2,3\n", "a.csv");
   ASSERT_TRUE(motion.ok()) << motion.status();
   EXPECT_EQ(motion->people[0].frame_rate_hz, 0);
-  EXPECT_EQ(motion->coordinates.unit, LengthUnit::kMetres);
-  EXPECT_EQ(motion->coordinates.up_axis, UpAxis::kYUp);
+  EXPECT_EQ(motion->coordinates.unit, motion::LengthUnit::kMetres);
+  EXPECT_EQ(motion->coordinates.up_axis, motion::UpAxis::kYUp);
 }
 
 TEST(Csv, ReadsBackAPairExactly) {
-  ClipPair pair{testing::MakePerson(), testing::MakePerson({60, 3, 0, {0, 1, 1.2f}, 30})};
+  motion::ClipPair pair{test::MakePerson(), test::MakePerson({60, 3, 0, {0, 1, 1.2f}, 30})};
   pair.leader.frame_rate_hz = pair.follower.frame_rate_hz = 29.97;
-  const absl::StatusOr<RecordedMotion> motion = ParseCsv(FormatCsv(pair), "a.csv");
+  const absl::StatusOr<motion::RecordedMotion> motion = ParseCsv(FormatCsv(pair), "a.csv");
   ASSERT_TRUE(motion.ok()) << motion.status();
   ASSERT_EQ(motion->people.size(), 2u);
   EXPECT_EQ(motion->people[0].joint_names, pair.leader.joint_names);
@@ -94,4 +94,4 @@ TEST(Csv, RefusesAnEmptyFile) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::formats::flat

@@ -8,7 +8,7 @@
 #include "nlohmann/json.hpp"
 #include "tests/support/test_motion.h"
 
-namespace duet {
+namespace duet::formats::flat {
 namespace {
 
 using ::testing::HasSubstr;
@@ -21,7 +21,7 @@ Json OnePerson() {
 }
 
 std::string ParseError(const std::string& text) {
-  const absl::StatusOr<RecordedMotion> motion = ParseJsonMotion(text, "a.json");
+  const absl::StatusOr<motion::RecordedMotion> motion = ParseJsonMotion(text, "a.json");
   EXPECT_EQ(motion.status().code(), absl::StatusCode::kInvalidArgument) << motion.status();
   return std::string(motion.status().message());
 }
@@ -33,17 +33,18 @@ std::string ErrorWith(const std::string& pointer, const Json& value) {
 }
 
 TEST(JsonMotion, ReadsOnePerson) {
-  const absl::StatusOr<RecordedMotion> motion = ParseJsonMotion(OnePerson().dump(), "a.json");
+  const absl::StatusOr<motion::RecordedMotion> motion =
+      ParseJsonMotion(OnePerson().dump(), "a.json");
   ASSERT_TRUE(motion.ok()) << motion.status();
   ASSERT_EQ(motion->people.size(), 1u);
   EXPECT_EQ(motion->people[0].frame_rate_hz, 20);
-  EXPECT_EQ(motion->people[0].at(1, 1), (Vec3{10, 11, 12.5f}));
+  EXPECT_EQ(motion->people[0].at(1, 1), (motion::Vec3{10, 11, 12.5f}));
 }
 
 TEST(JsonMotion, ReadsBackAPairExactly) {
-  const ClipPair pair{testing::MakePerson(), testing::MakePerson({60, 3, 0, {0, 1, 1.2f}, 30})};
-  const std::string text = FormatJsonMotion(pair, SbuSkeleton());
-  const absl::StatusOr<RecordedMotion> motion = ParseJsonMotion(text, "a.json");
+  const motion::ClipPair pair{test::MakePerson(), test::MakePerson({60, 3, 0, {0, 1, 1.2f}, 30})};
+  const std::string text = FormatJsonMotion(pair, motion::SbuSkeleton());
+  const absl::StatusOr<motion::RecordedMotion> motion = ParseJsonMotion(text, "a.json");
   ASSERT_TRUE(motion.ok()) << motion.status();
   ASSERT_EQ(motion->people.size(), 2u);
   EXPECT_EQ(motion->people[0].joint_names, pair.leader.joint_names);
@@ -60,10 +61,10 @@ TEST(JsonMotion, HonoursUnitAndAxis) {
   Json document = OnePerson();
   document["unit"] = "millimetres";
   document["up_axis"] = "-y";
-  const absl::StatusOr<RecordedMotion> motion = ParseJsonMotion(document.dump(), "a.json");
+  const absl::StatusOr<motion::RecordedMotion> motion = ParseJsonMotion(document.dump(), "a.json");
   ASSERT_TRUE(motion.ok()) << motion.status();
-  EXPECT_EQ(motion->coordinates.unit, LengthUnit::kMillimetres);
-  EXPECT_EQ(motion->coordinates.up_axis, UpAxis::kYDown);
+  EXPECT_EQ(motion->coordinates.unit, motion::LengthUnit::kMillimetres);
+  EXPECT_EQ(motion->coordinates.up_axis, motion::UpAxis::kYDown);
 }
 
 TEST(JsonMotion, NamesTheFieldThatIsWrong) {
@@ -100,4 +101,4 @@ TEST(JsonMotion, RefusesDeepNestingBeforeItCostsMemory) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::formats::flat

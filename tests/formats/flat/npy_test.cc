@@ -12,17 +12,18 @@
 #include "model/base/text.h"
 #include "tests/support/test_motion.h"
 
-namespace duet {
+namespace duet::formats::flat {
 namespace {
 
 using ::testing::HasSubstr;
 
-ClipPair MakePair() {
-  return {testing::MakePerson({12}), testing::MakePerson({12, 3, 0, {0, 1, 1.2f}, 30})};
+motion::ClipPair MakePair() {
+  return {test::MakePerson({12}), test::MakePerson({12, 3, 0, {0, 1, 1.2f}, 30})};
 }
 
 std::string ParseError(const std::string& bytes) {
-  const absl::StatusOr<RecordedMotion> motion = ParseNpy(bytes, "a.npy", SbuSkeleton().joint_names);
+  const absl::StatusOr<motion::RecordedMotion> motion =
+      ParseNpy(bytes, "a.npy", motion::SbuSkeleton().joint_names);
   EXPECT_EQ(motion.status().code(), absl::StatusCode::kInvalidArgument) << motion.status();
   return std::string(motion.status().message());
 }
@@ -32,8 +33,8 @@ std::string Replaced(const std::string& from, const std::string& to) {
 }
 
 TEST(Npy, ReadsBackAPairExactly) {
-  const ClipPair pair = MakePair();
-  const absl::StatusOr<RecordedMotion> motion =
+  const motion::ClipPair pair = MakePair();
+  const absl::StatusOr<motion::RecordedMotion> motion =
       ParseNpy(FormatNpy(pair), "a.npy", pair.leader.joint_names);
   ASSERT_TRUE(motion.ok()) << motion.status();
   ASSERT_EQ(motion->people.size(), 2u);
@@ -55,16 +56,17 @@ TEST(Npy, IsReadAndWrittenByNumPy) {
   }
   const std::filesystem::path folder = ::testing::TempDir();
   const std::filesystem::path ours = folder / "duet_ours.npy", theirs = folder / "duet_theirs.npy";
-  const ClipPair pair = MakePair();
-  ASSERT_TRUE(WriteFile(ours, FormatNpy(pair)).ok());
+  const motion::ClipPair pair = MakePair();
+  ASSERT_TRUE(base::WriteFile(ours, FormatNpy(pair)).ok());
   const std::string script =
       absl::StrCat("import numpy as n; a = n.load('", ours.string(),
                    "'); assert a.shape == (2, 12, 15, 3) and a.dtype == n.float32; n.save('",
                    theirs.string(), "', a[1].astype(n.float64) * 2)");
   ASSERT_EQ(std::system(absl::StrCat("/usr/bin/python3 -c \"", script, "\"").c_str()), 0);
-  const absl::StatusOr<std::string> bytes = ReadFile(theirs);
+  const absl::StatusOr<std::string> bytes = base::ReadFile(theirs);
   ASSERT_TRUE(bytes.ok()) << bytes.status();
-  const absl::StatusOr<RecordedMotion> motion = ParseNpy(*bytes, "b.npy", pair.leader.joint_names);
+  const absl::StatusOr<motion::RecordedMotion> motion =
+      ParseNpy(*bytes, "b.npy", pair.leader.joint_names);
   ASSERT_TRUE(motion.ok()) << motion.status();
   ASSERT_EQ(motion->people.size(), 1u);
   ASSERT_EQ(motion->people[0].frame_count(), 12);
@@ -109,4 +111,4 @@ TEST(Npy, NamesAPositionThatIsNotFinite) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::formats::flat

@@ -9,7 +9,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 
-namespace duet {
+namespace duet::formats::flat {
 namespace {
 
 using ::testing::HasSubstr;
@@ -19,7 +19,7 @@ SbuOptions TwoJoints() {
   SbuOptions options;
   options.joint_names = {"torso", "head"};
   options.frame_rate_hz = 25;
-  options.coordinates = {LengthUnit::kMetres, UpAxis::kYUp};
+  options.coordinates = {motion::LengthUnit::kMetres, motion::UpAxis::kYUp};
   return options;
 }
 
@@ -39,8 +39,8 @@ TEST(SbuText, ReadsBothPeople) {
   EXPECT_EQ(recording->left.frame_count(), 2);
   EXPECT_EQ(recording->right.frame_count(), 2);
   EXPECT_EQ(recording->left.frame_rate_hz, 25);
-  EXPECT_EQ(recording->left.at(1, 0), (Vec3{0, 1, 0.1f}));
-  EXPECT_EQ(recording->right.at(1, 1), (Vec3{1, 1.5f, -0.2f}));
+  EXPECT_EQ(recording->left.at(1, 0), (motion::Vec3{0, 1, 0.1f}));
+  EXPECT_EQ(recording->right.at(1, 1), (motion::Vec3{1, 1.5f, -0.2f}));
 }
 
 TEST(SbuText, DefaultsToSbuJointsUnitAndRate) {
@@ -48,7 +48,7 @@ TEST(SbuText, DefaultsToSbuJointsUnitAndRate) {
   for (int value = 0; value < 90; ++value) absl::StrAppend(&line, ",", value < 45 ? "0.5" : "0.25");
   const absl::StatusOr<SbuRecording> recording = ParseSbu(line, "a.txt");
   ASSERT_TRUE(recording.ok()) << recording.status();
-  EXPECT_EQ(recording->left.joint_names, SbuSkeleton().joint_names);
+  EXPECT_EQ(recording->left.joint_names, motion::SbuSkeleton().joint_names);
   EXPECT_EQ(recording->left.frame_rate_hz, 15);
   EXPECT_NEAR(recording->left.at(0, 0).x, 0, 1e-6);
   EXPECT_NEAR(recording->left.at(0, 0).y, 0, 1e-6);
@@ -148,4 +148,4 @@ TEST(SbuText, ReadsEveryCaptureOfTheDataSet) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::formats::flat

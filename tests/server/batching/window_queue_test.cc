@@ -5,14 +5,14 @@
 #include <optional>
 #include <vector>
 
-namespace duet {
+namespace duet::server::batching {
 namespace {
 
 // A job that its deadline tells from others.
 WindowJob Job(Priority priority, int number, bool continues_call = false) {
   WindowJob job;
   job.priority = priority;
-  job.deadline = TimePoint(std::chrono::seconds(number));
+  job.deadline = common::TimePoint(std::chrono::seconds(number));
   job.continues_call = continues_call;
   return job;
 }
@@ -82,4 +82,4 @@ TEST(BulkShareTest, LeavesSomethingToBulkWhateverTheLimit) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::server::batching

@@ -17,8 +17,17 @@
 #include "tests/support/sample_motion.h"
 #include "tests/support/status_matchers.h"
 
-namespace duet {
+namespace duet::server::batching {
 namespace {
+
+using test::FakeAnswer;
+using test::FakeClock;
+using test::FakeDescription;
+using test::FakeSynthesizer;
+using test::GatedModel;
+using test::IsOk;
+using test::StatusIs;
+using test::SwayingMotion;
 
 using ::testing::HasSubstr;
 
@@ -35,7 +44,7 @@ struct Ticket {
       std::make_shared<std::promise<WindowOutcome>>();
   std::future<WindowOutcome> outcome = promise->get_future();
 
-  WindowJob Job(std::shared_ptr<const Synthesizer> model) {
+  WindowJob Job(std::shared_ptr<const engine::Synthesizer> model) {
     WindowJob job;
     job.window.leader = SwayingMotion(4, 15);
     job.window.labels.assign(4 * model->description().classes.size(), 0.0F);
@@ -48,18 +57,18 @@ struct Ticket {
 };
 
 TEST(WorkerPoolTest, EvaluatesAWindow) {
-  WorkerPool pool({1, 4}, Clock::Real());
+  WorkerPool pool({1, 4}, common::Clock::Real());
   Ticket ticket;
   ASSERT_THAT(pool.Submit(ticket.Job(std::make_shared<FakeSynthesizer>())), IsOk());
   const WindowOutcome outcome = ticket.outcome.get();
   ASSERT_THAT(outcome.result, IsOk());
-  const Vec3 expected = FakeAnswer(SwayingMotion(4, 15)[7], std::vector<float>(6, 0.0F));
+  const motion::Vec3 expected = FakeAnswer(SwayingMotion(4, 15)[7], std::vector<float>(6, 0.0F));
   EXPECT_EQ((*outcome.result)[7], expected);
   EXPECT_EQ(outcome.timings.batch_size, 1);
 }
 
 TEST(WorkerPoolTest, EvaluatesAsManyWindowsAtOnceAsThereAreWorkers) {
-  WorkerPool pool({2, 4}, Clock::Real());
+  WorkerPool pool({2, 4}, common::Clock::Real());
   GatedModel model;
   Ticket first, second;
   ASSERT_THAT(pool.Submit(first.Job(model.get())), IsOk());
@@ -72,7 +81,7 @@ TEST(WorkerPoolTest, EvaluatesAsManyWindowsAtOnceAsThereAreWorkers) {
 
 TEST(WorkerPoolTest, RefusesANewCallWhenTheQueueIsFull) {
   GatedModel model;
-  WorkerPool pool({1, 1}, Clock::Real());
+  WorkerPool pool({1, 1}, common::Clock::Real());
   Ticket running, waiting, refused, continued;
   ASSERT_THAT(pool.Submit(running.Job(model.get())), IsOk());
   model.WaitUntilStarted(1);
@@ -90,7 +99,7 @@ TEST(WorkerPoolTest, RefusesANewCallWhenTheQueueIsFull) {
 
 TEST(WorkerPoolTest, NeverStartsACancelledWindow) {
   GatedModel model;
-  WorkerPool pool({1, 4}, Clock::Real());
+  WorkerPool pool({1, 4}, common::Clock::Real());
   Ticket running, cancelled;
   ASSERT_THAT(pool.Submit(running.Job(model.get())), IsOk());
   model.WaitUntilStarted(1);
@@ -122,14 +131,14 @@ TEST(WorkerPoolTest, NeverStartsAnExpiredWindow) {
 
 TEST(WorkerPoolTest, StartsInteractiveWindowsFirst) {
   GatedModel gate;
-  WorkerPool pool({1, 8}, Clock::Real());
+  WorkerPool pool({1, 8}, common::Clock::Real());
   Ticket running, bulk, interactive;
   ASSERT_THAT(pool.Submit(running.Job(gate.get())), IsOk());
   gate.WaitUntilStarted(1);
   std::vector<std::string> order;  // written by the one worker, read after both outcomes
   const auto naming = [&order](const char* name) {
     auto model = std::make_shared<FakeSynthesizer>();
-    model->on_batch = [&order, name](absl::Span<const SynthesisWindow* const>) {
+    model->on_batch = [&order, name](absl::Span<const engine::SynthesisWindow* const>) {
       order.push_back(name);
     };
     return model;
@@ -149,7 +158,7 @@ TEST(WorkerPoolTest, SaysWhereTheTimeWent) {
   std::promise<WindowTimings> observed;
   auto model = std::make_shared<FakeSynthesizer>();
   GatedModel gate;
-  model->on_batch = [&](absl::Span<const SynthesisWindow* const>) {
+  model->on_batch = [&](absl::Span<const engine::SynthesisWindow* const>) {
     clock.Advance(std::chrono::milliseconds(250));
   };
   std::atomic<int> seen{0};
@@ -169,22 +178,23 @@ TEST(WorkerPoolTest, SaysWhereTheTimeWent) {
 }
 
 // Fails in ways that the interface does not allow.
-class BrokenModel final : public Synthesizer {
+class BrokenModel final : public engine::Synthesizer {
  public:
   explicit BrokenModel(bool throws) : throws_(throws) {}
-  const ModelDescription& description() const override { return description_; }
-  std::vector<WindowResult> Synthesize(absl::Span<const SynthesisWindow* const>) const override {
+  const engine::ModelDescription& description() const override { return description_; }
+  std::vector<engine::WindowResult> Synthesize(
+      absl::Span<const engine::SynthesisWindow* const>) const override {
     if (throws_) throw std::runtime_error("out of luck");
     return {};
   }
 
  private:
   const bool throws_;
-  const ModelDescription description_ = FakeDescription();
+  const engine::ModelDescription description_ = FakeDescription();
 };
 
 TEST(WorkerPoolTest, SurvivesAModelThatThrows) {
-  WorkerPool pool({1, 4}, Clock::Real());
+  WorkerPool pool({1, 4}, common::Clock::Real());
   Ticket broken, sound;
   ASSERT_THAT(pool.Submit(broken.Job(std::make_shared<BrokenModel>(true))), IsOk());
   EXPECT_THAT(broken.outcome.get().result, StatusIs(kInternal, HasSubstr("out of luck")));
@@ -193,7 +203,7 @@ TEST(WorkerPoolTest, SurvivesAModelThatThrows) {
 }
 
 TEST(WorkerPoolTest, SurvivesAModelThatGivesTooFewResults) {
-  WorkerPool pool({1, 4}, Clock::Real());
+  WorkerPool pool({1, 4}, common::Clock::Real());
   Ticket ticket;
   ASSERT_THAT(pool.Submit(ticket.Job(std::make_shared<BrokenModel>(false))), IsOk());
   EXPECT_THAT(ticket.outcome.get().result,
@@ -205,7 +215,7 @@ TEST(WorkerPoolTest, ShutdownFinishesWhatRunsAndAnswersWhatWaits) {
   Ticket running, waiting;
   std::thread opener;
   {
-    WorkerPool pool({1, 4}, Clock::Real());
+    WorkerPool pool({1, 4}, common::Clock::Real());
     ASSERT_THAT(pool.Submit(running.Job(model.get())), IsOk());
     model.WaitUntilStarted(1);
     ASSERT_THAT(pool.Submit(waiting.Job(model.get())), IsOk());
@@ -229,7 +239,7 @@ TEST(WorkerPoolTest, AnswersEveryWindowOnceUnderLoad) {
   std::atomic<int> answered{0};
   std::atomic<int> refused{0};
   {
-    WorkerPool pool({3, 16}, Clock::Real());
+    WorkerPool pool({3, 16}, common::Clock::Real());
     std::vector<std::thread> callers;
     for (int t = 0; t < kThreads; ++t) {
       callers.emplace_back([&, t] {
@@ -249,4 +259,4 @@ TEST(WorkerPoolTest, AnswersEveryWindowOnceUnderLoad) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::server::batching

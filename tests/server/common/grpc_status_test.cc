@@ -9,8 +9,11 @@
 #include "server/common/error_details.h"
 #include "tests/server/support/refusal.h"
 
-namespace duet {
+namespace duet::server::common {
 namespace {
+
+using test::Decode;
+using test::Refusal;
 
 TEST(ToGrpcStatusTest, OkIsOk) { EXPECT_TRUE(ToGrpcStatus(absl::OkStatus()).ok()); }
 
@@ -67,4 +70,4 @@ TEST(QuotedTest, ShowsOnlyTheBeginningOfALongText) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::server::common

@@ -8,8 +8,11 @@
 
 #include "tests/support/temporary_folder.h"
 
-namespace duet {
+namespace duet::server::config {
 namespace {
+
+using test::TemporaryFolder;
+using test::WriteTestFile;
 
 int Machine() { return static_cast<int>(std::thread::hardware_concurrency()); }
 
@@ -67,4 +70,4 @@ TEST(AvailableCoresTest, TheTightestAncestorCounts) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::server::config

@@ -12,8 +12,13 @@
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
-namespace duet {
+namespace duet::server::config {
 namespace {
+
+using test::IsOk;
+using test::StatusIs;
+using test::TemporaryFolder;
+using test::WriteTestFile;
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
@@ -155,4 +160,4 @@ TEST(ParseCommandLineTest, NamesAFlagThatIsWrong) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::server::config

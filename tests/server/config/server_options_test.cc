@@ -9,8 +9,11 @@
 
 #include "tests/support/status_matchers.h"
 
-namespace duet {
+namespace duet::server::config {
 namespace {
+
+using test::IsOk;
+using test::StatusIs;
 
 using ::testing::HasSubstr;
 
@@ -152,4 +155,4 @@ TEST(ListenAddressTest, RefusesAnythingElse) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::server::config

@@ -11,8 +11,11 @@
 
 #include "tests/support/temporary_folder.h"
 
-namespace duet {
+namespace duet::server::metrics {
 namespace {
+
+using test::ReadTestFile;
+using test::TemporaryFolder;
 
 using nlohmann::json;
 
@@ -143,4 +146,4 @@ TEST(StreamLogSinkTest, LinesOfManyThreadsStayWhole) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::server::metrics

@@ -11,8 +11,13 @@
 #include "tests/server/support/http_get.h"
 #include "tests/support/status_matchers.h"
 
-namespace duet {
+namespace duet::server::metrics {
 namespace {
+
+using test::Exchange;
+using test::HttpGet;
+using test::IsOk;
+using test::StatusIs;
 
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
@@ -76,4 +81,4 @@ TEST_F(MetricsEndpointTest, ASecondOneOnThePortFailsAndSaysWhere) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::server::metrics

@@ -5,7 +5,7 @@
 
 #include <string>
 
-namespace duet {
+namespace duet::server::metrics {
 namespace {
 
 using ::testing::HasSubstr;
@@ -81,8 +81,8 @@ TEST(ServerMetricsTest, LabelsNeverHoldWhatACallerSent) {
 
 TEST(ServerMetricsTest, CountsWindowsAndThoseDropped) {
   ServerMetrics metrics;
-  metrics.WindowFinished(Priority::kBulk, {0.2, 0.04, 1});
-  metrics.WindowFinished(Priority::kBulk, {0.2, 0, 0});
+  metrics.WindowFinished(batching::Priority::kBulk, {0.2, 0.04, 1});
+  metrics.WindowFinished(batching::Priority::kBulk, {0.2, 0, 0});
   const std::string text = metrics.Render();
   EXPECT_THAT(text, HasSubstr(R"(duet_queue_seconds_count{priority="bulk"} 2)"));
   EXPECT_THAT(text, HasSubstr("duet_compute_seconds_count 1\n"));
@@ -110,4 +110,4 @@ TEST(ServerMetricsTest, TellsWhichCheckpointsAreServed) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::server::metrics

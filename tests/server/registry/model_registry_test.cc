@@ -10,8 +10,13 @@
 #include "tests/support/fake_synthesizer.h"
 #include "tests/support/status_matchers.h"
 
-namespace duet {
+namespace duet::server::registry {
 namespace {
+
+using test::FakeDescription;
+using test::FakeSynthesizer;
+using test::IsOk;
+using test::StatusIs;
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -19,8 +24,8 @@ using ::testing::IsEmpty;
 
 constexpr auto kNotFound = absl::StatusCode::kNotFound;
 
-std::shared_ptr<const Synthesizer> Model(const std::string& name, int version) {
-  ModelDescription description = FakeDescription();
+std::shared_ptr<const engine::Synthesizer> Model(const std::string& name, int version) {
+  engine::ModelDescription description = FakeDescription();
   description.name = name;
   description.version = version;
   return std::make_shared<FakeSynthesizer>(description);
@@ -30,7 +35,7 @@ std::shared_ptr<const Synthesizer> Model(const std::string& name, int version) {
 std::string Answer(const ModelRegistry& registry, const ModelQuery& query) {
   const absl::StatusOr<ServedModel> served = registry.Find(query);
   if (!served.ok()) return std::string(served.status().message());
-  const ModelDescription& model = served->model->description();
+  const engine::ModelDescription& model = served->model->description();
   return model.name + "/" + std::to_string(model.version);
 }
 
@@ -123,7 +128,7 @@ TEST(ModelRegistryTest, ListsByNameNewestFirst) {
 
 TEST(ModelRegistryTest, WhoeverFoundAModelKeepsItWhenItIsReplaced) {
   ModelRegistry registry;
-  std::weak_ptr<const Synthesizer> watched;
+  std::weak_ptr<const engine::Synthesizer> watched;
   {
     auto first = Model("a", 1);
     watched = first;
@@ -137,4 +142,4 @@ TEST(ModelRegistryTest, WhoeverFoundAModelKeepsItWhenItIsReplaced) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::server::registry

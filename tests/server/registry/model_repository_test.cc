@@ -13,8 +13,15 @@
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
-namespace duet {
+namespace duet::server::registry {
 namespace {
+
+using test::FakeDescription;
+using test::FakeSynthesizer;
+using test::IsOk;
+using test::StatusIs;
+using test::TemporaryFolder;
+using test::WriteTestFile;
 
 namespace fs = std::filesystem;
 
@@ -97,8 +104,8 @@ TEST(ListCheckpointsTest, GoesOnPastAFolderThatIsClosed) {
 }
 
 ModelLoader LoaderOf(const std::string& name, int version) {
-  return [=](const fs::path&) -> absl::StatusOr<std::shared_ptr<const Synthesizer>> {
-    ModelDescription description = FakeDescription();
+  return [=](const fs::path&) -> absl::StatusOr<std::shared_ptr<const engine::Synthesizer>> {
+    engine::ModelDescription description = FakeDescription();
     description.name = name;
     description.version = version;
     return std::make_shared<FakeSynthesizer>(description);
@@ -127,4 +134,4 @@ TEST(LoadCheckpointTest, PassesOnWhyALoaderFailed) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::server::registry

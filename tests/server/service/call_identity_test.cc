@@ -5,7 +5,7 @@
 #include <set>
 #include <string>
 
-namespace duet {
+namespace duet::server::service {
 namespace {
 
 TEST(RequestIdTest, AcceptsPrintableTextWithoutSpaces) {
@@ -46,4 +46,4 @@ TEST(TraceparentTest, RefusesAnythingElse) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::server::service

@@ -15,8 +15,16 @@
 #include "tests/support/sample_motion.h"
 #include "tests/support/status_matchers.h"
 
-namespace duet {
+namespace duet::server::service {
 namespace {
+
+using test::FakeAnswer;
+using test::FakeDescription;
+using test::FakeSynthesizer;
+using test::IsOk;
+using test::PuppetScheduler;
+using test::StatusIs;
+using test::SwayingMotion;
 
 using ::testing::HasSubstr;
 using Kind = ClipPart::Kind;
@@ -24,8 +32,8 @@ using Kind = ClipPart::Kind;
 constexpr int kJoints = 15;
 constexpr auto kInternal = absl::StatusCode::kInternal;
 
-ClipRequest Request(int frames) {
-  return {SwayingMotion(frames, 15), 15, LabelTrack(std::vector<float>{1, 0, 0, 0, 0, 0}),
+engine::ClipRequest Request(int frames) {
+  return {SwayingMotion(frames, 15), 15, engine::LabelTrack(std::vector<float>{1, 0, 0, 0, 0, 0}),
           std::nullopt, std::nullopt};
 }
 
@@ -50,8 +58,8 @@ class PuppetStream {
  private:
   static ClipStreamOptions Options(int buffered_frames) {
     ClipStreamOptions options;
-    options.priority = Priority::kBulk;
-    options.deadline = TimePoint(std::chrono::seconds(7));
+    options.priority = batching::Priority::kBulk;
+    options.deadline = common::TimePoint(std::chrono::seconds(7));
     options.buffered_frames = buffered_frames;
     return options;
   }
@@ -61,8 +69,8 @@ class PuppetStream {
 };
 
 // Takes parts until there is none; returns the frames and what ended them.
-std::pair<std::vector<Vec3>, Kind> TakeAll(PuppetStream& stream, int max_frames) {
-  std::vector<Vec3> frames;
+std::pair<std::vector<motion::Vec3>, Kind> TakeAll(PuppetStream& stream, int max_frames) {
+  std::vector<motion::Vec3> frames;
   while (true) {
     const ClipPart part = stream->Take(max_frames);
     if (part.kind != Kind::kFrames) return {frames, part.kind};
@@ -77,10 +85,10 @@ TEST(ClipStreamTest, GivesEveryFrameInOrder) {
   stream.RunAll();
   const auto [frames, end] = TakeAll(stream, 30);
   EXPECT_EQ(end, Kind::kEnd);
-  const std::vector<Vec3> leader = SwayingMotion(200, 15);
+  const std::vector<motion::Vec3> leader = SwayingMotion(200, 15);
   ASSERT_EQ(frames.size(), leader.size());
   for (std::size_t i = 0; i < leader.size(); ++i) {
-    const Vec3 expected = FakeAnswer(leader[i], std::vector<float>{1, 0, 0, 0, 0, 0});
+    const motion::Vec3 expected = FakeAnswer(leader[i], std::vector<float>{1, 0, 0, 0, 0, 0});
     ASSERT_LT(Distance(frames[i], expected), 1e-4F) << "position " << i;
   }
 }
@@ -119,8 +127,8 @@ TEST(ClipStreamTest, HasOneWindowInTheQueueAtATime) {
 TEST(ClipStreamTest, PassesOnPriorityAndDeadline) {
   PuppetStream stream(200);
   ASSERT_THAT(stream->Start(), IsOk());
-  EXPECT_EQ(stream.scheduler().NextPriority(), Priority::kBulk);
-  EXPECT_EQ(stream.scheduler().NextDeadline(), TimePoint(std::chrono::seconds(7)));
+  EXPECT_EQ(stream.scheduler().NextPriority(), batching::Priority::kBulk);
+  EXPECT_EQ(stream.scheduler().NextDeadline(), common::TimePoint(std::chrono::seconds(7)));
 }
 
 TEST(ClipStreamTest, AReaderThatDoesNotTakePausesTheClip) {
@@ -192,7 +200,9 @@ TEST(ClipStreamTest, FailsWhenALaterWindowIsRefused) {
 
 TEST(ClipStreamTest, FailsWhenAWindowFails) {
   auto model = std::make_shared<FakeSynthesizer>();
-  model->window_status = [](const SynthesisWindow&) { return absl::InternalError("broken"); };
+  model->window_status = [](const engine::SynthesisWindow&) {
+    return absl::InternalError("broken");
+  };
   PuppetStream stream(200, 1000000, model);
   ASSERT_THAT(stream->Start(), IsOk());
   stream.scheduler().RunNext();
@@ -204,8 +214,8 @@ TEST(ClipStreamTest, FailsWhenAWindowFails) {
 
 TEST(ClipStreamTest, RefusesAResultThatIsNotFinite) {
   auto model = std::make_shared<FakeSynthesizer>();
-  model->answer = [](Vec3, absl::Span<const float>) {
-    return Vec3{0, std::numeric_limits<float>::quiet_NaN(), 0};
+  model->answer = [](motion::Vec3, absl::Span<const float>) {
+    return motion::Vec3{0, std::numeric_limits<float>::quiet_NaN(), 0};
   };
   PuppetStream stream(200, 1000000, model);
   ASSERT_THAT(stream->Start(), IsOk());
@@ -214,16 +224,17 @@ TEST(ClipStreamTest, RefusesAResultThatIsNotFinite) {
 }
 
 // Answers with one frame too few.
-class ShortModel final : public Synthesizer {
+class ShortModel final : public engine::Synthesizer {
  public:
-  const ModelDescription& description() const override { return description_; }
-  std::vector<WindowResult> Synthesize(
-      absl::Span<const SynthesisWindow* const> windows) const override {
-    return {std::vector<Vec3>(windows[0]->leader.begin() + kJoints, windows[0]->leader.end())};
+  const engine::ModelDescription& description() const override { return description_; }
+  std::vector<engine::WindowResult> Synthesize(
+      absl::Span<const engine::SynthesisWindow* const> windows) const override {
+    return {
+        std::vector<motion::Vec3>(windows[0]->leader.begin() + kJoints, windows[0]->leader.end())};
   }
 
  private:
-  const ModelDescription description_ = FakeDescription();
+  const engine::ModelDescription description_ = FakeDescription();
 };
 
 TEST(ClipStreamTest, RefusesAResultOfTheWrongLength) {
@@ -255,20 +266,21 @@ TEST(ClipStreamTest, LivesUntilItsLastWindowIsDone) {
 TEST(ClipStreamTest, WorksWithManyReadersOnAPool) {
   const auto model = std::make_shared<FakeSynthesizer>();
   struct Reader {
-    Mutex mutex;
-    CondVar changed;
+    common::Mutex mutex;
+    common::CondVar changed;
     bool progress DUET_GUARDED_BY(mutex) = false;
     std::shared_ptr<ClipStream> stream;
     std::thread thread;
     int frames = 0;
   };
   std::vector<Reader> readers(6);
-  WorkerPool pool({3, 64}, Clock::Real());  // ends before the readers that it tells of progress
+  batching::WorkerPool pool(
+      {3, 64}, common::Clock::Real());  // ends before the readers that it tells of progress
   for (Reader& reader : readers) {
     ClipStreamOptions options;
     options.buffered_frames = 40;
     reader.stream = std::make_shared<ClipStream>(model, Request(500), options, pool, [&reader] {
-      MutexLock lock(reader.mutex);
+      common::MutexLock lock(reader.mutex);
       reader.progress = true;
       reader.changed.NotifyAll();
     });
@@ -277,7 +289,7 @@ TEST(ClipStreamTest, WorksWithManyReadersOnAPool) {
       for (ClipPart part; part.kind != Kind::kEnd; part = reader.stream->Take(7)) {
         reader.frames += static_cast<int>(part.frames.size()) / kJoints;
         if (part.kind != Kind::kPending) continue;
-        MutexLock lock(reader.mutex);
+        common::MutexLock lock(reader.mutex);
         while (!reader.progress) reader.changed.Wait(reader.mutex);
         reader.progress = false;
       }
@@ -288,4 +300,4 @@ TEST(ClipStreamTest, WorksWithManyReadersOnAPool) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::server::service

@@ -14,8 +14,21 @@
 #include "tests/server/support/running_service.h"
 #include "tests/server/support/sample_request.h"
 
-namespace duet {
+namespace duet::server::service {
 namespace {
+
+using test::AddWeight;
+using test::Call;
+using test::Decode;
+using test::FakeDescription;
+using test::FakeSynthesizer;
+using test::PuppetScheduler;
+using test::RawCall;
+using test::ReadAll;
+using test::Refusal;
+using test::Reply;
+using test::RunningService;
+using test::SampleRequest;
 
 using ::testing::AnyOf;
 using ::testing::ElementsAre;
@@ -240,7 +253,7 @@ INSTANTIATE_TEST_SUITE_P(Both, NotServingTest,
 
 TEST(ServiceEndTest, AModelsFailureIsInternalAndKeepsItsWordsToTheLog) {
   auto model = std::make_shared<FakeSynthesizer>();
-  model->window_status = [](const SynthesisWindow&) {
+  model->window_status = [](const engine::SynthesisWindow&) {
     return absl::InternalError("at::addmm in /usr/secret/generator.cc failed");
   };
   RunningService::Setup setup;
@@ -251,14 +264,14 @@ TEST(ServiceEndTest, AModelsFailureIsInternalAndKeepsItsWordsToTheLog) {
   EXPECT_EQ(refusal.reason, "MODEL_FAILED");
   EXPECT_THAT(refusal.message, Not(HasSubstr("addmm")));
   EXPECT_THAT(refusal.message, Not(HasSubstr("/usr")));
-  const CallRecord record = running.calls().WaitFor(1);
+  const metrics::CallRecord record = running.calls().WaitFor(1);
   EXPECT_THAT(record.cause, HasSubstr("at::addmm in /usr/secret/generator.cc"));
   EXPECT_THAT(refusal.message, HasSubstr(record.request_id));
 }
 
 TEST(ServiceEndTest, AFailedCallDoesNotFailOthers) {
   auto model = std::make_shared<FakeSynthesizer>();
-  model->window_status = [](const SynthesisWindow& window) {
+  model->window_status = [](const engine::SynthesisWindow& window) {
     return window.leader.size() == 20 * 15 ? absl::InternalError("broken") : absl::OkStatus();
   };
   RunningService::Setup setup;
@@ -274,7 +287,7 @@ TEST(ServiceEndTest, AnExpiredCallNeverStarts) {
   context.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(1));
   const auto reader = service.running.stub().Synthesize(&context, SampleRequest());
   service.puppet.WaitForJobs(1);
-  EXPECT_LT(service.puppet.NextDeadline(), TimePoint::max());
+  EXPECT_LT(service.puppet.NextDeadline(), common::TimePoint::max());
   const Reply reply = ReadAll(*reader);
   EXPECT_EQ(reply.status.error_code(), grpc::StatusCode::DEADLINE_EXCEEDED);
   // The client's reset may overtake the deadline on a busy machine.
@@ -288,7 +301,7 @@ TEST(ServiceEndTest, ACallWithoutADeadlineHasNone) {
   grpc::ClientContext context;
   const auto reader = service.running.stub().Synthesize(&context, SampleRequest());
   service.puppet.WaitForJobs(1);
-  EXPECT_EQ(service.puppet.NextDeadline(), TimePoint::max());
+  EXPECT_EQ(service.puppet.NextDeadline(), common::TimePoint::max());
   service.puppet.RunNext();
   EXPECT_TRUE(ReadAll(*reader).status.ok());
 }
@@ -316,7 +329,7 @@ TEST(ServiceEndTest, ACallCancelledMidwayStopsThere) {
   service.puppet.WaitForJobs(1);
   context.TryCancel();
   EXPECT_EQ(ReadAll(*reader).status.error_code(), grpc::StatusCode::CANCELLED);
-  const CallRecord record = service.running.calls().WaitFor(1);
+  const metrics::CallRecord record = service.running.calls().WaitFor(1);
   EXPECT_EQ(record.status.code(), StatusCode::kCancelled);
   EXPECT_EQ(record.windows, 1);
   EXPECT_FALSE(service.puppet.RunNext()) << "its second window was evaluated";
@@ -355,7 +368,7 @@ TEST(ServiceIdentityTest, KeepsTheCallersRequestIdAndTrace) {
   const Reply reply = Call(running.stub(), SampleRequest(), context);
   ASSERT_TRUE(reply.status.ok());
   EXPECT_EQ(reply.messages.front().header().request_id(), "shot-42/take.3");
-  const CallRecord record = running.calls().WaitFor(1);
+  const metrics::CallRecord record = running.calls().WaitFor(1);
   EXPECT_EQ(record.request_id, "shot-42/take.3");
   EXPECT_EQ(record.traceparent, trace);
   EXPECT_THAT(record.peer, HasSubstr("127.0.0.1"));
@@ -377,10 +390,10 @@ TEST(ServiceRecordTest, SaysWhatACallDid) {
   request.set_priority(v1::PRIORITY_BULK);
   const auto reader = service.running.stub().Synthesize(&context, request);
   service.puppet.WaitForJobs(1);
-  EXPECT_EQ(service.puppet.NextPriority(), Priority::kBulk);
+  EXPECT_EQ(service.puppet.NextPriority(), batching::Priority::kBulk);
   service.puppet.RunNext();
   ASSERT_TRUE(ReadAll(*reader).status.ok());
-  const CallRecord record = service.running.calls().WaitFor(1);
+  const metrics::CallRecord record = service.running.calls().WaitFor(1);
   EXPECT_TRUE(record.status.ok());
   EXPECT_EQ(record.method.name, "Synthesize");
   EXPECT_EQ(record.model, "fake");
@@ -398,7 +411,7 @@ TEST(ServiceRecordTest, SaysWhatACallDid) {
 TEST(ModelMethodsTest, ListsModelsByNameNewestFirst) {
   RunningService running;
   for (const auto& [name, version] : {std::pair{"other", 1}, std::pair{"fake", 2}}) {
-    ModelDescription description = FakeDescription();
+    engine::ModelDescription description = FakeDescription();
     description.name = name;
     description.version = version;
     running.registry().Serve(std::make_shared<FakeSynthesizer>(description));
@@ -422,7 +435,7 @@ TEST(ModelMethodsTest, DescribesAModelAndItsLimits) {
   grpc::ClientContext context;
   v1::GetModelResponse response;
   ASSERT_TRUE(running.stub().GetModel(&context, v1::GetModelRequest(), &response).ok());
-  const ModelDescription fake = FakeDescription();
+  const engine::ModelDescription fake = FakeDescription();
   EXPECT_EQ(response.model().name(), "fake");
   EXPECT_THAT(response.model().interaction_classes(), testing::ElementsAreArray(fake.classes));
   EXPECT_THAT(response.model().joint_names(), testing::ElementsAreArray(fake.skeleton.joint_names));
@@ -459,11 +472,13 @@ TEST(ModelMethodsTest, ACallKeepsItsModelWhenAnotherTakesItsPlace) {
   const auto reader = service.running.stub().Synthesize(&context, SampleRequest(20));
   service.puppet.WaitForJobs(1);
   auto replacement = std::make_shared<FakeSynthesizer>();
-  replacement->window_status = [](const SynthesisWindow&) { return absl::InternalError("new"); };
+  replacement->window_status = [](const engine::SynthesisWindow&) {
+    return absl::InternalError("new");
+  };
   service.running.registry().Serve(replacement);
   service.puppet.RunNext();
   EXPECT_TRUE(ReadAll(*reader).status.ok());
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::server::service

@@ -16,8 +16,16 @@
 #include "tests/support/fake_synthesizer.h"
 #include "tests/support/status_matchers.h"
 
-namespace duet {
+namespace duet::server::service {
 namespace {
+
+using test::FakeClock;
+using test::FakeSynthesizer;
+using test::IsOk;
+using test::PuppetScheduler;
+using test::RecordingObserver;
+using test::SampleRequest;
+using test::StatusIs;
 
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
@@ -51,12 +59,13 @@ class SynthesisCallTest : public ::testing::Test {
     absl::StatusOr<ValidatedRequest> request =
         ValidateRequest(SampleRequest(frames), model->description(), RequestLimits());
     ASSERT_THAT(request, IsOk());
-    absl::StatusOr<AdmissionSlot> slot = admission_.Admit(Priority::kInteractive);
+    absl::StatusOr<AdmissionSlot> slot = admission_.Admit(batching::Priority::kInteractive);
     ASSERT_THAT(slot, IsOk());
-    auto scope = std::make_unique<CallScope>(MethodInfo{"service", "Synthesize", "server_stream"},
-                                             CallIdentity{"id", "", "peer"}, observers_, clock_);
+    auto scope =
+        std::make_unique<CallScope>(metrics::MethodInfo{"service", "Synthesize", "server_stream"},
+                                    CallIdentity{"id", "", "peer"}, observers_, clock_);
     call_ = SynthesisCall::Create({std::move(model), *std::move(request), *std::move(slot),
-                                   std::move(scope), TimePoint::max(), 240},
+                                   std::move(scope), common::TimePoint::max(), 240},
                                   scheduler_, writer_);
   }
 
@@ -69,7 +78,7 @@ class SynthesisCallTest : public ::testing::Test {
 
   FakeClock clock_;
   RecordingObserver observer_;
-  const std::vector<CallObserver*> observers_ = {&observer_};
+  const std::vector<metrics::CallObserver*> observers_ = {&observer_};
   Admission admission_{4};
   PuppetScheduler scheduler_;
   FakeWriter writer_;
@@ -166,7 +175,7 @@ TEST_F(SynthesisCallTest, AMessageThatCannotBeWrittenEndsTheCall) {
 TEST_F(SynthesisCallTest, AWindowThatEndsLateFindsNobody) {
   auto model = std::make_shared<FakeSynthesizer>();
   // The caller goes away, writer and all, while its window is being evaluated.
-  model->on_batch = [this](absl::Span<const SynthesisWindow* const>) {
+  model->on_batch = [this](absl::Span<const engine::SynthesisWindow* const>) {
     call_->Abort(absl::CancelledError("gone"));
     call_.reset();
   };
@@ -181,7 +190,7 @@ TEST_F(SynthesisCallTest, AWindowThatEndsLateFindsNobody) {
 TEST_F(SynthesisCallTest, AFailedWindowEndsTheCallThoughFramesAreLeft) {
   auto model = std::make_shared<FakeSynthesizer>();
   int windows = 0;
-  model->window_status = [&windows](const SynthesisWindow&) {
+  model->window_status = [&windows](const engine::SynthesisWindow&) {
     return ++windows == 2 ? absl::InternalError("broken") : absl::OkStatus();
   };
   Create(200, model);
@@ -201,7 +210,7 @@ TEST_F(SynthesisCallTest, MeasuresTheFirstChunkAndTheWhole) {
   scheduler_.RunNext();
   clock_.Advance(std::chrono::milliseconds(300));
   while (writer_.writing) Written();
-  const CallRecord record = observer_.WaitFor(1);
+  const metrics::CallRecord record = observer_.WaitFor(1);
   EXPECT_DOUBLE_EQ(record.first_chunk_seconds, 0.2);
   EXPECT_DOUBLE_EQ(record.total_seconds, 0.5);
 }
@@ -215,4 +224,4 @@ TEST_F(SynthesisCallTest, ACallThatSendsNoChunkHasNoFirst) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::server::service

@@ -17,8 +17,20 @@
 #include "tests/server/support/sample_request.h"
 #include "tests/support/sample_motion.h"
 
-namespace duet {
+namespace duet::server::service {
 namespace {
+
+using test::AddWeight;
+using test::Call;
+using test::FakeAnswer;
+using test::FakeDescription;
+using test::FakeSynthesizer;
+using test::PuppetScheduler;
+using test::ReadAll;
+using test::Reply;
+using test::RunningService;
+using test::SampleRequest;
+using test::SwayingMotion;
 
 using ::testing::Each;
 using ::testing::ElementsAre;
@@ -28,7 +40,7 @@ using ::testing::Le;
 // A model whose follower does what the leader does.
 std::shared_ptr<FakeSynthesizer> Echo() {
   auto model = std::make_shared<FakeSynthesizer>();
-  model->answer = [](Vec3 leader, absl::Span<const float>) { return leader; };
+  model->answer = [](motion::Vec3 leader, absl::Span<const float>) { return leader; };
   return model;
 }
 
@@ -159,11 +171,11 @@ TEST(SynthesizeTest, AnswersWithTheModelsMotion) {
   const v1::SynthesizeRequest request = SampleRequest(100);
   const std::vector<float> positions = Call(running.stub(), request).Positions();
   ASSERT_EQ(positions.size(), 100u * 15u * 3u);
-  const std::vector<Vec3> leader = SwayingMotion(100, 15);
+  const std::vector<motion::Vec3> leader = SwayingMotion(100, 15);
   const std::vector<float> labels = {1, 0, 0, 0, 0, 0};
   for (std::size_t i = 0; i < leader.size(); ++i) {
-    const Vec3 expected = FakeAnswer(leader[i], labels);
-    const Vec3 actual = {positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]};
+    const motion::Vec3 expected = FakeAnswer(leader[i], labels);
+    const motion::Vec3 actual = {positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]};
     ASSERT_LT(Distance(actual, expected), 1e-4F) << "position " << i;
   }
 }
@@ -192,8 +204,8 @@ TEST(SynthesizeTest, LabelKeyframesReachTheModel) {
 TEST(SynthesizeTest, FollowerStartAndPartnerDirectionReachTheModel) {
   PuppetScheduler puppet;
   auto model = std::make_shared<FakeSynthesizer>();
-  std::vector<SynthesisWindow> seen;
-  model->on_batch = [&](absl::Span<const SynthesisWindow* const> windows) {
+  std::vector<engine::SynthesisWindow> seen;
+  model->on_batch = [&](absl::Span<const engine::SynthesisWindow* const> windows) {
     seen.push_back(*windows[0]);
   };
   RunningService::Setup setup;
@@ -209,9 +221,9 @@ TEST(SynthesizeTest, FollowerStartAndPartnerDirectionReachTheModel) {
   EXPECT_TRUE(ReadAll(*reader).status.ok());
   ASSERT_EQ(seen.size(), 1u);
   ASSERT_TRUE(seen[0].start.has_value());
-  EXPECT_EQ(seen[0].start->root, (Vec3{0, 0, -2}));
+  EXPECT_EQ(seen[0].start->root, (motion::Vec3{0, 0, -2}));
   ASSERT_TRUE(seen[0].partner_direction.has_value());
-  EXPECT_EQ(*seen[0].partner_direction, (Vec3{0, 0, -1}));
+  EXPECT_EQ(*seen[0].partner_direction, (motion::Vec3{0, 0, -1}));
 }
 
 TEST(SynthesizeTest, RepliesWithTheAskedForJointsInTheAskedForOrder) {
@@ -226,7 +238,7 @@ TEST(SynthesizeTest, RepliesWithTheAskedForJointsInTheAskedForOrder) {
   EXPECT_THAT(reply.messages.front().header().joint_names(), ElementsAre("torso", "head"));
   const std::vector<float> positions = reply.Positions();
   ASSERT_EQ(positions.size(), 30u * 2u * 3u);
-  const std::vector<Vec3> leader = SwayingMotion(30, 15);
+  const std::vector<motion::Vec3> leader = SwayingMotion(30, 15);
   for (std::size_t frame = 0; frame < 30; ++frame) {
     EXPECT_NEAR(positions[frame * 6], leader[frame * 15 + 2].x, 1e-4);      // torso
     EXPECT_NEAR(positions[frame * 6 + 4], leader[frame * 15 + 0].y, 1e-4);  // head
@@ -345,4 +357,4 @@ TEST(SynthesizeTest, AnswersManyCallsAtOnce) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::server::service

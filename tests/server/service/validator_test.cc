@@ -15,8 +15,16 @@
 #include "tests/support/fake_synthesizer.h"
 #include "tests/support/status_matchers.h"
 
-namespace duet {
+namespace duet::server::service {
 namespace {
+
+using test::AddWeight;
+using test::Decode;
+using test::FakeDescription;
+using test::IsOk;
+using test::Refusal;
+using test::SampleRequest;
+using test::StatusIs;
 
 using ::testing::AllOf;
 using ::testing::Contains;
@@ -30,8 +38,9 @@ constexpr auto kFailedPrecondition = absl::StatusCode::kFailedPrecondition;
 const float kNan = std::numeric_limits<float>::quiet_NaN();
 const float kInfinity = std::numeric_limits<float>::infinity();
 
-absl::StatusOr<ValidatedRequest> Validate(const v1::SynthesizeRequest& request,
-                                          const ModelDescription& model = FakeDescription()) {
+absl::StatusOr<ValidatedRequest> Validate(
+    const v1::SynthesizeRequest& request,
+    const engine::ModelDescription& model = FakeDescription()) {
   return ValidateRequest(request, model, RequestLimits());
 }
 
@@ -377,7 +386,7 @@ TEST(ValidateRequestTest, AcceptsTenMinutesAndTwoFrames) {
 }
 
 TEST(ValidateRequestTest, RefusesAFollowerStartThatTheModelDoesNotAccept) {
-  ModelDescription model = FakeDescription();
+  engine::ModelDescription model = FakeDescription();
   model.accepts_follower_start = false;
   v1::SynthesizeRequest request = SampleRequest();
   SetRoot(request, 0, 1, 1);
@@ -408,7 +417,7 @@ TEST(ValidateRequestTest, FillsInDefaults) {
   const absl::StatusOr<ValidatedRequest> request = Validate(SampleRequest());
   ASSERT_THAT(request, IsOk());
   EXPECT_EQ(request->chunk_frames, 30);
-  EXPECT_EQ(request->priority, Priority::kInteractive);
+  EXPECT_EQ(request->priority, batching::Priority::kInteractive);
   EXPECT_FALSE(request->clip.start.has_value());
   EXPECT_FALSE(request->clip.partner_direction.has_value());
   EXPECT_EQ(request->reply.joint_names, FakeDescription().skeleton.joint_names);
@@ -421,7 +430,7 @@ TEST(ValidateRequestTest, TakesOverWhatIsGiven) {
   const absl::StatusOr<ValidatedRequest> validated = Validate(request);
   ASSERT_THAT(validated, IsOk());
   EXPECT_EQ(validated->chunk_frames, 7);
-  EXPECT_EQ(validated->priority, Priority::kBulk);
+  EXPECT_EQ(validated->priority, batching::Priority::kBulk);
   EXPECT_EQ(validated->clip.frame_rate_hz, 15);
 }
 
@@ -462,7 +471,7 @@ TEST(ValidateRequestTest, ConvertsUnitAndUpAxisToTheWorld) {
   SetRoot(request, 1000, 2000, 3000);
   const absl::StatusOr<ValidatedRequest> validated = Validate(request);
   ASSERT_THAT(validated, IsOk());
-  const Vec3 expected = {1, 3, -2};
+  const motion::Vec3 expected = {1, 3, -2};
   EXPECT_LT(Distance(validated->clip.leader[0], expected), 1e-6F);
   EXPECT_LT(Distance(validated->clip.start->root, expected), 1e-6F);
   EXPECT_TRUE(validated->clip.start->pose.empty());
@@ -477,10 +486,10 @@ TEST(ValidateRequestTest, ReadsAStartPoseInTheLeadersJointOrder) {
   }
   const absl::StatusOr<ValidatedRequest> validated = Validate(request);
   ASSERT_THAT(validated, IsOk());
-  const FollowerStart& start = *validated->clip.start;
+  const engine::FollowerStart& start = *validated->clip.start;
   ASSERT_EQ(start.pose.size(), static_cast<std::size_t>(kJoints));
-  EXPECT_EQ(start.pose[0], (Vec3{14, 114, 214}));
-  EXPECT_EQ(start.pose[14], (Vec3{0, 100, 200}));
+  EXPECT_EQ(start.pose[0], (motion::Vec3{14, 114, 214}));
+  EXPECT_EQ(start.pose[14], (motion::Vec3{0, 100, 200}));
   EXPECT_EQ(start.root, start.pose[FakeDescription().skeleton.root]);
 }
 
@@ -539,4 +548,4 @@ TEST(ValidateRequestTest, AcceptsALeaderWhoseJointsCoincide) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::server::service

@@ -10,8 +10,12 @@
 #include "tests/server/support/refusal.h"
 #include "tests/support/status_matchers.h"
 
-namespace duet {
+namespace duet::server::service {
 namespace {
+
+using test::Decode;
+using test::IsOk;
+using test::Refusal;
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -52,7 +56,7 @@ TEST(ViolationsTest, ManyFitIntoTrailersAndAreCounted) {
   for (int i = 0; i < 1000; ++i) {
     violations.Malformed(absl::StrCat("field[", i, "]"), std::string(1000, 'x'));
   }
-  const grpc::Status status = ToGrpcStatus(violations.ToStatus());
+  const grpc::Status status = common::ToGrpcStatus(violations.ToStatus());
   // As base64 and together with the message; clients take 8 KiB of trailers.
   EXPECT_LT(status.error_details().size() * 4 / 3 + status.error_message().size(), 6000u);
   const Refusal refusal = Decode(status);
@@ -65,4 +69,4 @@ TEST(ViolationsTest, ManyFitIntoTrailersAndAreCounted) {
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::server::service

@@ -6,20 +6,20 @@
 
 #include "server/common/clock.h"
 
-namespace duet {
+namespace duet::test {
 
 // A clock that moves only when a test says so.
 //
 // Threads: safe to call concurrently.
-class FakeClock final : public Clock {
+class FakeClock final : public server::common::Clock {
  public:
-  TimePoint Now() const override { return TimePoint(now_.load()); }
+  server::common::TimePoint Now() const override { return server::common::TimePoint(now_.load()); }
   void Advance(std::chrono::milliseconds by) { now_ = now_.load() + by; }
 
  private:
-  std::atomic<TimePoint::duration> now_{std::chrono::hours(1)};
+  std::atomic<server::common::TimePoint::duration> now_{std::chrono::hours(1)};
 };
 
-}  // namespace duet
+}  // namespace duet::test
 
 #endif  // DUET_TESTS_SERVER_SUPPORT_FAKE_CLOCK_H_

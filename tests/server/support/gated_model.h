@@ -6,7 +6,7 @@
 #include "server/common/mutex.h"
 #include "tests/support/fake_synthesizer.h"
 
-namespace duet {
+namespace duet::test {
 
 // A model whose evaluations wait until the test opens the gate.
 //
@@ -14,40 +14,40 @@ namespace duet {
 class GatedModel {
  public:
   GatedModel() : model_(std::make_shared<FakeSynthesizer>()) {
-    model_->on_batch = [this](absl::Span<const SynthesisWindow* const>) { Pass(); };
+    model_->on_batch = [this](absl::Span<const engine::SynthesisWindow* const>) { Pass(); };
   }
-  std::shared_ptr<const Synthesizer> get() const { return model_; }
+  std::shared_ptr<const engine::Synthesizer> get() const { return model_; }
 
   void WaitUntilStarted(int count) {
-    MutexLock lock(mutex_);
+    server::common::MutexLock lock(mutex_);
     while (started_ < count) changed_.Wait(mutex_);
   }
   void Open() {
-    MutexLock lock(mutex_);
+    server::common::MutexLock lock(mutex_);
     open_ = true;
     changed_.NotifyAll();
   }
   // Evaluations that were begun.
   int started() {
-    MutexLock lock(mutex_);
+    server::common::MutexLock lock(mutex_);
     return started_;
   }
 
  private:
   void Pass() {
-    MutexLock lock(mutex_);
+    server::common::MutexLock lock(mutex_);
     ++started_;
     changed_.NotifyAll();
     while (!open_) changed_.Wait(mutex_);
   }
 
   std::shared_ptr<FakeSynthesizer> model_;
-  Mutex mutex_;
-  CondVar changed_;
+  server::common::Mutex mutex_;
+  server::common::CondVar changed_;
   int started_ DUET_GUARDED_BY(mutex_) = 0;
   bool open_ DUET_GUARDED_BY(mutex_) = false;
 };
 
-}  // namespace duet
+}  // namespace duet::test
 
 #endif  // DUET_TESTS_SERVER_SUPPORT_GATED_MODEL_H_

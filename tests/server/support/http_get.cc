@@ -6,7 +6,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-namespace duet {
+namespace duet::test {
 
 std::string Exchange(int port, const std::string& request) {
   const int descriptor = socket(AF_INET, SOCK_STREAM, 0);
@@ -33,4 +33,4 @@ std::string HttpGet(int port, const std::string& path) {
   return Exchange(port, "GET " + path + " HTTP/1.1\r\nHost: test\r\n\r\n");
 }
 
-}  // namespace duet
+}  // namespace duet::test

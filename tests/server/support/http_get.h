@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace duet {
+namespace duet::test {
 
 // Sends bytes to a port of this machine and returns all that comes back until it closes. Shares no
 // code with the server's HTTP library.
@@ -12,6 +12,6 @@ std::string Exchange(int port, const std::string& request);
 // A whole HTTP response to GET, headers and body.
 std::string HttpGet(int port, const std::string& path);
 
-}  // namespace duet
+}  // namespace duet::test
 
 #endif  // DUET_TESTS_SERVER_SUPPORT_HTTP_GET_H_

@@ -3,10 +3,10 @@
 #include <utility>
 #include <vector>
 
-namespace duet {
+namespace duet::test {
 
-absl::Status PuppetScheduler::Submit(WindowJob job) {
-  MutexLock lock(mutex_);
+absl::Status PuppetScheduler::Submit(server::batching::WindowJob job) {
+  server::common::MutexLock lock(mutex_);
   if (refusal_.has_value()) return *refusal_;
   jobs_.push_back(std::move(job));
   came_.NotifyAll();
@@ -14,18 +14,18 @@ absl::Status PuppetScheduler::Submit(WindowJob job) {
 }
 
 void PuppetScheduler::Refuse(absl::Status status) {
-  MutexLock lock(mutex_);
+  server::common::MutexLock lock(mutex_);
   refusal_ = std::move(status);
 }
 
 bool PuppetScheduler::RunNext() {
-  const WindowJob job = Take();
+  const server::batching::WindowJob job = Take();
   if (job.cancelled->load()) {
     job.done({absl::CancelledError("cancelled"), {}});
     return false;
   }
-  const SynthesisWindow* windows[] = {&job.window};
-  std::vector<WindowResult> results = job.model->Synthesize(windows);
+  const engine::SynthesisWindow* windows[] = {&job.window};
+  std::vector<engine::WindowResult> results = job.model->Synthesize(windows);
   job.done({std::move(results.front()), {0.25, 0.5, 1}});
   return true;
 }
@@ -33,31 +33,31 @@ bool PuppetScheduler::RunNext() {
 void PuppetScheduler::FailNext(absl::Status status) { Take().done({std::move(status), {}}); }
 
 void PuppetScheduler::WaitForJobs(std::size_t count) {
-  MutexLock lock(mutex_);
+  server::common::MutexLock lock(mutex_);
   while (jobs_.size() < count) came_.Wait(mutex_);
 }
 
 std::size_t PuppetScheduler::waiting() const {
-  MutexLock lock(mutex_);
+  server::common::MutexLock lock(mutex_);
   return jobs_.size();
 }
 
-Priority PuppetScheduler::NextPriority() const {
-  MutexLock lock(mutex_);
+server::batching::Priority PuppetScheduler::NextPriority() const {
+  server::common::MutexLock lock(mutex_);
   return jobs_.front().priority;
 }
 
-TimePoint PuppetScheduler::NextDeadline() const {
-  MutexLock lock(mutex_);
+server::common::TimePoint PuppetScheduler::NextDeadline() const {
+  server::common::MutexLock lock(mutex_);
   return jobs_.front().deadline;
 }
 
-WindowJob PuppetScheduler::Take() {
-  MutexLock lock(mutex_);
+server::batching::WindowJob PuppetScheduler::Take() {
+  server::common::MutexLock lock(mutex_);
   while (jobs_.empty()) came_.Wait(mutex_);
-  WindowJob job = std::move(jobs_.front());
+  server::batching::WindowJob job = std::move(jobs_.front());
   jobs_.pop_front();
   return job;
 }
 
-}  // namespace duet
+}  // namespace duet::test

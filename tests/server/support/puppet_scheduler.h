@@ -6,17 +6,17 @@
 #include <optional>
 
 #include "absl/status/status.h"
-#include "server/common/mutex.h"
 #include "server/batching/window_scheduler.h"
+#include "server/common/mutex.h"
 
-namespace duet {
+namespace duet::test {
 
 // A WindowScheduler by which a test decides when each window is evaluated, on the test's thread.
 //
 // Threads: safe to call concurrently.
-class PuppetScheduler final : public WindowScheduler {
+class PuppetScheduler final : public server::batching::WindowScheduler {
  public:
-  absl::Status Submit(WindowJob job) override;
+  absl::Status Submit(server::batching::WindowJob job) override;
 
   // From now on Submit refuses with this.
   void Refuse(absl::Status status);
@@ -30,18 +30,18 @@ class PuppetScheduler final : public WindowScheduler {
 
   std::size_t waiting() const;
   // Looks at the oldest job's field. There is one.
-  Priority NextPriority() const;
-  TimePoint NextDeadline() const;
+  server::batching::Priority NextPriority() const;
+  server::common::TimePoint NextDeadline() const;
 
  private:
-  WindowJob Take();
+  server::batching::WindowJob Take();
 
-  mutable Mutex mutex_;
-  CondVar came_;
-  std::deque<WindowJob> jobs_ DUET_GUARDED_BY(mutex_);
+  mutable server::common::Mutex mutex_;
+  server::common::CondVar came_;
+  std::deque<server::batching::WindowJob> jobs_ DUET_GUARDED_BY(mutex_);
   std::optional<absl::Status> refusal_ DUET_GUARDED_BY(mutex_);
 };
 
-}  // namespace duet
+}  // namespace duet::test
 
 #endif  // DUET_TESTS_SERVER_SUPPORT_PUPPET_SCHEDULER_H_

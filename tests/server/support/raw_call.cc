@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace duet {
+namespace duet::test {
 
 RawCall::RawCall(const std::shared_ptr<grpc::Channel>& channel, const std::string& method,
                  const std::string& message)
@@ -60,4 +60,4 @@ std::string Health(const std::shared_ptr<grpc::Channel>& channel, const std::str
   return *response == "\x08\x01" ? "SERVING" : *response == "\x08\x02" ? "NOT_SERVING" : *response;
 }
 
-}  // namespace duet
+}  // namespace duet::test

@@ -11,7 +11,7 @@
 #include <optional>
 #include <string>
 
-namespace duet {
+namespace duet::test {
 
 // A call with hand-written messages, to services whose protos are not at hand.
 class RawCall {
@@ -39,6 +39,6 @@ class RawCall {
 // What Google's health service says of a service: "SERVING", "NOT_SERVING", or the call's error.
 std::string Health(const std::shared_ptr<grpc::Channel>& channel, const std::string& service);
 
-}  // namespace duet
+}  // namespace duet::test
 
 #endif  // DUET_TESTS_SERVER_SUPPORT_RAW_CALL_H_

@@ -7,45 +7,45 @@
 #include "server/common/mutex.h"
 #include "server/metrics/call_record.h"
 
-namespace duet {
+namespace duet::test {
 
 // Remembers every finished call.
 //
 // Threads: safe to call concurrently.
-class RecordingObserver final : public CallObserver {
+class RecordingObserver final : public server::metrics::CallObserver {
  public:
-  void CallStarted(const MethodInfo&) override {
-    MutexLock lock(mutex_);
+  void CallStarted(const server::metrics::MethodInfo&) override {
+    server::common::MutexLock lock(mutex_);
     ++started_;
   }
-  void CallFinished(const CallRecord& record) override {
-    MutexLock lock(mutex_);
+  void CallFinished(const server::metrics::CallRecord& record) override {
+    server::common::MutexLock lock(mutex_);
     records_.push_back(record);
     changed_.NotifyAll();
   }
 
   std::size_t started() const {
-    MutexLock lock(mutex_);
+    server::common::MutexLock lock(mutex_);
     return started_;
   }
-  std::vector<CallRecord> records() const {
-    MutexLock lock(mutex_);
+  std::vector<server::metrics::CallRecord> records() const {
+    server::common::MutexLock lock(mutex_);
     return records_;
   }
   // Waits until so many calls are over; returns the last of them.
-  CallRecord WaitFor(std::size_t count) {
-    MutexLock lock(mutex_);
+  server::metrics::CallRecord WaitFor(std::size_t count) {
+    server::common::MutexLock lock(mutex_);
     while (records_.size() < count) changed_.Wait(mutex_);
     return records_[count - 1];
   }
 
  private:
-  mutable Mutex mutex_;
-  CondVar changed_;
+  mutable server::common::Mutex mutex_;
+  server::common::CondVar changed_;
   std::size_t started_ DUET_GUARDED_BY(mutex_) = 0;
-  std::vector<CallRecord> records_ DUET_GUARDED_BY(mutex_);
+  std::vector<server::metrics::CallRecord> records_ DUET_GUARDED_BY(mutex_);
 };
 
-}  // namespace duet
+}  // namespace duet::test
 
 #endif  // DUET_TESTS_SERVER_SUPPORT_RECORDING_OBSERVER_H_

@@ -5,7 +5,7 @@
 #include "duet/rpc/v1/status.pb.h"
 #include "server/common/grpc_status.h"
 
-namespace duet {
+namespace duet::test {
 
 std::string Refusal::Of(const std::string& field) const {
   for (const auto& [name, description] : violations) {
@@ -54,6 +54,6 @@ Refusal Decode(const grpc::Status& status) {
   return refusal;
 }
 
-Refusal Decode(const absl::Status& status) { return Decode(ToGrpcStatus(status)); }
+Refusal Decode(const absl::Status& status) { return Decode(server::common::ToGrpcStatus(status)); }
 
-}  // namespace duet
+}  // namespace duet::test

@@ -10,7 +10,7 @@
 
 #include "absl/status/status.h"
 
-namespace duet {
+namespace duet::test {
 
 // A refusal as a client decodes it.
 struct Refusal {
@@ -32,6 +32,6 @@ Refusal Decode(const grpc::Status& status);
 // The same for a status before it went onto the wire.
 Refusal Decode(const absl::Status& status);
 
-}  // namespace duet
+}  // namespace duet::test
 
 #endif  // DUET_TESTS_SERVER_SUPPORT_REFUSAL_H_

@@ -9,24 +9,25 @@
 
 #include "absl/strings/str_cat.h"
 
-namespace duet {
+namespace duet::test {
 
 RunningService::RunningService(Setup setup) : admission_(setup.max_calls) {
   registry_.Serve(std::move(setup.model));
-  admission_.SetState(Admission::State::kServing);
+  admission_.SetState(server::service::Admission::State::kServing);
   if (setup.scheduler == nullptr) {
-    pool_ = std::make_unique<WorkerPool>(WorkerPoolOptions{2, 64}, Clock::Real());
+    pool_ = std::make_unique<server::batching::WorkerPool>(
+        server::batching::WorkerPoolOptions{2, 64}, server::common::Clock::Real());
     setup.scheduler = pool_.get();
   }
-  ServiceParts parts;
+  server::service::ServiceParts parts;
   parts.registry = &registry_;
   parts.scheduler = setup.scheduler;
   parts.admission = &admission_;
   parts.observers = {&calls_};
   parts.limits = setup.limits;
   parts.buffered_frames = setup.buffered_frames;
-  service_ = std::make_unique<MotionSynthesisService>(parts);
-  absl::StatusOr<GrpcServer> grpc = StartGrpcServer(
+  service_ = std::make_unique<server::service::MotionSynthesisService>(parts);
+  absl::StatusOr<server::lifecycle::GrpcServer> grpc = server::lifecycle::StartGrpcServer(
       {{"127.0.0.1", 0}, false, setup.limits.max_request_bytes, std::size_t{512} << 20, 16},
       *service_);
   if (!grpc.ok()) {
@@ -81,4 +82,4 @@ Reply Call(v1::MotionSynthesis::Stub& stub, const v1::SynthesizeRequest& request
   return ReadAll(*reader);
 }
 
-}  // namespace duet
+}  // namespace duet::test

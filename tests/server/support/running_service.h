@@ -16,17 +16,17 @@
 #include "tests/server/support/recording_observer.h"
 #include "tests/support/fake_synthesizer.h"
 
-namespace duet {
+namespace duet::test {
 
 // The service behind real gRPC on a free port, with a fake model and whatever scheduler a test
 // wants.
 class RunningService {
  public:
   struct Setup {
-    std::shared_ptr<const Synthesizer> model = std::make_shared<FakeSynthesizer>();
-    WindowScheduler* scheduler = nullptr;  // null: a pool with two workers
+    std::shared_ptr<const engine::Synthesizer> model = std::make_shared<FakeSynthesizer>();
+    server::batching::WindowScheduler* scheduler = nullptr;  // null: a pool with two workers
     std::size_t max_calls = 16;
-    RequestLimits limits;
+    server::service::RequestLimits limits;
     int buffered_frames = 240;
   };
 
@@ -37,17 +37,17 @@ class RunningService {
   v1::MotionSynthesis::Stub& stub() { return *stub_; }
   const std::shared_ptr<grpc::Channel>& channel() const { return channel_; }
   RecordingObserver& calls() { return calls_; }
-  ModelRegistry& registry() { return registry_; }
-  Admission& admission() { return admission_; }
-  MotionSynthesisService& service() { return *service_; }
+  server::registry::ModelRegistry& registry() { return registry_; }
+  server::service::Admission& admission() { return admission_; }
+  server::service::MotionSynthesisService& service() { return *service_; }
 
  private:
   RecordingObserver calls_;
-  ModelRegistry registry_;
-  Admission admission_;
-  std::unique_ptr<WorkerPool> pool_;
-  std::unique_ptr<MotionSynthesisService> service_;
-  GrpcServer grpc_;
+  server::registry::ModelRegistry registry_;
+  server::service::Admission admission_;
+  std::unique_ptr<server::batching::WorkerPool> pool_;
+  std::unique_ptr<server::service::MotionSynthesisService> service_;
+  server::lifecycle::GrpcServer grpc_;
   std::shared_ptr<grpc::Channel> channel_;
   std::unique_ptr<v1::MotionSynthesis::Stub> stub_;
 };
@@ -71,6 +71,6 @@ Reply Call(v1::MotionSynthesis::Stub& stub, const v1::SynthesizeRequest& request
 Reply Call(v1::MotionSynthesis::Stub& stub, const v1::SynthesizeRequest& request,
            grpc::ClientContext& context);
 
-}  // namespace duet
+}  // namespace duet::test
 
 #endif  // DUET_TESTS_SERVER_SUPPORT_RUNNING_SERVICE_H_

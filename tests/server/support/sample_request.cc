@@ -3,17 +3,17 @@
 #include "model/motion/skeleton.h"
 #include "tests/support/sample_motion.h"
 
-namespace duet {
+namespace duet::test {
 
 v1::SynthesizeRequest SampleRequest(int frames) {
   v1::SynthesizeRequest request;
   v1::Motion& leader = *request.mutable_leader();
-  for (const std::string& name : SbuSkeleton().joint_names) leader.add_joint_names(name);
+  for (const std::string& name : motion::SbuSkeleton().joint_names) leader.add_joint_names(name);
   leader.set_frame_rate_hz(15);
   leader.set_unit(v1::LENGTH_UNIT_METRES);
   leader.set_up_axis(v1::UP_AXIS_Y_UP);
   leader.set_frame_count(frames);
-  for (const Vec3& position : SwayingMotion(frames, 15)) {
+  for (const motion::Vec3& position : SwayingMotion(frames, 15)) {
     leader.add_positions(position.x);
     leader.add_positions(position.y);
     leader.add_positions(position.z);
@@ -28,4 +28,4 @@ void AddWeight(v1::LabelVector& label_vector, const std::string& interaction_cla
   added.set_weight(weight);
 }
 
-}  // namespace duet
+}  // namespace duet::test

@@ -1,4 +1,4 @@
-#include "model/evaluation/judge/latent.h"
+#include "model/evaluation/experiments/latent.h"
 
 #include <torch/torch.h>
 
@@ -13,18 +13,18 @@
 #include "model/network/sequence.h"
 #include "model/training/sampler.h"
 
-namespace duet {
+namespace duet::evaluation::experiments {
 namespace {
 
 // Sequences at a time: bounds memory.
 constexpr size_t kBatch = 64;
 
-std::vector<Example> Examples(const Dataset& dataset, const std::vector<int>& sequences,
-                              LatentLabels labels) {
-  std::vector<Example> examples;
+std::vector<training::Example> Examples(const dataset::Dataset& dataset,
+                                        const std::vector<int>& sequences, LatentLabels labels) {
+  std::vector<training::Example> examples;
   for (const int index : sequences) {
     examples.push_back(CapturedExample(dataset, dataset.sequences[static_cast<size_t>(index)],
-                                       StartKnowledge::kNone));
+                                       training::StartKnowledge::kNone));
     std::vector<float>& weights = examples.back().weights;
     if (labels == LatentLabels::kNone) std::fill(weights.begin(), weights.end(), 0.0f);
   }
@@ -38,7 +38,7 @@ torch::Tensor MeanOverFrames(const torch::Tensor& frames, const torch::Tensor& l
   return (frames * mask).sum(0) / lengths.to(frames.dtype()).unsqueeze(1);
 }
 
-void AppendRows(const torch::Tensor& rows, FeatureSet* out) {
+void AppendRows(const torch::Tensor& rows, metrics::FeatureSet* out) {
   const torch::Tensor values = rows.contiguous();
   const float* row = values.data_ptr<float>();
   for (int64_t i = 0; i < values.size(0); ++i, row += values.size(1)) {
@@ -46,15 +46,17 @@ void AppendRows(const torch::Tensor& rows, FeatureSet* out) {
   }
 }
 
-FeatureSet Encode(const Manifest& manifest, network::Generator generator, const Dataset& dataset,
-                  const std::vector<Example>& examples) {
+metrics::FeatureSet Encode(const checkpoint::Manifest& manifest, network::Generator generator,
+                           const dataset::Dataset& dataset,
+                           const std::vector<training::Example>& examples) {
   torch::NoGradGuard no_grad;
-  FeatureSet features;
+  metrics::FeatureSet features;
   for (size_t first = 0; first < examples.size(); first += kBatch) {
     const auto begin = examples.begin() + static_cast<std::ptrdiff_t>(first);
     const size_t count = std::min(kBatch, examples.size() - first);
     const network::GeneratorInput input =
-        MakeBatch(manifest, dataset, {begin, begin + static_cast<std::ptrdiff_t>(count)}).input;
+        training::MakeBatch(manifest, dataset, {begin, begin + static_cast<std::ptrdiff_t>(count)})
+            .input;
     AppendRows(MeanOverFrames(generator->Encode(input), input.lengths), &features);
   }
   return features;
@@ -62,8 +64,10 @@ FeatureSet Encode(const Manifest& manifest, network::Generator generator, const 
 
 }  // namespace
 
-absl::StatusOr<FeatureSet> LatentFeatures(const Checkpoint& checkpoint, const Dataset& dataset,
-                                          const std::vector<int>& sequences, LatentLabels labels) {
+absl::StatusOr<metrics::FeatureSet> LatentFeatures(const checkpoint::Checkpoint& checkpoint,
+                                                   const dataset::Dataset& dataset,
+                                                   const std::vector<int>& sequences,
+                                                   LatentLabels labels) {
   absl::Status status = CheckModelFits(checkpoint.manifest.model, dataset);
   if (!status.ok()) return status;
   network::Generator generator(checkpoint.manifest);
@@ -78,4 +82,4 @@ absl::StatusOr<FeatureSet> LatentFeatures(const Checkpoint& checkpoint, const Da
   }
 }
 
-}  // namespace duet
+}  // namespace duet::evaluation::experiments

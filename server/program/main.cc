@@ -13,17 +13,18 @@
 
 namespace {
 
-using duet::Synthesizer;
+using duet::engine::Synthesizer;
 
 absl::StatusOr<std::shared_ptr<const Synthesizer>> LoadFolder(const std::filesystem::path& folder) {
-  absl::StatusOr<std::unique_ptr<Synthesizer>> model = duet::LoadTorchSynthesizer(folder);
+  absl::StatusOr<std::unique_ptr<Synthesizer>> model =
+      duet::torch_engine::LoadTorchSynthesizer(folder);
   if (!model.ok()) return model.status();
   return *std::move(model);
 }
 
 absl::StatusOr<std::vector<std::shared_ptr<const Synthesizer>>> LoadEmbedded() {
   absl::StatusOr<std::vector<std::unique_ptr<Synthesizer>>> models =
-      duet::LoadEmbeddedSynthesizers();
+      duet::torch_engine::LoadEmbeddedSynthesizers();
   if (!models.ok()) return models.status();
   return std::vector<std::shared_ptr<const Synthesizer>>(std::make_move_iterator(models->begin()),
                                                          std::make_move_iterator(models->end()));
@@ -32,8 +33,9 @@ absl::StatusOr<std::vector<std::shared_ptr<const Synthesizer>>> LoadEmbedded() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  duet::StopSignal stop;
-  duet::StreamLogSink log(stderr);
-  const duet::ModelSource source{LoadFolder, LoadEmbedded, duet::SetTorchThreads};
-  return duet::RunServer(argc, argv, source, stop, log);
+  duet::server::lifecycle::StopSignal stop;
+  duet::server::metrics::StreamLogSink log(stderr);
+  const duet::server::lifecycle::ModelSource source{LoadFolder, LoadEmbedded,
+                                                    duet::torch_engine::SetTorchThreads};
+  return duet::server::lifecycle::RunServer(argc, argv, source, stop, log);
 }

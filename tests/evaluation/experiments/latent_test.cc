@@ -1,4 +1,4 @@
-#include "model/evaluation/judge/latent.h"
+#include "model/evaluation/experiments/latent.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,16 +9,22 @@
 #include "tests/support/status_matchers.h"
 #include "tests/support/tiny_checkpoint.h"
 
-namespace duet {
+namespace duet::evaluation::experiments {
 namespace {
+
+using test::FilledCheckpoint;
+using test::IsOk;
+using test::MadeUpPairs;
+using test::StatusIs;
+using test::TinyManifest;
 
 using testing::HasSubstr;
 using testing::SizeIs;
 
 constexpr int kHidden = 3, kSlices = 6;
 
-Checkpoint Model(const Dataset& dataset, const std::string& variant) {
-  Manifest manifest = TinyManifest();
+checkpoint::Checkpoint Model(const dataset::Dataset& dataset, const std::string& variant) {
+  checkpoint::Manifest manifest = TinyManifest();
   manifest.model.skeleton = dataset.skeleton;
   manifest.model.classes = dataset.classes;
   manifest.generator.variant = variant;
@@ -32,38 +38,40 @@ double Distance(const std::vector<float>& a, const std::vector<float>& b) {
   return std::sqrt(sum);
 }
 
-FeatureSet Features(const Checkpoint& model, const Dataset& dataset,
-                    const std::vector<int>& sequences,
-                    LatentLabels labels = LatentLabels::kOwnClass) {
-  absl::StatusOr<FeatureSet> features = LatentFeatures(model, dataset, sequences, labels);
+metrics::FeatureSet Features(const checkpoint::Checkpoint& model, const dataset::Dataset& dataset,
+                             const std::vector<int>& sequences,
+                             LatentLabels labels = LatentLabels::kOwnClass) {
+  absl::StatusOr<metrics::FeatureSet> features = LatentFeatures(model, dataset, sequences, labels);
   EXPECT_THAT(features, IsOk());
-  return features.ok() ? *std::move(features) : FeatureSet{};
+  return features.ok() ? *std::move(features) : metrics::FeatureSet{};
 }
 
 TEST(LatentFeaturesTest, GivesOnePointASequenceWhateverElseIsInTheBatch) {
-  const Dataset dataset = MadeUpPairs(4);  // of 16 to 19 frames
-  const Checkpoint model = Model(dataset, "paper");
-  const FeatureSet together = Features(model, dataset, {0, 1, 2, 3});
+  const dataset::Dataset dataset = MadeUpPairs(4);  // of 16 to 19 frames
+  const checkpoint::Checkpoint model = Model(dataset, "paper");
+  const metrics::FeatureSet together = Features(model, dataset, {0, 1, 2, 3});
   ASSERT_THAT(together, SizeIs(4));
   for (int i = 0; i < 4; ++i) {
     EXPECT_THAT(together[static_cast<size_t>(i)], SizeIs(kSlices * 2 * kHidden));
-    const FeatureSet alone = Features(model, dataset, {i});
+    const metrics::FeatureSet alone = Features(model, dataset, {i});
     EXPECT_LT(Distance(together[static_cast<size_t>(i)], alone[0]), 1e-5) << i;
   }
   EXPECT_GT(Distance(together[0], together[1]), 1e-3);
 }
 
 TEST(LatentFeaturesTest, NeverSeesTheFollower) {
-  Dataset dataset = MadeUpPairs(1);
-  const Checkpoint model = Model(dataset, "paper");
-  const FeatureSet before = Features(model, dataset, {0});
-  for (Vec3& point : dataset.sequences[0].pair.follower.positions) point += Vec3{3, 2, 1};
+  dataset::Dataset dataset = MadeUpPairs(1);
+  const checkpoint::Checkpoint model = Model(dataset, "paper");
+  const metrics::FeatureSet before = Features(model, dataset, {0});
+  for (motion::Vec3& point : dataset.sequences[0].pair.follower.positions)
+    point += motion::Vec3{3, 2, 1};
   EXPECT_EQ(Distance(before[0], Features(model, dataset, {0})[0]), 0);
 }
 
 TEST(LatentFeaturesTest, LabelsMatterToTheModelsThatReadThem) {
-  const Dataset dataset = MadeUpPairs(1);
-  const Checkpoint labelled = Model(dataset, "paper"), unlabelled = Model(dataset, "unlabelled");
+  const dataset::Dataset dataset = MadeUpPairs(1);
+  const checkpoint::Checkpoint labelled = Model(dataset, "paper"),
+                               unlabelled = Model(dataset, "unlabelled");
   EXPECT_GT(Distance(Features(labelled, dataset, {0})[0],
                      Features(labelled, dataset, {0}, LatentLabels::kNone)[0]),
             1e-4);
@@ -73,12 +81,12 @@ TEST(LatentFeaturesTest, LabelsMatterToTheModelsThatReadThem) {
 }
 
 TEST(LatentFeaturesTest, RefusesAModelOfOtherClasses) {
-  Dataset dataset = MadeUpPairs(1);
-  const Checkpoint model = Model(dataset, "paper");
+  dataset::Dataset dataset = MadeUpPairs(1);
+  const checkpoint::Checkpoint model = Model(dataset, "paper");
   dataset.classes[1] = "duck";
   EXPECT_THAT(LatentFeatures(model, dataset, {0}, LatentLabels::kOwnClass),
               StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("give, duck")));
 }
 
 }  // namespace
-}  // namespace duet
+}  // namespace duet::evaluation::experiments

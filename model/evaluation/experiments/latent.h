@@ -1,5 +1,5 @@
-#ifndef DUET_MODEL_EVALUATION_JUDGE_LATENT_H_
-#define DUET_MODEL_EVALUATION_JUDGE_LATENT_H_
+#ifndef DUET_MODEL_EVALUATION_EXPERIMENTS_LATENT_H_
+#define DUET_MODEL_EVALUATION_EXPERIMENTS_LATENT_H_
 
 #include <vector>
 
@@ -8,7 +8,7 @@
 #include "model/dataset/dataset.h"
 #include "model/evaluation/metrics/features.h"
 
-namespace duet {
+namespace duet::evaluation::experiments {
 
 // What the generator is told beside the leader's motion.
 enum class LatentLabels {
@@ -24,9 +24,11 @@ enum class LatentLabels {
 // Shapes: returns [sequences][slices x 2 x encoder_hidden].
 // Errors: FAILED_PRECONDITION when the model's classes or joints are not the data's; INTERNAL when
 //         the network fails.
-absl::StatusOr<FeatureSet> LatentFeatures(const Checkpoint& checkpoint, const Dataset& dataset,
-                                          const std::vector<int>& sequences, LatentLabels labels);
+absl::StatusOr<metrics::FeatureSet> LatentFeatures(const checkpoint::Checkpoint& checkpoint,
+                                                   const dataset::Dataset& dataset,
+                                                   const std::vector<int>& sequences,
+                                                   LatentLabels labels);
 
-}  // namespace duet
+}  // namespace duet::evaluation::experiments
 
-#endif  // DUET_MODEL_EVALUATION_JUDGE_LATENT_H_
+#endif  // DUET_MODEL_EVALUATION_EXPERIMENTS_LATENT_H_
