@@ -1,0 +1,75 @@
+#!/usr/bin/env python3
+"""Checks that the documents point at what is there: fails, naming file and line, when a relative
+link, or a path in `backquotes` that begins with a folder of the repository, leads nowhere.
+
+A path may hold wildcards (`without_*`), stand for a header and its source (`clip.{h,cc}`), or leave
+out its ending (`model/motion/clip`). CHANGELOG.md and docs/decisions tell of the past: only their
+links are checked. What a build or a run makes (build/, out/, results/) is not.
+
+    scripts/check_docs.py [source folder]
+"""
+
+import pathlib
+import re
+import subprocess
+import sys
+
+LINK = re.compile(r"\]\(([^)#\s]+)(?:#[^)\s]*)?\)")
+PATH = re.compile(r"`([\w.*{},/-]+/[\w.*{},/-]*)`")
+OF_THE_PAST = ("CHANGELOG.md", "docs/decisions/")
+
+
+def expand(path):
+    """Every path that one with {a,b} stands for."""
+    braces = re.search(r"\{([^{}]*)\}", path)
+    if not braces:
+        return [path]
+    return [found for choice in braces[1].split(",")
+            for found in expand(path[:braces.start()] + choice + path[braces.end():])]
+
+
+def exists(root, path):
+    path = path.rstrip("/")
+    return any(root.glob(path)) or any(root.glob(path + ".*"))
+
+
+def tracked(root):
+    listed = subprocess.run(["git", "-C", root, "ls-files", "*.md"], capture_output=True,
+                            check=True, text=True)
+    return listed.stdout.split()
+
+
+def problems(root, document):
+    """What is wrong with a document, as (line, message)."""
+    file = root / document
+    folders = {entry.name for entry in root.iterdir()
+               if entry.is_dir() and entry.name not in ("build", "out", "results")}
+    for number, line in enumerate(file.read_text(encoding="utf-8").splitlines(), start=1):
+        for target in LINK.findall(line):
+            if ":" not in target and not (file.parent / target).exists():
+                yield number, f"links to {target}, which is not there"
+        if document.startswith(OF_THE_PAST):
+            continue
+        for path in PATH.findall(line):
+            if path.split("/")[0] not in folders:
+                continue
+            for one in expand(path):
+                if not exists(root, one):
+                    yield number, f"names {one}, which is not there"
+
+
+def main(arguments):
+    root = pathlib.Path(arguments[0] if arguments else pathlib.Path(__file__).parent.parent)
+    documents = tracked(root)
+    found = [f"{document}:{line}: {message}"
+             for document in documents for line, message in problems(root, document)]
+    for problem in found:
+        print(problem, file=sys.stderr)
+    if found:
+        return 1
+    print(f"{len(documents)} documents point at what is there.")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
