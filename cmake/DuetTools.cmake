@@ -1,4 +1,6 @@
-# Tools that only make building quicker, used where they are installed.
+# Tools around the build: a table of the targets for the scripts, and what makes building quicker, used
+# where it is installed.
+include(DuetTargetTable)
 
 find_program(DUET_CCACHE ccache)
 mark_as_advanced(DUET_CCACHE)
