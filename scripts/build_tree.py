@@ -103,10 +103,10 @@ def portable_flags(command):
 
 def build_generated_sources(build_dir, jobs):
     """Makes the headers that protoc writes; without them nothing that speaks the wire parses."""
-    protos = [name for name, target in read_targets(build_dir).items()
-              if any(source.endswith(".pb.h") for source in target.sources)]
-    subprocess.run(["cmake", "--build", str(build_dir), "--parallel", str(jobs), "--target",
-                    *protos], check=True, stdout=subprocess.DEVNULL)
+    if any(source.endswith(".pb.h") for target in read_targets(build_dir).values()
+           for source in target.sources):
+        subprocess.run(["cmake", "--build", str(build_dir), "--parallel", str(jobs), "--target",
+                        "duet_generated"], check=True, stdout=subprocess.DEVNULL)
 
 
 def require_configured(build_dir):
@@ -116,7 +116,9 @@ def require_configured(build_dir):
 
 
 def run_all(commands, jobs):
-    """Runs (name, command) pairs, `jobs` at a time; the outputs of those that failed, by name."""
+    """Runs (name, command, folder) triples, `jobs` at a time.
+
+    Returns what the failed ones printed, by name."""
     def run(item):
         name, command, folder = item
         done = subprocess.run(command, capture_output=True, check=False, text=True, cwd=folder)
