@@ -17,7 +17,7 @@ demo: ## Build, start the server, synthesise some reactions, leave pages to open
 	@scripts/demo.sh $(BUILD)/bin
 
 .PHONY: test
-test: ## Build everything, run every check and every test
+test: ## Build everything, run the quick checks and every test
 	@scripts/install_packages.sh build test
 	@JOBS=$(JOBS) scripts/test.sh
 
@@ -35,6 +35,22 @@ format: ## Lay out the sources with clang-format
 lint: ## Run clang-tidy over what differs from main (LINT=all: over everything)
 	@scripts/install_packages.sh build test develop
 	@JOBS=$(JOBS) scripts/lint.sh $(LINT)
+
+.PHONY: check
+check: ## Run every check, the slow ones too (CHECK="links tidy": only these)
+	@scripts/install_packages.sh build test develop
+	@JOBS=$(JOBS) scripts/check.sh $(CHECK)
+
+.PHONY: mutate
+mutate: ## Break the code in small ways, count what the tests notice: docs/mutation.md
+	@scripts/install_packages.sh build test
+	@JOBS=$(JOBS) scripts/mutate.py --report docs/mutation.md
+
+.PHONY: docs
+docs: ## Make the API reference from headers and proto files: build/docs/html/index.html
+	@scripts/install_packages.sh develop
+	@mkdir -p build/docs
+	doxygen docs/Doxyfile
 
 .PHONY: clean
 clean: ## Remove everything that was built or made

@@ -1,5 +1,6 @@
 # duet_proto_library(NAME proto IMPORT_DIR dir PROTOS a/b.proto ... [GRPC c/d.proto ...])
-# Generates C++ for every proto, and gRPC stubs (with mocks) for those in GRPC.
+# Generates C++ for every proto, and gRPC stubs (with mocks) for those in GRPC. The target
+# duet_generated makes them all: checks that only read the sources need no more.
 function(duet_proto_library)
   cmake_parse_arguments(A "" "NAME;IMPORT_DIR" "PROTOS;GRPC" ${ARGN})
   set(out ${CMAKE_CURRENT_BINARY_DIR}/gen)
@@ -24,4 +25,8 @@ function(duet_proto_library)
   target_include_directories(duet_${A_NAME} SYSTEM PUBLIC
     $<BUILD_INTERFACE:${out}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(duet_${A_NAME} PUBLIC gRPC::grpc++ protobuf::libprotobuf)
+  if(NOT TARGET duet_generated)
+    add_custom_target(duet_generated)
+  endif()
+  add_dependencies(duet_generated duet_${A_NAME})
 endfunction()

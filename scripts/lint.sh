@@ -17,7 +17,7 @@ changed_files() {
 
 # The generated protocol headers must exist before anything that includes them can be read.
 cmake --preset release -DDUET_BUILD_TESTS=ON -DDUET_BUILD_BENCHMARKS=ON >/dev/null
-cmake --build "${build_dir}" --parallel "${JOBS:-1}" --target duet_proto
+cmake --build "${build_dir}" --parallel "${JOBS:-1}" --target duet_generated
 
 mapfile -t files < <(changed_files "$@" | sort -u)
 if [[ ${#files[@]} -eq 0 ]]; then

@@ -1,0 +1,231 @@
+#!/usr/bin/env python3
+"""Checks that each target links what its files include, and nothing else.
+
+Read from a configured build folder (cmake/DuetTargetTable.cmake writes the table). For each library,
+program and test:
+  - what a header of the target includes must be linked PUBLIC (DEPS), what only its .cc files and
+    the headers of a folder named internal include PRIVATE (PRIVATE_DEPS);
+  - programs, tests and benchmarks have no headers that others see: they link all PRIVATE;
+  - what is linked must be included somewhere; ALLOWED has the exceptions, each with its reason.
+A header belongs to the library with the source file of its name, else to the library of its folder.
+
+    scripts/check_links.py [--build-dir build/release] [--suggest [target...]]
+"""
+
+import argparse
+import pathlib
+import re
+import sys
+
+import build_tree
+import source_tree
+
+# Which library has an include of others, by how it starts; the first that matches counts. Several
+# names: any of them will do.
+LIBRARIES = (
+    ("absl/strings/str_format.h", "absl::str_format"),
+    ("absl/strings/cord.h", "absl::cord"),
+    ("absl/strings/", "absl::strings"),
+    ("absl/status/statusor.h", "absl::statusor"),
+    ("absl/status/", "absl::status"),
+    ("absl/time/", "absl::time"),
+    ("absl/synchronization/", "absl::synchronization"),
+    ("absl/random/", "absl::random_random"),
+    ("nlohmann/", "nlohmann_json::nlohmann_json"),
+    ("CLI/", "CLI11::CLI11"),
+    ("Eigen/", "Eigen3::Eigen"),
+    ("prometheus/", "prometheus-cpp::core"),
+    ("httplib.h", "PkgConfig::httplib"),
+    ("openssl/", "OpenSSL::Crypto", "OpenSSL::SSL"),
+    ("cblas.h", "openblas"),
+    ("gmock/", "GTest::gmock"),
+    ("gtest/", "GTest::gtest", "GTest::gmock"),
+    ("benchmark/", "benchmark::benchmark_main", "benchmark::benchmark"),
+    *((start, build_tree.TORCH_TARGET) for start in source_tree.TORCH),
+    ("grpcpp/ext/proto_server_reflection_plugin.h", "gRPC::grpc++_reflection"),
+    # Whoever speaks the wire links the generated code, which brings both.
+    ("grpc", "gRPC::grpc++", "duet_proto", "duet_server_proto"),
+    ("google/protobuf/", "protobuf::libprotobuf", "duet_proto", "duet_server_proto"),
+)
+
+# The C++ library's headers that come with a target of their own. Linked without need they are told
+# of; missing they are not, for the C library has them as well.
+OPTIONAL = {"Threads::Threads": ("thread", "mutex", "condition_variable", "future")}
+
+# Links that no include shows, and includes that need no link: (target or *, library) -> why.
+ALLOWED = {
+    ("*", "GTest::gtest_main"): "the main() of every test",
+    ("*", "GTest::gmock"): "linked to every test by duet_test",
+    ("*", "benchmark::benchmark_main"): "the main() of every benchmark",
+    ("duet_client", "GTest::gmock"): "mocks/ is for callers' tests, which link it",
+}
+
+
+def libraries_of(include):
+    """The names of the foreign library that an include belongs to; none: the language's own."""
+    for start, *names in LIBRARIES:
+        if include.startswith(start):
+            return frozenset(names)
+    match = re.match(r"absl/\w+/(\w+)\.h", include)
+    return frozenset({f"absl::{match[1]}"}) if match else frozenset()
+
+
+def link_name(link):
+    """A library that is linked by its file is known by the file's name."""
+    match = re.search(r"/lib(\w+)\.(so|a)$", link)
+    return match[1] if match else link
+
+
+class Owners:
+    """Which library a file of the project belongs to."""
+
+    def __init__(self, targets):
+        self.targets = targets
+        self.by_source, self.by_folder, self.generated = {}, {}, {}
+        for name, target in targets.items():
+            for source in target.sources if target.is_library else ():
+                path = pathlib.PurePosixPath(source)
+                self.by_source[str(path.with_suffix(""))] = name
+                self.by_folder.setdefault(str(path.parent), set()).add(name)
+                if path.suffixes[-2:] == [".pb", ".h"]:
+                    self.generated[source.partition("/gen/")[2]] = name
+
+    def of(self, include):
+        """The libraries that may have the header, by name; none: not the project's."""
+        if include in self.generated:
+            return frozenset({self.generated[include]})
+        if not include.startswith(tuple(f"{f}/" for f in source_tree.SOURCE_FOLDERS)):
+            return frozenset()
+        path = pathlib.PurePosixPath(include)
+        owner = self.by_source.get(str(path.with_suffix("")))
+        if owner:
+            return frozenset({owner})
+        for folder in path.parents:
+            if str(folder) in self.by_folder:
+                return self.innermost(self.by_folder[str(folder)])
+        return frozenset()
+
+    def innermost(self, names):
+        """Of the libraries of one folder, the one that all others link; all, where there is none."""
+        for name in names:
+            if all(name in build_tree.closure(self.targets, other) for other in names):
+                return frozenset({name})
+        return frozenset(names)
+
+
+class LinkCheck:
+    def __init__(self, targets, tree):
+        self.targets, self.tree, self.owners = targets, tree, Owners(targets)
+        self.headers = {}  # library -> its headers
+        for header in tree.files(".h"):
+            for owner in self.owners.of(header):
+                self.headers.setdefault(owner, []).append(header)
+
+    def needs(self, target, files):
+        """What the files include of other libraries: names that will do -> an example."""
+        needs = {}
+        for file in files:
+            for include in self.tree.includes(file):
+                libraries = self.owners.of(include) or libraries_of(include)
+                if libraries and target.name not in libraries:
+                    needs.setdefault(libraries, f"{file} includes {include}")
+        return needs
+
+    def needs_of(self, target):
+        """What headers for others need, what all files need, and those files."""
+        headers = self.headers.get(target.name, []) if target.is_library else []
+        files = headers + [source for source in target.sources if source.endswith(".cc")
+                           and self.tree.exists(source) and not source.startswith("build/")]
+        shown = [header for header in headers if "/internal/" not in header]
+        public = self.needs(target, shown)
+        return public, {**self.needs(target, files), **public}, files
+
+    def optional(self, files):
+        included = {include for file in files for include in self.tree.includes(file)}
+        return {name for name, headers in OPTIONAL.items() if included.intersection(headers)}
+
+    def check(self, target):
+        """What is wrong with a target, as messages."""
+        public, every, files = self.needs_of(target)
+        # CMake does not tell a private link from a public one where a library is linked by its file.
+        linked = {link_name(link): link in target.public and "/" not in link
+                  for link in target.links}
+        excused = {name for about, name in ALLOWED if about in ("*", target.name)}
+        for libraries, example in sorted(every.items(), key=lambda need: sorted(need[0])):
+            present = libraries.intersection(linked)
+            kind = "PUBLIC" if libraries in public else "PRIVATE"
+            if not present and not libraries & excused:
+                yield f"does not link {' or '.join(sorted(libraries))} ({kind}): {example}"
+            elif present and kind == "PUBLIC" and not any(linked[name] for name in present):
+                yield f"links {min(present)} PRIVATE, wanted PUBLIC: {example}"
+        unseen = self.optional(files) | excused
+        for link, is_public in linked.items():
+            if not any(link in libraries for libraries in every):
+                if link not in unseen:
+                    yield f"links {link}, but includes nothing of it"
+            elif is_public and not any(link in libraries for libraries in public):
+                yield f"links {link} PUBLIC, wanted PRIVATE: none of its headers includes that"
+
+    def violations(self):
+        """Every violation, as "target: message"."""
+        for name, target in self.targets.items():
+            if is_ours(target):
+                yield from (f"{name}: {message}" for message in self.check(target))
+
+    def wanted(self, target):
+        """What a target should link: (public, private), by name."""
+        public, every, files = self.needs_of(target)
+        linked = {link_name(link): link for link in target.links}
+        excused = {name for about, name in ALLOWED if about in ("*", target.name)}
+
+        def choose(needs):
+            met = {linked[name] for libraries in needs for name in libraries - excused
+                   if name in linked}
+            return met | {min(libraries) for libraries in needs
+                          if not libraries & (excused | set(linked))}
+        private = choose(every) | {linked[name] for name in self.optional(files) if name in linked}
+        return sorted(choose(public)), sorted(private - choose(public))
+
+def is_ours(target):
+    """Whether a target has sources that are not generated."""
+    return any(not source.startswith("build/") for source in target.sources)
+
+
+def suggest(checker, names):
+    """Prints what each target should link, as its CMakeLists.txt would say it."""
+    for name in names or [name for name, target in checker.targets.items() if is_ours(target)]:
+        target = checker.targets[name]
+        public, private = checker.wanted(target)
+        lists = (("DEPS", public), ("PRIVATE_DEPS", private)) if target.is_library else (
+            ("DEPS", [*public, *private]),)
+        print(name)
+        for kind, links in lists:
+            aliases = (re.sub("^duet_", "duet::", link) for link in links)
+            print(f"  {kind} {' '.join(sorted(aliases, key=lambda a: (not a.startswith('duet'), a)))}")
+
+
+def main(arguments):
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--build-dir", default=str(build_tree.ROOT / "build/release"))
+    parser.add_argument("--suggest", nargs="*", metavar="TARGET",
+                        help="print what these targets (default: all) should link, and end")
+    options = parser.parse_args(arguments)
+    build_tree.require_configured(options.build_dir)
+    targets = build_tree.read_targets(options.build_dir)
+    checker = LinkCheck(targets, source_tree.SourceTree(build_tree.ROOT))
+    if options.suggest is not None:
+        suggest(checker, options.suggest)
+        return 0
+    violations = list(checker.violations())
+    for violation in violations:
+        print(violation, file=sys.stderr)
+    if violations:
+        print(f"{len(violations)} links differ from what is included "
+              "(check_links.py --suggest TARGET says what a target should link).", file=sys.stderr)
+        return 1
+    print(f"{sum(map(is_ours, targets.values()))} targets link what they include.")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,67 @@
+#!/usr/bin/env python3
+"""Shows what source_tree.py and build_tree.py read out of a project."""
+
+import unittest
+
+import build_tree
+import source_tree
+import test_project
+
+
+class SourceTreeTest(test_project.ProjectTestCase):
+    def setUp(self):
+        super().setUp()
+        self.tree = source_tree.SourceTree(self.root)
+
+    def test_includes_are_found_in_order_and_comments_are_not(self):
+        self.write("model/a.cc", "model/a.h", "vector", text='// #include "model/b.h"\n')
+        self.assertEqual(self.tree.includes("model/a.cc"), ("model/a.h", "vector"))
+
+    def test_include_of_a_neighbour_gets_its_whole_path(self):
+        self.write("tests/fake.h")
+        self.write("tests/a.cc", text='#include "fake.h"\n')
+        self.assertEqual(self.tree.includes("tests/a.cc"), ("tests/fake.h",))
+
+    def test_reach_goes_through_headers_and_ends_in_a_circle(self):
+        self.write("model/a.h", "model/b.h")
+        self.write("model/b.h", "model/a.h", "torch/types.h")
+        self.write("model/c.h", "vector")
+        self.assertEqual(self.tree.reach("model/a.h"), {"model/a.h", "model/b.h", "torch/types.h"})
+        self.assertTrue(self.tree.reaches_torch("model/a.h"))
+        self.assertFalse(self.tree.reaches_torch("model/c.h"))
+
+    def test_only_source_folders_are_read(self):
+        self.write("model/a.h")
+        self.write("build/b.h")
+        self.assertEqual(self.tree.files(".h"), ["model/a.h"])
+
+
+class BuildTreeTest(test_project.ProjectTestCase):
+    def test_torch_is_seen_through_private_links(self):
+        self.target("duet_torch", [])
+        self.target("duet_network", ["model/network.cc"], private=["duet_torch"])
+        self.target("duet_motion", ["model/motion.cc"], public=["absl::status"])
+        self.target("duet_eval", ["model/eval.cc"], private=["duet_motion", "duet_network"])
+        targets = build_tree.read_targets(self.build_dir)
+        self.assertFalse(build_tree.is_torch_free(targets, "duet_eval"))
+        self.assertTrue(build_tree.is_torch_free(targets, "duet_motion"))
+        self.assertEqual(build_tree.closure(targets, "duet_motion"), {"duet_motion", "absl::status"})
+
+    def test_flags_are_those_that_any_compiler_takes(self):
+        words = ("ccache c++ -DX=1 -I/a -isystem /b -O3 -fPIC -Wall -std=c++17 -Winvalid-pch "
+                 "-include cmake_pch.hxx -o a.o -c a.cc").split()
+        self.assertEqual(build_tree.portable_flags(words),
+                         ["-DX=1", "-I/a", "-isystem", "/b", "-std=c++17"])
+
+    def test_compile_commands_are_known_by_the_file(self):
+        self.compile_command("model/a.cc", "-DA")
+        self.assertEqual(list(build_tree.compile_commands(self.build_dir)), ["model/a.cc"])
+
+    def test_output_of_failed_commands_is_kept(self):
+        failures = build_tree.run_all([("good", ["true"], "/"),
+                                       ("bad", ["sh", "-c", "echo reason; exit 3"], "/")], jobs=2)
+        self.assertEqual(failures, {"bad": "reason\n"})
+
+
+if __name__ == "__main__":
+    unittest.main()
