@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Checks that each target links what its files include, and nothing else.
 
-Read from a configured build folder (cmake/DuetTargetTable.cmake writes the table). For each library,
-program and test:
+Read from a configured build folder (cmake/DuetTargetTable.cmake writes the table). For each
+library, program and test:
   - what a header of the target includes must be linked PUBLIC (DEPS), what only its .cc files and
     the headers of a folder named internal include PRIVATE (PRIVATE_DEPS);
   - programs, tests and benchmarks have no headers that others see: they link all PRIVATE;
@@ -106,7 +106,7 @@ class Owners:
         return frozenset()
 
     def innermost(self, names):
-        """Of the libraries of one folder, the one that all others link; all, where there is none."""
+        """Of one folder's libraries the one that all others link; all, where there is none."""
         for name in names:
             if all(name in build_tree.closure(self.targets, other) for other in names):
                 return frozenset({name})
@@ -147,7 +147,7 @@ class LinkCheck:
     def check(self, target):
         """What is wrong with a target, as messages."""
         public, every, files = self.needs_of(target)
-        # CMake does not tell a private link from a public one where a library is linked by its file.
+        # Of a library that is linked by its file CMake does not tell whether the link is private.
         linked = {link_name(link): link in target.public and "/" not in link
                   for link in target.links}
         excused = {name for about, name in ALLOWED if about in ("*", target.name)}
@@ -191,6 +191,12 @@ def is_ours(target):
     return any(not source.startswith("build/") for source in target.sources)
 
 
+def as_written(links):
+    """Links as a CMakeLists.txt lists them: by alias, the project's own first."""
+    aliases = (re.sub("^duet_", "duet::", link) for link in links)
+    return sorted(aliases, key=lambda link: (not link.startswith("duet::"), link))
+
+
 def suggest(checker, names):
     """Prints what each target should link, as its CMakeLists.txt would say it."""
     for name in names or [name for name, target in checker.targets.items() if is_ours(target)]:
@@ -200,8 +206,7 @@ def suggest(checker, names):
             ("DEPS", [*public, *private]),)
         print(name)
         for kind, links in lists:
-            aliases = (re.sub("^duet_", "duet::", link) for link in links)
-            print(f"  {kind} {' '.join(sorted(aliases, key=lambda a: (not a.startswith('duet'), a)))}")
+            print(" ", kind, *as_written(links))
 
 
 def main(arguments):

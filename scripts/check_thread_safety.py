@@ -49,7 +49,8 @@ def main(arguments):
          for file in files], jobs)
     for output in failures.values():
         print(output, file=sys.stderr)
-    print(f"Thread safety: {len(files) - len(failures)} of {len(files)} files keep to their mutexes.")
+    kept = len(files) - len(failures)
+    print(f"Thread safety: {kept} of {len(files)} files keep to their mutexes.")
     return 1 if failures else 0
 
 

@@ -33,7 +33,8 @@ class CheckThreadSafetyTest(test_project.ProjectTestCase):
         self.write("server/counter.h", "server/mutex.h", text=COUNTER)
 
     def run_check(self, body):
-        self.write("server/counter.cc", "server/counter.h", text=f"void Counter::Add() {{{body}}}\n")
+        self.write("server/counter.cc", "server/counter.h",
+                   text=f"void Counter::Add() {{{body}}}\n")
         self.compile_command("server/counter.cc")
         output = io.StringIO()
         with contextlib.redirect_stdout(output), contextlib.redirect_stderr(output):

@@ -57,7 +57,7 @@ class DoxygenFilterTest(unittest.TestCase):
                          ["namespace duet::v1 {", "enum E {", "  E_A = 0,", "};"])
 
     def test_what_is_for_the_compiler_alone_is_dropped(self):
-        self.assertEqual(proto('syntax = "proto3";\nimport "a.proto";\n  reserved 3;'), ["", "", ""])
+        self.assertEqual(proto('syntax = "proto3";\nimport "a.proto";\n  reserved 3;'), [""] * 3)
 
 
 if __name__ == "__main__":

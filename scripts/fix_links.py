@@ -21,18 +21,13 @@ SECTION = re.compile(r"\s+(?=(?:SOURCES|DEPS|PRIVATE_DEPS|LABELS|ENVIRONMENT|TIM
 WIDTH = 100
 
 
-def alias(link):
-    return re.sub("^duet_", "duet::", link)
-
-
 def section(name, links):
     """One list of a call, the project's own libraries first; nothing where there are none."""
     if not links:
         return []
-    ordered = sorted(map(alias, links), key=lambda link: (not link.startswith("duet::"), link))
-    return [textwrap.fill(" ".join([name, *ordered]), WIDTH, initial_indent="  ",
-                          subsequent_indent=" " * (len(name) + 3), break_long_words=False,
-                          break_on_hyphens=False)]
+    return [textwrap.fill(" ".join([name, *check_links.as_written(links)]), WIDTH,
+                          initial_indent="  ", subsequent_indent=" " * (len(name) + 3),
+                          break_long_words=False, break_on_hyphens=False)]
 
 
 def rewritten(kind, name, body, public, private):

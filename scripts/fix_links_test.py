@@ -38,7 +38,8 @@ class FixLinksTest(test_project.ProjectTestCase):
 
     def test_tests_have_one_list_and_keep_their_labels(self):
         self.assertEqual(
-            self.fix("duet_test(NAME clip_test SOURCES clip_test.cc DEPS duet::x LABELS unit threads)"),
+            self.fix("duet_test(NAME clip_test SOURCES clip_test.cc DEPS duet::x "
+                     "LABELS unit threads)"),
             "duet_test(NAME clip_test\n  SOURCES clip_test.cc\n  DEPS duet::motion\n"
             "  LABELS unit threads)")
 

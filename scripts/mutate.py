@@ -153,6 +153,9 @@ def main(arguments):
         sys.exit(f"--rooms: no room matches {' '.join(options.rooms)}")
     tests = {(library, file): mutation_workshop.tests_for(targets, library, file)
              for sources in rooms.values() for file, library in sources.items()}
+    for room, sources in rooms.items():
+        if not any(any(tests[library, file]) for file, library in sources.items()):
+            print(f"{room}: no test program without LibTorch links it; everything survives there")
     programs = sorted({program for tiers in tests.values() for tier in tiers for program in tier})
     print(f"Building and running {len(programs)} test programs as they are.", flush=True)
     for shop in shops:

@@ -40,7 +40,8 @@ class Summary:
                 + self.listing("Caught by a time limit", "timeout", "None."))
 
     def table(self):
-        rows = ["| folder | tried | caught | by its own tests | by a time limit | survived | score |",
+        rows = ["| folder | tried | caught | by its own tests | by a time limit | survived | "
+                "score |",
                 "|---|---|---|---|---|---|---|"]
         for room, found in [*((f"`{room}`", found) for room, found in self.results.items()),
                             ("**all**", self.every)]:
@@ -67,4 +68,5 @@ def code(text):
     """A piece of C++ as a cell of a table."""
     if not text:
         return "(nothing)"
-    return "<code>" + text.replace("&", "&amp;").replace("<", "&lt;").replace("|", "&#124;") + "</code>"
+    text = text.replace("&", "&amp;").replace("<", "&lt;").replace("|", "&#124;")
+    return f"<code>{text}</code>"

@@ -71,7 +71,7 @@ class Workshop:
             self.limits[program] = 10 + 5 * (time.monotonic() - start)
 
     def attempt(self, file, text, own, others):
-        """Puts a mutated file in place, builds, tests: the outcome, and the program that noticed."""
+        """Puts a mutated file in place, builds, tests: the outcome, and who noticed."""
         self.write(file, text)
         for programs in filter(None, (own, others)):
             if not self.build(programs):

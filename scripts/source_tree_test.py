@@ -45,7 +45,8 @@ class BuildTreeTest(test_project.ProjectTestCase):
         targets = build_tree.read_targets(self.build_dir)
         self.assertFalse(build_tree.is_torch_free(targets, "duet_eval"))
         self.assertTrue(build_tree.is_torch_free(targets, "duet_motion"))
-        self.assertEqual(build_tree.closure(targets, "duet_motion"), {"duet_motion", "absl::status"})
+        self.assertEqual(build_tree.closure(targets, "duet_motion"),
+                         {"duet_motion", "absl::status"})
 
     def test_flags_are_those_that_any_compiler_takes(self):
         words = ("ccache c++ -DX=1 -I/a -isystem /b -O3 -fPIC -Wall -std=c++17 -Winvalid-pch "
