@@ -218,7 +218,7 @@ absl::Status ReadChoice(const std::string& field, const Json& value,
   return absl::OkStatus();
 }
 
-absl::Status ReadCoordinates(const Json& json, motion::CoordinateFrame* frame) {
+absl::Status ReadCoordinates(const Json& json, motion::Coordinates* frame) {
   absl::Status status =
       ReadChoice<motion::LengthUnit>("unit", json["unit"],
                                      {{"metres", motion::LengthUnit::kMetres},
@@ -258,7 +258,7 @@ absl::StatusOr<DatasetLayout> ParseDatasetLayout(std::string_view text) {
       CheckKeys("", json, {"name", "frame_rate_hz", "unit", "up_axis", "skeleton", "classes"}, {});
   if (status.ok()) status = ReadName("name", json["name"], &layout.name);
   if (status.ok()) status = ReadFrameRate(json["frame_rate_hz"], &layout.frame_rate_hz);
-  if (status.ok()) status = ReadCoordinates(json, &layout.frame);
+  if (status.ok()) status = ReadCoordinates(json, &layout.coordinates);
   if (status.ok()) status = ReadSkeleton(json["skeleton"], &layout.skeleton);
   if (status.ok()) status = ReadClasses(json["classes"], &layout);
   if (!status.ok()) return status;

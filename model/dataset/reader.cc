@@ -134,7 +134,7 @@ absl::StatusOr<formats::flat::SbuRecording> ReadPeople(const std::string& path,
   formats::flat::SbuOptions options;
   options.joint_names = layout.skeleton.joint_names;
   options.frame_rate_hz = layout.frame_rate_hz;
-  options.coordinates = layout.frame;
+  options.coordinates = layout.coordinates;
   absl::StatusOr<formats::flat::SbuRecording> people = ReadSbu(path, options);
   if (people.ok() && people->left.frame_count() < 2) {
     return base::ErrorAt(path, 1, "came 1 frame, wanted at least 2");

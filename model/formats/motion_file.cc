@@ -53,7 +53,7 @@ absl::StatusOr<motion::Clip> ToSkeleton(const motion::RecordedMotion& motion,
   if (options.notes != nullptr) {
     options.notes->insert(options.notes->end(), map->notes.begin(), map->notes.end());
   }
-  const motion::CoordinateFrame coordinates = options.coordinates.value_or(motion.coordinates);
+  const motion::Coordinates coordinates = options.coordinates.value_or(motion.coordinates);
   motion::Clip clip;
   clip.joint_names = options.skeleton.joint_names;
   clip.frame_rate_hz = person.frame_rate_hz;

@@ -33,7 +33,7 @@ struct ReadOptions {
   std::optional<double> frame_rate_hz;
   // Replaces what the file says or its format implies: SBU text the data set's normalised unit;
   // CSV and JSON what they state, else metres, y up; NPY metres, y up.
-  std::optional<motion::CoordinateFrame> coordinates;
+  std::optional<motion::Coordinates> coordinates;
   // BVH: metres in one unit of the file (0.01 for centimetres). Found from the height when absent.
   std::optional<double> metres_per_unit;
   retargeting::JointOverrides joint_overrides;

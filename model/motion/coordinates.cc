@@ -36,24 +36,24 @@ Vec3 FromYUp(UpAxis up_axis, Vec3 p) {
 
 }  // namespace
 
-Vec3 ToWorld(const CoordinateFrame& frame, Vec3 p) {
-  switch (frame.unit) {
+Vec3 ToWorld(const Coordinates& coordinates, Vec3 p) {
+  switch (coordinates.unit) {
     case LengthUnit::kMetres:
-      return ToYUp(frame.up_axis, p);
+      return ToYUp(coordinates.up_axis, p);
     case LengthUnit::kMillimetres:
-      return ToYUp(frame.up_axis, p * kMillimetre);
+      return ToYUp(coordinates.up_axis, p * kMillimetre);
     case LengthUnit::kSbuNormalised:
       return {kSbuOffsetX + kSbuScaleX * p.x, kSbuOffsetY + kSbuScaleY * p.y, kSbuScaleZ * p.z};
   }
   return p;
 }
 
-Vec3 FromWorld(const CoordinateFrame& frame, Vec3 p) {
-  switch (frame.unit) {
+Vec3 FromWorld(const Coordinates& coordinates, Vec3 p) {
+  switch (coordinates.unit) {
     case LengthUnit::kMetres:
-      return FromYUp(frame.up_axis, p);
+      return FromYUp(coordinates.up_axis, p);
     case LengthUnit::kMillimetres:
-      return FromYUp(frame.up_axis, p) / kMillimetre;
+      return FromYUp(coordinates.up_axis, p) / kMillimetre;
     case LengthUnit::kSbuNormalised:
       return {(p.x - kSbuOffsetX) / kSbuScaleX, (p.y - kSbuOffsetY) / kSbuScaleY, p.z / kSbuScaleZ};
   }

@@ -12,14 +12,14 @@ enum class UpAxis { kYUp, kZUp, kYDown };
 //
 // kSbuNormalised is the anisotropic unit of the SBU Kinect Interaction data set
 // (X = 1.28 - 2.56 x, Y = 0.96 - 1.92 y, Z = 1.28 z metres); it implies kYDown.
-struct CoordinateFrame {
+struct Coordinates {
   LengthUnit unit = LengthUnit::kMetres;
   UpAxis up_axis = UpAxis::kYUp;
 };
 
-// From the caller's frame to metres, y up; and back. Exact inverses up to rounding.
-Vec3 ToWorld(const CoordinateFrame& frame, Vec3 position);
-Vec3 FromWorld(const CoordinateFrame& frame, Vec3 position);
+// From the caller's coordinates to metres, y up; and back. Exact inverses up to rounding.
+Vec3 ToWorld(const Coordinates& coordinates, Vec3 position);
+Vec3 FromWorld(const Coordinates& coordinates, Vec3 position);
 
 }  // namespace duet::motion
 

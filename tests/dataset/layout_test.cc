@@ -40,8 +40,8 @@ TEST(DatasetLayoutTest, ReadsEveryField) {
   ASSERT_TRUE(layout.ok()) << layout.status();
   EXPECT_EQ(layout->name, "sticks");
   EXPECT_EQ(layout->frame_rate_hz, 60);
-  EXPECT_EQ(layout->frame.unit, motion::LengthUnit::kMillimetres);
-  EXPECT_EQ(layout->frame.up_axis, motion::UpAxis::kZUp);
+  EXPECT_EQ(layout->coordinates.unit, motion::LengthUnit::kMillimetres);
+  EXPECT_EQ(layout->coordinates.up_axis, motion::UpAxis::kZUp);
   EXPECT_THAT(layout->skeleton.joint_names,
               ElementsAre("hip", "left_hip", "right_hip", "left_foot", "right_foot"));
   EXPECT_EQ(layout->skeleton.bones[3], (motion::Bone{2, 4}));

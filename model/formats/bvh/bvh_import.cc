@@ -89,9 +89,9 @@ class Importer {
   absl::StatusOr<motion::Clip> ToMetres(motion::Clip clip) {
     absl::StatusOr<double> scale = MetresPerUnit(clip);
     if (!scale.ok()) return scale.status();
-    const motion::CoordinateFrame frame{motion::LengthUnit::kMetres, FindUpAxis(clip)};
+    const motion::Coordinates coordinates{motion::LengthUnit::kMetres, FindUpAxis(clip)};
     for (motion::Vec3& position : clip.positions) {
-      position = ToWorld(frame, position * static_cast<float>(*scale));
+      position = ToWorld(coordinates, position * static_cast<float>(*scale));
     }
     return clip;
   }

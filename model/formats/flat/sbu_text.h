@@ -19,8 +19,7 @@ namespace duet::formats::flat {
 struct SbuOptions {
   std::vector<std::string> joint_names = motion::SbuSkeleton().joint_names;
   double frame_rate_hz = 15;
-  motion::CoordinateFrame coordinates = {motion::LengthUnit::kSbuNormalised,
-                                         motion::UpAxis::kYDown};
+  motion::Coordinates coordinates = {motion::LengthUnit::kSbuNormalised, motion::UpAxis::kYDown};
 };
 
 // The two people of a file, by their place in the image. Which of them leads is not in the file.
