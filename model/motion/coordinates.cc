@@ -1,7 +1,47 @@
 #include "model/motion/coordinates.h"
 
+#include <cstddef>
+
 namespace duet::motion {
 namespace {
+
+template <typename Value>
+struct Spelling {
+  absl::string_view name;
+  Value value;
+};
+
+// The first spelling of a value is the one written.
+constexpr Spelling<LengthUnit> kUnitSpellings[] = {
+    {"metres", LengthUnit::kMetres},
+    {"millimetres", LengthUnit::kMillimetres},
+    {"sbu-normalised", LengthUnit::kSbuNormalised},
+    {"m", LengthUnit::kMetres},
+    {"mm", LengthUnit::kMillimetres},
+    {"sbu", LengthUnit::kSbuNormalised},
+    {"sbu_normalised", LengthUnit::kSbuNormalised},
+};
+constexpr Spelling<UpAxis> kAxisSpellings[] = {
+    {"y-up", UpAxis::kYUp}, {"z-up", UpAxis::kZUp}, {"y-down", UpAxis::kYDown},
+    {"y", UpAxis::kYUp},    {"z", UpAxis::kZUp},    {"-y", UpAxis::kYDown},
+    {"y_up", UpAxis::kYUp}, {"z_up", UpAxis::kZUp}, {"y_down", UpAxis::kYDown},
+};
+
+template <typename Value, std::size_t size>
+absl::string_view NameOf(const Spelling<Value> (&spellings)[size], Value value) {
+  for (const Spelling<Value>& spelling : spellings) {
+    if (spelling.value == value) return spelling.name;
+  }
+  return {};
+}
+
+template <typename Value, std::size_t size>
+std::optional<Value> ValueOf(const Spelling<Value> (&spellings)[size], absl::string_view name) {
+  for (const Spelling<Value>& spelling : spellings) {
+    if (spelling.name == name) return spelling.value;
+  }
+  return std::nullopt;
+}
 
 // The data set's own conversion to millimetres, in metres.
 constexpr float kSbuOffsetX = 1.28f, kSbuScaleX = -2.56f;
@@ -59,5 +99,13 @@ Vec3 FromWorld(const Coordinates& coordinates, Vec3 p) {
   }
   return p;
 }
+
+absl::string_view LengthUnitName(LengthUnit unit) { return NameOf(kUnitSpellings, unit); }
+absl::string_view UpAxisName(UpAxis axis) { return NameOf(kAxisSpellings, axis); }
+
+std::optional<LengthUnit> ParseLengthUnit(absl::string_view name) {
+  return ValueOf(kUnitSpellings, name);
+}
+std::optional<UpAxis> ParseUpAxis(absl::string_view name) { return ValueOf(kAxisSpellings, name); }
 
 }  // namespace duet::motion

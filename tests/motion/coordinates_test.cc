@@ -75,5 +75,40 @@ TEST(Coordinates, SbuImpliesItsUpAxis) {
   EXPECT_EQ(ToWorld({LengthUnit::kSbuNormalised, UpAxis::kZUp}, position), wanted);
 }
 
+TEST(Coordinates, HaveOneSpellingThatReadsBack) {
+  for (const LengthUnit unit :
+       {LengthUnit::kMetres, LengthUnit::kMillimetres, LengthUnit::kSbuNormalised}) {
+    EXPECT_EQ(ParseLengthUnit(LengthUnitName(unit)), unit) << LengthUnitName(unit);
+  }
+  for (const UpAxis axis : {UpAxis::kYUp, UpAxis::kZUp, UpAxis::kYDown}) {
+    EXPECT_EQ(ParseUpAxis(UpAxisName(axis)), axis) << UpAxisName(axis);
+  }
+  EXPECT_EQ(LengthUnitName(LengthUnit::kMetres), "metres");
+  EXPECT_EQ(LengthUnitName(LengthUnit::kMillimetres), "millimetres");
+  EXPECT_EQ(LengthUnitName(LengthUnit::kSbuNormalised), "sbu-normalised");
+  EXPECT_EQ(UpAxisName(UpAxis::kYUp), "y-up");
+  EXPECT_EQ(UpAxisName(UpAxis::kZUp), "z-up");
+  EXPECT_EQ(UpAxisName(UpAxis::kYDown), "y-down");
+}
+
+TEST(Coordinates, ReadEarlierSpellings) {
+  EXPECT_EQ(ParseLengthUnit("m"), LengthUnit::kMetres);
+  EXPECT_EQ(ParseLengthUnit("mm"), LengthUnit::kMillimetres);
+  EXPECT_EQ(ParseLengthUnit("sbu"), LengthUnit::kSbuNormalised);
+  EXPECT_EQ(ParseLengthUnit("sbu_normalised"), LengthUnit::kSbuNormalised);
+  for (const char* name : {"y", "y_up"}) EXPECT_EQ(ParseUpAxis(name), UpAxis::kYUp);
+  for (const char* name : {"z", "z_up"}) EXPECT_EQ(ParseUpAxis(name), UpAxis::kZUp);
+  for (const char* name : {"-y", "y_down"}) EXPECT_EQ(ParseUpAxis(name), UpAxis::kYDown);
+}
+
+TEST(Coordinates, KnowNoOtherName) {
+  for (const char* name : {"", "feet", "Metres", "metre", "y-up"}) {
+    EXPECT_EQ(ParseLengthUnit(name), std::nullopt) << name;
+  }
+  for (const char* name : {"", "x", "Y-up", "y-u", "metres"}) {
+    EXPECT_EQ(ParseUpAxis(name), std::nullopt) << name;
+  }
+}
+
 }  // namespace
 }  // namespace duet::motion
