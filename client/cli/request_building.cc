@@ -40,7 +40,8 @@ absl::Status CheckInput(const std::filesystem::path& path) {
   if (!std::filesystem::exists(path, error)) {
     return absl::NotFoundError(absl::StrCat(path.string(), ": no such file"));
   }
-  return formats::CheckReadable(path);
+  if (formats::IsReadable(path)) return absl::OkStatus();
+  return formats::UnknownExtension(path, formats::kReadableExtensions);
 }
 
 // Of the leader's own file, the follower is the other person.

@@ -7,6 +7,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "model/base/text.h"
 
 namespace duet::server::service {
 namespace {
@@ -105,11 +106,11 @@ std::vector<int> ValidateJoints(const v1::Motion& leader, const engine::ModelDes
     joints.push_back(joint);
     if (joint < 0) {
       violations.Mismatch(At("leader.joint_names", i),
-                          absl::StrCat("is ", common::Quoted(name), ", which is no joint of model ",
+                          absl::StrCat("is ", base::Quoted(name), ", which is no joint of model ",
                                        model.name, "; GetModel lists them"));
     } else if (first_use[joint] >= 0) {
       violations.Mismatch(At("leader.joint_names", i),
-                          absl::StrCat("is ", common::Quoted(name), ", which joint_names[",
+                          absl::StrCat("is ", base::Quoted(name), ", which joint_names[",
                                        first_use[joint], "] is already; wanted each joint once"));
     } else {
       first_use[joint] = i;

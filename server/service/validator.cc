@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "model/base/text.h"
 #include "server/service/validate_labels.h"
 #include "server/service/validate_leader.h"
 #include "server/service/violations.h"
@@ -164,13 +165,13 @@ void Validation::ReplyJoints() {
   for (int i = 0; i < wanted.size(); ++i) {
     const std::string field = absl::StrCat("reply_joint_names[", i, "]");
     if (std::find(known.begin(), known.end(), wanted[i]) == known.end()) {
-      violations_.Malformed(field, absl::StrCat("is ", common::Quoted(wanted[i]),
+      violations_.Malformed(field, absl::StrCat("is ", base::Quoted(wanted[i]),
                                                 ", wanted one of leader.joint_names"));
     }
     const auto first = std::find(wanted.begin(), wanted.end(), wanted[i]);
     if (first - wanted.begin() < i) {
       violations_.Malformed(
-          field, absl::StrCat("is ", common::Quoted(wanted[i]), ", which [", first - wanted.begin(),
+          field, absl::StrCat("is ", base::Quoted(wanted[i]), ", which [", first - wanted.begin(),
                               "] is already; wanted each joint at most once"));
     }
   }

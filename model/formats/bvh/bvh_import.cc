@@ -56,7 +56,7 @@ class Importer {
     clip.joint_names = options_.skeleton.joint_names;
     clip.frame_rate_hz = FrameRate();
     for (int frame = 0; frame < document_.frame_count; ++frame) {
-      const std::vector<motion::Vec3> pose = ApplyJointMap(*map, Pose(frame).data());
+      const std::vector<motion::Vec3> pose = ApplyJointMap(*map, Pose(frame));
       clip.positions.insert(clip.positions.end(), pose.begin(), pose.end());
     }
     return ToMetres(std::move(clip));
