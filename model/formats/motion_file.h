@@ -48,8 +48,7 @@ struct ReadOptions {
 //
 // Shapes: [frames >= 1, options.skeleton]. Units: world metres, y up.
 // Errors: NOT_FOUND, PERMISSION_DENIED; INVALID_ARGUMENT naming the file, the place in it, what
-// came
-//         and what was wanted.
+//         came and what was wanted.
 absl::StatusOr<motion::Clip> ReadLeader(const std::filesystem::path& path,
                                         const ReadOptions& options = {});
 

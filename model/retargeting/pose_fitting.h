@@ -10,7 +10,7 @@
 
 namespace duet::retargeting {
 
-// One frame as angles: each joint's rotation in its parent's frame.
+// One frame as angles: each joint's rotation relative to its parent's.
 struct RigPose {
   Vec3d root_position;
   std::vector<Quaternion> rotations;  // [rig joints]
