@@ -29,13 +29,6 @@ const std::map<std::string, formats::Side> kSides = {{"left", formats::Side::kLe
                                                      {"right", formats::Side::kRight}};
 const std::map<std::string, Priority> kPriorities = {{"interactive", Priority::kInteractive},
                                                      {"bulk", Priority::kBulk}};
-const std::map<std::string, motion::LengthUnit> kUnits = {
-    {"m", motion::LengthUnit::kMetres},
-    {"mm", motion::LengthUnit::kMillimetres},
-    {"sbu", motion::LengthUnit::kSbuNormalised}};
-const std::map<std::string, motion::UpAxis> kUpAxes = {{"y-up", motion::UpAxis::kYUp},
-                                                       {"z-up", motion::UpAxis::kZUp},
-                                                       {"y-down", motion::UpAxis::kYDown}};
 
 void AddServerFlags(CLI::App* app, ServerArguments* server) {
   constexpr char kGroup[] = "Server";
@@ -84,13 +77,17 @@ void AddInputFlags(CLI::App* app, SynthesizeArguments* arguments) {
       ->check(Undescribed(CLI::PositiveNumber))
       ->type_name("HZ")
       ->group(kGroup);
-  AddChoice<motion::LengthUnit>(
-      app, "--unit", kUnits, [input](motion::LengthUnit unit) { input->unit = unit; },
+  AddParsed<motion::LengthUnit>(
+      app, "--unit", "metres|millimetres|sbu-normalised", ParseUnit,
+      [input](motion::LengthUnit unit) { input->unit = unit; },
       "Unit of positions; replaces what the file says")
+      ->take_last()
       ->group(kGroup);
-  AddChoice<motion::UpAxis>(
-      app, "--up-axis", kUpAxes, [input](motion::UpAxis axis) { input->up_axis = axis; },
+  AddParsed<motion::UpAxis>(
+      app, "--up-axis", "y-up|z-up|y-down", ParseAxis,
+      [input](motion::UpAxis axis) { input->up_axis = axis; },
       "Up axis of positions; replaces what the file says")
+      ->take_last()
       ->group(kGroup);
   app->add_option("--metres-per-unit", input->metres_per_unit,
                   "BVH: metres in one unit of the file (0.01 for centimetres)")

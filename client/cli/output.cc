@@ -7,9 +7,8 @@
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "absl/strings/str_replace.h"
 #include "client/viewer/page.h"
-#include "model/base/text.h"
+#include "model/base/file.h"
 #include "model/formats/motion_file.h"
 
 namespace duet::client::cli {
@@ -37,12 +36,8 @@ absl::StatusOr<std::string> RenderSynthesis(const Synthesis& synthesis) {
 }  // namespace
 
 absl::Status CheckOutput(const std::filesystem::path& output, const std::filesystem::path& leader) {
-  if (!IsPage(output)) {
-    absl::Status status = formats::CheckWritable(output);
-    if (!status.ok()) {
-      return absl::InvalidArgumentError(
-          absl::StrReplaceAll(status.message(), {{"wanted ", "wanted .html, "}}));
-    }
+  if (!IsPage(output) && !formats::IsWritable(output)) {
+    return formats::UnknownExtension(output, absl::StrCat(".html, ", formats::kWritableExtensions));
   }
   std::error_code error;
   const std::filesystem::path folder = output.has_parent_path() ? output.parent_path() : ".";

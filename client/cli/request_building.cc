@@ -25,12 +25,12 @@ formats::ReadOptions ToReadOptions(const InputArguments& input, const motion::Sk
   options.metres_per_unit = input.metres_per_unit;
   options.joint_overrides = input.joints;
   if (input.unit.has_value() || input.up_axis.has_value()) {
-    motion::CoordinateFrame frame;
-    frame.unit = input.unit.value_or(motion::LengthUnit::kMetres);
-    frame.up_axis = input.up_axis.value_or(frame.unit == motion::LengthUnit::kSbuNormalised
-                                               ? motion::UpAxis::kYDown
-                                               : motion::UpAxis::kYUp);
-    options.coordinates = frame;
+    motion::Coordinates coordinates;
+    coordinates.unit = input.unit.value_or(motion::LengthUnit::kMetres);
+    coordinates.up_axis = input.up_axis.value_or(
+        coordinates.unit == motion::LengthUnit::kSbuNormalised ? motion::UpAxis::kYDown
+                                                               : motion::UpAxis::kYUp);
+    options.coordinates = coordinates;
   }
   return options;
 }
@@ -40,7 +40,8 @@ absl::Status CheckInput(const std::filesystem::path& path) {
   if (!std::filesystem::exists(path, error)) {
     return absl::NotFoundError(absl::StrCat(path.string(), ": no such file"));
   }
-  return formats::CheckReadable(path);
+  if (formats::IsReadable(path)) return absl::OkStatus();
+  return formats::UnknownExtension(path, formats::kReadableExtensions);
 }
 
 // Of the leader's own file, the follower is the other person.

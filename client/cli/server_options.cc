@@ -3,7 +3,7 @@
 #include <string>
 #include <utility>
 
-#include "model/base/text.h"
+#include "model/base/file.h"
 
 namespace duet::client::cli {
 namespace {
@@ -13,7 +13,7 @@ constexpr std::size_t kMaxPemBytes = std::size_t{1} << 20;
 // Nothing for a file that was not named.
 absl::Status ReadPem(const std::string& path, std::string* pem) {
   if (path.empty()) return absl::OkStatus();
-  absl::StatusOr<std::string> content = base::ReadFile(path, kMaxPemBytes);
+  absl::StatusOr<std::string> content = base::ReadFile(path, kMaxPemBytes, "a PEM file");
   if (!content.ok()) return content.status();
   *pem = *std::move(content);
   return absl::OkStatus();

@@ -5,12 +5,13 @@
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
+#include "model/base/text.h"
 
 namespace duet::client::cli {
 namespace {
 
 absl::Status Wanted(absl::string_view text, absl::string_view wanted) {
-  return absl::InvalidArgumentError(absl::StrCat("\"", text, "\", wanted ", wanted));
+  return absl::InvalidArgumentError(absl::StrCat(base::Quoted(text), ", wanted ", wanted));
 }
 
 }  // namespace
@@ -81,7 +82,20 @@ absl::StatusOr<motion::Vec3> ParseDirection(absl::string_view text) {
   if (const std::optional<motion::Vec3> direction = ParsePoint(text); direction.has_value()) {
     return *direction;
   }
-  return absl::InvalidArgumentError(absl::StrCat("\"", text, "\", wanted X,Y,Z such as 1,0,0"));
+  return absl::InvalidArgumentError(
+      absl::StrCat(base::Quoted(text), ", wanted X,Y,Z such as 1,0,0"));
+}
+
+absl::StatusOr<motion::LengthUnit> ParseUnit(absl::string_view text) {
+  const std::optional<motion::LengthUnit> unit = motion::ParseLengthUnit(text);
+  if (unit.has_value()) return *unit;
+  return Wanted(text, motion::kLengthUnitNames);
+}
+
+absl::StatusOr<motion::UpAxis> ParseAxis(absl::string_view text) {
+  const std::optional<motion::UpAxis> axis = motion::ParseUpAxis(text);
+  if (axis.has_value()) return *axis;
+  return Wanted(text, motion::kUpAxisNames);
 }
 
 }  // namespace duet::client::cli

@@ -8,6 +8,7 @@
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
 #include "client/request.h"
+#include "model/motion/coordinates.h"
 #include "model/motion/vec3.h"
 
 namespace duet::client::cli {
@@ -32,6 +33,10 @@ std::optional<motion::Vec3> ParsePoint(absl::string_view text);
 
 // "1,0,0": a direction of any length
 absl::StatusOr<motion::Vec3> ParseDirection(absl::string_view text);
+
+// "millimetres", "z-up": as ParseLengthUnit and ParseUpAxis know them
+absl::StatusOr<motion::LengthUnit> ParseUnit(absl::string_view text);
+absl::StatusOr<motion::UpAxis> ParseAxis(absl::string_view text);
 
 }  // namespace duet::client::cli
 

@@ -2,21 +2,25 @@
 //
 //   duet-keyframe samples/keyframes/kick.txt --out samples/kick.bvh
 
+#include <cstddef>
 #include <iostream>
 #include <string>
 
 #include "CLI/CLI.hpp"
 #include "absl/status/status.h"
 #include "model/authoring/keyframes.h"
-#include "model/base/text.h"
+#include "model/base/file.h"
 #include "model/formats/bvh/bvh_export.h"
 #include "model/motion/skeleton.h"
 
 namespace duet::authoring {
 namespace {
 
+constexpr std::size_t kMaxKeyframeBytes = std::size_t{16} << 20;
+
 absl::Status Convert(const std::string& keyframes, const std::string& out) {
-  const absl::StatusOr<std::string> text = base::ReadFile(keyframes);
+  const absl::StatusOr<std::string> text =
+      base::ReadFile(keyframes, kMaxKeyframeBytes, "key frames");
   if (!text.ok()) return text.status();
   const absl::StatusOr<motion::Clip> clip = ParseKeyframes(*text, keyframes);
   if (!clip.ok()) return clip.status();

@@ -11,6 +11,7 @@
 #include "model/authoring/monotone_cubic.h"
 #include "model/authoring/puppet.h"
 #include "model/base/text.h"
+#include "model/motion/motion_limits.h"
 #include "model/motion/skeleton.h"
 
 namespace duet::authoring {
@@ -114,7 +115,7 @@ class KeyframeParser {
                            std::vector<double>* values) const {
     for (std::size_t i = 1; i < words.size(); ++i) {
       float value = 0;
-      if (!base::ParseCoordinate(words[i], &value)) {
+      if (!motion::ParseCoordinate(words[i], &value)) {
         return Error(
             absl::StrCat(words[0], ": came ", base::Quoted(words[i]), ", wanted a number"));
       }

@@ -52,7 +52,7 @@ fs::path Plain(const fs::path& path) {
   return normal.has_filename() ? normal : normal.parent_path();
 }
 
-absl::Status WriteFile(const fs::path& path, const std::string& content) {
+absl::Status CreateFile(const fs::path& path, const std::string& content) {
   const Descriptor file(open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kFileMode));
   if (!file.ok()) return Error(errno, path);
   for (std::size_t at = 0; at < content.size();) {
@@ -74,7 +74,7 @@ absl::Status SyncFolder(const fs::path& path) {
 absl::Status Fill(const fs::path& folder, const std::vector<NamedContent>& files) {
   if (chmod(folder.c_str(), kFolderMode) != 0) return Error(errno, folder);
   for (const auto& [name, content] : files) {
-    if (absl::Status status = WriteFile(folder / name, content); !status.ok()) return status;
+    if (absl::Status status = CreateFile(folder / name, content); !status.ok()) return status;
   }
   return SyncFolder(folder);
 }

@@ -2,21 +2,17 @@
 
 #include <utility>
 
+#include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
+#include "model/base/text.h"
 
 namespace duet::base {
 namespace {
 
 using nlohmann::json;
 
-// How much of a bad value a message repeats.
-constexpr std::size_t kQuotedBytes = 40;
-
-std::string Quoted(const json& value) {
-  std::string text = value.dump(-1, ' ', true, json::error_handler_t::replace);
-  if (text.size() > kQuotedBytes) text = text.substr(0, kQuotedBytes) + "...";
-  return text;
-}
+// Arrays and objects with more than this are not spelt out.
+constexpr std::size_t kMostShownItems = 8;
 
 // Walks the text without building anything: the parser's own tree silently keeps the last of two
 // equal keys, and a reader that keeps the first would see another file.
@@ -68,6 +64,16 @@ class StrictnessChecker : public nlohmann::json_sax<json> {
 
 }  // namespace
 
+std::string Shown(const json& value) {
+  if (value.is_string()) return Quoted(value.get_ref<const std::string&>());
+  if (value.is_structured() && value.size() > kMostShownItems) {
+    return absl::StrCat("an ", value.type_name(), " of ", value.size());
+  }
+  std::string text = value.dump(-1, ' ', true, json::error_handler_t::replace);
+  if (text.size() > kLongestQuote) text = text.substr(0, kLongestQuote) + "...";
+  return text;
+}
+
 absl::StatusOr<json> ParseStrictJson(std::string_view text, int max_depth) {
   if (text.empty() || text.front() != '{') {
     return absl::InvalidArgumentError("not a JSON object: wanted '{' as the first byte");
@@ -83,11 +89,16 @@ absl::StatusOr<json> ParseStrictJson(std::string_view text, int max_depth) {
   return json::parse(text.begin(), text.end(), nullptr, /*allow_exceptions=*/false);
 }
 
+absl::StatusOr<json> ParseHandwrittenJson(absl::string_view text, int max_depth) {
+  text = absl::StripLeadingAsciiWhitespace(SkipByteOrderMark(text));
+  return ParseStrictJson({text.data(), text.size()}, max_depth);
+}
+
 ObjectReader::ObjectReader(const json& object, std::string path)
     : object_(object), path_(std::move(path)) {
   if (!object_.is_object()) {
-    status_ = absl::InvalidArgumentError(
-        absl::StrCat(path_, ": ", Quoted(object_), ", wanted an object"));
+    status_ =
+        absl::InvalidArgumentError(absl::StrCat(path_, ": ", Shown(object_), ", wanted an object"));
   }
 }
 
@@ -101,8 +112,8 @@ void ObjectReader::Fail(const std::string& key, const std::string& problem) {
 
 void ObjectReader::Update(const absl::Status& status) { status_.Update(status); }
 
-void ObjectReader::FailType(const std::string& key, const json& value, std::string_view wanted) {
-  Fail(key, absl::StrCat(Quoted(value), ", wanted ", std::string(wanted)));
+void ObjectReader::FailType(const std::string& key, const json& value, absl::string_view wanted) {
+  Fail(key, absl::StrCat(Shown(value), ", wanted ", wanted));
 }
 
 const json* ObjectReader::Get(const std::string& key) {

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -11,6 +12,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
 
 namespace duet::base {
 
@@ -18,6 +20,13 @@ namespace duet::base {
 // and the very first byte its brace, no object repeats a key, nothing is nested deeper than
 // `max_depth`, and there is no NUL byte. Never throws.
 absl::StatusOr<nlohmann::json> ParseStrictJson(std::string_view text, int max_depth);
+
+// The same for a document that people write: it may begin with a byte order mark and blanks.
+absl::StatusOr<nlohmann::json> ParseHandwrittenJson(absl::string_view text, int max_depth);
+
+// A value as a message shows it: a string as Quoted has it, other short values as they are written,
+// a long array or object by its size.
+std::string Shown(const nlohmann::json& value);
 
 // Reads an object field by field and remembers the first thing that was wrong, so that reading code
 // is a plain list of fields:
@@ -37,6 +46,18 @@ class ObjectReader {
   bool Bool(const std::string& key);
   int64_t Int(const std::string& key, int64_t min, int64_t max);
   double Number(const std::string& key, double min, double max);
+  // A string that `parse` knows; `wanted` tells people which. The first value of the type
+  // otherwise.
+  template <typename Value>
+  Value Choice(const std::string& key, std::optional<Value> (*parse)(absl::string_view),
+               absl::string_view wanted) {
+    const nlohmann::json* value = Get(key);
+    if (value == nullptr) return {};
+    std::optional<Value> choice;
+    if (value->is_string()) choice = parse(value->get_ref<const std::string&>());
+    if (!choice.has_value()) FailType(key, *value, wanted);
+    return choice.value_or(Value{});
+  }
   // An array of at most `max_count` non-empty strings.
   std::vector<std::string> Strings(const std::string& key, std::size_t max_count);
   // An array of at most `max_count` values of any type, or an empty array.
@@ -52,12 +73,14 @@ class ObjectReader {
   void Update(const absl::Status& status);
 
   bool ok() const { return status_.ok(); }
+  // The first problem so far. Enough by itself where fields that nobody asked for are no problem.
+  const absl::Status& status() const { return status_; }
   absl::Status Finish();
 
  private:
   // The field's value, or null after recording that it is missing.
   const nlohmann::json* Get(const std::string& key);
-  void FailType(const std::string& key, const nlohmann::json& value, std::string_view wanted);
+  void FailType(const std::string& key, const nlohmann::json& value, absl::string_view wanted);
 
   const nlohmann::json& object_;
   std::string path_;

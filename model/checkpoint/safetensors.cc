@@ -18,6 +18,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "model/base/strict_json.h"
+#include "model/base/text.h"
 
 namespace duet::checkpoint {
 namespace {
@@ -89,11 +90,11 @@ std::vector<int64_t> ReadInts(base::ObjectReader* reader, const std::string& key
 }
 
 absl::StatusOr<Entry> ReadEntry(const std::string& name, const json& value) {
-  base::ObjectReader reader(value, absl::StrCat("tensor ", json(name).dump()));
+  base::ObjectReader reader(value, absl::StrCat("tensor ", base::Quoted(name)));
   Entry entry;
   entry.name = name;
   if (const std::string dtype = reader.String("dtype", 16); reader.ok() && dtype != "F32") {
-    reader.Fail("dtype", absl::StrCat(json(dtype).dump(), ", wanted \"F32\""));
+    reader.Fail("dtype", absl::StrCat(base::Quoted(dtype), ", wanted \"F32\""));
   }
   entry.shape = ReadInts(&reader, "shape", kMaxRank, 1);
   const std::vector<int64_t> offsets = ReadInts(&reader, "data_offsets", 2, 0);
@@ -147,7 +148,7 @@ absl::Status CheckRanges(const std::vector<Entry>& entries, uint64_t data_bytes)
   uint64_t at = 0;
   for (const Entry& entry : entries) {
     if (entry.begin != at) {
-      return absl::InvalidArgumentError(absl::StrCat("tensor ", json(entry.name).dump(),
+      return absl::InvalidArgumentError(absl::StrCat("tensor ", base::Quoted(entry.name),
                                                      ".data_offsets: begins at ", entry.begin,
                                                      ", wanted ", at, ", the end of the previous"));
     }
@@ -172,7 +173,7 @@ absl::StatusOr<Tensor> ReadTensor(Entry entry, std::string_view data) {
   std::memcpy(tensor.values.data(), data.data() + entry.begin, entry.end - entry.begin);
   for (std::size_t i = 0; i < tensor.values.size(); ++i) {
     if (!std::isfinite(tensor.values[i])) {
-      return absl::InvalidArgumentError(absl::StrCat("tensor ", json(tensor.name).dump(),
+      return absl::InvalidArgumentError(absl::StrCat("tensor ", base::Quoted(tensor.name),
                                                      ": value ", i, " is ", tensor.values[i],
                                                      ", wanted finite values"));
     }

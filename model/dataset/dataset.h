@@ -43,13 +43,17 @@ struct Dataset {
 };
 
 // Reads a folder of captures. The layout is recognised:
+//
 //   SBU       sXXsYY/<class>/<sequence>/skeleton_pos.txt; classes 03 to 08 as kick, push,
 //             shake_hands, hug, exchange_object, punch; 15 frames a second
 //   K3HI      <class>/<sequence>.txt, 8 classes, 30 frames a second
 //   own data  dataset.json beside <class>/<sequence>.txt (docs/datasets.md)
-// The leader's side comes from index.tsv where it names one, else from the motion rule: the
-// effector (feet for kicks, hands otherwise) with the larger peak displacement relative to its own
-// torso. Errors: NOT_FOUND for a folder that is no data set, INVALID_ARGUMENT naming file and line.
+//
+// The leader's side comes from index.tsv where it names one, else from the motion rule: the leader
+// is whose effector (feet for kicks, hands otherwise) has the larger peak displacement relative to
+// the own torso.
+//
+// Errors: NOT_FOUND for a folder that is no data set, INVALID_ARGUMENT naming file and line.
 absl::StatusOr<Dataset> ReadDataset(const std::filesystem::path& folder);
 
 // Indices into Dataset::sequences.
@@ -59,17 +63,18 @@ struct Split {
 };
 
 // Leave one subject out: test on every sequence with the subject in either place, train on the
-// rest. Errors: NOT_FOUND for a subject that the data set does not have.
+// rest.
+// Errors: NOT_FOUND for a subject that the data set does not have.
 absl::StatusOr<Split> LeaveSubjectOut(const Dataset& dataset, const std::string& subject);
 
 // Half of each class to train on and the other half to test on, chosen by `seed` alone; of an odd
-// number the larger part is trained on. Both sorted. A subject may be in both. Errors:
-// INVALID_ARGUMENT naming a class of fewer than 2 sequences.
+// number the larger part is trained on. Both sorted. A subject may be in both.
+// Errors: INVALID_ARGUMENT naming a class of fewer than 2 sequences.
 absl::StatusOr<Split> SplitInHalves(const Dataset& dataset, uint64_t seed);
 
-// Moves about `fraction` of each class from train to a validation set, chosen by `seed` alone; at
-// least one of each class and never the last of a class. Both come out sorted. `fraction` in [0,
-// 1). Never looks at test.
+// Moves about `fraction` (0 to below 1) of each class from train to a validation set, chosen by
+// `seed` alone; at least one of each class and never the last of a class. Both come out sorted.
+// Test sequences play no part in it.
 std::vector<int> TakeValidation(const Dataset& dataset, double fraction, uint64_t seed,
                                 std::vector<int>* train);
 

@@ -18,7 +18,7 @@ DatasetLayout KinectLayout(const std::string& name, double frame_rate_hz,
   DatasetLayout layout;
   layout.name = name;
   layout.frame_rate_hz = frame_rate_hz;
-  layout.frame = {motion::LengthUnit::kSbuNormalised, motion::UpAxis::kYDown};
+  layout.coordinates = {motion::LengthUnit::kSbuNormalised, motion::UpAxis::kYDown};
   layout.skeleton = motion::SbuSkeleton();
   layout.people_axis = motion::Vec3{1, 0, 0};  // the image's x axis
   const std::vector<int> feet = {layout.skeleton.left_foot, layout.skeleton.right_foot};

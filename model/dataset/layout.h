@@ -24,7 +24,7 @@ struct ClassLayout {
 struct DatasetLayout {
   std::string name;
   double frame_rate_hz = 0;
-  motion::CoordinateFrame frame;
+  motion::Coordinates coordinates;
   motion::Skeleton skeleton;
   std::vector<ClassLayout> classes;
   // The horizontal world axis that the setup stands its people along, in either order.

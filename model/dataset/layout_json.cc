@@ -1,11 +1,10 @@
-#include <initializer_list>
-#include <map>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_join.h"
+#include "model/base/strict_json.h"
+#include "model/base/text.h"
 #include "model/dataset/layout.h"
-#include "nlohmann/json.hpp"
 
 namespace duet::dataset {
 namespace {
@@ -14,254 +13,153 @@ using Json = nlohmann::json;
 
 constexpr double kMinFrameRateHz = 1;
 constexpr double kMaxFrameRateHz = 240;
-constexpr int kMaxJoints = 256;
-constexpr int kMaxClasses = 256;
+constexpr int kMaxDepth = 6;
+constexpr std::size_t kMaxJoints = 256;
+constexpr std::size_t kMaxParts = 64;
+constexpr std::size_t kMaxClasses = 256;
+constexpr std::size_t kMaxNameBytes = 256;
 
-absl::Status Wrong(const std::string& field, const std::string& came, const std::string& wanted) {
-  return absl::InvalidArgumentError(
-      absl::StrCat("dataset.json: ", field, ": ", came, ", wanted ", wanted));
+std::string ReadName(base::ObjectReader* reader, const std::string& key) {
+  std::string name = reader->String(key, kMaxNameBytes);
+  if (reader->ok() && name.empty()) reader->Fail(key, "\"\", wanted a name");
+  return name;
 }
 
-// Repeated keys would silently win over one another: the parser refuses them.
-Json ParseWithoutRepeats(std::string_view text, std::string* repeated) {
-  std::vector<std::set<std::string>> keys;
-  const auto callback = [&](int, Json::parse_event_t event, Json& parsed) {
-    if (event == Json::parse_event_t::object_start) keys.emplace_back();
-    if (event == Json::parse_event_t::object_end) keys.pop_back();
-    if (event == Json::parse_event_t::key) {
-      const std::string key = parsed.get<std::string>();
-      if (!keys.back().insert(key).second) *repeated = key;
+int FindJoint(base::ObjectReader* reader, const std::string& key, const motion::Skeleton& skeleton,
+              const std::string& name) {
+  const int joint = skeleton.Find(name);
+  if (joint < 0) {
+    reader->Fail(key, absl::StrCat(base::Quoted(name), ", wanted one of skeleton.joint_names"));
+  }
+  return joint;
+}
+
+int ReadJoint(base::ObjectReader* reader, const std::string& key,
+              const motion::Skeleton& skeleton) {
+  const std::string name = reader->String(key, kMaxNameBytes);
+  return reader->ok() ? FindJoint(reader, key, skeleton, name) : 0;
+}
+
+std::vector<int> ReadJoints(base::ObjectReader* reader, const std::string& key,
+                            const motion::Skeleton& skeleton) {
+  std::vector<int> joints;
+  for (const std::string& name : reader->Strings(key, kMaxJoints)) {
+    joints.push_back(FindJoint(reader, absl::StrCat(key, "[", joints.size(), "]"), skeleton, name));
+  }
+  if (joints.empty()) reader->Fail(key, "empty, wanted at least one joint");
+  return joints;
+}
+
+std::vector<motion::Bone> ReadBones(base::ObjectReader* reader, const motion::Skeleton& skeleton) {
+  std::vector<motion::Bone> bones;
+  for (const Json& item : reader->Array("bones", kMaxJoints)) {
+    const std::string key = absl::StrCat("bones[", bones.size(), "]");
+    if (!item.is_array() || item.size() != 2 || !item[0].is_string() || !item[1].is_string()) {
+      reader->Fail(key, absl::StrCat(base::Shown(item), ", wanted [parent, child]"));
+      return {};
     }
-    return true;
-  };
-  return Json::parse(text.begin(), text.end(), callback, /*allow_exceptions=*/false);
+    bones.push_back({FindJoint(reader, key + "[0]", skeleton, item[0].get<std::string>()),
+                     FindJoint(reader, key + "[1]", skeleton, item[1].get<std::string>())});
+  }
+  return bones;
 }
 
-// Every key known, every required key there.
-absl::Status CheckKeys(const std::string& field, const Json& object,
-                       std::initializer_list<const char*> required,
-                       std::initializer_list<const char*> optional) {
-  const std::string where = field.empty() ? "the document" : field;
-  if (!object.is_object()) return Wrong(where, object.type_name(), "an object");
-  std::set<std::string> known(required.begin(), required.end());
-  known.insert(optional.begin(), optional.end());
-  for (const auto& item : object.items()) {
-    if (known.count(item.key()) == 0) {
-      return Wrong(where, absl::StrCat("unknown field \"", item.key(), "\""),
-                   absl::StrJoin(known, ", "));
-    }
-  }
-  for (const char* key : required) {
-    if (!object.contains(key)) return Wrong(where, "nothing", absl::StrCat("the field ", key));
-  }
-  return absl::OkStatus();
-}
-
-absl::Status ReadName(const std::string& field, const Json& value, std::string* out) {
-  if (!value.is_string() || value.get_ref<const std::string&>().empty()) {
-    return Wrong(field, value.dump(), "a name");
-  }
-  *out = value.get<std::string>();
-  return absl::OkStatus();
-}
-
-absl::Status ReadNames(const std::string& field, const Json& value, int most,
-                       std::vector<std::string>* out) {
-  if (!value.is_array() || value.empty() || value.size() > static_cast<size_t>(most)) {
-    return Wrong(field,
-                 value.is_array() ? absl::StrCat(value.size(), " entries") : value.type_name(),
-                 absl::StrCat("a list of 1 to ", most, " names"));
-  }
-  for (size_t i = 0; i < value.size(); ++i) {
-    std::string name;
-    absl::Status status = ReadName(absl::StrCat(field, "[", i, "]"), value[i], &name);
-    if (!status.ok()) return status;
-    out->push_back(std::move(name));
-  }
-  return absl::OkStatus();
-}
-
-absl::Status ReadJoint(const std::string& field, const Json& value,
-                       const motion::Skeleton& skeleton, int* out) {
-  std::string name;
-  absl::Status status = ReadName(field, value, &name);
-  if (!status.ok()) return status;
-  *out = skeleton.Find(name);
-  if (*out >= 0) return absl::OkStatus();
-  return Wrong(field, absl::StrCat("\"", name, "\""), "one of skeleton.joint_names");
-}
-
-absl::Status ReadJoints(const std::string& field, const Json& value,
-                        const motion::Skeleton& skeleton, std::vector<int>* out) {
-  if (!value.is_array() || value.empty() || value.size() > kMaxJoints) {
-    return Wrong(field, value.dump(), absl::StrCat("a list of 1 to ", kMaxJoints, " joints"));
-  }
-  for (size_t i = 0; i < value.size(); ++i) {
-    int joint = 0;
-    absl::Status status = ReadJoint(absl::StrCat(field, "[", i, "]"), value[i], skeleton, &joint);
-    if (!status.ok()) return status;
-    out->push_back(joint);
-  }
-  return absl::OkStatus();
-}
-
-absl::Status ReadBones(const Json& value, motion::Skeleton* skeleton) {
-  if (!value.is_array()) return Wrong("skeleton.bones", value.type_name(), "a list");
-  for (size_t i = 0; i < value.size(); ++i) {
-    const std::string field = absl::StrCat("skeleton.bones[", i, "]");
-    std::vector<int> ends;
-    absl::Status status = ReadJoints(field, value[i], *skeleton, &ends);
-    if (!status.ok()) return status;
-    if (ends.size() != 2) return Wrong(field, value[i].dump(), "[parent, child]");
-    skeleton->bones.push_back({ends[0], ends[1]});
-  }
-  return absl::OkStatus();
-}
-
-absl::Status ReadParts(const Json& value, motion::Skeleton* skeleton) {
-  if (!value.is_array()) return Wrong("skeleton.parts", value.type_name(), "a list");
-  for (size_t i = 0; i < value.size(); ++i) {
-    const std::string field = absl::StrCat("skeleton.parts[", i, "]");
+std::vector<motion::BodyPart> ReadParts(base::ObjectReader* reader,
+                                        const motion::Skeleton& skeleton) {
+  std::vector<motion::BodyPart> parts;
+  for (const Json& item : reader->Array("parts", kMaxParts)) {
+    base::ObjectReader fields(item, reader->PathOf(absl::StrCat("parts[", parts.size(), "]")));
     motion::BodyPart part;
-    absl::Status status = CheckKeys(field, value[i], {"name", "joints"}, {});
-    if (status.ok()) status = ReadName(field + ".name", value[i]["name"], &part.name);
-    if (status.ok()) {
-      status = ReadJoints(field + ".joints", value[i]["joints"], *skeleton, &part.joints);
-    }
-    if (!status.ok()) return status;
-    skeleton->parts.push_back(std::move(part));
+    part.name = ReadName(&fields, "name");
+    part.joints = ReadJoints(&fields, "joints", skeleton);
+    reader->Update(fields.Finish());
+    parts.push_back(std::move(part));
   }
-  return absl::OkStatus();
+  return parts;
 }
 
-absl::Status ReadSkeleton(const Json& json, motion::Skeleton* skeleton) {
-  absl::Status status = CheckKeys(
-      "skeleton", json,
-      {"joint_names", "bones", "parts", "root", "left_hip", "right_hip", "left_foot", "right_foot"},
-      {});
-  if (status.ok()) {
-    status =
-        ReadNames("skeleton.joint_names", json["joint_names"], kMaxJoints, &skeleton->joint_names);
+motion::Skeleton ReadSkeleton(base::ObjectReader* document) {
+  base::ObjectReader reader(document->Object("skeleton"), "skeleton");
+  motion::Skeleton skeleton;
+  skeleton.joint_names = reader.Strings("joint_names", kMaxJoints);
+  skeleton.bones = ReadBones(&reader, skeleton);
+  skeleton.parts = ReadParts(&reader, skeleton);
+  skeleton.root = ReadJoint(&reader, "root", skeleton);
+  skeleton.left_hip = ReadJoint(&reader, "left_hip", skeleton);
+  skeleton.right_hip = ReadJoint(&reader, "right_hip", skeleton);
+  skeleton.left_foot = ReadJoint(&reader, "left_foot", skeleton);
+  skeleton.right_foot = ReadJoint(&reader, "right_foot", skeleton);
+  document->Update(reader.Finish());
+  if (!document->ok()) return skeleton;
+  if (const absl::Status valid = Validate(skeleton); !valid.ok()) {
+    document->Update(absl::InvalidArgumentError(absl::StrCat("skeleton.", valid.message())));
   }
-  if (status.ok()) status = ReadBones(json["bones"], skeleton);
-  if (status.ok()) status = ReadParts(json["parts"], skeleton);
-  const std::pair<const char*, int*> landmarks[] = {{"root", &skeleton->root},
-                                                    {"left_hip", &skeleton->left_hip},
-                                                    {"right_hip", &skeleton->right_hip},
-                                                    {"left_foot", &skeleton->left_foot},
-                                                    {"right_foot", &skeleton->right_foot}};
-  for (const auto& [key, joint] : landmarks) {
-    if (status.ok())
-      status = ReadJoint(absl::StrCat("skeleton.", key), json[key], *skeleton, joint);
-  }
-  if (!status.ok()) return status;
-  const absl::Status valid = Validate(*skeleton);
-  if (valid.ok()) return valid;
-  return absl::InvalidArgumentError(absl::StrCat("dataset.json: skeleton.", valid.message()));
+  return skeleton;
 }
 
 // A class's folder bears the class's name: it may not lead anywhere else.
 bool IsPlainFolderName(const std::string& name) {
-  return name.find_first_of("/\\") == std::string::npos && name[0] != '.';
+  return !name.empty() && name.find_first_of("/\\") == std::string::npos && name[0] != '.';
 }
 
-absl::Status ReadClass(const std::string& field, const Json& json, const motion::Skeleton& skeleton,
-                       ClassLayout* out) {
-  absl::Status status = CheckKeys(field, json, {"name"}, {"symmetric", "effectors"});
-  if (status.ok()) status = ReadName(field + ".name", json["name"], &out->name);
-  if (!status.ok()) return status;
-  if (!IsPlainFolderName(out->name)) {
-    return Wrong(field + ".name", json["name"].dump(), "a plain folder name");
+ClassLayout ReadClass(base::ObjectReader* reader, const motion::Skeleton& skeleton) {
+  ClassLayout one;
+  one.name = ReadName(reader, "name");
+  if (reader->ok() && !IsPlainFolderName(one.name)) {
+    reader->Fail("name", absl::StrCat(base::Quoted(one.name), ", wanted a plain folder name"));
   }
-  out->folder = out->name;
-  if (json.contains("symmetric")) {
-    if (!json["symmetric"].is_boolean()) {
-      return Wrong(field + ".symmetric", json["symmetric"].dump(), "true or false");
-    }
-    out->symmetric = json["symmetric"].get<bool>();
-  }
-  if (!json.contains("effectors")) return absl::OkStatus();
-  return ReadJoints(field + ".effectors", json["effectors"], skeleton, &out->effectors);
+  one.folder = one.name;
+  if (reader->Has("symmetric")) one.symmetric = reader->Bool("symmetric");
+  if (reader->Has("effectors")) one.effectors = ReadJoints(reader, "effectors", skeleton);
+  return one;
 }
 
-absl::Status ReadClasses(const Json& json, DatasetLayout* layout) {
-  if (!json.is_array() || json.empty() || json.size() > kMaxClasses) {
-    return Wrong("classes",
-                 json.is_array() ? absl::StrCat(json.size(), " entries") : json.type_name(),
-                 absl::StrCat("a list of 1 to ", kMaxClasses));
-  }
+std::vector<ClassLayout> ReadClasses(base::ObjectReader* document,
+                                     const motion::Skeleton& skeleton) {
+  std::vector<ClassLayout> classes;
   std::set<std::string> seen;
-  for (size_t i = 0; i < json.size(); ++i) {
-    const std::string field = absl::StrCat("classes[", i, "]");
-    ClassLayout one;
-    absl::Status status = ReadClass(field, json[i], layout->skeleton, &one);
-    if (!status.ok()) return status;
+  for (const Json& item : document->Array("classes", kMaxClasses)) {
+    base::ObjectReader reader(item, absl::StrCat("classes[", classes.size(), "]"));
+    ClassLayout one = ReadClass(&reader, skeleton);
     if (!seen.insert(one.name).second) {
-      return Wrong(field + ".name", absl::StrCat("\"", one.name, "\" again"), "a new name");
+      reader.Fail("name", absl::StrCat(base::Quoted(one.name), " again, wanted a new name"));
     }
-    layout->classes.push_back(std::move(one));
+    document->Update(reader.Finish());
+    classes.push_back(std::move(one));
   }
-  return absl::OkStatus();
+  if (classes.empty()) document->Fail("classes", "empty, wanted at least one");
+  return classes;
 }
 
-template <typename T>
-absl::Status ReadChoice(const std::string& field, const Json& value,
-                        const std::map<std::string, T>& choices, T* out) {
-  const auto found =
-      value.is_string() ? choices.find(value.get_ref<const std::string&>()) : choices.end();
-  if (found == choices.end()) {
-    std::vector<std::string> names;
-    for (const auto& choice : choices) names.push_back(choice.first);
-    return Wrong(field, value.dump(), absl::StrJoin(names, ", "));
+motion::Coordinates ReadCoordinates(base::ObjectReader* document) {
+  motion::Coordinates coordinates;
+  coordinates.unit = document->Choice("unit", motion::ParseLengthUnit, motion::kLengthUnitNames);
+  coordinates.up_axis = document->Choice("up_axis", motion::ParseUpAxis, motion::kUpAxisNames);
+  if (document->ok() && coordinates.unit == motion::LengthUnit::kSbuNormalised &&
+      coordinates.up_axis != motion::UpAxis::kYDown) {
+    document->Fail("up_axis", absl::StrCat(UpAxisName(coordinates.up_axis),
+                                           ", wanted y-down, which sbu-normalised implies"));
   }
-  *out = found->second;
-  return absl::OkStatus();
-}
-
-absl::Status ReadCoordinates(const Json& json, motion::CoordinateFrame* frame) {
-  absl::Status status =
-      ReadChoice<motion::LengthUnit>("unit", json["unit"],
-                                     {{"metres", motion::LengthUnit::kMetres},
-                                      {"millimetres", motion::LengthUnit::kMillimetres},
-                                      {"sbu_normalised", motion::LengthUnit::kSbuNormalised}},
-                                     &frame->unit);
-  if (!status.ok()) return status;
-  status = ReadChoice<motion::UpAxis>("up_axis", json["up_axis"],
-                                      {{"y_up", motion::UpAxis::kYUp},
-                                       {"z_up", motion::UpAxis::kZUp},
-                                       {"y_down", motion::UpAxis::kYDown}},
-                                      &frame->up_axis);
-  if (!status.ok()) return status;
-  if (frame->unit == motion::LengthUnit::kSbuNormalised &&
-      frame->up_axis != motion::UpAxis::kYDown) {
-    return Wrong("up_axis", json["up_axis"].dump(), "y_down, which sbu_normalised implies");
-  }
-  return absl::OkStatus();
-}
-
-absl::Status ReadFrameRate(const Json& value, double* out) {
-  if (value.is_number()) *out = value.get<double>();
-  if (*out >= kMinFrameRateHz && *out <= kMaxFrameRateHz) return absl::OkStatus();
-  return Wrong("frame_rate_hz", value.dump(),
-               absl::StrCat(kMinFrameRateHz, " to ", kMaxFrameRateHz));
+  return coordinates;
 }
 
 }  // namespace
 
 absl::StatusOr<DatasetLayout> ParseDatasetLayout(std::string_view text) {
-  std::string repeated;
-  const Json json = ParseWithoutRepeats(text, &repeated);
-  if (json.is_discarded()) return absl::InvalidArgumentError("dataset.json: not valid JSON");
-  if (!repeated.empty()) return Wrong(repeated, "given twice", "each field once");
+  const auto in_file = [](const absl::Status& status) {
+    return absl::InvalidArgumentError(absl::StrCat("dataset.json: ", status.message()));
+  };
+  const absl::StatusOr<Json> json =
+      base::ParseHandwrittenJson({text.data(), text.size()}, kMaxDepth);
+  if (!json.ok()) return in_file(json.status());
+  base::ObjectReader document(*json, "");
   DatasetLayout layout;
-  absl::Status status =
-      CheckKeys("", json, {"name", "frame_rate_hz", "unit", "up_axis", "skeleton", "classes"}, {});
-  if (status.ok()) status = ReadName("name", json["name"], &layout.name);
-  if (status.ok()) status = ReadFrameRate(json["frame_rate_hz"], &layout.frame_rate_hz);
-  if (status.ok()) status = ReadCoordinates(json, &layout.frame);
-  if (status.ok()) status = ReadSkeleton(json["skeleton"], &layout.skeleton);
-  if (status.ok()) status = ReadClasses(json["classes"], &layout);
-  if (!status.ok()) return status;
+  layout.name = ReadName(&document, "name");
+  layout.frame_rate_hz = document.Number("frame_rate_hz", kMinFrameRateHz, kMaxFrameRateHz);
+  layout.coordinates = ReadCoordinates(&document);
+  layout.skeleton = ReadSkeleton(&document);
+  layout.classes = ReadClasses(&document, layout.skeleton);
+  if (const absl::Status status = document.Finish(); !status.ok()) return in_file(status);
   return layout;
 }
 

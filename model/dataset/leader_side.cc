@@ -7,6 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
+#include "model/base/text.h"
 
 namespace duet::dataset {
 namespace {
@@ -43,7 +44,7 @@ absl::StatusOr<LeaderSide> ParseSide(int line, absl::string_view text) {
   if (text == "left") return LeaderSide::kLeft;
   if (text == "right") return LeaderSide::kRight;
   if (text == "unknown") return LeaderSide::kUnknown;
-  return Wrong(line, absl::StrCat("leader_side \"", text, "\""), "left, right or unknown");
+  return Wrong(line, absl::StrCat("leader_side ", base::Quoted(text)), "left, right or unknown");
 }
 
 std::vector<std::string> ParseSubjects(absl::string_view text) {
@@ -97,7 +98,7 @@ absl::StatusOr<std::map<std::string, IndexEntry>> ParseIndex(absl::string_view t
     }
     const std::string path(cells[static_cast<size_t>(columns.path)]);
     if (!entries.emplace(path, std::move(entry)).second) {
-      return Wrong(line, absl::StrCat("path \"", path, "\" again"), "each file once");
+      return Wrong(line, absl::StrCat("path ", base::Quoted(path), " again"), "each file once");
     }
   }
   return entries;

@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "absl/strings/str_cat.h"
+#include "model/base/file.h"
 #include "model/base/text.h"
 #include "model/dataset/dataset.h"
 #include "model/dataset/layout.h"
@@ -16,6 +17,9 @@ namespace duet::dataset {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr size_t kMaxIndexBytes = size_t{16} << 20;
+constexpr size_t kMaxLayoutBytes = size_t{1} << 20;
 
 // A file of the data set, found but not read.
 struct FoundFile {
@@ -112,7 +116,8 @@ absl::StatusOr<std::vector<FoundFile>> FindClassFiles(const fs::path& folder,
 
 absl::StatusOr<std::map<std::string, IndexEntry>> ReadIndex(const fs::path& folder) {
   if (!Exists(folder / "index.tsv")) return std::map<std::string, IndexEntry>{};
-  absl::StatusOr<std::string> text = base::ReadFile(folder / "index.tsv");
+  absl::StatusOr<std::string> text =
+      base::ReadFile(folder / "index.tsv", kMaxIndexBytes, "an index of sequences");
   if (!text.ok()) return text.status();
   absl::StatusOr<std::map<std::string, IndexEntry>> index = ParseIndex(*text);
   if (!index.ok()) {
@@ -123,8 +128,8 @@ absl::StatusOr<std::map<std::string, IndexEntry>> ReadIndex(const fs::path& fold
   for (const auto& [path, entry] : *index) {
     if (Exists(folder / path)) continue;
     return absl::InvalidArgumentError(
-        absl::StrCat((folder / "index.tsv").string(), ": line ", entry.line, ": \"", path,
-                     "\" is not there, wanted a file below ", folder.string()));
+        absl::StrCat((folder / "index.tsv").string(), ": line ", entry.line, ": ",
+                     base::Quoted(path), " is not there, wanted a file below ", folder.string()));
   }
   return index;
 }
@@ -134,7 +139,7 @@ absl::StatusOr<formats::flat::SbuRecording> ReadPeople(const std::string& path,
   formats::flat::SbuOptions options;
   options.joint_names = layout.skeleton.joint_names;
   options.frame_rate_hz = layout.frame_rate_hz;
-  options.coordinates = layout.frame;
+  options.coordinates = layout.coordinates;
   absl::StatusOr<formats::flat::SbuRecording> people = ReadSbu(path, options);
   if (people.ok() && people->left.frame_count() < 2) {
     return base::ErrorAt(path, 1, "came 1 frame, wanted at least 2");
@@ -217,7 +222,8 @@ absl::StatusOr<Dataset> ReadFiles(const fs::path& folder, const DatasetLayout& l
 }
 
 absl::StatusOr<Dataset> ReadOwnData(const fs::path& folder) {
-  absl::StatusOr<std::string> text = base::ReadFile(folder / "dataset.json");
+  absl::StatusOr<std::string> text =
+      base::ReadFile(folder / "dataset.json", kMaxLayoutBytes, "a data set's layout");
   if (!text.ok()) return text.status();
   absl::StatusOr<DatasetLayout> layout = ParseDatasetLayout(*text);
   if (!layout.ok()) {

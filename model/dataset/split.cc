@@ -7,6 +7,7 @@
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "model/base/text.h"
 #include "model/dataset/dataset.h"
 
 namespace duet::dataset {
@@ -47,7 +48,7 @@ absl::StatusOr<Split> LeaveSubjectOut(const Dataset& dataset, const std::string&
   if (!split.test.empty()) return split;
   const std::vector<std::string> known = dataset.Subjects();
   return absl::NotFoundError(
-      absl::StrCat("subject: \"", subject, "\", wanted one of ", dataset.name,
+      absl::StrCat("subject: ", base::Quoted(subject), ", wanted one of ", dataset.name,
                    "'s: ", known.empty() ? "(it names none)" : absl::StrJoin(known, ", ")));
 }
 

@@ -5,6 +5,8 @@
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
+#include "absl/types/span.h"
+#include "model/base/file.h"
 #include "model/base/text.h"
 #include "model/formats/bvh/bvh_document.h"
 #include "model/formats/bvh/bvh_export.h"
@@ -13,6 +15,7 @@
 #include "model/formats/flat/json_motion.h"
 #include "model/formats/flat/npy.h"
 #include "model/formats/flat/sbu_text.h"
+#include "model/motion/motion_limits.h"
 #include "model/motion/recorded_motion.h"
 
 namespace duet::formats {
@@ -34,10 +37,9 @@ Format FormatOf(const fs::path& path) {
   return Format::kUnknown;
 }
 
-absl::Status UnknownExtension(const fs::path& path, absl::string_view known) {
-  return absl::InvalidArgumentError(absl::StrCat(path.string(), ": extension: came ",
-                                                 base::Quoted(path.extension().string()),
-                                                 ", wanted ", known));
+// The joints of one frame.
+absl::Span<const motion::Vec3> FrameOf(const motion::Clip& clip, int frame) {
+  return {clip.frame(frame), clip.joint_names.size()};
 }
 
 // The joints of a file with positions as the skeleton's, in metres, y up.
@@ -46,19 +48,17 @@ absl::StatusOr<motion::Clip> ToSkeleton(const motion::RecordedMotion& motion,
   const bool second = options.side == Side::kRight && motion.people.size() > 1;
   const motion::Clip& person = motion.people[second ? 1 : 0];
   absl::StatusOr<retargeting::JointMap> map = retargeting::MapJoints(
-      source, person.joint_names,
-      std::vector<motion::Vec3>(person.frame(0), person.frame(0) + person.joint_count()),
-      options.skeleton, options.joint_overrides);
+      source, person.joint_names, FrameOf(person, 0), options.skeleton, options.joint_overrides);
   if (!map.ok()) return map.status();
   if (options.notes != nullptr) {
     options.notes->insert(options.notes->end(), map->notes.begin(), map->notes.end());
   }
-  const motion::CoordinateFrame coordinates = options.coordinates.value_or(motion.coordinates);
+  const motion::Coordinates coordinates = options.coordinates.value_or(motion.coordinates);
   motion::Clip clip;
   clip.joint_names = options.skeleton.joint_names;
   clip.frame_rate_hz = person.frame_rate_hz;
   for (int frame = 0; frame < person.frame_count(); ++frame) {
-    for (motion::Vec3 position : ApplyJointMap(*map, person.frame(frame))) {
+    for (motion::Vec3 position : ApplyJointMap(*map, FrameOf(person, frame))) {
       clip.positions.push_back(ToWorld(coordinates, position));
     }
   }
@@ -130,24 +130,26 @@ absl::Status CheckJoints(const motion::ClipPair& pair, const motion::Skeleton& s
 
 }  // namespace
 
-absl::Status CheckReadable(const fs::path& path) {
-  if (FormatOf(path) != Format::kUnknown) return absl::OkStatus();
-  return UnknownExtension(path, ".txt (SBU text), .bvh, .csv, .npy or .json");
+bool IsReadable(const fs::path& path) { return FormatOf(path) != Format::kUnknown; }
+
+bool IsWritable(const fs::path& path) {
+  return IsReadable(path) && FormatOf(path) != Format::kSbuText;
 }
 
-absl::Status CheckWritable(const fs::path& path) {
-  const Format format = FormatOf(path);
-  if (format != Format::kUnknown && format != Format::kSbuText) return absl::OkStatus();
-  return UnknownExtension(path, ".bvh, .csv, .npy or .json");
+absl::Status UnknownExtension(const fs::path& path, absl::string_view known) {
+  return absl::InvalidArgumentError(absl::StrCat(path.string(), ": extension: came ",
+                                                 base::Quoted(path.extension().string()),
+                                                 ", wanted ", known));
 }
 
 absl::StatusOr<motion::Clip> ReadLeader(const fs::path& path, const ReadOptions& options) {
-  absl::Status status = CheckReadable(path);
-  if (status.ok() && options.frame_rate_hz.has_value()) {
-    status = base::CheckFrameRate("frame rate given", *options.frame_rate_hz);
+  if (!IsReadable(path)) return UnknownExtension(path, kReadableExtensions);
+  if (options.frame_rate_hz.has_value()) {
+    absl::Status status = motion::CheckFrameRate("frame rate given", *options.frame_rate_hz);
+    if (!status.ok()) return status;
   }
-  if (!status.ok()) return status;
-  absl::StatusOr<std::string> content = base::ReadFile(path);
+  absl::StatusOr<std::string> content =
+      base::ReadFile(path, motion::kMaxMotionFileBytes, "a motion");
   if (!content.ok()) return content.status();
   absl::StatusOr<motion::Clip> clip = ReadPerson(FormatOf(path), *content, path.string(), options);
   if (!clip.ok()) return clip.status();
@@ -164,13 +166,14 @@ absl::StatusOr<std::vector<motion::Vec3>> ReadFollowerStart(const fs::path& path
   if (!any_rate.frame_rate_hz.has_value()) any_rate.frame_rate_hz = kSbuFrameRateHz;
   absl::StatusOr<motion::Clip> clip = ReadLeader(path, any_rate);
   if (!clip.ok()) return clip.status();
-  return std::vector<motion::Vec3>(clip->frame(0), clip->frame(0) + clip->joint_count());
+  const absl::Span<const motion::Vec3> start = FrameOf(*clip, 0);
+  return std::vector<motion::Vec3>(start.begin(), start.end());
 }
 
 absl::StatusOr<std::vector<fs::path>> WritePair(const fs::path& path, const motion::ClipPair& pair,
                                                 const motion::Skeleton& skeleton) {
-  absl::Status status = CheckWritable(path);
-  if (status.ok()) status = CheckJoints(pair, skeleton);
+  if (!IsWritable(path)) return UnknownExtension(path, kWritableExtensions);
+  absl::Status status = CheckJoints(pair, skeleton);
   if (!status.ok()) return status;
   const Format format = FormatOf(path);
   if (format == Format::kBvh) return WriteBvhPair(path, pair, skeleton);

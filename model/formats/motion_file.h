@@ -8,6 +8,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
 #include "model/motion/clip.h"
 #include "model/motion/coordinates.h"
 #include "model/motion/skeleton.h"
@@ -15,9 +16,11 @@
 
 // The front door of motion files: the extension decides the format (docs/formats.md).
 //
-//   .txt   SBU text, two people      .csv   positions by column, one or two people
-//   .bvh   joint angles              .npy   float array [frames, joints, 3] or [2, frames, joints,
-//   3] .json  positions, one or two people
+//   .txt    SBU text, two people
+//   .bvh    joint angles, one person a ROOT
+//   .csv    positions by column, one or two people
+//   .json   positions, one or two people
+//   .npy    positions as an array, [frames, joints, 3] or [2, frames, joints, 3]
 
 namespace duet::formats {
 
@@ -33,7 +36,7 @@ struct ReadOptions {
   std::optional<double> frame_rate_hz;
   // Replaces what the file says or its format implies: SBU text the data set's normalised unit;
   // CSV and JSON what they state, else metres, y up; NPY metres, y up.
-  std::optional<motion::CoordinateFrame> coordinates;
+  std::optional<motion::Coordinates> coordinates;
   // BVH: metres in one unit of the file (0.01 for centimetres). Found from the height when absent.
   std::optional<double> metres_per_unit;
   retargeting::JointOverrides joint_overrides;
@@ -45,8 +48,7 @@ struct ReadOptions {
 //
 // Shapes: [frames >= 1, options.skeleton]. Units: world metres, y up.
 // Errors: NOT_FOUND, PERMISSION_DENIED; INVALID_ARGUMENT naming the file, the place in it, what
-// came
-//         and what was wanted.
+//         came and what was wanted.
 absl::StatusOr<motion::Clip> ReadLeader(const std::filesystem::path& path,
                                         const ReadOptions& options = {});
 
@@ -63,10 +65,14 @@ absl::StatusOr<std::vector<std::filesystem::path>> WritePair(const std::filesyst
                                                              const motion::ClipPair& pair,
                                                              const motion::Skeleton& skeleton);
 
-// Whether WritePair (ReadLeader) knows the extension, without the file; the error lists those
-// known.
-absl::Status CheckWritable(const std::filesystem::path& path);
-absl::Status CheckReadable(const std::filesystem::path& path);
+// Whether WritePair, ReadLeader know the extension; the file need not exist.
+bool IsWritable(const std::filesystem::path& path);
+bool IsReadable(const std::filesystem::path& path);
+// Which those are, for UnknownExtension and for callers that know more.
+inline constexpr char kWritableExtensions[] = ".bvh, .csv, .npy or .json";
+inline constexpr char kReadableExtensions[] = ".txt (SBU text), .bvh, .csv, .npy or .json";
+// INVALID_ARGUMENT "path: extension: came ..., wanted <known>".
+absl::Status UnknownExtension(const std::filesystem::path& path, absl::string_view known);
 
 }  // namespace duet::formats
 

@@ -1,7 +1,47 @@
 #include "model/motion/coordinates.h"
 
+#include <cstddef>
+
 namespace duet::motion {
 namespace {
+
+template <typename Value>
+struct Spelling {
+  absl::string_view name;
+  Value value;
+};
+
+// The first spelling of a value is the one written.
+constexpr Spelling<LengthUnit> kUnitSpellings[] = {
+    {"metres", LengthUnit::kMetres},
+    {"millimetres", LengthUnit::kMillimetres},
+    {"sbu-normalised", LengthUnit::kSbuNormalised},
+    {"m", LengthUnit::kMetres},
+    {"mm", LengthUnit::kMillimetres},
+    {"sbu", LengthUnit::kSbuNormalised},
+    {"sbu_normalised", LengthUnit::kSbuNormalised},
+};
+constexpr Spelling<UpAxis> kAxisSpellings[] = {
+    {"y-up", UpAxis::kYUp}, {"z-up", UpAxis::kZUp}, {"y-down", UpAxis::kYDown},
+    {"y", UpAxis::kYUp},    {"z", UpAxis::kZUp},    {"-y", UpAxis::kYDown},
+    {"y_up", UpAxis::kYUp}, {"z_up", UpAxis::kZUp}, {"y_down", UpAxis::kYDown},
+};
+
+template <typename Value, std::size_t size>
+absl::string_view NameOf(const Spelling<Value> (&spellings)[size], Value value) {
+  for (const Spelling<Value>& spelling : spellings) {
+    if (spelling.value == value) return spelling.name;
+  }
+  return {};
+}
+
+template <typename Value, std::size_t size>
+std::optional<Value> ValueOf(const Spelling<Value> (&spellings)[size], absl::string_view name) {
+  for (const Spelling<Value>& spelling : spellings) {
+    if (spelling.name == name) return spelling.value;
+  }
+  return std::nullopt;
+}
 
 // The data set's own conversion to millimetres, in metres.
 constexpr float kSbuOffsetX = 1.28f, kSbuScaleX = -2.56f;
@@ -36,28 +76,36 @@ Vec3 FromYUp(UpAxis up_axis, Vec3 p) {
 
 }  // namespace
 
-Vec3 ToWorld(const CoordinateFrame& frame, Vec3 p) {
-  switch (frame.unit) {
+Vec3 ToWorld(const Coordinates& coordinates, Vec3 p) {
+  switch (coordinates.unit) {
     case LengthUnit::kMetres:
-      return ToYUp(frame.up_axis, p);
+      return ToYUp(coordinates.up_axis, p);
     case LengthUnit::kMillimetres:
-      return ToYUp(frame.up_axis, p * kMillimetre);
+      return ToYUp(coordinates.up_axis, p * kMillimetre);
     case LengthUnit::kSbuNormalised:
       return {kSbuOffsetX + kSbuScaleX * p.x, kSbuOffsetY + kSbuScaleY * p.y, kSbuScaleZ * p.z};
   }
   return p;
 }
 
-Vec3 FromWorld(const CoordinateFrame& frame, Vec3 p) {
-  switch (frame.unit) {
+Vec3 FromWorld(const Coordinates& coordinates, Vec3 p) {
+  switch (coordinates.unit) {
     case LengthUnit::kMetres:
-      return FromYUp(frame.up_axis, p);
+      return FromYUp(coordinates.up_axis, p);
     case LengthUnit::kMillimetres:
-      return FromYUp(frame.up_axis, p) / kMillimetre;
+      return FromYUp(coordinates.up_axis, p) / kMillimetre;
     case LengthUnit::kSbuNormalised:
       return {(p.x - kSbuOffsetX) / kSbuScaleX, (p.y - kSbuOffsetY) / kSbuScaleY, p.z / kSbuScaleZ};
   }
   return p;
 }
+
+absl::string_view LengthUnitName(LengthUnit unit) { return NameOf(kUnitSpellings, unit); }
+absl::string_view UpAxisName(UpAxis axis) { return NameOf(kAxisSpellings, axis); }
+
+std::optional<LengthUnit> ParseLengthUnit(absl::string_view name) {
+  return ValueOf(kUnitSpellings, name);
+}
+std::optional<UpAxis> ParseUpAxis(absl::string_view name) { return ValueOf(kAxisSpellings, name); }
 
 }  // namespace duet::motion

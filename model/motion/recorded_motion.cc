@@ -3,14 +3,14 @@
 #include <cmath>
 
 #include "absl/strings/str_cat.h"
-#include "model/base/text.h"
+#include "model/motion/motion_limits.h"
 
 namespace duet::motion {
 namespace {
 
 bool IsWritable(Vec3 position) {
   for (float value : {position.x, position.y, position.z}) {
-    if (!(std::abs(value) <= static_cast<float>(base::kMaxCoordinate))) return false;
+    if (!(std::abs(value) <= static_cast<float>(kMaxCoordinate))) return false;
   }
   return true;
 }
@@ -24,11 +24,11 @@ absl::Status CheckClip(absl::string_view name, const Clip& clip) {
   const std::size_t joints = clip.joint_names.size();
   for (std::size_t i = 0; i < clip.positions.size(); ++i) {
     if (IsWritable(clip.positions[i])) continue;
-    return absl::InvalidArgumentError(absl::StrCat(
-        name, ": frame ", i / joints, " ", clip.joint_names[i % joints],
-        ": came a position that is not finite or beyond +-", base::kMaxCoordinate, " m"));
+    return absl::InvalidArgumentError(
+        absl::StrCat(name, ": frame ", i / joints, " ", clip.joint_names[i % joints],
+                     ": came a position that is not finite or beyond +-", kMaxCoordinate, " m"));
   }
-  return base::CheckFrameRate(name, clip.frame_rate_hz);
+  return CheckFrameRate(name, clip.frame_rate_hz);
 }
 
 absl::Status CheckPair(const ClipPair& pair) {

@@ -13,7 +13,7 @@ namespace duet::motion {
 // Positions as a file has them: the file's joints in its order, in its own unit and axes.
 struct RecordedMotion {
   std::vector<Clip> people;  // one or two, the same joints and frames; frame rate 0 when unknown
-  CoordinateFrame coordinates;
+  Coordinates coordinates;
 };
 
 // Refuses what no writer can express: no frame, a rate that is no rate, a position that is not

@@ -38,16 +38,18 @@ JointSource Mix(std::initializer_list<std::pair<const JointSource*, float>> part
   return mixed;
 }
 
-motion::Vec3 Evaluate(const JointSource& source, const motion::Vec3* pose) {
+motion::Vec3 Evaluate(const JointSource& source, absl::Span<const motion::Vec3> pose) {
   motion::Vec3 position;
-  for (const JointSource::Term& term : source.terms) position += pose[term.joint] * term.weight;
+  for (const JointSource::Term& term : source.terms) {
+    position += pose[static_cast<size_t>(term.joint)] * term.weight;
+  }
   return position;
 }
 
 class Mapper {
  public:
   Mapper(absl::string_view source, const std::vector<std::string>& names,
-         const std::vector<motion::Vec3>& first_pose, const motion::Skeleton& skeleton)
+         absl::Span<const motion::Vec3> first_pose, const motion::Skeleton& skeleton)
       : source_(source), names_(names), pose_(first_pose), skeleton_(skeleton) {
     found_.resize(skeleton.joint_names.size());
     overridden_.resize(skeleton.joint_names.size(), false);
@@ -250,13 +252,11 @@ class Mapper {
         absl::StrCat(target, ": ", names_[static_cast<size_t>(index)], " (", reason, ")"));
   }
 
-  motion::Vec3 PositionOf(const JointSource& source) const {
-    return Evaluate(source, pose_.data());
-  }
+  motion::Vec3 PositionOf(const JointSource& source) const { return Evaluate(source, pose_); }
 
   absl::string_view source_;
   const std::vector<std::string>& names_;
-  const std::vector<motion::Vec3>& pose_;
+  absl::Span<const motion::Vec3> pose_;
   const motion::Skeleton& skeleton_;
   std::vector<ParsedJointName> parsed_;            // [names]
   std::vector<bool> used_;                         // [names]
@@ -268,7 +268,7 @@ class Mapper {
 }  // namespace
 
 absl::StatusOr<JointMap> MapJoints(absl::string_view source, const std::vector<std::string>& names,
-                                   const std::vector<motion::Vec3>& first_pose,
+                                   absl::Span<const motion::Vec3> first_pose,
                                    const motion::Skeleton& skeleton,
                                    const JointOverrides& overrides) {
   Mapper mapper(source, names, first_pose, skeleton);
@@ -278,7 +278,7 @@ absl::StatusOr<JointMap> MapJoints(absl::string_view source, const std::vector<s
   return mapper.Finish();
 }
 
-std::vector<motion::Vec3> ApplyJointMap(const JointMap& map, const motion::Vec3* pose) {
+std::vector<motion::Vec3> ApplyJointMap(const JointMap& map, absl::Span<const motion::Vec3> pose) {
   std::vector<motion::Vec3> mapped;
   mapped.reserve(map.sources.size());
   for (const JointSource& source : map.sources) mapped.push_back(Evaluate(source, pose));

@@ -7,6 +7,7 @@
 
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
+#include "absl/types/span.h"
 #include "model/motion/skeleton.h"
 #include "model/motion/vec3.h"
 
@@ -43,12 +44,12 @@ struct JointMap {
 // Errors: INVALID_ARGUMENT naming `source`, the skeleton's joints without a source, the names that
 //         the file has, or an override that names no joint of the skeleton or of the file.
 absl::StatusOr<JointMap> MapJoints(absl::string_view source, const std::vector<std::string>& names,
-                                   const std::vector<motion::Vec3>& first_pose,
+                                   absl::Span<const motion::Vec3> first_pose,
                                    const motion::Skeleton& skeleton,
                                    const JointOverrides& overrides = {});
 
-// A frame of the file's joints as one of the skeleton's. [names] -> [skeleton joints]
-std::vector<motion::Vec3> ApplyJointMap(const JointMap& map, const motion::Vec3* pose);
+// One frame of the file's joints as one of the skeleton's. [names] -> [skeleton joints]
+std::vector<motion::Vec3> ApplyJointMap(const JointMap& map, absl::Span<const motion::Vec3> pose);
 
 }  // namespace duet::retargeting
 

@@ -13,6 +13,8 @@ constexpr double kDirectionWeight = 10;
 constexpr double kPreviousPrior = 0.05;
 constexpr double kSwingPrior = 0.02;
 
+std::size_t Index(int joint) { return static_cast<std::size_t>(joint); }
+
 // The axis about which a limb's next joint bends in the rest pose: elbows of a T pose bend about
 // the vertical, knees about the line through both.
 Vec3d HingeAxis(Vec3d rest_direction) {
@@ -21,12 +23,12 @@ Vec3d HingeAxis(Vec3d rest_direction) {
 }
 
 Quaternion FitBranch(const RigJoint& joint, Quaternion to_parent, Quaternion previous,
-                     const motion::Vec3* positions) {
+                     absl::Span<const motion::Vec3> positions) {
   std::vector<Correspondence> shape;
   double size = 0;
   for (std::size_t k = 0; k < joint.neighbours.size(); ++k) {
     const Vec3d offset =
-        ToDouble(positions[joint.neighbours[k]]) - ToDouble(positions[joint.joint]);
+        ToDouble(positions[Index(joint.neighbours[k])]) - ToDouble(positions[Index(joint.joint)]);
     shape.push_back({joint.rest_shape[k], Rotate(to_parent, offset), 1});
     size += Dot(joint.rest_shape[k], joint.rest_shape[k]);
   }
@@ -37,11 +39,11 @@ Quaternion FitBranch(const RigJoint& joint, Quaternion to_parent, Quaternion pre
 
 PoseFitter::PoseFitter(const Rig& rig) : rig_(rig) { pose_.rotations.resize(rig.joints.size()); }
 
-const RigPose& PoseFitter::Fit(const motion::Vec3* positions) {
+const RigPose& PoseFitter::Fit(absl::Span<const motion::Vec3> positions) {
   const std::size_t count = rig_.joints.size();
   std::vector<Vec3d> stands_at(count);
   std::vector<Quaternion> world(count);
-  pose_.root_position = ToDouble(positions[rig_.joints[0].joint]);
+  pose_.root_position = ToDouble(positions[Index(rig_.joints[0].joint)]);
   for (std::size_t j = 0; j < count; ++j) {
     const RigJoint& joint = rig_.joints[j];
     const std::size_t parent = static_cast<std::size_t>(joint.parent);
@@ -62,14 +64,14 @@ const RigPose& PoseFitter::Fit(const motion::Vec3* positions) {
 }
 
 Quaternion PoseFitter::FitAim(const RigJoint& joint, Vec3d stands_at, Quaternion to_parent,
-                              Quaternion previous, const motion::Vec3* positions) const {
-  const Vec3d target = ToDouble(positions[joint.aim]);
+                              Quaternion previous, absl::Span<const motion::Vec3> positions) const {
+  const Vec3d target = ToDouble(positions[Index(joint.aim)]);
   const Vec3d direction =
       Unit(Rotate(to_parent, target - stands_at), Rotate(previous, joint.rest_direction));
   const Quaternion swing =
       ShortestArc(joint.rest_direction, direction, HingeAxis(joint.rest_direction));
   if (joint.bend < 0) return swing;
-  const Vec3d next_bone = Rotate(to_parent, ToDouble(positions[joint.bend]) - target);
+  const Vec3d next_bone = Rotate(to_parent, ToDouble(positions[Index(joint.bend)]) - target);
   return FitBend(joint, direction, next_bone, swing, previous);
 }
 

@@ -3,13 +3,14 @@
 
 #include <vector>
 
+#include "absl/types/span.h"
 #include "model/motion/vec3.h"
 #include "model/retargeting/rig.h"
 #include "model/retargeting/rotation.h"
 
 namespace duet::retargeting {
 
-// One frame as angles: each joint's rotation in its parent's frame.
+// One frame as angles: each joint's rotation relative to its parent's.
 struct RigPose {
   Vec3d root_position;
   std::vector<Quaternion> rotations;  // [rig joints]
@@ -26,11 +27,11 @@ class PoseFitter {
   // `rig` outlives the fitter.
   explicit PoseFitter(const Rig& rig);
   // positions: [skeleton joints], metres.
-  const RigPose& Fit(const motion::Vec3* positions);
+  const RigPose& Fit(absl::Span<const motion::Vec3> positions);
 
  private:
   Quaternion FitAim(const RigJoint& joint, Vec3d stands_at, Quaternion to_parent,
-                    Quaternion previous, const motion::Vec3* positions) const;
+                    Quaternion previous, absl::Span<const motion::Vec3> positions) const;
   Quaternion FitBend(const RigJoint& joint, Vec3d direction, Vec3d next_bone, Quaternion swing,
                      Quaternion previous) const;
 

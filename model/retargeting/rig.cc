@@ -78,7 +78,7 @@ class RigBuilder {
     return *middle;
   }
 
-  // Where `to` is from `from` in the trunk's frame, on average.
+  // Where `to` is from `from` along the trunk's axes, on average.
   Vec3d MeanOffset(int from, int to) const {
     Vec3d sum;
     for (int frame = 0; frame < clip_.frame_count(); ++frame) {

@@ -8,6 +8,7 @@
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
 #include "model/base/strict_json.h"
+#include "model/base/text.h"
 
 namespace duet::training {
 namespace {
@@ -23,8 +24,8 @@ std::string OneOf(base::ObjectReader* reader, const std::string& key,
                   const std::vector<std::string>& choices) {
   std::string value = reader->String(key, kMaxWord);
   if (reader->ok() && std::find(choices.begin(), choices.end(), value) == choices.end()) {
-    reader->Fail(key,
-                 absl::StrCat("\"", value, "\", wanted one of ", absl::StrJoin(choices, ", ")));
+    reader->Fail(
+        key, absl::StrCat(base::Quoted(value), ", wanted one of ", absl::StrJoin(choices, ", ")));
   }
   return value;
 }

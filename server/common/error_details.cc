@@ -1,17 +1,13 @@
 #include "server/common/error_details.h"
 
-#include <cstddef>
 #include <cstdint>
 
 #include "absl/strings/cord.h"
-#include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
 #include "duet/rpc/v1/status.pb.h"
 
 namespace duet::server::common {
 namespace {
-
-constexpr std::size_t kQuotedBytes = 64;
 
 void AddPayload(absl::Status& status, absl::string_view url,
                 const google::protobuf::MessageLite& detail) {
@@ -45,13 +41,6 @@ void AddErrorInfo(absl::Status& status, absl::string_view reason,
   detail.set_domain("duet.v1");
   for (const auto& [key, value] : metadata) (*detail.mutable_metadata())[key] = value;
   AddPayload(status, kErrorInfoUrl, detail);
-}
-
-std::string Quoted(absl::string_view text) {
-  const bool cut = text.size() > kQuotedBytes;
-  const absl::string_view shown = text.substr(0, kQuotedBytes);
-  // Escapes every byte that is not printable ASCII, so a cut UTF-8 sequence stays readable.
-  return absl::StrCat("\"", absl::CHexEscape({shown.data(), shown.size()}), cut ? "..." : "", "\"");
 }
 
 }  // namespace duet::server::common

@@ -38,9 +38,6 @@ void AddRetryInfo(absl::Status& status, absl::Duration delay);
 void AddErrorInfo(absl::Status& status, absl::string_view reason,
                   const std::map<std::string, std::string>& metadata = {});
 
-// A caller's string made fit for a message: quoted, escaped, at most 64 bytes of it.
-std::string Quoted(absl::string_view text);
-
 }  // namespace duet::server::common
 
 #endif  // DUET_SERVER_COMMON_ERROR_DETAILS_H_

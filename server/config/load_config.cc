@@ -5,17 +5,20 @@
 #include <google/protobuf/util/json_util.h>
 
 #include <CLI/CLI.hpp>
+#include <cstddef>
 #include <cstdint>
-#include <fstream>
 #include <sstream>
 #include <utility>
 
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
+#include "model/base/file.h"
 
 namespace duet::server::config {
 namespace {
+
+constexpr std::size_t kMaxConfigBytes = std::size_t{1} << 20;
 
 // Keeps the first error of a text-format file.
 class FirstError final : public google::protobuf::io::ErrorCollector {
@@ -143,13 +146,11 @@ absl::StatusOr<v1::ServerConfig> ParseConfigText(std::string_view text, bool jso
 }
 
 absl::StatusOr<v1::ServerConfig> ReadConfigFile(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  if (!file || !(text << file.rdbuf())) {
-    return absl::NotFoundError(absl::StrCat("--config: cannot read ", path.string()));
+  const absl::StatusOr<std::string> text = base::ReadFile(path, kMaxConfigBytes, "a configuration");
+  if (!text.ok()) {
+    return absl::Status(text.status().code(), absl::StrCat("--config: ", text.status().message()));
   }
-  absl::StatusOr<v1::ServerConfig> config =
-      ParseConfigText(text.str(), path.extension() == ".json");
+  absl::StatusOr<v1::ServerConfig> config = ParseConfigText(*text, path.extension() == ".json");
   if (config.ok()) return config;
   return absl::InvalidArgumentError(
       absl::StrCat("--config: ", path.string(), ": ", config.status().message()));

@@ -1,21 +1,13 @@
 #include "server/registry/model_registry.h"
 
-#include <algorithm>
-#include <cstddef>
 #include <utility>
 
-#include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "model/base/text.h"
 
 namespace duet::server::registry {
 namespace {
-
-// Names come from requests; enough of one to recognise it.
-std::string Shown(absl::string_view name) {
-  return absl::StrCat("\"", absl::CHexEscape({name.data(), std::min<std::size_t>(name.size(), 64)}),
-                      "\"");
-}
 
 template <typename Map>
 std::string Keys(const Map& map) {
@@ -38,9 +30,9 @@ absl::Status ModelRegistry::SetLabel(absl::string_view name, absl::string_view l
   common::MutexLock lock(mutex_);
   const auto entry = entries_.find(name);
   if (entry == entries_.end() || entry->second.versions.count(version) == 0) {
-    return absl::NotFoundError(absl::StrCat("version label ", Shown(label), " points at version ",
-                                            version, " of model ", Shown(name),
-                                            ", which is not served"));
+    return absl::NotFoundError(absl::StrCat("version label ", base::Quoted(label),
+                                            " points at version ", version, " of model ",
+                                            base::Quoted(name), ", which is not served"));
   }
   entry->second.labels[std::string(label)] = version;
   return absl::OkStatus();
@@ -49,7 +41,7 @@ absl::Status ModelRegistry::SetLabel(absl::string_view name, absl::string_view l
 absl::Status ModelRegistry::SetDefault(absl::string_view name) {
   common::MutexLock lock(mutex_);
   if (entries_.find(name) == entries_.end()) {
-    return absl::NotFoundError(absl::StrCat("the default model ", Shown(name),
+    return absl::NotFoundError(absl::StrCat("the default model ", base::Quoted(name),
                                             " is not served; served are: ", Keys(entries_)));
   }
   default_name_ = std::string(name);
@@ -76,7 +68,7 @@ absl::StatusOr<ServedModel> ModelRegistry::Find(const ModelQuery& query) const {
   const std::string& name = query.name.empty() ? DefaultName() : query.name;
   const auto found = entries_.find(name);
   if (found == entries_.end()) {
-    return absl::NotFoundError(absl::StrCat("model.name: is ", Shown(name),
+    return absl::NotFoundError(absl::StrCat("model.name: is ", base::Quoted(name),
                                             ", which is not served; served are: ", Keys(entries_)));
   }
   const Entry& entry = found->second;
@@ -84,9 +76,9 @@ absl::StatusOr<ServedModel> ModelRegistry::Find(const ModelQuery& query) const {
   if (query.version_label.has_value()) {
     const auto label = entry.labels.find(*query.version_label);
     if (label == entry.labels.end()) {
-      return absl::NotFoundError(absl::StrCat("model.version_label: is ",
-                                              Shown(*query.version_label), "; labels of model ",
-                                              name, " are: ", Keys(entry.labels)));
+      return absl::NotFoundError(
+          absl::StrCat("model.version_label: is ", base::Quoted(*query.version_label),
+                       "; labels of model ", name, " are: ", Keys(entry.labels)));
     }
     version = label->second;
   }

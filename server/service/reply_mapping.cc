@@ -13,7 +13,7 @@ void FillChunk(const ReplyMapping& reply, const std::vector<motion::Vec3>& frame
   for (int frame = 0; frame < frame_count; ++frame) {
     const motion::Vec3* pose = frames.data() + static_cast<std::ptrdiff_t>(frame) * model_joints;
     for (const int joint : reply.joints) {
-      const motion::Vec3 position = FromWorld(reply.frame, pose[joint]);
+      const motion::Vec3 position = FromWorld(reply.coordinates, pose[joint]);
       chunk.add_positions(position.x);
       chunk.add_positions(position.y);
       chunk.add_positions(position.z);

@@ -13,7 +13,7 @@ namespace duet::server::service {
 
 // How the model's follower becomes the caller's: joints, order, unit and up axis.
 struct ReplyMapping {
-  motion::CoordinateFrame frame;
+  motion::Coordinates coordinates;
   std::vector<int> joints;               // for every joint of the reply, its index in the model
   std::vector<std::string> joint_names;  // the same by name
   // The leader's, repeated in the header.

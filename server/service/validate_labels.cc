@@ -8,6 +8,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/string_view.h"
+#include "model/base/text.h"
 
 namespace duet::server::service {
 namespace {
@@ -38,7 +39,7 @@ std::vector<float> ReadLabelVector(const std::string& field, const v1::LabelVect
         std::find(model.classes.begin(), model.classes.end(), entry.interaction_class());
     if (found == model.classes.end()) {
       violations.Malformed(absl::StrCat(at, ".interaction_class"),
-                           absl::StrCat("is ", common::Quoted(entry.interaction_class()),
+                           absl::StrCat("is ", base::Quoted(entry.interaction_class()),
                                         ", wanted one of ", absl::StrJoin(model.classes, ", ")));
     }
     // Also false for NaN.
@@ -52,7 +53,7 @@ std::vector<float> ReadLabelVector(const std::string& field, const v1::LabelVect
     if (first_use[index] >= 0) {
       violations.Malformed(
           absl::StrCat(at, ".interaction_class"),
-          absl::StrCat("is ", common::Quoted(entry.interaction_class()), ", which weights[",
+          absl::StrCat("is ", base::Quoted(entry.interaction_class()), ", which weights[",
                        first_use[index], "] is already; wanted each class at most once"));
       continue;
     }

@@ -7,6 +7,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "model/base/text.h"
 
 namespace duet::server::service {
 namespace {
@@ -60,8 +61,8 @@ void NameMissingJoints(const engine::ModelDescription& model, const std::vector<
 
 }  // namespace
 
-std::optional<motion::CoordinateFrame> ValidateCoordinateFrame(const v1::Motion& leader,
-                                                               Violations& violations) {
+std::optional<motion::Coordinates> ValidateCoordinates(const v1::Motion& leader,
+                                                       Violations& violations) {
   const std::optional<motion::LengthUnit> unit = ToUnit(leader.unit());
   const std::optional<motion::UpAxis> up_axis = ToUpAxis(leader.up_axis());
   if (!unit.has_value()) {
@@ -84,7 +85,7 @@ std::optional<motion::CoordinateFrame> ValidateCoordinateFrame(const v1::Motion&
                                       ", wanted UP_AXIS_Y_DOWN with LENGTH_UNIT_SBU_NORMALISED"));
     return std::nullopt;
   }
-  return motion::CoordinateFrame{*unit, *up_axis};
+  return motion::Coordinates{*unit, *up_axis};
 }
 
 std::vector<int> ValidateJoints(const v1::Motion& leader, const engine::ModelDescription& model,
@@ -105,11 +106,11 @@ std::vector<int> ValidateJoints(const v1::Motion& leader, const engine::ModelDes
     joints.push_back(joint);
     if (joint < 0) {
       violations.Mismatch(At("leader.joint_names", i),
-                          absl::StrCat("is ", common::Quoted(name), ", which is no joint of model ",
+                          absl::StrCat("is ", base::Quoted(name), ", which is no joint of model ",
                                        model.name, "; GetModel lists them"));
     } else if (first_use[joint] >= 0) {
       violations.Mismatch(At("leader.joint_names", i),
-                          absl::StrCat("is ", common::Quoted(name), ", which joint_names[",
+                          absl::StrCat("is ", base::Quoted(name), ", which joint_names[",
                                        first_use[joint], "] is already; wanted each joint once"));
     } else {
       first_use[joint] = i;
@@ -164,7 +165,7 @@ bool ValidateFinite(absl::string_view field,
 std::vector<motion::Vec3> ReadPositions(absl::string_view field,
                                         const google::protobuf::RepeatedField<float>& positions,
                                         const std::vector<int>& joints,
-                                        const motion::CoordinateFrame& frame,
+                                        const motion::Coordinates& coordinates,
                                         const RequestLimits& limits, Violations& violations) {
   const int points = positions.size() / 3;
   const int joint_count = static_cast<int>(joints.size());
@@ -173,7 +174,7 @@ std::vector<motion::Vec3> ReadPositions(absl::string_view field,
   int too_far = 0;
   for (int point = 0; point < points; ++point) {
     const float* xyz = positions.data() + 3 * static_cast<std::ptrdiff_t>(point);
-    const motion::Vec3 position = ToWorld(frame, {xyz[0], xyz[1], xyz[2]});
+    const motion::Vec3 position = ToWorld(coordinates, {xyz[0], xyz[1], xyz[2]});
     const int frame_start = point / joint_count * joint_count;
     world[frame_start + joints[point % joint_count]] = position;
     // Written so that a conversion that overflowed is too far as well.

@@ -18,8 +18,8 @@ namespace duet::server::service {
 inline constexpr int kMaxJointNames = 1024;
 
 // The unit and up axis of a motion; nothing, and violations, when they cannot be interpreted.
-std::optional<motion::CoordinateFrame> ValidateCoordinateFrame(const v1::Motion& leader,
-                                                               Violations& violations);
+std::optional<motion::Coordinates> ValidateCoordinates(const v1::Motion& leader,
+                                                       Violations& violations);
 
 // For every joint of the leader, its index in the model; empty, and violations, unless the names
 // are the model's joints in some order.
@@ -35,7 +35,7 @@ void ValidateTiming(const v1::Motion& leader, const RequestLimits& limits, Viola
 std::vector<motion::Vec3> ReadPositions(absl::string_view field,
                                         const google::protobuf::RepeatedField<float>& positions,
                                         const std::vector<int>& joints,
-                                        const motion::CoordinateFrame& frame,
+                                        const motion::Coordinates& coordinates,
                                         const RequestLimits& limits, Violations& violations);
 
 // Names the first few values that are not finite, and counts them all. True when there are none.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "model/base/text.h"
 #include "server/service/validate_labels.h"
 #include "server/service/validate_leader.h"
 #include "server/service/violations.h"
@@ -41,7 +42,7 @@ class Validation {
   const RequestLimits& limits_;
   Violations violations_;
 
-  std::optional<motion::CoordinateFrame> frame_;
+  std::optional<motion::Coordinates> coordinates_;
   std::vector<int> joints_;  // the leader's joints in the model; empty when they do not fit
   std::vector<motion::Vec3> leader_;
   ReplyMapping reply_;
@@ -55,7 +56,7 @@ void Validation::Leader() {
   const v1::Motion& leader = request_.leader();
   joints_ = ValidateJoints(leader, model_, violations_);
   ValidateTiming(leader, limits_, violations_);
-  frame_ = ValidateCoordinateFrame(leader, violations_);
+  coordinates_ = ValidateCoordinates(leader, violations_);
 
   const bool finite = ValidateFinite("leader.positions", leader.positions(), violations_);
   const uint64_t wanted =
@@ -67,16 +68,16 @@ void Validation::Leader() {
                      leader.frame_count(), " frames x ", leader.joint_names_size(), " joints x 3"));
     return;
   }
-  if (!finite || !frame_.has_value() || joints_.empty()) return;
-  leader_ =
-      ReadPositions("leader.positions", leader.positions(), joints_, *frame_, limits_, violations_);
+  if (!finite || !coordinates_.has_value() || joints_.empty()) return;
+  leader_ = ReadPositions("leader.positions", leader.positions(), joints_, *coordinates_, limits_,
+                          violations_);
 }
 
 std::vector<motion::Vec3> Validation::StartPositions(
     absl::string_view field, const google::protobuf::RepeatedField<float>& values,
     const std::vector<int>& joints) {
-  if (!ValidateFinite(field, values, violations_) || !frame_.has_value()) return {};
-  return ReadPositions(field, values, joints, *frame_, limits_, violations_);
+  if (!ValidateFinite(field, values, violations_) || !coordinates_.has_value()) return {};
+  return ReadPositions(field, values, joints, *coordinates_, limits_, violations_);
 }
 
 std::optional<engine::FollowerStart> Validation::Start() {
@@ -121,14 +122,14 @@ std::optional<motion::Vec3> Validation::PartnerDirection() {
   const v1::Direction& direction = request_.partner_direction();
   google::protobuf::RepeatedField<float> xyz;
   for (const float value : {direction.x(), direction.y(), direction.z()}) xyz.Add(value);
-  if (!ValidateFinite("partner_direction", xyz, violations_) || !frame_.has_value()) {
+  if (!ValidateFinite("partner_direction", xyz, violations_) || !coordinates_.has_value()) {
     return std::nullopt;
   }
   // Scaled first, so that neither tiny nor huge components are lost in the conversion.
   const float largest = std::max({std::abs(xyz[0]), std::abs(xyz[1]), std::abs(xyz[2])});
   if (largest > 0) {
     const motion::Vec3 unit = {xyz[0] / largest, xyz[1] / largest, xyz[2] / largest};
-    const motion::Vec3 world = ToWorld(*frame_, unit) - ToWorld(*frame_, {});
+    const motion::Vec3 world = ToWorld(*coordinates_, unit) - ToWorld(*coordinates_, {});
     const float horizontal = std::hypot(world.x, world.z);
     if (horizontal > 1e-6F * Norm(world)) {
       return motion::Vec3{world.x / horizontal, 0, world.z / horizontal};
@@ -146,7 +147,7 @@ void Validation::ReplyJoints() {
   reply_.unit = leader.unit();
   reply_.up_axis = leader.up_axis();
   reply_.frame_rate_hz = leader.frame_rate_hz();
-  if (frame_.has_value()) reply_.frame = *frame_;
+  if (coordinates_.has_value()) reply_.coordinates = *coordinates_;
   const auto& wanted = request_.reply_joint_names();
   // Compared name by name below; a list that cannot be right must not cost its square.
   if (leader.joint_names_size() > kMaxJointNames) return;
@@ -164,13 +165,13 @@ void Validation::ReplyJoints() {
   for (int i = 0; i < wanted.size(); ++i) {
     const std::string field = absl::StrCat("reply_joint_names[", i, "]");
     if (std::find(known.begin(), known.end(), wanted[i]) == known.end()) {
-      violations_.Malformed(field, absl::StrCat("is ", common::Quoted(wanted[i]),
+      violations_.Malformed(field, absl::StrCat("is ", base::Quoted(wanted[i]),
                                                 ", wanted one of leader.joint_names"));
     }
     const auto first = std::find(wanted.begin(), wanted.end(), wanted[i]);
     if (first - wanted.begin() < i) {
       violations_.Malformed(
-          field, absl::StrCat("is ", common::Quoted(wanted[i]), ", which [", first - wanted.begin(),
+          field, absl::StrCat("is ", base::Quoted(wanted[i]), ", which [", first - wanted.begin(),
                               "] is already; wanted each joint at most once"));
     }
   }

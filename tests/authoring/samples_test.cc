@@ -10,7 +10,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "model/authoring/keyframes.h"
-#include "model/base/text.h"
+#include "model/base/file.h"
 #include "model/formats/bvh/bvh_document.h"
 #include "model/formats/bvh/bvh_export.h"
 #include "model/formats/motion_file.h"
@@ -40,8 +40,8 @@ class Sample : public ::testing::TestWithParam<const char*> {
 };
 
 TEST_P(Sample, IsWhatItsKeyFramesSay) {
-  const absl::StatusOr<std::string> text = base::ReadFile(keyframes_),
-                                    committed = base::ReadFile(bvh_);
+  const absl::StatusOr<std::string> text = base::ReadFile(keyframes_, 1 << 20, "key frames"),
+                                    committed = base::ReadFile(bvh_, 1 << 20, "a motion");
   ASSERT_TRUE(text.ok()) << text.status();
   ASSERT_TRUE(committed.ok()) << committed.status();
   const absl::StatusOr<motion::Clip> clip = ParseKeyframes(*text, keyframes_.string());

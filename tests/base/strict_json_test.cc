@@ -1,6 +1,9 @@
 #include "model/base/strict_json.h"
 
 #include <limits>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "gtest/gtest.h"
@@ -30,6 +33,14 @@ TEST(ParseStrictJson, RefusesWhatIsNotAnObject) {
   for (const char* text : {"", "[]", "1", " {}", "\xEF\xBB\xBF{}", "null"}) {
     EXPECT_THAT(ParseStrictJson(text, 3), Refused("first byte")) << text;
   }
+}
+
+TEST(ParseHandwrittenJson, SkipsWhatEditorsPutBefore) {
+  const absl::StatusOr<json> parsed = ParseHandwrittenJson("\xEF\xBB\xBF \r\n{\"a\": 1}", 3);
+  ASSERT_THAT(parsed, IsOk());
+  EXPECT_EQ((*parsed)["a"], 1);
+  EXPECT_THAT(ParseHandwrittenJson(" x{}", 3), Refused("first byte"));
+  EXPECT_THAT(ParseHandwrittenJson(" {\"a\": [[]]}", 2), Refused("deeper than 2"));
 }
 
 TEST(ParseStrictJson, RefusesBrokenJson) {
@@ -140,6 +151,39 @@ TEST(ObjectReader, ShortensWhatItQuotes) {
   ObjectReader reader(object, "");
   reader.Int("s", 0, 1);
   EXPECT_LT(reader.Finish().message().size(), 200u);
+}
+
+TEST(Shown, IsShort) {
+  EXPECT_EQ(Shown("a\n"), "\"a\\n\"");
+  EXPECT_EQ(Shown(1.5), "1.5");
+  EXPECT_EQ(Shown(json::array({1, "x"})), "[1,\"x\"]");
+  EXPECT_EQ(Shown(json(std::vector<int>(9, 1))), "an array of 9");
+  EXPECT_LT(Shown(json::array({std::string(1000, 'x')})).size(), 80u);
+}
+
+std::optional<int> ParseDigit(absl::string_view text) {
+  return text == "seven" ? std::optional<int>(7) : std::nullopt;
+}
+
+TEST(ObjectReader, ReadsAChoice) {
+  const json object = {{"a", "seven"}, {"b", "eight"}, {"c", 7}};
+  ObjectReader reader(object, "");
+  EXPECT_EQ(reader.Choice("a", ParseDigit, "seven"), 7);
+  EXPECT_THAT(reader.status(), IsOk());
+  EXPECT_EQ(reader.Choice("b", ParseDigit, "seven"), 0);
+  EXPECT_THAT(reader.status(), Refused("b: \"eight\", wanted seven"));
+  ObjectReader mistyped(object, ""), missing(object, "");
+  EXPECT_EQ(mistyped.Choice("c", ParseDigit, "seven"), 0);
+  EXPECT_THAT(mistyped.status(), Refused("c: 7, wanted seven"));
+  EXPECT_EQ(missing.Choice("d", ParseDigit, "seven"), 0);
+  EXPECT_THAT(missing.status(), Refused("d: missing"));
+}
+
+TEST(ObjectReader, PassesOverUnknownFieldsUntilFinish) {
+  const json object = {{"a", 1}};
+  ObjectReader reader(object, "");
+  EXPECT_THAT(reader.status(), IsOk());
+  EXPECT_THAT(reader.Finish(), Refused("unknown field \"a\""));
 }
 
 }  // namespace

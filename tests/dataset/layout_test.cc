@@ -15,7 +15,7 @@ using Json = nlohmann::json;
 // A stick figure in the own-data layout, complete.
 Json Complete() {
   return Json::parse(R"({
-    "name": "sticks", "frame_rate_hz": 60, "unit": "millimetres", "up_axis": "z_up",
+    "name": "sticks", "frame_rate_hz": 60, "unit": "millimetres", "up_axis": "z-up",
     "skeleton": {
       "joint_names": ["hip", "left_hip", "right_hip", "left_foot", "right_foot"],
       "bones": [["hip", "left_hip"], ["hip", "right_hip"],
@@ -40,8 +40,8 @@ TEST(DatasetLayoutTest, ReadsEveryField) {
   ASSERT_TRUE(layout.ok()) << layout.status();
   EXPECT_EQ(layout->name, "sticks");
   EXPECT_EQ(layout->frame_rate_hz, 60);
-  EXPECT_EQ(layout->frame.unit, motion::LengthUnit::kMillimetres);
-  EXPECT_EQ(layout->frame.up_axis, motion::UpAxis::kZUp);
+  EXPECT_EQ(layout->coordinates.unit, motion::LengthUnit::kMillimetres);
+  EXPECT_EQ(layout->coordinates.up_axis, motion::UpAxis::kZUp);
   EXPECT_THAT(layout->skeleton.joint_names,
               ElementsAre("hip", "left_hip", "right_hip", "left_foot", "right_foot"));
   EXPECT_EQ(layout->skeleton.bones[3], (motion::Bone{2, 4}));
@@ -55,17 +55,32 @@ TEST(DatasetLayoutTest, ReadsEveryField) {
   EXPECT_TRUE(layout->classes[1].symmetric);
 }
 
+TEST(DatasetLayoutTest, ReadsEarlierSpellingsOfUnitAndAxis) {
+  Json json = Complete();
+  json["unit"] = "sbu_normalised";
+  json["up_axis"] = "y_down";
+  const absl::StatusOr<DatasetLayout> layout = ParseDatasetLayout(json.dump());
+  ASSERT_TRUE(layout.ok()) << layout.status();
+  EXPECT_EQ(layout->coordinates.unit, motion::LengthUnit::kSbuNormalised);
+  EXPECT_EQ(layout->coordinates.up_axis, motion::UpAxis::kYDown);
+  for (const char* up_axis : {"y_up", "z_up"}) {
+    json["unit"] = "metres";
+    json["up_axis"] = up_axis;
+    EXPECT_TRUE(ParseDatasetLayout(json.dump()).ok()) << up_axis;
+  }
+}
+
 TEST(DatasetLayoutTest, NamesTheFieldThatIsMissing) {
   const Json complete = Complete();
   for (const auto& item : complete.items()) {
     Json json = Complete();
     json.erase(item.key());
-    EXPECT_THAT(ErrorOf(json), HasSubstr("the field " + item.key()));
+    EXPECT_THAT(ErrorOf(json), HasSubstr(item.key() + ": missing"));
   }
   for (const auto& item : complete["skeleton"].items()) {
     Json json = Complete();
     json["skeleton"].erase(item.key());
-    EXPECT_THAT(ErrorOf(json), HasSubstr("the field " + item.key()));
+    EXPECT_THAT(ErrorOf(json), HasSubstr(item.key() + ": missing"));
   }
 }
 
@@ -77,22 +92,22 @@ TEST(DatasetLayoutTest, RefusesEveryWrongValueByName) {
   };
   const Case cases[] = {
       {"/name", "\"\"", "name: \"\""},
-      {"/frame_rate_hz", "0", "frame_rate_hz: 0, wanted 1 to 240"},
+      {"/frame_rate_hz", "0", "frame_rate_hz: 0, wanted a number from 1 to 240"},
       {"/frame_rate_hz", "\"fast\"", "frame_rate_hz: \"fast\""},
-      {"/unit", "\"feet\"", "unit: \"feet\", wanted metres, millimetres, sbu_normalised"},
-      {"/unit", "\"sbu_normalised\"", "y_down"},
+      {"/unit", "\"feet\"", "unit: \"feet\", wanted metres, millimetres or sbu-normalised"},
+      {"/unit", "\"sbu-normalised\"", "up_axis: z-up, wanted y-down"},
       {"/up_axis", "3", "up_axis: 3"},
       {"/rate", "3", "unknown field \"rate\""},
       {"/skeleton/tail", "3", "skeleton: unknown field \"tail\""},
       {"/skeleton/root", "\"nose\"", "skeleton.root: \"nose\", wanted one of skeleton.joint_names"},
       {"/skeleton/joint_names", R"(["hip","left_hip","right_hip","left_foot","right_foot","hip"])",
        "skeleton.joint_names: \"hip\" is repeated"},
-      {"/skeleton/joint_names", "{}", "skeleton.joint_names: object"},
-      {"/skeleton/bones/1", "[\"hip\"]", "skeleton.bones[1]"},
+      {"/skeleton/joint_names", "{}", "skeleton.joint_names: {}, wanted an array"},
+      {"/skeleton/bones/1", "[\"hip\"]", "skeleton.bones[1]: [\"hip\"], wanted [parent, child]"},
       {"/skeleton/bones/1", "[\"hip\", \"left_hip\"]", "skeleton.bones"},
       {"/skeleton/bones/0/1", "\"tail\"", "skeleton.bones[0][1]: \"tail\""},
-      {"/skeleton/parts/0/joints", "[]", "skeleton.parts[0].joints"},
-      {"/classes", "[]", "classes: 0 entries"},
+      {"/skeleton/parts/0/joints", "[]", "skeleton.parts[0].joints: empty"},
+      {"/classes", "[]", "classes: empty"},
       {"/classes/1/name", "\"kick\"", "classes[1].name: \"kick\" again"},
       {"/classes/1/name", "\"../kick\"", "classes[1].name"},
       {"/classes/1/symmetric", "1", "classes[1].symmetric: 1, wanted true or false"},
@@ -106,10 +121,12 @@ TEST(DatasetLayoutTest, RefusesEveryWrongValueByName) {
 }
 
 TEST(DatasetLayoutTest, RefusesWhatIsNoJsonOrRepeatsAField) {
-  EXPECT_THAT(std::string(ParseDatasetLayout("{").status().message()), HasSubstr("not valid JSON"));
-  EXPECT_THAT(std::string(ParseDatasetLayout("[]").status().message()), HasSubstr("an object"));
+  EXPECT_THAT(std::string(ParseDatasetLayout("{").status().message()),
+              HasSubstr("dataset.json: not JSON at byte"));
+  EXPECT_THAT(std::string(ParseDatasetLayout("[]").status().message()),
+              HasSubstr("not a JSON object"));
   EXPECT_THAT(std::string(ParseDatasetLayout(R"({"name": "a", "name": "b"})").status().message()),
-              HasSubstr("name: given twice"));
+              HasSubstr("\"name\" is repeated"));
 }
 
 TEST(DatasetLayoutTest, KnowsThePapersClassesInOrder) {

@@ -97,7 +97,7 @@ TEST(ReadDatasetTest, ReadsK3hi) {
 }
 
 constexpr char kOwnLayout[] = R"({
-  "name": "own", "frame_rate_hz": 60, "unit": "millimetres", "up_axis": "y_up",
+  "name": "own", "frame_rate_hz": 60, "unit": "millimetres", "up_axis": "y-up",
   "skeleton": {"joint_names": ["hips", "left", "right"], "bones": [["hips", "left"], ["hips", "right"]],
                "parts": [{"name": "all", "joints": ["hips", "left", "right"]}],
                "root": "hips", "left_hip": "left", "right_hip": "right",

@@ -7,37 +7,41 @@
 namespace duet::motion {
 namespace {
 
-struct NamedFrame {
+struct NamedCoordinates {
   const char* name;
-  CoordinateFrame frame;
+  Coordinates coordinates;
 };
 
-class EveryFrame : public ::testing::TestWithParam<NamedFrame> {};
+class EveryFrame : public ::testing::TestWithParam<NamedCoordinates> {};
 
 INSTANTIATE_TEST_SUITE_P(
     Coordinates, EveryFrame,
-    ::testing::Values(NamedFrame{"metres_y_up", {LengthUnit::kMetres, UpAxis::kYUp}},
-                      NamedFrame{"metres_z_up", {LengthUnit::kMetres, UpAxis::kZUp}},
-                      NamedFrame{"metres_y_down", {LengthUnit::kMetres, UpAxis::kYDown}},
-                      NamedFrame{"millimetres_y_up", {LengthUnit::kMillimetres, UpAxis::kYUp}},
-                      NamedFrame{"millimetres_z_up", {LengthUnit::kMillimetres, UpAxis::kZUp}},
-                      NamedFrame{"millimetres_y_down", {LengthUnit::kMillimetres, UpAxis::kYDown}},
-                      NamedFrame{"sbu_normalised", {LengthUnit::kSbuNormalised, UpAxis::kYDown}}),
-    [](const ::testing::TestParamInfo<NamedFrame>& frame) { return frame.param.name; });
+    ::testing::Values(
+        NamedCoordinates{"metres_y_up", {LengthUnit::kMetres, UpAxis::kYUp}},
+        NamedCoordinates{"metres_z_up", {LengthUnit::kMetres, UpAxis::kZUp}},
+        NamedCoordinates{"metres_y_down", {LengthUnit::kMetres, UpAxis::kYDown}},
+        NamedCoordinates{"millimetres_y_up", {LengthUnit::kMillimetres, UpAxis::kYUp}},
+        NamedCoordinates{"millimetres_z_up", {LengthUnit::kMillimetres, UpAxis::kZUp}},
+        NamedCoordinates{"millimetres_y_down", {LengthUnit::kMillimetres, UpAxis::kYDown}},
+        NamedCoordinates{"sbu_normalised", {LengthUnit::kSbuNormalised, UpAxis::kYDown}}),
+    [](const ::testing::TestParamInfo<NamedCoordinates>& coordinates) {
+      return coordinates.param.name;
+    });
 
 TEST_P(EveryFrame, RoundTrip) {
   for (const Vec3 world : {Vec3{0, 0, 0}, Vec3{0.3f, 1.2f, -2.5f}, Vec3{-4, 0.01f, 7}}) {
-    EXPECT_LT(Distance(ToWorld(GetParam().frame, FromWorld(GetParam().frame, world)), world),
-              2e-6f);
+    EXPECT_LT(
+        Distance(ToWorld(GetParam().coordinates, FromWorld(GetParam().coordinates, world)), world),
+        2e-6f);
   }
 }
 
 TEST_P(EveryFrame, KeepsHandedness) {
-  const CoordinateFrame& frame = GetParam().frame;
-  const Vec3 origin = ToWorld(frame, {0, 0, 0});
-  Vec3 x = ToWorld(frame, {1, 0, 0}) - origin;
-  Vec3 y = ToWorld(frame, {0, 1, 0}) - origin;
-  Vec3 z = ToWorld(frame, {0, 0, 1}) - origin;
+  const Coordinates& coordinates = GetParam().coordinates;
+  const Vec3 origin = ToWorld(coordinates, {0, 0, 0});
+  Vec3 x = ToWorld(coordinates, {1, 0, 0}) - origin;
+  Vec3 y = ToWorld(coordinates, {0, 1, 0}) - origin;
+  Vec3 z = ToWorld(coordinates, {0, 0, 1}) - origin;
   x = x / Norm(x);
   y = y / Norm(y);
   z = z / Norm(z);
@@ -69,6 +73,41 @@ TEST(Coordinates, SbuImpliesItsUpAxis) {
   const Vec3 wanted = ToWorld({LengthUnit::kSbuNormalised, UpAxis::kYDown}, position);
   EXPECT_EQ(ToWorld({LengthUnit::kSbuNormalised, UpAxis::kYUp}, position), wanted);
   EXPECT_EQ(ToWorld({LengthUnit::kSbuNormalised, UpAxis::kZUp}, position), wanted);
+}
+
+TEST(Coordinates, HaveOneSpellingThatReadsBack) {
+  for (const LengthUnit unit :
+       {LengthUnit::kMetres, LengthUnit::kMillimetres, LengthUnit::kSbuNormalised}) {
+    EXPECT_EQ(ParseLengthUnit(LengthUnitName(unit)), unit) << LengthUnitName(unit);
+  }
+  for (const UpAxis axis : {UpAxis::kYUp, UpAxis::kZUp, UpAxis::kYDown}) {
+    EXPECT_EQ(ParseUpAxis(UpAxisName(axis)), axis) << UpAxisName(axis);
+  }
+  EXPECT_EQ(LengthUnitName(LengthUnit::kMetres), "metres");
+  EXPECT_EQ(LengthUnitName(LengthUnit::kMillimetres), "millimetres");
+  EXPECT_EQ(LengthUnitName(LengthUnit::kSbuNormalised), "sbu-normalised");
+  EXPECT_EQ(UpAxisName(UpAxis::kYUp), "y-up");
+  EXPECT_EQ(UpAxisName(UpAxis::kZUp), "z-up");
+  EXPECT_EQ(UpAxisName(UpAxis::kYDown), "y-down");
+}
+
+TEST(Coordinates, ReadEarlierSpellings) {
+  EXPECT_EQ(ParseLengthUnit("m"), LengthUnit::kMetres);
+  EXPECT_EQ(ParseLengthUnit("mm"), LengthUnit::kMillimetres);
+  EXPECT_EQ(ParseLengthUnit("sbu"), LengthUnit::kSbuNormalised);
+  EXPECT_EQ(ParseLengthUnit("sbu_normalised"), LengthUnit::kSbuNormalised);
+  for (const char* name : {"y", "y_up"}) EXPECT_EQ(ParseUpAxis(name), UpAxis::kYUp);
+  for (const char* name : {"z", "z_up"}) EXPECT_EQ(ParseUpAxis(name), UpAxis::kZUp);
+  for (const char* name : {"-y", "y_down"}) EXPECT_EQ(ParseUpAxis(name), UpAxis::kYDown);
+}
+
+TEST(Coordinates, KnowNoOtherName) {
+  for (const char* name : {"", "feet", "Metres", "metre", "y-up"}) {
+    EXPECT_EQ(ParseLengthUnit(name), std::nullopt) << name;
+  }
+  for (const char* name : {"", "x", "Y-up", "y-u", "metres"}) {
+    EXPECT_EQ(ParseUpAxis(name), std::nullopt) << name;
+  }
 }
 
 }  // namespace

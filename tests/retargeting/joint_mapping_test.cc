@@ -315,7 +315,7 @@ TEST_P(Conventions, FindEveryJoint) {
   const motion::Skeleton skeleton = motion::SbuSkeleton();
   const absl::StatusOr<JointMap> map = MapJoints("a.bvh", pose.names, pose.positions, skeleton);
   ASSERT_TRUE(map.ok()) << map.status();
-  const std::vector<motion::Vec3> mapped = ApplyJointMap(*map, pose.positions.data());
+  const std::vector<motion::Vec3> mapped = ApplyJointMap(*map, pose.positions);
   ASSERT_EQ(mapped.size(), 15u);
   const motion::Vec3 limbs[] = {{0.17f, 1.4f, 0}, {0.46f, 1.4f, 0}, {0.72f, 1.4f, 0},
                                 {0.1f, 0.92f, 0}, {0.1f, 0.5f, 0},  {0.1f, 0.08f, 0}};
@@ -341,7 +341,7 @@ TEST(JointMapping, TakesTheSkeletonsOwnNamesAsTheyAre) {
   const absl::StatusOr<JointMap> map = MapJoints("a.csv", names, pose, skeleton);
   ASSERT_TRUE(map.ok()) << map.status();
   EXPECT_TRUE(map->notes.empty());
-  const std::vector<motion::Vec3> mapped = ApplyJointMap(*map, pose.data());
+  const std::vector<motion::Vec3> mapped = ApplyJointMap(*map, pose);
   for (std::size_t i = 0; i < 15; ++i) EXPECT_EQ(mapped[i].x, 15.0f - static_cast<float>(i));
 }
 
@@ -367,9 +367,24 @@ TEST(JointMapping, LetsTheUserNameJoints) {
       MapJoints("a.bvh", pose.names, pose.positions, motion::SbuSkeleton(),
                 {{"left_hand", "paw"}, {"head", "mixamorig:Head"}});
   ASSERT_TRUE(map.ok()) << map.status();
-  const std::vector<motion::Vec3> mapped = ApplyJointMap(*map, pose.positions.data());
+  const std::vector<motion::Vec3> mapped = ApplyJointMap(*map, pose.positions);
   EXPECT_NEAR(mapped[5].x, 0.72, 1e-5);
   EXPECT_NEAR(mapped[0].y, 1.55, 1e-5) << "a joint that the user names is taken as it is";
+}
+
+TEST(JointMapping, LetsTheUserNameJointsOfAFileWithTheSkeletonsOwnNames) {
+  const motion::Skeleton skeleton = motion::SbuSkeleton();
+  std::vector<std::string> names = skeleton.joint_names;
+  names.push_back("marker");
+  std::vector<motion::Vec3> pose;
+  for (std::size_t i = 0; i < names.size(); ++i) pose.push_back({static_cast<float>(i), 0, 0});
+  const absl::StatusOr<JointMap> map =
+      MapJoints("a.csv", names, pose, skeleton, {{"left_hand", "marker"}});
+  ASSERT_TRUE(map.ok()) << map.status();
+  const std::vector<motion::Vec3> mapped = ApplyJointMap(*map, pose);
+  for (std::size_t i = 0; i < 15; ++i) {
+    EXPECT_EQ(mapped[i].x, i == 5 ? 15.0f : static_cast<float>(i)) << skeleton.joint_names[i];
+  }
 }
 
 TEST(JointMapping, RefusesOverridesThatNameNothing) {
@@ -402,7 +417,7 @@ TEST(JointMapping, KeepsWristAndHandApartForASkeletonWithBoth) {
   const std::vector<motion::Vec3> pose = {{1, 0, 0}, {2, 0, 0}};
   const absl::StatusOr<JointMap> map = MapJoints("a.bvh", names, pose, skeleton);
   ASSERT_TRUE(map.ok()) << map.status();
-  EXPECT_EQ(ApplyJointMap(*map, pose.data())[0].x, 2);
+  EXPECT_EQ(ApplyJointMap(*map, pose)[0].x, 2);
 }
 
 TEST(JointMapping, SurvivesNamesOfEveryKind) {

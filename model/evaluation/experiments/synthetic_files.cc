@@ -12,8 +12,10 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
+#include "model/base/file.h"
 #include "model/base/text.h"
 #include "model/formats/flat/json_motion.h"
+#include "model/motion/motion_limits.h"
 
 namespace duet::evaluation::experiments {
 namespace {
@@ -50,8 +52,8 @@ std::string LeaderJson(const motion::Clip& leader) {
     frames.push_back(std::move(joints));
   }
   return nlohmann::json{
-      {"format", "duet-motion"},    {"version", 1},   {"frame_rate_hz", leader.frame_rate_hz},
-      {"unit", "metres"},           {"up_axis", "y"}, {"joint_names", leader.joint_names},
+      {"format", "duet-motion"},    {"version", 1},      {"frame_rate_hz", leader.frame_rate_hz},
+      {"unit", "metres"},           {"up_axis", "y-up"}, {"joint_names", leader.joint_names},
       {"leader", std::move(frames)}}
       .dump();
 }
@@ -96,9 +98,10 @@ class JobLine {
     if (fields_[4] == "-") return absl::OkStatus();
     const std::vector<absl::string_view> values = absl::StrSplit(fields_[4], ',');
     motion::Vec3 direction;
-    if (values.size() != 3 || !base::ParseCoordinate(values[0], &direction.x) ||
-        !base::ParseCoordinate(values[1], &direction.y) ||
-        !base::ParseCoordinate(values[2], &direction.z) || (direction.x == 0 && direction.z == 0)) {
+    if (values.size() != 3 || !motion::ParseCoordinate(values[0], &direction.x) ||
+        !motion::ParseCoordinate(values[1], &direction.y) ||
+        !motion::ParseCoordinate(values[2], &direction.z) ||
+        (direction.x == 0 && direction.z == 0)) {
       return Error(absl::StrCat("partner: ", base::Quoted(fields_[4]),
                                 " came, wanted - or x,y,z of a horizontal direction"));
     }
@@ -124,7 +127,7 @@ absl::Status WrongAnswer(const fs::path& file, absl::string_view message) {
 // file for either.
 absl::Status ReadPair(const dataset::Dataset& dataset, const fs::path& file,
                       motion::ClipPair* pair) {
-  absl::StatusOr<std::string> text = base::ReadFile(file);
+  absl::StatusOr<std::string> text = base::ReadFile(file, motion::kMaxMotionFileBytes, "a motion");
   if (!text.ok()) return text.status();
   absl::StatusOr<motion::RecordedMotion> motion =
       formats::flat::ParseJsonMotion(*text, file.string());
@@ -199,7 +202,7 @@ absl::Status WriteSyntheticJobs(const dataset::Dataset& dataset,
 absl::StatusOr<SyntheticSet> ReadSyntheticSet(const dataset::Dataset& dataset,
                                               const fs::path& folder) {
   const fs::path file = folder / "jobs.tsv";
-  absl::StatusOr<std::string> text = base::ReadFile(file, kMaxJobsBytes);
+  absl::StatusOr<std::string> text = base::ReadFile(file, kMaxJobsBytes, "jobs.tsv");
   if (!text.ok()) return text.status();
   absl::StatusOr<SyntheticSet> set = ParseJobs(dataset, file.string(), *text);
   if (!set.ok()) return set;

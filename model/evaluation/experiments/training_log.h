@@ -1,6 +1,7 @@
 #ifndef DUET_MODEL_EVALUATION_EXPERIMENTS_TRAINING_LOG_H_
 #define DUET_MODEL_EVALUATION_EXPERIMENTS_TRAINING_LOG_H_
 
+#include <cstddef>
 #include <map>
 #include <string>
 #include <vector>
@@ -9,6 +10,9 @@
 #include "absl/strings/string_view.h"
 
 namespace duet::evaluation::experiments {
+
+// Far above the longest run.
+inline constexpr std::size_t kMaxTrainingLogBytes = std::size_t{64} << 20;
 
 // The figures that duet-train logs, one a column and epoch.
 struct TrainingLog {

@@ -20,7 +20,7 @@ namespace duet::evaluation::metrics {
 enum class MetricUnit {
   kMetres,
   // The unit of the paper's figures: SBU's normalised one, 1/2.56, 1/1.92 and 1/1.28 a metre along
-  // x, y and z (CoordinateFrame, kSbuNormalised).
+  // x, y and z (Coordinates, kSbuNormalised).
   kSbuRaw
 };
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "model/base/text.h"
+#include "model/base/file.h"
 #include "model/evaluation/program/commands.h"
 #include "model/evaluation/program/named_runs.h"
 #include "model/evaluation/report/result_section.h"
@@ -24,7 +24,8 @@ absl::StatusOr<report::LoggedRun> ReadRun(const std::string& argument) {
   absl::StatusOr<NamedRuns> run = ParseRuns(argument);
   if (!run.ok()) return run.status();
   const std::filesystem::path file = run->folder / "log.csv";
-  const absl::StatusOr<std::string> text = base::ReadFile(file);
+  const absl::StatusOr<std::string> text =
+      base::ReadFile(file, experiments::kMaxTrainingLogBytes, "a training log");
   if (!text.ok()) return text.status();
   absl::StatusOr<experiments::TrainingLog> log =
       experiments::ParseTrainingLog(*text, file.string());

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "model/base/text.h"
+#include "model/base/file.h"
 #include "model/evaluation/program/commands.h"
 #include "model/evaluation/program/named_runs.h"
 #include "model/evaluation/report/result_section.h"
@@ -44,7 +44,8 @@ absl::StatusOr<report::ValidatedRuns> ReadRuns(const std::string& argument) {
   report::ValidatedRuns runs = {named->name, {}};
   for (const fs::path& folder : *folders) {
     const fs::path file = folder / "log.csv";
-    absl::StatusOr<std::string> text = base::ReadFile(file);
+    absl::StatusOr<std::string> text =
+        base::ReadFile(file, experiments::kMaxTrainingLogBytes, "a training log");
     if (!text.ok()) return text.status();
     absl::StatusOr<experiments::TrainingLog> log =
         experiments::ParseTrainingLog(*text, file.string());

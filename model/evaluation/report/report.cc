@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <system_error>
 
-#include "model/base/text.h"
+#include "model/base/file.h"
 #include "model/evaluation/report/html_report.h"
 #include "model/evaluation/report/markdown_report.h"
 

@@ -10,6 +10,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
 #include "absl/time/time.h"
+#include "model/base/file.h"
 #include "model/base/text.h"
 #include "model/evaluation/report/section_json.h"
 
@@ -32,18 +33,9 @@ absl::Status CheckSvg(const std::string& svg) {
                                                  ", wanted one whole <svg> element"));
 }
 
-absl::StatusOr<std::string> ReadBounded(const fs::path& file) {
-  std::error_code error;
-  const auto bytes = fs::file_size(file, error);
-  if (!error && bytes > kMaxFileBytes) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(file.string(), ": ", bytes, " bytes, wanted at most ", kMaxFileBytes));
-  }
-  return base::ReadFile(file);
-}
-
 absl::StatusOr<ResultSection> ReadSection(const fs::path& file) {
-  const absl::StatusOr<std::string> text = ReadBounded(file);
+  const absl::StatusOr<std::string> text =
+      base::ReadFile(file, kMaxFileBytes, "a section of results");
   if (!text.ok()) return text.status();
   absl::StatusOr<ResultSection> section = SectionFromJson(*text);
   if (!section.ok()) return Prefixed(file.string(), section.status());
@@ -53,7 +45,7 @@ absl::StatusOr<ResultSection> ReadSection(const fs::path& file) {
   }
   for (ResultFigure& figure : section->figures) {
     const fs::path svg_file = file.parent_path() / (figure.name + ".svg");
-    absl::StatusOr<std::string> svg = ReadBounded(svg_file);
+    absl::StatusOr<std::string> svg = base::ReadFile(svg_file, kMaxFileBytes, "an SVG figure");
     if (!svg.ok()) return svg.status();
     if (absl::Status status = CheckSvg(*svg); !status.ok()) {
       return Prefixed(svg_file.string(), status);

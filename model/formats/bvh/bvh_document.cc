@@ -7,6 +7,7 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "model/base/text.h"
+#include "model/motion/motion_limits.h"
 
 namespace duet::formats::bvh {
 namespace {
@@ -129,8 +130,8 @@ class BvhParser {
     joint.name =
         end_site ? absl::StrCat(document_.joints[static_cast<size_t>(joint.parent)].name, ".end")
                  : std::string(name);
-    if (document_.joints.size() >= base::kMaxFileJoints) {
-      return Error(absl::StrCat("more than ", base::kMaxFileJoints, " joints"));
+    if (document_.joints.size() >= motion::kMaxFileJoints) {
+      return Error(absl::StrCat("more than ", motion::kMaxFileJoints, " joints"));
     }
     const absl::string_view brace = cursor_.Word();
     if (brace != "{") return Unexpected(brace, absl::StrCat("{ after ", keyword, " ", name));
@@ -153,7 +154,8 @@ class BvhParser {
     float values[3] = {};
     for (float& value : values) {
       const absl::string_view word = cursor_.Word();
-      if (!base::ParseCoordinate(word, &value)) return Unexpected(word, "a number of OFFSET x y z");
+      if (!motion::ParseCoordinate(word, &value))
+        return Unexpected(word, "a number of OFFSET x y z");
     }
     document_.joints[static_cast<size_t>(open_.back())].offset = {values[0], values[1], values[2]};
     has_offset_[static_cast<size_t>(open_.back())] = true;
@@ -186,15 +188,15 @@ class BvhParser {
     if (word != "Frames:") return Unexpected(word, "Frames:");
     word = cursor_.Word();
     if (!base::ParseInteger(word, &document_.frame_count) || document_.frame_count < 1 ||
-        document_.frame_count > base::kMaxMotionFrames) {
-      return Unexpected(word, absl::StrCat("a number of frames, 1 to ", base::kMaxMotionFrames));
+        document_.frame_count > motion::kMaxMotionFrames) {
+      return Unexpected(word, absl::StrCat("a number of frames, 1 to ", motion::kMaxMotionFrames));
     }
     word = cursor_.Word();
     if (word == "Frame") word = cursor_.Word();
     if (word != "Time:") return Unexpected(word, "Frame Time:");
     word = cursor_.Word();
     if (!base::ParseNumber(word, &document_.frame_time_s) ||
-        !(document_.frame_time_s >= 1 / base::kMaxFrameRateHz && document_.frame_time_s <= 10)) {
+        !(document_.frame_time_s >= 1 / motion::kMaxFrameRateHz && document_.frame_time_s <= 10)) {
       return Unexpected(word, "a frame time of 0.001 to 10 seconds");
     }
     return absl::OkStatus();
@@ -228,7 +230,7 @@ class BvhParser {
     int count = 0;
     for (absl::string_view word = words.Word(); !word.empty(); word = words.Word(), ++count) {
       float value = 0;
-      if (!base::ParseCoordinate(word, &value)) {
+      if (!motion::ParseCoordinate(word, &value)) {
         return base::ErrorAt(source_, number,
                              absl::StrCat("channel value ", count + 1, ": came ",
                                           base::Quoted(word), ", wanted a finite number"));

@@ -8,7 +8,7 @@
 
 namespace duet::formats::bvh {
 
-// One person as joint angles: centimetres, y up, the clip's world frame, the rest pose of MakeRig.
+// One person as joint angles: centimetres, y up, in the clip's world, the rest pose of MakeRig.
 // The root has six channels, every other joint three; rotations apply as Rz Rx Ry; angles are
 // continuous from frame to frame. Positions are kept exactly where bone lengths are constant, and
 // closely where they vary.

@@ -56,7 +56,7 @@ class Importer {
     clip.joint_names = options_.skeleton.joint_names;
     clip.frame_rate_hz = FrameRate();
     for (int frame = 0; frame < document_.frame_count; ++frame) {
-      const std::vector<motion::Vec3> pose = ApplyJointMap(*map, Pose(frame).data());
+      const std::vector<motion::Vec3> pose = ApplyJointMap(*map, Pose(frame));
       clip.positions.insert(clip.positions.end(), pose.begin(), pose.end());
     }
     return ToMetres(std::move(clip));
@@ -89,9 +89,9 @@ class Importer {
   absl::StatusOr<motion::Clip> ToMetres(motion::Clip clip) {
     absl::StatusOr<double> scale = MetresPerUnit(clip);
     if (!scale.ok()) return scale.status();
-    const motion::CoordinateFrame frame{motion::LengthUnit::kMetres, FindUpAxis(clip)};
+    const motion::Coordinates coordinates{motion::LengthUnit::kMetres, FindUpAxis(clip)};
     for (motion::Vec3& position : clip.positions) {
-      position = ToWorld(frame, position * static_cast<float>(*scale));
+      position = ToWorld(coordinates, position * static_cast<float>(*scale));
     }
     return clip;
   }

@@ -28,11 +28,11 @@ struct BvhImportOptions {
   std::vector<std::string>* notes = nullptr;  // may be null
 };
 
-// Joint angles through forward kinematics to the skeleton's joint positions.
+// Joint angles through forward kinematics to the skeleton's joint positions. A frame time that is a
+// whole rate but for its rounding (0.0333333) counts as that rate.
 //
-// A frame time that is a whole rate but for its rounding (0.0333333) counts as that rate.
-// Errors: INVALID_ARGUMENT naming `source`: joints that cannot be mapped, a size that is no
-// person's.
+// Errors: INVALID_ARGUMENT naming `source`: joints that cannot be mapped, a person of no possible
+//         size.
 absl::StatusOr<motion::Clip> FromBvh(const BvhDocument& document, absl::string_view source,
                                      const BvhImportOptions& options = {});
 

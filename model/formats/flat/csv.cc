@@ -1,6 +1,7 @@
 #include "model/formats/flat/csv.h"
 
 #include <algorithm>
+#include <optional>
 #include <set>
 #include <utility>
 #include <vector>
@@ -11,13 +12,14 @@
 #include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
 #include "model/base/text.h"
+#include "model/motion/motion_limits.h"
 
 namespace duet::formats::flat {
 namespace {
 
 constexpr absl::string_view kPrefixes[] = {"leader.", "follower."};
 constexpr const char* kSuffixes[] = {"_x", "_y", "_z"};
-constexpr std::size_t kMaxColumns = std::size_t{base::kMaxFileJoints} * 6 + 2;
+constexpr std::size_t kMaxColumns = std::size_t{motion::kMaxFileJoints} * 6 + 2;
 
 // Where a column's values go; person -1: nowhere.
 struct Column {
@@ -36,12 +38,11 @@ absl::string_view Unquoted(absl::string_view field) {
 
 class CsvParser {
  public:
-  CsvParser(absl::string_view text, absl::string_view source) : lines_(text), source_(source) {}
+  CsvParser(absl::string_view text, absl::string_view source)
+      : lines_(base::SkipByteOrderMark(text)), source_(source) {}
 
   absl::StatusOr<motion::RecordedMotion> Parse() {
-    // Spreadsheets write a byte order mark.
     for (absl::string_view line; lines_.Next(&line);) {
-      if (lines_.number() == 1) absl::ConsumePrefix(&line, "\xEF\xBB\xBF");
       line = absl::StripAsciiWhitespace(line);
       if (line.empty()) continue;
       absl::Status status = ParseLine(line);
@@ -60,6 +61,11 @@ class CsvParser {
   // `column` counts fields, from 1.
   absl::Status ErrorInColumn(std::size_t column, absl::string_view message) const {
     return Error(absl::StrCat("column ", column, ": ", message));
+  }
+
+  absl::Status UnknownName(absl::string_view setting, absl::string_view came,
+                           absl::string_view wanted) const {
+    return Error(absl::StrCat(setting, ": came ", base::Quoted(came), ", wanted ", wanted));
   }
 
   absl::Status ParseLine(absl::string_view line) {
@@ -81,24 +87,18 @@ class CsvParser {
   absl::Status ParseSetting(absl::string_view key, absl::string_view value) {
     if (key == "frame_rate_hz" || key == "fps") {
       if (!base::ParseNumber(value, &frame_rate_hz_) ||
-          !base::CheckFrameRate("", frame_rate_hz_).ok()) {
+          !motion::CheckFrameRate("", frame_rate_hz_).ok()) {
         return Error(absl::StrCat(key, ": came ", base::Quoted(value),
-                                  ", wanted more than 0 and at most ", base::kMaxFrameRateHz));
+                                  ", wanted more than 0 and at most ", motion::kMaxFrameRateHz));
       }
     } else if (key == "unit") {
-      if (value != "metres" && value != "millimetres") {
-        return Error(
-            absl::StrCat("unit: came ", base::Quoted(value), ", wanted metres or millimetres"));
-      }
-      motion_.coordinates.unit =
-          value == "metres" ? motion::LengthUnit::kMetres : motion::LengthUnit::kMillimetres;
+      const std::optional<motion::LengthUnit> unit = motion::ParseLengthUnit(value);
+      if (!unit.has_value()) return UnknownName(key, value, motion::kLengthUnitNames);
+      motion_.coordinates.unit = *unit;
     } else if (key == "up_axis") {
-      if (value != "y" && value != "z" && value != "-y") {
-        return Error(absl::StrCat("up_axis: came ", base::Quoted(value), ", wanted y, z or -y"));
-      }
-      motion_.coordinates.up_axis = value == "y"   ? motion::UpAxis::kYUp
-                                    : value == "z" ? motion::UpAxis::kZUp
-                                                   : motion::UpAxis::kYDown;
+      const std::optional<motion::UpAxis> axis = motion::ParseUpAxis(value);
+      if (!axis.has_value()) return UnknownName(key, value, motion::kUpAxisNames);
+      motion_.coordinates.up_axis = *axis;
     }
     return absl::OkStatus();
   }
@@ -187,15 +187,15 @@ class CsvParser {
       return Error(absl::StrCat("came ", fields.size(), " values, wanted ", columns_.size(),
                                 " as in the header line"));
     }
-    if (motion_.people[0].frame_count() >= base::kMaxMotionFrames) {
-      return Error(absl::StrCat("more than ", base::kMaxMotionFrames, " frames"));
+    if (motion_.people[0].frame_count() >= motion::kMaxMotionFrames) {
+      return Error(absl::StrCat("more than ", motion::kMaxMotionFrames, " frames"));
     }
     for (motion::Clip& person : motion_.people) {
       person.positions.resize(person.positions.size() + person.joint_names.size());
     }
     for (std::size_t i = 0; i < fields.size(); ++i) {
       if (columns_[i].person < 0) continue;
-      if (!base::ParseCoordinate(Unquoted(fields[i]), Destination(columns_[i]))) {
+      if (!motion::ParseCoordinate(Unquoted(fields[i]), Destination(columns_[i]))) {
         return ErrorInColumn(
             i + 1, absl::StrCat("came ", base::Quoted(fields[i]), ", wanted a finite number"));
       }
@@ -242,7 +242,8 @@ absl::StatusOr<motion::RecordedMotion> ParseCsv(absl::string_view text, absl::st
 std::string FormatCsv(const motion::ClipPair& pair) {
   std::string text = "# duet motion: frame_rate_hz=";
   base::AppendNumber(&text, pair.leader.frame_rate_hz);
-  text += " unit=metres up_axis=y\nframe";
+  absl::StrAppend(&text, " unit=", LengthUnitName(motion::LengthUnit::kMetres),
+                  " up_axis=", UpAxisName(motion::UpAxis::kYUp), "\nframe");
   AppendHeader(kPrefixes[0], pair.leader, &text);
   AppendHeader(kPrefixes[1], pair.follower, &text);
   text += '\n';

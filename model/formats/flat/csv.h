@@ -12,12 +12,12 @@ namespace duet::formats::flat {
 
 // Positions by column, one row a frame, for scripts and spreadsheets:
 //
-//   # duet motion: frame_rate_hz=30 unit=metres up_axis=y
+//   # duet motion: frame_rate_hz=30 unit=metres up_axis=y-up
 //   frame,leader.head_x,leader.head_y,leader.head_z,...,follower.head_x,...
 //   0,0.01,1.62,-0.3,...
 //
 // A file of one person has columns without `leader.` and `follower.`. Reading: comment lines start
-// with '#'; frame_rate_hz (or fps), unit (metres, millimetres) and up_axis (y, z, -y) count, other
+// with '#'; frame_rate_hz (or fps), unit and up_axis (motion/coordinates.h) count, other
 // words do not; columns may come in any order, `frame` and `time` are passed over.
 //
 // Errors: INVALID_ARGUMENT "source:line:column: ... came ..., wanted ...".

@@ -1,12 +1,12 @@
 #include "model/formats/flat/json_motion.h"
 
-#include <algorithm>
 #include <cmath>
-#include <utility>
+#include <nlohmann/json.hpp>
 
 #include "absl/strings/str_cat.h"
+#include "model/base/strict_json.h"
 #include "model/base/text.h"
-#include "nlohmann/json.hpp"
+#include "model/motion/motion_limits.h"
 
 namespace duet::formats::flat {
 namespace {
@@ -17,155 +17,76 @@ constexpr char kFormat[] = "duet-motion";
 constexpr int kVersion = 1;
 // Of our documents: object, people, frames, positions. Deeper ones would only cost memory.
 constexpr int kMaxDepth = 8;
+constexpr std::size_t kMaxNameBytes = 64;
 constexpr const char* kPeople[] = {"leader", "follower"};
 
-class JsonReader {
- public:
-  JsonReader(const Json& document, absl::string_view source)
-      : document_(document), source_(source) {}
-
-  absl::StatusOr<motion::RecordedMotion> Read() {
-    if (!document_.is_object()) return Error("came no JSON object, wanted {...}");
-    absl::Status status = ReadSettings();
-    if (status.ok()) status = ReadJointNames();
-    if (!status.ok()) return status;
-    for (const char* person : kPeople) {
-      if (person != kPeople[0] && !document_.contains(person)) continue;
-      motion_.people.push_back(empty_);
-      status = ReadPerson(person, &motion_.people.back());
-      if (!status.ok()) return status;
-    }
-    return std::move(motion_);
-  }
-
- private:
-  absl::Status Error(absl::string_view message) const {
-    return absl::InvalidArgumentError(absl::StrCat(source_, ": ", message));
-  }
-
-  absl::Status Unexpected(absl::string_view field, const Json& came,
-                          absl::string_view wanted) const {
-    // A replacement for bytes that are no UTF-8: a message must not fail.
-    const std::string text = came.is_structured()
-                                 ? absl::StrCat("an ", came.type_name())
-                                 : came.dump(-1, ' ', false, Json::error_handler_t::replace);
-    return Error(absl::StrCat(field, ": came ", base::Quoted(text), ", wanted ", wanted));
-  }
-
-  absl::Status ReadSettings() {
-    if (const auto format = document_.find("format");
-        format != document_.end() && *format != kFormat) {
-      return Unexpected("format", *format, kFormat);
-    }
-    if (const auto version = document_.find("version");
-        version != document_.end() && *version != kVersion) {
-      return Unexpected("version", *version, "1");
-    }
-    if (const auto rate = document_.find("frame_rate_hz"); rate != document_.end()) {
-      if (!rate->is_number() || !base::CheckFrameRate("", rate->get<double>()).ok()) {
-        return Unexpected("frame_rate_hz", *rate,
-                          absl::StrCat("a number above 0 and at most ", base::kMaxFrameRateHz));
-      }
-      empty_.frame_rate_hz = rate->get<double>();
-    }
-    return ReadCoordinates();
-  }
-
-  absl::Status ReadCoordinates() {
-    if (const auto unit = document_.find("unit"); unit != document_.end()) {
-      if (*unit != "metres" && *unit != "millimetres") {
-        return Unexpected("unit", *unit, "metres or millimetres");
-      }
-      motion_.coordinates.unit =
-          *unit == "metres" ? motion::LengthUnit::kMetres : motion::LengthUnit::kMillimetres;
-    }
-    if (const auto up = document_.find("up_axis"); up != document_.end()) {
-      if (*up != "y" && *up != "z" && *up != "-y") return Unexpected("up_axis", *up, "y, z or -y");
-      motion_.coordinates.up_axis = *up == "y"   ? motion::UpAxis::kYUp
-                                    : *up == "z" ? motion::UpAxis::kZUp
-                                                 : motion::UpAxis::kYDown;
-    }
-    return absl::OkStatus();
-  }
-
-  absl::Status ReadJointNames() {
-    const auto names = document_.find("joint_names");
-    if (names == document_.end()) return Error("joint_names: missing, wanted a list of names");
-    if (!names->is_array() || names->empty() || names->size() > base::kMaxFileJoints) {
-      return Unexpected("joint_names", *names,
-                        absl::StrCat("1 to ", base::kMaxFileJoints, " names"));
-    }
-    for (const Json& name : *names) {
-      if (!name.is_string()) return Unexpected("joint_names", name, "a name");
-      empty_.joint_names.push_back(name.get<std::string>());
-    }
-    return absl::OkStatus();
-  }
-
-  absl::Status ReadPerson(const char* field, motion::Clip* clip) const {
-    const auto frames = document_.find(field);
-    if (frames == document_.end()) return Error(absl::StrCat(field, ": missing, wanted frames"));
-    if (!frames->is_array() || frames->empty() || frames->size() > base::kMaxMotionFrames) {
-      return Unexpected(field, *frames, absl::StrCat("1 to ", base::kMaxMotionFrames, " frames"));
-    }
-    for (std::size_t frame = 0; frame < frames->size(); ++frame) {
-      absl::Status status = ReadFrame(absl::StrCat(field, "[", frame, "]"), (*frames)[frame], clip);
-      if (!status.ok()) return status;
-    }
-    return absl::OkStatus();
-  }
-
-  absl::Status ReadFrame(const std::string& field, const Json& frame, motion::Clip* clip) const {
-    const std::size_t joints = clip->joint_names.size();
-    if (!frame.is_array() || frame.size() != joints) {
-      return Unexpected(field, frame, absl::StrCat("a list of ", joints, " positions"));
-    }
-    for (std::size_t joint = 0; joint < joints; ++joint) {
-      motion::Vec3 position;
-      if (!ReadPosition(frame[joint], &position)) {
-        return Unexpected(absl::StrCat(field, "[", joint, "]"), frame[joint],
-                          "[x, y, z], finite numbers");
-      }
-      clip->positions.push_back(position);
-    }
-    return absl::OkStatus();
-  }
-
-  static bool ReadPosition(const Json& value, motion::Vec3* position) {
-    if (!value.is_array() || value.size() != 3) return false;
-    float* const axes[] = {&position->x, &position->y, &position->z};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (!value[axis].is_number()) return false;
-      const double number = value[axis].get<double>();
-      if (!(std::abs(number) <= base::kMaxCoordinate)) return false;
-      *axes[axis] = static_cast<float>(number);
-    }
-    return true;
-  }
-
-  const Json& document_;
-  absl::string_view source_;
-  motion::Clip empty_;
-  motion::RecordedMotion motion_;
-};
-
-// The deepest nesting of brackets outside strings.
-int NestingDepth(absl::string_view text) {
-  int depth = 0, deepest = 0;
-  bool in_string = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (in_string && c == '\\') {
-      ++i;
-    } else if (c == '"') {
-      in_string = !in_string;
-    } else if (!in_string && (c == '[' || c == '{')) {
-      deepest = std::max(deepest, ++depth);
-    } else if (!in_string && (c == ']' || c == '}')) {
-      --depth;
+// Joint names and settings: a motion without people.
+motion::RecordedMotion ReadSettings(base::ObjectReader* reader, motion::Clip* empty) {
+  motion::RecordedMotion motion;
+  if (reader->Has("format")) {
+    const std::string format = reader->String("format", kMaxNameBytes);
+    if (format != kFormat) {
+      reader->Fail("format",
+                   absl::StrCat(base::Quoted(format), ", wanted ", base::Quoted(kFormat)));
     }
   }
-  return deepest;
+  if (reader->Has("version")) reader->Int("version", kVersion, kVersion);
+  if (reader->Has("frame_rate_hz")) {
+    empty->frame_rate_hz = reader->Number("frame_rate_hz", 0, motion::kMaxFrameRateHz);
+    if (reader->ok()) reader->Update(motion::CheckFrameRate("frame_rate_hz", empty->frame_rate_hz));
+  }
+  if (reader->Has("unit")) {
+    motion.coordinates.unit =
+        reader->Choice("unit", motion::ParseLengthUnit, motion::kLengthUnitNames);
+  }
+  if (reader->Has("up_axis")) {
+    motion.coordinates.up_axis =
+        reader->Choice("up_axis", motion::ParseUpAxis, motion::kUpAxisNames);
+  }
+  empty->joint_names = reader->Strings("joint_names", motion::kMaxFileJoints);
+  if (empty->joint_names.empty()) reader->Fail("joint_names", "empty, wanted at least one name");
+  return motion;
+}
+
+bool ReadPosition(const Json& value, motion::Vec3* position) {
+  if (!value.is_array() || value.size() != 3) return false;
+  float* const axes[] = {&position->x, &position->y, &position->z};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (!value[axis].is_number()) return false;
+    const double number = value[axis].get<double>();
+    if (!(std::abs(number) <= motion::kMaxCoordinate)) return false;
+    *axes[axis] = static_cast<float>(number);
+  }
+  return true;
+}
+
+// Appends one frame; false after recording what is wrong with it.
+bool ReadFrame(const Json& frame, const std::string& field, base::ObjectReader* reader,
+               motion::Clip* clip) {
+  const std::size_t joints = clip->joint_names.size();
+  if (!frame.is_array() || frame.size() != joints) {
+    reader->Fail(field,
+                 absl::StrCat(base::Shown(frame), ", wanted a list of ", joints, " positions"));
+    return false;
+  }
+  for (std::size_t joint = 0; joint < joints; ++joint) {
+    motion::Vec3 position;
+    if (!ReadPosition(frame[joint], &position)) {
+      reader->Fail(absl::StrCat(field, "[", joint, "]"),
+                   absl::StrCat(base::Shown(frame[joint]), ", wanted [x, y, z], finite numbers"));
+      return false;
+    }
+    clip->positions.push_back(position);
+  }
+  return true;
+}
+
+void ReadPerson(const char* field, base::ObjectReader* reader, motion::Clip* clip) {
+  const Json& frames = reader->Array(field, motion::kMaxMotionFrames);
+  if (frames.empty()) reader->Fail(field, "no frames, wanted at least 1");
+  for (std::size_t frame = 0; frame < frames.size(); ++frame) {
+    if (!ReadFrame(frames[frame], absl::StrCat(field, "[", frame, "]"), reader, clip)) return;
+  }
 }
 
 void AppendPerson(const char* field, const motion::Clip& clip, std::string* out) {
@@ -192,15 +113,22 @@ void AppendPerson(const char* field, const motion::Clip& clip, std::string* out)
 
 absl::StatusOr<motion::RecordedMotion> ParseJsonMotion(absl::string_view text,
                                                        absl::string_view source) {
-  if (const int depth = NestingDepth(text); depth > kMaxDepth) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(source, ": brackets ", depth, " deep, wanted at most ", kMaxDepth));
+  const auto in_file = [source](const absl::Status& status) {
+    return absl::InvalidArgumentError(absl::StrCat(source, ": ", status.message()));
+  };
+  const absl::StatusOr<Json> document = base::ParseHandwrittenJson(text, kMaxDepth);
+  if (!document.ok()) return in_file(document.status());
+  base::ObjectReader reader(*document, "");
+  motion::Clip empty;
+  motion::RecordedMotion motion = ReadSettings(&reader, &empty);
+  for (const char* person : kPeople) {
+    if (!reader.ok() || (person != kPeople[0] && !reader.Has(person))) break;
+    motion.people.push_back(empty);
+    ReadPerson(person, &reader, &motion.people.back());
   }
-  const Json document = Json::parse(text.begin(), text.end(), nullptr, /*allow_exceptions=*/false);
-  if (document.is_discarded()) {
-    return absl::InvalidArgumentError(absl::StrCat(source, ": no valid JSON document"));
-  }
-  return JsonReader(document, source).Read();
+  // Not Finish: other programs may add fields of their own.
+  if (!reader.ok()) return in_file(reader.status());
+  return motion;
 }
 
 std::string FormatJsonMotion(const motion::ClipPair& pair, const motion::Skeleton& skeleton) {
@@ -209,8 +137,10 @@ std::string FormatJsonMotion(const motion::ClipPair& pair, const motion::Skeleto
   std::string text = absl::StrCat("{\"format\": \"", kFormat, "\", \"version\": ", kVersion,
                                   ", \"frame_rate_hz\": ");
   base::AppendNumber(&text, pair.leader.frame_rate_hz);
-  absl::StrAppend(&text, ", \"unit\": \"metres\", \"up_axis\": \"y\",\n\"joint_names\": ",
-                  Json(pair.leader.joint_names).dump(), ",\n\"bones\": ", bones.dump());
+  absl::StrAppend(&text, ", \"unit\": \"", LengthUnitName(motion::LengthUnit::kMetres),
+                  "\", \"up_axis\": \"", UpAxisName(motion::UpAxis::kYUp),
+                  "\",\n\"joint_names\": ", Json(pair.leader.joint_names).dump(),
+                  ",\n\"bones\": ", bones.dump());
   AppendPerson(kPeople[0], pair.leader, &text);
   AppendPerson(kPeople[1], pair.follower, &text);
   text += "}\n";

@@ -12,6 +12,7 @@
 #include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
 #include "model/base/text.h"
+#include "model/motion/motion_limits.h"
 
 namespace duet::formats::flat {
 namespace {
@@ -113,10 +114,10 @@ class NpyParser {
     const std::size_t rank = shape.size();
     const bool people = rank == 4 && (shape[0] == 1 || shape[0] == 2);
     if ((rank != 3 && !people) || shape[rank - 1] != 3 || shape[rank - 2] != joints ||
-        shape[rank - 3] < 1 || shape[rank - 3] > base::kMaxMotionFrames) {
+        shape[rank - 3] < 1 || shape[rank - 3] > motion::kMaxMotionFrames) {
       return Error(absl::StrCat("shape: came (", absl::StrJoin(shape, ", "), "), wanted (frames, ",
                                 joints, ", 3) or (2, frames, ", joints, ", 3) with 1 to ",
-                                base::kMaxMotionFrames, " frames"));
+                                motion::kMaxMotionFrames, " frames"));
     }
     std::size_t wanted = ValueBytes();
     for (int size : shape) wanted *= static_cast<std::size_t>(size);
@@ -144,7 +145,7 @@ class NpyParser {
       motion::Vec3& position = person->positions[i];
       for (float* axis : {&position.x, &position.y, &position.z}) {
         const double value = TakeValue();
-        if (!(std::abs(value) <= base::kMaxCoordinate)) {
+        if (!(std::abs(value) <= motion::kMaxCoordinate)) {
           const std::size_t joints = person->joint_names.size();
           return Error(absl::StrCat("frame ", i / joints, " ", person->joint_names[i % joints],
                                     ": came ", value, ", wanted a finite position"));

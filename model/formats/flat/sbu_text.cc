@@ -2,7 +2,9 @@
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
+#include "model/base/file.h"
 #include "model/base/text.h"
+#include "model/motion/motion_limits.h"
 
 namespace duet::formats::flat {
 namespace {
@@ -41,7 +43,7 @@ class SbuLine {
     for (int axis = 0; axis < 3; ++axis) {
       const int column = column_;
       const absl::string_view field = NextField();
-      if (!base::ParseCoordinate(field, axes[axis])) {
+      if (!motion::ParseCoordinate(field, axes[axis])) {
         return base::ErrorAt(
             source_, number_, column,
             absl::StrCat(person == 0 ? "left" : "right", " person's ", joint_names_[joint], " ",
@@ -122,16 +124,16 @@ void AppendPerson(const SbuOptions& options, const motion::Clip& clip, int frame
 
 absl::StatusOr<SbuRecording> ParseSbu(absl::string_view text, absl::string_view source,
                                       const SbuOptions& options) {
-  absl::Status status = base::CheckFrameRate(source, options.frame_rate_hz);
+  absl::Status status = motion::CheckFrameRate(source, options.frame_rate_hz);
   if (!status.ok()) return status;
   SbuRecording recording = EmptyRecording(options);
   FrameNumbers frame_numbers;
   base::LineReader lines(text);
   for (absl::string_view content; lines.Next(&content);) {
     if (absl::StripAsciiWhitespace(content).empty()) continue;
-    if (recording.left.frame_count() >= base::kMaxMotionFrames) {
+    if (recording.left.frame_count() >= motion::kMaxMotionFrames) {
       return base::ErrorAt(source, lines.number(),
-                           absl::StrCat("more than ", base::kMaxMotionFrames, " frames"));
+                           absl::StrCat("more than ", motion::kMaxMotionFrames, " frames"));
     }
     SbuLine line(source, lines.number(), content, options.joint_names);
     int number = 0;
@@ -148,7 +150,7 @@ absl::StatusOr<SbuRecording> ParseSbu(absl::string_view text, absl::string_view 
 }
 
 absl::StatusOr<SbuRecording> ReadSbu(const std::filesystem::path& path, const SbuOptions& options) {
-  absl::StatusOr<std::string> text = base::ReadFile(path);
+  absl::StatusOr<std::string> text = base::ReadFile(path, motion::kMaxMotionFileBytes, "a motion");
   if (!text.ok()) return text.status();
   return ParseSbu(*text, path.string(), options);
 }

@@ -19,8 +19,7 @@ namespace duet::formats::flat {
 struct SbuOptions {
   std::vector<std::string> joint_names = motion::SbuSkeleton().joint_names;
   double frame_rate_hz = 15;
-  motion::CoordinateFrame coordinates = {motion::LengthUnit::kSbuNormalised,
-                                         motion::UpAxis::kYDown};
+  motion::Coordinates coordinates = {motion::LengthUnit::kSbuNormalised, motion::UpAxis::kYDown};
 };
 
 // The two people of a file, by their place in the image. Which of them leads is not in the file.
@@ -34,10 +33,9 @@ struct SbuRecording {
 //
 // Shapes: both clips [frames >= 1, joint_names].
 // Units:  the text in options.coordinates; the clips in world metres, y up.
-// Errors: INVALID_ARGUMENT naming source, line, column, what came and what was wanted: a line with
-// a
-//         wrong number of values, a value that is no finite number, frame numbers that do not rise
-//         by a constant step, no line at all.
+// Errors: INVALID_ARGUMENT naming source, line, column, what came and what was wanted: a wrong
+//         number of values in a line, a value that is no finite number, frame numbers that do not
+//         rise by a constant step, no line at all.
 absl::StatusOr<SbuRecording> ParseSbu(absl::string_view text, absl::string_view source,
                                       const SbuOptions& options = {});
 absl::StatusOr<SbuRecording> ReadSbu(const std::filesystem::path& path,

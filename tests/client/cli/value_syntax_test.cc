@@ -95,5 +95,22 @@ TEST(ParseDirectionTest, SaysWhatWasWanted) {
   EXPECT_THAT(ParseDirection("north").status().message(), ::testing::HasSubstr("wanted X,Y,Z"));
 }
 
+TEST(ParseUnitTest, ReadsNamesAndShortForms) {
+  for (const char* text : {"millimetres", "mm"}) {
+    const absl::StatusOr<motion::LengthUnit> unit = ParseUnit(text);
+    ASSERT_THAT(unit, IsOk());
+    EXPECT_EQ(*unit, motion::LengthUnit::kMillimetres);
+  }
+  EXPECT_THAT(ParseUnit("feet"),
+              StatusIs(kInvalid, HasSubstr("\"feet\", wanted metres, millimetres or sbu-")));
+}
+
+TEST(ParseAxisTest, ReadsNames) {
+  const absl::StatusOr<motion::UpAxis> axis = ParseAxis("y-down");
+  ASSERT_THAT(axis, IsOk());
+  EXPECT_EQ(*axis, motion::UpAxis::kYDown);
+  EXPECT_THAT(ParseAxis("x"), StatusIs(kInvalid, HasSubstr("\"x\", wanted y-up, z-up or y-down")));
+}
+
 }  // namespace
 }  // namespace duet::client::cli

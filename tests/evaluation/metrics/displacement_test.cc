@@ -31,8 +31,8 @@ TEST(AfdTest, RawUnitsScaleEachAxis) {
 
 // The paper's pipeline: everything in the raw unit, the leader's torso subtracted, one yaw removed.
 TEST(AfdTest, RawUnitsEqualThePapersPipeline) {
-  const motion::CoordinateFrame raw_frame = {motion::LengthUnit::kSbuNormalised,
-                                             motion::UpAxis::kYDown};
+  const motion::Coordinates raw_coordinates = {motion::LengthUnit::kSbuNormalised,
+                                               motion::UpAxis::kYDown};
   const std::vector<motion::Vec3> truth = {{0.4f, 1.2f, 1.7f}, {0.5f, 0.3f, 1.9f}};
   const std::vector<motion::Vec3> predicted = {{0.6f, 1.1f, 1.6f}, {0.1f, 0.35f, 2.2f}};
   const motion::Vec3 torso = {0.2f, 0.4f, 1.1f};
@@ -43,8 +43,8 @@ TEST(AfdTest, RawUnitsEqualThePapersPipeline) {
     squared += Dot(a - b, a - b);
   }
   std::vector<motion::Vec3> truth_world, predicted_world;
-  for (motion::Vec3 p : truth) truth_world.push_back(ToWorld(raw_frame, p));
-  for (motion::Vec3 p : predicted) predicted_world.push_back(ToWorld(raw_frame, p));
+  for (motion::Vec3 p : truth) truth_world.push_back(ToWorld(raw_coordinates, p));
+  for (motion::Vec3 p : predicted) predicted_world.push_back(ToWorld(raw_coordinates, p));
   EXPECT_NEAR(Afd(predicted_world, truth_world, 2, MetricUnit::kSbuRaw), std::sqrt(squared), 1e-5);
 }
 

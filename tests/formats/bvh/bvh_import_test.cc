@@ -14,11 +14,9 @@ namespace {
 
 using test::LargestDistance;
 using test::MakePerson;
-
-using test::LargestDistance;
-using test::MakePerson;
 using ::testing::Contains;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 constexpr float kOneMillimetre = 0.001f;
 
@@ -105,17 +103,36 @@ TEST(BvhImport, FindsTheUpAxis) {
   EXPECT_LT(LargestDistance(*read, z_up), kOneMillimetre);
 }
 
+// Somebody who lies down, bends or falls does not tip the world over.
+TEST(BvhImport, FindsTheUpAxisFromTheWholeMotion) {
+  motion::Clip clip = MakePerson();
+  for (int joint = 0; joint < clip.joint_count(); ++joint) {
+    motion::Vec3& p = clip.at(0, joint);
+    p = {p.x, -p.z, p.y};
+  }
+  std::vector<std::string> notes;
+  BvhImportOptions options;
+  options.notes = &notes;
+  const absl::StatusOr<motion::Clip> read = FromBvh(Export(clip), "a.bvh", options);
+  ASSERT_TRUE(read.ok()) << read.status();
+  EXPECT_LT(LargestDistance(*read, clip), kOneMillimetre);
+  EXPECT_THAT(notes, Not(Contains(HasSubstr("up axis:"))));
+}
+
 TEST(BvhImport, RoundsFrameTimesToTheRateThatIsMeant) {
   const std::pair<double, double> rates[] = {{0.0333333, 30}, {0.033333, 30},  {0.0083333, 120},
-                                             {0.041667, 24},  {0.0166667, 60}, {0.04, 25}};
+                                             {0.041667, 24},  {0.0166667, 60}, {0.04, 25},
+                                             {0.008333, 120}, {0.0041666, 240}};
   for (const auto& [frame_time, rate] : rates) {
     BvhDocument document = Export(MakePerson({2}));
     document.frame_time_s = frame_time;
     EXPECT_EQ(FromBvh(document, "a.bvh")->frame_rate_hz, rate) << frame_time;
   }
-  BvhDocument broadcast = Export(MakePerson({2}));
-  broadcast.frame_time_s = 1 / 29.97;
-  EXPECT_NEAR(FromBvh(broadcast, "a.bvh")->frame_rate_hz, 29.97, 1e-6);
+  for (const double rate : {29.97, 119.88, 1.001}) {
+    BvhDocument broadcast = Export(MakePerson({2}));
+    broadcast.frame_time_s = 1 / rate;
+    EXPECT_NEAR(FromBvh(broadcast, "a.bvh")->frame_rate_hz, rate, 1e-6);
+  }
 }
 
 TEST(BvhImport, ReadsTheSecondPersonOfAFileWithTwo) {

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "absl/strings/str_cat.h"
 #include "absl/strings/str_replace.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
@@ -38,6 +39,23 @@ TEST(Csv, ReadsColumnsInAnyOrder) {
   EXPECT_EQ(motion->coordinates.up_axis, motion::UpAxis::kZUp);
 }
 
+TEST(Csv, ReadsQuotedFieldsAndAByteOrderMark) {
+  const absl::StatusOr<motion::RecordedMotion> motion =
+      ParseCsv("\xEF\xBB\xBF\"frame\",\"a_x\", \"a_y\" ,a_z\n\"0\",\"1\", \"-2.5\" ,3\n", "a.csv");
+  ASSERT_TRUE(motion.ok()) << motion.status();
+  EXPECT_THAT(motion->people[0].joint_names, ::testing::ElementsAre("a"));
+  EXPECT_EQ(motion->people[0].at(0, 0), (motion::Vec3{1, -2.5f, 3}));
+}
+
+TEST(Csv, ReadsTodaysAndEarlierAxes) {
+  for (const char* axis : {"y-down", "-y"}) {
+    const absl::StatusOr<motion::RecordedMotion> motion =
+        ParseCsv(absl::StrCat("# up_axis=", axis, "\na_x,a_y,a_z\n1,2,3\n"), "a.csv");
+    ASSERT_TRUE(motion.ok()) << motion.status();
+    EXPECT_EQ(motion->coordinates.up_axis, motion::UpAxis::kYDown) << axis;
+  }
+}
+
 TEST(Csv, LeavesTheRateOpenWhereTheFileHasNone) {
   const absl::StatusOr<motion::RecordedMotion> motion = ParseCsv("a_x,a_y,a_z\n1,2,3\n", "a.csv");
   ASSERT_TRUE(motion.ok()) << motion.status();
@@ -56,6 +74,9 @@ TEST(Csv, ReadsBackAPairExactly) {
   EXPECT_EQ(motion->people[0].positions, pair.leader.positions);
   EXPECT_EQ(motion->people[1].positions, pair.follower.positions);
   EXPECT_EQ(motion->people[1].frame_rate_hz, 29.97);
+  EXPECT_THAT(FormatCsv(pair),
+              ::testing::StartsWith("# duet motion: frame_rate_hz=29.97 unit=metres "
+                                    "up_axis=y-up\nframe,leader.head_x,"));
 }
 
 TEST(Csv, NamesThePlaceOfABadValue) {
@@ -84,8 +105,10 @@ TEST(Csv, RefusesAHeaderThatDescribesNoJoints) {
 
 TEST(Csv, RefusesSettingsThatItDoesNotKnow) {
   EXPECT_THAT(ParseError("# fps=0\na_x,a_y,a_z\n1,2,3\n"), HasSubstr("fps: came \"0\""));
-  EXPECT_THAT(ParseError("# unit=feet\na_x,a_y,a_z\n1,2,3\n"), HasSubstr("unit: came \"feet\""));
-  EXPECT_THAT(ParseError("# up_axis=x\na_x,a_y,a_z\n1,2,3\n"), HasSubstr("up_axis: came \"x\""));
+  EXPECT_THAT(ParseError("# unit=feet\na_x,a_y,a_z\n1,2,3\n"),
+              HasSubstr("unit: came \"feet\", wanted metres, "));
+  EXPECT_THAT(ParseError("# up_axis=x\na_x,a_y,a_z\n1,2,3\n"),
+              HasSubstr("up_axis: came \"x\", wanted y-up, z-up or y-down"));
 }
 
 TEST(Csv, RefusesAnEmptyFile) {

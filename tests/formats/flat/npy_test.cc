@@ -9,7 +9,7 @@
 #include "absl/strings/str_replace.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "model/base/text.h"
+#include "model/base/file.h"
 #include "tests/support/test_motion.h"
 
 namespace duet::formats::flat {
@@ -43,6 +43,25 @@ TEST(Npy, ReadsBackAPairExactly) {
   EXPECT_EQ(motion->people[0].frame_rate_hz, 0);
 }
 
+// Versions 2 and 3 have four bytes for the length of the header where version 1 has two.
+TEST(Npy, ReadsLaterVersionsOfTheFormat) {
+  const motion::ClipPair pair = MakePair();
+  for (const char version : {'\x02', '\x03'}) {
+    std::string bytes = FormatNpy(pair);
+    bytes[6] = version;
+    bytes.insert(10, 2, '\0');
+    const absl::StatusOr<motion::RecordedMotion> motion =
+        ParseNpy(bytes, "a.npy", pair.leader.joint_names);
+    ASSERT_TRUE(motion.ok()) << motion.status();
+    EXPECT_EQ(motion->people[1].positions, pair.follower.positions);
+  }
+  for (const char version : {'\0', '\x04'}) {
+    std::string bytes = FormatNpy(pair);
+    bytes[6] = version;
+    EXPECT_THAT(ParseError(bytes), HasSubstr("wanted 1 to 3"));
+  }
+}
+
 TEST(Npy, AlignsItsValues) {
   const std::string bytes = FormatNpy(MakePair());
   EXPECT_EQ((bytes.find('\n') + 1) % 64, 0u);
@@ -63,7 +82,7 @@ TEST(Npy, IsReadAndWrittenByNumPy) {
                    "'); assert a.shape == (2, 12, 15, 3) and a.dtype == n.float32; n.save('",
                    theirs.string(), "', a[1].astype(n.float64) * 2)");
   ASSERT_EQ(std::system(absl::StrCat("/usr/bin/python3 -c \"", script, "\"").c_str()), 0);
-  const absl::StatusOr<std::string> bytes = base::ReadFile(theirs);
+  const absl::StatusOr<std::string> bytes = base::ReadFile(theirs, 1 << 20, "an array");
   ASSERT_TRUE(bytes.ok()) << bytes.status();
   const absl::StatusOr<motion::RecordedMotion> motion =
       ParseNpy(*bytes, "b.npy", pair.leader.joint_names);

@@ -60,14 +60,5 @@ TEST(ToGrpcStatusTest, HasTheWireFormOfGoogleRpc) {
             "\x08\x03\x12\x01m\x1a" + std::string(1, static_cast<char>(any.size())) + any);
 }
 
-TEST(QuotedTest, QuotesAndEscapes) {
-  EXPECT_EQ(Quoted("head"), "\"head\"");
-  EXPECT_EQ(Quoted("a\nb\"c\xff"), R"("a\nb\"c\xff")");
-}
-
-TEST(QuotedTest, ShowsOnlyTheBeginningOfALongText) {
-  EXPECT_EQ(Quoted(std::string(1000, 'x')), "\"" + std::string(64, 'x') + "...\"");
-}
-
 }  // namespace
 }  // namespace duet::server::common

@@ -1,0 +1,27 @@
+#ifndef DUET_MODEL_BASE_FILE_H_
+#define DUET_MODEL_BASE_FILE_H_
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+
+namespace duet::base {
+
+// The whole of a file. `wanted` says what the caller is after, with its article, for the message
+// about a file that is too large: "key.pem: larger than 1 MiB, wanted a PEM file".
+//
+// Errors: NOT_FOUND, PERMISSION_DENIED or INVALID_ARGUMENT (a folder, too large), naming the path.
+absl::StatusOr<std::string> ReadFile(const std::filesystem::path& path, std::size_t max_bytes,
+                                     absl::string_view wanted);
+
+// Replaces the file as a whole; a failed write leaves no partial file. A pipe or a device is
+// written to. Errors: PERMISSION_DENIED or INVALID_ARGUMENT (a folder), naming the path.
+absl::Status WriteFile(const std::filesystem::path& path, absl::string_view content);
+
+}  // namespace duet::base
+
+#endif  // DUET_MODEL_BASE_FILE_H_

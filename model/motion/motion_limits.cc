@@ -1,0 +1,24 @@
+#include "model/motion/motion_limits.h"
+
+#include <cmath>
+
+#include "absl/strings/str_cat.h"
+#include "model/base/text.h"
+
+namespace duet::motion {
+
+absl::Status CheckFrameRate(absl::string_view source, double frame_rate_hz) {
+  if (frame_rate_hz > 0 && frame_rate_hz <= kMaxFrameRateHz) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat(source, ": frame rate: came ", frame_rate_hz,
+                                                 ", wanted more than 0 and at most ",
+                                                 kMaxFrameRateHz, " Hz"));
+}
+
+bool ParseCoordinate(absl::string_view text, float* value) {
+  double number = 0;
+  if (!base::ParseNumber(text, &number) || std::abs(number) > kMaxCoordinate) return false;
+  *value = static_cast<float>(number);
+  return true;
+}
+
+}  // namespace duet::motion

@@ -1,0 +1,74 @@
+#include "model/base/file.h"
+
+#include <filesystem>
+#include <string>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/support/status_matchers.h"
+#include "tests/support/temporary_folder.h"
+
+namespace duet::base {
+namespace {
+
+using test::IsOk;
+using test::StatusIs;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+namespace fs = std::filesystem;
+
+class FileTest : public ::testing::Test {
+ protected:
+  fs::path Path(const char* name) const { return folder_ / name; }
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(FileTest, ReadsBackWhatWasWritten) {
+  const std::string content("a\0\r\n\xff", 5);
+  ASSERT_THAT(WriteFile(Path("a"), "longer before"), IsOk());
+  ASSERT_THAT(WriteFile(Path("a"), content), IsOk());
+  const absl::StatusOr<std::string> read = ReadFile(Path("a"), 5, "a test");
+  ASSERT_THAT(read, IsOk());
+  EXPECT_EQ(*read, content);
+}
+
+TEST_F(FileTest, SaysWhatWasWantedInsteadOfALargeFile) {
+  test::WriteTestFile(Path("a.pem"), std::string((1 << 20) + 1, 'x'));
+  EXPECT_THAT(ReadFile(Path("a.pem"), 1 << 20, "a PEM file"),
+              StatusIs(absl::StatusCode::kInvalidArgument,
+                       AllOf(HasSubstr(Path("a.pem").string()),
+                             HasSubstr("larger than 1 MiB, wanted a PEM file"))));
+  EXPECT_THAT(ReadFile(Path("a.pem"), 1000, "a PEM file"),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("larger than 1000 bytes")));
+  EXPECT_THAT(ReadFile(Path("a.pem"), (1 << 20) + 1, "a PEM file"), IsOk());
+}
+
+TEST_F(FileTest, NamesWhatCannotBeRead) {
+  EXPECT_THAT(ReadFile(Path("none"), 9, "a test"),
+              StatusIs(absl::StatusCode::kNotFound, HasSubstr(Path("none").string())));
+  fs::create_directory(Path("folder"));
+  EXPECT_THAT(ReadFile(Path("folder"), 9, "a test"),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("is a folder")));
+}
+
+TEST_F(FileTest, NamesWhatCannotBeWritten) {
+  fs::create_directory(Path("folder"));
+  EXPECT_THAT(WriteFile(Path("folder"), "x"),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("is a folder")));
+  EXPECT_THAT(WriteFile(Path("no") / "file", "x"),
+              StatusIs(absl::StatusCode::kPermissionDenied, HasSubstr("cannot be written")));
+}
+
+TEST_F(FileTest, LeavesNothingBesideTheFile) {
+  ASSERT_THAT(WriteFile(Path("a"), "x"), IsOk());
+  int files = 0;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder_.path())) {
+    EXPECT_EQ(entry.path(), Path("a"));
+    ++files;
+  }
+  EXPECT_EQ(files, 1);
+}
+
+}  // namespace
+}  // namespace duet::base

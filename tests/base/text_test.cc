@@ -1,0 +1,95 @@
+#include "model/base/text.h"
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+
+namespace duet::base {
+namespace {
+
+using ::testing::ElementsAre;
+
+TEST(ParseNumber, TakesOneFiniteNumber) {
+  double value = 0;
+  EXPECT_TRUE(ParseNumber(" +1.5e3 ", &value));
+  EXPECT_EQ(value, 1500);
+  EXPECT_TRUE(ParseNumber("-.5", &value));
+  EXPECT_EQ(value, -0.5);
+  for (const char* text : {"", " ", "x", "1,5", "1 2", "1x", "+-1", "--1", "nan", "inf", "1e999"}) {
+    EXPECT_FALSE(ParseNumber(text, &value)) << text;
+  }
+}
+
+TEST(ParseInteger, TakesNineDigits) {
+  int value = 0;
+  EXPECT_TRUE(ParseInteger("-999999999", &value));
+  EXPECT_EQ(value, -999'999'999);
+  EXPECT_TRUE(ParseInteger("+7", &value));
+  EXPECT_EQ(value, 7);
+  for (const char* text : {"", "1000000000", "99999999999999999999", "1.0", "0x1", "1 2"}) {
+    EXPECT_FALSE(ParseInteger(text, &value)) << text;
+  }
+}
+
+std::string Number(float value) {
+  std::string text;
+  AppendNumber(&text, value);
+  return text;
+}
+
+TEST(AppendNumber, WritesTheShortestTextThatReadsBack) {
+  EXPECT_EQ(Number(0.1f), "0.1");
+  EXPECT_EQ(Number(-3), "-3");
+  const float odd = std::nextafter(1.0f, 2.0f);
+  double back = 0;
+  ASSERT_TRUE(ParseNumber(Number(odd), &back));
+  EXPECT_EQ(static_cast<float>(back), odd);
+}
+
+std::string Fixed(double value, int decimals) {
+  std::string text;
+  AppendFixed(&text, value, decimals);
+  return text;
+}
+
+TEST(AppendFixed, NeverWritesAMinusBeforeZero) {
+  EXPECT_EQ(Fixed(-0.0001, 3), "0.000");
+  EXPECT_EQ(Fixed(-0.0006, 3), "-0.001");
+  EXPECT_EQ(Fixed(0.0, 0), "0");
+  EXPECT_EQ(Fixed(std::numeric_limits<double>::max(), 3).size(), 313u);
+}
+
+TEST(Quoted, EscapesWhatIsNoPrintableAscii) {
+  EXPECT_EQ(Quoted("head"), "\"head\"");
+  EXPECT_EQ(Quoted("a\nb\"c\\d\xff"), R"("a\nb\"c\\d\xff")");
+}
+
+TEST(Quoted, ShowsOnlyTheBeginningOfALongText) {
+  EXPECT_EQ(Quoted(std::string(64, 'x')), "\"" + std::string(64, 'x') + "\"");
+  EXPECT_EQ(Quoted(std::string(65, 'x')), "\"" + std::string(64, 'x') + "...\"");
+}
+
+TEST(ErrorAt, PointsAtAPlace) {
+  EXPECT_EQ(ErrorAt("a.csv", 3, "no"), absl::InvalidArgumentError("a.csv:3: no"));
+  EXPECT_EQ(ErrorAt("a.csv", 3, 7, "no"), absl::InvalidArgumentError("a.csv:3:7: no"));
+}
+
+TEST(SkipByteOrderMark, SkipsThatAlone) {
+  EXPECT_EQ(SkipByteOrderMark("\xEF\xBB\xBFx"), "x");
+  EXPECT_EQ(SkipByteOrderMark("x\xEF\xBB\xBF"), "x\xEF\xBB\xBF");
+}
+
+TEST(LineReader, GivesLinesWithoutTheirEnds) {
+  LineReader lines("a\r\n\nb\rc\nd");
+  std::vector<std::string> read;
+  for (absl::string_view line; lines.Next(&line);) read.emplace_back(line);
+  EXPECT_THAT(read, ElementsAre("a", "", "b\rc", "d"));
+  EXPECT_EQ(lines.number(), 4);
+}
+
+}  // namespace
+}  // namespace duet::base
