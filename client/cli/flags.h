@@ -1,6 +1,7 @@
 #ifndef DUET_CLIENT_CLI_FLAGS_H_
 #define DUET_CLIENT_CLI_FLAGS_H_
 
+#include <algorithm>
 #include <functional>
 #include <map>
 #include <string>
@@ -12,7 +13,7 @@
 #include "absl/strings/str_join.h"
 #include "absl/strings/string_view.h"
 
-// What CLI11 lacks for this program's flags.
+// Kinds of flag that this program has and CLI11 does not.
 
 namespace duet::client::cli {
 
@@ -54,6 +55,13 @@ CLI::Option* AddChoice(CLI::App* app, const std::string& flag,
   return app->add_option_function<std::string>(flag, read, help)
       ->check(Undescribed(CLI::IsMember(allowed)))
       ->type_name(absl::StrJoin(allowed, "|"));
+}
+
+// The name that AddChoice gives to `value`; every value has one.
+template <typename T>
+std::string NameOf(const std::map<std::string, T>& names, T value) {
+  const auto has_value = [value](const auto& named) { return named.second == value; };
+  return std::find_if(names.begin(), names.end(), has_value)->first;
 }
 
 // Collects the values of a repeated flag.

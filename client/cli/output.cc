@@ -7,7 +7,6 @@
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "absl/strings/str_replace.h"
 #include "client/viewer/page.h"
 #include "model/base/text.h"
 #include "model/formats/motion_file.h"
@@ -41,7 +40,7 @@ absl::Status CheckOutput(const std::filesystem::path& output, const std::filesys
     absl::Status status = formats::CheckWritable(output);
     if (!status.ok()) {
       return absl::InvalidArgumentError(
-          absl::StrReplaceAll(status.message(), {{"wanted ", "wanted .html, "}}));
+          absl::StrCat(status.message(), ", or .html for a page to watch"));
     }
   }
   std::error_code error;

@@ -1,19 +1,34 @@
 #include "client/cli/server_options.h"
 
+#include <cstdint>
+#include <filesystem>
 #include <string>
+#include <system_error>
 #include <utility>
 
+#include "absl/strings/str_cat.h"
 #include "model/base/text.h"
 
 namespace duet::client::cli {
 namespace {
 
-constexpr std::size_t kMaxPemBytes = std::size_t{1} << 20;
+constexpr std::uintmax_t kMaxPemBytes = std::uintmax_t{1} << 20;
+
+// A key or a chain of certificates is some kilobytes; whatever is far larger is another file.
+absl::StatusOr<std::string> ReadPemFile(const std::string& path) {
+  std::error_code error;  // what cannot be read at all is said by ReadFile
+  const std::uintmax_t bytes = std::filesystem::file_size(path, error);
+  if (!error && bytes > kMaxPemBytes) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        path, ": ", bytes, " bytes, wanted a PEM file of at most ", kMaxPemBytes, " bytes"));
+  }
+  return base::ReadFile(path, kMaxPemBytes);
+}
 
 // Nothing for a file that was not named.
 absl::Status ReadPem(const std::string& path, std::string* pem) {
   if (path.empty()) return absl::OkStatus();
-  absl::StatusOr<std::string> content = base::ReadFile(path, kMaxPemBytes);
+  absl::StatusOr<std::string> content = ReadPemFile(path);
   if (!content.ok()) return content.status();
   *pem = *std::move(content);
   return absl::OkStatus();

@@ -92,9 +92,9 @@ class AugmentationSetTest(unittest.TestCase):
         self.assertIn("wanted a folder half-<seed>", made.stderr)
 
     def test_jobs_are_of_one_half(self):
-        result = evaluate("--data", self.data, "--write_jobs", self.out, "--seeds", "1,2")
+        result = evaluate("--data", self.data, "--write-jobs", self.out, "--seeds", "1,2")
         self.assertNotEqual(result.returncode, 0)
-        self.assertIn("--seeds: 2 came, wanted one with --write_jobs", result.stderr)
+        self.assertIn("--seeds: 2 came, wanted one with --write-jobs", result.stderr)
         self.assertFalse(self.out.exists())
 
 
