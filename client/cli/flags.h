@@ -23,8 +23,8 @@ inline CLI::Validator Undescribed(CLI::Validator validator) {
   return validator;
 }
 
-// A flag with its own little language, shown as `form`. One value after each flag, so that a file
-// name that follows is never taken for another value.
+// A flag whose value `parse` reads; help shows the value as `form`. One value after each flag, so
+// that a file name that follows is never taken for another value.
 template <typename T>
 CLI::Option* AddParsed(CLI::App* app, const std::string& flag, const std::string& form,
                        absl::StatusOr<T> (*parse)(absl::string_view), std::function<void(T)> sink,

@@ -12,8 +12,9 @@
 namespace duet::client::cli {
 namespace {
 
-// What a skeleton must have and a served model does not tell: hips and feet by their names, the root
-// in the place of one that is not there, and a single part (parts matter to the network alone).
+// What a skeleton must have and a served model does not tell: hips and feet by their names, the
+// root in the place of one that is not there, and a single part (parts matter to the network
+// alone).
 void SetLandmarksAndParts(motion::Skeleton* skeleton) {
   const auto find_or_root = [skeleton](const char* name) {
     const int found = skeleton->Find(name);

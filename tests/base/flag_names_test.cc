@@ -29,9 +29,9 @@ TEST(KebabCaseCommandLineTest, FlagsInKebabCaseStay) {
 }
 
 TEST(KebabCaseCommandLineTest, ValuesStay) {
-  EXPECT_THAT(Respelt({"program", "class_mean", "--write_jobs=my_folder/a=b_c", "-a_b", "a--b_c"}),
-              ElementsAre("program", "class_mean", "--write-jobs=my_folder/a=b_c", "-a_b",
-                          "a--b_c"));
+  EXPECT_THAT(
+      Respelt({"program", "class_mean", "--write_jobs=my_folder/a=b_c", "-a_b", "a--b_c"}),
+      ElementsAre("program", "class_mean", "--write-jobs=my_folder/a=b_c", "-a_b", "a--b_c"));
 }
 
 TEST(KebabCaseCommandLineTest, WhatFollowsABareDoubleDashStays) {
