@@ -37,7 +37,8 @@ class InstallTest(unittest.TestCase):
             f"-DCMAKE_PREFIX_PATH={prefix}")
         run(CMAKE, "--build", build, timeout=BUILD_SECONDS)
         with tools.running_server() as server:
-            self.assertRegex(run(build / "consumer", server.address), r"^k3hi@\d+\nsbu@\d+\n$")
+            self.assertRegex(run(build / "consumer", server.address),
+                             r"^k3hi@\d+\nsbu@\d+\nleader\.frame_count\n$")
 
     def test_the_library_is_usable_where_it_is_installed(self):
         prefix = fresh("whole")

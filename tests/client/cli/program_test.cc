@@ -317,6 +317,25 @@ TEST_F(ProgramTest, AModelWithoutASkeletonIsTheServersFault) {
   EXPECT_THAT(err_.str(), HasSubstr("the server's model sbu@1 has no usable skeleton"));
 }
 
+TEST_F(ProgramTest, AModelNeedsNeitherHipsNorFeet) {
+  ModelDetails details = SbuModel();
+  details.model.joint_names = {"torso", "head"};
+  details.model.bones = {{0, 1}};
+  SynthesisRequest sent;
+  EXPECT_CALL(*connection_, GetModel).WillOnce(Return(details));
+  EXPECT_CALL(*connection_, Synthesize)
+      .WillOnce([&](const SynthesisRequest& request, const ChunkCallback&) {
+        sent = request;
+        return Follow(request);
+      });
+  ASSERT_EQ(Synthesize("pair.csv", {"--out", Path("pair.html")}), 0) << err_.str();
+  EXPECT_EQ(sent.leader.joint_names, details.model.joint_names);
+  ASSERT_EQ(sent.leader.frame_count(), kFrames);
+  const int torso = motion::SbuSkeleton().Find("torso");
+  EXPECT_NEAR(sent.leader.at(5, 0).y, leader_.at(5, torso).y, 1e-5);
+  EXPECT_TRUE(Exists("pair.csv"));
+}
+
 TEST_F(ProgramTest, CertificatesAreReadFromTheirFiles) {
   WriteTestFile(folder_ / "ca.pem", "authority");
   WriteTestFile(folder_ / "cert.pem", "certificate");

@@ -1,5 +1,5 @@
-// consumer <server>: lists the models, then asks for a follower of nobody and prints what is
-// refused.
+// consumer <server>: lists the models, then asks for the follower of a leader without frames and
+// prints which fields were refused.
 #include <iostream>
 
 #include "duet/client/client.h"
@@ -17,6 +17,7 @@ int main(int, char** argv) {
   leader.joint_names = models->front().joint_names;
   leader.frame_rate_hz = models->front().frame_rate_hz;
   duet::client::SynthesisRequest request;
+  request.model.name = models->front().name;
   request.leader = leader;
   request.weights = {{models->front().interaction_classes.front(), 1}};
   const auto result = client->Synthesize(request);
