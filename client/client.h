@@ -26,8 +26,8 @@ namespace duet::client {
 // Retries: UNAVAILABLE, streams that break, and RESOURCE_EXHAUSTED for bulk work when the server
 //          says when to come back; see RetryOptions. The same request gives the same motion, so a
 //          broken stream is run again from its start.
-// Errors:  the server's status; client/error_details.h reads its details. A reply that breaks the
-//          contract is INTERNAL, UNAVAILABLE where it merely ended early.
+// Errors:  the server's status; client/error_details.h reads its details. INTERNAL when the reply
+//          breaks the contract, UNAVAILABLE when it merely ended early.
 // Threads: safe to call concurrently; copies share one connection.
 class Client {
  public:

@@ -9,7 +9,7 @@
 
 namespace duet::client {
 
-// What a Client does its work with; the seam for tests of programs that use a Client
+// How a Client reaches a server. Tests of programs that use a Client replace it
 // (client/mocks/mock_connection.h).
 //
 // Threads: implementations are safe to call concurrently.

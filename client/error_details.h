@@ -16,8 +16,8 @@ struct FieldViolation {
   std::string description;  // what came and what was wanted
 };
 
-// The details that a server's refusal carries (google.rpc.BadRequest, RetryInfo, ErrorInfo). They
-// travel as payloads of the status, under their type URLs.
+// The functions below read the details of a server's refusal (google.rpc.BadRequest, RetryInfo,
+// ErrorInfo), which a status from this library carries as payloads.
 
 // Every field that was refused, in the server's order; empty where the refusal is of another kind.
 std::vector<FieldViolation> FieldViolations(const absl::Status& status);

@@ -41,8 +41,8 @@ struct SynthesisRequest {
   ModelChoice model;
   // Metres, y up. Its joints are those of the model (GetModel lists them), in any order.
   motion::Clip leader;
-  // One of the two: weights for the whole clip, or weights that change over time (linear between
-  // keyframes, held before the first and after the last).
+  // Either weights for the whole clip, or keyframes for weights that change over time: linear
+  // between keyframes, constant before the first and after the last.
   std::vector<ClassWeight> weights;
   std::vector<WeightKeyframe> keyframes;
   std::optional<FollowerStart> follower_start;

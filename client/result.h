@@ -1,6 +1,7 @@
 #ifndef DUET_CLIENT_RESULT_H_
 #define DUET_CLIENT_RESULT_H_
 
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -56,8 +57,7 @@ struct SynthesisTimings {
 
 // A follower, and who made it.
 struct SynthesisResult {
-  motion::ClipPair
-      pair;  // the request's leader, and the follower in the same joints, rate and world
+  motion::ClipPair pair;  // the request's leader; the follower in its joints, rate and world
   std::string model_name;
   int model_version = 0;
   std::vector<std::string> interaction_classes;  // every class of the model
@@ -68,15 +68,17 @@ struct SynthesisResult {
 };
 
 // Consecutive frames of the follower, as they arrive.
+//
+// Shapes: positions [frame_count, joints], row-major, in the leader's joint order.
+// Units:  metres, y up.
 struct FollowerChunk {
   int first_frame = 0;
   int frame_count = 0;
-  std::vector<motion::Vec3>
-      positions;  // [frame_count, joints], the leader's joint order; metres, y up
+  std::vector<motion::Vec3> positions;
 };
 
-// Called for every chunk, in frame order, each frame once even where the call was retried. A status
-// that is not OK cancels the call, which then fails with it.
+// Called with every chunk, in frame order; each frame comes once, even where the call was retried.
+// A status that is not OK cancels the call, which then fails with that status.
 using ChunkCallback = std::function<absl::Status(const FollowerChunk&)>;
 
 }  // namespace duet::client

@@ -87,7 +87,7 @@ seed="${run##*/half-}"
 [[ "${seed}" =~ ^[0-9]+$ ]] || fail "RUN: '${run}' came, wanted a folder half-<seed> of duet-train --protocol half"
 [[ -d "${run}/checkpoint" ]] || fail "RUN: ${run} has no checkpoint, wanted a finished run"
 
-"${bin}/duet-eval" augmentation --data "${data}" --seeds "${seed}" --write_jobs "${out}" "$@"
+"${bin}/duet-eval" augmentation --data "${data}" --seeds "${seed}" --write-jobs "${out}" "$@"
 trap stop_server EXIT
 trap 'exit 130' INT TERM
 start_server

@@ -51,7 +51,7 @@ measure() {
     --title "Methods: leave one subject out" --baselines "${methods}" --printed afd,fid \
     --runs "ours=${runs}/default" --runs "mshl22=${runs}/mshl22" \
     --metrics "${placed},${quality},${touch},${judged}"
-  "${bin}/duet-eval" folds --data "${data}" --out "${results}" --id 12_as_served --as_served \
+  "${bin}/duet-eval" folds --data "${data}" --out "${results}" --id 12_as_served --as-served \
     --title "The same model as a server answers" --baselines class_mean,frozen_first_frame \
     --runs "ours=${runs}/default" --metrics "afd,afd_squared,${quality},${touch}"
   for config in "${ablations[@]}"; do named+=("${config}=${runs}/ablation/${config}"); done

@@ -70,7 +70,8 @@ void AddInputFlags(CLI::App* app, SynthesizeArguments* arguments) {
   AddChoice<formats::Side>(
       app, "--leader-side", kSides,
       [arguments](formats::Side side) { arguments->leader_side = side; },
-      "Which person of a file with two leads (default left)")
+      "Which person of a file with two leads")
+      ->default_str(NameOf(kSides, arguments->leader_side))
       ->group(kGroup);
   InputArguments* input = &arguments->input;
   app->add_option("--frame-rate", input->frame_rate_hz, "Replaces what the file says")
@@ -126,8 +127,9 @@ void AddReactionFlags(CLI::App* app, SynthesizeArguments* arguments) {
   AddChoice<formats::Side>(
       app, "--follower-start-side", kSides,
       [arguments](formats::Side side) { arguments->follower_start_side = side; },
-      "Which person of a file with two (default: not the leader where it is the leader's file, "
-      "else left)")
+      absl::StrCat("Which person of a file with two (default: not the leader where it is the "
+                   "leader's file, else ",
+                   NameOf(kSides, kDefaultSide), ")"))
       ->group(kGroup);
   AddParsed<motion::Vec3>(
       app, "--partner-direction", "X,Y,Z", ParseDirection,
@@ -140,6 +142,7 @@ void AddReactionFlags(CLI::App* app, SynthesizeArguments* arguments) {
       app, "--priority", kPriorities,
       [arguments](Priority priority) { arguments->priority = priority; },
       "bulk yields to interactive calls and waits when the server is full")
+      ->default_str(NameOf(kPriorities, arguments->priority))
       ->group(kGroup);
   app->add_option("--chunk-frames", arguments->chunk_frames, "Frames in one chunk of the reply")
       ->check(Undescribed(CLI::Range(1, 100000)))

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "absl/time/time.h"
+#include "client/options.h"
 #include "client/request.h"
 #include "model/formats/motion_file.h"
 #include "model/motion/vec3.h"
@@ -15,14 +17,17 @@ namespace duet::client::cli {
 
 // Where the server is and how to speak to it.
 struct ServerArguments {
-  std::string address = "localhost:50051";
-  double timeout_seconds = 120;
+  std::string address = ClientOptions().server_address;
+  double timeout_seconds = absl::ToDoubleSeconds(ClientOptions().deadline);
   bool tls = false;  // implied by any of the files
   std::string tls_ca_file;
   std::string tls_certificate_file;
   std::string tls_key_file;
   std::string tls_server_name;
 };
+
+// Of a file with two people, the one that is read where nothing else is said.
+inline constexpr formats::Side kDefaultSide = formats::Side::kLeft;
 
 // How a motion file is to be read where the file itself does not say.
 struct InputArguments {
@@ -43,7 +48,7 @@ struct ModelsArguments {
 struct SynthesizeArguments {
   ServerArguments server;
   std::filesystem::path leader;
-  formats::Side leader_side = formats::Side::kLeft;
+  formats::Side leader_side = kDefaultSide;
   InputArguments input;
   ModelChoice model;
   std::vector<ClassWeight> weights;

@@ -1,6 +1,7 @@
 #ifndef DUET_CLIENT_CLI_FLAGS_H_
 #define DUET_CLIENT_CLI_FLAGS_H_
 
+#include <algorithm>
 #include <functional>
 #include <map>
 #include <string>
@@ -12,7 +13,7 @@
 #include "absl/strings/str_join.h"
 #include "absl/strings/string_view.h"
 
-// What CLI11 lacks for this program's flags.
+// Kinds of flag that this program has and CLI11 does not.
 
 namespace duet::client::cli {
 
@@ -22,8 +23,8 @@ inline CLI::Validator Undescribed(CLI::Validator validator) {
   return validator;
 }
 
-// A flag with its own little language, shown as `form`. One value after each flag, so that a file
-// name that follows is never taken for another value.
+// A flag whose value `parse` reads; help shows the value as `form`. One value after each flag, so
+// that a file name that follows is never taken for another value.
 template <typename T>
 CLI::Option* AddParsed(CLI::App* app, const std::string& flag, const std::string& form,
                        absl::StatusOr<T> (*parse)(absl::string_view), std::function<void(T)> sink,
@@ -54,6 +55,13 @@ CLI::Option* AddChoice(CLI::App* app, const std::string& flag,
   return app->add_option_function<std::string>(flag, read, help)
       ->check(Undescribed(CLI::IsMember(allowed)))
       ->type_name(absl::StrJoin(allowed, "|"));
+}
+
+// The name that AddChoice gives to `value`; every value has one.
+template <typename T>
+std::string NameOf(const std::map<std::string, T>& names, T value) {
+  const auto has_value = [value](const auto& named) { return named.second == value; };
+  return std::find_if(names.begin(), names.end(), has_value)->first;
 }
 
 // Collects the values of a repeated flag.

@@ -12,7 +12,7 @@
 
 namespace duet::client::cli {
 
-// Everything that any kind of output shows.
+// A finished synthesis, with everything that any kind of output shows of it.
 struct Synthesis {
   SynthesisRequest request;
   SynthesisResult result;

@@ -11,7 +11,7 @@
 
 namespace duet::client::cli {
 
-// What the program does its work with; replaced in tests.
+// How the program reaches a server and where it prints; replaced in tests.
 struct ProgramEnvironment {
   std::function<absl::StatusOr<Client>(const ClientOptions&)> connect;
   std::ostream* out;

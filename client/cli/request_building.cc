@@ -12,10 +12,20 @@
 namespace duet::client::cli {
 namespace {
 
-// The joint's index; the root's where the model has no such joint.
-int FindOrRoot(const motion::Skeleton& skeleton, const std::string& name) {
-  const int found = skeleton.Find(name);
-  return found < 0 ? skeleton.root : found;
+// What a skeleton must have and a served model does not tell: hips and feet by their names, the
+// root in the place of one that is not there, and a single part (parts matter to the network
+// alone).
+void SetLandmarksAndParts(motion::Skeleton* skeleton) {
+  const auto find_or_root = [skeleton](const char* name) {
+    const int found = skeleton->Find(name);
+    return found < 0 ? skeleton->root : found;
+  };
+  skeleton->left_hip = find_or_root("left_hip");
+  skeleton->right_hip = find_or_root("right_hip");
+  skeleton->left_foot = find_or_root("left_foot");
+  skeleton->right_foot = find_or_root("right_foot");
+  skeleton->parts = {{"whole_body", std::vector<int>(skeleton->joint_names.size())}};
+  std::iota(skeleton->parts[0].joints.begin(), skeleton->parts[0].joints.end(), 0);
 }
 
 formats::ReadOptions ToReadOptions(const InputArguments& input, const motion::Skeleton& skeleton) {
@@ -49,7 +59,7 @@ formats::Side FollowerStartSide(const SynthesizeArguments& arguments) {
   if (arguments.follower_start_side.has_value()) return *arguments.follower_start_side;
   std::error_code error;
   if (!std::filesystem::equivalent(arguments.follower_start, arguments.leader, error)) {
-    return formats::Side::kLeft;
+    return kDefaultSide;
   }
   return arguments.leader_side == formats::Side::kLeft ? formats::Side::kRight
                                                        : formats::Side::kLeft;
@@ -75,13 +85,7 @@ absl::StatusOr<motion::Skeleton> ToSkeleton(const ModelInfo& model) {
   skeleton.joint_names = model.joint_names;
   skeleton.bones = model.bones;
   skeleton.root = skeleton.Find(model.root_joint);
-  skeleton.left_hip = FindOrRoot(skeleton, "left_hip");
-  skeleton.right_hip = FindOrRoot(skeleton, "right_hip");
-  skeleton.left_foot = FindOrRoot(skeleton, "left_foot");
-  skeleton.right_foot = FindOrRoot(skeleton, "right_foot");
-  // Body parts matter to the network alone.
-  skeleton.parts = {{"whole_body", std::vector<int>(skeleton.joint_names.size())}};
-  std::iota(skeleton.parts[0].joints.begin(), skeleton.parts[0].joints.end(), 0);
+  SetLandmarksAndParts(&skeleton);
   absl::Status status = Validate(skeleton);
   if (status.ok()) return skeleton;
   return absl::InternalError(absl::StrCat("the server's model ", model.name, "@", model.version,

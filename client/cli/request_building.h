@@ -16,12 +16,12 @@ namespace duet::client::cli {
 // tree.
 absl::StatusOr<motion::Skeleton> ToSkeleton(const ModelInfo& model);
 
-// Whether the files that the flags name are there and of a known kind: what can be refused before
-// the server is asked for its model.
+// Whether the files that the flags name exist and are of a known kind. Needs no skeleton, so that a
+// wrong name is refused before the server is asked for its model.
 absl::Status CheckInputs(const SynthesizeArguments& arguments);
 
-// Reads the files that the flags name, in the skeleton's joints. `notes` receives what was decided
-// where the leader's file leaves a choice.
+// The request that the flags describe; reads the files that they name, in the skeleton's joints.
+// `notes` receives what was decided where the leader's file leaves a choice.
 absl::StatusOr<SynthesisRequest> BuildRequest(const SynthesizeArguments& arguments,
                                               const motion::Skeleton& skeleton,
                                               std::vector<std::string>* notes);

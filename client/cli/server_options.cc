@@ -1,5 +1,6 @@
 #include "client/cli/server_options.h"
 
+#include <cstddef>
 #include <string>
 #include <utility>
 
@@ -8,6 +9,7 @@
 namespace duet::client::cli {
 namespace {
 
+// A key or a chain of certificates is some kilobytes; whatever is far larger is another file.
 constexpr std::size_t kMaxPemBytes = std::size_t{1} << 20;
 
 // Nothing for a file that was not named.

@@ -16,7 +16,8 @@ namespace {
 
 using Paths = std::vector<std::filesystem::path>;
 
-// A result that a file system does not take may be taken next time: a full disk, a closed folder.
+// ABORTED instead of PERMISSION_DENIED: a disk may be full or a folder closed for a while, so the
+// same call may succeed later.
 absl::Status NotWritten(const absl::Status& status) {
   const auto code = absl::IsPermissionDenied(status) ? absl::StatusCode::kAborted : status.code();
   return absl::Status(code, absl::StrCat("cannot write the result: ", status.message()));

@@ -13,8 +13,8 @@
 
 namespace duet::client::cli {
 
-// The small languages of the program's flags. Errors: INVALID_ARGUMENT with what came and what was
-// wanted. Whether a class exists or a weight is in range is the server's to say.
+// How the values of the program's flags are written. Errors: INVALID_ARGUMENT with what came and
+// what was wanted. Whether a class exists and a weight is in range, the server checks.
 
 // "kick=1"
 absl::StatusOr<ClassWeight> ParseClassWeight(absl::string_view text);

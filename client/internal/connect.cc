@@ -13,8 +13,8 @@
 namespace duet::client::internal {
 namespace {
 
-// Calls go round all servers behind the name, and only to those whose health service says that
-// they serve: a draining server gets no new work. "" is the server as a whole.
+// Calls take turns over all servers behind the name whose health service says that they serve, so
+// that a draining server gets no new work. The empty service name asks for the server as a whole.
 constexpr char kServiceConfig[] = R"({
   "loadBalancingConfig": [{"round_robin": {}}],
   "healthCheckConfig": {"serviceName": ""}
@@ -59,8 +59,8 @@ grpc::ChannelArguments Arguments(const ClientOptions& options) {
   grpc::ChannelArguments arguments;
   arguments.SetLoadBalancingPolicyName("round_robin");
   arguments.SetServiceConfigJSON(kServiceConfig);
-  // A connection is tried again as often as a call is: gRPC's own second-long wait would spend a
-  // call's attempts on a server that is back already.
+  // A lost connection is tried again as soon as a call is. With gRPC's own first wait of a second,
+  // a call could use up its attempts while the server has long been back.
   arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS,
                    static_cast<int>(absl::ToInt64Milliseconds(options.retry.initial_backoff)));
   arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS,

@@ -14,7 +14,8 @@ namespace duet::client::internal {
 // A connection over gRPC. INVALID_ARGUMENT when an option makes no sense. Connects lazily.
 absl::StatusOr<std::shared_ptr<Connection>> Connect(const ClientOptions& options);
 
-// "host:port" as a gRPC target that resolves to every server behind the name; targets are left.
+// The gRPC target of an address: "host:port" becomes one that resolves to every server behind the
+// name; an address that is a target already stays as it is.
 std::string GrpcTarget(std::string_view server_address);
 
 }  // namespace duet::client::internal

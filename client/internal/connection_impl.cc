@@ -10,8 +10,8 @@
 namespace duet::client::internal {
 namespace {
 
-// Makes a re-run come from the model that the frames already handed out came from: half a motion
-// of one version and half of another would be no motion at all.
+// Asks for the model version that the frames already handed out came from: a follower must not be
+// half one version's and half another's.
 void PinModel(const v1::SynthesisHeader& answered, v1::ModelSelector* selector) {
   selector->set_name(answered.model_name());
   selector->set_version(answered.model_version());
@@ -83,7 +83,7 @@ absl::StatusOr<SynthesisResult> ConnectionImpl::Synthesize(const SynthesisReques
     const int handed_out = reply.handed_out();
     absl::Status ended = RunStream(call, *wire, &reply, &first_chunk);
     if (resumes && absl::IsNotFound(ended)) return ModelIsGone(ended, wire->model(), handed_out);
-    // The callback's own wish to stop is never taken for a failure worth another attempt.
+    // A callback that ends the call is obeyed: its status is never a reason for another attempt.
     return reply.callback_status().ok() ? ended : absl::OkStatus();
   });
   if (!reply.callback_status().ok()) return reply.callback_status();
@@ -103,7 +103,7 @@ absl::Status ConnectionImpl::RunStream(const CallContext& call,
   v1::SynthesizeResponse response;
   absl::Status accepted;
   while (stream->Read(&response)) {
-    if (!accepted.ok()) continue;  // cancelled: what still arrives is dropped
+    if (!accepted.ok()) continue;  // the stream was cancelled; what still arrives is dropped
     const absl::Time arrival = environment_.now();
     accepted = reply->Accept(response);
     if (!accepted.ok()) stream->Cancel();

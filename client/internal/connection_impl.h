@@ -12,7 +12,8 @@
 
 namespace duet::client::internal {
 
-// Values to protos and back, around a stub: deadline, retries, checks.
+// Makes calls through a stub: turns values into protos and back, sets the deadline, retries, and
+// checks the replies.
 class ConnectionImpl final : public Connection {
  public:
   ConnectionImpl(std::shared_ptr<Stub> stub, const ClientOptions& options,

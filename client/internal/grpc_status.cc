@@ -14,7 +14,7 @@
 namespace duet::client::internal {
 namespace {
 
-// "field: description" of each violation that `message` does not already tell.
+// "field: description" of each violation that the status's message does not name already.
 std::string UntoldViolations(const absl::Status& status) {
   std::vector<std::string> untold;
   for (const FieldViolation& violation : FieldViolations(status)) {

@@ -13,7 +13,7 @@ namespace duet::client::internal {
 // a refusal into another error.
 absl::Status FromGrpc(const grpc::Status& status);
 
-// The same code and payloads, with more said.
+// The same code and payloads, with `more` after the message.
 absl::Status AppendMessage(const absl::Status& status, std::string_view more);
 // The same payloads under another code and message.
 absl::Status WithPayloadsOf(const absl::Status& from, absl::Status to);

@@ -145,7 +145,7 @@ absl::Status ReplyAssembler::AcceptSummary(const v1::SynthesisSummary& summary) 
 
 absl::Status ReplyAssembler::EndStream(const absl::Status& transport) const {
   if (!transport.ok() && !IsBrokenConnection(transport)) return transport;
-  if (summary_.has_value()) return absl::OkStatus();  // nothing that could still break matters
+  if (summary_.has_value()) return absl::OkStatus();  // the reply was whole before anything broke
   if (!transport.ok() && !header_.has_value()) return transport;
   absl::Status broken = absl::UnavailableError(absl::StrCat(
       "the reply ended without a summary, after ", received_, " of ", leader_.frame_count(),

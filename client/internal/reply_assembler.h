@@ -13,8 +13,8 @@ namespace duet::client::internal {
 
 // Checks a response stream message by message and gathers the follower.
 //
-// A stream may break and be run again: StartStream begins the next one, and frames that were handed
-// out before are not handed out twice.
+// A call whose stream broke is run again from its first frame: StartStream begins each stream, and
+// frames that an earlier one handed to the callback are not handed out twice.
 //
 // Errors:  INTERNAL when a message breaks the contract (order, counts, frames, finiteness, echo of
 //          the leader's joints, rate, unit and axis); UNAVAILABLE when the stream merely ended
@@ -27,7 +27,7 @@ class ReplyAssembler {
 
   void StartStream();
   absl::Status Accept(const v1::SynthesizeResponse& response);
-  // Judges how the stream ended.
+  // Whether the reply is whole, after the stream ended with the status `transport`.
   absl::Status EndStream(const absl::Status& transport) const;
 
   // Frames that the callback has seen, over all streams.

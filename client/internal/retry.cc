@@ -21,7 +21,7 @@ absl::Status AfterAttempts(const absl::Status& status, int attempts, std::string
                                     std::string(reason), ")"));
 }
 
-// Calls from several threads draw from one generator.
+// Random numbers in [0, 1) for calls from any thread; copies share one generator.
 class SharedUniform {
  public:
   double operator()() {

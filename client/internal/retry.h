@@ -11,7 +11,7 @@
 
 namespace duet::client::internal {
 
-// The world outside, replaced in tests.
+// Time and chance, replaced in tests.
 struct RetryEnvironment {
   std::function<absl::Time()> now;
   std::function<void(absl::Duration)> sleep;
@@ -23,9 +23,9 @@ RetryEnvironment SystemEnvironment();
 
 // Whether another attempt may succeed where this one failed.
 //
-// UNAVAILABLE always. RESOURCE_EXHAUSTED only for bulk work, which has time, and only where the
-// server says when to come back (RetryInfo): the same code without it means a message that is too
-// large, today and tomorrow.
+// UNAVAILABLE always. RESOURCE_EXHAUSTED only for bulk work, which can wait, and only where the
+// server says when to come back (RetryInfo): without that the code means a message that is too
+// large, which no later attempt makes smaller.
 bool IsRetryable(const absl::Status& status, Priority priority);
 
 // The wait after the `attempt`-th attempt (from 1) failed with `status`. Jitter comes on top of the
@@ -33,8 +33,9 @@ bool IsRetryable(const absl::Status& status, Priority priority);
 absl::Duration RetryWait(const RetryOptions& options, int attempt, const absl::Status& status,
                          double uniform);
 
-// Attempts until one succeeds, fails for good, or neither attempts nor time are left. Returns the
-// last attempt's status; its message tells how many were made, if several.
+// Calls `attempt` until it succeeds, fails with a status that is not retryable, or no attempt or no
+// time is left. Returns the last attempt's status; the message says how many there were, if
+// several.
 absl::Status Retry(const RetryOptions& options, const RetryEnvironment& environment,
                    Priority priority, absl::Time deadline,
                    absl::FunctionRef<absl::Status()> attempt);

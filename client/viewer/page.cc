@@ -77,7 +77,8 @@ std::string Script() {
 absl::StatusOr<std::string> RenderPage(const PageContent& content) {
   absl::Status status = Check(content);
   if (!status.ok()) return status;
-  // One pass: what is put in is not searched again, so no title can smuggle in a part.
+  // In one pass: text that was put in is not searched again, so that a title with "{{DATA}}" in it
+  // stays a title.
   return absl::StrReplaceAll(Text(duet_page_index, duet_page_index_end),
                              {{"{{TITLE}}", EscapeHtml(content.title)},
                               {"{{STYLE}}", Text(duet_page_style, duet_page_style_end)},

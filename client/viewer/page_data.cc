@@ -73,7 +73,8 @@ std::string PageDataJson(const PageContent& content) {
                                {"keyframes", keyframes},
                                {"leader", EncodePositions(leader)},
                                {"follower", EncodePositions(content.pair.follower)}};
-  // "</script>" inside a string would end the script; "<" is only ever inside strings.
+  // "</script>" inside a string would end the script. In JSON "<" stands inside strings alone,
+  // where it may be written as an escape.
   return absl::StrReplaceAll(data.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace),
                              {{"<", "\\u003c"}});
 }

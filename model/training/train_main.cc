@@ -8,6 +8,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "model/base/flag_names.h"
 #include "model/training/named_configs.h"
 #include "model/training/run.h"
 
@@ -142,7 +143,7 @@ void Declare(Arguments* arguments, CLI::App* app) {
       ->capture_default_str();
   app->add_option("--set", arguments->settings, "replace a setting: section.field=value");
   app->add_option("--name", arguments->name, "the model's name")->capture_default_str();
-  app->add_option("--version_number", arguments->version, "the model's version")
+  app->add_option("--version-number", arguments->version, "the model's version")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
   app->add_option("--description", arguments->description, "a sentence for the model's users");
@@ -165,7 +166,8 @@ int main(int argc, char** argv) {
   Arguments arguments;
   CLI::App app("Trains a generator on a folder of captures and writes a checkpoint.");
   Declare(&arguments, &app);
-  CLI11_PARSE(app, argc, argv);
+  const duet::base::KebabCaseCommandLine line(argc, argv);
+  CLI11_PARSE(app, line.argc(), line.argv());
   duet::training::SetTrainingThreads(arguments.threads);
   const absl::Status status = Train(arguments);
   if (status.ok()) return 0;

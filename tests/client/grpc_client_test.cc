@@ -23,6 +23,7 @@ using test::FakeServer;
 using test::FollowerFor;
 using test::HeaderFor;
 using test::IsOk;
+using test::kLongestCall;
 using test::ReplyFor;
 using test::StatusIs;
 using test::ThreeJointLeader;
@@ -43,6 +44,7 @@ class GrpcClientTest : public ::testing::Test {
     request_.leader = ThreeJointLeader(5);
     request_.weights = {{"kick", 1}};
     options_.server_address = server_.address();
+    options_.deadline = kLongestCall;
     // Retries without noticeable waits.
     options_.retry.initial_backoff = absl::Milliseconds(1);
     options_.retry.max_backoff = absl::Milliseconds(2);
@@ -129,8 +131,8 @@ TEST_F(GrpcClientTest, RefusalsNameEveryField) {
 TEST_F(GrpcClientTest, TheDeadlineEndsACall) {
   server_.service().on_synthesize = [&](grpc::ServerContext*, const v1::SynthesizeRequest&,
                                         Writer*) {
-    finished_.WaitForNotification();
-    return grpc::Status::OK;
+    const bool ended = finished_.WaitForNotificationWithTimeout(kLongestCall);
+    return grpc::Status(grpc::StatusCode::INTERNAL, ended ? "too late" : "no deadline came");
   };
   options_.deadline = absl::Milliseconds(50);
   EXPECT_THAT(Synthesize().status(), StatusIs(absl::StatusCode::kDeadlineExceeded, HasSubstr("")));

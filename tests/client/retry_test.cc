@@ -29,9 +29,10 @@ class RetryTest : public ::testing::Test {
  protected:
   absl::Status Run(std::vector<absl::Status> outcomes, Priority priority = Priority::kInteractive) {
     return Retry(options_, time_.Environment(), priority, time_.now + deadline_, [&] {
-      absl::Status outcome = outcomes[static_cast<size_t>(attempts_)];
-      ++attempts_;
-      return outcome;
+      const auto attempt = static_cast<size_t>(attempts_++);
+      if (attempt < outcomes.size()) return outcomes[attempt];
+      ADD_FAILURE() << "attempt " << attempts_ << " was not expected";
+      return absl::InternalError("not scripted");
     });
   }
 

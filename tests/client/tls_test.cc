@@ -13,6 +13,7 @@ namespace {
 
 using test::FakeServer;
 using test::IsOk;
+using test::kLongestCall;
 using test::MakeTestCertificate;
 using test::StatusIs;
 using test::TestCertificate;
@@ -32,6 +33,7 @@ class TlsTest : public ::testing::Test {
       return grpc::Status::OK;
     };
     options_.server_address = server_->address();
+    options_.deadline = kLongestCall;
     options_.retry.max_attempts = 1;
     options_.tls.emplace();
     options_.tls->root_certificates = servers_.certificate;

@@ -4,7 +4,6 @@ client to duet-eval, on made-up captures."""
 import math
 import pathlib
 import shutil
-import subprocess
 import tempfile
 import unittest
 
@@ -38,15 +37,12 @@ def write_captures(folder):
 
 
 def make_set(run, data, out):
-    return subprocess.run(
-        [tools.SOURCE / "scripts" / "augmentation_set.sh", tools.PROGRAMS, run, data, out,
-         "--match", "1", "--mix", "1"],
-        capture_output=True, text=True, timeout=300, check=False)
+    return tools.run(tools.SOURCE / "scripts" / "augmentation_set.sh", tools.PROGRAMS, run, data, out,
+                     "--match", "1", "--mix", "1", timeout=300)
 
 
 def evaluate(*arguments):
-    return subprocess.run([tools.PROGRAMS / "duet-eval", "augmentation", *map(str, arguments)],
-                          capture_output=True, text=True, timeout=300, check=False)
+    return tools.run(tools.PROGRAMS / "duet-eval", "augmentation", *arguments, timeout=300)
 
 
 class AugmentationSetTest(unittest.TestCase):
@@ -92,9 +88,9 @@ class AugmentationSetTest(unittest.TestCase):
         self.assertIn("wanted a folder half-<seed>", made.stderr)
 
     def test_jobs_are_of_one_half(self):
-        result = evaluate("--data", self.data, "--write_jobs", self.out, "--seeds", "1,2")
+        result = evaluate("--data", self.data, "--write-jobs", self.out, "--seeds", "1,2")
         self.assertNotEqual(result.returncode, 0)
-        self.assertIn("--seeds: 2 came, wanted one with --write_jobs", result.stderr)
+        self.assertIn("--seeds: 2 came, wanted one with --write-jobs", result.stderr)
         self.assertFalse(self.out.exists())
 
 

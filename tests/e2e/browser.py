@@ -65,19 +65,20 @@ class Browser:
         if session:
             message["sessionId"] = session
         os.write(self._commands, json.dumps(message).encode() + b"\0")
+        deadline = time.monotonic() + WAIT_SECONDS
         while True:
-            answer = self.read()
+            answer = self.read(deadline)
             if answer.get("id") == self._last_id:
                 assert "error" not in answer, f"{method}: {answer['error']}"
                 return answer["result"]
             self.events.append(answer)
 
-    def read(self):
-        deadline = time.monotonic() + WAIT_SECONDS
+    def read(self, deadline):
+        """The next message, which must come by `deadline` (of time.monotonic)."""
         while b"\0" not in self._buffer:
             left = deadline - time.monotonic()
             ready = left > 0 and select.select([self._answers], [], [], left)[0]
-            assert ready, f"chromium said nothing for {WAIT_SECONDS} s"
+            assert ready, f"chromium did not answer in {WAIT_SECONDS} s"
             data = os.read(self._answers, 1 << 20)
             assert data, "chromium ended"
             self._buffer += data
@@ -102,8 +103,9 @@ class Page:
             self.call(f"{domain}.enable")
         self.call("Page.navigate", url=url)
         # Until then a command may still meet the blank page that the tab began with.
+        deadline = time.monotonic() + WAIT_SECONDS
         while not self.events("Page.loadEventFired"):
-            browser.events.append(browser.read())
+            browser.events.append(browser.read(deadline))
         self.wait_until("['ready', 'failed'].includes(document.documentElement.dataset.state)")
 
     def call(self, method, **parameters):

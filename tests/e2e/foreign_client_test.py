@@ -2,7 +2,6 @@
 
 import math
 import shutil
-import subprocess
 import sys
 import tempfile
 import unittest
@@ -24,10 +23,10 @@ def generate_stubs(folder):
     plugin = shutil.which("grpc_python_plugin")
     if plugin is None:
         tools.skip("no grpc_python_plugin; install the package protobuf-compiler-grpc")
-    subprocess.run(
-        ["protoc", f"-I{tools.SOURCE / 'proto'}", f"--python_out={folder}",
-         f"--grpc_python_out={folder}", f"--plugin=protoc-gen-grpc_python={plugin}", *PROTOS],
-        check=True)
+    tools.run(
+        "protoc", f"-I{tools.SOURCE / 'proto'}", f"--python_out={folder}",
+        f"--grpc_python_out={folder}", f"--plugin=protoc-gen-grpc_python={plugin}",
+        *PROTOS).check_returncode()
     sys.path.insert(0, folder)
 
 

@@ -5,7 +5,6 @@
 
 import pathlib
 import shutil
-import subprocess
 import sys
 import unittest
 
@@ -15,12 +14,12 @@ BUILD, CMAKE, *OPTIONS = sys.argv[1:]
 del sys.argv[1:]
 
 WORK = pathlib.Path(BUILD) / "install_test"
+BUILD_SECONDS = 800  # the whole client, on a busy machine
 
 
-def run(*command):
-    result = subprocess.run([str(word) for word in command], stdout=subprocess.PIPE,
-                            stderr=subprocess.STDOUT, text=True, check=False)
-    assert result.returncode == 0, f"{command} failed:\n{result.stdout[-6000:]}"
+def run(*command, timeout=tools.RUN_SECONDS):
+    result = tools.run(*command, timeout=timeout)
+    assert result.returncode == 0, f"{command} failed:\n{(result.stdout + result.stderr)[-6000:]}"
     return result.stdout
 
 
@@ -36,9 +35,10 @@ class InstallTest(unittest.TestCase):
         build = fresh(f"{prefix.name}-consumer")
         run(CMAKE, "-S", tools.SOURCE / "tests/e2e/consumer", "-B", build, *OPTIONS,
             f"-DCMAKE_PREFIX_PATH={prefix}")
-        run(CMAKE, "--build", build)
+        run(CMAKE, "--build", build, timeout=BUILD_SECONDS)
         with tools.running_server() as server:
-            self.assertRegex(run(build / "consumer", server.address), r"^k3hi@\d+\nsbu@\d+\n$")
+            self.assertRegex(run(build / "consumer", server.address),
+                             r"^k3hi@\d+\nsbu@\d+\nleader\.frame_count\n$")
 
     def test_the_library_is_usable_where_it_is_installed(self):
         prefix = fresh("whole")
@@ -57,7 +57,7 @@ class InstallTest(unittest.TestCase):
         run(CMAKE, "-S", tools.SOURCE, "-B", build, *OPTIONS, "-DDUET_CLIENT_ONLY=ON",
             "-DCMAKE_DISABLE_FIND_PACKAGE_Torch=ON",
             "-DCMAKE_DISABLE_FIND_PACKAGE_prometheus-cpp=ON")
-        run(CMAKE, "--build", build)
+        run(CMAKE, "--build", build, timeout=BUILD_SECONDS)
         prefix = fresh("client-only")
         run(CMAKE, "--install", build, "--prefix", prefix)
         linked = run("ldd", prefix / "bin/duet")

@@ -15,6 +15,10 @@ import zlib
 SOURCE = pathlib.Path(os.environ["DUET_SOURCE_DIR"])
 PROGRAMS = pathlib.Path(os.environ["DUET_BIN_DIR"])
 SKIPPED = 77  # tells CTest that a test was skipped
+# The longest that anything here is waited for, on a busy machine: a defect ends in a failure rather
+# than in a test that hangs.
+RUN_SECONDS = 120
+STOP_SECONDS = 60
 
 CLASSES = ("kick", "push", "shake_hands", "hug", "exchange_object", "punch")
 
@@ -32,10 +36,15 @@ def main():
     unittest.main(verbosity=2)
 
 
-def duet(*arguments, timeout=120):
-    """Runs the client; its exit code, standard output and standard error."""
-    return subprocess.run([PROGRAMS / "duet", *map(str, arguments)], capture_output=True,
-                          text=True, timeout=timeout, check=False)
+def run(*command, timeout=RUN_SECONDS, **options):
+    """Runs a command to its end; its exit code, standard output and standard error."""
+    return subprocess.run([str(word) for word in command], capture_output=True, text=True,
+                          timeout=timeout, check=False, **options)
+
+
+def duet(*arguments):
+    """Runs the client."""
+    return run(PROGRAMS / "duet", *arguments)
 
 
 class Server:
@@ -48,11 +57,16 @@ class Server:
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         serving = queue.Queue()
         # Reads to the end: a server whose log nobody reads stands still.
-        self._reader = threading.Thread(target=self._read_log, args=(serving,))
+        self._reader = threading.Thread(target=self._read_log, args=(serving,), daemon=True)
         self._reader.start()
-        self.port = serving.get(timeout=120)
+        try:
+            self.port = serving.get(timeout=RUN_SECONDS)
+        except queue.Empty:
+            self.port = None
         if self.port is None:
-            raise AssertionError(f"the server ended before it served: {self.log}")
+            self._process.kill()
+            self.stop()
+            raise AssertionError(f"the server did not come to serve: {self.log}")
 
     @property
     def address(self):
@@ -73,10 +87,11 @@ class Server:
         """Asks the server to drain; returns its exit code."""
         self._process.terminate()
         try:
-            return self._process.wait(timeout=60)
+            return self._process.wait(timeout=STOP_SECONDS)
         finally:
             self._process.kill()
-            self._reader.join()
+            self._process.wait(timeout=STOP_SECONDS)
+            self._reader.join(timeout=STOP_SECONDS)
             self._process.stdout.close()
 
 

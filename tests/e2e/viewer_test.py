@@ -4,7 +4,6 @@
 """
 
 import pathlib
-import subprocess
 import sys
 import tempfile
 import unittest
@@ -22,7 +21,7 @@ class ViewerTest(unittest.TestCase):
         cls.addClassCleanup(folder.cleanup)
         cls.folder = pathlib.Path(folder.name)
         cls.file = cls.folder / "page.html"
-        subprocess.run([WRITE_TEST_PAGE, cls.file], check=True)
+        tools.run(WRITE_TEST_PAGE, cls.file).check_returncode()
         cls.browser = browser.Browser()
         cls.addClassCleanup(cls.browser.close)
 

@@ -117,7 +117,7 @@ report::ResultSection MakeSection(const dataset::Dataset& dataset, const Argumen
       absl::StrCat("duet-eval augmentation --data DIR --runs RUNS --seeds ",
                    absl::StrJoin(arguments.seeds, ","), " --repeats ", arguments.repeats,
                    " --epochs ", arguments.epochs, " --match ", arguments.plan.match, " --mix ",
-                   arguments.plan.mix, arguments.as_served ? " --as_served" : "");
+                   arguments.plan.mix, arguments.as_served ? " --as-served" : "");
   for (size_t i = 0; i < arguments.synthetic.size(); ++i) section.command += " --synthetic SET";
   section.date = report::Today();
   return section;
@@ -126,7 +126,7 @@ report::ResultSection MakeSection(const dataset::Dataset& dataset, const Argumen
 absl::Status WriteJobs(const dataset::Dataset& dataset, const Arguments& arguments) {
   if (arguments.seeds.size() != 1) {
     return absl::InvalidArgumentError(
-        absl::StrCat("--seeds: ", arguments.seeds.size(), " came, wanted one with --write_jobs"));
+        absl::StrCat("--seeds: ", arguments.seeds.size(), " came, wanted one with --write-jobs"));
   }
   const uint64_t seed = arguments.seeds.front();
   absl::StatusOr<dataset::Split> split = SplitInHalves(dataset, seed);
@@ -188,14 +188,14 @@ void AddAugmentationCommand(CLI::App* app, ChosenCommand* chosen) {
   command->add_option("--mix", arguments->plan.mix, "synthetic motions a class, mixed with another")
       ->check(CLI::Range(0, 10000))
       ->capture_default_str();
-  command->add_flag("--as_served", arguments->as_served,
+  command->add_flag("--as-served", arguments->as_served,
                     "in-process answers with constant limb lengths on the leader's floor");
   command
       ->add_option("--synthetic", arguments->synthetic,
                    "a folder that scripts/augmentation_set.sh filled; repeatable")
       ->allow_extra_args(false);
   CLI::Option* write_jobs = command->add_option(
-      "--write_jobs", arguments->write_jobs,
+      "--write-jobs", arguments->write_jobs,
       "only write the leaders and label vectors of one half's set into this folder");
   write_jobs->excludes(runs);
   command->add_option("--out", arguments->out, "folder of results, for duet-eval report");

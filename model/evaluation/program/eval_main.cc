@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 
+#include "model/base/flag_names.h"
 #include "model/evaluation/program/commands.h"
 #include "model/torch_engine/torch_synthesizer.h"
 
@@ -16,7 +17,8 @@ int main(int argc, char** argv) {
   duet::evaluation::program::AddCurvesCommand(&app, &chosen);
   duet::evaluation::program::AddValidationCommand(&app, &chosen);
   duet::evaluation::program::AddReportCommand(&app, &chosen);
-  CLI11_PARSE(app, argc, argv);
+  const duet::base::KebabCaseCommandLine line(argc, argv);
+  CLI11_PARSE(app, line.argc(), line.argv());
   duet::torch_engine::SetTorchThreads(1);
   const absl::Status status = chosen();
   if (status.ok()) return 0;

@@ -113,7 +113,7 @@ std::string Command(const Arguments& arguments, const std::vector<std::string>& 
   };
   if (arguments.models.embedded) command += " --embedded";
   if (!arguments.models.checkpoint.empty()) command += " --checkpoint CHECKPOINT";
-  if (arguments.models.as_served) command += " --as_served";
+  if (arguments.models.as_served) command += " --as-served";
   add("starts", arguments.starts);
   add("baselines", arguments.baselines);
   add("subjects", subjects);
@@ -188,7 +188,7 @@ void AddModelFlags(ModelChoice* models, CLI::App* command) {
   source->add_option("--checkpoint", models->checkpoint, "one checkpoint folder for every fold");
   source->add_flag("--embedded", models->embedded, "the checkpoint inside this program");
   source->require_option(0, 1);
-  command->add_flag("--as_served", models->as_served,
+  command->add_flag("--as-served", models->as_served,
                     "with constant limb lengths on the leader's floor, as a server answers "
                     "(default: the network's own answer)");
 }

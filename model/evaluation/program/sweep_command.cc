@@ -173,7 +173,7 @@ report::ResultSection MakeSection(const dataset::Dataset& dataset, const FoldMod
   section.command =
       absl::StrCat("duet-eval sweep --data DIR --runs ", model.name, "=RUNS --subjects ",
                    absl::StrJoin(subjects, ","), " --starts ", absl::StrJoin(arguments.starts, ","),
-                   arguments.models.as_served ? " --as_served" : "");
+                   arguments.models.as_served ? " --as-served" : "");
   section.date = report::Today();
   return section;
 }
@@ -216,7 +216,7 @@ void AddSweepCommand(CLI::App* app, ChosenCommand* chosen) {
       ->add_option("--runs", arguments->models.runs.front(),
                    "[NAME=]DIR, output of duet-train --protocol loso")
       ->required();
-  command->add_flag("--as_served", arguments->models.as_served,
+  command->add_flag("--as-served", arguments->models.as_served,
                     "with constant limb lengths on the leader's floor, as a server answers");
   command
       ->add_option("--starts", arguments->starts,

@@ -67,6 +67,15 @@ TEST_F(ArgumentsTest, VersionAndHelpSucceed) {
   EXPECT_THAT(ParseCommandLine({"synthesize", "--help"}).text, HasSubstr("  42  failed"));
 }
 
+TEST_F(ArgumentsTest, HelpShowsDefaults) {
+  const std::string help = ParseCommandLine({"synthesize", "--help"}).text;
+  for (const char* shown :
+       {"--server HOST:PORT=localhost:50051", "--timeout SECONDS=120",
+        "--leader-side left|right=left", "--priority bulk|interactive=interactive", "else left)"}) {
+    EXPECT_THAT(help, HasSubstr(shown));
+  }
+}
+
 TEST_F(ArgumentsTest, ModelsHasDefaults) {
   const ParsedCommandLine parsed = ParseCommandLine({"models"});
   ASSERT_TRUE(parsed.models.has_value());
@@ -179,7 +188,8 @@ TEST_F(ArgumentsTest, WhatMakesNoSenseIsNamed) {
 }
 
 TEST_F(ArgumentsTest, OutputsThatCannotBeWrittenAreRefusedBeforeAnyWork) {
-  ExpectRefused({"--label", "kick=1", "--out", Out("pair.fbx")}, "\".fbx\", wanted .html, .bvh");
+  ExpectRefused({"--label", "kick=1", "--out", Out("pair.fbx")},
+                "\".fbx\", wanted .bvh, .csv, .npy or .json, or .html for a page to watch");
   ExpectRefused({"--label", "kick=1", "--out", Out("no/pair.csv")}, "there is no folder");
   const std::string leader = Out("leader.csv");
   WriteTestFile(leader, "");

@@ -30,8 +30,8 @@ TEST(ExitCodeTest, WhatWillFailAgainIsBadInput) {
 }
 
 TEST(ExitCodeTest, AFullServerIsWorthRetryingAndATooLargeMessageIsNot) {
-  EXPECT_EQ(ExitCodeFor(internal::ServiceError(absl::StatusCode::kResourceExhausted, "full",
-                                               absl::Seconds(1))),
+  EXPECT_EQ(ExitCodeFor(
+                test::ServiceError(absl::StatusCode::kResourceExhausted, "full", absl::Seconds(1))),
             1);
   EXPECT_EQ(CodeFor(absl::StatusCode::kResourceExhausted), 42);
 }

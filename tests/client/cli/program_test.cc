@@ -23,6 +23,7 @@ namespace {
 
 using test::IsOk;
 using test::ReadTestFile;
+using test::ServiceError;
 using test::SwayingMotion;
 using test::TemporaryFolder;
 using test::WriteTestFile;
@@ -269,7 +270,7 @@ TEST_F(ProgramTest, AMalformedLeaderIsBadInput) {
 }
 
 TEST_F(ProgramTest, ARefusalListsEveryField) {
-  absl::Status refusal = internal::ServiceError(absl::StatusCode::kInvalidArgument, "refused");
+  absl::Status refusal = ServiceError(absl::StatusCode::kInvalidArgument, "refused");
   refusal.SetPayload("type.googleapis.com/google.rpc.BadRequest", absl::Cord("\x0a\x07\x0a\x01"
                                                                              "a\x12\x02"
                                                                              "b1\x0a\x07\x0a\x01"
@@ -290,7 +291,7 @@ TEST_F(ProgramTest, AnAbsentServerIsWorthRetryingAndNamed) {
 
 TEST_F(ProgramTest, ADrainingServerIsWorthRetrying) {
   EXPECT_CALL(*connection_, Synthesize)
-      .WillOnce(Return(internal::ServiceError(absl::StatusCode::kUnavailable, "draining")));
+      .WillOnce(Return(ServiceError(absl::StatusCode::kUnavailable, "draining")));
   EXPECT_EQ(Synthesize("pair.html"), 1);
   EXPECT_THAT(err_.str(), AllOf(HasSubstr("draining"), HasSubstr("Trying again later may help"),
                                 Not(HasSubstr("--server"))));
@@ -316,6 +317,25 @@ TEST_F(ProgramTest, AModelWithoutASkeletonIsTheServersFault) {
   EXPECT_THAT(err_.str(), HasSubstr("the server's model sbu@1 has no usable skeleton"));
 }
 
+TEST_F(ProgramTest, AModelNeedsNeitherHipsNorFeet) {
+  ModelDetails details = SbuModel();
+  details.model.joint_names = {"torso", "head"};
+  details.model.bones = {{0, 1}};
+  SynthesisRequest sent;
+  EXPECT_CALL(*connection_, GetModel).WillOnce(Return(details));
+  EXPECT_CALL(*connection_, Synthesize)
+      .WillOnce([&](const SynthesisRequest& request, const ChunkCallback&) {
+        sent = request;
+        return Follow(request);
+      });
+  ASSERT_EQ(Synthesize("pair.csv", {"--out", Path("pair.html")}), 0) << err_.str();
+  EXPECT_EQ(sent.leader.joint_names, details.model.joint_names);
+  ASSERT_EQ(sent.leader.frame_count(), kFrames);
+  const int torso = motion::SbuSkeleton().Find("torso");
+  EXPECT_NEAR(sent.leader.at(5, 0).y, leader_.at(5, torso).y, 1e-5);
+  EXPECT_TRUE(Exists("pair.csv"));
+}
+
 TEST_F(ProgramTest, CertificatesAreReadFromTheirFiles) {
   WriteTestFile(folder_ / "ca.pem", "authority");
   WriteTestFile(folder_ / "cert.pem", "certificate");
@@ -335,6 +355,13 @@ TEST_F(ProgramTest, CertificatesAreReadFromTheirFiles) {
 TEST_F(ProgramTest, AMissingCertificateIsBadInput) {
   EXPECT_EQ(Run({"models", "--tls-ca", Path("no.pem")}), 42);
   EXPECT_THAT(err_.str(), HasSubstr("no.pem"));
+}
+
+TEST_F(ProgramTest, AFileTooLargeForACertificateIsBadInput) {
+  WriteTestFile(folder_ / "ca.pem", std::string((1 << 20) + 1, 'x'));
+  EXPECT_EQ(Run({"models", "--tls-ca", Path("ca.pem")}), 42);
+  EXPECT_THAT(err_.str(),
+              HasSubstr("ca.pem: 1048577 bytes, wanted a PEM file of at most 1048576 bytes"));
 }
 
 }  // namespace

@@ -5,12 +5,17 @@
 #include <memory>
 #include <string>
 
+#include "absl/time/time.h"
 #include "duet/v1/synthesis.grpc.pb.h"
 #include "grpcpp/security/server_credentials.h"
 #include "grpcpp/server.h"
 #include "grpcpp/server_context.h"
 
 namespace duet::test {
+
+// The longest that a test waits for a call that ought to end at once: a defect then ends in a
+// failure rather than in a test that hangs.
+inline constexpr absl::Duration kLongestCall = absl::Seconds(30);
 
 // A service whose answers a test writes.
 class FakeService final : public v1::MotionSynthesis::Service {
