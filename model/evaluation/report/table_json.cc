@@ -10,6 +10,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "model/base/strict_json.h"
+#include "model/base/text.h"
 
 namespace duet::evaluation::report {
 namespace {
@@ -35,7 +36,7 @@ Best ReadBest(base::ObjectReader* reader) {
   const auto found = std::find(kBestNames.begin(), kBestNames.end(), name);
   if (found != kBestNames.end()) return static_cast<Best>(found - kBestNames.begin());
   reader->Fail("best",
-               absl::StrCat(json(name).dump(), R"(, wanted "none", "lowest" or "highest")"));
+               absl::StrCat(base::Quoted(name), R"(, wanted "none", "lowest" or "highest")"));
   return Best::kNone;
 }
 
