@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # What each augmentation is worth: trains with the default configuration, without one augmentation
-# at a time, and with each that it leaves off. Judged on validation subjects: a run leaves out one
+# at a time, and with each that it leaves off. Compared on validation subjects: a run leaves out one
 # subject altogether and validates on another; the left-out one is never looked at.
 #   scripts/measure_augmentations.sh BIN DATA OUT     BIN: build/release/bin; DATA: the SBU folder
 # Without the discriminator and with fewer epochs, which makes it five times as fast: for

@@ -1,25 +1,17 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <random>
 #include <utility>
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "model/base/random.h"
 #include "model/base/text.h"
 #include "model/dataset/dataset.h"
 
 namespace duet::dataset {
 namespace {
-
-// Fisher-Yates with plain remainders: std::shuffle's result differs between standard libraries, and
-// a split must not.
-void Shuffle(std::mt19937_64* random, std::vector<int>* values) {
-  for (size_t i = values->size(); i > 1; --i) {
-    std::swap((*values)[i - 1], (*values)[static_cast<size_t>((*random)() % i)]);
-  }
-}
 
 std::vector<std::vector<int>> ByClass(const Dataset& dataset, const std::vector<int>& indices) {
   std::vector<std::vector<int>> by_class(dataset.classes.size());
@@ -56,7 +48,7 @@ absl::StatusOr<Split> SplitInHalves(const Dataset& dataset, uint64_t seed) {
   std::vector<int> all(dataset.sequences.size());
   std::iota(all.begin(), all.end(), 0);
   std::vector<std::vector<int>> by_class = ByClass(dataset, all);
-  std::mt19937_64 random(seed);
+  base::Random random(seed);
   Split split;
   for (size_t c = 0; c < by_class.size(); ++c) {
     std::vector<int>& indices = by_class[c];
@@ -65,7 +57,7 @@ absl::StatusOr<Split> SplitInHalves(const Dataset& dataset, uint64_t seed) {
           absl::StrCat(dataset.name, ": ", indices.size(), " sequences of ", dataset.classes[c],
                        ", wanted 2 or more of each class to split in halves"));
     }
-    Shuffle(&random, &indices);
+    random.Shuffle(&indices);
     const auto middle = indices.begin() + static_cast<std::ptrdiff_t>((indices.size() + 1) / 2);
     split.train.insert(split.train.end(), indices.begin(), middle);
     split.test.insert(split.test.end(), middle, indices.end());
@@ -79,11 +71,11 @@ std::vector<int> TakeValidation(const Dataset& dataset, double fraction, uint64_
                                 std::vector<int>* train) {
   std::sort(train->begin(), train->end());
   std::vector<std::vector<int>> by_class = ByClass(dataset, *train);
-  std::mt19937_64 random(seed);
+  base::Random random(seed);
   std::vector<int> validation;
   train->clear();
   for (std::vector<int>& indices : by_class) {
-    Shuffle(&random, &indices);
+    random.Shuffle(&indices);
     const auto cut =
         indices.begin() + static_cast<std::ptrdiff_t>(ValidationCount(indices.size(), fraction));
     validation.insert(validation.end(), indices.begin(), cut);

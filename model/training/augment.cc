@@ -9,7 +9,6 @@
 namespace duet::training {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr int kMinCropFrames = 10;  // of the shortest captures
 
 // Scales both people about the leader's root, each by a factor of its own, so that the distance
@@ -44,7 +43,7 @@ void TurnLeader(int root, double radians, motion::Clip* leader) {
 }
 
 // A body of slightly other build: the network cannot tell a clip by its leader's.
-void AddBodyNoise(double deviation, EpochRandom* random, motion::Clip* clip) {
+void AddBodyNoise(double deviation, base::Random* random, motion::Clip* clip) {
   std::vector<motion::Vec3> offsets(static_cast<size_t>(clip->joint_count()));
   for (motion::Vec3& offset : offsets) {
     offset = {static_cast<float>(random->Normal(deviation)),
@@ -56,7 +55,7 @@ void AddBodyNoise(double deviation, EpochRandom* random, motion::Clip* clip) {
   }
 }
 
-void AddNoise(double deviation, EpochRandom* random, motion::Clip* clip) {
+void AddNoise(double deviation, base::Random* random, motion::Clip* clip) {
   for (motion::Vec3& point : clip->positions) {
     point += motion::Vec3{static_cast<float>(random->Normal(deviation)),
                           static_cast<float>(random->Normal(deviation)),
@@ -69,7 +68,7 @@ void Keep(int first, int frames, motion::Clip* clip) {
   clip->positions = {begin, begin + std::ptrdiff_t{frames} * clip->joint_count()};
 }
 
-void Crop(EpochRandom* random, motion::ClipPair* pair) {
+void Crop(base::Random* random, motion::ClipPair* pair) {
   const int frames = pair->leader.frame_count();
   const int shortest = std::max(kMinCropFrames, frames / 2);
   if (frames <= shortest) return;
@@ -101,26 +100,6 @@ motion::Vec3 Horizontal(motion::Vec3 v) {
 
 }  // namespace
 
-EpochRandom::EpochRandom(uint64_t seed, int64_t epoch) {
-  std::seed_seq sequence{static_cast<uint32_t>(seed), static_cast<uint32_t>(seed >> 32),
-                         static_cast<uint32_t>(epoch), static_cast<uint32_t>(epoch >> 32)};
-  bits_.seed(sequence);
-}
-
-double EpochRandom::Uniform(double low, double high) {
-  constexpr double kScale = 1.0 / (uint64_t{1} << 53);
-  return low + (high - low) * static_cast<double>(bits_() >> 11) * kScale;
-}
-
-double EpochRandom::Normal(double deviation) {
-  const double radius = std::sqrt(-2 * std::log(1 - Uniform(0, 1)));  // Box-Muller
-  return deviation * radius * std::cos(2 * kPi * Uniform(0, 1));
-}
-
-int64_t EpochRandom::Below(int64_t end) {
-  return static_cast<int64_t>(bits_() % static_cast<uint64_t>(end));
-}
-
 std::vector<int> MirroredJoints(const motion::Skeleton& skeleton) {
   std::vector<int> mirrored;
   for (int joint = 0; joint < skeleton.joint_count(); ++joint) {
@@ -151,7 +130,7 @@ void SwapRoles(dataset::Sequence* sequence) {
 }
 
 dataset::Sequence Augment(const dataset::Dataset& dataset, const dataset::Sequence& sequence,
-                          const TrainingOptions::Augmentation& options, EpochRandom* random) {
+                          const TrainingOptions::Augmentation& options, base::Random* random) {
   dataset::Sequence variant = sequence;
   const size_t interaction = static_cast<size_t>(sequence.interaction_class);
   const std::vector<std::string>& mirrored = options.mirrored_classes;

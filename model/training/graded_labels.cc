@@ -16,7 +16,7 @@ constexpr double kLargestOwn = 1.5, kLargestOther = 1.2;
 constexpr int kTries = 64;
 
 const dataset::Sequence* DrawOther(const std::vector<dataset::Sequence>& pool,
-                                   int interaction_class, EpochRandom* random) {
+                                   int interaction_class, base::Random* random) {
   for (int i = 0; i < kTries; ++i) {
     const dataset::Sequence& drawn =
         pool[static_cast<size_t>(random->Below(static_cast<int64_t>(pool.size())))];
@@ -98,7 +98,7 @@ Example CapturedExample(const dataset::Dataset& dataset, dataset::Sequence seque
 }
 
 void GradeLabels(const dataset::Dataset& dataset, const std::vector<dataset::Sequence>& pool,
-                 EpochRandom* random, Example* example) {
+                 base::Random* random, Example* example) {
   const dataset::Sequence& sequence = example->sequence;
   const dataset::Sequence* drawn = DrawOther(pool, sequence.interaction_class, random);
   if (drawn == nullptr) return;

@@ -22,7 +22,7 @@ namespace duet::training {
 // place; where the follower's pose is given, it begins there.
 // Requires `pool` (the epoch's sequences) to hold another class; otherwise nothing changes.
 void GradeLabels(const dataset::Dataset& dataset, const std::vector<dataset::Sequence>& pool,
-                 EpochRandom* random, Example* example);
+                 base::Random* random, Example* example);
 
 }  // namespace duet::training
 

@@ -12,14 +12,14 @@ namespace {
 // Frames by which the order by length is disturbed, so that batches differ from epoch to epoch.
 constexpr double kLengthJitter = 2;
 
-StartKnowledge DrawStart(const TrainingOptions::Start& start, EpochRandom* random) {
+StartKnowledge DrawStart(const TrainingOptions::Start& start, base::Random* random) {
   const double draw = random->Uniform(0, 1);
   if (draw < start.pose) return StartKnowledge::kPose;
   return draw < start.pose + start.root ? StartKnowledge::kRoot : StartKnowledge::kNone;
 }
 
 std::vector<int> OrderByLength(const std::vector<dataset::Sequence>& sequences,
-                               EpochRandom* random) {
+                               base::Random* random) {
   std::vector<double> key;
   for (const dataset::Sequence& sequence : sequences) {
     key.push_back(sequence.pair.leader.frame_count() + random->Normal(kLengthJitter));
@@ -40,13 +40,6 @@ std::vector<std::vector<int>> Cut(const std::vector<int>& order, int64_t batch) 
     cut.emplace_back(order.begin() + count * i / pieces, order.begin() + count * (i + 1) / pieces);
   }
   return cut;
-}
-
-template <typename T>
-void Shuffle(EpochRandom* random, std::vector<T>* values) {
-  for (size_t i = values->size(); i > 1; --i) {
-    std::swap((*values)[i - 1], (*values)[static_cast<size_t>(random->Below(int64_t(i)))]);
-  }
 }
 
 std::optional<engine::FollowerStart> StartOf(const motion::Skeleton& skeleton,
@@ -110,14 +103,14 @@ std::vector<TrainingBatch> SampleEpoch(const checkpoint::Manifest& manifest,
                                        const dataset::Dataset& dataset,
                                        const std::vector<int>& train,
                                        const TrainingOptions& options, int64_t epoch) {
-  EpochRandom random(options.seed, epoch);
+  base::Random random(options.seed, epoch);
   std::vector<dataset::Sequence> sequences;
   for (int index : train) {
     sequences.push_back(Augment(dataset, dataset.sequences[static_cast<size_t>(index)],
                                 options.augmentation, &random));
   }
   std::vector<std::vector<int>> pieces = Cut(OrderByLength(sequences, &random), options.batch);
-  Shuffle(&random, &pieces);
+  random.Shuffle(&pieces);
   std::vector<TrainingBatch> batches;
   for (const std::vector<int>& piece : pieces) {
     std::vector<Example> examples;

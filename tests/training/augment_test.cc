@@ -11,31 +11,6 @@ double LengthOfBone(const motion::Clip& clip, int frame, const motion::Bone& bon
   return Distance(clip.at(frame, bone.parent), clip.at(frame, bone.child));
 }
 
-TEST(EpochRandomTest, DependsOnSeedAndEpochAlone) {
-  EXPECT_EQ(EpochRandom(1, 2).Uniform(0, 1), EpochRandom(1, 2).Uniform(0, 1));
-  EXPECT_NE(EpochRandom(1, 2).Uniform(0, 1), EpochRandom(1, 3).Uniform(0, 1));
-  EXPECT_NE(EpochRandom(1, 2).Uniform(0, 1), EpochRandom(2, 2).Uniform(0, 1));
-}
-
-TEST(EpochRandomTest, DrawsWhatItSays) {
-  EpochRandom random(7, 0);
-  double sum = 0, squares = 0, low = 1, high = 0;
-  constexpr int kDraws = 20000;
-  for (int i = 0; i < kDraws; ++i) {
-    const double normal = random.Normal(2), uniform = random.Uniform(0, 1);
-    sum += normal;
-    squares += normal * normal;
-    low = std::min(low, uniform);
-    high = std::max(high, uniform);
-  }
-  EXPECT_NEAR(sum / kDraws, 0, 0.1);
-  EXPECT_NEAR(squares / kDraws, 4, 0.2);
-  EXPECT_GE(low, 0);
-  EXPECT_LT(low, 0.01);
-  EXPECT_LT(high, 1);
-  EXPECT_GT(high, 0.99);
-}
-
 TEST(MirrorTest, ExchangesSidesAndIsItsOwnInverse) {
   const dataset::Dataset dataset = MadeUpDataset();
   const motion::Skeleton& skeleton = dataset.skeleton;
@@ -61,7 +36,7 @@ TEST(SwapRolesTest, TurnsTheDirectionRound) {
 
 dataset::Sequence AugmentedBy(const TrainingOptions::Augmentation& options, int index) {
   const dataset::Dataset dataset = MadeUpDataset();
-  EpochRandom random(3, 1);
+  base::Random random(3, 1);
   return Augment(dataset, dataset.sequences[static_cast<size_t>(index)], options, &random);
 }
 

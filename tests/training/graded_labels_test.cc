@@ -14,7 +14,7 @@ constexpr int kDraws = 300;
 
 // Every kind of label vector, drawn for one sequence.
 std::vector<Example> Draw(const dataset::Dataset& dataset, StartKnowledge start) {
-  EpochRandom random(11, 0);
+  base::Random random(11, 0);
   std::vector<Example> examples;
   for (int i = 0; i < kDraws; ++i) {
     examples.push_back(CapturedExample(dataset, dataset.sequences[0], start));
@@ -108,7 +108,7 @@ TEST(GradedLabelsTest, OtherReactionsHappenWhereThisOneDoes) {
 
 TEST(GradedLabelsTest, OneClassAloneStaysSingle) {
   dataset::Dataset dataset = MadeUpDataset(1);
-  EpochRandom random(1, 1);
+  base::Random random(1, 1);
   Example example = CapturedExample(dataset, dataset.sequences[0], StartKnowledge::kNone);
   GradeLabels(dataset, dataset.sequences, &random, &example);
   EXPECT_TRUE(example.single);

@@ -3,6 +3,7 @@
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "model/base/text.h"
 #include "model/evaluation/baselines/class_mean.h"
 #include "model/evaluation/baselines/discrete_mdp.h"
 #include "model/evaluation/baselines/frozen_first_frame.h"
@@ -48,8 +49,8 @@ absl::StatusOr<std::unique_ptr<protocol::Method>> MakeBaseline(const std::string
   for (const Entry& entry : kBaselines) {
     if (name == entry.name) return entry.make();
   }
-  return absl::InvalidArgumentError(
-      absl::StrCat("method: \"", name, "\", wanted one of ", absl::StrJoin(BaselineNames(), ", ")));
+  return absl::InvalidArgumentError(absl::StrCat("method: ", base::Quoted(name), ", wanted one of ",
+                                                 absl::StrJoin(BaselineNames(), ", ")));
 }
 
 }  // namespace duet::evaluation::baselines

@@ -13,11 +13,8 @@ class FrozenFirstFrame : public protocol::Method {
  public:
   std::string name() const override { return "frozen_first_frame"; }
   absl::Status Train(const dataset::Dataset& dataset, const std::vector<int>& train) override;
-  std::vector<motion::Vec3> Predict(const dataset::Sequence& sequence) const override;
+  absl::StatusOr<motion::Poses> Predict(const dataset::Sequence& sequence) const override;
   bool reads_first_pose() const override { return true; }
-
- private:
-  motion::Skeleton skeleton_;
 };
 
 }  // namespace duet::evaluation::baselines

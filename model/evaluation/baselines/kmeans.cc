@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <limits>
-#include <random>
 
-#include "model/evaluation/baselines/uniform.h"
+#include "model/evaluation/baselines/sample_index.h"
 
 namespace duet::evaluation::baselines {
 namespace {
@@ -12,11 +11,12 @@ namespace {
 constexpr int kMaxIterations = 100;
 
 // Picks rows far from those picked before, with probability in proportion to the squared distance.
-Rows Seeds(const Rows& rows, int clusters, std::mt19937_64* random) {
+Rows Seeds(const Rows& rows, int clusters, base::Random* random) {
   Rows centres(clusters, rows.cols());
   Eigen::VectorXd nearest =
       Eigen::VectorXd::Constant(rows.rows(), std::numeric_limits<double>::infinity());
-  Eigen::Index pick = static_cast<Eigen::Index>(Uniform(random) * static_cast<double>(rows.rows()));
+  Eigen::Index pick =
+      static_cast<Eigen::Index>(random->Uniform() * static_cast<double>(rows.rows()));
   int count = 0;
   for (; count < clusters; ++count) {
     centres.row(count) = rows.row(pick);
@@ -48,7 +48,7 @@ std::vector<int> NearestCentres(const Rows& centres, const Rows& rows) {
 }
 
 Rows KMeans(const Rows& rows, int clusters, uint64_t seed) {
-  std::mt19937_64 random(seed);
+  base::Random random(seed);
   Rows centres = Seeds(rows, clusters, &random);
   std::vector<int> members;
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {

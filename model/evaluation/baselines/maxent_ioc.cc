@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "model/evaluation/baselines/kmeans.h"
-#include "model/evaluation/baselines/uniform.h"
+#include "model/evaluation/baselines/sample_index.h"
 
 namespace duet::evaluation::baselines {
 namespace {
@@ -130,7 +130,7 @@ Rows MaxEntIoc::SoftValues(const Model& model, const Rows& expected) {
 }
 
 MaxEntIoc::Rollouts MaxEntIoc::Sample(const Model& model, const Rows& expected, int paths,
-                                      std::mt19937_64* random) {
+                                      base::Random* random) {
   const Rows values = SoftValues(model, expected);
   const Eigen::Index actions = model.actions.rows();
   const Eigen::VectorXd effort = model.actions.rowwise().squaredNorm();
@@ -169,7 +169,7 @@ MaxEntIoc::Demonstration MaxEntIoc::Demonstrate(Rows expected, Rows poses) {
 }
 
 void MaxEntIoc::LearnReward(const std::vector<Demonstration>& demonstrations, Model* model) const {
-  std::mt19937_64 random(options_.seed);
+  base::Random random(options_.seed);
   // To start with, the weights of independent Gaussians with the demonstrations' own spread.
   Weights total = Weights::Constant(kLeastFeature);
   double steps = 0;
@@ -182,7 +182,8 @@ void MaxEntIoc::LearnReward(const std::vector<Demonstration>& demonstrations, Mo
   for (int iteration = 0; iteration < options_.iterations; ++iteration) {
     Weights excess = Weights::Zero(), scale = Weights::Constant(kLeastFeature);
     for (int i = 0; i < options_.demonstrations; ++i) {
-      const Demonstration& one = demonstrations[random() % demonstrations.size()];
+      const auto drawn = random.Below(static_cast<int64_t>(demonstrations.size()));
+      const Demonstration& one = demonstrations[static_cast<size_t>(drawn)];
       excess += Sample(*model, one.expected, options_.rollouts, &random).costs - one.costs;
       scale += one.costs;
     }
@@ -232,7 +233,7 @@ void MaxEntIoc::TrainClass(int interaction_class, const std::vector<StandardPair
 Rows MaxEntIoc::PredictClass(int interaction_class, const StandardPair& leader) const {
   const Model& model = models_[static_cast<size_t>(interaction_class)];
   const Rows expected = WithConstant(model.leader.Project(leader.cues)) * model.regression;
-  std::mt19937_64 random(options_.seed);
+  base::Random random(options_.seed);
   return model.follower.Reconstruct(
       Sample(model, expected, options_.answer_rollouts, &random).mean);
 }

@@ -2,9 +2,9 @@
 #define DUET_MODEL_EVALUATION_BASELINES_MAXENT_IOC_H_
 
 #include <cstdint>
-#include <random>
 #include <vector>
 
+#include "model/base/random.h"
 #include "model/evaluation/baselines/per_class_method.h"
 #include "model/evaluation/baselines/pose_space.h"
 
@@ -57,10 +57,10 @@ class MaxEntIoc : public PerClassMethod {
     Rows actions;                // displacements to choose from
     Eigen::VectorXd usual;       // [actions] log of how often each occurs in training
     Rows samples;                // poses that the value function is fitted on
-    Rows arrivals;        // [samples x actions] the poses after every action from every sample
-    Rows arrival_basis;   // their value basis
-    Costs arrival_costs;  // their costs but for the first, which depends on the leader
-    Eigen::MatrixXd fit;  // [basis, samples]: values at the samples to coefficients
+    Rows arrivals;               // [samples x actions] where every action leads from every sample
+    Rows arrival_basis;          // their value basis
+    Costs arrival_costs;         // their costs but for the first, which depends on the leader
+    Eigen::MatrixXd fit;         // [basis, samples]: values at the samples to coefficients
     Weights weights;
   };
   // A training clip, with the poses that a regression without it expects.
@@ -82,8 +82,7 @@ class MaxEntIoc : public PerClassMethod {
   // Coefficients of the soft value function of each frame. Shapes: returns [frames, basis].
   static Rows SoftValues(const Model& model, const Rows& expected);
   // Samples `paths` answers from the policy of the soft value function.
-  static Rollouts Sample(const Model& model, const Rows& expected, int paths,
-                         std::mt19937_64* random);
+  static Rollouts Sample(const Model& model, const Rows& expected, int paths, base::Random* random);
   static Demonstration Demonstrate(Rows expected, Rows poses);
   void LearnReward(const std::vector<Demonstration>& demonstrations, Model* model) const;
 

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
+#include <vector>
+
+#include "model/evaluation/metrics/clip_poses.h"
 
 namespace duet::evaluation::baselines {
 namespace {
@@ -13,6 +15,10 @@ constexpr Eigen::Index kVelocityReach = 2;
 constexpr double kTimeWeight = 1.0;
 // Weight of one metre of the root's way, which moves all joints.
 constexpr double kWayWeight = 2.0;
+
+motion::Poses ApplyTo(const motion::Standardisation& frame, const motion::Poses& world) {
+  return {world.joint_count(), frame.Apply({world.all().begin(), world.all().end()})};
+}
 
 }  // namespace
 
@@ -25,31 +31,30 @@ motion::Standardisation BaselineFrame(const motion::Skeleton& skeleton,
   return {skeleton, leader};
 }
 
-Rows ToRows(const std::vector<motion::Vec3>& positions, int joints) {
-  const Eigen::Index width = 3 * static_cast<Eigen::Index>(joints);
-  const Eigen::Index frames = static_cast<Eigen::Index>(positions.size()) * 3 / width;
-  Rows rows(frames, width);
-  for (size_t i = 0; i < positions.size(); ++i) {
-    double* out = rows.data() + 3 * i;
-    out[0] = positions[i].x;
-    out[1] = positions[i].y;
-    out[2] = positions[i].z;
+Rows ToRows(const motion::Poses& poses) {
+  Rows rows(poses.frame_count(), 3 * poses.joint_count());
+  double* out = rows.data();
+  for (const motion::Vec3& position : poses.all()) {
+    *out++ = position.x;
+    *out++ = position.y;
+    *out++ = position.z;
   }
   return rows;
 }
 
-std::vector<motion::Vec3> FromRows(const Rows& rows) {
-  std::vector<motion::Vec3> positions(static_cast<size_t>(rows.size()) / 3);
-  for (size_t i = 0; i < positions.size(); ++i) {
-    const double* p = rows.data() + 3 * i;
-    positions[i] = {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])};
+motion::Poses FromRows(const Rows& rows) {
+  motion::Poses poses(static_cast<int>(rows.rows()), static_cast<int>(rows.cols() / 3));
+  const double* value = rows.data();
+  for (motion::Vec3& position : poses.all()) {
+    position = {static_cast<float>(value[0]), static_cast<float>(value[1]),
+                static_cast<float>(value[2])};
+    value += 3;
   }
-  return positions;
+  return poses;
 }
 
-Rows LeaderCues(const motion::Standardisation& frame, const std::vector<motion::Vec3>& world,
-                int joints) {
-  const Rows pose = ToRows(frame.Apply(world), joints);
+Rows LeaderCues(const motion::Standardisation& frame, const motion::Poses& world) {
+  const Rows pose = ToRows(ApplyTo(frame, world));
   const Eigen::Index frames = pose.rows(), width = pose.cols();
   Rows cues(frames, 2 * width + 4);
   for (Eigen::Index t = 0; t < frames; ++t) {
@@ -57,12 +62,12 @@ Rows LeaderCues(const motion::Standardisation& frame, const std::vector<motion::
     const Eigen::Index after = std::min(t + kVelocityReach, frames - 1);
     cues.row(t).head(width) = pose.row(t);
     cues.row(t).segment(width, width) = pose.row(after) - pose.row(before);
-    // Standard and world differ by the root's way, turned: any joint tells it.
-    const size_t joint = static_cast<size_t>(t) * static_cast<size_t>(joints);
+    // What the frame of this moment and that of the first one make of the same joint, whichever,
+    // differs by how far the root has moved.
     const motion::Vec3 way =
-        frame.Apply(world[joint]) - motion::Vec3{static_cast<float>(pose(t, 0)),
-                                                 static_cast<float>(pose(t, 1)),
-                                                 static_cast<float>(pose(t, 2))};
+        frame.Apply(world.at(static_cast<int>(t), 0)) -
+        motion::Vec3{static_cast<float>(pose(t, 0)), static_cast<float>(pose(t, 1)),
+                     static_cast<float>(pose(t, 2))};
     cues.row(t).segment(2 * width, 3) = kWayWeight * Eigen::RowVector3d(way.x, way.y, way.z);
     cues(t, 2 * width + 3) = kTimeWeight * static_cast<double>(t) /
                              static_cast<double>(std::max<Eigen::Index>(frames - 1, 1));
@@ -72,24 +77,26 @@ Rows LeaderCues(const motion::Standardisation& frame, const std::vector<motion::
 
 StandardPair StandardLeader(const motion::Skeleton& skeleton, const dataset::Sequence& sequence) {
   const motion::Standardisation frame = BaselineFrame(skeleton, sequence);
-  const std::vector<motion::Vec3>& leader = sequence.pair.leader.positions;
+  const motion::Poses leader = metrics::PosesOf(sequence.pair.leader);
   StandardPair pair;
-  pair.leader = ToRows(frame.Apply(leader), skeleton.joint_count());
-  pair.cues = LeaderCues(frame, leader, skeleton.joint_count());
+  pair.leader = ToRows(ApplyTo(frame, leader));
+  pair.cues = LeaderCues(frame, leader);
   return pair;
 }
 
 StandardPair StandardiseSequence(const motion::Skeleton& skeleton,
                                  const dataset::Sequence& sequence) {
   StandardPair pair = StandardLeader(skeleton, sequence);
-  const motion::Standardisation frame = BaselineFrame(skeleton, sequence);
-  pair.follower = ToRows(frame.Apply(sequence.pair.follower.positions), skeleton.joint_count());
+  const motion::Poses follower = metrics::PosesOf(sequence.pair.follower);
+  pair.follower = ToRows(ApplyTo(BaselineFrame(skeleton, sequence), follower));
   return pair;
 }
 
-std::vector<motion::Vec3> FollowerToWorld(const motion::Skeleton& skeleton,
-                                          const dataset::Sequence& sequence, const Rows& follower) {
-  return BaselineFrame(skeleton, sequence).Invert(FromRows(follower));
+motion::Poses FollowerToWorld(const motion::Skeleton& skeleton, const dataset::Sequence& sequence,
+                              const Rows& follower) {
+  const motion::Poses standard = FromRows(follower);
+  return {standard.joint_count(),
+          BaselineFrame(skeleton, sequence).Invert({standard.all().begin(), standard.all().end()})};
 }
 
 Rows StretchTo(const Rows& motion, Eigen::Index frames) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "model/dataset/dataset.h"
+#include "model/motion/poses.h"
 #include "model/motion/standardise.h"
 
 namespace duet::evaluation::baselines {
@@ -32,18 +33,20 @@ StandardPair StandardLeader(const motion::Skeleton& skeleton, const dataset::Seq
 StandardPair StandardiseSequence(const motion::Skeleton& skeleton,
                                  const dataset::Sequence& sequence);
 
-// A follower in the standard frame of its sequence, back in the world. [frames, joints]
-std::vector<motion::Vec3> FollowerToWorld(const motion::Skeleton& skeleton,
-                                          const dataset::Sequence& sequence, const Rows& follower);
+// A follower in the standard frame of its sequence, back in the world.
+// Shapes: follower [frames, 3 joints].
+motion::Poses FollowerToWorld(const motion::Skeleton& skeleton, const dataset::Sequence& sequence,
+                              const Rows& follower);
 
-Rows ToRows(const std::vector<motion::Vec3>& positions, int joints);
-std::vector<motion::Vec3> FromRows(const Rows& rows);
+// Shapes: rows [frames, 3 joints].
+Rows ToRows(const motion::Poses& poses);
+motion::Poses FromRows(const Rows& rows);
 
-// What a method sees of the leader in each frame: pose, velocity over four frames, the root's way
-// since the first frame, and the time, from 0 to 1 (the leader is known as a whole); each scaled so
-// that typical changes weigh about the same. Shapes: positions [frames, joints] in the world.
-Rows LeaderCues(const motion::Standardisation& frame, const std::vector<motion::Vec3>& world,
-                int joints);
+// What a method sees of the leader in each frame: the pose, its change over four frames, how far
+// the root has moved since the first frame, and the time from 0 to 1 (the leader is known as a
+// whole). Each is scaled so that typical changes weigh about the same.
+// Shapes: `world` in world metres; returns [frames, 6 joints + 4].
+Rows LeaderCues(const motion::Standardisation& frame, const motion::Poses& world);
 
 // Motion stretched or shrunk to another number of frames, linearly. Both at least 1.
 Rows StretchTo(const Rows& motion, Eigen::Index frames);

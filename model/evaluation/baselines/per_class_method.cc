@@ -24,7 +24,7 @@ absl::Status PerClassMethod::Train(const dataset::Dataset& dataset, const std::v
   return absl::OkStatus();
 }
 
-std::vector<motion::Vec3> PerClassMethod::Predict(const dataset::Sequence& sequence) const {
+absl::StatusOr<motion::Poses> PerClassMethod::Predict(const dataset::Sequence& sequence) const {
   const StandardPair leader = StandardLeader(skeleton_, sequence);
   return FollowerToWorld(skeleton_, sequence, PredictClass(sequence.interaction_class, leader));
 }

@@ -20,7 +20,7 @@ class PerClassMethod : public protocol::Method {
 
   // Errors: INVALID_ARGUMENT when a class of the data set has no training sequence.
   absl::Status Train(const dataset::Dataset& dataset, const std::vector<int>& train) override;
-  std::vector<motion::Vec3> Predict(const dataset::Sequence& sequence) const override;
+  absl::StatusOr<motion::Poses> Predict(const dataset::Sequence& sequence) const override;
 
  protected:
   // Forgets what an earlier Train learned.

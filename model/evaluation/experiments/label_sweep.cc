@@ -6,7 +6,6 @@
 #include <iterator>
 #include <limits>
 #include <numeric>
-#include <utility>
 
 namespace duet::evaluation::experiments {
 namespace {
@@ -68,32 +67,6 @@ void AddCurve(const SweepCurve& curve, LabelControl* sums) {
   sums->rank_correlation += RankCorrelation(SweepWeights(), RaisedProbabilities(curve));
 }
 
-std::vector<double> Values(const LabelControl& control) {
-  return {control.raised_up, control.raised_level, control.lowered_down,    control.lowered_level,
-          control.steps_up,  control.steps_level,  control.rank_correlation};
-}
-
-// The mean over curves of one class's probability at each weight.
-report::PlotSeries MeanLine(const std::string& name, const std::vector<SweepCurve>& curves,
-                            int of_class) {
-  report::PlotSeries line{name, {}};
-  for (size_t i = 0; i < SweepWeights().size(); ++i) {
-    double sum = 0;
-    for (const SweepCurve& curve : curves) {
-      sum += curve.probabilities[i][static_cast<size_t>(of_class)];
-    }
-    line.points.push_back({SweepWeights()[i], sum / static_cast<double>(curves.size())});
-  }
-  return line;
-}
-
-std::vector<SweepCurve> WithOwn(const std::vector<SweepCurve>& curves, int own) {
-  std::vector<SweepCurve> selected;
-  std::copy_if(curves.begin(), curves.end(), std::back_inserter(selected),
-               [&](const SweepCurve& curve) { return curve.own == own; });
-  return selected;
-}
-
 }  // namespace
 
 const std::vector<double>& SweepWeights() {
@@ -148,47 +121,23 @@ std::vector<SweepCurve> Select(const std::vector<SweepCurve>& curves, SweepKind 
   return selected;
 }
 
-report::Table ControlTable(const std::string& title, const std::vector<std::string>& classes,
-                           const std::vector<SweepCurve>& curves, SweepKind kind) {
-  report::Table table;
-  table.title = title;
-  table.columns = {"0 to 1: up", "level", "0 to -1: down",   "level",
-                   "a step up",  "level", "rank correlation"};
-  std::vector<SweepCurve> all;
-  for (size_t c = 0; c < classes.size(); ++c) {
-    const std::vector<SweepCurve> selected = Select(curves, kind, static_cast<int>(c));
-    table.rows.push_back({classes[c], Values(MeasureControl(selected)), false});
-    all.insert(all.end(), selected.begin(), selected.end());
-  }
-  table.rows.push_back({"all", Values(MeasureControl(all)), false});
-  table.notes = {
-      "Shares of answers whose probability of the class goes the way its weight goes. Level: by "
-      "0.001 or less, either way. Steps: by 0.25, from weight 0 to 1. Rank correlation: "
-      "Spearman's, of weight and probability from -1 to 2, the mean over answers."};
-  return table;
+std::vector<SweepCurve> SelectOwn(const std::vector<SweepCurve>& curves, int own) {
+  std::vector<SweepCurve> selected;
+  std::copy_if(curves.begin(), curves.end(), std::back_inserter(selected),
+               [&](const SweepCurve& curve) { return curve.own == own; });
+  return selected;
 }
 
-report::LinePlot SweepPlot(const std::string& title, const std::vector<std::string>& classes,
-                           const std::vector<SweepCurve>& curves, SweepKind kind, int raised) {
-  report::LinePlot plot;
-  plot.title = title;
-  plot.x_label = "weight of " + classes[static_cast<size_t>(raised)];
-  plot.y_range = {0, 1};
-  plot.markers = true;
-  plot.marked_x = {0, 1};
-  const std::vector<SweepCurve> selected = Select(curves, kind, raised);
-  for (int c = 0; c < static_cast<int>(classes.size()); ++c) {
-    const std::string& name = classes[static_cast<size_t>(c)];
-    if (kind == SweepKind::kOwn) {
-      plot.y_label = "mean probability of each class";
-      if (!selected.empty()) plot.series.push_back(MeanLine(name, selected, c));
-    } else {
-      plot.y_label = "mean probability of " + classes[static_cast<size_t>(raised)];
-      const std::vector<SweepCurve> beside = WithOwn(selected, c);
-      if (!beside.empty()) plot.series.push_back(MeanLine("beside " + name, beside, raised));
+std::vector<double> MeanProbabilities(const std::vector<SweepCurve>& curves, int of_class) {
+  std::vector<double> means;
+  for (size_t i = 0; i < SweepWeights().size(); ++i) {
+    double sum = 0;
+    for (const SweepCurve& curve : curves) {
+      sum += curve.probabilities[i][static_cast<size_t>(of_class)];
     }
+    means.push_back(sum / static_cast<double>(curves.size()));
   }
-  return plot;
+  return means;
 }
 
 }  // namespace duet::evaluation::experiments

@@ -1,11 +1,7 @@
 #ifndef DUET_MODEL_EVALUATION_EXPERIMENTS_LABEL_SWEEP_H_
 #define DUET_MODEL_EVALUATION_EXPERIMENTS_LABEL_SWEEP_H_
 
-#include <string>
 #include <vector>
-
-#include "model/evaluation/report/plot.h"
-#include "model/evaluation/report/table.h"
 
 // How a class's weight in the label vector moves a judge's probability of that class.
 //
@@ -31,12 +27,17 @@ std::vector<float> SweepLabels(int classes, int own, int raised, double weight);
 // Changes of the probability within this much are called level.
 inline constexpr double kLevelChange = 1e-3;
 
-// How the raised class's probability follows its weight, averaged over curves; NaN without any.
+// How the raised class's probability follows its weight: shares of curves (of single steps in
+// steps_*) and a mean over curves; NaN without any.
 struct LabelControl {
-  double raised_up = 0, raised_level = 0;  // weight 0 to 1: share of curves that rise, that stay
-  double lowered_down = 0, lowered_level = 0;  // 0 to -1: share that fall, that stay
-  double steps_up = 0, steps_level = 0;  // single steps from 0 to 1: share that rise, that stay
-  double rank_correlation = 0;           // Spearman's, of weight and probability over all weights
+  // From weight 0 to 1: the curves that rise, and that stay level.
+  double raised_up = 0, raised_level = 0;
+  // From weight 0 to -1: the curves that fall, and that stay level.
+  double lowered_down = 0, lowered_level = 0;
+  // Steps between neighbouring weights from 0 to 1: those that rise, and that stay level.
+  double steps_up = 0, steps_level = 0;
+  // Spearman's, of weight and probability over all weights.
+  double rank_correlation = 0;
 };
 LabelControl MeasureControl(const std::vector<SweepCurve>& curves);
 
@@ -44,21 +45,17 @@ LabelControl MeasureControl(const std::vector<SweepCurve>& curves);
 // two samples or more, as many on both sides.
 double RankCorrelation(const std::vector<double>& x, const std::vector<double>& y);
 
-// Which curves a table or a figure is about.
+// Which curves a figure is about.
 enum class SweepKind {
   kOwn,   // the leader's own class, alone
   kAdded  // another class, beside the own one
 };
 std::vector<SweepCurve> Select(const std::vector<SweepCurve>& curves, SweepKind kind, int raised);
+// Those with a leader of class `own`.
+std::vector<SweepCurve> SelectOwn(const std::vector<SweepCurve>& curves, int own);
 
-// One row a raised class and one for all of them.
-report::Table ControlTable(const std::string& title, const std::vector<std::string>& classes,
-                           const std::vector<SweepCurve>& curves, SweepKind kind);
-
-// kOwn: the mean probability of every class against the weight of class `raised`. kAdded: of class
-// `raised` alone, a line for each own class.
-report::LinePlot SweepPlot(const std::string& title, const std::vector<std::string>& classes,
-                           const std::vector<SweepCurve>& curves, SweepKind kind, int raised);
+// The mean over curves of one class's probability. Shapes: returns [weights]; NaN without curves.
+std::vector<double> MeanProbabilities(const std::vector<SweepCurve>& curves, int of_class);
 
 }  // namespace duet::evaluation::experiments
 

@@ -29,10 +29,10 @@ engine::ClipRequest MakeRequest(const motion::Skeleton& skeleton, const dataset:
   return request;
 }
 
-// Of all clips that are not finished the next window, evaluated together.
+// Evaluates the next window of every clip that is not finished, all together.
 absl::Status NextWindows(const engine::Synthesizer& synthesizer,
                          std::vector<engine::ClipSynthesis>* clips,
-                         std::vector<std::vector<motion::Vec3>>* followers) {
+                         std::vector<motion::Poses>* followers) {
   std::vector<size_t> waiting;
   std::vector<engine::SynthesisWindow> windows;
   for (size_t i = 0; i < clips->size(); ++i) {
@@ -45,22 +45,20 @@ absl::Status NextWindows(const engine::Synthesizer& synthesizer,
   const std::vector<engine::WindowResult> results = synthesizer.Synthesize(pointers);
   for (size_t n = 0; n < waiting.size(); ++n) {
     if (!results[n].ok()) return results[n].status();
-    const std::vector<motion::Vec3> frames = (*clips)[waiting[n]].Accept(*results[n]);
-    std::vector<motion::Vec3>& follower = (*followers)[waiting[n]];
-    follower.insert(follower.end(), frames.begin(), frames.end());
+    (*followers)[waiting[n]].Append((*clips)[waiting[n]].Accept(*results[n]));
   }
   return absl::OkStatus();
 }
 
 absl::Status SynthesizeTogether(const engine::Synthesizer& synthesizer,
                                 absl::Span<const LabelledLeader> leaders, StartGiven start,
-                                std::vector<std::vector<motion::Vec3>>* followers) {
+                                std::vector<motion::Poses>* followers) {
   const engine::ModelDescription& model = synthesizer.description();
   std::vector<engine::ClipSynthesis> clips;
   for (const LabelledLeader& leader : leaders) {
     clips.emplace_back(model, MakeRequest(model.skeleton, *leader.sequence, leader.labels, start));
   }
-  std::vector<std::vector<motion::Vec3>> made(clips.size());
+  std::vector<motion::Poses> made(clips.size(), motion::Poses(0, model.skeleton.joint_count()));
   while (std::any_of(clips.begin(), clips.end(),
                      [](const engine::ClipSynthesis& clip) { return clip.HasNextWindow(); })) {
     absl::Status status = NextWindows(synthesizer, &clips, &made);
@@ -86,21 +84,21 @@ absl::Status CheckModelFits(const engine::ModelDescription& model,
   return absl::OkStatus();
 }
 
-absl::StatusOr<std::vector<motion::Vec3>> SynthesizeSequence(const engine::Synthesizer& synthesizer,
-                                                             const dataset::Sequence& sequence,
-                                                             const std::vector<float>& labels,
-                                                             StartGiven start) {
+absl::StatusOr<motion::Poses> SynthesizeSequence(const engine::Synthesizer& synthesizer,
+                                                 const dataset::Sequence& sequence,
+                                                 const std::vector<float>& labels,
+                                                 StartGiven start) {
   const LabelledLeader leader = {&sequence, labels};
-  absl::StatusOr<std::vector<std::vector<motion::Vec3>>> followers =
+  absl::StatusOr<std::vector<motion::Poses>> followers =
       SynthesizeSequences(synthesizer, {&leader, 1}, start);
   if (!followers.ok()) return followers.status();
   return std::move(followers->front());
 }
 
-absl::StatusOr<std::vector<std::vector<motion::Vec3>>> SynthesizeSequences(
+absl::StatusOr<std::vector<motion::Poses>> SynthesizeSequences(
     const engine::Synthesizer& synthesizer, absl::Span<const LabelledLeader> leaders,
     StartGiven start) {
-  std::vector<std::vector<motion::Vec3>> followers;
+  std::vector<motion::Poses> followers;
   for (size_t first = 0; first < leaders.size(); first += kClipsTogether) {
     absl::Status status =
         SynthesizeTogether(synthesizer, leaders.subspan(first, kClipsTogether), start, &followers);
@@ -125,12 +123,10 @@ absl::Status SynthesizerMethod::Train(const dataset::Dataset& dataset, const std
   return absl::OkStatus();
 }
 
-std::vector<motion::Vec3> SynthesizerMethod::Predict(const dataset::Sequence& sequence) const {
+absl::StatusOr<motion::Poses> SynthesizerMethod::Predict(const dataset::Sequence& sequence) const {
   std::vector<float> labels(synthesizer_->description().classes.size(), 0);
   labels[static_cast<size_t>(sequence.interaction_class)] = 1;
-  absl::StatusOr<std::vector<motion::Vec3>> follower =
-      SynthesizeSequence(*synthesizer_, sequence, labels, start_);
-  return follower.ok() ? *std::move(follower) : std::vector<motion::Vec3>{};
+  return SynthesizeSequence(*synthesizer_, sequence, labels, start_);
 }
 
 }  // namespace duet::evaluation::experiments

@@ -9,6 +9,7 @@
 #include "absl/types/span.h"
 #include "model/engine/synthesizer.h"
 #include "model/evaluation/protocol/method.h"
+#include "model/motion/poses.h"
 
 namespace duet::evaluation::experiments {
 
@@ -19,7 +20,7 @@ absl::Status CheckModelFits(const engine::ModelDescription& model, const dataset
 // What a synthesizer is told of the follower's first frame.
 enum class StartGiven { kNone, kRoot, kPose };
 
-// A trained model as a row of the tables, run the way a server runs it: windows, blending and all.
+// A trained model as a row of the tables, run as a server runs it: in windows that are blended.
 class SynthesizerMethod : public protocol::Method {
  public:
   // `synthesizer` was trained on the fold's training sequences alone. Requires a model that accepts
@@ -30,8 +31,7 @@ class SynthesizerMethod : public protocol::Method {
   std::string name() const override { return name_; }
   // Checks that the model fits the data; the training is done already.
   absl::Status Train(const dataset::Dataset& dataset, const std::vector<int>& train) override;
-  // Empty when the network fails.
-  std::vector<motion::Vec3> Predict(const dataset::Sequence& sequence) const override;
+  absl::StatusOr<motion::Poses> Predict(const dataset::Sequence& sequence) const override;
   bool reads_first_pose() const override { return start_ != StartGiven::kNone; }
 
  private:
@@ -40,12 +40,12 @@ class SynthesizerMethod : public protocol::Method {
   StartGiven start_;
 };
 
-// The follower for a leader and any label vector ([classes]), through the same path. A failure of
-// the network is its status.
-absl::StatusOr<std::vector<motion::Vec3>> SynthesizeSequence(const engine::Synthesizer& synthesizer,
-                                                             const dataset::Sequence& sequence,
-                                                             const std::vector<float>& labels,
-                                                             StartGiven start);
+// The follower for a leader and any label vector ([classes]), made in the same way. Errors: those
+// of the network.
+absl::StatusOr<motion::Poses> SynthesizeSequence(const engine::Synthesizer& synthesizer,
+                                                 const dataset::Sequence& sequence,
+                                                 const std::vector<float>& labels,
+                                                 StartGiven start);
 
 // A leader and the label vector ([classes]) to answer it with.
 struct LabelledLeader {
@@ -53,9 +53,9 @@ struct LabelledLeader {
   std::vector<float> labels;
 };
 
-// The same for many, several windows to an evaluation of the network: much faster than one by one.
-// Returns a follower each, in order; the first failure is the whole call's.
-absl::StatusOr<std::vector<std::vector<motion::Vec3>>> SynthesizeSequences(
+// The same for many leaders, several windows to an evaluation of the network: much faster than one
+// by one. Returns a follower for each, in order; a failure of one is a failure of all.
+absl::StatusOr<std::vector<motion::Poses>> SynthesizeSequences(
     const engine::Synthesizer& synthesizer, absl::Span<const LabelledLeader> leaders,
     StartGiven start);
 

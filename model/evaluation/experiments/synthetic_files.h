@@ -7,7 +7,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "model/evaluation/experiments/synthetic_plan.h"
+#include "model/evaluation/experiments/synthetic_job.h"
 
 // A folder through which a synthetic set passes on its way to a server and back:
 //

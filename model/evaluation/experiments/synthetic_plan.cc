@@ -33,19 +33,12 @@ std::vector<int> OfClass(const dataset::Dataset& dataset, const std::vector<int>
   return found;
 }
 
-void Shuffle(training::EpochRandom* random, std::vector<int>* values) {
-  for (size_t i = values->size(); i > 1; --i) {
-    std::swap((*values)[i - 1],
-              (*values)[static_cast<size_t>(random->Below(static_cast<int64_t>(i)))]);
-  }
-}
-
-int DrawOtherClass(int classes, int own, training::EpochRandom* random) {
+int DrawOtherClass(int classes, int own, base::Random* random) {
   const int drawn = static_cast<int>(random->Below(classes - 1));
   return drawn < own ? drawn : drawn + 1;
 }
 
-std::vector<float> DrawLabels(int classes, int own, bool mix, training::EpochRandom* random) {
+std::vector<float> DrawLabels(int classes, int own, bool mix, base::Random* random) {
   std::vector<float> labels(static_cast<size_t>(classes), 0);
   const double weight = random->Uniform(kLeastOwn, mix ? kMostOwnMixed : kMostOwn);
   labels[static_cast<size_t>(own)] = static_cast<float>(weight);
@@ -64,7 +57,7 @@ std::string FileName(std::string name) {
 }
 
 dataset::Sequence DrawLeader(const dataset::Dataset& dataset, const dataset::Sequence& captured,
-                             training::EpochRandom* random) {
+                             base::Random* random) {
   dataset::Sequence sequence = Augment(dataset, captured, Variations(), random);
   sequence.pair.follower.positions.clear();
   return sequence;
@@ -75,11 +68,11 @@ dataset::Sequence DrawLeader(const dataset::Dataset& dataset, const dataset::Seq
 std::vector<SyntheticJob> PlanSyntheticSet(const dataset::Dataset& dataset,
                                            const std::vector<int>& train,
                                            const SyntheticPlanOptions& options) {
-  training::EpochRandom random(options.seed, 0);
+  base::Random random(options.seed, 0);
   std::vector<SyntheticJob> jobs;
   for (int c = 0; c < dataset.class_count(); ++c) {
     std::vector<int> leaders = OfClass(dataset, train, c);
-    Shuffle(&random, &leaders);
+    random.Shuffle(&leaders);
     for (int i = 0; i < options.match + options.mix; ++i) {
       const int leader = leaders[static_cast<size_t>(i) % leaders.size()];
       SyntheticJob job;

@@ -5,28 +5,23 @@
 #include <vector>
 
 #include "model/dataset/dataset.h"
+#include "model/evaluation/experiments/synthetic_job.h"
 
 namespace duet::evaluation::experiments {
 
-// A synthetic motion to be: what is asked of the generator.
-struct SyntheticJob {
-  dataset::Sequence sequence;  // a leader of its class; the follower has no positions
-  std::vector<float> labels;   // [classes], the label vector
-};
-
 struct SyntheticPlanOptions {
-  int match = 25;  // of each class: interaction match
-  int mix = 25;    // of each class: interaction mix
+  int match = 25;  // motions a class by interaction match
+  int mix = 25;    // motions a class by interaction mix
   uint64_t seed = 0;
 };
 
-// What is asked for to make synthetic followers of every class, drawn from the seed alone.
+// The jobs that make synthetic followers of every class, drawn from the seed alone.
 //
-// Leaders are those of `train`, each class's in turn as often as needed, varied: both people
+// Leaders are those of `train`, each class's in turn as often as needed, and varied: both people
 // exchanged in half of the clips of symmetric classes, bodies larger or smaller by up to 8 %,
-// turned by about 6 degrees, played up to 10 % faster or slower. Interaction match weighs the
-// leader's class by 0.75 to 1.25; interaction mix by 0.75 to 1, and one other class by 0.1 to 0.35:
-// the motion stays one of its class.
+// turned by about 6 degrees, played up to 10 % faster or slower. Interaction match gives the
+// leader's class a weight of 0.75 to 1.25. Interaction mix gives it 0.75 to 1, and one other class
+// 0.1 to 0.35, so that the motion stays one of its class.
 //
 // Source: paper section 4 (300 synthetic motions, 50 a class, "25 + 25"), which does not say how it
 //         varies leaders and weights; read as 25 by interaction match and 25 by interaction mix.

@@ -8,7 +8,6 @@ namespace duet::evaluation::experiments {
 namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-constexpr int kDecimals = 3;
 
 double ShareAboveZero(const std::vector<double>& values) {
   if (values.empty()) return kMissing;
@@ -16,12 +15,23 @@ double ShareAboveZero(const std::vector<double>& values) {
   return static_cast<double>(above) / static_cast<double>(values.size());
 }
 
-report::Table EmptyTable(std::string title, const std::vector<std::string>& columns) {
-  report::Table table;
-  table.title = std::move(title);
-  table.columns = columns;
-  table.decimals = kDecimals;
-  return table;
+using Row = std::map<std::string, std::vector<double>>;  // by trial
+
+std::vector<double> Column(const Row& row, size_t column) {
+  std::vector<double> values;
+  for (const auto& [trial, figures] : row) values.push_back(figures[column]);
+  return values;
+}
+
+Row Differences(const Row& row, const Row& base) {
+  Row differences;
+  for (const auto& [trial, figures] : row) {
+    const auto found = base.find(trial);
+    if (found == base.end()) continue;
+    std::vector<double>& out = differences[trial];
+    for (size_t c = 0; c < figures.size(); ++c) out.push_back(figures[c] - found->second[c]);
+  }
+  return differences;
 }
 
 }  // namespace
@@ -43,66 +53,34 @@ void Trials::Add(const std::string& row, const std::string& trial, std::vector<d
   found->second[trial] = std::move(values);
 }
 
-std::vector<double> Trials::Column(const Row& row, size_t column) const {
-  std::vector<double> values;
-  for (const auto& [trial, figures] : row) values.push_back(figures[column]);
-  return values;
-}
-
-Trials::Row Trials::Differences(const Row& row, const Row& base) const {
-  Row differences;
-  for (const auto& [trial, figures] : row) {
-    const auto found = base.find(trial);
-    if (found == base.end()) continue;
-    std::vector<double>& out = differences[trial];
-    for (size_t c = 0; c < figures.size(); ++c) out.push_back(figures[c] - found->second[c]);
+TrialSummary Trials::Summary(const std::string& name, const Row& row) const {
+  TrialSummary summary;
+  summary.row = name;
+  for (size_t c = 0; c < columns_.size(); ++c) {
+    const std::vector<double> values = Column(row, c);
+    const auto [mean, deviation] = Summarise(values);
+    summary.means.push_back(mean);
+    summary.deviations.push_back(deviation);
+    summary.above_zero.push_back(ShareAboveZero(values));
   }
-  return differences;
+  return summary;
 }
 
-report::Table Trials::Means(std::string title) const {
-  report::Table table = EmptyTable(std::move(title), columns_);
-  table.best = report::Best::kHighest;
-  for (const auto& [name, row] : rows_) {
-    table.rows.push_back({name, {}});
-    for (size_t c = 0; c < columns_.size(); ++c) {
-      table.rows.back().values.push_back(Summarise(Column(row, c)).mean);
-    }
-  }
-  return table;
+std::vector<TrialSummary> Trials::Summaries() const {
+  std::vector<TrialSummary> summaries;
+  for (const auto& [name, row] : rows_) summaries.push_back(Summary(name, row));
+  return summaries;
 }
 
-report::Table Trials::Deviations(std::string title) const {
-  report::Table table = EmptyTable(std::move(title), columns_);
-  for (const auto& [name, row] : rows_) {
-    table.rows.push_back({name, {}});
-    for (size_t c = 0; c < columns_.size(); ++c) {
-      table.rows.back().values.push_back(Summarise(Column(row, c)).deviation);
-    }
-  }
-  return table;
-}
-
-report::Table Trials::Gains(const std::string& base, std::string title) const {
-  report::Table table = EmptyTable(std::move(title), columns_);
+std::vector<TrialSummary> Trials::Gains(const std::string& base) const {
   const auto found =
       std::find_if(rows_.begin(), rows_.end(), [&](const auto& one) { return one.first == base; });
-  if (found == rows_.end()) return table;
+  if (found == rows_.end()) return {};
+  std::vector<TrialSummary> gains;
   for (const auto& [name, row] : rows_) {
-    if (name == base) continue;
-    const Row differences = Differences(row, found->second);
-    report::TableRow mean{name, {}}, deviation{name + ", deviation", {}},
-        share{name + ", share above 0", {}};
-    for (size_t c = 0; c < columns_.size(); ++c) {
-      const std::vector<double> values = Column(differences, c);
-      const MeanAndDeviation summary = Summarise(values);
-      mean.values.push_back(summary.mean);
-      deviation.values.push_back(summary.deviation);
-      share.values.push_back(ShareAboveZero(values));
-    }
-    for (report::TableRow* one : {&mean, &deviation, &share}) table.rows.push_back(std::move(*one));
+    if (name != base) gains.push_back(Summary(name, Differences(row, found->second)));
   }
-  return table;
+  return gains;
 }
 
 }  // namespace duet::evaluation::experiments

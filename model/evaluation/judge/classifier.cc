@@ -8,6 +8,7 @@
 #include "absl/strings/str_cat.h"
 #include "model/base/sha256.h"
 #include "model/evaluation/judge/judge_input.h"
+#include "model/evaluation/metrics/clip_poses.h"
 #include "model/network/batch.h"
 #include "model/network/discriminator.h"
 #include "model/training/augment.h"
@@ -24,7 +25,7 @@ namespace {
 
 using network::Discriminator;
 
-// Motions at a time when nothing is learned: bounds memory, and long pads short.
+// Motions at a time when nothing is learnt: bounds memory, and how far short motions are padded.
 constexpr size_t kTestBatch = 64;
 
 struct MotionBatch {
@@ -37,7 +38,7 @@ struct MotionBatch {
 dataset::Sequence WithFollower(const dataset::Dataset& dataset,
                                const metrics::ScoredMotion& motion) {
   dataset::Sequence sequence = dataset.sequences[static_cast<size_t>(motion.sequence)];
-  sequence.pair.follower.positions = motion.follower;
+  SetPoses(motion.follower, &sequence.pair.follower);
   return sequence;
 }
 
@@ -47,7 +48,8 @@ MotionBatch MakeMotionBatch(const dataset::Dataset& dataset,
   std::vector<std::vector<motion::Vec3>> inputs;
   std::vector<int64_t> lengths, classes;
   for (const dataset::Sequence& sequence : sequences) {
-    inputs.push_back(JudgeInput(dataset.skeleton, sequence));
+    const motion::Poses input = JudgeInput(dataset.skeleton, sequence);
+    inputs.emplace_back(input.all().begin(), input.all().end());
     lengths.push_back(sequence.pair.follower.frame_count());
     classes.push_back(sequence.interaction_class);
   }
@@ -71,9 +73,9 @@ std::vector<MotionBatch> TestBatches(const dataset::Dataset& dataset,
   return batches;
 }
 
-// What a judge of unseen people must not go by: who is in the clip, and when it starts and ends.
-// (kBodyNoise and label smoothing were chosen on held-back training subjects, like the defaults of
-// ClassifierOptions.)
+// A classifier that is to work for unseen people must not go by the build of those in the clip, nor
+// by when the clip starts and ends: both are varied. These two were chosen on held-back training
+// subjects, like the defaults of ClassifierOptions.
 constexpr double kBodyNoise = 0.05;  // metres, standard deviation, one offset a joint
 constexpr double kLabelSmoothing = 0.1;
 
@@ -84,7 +86,7 @@ training::TrainingOptions::Augmentation Variations() {
   return augmentation;
 }
 
-motion::Vec3 RandomOffset(double deviation, training::EpochRandom* random) {
+motion::Vec3 RandomOffset(double deviation, base::Random* random) {
   const auto x = static_cast<float>(random->Normal(deviation));
   const auto y = static_cast<float>(random->Normal(deviation));
   const auto z = static_cast<float>(random->Normal(deviation));
@@ -92,7 +94,7 @@ motion::Vec3 RandomOffset(double deviation, training::EpochRandom* random) {
 }
 
 dataset::Sequence Vary(const dataset::Dataset& dataset, const dataset::Sequence& sequence,
-                       training::EpochRandom* random) {
+                       base::Random* random) {
   dataset::Sequence varied = Augment(dataset, sequence, Variations(), random);
   std::vector<motion::Vec3> offsets;
   for (int j = 0; j < dataset.skeleton.joint_count(); ++j) {
@@ -115,14 +117,12 @@ training::TrainingOptions::Optimiser OptimiserSettings(const ClassifierOptions& 
 std::vector<MotionBatch> EpochBatches(const dataset::Dataset& dataset,
                                       const std::vector<dataset::Sequence>& sequences,
                                       const ClassifierOptions& options, int64_t epoch) {
-  training::EpochRandom random(options.seed, epoch);
+  base::Random random(options.seed, epoch);
   std::vector<dataset::Sequence> varied;
   for (const dataset::Sequence& sequence : sequences) {
     varied.push_back(Vary(dataset, sequence, &random));
   }
-  for (size_t i = varied.size(); i > 1; --i) {
-    std::swap(varied[i - 1], varied[static_cast<size_t>(random.Below(static_cast<int64_t>(i)))]);
-  }
+  random.Shuffle(&varied);
   std::vector<MotionBatch> batches;
   const size_t size = static_cast<size_t>(options.batch);
   for (size_t first = 0; first < varied.size(); first += size) {
@@ -203,8 +203,9 @@ absl::StatusOr<MotionClassifier> MotionClassifier::Train(
   absl::Status status = CheckMotions(dataset, motions);
   if (!status.ok()) return status;
   std::vector<dataset::Sequence> sequences;
-  for (const metrics::ScoredMotion& motion : motions)
+  for (const metrics::ScoredMotion& motion : motions) {
     sequences.push_back(WithFollower(dataset, motion));
+  }
   auto model = std::make_shared<Model>();
   for (int64_t m = 0; m < options.members; ++m) {
     ClassifierOptions member = options;

@@ -1,23 +1,24 @@
 #ifndef DUET_MODEL_EVALUATION_JUDGE_JUDGE_INPUT_H_
 #define DUET_MODEL_EVALUATION_JUDGE_JUDGE_INPUT_H_
 
-#include <vector>
-
 #include "model/dataset/dataset.h"
+#include "model/motion/poses.h"
 
 namespace duet::evaluation::judge {
 
-// Values a frame, in triples for each joint, of what a judge sees: JudgeInput's middle dimension.
+// What a judge is shown of each joint: so many vectors.
 inline constexpr int kJudgeParts = 3;
 
-// What a judge is shown of a sequence's follower: where each joint is from the leader's root
-// (standard frame, metres), where it is about the follower's own root, and its velocity in the
-// world (turned to the standard frame, m/s). From a hundred clips a network does not find the
-// second and third in the first by itself: with them a judge of unseen people errs an eighth less
-// often. Nothing of the follower's own decides the frame. Shapes: returns [frames, kJudgeParts,
-// joints].
-std::vector<motion::Vec3> JudgeInput(const motion::Skeleton& skeleton,
-                                     const dataset::Sequence& sequence);
+// What a judge is shown of a sequence's follower in each frame, in the standard frame of the
+// leader:
+//   1. where each joint is, seen from the leader's root (metres);
+//   2. where it is, seen from the follower's own root (metres);
+//   3. its velocity in the world (m/s).
+// The second and the third follow from the first, but a network that learns from a hundred clips
+// does not find them: with them a judge of unseen people errs an eighth less often. The leader
+// alone decides the frame.
+// Shapes: returns [frames, kJudgeParts x joints], all joints of the first part first.
+motion::Poses JudgeInput(const motion::Skeleton& skeleton, const dataset::Sequence& sequence);
 
 }  // namespace duet::evaluation::judge
 

@@ -19,66 +19,55 @@ double SquaredDistance(motion::Vec3 a, motion::Vec3 b) {
   return x * x + y * y + z * z;
 }
 
-// Calls visit(squared norm of x^_t - x_t) for every frame.
-template <typename Visit>
-void ForEachFrame(const std::vector<motion::Vec3>& predicted,
-                  const std::vector<motion::Vec3>& truth, int joints, MetricUnit unit,
-                  Visit visit) {
-  const size_t stride = static_cast<size_t>(joints);
-  for (size_t first = 0; first < truth.size(); first += stride) {
-    double squared = 0;
-    for (size_t i = first; i < first + stride; ++i) {
-      squared += SquaredDistance(InUnit(unit, predicted[i]), InUnit(unit, truth[i]));
-    }
-    visit(squared);
+// The squared norm of x^_t - x_t over all coordinates of a frame.
+double FrameSquared(absl::Span<const motion::Vec3> predicted, absl::Span<const motion::Vec3> truth,
+                    MetricUnit unit) {
+  double squared = 0;
+  for (size_t j = 0; j < truth.size(); ++j) {
+    squared += SquaredDistance(InUnit(unit, predicted[j]), InUnit(unit, truth[j]));
   }
+  return squared;
 }
 
-double FrameCount(const std::vector<motion::Vec3>& positions, int joints) {
-  return static_cast<double>(positions.size()) / joints;
-}
-
-std::vector<motion::Vec3> WithoutRoot(const std::vector<motion::Vec3>& positions, int joints,
-                                      int root) {
-  std::vector<motion::Vec3> relative(positions.size());
-  for (size_t i = 0; i < positions.size(); ++i) {
-    const size_t first = i - i % static_cast<size_t>(joints);
-    relative[i] = positions[i] - positions[first + static_cast<size_t>(root)];
+motion::Poses WithoutRoot(motion::Poses poses, int root) {
+  for (int t = 0; t < poses.frame_count(); ++t) {
+    const motion::Vec3 at = poses.at(t, root);
+    for (motion::Vec3& position : poses[t]) position = position - at;
   }
-  return relative;
+  return poses;
 }
 
 }  // namespace
 
-double Afd(const std::vector<motion::Vec3>& predicted, const std::vector<motion::Vec3>& truth,
-           int joints, MetricUnit unit) {
+double Afd(const motion::Poses& predicted, const motion::Poses& truth, MetricUnit unit) {
   double sum = 0;
-  ForEachFrame(predicted, truth, joints, unit, [&](double squared) { sum += std::sqrt(squared); });
-  return sum / FrameCount(truth, joints);
-}
-
-double AfdSquared(const std::vector<motion::Vec3>& predicted,
-                  const std::vector<motion::Vec3>& truth, int joints, MetricUnit unit) {
-  double sum = 0;
-  ForEachFrame(predicted, truth, joints, unit, [&](double squared) { sum += squared; });
-  return sum / FrameCount(truth, joints);
-}
-
-double RootAlignedAfd(const std::vector<motion::Vec3>& predicted,
-                      const std::vector<motion::Vec3>& truth, int joints, int root,
-                      MetricUnit unit) {
-  return Afd(WithoutRoot(predicted, joints, root), WithoutRoot(truth, joints, root), joints, unit);
-}
-
-double VelocityError(const std::vector<motion::Vec3>& predicted,
-                     const std::vector<motion::Vec3>& truth, int joints, double frame_rate_hz) {
-  const size_t stride = static_cast<size_t>(joints);
-  double sum = 0;
-  for (size_t i = stride; i < truth.size(); ++i) {
-    sum += std::sqrt(
-        SquaredDistance(predicted[i] - predicted[i - stride], truth[i] - truth[i - stride]));
+  for (int t = 0; t < truth.frame_count(); ++t) {
+    sum += std::sqrt(FrameSquared(predicted[t], truth[t], unit));
   }
-  return sum / static_cast<double>(truth.size() - stride) * frame_rate_hz;
+  return sum / truth.frame_count();
+}
+
+double AfdSquared(const motion::Poses& predicted, const motion::Poses& truth, MetricUnit unit) {
+  double sum = 0;
+  for (int t = 0; t < truth.frame_count(); ++t) sum += FrameSquared(predicted[t], truth[t], unit);
+  return sum / truth.frame_count();
+}
+
+double RootAlignedAfd(const motion::Poses& predicted, const motion::Poses& truth, int root,
+                      MetricUnit unit) {
+  return Afd(WithoutRoot(predicted, root), WithoutRoot(truth, root), unit);
+}
+
+double VelocityError(const motion::Poses& predicted, const motion::Poses& truth,
+                     double frame_rate_hz) {
+  double sum = 0;
+  for (int t = 1; t < truth.frame_count(); ++t) {
+    for (int j = 0; j < truth.joint_count(); ++j) {
+      sum += std::sqrt(SquaredDistance(predicted.at(t, j) - predicted.at(t - 1, j),
+                                       truth.at(t, j) - truth.at(t - 1, j)));
+    }
+  }
+  return sum / ((truth.frame_count() - 1) * truth.joint_count()) * frame_rate_hz;
 }
 
 }  // namespace duet::evaluation::metrics

@@ -1,18 +1,17 @@
 #ifndef DUET_MODEL_EVALUATION_METRICS_DISPLACEMENT_H_
 #define DUET_MODEL_EVALUATION_METRICS_DISPLACEMENT_H_
 
-#include <vector>
-
-#include "model/motion/vec3.h"
+#include "model/motion/poses.h"
 
 // How far a synthesised follower is from the captured one.
 //
-// Shapes: predicted and truth [frames, joints], the same number of frames, at least one (two for
-//         VelocityError), in world metres, y up. Differing shapes are a programmer's error.
-// Every figure is invariant to moving both motions alike and to turning them about the vertical,
-// so that it does not matter whether the leader's root and yaw have been taken out before. (In the
-// raw unit the second holds for the paper as well: it turns after the anisotropic scaling, and a
-// turn keeps a norm.)
+// Shapes: predicted and truth are alike, of one frame or more (two for VelocityError), in world
+//         metres, y up. Differing shapes are a programmer's error.
+//
+// In metres, every figure stays the same when both motions are moved alike, or turned alike about
+// the vertical. In the raw unit, whose axes are scaled differently, it stays the same only when
+// they are moved: pass motions as they stand in the world. The paper turns them as well, but after
+// the scaling, which changes no norm.
 
 namespace duet::evaluation::metrics {
 
@@ -26,23 +25,20 @@ enum class MetricUnit {
 
 // Average frame distance: (1/T) sum_t | x^_t - x_t |, the Euclidean norm over all 3 J coordinates.
 // Source: paper, Eq. 6.
-double Afd(const std::vector<motion::Vec3>& predicted, const std::vector<motion::Vec3>& truth,
-           int joints, MetricUnit unit);
+double Afd(const motion::Poses& predicted, const motion::Poses& truth, MetricUnit unit);
 
 // The same with the squared norm, as the authors' released code averages it. Unit: square of
 // `unit`.
-double AfdSquared(const std::vector<motion::Vec3>& predicted,
-                  const std::vector<motion::Vec3>& truth, int joints, MetricUnit unit);
+double AfdSquared(const motion::Poses& predicted, const motion::Poses& truth, MetricUnit unit);
 
 // Afd after each follower's own root joint is subtracted in every frame: the pose apart from where
 // the follower stands.
-double RootAlignedAfd(const std::vector<motion::Vec3>& predicted,
-                      const std::vector<motion::Vec3>& truth, int joints, int root,
+double RootAlignedAfd(const motion::Poses& predicted, const motion::Poses& truth, int root,
                       MetricUnit unit);
 
 // The mean over frames and joints of | v^ - v |, v the difference of successive frames. Unit: m/s.
-double VelocityError(const std::vector<motion::Vec3>& predicted,
-                     const std::vector<motion::Vec3>& truth, int joints, double frame_rate_hz);
+double VelocityError(const motion::Poses& predicted, const motion::Poses& truth,
+                     double frame_rate_hz);
 
 }  // namespace duet::evaluation::metrics
 

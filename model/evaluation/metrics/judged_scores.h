@@ -6,20 +6,20 @@
 #include "absl/status/statusor.h"
 #include "model/evaluation/metrics/features.h"
 
-// Figures by class of motions that a classifier has looked at, fold by fold: each fold has a judge
-// of its own, so that features may be compared within a fold only.
+// Figures by class of what the judges make of motions. Each fold has a judge of its own, so that
+// features may be compared within a fold only.
 
 namespace duet::evaluation::metrics {
 
-// What its judge makes of one fold's motions.
+// What a fold's judge makes of the fold's motions.
 struct JudgedFold {
   std::vector<int> classes;                       // [motions], what each was asked to be
   std::vector<std::vector<float>> probabilities;  // [motions][classes]
   FeatureSet features;                            // [motions][features]
 };
 
-// The share of each class's motions, over all folds, that the judges take for that class; NaN for a
-// class without any. Shapes: returns [classes].
+// The share of each class's motions, over all folds, that their fold's judge takes for that class;
+// NaN for a class without any. Shapes: returns [classes].
 std::vector<double> AccuracyByClass(const std::vector<JudgedFold>& folds, int classes);
 
 // The Frechet distance between synthesised and captured motions of each class within a fold,

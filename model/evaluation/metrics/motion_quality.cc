@@ -13,14 +13,13 @@ constexpr double kSkatingSpeedMetresPerSecond = 0.5;
 constexpr double kCentimetresPerMetre = 100;
 
 // (standard deviation) / mean of one bone's length.
-double Drift(const std::vector<motion::Vec3>& positions, size_t joints, const motion::Bone& bone) {
-  double sum = 0, squares = 0, frames = 0;
-  for (size_t first = 0; first < positions.size(); first += joints) {
-    const double length = Distance(positions[first + static_cast<size_t>(bone.parent)],
-                                   positions[first + static_cast<size_t>(bone.child)]);
+double Drift(const motion::Poses& poses, const motion::Bone& bone) {
+  double sum = 0, squares = 0;
+  const double frames = poses.frame_count();
+  for (int t = 0; t < poses.frame_count(); ++t) {
+    const double length = Distance(poses.at(t, bone.parent), poses.at(t, bone.child));
     sum += length;
     squares += length * length;
-    ++frames;
   }
   const double mean = sum / frames;
   if (mean == 0) return 0;
@@ -28,43 +27,46 @@ double Drift(const std::vector<motion::Vec3>& positions, size_t joints, const mo
   return std::sqrt(std::max(0.0, squares / frames - mean * mean)) / mean;
 }
 
+// The height of the lowest point that either foot reaches.
+float LowestFoot(const motion::Poses& poses, const motion::Skeleton& skeleton) {
+  float lowest = std::numeric_limits<float>::max();
+  for (int t = 0; t < poses.frame_count(); ++t) {
+    lowest =
+        std::min({lowest, poses.at(t, skeleton.left_foot).y, poses.at(t, skeleton.right_foot).y});
+  }
+  return lowest;
+}
+
 }  // namespace
 
-double BoneLengthDrift(const std::vector<motion::Vec3>& positions,
-                       const motion::Skeleton& skeleton) {
+double BoneLengthDrift(const motion::Poses& poses, const motion::Skeleton& skeleton) {
   if (skeleton.bones.empty()) return 0;
   double sum = 0;
-  for (const motion::Bone& bone : skeleton.bones) {
-    sum += Drift(positions, static_cast<size_t>(skeleton.joint_count()), bone);
-  }
+  for (const motion::Bone& bone : skeleton.bones) sum += Drift(poses, bone);
   return sum / static_cast<double>(skeleton.bones.size());
 }
 
-double Jitter(const std::vector<motion::Vec3>& positions, int joints, double frame_rate_hz) {
-  const size_t stride = static_cast<size_t>(joints);
-  if (positions.size() < 4 * stride) return 0;
+double Jitter(const motion::Poses& poses, double frame_rate_hz) {
+  const int frames = poses.frame_count(), joints = poses.joint_count();
+  if (frames < 4) return 0;
   double sum = 0;
-  for (size_t i = 3 * stride; i < positions.size(); ++i) {
-    const motion::Vec3 third = positions[i] - 3.0f * positions[i - stride] +
-                               3.0f * positions[i - 2 * stride] - positions[i - 3 * stride];
-    sum += Norm(third);
+  for (int t = 3; t < frames; ++t) {
+    for (int j = 0; j < joints; ++j) {
+      const motion::Vec3 third = poses.at(t, j) - 3.0f * poses.at(t - 1, j) +
+                                 3.0f * poses.at(t - 2, j) - poses.at(t - 3, j);
+      sum += Norm(third);
+    }
   }
-  return sum / static_cast<double>(positions.size() - 3 * stride) * std::pow(frame_rate_hz, 3);
+  return sum / ((frames - 3) * joints) * std::pow(frame_rate_hz, 3);
 }
 
-FootSlide MeasureFootSlide(const std::vector<motion::Vec3>& positions,
-                           const motion::Skeleton& skeleton, double frame_rate_hz) {
-  const size_t stride = static_cast<size_t>(skeleton.joint_count());
-  const size_t feet[] = {static_cast<size_t>(skeleton.left_foot),
-                         static_cast<size_t>(skeleton.right_foot)};
-  float floor = std::numeric_limits<float>::max();
-  for (size_t first = 0; first < positions.size(); first += stride) {
-    for (size_t foot : feet) floor = std::min(floor, positions[first + foot].y);
-  }
+FootSlide MeasureFootSlide(const motion::Poses& poses, const motion::Skeleton& skeleton,
+                           double frame_rate_hz) {
+  const float floor = LowestFoot(poses, skeleton);
   double steps = 0, skating = 0, moved = 0;
-  for (size_t first = stride; first < positions.size(); first += stride) {
-    for (size_t foot : feet) {
-      const motion::Vec3 before = positions[first - stride + foot], now = positions[first + foot];
+  for (int t = 1; t < poses.frame_count(); ++t) {
+    for (const int foot : {skeleton.left_foot, skeleton.right_foot}) {
+      const motion::Vec3 before = poses.at(t - 1, foot), now = poses.at(t, foot);
       if (std::max(before.y, now.y) > floor + kContactHeightMetres) continue;
       const double step = std::hypot(now.x - before.x, now.z - before.z);
       ++steps;

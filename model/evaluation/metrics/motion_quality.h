@@ -1,39 +1,36 @@
 #ifndef DUET_MODEL_EVALUATION_METRICS_MOTION_QUALITY_H_
 #define DUET_MODEL_EVALUATION_METRICS_MOTION_QUALITY_H_
 
-#include <vector>
-
+#include "model/motion/poses.h"
 #include "model/motion/skeleton.h"
-#include "model/motion/vec3.h"
 
-// Figures of one motion by itself. Captured motion is not perfect either (Kinect's bones breathe by
-// a tenth): read each beside the captured follower's own value.
+// Figures of one motion by itself. Captured motion is not perfect either (the bones that Kinect
+// sees grow and shrink by a tenth): read each figure beside the captured follower's.
 //
-// Shapes: positions [frames, joints], world metres, y up.
+// Units: poses in world metres, y up.
 
 namespace duet::evaluation::metrics {
 
 // The mean over bones of (standard deviation over time) / (mean over time) of the bone's length.
 // 0 for a body whose bones keep their lengths. Dimensionless. Bones of mean length 0 count as 0.
-double BoneLengthDrift(const std::vector<motion::Vec3>& positions,
-                       const motion::Skeleton& skeleton);
+double BoneLengthDrift(const motion::Poses& poses, const motion::Skeleton& skeleton);
 
 // The mean over joints and frames of the norm of the third difference, times rate^3. Unit: m/s^3.
 // 0 for fewer than four frames.
-double Jitter(const std::vector<motion::Vec3>& positions, int joints, double frame_rate_hz);
+double Jitter(const motion::Poses& poses, double frame_rate_hz);
 
-// How feet move while they should stand. Both consider the time a foot spends within 5 cm of the
-// lowest point that either foot reaches, and movement along the floor alone.
+// How feet move while they should stand. A step is a foot's movement along the floor from one frame
+// to the next; it counts where the foot is on the floor in both frames: at most 5 cm above the
+// lowest point that either foot reaches in the whole motion.
 // Source: skating ratio as in GMD (Karunratanakul et al. 2023); foot motion as in MANN.
 struct FootSlide {
-  // Of the steps from frame to frame with a foot on the floor at both ends, the share that is
-  // faster than 0.5 m/s. 0 to 1.
+  // The share of the steps that are faster than 0.5 m/s. 0 to 1.
   double skating_ratio = 0;
-  // Mean movement in such a step. Unit: centimetres a frame; depends on the frame rate.
+  // The mean length of a step. Unit: centimetres a frame; depends on the frame rate.
   double centimetres_a_frame = 0;
 };
-FootSlide MeasureFootSlide(const std::vector<motion::Vec3>& positions,
-                           const motion::Skeleton& skeleton, double frame_rate_hz);
+FootSlide MeasureFootSlide(const motion::Poses& poses, const motion::Skeleton& skeleton,
+                           double frame_rate_hz);
 
 }  // namespace duet::evaluation::metrics
 

@@ -32,7 +32,7 @@ double RadiusOf(const motion::Skeleton& skeleton, const motion::Bone& bone) {
 }
 
 // The deepest overlap of two bodies in one frame.
-double FrameDepth(const motion::Vec3* leader, const motion::Vec3* follower,
+double FrameDepth(const motion::Poses& leader, const motion::Poses& follower, int frame,
                   const motion::Skeleton& skeleton, const std::vector<double>& radii) {
   double deepest = 0;
   for (size_t i = 0; i < skeleton.bones.size(); ++i) {
@@ -40,7 +40,8 @@ double FrameDepth(const motion::Vec3* leader, const motion::Vec3* follower,
     for (size_t j = 0; j < skeleton.bones.size(); ++j) {
       const motion::Bone& b = skeleton.bones[j];
       const double distance =
-          SegmentDistance(leader[a.parent], leader[a.child], follower[b.parent], follower[b.child]);
+          SegmentDistance(leader.at(frame, a.parent), leader.at(frame, a.child),
+                          follower.at(frame, b.parent), follower.at(frame, b.child));
       deepest = std::max(deepest, radii[i] + radii[j] - distance);
     }
   }
@@ -76,23 +77,20 @@ std::vector<double> CapsuleRadii(const motion::Skeleton& skeleton) {
   return radii;
 }
 
-Penetration MeasurePenetration(const std::vector<motion::Vec3>& leader,
-                               const std::vector<motion::Vec3>& follower,
+Penetration MeasurePenetration(const motion::Poses& leader, const motion::Poses& follower,
                                const motion::Skeleton& skeleton) {
   const std::vector<double> radii = CapsuleRadii(skeleton);
-  const size_t stride = static_cast<size_t>(skeleton.joint_count());
   Penetration result;
-  double frames = 0, touching = 0, sum = 0;
-  for (size_t first = 0; first < leader.size(); first += stride) {
-    const double depth = FrameDepth(&leader[first], &follower[first], skeleton, radii);
-    ++frames;
+  double touching = 0, sum = 0;
+  for (int t = 0; t < leader.frame_count(); ++t) {
+    const double depth = FrameDepth(leader, follower, t, skeleton, radii);
     if (depth <= 0) continue;
     ++touching;
     sum += depth;
     result.max_depth_metres = std::max(result.max_depth_metres, depth);
   }
   if (touching == 0) return result;
-  result.frequency = touching / frames;
+  result.frequency = touching / leader.frame_count();
   result.mean_depth_metres = sum / touching;
   return result;
 }

@@ -3,8 +3,8 @@
 
 #include <vector>
 
+#include "model/motion/poses.h"
 #include "model/motion/skeleton.h"
-#include "model/motion/vec3.h"
 
 namespace duet::evaluation::metrics {
 
@@ -13,21 +13,21 @@ double SegmentDistance(motion::Vec3 a0, motion::Vec3 a1, motion::Vec3 b0, motion
 
 // The radius of the capsule around each bone, metres: 0.045 for a bone within a part with "arm" in
 // its name, 0.065 with "leg", 0.09 for the bone that ends in a joint called "head", 0.11 for any
-// other (trunk, shoulders, hips). Source: half the breadth of adult limbs, and rather less than
-// that of the trunk, whose bones fan out from the middle. Rough: compare figures with those of
-// captured pairs, not with zero.
+// other (trunk, shoulders, hips). Shapes: returns [bones].
+// Source: half the breadth of adult limbs; less than half of the trunk's, whose bones fan out from
+// the middle. Rough: compare figures with those of captured pairs, not with zero.
 std::vector<double> CapsuleRadii(const motion::Skeleton& skeleton);
 
 // How far two bodies reach into each other. A frame's depth is the largest max(0, r1 + r2 - d) over
-// all pairs of a leader's and a follower's bone. Less is not automatically better (a hug touches):
-// report it beside the captured pair's. Shapes: leader and follower [frames, joints], world metres.
+// all pairs of a leader's and a follower's bone, with radii r1 and r2 at a distance d. Less is not
+// always better (people who hug do touch): read it beside the captured pair's.
+// Shapes: leader and follower are alike, in world metres.
 struct Penetration {
   double frequency = 0;          // share of frames with a depth above 0
   double mean_depth_metres = 0;  // over those frames; 0 without any
   double max_depth_metres = 0;
 };
-Penetration MeasurePenetration(const std::vector<motion::Vec3>& leader,
-                               const std::vector<motion::Vec3>& follower,
+Penetration MeasurePenetration(const motion::Poses& leader, const motion::Poses& follower,
                                const motion::Skeleton& skeleton);
 
 }  // namespace duet::evaluation::metrics

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <limits>
 
+#include "model/evaluation/metrics/clip_poses.h"
 #include "model/evaluation/metrics/displacement.h"
 #include "model/evaluation/metrics/motion_quality.h"
 #include "model/evaluation/metrics/penetration.h"
@@ -69,22 +70,21 @@ std::string MetricName(Metric metric) {
 std::vector<double> ScoreMotion(const dataset::Dataset& dataset, const ScoredMotion& motion) {
   const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(motion.sequence)];
   const motion::Skeleton& skeleton = dataset.skeleton;
-  const std::vector<motion::Vec3>& truth = sequence.pair.follower.positions;
-  const std::vector<motion::Vec3>& made = motion.follower;
-  const int joints = skeleton.joint_count();
+  const motion::Poses leader = PosesOf(sequence.pair.leader);
+  const motion::Poses truth = PosesOf(sequence.pair.follower);
+  const motion::Poses& made = motion.follower;
   const double rate = sequence.pair.leader.frame_rate_hz;
   const FootSlide slide = MeasureFootSlide(made, skeleton, rate);
-  const Penetration penetration =
-      MeasurePenetration(sequence.pair.leader.positions, made, skeleton);
-  return {Afd(made, truth, joints, MetricUnit::kSbuRaw),
-          AfdSquared(made, truth, joints, MetricUnit::kSbuRaw),
-          Afd(made, truth, joints, MetricUnit::kMetres),
-          AfdSquared(made, truth, joints, MetricUnit::kMetres),
-          RootAlignedAfd(made, truth, joints, skeleton.root, MetricUnit::kSbuRaw),
-          RootAlignedAfd(made, truth, joints, skeleton.root, MetricUnit::kMetres),
-          VelocityError(made, truth, joints, rate),
+  const Penetration penetration = MeasurePenetration(leader, made, skeleton);
+  return {Afd(made, truth, MetricUnit::kSbuRaw),
+          AfdSquared(made, truth, MetricUnit::kSbuRaw),
+          Afd(made, truth, MetricUnit::kMetres),
+          AfdSquared(made, truth, MetricUnit::kMetres),
+          RootAlignedAfd(made, truth, skeleton.root, MetricUnit::kSbuRaw),
+          RootAlignedAfd(made, truth, skeleton.root, MetricUnit::kMetres),
+          VelocityError(made, truth, rate),
           BoneLengthDrift(made, skeleton),
-          Jitter(made, joints, rate),
+          Jitter(made, rate),
           slide.skating_ratio,
           slide.centimetres_a_frame,
           penetration.frequency,
@@ -101,7 +101,7 @@ std::vector<std::vector<double>> ScoreByClass(const dataset::Dataset& dataset,
     const size_t c = static_cast<size_t>(sequence.interaction_class);
     const std::vector<double> scores = ScoreMotion(dataset, motion);
     for (size_t m = 0; m < metrics; ++m) {
-      // Not a number stands for "has none", as the depth of what never touches.
+      // NaN: the motion has no such figure, as one that never touches has no depth.
       if (std::isnan(scores[m])) continue;
       sums[c][m] += scores[m];
       ++counts[c][m];
@@ -116,11 +116,11 @@ std::vector<std::vector<double>> ScoreByClass(const dataset::Dataset& dataset,
 }
 
 std::vector<ScoredMotion> CapturedMotions(const dataset::Dataset& dataset,
-                                          const std::vector<ScoredMotion>& like) {
+                                          const std::vector<int>& sequences) {
   std::vector<ScoredMotion> captured;
-  for (const ScoredMotion& motion : like) {
-    const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(motion.sequence)];
-    captured.push_back({motion.sequence, sequence.pair.follower.positions});
+  for (const int index : sequences) {
+    const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(index)];
+    captured.push_back({index, PosesOf(sequence.pair.follower)});
   }
   return captured;
 }

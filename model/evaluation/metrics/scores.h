@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "model/dataset/dataset.h"
+#include "model/motion/poses.h"
 
 namespace duet::evaluation::metrics {
 
@@ -31,8 +32,8 @@ std::string MetricName(Metric metric);
 
 // A follower for a sequence of the data set, synthesised or captured.
 struct ScoredMotion {
-  int sequence = 0;
-  std::vector<motion::Vec3> follower;  // [frames, joints], world metres
+  int sequence = 0;        // its index in the data set
+  motion::Poses follower;  // world metres
 };
 
 // Every metric of one motion, in the order of AllMetrics.
@@ -44,9 +45,9 @@ std::vector<double> ScoreMotion(const dataset::Dataset& dataset, const ScoredMot
 std::vector<std::vector<double>> ScoreByClass(const dataset::Dataset& dataset,
                                               const std::vector<ScoredMotion>& motions);
 
-// The captured followers themselves, as what synthesised ones are compared with.
+// The captured followers of sequences of the data set, in the same order.
 std::vector<ScoredMotion> CapturedMotions(const dataset::Dataset& dataset,
-                                          const std::vector<ScoredMotion>& like);
+                                          const std::vector<int>& sequences);
 
 }  // namespace duet::evaluation::metrics
 

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <random>
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
+#include "model/base/random.h"
 
 namespace duet::evaluation::metrics {
 namespace {
@@ -98,12 +98,6 @@ Eigen::MatrixXd Affinities(const Eigen::MatrixXd& squared, double perplexity) {
   return (both / both.sum()).cwiseMax(kLeastAffinity);
 }
 
-// A normal number by Box and Muller: the standard library's differs between libraries.
-double Normal(std::mt19937_64* random) {
-  const auto uniform = [&] { return (static_cast<double>((*random)() >> 11) + 0.5) * 0x1.0p-53; };
-  return std::sqrt(-2 * std::log(uniform())) * std::cos(2 * M_PI * uniform());
-}
-
 // The gradient of the Kullback-Leibler divergence from affinities to the map's Student-t ones.
 Plane Gradient(const Eigen::MatrixXd& affinities, const Plane& map) {
   const Eigen::VectorXd norms = map.rowwise().squaredNorm();
@@ -120,11 +114,11 @@ Plane Gradient(const Eigen::MatrixXd& affinities, const Plane& map) {
 }
 
 Plane Embed(const Eigen::MatrixXd& affinities, double learning_rate, const TsneOptions& options) {
-  std::mt19937_64 random(options.seed);
+  base::Random random(options.seed);
   const Eigen::Index n = affinities.rows();
   Plane map(n, 2), velocity = Plane::Zero(n, 2), gains = Plane::Ones(n, 2);
   for (Eigen::Index i = 0; i < n; ++i) {
-    for (Eigen::Index j = 0; j < 2; ++j) map(i, j) = kStartSpread * Normal(&random);
+    for (Eigen::Index j = 0; j < 2; ++j) map(i, j) = kStartSpread * random.StandardNormal();
   }
   for (int iteration = 0; iteration < options.iterations; ++iteration) {
     const bool early = iteration < kExaggeratedIterations;

@@ -6,14 +6,16 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
-#include "model/evaluation/experiments/experiment.h"
-#include "model/evaluation/experiments/half.h"
+#include "model/evaluation/experiments/data_half.h"
+#include "model/evaluation/experiments/synthesize_jobs.h"
+#include "model/evaluation/experiments/synthetic_plan.h"
 #include "model/evaluation/judge/classifier.h"
 #include "model/evaluation/program/commands.h"
 #include "model/evaluation/program/fold_models.h"
 #include "model/evaluation/report/metric_tables.h"
 #include "model/evaluation/report/paper_tables.h"
 #include "model/evaluation/report/result_section.h"
+#include "model/evaluation/report/trial_tables.h"
 
 namespace duet::evaluation::program {
 namespace {
@@ -99,11 +101,13 @@ report::ResultSection MakeSection(const dataset::Dataset& dataset, const Argumen
       "Rows take equally many training steps, since longer training alone moves the accuracy; "
       "\"longer\" rows take the steps that the larger set needs for as many epochs. \"Synthetic "
       "alone\" never sees a captured follower."};
-  report::Table means = trials.Means("Accuracy on captured followers, mean over the trials");
+  report::Table means =
+      report::MeansTable("Accuracy on captured followers, mean over the trials", trials);
   AddPrintedRows(report::PaperAugmentation(), &means);
-  section.tables = {
-      std::move(means), trials.Deviations("Accuracy, standard deviation over the trials"),
-      trials.Gains(experiments::kCapturedRow, "Gain over captured followers alone, paired")};
+  section.tables = {std::move(means),
+                    report::DeviationsTable("Accuracy, standard deviation over the trials", trials),
+                    report::GainsTable("Gain over captured followers alone, paired", trials,
+                                       experiments::kCapturedRow)};
   section.settings = {
       {"data", dataset.name},
       {"halves (seeds)", absl::StrJoin(arguments.seeds, ", ")},

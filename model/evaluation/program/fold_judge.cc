@@ -6,11 +6,13 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "model/evaluation/metrics/scores.h"
 
 namespace duet::evaluation::program {
 namespace {
 
-// One network's verdict on a person it has never seen depends on its seed.
+// What one network makes of a person whom it has never seen depends on its seed: several are
+// averaged.
 constexpr int64_t kMembers = 4;
 
 }  // namespace
@@ -23,15 +25,6 @@ absl::StatusOr<std::vector<std::string>> FoldSubjects(const dataset::Dataset& da
       absl::StrCat(dataset.name, ": no subjects, wanted sequences that name theirs"));
 }
 
-std::vector<metrics::ScoredMotion> CapturedFollowers(const dataset::Dataset& dataset,
-                                                     const std::vector<int>& sequences) {
-  std::vector<metrics::ScoredMotion> motions;
-  for (const int i : sequences) {
-    motions.push_back({i, dataset.sequences[static_cast<size_t>(i)].pair.follower.positions});
-  }
-  return motions;
-}
-
 absl::StatusOr<judge::MotionClassifier> TrainFoldJudge(const dataset::Dataset& dataset,
                                                        const std::string& subject) {
   absl::StatusOr<dataset::Split> split = LeaveSubjectOut(dataset, subject);
@@ -39,8 +32,8 @@ absl::StatusOr<judge::MotionClassifier> TrainFoldJudge(const dataset::Dataset& d
   judge::ClassifierOptions options;
   options.members = kMembers;
   const auto start = std::chrono::steady_clock::now();
-  absl::StatusOr<judge::MotionClassifier> judge =
-      judge::MotionClassifier::Train(dataset, CapturedFollowers(dataset, split->train), options);
+  absl::StatusOr<judge::MotionClassifier> judge = judge::MotionClassifier::Train(
+      dataset, metrics::CapturedMotions(dataset, split->train), options);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   std::cerr << absl::StrFormat("judge without %s: %d motions, %.1f s\n", subject,
@@ -48,8 +41,9 @@ absl::StatusOr<judge::MotionClassifier> TrainFoldJudge(const dataset::Dataset& d
   return judge;
 }
 
-metrics::JudgedFold Judge(const judge::MotionClassifier& judge, const dataset::Dataset& dataset,
-                          const std::vector<metrics::ScoredMotion>& motions) {
+metrics::JudgedFold JudgeMotions(const judge::MotionClassifier& judge,
+                                 const dataset::Dataset& dataset,
+                                 const std::vector<metrics::ScoredMotion>& motions) {
   metrics::JudgedFold judged;
   for (const metrics::ScoredMotion& motion : motions) {
     const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(motion.sequence)];

@@ -15,18 +15,15 @@ namespace duet::evaluation::program {
 absl::StatusOr<std::vector<std::string>> FoldSubjects(const dataset::Dataset& dataset,
                                                       const std::vector<std::string>& asked);
 
-// The captured followers of sequences of the data set, as a judge is trained on them.
-std::vector<metrics::ScoredMotion> CapturedFollowers(const dataset::Dataset& dataset,
-                                                     const std::vector<int>& sequences);
-
-// A classifier that has seen the captured followers of a fold's training sequences and no others.
-// Tells stderr how long it took. Errors: LeaveSubjectOut's, MotionClassifier::Train's.
+// A fold's judge: it has seen the captured followers of the fold's training sequences and no
+// others. Tells stderr how long it took. Errors: LeaveSubjectOut's, MotionClassifier::Train's.
 absl::StatusOr<judge::MotionClassifier> TrainFoldJudge(const dataset::Dataset& dataset,
                                                        const std::string& subject);
 
-// What a judge makes of motions, each asked to be of its sequence's class.
-metrics::JudgedFold Judge(const judge::MotionClassifier& judge, const dataset::Dataset& dataset,
-                          const std::vector<metrics::ScoredMotion>& motions);
+// What a judge makes of motions, each of which was asked to be of its sequence's class.
+metrics::JudgedFold JudgeMotions(const judge::MotionClassifier& judge,
+                                 const dataset::Dataset& dataset,
+                                 const std::vector<metrics::ScoredMotion>& motions);
 
 }  // namespace duet::evaluation::program
 

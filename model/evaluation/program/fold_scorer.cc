@@ -40,8 +40,8 @@ absl::Status FoldScorer::AddJudge(Fold* fold) const {
   absl::StatusOr<judge::MotionClassifier> judge = TrainFoldJudge(*dataset_, fold->subject);
   if (!judge.ok()) return judge.status();
   fold->judge.push_back(*std::move(judge));
-  fold->captured =
-      Judge(fold->judge.front(), *dataset_, CapturedFollowers(*dataset_, fold->split.test));
+  fold->captured = JudgeMotions(fold->judge.front(), *dataset_,
+                                metrics::CapturedMotions(*dataset_, fold->split.test));
   return absl::OkStatus();
 }
 
@@ -65,7 +65,7 @@ absl::StatusOr<report::MethodFigures> FoldScorer::Score(const std::string& row,
 absl::StatusOr<report::MethodFigures> FoldScorer::ScoreCaptured() const {
   std::vector<protocol::FoldResult> results;
   for (const Fold& fold : folds_) {
-    results.push_back({fold.subject, CapturedFollowers(*dataset_, fold.split.test), 0, 0});
+    results.push_back({fold.subject, metrics::CapturedMotions(*dataset_, fold.split.test), 0, 0});
   }
   absl::StatusOr<report::MethodFigures> figures = Figures("captured", results);
   if (figures.ok()) figures->captured = true;
@@ -79,7 +79,7 @@ absl::StatusOr<report::MethodFigures> FoldScorer::Figures(
   std::vector<metrics::JudgedFold> made, captured;
   for (size_t i = 0; i < folds_.size(); ++i) {
     if (folds_[i].judge.empty()) return figures;
-    made.push_back(Judge(folds_[i].judge.front(), *dataset_, results[i].motions));
+    made.push_back(JudgeMotions(folds_[i].judge.front(), *dataset_, results[i].motions));
     captured.push_back(folds_[i].captured);
   }
   const int classes = dataset_->class_count();

@@ -15,8 +15,8 @@
 
 namespace duet::evaluation::program {
 
-// Leaves one subject out at a time and scores methods against the same folds and judges. Each
-// method answers once; every figure is of the same answers. Tells stderr of each fold.
+// Leaves one subject out at a time and scores every method in the same folds with the same judges.
+// A method answers once, and all its figures are of those answers. Tells stderr of each fold.
 class FoldScorer {
  public:
   // A method for the fold without a subject; its Train is called with the fold's sequences.
@@ -45,7 +45,7 @@ class FoldScorer {
 
   explicit FoldScorer(const dataset::Dataset& dataset) : dataset_(&dataset) {}
   absl::Status AddJudge(Fold* fold) const;
-  // `motions`: [folds], what was answered in each.
+  // Shapes: results [folds], what was answered in each.
   absl::StatusOr<report::MethodFigures> Figures(
       const std::string& row, const std::vector<protocol::FoldResult>& results) const;
 

@@ -11,10 +11,11 @@
 #include "absl/strings/str_join.h"
 #include "model/dataset/dataset.h"
 #include "model/evaluation/experiments/latent.h"
+#include "model/evaluation/experiments/latent_map.h"
 #include "model/evaluation/program/commands.h"
 #include "model/evaluation/program/fold_models.h"
 #include "model/evaluation/program/named_runs.h"
-#include "model/evaluation/report/latent_map.h"
+#include "model/evaluation/report/latent_figures.h"
 #include "model/evaluation/report/result_section.h"
 
 namespace duet::evaluation::program {
@@ -76,13 +77,13 @@ absl::Status AddSpace(const dataset::Dataset& dataset, const FoldCheckpoint& fol
       LatentFeatures(fold.checkpoint, dataset, *clips, labels);
   if (!features.ok()) return features.status();
   const std::vector<int> classes = ClassesOf(dataset, *clips);
-  absl::StatusOr<report::LatentMap> map = report::MapLatent(*features, classes, arguments.tsne);
+  absl::StatusOr<experiments::LatentMap> map =
+      experiments::MapLatent(*features, classes, arguments.tsne);
   if (!map.ok()) return map.status();
   const bool blind = labels == experiments::LatentLabels::kNone;
   const std::string name =
       absl::StrCat(fold.model, blind ? ", label withheld" : "", ", ", fold.subject);
-  section->tables.front().rows.push_back(
-      {name, {map->purity_of_map, map->nearest_neighbour, map->several_neighbours}});
+  section->tables.front().rows.push_back(report::LatentRow(name, *map));
   section->figures.push_back(
       {FigureName(
            absl::StrCat(arguments.id, "_", fold.model, blind ? "_no_label_" : "_", fold.subject)),
@@ -131,12 +132,7 @@ report::ResultSection MakeSection(const dataset::Dataset& dataset,
       "A model with a multi-hot embedding is told the class that colours the point: part of its "
       "order is given, not learnt. The same model with the label vector withheld (all zeros) shows "
       "what it makes of the leader alone."};
-  report::Table table;
-  table.title = "Share of clips whose nearest neighbours are of their class";
-  table.columns = {"1 in the map", "1 in the space",
-                   absl::StrCat(report::kLatentNeighbours, " in the space")};
-  table.decimals = 3;
-  section.tables.push_back(std::move(table));
+  section.tables = {report::LatentTable()};
   section.settings = {{"data", dataset.name},
                       {"left out", absl::StrJoin(subjects, ", ")},
                       {"clips", arguments.clips},

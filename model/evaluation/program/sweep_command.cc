@@ -13,6 +13,7 @@
 #include "model/evaluation/program/models.h"
 #include "model/evaluation/program/named_runs.h"
 #include "model/evaluation/report/result_section.h"
+#include "model/evaluation/report/sweep_figures.h"
 
 namespace duet::evaluation::program {
 namespace {
@@ -47,12 +48,11 @@ absl::Status SweepLeader(const dataset::Dataset& dataset, const SweepFold& fold,
       leaders.push_back({&sequence, experiments::SweepLabels(classes, own, raised, weight)});
     }
   }
-  absl::StatusOr<std::vector<std::vector<motion::Vec3>>> followers =
+  absl::StatusOr<std::vector<motion::Poses>> followers =
       SynthesizeSequences(*fold.model, leaders, start);
   if (!followers.ok()) return followers.status();
   std::vector<metrics::ScoredMotion> motions;
-  for (std::vector<motion::Vec3>& follower : *followers)
-    motions.push_back({index, std::move(follower)});
+  for (motion::Poses& follower : *followers) motions.push_back({index, std::move(follower)});
   const auto probabilities = fold.judge.front().Probabilities(dataset, motions);
   auto row = probabilities.begin();
   for (int raised = 0; raised < classes; ++raised) {
@@ -95,57 +95,16 @@ absl::StatusOr<std::vector<experiments::SweepCurve>> SweepFolds(const dataset::D
   return curves;
 }
 
-// What follows a start's name in titles and captions.
-std::string Told(experiments::StartGiven start) {
+report::SweepNames Names(experiments::StartGiven start) {
   switch (start) {
     case experiments::StartGiven::kNone:
-      return "without a start";
+      return {"without a start", ""};
     case experiments::StartGiven::kRoot:
-      return "given the first root";
+      return {"given the first root", "_root"};
     case experiments::StartGiven::kPose:
-      return "given the first pose";
+      return {"given the first pose", "_pose"};
   }
-  return "";
-}
-
-std::string KindTitle(experiments::SweepKind kind) {
-  return kind == experiments::SweepKind::kOwn ? "Own class alone"
-                                              : "Another class beside the own one";
-}
-
-void AddFigures(const dataset::Dataset& dataset, const std::vector<experiments::SweepCurve>& curves,
-                experiments::SweepKind kind, const std::string& name_end, const std::string& told,
-                report::ResultSection* section) {
-  for (int c = 0; c < dataset.class_count(); ++c) {
-    const std::string& name = dataset.classes[static_cast<size_t>(c)];
-    const report::LinePlot plot = SweepPlot(
-        absl::StrCat(name, kind == experiments::SweepKind::kOwn ? " alone, " : " added, ", told),
-        dataset.classes, curves, kind, c);
-    const std::string caption =
-        kind == experiments::SweepKind::kOwn
-            ? absl::StrCat("Leaders of ", name, " answered with the weight of ", name, " alone, ",
-                           told, ": the judges' mean probability of every class.")
-            : absl::StrCat("Leaders of the other classes answered with their own class at 1 and ",
-                           name, " added, ", told, ": the judges' mean probability of ", name, ".");
-    section->figures.push_back(
-        {absl::StrCat(section->id, kind == experiments::SweepKind::kOwn ? "_own_" : "_added_", name,
-                      name_end),
-         caption, ToSvg(plot)});
-  }
-}
-
-void AddStart(const dataset::Dataset& dataset, const std::vector<experiments::SweepCurve>& curves,
-              experiments::StartGiven start, report::ResultSection* section) {
-  const std::string told = Told(start);
-  const std::string name_end = start == experiments::StartGiven::kNone   ? ""
-                               : start == experiments::StartGiven::kRoot ? "_root"
-                                                                         : "_pose";
-  for (const experiments::SweepKind kind :
-       {experiments::SweepKind::kOwn, experiments::SweepKind::kAdded}) {
-    section->tables.push_back(
-        ControlTable(absl::StrCat(KindTitle(kind), ", ", told), dataset.classes, curves, kind));
-    AddFigures(dataset, curves, kind, name_end, told, section);
-  }
+  return {};
 }
 
 report::ResultSection MakeSection(const dataset::Dataset& dataset, const FoldModel& model,
@@ -198,7 +157,7 @@ absl::Status Run(const Arguments& arguments) {
     absl::StatusOr<std::vector<experiments::SweepCurve>> curves =
         SweepFolds(*dataset, folds, start);
     if (!curves.ok()) return curves.status();
-    AddStart(*dataset, *curves, start, &section);
+    AddSweep(dataset->classes, *curves, Names(start), &section);
   }
   for (const report::Table& table : section.tables) std::cout << ToPlainText(table) << "\n";
   return arguments.out.empty() ? absl::OkStatus() : WriteSection(section, arguments.out);

@@ -1,17 +1,17 @@
 #ifndef DUET_MODEL_EVALUATION_PROTOCOL_METHOD_H_
 #define DUET_MODEL_EVALUATION_PROTOCOL_METHOD_H_
 
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "absl/status/status.h"
+#include "absl/status/statusor.h"
 #include "model/dataset/dataset.h"
+#include "model/motion/poses.h"
 
 namespace duet::evaluation::protocol {
 
-// A way to answer a leader: a row of the paper's Table 1. Each sees only what the protocol gives
-// it.
+// A way to answer a leader: a row of the paper's Table 1.
 class Method {
  public:
   virtual ~Method() = default;
@@ -22,9 +22,10 @@ class Method {
   // Learns from the sequences `train` of the data set.
   virtual absl::Status Train(const dataset::Dataset& dataset, const std::vector<int>& train) = 0;
 
-  // The follower's motion for a test sequence's leader and class: [frames, joints], world metres.
-  // Must not read sequence.pair.follower, except for what reads_first_pose declares.
-  virtual std::vector<motion::Vec3> Predict(const dataset::Sequence& sequence) const = 0;
+  // The follower's motion for a test sequence's leader, class and partner direction, in world
+  // metres. The sequence comes without its follower, or with the follower's first pose alone where
+  // reads_first_pose asks for it. Shapes: returns as many frames as the leader has.
+  virtual absl::StatusOr<motion::Poses> Predict(const dataset::Sequence& sequence) const = 0;
 
   // True for methods that are told the follower's first pose.
   virtual bool reads_first_pose() const { return false; }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
+#include <utility>
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
@@ -14,32 +15,37 @@ double SecondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-// The sequence as a method may see it: all of the follower but its first pose is made unusable, so
-// that a method that peeks fails loudly instead of scoring well.
-dataset::Sequence WithoutAnswer(const dataset::Sequence& sequence, int joints,
-                                bool keep_first_pose) {
+// The sequence as a method may see it: without what it is to answer, so that a method that looks
+// for the answer fails instead of scoring well.
+dataset::Sequence WithoutAnswer(const dataset::Sequence& sequence, bool keep_first_pose) {
   dataset::Sequence hidden = sequence;
-  std::vector<motion::Vec3>& follower = hidden.pair.follower.positions;
-  if (!keep_first_pose) {
-    follower.clear();
-  } else {
-    follower.resize(static_cast<size_t>(joints));
-  }
+  motion::Clip& follower = hidden.pair.follower;
+  follower.positions.resize(keep_first_pose ? static_cast<size_t>(follower.joint_count()) : 0);
   return hidden;
 }
 
-absl::Status CheckAnswer(const Method& method, const dataset::Sequence& sequence,
-                         const std::vector<motion::Vec3>& answer) {
-  const size_t wanted = sequence.pair.leader.positions.size();
-  if (answer.size() != wanted) {
-    return absl::InternalError(absl::StrCat(method.name(), ": ", sequence.id, ": ", answer.size(),
-                                            " positions, wanted ", wanted));
+absl::Status CheckAnswer(const dataset::Sequence& sequence, const motion::Poses& answer) {
+  const motion::Clip& leader = sequence.pair.leader;
+  if (answer.frame_count() != leader.frame_count() ||
+      answer.joint_count() != leader.joint_count()) {
+    return absl::InternalError(absl::StrCat(
+        answer.frame_count(), " frames of ", answer.joint_count(), " joints came, wanted ",
+        leader.frame_count(), " of ", leader.joint_count(), " as the leader has"));
   }
-  if (std::all_of(answer.begin(), answer.end(), [](motion::Vec3 p) { return IsFinite(p); })) {
+  const absl::Span<const motion::Vec3> all = answer.all();
+  if (std::all_of(all.begin(), all.end(), [](motion::Vec3 p) { return IsFinite(p); })) {
     return absl::OkStatus();
   }
-  return absl::InternalError(
-      absl::StrCat(method.name(), ": ", sequence.id, ": not finite, wanted finite positions"));
+  return absl::InternalError("not finite, wanted finite positions");
+}
+
+absl::StatusOr<motion::Poses> Answer(const Method& method, const dataset::Sequence& sequence) {
+  absl::StatusOr<motion::Poses> answer =
+      method.Predict(WithoutAnswer(sequence, method.reads_first_pose()));
+  const absl::Status status = answer.ok() ? CheckAnswer(sequence, *answer) : answer.status();
+  if (status.ok()) return answer;
+  return absl::Status(status.code(),
+                      absl::StrCat(method.name(), ": ", sequence.id, ": ", status.message()));
 }
 
 }  // namespace
@@ -55,12 +61,9 @@ absl::StatusOr<FoldResult> RunFold(const dataset::Dataset& dataset, const datase
   start = std::chrono::steady_clock::now();
   for (const int i : split.test) {
     const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(i)];
-    metrics::ScoredMotion motion = {
-        i, method->Predict(WithoutAnswer(sequence, dataset.skeleton.joint_count(),
-                                         method->reads_first_pose()))};
-    status = CheckAnswer(*method, sequence, motion.follower);
-    if (!status.ok()) return status;
-    result.motions.push_back(std::move(motion));
+    absl::StatusOr<motion::Poses> answer = Answer(*method, sequence);
+    if (!answer.ok()) return answer.status();
+    result.motions.push_back({i, *std::move(answer)});
   }
   result.predict_seconds = SecondsSince(start);
   return result;

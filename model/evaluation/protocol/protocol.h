@@ -20,17 +20,17 @@ struct FoldResult {
   double predict_seconds = 0;
 };
 
-// Trains and tests once: the method sees nothing of the test sequences but their leaders and
-// classes (and first poses, for methods that declare it: every later frame of the follower is
-// replaced before Predict sees the sequence).
-// Errors: Train's; INTERNAL naming method and sequence when an answer has the wrong size or is not
-// finite.
+// Trains a method and lets it answer the test sequences. Of these, the method sees the leader, the
+// class and the partner's direction; the follower is removed before Predict, all but its first pose
+// for methods that ask for that.
+// Errors: Train's; Predict's with the method's and the sequence's name in front; INTERNAL naming
+// both when an answer has the wrong size or is not finite.
 absl::StatusOr<FoldResult> RunFold(const dataset::Dataset& dataset, const dataset::Split& split,
                                    const std::string& subject, Method* method);
 
 // Leave one subject out, over `subjects` (empty: all of the data set). A sequence of two subjects
-// is tested in both their folds, and counts in both. `done` (optional) hears of each fold. Source:
-// paper section 4 and the data set's customary protocol.
+// is tested in both their folds, and counts in both. `done`, if given, is called after each fold.
+// Source: paper section 4 and the data set's customary protocol.
 absl::StatusOr<std::vector<FoldResult>> RunLeaveOneSubjectOut(
     const dataset::Dataset& dataset, std::vector<std::string> subjects, Method* method,
     const std::function<void(const FoldResult&)>& done = nullptr);

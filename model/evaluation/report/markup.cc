@@ -47,4 +47,14 @@ std::string EscapeMarkup(const std::string& text) {
   return out;
 }
 
+std::string EscapeCsv(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"') out += '"';
+    out += c;
+  }
+  return out + '"';
+}
+
 }  // namespace duet::evaluation::report

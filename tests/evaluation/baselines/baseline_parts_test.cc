@@ -192,10 +192,12 @@ TEST(MotionMatrixTest, TheWorldComesBack) {
   const dataset::Dataset dataset = MadeUpPairs(3);
   const dataset::Sequence& sequence = dataset.sequences[2];
   const StandardPair pair = StandardiseSequence(dataset.skeleton, sequence);
-  const std::vector<motion::Vec3> world =
-      FollowerToWorld(dataset.skeleton, sequence, pair.follower);
-  for (size_t i = 0; i < world.size(); ++i) {
-    EXPECT_LT(Distance(world[i], sequence.pair.follower.positions[i]), 1e-5);
+  const motion::Poses world = FollowerToWorld(dataset.skeleton, sequence, pair.follower);
+  ASSERT_EQ(world.frame_count(), sequence.pair.follower.frame_count());
+  for (int t = 0; t < world.frame_count(); ++t) {
+    for (int j = 0; j < world.joint_count(); ++j) {
+      EXPECT_LT(Distance(world.at(t, j), sequence.pair.follower.at(t, j)), 1e-5);
+    }
   }
 }
 

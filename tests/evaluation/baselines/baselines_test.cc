@@ -64,7 +64,7 @@ TEST(BaselinesTest, TheFirstPoseFrozenIsRightWhereNothingMoved) {
   // The made-up leader's root never moves: the answer stands still in the world.
   for (int t : {0, 7, truth.frame_count() - 1}) {
     for (int j = 0; j < 15; ++j) {
-      EXPECT_LT(Distance(motion.follower[static_cast<size_t>(t * 15 + j)], truth.at(0, j)), 1e-5);
+      EXPECT_LT(Distance(motion.follower.at(t, j), truth.at(0, j)), 1e-5);
     }
   }
 }

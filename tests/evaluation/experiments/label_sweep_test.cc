@@ -4,26 +4,16 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
+
+#include "tests/evaluation/support/sweep_curve.h"
 
 namespace duet::evaluation::experiments {
 namespace {
 
-using ::testing::DoubleNear;
+using test::MakeSweepCurve;
+
 using ::testing::ElementsAre;
 using ::testing::SizeIs;
-
-// A curve of two classes whose raised class has a probability that is a function of its weight.
-SweepCurve Curve(int own, int raised, const std::function<double(double)>& probability) {
-  SweepCurve curve{own, raised, {}};
-  for (const double weight : SweepWeights()) {
-    const float p = static_cast<float>(probability(weight));
-    std::vector<float> both(2, 1 - p);
-    both[static_cast<size_t>(raised)] = p;
-    curve.probabilities.push_back(both);
-  }
-  return curve;
-}
 
 double Rising(double weight) { return 0.4 + 0.2 * weight; }
 double Falling(double weight) { return 0.4 - 0.2 * weight; }
@@ -45,7 +35,7 @@ TEST(SweepLabels, OwnClassAloneOrBesideAnother) {
 }
 
 TEST(MeasureControl, OfACurveThatFollowsItsWeight) {
-  const LabelControl control = MeasureControl({Curve(0, 0, Rising)});
+  const LabelControl control = MeasureControl({MakeSweepCurve(0, 0, Rising)});
   EXPECT_EQ(control.raised_up, 1);
   EXPECT_EQ(control.lowered_down, 1);
   EXPECT_EQ(control.steps_up, 1);
@@ -54,25 +44,26 @@ TEST(MeasureControl, OfACurveThatFollowsItsWeight) {
 }
 
 TEST(MeasureControl, OfACurveThatGoesTheWrongWay) {
-  const LabelControl control = MeasureControl({Curve(0, 0, Falling)});
+  const LabelControl control = MeasureControl({MakeSweepCurve(0, 0, Falling)});
   EXPECT_EQ(control.raised_up + control.lowered_down + control.steps_up, 0);
   EXPECT_EQ(control.raised_level + control.lowered_level + control.steps_level, 0);
   EXPECT_NEAR(control.rank_correlation, -1, 1e-12);
 }
 
 TEST(MeasureControl, CountsLevelApart) {
-  const LabelControl control = MeasureControl({Curve(0, 0, Level)});
+  const LabelControl control = MeasureControl({MakeSweepCurve(0, 0, Level)});
   EXPECT_EQ(control.raised_up + control.lowered_down + control.steps_up, 0);
   EXPECT_EQ(control.raised_level, 1);
   EXPECT_EQ(control.lowered_level, 1);
   EXPECT_EQ(control.steps_level, 1);
   EXPECT_EQ(control.rank_correlation, 0);
   const auto barely = [](double weight) { return 0.5 + 0.0009 * weight; };
-  EXPECT_EQ(MeasureControl({Curve(0, 0, barely)}).raised_level, 1);
+  EXPECT_EQ(MeasureControl({MakeSweepCurve(0, 0, barely)}).raised_level, 1);
 }
 
 TEST(MeasureControl, AveragesCurvesAndSteps) {
-  const LabelControl control = MeasureControl({Curve(0, 0, Late), Curve(0, 0, Rising)});
+  const LabelControl control =
+      MeasureControl({MakeSweepCurve(0, 0, Late), MakeSweepCurve(0, 0, Rising)});
   EXPECT_EQ(control.raised_up, 1);
   EXPECT_EQ(control.lowered_down, 0.5);
   EXPECT_EQ(control.lowered_level, 0.5);
@@ -88,36 +79,24 @@ TEST(RankCorrelation, SharesTheRanksOfTies) {
   EXPECT_EQ(RankCorrelation({1, 2, 3}, {7, 7, 7}), 0);
 }
 
-TEST(ControlTable, HasARowForEachRaisedClass) {
-  const std::vector<SweepCurve> curves = {Curve(0, 0, Rising), Curve(1, 1, Falling),
-                                          Curve(1, 0, Falling)};
-  const report::Table own = ControlTable("own", {"a", "b"}, curves, SweepKind::kOwn);
-  ASSERT_THAT(own.rows, SizeIs(3));
-  EXPECT_EQ(own.rows[0].values.front(), 1);
-  EXPECT_EQ(own.rows[1].values.front(), 0);
-  EXPECT_EQ(own.rows[2].name, "all");
-  EXPECT_EQ(own.rows[2].values.front(), 0.5);
-  const report::Table added = ControlTable("added", {"a", "b"}, curves, SweepKind::kAdded);
-  EXPECT_EQ(added.rows[0].values.front(), 0);
-  EXPECT_TRUE(std::isnan(added.rows[1].values.front()));
+TEST(SelectCurves, ByKindAndClass) {
+  const std::vector<SweepCurve> curves = {
+      MakeSweepCurve(0, 0, Rising), MakeSweepCurve(1, 0, Rising), MakeSweepCurve(1, 1, Rising),
+      MakeSweepCurve(0, 1, Rising)};
+  const auto own = Select(curves, SweepKind::kOwn, 0), added = Select(curves, SweepKind::kAdded, 0);
+  ASSERT_THAT(own, SizeIs(1));
+  EXPECT_EQ(own[0].own, 0);
+  ASSERT_THAT(added, SizeIs(1));
+  EXPECT_EQ(added[0].own, 1);
+  EXPECT_THAT(SelectOwn(curves, 1), SizeIs(2));
 }
 
-TEST(SweepPlot, DrawsTheMeanOfEveryClassAgainstTheOwnWeight) {
-  const std::vector<SweepCurve> curves = {Curve(0, 0, Rising), Curve(0, 0, Level),
-                                          Curve(1, 0, Falling)};
-  const report::LinePlot plot = SweepPlot("t", {"a", "b"}, curves, SweepKind::kOwn, 0);
-  ASSERT_THAT(plot.series, SizeIs(2));
-  EXPECT_EQ(plot.series[0].name, "a");
-  EXPECT_THAT(plot.series[0].points.back(), ElementsAre(2, DoubleNear((0.8 + 0.5) / 2, 1e-6)));
-  EXPECT_THAT(plot.series[1].points.back(), ElementsAre(2, DoubleNear((0.2 + 0.5) / 2, 1e-6)));
-}
-
-TEST(SweepPlot, DrawsTheAddedClassForEachOwnOne) {
-  const std::vector<SweepCurve> curves = {Curve(0, 0, Level), Curve(1, 0, Falling)};
-  const report::LinePlot plot = SweepPlot("t", {"a", "b"}, curves, SweepKind::kAdded, 0);
-  ASSERT_THAT(plot.series, SizeIs(1));
-  EXPECT_EQ(plot.series[0].name, "beside b");
-  EXPECT_THAT(plot.series[0].points.front(), ElementsAre(-1, DoubleNear(0.6, 1e-6)));
+TEST(MeanProbabilities, AreOfOneClassOverAllCurves) {
+  const std::vector<double> means =
+      MeanProbabilities({MakeSweepCurve(0, 0, Rising), MakeSweepCurve(0, 0, Level)}, 0);
+  ASSERT_THAT(means, SizeIs(SweepWeights().size()));
+  EXPECT_NEAR(means.back(), (0.8 + 0.5) / 2, 1e-6);
+  EXPECT_NEAR(MeanProbabilities({MakeSweepCurve(0, 0, Rising)}, 1).back(), 0.2, 1e-6);
 }
 
 }  // namespace

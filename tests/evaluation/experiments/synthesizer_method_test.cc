@@ -4,9 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <memory>
 
+#include "model/evaluation/metrics/clip_poses.h"
+#include "model/evaluation/protocol/protocol.h"
 #include "tests/evaluation/support/made_up_pairs.h"
 #include "tests/support/fake_synthesizer.h"
+#include "tests/support/status_matchers.h"
 
 namespace duet::evaluation::experiments {
 namespace {
@@ -14,8 +18,10 @@ namespace {
 using test::FakeAnswer;
 using test::FakeSynthesizer;
 using test::MadeUpPairs;
+using test::StatusIs;
 
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
 // A leader that takes several windows of the model's.
@@ -44,11 +50,13 @@ TEST(SynthesizeSequences, AnswersClipsOfAnyLengthTogether) {
   EXPECT_THAT(batches, ElementsAre(3, 1));
   ASSERT_THAT(*followers, SizeIs(3));
   for (size_t i = 0; i < leaders.size(); ++i) {
-    const std::vector<motion::Vec3>& leader = leaders[i].sequence->pair.leader.positions;
-    ASSERT_EQ((*followers)[i].size(), leader.size());
-    for (size_t p = 0; p < leader.size(); ++p) {
-      const motion::Vec3 wanted = FakeAnswer(leader[p], leaders[i].labels);
-      ASSERT_NEAR(Norm((*followers)[i][p] - wanted), 0, 1e-4) << i << ", " << p;
+    const motion::Poses leader = metrics::PosesOf(leaders[i].sequence->pair.leader);
+    const motion::Poses& follower = (*followers)[i];
+    ASSERT_EQ(follower.frame_count(), leader.frame_count());
+    ASSERT_EQ(follower.joint_count(), leader.joint_count());
+    for (size_t p = 0; p < leader.all().size(); ++p) {
+      const motion::Vec3 wanted = FakeAnswer(leader.all()[p], leaders[i].labels);
+      ASSERT_NEAR(Norm(follower.all()[p] - wanted), 0, 1e-4) << i << ", " << p;
     }
   }
 }
@@ -63,6 +71,24 @@ TEST(SynthesizeSequences, PassesAFailureOn) {
                                                {&dataset.sequences[0], {0, 1, 0, 0, 0, 0}}};
   EXPECT_TRUE(absl::IsInternal(SynthesizeSequences(model, leaders, StartGiven::kNone).status()));
   EXPECT_TRUE(SynthesizeSequences(model, {leaders.data(), 1}, StartGiven::kNone).ok());
+}
+
+// A fold says what failed and on which sequence, instead of that an answer is empty.
+TEST(SynthesizerMethodTest, AFoldReportsTheFailureOfTheNetwork) {
+  const dataset::Dataset dataset = MadeUpPairs(3);
+  engine::ModelDescription description;
+  description.skeleton = dataset.skeleton;
+  description.classes = dataset.classes;
+  description.frame_rate_hz = dataset.frame_rate_hz;
+  description.window_frames = dataset.LongestFrameCount();
+  const auto model = std::make_shared<FakeSynthesizer>(description);
+  model->window_status = [](const engine::SynthesisWindow& window) {
+    return window.labels[1] > 0 ? absl::ResourceExhaustedError("no memory") : absl::OkStatus();
+  };
+  SynthesizerMethod method("ours", model, StartGiven::kNone);
+  EXPECT_THAT(RunFold(dataset, {{1, 2}, {0, 3}}, "a", &method),
+              StatusIs(absl::StatusCode::kResourceExhausted, HasSubstr("ours: 1/0: no memory")));
+  EXPECT_TRUE(RunFold(dataset, {{1, 2}, {0}}, "a", &method).ok());
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "absl/strings/str_replace.h"
+#include "model/evaluation/experiments/synthetic_plan.h"
 #include "model/formats/motion_file.h"
 #include "tests/evaluation/support/made_up_pairs.h"
 #include "tests/support/status_matchers.h"

@@ -29,29 +29,31 @@ Trials ThreeTrials() {
   return trials;
 }
 
-TEST(TrialsTest, TablesKeepTheRowsInOrder) {
-  const report::Table means = ThreeTrials().Means("means");
-  ASSERT_EQ(means.rows.size(), 2u);
-  EXPECT_EQ(means.rows[0].name, "real");
-  EXPECT_DOUBLE_EQ(means.rows[0].values[0], 0.7);
-  EXPECT_DOUBLE_EQ(means.rows[1].values[1], 0.6);
-  EXPECT_DOUBLE_EQ(ThreeTrials().Deviations("deviations").rows[0].values[1], 0.2);
+TEST(TrialsTest, SummariesKeepTheRowsInOrder) {
+  const std::vector<TrialSummary> summaries = ThreeTrials().Summaries();
+  ASSERT_EQ(summaries.size(), 2u);
+  EXPECT_EQ(summaries[0].row, "real");
+  EXPECT_DOUBLE_EQ(summaries[0].means[0], 0.7);
+  EXPECT_DOUBLE_EQ(summaries[0].deviations[1], 0.2);
+  EXPECT_EQ(summaries[0].above_zero[0], 1);
+  EXPECT_EQ(summaries[1].row, "more");
+  EXPECT_DOUBLE_EQ(summaries[1].means[1], 0.6);
 }
 
 TEST(TrialsTest, GainsArePairedOverCommonTrials) {
-  const report::Table gains = ThreeTrials().Gains("real", "gains");
-  ASSERT_EQ(gains.rows.size(), 3u);
-  EXPECT_EQ(gains.rows[0].name, "more");
-  EXPECT_NEAR(gains.rows[0].values[0], 0.1, 1e-12);   // .1 and .1
-  EXPECT_NEAR(gains.rows[1].values[0], 0, 1e-12);     // no spread
-  EXPECT_EQ(gains.rows[2].values[0], 1);              // always above
-  EXPECT_NEAR(gains.rows[0].values[1], -0.2, 1e-12);  // -.1 and -.3
-  EXPECT_NEAR(gains.rows[1].values[1], std::sqrt(0.02), 1e-12);
-  EXPECT_EQ(gains.rows[2].values[1], 0);
+  const std::vector<TrialSummary> gains = ThreeTrials().Gains("real");
+  ASSERT_EQ(gains.size(), 1u);
+  EXPECT_EQ(gains[0].row, "more");
+  EXPECT_NEAR(gains[0].means[0], 0.1, 1e-12);     // .1 and .1
+  EXPECT_NEAR(gains[0].deviations[0], 0, 1e-12);  // no spread
+  EXPECT_EQ(gains[0].above_zero[0], 1);           // always above
+  EXPECT_NEAR(gains[0].means[1], -0.2, 1e-12);    // -.1 and -.3
+  EXPECT_NEAR(gains[0].deviations[1], std::sqrt(0.02), 1e-12);
+  EXPECT_EQ(gains[0].above_zero[1], 0);
 }
 
 TEST(TrialsTest, GainsWithoutTheBaseAreEmpty) {
-  EXPECT_TRUE(ThreeTrials().Gains("nothing", "gains").rows.empty());
+  EXPECT_TRUE(ThreeTrials().Gains("nothing").empty());
 }
 
 }  // namespace

@@ -27,13 +27,13 @@ ClassifierOptions Small() {
 
 // The captured followers of subject "c", or of all others.
 std::vector<metrics::ScoredMotion> Followers(const dataset::Dataset& dataset, bool of_c) {
-  std::vector<metrics::ScoredMotion> motions;
+  std::vector<int> chosen;
   for (size_t i = 0; i < dataset.sequences.size(); ++i) {
-    const dataset::Sequence& sequence = dataset.sequences[i];
-    if ((sequence.subjects.front() == "c") != of_c) continue;
-    motions.push_back({static_cast<int>(i), sequence.pair.follower.positions});
+    if ((dataset.sequences[i].subjects.front() == "c") == of_c) {
+      chosen.push_back(static_cast<int>(i));
+    }
   }
-  return motions;
+  return CapturedMotions(dataset, chosen);
 }
 
 MotionClassifier Trained(const dataset::Dataset& dataset, const ClassifierOptions& options) {

@@ -20,50 +20,88 @@ motion::Skeleton Stilts() {
 
 TEST(BoneLengthDriftTest, IsTheCoefficientOfVariationOfEachBone) {
   // The left bone has lengths 1 and 3 (mean 2, deviation 1), the right one keeps its 2.
-  const std::vector<motion::Vec3> positions = {{0, 0, 0}, {1, 0, 0}, {0, 2, 0},
-                                               {5, 0, 0}, {8, 0, 0}, {5, 0, 2}};
-  EXPECT_NEAR(BoneLengthDrift(positions, Stilts()), (0.5 + 0) / 2, 1e-6);
+  const motion::Poses poses(3, {{0, 0, 0},
+                                {1, 0, 0},
+                                {0, 2, 0},  //
+                                {5, 0, 0},
+                                {8, 0, 0},
+                                {5, 0, 2}});
+  EXPECT_NEAR(BoneLengthDrift(poses, Stilts()), (0.5 + 0) / 2, 1e-6);
 }
 
 TEST(BoneLengthDriftTest, ToleratesACollapsedBone) {
-  const std::vector<motion::Vec3> positions(6, motion::Vec3{1, 1, 1});
-  EXPECT_EQ(BoneLengthDrift(positions, Stilts()), 0);
+  EXPECT_EQ(BoneLengthDrift(motion::Poses(2, 3), Stilts()), 0);
 }
 
 TEST(JitterTest, IsTheThirdDifferenceTimesRateCubed) {
   // t^3 / 6 has the third difference 1; constant acceleration has none.
-  std::vector<motion::Vec3> cubic, parabola;
+  motion::Poses cubic(8, 1), parabola(8, 1), both(8, 2);
   for (int t = 0; t < 8; ++t) {
     const float s = static_cast<float>(t);
-    cubic.push_back({s * s * s / 6, 0, 0});
-    parabola.push_back({s, 3 * s * s, -s});
+    both.at(t, 0) = cubic.at(t, 0) = {s * s * s / 6, 0, 0};
+    both.at(t, 1) = parabola.at(t, 0) = {s, 3 * s * s, -s};
   }
-  EXPECT_NEAR(Jitter(cubic, 1, 2), 8, 1e-4);
-  EXPECT_NEAR(Jitter(parabola, 1, 2), 0, 1e-4);
-  EXPECT_EQ(Jitter({{0, 0, 0}, {1, 0, 0}, {0, 0, 0}}, 1, 2), 0);
+  EXPECT_NEAR(Jitter(cubic, 2), 8, 1e-4);
+  EXPECT_NEAR(Jitter(parabola, 2), 0, 1e-4);
+  EXPECT_NEAR(Jitter(both, 2), 4, 1e-4);
+  EXPECT_EQ(Jitter(motion::Poses(1, {{0, 0, 0}, {1, 0, 0}, {0, 0, 0}}), 2), 0);
 }
 
 TEST(FootSlideTest, CountsFastStepsOfFeetOnTheFloor) {
   // At 10 Hz. Left: a step of 10 cm (1 m/s, skating), then one of 1 cm. Right: at 0.5 m, never
   // down.
-  const std::vector<motion::Vec3> positions = {
-      {0, 1, 0}, {0, 0, 0},        {0, 0.5f, 0},  //
-      {0, 1, 0}, {0.1f, 0.04f, 0}, {1, 0.5f, 0},  //
-      {0, 1, 0}, {0.1f, 0, 0.01f}, {2, 0.5f, 0},
-  };
-  const FootSlide slide = MeasureFootSlide(positions, Stilts(), 10);
+  const motion::Poses poses(3, {
+                                   {0, 1, 0},
+                                   {0, 0, 0},
+                                   {0, 0.5f, 0},  //
+                                   {0, 1, 0},
+                                   {0.1f, 0.04f, 0},
+                                   {1, 0.5f, 0},  //
+                                   {0, 1, 0},
+                                   {0.1f, 0, 0.01f},
+                                   {2, 0.5f, 0},
+                               });
+  const FootSlide slide = MeasureFootSlide(poses, Stilts(), 10);
   EXPECT_DOUBLE_EQ(slide.skating_ratio, 0.5);
   EXPECT_NEAR(slide.centimetres_a_frame, (10 + 1) / 2.0, 1e-4);
 }
 
 TEST(FootSlideTest, IgnoresLiftedFeetAndVerticalMovement) {
-  const std::vector<motion::Vec3> lifted = {{0, 1, 0}, {0, 0, 0},     {0, 0.3f, 0},
-                                            {0, 1, 0}, {1, 0.06f, 0}, {1, 0.3f, 0}};
+  const motion::Poses lifted(3, {{0, 1, 0},
+                                 {0, 0, 0},
+                                 {0, 0.3f, 0},  //
+                                 {0, 1, 0},
+                                 {1, 0.06f, 0},
+                                 {1, 0.3f, 0}});
   EXPECT_EQ(MeasureFootSlide(lifted, Stilts(), 10).skating_ratio, 0);
   EXPECT_EQ(MeasureFootSlide(lifted, Stilts(), 10).centimetres_a_frame, 0);
-  const std::vector<motion::Vec3> stamped = {{0, 1, 0}, {0, 0.04f, 0}, {0, 0.3f, 0},
-                                             {0, 1, 0}, {0, 0, 0},     {0, 0.3f, 0}};
+  const motion::Poses stamped(3, {{0, 1, 0},
+                                  {0, 0.04f, 0},
+                                  {0, 0.3f, 0},  //
+                                  {0, 1, 0},
+                                  {0, 0, 0},
+                                  {0, 0.3f, 0}});
   EXPECT_EQ(MeasureFootSlide(stamped, Stilts(), 100).centimetres_a_frame, 0);
+}
+
+// The height of either end alone does not tell: a foot that steps off or lands has swung.
+TEST(FootSlideTest, CountsAStepOnlyWithTheFootOnTheFloorAtBothEnds) {
+  const motion::Poses landing(3, {{0, 1, 0},
+                                  {0, 0.3f, 0},
+                                  {0, 0, 0},  //
+                                  {0, 1, 0},
+                                  {1, 0, 0},
+                                  {0, 0, 0}});
+  const motion::Poses leaving(3, {{0, 1, 0},
+                                  {0, 0, 0},
+                                  {0, 0, 0},  //
+                                  {0, 1, 0},
+                                  {1, 0.3f, 0},
+                                  {0, 0, 0}});
+  for (const motion::Poses& poses : {landing, leaving}) {
+    EXPECT_EQ(MeasureFootSlide(poses, Stilts(), 10).skating_ratio, 0);
+    EXPECT_EQ(MeasureFootSlide(poses, Stilts(), 10).centimetres_a_frame, 0);
+  }
 }
 
 }  // namespace

@@ -68,10 +68,10 @@ TEST(PenetrationTest, MeasuresDepthAndFrequency) {
   skeleton.parts = {{"left_arm", {0, 1}}};
   // Parallel bones (radius 0.045 each) at 1 m, 0.05 m, 0.08 m and exactly touching at 0.09 m or
   // more.
-  std::vector<motion::Vec3> leader, follower;
+  motion::Poses leader(0, 2), follower(0, 2);
   for (const float distance : {1.0f, 0.05f, 0.08f, 0.1f}) {
-    leader.insert(leader.end(), {{0, 0, 0}, {0, 1, 0}});
-    follower.insert(follower.end(), {{distance, 0, 0}, {distance, 1, 0}});
+    leader.Append({{0, 0, 0}, {0, 1, 0}});
+    follower.Append({{distance, 0, 0}, {distance, 1, 0}});
   }
   const Penetration penetration = MeasurePenetration(leader, follower, skeleton);
   EXPECT_DOUBLE_EQ(penetration.frequency, 0.5);
@@ -80,8 +80,8 @@ TEST(PenetrationTest, MeasuresDepthAndFrequency) {
 }
 
 TEST(PenetrationTest, IsZeroForBodiesApart) {
-  const std::vector<motion::Vec3> leader(15, motion::Vec3{0, 0, 0}),
-      follower(15, motion::Vec3{1, 0, 0});
+  const motion::Poses leader(15, std::vector<motion::Vec3>(15, {0, 0, 0}));
+  const motion::Poses follower(15, std::vector<motion::Vec3>(15, {1, 0, 0}));
   const Penetration penetration = MeasurePenetration(leader, follower, motion::SbuSkeleton());
   EXPECT_EQ(penetration.frequency, 0);
   EXPECT_EQ(penetration.mean_depth_metres, 0);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "model/evaluation/metrics/clip_poses.h"
 #include "tests/evaluation/support/made_up_pairs.h"
 
 namespace duet::evaluation::metrics {
@@ -29,7 +30,7 @@ TEST(ScoresTest, EveryMetricHasItsName) {
 
 TEST(ScoresTest, TheCapturedFollowerHasNoErrors) {
   const dataset::Dataset dataset = MadeUpPairs(1);
-  const ScoredMotion captured = {0, dataset.sequences[0].pair.follower.positions};
+  const ScoredMotion captured = CapturedMotions(dataset, {0}).front();
   const std::vector<double> scores = ScoreMotion(dataset, captured);
   ASSERT_EQ(scores.size(), AllMetrics().size());
   for (const char* error : {"afd", "afd_squared", "afd_m", "root_aligned_afd", "velocity_error"}) {
@@ -40,9 +41,9 @@ TEST(ScoresTest, TheCapturedFollowerHasNoErrors) {
 
 TEST(ScoresTest, EachColumnHoldsItsOwnMetric) {
   const dataset::Dataset dataset = MadeUpPairs(1);
-  ScoredMotion moved = {0, dataset.sequences[0].pair.follower.positions};
+  ScoredMotion moved = CapturedMotions(dataset, {0}).front();
   // Everyone 1.28 m along z: one raw unit, for each of 15 joints.
-  for (motion::Vec3& p : moved.follower) p.z += 1.28f;
+  for (motion::Vec3& p : moved.follower.all()) p.z += 1.28f;
   const std::vector<double> scores = ScoreMotion(dataset, moved);
   EXPECT_NEAR(scores[ColumnOf("afd")], std::sqrt(15), 1e-4);
   EXPECT_NEAR(scores[ColumnOf("afd_squared")], 15, 1e-3);
@@ -55,11 +56,8 @@ TEST(ScoresTest, EachColumnHoldsItsOwnMetric) {
 
 TEST(ScoresTest, AveragesOverTheMotionsOfAClass) {
   const dataset::Dataset dataset = MadeUpPairs(2);
-  std::vector<ScoredMotion> motions;
-  for (const int i : {0, 1}) {
-    motions.push_back({i, dataset.sequences[static_cast<size_t>(i)].pair.follower.positions});
-  }
-  for (motion::Vec3& p : motions[1].follower) p.z += 1.28f;
+  std::vector<ScoredMotion> motions = CapturedMotions(dataset, {0, 1});
+  for (motion::Vec3& p : motions[1].follower.all()) p.z += 1.28f;
   const auto by_class = ScoreByClass(dataset, motions);
   EXPECT_NEAR(by_class[0][ColumnOf("afd_squared")], 7.5, 1e-3);
   EXPECT_TRUE(std::isnan(by_class[1][ColumnOf("afd_squared")]));
@@ -67,26 +65,23 @@ TEST(ScoresTest, AveragesOverTheMotionsOfAClass) {
 
 TEST(ScoresTest, DepthIsAveragedOverPenetratingMotionsAlone) {
   const dataset::Dataset dataset = MadeUpPairs(2);
-  std::vector<ScoredMotion> motions;
-  for (const int i : {0, 1}) {
-    motions.push_back({i, dataset.sequences[static_cast<size_t>(i)].pair.follower.positions});
-  }
+  std::vector<ScoredMotion> motions = CapturedMotions(dataset, {0, 1});
   const size_t frequency = ColumnOf("penetration_frequency");
   const size_t depth = ColumnOf("penetration_depth_m");
   EXPECT_EQ(ScoreByClass(dataset, motions)[0][frequency], 0);
   EXPECT_TRUE(std::isnan(ScoreByClass(dataset, motions)[0][depth]));
   // On the leader's very spot: the trunks' capsules overlap by both radii.
-  motions[0].follower = dataset.sequences[0].pair.leader.positions;
+  motions[0].follower = PosesOf(dataset.sequences[0].pair.leader);
   EXPECT_NEAR(ScoreByClass(dataset, motions)[0][frequency], 0.5, 1e-6);
   EXPECT_NEAR(ScoreByClass(dataset, motions)[0][depth], 0.22, 1e-6);
 }
 
 TEST(ScoresTest, CapturedMotionsAnswerTheSameSequences) {
   const dataset::Dataset dataset = MadeUpPairs(2);
-  const std::vector<ScoredMotion> captured = CapturedMotions(dataset, {{3, {}}, {1, {}}, {3, {}}});
+  const std::vector<ScoredMotion> captured = CapturedMotions(dataset, {3, 1, 3});
   ASSERT_EQ(captured.size(), 3u);
   EXPECT_EQ(captured[2].sequence, 3);
-  EXPECT_EQ(captured[1].follower, dataset.sequences[1].pair.follower.positions);
+  EXPECT_EQ(captured[1].follower, PosesOf(dataset.sequences[1].pair.follower));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "model/evaluation/baselines/baselines.h"
+#include "model/evaluation/metrics/clip_poses.h"
 #include "model/evaluation/program/named_runs.h"
 #include "tests/evaluation/support/made_up_pairs.h"
 
@@ -26,11 +27,11 @@ class Oracle : public protocol::Method {
   absl::Status Train(const dataset::Dataset&, const std::vector<int>&) override {
     return absl::OkStatus();
   }
-  std::vector<motion::Vec3> Predict(const dataset::Sequence& asked) const override {
+  absl::StatusOr<motion::Poses> Predict(const dataset::Sequence& asked) const override {
     for (const dataset::Sequence& sequence : dataset_.sequences) {
-      if (sequence.id == asked.id) return sequence.pair.follower.positions;
+      if (sequence.id == asked.id) return metrics::PosesOf(sequence.pair.follower);
     }
-    return {};
+    return absl::NotFoundError(asked.id);
   }
 
  private:

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 
+#include "model/evaluation/metrics/clip_poses.h"
 #include "tests/evaluation/support/made_up_pairs.h"
 #include "tests/support/status_matchers.h"
 
@@ -26,19 +28,21 @@ class Recorder : public Method {
     trained.push_back(train);
     return status;
   }
-  std::vector<motion::Vec3> Predict(const dataset::Sequence& sequence) const override {
-    follower_sizes.push_back(sequence.pair.follower.positions.size());
-    std::vector<motion::Vec3> answer = sequence.pair.leader.positions;
+  absl::StatusOr<motion::Poses> Predict(const dataset::Sequence& sequence) const override {
+    follower_frames.push_back(sequence.pair.follower.frame_count());
+    motion::Poses answer = metrics::PosesOf(sequence.pair.leader);
     if (spoil) spoil(&answer);
+    if (!predict_status.ok()) return predict_status;
     return answer;
   }
   bool reads_first_pose() const override { return told_first_pose; }
 
   bool told_first_pose = false;
-  absl::Status status;
-  std::function<void(std::vector<motion::Vec3>*)> spoil;
+  absl::Status status;          // Train's
+  absl::Status predict_status;  // Predict's
+  std::function<void(motion::Poses*)> spoil;
   std::vector<std::vector<int>> trained;
-  mutable std::vector<size_t> follower_sizes;
+  mutable std::vector<int> follower_frames;
 };
 
 TEST(ProtocolTest, LeavesEachSubjectOutOnce) {
@@ -59,22 +63,35 @@ TEST(ProtocolTest, HidesTheAnswer) {
   const dataset::Dataset dataset = MadeUpPairs(3);
   Recorder method;
   ASSERT_THAT(RunLeaveOneSubjectOut(dataset, {"a"}, &method), IsOk());
-  EXPECT_THAT(method.follower_sizes, ElementsAre(0, 0));
+  EXPECT_THAT(method.follower_frames, ElementsAre(0, 0));
   method.told_first_pose = true;
-  method.follower_sizes.clear();
+  method.follower_frames.clear();
   ASSERT_THAT(RunLeaveOneSubjectOut(dataset, {"a"}, &method), IsOk());
-  EXPECT_THAT(method.follower_sizes, ElementsAre(15, 15));
+  EXPECT_THAT(method.follower_frames, ElementsAre(1, 1));
 }
 
 TEST(ProtocolTest, RefusesWrongAnswersByName) {
   const dataset::Dataset dataset = MadeUpPairs(3);
   Recorder method;
-  method.spoil = [](std::vector<motion::Vec3>* answer) { answer->pop_back(); };
+  method.spoil = [](motion::Poses* answer) { answer->DropFront(1); };
   EXPECT_THAT(RunLeaveOneSubjectOut(dataset, {"a"}, &method),
-              StatusIs(absl::StatusCode::kInternal, HasSubstr("recorder: 0/0: 239 positions")));
-  method.spoil = [](std::vector<motion::Vec3>* answer) { answer->back().y = std::nanf(""); };
+              StatusIs(absl::StatusCode::kInternal,
+                       HasSubstr("recorder: 0/0: 15 frames of 15 joints came, wanted 16 of 15")));
+  method.spoil = [](motion::Poses* answer) { *answer = motion::Poses(16, 14); };
+  EXPECT_THAT(RunLeaveOneSubjectOut(dataset, {"a"}, &method),
+              StatusIs(absl::StatusCode::kInternal, HasSubstr("16 frames of 14 joints came")));
+  method.spoil = [](motion::Poses* answer) { answer->at(15, 14).y = std::nanf(""); };
   EXPECT_THAT(RunLeaveOneSubjectOut(dataset, {"a"}, &method),
               StatusIs(absl::StatusCode::kInternal, HasSubstr("not finite")));
+}
+
+TEST(ProtocolTest, SaysWhichMethodFailedOnWhichSequence) {
+  const dataset::Dataset dataset = MadeUpPairs(3);
+  Recorder method;
+  method.predict_status = absl::UnavailableError("the network failed");
+  EXPECT_THAT(
+      RunLeaveOneSubjectOut(dataset, {"a"}, &method),
+      StatusIs(absl::StatusCode::kUnavailable, HasSubstr("recorder: 0/0: the network failed")));
 }
 
 TEST(ProtocolTest, PassesErrorsOn) {

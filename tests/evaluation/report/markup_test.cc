@@ -22,5 +22,12 @@ TEST(EscapeMarkdownTest, KeepsUnderscoresWithinWords) {
   EXPECT_EQ(EscapeMarkdown("_important_ x_"), "\\_important\\_ x\\_");
 }
 
+TEST(EscapeCsvTest, QuotesOnlyWhatNeedsIt) {
+  EXPECT_EQ(EscapeCsv("shake hands"), "shake hands");
+  EXPECT_EQ(EscapeCsv("a,b"), "\"a,b\"");
+  EXPECT_EQ(EscapeCsv("the \"own\" class"), "\"the \"\"own\"\" class\"");
+  EXPECT_EQ(EscapeCsv("two\nlines"), "\"two\nlines\"");
+}
+
 }  // namespace
 }  // namespace duet::evaluation::report

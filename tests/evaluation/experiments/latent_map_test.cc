@@ -1,11 +1,11 @@
-#include "model/evaluation/report/latent_map.h"
+#include "model/evaluation/experiments/latent_map.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/support/status_matchers.h"
 
-namespace duet::evaluation::report {
+namespace duet::evaluation::experiments {
 namespace {
 
 using test::IsOk;
@@ -45,15 +45,5 @@ TEST(MapLatentTest, RefusesTooFewSamples) {
               StatusIs(absl::StatusCode::kInvalidArgument, testing::HasSubstr("wanted 6 or more")));
 }
 
-TEST(PlotByClassTest, PutsEveryPointInTheSeriesOfItsClass) {
-  const ScatterPlot plot =
-      PlotByClass("map", {"kick", "push", "hug"}, {{1, 2}, {3, 4}, {5, 6}}, {2, 0, 2});
-  ASSERT_EQ(plot.series.size(), 3u);
-  EXPECT_EQ(plot.series[0].points, (std::vector<metrics::Point2>{{3, 4}}));
-  EXPECT_EQ(plot.series[1].name, "push");
-  EXPECT_TRUE(plot.series[1].points.empty());
-  EXPECT_EQ(plot.series[2].points, (std::vector<metrics::Point2>{{1, 2}, {5, 6}}));
-}
-
 }  // namespace
-}  // namespace duet::evaluation::report
+}  // namespace duet::evaluation::experiments

@@ -1,4 +1,4 @@
-#include "model/evaluation/report/latent_map.h"
+#include "model/evaluation/experiments/latent_map.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -6,7 +6,7 @@
 
 #include "model/evaluation/metrics/neighbours.h"
 
-namespace duet::evaluation::report {
+namespace duet::evaluation::experiments {
 
 absl::StatusOr<LatentMap> MapLatent(const metrics::FeatureSet& features,
                                     const std::vector<int>& classes, metrics::TsneOptions options) {
@@ -25,15 +25,4 @@ absl::StatusOr<LatentMap> MapLatent(const metrics::FeatureSet& features,
   return map;
 }
 
-ScatterPlot PlotByClass(std::string title, const std::vector<std::string>& class_names,
-                        const std::vector<metrics::Point2>& points,
-                        const std::vector<int>& classes) {
-  ScatterPlot plot{std::move(title), {}};
-  for (const std::string& name : class_names) plot.series.push_back({name, {}});
-  for (size_t i = 0; i < points.size(); ++i) {
-    plot.series[static_cast<size_t>(classes[i])].points.push_back(points[i]);
-  }
-  return plot;
-}
-
-}  // namespace duet::evaluation::report
+}  // namespace duet::evaluation::experiments

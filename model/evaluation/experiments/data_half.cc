@@ -1,4 +1,4 @@
-#include "model/evaluation/experiments/half.h"
+#include "model/evaluation/experiments/data_half.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "model/evaluation/experiments/experiment.h"
+#include "model/evaluation/experiments/classifier_accuracy.h"
 
 namespace duet::evaluation::experiments {
 namespace {

@@ -1,20 +1,13 @@
-#ifndef DUET_MODEL_EVALUATION_EXPERIMENTS_EXPERIMENT_H_
-#define DUET_MODEL_EVALUATION_EXPERIMENTS_EXPERIMENT_H_
+#ifndef DUET_MODEL_EVALUATION_EXPERIMENTS_CLASSIFIER_ACCURACY_H_
+#define DUET_MODEL_EVALUATION_EXPERIMENTS_CLASSIFIER_ACCURACY_H_
 
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "model/engine/synthesizer.h"
-#include "model/evaluation/experiments/synthetic_plan.h"
+#include "model/dataset/dataset.h"
 #include "model/evaluation/judge/classifier.h"
 
 namespace duet::evaluation::experiments {
-
-// The jobs answered in this process, through the windows that a server would make of them. Errors:
-// those of CheckModelFits; a failure of the network, naming the job.
-absl::StatusOr<std::vector<dataset::Sequence>> SynthesizeJobs(
-    const dataset::Dataset& dataset, const engine::Synthesizer& synthesizer,
-    const std::vector<SyntheticJob>& jobs);
 
 // What a classifier learns from.
 struct TrainingMaterial {
@@ -31,4 +24,4 @@ absl::StatusOr<std::vector<double>> ClassifierAccuracy(const dataset::Dataset& d
 
 }  // namespace duet::evaluation::experiments
 
-#endif  // DUET_MODEL_EVALUATION_EXPERIMENTS_EXPERIMENT_H_
+#endif  // DUET_MODEL_EVALUATION_EXPERIMENTS_CLASSIFIER_ACCURACY_H_

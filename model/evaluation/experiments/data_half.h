@@ -1,5 +1,5 @@
-#ifndef DUET_MODEL_EVALUATION_EXPERIMENTS_HALF_H_
-#define DUET_MODEL_EVALUATION_EXPERIMENTS_HALF_H_
+#ifndef DUET_MODEL_EVALUATION_EXPERIMENTS_DATA_HALF_H_
+#define DUET_MODEL_EVALUATION_EXPERIMENTS_DATA_HALF_H_
 
 #include <cstdint>
 #include <ostream>
@@ -14,7 +14,7 @@
 
 namespace duet::evaluation::experiments {
 
-// A half of the data, and what its classifiers may learn from.
+// A half of the data, and the synthetic motions made from it.
 struct DataHalf {
   uint64_t seed = 0;  // of SplitInHalves
   dataset::Split split;
@@ -38,14 +38,14 @@ inline constexpr char kServedRow[] = "captured + set through the server";
 // is not among them, naming it.
 absl::Status AddServedSets(const std::vector<SyntheticSet>& sets, std::vector<DataHalf>* halves);
 
-// Trains and tests every row's classifiers on a half. More motions mean more steps an epoch, and
-// longer training alone moves the accuracy; so all rows take as many steps as the captured motions
-// do in options.epochs, but for two that end in ", longer": captured with and without synthetic
-// motions, both for the steps that the larger set takes in options.epochs. A line for each
-// classifier goes to `progress`.
+// Trains and tests every row's classifiers on a half. Longer training alone moves the accuracy, and
+// more motions mean more steps an epoch. So every row takes as many steps as the captured motions
+// do in options.epochs. Two rows more, named ", longer", are captured motions with and without
+// synthetic ones, both for as many steps as the larger set takes in options.epochs. A line for
+// each classifier goes to `progress`.
 absl::Status RunHalf(const dataset::Dataset& dataset, const DataHalf& half,
                      const HalfOptions& options, std::ostream* progress, Trials* trials);
 
 }  // namespace duet::evaluation::experiments
 
-#endif  // DUET_MODEL_EVALUATION_EXPERIMENTS_HALF_H_
+#endif  // DUET_MODEL_EVALUATION_EXPERIMENTS_DATA_HALF_H_
