@@ -12,6 +12,8 @@
 
 namespace duet::base {
 
+// Folders as a whole; single files are file.h's.
+
 // A file's name and content.
 using NamedContent = std::pair<std::string, std::string>;
 

@@ -58,9 +58,9 @@ absl::StatusOr<motion::Clip> ToSkeleton(const motion::RecordedMotion& motion,
   clip.joint_names = options.skeleton.joint_names;
   clip.frame_rate_hz = person.frame_rate_hz;
   for (int frame = 0; frame < person.frame_count(); ++frame) {
-    for (motion::Vec3 position : ApplyJointMap(*map, FrameOf(person, frame))) {
-      clip.positions.push_back(ToWorld(coordinates, position));
-    }
+    std::vector<motion::Vec3> pose = ApplyJointMap(*map, FrameOf(person, frame));
+    for (motion::Vec3& position : pose) position = ToWorld(coordinates, position);
+    clip.positions.insert(clip.positions.end(), pose.begin(), pose.end());
   }
   return clip;
 }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "model/base/strict_json.h"
@@ -69,15 +70,15 @@ bool ReadFrame(const Json& frame, const std::string& field, base::ObjectReader* 
                  absl::StrCat(base::Shown(frame), ", wanted a list of ", joints, " positions"));
     return false;
   }
+  std::vector<motion::Vec3> pose(joints);
   for (std::size_t joint = 0; joint < joints; ++joint) {
-    motion::Vec3 position;
-    if (!ReadPosition(frame[joint], &position)) {
+    if (!ReadPosition(frame[joint], &pose[joint])) {
       reader->Fail(absl::StrCat(field, "[", joint, "]"),
                    absl::StrCat(base::Shown(frame[joint]), ", wanted [x, y, z], finite numbers"));
       return false;
     }
-    clip->positions.push_back(position);
   }
+  clip->positions.insert(clip->positions.end(), pose.begin(), pose.end());
   return true;
 }
 

@@ -92,12 +92,13 @@ class FrameNumbers {
 absl::Status ReadPeople(SbuLine* line, const SbuOptions& options, SbuRecording* recording) {
   for (int person = 0; person < kPeople; ++person) {
     motion::Clip& clip = person == 0 ? recording->left : recording->right;
-    for (std::size_t joint = 0; joint < options.joint_names.size(); ++joint) {
-      motion::Vec3 position;
-      absl::Status status = line->ReadPosition(person, joint, &position);
+    std::vector<motion::Vec3> pose(options.joint_names.size());
+    for (std::size_t joint = 0; joint < pose.size(); ++joint) {
+      absl::Status status = line->ReadPosition(person, joint, &pose[joint]);
       if (!status.ok()) return status;
-      clip.positions.push_back(ToWorld(options.coordinates, position));
+      pose[joint] = ToWorld(options.coordinates, pose[joint]);
     }
+    clip.positions.insert(clip.positions.end(), pose.begin(), pose.end());
   }
   return absl::OkStatus();
 }

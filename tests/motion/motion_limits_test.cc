@@ -1,0 +1,41 @@
+#include "model/motion/motion_limits.h"
+
+#include <limits>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/support/status_matchers.h"
+
+namespace duet::motion {
+namespace {
+
+using test::IsOk;
+using test::StatusIs;
+
+TEST(CheckFrameRate, TakesWhatACameraMayHave) {
+  for (const double rate : {0.1, 15.0, 29.97, 1000.0}) {
+    EXPECT_THAT(CheckFrameRate("a.csv", rate), IsOk()) << rate;
+  }
+  for (const double rate : {0.0, -30.0, 1000.1, std::numeric_limits<double>::infinity(),
+                            std::numeric_limits<double>::quiet_NaN()}) {
+    EXPECT_THAT(CheckFrameRate("a.csv", rate),
+                StatusIs(absl::StatusCode::kInvalidArgument,
+                         ::testing::StartsWith("a.csv: frame rate: came ")))
+        << rate;
+  }
+}
+
+TEST(ParseCoordinate, TakesANumberWithinTheLimit) {
+  float value = 0;
+  EXPECT_TRUE(ParseCoordinate("-10000000", &value));
+  EXPECT_EQ(value, -1e7f);
+  EXPECT_TRUE(ParseCoordinate("+2.5", &value));
+  EXPECT_EQ(value, 2.5f);
+  for (const char* text : {"10000001", "-1e30", "nan", "x", ""}) {
+    EXPECT_FALSE(ParseCoordinate(text, &value)) << text;
+  }
+  EXPECT_EQ(value, 2.5f) << "a refused text leaves the value as it was";
+}
+
+}  // namespace
+}  // namespace duet::motion
