@@ -27,10 +27,10 @@ absl::StatusOr<std::vector<double>> ClassifierAccuracy(const dataset::Dataset& d
     all.sequences.push_back(sequence);
   }
   absl::StatusOr<judge::MotionClassifier> classifier =
-      judge::MotionClassifier::Train(all, CapturedMotions(all, train), options);
+      judge::MotionClassifier::Train(all, metrics::CapturedMotions(all, train), options);
   if (!classifier.ok()) return classifier.status();
   const std::vector<std::vector<float>> probabilities =
-      classifier->Probabilities(all, CapturedMotions(all, test));
+      classifier->Probabilities(all, metrics::CapturedMotions(all, test));
   metrics::Confusion confusion(dataset.class_count());
   for (size_t i = 0; i < test.size(); ++i) {
     confusion.Add(all.sequences[static_cast<size_t>(test[i])].interaction_class,

@@ -49,7 +49,7 @@ double Mean(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-// Figures are sums until they are divided by the number of curves.
+// Adds a curve's figures to the sums, which MeasureControl divides by the number of curves.
 void AddCurve(const SweepCurve& curve, LabelControl* sums) {
   const auto change = [&](size_t from, size_t to) {
     return RaisedProbability(curve, to) - RaisedProbability(curve, from);

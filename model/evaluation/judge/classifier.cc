@@ -38,7 +38,7 @@ struct MotionBatch {
 dataset::Sequence WithFollower(const dataset::Dataset& dataset,
                                const metrics::ScoredMotion& motion) {
   dataset::Sequence sequence = dataset.sequences[static_cast<size_t>(motion.sequence)];
-  SetPoses(motion.follower, &sequence.pair.follower);
+  metrics::SetPoses(motion.follower, &sequence.pair.follower);
   return sequence;
 }
 

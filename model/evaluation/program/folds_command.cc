@@ -101,7 +101,7 @@ std::vector<report::Table> Tables(const dataset::Dataset& dataset, const Argumen
   return tables;
 }
 
-// One that makes the same tables, without the folders' names.
+// A command line that makes the same tables, with placeholders for the folders.
 std::string Command(const Arguments& arguments, const std::vector<std::string>& subjects) {
   std::string command = "duet-eval folds --data DIR";
   for (const std::string& text : arguments.models.runs) {

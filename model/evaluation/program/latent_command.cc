@@ -102,7 +102,8 @@ absl::StatusOr<checkpoint::Checkpoint> ReadFold(const std::filesystem::path& run
   return ReadRunCheckpoint(is_run ? runs : runs / subject);
 }
 
-// A model that reads labels is shown a second time without: its label alone tells the class apart.
+// A model that reads labels is shown a second time with the label withheld: the label alone would
+// tell the classes apart.
 absl::Status AddModel(const dataset::Dataset& dataset, const NamedRuns& runs,
                       const std::vector<std::string>& subjects, const Arguments& arguments,
                       report::ResultSection* section) {

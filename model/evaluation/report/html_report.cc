@@ -15,7 +15,7 @@ extern const char duet_report_style[], duet_report_style_end[];
 namespace duet::evaluation::report {
 namespace {
 
-// Folded settings would be missing on paper.
+// Unfolds all settings before printing: they would be missing on paper.
 constexpr char kPrintScript[] =
     "<script>addEventListener('beforeprint', () => "
     "document.querySelectorAll('details').forEach((d) => { d.open = true; }));</script>\n";
@@ -25,7 +25,7 @@ absl::string_view Style() {
 }
 
 void AppendFigure(const ResultFigure& figure, int number, std::string* out) {
-  // The document's own element, named for those who cannot see it.
+  // The figure's own <svg> element, with its caption for those who cannot see it.
   constexpr absl::string_view kStart = "<svg ";
   absl::StrAppend(
       out,

@@ -7,8 +7,8 @@
 
 namespace duet::evaluation::report {
 
-// A table element with the caption "Table <number>. <title>", its notes below. Printed rows are a
-// group of their own below those measured here.
+// A table element with the caption "Table <number>. <title>" and its notes below. The paper's
+// printed rows are a group of their own below those measured here.
 std::string ToHtml(const Table& table, int number);
 
 }  // namespace duet::evaluation::report

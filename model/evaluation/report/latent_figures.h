@@ -10,7 +10,7 @@
 
 namespace duet::evaluation::report {
 
-// How well classes keep together: without rows, and the row of a map.
+// The table of how well classes keep together, still without rows, and a map's row of it.
 Table LatentTable();
 TableRow LatentRow(const std::string& name, const experiments::LatentMap& map);
 

@@ -27,7 +27,7 @@ void AppendFigure(const ResultFigure& figure, Counters* counters, std::string* o
                   ". ", caption, "*\n\n");
 }
 
-// HTML, which Markdown passes on: a fold is not in its grammar.
+// In HTML, which Markdown passes on: Markdown itself has no part that folds.
 void AppendOrigin(const ResultSection& section, std::string* out) {
   absl::StrAppend(out, "<details><summary>Settings and command</summary>\n\n| | |\n|---|---|\n");
   for (const auto& [name, value] : section.settings) {

@@ -18,7 +18,7 @@ std::string EscapeMarkdown(const std::string& text) {
   std::string out;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
-    // Within a word an underscore is one; elsewhere it would start or end emphasis.
+    // Within a word, an underscore is just that; elsewhere it would start or end emphasis.
     const bool is_plain_underscore =
         c == '_' && i > 0 && IsWord(text, i - 1) && IsWord(text, i + 1);
     if (std::strchr("\\|*_`[]<>~#", c) != nullptr && c != '\0' && !is_plain_underscore) out += '\\';

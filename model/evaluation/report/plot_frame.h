@@ -19,7 +19,8 @@ struct Range {
   double high = -std::numeric_limits<double>::infinity();
 
   void Add(double value);
-  // Never empty and never without extent, so that it can be divided by.
+  // The same with an extent above 0, which can be divided by: an interval of length 1 where nothing
+  // or one value alone was added.
   Range Usable() const;
   Range Widened(double share) const;
   double Extent() const { return high - low; }

@@ -6,7 +6,7 @@
 
 namespace duet::evaluation::report {
 
-// Where a text is held.
+// Which point of a text stands at its position.
 enum class TextAnchor { kStart, kMiddle, kEnd };
 
 // Writes an SVG document piece by piece. Units: pixels, y down.

@@ -19,7 +19,7 @@ std::string Rounded(double value, int decimals) {
   char text[400];  // the largest double has 309 digits before the point
   std::snprintf(text, sizeof(text), "%.*f", decimals, value);
   const std::string rounded = text;
-  // "-0.00" would say less than nothing.
+  // Never "-0.00".
   const bool is_zero = rounded.find_first_of("123456789in") == std::string::npos;
   return is_zero && rounded[0] == '-' ? rounded.substr(1) : rounded;
 }

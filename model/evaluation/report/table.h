@@ -9,8 +9,8 @@ namespace duet::evaluation::report {
 struct TableRow {
   std::string name;
   std::vector<double> values;  // one a column; NaN: no figure
-  // A row that was not measured here (the paper's printed figures): set apart, never marked as
-  // best.
+  // True for figures that the paper prints and that were not measured here: the row is set apart
+  // and never marked as best.
   bool printed = false;
 };
 
@@ -38,10 +38,10 @@ struct TableCell {
 // Shapes: returns [rows][columns].
 std::vector<std::vector<TableCell>> FormatCells(const Table& table);
 
-// The table in each form. Every row has as many values as there are columns. Figures are rounded to
-// `decimals`, but in CSV and JSON, which keep what is needed to read the same number back; a
-// missing figure is a dash, in CSV an empty field, in JSON null. Plain text and Markdown mark the
-// best figures as they are printed: ties are all marked.
+// A table in four formats. Every row has as many values as there are columns.
+// Plain text and Markdown round figures to `decimals`, print a dash for a missing one, and mark
+// every figure that is printed like the best one of its column. CSV and JSON keep enough digits to
+// read the same number back; a missing figure is an empty field in CSV and null in JSON.
 std::string ToPlainText(const Table& table);  // marked with an asterisk
 std::string ToMarkdown(const Table& table);   // marked in bold
 std::string ToCsv(const Table& table);        // RFC 4180; a column "printed" tells the rows apart

@@ -14,7 +14,7 @@ std::vector<double> RoundTicks(double low, double high, int count);
 // evenly spaced numbers where the axis spans less. Requires 0 < low < high.
 std::vector<double> LogTicks(double low, double high, int count);
 
-// As short as it can be read: "0", "0.25", "1e+06".
+// A number in few digits: "0", "0.25", "1e+06".
 std::string TickText(double value);
 
 }  // namespace duet::evaluation::report

@@ -33,7 +33,7 @@ std::vector<metrics::ScoredMotion> Followers(const dataset::Dataset& dataset, bo
       chosen.push_back(static_cast<int>(i));
     }
   }
-  return CapturedMotions(dataset, chosen);
+  return metrics::CapturedMotions(dataset, chosen);
 }
 
 MotionClassifier Trained(const dataset::Dataset& dataset, const ClassifierOptions& options) {
