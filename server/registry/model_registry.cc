@@ -1,21 +1,13 @@
 #include "server/registry/model_registry.h"
 
-#include <algorithm>
-#include <cstddef>
 #include <utility>
 
-#include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "server/common/error_details.h"
 
 namespace duet::server::registry {
 namespace {
-
-// Names come from requests; enough of one to recognise it.
-std::string Shown(absl::string_view name) {
-  return absl::StrCat("\"", absl::CHexEscape({name.data(), std::min<std::size_t>(name.size(), 64)}),
-                      "\"");
-}
 
 template <typename Map>
 std::string Keys(const Map& map) {
@@ -38,9 +30,9 @@ absl::Status ModelRegistry::SetLabel(absl::string_view name, absl::string_view l
   common::MutexLock lock(mutex_);
   const auto entry = entries_.find(name);
   if (entry == entries_.end() || entry->second.versions.count(version) == 0) {
-    return absl::NotFoundError(absl::StrCat("version label ", Shown(label), " points at version ",
-                                            version, " of model ", Shown(name),
-                                            ", which is not served"));
+    return absl::NotFoundError(absl::StrCat("version label ", common::Quoted(label),
+                                            " points at version ", version, " of model ",
+                                            common::Quoted(name), ", which is not served"));
   }
   entry->second.labels[std::string(label)] = version;
   return absl::OkStatus();
@@ -49,7 +41,7 @@ absl::Status ModelRegistry::SetLabel(absl::string_view name, absl::string_view l
 absl::Status ModelRegistry::SetDefault(absl::string_view name) {
   common::MutexLock lock(mutex_);
   if (entries_.find(name) == entries_.end()) {
-    return absl::NotFoundError(absl::StrCat("the default model ", Shown(name),
+    return absl::NotFoundError(absl::StrCat("the default model ", common::Quoted(name),
                                             " is not served; served are: ", Keys(entries_)));
   }
   default_name_ = std::string(name);
@@ -71,31 +63,32 @@ ServedModel ModelRegistry::Describe(const std::string& name, const Entry& entry,
   return served;
 }
 
-absl::StatusOr<ServedModel> ModelRegistry::Find(const ModelQuery& query) const {
+FindResult ModelRegistry::Find(const ModelQuery& query) const {
   common::MutexLock lock(mutex_);
   const std::string& name = query.name.empty() ? DefaultName() : query.name;
   const auto found = entries_.find(name);
   if (found == entries_.end()) {
-    return absl::NotFoundError(absl::StrCat("model.name: is ", Shown(name),
-                                            ", which is not served; served are: ", Keys(entries_)));
+    return ModelNotFound{"model.name",
+                         absl::StrCat("is ", common::Quoted(name),
+                                      ", which is not served; served are: ", Keys(entries_))};
   }
   const Entry& entry = found->second;
   uint32_t version = entry.versions.begin()->first;
   if (query.version_label.has_value()) {
     const auto label = entry.labels.find(*query.version_label);
     if (label == entry.labels.end()) {
-      return absl::NotFoundError(absl::StrCat("model.version_label: is ",
-                                              Shown(*query.version_label), "; labels of model ",
-                                              name, " are: ", Keys(entry.labels)));
+      return ModelNotFound{"model.version_label",
+                           absl::StrCat("is ", common::Quoted(*query.version_label),
+                                        "; labels of model ", name, " are: ", Keys(entry.labels))};
     }
     version = label->second;
   }
   if (query.version.has_value()) {
     version = *query.version;
     if (entry.versions.count(version) == 0) {
-      return absl::NotFoundError(absl::StrCat("model.version: is ", version,
-                                              "; served versions of model ", name,
-                                              " are: ", Keys(entry.versions)));
+      return ModelNotFound{"model.version",
+                           absl::StrCat("is ", version, "; served versions of model ", name,
+                                        " are: ", Keys(entry.versions))};
     }
   }
   return Describe(found->first, entry, version);
