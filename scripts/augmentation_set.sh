@@ -42,8 +42,8 @@ serving_port() {
 
 start_server() {
   local deadline=$((SECONDS + start_limit_s)) port=""
-  "${bin}/duet-server" --listen 127.0.0.1:0 --metrics_listen "" \
-    --model_repository "${run}/checkpoint" >"${out}/server.log" 2>&1 &
+  "${bin}/duet-server" --listen 127.0.0.1:0 --metrics-listen "" \
+    --model-repository "${run}/checkpoint" >"${out}/server.log" 2>&1 &
   server_pid=$!
   until [[ -n "${port}" ]]; do
     if ! kill -0 "${server_pid}" 2>/dev/null || ((SECONDS >= deadline)); then

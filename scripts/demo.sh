@@ -57,7 +57,7 @@ start_server() {
   port="$(free_port 50051)"
   metrics_port="$(free_port 9464)"
   [[ "${port}" == 50051 ]] || flags+=(--listen "127.0.0.1:${port}")
-  [[ "${metrics_port}" == 9464 ]] || flags+=(--metrics_listen "127.0.0.1:${metrics_port}")
+  [[ "${metrics_port}" == 9464 ]] || flags+=(--metrics-listen "127.0.0.1:${metrics_port}")
   address="127.0.0.1:${port}"
 
   echo "\$ duet-server${flags[*]:+ ${flags[*]}}"

@@ -6,7 +6,7 @@ namespace duet::server::batching {
 
 bool WindowQueue::HasRoomFor(const WindowJob& job) const {
   if (job.continues_call) return true;
-  return size() < (job.priority == Priority::kBulk ? BulkShare(capacity_) : capacity_);
+  return size() < ShareOf(capacity_, job.priority);
 }
 
 void WindowQueue::Push(QueuedWindow window) {

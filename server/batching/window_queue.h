@@ -9,9 +9,6 @@
 
 namespace duet::server::batching {
 
-// The part of a limit that bulk work may fill; the rest stays free for interactive calls.
-inline std::size_t BulkShare(std::size_t limit) { return limit - limit / 4; }
-
 // A job and when it came.
 struct QueuedWindow {
   WindowJob job;
@@ -27,8 +24,8 @@ class WindowQueue {
   // `capacity`: waiting windows above which no new call is taken, 1 or more.
   explicit WindowQueue(std::size_t capacity) : capacity_(capacity) {}
 
-  // True when a job like this may join: further windows always, a call's first one while there is
-  // room, which for bulk work ends at BulkShare(capacity).
+  // True when a job like this may join: a further window of a call always; a call's first one while
+  // fewer windows wait, of whatever priority, than its own priority's share of the capacity.
   bool HasRoomFor(const WindowJob& job) const;
   void Push(QueuedWindow window);
   // The next window to start; nothing when empty.

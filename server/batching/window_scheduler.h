@@ -2,17 +2,16 @@
 #define DUET_SERVER_BATCHING_WINDOW_SCHEDULER_H_
 
 #include <atomic>
+#include <cstddef>
 #include <functional>
 #include <memory>
 
 #include "absl/status/status.h"
 #include "model/engine/synthesizer.h"
+#include "server/batching/priority.h"
 #include "server/common/clock.h"
 
 namespace duet::server::batching {
-
-// How urgent a window is: every waiting interactive window starts before any bulk one.
-enum class Priority { kInteractive, kBulk };
 
 // Where a window's time went.
 struct WindowTimings {
@@ -32,13 +31,23 @@ struct WindowJob {
   engine::SynthesisWindow window;
   Priority priority = Priority::kInteractive;
   common::TimePoint deadline = common::TimePoint::max();
-  // Set by the owner when nobody wants the result any more. Required.
+  // The owner sets it to give the result up. Required.
   std::shared_ptr<const std::atomic<bool>> cancelled;
   // A further window of a call that is being answered. Never refused for a full queue: what was
   // begun is finished, and a call has one window in the queue at most.
   bool continues_call = false;
   // Called once, on a thread of the scheduler, under no lock. Must not throw.
   std::function<void(WindowOutcome)> done;
+};
+
+// Told of every window that left a scheduler's queue, whether it was evaluated or dropped.
+//
+// Threads: called concurrently, on the scheduler's threads, under no lock. Must neither block nor
+// throw.
+class WindowObserver {
+ public:
+  virtual ~WindowObserver() = default;
+  virtual void WindowFinished(Priority priority, const WindowTimings& timings) = 0;
 };
 
 // Decides when windows are evaluated, and with which others. A scheduler that batches windows of
@@ -59,6 +68,9 @@ class WindowScheduler {
   // Fails with RESOURCE_EXHAUSTED when the queue is full, with UNAVAILABLE when shutting down;
   // done then never runs.
   virtual absl::Status Submit(WindowJob job) = 0;
+
+  // Windows that wait for their turn now.
+  virtual std::size_t queued_windows() const = 0;
 };
 
 }  // namespace duet::server::batching

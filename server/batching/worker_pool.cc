@@ -1,9 +1,15 @@
 #include "server/batching/worker_pool.h"
 
+#include <cstddef>
 #include <exception>
 #include <optional>
 #include <string>
+#include <thread>
 #include <utility>
+#include <vector>
+
+#include "server/batching/window_queue.h"
+#include "server/common/mutex.h"
 
 namespace duet::server::batching {
 namespace {
@@ -35,11 +41,35 @@ engine::WindowResult Evaluate(const WindowJob& job) {
   }
 }
 
-}  // namespace
+class WorkerPool final : public WindowScheduler {
+ public:
+  WorkerPool(const WorkerPoolOptions& options, const common::Clock& clock,
+             WindowObserver* observer);
+  ~WorkerPool() override;
+
+  absl::Status Submit(WindowJob job) override;
+  std::size_t queued_windows() const override;
+
+ private:
+  void Work();
+  // Waits for the next window; false when there will be none.
+  bool Next(QueuedWindow* window, bool* stopping);
+  void Run(QueuedWindow window, bool stopping) const;
+
+  const common::Clock& clock_;
+  WindowObserver* const observer_;
+  mutable common::Mutex mutex_;
+  common::CondVar changed_;
+  WindowQueue queue_ DUET_GUARDED_BY(mutex_);
+  bool stopping_ DUET_GUARDED_BY(mutex_) = false;
+  std::vector<std::thread> workers_;
+};
 
 WorkerPool::WorkerPool(const WorkerPoolOptions& options, const common::Clock& clock,
-                       Observer observer)
-    : clock_(clock), observer_(std::move(observer)), queue_(options.max_queued_windows) {
+                       WindowObserver* observer)
+    : clock_(clock),
+      observer_(observer),
+      queue_(static_cast<std::size_t>(options.max_queued_windows)) {
   for (int i = 0; i < options.workers; ++i) workers_.emplace_back([this] { Work(); });
 }
 
@@ -98,8 +128,16 @@ void WorkerPool::Run(QueuedWindow window, bool stopping) const {
     outcome.timings.compute_seconds = common::SecondsBetween(begin, clock_.Now());
     outcome.timings.batch_size = 1;
   }
-  if (observer_) observer_(job.priority, outcome.timings);
+  if (observer_ != nullptr) observer_->WindowFinished(job.priority, outcome.timings);
   job.done(std::move(outcome));
+}
+
+}  // namespace
+
+std::unique_ptr<WindowScheduler> MakeWorkerPool(const WorkerPoolOptions& options,
+                                                const common::Clock& clock,
+                                                WindowObserver* observer) {
+  return std::make_unique<WorkerPool>(options, clock, observer);
 }
 
 }  // namespace duet::server::batching

@@ -9,11 +9,15 @@
 #include <cstdint>
 #include <sstream>
 #include <utility>
+#include <vector>
 
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "model/base/file.h"
+#include "model/base/flag_names.h"
+#include "absl/strings/string_view.h"
+#include "server/config/server_options.h"
 
 namespace duet::server::config {
 namespace {
@@ -57,7 +61,7 @@ v1::VersionLabel ParseVersionLabel(const std::string& text) {
   v1::VersionLabel parsed;
   uint32_t version = 0;
   if (model.size() != 2 || label.size() != 2 || !absl::SimpleAtoi(label[1], &version)) {
-    throw CLI::ValidationError("--version_label", "is " + text +
+    throw CLI::ValidationError("--version-label", "is " + text +
                                                       ", wanted model:label=version, such as "
                                                       "duet:stable=3");
   }
@@ -67,26 +71,34 @@ v1::VersionLabel ParseVersionLabel(const std::string& text) {
   return parsed;
 }
 
+// A flag's help with the default that holds without it.
+template <typename Value>
+std::string Defaulting(absl::string_view help, const Value& value) {
+  return absl::StrCat(help, " (default ", value, ")");
+}
+
 void AddServingFlags(CLI::App& app, v1::ServerConfig& config) {
+  const ServerOptions defaults;
   app.add_option_function<std::string>(
          "--listen", [&](const std::string& value) { config.set_listen(value); },
-         "gRPC address, host:port (default 0.0.0.0:50051)")
+         Defaulting("gRPC address, host:port", ToString(defaults.listen)))
       ->option_text("ADDRESS");
   app.add_option_function<std::string>(
-         "--metrics_listen", [&](const std::string& value) { config.set_metrics_listen(value); },
-         "address of /metrics, /healthz, /readyz, or \"off\" (default 0.0.0.0:9464)")
+         "--metrics-listen", [&](const std::string& value) { config.set_metrics_listen(value); },
+         Defaulting("address of /metrics, /healthz, /readyz, or \"off\"",
+                    ToString(*defaults.metrics_listen)))
       ->option_text("ADDRESS");
   app.add_option_function<std::string>(
-         "--model_repository",
+         "--model-repository",
          [&](const std::string& value) { config.set_model_repository(value); },
          "folder of checkpoints <name>/<version>/ (default: the embedded checkpoint)")
       ->option_text("DIR");
   app.add_option_function<std::string>(
-         "--default_model", [&](const std::string& value) { config.set_default_model(value); },
+         "--default-model", [&](const std::string& value) { config.set_default_model(value); },
          "model that answers when a request names none (default: the first by name)")
       ->option_text("NAME");
   app.add_option_function<std::vector<std::string>>(
-         "--version_label",
+         "--version-label",
          [&](const std::vector<std::string>& values) {
            for (const std::string& value : values) {
              *config.add_version_labels() = ParseVersionLabel(value);
@@ -97,45 +109,49 @@ void AddServingFlags(CLI::App& app, v1::ServerConfig& config) {
   app.add_flag_function(
       "--reflection,!--no-reflection",
       [&](std::int64_t count) { config.set_reflection(count > 0); },
-      "gRPC server reflection (default on)");
+      Defaulting("gRPC server reflection", defaults.reflection ? "on" : "off"));
 }
 
 void AddCapacityFlags(CLI::App& app, v1::ServerConfig& config) {
+  const ServerOptions defaults;
   app.add_option_function<uint32_t>(
          "--workers", [&](uint32_t value) { config.set_workers(value); },
          "windows evaluated at the same time (default: the container's cores)")
       ->option_text("N");
   app.add_option_function<uint32_t>(
-         "--threads_per_worker", [&](uint32_t value) { config.set_threads_per_worker(value); },
-         "threads of one evaluation (default 1)")
+         "--threads-per-worker", [&](uint32_t value) { config.set_threads_per_worker(value); },
+         Defaulting("threads of one evaluation", defaults.threads_per_worker))
       ->option_text("N");
   app.add_option_function<uint32_t>(
-         "--max_calls", [&](uint32_t value) { config.set_max_calls(value); },
-         "Synthesize calls answered at the same time (default 128)")
+         "--max-calls", [&](uint32_t value) { config.set_max_calls(value); },
+         Defaulting("Synthesize calls answered at the same time", defaults.max_calls))
       ->option_text("N");
   app.add_option_function<uint32_t>(
-         "--max_queued_windows", [&](uint32_t value) { config.set_max_queued_windows(value); },
-         "waiting windows above which new calls are refused (default 64)")
+         "--max-queued-windows", [&](uint32_t value) { config.set_max_queued_windows(value); },
+         Defaulting("waiting windows above which new calls are refused",
+                    defaults.max_queued_windows))
       ->option_text("N");
   app.add_option_function<uint64_t>(
-         "--max_request_bytes", [&](uint64_t value) { config.set_max_request_bytes(value); },
-         "size of a request (default 33554432)")
+         "--max-request-bytes", [&](uint64_t value) { config.set_max_request_bytes(value); },
+         Defaulting("size of a request", defaults.max_request_bytes))
       ->option_text("BYTES");
   app.add_option_function<uint64_t>(
-         "--max_transport_bytes", [&](uint64_t value) { config.set_max_transport_bytes(value); },
-         "memory of requests being received (default 16 x max_request_bytes)")
+         "--max-transport-bytes", [&](uint64_t value) { config.set_max_transport_bytes(value); },
+         absl::StrCat("memory of requests being received (default ", kTransportPerRequest,
+                      " x max-request-bytes)"))
       ->option_text("BYTES");
   app.add_option_function<uint32_t>(
-         "--buffered_frames", [&](uint32_t value) { config.set_buffered_frames(value); },
-         "finished frames that wait for a slow reader (default 240)")
+         "--buffered-frames", [&](uint32_t value) { config.set_buffered_frames(value); },
+         Defaulting("finished frames that wait for a slow reader", defaults.buffered_frames))
       ->option_text("N");
   app.add_option_function<double>(
-         "--drain_seconds", [&](double value) { config.set_drain_seconds(value); },
-         "after SIGTERM, go on serving this long while health says NOT_SERVING (default 0)")
+         "--drain-seconds", [&](double value) { config.set_drain_seconds(value); },
+         Defaulting("after SIGTERM, go on serving this long while health says NOT_SERVING",
+                    defaults.drain_seconds))
       ->option_text("S");
   app.add_option_function<double>(
-         "--grace_seconds", [&](double value) { config.set_grace_seconds(value); },
-         "after that, time for calls to finish (default 30)")
+         "--grace-seconds", [&](double value) { config.set_grace_seconds(value); },
+         Defaulting("after that, time for calls to finish", defaults.grace_seconds))
       ->option_text("S");
 }
 
@@ -167,8 +183,9 @@ absl::StatusOr<CommandLine> ParseCommandLine(int argc, const char* const* argv) 
   AddServingFlags(app, flags);
   AddCapacityFlags(app, flags);
   CommandLine command_line;
+  const base::KebabCaseCommandLine line(argc, argv);
   try {
-    app.parse(argc, argv);
+    app.parse(line.argc(), line.argv());
   } catch (const CLI::Success& wanted) {
     std::ostringstream text;
     app.exit(wanted, text, text);

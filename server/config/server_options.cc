@@ -38,6 +38,12 @@ class Reader {
   absl::Status status_;
 };
 
+void ReadMetricsListen(const v1::ServerConfig& config, Reader& reader, ServerOptions& options) {
+  options.metrics_listen.reset();
+  if (config.metrics_listen().empty() || config.metrics_listen() == "off") return;
+  options.metrics_listen = reader.Address("metrics_listen", config.metrics_listen());
+}
+
 // Without `workers` and `threads_per_worker`, one-thread workers on every core: evaluations of one
 // window gain less from a second thread than from a second window. With one of them given, the
 // other uses up the cores.
@@ -78,7 +84,7 @@ void ReadLimits(const v1::ServerConfig& config, Reader& reader, ServerOptions& o
       config.has_max_transport_bytes()
           ? reader.InRange("max_transport_bytes", config.max_transport_bytes(),
                            uint64_t{2} * options.max_request_bytes, uint64_t{1} << 40)
-          : uint64_t{16} * options.max_request_bytes);
+          : uint64_t{kTransportPerRequest} * options.max_request_bytes);
   if (config.has_buffered_frames()) {
     options.buffered_frames = static_cast<int>(
         reader.InRange("buffered_frames", config.buffered_frames(), kOne, 1000000U));
@@ -108,13 +114,8 @@ void ReadLabels(const v1::ServerConfig& config, Reader& reader, ServerOptions& o
 absl::StatusOr<ServerOptions> ToOptions(const v1::ServerConfig& config, int cores) {
   Reader reader;
   ServerOptions options;
-  options.listen =
-      reader.Address("listen", config.has_listen() ? config.listen() : "0.0.0.0:50051");
-  if (!config.has_metrics_listen()) {
-    options.metrics_listen = ListenAddress{"0.0.0.0", 9464};
-  } else if (!config.metrics_listen().empty() && config.metrics_listen() != "off") {
-    options.metrics_listen = reader.Address("metrics_listen", config.metrics_listen());
-  }
+  if (config.has_listen()) options.listen = reader.Address("listen", config.listen());
+  if (config.has_metrics_listen()) ReadMetricsListen(config, reader, options);
   options.model_repository = config.model_repository();
   options.default_model = config.default_model();
   if (config.has_reflection()) options.reflection = config.reflection();

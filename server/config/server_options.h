@@ -25,20 +25,24 @@ struct VersionLabelOption {
   uint32_t version = 0;
 };
 
-// Everything that an operator decides, checked. server_config.proto says what each means.
+// Unless the operator says otherwise, memory for as many of the largest requests at a time.
+inline constexpr std::size_t kTransportPerRequest = 16;
+
+// Everything that an operator decides, checked. server_config.proto says what each means; the
+// defaults stand here and nowhere else.
 struct ServerOptions {
-  ListenAddress listen;
-  std::optional<ListenAddress> metrics_listen;
+  ListenAddress listen = {"0.0.0.0", 50051};
+  std::optional<ListenAddress> metrics_listen = ListenAddress{"0.0.0.0", 9464};
   std::filesystem::path model_repository;  // empty: the embedded checkpoint
   std::string default_model;
   std::vector<VersionLabelOption> version_labels;
   bool reflection = true;
-  int workers = 1;
+  int workers = 1;  // ToOptions: as many as the cores allow
   int threads_per_worker = 1;
   int max_calls = 128;
   int max_queued_windows = 64;
   std::size_t max_request_bytes = std::size_t{32} << 20;
-  std::size_t max_transport_bytes = std::size_t{512} << 20;
+  std::size_t max_transport_bytes = kTransportPerRequest * max_request_bytes;
   int buffered_frames = 240;
   double drain_seconds = 0;
   double grace_seconds = 30;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "server/batching/worker_pool.h"
 #include "server/service/refusals.h"
 
 namespace duet::server::lifecycle {
@@ -15,7 +16,7 @@ namespace {
 
 // How long gRPC may take to hand out the statuses of calls that were ended.
 constexpr std::chrono::seconds kFlush(1);
-// How often a drain looks whether the last call has finished, or the operator is in a hurry.
+// How often a drain looks whether the last call has finished or a second signal has come.
 constexpr double kLookSeconds = 0.05;
 
 service::RequestLimits Limits(const config::ServerOptions& options) {
@@ -38,12 +39,11 @@ DuetServer::DuetServer(const config::ServerOptions& options, metrics::LogSink& s
     : options_(options),
       log_(sink),
       admission_(static_cast<std::size_t>(options.max_calls)),
-      pool_({options.workers, options.max_queued_windows}, common::Clock::Real(),
-            [this](batching::Priority priority, const batching::WindowTimings& timings) {
-              metrics_.WindowFinished(priority, timings);
-            }),
+      scheduler_(batching::MakeWorkerPool({options.workers, options.max_queued_windows},
+                                          common::Clock::Real(), &metrics_)),
       service_(Parts()) {
-  metrics_.SetQueueLength([this] { return static_cast<double>(pool_.queued_windows()); });
+  metrics_.SetQueueLength([this] { return static_cast<double>(scheduler_->queued_windows()); });
+  metrics_.SetDroppedLogLines([&sink] { return static_cast<double>(sink.dropped_lines()); });
 }
 
 DuetServer::~DuetServer() {
@@ -54,7 +54,7 @@ DuetServer::~DuetServer() {
 service::ServiceParts DuetServer::Parts() {
   service::ServiceParts parts;
   parts.registry = &registry_;
-  parts.scheduler = &pool_;
+  parts.scheduler = scheduler_.get();
   parts.admission = &admission_;
   parts.observers = {&metrics_, &log_};
   parts.limits = Limits(options_);
@@ -121,8 +121,8 @@ void DuetServer::Drain(const std::function<bool(double seconds)>& wait) {
   log_.Info("draining", {{"calls", admission_.calls()}});
   SetHealth(false);
   bool patient = options_.drain_seconds <= 0 || wait(options_.drain_seconds);
-  // From here on new calls are told to go elsewhere. gRPC's own Shutdown comes last: it would wait
-  // for health watches as well, which never end by themselves.
+  // From here on new calls are refused as UNAVAILABLE. gRPC's own Shutdown comes last: it would
+  // wait for health watches as well, which never end by themselves.
   admission_.SetState(service::Admission::State::kDraining);
   double left = options_.grace_seconds;
   while (patient && left > 0 && admission_.calls() > 0) {

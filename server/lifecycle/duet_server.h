@@ -6,7 +6,7 @@
 #include <string>
 
 #include "absl/status/statusor.h"
-#include "server/batching/worker_pool.h"
+#include "server/batching/window_scheduler.h"
 #include "server/config/server_options.h"
 #include "server/lifecycle/grpc_server.h"
 #include "server/metrics/json_log.h"
@@ -48,8 +48,8 @@ class DuetServer {
   absl::Status Serve();
 
   // Says NOT_SERVING, serves on for drain_seconds, then lets calls finish for grace_seconds, ends
-  // the others as UNAVAILABLE and closes. `wait` sleeps for so many seconds unless the operator is
-  // in a hurry: false cuts both times short.
+  // the others as UNAVAILABLE and closes. `wait` sleeps for so many seconds; when it gives false,
+  // as after a second signal, both times are cut short.
   void Drain(const std::function<bool(double seconds)>& wait);
 
   int port() const { return grpc_.port; }
@@ -68,7 +68,7 @@ class DuetServer {
   metrics::ServerMetrics metrics_;
   registry::ModelRegistry registry_;
   service::Admission admission_;
-  batching::WorkerPool pool_;
+  const std::unique_ptr<batching::WindowScheduler> scheduler_;
   service::MotionSynthesisService service_;
   GrpcServer grpc_;
   std::unique_ptr<metrics::MetricsEndpoint> endpoint_;

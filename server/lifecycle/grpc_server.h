@@ -11,12 +11,13 @@
 
 namespace duet::server::lifecycle {
 
+// The part of ServerOptions that gRPC itself enforces; the defaults are there.
 struct GrpcServerOptions {
   config::ListenAddress listen;
-  bool reflection = true;
-  std::size_t max_request_bytes = std::size_t{32} << 20;
-  std::size_t max_transport_bytes = std::size_t{512} << 20;
-  int max_calls = 128;
+  bool reflection = false;
+  std::size_t max_request_bytes = 0;
+  std::size_t max_transport_bytes = 0;
+  int max_calls = 0;
 };
 
 struct GrpcServer {

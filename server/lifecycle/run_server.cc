@@ -2,6 +2,7 @@
 
 #include <sys/resource.h>
 
+#include <cstdint>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "server/config/load_config.h"
 #include "server/lifecycle/duet_server.h"
 #include "server/lifecycle/library_logs.h"
+#include "server/metrics/queued_log_sink.h"
 
 namespace duet::server::lifecycle {
 namespace {
@@ -82,7 +84,7 @@ int Serve(const config::ServerOptions& options, const ModelSource& source, StopS
 }  // namespace
 
 int RunServer(int argc, const char* const* argv, const ModelSource& source, StopSignal& stop,
-              metrics::LogSink& sink) {
+              std::shared_ptr<metrics::LogSink> sink) {
   const absl::StatusOr<config::CommandLine> command_line = config::ParseCommandLine(argc, argv);
   if (command_line.ok() && command_line->print.has_value()) {
     std::cout << *command_line->print;
@@ -97,7 +99,11 @@ int RunServer(int argc, const char* const* argv, const ModelSource& source, Stop
   }
   RaiseDescriptorLimit();
   source.set_threads(options->threads_per_worker);
-  return Serve(*options, source, stop, sink);
+  metrics::QueuedLogSink::Options log;
+  log.drop_notice = [](std::uint64_t dropped) { return metrics::DroppedLinesNotice(dropped); };
+  // Outlives everything that logs, and writes its last lines before the process ends.
+  metrics::QueuedLogSink queued_sink(std::move(sink), std::move(log));
+  return Serve(*options, source, stop, queued_sink);
 }
 
 }  // namespace duet::server::lifecycle

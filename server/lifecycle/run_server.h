@@ -12,7 +12,7 @@
 
 namespace duet::server::lifecycle {
 
-// Where models come from: what main.cc knows and nobody else.
+// Where models come from. Only the main program knows which engine that is.
 struct ModelSource {
   registry::ModelLoader load_folder;
   // The default model first.
@@ -28,9 +28,10 @@ inline constexpr int kExitFailed = 1;   // cannot listen, or nothing to serve
 inline constexpr int kExitUsage = 2;    // a flag or the configuration file is wrong
 
 // Everything that duet-server does, from the command line to the exit code: listen, load, serve,
-// drain. `stop` was constructed before any thread.
+// drain. `stop` was constructed before any thread. A `sink` that is slow or stuck holds up nothing
+// but the log.
 int RunServer(int argc, const char* const* argv, const ModelSource& source, StopSignal& stop,
-              metrics::LogSink& sink);
+              std::shared_ptr<metrics::LogSink> sink);
 
 }  // namespace duet::server::lifecycle
 

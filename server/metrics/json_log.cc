@@ -23,7 +23,23 @@ std::string_view Severity(absl::StatusCode code) {
   }
 }
 
+// One line of the log: when, how grave, what, and its fields.
+std::string Line(absl::Time now, std::string_view severity, std::string_view event,
+                 const Json& fields) {
+  Json line;
+  line["time"] = absl::FormatTime("%Y-%m-%dT%H:%M:%E6SZ", now, absl::UTCTimeZone());
+  line["severity"] = severity;
+  line["event"] = event;
+  if (fields.is_object()) line.update(fields);
+  // Callers' bytes may be anything; a log line is always valid UTF-8.
+  return line.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
 }  // namespace
+
+std::string DroppedLinesNotice(std::uint64_t dropped, absl::Time now) {
+  return Line(now, "WARNING", "log_lines_dropped", {{"dropped", dropped}});
+}
 
 void JsonLog::CallFinished(const CallRecord& record) {
   Json fields;
@@ -59,13 +75,7 @@ void JsonLog::Info(std::string_view event, Json fields) { Write("INFO", event, f
 void JsonLog::Error(std::string_view event, Json fields) { Write("ERROR", event, fields); }
 
 void JsonLog::Write(std::string_view severity, std::string_view event, const Json& fields) {
-  Json line;
-  line["time"] = absl::FormatTime("%Y-%m-%dT%H:%M:%E6SZ", now_(), absl::UTCTimeZone());
-  line["severity"] = severity;
-  line["event"] = event;
-  if (fields.is_object()) line.update(fields);
-  // Callers' bytes may be anything; a log line is always valid UTF-8.
-  sink_.Write(line.dump(-1, ' ', false, Json::error_handler_t::replace));
+  sink_.Write(Line(now_(), severity, event, fields));
 }
 
 }  // namespace duet::server::metrics

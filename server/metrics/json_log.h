@@ -1,6 +1,7 @@
 #ifndef DUET_SERVER_METRICS_JSON_LOG_H_
 #define DUET_SERVER_METRICS_JSON_LOG_H_
 
+#include <cstdint>
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -11,6 +12,9 @@
 #include "server/metrics/log_sink.h"
 
 namespace duet::server::metrics {
+
+// The line that says how many log lines were given up (QueuedLogSink's drop_notice).
+std::string DroppedLinesNotice(std::uint64_t dropped, absl::Time now = absl::Now());
 
 // One line of JSON for each call and each event of the server's life.
 //

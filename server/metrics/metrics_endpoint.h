@@ -10,7 +10,7 @@
 namespace duet::server::metrics {
 
 struct MetricsEndpointOptions {
-  std::string host = "0.0.0.0";
+  std::string host;
   int port = 0;                         // 0: any free one
   std::function<std::string()> render;  // the Prometheus text; called concurrently
   std::function<bool()> ready;          // whether calls are being served

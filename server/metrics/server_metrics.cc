@@ -44,7 +44,7 @@ std::string CodeLabel(absl::StatusCode code) {
 }
 
 Labels PriorityLabels(batching::Priority priority) {
-  return {{"priority", priority == batching::Priority::kBulk ? "bulk" : "interactive"}};
+  return {{"priority", std::string(PriorityName(priority))}};
 }
 
 }  // namespace
@@ -104,7 +104,13 @@ ServerMetrics::ServerMetrics()
       model_state_(BuildGauge()
                        .Name("duet_model_state")
                        .Help("1 when a checkpoint is served, 0 when it failed to load.")
-                       .Register(registry_)) {}
+                       .Register(registry_)),
+      log_lines_dropped_(
+          BuildCounter()
+              .Name("duet_log_lines_dropped_total")
+              .Help("Log lines dropped because whoever reads the log did not keep up.")
+              .Register(registry_)
+              .Add({})) {}
 
 void ServerMetrics::CallStarted(const MethodInfo& method) {
   started_.Add(MethodLabels(method)).Increment();
@@ -148,8 +154,16 @@ void ServerMetrics::SetQueueLength(std::function<double()> queued_windows) {
   queue_length_ = std::move(queued_windows);
 }
 
+void ServerMetrics::SetDroppedLogLines(std::function<double()> dropped_log_lines) {
+  dropped_log_lines_ = std::move(dropped_log_lines);
+}
+
 std::string ServerMetrics::Render() {
+  common::MutexLock lock(render_mutex_);
   if (queue_length_) queued_windows_.Set(queue_length_());
+  if (dropped_log_lines_) {
+    log_lines_dropped_.Increment(dropped_log_lines_() - log_lines_dropped_.Value());
+  }
   return prometheus::TextSerializer().Serialize(registry_.Collect());
 }
 

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "server/batching/window_scheduler.h"
+#include "server/common/mutex.h"
 #include "server/metrics/call_record.h"
 
 namespace duet::server::metrics {
@@ -18,34 +19,41 @@ namespace duet::server::metrics {
 // Every number that the server gives to Prometheus. Durations are histograms in seconds; labels
 // take their values from what is served, never from a request.
 //
-//   grpc_server_started_total{grpc_type, grpc_service, grpc_method}
-//   grpc_server_handled_total{..., grpc_code}
-//   grpc_server_handling_seconds{...}
-//   duet_calls_in_flight{method}
-//   duet_first_chunk_seconds{priority}     admission to the first chunk
-//   duet_frames_total{model, version}      frames sent
-//   duet_queue_seconds{priority}           one window's wait for a worker
-//   duet_compute_seconds                   one evaluation of the network
-//   duet_batch_size                        windows evaluated together
-//   duet_windows_dropped_total{priority}   windows that never started: cancelled or expired
-//   duet_queued_windows                    windows waiting now
-//   duet_model_load_seconds{checkpoint}
-//   duet_model_state{checkpoint}           1 served, 0 failed to load
+// Of calls ("call labels" are grpc_type, grpc_service and grpc_method):
+//   grpc_server_started_total{call labels}             calls begun
+//   grpc_server_handled_total{call labels, grpc_code}  calls ended, by status
+//   grpc_server_handling_seconds{call labels}          from a call's start to its status
+//   duet_calls_in_flight{method}                       calls being answered now
+//   duet_first_chunk_seconds{priority}                 from a call's start to its first chunk
+//   duet_frames_total{model, version}                  follower frames sent
+// Of windows:
+//   duet_queue_seconds{priority}                       one window's wait for a worker
+//   duet_compute_seconds                               one evaluation of the network
+//   duet_batch_size                                    windows evaluated together
+//   duet_windows_dropped_total{priority}               never started: cancelled or expired
+//   duet_queued_windows                                waiting now
+// Of models:
+//   duet_model_load_seconds{checkpoint}                time that loading took
+//   duet_model_state{checkpoint}                       1 served, 0 failed to load
+// Of the log:
+//   duet_log_lines_dropped_total                       lines lost to a slow reader of the log
 //
 // Threads: safe to call concurrently.
-class ServerMetrics final : public CallObserver {
+class ServerMetrics final : public CallObserver, public batching::WindowObserver {
  public:
   ServerMetrics();
 
   void CallStarted(const MethodInfo& method) override;
   void CallFinished(const CallRecord& record) override;
 
-  // A window left the queue.
-  void WindowFinished(batching::Priority priority, const batching::WindowTimings& timings);
+  void WindowFinished(batching::Priority priority, const batching::WindowTimings& timings) override;
+
   // A checkpoint was loaded, or was refused.
   void ModelLoaded(const std::string& checkpoint, double seconds, bool served);
-  // Asks for the number of waiting windows at every scrape.
+
+  // What is asked for at every scrape. Call before the first Render.
   void SetQueueLength(std::function<double()> queued_windows);
+  void SetDroppedLogLines(std::function<double()> dropped_log_lines);
 
   // The Prometheus text format.
   std::string Render();
@@ -65,7 +73,10 @@ class ServerMetrics final : public CallObserver {
   prometheus::Gauge& queued_windows_;
   prometheus::Family<prometheus::Gauge>& load_seconds_;
   prometheus::Family<prometheus::Gauge>& model_state_;
+  prometheus::Counter& log_lines_dropped_;
   std::function<double()> queue_length_;
+  std::function<double()> dropped_log_lines_;
+  common::Mutex render_mutex_;  // one scrape brings the numbers that are asked for up to date
 };
 
 }  // namespace duet::server::metrics

@@ -34,8 +34,8 @@ absl::StatusOr<std::vector<std::shared_ptr<const Synthesizer>>> LoadEmbedded() {
 
 int main(int argc, char** argv) {
   duet::server::lifecycle::StopSignal stop;
-  duet::server::metrics::StreamLogSink log(stderr);
   const duet::server::lifecycle::ModelSource source{LoadFolder, LoadEmbedded,
                                                     duet::torch_engine::SetTorchThreads};
-  return duet::server::lifecycle::RunServer(argc, argv, source, stop, log);
+  return duet::server::lifecycle::RunServer(
+      argc, argv, source, stop, std::make_shared<duet::server::metrics::StreamLogSink>(stderr));
 }

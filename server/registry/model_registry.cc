@@ -63,31 +63,32 @@ ServedModel ModelRegistry::Describe(const std::string& name, const Entry& entry,
   return served;
 }
 
-absl::StatusOr<ServedModel> ModelRegistry::Find(const ModelQuery& query) const {
+FindResult ModelRegistry::Find(const ModelQuery& query) const {
   common::MutexLock lock(mutex_);
   const std::string& name = query.name.empty() ? DefaultName() : query.name;
   const auto found = entries_.find(name);
   if (found == entries_.end()) {
-    return absl::NotFoundError(absl::StrCat("model.name: is ", base::Quoted(name),
-                                            ", which is not served; served are: ", Keys(entries_)));
+    return ModelNotFound{"model.name",
+                         absl::StrCat("is ", base::Quoted(name),
+                                      ", which is not served; served are: ", Keys(entries_))};
   }
   const Entry& entry = found->second;
   uint32_t version = entry.versions.begin()->first;
   if (query.version_label.has_value()) {
     const auto label = entry.labels.find(*query.version_label);
     if (label == entry.labels.end()) {
-      return absl::NotFoundError(
-          absl::StrCat("model.version_label: is ", base::Quoted(*query.version_label),
-                       "; labels of model ", name, " are: ", Keys(entry.labels)));
+      return ModelNotFound{"model.version_label",
+                           absl::StrCat("is ", base::Quoted(*query.version_label),
+                                        "; labels of model ", name, " are: ", Keys(entry.labels))};
     }
     version = label->second;
   }
   if (query.version.has_value()) {
     version = *query.version;
     if (entry.versions.count(version) == 0) {
-      return absl::NotFoundError(absl::StrCat("model.version: is ", version,
-                                              "; served versions of model ", name,
-                                              " are: ", Keys(entry.versions)));
+      return ModelNotFound{"model.version",
+                           absl::StrCat("is ", version, "; served versions of model ", name,
+                                        " are: ", Keys(entry.versions))};
     }
   }
   return Describe(found->first, entry, version);

@@ -7,10 +7,10 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "absl/status/status.h"
-#include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
 #include "model/engine/synthesizer.h"
 #include "server/common/mutex.h"
@@ -31,9 +31,17 @@ struct ServedModel {
   bool is_default = false;
 };
 
+// What of a query nothing that is served answers to.
+struct ModelNotFound {
+  std::string field;        // of the request: "model.name", "model.version", "model.version_label"
+  std::string description;  // what came, and what is served
+};
+
+using FindResult = std::variant<ServedModel, ModelNotFound>;
+
 // The models being served, by name and version.
 //
-// Whoever found a model holds it: replacing or removing it never disturbs a call.
+// Find hands out shared ownership: a call keeps its model when another takes its place here.
 // Threads: safe to call concurrently.
 class ModelRegistry {
  public:
@@ -48,8 +56,7 @@ class ModelRegistry {
   // NOT_FOUND when no version of it is served.
   absl::Status SetDefault(absl::string_view name);
 
-  // NOT_FOUND: "<field of the request>: <what came; what is served>".
-  absl::StatusOr<ServedModel> Find(const ModelQuery& query) const;
+  FindResult Find(const ModelQuery& query) const;
 
   // Every version, by name, newest first.
   std::vector<ServedModel> List() const;

@@ -13,7 +13,7 @@
 
 namespace duet::server::registry {
 
-// Turns a checkpoint folder into a model. Only main.cc knows which engine that is.
+// Turns a checkpoint folder into a model. Only the main program knows which engine it is.
 using ModelLoader = std::function<absl::StatusOr<std::shared_ptr<const engine::Synthesizer>>(
     const std::filesystem::path& folder)>;
 

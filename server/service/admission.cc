@@ -1,6 +1,5 @@
 #include "server/service/admission.h"
 
-#include "server/batching/window_queue.h"
 #include "server/service/refusals.h"
 
 namespace duet::server::service {
@@ -37,10 +36,10 @@ Admission::State Admission::state() const {
 absl::Status Admission::CheckServing() const { return Refusal(state()); }
 
 absl::StatusOr<AdmissionSlot> Admission::Admit(batching::Priority priority) {
-  const std::size_t limit =
-      priority == batching::Priority::kBulk ? batching::BulkShare(max_calls_) : max_calls_;
+  const std::size_t limit = batching::ShareOf(max_calls_, priority);
   common::MutexLock lock(mutex_);
-  // Under the same lock as the count: who drains sees every call that got in.
+  // The state is read under the lock that guards the count: once SetState(kDraining) has returned,
+  // no further call is admitted, and calls() counts every call that was.
   const absl::Status serving = Refusal(state_);
   if (!serving.ok()) return serving;
   if (calls_ >= limit) return TooManyCallsRefusal(calls_, limit);

@@ -6,7 +6,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "server/batching/window_scheduler.h"
+#include "server/batching/priority.h"
 #include "server/common/mutex.h"
 
 namespace duet::server::service {
@@ -38,7 +38,7 @@ class Admission {
  public:
   enum class State { kLoading, kServing, kDraining };
 
-  // `max_calls`: calls answered at the same time, 1 or more; bulk ones end at BulkShare of it.
+  // `max_calls`: calls answered at the same time, 1 or more; bulk ones end at their share of it.
   explicit Admission(std::size_t max_calls) : max_calls_(max_calls) {}
 
   void SetState(State state);

@@ -18,8 +18,9 @@ namespace duet::server::service {
 struct ClipStreamOptions {
   batching::Priority priority = batching::Priority::kInteractive;
   common::TimePoint deadline = common::TimePoint::max();
-  // The next window is scheduled while fewer finished frames than this wait for the reader.
-  int buffered_frames = 240;
+  // The next window is scheduled while fewer finished frames than this wait for the reader; 1 or
+  // more. Required.
+  int buffered_frames = 0;
 };
 
 // What one call did, for its summary, its metrics and its log line.
@@ -67,7 +68,7 @@ class ClipStream : public std::enable_shared_from_this<ClipStream> {
   // Takes at most `max_frames` (1 or more) of what is ready.
   ClipPart Take(int max_frames);
 
-  // Nobody wants the rest: a window that has not started never will. on_progress is not called
+  // Gives the rest up: a window that has not started never will, and on_progress is not called
   // for it.
   void Cancel();
 
@@ -90,7 +91,7 @@ class ClipStream : public std::enable_shared_from_this<ClipStream> {
   const std::function<void()> on_progress_;
   const std::shared_ptr<std::atomic<bool>> cancelled_;
 
-  // Touched only by whoever set in_flight_, until it clears it; frame_count() is constant.
+  // Used only by the thread that set in_flight_ or was given its window; frame_count() is constant.
   engine::ClipSynthesis clip_;
   std::size_t expected_positions_ = 0;  // of the window in flight
 

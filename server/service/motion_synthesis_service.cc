@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <chrono>
 #include <utility>
+#include <variant>
 
-#include "server/common/grpc_status.h"
-#include "server/service/call_identity.h"
-#include "server/service/call_scope.h"
 #include "server/service/model_message.h"
+#include "server/service/priority_message.h"
 #include "server/service/refusals.h"
 #include "server/service/synthesize_reactor.h"
 #include "server/service/validator.h"
@@ -32,33 +31,27 @@ common::TimePoint DeadlineOf(const grpc::CallbackServerContext& context,
   return clock.Now() + std::chrono::duration_cast<common::TimePoint::duration>(left);
 }
 
-// Answers a unary call with a message or a status.
-template <typename Response>
-grpc::ServerUnaryReactor* FinishUnary(grpc::CallbackServerContext* context, CallScope& scope,
-                                      const absl::StatusOr<Response>& answer,
-                                      grpc::ByteBuffer* response) {
-  if (answer.ok()) *response = SerializeMessage(*answer);
-  scope.Finish(answer.status());
-  common::AddRetryPushback(answer.status(), *context);
-  grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
-  reactor->Finish(common::ToGrpcStatus(answer.status()));
-  return reactor;
-}
-
 }  // namespace
+
+MotionSynthesisService::MotionSynthesisService(ServiceParts parts)
+    : parts_(std::move(parts)),
+      pipeline_(parts_.limits.max_request_bytes, parts_.observers, *parts_.clock) {}
 
 grpc::ServerWriteReactor<grpc::ByteBuffer>* MotionSynthesisService::Synthesize(
     grpc::CallbackServerContext* context, const grpc::ByteBuffer* request) {
-  auto scope = std::make_unique<CallScope>(kSynthesize, IdentifyCall(*context), parts_.observers,
-                                           *parts_.clock);
+  auto incoming = pipeline_.Open<v1::SynthesizeRequest>(
+      *context, kSynthesize, *request, [this](const v1::SynthesizeRequest& opened) {
+        // A priority that there is not is the validator's to refuse.
+        return parts_.admission->Admit(
+            PriorityOf(opened).value_or(batching::Priority::kInteractive));
+      });
   auto* reactor = new SynthesizeReactor(*context);
-  absl::StatusOr<SynthesisCall::Parts> prepared = Prepare(*context, *request);
+  absl::StatusOr<SynthesisCall::Parts> prepared = Prepare(*context, incoming);
   if (!prepared.ok()) {
-    scope->Finish(prepared.status());
-    reactor->Refuse(prepared.status());
+    reactor->Finish(*incoming.scope, prepared.status());
     return reactor;
   }
-  prepared->scope = std::move(scope);
+  prepared->scope = std::move(incoming.scope);
   auto call = SynthesisCall::Create(*std::move(prepared), *parts_.scheduler, *reactor);
   Remember(call);
   reactor->Run(std::move(call));
@@ -66,41 +59,57 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* MotionSynthesisService::Synthesize(
 }
 
 absl::StatusOr<SynthesisCall::Parts> MotionSynthesisService::Prepare(
-    const grpc::CallbackServerContext& context, const grpc::ByteBuffer& bytes) {
-  if (bytes.Length() > parts_.limits.max_request_bytes) {
-    return TooLargeRefusal(bytes.Length(), parts_.limits.max_request_bytes);
+    const grpc::CallbackServerContext& context,
+    IncomingCall<v1::SynthesizeRequest>& incoming) const {
+  if (!incoming.status.ok()) return incoming.status;
+  AdmissionSlot slot = std::move(incoming.slot);  // free again when the request is refused
+  const v1::SynthesizeRequest& request = incoming.request;
+  registry::FindResult found = parts_.registry->Find(ToQuery(request.model()));
+  if (const auto* not_found = std::get_if<registry::ModelNotFound>(&found)) {
+    return ModelNotFoundRefusal(*not_found);
   }
-  v1::SynthesizeRequest request;
-  const absl::Status parsed = ParseMessage(bytes, request);
-  if (!parsed.ok()) return parsed;
-  const batching::Priority priority = request.priority() == v1::PRIORITY_BULK
-                                          ? batching::Priority::kBulk
-                                          : batching::Priority::kInteractive;
-  absl::StatusOr<AdmissionSlot> slot = parts_.admission->Admit(priority);
-  if (!slot.ok()) return slot.status();
-  absl::StatusOr<registry::ServedModel> served = parts_.registry->Find(ToQuery(request.model()));
-  if (!served.ok()) return ModelNotFoundRefusal(served.status());
+  auto& served = std::get<registry::ServedModel>(found);
   absl::StatusOr<ValidatedRequest> validated =
-      ValidateRequest(request, served->model->description(), parts_.limits);
+      ValidateRequest(request, served.model->description(), parts_.limits);
   if (!validated.ok()) return validated.status();
-  return SynthesisCall::Parts{
-      std::move(served->model),           *std::move(validated), *std::move(slot), nullptr,
-      DeadlineOf(context, *parts_.clock), parts_.buffered_frames};
+  return SynthesisCall::Parts{std::move(served.model), *std::move(validated),
+                              std::move(slot),
+                              /*scope=*/nullptr,       DeadlineOf(context, *parts_.clock),
+                              parts_.buffered_frames};
+}
+
+template <typename Request, typename Answer>
+grpc::ServerUnaryReactor* MotionSynthesisService::AnswerUnary(grpc::CallbackServerContext& context,
+                                                              const metrics::MethodInfo& method,
+                                                              const grpc::ByteBuffer& bytes,
+                                                              grpc::ByteBuffer& response,
+                                                              const Answer& answer) const {
+  const auto incoming = pipeline_.Open<Request>(context, method, bytes, [this](const Request&) {
+    const absl::Status serving = parts_.admission->CheckServing();
+    return serving.ok() ? absl::StatusOr<AdmissionSlot>(AdmissionSlot()) : serving;
+  });
+  absl::Status status = incoming.status;
+  if (status.ok()) {
+    const auto answered = answer(incoming.request);
+    status = answered.status();
+    if (answered.ok()) response = SerializeMessage(*answered);
+  }
+  grpc::ServerUnaryReactor* reactor = context.DefaultReactor();
+  CallPipeline::Close(*incoming.scope, status, context, *reactor);
+  return reactor;
 }
 
 grpc::ServerUnaryReactor* MotionSynthesisService::ListModels(grpc::CallbackServerContext* context,
                                                              const grpc::ByteBuffer* request,
                                                              grpc::ByteBuffer* response) {
-  CallScope scope(kListModels, IdentifyCall(*context), parts_.observers, *parts_.clock);
-  return FinishUnary(context, scope, List(*request), response);
+  return AnswerUnary<v1::ListModelsRequest>(
+      *context, kListModels, *request, *response,
+      [this](const v1::ListModelsRequest&) -> absl::StatusOr<v1::ListModelsResponse> {
+        return List();
+      });
 }
 
-absl::StatusOr<v1::ListModelsResponse> MotionSynthesisService::List(
-    const grpc::ByteBuffer& bytes) const {
-  v1::ListModelsRequest request;
-  absl::Status status = ParseMessage(bytes, request);
-  if (status.ok()) status = parts_.admission->CheckServing();
-  if (!status.ok()) return status;
+v1::ListModelsResponse MotionSynthesisService::List() const {
   v1::ListModelsResponse response;
   for (const registry::ServedModel& served : parts_.registry->List()) {
     *response.add_models() = ToMessage(served);
@@ -111,21 +120,19 @@ absl::StatusOr<v1::ListModelsResponse> MotionSynthesisService::List(
 grpc::ServerUnaryReactor* MotionSynthesisService::GetModel(grpc::CallbackServerContext* context,
                                                            const grpc::ByteBuffer* request,
                                                            grpc::ByteBuffer* response) {
-  CallScope scope(kGetModel, IdentifyCall(*context), parts_.observers, *parts_.clock);
-  return FinishUnary(context, scope, Get(*request), response);
+  return AnswerUnary<v1::GetModelRequest>(
+      *context, kGetModel, *request, *response,
+      [this](const v1::GetModelRequest& opened) { return Get(opened); });
 }
 
 absl::StatusOr<v1::GetModelResponse> MotionSynthesisService::Get(
-    const grpc::ByteBuffer& bytes) const {
-  v1::GetModelRequest request;
-  absl::Status status = ParseMessage(bytes, request);
-  if (status.ok()) status = parts_.admission->CheckServing();
-  if (!status.ok()) return status;
-  const absl::StatusOr<registry::ServedModel> served =
-      parts_.registry->Find(ToQuery(request.model()));
-  if (!served.ok()) return ModelNotFoundRefusal(served.status());
+    const v1::GetModelRequest& request) const {
+  const registry::FindResult found = parts_.registry->Find(ToQuery(request.model()));
+  if (const auto* not_found = std::get_if<registry::ModelNotFound>(&found)) {
+    return ModelNotFoundRefusal(*not_found);
+  }
   v1::GetModelResponse response;
-  *response.mutable_model() = ToMessage(*served);
+  *response.mutable_model() = ToMessage(std::get<registry::ServedModel>(found));
   *response.mutable_limits() = ToMessage(parts_.limits);
   return response;
 }

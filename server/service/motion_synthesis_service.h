@@ -11,6 +11,7 @@
 #include "server/metrics/call_record.h"
 #include "server/registry/model_registry.h"
 #include "server/service/admission.h"
+#include "server/service/call_pipeline.h"
 #include "server/service/request_limits.h"
 #include "server/service/synthesis_call.h"
 
@@ -24,7 +25,7 @@ struct ServiceParts {
   std::vector<metrics::CallObserver*> observers;
   const common::Clock* clock = &common::Clock::Real();
   RequestLimits limits;
-  int buffered_frames = 240;  // see ClipStreamOptions
+  int buffered_frames = 0;  // see ClipStreamOptions
 };
 
 // The generated service with every method on the callback API, and bytes for messages (wire.h).
@@ -34,13 +35,13 @@ using RawMotionSynthesis = v1::MotionSynthesis::WithRawCallbackMethod_Synthesize
 
 // The contract's service: no method blocks.
 //
-// A Synthesize request goes size -> parser -> admission -> model -> validator -> SynthesisCall,
-// which lives until its last reply was taken or the caller went away.
+// Every call comes in by the CallPipeline. A Synthesize call goes on model -> validator ->
+// SynthesisCall, which lives until its last reply was taken or the caller went away.
 class MotionSynthesisService final : public RawMotionSynthesis {
  public:
   static constexpr char kServiceName[] = "duet.v1.MotionSynthesis";
 
-  explicit MotionSynthesisService(ServiceParts parts) : parts_(std::move(parts)) {}
+  explicit MotionSynthesisService(ServiceParts parts);
 
   grpc::ServerWriteReactor<grpc::ByteBuffer>* Synthesize(grpc::CallbackServerContext* context,
                                                          const grpc::ByteBuffer* request) override;
@@ -55,14 +56,22 @@ class MotionSynthesisService final : public RawMotionSynthesis {
   void AbortAll(const absl::Status& reason);
 
  private:
-  // Reads, admits and checks a request. The scope is left to the caller.
+  // Finds the model and checks the request. Takes the call's slot; its scope is left to the caller.
   absl::StatusOr<SynthesisCall::Parts> Prepare(const grpc::CallbackServerContext& context,
-                                               const grpc::ByteBuffer& bytes);
-  absl::StatusOr<v1::ListModelsResponse> List(const grpc::ByteBuffer& bytes) const;
-  absl::StatusOr<v1::GetModelResponse> Get(const grpc::ByteBuffer& bytes) const;
+                                               IncomingCall<v1::SynthesizeRequest>& incoming) const;
+  v1::ListModelsResponse List() const;
+  absl::StatusOr<v1::GetModelResponse> Get(const v1::GetModelRequest& request) const;
+  // A unary call, from the bytes of its request to those of its response. `answer`: a response or a
+  // status from (const Request&).
+  template <typename Request, typename Answer>
+  grpc::ServerUnaryReactor* AnswerUnary(grpc::CallbackServerContext& context,
+                                        const metrics::MethodInfo& method,
+                                        const grpc::ByteBuffer& bytes, grpc::ByteBuffer& response,
+                                        const Answer& answer) const;
   void Remember(const std::shared_ptr<SynthesisCall>& call);
 
   const ServiceParts parts_;
+  const CallPipeline pipeline_;
   common::Mutex mutex_;
   std::vector<std::weak_ptr<SynthesisCall>> calls_ DUET_GUARDED_BY(mutex_);
 };

@@ -1,10 +1,8 @@
 #include "server/service/refusals.h"
 
 #include <map>
-#include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_split.h"
 #include "absl/strings/string_view.h"
 #include "absl/time/time.h"
 #include "server/common/error_details.h"
@@ -54,11 +52,10 @@ absl::Status TooLargeRefusal(std::size_t bytes, std::size_t limit) {
   return status;
 }
 
-absl::Status ModelNotFoundRefusal(const absl::Status& registry_status) {
-  const std::pair<std::string, std::string> violation =
-      absl::StrSplit(registry_status.message(), absl::MaxSplits(": ", 1));
-  absl::Status status = registry_status;
-  common::AddBadRequest(status, {{violation.first, violation.second}});
+absl::Status ModelNotFoundRefusal(const registry::ModelNotFound& not_found) {
+  absl::Status status =
+      absl::NotFoundError(absl::StrCat(not_found.field, ": ", not_found.description));
+  common::AddBadRequest(status, {{not_found.field, not_found.description}});
   common::AddErrorInfo(status, common::kReasonModelNotFound);
   return status;
 }

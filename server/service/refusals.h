@@ -5,6 +5,7 @@
 #include <string>
 
 #include "absl/status/status.h"
+#include "server/registry/model_registry.h"
 
 namespace duet::server::service {
 
@@ -22,8 +23,8 @@ absl::Status TooManyCallsRefusal(std::size_t calls, std::size_t limit);
 absl::Status QueueRefusal(const absl::Status& scheduler_status);
 // RESOURCE_EXHAUSTED: the message is larger than the limit.
 absl::Status TooLargeRefusal(std::size_t bytes, std::size_t limit);
-// NOT_FOUND with the violated field, from the registry's "field: what came; what is served".
-absl::Status ModelNotFoundRefusal(const absl::Status& registry_status);
+// NOT_FOUND, naming the field that nothing answers to.
+absl::Status ModelNotFoundRefusal(const registry::ModelNotFound& not_found);
 // INTERNAL: the model failed; nothing of its own words.
 absl::Status ModelFailedRefusal(const std::string& request_id);
 

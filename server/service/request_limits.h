@@ -17,8 +17,8 @@ struct RequestLimits {
   float max_abs_weight = 2;
   // Beyond any room; also keeps float arithmetic on positions meaningful.
   float max_abs_coordinate_metres = 10000;
-  // 10 minutes of 15 joints at 240 Hz are 26 MB.
-  std::size_t max_request_bytes = std::size_t{32} << 20;
+  // The operator's to choose: ServerOptions has the default.
+  std::size_t max_request_bytes = 0;
 };
 
 }  // namespace duet::server::service

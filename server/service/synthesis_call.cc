@@ -1,17 +1,12 @@
 #include "server/service/synthesis_call.h"
 
 #include <string>
-#include <string_view>
 #include <utility>
 
 #include "server/service/refusals.h"
 
 namespace duet::server::service {
 namespace {
-
-std::string_view PriorityName(batching::Priority priority) {
-  return priority == batching::Priority::kBulk ? "bulk" : "interactive";
-}
 
 // Failures of a window that are the model's, not the caller's or the server's own.
 bool IsModelFailure(const absl::Status& status) {
@@ -172,20 +167,23 @@ void SynthesisCall::PrepareSummary() {
 }
 
 void SynthesisCall::Finish(const absl::Status& status) {
-  const ClipStreamStats stats = stream_->stats();
+  AdmissionSlot slot;
+  std::unique_ptr<CallScope> scope;
   {
     common::MutexLock lock(mutex_);
-    metrics::CallRecord& record = scope_->record();
-    record.windows = stats.windows;
-    record.queue_seconds = stats.queue_seconds;
-    record.compute_seconds = stats.compute_seconds;
-    record.peak_buffered_frames = stats.peak_buffered_frames;
-    // Before the caller can know, so that whoever sees the status finds it counted, and the place
-    // free.
-    scope_->Finish(status);
-    slot_ = AdmissionSlot();
+    slot = std::move(slot_);
+    scope = std::move(scope_);
   }
-  writer_.Finish(status);
+  const ClipStreamStats stats = stream_->stats();
+  metrics::CallRecord& record = scope->record();
+  record.windows = stats.windows;
+  record.queue_seconds = stats.queue_seconds;
+  record.compute_seconds = stats.compute_seconds;
+  record.peak_buffered_frames = stats.peak_buffered_frames;
+  // The place is free before the call is reported, and the call is reported before its caller gets
+  // the status: none of them is seen without the one before. Under no lock: observers may be slow.
+  slot = AdmissionSlot();
+  writer_.Finish(*scope, status);
 }
 
 }  // namespace duet::server::service

@@ -22,15 +22,16 @@ class ReplyWriter {
   virtual ~ReplyWriter() = default;
   // Begins to write; SynthesisCall::OnWritten follows, never within Write. `reply` lives till then.
   virtual void Write(const v1::SynthesizeResponse& reply) = 0;
-  // Ends the call. Nothing is called on the writer afterwards.
-  virtual void Finish(const absl::Status& status) = 0;
+  // Ends the call: reports it through its scope, then tells the caller. Nothing is called on the
+  // writer afterwards.
+  virtual void Finish(CallScope& scope, const absl::Status& status) = 0;
 };
 
 // One admitted Synthesize call: pulls finished frames from its clip as fast as its reader takes
 // them, and writes header, chunks and summary, one at a time.
 //
-// The writer is touched only by whoever moved the call from idle to writing or finished, so that it
-// may go as soon as it was finished, whatever a worker is still doing.
+// Only the thread that moves the call from idle to writing or to finished uses the writer, so that
+// the writer may be destroyed once it was told to finish, even while a worker runs a window.
 //
 // Threads: safe to call concurrently.
 class SynthesisCall : public std::enable_shared_from_this<SynthesisCall> {
@@ -42,7 +43,7 @@ class SynthesisCall : public std::enable_shared_from_this<SynthesisCall> {
     AdmissionSlot slot;
     std::unique_ptr<CallScope> scope;
     common::TimePoint deadline = common::TimePoint::max();
-    int buffered_frames = 240;
+    int buffered_frames = 0;  // see ClipStreamOptions
   };
 
   // `scheduler` and `writer` as in their comments.
@@ -86,7 +87,7 @@ class SynthesisCall : public std::enable_shared_from_this<SynthesisCall> {
   std::optional<absl::Status> end_ DUET_GUARDED_BY(mutex_);  // how the call is to finish
   v1::SynthesizeResponse reply_;                             // owned by the writer while kWriting
   AdmissionSlot slot_ DUET_GUARDED_BY(mutex_);
-  std::unique_ptr<CallScope> scope_ DUET_GUARDED_BY(mutex_);
+  std::unique_ptr<CallScope> scope_ DUET_GUARDED_BY(mutex_);  // null once finished
 };
 
 }  // namespace duet::server::service

@@ -3,7 +3,7 @@
 #include <chrono>
 #include <utility>
 
-#include "server/common/grpc_status.h"
+#include "server/service/call_pipeline.h"
 #include "server/service/wire.h"
 
 namespace duet::server::service {
@@ -25,9 +25,9 @@ void SynthesizeReactor::Write(const v1::SynthesizeResponse& reply) {
   StartWrite(&reply_);
 }
 
-void SynthesizeReactor::Finish(const absl::Status& status) {
-  common::AddRetryPushback(status, context_);
-  grpc::ServerWriteReactor<grpc::ByteBuffer>::Finish(common::ToGrpcStatus(status));
+void SynthesizeReactor::Finish(CallScope& scope, const absl::Status& status) {
+  grpc::ServerWriteReactor<grpc::ByteBuffer>& reactor = *this;
+  CallPipeline::Close(scope, status, context_, reactor);
 }
 
 void SynthesizeReactor::OnCancel() {

@@ -18,12 +18,11 @@ class SynthesizeReactor final : public grpc::ServerWriteReactor<grpc::ByteBuffer
  public:
   explicit SynthesizeReactor(grpc::CallbackServerContext& context) : context_(context) {}
 
-  // Call one of the two, once.
+  // Answers with an admitted call. A refused one needs Finish alone.
   void Run(std::shared_ptr<SynthesisCall> call);
-  void Refuse(const absl::Status& status) { Finish(status); }
 
   void Write(const v1::SynthesizeResponse& reply) override;
-  void Finish(const absl::Status& status) override;
+  void Finish(CallScope& scope, const absl::Status& status) override;
 
   void OnWriteDone(bool ok) override { call_->OnWritten(ok); }
   void OnCancel() override;

@@ -10,6 +10,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "model/base/text.h"
+#include "server/service/priority_message.h"
 #include "server/service/validate_labels.h"
 #include "server/service/validate_leader.h"
 #include "server/service/violations.h"
@@ -188,14 +189,12 @@ int Validation::ChunkFrames() {
 }
 
 batching::Priority Validation::CallPriority() {
-  if (!request_.has_priority()) return batching::Priority::kInteractive;
-  if (request_.priority() == v1::PRIORITY_BULK) return batching::Priority::kBulk;
-  if (request_.priority() != v1::PRIORITY_INTERACTIVE) {
-    const std::string& name = v1::Priority_Name(request_.priority());
-    violations_.Malformed(
-        "priority", absl::StrCat("is ", name.empty() ? absl::StrCat(request_.priority()) : name,
-                                 ", wanted PRIORITY_INTERACTIVE, PRIORITY_BULK or no value"));
-  }
+  const std::optional<batching::Priority> priority = PriorityOf(request_);
+  if (priority.has_value()) return *priority;
+  const std::string& name = v1::Priority_Name(request_.priority());
+  violations_.Malformed("priority",
+                        absl::StrCat("is ", name.empty() ? absl::StrCat(request_.priority()) : name,
+                                     ", wanted PRIORITY_INTERACTIVE, PRIORITY_BULK or no value"));
   return batching::Priority::kInteractive;
 }
 

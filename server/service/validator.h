@@ -5,7 +5,7 @@
 #include "duet/v1/synthesis.pb.h"
 #include "model/engine/clip_synthesis.h"
 #include "model/engine/model_description.h"
-#include "server/batching/window_scheduler.h"
+#include "server/batching/priority.h"
 #include "server/service/reply_mapping.h"
 #include "server/service/request_limits.h"
 

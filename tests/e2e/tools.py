@@ -53,7 +53,7 @@ class Server:
     def __init__(self, *flags):
         self.log = []
         self._process = subprocess.Popen(
-            [PROGRAMS / "duet-server", "--listen", "127.0.0.1:0", "--metrics_listen", "", *flags],
+            [PROGRAMS / "duet-server", "--listen", "127.0.0.1:0", "--metrics-listen", "", *flags],
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         serving = queue.Queue()
         # Reads to the end: a server whose log nobody reads stands still.

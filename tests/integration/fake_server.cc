@@ -29,7 +29,6 @@ absl::StatusOr<std::shared_ptr<const Synthesizer>> LoadFolder(const std::filesys
 
 int main(int argc, char** argv) {
   duet::server::lifecycle::StopSignal stop;
-  duet::server::metrics::StreamLogSink log(stderr);
   const duet::server::lifecycle::ModelSource source{
       LoadFolder,
       [] {
@@ -37,5 +36,6 @@ int main(int argc, char** argv) {
             std::make_shared<duet::test::FakeSynthesizer>()};
       },
       [](int) {}};
-  return duet::server::lifecycle::RunServer(argc, argv, source, stop, log);
+  return duet::server::lifecycle::RunServer(
+      argc, argv, source, stop, std::make_shared<duet::server::metrics::StreamLogSink>(stderr));
 }

@@ -20,6 +20,7 @@
 #include "tests/server/support/refusal.h"
 #include "tests/server/support/running_service.h"
 #include "tests/server/support/sample_request.h"
+#include "tests/server/support/timed_context.h"
 #include "tests/support/status_matchers.h"
 
 namespace duet::test {
@@ -81,7 +82,7 @@ class Running {
     server_->Add({"fake/1", std::move(model), 0.5});
   }
   grpc::Status List() {
-    grpc::ClientContext context;
+    TimedContext context;
     v1::ListModelsResponse response;
     return stub->ListModels(&context, v1::ListModelsRequest(), &response);
   }
@@ -326,6 +327,28 @@ TEST(DrainTest, AHurriedOperatorIsObeyed) {
   model.WaitUntilStarted(1);
   server->Drain(kHurried);
   caller.join();
+  EXPECT_EQ(reply.status.error_code(), grpc::StatusCode::UNAVAILABLE);
+  model.Open();
+}
+
+TEST(DrainTest, HurryDuringDrainSecondsCutsTheGraceShortAsWell) {
+  GatedModel model;
+  server::config::ServerOptions options = TestOptions();
+  options.drain_seconds = 3600;
+  options.grace_seconds = 1800;
+  Running server(options);
+  server.Load(model.get());
+  ASSERT_THAT(server->Serve(), IsOk());
+  Reply reply;
+  std::thread caller([&] { reply = Call(*server.stub, SampleRequest(200)); });
+  model.WaitUntilStarted(1);
+  std::vector<double> waits;
+  server->Drain([&](double seconds) {
+    waits.push_back(seconds);
+    return waits.size() > 1;  // the one signal came during the first wait
+  });
+  caller.join();
+  EXPECT_THAT(waits, ElementsAre(3600));
   EXPECT_EQ(reply.status.error_code(), grpc::StatusCode::UNAVAILABLE);
   model.Open();
 }

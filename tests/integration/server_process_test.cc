@@ -23,6 +23,7 @@
 #include "tests/server/support/refusal.h"
 #include "tests/server/support/running_service.h"
 #include "tests/server/support/sample_request.h"
+#include "tests/server/support/timed_context.h"
 #include "tests/support/temporary_folder.h"
 
 namespace duet::test {
@@ -75,6 +76,8 @@ class Process {
     for (std::string line; ReadLine(&line);) rest += line;
     return rest;
   }
+  // From now on the process waits once it is a page ahead of the test's reading.
+  void ShrinkPipe() { EXPECT_GE(fcntl(fileno(output_), F_SETPIPE_SZ, 4096), 0); }
   pid_t pid() const { return pid_; }
   // Among those that WaitForEvent read.
   int lines_without_json() const { return lines_without_json_; }
@@ -104,7 +107,7 @@ class Process {
 };
 
 std::vector<std::string> Flags(std::vector<std::string> more = {}) {
-  std::vector<std::string> flags = {"--listen", "127.0.0.1:0", "--metrics_listen", "off"};
+  std::vector<std::string> flags = {"--listen", "127.0.0.1:0", "--metrics-listen", "off"};
   flags.insert(flags.end(), more.begin(), more.end());
   return flags;
 }
@@ -146,9 +149,9 @@ v1::SynthesizeRequest LongRequest() {
 }
 
 TEST(ServerProcessTest, SigtermLetsACallFinish) {
-  Process server(Flags({"--grace_seconds", "120"}));
+  Process server(Flags({"--grace-seconds", "120"}));
   const auto stub = Connect(server.WaitForEvent("serving"));
-  grpc::ClientContext context;
+  TimedContext context;
   const auto reader = stub->Synthesize(&context, LongRequest());
   v1::SynthesizeResponse message;
   ASSERT_TRUE(reader->Read(&message));
@@ -161,9 +164,9 @@ TEST(ServerProcessTest, SigtermLetsACallFinish) {
 }
 
 TEST(ServerProcessTest, ASecondSignalEndsTheGrace) {
-  Process server(Flags({"--grace_seconds", "3600"}));
+  Process server(Flags({"--grace-seconds", "3600"}));
   const auto stub = Connect(server.WaitForEvent("serving"));
-  grpc::ClientContext context;
+  TimedContext context;
   const auto reader = stub->Synthesize(&context, LongRequest());
   v1::SynthesizeResponse message;
   ASSERT_TRUE(reader->Read(&message));
@@ -182,11 +185,11 @@ TEST(ServerProcessTest, ServesARepositoryPastABadCheckpoint) {
     fs::create_directories(folder / place);
     WriteTestFile(folder / place / "manifest.json", manifest);
   }
-  Process server(Flags({"--model_repository", folder.path().string(), "--default_model", "sbu",
-                        "--version_label", "sbu:stable=1"}));
+  Process server(Flags({"--model-repository", folder.path().string(), "--default-model", "sbu",
+                        "--version-label", "sbu:stable=1"}));
   EXPECT_EQ(server.WaitForEvent("model_refused")["source"], "sbu/2");
   const auto stub = Connect(server.WaitForEvent("serving"));
-  grpc::ClientContext context;
+  TimedContext context;
   v1::ListModelsResponse list;
   ASSERT_TRUE(stub->ListModels(&context, v1::ListModelsRequest(), &list).ok());
   ASSERT_EQ(list.models_size(), 2);
@@ -200,14 +203,14 @@ TEST(ServerProcessTest, ServesARepositoryPastABadCheckpoint) {
 
 TEST(ServerProcessTest, FailsWithoutAnythingToServe) {
   TemporaryFolder folder;
-  Process server(Flags({"--model_repository", folder.path().string()}));
+  Process server(Flags({"--model-repository", folder.path().string()}));
   EXPECT_THAT(server.WaitForEvent("cannot_serve").value("message", ""),
               HasSubstr("no model could be loaded"));
   EXPECT_EQ(server.Wait(), 1);
 }
 
 TEST(ServerProcessTest, FailsOnARepositoryThatIsNotThere) {
-  Process server(Flags({"--model_repository", "/nonexistent/models"}));
+  Process server(Flags({"--model-repository", "/nonexistent/models"}));
   EXPECT_THAT(server.WaitForEvent("cannot_serve").value("message", ""),
               HasSubstr("/nonexistent/models"));
   EXPECT_EQ(server.Wait(), 1);
@@ -216,7 +219,7 @@ TEST(ServerProcessTest, FailsOnARepositoryThatIsNotThere) {
 TEST(ServerProcessTest, FailsOnAPortInUse) {
   Process first(Flags());
   const int port = first.WaitForEvent("serving")["port"];
-  Process second({"--listen", absl::StrCat("127.0.0.1:", port), "--metrics_listen", "off"});
+  Process second({"--listen", absl::StrCat("127.0.0.1:", port), "--metrics-listen", "off"});
   EXPECT_THAT(second.WaitForEvent("cannot_serve").value("message", ""),
               HasSubstr(absl::StrCat("127.0.0.1:", port)));
   EXPECT_EQ(second.Wait(), 1);
@@ -229,7 +232,7 @@ TEST(ServerProcessTest, SigtermWhileLoadingStopsAfterTheCheckpointUnderWay) {
   // Reading it waits until this test has opened and closed it.
   ASSERT_EQ(mkfifo((folder / "a/1/manifest.json").c_str(), 0600), 0);
   WriteTestFile(folder / "b/1/manifest.json", "good");
-  Process server(Flags({"--model_repository", folder.path().string()}));
+  Process server(Flags({"--model-repository", folder.path().string()}));
   const int manifest = open((folder / "a/1/manifest.json").c_str(), O_WRONLY);
   ASSERT_GE(manifest, 0);
   server.Signal(SIGTERM);
@@ -251,7 +254,7 @@ long PeakBytes(pid_t pid) {
 TEST(ServerProcessTest, EveryLineOfOutputIsJson) {
   Process server(Flags());
   const json serving = server.WaitForEvent("serving");
-  grpc::ClientContext context;
+  TimedContext context;
   context.set_compression_algorithm(GRPC_COMPRESS_GZIP);  // gRPC logs its refusal
   EXPECT_FALSE(Call(*Connect(serving), SampleRequest(), context).status.ok());
   v1::SynthesizeRequest request;
@@ -264,9 +267,26 @@ TEST(ServerProcessTest, EveryLineOfOutputIsJson) {
   EXPECT_EQ(server.lines_without_json(), 0);
 }
 
+TEST(ServerProcessTest, ALogThatNobodyReadsHoldsUpNoCall) {
+  Process server(Flags());
+  const auto stub = Connect(server.WaitForEvent("serving"));
+  server.ShrinkPipe();  // to a dozen of the lines below
+  constexpr int kCalls = 400;
+  for (int i = 0; i < kCalls; ++i) {
+    TimedContext context;
+    v1::ListModelsResponse response;
+    ASSERT_TRUE(stub->ListModels(&context, v1::ListModelsRequest(), &response).ok()) << i;
+  }
+  server.Signal(SIGTERM);
+  // The lines that waited all come, the last one too.
+  for (int i = 0; i < kCalls; ++i) ASSERT_FALSE(server.WaitForEvent("call").is_null()) << i;
+  EXPECT_FALSE(server.WaitForEvent("stopped").is_null());
+  EXPECT_EQ(server.Wait(), 0);
+}
+
 TEST(ServerProcessTest, AGiantMessageIsRefusedInLittleMemory) {
   constexpr long kMegabyte = 1 << 20;
-  Process server(Flags({"--max_request_bytes", "1048576", "--max_transport_bytes", "16777216"}));
+  Process server(Flags({"--max-request-bytes", "1048576", "--max-transport-bytes", "16777216"}));
   const auto stub = Connect(server.WaitForEvent("serving"));
   v1::SynthesizeRequest request;
   request.mutable_leader()->mutable_positions()->Resize(static_cast<int>(40 * kMegabyte), 0);
@@ -284,7 +304,7 @@ TEST(ServerProcessTest, AWrongFlagIsNamedAndIsAUsageError) {
 
 TEST(ServerProcessTest, HelpIsPrinted) {
   Process server({"--help"});
-  EXPECT_THAT(server.Rest(), HasSubstr("--model_repository"));
+  EXPECT_THAT(server.Rest(), HasSubstr("--model-repository"));
   EXPECT_EQ(server.Wait(), 0);
 }
 

@@ -75,10 +75,20 @@ TEST(WindowQueueTest, KeepsAQuarterFreeOfBulk) {
   EXPECT_TRUE(queue.HasRoomFor(Job(Priority::kInteractive, 4)));
 }
 
-TEST(BulkShareTest, LeavesSomethingToBulkWhateverTheLimit) {
-  EXPECT_EQ(BulkShare(1), 1u);
-  EXPECT_EQ(BulkShare(4), 3u);
-  EXPECT_EQ(BulkShare(128), 96u);
+TEST(WindowQueueTest, WaitingInteractiveWindowsLeaveLessRoomForBulk) {
+  WindowQueue queue(4);
+  for (int i = 1; i <= 2; ++i) queue.Push({Job(Priority::kInteractive, i), {}});
+  EXPECT_TRUE(queue.HasRoomFor(Job(Priority::kBulk, 3)));
+  queue.Push({Job(Priority::kInteractive, 3), {}});
+  EXPECT_FALSE(queue.HasRoomFor(Job(Priority::kBulk, 4)));
+  EXPECT_TRUE(queue.HasRoomFor(Job(Priority::kInteractive, 4)));
+}
+
+TEST(ShareOfTest, LeavesSomethingToBulkWhateverTheLimit) {
+  EXPECT_EQ(ShareOf(1, Priority::kBulk), 1u);
+  EXPECT_EQ(ShareOf(4, Priority::kBulk), 3u);
+  EXPECT_EQ(ShareOf(128, Priority::kBulk), 96u);
+  EXPECT_EQ(ShareOf(128, Priority::kInteractive), 128u);
 }
 
 }  // namespace

@@ -57,9 +57,9 @@ struct Ticket {
 };
 
 TEST(WorkerPoolTest, EvaluatesAWindow) {
-  WorkerPool pool({1, 4}, common::Clock::Real());
+  const auto pool = MakeWorkerPool({1, 4}, common::Clock::Real());
   Ticket ticket;
-  ASSERT_THAT(pool.Submit(ticket.Job(std::make_shared<FakeSynthesizer>())), IsOk());
+  ASSERT_THAT(pool->Submit(ticket.Job(std::make_shared<FakeSynthesizer>())), IsOk());
   const WindowOutcome outcome = ticket.outcome.get();
   ASSERT_THAT(outcome.result, IsOk());
   const motion::Vec3 expected = FakeAnswer(SwayingMotion(4, 15)[7], std::vector<float>(6, 0.0F));
@@ -68,11 +68,11 @@ TEST(WorkerPoolTest, EvaluatesAWindow) {
 }
 
 TEST(WorkerPoolTest, EvaluatesAsManyWindowsAtOnceAsThereAreWorkers) {
-  WorkerPool pool({2, 4}, common::Clock::Real());
+  const auto pool = MakeWorkerPool({2, 4}, common::Clock::Real());
   GatedModel model;
   Ticket first, second;
-  ASSERT_THAT(pool.Submit(first.Job(model.get())), IsOk());
-  ASSERT_THAT(pool.Submit(second.Job(model.get())), IsOk());
+  ASSERT_THAT(pool->Submit(first.Job(model.get())), IsOk());
+  ASSERT_THAT(pool->Submit(second.Job(model.get())), IsOk());
   model.WaitUntilStarted(2);  // would wait for ever with one worker
   model.Open();
   EXPECT_THAT(first.outcome.get().result, IsOk());
@@ -81,17 +81,17 @@ TEST(WorkerPoolTest, EvaluatesAsManyWindowsAtOnceAsThereAreWorkers) {
 
 TEST(WorkerPoolTest, RefusesANewCallWhenTheQueueIsFull) {
   GatedModel model;
-  WorkerPool pool({1, 1}, common::Clock::Real());
+  const auto pool = MakeWorkerPool({1, 1}, common::Clock::Real());
   Ticket running, waiting, refused, continued;
-  ASSERT_THAT(pool.Submit(running.Job(model.get())), IsOk());
+  ASSERT_THAT(pool->Submit(running.Job(model.get())), IsOk());
   model.WaitUntilStarted(1);
-  ASSERT_THAT(pool.Submit(waiting.Job(model.get())), IsOk());
-  EXPECT_EQ(pool.queued_windows(), 1u);
-  EXPECT_THAT(pool.Submit(refused.Job(model.get())),
+  ASSERT_THAT(pool->Submit(waiting.Job(model.get())), IsOk());
+  EXPECT_EQ(pool->queued_windows(), 1u);
+  EXPECT_THAT(pool->Submit(refused.Job(model.get())),
               StatusIs(kResourceExhausted, HasSubstr("1 windows wait, at most 1 may")));
   WindowJob next = continued.Job(model.get());
   next.continues_call = true;
-  EXPECT_THAT(pool.Submit(std::move(next)), IsOk());
+  EXPECT_THAT(pool->Submit(std::move(next)), IsOk());
   model.Open();
   EXPECT_THAT(waiting.outcome.get().result, IsOk());
   EXPECT_THAT(continued.outcome.get().result, IsOk());
@@ -99,11 +99,11 @@ TEST(WorkerPoolTest, RefusesANewCallWhenTheQueueIsFull) {
 
 TEST(WorkerPoolTest, NeverStartsACancelledWindow) {
   GatedModel model;
-  WorkerPool pool({1, 4}, common::Clock::Real());
+  const auto pool = MakeWorkerPool({1, 4}, common::Clock::Real());
   Ticket running, cancelled;
-  ASSERT_THAT(pool.Submit(running.Job(model.get())), IsOk());
+  ASSERT_THAT(pool->Submit(running.Job(model.get())), IsOk());
   model.WaitUntilStarted(1);
-  ASSERT_THAT(pool.Submit(cancelled.Job(model.get())), IsOk());
+  ASSERT_THAT(pool->Submit(cancelled.Job(model.get())), IsOk());
   cancelled.cancelled->store(true);
   model.Open();
   const WindowOutcome outcome = cancelled.outcome.get();
@@ -115,13 +115,13 @@ TEST(WorkerPoolTest, NeverStartsACancelledWindow) {
 TEST(WorkerPoolTest, NeverStartsAnExpiredWindow) {
   FakeClock clock;
   GatedModel model;
-  WorkerPool pool({1, 4}, clock);
+  const auto pool = MakeWorkerPool({1, 4}, clock);
   Ticket running, expired;
-  ASSERT_THAT(pool.Submit(running.Job(model.get())), IsOk());
+  ASSERT_THAT(pool->Submit(running.Job(model.get())), IsOk());
   model.WaitUntilStarted(1);
   WindowJob job = expired.Job(model.get());
   job.deadline = clock.Now() + std::chrono::milliseconds(100);
-  ASSERT_THAT(pool.Submit(std::move(job)), IsOk());
+  ASSERT_THAT(pool->Submit(std::move(job)), IsOk());
   clock.Advance(std::chrono::milliseconds(100));
   model.Open();
   EXPECT_THAT(expired.outcome.get().result,
@@ -131,9 +131,9 @@ TEST(WorkerPoolTest, NeverStartsAnExpiredWindow) {
 
 TEST(WorkerPoolTest, StartsInteractiveWindowsFirst) {
   GatedModel gate;
-  WorkerPool pool({1, 8}, common::Clock::Real());
+  const auto pool = MakeWorkerPool({1, 8}, common::Clock::Real());
   Ticket running, bulk, interactive;
-  ASSERT_THAT(pool.Submit(running.Job(gate.get())), IsOk());
+  ASSERT_THAT(pool->Submit(running.Job(gate.get())), IsOk());
   gate.WaitUntilStarted(1);
   std::vector<std::string> order;  // written by the one worker, read after both outcomes
   const auto naming = [&order](const char* name) {
@@ -145,36 +145,46 @@ TEST(WorkerPoolTest, StartsInteractiveWindowsFirst) {
   };
   WindowJob bulk_job = bulk.Job(naming("bulk"));
   bulk_job.priority = Priority::kBulk;
-  ASSERT_THAT(pool.Submit(std::move(bulk_job)), IsOk());
-  ASSERT_THAT(pool.Submit(interactive.Job(naming("interactive"))), IsOk());
+  ASSERT_THAT(pool->Submit(std::move(bulk_job)), IsOk());
+  ASSERT_THAT(pool->Submit(interactive.Job(naming("interactive"))), IsOk());
   gate.Open();
   bulk.outcome.wait();
   interactive.outcome.wait();
   EXPECT_THAT(order, testing::ElementsAre("interactive", "bulk"));
 }
 
+// Keeps the timings of the second window that it is told of.
+class TimingsObserver final : public WindowObserver {
+ public:
+  void WindowFinished(Priority, const WindowTimings& timings) override {
+    if (++seen_ == 2) second_.set_value(timings);
+  }
+  WindowTimings WaitForSecond() { return second_.get_future().get(); }
+
+ private:
+  std::atomic<int> seen_{0};
+  std::promise<WindowTimings> second_;
+};
+
 TEST(WorkerPoolTest, SaysWhereTheTimeWent) {
   FakeClock clock;
-  std::promise<WindowTimings> observed;
   auto model = std::make_shared<FakeSynthesizer>();
   GatedModel gate;
   model->on_batch = [&](absl::Span<const engine::SynthesisWindow* const>) {
     clock.Advance(std::chrono::milliseconds(250));
   };
-  std::atomic<int> seen{0};
-  WorkerPool pool({1, 4}, clock, [&](Priority, const WindowTimings& timings) {
-    if (++seen == 2) observed.set_value(timings);
-  });
+  TimingsObserver observer;
+  const auto pool = MakeWorkerPool({1, 4}, clock, &observer);
   Ticket running, measured;
-  ASSERT_THAT(pool.Submit(running.Job(gate.get())), IsOk());
+  ASSERT_THAT(pool->Submit(running.Job(gate.get())), IsOk());
   gate.WaitUntilStarted(1);
-  ASSERT_THAT(pool.Submit(measured.Job(model)), IsOk());
+  ASSERT_THAT(pool->Submit(measured.Job(model)), IsOk());
   clock.Advance(std::chrono::milliseconds(125));
   gate.Open();
   const WindowTimings timings = measured.outcome.get().timings;
   EXPECT_DOUBLE_EQ(timings.queue_seconds, 0.125);
   EXPECT_DOUBLE_EQ(timings.compute_seconds, 0.25);
-  EXPECT_DOUBLE_EQ(observed.get_future().get().compute_seconds, 0.25);
+  EXPECT_DOUBLE_EQ(observer.WaitForSecond().compute_seconds, 0.25);
 }
 
 // Fails in ways that the interface does not allow.
@@ -194,18 +204,18 @@ class BrokenModel final : public engine::Synthesizer {
 };
 
 TEST(WorkerPoolTest, SurvivesAModelThatThrows) {
-  WorkerPool pool({1, 4}, common::Clock::Real());
+  const auto pool = MakeWorkerPool({1, 4}, common::Clock::Real());
   Ticket broken, sound;
-  ASSERT_THAT(pool.Submit(broken.Job(std::make_shared<BrokenModel>(true))), IsOk());
+  ASSERT_THAT(pool->Submit(broken.Job(std::make_shared<BrokenModel>(true))), IsOk());
   EXPECT_THAT(broken.outcome.get().result, StatusIs(kInternal, HasSubstr("out of luck")));
-  ASSERT_THAT(pool.Submit(sound.Job(std::make_shared<FakeSynthesizer>())), IsOk());
+  ASSERT_THAT(pool->Submit(sound.Job(std::make_shared<FakeSynthesizer>())), IsOk());
   EXPECT_THAT(sound.outcome.get().result, IsOk());
 }
 
 TEST(WorkerPoolTest, SurvivesAModelThatGivesTooFewResults) {
-  WorkerPool pool({1, 4}, common::Clock::Real());
+  const auto pool = MakeWorkerPool({1, 4}, common::Clock::Real());
   Ticket ticket;
-  ASSERT_THAT(pool.Submit(ticket.Job(std::make_shared<BrokenModel>(false))), IsOk());
+  ASSERT_THAT(pool->Submit(ticket.Job(std::make_shared<BrokenModel>(false))), IsOk());
   EXPECT_THAT(ticket.outcome.get().result,
               StatusIs(kInternal, HasSubstr("0 results for 1 window")));
 }
@@ -215,14 +225,14 @@ TEST(WorkerPoolTest, ShutdownFinishesWhatRunsAndAnswersWhatWaits) {
   Ticket running, waiting;
   std::thread opener;
   {
-    WorkerPool pool({1, 4}, common::Clock::Real());
-    ASSERT_THAT(pool.Submit(running.Job(model.get())), IsOk());
+    const auto pool = MakeWorkerPool({1, 4}, common::Clock::Real());
+    ASSERT_THAT(pool->Submit(running.Job(model.get())), IsOk());
     model.WaitUntilStarted(1);
-    ASSERT_THAT(pool.Submit(waiting.Job(model.get())), IsOk());
+    ASSERT_THAT(pool->Submit(waiting.Job(model.get())), IsOk());
     // Opens only once the pool refuses, which is when its destructor has begun.
     opener = std::thread([&] {
       Ticket probe;
-      while (pool.Submit(probe.Job(model.get())).code() != kUnavailable) probe = Ticket();
+      while (pool->Submit(probe.Job(model.get())).code() != kUnavailable) probe = Ticket();
       model.Open();
     });
   }
@@ -239,7 +249,7 @@ TEST(WorkerPoolTest, AnswersEveryWindowOnceUnderLoad) {
   std::atomic<int> answered{0};
   std::atomic<int> refused{0};
   {
-    WorkerPool pool({3, 16}, common::Clock::Real());
+    const auto pool = MakeWorkerPool({3, 16}, common::Clock::Real());
     std::vector<std::thread> callers;
     for (int t = 0; t < kThreads; ++t) {
       callers.emplace_back([&, t] {
@@ -248,7 +258,7 @@ TEST(WorkerPoolTest, AnswersEveryWindowOnceUnderLoad) {
           WindowJob job = ticket.Job(model);
           job.priority = i % 2 == 0 ? Priority::kBulk : Priority::kInteractive;
           job.done = [&](WindowOutcome) { ++answered; };
-          if (!pool.Submit(std::move(job)).ok()) ++refused;
+          if (!pool->Submit(std::move(job)).ok()) ++refused;
           if ((i + t) % 5 == 0) ticket.cancelled->store(true);
         }
       });

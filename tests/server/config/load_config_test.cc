@@ -4,11 +4,12 @@
 #include <google/protobuf/util/message_differencer.h>
 #include <gtest/gtest.h>
 
-#include <set>
+#include <algorithm>
 #include <string>
 #include <vector>
 
 #include "absl/strings/str_split.h"
+#include "server/config/server_options.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
@@ -21,7 +22,9 @@ using test::TemporaryFolder;
 using test::WriteTestFile;
 
 using ::testing::AllOf;
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 constexpr auto kInvalidArgument = absl::StatusCode::kInvalidArgument;
 
@@ -88,10 +91,10 @@ TEST(ParseCommandLineTest, NoFlagsSetNothing) {
 
 TEST(ParseCommandLineTest, ReadsEveryFlag) {
   const absl::StatusOr<CommandLine> line = Parse(absl::StrSplit(
-      "--listen a:1 --metrics_listen off --model_repository /models --default_model sbu "
-      "--version_label sbu:stable=3 --version_label sbu:canary=4 --no-reflection --workers 2 "
-      "--threads_per_worker 3 --max_calls 4 --max_queued_windows 5 --max_request_bytes 6000 "
-      "--max_transport_bytes 20000 --buffered_frames 7 --drain_seconds 8 --grace_seconds 9",
+      "--listen a:1 --metrics-listen off --model-repository /models --default-model sbu "
+      "--version-label sbu:stable=3 --version-label sbu:canary=4 --no-reflection --workers 2 "
+      "--threads-per-worker 3 --max-calls 4 --max-queued-windows 5 --max-request-bytes 6000 "
+      "--max-transport-bytes 20000 --buffered-frames 7 --drain-seconds 8 --grace-seconds 9",
       ' '));
   ASSERT_THAT(line, IsOk());
   const absl::StatusOr<v1::ServerConfig> expected = ParseConfigText(
@@ -118,8 +121,36 @@ TEST(ParseCommandLineTest, HelpNamesEveryFieldOfTheSchema) {
   for (int i = 0; i < v1::ServerConfig::descriptor()->field_count(); ++i) {
     std::string name = v1::ServerConfig::descriptor()->field(i)->name();
     if (name == "version_labels") name = "version_label";  // one a flag
+    std::replace(name.begin(), name.end(), '_', '-');
     EXPECT_THAT(*line->print, HasSubstr("--" + name));
   }
+}
+
+TEST(ParseCommandLineTest, HelpTellsTheDefaultsThatHold) {
+  const absl::StatusOr<CommandLine> line = Parse({"--help"});
+  ASSERT_THAT(line, IsOk());
+  const ServerOptions defaults;
+  for (const std::string& value :
+       {ToString(defaults.listen), ToString(*defaults.metrics_listen),
+        std::to_string(defaults.max_calls), std::to_string(defaults.max_queued_windows),
+        std::to_string(defaults.max_request_bytes), std::to_string(defaults.buffered_frames)}) {
+    EXPECT_THAT(*line->print, HasSubstr("(default " + value + ")"));
+  }
+}
+
+TEST(ParseCommandLineTest, OldNamesOfFlagsStillWorkButDoNotShow) {
+  const absl::StatusOr<CommandLine> line =
+      Parse({"--max_calls", "4", "--drain_seconds=8", "--version_label", "a_b:old_one=3",
+             "--model_repository=/my_models/--max_calls"});
+  ASSERT_THAT(line, IsOk());
+  EXPECT_EQ(line->config.max_calls(), 4u);
+  EXPECT_EQ(line->config.drain_seconds(), 8);
+  EXPECT_EQ(line->config.version_labels(0).model(), "a_b") << "values stay as they are";
+  EXPECT_EQ(line->config.version_labels(0).label(), "old_one");
+  EXPECT_EQ(line->config.model_repository(), "/my_models/--max_calls");
+  EXPECT_THAT(Parse({"--no_such_flag", "4"}),
+              StatusIs(kInvalidArgument, HasSubstr("--no_such_flag")));
+  EXPECT_THAT(*Parse({"--help"})->print, Not(ContainsRegex("--[a-z]+_")));
 }
 
 TEST(ParseCommandLineTest, SaysItsVersion) {
@@ -139,7 +170,7 @@ TEST(ParseCommandLineTest, FlagsWinOverTheFile) {
 }
 
 TEST(ParseCommandLineTest, TakesAnEmptyValue) {
-  const absl::StatusOr<CommandLine> line = Parse({"--metrics_listen", "", "--workers", "2"});
+  const absl::StatusOr<CommandLine> line = Parse({"--metrics-listen", "", "--workers", "2"});
   ASSERT_THAT(line, IsOk());
   EXPECT_TRUE(line->config.has_metrics_listen());
   EXPECT_EQ(line->config.metrics_listen(), "");
@@ -153,7 +184,7 @@ TEST(ParseCommandLineTest, NamesAFlagThatIsWrong) {
   EXPECT_THAT(Parse({"--listen"}), StatusIs(kInvalidArgument, HasSubstr("--listen")));
   EXPECT_THAT(Parse({"stray"}), StatusIs(kInvalidArgument, HasSubstr("stray")));
   for (const char* label : {"stable", "sbu:stable", "sbu:stable=", "sbu:stable=x", "sbu=3"}) {
-    EXPECT_THAT(Parse({"--version_label", label}),
+    EXPECT_THAT(Parse({"--version-label", label}),
                 StatusIs(kInvalidArgument, HasSubstr("model:label=version")))
         << label;
   }

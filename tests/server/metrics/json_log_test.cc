@@ -125,6 +125,14 @@ TEST_F(JsonLogTest, EventsCarryTheirFields) {
   EXPECT_EQ(sink_.Last()["source"], "sbu/3");
 }
 
+TEST(DroppedLinesNoticeTest, IsALineOfTheLog) {
+  const json line = json::parse(DroppedLinesNotice(7, absl::FromUnixMicros(1650000000123456)));
+  EXPECT_EQ(line["time"], "2022-04-15T05:20:00.123456Z");
+  EXPECT_EQ(line["severity"], "WARNING");
+  EXPECT_EQ(line["event"], "log_lines_dropped");
+  EXPECT_EQ(line["dropped"], 7);
+}
+
 TEST(StreamLogSinkTest, LinesOfManyThreadsStayWhole) {
   TemporaryFolder folder;
   const std::string path = (folder / "log").string();

@@ -99,6 +99,17 @@ TEST(ServerMetricsTest, AsksForTheQueueLengthAtEveryScrape) {
   EXPECT_THAT(metrics.Render(), HasSubstr("duet_queued_windows 5\n"));
 }
 
+TEST(ServerMetricsTest, CountsDroppedLogLines) {
+  ServerMetrics metrics;
+  EXPECT_THAT(metrics.Render(), HasSubstr("duet_log_lines_dropped_total 0\n"));
+  double dropped = 3;
+  metrics.SetDroppedLogLines([&] { return dropped; });
+  EXPECT_THAT(metrics.Render(), HasSubstr("duet_log_lines_dropped_total 3\n"));
+  dropped = 5;
+  EXPECT_THAT(metrics.Render(), HasSubstr("duet_log_lines_dropped_total 5\n"));
+  EXPECT_THAT(metrics.Render(), HasSubstr("# TYPE duet_log_lines_dropped_total counter"));
+}
+
 TEST(ServerMetricsTest, TellsWhichCheckpointsAreServed) {
   ServerMetrics metrics;
   metrics.ModelLoaded("sbu/3", 1.5, true);

@@ -5,6 +5,7 @@
 
 #include <memory>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "tests/support/fake_synthesizer.h"
@@ -31,17 +32,19 @@ std::shared_ptr<const engine::Synthesizer> Model(const std::string& name, int ve
   return std::make_shared<FakeSynthesizer>(description);
 }
 
-// "name/version" of what answers a query.
+// "name/version" of what answers a query, or "field: description" of what was not found.
 std::string Answer(const ModelRegistry& registry, const ModelQuery& query) {
-  const absl::StatusOr<ServedModel> served = registry.Find(query);
-  if (!served.ok()) return std::string(served.status().message());
-  const engine::ModelDescription& model = served->model->description();
+  const FindResult found = registry.Find(query);
+  if (const auto* not_found = std::get_if<ModelNotFound>(&found)) {
+    return not_found->field + ": " + not_found->description;
+  }
+  const engine::ModelDescription& model = std::get<ServedModel>(found).model->description();
   return model.name + "/" + std::to_string(model.version);
 }
 
 TEST(ModelRegistryTest, HasNothingAtFirst) {
   EXPECT_THAT(ModelRegistry().List(), IsEmpty());
-  EXPECT_THAT(ModelRegistry().Find({}), StatusIs(kNotFound, HasSubstr("served are: none")));
+  EXPECT_THAT(Answer(ModelRegistry(), {}), HasSubstr("served are: none"));
 }
 
 TEST(ModelRegistryTest, AnswersWithTheNewestVersionUnlessAskedForAnother) {
@@ -124,6 +127,7 @@ TEST(ModelRegistryTest, ListsByNameNewestFirst) {
   EXPECT_FALSE(models[1].is_default);
   EXPECT_THAT(models[1].version_labels, ElementsAre("old", "stable"));
   EXPECT_EQ(models[2].model->description().name, "b");
+  EXPECT_FALSE(models[2].is_default) << "the newest version, but of another model";
 }
 
 TEST(ModelRegistryTest, WhoeverFoundAModelKeepsItWhenItIsReplaced) {
@@ -134,10 +138,10 @@ TEST(ModelRegistryTest, WhoeverFoundAModelKeepsItWhenItIsReplaced) {
     watched = first;
     registry.Serve(std::move(first));
   }
-  absl::StatusOr<ServedModel> held = registry.Find({});
+  FindResult held = registry.Find({});
   registry.Serve(Model("a", 1));
   EXPECT_FALSE(watched.expired());
-  held = absl::NotFoundError("let go");
+  held = ModelNotFound();
   EXPECT_TRUE(watched.expired());
 }
 

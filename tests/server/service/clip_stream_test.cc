@@ -52,7 +52,7 @@ class PuppetStream {
   void Drop() { stream_.reset(); }
   // Evaluates windows until the stream wants no more for now.
   void RunAll() {
-    while (scheduler_.waiting() > 0) scheduler_.RunNext();
+    while (scheduler_.queued_windows() > 0) scheduler_.RunNext();
   }
 
  private:
@@ -99,12 +99,46 @@ TEST(ClipStreamTest, HasNothingBeforeItsFirstWindow) {
   EXPECT_EQ(stream->Take(30).kind, Kind::kPending);
 }
 
+TEST(ClipStreamTest, AClipOfOneWindowHasNotEndedBeforeThatIsDone) {
+  PuppetStream stream(40);
+  ASSERT_THAT(stream->Start(), IsOk());
+  EXPECT_EQ(stream->Take(40).kind, Kind::kPending);
+  stream.scheduler().RunNext();
+  EXPECT_EQ(stream->Take(40).kind, Kind::kFrames);
+  EXPECT_EQ(stream->Take(40).kind, Kind::kEnd);
+}
+
+// Finishes every window on a thread of its own before Submit returns.
+class QuickScheduler final : public batching::WindowScheduler {
+ public:
+  absl::Status Submit(batching::WindowJob job) override {
+    std::thread([&job] {
+      const engine::SynthesisWindow* windows[] = {&job.window};
+      job.done({std::move(job.model->Synthesize(windows).front()), {}});
+    }).join();
+    return absl::OkStatus();
+  }
+  std::size_t queued_windows() const override { return 0; }
+};
+
+TEST(ClipStreamTest, AWindowMayBeDoneBeforeItsSubmissionReturns) {
+  QuickScheduler scheduler;
+  ClipStreamOptions options;
+  options.buffered_frames = 1000000;
+  auto stream = std::make_shared<ClipStream>(std::make_shared<FakeSynthesizer>(), Request(200),
+                                             options, scheduler, [] {});
+  ASSERT_THAT(stream->Start(), IsOk());
+  const ClipPart all = stream->Take(200);
+  EXPECT_EQ(all.frames.size(), 200u * kJoints);
+  EXPECT_EQ(stream->Take(200).kind, Kind::kEnd);
+}
+
 TEST(ClipStreamTest, GivesFramesAfterItsFirstWindow) {
   PuppetStream stream(200);
   ASSERT_THAT(stream->Start(), IsOk());
   stream.scheduler().RunNext();
   EXPECT_EQ(stream->Take(8).frames.size(), 8u * kJoints);
-  EXPECT_EQ(stream.scheduler().waiting(), 1u);
+  EXPECT_EQ(stream.scheduler().queued_windows(), 1u);
 }
 
 TEST(ClipStreamTest, TellsOfProgressAfterEachWindow) {
@@ -119,7 +153,7 @@ TEST(ClipStreamTest, HasOneWindowInTheQueueAtATime) {
   PuppetStream stream(2000);
   ASSERT_THAT(stream->Start(), IsOk());
   for (int i = 0; i < 5; ++i) {
-    ASSERT_EQ(stream.scheduler().waiting(), 1u);
+    ASSERT_EQ(stream.scheduler().queued_windows(), 1u);
     stream.scheduler().RunNext();
   }
 }
@@ -149,9 +183,9 @@ TEST(ClipStreamTest, APausedClipGoesOnWhenTheReaderHasDrainedIt) {
   stream.RunAll();
   const int held = stream->stats().peak_buffered_frames;
   stream->Take(held - kBuffered);
-  EXPECT_EQ(stream.scheduler().waiting(), 0u) << "as many as the limit are still there";
+  EXPECT_EQ(stream.scheduler().queued_windows(), 0u) << "as many as the limit are still there";
   stream->Take(1);
-  EXPECT_EQ(stream.scheduler().waiting(), 1u) << "one fewer than the limit";
+  EXPECT_EQ(stream.scheduler().queued_windows(), 1u) << "one fewer than the limit";
 }
 
 TEST(ClipStreamTest, HoldsLittleHoweverLongTheClip) {
@@ -209,7 +243,7 @@ TEST(ClipStreamTest, FailsWhenAWindowFails) {
   const ClipPart part = stream->Take(30);
   EXPECT_EQ(part.kind, Kind::kFailed);
   EXPECT_THAT(part.error, StatusIs(kInternal, "broken"));
-  EXPECT_EQ(stream.scheduler().waiting(), 0u) << "no further window of a failed clip";
+  EXPECT_EQ(stream.scheduler().queued_windows(), 0u) << "no further window of a failed clip";
 }
 
 TEST(ClipStreamTest, RefusesAResultThatIsNotFinite) {
@@ -239,8 +273,10 @@ class ShortModel final : public engine::Synthesizer {
 
 TEST(ClipStreamTest, RefusesAResultOfTheWrongLength) {
   PuppetScheduler scheduler;
-  auto stream = std::make_shared<ClipStream>(std::make_shared<ShortModel>(), Request(40),
-                                             ClipStreamOptions(), scheduler, [] {});
+  ClipStreamOptions options;
+  options.buffered_frames = 1;
+  auto stream = std::make_shared<ClipStream>(std::make_shared<ShortModel>(), Request(40), options,
+                                             scheduler, [] {});
   ASSERT_THAT(stream->Start(), IsOk());
   scheduler.RunNext();
   EXPECT_THAT(stream->Take(30).error, StatusIs(kInternal, HasSubstr("wanted 600")));
@@ -251,7 +287,7 @@ TEST(ClipStreamTest, StartsNothingOnceCancelled) {
   ASSERT_THAT(stream->Start(), IsOk());
   stream->Cancel();
   EXPECT_FALSE(stream.scheduler().RunNext()) << "the queued window was evaluated";
-  EXPECT_EQ(stream.scheduler().waiting(), 0u);
+  EXPECT_EQ(stream.scheduler().queued_windows(), 0u);
   EXPECT_EQ(stream.progress(), 0);
 }
 
@@ -274,12 +310,12 @@ TEST(ClipStreamTest, WorksWithManyReadersOnAPool) {
     int frames = 0;
   };
   std::vector<Reader> readers(6);
-  batching::WorkerPool pool(
-      {3, 64}, common::Clock::Real());  // ends before the readers that it tells of progress
+  // Ends before the readers that it tells of progress.
+  const auto pool = batching::MakeWorkerPool({3, 64}, common::Clock::Real());
   for (Reader& reader : readers) {
     ClipStreamOptions options;
     options.buffered_frames = 40;
-    reader.stream = std::make_shared<ClipStream>(model, Request(500), options, pool, [&reader] {
+    reader.stream = std::make_shared<ClipStream>(model, Request(500), options, *pool, [&reader] {
       common::MutexLock lock(reader.mutex);
       reader.progress = true;
       reader.changed.NotifyAll();

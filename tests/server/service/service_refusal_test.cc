@@ -13,6 +13,7 @@
 #include "tests/server/support/refusal.h"
 #include "tests/server/support/running_service.h"
 #include "tests/server/support/sample_request.h"
+#include "tests/server/support/timed_context.h"
 
 namespace duet::server::service {
 namespace {
@@ -29,6 +30,7 @@ using test::Refusal;
 using test::Reply;
 using test::RunningService;
 using test::SampleRequest;
+using test::TimedContext;
 
 using ::testing::AnyOf;
 using ::testing::ElementsAre;
@@ -166,6 +168,17 @@ TEST(ServiceRefusalTest, ARequestAboveTheLimitIsToldTheLimit) {
   EXPECT_LT(refusal.retry_seconds, 0) << "the same request will not fit later either";
 }
 
+TEST(ServiceRefusalTest, EveryMethodHasTheLimit) {
+  RunningService running(SmallRequests());
+  // A field that the message does not know, of 9000 bytes.
+  const std::string bytes = std::string("\xfa\x06\xa8\x46", 4) + std::string(9000, 'x');
+  for (const char* method : {"Synthesize", "ListModels", "GetModel"}) {
+    RawCall call(running.channel(), std::string("/duet.v1.MotionSynthesis/") + method, bytes);
+    EXPECT_FALSE(call.Read().has_value()) << method;
+    EXPECT_EQ(Decode(call.Finish()).reason, "REQUEST_TOO_LARGE") << method;
+  }
+}
+
 TEST(ServiceRefusalTest, ARequestFarAboveTheLimitIsRefusedByTheTransport) {
   RunningService running(SmallRequests());
   const grpc::Status status = Call(running.stub(), SampleRequest(400)).status;
@@ -175,7 +188,7 @@ TEST(ServiceRefusalTest, ARequestFarAboveTheLimitIsRefusedByTheTransport) {
 
 TEST(ServiceRefusalTest, ACompressedRequestIsRefused) {
   RunningService running;
-  grpc::ClientContext context;
+  TimedContext context;
   context.set_compression_algorithm(GRPC_COMPRESS_GZIP);
   const Reply reply = Call(running.stub(), SampleRequest(400), context);
   EXPECT_EQ(reply.status.error_code(), grpc::StatusCode::UNIMPLEMENTED);
@@ -184,7 +197,7 @@ TEST(ServiceRefusalTest, ACompressedRequestIsRefused) {
 TEST(ServiceRefusalTest, AFullQueueRefusesBeforeAnyHeader) {
   PuppetService service;
   service.puppet.Refuse(absl::ResourceExhaustedError("the queue is full: 64 windows wait"));
-  grpc::ClientContext context;
+  TimedContext context;
   const Reply reply = Call(service.running.stub(), SampleRequest(), context);
   EXPECT_THAT(reply.messages, IsEmpty());
   const Refusal refusal = Decode(reply.status);
@@ -199,7 +212,7 @@ TEST(ServiceRefusalTest, TooManyCallsAreRefusedUntilOneEnds) {
   RunningService::Setup setup;
   setup.max_calls = 1;
   PuppetService service(setup);
-  grpc::ClientContext context;
+  TimedContext context;
   const auto first = service.running.stub().Synthesize(&context, SampleRequest(20));
   service.puppet.WaitForJobs(1);
   const Refusal refusal = Decode(Call(service.running.stub(), SampleRequest()).status);
@@ -210,7 +223,7 @@ TEST(ServiceRefusalTest, TooManyCallsAreRefusedUntilOneEnds) {
 
   service.puppet.RunNext();
   EXPECT_TRUE(ReadAll(*first).status.ok());
-  grpc::ClientContext next_context;
+  TimedContext next_context;
   const auto next = service.running.stub().Synthesize(&next_context, SampleRequest(20));
   service.puppet.RunNext();
   EXPECT_TRUE(ReadAll(*next).status.ok());
@@ -239,7 +252,7 @@ TEST_P(NotServingTest, EveryMethodIsUnavailableWithARetryDelay) {
     EXPECT_EQ(refusal.retry_seconds, 1);
   };
   expect_refused(Call(running.stub(), SampleRequest()).status);
-  grpc::ClientContext list_context, get_context;
+  TimedContext list_context, get_context;
   v1::ListModelsResponse list;
   expect_refused(running.stub().ListModels(&list_context, v1::ListModelsRequest(), &list));
   v1::GetModelResponse model;
@@ -283,7 +296,7 @@ TEST(ServiceEndTest, AFailedCallDoesNotFailOthers) {
 
 TEST(ServiceEndTest, AnExpiredCallNeverStarts) {
   PuppetService service;
-  grpc::ClientContext context;
+  TimedContext context;
   context.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(1));
   const auto reader = service.running.stub().Synthesize(&context, SampleRequest());
   service.puppet.WaitForJobs(1);
@@ -308,7 +321,7 @@ TEST(ServiceEndTest, ACallWithoutADeadlineHasNone) {
 
 TEST(ServiceEndTest, ACancelledCallNeverStarts) {
   PuppetService service;
-  grpc::ClientContext context;
+  TimedContext context;
   const auto reader = service.running.stub().Synthesize(&context, SampleRequest());
   service.puppet.WaitForJobs(1);
   context.TryCancel();
@@ -320,7 +333,7 @@ TEST(ServiceEndTest, ACancelledCallNeverStarts) {
 
 TEST(ServiceEndTest, ACallCancelledMidwayStopsThere) {
   PuppetService service;
-  grpc::ClientContext context;
+  TimedContext context;
   const auto reader = service.running.stub().Synthesize(&context, SampleRequest(900));
   service.puppet.RunNext();
   v1::SynthesizeResponse message;
@@ -333,12 +346,12 @@ TEST(ServiceEndTest, ACallCancelledMidwayStopsThere) {
   EXPECT_EQ(record.status.code(), StatusCode::kCancelled);
   EXPECT_EQ(record.windows, 1);
   EXPECT_FALSE(service.puppet.RunNext()) << "its second window was evaluated";
-  EXPECT_EQ(service.puppet.waiting(), 0u);
+  EXPECT_EQ(service.puppet.queued_windows(), 0u);
 }
 
 TEST(ServiceEndTest, AWindowDroppedByTheSchedulerEndsTheCall) {
   PuppetService service;
-  grpc::ClientContext context;
+  TimedContext context;
   const auto reader = service.running.stub().Synthesize(&context, SampleRequest());
   service.puppet.FailNext(absl::UnavailableError("the server is shutting down"));
   const Refusal refusal = Decode(ReadAll(*reader).status);
@@ -348,7 +361,7 @@ TEST(ServiceEndTest, AWindowDroppedByTheSchedulerEndsTheCall) {
 
 TEST(ServiceEndTest, AbortAllEndsEveryCallWithTheReason) {
   PuppetService service;
-  grpc::ClientContext first_context, second_context;
+  TimedContext first_context, second_context;
   const auto first = service.running.stub().Synthesize(&first_context, SampleRequest());
   const auto second = service.running.stub().Synthesize(&second_context, SampleRequest());
   service.puppet.WaitForJobs(2);
@@ -362,7 +375,7 @@ TEST(ServiceEndTest, AbortAllEndsEveryCallWithTheReason) {
 TEST(ServiceIdentityTest, KeepsTheCallersRequestIdAndTrace) {
   RunningService running;
   const std::string trace = "00-4bf92f3577b34da6a3ce929d0e0e4736-00f067aa0ba902b7-01";
-  grpc::ClientContext context;
+  TimedContext context;
   context.AddMetadata("x-request-id", "shot-42/take.3");
   context.AddMetadata("traceparent", trace);
   const Reply reply = Call(running.stub(), SampleRequest(), context);
@@ -376,7 +389,7 @@ TEST(ServiceIdentityTest, KeepsTheCallersRequestIdAndTrace) {
 
 TEST(ServiceIdentityTest, MakesARequestIdWhereTheCallersIsUnfit) {
   RunningService running;
-  grpc::ClientContext context;
+  TimedContext context;
   context.AddMetadata("x-request-id", std::string(129, 'x'));
   const Reply reply = Call(running.stub(), SampleRequest(), context);
   ASSERT_TRUE(reply.status.ok());
@@ -385,7 +398,7 @@ TEST(ServiceIdentityTest, MakesARequestIdWhereTheCallersIsUnfit) {
 
 TEST(ServiceRecordTest, SaysWhatACallDid) {
   PuppetService service;
-  grpc::ClientContext context;
+  TimedContext context;
   v1::SynthesizeRequest request = SampleRequest(46);
   request.set_priority(v1::PRIORITY_BULK);
   const auto reader = service.running.stub().Synthesize(&context, request);
@@ -417,7 +430,7 @@ TEST(ModelMethodsTest, ListsModelsByNameNewestFirst) {
     running.registry().Serve(std::make_shared<FakeSynthesizer>(description));
   }
   ASSERT_TRUE(running.registry().SetLabel("fake", "stable", 1).ok());
-  grpc::ClientContext context;
+  TimedContext context;
   v1::ListModelsResponse response;
   ASSERT_TRUE(running.stub().ListModels(&context, v1::ListModelsRequest(), &response).ok());
   ASSERT_EQ(response.models_size(), 3);
@@ -428,11 +441,12 @@ TEST(ModelMethodsTest, ListsModelsByNameNewestFirst) {
   EXPECT_FALSE(response.models(1).is_default());
   EXPECT_THAT(response.models(1).version_labels(), ElementsAre("stable"));
   EXPECT_EQ(response.models(2).name(), "other");
+  EXPECT_FALSE(response.models(2).is_default());
 }
 
 TEST(ModelMethodsTest, DescribesAModelAndItsLimits) {
   RunningService running;
-  grpc::ClientContext context;
+  TimedContext context;
   v1::GetModelResponse response;
   ASSERT_TRUE(running.stub().GetModel(&context, v1::GetModelRequest(), &response).ok());
   const engine::ModelDescription fake = FakeDescription();
@@ -457,7 +471,7 @@ TEST(ModelMethodsTest, DescribesAModelAndItsLimits) {
 
 TEST(ModelMethodsTest, GetModelNamesWhatIsNotServed) {
   RunningService running;
-  grpc::ClientContext context;
+  TimedContext context;
   v1::GetModelRequest request;
   request.mutable_model()->set_name("nobody");
   v1::GetModelResponse response;
@@ -468,7 +482,7 @@ TEST(ModelMethodsTest, GetModelNamesWhatIsNotServed) {
 
 TEST(ModelMethodsTest, ACallKeepsItsModelWhenAnotherTakesItsPlace) {
   PuppetService service;
-  grpc::ClientContext context;
+  TimedContext context;
   const auto reader = service.running.stub().Synthesize(&context, SampleRequest(20));
   service.puppet.WaitForJobs(1);
   auto replacement = std::make_shared<FakeSynthesizer>();

@@ -41,9 +41,10 @@ class FakeWriter final : public ReplyWriter {
     writing = true;
     replies.push_back(reply);
   }
-  void Finish(const absl::Status& status) override {
+  void Finish(CallScope& scope, const absl::Status& status) override {
     EXPECT_FALSE(writing) << "the end while a write is under way";
     EXPECT_FALSE(finished.has_value()) << "two ends";
+    scope.Finish(status);
     finished = status;
   }
 
@@ -65,7 +66,8 @@ class SynthesisCallTest : public ::testing::Test {
         std::make_unique<CallScope>(metrics::MethodInfo{"service", "Synthesize", "server_stream"},
                                     CallIdentity{"id", "", "peer"}, observers_, clock_);
     call_ = SynthesisCall::Create({std::move(model), *std::move(request), *std::move(slot),
-                                   std::move(scope), common::TimePoint::max(), 240},
+                                   std::move(scope), common::TimePoint::max(),
+                                   /*buffered_frames=*/240},
                                   scheduler_, writer_);
   }
 
@@ -78,7 +80,7 @@ class SynthesisCallTest : public ::testing::Test {
 
   FakeClock clock_;
   RecordingObserver observer_;
-  const std::vector<metrics::CallObserver*> observers_ = {&observer_};
+  std::vector<metrics::CallObserver*> observers_ = {&observer_};
   Admission admission_{4};
   PuppetScheduler scheduler_;
   FakeWriter writer_;
@@ -132,6 +134,44 @@ TEST_F(SynthesisCallTest, GivesItsPlaceBackAndReportsBeforeTheCallerKnows) {
   call_->Start();
   EXPECT_EQ(admission_.calls(), 0u);
   EXPECT_THAT(observer_.records(), SizeIs(1));
+}
+
+// Looks, when a call is reported, at what others can see and do at that moment.
+class ProbingObserver final : public metrics::CallObserver {
+ public:
+  explicit ProbingObserver(const Admission& admission) : admission_(admission) {}
+  void CallStarted(const metrics::MethodInfo&) override {}
+  void CallFinished(const metrics::CallRecord&) override {
+    calls_when_reported = admission_.calls();
+    if (call != nullptr) call->Abort(absl::CancelledError("late"));
+  }
+
+  std::optional<std::size_t> calls_when_reported;
+  SynthesisCall* call = nullptr;
+
+ private:
+  const Admission& admission_;
+};
+
+TEST_F(SynthesisCallTest, ItsPlaceIsFreeWhenItIsReported) {
+  ProbingObserver probe(admission_);
+  observers_ = {&probe};
+  Create(46);
+  call_->Start();
+  call_->Abort(absl::CancelledError("gone"));
+  Written(/*ok=*/false);
+  EXPECT_EQ(probe.calls_when_reported, 0u);
+}
+
+TEST_F(SynthesisCallTest, IsReportedUnderNoLock) {
+  ProbingObserver probe(admission_);
+  observers_ = {&probe};
+  Create(46);
+  probe.call = call_.get();
+  call_->Start();
+  call_->Abort(absl::CancelledError("gone"));
+  Written(/*ok=*/false);  // would wait for itself if the call were locked
+  EXPECT_THAT(*writer_.finished, StatusIs(StatusCode::kCancelled, "gone"));
 }
 
 TEST_F(SynthesisCallTest, AnAbortWhileIdleEndsAtOnce) {

@@ -15,6 +15,7 @@
 #include "tests/server/support/puppet_scheduler.h"
 #include "tests/server/support/running_service.h"
 #include "tests/server/support/sample_request.h"
+#include "tests/server/support/timed_context.h"
 #include "tests/support/sample_motion.h"
 
 namespace duet::server::service {
@@ -31,6 +32,7 @@ using test::Reply;
 using test::RunningService;
 using test::SampleRequest;
 using test::SwayingMotion;
+using test::TimedContext;
 
 using ::testing::Each;
 using ::testing::ElementsAre;
@@ -106,7 +108,7 @@ TEST(SynthesizeTest, AChunkHasThirtyFramesUnlessToldOtherwise) {
   RunningService::Setup setup;
   setup.scheduler = &puppet;
   RunningService running(setup);
-  grpc::ClientContext context;
+  TimedContext context;
   const auto reader = running.stub().Synthesize(&context, SampleRequest(46));
   puppet.RunNext();  // all 46 frames are there before the first chunk is cut
   EXPECT_THAT(ReadAll(*reader).ChunkFrames(), ElementsAre(30, 16));
@@ -136,7 +138,7 @@ TEST(SynthesizeTest, TheFirstChunkLeavesAfterTheFirstWindow) {
   RunningService::Setup setup;
   setup.scheduler = &puppet;
   RunningService running(setup);
-  grpc::ClientContext context;
+  TimedContext context;
   const auto reader = running.stub().Synthesize(&context, SampleRequest(900));
   puppet.RunNext();
   v1::SynthesizeResponse message;
@@ -144,7 +146,7 @@ TEST(SynthesizeTest, TheFirstChunkLeavesAfterTheFirstWindow) {
   EXPECT_TRUE(message.has_header());
   ASSERT_TRUE(reader->Read(&message));
   EXPECT_TRUE(message.has_chunk());
-  EXPECT_EQ(puppet.waiting(), 1u) << "the second of many windows has not been evaluated";
+  EXPECT_EQ(puppet.queued_windows(), 1u) << "the second of many windows has not been evaluated";
   context.TryCancel();
   while (reader->Read(&message)) {
   }
@@ -156,12 +158,12 @@ TEST(SynthesizeTest, TheHeaderLeavesBeforeTheFirstWindowIsEvaluated) {
   RunningService::Setup setup;
   setup.scheduler = &puppet;
   RunningService running(setup);
-  grpc::ClientContext context;
+  TimedContext context;
   const auto reader = running.stub().Synthesize(&context, SampleRequest(46));
   v1::SynthesizeResponse message;
   ASSERT_TRUE(reader->Read(&message));
   EXPECT_TRUE(message.has_header());
-  EXPECT_EQ(puppet.waiting(), 1u);
+  EXPECT_EQ(puppet.queued_windows(), 1u);
   puppet.RunNext();
   EXPECT_TRUE(ReadAll(*reader).status.ok());
 }
@@ -215,7 +217,7 @@ TEST(SynthesizeTest, FollowerStartAndPartnerDirectionReachTheModel) {
   v1::SynthesizeRequest request = SampleRequest(20);
   request.mutable_follower_start()->mutable_root_position()->set_z(-2);
   request.mutable_partner_direction()->set_z(-3);
-  grpc::ClientContext context;
+  TimedContext context;
   const auto reader = running.stub().Synthesize(&context, request);
   puppet.RunNext();
   EXPECT_TRUE(ReadAll(*reader).status.ok());

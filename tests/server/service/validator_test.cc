@@ -327,6 +327,8 @@ INSTANTIATE_TEST_SUITE_P(
                 "is (0, 0, 0), wanted a direction"},
         Spoiled{"vertical_direction", [](Request& r) { SetDirection(r, 0, 3, 0); },
                 "partner_direction", "is (0, 3, 0), wanted a direction that is not straight up"},
+        Spoiled{"nearly_vertical_direction", [](Request& r) { SetDirection(r, 1e-6F, -3, 1e-6F); },
+                "partner_direction", "wanted a direction that is not straight up"},
         Spoiled{"nan_direction", [](Request& r) { SetDirection(r, kNan, 0, 1); },
                 "partner_direction[0]", "is nan, wanted a finite number"}),
     SpoiledName);
@@ -500,6 +502,11 @@ TEST(ValidateRequestTest, ReadsAPartnerDirectionInTheLeadersFrame) {
   absl::StatusOr<ValidatedRequest> validated = Validate(request);
   ASSERT_THAT(validated, IsOk());
   EXPECT_LT(Distance(*validated->clip.partner_direction, {0, 0, -1}), 1e-6F);
+
+  SetDirection(request, 1e-4F, 0, 3);  // steep, but it points somewhere
+  validated = Validate(request);
+  ASSERT_THAT(validated, IsOk());
+  EXPECT_LT(Distance(*validated->clip.partner_direction, {1, 0, 0}), 1e-6F);
 
   request.mutable_leader()->set_unit(v1::LENGTH_UNIT_SBU_NORMALISED);
   request.mutable_leader()->set_up_axis(v1::UP_AXIS_Y_DOWN);

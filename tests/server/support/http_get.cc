@@ -4,12 +4,15 @@
 #include <gtest/gtest.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 namespace duet::test {
 
 std::string Exchange(int port, const std::string& request) {
   const int descriptor = socket(AF_INET, SOCK_STREAM, 0);
+  const timeval limit = {60, 0};  // a server that does not answer fails the test
+  setsockopt(descriptor, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof(limit));
   sockaddr_in address = {};
   address.sin_family = AF_INET;
   address.sin_port = htons(static_cast<uint16_t>(port));

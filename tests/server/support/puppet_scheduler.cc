@@ -37,7 +37,7 @@ void PuppetScheduler::WaitForJobs(std::size_t count) {
   while (jobs_.size() < count) came_.Wait(mutex_);
 }
 
-std::size_t PuppetScheduler::waiting() const {
+std::size_t PuppetScheduler::queued_windows() const {
   server::common::MutexLock lock(mutex_);
   return jobs_.size();
 }

@@ -28,7 +28,7 @@ class PuppetScheduler final : public server::batching::WindowScheduler {
   // Waits until so many jobs are there. A test that waits in vain runs into its time limit.
   void WaitForJobs(std::size_t count);
 
-  std::size_t waiting() const;
+  std::size_t queued_windows() const override;
   // Looks at the oldest job's field. There is one.
   server::batching::Priority NextPriority() const;
   server::common::TimePoint NextDeadline() const;

@@ -5,11 +5,15 @@
 
 #include <vector>
 
+#include "tests/server/support/timed_context.h"
+
 namespace duet::test {
 
 RawCall::RawCall(const std::shared_ptr<grpc::Channel>& channel, const std::string& method,
                  const std::string& message)
-    : stub_(channel), call_(stub_.PrepareCall(&context_, method, &queue_)) {
+    : stub_(channel) {
+  LimitCall(context_);
+  call_ = stub_.PrepareCall(&context_, method, &queue_);
   const grpc::Slice slice(message);
   call_->StartCall(nullptr);
   Next();

@@ -13,7 +13,8 @@
 
 namespace duet::test {
 
-// A call with hand-written messages, to services whose protos are not at hand.
+// A call with hand-written messages, to services whose protos are not at hand. Ends after
+// kCallLimit.
 class RawCall {
  public:
   // Sends one message to "/package.Service/Method".

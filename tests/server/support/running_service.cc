@@ -8,15 +8,23 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "server/batching/worker_pool.h"
+#include "server/config/server_options.h"
+#include "tests/server/support/timed_context.h"
 
 namespace duet::test {
+
+RunningService::Setup::Setup() {
+  const server::config::ServerOptions defaults;
+  limits.max_request_bytes = defaults.max_request_bytes;
+  buffered_frames = defaults.buffered_frames;
+}
 
 RunningService::RunningService(Setup setup) : admission_(setup.max_calls) {
   registry_.Serve(std::move(setup.model));
   admission_.SetState(server::service::Admission::State::kServing);
   if (setup.scheduler == nullptr) {
-    pool_ = std::make_unique<server::batching::WorkerPool>(
-        server::batching::WorkerPoolOptions{2, 64}, server::common::Clock::Real());
+    pool_ = server::batching::MakeWorkerPool({2, 64}, server::common::Clock::Real());
     setup.scheduler = pool_.get();
   }
   server::service::ServiceParts parts;
@@ -72,7 +80,7 @@ Reply ReadAll(grpc::ClientReader<v1::SynthesizeResponse>& reader) {
 }
 
 Reply Call(v1::MotionSynthesis::Stub& stub, const v1::SynthesizeRequest& request) {
-  grpc::ClientContext context;
+  TimedContext context;
   return Call(stub, request, context);
 }
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "duet/v1/synthesis.grpc.pb.h"
-#include "server/batching/worker_pool.h"
+#include "server/batching/window_scheduler.h"
 #include "server/lifecycle/grpc_server.h"
 #include "server/registry/model_registry.h"
 #include "server/service/admission.h"
@@ -23,11 +23,13 @@ namespace duet::test {
 class RunningService {
  public:
   struct Setup {
+    Setup();  // limits and buffer as the server's defaults
+
     std::shared_ptr<const engine::Synthesizer> model = std::make_shared<FakeSynthesizer>();
     server::batching::WindowScheduler* scheduler = nullptr;  // null: a pool with two workers
     std::size_t max_calls = 16;
     server::service::RequestLimits limits;
-    int buffered_frames = 240;
+    int buffered_frames = 0;
   };
 
   explicit RunningService(Setup setup);
@@ -45,7 +47,7 @@ class RunningService {
   RecordingObserver calls_;
   server::registry::ModelRegistry registry_;
   server::service::Admission admission_;
-  std::unique_ptr<server::batching::WorkerPool> pool_;
+  std::unique_ptr<server::batching::WindowScheduler> pool_;
   std::unique_ptr<server::service::MotionSynthesisService> service_;
   server::lifecycle::GrpcServer grpc_;
   std::shared_ptr<grpc::Channel> channel_;
@@ -66,7 +68,7 @@ struct Reply {
 // Reads what is left of a stream.
 Reply ReadAll(grpc::ClientReader<v1::SynthesizeResponse>& reader);
 
-// Makes a call and reads its reply.
+// Makes a call and reads its reply; without a context of the test's own, under TimedContext.
 Reply Call(v1::MotionSynthesis::Stub& stub, const v1::SynthesizeRequest& request);
 Reply Call(v1::MotionSynthesis::Stub& stub, const v1::SynthesizeRequest& request,
            grpc::ClientContext& context);

@@ -1,0 +1,100 @@
+#include "server/metrics/queued_log_sink.h"
+
+#include <utility>
+#include <vector>
+
+#include "server/common/mutex.h"
+
+namespace duet::server::metrics {
+
+// What the writing thread shares with those that log.
+class QueuedLogSink::Queue {
+ public:
+  Queue(std::shared_ptr<LogSink> sink, Options options)
+      : sink_(std::move(sink)), options_(std::move(options)) {}
+
+  void Push(std::string_view line) {
+    {
+      common::MutexLock lock(mutex_);
+      if (lines_.size() >= options_.capacity) {
+        ++dropped_;
+        return;
+      }
+      lines_.emplace_back(line);
+    }
+    changed_.NotifyAll();
+  }
+
+  std::uint64_t dropped() const {
+    common::MutexLock lock(mutex_);
+    return dropped_;
+  }
+
+  // The writing thread: writes until closed and empty.
+  void Run() {
+    Batch batch;
+    while (Next(&batch)) {
+      for (const std::string& line : batch.lines) sink_->Write(line);
+      // Lines are dropped only while the queue is full, so they came after those of the batch.
+      if (batch.dropped > 0) sink_->Write(options_.drop_notice(batch.dropped));
+    }
+    common::MutexLock lock(mutex_);
+    finished_ = true;
+    changed_.NotifyAll();
+  }
+
+  // Lets Run end. False when it is still stuck in the sink after `patience`.
+  bool Close(std::chrono::milliseconds patience) {
+    const auto end = std::chrono::steady_clock::now() + patience;
+    common::MutexLock lock(mutex_);
+    closed_ = true;
+    changed_.NotifyAll();
+    while (!finished_ && changed_.WaitUntil(mutex_, end)) {
+    }
+    return finished_;
+  }
+
+ private:
+  struct Batch {
+    std::vector<std::string> lines;
+    std::uint64_t dropped = 0;
+  };
+
+  // Waits for lines and takes all there are; false when there will be none.
+  bool Next(Batch* batch) {
+    common::MutexLock lock(mutex_);
+    while (lines_.empty() && !closed_) changed_.Wait(mutex_);
+    batch->lines = std::exchange(lines_, {});
+    batch->dropped = dropped_ - std::exchange(reported_, dropped_);
+    return !batch->lines.empty();
+  }
+
+  const std::shared_ptr<LogSink> sink_;
+  const Options options_;
+  mutable common::Mutex mutex_;
+  common::CondVar changed_;
+  std::vector<std::string> lines_ DUET_GUARDED_BY(mutex_);
+  std::uint64_t dropped_ DUET_GUARDED_BY(mutex_) = 0;
+  std::uint64_t reported_ DUET_GUARDED_BY(mutex_) = 0;  // dropped lines that a batch has reported
+  bool closed_ DUET_GUARDED_BY(mutex_) = false;
+  bool finished_ DUET_GUARDED_BY(mutex_) = false;
+};
+
+QueuedLogSink::QueuedLogSink(std::shared_ptr<LogSink> sink, Options options)
+    : queue_(std::make_shared<Queue>(std::move(sink), options)),
+      patience_(options.patience),
+      writer_([queue = queue_] { queue->Run(); }) {}
+
+QueuedLogSink::~QueuedLogSink() {
+  if (queue_->Close(patience_)) {
+    writer_.join();
+  } else {
+    writer_.detach();
+  }
+}
+
+void QueuedLogSink::Write(std::string_view line) { queue_->Push(line); }
+
+std::uint64_t QueuedLogSink::dropped_lines() const { return queue_->dropped(); }
+
+}  // namespace duet::server::metrics

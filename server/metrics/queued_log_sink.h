@@ -1,0 +1,55 @@
+#ifndef DUET_SERVER_METRICS_QUEUED_LOG_SINK_H_
+#define DUET_SERVER_METRICS_QUEUED_LOG_SINK_H_
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <thread>
+
+#include "server/metrics/log_sink.h"
+
+namespace duet::server::metrics {
+
+// Puts a bounded queue and a thread of its own before a sink that may be slow or stuck, such as a
+// pipe that nobody reads: Write never waits. Lines that find the queue full are dropped and
+// counted; a line that says how many follows as soon as the sink takes lines again.
+//
+//   QueuedLogSink log(std::make_shared<StreamLogSink>(stderr), options);
+//   ... log.Write(line) from any thread ...
+//   // The destructor writes what is left.
+//
+// Threads: safe to call concurrently. Uses neither gRPC nor abseil.
+class QueuedLogSink final : public LogSink {
+ public:
+  struct Options {
+    std::size_t capacity = 4096;  // waiting lines, 1 or more
+    // How long the destructor waits for a sink that is stuck before it gives up the lines left.
+    std::chrono::milliseconds patience = std::chrono::seconds(5);
+    // The line that reports dropped lines. Required; called on the writing thread.
+    std::function<std::string(std::uint64_t dropped)> drop_notice;
+  };
+
+  // Shares the sink, because a thread that is stuck in it outlives this object.
+  QueuedLogSink(std::shared_ptr<LogSink> sink, Options options);
+  // Writes the lines left, as long as the sink takes them.
+  ~QueuedLogSink() override;
+  QueuedLogSink(const QueuedLogSink&) = delete;
+  QueuedLogSink& operator=(const QueuedLogSink&) = delete;
+
+  void Write(std::string_view line) override;
+  std::uint64_t dropped_lines() const override;
+
+ private:
+  class Queue;
+  const std::shared_ptr<Queue> queue_;
+  const std::chrono::milliseconds patience_;
+  std::thread writer_;
+};
+
+}  // namespace duet::server::metrics
+
+#endif  // DUET_SERVER_METRICS_QUEUED_LOG_SINK_H_

@@ -1,0 +1,17 @@
+#ifndef DUET_SERVER_SERVICE_PRIORITY_MESSAGE_H_
+#define DUET_SERVER_SERVICE_PRIORITY_MESSAGE_H_
+
+#include <optional>
+
+#include "duet/v1/synthesis.pb.h"
+#include "server/batching/priority.h"
+
+namespace duet::server::service {
+
+// The priority that a request asks for, interactive when it names none; nothing when it names one
+// that there is not.
+std::optional<batching::Priority> PriorityOf(const v1::SynthesizeRequest& request);
+
+}  // namespace duet::server::service
+
+#endif  // DUET_SERVER_SERVICE_PRIORITY_MESSAGE_H_

@@ -1,0 +1,165 @@
+#include "server/metrics/queued_log_sink.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "server/common/mutex.h"
+
+namespace duet::server::metrics {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+// A sink that takes no line until the test opens it.
+//
+// Threads: safe to call concurrently.
+class GatedSink final : public LogSink {
+ public:
+  void Write(std::string_view line) override {
+    common::MutexLock lock(mutex_);
+    ++begun_;
+    changed_.NotifyAll();
+    while (!open_) changed_.Wait(mutex_);
+    lines_.emplace_back(line);
+    changed_.NotifyAll();
+  }
+  void Open() {
+    common::MutexLock lock(mutex_);
+    open_ = true;
+    changed_.NotifyAll();
+  }
+  void WaitUntilBegun(int writes) {
+    common::MutexLock lock(mutex_);
+    while (begun_ < writes) changed_.Wait(mutex_);
+  }
+  // Waits until so many lines were taken.
+  void WaitFor(std::size_t lines) {
+    common::MutexLock lock(mutex_);
+    while (lines_.size() < lines) changed_.Wait(mutex_);
+  }
+  std::vector<std::string> lines() const {
+    common::MutexLock lock(mutex_);
+    return lines_;
+  }
+
+ private:
+  mutable common::Mutex mutex_;
+  common::CondVar changed_;
+  bool open_ DUET_GUARDED_BY(mutex_) = false;
+  int begun_ DUET_GUARDED_BY(mutex_) = 0;
+  std::vector<std::string> lines_ DUET_GUARDED_BY(mutex_);
+};
+
+QueuedLogSink::Options Options(std::size_t capacity) {
+  QueuedLogSink::Options options;
+  options.capacity = capacity;
+  options.patience = std::chrono::hours(1);
+  options.drop_notice = [](std::uint64_t dropped) { return std::to_string(dropped) + " dropped"; };
+  return options;
+}
+
+TEST(QueuedLogSinkTest, PassesOnLinesInOrder) {
+  const auto sink = std::make_shared<GatedSink>();
+  sink->Open();
+  {
+    QueuedLogSink log(sink, Options(8));
+    for (const char* line : {"a", "b", "c"}) log.Write(line);
+    EXPECT_EQ(log.dropped_lines(), 0u);
+  }
+  EXPECT_THAT(sink->lines(), ElementsAre("a", "b", "c"));
+}
+
+TEST(QueuedLogSinkTest, NeverWaitsForAStuckSink) {
+  const auto sink = std::make_shared<GatedSink>();
+  QueuedLogSink log(sink, Options(2));
+  log.Write("stuck");
+  sink->WaitUntilBegun(1);
+  for (const char* line : {"a", "b", "lost", "lost"}) log.Write(line);  // comes back each time
+  EXPECT_EQ(log.dropped_lines(), 2u);
+  EXPECT_THAT(sink->lines(), IsEmpty());
+  sink->Open();
+}
+
+TEST(QueuedLogSinkTest, SaysHowManyLinesWereDroppedWhenTheSinkRecovers) {
+  const auto sink = std::make_shared<GatedSink>();
+  {
+    QueuedLogSink log(sink, Options(2));
+    log.Write("stuck");
+    sink->WaitUntilBegun(1);
+    for (const char* line : {"a", "b", "lost", "lost"}) log.Write(line);
+    sink->Open();
+    sink->WaitFor(3);
+    log.Write("c");
+    EXPECT_EQ(log.dropped_lines(), 2u);
+  }
+  EXPECT_THAT(sink->lines(), ElementsAre("stuck", "a", "b", "2 dropped", "c"));
+}
+
+TEST(QueuedLogSinkTest, WritesTheLinesLeftBeforeItGoes) {
+  const auto sink = std::make_shared<GatedSink>();
+  std::thread opener;
+  {
+    QueuedLogSink log(sink, Options(8));
+    for (const char* line : {"a", "b", "c"}) log.Write(line);
+    sink->WaitUntilBegun(1);
+    opener = std::thread([&sink] { sink->Open(); });
+  }
+  EXPECT_THAT(sink->lines(), ElementsAre("a", "b", "c"));
+  opener.join();
+}
+
+TEST(QueuedLogSinkTest, GivesUpOnASinkThatStaysStuck) {
+  const auto sink = std::make_shared<GatedSink>();
+  {
+    QueuedLogSink::Options options = Options(8);
+    options.patience = std::chrono::milliseconds(0);
+    QueuedLogSink log(sink, options);
+    log.Write("stuck");
+    sink->WaitUntilBegun(1);
+  }
+  EXPECT_THAT(sink->lines(), IsEmpty());
+  sink->Open();  // its thread is still there and ends now
+  sink->WaitFor(1);
+  EXPECT_THAT(sink->lines(), ElementsAre("stuck"));
+}
+
+TEST(QueuedLogSinkTest, KeepsEveryLineOfManyThreads) {
+  const auto sink = std::make_shared<GatedSink>();
+  sink->Open();
+  std::uint64_t dropped = 0;
+  {
+    QueuedLogSink log(sink, Options(16));
+    std::vector<std::thread> writers;
+    for (char c = 'a'; c < 'e'; ++c) {
+      writers.emplace_back([&log, c] {
+        for (int i = 0; i < 200; ++i) log.Write(std::string(1, c));
+      });
+    }
+    for (std::thread& writer : writers) writer.join();
+    dropped = log.dropped_lines();
+  }
+  std::size_t written = 0;
+  std::uint64_t reported = 0;
+  for (const std::string& line : sink->lines()) {
+    if (line.size() == 1) {
+      ++written;
+    } else {
+      reported += std::stoull(line);
+    }
+  }
+  EXPECT_EQ(written + dropped, 800u);
+  EXPECT_EQ(reported, dropped);
+}
+
+}  // namespace
+}  // namespace duet::server::metrics
