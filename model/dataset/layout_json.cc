@@ -5,6 +5,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "model/dataset/layout.h"
+#include "model/motion/skeleton_json.h"
 #include "nlohmann/json.hpp"
 
 namespace duet::dataset {
@@ -65,22 +66,6 @@ absl::Status ReadName(const std::string& field, const Json& value, std::string* 
   return absl::OkStatus();
 }
 
-absl::Status ReadNames(const std::string& field, const Json& value, int most,
-                       std::vector<std::string>* out) {
-  if (!value.is_array() || value.empty() || value.size() > static_cast<size_t>(most)) {
-    return Wrong(field,
-                 value.is_array() ? absl::StrCat(value.size(), " entries") : value.type_name(),
-                 absl::StrCat("a list of 1 to ", most, " names"));
-  }
-  for (size_t i = 0; i < value.size(); ++i) {
-    std::string name;
-    absl::Status status = ReadName(absl::StrCat(field, "[", i, "]"), value[i], &name);
-    if (!status.ok()) return status;
-    out->push_back(std::move(name));
-  }
-  return absl::OkStatus();
-}
-
 absl::Status ReadJoint(const std::string& field, const Json& value,
                        const motion::Skeleton& skeleton, int* out) {
   std::string name;
@@ -105,59 +90,14 @@ absl::Status ReadJoints(const std::string& field, const Json& value,
   return absl::OkStatus();
 }
 
-absl::Status ReadBones(const Json& value, motion::Skeleton* skeleton) {
-  if (!value.is_array()) return Wrong("skeleton.bones", value.type_name(), "a list");
-  for (size_t i = 0; i < value.size(); ++i) {
-    const std::string field = absl::StrCat("skeleton.bones[", i, "]");
-    std::vector<int> ends;
-    absl::Status status = ReadJoints(field, value[i], *skeleton, &ends);
-    if (!status.ok()) return status;
-    if (ends.size() != 2) return Wrong(field, value[i].dump(), "[parent, child]");
-    skeleton->bones.push_back({ends[0], ends[1]});
+absl::Status ReadSkeleton(const Json& json, DatasetLayout* layout) {
+  absl::StatusOr<motion::SkeletonDocument> document = motion::ReadSkeleton(json, "skeleton");
+  if (!document.ok()) {
+    return absl::InvalidArgumentError(absl::StrCat("dataset.json: ", document.status().message()));
   }
+  layout->skeleton = std::move(document->skeleton);
+  layout->parts = std::move(document->parts);
   return absl::OkStatus();
-}
-
-absl::Status ReadParts(const Json& value, motion::Skeleton* skeleton) {
-  if (!value.is_array()) return Wrong("skeleton.parts", value.type_name(), "a list");
-  for (size_t i = 0; i < value.size(); ++i) {
-    const std::string field = absl::StrCat("skeleton.parts[", i, "]");
-    motion::BodyPart part;
-    absl::Status status = CheckKeys(field, value[i], {"name", "joints"}, {});
-    if (status.ok()) status = ReadName(field + ".name", value[i]["name"], &part.name);
-    if (status.ok()) {
-      status = ReadJoints(field + ".joints", value[i]["joints"], *skeleton, &part.joints);
-    }
-    if (!status.ok()) return status;
-    skeleton->parts.push_back(std::move(part));
-  }
-  return absl::OkStatus();
-}
-
-absl::Status ReadSkeleton(const Json& json, motion::Skeleton* skeleton) {
-  absl::Status status = CheckKeys(
-      "skeleton", json,
-      {"joint_names", "bones", "parts", "root", "left_hip", "right_hip", "left_foot", "right_foot"},
-      {});
-  if (status.ok()) {
-    status =
-        ReadNames("skeleton.joint_names", json["joint_names"], kMaxJoints, &skeleton->joint_names);
-  }
-  if (status.ok()) status = ReadBones(json["bones"], skeleton);
-  if (status.ok()) status = ReadParts(json["parts"], skeleton);
-  const std::pair<const char*, int*> landmarks[] = {{"root", &skeleton->root},
-                                                    {"left_hip", &skeleton->left_hip},
-                                                    {"right_hip", &skeleton->right_hip},
-                                                    {"left_foot", &skeleton->left_foot},
-                                                    {"right_foot", &skeleton->right_foot}};
-  for (const auto& [key, joint] : landmarks) {
-    if (status.ok())
-      status = ReadJoint(absl::StrCat("skeleton.", key), json[key], *skeleton, joint);
-  }
-  if (!status.ok()) return status;
-  const absl::Status valid = Validate(*skeleton);
-  if (valid.ok()) return valid;
-  return absl::InvalidArgumentError(absl::StrCat("dataset.json: skeleton.", valid.message()));
 }
 
 // A class's folder bears the class's name: it may not lead anywhere else.
@@ -259,7 +199,7 @@ absl::StatusOr<DatasetLayout> ParseDatasetLayout(std::string_view text) {
   if (status.ok()) status = ReadName("name", json["name"], &layout.name);
   if (status.ok()) status = ReadFrameRate(json["frame_rate_hz"], &layout.frame_rate_hz);
   if (status.ok()) status = ReadCoordinates(json, &layout.frame);
-  if (status.ok()) status = ReadSkeleton(json["skeleton"], &layout.skeleton);
+  if (status.ok()) status = ReadSkeleton(json["skeleton"], &layout);
   if (status.ok()) status = ReadClasses(json["classes"], &layout);
   if (!status.ok()) return status;
   return layout;

@@ -18,38 +18,36 @@ constexpr double kWayWeight = 2.0;
 
 motion::Standardisation BaselineFrame(const motion::Skeleton& skeleton,
                                       const dataset::Sequence& sequence) {
-  const std::vector<motion::Vec3>& leader = sequence.pair.leader.positions;
+  const motion::Poses leader(skeleton.joint_count(), sequence.pair.leader.positions);
   if (sequence.partner_direction) {
     return {skeleton, leader, FacingYaw(*sequence.partner_direction)};
   }
   return {skeleton, leader};
 }
 
-Rows ToRows(const std::vector<motion::Vec3>& positions, int joints) {
-  const Eigen::Index width = 3 * static_cast<Eigen::Index>(joints);
-  const Eigen::Index frames = static_cast<Eigen::Index>(positions.size()) * 3 / width;
-  Rows rows(frames, width);
-  for (size_t i = 0; i < positions.size(); ++i) {
-    double* out = rows.data() + 3 * i;
-    out[0] = positions[i].x;
-    out[1] = positions[i].y;
-    out[2] = positions[i].z;
+Rows ToRows(const motion::Poses& poses) {
+  Rows rows(poses.frame_count(), 3 * static_cast<Eigen::Index>(poses.joint_count()));
+  double* out = rows.data();
+  for (const motion::Vec3& position : poses.all()) {
+    *out++ = position.x;
+    *out++ = position.y;
+    *out++ = position.z;
   }
   return rows;
 }
 
-std::vector<motion::Vec3> FromRows(const Rows& rows) {
-  std::vector<motion::Vec3> positions(static_cast<size_t>(rows.size()) / 3);
-  for (size_t i = 0; i < positions.size(); ++i) {
-    const double* p = rows.data() + 3 * i;
-    positions[i] = {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])};
+motion::Poses FromRows(const Rows& rows) {
+  motion::Poses poses(static_cast<int>(rows.rows()), static_cast<int>(rows.cols() / 3));
+  const double* p = rows.data();
+  for (motion::Vec3& position : poses.all()) {
+    position = {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])};
+    p += 3;
   }
-  return positions;
+  return poses;
 }
 
-Rows LeaderCues(const motion::Standardisation& frame, const std::vector<motion::Vec3>& world,
-                int joints) {
-  const Rows pose = ToRows(frame.Apply(world), joints);
+Rows LeaderCues(const motion::Standardisation& frame, const motion::Poses& world) {
+  const Rows pose = ToRows(frame.Apply(world));
   const Eigen::Index frames = pose.rows(), width = pose.cols();
   Rows cues(frames, 2 * width + 4);
   for (Eigen::Index t = 0; t < frames; ++t) {
@@ -58,11 +56,10 @@ Rows LeaderCues(const motion::Standardisation& frame, const std::vector<motion::
     cues.row(t).head(width) = pose.row(t);
     cues.row(t).segment(width, width) = pose.row(after) - pose.row(before);
     // Standard and world differ by the root's way, turned: any joint tells it.
-    const size_t joint = static_cast<size_t>(t) * static_cast<size_t>(joints);
     const motion::Vec3 way =
-        frame.Apply(world[joint]) - motion::Vec3{static_cast<float>(pose(t, 0)),
-                                                 static_cast<float>(pose(t, 1)),
-                                                 static_cast<float>(pose(t, 2))};
+        frame.Apply(world.at(static_cast<int>(t), 0)) -
+        motion::Vec3{static_cast<float>(pose(t, 0)), static_cast<float>(pose(t, 1)),
+                     static_cast<float>(pose(t, 2))};
     cues.row(t).segment(2 * width, 3) = kWayWeight * Eigen::RowVector3d(way.x, way.y, way.z);
     cues(t, 2 * width + 3) = kTimeWeight * static_cast<double>(t) /
                              static_cast<double>(std::max<Eigen::Index>(frames - 1, 1));
@@ -72,10 +69,10 @@ Rows LeaderCues(const motion::Standardisation& frame, const std::vector<motion::
 
 StandardPair StandardLeader(const motion::Skeleton& skeleton, const dataset::Sequence& sequence) {
   const motion::Standardisation frame = BaselineFrame(skeleton, sequence);
-  const std::vector<motion::Vec3>& leader = sequence.pair.leader.positions;
+  const motion::Poses leader(skeleton.joint_count(), sequence.pair.leader.positions);
   StandardPair pair;
-  pair.leader = ToRows(frame.Apply(leader), skeleton.joint_count());
-  pair.cues = LeaderCues(frame, leader, skeleton.joint_count());
+  pair.leader = ToRows(frame.Apply(leader));
+  pair.cues = LeaderCues(frame, leader);
   return pair;
 }
 
@@ -83,13 +80,15 @@ StandardPair StandardiseSequence(const motion::Skeleton& skeleton,
                                  const dataset::Sequence& sequence) {
   StandardPair pair = StandardLeader(skeleton, sequence);
   const motion::Standardisation frame = BaselineFrame(skeleton, sequence);
-  pair.follower = ToRows(frame.Apply(sequence.pair.follower.positions), skeleton.joint_count());
+  pair.follower =
+      ToRows(frame.Apply(motion::Poses(skeleton.joint_count(), sequence.pair.follower.positions)));
   return pair;
 }
 
 std::vector<motion::Vec3> FollowerToWorld(const motion::Skeleton& skeleton,
                                           const dataset::Sequence& sequence, const Rows& follower) {
-  return BaselineFrame(skeleton, sequence).Invert(FromRows(follower));
+  const motion::Poses world = BaselineFrame(skeleton, sequence).Invert(FromRows(follower));
+  return {world.all().begin(), world.all().end()};
 }
 
 Rows StretchTo(const Rows& motion, Eigen::Index frames) {

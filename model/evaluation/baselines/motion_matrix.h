@@ -36,14 +36,13 @@ StandardPair StandardiseSequence(const motion::Skeleton& skeleton,
 std::vector<motion::Vec3> FollowerToWorld(const motion::Skeleton& skeleton,
                                           const dataset::Sequence& sequence, const Rows& follower);
 
-Rows ToRows(const std::vector<motion::Vec3>& positions, int joints);
-std::vector<motion::Vec3> FromRows(const Rows& rows);
+Rows ToRows(const motion::Poses& poses);
+motion::Poses FromRows(const Rows& rows);
 
 // What a method sees of the leader in each frame: pose, velocity over four frames, the root's way
 // since the first frame, and the time, from 0 to 1 (the leader is known as a whole); each scaled so
 // that typical changes weigh about the same. Shapes: positions [frames, joints] in the world.
-Rows LeaderCues(const motion::Standardisation& frame, const std::vector<motion::Vec3>& world,
-                int joints);
+Rows LeaderCues(const motion::Standardisation& frame, const motion::Poses& world);
 
 // Motion stretched or shrunk to another number of frames, linearly. Both at least 1.
 Rows StretchTo(const Rows& motion, Eigen::Index frames);

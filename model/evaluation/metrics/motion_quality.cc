@@ -55,8 +55,10 @@ double Jitter(const std::vector<motion::Vec3>& positions, int joints, double fra
 FootSlide MeasureFootSlide(const std::vector<motion::Vec3>& positions,
                            const motion::Skeleton& skeleton, double frame_rate_hz) {
   const size_t stride = static_cast<size_t>(skeleton.joint_count());
-  const size_t feet[] = {static_cast<size_t>(skeleton.left_foot),
-                         static_cast<size_t>(skeleton.right_foot)};
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  if (!skeleton.feet) return {kNone, kNone};
+  const size_t feet[] = {static_cast<size_t>(skeleton.feet->left),
+                         static_cast<size_t>(skeleton.feet->right)};
   float floor = std::numeric_limits<float>::max();
   for (size_t first = 0; first < positions.size(); first += stride) {
     for (size_t foot : feet) floor = std::min(floor, positions[first + foot].y);

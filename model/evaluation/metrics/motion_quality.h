@@ -24,6 +24,7 @@ double Jitter(const std::vector<motion::Vec3>& positions, int joints, double fra
 
 // How feet move while they should stand. Both consider the time a foot spends within 5 cm of the
 // lowest point that either foot reaches, and movement along the floor alone.
+// A skeleton without feet has none of these: NaN.
 // Source: skating ratio as in GMD (Karunratanakul et al. 2023); foot motion as in MANN.
 struct FootSlide {
   // Of the steps from frame to frame with a foot on the floor at both ends, the share that is

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "model/motion/body_part.h"
 #include "model/motion/skeleton.h"
 #include "model/motion/vec3.h"
 
@@ -16,7 +17,8 @@ double SegmentDistance(motion::Vec3 a0, motion::Vec3 a1, motion::Vec3 b0, motion
 // other (trunk, shoulders, hips). Source: half the breadth of adult limbs, and rather less than
 // that of the trunk, whose bones fan out from the middle. Rough: compare figures with those of
 // captured pairs, not with zero.
-std::vector<double> CapsuleRadii(const motion::Skeleton& skeleton);
+std::vector<double> CapsuleRadii(const motion::Skeleton& skeleton,
+                                 const std::vector<motion::BodyPart>& parts);
 
 // How far two bodies reach into each other. A frame's depth is the largest max(0, r1 + r2 - d) over
 // all pairs of a leader's and a follower's bone. Less is not automatically better (a hug touches):
@@ -28,7 +30,8 @@ struct Penetration {
 };
 Penetration MeasurePenetration(const std::vector<motion::Vec3>& leader,
                                const std::vector<motion::Vec3>& follower,
-                               const motion::Skeleton& skeleton);
+                               const motion::Skeleton& skeleton,
+                               const std::vector<motion::BodyPart>& parts);
 
 }  // namespace duet::evaluation::metrics
 

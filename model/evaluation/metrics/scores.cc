@@ -75,7 +75,7 @@ std::vector<double> ScoreMotion(const dataset::Dataset& dataset, const ScoredMot
   const double rate = sequence.pair.leader.frame_rate_hz;
   const FootSlide slide = MeasureFootSlide(made, skeleton, rate);
   const Penetration penetration =
-      MeasurePenetration(sequence.pair.leader.positions, made, skeleton);
+      MeasurePenetration(sequence.pair.leader.positions, made, skeleton, dataset.parts);
   return {Afd(made, truth, joints, MetricUnit::kSbuRaw),
           AfdSquared(made, truth, joints, MetricUnit::kSbuRaw),
           Afd(made, truth, joints, MetricUnit::kMetres),
