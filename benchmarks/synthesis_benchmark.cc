@@ -27,14 +27,14 @@ const duet::engine::Synthesizer& Model() {
 }
 
 // A made-up person who sways: speed does not depend on what the leader does.
-std::vector<duet::motion::Vec3> Leader(int frames) {
-  std::vector<duet::motion::Vec3> leader;
+duet::motion::Poses Leader(int frames) {
   const int joints = Model().description().skeleton.joint_count();
+  duet::motion::Poses leader(frames, joints);
   for (int t = 0; t < frames; ++t) {
     for (int j = 0; j < joints; ++j) {
       const float phase = 0.2f * static_cast<float>(t) + static_cast<float>(j);
-      leader.push_back(
-          {0.2f * std::sin(phase), 0.1f * static_cast<float>(j), 0.2f * std::cos(phase)});
+      leader.at(t, j) = {0.2f * std::sin(phase), 0.1f * static_cast<float>(j),
+                         0.2f * std::cos(phase)};
     }
   }
   return leader;

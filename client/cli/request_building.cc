@@ -1,7 +1,7 @@
 #include "client/cli/request_building.h"
 
 #include <algorithm>
-#include <numeric>
+#include <optional>
 #include <system_error>
 #include <utility>
 
@@ -12,20 +12,12 @@
 namespace duet::client::cli {
 namespace {
 
-// What a skeleton must have and a served model does not tell: hips and feet by their names, the
-// root in the place of one that is not there, and a single part (parts matter to the network
-// alone).
-void SetLandmarksAndParts(motion::Skeleton* skeleton) {
-  const auto find_or_root = [skeleton](const char* name) {
-    const int found = skeleton->Find(name);
-    return found < 0 ? skeleton->root : found;
-  };
-  skeleton->left_hip = find_or_root("left_hip");
-  skeleton->right_hip = find_or_root("right_hip");
-  skeleton->left_foot = find_or_root("left_foot");
-  skeleton->right_foot = find_or_root("right_foot");
-  skeleton->parts = {{"whole_body", std::vector<int>(skeleton->joint_names.size())}};
-  std::iota(skeleton->parts[0].joints.begin(), skeleton->parts[0].joints.end(), 0);
+// Both joints, or nothing where the model lacks one of them.
+std::optional<motion::JointPair> FindPair(const motion::Skeleton& skeleton, const std::string& left,
+                                          const std::string& right) {
+  const motion::JointPair pair{skeleton.Find(left), skeleton.Find(right)};
+  if (pair.left < 0 || pair.right < 0) return std::nullopt;
+  return pair;
 }
 
 formats::ReadOptions ToReadOptions(const InputArguments& input, const motion::Skeleton& skeleton) {
@@ -85,7 +77,8 @@ absl::StatusOr<motion::Skeleton> ToSkeleton(const ModelInfo& model) {
   skeleton.joint_names = model.joint_names;
   skeleton.bones = model.bones;
   skeleton.root = skeleton.Find(model.root_joint);
-  SetLandmarksAndParts(&skeleton);
+  skeleton.hips = FindPair(skeleton, "left_hip", "right_hip");
+  skeleton.feet = FindPair(skeleton, "left_foot", "right_foot");
   absl::Status status = Validate(skeleton);
   if (status.ok()) return skeleton;
   return absl::InternalError(absl::StrCat("the server's model ", model.name, "@", model.version,

@@ -90,9 +90,10 @@ absl::StatusOr<Checkpoint> ReadCheckpoint(const std::filesystem::path& folder) {
 }
 
 absl::Status WriteCheckpoint(const std::filesystem::path& folder, Checkpoint checkpoint) {
-  if (absl::Status status = Validate(checkpoint.manifest.model.skeleton); !status.ok()) {
-    return status;
-  }
+  const motion::Skeleton& skeleton = checkpoint.manifest.model.skeleton;
+  absl::Status valid = Validate(skeleton);
+  if (valid.ok()) valid = Validate(checkpoint.manifest.generator.parts, skeleton);
+  if (!valid.ok()) return valid;
   const std::string weights = SerializeSafetensors(checkpoint.tensors, {{"format", "pt"}});
   Manifest& manifest = checkpoint.manifest;
   manifest.weights.bytes = weights.size();

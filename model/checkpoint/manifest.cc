@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -10,6 +11,8 @@
 #include "absl/strings/str_cat.h"
 #include "absl/time/time.h"
 #include "model/base/strict_json.h"
+#include "model/checkpoint/names.h"
+#include "model/motion/skeleton_json.h"
 
 namespace duet::checkpoint {
 namespace {
@@ -17,9 +20,7 @@ namespace {
 using nlohmann::json;
 using nlohmann::ordered_json;
 
-// Far above any character, far below what would let a small file ask for a huge network.
-constexpr int kMaxJoints = 256;
-constexpr int kMaxParts = 64;
+// Far above any use, far below what would let a small file ask for a huge network.
 constexpr int kMaxClasses = 256;
 constexpr int kMaxUnits = 4096;  // of a layer
 constexpr int kMaxWindowFrames = 4096;
@@ -51,20 +52,6 @@ std::string ReadName(base::ObjectReader* reader, const std::string& key) {
   return name;
 }
 
-// A joint that the skeleton knows, given by name.
-int FindJoint(base::ObjectReader* reader, const std::string& key, const motion::Skeleton& skeleton,
-              const std::string& name) {
-  const int joint = skeleton.Find(name);
-  if (joint < 0) reader->Fail(key, absl::StrCat("unknown joint ", json(name).dump()));
-  return joint;
-}
-
-int ReadJoint(base::ObjectReader* reader, const std::string& key,
-              const motion::Skeleton& skeleton) {
-  const std::string name = reader->String(key, kMaxTextBytes);
-  return reader->ok() ? FindJoint(reader, key, skeleton, name) : 0;
-}
-
 std::vector<std::string> ReadUniqueNames(base::ObjectReader* reader, const std::string& key,
                                          std::size_t max_count) {
   std::vector<std::string> names = reader->Strings(key, max_count);
@@ -81,68 +68,28 @@ std::vector<std::string> ReadUniqueNames(base::ObjectReader* reader, const std::
   return names;
 }
 
-std::vector<motion::Bone> ReadBones(base::ObjectReader* reader, const motion::Skeleton& skeleton) {
-  std::vector<motion::Bone> bones;
-  for (const json& item : reader->Array("bones", kMaxJoints)) {
-    const bool is_pair =
-        item.is_array() && item.size() == 2 && item[0].is_string() && item[1].is_string();
-    if (!is_pair) {
-      reader->Fail("bones", "wanted pairs of joint names, parent first");
-      return {};
-    }
-    bones.push_back({FindJoint(reader, "bones", skeleton, item[0].get<std::string>()),
-                     FindJoint(reader, "bones", skeleton, item[1].get<std::string>())});
+// A name of a table (names.h).
+template <typename T, std::size_t n>
+T ReadNamed(base::ObjectReader* reader, const std::string& key, const Named<T> (&table)[n]) {
+  const std::string name = reader->String(key, kMaxTextBytes);
+  const std::optional<T> value = ValueOf(table, name);
+  if (value) return *value;
+  std::string wanted;
+  for (std::size_t i = 0; i < n; ++i) {
+    absl::StrAppend(&wanted,
+                    i == 0      ? ""
+                    : i + 1 < n ? ", "
+                                : " or ",
+                    "\"", std::string(table[i].name), "\"");
   }
-  return bones;
-}
-
-std::vector<motion::BodyPart> ReadParts(base::ObjectReader* reader,
-                                        const motion::Skeleton& skeleton) {
-  std::vector<motion::BodyPart> parts;
-  std::set<std::string> seen = {"whole_body"};  // the slice that the generator adds
-  for (const json& item : reader->Array("parts", kMaxParts)) {
-    base::ObjectReader fields(item, reader->PathOf("parts"));
-    motion::BodyPart part;
-    part.name = ReadName(&fields, "name");
-    for (const std::string& joint : ReadUniqueNames(&fields, "joints", kMaxJoints)) {
-      part.joints.push_back(FindJoint(&fields, "joints", skeleton, joint));
-    }
-    if (!seen.insert(part.name).second) {
-      fields.Fail("name", absl::StrCat(json(part.name).dump(), " is repeated or reserved"));
-    }
-    reader->Update(fields.Finish());
-    parts.push_back(std::move(part));
-  }
-  return parts;
-}
-
-absl::StatusOr<motion::Skeleton> ReadSkeleton(const json& value) {
-  base::ObjectReader reader(value, "skeleton");
-  motion::Skeleton skeleton;
-  skeleton.joint_names = ReadUniqueNames(&reader, "joint_names", kMaxJoints);
-  skeleton.bones = ReadBones(&reader, skeleton);
-  skeleton.parts = ReadParts(&reader, skeleton);
-  skeleton.root = ReadJoint(&reader, "root", skeleton);
-  skeleton.left_hip = ReadJoint(&reader, "left_hip", skeleton);
-  skeleton.right_hip = ReadJoint(&reader, "right_hip", skeleton);
-  skeleton.left_foot = ReadJoint(&reader, "left_foot", skeleton);
-  skeleton.right_foot = ReadJoint(&reader, "right_foot", skeleton);
-  if (absl::Status status = reader.Finish(); !status.ok()) return status;
-  if (absl::Status status = Validate(skeleton); !status.ok()) {
-    return absl::InvalidArgumentError(absl::StrCat("skeleton.", status.message()));
-  }
-  return skeleton;
+  reader->Fail(key, absl::StrCat(json(name).dump(), ", wanted ", wanted));
+  return table[0].value;
 }
 
 absl::StatusOr<GeneratorArchitecture> ReadGenerator(const json& value) {
   base::ObjectReader reader(value, "generator");
   GeneratorArchitecture generator;
-  generator.variant = reader.String("variant", kMaxTextBytes);
-  if (reader.ok() && generator.variant != "paper" && generator.variant != "released" &&
-      generator.variant != "unlabelled") {
-    reader.Fail("variant", absl::StrCat(json(generator.variant).dump(),
-                                        ", wanted \"paper\", \"released\" or \"unlabelled\""));
-  }
+  generator.variant = ReadNamed(&reader, "variant", kVariantNames);
   generator.follower_start = reader.Bool("follower_start");
   generator.slice_features = static_cast<int>(reader.Int("slice_features", 0, kMaxUnits));
   generator.encoder_hidden = static_cast<int>(reader.Int("encoder_hidden", 1, kMaxUnits));
@@ -215,18 +162,6 @@ void ReadModel(base::ObjectReader* reader, engine::ModelDescription* model) {
   if (reader->ok() && model->classes.empty()) {
     reader->Fail("classes", "empty, wanted at least one class");
   }
-  const json& skeleton = reader->Object("skeleton");
-  if (reader->ok()) Take(ReadSkeleton(skeleton), reader, &model->skeleton);
-}
-
-void ReadStandardisation(base::ObjectReader* reader, Manifest* manifest) {
-  manifest->standardisation = reader->String("standardisation", kMaxTextBytes);
-  if (reader->ok() && manifest->standardisation != kLeaderRootAndYaw &&
-      manifest->standardisation != kLeaderStartAndYaw) {
-    reader->Fail("standardisation",
-                 absl::StrCat(json(manifest->standardisation).dump(), ", wanted \"",
-                              kLeaderRootAndYaw, "\" or \"", kLeaderStartAndYaw, "\""));
-  }
 }
 
 absl::StatusOr<Manifest> ReadManifest(const json& root) {
@@ -236,10 +171,15 @@ absl::StatusOr<Manifest> ReadManifest(const json& root) {
   manifest.format_version =
       static_cast<int>(reader.Int("format_version", 1, kCheckpointFormatVersion));
   ReadModel(&reader, &manifest.model);
+  motion::SkeletonDocument skeleton;
+  const json& skeleton_object = reader.Object("skeleton");
+  if (reader.ok()) Take(motion::ReadSkeleton(skeleton_object, "skeleton"), &reader, &skeleton);
+  manifest.model.skeleton = std::move(skeleton.skeleton);
   const json& generator = reader.Object("generator");
   if (reader.ok()) Take(ReadGenerator(generator), &reader, &manifest.generator);
+  manifest.generator.parts = std::move(skeleton.parts);
   manifest.model.accepts_follower_start = manifest.generator.follower_start;
-  ReadStandardisation(&reader, &manifest);
+  manifest.standardisation = ReadNamed(&reader, "standardisation", kStandardisationNames);
   const json& weights = reader.Object("weights");
   if (reader.ok()) Take(ReadWeightsFile(weights), &reader, &manifest.weights);
   manifest.git_revision = reader.String("git_revision", kMaxTextBytes);
@@ -264,30 +204,6 @@ absl::Status CheckTotalSize(const Manifest& manifest) {
                                                  kMaxWeightsBytes));
 }
 
-ordered_json ToJson(const motion::Skeleton& skeleton) {
-  const auto name = [&](int joint) {
-    return skeleton.joint_names[static_cast<std::size_t>(joint)];
-  };
-  ordered_json bones = ordered_json::array();
-  for (const motion::Bone& bone : skeleton.bones) {
-    bones.push_back(ordered_json::array({name(bone.parent), name(bone.child)}));
-  }
-  ordered_json parts = ordered_json::array();
-  for (const motion::BodyPart& part : skeleton.parts) {
-    ordered_json joints = ordered_json::array();
-    for (int joint : part.joints) joints.push_back(name(joint));
-    parts.push_back({{"name", part.name}, {"joints", joints}});
-  }
-  return {{"joint_names", skeleton.joint_names},
-          {"bones", bones},
-          {"parts", parts},
-          {"root", name(skeleton.root)},
-          {"left_hip", name(skeleton.left_hip)},
-          {"right_hip", name(skeleton.right_hip)},
-          {"left_foot", name(skeleton.left_foot)},
-          {"right_foot", name(skeleton.right_foot)}};
-}
-
 }  // namespace
 
 absl::StatusOr<Manifest> ParseManifest(std::string_view text) {
@@ -306,30 +222,31 @@ absl::StatusOr<Manifest> ParseManifest(std::string_view text) {
 std::string SerializeManifest(const Manifest& manifest) {
   const engine::ModelDescription& model = manifest.model;
   const GeneratorArchitecture& generator = manifest.generator;
-  const ordered_json root = {{"format_version", manifest.format_version},
-                             {"name", model.name},
-                             {"version", model.version},
-                             {"description", model.description},
-                             {"created", manifest.created},
-                             {"git_revision", manifest.git_revision},
-                             {"frame_rate_hz", model.frame_rate_hz},
-                             {"window_frames", model.window_frames},
-                             {"classes", model.classes},
-                             {"standardisation", manifest.standardisation},
-                             {"skeleton", ToJson(model.skeleton)},
-                             {"generator",
-                              {{"variant", generator.variant},
-                               {"follower_start", generator.follower_start},
-                               {"slice_features", generator.slice_features},
-                               {"encoder_hidden", generator.encoder_hidden},
-                               {"attention", generator.attention},
-                               {"base_pose", generator.base_pose}}},
-                             {"weights",
-                              {{"file", manifest.weights.file},
-                               {"bytes", manifest.weights.bytes},
-                               {"sha256", manifest.weights.sha256}}},
-                             {"training", manifest.training},
-                             {"metrics", manifest.metrics}};
+  const ordered_json root = {
+      {"format_version", manifest.format_version},
+      {"name", model.name},
+      {"version", model.version},
+      {"description", model.description},
+      {"created", manifest.created},
+      {"git_revision", manifest.git_revision},
+      {"frame_rate_hz", model.frame_rate_hz},
+      {"window_frames", model.window_frames},
+      {"classes", model.classes},
+      {"standardisation", std::string(NameOf(kStandardisationNames, manifest.standardisation))},
+      {"skeleton", motion::SkeletonToJson(model.skeleton, generator.parts)},
+      {"generator",
+       {{"variant", std::string(NameOf(kVariantNames, generator.variant))},
+        {"follower_start", generator.follower_start},
+        {"slice_features", generator.slice_features},
+        {"encoder_hidden", generator.encoder_hidden},
+        {"attention", generator.attention},
+        {"base_pose", generator.base_pose}}},
+      {"weights",
+       {{"file", manifest.weights.file},
+        {"bytes", manifest.weights.bytes},
+        {"sha256", manifest.weights.sha256}}},
+      {"training", manifest.training},
+      {"metrics", manifest.metrics}};
   return root.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 

@@ -10,6 +10,7 @@
 
 #include "absl/status/statusor.h"
 #include "model/engine/model_description.h"
+#include "model/motion/body_part.h"
 #include "model/motion/standardise.h"
 
 namespace duet::checkpoint {
@@ -21,17 +22,18 @@ inline constexpr int kCheckpointFormatVersion = 1;
 inline constexpr std::size_t kMaxManifestBytes = std::size_t{1} << 20;
 inline constexpr std::size_t kMaxWeightsBytes = std::size_t{512} << 20;
 
-// The frame that the network works in (WindowFrame in model/engine/window_frame.h), metres, y up,
-// one yaw for the window. The origin is the leader's root: in every frame, as in the paper, or in
-// the window's first.
-inline constexpr char kLeaderRootAndYaw[] = "leader_root_and_yaw";
-inline constexpr char kLeaderStartAndYaw[] = "leader_start_and_yaw";
+// What the whole-body slice, after those of the parts, reads.
+enum class GeneratorVariant {
+  kPaper,      // the whole body with the label vector
+  kReleased,   // the label vector alone
+  kUnlabelled  // the whole body alone (MSHL22, and the ablation of the embedding)
+};
 
 // Sizes of the generator (paper section 3.1, 3.2). All else follows from skeleton and classes.
 struct GeneratorArchitecture {
-  // "paper": the sixth slice is the whole body with the label vector; "released": the label alone;
-  // "unlabelled": the whole body alone (MSHL22, and the ablation of the embedding).
-  std::string variant = "paper";
+  // What the encoder reads as one each. In the file they stand with the skeleton.
+  std::vector<motion::BodyPart> parts;
+  GeneratorVariant variant = GeneratorVariant::kPaper;
   // The whole-body slice also gets the follower's start (see StartFeatureCount).
   bool follower_start = false;
   // A slice's fully connected layer has its width + this many outputs; 0 leaves the layer out.
@@ -57,7 +59,10 @@ struct Manifest {
   int format_version = kCheckpointFormatVersion;
   engine::ModelDescription model;
   GeneratorArchitecture generator;
-  std::string standardisation = kLeaderRootAndYaw;
+  // The frame that the network works in (WindowFrame in model/engine/window_frame.h), metres, y up,
+  // one yaw for the window. The origin is the leader's root: in every frame, as in the paper, or in
+  // the window's first.
+  motion::StandardOrigin standardisation = motion::StandardOrigin::kEveryFrame;
   WeightsFile weights;
   std::string git_revision;
   std::string created;                          // RFC 3339; WriteCheckpoint fills in an empty one
@@ -70,13 +75,10 @@ struct Manifest {
 // was wanted. `text` may come from anywhere. model.accepts_follower_start is taken from
 // generator.follower_start. Fields: docs/checkpoint_format.md.
 absl::StatusOr<Manifest> ParseManifest(std::string_view text);
-// Requires a skeleton that Validate accepts.
+// Requires a skeleton and parts that Validate accepts.
 std::string SerializeManifest(const Manifest& manifest);
 
-// What the manifest's standardisation says of the origin.
-motion::StandardOrigin OriginOf(const Manifest& manifest);
-
-// Slices of the generator: the skeleton's parts, then the whole body.
+// Slices of the generator: the parts, then the whole body.
 struct SliceShape {
   std::string name;  // part name, or "whole_body"
   int input = 0;     // values a frame
@@ -110,8 +112,7 @@ struct TensorSpec {
 //   output.bias                      [3 J]
 //   base.weight                      [3 J, C]              (base_pose, labels only)
 //   base.bias                        [3 J]                 (base_pose only)
-// with E = encoder_hidden, S = slices, A = attention, J = joints,
-// C = classes.
+// with E = encoder_hidden, S = slices, A = attention, J = joints, C = classes.
 std::vector<TensorSpec> ExpectedTensors(const Manifest& manifest);
 
 }  // namespace duet::checkpoint

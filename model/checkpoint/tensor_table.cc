@@ -11,18 +11,15 @@ constexpr int kStartFlags = 2;  // root known, pose known
 int WholeBodyInput(const Manifest& manifest) {
   const motion::Skeleton& skeleton = manifest.model.skeleton;
   int input = 0;
-  if (manifest.generator.variant != "unlabelled") input += manifest.model.class_count();
-  if (manifest.generator.variant != "released") input += kCoordinates * skeleton.joint_count();
+  if (manifest.generator.variant != GeneratorVariant::kUnlabelled)
+    input += manifest.model.class_count();
+  if (manifest.generator.variant != GeneratorVariant::kReleased)
+    input += kCoordinates * skeleton.joint_count();
   if (manifest.generator.follower_start) input += StartFeatureCount(skeleton);
   return input;
 }
 
 }  // namespace
-
-motion::StandardOrigin OriginOf(const Manifest& manifest) {
-  return manifest.standardisation == kLeaderStartAndYaw ? motion::StandardOrigin::kFirstFrame
-                                                        : motion::StandardOrigin::kEveryFrame;
-}
 
 int StartFeatureCount(const motion::Skeleton& skeleton) {
   return kCoordinates + kCoordinates * skeleton.joint_count() + kStartFlags;
@@ -30,7 +27,7 @@ int StartFeatureCount(const motion::Skeleton& skeleton) {
 
 std::vector<SliceShape> SliceShapes(const Manifest& manifest) {
   std::vector<SliceShape> slices;
-  for (const motion::BodyPart& part : manifest.model.skeleton.parts) {
+  for (const motion::BodyPart& part : manifest.generator.parts) {
     slices.push_back({part.name, kCoordinates * static_cast<int>(part.joints.size()), 0});
   }
   slices.push_back({kWholeBody, WholeBodyInput(manifest), 0});
@@ -73,7 +70,7 @@ std::vector<TensorSpec> ExpectedTensors(const Manifest& manifest) {
   specs.push_back({"output.weight", {outputs, encoded}});
   specs.push_back({"output.bias", {outputs}});
   if (manifest.generator.base_pose) {
-    if (manifest.generator.variant != "unlabelled") {
+    if (manifest.generator.variant != GeneratorVariant::kUnlabelled) {
       specs.push_back({"base.weight", {outputs, manifest.model.class_count()}});
     }
     specs.push_back({"base.bias", {outputs}});

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "model/motion/body_part.h"
 #include "model/motion/clip.h"
 #include "model/motion/skeleton.h"
 
@@ -29,6 +30,7 @@ struct Sequence {
 struct Dataset {
   std::string name;
   motion::Skeleton skeleton;
+  std::vector<motion::BodyPart> parts;  // of the skeleton, for a network
   std::vector<std::string> classes;
   // For each class: true where either person may lead, so that the two may be exchanged.
   std::vector<bool> symmetric;

@@ -20,8 +20,9 @@ DatasetLayout KinectLayout(const std::string& name, double frame_rate_hz,
   layout.frame_rate_hz = frame_rate_hz;
   layout.coordinates = {motion::LengthUnit::kSbuNormalised, motion::UpAxis::kYDown};
   layout.skeleton = motion::SbuSkeleton();
+  layout.parts = motion::SbuParts();
   layout.people_axis = motion::Vec3{1, 0, 0};  // the image's x axis
-  const std::vector<int> feet = {layout.skeleton.left_foot, layout.skeleton.right_foot};
+  const std::vector<int> feet = {layout.skeleton.feet->left, layout.skeleton.feet->right};
   const std::vector<int> hands = {layout.skeleton.Find("left_hand"),
                                   layout.skeleton.Find("right_hand")};
   for (const ClassRow& row : rows) {

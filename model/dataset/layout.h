@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "model/motion/body_part.h"
 #include "model/motion/coordinates.h"
 #include "model/motion/skeleton.h"
 
@@ -26,6 +27,7 @@ struct DatasetLayout {
   double frame_rate_hz = 0;
   motion::Coordinates coordinates;
   motion::Skeleton skeleton;
+  std::vector<motion::BodyPart> parts;
   std::vector<ClassLayout> classes;
   // The horizontal world axis that the setup stands its people along, in either order.
   std::optional<motion::Vec3> people_axis;

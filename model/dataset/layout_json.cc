@@ -5,6 +5,7 @@
 #include "model/base/strict_json.h"
 #include "model/base/text.h"
 #include "model/dataset/layout.h"
+#include "model/motion/skeleton_json.h"
 
 namespace duet::dataset {
 namespace {
@@ -15,7 +16,6 @@ constexpr double kMinFrameRateHz = 1;
 constexpr double kMaxFrameRateHz = 240;
 constexpr int kMaxDepth = 6;
 constexpr std::size_t kMaxJoints = 256;
-constexpr std::size_t kMaxParts = 64;
 constexpr std::size_t kMaxClasses = 256;
 constexpr std::size_t kMaxNameBytes = 256;
 
@@ -34,12 +34,6 @@ int FindJoint(base::ObjectReader* reader, const std::string& key, const motion::
   return joint;
 }
 
-int ReadJoint(base::ObjectReader* reader, const std::string& key,
-              const motion::Skeleton& skeleton) {
-  const std::string name = reader->String(key, kMaxNameBytes);
-  return reader->ok() ? FindJoint(reader, key, skeleton, name) : 0;
-}
-
 std::vector<int> ReadJoints(base::ObjectReader* reader, const std::string& key,
                             const motion::Skeleton& skeleton) {
   std::vector<int> joints;
@@ -50,51 +44,14 @@ std::vector<int> ReadJoints(base::ObjectReader* reader, const std::string& key,
   return joints;
 }
 
-std::vector<motion::Bone> ReadBones(base::ObjectReader* reader, const motion::Skeleton& skeleton) {
-  std::vector<motion::Bone> bones;
-  for (const Json& item : reader->Array("bones", kMaxJoints)) {
-    const std::string key = absl::StrCat("bones[", bones.size(), "]");
-    if (!item.is_array() || item.size() != 2 || !item[0].is_string() || !item[1].is_string()) {
-      reader->Fail(key, absl::StrCat(base::Shown(item), ", wanted [parent, child]"));
-      return {};
-    }
-    bones.push_back({FindJoint(reader, key + "[0]", skeleton, item[0].get<std::string>()),
-                     FindJoint(reader, key + "[1]", skeleton, item[1].get<std::string>())});
-  }
-  return bones;
-}
-
-std::vector<motion::BodyPart> ReadParts(base::ObjectReader* reader,
-                                        const motion::Skeleton& skeleton) {
-  std::vector<motion::BodyPart> parts;
-  for (const Json& item : reader->Array("parts", kMaxParts)) {
-    base::ObjectReader fields(item, reader->PathOf(absl::StrCat("parts[", parts.size(), "]")));
-    motion::BodyPart part;
-    part.name = ReadName(&fields, "name");
-    part.joints = ReadJoints(&fields, "joints", skeleton);
-    reader->Update(fields.Finish());
-    parts.push_back(std::move(part));
-  }
-  return parts;
-}
-
-motion::Skeleton ReadSkeleton(base::ObjectReader* document) {
-  base::ObjectReader reader(document->Object("skeleton"), "skeleton");
-  motion::Skeleton skeleton;
-  skeleton.joint_names = reader.Strings("joint_names", kMaxJoints);
-  skeleton.bones = ReadBones(&reader, skeleton);
-  skeleton.parts = ReadParts(&reader, skeleton);
-  skeleton.root = ReadJoint(&reader, "root", skeleton);
-  skeleton.left_hip = ReadJoint(&reader, "left_hip", skeleton);
-  skeleton.right_hip = ReadJoint(&reader, "right_hip", skeleton);
-  skeleton.left_foot = ReadJoint(&reader, "left_foot", skeleton);
-  skeleton.right_foot = ReadJoint(&reader, "right_foot", skeleton);
-  document->Update(reader.Finish());
-  if (!document->ok()) return skeleton;
-  if (const absl::Status valid = Validate(skeleton); !valid.ok()) {
-    document->Update(absl::InvalidArgumentError(absl::StrCat("skeleton.", valid.message())));
-  }
-  return skeleton;
+void ReadSkeleton(base::ObjectReader* document, DatasetLayout* layout) {
+  const Json& object = document->Object("skeleton");
+  if (!document->ok()) return;
+  absl::StatusOr<motion::SkeletonDocument> read = motion::ReadSkeleton(object, "skeleton");
+  document->Update(read.status());
+  if (!read.ok()) return;
+  layout->skeleton = std::move(read->skeleton);
+  layout->parts = std::move(read->parts);
 }
 
 // A class's folder bears the class's name: it may not lead anywhere else.
@@ -157,7 +114,7 @@ absl::StatusOr<DatasetLayout> ParseDatasetLayout(std::string_view text) {
   layout.name = ReadName(&document, "name");
   layout.frame_rate_hz = document.Number("frame_rate_hz", kMinFrameRateHz, kMaxFrameRateHz);
   layout.coordinates = ReadCoordinates(&document);
-  layout.skeleton = ReadSkeleton(&document);
+  ReadSkeleton(&document, &layout);
   layout.classes = ReadClasses(&document, layout.skeleton);
   if (const absl::Status status = document.Finish(); !status.ok()) return in_file(status);
   return layout;

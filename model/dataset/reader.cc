@@ -206,6 +206,7 @@ absl::StatusOr<Dataset> ReadFiles(const fs::path& folder, const DatasetLayout& l
   Dataset dataset;
   dataset.name = layout.name;
   dataset.skeleton = layout.skeleton;
+  dataset.parts = layout.parts;
   dataset.frame_rate_hz = layout.frame_rate_hz;
   for (const ClassLayout& one : layout.classes) {
     dataset.classes.push_back(one.name);

@@ -11,9 +11,9 @@
 namespace duet::engine {
 namespace {
 
-// Rows of a spline before and after the one that a time falls in.
-constexpr int kRowsBefore = 1;
-constexpr int kRowsAfter = 2;
+// Frames of a spline before and after the one that a time falls in.
+constexpr int kFramesBefore = 1;
+constexpr int kFramesAfter = 2;
 
 }  // namespace
 
@@ -21,25 +21,23 @@ ClipSynthesis::ClipSynthesis(ModelDescription model, ClipRequest request)
     : model_(std::move(model)),
       request_(std::move(request)),
       cross_fade_(model_.skeleton),
-      frame_count_(static_cast<int>(request_.leader.size()) / model_.skeleton.joint_count()),
+      frame_count_(request_.leader.frame_count()),
       model_frames_per_frame_(model_.frame_rate_hz / request_.frame_rate_hz),
       plan_(PlanWindows(
           motion::ResampledFrameCount(frame_count_, request_.frame_rate_hz, model_.frame_rate_hz),
-          model_.window_frames)) {}
+          model_.window_frames)),
+      kept_(0, model_.skeleton.joint_count()) {}
 
 SynthesisWindow ClipSynthesis::NextWindow() const {
-  const std::size_t joints = static_cast<std::size_t>(model_.skeleton.joint_count());
-  const std::size_t classes = static_cast<std::size_t>(model_.class_count());
-  const std::size_t length = static_cast<std::size_t>(plan_.length);
+  const std::size_t classes = model_.classes.size();
   const int first = plan_.starts[static_cast<std::size_t>(next_window_)];
   SynthesisWindow window;
-  window.leader.resize(length * joints);
-  window.labels.resize(length * classes);
-  for (std::size_t t = 0; t < length; ++t) {
-    const double frame = ToCallerFrame(first + static_cast<int>(t));
-    SampleLinear(request_.leader, model_.skeleton.joint_count(), frame,
-                 window.leader.data() + t * joints);
-    request_.labels.At(frame, window.labels.data() + t * classes);
+  window.leader = motion::Poses(plan_.length, model_.skeleton.joint_count());
+  window.labels.resize(static_cast<std::size_t>(plan_.length) * classes);
+  for (int t = 0; t < plan_.length; ++t) {
+    const double frame = ToCallerFrame(first + t);
+    SampleLinear(request_.leader, frame, window.leader[t]);
+    request_.labels.At(frame, window.labels.data() + static_cast<std::size_t>(t) * classes);
   }
   window.start = NextStart();
   // The characters move: later, where the follower has got to tells the direction.
@@ -50,60 +48,56 @@ SynthesisWindow ClipSynthesis::NextWindow() const {
 std::optional<FollowerStart> ClipSynthesis::NextStart() const {
   if (next_window_ == 0) return request_.start;
   if (!model_.accepts_follower_start) return std::nullopt;
-  const int joints = model_.skeleton.joint_count();
-  const int row = plan_.starts[static_cast<std::size_t>(next_window_)] - kept_from_;
-  const auto pose = kept_.begin() + static_cast<std::ptrdiff_t>(row) * joints;
-  return FollowerStart{pose[model_.skeleton.root], {pose, pose + joints}};
+  const int frame = plan_.starts[static_cast<std::size_t>(next_window_)] - kept_from_;
+  const absl::Span<const motion::Vec3> pose = kept_[frame];
+  return FollowerStart{kept_.at(frame, model_.skeleton.root), {pose.begin(), pose.end()}};
 }
 
-std::vector<motion::Vec3> ClipSynthesis::Accept(const std::vector<motion::Vec3>& follower) {
-  const std::size_t joints = static_cast<std::size_t>(model_.skeleton.joint_count());
+motion::Poses ClipSynthesis::Accept(const motion::Poses& follower) {
   // Only an engine that breaks its contract gets here; going on would read past its result.
-  if (!HasNextWindow() || follower.size() != static_cast<std::size_t>(plan_.length) * joints) {
+  if (!HasNextWindow() || follower.frame_count() != plan_.length ||
+      follower.joint_count() != model_.skeleton.joint_count()) {
     std::abort();
   }
   Blend(plan_.starts[static_cast<std::size_t>(next_window_)], follower);
   ++next_window_;
-  std::vector<motion::Vec3> frames = TakeFinalFrames();
-  DropRows();
+  motion::Poses frames = TakeFinalFrames();
+  DropFrames();
   return frames;
 }
 
-void ClipSynthesis::Blend(int start, const std::vector<motion::Vec3>& follower) {
-  const std::ptrdiff_t joints = model_.skeleton.joint_count();
-  const std::ptrdiff_t rows = static_cast<std::ptrdiff_t>(kept_.size()) / joints;
-  const std::ptrdiff_t first = start - kept_from_;  // row of kept_ where the window begins
-  const std::ptrdiff_t shared = rows - first;
-  cross_fade_.Blend(kept_.data() + first * joints, follower.data(), static_cast<int>(shared));
-  kept_.insert(kept_.end(), follower.begin() + shared * joints, follower.end());
+void ClipSynthesis::Blend(int start, const motion::Poses& follower) {
+  const int first = start - kept_from_;  // frame of kept_ where the window begins
+  const int shared = kept_.frame_count() - first;
+  cross_fade_.Blend(follower, first, &kept_);
+  kept_.Append(follower.frames(shared, follower.frame_count() - shared));
 }
 
-std::vector<motion::Vec3> ClipSynthesis::TakeFinalFrames() {
+motion::Poses ClipSynthesis::TakeFinalFrames() {
   const int joints = model_.skeleton.joint_count();
   // The next window may change its first frame and all that follow.
   const int final_end = HasNextWindow() ? plan_.starts[static_cast<std::size_t>(next_window_)]
                                         : std::numeric_limits<int>::max();
-  std::vector<motion::Vec3> frames;
+  motion::Poses frames(0, joints);
   std::vector<motion::Vec3> pose(static_cast<std::size_t>(joints));
   for (; next_frame_ < frame_count_; ++next_frame_) {
     const double at = ToModelFrame(next_frame_);
-    if (static_cast<int>(at) >= final_end - kRowsAfter) break;
-    SampleCubic(kept_, joints, at - kept_from_, pose.data());
-    frames.insert(frames.end(), pose.begin(), pose.end());
+    if (static_cast<int>(at) >= final_end - kFramesAfter) break;
+    SampleCubic(kept_, at - kept_from_, absl::MakeSpan(pose));
+    frames.Append(pose);
   }
   return frames;
 }
 
-void ClipSynthesis::DropRows() {
+void ClipSynthesis::DropFrames() {
   if (!HasNextWindow()) {
-    kept_.clear();
+    kept_.DropFront(kept_.frame_count());
     return;
   }
-  const int spline = static_cast<int>(ToModelFrame(next_frame_)) - kRowsBefore;
+  const int spline = static_cast<int>(ToModelFrame(next_frame_)) - kFramesBefore;
   const int window = plan_.starts[static_cast<std::size_t>(next_window_)];
   const int keep_from = std::max(kept_from_, std::min(spline, window));
-  const std::ptrdiff_t dropped = keep_from - kept_from_;
-  kept_.erase(kept_.begin(), kept_.begin() + dropped * model_.skeleton.joint_count());
+  kept_.DropFront(keep_from - kept_from_);
   kept_from_ = keep_from;
 }
 

@@ -9,19 +9,19 @@
 #include "model/engine/model_description.h"
 #include "model/engine/synthesizer.h"
 #include "model/engine/window_plan.h"
+#include "model/motion/poses.h"
 #include "model/motion/vec3.h"
 
 namespace duet::engine {
 
 // A validated request: what one call asks of a model.
 struct ClipRequest {
-  std::vector<motion::Vec3>
-      leader;                // [frames, joints], the model's joint order, world metres, y up
+  motion::Poses leader;      // the model's joint order, world metres, y up
   double frame_rate_hz = 0;  // the caller's
   LabelTrack labels;         // keyframes in the caller's frames
   std::optional<FollowerStart> start;
-  std::optional<motion::Vec3>
-      partner_direction;  // horizontal, of any length but 0; see SynthesisWindow
+  // Horizontal, of any length but 0; see SynthesisWindow.
+  std::optional<motion::Vec3> partner_direction;
 };
 
 // Turns a clip of any length into network windows and their results back into one motion.
@@ -35,8 +35,7 @@ struct ClipRequest {
 //   while (clip.HasNextWindow()) {
 //     SynthesisWindow window = clip.NextWindow();
 //     ... result = synthesizer.Synthesize({&window}) ...
-//     std::vector<Vec3> frames = clip.Accept(*result);   // [n, joints], n may be 0 but for the
-//     last
+//     motion::Poses frames = clip.Accept(*result);   // perhaps none, but for the last
 //   }
 //
 // Cost:    time linear in the clip's length; memory beyond the leader bounded by one window.
@@ -51,10 +50,10 @@ class ClipSynthesis {
   bool HasNextWindow() const { return next_window_ < window_count(); }
   // The next window to evaluate. Calling it twice before Accept gives the same window.
   SynthesisWindow NextWindow() const;
-  // Takes the result of NextWindow, [as many frames, joints], and returns the follower's frames
+  // Takes the result of NextWindow, of as many frames, and returns the follower's frames
   // that became final, at the caller's rate, following those returned before. Over all windows:
   // exactly frame_count frames.
-  std::vector<motion::Vec3> Accept(const std::vector<motion::Vec3>& follower);
+  motion::Poses Accept(const motion::Poses& follower);
 
  private:
   // Where a frame of the caller lies among the model's, and the reverse.
@@ -63,9 +62,9 @@ class ClipSynthesis {
 
   std::optional<FollowerStart> NextStart() const;
   // Adds the follower of the window at `start` to what is kept.
-  void Blend(int start, const std::vector<motion::Vec3>& follower);
-  std::vector<motion::Vec3> TakeFinalFrames();
-  void DropRows();
+  void Blend(int start, const motion::Poses& follower);
+  motion::Poses TakeFinalFrames();
+  void DropFrames();
 
   ModelDescription model_;
   ClipRequest request_;
@@ -74,9 +73,9 @@ class ClipSynthesis {
   double model_frames_per_frame_;  // model rate / caller's rate
   WindowPlan plan_;                // in model frames
   int next_window_ = 0;
-  int next_frame_ = 0;              // the caller's next frame to hand out
-  int kept_from_ = 0;               // model frame of the first row of kept_
-  std::vector<motion::Vec3> kept_;  // [n, joints] blended follower still needed, model rate
+  int next_frame_ = 0;  // the caller's next frame to hand out
+  int kept_from_ = 0;   // model frame of the first of kept_
+  motion::Poses kept_;  // blended follower still needed, model rate
 };
 
 }  // namespace duet::engine

@@ -29,24 +29,25 @@ std::vector<motion::Bone> ParentsFirst(const motion::Skeleton& skeleton) {
 }  // namespace
 
 CrossFade::CrossFade(const motion::Skeleton& skeleton)
-    : joints_(skeleton.joint_count()), root_(skeleton.root), bones_(ParentsFirst(skeleton)) {}
+    : root_(static_cast<std::size_t>(skeleton.root)), bones_(ParentsFirst(skeleton)) {}
 
-void CrossFade::Blend(motion::Vec3* poses, const motion::Vec3* next, int frames) const {
+void CrossFade::Blend(const motion::Poses& next, int first, motion::Poses* poses) const {
+  const int frames = poses->frame_count() - first;
   for (int t = 0; t < frames; ++t) {
     const float weight = SmoothStep(static_cast<float>(t + 1) / static_cast<float>(frames + 1));
-    const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(t) * joints_;
-    BlendPose(poses + row, next + row, weight);
+    BlendPose(next[t], weight, (*poses)[first + t]);
   }
 }
 
-void CrossFade::BlendPose(motion::Vec3* pose, const motion::Vec3* next, float weight) const {
-  const std::vector<motion::Vec3> from(pose, pose + joints_);
-  pose[root_] = Lerp(from[static_cast<std::size_t>(root_)], next[root_], weight);
+void CrossFade::BlendPose(absl::Span<const motion::Vec3> next, float weight,
+                          absl::Span<motion::Vec3> pose) const {
+  const std::vector<motion::Vec3> from(pose.begin(), pose.end());
+  pose[root_] = Lerp(from[root_], next[root_], weight);
   for (const motion::Bone& bone : bones_) {
-    const motion::Vec3 was =
-        from[static_cast<std::size_t>(bone.child)] - from[static_cast<std::size_t>(bone.parent)];
-    pose[bone.child] =
-        pose[bone.parent] + BlendBone(was, next[bone.child] - next[bone.parent], weight);
+    const std::size_t parent = static_cast<std::size_t>(bone.parent);
+    const std::size_t child = static_cast<std::size_t>(bone.child);
+    pose[child] =
+        pose[parent] + BlendBone(from[child] - from[parent], next[child] - next[parent], weight);
   }
 }
 

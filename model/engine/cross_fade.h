@@ -1,8 +1,11 @@
 #ifndef DUET_MODEL_ENGINE_CROSS_FADE_H_
 #define DUET_MODEL_ENGINE_CROSS_FADE_H_
 
+#include <cstddef>
 #include <vector>
 
+#include "absl/types/span.h"
+#include "model/motion/poses.h"
 #include "model/motion/skeleton.h"
 #include "model/motion/vec3.h"
 
@@ -17,16 +20,16 @@ class CrossFade {
   // Requires a skeleton that Validate accepts.
   explicit CrossFade(const motion::Skeleton& skeleton);
 
-  // Replaces `poses` by a blend that leaves them smoothly and arrives at `next`: even the first
-  // frame has some of `next`, even the last some of `poses`.
-  // Shapes: poses, next [frames, joints].
-  void Blend(motion::Vec3* poses, const motion::Vec3* next, int frames) const;
+  // Replaces the frames of `poses` from `first` on by a blend that leaves them smoothly and arrives
+  // at `next`, whose frame 0 belongs to `first`: even the first of them has some of `next`, even
+  // the last some of `poses`. `next` has at least as many frames.
+  void Blend(const motion::Poses& next, int first, motion::Poses* poses) const;
 
  private:
-  void BlendPose(motion::Vec3* pose, const motion::Vec3* next, float weight) const;
+  void BlendPose(absl::Span<const motion::Vec3> next, float weight,
+                 absl::Span<motion::Vec3> pose) const;
 
-  int joints_;
-  int root_;
+  std::size_t root_;
   std::vector<motion::Bone> bones_;  // parents before their children
 };
 

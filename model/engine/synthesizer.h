@@ -7,6 +7,7 @@
 #include "absl/status/statusor.h"
 #include "absl/types/span.h"
 #include "model/engine/model_description.h"
+#include "model/motion/poses.h"
 #include "model/motion/vec3.h"
 
 namespace duet::engine {
@@ -14,15 +15,16 @@ namespace duet::engine {
 // Where the follower is at a window's first frame. World metres, y up.
 struct FollowerStart {
   motion::Vec3 root;
-  std::vector<motion::Vec3>
-      pose;  // empty (the root alone is known) or [joints]; pose[root joint] == root
+  // [joints], with pose[root joint] == root; empty when the root alone is known. One pose, not a
+  // motion: hence no Poses.
+  std::vector<motion::Vec3> pose;
 };
 
 // One network evaluation: at most window_frames frames at the model's frame rate and in its joint
 // order. World metres, y up.
 struct SynthesisWindow {
-  std::vector<motion::Vec3> leader;  // [frames, joints], 2 frames or more
-  std::vector<float> labels;         // [frames, classes]
+  motion::Poses leader;       // [frames, joints], 2 frames or more
+  std::vector<float> labels;  // [frames, classes]
   std::optional<FollowerStart> start;
   // Horizontal direction from the leader to where the follower should be. Absent: towards `start`,
   // or else where the leader's hips face.
@@ -30,7 +32,7 @@ struct SynthesisWindow {
 };
 
 // A follower's motion for one window: [frames, joints] in the leader's world, metres, y up.
-using WindowResult = absl::StatusOr<std::vector<motion::Vec3>>;
+using WindowResult = absl::StatusOr<motion::Poses>;
 
 // A loaded model: the only thing that the server knows of the network.
 //

@@ -16,7 +16,7 @@ motion::Standardisation WindowFrame(const motion::Skeleton& skeleton, const Synt
     return {skeleton, window.leader, FacingYaw(*window.partner_direction), origin};
   }
   if (window.start) {
-    const motion::Vec3 root = window.leader[static_cast<size_t>(skeleton.root)];
+    const motion::Vec3 root = window.leader.at(0, skeleton.root);
     const motion::Vec3 toward = window.start->root - root;
     if (std::hypot(toward.x, toward.z) >= kMinDistanceMetres) {
       return {skeleton, window.leader, FacingYaw(toward), origin};

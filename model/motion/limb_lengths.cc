@@ -4,38 +4,33 @@
 #include <cstddef>
 
 namespace duet::motion {
-std::vector<float> MedianBoneLengths(const Skeleton& skeleton, const std::vector<Vec3>& positions) {
-  const std::size_t joints = skeleton.joint_names.size(), frames = positions.size() / joints;
+
+std::vector<float> MedianBoneLengths(const Skeleton& skeleton, const Poses& poses) {
   std::vector<float> medians;
-  std::vector<float> lengths(frames);
+  std::vector<float> lengths(static_cast<std::size_t>(poses.frame_count()));
   for (const Bone& bone : skeleton.bones) {
-    for (std::size_t t = 0; t < frames; ++t) {
-      const Vec3* pose = positions.data() + t * joints;
-      lengths[t] = Distance(pose[bone.parent], pose[bone.child]);
+    for (int t = 0; t < poses.frame_count(); ++t) {
+      lengths[static_cast<std::size_t>(t)] =
+          Distance(poses.at(t, bone.parent), poses.at(t, bone.child));
     }
-    const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(frames / 2);
+    const auto middle = lengths.begin() + poses.frame_count() / 2;
     std::nth_element(lengths.begin(), middle, lengths.end());
     medians.push_back(*middle);
   }
   return medians;
 }
 
-void SetBoneLengths(const Skeleton& skeleton, const std::vector<float>& lengths,
-                    std::vector<Vec3>* positions) {
-  const std::size_t joints = skeleton.joint_names.size();
+void SetBoneLengths(const Skeleton& skeleton, const std::vector<float>& lengths, Poses* poses) {
   const std::vector<int> order = BonesFromRoot(skeleton);
-  std::vector<Vec3> before(joints);
-  for (auto pose = positions->begin(); pose != positions->end();
-       pose += static_cast<std::ptrdiff_t>(joints)) {
-    std::copy_n(pose, joints, before.begin());
+  const Poses before = *poses;
+  for (int t = 0; t < poses->frame_count(); ++t) {
     for (const int index : order) {
-      const std::size_t b = static_cast<std::size_t>(index);
-      const std::size_t parent = static_cast<std::size_t>(skeleton.bones[b].parent);
-      const std::size_t child = static_cast<std::size_t>(skeleton.bones[b].child);
-      const Vec3 along = before[child] - before[parent];
+      const Bone& bone = skeleton.bones[static_cast<std::size_t>(index)];
+      const Vec3 along = before.at(t, bone.child) - before.at(t, bone.parent);
       const float length = Norm(along);
-      const Vec3 offset = length > 0 ? along * (lengths[b] / length) : along;
-      pose[static_cast<std::ptrdiff_t>(child)] = pose[static_cast<std::ptrdiff_t>(parent)] + offset;
+      const float wanted = lengths[static_cast<std::size_t>(index)];
+      const Vec3 offset = length > 0 ? along * (wanted / length) : along;
+      poses->at(t, bone.child) = poses->at(t, bone.parent) + offset;
     }
   }
 }

@@ -3,20 +3,19 @@
 
 #include <vector>
 
+#include "model/motion/poses.h"
 #include "model/motion/skeleton.h"
-#include "model/motion/vec3.h"
 
 namespace duet::motion {
 
 // The median length of every bone, in the order of skeleton.bones. Requires at least one frame.
-// Shapes: positions [frames, joints]; returns [bones]. Units: those of positions.
-std::vector<float> MedianBoneLengths(const Skeleton& skeleton, const std::vector<Vec3>& positions);
+// Shapes: returns [bones]. Units: those of poses.
+std::vector<float> MedianBoneLengths(const Skeleton& skeleton, const Poses& poses);
 
 // Gives every bone its length in every frame and keeps its direction; the root stays where it is.
 // A bone without a direction (its joints coincide) is left as it is.
-// Shapes: lengths [bones]; positions [frames, joints].
-void SetBoneLengths(const Skeleton& skeleton, const std::vector<float>& lengths,
-                    std::vector<Vec3>* positions);
+// Shapes: lengths [bones].
+void SetBoneLengths(const Skeleton& skeleton, const std::vector<float>& lengths, Poses* poses);
 
 }  // namespace duet::motion
 

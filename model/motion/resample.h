@@ -1,8 +1,8 @@
 #ifndef DUET_MODEL_MOTION_RESAMPLE_H_
 #define DUET_MODEL_MOTION_RESAMPLE_H_
 
-#include <vector>
-
+#include "absl/types/span.h"
+#include "model/motion/poses.h"
 #include "model/motion/vec3.h"
 
 namespace duet::motion {
@@ -12,16 +12,15 @@ namespace duet::motion {
 int ResampledFrameCount(int frames, double from_hz, double to_hz);
 
 // Writes the pose at a fractional frame, linearly between neighbours and held at both ends.
-// Shapes: positions [frames, joints], out [joints].
-void SampleLinear(const std::vector<Vec3>& positions, int joints, double frame, Vec3* out);
+// Requires at least one frame. Shapes: out [joints].
+void SampleLinear(const Poses& poses, double frame, absl::Span<Vec3> out);
 
 // The same through a Catmull-Rom spline: continuous velocity, so that a reply at a higher rate than
 // the network's shows no kinks.
-void SampleCubic(const std::vector<Vec3>& positions, int joints, double frame, Vec3* out);
+void SampleCubic(const Poses& poses, double frame, absl::Span<Vec3> out);
 
 // A whole motion at another rate (linear), ResampledFrameCount frames.
-std::vector<Vec3> Resample(const std::vector<Vec3>& positions, int joints, double from_hz,
-                           double to_hz);
+Poses Resample(const Poses& poses, double from_hz, double to_hz);
 
 }  // namespace duet::motion
 

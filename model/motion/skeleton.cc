@@ -2,17 +2,12 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 
 namespace duet::motion {
 namespace {
-
-absl::Status CheckIndex(std::string_view field, int index, int count) {
-  if (index >= 0 && index < count) return absl::OkStatus();
-  return absl::InvalidArgumentError(
-      absl::StrCat(std::string(field), ": joint index ", index, ", wanted 0 to ", count - 1));
-}
 
 absl::Status CheckNames(const Skeleton& skeleton) {
   if (skeleton.joint_names.empty()) {
@@ -28,19 +23,17 @@ absl::Status CheckNames(const Skeleton& skeleton) {
   return absl::OkStatus();
 }
 
-absl::Status CheckParts(const Skeleton& skeleton) {
-  if (skeleton.parts.empty()) {
-    return absl::InvalidArgumentError("parts: empty, wanted at least one");
-  }
-  for (const BodyPart& part : skeleton.parts) {
-    if (part.joints.empty()) {
-      return absl::InvalidArgumentError(absl::StrCat("parts: \"", part.name, "\" has no joints"));
+absl::Status CheckLandmarks(const Skeleton& skeleton) {
+  const std::pair<std::string_view, const std::optional<JointPair>&> sides[] = {
+      {"hip", skeleton.hips}, {"foot", skeleton.feet}};
+  for (const auto& [name, pair] : sides) {
+    if (!pair) continue;
+    absl::Status status =
+        CheckJoint(absl::StrCat("left_", std::string(name)), pair->left, skeleton);
+    if (status.ok()) {
+      status = CheckJoint(absl::StrCat("right_", std::string(name)), pair->right, skeleton);
     }
-    for (int joint : part.joints) {
-      absl::Status status =
-          CheckIndex(absl::StrCat("parts.", part.name), joint, skeleton.joint_count());
-      if (!status.ok()) return status;
-    }
+    if (!status.ok()) return status;
   }
   return absl::OkStatus();
 }
@@ -54,7 +47,7 @@ absl::Status CheckTree(const Skeleton& skeleton) {
   std::vector<int> parent(static_cast<size_t>(joints), -1);
   for (const Bone& bone : skeleton.bones) {
     for (int joint : {bone.parent, bone.child}) {
-      absl::Status status = CheckIndex("bones", joint, joints);
+      absl::Status status = CheckJoint("bones", joint, skeleton);
       if (!status.ok()) return status;
     }
     if (bone.child == skeleton.root || parent[static_cast<size_t>(bone.child)] != -1) {
@@ -89,17 +82,16 @@ std::vector<int> Skeleton::Parents() const {
   return parents;
 }
 
+absl::Status CheckJoint(std::string_view field, int joint, const Skeleton& skeleton) {
+  if (joint >= 0 && joint < skeleton.joint_count()) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat(std::string(field), ": joint index ", joint,
+                                                 ", wanted 0 to ", skeleton.joint_count() - 1));
+}
+
 absl::Status Validate(const Skeleton& skeleton) {
   absl::Status status = CheckNames(skeleton);
-  const std::pair<std::string_view, int> landmarks[] = {{"root", skeleton.root},
-                                                        {"left_hip", skeleton.left_hip},
-                                                        {"right_hip", skeleton.right_hip},
-                                                        {"left_foot", skeleton.left_foot},
-                                                        {"right_foot", skeleton.right_foot}};
-  for (const auto& [field, index] : landmarks) {
-    if (status.ok()) status = CheckIndex(field, index, skeleton.joint_count());
-  }
-  if (status.ok()) status = CheckParts(skeleton);
+  if (status.ok()) status = CheckJoint("root", skeleton.root, skeleton);
+  if (status.ok()) status = CheckLandmarks(skeleton);
   if (status.ok()) status = CheckTree(skeleton);
   return status;
 }
@@ -125,16 +117,9 @@ Skeleton SbuSkeleton() {
                           "right_hip",  "right_knee", "right_foot"};
   skeleton.bones = {{1, 0}, {2, 1}, {1, 3}, {1, 6},  {2, 9},   {2, 12},  {3, 4},
                     {4, 5}, {6, 7}, {7, 8}, {9, 10}, {10, 11}, {12, 13}, {13, 14}};
-  skeleton.parts = {{"left_arm", {3, 4, 5}},
-                    {"right_arm", {6, 7, 8}},
-                    {"left_leg", {9, 10, 11}},
-                    {"right_leg", {12, 13, 14}},
-                    {"trunk", {0, 1, 2}}};
   skeleton.root = 2;
-  skeleton.left_hip = 9;
-  skeleton.right_hip = 12;
-  skeleton.left_foot = 11;
-  skeleton.right_foot = 14;
+  skeleton.hips = JointPair{9, 12};
+  skeleton.feet = JointPair{11, 14};
   return skeleton;
 }
 

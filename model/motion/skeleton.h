@@ -1,6 +1,7 @@
 #ifndef DUET_MODEL_MOTION_SKELETON_H_
 #define DUET_MODEL_MOTION_SKELETON_H_
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,22 +19,24 @@ struct Bone {
   }
 };
 
-// A group of joints that the network encodes together (paper section 3.1: arms, legs, trunk).
-struct BodyPart {
-  std::string name;
-  std::vector<int> joints;
+// A joint on the left of the body and its counterpart on the right.
+struct JointPair {
+  int left = 0;
+  int right = 0;
+  friend bool operator==(const JointPair& a, const JointPair& b) {
+    return a.left == b.left && a.right == b.right;
+  }
 };
 
-// Joints, bones and body parts of a character. The bones form a tree rooted at `root`.
+// Anatomy and landmarks of a character. The bones form a tree rooted at `root`.
 struct Skeleton {
   std::vector<std::string> joint_names;
   std::vector<Bone> bones;
-  std::vector<BodyPart> parts;
-  int root = 0;      // the joint that standardisation subtracts (torso on SBU)
-  int left_hip = 0;  // left to right hip gives the facing direction
-  int right_hip = 0;
-  int left_foot = 0;
-  int right_foot = 0;
+  int root = 0;  // the joint that standardisation subtracts (torso on SBU)
+
+  // Landmarks; a character may lack them.
+  std::optional<JointPair> hips;  // left to right gives the facing direction
+  std::optional<JointPair> feet;  // what stands on the floor
 
   int joint_count() const { return static_cast<int>(joint_names.size()); }
   // The index of a joint, or -1.
@@ -43,8 +46,11 @@ struct Skeleton {
 };
 
 // Fails with INVALID_ARGUMENT naming the field when an index is out of range, a name is empty or
-// repeated, a part is empty, or the bones are not a tree over all joints rooted at `root`.
+// repeated, or the bones are not a tree over all joints rooted at `root`.
 absl::Status Validate(const Skeleton& skeleton);
+
+// INVALID_ARGUMENT naming `field` when `joint` is not the index of a joint.
+absl::Status CheckJoint(std::string_view field, int joint, const Skeleton& skeleton);
 
 // Indices into skeleton.bones from the root outwards: every bone comes after the one that ends
 // where it begins. Requires a skeleton that Validate accepts.
@@ -52,9 +58,9 @@ std::vector<int> BonesFromRoot(const Skeleton& skeleton);
 
 // The 15 joints of SBU Kinect Interaction (and K3HI): head, neck, torso, left_shoulder, left_elbow,
 // left_hand, right_shoulder, right_elbow, right_hand, left_hip, left_knee, left_foot, right_hip,
-// right_knee, right_foot; five parts of three joints.
+// right_knee, right_foot.
 //
-// Source: paper section 3.4 (bones) and 3.1 (parts). Bones are directed away from the torso.
+// Source: paper section 3.4. Bones are directed away from the torso.
 Skeleton SbuSkeleton();
 
 }  // namespace duet::motion

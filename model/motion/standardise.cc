@@ -15,47 +15,43 @@ double HipYaw(Vec3 across, YawDirection direction) {
   return std::atan2(across.z, across.x);
 }
 
-double HipYaw(const Skeleton& skeleton, const std::vector<Vec3>& leader, YawDirection direction) {
-  return HipYaw(leader[static_cast<size_t>(skeleton.right_hip)] -
-                    leader[static_cast<size_t>(skeleton.left_hip)],
-                direction);
+double HipYaw(const Skeleton& skeleton, const Poses& leader, YawDirection direction) {
+  if (!skeleton.hips) return 0;
+  return HipYaw(leader.at(0, skeleton.hips->right) - leader.at(0, skeleton.hips->left), direction);
 }
 
 }  // namespace
 
 double FacingYaw(Vec3 direction) { return std::atan2(direction.x, -direction.z); }
 
-Standardisation::Standardisation(const Skeleton& skeleton, const std::vector<Vec3>& leader,
+Standardisation::Standardisation(const Skeleton& skeleton, const Poses& leader,
                                  YawDirection direction, StandardOrigin origin)
     : Standardisation(skeleton, leader, HipYaw(skeleton, leader, direction), origin) {}
 
-Standardisation::Standardisation(const Skeleton& skeleton, const std::vector<Vec3>& leader,
-                                 double yaw, StandardOrigin origin)
-    : joints_(skeleton.joint_count()), yaw_(yaw) {
-  const size_t joints = static_cast<size_t>(joints_);
-  const size_t first = static_cast<size_t>(skeleton.root);
-  for (size_t at = first; at < leader.size(); at += joints) {
-    roots_.push_back(leader[origin == StandardOrigin::kEveryFrame ? at : first]);
+Standardisation::Standardisation(const Skeleton& skeleton, const Poses& leader, double yaw,
+                                 StandardOrigin origin)
+    : yaw_(yaw) {
+  for (int t = 0; t < leader.frame_count(); ++t) {
+    roots_.push_back(leader.at(origin == StandardOrigin::kEveryFrame ? t : 0, skeleton.root));
   }
 }
 
 Vec3 Standardisation::Apply(Vec3 world) const { return RotateY(world - roots_.front(), yaw_); }
 
-std::vector<Vec3> Standardisation::Apply(const std::vector<Vec3>& world, int first_frame) const {
-  const size_t joints = static_cast<size_t>(joints_);
-  std::vector<Vec3> standard(world.size());
-  for (size_t i = 0; i < world.size(); ++i) {
-    standard[i] = RotateY(world[i] - roots_[static_cast<size_t>(first_frame) + i / joints], yaw_);
+Poses Standardisation::Apply(const Poses& world, int first_frame) const {
+  Poses standard = world;
+  for (int t = 0; t < world.frame_count(); ++t) {
+    const Vec3 root = roots_[static_cast<size_t>(first_frame + t)];
+    for (Vec3& position : standard[t]) position = RotateY(position - root, yaw_);
   }
   return standard;
 }
 
-std::vector<Vec3> Standardisation::Invert(const std::vector<Vec3>& standard,
-                                          int first_frame) const {
-  const size_t joints = static_cast<size_t>(joints_);
-  std::vector<Vec3> world(standard.size());
-  for (size_t i = 0; i < standard.size(); ++i) {
-    world[i] = RotateY(standard[i], -yaw_) + roots_[static_cast<size_t>(first_frame) + i / joints];
+Poses Standardisation::Invert(const Poses& standard, int first_frame) const {
+  Poses world = standard;
+  for (int t = 0; t < standard.frame_count(); ++t) {
+    const Vec3 root = roots_[static_cast<size_t>(first_frame + t)];
+    for (Vec3& position : world[t]) position = RotateY(position, -yaw_) + root;
   }
   return world;
 }

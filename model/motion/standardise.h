@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "model/motion/poses.h"
 #include "model/motion/skeleton.h"
 #include "model/motion/vec3.h"
 
@@ -25,32 +26,31 @@ double FacingYaw(Vec3 direction);
 
 // The frame in which the network sees a clip: the leader's root at the origin, in every frame or in
 // the first one, and one constant yaw, such that the leader's left-to-right hip direction in frame
-// 0 lies along +x, so that the leader starts facing -z.
+// 0 lies along +x, so that the leader starts facing -z. A skeleton without hips is not turned
+// unless the caller says how.
 //
 // Source: paper section 4 / released preprocessing. Invertible: the root track and yaw are kept.
-// Shapes: positions [frames, joints].
 class Standardisation {
  public:
   // Fits to the leader. `leader` holds at least one frame.
-  Standardisation(const Skeleton& skeleton, const std::vector<Vec3>& leader,
+  Standardisation(const Skeleton& skeleton, const Poses& leader,
                   YawDirection direction = YawDirection::kRemove,
                   StandardOrigin origin = StandardOrigin::kEveryFrame);
   // Takes out a yaw of the caller's choice: the angle about +y, in radians, that Apply turns by.
-  Standardisation(const Skeleton& skeleton, const std::vector<Vec3>& leader, double yaw,
+  Standardisation(const Skeleton& skeleton, const Poses& leader, double yaw,
                   StandardOrigin origin = StandardOrigin::kEveryFrame);
 
   // World to standard; a follower goes through the same transform as its leader. `first_frame`
   // places a shorter run of frames within the leader's.
-  std::vector<Vec3> Apply(const std::vector<Vec3>& world, int first_frame = 0) const;
+  Poses Apply(const Poses& world, int first_frame = 0) const;
   // One point of the first frame.
   Vec3 Apply(Vec3 world) const;
   // Standard to world: the exact inverse of Apply.
-  std::vector<Vec3> Invert(const std::vector<Vec3>& standard, int first_frame = 0) const;
+  Poses Invert(const Poses& standard, int first_frame = 0) const;
 
   double yaw() const { return yaw_; }
 
  private:
-  int joints_;
   double yaw_;               // radians that Apply turns by, about +y
   std::vector<Vec3> roots_;  // [frames] the origin in the world
 };

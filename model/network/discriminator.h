@@ -19,8 +19,9 @@ struct DiscriminatorOptions {
 // is also the classifier of the paper's Table 6 and of the FID's features.
 //
 // Source:  paper section 3.3 and MSHL22 (without the binary one).
-// Shapes:  motion [N, T, input], T <= window_frames; lengths [N] int64; returns logits [N,
-// outputs]. Padding: masked before the fully connected layer.
+// Shapes:  motion [N, T, input], T <= window_frames; lengths [N] int64;
+//          returns logits [N, outputs].
+// Padding: masked before the fully connected layer.
 class DiscriminatorImpl : public torch::nn::Module {
  public:
   explicit DiscriminatorImpl(const DiscriminatorOptions& options);

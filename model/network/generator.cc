@@ -1,15 +1,11 @@
 #include "model/network/generator.h"
 
-#include <cmath>
-
 #include "model/network/attentive_decoder.h"
 #include "model/network/lstm.h"
 #include "model/network/sequence.h"
 
 namespace duet::network {
 namespace {
-
-const char* const kDirections[] = {"forward", "backward"};
 
 torch::Tensor PartColumns(const motion::BodyPart& part) {
   std::vector<int64_t> columns;
@@ -19,44 +15,23 @@ torch::Tensor PartColumns(const motion::BodyPart& part) {
   return torch::tensor(columns);
 }
 
-bool EndsWith(const std::string& text, const std::string& end) {
-  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
-
-// Uniform in +-1/sqrt(fan in), as LibTorch initialises its own layers; an LSTM's forget gate starts
-// open (bias 1), so that early gradients reach across a clip.
-torch::Tensor InitialValue(const checkpoint::TensorSpec& spec) {
-  torch::Tensor value = torch::empty(spec.shape);
-  const bool bias = EndsWith(spec.name, "bias");
-  const int64_t fan_in = spec.shape.back();
-  torch::NoGradGuard no_grad;
-  if (!bias) return value.uniform_(-1, 1).div_(std::sqrt(static_cast<double>(fan_in)));
-  value.zero_();
-  const bool recurrent = EndsWith(spec.name, "ward.bias");
-  if (recurrent) value.slice(0, fan_in / 4, fan_in / 2).fill_(1);
-  return value;
-}
-
-std::string ModuleName(std::string name) {
-  for (char& c : name) c = c == '.' ? '/' : c;  // LibTorch forbids dots in a parameter's name
-  return name;
-}
-
 }  // namespace
 
 GeneratorImpl::GeneratorImpl(const checkpoint::Manifest& manifest)
-    : slices_(SliceShapes(manifest)),
-      whole_body_reads_leader_(manifest.generator.variant != "released"),
-      reads_labels_(manifest.generator.variant != "unlabelled"),
+    : slice_shapes_(SliceShapes(manifest)),
+      parameters_(MakeParameters(manifest)),
+      whole_body_reads_leader_(manifest.generator.variant !=
+                               checkpoint::GeneratorVariant::kReleased),
+      reads_labels_(manifest.generator.variant != checkpoint::GeneratorVariant::kUnlabelled),
       has_start_(manifest.generator.follower_start),
-      has_fc_(manifest.generator.slice_features > 0),
       has_base_(manifest.generator.base_pose),
       root_column_(3 * int64_t{manifest.model.skeleton.root}),
       encoder_hidden_(manifest.generator.encoder_hidden) {
-  for (const motion::BodyPart& part : manifest.model.skeleton.parts)
+  for (const motion::BodyPart& part : manifest.generator.parts) {
     columns_.push_back(PartColumns(part));
-  for (const checkpoint::TensorSpec& spec : ExpectedTensors(manifest)) {
-    tensors_[spec.name] = register_parameter(ModuleName(spec.name), InitialValue(spec));
+  }
+  for (const auto& [name, tensor] : Registered(&parameters_)) {
+    *tensor = register_parameter(name, *tensor);
   }
 }
 
@@ -71,11 +46,10 @@ torch::Tensor GeneratorImpl::SliceInput(const GeneratorInput& input, size_t slic
 }
 
 torch::Tensor GeneratorImpl::Features(const GeneratorInput& input, size_t slice) const {
+  const GeneratorParameters::Slice& parameters = parameters_.slices[slice];
   torch::Tensor features = SliceInput(input, slice);
-  if (has_fc_) {
-    const std::string layer = "encoder." + slices_[slice].name + ".fc.";
-    features = torch::nn::functional::linear(features, Parameter(layer + "weight"),
-                                             Parameter(layer + "bias"));
+  if (parameters.fc_weight.defined()) {
+    features = torch::nn::functional::linear(features, parameters.fc_weight, parameters.fc_bias);
   }
   return torch::dropout(features, slice_dropout_, is_training());
 }
@@ -84,34 +58,32 @@ torch::Tensor GeneratorImpl::Features(const GeneratorInput& input, size_t slice)
 // [T, 2, N, 4 E].
 torch::Tensor GeneratorImpl::SliceGates(const GeneratorInput& input, size_t slice,
                                         const torch::Tensor& reversed) const {
-  const std::string name = "encoder." + slices_[slice].name + ".";
   const torch::Tensor features = Features(input, slice);
   const int64_t frames = features.size(0), batch = features.size(1);
-  std::vector<torch::Tensor> gates;
-  for (const std::string direction : kDirections) {
-    torch::Tensor rows = features.reshape({frames * batch, -1});
-    if (direction == kDirections[1]) rows = rows.index_select(0, reversed);
-    gates.push_back(torch::addmm(Parameter(name + direction + ".bias"), rows,
-                                 Parameter(name + direction + ".weight_ih").t())
-                        .reshape({frames, batch, 4 * encoder_hidden_}));
-  }
-  return torch::stack(gates, 1);
+  const torch::Tensor rows = features.reshape({frames * batch, -1});
+  const auto bias = parameters_.slices[slice].bias.chunk(2, 0);
+  const auto weight = parameters_.slices[slice].weight_ih.unbind(0);
+  const auto gates = [&](size_t direction, const torch::Tensor& in) {
+    return torch::addmm(bias[direction], in, weight[direction].t())
+        .reshape({frames, batch, 4 * encoder_hidden_});
+  };
+  return torch::stack({gates(0, rows), gates(1, rows.index_select(0, reversed))}, 1);
 }
 
 GeneratorImpl::Encoded GeneratorImpl::EncodeAll(const GeneratorInput& input,
                                                 const torch::Tensor& reversed) const {
   const int64_t frames = input.leader.size(1), batch = input.leader.size(0);
-  const int64_t slices = static_cast<int64_t>(slices_.size()), units = slices * encoder_hidden_;
-  std::vector<torch::Tensor> gates, weights;
-  for (size_t slice = 0; slice < slices_.size(); ++slice) {
+  const int64_t slices = static_cast<int64_t>(slice_shapes_.size()),
+                units = slices * encoder_hidden_;
+  std::vector<torch::Tensor> gates;
+  for (size_t slice = 0; slice < slice_shapes_.size(); ++slice) {
     gates.push_back(SliceGates(input, slice, reversed));
-    weights.push_back(Stack("encoder." + slices_[slice].name + ".%.weight_hh"));
   }
   const torch::Tensor zero = torch::zeros({2 * slices, batch, encoder_hidden_}, gates[0].options());
   // Groups: every slice forward, then every slice backward.
   auto [hidden, cell] =
       LstmSequence(torch::stack(gates, 2).reshape({frames, 2 * slices, batch, -1}),
-                   torch::stack(weights, 1).flatten(0, 1), zero, zero);
+                   parameters_.encoder_weight_hh, zero, zero);
   const auto rows = [&](const torch::Tensor& states) {  // [T, G, N, E] -> [T N, G E]
     return states.transpose(1, 2).reshape({frames * batch, 2 * units});
   };
@@ -127,15 +99,6 @@ GeneratorImpl::Encoded GeneratorImpl::EncodeAll(const GeneratorInput& input,
   return {both.reshape({frames, batch, 2 * units}), final_states(hidden), final_states(cell)};
 }
 
-torch::Tensor GeneratorImpl::Stack(const std::string& parameter) const {
-  const size_t at = parameter.find('%');
-  std::vector<torch::Tensor> both;
-  for (const std::string direction : kDirections) {
-    both.push_back(Parameter(std::string(parameter).replace(at, 1, direction)));
-  }
-  return torch::stack(both);
-}
-
 torch::Tensor GeneratorImpl::Decode(const Encoded& encoded, const GeneratorInput& input,
                                     const torch::Tensor& reversed) const {
   const int64_t frames = encoded.frames.size(0), batch = encoded.frames.size(1);
@@ -146,13 +109,14 @@ torch::Tensor GeneratorImpl::Decode(const Encoded& encoded, const GeneratorInput
   const auto project = [&](const torch::Tensor& weights) {
     return torch::matmul(by_clip, weights.transpose(1, 2));
   };
+  const GeneratorParameters::Decoder& parameters = parameters_.decoder;
   DecoderInputs decoder;
-  decoder.encoded = project(Stack("decoder.%.attention_encoded")).reshape({2, batch, frames, -1});
-  decoder.values = (project(Stack("decoder.%.weight_ih")) + Stack("decoder.%.bias").unsqueeze(1))
+  decoder.encoded = project(parameters.attention_encoded).reshape({2, batch, frames, -1});
+  decoder.values = (project(parameters.weight_ih) + parameters.bias.view({2, 1, -1}))
                        .reshape({2, batch, frames, -1});
-  decoder.weight_hh = Stack("decoder.%.weight_hh");
-  decoder.state = Stack("decoder.%.attention_state");
-  decoder.score = Stack("decoder.%.attention_score");
+  decoder.weight_hh = parameters.weight_hh;
+  decoder.state = parameters.attention_state;
+  decoder.score = parameters.attention_score.view({2, -1});
   decoder.hidden = encoded.hidden;
   decoder.cell = encoded.cell;
   decoder.lengths = input.lengths;
@@ -161,9 +125,9 @@ torch::Tensor GeneratorImpl::Decode(const Encoded& encoded, const GeneratorInput
       directions[1].reshape({frames * batch, -1}).index_select(0, reversed);
   const torch::Tensor states =
       torch::cat({directions[0].reshape({frames * batch, -1}), backward}, 1);
-  return torch::addmm(Parameter("output.bias"),
+  return torch::addmm(parameters_.output_bias,
                       torch::dropout(states, encoded_dropout_, is_training()),
-                      Parameter("output.weight").t())
+                      parameters_.output_weight.t())
       .reshape({frames, batch, -1})
       .transpose(0, 1);
 }
@@ -171,9 +135,9 @@ torch::Tensor GeneratorImpl::Decode(const Encoded& encoded, const GeneratorInput
 // The pose that the output layer adds to, [N, T, 3 J]: root and pose relative to it, each from the
 // follower's start where that gives it, else from the label vector's mean pose.
 torch::Tensor GeneratorImpl::Base(const GeneratorInput& input) const {
-  const torch::Tensor& bias = Parameter("base.bias");
+  const torch::Tensor& bias = parameters_.base_bias;
   const torch::Tensor mean =
-      reads_labels_ ? torch::nn::functional::linear(input.labels, Parameter("base.weight"), bias)
+      reads_labels_ ? torch::nn::functional::linear(input.labels, parameters_.base_weight, bias)
                     : bias.expand({input.labels.size(0), input.labels.size(1), bias.size(0)});
   if (!has_start_) return mean;
   const int64_t joints = mean.size(2) / 3, pose_flag = input.start.size(1) - 1;
@@ -190,8 +154,8 @@ torch::Tensor GeneratorImpl::Base(const GeneratorInput& input) const {
 void GeneratorImpl::SetBasePoses(const torch::Tensor& means) {
   torch::NoGradGuard no_grad;
   const torch::Tensor overall = means.mean(0);
-  tensors_.at("base.bias").copy_(overall);
-  if (reads_labels_) tensors_.at("base.weight").copy_((means - overall).t());
+  parameters_.base_bias.copy_(overall);
+  if (reads_labels_) parameters_.base_weight.copy_((means - overall).t());
 }
 
 torch::Tensor GeneratorImpl::Encode(const GeneratorInput& input) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "model/checkpoint/manifest.h"
+#include "model/network/generator_parameters.h"
 
 namespace duet::network {
 
@@ -48,8 +49,10 @@ class GeneratorImpl : public torch::nn::Module {
   // architecture with base_pose.
   void SetBasePoses(const torch::Tensor& means);
 
-  // The parameters by the names of ExpectedTensors.
-  const std::map<std::string, torch::Tensor>& tensors() const { return tensors_; }
+  // The parameters by the names of ExpectedTensors: views to read and to fill in, without gradient.
+  std::map<std::string, torch::Tensor> tensors() const {
+    return ViewsByName(parameters_, slice_shapes_);
+  }
 
  private:
   struct Encoded {
@@ -58,7 +61,6 @@ class GeneratorImpl : public torch::nn::Module {
     torch::Tensor cell;    // [2, N, S E]
   };
 
-  const torch::Tensor& Parameter(const std::string& name) const { return tensors_.at(name); }
   torch::Tensor SliceInput(const GeneratorInput& input, size_t slice) const;
   torch::Tensor SliceGates(const GeneratorInput& input, size_t slice,
                            const torch::Tensor& reversed) const;
@@ -67,15 +69,13 @@ class GeneratorImpl : public torch::nn::Module {
   torch::Tensor Decode(const Encoded& encoded, const GeneratorInput& input,
                        const torch::Tensor& reversed) const;
   torch::Tensor Base(const GeneratorInput& input) const;
-  torch::Tensor Stack(const std::string& parameter) const;
 
-  std::vector<checkpoint::SliceShape> slices_;
+  std::vector<checkpoint::SliceShape> slice_shapes_;
   std::vector<torch::Tensor> columns_;  // of each part in the leader's [3 J]
-  std::map<std::string, torch::Tensor> tensors_;
+  GeneratorParameters parameters_;
   bool whole_body_reads_leader_;
   bool reads_labels_;
   bool has_start_;
-  bool has_fc_;
   bool has_base_;
   int64_t root_column_;  // of the root joint's x in [3 J]
   int64_t encoder_hidden_;

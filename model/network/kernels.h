@@ -7,8 +7,8 @@
 namespace duet::network {
 
 // One step of LSTM cells, gates in the order i, f, g, o.
-// Shapes: gates [rows, 4 H] (pre-activations in, activations out); cell_before, cell, hidden [rows,
-// H].
+// Shapes: gates [rows, 4 H] (pre-activations in, activations out);
+//         cell_before, cell, hidden [rows, H].
 void LstmCellForward(int rows, int hidden_size, float* gates, const float* cell_before, float* cell,
                      float* hidden);
 void LstmCellForward(int rows, int hidden_size, double* gates, const double* cell_before,
@@ -24,8 +24,8 @@ void LstmCellBackward(int rows, int hidden_size, const double* gates, const doub
 
 // Attention weights of one decoder row over the frames of its clip.
 //   tanh_j = tanh(encoded_j + query), weights = softmax_j(score . tanh_j), 0 from `valid` on.
-// Source: paper Eq. 2, 3. Shapes: encoded, tanh_out [frames, A]; query, score [A]; weights
-// [frames].
+// Source: paper Eq. 2, 3.
+// Shapes: encoded, tanh_out [frames, A]; query, score [A]; weights [frames].
 void AttentionForward(int frames, int valid, int attention, const float* encoded,
                       const float* query, const float* score, float* tanh_out, float* weights);
 void AttentionForward(int frames, int valid, int attention, const double* encoded,

@@ -15,7 +15,6 @@ std::string ShapeText(at::IntArrayRef shape) {
 }  // namespace
 
 absl::Status LoadParameters(const checkpoint::Checkpoint& checkpoint, Generator& generator) {
-  torch::NoGradGuard no_grad;
   std::map<std::string, torch::Tensor> wanted = generator->tensors();
   for (const checkpoint::Tensor& tensor : checkpoint.tensors) {
     const auto it = wanted.find(tensor.name);
@@ -37,9 +36,10 @@ absl::Status LoadParameters(const checkpoint::Checkpoint& checkpoint, Generator&
 
 std::vector<checkpoint::Tensor> StoreParameters(const checkpoint::Manifest& manifest,
                                                 const Generator& generator) {
+  const std::map<std::string, torch::Tensor> values = generator->tensors();
   std::vector<checkpoint::Tensor> tensors;
   for (const checkpoint::TensorSpec& spec : ExpectedTensors(manifest)) {
-    const torch::Tensor value = generator->tensors().at(spec.name).detach().contiguous();
+    const torch::Tensor value = values.at(spec.name).contiguous();
     const float* data = value.data_ptr<float>();
     tensors.push_back({spec.name, spec.shape, std::vector<float>(data, data + value.numel())});
   }

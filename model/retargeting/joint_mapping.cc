@@ -202,8 +202,8 @@ class Mapper {
     const int neck = skeleton_.Find("neck"), torso = skeleton_.Find("torso");
     if (torso < 0 || Found(torso) || !HasSpineEnds()) return;
     const JointSource middle = Mix({{&SourceOf(neck), 0.5f},
-                                    {&SourceOf(skeleton_.left_hip), 0.25f},
-                                    {&SourceOf(skeleton_.right_hip), 0.25f}});
+                                    {&SourceOf(skeleton_.hips->left), 0.25f},
+                                    {&SourceOf(skeleton_.hips->right), 0.25f}});
     const int best = FindNearest(PositionOf(middle), kTorsoReach * SpineLength(), IsSpine);
     if (best >= 0) {
       Take(torso, best);
@@ -237,13 +237,14 @@ class Mapper {
   }
 
   bool HasSpineEnds() const {
-    return Found(skeleton_.Find("neck")) && Found(skeleton_.left_hip) && Found(skeleton_.right_hip);
+    return skeleton_.hips && Found(skeleton_.Find("neck")) && Found(skeleton_.hips->left) &&
+           Found(skeleton_.hips->right);
   }
 
   // Hips to neck in the first frame; HasSpineEnds.
   float SpineLength() {
     const JointSource hips =
-        Mix({{&SourceOf(skeleton_.left_hip), 0.5f}, {&SourceOf(skeleton_.right_hip), 0.5f}});
+        Mix({{&SourceOf(skeleton_.hips->left), 0.5f}, {&SourceOf(skeleton_.hips->right), 0.5f}});
     return Distance(PositionOf(hips), PositionOf(SourceOf(skeleton_.Find("neck"))));
   }
 

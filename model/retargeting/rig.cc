@@ -40,15 +40,19 @@ class RigBuilder {
   }
 
   bool IsLeg(int joint) const {
-    return IsAtOrBelow(joint, skeleton_.left_hip) || IsAtOrBelow(joint, skeleton_.right_hip);
+    return skeleton_.hips &&
+           (IsAtOrBelow(joint, skeleton_.hips->left) || IsAtOrBelow(joint, skeleton_.hips->right));
+  }
+
+  bool LeadsToAHip(int joint) const {
+    return skeleton_.hips &&
+           (IsAtOrBelow(skeleton_.hips->left, joint) || IsAtOrBelow(skeleton_.hips->right, joint));
   }
 
   // The root's child that leads upwards, -1 when every child leads to a hip.
   int UpperNeighbour() const {
     for (int child : Children(skeleton_.root)) {
-      if (!IsAtOrBelow(skeleton_.left_hip, child) && !IsAtOrBelow(skeleton_.right_hip, child)) {
-        return child;
-      }
+      if (!LeadsToAHip(child)) return child;
     }
     return -1;
   }
@@ -58,8 +62,11 @@ class RigBuilder {
     const int upper = UpperNeighbour();
     trunk_axes_.reserve(static_cast<size_t>(clip_.frame_count()));
     for (int frame = 0; frame < clip_.frame_count(); ++frame) {
-      const Vec3d left = ToDouble(clip_.at(frame, skeleton_.left_hip));
-      const Vec3d right = ToDouble(clip_.at(frame, skeleton_.right_hip));
+      // Without hips the trunk keeps the rest pose's right.
+      const motion::JointPair hips =
+          skeleton_.hips.value_or(motion::JointPair{skeleton_.root, skeleton_.root});
+      const Vec3d left = ToDouble(clip_.at(frame, hips.left));
+      const Vec3d right = ToDouble(clip_.at(frame, hips.right));
       const Vec3d up = upper < 0 ? kUp : ToDouble(clip_.at(frame, upper)) - (left + right) * 0.5;
       const Vec3d x = Unit(left - right, -kRight);
       const Vec3d z = Unit(Cross(x, up), kForward);
@@ -132,7 +139,8 @@ class RigBuilder {
   }
 
   void AddLeaf(RigJoint leaf, Vec3d limb) {
-    const bool foot = leaf.joint == skeleton_.left_foot || leaf.joint == skeleton_.right_foot;
+    const bool foot = skeleton_.feet &&
+                      (leaf.joint == skeleton_.feet->left || leaf.joint == skeleton_.feet->right);
     const double length = kEndSiteLength * Norm(leaf.offset);
     leaf.kind = RigJoint::Kind::kLeaf;
     leaf.end_offset = (foot ? kForward : limb) * length;

@@ -80,15 +80,15 @@ void Crop(base::Random* random, motion::ClipPair* pair) {
 
 // Plays both people `speed` times as fast, no longer than `longest` frames.
 void Warp(double speed, int longest, motion::ClipPair* pair) {
-  const int joints = pair->leader.joint_count(), frames = pair->leader.frame_count();
+  const int frames = pair->leader.frame_count();
   const int warped = std::clamp(static_cast<int>(std::lround(frames / speed)), 2, longest);
   for (motion::Clip* clip : {&pair->leader, &pair->follower}) {
-    std::vector<motion::Vec3> positions(static_cast<size_t>(warped) * static_cast<size_t>(joints));
+    const motion::Poses before(clip->joint_count(), std::move(clip->positions));
+    motion::Poses after(warped, clip->joint_count());
     for (int t = 0; t < warped; ++t) {
-      SampleLinear(clip->positions, joints, t * (frames - 1.0) / (warped - 1.0),
-                   positions.data() + std::ptrdiff_t{t} * joints);
+      SampleLinear(before, t * (frames - 1.0) / (warped - 1.0), after[t]);
     }
-    clip->positions = std::move(positions);
+    clip->positions.assign(after.all().begin(), after.all().end());
   }
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "model/dataset/dataset.h"
+#include "model/motion/poses.h"
 
 namespace duet::training {
 
@@ -14,9 +15,9 @@ enum class StartKnowledge { kNone, kRoot, kPose };
 struct Example {
   dataset::Sequence sequence;
   StartKnowledge start = StartKnowledge::kNone;
-  std::vector<float> weights;        // [classes], the label vector
-  std::vector<motion::Vec3> target;  // [frames, joints], world metres
-  bool single = true;                // the label vector is the sequence's class alone
+  std::vector<float> weights;  // [classes], the label vector
+  motion::Poses target;        // [frames, joints], world metres
+  bool single = true;          // the label vector is the sequence's class alone
 };
 
 // A sequence asked for what was captured.

@@ -33,53 +33,49 @@ struct Place {
 
 Place PlaceOf(const dataset::Dataset& dataset, const dataset::Sequence& sequence) {
   engine::SynthesisWindow window;
-  window.leader = sequence.pair.leader.positions;
+  window.leader = motion::Poses(dataset.skeleton.joint_count(), sequence.pair.leader.positions);
   window.partner_direction = sequence.partner_direction;
   return {sequence.pair.leader.at(0, dataset.skeleton.root),
           WindowFrame(dataset.skeleton, window).yaw()};
 }
 
 // The first pose, held.
-std::vector<motion::Vec3> Still(const motion::Clip& follower) {
-  std::vector<motion::Vec3> still;
-  for (int t = 0; t < follower.frame_count(); ++t) {
-    still.insert(still.end(), follower.frame(0), follower.frame(0) + follower.joint_count());
-  }
+motion::Poses Still(const motion::Poses& follower) {
+  motion::Poses still(0, follower.joint_count());
+  for (int t = 0; t < follower.frame_count(); ++t) still.Append(follower[0]);
   return still;
 }
 
 // The follower of `other` played in the length and place of `sequence`.
-std::vector<motion::Vec3> Borrow(const dataset::Dataset& dataset, const dataset::Sequence& other,
-                                 const dataset::Sequence& sequence, bool begin_at_pose) {
-  const motion::Clip& source = other.pair.follower;
-  const motion::Clip& own = sequence.pair.follower;
-  const int joints = own.joint_count(), frames = own.frame_count();
+motion::Poses Borrow(const dataset::Dataset& dataset, const dataset::Sequence& other,
+                     const dataset::Sequence& sequence, bool begin_at_pose) {
+  const int joints = dataset.skeleton.joint_count();
+  const motion::Poses source(joints, other.pair.follower.positions);
+  const motion::Poses own(joints, sequence.pair.follower.positions);
+  const int frames = own.frame_count();
   const double step = frames > 1 ? (source.frame_count() - 1.0) / (frames - 1.0) : 0;
-  std::vector<motion::Vec3> borrowed(own.positions.size());
-  for (int t = 0; t < frames; ++t) {
-    SampleLinear(source.positions, joints, t * step, borrowed.data() + std::ptrdiff_t{t} * joints);
-  }
+  motion::Poses borrowed(frames, joints);
+  for (int t = 0; t < frames; ++t) SampleLinear(source, t * step, borrowed[t]);
   const Place from = PlaceOf(dataset, other), to = PlaceOf(dataset, sequence);
-  for (motion::Vec3& point : borrowed) {
+  for (motion::Vec3& point : borrowed.all()) {
     point = to.origin + RotateY(point - from.origin, from.yaw - to.yaw);
   }
   if (!begin_at_pose) return borrowed;
-  const std::vector<motion::Vec3> first(borrowed.begin(), borrowed.begin() + joints);
-  for (size_t i = 0; i < borrowed.size(); ++i) {
-    const size_t joint = i % static_cast<size_t>(joints);
-    borrowed[i] += own.positions[joint] - first[joint];
+  for (int j = 0; j < joints; ++j) {
+    const motion::Vec3 offset = own.at(0, j) - borrowed.at(0, j);
+    for (int t = 0; t < frames; ++t) borrowed.at(t, j) += offset;
   }
   return borrowed;
 }
 
 // still + own_share (captured - still) + other_share (other - still)
-std::vector<motion::Vec3> Combine(const std::vector<motion::Vec3>& still,
-                                  const std::vector<motion::Vec3>& captured, double own_share,
-                                  const std::vector<motion::Vec3>& other, double other_share) {
-  std::vector<motion::Vec3> combined(still.size());
-  for (size_t i = 0; i < still.size(); ++i) {
-    combined[i] = still[i] + (captured[i] - still[i]) * static_cast<float>(own_share) +
-                  (other[i] - still[i]) * static_cast<float>(other_share);
+motion::Poses Combine(const motion::Poses& still, const motion::Poses& captured, double own_share,
+                      const motion::Poses& other, double other_share) {
+  motion::Poses combined = still;
+  for (size_t i = 0; i < still.all().size(); ++i) {
+    const motion::Vec3 at = still.all()[i];
+    combined.all()[i] = at + (captured.all()[i] - at) * static_cast<float>(own_share) +
+                        (other.all()[i] - at) * static_cast<float>(other_share);
   }
   return combined;
 }
@@ -92,7 +88,7 @@ Example CapturedExample(const dataset::Dataset& dataset, dataset::Sequence seque
   example.start = start;
   example.weights.assign(dataset.classes.size(), 0);
   example.weights[static_cast<size_t>(sequence.interaction_class)] = 1;
-  example.target = sequence.pair.follower.positions;
+  example.target = motion::Poses(dataset.skeleton.joint_count(), sequence.pair.follower.positions);
   example.sequence = std::move(sequence);
   return example;
 }
@@ -105,9 +101,9 @@ void GradeLabels(const dataset::Dataset& dataset, const std::vector<dataset::Seq
   example->single = false;
   float& own = example->weights[static_cast<size_t>(sequence.interaction_class)];
   float& another = example->weights[static_cast<size_t>(drawn->interaction_class)];
-  const std::vector<motion::Vec3>& captured = sequence.pair.follower.positions;
-  const std::vector<motion::Vec3> still = Still(sequence.pair.follower);
-  const std::vector<motion::Vec3> other =
+  const motion::Poses captured(dataset.skeleton.joint_count(), sequence.pair.follower.positions);
+  const motion::Poses still = Still(captured);
+  const motion::Poses other =
       Borrow(dataset, *drawn, sequence, example->start == StartKnowledge::kPose);
 
   const double kind = random->Uniform(0, 1);

@@ -9,6 +9,7 @@
 #include "absl/strings/str_split.h"
 #include "model/base/strict_json.h"
 #include "model/base/text.h"
+#include "model/checkpoint/names.h"
 
 namespace duet::training {
 namespace {
@@ -30,12 +31,21 @@ std::string OneOf(base::ObjectReader* reader, const std::string& key,
   return value;
 }
 
+// A choice of a table (checkpoint/names.h).
+template <typename T, size_t n>
+T OneOf(base::ObjectReader* reader, const std::string& key,
+        const checkpoint::Named<T> (&table)[n]) {
+  std::vector<std::string> choices;
+  for (const checkpoint::Named<T>& row : table) choices.emplace_back(row.name);
+  return ValueOf(table, OneOf(reader, key, choices)).value_or(table[0].value);
+}
+
 double Probability(base::ObjectReader* reader, const std::string& key) {
   return reader->Number(key, 0, 1);
 }
 
 void Read(base::ObjectReader* reader, checkpoint::GeneratorArchitecture* out) {
-  out->variant = OneOf(reader, "variant", {"paper", "released", "unlabelled"});
+  out->variant = OneOf(reader, "variant", checkpoint::kVariantNames);
   out->follower_start = reader->Bool("follower_start");
   out->slice_features = static_cast<int>(reader->Int("slice_features", 0, kMaxUnits));
   out->encoder_hidden = static_cast<int>(reader->Int("encoder_hidden", 1, kMaxUnits));
@@ -122,8 +132,7 @@ absl::StatusOr<TrainingOptions> ReadOptions(const json& value) {
     if (status.ok()) status = ReadSection(&root, name, out);
   };
   section("generator", &options.generator);
-  options.standardisation = OneOf(&root, "standardisation",
-                                  {checkpoint::kLeaderRootAndYaw, checkpoint::kLeaderStartAndYaw});
+  options.standardisation = OneOf(&root, "standardisation", checkpoint::kStandardisationNames);
   section("dropout", &options.dropout);
   section("optimiser", &options.optimiser);
   options.epochs = root.Int("epochs", 1, kMaxEpochs);
@@ -169,7 +178,8 @@ absl::Status CheckAllIn(const std::string& field, const std::vector<std::string>
   return absl::OkStatus();
 }
 
-std::string Text(double value) { return absl::StrCat(value); }
+// The shortest text that reads back as the same number: a state belongs to one setting exactly.
+std::string Text(double value) { return json(value).dump(); }
 std::string Text(bool value) { return value ? "true" : "false"; }
 
 }  // namespace
@@ -190,7 +200,8 @@ absl::StatusOr<TrainingOptions> ParseTrainingOptions(
 }
 
 std::map<std::string, std::string> Describe(const TrainingOptions& o) {
-  return {{"standardisation", o.standardisation},
+  return {{"standardisation",
+           std::string(NameOf(checkpoint::kStandardisationNames, o.standardisation))},
           {"dropout.slices", Text(o.dropout.slices)},
           {"dropout.encoded", Text(o.dropout.encoded)},
           {"optimiser.name", o.optimiser.name},

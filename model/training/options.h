@@ -14,9 +14,8 @@ namespace duet::training {
 
 // Everything that shapes a training run; the named configurations are in model/training/configs.
 struct TrainingOptions {
-  checkpoint::GeneratorArchitecture generator;
-  std::string standardisation =
-      checkpoint::kLeaderRootAndYaw;  // or kLeaderStartAndYaw (checkpoint/manifest.h)
+  checkpoint::GeneratorArchitecture generator;  // its parts come from the data set
+  motion::StandardOrigin standardisation = motion::StandardOrigin::kEveryFrame;
 
   struct Dropout {
     double slices = 0;   // after each slice's fully connected layer

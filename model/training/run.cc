@@ -27,6 +27,7 @@ checkpoint::Manifest MakeManifest(const RunPlan& plan, const dataset::Dataset& d
   manifest.model.window_frames = dataset.LongestFrameCount();
   manifest.model.accepts_follower_start = plan.options.generator.follower_start;
   manifest.generator = plan.options.generator;
+  manifest.generator.parts = dataset.parts;
   manifest.standardisation = plan.options.standardisation;
   manifest.training = Describe(plan.options);
   manifest.training["data"] = dataset.name;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "model/engine/standard_window.h"
 #include "model/engine/window_frame.h"
 #include "model/training/graded_labels.h"
 
@@ -53,10 +54,9 @@ std::optional<engine::FollowerStart> StartOf(const motion::Skeleton& skeleton,
   return start;
 }
 
-std::vector<const std::vector<motion::Vec3>*> Pointers(
-    const std::vector<std::vector<motion::Vec3>>& clips) {
-  std::vector<const std::vector<motion::Vec3>*> pointers;
-  for (const std::vector<motion::Vec3>& clip : clips) pointers.push_back(&clip);
+std::vector<const motion::Poses*> Pointers(const std::vector<motion::Poses>& clips) {
+  std::vector<const motion::Poses*> pointers;
+  for (const motion::Poses& clip : clips) pointers.push_back(&clip);
   return pointers;
 }
 
@@ -65,7 +65,7 @@ std::vector<const std::vector<motion::Vec3>*> Pointers(
 engine::SynthesisWindow MakeWindow(const dataset::Dataset& dataset, const Example& example) {
   const dataset::Sequence& sequence = example.sequence;
   engine::SynthesisWindow window;
-  window.leader = sequence.pair.leader.positions;
+  window.leader = motion::Poses(dataset.skeleton.joint_count(), sequence.pair.leader.positions);
   for (int t = 0; t < sequence.pair.leader.frame_count(); ++t) {
     window.labels.insert(window.labels.end(), example.weights.begin(), example.weights.end());
   }
@@ -76,24 +76,25 @@ engine::SynthesisWindow MakeWindow(const dataset::Dataset& dataset, const Exampl
 
 TrainingBatch MakeBatch(const checkpoint::Manifest& manifest, const dataset::Dataset& dataset,
                         const std::vector<Example>& examples) {
-  std::vector<network::BatchItem> items;
-  std::vector<std::vector<motion::Vec3>> targets, followers;
+  std::vector<engine::NetworkInput> inputs;
+  std::vector<motion::Poses> targets, followers;
   std::vector<int64_t> classes, single_rows;
   for (const Example& example : examples) {
     const engine::SynthesisWindow window = MakeWindow(dataset, example);
-    const motion::Standardisation frame = WindowFrame(dataset.skeleton, window, OriginOf(manifest));
-    items.push_back(network::StandardItem(frame, window));
+    const motion::Standardisation frame =
+        WindowFrame(dataset.skeleton, window, manifest.standardisation);
+    inputs.push_back(Standardise(frame, window));
     targets.push_back(frame.Apply(example.target));
-    followers.push_back(frame.Apply(example.sequence.pair.follower.positions));
+    followers.push_back(frame.Apply(
+        motion::Poses(dataset.skeleton.joint_count(), example.sequence.pair.follower.positions)));
     if (example.single) single_rows.push_back(static_cast<int64_t>(classes.size()));
     classes.push_back(example.sequence.interaction_class);
   }
   TrainingBatch batch;
-  batch.input = network::MakeInput(manifest, items);
-  const int joints = dataset.skeleton.joint_count();
+  batch.input = network::MakeInput(manifest, inputs);
   const int64_t frames = batch.input.leader.size(1);
-  batch.target = network::PadPositions(Pointers(targets), joints, frames);
-  batch.follower = network::PadPositions(Pointers(followers), joints, frames);
+  batch.target = network::PadPoses(Pointers(targets), frames);
+  batch.follower = network::PadPoses(Pointers(followers), frames);
   batch.classes = torch::tensor(classes);
   batch.single_rows = torch::tensor(single_rows, torch::kInt64);
   return batch;

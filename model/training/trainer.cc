@@ -13,6 +13,9 @@ namespace {
 
 using network::Generator;
 
+// Of the state file. 2: the generator's parameters stacked.
+constexpr int64_t kStateVersion = 2;
+
 int64_t Steps(size_t count, int64_t batch) {
   return (static_cast<int64_t>(count) + batch - 1) / batch;
 }
@@ -223,6 +226,7 @@ absl::Status Trainer::SaveState(const std::filesystem::path& file) {
   try {
     torch::serialize::OutputArchive archive;
     for (const auto& [name, tensor] : StateTensors()) archive.write(name, tensor);
+    archive.write("version", c10::IValue(kStateVersion));
     archive.write("identity", c10::IValue(Identity()));
     archive.write("epoch", c10::IValue(epoch_));
     archive.write("best_epoch", c10::IValue(best_epoch_));
@@ -246,6 +250,11 @@ absl::Status Trainer::LoadState(const std::filesystem::path& file) {
     torch::serialize::InputArchive archive;
     archive.load_from(file.string());
     c10::IValue value;
+    if (!archive.try_read("version", value) || value.toInt() != kStateVersion) {
+      return absl::FailedPreconditionError(absl::StrCat(
+          file.string(), ": was written by another version of the trainer, wanted state version ",
+          kStateVersion, "; choose another folder"));
+    }
     archive.read("identity", value);
     if (value.toStringRef() != Identity()) {
       return absl::FailedPreconditionError(absl::StrCat(

@@ -43,7 +43,8 @@ struct EpochReport {
 // Threads: not safe to call concurrently.
 class Trainer {
  public:
-  // `manifest` describes the model to be; its generator must be options.generator. `validation`
+  // `manifest` describes the model to be; its generator must be options.generator,
+  // with parts. `validation`
   // may be empty. All three must outlive the trainer.
   Trainer(const TrainingOptions& options, const checkpoint::Manifest& manifest,
           const dataset::Dataset& dataset, std::vector<int> train, std::vector<int> validation);
@@ -55,8 +56,9 @@ class Trainer {
 
   EpochReport RunEpoch();
 
-  // Saves and restores everything that the next epoch depends on. A state of other options or data
-  // is FAILED_PRECONDITION. The file is this machine's own, never a checkpoint to pass around.
+  // Saves and restores everything that the next epoch depends on. A state of other options, data
+  // or version is FAILED_PRECONDITION. The file is this machine's own, never a checkpoint to pass
+  // around.
   absl::Status SaveState(const std::filesystem::path& file);
   absl::Status LoadState(const std::filesystem::path& file);
 

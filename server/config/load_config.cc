@@ -14,9 +14,9 @@
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
+#include "absl/strings/string_view.h"
 #include "model/base/file.h"
 #include "model/base/flag_names.h"
-#include "absl/strings/string_view.h"
 #include "server/config/server_options.h"
 
 namespace duet::server::config {

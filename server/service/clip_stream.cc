@@ -84,21 +84,21 @@ absl::Status ClipStream::ScheduleNext(bool continues_call) {
   job.done = [self = shared_from_this()](batching::WindowOutcome outcome) {
     self->OnWindow(outcome);
   };
-  expected_positions_ = job.window.leader.size();
+  expected_positions_ = job.window.leader.all().size();
   return scheduler_.Submit(std::move(job));
 }
 
 void ClipStream::OnWindow(const batching::WindowOutcome& outcome) {
   if (cancelled_->load(std::memory_order_acquire)) return;
   const absl::Status status = Check(outcome.result);
-  std::vector<motion::Vec3> frames;
+  motion::Poses frames;
   if (status.ok()) frames = clip_.Accept(*outcome.result);
   Keep(status, frames, outcome.timings);
   ScheduleIfWanted();
   on_progress_();
 }
 
-void ClipStream::Keep(const absl::Status& status, const std::vector<motion::Vec3>& frames,
+void ClipStream::Keep(const absl::Status& status, const motion::Poses& frames,
                       const batching::WindowTimings& timings) {
   common::MutexLock lock(mutex_);
   in_flight_ = false;
@@ -108,18 +108,20 @@ void ClipStream::Keep(const absl::Status& status, const std::vector<motion::Vec3
   stats_.compute_seconds += timings.compute_seconds;
   ready_.erase(ready_.begin(), ready_.begin() + static_cast<std::ptrdiff_t>(taken_));
   taken_ = 0;
-  ready_.insert(ready_.end(), frames.begin(), frames.end());
+  ready_.insert(ready_.end(), frames.all().begin(), frames.all().end());
   const int buffered = static_cast<int>(ready_.size() / joints_);
   stats_.peak_buffered_frames = std::max(stats_.peak_buffered_frames, buffered);
 }
 
 absl::Status ClipStream::Check(const engine::WindowResult& result) const {
   if (!result.ok()) return result.status();
-  if (result->size() != expected_positions_) {
-    return absl::InternalError("the model gave " + std::to_string(result->size()) +
+  const absl::Span<const motion::Vec3> positions = result->all();
+  if (positions.size() != expected_positions_ ||
+      static_cast<std::size_t>(result->joint_count()) != joints_) {
+    return absl::InternalError("the model gave " + std::to_string(positions.size()) +
                                " positions, wanted " + std::to_string(expected_positions_));
   }
-  if (!std::all_of(result->begin(), result->end(), motion::IsFinite)) {
+  if (!std::all_of(positions.begin(), positions.end(), motion::IsFinite)) {
     return absl::InternalError("the model gave a position that is not finite");
   }
   return absl::OkStatus();

@@ -81,7 +81,7 @@ class ClipStream : public std::enable_shared_from_this<ClipStream> {
   void ScheduleIfWanted();
   void OnWindow(const batching::WindowOutcome& outcome);
   absl::Status Check(const engine::WindowResult& result) const;
-  void Keep(const absl::Status& status, const std::vector<motion::Vec3>& frames,
+  void Keep(const absl::Status& status, const motion::Poses& frames,
             const batching::WindowTimings& timings) DUET_EXCLUDES(mutex_);
 
   const std::shared_ptr<const engine::Synthesizer> model_;

@@ -208,12 +208,12 @@ absl::StatusOr<ValidatedRequest> Validation::Run() {
   const int chunk_frames = ChunkFrames();
   const batching::Priority priority = CallPriority();
   if (!violations_.empty()) return violations_.ToStatus();
-  return ValidatedRequest{
-      {std::move(leader_), request_.leader().frame_rate_hz(), engine::LabelTrack(std::move(labels)),
-       std::move(start), partner_direction},
-      std::move(reply_),
-      chunk_frames,
-      priority};
+  return ValidatedRequest{{motion::Poses(model_.skeleton.joint_count(), std::move(leader_)),
+                           request_.leader().frame_rate_hz(), engine::LabelTrack(std::move(labels)),
+                           std::move(start), partner_direction},
+                          std::move(reply_),
+                          chunk_frames,
+                          priority};
 }
 
 }  // namespace

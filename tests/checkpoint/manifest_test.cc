@@ -46,13 +46,13 @@ TEST(Manifest, RoundTrip) {
   EXPECT_EQ(got->model.window_frames, wanted.model.window_frames);
   EXPECT_EQ(got->model.classes, wanted.model.classes);
   EXPECT_TRUE(got->model.accepts_follower_start);
-  EXPECT_EQ(got->generator.variant, "paper");
+  EXPECT_EQ(got->generator.variant, GeneratorVariant::kPaper);
   EXPECT_TRUE(got->generator.follower_start);
   EXPECT_EQ(got->generator.slice_features, 1);
   EXPECT_EQ(got->generator.encoder_hidden, 2);
   EXPECT_EQ(got->generator.attention, 2);
   EXPECT_TRUE(got->generator.base_pose);
-  EXPECT_EQ(got->standardisation, "leader_root_and_yaw");
+  EXPECT_EQ(got->standardisation, motion::StandardOrigin::kEveryFrame);
   EXPECT_EQ(got->weights.file, wanted.weights.file);
   EXPECT_EQ(got->weights.bytes, wanted.weights.bytes);
   EXPECT_EQ(got->weights.sha256, wanted.weights.sha256);
@@ -65,21 +65,43 @@ TEST(Manifest, RoundTrip) {
 TEST(Manifest, SkeletonRoundTrip) {
   Manifest manifest = CompleteManifest();
   manifest.model.skeleton = motion::SbuSkeleton();
+  manifest.generator.parts = motion::SbuParts();
   const absl::StatusOr<Manifest> read = ParseManifest(SerializeManifest(manifest));
   ASSERT_THAT(read, IsOk());
   const motion::Skeleton got = read->model.skeleton, wanted = motion::SbuSkeleton();
   EXPECT_EQ(got.joint_names, wanted.joint_names);
   EXPECT_EQ(got.bones, wanted.bones);
-  ASSERT_EQ(got.parts.size(), wanted.parts.size());
-  for (std::size_t i = 0; i < got.parts.size(); ++i) {
-    EXPECT_EQ(got.parts[i].name, wanted.parts[i].name);
-    EXPECT_EQ(got.parts[i].joints, wanted.parts[i].joints);
-  }
+  EXPECT_EQ(read->generator.parts, motion::SbuParts());
   EXPECT_EQ(got.root, wanted.root);
-  EXPECT_EQ(got.left_hip, wanted.left_hip);
-  EXPECT_EQ(got.right_hip, wanted.right_hip);
-  EXPECT_EQ(got.left_foot, wanted.left_foot);
-  EXPECT_EQ(got.right_foot, wanted.right_foot);
+  EXPECT_EQ(got.hips, wanted.hips);
+  EXPECT_EQ(got.feet, wanted.feet);
+}
+
+TEST(Manifest, WritesItsChoicesByName) {
+  Manifest manifest = CompleteManifest();
+  const struct {
+    GeneratorVariant variant;
+    const char* name;
+  } variants[] = {{GeneratorVariant::kPaper, "paper"},
+                  {GeneratorVariant::kReleased, "released"},
+                  {GeneratorVariant::kUnlabelled, "unlabelled"}};
+  for (const auto& one : variants) {
+    manifest.generator.variant = one.variant;
+    const std::string text = SerializeManifest(manifest);
+    EXPECT_EQ(json::parse(text)["generator"]["variant"], one.name);
+    EXPECT_EQ(ParseManifest(text)->generator.variant, one.variant);
+  }
+  const struct {
+    motion::StandardOrigin origin;
+    const char* name;
+  } origins[] = {{motion::StandardOrigin::kEveryFrame, "leader_root_and_yaw"},
+                 {motion::StandardOrigin::kFirstFrame, "leader_start_and_yaw"}};
+  for (const auto& one : origins) {
+    manifest.standardisation = one.origin;
+    const std::string text = SerializeManifest(manifest);
+    EXPECT_EQ(json::parse(text)["standardisation"], one.name);
+    EXPECT_EQ(ParseManifest(text)->standardisation, one.origin);
+  }
 }
 
 TEST(Manifest, FollowerStartDecidesWhatTheModelAccepts) {
@@ -228,9 +250,9 @@ INSTANTIATE_TEST_SUITE_P(
                  "skeleton.root: unknown joint \"tail\""},
         BadField{"root_is_a_leaf", "/skeleton/root", "\"left_hip\"", "skeleton.bones"},
         BadField{"bone_unknown", "/skeleton/bones/0/1", "\"tail\"",
-                 "skeleton.bones: unknown joint \"tail\""},
+                 "skeleton.bones[0]: unknown joint \"tail\""},
         BadField{"bone_of_three", "/skeleton/bones/0", "[\"torso\",\"left_hip\",\"torso\"]",
-                 "skeleton.bones: wanted pairs"},
+                 "skeleton.bones[0]: wanted a pair"},
         BadField{"bone_missing", "/skeleton/bones", "[[\"torso\",\"left_hip\"]]",
                  "skeleton.bones: 1, wanted 2"},
         BadField{"bones_in_a_circle", "/skeleton/bones",
@@ -238,14 +260,14 @@ INSTANTIATE_TEST_SUITE_P(
         BadField{"no_parts", "/skeleton/parts", "[]", "skeleton.parts: empty"},
         BadField{"part_empty", "/skeleton/parts/0/joints", "[]", "has no joints"},
         BadField{"part_joint_twice", "/skeleton/parts/1/joints", R"(["left_hip","left_hip"])",
-                 "skeleton.parts.joints: \"left_hip\" is repeated"},
+                 "skeleton.parts[1].joints: \"left_hip\" is repeated"},
         BadField{"part_joint_unknown", "/skeleton/parts/1/joints", "[\"tail\"]",
-                 "skeleton.parts.joints: unknown joint \"tail\""},
+                 "skeleton.parts[1].joints: unknown joint \"tail\""},
         BadField{"part_twice", "/skeleton/parts/1/name", "\"trunk\"",
                  "\"trunk\" is repeated or reserved"},
         BadField{"part_reserved", "/skeleton/parts/1/name", "\"whole_body\"",
                  "\"whole_body\" is repeated or reserved"},
-        BadField{"part_not_a_name", "/skeleton/parts/1/name", "\"a/b\"", "parts.name: \"a/b\""},
+        BadField{"part_not_a_name", "/skeleton/parts/1/name", "\"a/b\"", "parts[1].name: \"a/b\""},
         BadField{"variant", "/generator/variant", "\"other\"",
                  "generator.variant: \"other\", wanted \"paper\", \"released\" or \"unlabelled\""},
         BadField{"start_number", "/generator/follower_start", "1", "generator.follower_start: 1"},

@@ -13,6 +13,7 @@ using ::testing::ElementsAre;
 Manifest SbuManifest() {
   Manifest manifest;
   manifest.model.skeleton = motion::SbuSkeleton();
+  manifest.generator.parts = motion::SbuParts();
   manifest.model.classes = {"kick", "push", "shake_hands", "hug", "exchange_object", "punch"};
   return manifest;
 }
@@ -36,13 +37,13 @@ TEST(TensorTable, PaperSlicesOfSbu) {
 
 TEST(TensorTable, ReleasedVariantGetsTheLabelsAlone) {
   Manifest manifest = SbuManifest();
-  manifest.generator.variant = "released";
+  manifest.generator.variant = GeneratorVariant::kReleased;
   EXPECT_EQ(SliceShapes(manifest)[5].input, 6);
 }
 
 TEST(TensorTable, UnlabelledVariantGetsTheWholeBodyAlone) {
   Manifest manifest = SbuManifest();
-  manifest.generator.variant = "unlabelled";
+  manifest.generator.variant = GeneratorVariant::kUnlabelled;
   manifest.generator.base_pose = true;
   EXPECT_EQ(SliceShapes(manifest)[5].input, 45);
   EXPECT_THAT(ShapeOf(manifest, "base.weight"), ElementsAre(-1));

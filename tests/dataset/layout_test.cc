@@ -45,9 +45,10 @@ TEST(DatasetLayoutTest, ReadsEveryField) {
   EXPECT_THAT(layout->skeleton.joint_names,
               ElementsAre("hip", "left_hip", "right_hip", "left_foot", "right_foot"));
   EXPECT_EQ(layout->skeleton.bones[3], (motion::Bone{2, 4}));
-  EXPECT_EQ(layout->skeleton.parts[1].name, "rest");
-  EXPECT_THAT(layout->skeleton.parts[1].joints, ElementsAre(0, 2, 4));
-  EXPECT_EQ(layout->skeleton.right_foot, 4);
+  EXPECT_EQ(layout->parts[1].name, "rest");
+  EXPECT_THAT(layout->parts[1].joints, ElementsAre(0, 2, 4));
+  EXPECT_EQ(layout->skeleton.hips, (motion::JointPair{1, 2}));
+  EXPECT_EQ(layout->skeleton.feet, (motion::JointPair{3, 4}));
   ASSERT_EQ(layout->classes.size(), 2u);
   EXPECT_EQ(layout->classes[0].folder, "kick");
   EXPECT_THAT(layout->classes[0].effectors, ElementsAre(3, 4));
@@ -80,7 +81,7 @@ TEST(DatasetLayoutTest, NamesTheFieldThatIsMissing) {
   for (const auto& item : complete["skeleton"].items()) {
     Json json = Complete();
     json["skeleton"].erase(item.key());
-    EXPECT_THAT(ErrorOf(json), HasSubstr(item.key() + ": missing"));
+    EXPECT_THAT(ErrorOf(json), HasSubstr("skeleton." + item.key() + ": missing"));
   }
 }
 
@@ -98,15 +99,16 @@ TEST(DatasetLayoutTest, RefusesEveryWrongValueByName) {
       {"/unit", "\"sbu-normalised\"", "up_axis: z-up, wanted y-down"},
       {"/up_axis", "3", "up_axis: 3"},
       {"/rate", "3", "unknown field \"rate\""},
-      {"/skeleton/tail", "3", "skeleton: unknown field \"tail\""},
-      {"/skeleton/root", "\"nose\"", "skeleton.root: \"nose\", wanted one of skeleton.joint_names"},
+      {"/skeleton/tail", "3", "unknown field \"tail\""},
+      {"/skeleton/root", "\"nose\"",
+       "skeleton.root: unknown joint \"nose\", wanted one of skeleton.joint_names"},
       {"/skeleton/joint_names", R"(["hip","left_hip","right_hip","left_foot","right_foot","hip"])",
        "skeleton.joint_names: \"hip\" is repeated"},
       {"/skeleton/joint_names", "{}", "skeleton.joint_names: {}, wanted an array"},
-      {"/skeleton/bones/1", "[\"hip\"]", "skeleton.bones[1]: [\"hip\"], wanted [parent, child]"},
+      {"/skeleton/bones/1", "[\"hip\"]", "skeleton.bones[1]"},
       {"/skeleton/bones/1", "[\"hip\", \"left_hip\"]", "skeleton.bones"},
-      {"/skeleton/bones/0/1", "\"tail\"", "skeleton.bones[0][1]: \"tail\""},
-      {"/skeleton/parts/0/joints", "[]", "skeleton.parts[0].joints: empty"},
+      {"/skeleton/bones/0/1", "\"tail\"", "skeleton.bones[0]: unknown joint \"tail\""},
+      {"/skeleton/parts/0/joints", "[]", "skeleton.parts: \"left\" has no joints"},
       {"/classes", "[]", "classes: empty"},
       {"/classes/1/name", "\"kick\"", "classes[1].name: \"kick\" again"},
       {"/classes/1/name", "\"../kick\"", "classes[1].name"},

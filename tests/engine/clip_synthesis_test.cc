@@ -29,9 +29,9 @@ ClipRequest Request(int frames, double frame_rate_hz, LabelTrack labels = NoLabe
 
 // What one run of a whole clip gave.
 struct Outcome {
-  std::vector<motion::Vec3> follower;
+  motion::Poses follower{0, kJoints};
   std::vector<SynthesisWindow> windows;
-  std::vector<std::size_t> frames_after;  // that were handed out after each window
+  std::vector<int> frames_after;  // that were handed out after each window
 };
 
 Outcome RunAll(const FakeSynthesizer& fake, ClipRequest request) {
@@ -40,37 +40,32 @@ Outcome RunAll(const FakeSynthesizer& fake, ClipRequest request) {
   while (clip.HasNextWindow()) {
     run.windows.push_back(clip.NextWindow());
     const SynthesisWindow* window = &run.windows.back();
-    const std::vector<motion::Vec3> frames = clip.Accept(*fake.Synthesize({window}).front());
-    run.follower.insert(run.follower.end(), frames.begin(), frames.end());
-    run.frames_after.push_back(run.follower.size() / kJoints);
+    run.follower.Append(clip.Accept(*fake.Synthesize({window}).front()).all());
+    run.frames_after.push_back(run.follower.frame_count());
   }
   return run;
 }
 
 // The answer of a network without a window limit, brought to the caller's rate.
-std::vector<motion::Vec3> UnwindowedAnswer(const ClipRequest& request, double model_hz) {
-  const int frames = static_cast<int>(request.leader.size()) / kJoints;
-  std::vector<motion::Vec3> follower =
-      Resample(request.leader, kJoints, request.frame_rate_hz, model_hz);
+motion::Poses UnwindowedAnswer(const ClipRequest& request, double model_hz) {
+  motion::Poses follower = Resample(request.leader, request.frame_rate_hz, model_hz);
   std::vector<float> labels(6);
-  for (std::size_t i = 0; i < follower.size(); ++i) {
-    request.labels.At(static_cast<double>(i / kJoints) * request.frame_rate_hz / model_hz,
-                      labels.data());
-    follower[i] = FakeAnswer(follower[i], labels);
+  for (int t = 0; t < follower.frame_count(); ++t) {
+    request.labels.At(t * request.frame_rate_hz / model_hz, labels.data());
+    for (motion::Vec3& position : follower[t]) position = FakeAnswer(position, labels);
   }
-  std::vector<motion::Vec3> out(static_cast<std::size_t>(frames) * kJoints);
-  for (int t = 0; t < frames; ++t) {
-    SampleCubic(follower, kJoints, t * model_hz / request.frame_rate_hz,
-                &out[static_cast<std::size_t>(t * kJoints)]);
+  motion::Poses out(request.leader.frame_count(), kJoints);
+  for (int t = 0; t < out.frame_count(); ++t) {
+    SampleCubic(follower, t * model_hz / request.frame_rate_hz, out[t]);
   }
   return out;
 }
 
-void ExpectNear(const std::vector<motion::Vec3>& got, const std::vector<motion::Vec3>& wanted,
-                float tolerance) {
-  ASSERT_EQ(got.size(), wanted.size());
-  for (std::size_t i = 0; i < got.size(); ++i) {
-    ASSERT_LE(Distance(got[i], wanted[i]), tolerance)
+void ExpectNear(const motion::Poses& got, const motion::Poses& wanted, float tolerance) {
+  ASSERT_EQ(got.frame_count(), wanted.frame_count());
+  ASSERT_EQ(got.joint_count(), wanted.joint_count());
+  for (std::size_t i = 0; i < got.all().size(); ++i) {
+    ASSERT_LE(Distance(got.all()[i], wanted.all()[i]), tolerance)
         << "frame " << i / kJoints << ", joint " << i % kJoints;
   }
 }
@@ -81,12 +76,12 @@ TEST_P(ClipSynthesisAtRate, EveryLengthGivesAsManyFiniteFrames) {
   const FakeSynthesizer fake;
   for (int frames = 2; frames <= 200; ++frames) {
     const Outcome run = RunAll(fake, Request(frames, GetParam()));
-    ASSERT_EQ(run.follower.size(), static_cast<std::size_t>(frames) * kJoints) << frames;
-    for (const motion::Vec3& p : run.follower) ASSERT_TRUE(IsFinite(p)) << frames;
+    ASSERT_EQ(run.follower.frame_count(), frames);
+    for (const motion::Vec3& p : run.follower.all()) ASSERT_TRUE(IsFinite(p)) << frames;
     for (const SynthesisWindow& window : run.windows) {
-      ASSERT_GE(window.leader.size(), 2u * kJoints);
-      ASSERT_LE(window.leader.size(), 46u * kJoints);
-      ASSERT_EQ(window.labels.size(), window.leader.size() / kJoints * 6);
+      ASSERT_GE(window.leader.frame_count(), 2);
+      ASSERT_LE(window.leader.frame_count(), 46);
+      ASSERT_EQ(window.labels.size(), static_cast<std::size_t>(window.leader.frame_count()) * 6);
     }
   }
 }
@@ -113,13 +108,14 @@ TEST(ClipSynthesis, KeepsTheNetworksOwnFramesAtItsOwnRate) {
   const ClipRequest request = Request(70, 15);
   const Outcome run = RunAll(fake, request);
   ASSERT_EQ(run.windows.size(), 2u);  // frames 0 to 45 and 24 to 69
-  for (std::size_t i = 0; i < run.follower.size(); ++i) {
+  const absl::Span<const motion::Vec3> leader = request.leader.all(), got = run.follower.all();
+  for (std::size_t i = 0; i < got.size(); ++i) {
     const std::size_t frame = i / kJoints;
-    const float x = run.follower[i].x - request.leader[i].x;
+    const float x = got[i].x - leader[i].x;
     if (frame < 24) {
-      EXPECT_EQ(run.follower[i], (request.leader[i] + motion::Vec3{10, 0, 0})) << frame;
+      EXPECT_EQ(got[i], (leader[i] + motion::Vec3{10, 0, 0})) << frame;
     } else if (frame > 45) {
-      EXPECT_EQ(run.follower[i], (request.leader[i] + motion::Vec3{20, 0, 0})) << frame;
+      EXPECT_EQ(got[i], (leader[i] + motion::Vec3{20, 0, 0})) << frame;
     } else {
       EXPECT_GT(x, 10) << frame;
       EXPECT_LT(x, 20) << frame;
@@ -137,10 +133,9 @@ TEST(ClipSynthesis, MovesSmoothlyThroughWindowsThatDisagree) {
   for (int frames : {47, 60, 70, 78, 79, 100, 300}) {
     const ClipRequest request = Request(frames, 15);
     const Outcome run = RunAll(fake, request);
-    const std::vector<motion::Vec3>& f = run.follower;
+    const absl::Span<const motion::Vec3> f = run.follower.all(), leader = request.leader.all();
     for (std::size_t i = kJoints; i < f.size(); ++i) {
-      const motion::Vec3 extra =
-          (f[i] - f[i - kJoints]) - (request.leader[i] - request.leader[i - kJoints]);
+      const motion::Vec3 extra = (f[i] - f[i - kJoints]) - (leader[i] - leader[i - kJoints]);
       // The steepest step of a smoothstep over 15 frames or more, of a difference of 0.1 m. Clips
       // that barely need a second or third window overlap more.
       ASSERT_LT(Norm(extra), 0.1f * 1.6f / 15) << frames << " frames, frame " << i / kJoints;
@@ -156,12 +151,11 @@ TEST(ClipSynthesis, AHigherRateIsASplineThroughTheBlendedFrames) {
   fake.answer = [&](motion::Vec3 leader, absl::Span<const float>) {
     return leader + motion::Vec3{static_cast<float>(window % 3), 0, 0};
   };
-  const std::vector<motion::Vec3> slow = RunAll(fake, Request(151, 15)).follower;
+  const motion::Poses slow = RunAll(fake, Request(151, 15)).follower;
   window = 0;
-  const std::vector<motion::Vec3> fast = RunAll(fake, Request(601, 60)).follower;
-  std::vector<motion::Vec3> wanted(fast.size());
-  for (int t = 0; t < 601; ++t)
-    SampleCubic(slow, kJoints, t / 4.0, &wanted[static_cast<std::size_t>(t) * kJoints]);
+  const motion::Poses fast = RunAll(fake, Request(601, 60)).follower;
+  motion::Poses wanted(601, kJoints);
+  for (int t = 0; t < 601; ++t) SampleCubic(slow, t / 4.0, wanted[t]);
   ExpectNear(fast, wanted, 1e-5f);
 }
 
@@ -169,7 +163,7 @@ TEST(ClipSynthesis, HandsOutFramesAfterTheFirstWindow) {
   const FakeSynthesizer fake;
   const Outcome run = RunAll(fake, Request(600, 30));
   ASSERT_GT(run.windows.size(), 5u);
-  EXPECT_GT(run.frames_after.front(), 20u);
+  EXPECT_GT(run.frames_after.front(), 20);
   for (std::size_t k = 1; k < run.frames_after.size(); ++k) {
     EXPECT_GT(run.frames_after[k], run.frames_after[k - 1]);
   }
@@ -190,12 +184,12 @@ TEST(ClipSynthesis, NeverTakesBackAFrame) {
     return leader * (window == 1 ? std::sin(1.0f) : 50.0f);
   };
   const Outcome second = RunAll(fake, Request(300, 60));
-  const std::size_t handed_out = first.frames_after.front() * kJoints;
-  ASSERT_GT(handed_out, 0u);
-  for (std::size_t i = 0; i < handed_out; ++i) {
-    ASSERT_EQ(first.follower[i], second.follower[i]) << "frame " << i / kJoints;
+  const int handed_out = first.frames_after.front();
+  ASSERT_GT(handed_out, 0);
+  for (int t = 0; t < handed_out; ++t) {
+    ASSERT_EQ(first.follower[t], second.follower[t]) << "frame " << t;
   }
-  EXPECT_NE(first.follower[handed_out + 60 * kJoints], second.follower[handed_out + 60 * kJoints]);
+  EXPECT_NE(first.follower.at(handed_out + 60, 0), second.follower.at(handed_out + 60, 0));
 }
 
 TEST(ClipSynthesis, NextWindowIsTheSameUntilAccepted) {
@@ -231,10 +225,10 @@ TEST(ClipSynthesis, LaterWindowsStartWhereTheEarlierOnesGot) {
     const FollowerStart& start = *run.windows[k].start;
     ASSERT_EQ(start.pose.size(), 15u);
     EXPECT_EQ(start.root, start.pose[2]);
-    for (std::size_t j = 0; j < kJoints; ++j) {
-      const motion::Vec3 wanted =
-          FakeAnswer(request.leader[static_cast<std::size_t>(starts[k]) * kJoints + j], {});
-      EXPECT_LT(Distance(start.pose[j], wanted), 1e-5f) << "window " << k << ", joint " << j;
+    for (int j = 0; j < kJoints; ++j) {
+      const motion::Vec3 wanted = FakeAnswer(request.leader.at(starts[k], j), {});
+      EXPECT_LT(Distance(start.pose[static_cast<std::size_t>(j)], wanted), 1e-5f)
+          << "window " << k << ", joint " << j;
     }
   }
 }
@@ -278,8 +272,8 @@ TEST(ClipSynthesis, LabelsFollowTheirKeyframesAtAnyRate) {
   const Outcome run = RunAll(fake, request);
   for (int frame : {0, 30, 60, 90, 110, 120, 240, 300}) {
     const float wanted = std::min(1.0f, std::max(0.0f, static_cast<float>(frame - 60) / 60));
-    const std::size_t i = static_cast<std::size_t>(frame) * kJoints;
-    EXPECT_NEAR(run.follower[i].y - request.leader[i].y, wanted, 0.02f) << frame;
+    EXPECT_NEAR(run.follower.at(frame, 0).y - request.leader.at(frame, 0).y, wanted, 0.02f)
+        << frame;
   }
   ExpectNear(run.follower, UnwindowedAnswer(request, 15), 1e-5f);
 }
@@ -287,8 +281,8 @@ TEST(ClipSynthesis, LabelsFollowTheirKeyframesAtAnyRate) {
 TEST(ClipSynthesis, TwoFramesAtTheHighestRate) {
   const Outcome run = RunAll(FakeSynthesizer(), Request(2, 240));
   ASSERT_EQ(run.windows.size(), 1u);
-  EXPECT_EQ(run.windows[0].leader.size(), 2u * kJoints);
-  EXPECT_EQ(run.follower.size(), 2u * kJoints);
+  EXPECT_EQ(run.windows[0].leader.frame_count(), 2);
+  EXPECT_EQ(run.follower.frame_count(), 2);
 }
 
 TEST(ClipSynthesis, TenMinutesCostTenMinutesOfFrames) {
@@ -298,24 +292,23 @@ TEST(ClipSynthesis, TenMinutesCostTenMinutesOfFrames) {
   } clips[] = {{144000, 240}, {600, 1}, {9000, 15}};
   for (const auto& clip : clips) {
     FakeSynthesizer fake;
-    std::size_t windows = 0, network_frames = 0, most_handed_out = 0, handed_out = 0;
+    int windows = 0, network_frames = 0, most_handed_out = 0, handed_out = 0;
     ClipSynthesis synthesis(fake.description(), Request(clip.frames, clip.rate));
     while (synthesis.HasNextWindow()) {
       const SynthesisWindow window = synthesis.NextWindow();
       ++windows;
-      network_frames += window.leader.size() / kJoints;
-      const std::size_t frames =
-          synthesis.Accept(*fake.Synthesize({&window}).front()).size() / kJoints;
+      network_frames += window.leader.frame_count();
+      const int frames = synthesis.Accept(*fake.Synthesize({&window}).front()).frame_count();
       handed_out += frames;
       most_handed_out = std::max(most_handed_out, frames);
     }
-    EXPECT_EQ(handed_out, static_cast<std::size_t>(clip.frames));
+    EXPECT_EQ(handed_out, clip.frames);
     // 9001 frames of the network's: each at most half as often again.
-    EXPECT_LE(network_frames, 9001u * 3 / 2 + 46) << clip.rate;
-    EXPECT_LE(windows, 291u) << clip.rate;
+    EXPECT_LE(network_frames, 9001 * 3 / 2 + 46) << clip.rate;
+    EXPECT_LE(windows, 291) << clip.rate;
     // Nothing piles up for the end: no Accept returns more than a window and the two frames that
     // the spline waited for.
-    EXPECT_LE(static_cast<double>(most_handed_out), 48 * clip.rate / 15 + 1) << clip.rate;
+    EXPECT_LE(most_handed_out, 48 * clip.rate / 15 + 1) << clip.rate;
   }
 }
 
@@ -334,7 +327,8 @@ TEST(ClipSynthesis, WorksWithTheShortestWindows) {
 TEST(ClipSynthesisDeathTest, StopsAtAResultOfTheWrongSize) {
   const FakeSynthesizer fake;
   ClipSynthesis clip(fake.description(), Request(100, 15));
-  EXPECT_DEATH(clip.Accept(std::vector<motion::Vec3>(kJoints)), "");
+  EXPECT_DEATH(clip.Accept(motion::Poses(1, kJoints)), "");
+  EXPECT_DEATH(clip.Accept(motion::Poses(46, kJoints - 1)), "");
 }
 
 }  // namespace

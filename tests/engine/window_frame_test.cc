@@ -8,7 +8,7 @@ namespace {
 
 using test::SwayingMotion;
 
-constexpr std::size_t kTorso = 2, kLeftHip = 9, kRightHip = 12;
+constexpr int kTorso = 2, kLeftHip = 9, kRightHip = 12;
 
 SynthesisWindow Window() {
   SynthesisWindow window;
@@ -18,7 +18,7 @@ SynthesisWindow Window() {
 
 // Where a point that lies at `offset` from the leader's root comes to lie.
 motion::Vec3 Standard(const SynthesisWindow& window, motion::Vec3 offset) {
-  return WindowFrame(motion::SbuSkeleton(), window).Apply(window.leader[kTorso] + offset);
+  return WindowFrame(motion::SbuSkeleton(), window).Apply(window.leader.at(0, kTorso) + offset);
 }
 
 void ExpectNear(motion::Vec3 got, motion::Vec3 wanted) {
@@ -28,7 +28,7 @@ void ExpectNear(motion::Vec3 got, motion::Vec3 wanted) {
 
 TEST(WindowFrame, TurnsTheFacingDirectionToMinusZ) {
   const SynthesisWindow window = Window();
-  motion::Vec3 across = window.leader[kRightHip] - window.leader[kLeftHip];
+  motion::Vec3 across = window.leader.at(0, kRightHip) - window.leader.at(0, kLeftHip);
   across.y = 0;
   const motion::Vec3 facing = Cross(motion::Vec3{0, 1, 0}, across) / Norm(across);
   ExpectNear(Standard(window, facing), {0, 0, -1});
@@ -36,13 +36,13 @@ TEST(WindowFrame, TurnsTheFacingDirectionToMinusZ) {
 
 TEST(WindowFrame, TurnsTheStartToMinusZ) {
   SynthesisWindow window = Window();
-  window.start = FollowerStart{window.leader[kTorso] + motion::Vec3{0.3f, 0.1f, 0.4f}, {}};
+  window.start = FollowerStart{window.leader.at(0, kTorso) + motion::Vec3{0.3f, 0.1f, 0.4f}, {}};
   ExpectNear(Standard(window, {0.3f, 0.1f, 0.4f}), {0, 0.1f, -0.5f});
 }
 
 TEST(WindowFrame, PartnerDirectionGoesBeforeTheStart) {
   SynthesisWindow window = Window();
-  window.start = FollowerStart{window.leader[kTorso] + motion::Vec3{0, 0, 1}, {}};
+  window.start = FollowerStart{window.leader.at(0, kTorso) + motion::Vec3{0, 0, 1}, {}};
   window.partner_direction = motion::Vec3{-5, 0, 0};
   ExpectNear(Standard(window, {-1, 0, 0}), {0, 0, -1});
 }
@@ -50,16 +50,29 @@ TEST(WindowFrame, PartnerDirectionGoesBeforeTheStart) {
 TEST(WindowFrame, AStartOnTheSpotHasNoDirection) {
   const SynthesisWindow without = Window();
   SynthesisWindow close = Window();
-  close.start = FollowerStart{close.leader[kTorso] + motion::Vec3{0.2f, 0.9f, 0}, {}};
+  close.start = FollowerStart{close.leader.at(0, kTorso) + motion::Vec3{0.2f, 0.9f, 0}, {}};
   ExpectNear(Standard(close, {1, 2, 3}), Standard(without, {1, 2, 3}));
+}
+
+TEST(WindowFrame, WithoutHipsOnlyADirectionTurns) {
+  motion::Skeleton skeleton = motion::SbuSkeleton();
+  skeleton.hips.reset();
+  SynthesisWindow window = Window();
+  EXPECT_EQ(WindowFrame(skeleton, window).yaw(), 0);
+  window.partner_direction = motion::Vec3{1, 0, 0};
+  ExpectNear(
+      WindowFrame(skeleton, window).Apply(window.leader.at(0, kTorso) + motion::Vec3{1, 0, 0}),
+      {0, 0, -1});
 }
 
 TEST(WindowFrame, InvertsExactly) {
   SynthesisWindow window = Window();
   window.partner_direction = motion::Vec3{1, 0, 2};
   const motion::Standardisation frame = WindowFrame(motion::SbuSkeleton(), window);
-  const std::vector<motion::Vec3> back = frame.Invert(frame.Apply(window.leader));
-  for (std::size_t i = 0; i < back.size(); ++i) ExpectNear(back[i], window.leader[i]);
+  const motion::Poses back = frame.Invert(frame.Apply(window.leader));
+  for (std::size_t i = 0; i < back.all().size(); ++i) {
+    ExpectNear(back.all()[i], window.leader.all()[i]);
+  }
 }
 
 }  // namespace

@@ -18,22 +18,28 @@ Skeleton Chain() {
 }
 
 TEST(LimbLengthsTest, MedianIsOverTheFrames) {
-  const std::vector<Vec3> positions = {{0, 0, 0}, {1, 0, 0}, {1, 2, 0},   // 2, 1
-                                       {0, 0, 0}, {3, 0, 0}, {3, 9, 0},   // 9, 3
-                                       {0, 0, 0}, {2, 0, 0}, {2, 3, 0}};  // 3, 2
-  EXPECT_THAT(MedianBoneLengths(Chain(), positions), ElementsAre(FloatEq(3), FloatEq(2)));
+  const Poses poses(3, {{0, 0, 0},
+                        {1, 0, 0},
+                        {1, 2, 0},  // 2, 1
+                        {0, 0, 0},
+                        {3, 0, 0},
+                        {3, 9, 0},  // 9, 3
+                        {0, 0, 0},
+                        {2, 0, 0},
+                        {2, 3, 0}});  // 3, 2
+  EXPECT_THAT(MedianBoneLengths(Chain(), poses), ElementsAre(FloatEq(3), FloatEq(2)));
 }
 
 TEST(LimbLengthsTest, SettingKeepsRootAndDirections) {
-  std::vector<Vec3> positions = {{1, 1, 1}, {1, 3, 1}, {5, 3, 1}};
-  SetBoneLengths(Chain(), {0.5f, 1}, &positions);
-  EXPECT_THAT(positions, ElementsAre(Vec3{1, 1, 1}, Vec3{1, 2, 1}, Vec3{1.5f, 2, 1}));
+  Poses poses(3, {{1, 1, 1}, {1, 3, 1}, {5, 3, 1}});
+  SetBoneLengths(Chain(), {0.5f, 1}, &poses);
+  EXPECT_THAT(poses.all(), ElementsAre(Vec3{1, 1, 1}, Vec3{1, 2, 1}, Vec3{1.5f, 2, 1}));
 }
 
 TEST(LimbLengthsTest, BoneWithoutDirectionStaysPut) {
-  std::vector<Vec3> positions = {{1, 1, 1}, {1, 1, 1}, {1, 2, 1}};
-  SetBoneLengths(Chain(), {3, 1}, &positions);
-  EXPECT_THAT(positions, ElementsAre(Vec3{1, 1, 1}, Vec3{1, 1, 1}, Vec3{1, 4, 1}));
+  Poses poses(3, {{1, 1, 1}, {1, 1, 1}, {1, 2, 1}});
+  SetBoneLengths(Chain(), {3, 1}, &poses);
+  EXPECT_THAT(poses.all(), ElementsAre(Vec3{1, 1, 1}, Vec3{1, 1, 1}, Vec3{1, 4, 1}));
 }
 
 }  // namespace

@@ -48,15 +48,14 @@ TEST(PublishedSample, EqualsOursInTheReleasedCodesDirection) {
   if (!sample_path || !capture_path) GTEST_SKIP() << kNoData;
 
   // The person on the right of the image, in the data set's raw unit, as theirs is.
-  std::vector<Vec3> leader;
+  Poses leader(0, kJoints);
   for (const std::vector<float>& row : ReadTable(*capture_path)) {
     ASSERT_EQ(row.size(), 1 + 2 * 3 * kJoints);
-    const std::vector<Vec3> pose = ToPositions(row, 1 + 3 * kJoints);
-    leader.insert(leader.end(), pose.begin(), pose.end());
+    leader.Append(ToPositions(row, 1 + 3 * kJoints));
   }
-  ASSERT_EQ(leader.size(), kFrames * kJoints);
+  ASSERT_EQ(leader.frame_count(), static_cast<int>(kFrames));
   const Standardisation standardisation(SbuSkeleton(), leader, YawDirection::kAsReleasedCode);
-  const std::vector<Vec3> ours = standardisation.Apply(leader);
+  const Poses ours = standardisation.Apply(leader);
 
   const std::vector<std::vector<float>> sample = ReadTable(*sample_path);
   ASSERT_EQ(sample.size(), 46u);
@@ -64,7 +63,7 @@ TEST(PublishedSample, EqualsOursInTheReleasedCodesDirection) {
     ASSERT_EQ(sample[frame].size(), 3 * kJoints);
     const std::vector<Vec3> theirs = ToPositions(sample[frame], 0);
     for (std::size_t j = 0; j < kJoints; ++j) {
-      const Vec3 wanted = frame < kFrames ? ours[frame * kJoints + j] : Vec3{};
+      const Vec3 wanted = frame < kFrames ? ours.all()[frame * kJoints + j] : Vec3{};
       EXPECT_LT(Distance(theirs[j], wanted), 2e-6f) << "frame " << frame << ", joint " << j;
     }
   }
@@ -74,9 +73,9 @@ TEST(PublishedSample, EqualsOursInTheReleasedCodesDirection) {
 TEST(PublishedSample, OursTurnsTheRightWay) {
   const auto capture_path = FindData("sbu/s01s02/03/001/skeleton_pos.txt");
   if (!capture_path) GTEST_SKIP() << kNoData;
-  const std::vector<Vec3> pose = ToPositions(ReadTable(*capture_path)[0], 1 + 3 * kJoints);
-  const std::vector<Vec3> ours = Standardisation(SbuSkeleton(), pose).Apply(pose);
-  const Vec3 across = ours[12] - ours[9];
+  const Poses pose(kJoints, ToPositions(ReadTable(*capture_path)[0], 1 + 3 * kJoints));
+  const Poses ours = Standardisation(SbuSkeleton(), pose).Apply(pose);
+  const Vec3 across = ours.at(0, 12) - ours.at(0, 9);
   EXPECT_NEAR(std::atan2(across.z, across.x) * 180 / M_PI, 0, 1e-4);
 }
 

@@ -8,11 +8,11 @@ namespace duet::motion {
 namespace {
 
 // Two joints: one that moves by a rule of time, one that stands.
-std::vector<Vec3> Motion(int frames, double hz, Vec3 (*rule)(float)) {
-  std::vector<Vec3> motion;
+Poses Motion(int frames, double hz, Vec3 (*rule)(float)) {
+  Poses motion(frames, 2);
   for (int t = 0; t < frames; ++t) {
-    motion.push_back(rule(static_cast<float>(t / hz)));
-    motion.push_back({7, 8, 9});
+    motion.at(t, 0) = rule(static_cast<float>(t / hz));
+    motion.at(t, 1) = {7, 8, 9};
   }
   return motion;
 }
@@ -21,11 +21,11 @@ Vec3 Line(float s) { return {s, 2 - s, 3 * s}; }
 Vec3 Parabola(float s) { return {s * s, 1, -s * s + s}; }
 Vec3 Wave(float s) { return {std::sin(3 * s), std::cos(2 * s), 0}; }
 
-using Sampler = void (*)(const std::vector<Vec3>&, int, double, Vec3*);
+using Sampler = void (*)(const Poses&, double, absl::Span<Vec3>);
 
-Vec3 At(Sampler sampler, const std::vector<Vec3>& motion, double frame) {
+Vec3 At(Sampler sampler, const Poses& motion, double frame) {
   Vec3 out[2];
-  sampler(motion, 2, frame, out);
+  sampler(motion, frame, absl::MakeSpan(out));
   EXPECT_LT(Distance(out[1], {7, 8, 9}), 1e-5f) << "the other joint";
   return out[0];
 }
@@ -34,21 +34,21 @@ class EverySampler : public ::testing::TestWithParam<Sampler> {};
 INSTANTIATE_TEST_SUITE_P(Resample, EverySampler, ::testing::Values(SampleLinear, SampleCubic));
 
 TEST_P(EverySampler, HitsWholeFramesExactly) {
-  const std::vector<Vec3> motion = Motion(9, 15, Wave);
+  const Poses motion = Motion(9, 15, Wave);
   for (int t = 0; t < 9; ++t) {
-    EXPECT_EQ(At(GetParam(), motion, t), motion[static_cast<std::size_t>(2 * t)]) << t;
+    EXPECT_EQ(At(GetParam(), motion, t), motion.at(t, 0)) << t;
   }
 }
 
 TEST_P(EverySampler, HoldsBothEnds) {
-  const std::vector<Vec3> motion = Motion(3, 15, Wave);
-  EXPECT_EQ(At(GetParam(), motion, -5), motion[0]);
-  EXPECT_EQ(At(GetParam(), motion, 2.001), motion[4]);
-  EXPECT_EQ(At(GetParam(), motion, 1e9), motion[4]);
+  const Poses motion = Motion(3, 15, Wave);
+  EXPECT_EQ(At(GetParam(), motion, -5), motion.at(0, 0));
+  EXPECT_EQ(At(GetParam(), motion, 2.001), motion.at(2, 0));
+  EXPECT_EQ(At(GetParam(), motion, 1e9), motion.at(2, 0));
 }
 
 TEST_P(EverySampler, FollowsALine) {
-  const std::vector<Vec3> motion = Motion(9, 10, Line);
+  const Poses motion = Motion(9, 10, Line);
   // The spline's ends are held, so it bends in the first and the last interval.
   for (double frame = 1; frame <= 7; frame += 0.13) {
     EXPECT_LT(Distance(At(GetParam(), motion, frame), Line(static_cast<float>(frame / 10))), 1e-5f)
@@ -57,17 +57,17 @@ TEST_P(EverySampler, FollowsALine) {
 }
 
 TEST_P(EverySampler, TakesASingleFrame) {
-  const std::vector<Vec3> motion = Motion(1, 15, Line);
-  for (double frame : {0.0, 0.5, 3.0}) EXPECT_EQ(At(GetParam(), motion, frame), motion[0]);
+  const Poses motion = Motion(1, 15, Line);
+  for (double frame : {0.0, 0.5, 3.0}) EXPECT_EQ(At(GetParam(), motion, frame), motion.at(0, 0));
 }
 
 TEST(SampleLinear, IsLinearBetweenNeighbours) {
-  const std::vector<Vec3> motion = Motion(3, 1, Parabola);
+  const Poses motion = Motion(3, 1, Parabola);
   EXPECT_LT(Distance(At(SampleLinear, motion, 1.25), {1.75f, 1, -0.5f}), 1e-6f);
 }
 
 TEST(SampleCubic, FollowsAParabola) {
-  const std::vector<Vec3> motion = Motion(9, 10, Parabola);
+  const Poses motion = Motion(9, 10, Parabola);
   for (double frame = 1; frame <= 7; frame += 0.13) {
     EXPECT_LT(Distance(At(SampleCubic, motion, frame), Parabola(static_cast<float>(frame / 10))),
               1e-5f)
@@ -76,7 +76,7 @@ TEST(SampleCubic, FollowsAParabola) {
 }
 
 TEST(SampleCubic, HasNoKinks) {
-  const std::vector<Vec3> motion = Motion(12, 5, Wave);
+  const Poses motion = Motion(12, 5, Wave);
   const double step = 1e-2;
   for (int t = 1; t < 11; ++t) {
     const auto velocity = [&](Sampler sampler, double from) {
@@ -109,13 +109,11 @@ TEST(ResampledFrameCount, RoundingAddsNoFrame) {
 }
 
 TEST(Resample, SamplesEveryFrame) {
-  const std::vector<Vec3> motion = Motion(31, 30, Line);
-  const std::vector<Vec3> out = Resample(motion, 2, 30, 24);
-  ASSERT_EQ(out.size(), 2u * 25);
+  const Poses motion = Motion(31, 30, Line);
+  const Poses out = Resample(motion, 30, 24);
+  ASSERT_EQ(out.frame_count(), 25);
   for (int t = 0; t < 25; ++t) {
-    EXPECT_LT(Distance(out[static_cast<std::size_t>(2 * t)], Line(static_cast<float>(t) / 24)),
-              1e-5f)
-        << t;
+    EXPECT_LT(Distance(out.at(t, 0), Line(static_cast<float>(t) / 24)), 1e-5f) << t;
   }
 }
 

@@ -34,25 +34,11 @@ TEST(SbuSkeleton, HasThePapersBones) {
   }
 }
 
-TEST(SbuSkeleton, HasFivePartsOfThreeJoints) {
-  const Skeleton skeleton = SbuSkeleton();
-  ASSERT_EQ(skeleton.parts.size(), 5u);
-  std::vector<int> joints;
-  for (const BodyPart& part : skeleton.parts) {
-    EXPECT_EQ(part.joints.size(), 3u) << part.name;
-    joints.insert(joints.end(), part.joints.begin(), part.joints.end());
-  }
-  std::sort(joints.begin(), joints.end());
-  EXPECT_THAT(joints, ::testing::ElementsAre(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14));
-}
-
 TEST(SbuSkeleton, LandmarksAreWhatTheyAreCalled) {
   const Skeleton skeleton = SbuSkeleton();
   EXPECT_EQ(skeleton.root, skeleton.Find("torso"));
-  EXPECT_EQ(skeleton.left_hip, skeleton.Find("left_hip"));
-  EXPECT_EQ(skeleton.right_hip, skeleton.Find("right_hip"));
-  EXPECT_EQ(skeleton.left_foot, skeleton.Find("left_foot"));
-  EXPECT_EQ(skeleton.right_foot, skeleton.Find("right_foot"));
+  EXPECT_EQ(skeleton.hips, (JointPair{skeleton.Find("left_hip"), skeleton.Find("right_hip")}));
+  EXPECT_EQ(skeleton.feet, (JointPair{skeleton.Find("left_foot"), skeleton.Find("right_foot")}));
 }
 
 TEST(Skeleton, FindsJointsByName) {
@@ -92,15 +78,10 @@ INSTANTIATE_TEST_SUITE_P(
         Broken{"root_high", [](Skeleton& s) { s.root = 15; },
                "root: joint index 15, wanted 0 to 14"},
         Broken{"root_low", [](Skeleton& s) { s.root = -1; }, "root: joint index -1"},
-        Broken{"left_hip", [](Skeleton& s) { s.left_hip = 99; }, "left_hip: joint index 99"},
-        Broken{"right_hip", [](Skeleton& s) { s.right_hip = 99; }, "right_hip: joint index 99"},
-        Broken{"left_foot", [](Skeleton& s) { s.left_foot = 99; }, "left_foot: joint index 99"},
-        Broken{"right_foot", [](Skeleton& s) { s.right_foot = 99; }, "right_foot: joint index 99"},
-        Broken{"no_parts", [](Skeleton& s) { s.parts.clear(); }, "parts: empty"},
-        Broken{"empty_part", [](Skeleton& s) { s.parts[4].joints.clear(); },
-               "parts: \"trunk\" has no joints"},
-        Broken{"part_joint", [](Skeleton& s) { s.parts[4].joints[0] = 15; },
-               "parts.trunk: joint index 15"},
+        Broken{"left_hip", [](Skeleton& s) { s.hips->left = 99; }, "left_hip: joint index 99"},
+        Broken{"right_hip", [](Skeleton& s) { s.hips->right = 99; }, "right_hip: joint index 99"},
+        Broken{"left_foot", [](Skeleton& s) { s.feet->left = 99; }, "left_foot: joint index 99"},
+        Broken{"right_foot", [](Skeleton& s) { s.feet->right = 99; }, "right_foot: joint index 99"},
         Broken{"bone_missing", [](Skeleton& s) { s.bones.pop_back(); }, "bones: 13, wanted 14"},
         Broken{"bone_more",
                [](Skeleton& s) {
@@ -127,13 +108,19 @@ INSTANTIATE_TEST_SUITE_P(
                "is not connected to the root"}),
     [](const ::testing::TestParamInfo<Broken>& broken) { return broken.param.what; });
 
+TEST(Skeleton, LandmarksMayBeAbsent) {
+  Skeleton skeleton = SbuSkeleton();
+  skeleton.hips.reset();
+  skeleton.feet.reset();
+  EXPECT_THAT(Validate(skeleton), IsOk());
+}
+
 TEST(Skeleton, TwentyJointsAreAsGood) {
   Skeleton skeleton;
   for (int j = 0; j < 20; ++j) {
     skeleton.joint_names.push_back("joint" + std::to_string(j));
     if (j > 0) skeleton.bones.push_back({(j - 1) / 2, j});
   }
-  skeleton.parts = {{"all", {0, 19}}};
   EXPECT_THAT(Validate(skeleton), IsOk());
 }
 

@@ -10,25 +10,26 @@ namespace {
 
 using test::SwayingMotion;
 
-constexpr std::size_t kJoints = 15, kTorso = 2, kLeftHip = 9, kRightHip = 12;
+constexpr int kJoints = 15, kTorso = 2, kLeftHip = 9, kRightHip = 12;
 
 // A leader who walks, turned by `yaw` and far from the origin.
-std::vector<Vec3> Leader(double yaw) {
-  std::vector<Vec3> leader = SwayingMotion(20, 15);
-  for (Vec3& p : leader) p = RotateY(p, yaw) + Vec3{3, 0, -4};
+Poses Leader(double yaw) {
+  Poses leader = SwayingMotion(20, 15);
+  for (Vec3& p : leader.all()) p = RotateY(p, yaw) + Vec3{3, 0, -4};
   return leader;
 }
 
-std::vector<Vec3> Follower() {
-  std::vector<Vec3> follower = SwayingMotion(20, 15);
-  for (Vec3& p : follower) p = RotateY(p, 2.5) + Vec3{2, 0.1f, -5};
+Poses Follower() {
+  Poses follower = SwayingMotion(20, 15);
+  for (Vec3& p : follower.all()) p = RotateY(p, 2.5) + Vec3{2, 0.1f, -5};
   return follower;
 }
 
-void ExpectNear(const std::vector<Vec3>& got, const std::vector<Vec3>& wanted, float tolerance) {
-  ASSERT_EQ(got.size(), wanted.size());
-  for (std::size_t i = 0; i < got.size(); ++i) {
-    ASSERT_LE(Distance(got[i], wanted[i]), tolerance) << "frame " << i / kJoints;
+void ExpectNear(const Poses& got, const Poses& wanted, float tolerance) {
+  ASSERT_EQ(got.joint_count(), wanted.joint_count());
+  ASSERT_EQ(got.frame_count(), wanted.frame_count());
+  for (std::size_t i = 0; i < got.all().size(); ++i) {
+    ASSERT_LE(Distance(got.all()[i], wanted.all()[i]), tolerance) << "frame " << i / kJoints;
   }
 }
 
@@ -37,29 +38,29 @@ INSTANTIATE_TEST_SUITE_P(Standardisation, AnyYaw,
                          ::testing::Values(0, 0.5, 1.5707963, 2, 3.1415926, 4, 5, 6));
 
 TEST_P(AnyYaw, PutsTheLeadersRootAtTheOriginOfEveryFrame) {
-  const std::vector<Vec3> leader = Leader(GetParam());
-  const std::vector<Vec3> standard = Standardisation(SbuSkeleton(), leader).Apply(leader);
-  for (std::size_t i = kTorso; i < standard.size(); i += kJoints) {
-    EXPECT_EQ(standard[i], (Vec3{0, 0, 0})) << "frame " << i / kJoints;
+  const Poses leader = Leader(GetParam());
+  const Poses standard = Standardisation(SbuSkeleton(), leader).Apply(leader);
+  for (int t = 0; t < standard.frame_count(); ++t) {
+    EXPECT_EQ(standard.at(t, kTorso), (Vec3{0, 0, 0})) << "frame " << t;
   }
 }
 
 TEST_P(AnyYaw, PutsTheFirstFramesHipsOnPlusX) {
-  const std::vector<Vec3> leader = Leader(GetParam());
-  const std::vector<Vec3> standard = Standardisation(SbuSkeleton(), leader).Apply(leader);
-  const Vec3 across = standard[kRightHip] - standard[kLeftHip];
+  const Poses leader = Leader(GetParam());
+  const Poses standard = Standardisation(SbuSkeleton(), leader).Apply(leader);
+  const Vec3 across = standard.at(0, kRightHip) - standard.at(0, kLeftHip);
   EXPECT_GT(across.x, 0.1f);
   EXPECT_NEAR(across.z, 0, 1e-6);
 }
 
 TEST_P(AnyYaw, DoesNotDependOnWhereTheLeaderStands) {
-  const std::vector<Vec3> here = Leader(0), there = Leader(GetParam());
+  const Poses here = Leader(0), there = Leader(GetParam());
   ExpectNear(Standardisation(SbuSkeleton(), there).Apply(there),
              Standardisation(SbuSkeleton(), here).Apply(here), 1e-5f);
 }
 
 TEST_P(AnyYaw, InvertsExactly) {
-  const std::vector<Vec3> leader = Leader(GetParam()), follower = Follower();
+  const Poses leader = Leader(GetParam()), follower = Follower();
   for (YawDirection direction : {YawDirection::kRemove, YawDirection::kAsReleasedCode}) {
     const Standardisation standardisation(SbuSkeleton(), leader, direction);
     ExpectNear(standardisation.Invert(standardisation.Apply(leader)), leader, 1e-5f);
@@ -68,68 +69,86 @@ TEST_P(AnyYaw, InvertsExactly) {
 }
 
 TEST_P(AnyYaw, KeepsTheDistanceBetweenTheTwo) {
-  const std::vector<Vec3> leader = Leader(GetParam()), follower = Follower();
+  const Poses leader = Leader(GetParam()), follower = Follower();
   const Standardisation standardisation(SbuSkeleton(), leader);
-  const std::vector<Vec3> a = standardisation.Apply(leader), b = standardisation.Apply(follower);
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    ASSERT_NEAR(Distance(a[i], b[i]), Distance(leader[i], follower[i]), 1e-5f);
+  const Poses a = standardisation.Apply(leader), b = standardisation.Apply(follower);
+  for (std::size_t i = 0; i < a.all().size(); ++i) {
+    ASSERT_NEAR(Distance(a.all()[i], b.all()[i]), Distance(leader.all()[i], follower.all()[i]),
+                1e-5f);
   }
 }
 
 TEST_P(AnyYaw, FirstFrameOriginLeavesWhatStandsStillStill) {
-  std::vector<Vec3> leader = Leader(GetParam());
-  for (std::size_t i = 0; i < leader.size(); ++i) {
-    leader[i].x += 0.02f * static_cast<float>(i / kJoints);  // walks
+  Poses leader = Leader(GetParam());
+  for (int t = 0; t < leader.frame_count(); ++t) {
+    for (Vec3& p : leader[t]) p.x += 0.02f * static_cast<float>(t);  // walks
   }
   const Standardisation frame(SbuSkeleton(), leader, YawDirection::kRemove,
                               StandardOrigin::kFirstFrame);
-  const std::vector<Vec3> standard = frame.Apply(leader);
-  EXPECT_EQ(standard[kTorso], (Vec3{0, 0, 0}));
-  const std::size_t last = standard.size() - kJoints;
-  EXPECT_NEAR(Norm(standard[last + kTorso]), Distance(leader[last + kTorso], leader[kTorso]), 1e-5);
-  const std::vector<Vec3> still(leader.size(), Vec3{5, 1, 2});
-  for (const Vec3& point : frame.Apply(still)) EXPECT_EQ(point, frame.Apply(still.front()));
+  const Poses standard = frame.Apply(leader);
+  EXPECT_EQ(standard.at(0, kTorso), (Vec3{0, 0, 0}));
+  const int last = standard.frame_count() - 1;
+  EXPECT_NEAR(Norm(standard.at(last, kTorso)),
+              Distance(leader.at(last, kTorso), leader.at(0, kTorso)), 1e-5);
+  const Vec3 place{5, 1, 2};
+  const Poses still(kJoints, std::vector<Vec3>(leader.all().size(), place));
+  const Poses standing = frame.Apply(still);
+  for (const Vec3& point : standing.all()) EXPECT_EQ(point, frame.Apply(place));
   ExpectNear(frame.Invert(standard), leader, 1e-5f);
 }
 
 TEST(Standardisation, OneYawServesAllFrames) {
   // The hips turn during the clip; only the first frame's are brought to +x.
-  const std::vector<Vec3> leader = Leader(0);
-  const std::vector<Vec3> standard = Standardisation(SbuSkeleton(), leader).Apply(leader);
-  const std::size_t last = 19 * kJoints;
-  EXPECT_GT(std::abs(standard[last + kRightHip].z - standard[last + kLeftHip].z), 0.01f);
+  const Poses leader = Leader(0);
+  const Poses standard = Standardisation(SbuSkeleton(), leader).Apply(leader);
+  EXPECT_GT(std::abs(standard.at(19, kRightHip).z - standard.at(19, kLeftHip).z), 0.01f);
 }
 
 TEST(Standardisation, PlacesARunOfFramesWithinTheClip) {
-  const std::vector<Vec3> leader = Leader(1);
+  const Poses leader = Leader(1);
   const Standardisation standardisation(SbuSkeleton(), leader);
-  const std::vector<Vec3> whole = standardisation.Apply(leader);
-  const auto from = [](const std::vector<Vec3>& v) {
-    return std::vector<Vec3>(v.begin() + 5 * kJoints, v.begin() + 8 * kJoints);
+  const Poses whole = standardisation.Apply(leader);
+  const auto from = [](const Poses& poses) {
+    Poses run(0, kJoints);
+    run.Append(poses.frames(5, 3));
+    return run;
   };
   EXPECT_EQ(standardisation.Apply(from(leader), 5), from(whole));
   ExpectNear(standardisation.Invert(from(whole), 5), from(leader), 1e-5f);
 }
 
 TEST(Standardisation, PointsAreThoseOfTheFirstFrame) {
-  const std::vector<Vec3> leader = Leader(1);
+  const Poses leader = Leader(1);
   const Standardisation standardisation(SbuSkeleton(), leader);
-  EXPECT_EQ(standardisation.Apply(leader[7]), standardisation.Apply(leader)[7]);
+  EXPECT_EQ(standardisation.Apply(leader.at(0, 7)), standardisation.Apply(leader).at(0, 7));
 }
 
 TEST(Standardisation, HipsOnOneSpotLeaveTheYawAlone) {
-  std::vector<Vec3> leader = Leader(1);
-  leader[kRightHip].x = leader[kLeftHip].x;
-  leader[kRightHip].z = leader[kLeftHip].z;
+  Poses leader = Leader(1);
+  leader.at(0, kRightHip).x = leader.at(0, kLeftHip).x;
+  leader.at(0, kRightHip).z = leader.at(0, kLeftHip).z;
   for (YawDirection direction : {YawDirection::kRemove, YawDirection::kAsReleasedCode}) {
     EXPECT_EQ(Standardisation(SbuSkeleton(), leader, direction).yaw(), 0);
   }
 }
 
+TEST(Standardisation, WithoutHipsOnlyACallersYawTurns) {
+  const Poses leader = Leader(1);
+  Skeleton skeleton = SbuSkeleton();
+  skeleton.hips.reset();
+  for (YawDirection direction : {YawDirection::kRemove, YawDirection::kAsReleasedCode}) {
+    EXPECT_EQ(Standardisation(skeleton, leader, direction).yaw(), 0);
+  }
+  EXPECT_EQ(Standardisation(skeleton, leader, 0.5).yaw(), 0.5);
+  ExpectNear(Standardisation(skeleton, leader).Apply(leader),
+             Standardisation(SbuSkeleton(), leader, 0.0).Apply(leader), 0);
+}
+
 TEST(Standardisation, TakesAYawOfTheCallersChoice) {
-  const std::vector<Vec3> leader = Leader(1);
+  const Poses leader = Leader(1);
   const Standardisation standardisation(SbuSkeleton(), leader, M_PI / 2);
-  EXPECT_LT(Distance(standardisation.Apply(leader[kTorso] + Vec3{0, 0, 1}), {1, 0, 0}), 1e-5f);
+  EXPECT_LT(Distance(standardisation.Apply(leader.at(0, kTorso) + Vec3{0, 0, 1}), {1, 0, 0}),
+            1e-5f);
 }
 
 TEST(FacingYaw, TurnsADirectionToMinusZ) {
@@ -141,10 +160,11 @@ TEST(FacingYaw, TurnsADirectionToMinusZ) {
 
 TEST(Standardisation, ReleasedCodeTurnsTheWrongWay) {
   // Hips at 101.31 degrees in x-z. The published code turns by the arc tangent of -5, -78.69.
-  std::vector<Vec3> leader(kJoints);
-  leader[kRightHip] = {-0.2f, 0, 1};
+  Poses leader(1, kJoints);
+  leader.at(0, kRightHip) = {-0.2f, 0, 1};
   const Vec3 turned = Standardisation(SbuSkeleton(), leader, YawDirection::kAsReleasedCode)
-                          .Apply(leader)[kRightHip];
+                          .Apply(leader)
+                          .at(0, kRightHip);
   EXPECT_NEAR(std::atan2(turned.z, turned.x) * 180 / M_PI, 101.31 - 78.69, 0.01);
 }
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "model/network/parameters.h"
 #include "tests/network/test_manifest.h"
 
@@ -48,6 +50,7 @@ TEST(GeneratorTest, AnswersEveryFrame) {
 TEST(GeneratorTest, PaperSizesFollowFromTheManifest) {
   checkpoint::Manifest manifest = SmallManifest(false);
   manifest.generator = {};
+  manifest.generator.parts = motion::SbuParts();
   Generator generator = MakeGenerator(manifest);
   EXPECT_EQ(generator->tensors().at("output.weight").sizes(), at::IntArrayRef({45, 480}));
   EXPECT_EQ(generator->tensors().at("decoder.forward.weight_hh").sizes(),
@@ -85,9 +88,14 @@ TEST(GeneratorTest, EveryParameterAndInputHasAGradient) {
   input.labels.requires_grad_();
   input.start.requires_grad_();
   generator->forward(input).square().mean().backward();
-  for (const auto& [name, tensor] : generator->tensors()) {
-    ASSERT_TRUE(tensor.grad().defined()) << name;
-    EXPECT_GT(tensor.grad().abs().max().item<float>(), 0) << name;
+  for (const auto& named : generator->named_parameters()) {
+    const torch::Tensor gradient = named.value().grad();
+    ASSERT_TRUE(gradient.defined()) << named.key();
+    // The halves are the two directions; of the encoders' recurrent weights, each slice is apart.
+    const int64_t pieces = named.key() == "encoder/weight_hh" ? gradient.size(0) : 2;
+    for (const torch::Tensor& piece : gradient.chunk(pieces, 0)) {
+      EXPECT_GT(piece.abs().max().item<float>(), 0) << named.key();
+    }
   }
   EXPECT_GT(input.labels.grad().abs().max().item<float>(), 0);
   EXPECT_GT(input.start.grad().abs().max().item<float>(), 0);
@@ -122,6 +130,21 @@ TEST(GeneratorTest, LabelAtOneFrameReachesTheResult) {
   const torch::Tensor before = generator->forward(input);
   input.labels[0][4][1] += 1;
   EXPECT_FALSE(torch::allclose(generator->forward(input)[0], before[0]));
+}
+
+// A seed gives the same network however its parameters are laid out.
+TEST(GeneratorTest, ParametersAreDrawnInTheOrderOfTheTable) {
+  const checkpoint::Manifest manifest = SmallManifest();
+  const std::map<std::string, torch::Tensor> drawn = MakeGenerator(manifest)->tensors();
+  torch::manual_seed(4);
+  for (const checkpoint::TensorSpec& spec : ExpectedTensors(manifest)) {
+    const torch::Tensor& value = drawn.at(spec.name);
+    ASSERT_EQ(value.sizes(), at::IntArrayRef(spec.shape)) << spec.name;
+    if (spec.name.find("bias") != std::string::npos) continue;  // drawn from nothing
+    const double bound = 1 / std::sqrt(static_cast<double>(spec.shape.back()));
+    const torch::Tensor wanted = torch::empty(spec.shape).uniform_(-1, 1) * bound;
+    EXPECT_TRUE(torch::allclose(value, wanted, 1e-6, 1e-7)) << spec.name;
+  }
 }
 
 TEST(GeneratorTest, StoredParametersLoadBack) {
@@ -177,7 +200,7 @@ TEST(GeneratorTest, BasePoseComesFromTheStartWhereItIsKnown) {
 
 TEST(GeneratorTest, ReleasedVariantGivesTheWholeBodySliceTheLabelAlone) {
   checkpoint::Manifest manifest = SmallManifest(false);
-  manifest.generator.variant = "released";
+  manifest.generator.variant = checkpoint::GeneratorVariant::kReleased;
   Generator generator = MakeGenerator(manifest);
   EXPECT_EQ(generator->tensors().at("encoder.whole_body.fc.weight").size(1), kClasses);
   EXPECT_EQ(generator->forward(MakeInput(manifest)).size(2), 3 * kJoints);
@@ -185,7 +208,7 @@ TEST(GeneratorTest, ReleasedVariantGivesTheWholeBodySliceTheLabelAlone) {
 
 TEST(GeneratorTest, UnlabelledVariantDoesNotReadTheLabel) {
   checkpoint::Manifest manifest = SmallManifest();
-  manifest.generator.variant = "unlabelled";
+  manifest.generator.variant = checkpoint::GeneratorVariant::kUnlabelled;
   manifest.generator.base_pose = true;
   Generator generator = MakeGenerator(manifest);
   generator->SetBasePoses(torch::randn({kClasses, 3 * kJoints}));

@@ -17,6 +17,7 @@ inline checkpoint::Manifest SmallManifest(bool follower_start = true) {
   manifest.model.frame_rate_hz = 15;
   manifest.model.window_frames = 12;
   manifest.model.accepts_follower_start = follower_start;
+  manifest.generator.parts = motion::SbuParts();
   manifest.generator.follower_start = follower_start;
   manifest.generator.slice_features = 5;
   manifest.generator.encoder_hidden = 4;

@@ -39,12 +39,12 @@ engine::WindowResult FakeSynthesizer::Answer(const engine::SynthesisWindow& wind
   if (window_status) {
     if (absl::Status status = window_status(window); !status.ok()) return status;
   }
-  const std::size_t joints = description_.skeleton.joint_names.size();
   const std::size_t classes = description_.classes.size();
-  std::vector<motion::Vec3> follower(window.leader.size());
-  for (std::size_t i = 0; i < follower.size(); ++i) {
-    const absl::Span<const float> labels(window.labels.data() + i / joints * classes, classes);
-    follower[i] = answer(window.leader[i], labels);
+  motion::Poses follower = window.leader;
+  for (int t = 0; t < follower.frame_count(); ++t) {
+    const absl::Span<const float> labels(
+        window.labels.data() + static_cast<std::size_t>(t) * classes, classes);
+    for (motion::Vec3& position : follower[t]) position = answer(position, labels);
   }
   return follower;
 }

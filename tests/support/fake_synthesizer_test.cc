@@ -23,15 +23,17 @@ TEST(FakeSynthesizer, AnswersEachFrameByItsRule) {
   const std::vector<engine::WindowResult> results = fake.Synthesize({&window});
   ASSERT_EQ(results.size(), 1u);
   ASSERT_THAT(results[0], IsOk());
-  const motion::Vec3 leader = window.leader[15];
-  EXPECT_EQ((*results[0])[15], (motion::Vec3{0.25f - leader.x, leader.y + 0.5f, -1.5f - leader.z}));
-  EXPECT_EQ((*results[0])[0].y, window.leader[0].y);
+  const motion::Vec3 leader = window.leader.at(1, 0);
+  EXPECT_EQ(results[0]->at(1, 0),
+            (motion::Vec3{0.25f - leader.x, leader.y + 0.5f, -1.5f - leader.z}));
+  EXPECT_EQ(results[0]->at(0, 0).y, window.leader.at(0, 0).y);
 }
 
 TEST(FakeSynthesizer, FailsOneWindowAlone) {
   FakeSynthesizer fake;
   fake.window_status = [](const engine::SynthesisWindow& window) {
-    return window.leader.size() == 45 ? absl::InternalError("three frames") : absl::OkStatus();
+    return window.leader.frame_count() == 3 ? absl::InternalError("three frames")
+                                            : absl::OkStatus();
   };
   const engine::SynthesisWindow two = Window(2), three = Window(3);
   const std::vector<engine::WindowResult> results = fake.Synthesize({&two, &three});
@@ -53,12 +55,14 @@ TEST(FakeSynthesizer, ReportsEveryBatch) {
 }
 
 TEST(SampleMotion, MovesSmoothlyAndStandsUpright) {
-  const std::vector<motion::Vec3> motion = SwayingMotion(60, 15);
-  for (std::size_t i = 15; i < motion.size(); ++i) {
-    ASSERT_LT(Distance(motion[i], motion[i - 15]), 0.1f) << "frame " << i / 15;
+  const motion::Poses motion = SwayingMotion(60, 15);
+  for (int t = 1; t < motion.frame_count(); ++t) {
+    for (int j = 0; j < motion.joint_count(); ++j) {
+      ASSERT_LT(Distance(motion.at(t, j), motion.at(t - 1, j)), 0.1f) << "frame " << t;
+    }
   }
-  EXPECT_GT(motion[0].y, motion[2].y);   // head above torso
-  EXPECT_LT(motion[14].y, motion[2].y);  // foot below it
+  EXPECT_GT(motion.at(0, 0).y, motion.at(0, 2).y);   // head above torso
+  EXPECT_LT(motion.at(0, 14).y, motion.at(0, 2).y);  // foot below it
 }
 
 }  // namespace

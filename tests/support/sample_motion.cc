@@ -32,12 +32,9 @@ std::vector<motion::Vec3> SwayingPose(double seconds) {
   return pose;
 }
 
-std::vector<motion::Vec3> SwayingMotion(int frames, double frame_rate_hz) {
-  std::vector<motion::Vec3> motion;
-  for (int frame = 0; frame < frames; ++frame) {
-    const std::vector<motion::Vec3> pose = SwayingPose(frame / frame_rate_hz);
-    motion.insert(motion.end(), pose.begin(), pose.end());
-  }
+motion::Poses SwayingMotion(int frames, double frame_rate_hz) {
+  motion::Poses motion(0, static_cast<int>(StandingPose().size()));
+  for (int frame = 0; frame < frames; ++frame) motion.Append(SwayingPose(frame / frame_rate_hz));
   return motion;
 }
 

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "model/motion/poses.h"
 #include "model/motion/skeleton.h"
 #include "model/motion/vec3.h"
 
@@ -14,7 +15,7 @@ namespace duet::test {
 std::vector<motion::Vec3> SwayingPose(double seconds);
 
 // The same as a motion from time 0. Shapes: [frames, 15].
-std::vector<motion::Vec3> SwayingMotion(int frames, double frame_rate_hz);
+motion::Poses SwayingMotion(int frames, double frame_rate_hz);
 
 }  // namespace duet::test
 

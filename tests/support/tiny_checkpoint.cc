@@ -15,12 +15,10 @@ checkpoint::Manifest TinyManifest() {
   manifest.model.classes = {"kick", "hug"};
   manifest.model.skeleton.joint_names = {"torso", "left_hip", "right_hip"};
   manifest.model.skeleton.bones = {{0, 1}, {0, 2}};
-  manifest.model.skeleton.parts = {{"trunk", {0}}, {"legs", {1, 2}}};
   manifest.model.skeleton.root = 0;
-  manifest.model.skeleton.left_hip = manifest.model.skeleton.left_foot = 1;
-  manifest.model.skeleton.right_hip = manifest.model.skeleton.right_foot = 2;
+  manifest.model.skeleton.hips = manifest.model.skeleton.feet = motion::JointPair{1, 2};
   manifest.model.accepts_follower_start = true;
-  manifest.generator.variant = "paper";
+  manifest.generator.parts = {{"trunk", {0}}, {"legs", {1, 2}}};
   manifest.generator.follower_start = true;
   manifest.generator.slice_features = 1;
   manifest.generator.encoder_hidden = 2;

@@ -96,6 +96,22 @@ TEST(AugmentTest, CropKeepsAPieceOfBoth) {
   EXPECT_EQ(after.pair.follower.at(0, 4), before.pair.follower.at(first, 4));
 }
 
+TEST(AugmentTest, ClipsTooShortToCropStayWhole) {
+  TrainingOptions::Augmentation options;
+  options.crop = 1;
+  dataset::Dataset dataset = MadeUpDataset();
+  for (const int frames : {1, 9, 10}) {
+    dataset::Sequence shortened = dataset.sequences[0];
+    for (motion::Clip* clip : {&shortened.pair.leader, &shortened.pair.follower}) {
+      clip->positions.resize(static_cast<size_t>(frames * clip->joint_count()));
+    }
+    EpochRandom random(3, 1);
+    const dataset::Sequence after = Augment(dataset, shortened, options, &random);
+    EXPECT_EQ(after.pair.leader.positions, shortened.pair.leader.positions) << frames;
+    EXPECT_EQ(after.pair.follower.positions, shortened.pair.follower.positions) << frames;
+  }
+}
+
 TEST(AugmentTest, TimeWarpKeepsBothEnds) {
   TrainingOptions::Augmentation options;
   options.time_warp = 0.5;

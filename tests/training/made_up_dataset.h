@@ -18,6 +18,7 @@ inline dataset::Dataset MadeUpDataset(int sequences = 7) {
   dataset::Dataset dataset;
   dataset.name = "made_up";
   dataset.skeleton = motion::SbuSkeleton();
+  dataset.parts = motion::SbuParts();
   dataset.classes = {"kick", "hug", "punch"};
   dataset.symmetric = {false, true, false};
   dataset.frame_rate_hz = 15;
@@ -31,7 +32,8 @@ inline dataset::Dataset MadeUpDataset(int sequences = 7) {
     leader.joint_names = dataset.skeleton.joint_names;
     leader.frame_rate_hz = dataset.frame_rate_hz;
     sequence.pair.follower = leader;
-    leader.positions = SwayingMotion(frames, dataset.frame_rate_hz);
+    const motion::Poses swaying = SwayingMotion(frames, dataset.frame_rate_hz);
+    leader.positions.assign(swaying.all().begin(), swaying.all().end());
     for (int t = 0; t < frames; ++t) {
       for (motion::Vec3 point : SwayingPose((t + i) / dataset.frame_rate_hz)) {
         sequence.pair.follower.positions.push_back(

@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <string>
+
 #include "model/training/named_configs.h"
 #include "tests/support/status_matchers.h"
 
@@ -36,6 +38,16 @@ TEST(TrainingOptionsTest, ReplacementsReachTheirField) {
   EXPECT_EQ(options->optimiser.name, "rmsprop");
   EXPECT_EQ(options->epochs, 7);
   EXPECT_EQ(Describe(*options).at("losses.bone"), "0.25");
+}
+
+// A state belongs to settings that are equal in every digit.
+TEST(TrainingOptionsTest, SettingsAreDescribedToTheLastDigit) {
+  TrainingOptions options;
+  options.optimiser.learning_rate = 0.0010000001;
+  EXPECT_EQ(Describe(options).at("optimiser.learning_rate"), "0.0010000001");
+  options.losses.bone = 1.0 / 3;
+  EXPECT_EQ(std::stod(Describe(options).at("losses.bone")), 1.0 / 3);
+  EXPECT_EQ(Describe(options).at("losses.continuity_margin"), "0.1");
 }
 
 TEST(TrainingOptionsTest, EverySettingIsRequiredAndDescribed) {

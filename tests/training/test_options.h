@@ -51,6 +51,7 @@ inline checkpoint::Manifest ManifestFor(const TrainingOptions& options,
   manifest.model.window_frames = dataset.LongestFrameCount();
   manifest.model.accepts_follower_start = options.generator.follower_start;
   manifest.generator = options.generator;
+  manifest.generator.parts = dataset.parts;
   manifest.standardisation = options.standardisation;
   return manifest;
 }

@@ -82,6 +82,23 @@ TEST_F(TrainerTest, StateOfAnotherRunIsRefused) {
               StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("other options or data")));
 }
 
+TEST_F(TrainerTest, StateOfAnotherVersionIsRefused) {
+  torch::serialize::OutputArchive archive;  // as it was before states had a version
+  archive.write("identity", c10::IValue(std::string("anything")));
+  archive.save_to((folder_ / "state").string());
+  EXPECT_THAT(Make().LoadState(folder_ / "state"),
+              StatusIs(absl::StatusCode::kFailedPrecondition,
+                       HasSubstr("another version of the trainer, wanted state version 2")));
+}
+
+TEST_F(TrainerTest, StateOfASettingThatDiffersInItsLastDigitsIsRefused) {
+  Trainer trainer = Make();
+  ASSERT_THAT(trainer.SaveState(folder_ / "state"), IsOk());
+  options_.optimiser.learning_rate *= 1 + 1e-9;
+  EXPECT_THAT(Make().LoadState(folder_ / "state"),
+              StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("other options or data")));
+}
+
 TEST_F(TrainerTest, TornOrMissingStateIsAnError) {
   EXPECT_THAT(Make().LoadState(folder_ / "state"),
               StatusIs(absl::StatusCode::kNotFound, HasSubstr("state")));
@@ -144,6 +161,23 @@ TEST_F(TrainerTest, EpochShowsEverySequenceOnce) {
     wanted.insert(static_cast<float>(s.pair.leader.frame_count()));
   }
   EXPECT_EQ(seen, wanted);
+}
+
+TEST_F(TrainerTest, StartsAreToldInTheirShares) {
+  // Every clip by one share or the other: none is left without a start.
+  options_.start = {0.75, 0.25};
+  double clips = 0, roots = 0, poses = 0;
+  for (int64_t epoch = 0; epoch < 40; ++epoch) {
+    for (const TrainingBatch& batch :
+         SampleEpoch(manifest_, dataset_, AllOf(dataset_), options_, epoch)) {
+      const int64_t width = batch.input.start.size(1);
+      clips += static_cast<double>(batch.input.start.size(0));
+      roots += batch.input.start.select(1, width - 2).sum().item<double>();
+      poses += batch.input.start.select(1, width - 1).sum().item<double>();
+    }
+  }
+  EXPECT_EQ(roots, clips);
+  EXPECT_NEAR(poses / clips, 0.25, 0.08);
 }
 
 TEST_F(TrainerTest, BatchIsInTheLeadersFrameWithItsLabelAndStart) {

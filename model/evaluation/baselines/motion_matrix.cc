@@ -16,15 +16,11 @@ constexpr double kTimeWeight = 1.0;
 // Weight of one metre of the root's way, which moves all joints.
 constexpr double kWayWeight = 2.0;
 
-motion::Poses ApplyTo(const motion::Standardisation& frame, const motion::Poses& world) {
-  return {world.joint_count(), frame.Apply({world.all().begin(), world.all().end()})};
-}
-
 }  // namespace
 
 motion::Standardisation BaselineFrame(const motion::Skeleton& skeleton,
                                       const dataset::Sequence& sequence) {
-  const std::vector<motion::Vec3>& leader = sequence.pair.leader.positions;
+  const motion::Poses leader(skeleton.joint_count(), sequence.pair.leader.positions);
   if (sequence.partner_direction) {
     return {skeleton, leader, FacingYaw(*sequence.partner_direction)};
   }
@@ -54,7 +50,7 @@ motion::Poses FromRows(const Rows& rows) {
 }
 
 Rows LeaderCues(const motion::Standardisation& frame, const motion::Poses& world) {
-  const Rows pose = ToRows(ApplyTo(frame, world));
+  const Rows pose = ToRows(frame.Apply(world));
   const Eigen::Index frames = pose.rows(), width = pose.cols();
   Rows cues(frames, 2 * width + 4);
   for (Eigen::Index t = 0; t < frames; ++t) {
@@ -79,7 +75,7 @@ StandardPair StandardLeader(const motion::Skeleton& skeleton, const dataset::Seq
   const motion::Standardisation frame = BaselineFrame(skeleton, sequence);
   const motion::Poses leader = metrics::PosesOf(sequence.pair.leader);
   StandardPair pair;
-  pair.leader = ToRows(ApplyTo(frame, leader));
+  pair.leader = ToRows(frame.Apply(leader));
   pair.cues = LeaderCues(frame, leader);
   return pair;
 }
@@ -88,15 +84,13 @@ StandardPair StandardiseSequence(const motion::Skeleton& skeleton,
                                  const dataset::Sequence& sequence) {
   StandardPair pair = StandardLeader(skeleton, sequence);
   const motion::Poses follower = metrics::PosesOf(sequence.pair.follower);
-  pair.follower = ToRows(ApplyTo(BaselineFrame(skeleton, sequence), follower));
+  pair.follower = ToRows(BaselineFrame(skeleton, sequence).Apply(follower));
   return pair;
 }
 
 motion::Poses FollowerToWorld(const motion::Skeleton& skeleton, const dataset::Sequence& sequence,
                               const Rows& follower) {
-  const motion::Poses standard = FromRows(follower);
-  return {standard.joint_count(),
-          BaselineFrame(skeleton, sequence).Invert({standard.all().begin(), standard.all().end()})};
+  return BaselineFrame(skeleton, sequence).Invert(FromRows(follower));
 }
 
 Rows StretchTo(const Rows& motion, Eigen::Index frames) {

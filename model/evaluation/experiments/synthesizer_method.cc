@@ -19,8 +19,9 @@ engine::ClipRequest MakeRequest(const motion::Skeleton& skeleton, const dataset:
                                 const std::vector<float>& labels, StartGiven start) {
   const motion::Clip& leader = sequence.pair.leader;
   const motion::Clip& follower = sequence.pair.follower;
-  engine::ClipRequest request{leader.positions, leader.frame_rate_hz, engine::LabelTrack(labels),
-                              std::nullopt, sequence.partner_direction};
+  engine::ClipRequest request{motion::Poses(skeleton.joint_count(), leader.positions),
+                              leader.frame_rate_hz, engine::LabelTrack(labels), std::nullopt,
+                              sequence.partner_direction};
   if (start == StartGiven::kNone) return request;
   request.start = engine::FollowerStart{follower.at(0, skeleton.root), {}};
   if (start == StartGiven::kPose) {
@@ -45,7 +46,7 @@ absl::Status NextWindows(const engine::Synthesizer& synthesizer,
   const std::vector<engine::WindowResult> results = synthesizer.Synthesize(pointers);
   for (size_t n = 0; n < waiting.size(); ++n) {
     if (!results[n].ok()) return results[n].status();
-    (*followers)[waiting[n]].Append((*clips)[waiting[n]].Accept(*results[n]));
+    (*followers)[waiting[n]].Append((*clips)[waiting[n]].Accept(*results[n]).all());
   }
   return absl::OkStatus();
 }

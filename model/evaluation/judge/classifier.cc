@@ -44,8 +44,7 @@ dataset::Sequence WithFollower(const dataset::Dataset& dataset,
 
 MotionBatch MakeMotionBatch(const dataset::Dataset& dataset,
                             const std::vector<dataset::Sequence>& sequences) {
-  const int triples = kJudgeParts * dataset.skeleton.joint_count();
-  std::vector<std::vector<motion::Vec3>> inputs;
+  std::vector<motion::Poses> inputs;
   std::vector<int64_t> lengths, classes;
   for (const dataset::Sequence& sequence : sequences) {
     const motion::Poses input = JudgeInput(dataset.skeleton, sequence);
@@ -53,11 +52,10 @@ MotionBatch MakeMotionBatch(const dataset::Dataset& dataset,
     lengths.push_back(sequence.pair.follower.frame_count());
     classes.push_back(sequence.interaction_class);
   }
-  std::vector<const std::vector<motion::Vec3>*> pointers;
-  for (const std::vector<motion::Vec3>& input : inputs) pointers.push_back(&input);
-  return {
-      network::PadPositions(pointers, triples, *std::max_element(lengths.begin(), lengths.end())),
-      torch::tensor(lengths), torch::tensor(classes)};
+  std::vector<const motion::Poses*> pointers;
+  for (const motion::Poses& input : inputs) pointers.push_back(&input);
+  return {network::PadPoses(pointers, *std::max_element(lengths.begin(), lengths.end())),
+          torch::tensor(lengths), torch::tensor(classes)};
 }
 
 std::vector<MotionBatch> TestBatches(const dataset::Dataset& dataset,

@@ -10,10 +10,10 @@ namespace {
 motion::Poses StandardFollower(const motion::Skeleton& skeleton, const dataset::Sequence& sequence,
                                motion::StandardOrigin origin) {
   engine::SynthesisWindow window;
-  window.leader = sequence.pair.leader.positions;
+  window.leader = motion::Poses(skeleton.joint_count(), sequence.pair.leader.positions);
   window.partner_direction = sequence.partner_direction;
-  return {skeleton.joint_count(),
-          WindowFrame(skeleton, window, origin).Apply(sequence.pair.follower.positions)};
+  return WindowFrame(skeleton, window, origin)
+      .Apply(motion::Poses(skeleton.joint_count(), sequence.pair.follower.positions));
 }
 
 }  // namespace

@@ -28,11 +28,10 @@ double Drift(const motion::Poses& poses, const motion::Bone& bone) {
 }
 
 // The height of the lowest point that either foot reaches.
-float LowestFoot(const motion::Poses& poses, const motion::Skeleton& skeleton) {
+float LowestFoot(const motion::Poses& poses, const motion::JointPair& feet) {
   float lowest = std::numeric_limits<float>::max();
   for (int t = 0; t < poses.frame_count(); ++t) {
-    lowest =
-        std::min({lowest, poses.at(t, skeleton.left_foot).y, poses.at(t, skeleton.right_foot).y});
+    lowest = std::min({lowest, poses.at(t, feet.left).y, poses.at(t, feet.right).y});
   }
   return lowest;
 }
@@ -62,10 +61,12 @@ double Jitter(const motion::Poses& poses, double frame_rate_hz) {
 
 FootSlide MeasureFootSlide(const motion::Poses& poses, const motion::Skeleton& skeleton,
                            double frame_rate_hz) {
-  const float floor = LowestFoot(poses, skeleton);
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  if (!skeleton.feet) return {kNone, kNone};
+  const float floor = LowestFoot(poses, *skeleton.feet);
   double steps = 0, skating = 0, moved = 0;
   for (int t = 1; t < poses.frame_count(); ++t) {
-    for (const int foot : {skeleton.left_foot, skeleton.right_foot}) {
+    for (const int foot : {skeleton.feet->left, skeleton.feet->right}) {
       const motion::Vec3 before = poses.at(t - 1, foot), now = poses.at(t, foot);
       if (std::max(before.y, now.y) > floor + kContactHeightMetres) continue;
       const double step = std::hypot(now.x - before.x, now.z - before.z);

@@ -21,7 +21,7 @@ double Jitter(const motion::Poses& poses, double frame_rate_hz);
 
 // How feet move while they should stand. A step is a foot's movement along the floor from one frame
 // to the next; it counts where the foot is on the floor in both frames: at most 5 cm above the
-// lowest point that either foot reaches in the whole motion.
+// lowest point that either foot reaches in the whole motion. NaN for a skeleton without feet.
 // Source: skating ratio as in GMD (Karunratanakul et al. 2023); foot motion as in MANN.
 struct FootSlide {
   // The share of the steps that are faster than 0.5 m/s. 0 to 1.

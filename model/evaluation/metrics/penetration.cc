@@ -15,9 +15,10 @@ constexpr double kParallel = 1e-9;
 
 double Clamp01(double value) { return std::clamp(value, 0.0, 1.0); }
 
-double RadiusOf(const motion::Skeleton& skeleton, const motion::Bone& bone) {
+double RadiusOf(const motion::Skeleton& skeleton, const std::vector<motion::BodyPart>& parts,
+                const motion::Bone& bone) {
   if (skeleton.joint_names[static_cast<size_t>(bone.child)] == "head") return kHeadRadius;
-  for (const motion::BodyPart& part : skeleton.parts) {
+  for (const motion::BodyPart& part : parts) {
     if (std::find(part.joints.begin(), part.joints.end(), bone.child) == part.joints.end()) {
       continue;
     }
@@ -71,15 +72,19 @@ double SegmentDistance(motion::Vec3 a0, motion::Vec3 a1, motion::Vec3 b0, motion
   return Norm(w + u * static_cast<float>(s) - v * static_cast<float>(t));
 }
 
-std::vector<double> CapsuleRadii(const motion::Skeleton& skeleton) {
+std::vector<double> CapsuleRadii(const motion::Skeleton& skeleton,
+                                 const std::vector<motion::BodyPart>& parts) {
   std::vector<double> radii;
-  for (const motion::Bone& bone : skeleton.bones) radii.push_back(RadiusOf(skeleton, bone));
+  for (const motion::Bone& bone : skeleton.bones) {
+    radii.push_back(RadiusOf(skeleton, parts, bone));
+  }
   return radii;
 }
 
 Penetration MeasurePenetration(const motion::Poses& leader, const motion::Poses& follower,
-                               const motion::Skeleton& skeleton) {
-  const std::vector<double> radii = CapsuleRadii(skeleton);
+                               const motion::Skeleton& skeleton,
+                               const std::vector<motion::BodyPart>& parts) {
+  const std::vector<double> radii = CapsuleRadii(skeleton, parts);
   Penetration result;
   double touching = 0, sum = 0;
   for (int t = 0; t < leader.frame_count(); ++t) {

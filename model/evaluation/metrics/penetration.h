@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "model/motion/body_part.h"
 #include "model/motion/poses.h"
 #include "model/motion/skeleton.h"
 
@@ -16,7 +17,8 @@ double SegmentDistance(motion::Vec3 a0, motion::Vec3 a1, motion::Vec3 b0, motion
 // other (trunk, shoulders, hips). Shapes: returns [bones].
 // Source: half the breadth of adult limbs; less than half of the trunk's, whose bones fan out from
 // the middle. Rough: compare figures with those of captured pairs, not with zero.
-std::vector<double> CapsuleRadii(const motion::Skeleton& skeleton);
+std::vector<double> CapsuleRadii(const motion::Skeleton& skeleton,
+                                 const std::vector<motion::BodyPart>& parts);
 
 // How far two bodies reach into each other. A frame's depth is the largest max(0, r1 + r2 - d) over
 // all pairs of a leader's and a follower's bone, with radii r1 and r2 at a distance d. Less is not
@@ -28,7 +30,8 @@ struct Penetration {
   double max_depth_metres = 0;
 };
 Penetration MeasurePenetration(const motion::Poses& leader, const motion::Poses& follower,
-                               const motion::Skeleton& skeleton);
+                               const motion::Skeleton& skeleton,
+                               const std::vector<motion::BodyPart>& parts);
 
 }  // namespace duet::evaluation::metrics
 

@@ -75,7 +75,7 @@ std::vector<double> ScoreMotion(const dataset::Dataset& dataset, const ScoredMot
   const motion::Poses& made = motion.follower;
   const double rate = sequence.pair.leader.frame_rate_hz;
   const FootSlide slide = MeasureFootSlide(made, skeleton, rate);
-  const Penetration penetration = MeasurePenetration(leader, made, skeleton);
+  const Penetration penetration = MeasurePenetration(leader, made, skeleton, dataset.parts);
   return {Afd(made, truth, MetricUnit::kSbuRaw),
           AfdSquared(made, truth, MetricUnit::kSbuRaw),
           Afd(made, truth, MetricUnit::kMetres),

@@ -114,7 +114,9 @@ absl::Status AddModel(const dataset::Dataset& dataset, const NamedRuns& runs,
     absl::Status status =
         AddSpace(dataset, fold, experiments::LatentLabels::kOwnClass, arguments, section);
     if (!status.ok()) return status;
-    if (fold.checkpoint.manifest.generator.variant == "unlabelled") continue;
+    if (fold.checkpoint.manifest.generator.variant == checkpoint::GeneratorVariant::kUnlabelled) {
+      continue;
+    }
     status = AddSpace(dataset, fold, experiments::LatentLabels::kNone, arguments, section);
     if (!status.ok()) return status;
   }

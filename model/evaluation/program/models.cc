@@ -12,15 +12,15 @@ namespace {
 using SharedSynthesizer = std::shared_ptr<const engine::Synthesizer>;
 
 absl::StatusOr<SharedSynthesizer> LoadOne(const ModelChoice& choice) {
-  const torch_engine::TorchSynthesizerOptions options{choice.as_served, choice.as_served};
+  const engine::PipelineOptions options{choice.as_served, choice.as_served};
   if (choice.embedded) {
     absl::StatusOr<std::vector<std::unique_ptr<engine::Synthesizer>>> all =
-        LoadEmbeddedSynthesizers(options);
+        torch_engine::LoadEmbeddedSynthesizers(options);
     if (!all.ok()) return all.status();
     return SharedSynthesizer(std::move(all->front()));
   }
   absl::StatusOr<std::unique_ptr<engine::Synthesizer>> one =
-      LoadTorchSynthesizer(choice.checkpoint, options);
+      torch_engine::LoadTorchSynthesizer(choice.checkpoint, options);
   if (!one.ok()) return one.status();
   return SharedSynthesizer(*std::move(one));
 }

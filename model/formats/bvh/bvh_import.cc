@@ -96,11 +96,11 @@ class Importer {
     return clip;
   }
 
-  // Along the bones from the left foot to the root, in the file's unit.
+  // Along the bones from the left foot to the root, in the file's unit. Requires feet.
   double LegLength(const motion::Clip& clip) const {
     const std::vector<int> parents = options_.skeleton.Parents();
     double length = 0;
-    for (int joint = options_.skeleton.left_foot; joint != options_.skeleton.root;) {
+    for (int joint = options_.skeleton.feet->left; joint != options_.skeleton.root;) {
       const int parent = parents[static_cast<size_t>(joint)];
       length += static_cast<double>(Distance(clip.at(0, joint), clip.at(0, parent)));
       joint = parent;
@@ -116,6 +116,11 @@ class Importer {
 
   absl::StatusOr<double> MetresPerUnit(const motion::Clip& clip) {
     if (options_.metres_per_unit.has_value()) return CheckUnit(*options_.metres_per_unit);
+    if (!options_.skeleton.feet) {
+      return absl::InvalidArgumentError(absl::StrCat(
+          source_,
+          ": size: the skeleton has no feet to tell it by; say how many metres a unit has"));
+    }
     const double length = LegLength(clip);
     for (const Unit& unit : kUnits) {
       const double metres = length * unit.metres;
@@ -135,10 +140,11 @@ class Importer {
   motion::UpAxis FindUpAxis(const motion::Clip& clip) {
     if (options_.up_axis.has_value()) return *options_.up_axis;
     const motion::Skeleton& skeleton = options_.skeleton;
+    if (!skeleton.feet) return motion::UpAxis::kYUp;
     motion::Vec3 up;
     for (int frame = 0; frame < clip.frame_count(); ++frame) {
       const motion::Vec3 feet =
-          (clip.at(frame, skeleton.left_foot) + clip.at(frame, skeleton.right_foot)) / 2;
+          (clip.at(frame, skeleton.feet->left) + clip.at(frame, skeleton.feet->right)) / 2;
       const motion::Vec3 body = clip.at(frame, skeleton.root) - feet;
       if (Norm(body) > 0) up += body / Norm(body);
     }

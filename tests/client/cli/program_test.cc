@@ -75,7 +75,8 @@ class ProgramTest : public ::testing::Test {
   ProgramTest() {
     leader_.joint_names = motion::SbuSkeleton().joint_names;
     leader_.frame_rate_hz = 15;
-    leader_.positions = SwayingMotion(kFrames, 15);
+    const motion::Poses swaying = SwayingMotion(kFrames, 15);
+    leader_.positions.assign(swaying.all().begin(), swaying.all().end());
     const motion::ClipPair pair{leader_, leader_};
     EXPECT_THAT(formats::WritePair(folder_ / "leader.csv", pair, motion::SbuSkeleton()), IsOk());
     ON_CALL(*connection_, GetModel).WillByDefault(Return(SbuModel()));

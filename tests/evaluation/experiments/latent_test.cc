@@ -23,10 +23,12 @@ using testing::SizeIs;
 
 constexpr int kHidden = 3, kSlices = 6;
 
-checkpoint::Checkpoint Model(const dataset::Dataset& dataset, const std::string& variant) {
+checkpoint::Checkpoint Model(const dataset::Dataset& dataset,
+                             checkpoint::GeneratorVariant variant) {
   checkpoint::Manifest manifest = TinyManifest();
   manifest.model.skeleton = dataset.skeleton;
   manifest.model.classes = dataset.classes;
+  manifest.generator.parts = dataset.parts;
   manifest.generator.variant = variant;
   manifest.generator.encoder_hidden = kHidden;
   return FilledCheckpoint(manifest);
@@ -48,7 +50,7 @@ metrics::FeatureSet Features(const checkpoint::Checkpoint& model, const dataset:
 
 TEST(LatentFeaturesTest, GivesOnePointASequenceWhateverElseIsInTheBatch) {
   const dataset::Dataset dataset = MadeUpPairs(4);  // of 16 to 19 frames
-  const checkpoint::Checkpoint model = Model(dataset, "paper");
+  const checkpoint::Checkpoint model = Model(dataset, checkpoint::GeneratorVariant::kPaper);
   const metrics::FeatureSet together = Features(model, dataset, {0, 1, 2, 3});
   ASSERT_THAT(together, SizeIs(4));
   for (int i = 0; i < 4; ++i) {
@@ -61,7 +63,7 @@ TEST(LatentFeaturesTest, GivesOnePointASequenceWhateverElseIsInTheBatch) {
 
 TEST(LatentFeaturesTest, NeverSeesTheFollower) {
   dataset::Dataset dataset = MadeUpPairs(1);
-  const checkpoint::Checkpoint model = Model(dataset, "paper");
+  const checkpoint::Checkpoint model = Model(dataset, checkpoint::GeneratorVariant::kPaper);
   const metrics::FeatureSet before = Features(model, dataset, {0});
   for (motion::Vec3& point : dataset.sequences[0].pair.follower.positions)
     point += motion::Vec3{3, 2, 1};
@@ -70,8 +72,9 @@ TEST(LatentFeaturesTest, NeverSeesTheFollower) {
 
 TEST(LatentFeaturesTest, LabelsMatterToTheModelsThatReadThem) {
   const dataset::Dataset dataset = MadeUpPairs(1);
-  const checkpoint::Checkpoint labelled = Model(dataset, "paper"),
-                               unlabelled = Model(dataset, "unlabelled");
+  const checkpoint::Checkpoint labelled = Model(dataset, checkpoint::GeneratorVariant::kPaper),
+                               unlabelled =
+                                   Model(dataset, checkpoint::GeneratorVariant::kUnlabelled);
   EXPECT_GT(Distance(Features(labelled, dataset, {0})[0],
                      Features(labelled, dataset, {0}, LatentLabels::kNone)[0]),
             1e-4);
@@ -82,7 +85,7 @@ TEST(LatentFeaturesTest, LabelsMatterToTheModelsThatReadThem) {
 
 TEST(LatentFeaturesTest, RefusesAModelOfOtherClasses) {
   dataset::Dataset dataset = MadeUpPairs(1);
-  const checkpoint::Checkpoint model = Model(dataset, "paper");
+  const checkpoint::Checkpoint model = Model(dataset, checkpoint::GeneratorVariant::kPaper);
   dataset.classes[1] = "duck";
   EXPECT_THAT(LatentFeatures(model, dataset, {0}, LatentLabels::kOwnClass),
               StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("give, duck")));

@@ -12,9 +12,7 @@ motion::Skeleton Stilts() {
   motion::Skeleton skeleton;
   skeleton.joint_names = {"hips", "left", "right"};
   skeleton.bones = {{0, 1}, {0, 2}};
-  skeleton.parts = {{"all", {0, 1, 2}}};
-  skeleton.left_hip = skeleton.left_foot = 1;
-  skeleton.right_hip = skeleton.right_foot = 2;
+  skeleton.feet = motion::JointPair{1, 2};
   return skeleton;
 }
 
@@ -64,6 +62,14 @@ TEST(FootSlideTest, CountsFastStepsOfFeetOnTheFloor) {
   const FootSlide slide = MeasureFootSlide(poses, Stilts(), 10);
   EXPECT_DOUBLE_EQ(slide.skating_ratio, 0.5);
   EXPECT_NEAR(slide.centimetres_a_frame, (10 + 1) / 2.0, 1e-4);
+}
+
+TEST(FootSlideTest, IsNotComputedWithoutFeet) {
+  motion::Skeleton footless = Stilts();
+  footless.feet.reset();
+  const FootSlide slide = MeasureFootSlide(std::vector<motion::Vec3>(6), footless, 10);
+  EXPECT_TRUE(std::isnan(slide.skating_ratio));
+  EXPECT_TRUE(std::isnan(slide.centimetres_a_frame));
 }
 
 TEST(FootSlideTest, IgnoresLiftedFeetAndVerticalMovement) {

@@ -45,7 +45,7 @@ TEST(SegmentDistanceTest, AgreesWithAFineGrid) {
 
 TEST(CapsuleRadiiTest, FollowTheBodyParts) {
   const motion::Skeleton skeleton = motion::SbuSkeleton();
-  const std::vector<double> radii = CapsuleRadii(skeleton);
+  const std::vector<double> radii = CapsuleRadii(skeleton, motion::SbuParts());
   const auto radius = [&](const char* parent, const char* child) {
     for (size_t i = 0; i < skeleton.bones.size(); ++i) {
       if (skeleton.bones[i] == motion::Bone{skeleton.Find(parent), skeleton.Find(child)})
@@ -65,7 +65,7 @@ TEST(PenetrationTest, MeasuresDepthAndFrequency) {
   motion::Skeleton skeleton;
   skeleton.joint_names = {"a", "b"};
   skeleton.bones = {{0, 1}};
-  skeleton.parts = {{"left_arm", {0, 1}}};
+  const std::vector<motion::BodyPart> parts = {{"left_arm", {0, 1}}};
   // Parallel bones (radius 0.045 each) at 1 m, 0.05 m, 0.08 m and exactly touching at 0.09 m or
   // more.
   motion::Poses leader(0, 2), follower(0, 2);
@@ -73,7 +73,7 @@ TEST(PenetrationTest, MeasuresDepthAndFrequency) {
     leader.Append({{0, 0, 0}, {0, 1, 0}});
     follower.Append({{distance, 0, 0}, {distance, 1, 0}});
   }
-  const Penetration penetration = MeasurePenetration(leader, follower, skeleton);
+  const Penetration penetration = MeasurePenetration(leader, follower, skeleton, parts);
   EXPECT_DOUBLE_EQ(penetration.frequency, 0.5);
   EXPECT_NEAR(penetration.max_depth_metres, 0.04, 1e-6);
   EXPECT_NEAR(penetration.mean_depth_metres, 0.025, 1e-6);
@@ -82,7 +82,8 @@ TEST(PenetrationTest, MeasuresDepthAndFrequency) {
 TEST(PenetrationTest, IsZeroForBodiesApart) {
   const motion::Poses leader(15, std::vector<motion::Vec3>(15, {0, 0, 0}));
   const motion::Poses follower(15, std::vector<motion::Vec3>(15, {1, 0, 0}));
-  const Penetration penetration = MeasurePenetration(leader, follower, motion::SbuSkeleton());
+  const Penetration penetration =
+      MeasurePenetration(leader, follower, motion::SbuSkeleton(), motion::SbuParts());
   EXPECT_EQ(penetration.frequency, 0);
   EXPECT_EQ(penetration.mean_depth_metres, 0);
   EXPECT_EQ(penetration.max_depth_metres, 0);

@@ -14,8 +14,8 @@ constexpr float kDistance = 1.2f;
 std::vector<motion::Vec3> Figure(const motion::Skeleton& skeleton) {
   std::vector<motion::Vec3> pose = SwayingPose(0);
   const motion::Vec3 root = pose[static_cast<size_t>(skeleton.root)];
-  const motion::Vec3 across =
-      pose[static_cast<size_t>(skeleton.right_hip)] - pose[static_cast<size_t>(skeleton.left_hip)];
+  const motion::Vec3 across = pose[static_cast<size_t>(skeleton.hips->right)] -
+                              pose[static_cast<size_t>(skeleton.hips->left)];
   const double yaw = std::atan2(across.z, across.x);
   for (motion::Vec3& p : pose) p = RotateY(p - root, yaw) + motion::Vec3{0, root.y, 0};
   return pose;
@@ -70,6 +70,7 @@ dataset::Dataset MadeUpPairs(int sequences_a_class) {
   dataset::Dataset dataset;
   dataset.name = "made up";
   dataset.skeleton = motion::SbuSkeleton();
+  dataset.parts = motion::SbuParts();
   dataset.classes = {"give", "flinch"};
   dataset.symmetric = {false, false};
   dataset.frame_rate_hz = 15;

@@ -229,12 +229,9 @@ TEST(BvhExport, HangsTheLegsOfASkeletonRootedAtThePelvis) {
   skeleton.joint_names = {"pelvis",     "left_hip",   "left_knee", "left_foot", "right_hip",
                           "right_knee", "right_foot", "chest",     "head"};
   skeleton.bones = {{0, 1}, {1, 2}, {2, 3}, {0, 4}, {4, 5}, {5, 6}, {0, 7}, {7, 8}};
-  skeleton.parts = {{"all", {0, 1, 2, 3, 4, 5, 6, 7, 8}}};
   skeleton.root = 0;
-  skeleton.left_hip = 1;
-  skeleton.right_hip = 4;
-  skeleton.left_foot = 3;
-  skeleton.right_foot = 6;
+  skeleton.hips = motion::JointPair{1, 4};
+  skeleton.feet = motion::JointPair{3, 6};
   ASSERT_TRUE(Validate(skeleton).ok());
   motion::Clip sitting;
   sitting.joint_names = skeleton.joint_names;

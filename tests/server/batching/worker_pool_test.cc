@@ -62,8 +62,9 @@ TEST(WorkerPoolTest, EvaluatesAWindow) {
   ASSERT_THAT(pool->Submit(ticket.Job(std::make_shared<FakeSynthesizer>())), IsOk());
   const WindowOutcome outcome = ticket.outcome.get();
   ASSERT_THAT(outcome.result, IsOk());
-  const motion::Vec3 expected = FakeAnswer(SwayingMotion(4, 15)[7], std::vector<float>(6, 0.0F));
-  EXPECT_EQ((*outcome.result)[7], expected);
+  const motion::Vec3 expected =
+      FakeAnswer(SwayingMotion(4, 15).at(0, 7), std::vector<float>(6, 0.0F));
+  EXPECT_EQ(outcome.result->at(0, 7), expected);
   EXPECT_EQ(outcome.timings.batch_size, 1);
 }
 

@@ -85,10 +85,10 @@ TEST(ClipStreamTest, GivesEveryFrameInOrder) {
   stream.RunAll();
   const auto [frames, end] = TakeAll(stream, 30);
   EXPECT_EQ(end, Kind::kEnd);
-  const std::vector<motion::Vec3> leader = SwayingMotion(200, 15);
-  ASSERT_EQ(frames.size(), leader.size());
-  for (std::size_t i = 0; i < leader.size(); ++i) {
-    const motion::Vec3 expected = FakeAnswer(leader[i], std::vector<float>{1, 0, 0, 0, 0, 0});
+  const motion::Poses leader = SwayingMotion(200, 15);
+  ASSERT_EQ(frames.size(), leader.all().size());
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const motion::Vec3 expected = FakeAnswer(leader.all()[i], std::vector<float>{1, 0, 0, 0, 0, 0});
     ASSERT_LT(Distance(frames[i], expected), 1e-4F) << "position " << i;
   }
 }
@@ -263,8 +263,9 @@ class ShortModel final : public engine::Synthesizer {
   const engine::ModelDescription& description() const override { return description_; }
   std::vector<engine::WindowResult> Synthesize(
       absl::Span<const engine::SynthesisWindow* const> windows) const override {
-    return {
-        std::vector<motion::Vec3>(windows[0]->leader.begin() + kJoints, windows[0]->leader.end())};
+    motion::Poses follower = windows[0]->leader;
+    follower.DropFront(1);
+    return {follower};
   }
 
  private:

@@ -285,7 +285,7 @@ TEST(ServiceEndTest, AModelsFailureIsInternalAndKeepsItsWordsToTheLog) {
 TEST(ServiceEndTest, AFailedCallDoesNotFailOthers) {
   auto model = std::make_shared<FakeSynthesizer>();
   model->window_status = [](const engine::SynthesisWindow& window) {
-    return window.leader.size() == 20 * 15 ? absl::InternalError("broken") : absl::OkStatus();
+    return window.leader.frame_count() == 20 ? absl::InternalError("broken") : absl::OkStatus();
   };
   RunningService::Setup setup;
   setup.model = model;

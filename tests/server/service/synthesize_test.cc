@@ -173,7 +173,8 @@ TEST(SynthesizeTest, AnswersWithTheModelsMotion) {
   const v1::SynthesizeRequest request = SampleRequest(100);
   const std::vector<float> positions = Call(running.stub(), request).Positions();
   ASSERT_EQ(positions.size(), 100u * 15u * 3u);
-  const std::vector<motion::Vec3> leader = SwayingMotion(100, 15);
+  const motion::Poses swaying = SwayingMotion(100, 15);
+  const absl::Span<const motion::Vec3> leader = swaying.all();
   const std::vector<float> labels = {1, 0, 0, 0, 0, 0};
   for (std::size_t i = 0; i < leader.size(); ++i) {
     const motion::Vec3 expected = FakeAnswer(leader[i], labels);
@@ -240,10 +241,11 @@ TEST(SynthesizeTest, RepliesWithTheAskedForJointsInTheAskedForOrder) {
   EXPECT_THAT(reply.messages.front().header().joint_names(), ElementsAre("torso", "head"));
   const std::vector<float> positions = reply.Positions();
   ASSERT_EQ(positions.size(), 30u * 2u * 3u);
-  const std::vector<motion::Vec3> leader = SwayingMotion(30, 15);
-  for (std::size_t frame = 0; frame < 30; ++frame) {
-    EXPECT_NEAR(positions[frame * 6], leader[frame * 15 + 2].x, 1e-4);      // torso
-    EXPECT_NEAR(positions[frame * 6 + 4], leader[frame * 15 + 0].y, 1e-4);  // head
+  const motion::Poses leader = SwayingMotion(30, 15);
+  for (int frame = 0; frame < 30; ++frame) {
+    const std::size_t first = static_cast<std::size_t>(frame) * 6;
+    EXPECT_NEAR(positions[first], leader.at(frame, 2).x, 1e-4);      // torso
+    EXPECT_NEAR(positions[first + 4], leader.at(frame, 0).y, 1e-4);  // head
   }
 }
 

@@ -474,7 +474,7 @@ TEST(ValidateRequestTest, ConvertsUnitAndUpAxisToTheWorld) {
   const absl::StatusOr<ValidatedRequest> validated = Validate(request);
   ASSERT_THAT(validated, IsOk());
   const motion::Vec3 expected = {1, 3, -2};
-  EXPECT_LT(Distance(validated->clip.leader[0], expected), 1e-6F);
+  EXPECT_LT(Distance(validated->clip.leader.at(0, 0), expected), 1e-6F);
   EXPECT_LT(Distance(validated->clip.start->root, expected), 1e-6F);
   EXPECT_TRUE(validated->clip.start->pose.empty());
 }

@@ -13,7 +13,8 @@ v1::SynthesizeRequest SampleRequest(int frames) {
   leader.set_unit(v1::LENGTH_UNIT_METRES);
   leader.set_up_axis(v1::UP_AXIS_Y_UP);
   leader.set_frame_count(frames);
-  for (const motion::Vec3& position : SwayingMotion(frames, 15)) {
+  const motion::Poses swaying = SwayingMotion(frames, 15);
+  for (const motion::Vec3& position : swaying.all()) {
     leader.add_positions(position.x);
     leader.add_positions(position.y);
     leader.add_positions(position.z);

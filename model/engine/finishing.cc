@@ -1,0 +1,46 @@
+#include "model/engine/finishing.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "model/motion/limb_lengths.h"
+
+namespace duet::engine {
+namespace {
+
+float LowestFoot(const motion::JointPair& feet, const motion::Poses& poses) {
+  float lowest = std::numeric_limits<float>::infinity();
+  for (int t = 0; t < poses.frame_count(); ++t) {
+    lowest = std::min({lowest, poses.at(t, feet.left).y, poses.at(t, feet.right).y});
+  }
+  return lowest;
+}
+
+}  // namespace
+
+absl::Status CheckFinite(const motion::Poses& follower) {
+  if (std::all_of(follower.all().begin(), follower.all().end(), motion::IsFinite)) {
+    return absl::OkStatus();
+  }
+  return absl::InternalError("the network's result is not finite");
+}
+
+void KeepLimbLengths(const motion::Skeleton& skeleton, const SynthesisWindow& window,
+                     motion::Poses* follower) {
+  const bool has_pose = window.start && !window.start->pose.empty();
+  const std::vector<float> lengths =
+      has_pose
+          ? MedianBoneLengths(skeleton, motion::Poses(skeleton.joint_count(), window.start->pose))
+          : MedianBoneLengths(skeleton, window.leader);
+  SetBoneLengths(skeleton, lengths, follower);
+}
+
+void ShareFloor(const motion::Skeleton& skeleton, const SynthesisWindow& window,
+                motion::Poses* follower) {
+  if (window.start || !skeleton.feet) return;
+  const motion::Vec3 lift{
+      0, LowestFoot(*skeleton.feet, window.leader) - LowestFoot(*skeleton.feet, *follower), 0};
+  for (motion::Vec3& position : follower->all()) position += lift;
+}
+
+}  // namespace duet::engine

@@ -1,0 +1,27 @@
+#ifndef DUET_MODEL_ENGINE_FINISHING_H_
+#define DUET_MODEL_ENGINE_FINISHING_H_
+
+#include "absl/status/status.h"
+#include "model/engine/synthesizer.h"
+#include "model/motion/poses.h"
+#include "model/motion/skeleton.h"
+
+// The stages between a network's answer, brought back to the world, and the caller. Metres, y up.
+namespace duet::engine {
+
+// INTERNAL when a position is not finite.
+absl::Status CheckFinite(const motion::Poses& follower);
+
+// Gives the follower the limb lengths of its start's pose or else the leader's median ones, in
+// every frame.
+void KeepLimbLengths(const motion::Skeleton& skeleton, const SynthesisWindow& window,
+                     motion::Poses* follower);
+
+// Lifts or lowers a follower without a start, as a whole, so that its feet reach as low as the
+// leader's. A skeleton without feet tells no floor: nothing changes.
+void ShareFloor(const motion::Skeleton& skeleton, const SynthesisWindow& window,
+                motion::Poses* follower);
+
+}  // namespace duet::engine
+
+#endif  // DUET_MODEL_ENGINE_FINISHING_H_

@@ -1,0 +1,39 @@
+#ifndef DUET_MODEL_ENGINE_NETWORK_H_
+#define DUET_MODEL_ENGINE_NETWORK_H_
+
+#include <optional>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "absl/types/span.h"
+#include "model/engine/synthesizer.h"
+#include "model/motion/poses.h"
+
+namespace duet::engine {
+
+// A window in the standard frame of its leader (window_frame.h), metres: all that a network sees.
+struct NetworkInput {
+  motion::Poses leader;       // [frames, joints]
+  std::vector<float> labels;  // [frames, classes]
+  std::optional<FollowerStart> start;
+};
+
+// The numbers in the middle of a synthesizer: what an engine implements. Everything around it
+// (standard frame, checks, limb lengths, floor) is MakeSynthesizer's.
+//
+// Threads: Run is safe to call concurrently.
+class Network {
+ public:
+  virtual ~Network() = default;
+
+  // Evaluates inputs of any lengths together. Returns each one's follower in the standard frame, in
+  // order, of as many frames and joints as its leader; the numbers need not be finite. Numbers do
+  // not depend on what else is in the batch (within 1e-5 m). Throws nothing: INTERNAL says what
+  // went wrong.
+  virtual absl::StatusOr<std::vector<motion::Poses>> Run(
+      absl::Span<const NetworkInput> inputs) const = 0;
+};
+
+}  // namespace duet::engine
+
+#endif  // DUET_MODEL_ENGINE_NETWORK_H_

@@ -1,0 +1,92 @@
+#include "model/engine/network_synthesizer.h"
+
+#include <cstddef>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "model/engine/finishing.h"
+#include "model/engine/standard_window.h"
+#include "model/engine/window_frame.h"
+
+namespace duet::engine {
+namespace {
+
+using Windows = absl::Span<const SynthesisWindow* const>;
+
+class NetworkSynthesizer : public Synthesizer {
+ public:
+  NetworkSynthesizer(ModelDescription description, motion::StandardOrigin origin,
+                     std::unique_ptr<const Network> network, const PipelineOptions& options)
+      : description_(std::move(description)),
+        origin_(origin),
+        network_(std::move(network)),
+        options_(options) {}
+
+  const ModelDescription& description() const override { return description_; }
+
+  std::vector<WindowResult> Synthesize(Windows windows) const override {
+    if (windows.empty()) return {};
+    std::vector<motion::Standardisation> frames;
+    std::vector<NetworkInput> inputs;
+    for (const SynthesisWindow* window : windows) {
+      frames.push_back(WindowFrame(description_.skeleton, *window, origin_));
+      inputs.push_back(Standardise(frames.back(), *window));
+    }
+    const absl::StatusOr<std::vector<motion::Poses>> followers = RunNetwork(inputs);
+    if (!followers.ok()) return {windows.size(), followers.status()};
+    std::vector<WindowResult> results;
+    for (std::size_t i = 0; i < windows.size(); ++i) {
+      results.push_back(Finish(*windows[i], frames[i], (*followers)[i]));
+    }
+    return results;
+  }
+
+ private:
+  // Going on with an answer of another shape would read past it.
+  absl::StatusOr<std::vector<motion::Poses>> RunNetwork(
+      const std::vector<NetworkInput>& inputs) const {
+    absl::StatusOr<std::vector<motion::Poses>> followers = network_->Run(inputs);
+    if (!followers.ok()) return followers;
+    if (followers->size() != inputs.size()) {
+      return absl::InternalError(absl::StrCat("the network answered ", followers->size(),
+                                              " windows, wanted ", inputs.size()));
+    }
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+      const motion::Poses &leader = inputs[i].leader, &follower = (*followers)[i];
+      if (follower.frame_count() == leader.frame_count() &&
+          follower.joint_count() == leader.joint_count()) {
+        continue;
+      }
+      return absl::InternalError(absl::StrCat(
+          "the network answered ", follower.frame_count(), " frames of ", follower.joint_count(),
+          " joints, wanted ", leader.frame_count(), " of ", leader.joint_count()));
+    }
+    return followers;
+  }
+
+  WindowResult Finish(const SynthesisWindow& window, const motion::Standardisation& frame,
+                      const motion::Poses& standard) const {
+    motion::Poses follower = frame.Invert(standard);
+    if (absl::Status status = CheckFinite(follower); !status.ok()) return status;
+    if (options_.keep_limb_lengths) KeepLimbLengths(description_.skeleton, window, &follower);
+    if (options_.share_floor) ShareFloor(description_.skeleton, window, &follower);
+    return follower;
+  }
+
+  const ModelDescription description_;
+  const motion::StandardOrigin origin_;
+  const std::unique_ptr<const Network> network_;
+  const PipelineOptions options_;
+};
+
+}  // namespace
+
+std::unique_ptr<Synthesizer> MakeSynthesizer(ModelDescription description,
+                                             motion::StandardOrigin origin,
+                                             std::unique_ptr<const Network> network,
+                                             const PipelineOptions& options) {
+  return std::make_unique<NetworkSynthesizer>(std::move(description), origin, std::move(network),
+                                              options);
+}
+
+}  // namespace duet::engine

@@ -1,0 +1,15 @@
+#include "model/engine/standard_window.h"
+
+namespace duet::engine {
+
+NetworkInput Standardise(const motion::Standardisation& frame, const SynthesisWindow& window) {
+  NetworkInput input{frame.Apply(window.leader), window.labels, std::nullopt};
+  if (!window.start) return input;
+  input.start = FollowerStart{frame.Apply(window.start->root), {}};
+  for (const motion::Vec3& joint : window.start->pose) {
+    input.start->pose.push_back(frame.Apply(joint));
+  }
+  return input;
+}
+
+}  // namespace duet::engine

@@ -1,0 +1,167 @@
+#include "model/motion/skeleton_json.h"
+
+#include <cstddef>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/str_cat.h"
+#include "model/base/strict_json.h"
+
+namespace duet::motion {
+namespace {
+
+using nlohmann::json;
+using nlohmann::ordered_json;
+
+// Far above any character, far below what would let a small file ask for a huge network.
+constexpr std::size_t kMaxJoints = 256;
+constexpr std::size_t kMaxParts = 64;
+constexpr std::size_t kMaxNameBytes = 64;
+constexpr std::size_t kMaxTextBytes = 4096;
+constexpr char kWholeBody[] = "whole_body";  // the slice that the generator adds
+
+// Parts name tensors.
+bool IsPlainName(const std::string& name) {
+  if (name.empty() || name.size() > kMaxNameBytes || name.front() == '.') return false;
+  for (const char c : name) {
+    if (!absl::ascii_isalnum(static_cast<unsigned char>(c)) && c != '.' && c != '_' && c != '-') {
+      return false;
+    }
+  }
+  return true;
+}
+
+// A joint that the skeleton knows, given by name.
+int FindJoint(base::ObjectReader* reader, const std::string& key, const Skeleton& skeleton,
+              const std::string& name) {
+  const int joint = skeleton.Find(name);
+  if (joint < 0) {
+    reader->Fail(key, absl::StrCat("unknown joint ", json(name).dump(),
+                                   ", wanted one of skeleton.joint_names"));
+  }
+  return joint;
+}
+
+int ReadJoint(base::ObjectReader* reader, const std::string& key, const Skeleton& skeleton) {
+  const std::string name = reader->String(key, kMaxTextBytes);
+  return reader->ok() ? FindJoint(reader, key, skeleton, name) : 0;
+}
+
+std::vector<std::string> ReadUniqueNames(base::ObjectReader* reader, const std::string& key) {
+  std::vector<std::string> names = reader->Strings(key, kMaxJoints);
+  std::set<std::string> seen;
+  for (const std::string& name : names) {
+    if (name.size() > kMaxNameBytes) {
+      reader->Fail(
+          key, absl::StrCat("a name of ", name.size(), " bytes, wanted at most ", kMaxNameBytes));
+    }
+    if (!seen.insert(name).second) {
+      reader->Fail(key, absl::StrCat(json(name).dump(), " is repeated"));
+    }
+  }
+  return names;
+}
+
+std::vector<Bone> ReadBones(base::ObjectReader* reader, const Skeleton& skeleton) {
+  std::vector<Bone> bones;
+  for (const json& item : reader->Array("bones", kMaxJoints)) {
+    const std::string key = absl::StrCat("bones[", bones.size(), "]");
+    const bool is_pair =
+        item.is_array() && item.size() == 2 && item[0].is_string() && item[1].is_string();
+    if (!is_pair) {
+      reader->Fail(key, "wanted a pair of joint names, parent first");
+      return {};
+    }
+    bones.push_back({FindJoint(reader, key, skeleton, item[0].get<std::string>()),
+                     FindJoint(reader, key, skeleton, item[1].get<std::string>())});
+  }
+  return bones;
+}
+
+BodyPart ReadPart(base::ObjectReader* fields, const Skeleton& skeleton,
+                  std::set<std::string>* seen) {
+  BodyPart part;
+  part.name = fields->String("name", kMaxTextBytes);
+  if (fields->ok() && !IsPlainName(part.name)) {
+    fields->Fail("name", absl::StrCat(json(part.name).dump(), ", wanted 1 to ", kMaxNameBytes,
+                                      " letters, digits, '_', '-' or '.', the first of them not "
+                                      "'.'"));
+  }
+  for (const std::string& joint : ReadUniqueNames(fields, "joints")) {
+    part.joints.push_back(FindJoint(fields, "joints", skeleton, joint));
+  }
+  if (!seen->insert(part.name).second) {
+    fields->Fail("name", absl::StrCat(json(part.name).dump(), " is repeated or reserved"));
+  }
+  return part;
+}
+
+std::vector<BodyPart> ReadParts(base::ObjectReader* reader, const Skeleton& skeleton) {
+  std::vector<BodyPart> parts;
+  std::set<std::string> seen = {kWholeBody};
+  for (const json& item : reader->Array("parts", kMaxParts)) {
+    base::ObjectReader fields(item, reader->PathOf(absl::StrCat("parts[", parts.size(), "]")));
+    parts.push_back(ReadPart(&fields, skeleton, &seen));
+    reader->Update(fields.Finish());
+  }
+  return parts;
+}
+
+std::optional<JointPair> ReadPair(base::ObjectReader* reader, const std::string& left,
+                                  const std::string& right, const Skeleton& skeleton) {
+  if (!reader->Has(left) && !reader->Has(right)) return std::nullopt;
+  const int left_joint = ReadJoint(reader, left, skeleton);
+  return JointPair{left_joint, ReadJoint(reader, right, skeleton)};
+}
+
+}  // namespace
+
+absl::StatusOr<SkeletonDocument> ReadSkeleton(const json& value, const std::string& path) {
+  base::ObjectReader reader(value, path);
+  SkeletonDocument document;
+  Skeleton& skeleton = document.skeleton;
+  skeleton.joint_names = ReadUniqueNames(&reader, "joint_names");
+  skeleton.bones = ReadBones(&reader, skeleton);
+  document.parts = ReadParts(&reader, skeleton);
+  skeleton.root = ReadJoint(&reader, "root", skeleton);
+  skeleton.hips = ReadPair(&reader, "left_hip", "right_hip", skeleton);
+  skeleton.feet = ReadPair(&reader, "left_foot", "right_foot", skeleton);
+  if (absl::Status status = reader.Finish(); !status.ok()) return status;
+  absl::Status status = Validate(skeleton);
+  if (status.ok()) status = Validate(document.parts, skeleton);
+  if (status.ok()) return document;
+  return absl::InvalidArgumentError(absl::StrCat(path, ".", status.message()));
+}
+
+ordered_json SkeletonToJson(const Skeleton& skeleton, const std::vector<BodyPart>& parts) {
+  const auto name = [&](int joint) {
+    return skeleton.joint_names[static_cast<std::size_t>(joint)];
+  };
+  ordered_json bones = ordered_json::array();
+  for (const Bone& bone : skeleton.bones) {
+    bones.push_back(ordered_json::array({name(bone.parent), name(bone.child)}));
+  }
+  ordered_json part_list = ordered_json::array();
+  for (const BodyPart& part : parts) {
+    ordered_json joints = ordered_json::array();
+    for (const int joint : part.joints) joints.push_back(name(joint));
+    part_list.push_back({{"name", part.name}, {"joints", joints}});
+  }
+  ordered_json object = {{"joint_names", skeleton.joint_names},
+                         {"bones", bones},
+                         {"parts", part_list},
+                         {"root", name(skeleton.root)}};
+  if (skeleton.hips) {
+    object["left_hip"] = name(skeleton.hips->left);
+    object["right_hip"] = name(skeleton.hips->right);
+  }
+  if (skeleton.feet) {
+    object["left_foot"] = name(skeleton.feet->left);
+    object["right_foot"] = name(skeleton.feet->right);
+  }
+  return object;
+}
+
+}  // namespace duet::motion

@@ -1,0 +1,238 @@
+#include "model/engine/network_synthesizer.h"
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <utility>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "model/motion/limb_lengths.h"
+#include "tests/support/fake_synthesizer.h"
+#include "tests/support/sample_motion.h"
+#include "tests/support/status_matchers.h"
+
+namespace duet::engine {
+namespace {
+
+using test::FakeDescription;
+using test::IsOk;
+using test::StatusIs;
+using test::SwayingMotion;
+using test::SwayingPose;
+
+using ::testing::HasSubstr;
+
+using Inputs = absl::Span<const NetworkInput>;
+using Answer = absl::StatusOr<std::vector<motion::Poses>>;
+
+// A network that answers by a rule.
+class RuleNetwork : public Network {
+ public:
+  explicit RuleNetwork(std::function<Answer(Inputs)> rule) : rule_(std::move(rule)) {}
+  Answer Run(Inputs inputs) const override { return rule_(inputs); }
+
+ private:
+  std::function<Answer(Inputs)> rule_;
+};
+
+std::unique_ptr<Synthesizer> Model(
+    std::function<Answer(Inputs)> rule, const PipelineOptions& options = {},
+    ModelDescription description = FakeDescription(),
+    motion::StandardOrigin origin = motion::StandardOrigin::kEveryFrame) {
+  return MakeSynthesizer(std::move(description), origin,
+                         std::make_unique<RuleNetwork>(std::move(rule)), options);
+}
+
+constexpr PipelineOptions kAsTheNetworkSays = {false, false};
+
+// The leader, half as large again and half a metre higher.
+Answer LargerAndHigher(Inputs inputs) {
+  std::vector<motion::Poses> followers;
+  for (const NetworkInput& input : inputs) {
+    followers.push_back(input.leader);
+    for (motion::Vec3& p : followers.back().all()) p = p * 1.5f + motion::Vec3{0, 0.5f, -1};
+  }
+  return followers;
+}
+
+SynthesisWindow Window(int frames = 12) {
+  SynthesisWindow window;
+  window.leader = SwayingMotion(frames, 15);
+  window.labels.assign(static_cast<std::size_t>(frames) * 6, 0.5f);
+  return window;
+}
+
+WindowResult RunOne(const Synthesizer& model, const SynthesisWindow& window) {
+  return model.Synthesize({&window}).front();
+}
+
+float LargestDistance(const motion::Poses& a, const motion::Poses& b) {
+  EXPECT_EQ(a.all().size(), b.all().size());
+  float largest = 0;
+  for (std::size_t i = 0; i < a.all().size(); ++i) {
+    largest = std::max(largest, Distance(a.all()[i], b.all()[i]));
+  }
+  return largest;
+}
+
+TEST(NetworkSynthesizer, TheNetworkSeesTheStandardFrame) {
+  SynthesisWindow window = Window();
+  window.partner_direction = motion::Vec3{1, 0, 0};
+  window.start = FollowerStart{SwayingPose(3)[2], SwayingPose(3)};
+  for (const auto origin :
+       {motion::StandardOrigin::kEveryFrame, motion::StandardOrigin::kFirstFrame}) {
+    NetworkInput seen;
+    const auto model = Model(
+        [&](Inputs inputs) {
+          seen = inputs[0];
+          return LargerAndHigher(inputs);
+        },
+        {}, FakeDescription(), origin);
+    ASSERT_THAT(RunOne(*model, window), IsOk());
+    const motion::Standardisation frame(motion::SbuSkeleton(), window.leader,
+                                        motion::FacingYaw({1, 0, 0}), origin);
+    EXPECT_EQ(seen.leader, frame.Apply(window.leader));
+    EXPECT_EQ(seen.labels, window.labels);
+    EXPECT_EQ(seen.start->root, frame.Apply(window.start->root));
+    ASSERT_EQ(seen.start->pose.size(), 15u);
+    EXPECT_EQ(seen.start->pose[5], frame.Apply(window.start->pose[5]));
+  }
+}
+
+TEST(NetworkSynthesizer, BringsTheAnswerBackToTheWorld) {
+  const auto model =
+      Model([](Inputs inputs) { return std::vector<motion::Poses>{inputs[0].leader}; },
+            kAsTheNetworkSays);
+  const SynthesisWindow window = Window();
+  const WindowResult result = RunOne(*model, window);
+  ASSERT_THAT(result, IsOk());
+  EXPECT_LT(LargestDistance(*result, window.leader), 1e-5f);
+}
+
+TEST(NetworkSynthesizer, AnswersWindowsInOrder) {
+  const auto model = Model(LargerAndHigher);
+  const SynthesisWindow a = Window(3), b = Window(7);
+  const std::vector<WindowResult> results = model->Synthesize({&a, &b});
+  ASSERT_EQ(results.size(), 2u);
+  EXPECT_EQ(results[0]->frame_count(), 3);
+  EXPECT_EQ(results[1]->frame_count(), 7);
+  EXPECT_TRUE(model->Synthesize({}).empty());
+}
+
+TEST(NetworkSynthesizer, LimbsKeepTheLengthsOfTheStartOrElseTheLeader) {
+  const auto model = Model(LargerAndHigher);
+  const motion::Skeleton skeleton = motion::SbuSkeleton();
+  SynthesisWindow window = Window();
+  const auto expect_lengths = [&](const motion::Poses& owner) {
+    const WindowResult result = RunOne(*model, window);
+    ASSERT_THAT(result, IsOk());
+    const std::vector<float> wanted = MedianBoneLengths(skeleton, owner);
+    for (int t = 0; t < result->frame_count(); ++t) {
+      for (std::size_t b = 0; b < wanted.size(); ++b) {
+        const motion::Bone& bone = skeleton.bones[b];
+        EXPECT_NEAR(Distance(result->at(t, bone.parent), result->at(t, bone.child)), wanted[b],
+                    1e-4f);
+      }
+    }
+  };
+  expect_lengths(window.leader);
+  window.start = FollowerStart{{0, 1, -1}, {}};  // the root alone: still the leader's
+  expect_lengths(window.leader);
+  std::vector<motion::Vec3> tall = SwayingPose(0);
+  for (motion::Vec3& joint : tall) joint = joint * 1.1f + motion::Vec3{0, 0, -1};
+  window.start = FollowerStart{tall[2], tall};
+  expect_lengths(motion::Poses(15, tall));
+}
+
+float LowestFoot(const motion::Poses& poses) {
+  const motion::JointPair feet = *motion::SbuSkeleton().feet;
+  float lowest = std::numeric_limits<float>::infinity();
+  for (int t = 0; t < poses.frame_count(); ++t) {
+    lowest = std::min({lowest, poses.at(t, feet.left).y, poses.at(t, feet.right).y});
+  }
+  return lowest;
+}
+
+TEST(NetworkSynthesizer, FollowerWithoutAStartStandsOnTheLeadersFloor) {
+  const auto model = Model(LargerAndHigher);
+  SynthesisWindow window = Window();
+  const WindowResult shared = RunOne(*model, window);
+  EXPECT_NEAR(LowestFoot(*shared), LowestFoot(window.leader), 1e-5f);
+  window.start = FollowerStart{window.leader.at(0, 2), {}};  // too close to tell a direction
+  const WindowResult started = RunOne(*model, window);
+  EXPECT_GT(std::abs(LowestFoot(*started) - LowestFoot(window.leader)), 0.1f);
+}
+
+TEST(NetworkSynthesizer, ShareFloorMovesTheFollowerAsAWhole) {
+  const SynthesisWindow window = Window();
+  const WindowResult lifted = RunOne(*Model(LargerAndHigher, {false, true}), window);
+  const WindowResult plain = RunOne(*Model(LargerAndHigher, kAsTheNetworkSays), window);
+  const motion::Vec3 lift = lifted->at(0, 0) - plain->at(0, 0);
+  EXPECT_EQ(lift.x, 0);
+  EXPECT_EQ(lift.z, 0);
+  motion::Poses moved = *plain;
+  for (motion::Vec3& p : moved.all()) p += lift;
+  EXPECT_LT(LargestDistance(moved, *lifted), 1e-5f);
+}
+
+TEST(NetworkSynthesizer, WithoutFeetNoFloorIsShared) {
+  ModelDescription footless = FakeDescription();
+  footless.skeleton.feet.reset();
+  const SynthesisWindow window = Window();
+  const WindowResult got = RunOne(*Model(LargerAndHigher, {false, true}, footless), window);
+  ASSERT_THAT(got, IsOk());
+  EXPECT_EQ(*got, *RunOne(*Model(LargerAndHigher, kAsTheNetworkSays), window));
+}
+
+TEST(NetworkSynthesizer, WithoutHipsTheLeaderIsNotTurned) {
+  ModelDescription hipless = FakeDescription();
+  hipless.skeleton.hips.reset();
+  NetworkInput seen;
+  const auto model = Model(
+      [&](Inputs inputs) {
+        seen = inputs[0];
+        return LargerAndHigher(inputs);
+      },
+      {}, hipless);
+  const SynthesisWindow window = Window();
+  ASSERT_THAT(RunOne(*model, window), IsOk());
+  EXPECT_EQ(seen.leader.at(0, 5), window.leader.at(0, 5) - window.leader.at(0, 2));
+}
+
+TEST(NetworkSynthesizer, AWindowThatIsNotFiniteFailsAlone) {
+  const auto model = Model([](Inputs inputs) {
+    Answer followers = LargerAndHigher(inputs);
+    (*followers)[1].at(2, 7).y = std::numeric_limits<float>::quiet_NaN();
+    return followers;
+  });
+  const SynthesisWindow window = Window();
+  const std::vector<WindowResult> results = model->Synthesize({&window, &window, &window});
+  EXPECT_THAT(results[0], IsOk());
+  EXPECT_THAT(results[1], StatusIs(absl::StatusCode::kInternal, HasSubstr("not finite")));
+  EXPECT_THAT(results[2], IsOk());
+}
+
+TEST(NetworkSynthesizer, AFailureIsEveryWindows) {
+  const auto model = Model([](Inputs) -> Answer { return absl::InternalError("out of order"); });
+  const SynthesisWindow window = Window();
+  const std::vector<WindowResult> results = model->Synthesize({&window, &window});
+  ASSERT_EQ(results.size(), 2u);
+  for (const WindowResult& result : results) {
+    EXPECT_THAT(result, StatusIs(absl::StatusCode::kInternal, HasSubstr("out of order")));
+  }
+}
+
+TEST(NetworkSynthesizer, AnAnswerOfAnotherShapeIsRefused) {
+  const SynthesisWindow window = Window(3);
+  const auto refused = [&](std::vector<motion::Poses> answer, const char* why) {
+    const auto model = Model([&](Inputs) { return answer; });
+    EXPECT_THAT(RunOne(*model, window), StatusIs(absl::StatusCode::kInternal, HasSubstr(why)));
+  };
+  refused({}, "answered 0 windows, wanted 1");
+  refused({motion::Poses(2, 15)}, "answered 2 frames of 15 joints, wanted 3 of 15");
+  refused({motion::Poses(3, 14)}, "answered 3 frames of 14 joints, wanted 3 of 15");
+}
+
+}  // namespace
+}  // namespace duet::engine
