@@ -180,7 +180,7 @@ TEST_F(ArgumentsTest, WhatMakesNoSenseIsNamed) {
   ExpectRefused({"--keyframe", "kick=1"}, "--keyframe: \"kick=1\", wanted FRAME:CLASS=WEIGHT");
   ExpectRefused({"--label", "kick=1", "--keyframe", "0:kick=1"}, "excludes");
   ExpectRefused({"--label", "kick=1", "--leader-side", "up"}, "--leader-side: up");
-  ExpectRefused({"--label", "kick=1", "--unit", "1"}, "--unit: 1");
+  ExpectRefused({"--label", "kick=1", "--unit", "1"}, "--unit: \"1\", wanted metres");
   ExpectRefused({"--label", "kick=1", "--frame-rate", "-15"}, "--frame-rate");
   ExpectRefused({"--label", "kick=1", "--timeout", "0"}, "--timeout");
   ExpectRefused({"--label", "kick=1", "--model", "sbu@x"}, "--model: \"sbu@x\"");

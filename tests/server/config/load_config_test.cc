@@ -76,7 +76,7 @@ TEST(ReadConfigFileTest, NamesTheFile) {
   EXPECT_THAT(ReadConfigFile(folder / "absent.txtpb"),
               StatusIs(absl::StatusCode::kNotFound, HasSubstr("absent.txtpb")));
   EXPECT_THAT(ReadConfigFile(folder.path()),
-              StatusIs(absl::StatusCode::kNotFound, HasSubstr(folder.path().string())));
+              StatusIs(kInvalidArgument, HasSubstr(folder.path().string() + ": is a folder")));
   WriteTestFile(folder / "bad.json", "{");
   EXPECT_THAT(ReadConfigFile(folder / "bad.json"),
               StatusIs(kInvalidArgument, HasSubstr("bad.json")));
