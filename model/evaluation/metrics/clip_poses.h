@@ -1,8 +1,6 @@
 #ifndef DUET_MODEL_EVALUATION_METRICS_CLIP_POSES_H_
 #define DUET_MODEL_EVALUATION_METRICS_CLIP_POSES_H_
 
-#include <utility>
-
 #include "model/motion/clip.h"
 #include "model/motion/poses.h"
 
