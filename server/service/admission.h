@@ -13,7 +13,7 @@ namespace duet::server::service {
 
 class Admission;
 
-// A call's place among those being answered, given back when it goes.
+// Holds one of the places for calls being answered; its destructor gives the place back.
 class AdmissionSlot {
  public:
   AdmissionSlot() = default;
@@ -38,7 +38,7 @@ class Admission {
  public:
   enum class State { kLoading, kServing, kDraining };
 
-  // `max_calls`: calls answered at the same time, 1 or more; bulk ones end at their share of it.
+  // `max_calls`: calls answered at the same time, 1 or more; bulk calls may fill their share of it.
   explicit Admission(std::size_t max_calls) : max_calls_(max_calls) {}
 
   void SetState(State state);

@@ -20,20 +20,20 @@
 
 namespace duet::server::service {
 
-// A call that has come in.
+// A call that has come in, as far as the pipeline let it.
 template <typename Request>
 struct IncomingCall {
   std::unique_ptr<CallScope> scope;
-  absl::Status status;  // why it goes no further, or OK
-  Request request;      // meaningful when OK, as is
-  AdmissionSlot slot;   // its place among the calls being answered, where it takes one
+  absl::Status status;  // OK, or the refusal of the first step that did not let it through
+  Request request;      // when OK
+  AdmissionSlot slot;   // when OK: its place among the calls being answered, where it takes one
 };
 
 // The one way into the service, whatever the method, and the one way out of it. What every call
 // must pass has its place here, so that it is written once.
 //
 // In:   identity and scope (from here on the call is counted) -> size -> parser -> admission.
-//       The first step that refuses ends the way.
+//       The steps after a refusal are not taken.
 // Out:  observers -> status and trailers for the wire. A caller that has its status finds the call
 //       in the metrics.
 //
@@ -45,7 +45,8 @@ class CallPipeline {
                const common::Clock& clock)
       : max_request_bytes_(max_request_bytes), observers_(std::move(observers)), clock_(clock) {}
 
-  // `admit` is the method's own last step, AdmissionSlot or status from (const Request&).
+  // Begins a call. `admit` is the method's own last step: a StatusOr<AdmissionSlot> from
+  // (const Request&); the slot is empty for a method whose calls are not limited in number.
   template <typename Request, typename Admit>
   IncomingCall<Request> Open(const grpc::ServerContextBase& context,
                              const metrics::MethodInfo& method, const grpc::ByteBuffer& bytes,

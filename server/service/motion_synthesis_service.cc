@@ -41,7 +41,7 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* MotionSynthesisService::Synthesize(
     grpc::CallbackServerContext* context, const grpc::ByteBuffer* request) {
   auto incoming = pipeline_.Open<v1::SynthesizeRequest>(
       *context, kSynthesize, *request, [this](const v1::SynthesizeRequest& opened) {
-        // A priority that there is not is the validator's to refuse.
+        // An unknown priority is refused by the validator, together with all else that is wrong.
         return parts_.admission->Admit(
             PriorityOf(opened).value_or(batching::Priority::kInteractive));
       });
@@ -51,7 +51,6 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* MotionSynthesisService::Synthesize(
     reactor->Finish(*incoming.scope, prepared.status());
     return reactor;
   }
-  prepared->scope = std::move(incoming.scope);
   auto call = SynthesisCall::Create(*std::move(prepared), *parts_.scheduler, *reactor);
   Remember(call);
   reactor->Run(std::move(call));
@@ -72,9 +71,11 @@ absl::StatusOr<SynthesisCall::Parts> MotionSynthesisService::Prepare(
   absl::StatusOr<ValidatedRequest> validated =
       ValidateRequest(request, served.model->description(), parts_.limits);
   if (!validated.ok()) return validated.status();
-  return SynthesisCall::Parts{std::move(served.model), *std::move(validated),
+  return SynthesisCall::Parts{std::move(served.model),
+                              *std::move(validated),
                               std::move(slot),
-                              /*scope=*/nullptr,       DeadlineOf(context, *parts_.clock),
+                              std::move(incoming.scope),
+                              DeadlineOf(context, *parts_.clock),
                               parts_.buffered_frames};
 }
 

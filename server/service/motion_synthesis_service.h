@@ -56,7 +56,8 @@ class MotionSynthesisService final : public RawMotionSynthesis {
   void AbortAll(const absl::Status& reason);
 
  private:
-  // Finds the model and checks the request. Takes the call's slot; its scope is left to the caller.
+  // Finds the model and checks the request. Takes the call's slot, and its scope where the call
+  // goes on; that of a refused call stays.
   absl::StatusOr<SynthesisCall::Parts> Prepare(const grpc::CallbackServerContext& context,
                                                IncomingCall<v1::SynthesizeRequest>& incoming) const;
   v1::ListModelsResponse List() const;

@@ -8,8 +8,8 @@
 
 namespace duet::server::service {
 
-// The priority that a request asks for, interactive when it names none; nothing when it names one
-// that there is not.
+// The priority that a request asks for, interactive when it names none; nothing when it names an
+// unknown one.
 std::optional<batching::Priority> PriorityOf(const v1::SynthesizeRequest& request);
 
 }  // namespace duet::server::service

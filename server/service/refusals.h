@@ -16,7 +16,7 @@ namespace duet::server::service {
 absl::Status LoadingRefusal();
 // UNAVAILABLE: the server is going away; another replica, or this one restarted, will answer.
 absl::Status DrainingRefusal();
-// RESOURCE_EXHAUSTED: as many calls are being answered as may be.
+// RESOURCE_EXHAUSTED: as many calls are being answered as the limit allows.
 absl::Status TooManyCallsRefusal(std::size_t calls, std::size_t limit);
 // RESOURCE_EXHAUSTED: the scheduler's refusal with RetryInfo. Other codes: DrainingRefusal, the
 // only other cause.
@@ -25,7 +25,7 @@ absl::Status QueueRefusal(const absl::Status& scheduler_status);
 absl::Status TooLargeRefusal(std::size_t bytes, std::size_t limit);
 // NOT_FOUND, naming the field that nothing answers to.
 absl::Status ModelNotFoundRefusal(const registry::ModelNotFound& not_found);
-// INTERNAL: the model failed; nothing of its own words.
+// INTERNAL: the model failed. The text does not say why; the log does, under the request id.
 absl::Status ModelFailedRefusal(const std::string& request_id);
 
 }  // namespace duet::server::service

@@ -46,12 +46,12 @@ class SynthesisCall : public std::enable_shared_from_this<SynthesisCall> {
     int buffered_frames = 0;  // see ClipStreamOptions
   };
 
-  // `scheduler` and `writer` as in their comments.
+  // `scheduler` outlives the call's windows, `writer` lives until it was told to finish.
   static std::shared_ptr<SynthesisCall> Create(Parts parts, batching::WindowScheduler& scheduler,
                                                ReplyWriter& writer);
 
-  // Schedules the first window, and writes the header once that was taken; a refusal finishes the
-  // call before any header. Call once.
+  // Schedules the first window. Once the scheduler has accepted it, the header is written; its
+  // refusal finishes the call before any header. Call once.
   void Start();
 
   // The writer's answer to Write.
@@ -67,7 +67,7 @@ class SynthesisCall : public std::enable_shared_from_this<SynthesisCall> {
   SynthesisCall(Parts parts, ReplyWriter& writer);
 
   void Advance();
-  // Moves on from kIdle where there is something to do. True: reply_ is to be written.
+  // Prepares the next reply, if any: true when reply_ is to be written. May set end_ instead.
   bool PrepareReply() DUET_REQUIRES(mutex_);
   bool PrepareFrames() DUET_REQUIRES(mutex_);
   void PrepareHeader() DUET_REQUIRES(mutex_);

@@ -14,7 +14,7 @@
 
 namespace duet::server::service {
 
-// Joint names beyond this number are not looked at one by one.
+// A list of more joint names than this is refused as a whole, without a word on each.
 inline constexpr int kMaxJointNames = 1024;
 
 // The unit and up axis of a motion; nothing, and violations, when they cannot be interpreted.

@@ -12,8 +12,8 @@ namespace duet::server::service {
 
 // Collects everything that is wrong with a request, so that a caller can put it right in one go.
 //
-// Only so many are kept in words, because they travel in trailers, which clients cap at 8 KiB; the
-// rest are counted.
+// Only the first few are kept as text, because they travel in trailers, which clients cap at 8 KiB;
+// the rest are counted.
 class Violations {
  public:
   // The field is malformed, whatever the model.

@@ -12,7 +12,8 @@ namespace duet::server::service {
 // refuse malformed ones as UNIMPLEMENTED, and parses a request only once it is known to be small
 // enough.
 
-// Fails with INVALID_ARGUMENT, saying which message was wanted, when the bytes are none.
+// Fails with INVALID_ARGUMENT, saying which message was wanted, when the bytes are no such
+// message.
 absl::Status ParseMessage(const grpc::ByteBuffer& bytes, google::protobuf::Message& message);
 
 grpc::ByteBuffer SerializeMessage(const google::protobuf::Message& message);
