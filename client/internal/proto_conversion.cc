@@ -32,15 +32,15 @@ absl::Status FillLeader(const motion::Clip& clip, v1::Motion* leader) {
   if (clip.joint_names.empty()) {
     return absl::InvalidArgumentError("leader.joint_names: empty, wanted the model's joints");
   }
-  if (clip.positions.size() % clip.joint_names.size() != 0) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("leader.positions: ", clip.positions.size(), " points, wanted a multiple of ",
-                     clip.joint_names.size(), " (one for each frame and joint)"));
+  if (clip.poses.all().size() % clip.joint_names.size() != 0) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "leader.positions: ", clip.poses.all().size(), " points, wanted a multiple of ",
+        clip.joint_names.size(), " (one for each frame and joint)"));
   }
   // Past this the flat run of floats no longer fits a protobuf message at all.
   constexpr size_t kMaxPoints = (size_t{1} << 31) / 16;
-  if (clip.positions.size() > kMaxPoints) {
-    return absl::InvalidArgumentError(absl::StrCat("leader.positions: ", clip.positions.size(),
+  if (clip.poses.all().size() > kMaxPoints) {
+    return absl::InvalidArgumentError(absl::StrCat("leader.positions: ", clip.poses.all().size(),
                                                    " points, wanted at most ", kMaxPoints));
   }
   leader->mutable_joint_names()->Assign(clip.joint_names.begin(), clip.joint_names.end());
@@ -48,7 +48,7 @@ absl::Status FillLeader(const motion::Clip& clip, v1::Motion* leader) {
   leader->set_unit(v1::LENGTH_UNIT_METRES);
   leader->set_up_axis(v1::UP_AXIS_Y_UP);
   leader->set_frame_count(static_cast<uint32_t>(clip.frame_count()));
-  AppendPositions(clip.positions, leader->mutable_positions());
+  AppendPositions(clip.poses, leader->mutable_positions());
   return absl::OkStatus();
 }
 

@@ -77,7 +77,7 @@ absl::Status ReplyAssembler::AcceptHeader(const v1::SynthesisHeader& header) {
                      leader_.frame_count());
   }
   header_ = header;
-  positions_.reserve(leader_.positions.size());
+  positions_.reserve(leader_.poses.all().size());
   return absl::OkStatus();
 }
 
@@ -158,7 +158,7 @@ SynthesisResult ReplyAssembler::TakeResult() && {
   result.pair.leader = leader_;
   result.pair.follower.joint_names = leader_.joint_names;
   result.pair.follower.frame_rate_hz = leader_.frame_rate_hz;
-  result.pair.follower.positions = std::move(positions_);
+  result.pair.follower.poses = motion::Poses(leader_.joint_count(), std::move(positions_));
   result.model_name = header_->model_name();
   result.model_version = static_cast<int>(header_->model_version());
   result.interaction_classes = {header_->interaction_classes().begin(),

@@ -38,13 +38,13 @@ absl::Status Check(const PageContent& content) {
                      " Hz, wanted at least one frame and a rate above 0"));
   }
   if (leader.joint_names != follower.joint_names ||
-      leader.positions.size() != follower.positions.size() ||
+      leader.poses.all().size() != follower.poses.all().size() ||
       leader.frame_rate_hz != follower.frame_rate_hz) {
     return absl::InvalidArgumentError(
         "pair: leader and follower differ in joints, frames or frame rate");
   }
   for (const motion::Clip* clip : {&leader, &follower}) {
-    for (const motion::Vec3& position : clip->positions) {
+    for (const motion::Vec3& position : clip->poses.all()) {
       if (!IsFinite(position)) return absl::InvalidArgumentError("pair: a position is not finite");
     }
   }

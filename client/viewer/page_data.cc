@@ -19,8 +19,8 @@ void AppendLittleEndian(float value, std::string* bytes) {
 
 std::string EncodePositions(const motion::Clip& clip) {
   std::string bytes;
-  bytes.reserve(clip.positions.size() * sizeof(motion::Vec3));
-  for (const motion::Vec3& position : clip.positions) {
+  bytes.reserve(clip.poses.all().size() * sizeof(motion::Vec3));
+  for (const motion::Vec3& position : clip.poses.all()) {
     AppendLittleEndian(position.x, &bytes);
     AppendLittleEndian(position.y, &bytes);
     AppendLittleEndian(position.z, &bytes);

@@ -214,7 +214,7 @@ absl::StatusOr<motion::Clip> ParseKeyframes(absl::string_view text, absl::string
   const int frames = 1 + static_cast<int>(std::round(parser.duration() * clip.frame_rate_hz));
   for (int frame = 0; frame < frames; ++frame) {
     const std::vector<motion::Vec3> pose = PosePuppet(animator.At(frame / clip.frame_rate_hz));
-    clip.positions.insert(clip.positions.end(), pose.begin(), pose.end());
+    clip.Append(pose);
   }
   return clip;
 }

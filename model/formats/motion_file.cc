@@ -60,7 +60,7 @@ absl::StatusOr<motion::Clip> ToSkeleton(const motion::RecordedMotion& motion,
   for (int frame = 0; frame < person.frame_count(); ++frame) {
     std::vector<motion::Vec3> pose = ApplyJointMap(*map, FrameOf(person, frame));
     for (motion::Vec3& position : pose) position = ToWorld(coordinates, position);
-    clip.positions.insert(clip.positions.end(), pose.begin(), pose.end());
+    clip.Append(pose);
   }
   return clip;
 }

@@ -1,34 +1,32 @@
 #ifndef DUET_MODEL_MOTION_CLIP_H_
 #define DUET_MODEL_MOTION_CLIP_H_
 
-#include <cstddef>
 #include <string>
 #include <vector>
 
+#include "absl/types/span.h"
+#include "model/motion/poses.h"
 #include "model/motion/vec3.h"
 
 namespace duet::motion {
 
-// The motion of one character.
+// The motion of one character: poses with the names of their joints and a rate.
 //
-// Shapes: positions [frames, joints], row-major (all joints of frame 0 first).
-// Units:  metres, right-handed, y up, frames a second.
+// Units: metres, right-handed, y up, frames a second.
 struct Clip {
   std::vector<std::string> joint_names;
   double frame_rate_hz = 0;
-  std::vector<Vec3> positions;
+  Poses poses;  // of as many joints as there are names
 
   int joint_count() const { return static_cast<int>(joint_names.size()); }
-  int frame_count() const {
-    return joint_names.empty() ? 0 : static_cast<int>(positions.size() / joint_names.size());
-  }
-  Vec3& at(int frame, int joint) { return positions[Index(frame, joint)]; }
-  const Vec3& at(int frame, int joint) const { return positions[Index(frame, joint)]; }
-  const Vec3* frame(int index) const { return positions.data() + Index(index, 0); }
+  int frame_count() const { return poses.frame_count(); }
+  Vec3& at(int frame, int joint) { return poses.at(frame, joint); }
+  const Vec3& at(int frame, int joint) const { return poses.at(frame, joint); }
 
- private:
-  std::size_t Index(int frame, int joint) const {
-    return static_cast<std::size_t>(frame) * joint_names.size() + static_cast<std::size_t>(joint);
+  // Adds whole frames at the end, joints in the order of joint_names.
+  void Append(absl::Span<const Vec3> frames) {
+    if (poses.empty()) poses = Poses(0, joint_count());
+    poses.Append(frames);
   }
 };
 

@@ -57,6 +57,8 @@ class Poses {
   void Append(absl::Span<const Vec3> frames) {
     positions_.insert(positions_.end(), frames.begin(), frames.end());
   }
+  // Keeps the first `count` frames, or adds frames with all joints at the origin.
+  void Resize(int count) { positions_.resize(Row(count)); }
   // Removes the first `count` frames.
   void DropFront(int count) {
     positions_.erase(positions_.begin(),

@@ -22,8 +22,8 @@ absl::Status CheckClip(absl::string_view name, const Clip& clip) {
     return absl::InvalidArgumentError(absl::StrCat(name, ": no frames, wanted at least 1"));
   }
   const std::size_t joints = clip.joint_names.size();
-  for (std::size_t i = 0; i < clip.positions.size(); ++i) {
-    if (IsWritable(clip.positions[i])) continue;
+  for (std::size_t i = 0; i < clip.poses.all().size(); ++i) {
+    if (IsWritable(clip.poses.all()[i])) continue;
     return absl::InvalidArgumentError(
         absl::StrCat(name, ": frame ", i / joints, " ", clip.joint_names[i % joints],
                      ": came a position that is not finite or beyond +-", kMaxCoordinate, " m"));
@@ -34,7 +34,7 @@ absl::Status CheckClip(absl::string_view name, const Clip& clip) {
 absl::Status CheckPair(const ClipPair& pair) {
   const Clip& a = pair.leader;
   const Clip& b = pair.follower;
-  if (a.joint_names != b.joint_names || a.positions.size() != b.positions.size() ||
+  if (a.joint_names != b.joint_names || a.poses.all().size() != b.poses.all().size() ||
       a.frame_rate_hz != b.frame_rate_hz) {
     return absl::InvalidArgumentError(absl::StrCat(
         "pair: came a leader of ", a.frame_count(), " frames x ", a.joint_count(), " joints at ",

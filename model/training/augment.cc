@@ -27,19 +27,19 @@ void ScaleBodies(int root, double leader_scale, double follower_scale, motion::C
 }
 
 void ShiftFollower(motion::Vec3 by, motion::ClipPair* pair) {
-  for (motion::Vec3& point : pair->follower.positions) point += by;
+  for (motion::Vec3& point : pair->follower.poses.all()) point += by;
 }
 
 void Turn(double radians, motion::ClipPair* pair) {
-  for (motion::Vec3& point : pair->leader.positions) point = RotateY(point, radians);
-  for (motion::Vec3& point : pair->follower.positions) point = RotateY(point, radians);
+  for (motion::Vec3& point : pair->leader.poses.all()) point = RotateY(point, radians);
+  for (motion::Vec3& point : pair->follower.poses.all()) point = RotateY(point, radians);
 }
 
 // About the vertical through the root's place in the first frame: captured hips face up to 30
 // degrees off the partner, those of a clean leader do not.
 void TurnLeader(int root, double radians, motion::Clip* leader) {
   const motion::Vec3 centre = leader->at(0, root);
-  for (motion::Vec3& point : leader->positions) point = centre + RotateY(point - centre, radians);
+  for (motion::Vec3& point : leader->poses.all()) point = centre + RotateY(point - centre, radians);
 }
 
 // A body of slightly other build: the network cannot tell a clip by its leader's.
@@ -50,13 +50,13 @@ void AddBodyNoise(double deviation, base::Random* random, motion::Clip* clip) {
               static_cast<float>(random->Normal(deviation)),
               static_cast<float>(random->Normal(deviation))};
   }
-  for (size_t i = 0; i < clip->positions.size(); ++i) {
-    clip->positions[i] += offsets[i % offsets.size()];
+  for (int t = 0; t < clip->frame_count(); ++t) {
+    for (size_t j = 0; j < offsets.size(); ++j) clip->poses[t][j] += offsets[j];
   }
 }
 
 void AddNoise(double deviation, base::Random* random, motion::Clip* clip) {
-  for (motion::Vec3& point : clip->positions) {
+  for (motion::Vec3& point : clip->poses.all()) {
     point += motion::Vec3{static_cast<float>(random->Normal(deviation)),
                           static_cast<float>(random->Normal(deviation)),
                           static_cast<float>(random->Normal(deviation))};
@@ -64,8 +64,8 @@ void AddNoise(double deviation, base::Random* random, motion::Clip* clip) {
 }
 
 void Keep(int first, int frames, motion::Clip* clip) {
-  const auto begin = clip->positions.begin() + std::ptrdiff_t{first} * clip->joint_count();
-  clip->positions = {begin, begin + std::ptrdiff_t{frames} * clip->joint_count()};
+  clip->poses.DropFront(first);
+  clip->poses.Resize(frames);
 }
 
 void Crop(base::Random* random, motion::ClipPair* pair) {
@@ -83,12 +83,11 @@ void Warp(double speed, int longest, motion::ClipPair* pair) {
   const int frames = pair->leader.frame_count();
   const int warped = std::clamp(static_cast<int>(std::lround(frames / speed)), 2, longest);
   for (motion::Clip* clip : {&pair->leader, &pair->follower}) {
-    const motion::Poses before(clip->joint_count(), std::move(clip->positions));
     motion::Poses after(warped, clip->joint_count());
     for (int t = 0; t < warped; ++t) {
-      SampleLinear(before, t * (frames - 1.0) / (warped - 1.0), after[t]);
+      SampleLinear(clip->poses, t * (frames - 1.0) / (warped - 1.0), after[t]);
     }
-    clip->positions.assign(after.all().begin(), after.all().end());
+    clip->poses = std::move(after);
   }
 }
 
@@ -113,12 +112,12 @@ std::vector<int> MirroredJoints(const motion::Skeleton& skeleton) {
 
 void Mirror(const std::vector<int>& mirrored_joints, dataset::Sequence* sequence) {
   for (motion::Clip* clip : {&sequence->pair.leader, &sequence->pair.follower}) {
-    const std::vector<motion::Vec3> before = clip->positions;
-    const size_t joints = mirrored_joints.size();
-    for (size_t i = 0; i < before.size(); ++i) {
-      const size_t joint = static_cast<size_t>(mirrored_joints[i % joints]);
-      const motion::Vec3 point = before[i - i % joints + joint];
-      clip->positions[i] = {-point.x, point.y, point.z};
+    const motion::Poses before = clip->poses;
+    for (int t = 0; t < before.frame_count(); ++t) {
+      for (size_t j = 0; j < mirrored_joints.size(); ++j) {
+        const motion::Vec3 point = before.at(t, mirrored_joints[j]);
+        clip->poses[t][j] = {-point.x, point.y, point.z};
+      }
     }
   }
   if (sequence->partner_direction) sequence->partner_direction->x *= -1;

@@ -33,7 +33,7 @@ struct Place {
 
 Place PlaceOf(const dataset::Dataset& dataset, const dataset::Sequence& sequence) {
   engine::SynthesisWindow window;
-  window.leader = motion::Poses(dataset.skeleton.joint_count(), sequence.pair.leader.positions);
+  window.leader = sequence.pair.leader.poses;
   window.partner_direction = sequence.partner_direction;
   return {sequence.pair.leader.at(0, dataset.skeleton.root),
           WindowFrame(dataset.skeleton, window).yaw()};
@@ -50,8 +50,8 @@ motion::Poses Still(const motion::Poses& follower) {
 motion::Poses Borrow(const dataset::Dataset& dataset, const dataset::Sequence& other,
                      const dataset::Sequence& sequence, bool begin_at_pose) {
   const int joints = dataset.skeleton.joint_count();
-  const motion::Poses source(joints, other.pair.follower.positions);
-  const motion::Poses own(joints, sequence.pair.follower.positions);
+  const motion::Poses& source = other.pair.follower.poses;
+  const motion::Poses& own = sequence.pair.follower.poses;
   const int frames = own.frame_count();
   const double step = frames > 1 ? (source.frame_count() - 1.0) / (frames - 1.0) : 0;
   motion::Poses borrowed(frames, joints);
@@ -88,7 +88,7 @@ Example CapturedExample(const dataset::Dataset& dataset, dataset::Sequence seque
   example.start = start;
   example.weights.assign(dataset.classes.size(), 0);
   example.weights[static_cast<size_t>(sequence.interaction_class)] = 1;
-  example.target = motion::Poses(dataset.skeleton.joint_count(), sequence.pair.follower.positions);
+  example.target = sequence.pair.follower.poses;
   example.sequence = std::move(sequence);
   return example;
 }
@@ -101,7 +101,7 @@ void GradeLabels(const dataset::Dataset& dataset, const std::vector<dataset::Seq
   example->single = false;
   float& own = example->weights[static_cast<size_t>(sequence.interaction_class)];
   float& another = example->weights[static_cast<size_t>(drawn->interaction_class)];
-  const motion::Poses captured(dataset.skeleton.joint_count(), sequence.pair.follower.positions);
+  const motion::Poses& captured = sequence.pair.follower.poses;
   const motion::Poses still = Still(captured);
   const motion::Poses other =
       Borrow(dataset, *drawn, sequence, example->start == StartKnowledge::kPose);

@@ -65,7 +65,7 @@ std::vector<const motion::Poses*> Pointers(const std::vector<motion::Poses>& cli
 engine::SynthesisWindow MakeWindow(const dataset::Dataset& dataset, const Example& example) {
   const dataset::Sequence& sequence = example.sequence;
   engine::SynthesisWindow window;
-  window.leader = motion::Poses(dataset.skeleton.joint_count(), sequence.pair.leader.positions);
+  window.leader = sequence.pair.leader.poses;
   for (int t = 0; t < sequence.pair.leader.frame_count(); ++t) {
     window.labels.insert(window.labels.end(), example.weights.begin(), example.weights.end());
   }
@@ -85,8 +85,7 @@ TrainingBatch MakeBatch(const checkpoint::Manifest& manifest, const dataset::Dat
         WindowFrame(dataset.skeleton, window, manifest.standardisation);
     inputs.push_back(Standardise(frame, window));
     targets.push_back(frame.Apply(example.target));
-    followers.push_back(frame.Apply(
-        motion::Poses(dataset.skeleton.joint_count(), example.sequence.pair.follower.positions)));
+    followers.push_back(frame.Apply(example.sequence.pair.follower.poses));
     if (example.single) single_rows.push_back(static_cast<int64_t>(classes.size()));
     classes.push_back(example.sequence.interaction_class);
   }

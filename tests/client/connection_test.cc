@@ -63,7 +63,7 @@ TEST_F(ConnectionTest, SynthesizesInOneAttempt) {
   stub_->streams = {Good()};
   const absl::StatusOr<SynthesisResult> result = Synthesize();
   ASSERT_THAT(result, IsOk());
-  EXPECT_EQ(result->pair.follower.positions, FollowerFor(request_.leader));
+  EXPECT_EQ(result->pair.follower.poses, FollowerFor(request_.leader));
   EXPECT_EQ(result->attempt_count, 1);
 }
 
@@ -81,7 +81,7 @@ TEST_F(ConnectionTest, ABrokenStreamIsRunAgain) {
   stub_->streams = {Broken(), Good()};
   const absl::StatusOr<SynthesisResult> result = Synthesize();
   ASSERT_THAT(result, IsOk());
-  EXPECT_EQ(result->pair.follower.positions, FollowerFor(request_.leader));
+  EXPECT_EQ(result->pair.follower.poses, FollowerFor(request_.leader));
   EXPECT_EQ(result->attempt_count, 2);
   EXPECT_THAT(time_.sleeps, ElementsAre(absl::Milliseconds(50)));
 }

@@ -73,7 +73,7 @@ TEST_F(GrpcClientTest, SynthesizesOverTheWire) {
   request_.request_id = "job-7";
   const absl::StatusOr<SynthesisResult> result = Synthesize();
   ASSERT_THAT(result, IsOk());
-  EXPECT_EQ(result->pair.follower.positions, FollowerFor(request_.leader));
+  EXPECT_EQ(result->pair.follower.poses, FollowerFor(request_.leader));
   EXPECT_EQ(request_id, "job-7");
 }
 

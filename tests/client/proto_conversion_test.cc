@@ -98,7 +98,9 @@ TEST(SynthesizeRequestTest, WhatTheWireCannotCarryIsRefused) {
   constexpr auto kInvalid = absl::StatusCode::kInvalidArgument;
   EXPECT_THAT(refused([](SynthesisRequest* r) { r->leader.joint_names.clear(); }),
               StatusIs(kInvalid, HasSubstr("leader.joint_names: empty")));
-  EXPECT_THAT(refused([](SynthesisRequest* r) { r->leader.positions.pop_back(); }),
+  EXPECT_THAT(refused([](SynthesisRequest* r) {
+                r->leader.poses = motion::Poses(3, std::vector<motion::Vec3>(5));
+              }),
               StatusIs(kInvalid, HasSubstr("leader.positions: 5 points, wanted a multiple of 3")));
   EXPECT_THAT(refused([](SynthesisRequest* r) {
                 r->keyframes = {{-1, {{"kick", 1}}}};
@@ -116,7 +118,7 @@ TEST(SynthesizeRequestTest, WhatTheWireCannotCarryIsRefused) {
 
 TEST(SynthesizeRequestTest, ValuesThatOnlyTheServerJudgesPassThrough) {
   SynthesisRequest request = GoodRequest();
-  request.leader.positions[0].x = std::numeric_limits<float>::quiet_NaN();
+  request.leader.poses.all()[0].x = std::numeric_limits<float>::quiet_NaN();
   request.leader.frame_rate_hz = -1;
   request.weights = {{"kick", 1000}, {"kick", 2}};
   EXPECT_THAT(ToProto(request), IsOk());

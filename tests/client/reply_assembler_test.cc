@@ -64,8 +64,8 @@ TEST_F(ReplyAssemblerTest, GathersAGoodReply) {
   EXPECT_EQ(frames_, FollowerFor(leader_));
 
   const SynthesisResult result = std::move(assembler_).TakeResult();
-  EXPECT_EQ(result.pair.leader.positions, leader_.positions);
-  EXPECT_EQ(result.pair.follower.positions, FollowerFor(leader_));
+  EXPECT_EQ(result.pair.leader.poses, leader_.poses);
+  EXPECT_EQ(result.pair.follower.poses, FollowerFor(leader_));
   EXPECT_EQ(result.pair.follower.joint_names, leader_.joint_names);
   EXPECT_EQ(result.pair.follower.frame_rate_hz, 30);
   EXPECT_EQ(result.model_name, "dancer");
@@ -162,7 +162,7 @@ TEST_F(ReplyAssemblerTest, ASecondStreamHandsOutOnlyWhatTheFirstDidNot) {
   ASSERT_THAT(Feed(ReplyFor(leader_, 3)), IsOk());
   EXPECT_THAT(handed_out_, ElementsAre(std::pair(0, 2), std::pair(2, 1), std::pair(3, 2)));
   EXPECT_EQ(frames_, FollowerFor(leader_));
-  EXPECT_EQ(std::move(assembler_).TakeResult().pair.follower.positions, FollowerFor(leader_));
+  EXPECT_EQ(std::move(assembler_).TakeResult().pair.follower.poses, FollowerFor(leader_));
 }
 
 }  // namespace

@@ -44,9 +44,8 @@ motion::Clip Walker(float hand_peak) {
   clip.joint_names = {"root", "hand"};
   clip.frame_rate_hz = 15;
   for (const float reach : {0.0f, hand_peak, 0.0f}) {
-    const float walked = static_cast<float>(clip.positions.size());
-    clip.positions.push_back({walked, 0, 0});
-    clip.positions.push_back({walked + reach, 1, 0});
+    const float walked = 2 * static_cast<float>(clip.frame_count());
+    clip.Append({{walked, 0, 0}, {walked + reach, 1, 0}});
   }
   return clip;
 }

@@ -16,9 +16,9 @@ int main(int argc, char** argv) {
   content.pair.leader.joint_names = duet::motion::SbuSkeleton().joint_names;
   content.pair.leader.frame_rate_hz = 30;
   const duet::motion::Poses swaying = duet::test::SwayingMotion(90, 30);
-  content.pair.leader.positions.assign(swaying.all().begin(), swaying.all().end());
+  content.pair.leader.poses = swaying;
   content.pair.follower = content.pair.leader;
-  for (duet::motion::Vec3& position : content.pair.follower.positions) {
+  for (duet::motion::Vec3& position : content.pair.follower.poses.all()) {
     position = {-position.x, position.y, 1.2f - position.z};
   }
   content.bones = duet::motion::SbuSkeleton().bones;

@@ -77,7 +77,7 @@ TEST_F(MotionFile, ReadsBackWhatItWrites) {
       const absl::StatusOr<motion::Clip> clip = ReadLeader(path, options);
       ASSERT_TRUE(clip.ok()) << clip.status();
       EXPECT_EQ(clip->frame_rate_hz, 30);
-      EXPECT_EQ(clip->positions, (side == Side::kLeft ? pair_.leader : pair_.follower).positions);
+      EXPECT_EQ(clip->poses, (side == Side::kLeft ? pair_.leader : pair_.follower).poses);
     }
   }
 }
@@ -152,7 +152,7 @@ TEST_F(MotionFile, NamesExtensionsItKnows) {
 
 TEST_F(MotionFile, RefusesAPairThatIsNone) {
   motion::ClipPair shorter = pair_;
-  shorter.follower.positions.resize(15);
+  shorter.follower.poses.Resize(1);
   EXPECT_THAT(
       std::string(WritePair(folder_ / "a.csv", shorter, motion::SbuSkeleton()).status().message()),
       HasSubstr("wanted the same joints, frames and rate"));
@@ -209,7 +209,8 @@ TEST_F(MotionFile, SurvivesDamagedFiles) {
       const absl::StatusOr<motion::Clip> clip = ReadLeader(path, options);
       refused += clip.ok() ? 0 : 1;
       if (!clip.ok()) continue;
-      for (const motion::Vec3& position : clip->positions) EXPECT_TRUE(IsFinite(position)) << name;
+      for (const motion::Vec3& position : clip->poses.all())
+        EXPECT_TRUE(IsFinite(position)) << name;
     }
   }
   EXPECT_GT(refused, 300);

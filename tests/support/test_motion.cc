@@ -41,7 +41,7 @@ motion::Clip MakePerson(const PersonOptions& options) {
   motion::Clip clip;
   clip.joint_names = motion::SbuSkeleton().joint_names;
   clip.frame_rate_hz = options.frame_rate_hz;
-  clip.positions.resize(clip.joint_names.size() * static_cast<size_t>(options.frames));
+  clip.poses = motion::Poses(options.frames, clip.joint_count());
   for (int frame = 0; frame < options.frames; ++frame) {
     const double t = frame / std::max(1.0, options.frames - 1.0);
     motion::Vec3* pose = &clip.at(frame, 0);
@@ -54,10 +54,10 @@ motion::Clip MakePerson(const PersonOptions& options) {
 }
 
 float LargestDistance(const motion::Clip& a, const motion::Clip& b) {
-  if (a.positions.size() != b.positions.size()) return 1e9f;
+  if (a.poses.all().size() != b.poses.all().size()) return 1e9f;
   float largest = 0;
-  for (std::size_t i = 0; i < a.positions.size(); ++i) {
-    largest = std::max(largest, Distance(a.positions[i], b.positions[i]));
+  for (std::size_t i = 0; i < a.poses.all().size(); ++i) {
+    largest = std::max(largest, Distance(a.poses.all()[i], b.poses.all()[i]));
   }
   return largest;
 }

@@ -22,15 +22,15 @@ TEST(MirrorTest, ExchangesSidesAndIsItsOwnInverse) {
             (motion::Vec3{-left_hand.x, left_hand.y, left_hand.z}));
   EXPECT_EQ(*mirrored.partner_direction, (motion::Vec3{-1, 0, 0}));
   Mirror(MirroredJoints(skeleton), &mirrored);
-  EXPECT_EQ(mirrored.pair.leader.positions, dataset.sequences[0].pair.leader.positions);
-  EXPECT_EQ(mirrored.pair.follower.positions, dataset.sequences[0].pair.follower.positions);
+  EXPECT_EQ(mirrored.pair.leader.poses, dataset.sequences[0].pair.leader.poses);
+  EXPECT_EQ(mirrored.pair.follower.poses, dataset.sequences[0].pair.follower.poses);
 }
 
 TEST(SwapRolesTest, TurnsTheDirectionRound) {
   const dataset::Dataset dataset = MadeUpDataset();
   dataset::Sequence swapped = dataset.sequences[1];
   SwapRoles(&swapped);
-  EXPECT_EQ(swapped.pair.leader.positions, dataset.sequences[1].pair.follower.positions);
+  EXPECT_EQ(swapped.pair.leader.poses, dataset.sequences[1].pair.follower.poses);
   EXPECT_EQ(*swapped.partner_direction, (motion::Vec3{0, 0, -1}));
 }
 
@@ -42,18 +42,16 @@ dataset::Sequence AugmentedBy(const TrainingOptions::Augmentation& options, int 
 
 TEST(AugmentTest, NothingOnChangesNothing) {
   const dataset::Sequence before = MadeUpDataset().sequences[2], after = AugmentedBy({}, 2);
-  EXPECT_EQ(after.pair.leader.positions, before.pair.leader.positions);
-  EXPECT_EQ(after.pair.follower.positions, before.pair.follower.positions);
+  EXPECT_EQ(after.pair.leader.poses, before.pair.leader.poses);
+  EXPECT_EQ(after.pair.follower.poses, before.pair.follower.poses);
 }
 
 TEST(AugmentTest, RolesSwapInSymmetricClassesAlone) {
   TrainingOptions::Augmentation options;
   options.swap_roles = 1;
   const dataset::Dataset dataset = MadeUpDataset();
-  EXPECT_EQ(AugmentedBy(options, 1).pair.leader.positions,
-            dataset.sequences[1].pair.follower.positions);
-  EXPECT_EQ(AugmentedBy(options, 0).pair.leader.positions,
-            dataset.sequences[0].pair.leader.positions);
+  EXPECT_EQ(AugmentedBy(options, 1).pair.leader.poses, dataset.sequences[1].pair.follower.poses);
+  EXPECT_EQ(AugmentedBy(options, 0).pair.leader.poses, dataset.sequences[0].pair.leader.poses);
 }
 
 TEST(AugmentTest, MirrorsTheNamedClassesAlone) {
@@ -61,10 +59,8 @@ TEST(AugmentTest, MirrorsTheNamedClassesAlone) {
   options.mirror = 1;
   options.mirrored_classes = {"punch"};
   const dataset::Dataset dataset = MadeUpDataset();
-  EXPECT_NE(AugmentedBy(options, 2).pair.leader.positions,
-            dataset.sequences[2].pair.leader.positions);
-  EXPECT_EQ(AugmentedBy(options, 0).pair.leader.positions,
-            dataset.sequences[0].pair.leader.positions);
+  EXPECT_NE(AugmentedBy(options, 2).pair.leader.poses, dataset.sequences[2].pair.leader.poses);
+  EXPECT_EQ(AugmentedBy(options, 0).pair.leader.poses, dataset.sequences[0].pair.leader.poses);
 }
 
 TEST(AugmentTest, BodyScaleKeepsProportionsOfEachPerson) {
@@ -103,12 +99,12 @@ TEST(AugmentTest, ClipsTooShortToCropStayWhole) {
   for (const int frames : {1, 9, 10}) {
     dataset::Sequence shortened = dataset.sequences[0];
     for (motion::Clip* clip : {&shortened.pair.leader, &shortened.pair.follower}) {
-      clip->positions.resize(static_cast<size_t>(frames * clip->joint_count()));
+      clip->poses.Resize(frames);
     }
     EpochRandom random(3, 1);
     const dataset::Sequence after = Augment(dataset, shortened, options, &random);
-    EXPECT_EQ(after.pair.leader.positions, shortened.pair.leader.positions) << frames;
-    EXPECT_EQ(after.pair.follower.positions, shortened.pair.follower.positions) << frames;
+    EXPECT_EQ(after.pair.leader.poses, shortened.pair.leader.poses) << frames;
+    EXPECT_EQ(after.pair.follower.poses, shortened.pair.follower.poses) << frames;
   }
 }
 
@@ -128,7 +124,7 @@ TEST(AugmentTest, LeaderYawLeavesTheFollowerAlone) {
   TrainingOptions::Augmentation options;
   options.leader_yaw = 0.5;
   const dataset::Sequence before = MadeUpDataset().sequences[0], after = AugmentedBy(options, 0);
-  EXPECT_EQ(after.pair.follower.positions, before.pair.follower.positions);
+  EXPECT_EQ(after.pair.follower.poses, before.pair.follower.poses);
   EXPECT_NE(after.pair.leader.at(0, 5), before.pair.leader.at(0, 5));
   const int root = motion::SbuSkeleton().root;
   EXPECT_LT(Distance(after.pair.leader.at(0, root), before.pair.leader.at(0, root)), 1e-5);

@@ -71,7 +71,7 @@ TEST(GradedLabelsTest, AvoidingAnotherClassLeavesTheCapturedReaction) {
   int checked = 0;
   for (const Example& example : Draw(dataset, StartKnowledge::kNone)) {
     if (KindOf(example) != "other avoided") continue;
-    EXPECT_TRUE(Near(example.target.all(), dataset.sequences[0].pair.follower.positions));
+    EXPECT_TRUE(Near(example.target.all(), dataset.sequences[0].pair.follower.poses));
     ++checked;
   }
   EXPECT_GT(checked, 5);
@@ -93,14 +93,14 @@ TEST(GradedLabelsTest, OtherReactionsHappenWhereThisOneDoes) {
   moved = dataset.sequences[0];
   moved.interaction_class = 1;
   for (motion::Clip* clip : {&moved.pair.leader, &moved.pair.follower}) {
-    for (motion::Vec3& p : clip->positions) p = RotateY(p, 2) + motion::Vec3{5, 0, 3};
+    for (motion::Vec3& p : clip->poses.all()) p = RotateY(p, 2) + motion::Vec3{5, 0, 3};
   }
   moved.partner_direction = RotateY(*moved.partner_direction, 2);
   dataset.sequences.resize(2);
   int checked = 0;
   for (const Example& example : Draw(dataset, StartKnowledge::kNone)) {
     if (KindOf(example) != "other alone" || example.weights[1] < 1) continue;
-    EXPECT_TRUE(Near(example.target.all(), dataset.sequences[0].pair.follower.positions));
+    EXPECT_TRUE(Near(example.target.all(), dataset.sequences[0].pair.follower.poses));
     ++checked;
   }
   EXPECT_GT(checked, 2);

@@ -32,13 +32,13 @@ inline dataset::Dataset MadeUpDataset(int sequences = 7) {
     leader.joint_names = dataset.skeleton.joint_names;
     leader.frame_rate_hz = dataset.frame_rate_hz;
     sequence.pair.follower = leader;
-    const motion::Poses swaying = SwayingMotion(frames, dataset.frame_rate_hz);
-    leader.positions.assign(swaying.all().begin(), swaying.all().end());
+    leader.poses = SwayingMotion(frames, dataset.frame_rate_hz);
     for (int t = 0; t < frames; ++t) {
-      for (motion::Vec3 point : SwayingPose((t + i) / dataset.frame_rate_hz)) {
-        sequence.pair.follower.positions.push_back(
-            point + motion::Vec3{0, 0.1f * static_cast<float>(sequence.interaction_class), 1});
+      std::vector<motion::Vec3> pose = SwayingPose((t + i) / dataset.frame_rate_hz);
+      for (motion::Vec3& point : pose) {
+        point += motion::Vec3{0, 0.1f * static_cast<float>(sequence.interaction_class), 1};
       }
+      sequence.pair.follower.Append(pose);
     }
     sequence.partner_direction = motion::Vec3{0, 0, 1};
     dataset.sequences.push_back(sequence);

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <vector>
 
-#include "model/evaluation/metrics/clip_poses.h"
-
 namespace duet::evaluation::baselines {
 namespace {
 
@@ -20,7 +18,7 @@ constexpr double kWayWeight = 2.0;
 
 motion::Standardisation BaselineFrame(const motion::Skeleton& skeleton,
                                       const dataset::Sequence& sequence) {
-  const motion::Poses leader(skeleton.joint_count(), sequence.pair.leader.positions);
+  const motion::Poses& leader = sequence.pair.leader.poses;
   if (sequence.partner_direction) {
     return {skeleton, leader, FacingYaw(*sequence.partner_direction)};
   }
@@ -73,7 +71,7 @@ Rows LeaderCues(const motion::Standardisation& frame, const motion::Poses& world
 
 StandardPair StandardLeader(const motion::Skeleton& skeleton, const dataset::Sequence& sequence) {
   const motion::Standardisation frame = BaselineFrame(skeleton, sequence);
-  const motion::Poses leader = metrics::PosesOf(sequence.pair.leader);
+  const motion::Poses leader = sequence.pair.leader.poses;
   StandardPair pair;
   pair.leader = ToRows(frame.Apply(leader));
   pair.cues = LeaderCues(frame, leader);
@@ -83,7 +81,7 @@ StandardPair StandardLeader(const motion::Skeleton& skeleton, const dataset::Seq
 StandardPair StandardiseSequence(const motion::Skeleton& skeleton,
                                  const dataset::Sequence& sequence) {
   StandardPair pair = StandardLeader(skeleton, sequence);
-  const motion::Poses follower = metrics::PosesOf(sequence.pair.follower);
+  const motion::Poses follower = sequence.pair.follower.poses;
   pair.follower = ToRows(BaselineFrame(skeleton, sequence).Apply(follower));
   return pair;
 }

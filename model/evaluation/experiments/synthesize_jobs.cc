@@ -2,7 +2,6 @@
 
 #include "absl/strings/str_cat.h"
 #include "model/evaluation/experiments/synthesizer_method.h"
-#include "model/evaluation/metrics/clip_poses.h"
 
 namespace duet::evaluation::experiments {
 
@@ -20,7 +19,7 @@ absl::StatusOr<std::vector<dataset::Sequence>> SynthesizeJobs(
                           absl::StrCat(job.sequence.id, ": ", follower.status().message()));
     }
     answered.push_back(job.sequence);
-    metrics::SetPoses(*follower, &answered.back().pair.follower);
+    answered.back().pair.follower.poses = *std::move(follower);
   }
   return answered;
 }

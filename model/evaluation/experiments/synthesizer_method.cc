@@ -19,9 +19,8 @@ engine::ClipRequest MakeRequest(const motion::Skeleton& skeleton, const dataset:
                                 const std::vector<float>& labels, StartGiven start) {
   const motion::Clip& leader = sequence.pair.leader;
   const motion::Clip& follower = sequence.pair.follower;
-  engine::ClipRequest request{motion::Poses(skeleton.joint_count(), leader.positions),
-                              leader.frame_rate_hz, engine::LabelTrack(labels), std::nullopt,
-                              sequence.partner_direction};
+  engine::ClipRequest request{leader.poses, leader.frame_rate_hz, engine::LabelTrack(labels),
+                              std::nullopt, sequence.partner_direction};
   if (start == StartGiven::kNone) return request;
   request.start = engine::FollowerStart{follower.at(0, skeleton.root), {}};
   if (start == StartGiven::kPose) {

@@ -141,7 +141,7 @@ absl::Status ReadPair(const dataset::Dataset& dataset, const fs::path& file,
                                           " came, wanted the data's ", dataset.frame_rate_hz));
   }
   for (motion::Clip& clip : motion->people) {
-    for (motion::Vec3& point : clip.positions) point = ToWorld(motion->coordinates, point);
+    for (motion::Vec3& point : clip.poses.all()) point = ToWorld(motion->coordinates, point);
   }
   *pair = {std::move(motion->people[0]), std::move(motion->people[1])};
   return CheckPair(*pair);

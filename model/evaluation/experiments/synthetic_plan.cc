@@ -59,7 +59,7 @@ std::string FileName(std::string name) {
 dataset::Sequence DrawLeader(const dataset::Dataset& dataset, const dataset::Sequence& captured,
                              base::Random* random) {
   dataset::Sequence sequence = Augment(dataset, captured, Variations(), random);
-  sequence.pair.follower.positions.clear();
+  sequence.pair.follower.poses = {};
   return sequence;
 }
 

@@ -8,7 +8,6 @@
 #include "absl/strings/str_cat.h"
 #include "model/base/sha256.h"
 #include "model/evaluation/judge/judge_input.h"
-#include "model/evaluation/metrics/clip_poses.h"
 #include "model/network/batch.h"
 #include "model/network/discriminator.h"
 #include "model/training/augment.h"
@@ -38,7 +37,7 @@ struct MotionBatch {
 dataset::Sequence WithFollower(const dataset::Dataset& dataset,
                                const metrics::ScoredMotion& motion) {
   dataset::Sequence sequence = dataset.sequences[static_cast<size_t>(motion.sequence)];
-  metrics::SetPoses(motion.follower, &sequence.pair.follower);
+  sequence.pair.follower.poses = motion.follower;
   return sequence;
 }
 
@@ -98,8 +97,10 @@ dataset::Sequence Vary(const dataset::Dataset& dataset, const dataset::Sequence&
   for (int j = 0; j < dataset.skeleton.joint_count(); ++j) {
     offsets.push_back(RandomOffset(kBodyNoise, random));
   }
-  std::vector<motion::Vec3>& positions = varied.pair.follower.positions;
-  for (size_t i = 0; i < positions.size(); ++i) positions[i] += offsets[i % offsets.size()];
+  motion::Poses& poses = varied.pair.follower.poses;
+  for (int t = 0; t < poses.frame_count(); ++t) {
+    for (size_t j = 0; j < offsets.size(); ++j) poses[t][j] += offsets[j];
+  }
   return varied;
 }
 

@@ -10,10 +10,9 @@ namespace {
 motion::Poses StandardFollower(const motion::Skeleton& skeleton, const dataset::Sequence& sequence,
                                motion::StandardOrigin origin) {
   engine::SynthesisWindow window;
-  window.leader = motion::Poses(skeleton.joint_count(), sequence.pair.leader.positions);
+  window.leader = sequence.pair.leader.poses;
   window.partner_direction = sequence.partner_direction;
-  return WindowFrame(skeleton, window, origin)
-      .Apply(motion::Poses(skeleton.joint_count(), sequence.pair.follower.positions));
+  return WindowFrame(skeleton, window, origin).Apply(sequence.pair.follower.poses);
 }
 
 }  // namespace

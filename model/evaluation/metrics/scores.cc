@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <limits>
 
-#include "model/evaluation/metrics/clip_poses.h"
 #include "model/evaluation/metrics/displacement.h"
 #include "model/evaluation/metrics/motion_quality.h"
 #include "model/evaluation/metrics/penetration.h"
@@ -70,8 +69,8 @@ std::string MetricName(Metric metric) {
 std::vector<double> ScoreMotion(const dataset::Dataset& dataset, const ScoredMotion& motion) {
   const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(motion.sequence)];
   const motion::Skeleton& skeleton = dataset.skeleton;
-  const motion::Poses leader = PosesOf(sequence.pair.leader);
-  const motion::Poses truth = PosesOf(sequence.pair.follower);
+  const motion::Poses leader = sequence.pair.leader.poses;
+  const motion::Poses truth = sequence.pair.follower.poses;
   const motion::Poses& made = motion.follower;
   const double rate = sequence.pair.leader.frame_rate_hz;
   const FootSlide slide = MeasureFootSlide(made, skeleton, rate);
@@ -120,7 +119,7 @@ std::vector<ScoredMotion> CapturedMotions(const dataset::Dataset& dataset,
   std::vector<ScoredMotion> captured;
   for (const int index : sequences) {
     const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(index)];
-    captured.push_back({index, PosesOf(sequence.pair.follower)});
+    captured.push_back({index, sequence.pair.follower.poses});
   }
   return captured;
 }

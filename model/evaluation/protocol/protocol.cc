@@ -20,7 +20,7 @@ double SecondsSince(std::chrono::steady_clock::time_point start) {
 dataset::Sequence WithoutAnswer(const dataset::Sequence& sequence, bool keep_first_pose) {
   dataset::Sequence hidden = sequence;
   motion::Clip& follower = hidden.pair.follower;
-  follower.positions.resize(keep_first_pose ? static_cast<size_t>(follower.joint_count()) : 0);
+  follower.poses.Resize(keep_first_pose ? 1 : 0);
   return hidden;
 }
 

@@ -57,7 +57,7 @@ class Importer {
     clip.frame_rate_hz = FrameRate();
     for (int frame = 0; frame < document_.frame_count; ++frame) {
       const std::vector<motion::Vec3> pose = ApplyJointMap(*map, Pose(frame));
-      clip.positions.insert(clip.positions.end(), pose.begin(), pose.end());
+      clip.Append(pose);
     }
     return ToMetres(std::move(clip));
   }
@@ -90,7 +90,7 @@ class Importer {
     absl::StatusOr<double> scale = MetresPerUnit(clip);
     if (!scale.ok()) return scale.status();
     const motion::Coordinates coordinates{motion::LengthUnit::kMetres, FindUpAxis(clip)};
-    for (motion::Vec3& position : clip.positions) {
+    for (motion::Vec3& position : clip.poses.all()) {
       position = ToWorld(coordinates, position * static_cast<float>(*scale));
     }
     return clip;

@@ -49,7 +49,7 @@ class CsvParser {
       if (!status.ok()) return status;
     }
     if (columns_.empty()) return Error("no header line, wanted frame,head_x,head_y,head_z,...");
-    if (motion_.people[0].positions.empty()) return Error("no frames after the header line");
+    if (motion_.people[0].poses.empty()) return Error("no frames after the header line");
     for (motion::Clip& person : motion_.people) person.frame_rate_hz = frame_rate_hz_;
     return std::move(motion_);
   }
@@ -191,7 +191,7 @@ class CsvParser {
       return Error(absl::StrCat("more than ", motion::kMaxMotionFrames, " frames"));
     }
     for (motion::Clip& person : motion_.people) {
-      person.positions.resize(person.positions.size() + person.joint_names.size());
+      person.Append(std::vector<motion::Vec3>(person.joint_names.size()));
     }
     for (std::size_t i = 0; i < fields.size(); ++i) {
       if (columns_[i].person < 0) continue;

@@ -78,7 +78,7 @@ bool ReadFrame(const Json& frame, const std::string& field, base::ObjectReader* 
       return false;
     }
   }
-  clip->positions.insert(clip->positions.end(), pose.begin(), pose.end());
+  clip->Append(pose);
   return true;
 }
 

@@ -53,7 +53,7 @@ class NpyParser {
     motion.people.resize(header_.shape.size() == 4 ? static_cast<size_t>(header_.shape[0]) : 1);
     for (motion::Clip& person : motion.people) {
       person.joint_names = joint_names;
-      person.positions.resize(static_cast<size_t>(frames) * joint_names.size());
+      person.poses = motion::Poses(static_cast<int>(frames), static_cast<int>(joint_names.size()));
       status = ReadPositions(&person);
       if (!status.ok()) return status;
     }
@@ -141,8 +141,8 @@ class NpyParser {
   }
 
   absl::Status ReadPositions(motion::Clip* person) {
-    for (std::size_t i = 0; i < person->positions.size(); ++i) {
-      motion::Vec3& position = person->positions[i];
+    for (std::size_t i = 0; i < person->poses.all().size(); ++i) {
+      motion::Vec3& position = person->poses.all()[i];
       for (float* axis : {&position.x, &position.y, &position.z}) {
         const double value = TakeValue();
         if (!(std::abs(value) <= motion::kMaxCoordinate)) {
@@ -162,8 +162,8 @@ class NpyParser {
 };
 
 void AppendPositions(const motion::Clip& clip, std::string* out) {
-  out->append(reinterpret_cast<const char*>(clip.positions.data()),
-              clip.positions.size() * sizeof(motion::Vec3));
+  out->append(reinterpret_cast<const char*>(clip.poses.all().data()),
+              clip.poses.all().size() * sizeof(motion::Vec3));
 }
 
 }  // namespace

@@ -98,7 +98,7 @@ absl::Status ReadPeople(SbuLine* line, const SbuOptions& options, SbuRecording* 
       if (!status.ok()) return status;
       pose[joint] = ToWorld(options.coordinates, pose[joint]);
     }
-    clip.positions.insert(clip.positions.end(), pose.begin(), pose.end());
+    clip.Append(pose);
   }
   return absl::OkStatus();
 }
@@ -144,7 +144,7 @@ absl::StatusOr<SbuRecording> ParseSbu(absl::string_view text, absl::string_view 
     if (status.ok()) status = ReadPeople(&line, options, &recording);
     if (!status.ok()) return status;
   }
-  if (recording.left.positions.empty()) {
+  if (recording.left.poses.empty()) {
     return base::ErrorAt(source, 1, "no frames, wanted at least one line");
   }
   return recording;
@@ -159,7 +159,8 @@ absl::StatusOr<SbuRecording> ReadSbu(const std::filesystem::path& path, const Sb
 absl::StatusOr<std::string> FormatSbu(const SbuRecording& recording, const SbuOptions& options) {
   const motion::Clip& left = recording.left;
   const motion::Clip& right = recording.right;
-  if (left.positions.size() != right.positions.size() || left.joint_names != right.joint_names) {
+  if (left.poses.all().size() != right.poses.all().size() ||
+      left.joint_names != right.joint_names) {
     return absl::InvalidArgumentError(
         absl::StrCat("recording: came ", left.frame_count(), " frames of ", left.joint_count(),
                      " joints on the left and ", right.frame_count(), " of ", right.joint_count(),

@@ -59,7 +59,7 @@ absl::StatusOr<SynthesisResult> Follow(const SynthesisRequest& request) {
   SynthesisResult result;
   result.pair.leader = request.leader;
   result.pair.follower = request.leader;
-  for (motion::Vec3& position : result.pair.follower.positions) position.z -= 2;
+  for (motion::Vec3& position : result.pair.follower.poses.all()) position.z -= 2;
   result.model_name = "sbu";
   result.model_version = 1;
   result.window_count = 1;
@@ -76,7 +76,7 @@ class ProgramTest : public ::testing::Test {
     leader_.joint_names = motion::SbuSkeleton().joint_names;
     leader_.frame_rate_hz = 15;
     const motion::Poses swaying = SwayingMotion(kFrames, 15);
-    leader_.positions.assign(swaying.all().begin(), swaying.all().end());
+    leader_.poses = swaying;
     const motion::ClipPair pair{leader_, leader_};
     EXPECT_THAT(formats::WritePair(folder_ / "leader.csv", pair, motion::SbuSkeleton()), IsOk());
     ON_CALL(*connection_, GetModel).WillByDefault(Return(SbuModel()));
@@ -196,7 +196,7 @@ TEST_F(ProgramTest, SendsWhatTheFlagsSay) {
 
 TEST_F(ProgramTest, OfTheLeadersOwnFileTheFollowerStartsAsTheOther) {
   motion::ClipPair pair{leader_, leader_};
-  for (motion::Vec3& position : pair.follower.positions) position.x += 3;
+  for (motion::Vec3& position : pair.follower.poses.all()) position.x += 3;
   ASSERT_THAT(formats::WritePair(folder_ / "leader.csv", pair, motion::SbuSkeleton()), IsOk());
   SynthesisRequest sent;
   EXPECT_CALL(*connection_, Synthesize)

@@ -84,16 +84,18 @@ motion::Clip ThreeJointLeader(int frames) {
   motion::Clip clip;
   clip.joint_names = {"root", "left", "right"};
   clip.frame_rate_hz = 30;
-  for (int i = 0; i < frames * 3; ++i) {
-    const auto value = static_cast<float>(i);
-    clip.positions.push_back({value, 0.5f * value, -value});
+  clip.poses = motion::Poses(frames, clip.joint_count());
+  float value = 0;
+  for (motion::Vec3& position : clip.poses.all()) {
+    position = {value, 0.5f * value, -value};
+    ++value;
   }
   return clip;
 }
 
-std::vector<motion::Vec3> FollowerFor(const motion::Clip& leader) {
-  std::vector<motion::Vec3> follower = leader.positions;
-  for (motion::Vec3& position : follower) position.x += 1;
+motion::Poses FollowerFor(const motion::Clip& leader) {
+  motion::Poses follower = leader.poses;
+  for (motion::Vec3& position : follower.all()) position.x += 1;
   return follower;
 }
 

@@ -63,7 +63,7 @@ v1::SynthesizeResponse SummaryFor(const motion::Clip& leader, int chunks);
 std::vector<v1::SynthesizeResponse> ReplyFor(const motion::Clip& leader, int chunk_frames);
 
 // The follower that these replies carry.
-std::vector<motion::Vec3> FollowerFor(const motion::Clip& leader);
+motion::Poses FollowerFor(const motion::Clip& leader);
 
 // A status as the server sends it, with an ErrorInfo; with a RetryInfo where `delay` is given.
 absl::Status ServiceError(absl::StatusCode code, const std::string& message,

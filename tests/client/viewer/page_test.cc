@@ -27,9 +27,9 @@ PageContent SmallContent() {
   PageContent content;
   content.pair.leader.joint_names = {"root", "tip"};
   content.pair.leader.frame_rate_hz = 15;
-  content.pair.leader.positions = {{0, 1, 0}, {0, 2, 0}, {0.5f, 1, 0}, {0.5f, 2, 0}};
+  content.pair.leader.Append({{0, 1, 0}, {0, 2, 0}, {0.5f, 1, 0}, {0.5f, 2, 0}});
   content.pair.follower = content.pair.leader;
-  content.pair.follower.positions[3] = {-1, -2, 0.25f};
+  content.pair.follower.poses.all()[3] = {-1, -2, 0.25f};
   content.bones = {{0, 1}};
   content.title = "kick";
   content.subtitle = "sbu@1";
@@ -113,18 +113,18 @@ TEST(RenderPageTest, WhatCannotBeShownIsRefused) {
     spoil(&content);
     return RenderPage(content).status();
   };
-  EXPECT_THAT(refused([](PageContent* c) { c->pair.leader.positions.clear(); }),
+  EXPECT_THAT(refused([](PageContent* c) { c->pair.leader.poses = {}; }),
               StatusIs(kInvalid, HasSubstr("0 frames")));
   EXPECT_THAT(refused([](PageContent* c) {
                 c->pair.leader.frame_rate_hz = c->pair.follower.frame_rate_hz = 0;
               }),
               StatusIs(kInvalid, HasSubstr("at 0 Hz")));
-  EXPECT_THAT(refused([](PageContent* c) { c->pair.follower.positions.resize(2); }),
+  EXPECT_THAT(refused([](PageContent* c) { c->pair.follower.poses.Resize(1); }),
               StatusIs(kInvalid, HasSubstr("differ")));
   EXPECT_THAT(refused([](PageContent* c) { c->pair.follower.joint_names[0] = "other"; }),
               StatusIs(kInvalid, HasSubstr("differ")));
   EXPECT_THAT(refused([](PageContent* c) {
-                c->pair.follower.positions[1].y = std::numeric_limits<float>::quiet_NaN();
+                c->pair.follower.poses.all()[1].y = std::numeric_limits<float>::quiet_NaN();
               }),
               StatusIs(kInvalid, HasSubstr("not finite")));
   EXPECT_THAT(refused([](PageContent* c) {

@@ -219,8 +219,8 @@ TEST(MotionMatrixTest, CuesTellTheLeadersWay) {
   dataset::Sequence sequence = dataset.sequences[0];
   const int joints = dataset.skeleton.joint_count();
   const StandardPair before = StandardLeader(dataset.skeleton, sequence);
-  for (size_t i = 0; i < sequence.pair.leader.positions.size(); ++i) {
-    sequence.pair.leader.positions[i].y += 0.01f * static_cast<float>(i / 15);
+  for (size_t i = 0; i < sequence.pair.leader.poses.all().size(); ++i) {
+    sequence.pair.leader.poses.all()[i].y += 0.01f * static_cast<float>(i / 15);
   }
   const StandardPair after = StandardLeader(dataset.skeleton, sequence);
   const Eigen::Index way = 2 * 3 * joints, last = after.cues.rows() - 1;

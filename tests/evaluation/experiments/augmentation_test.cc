@@ -64,13 +64,14 @@ TEST(PlanSyntheticSetTest, NeverLooksOutsideTheTrainingHalfNorAtFollowers) {
   dataset::Dataset dataset = MadeUpPairs(6);
   const dataset::Split split = *SplitInHalves(dataset, 1);
   for (const int test : split.test) {  // would show in what is drawn
-    for (motion::Vec3& point : dataset.sequences[static_cast<size_t>(test)].pair.leader.positions) {
+    for (motion::Vec3& point :
+         dataset.sequences[static_cast<size_t>(test)].pair.leader.poses.all()) {
       point = {1e6f, 1e6f, 1e6f};
     }
   }
   for (const SyntheticJob& job : PlanSyntheticSet(dataset, split.train, {5, 5, 2})) {
-    EXPECT_TRUE(job.sequence.pair.follower.positions.empty());
-    for (const motion::Vec3& point : job.sequence.pair.leader.positions)
+    EXPECT_TRUE(job.sequence.pair.follower.poses.empty());
+    for (const motion::Vec3& point : job.sequence.pair.leader.poses.all())
       ASSERT_LT(Norm(point), 1e3f);
   }
 }
@@ -83,9 +84,9 @@ TEST(PlanSyntheticSetTest, VariesLeadersByTheSeedAlone) {
   std::set<float> seen;
   for (size_t i = 0; i < first.size(); ++i) {
     EXPECT_EQ(first[i].labels, again[i].labels);
-    EXPECT_EQ(first[i].sequence.pair.leader.positions, again[i].sequence.pair.leader.positions);
+    EXPECT_EQ(first[i].sequence.pair.leader.poses, again[i].sequence.pair.leader.poses);
     EXPECT_NE(first[i].labels, other[i].labels);
-    seen.insert(first[i].sequence.pair.leader.positions.back().x);
+    seen.insert(first[i].sequence.pair.leader.poses.all().back().x);
   }
   EXPECT_EQ(seen.size(), first.size());  // no leader twice
 }

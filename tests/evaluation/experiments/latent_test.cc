@@ -65,7 +65,7 @@ TEST(LatentFeaturesTest, NeverSeesTheFollower) {
   dataset::Dataset dataset = MadeUpPairs(1);
   const checkpoint::Checkpoint model = Model(dataset, checkpoint::GeneratorVariant::kPaper);
   const metrics::FeatureSet before = Features(model, dataset, {0});
-  for (motion::Vec3& point : dataset.sequences[0].pair.follower.positions)
+  for (motion::Vec3& point : dataset.sequences[0].pair.follower.poses.all())
     point += motion::Vec3{3, 2, 1};
   EXPECT_EQ(Distance(before[0], Features(model, dataset, {0})[0]), 0);
 }

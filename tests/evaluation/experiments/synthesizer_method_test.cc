@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <memory>
 
-#include "model/evaluation/metrics/clip_poses.h"
 #include "model/evaluation/protocol/protocol.h"
 #include "tests/evaluation/support/made_up_pairs.h"
 #include "tests/support/fake_synthesizer.h"
@@ -28,9 +27,7 @@ using ::testing::SizeIs;
 dataset::Sequence Repeated(const dataset::Sequence& sequence, int times) {
   dataset::Sequence longer = sequence;
   for (int i = 1; i < times; ++i) {
-    const std::vector<motion::Vec3>& once = sequence.pair.leader.positions;
-    longer.pair.leader.positions.insert(longer.pair.leader.positions.end(), once.begin(),
-                                        once.end());
+    longer.pair.leader.Append(sequence.pair.leader.poses.all());
   }
   return longer;
 }
@@ -50,7 +47,7 @@ TEST(SynthesizeSequences, AnswersClipsOfAnyLengthTogether) {
   EXPECT_THAT(batches, ElementsAre(3, 1));
   ASSERT_THAT(*followers, SizeIs(3));
   for (size_t i = 0; i < leaders.size(); ++i) {
-    const motion::Poses leader = metrics::PosesOf(leaders[i].sequence->pair.leader);
+    const motion::Poses leader = leaders[i].sequence->pair.leader.poses;
     const motion::Poses& follower = (*followers)[i];
     ASSERT_EQ(follower.frame_count(), leader.frame_count());
     ASSERT_EQ(follower.joint_count(), leader.joint_count());

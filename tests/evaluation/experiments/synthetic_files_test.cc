@@ -35,7 +35,7 @@ class SyntheticFilesTest : public testing::Test {
   void Answer(const SyntheticJob& job, const motion::Skeleton& skeleton, double frame_rate_hz) {
     motion::ClipPair pair = job.sequence.pair;
     pair.follower = pair.leader;
-    for (motion::Vec3& point : pair.follower.positions) point.x += 1;
+    for (motion::Vec3& point : pair.follower.poses.all()) point.x += 1;
     pair.leader.frame_rate_hz = pair.follower.frame_rate_hz = frame_rate_hz;
     ASSERT_THAT(formats::WritePair(FollowerFile(job), pair, skeleton), IsOk());
   }
@@ -67,9 +67,9 @@ TEST_F(SyntheticFilesTest, LeadersAreFilesThatTheClientReads) {
     const absl::StatusOr<motion::Clip> leader = formats::ReadLeader(file);
     ASSERT_THAT(leader, IsOk());
     EXPECT_EQ(leader->frame_rate_hz, dataset_.frame_rate_hz);
-    ASSERT_EQ(leader->positions.size(), job.sequence.pair.leader.positions.size());
-    for (size_t i = 0; i < leader->positions.size(); ++i) {
-      EXPECT_LT(Distance(leader->positions[i], job.sequence.pair.leader.positions[i]), 1e-5f);
+    ASSERT_EQ(leader->poses.all().size(), job.sequence.pair.leader.poses.all().size());
+    for (size_t i = 0; i < leader->poses.all().size(); ++i) {
+      EXPECT_LT(Distance(leader->poses.all()[i], job.sequence.pair.leader.poses.all()[i]), 1e-5f);
     }
     EXPECT_THAT(ReadTestFile(file), testing::Not(HasSubstr("follower")));
   }

@@ -95,7 +95,7 @@ TEST(MotionClassifier, DoesNotMindWhereThePairStandsInTheWorld) {
   dataset::Dataset moved = dataset;
   for (dataset::Sequence& sequence : moved.sequences) {
     for (motion::Clip* clip : {&sequence.pair.leader, &sequence.pair.follower}) {
-      for (motion::Vec3& p : clip->positions) p = RotateY(p, 2.5) + motion::Vec3{4, 0, -3};
+      for (motion::Vec3& p : clip->poses.all()) p = RotateY(p, 2.5) + motion::Vec3{4, 0, -3};
     }
   }
   const MotionClassifier judge = Trained(dataset, Small());

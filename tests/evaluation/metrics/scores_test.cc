@@ -5,7 +5,6 @@
 #include <cmath>
 #include <set>
 
-#include "model/evaluation/metrics/clip_poses.h"
 #include "tests/evaluation/support/made_up_pairs.h"
 
 namespace duet::evaluation::metrics {
@@ -71,7 +70,7 @@ TEST(ScoresTest, DepthIsAveragedOverPenetratingMotionsAlone) {
   EXPECT_EQ(ScoreByClass(dataset, motions)[0][frequency], 0);
   EXPECT_TRUE(std::isnan(ScoreByClass(dataset, motions)[0][depth]));
   // On the leader's very spot: the trunks' capsules overlap by both radii.
-  motions[0].follower = PosesOf(dataset.sequences[0].pair.leader);
+  motions[0].follower = dataset.sequences[0].pair.leader.poses;
   EXPECT_NEAR(ScoreByClass(dataset, motions)[0][frequency], 0.5, 1e-6);
   EXPECT_NEAR(ScoreByClass(dataset, motions)[0][depth], 0.22, 1e-6);
 }
@@ -81,7 +80,7 @@ TEST(ScoresTest, CapturedMotionsAnswerTheSameSequences) {
   const std::vector<ScoredMotion> captured = CapturedMotions(dataset, {3, 1, 3});
   ASSERT_EQ(captured.size(), 3u);
   EXPECT_EQ(captured[2].sequence, 3);
-  EXPECT_EQ(captured[1].follower, PosesOf(dataset.sequences[1].pair.follower));
+  EXPECT_EQ(captured[1].follower, dataset.sequences[1].pair.follower.poses);
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "model/evaluation/baselines/baselines.h"
-#include "model/evaluation/metrics/clip_poses.h"
 #include "model/evaluation/program/named_runs.h"
 #include "tests/evaluation/support/made_up_pairs.h"
 
@@ -29,7 +28,7 @@ class Oracle : public protocol::Method {
   }
   absl::StatusOr<motion::Poses> Predict(const dataset::Sequence& asked) const override {
     for (const dataset::Sequence& sequence : dataset_.sequences) {
-      if (sequence.id == asked.id) return metrics::PosesOf(sequence.pair.follower);
+      if (sequence.id == asked.id) return sequence.pair.follower.poses;
     }
     return absl::NotFoundError(asked.id);
   }

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <functional>
 
-#include "model/evaluation/metrics/clip_poses.h"
 #include "tests/evaluation/support/made_up_pairs.h"
 #include "tests/support/status_matchers.h"
 
@@ -30,7 +29,7 @@ class Recorder : public Method {
   }
   absl::StatusOr<motion::Poses> Predict(const dataset::Sequence& sequence) const override {
     follower_frames.push_back(sequence.pair.follower.frame_count());
-    motion::Poses answer = metrics::PosesOf(sequence.pair.leader);
+    motion::Poses answer = sequence.pair.leader.poses;
     if (spoil) spoil(&answer);
     if (!predict_status.ok()) return predict_status;
     return answer;

@@ -28,7 +28,8 @@ struct Placement {
 
 void AddFrame(const Placement& placement, const std::vector<motion::Vec3>& pose,
               motion::Clip* clip) {
-  for (motion::Vec3 p : pose) clip->positions.push_back(RotateY(p, placement.yaw) + placement.at);
+  for (motion::Vec3& p : pose) p = RotateY(p, placement.yaw) + placement.at;
+  clip->Append(pose);
 }
 
 dataset::Sequence MakeSequence(const motion::Skeleton& skeleton, int interaction_class,

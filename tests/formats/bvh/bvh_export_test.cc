@@ -37,12 +37,13 @@ motion::Clip PlayBack(const BvhDocument& written, const motion::Skeleton& skelet
   const BvhKinematics kinematics(*document);
   for (int frame = 0; frame < document->frame_count; ++frame) {
     const std::vector<retargeting::Vec3d> positions = kinematics.Positions(frame);
+    std::vector<motion::Vec3> pose;
     for (const std::string& name : skeleton.joint_names) {
       for (std::size_t j = 0; j < positions.size(); ++j) {
-        if (document->joints[j].name == name)
-          clip.positions.push_back(ToFloat(positions[j] * 0.01));
+        if (document->joints[j].name == name) pose.push_back(ToFloat(positions[j] * 0.01));
       }
     }
+    clip.Append(pose);
   }
   return clip;
 }
@@ -159,7 +160,7 @@ TEST(BvhExport, KeepsAStraightArmsTwistWhereThePlaneIsUndetermined) {
 TEST(BvhExport, StaysCloseWhereBoneLengthsVary) {
   motion::Clip clip = MakePerson({60});
   uint32_t state = 1;
-  for (motion::Vec3& p : clip.positions) {
+  for (motion::Vec3& p : clip.poses.all()) {
     for (float* axis : {&p.x, &p.y, &p.z}) {
       state = state * 1664525u + 1013904223u;
       *axis += 0.02f * (static_cast<float>(state >> 8) / 8388608.0f - 1);
@@ -185,7 +186,7 @@ TEST(BvhExport, KeepsTheHandWhereTheUpperArmVaries) {
 
 TEST(BvhExport, SurvivesJointsInOnePoint) {
   motion::Clip clip = MakePerson({3});
-  for (motion::Vec3& p : clip.positions) p = {1, 2, 3};
+  for (motion::Vec3& p : clip.poses.all()) p = {1, 2, 3};
   const motion::Clip played = PlayBack(Export(clip), motion::SbuSkeleton());
   EXPECT_LT(LargestDistance(played, clip), kOneMillimetre);
 }
@@ -236,9 +237,15 @@ TEST(BvhExport, HangsTheLegsOfASkeletonRootedAtThePelvis) {
   motion::Clip sitting;
   sitting.joint_names = skeleton.joint_names;
   sitting.frame_rate_hz = 30;
-  sitting.positions = {{0, 0.5f, 0},        {0.1f, 0.5f, 0},  {0.1f, 0.5f, 0.4f},
-                       {0.1f, 0.1f, 0.4f},  {-0.1f, 0.5f, 0}, {-0.1f, 0.5f, 0.4f},
-                       {-0.1f, 0.1f, 0.4f}, {0, 0.8f, 0},     {0, 1.1f, 0}};
+  sitting.Append({{0, 0.5f, 0},
+                  {0.1f, 0.5f, 0},
+                  {0.1f, 0.5f, 0.4f},
+                  {0.1f, 0.1f, 0.4f},
+                  {-0.1f, 0.5f, 0},
+                  {-0.1f, 0.5f, 0.4f},
+                  {-0.1f, 0.1f, 0.4f},
+                  {0, 0.8f, 0},
+                  {0, 1.1f, 0}});
   absl::StatusOr<BvhDocument> document = ToBvh(sitting, skeleton);
   ASSERT_TRUE(document.ok()) << document.status();
   EXPECT_LT(LargestDistance(PlayBack(*document, skeleton), sitting), kOneMillimetre);
@@ -269,7 +276,7 @@ TEST(BvhExport, RefusesWhatIsNoMotionOfTheSkeleton) {
   EXPECT_THAT(std::string(ToBvh(broken, motion::SbuSkeleton()).status().message()),
               HasSubstr("frame 4 left_hand"));
   motion::Clip empty = MakePerson();
-  empty.positions.clear();
+  empty.poses = {};
   EXPECT_THAT(std::string(ToBvh(empty, motion::SbuSkeleton()).status().message()),
               HasSubstr("no frames"));
 }

@@ -85,8 +85,8 @@ TEST(BvhImport, RefusesASizeThatIsNoPersonsUnlessTheUnitIsGiven) {
 TEST(BvhImport, FindsTheUpAxis) {
   const motion::Clip clip = MakePerson();
   motion::Clip z_up = clip, y_down = clip;
-  for (motion::Vec3& p : z_up.positions) p = {p.x, -p.z, p.y};
-  for (motion::Vec3& p : y_down.positions) p = {p.x, -p.y, -p.z};
+  for (motion::Vec3& p : z_up.poses.all()) p = {p.x, -p.z, p.y};
+  for (motion::Vec3& p : y_down.poses.all()) p = {p.x, -p.y, -p.z};
   for (const motion::Clip* turned : {&z_up, &y_down}) {
     std::vector<std::string> notes;
     BvhImportOptions options;

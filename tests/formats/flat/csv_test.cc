@@ -71,8 +71,8 @@ TEST(Csv, ReadsBackAPairExactly) {
   ASSERT_TRUE(motion.ok()) << motion.status();
   ASSERT_EQ(motion->people.size(), 2u);
   EXPECT_EQ(motion->people[0].joint_names, pair.leader.joint_names);
-  EXPECT_EQ(motion->people[0].positions, pair.leader.positions);
-  EXPECT_EQ(motion->people[1].positions, pair.follower.positions);
+  EXPECT_EQ(motion->people[0].poses, pair.leader.poses);
+  EXPECT_EQ(motion->people[1].poses, pair.follower.poses);
   EXPECT_EQ(motion->people[1].frame_rate_hz, 29.97);
   EXPECT_THAT(FormatCsv(pair),
               ::testing::StartsWith("# duet motion: frame_rate_hz=29.97 unit=metres "

@@ -48,8 +48,8 @@ TEST(JsonMotion, ReadsBackAPairExactly) {
   ASSERT_TRUE(motion.ok()) << motion.status();
   ASSERT_EQ(motion->people.size(), 2u);
   EXPECT_EQ(motion->people[0].joint_names, pair.leader.joint_names);
-  EXPECT_EQ(motion->people[0].positions, pair.leader.positions);
-  EXPECT_EQ(motion->people[1].positions, pair.follower.positions);
+  EXPECT_EQ(motion->people[0].poses, pair.leader.poses);
+  EXPECT_EQ(motion->people[1].poses, pair.follower.poses);
   const Json document = Json::parse(text);
   EXPECT_EQ(document["format"], "duet-motion");
   EXPECT_EQ(document["unit"], "metres");

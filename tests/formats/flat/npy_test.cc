@@ -38,8 +38,8 @@ TEST(Npy, ReadsBackAPairExactly) {
       ParseNpy(FormatNpy(pair), "a.npy", pair.leader.joint_names);
   ASSERT_TRUE(motion.ok()) << motion.status();
   ASSERT_EQ(motion->people.size(), 2u);
-  EXPECT_EQ(motion->people[0].positions, pair.leader.positions);
-  EXPECT_EQ(motion->people[1].positions, pair.follower.positions);
+  EXPECT_EQ(motion->people[0].poses, pair.leader.poses);
+  EXPECT_EQ(motion->people[1].poses, pair.follower.poses);
   EXPECT_EQ(motion->people[0].frame_rate_hz, 0);
 }
 
@@ -53,7 +53,7 @@ TEST(Npy, ReadsLaterVersionsOfTheFormat) {
     const absl::StatusOr<motion::RecordedMotion> motion =
         ParseNpy(bytes, "a.npy", pair.leader.joint_names);
     ASSERT_TRUE(motion.ok()) << motion.status();
-    EXPECT_EQ(motion->people[1].positions, pair.follower.positions);
+    EXPECT_EQ(motion->people[1].poses, pair.follower.poses);
   }
   for (const char version : {'\0', '\x04'}) {
     std::string bytes = FormatNpy(pair);

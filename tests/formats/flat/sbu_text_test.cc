@@ -112,8 +112,8 @@ TEST(SbuText, WritesWhatItReads) {
   ASSERT_TRUE(text.ok());
   const absl::StatusOr<SbuRecording> again = ParseSbu(*text, "b.txt", TwoJoints());
   ASSERT_TRUE(again.ok()) << again.status();
-  EXPECT_EQ(again->left.positions, recording->left.positions);
-  EXPECT_EQ(again->right.positions, recording->right.positions);
+  EXPECT_EQ(again->left.poses, recording->left.poses);
+  EXPECT_EQ(again->right.poses, recording->right.poses);
 }
 
 TEST(SbuText, NamesAMissingFile) {
