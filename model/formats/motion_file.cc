@@ -37,18 +37,13 @@ Format FormatOf(const fs::path& path) {
   return Format::kUnknown;
 }
 
-// The joints of one frame.
-absl::Span<const motion::Vec3> FrameOf(const motion::Clip& clip, int frame) {
-  return {clip.frame(frame), clip.joint_names.size()};
-}
-
 // The joints of a file with positions as the skeleton's, in metres, y up.
 absl::StatusOr<motion::Clip> ToSkeleton(const motion::RecordedMotion& motion,
                                         const std::string& source, const ReadOptions& options) {
   const bool second = options.side == Side::kRight && motion.people.size() > 1;
   const motion::Clip& person = motion.people[second ? 1 : 0];
   absl::StatusOr<retargeting::JointMap> map = retargeting::MapJoints(
-      source, person.joint_names, FrameOf(person, 0), options.skeleton, options.joint_overrides);
+      source, person.joint_names, person.poses[0], options.skeleton, options.joint_overrides);
   if (!map.ok()) return map.status();
   if (options.notes != nullptr) {
     options.notes->insert(options.notes->end(), map->notes.begin(), map->notes.end());
@@ -58,7 +53,7 @@ absl::StatusOr<motion::Clip> ToSkeleton(const motion::RecordedMotion& motion,
   clip.joint_names = options.skeleton.joint_names;
   clip.frame_rate_hz = person.frame_rate_hz;
   for (int frame = 0; frame < person.frame_count(); ++frame) {
-    std::vector<motion::Vec3> pose = ApplyJointMap(*map, FrameOf(person, frame));
+    std::vector<motion::Vec3> pose = ApplyJointMap(*map, person.poses[frame]);
     for (motion::Vec3& position : pose) position = ToWorld(coordinates, position);
     clip.Append(pose);
   }
@@ -166,7 +161,7 @@ absl::StatusOr<std::vector<motion::Vec3>> ReadFollowerStart(const fs::path& path
   if (!any_rate.frame_rate_hz.has_value()) any_rate.frame_rate_hz = kSbuFrameRateHz;
   absl::StatusOr<motion::Clip> clip = ReadLeader(path, any_rate);
   if (!clip.ok()) return clip.status();
-  const absl::Span<const motion::Vec3> start = FrameOf(*clip, 0);
+  const absl::Span<const motion::Vec3> start = *clip.poses[0];
   return std::vector<motion::Vec3>(start.begin(), start.end());
 }
 

@@ -49,7 +49,7 @@ std::optional<engine::FollowerStart> StartOf(const motion::Skeleton& skeleton,
   if (knowledge == StartKnowledge::kNone) return std::nullopt;
   engine::FollowerStart start{follower.at(0, skeleton.root), {}};
   if (knowledge == StartKnowledge::kPose) {
-    start.pose.assign(follower.frame(0), follower.frame(0) + skeleton.joint_count());
+    start.pose.assign(follower.poses[0].begin(), follower.poses[0].end());
   }
   return start;
 }

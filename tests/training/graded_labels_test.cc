@@ -80,7 +80,7 @@ TEST(GradedLabelsTest, AvoidingAnotherClassLeavesTheCapturedReaction) {
 TEST(GradedLabelsTest, EveryAnswerBeginsAtAGivenPose) {
   const dataset::Dataset dataset = MadeUpDataset();
   const motion::Clip& follower = dataset.sequences[0].pair.follower;
-  const std::vector<motion::Vec3> first(follower.frame(0), follower.frame(0) + 15);
+  const std::vector<motion::Vec3> first(follower.poses[0].begin(), follower.poses[0].end());
   for (const Example& example : Draw(dataset, StartKnowledge::kPose)) {
     EXPECT_TRUE(Near(example.target[0], first));
   }

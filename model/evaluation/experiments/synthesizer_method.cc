@@ -24,7 +24,7 @@ engine::ClipRequest MakeRequest(const motion::Skeleton& skeleton, const dataset:
   if (start == StartGiven::kNone) return request;
   request.start = engine::FollowerStart{follower.at(0, skeleton.root), {}};
   if (start == StartGiven::kPose) {
-    request.start->pose.assign(follower.frame(0), follower.frame(0) + skeleton.joint_count());
+    request.start->pose.assign(follower.poses[0].begin(), follower.poses[0].end());
   }
   return request;
 }

@@ -74,8 +74,7 @@ absl::StatusOr<BvhDocument> ToBvh(const motion::Clip& clip, const motion::Skelet
   retargeting::PoseFitter fitter(rig);
   std::vector<retargeting::EulerZxy> angles(rig.joints.size());
   for (int frame = 0; frame < clip.frame_count(); ++frame) {
-    AppendFrame(fitter.Fit({clip.frame(frame), clip.joint_names.size()}), &angles,
-                &document.values);
+    AppendFrame(fitter.Fit(clip.poses[frame]), &angles, &document.values);
   }
   return document;
 }
