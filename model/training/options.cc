@@ -7,6 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
+#include "absl/strings/strip.h"
 #include "model/base/strict_json.h"
 #include "model/base/text.h"
 #include "model/checkpoint/names.h"
@@ -179,7 +180,10 @@ absl::Status CheckAllIn(const std::string& field, const std::vector<std::string>
 }
 
 // The shortest text that reads back as the same number: a state belongs to one setting exactly.
-std::string Text(double value) { return json(value).dump(); }
+std::string Text(double value) {
+  const std::string text = json(value).dump();
+  return std::string(absl::StripSuffix(text, ".0"));
+}
 std::string Text(bool value) { return value ? "true" : "false"; }
 
 }  // namespace

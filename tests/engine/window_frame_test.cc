@@ -65,6 +65,19 @@ TEST(WindowFrame, WithoutHipsOnlyADirectionTurns) {
       {0, 0, -1});
 }
 
+TEST(WindowFrame, EveryWayKeepsTheOriginAskedFor) {
+  SynthesisWindow by_hips = Window(), by_start = Window(), by_direction = Window();
+  by_start.start = FollowerStart{by_start.leader.at(0, kTorso) + motion::Vec3{0, 0, 1}, {}};
+  by_direction.partner_direction = motion::Vec3{1, 0, 0};
+  for (const SynthesisWindow& window : {by_hips, by_start, by_direction}) {
+    const motion::Vec3 way = window.leader.at(3, kTorso) - window.leader.at(0, kTorso);
+    const auto frame =
+        WindowFrame(motion::SbuSkeleton(), window, motion::StandardOrigin::kFirstFrame);
+    ASSERT_GT(Norm(way), 0.01f);
+    EXPECT_NEAR(Norm(frame.Apply(window.leader).at(3, kTorso)), Norm(way), 1e-5f);
+  }
+}
+
 TEST(WindowFrame, InvertsExactly) {
   SynthesisWindow window = Window();
   window.partner_direction = motion::Vec3{1, 0, 2};

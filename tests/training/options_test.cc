@@ -48,6 +48,7 @@ TEST(TrainingOptionsTest, SettingsAreDescribedToTheLastDigit) {
   options.losses.bone = 1.0 / 3;
   EXPECT_EQ(std::stod(Describe(options).at("losses.bone")), 1.0 / 3);
   EXPECT_EQ(Describe(options).at("losses.continuity_margin"), "0.1");
+  EXPECT_EQ(Describe(options).at("losses.reconstruction_weight"), "1");
 }
 
 TEST(TrainingOptionsTest, EverySettingIsRequiredAndDescribed) {

@@ -224,6 +224,16 @@ TEST(BvhExport, RestsInATPoseFacingForwards) {
   EXPECT_GT(offset(2, 0).y, 0.38);            // the head is up
 }
 
+TEST(BvhExport, TakesASkeletonWithoutLandmarks) {
+  motion::Skeleton skeleton = motion::SbuSkeleton();
+  skeleton.hips.reset();
+  skeleton.feet.reset();
+  const motion::Clip clip = MakePerson();
+  absl::StatusOr<BvhDocument> document = ToBvh(clip, skeleton);
+  ASSERT_TRUE(document.ok()) << document.status();
+  EXPECT_LT(LargestDistance(PlayBack(*document, skeleton), clip), kOneMillimetre);
+}
+
 // Hips that go sideways from a pelvis still carry legs that hang.
 TEST(BvhExport, HangsTheLegsOfASkeletonRootedAtThePelvis) {
   motion::Skeleton skeleton;

@@ -45,6 +45,18 @@ TEST(BvhImport, ReadsWhatWeWrite) {
   EXPECT_LT(LargestDistance(*read, clip), kOneMillimetre);
 }
 
+TEST(BvhImport, ASkeletonWithoutFeetNeedsItsUnitSaid) {
+  const motion::Clip clip = MakePerson();
+  BvhImportOptions options;
+  options.skeleton.feet.reset();
+  EXPECT_THAT(std::string(FromBvh(Export(clip), "a.bvh", options).status().message()),
+              HasSubstr("a.bvh: size: the skeleton has no feet"));
+  options.metres_per_unit = 0.01;
+  const absl::StatusOr<motion::Clip> read = FromBvh(Export(clip), "a.bvh", options);
+  ASSERT_TRUE(read.ok()) << read.status();
+  EXPECT_LT(LargestDistance(*read, clip), kOneMillimetre);
+}
+
 TEST(BvhImport, FindsTheUnitFromThePersonsSize) {
   const motion::Clip clip = MakePerson();
   const std::pair<double, const char*> units[] = {{1, "unit: centimetres"},
