@@ -161,7 +161,7 @@ absl::StatusOr<std::vector<motion::Vec3>> ReadFollowerStart(const fs::path& path
   if (!any_rate.frame_rate_hz.has_value()) any_rate.frame_rate_hz = kSbuFrameRateHz;
   absl::StatusOr<motion::Clip> clip = ReadLeader(path, any_rate);
   if (!clip.ok()) return clip.status();
-  const absl::Span<const motion::Vec3> start = *clip.poses[0];
+  const absl::Span<const motion::Vec3> start = clip->poses[0];
   return std::vector<motion::Vec3>(start.begin(), start.end());
 }
 
