@@ -6,11 +6,12 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "absl/types/span.h"
 
 namespace duet::client::internal {
 namespace {
 
-void AppendPositions(const std::vector<motion::Vec3>& points,
+void AppendPositions(absl::Span<const motion::Vec3> points,
                      google::protobuf::RepeatedField<float>* positions) {
   positions->Reserve(positions->size() + static_cast<int>(points.size()) * 3);
   for (const motion::Vec3& point : points) {
@@ -48,7 +49,7 @@ absl::Status FillLeader(const motion::Clip& clip, v1::Motion* leader) {
   leader->set_unit(v1::LENGTH_UNIT_METRES);
   leader->set_up_axis(v1::UP_AXIS_Y_UP);
   leader->set_frame_count(static_cast<uint32_t>(clip.frame_count()));
-  AppendPositions(clip.poses, leader->mutable_positions());
+  AppendPositions(clip.poses.all(), leader->mutable_positions());
   return absl::OkStatus();
 }
 

@@ -49,22 +49,22 @@ void Adversary::Add(const std::string& name, bool class_aware, const checkpoint:
   network->set_dropout(options_.discriminator.dropout);
   auto optimiser =
       std::make_unique<Optimiser>(OptimiserOptions(options_), network->parameters(), steps);
-  judges_.push_back({name, class_aware, network, std::move(optimiser)});
+  critics_.push_back({name, class_aware, network, std::move(optimiser)});
 }
 
 double Adversary::Train(const TrainingBatch& batch, const torch::Tensor& synthesised,
                         int64_t step) {
   double sum = 0;
   const torch::Tensor& lengths = batch.input.lengths;
-  for (Judge& judge : judges_) {
+  for (Critic& critic : critics_) {
     const torch::Tensor classes =
-        judge.class_aware ? batch.classes : torch::zeros_like(batch.classes);
+        critic.class_aware ? batch.classes : torch::zeros_like(batch.classes);
     const torch::Tensor loss =
-        network::DiscriminatorLoss(judge.network->forward(batch.follower, lengths),
-                                   judge.network->forward(synthesised, lengths), classes);
+        network::DiscriminatorLoss(critic.network->forward(batch.follower, lengths),
+                                   critic.network->forward(synthesised, lengths), classes);
     loss.backward();
-    judge.optimiser->Step(step);
-    if (options_.discriminator.unit_norm_kernels) judge.network->NormaliseKernels();
+    critic.optimiser->Step(step);
+    if (options_.discriminator.unit_norm_kernels) critic.network->NormaliseKernels();
     sum += loss.item<double>();
   }
   return sum;
@@ -77,20 +77,20 @@ torch::Tensor Adversary::GeneratorLoss(const TrainingBatch& batch,
   const torch::Tensor motion = synthesised.index_select(0, batch.single_rows);
   const torch::Tensor lengths = batch.input.lengths.index_select(0, batch.single_rows);
   const torch::Tensor classes = batch.classes.index_select(0, batch.single_rows);
-  for (Judge& judge : judges_) {
-    const Frozen frozen(*judge.network);
-    sum = sum + network::AdversarialLoss(judge.network->forward(motion, lengths),
-                                         judge.class_aware ? classes : torch::zeros_like(classes));
+  for (Critic& critic : critics_) {
+    const Frozen frozen(*critic.network);
+    sum = sum + network::AdversarialLoss(critic.network->forward(motion, lengths),
+                                         critic.class_aware ? classes : torch::zeros_like(classes));
   }
   return sum;
 }
 
 std::vector<std::pair<std::string, torch::Tensor>> Adversary::Tensors() {
   std::vector<std::pair<std::string, torch::Tensor>> tensors;
-  for (Judge& judge : judges_) {
+  for (Critic& critic : critics_) {
     int64_t i = 0;
-    for (const torch::Tensor& tensor : judge.network->parameters()) {
-      tensors.emplace_back(absl::StrCat(judge.name, i++), tensor.detach());
+    for (const torch::Tensor& tensor : critic.network->parameters()) {
+      tensors.emplace_back(absl::StrCat(critic.name, i++), tensor.detach());
     }
   }
   return tensors;
@@ -98,8 +98,8 @@ std::vector<std::pair<std::string, torch::Tensor>> Adversary::Tensors() {
 
 std::vector<std::pair<std::string, torch::optim::Optimizer*>> Adversary::Optimisers() {
   std::vector<std::pair<std::string, torch::optim::Optimizer*>> optimisers;
-  for (Judge& judge : judges_) {
-    optimisers.emplace_back(judge.name + "_optimiser", &judge.optimiser->state());
+  for (Critic& critic : critics_) {
+    optimisers.emplace_back(critic.name + "_optimiser", &critic.optimiser->state());
   }
   return optimisers;
 }

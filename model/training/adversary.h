@@ -39,7 +39,7 @@ class Adversary {
   std::vector<std::pair<std::string, torch::optim::Optimizer*>> Optimisers();
 
  private:
-  struct Judge {
+  struct Critic {
     std::string name;
     bool class_aware;
     network::Discriminator network;
@@ -50,7 +50,7 @@ class Adversary {
            int64_t steps);
 
   const TrainingOptions& options_;
-  std::vector<Judge> judges_;
+  std::vector<Critic> critics_;
 };
 
 }  // namespace duet::training

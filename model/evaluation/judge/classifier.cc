@@ -46,8 +46,7 @@ MotionBatch MakeMotionBatch(const dataset::Dataset& dataset,
   std::vector<motion::Poses> inputs;
   std::vector<int64_t> lengths, classes;
   for (const dataset::Sequence& sequence : sequences) {
-    const motion::Poses input = JudgeInput(dataset.skeleton, sequence);
-    inputs.emplace_back(input.all().begin(), input.all().end());
+    inputs.push_back(JudgeInput(dataset.skeleton, sequence));
     lengths.push_back(sequence.pair.follower.frame_count());
     classes.push_back(sequence.interaction_class);
   }
