@@ -3,6 +3,7 @@
 
 #include "model/dataset/dataset.h"
 #include "tests/dataset/capture_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace duet::dataset {
 namespace {

@@ -101,7 +101,7 @@ TEST(AugmentTest, ClipsTooShortToCropStayWhole) {
     for (motion::Clip* clip : {&shortened.pair.leader, &shortened.pair.follower}) {
       clip->poses.Resize(frames);
     }
-    EpochRandom random(3, 1);
+    base::Random random(3, 1);
     const dataset::Sequence after = Augment(dataset, shortened, options, &random);
     EXPECT_EQ(after.pair.leader.poses, shortened.pair.leader.poses) << frames;
     EXPECT_EQ(after.pair.follower.poses, shortened.pair.follower.poses) << frames;

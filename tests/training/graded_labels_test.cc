@@ -71,7 +71,7 @@ TEST(GradedLabelsTest, AvoidingAnotherClassLeavesTheCapturedReaction) {
   int checked = 0;
   for (const Example& example : Draw(dataset, StartKnowledge::kNone)) {
     if (KindOf(example) != "other avoided") continue;
-    EXPECT_TRUE(Near(example.target.all(), dataset.sequences[0].pair.follower.poses));
+    EXPECT_TRUE(Near(example.target.all(), dataset.sequences[0].pair.follower.poses.all()));
     ++checked;
   }
   EXPECT_GT(checked, 5);
@@ -100,7 +100,7 @@ TEST(GradedLabelsTest, OtherReactionsHappenWhereThisOneDoes) {
   int checked = 0;
   for (const Example& example : Draw(dataset, StartKnowledge::kNone)) {
     if (KindOf(example) != "other alone" || example.weights[1] < 1) continue;
-    EXPECT_TRUE(Near(example.target.all(), dataset.sequences[0].pair.follower.poses));
+    EXPECT_TRUE(Near(example.target.all(), dataset.sequences[0].pair.follower.poses.all()));
     ++checked;
   }
   EXPECT_GT(checked, 2);

@@ -67,7 +67,7 @@ TEST(FootSlideTest, CountsFastStepsOfFeetOnTheFloor) {
 TEST(FootSlideTest, IsNotComputedWithoutFeet) {
   motion::Skeleton footless = Stilts();
   footless.feet.reset();
-  const FootSlide slide = MeasureFootSlide(std::vector<motion::Vec3>(6), footless, 10);
+  const FootSlide slide = MeasureFootSlide(motion::Poses(2, 3), footless, 10);
   EXPECT_TRUE(std::isnan(slide.skating_ratio));
   EXPECT_TRUE(std::isnan(slide.centimetres_a_frame));
 }

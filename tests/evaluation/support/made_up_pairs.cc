@@ -26,8 +26,7 @@ struct Placement {
   motion::Vec3 at;
 };
 
-void AddFrame(const Placement& placement, const std::vector<motion::Vec3>& pose,
-              motion::Clip* clip) {
+void AddFrame(const Placement& placement, std::vector<motion::Vec3> pose, motion::Clip* clip) {
   for (motion::Vec3& p : pose) p = RotateY(p, placement.yaw) + placement.at;
   clip->Append(pose);
 }
