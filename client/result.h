@@ -10,7 +10,7 @@
 #include "absl/time/time.h"
 #include "model/motion/clip.h"
 #include "model/motion/skeleton.h"
-#include "model/motion/vec3.h"
+#include "model/motion/poses.h"
 
 namespace duet::client {
 
@@ -69,12 +69,11 @@ struct SynthesisResult {
 
 // Consecutive frames of the follower, as they arrive.
 //
-// Shapes: positions [frame_count, joints], row-major, in the leader's joint order.
+// Shapes: poses [frames, joints], in the leader's joint order.
 // Units:  metres, y up.
 struct FollowerChunk {
   int first_frame = 0;
-  int frame_count = 0;
-  std::vector<motion::Vec3> positions;
+  motion::Poses poses;
 };
 
 // Called with every chunk, in frame order; each frame comes once, even where the call was retried.

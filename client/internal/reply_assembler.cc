@@ -38,7 +38,7 @@ bool IsBrokenConnection(const absl::Status& status) {
 void ReplyAssembler::StartStream() {
   header_.reset();
   summary_.reset();
-  positions_.clear();
+  follower_ = motion::Poses(0, leader_.joint_count());
   received_ = 0;
   chunk_count_ = 0;
 }
@@ -77,7 +77,6 @@ absl::Status ReplyAssembler::AcceptHeader(const v1::SynthesisHeader& header) {
                      leader_.frame_count());
   }
   header_ = header;
-  positions_.reserve(leader_.poses.all().size());
   return absl::OkStatus();
 }
 
@@ -107,21 +106,22 @@ absl::Status ReplyAssembler::CheckChunk(const v1::MotionChunk& chunk) const {
 absl::Status ReplyAssembler::AcceptChunk(const v1::MotionChunk& chunk) {
   absl::Status status = CheckChunk(chunk);
   if (!status.ok()) return status;
-  for (int i = 0; i < chunk.positions_size(); i += 3) {
-    positions_.push_back({chunk.positions(i), chunk.positions(i + 1), chunk.positions(i + 2)});
+  motion::Poses frames(static_cast<int>(chunk.frame_count()), leader_.joint_count());
+  const float* value = chunk.positions().data();
+  for (motion::Vec3& position : frames.all()) {
+    position = {value[0], value[1], value[2]};
+    value += 3;
   }
-  received_ += static_cast<int>(chunk.frame_count());
+  follower_.Append(frames.all());
+  received_ += frames.frame_count();
   ++chunk_count_;
   return HandOut();
 }
 
 absl::Status ReplyAssembler::HandOut() {
   if (!on_chunk_ || received_ <= handed_out_) return absl::OkStatus();
-  const auto joints = static_cast<std::ptrdiff_t>(leader_.joint_names.size());
-  FollowerChunk chunk;
-  chunk.first_frame = handed_out_;
-  chunk.frame_count = received_ - handed_out_;
-  chunk.positions.assign(positions_.begin() + handed_out_ * joints, positions_.end());
+  FollowerChunk chunk{handed_out_, motion::Poses(0, leader_.joint_count())};
+  chunk.poses.Append(follower_.frames(handed_out_, received_ - handed_out_));
   handed_out_ = received_;
   callback_status_ = on_chunk_(chunk);
   return callback_status_;
@@ -158,7 +158,7 @@ SynthesisResult ReplyAssembler::TakeResult() && {
   result.pair.leader = leader_;
   result.pair.follower.joint_names = leader_.joint_names;
   result.pair.follower.frame_rate_hz = leader_.frame_rate_hz;
-  result.pair.follower.poses = motion::Poses(leader_.joint_count(), std::move(positions_));
+  result.pair.follower.poses = std::move(follower_);
   result.model_name = header_->model_name();
   result.model_version = static_cast<int>(header_->model_version());
   result.interaction_classes = {header_->interaction_classes().begin(),

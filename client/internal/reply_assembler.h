@@ -51,7 +51,7 @@ class ReplyAssembler {
   const ChunkCallback& on_chunk_;
   std::optional<v1::SynthesisHeader> header_;
   std::optional<v1::SynthesisSummary> summary_;
-  std::vector<motion::Vec3> positions_;  // [received_, joints] of the stream in progress
+  motion::Poses follower_;  // [received_, joints] of the stream in progress
   int received_ = 0;
   int chunk_count_ = 0;
   int handed_out_ = 0;

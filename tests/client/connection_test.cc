@@ -122,10 +122,10 @@ TEST_F(ConnectionTest, ExpiredCallsAreNotTriedAgain) {
 
 TEST_F(ConnectionTest, TheCallbackSeesEveryFrameOnceAcrossRetries) {
   stub_->streams = {Broken(), Good(3)};
-  std::vector<motion::Vec3> frames;
+  motion::Poses frames(0, request_.leader.joint_count());
   const absl::StatusOr<SynthesisResult> result = Synthesize([&](const FollowerChunk& chunk) {
-    EXPECT_EQ(static_cast<size_t>(chunk.first_frame) * 3, frames.size());
-    frames.insert(frames.end(), chunk.positions.begin(), chunk.positions.end());
+    EXPECT_EQ(chunk.first_frame, frames.frame_count());
+    frames.Append(chunk.poses.all());
     return absl::OkStatus();
   });
   ASSERT_THAT(result, IsOk());

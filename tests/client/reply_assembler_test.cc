@@ -49,10 +49,11 @@ class ReplyAssemblerTest : public ::testing::Test {
 
   motion::Clip leader_ = ThreeJointLeader(5);
   std::vector<std::pair<int, int>> handed_out_;
-  std::vector<motion::Vec3> frames_;
+  motion::Poses frames_;
   ChunkCallback on_chunk_ = [this](const FollowerChunk& chunk) {
-    handed_out_.emplace_back(chunk.first_frame, chunk.frame_count);
-    frames_.insert(frames_.end(), chunk.positions.begin(), chunk.positions.end());
+    handed_out_.emplace_back(chunk.first_frame, chunk.poses.frame_count());
+    if (frames_.empty()) frames_ = motion::Poses(0, chunk.poses.joint_count());
+    frames_.Append(chunk.poses.all());
     return absl::OkStatus();
   };
   ReplyAssembler assembler_{leader_, on_chunk_};

@@ -116,14 +116,12 @@ v1::SynthesizeResponse HeaderFor(const motion::Clip& leader, uint32_t version) {
 }
 
 v1::SynthesizeResponse ChunkFor(const motion::Clip& leader, int first_frame, int frames) {
-  const std::vector<motion::Vec3> follower = FollowerFor(leader);
+  const motion::Poses follower = FollowerFor(leader);
   v1::SynthesizeResponse response;
   v1::MotionChunk* chunk = response.mutable_chunk();
   chunk->set_first_frame(static_cast<uint32_t>(first_frame));
   chunk->set_frame_count(static_cast<uint32_t>(frames));
-  const int joints = leader.joint_count();
-  for (int i = first_frame * joints; i < (first_frame + frames) * joints; ++i) {
-    const motion::Vec3& position = follower[static_cast<size_t>(i)];
+  for (const motion::Vec3& position : follower.frames(first_frame, frames)) {
     for (float value : {position.x, position.y, position.z}) chunk->add_positions(value);
   }
   return response;
