@@ -9,8 +9,8 @@
 #include "absl/status/status.h"
 #include "absl/time/time.h"
 #include "model/motion/clip.h"
-#include "model/motion/skeleton.h"
 #include "model/motion/poses.h"
+#include "model/motion/skeleton.h"
 
 namespace duet::client {
 

@@ -10,12 +10,12 @@ ClipStream::ClipStream(std::shared_ptr<const engine::Synthesizer> model,
                        engine::ClipRequest request, const ClipStreamOptions& options,
                        batching::WindowScheduler& scheduler, std::function<void()> on_progress)
     : model_(std::move(model)),
-      joints_(static_cast<std::size_t>(model_->description().skeleton.joint_count())),
       options_(options),
       scheduler_(scheduler),
       on_progress_(std::move(on_progress)),
       cancelled_(std::make_shared<std::atomic<bool>>(false)),
-      clip_(model_->description(), std::move(request)) {}
+      clip_(model_->description(), std::move(request)),
+      ready_(0, model_->description().skeleton.joint_count()) {}
 
 absl::Status ClipStream::Start() {
   {
@@ -29,16 +29,16 @@ ClipPart ClipStream::Take(int max_frames) {
   ClipPart part;
   {
     common::MutexLock lock(mutex_);
-    const std::size_t available = (ready_.size() - taken_) / joints_;
+    const int available = ready_.frame_count() - taken_;
     if (!error_.ok()) {
       part.kind = ClipPart::Kind::kFailed;
       part.error = error_;
     } else if (available > 0) {
-      const std::size_t count = std::min(available, static_cast<std::size_t>(max_frames));
-      const auto first = ready_.begin() + static_cast<std::ptrdiff_t>(taken_);
+      const int count = std::min(available, max_frames);
       part.kind = ClipPart::Kind::kFrames;
-      part.frames.assign(first, first + static_cast<std::ptrdiff_t>(count * joints_));
-      taken_ += count * joints_;
+      part.poses = motion::Poses(0, ready_.joint_count());
+      part.poses.Append(ready_.frames(taken_, count));
+      taken_ += count;
     } else if (!in_flight_ && !clip_.HasNextWindow()) {
       part.kind = ClipPart::Kind::kEnd;
     }
@@ -56,8 +56,8 @@ ClipStreamStats ClipStream::stats() const {
 
 bool ClipStream::WantsWindow() const {
   if (in_flight_ || !error_.ok() || cancelled_->load(std::memory_order_acquire)) return false;
-  const std::size_t waiting = (ready_.size() - taken_) / joints_;
-  return waiting < static_cast<std::size_t>(options_.buffered_frames) && clip_.HasNextWindow();
+  const int waiting = ready_.frame_count() - taken_;
+  return waiting < options_.buffered_frames && clip_.HasNextWindow();
 }
 
 void ClipStream::ScheduleIfWanted() {
@@ -84,7 +84,7 @@ absl::Status ClipStream::ScheduleNext(bool continues_call) {
   job.done = [self = shared_from_this()](batching::WindowOutcome outcome) {
     self->OnWindow(outcome);
   };
-  expected_positions_ = job.window.leader.all().size();
+  expected_frames_ = job.window.leader.frame_count();
   return scheduler_.Submit(std::move(job));
 }
 
@@ -106,20 +106,22 @@ void ClipStream::Keep(const absl::Status& status, const motion::Poses& frames,
   stats_.windows += status.ok() ? 1 : 0;
   stats_.queue_seconds += timings.queue_seconds;
   stats_.compute_seconds += timings.compute_seconds;
-  ready_.erase(ready_.begin(), ready_.begin() + static_cast<std::ptrdiff_t>(taken_));
+  ready_.DropFront(taken_);
   taken_ = 0;
-  ready_.insert(ready_.end(), frames.all().begin(), frames.all().end());
-  const int buffered = static_cast<int>(ready_.size() / joints_);
-  stats_.peak_buffered_frames = std::max(stats_.peak_buffered_frames, buffered);
+  ready_.Append(frames.all());
+  stats_.peak_buffered_frames = std::max(stats_.peak_buffered_frames, ready_.frame_count());
 }
 
 absl::Status ClipStream::Check(const engine::WindowResult& result) const {
   if (!result.ok()) return result.status();
   const absl::Span<const motion::Vec3> positions = result->all();
-  if (positions.size() != expected_positions_ ||
-      static_cast<std::size_t>(result->joint_count()) != joints_) {
+  const int joints = model_->description().skeleton.joint_count();
+  if (result->joint_count() != joints || result->frame_count() != expected_frames_ ||
+      positions.size() % static_cast<std::size_t>(joints) != 0) {
     return absl::InternalError("the model gave " + std::to_string(positions.size()) +
-                               " positions, wanted " + std::to_string(expected_positions_));
+                               " positions of " + std::to_string(result->joint_count()) +
+                               " joints, wanted " + std::to_string(expected_frames_) +
+                               " frames of " + std::to_string(joints));
   }
   if (!std::all_of(positions.begin(), positions.end(), motion::IsFinite)) {
     return absl::InternalError("the model gave a position that is not finite");

@@ -35,12 +35,12 @@ struct ClipStreamStats {
 struct ClipPart {
   enum class Kind {
     kPending,  // nothing is ready; on_progress will be called
-    kFrames,   // frames[0, n) follow those taken before
+    kFrames,   // poses[0, n) follow those taken before
     kEnd,      // every frame was taken
     kFailed    // error says why; there will be nothing more
   };
   Kind kind = Kind::kPending;
-  std::vector<motion::Vec3> frames;  // [n, joints], n >= 1
+  motion::Poses poses;  // [n, joints], n >= 1
   absl::Status error;
 };
 
@@ -50,7 +50,7 @@ struct ClipPart {
 //
 //   auto stream = std::make_shared<ClipStream>(model, clip, options, scheduler, on_progress);
 //   absl::Status admitted = stream->Start();
-//   ... on_progress: while ((part = stream->Take(30)).kind == kFrames) send(part.frames) ...
+//   ... on_progress: while ((part = stream->Take(30)).kind == kFrames) send(part.poses) ...
 //
 // Threads: safe to call concurrently. on_progress runs on the scheduler's threads, under no lock,
 // and may still come when the end was taken.
@@ -85,7 +85,6 @@ class ClipStream : public std::enable_shared_from_this<ClipStream> {
             const batching::WindowTimings& timings) DUET_EXCLUDES(mutex_);
 
   const std::shared_ptr<const engine::Synthesizer> model_;
-  const std::size_t joints_;
   const ClipStreamOptions options_;
   batching::WindowScheduler& scheduler_;
   const std::function<void()> on_progress_;
@@ -93,12 +92,12 @@ class ClipStream : public std::enable_shared_from_this<ClipStream> {
 
   // Used only by the thread that set in_flight_ or was given its window; frame_count() is constant.
   engine::ClipSynthesis clip_;
-  std::size_t expected_positions_ = 0;  // of the window in flight
+  int expected_frames_ = 0;  // of the window in flight
 
   mutable common::Mutex mutex_;
   bool in_flight_ DUET_GUARDED_BY(mutex_) = false;
-  std::vector<motion::Vec3> ready_ DUET_GUARDED_BY(mutex_);  // [n, joints]
-  std::size_t taken_ DUET_GUARDED_BY(mutex_) = 0;            // values of ready_ already handed out
+  motion::Poses ready_ DUET_GUARDED_BY(mutex_);
+  int taken_ DUET_GUARDED_BY(mutex_) = 0;  // frames of ready_ already handed out
   absl::Status error_ DUET_GUARDED_BY(mutex_);
   ClipStreamStats stats_ DUET_GUARDED_BY(mutex_);
 };

@@ -4,16 +4,15 @@
 
 namespace duet::server::service {
 
-void FillChunk(const ReplyMapping& reply, const std::vector<motion::Vec3>& frames, int model_joints,
-               int first_frame, v1::MotionChunk& chunk) {
-  const int frame_count = static_cast<int>(frames.size()) / model_joints;
+void FillChunk(const ReplyMapping& reply, const motion::Poses& poses, int first_frame,
+               v1::MotionChunk& chunk) {
   chunk.set_first_frame(first_frame);
-  chunk.set_frame_count(frame_count);
-  chunk.mutable_positions()->Reserve(frame_count * static_cast<int>(reply.joints.size()) * 3);
-  for (int frame = 0; frame < frame_count; ++frame) {
-    const motion::Vec3* pose = frames.data() + static_cast<std::ptrdiff_t>(frame) * model_joints;
+  chunk.set_frame_count(poses.frame_count());
+  chunk.mutable_positions()->Reserve(poses.frame_count() * static_cast<int>(reply.joints.size()) *
+                                     3);
+  for (int frame = 0; frame < poses.frame_count(); ++frame) {
     for (const int joint : reply.joints) {
-      const motion::Vec3 position = FromWorld(reply.coordinates, pose[joint]);
+      const motion::Vec3 position = FromWorld(reply.coordinates, poses.at(frame, joint));
       chunk.add_positions(position.x);
       chunk.add_positions(position.y);
       chunk.add_positions(position.z);

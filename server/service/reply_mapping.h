@@ -7,7 +7,7 @@
 #include "duet/v1/motion.pb.h"
 #include "duet/v1/synthesis.pb.h"
 #include "model/motion/coordinates.h"
-#include "model/motion/vec3.h"
+#include "model/motion/poses.h"
 
 namespace duet::server::service {
 
@@ -22,9 +22,9 @@ struct ReplyMapping {
   double frame_rate_hz = 0;
 };
 
-// Fills in a chunk. Shapes: frames [n, model_joints], the model's joint order, world metres.
-void FillChunk(const ReplyMapping& reply, const std::vector<motion::Vec3>& frames, int model_joints,
-               int first_frame, v1::MotionChunk& chunk);
+// Fills in a chunk. Units: `poses` in the model's joint order, world metres.
+void FillChunk(const ReplyMapping& reply, const motion::Poses& poses, int first_frame,
+               v1::MotionChunk& chunk);
 
 }  // namespace duet::server::service
 

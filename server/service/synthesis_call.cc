@@ -149,8 +149,7 @@ void SynthesisCall::PrepareChunk(const ClipPart& part) {
   if (record.chunks == 0) record.first_chunk_seconds = scope_->ElapsedSeconds();
   v1::MotionChunk& chunk = *reply_.mutable_chunk();
   chunk.Clear();
-  FillChunk(reply_mapping_, part.frames, model_->description().skeleton.joint_count(),
-            record.frames, chunk);
+  FillChunk(reply_mapping_, part.poses, record.frames, chunk);
   ++record.chunks;
   record.frames += static_cast<int>(chunk.frame_count());
 }

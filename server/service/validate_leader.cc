@@ -162,21 +162,19 @@ bool ValidateFinite(absl::string_view field,
   return found == 0;
 }
 
-std::vector<motion::Vec3> ReadPositions(absl::string_view field,
-                                        const google::protobuf::RepeatedField<float>& positions,
-                                        const std::vector<int>& joints,
-                                        const motion::Coordinates& coordinates,
-                                        const RequestLimits& limits, Violations& violations) {
+motion::Poses ReadPositions(absl::string_view field,
+                            const google::protobuf::RepeatedField<float>& positions,
+                            const std::vector<int>& joints, const motion::Coordinates& coordinates,
+                            const RequestLimits& limits, Violations& violations) {
   const int points = positions.size() / 3;
   const int joint_count = static_cast<int>(joints.size());
   const float limit = limits.max_abs_coordinate_metres;
-  std::vector<motion::Vec3> world(points);
+  motion::Poses world(points / joint_count, joint_count);
   int too_far = 0;
   for (int point = 0; point < points; ++point) {
     const float* xyz = positions.data() + 3 * static_cast<std::ptrdiff_t>(point);
     const motion::Vec3 position = ToWorld(coordinates, {xyz[0], xyz[1], xyz[2]});
-    const int frame_start = point / joint_count * joint_count;
-    world[frame_start + joints[point % joint_count]] = position;
+    world.at(point / joint_count, joints[point % joint_count]) = position;
     // Written so that a conversion that overflowed is too far as well.
     if (std::abs(position.x) <= limit && std::abs(position.y) <= limit &&
         std::abs(position.z) <= limit) {
@@ -193,8 +191,7 @@ std::vector<motion::Vec3> ReadPositions(absl::string_view field,
     violations.Malformed(std::string(field),
                          absl::StrCat("has ", too_far, " positions that are too far away in all"));
   }
-  if (too_far > 0) world.clear();
-  return world;
+  return too_far > 0 ? motion::Poses() : world;
 }
 
 }  // namespace duet::server::service

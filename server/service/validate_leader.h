@@ -8,7 +8,7 @@
 #include "duet/v1/motion.pb.h"
 #include "model/engine/model_description.h"
 #include "model/motion/coordinates.h"
-#include "model/motion/vec3.h"
+#include "model/motion/poses.h"
 #include "server/service/request_limits.h"
 #include "server/service/violations.h"
 
@@ -29,14 +29,13 @@ std::vector<int> ValidateJoints(const v1::Motion& leader, const engine::ModelDes
 // Rate, frame count and duration.
 void ValidateTiming(const v1::Motion& leader, const RequestLimits& limits, Violations& violations);
 
-// Reads flat positions [frames, joints, 3] of the caller into world positions [frames, joints] in
-// the model's joint order. Empty, and violations under `field`, when a value is not finite or
+// Reads flat positions [frames, joints, 3] of the caller as poses in the world, in the model's
+// joint order. Empty, and violations under `field`, when a value is not finite or
 // absurdly far away. `positions` holds a whole number of frames of `joints`.
-std::vector<motion::Vec3> ReadPositions(absl::string_view field,
-                                        const google::protobuf::RepeatedField<float>& positions,
-                                        const std::vector<int>& joints,
-                                        const motion::Coordinates& coordinates,
-                                        const RequestLimits& limits, Violations& violations);
+motion::Poses ReadPositions(absl::string_view field,
+                            const google::protobuf::RepeatedField<float>& positions,
+                            const std::vector<int>& joints, const motion::Coordinates& coordinates,
+                            const RequestLimits& limits, Violations& violations);
 
 // Names the first few values that are not finite, and counts them all. True when there are none.
 bool ValidateFinite(absl::string_view field,

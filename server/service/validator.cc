@@ -45,7 +45,7 @@ class Validation {
 
   std::optional<motion::Coordinates> coordinates_;
   std::vector<int> joints_;  // the leader's joints in the model; empty when they do not fit
-  std::vector<motion::Vec3> leader_;
+  motion::Poses leader_;
   ReplyMapping reply_;
 };
 
@@ -78,7 +78,9 @@ std::vector<motion::Vec3> Validation::StartPositions(
     absl::string_view field, const google::protobuf::RepeatedField<float>& values,
     const std::vector<int>& joints) {
   if (!ValidateFinite(field, values, violations_) || !coordinates_.has_value()) return {};
-  return ReadPositions(field, values, joints, *coordinates_, limits_, violations_);
+  const motion::Poses pose =
+      ReadPositions(field, values, joints, *coordinates_, limits_, violations_);
+  return {pose.all().begin(), pose.all().end()};
 }
 
 std::optional<engine::FollowerStart> Validation::Start() {
@@ -208,12 +210,12 @@ absl::StatusOr<ValidatedRequest> Validation::Run() {
   const int chunk_frames = ChunkFrames();
   const batching::Priority priority = CallPriority();
   if (!violations_.empty()) return violations_.ToStatus();
-  return ValidatedRequest{{motion::Poses(model_.skeleton.joint_count(), std::move(leader_)),
-                           request_.leader().frame_rate_hz(), engine::LabelTrack(std::move(labels)),
-                           std::move(start), partner_direction},
-                          std::move(reply_),
-                          chunk_frames,
-                          priority};
+  return ValidatedRequest{
+      {std::move(leader_), request_.leader().frame_rate_hz(), engine::LabelTrack(std::move(labels)),
+       std::move(start), partner_direction},
+      std::move(reply_),
+      chunk_frames,
+      priority};
 }
 
 }  // namespace

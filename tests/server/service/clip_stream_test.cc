@@ -74,8 +74,8 @@ std::pair<std::vector<motion::Vec3>, Kind> TakeAll(PuppetStream& stream, int max
   while (true) {
     const ClipPart part = stream->Take(max_frames);
     if (part.kind != Kind::kFrames) return {frames, part.kind};
-    EXPECT_LE(part.frames.size(), static_cast<std::size_t>(max_frames * kJoints));
-    frames.insert(frames.end(), part.frames.begin(), part.frames.end());
+    EXPECT_LE(part.poses.frame_count(), max_frames);
+    frames.insert(frames.end(), part.poses.all().begin(), part.poses.all().end());
   }
 }
 
@@ -129,7 +129,7 @@ TEST(ClipStreamTest, AWindowMayBeDoneBeforeItsSubmissionReturns) {
                                              options, scheduler, [] {});
   ASSERT_THAT(stream->Start(), IsOk());
   const ClipPart all = stream->Take(200);
-  EXPECT_EQ(all.frames.size(), 200u * kJoints);
+  EXPECT_EQ(all.poses.frame_count(), 200);
   EXPECT_EQ(stream->Take(200).kind, Kind::kEnd);
 }
 
@@ -137,7 +137,7 @@ TEST(ClipStreamTest, GivesFramesAfterItsFirstWindow) {
   PuppetStream stream(200);
   ASSERT_THAT(stream->Start(), IsOk());
   stream.scheduler().RunNext();
-  EXPECT_EQ(stream->Take(8).frames.size(), 8u * kJoints);
+  EXPECT_EQ(stream->Take(8).poses.frame_count(), 8);
   EXPECT_EQ(stream.scheduler().queued_windows(), 1u);
 }
 
@@ -324,7 +324,7 @@ TEST(ClipStreamTest, WorksWithManyReadersOnAPool) {
     ASSERT_THAT(reader.stream->Start(), IsOk());
     reader.thread = std::thread([&reader] {
       for (ClipPart part; part.kind != Kind::kEnd; part = reader.stream->Take(7)) {
-        reader.frames += static_cast<int>(part.frames.size()) / kJoints;
+        reader.frames += part.poses.frame_count();
         if (part.kind != Kind::kPending) continue;
         common::MutexLock lock(reader.mutex);
         while (!reader.progress) reader.changed.Wait(reader.mutex);
