@@ -189,7 +189,7 @@ TEST_F(ArgumentsTest, WhatMakesNoSenseIsNamed) {
 
 TEST_F(ArgumentsTest, OutputsThatCannotBeWrittenAreRefusedBeforeAnyWork) {
   ExpectRefused({"--label", "kick=1", "--out", Out("pair.fbx")},
-                "\".fbx\", wanted .bvh, .csv, .npy or .json, or .html for a page to watch");
+                "\".fbx\", wanted .html, .bvh, .csv, .npy or .json");
   ExpectRefused({"--label", "kick=1", "--out", Out("no/pair.csv")}, "there is no folder");
   const std::string leader = Out("leader.csv");
   WriteTestFile(leader, "");

@@ -149,7 +149,7 @@ TEST(ParseCommandLineTest, OldNamesOfFlagsStillWorkButDoNotShow) {
   EXPECT_EQ(line->config.version_labels(0).label(), "old_one");
   EXPECT_EQ(line->config.model_repository(), "/my_models/--max_calls");
   EXPECT_THAT(Parse({"--no_such_flag", "4"}),
-              StatusIs(kInvalidArgument, HasSubstr("--no_such_flag")));
+              StatusIs(kInvalidArgument, HasSubstr("--no-such-flag")));
   EXPECT_THAT(*Parse({"--help"})->print, Not(ContainsRegex("--[a-z]+_")));
 }
 

@@ -280,7 +280,7 @@ TEST(ClipStreamTest, RefusesAResultOfTheWrongLength) {
                                              scheduler, [] {});
   ASSERT_THAT(stream->Start(), IsOk());
   scheduler.RunNext();
-  EXPECT_THAT(stream->Take(30).error, StatusIs(kInternal, HasSubstr("wanted 600")));
+  EXPECT_THAT(stream->Take(30).error, StatusIs(kInternal, HasSubstr("wanted 40 frames of 15")));
 }
 
 TEST(ClipStreamTest, StartsNothingOnceCancelled) {
