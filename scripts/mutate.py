@@ -153,9 +153,11 @@ def main(arguments):
         sys.exit(f"--rooms: no room matches {' '.join(options.rooms)}")
     tests = {(library, file): mutation_workshop.tests_for(targets, library, file)
              for sources in rooms.values() for file, library in sources.items()}
-    for room, sources in rooms.items():
-        if not any(any(tests[library, file]) for file, library in sources.items()):
-            print(f"{room}: no test program without LibTorch links it; everything survives there")
+    left_out = [room for room, sources in rooms.items()
+                if not any(any(tests[library, file]) for file, library in sources.items())]
+    for room in left_out:
+        print(f"{room}: left out, no test program without LibTorch links it")
+        del rooms[room]
     programs = sorted({program for tiers in tests.values() for tier in tiers for program in tier})
     print(f"Building and running {len(programs)} test programs as they are.", flush=True)
     for shop in shops:
@@ -169,7 +171,7 @@ def main(arguments):
     summary = mutation_report.Summary({room: found for room, found in results.items() if found})
     print(summary.text())
     if options.report:
-        options.report.write_text(summary.page(options, arguments), encoding="utf-8")
+        options.report.write_text(summary.page(options, arguments, left_out), encoding="utf-8")
     return 0 if summary.score >= options.wanted else 1
 
 

@@ -31,11 +31,13 @@ class Summary:
                  for room, found in self.results.items()]
         return "\n".join([*lines, f"{'all':32} {self.score:5.1f} % of {len(self.every)}"])
 
-    def page(self, options, arguments):
+    def page(self, options, arguments, left_out=()):
         return (HEAD.format(command=shlex.join(["scripts/mutate.py", *arguments]),
                             date=datetime.date.today().isoformat(), per_room=options.per_room,
                             seed=options.seed)
                 + self.table()
+                + ("\nLeft out, since only test programs with LibTorch reach them: "
+                   + ", ".join(f"`{room}`" for room in left_out) + ".\n" if left_out else "")
                 + self.listing("Survivors", "survived", "Nothing survived.")
                 + self.listing("Caught by a time limit", "timeout", "None."))
 
