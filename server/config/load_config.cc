@@ -95,7 +95,8 @@ void AddServingFlags(CLI::App& app, v1::ServerConfig& config) {
       ->option_text("DIR");
   app.add_option_function<std::string>(
          "--default-model", [&](const std::string& value) { config.set_default_model(value); },
-         "model that answers when a request names none (default: the first by name)")
+         "model that answers when a request names none (default: sbu of the embedded ones, of a "
+         "repository the first by name)")
       ->option_text("NAME");
   app.add_option_function<std::vector<std::string>>(
          "--version-label",
