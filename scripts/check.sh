@@ -11,6 +11,7 @@ readonly checks=(
   "format scripts/format.sh --check"
   "self-tests scripts/self_test.sh"
   "layers scripts/check_layers.py"
+  "docs scripts/check_docs.py"
   "proto scripts/check_proto.sh"
   "links scripts/check_links.py"
   "headers scripts/check_headers.py"

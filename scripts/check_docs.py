@@ -11,12 +11,12 @@ links are checked. What a build or a run makes (build/, out/, results/) is not.
 
 import pathlib
 import re
-import subprocess
 import sys
 
 LINK = re.compile(r"\]\(([^)#\s]+)(?:#[^)\s]*)?\)")
 PATH = re.compile(r"`([\w.*{},/-]+/[\w.*{},/-]*)`")
 OF_THE_PAST = ("CHANGELOG.md", "docs/decisions/")
+MADE = ("build", "out", "results")  # top folders
 
 
 def expand(path):
@@ -33,17 +33,17 @@ def exists(root, path):
     return any(root.glob(path)) or any(root.glob(path + ".*"))
 
 
-def tracked(root):
-    listed = subprocess.run(["git", "-C", root, "ls-files", "*.md"], capture_output=True,
-                            check=True, text=True)
-    return listed.stdout.split()
+def documents_of(root):
+    found = (file.relative_to(root) for file in root.rglob("*.md"))
+    return sorted(file.as_posix() for file in found
+                  if file.parts[0] not in MADE and not file.parts[0].startswith("."))
 
 
 def problems(root, document):
     """What is wrong with a document, as (line, message)."""
     file = root / document
     folders = {entry.name for entry in root.iterdir()
-               if entry.is_dir() and entry.name not in ("build", "out", "results")}
+               if entry.is_dir() and entry.name not in MADE}
     for number, line in enumerate(file.read_text(encoding="utf-8").splitlines(), start=1):
         for target in LINK.findall(line):
             if ":" not in target and not (file.parent / target).exists():
@@ -60,7 +60,7 @@ def problems(root, document):
 
 def main(arguments):
     root = pathlib.Path(arguments[0] if arguments else pathlib.Path(__file__).parent.parent)
-    documents = tracked(root)
+    documents = documents_of(root)
     found = [f"{document}:{line}: {message}"
              for document in documents for line, message in problems(root, document)]
     for problem in found:

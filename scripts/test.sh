@@ -26,6 +26,7 @@ step "Shell scripts" scripts/check_shell.sh
 step "Layout" scripts/format.sh --check
 step "Checks, self-tests" scripts/self_test.sh
 step "Layers" scripts/check_layers.py
+step "Documents" scripts/check_docs.py
 step "Wire contract" scripts/check_proto.sh
 step "Configure" configure
 step "Links" scripts/check_links.py
