@@ -12,10 +12,10 @@ struct NamedCoordinates {
   Coordinates coordinates;
 };
 
-class EveryFrame : public ::testing::TestWithParam<NamedCoordinates> {};
+class EveryKind : public ::testing::TestWithParam<NamedCoordinates> {};
 
 INSTANTIATE_TEST_SUITE_P(
-    Coordinates, EveryFrame,
+    Coordinates, EveryKind,
     ::testing::Values(
         NamedCoordinates{"metres_y_up", {LengthUnit::kMetres, UpAxis::kYUp}},
         NamedCoordinates{"metres_z_up", {LengthUnit::kMetres, UpAxis::kZUp}},
@@ -28,7 +28,7 @@ INSTANTIATE_TEST_SUITE_P(
       return coordinates.param.name;
     });
 
-TEST_P(EveryFrame, RoundTrip) {
+TEST_P(EveryKind, RoundTrip) {
   for (const Vec3 world : {Vec3{0, 0, 0}, Vec3{0.3f, 1.2f, -2.5f}, Vec3{-4, 0.01f, 7}}) {
     EXPECT_LT(
         Distance(ToWorld(GetParam().coordinates, FromWorld(GetParam().coordinates, world)), world),
@@ -36,7 +36,7 @@ TEST_P(EveryFrame, RoundTrip) {
   }
 }
 
-TEST_P(EveryFrame, KeepsHandedness) {
+TEST_P(EveryKind, KeepsHandedness) {
   const Coordinates& coordinates = GetParam().coordinates;
   const Vec3 origin = ToWorld(coordinates, {0, 0, 0});
   Vec3 x = ToWorld(coordinates, {1, 0, 0}) - origin;

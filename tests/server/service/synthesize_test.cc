@@ -264,11 +264,11 @@ TEST(SynthesizeTest, RepliesInTheLeadersJointOrder) {
   EXPECT_LT(LargestDifference(reply.Positions(), leader.positions()), 1e-4F);
 }
 
-using Frame = std::tuple<v1::LengthUnit, v1::UpAxis, float>;  // the unit's length of a metre
+using UnitAndAxis = std::tuple<v1::LengthUnit, v1::UpAxis, float>;  // the unit's length of a metre
 
-class FrameTest : public ::testing::TestWithParam<Frame> {};
+class CoordinatesTest : public ::testing::TestWithParam<UnitAndAxis> {};
 
-TEST_P(FrameTest, TheReplyIsInTheLeadersUnitAxisAndWorld) {
+TEST_P(CoordinatesTest, TheReplyIsInTheLeadersUnitAxisAndWorld) {
   const auto [unit, up_axis, metre] = GetParam();
   RunningService::Setup setup;
   setup.model = Echo();
@@ -287,14 +287,14 @@ TEST_P(FrameTest, TheReplyIsInTheLeadersUnitAxisAndWorld) {
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Every, FrameTest,
-    ::testing::Values(Frame{v1::LENGTH_UNIT_METRES, v1::UP_AXIS_Y_UP, 1},
-                      Frame{v1::LENGTH_UNIT_METRES, v1::UP_AXIS_Z_UP, 1},
-                      Frame{v1::LENGTH_UNIT_METRES, v1::UP_AXIS_Y_DOWN, 1},
-                      Frame{v1::LENGTH_UNIT_MILLIMETRES, v1::UP_AXIS_Y_UP, 1000},
-                      Frame{v1::LENGTH_UNIT_MILLIMETRES, v1::UP_AXIS_Z_UP, 1000},
-                      Frame{v1::LENGTH_UNIT_MILLIMETRES, v1::UP_AXIS_Y_DOWN, 1000},
-                      Frame{v1::LENGTH_UNIT_SBU_NORMALISED, v1::UP_AXIS_Y_DOWN, 1}));
+    Every, CoordinatesTest,
+    ::testing::Values(UnitAndAxis{v1::LENGTH_UNIT_METRES, v1::UP_AXIS_Y_UP, 1},
+                      UnitAndAxis{v1::LENGTH_UNIT_METRES, v1::UP_AXIS_Z_UP, 1},
+                      UnitAndAxis{v1::LENGTH_UNIT_METRES, v1::UP_AXIS_Y_DOWN, 1},
+                      UnitAndAxis{v1::LENGTH_UNIT_MILLIMETRES, v1::UP_AXIS_Y_UP, 1000},
+                      UnitAndAxis{v1::LENGTH_UNIT_MILLIMETRES, v1::UP_AXIS_Z_UP, 1000},
+                      UnitAndAxis{v1::LENGTH_UNIT_MILLIMETRES, v1::UP_AXIS_Y_DOWN, 1000},
+                      UnitAndAxis{v1::LENGTH_UNIT_SBU_NORMALISED, v1::UP_AXIS_Y_DOWN, 1}));
 
 class RateTest : public ::testing::TestWithParam<double> {};
 
