@@ -33,7 +33,7 @@ inline constexpr std::size_t kTransportPerRequest = 16;
 struct ServerOptions {
   ListenAddress listen = {"0.0.0.0", 50051};
   std::optional<ListenAddress> metrics_listen = ListenAddress{"0.0.0.0", 9464};
-  std::filesystem::path model_repository;  // empty: the embedded checkpoint
+  std::filesystem::path model_repository;  // empty: the embedded checkpoints
   std::string default_model;
   std::vector<VersionLabelOption> version_labels;
   bool reflection = true;
