@@ -2,7 +2,6 @@
 #define DUET_CLIENT_CLI_ARGUMENTS_H_
 
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>

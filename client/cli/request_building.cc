@@ -1,6 +1,5 @@
 #include "client/cli/request_building.h"
 
-#include <algorithm>
 #include <optional>
 #include <system_error>
 #include <utility>

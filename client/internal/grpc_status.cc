@@ -1,7 +1,6 @@
 #include "client/internal/grpc_status.h"
 
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "absl/strings/cord.h"

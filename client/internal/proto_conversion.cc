@@ -1,7 +1,6 @@
 #include "client/internal/proto_conversion.h"
 
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 

@@ -1,6 +1,6 @@
 #include "model/authoring/keyframes.h"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>

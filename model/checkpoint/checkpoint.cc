@@ -1,6 +1,5 @@
 #include "model/checkpoint/checkpoint.h"
 
-#include <algorithm>
 #include <map>
 #include <string>
 #include <utility>

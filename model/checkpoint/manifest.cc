@@ -1,6 +1,5 @@
 #include "model/checkpoint/manifest.h"
 
-#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>

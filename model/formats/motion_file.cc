@@ -1,6 +1,5 @@
 #include "model/formats/motion_file.h"
 
-#include <functional>
 #include <utility>
 
 #include "absl/strings/ascii.h"

@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <optional>
 #include <set>
-#include <utility>
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"

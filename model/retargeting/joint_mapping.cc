@@ -1,13 +1,10 @@
 #include "model/retargeting/joint_mapping.h"
 
 #include <algorithm>
-#include <cmath>
 #include <initializer_list>
 #include <optional>
-#include <set>
 #include <utility>
 
-#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "model/base/text.h"

@@ -8,6 +8,7 @@
 #include "model/torch_engine/torch_network.h"
 
 namespace duet::torch_engine {
+
 absl::StatusOr<std::unique_ptr<engine::Synthesizer>> MakeTorchSynthesizer(
     const checkpoint::Checkpoint& checkpoint, const engine::PipelineOptions& options) {
   absl::StatusOr<std::unique_ptr<const engine::Network>> network = MakeTorchNetwork(checkpoint);

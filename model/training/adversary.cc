@@ -6,8 +6,6 @@
 namespace duet::training {
 namespace {
 
-using network::Discriminator;
-
 TrainingOptions::Optimiser OptimiserOptions(const TrainingOptions& options) {
   TrainingOptions::Optimiser optimiser = options.optimiser;
   optimiser.learning_rate = options.discriminator.learning_rate;

@@ -23,7 +23,6 @@ class Optimiser {
   // Applies the gradients of the parameters as step number `step` (from 0) and clears them.
   void Step(int64_t step);
 
-  void ZeroGradients() { optimiser_->zero_grad(); }
   torch::optim::Optimizer& state() { return *optimiser_; }
 
  private:

@@ -1,5 +1,6 @@
 #include "model/training/run_log.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>

@@ -29,8 +29,9 @@ struct Arguments {
 };
 
 absl::StatusOr<std::string> ReadConfig(const std::string& config) {
-  if (const duet::training::NamedConfig* named = duet::training::FindConfig(config))
+  if (const duet::training::NamedConfig* named = duet::training::FindConfig(config)) {
     return std::string(named->json);
+  }
   std::ifstream in(config, std::ios::binary);
   if (!in) {
     const std::string names = absl::StrJoin(

@@ -1,7 +1,6 @@
 #include "model/training/trainer.h"
 
 #include <chrono>
-#include <cmath>
 #include <limits>
 
 #include "absl/strings/str_cat.h"
@@ -10,8 +9,6 @@
 
 namespace duet::training {
 namespace {
-
-using network::Generator;
 
 // Of the state file. 2: the generator's parameters stacked.
 constexpr int64_t kStateVersion = 2;

@@ -4,7 +4,6 @@
 #include <torch/torch.h>
 
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <vector>
 
@@ -43,9 +42,8 @@ struct EpochReport {
 // Threads: not safe to call concurrently.
 class Trainer {
  public:
-  // `manifest` describes the model to be; its generator must be options.generator,
-  // with parts. `validation`
-  // may be empty. All three must outlive the trainer.
+  // `manifest` describes the model to be; its generator must be options.generator, with parts.
+  // `validation` may be empty. Options, manifest and data set must outlive the trainer.
   Trainer(const TrainingOptions& options, const checkpoint::Manifest& manifest,
           const dataset::Dataset& dataset, std::vector<int> train, std::vector<int> validation);
 

@@ -1,6 +1,5 @@
 #include "model/evaluation/baselines/kmeans.h"
 
-#include <algorithm>
 #include <limits>
 
 #include "model/evaluation/baselines/sample_index.h"

@@ -71,7 +71,7 @@ Rows LeaderCues(const motion::Standardisation& frame, const motion::Poses& world
 
 StandardPair StandardLeader(const motion::Skeleton& skeleton, const dataset::Sequence& sequence) {
   const motion::Standardisation frame = BaselineFrame(skeleton, sequence);
-  const motion::Poses leader = sequence.pair.leader.poses;
+  const motion::Poses& leader = sequence.pair.leader.poses;
   StandardPair pair;
   pair.leader = ToRows(frame.Apply(leader));
   pair.cues = LeaderCues(frame, leader);
@@ -81,7 +81,7 @@ StandardPair StandardLeader(const motion::Skeleton& skeleton, const dataset::Seq
 StandardPair StandardiseSequence(const motion::Skeleton& skeleton,
                                  const dataset::Sequence& sequence) {
   StandardPair pair = StandardLeader(skeleton, sequence);
-  const motion::Poses follower = sequence.pair.follower.poses;
+  const motion::Poses& follower = sequence.pair.follower.poses;
   pair.follower = ToRows(BaselineFrame(skeleton, sequence).Apply(follower));
   return pair;
 }

@@ -1,7 +1,7 @@
 #include "model/evaluation/baselines/nearest_neighbour.h"
 
-#include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace duet::evaluation::baselines {
 namespace {

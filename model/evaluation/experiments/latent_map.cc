@@ -1,7 +1,6 @@
 #include "model/evaluation/experiments/latent_map.h"
 
 #include <algorithm>
-#include <cstddef>
 #include <utility>
 
 #include "model/evaluation/metrics/neighbours.h"

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <string_view>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -21,8 +20,6 @@ struct MotionClassifier::Model {
 };
 
 namespace {
-
-using network::Discriminator;
 
 // Motions at a time when nothing is learnt: bounds memory, and how far short motions are padded.
 constexpr size_t kTestBatch = 64;

@@ -1,7 +1,6 @@
 #include "model/evaluation/metrics/penetration.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 
 namespace duet::evaluation::metrics {

@@ -69,8 +69,8 @@ std::string MetricName(Metric metric) {
 std::vector<double> ScoreMotion(const dataset::Dataset& dataset, const ScoredMotion& motion) {
   const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(motion.sequence)];
   const motion::Skeleton& skeleton = dataset.skeleton;
-  const motion::Poses leader = sequence.pair.leader.poses;
-  const motion::Poses truth = sequence.pair.follower.poses;
+  const motion::Poses& leader = sequence.pair.leader.poses;
+  const motion::Poses& truth = sequence.pair.follower.poses;
   const motion::Poses& made = motion.follower;
   const double rate = sequence.pair.leader.frame_rate_hz;
   const FootSlide slide = MeasureFootSlide(made, skeleton, rate);

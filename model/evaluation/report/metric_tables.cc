@@ -1,6 +1,5 @@
 #include "model/evaluation/report/metric_tables.h"
 
-#include <algorithm>
 #include <utility>
 
 #include "absl/strings/str_cat.h"

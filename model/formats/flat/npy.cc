@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <utility>
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
@@ -53,7 +52,7 @@ class NpyParser {
     motion.people.resize(header_.shape.size() == 4 ? static_cast<size_t>(header_.shape[0]) : 1);
     for (motion::Clip& person : motion.people) {
       person.joint_names = joint_names;
-      person.poses = motion::Poses(static_cast<int>(frames), static_cast<int>(joint_names.size()));
+      person.poses = motion::Poses(frames, static_cast<int>(joint_names.size()));
       status = ReadPositions(&person);
       if (!status.ok()) return status;
     }
