@@ -32,6 +32,11 @@ absl::Status FillLeader(const motion::Clip& clip, v1::Motion* leader) {
   if (clip.joint_names.empty()) {
     return absl::InvalidArgumentError("leader.joint_names: empty, wanted the model's joints");
   }
+  if (!clip.poses.empty() && clip.poses.joint_count() != clip.joint_count()) {
+    return absl::InvalidArgumentError(absl::StrCat("leader.positions: came poses of ",
+                                                   clip.poses.joint_count(), " joints, wanted the ",
+                                                   clip.joint_count(), " of leader.joint_names"));
+  }
   if (clip.poses.all().size() % clip.joint_names.size() != 0) {
     return absl::InvalidArgumentError(absl::StrCat(
         "leader.positions: ", clip.poses.all().size(), " points, wanted a multiple of ",

@@ -36,6 +36,8 @@ absl::Status Check(const PageContent& content) {
                      " Hz, wanted at least one frame and a rate above 0"));
   }
   if (leader.joint_names != follower.joint_names ||
+      leader.poses.joint_count() != leader.joint_count() ||
+      follower.poses.joint_count() != follower.joint_count() ||
       leader.poses.all().size() != follower.poses.all().size() ||
       leader.frame_rate_hz != follower.frame_rate_hz) {
     return absl::InvalidArgumentError(

@@ -59,9 +59,9 @@ struct Manifest {
   int format_version = kCheckpointFormatVersion;
   engine::ModelDescription model;
   GeneratorArchitecture generator;
-  // The frame that the network works in (WindowFrame in model/engine/window_frame.h), metres, y up,
-  // one yaw for the window. The origin is the leader's root: in every frame, as in the paper, or in
-  // the window's first.
+  // The coordinates that the network works in (model/engine/window_standardisation.h): metres, y
+  // up, one yaw for the window. The origin is the leader's root: in every frame, as in the paper,
+  // or in the window's first.
   motion::StandardOrigin standardisation = motion::StandardOrigin::kEveryFrame;
   WeightsFile weights;
   std::string git_revision;

@@ -11,7 +11,8 @@
 
 namespace duet::engine {
 
-// A window in the standard frame of its leader (window_frame.h), metres: all that a network sees.
+// A window in the standard coordinates of its leader (window_standardisation.h), metres: all that a
+// network sees.
 struct NetworkInput {
   motion::Poses leader;       // [frames, joints]
   std::vector<float> labels;  // [frames, classes]
@@ -19,17 +20,17 @@ struct NetworkInput {
 };
 
 // The numbers in the middle of a synthesizer: what an engine implements. Everything around it
-// (standard frame, checks, limb lengths, floor) is MakeSynthesizer's.
+// (standard coordinates, checks, limb lengths, floor) is MakeSynthesizer's.
 //
 // Threads: Run is safe to call concurrently.
 class Network {
  public:
   virtual ~Network() = default;
 
-  // Evaluates inputs of any lengths together. Returns each one's follower in the standard frame, in
-  // order, of as many frames and joints as its leader; the numbers need not be finite. Numbers do
-  // not depend on what else is in the batch (within 1e-5 m). Throws nothing: INTERNAL says what
-  // went wrong.
+  // Evaluates inputs of any lengths together. Returns each one's follower in the standard
+  // coordinates, in order, of as many frames and joints as its leader; the numbers need not be
+  // finite. Numbers do not depend on what else is in the batch (within 1e-5 m). Throws nothing:
+  // INTERNAL says what went wrong.
   virtual absl::StatusOr<std::vector<motion::Poses>> Run(
       absl::Span<const NetworkInput> inputs) const = 0;
 };

@@ -6,7 +6,7 @@
 #include "absl/strings/str_cat.h"
 #include "model/engine/finishing.h"
 #include "model/engine/standard_window.h"
-#include "model/engine/window_frame.h"
+#include "model/engine/window_standardisation.h"
 
 namespace duet::engine {
 namespace {
@@ -26,17 +26,17 @@ class NetworkSynthesizer : public Synthesizer {
 
   std::vector<WindowResult> Synthesize(Windows windows) const override {
     if (windows.empty()) return {};
-    std::vector<motion::Standardisation> frames;
+    std::vector<motion::Standardisation> standardisations;
     std::vector<NetworkInput> inputs;
     for (const SynthesisWindow* window : windows) {
-      frames.push_back(WindowFrame(description_.skeleton, *window, origin_));
-      inputs.push_back(Standardise(frames.back(), *window));
+      standardisations.push_back(WindowStandardisation(description_.skeleton, *window, origin_));
+      inputs.push_back(Standardise(standardisations.back(), *window));
     }
     const absl::StatusOr<std::vector<motion::Poses>> followers = RunNetwork(inputs);
     if (!followers.ok()) return {windows.size(), followers.status()};
     std::vector<WindowResult> results;
     for (std::size_t i = 0; i < windows.size(); ++i) {
-      results.push_back(Finish(*windows[i], frames[i], (*followers)[i]));
+      results.push_back(Finish(*windows[i], standardisations[i], (*followers)[i]));
     }
     return results;
   }
@@ -64,9 +64,9 @@ class NetworkSynthesizer : public Synthesizer {
     return followers;
   }
 
-  WindowResult Finish(const SynthesisWindow& window, const motion::Standardisation& frame,
+  WindowResult Finish(const SynthesisWindow& window, const motion::Standardisation& standardisation,
                       const motion::Poses& standard) const {
-    motion::Poses follower = frame.Invert(standard);
+    motion::Poses follower = standardisation.Invert(standard);
     if (absl::Status status = CheckFinite(follower); !status.ok()) return status;
     if (options_.keep_limb_lengths) KeepLimbLengths(description_.skeleton, window, &follower);
     if (options_.share_floor) ShareFloor(description_.skeleton, window, &follower);

@@ -21,9 +21,9 @@ struct PipelineOptions {
 };
 
 // A synthesizer around a network:
-//   WindowFrame, Standardise, Network::Run, Standardisation::Invert, CheckFinite,
+//   WindowStandardisation, Standardise, Network::Run, Standardisation::Invert, CheckFinite,
 //   KeepLimbLengths, ShareFloor.
-// `origin` is that of the standard frame which the network was trained in.
+// `origin` is that of the standard coordinates which the network was trained in.
 std::unique_ptr<Synthesizer> MakeSynthesizer(ModelDescription description,
                                              motion::StandardOrigin origin,
                                              std::unique_ptr<const Network> network,

@@ -2,12 +2,13 @@
 
 namespace duet::engine {
 
-NetworkInput Standardise(const motion::Standardisation& frame, const SynthesisWindow& window) {
-  NetworkInput input{frame.Apply(window.leader), window.labels, std::nullopt};
+NetworkInput Standardise(const motion::Standardisation& standardisation,
+                         const SynthesisWindow& window) {
+  NetworkInput input{standardisation.Apply(window.leader), window.labels, std::nullopt};
   if (!window.start) return input;
-  input.start = FollowerStart{frame.Apply(window.start->root), {}};
+  input.start = FollowerStart{standardisation.Apply(window.start->root), {}};
   for (const motion::Vec3& joint : window.start->pose) {
-    input.start->pose.push_back(frame.Apply(joint));
+    input.start->pose.push_back(standardisation.Apply(joint));
   }
   return input;
 }

@@ -7,8 +7,10 @@
 
 namespace duet::engine {
 
-// A window in a frame of its leader. The follower's start is relative to the leader's first root.
-NetworkInput Standardise(const motion::Standardisation& frame, const SynthesisWindow& window);
+// A window in the standard coordinates of its leader. The follower's start is relative to the
+// leader's first root.
+NetworkInput Standardise(const motion::Standardisation& standardisation,
+                         const SynthesisWindow& window);
 
 }  // namespace duet::engine
 

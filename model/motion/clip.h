@@ -30,7 +30,7 @@ struct Clip {
   }
 };
 
-// Two characters captured or synthesised together: same frame rate, frames and world frame.
+// Two characters captured or synthesised together: same frame rate, frames and world.
 struct ClipPair {
   Clip leader;
   Clip follower;

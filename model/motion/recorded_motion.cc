@@ -1,6 +1,7 @@
 #include "model/motion/recorded_motion.h"
 
 #include <cmath>
+#include <cstddef>
 
 #include "absl/strings/str_cat.h"
 #include "model/motion/motion_limits.h"
@@ -20,6 +21,11 @@ bool IsWritable(Vec3 position) {
 absl::Status CheckClip(absl::string_view name, const Clip& clip) {
   if (clip.frame_count() < 1) {
     return absl::InvalidArgumentError(absl::StrCat(name, ": no frames, wanted at least 1"));
+  }
+  if (clip.poses.joint_count() != clip.joint_count()) {
+    return absl::InvalidArgumentError(absl::StrCat(name, ": came poses of ",
+                                                   clip.poses.joint_count(), " joints, wanted ",
+                                                   clip.joint_count(), ", as there are names"));
   }
   const std::size_t joints = clip.joint_names.size();
   for (std::size_t i = 0; i < clip.poses.all().size(); ++i) {

@@ -24,9 +24,9 @@ enum class StandardOrigin {
 // The yaw that turns a horizontal direction to -z, where a standardised leader faces.
 double FacingYaw(Vec3 direction);
 
-// The frame in which the network sees a clip: the leader's root at the origin, in every frame or in
-// the first one, and one constant yaw, such that the leader's left-to-right hip direction in frame
-// 0 lies along +x, so that the leader starts facing -z. A skeleton without hips is not turned
+// The coordinates in which the network sees a clip: the leader's root at the origin, in every frame
+// or in the first one, and one constant yaw, such that the leader's left-to-right hip direction in
+// frame 0 lies along +x, so that the leader starts facing -z. A skeleton without hips is not turned
 // unless the caller says how.
 //
 // Source: paper section 4 / released preprocessing. Invertible: the root track and yaw are kept.

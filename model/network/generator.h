@@ -12,7 +12,8 @@
 
 namespace duet::network {
 
-// What the generator sees of a batch of clips, in the standard frame (model/motion/standardise.h).
+// What the generator sees of a batch of clips, in the standard coordinates
+// (model/motion/standardise.h).
 struct GeneratorInput {
   torch::Tensor leader;   // [N, T, 3 J] metres, zero-padded
   torch::Tensor labels;   // [N, T, C]

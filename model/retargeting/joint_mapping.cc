@@ -197,7 +197,8 @@ class Mapper {
 
   void PlaceTorso() {
     const int neck = skeleton_.Find("neck"), torso = skeleton_.Find("torso");
-    if (torso < 0 || Found(torso) || !HasSpineEnds()) return;
+    if (torso < 0 || Found(torso)) return;
+    if (!HasSpineEnds()) return MapByAlias(torso);
     const JointSource middle = Mix({{&SourceOf(neck), 0.5f},
                                     {&SourceOf(skeleton_.hips->left), 0.25f},
                                     {&SourceOf(skeleton_.hips->right), 0.25f}});

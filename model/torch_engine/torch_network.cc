@@ -48,11 +48,16 @@ class TorchNetwork : public engine::Network {
 
 absl::StatusOr<std::unique_ptr<const engine::Network>> MakeTorchNetwork(
     const checkpoint::Checkpoint& checkpoint) {
-  network::Generator generator(checkpoint.manifest);
-  absl::Status status = network::LoadParameters(checkpoint, generator);
-  if (!status.ok()) return status;
-  generator->eval();
-  return std::make_unique<const TorchNetwork>(checkpoint.manifest, std::move(generator));
+  // LibTorch reports by exception: here they stop while loading, in Run while answering.
+  try {
+    network::Generator generator(checkpoint.manifest);
+    absl::Status status = network::LoadParameters(checkpoint, generator);
+    if (!status.ok()) return status;
+    generator->eval();
+    return std::make_unique<const TorchNetwork>(checkpoint.manifest, std::move(generator));
+  } catch (const std::exception& error) {
+    return absl::InternalError(absl::StrCat("the network cannot be made: ", error.what()));
+  }
 }
 
 }  // namespace duet::torch_engine

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "model/engine/window_frame.h"
+#include "model/engine/window_standardisation.h"
 #include "model/motion/resample.h"
 
 namespace duet::training {
@@ -36,7 +36,7 @@ Place PlaceOf(const dataset::Dataset& dataset, const dataset::Sequence& sequence
   window.leader = sequence.pair.leader.poses;
   window.partner_direction = sequence.partner_direction;
   return {sequence.pair.leader.at(0, dataset.skeleton.root),
-          WindowFrame(dataset.skeleton, window).yaw()};
+          WindowStandardisation(dataset.skeleton, window).yaw()};
 }
 
 // The first pose, held.

@@ -4,7 +4,7 @@
 #include <numeric>
 
 #include "model/engine/standard_window.h"
-#include "model/engine/window_frame.h"
+#include "model/engine/window_standardisation.h"
 #include "model/training/graded_labels.h"
 
 namespace duet::training {
@@ -82,7 +82,7 @@ TrainingBatch MakeBatch(const checkpoint::Manifest& manifest, const dataset::Dat
   for (const Example& example : examples) {
     const engine::SynthesisWindow window = MakeWindow(dataset, example);
     const motion::Standardisation frame =
-        WindowFrame(dataset.skeleton, window, manifest.standardisation);
+        WindowStandardisation(dataset.skeleton, window, manifest.standardisation);
     inputs.push_back(Standardise(frame, window));
     targets.push_back(frame.Apply(example.target));
     followers.push_back(frame.Apply(example.sequence.pair.follower.poses));

@@ -16,9 +16,9 @@ namespace duet::training {
 // One step's clips.
 struct TrainingBatch {
   network::GeneratorInput input;
-  torch::Tensor target;       // [N, T, 3 J] wanted of the generator; standard frame, zero-padded
-  torch::Tensor follower;     // [N, T, 3 J] captured: the same but for graded labels
-  torch::Tensor classes;      // [N] int64
+  torch::Tensor target;    // [N, T, 3 J] wanted of the generator; standard coordinates, zero-padded
+  torch::Tensor follower;  // [N, T, 3 J] captured: the same but for graded labels
+  torch::Tensor classes;   // [N] int64
   torch::Tensor single_rows;  // [M] int64, the clips whose label is their class alone
 };
 
@@ -36,7 +36,7 @@ std::vector<TrainingBatch> SampleEpoch(const checkpoint::Manifest& manifest,
                                        const std::vector<int>& train,
                                        const TrainingOptions& options, int64_t epoch);
 
-// The mean pose of each class's followers, [C, 3 J], in the standard frame.
+// The mean pose of each class's followers, [C, 3 J], in the standard coordinates.
 torch::Tensor ClassMeanPoses(const checkpoint::Manifest& manifest, const dataset::Dataset& dataset,
                              const std::vector<int>& train);
 

@@ -119,9 +119,9 @@ absl::Status ClipStream::Check(const engine::WindowResult& result) const {
   if (result->joint_count() != joints || result->frame_count() != expected_frames_ ||
       positions.size() % static_cast<std::size_t>(joints) != 0) {
     return absl::InternalError("the model gave " + std::to_string(positions.size()) +
-                               " positions of " + std::to_string(result->joint_count()) +
+                               " positions in frames of " + std::to_string(result->joint_count()) +
                                " joints, wanted " + std::to_string(expected_frames_) +
-                               " frames of " + std::to_string(joints));
+                               " frames of " + std::to_string(joints) + " joints");
   }
   if (!std::all_of(positions.begin(), positions.end(), motion::IsFinite)) {
     return absl::InternalError("the model gave a position that is not finite");

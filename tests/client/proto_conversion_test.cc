@@ -102,6 +102,8 @@ TEST(SynthesizeRequestTest, WhatTheWireCannotCarryIsRefused) {
                 r->leader.poses = motion::Poses(3, std::vector<motion::Vec3>(5));
               }),
               StatusIs(kInvalid, HasSubstr("leader.positions: 5 points, wanted a multiple of 3")));
+  EXPECT_THAT(refused([](SynthesisRequest* r) { r->leader.poses = motion::Poses(3, 5); }),
+              StatusIs(kInvalid, HasSubstr("leader.positions: came poses of 5 joints, wanted")));
   EXPECT_THAT(refused([](SynthesisRequest* r) {
                 r->keyframes = {{-1, {{"kick", 1}}}};
               }),

@@ -358,6 +358,18 @@ TEST(JointMapping, SaysWhichJointsAreMissingAndWhatThereIs) {
                     HasSubstr("left_hand=NAME")));
 }
 
+TEST(JointMapping, FindsATorsoByNameWhereThereAreNoHipsToPlaceItBy) {
+  NamedPose pose;
+  pose.names = {"Torso", "Head", "LeftHand", "RightHand"};
+  pose.positions = {{0, 1, 0}, {0, 1.5f, 0}, {0.6f, 1, 0}, {-0.6f, 1, 0}};
+  motion::Skeleton skeleton;
+  skeleton.joint_names = {"torso", "head", "left_hand", "right_hand"};
+  skeleton.bones = {{0, 1}, {0, 2}, {0, 3}};
+  const absl::StatusOr<JointMap> map = MapJoints("a.bvh", pose.names, pose.positions, skeleton);
+  ASSERT_TRUE(map.ok()) << map.status();
+  EXPECT_EQ(ApplyJointMap(*map, pose.positions), pose.positions);
+}
+
 TEST(JointMapping, LetsTheUserNameJoints) {
   NamedPose pose = MakePose(kConventions[0]);
   for (std::string& name : pose.names) {

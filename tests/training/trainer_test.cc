@@ -186,7 +186,7 @@ TEST_F(TrainerTest, BatchIsInTheLeadersFrameWithItsLabelAndStart) {
                 {CapturedExample(dataset_, dataset_.sequences[4], StartKnowledge::kRoot)});
   const int root = dataset_.skeleton.root;
   EXPECT_LT(batch.input.leader[0].narrow(1, 3 * root, 3).abs().max().item<float>(), 1e-6);
-  // The partner stands towards +z in the world: -z in the standard frame.
+  // The partner stands towards +z in the world: -z in the standard coordinates.
   EXPECT_LT(batch.follower[0][0][3 * root + 2].item<float>(), -0.5);
   EXPECT_EQ(batch.input.labels[0][0][1].item<float>(), 1);
   EXPECT_EQ(batch.input.labels[0][0].sum().item<float>(), 1);

@@ -16,8 +16,8 @@ constexpr double kWayWeight = 2.0;
 
 }  // namespace
 
-motion::Standardisation BaselineFrame(const motion::Skeleton& skeleton,
-                                      const dataset::Sequence& sequence) {
+motion::Standardisation BaselineStandardisation(const motion::Skeleton& skeleton,
+                                                const dataset::Sequence& sequence) {
   const motion::Poses& leader = sequence.pair.leader.poses;
   if (sequence.partner_direction) {
     return {skeleton, leader, FacingYaw(*sequence.partner_direction)};
@@ -70,7 +70,7 @@ Rows LeaderCues(const motion::Standardisation& frame, const motion::Poses& world
 }
 
 StandardPair StandardLeader(const motion::Skeleton& skeleton, const dataset::Sequence& sequence) {
-  const motion::Standardisation frame = BaselineFrame(skeleton, sequence);
+  const motion::Standardisation frame = BaselineStandardisation(skeleton, sequence);
   const motion::Poses& leader = sequence.pair.leader.poses;
   StandardPair pair;
   pair.leader = ToRows(frame.Apply(leader));
@@ -82,13 +82,13 @@ StandardPair StandardiseSequence(const motion::Skeleton& skeleton,
                                  const dataset::Sequence& sequence) {
   StandardPair pair = StandardLeader(skeleton, sequence);
   const motion::Poses& follower = sequence.pair.follower.poses;
-  pair.follower = ToRows(BaselineFrame(skeleton, sequence).Apply(follower));
+  pair.follower = ToRows(BaselineStandardisation(skeleton, sequence).Apply(follower));
   return pair;
 }
 
 motion::Poses FollowerToWorld(const motion::Skeleton& skeleton, const dataset::Sequence& sequence,
                               const Rows& follower) {
-  return BaselineFrame(skeleton, sequence).Invert(FromRows(follower));
+  return BaselineStandardisation(skeleton, sequence).Invert(FromRows(follower));
 }
 
 Rows StretchTo(const Rows& motion, Eigen::Index frames) {

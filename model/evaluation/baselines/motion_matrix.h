@@ -25,15 +25,15 @@ struct StandardPair {
 };
 
 // The yaw is taken from the leader and the setup alone, never from the follower.
-motion::Standardisation BaselineFrame(const motion::Skeleton& skeleton,
-                                      const dataset::Sequence& sequence);
+motion::Standardisation BaselineStandardisation(const motion::Skeleton& skeleton,
+                                                const dataset::Sequence& sequence);
 
 // The leader's half of a pair; `follower` stays empty and sequence.pair.follower is not read.
 StandardPair StandardLeader(const motion::Skeleton& skeleton, const dataset::Sequence& sequence);
 StandardPair StandardiseSequence(const motion::Skeleton& skeleton,
                                  const dataset::Sequence& sequence);
 
-// A follower in the standard frame of its sequence, back in the world.
+// A follower in the standard coordinates of its sequence, back in the world.
 // Shapes: follower [frames, 3 joints].
 motion::Poses FollowerToWorld(const motion::Skeleton& skeleton, const dataset::Sequence& sequence,
                               const Rows& follower);

@@ -10,8 +10,8 @@
 
 namespace duet::evaluation::baselines {
 
-// A method that learns one model for each interaction class, in the standard frame. What differs
-// between the baselines is in TrainClass and PredictClass.
+// A method that learns one model for each interaction class, in the standard coordinates. What
+// differs between the baselines is in TrainClass and PredictClass.
 class PerClassMethod : public protocol::Method {
  public:
   explicit PerClassMethod(std::string name) : name_(std::move(name)) {}

@@ -27,7 +27,7 @@ struct ClassifierOptions {
 // Tells the class of a follower's motion: a network shaped like the discriminator, with one output
 // a class. A judge is such a classifier that scores synthesised motion (accuracy, FID, diversity);
 // the paper's Table 6 trains others on synthetic motion. It sees the follower alone, in the
-// standard frame of its leader (judge_input.h).
+// standard coordinates of its leader (judge_input.h).
 //
 // Source:  paper sections 3.3 and 4 (the paper does not describe its own extractor).
 // Threads: the const functions are safe to call concurrently.

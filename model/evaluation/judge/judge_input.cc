@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "model/engine/window_frame.h"
+#include "model/engine/window_standardisation.h"
 
 namespace duet::evaluation::judge {
 namespace {
@@ -12,7 +12,7 @@ motion::Poses StandardFollower(const motion::Skeleton& skeleton, const dataset::
   engine::SynthesisWindow window;
   window.leader = sequence.pair.leader.poses;
   window.partner_direction = sequence.partner_direction;
-  return WindowFrame(skeleton, window, origin).Apply(sequence.pair.follower.poses);
+  return WindowStandardisation(skeleton, window, origin).Apply(sequence.pair.follower.poses);
 }
 
 }  // namespace

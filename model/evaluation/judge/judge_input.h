@@ -9,7 +9,7 @@ namespace duet::evaluation::judge {
 // What a judge is shown of each joint: so many vectors.
 inline constexpr int kJudgeParts = 3;
 
-// What a judge is shown of a sequence's follower in each frame, in the standard frame of the
+// What a judge is shown of a sequence's follower in each frame, in the standard coordinates of the
 // leader:
 //   1. where each joint is, seen from the leader's root (metres);
 //   2. where it is, seen from the follower's own root (metres);

@@ -10,7 +10,7 @@ namespace {
 constexpr int kLeastFrames = 16;
 constexpr float kDistance = 1.2f;
 
-// A figure in the standard frame: the root at the origin of the floor plan, facing -z.
+// A figure in the standard coordinates: the root at the origin of the floor plan, facing -z.
 std::vector<motion::Vec3> Figure(const motion::Skeleton& skeleton) {
   std::vector<motion::Vec3> pose = SwayingPose(0);
   const motion::Vec3 root = pose[static_cast<size_t>(skeleton.root)];

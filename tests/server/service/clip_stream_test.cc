@@ -257,30 +257,43 @@ TEST(ClipStreamTest, RefusesAResultThatIsNotFinite) {
   EXPECT_THAT(stream->Take(30).error, StatusIs(kInternal, HasSubstr("not finite")));
 }
 
-// Answers with one frame too few.
-class ShortModel final : public engine::Synthesizer {
+// Answers with the leader, spoiled.
+class SpoiledModel final : public engine::Synthesizer {
  public:
+  using Spoil = void (*)(motion::Poses*);
+  explicit SpoiledModel(Spoil spoil) : spoil_(spoil) {}
+
   const engine::ModelDescription& description() const override { return description_; }
   std::vector<engine::WindowResult> Synthesize(
       absl::Span<const engine::SynthesisWindow* const> windows) const override {
     motion::Poses follower = windows[0]->leader;
-    follower.DropFront(1);
+    spoil_(&follower);
     return {follower};
   }
 
  private:
+  const Spoil spoil_;
   const engine::ModelDescription description_ = FakeDescription();
 };
 
-TEST(ClipStreamTest, RefusesAResultOfTheWrongLength) {
+// What becomes of a clip of 40 frames whose model answers like that.
+absl::Status ErrorOf(SpoiledModel::Spoil spoil) {
   PuppetScheduler scheduler;
   ClipStreamOptions options;
   options.buffered_frames = 1;
-  auto stream = std::make_shared<ClipStream>(std::make_shared<ShortModel>(), Request(40), options,
-                                             scheduler, [] {});
-  ASSERT_THAT(stream->Start(), IsOk());
+  auto stream = std::make_shared<ClipStream>(std::make_shared<SpoiledModel>(spoil), Request(40),
+                                             options, scheduler, [] {});
+  EXPECT_THAT(stream->Start(), IsOk());
   scheduler.RunNext();
-  EXPECT_THAT(stream->Take(30).error, StatusIs(kInternal, HasSubstr("wanted 40 frames of 15")));
+  return stream->Take(30).error;
+}
+
+TEST(ClipStreamTest, RefusesAResultOfTheWrongShape) {
+  const auto of_wrong_shape = StatusIs(kInternal, HasSubstr("wanted 40 frames of 15 joints"));
+  EXPECT_THAT(ErrorOf([](motion::Poses* poses) { poses->DropFront(1); }), of_wrong_shape);
+  EXPECT_THAT(ErrorOf([](motion::Poses* poses) { *poses = motion::Poses(40, 14); }),
+              of_wrong_shape);
+  EXPECT_THAT(ErrorOf([](motion::Poses* poses) { poses->Append({{1, 2, 3}}); }), of_wrong_shape);
 }
 
 TEST(ClipStreamTest, StartsNothingOnceCancelled) {

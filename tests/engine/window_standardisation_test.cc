@@ -1,4 +1,4 @@
-#include "model/engine/window_frame.h"
+#include "model/engine/window_standardisation.h"
 
 #include "gtest/gtest.h"
 #include "tests/support/sample_motion.h"
@@ -18,7 +18,8 @@ SynthesisWindow Window() {
 
 // Where a point that lies at `offset` from the leader's root comes to lie.
 motion::Vec3 Standard(const SynthesisWindow& window, motion::Vec3 offset) {
-  return WindowFrame(motion::SbuSkeleton(), window).Apply(window.leader.at(0, kTorso) + offset);
+  return WindowStandardisation(motion::SbuSkeleton(), window)
+      .Apply(window.leader.at(0, kTorso) + offset);
 }
 
 void ExpectNear(motion::Vec3 got, motion::Vec3 wanted) {
@@ -26,7 +27,7 @@ void ExpectNear(motion::Vec3 got, motion::Vec3 wanted) {
                                           << wanted.x << " " << wanted.y << " " << wanted.z;
 }
 
-TEST(WindowFrame, TurnsTheFacingDirectionToMinusZ) {
+TEST(WindowStandardisation, TurnsTheFacingDirectionToMinusZ) {
   const SynthesisWindow window = Window();
   motion::Vec3 across = window.leader.at(0, kRightHip) - window.leader.at(0, kLeftHip);
   across.y = 0;
@@ -34,54 +35,54 @@ TEST(WindowFrame, TurnsTheFacingDirectionToMinusZ) {
   ExpectNear(Standard(window, facing), {0, 0, -1});
 }
 
-TEST(WindowFrame, TurnsTheStartToMinusZ) {
+TEST(WindowStandardisation, TurnsTheStartToMinusZ) {
   SynthesisWindow window = Window();
   window.start = FollowerStart{window.leader.at(0, kTorso) + motion::Vec3{0.3f, 0.1f, 0.4f}, {}};
   ExpectNear(Standard(window, {0.3f, 0.1f, 0.4f}), {0, 0.1f, -0.5f});
 }
 
-TEST(WindowFrame, PartnerDirectionGoesBeforeTheStart) {
+TEST(WindowStandardisation, PartnerDirectionGoesBeforeTheStart) {
   SynthesisWindow window = Window();
   window.start = FollowerStart{window.leader.at(0, kTorso) + motion::Vec3{0, 0, 1}, {}};
   window.partner_direction = motion::Vec3{-5, 0, 0};
   ExpectNear(Standard(window, {-1, 0, 0}), {0, 0, -1});
 }
 
-TEST(WindowFrame, AStartOnTheSpotHasNoDirection) {
+TEST(WindowStandardisation, AStartOnTheSpotHasNoDirection) {
   const SynthesisWindow without = Window();
   SynthesisWindow close = Window();
   close.start = FollowerStart{close.leader.at(0, kTorso) + motion::Vec3{0.2f, 0.9f, 0}, {}};
   ExpectNear(Standard(close, {1, 2, 3}), Standard(without, {1, 2, 3}));
 }
 
-TEST(WindowFrame, WithoutHipsOnlyADirectionTurns) {
+TEST(WindowStandardisation, WithoutHipsOnlyADirectionTurns) {
   motion::Skeleton skeleton = motion::SbuSkeleton();
   skeleton.hips.reset();
   SynthesisWindow window = Window();
-  EXPECT_EQ(WindowFrame(skeleton, window).yaw(), 0);
+  EXPECT_EQ(WindowStandardisation(skeleton, window).yaw(), 0);
   window.partner_direction = motion::Vec3{1, 0, 0};
-  ExpectNear(
-      WindowFrame(skeleton, window).Apply(window.leader.at(0, kTorso) + motion::Vec3{1, 0, 0}),
-      {0, 0, -1});
+  ExpectNear(WindowStandardisation(skeleton, window)
+                 .Apply(window.leader.at(0, kTorso) + motion::Vec3{1, 0, 0}),
+             {0, 0, -1});
 }
 
-TEST(WindowFrame, EveryWayKeepsTheOriginAskedFor) {
+TEST(WindowStandardisation, EveryWayKeepsTheOriginAskedFor) {
   SynthesisWindow by_hips = Window(), by_start = Window(), by_direction = Window();
   by_start.start = FollowerStart{by_start.leader.at(0, kTorso) + motion::Vec3{0, 0, 1}, {}};
   by_direction.partner_direction = motion::Vec3{1, 0, 0};
   for (const SynthesisWindow& window : {by_hips, by_start, by_direction}) {
     const motion::Vec3 way = window.leader.at(3, kTorso) - window.leader.at(0, kTorso);
     const auto frame =
-        WindowFrame(motion::SbuSkeleton(), window, motion::StandardOrigin::kFirstFrame);
+        WindowStandardisation(motion::SbuSkeleton(), window, motion::StandardOrigin::kFirstFrame);
     ASSERT_GT(Norm(way), 0.01f);
     EXPECT_NEAR(Norm(frame.Apply(window.leader).at(3, kTorso)), Norm(way), 1e-5f);
   }
 }
 
-TEST(WindowFrame, InvertsExactly) {
+TEST(WindowStandardisation, InvertsExactly) {
   SynthesisWindow window = Window();
   window.partner_direction = motion::Vec3{1, 0, 2};
-  const motion::Standardisation frame = WindowFrame(motion::SbuSkeleton(), window);
+  const motion::Standardisation frame = WindowStandardisation(motion::SbuSkeleton(), window);
   const motion::Poses back = frame.Invert(frame.Apply(window.leader));
   for (std::size_t i = 0; i < back.all().size(); ++i) {
     ExpectNear(back.all()[i], window.leader.all()[i]);

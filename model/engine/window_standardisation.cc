@@ -1,4 +1,4 @@
-#include "model/engine/window_frame.h"
+#include "model/engine/window_standardisation.h"
 
 #include <cmath>
 
@@ -10,8 +10,9 @@ constexpr float kMinDistanceMetres = 0.3f;
 
 }  // namespace
 
-motion::Standardisation WindowFrame(const motion::Skeleton& skeleton, const SynthesisWindow& window,
-                                    motion::StandardOrigin origin) {
+motion::Standardisation WindowStandardisation(const motion::Skeleton& skeleton,
+                                              const SynthesisWindow& window,
+                                              motion::StandardOrigin origin) {
   if (window.partner_direction) {
     return {skeleton, window.leader, FacingYaw(*window.partner_direction), origin};
   }

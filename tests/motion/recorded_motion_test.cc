@@ -1,0 +1,62 @@
+#include "model/motion/recorded_motion.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "tests/support/status_matchers.h"
+
+namespace duet::motion {
+namespace {
+
+using test::IsOk;
+using test::StatusIs;
+
+using ::testing::HasSubstr;
+
+constexpr auto kInvalid = absl::StatusCode::kInvalidArgument;
+
+Clip TwoFrames() {
+  Clip clip;
+  clip.joint_names = {"hip", "knee", "foot"};
+  clip.frame_rate_hz = 30;
+  clip.poses = Poses(2, 3);
+  return clip;
+}
+
+TEST(CheckClipTest, NamesWhatNoWriterCanExpress) {
+  EXPECT_THAT(CheckClip("leader", TwoFrames()), IsOk());
+  Clip clip = TwoFrames();
+  clip.poses = {};
+  EXPECT_THAT(CheckClip("leader", clip), StatusIs(kInvalid, HasSubstr("leader: no frames")));
+  clip = TwoFrames();
+  clip.at(1, 2).y = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_THAT(CheckClip("leader", clip), StatusIs(kInvalid, HasSubstr("leader: frame 1 foot")));
+  clip = TwoFrames();
+  clip.frame_rate_hz = 0;
+  EXPECT_THAT(CheckClip("leader", clip), StatusIs(kInvalid, HasSubstr("frame rate")));
+}
+
+TEST(CheckClipTest, RefusesPosesOfAnotherNumberOfJointsThanNames) {
+  Clip clip = TwoFrames();
+  clip.poses = Poses(2, 1);
+  EXPECT_THAT(CheckClip("leader", clip),
+              StatusIs(kInvalid, HasSubstr("came poses of 1 joints, wanted 3")));
+}
+
+TEST(CheckPairTest, WantsTheSameJointsFramesAndRate) {
+  EXPECT_THAT(CheckPair({TwoFrames(), TwoFrames()}), IsOk());
+  ClipPair pair{TwoFrames(), TwoFrames()};
+  pair.follower.poses.Resize(1);
+  EXPECT_THAT(CheckPair(pair), StatusIs(kInvalid, HasSubstr("of 1 x 3")));
+  pair = {TwoFrames(), TwoFrames()};
+  pair.follower.frame_rate_hz = 15;
+  EXPECT_THAT(CheckPair(pair), StatusIs(kInvalid, HasSubstr("the same joints, frames and rate")));
+  pair = {TwoFrames(), TwoFrames()};
+  pair.follower.poses = Poses(3, 2);
+  EXPECT_THAT(CheckPair(pair), StatusIs(kInvalid, HasSubstr("poses of 2 joints")));
+}
+
+}  // namespace
+}  // namespace duet::motion
