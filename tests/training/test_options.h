@@ -1,6 +1,7 @@
 #ifndef DUET_TESTS_TRAINING_TEST_OPTIONS_H_
 #define DUET_TESTS_TRAINING_TEST_OPTIONS_H_
 
+#include "model/dataset/dataset.h"
 #include "model/training/options.h"
 
 namespace duet::training {
