@@ -18,4 +18,5 @@ cmake --build "${build_dir}" --parallel "${JOBS:-$(scripts/build_jobs.sh)}" --ta
 # One alternative for each program, matched as a whole.
 pattern="$(IFS='|' && echo "^(${tests[*]})\$")"
 export UBSAN_OPTIONS="print_stacktrace=1"
+export TSAN_OPTIONS="suppressions=${PWD}/scripts/tsan_suppressions.txt"
 ctest --test-dir "${build_dir}" --output-on-failure --tests-regex "${pattern}"

@@ -121,10 +121,11 @@ bool WorkerPool::Next(QueuedWindow* window, bool* stopping) {
 void WorkerPool::Run(QueuedWindow window, bool stopping) const {
   const WindowJob& job = window.job;
   const common::TimePoint begin = clock_.Now();
-  const absl::Status may_start = MayStart(job, begin, stopping);
-  WindowOutcome outcome{may_start.ok() ? Evaluate(job) : engine::WindowResult(may_start), {}};
+  absl::Status may_start = MayStart(job, begin, stopping);
+  const bool starts = may_start.ok();
+  WindowOutcome outcome{starts ? Evaluate(job) : engine::WindowResult(std::move(may_start)), {}};
   outcome.timings.queue_seconds = common::SecondsBetween(window.queued_at, begin);
-  if (may_start.ok()) {
+  if (starts) {
     outcome.timings.compute_seconds = common::SecondsBetween(begin, clock_.Now());
     outcome.timings.batch_size = 1;
   }
