@@ -118,6 +118,8 @@ bool WorkerPool::Next(QueuedWindow* window, bool* stopping) {
   return true;
 }
 
+// By value, so that the model is let go of as soon as its window is done.
+// NOLINTNEXTLINE(performance-unnecessary-value-param)
 void WorkerPool::Run(QueuedWindow window, bool stopping) const {
   const WindowJob& job = window.job;
   const common::TimePoint begin = clock_.Now();

@@ -80,7 +80,7 @@ class QueuedLogSink::Queue {
   bool finished_ DUET_GUARDED_BY(mutex_) = false;
 };
 
-QueuedLogSink::QueuedLogSink(std::shared_ptr<LogSink> sink, Options options)
+QueuedLogSink::QueuedLogSink(std::shared_ptr<LogSink> sink, const Options& options)
     : queue_(std::make_shared<Queue>(std::move(sink), options)),
       patience_(options.patience),
       writer_([queue = queue_] { queue->Run(); }) {}

@@ -34,7 +34,7 @@ class QueuedLogSink final : public LogSink {
   };
 
   // Shares the sink, because a thread that is stuck in it outlives this object.
-  QueuedLogSink(std::shared_ptr<LogSink> sink, Options options);
+  QueuedLogSink(std::shared_ptr<LogSink> sink, const Options& options);
   // Writes the lines left, as long as the sink takes them.
   ~QueuedLogSink() override;
   QueuedLogSink(const QueuedLogSink&) = delete;

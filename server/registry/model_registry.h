@@ -62,8 +62,7 @@ class ModelRegistry {
   std::vector<ServedModel> List() const;
 
  private:
-  using Versions =
-      std::map<uint32_t, std::shared_ptr<const engine::Synthesizer>, std::greater<uint32_t>>;
+  using Versions = std::map<uint32_t, std::shared_ptr<const engine::Synthesizer>, std::greater<>>;
   struct Entry {
     Versions versions;
     std::map<std::string, uint32_t, std::less<>> labels;

@@ -81,7 +81,7 @@ absl::Status ClipStream::ScheduleNext(bool continues_call) {
   job.deadline = options_.deadline;
   job.cancelled = cancelled_;
   job.continues_call = continues_call;
-  job.done = [self = shared_from_this()](batching::WindowOutcome outcome) {
+  job.done = [self = shared_from_this()](const batching::WindowOutcome& outcome) {
     self->OnWindow(outcome);
   };
   expected_frames_ = job.window.leader.frame_count();
