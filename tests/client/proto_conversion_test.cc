@@ -66,7 +66,7 @@ TEST(SynthesizeRequestTest, KeyframesReplaceTheLabelVector) {
 TEST(SynthesizeRequestTest, OptionalFieldsAreCarried) {
   SynthesisRequest request = GoodRequest();
   request.follower_start = motion::Vec3{1, 2, 3};
-  request.partner_direction = motion::Vec3{-1, 0, 0.5f};
+  request.partner_direction = motion::Vec3{-1, 0.25f, 0.5f};
   request.chunk_frames = 8;
   request.priority = Priority::kBulk;
   request.model = {"dancer", 3, ""};
@@ -74,6 +74,7 @@ TEST(SynthesizeRequestTest, OptionalFieldsAreCarried) {
   ASSERT_THAT(wire, IsOk());
   EXPECT_EQ(wire->follower_start().root_position().z(), 3);
   EXPECT_EQ(wire->partner_direction().x(), -1);
+  EXPECT_EQ(wire->partner_direction().y(), 0.25f);
   EXPECT_EQ(wire->partner_direction().z(), 0.5f);
   EXPECT_EQ(wire->chunk_frames(), 8u);
   EXPECT_EQ(wire->priority(), v1::PRIORITY_BULK);

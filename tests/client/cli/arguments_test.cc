@@ -183,6 +183,7 @@ TEST_F(ArgumentsTest, WhatMakesNoSenseIsNamed) {
   ExpectRefused({"--label", "kick=1", "--unit", "1"}, "--unit: \"1\", wanted metres");
   ExpectRefused({"--label", "kick=1", "--frame-rate", "-15"}, "--frame-rate");
   ExpectRefused({"--label", "kick=1", "--timeout", "0"}, "--timeout");
+  ExpectRefused({"--label", "kick=1", "--tls-key", "key.pem"}, "--tls-key");
   ExpectRefused({"--label", "kick=1", "--model", "sbu@x"}, "--model: \"sbu@x\"");
   ExpectRefused({"--label", "kick=1", "--tls-cert", "a.pem"}, "--tls-key");
 }

@@ -51,6 +51,14 @@ float LittleEndian(const std::string& bytes, size_t index) {
   return value;
 }
 
+TEST(PageDataTest, TakesAFrameASecondAndAnyLanguage) {
+  PageContent content = SmallContent();
+  content.pair.leader.frame_rate_hz = content.pair.follower.frame_rate_hz = 1;
+  content.title = "\u00dcbergabe";
+  EXPECT_TRUE(RenderPage(content).ok());
+  EXPECT_NE(PageDataJson(content).find("\u00dcbergabe"), std::string::npos);
+}
+
 TEST(PageDataTest, HoldsTheMotion) {
   const nlohmann::json data = Data(SmallContent());
   EXPECT_EQ(data["title"], "kick");
