@@ -22,6 +22,7 @@ struct ClipRequest {
   std::optional<FollowerStart> start;
   // Horizontal, of any length but 0; see SynthesisWindow.
   std::optional<motion::Vec3> partner_direction;
+  Sampling sampling;
 };
 
 // Turns a clip of any length into network windows and their results back into one motion.

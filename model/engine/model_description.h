@@ -18,6 +18,7 @@ struct ModelDescription {
   double frame_rate_hz = 0;          // the network's own
   int window_frames = 0;             // the longest window that the network was trained for
   bool accepts_follower_start = false;
+  bool samples = false;  // answers depend on Sampling
 
   int class_count() const { return static_cast<int>(classes.size()); }
 };

@@ -17,6 +17,8 @@ struct NetworkInput {
   motion::Poses leader;       // [frames, joints]
   std::vector<float> labels;  // [frames, classes]
   std::optional<FollowerStart> start;
+  Sampling sampling;
+  motion::Poses settled;  // [frames, joints], perhaps none; see SynthesisWindow
 };
 
 // The numbers in the middle of a synthesizer: what an engine implements. Everything around it

@@ -4,7 +4,11 @@ namespace duet::engine {
 
 NetworkInput Standardise(const motion::Standardisation& standardisation,
                          const SynthesisWindow& window) {
-  NetworkInput input{standardisation.Apply(window.leader), window.labels, std::nullopt};
+  NetworkInput input;
+  input.leader = standardisation.Apply(window.leader);
+  input.labels = window.labels;
+  input.sampling = window.sampling;
+  input.settled = standardisation.Apply(window.settled);
   if (!window.start) return input;
   input.start = FollowerStart{standardisation.Apply(window.start->root), {}};
   for (const motion::Vec3& joint : window.start->pose) {
