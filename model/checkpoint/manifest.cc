@@ -10,6 +10,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/time/time.h"
 #include "model/base/strict_json.h"
+#include "model/checkpoint/flow_json.h"
 #include "model/checkpoint/names.h"
 #include "model/motion/skeleton_json.h"
 
@@ -85,17 +86,40 @@ T ReadNamed(base::ObjectReader* reader, const std::string& key, const Named<T> (
   return table[0].value;
 }
 
-absl::StatusOr<GeneratorArchitecture> ReadGenerator(const json& value) {
-  base::ObjectReader reader(value, "generator");
+GeneratorArchitecture ReadPaperGenerator(base::ObjectReader* reader) {
   GeneratorArchitecture generator;
-  generator.variant = ReadNamed(&reader, "variant", kVariantNames);
-  generator.follower_start = reader.Bool("follower_start");
-  generator.slice_features = static_cast<int>(reader.Int("slice_features", 0, kMaxUnits));
-  generator.encoder_hidden = static_cast<int>(reader.Int("encoder_hidden", 1, kMaxUnits));
-  generator.attention = static_cast<int>(reader.Int("attention", 1, kMaxUnits));
-  generator.base_pose = reader.Bool("base_pose");
-  if (absl::Status status = reader.Finish(); !status.ok()) return status;
+  generator.variant = ReadNamed(reader, "variant", kVariantNames);
+  generator.follower_start = reader->Bool("follower_start");
+  generator.slice_features = static_cast<int>(reader->Int("slice_features", 0, kMaxUnits));
+  generator.encoder_hidden = static_cast<int>(reader->Int("encoder_hidden", 1, kMaxUnits));
+  generator.attention = static_cast<int>(reader->Int("attention", 1, kMaxUnits));
+  generator.base_pose = reader->Bool("base_pose");
   return generator;
+}
+
+// Version 1 knew the paper's generator alone.
+std::string ReadKind(int format_version, base::ObjectReader* reader) {
+  if (format_version == 1) return kPaperKind;
+  std::string kind = reader->String(kGeneratorKind, kMaxNameBytes);
+  if (reader->ok() && kind != kPaperKind && kind != kFlowKind) {
+    reader->Fail(kGeneratorKind, absl::StrCat(json(kind).dump(), ", wanted \"", kPaperKind,
+                                              "\" or \"", kFlowKind, "\""));
+  }
+  return kind;
+}
+
+void ReadGenerator(const json& value, base::ObjectReader* root, Manifest* manifest) {
+  base::ObjectReader reader(value, "generator");
+  const std::string kind = ReadKind(manifest->format_version, &reader);
+  if (kind == kFlowKind) {
+    manifest->flow = ReadFlowArchitecture(&reader);
+  } else if (reader.ok()) {
+    manifest->generator = ReadPaperGenerator(&reader);
+  }
+  root->Update(reader.Finish());
+  manifest->model.samples = manifest->flow.has_value();
+  manifest->model.accepts_follower_start =
+      manifest->flow.has_value() || manifest->generator.follower_start;
 }
 
 absl::StatusOr<WeightsFile> ReadWeightsFile(const json& value) {
@@ -175,9 +199,8 @@ absl::StatusOr<Manifest> ReadManifest(const json& root) {
   if (reader.ok()) Take(motion::ReadSkeleton(skeleton_object, "skeleton"), &reader, &skeleton);
   manifest.model.skeleton = std::move(skeleton.skeleton);
   const json& generator = reader.Object("generator");
-  if (reader.ok()) Take(ReadGenerator(generator), &reader, &manifest.generator);
+  if (reader.ok()) ReadGenerator(generator, &reader, &manifest);
   manifest.generator.parts = std::move(skeleton.parts);
-  manifest.model.accepts_follower_start = manifest.generator.follower_start;
   manifest.standardisation = ReadNamed(&reader, "standardisation", kStandardisationNames);
   const json& weights = reader.Object("weights");
   if (reader.ok()) Take(ReadWeightsFile(weights), &reader, &manifest.weights);
@@ -203,6 +226,19 @@ absl::Status CheckTotalSize(const Manifest& manifest) {
                                                  kMaxWeightsBytes));
 }
 
+ordered_json GeneratorToJson(const Manifest& manifest) {
+  if (manifest.flow) return FlowArchitectureToJson(*manifest.flow);
+  const GeneratorArchitecture& generator = manifest.generator;
+  ordered_json object = {{"variant", std::string(NameOf(kVariantNames, generator.variant))},
+                         {"follower_start", generator.follower_start},
+                         {"slice_features", generator.slice_features},
+                         {"encoder_hidden", generator.encoder_hidden},
+                         {"attention", generator.attention},
+                         {"base_pose", generator.base_pose}};
+  if (manifest.format_version > 1) object[kGeneratorKind] = kPaperKind;
+  return object;
+}
+
 }  // namespace
 
 absl::StatusOr<Manifest> ParseManifest(std::string_view text) {
@@ -220,7 +256,6 @@ absl::StatusOr<Manifest> ParseManifest(std::string_view text) {
 
 std::string SerializeManifest(const Manifest& manifest) {
   const engine::ModelDescription& model = manifest.model;
-  const GeneratorArchitecture& generator = manifest.generator;
   const ordered_json root = {
       {"format_version", manifest.format_version},
       {"name", model.name},
@@ -232,14 +267,8 @@ std::string SerializeManifest(const Manifest& manifest) {
       {"window_frames", model.window_frames},
       {"classes", model.classes},
       {"standardisation", std::string(NameOf(kStandardisationNames, manifest.standardisation))},
-      {"skeleton", motion::SkeletonToJson(model.skeleton, generator.parts)},
-      {"generator",
-       {{"variant", std::string(NameOf(kVariantNames, generator.variant))},
-        {"follower_start", generator.follower_start},
-        {"slice_features", generator.slice_features},
-        {"encoder_hidden", generator.encoder_hidden},
-        {"attention", generator.attention},
-        {"base_pose", generator.base_pose}}},
+      {"skeleton", motion::SkeletonToJson(model.skeleton, manifest.generator.parts)},
+      {"generator", GeneratorToJson(manifest)},
       {"weights",
        {{"file", manifest.weights.file},
         {"bytes", manifest.weights.bytes},

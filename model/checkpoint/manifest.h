@@ -4,11 +4,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "model/checkpoint/flow_architecture.h"
 #include "model/engine/model_description.h"
 #include "model/motion/body_part.h"
 #include "model/motion/standardise.h"
@@ -16,7 +18,7 @@
 namespace duet::checkpoint {
 
 // The version of the checkpoint format that this code writes. Older ones are read, newer refused.
-inline constexpr int kCheckpointFormatVersion = 1;
+inline constexpr int kCheckpointFormatVersion = 2;
 
 // The largest manifest.json and the largest weights file that are read.
 inline constexpr std::size_t kMaxManifestBytes = std::size_t{1} << 20;
@@ -59,6 +61,8 @@ struct Manifest {
   int format_version = kCheckpointFormatVersion;
   engine::ModelDescription model;
   GeneratorArchitecture generator;
+  // The sampling generator in place of the paper's, of which the parts alone are read then.
+  std::optional<FlowArchitecture> flow;
   // The coordinates that the network works in (model/engine/window_standardisation.h): metres, y
   // up, one yaw for the window. The origin is the leader's root: in every frame, as in the paper,
   // or in the window's first.
@@ -73,7 +77,8 @@ struct Manifest {
 // Reads and writes manifest.json. Strict: unknown, missing, repeated or mistyped fields, sizes out
 // of range and inconsistent skeletons are INVALID_ARGUMENT, naming the field, what came and what
 // was wanted. `text` may come from anywhere. model.accepts_follower_start is taken from
-// generator.follower_start. Fields: docs/checkpoint_format.md.
+// generator.follower_start; a sampling generator always accepts one. Fields:
+// docs/checkpoint_format.md.
 absl::StatusOr<Manifest> ParseManifest(std::string_view text);
 // Requires a skeleton and parts that Validate accepts.
 std::string SerializeManifest(const Manifest& manifest);
@@ -112,7 +117,27 @@ struct TensorSpec {
 //   output.bias                      [3 J]
 //   base.weight                      [3 J, C]              (base_pose, labels only)
 //   base.bias                        [3 J]                 (base_pose only)
-// with E = encoder_hidden, S = slices, A = attention, J = joints, C = classes.
+// with E = encoder_hidden, S = slices, A = attention, J = joints, C = classes. A sampling
+// generator's:
+//   frames.weight                    [W, 9 J + 5]          leader, its velocity, 4 positions, known
+//   frames.bias                      [W]                   frames' offsets, known or not
+//   sample.weight                    [W, 3 J]
+//   start.weight, .bias              [W, StartFeatureCount], [W]
+//   label.weight                     [W, C]
+//   time.expand.weight, .bias        [W, 32], [W]
+//   time.mix, condition              [W, W], [W]           .weight, .bias, as all below
+//   block<i>.modulation              [4 W, W], [4 W]       shift, scale; of attention, feed-forward
+//   block<i>.attention               [3 W, W], [3 W]       queries, keys, values
+//   block<i>.attended                [W, W], [W]
+//   block<i>.distance                [heads, 2 reach + 1]  (no .weight)
+//   block<i>.expand                  [F, W], [F]
+//   block<i>.contract                [W, F], [W]
+//   norm                             [W], [W]
+//   output                           [3 J, W], [3 J]
+//   base.poses                       [C, 3 J]              mean followers, metres
+//   noise.roots                      [2, 3 J, 3 J]         roots of the offsets' covariances: no
+//                                                          start told, start told
+// with W = width, F = feed_forward.
 std::vector<TensorSpec> ExpectedTensors(const Manifest& manifest);
 
 }  // namespace duet::checkpoint

@@ -1,4 +1,5 @@
 #include "absl/strings/str_cat.h"
+#include "model/checkpoint/flow_tensor_table.h"
 #include "model/checkpoint/manifest.h"
 
 namespace duet::checkpoint {
@@ -38,6 +39,7 @@ std::vector<SliceShape> SliceShapes(const Manifest& manifest) {
 }
 
 std::vector<TensorSpec> ExpectedTensors(const Manifest& manifest) {
+  if (manifest.flow) return FlowTensors(manifest);
   const std::vector<SliceShape> slices = SliceShapes(manifest);
   const int64_t encoder = manifest.generator.encoder_hidden;
   const int64_t attention = manifest.generator.attention;

@@ -38,7 +38,7 @@ TEST(Manifest, RoundTrip) {
   const Manifest wanted = CompleteManifest();
   const absl::StatusOr<Manifest> got = ParseManifest(SerializeManifest(wanted));
   ASSERT_THAT(got, IsOk());
-  EXPECT_EQ(got->format_version, 1);
+  EXPECT_EQ(got->format_version, kCheckpointFormatVersion);
   EXPECT_EQ(got->model.name, wanted.model.name);
   EXPECT_EQ(got->model.version, wanted.model.version);
   EXPECT_EQ(got->model.description, wanted.model.description);
@@ -225,7 +225,7 @@ TEST_P(ManifestField, IsRefusedByName) {
 INSTANTIATE_TEST_SUITE_P(
     Bad, ManifestField,
     ::testing::Values(
-        BadField{"newer_format", "/format_version", "2", "format_version: 2, wanted"},
+        BadField{"newer_format", "/format_version", "3", "format_version: 3, wanted"},
         BadField{"format_0", "/format_version", "0", "format_version: 0, wanted"},
         BadField{"name_empty", "/name", "\"\"", "name: \"\", wanted 1 to 64"},
         BadField{"name_leaves", "/name", "\"../x\"", "name: \"../x\""},
@@ -302,9 +302,9 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(Manifest, ANewerFormatIsNamedBeforeItsNewFields) {
   json root = CompleteJson();
-  root["format_version"] = 2;
+  root["format_version"] = 3;
   root["new_field"] = true;
-  EXPECT_THAT(ParseManifest(root.dump()), Refused("format_version: 2, wanted a whole number"));
+  EXPECT_THAT(ParseManifest(root.dump()), Refused("format_version: 3, wanted a whole number"));
 }
 
 TEST(Manifest, ANonFiniteMetricCannotBeRead) {

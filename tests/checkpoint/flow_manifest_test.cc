@@ -1,0 +1,120 @@
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "model/checkpoint/manifest.h"
+#include "tests/support/status_matchers.h"
+#include "tests/support/tiny_checkpoint.h"
+
+namespace duet::checkpoint {
+namespace {
+
+using test::IsOk;
+using test::StatusIs;
+using test::TinyManifest;
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+Manifest FlowManifest() {
+  Manifest manifest = TinyManifest();
+  manifest.weights.bytes = 1234;
+  manifest.weights.sha256 = std::string(64, 'a');
+  FlowArchitecture& flow = manifest.flow.emplace();
+  flow.width = 12;
+  flow.blocks = 2;
+  flow.heads = 3;
+  flow.feed_forward = 20;
+  flow.reach = 7;
+  flow.offset_scale = 0.25;
+  flow.noise = {3.5, 0.5, 6, 0.03};
+  flow.steps = 4;
+  flow.guidance = 1.25;
+  flow.fade_frames = 2;
+  return manifest;
+}
+
+TEST(FlowManifest, RoundTrip) {
+  const absl::StatusOr<Manifest> read = ParseManifest(SerializeManifest(FlowManifest()));
+  ASSERT_THAT(read, IsOk());
+  ASSERT_TRUE(read->flow.has_value());
+  EXPECT_EQ(read->flow->width, 12);
+  EXPECT_EQ(read->flow->blocks, 2);
+  EXPECT_EQ(read->flow->heads, 3);
+  EXPECT_EQ(read->flow->feed_forward, 20);
+  EXPECT_EQ(read->flow->reach, 7);
+  EXPECT_EQ(read->flow->offset_scale, 0.25);
+  EXPECT_EQ(read->flow->noise.frame_length, 3.5);
+  EXPECT_EQ(read->flow->noise.constant_share, 0.5);
+  EXPECT_EQ(read->flow->noise.ramp_frames, 6);
+  EXPECT_EQ(read->flow->noise.white, 0.03);
+  EXPECT_EQ(read->flow->steps, 4);
+  EXPECT_EQ(read->flow->guidance, 1.25);
+  EXPECT_EQ(read->flow->fade_frames, 2);
+  EXPECT_EQ(read->generator.parts, FlowManifest().generator.parts);
+  EXPECT_TRUE(read->model.samples);
+  EXPECT_TRUE(read->model.accepts_follower_start);
+}
+
+TEST(FlowManifest, ThePapersGeneratorDoesNotSample) {
+  Manifest manifest = FlowManifest();
+  manifest.flow.reset();
+  const absl::StatusOr<Manifest> read = ParseManifest(SerializeManifest(manifest));
+  ASSERT_THAT(read, IsOk());
+  EXPECT_FALSE(read->flow.has_value());
+  EXPECT_FALSE(read->model.samples);
+}
+
+// Version 1 had no kinds: what it wrote is the paper's.
+TEST(FlowManifest, VersionOneIsThePapersGenerator) {
+  Manifest manifest = FlowManifest();
+  manifest.flow.reset();
+  manifest.format_version = 1;
+  const std::string text = SerializeManifest(manifest);
+  EXPECT_FALSE(json::parse(text)["generator"].contains("kind"));
+  const absl::StatusOr<Manifest> read = ParseManifest(text);
+  ASSERT_THAT(read, IsOk());
+  EXPECT_EQ(SerializeManifest(*read), text);
+}
+
+TEST(FlowManifest, RefusesByName) {
+  const auto refusal = [](const std::string& pointer, const json& value) {
+    json root = json::parse(SerializeManifest(FlowManifest()));
+    root[json::json_pointer(pointer)] = value;
+    return ParseManifest(root.dump()).status();
+  };
+  const auto names = [](const std::string& why) {
+    return StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(why));
+  };
+  EXPECT_THAT(refusal("/generator/kind", "wave"),
+              names("generator.kind: \"wave\", wanted \"paper\" or \"flow\""));
+  EXPECT_THAT(refusal("/generator/kind", "paper"), names("generator.variant"));
+  EXPECT_THAT(refusal("/generator/heads", 5), names("generator.heads: 5, wanted a divisor"));
+  EXPECT_THAT(refusal("/generator/width", 0), names("generator.width: 0, wanted"));
+  EXPECT_THAT(refusal("/generator/steps", 0), names("generator.steps: 0, wanted"));
+  EXPECT_THAT(refusal("/generator/offset_scale", 0), names("generator.offset_scale"));
+  EXPECT_THAT(refusal("/generator/noise/white", -1), names("generator.noise.white"));
+  EXPECT_THAT(refusal("/generator/noise/colour", 1), names("generator.noise.colour"));
+  EXPECT_THAT(refusal("/generator/more", 1), names("generator.more"));
+  EXPECT_THAT(refusal("/format_version", 1), names("generator"));
+}
+
+TEST(FlowManifest, TensorsFollowFromTheSizes) {
+  const Manifest manifest = FlowManifest();
+  std::map<std::string, std::vector<int64_t>> shapes;
+  for (const TensorSpec& spec : ExpectedTensors(manifest)) shapes[spec.name] = spec.shape;
+  using Shape = std::vector<int64_t>;
+  EXPECT_EQ(shapes.at("frames.weight"), (Shape{12, 9 * 3 + 5}));
+  EXPECT_EQ(shapes.at("start.weight"), (Shape{12, 3 + 9 + 2}));
+  EXPECT_EQ(shapes.at("label.weight"), (Shape{12, 2}));
+  EXPECT_EQ(shapes.at("block1.attention.weight"), (Shape{36, 12}));
+  EXPECT_EQ(shapes.at("block1.distance"), (Shape{3, 15}));
+  EXPECT_EQ(shapes.at("block0.expand.weight"), (Shape{20, 12}));
+  EXPECT_EQ(shapes.at("output.weight"), (Shape{9, 12}));
+  EXPECT_EQ(shapes.at("base.poses"), (Shape{2, 9}));
+  EXPECT_EQ(shapes.at("noise.roots"), (Shape{2, 9, 9}));
+  EXPECT_EQ(shapes.count("block2.distance"), 0u);
+}
+
+}  // namespace
+}  // namespace duet::checkpoint
