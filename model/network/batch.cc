@@ -71,7 +71,7 @@ GeneratorInput MakeInput(const checkpoint::Manifest& manifest,
   GeneratorInput batch;
   batch.leader = PadPoses(leaders, frames);
   batch.labels = Labels(inputs, frames, manifest.model.class_count());
-  if (manifest.generator.follower_start) batch.start = Starts(manifest, inputs);
+  if (manifest.generator.follower_start && !manifest.flow) batch.start = Starts(manifest, inputs);
   batch.lengths = torch::tensor(lengths);
   return batch;
 }

@@ -14,8 +14,8 @@ std::string ShapeText(at::IntArrayRef shape) {
 
 }  // namespace
 
-absl::Status LoadParameters(const checkpoint::Checkpoint& checkpoint, Generator& generator) {
-  std::map<std::string, torch::Tensor> wanted = generator->tensors();
+absl::Status LoadTensors(const checkpoint::Checkpoint& checkpoint,
+                         std::map<std::string, torch::Tensor> wanted) {
   for (const checkpoint::Tensor& tensor : checkpoint.tensors) {
     const auto it = wanted.find(tensor.name);
     if (it == wanted.end()) {
@@ -34,9 +34,8 @@ absl::Status LoadParameters(const checkpoint::Checkpoint& checkpoint, Generator&
       absl::StrCat("tensor \"", wanted.begin()->first, "\" is missing"));
 }
 
-std::vector<checkpoint::Tensor> StoreParameters(const checkpoint::Manifest& manifest,
-                                                const Generator& generator) {
-  const std::map<std::string, torch::Tensor> values = generator->tensors();
+std::vector<checkpoint::Tensor> StoreTensors(const checkpoint::Manifest& manifest,
+                                             const std::map<std::string, torch::Tensor>& values) {
   std::vector<checkpoint::Tensor> tensors;
   for (const checkpoint::TensorSpec& spec : ExpectedTensors(manifest)) {
     const torch::Tensor value = values.at(spec.name).contiguous();

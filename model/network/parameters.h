@@ -1,19 +1,36 @@
 #ifndef DUET_MODEL_NETWORK_PARAMETERS_H_
 #define DUET_MODEL_NETWORK_PARAMETERS_H_
 
+#include <torch/torch.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
 #include "absl/status/status.h"
 #include "model/checkpoint/checkpoint.h"
-#include "model/network/generator.h"
 
 namespace duet::network {
 
-// Copies a checkpoint's tensors into a generator made from the same manifest. INVALID_ARGUMENT
-// names a tensor that is missing or of another shape.
-absl::Status LoadParameters(const checkpoint::Checkpoint& checkpoint, Generator& generator);
+// Copies a checkpoint's tensors into those of a generator made from the same manifest, which
+// `tensors` views. INVALID_ARGUMENT names a tensor that is missing or of another shape.
+absl::Status LoadTensors(const checkpoint::Checkpoint& checkpoint,
+                         std::map<std::string, torch::Tensor> tensors);
 
-// A generator's parameters, in the order of ExpectedTensors.
+// A generator's tensors, in the order of ExpectedTensors.
+std::vector<checkpoint::Tensor> StoreTensors(const checkpoint::Manifest& manifest,
+                                             const std::map<std::string, torch::Tensor>& tensors);
+
+// The same for a generator: the paper's (Generator) or the sampling one (FlowGenerator).
+template <typename AnyGenerator>
+absl::Status LoadParameters(const checkpoint::Checkpoint& checkpoint, AnyGenerator& generator) {
+  return LoadTensors(checkpoint, generator->tensors());
+}
+template <typename AnyGenerator>
 std::vector<checkpoint::Tensor> StoreParameters(const checkpoint::Manifest& manifest,
-                                                const Generator& generator);
+                                                const AnyGenerator& generator) {
+  return StoreTensors(manifest, generator->tensors());
+}
 
 }  // namespace duet::network
 

@@ -4,45 +4,76 @@
 
 #include <cstddef>
 #include <exception>
+#include <functional>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "model/network/batch.h"
+#include "model/network/flow_sampler.h"
 #include "model/network/parameters.h"
 
 namespace duet::torch_engine {
 namespace {
 
+// LibTorch reports by exception: this is where they stop.
+absl::StatusOr<std::vector<motion::Poses>> Guarded(
+    const std::function<std::vector<motion::Poses>()>& run) {
+  try {
+    torch::NoGradGuard no_grad;
+    return run();
+  } catch (const std::exception& error) {
+    return absl::InternalError(absl::StrCat("the network failed: ", error.what()));
+  }
+}
+
+// Each input's own frames of a batch of answers [N, T, 3 J].
+std::vector<motion::Poses> TakeAll(const torch::Tensor& batch,
+                                   absl::Span<const engine::NetworkInput> inputs) {
+  std::vector<motion::Poses> followers;
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    followers.push_back(
+        network::TakePoses(batch, static_cast<int64_t>(i), inputs[i].leader.frame_count()));
+  }
+  return followers;
+}
+
+torch::Tensor Answer(const checkpoint::Manifest& manifest, network::Generator generator,
+                     absl::Span<const engine::NetworkInput> inputs) {
+  return generator->forward(network::MakeInput(manifest, inputs));
+}
+
+torch::Tensor Answer(const checkpoint::Manifest& manifest, const network::FlowGenerator& generator,
+                     absl::Span<const engine::NetworkInput> inputs) {
+  return network::AnswerWindows(generator, manifest, inputs);
+}
+
+// Either generator, filled from a checkpoint.
+template <typename AnyGenerator>
 class TorchNetwork : public engine::Network {
  public:
-  TorchNetwork(checkpoint::Manifest manifest, network::Generator generator)
+  TorchNetwork(checkpoint::Manifest manifest, AnyGenerator generator)
       : manifest_(std::move(manifest)), generator_(std::move(generator)) {}
 
   absl::StatusOr<std::vector<motion::Poses>> Run(
       absl::Span<const engine::NetworkInput> inputs) const override {
-    // LibTorch reports by exception: this is where they stop.
-    try {
-      return Forward(inputs);
-    } catch (const std::exception& error) {
-      return absl::InternalError(absl::StrCat("the network failed: ", error.what()));
-    }
+    return Guarded([&] { return TakeAll(Answer(manifest_, generator_, inputs), inputs); });
   }
 
  private:
-  std::vector<motion::Poses> Forward(absl::Span<const engine::NetworkInput> inputs) const {
-    torch::NoGradGuard no_grad;
-    const torch::Tensor batch = generator_->forward(network::MakeInput(manifest_, inputs));
-    std::vector<motion::Poses> followers;
-    for (std::size_t i = 0; i < inputs.size(); ++i) {
-      followers.push_back(
-          network::TakePoses(batch, static_cast<int64_t>(i), inputs[i].leader.frame_count()));
-    }
-    return followers;
-  }
-
   const checkpoint::Manifest manifest_;
-  mutable network::Generator generator_;  // forward is not const; it changes nothing
+  const AnyGenerator generator_;  // a handle: running it changes nothing
 };
+
+template <typename AnyGenerator>
+absl::StatusOr<std::unique_ptr<const engine::Network>> Make(
+    const checkpoint::Checkpoint& checkpoint) {
+  AnyGenerator generator(checkpoint.manifest);
+  absl::Status status = network::LoadParameters(checkpoint, generator);
+  if (!status.ok()) return status;
+  generator->eval();
+  return std::make_unique<const TorchNetwork<AnyGenerator>>(checkpoint.manifest,
+                                                            std::move(generator));
+}
 
 }  // namespace
 
@@ -50,11 +81,8 @@ absl::StatusOr<std::unique_ptr<const engine::Network>> MakeTorchNetwork(
     const checkpoint::Checkpoint& checkpoint) {
   // LibTorch reports by exception: here they stop while loading, in Run while answering.
   try {
-    network::Generator generator(checkpoint.manifest);
-    absl::Status status = network::LoadParameters(checkpoint, generator);
-    if (!status.ok()) return status;
-    generator->eval();
-    return std::make_unique<const TorchNetwork>(checkpoint.manifest, std::move(generator));
+    return checkpoint.manifest.flow ? Make<network::FlowGenerator>(checkpoint)
+                                    : Make<network::Generator>(checkpoint);
   } catch (const std::exception& error) {
     return absl::InternalError(absl::StrCat("the network cannot be made: ", error.what()));
   }

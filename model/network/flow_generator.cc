@@ -1,0 +1,183 @@
+#include "model/network/flow_generator.h"
+
+#include <cmath>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_replace.h"
+
+namespace duet::network {
+namespace {
+
+constexpr double kFarBelow = -1e4;         // leaves nothing of a frame after the softmax
+constexpr double kVelocityScale = 4;       // metres a frame are small numbers
+constexpr double kPositionFrames = 20;     // one unit of a frame's distance from the window's ends
+constexpr double kHighestFrequency = 200;  // of the time's sines
+constexpr int64_t kTimeFrequencies = 16;
+
+bool IsMeasured(const std::string& name) { return name == "base.poses" || name == "noise.roots"; }
+
+// What begins at 0: every block as the identity but for its branches, an answer that is the base.
+bool BeginsAtZero(const std::string& name) {
+  return absl::EndsWith(name, ".bias") || absl::StrContains(name, ".modulation.") ||
+         absl::EndsWith(name, ".distance") || absl::StartsWith(name, "output.") || IsMeasured(name);
+}
+
+torch::Tensor InitialValue(const std::string& name, const std::vector<int64_t>& shape) {
+  if (name == "norm.weight") return torch::ones(shape);
+  if (BeginsAtZero(name)) return torch::zeros(shape);
+  const double bound = 1 / std::sqrt(static_cast<double>(shape.back()));
+  return torch::empty(shape).uniform_(-bound, bound);
+}
+
+// [N, T, 4] where each frame is in its window.
+torch::Tensor Positions(const torch::Tensor& lengths, int64_t frames) {
+  const torch::Tensor length = lengths.to(torch::kFloat32).unsqueeze(1);
+  const torch::Tensor frame =
+      torch::arange(frames, torch::kFloat32).unsqueeze(0).expand({lengths.size(0), frames});
+  return torch::stack({frame / kPositionFrames, frame / length, (length - frame) / kPositionFrames,
+                       (length / kPositionFrames).expand_as(frame)},
+                      2);
+}
+
+// [N, T, 3 J] metres a frame; none in the first.
+torch::Tensor Velocity(const torch::Tensor& motion) {
+  const torch::Tensor moved = motion.slice(1, 1) - motion.slice(1, 0, -1);
+  return torch::cat({torch::zeros_like(motion.narrow(1, 0, 1)), moved}, 1);
+}
+
+torch::Tensor TimeFeatures(const torch::Tensor& times) {
+  const torch::Tensor frequency =
+      torch::exp(torch::linspace(0, std::log(kHighestFrequency), kTimeFrequencies));
+  const torch::Tensor angle = times.unsqueeze(1) * frequency.unsqueeze(0);
+  return torch::cat({torch::sin(angle), torch::cos(angle)}, 1);
+}
+
+torch::Tensor Padding(const torch::Tensor& lengths, int64_t frames) {
+  const torch::Tensor is_padding = torch::arange(frames).unsqueeze(0) >= lengths.unsqueeze(1);
+  return (is_padding.to(torch::kFloat32) * kFarBelow).view({-1, 1, 1, frames});
+}
+
+// Adaptive: shift and scale come from the condition, [N, W] each.
+torch::Tensor Normalised(const torch::Tensor& frames, const torch::Tensor& scale,
+                         const torch::Tensor& shift) {
+  return torch::layer_norm(frames, {frames.size(2)}) * (1 + scale.unsqueeze(1)) +
+         shift.unsqueeze(1);
+}
+
+}  // namespace
+
+FlowContext Rows(const FlowContext& context, const torch::Tensor& rows) {
+  return {context.frames.index_select(0, rows), context.condition.index_select(0, rows),
+          context.padding.index_select(0, rows)};
+}
+
+FlowGeneratorImpl::FlowGeneratorImpl(const checkpoint::Manifest& manifest)
+    : heads_(manifest.flow->heads), reach_(manifest.flow->reach) {
+  for (const checkpoint::TensorSpec& spec : ExpectedTensors(manifest)) {
+    by_name_[spec.name] = Add(spec.name, spec.shape);
+  }
+  frames_ = FindLinear("frames");
+  sample_ = FindLinear("sample");
+  start_ = FindLinear("start");
+  label_ = FindLinear("label");
+  time_expand_ = FindLinear("time.expand");
+  time_mix_ = FindLinear("time.mix");
+  condition_ = FindLinear("condition");
+  norm_ = FindLinear("norm");
+  output_ = FindLinear("output");
+  for (int i = 0; i < manifest.flow->blocks; ++i) {
+    blocks_.push_back(FindBlock(absl::StrCat("block", i)));
+  }
+  base_poses_ = by_name_.at("base.poses");
+  noise_roots_ = by_name_.at("noise.roots");
+}
+
+torch::Tensor FlowGeneratorImpl::Add(const std::string& name, const std::vector<int64_t>& shape) {
+  const torch::Tensor value = InitialValue(name, shape);
+  const std::string plain = absl::StrReplaceAll(name, {{".", "/"}});  // LibTorch allows no dots
+  return IsMeasured(name) ? register_buffer(plain, value) : register_parameter(plain, value);
+}
+
+FlowGeneratorImpl::Linear FlowGeneratorImpl::FindLinear(const std::string& name) const {
+  const auto bias = by_name_.find(name + ".bias");
+  return {by_name_.at(name + ".weight"), bias == by_name_.end() ? torch::Tensor() : bias->second};
+}
+
+FlowGeneratorImpl::Block FlowGeneratorImpl::FindBlock(const std::string& name) const {
+  return {FindLinear(name + ".modulation"), FindLinear(name + ".attention"),
+          FindLinear(name + ".attended"),   FindLinear(name + ".expand"),
+          FindLinear(name + ".contract"),   by_name_.at(name + ".distance")};
+}
+
+void FlowGeneratorImpl::SetMeasured(const torch::Tensor& base_poses,
+                                    const torch::Tensor& noise_roots) {
+  base_poses_.copy_(base_poses);
+  noise_roots_.copy_(noise_roots);
+}
+
+std::map<std::string, torch::Tensor> FlowGeneratorImpl::tensors() const {
+  std::map<std::string, torch::Tensor> views;
+  for (const auto& [name, tensor] : by_name_) views[name] = tensor.detach();
+  return views;
+}
+
+torch::Tensor FlowGeneratorImpl::Dropped(const torch::Tensor& values) const {
+  return torch::dropout(values, dropout_, is_training());
+}
+
+FlowContext FlowGeneratorImpl::Prepare(const FlowInput& input) const {
+  const int64_t frames = input.leader.size(1);
+  const torch::Tensor features =
+      torch::cat({input.leader, kVelocityScale * Velocity(input.leader),
+                  Positions(input.lengths, frames), input.known, input.is_known},
+                 2);
+  return {frames_(features), start_(input.start), Padding(input.lengths, frames)};
+}
+
+torch::Tensor FlowGeneratorImpl::forward(const FlowContext& context, const torch::Tensor& labels,
+                                         const torch::Tensor& sample,
+                                         const torch::Tensor& times) const {
+  const torch::Tensor time = time_mix_(torch::silu(time_expand_(TimeFeatures(times))));
+  const torch::Tensor told = context.condition + label_(labels) + time;
+  const torch::Tensor condition = torch::silu(condition_(told));
+  torch::Tensor frames = Dropped(context.frames + sample_(sample) + condition.unsqueeze(1));
+  for (const Block& block : blocks_) frames = Apply(block, frames, condition, context.padding);
+  return output_(torch::layer_norm(frames, {frames.size(2)}, norm_.weight, norm_.bias));
+}
+
+torch::Tensor FlowGeneratorImpl::Apply(const Block& block, const torch::Tensor& frames,
+                                       const torch::Tensor& condition,
+                                       const torch::Tensor& padding) const {
+  const std::vector<torch::Tensor> by = block.modulation(condition).chunk(4, 1);
+  const torch::Tensor attended =
+      frames + Dropped(Attend(block, Normalised(frames, by[0], by[1]), padding));
+  const torch::Tensor expanded = torch::gelu(block.expand(Normalised(attended, by[2], by[3])));
+  return attended + Dropped(block.contract(expanded));
+}
+
+torch::Tensor FlowGeneratorImpl::Attend(const Block& block, const torch::Tensor& frames,
+                                        const torch::Tensor& padding) const {
+  const int64_t count = frames.size(0), length = frames.size(1), width = frames.size(2);
+  const int64_t size = width / heads_;
+  // [3, N heads, T, size]
+  const torch::Tensor all = block.attention(frames)
+                                .view({count, length, 3, heads_, size})
+                                .permute({2, 0, 3, 1, 4})
+                                .reshape({3, count * heads_, length, size});
+  const torch::Tensor frame = torch::arange(length);
+  const torch::Tensor distance =
+      (frame.unsqueeze(0) - frame.unsqueeze(1)).clamp(-reach_, reach_).add(reach_).flatten();
+  const torch::Tensor bias =
+      (block.distance.index_select(1, distance).view({1, heads_, length, length}) + padding)
+          .reshape({count * heads_, length, length});
+  const torch::Tensor scores = torch::baddbmm(bias, all[0], all[1].transpose(1, 2), 1,
+                                              1 / std::sqrt(static_cast<double>(size)));
+  const torch::Tensor values = torch::bmm(torch::softmax(scores, 2), all[2])
+                                   .view({count, heads_, length, size})
+                                   .transpose(1, 2)
+                                   .reshape({count, length, width});
+  return block.attended(values);
+}
+
+}  // namespace duet::network

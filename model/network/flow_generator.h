@@ -1,0 +1,89 @@
+#ifndef DUET_MODEL_NETWORK_FLOW_GENERATOR_H_
+#define DUET_MODEL_NETWORK_FLOW_GENERATOR_H_
+
+#include <torch/torch.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "model/checkpoint/manifest.h"
+#include "model/network/flow_input.h"
+
+namespace duet::network {
+
+// What the sampling generator is told, in its own terms: the same in every step.
+struct FlowContext {
+  torch::Tensor frames;     // [N, T, W]
+  torch::Tensor condition;  // [N, W] of the start
+  torch::Tensor padding;    // [N, 1, 1, T] 0, or far below where a frame is padding
+};
+
+// The rows of a context, by number: a window may stand in several.
+FlowContext Rows(const FlowContext& context, const torch::Tensor& rows);
+
+// The sampling generator: told a leader, a start and a class, it takes a mixture
+// (1 - t) noise + t motion and answers with the motion (x1-prediction). A transformer over the
+// window's frames with adaptive layer norms and a learned bias by distance.
+//
+// Source:  Lipman et al. 2023 (flow matching), Peebles, Xie 2023 (adaptive norms).
+// Units:   offsets from FlowInput::base, in offset_scale metres.
+// Threads: safe to call concurrently in evaluation mode.
+class FlowGeneratorImpl : public torch::nn::Module {
+ public:
+  // Randomly initialised, or filled from a checkpoint with LoadParameters. Requires manifest.flow.
+  explicit FlowGeneratorImpl(const checkpoint::Manifest& manifest);
+
+  FlowContext Prepare(const FlowInput& input) const;
+
+  // Shapes: labels [N, C], all zeros for "of any class"; sample [N, T, 3 J] at times [N] in [0, 1);
+  // returns [N, T, 3 J], meaningless past a window's length.
+  torch::Tensor forward(const FlowContext& context, const torch::Tensor& labels,
+                        const torch::Tensor& sample, const torch::Tensor& times) const;
+
+  // The share dropped in training mode.
+  void set_dropout(double share) { dropout_ = share; }
+
+  // What is measured on the training data instead of learnt: mean followers [C, 3 J] and roots of
+  // the offsets' covariances [2, 3 J, 3 J].
+  void SetMeasured(const torch::Tensor& base_poses, const torch::Tensor& noise_roots);
+  const torch::Tensor& base_poses() const { return base_poses_; }
+  const torch::Tensor& noise_roots() const { return noise_roots_; }
+
+  // All of them by the names of ExpectedTensors: views to read and to fill in, without gradient.
+  std::map<std::string, torch::Tensor> tensors() const;
+
+ private:
+  struct Linear {
+    torch::Tensor weight;  // [outputs, inputs]
+    torch::Tensor bias;    // [outputs]; undefined without
+    torch::Tensor operator()(const torch::Tensor& input) const {
+      return torch::nn::functional::linear(input, weight, bias);
+    }
+  };
+  struct Block {
+    Linear modulation, attention, attended, expand, contract;
+    torch::Tensor distance;  // [heads, 2 reach + 1]
+  };
+
+  torch::Tensor Add(const std::string& name, const std::vector<int64_t>& shape);
+  Linear FindLinear(const std::string& name) const;
+  Block FindBlock(const std::string& name) const;
+  torch::Tensor Dropped(const torch::Tensor& values) const;
+  torch::Tensor Attend(const Block& block, const torch::Tensor& frames,
+                       const torch::Tensor& padding) const;
+  torch::Tensor Apply(const Block& block, const torch::Tensor& frames,
+                      const torch::Tensor& condition, const torch::Tensor& padding) const;
+
+  std::map<std::string, torch::Tensor> by_name_;  // as registered
+  Linear frames_, sample_, start_, label_, time_expand_, time_mix_, condition_, norm_, output_;
+  std::vector<Block> blocks_;
+  torch::Tensor base_poses_, noise_roots_;
+  int64_t heads_, reach_;
+  double dropout_ = 0;
+};
+TORCH_MODULE(FlowGenerator);
+
+}  // namespace duet::network
+
+#endif  // DUET_MODEL_NETWORK_FLOW_GENERATOR_H_

@@ -1,0 +1,109 @@
+#include "model/network/flow_sampler.h"
+
+#include <cmath>
+
+#include "model/network/flow_noise.h"
+
+namespace duet::network {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+// Terms being collected.
+struct Terms {
+  std::vector<int64_t> windows;
+  std::vector<torch::Tensor> labels, factors;
+
+  void AddUnlessZero(int64_t window, const torch::Tensor& label, const torch::Tensor& factor) {
+    if (!factor.any().item<bool>()) return;
+    windows.push_back(window);
+    labels.push_back(label);
+    factors.push_back(factor.unsqueeze(1));
+  }
+};
+
+// The answer to every window, guided: [N, T, 3 J].
+torch::Tensor Guided(const FlowGenerator& generator, const FlowContext& rows,
+                     const GuidanceTerms& terms, const torch::Tensor& sample, double time) {
+  const torch::Tensor times = torch::full({terms.windows.size(0)}, time);
+  const torch::Tensor answers =
+      generator->forward(rows, terms.labels, sample.index_select(0, terms.windows), times);
+  return torch::zeros_like(sample).index_add_(0, terms.windows, terms.factors * answers);
+}
+
+torch::Tensor WithKnown(const torch::Tensor& answer, const FlowInput& input) {
+  return answer * (1 - input.is_known) + input.known;
+}
+
+// [N, T, 1] 1 in the last known frame, falling to 0 along half a cosine; 0 where nothing is known.
+torch::Tensor Fade(const FlowInput& input, int fade_frames) {
+  const torch::Tensor frame = torch::arange(input.leader.size(1)).unsqueeze(0);
+  const torch::Tensor since =
+      (frame - input.known_count.unsqueeze(1) + 1).clamp(0, fade_frames + 1);
+  const torch::Tensor fade =
+      0.5 + 0.5 * torch::cos(since.to(torch::kFloat32) * (kPi / (fade_frames + 1)));
+  return (fade * (input.known_count > 0).unsqueeze(1)).unsqueeze(2);
+}
+
+// The frames after the known ones moved to where the last of them lies: offset 0 from the base.
+torch::Tensor Joined(const torch::Tensor& answer, const FlowInput& input, int fade_frames) {
+  const int64_t count = answer.size(0), width = answer.size(2);
+  const torch::Tensor last =
+      (input.known_count - 1).clamp_min(0).view({count, 1, 1}).expand({count, 1, width});
+  return WithKnown(answer - Fade(input, fade_frames) * answer.gather(1, last), input);
+}
+
+torch::Tensor Varieties(absl::Span<const engine::NetworkInput> inputs) {
+  std::vector<float> varieties;
+  for (const engine::NetworkInput& input : inputs) varieties.push_back(input.sampling.variety);
+  return torch::tensor(varieties).view({-1, 1, 1});
+}
+
+}  // namespace
+
+GuidanceTerms MakeGuidanceTerms(const torch::Tensor& labels, const torch::Tensor& lengths,
+                                double guidance) {
+  const int64_t count = labels.size(0), frames = labels.size(1), classes = labels.size(2);
+  const torch::Tensor one_class = torch::eye(classes), no_class = torch::zeros({classes});
+  Terms terms;
+  for (int64_t n = 0; n < count; ++n) {
+    const int64_t length = lengths[n].item<int64_t>();
+    const torch::Tensor raw = labels[n].narrow(0, 0, length);
+    const torch::Tensor weights = torch::where(raw > 0, guidance * raw, raw);
+    const auto padded = [&](const torch::Tensor& factor) {
+      return torch::constant_pad_nd(factor, {0, frames - length});
+    };
+    terms.AddUnlessZero(n, no_class, padded(1 - weights.sum(1)));
+    for (int64_t k = 0; k < classes; ++k) {
+      terms.AddUnlessZero(n, one_class[k], padded(weights.select(1, k)));
+    }
+  }
+  return {torch::tensor(terms.windows), torch::stack(terms.labels), torch::stack(terms.factors)};
+}
+
+torch::Tensor SampleFlow(const FlowGenerator& generator,
+                         const checkpoint::FlowArchitecture& architecture, const FlowInput& input,
+                         const torch::Tensor& source) {
+  const GuidanceTerms terms = MakeGuidanceTerms(input.labels, input.lengths, architecture.guidance);
+  const FlowContext rows = Rows(generator->Prepare(input), terms.windows);
+  torch::Tensor sample = source, answer;
+  for (int step = 0; step < architecture.steps; ++step) {
+    const double time = static_cast<double>(step) / architecture.steps;
+    const double left = static_cast<double>(architecture.steps - step);
+    answer = Guided(generator, rows, terms, sample, time);
+    sample = sample + (WithKnown(answer, input) - sample) / left;
+  }
+  // The last step ends on the answer itself.
+  return Joined(answer, input, architecture.fade_frames) * architecture.offset_scale +
+         input.base.unsqueeze(1);
+}
+
+torch::Tensor AnswerWindows(const FlowGenerator& generator, const checkpoint::Manifest& manifest,
+                            absl::Span<const engine::NetworkInput> inputs) {
+  const FlowInput input = MakeFlowInput(manifest, generator->base_poses(), inputs);
+  const torch::Tensor source = SourceNoise(manifest.flow->noise, generator->noise_roots(),
+                                           input.known_count, DrawNoise(inputs));
+  return SampleFlow(generator, *manifest.flow, input, Varieties(inputs) * source);
+}
+
+}  // namespace duet::network

@@ -1,0 +1,43 @@
+#ifndef DUET_MODEL_NETWORK_FLOW_SAMPLER_H_
+#define DUET_MODEL_NETWORK_FLOW_SAMPLER_H_
+
+#include <torch/torch.h>
+
+#include <vector>
+
+#include "absl/types/span.h"
+#include "model/engine/network.h"
+#include "model/network/flow_generator.h"
+
+namespace duet::network {
+
+// How label weights become answers. With u the answer for no class and x_k the one for class k:
+//
+//   x^ = u + sum_k w_k (x_k - u) = (1 - sum_k w_k) u + sum_k w_k x_k
+//
+// w_k is the window's weight of the class, times `guidance` where it is above 0; it may differ from
+// frame to frame. Terms whose factor is 0 in every frame are left out.
+// Source: Ho, Salimans 2022 (classifier-free guidance); several labels as Liu et al. 2022.
+struct GuidanceTerms {
+  torch::Tensor windows;  // [R] int64, the window of each term
+  torch::Tensor labels;   // [R, C] zeros, or one class
+  torch::Tensor factors;  // [R, T, 1]
+};
+// Shapes: labels [N, T, C], lengths [N].
+GuidanceTerms MakeGuidanceTerms(const torch::Tensor& labels, const torch::Tensor& lengths,
+                                double guidance);
+
+// Goes from noise to motion in a few Euler steps; known frames are put in place in every step.
+// Shapes: source [N, T, 3 J] in units of offset_scale. Returns followers [N, T, 3 J] in metres
+// whose known frames are exact; the frames after them are drawn to where the last of them lies.
+torch::Tensor SampleFlow(const FlowGenerator& generator,
+                         const checkpoint::FlowArchitecture& architecture, const FlowInput& input,
+                         const torch::Tensor& source);
+
+// Answers windows of any lengths as their Sampling says: [N, T, 3 J] metres.
+torch::Tensor AnswerWindows(const FlowGenerator& generator, const checkpoint::Manifest& manifest,
+                            absl::Span<const engine::NetworkInput> inputs);
+
+}  // namespace duet::network
+
+#endif  // DUET_MODEL_NETWORK_FLOW_SAMPLER_H_

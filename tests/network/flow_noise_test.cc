@@ -1,0 +1,68 @@
+#include "model/network/flow_noise.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/network/flow_test_support.h"
+
+namespace duet::network {
+namespace {
+
+constexpr int64_t kWindows = 400, kFrames = 20, kWidth = 3;
+
+NoiseNumbers Numbers() {
+  torch::manual_seed(2);
+  return {torch::randn({kWindows, kFrames, kWidth}), torch::randn({kWindows, kFrames, kWidth})};
+}
+
+torch::Tensor Roots() { return torch::eye(kWidth).expand({2, kWidth, kWidth}); }
+
+torch::Tensor Told(int64_t count) { return torch::full({kWindows}, count, torch::kInt64); }
+
+// [T] over windows and coordinates.
+torch::Tensor Deviation(const torch::Tensor& noise) { return noise.square().mean({0, 2}).sqrt(); }
+
+TEST(SourceNoiseTest, HasTheTrainingOffsetsDeviationAndIsSmooth) {
+  const checkpoint::FlowArchitecture::Noise options;
+  const torch::Tensor noise = SourceNoise(options, 2 * Roots(), Told(0), Numbers());
+  EXPECT_NEAR(Deviation(noise).mean().item<float>(), 2, 0.1);
+  const torch::Tensor moved = noise.slice(1, 1) - noise.slice(1, 0, -1);
+  EXPECT_LT(Deviation(moved).mean().item<float>(), 0.5);
+  // The part that all frames share outlives the kernel's length.
+  const torch::Tensor ends = (noise.select(1, 0) * noise.select(1, kFrames - 1)).mean();
+  EXPECT_NEAR(ends.item<float>(), 4 * options.constant_share, 0.5);
+}
+
+TEST(SourceNoiseTest, GrowsFromTheLastKnownFrame) {
+  checkpoint::FlowArchitecture::Noise options;
+  options.white = 0;
+  const torch::Tensor deviation = Deviation(SourceNoise(options, Roots(), Told(4), Numbers()));
+  EXPECT_NEAR(deviation[3].item<float>(), 1.0 / 8, 0.02);
+  EXPECT_NEAR(deviation[7].item<float>(), 5.0 / 8, 0.06);
+  EXPECT_NEAR(deviation[15].item<float>(), 1, 0.08);
+}
+
+TEST(SourceNoiseTest, FramesDoNotDependOnThoseThatFollow) {
+  const NoiseNumbers all = Numbers();
+  const NoiseNumbers first = {all.smooth.narrow(1, 0, 7), all.white.narrow(1, 0, 7)};
+  const checkpoint::FlowArchitecture::Noise options;
+  for (const int64_t told : {0, 2}) {
+    EXPECT_TRUE(torch::allclose(SourceNoise(options, Roots(), Told(told), all).narrow(1, 0, 7),
+                                SourceNoise(options, Roots(), Told(told), first), 1e-4, 1e-5));
+  }
+}
+
+TEST(DrawNoiseTest, DependsOnEachWindowsSeedAlone) {
+  const checkpoint::Manifest manifest = SmallFlowManifest();
+  std::vector<engine::NetworkInput> inputs = {FlowWindow(manifest, 9), FlowWindow(manifest, 4)};
+  inputs[0].sampling.seed = 11;
+  inputs[1].sampling.seed = 12;
+  const NoiseNumbers both = DrawNoise(inputs);
+  const NoiseNumbers second = DrawNoise({&inputs[1], 1});
+  EXPECT_TRUE(torch::equal(both.smooth[1].narrow(0, 0, 4), second.smooth[0]));
+  EXPECT_TRUE(torch::equal(both.white[1].narrow(0, 0, 4), second.white[0]));
+  EXPECT_FALSE(torch::equal(both.smooth[0].narrow(0, 0, 4), second.smooth[0]));
+  EXPECT_FALSE(torch::equal(second.smooth[0], second.white[0]));
+}
+
+}  // namespace
+}  // namespace duet::network
