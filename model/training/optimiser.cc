@@ -9,6 +9,7 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr double kWarmUpShare = 0.2;
 constexpr double kFirstFactor = 1.0 / 25;
 constexpr double kLastFactor = 1e-5;
+constexpr double kFirstMoment = 0.9;
 
 double HalfCosine(double from, double to, double share) {
   return to + (from - to) * (1 + std::cos(kPi * share)) / 2;
@@ -35,8 +36,9 @@ std::unique_ptr<torch::optim::Optimizer> Make(const TrainingOptions::Optimiser& 
         torch::optim::RMSpropOptions(options.learning_rate).weight_decay(options.weight_decay));
   }
   auto adam = std::make_unique<torch::optim::AdamW>(
-      Groups(parameters),
-      torch::optim::AdamWOptions(options.learning_rate).weight_decay(options.weight_decay));
+      Groups(parameters), torch::optim::AdamWOptions(options.learning_rate)
+                              .weight_decay(options.weight_decay)
+                              .betas({kFirstMoment, options.second_moment}));
   static_cast<torch::optim::AdamWOptions&>(adam->param_groups()[1].options()).weight_decay(0);
   return adam;
 }
@@ -46,6 +48,13 @@ std::unique_ptr<torch::optim::Optimizer> Make(const TrainingOptions::Optimiser& 
 double ScheduleFactor(const TrainingOptions::Optimiser& options, int64_t step, int64_t steps) {
   if (options.schedule == "constant") return 1;
   const double share = static_cast<double>(step) / static_cast<double>(steps);
+  if (options.schedule == "cosine") {
+    const double warm =
+        step < options.warm_up_steps
+            ? static_cast<double>(step + 1) / static_cast<double>(options.warm_up_steps)
+            : 1;
+    return warm * HalfCosine(1, options.last_share, share);
+  }
   if (share < kWarmUpShare) return HalfCosine(kFirstFactor, 1, share / kWarmUpShare);
   return HalfCosine(1, kLastFactor, (share - kWarmUpShare) / (1 - kWarmUpShare));
 }

@@ -9,6 +9,7 @@
 #include "absl/strings/strip.h"
 #include "model/base/strict_json.h"
 #include "model/base/text.h"
+#include "model/checkpoint/flow_json.h"
 #include "model/checkpoint/names.h"
 
 namespace duet::training {
@@ -53,6 +54,11 @@ void Read(base::ObjectReader* reader, checkpoint::GeneratorArchitecture* out) {
   out->base_pose = reader->Bool("base_pose");
 }
 
+void Read(base::ObjectReader* reader, checkpoint::FlowArchitecture* out) {
+  OneOf(reader, checkpoint::kGeneratorKind, {checkpoint::kFlowKind});
+  *out = checkpoint::ReadFlowArchitecture(reader);
+}
+
 void Read(base::ObjectReader* reader, TrainingOptions::Dropout* out) {
   out->slices = reader->Number("slices", 0, 0.95);
   out->encoded = reader->Number("encoded", 0, 0.95);
@@ -61,7 +67,12 @@ void Read(base::ObjectReader* reader, TrainingOptions::Dropout* out) {
 void Read(base::ObjectReader* reader, TrainingOptions::Optimiser* out) {
   out->name = OneOf(reader, "name", {"adam", "rmsprop"});
   out->learning_rate = reader->Number("learning_rate", 1e-9, 10);
-  out->schedule = OneOf(reader, "schedule", {"one_cycle", "constant"});
+  out->schedule = OneOf(reader, "schedule", {"one_cycle", "constant", "cosine"});
+  if (out->schedule == "cosine") {
+    out->warm_up_steps = reader->Int("warm_up_steps", 0, kMaxEpochs);
+    out->last_share = Probability(reader, "last_share");
+    out->second_moment = reader->Number("second_moment", 0, 0.999999);
+  }
   out->weight_decay = reader->Number("weight_decay", 0, 10);
   out->gradient_clip = reader->Number("gradient_clip", 0, 1e9);
   out->average_decay = reader->Number("average_decay", 0, 0.999999);
@@ -100,6 +111,21 @@ void Read(base::ObjectReader* reader, TrainingOptions::Augmentation* out) {
   out->crop = Probability(reader, "crop");
 }
 
+void Read(base::ObjectReader* reader, TrainingOptions::Flow* out) {
+  out->dropout = reader->Number("dropout", 0, 0.95);
+  out->passes = reader->Int("passes", 1, kMaxEpochs);
+  out->target_smoothing = reader->Number("target_smoothing", 0, 100);
+  out->pair_scale = reader->Number("pair_scale", 0, 0.9);
+  out->unlabelled = Probability(reader, "unlabelled");
+  out->several_known = Probability(reader, "several_known");
+  out->known_noise = reader->Number("known_noise", 0, 10);
+  out->difference_weight = reader->Number("difference_weight", 0, 1e6);
+  out->bone_weight = reader->Number("bone_weight", 0, 1e6);
+  out->slide_weight = reader->Number("slide_weight", 0, 1e6);
+  out->slide_speed = reader->Number("slide_speed", 0, 100);
+  out->least_remaining = reader->Number("least_remaining", 1e-6, 1);
+}
+
 void Read(base::ObjectReader* reader, TrainingOptions::Start* out) {
   out->root = Probability(reader, "root");
   out->pose = Probability(reader, "pose");
@@ -124,6 +150,13 @@ absl::Status ReadSection(base::ObjectReader* root, const std::string& name, Sect
   return reader.Finish();
 }
 
+// A generator that says its kind is the sampling one; the paper's has no field for it.
+bool IsFlow(const json& root) {
+  const auto generator = root.find("generator");
+  return generator != root.end() && generator->is_object() &&
+         generator->contains(checkpoint::kGeneratorKind);
+}
+
 absl::StatusOr<TrainingOptions> ReadOptions(const json& value) {
   base::ObjectReader root(value, "");
   TrainingOptions options;
@@ -131,17 +164,23 @@ absl::StatusOr<TrainingOptions> ReadOptions(const json& value) {
   const auto section = [&](const std::string& name, auto* out) {
     if (status.ok()) status = ReadSection(&root, name, out);
   };
-  section("generator", &options.generator);
+  const bool is_flow = IsFlow(value);
+  if (is_flow) {
+    section("generator", &options.flow.emplace().generator);
+    section("flow", &*options.flow);
+  } else {
+    section("generator", &options.generator);
+    section("dropout", &options.dropout);
+    section("losses", &options.losses);
+    section("discriminator", &options.discriminator);
+    options.graded_labels = root.Number("graded_labels", 0, 1);
+  }
   options.standardisation = OneOf(&root, "standardisation", checkpoint::kStandardisationNames);
-  section("dropout", &options.dropout);
   section("optimiser", &options.optimiser);
   options.epochs = root.Int("epochs", 1, kMaxEpochs);
   options.batch = root.Int("batch", 1, 65536);
   options.seed = static_cast<uint64_t>(root.Int("seed", 0, INT64_MAX));
-  section("losses", &options.losses);
-  section("discriminator", &options.discriminator);
   section("augmentation", &options.augmentation);
-  options.graded_labels = root.Number("graded_labels", 0, 1);
   section("start", &options.start);
   section("validation", &options.validation);
   if (!status.ok()) return status;
@@ -202,50 +241,88 @@ absl::StatusOr<TrainingOptions> ParseTrainingOptions(
   return ReadOptions(*root);
 }
 
+namespace {
+
+using Description = std::map<std::string, std::string>;
+
+void DescribePaper(const TrainingOptions& o, Description* out) {
+  out->insert({{"dropout.slices", Text(o.dropout.slices)},
+               {"dropout.encoded", Text(o.dropout.encoded)},
+               {"losses.reconstruction", o.losses.reconstruction},
+               {"losses.reconstruction_weight", Text(o.losses.reconstruction_weight)},
+               {"losses.bone", Text(o.losses.bone)},
+               {"losses.continuity", Text(o.losses.continuity)},
+               {"losses.continuity_form", o.losses.continuity_form},
+               {"losses.continuity_gap", absl::StrCat(o.losses.continuity_gap)},
+               {"losses.continuity_margin", Text(o.losses.continuity_margin)},
+               {"losses.adversarial", Text(o.losses.adversarial)},
+               {"discriminator.binary", Text(o.discriminator.binary)},
+               {"discriminator.hidden", absl::StrCat(o.discriminator.hidden)},
+               {"discriminator.learning_rate", Text(o.discriminator.learning_rate)},
+               {"discriminator.dropout", Text(o.discriminator.dropout)},
+               {"discriminator.unit_norm_kernels", Text(o.discriminator.unit_norm_kernels)},
+               {"graded_labels", Text(o.graded_labels)}});
+}
+
+void DescribeCosine(const TrainingOptions::Optimiser& o, Description* out) {
+  out->insert({{"optimiser.warm_up_steps", absl::StrCat(o.warm_up_steps)},
+               {"optimiser.last_share", Text(o.last_share)},
+               {"optimiser.second_moment", Text(o.second_moment)}});
+}
+
+void DescribeFlow(const TrainingOptions::Flow& f, Description* out) {
+  out->insert({{"flow.dropout", Text(f.dropout)},
+               {"flow.passes", absl::StrCat(f.passes)},
+               {"flow.target_smoothing", Text(f.target_smoothing)},
+               {"flow.pair_scale", Text(f.pair_scale)},
+               {"flow.unlabelled", Text(f.unlabelled)},
+               {"flow.several_known", Text(f.several_known)},
+               {"flow.known_noise", Text(f.known_noise)},
+               {"flow.difference_weight", Text(f.difference_weight)},
+               {"flow.bone_weight", Text(f.bone_weight)},
+               {"flow.slide_weight", Text(f.slide_weight)},
+               {"flow.slide_speed", Text(f.slide_speed)},
+               {"flow.least_remaining", Text(f.least_remaining)}});
+}
+
+}  // namespace
+
 std::map<std::string, std::string> Describe(const TrainingOptions& o) {
-  return {{"standardisation",
-           std::string(NameOf(checkpoint::kStandardisationNames, o.standardisation))},
-          {"dropout.slices", Text(o.dropout.slices)},
-          {"dropout.encoded", Text(o.dropout.encoded)},
-          {"optimiser.name", o.optimiser.name},
-          {"optimiser.learning_rate", Text(o.optimiser.learning_rate)},
-          {"optimiser.schedule", o.optimiser.schedule},
-          {"optimiser.weight_decay", Text(o.optimiser.weight_decay)},
-          {"optimiser.gradient_clip", Text(o.optimiser.gradient_clip)},
-          {"optimiser.average_decay", Text(o.optimiser.average_decay)},
-          {"epochs", absl::StrCat(o.epochs)},
-          {"batch", absl::StrCat(o.batch)},
-          {"seed", absl::StrCat(o.seed)},
-          {"losses.reconstruction", o.losses.reconstruction},
-          {"losses.reconstruction_weight", Text(o.losses.reconstruction_weight)},
-          {"losses.bone", Text(o.losses.bone)},
-          {"losses.continuity", Text(o.losses.continuity)},
-          {"losses.continuity_form", o.losses.continuity_form},
-          {"losses.continuity_gap", absl::StrCat(o.losses.continuity_gap)},
-          {"losses.continuity_margin", Text(o.losses.continuity_margin)},
-          {"losses.adversarial", Text(o.losses.adversarial)},
-          {"discriminator.binary", Text(o.discriminator.binary)},
-          {"discriminator.hidden", absl::StrCat(o.discriminator.hidden)},
-          {"discriminator.learning_rate", Text(o.discriminator.learning_rate)},
-          {"discriminator.dropout", Text(o.discriminator.dropout)},
-          {"discriminator.unit_norm_kernels", Text(o.discriminator.unit_norm_kernels)},
-          {"augmentation.mirrored_classes", absl::StrJoin(o.augmentation.mirrored_classes, " ")},
-          {"augmentation.mirror", Text(o.augmentation.mirror)},
-          {"augmentation.swap_roles", Text(o.augmentation.swap_roles)},
-          {"augmentation.body_scale", Text(o.augmentation.body_scale)},
-          {"augmentation.time_warp", Text(o.augmentation.time_warp)},
-          {"augmentation.root_distance", Text(o.augmentation.root_distance)},
-          {"augmentation.yaw", Text(o.augmentation.yaw)},
-          {"augmentation.leader_yaw", Text(o.augmentation.leader_yaw)},
-          {"augmentation.noise", Text(o.augmentation.noise)},
-          {"augmentation.body_noise", Text(o.augmentation.body_noise)},
-          {"augmentation.crop", Text(o.augmentation.crop)},
-          {"graded_labels", Text(o.graded_labels)},
-          {"start.root", Text(o.start.root)},
-          {"start.pose", Text(o.start.pose)},
-          {"validation.subjects", absl::StrJoin(o.validation.subjects, " ")},
-          {"validation.fraction", Text(o.validation.fraction)},
-          {"validation.patience", absl::StrCat(o.validation.patience)}};
+  Description description = {
+      {"standardisation",
+       std::string(NameOf(checkpoint::kStandardisationNames, o.standardisation))},
+      {"optimiser.name", o.optimiser.name},
+      {"optimiser.learning_rate", Text(o.optimiser.learning_rate)},
+      {"optimiser.schedule", o.optimiser.schedule},
+      {"optimiser.weight_decay", Text(o.optimiser.weight_decay)},
+      {"optimiser.gradient_clip", Text(o.optimiser.gradient_clip)},
+      {"optimiser.average_decay", Text(o.optimiser.average_decay)},
+      {"epochs", absl::StrCat(o.epochs)},
+      {"batch", absl::StrCat(o.batch)},
+      {"seed", absl::StrCat(o.seed)},
+      {"augmentation.mirrored_classes", absl::StrJoin(o.augmentation.mirrored_classes, " ")},
+      {"augmentation.mirror", Text(o.augmentation.mirror)},
+      {"augmentation.swap_roles", Text(o.augmentation.swap_roles)},
+      {"augmentation.body_scale", Text(o.augmentation.body_scale)},
+      {"augmentation.time_warp", Text(o.augmentation.time_warp)},
+      {"augmentation.root_distance", Text(o.augmentation.root_distance)},
+      {"augmentation.yaw", Text(o.augmentation.yaw)},
+      {"augmentation.leader_yaw", Text(o.augmentation.leader_yaw)},
+      {"augmentation.noise", Text(o.augmentation.noise)},
+      {"augmentation.body_noise", Text(o.augmentation.body_noise)},
+      {"augmentation.crop", Text(o.augmentation.crop)},
+      {"start.root", Text(o.start.root)},
+      {"start.pose", Text(o.start.pose)},
+      {"validation.subjects", absl::StrJoin(o.validation.subjects, " ")},
+      {"validation.fraction", Text(o.validation.fraction)},
+      {"validation.patience", absl::StrCat(o.validation.patience)}};
+  if (o.optimiser.schedule == "cosine") DescribeCosine(o.optimiser, &description);
+  if (o.flow) {
+    DescribeFlow(*o.flow, &description);
+  } else {
+    DescribePaper(o, &description);
+  }
+  return description;
 }
 
 absl::Status CheckAgainst(const TrainingOptions& options, const std::vector<std::string>& classes,

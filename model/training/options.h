@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,7 +26,10 @@ struct TrainingOptions {
   struct Optimiser {
     std::string name = "adam";  // "adam" (decoupled weight decay) or "rmsprop"
     double learning_rate = 2e-3;
-    std::string schedule = "one_cycle";  // or "constant"
+    std::string schedule = "one_cycle";  // or "constant", or "cosine", which the next three are of
+    int64_t warm_up_steps = 100;         // of a rate that rises from 0
+    double last_share = 0.02;            // of the rate, at the end
+    double second_moment = 0.999;        // decay of Adam's second moment
     double weight_decay = 0;             // of matrices alone
     double gradient_clip = 0;            // largest norm; 0: not clipped
     double average_decay = 0;            // exponential average of the weights; 0: none
@@ -70,6 +74,25 @@ struct TrainingOptions {
 
   // Share of clips trained on a graded, negative or mixed label vector (graded_labels.h).
   double graded_labels = 0;
+
+  // Trains the sampling generator in place of the paper's: of the other settings it reads
+  // standardisation, optimiser, epochs, batch, seed, augmentation, start and validation.
+  struct Flow {
+    checkpoint::FlowArchitecture generator;
+    double dropout = 0.1;
+    int64_t passes = 10;            // over the data in an epoch
+    double target_smoothing = 1;    // frames, deviation of the Gaussian over captured followers
+    double pair_scale = 0.1;        // +- share, both people alike
+    double unlabelled = 0.12;       // share of clips whose label is withheld
+    double several_known = 0.4;     // of the clips told a pose: told up to half of their frames
+    double known_noise = 0.01;      // metres, deviation of each joint's error in what is told
+    double difference_weight = 8;   // of what moves from frame to frame
+    double bone_weight = 0;         // of limb lengths
+    double slide_weight = 0;        // of feet that move where the captured ones stand
+    double slide_speed = 0.3;       // metres a second, below which a captured foot stands
+    double least_remaining = 0.15;  // losses are divided by 1 - t, or by this
+  };
+  std::optional<Flow> flow;
 
   // What a clip's follower start tells, by probability; the rest has none.
   struct Start {

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "model/network/parameters.h"
+#include "model/training/flow_trainer.h"
 #include "model/training/revision.h"
 #include "model/training/run_log.h"
 #include "model/training/trainer.h"
@@ -25,8 +27,11 @@ checkpoint::Manifest MakeManifest(const RunPlan& plan, const dataset::Dataset& d
   manifest.model.classes = dataset.classes;
   manifest.model.frame_rate_hz = dataset.frame_rate_hz;
   manifest.model.window_frames = dataset.LongestFrameCount();
-  manifest.model.accepts_follower_start = plan.options.generator.follower_start;
   manifest.generator = plan.options.generator;
+  if (plan.options.flow) manifest.flow = plan.options.flow->generator;
+  manifest.model.samples = manifest.flow.has_value();
+  manifest.model.accepts_follower_start =
+      manifest.flow.has_value() || plan.options.generator.follower_start;
   manifest.generator.parts = dataset.parts;
   manifest.standardisation = plan.options.standardisation;
   manifest.training = Describe(plan.options);
@@ -58,16 +63,26 @@ std::vector<int> HoldBack(const TrainingOptions& options, const dataset::Dataset
 }
 
 absl::Status Finish(const RunPlan& plan, checkpoint::Manifest manifest, const EpochReport& last,
-                    Trainer* trainer) {
+                    EpochTrainer* trainer) {
   manifest.git_revision = kGitRevision;
   manifest.metrics["training.reconstruction"] = last.reconstruction;
   if (!std::isnan(last.validation_afd)) manifest.metrics["validation.afd"] = last.validation_afd;
-  const network::Generator best = trainer->Best();
   std::error_code error;
   fs::create_directories(CheckpointFolder(plan).parent_path(), error);
-  std::vector<checkpoint::Tensor> tensors = network::StoreParameters(manifest, best);
+  std::vector<checkpoint::Tensor> tensors = trainer->BestTensors();
   return checkpoint::WriteCheckpoint(CheckpointFolder(plan),
                                      {std::move(manifest), std::move(tensors)});
+}
+
+std::unique_ptr<EpochTrainer> MakeTrainer(const RunPlan& plan, const checkpoint::Manifest& manifest,
+                                          const dataset::Dataset& dataset, std::vector<int> train,
+                                          std::vector<int> validation) {
+  if (plan.options.flow) {
+    return std::make_unique<FlowTrainer>(plan.options, manifest, dataset, std::move(train),
+                                         std::move(validation));
+  }
+  return std::make_unique<Trainer>(plan.options, manifest, dataset, std::move(train),
+                                   std::move(validation));
 }
 
 void Show(const RunPlan& plan, const EpochReport& report, bool terminal, std::ostream* progress) {
@@ -107,15 +122,16 @@ absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& dataset, b
     return absl::InvalidArgumentError(absl::StrCat(
         plan.title, ": validation holds back every sequence, wanted some to train on"));
   }
-  Trainer trainer(plan.options, manifest, dataset, train, validation);
+  const std::unique_ptr<EpochTrainer> trainer =
+      MakeTrainer(plan, manifest, dataset, train, validation);
   const fs::path state = plan.folder / "state";
-  status = trainer.LoadState(state);
+  status = trainer->LoadState(state);
   if (!status.ok() && !absl::IsNotFound(status)) return status;
   RunLog log(plan.folder / "log.csv");
-  if (status = log.ResumeAt(trainer.epoch()); !status.ok()) return status;
+  if (status = log.ResumeAt(trainer->epoch()); !status.ok()) return status;
   EpochReport report;
-  while (!trainer.Finished()) {
-    report = trainer.RunEpoch();
+  while (!trainer->Finished()) {
+    report = trainer->RunEpoch();
     if (!std::isfinite(report.generator)) {
       return absl::InternalError(
           absl::StrCat(plan.title, ": the loss is no longer finite at epoch ", report.epoch,
@@ -123,10 +139,10 @@ absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& dataset, b
     }
     // In this order: resuming drops a row without its state, but could not make up a lost one.
     if (status = log.Append(report); !status.ok()) return status;
-    if (status = trainer.SaveState(state); !status.ok()) return status;
+    if (status = trainer->SaveState(state); !status.ok()) return status;
     Show(plan, report, terminal, progress);
   }
-  return Finish(plan, manifest, report, &trainer);
+  return Finish(plan, manifest, report, trainer.get());
 }
 
 }  // namespace duet::training

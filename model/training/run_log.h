@@ -6,7 +6,7 @@
 #include <string>
 
 #include "absl/status/status.h"
-#include "model/training/trainer.h"
+#include "model/training/epoch_trainer.h"
 
 namespace duet::training {
 

@@ -13,12 +13,6 @@ namespace {
 // Frames by which the order by length is disturbed, so that batches differ from epoch to epoch.
 constexpr double kLengthJitter = 2;
 
-StartKnowledge DrawStart(const TrainingOptions::Start& start, base::Random* random) {
-  const double draw = random->Uniform(0, 1);
-  if (draw < start.pose) return StartKnowledge::kPose;
-  return draw < start.pose + start.root ? StartKnowledge::kRoot : StartKnowledge::kNone;
-}
-
 std::vector<int> OrderByLength(const std::vector<dataset::Sequence>& sequences,
                                base::Random* random) {
   std::vector<double> key;
@@ -62,6 +56,30 @@ std::vector<const motion::Poses*> Pointers(const std::vector<motion::Poses>& cli
 
 }  // namespace
 
+StartKnowledge DrawStart(const TrainingOptions::Start& start, base::Random* random) {
+  const double draw = random->Uniform(0, 1);
+  if (draw < start.pose) return StartKnowledge::kPose;
+  return draw < start.pose + start.root ? StartKnowledge::kRoot : StartKnowledge::kNone;
+}
+
+std::vector<dataset::Sequence> AugmentAll(const dataset::Dataset& dataset,
+                                          const std::vector<int>& train,
+                                          const TrainingOptions& options, base::Random* random) {
+  std::vector<dataset::Sequence> sequences;
+  for (int index : train) {
+    sequences.push_back(Augment(dataset, dataset.sequences[static_cast<size_t>(index)],
+                                options.augmentation, random));
+  }
+  return sequences;
+}
+
+std::vector<std::vector<int>> BatchesByLength(const std::vector<dataset::Sequence>& sequences,
+                                              int64_t batch, base::Random* random) {
+  std::vector<std::vector<int>> pieces = Cut(OrderByLength(sequences, random), batch);
+  random->Shuffle(&pieces);
+  return pieces;
+}
+
 engine::SynthesisWindow MakeWindow(const dataset::Dataset& dataset, const Example& example) {
   const dataset::Sequence& sequence = example.sequence;
   engine::SynthesisWindow window;
@@ -104,13 +122,8 @@ std::vector<TrainingBatch> SampleEpoch(const checkpoint::Manifest& manifest,
                                        const std::vector<int>& train,
                                        const TrainingOptions& options, int64_t epoch) {
   base::Random random(options.seed, epoch);
-  std::vector<dataset::Sequence> sequences;
-  for (int index : train) {
-    sequences.push_back(Augment(dataset, dataset.sequences[static_cast<size_t>(index)],
-                                options.augmentation, &random));
-  }
-  std::vector<std::vector<int>> pieces = Cut(OrderByLength(sequences, &random), options.batch);
-  random.Shuffle(&pieces);
+  const std::vector<dataset::Sequence> sequences = AugmentAll(dataset, train, options, &random);
+  const std::vector<std::vector<int>> pieces = BatchesByLength(sequences, options.batch, &random);
   std::vector<TrainingBatch> batches;
   for (const std::vector<int>& piece : pieces) {
     std::vector<Example> examples;

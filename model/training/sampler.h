@@ -25,6 +25,19 @@ struct TrainingBatch {
 // A sequence as the network is given it: the window that a server would make of it.
 engine::SynthesisWindow MakeWindow(const dataset::Dataset& dataset, const Example& example);
 
+// What a clip's start tells, by the shares of `start`.
+StartKnowledge DrawStart(const TrainingOptions::Start& start, base::Random* random);
+
+// Every training sequence, augmented.
+std::vector<dataset::Sequence> AugmentAll(const dataset::Dataset& dataset,
+                                          const std::vector<int>& train,
+                                          const TrainingOptions& options, base::Random* random);
+
+// Indices of sequences by batch, in random order: sequences of like length together, batches that
+// differ by at most one in size.
+std::vector<std::vector<int>> BatchesByLength(const std::vector<dataset::Sequence>& sequences,
+                                              int64_t batch, base::Random* random);
+
 // Pads examples into a batch.
 TrainingBatch MakeBatch(const checkpoint::Manifest& manifest, const dataset::Dataset& dataset,
                         const std::vector<Example>& examples);

@@ -1,17 +1,12 @@
 #include "model/training/trainer.h"
 
-#include <chrono>
-#include <limits>
+#include <utility>
 
-#include "absl/strings/str_cat.h"
-#include "absl/strings/str_join.h"
 #include "model/network/losses.h"
+#include "model/network/parameters.h"
 
 namespace duet::training {
 namespace {
-
-// Of the state file. 2: the generator's parameters stacked.
-constexpr int64_t kStateVersion = 2;
 
 int64_t Steps(size_t count, int64_t batch) {
   return (static_cast<int64_t>(count) + batch - 1) / batch;
@@ -23,17 +18,6 @@ network::Generator MakeGenerator(const TrainingOptions& options,
   network::Generator generator(manifest);
   generator->set_dropout(options.dropout.slices, options.dropout.encoded);
   return generator;
-}
-
-std::vector<torch::Tensor> Copies(const std::vector<torch::Tensor>& tensors) {
-  std::vector<torch::Tensor> copies;
-  for (const torch::Tensor& tensor : tensors) copies.push_back(tensor.detach().clone());
-  return copies;
-}
-
-void CopyInto(const std::vector<torch::Tensor>& from, const std::vector<torch::Tensor>& to) {
-  torch::NoGradGuard no_grad;
-  for (size_t i = 0; i < from.size(); ++i) torch::Tensor(to[i]).copy_(from[i]);
 }
 
 torch::Tensor Reconstruction(const std::string& form, const torch::Tensor& predicted,
@@ -55,30 +39,18 @@ network::ContinuityOptions Continuity(const TrainingOptions::Losses& losses) {
 Trainer::Trainer(const TrainingOptions& options, const checkpoint::Manifest& manifest,
                  const dataset::Dataset& dataset, std::vector<int> train,
                  std::vector<int> validation)
-    : options_(options),
-      manifest_(manifest),
-      dataset_(dataset),
-      train_(std::move(train)),
-      validation_(std::move(validation)),
+    : EpochTrainer(options, manifest, dataset, std::move(train), std::move(validation)),
       steps_per_epoch_(Steps(train_.size(), options.batch)),
       generator_(MakeGenerator(options, manifest)),
       generator_optimiser_(options.optimiser, generator_->parameters(),
-                           steps_per_epoch_ * options.epochs),
-      best_afd_(std::numeric_limits<double>::infinity()) {
+                           steps_per_epoch_ * options.epochs) {
   if (options.losses.adversarial > 0) {
     adversary_ = std::make_unique<Adversary>(options, manifest, steps_per_epoch_ * options.epochs);
   }
   if (manifest.generator.base_pose) {
     generator_->SetBasePoses(ClassMeanPoses(manifest, dataset, train_));
   }
-  average_ = Copies(generator_->parameters());
-  best_ = Copies(generator_->parameters());
-}
-
-bool Trainer::Finished() const {
-  if (epoch_ >= options_.epochs) return true;
-  const bool may_stop = !validation_.empty() && options_.validation.patience > 0;
-  return may_stop && epoch_ - best_epoch_ >= options_.validation.patience;
+  Begin(generator_.get());
 }
 
 torch::Tensor Trainer::GeneratorLoss(const TrainingBatch& batch, EpochReport* report) {
@@ -118,97 +90,36 @@ void Trainer::TrainAdversary(const TrainingBatch& batch, int64_t step, EpochRepo
       adversary_->Train(batch, synthesised, step) / static_cast<double>(steps_per_epoch_);
 }
 
-void Trainer::UpdateAverage() {
-  torch::NoGradGuard no_grad;
-  const std::vector<torch::Tensor> parameters = generator_->parameters();
-  const double decay = options_.optimiser.average_decay;
-  for (size_t i = 0; i < parameters.size(); ++i) {
-    if (decay > 0) {
-      average_[i].mul_(decay).add_(parameters[i], 1 - decay);
-    } else {
-      average_[i].copy_(parameters[i]);
-    }
-  }
-}
-
-EpochReport Trainer::RunEpoch() {
-  const auto begin = std::chrono::steady_clock::now();
-  EpochReport report;
-  report.epoch = epoch_ + 1;
-  report.epochs = options_.epochs;
-  // Dropout draws from LibTorch's generator: seeded by epoch, so that a resumed run draws the same.
-  torch::manual_seed(options_.seed * 1000003 + static_cast<uint64_t>(epoch_));
-  generator_->train();
-  int64_t step = epoch_ * steps_per_epoch_;
-  for (const TrainingBatch& batch : SampleEpoch(manifest_, dataset_, train_, options_, epoch_)) {
-    if (adversary_ != nullptr) TrainAdversary(batch, step, &report);
-    GeneratorLoss(batch, &report).backward();
+void Trainer::TrainEpoch(int64_t first_step, EpochReport* report) {
+  int64_t step = first_step;
+  for (const TrainingBatch& batch : SampleEpoch(manifest_, dataset_, train_, options_, epoch())) {
+    if (adversary_ != nullptr) TrainAdversary(batch, step, report);
+    GeneratorLoss(batch, report).backward();
     generator_optimiser_.Step(step);
-    UpdateAverage();
+    UpdateAverage(options_.optimiser.average_decay);
     ++step;
   }
-  ++epoch_;
-  report.validation_afd = Validate(StartKnowledge::kNone);
-  report.validation_afd_pose = manifest_.generator.follower_start
-                                   ? Validate(StartKnowledge::kPose)
-                                   : std::numeric_limits<double>::quiet_NaN();
-  if (validation_.empty() || report.validation_afd < best_afd_) {
-    best_afd_ = report.validation_afd;
-    best_epoch_ = epoch_;
-    CopyInto(average_, best_);
-  }
-  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  return report;
 }
 
-double Trainer::Validate(StartKnowledge start) {
-  if (validation_.empty()) return std::numeric_limits<double>::quiet_NaN();
-  torch::NoGradGuard no_grad;
-  const std::vector<torch::Tensor> parameters = generator_->parameters();
-  const std::vector<torch::Tensor> trained = Copies(parameters);
-  CopyInto(average_, parameters);
-  generator_->eval();
-  double sum = 0;
-  for (int index : validation_) {
-    const TrainingBatch one = MakeBatch(
-        manifest_, dataset_,
-        {CapturedExample(dataset_, dataset_.sequences[static_cast<size_t>(index)], start)});
-    sum += network::NormLoss(generator_->forward(one.input), one.follower, one.input.lengths)
-               .item<double>();
-  }
-  CopyInto(trained, parameters);
-  return sum / static_cast<double>(validation_.size());
+double Trainer::ValidationError(const Example& example) {
+  const TrainingBatch one = MakeBatch(manifest_, dataset_, {example});
+  return network::NormLoss(generator_->forward(one.input), one.follower, one.input.lengths)
+      .item<double>();
 }
 
 network::Generator Trainer::Best() {
   network::Generator best(manifest_);
-  CopyInto(best_, best->parameters());
-  best->eval();
+  CopyBest(best.get());
   return best;
 }
 
-// What a saved state must agree with.
-std::string Trainer::Identity() const {
-  return absl::StrCat(SerializeManifest(manifest_),
-                      absl::StrJoin(Describe(options_), "\n", absl::PairFormatter("=")), "\n",
-                      dataset_.name, " train ", absl::StrJoin(train_, ","), " validation ",
-                      absl::StrJoin(validation_, ","));
+std::vector<checkpoint::Tensor> Trainer::BestTensors() {
+  return network::StoreParameters(manifest_, Best());
 }
 
-std::vector<std::pair<std::string, torch::Tensor>> Trainer::StateTensors() {
-  std::vector<std::pair<std::string, torch::Tensor>> state;
-  const auto add = [&](const std::string& name, const std::vector<torch::Tensor>& tensors) {
-    for (size_t i = 0; i < tensors.size(); ++i) {
-      state.emplace_back(absl::StrCat(name, i), tensors[i].detach());
-    }
-  };
-  add("generator", generator_->parameters());
-  add("average", average_);
-  add("best", best_);
-  if (adversary_ != nullptr) {
-    for (auto& named : adversary_->Tensors()) state.push_back(std::move(named));
-  }
-  return state;
+std::vector<std::pair<std::string, torch::Tensor>> Trainer::MoreTensors() {
+  if (adversary_ == nullptr) return {};
+  return adversary_->Tensors();
 }
 
 std::vector<std::pair<std::string, torch::optim::Optimizer*>> Trainer::StateOptimisers() {
@@ -216,68 +127,6 @@ std::vector<std::pair<std::string, torch::optim::Optimizer*>> Trainer::StateOpti
   if (adversary_ != nullptr) optimisers = adversary_->Optimisers();
   optimisers.emplace_back("generator_optimiser", &generator_optimiser_.state());
   return optimisers;
-}
-
-absl::Status Trainer::SaveState(const std::filesystem::path& file) {
-  const std::filesystem::path temporary = file.string() + ".tmp";
-  try {
-    torch::serialize::OutputArchive archive;
-    for (const auto& [name, tensor] : StateTensors()) archive.write(name, tensor);
-    archive.write("version", c10::IValue(kStateVersion));
-    archive.write("identity", c10::IValue(Identity()));
-    archive.write("epoch", c10::IValue(epoch_));
-    archive.write("best_epoch", c10::IValue(best_epoch_));
-    archive.write("best_afd", c10::IValue(best_afd_));
-    for (const auto& [name, optimiser] : StateOptimisers()) {
-      torch::serialize::OutputArchive one;
-      optimiser->save(one);
-      archive.write(name, one);
-    }
-    archive.save_to(temporary.string());
-    std::filesystem::rename(temporary, file);
-  } catch (const std::exception& error) {
-    return absl::InternalError(absl::StrCat(file.string(), ": cannot be written: ", error.what()));
-  }
-  return absl::OkStatus();
-}
-
-absl::Status Trainer::LoadState(const std::filesystem::path& file) {
-  if (!std::filesystem::exists(file)) return absl::NotFoundError(file.string() + ": no such file");
-  try {
-    torch::serialize::InputArchive archive;
-    archive.load_from(file.string());
-    c10::IValue value;
-    if (!archive.try_read("version", value) || value.toInt() != kStateVersion) {
-      return absl::FailedPreconditionError(absl::StrCat(
-          file.string(), ": was written by another version of the trainer, wanted state version ",
-          kStateVersion, "; choose another folder"));
-    }
-    archive.read("identity", value);
-    if (value.toStringRef() != Identity()) {
-      return absl::FailedPreconditionError(absl::StrCat(
-          file.string(), ": belongs to a run with other options or data; choose another folder"));
-    }
-    torch::NoGradGuard no_grad;
-    for (auto& [name, tensor] : StateTensors()) {
-      torch::Tensor saved;
-      archive.read(name, saved);
-      tensor.copy_(saved);
-    }
-    archive.read("epoch", value);
-    epoch_ = value.toInt();
-    archive.read("best_epoch", value);
-    best_epoch_ = value.toInt();
-    archive.read("best_afd", value);
-    best_afd_ = value.toDouble();
-    for (const auto& [name, optimiser] : StateOptimisers()) {
-      torch::serialize::InputArchive one;
-      archive.read(name, one);
-      optimiser->load(one);
-    }
-  } catch (const std::exception& error) {
-    return absl::DataLossError(absl::StrCat(file.string(), ": cannot be read: ", error.what()));
-  }
-  return absl::OkStatus();
 }
 
 }  // namespace duet::training

@@ -16,12 +16,8 @@ using test::StatusIs;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-std::string DefaultJson() {
-  for (const NamedConfig& config : NamedConfigs()) {
-    if (config.name == "default") return std::string(config.json);
-  }
-  return "";
-}
+std::string DefaultJson() { return std::string(FindConfig("default")->json); }
+std::string FlowJson() { return std::string(FindConfig("flow")->json); }
 
 TEST(TrainingOptionsTest, EveryNamedConfigurationParses) {
   ASSERT_FALSE(NamedConfigs().empty());
@@ -57,6 +53,33 @@ TEST(TrainingOptionsTest, EverySettingIsRequiredAndDescribed) {
   for (const auto& [path, value] : Describe(*options)) {
     EXPECT_THAT(ParseTrainingOptions(DefaultJson(), {{path, "{}"}}), Not(IsOk())) << path;
   }
+}
+
+TEST(TrainingOptionsTest, EverySettingOfAFlowIsRequiredAndDescribed) {
+  const auto options = ParseTrainingOptions(FlowJson());
+  ASSERT_THAT(options, IsOk());
+  ASSERT_TRUE(options->flow.has_value());
+  const auto described = Describe(*options);
+  EXPECT_EQ(described.at("flow.several_known"), "0.4");
+  EXPECT_EQ(described.at("optimiser.warm_up_steps"), "100");
+  EXPECT_EQ(described.count("losses.bone"), 0u);
+  for (const auto& [path, value] : described) {
+    EXPECT_THAT(ParseTrainingOptions(FlowJson(), {{path, "{}"}}), Not(IsOk())) << path;
+  }
+}
+
+TEST(TrainingOptionsTest, FlowReadsItsOwnSectionsAlone) {
+  const auto refusal = [](const std::string& path, const std::string& value) {
+    return std::string(ParseTrainingOptions(FlowJson(), {{path, value}}).status().message());
+  };
+  EXPECT_THAT(refusal("generator.kind", "paper"), HasSubstr("\"paper\", wanted one of flow"));
+  EXPECT_THAT(refusal("generator.heads", "7"), HasSubstr("generator.heads: 7, wanted a divisor"));
+  EXPECT_THAT(refusal("generator.noise.white", "-1"), HasSubstr("generator.noise.white"));
+  EXPECT_THAT(refusal("flow.unlabelled", "2"), HasSubstr("flow.unlabelled"));
+  EXPECT_THAT(refusal("optimiser.schedule", "constant"), HasSubstr("optimiser.last_share"));
+  const auto tuned = ParseTrainingOptions(FlowJson(), {{"generator.steps", "5"}});
+  ASSERT_THAT(tuned, IsOk());
+  EXPECT_EQ(tuned->flow->generator.steps, 5);
 }
 
 TEST(TrainingOptionsTest, DerivedConfigurationChangesItsBase) {

@@ -8,8 +8,8 @@
 #include "model/training/run_log.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/training/flow_test_options.h"
 #include "tests/training/made_up_dataset.h"
-#include "tests/training/test_options.h"
 
 namespace duet::training {
 namespace {
@@ -53,6 +53,25 @@ TEST_F(RunTest, LeavesACheckpointThatServes) {
   ASSERT_THAT(checkpoint, IsOk());
   EXPECT_EQ(checkpoint->manifest.training.at("losses.bone"), "0.01");
   EXPECT_EQ(checkpoint->manifest.training.at("sequences"), "7");
+}
+
+TEST_F(RunTest, SamplingGeneratorLeavesACheckpointThatServes) {
+  plan_.options = SmallFlowOptions();
+  ASSERT_THAT(Go(), IsOk());
+  const auto synthesizer = torch_engine::LoadTorchSynthesizer(CheckpointFolder(plan_));
+  ASSERT_THAT(synthesizer, IsOk());
+  EXPECT_TRUE((*synthesizer)->description().samples);
+  EXPECT_TRUE((*synthesizer)->description().accepts_follower_start);
+  engine::SynthesisWindow window =
+      MakeWindow(dataset_, CapturedExample(dataset_, dataset_.sequences[0], StartKnowledge::kPose));
+  const engine::SynthesisWindow* const one = &window;
+  const auto first = (*synthesizer)->Synthesize({&one, 1});
+  ASSERT_THAT(first[0], IsOk());
+  EXPECT_EQ(first[0]->frame_count(), window.leader.frame_count());
+  window.sampling.seed = 1;
+  const auto second = (*synthesizer)->Synthesize({&one, 1});
+  ASSERT_THAT(second[0], IsOk());
+  EXPECT_NE(*first[0], *second[0]);
 }
 
 TEST_F(RunTest, FinishedRunIsNotRepeated) {

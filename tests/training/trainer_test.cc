@@ -207,5 +207,16 @@ TEST(ScheduleTest, OneCycleRisesAndFalls) {
   EXPECT_EQ(ScheduleFactor(options, 99, 100), 1);
 }
 
+TEST(ScheduleTest, CosineWarmsUpAndFallsToItsLastShare) {
+  TrainingOptions::Optimiser options;
+  options.schedule = "cosine";
+  options.warm_up_steps = 10;
+  options.last_share = 0.1;
+  EXPECT_NEAR(ScheduleFactor(options, 0, 1000), 0.1, 1e-3);
+  EXPECT_NEAR(ScheduleFactor(options, 9, 1000), 1, 1e-3);
+  EXPECT_NEAR(ScheduleFactor(options, 500, 1000), 0.55, 1e-3);
+  EXPECT_NEAR(ScheduleFactor(options, 1000, 1000), 0.1, 1e-9);
+}
+
 }  // namespace
 }  // namespace duet::training

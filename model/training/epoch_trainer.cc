@@ -1,0 +1,190 @@
+#include "model/training/epoch_trainer.h"
+
+#include <chrono>
+#include <limits>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+
+namespace duet::training {
+namespace {
+
+// Of the state file. 2: the generator's parameters stacked.
+constexpr int64_t kStateVersion = 2;
+
+std::vector<torch::Tensor> Copies(const std::vector<torch::Tensor>& tensors) {
+  std::vector<torch::Tensor> copies;
+  for (const torch::Tensor& tensor : tensors) copies.push_back(tensor.detach().clone());
+  return copies;
+}
+
+void CopyInto(const std::vector<torch::Tensor>& from, const std::vector<torch::Tensor>& to) {
+  torch::NoGradGuard no_grad;
+  for (size_t i = 0; i < from.size(); ++i) torch::Tensor(to[i]).copy_(from[i]);
+}
+
+}  // namespace
+
+EpochTrainer::EpochTrainer(const TrainingOptions& options, const checkpoint::Manifest& manifest,
+                           const dataset::Dataset& dataset, std::vector<int> train,
+                           std::vector<int> validation)
+    : options_(options),
+      manifest_(manifest),
+      dataset_(dataset),
+      train_(std::move(train)),
+      validation_(std::move(validation)),
+      best_afd_(std::numeric_limits<double>::infinity()) {}
+
+void EpochTrainer::Begin(torch::nn::Module* generator) {
+  generator_ = generator;
+  average_ = Copies(generator->parameters());
+  best_ = Copies(generator->parameters());
+}
+
+bool EpochTrainer::Finished() const {
+  if (epoch_ >= options_.epochs) return true;
+  const bool may_stop = !validation_.empty() && options_.validation.patience > 0;
+  return may_stop && epoch_ - best_epoch_ >= options_.validation.patience;
+}
+
+void EpochTrainer::UpdateAverage(double decay) {
+  torch::NoGradGuard no_grad;
+  const std::vector<torch::Tensor> parameters = generator_->parameters();
+  for (size_t i = 0; i < parameters.size(); ++i) {
+    if (decay > 0) {
+      average_[i].mul_(decay).add_(parameters[i], 1 - decay);
+    } else {
+      average_[i].copy_(parameters[i]);
+    }
+  }
+}
+
+EpochReport EpochTrainer::RunEpoch() {
+  const auto begin = std::chrono::steady_clock::now();
+  EpochReport report;
+  report.epoch = epoch_ + 1;
+  report.epochs = options_.epochs;
+  // Dropout draws from LibTorch's generator: seeded by epoch, so that a resumed run draws the same.
+  torch::manual_seed(options_.seed * 1000003 + static_cast<uint64_t>(epoch_));
+  generator_->train();
+  TrainEpoch(epoch_ * steps_per_epoch(), &report);
+  ++epoch_;
+  report.validation_afd = Validate(StartKnowledge::kNone);
+  report.validation_afd_pose = manifest_.model.accepts_follower_start
+                                   ? Validate(StartKnowledge::kPose)
+                                   : std::numeric_limits<double>::quiet_NaN();
+  if (validation_.empty() || report.validation_afd < best_afd_) {
+    best_afd_ = report.validation_afd;
+    best_epoch_ = epoch_;
+    CopyInto(average_, best_);
+  }
+  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return report;
+}
+
+double EpochTrainer::Validate(StartKnowledge start) {
+  if (validation_.empty()) return std::numeric_limits<double>::quiet_NaN();
+  torch::NoGradGuard no_grad;
+  const std::vector<torch::Tensor> parameters = generator_->parameters();
+  const std::vector<torch::Tensor> trained = Copies(parameters);
+  CopyInto(average_, parameters);
+  generator_->eval();
+  double sum = 0;
+  for (int index : validation_) {
+    sum += ValidationError(
+        CapturedExample(dataset_, dataset_.sequences[static_cast<size_t>(index)], start));
+  }
+  CopyInto(trained, parameters);
+  return sum / static_cast<double>(validation_.size());
+}
+
+void EpochTrainer::CopyBest(torch::nn::Module* generator) const {
+  CopyInto(best_, generator->parameters());
+  generator->eval();
+}
+
+// What a saved state must agree with.
+std::string EpochTrainer::Identity() const {
+  return absl::StrCat(SerializeManifest(manifest_),
+                      absl::StrJoin(Describe(options_), "\n", absl::PairFormatter("=")), "\n",
+                      dataset_.name, " train ", absl::StrJoin(train_, ","), " validation ",
+                      absl::StrJoin(validation_, ","));
+}
+
+std::vector<std::pair<std::string, torch::Tensor>> EpochTrainer::StateTensors() {
+  std::vector<std::pair<std::string, torch::Tensor>> state;
+  const auto add = [&](const std::string& name, const std::vector<torch::Tensor>& tensors) {
+    for (size_t i = 0; i < tensors.size(); ++i) {
+      state.emplace_back(absl::StrCat(name, i), tensors[i].detach());
+    }
+  };
+  add("generator", generator_->parameters());
+  add("average", average_);
+  add("best", best_);
+  for (auto& named : MoreTensors()) state.push_back(std::move(named));
+  return state;
+}
+
+absl::Status EpochTrainer::SaveState(const std::filesystem::path& file) {
+  const std::filesystem::path temporary = file.string() + ".tmp";
+  try {
+    torch::serialize::OutputArchive archive;
+    for (const auto& [name, tensor] : StateTensors()) archive.write(name, tensor);
+    archive.write("version", c10::IValue(kStateVersion));
+    archive.write("identity", c10::IValue(Identity()));
+    archive.write("epoch", c10::IValue(epoch_));
+    archive.write("best_epoch", c10::IValue(best_epoch_));
+    archive.write("best_afd", c10::IValue(best_afd_));
+    for (const auto& [name, optimiser] : StateOptimisers()) {
+      torch::serialize::OutputArchive one;
+      optimiser->save(one);
+      archive.write(name, one);
+    }
+    archive.save_to(temporary.string());
+    std::filesystem::rename(temporary, file);
+  } catch (const std::exception& error) {
+    return absl::InternalError(absl::StrCat(file.string(), ": cannot be written: ", error.what()));
+  }
+  return absl::OkStatus();
+}
+
+absl::Status EpochTrainer::LoadState(const std::filesystem::path& file) {
+  if (!std::filesystem::exists(file)) return absl::NotFoundError(file.string() + ": no such file");
+  try {
+    torch::serialize::InputArchive archive;
+    archive.load_from(file.string());
+    c10::IValue value;
+    if (!archive.try_read("version", value) || value.toInt() != kStateVersion) {
+      return absl::FailedPreconditionError(absl::StrCat(
+          file.string(), ": was written by another version of the trainer, wanted state version ",
+          kStateVersion, "; choose another folder"));
+    }
+    archive.read("identity", value);
+    if (value.toStringRef() != Identity()) {
+      return absl::FailedPreconditionError(absl::StrCat(
+          file.string(), ": belongs to a run with other options or data; choose another folder"));
+    }
+    torch::NoGradGuard no_grad;
+    for (auto& [name, tensor] : StateTensors()) {
+      torch::Tensor saved;
+      archive.read(name, saved);
+      tensor.copy_(saved);
+    }
+    archive.read("epoch", value);
+    epoch_ = value.toInt();
+    archive.read("best_epoch", value);
+    best_epoch_ = value.toInt();
+    archive.read("best_afd", value);
+    best_afd_ = value.toDouble();
+    for (const auto& [name, optimiser] : StateOptimisers()) {
+      torch::serialize::InputArchive one;
+      archive.read(name, one);
+      optimiser->load(one);
+    }
+  } catch (const std::exception& error) {
+    return absl::DataLossError(absl::StrCat(file.string(), ": cannot be read: ", error.what()));
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace duet::training

@@ -1,0 +1,104 @@
+#ifndef DUET_MODEL_TRAINING_EPOCH_TRAINER_H_
+#define DUET_MODEL_TRAINING_EPOCH_TRAINER_H_
+
+#include <torch/torch.h>
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "model/checkpoint/checkpoint.h"
+#include "model/dataset/dataset.h"
+#include "model/training/example.h"
+#include "model/training/options.h"
+
+namespace duet::training {
+
+// The mean of every loss over an epoch, unweighted; validation figures are NaN when there is none.
+struct EpochReport {
+  int64_t epoch = 0;  // from 1
+  int64_t epochs = 0;
+  double generator = 0;  // the weighted sum
+  double reconstruction = 0;
+  double bone = 0;
+  double continuity = 0;  // of a sampling generator: the error of what moves from frame to frame
+  double adversarial = 0;
+  double discriminator = 0;
+  double validation_afd = 0;       // metres, without a follower start
+  double validation_afd_pose = 0;  // told the follower's first pose; NaN where a model takes none
+  double seconds = 0;
+};
+
+// Trains a generator, epoch by epoch. Every epoch is a function of the state before it, the options
+// and the data alone: a run that was stopped and resumed equals one that was not, bit for bit on
+// one thread. What is trained, and how, is the derived class's.
+//
+// Threads: not safe to call concurrently.
+class EpochTrainer {
+ public:
+  // `validation` may be empty. Options, manifest and data set must outlive the trainer.
+  EpochTrainer(const TrainingOptions& options, const checkpoint::Manifest& manifest,
+               const dataset::Dataset& dataset, std::vector<int> train,
+               std::vector<int> validation);
+  virtual ~EpochTrainer() = default;
+  EpochTrainer(const EpochTrainer&) = delete;
+  EpochTrainer& operator=(const EpochTrainer&) = delete;
+
+  // Epochs done so far.
+  int64_t epoch() const { return epoch_; }
+  // True when all epochs are done or validation has stopped improving.
+  bool Finished() const;
+
+  EpochReport RunEpoch();
+
+  // Saves and restores everything that the next epoch depends on. A state of other options, data
+  // or version is FAILED_PRECONDITION. The file is this machine's own, never a checkpoint to pass
+  // around.
+  absl::Status SaveState(const std::filesystem::path& file);
+  absl::Status LoadState(const std::filesystem::path& file);
+
+  // The generator to keep, in the order of ExpectedTensors: of the best validated epoch, or the
+  // last; averaged when so configured.
+  virtual std::vector<checkpoint::Tensor> BestTensors() = 0;
+
+ protected:
+  // Takes the generator to train, initialised; called once, by the derived class's constructor.
+  void Begin(torch::nn::Module* generator);
+
+  // One epoch's steps, from step number `first_step` on. Calls UpdateAverage after each.
+  virtual void TrainEpoch(int64_t first_step, EpochReport* report) = 0;
+  virtual int64_t steps_per_epoch() const = 0;
+  // The error of the generator's answer to a captured example, AFD in metres.
+  virtual double ValidationError(const Example& example) = 0;
+  // What is saved and restored beside the generator, its average and the best one.
+  virtual std::vector<std::pair<std::string, torch::Tensor>> MoreTensors() { return {}; }
+  virtual std::vector<std::pair<std::string, torch::optim::Optimizer*>> StateOptimisers() = 0;
+
+  // Moves the average towards the parameters: it keeps the share `decay`.
+  void UpdateAverage(double decay);
+  // Writes the parameters to keep into a generator of the same manifest.
+  void CopyBest(torch::nn::Module* generator) const;
+
+  const TrainingOptions& options_;
+  const checkpoint::Manifest& manifest_;
+  const dataset::Dataset& dataset_;
+  const std::vector<int> train_, validation_;
+
+ private:
+  double Validate(StartKnowledge start);
+  std::string Identity() const;
+  std::vector<std::pair<std::string, torch::Tensor>> StateTensors();
+
+  torch::nn::Module* generator_ = nullptr;
+  std::vector<torch::Tensor> average_;  // of the generator's parameters
+  std::vector<torch::Tensor> best_;     // parameters of the best validated epoch
+  double best_afd_;
+  int64_t best_epoch_ = 0;
+  int64_t epoch_ = 0;
+};
+
+}  // namespace duet::training
+
+#endif  // DUET_MODEL_TRAINING_EPOCH_TRAINER_H_

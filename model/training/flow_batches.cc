@@ -1,0 +1,118 @@
+#include "model/training/flow_batches.h"
+
+#include <algorithm>
+
+#include "model/engine/standard_window.h"
+#include "model/engine/window_standardisation.h"
+#include "model/motion/filter.h"
+#include "model/network/batch.h"
+
+namespace duet::training {
+namespace {
+
+constexpr int kFewestSeveral = 2;
+
+// Makes of "the first pose is known" that several frames are: up to half of the clip.
+void TellSeveral(const motion::Poses& target, base::Random* random, engine::NetworkInput* input) {
+  const int most = target.frame_count() / 2;
+  if (most < kFewestSeveral) return;
+  const int count = kFewestSeveral + static_cast<int>(random->Below(most - kFewestSeveral + 1));
+  input->settled = target;
+  input->settled.Resize(count);
+}
+
+// What is told is never quite what was: each joint off by the same in all told frames.
+void Disturb(double deviation, base::Random* random, engine::NetworkInput* input) {
+  if (!input->start) return;
+  std::vector<motion::Vec3>& pose = input->start->pose;
+  for (std::size_t j = 0; j < pose.size(); ++j) {
+    const motion::Vec3 by = {static_cast<float>(random->Normal(deviation)),
+                             static_cast<float>(random->Normal(deviation)),
+                             static_cast<float>(random->Normal(deviation))};
+    pose[j] += by;
+    for (int t = 0; t < input->settled.frame_count(); ++t) input->settled[t][j] += by;
+  }
+}
+
+void Scale(float scale, absl::Span<motion::Vec3> points) {
+  for (motion::Vec3& point : points) point = point * scale;
+}
+
+// Both people larger or smaller about the leader's first root.
+void ScalePair(float scale, FlowExample* example) {
+  Scale(scale, example->target.all());
+  Scale(scale, example->input.leader.all());
+  Scale(scale, example->input.settled.all());
+  if (!example->input.start) return;
+  example->input.start->root = example->input.start->root * scale;
+  Scale(scale, absl::MakeSpan(example->input.start->pose));
+}
+
+FlowExample DrawExample(const checkpoint::Manifest& manifest, const dataset::Dataset& dataset,
+                        const dataset::Sequence& sequence, const TrainingOptions& options,
+                        base::Random* random) {
+  const TrainingOptions::Flow& flow = *options.flow;
+  const StartKnowledge start = DrawStart(options.start, random);
+  FlowExample example = MakeFlowExample(
+      manifest, dataset, CapturedExample(dataset, sequence, start), flow.target_smoothing);
+  if (start == StartKnowledge::kPose && random->Chance(flow.several_known)) {
+    TellSeveral(example.target, random, &example.input);
+  }
+  Disturb(flow.known_noise, random, &example.input);
+  ScalePair(static_cast<float>(1 + random->Uniform(-flow.pair_scale, flow.pair_scale)), &example);
+  return example;
+}
+
+FlowBatch MakeFlowBatch(const checkpoint::Manifest& manifest, const torch::Tensor& base_poses,
+                        const std::vector<FlowExample>& examples) {
+  std::vector<engine::NetworkInput> inputs;
+  std::vector<const motion::Poses*> targets;
+  for (const FlowExample& example : examples) {
+    inputs.push_back(example.input);
+    targets.push_back(&example.target);
+  }
+  FlowBatch batch;
+  batch.input = network::MakeFlowInput(manifest, base_poses, inputs);
+  batch.labels = batch.input.labels.select(1, 0).clone();
+  batch.target =
+      (network::PadPoses(targets, batch.input.leader.size(1)) - batch.input.base.unsqueeze(1)) /
+      manifest.flow->offset_scale;
+  return batch;
+}
+
+}  // namespace
+
+FlowExample MakeFlowExample(const checkpoint::Manifest& manifest, const dataset::Dataset& dataset,
+                            const Example& example, double smoothing) {
+  const engine::SynthesisWindow window = MakeWindow(dataset, example);
+  const motion::Standardisation frame =
+      WindowStandardisation(dataset.skeleton, window, manifest.standardisation);
+  return {Standardise(frame, window),
+          frame.Apply(motion::GaussianFilter(example.target, smoothing))};
+}
+
+std::vector<FlowBatch> SampleFlowEpoch(const checkpoint::Manifest& manifest,
+                                       const dataset::Dataset& dataset,
+                                       const torch::Tensor& base_poses,
+                                       const std::vector<int>& train,
+                                       const TrainingOptions& options, int64_t epoch) {
+  base::Random random(options.seed, epoch);
+  std::vector<FlowBatch> batches;
+  for (int64_t pass = 0; pass < options.flow->passes; ++pass) {
+    const std::vector<dataset::Sequence> sequences = AugmentAll(dataset, train, options, &random);
+    for (const std::vector<int>& piece : BatchesByLength(sequences, options.batch, &random)) {
+      std::vector<FlowExample> examples;
+      for (const int index : piece) {
+        examples.push_back(DrawExample(manifest, dataset, sequences[static_cast<size_t>(index)],
+                                       options, &random));
+      }
+      batches.push_back(MakeFlowBatch(manifest, base_poses, examples));
+      for (int64_t n = 0; n < batches.back().labels.size(0); ++n) {
+        if (random.Chance(options.flow->unlabelled)) batches.back().labels[n].zero_();
+      }
+    }
+  }
+  return batches;
+}
+
+}  // namespace duet::training

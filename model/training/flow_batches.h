@@ -1,0 +1,39 @@
+#ifndef DUET_MODEL_TRAINING_FLOW_BATCHES_H_
+#define DUET_MODEL_TRAINING_FLOW_BATCHES_H_
+
+#include <torch/torch.h>
+
+#include <vector>
+
+#include "model/network/flow_input.h"
+#include "model/training/sampler.h"
+
+namespace duet::training {
+
+// One step's clips for the sampling generator.
+struct FlowBatch {
+  network::FlowInput input;
+  torch::Tensor labels;  // [N, C] the class, or zeros where it is withheld
+  torch::Tensor target;  // [N, T, 3 J] offsets from input.base, in offset_scale metres
+};
+
+// A captured example in the standard coordinates, its follower smoothed.
+struct FlowExample {
+  engine::NetworkInput input;
+  motion::Poses target;
+};
+FlowExample MakeFlowExample(const checkpoint::Manifest& manifest, const dataset::Dataset& dataset,
+                            const Example& example, double smoothing);
+
+// The batches of one epoch: every training sequence once in every pass, augmented, told nothing,
+// the root, the first pose or several frames. Depends on options, data and epoch alone.
+// Shapes: base_poses [C, 3 J]. Requires options.flow.
+std::vector<FlowBatch> SampleFlowEpoch(const checkpoint::Manifest& manifest,
+                                       const dataset::Dataset& dataset,
+                                       const torch::Tensor& base_poses,
+                                       const std::vector<int>& train,
+                                       const TrainingOptions& options, int64_t epoch);
+
+}  // namespace duet::training
+
+#endif  // DUET_MODEL_TRAINING_FLOW_BATCHES_H_

@@ -1,0 +1,117 @@
+#include "model/training/flow_trainer.h"
+
+#include <algorithm>
+
+#include "model/network/batch.h"
+#include "model/network/flow_losses.h"
+#include "model/network/flow_noise.h"
+#include "model/network/flow_sampler.h"
+#include "model/network/losses.h"
+#include "model/network/parameters.h"
+#include "model/training/flow_statistics.h"
+
+namespace duet::training {
+namespace {
+
+int64_t StepsPerEpoch(size_t count, const TrainingOptions& options) {
+  const int64_t batches = (static_cast<int64_t>(count) + options.batch - 1) / options.batch;
+  return batches * options.flow->passes;
+}
+
+network::FlowGenerator MakeGenerator(const TrainingOptions& options,
+                                     const checkpoint::Manifest& manifest) {
+  torch::manual_seed(options.seed);
+  network::FlowGenerator generator(manifest);
+  generator->set_dropout(options.flow->dropout);
+  return generator;
+}
+
+// The share that an average keeps after a step: less at first, when all that it holds is early.
+double AverageDecay(double decay, int64_t step) {
+  const double steps = static_cast<double>(step + 1);
+  return std::min(decay, (1 + steps) / (10 + steps));
+}
+
+}  // namespace
+
+FlowTrainer::FlowTrainer(const TrainingOptions& options, const checkpoint::Manifest& manifest,
+                         const dataset::Dataset& dataset, std::vector<int> train,
+                         std::vector<int> validation)
+    : EpochTrainer(options, manifest, dataset, std::move(train), std::move(validation)),
+      steps_per_epoch_(StepsPerEpoch(train_.size(), options)),
+      generator_(MakeGenerator(options, manifest)),
+      optimiser_(options.optimiser, generator_->parameters(), steps_per_epoch_ * options.epochs) {
+  const FlowStatistics statistics =
+      MeasureFollowers(manifest, dataset, train_, options.flow->target_smoothing);
+  generator_->SetMeasured(statistics.base_poses, statistics.noise_roots);
+  Begin(generator_.get());
+}
+
+torch::Tensor FlowTrainer::Loss(const FlowBatch& batch, EpochReport* report) {
+  const TrainingOptions::Flow& flow = *options_.flow;
+  const torch::Tensor& lengths = batch.input.lengths;
+  const torch::Tensor noise = network::SourceNoise(
+      manifest_.flow->noise, generator_->noise_roots(), batch.input.known_count,
+      {torch::randn_like(batch.target), torch::randn_like(batch.target)});
+  const torch::Tensor times = torch::rand({batch.target.size(0)});
+  const torch::Tensor sample = torch::lerp(noise, batch.target, times.view({-1, 1, 1}));
+  const torch::Tensor predicted =
+      generator_->forward(generator_->Prepare(batch.input), batch.labels, sample, times);
+  torch::Tensor losses = torch::zeros({batch.target.size(0)});
+  const auto add = [&](double weight, const torch::Tensor& loss, double* mean) {
+    losses = losses + weight * loss;
+    *mean += loss.mean().item<double>() / static_cast<double>(steps_per_epoch_);
+  };
+  add(1, network::SquaredErrors(predicted, batch.target, lengths), &report->reconstruction);
+  add(flow.difference_weight, network::SquaredDifferenceErrors(predicted, batch.target, lengths),
+      &report->continuity);
+  const torch::Tensor base = batch.input.base.unsqueeze(1) / manifest_.flow->offset_scale;
+  if (flow.bone_weight > 0) {
+    add(flow.bone_weight,
+        network::SquaredBoneErrors(predicted + base, batch.target + base, lengths,
+                                   manifest_.model.skeleton.bones),
+        &report->bone);
+  }
+  if (flow.slide_weight > 0 && manifest_.model.skeleton.feet) {
+    const double still =
+        flow.slide_speed / manifest_.model.frame_rate_hz / manifest_.flow->offset_scale;
+    losses =
+        losses + flow.slide_weight * network::SquaredSlides(predicted, batch.target, lengths,
+                                                            *manifest_.model.skeleton.feet, still);
+  }
+  const torch::Tensor total = (losses / (1 - times).clamp_min(flow.least_remaining)).mean();
+  report->generator += total.item<double>() / static_cast<double>(steps_per_epoch_);
+  return total;
+}
+
+void FlowTrainer::TrainEpoch(int64_t first_step, EpochReport* report) {
+  int64_t step = first_step;
+  for (const FlowBatch& batch :
+       SampleFlowEpoch(manifest_, dataset_, generator_->base_poses(), train_, options_, epoch())) {
+    Loss(batch, report).backward();
+    optimiser_.Step(step);
+    UpdateAverage(AverageDecay(options_.optimiser.average_decay, step));
+    ++step;
+  }
+}
+
+double FlowTrainer::ValidationError(const Example& example) {
+  FlowExample captured = MakeFlowExample(manifest_, dataset_, example, 0);
+  captured.input.sampling.variety = 0;
+  const torch::Tensor answer = network::AnswerWindows(generator_, manifest_, {&captured.input, 1});
+  const torch::Tensor follower = network::PadPoses({&captured.target}, answer.size(1));
+  return network::NormLoss(answer, follower, torch::tensor({answer.size(1)})).item<double>();
+}
+
+std::vector<checkpoint::Tensor> FlowTrainer::BestTensors() {
+  network::FlowGenerator best(manifest_);
+  best->SetMeasured(generator_->base_poses(), generator_->noise_roots());
+  CopyBest(best.get());
+  return network::StoreParameters(manifest_, best);
+}
+
+std::vector<std::pair<std::string, torch::optim::Optimizer*>> FlowTrainer::StateOptimisers() {
+  return {{"optimiser", &optimiser_.state()}};
+}
+
+}  // namespace duet::training

@@ -1,0 +1,42 @@
+#ifndef DUET_MODEL_TRAINING_FLOW_TRAINER_H_
+#define DUET_MODEL_TRAINING_FLOW_TRAINER_H_
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "model/network/flow_generator.h"
+#include "model/training/epoch_trainer.h"
+#include "model/training/flow_batches.h"
+#include "model/training/optimiser.h"
+
+namespace duet::training {
+
+// Trains the sampling generator by conditional flow matching: told (1 - t) noise + t motion for a
+// random t, it learns to answer with the motion.
+//
+// Source:  Lipman et al. 2023; docs/decisions/0018-flow-matching.md.
+class FlowTrainer : public EpochTrainer {
+ public:
+  // `manifest` describes the model to be; its flow must be options.flow->generator.
+  FlowTrainer(const TrainingOptions& options, const checkpoint::Manifest& manifest,
+              const dataset::Dataset& dataset, std::vector<int> train, std::vector<int> validation);
+
+  std::vector<checkpoint::Tensor> BestTensors() override;
+
+ private:
+  void TrainEpoch(int64_t first_step, EpochReport* report) override;
+  int64_t steps_per_epoch() const override { return steps_per_epoch_; }
+  // Of the typical answer: variety 0.
+  double ValidationError(const Example& example) override;
+  std::vector<std::pair<std::string, torch::optim::Optimizer*>> StateOptimisers() override;
+  torch::Tensor Loss(const FlowBatch& batch, EpochReport* report);
+
+  int64_t steps_per_epoch_;
+  network::FlowGenerator generator_;
+  Optimiser optimiser_;
+};
+
+}  // namespace duet::training
+
+#endif  // DUET_MODEL_TRAINING_FLOW_TRAINER_H_

@@ -1,0 +1,161 @@
+#include "model/training/flow_trainer.h"
+
+#include <gmock/gmock.h>
+
+#include "model/network/batch.h"
+#include "model/training/flow_statistics.h"
+#include "tests/support/status_matchers.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/training/flow_test_options.h"
+#include "tests/training/made_up_dataset.h"
+
+namespace duet::training {
+namespace {
+
+using test::IsOk;
+using test::StatusIs;
+using test::TemporaryFolder;
+
+using ::testing::HasSubstr;
+
+class FlowTrainerTest : public ::testing::Test {
+ protected:
+  FlowTrainerTest() { torch::set_num_threads(1); }
+
+  FlowTrainer Make(std::vector<int> validation = {}) {
+    return {options_, manifest_, dataset_, AllOf(dataset_), std::move(validation)};
+  }
+  std::vector<FlowBatch> Sample(int64_t epoch) {
+    return SampleFlowEpoch(manifest_, dataset_, base_poses_, AllOf(dataset_), options_, epoch);
+  }
+
+  dataset::Dataset dataset_ = MadeUpDataset();
+  TrainingOptions options_ = SmallFlowOptions();
+  checkpoint::Manifest manifest_ = FlowManifestFor(options_, dataset_);
+  torch::Tensor base_poses_ = torch::zeros({3, 45});
+  TemporaryFolder folder_;
+};
+
+bool Equal(const std::vector<checkpoint::Tensor>& a, const std::vector<checkpoint::Tensor>& b) {
+  for (size_t i = 0; i < a.size(); ++i) {
+    if (a[i].values != b[i].values) return false;
+  }
+  return a.size() == b.size();
+}
+
+TEST_F(FlowTrainerTest, ResumedRunEqualsAnUninterruptedOneBitForBit) {
+  FlowTrainer straight = Make();
+  for (int i = 0; i < 4; ++i) straight.RunEpoch();
+  {
+    FlowTrainer first = Make();
+    first.RunEpoch();
+    first.RunEpoch();
+    ASSERT_THAT(first.SaveState(folder_ / "state"), IsOk());
+  }
+  FlowTrainer resumed = Make();
+  ASSERT_THAT(resumed.LoadState(folder_ / "state"), IsOk());
+  EXPECT_EQ(resumed.epoch(), 2);
+  resumed.RunEpoch();
+  EXPECT_FALSE(Equal(resumed.BestTensors(), straight.BestTensors()));
+  resumed.RunEpoch();
+  EXPECT_TRUE(Equal(resumed.BestTensors(), straight.BestTensors()));
+  EXPECT_TRUE(resumed.Finished());
+}
+
+TEST_F(FlowTrainerTest, StateOfAnotherRunIsRefused) {
+  FlowTrainer trainer = Make();
+  ASSERT_THAT(trainer.SaveState(folder_ / "state"), IsOk());
+  options_.flow->known_noise = 0.02;
+  EXPECT_THAT(Make().LoadState(folder_ / "state"),
+              StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("other options or data")));
+}
+
+TEST_F(FlowTrainerTest, LearnsToAnswer) {
+  options_.epochs = 12;
+  options_.optimiser.warm_up_steps = 5;
+  options_.flow->passes = 10;
+  options_.flow->bone_weight = 1;
+  options_.flow->slide_weight = 1;
+  FlowTrainer trainer = Make({0});
+  const EpochReport before = trainer.RunEpoch();
+  EpochReport after;
+  while (!trainer.Finished()) after = trainer.RunEpoch();
+  EXPECT_LT(after.generator, 0.7 * before.generator);
+  EXPECT_LT(after.validation_afd_pose, before.validation_afd_pose);
+  EXPECT_GT(before.bone, 0);
+  EXPECT_GT(before.continuity, 0);
+}
+
+TEST_F(FlowTrainerTest, LossesWithoutWeightAreLeftOut) {
+  FlowTrainer plain = Make();
+  const double without = plain.RunEpoch().generator;
+  options_.flow->slide_weight = 100;
+  EXPECT_GT(Make().RunEpoch().generator, without);
+  options_.flow->slide_weight = 0;
+  options_.flow->bone_weight = 100;
+  EXPECT_GT(Make().RunEpoch().generator, without);
+}
+
+TEST_F(FlowTrainerTest, EpochShowsEverySequenceInEveryPass) {
+  options_.flow->passes = 3;
+  int64_t clips = 0;
+  for (const FlowBatch& batch : Sample(0)) clips += batch.target.size(0);
+  EXPECT_EQ(clips, 3 * static_cast<int64_t>(dataset_.sequences.size()));
+}
+
+TEST_F(FlowTrainerTest, TellsNothingTheRootAPoseOrSeveralFramesInTheirShares) {
+  options_.start = {0.25, 0.5};
+  options_.flow->several_known = 0.5;
+  options_.flow->unlabelled = 0.2;
+  options_.flow->passes = 40;
+  double clips = 0, roots = 0, poses = 0, several = 0, unlabelled = 0;
+  for (const FlowBatch& batch : Sample(0)) {
+    const int64_t width = batch.input.start.size(1);
+    clips += static_cast<double>(batch.target.size(0));
+    roots += batch.input.start.select(1, width - 2).sum().item<double>();
+    poses += batch.input.start.select(1, width - 1).sum().item<double>();
+    several += (batch.input.known_count > 1).sum().item<double>();
+    unlabelled += (batch.labels.sum(1) == 0).sum().item<double>();
+    EXPECT_TRUE(
+        (2 * batch.input.known_count <= batch.input.lengths.clamp_min(2)).all().item<bool>());
+  }
+  EXPECT_NEAR(roots / clips, 0.75, 0.08);
+  EXPECT_NEAR(poses / clips, 0.5, 0.08);
+  EXPECT_NEAR(several / clips, 0.25, 0.08);
+  EXPECT_NEAR(unlabelled / clips, 0.2, 0.08);
+}
+
+TEST_F(FlowTrainerTest, KnownFramesAreThoseOfTheTarget) {
+  options_.start = {0, 1};
+  options_.flow->several_known = 1;
+  options_.flow->known_noise = 0;
+  for (const FlowBatch& batch : Sample(0)) {
+    EXPECT_TRUE(torch::allclose(batch.input.known, batch.target * batch.input.is_known, 0, 1e-4));
+  }
+  options_.flow->known_noise = 0.05;
+  double off = 0;
+  for (const FlowBatch& batch : Sample(0)) {
+    off += (batch.input.known - batch.target * batch.input.is_known).abs().max().item<double>();
+  }
+  // The base moves with what is told: the same error in all frames leaves the offsets alone.
+  EXPECT_GT(off, 0);
+}
+
+TEST_F(FlowTrainerTest, MeasuresMeanPosesAndOffsetsOfTheFollowers) {
+  const FlowStatistics statistics = MeasureFollowers(manifest_, dataset_, AllOf(dataset_), 0);
+  const int64_t root = 3 * dataset_.skeleton.root;
+  // One metre before the leader, each class higher than the one before.
+  EXPECT_NEAR(statistics.base_poses[0][root + 2].item<float>(), -1, 0.3);
+  EXPECT_NEAR((statistics.base_poses[2] - statistics.base_poses[0])[root + 1].item<float>(), 0.2,
+              0.05);
+  // Counted as mirrored too: nobody stands to a side.
+  EXPECT_NEAR(statistics.base_poses[0][root].item<float>(), 0, 1e-4);
+  for (const int64_t state : {0, 1}) {
+    const torch::Tensor root_of = statistics.noise_roots[state];
+    EXPECT_TRUE(torch::allclose(root_of, root_of.t(), 0, 1e-4));
+    EXPECT_GT(root_of.abs().max().item<float>(), 0.01);
+  }
+}
+
+}  // namespace
+}  // namespace duet::training
