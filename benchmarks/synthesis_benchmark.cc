@@ -5,7 +5,10 @@
 #include <cstdlib>
 #include <iostream>
 
+#include "model/checkpoints/embedded.h"
 #include "model/engine/clip_synthesis.h"
+#include "model/network/flow_generator.h"
+#include "model/network/parameters.h"
 #include "model/torch_engine/torch_synthesizer.h"
 
 namespace {
@@ -24,6 +27,26 @@ const duet::engine::Synthesizer& Model() {
     return new std::vector<std::unique_ptr<duet::engine::Synthesizer>>(*std::move(loaded));
   }();
   return *kModels->front();
+}
+
+// A sampling generator of the size that trains by default, for the same data; its weights, which
+// its speed does not depend on, are random.
+const duet::engine::Synthesizer& SamplingModel() {
+  static const auto* const kModel = [] {
+    duet::torch_engine::SetTorchThreads(1);
+    const auto embedded = duet::embedded::EmbeddedCheckpoints().front();
+    auto manifest = duet::checkpoint::ParseManifest(embedded.manifest);
+    manifest->flow.emplace();
+    const duet::network::FlowGenerator generator(*manifest);
+    auto tensors = duet::network::StoreParameters(*manifest, generator);
+    auto made = duet::torch_engine::MakeTorchSynthesizer({*manifest, std::move(tensors)});
+    if (!made.ok()) {
+      std::cerr << made.status().message() << "\n";
+      std::exit(1);
+    }
+    return made->release();
+  }();
+  return *kModel;
 }
 
 // A made-up person who sways: speed does not depend on what the leader does.
@@ -46,7 +69,7 @@ std::vector<float> Label() {
   return label;
 }
 
-void BM_Windows(benchmark::State& state) {
+void Windows(const duet::engine::Synthesizer& model, benchmark::State& state) {
   const int frames = Model().description().window_frames;
   duet::engine::SynthesisWindow window;
   window.leader = Leader(frames);
@@ -56,11 +79,16 @@ void BM_Windows(benchmark::State& state) {
   }
   const std::vector<const duet::engine::SynthesisWindow*> batch(static_cast<size_t>(state.range(0)),
                                                                 &window);
-  for (auto _ : state) benchmark::DoNotOptimize(Model().Synthesize(batch));
+  for (auto _ : state) benchmark::DoNotOptimize(model.Synthesize(batch));
   state.counters["frames/s"] = benchmark::Counter(static_cast<double>(state.range(0)) * frames,
                                                   benchmark::Counter::kIsIterationInvariantRate);
 }
+
+void BM_Windows(benchmark::State& state) { Windows(Model(), state); }
 BENCHMARK(BM_Windows)->Arg(1)->Arg(4)->Arg(16)->Arg(32)->Unit(benchmark::kMillisecond);
+
+void BM_SampledWindows(benchmark::State& state) { Windows(SamplingModel(), state); }
+BENCHMARK(BM_SampledWindows)->Arg(1)->Arg(4)->Arg(16)->Unit(benchmark::kMillisecond);
 
 void BM_TenMinutes(benchmark::State& state) {
   const duet::engine::ClipRequest request{

@@ -70,6 +70,11 @@ absl::StatusOr<metrics::FeatureSet> LatentFeatures(const checkpoint::Checkpoint&
                                                    LatentLabels labels) {
   absl::Status status = CheckModelFits(checkpoint.manifest.model, dataset);
   if (!status.ok()) return status;
+  if (checkpoint.manifest.flow) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("model ", checkpoint.manifest.model.name,
+                     ": samples, wanted a generator with encoders, whose latent space is shown"));
+  }
   network::Generator generator(checkpoint.manifest);
   if (status = network::LoadParameters(checkpoint, generator); !status.ok()) return status;
   generator->eval();
