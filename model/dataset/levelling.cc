@@ -13,7 +13,7 @@ namespace {
 
 // Sets differ by what their people do about as much as by their camera: what the whole data set
 // shows counts like this many sequences of the set.
-constexpr float kSharedSequences = 5;
+constexpr float kSharedSequences = 3;
 constexpr std::size_t kFewestPoses = 60;
 constexpr float kLeastUpright = 0.866f;  // the cosine of 30 degrees
 constexpr double kFloorShare = 0.25;     // of the lower feet, below the floor
@@ -62,11 +62,11 @@ void LevelSets(Dataset* dataset) {
   std::vector<motion::Vec3> all;
   for (const auto& [name, set] : sets) Append(set.directions, &all);
   if (all.size() < kFewestPoses) return;
-  const motion::Vec3 shared = GeometricMedian(all);
+  const motion::Vec3 shared = RobustMean(all);
   for (auto& [name, set] : sets) {
     const auto own_sequences = static_cast<float>(set.sequences.size());
     const motion::Vec3 sum =
-        own_sequences * GeometricMedian(set.directions) + kSharedSequences * shared;
+        own_sequences * RobustMean(set.directions) + kSharedSequences * shared;
     const motion::Vec3 up = sum / Norm(sum);
     if (up.y >= kLeastUpright) Level(dataset->skeleton, up, &set);
   }

@@ -8,12 +8,12 @@ namespace duet::dataset {
 namespace {
 
 constexpr double kDegrees = 180 / M_PI;
-constexpr int kMedianSteps = 50;
-constexpr double kSmallestDistance = 1e-4;  // keeps a weight finite on top of a point
-
+// What counts in full, times the median distance: Huber's 1.345 standard deviations for a plane.
+constexpr double kPlaneReach = 2;
+constexpr double kMeanReach = 2;
+constexpr double kSmallestReach = 1e-4;  // of points that all coincide
 constexpr int kPlaneSteps = 20;
-constexpr double kHuber = 1.345;  // residuals, in standard deviations, that count in full
-constexpr double kMadToSigma = 1.4826;
+constexpr int kMeanSteps = 30;
 constexpr double kFlatDeterminant = 1e-9;  // of the normal equations, per point: no plane
 
 // y = slope_x x + slope_z z + height
@@ -58,16 +58,14 @@ Plane FitPlane(const std::vector<motion::Vec3>& points, const std::vector<double
   return {slope_x, slope_z, mean.y - slope_x * mean.x - slope_z * mean.z};
 }
 
-std::vector<double> HuberWeights(const std::vector<motion::Vec3>& points, const Plane& plane) {
-  std::vector<double> sizes;
-  sizes.reserve(points.size());
-  for (const motion::Vec3& point : points) sizes.push_back(std::abs(plane.Residual(point)));
-  std::vector<double> sorted = sizes;
+// 1 for residuals up to `reach` times the median one, falling in proportion beyond.
+std::vector<double> HuberWeights(std::vector<double> residuals, double reach) {
+  std::vector<double> sorted = residuals;
   const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
   std::nth_element(sorted.begin(), middle, sorted.end());
-  const double reach = std::max(kHuber * kMadToSigma * *middle, kSmallestDistance);
-  for (double& size : sizes) size = size > reach ? reach / size : 1;
-  return sizes;
+  const double full = std::max(reach * *middle, kSmallestReach);
+  for (double& residual : residuals) residual = residual > full ? full / residual : 1;
+  return residuals;
 }
 
 }  // namespace
@@ -99,18 +97,16 @@ std::vector<motion::Vec3> LowerFeet(const motion::Skeleton& skeleton, const moti
   return feet;
 }
 
-motion::Vec3 GeometricMedian(const std::vector<motion::Vec3>& points) {
+motion::Vec3 RobustMean(const std::vector<motion::Vec3>& points) {
   if (points.empty()) return {};
   std::vector<double> weights(points.size(), 1);
-  // Weiszfeld's iteration, from the mean.
-  motion::Vec3 median = Mean(points, weights);
-  for (int step = 0; step < kMedianSteps; ++step) {
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      weights[i] = 1 / std::max<double>(Distance(points[i], median), kSmallestDistance);
-    }
-    median = Mean(points, weights);
+  motion::Vec3 mean;
+  for (int step = 0; step < kMeanSteps; ++step) {
+    mean = Mean(points, weights);
+    for (std::size_t i = 0; i < points.size(); ++i) weights[i] = Distance(points[i], mean);
+    weights = HuberWeights(weights, kMeanReach);
   }
-  return median;
+  return mean;
 }
 
 Lean LeanOf(motion::Vec3 up) {
@@ -128,7 +124,10 @@ Lean FloorLean(const std::vector<motion::Vec3>& points) {
   Plane plane;
   for (int step = 0; step < kPlaneSteps; ++step) {
     plane = FitPlane(points, weights);
-    weights = HuberWeights(points, plane);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      weights[i] = std::abs(plane.Residual(points[i]));
+    }
+    weights = HuberWeights(weights, kPlaneReach);
   }
   return {-std::atan(plane.slope_x) * kDegrees, -std::atan(plane.slope_z) * kDegrees};
 }

@@ -22,9 +22,9 @@ std::vector<motion::Vec3> StandingDirections(const motion::Skeleton& skeleton,
 // The lower foot of every frame; none for a skeleton without feet.
 std::vector<motion::Vec3> LowerFeet(const motion::Skeleton& skeleton, const motion::Poses& poses);
 
-// The point with the least sum of distances to all of `points`: a mean that the far ones hardly
-// move. The origin for none.
-motion::Vec3 GeometricMedian(const std::vector<motion::Vec3>& points);
+// A mean that far points hardly move: those farther from it than twice the median distance count
+// in proportion less (Huber's weights). The origin for none.
+motion::Vec3 RobustMean(const std::vector<motion::Vec3>& points);
 
 // How far a direction leans from +y towards +x and towards +z. Unit: degrees.
 struct Lean {

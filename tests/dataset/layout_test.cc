@@ -67,7 +67,8 @@ TEST(DatasetLayoutTest, OwnDataIsLevelUnlessItSaysOtherwise) {
 
 TEST(DatasetLayoutTest, LevellingNeedsFeet) {
   Json json = Complete();
-  json["skeleton"]["left_foot"] = json["skeleton"]["right_foot"] = "";
+  json["skeleton"].erase("left_foot");
+  json["skeleton"].erase("right_foot");
   json["level"] = true;
   EXPECT_THAT(ErrorOf(json), HasSubstr("level: true without feet, wanted skeleton.left_foot"));
   json["level"] = false;

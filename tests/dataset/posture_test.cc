@@ -45,11 +45,16 @@ TEST(LowerFeetTest, AreTheLowerOfBothInEachFrame) {
               ElementsAre(motion::Vec3{1, 0.1f, 2}, motion::Vec3{7, 0.2f, 8}));
 }
 
-TEST(GeometricMedianTest, IsHardlyMovedByFarPoints) {
-  const motion::Vec3 median =
-      GeometricMedian({{0, 1, 0}, {0.01f, 1, 0}, {-0.01f, 1, 0}, {0, 1, 0.01f}, {5, 0, 0}});
-  EXPECT_LT(Distance(median, {0, 1, 0}), 0.02);
-  EXPECT_EQ(GeometricMedian({}), (motion::Vec3{}));
+TEST(RobustMeanTest, IsHardlyMovedByFarPoints) {
+  const motion::Vec3 mean =
+      RobustMean({{0, 1, 0}, {0.01f, 1, 0}, {-0.01f, 1, 0}, {0, 1, 0.01f}, {5, 0, 0}});
+  EXPECT_LT(Distance(mean, {0, 1, 0}), 0.02);
+}
+
+TEST(RobustMeanTest, IsTheMeanOfWhatLiesTogether) {
+  EXPECT_LT(Distance(RobustMean({{0, 1, 0}, {1, 1, 0}, {0, 3, 0}, {1, 3, 0}}), {0.5f, 2, 0}), 1e-6);
+  EXPECT_EQ(RobustMean({{1, 2, 3}, {1, 2, 3}}), (motion::Vec3{1, 2, 3}));
+  EXPECT_EQ(RobustMean({}), (motion::Vec3{}));
 }
 
 TEST(LeanTest, IsTowardsXAndZInDegrees) {
