@@ -23,10 +23,11 @@ struct Sequence {
   std::vector<std::string> subjects;  // people in it, when the data set says
   // "index": the data set's index; "guess": a guess by its own word; "motion": the motion rule.
   std::string leader_source;
-  // Whether the motion rule names the same leader; nothing for a class that it knows no effectors of.
+  // Whether the motion rule names the same leader; nothing for a class that it knows no effectors
+  // of.
   std::optional<bool> rule_agrees;
-  motion::ClipPair pair;              // world metres, y up, joints in the skeleton's order
-  motion::Levelling levelling;        // from the world as captured to that of `pair`
+  motion::ClipPair pair;        // world metres, y up, joints in the skeleton's order
+  motion::Levelling levelling;  // from the world as captured to that of `pair`
   // Horizontal direction from leader to follower, where the capture's setup tells it: SBU and K3HI
   // stand their people along the image's x axis. Which of them stands where is one bit, taken from
   // the first frame; nothing else of the follower's motion goes into it.

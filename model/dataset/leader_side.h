@@ -19,7 +19,7 @@ struct IndexEntry {
   LeaderSide leader_side = LeaderSide::kUnknown;
   std::vector<std::string> subjects;  // from the column of that name, when there is one
   bool guessed = false;  // its column leader_source, when there is one, begins with "guess"
-  int line = 0;                       // for messages
+  int line = 0;          // for messages
 };
 
 // Parses index.tsv: a header naming the columns, then one file a line. `path` and `leader_side`

@@ -65,8 +65,7 @@ void LevelSets(Dataset* dataset) {
   const motion::Vec3 shared = RobustMean(all);
   for (auto& [name, set] : sets) {
     const auto own_sequences = static_cast<float>(set.sequences.size());
-    const motion::Vec3 sum =
-        own_sequences * RobustMean(set.directions) + kSharedSequences * shared;
+    const motion::Vec3 sum = own_sequences * RobustMean(set.directions) + kSharedSequences * shared;
     const motion::Vec3 up = sum / Norm(sum);
     if (up.y >= kLeastUpright) Level(dataset->skeleton, up, &set);
   }

@@ -126,8 +126,7 @@ TEST(LevelSetsTest, EachSetHasItsOwnCamera) {
   Dataset other = Upright(40, "b");
   Capture(motion::Levelling(Up(0, 5), 0.5f), &dataset);
   Capture(motion::Levelling(Up(0, 11), 0.9f), &other);
-  dataset.sequences.insert(dataset.sequences.end(), other.sequences.begin(),
-                           other.sequences.end());
+  dataset.sequences.insert(dataset.sequences.end(), other.sequences.begin(), other.sequences.end());
   LevelSets(&dataset);
   // Both are drawn a little towards their common 8 degrees.
   EXPECT_NEAR(LeanOf(dataset.sequences[0].levelling.up()).z, 5.2, 0.5);

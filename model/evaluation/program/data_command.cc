@@ -30,8 +30,8 @@ absl::Status Run(const Arguments& arguments) {
       "captured."};
   section.tables = {LeanTable(*dataset), FloorTable(*dataset), NoiseTable(*dataset),
                     LeaderTable(*dataset)};
-  section.settings = {{"data", absl::StrCat(dataset->name, ", ", dataset->sequences.size(),
-                                            " sequences")}};
+  section.settings = {
+      {"data", absl::StrCat(dataset->name, ", ", dataset->sequences.size(), " sequences")}};
   section.command = "duet-eval data --data DIR";
   section.date = report::Today();
   for (const report::Table& table : section.tables) std::cout << ToPlainText(table) << "\n";
@@ -42,8 +42,8 @@ absl::Status Run(const Arguments& arguments) {
 
 void AddDataCommand(CLI::App* app, ChosenCommand* chosen) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* command =
-      app->add_subcommand("data", "Tilt, noise and leaders of a data set, before and after reading");
+  CLI::App* command = app->add_subcommand(
+      "data", "Tilt, noise and leaders of a data set, before and after reading");
   command->add_option("--data", arguments->data, "folder of captures (docs/datasets.md)")
       ->required();
   command->add_option("--out", arguments->out, "folder of results, for duet-eval report");

@@ -49,8 +49,8 @@ std::vector<Group> BySet(const dataset::Dataset& dataset) {
 std::vector<Group> ByClass(const dataset::Dataset& dataset) {
   std::vector<Group> groups;
   for (std::size_t c = 0; c < dataset.classes.size(); ++c) {
-    groups.push_back({absl::StrCat(dataset.classes[c], dataset.symmetric[c] ? " (either)" : ""),
-                      {}});
+    groups.push_back(
+        {absl::StrCat(dataset.classes[c], dataset.symmetric[c] ? " (either)" : ""), {}});
   }
   for (const dataset::Sequence& sequence : dataset.sequences) {
     groups[static_cast<std::size_t>(sequence.interaction_class)].sequences.push_back(&sequence);
@@ -73,7 +73,7 @@ dataset::Lean LeanOf(const motion::Skeleton& skeleton, const Sequences& sequence
                      motion::Clip motion::ClipPair::*person, World world) {
   std::vector<motion::Vec3> directions;
   for (const dataset::Sequence* one : sequences) {
-    Append(StandingDirections(skeleton, In(world, *one, one->pair.*person)), &directions);
+    Append(dataset::StandingDirections(skeleton, In(world, *one, one->pair.*person)), &directions);
   }
   return dataset::MeanLean(directions);
 }
@@ -83,7 +83,7 @@ std::vector<motion::Vec3> FeetOf(const motion::Skeleton& skeleton, const Sequenc
   std::vector<motion::Vec3> feet;
   for (const dataset::Sequence* one : sequences) {
     for (const motion::Clip* clip : {&one->pair.leader, &one->pair.follower}) {
-      Append(LowerFeet(skeleton, In(world, *one, *clip)), &feet);
+      Append(dataset::LowerFeet(skeleton, In(world, *one, *clip)), &feet);
     }
   }
   return feet;
@@ -103,8 +103,7 @@ void AddNoise(const motion::Clip& clip, Noise* noise) {
   noise->joint_frames += poses.frame_count() * poses.joint_count();
   noise->captured += metrics::Jitter(clip.poses, clip.frame_rate_hz);
   noise->without_jumps += metrics::Jitter(poses, clip.frame_rate_hz);
-  noise->smooth +=
-      metrics::Jitter(GaussianFilter(poses, kSmoothingFrames), clip.frame_rate_hz);
+  noise->smooth += metrics::Jitter(GaussianFilter(poses, kSmoothingFrames), clip.frame_rate_hz);
   ++noise->clips;
 }
 
@@ -117,11 +116,12 @@ double Share(double part, double whole) {
 Table LeanTable(const dataset::Dataset& dataset) {
   Table table;
   table.title = "Mean lean of people, degrees: as captured, then level";
-  table.columns = {"sequences",      "leader x",       "leader z",
-                   "follower x",     "follower z",     "level leader x",
+  table.columns = {"sequences",      "leader x",         "leader z",
+                   "follower x",     "follower z",       "level leader x",
                    "level leader z", "level follower x", "level follower z"};
   table.notes = {
-      "From the feet to the neck; x is along the image, z is away from the camera. What a set keeps "
+      "From the feet to the neck; x is along the image, z is away from the camera. What a set "
+      "keeps "
       "once level is what its people do."};
   for (const Group& group : BySet(dataset)) {
     TableRow row = {group.name, {static_cast<double>(group.sequences.size())}};
@@ -141,8 +141,9 @@ Table FloorTable(const dataset::Dataset& dataset) {
   table.title = "The floor under the lower feet: as captured, then level";
   table.columns = {"lean x",       "lean z",       "height cm",
                    "level lean x", "level lean z", "level height cm"};
-  table.notes = {"The lean of the normal of a plane through the feet, degrees; the height that a "
-                 "quarter of the feet are below."};
+  table.notes = {
+      "The lean of the normal of a plane through the feet, degrees; the height that a "
+      "quarter of the feet are below."};
   if (!dataset.skeleton.feet) return table;
   for (const Group& group : BySet(dataset)) {
     TableRow row = {group.name, {}};
@@ -161,10 +162,11 @@ Table FloorTable(const dataset::Dataset& dataset) {
 Table NoiseTable(const dataset::Dataset& dataset) {
   Table table;
   table.title = "Noise of the captures";
-  table.columns = {"joint frames", "repaired", "repaired per mille", "jitter", "jitter repaired",
-                   "jitter smooth"};
+  table.columns = {"joint frames", "repaired",        "repaired per mille",
+                   "jitter",       "jitter repaired", "jitter smooth"};
   table.notes = {
-      "Repaired: joints that jump away for a frame and back. Jitter in m/s^3; smooth: repaired, then "
+      "Repaired: joints that jump away for a frame and back. Jitter in m/s^3; smooth: repaired, "
+      "then "
       "a Gaussian of one frame."};
   for (const Group& group : ByClass(dataset)) {
     Noise noise;
@@ -172,13 +174,11 @@ Table NoiseTable(const dataset::Dataset& dataset) {
       AddNoise(one->pair.leader, &noise);
       AddNoise(one->pair.follower, &noise);
     }
-    table.rows.push_back({group.name,
-                          {static_cast<double>(noise.joint_frames),
-                           static_cast<double>(noise.repaired),
-                           1000 * Share(noise.repaired, noise.joint_frames),
-                           Share(noise.captured, noise.clips),
-                           Share(noise.without_jumps, noise.clips),
-                           Share(noise.smooth, noise.clips)}});
+    table.rows.push_back(
+        {group.name,
+         {static_cast<double>(noise.joint_frames), static_cast<double>(noise.repaired),
+          1000 * Share(noise.repaired, noise.joint_frames), Share(noise.captured, noise.clips),
+          Share(noise.without_jumps, noise.clips), Share(noise.smooth, noise.clips)}});
   }
   return table;
 }

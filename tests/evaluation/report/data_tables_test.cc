@@ -50,9 +50,7 @@ TEST(DataTablesTest, FloorIsShownAsCapturedAndLevel) {
   EXPECT_EQ(Cell(table, "one", "height cm"), Cell(table, "one", "level height cm"));
 }
 
-TEST(DataTablesTest, ASetWithoutNameIsAll) {
-  EXPECT_EQ(LeanTable(MadeUpPairs(1)).rows.size(), 1u);
-}
+TEST(DataTablesTest, ASetWithoutNameIsAll) { EXPECT_EQ(LeanTable(MadeUpPairs(1)).rows.size(), 1u); }
 
 TEST(DataTablesTest, RepairedJointsAreCounted) {
   dataset::Dataset dataset = MadeUpPairs(1);
