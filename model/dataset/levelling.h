@@ -5,7 +5,7 @@
 
 namespace duet::dataset {
 
-// Levels captures: a camera that looks down captures people who lean. Every set of sequences
+// Levels captures: a tilted camera captures people who lean. Every set of sequences
 // (Sequence::set) gets one motion::Levelling, kept in its sequences.
 //
 // The vertical is the robust mean (posture.h) of the standing directions of both people in all

@@ -16,7 +16,7 @@ TEST(LevellingTest, DefaultChangesNothing) {
 }
 
 TEST(LevellingTest, VerticalAndFloorComeToTheirPlaces) {
-  // The camera looks down by 10 degrees: the vertical leans along +z.
+  // The camera is pitched by 10 degrees: the vertical leans along +z.
   const float angle = 10 * static_cast<float>(M_PI) / 180;
   const Levelling levelling({0, 2 * std::cos(angle), 2 * std::sin(angle)}, -0.8f);
   ExpectNear(levelling.Apply({0, std::cos(angle), std::sin(angle)}), {0, 1.8f, 0}, 1e-6f);

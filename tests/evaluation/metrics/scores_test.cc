@@ -55,7 +55,7 @@ TEST(ScoresTest, EachColumnHoldsItsOwnMetric) {
 
 TEST(ScoresTest, TheRawUnitIsOfTheWorldAsCaptured) {
   dataset::Dataset dataset = MadeUpPairs(1);
-  // Captured by a camera that looks down by 45 degrees.
+  // Captured by a camera that is pitched by 45 degrees.
   dataset.sequences[0].levelling = motion::Levelling({0, 1, 1}, 0.5f);
   ScoredMotion moved = CapturedMotions(dataset, {0}).front();
   for (motion::Vec3& p : moved.follower.all()) p.y += 1;
