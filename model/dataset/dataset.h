@@ -10,6 +10,7 @@
 #include "absl/status/statusor.h"
 #include "model/motion/body_part.h"
 #include "model/motion/clip.h"
+#include "model/motion/levelling.h"
 #include "model/motion/skeleton.h"
 
 namespace duet::dataset {
@@ -18,9 +19,15 @@ namespace duet::dataset {
 struct Sequence {
   std::string id;                     // path below the data set's folder
   int interaction_class = 0;          // index into Dataset::classes
+  std::string set;                    // captured by one camera in one place; may be empty
   std::vector<std::string> subjects;  // people in it, when the data set says
-  std::string leader_source;          // "index": the data set's index; "motion": the motion rule
-  motion::ClipPair pair;              // world metres, y up, joints in the skeleton's order
+  // "index": the data set's index; "guess": a guess by its own word; "motion": the motion rule.
+  std::string leader_source;
+  // Whether the motion rule names the same leader; nothing for a class that it knows no effectors
+  // of.
+  std::optional<bool> rule_agrees;
+  motion::ClipPair pair;        // world metres, y up, joints in the skeleton's order
+  motion::Levelling levelling;  // from the world as captured to that of `pair`
   // Horizontal direction from leader to follower, where the capture's setup tells it: SBU and K3HI
   // stand their people along the image's x axis. Which of them stands where is one bit, taken from
   // the first frame; nothing else of the follower's motion goes into it.
@@ -50,6 +57,9 @@ struct Dataset {
 //             shake_hands, hug, exchange_object, punch; 15 frames a second
 //   K3HI      <class>/<sequence>.txt, 8 classes, 30 frames a second
 //   own data  dataset.json beside <class>/<sequence>.txt (docs/datasets.md)
+//
+// SBU, K3HI and own data that asks for it are levelled (levelling.h), set by set: a set is an SBU
+// folder sXXsYY, or else the whole data set.
 //
 // The leader's side comes from index.tsv where it names one, else from the motion rule: the leader
 // is whose effector (feet for kicks, hands otherwise) has the larger peak displacement relative to

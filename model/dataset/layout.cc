@@ -22,6 +22,7 @@ DatasetLayout KinectLayout(const std::string& name, double frame_rate_hz,
   layout.skeleton = motion::SbuSkeleton();
   layout.parts = motion::SbuParts();
   layout.people_axis = motion::Vec3{1, 0, 0};  // the image's x axis
+  layout.level = true;
   const std::vector<int> feet = {layout.skeleton.feet->left, layout.skeleton.feet->right};
   const std::vector<int> hands = {layout.skeleton.Find("left_hand"),
                                   layout.skeleton.Find("right_hand")};

@@ -31,6 +31,7 @@ struct DatasetLayout {
   std::vector<ClassLayout> classes;
   // The horizontal world axis that the setup stands its people along, in either order.
   std::optional<motion::Vec3> people_axis;
+  bool level = false;  // captured by a tilted camera: to be levelled
 };
 
 // SBU Kinect Interaction ("clean"): the six classes of the paper, folders 03 to 08.

@@ -100,6 +100,15 @@ motion::Coordinates ReadCoordinates(base::ObjectReader* document) {
   return coordinates;
 }
 
+bool ReadLevel(base::ObjectReader* document, const motion::Skeleton& skeleton) {
+  if (!document->Has("level")) return false;
+  const bool level = document->Bool("level");
+  if (document->ok() && level && !skeleton.feet) {
+    document->Fail("level", "true without feet, wanted skeleton.left_foot and right_foot");
+  }
+  return level;
+}
+
 }  // namespace
 
 absl::StatusOr<DatasetLayout> ParseDatasetLayout(std::string_view text) {
@@ -115,6 +124,7 @@ absl::StatusOr<DatasetLayout> ParseDatasetLayout(std::string_view text) {
   layout.frame_rate_hz = document.Number("frame_rate_hz", kMinFrameRateHz, kMaxFrameRateHz);
   layout.coordinates = ReadCoordinates(&document);
   ReadSkeleton(&document, &layout);
+  layout.level = ReadLevel(&document, layout.skeleton);
   layout.classes = ReadClasses(&document, layout.skeleton);
   if (const absl::Status status = document.Finish(); !status.ok()) return in_file(status);
   return layout;

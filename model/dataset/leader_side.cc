@@ -4,6 +4,7 @@
 
 #include "absl/status/status.h"
 #include "absl/strings/ascii.h"
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
@@ -16,6 +17,7 @@ struct Columns {
   int path = -1;
   int leader_side = -1;
   int subjects = -1;
+  int source = -1;
   size_t count = 0;
 };
 
@@ -32,6 +34,7 @@ absl::StatusOr<Columns> ParseHeader(absl::string_view line) {
     if (names[i] == "path") columns.path = static_cast<int>(i);
     if (names[i] == "leader_side") columns.leader_side = static_cast<int>(i);
     if (names[i] == "subjects") columns.subjects = static_cast<int>(i);
+    if (names[i] == "leader_source") columns.source = static_cast<int>(i);
   }
   if (columns.path < 0 || columns.leader_side < 0) {
     return Wrong(1, "no column path or leader_side",
@@ -95,6 +98,9 @@ absl::StatusOr<std::map<std::string, IndexEntry>> ParseIndex(absl::string_view t
     entry.leader_side = *side;
     if (columns.subjects >= 0) {
       entry.subjects = ParseSubjects(cells[static_cast<size_t>(columns.subjects)]);
+    }
+    if (columns.source >= 0) {
+      entry.guessed = absl::StartsWith(cells[static_cast<size_t>(columns.source)], "guess");
     }
     const std::string path(cells[static_cast<size_t>(columns.path)]);
     if (!entries.emplace(path, std::move(entry)).second) {

@@ -18,12 +18,13 @@ enum class LeaderSide { kLeft, kRight, kUnknown };
 struct IndexEntry {
   LeaderSide leader_side = LeaderSide::kUnknown;
   std::vector<std::string> subjects;  // from the column of that name, when there is one
-  int line = 0;                       // for messages
+  bool guessed = false;  // its column leader_source, when there is one, begins with "guess"
+  int line = 0;          // for messages
 };
 
 // Parses index.tsv: a header naming the columns, then one file a line. `path` and `leader_side`
-// (left, right, unknown) are needed; `subjects` (names separated by commas) is optional; other
-// columns are left alone. Returns the entries by path.
+// (left, right, unknown) are needed; `subjects` (names separated by commas) and `leader_source` are
+// optional; other columns are left alone. Returns the entries by path.
 // Errors: INVALID_ARGUMENT naming the line, what came and what was wanted.
 absl::StatusOr<std::map<std::string, IndexEntry>> ParseIndex(absl::string_view text);
 

@@ -11,6 +11,7 @@
 #include "model/dataset/dataset.h"
 #include "model/dataset/layout.h"
 #include "model/dataset/leader_side.h"
+#include "model/dataset/levelling.h"
 #include "model/formats/flat/sbu_text.h"
 
 namespace duet::dataset {
@@ -24,6 +25,7 @@ constexpr size_t kMaxLayoutBytes = size_t{1} << 20;
 // A file of the data set, found but not read.
 struct FoundFile {
   std::string id;  // path below the folder, with '/'
+  std::string set;
   int interaction_class = 0;
   std::vector<std::string> subjects;
 };
@@ -78,6 +80,7 @@ absl::Status FindSbuSet(const fs::path& folder, const DatasetLayout& layout, con
     for (const std::string& sequence : *sequences) {
       if (!IsFolder(folder / set / one / sequence)) continue;
       found->push_back({absl::StrCat(set, "/", one, "/", sequence, "/skeleton_pos.txt"),
+                        set,
                         interaction_class,
                         {set.substr(0, 3), set.substr(3, 3)}});
     }
@@ -108,7 +111,7 @@ absl::StatusOr<std::vector<FoundFile>> FindClassFiles(const fs::path& folder,
     if (!names.ok()) return names.status();
     for (const std::string& name : *names) {
       if (fs::path(name).extension() != ".txt") continue;
-      found.push_back({absl::StrCat(one, "/", name), static_cast<int>(i), {}});
+      found.push_back({absl::StrCat(one, "/", name), "", static_cast<int>(i), {}});
     }
   }
   return found;
@@ -147,12 +150,14 @@ absl::StatusOr<formats::flat::SbuRecording> ReadPeople(const std::string& path,
   return people;
 }
 
-absl::StatusOr<LeaderSide> LeaderOf(const std::string& path,
-                                    const formats::flat::SbuRecording& people,
-                                    const ClassLayout& interaction, int root) {
-  if (!interaction.effectors.empty()) {
-    return LeaderByMotion(people.left, people.right, root, interaction.effectors);
-  }
+// What the motion rule says; nothing where the class names no effectors.
+LeaderSide LeaderByRule(const formats::flat::SbuRecording& people, const ClassLayout& interaction,
+                        int root) {
+  if (interaction.effectors.empty()) return LeaderSide::kUnknown;
+  return LeaderByMotion(people.left, people.right, root, interaction.effectors);
+}
+
+absl::Status NobodyLeads(const std::string& path, const ClassLayout& interaction) {
   return absl::InvalidArgumentError(absl::StrCat(
       path, ": no leader_side, wanted left or right in index.tsv or effectors for class ",
       interaction.name, " in dataset.json"));
@@ -175,18 +180,16 @@ absl::StatusOr<Sequence> ReadSequence(const fs::path& folder, const DatasetLayou
   if (!people.ok()) return people.status();
   Sequence sequence;
   sequence.id = file.id;
+  sequence.set = file.set;
   sequence.interaction_class = file.interaction_class;
   sequence.subjects = entry.subjects.empty() ? file.subjects : entry.subjects;
-  sequence.leader_source = "index";
-  LeaderSide side = entry.leader_side;
-  if (side == LeaderSide::kUnknown) {
-    absl::StatusOr<LeaderSide> moved =
-        LeaderOf(path, *people, layout.classes[static_cast<size_t>(file.interaction_class)],
-                 layout.skeleton.root);
-    if (!moved.ok()) return moved.status();
-    side = *moved;
-    sequence.leader_source = "motion";
-  }
+  const ClassLayout& interaction = layout.classes[static_cast<size_t>(file.interaction_class)];
+  const LeaderSide ruled = LeaderByRule(*people, interaction, layout.skeleton.root);
+  const bool indexed = entry.leader_side != LeaderSide::kUnknown;
+  const LeaderSide side = indexed ? entry.leader_side : ruled;
+  if (side == LeaderSide::kUnknown) return NobodyLeads(path, interaction);
+  sequence.leader_source = indexed ? (entry.guessed ? "guess" : "index") : "motion";
+  if (ruled != LeaderSide::kUnknown) sequence.rule_agrees = ruled == side;
   if (side == LeaderSide::kRight) std::swap(people->left, people->right);
   sequence.pair = {std::move(people->left), std::move(people->right)};
   sequence.partner_direction = PartnerDirection(layout, sequence.pair);
@@ -219,6 +222,7 @@ absl::StatusOr<Dataset> ReadFiles(const fs::path& folder, const DatasetLayout& l
     if (!sequence.ok()) return sequence.status();
     dataset.sequences.push_back(*std::move(sequence));
   }
+  if (layout.level) LevelSets(&dataset);
   return dataset;
 }
 

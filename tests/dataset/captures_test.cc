@@ -4,9 +4,13 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "model/dataset/dataset.h"
-#include "model/dataset/leader_side.h"
+#include "model/dataset/posture.h"
 
 namespace duet::dataset {
 namespace {
@@ -51,6 +55,55 @@ TEST(CapturesTest, SbuFollowersStandWhereTheirDirectionPoints) {
   }
 }
 
+// The mean lean of every leader or every follower.
+Lean LeanOfAll(const Dataset& dataset, bool leaders, bool as_captured) {
+  std::vector<motion::Vec3> directions;
+  for (const Sequence& one : dataset.sequences) {
+    motion::Poses poses = leaders ? one.pair.leader.poses : one.pair.follower.poses;
+    if (as_captured) poses = one.levelling.Invert(std::move(poses));
+    const std::vector<motion::Vec3> some = StandingDirections(dataset.skeleton, poses);
+    directions.insert(directions.end(), some.begin(), some.end());
+  }
+  return MeanLean(directions);
+}
+
+TEST(CapturesTest, PeopleStandUprightOnceLevelled) {
+  for (const char* name : {"sbu", "k3hi"}) {
+    if (!std::filesystem::exists(DataFolder(name))) GTEST_SKIP() << "no data at hand";
+    const absl::StatusOr<Dataset> dataset = ReadDataset(DataFolder(name));
+    ASSERT_TRUE(dataset.ok()) << dataset.status();
+    for (const bool leaders : {true, false}) {
+      EXPECT_GT(LeanOfAll(*dataset, leaders, true).z, 3) << name << leaders;
+      EXPECT_LT(std::abs(LeanOfAll(*dataset, leaders, false).x), 1) << name << leaders;
+      EXPECT_LT(std::abs(LeanOfAll(*dataset, leaders, false).z), 1) << name << leaders;
+    }
+  }
+}
+
+TEST(CapturesTest, SetsStandUprightOnceLevelled) {
+  if (!std::filesystem::exists(DataFolder("sbu"))) GTEST_SKIP() << "no SBU data at hand";
+  const absl::StatusOr<Dataset> dataset = ReadDataset(DataFolder("sbu"));
+  ASSERT_TRUE(dataset.ok()) << dataset.status();
+  std::map<std::string, std::vector<motion::Vec3>> directions, feet;
+  for (const Sequence& one : dataset->sequences) {
+    for (const motion::Clip* clip : {&one.pair.leader, &one.pair.follower}) {
+      for (const motion::Vec3& d : StandingDirections(dataset->skeleton, clip->poses)) {
+        directions[one.set].push_back(d);
+      }
+      for (const motion::Vec3& f : LowerFeet(dataset->skeleton, clip->poses)) {
+        feet[one.set].push_back(f);
+      }
+    }
+  }
+  ASSERT_EQ(directions.size(), 17u);
+  for (const auto& [set, of_set] : directions) {
+    // What is left is what these people do, which the set's vertical is not to follow to the end.
+    EXPECT_LT(std::abs(MeanLean(of_set).z), 1.5) << set;
+    EXPECT_LT(std::abs(MeanLean(of_set).x), 1.5) << set;
+    EXPECT_NEAR(HeightQuantile(feet[set], 0.25), 0, 0.001) << set;
+  }
+}
+
 TEST(CapturesTest, TheMotionRuleAgreesWithTheIndexOnSbu) {
   if (!std::filesystem::exists(DataFolder("sbu"))) GTEST_SKIP() << "no SBU data at hand";
   const absl::StatusOr<Dataset> dataset = ReadDataset(DataFolder("sbu"));
@@ -58,12 +111,9 @@ TEST(CapturesTest, TheMotionRuleAgreesWithTheIndexOnSbu) {
   int agreed = 0, asked = 0;
   for (const Sequence& one : dataset->sequences) {
     if (dataset->symmetric[static_cast<size_t>(one.interaction_class)]) continue;
-    const bool kick = one.interaction_class == 0;
-    const std::vector<int> effectors = kick ? std::vector<int>{11, 14} : std::vector<int>{5, 8};
-    const LeaderSide side =
-        LeaderByMotion(one.pair.leader, one.pair.follower, dataset->skeleton.root, effectors);
     ++asked;
-    if (side == LeaderSide::kLeft) ++agreed;
+    ASSERT_TRUE(one.rule_agrees.has_value()) << one.id;
+    if (*one.rule_agrees) ++agreed;
   }
   EXPECT_EQ(asked, 94);
   EXPECT_GE(agreed, 80);

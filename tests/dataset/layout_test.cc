@@ -56,6 +56,25 @@ TEST(DatasetLayoutTest, ReadsEveryField) {
   EXPECT_TRUE(layout->classes[1].symmetric);
 }
 
+TEST(DatasetLayoutTest, OwnDataIsLevelUnlessItSaysOtherwise) {
+  Json json = Complete();
+  EXPECT_FALSE(ParseDatasetLayout(json.dump())->level);
+  json["level"] = true;
+  const absl::StatusOr<DatasetLayout> layout = ParseDatasetLayout(json.dump());
+  ASSERT_TRUE(layout.ok()) << layout.status();
+  EXPECT_TRUE(layout->level);
+}
+
+TEST(DatasetLayoutTest, LevellingNeedsFeet) {
+  Json json = Complete();
+  json["skeleton"].erase("left_foot");
+  json["skeleton"].erase("right_foot");
+  json["level"] = true;
+  EXPECT_THAT(ErrorOf(json), HasSubstr("level: true without feet, wanted skeleton.left_foot"));
+  json["level"] = false;
+  EXPECT_TRUE(ParseDatasetLayout(json.dump()).ok());
+}
+
 TEST(DatasetLayoutTest, ReadsEarlierSpellingsOfUnitAndAxis) {
   Json json = Complete();
   json["unit"] = "sbu_normalised";
@@ -98,6 +117,7 @@ TEST(DatasetLayoutTest, RefusesEveryWrongValueByName) {
       {"/unit", "\"feet\"", "unit: \"feet\", wanted metres, millimetres or sbu-normalised"},
       {"/unit", "\"sbu-normalised\"", "up_axis: z-up, wanted y-down"},
       {"/up_axis", "3", "up_axis: 3"},
+      {"/level", "\"yes\"", "level: \"yes\", wanted true or false"},
       {"/rate", "3", "unknown field \"rate\""},
       {"/skeleton/tail", "3", "unknown field \"tail\""},
       {"/skeleton/root", "\"nose\"",

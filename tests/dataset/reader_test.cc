@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "absl/strings/str_cat.h"
 #include "model/dataset/dataset.h"
 #include "tests/dataset/capture_folder.h"
 #include "tests/support/temporary_folder.h"
@@ -57,6 +58,25 @@ TEST(ReadDatasetTest, ReadsSbu) {
   EXPECT_FLOAT_EQ(punch.pair.leader.at(0, 0).z, 128.0f);
   EXPECT_FLOAT_EQ(punch.pair.follower.at(3, 14).z, 14 * 1.28f);
   EXPECT_EQ(punch.pair.follower.frame_count(), 4);
+}
+
+TEST(ReadDatasetTest, TellsWhereItsLeadersComeFrom) {
+  CaptureFolder folder;
+  for (const char* number : {"001", "002", "003"}) {
+    folder.Write(absl::StrCat("s01s02/04/", number, "/skeleton_pos.txt"), RightReaches());
+  }
+  folder.Write("index.tsv",
+               "path\tleader_side\tleader_source\n"
+               "s01s02/04/001/skeleton_pos.txt\tleft\tannotated\n"
+               "s01s02/04/002/skeleton_pos.txt\tright\tguess_early_motion\n");
+  const absl::StatusOr<Dataset> dataset = ReadDataset(folder.path());
+  ASSERT_TRUE(dataset.ok()) << dataset.status();
+  EXPECT_EQ(dataset->sequences[0].leader_source, "index");
+  EXPECT_EQ(dataset->sequences[1].leader_source, "guess");
+  EXPECT_EQ(dataset->sequences[2].leader_source, "motion");
+  EXPECT_EQ(dataset->sequences[0].rule_agrees, false);
+  EXPECT_EQ(dataset->sequences[1].rule_agrees, true);
+  EXPECT_EQ(dataset->sequences[2].rule_agrees, true);
 }
 
 TEST(ReadDatasetTest, TellsOnWhichSideTheFollowerStands) {

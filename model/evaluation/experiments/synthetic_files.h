@@ -16,6 +16,7 @@
 //   followers/<id>.json  what `duet synthesize` answered, both people
 //
 // labels are "kick=1.1;hug=0.2"; partner is "x,y,z", the direction from leader to follower, or "-";
+// All of it is in the level world that the data set was read into: servers learnt there.
 // half is the seed of SplitInHalves whose training half the generator and the leaders come from.
 
 namespace duet::evaluation::experiments {

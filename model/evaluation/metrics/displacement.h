@@ -10,8 +10,8 @@
 //
 // In metres, every figure stays the same when both motions are moved alike, or turned alike about
 // the vertical. In the raw unit, whose axes are scaled differently, it stays the same only when
-// they are moved: pass motions as they stand in the world. The paper turns them as well, but after
-// the scaling, which changes no norm.
+// they are moved: pass motions as they stand in the world, and as captured, not levelled. The paper
+// turns them as well, but after the scaling, which changes no norm.
 
 namespace duet::evaluation::metrics {
 

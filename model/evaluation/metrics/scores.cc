@@ -73,13 +73,16 @@ std::vector<double> ScoreMotion(const dataset::Dataset& dataset, const ScoredMot
   const motion::Poses& truth = sequence.pair.follower.poses;
   const motion::Poses& made = motion.follower;
   const double rate = sequence.pair.leader.frame_rate_hz;
+  // The raw unit's axes are the camera's.
+  const motion::Poses made_raw = sequence.levelling.Invert(made);
+  const motion::Poses truth_raw = sequence.levelling.Invert(truth);
   const FootSlide slide = MeasureFootSlide(made, skeleton, rate);
   const Penetration penetration = MeasurePenetration(leader, made, skeleton, dataset.parts);
-  return {Afd(made, truth, MetricUnit::kSbuRaw),
-          AfdSquared(made, truth, MetricUnit::kSbuRaw),
+  return {Afd(made_raw, truth_raw, MetricUnit::kSbuRaw),
+          AfdSquared(made_raw, truth_raw, MetricUnit::kSbuRaw),
           Afd(made, truth, MetricUnit::kMetres),
           AfdSquared(made, truth, MetricUnit::kMetres),
-          RootAlignedAfd(made, truth, skeleton.root, MetricUnit::kSbuRaw),
+          RootAlignedAfd(made_raw, truth_raw, skeleton.root, MetricUnit::kSbuRaw),
           RootAlignedAfd(made, truth, skeleton.root, MetricUnit::kMetres),
           VelocityError(made, truth, rate),
           BoneLengthDrift(made, skeleton),

@@ -36,7 +36,8 @@ struct ScoredMotion {
   motion::Poses follower;  // world metres
 };
 
-// Every metric of one motion, in the order of AllMetrics.
+// Every metric of one motion, in the order of AllMetrics. Those in the raw unit are taken in the
+// world as captured, before it was levelled.
 std::vector<double> ScoreMotion(const dataset::Dataset& dataset, const ScoredMotion& motion);
 
 // Means over the motions of each class, in the order of AllMetrics; NaN for a class without any.

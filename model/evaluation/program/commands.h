@@ -18,6 +18,7 @@ void AddAugmentationCommand(CLI::App* app, ChosenCommand* chosen);  // the paper
 void AddLatentCommand(CLI::App* app, ChosenCommand* chosen);        // Figures 6 and 7
 void AddCurvesCommand(CLI::App* app, ChosenCommand* chosen);        // training curves
 void AddValidationCommand(CLI::App* app, ChosenCommand* chosen);    // settings on held-back data
+void AddDataCommand(CLI::App* app, ChosenCommand* chosen);          // tilt, noise and leaders
 void AddReportCommand(CLI::App* app, ChosenCommand* chosen);        // one page of all sections
 
 }  // namespace duet::evaluation::program

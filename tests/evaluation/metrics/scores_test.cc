@@ -53,6 +53,21 @@ TEST(ScoresTest, EachColumnHoldsItsOwnMetric) {
   EXPECT_NEAR(scores[ColumnOf("velocity_error")], 0, 1e-4);
 }
 
+TEST(ScoresTest, TheRawUnitIsOfTheWorldAsCaptured) {
+  dataset::Dataset dataset = MadeUpPairs(1);
+  // Captured by a camera that is pitched by 45 degrees.
+  dataset.sequences[0].levelling = motion::Levelling({0, 1, 1}, 0.5f);
+  ScoredMotion moved = CapturedMotions(dataset, {0}).front();
+  for (motion::Vec3& p : moved.follower.all()) p.y += 1;
+  const std::vector<double> scores = ScoreMotion(dataset, moved);
+  // 1 m up is as captured sqrt(1/2) m along y and z, whose raw units are 1.92 m and 1.28 m.
+  const double raw_squared = 0.5 / (1.92 * 1.92) + 0.5 / (1.28 * 1.28);
+  EXPECT_NEAR(scores[ColumnOf("afd_squared")], 15 * raw_squared, 1e-4);
+  EXPECT_NEAR(scores[ColumnOf("afd")], std::sqrt(15 * raw_squared), 1e-4);
+  EXPECT_NEAR(scores[ColumnOf("root_aligned_afd")], 0, 1e-4);
+  EXPECT_NEAR(scores[ColumnOf("afd_m")], std::sqrt(15), 1e-4);
+}
+
 TEST(ScoresTest, AveragesOverTheMotionsOfAClass) {
   const dataset::Dataset dataset = MadeUpPairs(2);
   std::vector<ScoredMotion> motions = CapturedMotions(dataset, {0, 1});

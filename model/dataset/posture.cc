@@ -1,0 +1,144 @@
+#include "model/dataset/posture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace duet::dataset {
+namespace {
+
+constexpr double kDegrees = 180 / M_PI;
+// What counts in full, times the median distance: Huber's 1.345 standard deviations for a plane.
+constexpr double kPlaneReach = 2;
+constexpr double kMeanReach = 2;
+constexpr double kSmallestReach = 1e-4;  // of points that all coincide
+constexpr int kPlaneSteps = 20;
+constexpr int kMeanSteps = 30;
+constexpr double kFlatDeterminant = 1e-9;  // of the normal equations, per point: no plane
+
+// y = slope_x x + slope_z z + height
+struct Plane {
+  double slope_x = 0;
+  double slope_z = 0;
+  double height = 0;
+
+  double Residual(motion::Vec3 point) const {
+    return point.y - (slope_x * point.x + slope_z * point.z + height);
+  }
+};
+
+motion::Vec3 Mean(const std::vector<motion::Vec3>& points, const std::vector<double>& weights) {
+  double x = 0, y = 0, z = 0, sum = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    x += weights[i] * points[i].x;
+    y += weights[i] * points[i].y;
+    z += weights[i] * points[i].z;
+    sum += weights[i];
+  }
+  return {static_cast<float>(x / sum), static_cast<float>(y / sum), static_cast<float>(z / sum)};
+}
+
+// Weighted least squares about the weighted mean; level where the points lie on a line.
+Plane FitPlane(const std::vector<motion::Vec3>& points, const std::vector<double>& weights) {
+  const motion::Vec3 mean = Mean(points, weights);
+  double xx = 0, xz = 0, zz = 0, xy = 0, zy = 0, sum = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const motion::Vec3 p = points[i] - mean;
+    xx += weights[i] * p.x * p.x;
+    xz += weights[i] * p.x * p.z;
+    zz += weights[i] * p.z * p.z;
+    xy += weights[i] * p.x * p.y;
+    zy += weights[i] * p.z * p.y;
+    sum += weights[i];
+  }
+  const double determinant = xx * zz - xz * xz;
+  if (determinant <= kFlatDeterminant * sum * sum) return {0, 0, mean.y};
+  const double slope_x = (xy * zz - zy * xz) / determinant;
+  const double slope_z = (zy * xx - xy * xz) / determinant;
+  return {slope_x, slope_z, mean.y - slope_x * mean.x - slope_z * mean.z};
+}
+
+// 1 for residuals up to `reach` times the median one, falling in proportion beyond.
+std::vector<double> HuberWeights(std::vector<double> residuals, double reach) {
+  std::vector<double> sorted = residuals;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  const double full = std::max(reach * *middle, kSmallestReach);
+  for (double& residual : residuals) residual = residual > full ? full / residual : 1;
+  return residuals;
+}
+
+}  // namespace
+
+std::vector<motion::Vec3> StandingDirections(const motion::Skeleton& skeleton,
+                                             const motion::Poses& poses) {
+  std::vector<motion::Vec3> directions;
+  if (!skeleton.feet) return directions;
+  const int neck = skeleton.Find("neck");
+  const int top = neck < 0 ? skeleton.root : neck;
+  for (int t = 0; t < poses.frame_count(); ++t) {
+    const motion::Vec3 feet =
+        (poses.at(t, skeleton.feet->left) + poses.at(t, skeleton.feet->right)) / 2;
+    const motion::Vec3 body = poses.at(t, top) - feet;
+    const float length = Norm(body);
+    if (length > 0) directions.push_back(body / length);
+  }
+  return directions;
+}
+
+std::vector<motion::Vec3> LowerFeet(const motion::Skeleton& skeleton, const motion::Poses& poses) {
+  std::vector<motion::Vec3> feet;
+  if (!skeleton.feet) return feet;
+  for (int t = 0; t < poses.frame_count(); ++t) {
+    const motion::Vec3& left = poses.at(t, skeleton.feet->left);
+    const motion::Vec3& right = poses.at(t, skeleton.feet->right);
+    feet.push_back(left.y < right.y ? left : right);
+  }
+  return feet;
+}
+
+motion::Vec3 RobustMean(const std::vector<motion::Vec3>& points) {
+  if (points.empty()) return {};
+  std::vector<double> weights(points.size(), 1);
+  motion::Vec3 mean;
+  for (int step = 0; step < kMeanSteps; ++step) {
+    mean = Mean(points, weights);
+    for (std::size_t i = 0; i < points.size(); ++i) weights[i] = Distance(points[i], mean);
+    weights = HuberWeights(weights, kMeanReach);
+  }
+  return mean;
+}
+
+Lean LeanOf(motion::Vec3 up) {
+  return {std::atan2(up.x, up.y) * kDegrees, std::atan2(up.z, up.y) * kDegrees};
+}
+
+Lean MeanLean(const std::vector<motion::Vec3>& directions) {
+  if (directions.empty()) return {};
+  return LeanOf(Mean(directions, std::vector<double>(directions.size(), 1)));
+}
+
+Lean FloorLean(const std::vector<motion::Vec3>& points) {
+  if (points.empty()) return {};
+  std::vector<double> weights(points.size(), 1);
+  Plane plane;
+  for (int step = 0; step < kPlaneSteps; ++step) {
+    plane = FitPlane(points, weights);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      weights[i] = std::abs(plane.Residual(points[i]));
+    }
+    weights = HuberWeights(weights, kPlaneReach);
+  }
+  return {-std::atan(plane.slope_x) * kDegrees, -std::atan(plane.slope_z) * kDegrees};
+}
+
+float HeightQuantile(const std::vector<motion::Vec3>& points, double share) {
+  std::vector<float> heights;
+  heights.reserve(points.size());
+  for (const motion::Vec3& point : points) heights.push_back(point.y);
+  const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(heights.size() - 1));
+  std::nth_element(heights.begin(), heights.begin() + rank, heights.end());
+  return heights[static_cast<std::size_t>(rank)];
+}
+
+}  // namespace duet::dataset

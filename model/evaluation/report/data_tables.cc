@@ -1,0 +1,210 @@
+#include "model/evaluation/report/data_tables.h"
+
+#include <cstddef>
+#include <limits>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "model/dataset/posture.h"
+#include "model/evaluation/metrics/motion_quality.h"
+#include "model/motion/filter.h"
+
+namespace duet::evaluation::report {
+namespace {
+
+using Sequences = std::vector<const dataset::Sequence*>;
+
+constexpr char kAll[] = "all";
+constexpr double kFloorShare = 0.25;
+constexpr double kCentimetres = 100;
+constexpr double kSmoothingFrames = 1;
+
+// A row's name and what it is made of.
+struct Group {
+  std::string name;
+  Sequences sequences;
+};
+
+Group Everything(const dataset::Dataset& dataset) {
+  Group all = {kAll, {}};
+  for (const dataset::Sequence& sequence : dataset.sequences) all.sequences.push_back(&sequence);
+  return all;
+}
+
+// A data set of one nameless set has the row of all alone.
+std::vector<Group> BySet(const dataset::Dataset& dataset) {
+  std::map<std::string, Sequences> sets;
+  for (const dataset::Sequence& sequence : dataset.sequences) {
+    if (!sequence.set.empty()) sets[sequence.set].push_back(&sequence);
+  }
+  std::vector<Group> groups;
+  for (auto& [name, sequences] : sets) groups.push_back({name, std::move(sequences)});
+  groups.push_back(Everything(dataset));
+  return groups;
+}
+
+std::vector<Group> ByClass(const dataset::Dataset& dataset) {
+  std::vector<Group> groups;
+  for (std::size_t c = 0; c < dataset.classes.size(); ++c) {
+    groups.push_back(
+        {absl::StrCat(dataset.classes[c], dataset.symmetric[c] ? " (either)" : ""), {}});
+  }
+  for (const dataset::Sequence& sequence : dataset.sequences) {
+    groups[static_cast<std::size_t>(sequence.interaction_class)].sequences.push_back(&sequence);
+  }
+  groups.push_back(Everything(dataset));
+  return groups;
+}
+
+enum class World { kCaptured, kLevel };
+
+motion::Poses In(World world, const dataset::Sequence& sequence, const motion::Clip& clip) {
+  return world == World::kLevel ? clip.poses : sequence.levelling.Invert(clip.poses);
+}
+
+void Append(const std::vector<motion::Vec3>& more, std::vector<motion::Vec3>* all) {
+  all->insert(all->end(), more.begin(), more.end());
+}
+
+dataset::Lean LeanOf(const motion::Skeleton& skeleton, const Sequences& sequences,
+                     motion::Clip motion::ClipPair::*person, World world) {
+  std::vector<motion::Vec3> directions;
+  for (const dataset::Sequence* one : sequences) {
+    Append(dataset::StandingDirections(skeleton, In(world, *one, one->pair.*person)), &directions);
+  }
+  return dataset::MeanLean(directions);
+}
+
+std::vector<motion::Vec3> FeetOf(const motion::Skeleton& skeleton, const Sequences& sequences,
+                                 World world) {
+  std::vector<motion::Vec3> feet;
+  for (const dataset::Sequence* one : sequences) {
+    for (const motion::Clip* clip : {&one->pair.leader, &one->pair.follower}) {
+      Append(dataset::LowerFeet(skeleton, In(world, *one, *clip)), &feet);
+    }
+  }
+  return feet;
+}
+
+// What a noise row adds up, over both people.
+struct Noise {
+  int joint_frames = 0;
+  int repaired = 0;
+  double captured = 0, without_jumps = 0, smooth = 0;  // jitter, summed over clips
+  int clips = 0;
+};
+
+void AddNoise(const motion::Clip& clip, Noise* noise) {
+  motion::Poses poses = clip.poses;
+  noise->repaired += RepairJumps(&poses);
+  noise->joint_frames += poses.frame_count() * poses.joint_count();
+  noise->captured += metrics::Jitter(clip.poses, clip.frame_rate_hz);
+  noise->without_jumps += metrics::Jitter(poses, clip.frame_rate_hz);
+  noise->smooth += metrics::Jitter(GaussianFilter(poses, kSmoothingFrames), clip.frame_rate_hz);
+  ++noise->clips;
+}
+
+double Share(double part, double whole) {
+  return whole == 0 ? std::numeric_limits<double>::quiet_NaN() : part / whole;
+}
+
+}  // namespace
+
+Table LeanTable(const dataset::Dataset& dataset) {
+  Table table;
+  table.title = "Mean lean of people, degrees: as captured, then level";
+  table.columns = {"sequences",      "leader x",         "leader z",
+                   "follower x",     "follower z",       "level leader x",
+                   "level leader z", "level follower x", "level follower z"};
+  table.notes = {
+      "From the feet to the neck; x is along the image, z is away from the camera. What a set "
+      "keeps "
+      "once level is what its people do."};
+  for (const Group& group : BySet(dataset)) {
+    TableRow row = {group.name, {static_cast<double>(group.sequences.size())}};
+    for (const World world : {World::kCaptured, World::kLevel}) {
+      for (const auto person : {&motion::ClipPair::leader, &motion::ClipPair::follower}) {
+        const dataset::Lean lean = LeanOf(dataset.skeleton, group.sequences, person, world);
+        row.values.insert(row.values.end(), {lean.x, lean.z});
+      }
+    }
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+Table FloorTable(const dataset::Dataset& dataset) {
+  Table table;
+  table.title = "The floor under the lower feet: as captured, then level";
+  table.columns = {"lean x",       "lean z",       "height cm",
+                   "level lean x", "level lean z", "level height cm"};
+  table.notes = {
+      "The lean of the normal of a plane through the feet, degrees; the height that a "
+      "quarter of the feet are below."};
+  if (!dataset.skeleton.feet) return table;
+  for (const Group& group : BySet(dataset)) {
+    TableRow row = {group.name, {}};
+    for (const World world : {World::kCaptured, World::kLevel}) {
+      const std::vector<motion::Vec3> feet = FeetOf(dataset.skeleton, group.sequences, world);
+      const dataset::Lean lean = dataset::FloorLean(feet);
+      row.values.insert(
+          row.values.end(),
+          {lean.x, lean.z, kCentimetres * dataset::HeightQuantile(feet, kFloorShare)});
+    }
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+Table NoiseTable(const dataset::Dataset& dataset) {
+  Table table;
+  table.title = "Noise of the captures";
+  table.columns = {"joint frames", "repaired",        "repaired per mille",
+                   "jitter",       "jitter repaired", "jitter smooth"};
+  table.notes = {
+      "Repaired: joints that jump away for a frame and back. Jitter in m/s^3; smooth: repaired, "
+      "then "
+      "a Gaussian of one frame."};
+  for (const Group& group : ByClass(dataset)) {
+    Noise noise;
+    for (const dataset::Sequence* one : group.sequences) {
+      AddNoise(one->pair.leader, &noise);
+      AddNoise(one->pair.follower, &noise);
+    }
+    table.rows.push_back(
+        {group.name,
+         {static_cast<double>(noise.joint_frames), static_cast<double>(noise.repaired),
+          1000 * Share(noise.repaired, noise.joint_frames), Share(noise.captured, noise.clips),
+          Share(noise.without_jumps, noise.clips), Share(noise.smooth, noise.clips)}});
+  }
+  return table;
+}
+
+Table LeaderTable(const dataset::Dataset& dataset) {
+  Table table;
+  table.title = "Who leads";
+  table.columns = {"sequences", "by index", "by its guess", "by motion", "rule agrees"};
+  table.notes = {
+      "Rule agrees: the share of the leaders named by the index, without guessing, whom the motion "
+      "rule names too. Either: a symmetric class, where either person may lead and the rule knows "
+      "no better than chance."};
+  for (const Group& group : ByClass(dataset)) {
+    std::map<std::string, double> sources;
+    double asked = 0, agreed = 0;
+    for (const dataset::Sequence* one : group.sequences) {
+      ++sources[one->leader_source];
+      if (one->leader_source != "index" || !one->rule_agrees) continue;
+      ++asked;
+      if (*one->rule_agrees) ++agreed;
+    }
+    table.rows.push_back({group.name,
+                          {static_cast<double>(group.sequences.size()), sources["index"],
+                           sources["guess"], sources["motion"], Share(agreed, asked)}});
+  }
+  return table;
+}
+
+}  // namespace duet::evaluation::report
