@@ -28,8 +28,8 @@ absl::Status Run(const Arguments& arguments) {
       "What the data is like that everything else learns from and is measured on. The captures are "
       "levelled set by set as they are read; figures in SBU's raw unit are taken in the world as "
       "captured."};
-  section.tables = {LeanTable(*dataset), FloorTable(*dataset), NoiseTable(*dataset),
-                    LeaderTable(*dataset)};
+  section.tables = {report::LeanTable(*dataset), report::FloorTable(*dataset),
+                    report::NoiseTable(*dataset), report::LeaderTable(*dataset)};
   section.settings = {
       {"data", absl::StrCat(dataset->name, ", ", dataset->sequences.size(), " sequences")}};
   section.command = "duet-eval data --data DIR";
