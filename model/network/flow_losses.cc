@@ -1,11 +1,15 @@
 #include "model/network/flow_losses.h"
 
+#include <cmath>
+
 #include "model/network/sequence.h"
 
 namespace duet::network {
 namespace {
 
 constexpr double kSmallest = 1e-12;  // under a root, whose gradient at 0 is infinite
+constexpr double kSmallestSquare = 1e-6;
+constexpr int64_t kBlockStride = 2;
 
 // Mean over the valid frames of one value each, [N, T].
 torch::Tensor MeanOverFrames(const torch::Tensor& values, const torch::Tensor& lengths) {
@@ -13,8 +17,19 @@ torch::Tensor MeanOverFrames(const torch::Tensor& values, const torch::Tensor& l
   return (values * valid).sum(1) / lengths.clamp_min(1);
 }
 
+// Along the frames, the last dimension but one.
 torch::Tensor Differences(const torch::Tensor& motion) {
-  return motion.slice(1, 1) - motion.slice(1, 0, -1);
+  return motion.slice(-2, 1) - motion.slice(-2, 0, -1);
+}
+
+torch::Tensor Norms(const torch::Tensor& vectors) {
+  return vectors.square().sum(-1).add(kSmallestSquare).sqrt();
+}
+
+// [..., B, V frames]: the blocks of a motion [..., T, V].
+torch::Tensor Blocks(const torch::Tensor& motion, int64_t frames) {
+  const torch::Tensor blocks = motion.unfold(-2, frames, kBlockStride).flatten(-2);
+  return blocks / std::sqrt(static_cast<double>(frames));
 }
 
 torch::Tensor Joints(const torch::Tensor& motion) {
@@ -63,6 +78,32 @@ torch::Tensor SquaredSlides(const torch::Tensor& predicted, const torch::Tensor&
   };
   const torch::Tensor stands = (moved(real) < still * still).to(predicted.dtype());
   return MeanOverFrames((moved(predicted) * stands).mean(2), lengths - 1);
+}
+
+torch::Tensor EnergyScores(const torch::Tensor& answers, const torch::Tensor& real,
+                           const torch::Tensor& lengths) {
+  const int64_t count = answers.size(0);
+  const torch::Tensor error = Norms(answers - real).mean(0);
+  torch::Tensor spread = torch::zeros_like(error);
+  for (int64_t a = 1; a < count; ++a) {
+    for (int64_t b = 0; b < a; ++b) spread = spread + Norms(answers[a] - answers[b]);
+  }
+  const double pairs = static_cast<double>(count * (count - 1) / 2);
+  return MeanOverFrames(error - spread / (2 * pairs), lengths);
+}
+
+torch::Tensor VelocityEnergyScores(const torch::Tensor& answers, const torch::Tensor& real,
+                                   const torch::Tensor& lengths) {
+  return EnergyScores(Differences(answers), Differences(real), lengths - 1);
+}
+
+torch::Tensor BlockEnergyScores(const torch::Tensor& answers, const torch::Tensor& real,
+                                const torch::Tensor& lengths, int64_t frames) {
+  const torch::Tensor moves = Differences(answers), real_moves = Differences(real);
+  if (real_moves.size(1) < frames) return torch::zeros({real.size(0)});
+  const torch::Tensor blocks =
+      torch::div(lengths - 1 - frames, kBlockStride, "floor").add(1).clamp_min(0);
+  return EnergyScores(Blocks(moves, frames), Blocks(real_moves, frames), blocks);
 }
 
 }  // namespace duet::network

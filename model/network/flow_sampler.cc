@@ -35,6 +35,18 @@ torch::Tensor WithKnown(const torch::Tensor& answer, const FlowInput& input) {
   return answer * (1 - input.is_known) + input.known;
 }
 
+// The last of the answers that `answer(sample, time)` gives on the way from noise to motion.
+template <typename Answer>
+torch::Tensor TakeSteps(int steps, const FlowInput& input, const torch::Tensor& source,
+                        const Answer& answer) {
+  torch::Tensor sample = source, last;
+  for (int step = 0; step < steps; ++step) {
+    last = answer(sample, static_cast<double>(step) / steps);
+    sample = sample + (WithKnown(last, input) - sample) / static_cast<double>(steps - step);
+  }
+  return last;
+}
+
 // [N, T, 1] 1 in the last known frame, falling to 0 along half a cosine; 0 where nothing is known.
 torch::Tensor Fade(const FlowInput& input, int fade_frames) {
   const torch::Tensor frame = torch::arange(input.leader.size(1)).unsqueeze(0);
@@ -81,18 +93,33 @@ GuidanceTerms MakeGuidanceTerms(const torch::Tensor& labels, const torch::Tensor
   return {torch::tensor(terms.windows), torch::stack(terms.labels), torch::stack(terms.factors)};
 }
 
+torch::Tensor PlainAnswers(const FlowGenerator& generator,
+                           const checkpoint::FlowArchitecture& architecture, const FlowInput& input,
+                           const torch::Tensor& labels, const torch::Tensor& source) {
+  const torch::Tensor rows = torch::arange(source.size(1)).repeat({source.size(0)});
+  const FlowContext context = Rows(generator->Prepare(input), rows);
+  const torch::Tensor row_labels = labels.index_select(0, rows);
+  FlowInput row_input = input;
+  row_input.known = input.known.index_select(0, rows);
+  row_input.is_known = input.is_known.index_select(0, rows);
+  const torch::Tensor answers =
+      TakeSteps(architecture.steps, row_input, source.flatten(0, 1),
+                [&](const torch::Tensor& sample, double time) {
+                  return generator->forward(context, row_labels, sample,
+                                            torch::full({sample.size(0)}, time));
+                });
+  return answers.view_as(source);
+}
+
 torch::Tensor SampleFlow(const FlowGenerator& generator,
                          const checkpoint::FlowArchitecture& architecture, const FlowInput& input,
                          const torch::Tensor& source) {
   const GuidanceTerms terms = MakeGuidanceTerms(input.labels, input.lengths, architecture.guidance);
   const FlowContext rows = Rows(generator->Prepare(input), terms.windows);
-  torch::Tensor sample = source, answer;
-  for (int step = 0; step < architecture.steps; ++step) {
-    const double time = static_cast<double>(step) / architecture.steps;
-    const double left = static_cast<double>(architecture.steps - step);
-    answer = Guided(generator, rows, terms, sample, time);
-    sample = sample + (WithKnown(answer, input) - sample) / left;
-  }
+  const torch::Tensor answer = TakeSteps(
+      architecture.steps, input, source, [&](const torch::Tensor& sample, double time) {
+        return Guided(generator, rows, terms, sample, time);
+      });
   // The last step ends on the answer itself.
   return Joined(answer, input, architecture.fade_frames) * architecture.offset_scale +
          input.base.unsqueeze(1);

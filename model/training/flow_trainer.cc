@@ -26,6 +26,9 @@ network::FlowGenerator MakeGenerator(const TrainingOptions& options,
   return generator;
 }
 
+// Velocities count about as much as positions do: they are an eighth as large.
+constexpr double kVelocityScale = 8;
+
 // The share that an average keeps after a step: less at first, when all that it holds is early.
 double AverageDecay(double decay, int64_t step) {
   const double steps = static_cast<double>(step + 1);
@@ -47,12 +50,42 @@ FlowTrainer::FlowTrainer(const TrainingOptions& options, const checkpoint::Manif
   Begin(generator_.get());
 }
 
-torch::Tensor FlowTrainer::Loss(const FlowBatch& batch, EpochReport* report) {
+torch::Tensor FlowTrainer::DrawSource(const FlowBatch& batch) const {
+  return network::SourceNoise(manifest_.flow->noise, generator_->noise_roots(),
+                              batch.input.known_count,
+                              {torch::randn_like(batch.target), torch::randn_like(batch.target)});
+}
+
+torch::Tensor FlowTrainer::EnergyLoss(const FlowBatch& batch, EpochReport* report) {
+  const TrainingOptions::Flow::Energy& energy = options_.flow->energy;
+  const torch::Tensor& lengths = batch.input.lengths;
+  std::vector<torch::Tensor> sources;
+  for (int64_t a = 0; a < energy.answers; ++a) sources.push_back(DrawSource(batch));
+  const torch::Tensor answers = network::PlainAnswers(
+      generator_, *manifest_.flow, batch.input, batch.labels, torch::stack(sources));
+  torch::Tensor total = torch::zeros({});
+  const auto add = [&](double weight, const torch::Tensor& scores, double* mean) {
+    const torch::Tensor loss = scores.mean();
+    total = total + weight * loss;
+    *mean += loss.item<double>() / static_cast<double>(steps_per_epoch_);
+  };
+  add(1, network::EnergyScores(answers, batch.target, lengths), &report->reconstruction);
+  const double rate = kVelocityScale;
+  add(energy.velocity_weight,
+      network::VelocityEnergyScores(rate * answers, rate * batch.target, lengths),
+      &report->continuity);
+  add(energy.block_weight,
+      network::BlockEnergyScores(rate * answers, rate * batch.target, lengths,
+                                 energy.block_frames),
+      &report->continuity);
+  report->generator += total.item<double>() / static_cast<double>(steps_per_epoch_);
+  return total;
+}
+
+torch::Tensor FlowTrainer::MatchingLoss(const FlowBatch& batch, EpochReport* report) {
   const TrainingOptions::Flow& flow = *options_.flow;
   const torch::Tensor& lengths = batch.input.lengths;
-  const torch::Tensor noise = network::SourceNoise(
-      manifest_.flow->noise, generator_->noise_roots(), batch.input.known_count,
-      {torch::randn_like(batch.target), torch::randn_like(batch.target)});
+  const torch::Tensor noise = DrawSource(batch);
   const torch::Tensor times = torch::rand({batch.target.size(0)});
   const torch::Tensor sample = torch::lerp(noise, batch.target, times.view({-1, 1, 1}));
   const torch::Tensor predicted =
@@ -85,10 +118,12 @@ torch::Tensor FlowTrainer::Loss(const FlowBatch& batch, EpochReport* report) {
 }
 
 void FlowTrainer::TrainEpoch(int64_t first_step, EpochReport* report) {
+  const bool is_energy =
+      static_cast<double>(epoch()) >= options_.flow->energy.from * static_cast<double>(options_.epochs);
   int64_t step = first_step;
   for (const FlowBatch& batch :
        SampleFlowEpoch(manifest_, dataset_, generator_->base_poses(), train_, options_, epoch())) {
-    Loss(batch, report).backward();
+    (is_energy ? EnergyLoss(batch, report) : MatchingLoss(batch, report)).backward();
     optimiser_.Step(step);
     UpdateAverage(AverageDecay(options_.optimiser.average_decay, step));
     ++step;

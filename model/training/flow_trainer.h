@@ -12,8 +12,9 @@
 
 namespace duet::training {
 
-// Trains the sampling generator by conditional flow matching: told (1 - t) noise + t motion for a
-// random t, it learns to answer with the motion.
+// Trains the sampling generator, first by conditional flow matching: told (1 - t) noise + t motion
+// for a random t, it learns to answer with the motion. Then by the energy score of whole answers,
+// which makes as many steps as are sampled in enough.
 //
 // Source:  Lipman et al. 2023; docs/decisions/0018-flow-matching.md.
 class FlowTrainer : public EpochTrainer {
@@ -30,7 +31,9 @@ class FlowTrainer : public EpochTrainer {
   // Of the typical answer: variety 0.
   double ValidationError(const Example& example) override;
   std::vector<std::pair<std::string, torch::optim::Optimizer*>> StateOptimisers() override;
-  torch::Tensor Loss(const FlowBatch& batch, EpochReport* report);
+  torch::Tensor MatchingLoss(const FlowBatch& batch, EpochReport* report);
+  torch::Tensor EnergyLoss(const FlowBatch& batch, EpochReport* report);
+  torch::Tensor DrawSource(const FlowBatch& batch) const;
 
   int64_t steps_per_epoch_;
   network::FlowGenerator generator_;

@@ -126,6 +126,14 @@ void Read(base::ObjectReader* reader, TrainingOptions::Flow* out) {
   out->least_remaining = reader->Number("least_remaining", 1e-6, 1);
 }
 
+void Read(base::ObjectReader* reader, TrainingOptions::Flow::Energy* out) {
+  out->from = Probability(reader, "from");
+  out->answers = reader->Int("answers", 2, 64);
+  out->velocity_weight = reader->Number("velocity_weight", 0, 1e6);
+  out->block_weight = reader->Number("block_weight", 0, 1e6);
+  out->block_frames = reader->Int("block_frames", 2, 1000);
+}
+
 void Read(base::ObjectReader* reader, TrainingOptions::Start* out) {
   out->root = Probability(reader, "root");
   out->pose = Probability(reader, "pose");
@@ -168,6 +176,7 @@ absl::StatusOr<TrainingOptions> ReadOptions(const json& value) {
   if (is_flow) {
     section("generator", &options.flow.emplace().generator);
     section("flow", &*options.flow);
+    section("energy", &options.flow->energy);
   } else {
     section("generator", &options.generator);
     section("dropout", &options.dropout);
@@ -282,7 +291,12 @@ void DescribeFlow(const TrainingOptions::Flow& f, Description* out) {
                {"flow.bone_weight", Text(f.bone_weight)},
                {"flow.slide_weight", Text(f.slide_weight)},
                {"flow.slide_speed", Text(f.slide_speed)},
-               {"flow.least_remaining", Text(f.least_remaining)}});
+               {"flow.least_remaining", Text(f.least_remaining)},
+               {"energy.from", Text(f.energy.from)},
+               {"energy.answers", absl::StrCat(f.energy.answers)},
+               {"energy.velocity_weight", Text(f.energy.velocity_weight)},
+               {"energy.block_weight", Text(f.energy.block_weight)},
+               {"energy.block_frames", absl::StrCat(f.energy.block_frames)}});
 }
 
 }  // namespace

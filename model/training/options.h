@@ -91,6 +91,16 @@ struct TrainingOptions {
     double slide_weight = 0;        // of feet that move where the captured ones stand
     double slide_speed = 0.3;       // metres a second, below which a captured foot stands
     double least_remaining = 0.15;  // losses are divided by 1 - t, or by this
+
+    // The last part of a run trains whole answers, in as many steps as they are sampled in, by the
+    // energy score: near what was captured, and as far from one another as captured answers are.
+    struct Energy {
+      double from = 0.5;           // share of the epochs before it begins; 1: never
+      int64_t answers = 2;         // drawn for each clip
+      double velocity_weight = 1;  // of the score of velocities, frame by frame
+      double block_weight = 1;     // of the score of velocities over several frames together
+      int64_t block_frames = 6;
+    } energy;
   };
   std::optional<Flow> flow;
 
