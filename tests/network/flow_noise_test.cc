@@ -19,7 +19,9 @@ torch::Tensor Roots() { return torch::eye(kWidth).expand({2, kWidth, kWidth}); }
 torch::Tensor Told(int64_t count) { return torch::full({kWindows}, count, torch::kInt64); }
 
 // [T] over windows and coordinates.
-torch::Tensor Deviation(const torch::Tensor& noise) { return noise.square().mean({0, 2}).sqrt(); }
+torch::Tensor Deviation(const torch::Tensor& noise) {
+  return noise.square().mean(2).mean(0).sqrt();
+}
 
 TEST(SourceNoiseTest, HasTheTrainingOffsetsDeviationAndIsSmooth) {
   const checkpoint::FlowArchitecture::Noise options;
