@@ -217,6 +217,7 @@ std::vector<std::filesystem::path> SampleOutputs(const SynthesizeArguments& argu
   std::vector<std::filesystem::path> outputs = arguments.outputs;
   if (arguments.samples == 1) return outputs;
   for (std::filesystem::path& output : outputs) {
+    if (!output.has_extension()) continue;  // is refused under the name that it came with
     output.replace_filename(absl::StrCat(output.stem().string(), ".seed", SeedOf(arguments, sample),
                                          output.extension().string()));
   }

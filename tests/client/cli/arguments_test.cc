@@ -228,6 +228,11 @@ TEST_F(ArgumentsTest, EachOfSeveralSamplesHasFilesNamedAfterItsSeed) {
   EXPECT_THAT(SampleOutputs(two, 1), ElementsAre(Out("pair.seed8.html"), Out("pair.x.seed8.bvh")));
 }
 
+TEST_F(ArgumentsTest, AnOutputWithoutAnExtensionIsRefusedUnderItsOwnName) {
+  ExpectRefused({"--label", "kick=1", "--out", Out("pair"), "--samples", "2"},
+                "pair: extension: came \"\", wanted .html");
+}
+
 TEST_F(ArgumentsTest, NoSampleReplacesTheLeader) {
   const std::string leader = Out("pair.seed8.csv");
   WriteTestFile(leader, "");
