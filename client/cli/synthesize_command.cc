@@ -61,11 +61,12 @@ absl::Status RunSamples(const SynthesizeArguments& arguments, const Job& job, co
                         std::ostream& out) {
   std::vector<nlohmann::json> samples;
   for (int sample = 0; sample < arguments.samples; ++sample) {
-    Synthesis synthesis{job.request, {}, job.skeleton, arguments.leader, job.sampled};
-    synthesis.request.seed = SeedOf(arguments, sample);
-    absl::StatusOr<SynthesisResult> result = client.Synthesize(synthesis.request);
+    SynthesisRequest request = job.request;
+    request.seed = SeedOf(arguments, sample);
+    absl::StatusOr<SynthesisResult> result = client.Synthesize(request);
     if (!result.ok()) return result.status();
-    synthesis.result = *std::move(result);
+    const Synthesis synthesis{std::move(request), *std::move(result), job.skeleton,
+                              arguments.leader, job.sampled};
     const absl::StatusOr<Paths> written = WriteAll(SampleOutputs(arguments, sample), synthesis);
     if (!written.ok()) return written.status();
     if (arguments.quiet) continue;
