@@ -1,6 +1,7 @@
 #ifndef DUET_CLIENT_REQUEST_H_
 #define DUET_CLIENT_REQUEST_H_
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <variant>
@@ -49,6 +50,12 @@ struct SynthesisRequest {
   // Horizontal direction from the leader to where the follower should be; y does not count. Absent:
   // towards follower_start, or else where the leader's hips face in its first frame.
   std::optional<motion::Vec3> partner_direction;
+  // Which answer of a model that samples (ModelInfo::samples): the same request with the same seed
+  // has the same answer on the same server.
+  uint64_t seed = 0;
+  // How varied such a model's answers are over the seeds: 0 the typical answer, 1 as varied as
+  // people are; at most RequestLimits::max_variety.
+  float variety = 1;
   // Bulk work yields to interactive work, and waits its turn when the server is full.
   Priority priority = Priority::kInteractive;
   // Frames in one chunk of the reply. Absent: the server chooses.

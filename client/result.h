@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,7 @@ struct ModelInfo {
   double frame_rate_hz = 0;  // the network's own; any other is resampled
   int window_frames = 0;
   bool accepts_follower_start = false;
+  bool samples = false;  // answers depend on the request's seed and variety
   std::string description;
 };
 
@@ -39,6 +41,7 @@ struct RequestLimits {
   int max_chunk_frames = 0;
   int max_keyframes = 0;
   float max_abs_weight = 0;
+  float max_variety = 0;
   int64_t max_request_bytes = 0;
 };
 
@@ -62,7 +65,12 @@ struct SynthesisResult {
   int model_version = 0;
   std::vector<std::string> interaction_classes;  // every class of the model
   std::string request_id;                        // as in the server's log
-  int window_count = 0;                          // network windows that were evaluated
+  uint64_t seed = 0;                             // that the server used
+  float variety = 0;                             // the same
+  // How far the request is from what the model was trained on: 1 as far as the farthest tenth of
+  // the training leaders. Absent when the model does not know.
+  std::optional<double> unfamiliarity;
+  int window_count = 0;  // network windows that were evaluated
   int attempt_count = 0;
   SynthesisTimings timings;
 };

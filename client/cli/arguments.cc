@@ -1,5 +1,6 @@
 #include "client/cli/arguments.h"
 
+#include <limits>
 #include <map>
 #include <sstream>
 #include <utility>
@@ -102,6 +103,30 @@ void AddInputFlags(CLI::App* app, SynthesizeArguments* arguments) {
       ->group(kGroup);
 }
 
+void AddSamplingFlags(CLI::App* app, SynthesizeArguments* arguments) {
+  constexpr char kGroup[] = "Reaction";
+  AddParsed<uint64_t>(
+      app, "--seed", "SEED", ParseSeed, [arguments](uint64_t seed) { arguments->seed = seed; },
+      "Which answer of a model that samples; the same seed gives the same answer")
+      ->take_last()
+      ->default_str(absl::StrCat(arguments->seed))
+      ->group(kGroup);
+  AddParsed<float>(
+      app, "--variety", "VARIETY", ParseVariety,
+      [arguments](float variety) { arguments->variety = variety; },
+      "How varied such answers are: 0 the typical one, 1 as varied as people, up to 2")
+      ->take_last()
+      ->default_str(absl::StrCat(arguments->variety))
+      ->group(kGroup);
+  app->add_option("--samples", arguments->samples,
+                  "Answers to ask for, with seeds SEED, SEED+1, ...; with several, each --out "
+                  "pair.html becomes pair.seed0.html and so on")
+      ->check(Undescribed(CLI::Range(1, 1000)))
+      ->capture_default_str()
+      ->type_name("COUNT")
+      ->group(kGroup);
+}
+
 void AddReactionFlags(CLI::App* app, SynthesizeArguments* arguments) {
   constexpr char kGroup[] = "Reaction";
   CLI::Option* label = AddParsed<ClassWeight>(app, "--label", "CLASS=WEIGHT", ParseClassWeight,
@@ -138,6 +163,7 @@ void AddReactionFlags(CLI::App* app, SynthesizeArguments* arguments) {
       "--follower-start, else where the leader's hips face)")
       ->take_last()
       ->group(kGroup);
+  AddSamplingFlags(app, arguments);
   AddChoice<Priority>(
       app, "--priority", kPriorities,
       [arguments](Priority priority) { arguments->priority = priority; },
@@ -171,13 +197,32 @@ void CheckTogether(const SynthesizeArguments& arguments) {
   if (arguments.weights.empty() && arguments.keyframes.empty()) {
     throw CLI::RequiredError("--label or --keyframe");
   }
-  for (const std::filesystem::path& output : arguments.outputs) {
-    const absl::Status status = CheckOutput(output, arguments.leader);
-    if (!status.ok()) throw CLI::ValidationError("--out", std::string(status.message()));
+  const uint64_t left = std::numeric_limits<uint64_t>::max() - arguments.seed;
+  if (static_cast<uint64_t>(arguments.samples) - 1 > left) {
+    throw CLI::ValidationError(
+        "--samples", absl::StrCat(arguments.samples, " from --seed ", arguments.seed,
+                                  " on pass the largest seed, wanted at most ", left + 1));
+  }
+  for (int sample = 0; sample < arguments.samples; ++sample) {
+    for (const std::filesystem::path& output : SampleOutputs(arguments, sample)) {
+      const absl::Status status = CheckOutput(output, arguments.leader);
+      if (!status.ok()) throw CLI::ValidationError("--out", std::string(status.message()));
+    }
   }
 }
 
 }  // namespace
+
+std::vector<std::filesystem::path> SampleOutputs(const SynthesizeArguments& arguments, int sample) {
+  std::vector<std::filesystem::path> outputs = arguments.outputs;
+  if (arguments.samples == 1) return outputs;
+  for (std::filesystem::path& output : outputs) {
+    if (!output.has_extension()) continue;  // is refused under the name that it came with
+    output.replace_filename(absl::StrCat(output.stem().string(), ".seed", SeedOf(arguments, sample),
+                                         output.extension().string()));
+  }
+  return outputs;
+}
 
 ParsedCommandLine ParseCommandLine(const std::vector<std::string>& arguments) {
   CLI::App app("Asks a Duet server to answer one character's motion with another's.", "duet");

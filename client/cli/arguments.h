@@ -1,6 +1,7 @@
 #ifndef DUET_CLIENT_CLI_ARGUMENTS_H_
 #define DUET_CLIENT_CLI_ARGUMENTS_H_
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -55,6 +56,9 @@ struct SynthesizeArguments {
   std::string follower_start;  // empty, "X,Y,Z" or a motion file
   std::optional<formats::Side> follower_start_side;
   std::optional<motion::Vec3> partner_direction;
+  uint64_t seed = SynthesisRequest().seed;
+  float variety = SynthesisRequest().variety;
+  int samples = 1;  // answers, with seeds from `seed` on; none passes the largest seed
   Priority priority = Priority::kInteractive;
   std::optional<int> chunk_frames;
   std::string request_id;
@@ -62,6 +66,14 @@ struct SynthesizeArguments {
   bool json = false;
   bool quiet = false;
 };
+
+// The seed of one of the samples, 0 the first.
+inline uint64_t SeedOf(const SynthesizeArguments& arguments, int sample) {
+  return arguments.seed + static_cast<uint64_t>(sample);
+}
+
+// The files of one of the samples: with several, pair.html becomes pair.seed7.html.
+std::vector<std::filesystem::path> SampleOutputs(const SynthesizeArguments& arguments, int sample);
 
 // What the command line asks for: one of the commands, or to print `text` and exit with `exit_code`
 // (help, version, a usage error).

@@ -27,6 +27,7 @@ absl::StatusOr<std::string> RenderSynthesis(const Synthesis& synthesis) {
   content.subtitle =
       absl::StrFormat("%s@%d · %d frames at %g Hz", result.model_name, result.model_version,
                       result.pair.leader.frame_count(), result.pair.leader.frame_rate_hz);
+  if (synthesis.sampled) absl::StrAppend(&content.subtitle, " · seed ", result.seed);
   content.weights = synthesis.request.keyframes;
   if (content.weights.empty()) content.weights = {{0, synthesis.request.weights}};
   return RenderPage(content);

@@ -18,6 +18,7 @@ struct Synthesis {
   SynthesisResult result;
   motion::Skeleton skeleton;
   std::filesystem::path leader_file;
+  bool sampled = false;  // the model samples: the follower is one of several
 };
 
 // Whether an output can be written at all, before any work is done for it: a known extension, a

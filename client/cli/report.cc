@@ -55,6 +55,8 @@ std::string DescribeModel(const ModelInfo& model) {
                         model.window_frames);
   absl::StrAppend(&text, "\n  follower  ",
                   model.accepts_follower_start ? "may be given a start" : "chooses its own start");
+  absl::StrAppend(&text, "\n  answers   ",
+                  model.samples ? "vary with --seed and --variety" : "one, whatever the seed");
   if (!model.description.empty()) absl::StrAppend(&text, "\n  about     ", model.description);
   return text + "\n";
 }
@@ -73,6 +75,7 @@ json ModelJson(const ModelInfo& model) {
           {"frame_rate_hz", model.frame_rate_hz},
           {"window_frames", model.window_frames},
           {"accepts_follower_start", model.accepts_follower_start},
+          {"samples", model.samples},
           {"description", model.description}};
 }
 
@@ -100,22 +103,35 @@ std::string ModelsJson(const std::vector<ModelInfo>& models) {
   return Print({{"models", list}});
 }
 
-std::string DescribeSynthesis(const Synthesis& synthesis,
-                              const std::vector<std::filesystem::path>& written,
-                              const std::vector<std::string>& notes) {
-  const SynthesisResult& result = synthesis.result;
-  const motion::Clip& leader = result.pair.leader;
+std::string DescribeRequest(const Synthesis& synthesis, const std::vector<std::string>& notes) {
+  const motion::Clip& leader = synthesis.result.pair.leader;
   std::string text;
   absl::StrAppendFormat(&text, "leader    %s: %s, %.2f s at %g Hz\n",
                         synthesis.leader_file.string(), Plural(leader.frame_count(), "frame"),
                         leader.frame_count() / leader.frame_rate_hz, leader.frame_rate_hz);
   for (const std::string& note : notes) absl::StrAppend(&text, "          ", note, "\n");
   absl::StrAppend(&text, "reaction  ", DescribeWeights(synthesis.request), "\n");
+  return text;
+}
+
+std::string DescribeAnswer(const Synthesis& synthesis,
+                           const std::vector<std::filesystem::path>& written) {
+  const SynthesisResult& result = synthesis.result;
+  std::string text;
   absl::StrAppendFormat(&text, "follower  from %s@%d in %s, first frames after %s (%s, %s)\n",
                         result.model_name, result.model_version, Milliseconds(result.timings.total),
                         Milliseconds(result.timings.first_chunk),
                         Plural(result.window_count, "window"),
                         absl::StrCat(Milliseconds(result.timings.compute), " in the network"));
+  if (synthesis.sampled) {
+    absl::StrAppend(&text, "          seed ", result.seed, ", variety ", result.variety, "\n");
+  }
+  if (result.unfamiliarity) {
+    absl::StrAppendFormat(&text,
+                          "          unfamiliarity %.2f (1: as the farthest tenth of the training "
+                          "leaders)\n",
+                          *result.unfamiliarity);
+  }
   if (result.attempt_count > 1) {
     absl::StrAppend(&text, "          ", Plural(result.attempt_count, "attempt"), "\n");
   }
@@ -125,9 +141,8 @@ std::string DescribeSynthesis(const Synthesis& synthesis,
   return text;
 }
 
-std::string SynthesisJson(const Synthesis& synthesis,
-                          const std::vector<std::filesystem::path>& written,
-                          const std::vector<std::string>& notes) {
+json SynthesisJson(const Synthesis& synthesis, const std::vector<std::filesystem::path>& written,
+                   const std::vector<std::string>& notes) {
   const SynthesisResult& result = synthesis.result;
   const motion::Clip& leader = result.pair.leader;
   json keyframes = json::array();
@@ -136,22 +151,30 @@ std::string SynthesisJson(const Synthesis& synthesis,
   }
   json files = json::array();
   for (const std::filesystem::path& file : written) files.push_back(file.string());
-  return Print({{"model", {{"name", result.model_name}, {"version", result.model_version}}},
-                {"leader", synthesis.leader_file.string()},
-                {"frames", leader.frame_count()},
-                {"frame_rate_hz", leader.frame_rate_hz},
-                {"weights", WeightsJson(synthesis.request.weights)},
-                {"keyframes", keyframes},
-                {"windows", result.window_count},
-                {"attempts", result.attempt_count},
-                {"request_id", result.request_id},
-                {"seconds",
-                 {{"first_chunk", absl::ToDoubleSeconds(result.timings.first_chunk)},
-                  {"total", absl::ToDoubleSeconds(result.timings.total)},
-                  {"queue", absl::ToDoubleSeconds(result.timings.queue)},
-                  {"compute", absl::ToDoubleSeconds(result.timings.compute)}}},
-                {"notes", notes},
-                {"files", files}});
+  json object = {{"model", {{"name", result.model_name}, {"version", result.model_version}}},
+                 {"leader", synthesis.leader_file.string()},
+                 {"frames", leader.frame_count()},
+                 {"frame_rate_hz", leader.frame_rate_hz},
+                 {"weights", WeightsJson(synthesis.request.weights)},
+                 {"keyframes", keyframes},
+                 {"seed", result.seed},
+                 {"variety", result.variety},
+                 {"windows", result.window_count},
+                 {"attempts", result.attempt_count},
+                 {"request_id", result.request_id},
+                 {"seconds",
+                  {{"first_chunk", absl::ToDoubleSeconds(result.timings.first_chunk)},
+                   {"total", absl::ToDoubleSeconds(result.timings.total)},
+                   {"queue", absl::ToDoubleSeconds(result.timings.queue)},
+                   {"compute", absl::ToDoubleSeconds(result.timings.compute)}}},
+                 {"notes", notes},
+                 {"files", files}};
+  if (result.unfamiliarity) object["unfamiliarity"] = *result.unfamiliarity;
+  return object;
+}
+
+std::string SamplesJson(const std::vector<json>& samples) {
+  return Print(samples.size() == 1 ? samples.front() : json{{"samples", samples}});
 }
 
 std::string DescribeFailure(const absl::Status& status, const std::string& server_address) {

@@ -8,6 +8,7 @@
 #include "absl/status/status.h"
 #include "client/cli/output.h"
 #include "client/result.h"
+#include "nlohmann/json_fwd.hpp"
 
 namespace duet::client::cli {
 
@@ -16,12 +17,17 @@ namespace duet::client::cli {
 std::string DescribeModels(const std::vector<ModelInfo>& models);
 std::string ModelsJson(const std::vector<ModelInfo>& models);
 
-std::string DescribeSynthesis(const Synthesis& synthesis,
-                              const std::vector<std::filesystem::path>& written,
-                              const std::vector<std::string>& notes);
-std::string SynthesisJson(const Synthesis& synthesis,
-                          const std::vector<std::filesystem::path>& written,
-                          const std::vector<std::string>& notes);
+// What was asked, the same for every sample; and what came of one of them.
+std::string DescribeRequest(const Synthesis& synthesis, const std::vector<std::string>& notes);
+std::string DescribeAnswer(const Synthesis& synthesis,
+                           const std::vector<std::filesystem::path>& written);
+
+// Both of one sample; and the text for all samples: the one's object, of several
+// {"samples": [object, ...]}.
+nlohmann::json SynthesisJson(const Synthesis& synthesis,
+                             const std::vector<std::filesystem::path>& written,
+                             const std::vector<std::string>& notes);
+std::string SamplesJson(const std::vector<nlohmann::json>& samples);
 
 // Why it failed, one line for every refused field, and what may help.
 std::string DescribeFailure(const absl::Status& status, const std::string& server_address);

@@ -110,6 +110,8 @@ absl::StatusOr<SynthesisRequest> BuildRequest(const SynthesizeArguments& argumen
   request.weights = arguments.weights;
   request.keyframes = arguments.keyframes;
   request.partner_direction = arguments.partner_direction;
+  request.seed = arguments.seed;
+  request.variety = arguments.variety;
   request.priority = arguments.priority;
   request.chunk_frames = arguments.chunk_frames;
   request.request_id = arguments.request_id;

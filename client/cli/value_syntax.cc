@@ -68,6 +68,18 @@ absl::StatusOr<std::pair<std::string, std::string>> ParseJointPair(absl::string_
   return joints;
 }
 
+absl::StatusOr<uint64_t> ParseSeed(absl::string_view text) {
+  uint64_t seed = 0;
+  if (absl::SimpleAtoi(text, &seed)) return seed;
+  return Wanted(text, "a whole number from 0 to 18446744073709551615");
+}
+
+absl::StatusOr<float> ParseVariety(absl::string_view text) {
+  float variety = 0;
+  if (absl::SimpleAtof(text, &variety) && variety >= 0 && variety <= 2) return variety;
+  return Wanted(text, "a number from 0 to 2");
+}
+
 std::optional<motion::Vec3> ParsePoint(absl::string_view text) {
   const std::vector<absl::string_view> parts = absl::StrSplit(text, ',');
   motion::Vec3 point;

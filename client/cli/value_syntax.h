@@ -1,6 +1,7 @@
 #ifndef DUET_CLIENT_CLI_VALUE_SYNTAX_H_
 #define DUET_CLIENT_CLI_VALUE_SYNTAX_H_
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
@@ -27,6 +28,12 @@ absl::StatusOr<ModelChoice> ParseModelChoice(absl::string_view text);
 
 // "left_hand=LeftWrist": a joint of the model, and the file's joint that it is read from
 absl::StatusOr<std::pair<std::string, std::string>> ParseJointPair(absl::string_view text);
+
+// "7": a whole number from 0 to 2^64 - 1
+absl::StatusOr<uint64_t> ParseSeed(absl::string_view text);
+
+// "0.5": a number from 0 to 2
+absl::StatusOr<float> ParseVariety(absl::string_view text);
 
 // "0.5,1.1,-2" in metres; nothing when the text is no list of three numbers (but, say, a file).
 std::optional<motion::Vec3> ParsePoint(absl::string_view text);

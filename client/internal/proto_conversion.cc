@@ -130,6 +130,8 @@ absl::StatusOr<v1::SynthesizeRequest> ToProto(const SynthesisRequest& request) {
     direction->set_y(request.partner_direction->y);
     direction->set_z(request.partner_direction->z);
   }
+  out.set_seed(request.seed);
+  out.set_variety(request.variety);
   out.set_priority(ToProto(request.priority));
   if (request.chunk_frames.has_value()) {
     if (*request.chunk_frames < 1) {
@@ -164,6 +166,7 @@ absl::StatusOr<ModelInfo> FromProto(const v1::Model& model) {
   info.frame_rate_hz = model.frame_rate_hz();
   info.window_frames = static_cast<int>(model.window_frames());
   info.accepts_follower_start = model.accepts_follower_start();
+  info.samples = model.samples();
   info.description = model.description();
   return info;
 }
@@ -177,6 +180,7 @@ RequestLimits FromProto(const v1::RequestLimits& limits) {
   out.max_chunk_frames = static_cast<int>(limits.max_chunk_frames());
   out.max_keyframes = static_cast<int>(limits.max_label_keyframes());
   out.max_abs_weight = limits.max_abs_weight();
+  out.max_variety = limits.max_variety();
   out.max_request_bytes = static_cast<int64_t>(limits.max_request_bytes());
   return out;
 }

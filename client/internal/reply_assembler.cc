@@ -139,6 +139,12 @@ absl::Status ReplyAssembler::AcceptSummary(const v1::SynthesisSummary& summary) 
     return Malformed("summary.chunk_count: ", summary.chunk_count(), ", but ", chunk_count_,
                      " chunks came");
   }
+  // Also true for NaN.
+  if (summary.has_unfamiliarity() &&
+      !(summary.unfamiliarity() >= 0 && std::isfinite(summary.unfamiliarity()))) {
+    return Malformed("summary.unfamiliarity: ", summary.unfamiliarity(),
+                     ", wanted a finite value of 0 or more");
+  }
   summary_ = summary;
   return absl::OkStatus();
 }
@@ -164,6 +170,9 @@ SynthesisResult ReplyAssembler::TakeResult() && {
   result.interaction_classes = {header_->interaction_classes().begin(),
                                 header_->interaction_classes().end()};
   result.request_id = header_->request_id();
+  result.seed = header_->seed();
+  result.variety = header_->variety();
+  if (summary_->has_unfamiliarity()) result.unfamiliarity = summary_->unfamiliarity();
   result.window_count = static_cast<int>(summary_->window_count());
   result.timings.queue = absl::Seconds(summary_->queue_seconds());
   result.timings.compute = absl::Seconds(summary_->compute_seconds());

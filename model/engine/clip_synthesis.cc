@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "model/engine/window_seed.h"
 #include "model/motion/resample.h"
 
 namespace duet::engine {
@@ -14,6 +15,15 @@ namespace {
 // Frames of a spline before and after the one that a time falls in.
 constexpr int kFramesBefore = 1;
 constexpr int kFramesAfter = 2;
+
+bool GoesOnFromSettledFrames(const ModelDescription& model) {
+  return model.samples && model.accepts_follower_start;
+}
+
+int Overlap(const ModelDescription& model) {
+  return GoesOnFromSettledFrames(model) ? SettledOverlap(model.window_frames)
+                                        : CrossFadeOverlap(model.window_frames);
+}
 
 }  // namespace
 
@@ -25,7 +35,7 @@ ClipSynthesis::ClipSynthesis(ModelDescription model, ClipRequest request)
       model_frames_per_frame_(model_.frame_rate_hz / request_.frame_rate_hz),
       plan_(PlanWindows(
           motion::ResampledFrameCount(frame_count_, request_.frame_rate_hz, model_.frame_rate_hz),
-          model_.window_frames)),
+          model_.window_frames, Overlap(model_))),
       kept_(0, model_.skeleton.joint_count()) {}
 
 SynthesisWindow ClipSynthesis::NextWindow() const {
@@ -42,6 +52,8 @@ SynthesisWindow ClipSynthesis::NextWindow() const {
   window.start = NextStart();
   // The characters move: later, where the follower has got to tells the direction.
   if (next_window_ == 0 || !window.start) window.partner_direction = request_.partner_direction;
+  window.sampling = {WindowSeed(request_.sampling.seed, next_window_), request_.sampling.variety};
+  window.settled = NextSettled();
   return window;
 }
 
@@ -51,6 +63,14 @@ std::optional<FollowerStart> ClipSynthesis::NextStart() const {
   const int frame = plan_.starts[static_cast<std::size_t>(next_window_)] - kept_from_;
   const absl::Span<const motion::Vec3> pose = kept_[frame];
   return FollowerStart{kept_.at(frame, model_.skeleton.root), {pose.begin(), pose.end()}};
+}
+
+motion::Poses ClipSynthesis::NextSettled() const {
+  if (next_window_ == 0 || !GoesOnFromSettledFrames(model_)) return {};
+  const int first = plan_.starts[static_cast<std::size_t>(next_window_)] - kept_from_;
+  motion::Poses settled(0, model_.skeleton.joint_count());
+  settled.Append(kept_.frames(first, kept_.frame_count() - first));
+  return settled;
 }
 
 motion::Poses ClipSynthesis::Accept(const motion::Poses& follower) {

@@ -22,14 +22,17 @@ struct ClipRequest {
   std::optional<FollowerStart> start;
   // Horizontal, of any length but 0; see SynthesisWindow.
   std::optional<motion::Vec3> partner_direction;
-  Sampling sampling;
+  Sampling sampling = {};
 };
 
 // Turns a clip of any length into network windows and their results back into one motion.
 //
 // The leader is resampled to the model's rate and cut into overlapping windows no longer than the
-// network was trained for, spread evenly. Overlaps are cross-faded; where the model accepts a
-// follower start, each later window starts from the pose that the one before it reached. Frames at
+// network was trained for, spread evenly. Where the model accepts a follower start, each later
+// window starts from the pose that the one before it reached; a model that samples besides goes on
+// from all frames that the two share (SynthesisWindow::settled), since another draw would be
+// another motion, and each window has a seed of its own (WindowSeed). Overlaps are cross-faded;
+// settled frames change by no more in that than the network's answer differs from them. Frames at
 // the caller's rate are handed out as soon as no later window can change them.
 //
 //   ClipSynthesis clip(description, std::move(request));
@@ -47,6 +50,7 @@ class ClipSynthesis {
 
   int window_count() const { return static_cast<int>(plan_.starts.size()); }
   int frame_count() const { return frame_count_; }
+  const ClipRequest& request() const { return request_; }
 
   bool HasNextWindow() const { return next_window_ < window_count(); }
   // The next window to evaluate. Calling it twice before Accept gives the same window.
@@ -62,6 +66,9 @@ class ClipSynthesis {
   double ToCallerFrame(int model_frame) const { return model_frame / model_frames_per_frame_; }
 
   std::optional<FollowerStart> NextStart() const;
+  // The follower's frames so far from the next window's first one on, where the model goes on from
+  // them.
+  motion::Poses NextSettled() const;
   // Adds the follower of the window at `start` to what is kept.
   void Blend(int start, const motion::Poses& follower);
   motion::Poses TakeFinalFrames();

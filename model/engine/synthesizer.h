@@ -13,6 +13,8 @@
 
 namespace duet::engine {
 
+struct ClipRequest;  // clip_synthesis.h
+
 // Where the follower is at a window's first frame. World metres, y up.
 struct FollowerStart {
   motion::Vec3 root;
@@ -54,6 +56,13 @@ class Synthesizer {
   // item's result does not depend on what else is in the batch (within 1e-5 m).
   virtual std::vector<WindowResult> Synthesize(
       absl::Span<const SynthesisWindow* const> windows) const = 0;
+
+  // How far a request is from what the model was trained on: 0 or more, 1 as far as the farthest
+  // tenth of the training leaders. Absent where the model does not know. Takes time linear in the
+  // clip's length, without running the network.
+  virtual std::optional<double> Unfamiliarity(const ClipRequest& /*request*/) const {
+    return std::nullopt;
+  }
 };
 
 }  // namespace duet::engine

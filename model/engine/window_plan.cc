@@ -4,16 +4,13 @@
 #include <cstdint>
 
 namespace duet::engine {
-namespace {
 
-// Long enough for a cross-fade that nobody sees, short enough to cost only half as much again.
-int MinOverlap(int window) { return std::max(1, window / 3); }
+int CrossFadeOverlap(int window) { return std::max(1, window / 3); }
 
-}  // namespace
+int SettledOverlap(int window) { return std::max(1, (window + 3) / 6); }
 
-WindowPlan PlanWindows(int frames, int longest) {
+WindowPlan PlanWindows(int frames, int longest, int overlap) {
   if (frames <= longest) return {frames, {0}};
-  const int overlap = MinOverlap(longest);
   const int step = longest - overlap;
   const int64_t last_start = frames - longest;
   const int64_t steps = (last_start + step - 1) / step;  // windows after the first

@@ -1,6 +1,8 @@
 #ifndef DUET_SERVER_METRICS_CALL_RECORD_H_
 #define DUET_SERVER_METRICS_CALL_RECORD_H_
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -25,6 +27,8 @@ struct CallRecord {
   std::string model;  // empty until a served model was found: bounded by what is served
   int version = 0;
   std::string_view priority;  // "interactive", "bulk", or empty
+  uint64_t seed = 0;
+  float variety = 0;
 
   absl::Status status;  // what the caller was told
   std::string cause;    // what the caller was not told: the model's own words
@@ -33,7 +37,8 @@ struct CallRecord {
   int chunks = 0;
   int windows = 0;
   int peak_buffered_frames = 0;
-  double first_chunk_seconds = -1;  // negative when no chunk was sent
+  std::optional<double> unfamiliarity;  // of the request to its model, where that knows
+  double first_chunk_seconds = -1;      // negative when no chunk was sent
   double queue_seconds = 0;
   double compute_seconds = 0;
   double total_seconds = 0;

@@ -56,6 +56,8 @@ void JsonLog::CallFinished(const CallRecord& record) {
   }
   if (!record.priority.empty()) {
     fields["priority"] = record.priority;
+    fields["seed"] = record.seed;
+    fields["variety"] = record.variety;
     fields["frames"] = record.frames;
     fields["chunks"] = record.chunks;
     fields["windows"] = record.windows;
@@ -63,6 +65,7 @@ void JsonLog::CallFinished(const CallRecord& record) {
     if (record.first_chunk_seconds >= 0) {
       fields["first_chunk_seconds"] = record.first_chunk_seconds;
     }
+    if (record.unfamiliarity) fields["unfamiliarity"] = *record.unfamiliarity;
     fields["queue_seconds"] = record.queue_seconds;
     fields["compute_seconds"] = record.compute_seconds;
   }

@@ -93,9 +93,17 @@ void ClipStream::OnWindow(const batching::WindowOutcome& outcome) {
   const absl::Status status = Check(outcome.result);
   motion::Poses frames;
   if (status.ok()) frames = clip_.Accept(*outcome.result);
+  if (status.ok()) KeepUnfamiliarity();
   Keep(status, frames, outcome.timings);
   ScheduleIfWanted();
   on_progress_();
+}
+
+void ClipStream::KeepUnfamiliarity() {
+  if (clip_.HasNextWindow()) return;
+  const std::optional<double> unfamiliarity = model_->Unfamiliarity(clip_.request());
+  common::MutexLock lock(mutex_);
+  stats_.unfamiliarity = unfamiliarity;
 }
 
 void ClipStream::Keep(const absl::Status& status, const motion::Poses& frames,

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "absl/status/status.h"
@@ -29,6 +30,8 @@ struct ClipStreamStats {
   double queue_seconds = 0;
   double compute_seconds = 0;
   int peak_buffered_frames = 0;
+  // engine::Synthesizer::Unfamiliarity, once every window was evaluated.
+  std::optional<double> unfamiliarity;
 };
 
 // The next part of a follower's motion.
@@ -81,6 +84,9 @@ class ClipStream : public std::enable_shared_from_this<ClipStream> {
   void ScheduleIfWanted();
   void OnWindow(const batching::WindowOutcome& outcome);
   absl::Status Check(const engine::WindowResult& result) const;
+  // Asks the model when the last window came: on the scheduler's thread, and so late that no frames
+  // but the last wait for it.
+  void KeepUnfamiliarity() DUET_EXCLUDES(mutex_);
   void Keep(const absl::Status& status, const motion::Poses& frames,
             const batching::WindowTimings& timings) DUET_EXCLUDES(mutex_);
 

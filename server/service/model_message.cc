@@ -30,6 +30,7 @@ v1::Model ToMessage(const registry::ServedModel& served) {
   message.set_frame_rate_hz(model.frame_rate_hz);
   message.set_window_frames(static_cast<uint32_t>(model.window_frames));
   message.set_accepts_follower_start(model.accepts_follower_start);
+  message.set_samples(model.samples);
   message.set_description(model.description);
   return message;
 }
@@ -44,6 +45,7 @@ v1::RequestLimits ToMessage(const RequestLimits& limits) {
   message.set_max_label_keyframes(static_cast<uint32_t>(limits.max_label_keyframes));
   message.set_max_abs_weight(limits.max_abs_weight);
   message.set_max_request_bytes(limits.max_request_bytes);
+  message.set_max_variety(limits.max_variety);
   return message;
 }
 

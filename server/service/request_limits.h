@@ -15,6 +15,7 @@ struct RequestLimits {
   int default_chunk_frames = 30;
   int max_label_keyframes = 4096;
   float max_abs_weight = 2;
+  float max_variety = 2;
   // Larger than any room; also keeps float arithmetic on positions meaningful.
   float max_abs_coordinate_metres = 10000;
   // The operator's to choose: ServerOptions has the default.

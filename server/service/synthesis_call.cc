@@ -24,7 +24,7 @@ std::shared_ptr<SynthesisCall> SynthesisCall::Create(Parts parts,
   options.deadline = parts.deadline;
   options.buffered_frames = parts.buffered_frames;
   engine::ClipRequest clip = std::move(parts.request.clip);
-  std::shared_ptr<SynthesisCall> call(new SynthesisCall(std::move(parts), writer));
+  std::shared_ptr<SynthesisCall> call(new SynthesisCall(std::move(parts), clip.sampling, writer));
   // The clip outlives a finished call while its last window runs; it must not keep it.
   call->stream_ = std::make_shared<ClipStream>(call->model_, std::move(clip), options, scheduler,
                                                [weak = std::weak_ptr<SynthesisCall>(call)] {
@@ -34,7 +34,7 @@ std::shared_ptr<SynthesisCall> SynthesisCall::Create(Parts parts,
   return call;
 }
 
-SynthesisCall::SynthesisCall(Parts parts, ReplyWriter& writer)
+SynthesisCall::SynthesisCall(Parts parts, const engine::Sampling& sampling, ReplyWriter& writer)
     : model_(std::move(parts.model)),
       reply_mapping_(std::move(parts.request.reply)),
       chunk_frames_(parts.request.chunk_frames),
@@ -45,6 +45,8 @@ SynthesisCall::SynthesisCall(Parts parts, ReplyWriter& writer)
   record.model = model_->description().name;
   record.version = model_->description().version;
   record.priority = PriorityName(parts.request.priority);
+  record.seed = sampling.seed;
+  record.variety = sampling.variety;
 }
 
 void SynthesisCall::Start() {
@@ -141,7 +143,10 @@ void SynthesisCall::PrepareHeader() {
   header.set_up_axis(reply_mapping_.up_axis);
   header.set_frame_count(static_cast<uint32_t>(stream_->frame_count()));
   for (const std::string& name : model.classes) header.add_interaction_classes(name);
-  header.set_request_id(scope_->record().request_id);
+  const metrics::CallRecord& record = scope_->record();
+  header.set_request_id(record.request_id);
+  header.set_seed(record.seed);
+  header.set_variety(record.variety);
 }
 
 void SynthesisCall::PrepareChunk(const ClipPart& part) {
@@ -163,6 +168,7 @@ void SynthesisCall::PrepareSummary() {
   summary.set_window_count(static_cast<uint32_t>(stats.windows));
   summary.set_queue_seconds(stats.queue_seconds);
   summary.set_compute_seconds(stats.compute_seconds);
+  if (stats.unfamiliarity) summary.set_unfamiliarity(*stats.unfamiliarity);
 }
 
 void SynthesisCall::Finish(const absl::Status& status) {
@@ -179,6 +185,7 @@ void SynthesisCall::Finish(const absl::Status& status) {
   record.queue_seconds = stats.queue_seconds;
   record.compute_seconds = stats.compute_seconds;
   record.peak_buffered_frames = stats.peak_buffered_frames;
+  record.unfamiliarity = stats.unfamiliarity;
   // The place is free before the call is reported, and the call is reported before its caller gets
   // the status: none of them is seen without the one before. Under no lock: observers may be slow.
   slot = AdmissionSlot();

@@ -64,7 +64,7 @@ class SynthesisCall : public std::enable_shared_from_this<SynthesisCall> {
   enum class State { kIdle, kWriting, kFinished };
   enum class Next { kHeader, kFrames, kEnd };
 
-  SynthesisCall(Parts parts, ReplyWriter& writer);
+  SynthesisCall(Parts parts, const engine::Sampling& sampling, ReplyWriter& writer);
 
   void Advance();
   // Prepares the next reply, if any: true when reply_ is to be written. May set end_ instead.

@@ -34,6 +34,7 @@ class Validation {
   std::vector<motion::Vec3> StartPositions(absl::string_view field,
                                            const google::protobuf::RepeatedField<float>& values,
                                            const std::vector<int>& joints);
+  engine::Sampling CallSampling();
   void ReplyJoints();
   int ChunkFrames();
   batching::Priority CallPriority();
@@ -145,6 +146,19 @@ std::optional<motion::Vec3> Validation::PartnerDirection() {
   return std::nullopt;
 }
 
+engine::Sampling Validation::CallSampling() {
+  engine::Sampling sampling;
+  if (request_.has_seed()) sampling.seed = request_.seed();
+  if (request_.has_variety()) sampling.variety = request_.variety();
+  // Also true for NaN.
+  if (!(sampling.variety >= 0 && sampling.variety <= limits_.max_variety)) {
+    violations_.Malformed("variety",
+                          absl::StrCat("is ", sampling.variety, ", wanted a finite value in [0, ",
+                                       limits_.max_variety, "]"));
+  }
+  return sampling;
+}
+
 void Validation::ReplyJoints() {
   const v1::Motion& leader = request_.leader();
   reply_.unit = leader.unit();
@@ -206,13 +220,14 @@ absl::StatusOr<ValidatedRequest> Validation::Run() {
       ValidateLabels(request_, model_, limits_, violations_);
   std::optional<engine::FollowerStart> start = Start();
   const std::optional<motion::Vec3> partner_direction = PartnerDirection();
+  const engine::Sampling sampling = CallSampling();
   ReplyJoints();
   const int chunk_frames = ChunkFrames();
   const batching::Priority priority = CallPriority();
   if (!violations_.empty()) return violations_.ToStatus();
   return ValidatedRequest{
       {std::move(leader_), request_.leader().frame_rate_hz(), engine::LabelTrack(std::move(labels)),
-       std::move(start), partner_direction},
+       std::move(start), partner_direction, sampling},
       std::move(reply_),
       chunk_frames,
       priority};

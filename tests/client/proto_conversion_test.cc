@@ -49,6 +49,8 @@ TEST(SynthesizeRequestTest, WeightsKeepTheirOrder) {
   EXPECT_FALSE(wire->has_follower_start());
   EXPECT_FALSE(wire->has_chunk_frames());
   EXPECT_EQ(wire->priority(), v1::PRIORITY_INTERACTIVE);
+  EXPECT_EQ(wire->seed(), 0u);
+  EXPECT_EQ(wire->variety(), 1);
 }
 
 TEST(SynthesizeRequestTest, KeyframesReplaceTheLabelVector) {
@@ -67,6 +69,8 @@ TEST(SynthesizeRequestTest, OptionalFieldsAreCarried) {
   SynthesisRequest request = GoodRequest();
   request.follower_start = motion::Vec3{1, 2, 3};
   request.partner_direction = motion::Vec3{-1, 0.25f, 0.5f};
+  request.seed = 18446744073709551615u;
+  request.variety = 0.25f;
   request.chunk_frames = 8;
   request.priority = Priority::kBulk;
   request.model = {"dancer", 3, ""};
@@ -76,6 +80,8 @@ TEST(SynthesizeRequestTest, OptionalFieldsAreCarried) {
   EXPECT_EQ(wire->partner_direction().x(), -1);
   EXPECT_EQ(wire->partner_direction().y(), 0.25f);
   EXPECT_EQ(wire->partner_direction().z(), 0.5f);
+  EXPECT_EQ(wire->seed(), 18446744073709551615u);
+  EXPECT_EQ(wire->variety(), 0.25f);
   EXPECT_EQ(wire->chunk_frames(), 8u);
   EXPECT_EQ(wire->priority(), v1::PRIORITY_BULK);
   EXPECT_EQ(wire->model().name(), "dancer");
@@ -124,6 +130,7 @@ TEST(SynthesizeRequestTest, ValuesThatOnlyTheServerJudgesPassThrough) {
   request.leader.poses.all()[0].x = std::numeric_limits<float>::quiet_NaN();
   request.leader.frame_rate_hz = -1;
   request.weights = {{"kick", 1000}, {"kick", 2}};
+  request.variety = -1;
   EXPECT_THAT(ToProto(request), IsOk());
 }
 
@@ -142,6 +149,7 @@ v1::Model GoodModel() {
   model.set_frame_rate_hz(15);
   model.set_window_frames(46);
   model.set_accepts_follower_start(true);
+  model.set_samples(true);
   model.set_description("A model.");
   return model;
 }
@@ -160,6 +168,7 @@ TEST(ModelTest, EveryFieldIsRead) {
   EXPECT_EQ(info->frame_rate_hz, 15);
   EXPECT_EQ(info->window_frames, 46);
   EXPECT_TRUE(info->accepts_follower_start);
+  EXPECT_TRUE(info->samples);
   EXPECT_EQ(info->description, "A model.");
 }
 
@@ -179,6 +188,7 @@ TEST(RequestLimitsTest, EveryFieldIsRead) {
   wire.set_max_chunk_frames(240);
   wire.set_max_label_keyframes(100);
   wire.set_max_abs_weight(2);
+  wire.set_max_variety(1.5F);
   wire.set_max_request_bytes(16 << 20);
   const RequestLimits limits = FromProto(wire);
   EXPECT_EQ(limits.min_frame_rate_hz, 1);
@@ -188,6 +198,7 @@ TEST(RequestLimitsTest, EveryFieldIsRead) {
   EXPECT_EQ(limits.max_chunk_frames, 240);
   EXPECT_EQ(limits.max_keyframes, 100);
   EXPECT_EQ(limits.max_abs_weight, 2);
+  EXPECT_EQ(limits.max_variety, 1.5F);
   EXPECT_EQ(limits.max_request_bytes, 16 << 20);
 }
 

@@ -73,9 +73,18 @@ TEST_F(ReplyAssemblerTest, GathersAGoodReply) {
   EXPECT_EQ(result.model_version, 1);
   EXPECT_THAT(result.interaction_classes, ElementsAre("kick", "hug"));
   EXPECT_EQ(result.request_id, "request-1");
+  EXPECT_EQ(result.seed, 18446744073709551615u);
+  EXPECT_EQ(result.variety, 0.5F);
+  EXPECT_FALSE(result.unfamiliarity.has_value());
   EXPECT_EQ(result.window_count, 2);
   EXPECT_EQ(result.timings.queue, absl::Milliseconds(250));
   EXPECT_EQ(result.timings.compute, absl::Milliseconds(500));
+}
+
+TEST_F(ReplyAssemblerTest, ReadsHowUnfamiliarTheRequestIs) {
+  ASSERT_THAT(FeedSpoilt([](Reply* r) { r->back().mutable_summary()->set_unfamiliarity(1.25); }),
+              IsOk());
+  EXPECT_EQ(std::move(assembler_).TakeResult().unfamiliarity, 1.25);
 }
 
 TEST_F(ReplyAssemblerTest, EveryBreachOfTheContractIsNamed) {
@@ -113,6 +122,16 @@ TEST_F(ReplyAssemblerTest, EveryBreachOfTheContractIsNamed) {
       {"summary.frame_count: 4", [](Reply* r) { r->back().mutable_summary()->set_frame_count(4); }},
       {"summary.chunk_count: 2, but 3 chunks came",
        [](Reply* r) { r->back().mutable_summary()->set_chunk_count(2); }},
+      {"summary.unfamiliarity: -1, wanted a finite value of 0 or more",
+       [](Reply* r) { r->back().mutable_summary()->set_unfamiliarity(-1); }},
+      {"summary.unfamiliarity: nan",
+       [](Reply* r) {
+         r->back().mutable_summary()->set_unfamiliarity(std::numeric_limits<double>::quiet_NaN());
+       }},
+      {"summary.unfamiliarity: inf",
+       [](Reply* r) {
+         r->back().mutable_summary()->set_unfamiliarity(std::numeric_limits<double>::infinity());
+       }},
       {"a message after the summary", [](Reply* r) { r->push_back(r->back()); }},
       {"a message without a payload", [](Reply* r) { (*r)[1].clear_payload(); }},
   };

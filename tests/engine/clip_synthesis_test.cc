@@ -6,6 +6,7 @@
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "model/engine/window_seed.h"
 #include "model/motion/resample.h"
 #include "tests/support/fake_synthesizer.h"
 #include "tests/support/sample_motion.h"
@@ -15,7 +16,9 @@ namespace {
 
 using test::FakeAnswer;
 using test::FakeDescription;
+using test::FakeDraw;
 using test::FakeSynthesizer;
+using test::SamplingDescription;
 using test::SwayingMotion;
 
 constexpr int kJoints = 15;
@@ -217,7 +220,7 @@ TEST(ClipSynthesis, LaterWindowsStartWhereTheEarlierOnesGot) {
   const FakeSynthesizer fake;
   const ClipRequest request = Request(200, 15);
   const Outcome run = RunAll(fake, request);
-  const std::vector<int> starts = PlanWindows(200, 46).starts;
+  const std::vector<int> starts = PlanWindows(200, 46, CrossFadeOverlap(46)).starts;
   ASSERT_EQ(run.windows.size(), starts.size());
   EXPECT_FALSE(run.windows[0].start.has_value());
   for (std::size_t k = 1; k < starts.size(); ++k) {
@@ -321,6 +324,67 @@ TEST(ClipSynthesis, WorksWithTheShortestWindows) {
       const ClipRequest request = Request(frames, 30);
       ExpectNear(RunAll(fake, request).follower, UnwindowedAnswer(request, 15), 1e-5f);
     }
+  }
+}
+
+TEST(ClipSynthesis, EveryWindowHasASeedOfItsOwnAndTheRequestsVariety) {
+  ClipRequest request = Request(200, 15);
+  request.sampling = {41, 0.25f};
+  const Outcome run = RunAll(FakeSynthesizer(SamplingDescription()), request);
+  ASSERT_EQ(run.windows.size(), 6u);  // 192 frames beyond the first 8, 38 a window
+  for (std::size_t k = 0; k < run.windows.size(); ++k) {
+    EXPECT_EQ(run.windows[k].sampling.seed, WindowSeed(41, static_cast<int>(k))) << k;
+    EXPECT_EQ(run.windows[k].sampling.variety, 0.25f) << k;
+  }
+}
+
+TEST(ClipSynthesis, AModelThatSamplesGoesOnFromSettledFrames) {
+  ClipRequest request = Request(300, 15);
+  request.sampling = {41, 1};
+  const Outcome run = RunAll(FakeSynthesizer(SamplingDescription()), request);
+  const std::vector<int> starts = PlanWindows(300, 46, SettledOverlap(46)).starts;
+  ASSERT_EQ(run.windows.size(), starts.size());
+  EXPECT_TRUE(run.windows[0].settled.empty());
+  for (std::size_t k = 1; k < starts.size(); ++k) {
+    const SynthesisWindow& window = run.windows[k];
+    ASSERT_EQ(window.settled.frame_count(), starts[k - 1] + 46 - starts[k]) << k;
+    ASSERT_GE(window.settled.frame_count(), 8);
+    EXPECT_EQ(window.settled[0], absl::Span<const motion::Vec3>(window.start->pose)) << k;
+    for (int t = 0; t < window.settled.frame_count(); ++t) {
+      // What the windows before this one made of the frame is what the caller got.
+      ASSERT_LT(Distance(window.settled.at(t, 3), run.follower.at(starts[k] + t, 3)), 1e-5f)
+          << "window " << k << ", frame " << t;
+    }
+  }
+}
+
+TEST(ClipSynthesis, SettledFramesStayAsTheWindowBeforeMadeThem) {
+  // The fake draws another place for each window, and answers settled frames as they are: nothing
+  // is averaged.
+  ClipRequest request = Request(100, 15);
+  request.sampling = {41, 1};
+  const Outcome run = RunAll(FakeSynthesizer(SamplingDescription()), request);
+  const std::vector<int> starts = PlanWindows(100, 46, SettledOverlap(46)).starts;
+  for (int t = 0; t < 100; ++t) {
+    int window = 0;
+    while (t >= starts[static_cast<std::size_t>(window)] + 46) ++window;
+    const motion::Vec3 wanted =
+        FakeAnswer(request.leader.at(t, 0), {}) + FakeDraw({WindowSeed(41, window), 1});
+    EXPECT_LT(Distance(run.follower.at(t, 0), wanted), 1e-5f) << t;
+  }
+}
+
+TEST(ClipSynthesis, AModelThatTakesNoStartGoesOnFromNothing) {
+  ModelDescription description = SamplingDescription();
+  description.accepts_follower_start = false;
+  const Outcome run = RunAll(FakeSynthesizer(description), Request(200, 15));
+  EXPECT_EQ(run.windows.size(), PlanWindows(200, 46, CrossFadeOverlap(46)).starts.size());
+  for (const SynthesisWindow& window : run.windows) EXPECT_TRUE(window.settled.empty());
+}
+
+TEST(ClipSynthesis, AModelThatDoesNotSampleHasNothingSettled) {
+  for (const SynthesisWindow& window : RunAll(FakeSynthesizer(), Request(200, 15)).windows) {
+    EXPECT_TRUE(window.settled.empty());
   }
 }
 

@@ -1,5 +1,6 @@
 #include "model/engine/network_synthesizer.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -7,6 +8,7 @@
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "model/engine/window_standardisation.h"
 #include "model/motion/limb_lengths.h"
 #include "tests/support/fake_synthesizer.h"
 #include "tests/support/sample_motion.h"
@@ -98,6 +100,51 @@ TEST(NetworkSynthesizer, TheNetworkSeesTheStandardFrame) {
     ASSERT_EQ(seen.start->pose.size(), 15u);
     EXPECT_EQ(seen.start->pose[5], frame.Apply(window.start->pose[5]));
   }
+}
+
+TEST(NetworkSynthesizer, TheNetworkSeesSamplingAndSettledFrames) {
+  SynthesisWindow window = Window();
+  window.sampling = {41, 0.25f};
+  window.settled = SwayingMotion(4, 15);
+  window.start = FollowerStart{window.settled.at(0, 2), SwayingPose(0)};
+  for (const auto origin :
+       {motion::StandardOrigin::kEveryFrame, motion::StandardOrigin::kFirstFrame}) {
+    NetworkInput seen;
+    const auto model = Model(
+        [&](Inputs inputs) {
+          seen = inputs[0];
+          return LargerAndHigher(inputs);
+        },
+        {}, FakeDescription(), origin);
+    ASSERT_THAT(RunOne(*model, window), IsOk());
+    EXPECT_EQ(seen.sampling.seed, 41u);
+    EXPECT_EQ(seen.sampling.variety, 0.25f);
+    const motion::Standardisation frame =
+        WindowStandardisation(motion::SbuSkeleton(), window, origin);
+    EXPECT_EQ(seen.settled, frame.Apply(window.settled));
+  }
+}
+
+TEST(NetworkSynthesizer, SettledFramesThatTheNetworkAnswersStay) {
+  // The follower has other limbs than the leader, of constant lengths, and another floor.
+  SynthesisWindow window = Window();
+  window.settled = SwayingMotion(4, 15);
+  for (motion::Vec3& p : window.settled.all()) p = p * 1.25f + motion::Vec3{0.5f, 0.25f, -1};
+  SetBoneLengths(motion::SbuSkeleton(), MedianBoneLengths(motion::SbuSkeleton(), window.settled),
+                 &window.settled);
+  window.start =
+      FollowerStart{window.settled.at(0, 2), {window.settled[0].begin(), window.settled[0].end()}};
+  const auto model = Model([](Inputs inputs) {
+    Answer followers = LargerAndHigher(inputs);
+    const absl::Span<const motion::Vec3> settled = inputs[0].settled.all();
+    std::copy(settled.begin(), settled.end(), followers->front().all().begin());
+    return followers;
+  });
+  const WindowResult result = RunOne(*model, window);
+  ASSERT_THAT(result, IsOk());
+  motion::Poses first(0, 15);
+  first.Append(result->frames(0, 4));
+  EXPECT_LT(LargestDistance(first, window.settled), 1e-5f);
 }
 
 TEST(NetworkSynthesizer, BringsTheAnswerBackToTheWorld) {

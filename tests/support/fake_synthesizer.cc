@@ -1,5 +1,6 @@
 #include "tests/support/fake_synthesizer.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <utility>
 
@@ -16,6 +17,17 @@ engine::ModelDescription FakeDescription() {
   description.window_frames = 46;
   description.accepts_follower_start = true;
   return description;
+}
+
+engine::ModelDescription SamplingDescription() {
+  engine::ModelDescription description = FakeDescription();
+  description.name = "fake_sampler";
+  description.samples = true;
+  return description;
+}
+
+motion::Vec3 FakeDraw(const engine::Sampling& sampling) {
+  return {sampling.variety * static_cast<float>(sampling.seed % 997) / 997, 0, 0};
 }
 
 motion::Vec3 FakeAnswer(motion::Vec3 leader, absl::Span<const float> labels) {
@@ -46,7 +58,18 @@ engine::WindowResult FakeSynthesizer::Answer(const engine::SynthesisWindow& wind
         window.labels.data() + static_cast<std::size_t>(t) * classes, classes);
     for (motion::Vec3& position : follower[t]) position = answer(position, labels);
   }
+  if (description_.samples) Draw(window, &follower);
   return follower;
+}
+
+void FakeSynthesizer::Draw(const engine::SynthesisWindow& window, motion::Poses* follower) {
+  for (motion::Vec3& position : follower->all()) position += FakeDraw(window.sampling);
+  std::copy(window.settled.all().begin(), window.settled.all().end(), follower->all().begin());
+}
+
+std::optional<double> FakeSynthesizer::Unfamiliarity(const engine::ClipRequest& request) const {
+  if (!unfamiliarity) return std::nullopt;
+  return unfamiliarity(request);
 }
 
 }  // namespace duet::test

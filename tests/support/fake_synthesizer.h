@@ -2,6 +2,7 @@
 #define DUET_TESTS_SUPPORT_FAKE_SYNTHESIZER_H_
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "absl/status/status.h"
@@ -20,7 +21,15 @@ engine::ModelDescription FakeDescription();
 // label weights in y. A test can compute what must come out, in any unit and at any length.
 motion::Vec3 FakeAnswer(motion::Vec3 leader, absl::Span<const float> labels);
 
-// A Synthesizer whose answer is known: the follower of a frame depends on that frame alone.
+// FakeDescription of a model that samples, "fake_sampler".
+engine::ModelDescription SamplingDescription();
+
+// Where a FakeSynthesizer whose description says that it samples moves the answer to: variety times
+// a length below 1 m in x that the seed tells. It goes on from settled frames by answering them.
+motion::Vec3 FakeDraw(const engine::Sampling& sampling);
+
+// A Synthesizer whose answer is known: the follower of a frame depends on that frame alone, and on
+// the window's sampling and settled frames where it samples.
 //
 //   FakeSynthesizer fake;
 //   fake.on_batch = [&](auto windows) { sizes.push_back(windows.size()); };
@@ -34,15 +43,20 @@ class FakeSynthesizer : public engine::Synthesizer {
   std::vector<engine::WindowResult> Synthesize(
       absl::Span<const engine::SynthesisWindow* const> windows) const override;
 
+  std::optional<double> Unfamiliarity(const engine::ClipRequest& request) const override;
+
   // The follower's position for a leader's, and the frame's label vector.
   std::function<motion::Vec3(motion::Vec3, absl::Span<const float>)> answer = FakeAnswer;
   // Called at the start of every Synthesize: to record, or to block until the test says so.
   std::function<void(absl::Span<const engine::SynthesisWindow* const>)> on_batch;
   // A window for which this returns an error fails alone, with it.
   std::function<absl::Status(const engine::SynthesisWindow&)> window_status;
+  // How far a request is from the training data; unknown unless told.
+  std::function<double(const engine::ClipRequest&)> unfamiliarity;
 
  private:
   engine::WindowResult Answer(const engine::SynthesisWindow& window) const;
+  static void Draw(const engine::SynthesisWindow& window, motion::Poses* follower);
 
   engine::ModelDescription description_;
 };

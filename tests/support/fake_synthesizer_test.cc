@@ -42,6 +42,18 @@ TEST(FakeSynthesizer, FailsOneWindowAlone) {
   EXPECT_THAT(results[1], StatusIs(absl::StatusCode::kInternal, HasSubstr("three frames")));
 }
 
+TEST(FakeSynthesizer, DrawsBySeedAndVarietyAfterSettledFramesWhereItSamples) {
+  engine::SynthesisWindow window = Window(3);
+  window.sampling = {5, 0.5f};
+  window.settled = SwayingMotion(1, 15);
+  const motion::Vec3 answer = FakeAnswer(window.leader.at(2, 0), std::vector<float>(6));
+  EXPECT_EQ(FakeSynthesizer().Synthesize({&window}).front()->at(2, 0), answer);
+  const engine::WindowResult drawn =
+      FakeSynthesizer(SamplingDescription()).Synthesize({&window}).front();
+  EXPECT_EQ(drawn->at(0, 0), window.settled.at(0, 0));
+  EXPECT_EQ(drawn->at(2, 0), answer + (motion::Vec3{0.5f * 5 / 997, 0, 0}));
+}
+
 TEST(FakeSynthesizer, ReportsEveryBatch) {
   FakeSynthesizer fake;
   std::vector<std::size_t> sizes;

@@ -71,7 +71,8 @@ TEST_F(ArgumentsTest, HelpShowsDefaults) {
   const std::string help = ParseCommandLine({"synthesize", "--help"}).text;
   for (const char* shown :
        {"--server HOST:PORT=localhost:50051", "--timeout SECONDS=120",
-        "--leader-side left|right=left", "--priority bulk|interactive=interactive", "else left)"}) {
+        "--leader-side left|right=left", "--priority bulk|interactive=interactive", "else left)",
+        "--seed SEED=0", "--variety VARIETY=1", "--samples COUNT=1"}) {
     EXPECT_THAT(help, HasSubstr(shown));
   }
 }
@@ -92,6 +93,9 @@ TEST_F(ArgumentsTest, SynthesizeHasDefaults) {
   EXPECT_EQ(arguments.weights[0].interaction_class, "kick");
   EXPECT_EQ(arguments.model.name, "");
   EXPECT_EQ(arguments.priority, Priority::kInteractive);
+  EXPECT_EQ(arguments.seed, 0u);
+  EXPECT_EQ(arguments.variety, 1);
+  EXPECT_EQ(arguments.samples, 1);
   EXPECT_EQ(arguments.input.frame_rate_hz, std::nullopt);
   EXPECT_EQ(arguments.input.unit, std::nullopt);
   EXPECT_THAT(arguments.outputs, ElementsAre(Out("pair.html")));
@@ -120,6 +124,12 @@ TEST_F(ArgumentsTest, EveryFlagIsRead) {
                                               "-0.5,1,2",
                                               "--follower-start-side",
                                               "right",
+                                              "--seed",
+                                              "18446744073709551610",
+                                              "--variety",
+                                              "0.25",
+                                              "--samples",
+                                              "6",
                                               "--priority",
                                               "bulk",
                                               "--chunk-frames",
@@ -147,6 +157,9 @@ TEST_F(ArgumentsTest, EveryFlagIsRead) {
   EXPECT_EQ(arguments.model.version, 2);
   EXPECT_EQ(arguments.follower_start, "-0.5,1,2");
   EXPECT_EQ(arguments.follower_start_side, formats::Side::kRight);
+  EXPECT_EQ(arguments.seed, 18446744073709551610u);
+  EXPECT_EQ(arguments.variety, 0.25f);
+  EXPECT_EQ(arguments.samples, 6);
   EXPECT_EQ(arguments.priority, Priority::kBulk);
   EXPECT_EQ(arguments.chunk_frames, 8);
   EXPECT_EQ(arguments.request_id, "job-7");
@@ -185,6 +198,13 @@ TEST_F(ArgumentsTest, WhatMakesNoSenseIsNamed) {
   ExpectRefused({"--label", "kick=1", "--timeout", "0"}, "--timeout");
   ExpectRefused({"--label", "kick=1", "--tls-key", "key.pem"}, "--tls-key");
   ExpectRefused({"--label", "kick=1", "--model", "sbu@x"}, "--model: \"sbu@x\"");
+  ExpectRefused({"--label", "kick=1", "--seed", "-1"}, "--seed: \"-1\", wanted a whole number");
+  ExpectRefused({"--label", "kick=1", "--variety", "3"},
+                "--variety: \"3\", wanted a number from 0");
+  ExpectRefused({"--label", "kick=1", "--samples", "0"}, "--samples");
+  ExpectRefused({"--label", "kick=1", "--seed", "18446744073709551610", "--samples", "7"},
+                "--samples: 7 from --seed 18446744073709551610 on pass the largest seed, wanted at "
+                "most 6");
   ExpectRefused({"--label", "kick=1", "--tls-cert", "a.pem"}, "--tls-key");
 }
 
@@ -195,6 +215,29 @@ TEST_F(ArgumentsTest, OutputsThatCannotBeWrittenAreRefusedBeforeAnyWork) {
   const std::string leader = Out("leader.csv");
   WriteTestFile(leader, "");
   ExpectUsageError({"synthesize", "--leader", leader, "--label", "kick=1", "--out", leader},
+                   "would replace the leader's own file");
+}
+
+TEST_F(ArgumentsTest, EachOfSeveralSamplesHasFilesNamedAfterItsSeed) {
+  const SynthesizeArguments one = Good({"--seed", "7", "--out", Out("pair.bvh")});
+  EXPECT_THAT(SampleOutputs(one, 0), ElementsAre(Out("pair.html"), Out("pair.bvh")));
+  const SynthesizeArguments two =
+      Good({"--seed", "7", "--samples", "2", "--out", Out("pair.x.bvh")});
+  EXPECT_EQ(SeedOf(two, 1), 8u);
+  EXPECT_THAT(SampleOutputs(two, 0), ElementsAre(Out("pair.seed7.html"), Out("pair.x.seed7.bvh")));
+  EXPECT_THAT(SampleOutputs(two, 1), ElementsAre(Out("pair.seed8.html"), Out("pair.x.seed8.bvh")));
+}
+
+TEST_F(ArgumentsTest, AnOutputWithoutAnExtensionIsRefusedUnderItsOwnName) {
+  ExpectRefused({"--label", "kick=1", "--out", Out("pair"), "--samples", "2"},
+                "pair: extension: came \"\", wanted .html");
+}
+
+TEST_F(ArgumentsTest, NoSampleReplacesTheLeader) {
+  const std::string leader = Out("pair.seed8.csv");
+  WriteTestFile(leader, "");
+  ExpectUsageError({"synthesize", "--leader", leader, "--label", "kick=1", "--out", Out("pair.csv"),
+                    "--seed", "7", "--samples", "2"},
                    "would replace the leader's own file");
 }
 

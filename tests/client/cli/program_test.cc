@@ -65,6 +65,8 @@ absl::StatusOr<SynthesisResult> Follow(const SynthesisRequest& request) {
   result.window_count = 1;
   result.attempt_count = 1;
   result.request_id = "request-1";
+  result.seed = request.seed;
+  result.variety = request.variety;
   result.timings.first_chunk = absl::Milliseconds(12);
   result.timings.total = absl::Milliseconds(34);
   return result;
@@ -124,10 +126,21 @@ TEST_F(ProgramTest, ListsModelsForPeople) {
             "  joints    15, root torso\n"
             "  works at  15 Hz in windows of 46 frames\n"
             "  follower  chooses its own start\n"
+            "  answers   one, whatever the seed\n"
             "  about     A test's model.\n");
   EXPECT_EQ(options_.server_address, "duet:1");
   EXPECT_EQ(options_.deadline, absl::Seconds(3));
   EXPECT_FALSE(options_.tls.has_value());
+}
+
+TEST_F(ProgramTest, ListsWhichModelsSample) {
+  ModelInfo sampler = SbuModel().model;
+  sampler.samples = true;
+  EXPECT_CALL(*connection_, ListModels).WillRepeatedly(Return(std::vector{sampler}));
+  EXPECT_EQ(Run({"models"}), 0);
+  EXPECT_THAT(out_.str(), HasSubstr("  answers   vary with --seed and --variety\n"));
+  EXPECT_EQ(Run({"models", "--json"}), 0);
+  EXPECT_EQ(nlohmann::json::parse(out_.str())["models"][0]["samples"], true);
 }
 
 TEST_F(ProgramTest, ListsModelsForPrograms) {
@@ -173,10 +186,26 @@ TEST_F(ProgramTest, SendsWhatTheFlagsSay) {
         sent = request;
         return Follow(request);
       });
-  ASSERT_EQ(Synthesize("pair.html", {"--label", "hug=-0.5", "--model", "sbu:stable", "--priority",
-                                     "bulk", "--follower-start", "1,1.1,-2", "--chunk-frames", "8",
-                                     "--partner-direction", "1,0,-1", "--request-id", "job-7",
-                                     "--frame-rate", "30"}),
+  ASSERT_EQ(Synthesize("pair.html", {"--label",
+                                     "hug=-0.5",
+                                     "--model",
+                                     "sbu:stable",
+                                     "--priority",
+                                     "bulk",
+                                     "--follower-start",
+                                     "1,1.1,-2",
+                                     "--chunk-frames",
+                                     "8",
+                                     "--partner-direction",
+                                     "1,0,-1",
+                                     "--request-id",
+                                     "job-7",
+                                     "--frame-rate",
+                                     "30",
+                                     "--seed",
+                                     "7",
+                                     "--variety",
+                                     "0.25"}),
             0)
       << err_.str();
   ASSERT_EQ(sent.weights.size(), 2u);
@@ -187,6 +216,8 @@ TEST_F(ProgramTest, SendsWhatTheFlagsSay) {
   ASSERT_TRUE(sent.follower_start.has_value());
   EXPECT_EQ(std::get<motion::Vec3>(*sent.follower_start), (motion::Vec3{1, 1.1f, -2}));
   EXPECT_EQ(sent.partner_direction, (motion::Vec3{1, 0, -1}));
+  EXPECT_EQ(sent.seed, 7u);
+  EXPECT_EQ(sent.variety, 0.25f);
   EXPECT_EQ(sent.chunk_frames, 8);
   EXPECT_EQ(sent.request_id, "job-7");
   EXPECT_EQ(sent.leader.frame_rate_hz, 30);
@@ -232,8 +263,83 @@ TEST_F(ProgramTest, SummaryForPrograms) {
   EXPECT_EQ(json["frames"], kFrames);
   EXPECT_EQ(json["model"]["name"], "sbu");
   EXPECT_EQ(json["weights"]["kick"], 1);
+  EXPECT_EQ(json["seed"], 0);
+  EXPECT_EQ(json["variety"], 1);
   EXPECT_EQ(json["seconds"]["total"], 0.034);
   EXPECT_EQ(json["files"], std::vector<std::string>{Path("pair.html")});
+}
+
+TEST_F(ProgramTest, SeveralSamplesAreSeveralCallsWithFilesOfTheirOwn) {
+  std::vector<uint64_t> seeds;
+  EXPECT_CALL(*connection_, Synthesize)
+      .Times(3)
+      .WillRepeatedly([&](const SynthesisRequest& request, const ChunkCallback&) {
+        seeds.push_back(request.seed);
+        absl::StatusOr<SynthesisResult> result = Follow(request);
+        for (motion::Vec3& p : result->pair.follower.poses.all()) {
+          p.x += static_cast<float>(request.seed);
+        }
+        return result;
+      });
+  ASSERT_EQ(Synthesize("pair.csv", {"--seed", "7", "--samples", "3", "--out", Path("pair.bvh")}), 0)
+      << err_.str();
+  EXPECT_THAT(seeds, ::testing::ElementsAre(7, 8, 9));
+  EXPECT_FALSE(Exists("pair.csv"));
+  formats::ReadOptions options;
+  options.side = formats::Side::kRight;
+  for (int seed : {7, 8, 9}) {
+    const std::string stem = "pair.seed" + std::to_string(seed);
+    EXPECT_TRUE(Exists(stem + ".leader.bvh"));
+    EXPECT_TRUE(Exists(stem + ".follower.bvh"));
+    EXPECT_THAT(out_.str(), HasSubstr(Path(stem + ".csv")));
+    const absl::StatusOr<motion::Clip> follower = ReadLeader(folder_ / (stem + ".csv"), options);
+    ASSERT_THAT(follower, IsOk());
+    EXPECT_NEAR(follower->at(3, 0).x, leader_.at(3, 0).x + static_cast<float>(seed), 1e-4);
+  }
+}
+
+TEST_F(ProgramTest, SeveralSamplesAreAListForPrograms) {
+  ASSERT_EQ(Synthesize("pair.csv", {"--samples", "2", "--json"}), 0) << err_.str();
+  const nlohmann::json json = nlohmann::json::parse(out_.str());
+  ASSERT_EQ(json["samples"].size(), 2u);
+  EXPECT_EQ(json["samples"][1]["seed"], 1);
+  EXPECT_EQ(json["samples"][1]["files"], std::vector<std::string>{Path("pair.seed1.csv")});
+}
+
+TEST_F(ProgramTest, AFailedSampleEndsTheCommandAndKeepsThoseBefore) {
+  EXPECT_CALL(*connection_, Synthesize)
+      .WillOnce(
+          [](const SynthesisRequest& request, const ChunkCallback&) { return Follow(request); })
+      .WillOnce(Return(absl::UnavailableError("away")));
+  EXPECT_EQ(Synthesize("pair.csv", {"--samples", "3"}), 1);
+  EXPECT_TRUE(Exists("pair.seed0.csv"));
+  EXPECT_FALSE(Exists("pair.seed1.csv"));
+}
+
+TEST_F(ProgramTest, SaysSeedAndVarietyOfAModelThatSamples) {
+  ASSERT_EQ(Synthesize("pair.html", {"--seed", "7"}), 0);
+  EXPECT_THAT(out_.str(), Not(HasSubstr("seed")));
+  ModelDetails details = SbuModel();
+  details.model.samples = true;
+  EXPECT_CALL(*connection_, GetModel).WillOnce(Return(details));
+  ASSERT_EQ(Synthesize("pair.html", {"--seed", "7", "--variety", "0.5"}), 0);
+  EXPECT_THAT(out_.str(), HasSubstr("          seed 7, variety 0.5\n"));
+  EXPECT_THAT(ReadTestFile(folder_ / "pair.html"), HasSubstr("seed 7"));
+}
+
+TEST_F(ProgramTest, SaysHowUnfamiliarTheRequestIsWhereTheServerKnows) {
+  ASSERT_EQ(Synthesize("pair.csv", {"--json"}), 0);
+  EXPECT_FALSE(nlohmann::json::parse(out_.str()).contains("unfamiliarity"));
+  EXPECT_CALL(*connection_, Synthesize)
+      .WillRepeatedly([](const SynthesisRequest& request, const ChunkCallback&) {
+        absl::StatusOr<SynthesisResult> result = Follow(request);
+        result->unfamiliarity = 1.25;
+        return result;
+      });
+  ASSERT_EQ(Synthesize("pair.csv", {"--json"}), 0);
+  EXPECT_EQ(nlohmann::json::parse(out_.str())["unfamiliarity"], 1.25);
+  ASSERT_EQ(Synthesize("pair.csv"), 0);
+  EXPECT_THAT(out_.str(), HasSubstr("          unfamiliarity 1.25 (1: as the farthest tenth"));
 }
 
 TEST_F(ProgramTest, QuietPrintsNothing) {

@@ -83,6 +83,23 @@ TEST(ParseJointPairTest, RefusesEverythingElse) {
   }
 }
 
+TEST(ParseSeedTest, ReadsEverySeedAndNothingElse) {
+  EXPECT_EQ(*ParseSeed("0"), 0u);
+  EXPECT_EQ(*ParseSeed("18446744073709551615"), 18446744073709551615u);
+  for (const char* text : {"", "-1", "1.5", "18446744073709551616", "random"}) {
+    EXPECT_THAT(ParseSeed(text), StatusIs(kInvalid, HasSubstr("wanted a whole number from 0 to")));
+  }
+}
+
+TEST(ParseVarietyTest, ReadsZeroToTwoAndNothingElse) {
+  EXPECT_EQ(*ParseVariety("0"), 0);
+  EXPECT_EQ(*ParseVariety("0.75"), 0.75f);
+  EXPECT_EQ(*ParseVariety("2"), 2);
+  for (const char* text : {"", "-0.1", "2.1", "nan", "inf", "much"}) {
+    EXPECT_THAT(ParseVariety(text), StatusIs(kInvalid, HasSubstr("wanted a number from 0 to 2")));
+  }
+}
+
 TEST(ParsePointTest, ReadsThreeNumbersAndNothingElse) {
   EXPECT_EQ(ParsePoint("0.5,1,-2"), (motion::Vec3{0.5f, 1, -2}));
   for (const char* text : {"", "1,2", "1,2,3,4", "a,b,c", "start.bvh"}) {

@@ -112,6 +112,8 @@ v1::SynthesizeResponse HeaderFor(const motion::Clip& leader, uint32_t version) {
   header->add_interaction_classes("kick");
   header->add_interaction_classes("hug");
   header->set_request_id("request-1");
+  header->set_seed(18446744073709551615u);
+  header->set_variety(0.5F);
   return response;
 }
 

@@ -34,6 +34,9 @@ CallRecord Record() {
   record.model = "sbu";
   record.version = 3;
   record.priority = "bulk";
+  record.seed = 18446744073709551615u;
+  record.variety = 0.5;
+  record.unfamiliarity = 1.25;
   record.frames = 300;
   record.chunks = 10;
   record.windows = 7;
@@ -65,6 +68,9 @@ TEST_F(JsonLogTest, ACallIsOneLineOfJson) {
   EXPECT_EQ(line["model"], "sbu");
   EXPECT_EQ(line["version"], 3);
   EXPECT_EQ(line["priority"], "bulk");
+  EXPECT_EQ(line["seed"], 18446744073709551615u);
+  EXPECT_EQ(line["variety"], 0.5);
+  EXPECT_EQ(line["unfamiliarity"], 1.25);
   EXPECT_EQ(line["frames"], 300);
   EXPECT_EQ(line["chunks"], 10);
   EXPECT_EQ(line["windows"], 7);
@@ -80,7 +86,7 @@ TEST_F(JsonLogTest, LeavesOutWhatACallDoesNotHave) {
   log_.CallFinished(record);
   const json line = sink_.Last();
   for (const char* field : {"model", "version", "frames", "first_chunk_seconds", "traceparent",
-                            "message", "cause", "priority"}) {
+                            "message", "cause", "priority", "seed", "variety", "unfamiliarity"}) {
     EXPECT_FALSE(line.contains(field)) << field;
   }
 }

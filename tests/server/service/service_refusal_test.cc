@@ -30,6 +30,7 @@ using test::Refusal;
 using test::Reply;
 using test::RunningService;
 using test::SampleRequest;
+using test::SamplingDescription;
 using test::TimedContext;
 
 using ::testing::AnyOf;
@@ -458,6 +459,7 @@ TEST(ModelMethodsTest, DescribesAModelAndItsLimits) {
   EXPECT_EQ(response.model().frame_rate_hz(), 15);
   EXPECT_EQ(response.model().window_frames(), 46u);
   EXPECT_TRUE(response.model().accepts_follower_start());
+  EXPECT_FALSE(response.model().samples());
   EXPECT_EQ(response.model().description(), fake.description);
   EXPECT_EQ(response.limits().min_frame_rate_hz(), 1);
   EXPECT_EQ(response.limits().max_frame_rate_hz(), 240);
@@ -466,7 +468,18 @@ TEST(ModelMethodsTest, DescribesAModelAndItsLimits) {
   EXPECT_EQ(response.limits().max_chunk_frames(), 240u);
   EXPECT_EQ(response.limits().max_label_keyframes(), 4096u);
   EXPECT_EQ(response.limits().max_abs_weight(), 2);
+  EXPECT_EQ(response.limits().max_variety(), 2);
   EXPECT_EQ(response.limits().max_request_bytes(), 32u << 20);
+}
+
+TEST(ModelMethodsTest, SaysWhetherAModelSamples) {
+  RunningService::Setup setup;
+  setup.model = std::make_shared<FakeSynthesizer>(SamplingDescription());
+  RunningService running(setup);
+  TimedContext context;
+  v1::GetModelResponse response;
+  ASSERT_TRUE(running.stub().GetModel(&context, v1::GetModelRequest(), &response).ok());
+  EXPECT_TRUE(response.model().samples());
 }
 
 TEST(ModelMethodsTest, GetModelNamesWhatIsNotServed) {

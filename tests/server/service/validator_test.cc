@@ -323,6 +323,14 @@ INSTANTIATE_TEST_SUITE_P(
                   for (int i = 0; i < 16; ++i) r.add_reply_joint_names("head");
                 },
                 "reply_joint_names", "has 16 names, wanted at most the 15"},
+        Spoiled{"negative_variety", [](Request& r) { r.set_variety(-0.5F); }, "variety",
+                "is -0.5, wanted a finite value in [0, 2]"},
+        Spoiled{"much_variety", [](Request& r) { r.set_variety(2.5F); }, "variety",
+                "is 2.5, wanted a finite value in [0, 2]"},
+        Spoiled{"nan_variety", [](Request& r) { r.set_variety(kNan); }, "variety",
+                "is nan, wanted a finite value in [0, 2]"},
+        Spoiled{"infinite_variety", [](Request& r) { r.set_variety(kInfinity); }, "variety",
+                "is inf, wanted a finite value in [0, 2]"},
         Spoiled{"no_direction", [](Request& r) { SetDirection(r, 0, 0, 0); }, "partner_direction",
                 "is (0, 0, 0), wanted a direction"},
         Spoiled{"vertical_direction", [](Request& r) { SetDirection(r, 0, 3, 0); },
@@ -422,6 +430,8 @@ TEST(ValidateRequestTest, FillsInDefaults) {
   EXPECT_EQ(request->priority, batching::Priority::kInteractive);
   EXPECT_FALSE(request->clip.start.has_value());
   EXPECT_FALSE(request->clip.partner_direction.has_value());
+  EXPECT_EQ(request->clip.sampling.seed, 0u);
+  EXPECT_EQ(request->clip.sampling.variety, 1);
   EXPECT_EQ(request->reply.joint_names, FakeDescription().skeleton.joint_names);
 }
 
@@ -429,11 +439,15 @@ TEST(ValidateRequestTest, TakesOverWhatIsGiven) {
   v1::SynthesizeRequest request = SampleRequest();
   request.set_chunk_frames(7);
   request.set_priority(v1::PRIORITY_BULK);
+  request.set_seed(std::numeric_limits<uint64_t>::max());
+  request.set_variety(0);
   const absl::StatusOr<ValidatedRequest> validated = Validate(request);
   ASSERT_THAT(validated, IsOk());
   EXPECT_EQ(validated->chunk_frames, 7);
   EXPECT_EQ(validated->priority, batching::Priority::kBulk);
   EXPECT_EQ(validated->clip.frame_rate_hz, 15);
+  EXPECT_EQ(validated->clip.sampling.seed, std::numeric_limits<uint64_t>::max());
+  EXPECT_EQ(validated->clip.sampling.variety, 0);
 }
 
 // Writes the leader's joints in reverse order.

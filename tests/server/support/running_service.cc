@@ -43,10 +43,11 @@ RunningService::RunningService(Setup setup) : admission_(setup.max_calls) {
     return;
   }
   grpc_ = *std::move(grpc);
-  channel_ = grpc::CreateChannel(absl::StrCat("127.0.0.1:", grpc_.port),
-                                 grpc::InsecureChannelCredentials());
+  channel_ = grpc::CreateChannel(address(), grpc::InsecureChannelCredentials());
   stub_ = v1::MotionSynthesis::NewStub(channel_);
 }
+
+std::string RunningService::address() const { return absl::StrCat("127.0.0.1:", grpc_.port); }
 
 RunningService::~RunningService() {
   if (grpc_.server == nullptr) return;

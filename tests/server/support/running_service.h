@@ -5,6 +5,7 @@
 #include <grpcpp/client_context.h>
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "duet/v1/synthesis.grpc.pb.h"
@@ -37,6 +38,7 @@ class RunningService {
   ~RunningService();
 
   v1::MotionSynthesis::Stub& stub() { return *stub_; }
+  std::string address() const;  // "127.0.0.1:PORT"
   const std::shared_ptr<grpc::Channel>& channel() const { return channel_; }
   RecordingObserver& calls() { return calls_; }
   server::registry::ModelRegistry& registry() { return registry_; }
