@@ -40,6 +40,7 @@ SynthesisWindow ClipSynthesis::NextWindow() const {
     request_.labels.At(frame, window.labels.data() + static_cast<std::size_t>(t) * classes);
   }
   window.start = NextStart();
+  window.sampling = request_.sampling;
   // The characters move: later, where the follower has got to tells the direction.
   if (next_window_ == 0 || !window.start) window.partner_direction = request_.partner_direction;
   return window;
