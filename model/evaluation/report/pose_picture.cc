@@ -12,7 +12,7 @@
 namespace duet::evaluation::report {
 namespace {
 
-constexpr double kMargin = 18, kTitleRoom = 44, kNameRoom = 24, kTimeRoom = 24;
+constexpr double kMargin = 18, kTitleRoom = 44, kNameRoom = 24, kTimeRoom = 24, kColumnGap = 22;
 constexpr double kHoldSeconds = 0.5;
 constexpr double kTitleSize = 16, kNameSize = 13, kTimeSize = 11;
 
@@ -103,7 +103,8 @@ std::string StripSvg(const motion::Skeleton& skeleton, const std::string& title,
                      const std::vector<PicturedPair>& pairs, double frame_rate_hz, int columns) {
   const PoseView view(skeleton, pairs);
   const std::vector<int> moments = Moments(pairs.front().leader.frame_count(), columns);
-  const double width = 2 * kMargin + view.width() * static_cast<double>(moments.size());
+  const double column = view.width() + kColumnGap;
+  const double width = 2 * kMargin + column * static_cast<double>(moments.size()) - kColumnGap;
   const double row = kNameRoom + view.height();
   const double rows_end = kTitleRoom + row * static_cast<double>(pairs.size());
   SvgWriter svg(width, rows_end + kTimeRoom);
@@ -113,12 +114,12 @@ std::string StripSvg(const motion::Skeleton& skeleton, const std::string& title,
     svg.Text(kMargin, top + 12, pairs[r].name, TextAnchor::kStart, kNameSize);
     DrawFloor(kMargin, width - kMargin, top + row - 4, &svg);
     for (size_t c = 0; c < moments.size(); ++c) {
-      const Pixel offset = {kMargin + view.width() * static_cast<double>(c), top + kNameRoom};
+      const Pixel offset = {kMargin + column * static_cast<double>(c), top + kNameRoom};
       DrawPair(skeleton, view, pairs[r], moments[c], offset, &svg);
     }
   }
   for (size_t c = 0; c < moments.size(); ++c) {
-    svg.Text(kMargin + view.width() * (static_cast<double>(c) + 0.5), rows_end + 14,
+    svg.Text(kMargin + column * static_cast<double>(c) + view.width() / 2, rows_end + 14,
              absl::StrFormat("%.1f s", moments[c] / frame_rate_hz), TextAnchor::kMiddle, kTimeSize);
   }
   return svg.Finish();
