@@ -31,7 +31,7 @@ TEST(JointSpeedTest, IsTheMeanOverJointsAndSteps) {
 
 TEST(RangeOfMotionTest, IsTheLargestDistanceFromTheFirstFrame) {
   motion::Poses there_and_back = OneMoves(5);
-  there_and_back.at(4, 1) = there_and_back.at(0, 1);
+  there_and_back.at(4, 1) = there_and_back.at(1, 1);
   EXPECT_NEAR(RangeOfMotion(there_and_back), 0.15, 1e-6);  // 0.3 m and 0
 }
 
