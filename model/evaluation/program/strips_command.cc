@@ -91,8 +91,10 @@ absl::Status AddPictures(const dataset::Dataset& dataset, const std::vector<Fold
   const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(example.sequence)];
   const double rate = sequence.pair.leader.frame_rate_hz;
   const std::string name = absl::StrCat(section->id, "_", class_name);
-  const std::string of = absl::StrCat(class_name, ", clip ", sequence.id,
-                                      ", by models that never saw ", example.subject);
+  std::string of = absl::StrCat(class_name, ", clip ", sequence.id);
+  if (!arguments.models.one_for_all()) {
+    absl::StrAppend(&of, ", by models that never saw ", example.subject);
+  }
   section->figures.push_back(
       {name, absl::StrCat(of, ": leader blue, follower orange; paler on the left of the body."),
        StripSvg(dataset.skeleton, class_name, *pairs, rate, kColumns)});

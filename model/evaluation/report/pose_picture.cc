@@ -12,9 +12,11 @@
 namespace duet::evaluation::report {
 namespace {
 
-constexpr double kMargin = 18, kTitleRoom = 44, kNameRoom = 24, kTimeRoom = 24, kColumnGap = 22;
+constexpr double kMargin = 18, kTitleRoom = 44, kNameRoom = 30, kTimeRoom = 30, kColumnGap = 22;
 constexpr double kHoldSeconds = 0.5;
-constexpr double kTitleSize = 16, kNameSize = 13, kTimeSize = 11;
+constexpr double kTitleSize = 16, kNameSize = 13;
+// A strip is wide, so that pages shrink it.
+constexpr double kStripTitleSize = 24, kStripNameSize = 20, kStripTimeSize = 18;
 
 // Of the left, the middle and the right of a body.
 struct Colours {
@@ -83,8 +85,8 @@ void AnimatePair(const motion::Skeleton& skeleton, const PoseView& view, const P
   }
 }
 
-void DrawTitle(const std::string& title, SvgWriter* svg) {
-  svg->Text(kMargin, 26, title, TextAnchor::kStart, kTitleSize, "font-weight=\"bold\"");
+void DrawTitle(const std::string& title, double size, SvgWriter* svg) {
+  svg->Text(kMargin, 26, title, TextAnchor::kStart, size, "font-weight=\"bold\"");
 }
 
 std::vector<int> Moments(int frames, int columns) {
@@ -108,10 +110,10 @@ std::string StripSvg(const motion::Skeleton& skeleton, const std::string& title,
   const double row = kNameRoom + view.height();
   const double rows_end = kTitleRoom + row * static_cast<double>(pairs.size());
   SvgWriter svg(width, rows_end + kTimeRoom);
-  DrawTitle(title, &svg);
+  DrawTitle(title, kStripTitleSize, &svg);
   for (size_t r = 0; r < pairs.size(); ++r) {
     const double top = kTitleRoom + row * static_cast<double>(r);
-    svg.Text(kMargin, top + 12, pairs[r].name, TextAnchor::kStart, kNameSize);
+    svg.Text(kMargin, top + 18, pairs[r].name, TextAnchor::kStart, kStripNameSize);
     DrawFloor(kMargin, width - kMargin, top + row - 4, &svg);
     for (size_t c = 0; c < moments.size(); ++c) {
       const Pixel offset = {kMargin + column * static_cast<double>(c), top + kNameRoom};
@@ -119,8 +121,9 @@ std::string StripSvg(const motion::Skeleton& skeleton, const std::string& title,
     }
   }
   for (size_t c = 0; c < moments.size(); ++c) {
-    svg.Text(kMargin + column * static_cast<double>(c) + view.width() / 2, rows_end + 14,
-             absl::StrFormat("%.1f s", moments[c] / frame_rate_hz), TextAnchor::kMiddle, kTimeSize);
+    svg.Text(kMargin + column * static_cast<double>(c) + view.width() / 2, rows_end + 18,
+             absl::StrFormat("%.1f s", moments[c] / frame_rate_hz), TextAnchor::kMiddle,
+             kStripTimeSize);
   }
   return svg.Finish();
 }
@@ -132,7 +135,7 @@ std::string MovingSvg(const motion::Skeleton& skeleton, const std::string& title
   const double width = kMargin + panel * static_cast<double>(pairs.size());
   const double floor = kTitleRoom + kNameRoom + view.height();
   SvgWriter svg(width, floor + kMargin);
-  DrawTitle(title, &svg);
+  DrawTitle(title, kTitleSize, &svg);
   for (size_t i = 0; i < pairs.size(); ++i) {
     const double left = kMargin + panel * static_cast<double>(i);
     svg.Text(left, kTitleRoom + 12, pairs[i].name, TextAnchor::kStart, kNameSize);
