@@ -98,7 +98,6 @@ absl::StatusOr<report::Table> Measure(const dataset::Dataset& dataset,
   table.columns = subjects;
   table.columns.insert(table.columns.end(), {"mean", "spread"});
   table.decimals = 3;
-  table.best = report::Best::kLowest;
   table.notes = {
       "0.5: cannot be told apart; 1: always. A column is a left-out person; spread: the standard "
       "deviation of the mean over the classifiers' seeds."};
