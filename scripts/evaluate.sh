@@ -32,7 +32,7 @@ ablate() { # CONFIG [FOLD...]
 train() {
   local config folds half
   read -ra folds <<<"${FOLDS:-}"
-  for config in default mshl22; do
+  for config in default flow mshl22; do
     "${bin}/duet-train" --data "${data}" --out "${runs}/${config}" --config "${config}" \
       --protocol loso
   done
@@ -45,6 +45,26 @@ train() {
   done
 }
 
+# The model that samples, the deterministic one beside it.
+sampled() {
+  local start models=(--runs "flow=${runs}/flow" --runs "ours=${runs}/default")
+  "${bin}/duet-eval" samples --data "${data}" --out "${results}" "${models[@]}" --id 14_samples
+  "${bin}/duet-eval" samples --data "${data}" --out "${results}" "${models[@]}" --as-served \
+    --id 15_samples_as_served --title "Many answers to one leader, as a server answers"
+  "${bin}/duet-eval" long --data "${data}" --out "${results}" "${models[@]}" --as-served \
+    --seconds 60 --title "Clips of a minute"
+  "${bin}/duet-eval" long --data "${data}" --out "${results}" "${models[@]}" --as-served \
+    --seconds 600 --subjects s01 --id 16_long_600 --title "Clips of ten minutes"
+  "${bin}/duet-eval" told-apart --data "${data}" --out "${results}" "${models[@]}" --as-served
+  for start in none pose; do
+    "${bin}/duet-eval" strips --data "${data}" --out "${results}" "${models[@]}" --as-served \
+      --start "${start}" --id "18_strips_${start}" \
+      --title "Captured and synthesised side by side, told ${start/none/nothing}"
+  done
+  "${bin}/duet-eval" sweep --data "${data}" --runs "flow=${runs}/flow" --out "${results}" \
+    --id 31_sweep_flow --title "Mix, match and avoid by the model that samples"
+}
+
 measure() {
   local config half named=("full=${runs}/ablation/default") compared=() sets=()
   "${bin}/duet-eval" folds --data "${data}" --out "${results}" --id 10_methods \
@@ -54,6 +74,7 @@ measure() {
   "${bin}/duet-eval" folds --data "${data}" --out "${results}" --id 12_as_served --as-served \
     --title "The same model as a server answers" --baselines class_mean,frozen_first_frame \
     --runs "ours=${runs}/default" --metrics "afd,afd_squared,${quality},${touch}"
+  sampled
   for config in "${ablations[@]}"; do named+=("${config}=${runs}/ablation/${config}"); done
   "${bin}/duet-eval" folds --data "${data}" --out "${results}" --id 20_ablation \
     --title "Ablation (Tables 4 and 5)" --starts none,pose --baselines class_mean \

@@ -15,12 +15,14 @@ namespace {
 // Bounds the memory of one evaluation; beyond it batches gain little.
 constexpr size_t kClipsTogether = 64;
 
-engine::ClipRequest MakeRequest(const motion::Skeleton& skeleton, const dataset::Sequence& sequence,
-                                const std::vector<float>& labels, StartGiven start) {
+engine::ClipRequest MakeRequest(const motion::Skeleton& skeleton, const LabelledLeader& labelled,
+                                StartGiven start) {
+  const dataset::Sequence& sequence = *labelled.sequence;
   const motion::Clip& leader = sequence.pair.leader;
   const motion::Clip& follower = sequence.pair.follower;
-  engine::ClipRequest request{leader.poses, leader.frame_rate_hz, engine::LabelTrack(labels),
-                              std::nullopt, sequence.partner_direction};
+  engine::ClipRequest request{
+      leader.poses, leader.frame_rate_hz,       engine::LabelTrack(labelled.labels),
+      std::nullopt, sequence.partner_direction, labelled.sampling};
   if (start == StartGiven::kNone) return request;
   request.start = engine::FollowerStart{follower.at(0, skeleton.root), {}};
   if (start == StartGiven::kPose) {
@@ -56,7 +58,7 @@ absl::Status SynthesizeTogether(const engine::Synthesizer& synthesizer,
   const engine::ModelDescription& model = synthesizer.description();
   std::vector<engine::ClipSynthesis> clips;
   for (const LabelledLeader& leader : leaders) {
-    clips.emplace_back(model, MakeRequest(model.skeleton, *leader.sequence, leader.labels, start));
+    clips.emplace_back(model, MakeRequest(model.skeleton, leader, start));
   }
   std::vector<motion::Poses> made(clips.size(), motion::Poses(0, model.skeleton.joint_count()));
   while (std::any_of(clips.begin(), clips.end(),
@@ -80,6 +82,17 @@ absl::Status CheckModelFits(const engine::ModelDescription& model,
   if (model.skeleton.joint_names != dataset.skeleton.joint_names) {
     return absl::FailedPreconditionError(
         absl::StrCat("model ", model.name, ": its joints are not the data's"));
+  }
+  return absl::OkStatus();
+}
+
+absl::Status CheckModelTakes(const engine::ModelDescription& model, const dataset::Dataset& dataset,
+                             StartGiven start) {
+  absl::Status status = CheckModelFits(model, dataset);
+  if (!status.ok()) return status;
+  if (start != StartGiven::kNone && !model.accepts_follower_start) {
+    return absl::FailedPreconditionError(
+        absl::StrCat("model ", model.name, ": does not accept a follower start"));
   }
   return absl::OkStatus();
 }
@@ -113,14 +126,7 @@ SynthesizerMethod::SynthesizerMethod(std::string name,
     : name_(std::move(name)), synthesizer_(std::move(synthesizer)), start_(start) {}
 
 absl::Status SynthesizerMethod::Train(const dataset::Dataset& dataset, const std::vector<int>&) {
-  const engine::ModelDescription& model = synthesizer_->description();
-  absl::Status status = CheckModelFits(model, dataset);
-  if (!status.ok()) return status;
-  if (start_ != StartGiven::kNone && !model.accepts_follower_start) {
-    return absl::FailedPreconditionError(
-        absl::StrCat("model ", model.name, ": does not accept a follower start"));
-  }
-  return absl::OkStatus();
+  return CheckModelTakes(synthesizer_->description(), dataset, start_);
 }
 
 absl::StatusOr<motion::Poses> SynthesizerMethod::Predict(const dataset::Sequence& sequence) const {

@@ -20,6 +20,10 @@ absl::Status CheckModelFits(const engine::ModelDescription& model, const dataset
 // What a synthesizer is told of the follower's first frame.
 enum class StartGiven { kNone, kRoot, kPose };
 
+// CheckModelFits, and FAILED_PRECONDITION for a start that the model does not accept.
+absl::Status CheckModelTakes(const engine::ModelDescription& model, const dataset::Dataset& dataset,
+                             StartGiven start);
+
 // A trained model as a row of the tables, run as a server runs it: in windows that are blended.
 class SynthesizerMethod : public protocol::Method {
  public:
@@ -47,10 +51,11 @@ absl::StatusOr<motion::Poses> SynthesizeSequence(const engine::Synthesizer& synt
                                                  const std::vector<float>& labels,
                                                  StartGiven start);
 
-// A leader and the label vector ([classes]) to answer it with.
+// A leader, the label vector ([classes]) to answer it with, and which of the answers is wanted.
 struct LabelledLeader {
   const dataset::Sequence* sequence;
   std::vector<float> labels;
+  engine::Sampling sampling = {};
 };
 
 // The same for many leaders, several windows to an evaluation of the network: much faster than one

@@ -17,6 +17,7 @@ namespace duet::evaluation::judge {
 struct MotionClassifier::Model {
   std::vector<network::Discriminator> members;
   std::string hash;
+  JudgeSees sees = JudgeSees::kFollower;
 };
 
 namespace {
@@ -39,11 +40,11 @@ dataset::Sequence WithFollower(const dataset::Dataset& dataset,
 }
 
 MotionBatch MakeMotionBatch(const dataset::Dataset& dataset,
-                            const std::vector<dataset::Sequence>& sequences) {
+                            const std::vector<dataset::Sequence>& sequences, JudgeSees sees) {
   std::vector<motion::Poses> inputs;
   std::vector<int64_t> lengths, classes;
   for (const dataset::Sequence& sequence : sequences) {
-    inputs.push_back(JudgeInput(dataset.skeleton, sequence));
+    inputs.push_back(JudgeInput(dataset.skeleton, sequence, sees));
     lengths.push_back(sequence.pair.follower.frame_count());
     classes.push_back(sequence.interaction_class);
   }
@@ -54,22 +55,22 @@ MotionBatch MakeMotionBatch(const dataset::Dataset& dataset,
 }
 
 std::vector<MotionBatch> TestBatches(const dataset::Dataset& dataset,
-                                     const std::vector<metrics::ScoredMotion>& motions) {
+                                     const std::vector<metrics::ScoredMotion>& motions,
+                                     JudgeSees sees) {
   std::vector<MotionBatch> batches;
   for (size_t first = 0; first < motions.size(); first += kTestBatch) {
     std::vector<dataset::Sequence> sequences;
     for (size_t i = first; i < std::min(first + kTestBatch, motions.size()); ++i) {
       sequences.push_back(WithFollower(dataset, motions[i]));
     }
-    batches.push_back(MakeMotionBatch(dataset, sequences));
+    batches.push_back(MakeMotionBatch(dataset, sequences, sees));
   }
   return batches;
 }
 
 // A classifier that is to work for unseen people must not go by the build of those in the clip, nor
-// by when the clip starts and ends: both are varied. These two were chosen on held-back training
-// subjects, like the defaults of ClassifierOptions.
-constexpr double kBodyNoise = 0.05;  // metres, standard deviation, one offset a joint
+// by when the clip starts and ends: both are varied. What was chosen here was chosen on held-back
+// training subjects, like the defaults of ClassifierOptions.
 constexpr double kLabelSmoothing = 0.1;
 
 training::TrainingOptions::Augmentation Variations() {
@@ -87,11 +88,11 @@ motion::Vec3 RandomOffset(double deviation, base::Random* random) {
 }
 
 dataset::Sequence Vary(const dataset::Dataset& dataset, const dataset::Sequence& sequence,
-                       base::Random* random) {
+                       double body_noise, base::Random* random) {
   dataset::Sequence varied = Augment(dataset, sequence, Variations(), random);
   std::vector<motion::Vec3> offsets;
   for (int j = 0; j < dataset.skeleton.joint_count(); ++j) {
-    offsets.push_back(RandomOffset(kBodyNoise, random));
+    offsets.push_back(RandomOffset(body_noise, random));
   }
   motion::Poses& poses = varied.pair.follower.poses;
   for (int t = 0; t < poses.frame_count(); ++t) {
@@ -115,7 +116,7 @@ std::vector<MotionBatch> EpochBatches(const dataset::Dataset& dataset,
   base::Random random(options.seed, epoch);
   std::vector<dataset::Sequence> varied;
   for (const dataset::Sequence& sequence : sequences) {
-    varied.push_back(Vary(dataset, sequence, &random));
+    varied.push_back(Vary(dataset, sequence, options.body_noise, &random));
   }
   random.Shuffle(&varied);
   std::vector<MotionBatch> batches;
@@ -123,7 +124,7 @@ std::vector<MotionBatch> EpochBatches(const dataset::Dataset& dataset,
   for (size_t first = 0; first < varied.size(); first += size) {
     const auto begin = varied.begin() + static_cast<std::ptrdiff_t>(first);
     const auto end = begin + static_cast<std::ptrdiff_t>(std::min(size, varied.size() - first));
-    batches.push_back(MakeMotionBatch(dataset, {begin, end}));
+    batches.push_back(MakeMotionBatch(dataset, {begin, end}, options.sees));
   }
   return batches;
 }
@@ -132,7 +133,7 @@ network::Discriminator TrainNetwork(const dataset::Dataset& dataset,
                                     const std::vector<dataset::Sequence>& sequences,
                                     const ClassifierOptions& options) {
   network::DiscriminatorOptions sizes;
-  sizes.input = 3 * kJudgeParts * dataset.skeleton.joint_count();
+  sizes.input = 3 * JudgeParts(options.sees) * dataset.skeleton.joint_count();
   sizes.window_frames = dataset.LongestFrameCount();
   sizes.hidden = options.hidden;
   sizes.outputs = dataset.class_count();
@@ -202,6 +203,7 @@ absl::StatusOr<MotionClassifier> MotionClassifier::Train(
     sequences.push_back(WithFollower(dataset, motion));
   }
   auto model = std::make_shared<Model>();
+  model->sees = options.sees;
   for (int64_t m = 0; m < options.members; ++m) {
     ClassifierOptions member = options;
     member.seed = options.seed * static_cast<uint64_t>(options.members) + static_cast<uint64_t>(m);
@@ -215,7 +217,7 @@ std::vector<std::vector<float>> MotionClassifier::Probabilities(
     const dataset::Dataset& dataset, const std::vector<metrics::ScoredMotion>& motions) const {
   torch::NoGradGuard no_grad;
   std::vector<std::vector<float>> rows;
-  for (const MotionBatch& batch : TestBatches(dataset, motions)) {
+  for (const MotionBatch& batch : TestBatches(dataset, motions, model_->sees)) {
     std::vector<torch::Tensor> probabilities;
     for (network::Discriminator& network : model_->members) {
       probabilities.push_back(network->forward(batch.motion, batch.lengths).softmax(1));
@@ -229,7 +231,7 @@ metrics::FeatureSet MotionClassifier::Features(
     const dataset::Dataset& dataset, const std::vector<metrics::ScoredMotion>& motions) const {
   torch::NoGradGuard no_grad;
   metrics::FeatureSet rows;
-  for (const MotionBatch& batch : TestBatches(dataset, motions)) {
+  for (const MotionBatch& batch : TestBatches(dataset, motions, model_->sees)) {
     std::vector<torch::Tensor> features;
     for (network::Discriminator& network : model_->members) {
       features.push_back(network->Features(batch.motion, batch.lengths));

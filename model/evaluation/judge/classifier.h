@@ -8,6 +8,7 @@
 
 #include "absl/status/statusor.h"
 #include "model/dataset/dataset.h"
+#include "model/evaluation/judge/judge_input.h"
 #include "model/evaluation/metrics/features.h"
 #include "model/evaluation/metrics/scores.h"
 
@@ -21,13 +22,17 @@ struct ClassifierOptions {
   double learning_rate = 2e-3;
   double weight_decay = 0.01;
   double dropout = 0.3;
+  // Standard deviation of one offset a joint and training motion, metres: the classifier is to work
+  // for people of another build.
+  double body_noise = 0.05;
+  JudgeSees sees = JudgeSees::kFollower;
   uint64_t seed = 0;
 };
 
 // Tells the class of a follower's motion: a network shaped like the discriminator, with one output
 // a class. A judge is such a classifier that scores synthesised motion (accuracy, FID, diversity);
-// the paper's Table 6 trains others on synthetic motion. It sees the follower alone, in the
-// standard coordinates of its leader (judge_input.h).
+// the paper's Table 6 trains others on synthetic motion. It sees the follower alone, unless its
+// options say otherwise, in the standard coordinates of its leader (judge_input.h).
 //
 // Source:  paper sections 3.3 and 4 (the paper does not describe its own extractor).
 // Threads: the const functions are safe to call concurrently.

@@ -73,6 +73,19 @@ absl::StatusOr<std::vector<double>> FrechetByClass(const std::vector<JudgedFold>
   return distances;
 }
 
+absl::StatusOr<double> PooledFrechet(const std::vector<JudgedFold>& made,
+                                     const std::vector<JudgedFold>& captured) {
+  Mean mean;
+  for (size_t fold = 0; fold < made.size(); ++fold) {
+    const FeatureSet &a = made[fold].features, &b = captured[fold].features;
+    if (std::min(a.size(), b.size()) < kLeastMotions) continue;
+    absl::StatusOr<double> distance = FrechetDistance(a, b);
+    if (!distance.ok()) return distance.status();
+    mean.Add(*distance);
+  }
+  return mean.value();
+}
+
 std::vector<double> DiversityByClass(const std::vector<JudgedFold>& folds, int classes) {
   std::vector<double> diversities;
   for (int c = 0; c < classes; ++c) {

@@ -29,6 +29,13 @@ absl::StatusOr<std::vector<double>> FrechetByClass(const std::vector<JudgedFold>
                                                    const std::vector<JudgedFold>& captured,
                                                    int classes);
 
+// The Frechet distance between a fold's synthesised and captured motions of all classes together,
+// averaged over the folds that have 2 motions or more on both sides; NaN where none has. A fold has
+// few motions of one class, of all of them enough to see how they spread.
+// Shapes: made and captured [folds]. Errors: FrechetDistance's.
+absl::StatusOr<double> PooledFrechet(const std::vector<JudgedFold>& made,
+                                     const std::vector<JudgedFold>& captured);
+
 // The mean distance between motions of a class within a fold, averaged likewise.
 std::vector<double> DiversityByClass(const std::vector<JudgedFold>& folds, int classes);
 

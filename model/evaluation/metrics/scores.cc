@@ -5,8 +5,11 @@
 #include <limits>
 
 #include "model/evaluation/metrics/displacement.h"
+#include "model/evaluation/metrics/liveliness.h"
 #include "model/evaluation/metrics/motion_quality.h"
 #include "model/evaluation/metrics/penetration.h"
+#include "model/evaluation/metrics/posture.h"
+#include "model/evaluation/metrics/touch.h"
 
 namespace duet::evaluation::metrics {
 namespace {
@@ -30,6 +33,13 @@ const std::vector<Metric>& AllMetrics() {
       Metric::kFootSlide,
       Metric::kPenetrationFrequency,
       Metric::kPenetrationDepth,
+      Metric::kJointSpeed,
+      Metric::kRangeOfMotion,
+      Metric::kFilteredJerk,
+      Metric::kLean,
+      Metric::kFacing,
+      Metric::kRootDistance,
+      Metric::kTouch,
   };
   return metrics;
 }
@@ -62,6 +72,20 @@ std::string MetricName(Metric metric) {
       return "penetration_frequency";
     case Metric::kPenetrationDepth:
       return "penetration_depth_m";
+    case Metric::kJointSpeed:
+      return "joint_speed";
+    case Metric::kRangeOfMotion:
+      return "range_of_motion_m";
+    case Metric::kFilteredJerk:
+      return "filtered_jerk";
+    case Metric::kLean:
+      return "lean_degrees";
+    case Metric::kFacing:
+      return "facing_degrees";
+    case Metric::kRootDistance:
+      return "root_distance_m";
+    case Metric::kTouch:
+      return "touch";
   }
   return "";
 }
@@ -77,6 +101,7 @@ std::vector<double> ScoreMotion(const dataset::Dataset& dataset, const ScoredMot
   const motion::Poses made_raw = sequence.levelling.Invert(made);
   const motion::Poses truth_raw = sequence.levelling.Invert(truth);
   const FootSlide slide = MeasureFootSlide(made, skeleton, rate);
+  const motion::Poses calm = WithoutNoise(made, rate);
   const Penetration penetration = MeasurePenetration(leader, made, skeleton, dataset.parts);
   return {Afd(made_raw, truth_raw, MetricUnit::kSbuRaw),
           AfdSquared(made_raw, truth_raw, MetricUnit::kSbuRaw),
@@ -90,7 +115,14 @@ std::vector<double> ScoreMotion(const dataset::Dataset& dataset, const ScoredMot
           slide.skating_ratio,
           slide.centimetres_a_frame,
           penetration.frequency,
-          penetration.frequency > 0 ? penetration.mean_depth_metres : kNone};
+          penetration.frequency > 0 ? penetration.mean_depth_metres : kNone,
+          JointSpeed(calm, rate),
+          RangeOfMotion(calm),
+          Jitter(calm, rate),
+          MeasureLean(made, skeleton, rate, LeanFrom::kHips).mean_degrees,
+          FacingDegrees(leader, made, skeleton),
+          RootDistance(leader, made, skeleton),
+          TouchShare(leader, made, skeleton, dataset.parts)};
 }
 
 std::vector<std::vector<double>> ScoreByClass(const dataset::Dataset& dataset,

@@ -24,6 +24,13 @@ enum class Metric {
   kFootSlide,             // foot_slide_cm: centimetres a frame
   kPenetrationFrequency,  // penetration_frequency: share of frames
   kPenetrationDepth,      // penetration_depth_m: mean over those frames
+  kJointSpeed,            // joint_speed: m/s, without noise
+  kRangeOfMotion,         // range_of_motion_m: without noise
+  kFilteredJerk,          // filtered_jerk: m/s^3, jitter without noise
+  kLean,                  // lean_degrees: hips to neck, mean over frames
+  kFacing,                // facing_degrees: away from the leader
+  kRootDistance,          // root_distance_m: to the leader's, along the floor
+  kTouch,                 // touch: share of frames
 };
 
 const std::vector<Metric>& AllMetrics();

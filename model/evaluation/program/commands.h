@@ -13,6 +13,10 @@ namespace duet::evaluation::program {
 using ChosenCommand = std::function<absl::Status()>;
 
 void AddFoldsCommand(CLI::App* app, ChosenCommand* chosen);         // figures of methods by class
+void AddSamplesCommand(CLI::App* app, ChosenCommand* chosen);       // many answers to one leader
+void AddLongCommand(CLI::App* app, ChosenCommand* chosen);          // clips of minutes
+void AddStripsCommand(CLI::App* app, ChosenCommand* chosen);        // pictures of answers
+void AddToldApartCommand(CLI::App* app, ChosenCommand* chosen);     // from captured ones
 void AddSweepCommand(CLI::App* app, ChosenCommand* chosen);         // label weights
 void AddAugmentationCommand(CLI::App* app, ChosenCommand* chosen);  // the paper's Table 6
 void AddLatentCommand(CLI::App* app, ChosenCommand* chosen);        // Figures 6 and 7

@@ -11,6 +11,10 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   duet::evaluation::program::ChosenCommand chosen;
   duet::evaluation::program::AddFoldsCommand(&app, &chosen);
+  duet::evaluation::program::AddSamplesCommand(&app, &chosen);
+  duet::evaluation::program::AddLongCommand(&app, &chosen);
+  duet::evaluation::program::AddStripsCommand(&app, &chosen);
+  duet::evaluation::program::AddToldApartCommand(&app, &chosen);
   duet::evaluation::program::AddSweepCommand(&app, &chosen);
   duet::evaluation::program::AddAugmentationCommand(&app, &chosen);
   duet::evaluation::program::AddLatentCommand(&app, &chosen);

@@ -10,7 +10,7 @@
 #include "model/evaluation/baselines/baselines.h"
 #include "model/evaluation/program/commands.h"
 #include "model/evaluation/program/fold_scorer.h"
-#include "model/evaluation/program/models.h"
+#include "model/evaluation/program/model_flags.h"
 #include "model/evaluation/program/named_runs.h"
 #include "model/evaluation/report/metric_tables.h"
 #include "model/evaluation/report/paper_tables.h"
@@ -103,17 +103,10 @@ std::vector<report::Table> Tables(const dataset::Dataset& dataset, const Argumen
 
 // A command line that makes the same tables, with placeholders for the folders.
 std::string Command(const Arguments& arguments, const std::vector<std::string>& subjects) {
-  std::string command = "duet-eval folds --data DIR";
-  for (const std::string& text : arguments.models.runs) {
-    absl::StatusOr<NamedRuns> runs = ParseRuns(text);
-    if (runs.ok()) absl::StrAppend(&command, " --runs ", runs->name, "=RUNS");
-  }
+  std::string command = absl::StrCat("duet-eval folds --data DIR", ModelWords(arguments.models));
   const auto add = [&](const std::string& flag, const std::vector<std::string>& values) {
     absl::StrAppend(&command, " --", flag, " ", values.empty() ? "''" : absl::StrJoin(values, ","));
   };
-  if (arguments.models.embedded) command += " --embedded";
-  if (!arguments.models.checkpoint.empty()) command += " --checkpoint CHECKPOINT";
-  if (arguments.models.as_served) command += " --as-served";
   add("starts", arguments.starts);
   add("baselines", arguments.baselines);
   add("subjects", subjects);
@@ -133,10 +126,7 @@ report::ResultSection MakeSection(const dataset::Dataset& dataset,
       "answer the leaders of all those with. Figures are means over the answers of all folds; the "
       "names of rows end in what a model was told of the follower's first frame: nothing, where "
       "its root is (+root), or its pose (+pose)."};
-  if (arguments.models.one_for_all()) {
-    section.text.push_back(
-        "One checkpoint for every fold: it may have been trained on what is tested.");
-  }
+  if (arguments.models.one_for_all()) section.text.push_back(kOneForAll);
   section.settings = {
       {"data", absl::StrCat(dataset.name, ", ", dataset.sequences.size(), " sequences")},
       {"left out in turn", absl::StrJoin(subjects, ", ")},
@@ -179,20 +169,6 @@ std::vector<std::string> MetricNames() {
   return names;
 }
 
-void AddModelFlags(ModelChoice* models, CLI::App* command) {
-  auto* source = command->add_option_group("model", "what to measure besides the baselines");
-  source
-      ->add_option("--runs", models->runs,
-                   "[NAME=]DIR, output of duet-train --protocol loso; repeatable")
-      ->allow_extra_args(false);
-  source->add_option("--checkpoint", models->checkpoint, "one checkpoint folder for every fold");
-  source->add_flag("--embedded", models->embedded, "the checkpoint inside this program");
-  source->require_option(0, 1);
-  command->add_flag("--as-served", models->as_served,
-                    "with constant limb lengths on the leader's floor, as a server answers "
-                    "(default: the network's own answer)");
-}
-
 }  // namespace
 
 void AddFoldsCommand(CLI::App* app, ChosenCommand* chosen) {
@@ -201,7 +177,7 @@ void AddFoldsCommand(CLI::App* app, ChosenCommand* chosen) {
       app->add_subcommand("folds", "Figures of models and baselines, leaving one subject out");
   command->add_option("--data", arguments->data, "folder of captures (docs/datasets.md)")
       ->required();
-  AddModelFlags(&arguments->models, command);
+  AddModelFlags(ModelNeeded::kNo, &arguments->models, command);
   command
       ->add_option("--starts", arguments->starts,
                    "what a model is told of the follower's first frame, a row each")

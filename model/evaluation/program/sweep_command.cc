@@ -23,6 +23,8 @@ struct Arguments {
   ModelChoice models;
   std::vector<std::string> starts = {"none", "pose"};
   std::vector<std::string> subjects;
+  std::vector<uint64_t> sample_seeds = {0};
+  float variety = 1;
   std::string out;
   std::string id = "30_sweep";
   std::string title = "Mix, match and avoid: what label weights do";
@@ -36,16 +38,18 @@ struct SweepFold {
   std::vector<judge::MotionClassifier> judge;  // one
 };
 
-// A leader's answers at every weight of every class, own and added.
+// A leader's answers at every weight of every class, own and added: all with one seed, so that the
+// weight alone makes the difference.
 absl::Status SweepLeader(const dataset::Dataset& dataset, const SweepFold& fold, int index,
-                         experiments::StartGiven start,
+                         experiments::StartGiven start, const engine::Sampling& sampling,
                          std::vector<experiments::SweepCurve>* curves) {
   const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(index)];
   const int classes = dataset.class_count(), own = sequence.interaction_class;
   std::vector<experiments::LabelledLeader> leaders;
   for (int raised = 0; raised < classes; ++raised) {
     for (const double weight : experiments::SweepWeights()) {
-      leaders.push_back({&sequence, experiments::SweepLabels(classes, own, raised, weight)});
+      leaders.push_back(
+          {&sequence, experiments::SweepLabels(classes, own, raised, weight), sampling});
     }
   }
   absl::StatusOr<std::vector<motion::Poses>> followers =
@@ -82,12 +86,19 @@ absl::StatusOr<SweepFold> OpenFold(const dataset::Dataset& dataset, const FoldMo
 
 absl::StatusOr<std::vector<experiments::SweepCurve>> SweepFolds(const dataset::Dataset& dataset,
                                                                 const std::vector<SweepFold>& folds,
-                                                                experiments::StartGiven start) {
+                                                                experiments::StartGiven start,
+                                                                const Arguments& arguments) {
   std::vector<experiments::SweepCurve> curves;
   for (const SweepFold& fold : folds) {
+    // A model that does not sample has the same answer for every seed.
+    const size_t seeds =
+        fold.model->description().samples ? arguments.sample_seeds.size() : size_t{1};
     for (const int index : fold.test) {
-      absl::Status status = SweepLeader(dataset, fold, index, start, &curves);
-      if (!status.ok()) return status;
+      for (size_t i = 0; i < seeds; ++i) {
+        const engine::Sampling sampling = {arguments.sample_seeds[i], arguments.variety};
+        absl::Status status = SweepLeader(dataset, fold, index, start, sampling, &curves);
+        if (!status.ok()) return status;
+      }
     }
     std::cerr << "sweep" << StartSuffix(start) << " without " << fold.subject << ": "
               << fold.test.size() << " leaders\n";
@@ -124,6 +135,8 @@ report::ResultSection MakeSection(const dataset::Dataset& dataset, const FoldMod
       {"data", absl::StrCat(dataset.name, ", ", dataset.sequences.size(), " sequences")},
       {"model", model.name},
       {"left out in turn", absl::StrJoin(subjects, ", ")},
+      {"seeds of a model that samples", absl::StrJoin(arguments.sample_seeds, ", ")},
+      {"variety", absl::StrCat(arguments.variety)},
       {"models' answers", arguments.models.as_served ? "as served" : "the network's own"}};
   for (const SweepFold& fold : folds) {
     section.settings.emplace_back(absl::StrCat("judge without ", fold.subject, ", SHA-256"),
@@ -132,7 +145,8 @@ report::ResultSection MakeSection(const dataset::Dataset& dataset, const FoldMod
   section.command =
       absl::StrCat("duet-eval sweep --data DIR --runs ", model.name, "=RUNS --subjects ",
                    absl::StrJoin(subjects, ","), " --starts ", absl::StrJoin(arguments.starts, ","),
-                   arguments.models.as_served ? " --as-served" : "");
+                   " --sample-seeds ", absl::StrJoin(arguments.sample_seeds, ","), " --variety ",
+                   arguments.variety, arguments.models.as_served ? " --as-served" : "");
   section.date = report::Today();
   return section;
 }
@@ -155,7 +169,7 @@ absl::Status Run(const Arguments& arguments) {
   for (const std::string& name : arguments.starts) {
     const experiments::StartGiven start = ParseStart(name);
     absl::StatusOr<std::vector<experiments::SweepCurve>> curves =
-        SweepFolds(*dataset, folds, start);
+        SweepFolds(*dataset, folds, start, arguments);
     if (!curves.ok()) return curves.status();
     AddSweep(dataset->classes, *curves, Names(start), &section);
   }
@@ -182,6 +196,16 @@ void AddSweepCommand(CLI::App* app, ChosenCommand* chosen) {
                    "what the model is told of the follower's first frame, two tables each")
       ->delimiter(',')
       ->check(CLI::IsMember(StartNames()))
+      ->capture_default_str();
+  command
+      ->add_option("--sample-seeds", arguments->sample_seeds,
+                   "of a model that samples: each leader is swept with each of them")
+      ->delimiter(',')
+      ->capture_default_str();
+  command
+      ->add_option("--variety", arguments->variety,
+                   "of a model that samples; 0: the typical answer, 1: as varied as people")
+      ->check(CLI::Range(0.0, 2.0))
       ->capture_default_str();
   command->add_option("--subjects", arguments->subjects, "folds; default: every subject")
       ->delimiter(',');

@@ -74,6 +74,15 @@ void SvgWriter::Path(const std::string& path, const std::string& style) {
   text_ += "<path d=\"" + path + "\" " + style + "/>\n";
 }
 
+void SvgWriter::MovingPath(const std::string& still, const std::vector<std::string>& frames,
+                           double seconds, const std::string& style) {
+  text_ += "<path d=\"" + still + "\" " + style +
+           "><animate attributeName=\"d\" repeatCount=\"indefinite\" dur=\"" + SvgNumber(seconds) +
+           "s\" values=\"";
+  for (std::size_t i = 0; i < frames.size(); ++i) text_ += (i == 0 ? "" : ";") + frames[i];
+  text_ += "\"/></path>\n";
+}
+
 void SvgWriter::Text(double x, double y, const std::string& text, TextAnchor anchor, double size,
                      const std::string& style) {
   text_ += "<text x=\"" + SvgNumber(x) + "\" y=\"" + SvgNumber(y) + "\" font-size=\"" +

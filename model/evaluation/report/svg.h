@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
 namespace duet::evaluation::report {
 
@@ -17,6 +18,10 @@ class SvgWriter {
   void Line(double x0, double y0, double x1, double y1, const std::string& style);
   // `path` is the content of a d attribute.
   void Path(const std::string& path, const std::string& style);
+  // A path that moves through `frames` (paths of like commands, one or more) in `seconds` and
+  // starts over; where pictures do not move, `still` is seen. SMIL: no script.
+  void MovingPath(const std::string& still, const std::vector<std::string>& frames, double seconds,
+                  const std::string& style);
   void Text(double x, double y, const std::string& text, TextAnchor anchor, double size,
             const std::string& style = "");
   // The same, turned to read upwards.

@@ -1,0 +1,45 @@
+#ifndef DUET_MODEL_EVALUATION_EXPERIMENTS_LONG_CLIPS_H_
+#define DUET_MODEL_EVALUATION_EXPERIMENTS_LONG_CLIPS_H_
+
+#include <string>
+#include <vector>
+
+#include "model/motion/poses.h"
+#include "model/motion/skeleton.h"
+
+// Whether a follower is still a person after minutes. NaN where a skeleton lacks the joints.
+//
+// Units: metres, m/s, degrees; the motion's world is y up.
+
+namespace duet::evaluation::experiments {
+
+struct LongClipFigures {
+  double trunk_lean = 0;   // hips to neck, the largest mean over one second
+  double body_lean = 0;    // feet to neck, likewise
+  double feet_above = 0;   // how far the lower foot gets above the floor,
+  double feet_below = 0;   // and below it
+  double farthest = 0;     // the largest distance of the two roots along the floor
+  double first_speed = 0;  // of the joints, over the first ten seconds,
+  double last_speed = 0;   // and over the last ten, both without noise
+};
+
+// The floor is where the leader's lower foot is in half of the frames.
+// Shapes: as many frames in both, 2 or more.
+LongClipFigures MeasureLongClip(const motion::Skeleton& skeleton, const motion::Poses& leader,
+                                const motion::Poses& follower, double frame_rate_hz);
+
+// A model's answer to a leader that lasts, asked to be of a class.
+struct LongClipRow {
+  std::string model;
+  std::string leader;
+  int interaction_class = 0;
+  LongClipFigures figures;
+};
+
+// Of each figure the worst: the largest, but for the speeds the smallest. NaN is passed over.
+// Requires a row.
+LongClipFigures Worst(const std::vector<LongClipRow>& rows);
+
+}  // namespace duet::evaluation::experiments
+
+#endif  // DUET_MODEL_EVALUATION_EXPERIMENTS_LONG_CLIPS_H_

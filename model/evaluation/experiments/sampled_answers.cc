@@ -1,0 +1,50 @@
+#include "model/evaluation/experiments/sampled_answers.h"
+
+#include <cstddef>
+#include <utility>
+
+namespace duet::evaluation::experiments {
+namespace {
+
+std::vector<LabelledLeader> Ask(const dataset::Dataset& dataset, const std::vector<int>& sequences,
+                                const AskedSamples& asked, int samples) {
+  std::vector<LabelledLeader> leaders;
+  for (int n = 0; n < samples; ++n) {
+    for (const int index : sequences) {
+      const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(index)];
+      std::vector<float> labels(dataset.classes.size());
+      labels[static_cast<size_t>(sequence.interaction_class)] = 1;
+      leaders.push_back({&sequence, std::move(labels), SamplingOf(asked, dataset, index, n)});
+    }
+  }
+  return leaders;
+}
+
+}  // namespace
+
+engine::Sampling SamplingOf(const AskedSamples& asked, const dataset::Dataset& dataset,
+                            int sequence, int n) {
+  const uint64_t set = asked.seed + static_cast<uint64_t>(n);
+  return {set * dataset.sequences.size() + static_cast<uint64_t>(sequence), asked.variety};
+}
+
+absl::StatusOr<metrics::SampledMotions> AnswerWithSamples(const engine::Synthesizer& synthesizer,
+                                                          const dataset::Dataset& dataset,
+                                                          const std::vector<int>& sequences,
+                                                          StartGiven start,
+                                                          const AskedSamples& asked) {
+  absl::Status status = CheckModelTakes(synthesizer.description(), dataset, start);
+  if (!status.ok()) return status;
+  const int samples = synthesizer.description().samples ? asked.samples : 1;
+  absl::StatusOr<std::vector<motion::Poses>> followers =
+      SynthesizeSequences(synthesizer, Ask(dataset, sequences, asked, samples), start);
+  if (!followers.ok()) return followers.status();
+  metrics::SampledMotions answers(static_cast<size_t>(samples));
+  auto follower = followers->begin();
+  for (std::vector<metrics::ScoredMotion>& set : answers) {
+    for (const int index : sequences) set.push_back({index, std::move(*follower++)});
+  }
+  return answers;
+}
+
+}  // namespace duet::evaluation::experiments

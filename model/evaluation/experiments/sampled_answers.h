@@ -1,0 +1,37 @@
+#ifndef DUET_MODEL_EVALUATION_EXPERIMENTS_SAMPLED_ANSWERS_H_
+#define DUET_MODEL_EVALUATION_EXPERIMENTS_SAMPLED_ANSWERS_H_
+
+#include <cstdint>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "model/engine/synthesizer.h"
+#include "model/evaluation/experiments/synthesizer_method.h"
+#include "model/evaluation/metrics/sampled_scores.h"
+
+namespace duet::evaluation::experiments {
+
+// How a model is asked.
+struct AskedSamples {
+  int samples = 10;  // answers to each leader; a model that does not sample has one
+  float variety = 1;
+  uint64_t seed = 0;  // of the whole set
+};
+
+// What is asked for the n-th answer to a sequence. No two leaders share a seed: with one noise for
+// all of them, their answers would differ less than a user's do.
+engine::Sampling SamplingOf(const AskedSamples& asked, const dataset::Dataset& dataset,
+                            int sequence, int n);
+
+// The answers to sequences of the data set, each in its own class at weight 1. Errors: those of
+// CheckModelFits; FAILED_PRECONDITION for a start that the model does not take; the network's.
+// Shapes: returns [samples][sequences].
+absl::StatusOr<metrics::SampledMotions> AnswerWithSamples(const engine::Synthesizer& synthesizer,
+                                                          const dataset::Dataset& dataset,
+                                                          const std::vector<int>& sequences,
+                                                          StartGiven start,
+                                                          const AskedSamples& asked);
+
+}  // namespace duet::evaluation::experiments
+
+#endif  // DUET_MODEL_EVALUATION_EXPERIMENTS_SAMPLED_ANSWERS_H_

@@ -1,0 +1,25 @@
+#ifndef DUET_MODEL_EVALUATION_METRICS_TOUCH_H_
+#define DUET_MODEL_EVALUATION_METRICS_TOUCH_H_
+
+#include <vector>
+
+#include "model/motion/body_part.h"
+#include "model/motion/poses.h"
+#include "model/motion/skeleton.h"
+
+namespace duet::evaluation::metrics {
+
+// The ends of the limbs: the joints where a bone chain ends within a part with "arm" or "leg" in
+// its name. Hands and feet of an SBU skeleton.
+std::vector<int> LimbEnds(const motion::Skeleton& skeleton,
+                          const std::vector<motion::BodyPart>& parts);
+
+// The share of frames in which a hand or a foot of the follower touches the leader: it comes within
+// 5 cm of the capsule around one of the leader's bones (CapsuleRadii). NaN without limb ends.
+// Shapes: leader and follower are alike, in world metres.
+double TouchShare(const motion::Poses& leader, const motion::Poses& follower,
+                  const motion::Skeleton& skeleton, const std::vector<motion::BodyPart>& parts);
+
+}  // namespace duet::evaluation::metrics
+
+#endif  // DUET_MODEL_EVALUATION_METRICS_TOUCH_H_

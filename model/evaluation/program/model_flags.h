@@ -1,0 +1,34 @@
+#ifndef DUET_MODEL_EVALUATION_PROGRAM_MODEL_FLAGS_H_
+#define DUET_MODEL_EVALUATION_PROGRAM_MODEL_FLAGS_H_
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "model/evaluation/experiments/sampled_answers.h"
+#include "model/evaluation/program/models.h"
+
+// Flags that several commands share.
+
+namespace duet::evaluation::program {
+
+// What a reader must know of ModelChoice::one_for_all.
+inline constexpr char kOneForAll[] =
+    "One checkpoint for every fold: it may have been trained on what is tested.";
+
+// --runs, --checkpoint, --embedded, --as-served: one source of models, or none where that is
+// allowed.
+enum class ModelNeeded { kYes, kNo };
+void AddModelFlags(ModelNeeded needed, ModelChoice* models, CLI::App* command);
+// The same as words of a command line, with placeholders for the folders: " --runs ours=RUNS".
+std::string ModelWords(const ModelChoice& models);
+
+// --starts
+void AddStartsFlag(std::vector<std::string>* starts, CLI::App* command);
+
+// --variety, --seed
+void AddSamplingFlags(experiments::AskedSamples* asked, CLI::App* command);
+
+}  // namespace duet::evaluation::program
+
+#endif  // DUET_MODEL_EVALUATION_PROGRAM_MODEL_FLAGS_H_

@@ -1,0 +1,120 @@
+#include "model/evaluation/experiments/long_leaders.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/evaluation/metrics/liveliness.h"
+#include "model/evaluation/metrics/motion_quality.h"
+#include "model/evaluation/metrics/posture.h"
+#include "tests/evaluation/support/made_up_pairs.h"
+#include "tests/support/sample_motion.h"
+
+namespace duet::evaluation::experiments {
+namespace {
+
+using metrics::LeanFrom;
+
+constexpr double kRate = 15;
+
+float LargestStep(const motion::Poses& poses) {
+  float largest = 0;
+  for (int t = 1; t < poses.frame_count(); ++t) {
+    for (int j = 0; j < poses.joint_count(); ++j) {
+      largest = std::max(largest, Distance(poses.at(t, j), poses.at(t - 1, j)));
+    }
+  }
+  return largest;
+}
+
+TEST(MadeLeadersTest, StandOnTheFloorWithLimbsOfOneLength) {
+  const motion::Skeleton skeleton = motion::SbuSkeleton();
+  for (const std::string& name : MadeLeaderNames()) {
+    const motion::Poses leader = MakeLeader(name, 30, kRate);
+    ASSERT_EQ(leader.frame_count(), 451) << name;
+    EXPECT_LT(metrics::BoneLengthDrift(leader, skeleton), 1e-3) << name;
+    const metrics::FloorGap gap = metrics::MeasureFloorGap(leader, skeleton, 0);
+    EXPECT_LT(gap.above, 0.02) << name;
+    EXPECT_LT(gap.below, 0.02) << name;
+    EXPECT_LT(MeasureLean(leader, skeleton, kRate, LeanFrom::kHips).max_degrees, 35) << name;
+    EXPECT_LT(LargestStep(leader), 0.35f) << name;
+  }
+}
+
+TEST(MadeLeadersTest, StandingFeetDoNotSlide) {
+  for (const std::string& name : MadeLeaderNames()) {
+    const motion::Poses leader = MakeLeader(name, 10, 60);
+    // Of a step, the instants of lifting and setting down are within 5 cm of the floor as well.
+    EXPECT_LT(metrics::MeasureFootSlide(leader, motion::SbuSkeleton(), 60).skating_ratio, 0.15)
+        << name;
+  }
+}
+
+TEST(MadeLeadersTest, DoWhatTheyAreCalled) {
+  const motion::Skeleton skeleton = motion::SbuSkeleton();
+  const auto made = [](const char* name) { return MakeLeader(name, 14, kRate); };
+  EXPECT_LT(metrics::JointSpeed(made("idle"), kRate), 0.1);
+  EXPECT_GT(metrics::JointSpeed(made("dance"), kRate), 0.3);
+  // An eight: wide, and where it began at the end.
+  const motion::Poses walk = made("walk_eight");
+  float widest = 0;
+  for (int t = 0; t < walk.frame_count(); ++t) {
+    widest = std::max(widest, std::abs(walk.at(t, skeleton.root).x));
+  }
+  EXPECT_NEAR(widest, 1.5, 0.1);
+  EXPECT_LT(Distance(walk.at(0, skeleton.root), walk.at(14 * 15, skeleton.root)), 0.1);
+  // It looks where it goes: half a second later its root is in front of it.
+  for (int t = 0; t + 8 < walk.frame_count(); t += 8) {
+    const motion::Vec3 way = walk.at(t + 4, skeleton.root) - walk.at(t, skeleton.root);
+    const motion::Vec3 across = walk.at(t, skeleton.hips->right) - walk.at(t, skeleton.hips->left);
+    EXPECT_GT(Dot(Cross({0, 1, 0}, across), way), 0) << t;
+  }
+  const motion::Poses sit = made("sit");
+  EXPECT_LT(sit.at(5 * 15, skeleton.root).y, sit.at(0, skeleton.root).y - 0.3f);
+}
+
+TEST(LoopClipsTest, JoinsClipsWithoutAJump) {
+  const motion::Skeleton skeleton = motion::SbuSkeleton();
+  const motion::Poses clip = test::SwayingMotion(40, kRate);
+  motion::Poses elsewhere = clip;
+  for (motion::Vec3& p : elsewhere.all()) p = RotateY(p, 2) + motion::Vec3{5, 0, -3};
+  const motion::Poses looped = LoopClips(skeleton, {clip, elsewhere}, 20, kRate);
+  ASSERT_EQ(looped.frame_count(), 301);
+  EXPECT_LT(LargestStep(looped), 3 * LargestStep(clip));
+  // Every clip begins where the first one does.
+  const int next = 40 - 8;
+  float farthest = 0;
+  for (int t = 0; t < looped.frame_count(); ++t) {
+    farthest = std::max(farthest, Distance(looped.at(t, skeleton.root), clip.at(0, skeleton.root)));
+  }
+  EXPECT_LT(farthest, 0.6f);
+  EXPECT_NEAR(Distance(looped.at(next + 20, skeleton.root), clip.at(20, skeleton.root)), 0, 1e-3);
+}
+
+TEST(MakeLongLeadersTest, AsksForThoseMadeAndTheClassesOwnClips) {
+  dataset::Dataset dataset = test::MadeUpPairs(2);
+  std::vector<LongLeader> leaders = MakeLongLeaders(dataset, {0, 1, 2, 3}, 1, 8);
+  ASSERT_EQ(leaders.size(), MadeLeaderNames().size() + 1);
+  EXPECT_EQ(leaders.back().name, "captured");
+  for (const LongLeader& leader : leaders) {
+    EXPECT_EQ(leader.sequence.interaction_class, 1);
+    EXPECT_EQ(leader.sequence.pair.leader.frame_count(), 121);
+    EXPECT_EQ(leader.sequence.pair.follower.frame_count(), 1);
+  }
+  EXPECT_EQ(leaders.back().sequence.pair.follower.at(0, 3),
+            dataset.sequences[2].pair.follower.at(0, 3));
+  // In front of those made.
+  const motion::Poses& follower = leaders.front().sequence.pair.follower.poses;
+  motion::Poses leader = leaders.front().sequence.pair.leader.poses;
+  leader.Resize(1);
+  EXPECT_LT(metrics::FacingDegrees(leader, follower, dataset.skeleton), 5);
+  EXPECT_LT(metrics::FacingDegrees(follower, leader, dataset.skeleton), 5);
+  EXPECT_EQ(MakeLongLeaders(dataset, {0, 1}, 1, 8).size(), MadeLeaderNames().size());
+  dataset.skeleton.joint_names[0] = "hat";
+  EXPECT_EQ(MakeLongLeaders(dataset, {2, 3}, 1, 8).size(), 1u);
+}
+
+}  // namespace
+}  // namespace duet::evaluation::experiments

@@ -1,0 +1,93 @@
+#include "model/evaluation/experiments/sampled_answers.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "tests/evaluation/support/made_up_pairs.h"
+#include "tests/support/fake_synthesizer.h"
+#include "tests/support/status_matchers.h"
+
+namespace duet::evaluation::experiments {
+namespace {
+
+using test::MadeUpPairs;
+using test::StatusIs;
+
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+
+// Stands still at a height that is the window's seed, at a distance that is its variety.
+class SeedTeller : public engine::Synthesizer {
+ public:
+  explicit SeedTeller(const dataset::Dataset& dataset) {
+    description_ = test::FakeDescription();
+    description_.classes = dataset.classes;
+    description_.samples = true;
+  }
+
+  const engine::ModelDescription& description() const override { return description_; }
+  engine::ModelDescription& description() { return description_; }
+
+  std::vector<engine::WindowResult> Synthesize(
+      absl::Span<const engine::SynthesisWindow* const> windows) const override {
+    std::vector<engine::WindowResult> results;
+    for (const engine::SynthesisWindow* window : windows) {
+      motion::Poses follower = window->leader;
+      for (motion::Vec3& p : follower.all()) {
+        p = {0, static_cast<float>(window->sampling.seed), window->sampling.variety};
+      }
+      results.emplace_back(std::move(follower));
+    }
+    return results;
+  }
+
+ private:
+  engine::ModelDescription description_;
+};
+
+TEST(SampledAnswersTest, EveryAnswerHasASeedOfItsOwn) {
+  const dataset::Dataset dataset = MadeUpPairs(3);
+  const SeedTeller model(dataset);
+  const auto answers = AnswerWithSamples(model, dataset, {4, 1}, StartGiven::kNone, {5, 0.5f, 7});
+  ASSERT_TRUE(answers.ok()) << answers.status();
+  ASSERT_THAT(*answers, SizeIs(5));
+  std::set<float> seeds;
+  for (const auto& set : *answers) {
+    ASSERT_THAT(set, SizeIs(2));
+    EXPECT_EQ(set[0].sequence, 4);
+    EXPECT_EQ(set[1].sequence, 1);
+    for (const metrics::ScoredMotion& motion : set) {
+      EXPECT_EQ(motion.follower.at(0, 0).z, 0.5f);
+      seeds.insert(motion.follower.at(0, 0).y);
+    }
+  }
+  EXPECT_THAT(seeds, SizeIs(10));
+}
+
+TEST(SampledAnswersTest, TheSeedOfTheSetMovesAllOfThem) {
+  const dataset::Dataset dataset = MadeUpPairs(3);
+  EXPECT_EQ(SamplingOf({2, 1, 7}, dataset, 4, 0).seed, SamplingOf({2, 1, 7}, dataset, 4, 0).seed);
+  EXPECT_NE(SamplingOf({2, 1, 7}, dataset, 4, 0).seed, SamplingOf({2, 1, 8}, dataset, 4, 0).seed);
+}
+
+TEST(SampledAnswersTest, AModelThatDoesNotSampleAnswersOnce) {
+  const dataset::Dataset dataset = MadeUpPairs(1);
+  SeedTeller model(dataset);
+  model.description().samples = false;
+  const auto answers = AnswerWithSamples(model, dataset, {0, 1}, StartGiven::kNone, {});
+  ASSERT_TRUE(answers.ok()) << answers.status();
+  EXPECT_THAT(*answers, SizeIs(1));
+}
+
+TEST(SampledAnswersTest, RefusesAStartThatTheModelDoesNotTake) {
+  const dataset::Dataset dataset = MadeUpPairs(1);
+  SeedTeller model(dataset);
+  model.description().accepts_follower_start = false;
+  EXPECT_THAT(AnswerWithSamples(model, dataset, {0}, StartGiven::kPose, {}).status(),
+              StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("follower start")));
+}
+
+}  // namespace
+}  // namespace duet::evaluation::experiments

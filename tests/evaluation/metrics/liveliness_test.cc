@@ -1,0 +1,58 @@
+#include "model/evaluation/metrics/liveliness.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "model/evaluation/metrics/motion_quality.h"
+
+namespace duet::evaluation::metrics {
+namespace {
+
+// One joint that stands, one that moves 0.1 m a frame along x.
+motion::Poses OneMoves(int frames) {
+  motion::Poses poses(frames, 2);
+  for (int t = 0; t < frames; ++t) poses.at(t, 1) = {0.1f * static_cast<float>(t), 1, 0};
+  return poses;
+}
+
+// To and fro by 1 cm every frame: what noise does.
+motion::Poses Shaking(int frames) {
+  motion::Poses poses(frames, 1);
+  for (int t = 0; t < frames; ++t) poses.at(t, 0) = {t % 2 == 0 ? 0.005f : -0.005f, 0, 0};
+  return poses;
+}
+
+TEST(JointSpeedTest, IsTheMeanOverJointsAndSteps) {
+  EXPECT_NEAR(JointSpeed(OneMoves(5), 10), 0.5, 1e-6);
+  EXPECT_NEAR(JointSpeed(OneMoves(5), 30), 1.5, 1e-6);
+  EXPECT_EQ(JointSpeed(OneMoves(1), 10), 0);
+}
+
+TEST(RangeOfMotionTest, IsTheLargestDistanceFromTheFirstFrame) {
+  motion::Poses there_and_back = OneMoves(5);
+  there_and_back.at(4, 1) = there_and_back.at(1, 1);
+  EXPECT_NEAR(RangeOfMotion(there_and_back), 0.15, 1e-6);  // 0.3 m and 0
+}
+
+TEST(WithoutNoiseTest, KeepsSteadyMotionAndTakesOutShaking) {
+  EXPECT_NEAR(JointSpeed(WithoutNoise(OneMoves(20), 15), 15), JointSpeed(OneMoves(20), 15), 1e-4);
+  const motion::Poses shaking = Shaking(40);
+  const motion::Poses calm = WithoutNoise(shaking, 15);
+  EXPECT_LT(JointSpeed(calm, 15), 0.1 * JointSpeed(shaking, 15));
+  EXPECT_LT(Jitter(calm, 15), 0.05 * Jitter(shaking, 15));
+}
+
+TEST(WithoutNoiseTest, FiltersTheSameTimeAtEveryRate) {
+  // A jump of 1 m in the middle of 2 s: what is left of it 0.1 s before, at 15 and at 60 Hz.
+  for (const int rate : {15, 60}) {
+    motion::Poses jump(2 * rate, 1);
+    for (int t = rate; t < 2 * rate; ++t) jump.at(t, 0) = {1, 0, 0};
+    const float before = WithoutNoise(jump, rate).at(rate - rate / 5, 0).x;
+    EXPECT_NEAR(before, 0.03, 0.02) << rate;
+    EXPECT_GT(before, 0.005) << rate;
+  }
+}
+
+}  // namespace
+}  // namespace duet::evaluation::metrics
