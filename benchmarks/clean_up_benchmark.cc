@@ -29,7 +29,7 @@ duet::motion::Poses Person(int frames, float z) {
 void BM_CleanUp(benchmark::State& state) {
   const int frames = static_cast<int>(state.range(0));
   const duet::cleanup::CleanUp clean_up(duet::motion::SbuSkeleton());
-  const duet::motion::Poses leader = Person(frames, 0), follower = Person(frames, 0.3f);
+  const duet::motion::Poses leader = Person(frames, 0), follower = Person(frames, 0.6f);
   const duet::cleanup::Touch touch(static_cast<std::size_t>(frames), 0);
   for (auto _ : state) {
     duet::motion::Poses cleaned = follower;

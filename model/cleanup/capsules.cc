@@ -32,7 +32,16 @@ struct Overlap {
   Vec3 out;  // of length 1
 };
 
+// Whether two capsules are near enough to look closer: the spheres around them meet.
+bool MayTouch(const Capsule& a, const Capsule& b) {
+  const Vec3 apart = (a.from + a.to - b.from - b.to) * 0.5f;
+  const float reach = (Distance(a.from, a.to) + Distance(b.from, b.to)) * 0.5f +
+                      static_cast<float>(a.radius + b.radius);
+  return Dot(apart, apart) < reach * reach;
+}
+
 Overlap FindOverlap(const Capsule& leader, const Capsule& follower, double allowed) {
+  if (!MayTouch(leader, follower)) return {};
   const motion::ClosestPoints closest =
       motion::FindClosestPoints(leader.from, leader.to, follower.from, follower.to);
   const double depth = leader.radius + follower.radius - allowed - closest.distance;

@@ -13,6 +13,8 @@ using motion::Vec3;
 
 // Takes the network's jitter out of a foot before it is judged.
 constexpr double kSmoothSeconds = 0.08;
+// The body follows its feet a little later, and smoothly.
+constexpr double kBodySmoothSeconds = 0.13;
 
 float Float(double value) { return static_cast<float>(value); }
 
@@ -48,9 +50,9 @@ float HoldAt(const Contact& contact, int frame, const ContactOptions& options,
   return SmoothStep(1 - outside / (timing.Frames(options.ease_seconds) + 1));
 }
 
-// How a foot is to be moved in a frame.
-Vec3 Hold(const std::vector<Contact>& contacts, Vec3 foot, int frame, const ContactOptions& options,
-          const Timing& timing) {
+// How a foot is to be moved along the floor in a frame.
+Vec3 HoldInFrame(const std::vector<Contact>& contacts, Vec3 foot, int frame,
+                 const ContactOptions& options, const Timing& timing) {
   Vec3 sum;
   float weights = 0;
   for (const Contact& contact : contacts) {
@@ -60,7 +62,19 @@ Vec3 Hold(const std::vector<Contact>& contacts, Vec3 foot, int frame, const Cont
     sum += (contact.place - foot) * weight;
     weights += weight;
   }
-  return sum / std::max(1.0f, weights);
+  const Vec3 hold = sum / std::max(1.0f, weights);
+  return {hold.x, 0, hold.z};
+}
+
+// The same in every frame; none while settled. Shapes: foot [frames]; returns [frames].
+std::vector<Vec3> Holds(const std::vector<Vec3>& foot, float floor, const ContactOptions& options,
+                        const Timing& timing) {
+  const std::vector<Contact> contacts = FindContacts(foot, floor, options, timing);
+  std::vector<Vec3> holds(foot.size());
+  for (std::size_t t = static_cast<std::size_t>(timing.settled); t < foot.size(); ++t) {
+    holds[t] = HoldInFrame(contacts, foot[t], static_cast<int>(t), options, timing);
+  }
+  return holds;
 }
 
 }  // namespace
@@ -91,14 +105,27 @@ std::vector<Contact> FindContacts(const std::vector<Vec3>& foot, float floor,
 
 void HoldContacts(const motion::Skeleton& skeleton, const Body& body, float floor,
                   const ContactOptions& options, const Timing& timing, motion::Poses* poses) {
+  if (body.legs.empty()) return;
+  const std::size_t frames = static_cast<std::size_t>(poses->frame_count());
+  std::vector<std::vector<Vec3>> places;  // of each foot, held
+  std::vector<Vec3> shifts(frames);
   for (const Limb& leg : body.legs) {
     std::vector<Vec3> foot;
     for (int t = 0; t < poses->frame_count(); ++t) foot.push_back(poses->at(t, leg.end));
-    const std::vector<Contact> contacts = FindContacts(foot, floor, options, timing);
-    for (int t = timing.settled; t < poses->frame_count(); ++t) {
-      const Vec3 now = foot[static_cast<std::size_t>(t)];
-      const Vec3 forward = skeleton.hips ? Facing(*skeleton.hips, (*poses)[t]) : Vec3{};
-      Reach(leg, now + Hold(contacts, now, t, options, timing), forward, (*poses)[t]);
+    const std::vector<Vec3> holds = Holds(foot, floor, options, timing);
+    for (std::size_t t = 0; t < frames; ++t) {
+      foot[t] += holds[t];
+      shifts[t] += holds[t] / Float(static_cast<double>(body.legs.size()));
+    }
+    places.push_back(foot);
+  }
+  shifts = LowPass(shifts, timing.Frames(kBodySmoothSeconds));
+  for (int t = timing.settled; t < poses->frame_count(); ++t) {
+    const std::size_t at = static_cast<std::size_t>(t);
+    for (Vec3& joint : (*poses)[t]) joint += shifts[at] * EaseIn(timing, t);
+    const Vec3 forward = skeleton.hips ? Facing(*skeleton.hips, (*poses)[t]) : Vec3{};
+    for (std::size_t leg = 0; leg < places.size(); ++leg) {
+      Reach(body.legs[leg], places[leg][at], forward, (*poses)[t]);
     }
   }
 }

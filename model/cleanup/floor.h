@@ -13,8 +13,8 @@ struct FloorOptions {
   bool enabled = true;
   // Feet up to the first distance above or below the floor are left alone; none stay beyond the
   // second. Metres.
-  double free_metres = 0.02;
-  double most_metres = 0.045;
+  double free_metres = 0.015;
+  double most_metres = 0.035;
   // What is in the air for less is a jump, and stays.
   double jump_seconds = 0.5;
 };

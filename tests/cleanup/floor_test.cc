@@ -31,7 +31,7 @@ TEST(StandOnFloor, WhatFloatsOrSinksIsBroughtThere) {
     const motion::Poses floating = Raised([&](double) { return off; });
     const motion::Poses standing = OnFloor(floating);
     for (const float height : LowerFoot(*motion::SbuSkeleton().feet, standing)) {
-      EXPECT_LT(std::abs(height - kFloor), 0.0451f) << off;
+      EXPECT_LT(std::abs(height - kFloor), 0.0351f) << off;
     }
     EXPECT_LT(LargestLengthChange(standing, floating), 1e-5f);
   }
@@ -60,7 +60,7 @@ TEST(StandOnFloor, AJumpStays) {
     return [=](double t) { return t > (kFrames - 1) / kRate - seconds ? 0.2 : 0; };
   };
   EXPECT_LT(LargestDistance(OnFloor(Raised(leave(0.3))), Raised(leave(0.3))), 1e-3f);
-  EXPECT_LT(OnFloor(Raised(leave(1))).at(kFrames - 1, 11).y, kFloor + 0.0451f);
+  EXPECT_LT(OnFloor(Raised(leave(1))).at(kFrames - 1, 11).y, kFloor + 0.0351f);
 }
 
 TEST(StandOnFloor, SettledFramesStayAndTheRestFollowsSmoothly) {
