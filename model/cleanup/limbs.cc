@@ -162,7 +162,7 @@ void Reach(const Limb& limb, Vec3 target, Vec3 forward, absl::Span<Vec3> pose) {
   const float cosine =
       std::clamp((thigh * thigh + reach * reach - shin * shin) / (2 * thigh * reach), -1.0f, 1.0f);
   const Vec3 to_middle = along * cosine + bend * std::sqrt(1 - cosine * cosine);
-  middle = upper + to_middle * thigh;
+  middle = upper + Unit(to_middle) * thigh;
   const Vec3 new_end = middle + Unit(upper + along * reach - middle) * shin;
   for (const int joint : limb.beyond) pose[static_cast<std::size_t>(joint)] += new_end - end;
   end = new_end;
