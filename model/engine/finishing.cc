@@ -1,6 +1,7 @@
 #include "model/engine/finishing.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <limits>
 
 #include "model/motion/limb_lengths.h"
@@ -41,6 +42,25 @@ void ShareFloor(const motion::Skeleton& skeleton, const SynthesisWindow& window,
   const motion::Vec3 lift{
       0, LowestFoot(*skeleton.feet, window.leader) - LowestFoot(*skeleton.feet, *follower), 0};
   for (motion::Vec3& position : follower->all()) position += lift;
+}
+
+cleanup::Touch TouchOf(const ModelDescription& description, const SynthesisWindow& window,
+                       const std::vector<std::string>& touching_classes) {
+  const std::size_t classes = description.classes.size();
+  cleanup::Touch touch(static_cast<std::size_t>(window.leader.frame_count()), 0);
+  for (std::size_t c = 0; c < classes; ++c) {
+    const auto& names = touching_classes;
+    if (std::find(names.begin(), names.end(), description.classes[c]) == names.end()) continue;
+    for (std::size_t t = 0; t < touch.size(); ++t) {
+      touch[t] += std::max(0.0f, window.labels[t * classes + c]);
+    }
+  }
+  for (float& share : touch) share = std::min(1.0f, share);
+  return touch;
+}
+
+int SettledFrames(const SynthesisWindow& window) {
+  return std::max(window.settled.frame_count(), window.start ? 1 : 0);
 }
 
 }  // namespace duet::engine

@@ -1,7 +1,12 @@
 #ifndef DUET_MODEL_ENGINE_FINISHING_H_
 #define DUET_MODEL_ENGINE_FINISHING_H_
 
+#include <string>
+#include <vector>
+
 #include "absl/status/status.h"
+#include "model/cleanup/clean_up.h"
+#include "model/engine/model_description.h"
 #include "model/engine/synthesizer.h"
 #include "model/motion/poses.h"
 #include "model/motion/skeleton.h"
@@ -21,6 +26,15 @@ void KeepLimbLengths(const motion::Skeleton& skeleton, const SynthesisWindow& wi
 // leader's. A skeleton without feet tells no floor: nothing changes.
 void ShareFloor(const motion::Skeleton& skeleton, const SynthesisWindow& window,
                 motion::Poses* follower);
+
+// How far the two may touch in each frame: the weight of the classes of these names, from 0 to 1.
+// Shapes: returns [frames].
+cleanup::Touch TouchOf(const ModelDescription& description, const SynthesisWindow& window,
+                       const std::vector<std::string>& touching_classes);
+
+// How many of the window's first frames nothing may change any more: those that are settled, or
+// else the one that a start tells.
+int SettledFrames(const SynthesisWindow& window);
 
 }  // namespace duet::engine
 

@@ -22,7 +22,7 @@ struct NetworkInput {
 };
 
 // The numbers in the middle of a synthesizer: what an engine implements. Everything around it
-// (standard coordinates, checks, limb lengths, floor) is MakeSynthesizer's.
+// (standard coordinates, checks, limb lengths, floor, clean-up) is MakeSynthesizer's.
 //
 // Threads: Run is safe to call concurrently.
 class Network {

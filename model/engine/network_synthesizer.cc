@@ -20,7 +20,8 @@ class NetworkSynthesizer : public Synthesizer {
       : description_(std::move(description)),
         origin_(origin),
         network_(std::move(network)),
-        options_(options) {}
+        options_(options),
+        clean_up_(description_.skeleton, options.cleaning) {}
 
   const ModelDescription& description() const override { return description_; }
 
@@ -70,13 +71,22 @@ class NetworkSynthesizer : public Synthesizer {
     if (absl::Status status = CheckFinite(follower); !status.ok()) return status;
     if (options_.keep_limb_lengths) KeepLimbLengths(description_.skeleton, window, &follower);
     if (options_.share_floor) ShareFloor(description_.skeleton, window, &follower);
+    if (IsCleanedUp(window)) {
+      clean_up_.Apply(window.leader, TouchOf(description_, window, options_.touching_classes),
+                      {description_.frame_rate_hz, SettledFrames(window)}, &follower);
+    }
     return follower;
+  }
+
+  bool IsCleanedUp(const SynthesisWindow& window) const {
+    return window.clean_up.value_or(options_.clean_up && description_.samples);
   }
 
   const ModelDescription description_;
   const motion::StandardOrigin origin_;
   const std::unique_ptr<const Network> network_;
   const PipelineOptions options_;
+  const cleanup::CleanUp clean_up_;
 };
 
 }  // namespace

@@ -2,7 +2,10 @@
 #define DUET_MODEL_ENGINE_NETWORK_SYNTHESIZER_H_
 
 #include <memory>
+#include <string>
+#include <vector>
 
+#include "model/cleanup/clean_up.h"
 #include "model/engine/model_description.h"
 #include "model/engine/network.h"
 #include "model/engine/synthesizer.h"
@@ -18,11 +21,18 @@ struct PipelineOptions {
   bool keep_limb_lengths = true;
   // A follower without a start is set, as a whole, on the leader's floor: both reach equally low.
   bool share_floor = true;
+  // A follower of a model that samples is made to stand, keep its feet still and keep out of the
+  // leader (model/cleanup). A model with one answer answers as it always did. A window may say
+  // otherwise.
+  bool clean_up = true;
+  cleanup::Options cleaning = {};
+  // Classes in which bodies touch as they like, as far as their label goes.
+  std::vector<std::string> touching_classes = {"hug"};
 };
 
 // A synthesizer around a network:
 //   WindowStandardisation, Standardise, Network::Run, Standardisation::Invert, CheckFinite,
-//   KeepLimbLengths, ShareFloor.
+//   KeepLimbLengths, ShareFloor, CleanUp.
 // `origin` is that of the standard coordinates which the network was trained in.
 std::unique_ptr<Synthesizer> MakeSynthesizer(ModelDescription description,
                                              motion::StandardOrigin origin,

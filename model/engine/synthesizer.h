@@ -37,6 +37,8 @@ struct SynthesisWindow {
   // leader's, the first of them the start's pose. Empty: the start alone is known. A model that
   // samples goes on from them; others read the start alone.
   motion::Poses settled;
+  // Whether the answer is cleaned up (model/cleanup). Absent: as the model's pipeline does.
+  std::optional<bool> clean_up;
 };
 
 // A follower's motion for one window: [frames, joints] in the leader's world, metres, y up.

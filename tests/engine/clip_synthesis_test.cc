@@ -26,8 +26,12 @@ constexpr int kJoints = 15;
 LabelTrack NoLabels() { return LabelTrack(std::vector<float>(6, 0)); }
 
 ClipRequest Request(int frames, double frame_rate_hz, LabelTrack labels = NoLabels()) {
-  return {SwayingMotion(frames, frame_rate_hz), frame_rate_hz, std::move(labels), std::nullopt,
-          std::nullopt};
+  return {SwayingMotion(frames, frame_rate_hz),
+          frame_rate_hz,
+          std::move(labels),
+          std::nullopt,
+          std::nullopt,
+          {}};
 }
 
 // What one run of a whole clip gave.

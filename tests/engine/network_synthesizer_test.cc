@@ -10,6 +10,7 @@
 #include "gtest/gtest.h"
 #include "model/engine/window_standardisation.h"
 #include "model/motion/limb_lengths.h"
+#include "tests/engine/rule_network.h"
 #include "tests/support/fake_synthesizer.h"
 #include "tests/support/sample_motion.h"
 #include "tests/support/status_matchers.h"
@@ -25,19 +26,6 @@ using test::SwayingPose;
 
 using ::testing::HasSubstr;
 
-using Inputs = absl::Span<const NetworkInput>;
-using Answer = absl::StatusOr<std::vector<motion::Poses>>;
-
-// A network that answers by a rule.
-class RuleNetwork : public Network {
- public:
-  explicit RuleNetwork(std::function<Answer(Inputs)> rule) : rule_(std::move(rule)) {}
-  Answer Run(Inputs inputs) const override { return rule_(inputs); }
-
- private:
-  std::function<Answer(Inputs)> rule_;
-};
-
 std::unique_ptr<Synthesizer> Model(
     std::function<Answer(Inputs)> rule, const PipelineOptions& options = {},
     ModelDescription description = FakeDescription(),
@@ -46,7 +34,7 @@ std::unique_ptr<Synthesizer> Model(
                          std::make_unique<RuleNetwork>(std::move(rule)), options);
 }
 
-constexpr PipelineOptions kAsTheNetworkSays = {false, false};
+const PipelineOptions kAsTheNetworkSays = {false, false, false};
 
 // The leader, half as large again and half a metre higher.
 Answer LargerAndHigher(Inputs inputs) {

@@ -9,17 +9,6 @@
 
 namespace duet::evaluation::metrics {
 
-// The distance of the closest points of the segments a0-a1 and b0-b1; either may be a point.
-double SegmentDistance(motion::Vec3 a0, motion::Vec3 a1, motion::Vec3 b0, motion::Vec3 b1);
-
-// The radius of the capsule around each bone, metres: 0.045 for a bone within a part with "arm" in
-// its name, 0.065 with "leg", 0.09 for the bone that ends in a joint called "head", 0.11 for any
-// other (trunk, shoulders, hips). Shapes: returns [bones].
-// Source: half the breadth of adult limbs; less than half of the trunk's, whose bones fan out from
-// the middle. Rough: compare figures with those of captured pairs, not with zero.
-std::vector<double> CapsuleRadii(const motion::Skeleton& skeleton,
-                                 const std::vector<motion::BodyPart>& parts);
-
 // How far two bodies reach into each other. A frame's depth is the largest max(0, r1 + r2 - d) over
 // all pairs of a leader's and a follower's bone, with radii r1 and r2 at a distance d. Less is not
 // always better (people who hug do touch): read it beside the captured pair's.

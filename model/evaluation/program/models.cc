@@ -12,7 +12,7 @@ namespace {
 using SharedSynthesizer = std::shared_ptr<const engine::Synthesizer>;
 
 absl::StatusOr<SharedSynthesizer> LoadOne(const ModelChoice& choice) {
-  const engine::PipelineOptions options{choice.as_served, choice.as_served};
+  const engine::PipelineOptions options{choice.as_served, choice.as_served, choice.as_served};
   if (choice.embedded) {
     absl::StatusOr<std::vector<std::unique_ptr<engine::Synthesizer>>> all =
         torch_engine::LoadEmbeddedSynthesizers(options);

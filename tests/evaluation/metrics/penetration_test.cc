@@ -2,64 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <random>
-
 namespace duet::evaluation::metrics {
 namespace {
-
-TEST(SegmentDistanceTest, KnownCases) {
-  const motion::Vec3 o = {0, 0, 0}, x = {1, 0, 0};
-  EXPECT_NEAR(SegmentDistance(o, x, {0.5f, -1, 2}, {0.5f, 1, 2}), 2, 1e-6);      // crossing
-  EXPECT_NEAR(SegmentDistance(o, x, {0, 3, 0}, {1, 3, 0}), 3, 1e-6);             // parallel
-  EXPECT_NEAR(SegmentDistance(o, x, {4, 4, 0}, {9, 4, 0}), 5, 1e-6);             // parallel, apart
-  EXPECT_NEAR(SegmentDistance(o, x, {3, 0, 0}, {7, 0, 0}), 2, 1e-6);             // in line
-  EXPECT_NEAR(SegmentDistance(o, x, {0.25f, 0, 0}, {0.75f, 0, 0}), 0, 1e-6);     // overlapping
-  EXPECT_NEAR(SegmentDistance(o, o, {0, 2, -1}, {0, 2, 1}), 2, 1e-6);            // point, segment
-  EXPECT_NEAR(SegmentDistance({0, 2, -1}, {0, 2, 1}, o, o), 2, 1e-6);            // segment, point
-  EXPECT_NEAR(SegmentDistance(o, o, {3, 4, 0}, {3, 4, 0}), 5, 1e-6);             // two points
-  EXPECT_NEAR(SegmentDistance(o, x, {2, 1, 0}, {2, 5, 0}), std::sqrt(2), 1e-6);  // corner
-}
-
-TEST(SegmentDistanceTest, AgreesWithAFineGrid) {
-  std::mt19937 random(1);
-  std::uniform_real_distribution<float> uniform(-1, 1);
-  const auto point = [&] {
-    return motion::Vec3{uniform(random), uniform(random), uniform(random)};
-  };
-  constexpr int kSteps = 100;
-  for (int trial = 0; trial < 30; ++trial) {
-    const motion::Vec3 a0 = point(), a1 = point(), b0 = point(), b1 = point();
-    double best = 10;
-    for (int s = 0; s <= kSteps; ++s) {
-      for (int t = 0; t <= kSteps; ++t) {
-        best = std::min<double>(best, Distance(Lerp(a0, a1, static_cast<float>(s) / kSteps),
-                                               Lerp(b0, b1, static_cast<float>(t) / kSteps)));
-      }
-    }
-    const double exact = SegmentDistance(a0, a1, b0, b1);
-    EXPECT_LE(exact, best + 1e-6);
-    EXPECT_NEAR(exact, best, 0.02);
-  }
-}
-
-TEST(CapsuleRadiiTest, FollowTheBodyParts) {
-  const motion::Skeleton skeleton = motion::SbuSkeleton();
-  const std::vector<double> radii = CapsuleRadii(skeleton, motion::SbuParts());
-  const auto radius = [&](const char* parent, const char* child) {
-    for (size_t i = 0; i < skeleton.bones.size(); ++i) {
-      if (skeleton.bones[i] == motion::Bone{skeleton.Find(parent), skeleton.Find(child)})
-        return radii[i];
-    }
-    return -1.0;
-  };
-  EXPECT_EQ(radius("left_elbow", "left_hand"), 0.045);
-  EXPECT_EQ(radius("right_knee", "right_foot"), 0.065);
-  EXPECT_EQ(radius("neck", "head"), 0.09);
-  EXPECT_EQ(radius("torso", "neck"), 0.11);
-  EXPECT_EQ(radius("neck", "left_shoulder"), 0.11);
-  EXPECT_EQ(radius("torso", "right_hip"), 0.11);
-}
 
 TEST(PenetrationTest, MeasuresDepthAndFrequency) {
   motion::Skeleton skeleton;

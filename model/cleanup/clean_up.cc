@@ -1,0 +1,33 @@
+#include "model/cleanup/clean_up.h"
+
+namespace duet::cleanup {
+
+CleanUp::CleanUp(const motion::Skeleton& skeleton, const Options& options)
+    : skeleton_(skeleton),
+      options_(options),
+      body_(FindBody(skeleton)),
+      radii_(CapsuleRadii(skeleton, body_)) {}
+
+void CleanUp::Apply(const motion::Poses& leader, const Touch& touch, const Timing& timing,
+                    motion::Poses* follower) const {
+  // The whole body first, then its limbs, so that what is held stays held.
+  if (options_.upright.enabled) SetUpright(skeleton_, body_, options_.upright, timing, follower);
+  if (options_.spacing.enabled) {
+    KeepSpacing(skeleton_.root, leader, options_.spacing, timing, follower);
+  }
+  if (options_.capsules.enabled) {
+    PartBodies(skeleton_, body_, radii_, leader, touch, options_.capsules, timing, follower);
+  }
+  if (skeleton_.feet) {
+    const float floor = FloorHeight(*skeleton_.feet, leader);
+    if (options_.floor.enabled) StandOnFloor(skeleton_, floor, options_.floor, timing, follower);
+    if (options_.contacts.enabled) {
+      HoldContacts(skeleton_, body_, floor, options_.contacts, timing, follower);
+    }
+  }
+  if (options_.capsules.enabled) {
+    PartArms(skeleton_, body_, radii_, leader, touch, options_.capsules, timing, follower);
+  }
+}
+
+}  // namespace duet::cleanup

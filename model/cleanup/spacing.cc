@@ -1,0 +1,53 @@
+#include "model/cleanup/spacing.h"
+
+#include <algorithm>
+#include <cstddef>
+
+#include "model/cleanup/low_pass.h"
+
+namespace duet::cleanup {
+namespace {
+
+using motion::Vec3;
+
+// The distance that the farthest follower approaches, as a share of the farthest allowed.
+constexpr float kSoftness = 1.1f;
+// Below this, metres, an offset tells no direction.
+constexpr float kNoDirection = 1e-3f;
+
+Vec3 ShiftFor(Vec3 offset, const SpacingOptions& options) {
+  const float distance = Norm(offset);
+  if (distance < kNoDirection) return {};
+  const float farthest = static_cast<float>(options.farthest_metres);
+  const float wanted = std::max(static_cast<float>(options.nearest_metres),
+                                SoftLimit(distance, farthest, farthest * kSoftness));
+  return offset * (wanted / distance - 1);
+}
+
+}  // namespace
+
+void ShiftBody(const std::vector<Vec3>& shifts, double fastest_metres_per_second,
+               const Timing& timing, motion::Poses* poses) {
+  const float step = static_cast<float>(fastest_metres_per_second / timing.frame_rate_hz);
+  Vec3 shift = timing.settled == 0 ? shifts.front() : Vec3{};
+  for (int t = timing.settled; t < poses->frame_count(); ++t) {
+    const Vec3 way = shifts[static_cast<std::size_t>(t)] * EaseIn(timing, t) - shift;
+    const float length = Norm(way);
+    shift += length > step ? way * (step / length) : way;
+    for (Vec3& joint : (*poses)[t]) joint += shift;
+  }
+}
+
+void KeepSpacing(int root, const motion::Poses& leader, const SpacingOptions& options,
+                 const Timing& timing, motion::Poses* follower) {
+  std::vector<Vec3> shifts;
+  for (int t = 0; t < follower->frame_count(); ++t) {
+    const Vec3 offset = follower->at(t, root) - leader.at(t, root);
+    shifts.push_back({offset.x, 0, offset.z});
+  }
+  shifts = LowPass(shifts, timing.Frames(options.sigma_seconds));
+  for (Vec3& shift : shifts) shift = ShiftFor(shift, options);
+  ShiftBody(shifts, options.fastest_metres_per_second, timing, follower);
+}
+
+}  // namespace duet::cleanup

@@ -1,0 +1,35 @@
+#ifndef DUET_MODEL_CLEANUP_UPRIGHT_H_
+#define DUET_MODEL_CLEANUP_UPRIGHT_H_
+
+#include <vector>
+
+#include "model/cleanup/limbs.h"
+#include "model/cleanup/timing.h"
+#include "model/motion/poses.h"
+#include "model/motion/skeleton.h"
+#include "model/motion/vec3.h"
+
+namespace duet::cleanup {
+
+struct UprightOptions {
+  bool enabled = true;
+  // A lean up to the first angle is left alone; none that lasts goes beyond the second.
+  double free_degrees = 12;
+  double most_degrees = 14;
+  // A lean lasts when it outlives a Gaussian of this deviation: a bow or a kick does not.
+  double sigma_seconds = 0.5;
+};
+
+// Where the trunk points in every frame, for longer than a moment: from between the feet to the
+// chest, of length 1. Requires feet and a chest. Shapes: returns [frames].
+std::vector<motion::Vec3> LastingLean(const motion::JointPair& feet, int chest,
+                                      const motion::Poses& poses, double sigma_frames);
+
+// Turns a body that leans for longer than a moment back towards upright, whichever way it leans,
+// about the point between its feet. A skeleton without hips or feet stays as it is.
+void SetUpright(const motion::Skeleton& skeleton, const Body& body, const UprightOptions& options,
+                const Timing& timing, motion::Poses* poses);
+
+}  // namespace duet::cleanup
+
+#endif  // DUET_MODEL_CLEANUP_UPRIGHT_H_

@@ -1,0 +1,47 @@
+#include "model/cleanup/timing.h"
+
+#include <vector>
+
+#include "gtest/gtest.h"
+#include "model/cleanup/low_pass.h"
+
+namespace duet::cleanup {
+namespace {
+
+TEST(EaseIn, NothingWhileSettledThenMoreAndMoreOverAThirdOfASecond) {
+  const Timing timing{15, 4};
+  EXPECT_EQ(EaseIn(timing, 0), 0);
+  EXPECT_EQ(EaseIn(timing, 3), 0);
+  for (int t = 4; t < 9; ++t) EXPECT_GT(EaseIn(timing, t), EaseIn(timing, t - 1)) << t;
+  EXPECT_LT(EaseIn(timing, 8), 1);
+  EXPECT_EQ(EaseIn(timing, 9), 1);
+  EXPECT_EQ(EaseIn(timing, 40), 1);
+}
+
+TEST(EaseIn, TakesAsLongAtEveryRate) {
+  EXPECT_LT(EaseIn({60, 10}, 10 + 19), 1);
+  EXPECT_EQ(EaseIn({60, 10}, 10 + 20), 1);
+}
+
+TEST(EaseIn, EverythingAtOnceWhereNothingIsSettled) { EXPECT_EQ(EaseIn({15, 0}, 0), 1); }
+
+TEST(SoftLimit, LeavesWhatIsSmallAndHoldsWhatIsLarge) {
+  EXPECT_EQ(SoftLimit(0, 12, 14), 0);
+  EXPECT_EQ(SoftLimit(12, 12, 14), 12);
+  EXPECT_NEAR(SoftLimit(12.01f, 12, 14), 12.01f, 1e-4f);
+  EXPECT_GT(SoftLimit(14, 12, 14), 13);
+  EXPECT_LE(SoftLimit(90, 12, 14), 14);
+}
+
+TEST(LowPass, KeepsALevelAndTakesOutASpike) {
+  std::vector<float> track(31, 2);
+  for (const float value : LowPass(track, 3)) EXPECT_NEAR(value, 2, 1e-6f);
+  track[15] = 10;
+  const std::vector<float> smooth = LowPass(track, 3);
+  EXPECT_LT(smooth[15], 3.2f);
+  EXPECT_NEAR(smooth[15], 2 + 8 / (3 * std::sqrt(2 * 3.14159265f)), 0.01f);
+  EXPECT_EQ(smooth[5], 2);  // farther away than three deviations
+}
+
+}  // namespace
+}  // namespace duet::cleanup

@@ -1,0 +1,67 @@
+#include "model/cleanup/upright.h"
+
+#include "tests/cleanup/bodies.h"
+
+namespace duet::cleanup {
+namespace {
+
+using motion::Vec3;
+
+motion::Poses Upright(motion::Poses poses, int settled = 0,
+                      const motion::Skeleton& skeleton = motion::SbuSkeleton()) {
+  SetUpright(skeleton, FindBody(skeleton), {}, {kRate, settled}, &poses);
+  return poses;
+}
+
+motion::Poses Leaning(double degrees) {
+  return Changed(Puppet(), [&](int, Vec3 joint) { return LeanForwards(joint, degrees); });
+}
+
+TEST(SetUpright, ALeanThatLastsIsTakenBackWhicheverWay) {
+  for (const double degrees : {20.0, 60.0}) {
+    for (const double yaw : {0.0, 1.0, 2.5, 4.0}) {
+      const motion::Poses leaning =
+          Changed(Leaning(degrees), [&](int, Vec3 joint) { return RotateY(joint, yaw); });
+      const motion::Poses upright = Upright(leaning);
+      for (int t = 0; t < kFrames; ++t) {
+        EXPECT_LE(LeanDegrees(upright, t), 14.01) << degrees;
+        EXPECT_GE(LeanDegrees(upright, t), 11.9) << degrees;
+      }
+      EXPECT_LT(LargestLengthChange(upright, leaning), 1e-5f);
+      // Turned about the point between the feet.
+      EXPECT_LT(Distance(Lerp(upright.at(9, 11), upright.at(9, 14), 0.5f),
+                         Lerp(leaning.at(9, 11), leaning.at(9, 14), 0.5f)),
+                1e-5f);
+    }
+  }
+}
+
+TEST(SetUpright, AnUprightBodyStays) {
+  EXPECT_EQ(Upright(Puppet()), Puppet());
+  EXPECT_EQ(Upright(Leaning(8)), Leaning(8));
+}
+
+TEST(SetUpright, AShortBowStays) {
+  // Up to 30 degrees and back within 0.6 seconds.
+  const motion::Poses bow = Changed(Puppet(), [](int t, Vec3 joint) {
+    const double at = (t - 20) / (0.6 * kRate);
+    return LeanForwards(joint, at > 0 && at < 1 ? 30 * std::sin(3.14159 * at) : 0);
+  });
+  EXPECT_GT(LeanDegrees(Upright(bow), 24), LeanDegrees(bow, 24) - 2);
+}
+
+TEST(SetUpright, SettledFramesStayAndTheRestFollowsSmoothly) {
+  const motion::Poses leaning = Leaning(25);
+  const motion::Poses upright = Upright(leaning, 10);
+  for (int t = 0; t < 10; ++t) EXPECT_EQ(upright[t], leaning[t]);
+  EXPECT_LT(LeanDegrees(upright, 16), 14.01);
+  EXPECT_LT(LargestStep(upright), 0.1f);
+}
+
+TEST(SetUpright, NeedsHipsAndFeet) {
+  EXPECT_EQ(Upright(Leaning(30), 0, WithoutHips()), Leaning(30));
+  EXPECT_EQ(Upright(Leaning(30), 0, WithoutFeet()), Leaning(30));
+}
+
+}  // namespace
+}  // namespace duet::cleanup
