@@ -85,7 +85,7 @@ class Workshop:
     def build_and_time(self, runs):
         """Builds the tests as they are. They must pass; how long they take sets their limits."""
         programs = sorted({run.program for run in runs})
-        environment = {**os.environ, "CCACHE_BASEDIR": str(self.source_dir),
+        environment = {**os.environ, "CCACHE_BASEDIR": str(self.source_dir.parent),
                        "CCACHE_NOHASHDIR": "1"}
         subprocess.run(["ninja", "-C", self.build_dir, *programs], check=True, env=environment,
                        stdout=subprocess.DEVNULL)
