@@ -21,9 +21,9 @@ std::optional<Detail> ReadDetail(const absl::Status& status, std::string_view ty
 }  // namespace
 
 std::vector<FieldViolation> FieldViolations(const absl::Status& status) {
-  std::vector<FieldViolation> violations;
   const auto detail = ReadDetail<rpc::v1::BadRequest>(status, "BadRequest");
-  if (!detail.has_value()) return violations;
+  if (!detail.has_value()) return {};
+  std::vector<FieldViolation> violations;
   for (const rpc::v1::BadRequest::FieldViolation& violation : detail->field_violations()) {
     violations.push_back({violation.field(), violation.description()});
   }

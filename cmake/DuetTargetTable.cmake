@@ -1,7 +1,8 @@
 # Writes <build>/targets.json once everything is configured: each target of the project with its
-# sources and what it links. The scripts in scripts/ read it, so that none keeps a list of its own.
+# sources, what it links and which programs of the project it runs. The scripts in scripts/ read it, so
+# that none keeps a list of its own.
 #   [{"name": "duet_motion", "type": "STATIC_LIBRARY", "sources": ["model/motion/resample.cc", ...],
-#     "public": ["absl::status", ...], "private": []}, ...]
+#     "public": ["absl::status", ...], "private": [], "runs": []}, ...]
 # Sources are relative to the top folder; duet:: aliases are resolved.
 
 # Sets OUT to every target made in FOLDER and below.
@@ -55,6 +56,21 @@ function(duet_links_of target property out)
   set(${out} ${links} PARENT_SCOPE)
 endfunction()
 
+# Sets OUT to the programs of the project that TARGET waits for without linking them: it runs them.
+function(duet_runs_of target out)
+  get_target_property(items ${target} MANUALLY_ADDED_DEPENDENCIES)
+  set(runs "")
+  foreach(item IN LISTS items)
+    if(TARGET ${item})
+      get_target_property(type ${item} TYPE)
+      if(type STREQUAL EXECUTABLE)
+        list(APPEND runs ${item})
+      endif()
+    endif()
+  endforeach()
+  set(${out} ${runs} PARENT_SCOPE)
+endfunction()
+
 function(duet_write_target_table)
   duet_targets_below(${PROJECT_SOURCE_DIR} targets)
   set(rows "")
@@ -64,10 +80,11 @@ function(duet_write_target_table)
     duet_links_of(${target} INTERFACE_LINK_LIBRARIES public)
     duet_links_of(${target} LINK_LIBRARIES private)
     list(REMOVE_ITEM private ${public})
-    foreach(list sources public private)
+    duet_runs_of(${target} runs)
+    foreach(list sources public private runs)
       duet_json_array(${list} ${${list}})
     endforeach()
-    list(APPEND rows "{\"name\": \"${target}\", \"type\": \"${type}\", \"sources\": ${sources}, \"public\": ${public}, \"private\": ${private}}")
+    list(APPEND rows "{\"name\": \"${target}\", \"type\": \"${type}\", \"sources\": ${sources}, \"public\": ${public}, \"private\": ${private}, \"runs\": ${runs}}")
   endforeach()
   list(JOIN rows ",\n " rows)
   file(WRITE ${PROJECT_BINARY_DIR}/targets.json "[${rows}]\n")

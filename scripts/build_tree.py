@@ -20,6 +20,7 @@ class Target:
     sources: tuple  # relative to the top folder
     public: tuple  # what it links; its users link them as well
     private: tuple
+    runs: tuple = ()  # programs of the project that it starts
 
     @property
     def links(self):
@@ -34,7 +35,8 @@ def read_targets(build_dir):
     """The targets of cmake/DuetTargetTable.cmake by name."""
     rows = json.loads((pathlib.Path(build_dir) / "targets.json").read_text(encoding="utf-8"))
     return {row["name"]: Target(row["name"], row["type"], tuple(row["sources"]),
-                                tuple(row["public"]), tuple(row["private"])) for row in rows}
+                                tuple(row["public"]), tuple(row["private"]), tuple(row["runs"]))
+            for row in rows}
 
 
 def closure(targets, name):

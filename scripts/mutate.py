@@ -4,9 +4,10 @@
 Works on copies of the tree below build/mutate, one for each job: the sources are never touched. Of
 each room (a folder of a library that needs no LibTorch) a sample of mutations is drawn by --seed;
 each is compiled into the room's test programs, which then run. What does not compile is replaced by
-the next draw. First come the test programs of the room's own folder in tests/, then the others that
-link its library. A run that is stopped goes on where it was; a mutation that was caught counts as
-caught until its file changes, one that survived is tried again after any change.
+the next draw. First come the tests of the room's own folder in tests/, then all the others of the
+programs that link its library or start one that does. A run that is stopped goes on where it was; a
+mutation that was caught counts as caught until its file changes, one that survived is tried again
+after any change.
 
     scripts/mutate.py [--rooms model/motion server/*] [--per-room 30] [--seed 1] [--jobs 2]
                       [--report docs/mutation.md] [--wanted 90] [--fresh]
@@ -158,10 +159,11 @@ def main(arguments):
     for room in left_out:
         print(f"{room}: left out, no test program without LibTorch links it")
         del rooms[room]
-    programs = sorted({program for tiers in tests.values() for tier in tiers for program in tier})
-    print(f"Building and running {len(programs)} test programs as they are.", flush=True)
+    runs = sorted({run for tiers in tests.values() for tier in tiers for run in tier})
+    print(f"Building and running {len({run.program for run in runs})} test programs as they are.",
+          flush=True)
     for shop in shops:
-        shop.build_and_time(programs)
+        shop.build_and_time(runs)
 
     journal = mutation_journal.Journal(WORK / "journal.jsonl", build_tree.ROOT, options.fresh)
     run = Run(shops, journal, targets, tests)

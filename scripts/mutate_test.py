@@ -17,6 +17,7 @@ import mutation_report
 import mutation_workshop
 import mutations
 import test_project
+from mutation_workshop import TestRun
 
 CODE = "bool f(int a) {\n  return a < 3;\n}\n"
 
@@ -29,7 +30,7 @@ class FakeShop:
 
     def attempt(self, file, text, own, others):
         self.tried.append(text)
-        return {"outcome": self.outcome(text), "by": own[0], "own": True}
+        return {"outcome": self.outcome(text), "by": own[0].program, "own": True}
 
     def restore(self, file, text):
         self.restored.append(file)
@@ -46,13 +47,13 @@ class MutateTest(test_project.ProjectTestCase):
                     private=["duet_motion", "GTest::gtest_main"])
         self.target("cli_test", ["tests/client/cli_test.cc"], kind="EXECUTABLE",
                     private=["duet_motion", "GTest::gtest_main"])
-        self.targets = build_tree.read_targets(self.build_dir)
-        self.rooms = mutate.rooms_of(self.targets, self.root)
+        self.table = build_tree.read_targets(self.build_dir)
+        self.rooms = mutate.rooms_of(self.table, self.root)
 
     def run_room(self, shop, wanted=100):
         journal = mutation_journal.Journal(self.root / "journal.jsonl", self.root)
-        tests = {("duet_motion", "model/motion/clip.cc"): (["motion_test"], [])}
-        run = mutate.Run([shop], journal, self.targets, tests)
+        tests = {("duet_motion", "model/motion/clip.cc"): ([TestRun("motion_test")], [])}
+        run = mutate.Run([shop], journal, self.table, tests)
         drawn = mutate.draw("model/motion", self.rooms["model/motion"], self.root, seed=1)
         with contextlib.redirect_stdout(io.StringIO()):
             return run.room("model/motion", self.rooms["model/motion"], drawn, wanted)
@@ -68,8 +69,33 @@ class MutateTest(test_project.ProjectTestCase):
 
     def test_tests_of_the_own_folder_come_first(self):
         self.assertEqual(
-            mutation_workshop.tests_for(self.targets, "duet_motion", "model/motion/clip.cc"),
-            (["motion_test"], ["cli_test"]))
+            mutation_workshop.tests_for(self.table, "duet_motion", "model/motion/clip.cc"),
+            ([TestRun("motion_test")], [TestRun("cli_test")]))
+
+    def test_programs_that_start_one_with_the_library_count(self):
+        self.target("server", ["server/main.cc"], kind="EXECUTABLE", private=["duet_motion"])
+        self.target("process_test", ["tests/integration/process_test.cc"], kind="EXECUTABLE",
+                    private=["GTest::gtest_main"], runs=["server"])
+        self.target("trainer", ["model/main.cc"], kind="EXECUTABLE",
+                    private=["duet_motion", "duet_torch"])
+        self.target("trainer_test", ["tests/integration/trainer_test.cc"], kind="EXECUTABLE",
+                    private=["GTest::gtest_main"], runs=["trainer"])
+        _, others = mutation_workshop.tests_for(build_tree.read_targets(self.build_dir),
+                                                "duet_motion", "model/motion/clip.cc")
+        self.assertEqual(others, [TestRun("cli_test"), TestRun("process_test")])
+
+    def test_own_suites_of_a_shared_program_come_before_the_rest_of_it(self):
+        self.write("tests/motion/clip_test.cc",
+                   text="TEST(Clip, Ends) {}\nTEST_P(Rates, Hold) {}\n")
+        self.write("tests/other/pose_test.cc", text="TEST(Pose, Stands) {}\n")
+        self.target("both_test", ["tests/motion/clip_test.cc", "tests/other/pose_test.cc"],
+                    kind="EXECUTABLE", private=["duet_motion", "GTest::gtest_main"])
+        own, others = mutation_workshop.tests_for(build_tree.read_targets(self.build_dir),
+                                                  "duet_motion", "model/motion/clip.cc", self.root)
+        self.assertEqual(own, [TestRun("both_test", "Clip.*:*/Clip.*:Clip/*:"
+                                                    "Rates.*:*/Rates.*:Rates/*"),
+                               TestRun("motion_test")])
+        self.assertEqual(others, [TestRun("both_test"), TestRun("cli_test")])
 
     def test_every_mutation_is_tried_and_the_file_restored(self):
         shop = FakeShop()

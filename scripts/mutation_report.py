@@ -8,7 +8,7 @@ HEAD = """# Mutation score
 
 How often the tests notice when the code is broken on purpose. `make mutate` changes one operator, constant,
 condition, return or statement at a time in the parts that need no LibTorch, builds the test programs that link the
-changed file, and runs them. A change that no test notices survived: a hole in the tests, or a change without effect.
+changed file or start a program that does, and runs them. A change that no test notices survived: a hole in the tests, or a change without effect.
 Debian has no mutation tester for C++ (nothing by that name for GCC or Clang), so `scripts/mutate.py` is one.
 
 Written by `{command}` on {date}: up to {per_room} changes that compile

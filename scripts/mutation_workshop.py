@@ -2,11 +2,13 @@
 
 import os
 import pathlib
+import re
 import resource
 import shutil
 import signal
 import subprocess
 import time
+import typing
 
 import build_tree
 
@@ -17,32 +19,55 @@ CONFIGURE = ("-G", "Ninja", "-DCMAKE_BUILD_TYPE=Debug", "-DDUET_BUILD_TESTS=ON",
              "-DCMAKE_CXX_FLAGS_DEBUG=-O0 -D_GLIBCXX_ASSERTIONS")
 BUILD_LIMIT_S = 300
 MEMORY_LIMIT = 4 << 30  # bytes of address space: a mutation may allocate without end
+SUITE = re.compile(r"^(?:TYPED_)?TEST(?:_F|_P)?\((\w+)", re.MULTILINE)
 
 
-def tests_for(targets, library, file):
-    """The test programs that judge a file: those of its own folder in tests/, then the others that
-    link its library."""
-    users = [name for name, target in targets.items()
-             if not target.is_library and "GTest::gtest_main" in target.links
-             and build_tree.is_torch_free(targets, name)
-             and library in build_tree.closure(targets, name)]
-    own = own_tests(targets, users, file)
-    others = [name for name in users if name not in own and library in targets[name].links]
-    return own, sorted(others)
+class TestRun(typing.NamedTuple):
+    """A test program, or those of its suites that `filter` (GoogleTest's) lets through."""
+    program: str
+    filter: str = "*"
 
 
-def own_tests(targets, users, file):
-    """Of the programs `users`, those with sources in the folder of tests/ that mirrors the file's,
-    or the nearest above it that has any."""
+def tests_for(targets, library, file, root=build_tree.ROOT):
+    """What judges a file: the tests of its own folder in tests/, then all the others of programs
+    that link its library, or that start a program which links it."""
+    reach = {name: (name, *target.runs) for name, target in targets.items()
+             if not target.is_library and "GTest::gtest_main" in target.links}
+    users = [name for name, linked in reach.items()
+             if all(build_tree.is_torch_free(targets, item) for item in linked)
+             and any(library in build_tree.closure(targets, item) for item in linked)]
+    own = own_tests(targets, users, file, root)
+    whole = {run.program for run in own if run == TestRun(run.program)}
+    parts = {run.program for run in own} - whole
+    others = [name for name in users if name in parts or name not in whole
+              and any(library in targets[item].links for item in reach[name])]
+    return own, [TestRun(name) for name in sorted(others)]
+
+
+def own_tests(targets, users, file, root):
+    """Of the programs `users`, the suites whose sources are in the folder of tests/ that mirrors
+    the file's, or the nearest above it that has any."""
     room = pathlib.PurePosixPath(file).parent
     mirror = room.relative_to("model") if room.parts[0] == "model" else room
     for folder in (mirror, *mirror.parents):
-        found = [name for name in users
+        found = [TestRun(name, suites_in(targets[name].sources, "tests" / folder, root))
+                 for name in users
                  if any(pathlib.PurePosixPath(source).parent == "tests" / folder
                         for source in targets[name].sources)]
         if found and folder.parts:
             return sorted(found)
     return []
+
+
+def suites_in(sources, folder, root):
+    """A filter for the suites of the sources in a folder; "*" where the program has no others."""
+    inside = [source for source in sources if pathlib.PurePosixPath(source).parent == folder]
+    if len(inside) == len(sources):
+        return "*"
+    suites = {suite for source in inside
+              for suite in SUITE.findall((root / source).read_text(encoding="utf-8"))}
+    # Suites with parameters or types have a name in front or behind.
+    return ":".join(f"{suite}.*:*/{suite}.*:{suite}/*" for suite in sorted(suites))
 
 
 class Workshop:
@@ -57,30 +82,31 @@ class Workshop:
         subprocess.run(["cmake", "-S", self.source_dir, "-B", self.build_dir, *CONFIGURE],
                        check=True, stdout=subprocess.DEVNULL)
 
-    def build_and_time(self, programs):
+    def build_and_time(self, runs):
         """Builds the tests as they are. They must pass; how long they take sets their limits."""
-        environment = {**os.environ, "CCACHE_BASEDIR": str(self.source_dir),
+        programs = sorted({run.program for run in runs})
+        environment = {**os.environ, "CCACHE_BASEDIR": str(self.source_dir.parent),
                        "CCACHE_NOHASHDIR": "1"}
         subprocess.run(["ninja", "-C", self.build_dir, *programs], check=True, env=environment,
                        stdout=subprocess.DEVNULL)
         self.tests = build_tree.read_tests(self.build_dir)
-        for program in programs:
+        for run in runs:
             start = time.monotonic()
-            if self.run(program, limit_s=600) != "passed":
-                raise SystemExit(f"{program} fails as it is: mend it first")
-            self.limits[program] = 10 + 5 * (time.monotonic() - start)
+            if self.run(run, limit_s=600) != "passed":
+                raise SystemExit(f"{run.program} fails as it is: mend it first")
+            self.limits[run] = 10 + 5 * (time.monotonic() - start)
 
     def attempt(self, file, text, own, others):
         """Puts a mutated file in place, builds, tests: the outcome, and who noticed."""
         self.write(file, text)
-        for programs in filter(None, (own, others)):
-            if not self.build(programs):
+        for runs in filter(None, (own, others)):
+            if not self.build(sorted({run.program for run in runs})):
                 return {"outcome": "invalid"}
-            for program in programs:
-                result = self.run(program, self.limits[program])
+            for run in runs:
+                result = self.run(run, self.limits[run])
                 if result != "passed":
                     return {"outcome": "caught" if result == "failed" else "timeout",
-                            "by": program, "own": program in own}
+                            "by": run.program, "own": run in own}
         return {"outcome": "survived"}
 
     def restore(self, file, text):
@@ -94,10 +120,11 @@ class Workshop:
         return limited(["ninja", "-C", self.build_dir, *programs], BUILD_LIMIT_S,
                        {**os.environ, "CCACHE_DISABLE": "1"}) == "passed"
 
-    def run(self, program, limit_s):
-        command, environment, _ = self.tests[program]
-        return limited([*command, "--gtest_fail_fast", "--gtest_brief=1"], limit_s,
-                       {**os.environ, **environment}, memory=MEMORY_LIMIT)
+    def run(self, run, limit_s):
+        command, environment, _ = self.tests[run.program]
+        return limited([*command, f"--gtest_filter={run.filter}", "--gtest_fail_fast",
+                        "--gtest_brief=1"], limit_s, {**os.environ, **environment},
+                       memory=MEMORY_LIMIT)
 
 
 def limited(command, limit_s, environment, memory=None):

@@ -36,7 +36,7 @@ OPERATOR = re.compile(r"(?<= )(?:[<>=!+\-*/&|]=|&&|\|\||[<>+\-*/%&|])(?=\s)")
 NUMBER = re.compile(r"(?<![\w.'])(?:\d+\.\d*|\.\d+|\d+)(?:e[+-]?\d+)?(?:[fFuUlL]*)(?![\w.'])")
 NEGATION = re.compile(r"!(?=[A-Za-z_(*])")
 BOOLEAN = re.compile(r"\b(?:true|false)\b")
-RETURN = re.compile(r"\breturn\s+([^;{}]+);")
+RETURN = re.compile(r"\breturn\s[^;{}]+;")
 CONDITION = re.compile(r"\bif \(")
 CONTROL = re.compile(r"\s*(?:else\b|(?:if|for|while|switch)\s*(?=\())")
 # Statements that may go: calls, assignments, steps, jumps. A declaration has a space in front of
@@ -45,6 +45,7 @@ PLACE = r"\(?\*?[A-Za-z_][\w.:\[\]\-+>()*]*"
 STATEMENT = re.compile(
     rf"(?:{PLACE} [+\-*/|&]?=\s.*|[A-Za-z_][\w:.\->\[\]]*\(.*\)|(?:\+\+|--)[\w.\->\[\]]+"
     r"|[\w.\->\[\]]+(?:\+\+|--)|break|continue)", re.DOTALL)
+SAVES_TIME_ONLY = re.compile(r"[\w.\->\[\]]*(?:\.|->)reserve\(")  # nothing to notice
 DEFAULTS = {"absl::OkStatus()", "std::nullopt", "nullptr", "false", "true", "0", "0.0", '""',
             "std::string()"}
 
@@ -93,9 +94,9 @@ def conditions(code):
             yield Mutation(start, end, None, "condition")
 
 
-def returns(code):
+def returns(code, text):
     for match in RETURN.finditer(code):
-        value = match[1].strip()
+        value = text[match.start() + len("return"):match.end() - 1].strip()
         if value not in DEFAULTS:
             yield Mutation(*match.span(), "return {};", "return")
 
@@ -111,7 +112,7 @@ def statements(code):
         elif character == ";" and depth == 0:
             first = after_control(code, start)
             first += len(code[first:place]) - len(code[first:place].lstrip())
-            if STATEMENT.fullmatch(code[first:place]):
+            if STATEMENT.fullmatch(code[first:place]) and not SAVES_TIME_ONLY.match(code, first):
                 yield Mutation(first, place, "", "deletion")
             start = place + 1
 
@@ -129,10 +130,10 @@ def mutations(text):
     """Every change to a file, in the order of the text."""
     code = code_of(text)
     found = []
-    for find in (operators, constants, conditions, returns, statements):
-        for mutation in find(code):
-            if mutation.replacement is None:  # a negated condition keeps its text
-                mutation = dataclasses.replace(
-                    mutation, replacement=f"!({text[mutation.start:mutation.end]})")
-            found.append(mutation)
+    for mutation in (*operators(code), *constants(code), *conditions(code), *returns(code, text),
+                     *statements(code)):
+        if mutation.replacement is None:  # a negated condition keeps its text
+            mutation = dataclasses.replace(
+                mutation, replacement=f"!({text[mutation.start:mutation.end]})")
+        found.append(mutation)
     return sorted(found, key=lambda m: (m.start, m.end, m.replacement))

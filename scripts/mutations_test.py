@@ -45,7 +45,8 @@ class MutationsTest(unittest.TestCase):
 
     def test_returns_give_the_default(self):
         self.assertEqual(changes("return f(x);", "return"), [("return f(x);", "return {};")])
-        for default in ("absl::OkStatus()", "nullptr", "{}"):
+        self.assertEqual(changes('return "a";', "return"), [('return "a";', "return {};")])
+        for default in ("absl::OkStatus()", "nullptr", "{}", '""'):
             self.assertEqual(changes(f"return {default};", "return"), [], default)
 
     def test_statements_are_deleted(self):
@@ -63,6 +64,12 @@ class MutationsTest(unittest.TestCase):
         for text in ("int x = 3;", "MutexLock lock(mutex_);", "using a::b;", "Clip clip;",
                      "const auto it = f(x);", "return x;"):
             self.assertEqual(changes("{" + text + "}", "deletion"), [], text)
+
+    def test_room_made_ahead_only_saves_time(self):
+        for text in ("v.reserve(n);", "out->names.reserve(n);", "if (a) v.reserve(f(n));"):
+            self.assertEqual(changes("{" + text + "}", "deletion"), [], text)
+        self.assertEqual(changes("{ seats.reserved(n); }", "deletion"),
+                         [("seats.reserved(n)", "")])
 
     def test_comments_literals_and_directives_are_not_code(self):
         for text in ('// a < b', '/* x = 1; */', '"a && b"', "'<'", '#if A == 1\n',

@@ -37,10 +37,12 @@ class ProjectTestCase(unittest.TestCase):
                               "command": f"{command} {self.root / path}"})
         self.save()
 
-    def target(self, name, sources, public=(), private=(), kind="STATIC_LIBRARY"):
+    def target(self, name, sources, public=(), private=(), kind="STATIC_LIBRARY",
+               runs=()):
         """Enters a target in the table."""
         self.targets.append({"name": name, "type": kind, "sources": list(sources),
-                             "public": list(public), "private": list(private)})
+                             "public": list(public), "private": list(private),
+                             "runs": list(runs)})
         self.save()
 
     def save(self):

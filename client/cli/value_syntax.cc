@@ -52,11 +52,9 @@ absl::StatusOr<ModelChoice> ParseModelChoice(absl::string_view text) {
     choice.version_label = std::string(rest);
     return rest.empty() ? absl::StatusOr<ModelChoice>(Wanted(text, kForm)) : choice;
   }
-  int version = 0;
-  if (!absl::SimpleAtoi(rest, &version) || version < 1) {
+  if (!absl::SimpleAtoi(rest, &choice.version.emplace()) || *choice.version < 1) {
     return Wanted(text, absl::StrCat(kForm, ", a version being a number from 1"));
   }
-  choice.version = version;
   return choice;
 }
 

@@ -19,7 +19,7 @@ std::size_t Index(int joint) { return static_cast<std::size_t>(joint); }
 // the vertical, knees about the line through both.
 Vec3d HingeAxis(Vec3d rest_direction) {
   const Vec3d axis = std::abs(rest_direction.y) > 0.7 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
-  return Unit(axis - rest_direction * Dot(axis, rest_direction), {0, 0, 1});
+  return Unit(axis - rest_direction * Dot(axis, rest_direction), axis);
 }
 
 Quaternion FitBranch(const RigJoint& joint, Quaternion to_parent, Quaternion previous,

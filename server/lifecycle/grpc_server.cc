@@ -75,7 +75,7 @@ absl::StatusOr<GrpcServer> StartGrpcServer(const GrpcServerOptions& options,
   SetConnectionLimits(builder, options.max_calls);
   SetMessageLimits(builder, options);
   started.server = builder.BuildAndStart();
-  if (started.server == nullptr || started.port == 0) {
+  if (started.server == nullptr) {
     return absl::UnavailableError(
         absl::StrCat("cannot listen on ", ToString(options.listen), " for gRPC; is it in use?"));
   }

@@ -63,22 +63,23 @@ absl::Status LoadModels(const config::ServerOptions& options, const ModelSource&
   return absl::OkStatus();
 }
 
-int Serve(const config::ServerOptions& options, const ModelSource& source, StopSignal& stop,
-          metrics::LogSink& sink) {
+// Serves until told to stop; what it cannot serve for is in the log as well.
+absl::Status Serve(const config::ServerOptions& options, const ModelSource& source,
+                   StopSignal& stop, metrics::LogSink& sink) {
   metrics::JsonLog log(sink);
   const LibraryLogs library_logs(log);
   absl::StatusOr<std::unique_ptr<DuetServer>> server = DuetServer::Start(options, sink);
   absl::Status status = server.status();
   if (status.ok()) status = LoadModels(options, source, stop, **server);
-  if (absl::IsCancelled(status)) return kExitStopped;
+  if (absl::IsCancelled(status)) return absl::OkStatus();
   if (status.ok()) status = (*server)->Serve();
   if (!status.ok()) {
     log.Error("cannot_serve", {{"message", std::string(status.message())}});
-    return kExitFailed;
+    return status;
   }
   stop.Wait();
   (*server)->Drain([&stop](double seconds) { return !stop.WaitFor(seconds); });
-  return kExitStopped;
+  return absl::OkStatus();
 }
 
 }  // namespace
@@ -103,7 +104,7 @@ int RunServer(int argc, const char* const* argv, const ModelSource& source, Stop
   log.drop_notice = [](std::uint64_t dropped) { return metrics::DroppedLinesNotice(dropped); };
   // Outlives everything that logs, and writes its last lines before the process ends.
   metrics::QueuedLogSink queued_sink(std::move(sink), std::move(log));
-  return Serve(*options, source, stop, queued_sink);
+  return Serve(*options, source, stop, queued_sink).ok() ? kExitStopped : kExitFailed;
 }
 
 }  // namespace duet::server::lifecycle

@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 bool IsVersion(const std::string& text) {
-  int32_t version = 0;
+  int32_t version{};
   return absl::SimpleAtoi(text, &version) && version >= 1 && absl::StrCat(version) == text;
 }
 

@@ -38,13 +38,13 @@ TEST(LeaderIndexTest, NamesTheLineThatIsWrong) {
   EXPECT_THAT(message("path\tleader_side\na\tleft\na\tleft\n"), HasSubstr("line 3: path \"a\""));
 }
 
-// Two joints: a root that walks and a hand.
-motion::Clip Walker(float hand_peak) {
+// Two joints: a root that walks from `start` on, and a hand.
+motion::Clip Walker(float hand_peak, float start = 0) {
   motion::Clip clip;
   clip.joint_names = {"root", "hand"};
   clip.frame_rate_hz = 15;
   for (const float reach : {0.0f, hand_peak, 0.0f}) {
-    const float walked = 2 * static_cast<float>(clip.frame_count());
+    const float walked = start + 2 * static_cast<float>(clip.frame_count());
     clip.Append({{walked, 0, 0}, {walked + reach, 1, 0}});
   }
   return clip;
@@ -59,6 +59,11 @@ TEST(LeaderByMotionTest, WalkingAloneIsNoReach) {
   // The right one walks as far as the left, but only the left one moves its hand.
   EXPECT_EQ(LeaderByMotion(Walker(0.1f), Walker(0), 0, {1}), LeaderSide::kLeft);
   EXPECT_EQ(LeaderByMotion(Walker(0), Walker(0.1f), 0, {1}), LeaderSide::kRight);
+}
+
+TEST(LeaderByMotionTest, WhereSomebodyStandsIsNoReach) {
+  EXPECT_EQ(LeaderByMotion(Walker(0.1f), Walker(0, 9), 0, {1}), LeaderSide::kLeft);
+  EXPECT_EQ(LeaderByMotion(Walker(0, 9), Walker(0.1f), 0, {1}), LeaderSide::kRight);
 }
 
 }  // namespace

@@ -66,6 +66,16 @@ float LargestDistance(const motion::Poses& a, const motion::Poses& b) {
   return largest;
 }
 
+TEST(NetworkSynthesizer, DescribesTheModelItWasMadeOf) {
+  ModelDescription description = FakeDescription();
+  description.name = "named";
+  description.version = 7;
+  const auto model = Model(LargerAndHigher, {}, description);
+  EXPECT_EQ(model->description().name, "named");
+  EXPECT_EQ(model->description().version, 7);
+  EXPECT_EQ(model->description().skeleton.joint_names, description.skeleton.joint_names);
+}
+
 TEST(NetworkSynthesizer, TheNetworkSeesTheStandardFrame) {
   SynthesisWindow window = Window();
   window.partner_direction = motion::Vec3{1, 0, 0};

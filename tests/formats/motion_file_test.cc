@@ -24,6 +24,7 @@ using test::MakePerson;
 namespace fs = std::filesystem;
 using test::LargestDistance;
 using test::MakePerson;
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
@@ -124,6 +125,34 @@ TEST_F(MotionFile, LetsTheCallerSayTheCoordinates) {
   const absl::StatusOr<motion::Clip> clip = ReadLeader(path, options);
   ASSERT_TRUE(clip.ok()) << clip.status();
   EXPECT_LT(Distance(clip->at(0, 7), {1, 3, -2}), 1e-6f);
+}
+
+// Two joints may be the neck; in the first frame the lower one is between the shoulders, in the
+// second the upper one.
+TEST_F(MotionFile, MapsJointsByTheFirstFrame) {
+  motion::Clip person = pair_.leader;
+  person.joint_names[1] = "LowerNeck";
+  person.joint_names.push_back("UpperNeck");
+  std::string text = "frame";
+  for (const std::string& joint : person.joint_names) {
+    absl::StrAppend(&text, ",", joint, "_x,", joint, "_y,", joint, "_z");
+  }
+  for (const int frame : {0, 1}) {
+    absl::StrAppend(&text, "\n", frame);
+    std::vector<motion::Vec3> pose(pair_.leader.poses[0].begin(), pair_.leader.poses[0].end());
+    pose.push_back(pose[1] + motion::Vec3{0, 0.05f, 0});
+    if (frame == 1) std::swap(pose[1], pose.back());
+    for (const motion::Vec3& p : pose) absl::StrAppend(&text, ",", p.x, ",", p.y, ",", p.z);
+  }
+  const fs::path path = folder_ / "a.csv";
+  ASSERT_TRUE(base::WriteFile(path, text + "\n").ok());
+  ReadOptions options;
+  options.frame_rate_hz = 30;
+  std::vector<std::string> notes;
+  options.notes = &notes;
+  const absl::StatusOr<motion::Clip> clip = ReadLeader(path, options);
+  ASSERT_TRUE(clip.ok()) << clip.status();
+  EXPECT_THAT(notes, Contains(HasSubstr("neck: LowerNeck (")));
 }
 
 TEST_F(MotionFile, TakesTheFirstFrameAsAFollowersStart) {

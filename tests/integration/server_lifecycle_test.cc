@@ -5,8 +5,12 @@
 #include <grpcpp/security/credentials.h>
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <numeric>
+#include <optional>
 #include <string>
 #include <thread>
 #include <utility>
@@ -96,7 +100,6 @@ class Running {
 };
 
 const auto kPatient = [](double) { return true; };
-const auto kHurried = [](double) { return false; };
 
 TEST(LoadingTest, TheServerListensAndSaysThatItIsNotReady) {
   Running server;
@@ -187,6 +190,37 @@ TEST(ListenTest, MetricsMayBeOff) {
   EXPECT_EQ(server->metrics_port(), 0);
 }
 
+// A setting of HTTP/2 that a server announces to whoever connects; nothing where it does not.
+std::optional<std::uint32_t> Http2Setting(int port, int wanted) {
+  const std::string no_settings("\0\0\0\x04\0\0\0\0\0", 9);
+  // Far longer than a frame may be: the server ends the connection, and with it the exchange.
+  const std::string last("\xff\xff\xff\0\0\0\0\0\x01", 9);
+  const std::string answer =
+      Exchange(port, "PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n" + no_settings + last);
+  const auto number = [&answer](std::size_t at, std::size_t bytes) {
+    std::uint32_t value = 0;
+    for (std::size_t i = at; i < at + bytes; ++i) {
+      value = value << 8 | static_cast<unsigned char>(answer.at(i));
+    }
+    return value;
+  };
+  // RFC 9113: a frame's head has its length in 3 bytes and is 9 long, a setting 2 + 4.
+  const std::size_t end = 9 + number(0, 3);
+  for (std::size_t at = 9; at < end; at += 6) {
+    if (number(at, 2) == static_cast<std::uint32_t>(wanted)) return number(at + 2, 4);
+  }
+  return std::nullopt;
+}
+
+// Calls beyond max_calls reach our own refusal, which has details.
+TEST(ListenTest, AConnectionMayHaveTwiceAsManyStreamsAsThereMayBeCalls) {
+  server::config::ServerOptions options = TestOptions();
+  options.max_calls = 21;
+  Running server(options);
+  constexpr int kMaxConcurrentStreams = 3;
+  EXPECT_EQ(Http2Setting(server->port(), kMaxConcurrentStreams), 42u);
+}
+
 // ServerReflectionRequest{list_services = 7: ""}.
 const std::string kListServices = std::string("\x3a\x00", 2);
 constexpr char kReflection[] = "/grpc.reflection.v1alpha.ServerReflection/ServerReflectionInfo";
@@ -206,6 +240,18 @@ TEST(ReflectionTest, MayBeOff) {
   RawCall call(server.channel, kReflection, kListServices);
   EXPECT_FALSE(call.Read().has_value());
   EXPECT_EQ(call.Finish().error_code(), grpc::StatusCode::UNIMPLEMENTED);
+}
+
+TEST(LimitsTest, TheOptionsSayHowLongARequestMayBe) {
+  server::config::ServerOptions options = TestOptions();
+  options.max_request_bytes = 8192;  // 40 frames are 7 kB
+  Running server(options);
+  server.Load();
+  ASSERT_THAT(server->Serve(), IsOk());
+  EXPECT_TRUE(Call(*server.stub, SampleRequest(40)).status.ok());
+  const Refusal refusal = Decode(Call(*server.stub, SampleRequest(80)).status);
+  EXPECT_EQ(refusal.reason, "REQUEST_TOO_LARGE");
+  EXPECT_EQ(refusal.metadata.at("max_request_bytes"), "8192");
 }
 
 TEST(ReportTest, ACallIsInMetricsAndLogWhenItsCallerKnows) {
@@ -290,67 +336,65 @@ TEST(DrainTest, ACallUnderWayFinishesAndNewOnesAreSentElsewhere) {
   EXPECT_TRUE(reply.messages.back().has_summary());
 }
 
-TEST(DrainTest, ACallThatOutlivesTheGraceEndsAsUnavailable) {
+// What became of a call that its model held up while the server drained.
+struct HeldUpCall {
+  std::vector<double> waits;  // that the drain asked for, seconds
+  Refusal refusal;
+  int aborted_calls = 0;  // as logged
+};
+
+// `wait` says whether to go on after so many waits.
+HeldUpCall DrainWithACallHeldUp(double drain_seconds, double grace_seconds,
+                                const std::function<bool(std::size_t waits)>& wait) {
+  HeldUpCall call;
   GatedModel model;
   server::config::ServerOptions options = TestOptions();
-  options.grace_seconds = 0.2;
+  options.drain_seconds = drain_seconds;
+  options.grace_seconds = grace_seconds;
   Running server(options);
   server.Load(model.get());
-  ASSERT_THAT(server->Serve(), IsOk());
+  if (!server->Serve().ok()) {
+    ADD_FAILURE() << "the server does not serve";
+    return call;
+  }
   Reply reply;
   std::thread caller([&] { reply = Call(*server.stub, SampleRequest(200)); });
   model.WaitUntilStarted(1);
-  double waited = 0;
   server->Drain([&](double seconds) {
-    waited += seconds;
-    return true;
+    call.waits.push_back(seconds);
+    return wait(call.waits.size());
   });
   caller.join();
-  EXPECT_NEAR(waited, 0.2, 1e-9);
-  const Refusal refusal = Decode(reply.status);
-  EXPECT_EQ(refusal.code, StatusCode::kUnavailable);
-  EXPECT_EQ(refusal.reason, "SERVER_DRAINING");
-  EXPECT_EQ(server.log.Events("stopped")[0]["aborted_calls"], 1);
+  call.refusal = Decode(reply.status);
+  call.aborted_calls = server.log.Events("stopped")[0]["aborted_calls"];
   model.Open();
+  return call;
+}
+
+TEST(DrainTest, ACallThatOutlivesTheGraceEndsAsUnavailable) {
+  const HeldUpCall call = DrainWithACallHeldUp(0, 0.2, [](std::size_t) { return true; });
+  EXPECT_NEAR(std::accumulate(call.waits.begin(), call.waits.end(), 0.0), 0.2, 1e-9);
+  EXPECT_EQ(call.refusal.code, StatusCode::kUnavailable);
+  EXPECT_EQ(call.refusal.reason, "SERVER_DRAINING");
+  EXPECT_EQ(call.aborted_calls, 1);
+}
+
+TEST(DrainTest, TheGraceIsOverOnceItHasBeenWaitedFor) {
+  constexpr double kGrace = 0.03125;  // less than the time between two looks, and exact
+  EXPECT_THAT(DrainWithACallHeldUp(0, kGrace, [](std::size_t) { return true; }).waits,
+              ElementsAre(kGrace));
 }
 
 TEST(DrainTest, AHurriedOperatorIsObeyed) {
-  GatedModel model;
-  server::config::ServerOptions options = TestOptions();
-  options.drain_seconds = 3600;
-  options.grace_seconds = 3600;
-  Running server(options);
-  server.Load(model.get());
-  ASSERT_THAT(server->Serve(), IsOk());
-  Reply reply;
-  std::thread caller([&] { reply = Call(*server.stub, SampleRequest(200)); });
-  model.WaitUntilStarted(1);
-  server->Drain(kHurried);
-  caller.join();
-  EXPECT_EQ(reply.status.error_code(), grpc::StatusCode::UNAVAILABLE);
-  model.Open();
+  const HeldUpCall call = DrainWithACallHeldUp(3600, 3600, [](std::size_t) { return false; });
+  EXPECT_EQ(call.refusal.code, StatusCode::kUnavailable);
 }
 
 TEST(DrainTest, HurryDuringDrainSecondsCutsTheGraceShortAsWell) {
-  GatedModel model;
-  server::config::ServerOptions options = TestOptions();
-  options.drain_seconds = 3600;
-  options.grace_seconds = 1800;
-  Running server(options);
-  server.Load(model.get());
-  ASSERT_THAT(server->Serve(), IsOk());
-  Reply reply;
-  std::thread caller([&] { reply = Call(*server.stub, SampleRequest(200)); });
-  model.WaitUntilStarted(1);
-  std::vector<double> waits;
-  server->Drain([&](double seconds) {
-    waits.push_back(seconds);
-    return waits.size() > 1;  // the one signal came during the first wait
-  });
-  caller.join();
-  EXPECT_THAT(waits, ElementsAre(3600));
-  EXPECT_EQ(reply.status.error_code(), grpc::StatusCode::UNAVAILABLE);
-  model.Open();
+  const HeldUpCall call = DrainWithACallHeldUp(
+      3600, 1800, [](std::size_t waits) { return waits > 1; });  // one signal, in the first wait
+  EXPECT_THAT(call.waits, ElementsAre(3600));
+  EXPECT_EQ(call.refusal.code, StatusCode::kUnavailable);
 }
 
 }  // namespace

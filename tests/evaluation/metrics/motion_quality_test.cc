@@ -64,6 +64,20 @@ TEST(FootSlideTest, CountsFastStepsOfFeetOnTheFloor) {
   EXPECT_NEAR(slide.centimetres_a_frame, (10 + 1) / 2.0, 1e-4);
 }
 
+TEST(FootSlideTest, TheFloorIsWhereTheLowestFootGetsWhereverThatIs) {
+  for (const float floor : {-3.0f, 3.0f}) {
+    // At 10 Hz: a step of 10 cm on the floor; the other foot half a metre above it.
+    const motion::Poses poses(3, {{0, floor + 1, 0},
+                                  {0, floor, 0},
+                                  {0, floor + 0.5f, 0},  //
+                                  {0, floor + 1, 0},
+                                  {0.1f, floor, 0},
+                                  {1, floor + 0.5f, 0}});
+    EXPECT_EQ(MeasureFootSlide(poses, Stilts(), 10).skating_ratio, 1) << floor;
+    EXPECT_NEAR(MeasureFootSlide(poses, Stilts(), 10).centimetres_a_frame, 10, 1e-4) << floor;
+  }
+}
+
 TEST(FootSlideTest, IsNotComputedWithoutFeet) {
   motion::Skeleton footless = Stilts();
   footless.feet.reset();

@@ -94,6 +94,22 @@ TEST(BvhImport, RefusesASizeThatIsNoPersonsUnlessTheUnitIsGiven) {
   }
 }
 
+TEST(BvhImport, TakesLegsOfSevenTenthsToOnePointFourMetresForAPersons) {
+  const motion::Clip clip = MakePerson({2});
+  const double leg = 0.41 + 0.43 + 0.237;  // of MakePerson, foot to torso
+  const std::pair<double, bool> lengths[] = {
+      {0.69, false}, {0.71, true}, {1.39, true}, {1.41, false}};
+  for (const auto& [metres, taken] : lengths) {
+    std::vector<std::string> notes;
+    BvhImportOptions options;
+    options.notes = &notes;
+    EXPECT_EQ(FromBvh(Scaled(Export(clip), metres / leg), "a.bvh", options).ok(), taken) << metres;
+    if (!taken) continue;
+    EXPECT_THAT(notes,
+                Contains(absl::StrCat("unit: centimetres (foot to torso is then ", metres, " m)")));
+  }
+}
+
 TEST(BvhImport, FindsTheUpAxis) {
   const motion::Clip clip = MakePerson();
   motion::Clip z_up = clip, y_down = clip;

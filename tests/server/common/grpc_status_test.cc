@@ -1,6 +1,8 @@
 #include "server/common/grpc_status.h"
 
 #include <gmock/gmock.h>
+#include <grpcpp/server_context.h>
+#include <grpcpp/test/server_context_test_spouse.h>
 #include <gtest/gtest.h>
 
 #include <string>
@@ -58,6 +60,30 @@ TEST(ToGrpcStatusTest, HasTheWireFormOfGoogleRpc) {
                           std::string(1, static_cast<char>(bad_request.size())) + bad_request;
   EXPECT_EQ(ToGrpcStatus(status).error_details(),
             "\x08\x03\x12\x01m\x1a" + std::string(1, static_cast<char>(any.size())) + any);
+}
+
+// The trailer that tells gRPC's own retries how long to wait.
+std::string Pushback(absl::Duration delay) {
+  absl::Status status = absl::UnavailableError("later");
+  AddRetryInfo(status, delay);
+  grpc::ServerContext context;
+  AddRetryPushback(status, context);
+  const auto trailers = grpc::testing::ServerContextTestSpouse(&context).GetTrailingMetadata();
+  const auto found = trailers.find("grpc-retry-pushback-ms");
+  return found == trailers.end() ? "" : found->second;
+}
+
+TEST(AddRetryPushbackTest, TellsTheDelayInMilliseconds) {
+  EXPECT_EQ(Pushback(absl::Seconds(3)), "3000");
+  EXPECT_EQ(Pushback(absl::Milliseconds(250)), "250");
+  EXPECT_EQ(Pushback(absl::Milliseconds(1500)), "1500");
+}
+
+TEST(AddRetryPushbackTest, SaysNothingWhereTheStatusHasNoDelay) {
+  grpc::ServerContext context;
+  AddRetryPushback(absl::UnavailableError("later"), context);
+  const grpc::testing::ServerContextTestSpouse seen(&context);
+  EXPECT_TRUE(seen.GetTrailingMetadata().empty());
 }
 
 }  // namespace

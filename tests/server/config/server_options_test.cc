@@ -124,6 +124,8 @@ INSTANTIATE_TEST_SUITE_P(
                   [](v1::ServerConfig& c) { c.set_max_request_bytes(10); }},
         BadConfig{"max_request_bytes: is 4294967296, wanted 1024",
                   [](v1::ServerConfig& c) { c.set_max_request_bytes(uint64_t{1} << 32); }},
+        BadConfig{"max_request_bytes: is 536870913, wanted 1024 to 536870912",
+                  [](v1::ServerConfig& c) { c.set_max_request_bytes((uint64_t{1} << 29) + 1); }},
         BadConfig{"max_transport_bytes: is 67108863, wanted 67108864 to",
                   [](v1::ServerConfig& c) { c.set_max_transport_bytes((64 << 20) - 1); }},
         BadConfig{"buffered_frames: is 0, wanted 1",

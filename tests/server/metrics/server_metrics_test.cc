@@ -3,11 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <sstream>
 #include <string>
+#include <vector>
 
 namespace duet::server::metrics {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -60,6 +63,29 @@ TEST(ServerMetricsTest, MeasuresInSecondsWithHistograms) {
   EXPECT_THAT(text,
               HasSubstr(R"(duet_first_chunk_seconds_bucket{priority="interactive",le="0.025"} 1)"));
   EXPECT_THAT(text, HasSubstr(R"(duet_frames_total{model="sbu",version="3"} 300)"));
+}
+
+// The upper ends of a histogram's buckets, as Prometheus writes them.
+std::vector<std::string> Buckets(const std::string& text, const std::string& histogram) {
+  std::vector<std::string> ends;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t at = line.find("le=\"");
+    if (line.rfind(histogram + "_bucket{", 0) != 0 || at == std::string::npos) continue;
+    ends.push_back(line.substr(at + 4, line.find('"', at + 4) - at - 4));
+  }
+  return ends;
+}
+
+TEST(ServerMetricsTest, BucketsReachFromAMillisecondToAMinuteAndFromOneWindowToSixtyFour) {
+  ServerMetrics metrics;
+  metrics.WindowFinished(batching::Priority::kBulk, {0.2, 0.04, 1});
+  const std::string text = metrics.Render();
+  EXPECT_THAT(Buckets(text, "duet_batch_size"),
+              ElementsAre("1", "2", "4", "8", "16", "32", "64", "+Inf"));
+  EXPECT_THAT(Buckets(text, "duet_queue_seconds"),
+              ElementsAre("0.001", "0.0025", "0.005", "0.01", "0.025", "0.05", "0.1", "0.25", "0.5",
+                          "1", "2.5", "5", "10", "30", "60", "+Inf"));
 }
 
 TEST(ServerMetricsTest, ARefusalHasNoFirstChunk) {

@@ -47,6 +47,18 @@ TEST(ListCheckpointsTest, FindsNameAndVersionFolders) {
   EXPECT_THAT(listing->unreadable, IsEmpty());
 }
 
+TEST(ListCheckpointsTest, HasAnOrderOfItsOwn) {
+  TemporaryFolder folder;
+  std::vector<fs::path> sorted;
+  for (const char version : {'5', '9', '1', '7', '3', '8', '2', '6', '4'}) {
+    MakeCheckpoint(folder, std::string("sbu/") + version);
+  }
+  for (char version = '1'; version <= '9'; ++version) {
+    sorted.push_back(folder / (std::string("sbu/") + version));
+  }
+  EXPECT_EQ(ListCheckpoints(folder.path())->checkpoints, sorted);
+}
+
 TEST(ListCheckpointsTest, LeavesOtherThingsAlone) {
   TemporaryFolder folder;
   for (const char* version : {"0", "01", "v2", "-1", "1.tmp", "99999999999"}) {
