@@ -11,7 +11,10 @@ CleanUp::CleanUp(const motion::Skeleton& skeleton, const Options& options)
 void CleanUp::Apply(const motion::Poses& leader, const Touch& touch, const Timing& timing,
                     motion::Poses* follower) const {
   // The whole body first, then its limbs, so that what is held stays held.
-  if (options_.upright.enabled) SetUpright(skeleton_, body_, options_.upright, timing, follower);
+  if (options_.upright.enabled) {
+    SetTrunkUpright(skeleton_, body_, options_.upright, timing, follower);
+    SetUpright(skeleton_, body_, options_.upright, timing, follower);
+  }
   if (options_.spacing.enabled) {
     KeepSpacing(skeleton_.root, leader, options_.spacing, timing, follower);
   }

@@ -13,23 +13,52 @@ using motion::Vec3;
 
 constexpr float kRadiansPerDegree = 0.01745329252f;
 
-Vec3 BetweenFeet(const motion::JointPair& feet, const motion::Poses& poses, int frame) {
-  return Lerp(poses.at(frame, feet.left), poses.at(frame, feet.right), 0.5f);
+Vec3 Middle(const motion::JointPair& pair, const motion::Poses& poses, int frame) {
+  return Lerp(poses.at(frame, pair.left), poses.at(frame, pair.right), 0.5f);
 }
 
-// Rodrigues' formula; `axis` of length 1.
-Vec3 Rotate(Vec3 v, Vec3 axis, float radians) {
-  const float c = std::cos(radians), s = std::sin(radians);
-  return v * c + Cross(axis, v) * s + axis * (Dot(axis, v) * (1 - c));
+// The turn that brings a lasting lean back to where it may be.
+struct Turn {
+  Vec3 axis;
+  float radians = 0;
+};
+
+Turn TurnBack(Vec3 lean, const UprightOptions& options) {
+  const Vec3 axis = Cross(lean, Vec3{0, 1, 0});  // turning about it lifts the trunk
+  const float sine = Norm(axis);
+  const float angle = std::atan2(sine, lean.y);
+  const float allowed =
+      SoftLimit(angle, static_cast<float>(options.free_degrees) * kRadiansPerDegree,
+                static_cast<float>(options.most_degrees) * kRadiansPerDegree);
+  if (sine == 0) return {{1, 0, 0}, 0};
+  return {axis / sine, angle - allowed};
+}
+
+// Turns all but the legs about the middle of the hips; the feet stay, the knees follow.
+void BendAtHips(const motion::Skeleton& skeleton, const Body& body, const Turn& turn,
+                absl::Span<Vec3> pose) {
+  const auto at = [&](int joint) -> Vec3& { return pose[static_cast<std::size_t>(joint)]; };
+  const Vec3 pivot = Lerp(at(skeleton.hips->left), at(skeleton.hips->right), 0.5f);
+  const std::vector<Vec3> before(pose.begin(), pose.end());
+  for (Vec3& joint : pose) joint = pivot + RotateAbout(joint - pivot, turn.axis, turn.radians);
+  const Vec3 forward = Facing(*skeleton.hips, pose);
+  for (const Limb& leg : body.legs) {
+    const auto was = [&](int joint) { return before[static_cast<std::size_t>(joint)]; };
+    const Vec3 moved = at(leg.upper) - was(leg.upper);
+    at(leg.middle) = was(leg.middle) + moved;
+    at(leg.end) = was(leg.end) + moved;
+    for (const int joint : leg.beyond) at(joint) = was(joint) + moved;
+    Reach(leg, was(leg.end), forward, pose);
+  }
 }
 
 }  // namespace
 
-std::vector<Vec3> LastingLean(const motion::JointPair& feet, int chest, const motion::Poses& poses,
+std::vector<Vec3> LastingLean(const motion::JointPair& base, int chest, const motion::Poses& poses,
                               double sigma_frames) {
   std::vector<Vec3> trunk;
   for (int t = 0; t < poses.frame_count(); ++t) {
-    trunk.push_back(poses.at(t, chest) - BetweenFeet(feet, poses, t));
+    trunk.push_back(poses.at(t, chest) - Middle(base, poses, t));
   }
   trunk = LowPass(trunk, sigma_frames);
   for (Vec3& direction : trunk) {
@@ -39,22 +68,30 @@ std::vector<Vec3> LastingLean(const motion::JointPair& feet, int chest, const mo
   return trunk;
 }
 
+void SetTrunkUpright(const motion::Skeleton& skeleton, const Body& body,
+                     const UprightOptions& options, const Timing& timing, motion::Poses* poses) {
+  if (!skeleton.hips || !body.chest || body.legs.empty()) return;
+  const std::vector<Vec3> lean =
+      LastingLean(*skeleton.hips, *body.chest, *poses, timing.Frames(options.sigma_seconds));
+  for (int t = timing.settled; t < poses->frame_count(); ++t) {
+    Turn turn = TurnBack(lean[static_cast<std::size_t>(t)], options);
+    turn.radians *= EaseIn(timing, t);
+    if (turn.radians != 0) BendAtHips(skeleton, body, turn, (*poses)[t]);
+  }
+}
+
 void SetUpright(const motion::Skeleton& skeleton, const Body& body, const UprightOptions& options,
                 const Timing& timing, motion::Poses* poses) {
   if (!skeleton.feet || !body.chest) return;
   const std::vector<Vec3> lean =
       LastingLean(*skeleton.feet, *body.chest, *poses, timing.Frames(options.sigma_seconds));
-  const float free = static_cast<float>(options.free_degrees) * kRadiansPerDegree;
-  const float most = static_cast<float>(options.most_degrees) * kRadiansPerDegree;
   for (int t = timing.settled; t < poses->frame_count(); ++t) {
-    const Vec3 trunk = lean[static_cast<std::size_t>(t)];
-    const Vec3 axis = Cross(trunk, Vec3{0, 1, 0});  // turning about it lifts the trunk
-    const float sine = Norm(axis);
-    const float angle = std::atan2(sine, trunk.y);
-    const float too_far = (angle - SoftLimit(angle, free, most)) * EaseIn(timing, t);
-    if (too_far == 0 || sine == 0) continue;
-    const Vec3 pivot = BetweenFeet(*skeleton.feet, *poses, t);
-    for (Vec3& joint : (*poses)[t]) joint = pivot + Rotate(joint - pivot, axis / sine, too_far);
+    const Turn turn = TurnBack(lean[static_cast<std::size_t>(t)], options);
+    if (turn.radians == 0) continue;
+    const Vec3 pivot = Middle(*skeleton.feet, *poses, t);
+    for (Vec3& joint : (*poses)[t]) {
+      joint = pivot + RotateAbout(joint - pivot, turn.axis, turn.radians * EaseIn(timing, t));
+    }
   }
 }
 

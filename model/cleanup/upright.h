@@ -20,10 +20,15 @@ struct UprightOptions {
   double sigma_seconds = 0.5;
 };
 
-// Where the trunk points in every frame, for longer than a moment: from between the feet to the
-// chest, of length 1. Requires feet and a chest. Shapes: returns [frames].
-std::vector<motion::Vec3> LastingLean(const motion::JointPair& feet, int chest,
+// Where the body points in every frame, for longer than a moment: from the middle of a pair of
+// joints, feet or hips, to the chest, of length 1. Shapes: returns [frames].
+std::vector<motion::Vec3> LastingLean(const motion::JointPair& base, int chest,
                                       const motion::Poses& poses, double sigma_frames);
+
+// Bends a trunk that leans for longer than a moment back towards upright at the hips; feet stay where
+// they are, knees follow. A skeleton without hips or legs stays as it is.
+void SetTrunkUpright(const motion::Skeleton& skeleton, const Body& body,
+                     const UprightOptions& options, const Timing& timing, motion::Poses* poses);
 
 // Turns a body that leans for longer than a moment back towards upright, whichever way it leans,
 // about the point between its feet. A skeleton without hips or feet stays as it is.

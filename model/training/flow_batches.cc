@@ -6,6 +6,7 @@
 #include "model/engine/window_standardisation.h"
 #include "model/motion/filter.h"
 #include "model/network/batch.h"
+#include "model/training/drift.h"
 
 namespace duet::training {
 namespace {
@@ -59,6 +60,9 @@ FlowExample DrawExample(const checkpoint::Manifest& manifest, const dataset::Dat
     TellSeveral(example.target, random, &example.input);
   }
   Disturb(flow.known_noise, random, &example.input);
+  if (start == StartKnowledge::kPose && random->Chance(flow.drift.share)) {
+    AddDrift(dataset.skeleton, flow.drift, random, &example.input, &example.target);
+  }
   ScalePair(static_cast<float>(1 + random->Uniform(-flow.pair_scale, flow.pair_scale)), &example);
   return example;
 }

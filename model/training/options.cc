@@ -126,6 +126,17 @@ void Read(base::ObjectReader* reader, TrainingOptions::Flow* out) {
   out->least_remaining = reader->Number("least_remaining", 1e-6, 1);
 }
 
+void Read(base::ObjectReader* reader, TrainingOptions::Flow::Drift* out) {
+  out->share = Probability(reader, "share");
+  out->tilt = reader->Number("tilt", 0, 4);
+  out->bend = reader->Number("bend", 0, 4);
+  out->turn = reader->Number("turn", 0, 4);
+  out->root = reader->Number("root", 0, 10);
+  out->height = reader->Number("height", 0, 10);
+  out->joints = reader->Number("joints", 0, 10);
+  out->frames = reader->Int("frames", 1, 1000);
+}
+
 void Read(base::ObjectReader* reader, TrainingOptions::Flow::Energy* out) {
   out->from = Probability(reader, "from");
   out->answers = reader->Int("answers", 2, 64);
@@ -176,6 +187,7 @@ absl::StatusOr<TrainingOptions> ReadOptions(const json& value) {
   if (is_flow) {
     section("generator", &options.flow.emplace().generator);
     section("flow", &*options.flow);
+    section("drift", &options.flow->drift);
     section("energy", &options.flow->energy);
   } else {
     section("generator", &options.generator);
@@ -292,6 +304,14 @@ void DescribeFlow(const TrainingOptions::Flow& f, Description* out) {
                {"flow.slide_weight", Text(f.slide_weight)},
                {"flow.slide_speed", Text(f.slide_speed)},
                {"flow.least_remaining", Text(f.least_remaining)},
+               {"drift.share", Text(f.drift.share)},
+               {"drift.tilt", Text(f.drift.tilt)},
+               {"drift.bend", Text(f.drift.bend)},
+               {"drift.turn", Text(f.drift.turn)},
+               {"drift.root", Text(f.drift.root)},
+               {"drift.height", Text(f.drift.height)},
+               {"drift.joints", Text(f.drift.joints)},
+               {"drift.frames", absl::StrCat(f.drift.frames)},
                {"energy.from", Text(f.energy.from)},
                {"energy.answers", absl::StrCat(f.energy.answers)},
                {"energy.velocity_weight", Text(f.energy.velocity_weight)},

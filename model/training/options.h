@@ -92,6 +92,20 @@ struct TrainingOptions {
     double slide_speed = 0.3;       // metres a second, below which a captured foot stands
     double least_remaining = 0.15;  // losses are divided by 1 - t, or by this
 
+    // A follower that goes on from its own last answer does not stand where a captured one would: a
+    // share of the clips that are told a pose begins off it and finds back to what was captured.
+    // Standard deviations; 0 for what does not happen.
+    struct Drift {
+      double share = 0;      // of the clips told a pose
+      double tilt = 0;       // radians, of the whole body about a point on the floor
+      double bend = 0;       // radians, of all but the legs about the hips
+      double turn = 0;       // radians, about the vertical
+      double root = 0;       // metres along the floor
+      double height = 0;     // metres
+      double joints = 0;     // metres, of every joint alone
+      int64_t frames = 20;   // from the last told frame until it is found back
+    } drift;
+
     // The last part of a run trains whole answers, in as many steps as they are sampled in, by the
     // energy score: near what was captured, and as far from one another as captured answers are.
     struct Energy {

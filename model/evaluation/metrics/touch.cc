@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <limits>
 
-#include "model/evaluation/metrics/penetration.h"
+#include "model/motion/capsules.h"
 
 namespace duet::evaluation::metrics {
 namespace {

@@ -40,7 +40,7 @@ absl::StatusOr<std::shared_ptr<const engine::Synthesizer>> LoadFoldModel(const f
   absl::StatusOr<checkpoint::Checkpoint> checkpoint = ReadRunCheckpoint(runs / subject);
   if (!checkpoint.ok()) return checkpoint.status();
   absl::StatusOr<std::unique_ptr<engine::Synthesizer>> synthesizer =
-      torch_engine::MakeTorchSynthesizer(*checkpoint, {as_served, as_served});
+      torch_engine::MakeTorchSynthesizer(*checkpoint, {as_served, as_served, as_served});
   if (!synthesizer.ok()) return synthesizer.status();
   return std::shared_ptr<const engine::Synthesizer>(*std::move(synthesizer));
 }
