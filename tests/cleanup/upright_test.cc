@@ -58,6 +58,54 @@ TEST(SetUpright, SettledFramesStayAndTheRestFollowsSmoothly) {
   EXPECT_LT(LargestStep(upright), 0.1f);
 }
 
+motion::Poses Bent(double degrees) {
+  const motion::Skeleton skeleton = motion::SbuSkeleton();
+  motion::Poses poses = Puppet();
+  for (int t = 0; t < poses.frame_count(); ++t) {
+    const Vec3 pivot = Lerp(poses.at(t, skeleton.hips->left), poses.at(t, skeleton.hips->right), 0.5f);
+    for (int j = 0; j < poses.joint_count(); ++j) {
+      if (j == 10 || j == 11 || j == 13 || j == 14) continue;  // knees and feet
+      poses.at(t, j) = pivot + RotateAbout(poses.at(t, j) - pivot, {1, 0, 0},
+                                           degrees * 3.14159265 / 180);
+    }
+  }
+  return poses;
+}
+
+double TrunkLeanDegrees(const motion::Poses& poses, int frame) {
+  const motion::Skeleton skeleton = motion::SbuSkeleton();
+  const int chest = *FindBody(skeleton).chest;
+  const Vec3 trunk =
+      LastingLean(*skeleton.hips, chest, poses, 0.1)[static_cast<std::size_t>(frame)];
+  return std::acos(trunk.y) * 180 / 3.14159265;
+}
+
+TEST(SetTrunkUpright, ABendThatLastsIsTakenBackOverFeetThatStay) {
+  const motion::Skeleton skeleton = motion::SbuSkeleton();
+  for (const double degrees : {-70.0, 30.0, 100.0}) {
+    const motion::Poses bent = Bent(degrees);
+    motion::Poses upright = bent;
+    SetTrunkUpright(skeleton, FindBody(skeleton), {}, {kRate, 0}, &upright);
+    EXPECT_GT(TrunkLeanDegrees(bent, 20), 20) << degrees;
+    EXPECT_LT(TrunkLeanDegrees(upright, 20), 14.1) << degrees;
+    EXPECT_LT(LargestLengthChange(upright, bent), 1e-4f);
+    for (const int foot : {skeleton.feet->left, skeleton.feet->right}) {
+      EXPECT_LT(Distance(upright.at(20, foot), bent.at(20, foot)), 0.02f);
+    }
+  }
+}
+
+TEST(SetTrunkUpright, AnUprightTrunkAndSettledFramesStay) {
+  const motion::Skeleton skeleton = motion::SbuSkeleton();
+  motion::Poses poses = Puppet();
+  SetTrunkUpright(skeleton, FindBody(skeleton), {}, {kRate, 0}, &poses);
+  EXPECT_EQ(poses, Puppet());
+  poses = Bent(40);
+  SetTrunkUpright(skeleton, FindBody(skeleton), {}, {kRate, 5}, &poses);
+  for (int t = 0; t < 5; ++t) EXPECT_EQ(poses[t], Bent(40)[t]);
+  EXPECT_NE(poses[20], Bent(40)[20]);
+}
+
 TEST(SetUpright, NeedsHipsAndFeet) {
   EXPECT_EQ(Upright(Leaning(30), 0, WithoutHips()), Leaning(30));
   EXPECT_EQ(Upright(Leaning(30), 0, WithoutFeet()), Leaning(30));

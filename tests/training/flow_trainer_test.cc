@@ -86,6 +86,35 @@ TEST_F(FlowTrainerTest, LearnsToAnswer) {
   EXPECT_GT(before.continuity, 0);
 }
 
+TEST_F(FlowTrainerTest, TheEnergyScoreMakesAnswersDifferAsTheFollowersDo) {
+  // Nobody is told anything, so that what a leader leaves open is for the noise to decide.
+  options_.start = {0, 0};
+  options_.flow->generator.steps = 1;
+  options_.flow->energy.from = 0.5;
+  options_.flow->passes = 10;
+  options_.epochs = 8;
+  FlowTrainer trainer = Make();
+  EpochReport report;
+  for (int i = 0; i < 5; ++i) report = trainer.RunEpoch();
+  const double first = report.generator;  // of the first epoch of scores
+  while (!trainer.Finished()) report = trainer.RunEpoch();
+  EXPECT_LT(report.generator, first);
+
+  options_.flow->energy.from = 1;
+  EXPECT_NE(Make().RunEpoch().generator, 0);
+}
+
+TEST_F(FlowTrainerTest, EnergyBeginsAtItsShareOfTheRun) {
+  options_.flow->energy.from = 0.5;
+  FlowTrainer half = Make();
+  options_.flow->energy.from = 1;
+  FlowTrainer never = Make();
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_EQ(half.RunEpoch().generator, never.RunEpoch().generator) << i;
+  }
+  EXPECT_NE(half.RunEpoch().generator, never.RunEpoch().generator);
+}
+
 TEST_F(FlowTrainerTest, LossesWithoutWeightAreLeftOut) {
   FlowTrainer plain = Make();
   const double without = plain.RunEpoch().generator;

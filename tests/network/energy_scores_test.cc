@@ -1,0 +1,71 @@
+#include <gtest/gtest.h>
+
+#include "model/network/flow_losses.h"
+
+namespace duet::network {
+namespace {
+
+torch::Tensor Lengths(std::vector<int64_t> lengths) { return torch::tensor(lengths); }
+
+TEST(EnergyScore, IsErrorLessHalfTheSpread) {
+  // One clip of two frames; the answers are 3 and 1 to the right of it, 2 apart.
+  const torch::Tensor real = torch::zeros({1, 2, 3});
+  torch::Tensor answers = torch::zeros({2, 1, 2, 3});
+  answers[0].select(2, 0).fill_(3);
+  answers[1].select(2, 0).fill_(1);
+  EXPECT_NEAR(EnergyScores(answers, real, Lengths({2}))[0].item<float>(), 2 - 0.5 * 2, 1e-3);
+}
+
+TEST(EnergyScore, PaddingCountsForNothing) {
+  const torch::Tensor real = torch::randn({2, 9, 3});
+  torch::Tensor answers = torch::randn({2, 2, 9, 3});
+  const torch::Tensor lengths = Lengths({9, 8});
+  const torch::Tensor before = torch::stack(
+      {EnergyScores(answers, real, lengths), VelocityEnergyScores(answers, real, lengths),
+       BlockEnergyScores(answers, real, lengths, 3)});
+  answers.select(1, 1).select(1, 8).fill_(100);
+  const torch::Tensor after = torch::stack(
+      {EnergyScores(answers, real, lengths), VelocityEnergyScores(answers, real, lengths),
+       BlockEnergyScores(answers, real, lengths, 3)});
+  EXPECT_TRUE(torch::equal(before, after));
+}
+
+TEST(EnergyScore, IsLeastForAnswersThatSpreadAsTheRealMotionDoes) {
+  torch::manual_seed(3);
+  constexpr int64_t kClips = 4000;
+  const torch::Tensor real = torch::randn({kClips, 1, 2});
+  const auto score = [&](double spread) {
+    return EnergyScores(spread * torch::randn({2, kClips, 1, 2}), real,
+                        torch::ones({kClips}, torch::kInt64))
+        .mean()
+        .item<double>();
+  };
+  EXPECT_LT(score(1), score(0.4));
+  EXPECT_LT(score(1), score(2));
+}
+
+TEST(EnergyScore, VelocitiesDoNotSeeWhereAnAnswerIs) {
+  const torch::Tensor real = torch::randn({1, 6, 3});
+  const torch::Tensor answers = torch::stack({real + 5, real - 7});
+  EXPECT_NEAR(VelocityEnergyScores(answers, real, Lengths({6}))[0].item<float>(), 0, 2e-3);
+}
+
+TEST(EnergyScore, BlocksSeeWhatBelongsTogether) {
+  // Frame by frame both answers move as one of the real motions does; only one pair goes together.
+  torch::Tensor forth = torch::zeros({1, 5, 1});
+  for (int64_t t = 0; t < 5; ++t) forth[0][t][0] = t % 2 == 0 ? 0 : 1;
+  const torch::Tensor same = torch::stack({forth, forth}), other = torch::stack({forth, -forth});
+  const torch::Tensor lengths = Lengths({5});
+  EXPECT_LT(BlockEnergyScores(same, forth, lengths, 4)[0].item<float>(),
+            BlockEnergyScores(other, -forth, lengths, 4)[0].item<float>() - 0.1);
+}
+
+TEST(EnergyScore, AClipTooShortForABlockScoresNothing) {
+  const torch::Tensor real = torch::randn({2, 4, 3}), answers = torch::randn({2, 2, 4, 3});
+  EXPECT_EQ(BlockEnergyScores(answers, real, Lengths({4, 3}), 6).abs().sum().item<float>(), 0);
+  EXPECT_EQ(BlockEnergyScores(answers, real, Lengths({4, 3}), 3)[1].item<float>(), 0);
+  EXPECT_NE(BlockEnergyScores(answers, real, Lengths({4, 3}), 3)[0].item<float>(), 0);
+}
+
+}  // namespace
+}  // namespace duet::network

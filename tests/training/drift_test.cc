@@ -1,0 +1,95 @@
+#include "model/training/drift.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/training/made_up_dataset.h"
+
+namespace duet::training {
+namespace {
+
+using motion::Poses;
+using motion::Vec3;
+
+// A follower who stands still, told some of its first frames.
+struct Told {
+  motion::Skeleton skeleton = motion::SbuSkeleton();
+  Poses captured;
+  engine::NetworkInput input;
+  Poses target;
+};
+
+Told Standing(int settled) {
+  Told told;
+  const dataset::Dataset dataset = MadeUpDataset();
+  const absl::Span<const Vec3> pose = dataset.sequences[0].pair.follower.poses[0];
+  told.captured = Poses(0, told.skeleton.joint_count());
+  for (int t = 0; t < 30; ++t) told.captured.Append(pose);
+  told.target = told.captured;
+  told.input.start = engine::FollowerStart{pose[static_cast<size_t>(told.skeleton.root)],
+                                           {pose.begin(), pose.end()}};
+  if (settled > 0) {
+    told.input.settled = told.captured;
+    told.input.settled.Resize(settled);
+  }
+  return told;
+}
+
+void Drift(const TrainingOptions::Flow::Drift& options, Told* told) {
+  base::Random random(1, 0);
+  AddDrift(told->skeleton, options, &random, &told->input, &told->target);
+}
+
+float Off(const Poses& poses, const Poses& captured, int frame) {
+  float most = 0;
+  for (int j = 0; j < poses.joint_count(); ++j) {
+    most = std::max(most, Distance(poses.at(frame, j), captured.at(frame, j)));
+  }
+  return most;
+}
+
+TEST(Drift, EachErrorIsToldAndFoundBackFrom) {
+  using Options = TrainingOptions::Flow::Drift;
+  for (double Options::*error : {&Options::tilt, &Options::bend, &Options::turn, &Options::root,
+                                 &Options::height, &Options::joints}) {
+    Options options;
+    options.*error = 0.3;
+    options.frames = 10;
+    Told told = Standing(4);
+    Drift(options, &told);
+    for (int t = 0; t < 4; ++t) {
+      EXPECT_GT(Off(told.target, told.captured, t), 0.01f);
+      for (int j = 0; j < told.target.joint_count(); ++j) {
+        EXPECT_LT(Distance(told.target.at(t, j), told.input.settled.at(t, j)), 1e-5f);
+      }
+    }
+    EXPECT_LT(Off(told.target, told.captured, 9), Off(told.target, told.captured, 3));
+    EXPECT_GT(Off(told.target, told.captured, 9), 0);
+    for (int t = 13; t < 30; ++t) EXPECT_EQ(Off(told.target, told.captured, t), 0);
+  }
+}
+
+TEST(Drift, StartIsWhatIsTold) {
+  TrainingOptions::Flow::Drift options;
+  options.root = options.joints = 0.3;
+  Told told = Standing(0);
+  Drift(options, &told);
+  const std::vector<Vec3>& pose = told.input.start->pose;
+  EXPECT_EQ(told.input.start->root, pose[static_cast<size_t>(told.skeleton.root)]);
+  EXPECT_GT(Distance(pose[0], told.captured.at(0, 0)), 0.01f);
+}
+
+TEST(Drift, ABendLeavesTheLegs) {
+  TrainingOptions::Flow::Drift options;
+  options.bend = 0.5;
+  Told told = Standing(2);
+  Drift(options, &told);
+  for (const char* name : {"left_knee", "left_foot", "right_knee", "right_foot"}) {
+    const int joint = told.skeleton.Find(name);
+    EXPECT_EQ(told.target.at(0, joint), told.captured.at(0, joint)) << name;
+  }
+  const int head = told.skeleton.Find("head");
+  EXPECT_GT(Distance(told.target.at(0, head), told.captured.at(0, head)), 0.05f);
+}
+
+}  // namespace
+}  // namespace duet::training
