@@ -12,8 +12,11 @@ void CleanUp::Apply(const motion::Poses& leader, const Touch& touch, const Timin
                     motion::Poses* follower) const {
   // The whole body first, then its limbs, so that what is held stays held.
   if (options_.upright.enabled) {
-    SetTrunkUpright(skeleton_, body_, options_.upright, timing, follower);
-    SetUpright(skeleton_, body_, options_.upright, timing, follower);
+    // Each moves what the other one sees; the second time little is left to do.
+    for (int round = 0; round < 2; ++round) {
+      SetTrunkUpright(skeleton_, body_, options_.upright, timing, follower);
+      SetUpright(skeleton_, body_, options_.upright, timing, follower);
+    }
   }
   if (options_.spacing.enabled) {
     KeepSpacing(skeleton_.root, leader, options_.spacing, timing, follower);

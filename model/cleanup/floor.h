@@ -16,7 +16,7 @@ struct FloorOptions {
   double free_metres = 0.015;
   double most_metres = 0.035;
   // What is in the air for less is a jump, and stays.
-  double jump_seconds = 0.5;
+  double jump_seconds = 0.2;
 };
 
 // The height of the lower foot in every frame, metres. Requires a frame. Shapes: returns [frames].

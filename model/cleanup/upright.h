@@ -14,10 +14,10 @@ namespace duet::cleanup {
 struct UprightOptions {
   bool enabled = true;
   // A lean up to the first angle is left alone; none that lasts goes beyond the second.
-  double free_degrees = 12;
-  double most_degrees = 14;
+  double free_degrees = 8;
+  double most_degrees = 11;
   // A lean lasts when it outlives a Gaussian of this deviation: a bow or a kick does not.
-  double sigma_seconds = 0.5;
+  double sigma_seconds = 0.35;
 };
 
 // Where the body points in every frame, for longer than a moment: from the middle of a pair of
@@ -25,8 +25,8 @@ struct UprightOptions {
 std::vector<motion::Vec3> LastingLean(const motion::JointPair& base, int chest,
                                       const motion::Poses& poses, double sigma_frames);
 
-// Bends a trunk that leans for longer than a moment back towards upright at the hips; feet stay where
-// they are, knees follow. A skeleton without hips or legs stays as it is.
+// Bends a trunk that leans for longer than a moment back towards upright at the hips; feet stay
+// where they are, knees follow. A skeleton without hips or legs stays as it is.
 void SetTrunkUpright(const motion::Skeleton& skeleton, const Body& body,
                      const UprightOptions& options, const Timing& timing, motion::Poses* poses);
 

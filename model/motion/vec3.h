@@ -41,7 +41,8 @@ inline Vec3 RotateY(Vec3 a, double radians) {
   return {c * a.x + s * a.z, a.y, -s * a.x + c * a.z};
 }
 
-// Turns `a` by `radians` about an axis of length 1, counter-clockwise seen from its tip (Rodrigues).
+// Turns `a` by `radians` about an axis of length 1, counter-clockwise seen from its tip
+// (Rodrigues).
 inline Vec3 RotateAbout(Vec3 a, Vec3 axis, double radians) {
   const float c = static_cast<float>(std::cos(radians));
   const float s = static_cast<float>(std::sin(radians));

@@ -102,12 +102,11 @@ torch::Tensor PlainAnswers(const FlowGenerator& generator,
   FlowInput row_input = input;
   row_input.known = input.known.index_select(0, rows);
   row_input.is_known = input.is_known.index_select(0, rows);
-  const torch::Tensor answers =
-      TakeSteps(architecture.steps, row_input, source.flatten(0, 1),
-                [&](const torch::Tensor& sample, double time) {
-                  return generator->forward(context, row_labels, sample,
-                                            torch::full({sample.size(0)}, time));
-                });
+  const torch::Tensor answers = TakeSteps(
+      architecture.steps, row_input, source.flatten(0, 1),
+      [&](const torch::Tensor& sample, double time) {
+        return generator->forward(context, row_labels, sample, torch::full({sample.size(0)}, time));
+      });
   return answers.view_as(source);
 }
 
@@ -116,8 +115,8 @@ torch::Tensor SampleFlow(const FlowGenerator& generator,
                          const torch::Tensor& source) {
   const GuidanceTerms terms = MakeGuidanceTerms(input.labels, input.lengths, architecture.guidance);
   const FlowContext rows = Rows(generator->Prepare(input), terms.windows);
-  const torch::Tensor answer = TakeSteps(
-      architecture.steps, input, source, [&](const torch::Tensor& sample, double time) {
+  const torch::Tensor answer =
+      TakeSteps(architecture.steps, input, source, [&](const torch::Tensor& sample, double time) {
         return Guided(generator, rows, terms, sample, time);
       });
   // The last step ends on the answer itself.

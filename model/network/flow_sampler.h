@@ -27,9 +27,9 @@ struct GuidanceTerms {
 GuidanceTerms MakeGuidanceTerms(const torch::Tensor& labels, const torch::Tensor& lengths,
                                 double guidance);
 
-// Several answers to each window without guidance, in units of offset_scale, the known frames as the
-// network has them: what training compares with the captured motion.
-// Shapes: labels [N, C], source [A, N, T, 3 J]; returns [A, N, T, 3 J].
+// Several answers to each window without guidance, in units of offset_scale, the known frames as
+// the network has them: what training compares with the captured motion. Shapes: labels [N, C],
+// source [A, N, T, 3 J]; returns [A, N, T, 3 J].
 torch::Tensor PlainAnswers(const FlowGenerator& generator,
                            const checkpoint::FlowArchitecture& architecture, const FlowInput& input,
                            const torch::Tensor& labels, const torch::Tensor& source);

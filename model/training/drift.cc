@@ -94,7 +94,8 @@ void AddDrift(const motion::Skeleton& skeleton, const TrainingOptions::Flow::Dri
   for (int t = 0; t < input->settled.frame_count(); ++t) error.Apply(1, input->settled[t]);
   const int told = std::max(1, input->settled.frame_count());
   for (int t = 0; t < target->frame_count(); ++t) {
-    const double since = std::clamp((t - told + 1.0) / static_cast<double>(options.frames), 0.0, 1.0);
+    const double since =
+        std::clamp((t - told + 1.0) / static_cast<double>(options.frames), 0.0, 1.0);
     const double share = 0.5 + 0.5 * std::cos(kPi * since);
     if (share > 0) error.Apply(share, (*target)[t]);
   }

@@ -61,8 +61,8 @@ torch::Tensor FlowTrainer::EnergyLoss(const FlowBatch& batch, EpochReport* repor
   const torch::Tensor& lengths = batch.input.lengths;
   std::vector<torch::Tensor> sources;
   for (int64_t a = 0; a < energy.answers; ++a) sources.push_back(DrawSource(batch));
-  const torch::Tensor answers = network::PlainAnswers(
-      generator_, *manifest_.flow, batch.input, batch.labels, torch::stack(sources));
+  const torch::Tensor answers = network::PlainAnswers(generator_, *manifest_.flow, batch.input,
+                                                      batch.labels, torch::stack(sources));
   torch::Tensor total = torch::zeros({});
   const auto add = [&](double weight, const torch::Tensor& scores, double* mean) {
     const torch::Tensor loss = scores.mean();
@@ -75,8 +75,7 @@ torch::Tensor FlowTrainer::EnergyLoss(const FlowBatch& batch, EpochReport* repor
       network::VelocityEnergyScores(rate * answers, rate * batch.target, lengths),
       &report->continuity);
   add(energy.block_weight,
-      network::BlockEnergyScores(rate * answers, rate * batch.target, lengths,
-                                 energy.block_frames),
+      network::BlockEnergyScores(rate * answers, rate * batch.target, lengths, energy.block_frames),
       &report->continuity);
   report->generator += total.item<double>() / static_cast<double>(steps_per_epoch_);
   return total;
@@ -118,8 +117,8 @@ torch::Tensor FlowTrainer::MatchingLoss(const FlowBatch& batch, EpochReport* rep
 }
 
 void FlowTrainer::TrainEpoch(int64_t first_step, EpochReport* report) {
-  const bool is_energy =
-      static_cast<double>(epoch()) >= options_.flow->energy.from * static_cast<double>(options_.epochs);
+  const bool is_energy = static_cast<double>(epoch()) >=
+                         options_.flow->energy.from * static_cast<double>(options_.epochs);
   int64_t step = first_step;
   for (const FlowBatch& batch :
        SampleFlowEpoch(manifest_, dataset_, generator_->base_poses(), train_, options_, epoch())) {

@@ -96,14 +96,14 @@ struct TrainingOptions {
     // share of the clips that are told a pose begins off it and finds back to what was captured.
     // Standard deviations; 0 for what does not happen.
     struct Drift {
-      double share = 0;      // of the clips told a pose
-      double tilt = 0;       // radians, of the whole body about a point on the floor
-      double bend = 0;       // radians, of all but the legs about the hips
-      double turn = 0;       // radians, about the vertical
-      double root = 0;       // metres along the floor
-      double height = 0;     // metres
-      double joints = 0;     // metres, of every joint alone
-      int64_t frames = 20;   // from the last told frame until it is found back
+      double share = 0;     // of the clips told a pose
+      double tilt = 0;      // radians, of the whole body about a point on the floor
+      double bend = 0;      // radians, of all but the legs about the hips
+      double turn = 0;      // radians, about the vertical
+      double root = 0;      // metres along the floor
+      double height = 0;    // metres
+      double joints = 0;    // metres, of every joint alone
+      int64_t frames = 20;  // from the last told frame until it is found back
     } drift;
 
     // The last part of a run trains whole answers, in as many steps as they are sampled in, by the

@@ -94,8 +94,9 @@ TEST(FlowManifest, RefusesByName) {
   EXPECT_THAT(refusal("/generator/steps", 0), names("generator.steps: 0, wanted"));
   EXPECT_THAT(refusal("/generator/offset_scale", 0), names("generator.offset_scale"));
   EXPECT_THAT(refusal("/generator/noise/white", -1), names("generator.noise.white"));
-  EXPECT_THAT(refusal("/generator/noise/colour", 1), names("generator.noise.colour"));
-  EXPECT_THAT(refusal("/generator/more", 1), names("generator.more"));
+  EXPECT_THAT(refusal("/generator/noise/colour", 1),
+              names("generator.noise: unknown field \"colour\""));
+  EXPECT_THAT(refusal("/generator/more", 1), names("generator: unknown field \"more\""));
   EXPECT_THAT(refusal("/format_version", 1), names("generator"));
 }
 

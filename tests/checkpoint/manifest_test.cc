@@ -176,7 +176,7 @@ TEST(Manifest, RefusesEveryFieldThatIsMissing) {
       ++fields;
     }
   });
-  EXPECT_EQ(fields, 15 + 8 + 2 * 2 + 6 + 3);
+  EXPECT_EQ(fields, 15 + 8 + 2 * 2 + 7 + 3);
   EXPECT_THAT(ParseManifest(root.dump()), IsOk());
 }
 

@@ -20,13 +20,13 @@ TEST(EnergyScore, PaddingCountsForNothing) {
   const torch::Tensor real = torch::randn({2, 9, 3});
   torch::Tensor answers = torch::randn({2, 2, 9, 3});
   const torch::Tensor lengths = Lengths({9, 8});
-  const torch::Tensor before = torch::stack(
-      {EnergyScores(answers, real, lengths), VelocityEnergyScores(answers, real, lengths),
-       BlockEnergyScores(answers, real, lengths, 3)});
+  const torch::Tensor before = torch::stack({EnergyScores(answers, real, lengths),
+                                             VelocityEnergyScores(answers, real, lengths),
+                                             BlockEnergyScores(answers, real, lengths, 3)});
   answers.select(1, 1).select(1, 8).fill_(100);
-  const torch::Tensor after = torch::stack(
-      {EnergyScores(answers, real, lengths), VelocityEnergyScores(answers, real, lengths),
-       BlockEnergyScores(answers, real, lengths, 3)});
+  const torch::Tensor after = torch::stack({EnergyScores(answers, real, lengths),
+                                            VelocityEnergyScores(answers, real, lengths),
+                                            BlockEnergyScores(answers, real, lengths, 3)});
   EXPECT_TRUE(torch::equal(before, after));
 }
 
@@ -51,13 +51,22 @@ TEST(EnergyScore, VelocitiesDoNotSeeWhereAnAnswerIs) {
 }
 
 TEST(EnergyScore, BlocksSeeWhatBelongsTogether) {
-  // Frame by frame both answers move as one of the real motions does; only one pair goes together.
-  torch::Tensor forth = torch::zeros({1, 5, 1});
-  for (int64_t t = 0; t < 5; ++t) forth[0][t][0] = t % 2 == 0 ? 0 : 1;
-  const torch::Tensor same = torch::stack({forth, forth}), other = torch::stack({forth, -forth});
-  const torch::Tensor lengths = Lengths({5});
-  EXPECT_LT(BlockEnergyScores(same, forth, lengths, 4)[0].item<float>(),
-            BlockEnergyScores(other, -forth, lengths, 4)[0].item<float>() - 0.1);
+  // Motions that go on as they began, forth or back, and answers that change their mind at every
+  // frame: alike frame by frame, but not together.
+  torch::manual_seed(4);
+  constexpr int64_t kClips = 2000, kFrames = 7;
+  const auto lasting = [&] {
+    return torch::randn({kClips, 1, 1}).sign() * torch::ones({kFrames, 1});
+  };
+  const auto fickle = [&] { return torch::randn({kClips, kFrames, 1}).sign(); };
+  const auto walk = [](const torch::Tensor& steps) { return steps.cumsum(-2); };
+  const torch::Tensor real = walk(lasting()), lengths = torch::full({kClips}, kFrames);
+  const torch::Tensor alike = walk(torch::stack({lasting(), lasting()}));
+  const torch::Tensor other = walk(torch::stack({fickle(), fickle()}));
+  EXPECT_NEAR(VelocityEnergyScores(alike, real, lengths).mean().item<float>(),
+              VelocityEnergyScores(other, real, lengths).mean().item<float>(), 0.05);
+  EXPECT_LT(BlockEnergyScores(alike, real, lengths, 4).mean().item<float>(),
+            BlockEnergyScores(other, real, lengths, 4).mean().item<float>() - 0.1);
 }
 
 TEST(EnergyScore, AClipTooShortForABlockScoresNothing) {

@@ -159,7 +159,8 @@ TEST(TorchNetworkTest, ExceptionsBecomeAStatus) {
   const auto network = MakeTorchNetwork(TinyCheckpoint());
   ASSERT_THAT(network, IsOk());
   // A leader of one joint, where the parts want three: LibTorch throws.
-  const engine::NetworkInput input{motion::Poses(2, 1), {}, std::nullopt};
+  engine::NetworkInput input;
+  input.leader = motion::Poses(2, 1);
   EXPECT_THAT((*network)->Run({input}),
               StatusIs(absl::StatusCode::kInternal, HasSubstr("the network failed: ")));
 }

@@ -76,7 +76,8 @@ TEST(TrainingOptionsTest, FlowReadsItsOwnSectionsAlone) {
   EXPECT_THAT(refusal("generator.heads", "7"), HasSubstr("generator.heads: 7, wanted a divisor"));
   EXPECT_THAT(refusal("generator.noise.white", "-1"), HasSubstr("generator.noise.white"));
   EXPECT_THAT(refusal("flow.unlabelled", "2"), HasSubstr("flow.unlabelled"));
-  EXPECT_THAT(refusal("optimiser.schedule", "constant"), HasSubstr("optimiser.last_share"));
+  EXPECT_THAT(refusal("optimiser.schedule", "constant"),
+              HasSubstr("optimiser: unknown field \"last_share\""));
   const auto tuned = ParseTrainingOptions(FlowJson(), {{"generator.steps", "5"}});
   ASSERT_THAT(tuned, IsOk());
   EXPECT_EQ(tuned->flow->generator.steps, 5);

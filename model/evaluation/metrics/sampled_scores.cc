@@ -81,8 +81,7 @@ std::vector<double> MultimodalityByClass(const dataset::Dataset& dataset,
                                          const SampledMotions& samples) {
   std::vector<double> sums(dataset.classes.size()), counts(dataset.classes.size());
   for (size_t i = 0; i < MotionCount(samples); ++i) {
-    const auto c =
-        static_cast<size_t>(SequenceOf(dataset, samples.front()[i]).interaction_class);
+    const auto c = static_cast<size_t>(SequenceOf(dataset, samples.front()[i]).interaction_class);
     sums[c] += Spread(dataset, samples, i);
     ++counts[c];
   }
