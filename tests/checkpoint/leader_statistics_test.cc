@@ -71,7 +71,8 @@ TEST(LeaderStatisticsInManifest, RefusesByName) {
   };
   EXPECT_THAT(refusal("/leader_statistics", 3), names("leader_statistics: 3, wanted an object"));
   EXPECT_THAT(refusal("/leader_statistics/scale", 0), names("leader_statistics.scale: 0, wanted"));
-  EXPECT_THAT(refusal("/leader_statistics/more", 0), names("leader_statistics.more"));
+  EXPECT_THAT(refusal("/leader_statistics/more", 0),
+              names("leader_statistics: unknown field \"more\""));
   EXPECT_THAT(refusal("/leader_statistics/features", json::array()),
               names("leader_statistics.features: empty, wanted at least one feature"));
   EXPECT_THAT(refusal("/leader_statistics/features/1", 7),
@@ -81,7 +82,7 @@ TEST(LeaderStatisticsInManifest, RefusesByName) {
   EXPECT_THAT(refusal("/leader_statistics/features/0/mean", "much"),
               names("leader_statistics.features[0].mean: \"much\", wanted"));
   EXPECT_THAT(refusal("/leader_statistics/features/0/median", 1),
-              names("leader_statistics.features[0].median"));
+              names("leader_statistics.features[0]: unknown field \"median\""));
   EXPECT_THAT(refusal("/leader_statistics/features/1/name", "root_height"),
               names("leader_statistics.features[1].name: \"root_height\" is repeated"));
 }
