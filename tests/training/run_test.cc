@@ -4,8 +4,10 @@
 
 #include <sstream>
 
+#include "model/engine/leader_statistics.h"
 #include "model/torch_engine/torch_synthesizer.h"
 #include "model/training/run_log.h"
+#include "model/training/sampler.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/training/flow_test_options.h"
