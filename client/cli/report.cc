@@ -12,6 +12,9 @@ namespace {
 
 using nlohmann::json;
 
+// Of captured leaders that a model was not trained on, hardly any is farther.
+constexpr double kFarUnfamiliarity = 1.5;
+
 std::string Print(const json& value) {
   return value.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
 }
@@ -131,6 +134,12 @@ std::string DescribeAnswer(const Synthesis& synthesis,
                           "          unfamiliarity %.2f (1: as the farthest tenth of the training "
                           "leaders)\n",
                           *result.unfamiliarity);
+    if (*result.unfamiliarity > kFarUnfamiliarity) {
+      absl::StrAppend(
+          &text,
+          "          the leader is unlike those that the model learnt from: look at the "
+          "answer before you use it\n");
+    }
   }
   if (result.attempt_count > 1) {
     absl::StrAppend(&text, "          ", Plural(result.attempt_count, "attempt"), "\n");

@@ -11,6 +11,7 @@
 #include "absl/time/time.h"
 #include "model/base/strict_json.h"
 #include "model/checkpoint/flow_json.h"
+#include "model/checkpoint/leader_statistics_json.h"
 #include "model/checkpoint/names.h"
 #include "model/motion/skeleton_json.h"
 
@@ -187,6 +188,15 @@ void ReadModel(base::ObjectReader* reader, engine::ModelDescription* model) {
   }
 }
 
+// Checkpoints of before have none; version 1 knew of none.
+void ReadLeaders(base::ObjectReader* reader, Manifest* manifest) {
+  if (manifest->format_version == 1 || !reader->Has(kLeaderStatistics)) return;
+  const json& leaders = reader->Object(kLeaderStatistics);
+  if (!reader->ok()) return;
+  Take(ReadLeaderStatistics(leaders, manifest->model.skeleton, kLeaderStatistics), reader,
+       &manifest->model.leader_statistics.emplace());
+}
+
 absl::StatusOr<Manifest> ReadManifest(const json& root) {
   base::ObjectReader reader(root, "");
   Manifest manifest;
@@ -198,6 +208,7 @@ absl::StatusOr<Manifest> ReadManifest(const json& root) {
   const json& skeleton_object = reader.Object("skeleton");
   if (reader.ok()) Take(motion::ReadSkeleton(skeleton_object, "skeleton"), &reader, &skeleton);
   manifest.model.skeleton = std::move(skeleton.skeleton);
+  ReadLeaders(&reader, &manifest);
   const json& generator = reader.Object("generator");
   if (reader.ok()) ReadGenerator(generator, &reader, &manifest);
   manifest.generator.parts = std::move(skeleton.parts);
@@ -256,7 +267,7 @@ absl::StatusOr<Manifest> ParseManifest(std::string_view text) {
 
 std::string SerializeManifest(const Manifest& manifest) {
   const engine::ModelDescription& model = manifest.model;
-  const ordered_json root = {
+  ordered_json root = {
       {"format_version", manifest.format_version},
       {"name", model.name},
       {"version", model.version},
@@ -275,6 +286,9 @@ std::string SerializeManifest(const Manifest& manifest) {
         {"sha256", manifest.weights.sha256}}},
       {"training", manifest.training},
       {"metrics", manifest.metrics}};
+  if (model.leader_statistics) {
+    root[kLeaderStatistics] = LeaderStatisticsToJson(*model.leader_statistics);
+  }
   return root.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 

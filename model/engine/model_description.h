@@ -1,9 +1,11 @@
 #ifndef DUET_MODEL_ENGINE_MODEL_DESCRIPTION_H_
 #define DUET_MODEL_ENGINE_MODEL_DESCRIPTION_H_
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "model/engine/leader_statistics.h"
 #include "model/motion/skeleton.h"
 
 namespace duet::engine {
@@ -19,6 +21,8 @@ struct ModelDescription {
   int window_frames = 0;             // the longest window that the network was trained for
   bool accepts_follower_start = false;
   bool samples = false;  // answers depend on Sampling
+  // Of the leaders that it was trained on, where that is known.
+  std::optional<LeaderStatistics> leader_statistics;
 
   int class_count() const { return static_cast<int>(classes.size()); }
 };

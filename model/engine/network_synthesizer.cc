@@ -6,6 +6,7 @@
 #include "absl/strings/str_cat.h"
 #include "model/engine/finishing.h"
 #include "model/engine/standard_window.h"
+#include "model/engine/unfamiliarity.h"
 #include "model/engine/window_standardisation.h"
 
 namespace duet::engine {
@@ -40,6 +41,10 @@ class NetworkSynthesizer : public Synthesizer {
       results.push_back(Finish(*windows[i], standardisations[i], (*followers)[i]));
     }
     return results;
+  }
+
+  std::optional<double> Unfamiliarity(const ClipRequest& request) const override {
+    return engine::Unfamiliarity(description_, request);
   }
 
  private:

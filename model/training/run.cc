@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "model/engine/leader_statistics.h"
 #include "model/training/flow_trainer.h"
 #include "model/training/revision.h"
 #include "model/training/run_log.h"
@@ -38,6 +39,15 @@ checkpoint::Manifest MakeManifest(const RunPlan& plan, const dataset::Dataset& d
   manifest.training["data"] = dataset.name;
   manifest.training["sequences"] = absl::StrCat(plan.train.size());
   return manifest;
+}
+
+engine::LeaderStatistics MeasureLeaders(const dataset::Dataset& dataset,
+                                        const std::vector<int>& sequences) {
+  std::vector<const motion::Poses*> leaders;
+  for (const int index : sequences) {
+    leaders.push_back(&dataset.sequences[static_cast<size_t>(index)].pair.leader.poses);
+  }
+  return engine::FitLeaderStatistics(dataset.skeleton, leaders, dataset.frame_rate_hz);
 }
 
 // Moves the validation sequences out of `train`.
@@ -115,13 +125,14 @@ absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& dataset, b
   std::error_code error;
   fs::create_directories(plan.folder, error);
   if (error) return absl::InternalError(absl::StrCat(plan.folder.string(), ": ", error.message()));
-  const checkpoint::Manifest manifest = MakeManifest(plan, dataset);
+  checkpoint::Manifest manifest = MakeManifest(plan, dataset);
   std::vector<int> train = plan.train;
   const std::vector<int> validation = HoldBack(plan.options, dataset, &train);
   if (train.empty()) {
     return absl::InvalidArgumentError(absl::StrCat(
         plan.title, ": validation holds back every sequence, wanted some to train on"));
   }
+  manifest.model.leader_statistics = MeasureLeaders(dataset, train);
   const std::unique_ptr<EpochTrainer> trainer =
       MakeTrainer(plan, manifest, dataset, train, validation);
   const fs::path state = plan.folder / "state";

@@ -4,6 +4,7 @@
 
 #include <sstream>
 
+#include "model/engine/leader_statistics.h"
 #include "model/torch_engine/torch_synthesizer.h"
 #include "model/training/run_log.h"
 #include "model/training/sampler.h"
@@ -54,6 +55,36 @@ TEST_F(RunTest, LeavesACheckpointThatServes) {
   ASSERT_THAT(checkpoint, IsOk());
   EXPECT_EQ(checkpoint->manifest.training.at("losses.bone"), "0.01");
   EXPECT_EQ(checkpoint->manifest.training.at("sequences"), "7");
+}
+
+TEST_F(RunTest, TheCheckpointKnowsTheLeadersThatItWasTrainedOn) {
+  // Whom the network never saw is no training leader.
+  for (motion::Vec3& joint : dataset_.sequences[1].pair.leader.poses.all()) joint = joint * 3;
+  ASSERT_EQ(dataset_.sequences[1].subjects.front(), "s02");
+  std::vector<const motion::Poses*> leaders;
+  for (const dataset::Sequence& sequence : dataset_.sequences) {
+    if (sequence.subjects.front() != "s02") leaders.push_back(&sequence.pair.leader.poses);
+  }
+  const engine::LeaderStatistics wanted =
+      engine::FitLeaderStatistics(dataset_.skeleton, leaders, dataset_.frame_rate_hz);
+  for (const TrainingOptions& options : {SmallOptions(), SmallFlowOptions()}) {
+    plan_.options = options;
+    plan_.options.epochs = 1;
+    plan_.options.validation.subjects = {"s02"};
+    plan_.folder = folder_.path() / (options.flow ? "flow" : "paper");
+    ASSERT_THAT(Go(), IsOk());
+    const auto checkpoint = checkpoint::ReadCheckpoint(CheckpointFolder(plan_));
+    ASSERT_THAT(checkpoint, IsOk());
+    ASSERT_TRUE(checkpoint->manifest.model.leader_statistics.has_value());
+    const engine::LeaderStatistics& got = *checkpoint->manifest.model.leader_statistics;
+    EXPECT_EQ(got.scale, wanted.scale);
+    ASSERT_EQ(got.features.size(), wanted.features.size());
+    for (std::size_t i = 0; i < wanted.features.size(); ++i) {
+      EXPECT_EQ(got.features[i].name, wanted.features[i].name);
+      EXPECT_EQ(got.features[i].mean, wanted.features[i].mean);
+      EXPECT_EQ(got.features[i].deviation, wanted.features[i].deviation);
+    }
+  }
 }
 
 TEST_F(RunTest, SamplingGeneratorLeavesACheckpointThatServes) {

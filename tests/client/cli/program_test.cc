@@ -340,6 +340,18 @@ TEST_F(ProgramTest, SaysHowUnfamiliarTheRequestIsWhereTheServerKnows) {
   EXPECT_EQ(nlohmann::json::parse(out_.str())["unfamiliarity"], 1.25);
   ASSERT_EQ(Synthesize("pair.csv"), 0);
   EXPECT_THAT(out_.str(), HasSubstr("          unfamiliarity 1.25 (1: as the farthest tenth"));
+  EXPECT_THAT(out_.str(), Not(HasSubstr("unlike")));
+}
+
+TEST_F(ProgramTest, WarnsOfALeaderThatIsFarFromTheTrainingLeaders) {
+  EXPECT_CALL(*connection_, Synthesize)
+      .WillOnce([](const SynthesisRequest& request, const ChunkCallback&) {
+        absl::StatusOr<SynthesisResult> result = Follow(request);
+        result->unfamiliarity = 1.75;
+        return result;
+      });
+  ASSERT_EQ(Synthesize("pair.csv"), 0);
+  EXPECT_THAT(out_.str(), HasSubstr("unlike those that the model learnt from"));
 }
 
 TEST_F(ProgramTest, QuietPrintsNothing) {

@@ -1,0 +1,109 @@
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "model/checkpoint/manifest.h"
+#include "tests/support/status_matchers.h"
+#include "tests/support/tiny_checkpoint.h"
+
+namespace duet::checkpoint {
+namespace {
+
+using test::IsOk;
+using test::StatusIs;
+using test::TinyManifest;
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+Manifest ManifestWithLeaders() {
+  Manifest manifest = TinyManifest();
+  manifest.weights.bytes = 1234;
+  manifest.weights.sha256 = std::string(64, 'a');
+  manifest.model.leader_statistics = engine::LeaderStatistics{
+      {{"root_height", 0.95, 1.0 / 3}, {"mean_joint_speed", -0.125, 0.5}}, 1.4};
+  return manifest;
+}
+
+TEST(LeaderStatisticsInManifest, RoundTrip) {
+  const std::string text = SerializeManifest(ManifestWithLeaders());
+  const absl::StatusOr<Manifest> read = ParseManifest(text);
+  ASSERT_THAT(read, IsOk());
+  ASSERT_TRUE(read->model.leader_statistics.has_value());
+  const engine::LeaderStatistics& leaders = *read->model.leader_statistics;
+  ASSERT_EQ(leaders.features.size(), 2u);
+  EXPECT_EQ(leaders.features[0].name, "root_height");
+  EXPECT_EQ(leaders.features[0].mean, 0.95);
+  EXPECT_EQ(leaders.features[0].deviation, 1.0 / 3);
+  EXPECT_EQ(leaders.features[1].name, "mean_joint_speed");
+  EXPECT_EQ(leaders.features[1].mean, -0.125);
+  EXPECT_EQ(leaders.scale, 1.4);
+  EXPECT_EQ(SerializeManifest(*read), text);
+}
+
+TEST(LeaderStatisticsInManifest, MayBeAbsent) {
+  Manifest manifest = ManifestWithLeaders();
+  manifest.model.leader_statistics.reset();
+  const std::string text = SerializeManifest(manifest);
+  EXPECT_FALSE(json::parse(text).contains("leader_statistics"));
+  const absl::StatusOr<Manifest> read = ParseManifest(text);
+  ASSERT_THAT(read, IsOk());
+  EXPECT_FALSE(read->model.leader_statistics.has_value());
+}
+
+TEST(LeaderStatisticsInManifest, AreThoseOfASamplingGeneratorToo) {
+  Manifest manifest = ManifestWithLeaders();
+  manifest.flow = FlowArchitecture{};
+  const absl::StatusOr<Manifest> read = ParseManifest(SerializeManifest(manifest));
+  ASSERT_THAT(read, IsOk());
+  EXPECT_TRUE(read->model.leader_statistics.has_value());
+}
+
+TEST(LeaderStatisticsInManifest, RefusesByName) {
+  const auto refusal = [](const std::string& pointer, const json& value) {
+    json root = json::parse(SerializeManifest(ManifestWithLeaders()));
+    root[json::json_pointer(pointer)] = value;
+    return ParseManifest(root.dump()).status();
+  };
+  const auto names = [](const std::string& why) {
+    return StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(why));
+  };
+  EXPECT_THAT(refusal("/leader_statistics", 3), names("leader_statistics: 3, wanted an object"));
+  EXPECT_THAT(refusal("/leader_statistics/scale", 0), names("leader_statistics.scale: 0, wanted"));
+  EXPECT_THAT(refusal("/leader_statistics/more", 0),
+              names("leader_statistics: unknown field \"more\""));
+  EXPECT_THAT(refusal("/leader_statistics/features", json::array()),
+              names("leader_statistics.features: empty, wanted at least one feature"));
+  EXPECT_THAT(refusal("/leader_statistics/features/1", 7),
+              names("leader_statistics.features[1]: 7, wanted an object"));
+  EXPECT_THAT(refusal("/leader_statistics/features/1/deviation", 0),
+              names("leader_statistics.features[1].deviation: 0, wanted"));
+  EXPECT_THAT(refusal("/leader_statistics/features/0/mean", "much"),
+              names("leader_statistics.features[0].mean: \"much\", wanted"));
+  EXPECT_THAT(refusal("/leader_statistics/features/0/median", 1),
+              names("leader_statistics.features[0]: unknown field \"median\""));
+  EXPECT_THAT(refusal("/leader_statistics/features/1/name", "root_height"),
+              names("leader_statistics.features[1].name: \"root_height\" is repeated"));
+}
+
+// Version 1 knew none: whoever reads that version alone would refuse them.
+TEST(LeaderStatisticsInManifest, AreRefusedInVersionOne) {
+  Manifest manifest = ManifestWithLeaders();
+  manifest.format_version = 1;
+  EXPECT_THAT(ParseManifest(SerializeManifest(manifest)),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("leader_statistics")));
+}
+
+// The tiny skeleton has no hands.
+TEST(LeaderStatisticsInManifest, WantsFeaturesThatTheSkeletonGives) {
+  json root = json::parse(SerializeManifest(ManifestWithLeaders()));
+  root["leader_statistics"]["features"][0]["name"] = "hand_reach";
+  EXPECT_THAT(ParseManifest(root.dump()),
+              StatusIs(absl::StatusCode::kInvalidArgument,
+                       HasSubstr("leader_statistics.features[0].name: \"hand_reach\", wanted one "
+                                 "of mean_joint_speed, highest_joint_speed")));
+}
+
+}  // namespace
+}  // namespace duet::checkpoint
