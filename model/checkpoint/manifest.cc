@@ -10,6 +10,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/time/time.h"
 #include "model/base/strict_json.h"
+#include "model/checkpoint/direction_json.h"
 #include "model/checkpoint/flow_json.h"
 #include "model/checkpoint/names.h"
 #include "model/motion/skeleton_json.h"
@@ -198,6 +199,7 @@ absl::StatusOr<Manifest> ReadManifest(const json& root) {
   const json& skeleton_object = reader.Object("skeleton");
   if (reader.ok()) Take(motion::ReadSkeleton(skeleton_object, "skeleton"), &reader, &skeleton);
   manifest.model.skeleton = std::move(skeleton.skeleton);
+  manifest.model.partner_direction = ReadDirectionRegression(manifest.model.skeleton, &reader);
   const json& generator = reader.Object("generator");
   if (reader.ok()) ReadGenerator(generator, &reader, &manifest);
   manifest.generator.parts = std::move(skeleton.parts);
@@ -256,7 +258,7 @@ absl::StatusOr<Manifest> ParseManifest(std::string_view text) {
 
 std::string SerializeManifest(const Manifest& manifest) {
   const engine::ModelDescription& model = manifest.model;
-  const ordered_json root = {
+  ordered_json root = {
       {"format_version", manifest.format_version},
       {"name", model.name},
       {"version", model.version},
@@ -275,6 +277,9 @@ std::string SerializeManifest(const Manifest& manifest) {
         {"sha256", manifest.weights.sha256}}},
       {"training", manifest.training},
       {"metrics", manifest.metrics}};
+  if (model.partner_direction) {
+    root[kPartnerDirection] = DirectionRegressionToJson(*model.partner_direction);
+  }
   return root.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 

@@ -1,9 +1,11 @@
 #ifndef DUET_MODEL_ENGINE_MODEL_DESCRIPTION_H_
 #define DUET_MODEL_ENGINE_MODEL_DESCRIPTION_H_
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "model/engine/direction_estimate.h"
 #include "model/motion/skeleton.h"
 
 namespace duet::engine {
@@ -19,6 +21,9 @@ struct ModelDescription {
   int window_frames = 0;             // the longest window that the network was trained for
   bool accepts_follower_start = false;
   bool samples = false;  // answers depend on Sampling
+  // Where the partner of a leader is expected when a caller does not tell. Absent: where the hips
+  // face.
+  std::optional<DirectionRegression> partner_direction;
 
   int class_count() const { return static_cast<int>(classes.size()); }
 };

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "model/training/direction_fit.h"
 #include "model/training/flow_trainer.h"
 #include "model/training/revision.h"
 #include "model/training/run_log.h"
@@ -115,13 +116,14 @@ absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& dataset, b
   std::error_code error;
   fs::create_directories(plan.folder, error);
   if (error) return absl::InternalError(absl::StrCat(plan.folder.string(), ": ", error.message()));
-  const checkpoint::Manifest manifest = MakeManifest(plan, dataset);
+  checkpoint::Manifest manifest = MakeManifest(plan, dataset);
   std::vector<int> train = plan.train;
   const std::vector<int> validation = HoldBack(plan.options, dataset, &train);
   if (train.empty()) {
     return absl::InvalidArgumentError(absl::StrCat(
         plan.title, ": validation holds back every sequence, wanted some to train on"));
   }
+  if (plan.options.flow) manifest.model.partner_direction = FitPartnerDirection(dataset, train);
   const std::unique_ptr<EpochTrainer> trainer =
       MakeTrainer(plan, manifest, dataset, train, validation);
   const fs::path state = plan.folder / "state";
