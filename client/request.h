@@ -48,7 +48,8 @@ struct SynthesisRequest {
   std::vector<WeightKeyframe> keyframes;
   std::optional<FollowerStart> follower_start;
   // Horizontal direction from the leader to where the follower should be; y does not count. Absent:
-  // towards follower_start, or else where the leader's hips face in its first frame.
+  // towards follower_start; without one, where the leader's motion tells a model that has learned
+  // it, or else where the leader's hips face in the first frame.
   std::optional<motion::Vec3> partner_direction;
   // Which answer of a model that samples (ModelInfo::samples): the same request with the same seed
   // has the same answer on the same server.

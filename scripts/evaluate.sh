@@ -48,6 +48,7 @@ train() {
 # The model that samples, the deterministic one beside it.
 sampled() {
   local start models=(--runs "flow=${runs}/flow" --runs "ours=${runs}/default")
+  "${bin}/duet-eval" direction --data "${data}" --out "${results}" --runs "flow=${runs}/flow"
   "${bin}/duet-eval" samples --data "${data}" --out "${results}" "${models[@]}" --id 14_samples
   "${bin}/duet-eval" samples --data "${data}" --out "${results}" "${models[@]}" --as-served \
     --id 15_samples_as_served --title "Many answers to one leader, as a server answers"

@@ -160,7 +160,7 @@ void AddReactionFlags(CLI::App* app, SynthesizeArguments* arguments) {
       app, "--partner-direction", "X,Y,Z", ParseDirection,
       [arguments](motion::Vec3 direction) { arguments->partner_direction = direction; },
       "Where the follower should be, as a horizontal direction from the leader (default: towards "
-      "--follower-start, else where the leader's hips face)")
+      "--follower-start, else as the model tells from the leader)")
       ->take_last()
       ->group(kGroup);
   AddSamplingFlags(app, arguments);

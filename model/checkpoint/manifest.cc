@@ -10,6 +10,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/time/time.h"
 #include "model/base/strict_json.h"
+#include "model/checkpoint/direction_json.h"
 #include "model/checkpoint/flow_json.h"
 #include "model/checkpoint/leader_statistics_json.h"
 #include "model/checkpoint/names.h"
@@ -209,6 +210,7 @@ absl::StatusOr<Manifest> ReadManifest(const json& root) {
   if (reader.ok()) Take(motion::ReadSkeleton(skeleton_object, "skeleton"), &reader, &skeleton);
   manifest.model.skeleton = std::move(skeleton.skeleton);
   ReadLeaders(&reader, &manifest);
+  manifest.model.partner_direction = ReadDirectionRegression(manifest.model.skeleton, &reader);
   const json& generator = reader.Object("generator");
   if (reader.ok()) ReadGenerator(generator, &reader, &manifest);
   manifest.generator.parts = std::move(skeleton.parts);
@@ -288,6 +290,9 @@ std::string SerializeManifest(const Manifest& manifest) {
       {"metrics", manifest.metrics}};
   if (model.leader_statistics) {
     root[kLeaderStatistics] = LeaderStatisticsToJson(*model.leader_statistics);
+  }
+  if (model.partner_direction) {
+    root[kPartnerDirection] = DirectionRegressionToJson(*model.partner_direction);
   }
   return root.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }

@@ -52,6 +52,10 @@ SynthesisWindow ClipSynthesis::NextWindow() const {
   window.start = NextStart();
   // The characters move: later, where the follower has got to tells the direction.
   if (next_window_ == 0 || !window.start) window.partner_direction = request_.partner_direction;
+  if (!window.start && !window.partner_direction && model_.partner_direction) {
+    window.partner_direction =
+        EstimatePartnerDirection(*model_.partner_direction, model_.skeleton, window.leader);
+  }
   window.sampling = {WindowSeed(request_.sampling.seed, next_window_), request_.sampling.variety};
   window.settled = NextSettled();
   return window;

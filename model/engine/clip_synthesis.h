@@ -20,7 +20,9 @@ struct ClipRequest {
   double frame_rate_hz = 0;  // the caller's
   LabelTrack labels;         // keyframes in the caller's frames
   std::optional<FollowerStart> start;
-  // Horizontal, of any length but 0; see SynthesisWindow.
+  // Horizontal, of any length but 0; see SynthesisWindow. Absent, with no start either: estimated
+  // from the leader's motion in the window, where the model knows how
+  // (ModelDescription::partner_direction).
   std::optional<motion::Vec3> partner_direction;
   Sampling sampling = {};
 };

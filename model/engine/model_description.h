@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "model/engine/direction_estimate.h"
 #include "model/engine/leader_statistics.h"
 #include "model/motion/skeleton.h"
 
@@ -23,6 +24,9 @@ struct ModelDescription {
   bool samples = false;  // answers depend on Sampling
   // Of the leaders that it was trained on, where that is known.
   std::optional<LeaderStatistics> leader_statistics;
+  // Where the partner of a leader is expected when a caller does not tell. Absent: where the hips
+  // face.
+  std::optional<DirectionRegression> partner_direction;
 
   int class_count() const { return static_cast<int>(classes.size()); }
 };

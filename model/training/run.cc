@@ -9,6 +9,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "model/engine/leader_statistics.h"
+#include "model/training/direction_fit.h"
 #include "model/training/flow_trainer.h"
 #include "model/training/revision.h"
 #include "model/training/run_log.h"
@@ -133,6 +134,7 @@ absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& dataset, b
         plan.title, ": validation holds back every sequence, wanted some to train on"));
   }
   manifest.model.leader_statistics = MeasureLeaders(dataset, train);
+  if (plan.options.flow) manifest.model.partner_direction = FitPartnerDirection(dataset, train);
   const std::unique_ptr<EpochTrainer> trainer =
       MakeTrainer(plan, manifest, dataset, train, validation);
   const fs::path state = plan.folder / "state";

@@ -399,5 +399,60 @@ TEST(ClipSynthesisDeathTest, StopsAtAResultOfTheWrongSize) {
   EXPECT_DEATH(clip.Accept(motion::Poses(46, kJoints - 1)), "");
 }
 
+// A model that expects the partner to the right of where the hips face.
+ModelDescription DirectedDescription() {
+  ModelDescription description = SamplingDescription();
+  const auto count = static_cast<std::size_t>(DirectionFeatureCount(description.skeleton));
+  std::vector<double> none(count, 0), always = none;
+  always.back() = 1;
+  description.partner_direction = {none, std::vector<double>(count, 1), none, always};
+  return description;
+}
+
+// What a window was told of the partner's direction.
+motion::Vec3 DirectionTold(const SynthesisWindow& window) {
+  return window.partner_direction.value_or(motion::Vec3{0, 0, 0});
+}
+
+TEST(ClipSynthesis, EstimatesADirectionThatNobodyTells) {
+  const FakeSynthesizer fake(DirectedDescription());
+  const Outcome run = RunAll(fake, Request(120, 15));
+  ASSERT_GT(run.windows.size(), 1u);
+  const motion::Poses& leader = run.windows[0].leader;
+  const motion::JointPair hips = *fake.description().skeleton.hips;
+  motion::Vec3 right = leader.at(0, hips.right) - leader.at(0, hips.left);
+  right = right / Norm(right);
+  EXPECT_LT(Distance(DirectionTold(run.windows[0]), right), 1e-3f);
+  // Later, where the follower has got to tells.
+  for (std::size_t i = 1; i < run.windows.size(); ++i) {
+    EXPECT_FALSE(run.windows[i].partner_direction.has_value()) << i;
+  }
+}
+
+TEST(ClipSynthesis, WhereNoWindowHasAStartEachIsEstimated) {
+  ModelDescription description = DirectedDescription();
+  description.accepts_follower_start = description.samples = false;
+  const Outcome run = RunAll(FakeSynthesizer(description), Request(120, 15));
+  for (const SynthesisWindow& window : run.windows) {
+    EXPECT_EQ(DirectionTold(window),
+              *EstimatePartnerDirection(*description.partner_direction, description.skeleton,
+                                        window.leader));
+  }
+}
+
+TEST(ClipSynthesis, WhatTheCallerTellsIsNotEstimated) {
+  const FakeSynthesizer fake(DirectedDescription());
+  ClipRequest told = Request(30, 15);
+  told.partner_direction = motion::Vec3{1, 0, 2};
+  EXPECT_EQ(DirectionTold(RunAll(fake, told).windows[0]), (motion::Vec3{1, 0, 2}));
+  ClipRequest started = Request(30, 15);
+  started.start = FollowerStart{{0, 1, 3}, {}};
+  EXPECT_FALSE(RunAll(fake, started).windows[0].partner_direction.has_value());
+}
+
+TEST(ClipSynthesis, AModelThatCannotEstimateIsToldNothing) {
+  EXPECT_FALSE(RunAll(FakeSynthesizer(), Request(30, 15)).windows[0].partner_direction.has_value());
+}
+
 }  // namespace
 }  // namespace duet::engine

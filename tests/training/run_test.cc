@@ -50,6 +50,7 @@ TEST_F(RunTest, LeavesACheckpointThatServes) {
   EXPECT_EQ(model.classes, dataset_.classes);
   EXPECT_EQ(model.window_frames, dataset_.LongestFrameCount());
   EXPECT_TRUE(model.accepts_follower_start);
+  EXPECT_FALSE(model.partner_direction.has_value());  // the paper's goes by the hips
   EXPECT_THAT(progress_.str(), HasSubstr("epoch 4/4"));
   const auto checkpoint = checkpoint::ReadCheckpoint(CheckpointFolder(plan_));
   ASSERT_THAT(checkpoint, IsOk());
@@ -93,6 +94,7 @@ TEST_F(RunTest, SamplingGeneratorLeavesACheckpointThatServes) {
   const auto synthesizer = torch_engine::LoadTorchSynthesizer(CheckpointFolder(plan_));
   ASSERT_THAT(synthesizer, IsOk());
   EXPECT_TRUE((*synthesizer)->description().samples);
+  EXPECT_TRUE((*synthesizer)->description().partner_direction.has_value());
   EXPECT_TRUE((*synthesizer)->description().accepts_follower_start);
   engine::SynthesisWindow window =
       MakeWindow(dataset_, CapturedExample(dataset_, dataset_.sequences[0], StartKnowledge::kPose));

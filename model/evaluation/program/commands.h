@@ -23,6 +23,7 @@ void AddLatentCommand(CLI::App* app, ChosenCommand* chosen);        // Figures 6
 void AddCurvesCommand(CLI::App* app, ChosenCommand* chosen);        // training curves
 void AddValidationCommand(CLI::App* app, ChosenCommand* chosen);    // settings on held-back data
 void AddDataCommand(CLI::App* app, ChosenCommand* chosen);          // tilt, noise and leaders
+void AddDirectionCommand(CLI::App* app, ChosenCommand* chosen);     // where the partner is
 void AddReportCommand(CLI::App* app, ChosenCommand* chosen);        // one page of all sections
 
 }  // namespace duet::evaluation::program

@@ -1,0 +1,34 @@
+#include "model/evaluation/experiments/direction_errors.h"
+
+#include <cmath>
+#include <cstddef>
+
+#include "model/dataset/partner_direction.h"
+#include "model/engine/window_standardisation.h"
+
+namespace duet::evaluation::experiments {
+namespace {
+
+constexpr double kDegrees = 180 / M_PI;
+
+}  // namespace
+
+std::vector<double> DirectionErrors(const dataset::Dataset& dataset, const std::vector<int>& tests,
+                                    const std::optional<engine::DirectionRegression>& regression) {
+  std::vector<double> errors;
+  for (const int test : tests) {
+    const dataset::Sequence& sequence = dataset.sequences[static_cast<std::size_t>(test)];
+    engine::SynthesisWindow window;
+    window.leader = sequence.pair.leader.poses;
+    if (regression) {
+      window.partner_direction =
+          EstimatePartnerDirection(*regression, dataset.skeleton, window.leader);
+    }
+    const double expected = WindowStandardisation(dataset.skeleton, window).yaw();
+    const double actual = motion::FacingYaw(PartnerDirection(dataset.skeleton, sequence));
+    errors.push_back(kDegrees * std::abs(std::remainder(expected - actual, 2 * M_PI)));
+  }
+  return errors;
+}
+
+}  // namespace duet::evaluation::experiments

@@ -1,0 +1,20 @@
+#ifndef DUET_MODEL_EVALUATION_EXPERIMENTS_DIRECTION_ERRORS_H_
+#define DUET_MODEL_EVALUATION_EXPERIMENTS_DIRECTION_ERRORS_H_
+
+#include <optional>
+#include <vector>
+
+#include "model/dataset/dataset.h"
+#include "model/engine/direction_estimate.h"
+
+namespace duet::evaluation::experiments {
+
+// How far off a partner is expected of leaders about whom nothing more is told, degrees, 0 to 180:
+// by the regression of a model, or without one by the leader's hips, as a model without one goes
+// by. Shapes: returns [tests]. Requires a regression for the data set's skeleton.
+std::vector<double> DirectionErrors(const dataset::Dataset& dataset, const std::vector<int>& tests,
+                                    const std::optional<engine::DirectionRegression>& regression);
+
+}  // namespace duet::evaluation::experiments
+
+#endif  // DUET_MODEL_EVALUATION_EXPERIMENTS_DIRECTION_ERRORS_H_

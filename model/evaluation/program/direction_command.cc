@@ -1,0 +1,125 @@
+#include <iostream>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "model/dataset/dataset.h"
+#include "model/evaluation/experiments/direction_errors.h"
+#include "model/evaluation/program/commands.h"
+#include "model/evaluation/program/fold_judge.h"
+#include "model/evaluation/program/fold_models.h"
+#include "model/evaluation/program/named_runs.h"
+#include "model/evaluation/report/direction_table.h"
+#include "model/evaluation/report/result_section.h"
+
+namespace duet::evaluation::program {
+namespace {
+
+struct Arguments {
+  std::string data;
+  std::vector<std::string> runs;
+  std::vector<std::string> subjects;
+  std::string out;
+  std::string id = "06_direction";
+  std::string title = "Where the partner of a leader is expected";
+};
+
+// What a fold's model knows. Errors: those of reading it; INVALID_ARGUMENT for other joints.
+absl::StatusOr<std::optional<engine::DirectionRegression>> ReadFold(
+    const dataset::Dataset& dataset, const std::filesystem::path& run) {
+  absl::StatusOr<checkpoint::Checkpoint> checkpoint = ReadRunCheckpoint(run);
+  if (!checkpoint.ok()) return checkpoint.status();
+  const engine::ModelDescription& model = checkpoint->manifest.model;
+  if (model.skeleton.joint_names == dataset.skeleton.joint_names) return model.partner_direction;
+  return absl::InvalidArgumentError(
+      absl::StrCat(run.string(), ": its ", model.skeleton.joint_count(),
+                   " joints are not the data set's ", dataset.skeleton.joint_count()));
+}
+
+// The hips' row, then one for each of the runs.
+absl::StatusOr<std::vector<report::DirectionRow>> Measure(const Arguments& arguments,
+                                                          const dataset::Dataset& dataset) {
+  const absl::StatusOr<std::vector<std::string>> subjects =
+      FoldSubjects(dataset, arguments.subjects);
+  if (!subjects.ok()) return subjects.status();
+  std::vector<NamedRuns> runs;
+  std::vector<report::DirectionRow> rows = {{"hips", {}}};
+  for (const std::string& text : arguments.runs) {
+    absl::StatusOr<NamedRuns> named = ParseRuns(text);
+    if (!named.ok()) return named.status();
+    rows.push_back({named->name, {}});
+    runs.push_back(*std::move(named));
+  }
+  for (const std::string& subject : *subjects) {
+    const absl::StatusOr<dataset::Split> split = LeaveSubjectOut(dataset, subject);
+    if (!split.ok()) return split.status();
+    const auto add = [&](const std::optional<engine::DirectionRegression>& regression,
+                         report::DirectionRow* row) {
+      const std::vector<double> errors =
+          experiments::DirectionErrors(dataset, split->test, regression);
+      row->errors.insert(row->errors.end(), errors.begin(), errors.end());
+    };
+    add(std::nullopt, &rows[0]);
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      const auto regression = ReadFold(dataset, runs[i].folder / subject);
+      if (!regression.ok()) return regression.status();
+      add(*regression, &rows[i + 1]);
+    }
+  }
+  return rows;
+}
+
+std::string CommandLine(const std::vector<report::DirectionRow>& rows) {
+  std::string command = "duet-eval direction --data DIR";
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    absl::StrAppend(&command, " --runs ", rows[i].name, "=RUNS");
+  }
+  return command;
+}
+
+absl::Status Run(const Arguments& arguments) {
+  const absl::StatusOr<dataset::Dataset> dataset = dataset::ReadDataset(arguments.data);
+  if (!dataset.ok()) return dataset.status();
+  if (!dataset->skeleton.hips) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("--data: ", dataset->name, " has a skeleton without hips, wanted one with"));
+  }
+  const absl::StatusOr<std::vector<report::DirectionRow>> rows = Measure(arguments, *dataset);
+  if (!rows.ok()) return rows.status();
+  report::ResultSection section;
+  section.id = arguments.id;
+  section.title = arguments.title;
+  section.text = {
+      "A caller who tells neither the partner's direction nor the follower's start leaves it to "
+      "the "
+      "leader's motion. People left out of training, one at a time; lower is better."};
+  section.tables = {report::DirectionTable(*rows)};
+  section.settings = {
+      {"data", absl::StrCat(dataset->name, ", ", dataset->sequences.size(), " sequences")}};
+  section.command = CommandLine(*rows);
+  section.date = report::Today();
+  std::cout << ToPlainText(section.tables[0]) << "\n";
+  return arguments.out.empty() ? absl::OkStatus() : WriteSection(section, arguments.out);
+}
+
+}  // namespace
+
+void AddDirectionCommand(CLI::App* app, ChosenCommand* chosen) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app->add_subcommand(
+      "direction", "How far off a partner is expected when a caller does not tell where");
+  command->add_option("--data", arguments->data, "folder of captures (docs/datasets.md)")
+      ->required();
+  command->add_option("--runs", arguments->runs,
+                      "[NAME=]DIR, output of duet-train --protocol loso; may be repeated");
+  command->add_option("--subjects", arguments->subjects, "left out in turn (default: everybody)")
+      ->delimiter(',');
+  command->add_option("--out", arguments->out, "folder of results, for duet-eval report");
+  command->add_option("--id", arguments->id, "of the section")->capture_default_str();
+  command->add_option("--title", arguments->title, "of the section")->capture_default_str();
+  command->callback([arguments, chosen] { *chosen = [arguments] { return Run(*arguments); }; });
+}
+
+}  // namespace duet::evaluation::program

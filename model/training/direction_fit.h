@@ -1,0 +1,22 @@
+#ifndef DUET_MODEL_TRAINING_DIRECTION_FIT_H_
+#define DUET_MODEL_TRAINING_DIRECTION_FIT_H_
+
+#include <optional>
+#include <vector>
+
+#include "model/dataset/dataset.h"
+#include "model/engine/direction_estimate.h"
+
+namespace duet::training {
+
+// Learns from the training sequences where a leader's partner is: each leader as captured and
+// mirrored, in symmetric classes the follower as another leader. Nothing where no leader's hips
+// have a direction.
+//
+// Source: ridge regression in closed form; the penalty was chosen on SBU, people left out.
+std::optional<engine::DirectionRegression> FitPartnerDirection(const dataset::Dataset& dataset,
+                                                               const std::vector<int>& train);
+
+}  // namespace duet::training
+
+#endif  // DUET_MODEL_TRAINING_DIRECTION_FIT_H_

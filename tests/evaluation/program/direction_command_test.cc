@@ -1,0 +1,124 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "model/checkpoint/checkpoint.h"
+#include "model/evaluation/program/commands.h"
+#include "model/evaluation/report/result_section.h"
+#include "model/motion/coordinates.h"
+#include "tests/dataset/capture_folder.h"
+#include "tests/support/sample_motion.h"
+#include "tests/support/status_matchers.h"
+#include "tests/support/tiny_checkpoint.h"
+
+namespace duet::evaluation::program {
+namespace {
+
+using test::IsOk;
+using test::StatusIs;
+using test::TemporaryFolder;
+using test::TinyManifest;
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+std::vector<motion::Vec3> Captured(motion::Vec3 at, double yaw) {
+  std::vector<motion::Vec3> pose = test::SwayingPose(0);
+  for (motion::Vec3& p : pose) {
+    p = FromWorld({motion::LengthUnit::kSbuNormalised, motion::UpAxis::kYDown},
+                  RotateY(p, yaw) + at);
+  }
+  return pose;
+}
+
+// A capture of each class of two people who stand still.
+void WriteCaptures(const dataset::CaptureFolder& folder) {
+  std::string text;
+  for (int t = 1; t <= 12; ++t) {
+    text += dataset::CaptureLine(t, Captured({-1, 0, 0}, -1.6), Captured({1, 0, 0}, 1.6));
+  }
+  for (const char* interaction_class : {"03", "04", "05", "06", "07", "08"}) {
+    folder.Write("s01s02/" + std::string(interaction_class) + "/001/skeleton_pos.txt", text);
+  }
+}
+
+// A run as duet-train leaves it.
+void WriteRun(const std::filesystem::path& run, checkpoint::Manifest manifest) {
+  const std::filesystem::path folder = run / "checkpoint" / manifest.model.name / "3";
+  std::filesystem::create_directories(folder.parent_path());
+  ASSERT_THAT(WriteCheckpoint(folder, test::FilledCheckpoint(std::move(manifest))), IsOk());
+}
+
+checkpoint::Manifest SbuManifest() {
+  checkpoint::Manifest manifest = TinyManifest();
+  manifest.model.skeleton = motion::SbuSkeleton();
+  manifest.generator.parts = motion::SbuParts();
+  return manifest;
+}
+
+// Expects partners a constant angle off the hips.
+checkpoint::Manifest ConstantManifest(double cosine, double sine) {
+  checkpoint::Manifest manifest = SbuManifest();
+  std::vector<double> none(33, 0);
+  engine::DirectionRegression& constant = manifest.model.partner_direction.emplace();
+  constant = {none, std::vector<double>(33, 1), none, none};
+  constant.cosine.back() = cosine;
+  constant.sine.back() = sine;
+  return manifest;
+}
+
+absl::StatusOr<report::Table> RunCommand(const std::vector<std::string>& runs) {
+  const dataset::CaptureFolder captures;
+  WriteCaptures(captures);
+  const TemporaryFolder results;
+  std::vector<std::string> words = {"direction", "--data", captures.path().string(), "--subjects",
+                                    "s01",       "--out",  results.path().string()};
+  for (const std::string& one : runs) words.insert(words.end(), {"--runs", one});
+  std::reverse(words.begin(), words.end());  // as CLI11 wants them
+  CLI::App app;
+  ChosenCommand chosen;
+  AddDirectionCommand(&app, &chosen);
+  try {
+    app.parse(words);
+  } catch (const CLI::ParseError& error) {
+    return absl::InvalidArgumentError(error.what());
+  }
+  if (absl::Status status = chosen(); !status.ok()) return status;
+  auto sections = report::ReadSections(results.path());
+  if (!sections.ok()) return sections.status();
+  EXPECT_EQ(sections->front().id, "06_direction");
+  return sections->front().tables.front();
+}
+
+TEST(DirectionCommandTest, HasARowForTheHipsAndForEachRun) {
+  const TemporaryFolder folder;
+  WriteRun(folder.path() / "ahead/s01", ConstantManifest(1, 0));
+  WriteRun(folder.path() / "behind/s01", ConstantManifest(-1, 0));
+  WriteRun(folder.path() / "old/s01", SbuManifest());
+  const auto table =
+      RunCommand({"ahead=" + (folder / "ahead").string(), "behind=" + (folder / "behind").string(),
+                  "old=" + (folder / "old").string()});
+  ASSERT_THAT(table, IsOk());
+  ASSERT_EQ(table->rows.size(), 4u);
+  EXPECT_EQ(table->rows[0].name, "hips");
+  EXPECT_EQ(table->rows[2].name, "behind");
+  EXPECT_EQ(table->rows[0].values[0], 6);
+  const double hips = table->rows[0].values[1];
+  EXPECT_LT(hips, 90);
+  EXPECT_NEAR(table->rows[1].values[1], hips, 0.01);
+  EXPECT_NEAR(table->rows[2].values[1], 180 - hips, 0.01);
+  EXPECT_EQ(table->rows[3].values, table->rows[0].values);
+}
+
+TEST(DirectionCommandTest, NamesARunThatIsMissingOrOfOtherJoints) {
+  const TemporaryFolder folder;
+  EXPECT_THAT(RunCommand({"x=" + (folder / "nowhere").string()}),
+              StatusIs(absl::StatusCode::kNotFound, HasSubstr("nowhere/s01")));
+  WriteRun(folder.path() / "tiny/s01", TinyManifest());
+  EXPECT_THAT(RunCommand({"x=" + (folder / "tiny").string()}),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("tiny/s01: its 3 joints")));
+}
+
+}  // namespace
+}  // namespace duet::evaluation::program

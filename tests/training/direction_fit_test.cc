@@ -1,0 +1,119 @@
+#include "model/training/direction_fit.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/training/augment.h"
+#include "tests/training/made_up_dataset.h"
+
+namespace duet::training {
+namespace {
+
+constexpr double kDegrees = M_PI / 180;
+
+// A person at `root` whose hips face `yaw` off -z and whose right hand reaches half a metre
+// `reach` off -z, more and more.
+motion::Clip Reaching(motion::Vec3 root, double yaw, double reach) {
+  const motion::Skeleton skeleton = motion::SbuSkeleton();
+  motion::Clip clip;
+  clip.joint_names = skeleton.joint_names;
+  clip.frame_rate_hz = 15;
+  std::vector<motion::Vec3> standing = SwayingPose(0);
+  const motion::Vec3 centre = standing[static_cast<size_t>(skeleton.root)];
+  for (int t = 0; t < 10; ++t) {
+    std::vector<motion::Vec3> pose = standing;
+    for (motion::Vec3& p : pose) p = RotateY(p - centre, yaw - 0.5) + root;
+    pose[static_cast<size_t>(skeleton.Find("right_hand"))] =
+        root + motion::RotateY({0, 0.2f, -0.05f * static_cast<float>(t)}, reach);
+    clip.Append(pose);
+  }
+  return clip;
+}
+
+// A leader who reaches for the follower, hips off by `off` degrees, all turned by `turn`.
+dataset::Sequence Pair(double off, double turn) {
+  const motion::Vec3 root = {1, 1, -2};
+  const motion::Vec3 toward = motion::RotateY({0, 0, -1}, turn);
+  dataset::Sequence sequence;
+  sequence.pair.leader = Reaching(root, turn + off * kDegrees, turn);
+  sequence.pair.follower = Reaching(root + toward, turn + M_PI, turn + M_PI);
+  return sequence;
+}
+
+dataset::Dataset Reachers() {
+  dataset::Dataset dataset = MadeUpDataset(0);
+  for (int off = -60; off <= 60; off += 8) dataset.sequences.push_back(Pair(off, 0.1 * off));
+  return dataset;
+}
+
+double DegreesOff(const engine::DirectionRegression& regression, const motion::Clip& leader,
+                  motion::Vec3 toward) {
+  const std::optional<motion::Vec3> direction =
+      EstimatePartnerDirection(regression, motion::SbuSkeleton(), leader.poses);
+  if (!direction) return 180;
+  return std::acos(std::min(1.0f, Dot(*direction, toward))) / kDegrees;
+}
+
+TEST(FitPartnerDirection, LearnsWhereLeadersReach) {
+  const dataset::Dataset dataset = Reachers();
+  const auto regression = FitPartnerDirection(dataset, AllOf(dataset));
+  ASSERT_TRUE(regression.has_value());
+  for (const double off : {-50.0, -21.0, 0.0, 33.0, 55.0}) {
+    for (const double turn : {0.0, 1.0, 2.5}) {
+      // Lines in features follow an angle only so far, and the penalty draws towards the hips.
+      EXPECT_LT(
+          DegreesOff(*regression, Pair(off, turn).pair.leader, motion::RotateY({0, 0, -1}, turn)),
+          8 + std::abs(off) / 4)
+          << off << " " << turn;
+    }
+  }
+}
+
+TEST(FitPartnerDirection, WhatTheSetupTellsGoesBeforeTheRoots) {
+  dataset::Dataset dataset = Reachers();
+  const motion::Vec3 aside = motion::RotateY({0, 0, -1}, 40 * kDegrees);
+  for (dataset::Sequence& sequence : dataset.sequences) {
+    sequence = Pair(0, 0);
+    sequence.partner_direction = aside;
+  }
+  // Mirrored leaders see it on the other side, where another hand reaches.
+  const auto regression = FitPartnerDirection(dataset, AllOf(dataset));
+  ASSERT_TRUE(regression.has_value());
+  EXPECT_LT(DegreesOff(*regression, Pair(0, 0).pair.leader, aside), 10);
+}
+
+// Only right hands reach in training: mirrored copies teach the same of left hands.
+TEST(FitPartnerDirection, AMirroredLeaderHasTheMirroredDirection) {
+  const dataset::Dataset dataset = Reachers();
+  const auto regression = FitPartnerDirection(dataset, AllOf(dataset));
+  ASSERT_TRUE(regression.has_value());
+  dataset::Sequence pair = Pair(35, 0);
+  Mirror(MirroredJoints(dataset.skeleton), &pair);
+  EXPECT_LT(DegreesOff(*regression, pair.pair.leader, {0, 0, -1}), 8);
+}
+
+TEST(FitPartnerDirection, EitherPersonLeadsInASymmetricClass) {
+  dataset::Dataset dataset = Reachers();
+  for (dataset::Sequence& sequence : dataset.sequences) SwapRoles(&sequence);
+  const auto learn = [&](int interaction_class) {
+    for (dataset::Sequence& sequence : dataset.sequences) {
+      sequence.interaction_class = interaction_class;
+    }
+    const auto regression = FitPartnerDirection(dataset, AllOf(dataset));
+    return DegreesOff(*regression, Pair(50, 0).pair.leader, {0, 0, -1});
+  };
+  EXPECT_GT(learn(0), 45);  // whoever led faced the partner
+  EXPECT_LT(learn(1), 30);
+}
+
+TEST(FitPartnerDirection, NothingWithoutHips) {
+  dataset::Dataset dataset = Reachers();
+  EXPECT_FALSE(FitPartnerDirection(dataset, {}).has_value());
+  dataset.skeleton.hips.reset();
+  EXPECT_FALSE(FitPartnerDirection(dataset, AllOf(dataset)).has_value());
+}
+
+}  // namespace
+}  // namespace duet::training
