@@ -53,8 +53,8 @@ class AugmentationSetTest(unittest.TestCase):
         self.data, self.out, self.runs = folder / "data", folder / "set", folder / "runs"
         self.run_folder = self.runs / "half-4"
         write_captures(self.data)
-        shutil.copytree(tools.SOURCE / "model" / "checkpoints" / "sbu",
-                        self.run_folder / "checkpoint" / "sbu")
+        shutil.copytree(tools.SOURCE / "model" / "checkpoints" / "sbu" / "1",
+                        self.run_folder / "checkpoint" / "sbu" / "1")
 
     def test_the_set_comes_back_through_server_and_client(self):
         made = make_set(self.run_folder, self.data, self.out)

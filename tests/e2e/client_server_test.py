@@ -68,7 +68,9 @@ class ClientServerTest(unittest.TestCase):
     def test_models_are_listed(self):
         result = tools.duet("models", "--server", self.server.address, "--json")
         self.assertEqual(result.returncode, 0, result.stderr)
-        models = {model["name"]: model for model in json.loads(result.stdout)["models"]}
+        models = {}
+        for model in json.loads(result.stdout)["models"]:  # the newest version first
+            models.setdefault(model["name"], model)
         self.assertEqual(set(models), {"sbu", "k3hi"})
         self.assertTrue(models["sbu"]["is_default"])
         self.assertFalse(models["k3hi"].get("is_default", False))

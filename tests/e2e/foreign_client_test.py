@@ -55,7 +55,7 @@ class ForeignClientTest(unittest.TestCase):
     def test_lists_models(self):
         models = self.stub.ListModels(synthesis_pb2.ListModelsRequest(), timeout=60).models
         self.assertEqual([(model.name, model.is_default) for model in models],
-                         [("k3hi", False), ("sbu", True)])
+                         [("k3hi", False), ("sbu", True), ("sbu", False)])
         self.assertEqual(set(models[1].interaction_classes), set(tools.CLASSES))
         for model in models:
             self.assertEqual(len(model.bones), len(model.joint_names) - 1)

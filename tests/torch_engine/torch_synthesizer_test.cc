@@ -19,11 +19,19 @@ using test::TinyCheckpoint;
 
 using ::testing::HasSubstr;
 
-std::shared_ptr<const engine::Synthesizer> Embedded() {
+constexpr int kPaper = 1, kSampling = 2;  // versions of sbu
+
+std::shared_ptr<const engine::Synthesizer> Embedded(int version = kPaper) {
   SetTorchThreads(1);
   auto all = LoadEmbeddedSynthesizers();
   EXPECT_THAT(all, IsOk());
-  return all.ok() ? std::move(all->front()) : nullptr;
+  if (!all.ok()) return nullptr;
+  for (std::unique_ptr<engine::Synthesizer>& model : *all) {
+    if (model->description().name == "sbu" && model->description().version == version) {
+      return std::move(model);
+    }
+  }
+  return nullptr;
 }
 
 engine::SynthesisWindow MakeWindow(const engine::Synthesizer& model, int frames,
@@ -61,18 +69,44 @@ float LargestDistance(const motion::Poses& a, const motion::Poses& b) {
 }
 
 TEST(TorchSynthesizerTest, EmbeddedModelIsTheSixClassesOfSbu) {
-  const auto model = Embedded();
-  EXPECT_THAT(
-      model->description().classes,
-      ::testing::ElementsAre("kick", "push", "shake_hands", "hug", "exchange_object", "punch"));
-  EXPECT_EQ(model->description().skeleton.joint_names, motion::SbuSkeleton().joint_names);
-  EXPECT_TRUE(model->description().accepts_follower_start);
+  for (const int version : {kPaper, kSampling}) {
+    const auto model = Embedded(version);
+    ASSERT_NE(model, nullptr) << version;
+    EXPECT_THAT(
+        model->description().classes,
+        ::testing::ElementsAre("kick", "push", "shake_hands", "hug", "exchange_object", "punch"));
+    EXPECT_EQ(model->description().skeleton.joint_names, motion::SbuSkeleton().joint_names);
+    EXPECT_TRUE(model->description().accepts_follower_start);
+    EXPECT_EQ(model->description().samples, version == kSampling);
+  }
+}
+
+TEST(TorchSynthesizerTest, TheDefaultSamplesAndKnowsItsLeaders) {
+  const auto all = LoadEmbeddedSynthesizers();
+  ASSERT_THAT(all, IsOk());
+  const engine::ModelDescription& model = all->front()->description();
+  EXPECT_EQ(model.name, "sbu");
+  EXPECT_TRUE(model.samples);
+  EXPECT_TRUE(model.leader_statistics.has_value());
+  EXPECT_TRUE(model.partner_direction.has_value());
+}
+
+TEST(TorchSynthesizerTest, SeedsNameAnswersAndVarietyZeroHasOne) {
+  const auto model = Embedded(kSampling);
+  const auto answer = [&](uint64_t seed, float variety) {
+    engine::SynthesisWindow window = MakeWindow(*model, 20);
+    window.sampling = {seed, variety};
+    return RunOne(*model, window);
+  };
+  EXPECT_EQ(answer(7, 1), answer(7, 1));
+  EXPECT_GT(LargestDistance(answer(7, 1), answer(8, 1)), 0.02f);
+  EXPECT_EQ(answer(7, 0), answer(8, 0));
 }
 
 TEST(TorchSynthesizerTest, K3hiIsEmbeddedBesideIt) {
   const auto all = LoadEmbeddedSynthesizers();
   ASSERT_THAT(all, IsOk());
-  ASSERT_EQ(all->size(), 2u);
+  ASSERT_EQ(all->size(), 3u);
   const engine::ModelDescription& model = all->back()->description();
   EXPECT_EQ(model.name, "k3hi");
   EXPECT_EQ(model.frame_rate_hz, 30);
@@ -82,13 +116,16 @@ TEST(TorchSynthesizerTest, K3hiIsEmbeddedBesideIt) {
 }
 
 TEST(TorchSynthesizerTest, BatchOfDifferentLengthsEqualsSingle) {
-  const auto model = Embedded();
-  const std::vector<engine::SynthesisWindow> windows = {
-      MakeWindow(*model, 2, 1), MakeWindow(*model, 45, 0), MakeWindow(*model, 17, 3)};
-  const std::vector<engine::WindowResult> together = SynthesizeAll(*model, windows);
-  for (size_t i = 0; i < windows.size(); ++i) {
-    ASSERT_THAT(together[i], IsOk());
-    EXPECT_LT(LargestDistance(*together[i], RunOne(*model, windows[i])), 1e-5f) << i;
+  for (const int version : {kPaper, kSampling}) {
+    const auto model = Embedded(version);
+    const std::vector<engine::SynthesisWindow> windows = {
+        MakeWindow(*model, 2, 1), MakeWindow(*model, 45, 0), MakeWindow(*model, 17, 3)};
+    const std::vector<engine::WindowResult> together = SynthesizeAll(*model, windows);
+    for (size_t i = 0; i < windows.size(); ++i) {
+      ASSERT_THAT(together[i], IsOk());
+      EXPECT_LT(LargestDistance(*together[i], RunOne(*model, windows[i])), 1e-5f)
+          << version << ", window " << i;
+    }
   }
 }
 
