@@ -31,7 +31,7 @@ class Network {
 
   // Evaluates inputs of any lengths together. Returns each one's follower in the standard
   // coordinates, in order, of as many frames and joints as its leader; the numbers need not be
-  // finite. Numbers do not depend on what else is in the batch (within 1e-5 m). Throws nothing:
+  // finite. Numbers do not depend on what else is in the batch (within 1e-4 m). Throws nothing:
   // INTERNAL says what went wrong.
   virtual absl::StatusOr<std::vector<motion::Poses>> Run(
       absl::Span<const NetworkInput> inputs) const = 0;

@@ -55,7 +55,7 @@ class Synthesizer {
 
   // Synthesises windows of any lengths together: standardise, network, inverse. Returns one result
   // for each window, in order. A window whose result is not finite fails alone, with INTERNAL; an
-  // item's result does not depend on what else is in the batch (within 1e-5 m).
+  // item's result does not depend on what else is in the batch (within 1e-4 m).
   virtual std::vector<WindowResult> Synthesize(
       absl::Span<const SynthesisWindow* const> windows) const = 0;
 

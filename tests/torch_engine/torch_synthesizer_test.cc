@@ -123,7 +123,7 @@ TEST(TorchSynthesizerTest, BatchOfDifferentLengthsEqualsSingle) {
     const std::vector<engine::WindowResult> together = SynthesizeAll(*model, windows);
     for (size_t i = 0; i < windows.size(); ++i) {
       ASSERT_THAT(together[i], IsOk());
-      EXPECT_LT(LargestDistance(*together[i], RunOne(*model, windows[i])), 1e-5f)
+      EXPECT_LT(LargestDistance(*together[i], RunOne(*model, windows[i])), 1e-4f)
           << version << ", window " << i;
     }
   }
