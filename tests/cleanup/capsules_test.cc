@@ -1,5 +1,6 @@
 #include "model/cleanup/capsules.h"
 
+#include "model/authoring/puppet.h"
 #include "model/motion/capsules.h"
 #include "tests/cleanup/bodies.h"
 

@@ -1,5 +1,6 @@
 #include "model/cleanup/clean_up.h"
 
+#include "model/authoring/puppet.h"
 #include "tests/cleanup/bodies.h"
 
 namespace duet::cleanup {

@@ -1,5 +1,6 @@
 #include "model/cleanup/floor.h"
 
+#include "model/authoring/puppet.h"
 #include "tests/cleanup/bodies.h"
 
 namespace duet::cleanup {
