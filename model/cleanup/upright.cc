@@ -57,6 +57,7 @@ void BendAtHips(const motion::Skeleton& skeleton, const Body& body, const Turn& 
 std::vector<Vec3> LastingLean(const motion::JointPair& base, int chest, const motion::Poses& poses,
                               double sigma_frames) {
   std::vector<Vec3> trunk;
+  trunk.reserve(static_cast<std::size_t>(poses.frame_count()));
   for (int t = 0; t < poses.frame_count(); ++t) {
     trunk.push_back(poses.at(t, chest) - Middle(base, poses, t));
   }

@@ -31,6 +31,7 @@ LeaderStatistics FitLeaderStatistics(const motion::Skeleton& skeleton,
                                      const std::vector<const motion::Poses*>& leaders,
                                      double frame_rate_hz) {
   std::vector<std::vector<double>> values;
+  values.reserve(leaders.size());
   for (const motion::Poses* leader : leaders) {
     values.push_back(MeasureLeader(skeleton, *leader, frame_rate_hz));
   }
@@ -40,6 +41,7 @@ LeaderStatistics FitLeaderStatistics(const motion::Skeleton& skeleton,
     statistics.features.push_back(Fit(features[i], values, i));
   }
   std::vector<double> distances;
+  distances.reserve(leaders.size());
   for (const motion::Poses* leader : leaders) {
     distances.push_back(Unfamiliarity(statistics, skeleton, *leader, frame_rate_hz));
   }

@@ -63,12 +63,12 @@ std::vector<ScoredMotion> BestAnswers(const dataset::Dataset& dataset,
                                       const SampledMotions& samples) {
   std::vector<ScoredMotion> answers;
   for (size_t i = 0; i < MotionCount(samples); ++i) {
-    const ScoredMotion* best = nullptr;
+    const ScoredMotion* best = &samples.front()[i];
     double least = std::numeric_limits<double>::infinity();
     for (const std::vector<ScoredMotion>& set : samples) {
       const dataset::Sequence& sequence = SequenceOf(dataset, set[i]);
       const double distance = Distance(sequence, set[i].follower, sequence.pair.follower.poses);
-      if (best != nullptr && distance >= least) continue;
+      if (distance >= least) continue;
       best = &set[i];
       least = distance;
     }
