@@ -2,8 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 #include <map>
 #include <string>
 #include <utility>
@@ -11,17 +9,10 @@
 
 #include "model/dataset/dataset.h"
 #include "model/dataset/posture.h"
+#include "tests/support/data_folder.h"
 
 namespace duet::dataset {
 namespace {
-
-std::filesystem::path DataFolder(const std::string& name) {
-  if (const char* folder = std::getenv("DUET_DATA_DIR")) {
-    return std::filesystem::path(folder) / name;
-  }
-  const char* source = std::getenv("DUET_SOURCE_DIR");
-  return std::filesystem::path(source == nullptr ? "." : source) / "../shared/data" / name;
-}
 
 std::vector<int> CountByClass(const Dataset& dataset) {
   std::vector<int> count(dataset.classes.size());
@@ -30,8 +21,9 @@ std::vector<int> CountByClass(const Dataset& dataset) {
 }
 
 TEST(CapturesTest, SbuIsWhole) {
-  if (!std::filesystem::exists(DataFolder("sbu"))) GTEST_SKIP() << "no SBU data at hand";
-  const absl::StatusOr<Dataset> dataset = ReadDataset(DataFolder("sbu"));
+  const auto folder = test::FindData("sbu");
+  if (!folder) GTEST_SKIP() << test::kNoData;
+  const absl::StatusOr<Dataset> dataset = ReadDataset(*folder);
   ASSERT_TRUE(dataset.ok()) << dataset.status();
   EXPECT_EQ(dataset->sequences.size(), 156u);
   EXPECT_EQ(CountByClass(*dataset), (std::vector<int>{31, 33, 14, 17, 31, 30}));
@@ -43,8 +35,9 @@ TEST(CapturesTest, SbuIsWhole) {
 }
 
 TEST(CapturesTest, SbuFollowersStandWhereTheirDirectionPoints) {
-  if (!std::filesystem::exists(DataFolder("sbu"))) GTEST_SKIP() << "no SBU data at hand";
-  const absl::StatusOr<Dataset> dataset = ReadDataset(DataFolder("sbu"));
+  const auto folder = test::FindData("sbu");
+  if (!folder) GTEST_SKIP() << test::kNoData;
+  const absl::StatusOr<Dataset> dataset = ReadDataset(*folder);
   ASSERT_TRUE(dataset.ok()) << dataset.status();
   const int root = dataset->skeleton.root;
   for (const Sequence& one : dataset->sequences) {
@@ -69,8 +62,9 @@ Lean LeanOfAll(const Dataset& dataset, bool leaders, bool as_captured) {
 
 TEST(CapturesTest, PeopleStandUprightOnceLevelled) {
   for (const char* name : {"sbu", "k3hi"}) {
-    if (!std::filesystem::exists(DataFolder(name))) GTEST_SKIP() << "no data at hand";
-    const absl::StatusOr<Dataset> dataset = ReadDataset(DataFolder(name));
+    const auto folder = test::FindData(name);
+    if (!folder) GTEST_SKIP() << test::kNoData;
+    const absl::StatusOr<Dataset> dataset = ReadDataset(*folder);
     ASSERT_TRUE(dataset.ok()) << dataset.status();
     for (const bool leaders : {true, false}) {
       EXPECT_GT(LeanOfAll(*dataset, leaders, true).z, 3) << name << leaders;
@@ -81,8 +75,9 @@ TEST(CapturesTest, PeopleStandUprightOnceLevelled) {
 }
 
 TEST(CapturesTest, SetsStandUprightOnceLevelled) {
-  if (!std::filesystem::exists(DataFolder("sbu"))) GTEST_SKIP() << "no SBU data at hand";
-  const absl::StatusOr<Dataset> dataset = ReadDataset(DataFolder("sbu"));
+  const auto folder = test::FindData("sbu");
+  if (!folder) GTEST_SKIP() << test::kNoData;
+  const absl::StatusOr<Dataset> dataset = ReadDataset(*folder);
   ASSERT_TRUE(dataset.ok()) << dataset.status();
   std::map<std::string, std::vector<motion::Vec3>> directions, feet;
   for (const Sequence& one : dataset->sequences) {
@@ -105,8 +100,9 @@ TEST(CapturesTest, SetsStandUprightOnceLevelled) {
 }
 
 TEST(CapturesTest, TheMotionRuleAgreesWithTheIndexOnSbu) {
-  if (!std::filesystem::exists(DataFolder("sbu"))) GTEST_SKIP() << "no SBU data at hand";
-  const absl::StatusOr<Dataset> dataset = ReadDataset(DataFolder("sbu"));
+  const auto folder = test::FindData("sbu");
+  if (!folder) GTEST_SKIP() << test::kNoData;
+  const absl::StatusOr<Dataset> dataset = ReadDataset(*folder);
   ASSERT_TRUE(dataset.ok()) << dataset.status();
   int agreed = 0, asked = 0;
   for (const Sequence& one : dataset->sequences) {
@@ -120,8 +116,9 @@ TEST(CapturesTest, TheMotionRuleAgreesWithTheIndexOnSbu) {
 }
 
 TEST(CapturesTest, K3hiIsWhole) {
-  if (!std::filesystem::exists(DataFolder("k3hi"))) GTEST_SKIP() << "no K3HI data at hand";
-  const absl::StatusOr<Dataset> dataset = ReadDataset(DataFolder("k3hi"));
+  const auto folder = test::FindData("k3hi");
+  if (!folder) GTEST_SKIP() << test::kNoData;
+  const absl::StatusOr<Dataset> dataset = ReadDataset(*folder);
   ASSERT_TRUE(dataset.ok()) << dataset.status();
   EXPECT_EQ(dataset->sequences.size(), 284u);
   EXPECT_EQ(CountByClass(*dataset), (std::vector<int>{37, 33, 29, 46, 45, 41, 33, 20}));

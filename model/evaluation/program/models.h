@@ -16,7 +16,7 @@ struct ModelChoice {
   std::vector<std::string> runs;  // [NAME=]DIR each, a model a fold
   std::string checkpoint;         // one model for every fold
   bool embedded = false;          // likewise, the one inside the program
-  bool as_served = false;         // with constant limb lengths on the leader's floor
+  bool as_served = false;         // finished as a server finishes them (engine::PipelineOptions)
 
   bool one_for_all() const { return embedded || !checkpoint.empty(); }
 };
