@@ -147,24 +147,26 @@ class MutateTest(test_project.ProjectTestCase):
 
 
 class WorkshopTest(test_project.ProjectTestCase):
-    def limited(self, code, limit_s=60, memory=None):
-        return mutation_workshop.limited([sys.executable, "-c", code], limit_s, dict(os.environ),
-                                         memory)
+    def limited(self, code, wall_s=60, **limits):
+        return mutation_workshop.limited([sys.executable, "-c", code],
+                                         mutation_workshop.Limits(wall_s, **limits),
+                                         dict(os.environ))
 
     def test_outcome_is_told_by_status_and_limit(self):
         self.assertEqual(self.limited("pass"), "passed")
         self.assertEqual(self.limited("raise SystemExit(1)"), "failed")
-        self.assertEqual(self.limited("import time; time.sleep(600)", limit_s=0.2), "timeout")
+        self.assertEqual(self.limited("import time; time.sleep(600)", wall_s=0.2), "timeout")
+        self.assertEqual(self.limited("while True: pass", wall_s=600, cpu_s=1), "timeout")
         self.assertEqual(self.limited("bytearray(1 << 32)", memory=1 << 30), "failed")
 
     def test_what_the_command_started_ends_with_it(self):
         mark = self.root / "child"
         code = (f"import subprocess, time; p = subprocess.Popen(['sleep', '600']); "
                 f"open({str(mark)!r}, 'w').write(str(p.pid)); time.sleep(600)")
-        limit_s = 0.2
+        wall_s = 0.2
         while not mark.exists() or not mark.read_text():  # a busy machine gets longer
-            limit_s *= 2
-            self.assertEqual(self.limited(code, limit_s), "timeout")
+            wall_s *= 2
+            self.assertEqual(self.limited(code, wall_s), "timeout")
         child = pathlib.Path("/proc", mark.read_text(), "stat")
         deadline = time.monotonic() + 60
         with contextlib.suppress(FileNotFoundError):

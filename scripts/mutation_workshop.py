@@ -1,5 +1,6 @@
 """A copy of the tree in which mutate.py compiles a mutation and runs the tests against it."""
 
+import math
 import os
 import pathlib
 import re
@@ -19,6 +20,10 @@ CONFIGURE = ("-G", "Ninja", "-DCMAKE_BUILD_TYPE=Debug", "-DDUET_BUILD_TESTS=ON",
              "-DCMAKE_CXX_FLAGS_DEBUG=-O0 -D_GLIBCXX_ASSERTIONS")
 BUILD_LIMIT_S = 300
 MEMORY_LIMIT = 4 << 30  # bytes of address space: a mutation may allocate without end
+# A mutation that computes without end is stopped by processor time, which does not depend on what
+# else the machine does; one that waits without end by the clock, set so wide that load alone
+# does not reach it.
+CPU_ALLOWANCE_S, WALL_ALLOWANCE_S, TIMES_LONGER = 10, 60, 5
 SUITE = re.compile(r"^(?:TYPED_)?TEST(?:_F|_P)?\((\w+)", re.MULTILINE)
 
 
@@ -70,6 +75,14 @@ def suites_in(sources, folder, root):
     return ":".join(f"{suite}.*:*/{suite}.*:{suite}/*" for suite in sorted(suites))
 
 
+class Limits(typing.NamedTuple):
+    """What a command may take: seconds by the clock, seconds of processor time, bytes of memory.
+    The last two are for each process that it starts."""
+    wall_s: float
+    cpu_s: typing.Optional[float] = None
+    memory: typing.Optional[int] = None
+
+
 class Workshop:
     def __init__(self, folder, origin):
         self.origin = origin
@@ -91,10 +104,12 @@ class Workshop:
                        stdout=subprocess.DEVNULL)
         self.tests = build_tree.read_tests(self.build_dir)
         for run in runs:
-            start = time.monotonic()
-            if self.run(run, limit_s=600) != "passed":
+            start, cpu_start = time.monotonic(), children_cpu_s()
+            if self.run(run, Limits(600, memory=MEMORY_LIMIT)) != "passed":
                 raise SystemExit(f"{run.program} fails as it is: mend it first")
-            self.limits[run] = 10 + 5 * (time.monotonic() - start)
+            self.limits[run] = Limits(
+                WALL_ALLOWANCE_S + TIMES_LONGER * (time.monotonic() - start),
+                CPU_ALLOWANCE_S + TIMES_LONGER * (children_cpu_s() - cpu_start), MEMORY_LIMIT)
 
     def attempt(self, file, text, own, others):
         """Puts a mutated file in place, builds, tests: the outcome, and who noticed."""
@@ -117,27 +132,36 @@ class Workshop:
 
     def build(self, programs):
         # A mutation is compiled once: a compiler cache would only fill up.
-        return limited(["ninja", "-C", self.build_dir, *programs], BUILD_LIMIT_S,
+        return limited(["ninja", "-C", self.build_dir, *programs], Limits(BUILD_LIMIT_S),
                        {**os.environ, "CCACHE_DISABLE": "1"}) == "passed"
 
-    def run(self, run, limit_s):
+    def run(self, run, limits):
         command, environment, _ = self.tests[run.program]
         return limited([*command, f"--gtest_filter={run.filter}", "--gtest_fail_fast",
-                        "--gtest_brief=1"], limit_s, {**os.environ, **environment},
-                       memory=MEMORY_LIMIT)
+                        "--gtest_brief=1"], limits, {**os.environ, **environment})
 
 
-def limited(command, limit_s, environment, memory=None):
+def children_cpu_s():
+    """Processor time of all processes that have ended, those that they started included."""
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
+
+
+def limited(command, limits, environment):
     """Runs a command with all that it starts: "passed", "failed" or "timeout"."""
     def limit():
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-        if memory:
-            resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
+        if limits.memory:
+            resource.setrlimit(resource.RLIMIT_AS, (limits.memory, limits.memory))
+        if limits.cpu_s:
+            seconds = math.ceil(limits.cpu_s)  # SIGXCPU at the first, SIGKILL at the second
+            resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 5))
     process = subprocess.Popen(list(map(str, command)), env=environment, stdin=subprocess.DEVNULL,
                                stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
                                start_new_session=True, preexec_fn=limit)
     try:
-        return "passed" if process.wait(limit_s) == 0 else "failed"
+        code = process.wait(limits.wall_s)
+        return {0: "passed", -signal.SIGXCPU: "timeout"}.get(code, "failed")
     except subprocess.TimeoutExpired:
         return "timeout"
     finally:
