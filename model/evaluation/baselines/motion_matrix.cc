@@ -17,12 +17,13 @@ constexpr double kWayWeight = 2.0;
 }  // namespace
 
 motion::Standardisation BaselineStandardisation(const motion::Skeleton& skeleton,
-                                                const dataset::Sequence& sequence) {
+                                                const dataset::Sequence& sequence,
+                                                motion::StandardOrigin origin) {
   const motion::Poses& leader = sequence.pair.leader.poses;
   if (sequence.partner_direction) {
-    return {skeleton, leader, FacingYaw(*sequence.partner_direction)};
+    return {skeleton, leader, FacingYaw(*sequence.partner_direction), origin};
   }
-  return {skeleton, leader};
+  return {skeleton, leader, motion::YawDirection::kRemove, origin};
 }
 
 Rows ToRows(const motion::Poses& poses) {

@@ -25,8 +25,9 @@ struct StandardPair {
 };
 
 // The yaw is taken from the leader and the setup alone, never from the follower.
-motion::Standardisation BaselineStandardisation(const motion::Skeleton& skeleton,
-                                                const dataset::Sequence& sequence);
+motion::Standardisation BaselineStandardisation(
+    const motion::Skeleton& skeleton, const dataset::Sequence& sequence,
+    motion::StandardOrigin origin = motion::StandardOrigin::kEveryFrame);
 
 // The leader's half of a pair; `follower` stays empty and sequence.pair.follower is not read.
 StandardPair StandardLeader(const motion::Skeleton& skeleton, const dataset::Sequence& sequence);

@@ -10,6 +10,7 @@
 #include "model/evaluation/experiments/long_leaders.h"
 #include "model/evaluation/experiments/sampled_answers.h"
 #include "model/evaluation/program/commands.h"
+#include "model/evaluation/program/experiment.h"
 #include "model/evaluation/program/fold_judge.h"
 #include "model/evaluation/program/model_flags.h"
 #include "model/evaluation/program/named_runs.h"
@@ -20,15 +21,10 @@ namespace duet::evaluation::program {
 namespace {
 
 struct Arguments {
-  std::string data;
-  ModelChoice models;
+  ExperimentFlags flags;
   std::vector<std::string> starts = {"none", "pose"};
-  std::vector<std::string> subjects;
   std::vector<double> seconds = {60, 600};
   experiments::AskedSamples asked;
-  std::string out;
-  std::string id = "16_long";
-  std::string title = "Clips of a minute and of ten";
 };
 
 // The answers of one fold's model to every leader in every class.
@@ -93,48 +89,34 @@ absl::StatusOr<std::vector<report::Table>> Tables(const dataset::Dataset& datase
   return tables;
 }
 
-report::ResultSection MakeSection(const dataset::Dataset& dataset,
-                                  const std::vector<std::string>& subjects,
-                                  const Arguments& arguments) {
-  report::ResultSection section;
-  section.id = arguments.id;
-  section.title = arguments.title;
-  section.text = {
+report::ResultSection MakeSection(const Experiment& experiment, const Arguments& arguments) {
+  report::ResultSection section = BeginSection(
+      arguments.flags, experiment,
       "Leaders that last, each answered in every class, by windows of which each goes on from the "
       "one before. Four are made by formulas and unlike anything in the captures: one stands and "
       "sways, one walks an eight, one dances, one sits down and gets up. \"captured\" are the "
       "class's clips of the left-out person one after the other. A figure is the worst over the "
-      "folds."};
-  if (arguments.models.one_for_all()) section.text.push_back(kOneForAll);
-  section.settings = {
-      {"data", absl::StrCat(dataset.name, ", ", dataset.sequences.size(), " sequences")},
-      {"left out in turn", absl::StrJoin(subjects, ", ")},
-      {"variety", absl::StrCat(arguments.asked.variety)},
-      {"seed", absl::StrCat(arguments.asked.seed)},
-      {"models' answers", arguments.models.as_served ? "as served" : "the network's own"}};
-  section.command = absl::StrCat("duet-eval long --data DIR", ModelWords(arguments.models),
+      "folds.");
+  section.settings.emplace_back("variety", absl::StrCat(arguments.asked.variety));
+  section.settings.emplace_back("seed", absl::StrCat(arguments.asked.seed));
+  section.command = absl::StrCat("duet-eval long --data DIR", ModelWords(arguments.flags.models),
                                  " --seconds ", absl::StrJoin(arguments.seconds, ","), " --starts ",
                                  absl::StrJoin(arguments.starts, ","), " --subjects ",
-                                 absl::StrJoin(subjects, ","), " --variety ",
+                                 absl::StrJoin(experiment.subjects, ","), " --variety ",
                                  arguments.asked.variety, " --seed ", arguments.asked.seed);
-  section.date = report::Today();
   return section;
 }
 
 absl::Status Run(const Arguments& arguments) {
-  absl::StatusOr<dataset::Dataset> dataset = dataset::ReadDataset(arguments.data);
-  if (!dataset.ok()) return dataset.status();
-  absl::StatusOr<std::vector<std::string>> subjects = FoldSubjects(*dataset, arguments.subjects);
-  if (!subjects.ok()) return subjects.status();
-  absl::StatusOr<std::vector<FoldModel>> models = OpenModels(arguments.models);
-  if (!models.ok()) return models.status();
-  report::ResultSection section = MakeSection(*dataset, *subjects, arguments);
+  absl::StatusOr<Experiment> experiment = OpenExperiment(arguments.flags);
+  if (!experiment.ok()) return experiment.status();
+  const dataset::Dataset& dataset = experiment->dataset;
+  report::ResultSection section = MakeSection(*experiment, arguments);
   absl::StatusOr<std::vector<report::Table>> tables =
-      Tables(*dataset, *models, *subjects, arguments);
+      Tables(dataset, experiment->models, experiment->subjects, arguments);
   if (!tables.ok()) return tables.status();
   section.tables = *std::move(tables);
-  for (const report::Table& table : section.tables) std::cout << ToPlainText(table) << "\n";
-  return arguments.out.empty() ? absl::OkStatus() : WriteSection(section, arguments.out);
+  return FinishSection(arguments.flags, section);
 }
 
 }  // namespace
@@ -143,20 +125,16 @@ void AddLongCommand(CLI::App* app, ChosenCommand* chosen) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* command =
       app->add_subcommand("long", "Whether followers of long clips stand, near their leaders");
-  command->add_option("--data", arguments->data, "folder of captures (docs/datasets.md)")
-      ->required();
-  AddModelFlags(ModelNeeded::kYes, &arguments->models, command);
+  arguments->flags.id = "16_long";
+  arguments->flags.title = "Clips of a minute and of ten";
+  AddExperimentFlags(&arguments->flags, command);
+  AddModelFlags(ModelNeeded::kYes, &arguments->flags.models, command);
   AddStartsFlag(&arguments->starts, command);
   AddSamplingFlags(&arguments->asked, command);
   command->add_option("--seconds", arguments->seconds, "how long leaders last")
       ->delimiter(',')
       ->check(CLI::Range(1.0, 3600.0))
       ->capture_default_str();
-  command->add_option("--subjects", arguments->subjects, "folds; default: every subject")
-      ->delimiter(',');
-  command->add_option("--out", arguments->out, "folder of results, for duet-eval report");
-  command->add_option("--id", arguments->id, "of the section")->capture_default_str();
-  command->add_option("--title", arguments->title, "of the section")->capture_default_str();
   command->callback([arguments, chosen] { *chosen = [arguments] { return Run(*arguments); }; });
 }
 

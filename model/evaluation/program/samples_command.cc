@@ -6,8 +6,10 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "model/evaluation/baselines/other_people.h"
 #include "model/evaluation/experiments/sampled_answers.h"
 #include "model/evaluation/program/commands.h"
+#include "model/evaluation/program/experiment.h"
 #include "model/evaluation/program/model_flags.h"
 #include "model/evaluation/program/named_runs.h"
 #include "model/evaluation/program/sample_scorer.h"
@@ -18,14 +20,9 @@ namespace duet::evaluation::program {
 namespace {
 
 struct Arguments {
-  std::string data;
-  ModelChoice models;
+  ExperimentFlags flags;
   std::vector<std::string> starts = {"none", "pose"};
-  std::vector<std::string> subjects;
   experiments::AskedSamples asked;
-  std::string out;
-  std::string id = "14_samples";
-  std::string title = "Many answers to one leader";
 };
 
 absl::StatusOr<report::MethodFigures> ScoreModel(const dataset::Dataset& dataset,
@@ -48,6 +45,27 @@ absl::StatusOr<report::MethodFigures> ScoreModel(const dataset::Dataset& dataset
   return scorer.Score(row, answers);
 }
 
+// What the same measures say of captured people who answer another leader of the class.
+absl::StatusOr<report::MethodFigures> ScoreOtherPeople(const dataset::Dataset& dataset,
+                                                       const SampleScorer& scorer,
+                                                       const experiments::AskedSamples& asked) {
+  std::vector<metrics::SampledMotions> answers;
+  for (const SampleFold& fold : scorer.folds()) {
+    metrics::SampledMotions of_fold(static_cast<size_t>(asked.samples));
+    for (size_t n = 0; n < of_fold.size(); ++n) {
+      absl::StatusOr<std::vector<motion::Poses>> followers = baselines::AnswerWithOtherPeople(
+          dataset, fold.split.train, fold.split.test, asked.seed + n);
+      if (!followers.ok()) return followers.status();
+      auto follower = followers->begin();
+      for (const int index : fold.split.test) {
+        of_fold[n].push_back({index, std::move(*follower++)});
+      }
+    }
+    answers.push_back(std::move(of_fold));
+  }
+  return scorer.Score("other people", answers);
+}
+
 absl::StatusOr<std::vector<report::MethodFigures>> Rows(const dataset::Dataset& dataset,
                                                         const SampleScorer& scorer,
                                                         const std::vector<FoldModel>& models,
@@ -56,6 +74,9 @@ absl::StatusOr<std::vector<report::MethodFigures>> Rows(const dataset::Dataset& 
   absl::StatusOr<report::MethodFigures> captured = scorer.ScoreCaptured();
   if (!captured.ok()) return captured.status();
   rows.push_back(*std::move(captured));
+  absl::StatusOr<report::MethodFigures> others = ScoreOtherPeople(dataset, scorer, arguments.asked);
+  if (!others.ok()) return others.status();
+  rows.push_back(*std::move(others));
   for (const std::string& start : arguments.starts) {
     for (const FoldModel& model : models) {
       absl::StatusOr<report::MethodFigures> row =
@@ -67,57 +88,46 @@ absl::StatusOr<std::vector<report::MethodFigures>> Rows(const dataset::Dataset& 
   return rows;
 }
 
-report::ResultSection MakeSection(const dataset::Dataset& dataset,
-                                  const std::vector<std::string>& subjects,
-                                  const Arguments& arguments, const SampleScorer& scorer) {
-  report::ResultSection section;
-  section.id = arguments.id;
-  section.title = arguments.title;
-  section.text = {
+report::ResultSection MakeSection(const Experiment& experiment, const Arguments& arguments,
+                                  const SampleScorer& scorer) {
+  report::ResultSection section = BeginSection(
+      arguments.flags, experiment,
       "A model that samples answers every leader of every left-out subject several times, each "
       "with a seed of its own; one that does not answers once. The average frame distance rewards "
       "the mean of what may happen, so three are read side by side: of one answer, of the mean of "
       "all answers, and of the best. Speed, range, diversity and lean are to be near the captured "
-      "followers' row, neither below nor above it. +pose: told the follower's first pose."};
-  if (arguments.models.one_for_all()) section.text.push_back(kOneForAll);
-  section.settings = {
-      {"data", absl::StrCat(dataset.name, ", ", dataset.sequences.size(), " sequences")},
-      {"left out in turn", absl::StrJoin(subjects, ", ")},
-      {"answers to a leader", absl::StrCat(arguments.asked.samples)},
-      {"variety", absl::StrCat(arguments.asked.variety)},
-      {"seed", absl::StrCat(arguments.asked.seed)},
-      {"models' answers", arguments.models.as_served ? "as served" : "the network's own"}};
+      "followers' row, neither below nor above it. +pose: told the follower's first pose. Other "
+      "people: captured followers of training clips of the same class, drawn at random: real "
+      "motion of people who answered another leader.");
+  section.settings.emplace_back("answers to a leader", absl::StrCat(arguments.asked.samples));
+  section.settings.emplace_back("variety", absl::StrCat(arguments.asked.variety));
+  section.settings.emplace_back("seed", absl::StrCat(arguments.asked.seed));
   for (auto& setting : scorer.JudgeSettings()) section.settings.push_back(std::move(setting));
   section.command =
-      absl::StrCat("duet-eval samples --data DIR", ModelWords(arguments.models), " --starts ",
+      absl::StrCat("duet-eval samples --data DIR", ModelWords(arguments.flags.models), " --starts ",
                    absl::StrJoin(arguments.starts, ","), " --subjects ",
-                   absl::StrJoin(subjects, ","), " --samples ", arguments.asked.samples,
+                   absl::StrJoin(experiment.subjects, ","), " --samples ", arguments.asked.samples,
                    " --variety ", arguments.asked.variety, " --seed ", arguments.asked.seed);
-  section.date = report::Today();
   return section;
 }
 
 absl::Status Run(const Arguments& arguments) {
-  absl::StatusOr<dataset::Dataset> dataset = dataset::ReadDataset(arguments.data);
-  if (!dataset.ok()) return dataset.status();
-  absl::StatusOr<std::vector<std::string>> subjects = FoldSubjects(*dataset, arguments.subjects);
-  if (!subjects.ok()) return subjects.status();
-  absl::StatusOr<std::vector<FoldModel>> models = OpenModels(arguments.models);
-  if (!models.ok()) return models.status();
-  absl::StatusOr<SampleScorer> scorer = SampleScorer::Create(*dataset, *subjects);
+  absl::StatusOr<Experiment> experiment = OpenExperiment(arguments.flags);
+  if (!experiment.ok()) return experiment.status();
+  const dataset::Dataset& dataset = experiment->dataset;
+  absl::StatusOr<SampleScorer> scorer = SampleScorer::Create(dataset, experiment->subjects);
   if (!scorer.ok()) return scorer.status();
   absl::StatusOr<std::vector<report::MethodFigures>> rows =
-      Rows(*dataset, *scorer, *models, arguments);
+      Rows(dataset, *scorer, experiment->models, arguments);
   if (!rows.ok()) return rows.status();
-  report::ResultSection section = MakeSection(*dataset, *subjects, arguments, *scorer);
+  report::ResultSection section = MakeSection(*experiment, arguments, *scorer);
   section.tables = {report::SampleSummary(*rows)};
   report::Table spread = report::SampleSpread(*rows);
   if (!spread.rows.empty()) section.tables.push_back(std::move(spread));
-  for (report::Table& table : report::SampleTables(dataset->classes, *rows)) {
+  for (report::Table& table : report::SampleTables(dataset.classes, *rows)) {
     section.tables.push_back(std::move(table));
   }
-  for (const report::Table& table : section.tables) std::cout << ToPlainText(table) << "\n";
-  return arguments.out.empty() ? absl::OkStatus() : WriteSection(section, arguments.out);
+  return FinishSection(arguments.flags, section);
 }
 
 }  // namespace
@@ -125,9 +135,10 @@ absl::Status Run(const Arguments& arguments) {
 void AddSamplesCommand(CLI::App* app, ChosenCommand* chosen) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app->add_subcommand("samples", "Figures of many answers to each leader");
-  command->add_option("--data", arguments->data, "folder of captures (docs/datasets.md)")
-      ->required();
-  AddModelFlags(ModelNeeded::kYes, &arguments->models, command);
+  arguments->flags.id = "14_samples";
+  arguments->flags.title = "Many answers to one leader";
+  AddExperimentFlags(&arguments->flags, command);
+  AddModelFlags(ModelNeeded::kYes, &arguments->flags.models, command);
   AddStartsFlag(&arguments->starts, command);
   AddSamplingFlags(&arguments->asked, command);
   command
@@ -135,11 +146,6 @@ void AddSamplesCommand(CLI::App* app, ChosenCommand* chosen) {
                    "answers to each leader by a model that samples")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  command->add_option("--subjects", arguments->subjects, "folds; default: every subject")
-      ->delimiter(',');
-  command->add_option("--out", arguments->out, "folder of results, for duet-eval report");
-  command->add_option("--id", arguments->id, "of the section")->capture_default_str();
-  command->add_option("--title", arguments->title, "of the section")->capture_default_str();
   command->callback([arguments, chosen] { *chosen = [arguments] { return Run(*arguments); }; });
 }
 

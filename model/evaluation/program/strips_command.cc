@@ -9,6 +9,7 @@
 #include "absl/strings/str_cat.h"
 #include "model/evaluation/experiments/sampled_answers.h"
 #include "model/evaluation/program/commands.h"
+#include "model/evaluation/program/experiment.h"
 #include "model/evaluation/program/fold_judge.h"
 #include "model/evaluation/program/model_flags.h"
 #include "model/evaluation/program/named_runs.h"
@@ -23,14 +24,9 @@ constexpr int kColumns = 8;
 constexpr int kAnswers = 2;
 
 struct Arguments {
-  std::string data;
-  ModelChoice models;
+  ExperimentFlags flags;
   std::string start = "none";
-  std::vector<std::string> subjects;
   experiments::AskedSamples asked;
-  std::string out;
-  std::string id = "18_strips";
-  std::string title = "Captured and synthesised, side by side";
 };
 
 // Which clip stands for a class: of the first left-out person who has any, the one of middle
@@ -92,7 +88,7 @@ absl::Status AddPictures(const dataset::Dataset& dataset, const std::vector<Fold
   const double rate = sequence.pair.leader.frame_rate_hz;
   const std::string name = absl::StrCat(section->id, "_", class_name);
   std::string of = absl::StrCat(class_name, ", clip ", sequence.id);
-  if (!arguments.models.one_for_all()) {
+  if (!arguments.flags.models.one_for_all()) {
     absl::StrAppend(&of, ", by models that never saw ", example.subject);
   }
   section->figures.push_back(
@@ -103,44 +99,35 @@ absl::Status AddPictures(const dataset::Dataset& dataset, const std::vector<Fold
   return absl::OkStatus();
 }
 
-report::ResultSection MakeSection(const dataset::Dataset& dataset, const Arguments& arguments) {
-  report::ResultSection section;
-  section.id = arguments.id;
-  section.title = arguments.title;
-  section.text = {
+report::ResultSection MakeSection(const Experiment& experiment, const Arguments& arguments) {
+  report::ResultSection section = BeginSection(
+      arguments.flags, experiment,
       "A clip of each class: of the first left-out person who has any, the one of middle length. "
-      "Above the captured pair, below the same leader with synthesised followers."};
-  if (arguments.models.one_for_all()) section.text.push_back(kOneForAll);
-  section.settings = {
-      {"data", absl::StrCat(dataset.name, ", ", dataset.sequences.size(), " sequences")},
-      {"told of the follower's first frame", arguments.start},
-      {"variety", absl::StrCat(arguments.asked.variety)},
-      {"seed", absl::StrCat(arguments.asked.seed)},
-      {"models' answers", arguments.models.as_served ? "as served" : "the network's own"}};
-  section.command = absl::StrCat("duet-eval strips --data DIR", ModelWords(arguments.models),
+      "Above the captured pair, below the same leader with synthesised followers.");
+  section.settings.emplace_back("told of the follower's first frame", arguments.start);
+  section.settings.emplace_back("variety", absl::StrCat(arguments.asked.variety));
+  section.settings.emplace_back("seed", absl::StrCat(arguments.asked.seed));
+  section.command = absl::StrCat("duet-eval strips --data DIR", ModelWords(arguments.flags.models),
                                  " --start ", arguments.start, " --variety ",
                                  arguments.asked.variety, " --seed ", arguments.asked.seed);
-  section.date = report::Today();
   return section;
 }
 
 absl::Status Run(const Arguments& arguments) {
-  absl::StatusOr<dataset::Dataset> dataset = dataset::ReadDataset(arguments.data);
-  if (!dataset.ok()) return dataset.status();
-  absl::StatusOr<std::vector<std::string>> subjects = FoldSubjects(*dataset, arguments.subjects);
-  if (!subjects.ok()) return subjects.status();
-  absl::StatusOr<std::vector<FoldModel>> models = OpenModels(arguments.models);
-  if (!models.ok()) return models.status();
-  report::ResultSection section = MakeSection(*dataset, arguments);
-  for (int c = 0; c < dataset->class_count(); ++c) {
-    const std::optional<Example> example = FindExample(*dataset, *subjects, c);
+  absl::StatusOr<Experiment> experiment = OpenExperiment(arguments.flags);
+  if (!experiment.ok()) return experiment.status();
+  const dataset::Dataset& dataset = experiment->dataset;
+  report::ResultSection section = MakeSection(*experiment, arguments);
+  for (int c = 0; c < dataset.class_count(); ++c) {
+    const std::optional<Example> example = FindExample(dataset, experiment->subjects, c);
     if (!example) continue;
-    absl::Status status = AddPictures(*dataset, *models, dataset->classes[static_cast<size_t>(c)],
-                                      *example, arguments, &section);
+    absl::Status status =
+        AddPictures(dataset, experiment->models, dataset.classes[static_cast<size_t>(c)], *example,
+                    arguments, &section);
     if (!status.ok()) return status;
   }
   std::cout << section.figures.size() << " figures\n";
-  return WriteSection(section, arguments.out);
+  return FinishSection(arguments.flags, section);
 }
 
 }  // namespace
@@ -149,21 +136,17 @@ void AddStripsCommand(CLI::App* app, ChosenCommand* chosen) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* command =
       app->add_subcommand("strips", "Pictures of captured and synthesised pairs, still and moving");
-  command->add_option("--data", arguments->data, "folder of captures (docs/datasets.md)")
-      ->required();
-  AddModelFlags(ModelNeeded::kYes, &arguments->models, command);
+  arguments->flags.id = "18_strips";
+  arguments->flags.title = "Captured and synthesised, side by side";
+  AddExperimentFlags(&arguments->flags, command);
+  command->get_option("--out")->required();
+  AddModelFlags(ModelNeeded::kYes, &arguments->flags.models, command);
   command
       ->add_option("--start", arguments->start,
                    "what the models are told of the follower's first frame")
       ->check(CLI::IsMember(StartNames()))
       ->capture_default_str();
   AddSamplingFlags(&arguments->asked, command);
-  command->add_option("--subjects", arguments->subjects, "folds; default: every subject")
-      ->delimiter(',');
-  command->add_option("--out", arguments->out, "folder of results, for duet-eval report")
-      ->required();
-  command->add_option("--id", arguments->id, "of the section")->capture_default_str();
-  command->add_option("--title", arguments->title, "of the section")->capture_default_str();
   command->callback([arguments, chosen] { *chosen = [arguments] { return Run(*arguments); }; });
 }
 

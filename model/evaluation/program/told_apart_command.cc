@@ -12,6 +12,7 @@
 #include "model/evaluation/experiments/sampled_answers.h"
 #include "model/evaluation/experiments/told_apart.h"
 #include "model/evaluation/program/commands.h"
+#include "model/evaluation/program/experiment.h"
 #include "model/evaluation/program/fold_judge.h"
 #include "model/evaluation/program/model_flags.h"
 #include "model/evaluation/program/named_runs.h"
@@ -21,15 +22,10 @@ namespace duet::evaluation::program {
 namespace {
 
 struct Arguments {
-  std::string data;
-  ModelChoice models;
+  ExperimentFlags flags;
   std::vector<std::string> starts = {"none", "pose"};
-  std::vector<std::string> subjects;
   std::vector<uint64_t> seeds = {1, 2, 3};
   experiments::AskedSamples asked;
-  std::string out;
-  std::string id = "17_told_apart";
-  std::string title = "Told apart from captured pairs";
 };
 
 // One model's balanced accuracies. Shapes: [classifier seeds][folds].
@@ -115,47 +111,34 @@ absl::StatusOr<report::Table> Measure(const dataset::Dataset& dataset,
   return table;
 }
 
-report::ResultSection MakeSection(const dataset::Dataset& dataset,
-                                  const std::vector<std::string>& subjects,
-                                  const Arguments& arguments) {
-  report::ResultSection section;
-  section.id = arguments.id;
-  section.title = arguments.title;
-  section.text = {
+report::ResultSection MakeSection(const Experiment& experiment, const Arguments& arguments) {
+  report::ResultSection section = BeginSection(
+      arguments.flags, experiment,
       "A fresh classifier that sees leader and follower learns to tell a fold's answers to its "
       "training leaders from the captured pairs of the same people, and is tested on the left-out "
       "person: on that fold's answers to leaders never seen, and on the captured pairs. Both sides "
-      "go through the same Gaussian of 0.1 s, so that a capture's noise gives nothing away."};
-  if (arguments.models.one_for_all()) section.text.push_back(kOneForAll);
-  section.settings = {
-      {"data", absl::StrCat(dataset.name, ", ", dataset.sequences.size(), " sequences")},
-      {"left out in turn", absl::StrJoin(subjects, ", ")},
-      {"classifiers (seeds)", absl::StrJoin(arguments.seeds, ", ")},
-      {"variety", absl::StrCat(arguments.asked.variety)},
-      {"seed of the answers", absl::StrCat(arguments.asked.seed)},
-      {"models' answers", arguments.models.as_served ? "as served" : "the network's own"}};
-  section.command =
-      absl::StrCat("duet-eval told-apart --data DIR", ModelWords(arguments.models), " --starts ",
-                   absl::StrJoin(arguments.starts, ","), " --subjects ",
-                   absl::StrJoin(subjects, ","), " --seeds ", absl::StrJoin(arguments.seeds, ","),
-                   " --variety ", arguments.asked.variety, " --seed ", arguments.asked.seed);
-  section.date = report::Today();
+      "go through the same Gaussian of 0.1 s, so that a capture's noise gives nothing away.");
+  section.settings.emplace_back("classifiers (seeds)", absl::StrJoin(arguments.seeds, ", "));
+  section.settings.emplace_back("variety", absl::StrCat(arguments.asked.variety));
+  section.settings.emplace_back("seed of the answers", absl::StrCat(arguments.asked.seed));
+  section.command = absl::StrCat(
+      "duet-eval told-apart --data DIR", ModelWords(arguments.flags.models), " --starts ",
+      absl::StrJoin(arguments.starts, ","), " --subjects ", absl::StrJoin(experiment.subjects, ","),
+      " --seeds ", absl::StrJoin(arguments.seeds, ","), " --variety ", arguments.asked.variety,
+      " --seed ", arguments.asked.seed);
   return section;
 }
 
 absl::Status Run(const Arguments& arguments) {
-  absl::StatusOr<dataset::Dataset> dataset = dataset::ReadDataset(arguments.data);
-  if (!dataset.ok()) return dataset.status();
-  absl::StatusOr<std::vector<std::string>> subjects = FoldSubjects(*dataset, arguments.subjects);
-  if (!subjects.ok()) return subjects.status();
-  absl::StatusOr<std::vector<FoldModel>> models = OpenModels(arguments.models);
-  if (!models.ok()) return models.status();
-  report::ResultSection section = MakeSection(*dataset, *subjects, arguments);
-  absl::StatusOr<report::Table> table = Measure(*dataset, *models, *subjects, arguments);
+  absl::StatusOr<Experiment> experiment = OpenExperiment(arguments.flags);
+  if (!experiment.ok()) return experiment.status();
+  const dataset::Dataset& dataset = experiment->dataset;
+  report::ResultSection section = MakeSection(*experiment, arguments);
+  absl::StatusOr<report::Table> table =
+      Measure(dataset, experiment->models, experiment->subjects, arguments);
   if (!table.ok()) return table.status();
   section.tables = {*std::move(table)};
-  std::cout << ToPlainText(section.tables.front());
-  return arguments.out.empty() ? absl::OkStatus() : WriteSection(section, arguments.out);
+  return FinishSection(arguments.flags, section);
 }
 
 }  // namespace
@@ -164,19 +147,15 @@ void AddToldApartCommand(CLI::App* app, ChosenCommand* chosen) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* command =
       app->add_subcommand("told-apart", "How well a classifier tells answers from captured pairs");
-  command->add_option("--data", arguments->data, "folder of captures (docs/datasets.md)")
-      ->required();
-  AddModelFlags(ModelNeeded::kYes, &arguments->models, command);
+  arguments->flags.id = "17_told_apart";
+  arguments->flags.title = "Told apart from captured pairs";
+  AddExperimentFlags(&arguments->flags, command);
+  AddModelFlags(ModelNeeded::kYes, &arguments->flags.models, command);
   AddStartsFlag(&arguments->starts, command);
   AddSamplingFlags(&arguments->asked, command);
   command->add_option("--seeds", arguments->seeds, "of the classifiers, one for each")
       ->delimiter(',')
       ->capture_default_str();
-  command->add_option("--subjects", arguments->subjects, "folds; default: every subject")
-      ->delimiter(',');
-  command->add_option("--out", arguments->out, "folder of results, for duet-eval report");
-  command->add_option("--id", arguments->id, "of the section")->capture_default_str();
-  command->add_option("--title", arguments->title, "of the section")->capture_default_str();
   command->callback([arguments, chosen] { *chosen = [arguments] { return Run(*arguments); }; });
 }
 

@@ -1,0 +1,61 @@
+#include "model/evaluation/baselines/other_people.h"
+
+#include <algorithm>
+
+#include "absl/status/status.h"
+#include "absl/strings/str_cat.h"
+#include "model/base/random.h"
+#include "model/evaluation/baselines/motion_matrix.h"
+
+namespace duet::evaluation::baselines {
+namespace {
+
+using dataset::Sequence;
+
+// The captured followers of a class who could answer a clip of so many frames.
+std::vector<const Sequence*> Candidates(const dataset::Dataset& dataset,
+                                        const std::vector<int>& train, int interaction_class,
+                                        int frames) {
+  std::vector<const Sequence*> all, enough;
+  for (const int index : train) {
+    const Sequence& sequence = dataset.sequences[static_cast<size_t>(index)];
+    if (sequence.interaction_class != interaction_class) continue;
+    all.push_back(&sequence);
+    if (sequence.pair.leader.frame_count() >= frames) enough.push_back(&sequence);
+  }
+  return enough.empty() ? all : enough;
+}
+
+Rows Fitted(const Rows& motion, int frames) {
+  return motion.rows() < frames ? StretchTo(motion, frames) : Rows(motion.topRows(frames));
+}
+
+}  // namespace
+
+absl::StatusOr<std::vector<motion::Poses>> AnswerWithOtherPeople(const dataset::Dataset& dataset,
+                                                                 const std::vector<int>& train,
+                                                                 const std::vector<int>& test,
+                                                                 uint64_t seed) {
+  constexpr auto kFirstFrame = motion::StandardOrigin::kFirstFrame;
+  base::Random random(seed);
+  std::vector<motion::Poses> answers;
+  for (const int index : test) {
+    const Sequence& asked = dataset.sequences[static_cast<size_t>(index)];
+    const int frames = asked.pair.leader.frame_count();
+    const auto candidates = Candidates(dataset, train, asked.interaction_class, frames);
+    if (candidates.empty()) {
+      return absl::InvalidArgumentError(absl::StrCat(
+          "other people: no training sequence of class ",
+          dataset.classes[static_cast<size_t>(asked.interaction_class)], ", wanted at least one"));
+    }
+    const auto drawn = random.Below(static_cast<int64_t>(candidates.size()));
+    const Sequence& other = *candidates[static_cast<size_t>(drawn)];
+    const Rows motion = ToRows(BaselineStandardisation(dataset.skeleton, other, kFirstFrame)
+                                   .Apply(other.pair.follower.poses));
+    answers.push_back(BaselineStandardisation(dataset.skeleton, asked, kFirstFrame)
+                          .Invert(FromRows(Fitted(motion, frames))));
+  }
+  return answers;
+}
+
+}  // namespace duet::evaluation::baselines
