@@ -30,6 +30,7 @@ absl::StatusOr<motion::Clip> ReadPerson(const fs::path& path, formats::Side side
   read.skeleton = options.skeleton;
   read.joint_overrides = options.joint_overrides;
   read.frame_rate_hz = options.frame_rate_hz;
+  read.notes = options.notes;
   if (absl::AsciiStrToLower(path.extension().string()) == ".bvh") {
     read.metres_per_unit = 1;
     read.coordinates = motion::Coordinates{};
@@ -39,7 +40,10 @@ absl::StatusOr<motion::Clip> ReadPerson(const fs::path& path, formats::Side side
 
 void ToRate(double rate_hz, motion::Clip* clip) {
   if (clip->frame_rate_hz != rate_hz) {
+    const double whole = std::floor((clip->frame_count() - 1) * rate_hz / clip->frame_rate_hz + 1e-6);
     clip->poses = Resample(clip->poses, clip->frame_rate_hz, rate_hz);
+    // None beyond what was captured.
+    clip->poses.Resize(std::max(kFewestFrames, static_cast<int>(whole) + 1));
   }
   clip->frame_rate_hz = rate_hz;
 }

@@ -26,6 +26,8 @@ struct CaptureOptions {
   motion::Skeleton skeleton;
   retargeting::JointOverrides joint_overrides;
   std::optional<double> frame_rate_hz;  // replaces what the files say
+  // Receives what was decided where names leave a choice of joints. May be null.
+  std::vector<std::string>* notes = nullptr;
 };
 
 // Reads both people: BVH in the file's own unit and axes, everything else in the metres, y up, that

@@ -280,25 +280,87 @@ absl::StatusOr<CaptureSkeleton> ReadSaid(const std::string& said) {
 
 }  // namespace
 
+namespace {
+
+enum class Limb { kNone, kArm, kLeg };
+
+// What names tell of joints before any position does.
+struct KnownJoint {
+  BodySide side = BodySide::kMiddle;
+  Limb limb = Limb::kNone;
+  int parent = -1;  // within the limb
+};
+
+int FindLimbJoint(const std::vector<ParsedJointName>& parsed, BodySide side, const char* word,
+                  const std::vector<KnownJoint>& known) {
+  for (const std::string& alias : retargeting::JointAliases(word)) {
+    for (std::size_t i = 0; i < parsed.size(); ++i) {
+      if (known[i].limb == Limb::kNone && parsed[i] == ParsedJointName{side, alias}) {
+        return static_cast<int>(i);
+      }
+    }
+  }
+  return -1;
+}
+
+std::vector<KnownJoint> KnowByName(const std::vector<std::string>& joint_names) {
+  std::vector<ParsedJointName> parsed;
+  std::vector<KnownJoint> known;
+  for (const std::string& name : joint_names) {
+    parsed.push_back(retargeting::ParseJointName(name));
+    known.push_back({parsed.back().side, Limb::kNone, -1});
+  }
+  constexpr const char* kArm[] = {"shoulder", "elbow", "hand"};
+  constexpr const char* kLeg[] = {"hip", "knee", "foot"};
+  for (const BodySide side : {BodySide::kLeft, BodySide::kRight}) {
+    for (const Limb limb : {Limb::kArm, Limb::kLeg}) {
+      int parent = -1;
+      for (const char* word : limb == Limb::kArm ? kArm : kLeg) {
+        const int joint = FindLimbJoint(parsed, side, word, known);
+        if (joint < 0) continue;
+        known[static_cast<std::size_t>(joint)].limb = limb;
+        known[static_cast<std::size_t>(joint)].parent = parent;
+        parent = joint;
+      }
+    }
+  }
+  return known;
+}
+
+// A hanging hand is nearer to the thigh than to the elbow: names say which joints cannot be joined.
+bool CannotBeJoined(const KnownJoint& a, const KnownJoint& b) {
+  const bool sides =
+      a.side != b.side && a.side != BodySide::kMiddle && b.side != BodySide::kMiddle;
+  const bool limbs = a.limb != b.limb && a.limb != Limb::kNone && b.limb != Limb::kNone;
+  return sides || limbs;
+}
+
+// Mean length and how it changes, over some of the frames.
+double BoneCost(const motion::Poses& poses, std::size_t a, std::size_t b) {
+  const int step = std::max(1, poses.frame_count() / kMostFrames);
+  double sum = 0, squares = 0, count = 0;
+  for (int t = 0; t < poses.frame_count(); t += step) {
+    const double length = Distance(poses[t][a], poses[t][b]);
+    sum += length;
+    squares += length * length;
+    ++count;
+  }
+  const double mean = sum / count;
+  return mean + kChangeWeight * std::sqrt(std::max(0.0, squares / count - mean * mean));
+}
+
+}  // namespace
+
 std::vector<motion::Bone> FindBones(const std::vector<std::string>& joint_names,
                                     const motion::Poses& poses, int root) {
   const std::size_t joints = joint_names.size();
-  std::vector<ParsedJointName> parsed;
-  for (const std::string& name : joint_names) parsed.push_back(retargeting::ParseJointName(name));
-  const int step = std::max(1, poses.frame_count() / kMostFrames);
+  const std::vector<KnownJoint> known = KnowByName(joint_names);
   const auto cost = [&](std::size_t a, std::size_t b) {
-    const bool across = parsed[a].side != parsed[b].side &&
-                        parsed[a].side != BodySide::kMiddle && parsed[b].side != BodySide::kMiddle;
-    if (across) return std::numeric_limits<double>::max();
-    double sum = 0, squares = 0, count = 0;
-    for (int t = 0; t < poses.frame_count(); t += step) {
-      const double length = Distance(poses[t][a], poses[t][b]);
-      sum += length;
-      squares += length * length;
-      ++count;
-    }
-    const double mean = sum / count;
-    return mean + kChangeWeight * std::sqrt(std::max(0.0, squares / count - mean * mean));
+    const bool is_limb = known[a].parent == static_cast<int>(b) ||
+                         known[b].parent == static_cast<int>(a);
+    if (is_limb) return 0.0;
+    if (CannotBeJoined(known[a], known[b])) return std::numeric_limits<double>::max();
+    return BoneCost(poses, a, b);
   };
   // Prim's tree: the cheapest bone from what is joined to what is not, until all are.
   std::vector<motion::Bone> bones;

@@ -167,8 +167,9 @@ class Importer {
   }
 
   absl::Status ReadPairs() {
+    std::vector<std::string> notes;
     const CaptureOptions options = {skeleton_.skeleton, options_.joint_overrides,
-                                    options_.frame_rate_hz};
+                                    options_.frame_rate_hz, &notes};
     for (const PairFiles& files : pairs_) {
       absl::StatusOr<Capture> capture = ReadCapture(options_.from, files, options);
       if (capture.ok()) {
@@ -176,6 +177,11 @@ class Importer {
       } else {
         Refuse(files, capture.status());
       }
+    }
+    std::map<std::string, int> people;
+    for (const std::string& note : notes) ++people[note];
+    for (const auto& [note, count] : people) {
+      Assume("joint map", absl::StrCat(note, ", of ", count, " people"), "--joint-map JOINT=NAME");
     }
     if (captures_.empty()) return AllRefused();
     return absl::OkStatus();

@@ -13,6 +13,7 @@
 #include "absl/strings/str_split.h"
 #include "model/base/flag_names.h"
 #include "model/importing/import.h"
+#include "model/motion/coordinates.h"
 
 namespace duet::importing {
 namespace {

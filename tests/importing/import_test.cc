@@ -101,6 +101,8 @@ TEST_F(ImportTest, SaysWhatItAssumedAndTheFlagThatChangesIt) {
   EXPECT_THAT(Assumed("joints"), HasSubstr("left_hip, right_hip: LeftUpLeg, RightUpLeg"));
   EXPECT_EQ(Assumed("unit"), "centimetres: legs are then 0.93 m long");
   EXPECT_EQ(Assumed("up axis"), "y-up");
+  EXPECT_THAT(Assumed("joint map"), HasSubstr("head: Head.end (half way to it from the head's "
+                                              "joint), of 8 people"));
   EXPECT_EQ(Assumed("frame rate"), "30 frames a second, of files with 60");
   EXPECT_THAT(Assumed("leader"),
               AllOf(HasSubstr("4 pairs by who moves farther"),
@@ -110,7 +112,8 @@ TEST_F(ImportTest, SaysWhatItAssumedAndTheFlagThatChangesIt) {
                                           "kept apart"));
   EXPECT_THAT(Assumed("level"), HasSubstr("no: people lean"));
   for (const Assumption& one : report_.assumptions) {
-    if (one.what != "passed by") EXPECT_THAT(one.flag, HasSubstr("--")) << one.what;
+    if (one.what == "passed by") continue;
+    EXPECT_THAT(one.flag, HasSubstr("--")) << one.what;
   }
 }
 
