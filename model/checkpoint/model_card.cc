@@ -116,7 +116,8 @@ std::string ModelCard(const Manifest& manifest) {
   const engine::ModelDescription& model = manifest.model;
   return absl::StrCat(
       "# ", model.name, ", version ", model.version, "\n\n",
-      model.description.empty() ? "Answers a leader's motion with a follower's." : model.description,
+      model.description.empty() ? "Answers a leader's motion with a follower's."
+                                : model.description,
       "\n\n", Facts(manifest), "\n## Figures\n\n", Figures(manifest), "\n## Meant for\n\n",
       "Animation and research: synthesising the second character of an interaction of the classes\n"
       "above from the first one's motion. Not for telling who people are or what they intend, and\n"

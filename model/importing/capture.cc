@@ -40,7 +40,8 @@ absl::StatusOr<motion::Clip> ReadPerson(const fs::path& path, formats::Side side
 
 void ToRate(double rate_hz, motion::Clip* clip) {
   if (clip->frame_rate_hz != rate_hz) {
-    const double whole = std::floor((clip->frame_count() - 1) * rate_hz / clip->frame_rate_hz + 1e-6);
+    const double whole =
+        std::floor((clip->frame_count() - 1) * rate_hz / clip->frame_rate_hz + 1e-6);
     clip->poses = Resample(clip->poses, clip->frame_rate_hz, rate_hz);
     // None beyond what was captured.
     clip->poses.Resize(std::max(kFewestFrames, static_cast<int>(whole) + 1));
@@ -74,9 +75,8 @@ absl::StatusOr<Capture> ReadCapture(const fs::path& folder, const PairFiles& fil
   absl::StatusOr<motion::Clip> first =
       ReadPerson(folder / files.first, formats::Side::kLeft, options);
   if (!first.ok()) return first.status();
-  absl::StatusOr<motion::Clip> second =
-      ReadPerson(folder / files.second, one_file ? formats::Side::kRight : formats::Side::kLeft,
-                 options);
+  absl::StatusOr<motion::Clip> second = ReadPerson(
+      folder / files.second, one_file ? formats::Side::kRight : formats::Side::kLeft, options);
   if (!second.ok()) return second.status();
   // The reader gives the only person for either side.
   if (first->poses == second->poses) {

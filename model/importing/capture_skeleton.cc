@@ -33,10 +33,11 @@ using retargeting::ParsedJointName;
 
 constexpr std::size_t kMaxSkeletonBytes = std::size_t{1} << 20;
 constexpr int kMaxSkeletonDepth = 5;
-constexpr int kMostFrames = 200;         // that bones are found in
-constexpr double kChangeWeight = 10;     // of a bone's deviation beside its length
+constexpr int kMostFrames = 200;      // that bones are found in
+constexpr double kChangeWeight = 10;  // of a bone's deviation beside its length
 
-motion::Skeleton ParentsToSkeleton(std::vector<std::string> names, const std::vector<int>& parents) {
+motion::Skeleton ParentsToSkeleton(std::vector<std::string> names,
+                                   const std::vector<int>& parents) {
   motion::Skeleton skeleton;
   skeleton.joint_names = std::move(names);
   for (std::size_t joint = 0; joint < parents.size(); ++joint) {
@@ -140,8 +141,8 @@ absl::StatusOr<motion::Skeleton> ReadCaptured(const fs::path& file, const std::s
   if (!text.ok()) return text.status();
   if (extension == ".bvh") return BvhSkeleton(*text, file.string());
   if (extension != ".csv" && extension != ".json") {
-    return absl::InvalidArgumentError(
-        absl::StrCat(file.string(), ": its kind of file tells no skeleton; say it with --skeleton"));
+    return absl::InvalidArgumentError(absl::StrCat(
+        file.string(), ": its kind of file tells no skeleton; say it with --skeleton"));
   }
   const absl::StatusOr<motion::RecordedMotion> motion =
       extension == ".csv" ? formats::flat::ParseCsv(*text, file.string())
@@ -236,8 +237,8 @@ absl::StatusOr<CaptureSkeleton> Complete(motion::Skeleton skeleton, const std::s
   CaptureSkeleton found;
   found.notes = anatomy->notes;
   if (skeleton.joint_count() < before) {
-    found.notes.push_back(absl::StrCat("left out: ", before - skeleton.joint_count(),
-                                       " joints of fingers and face"));
+    found.notes.push_back(
+        absl::StrCat("left out: ", before - skeleton.joint_count(), " joints of fingers and face"));
   }
   Rename(*anatomy, &skeleton);
   skeleton.hips = anatomy->hips;
@@ -329,8 +330,7 @@ std::vector<KnownJoint> KnowByName(const std::vector<std::string>& joint_names) 
 
 // A hanging hand is nearer to the thigh than to the elbow: names say which joints cannot be joined.
 bool CannotBeJoined(const KnownJoint& a, const KnownJoint& b) {
-  const bool sides =
-      a.side != b.side && a.side != BodySide::kMiddle && b.side != BodySide::kMiddle;
+  const bool sides = a.side != b.side && a.side != BodySide::kMiddle && b.side != BodySide::kMiddle;
   const bool limbs = a.limb != b.limb && a.limb != Limb::kNone && b.limb != Limb::kNone;
   return sides || limbs;
 }
@@ -356,8 +356,8 @@ std::vector<motion::Bone> FindBones(const std::vector<std::string>& joint_names,
   const std::size_t joints = joint_names.size();
   const std::vector<KnownJoint> known = KnowByName(joint_names);
   const auto cost = [&](std::size_t a, std::size_t b) {
-    const bool is_limb = known[a].parent == static_cast<int>(b) ||
-                         known[b].parent == static_cast<int>(a);
+    const bool is_limb =
+        known[a].parent == static_cast<int>(b) || known[b].parent == static_cast<int>(a);
     if (is_limb) return 0.0;
     if (CannotBeJoined(known[a], known[b])) return std::numeric_limits<double>::max();
     return BoneCost(poses, a, b);

@@ -31,14 +31,13 @@ std::string LayoutText(const dataset::DatasetLayout& layout) {
     if (one.touches) object["touches"] = true;
     classes.push_back(object);
   }
-  ordered_json root = {
-      {"name", layout.name},
-      {"frame_rate_hz", layout.frame_rate_hz},
-      {"unit", std::string(LengthUnitName(layout.coordinates.unit))},
-      {"up_axis", std::string(UpAxisName(layout.coordinates.up_axis))},
-      {"level", layout.level},
-      {"skeleton", SkeletonToJson(layout.skeleton, layout.parts)},
-      {"classes", classes}};
+  ordered_json root = {{"name", layout.name},
+                       {"frame_rate_hz", layout.frame_rate_hz},
+                       {"unit", std::string(LengthUnitName(layout.coordinates.unit))},
+                       {"up_axis", std::string(UpAxisName(layout.coordinates.up_axis))},
+                       {"level", layout.level},
+                       {"skeleton", SkeletonToJson(layout.skeleton, layout.parts)},
+                       {"classes", classes}};
   return root.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
@@ -56,8 +55,7 @@ std::string IndexText(const std::vector<ImportedSequence>& sequences) {
   std::string text = "path\tleader_side\tleader_source\tsubjects\tleft_file\tright_file\n";
   for (const ImportedSequence& sequence : sequences) {
     const PairFiles& files = sequence.capture.files;
-    const char* const side =
-        sequence.leader_side == dataset::LeaderSide::kRight ? "right" : "left";
+    const char* const side = sequence.leader_side == dataset::LeaderSide::kRight ? "right" : "left";
     absl::StrAppend(&text, PathOf(sequence), "\t", side, "\t", sequence.leader_source, "\t",
                     Cell(absl::StrJoin(files.subjects, ",")), "\t", Cell(files.first), "\t",
                     Cell(files.second), "\n");
@@ -75,7 +73,8 @@ absl::Status WriteAll(const fs::path& folder, const dataset::DatasetLayout& layo
     const fs::path path = folder / PathOf(sequence);
     std::error_code error;
     fs::create_directories(path.parent_path(), error);
-    if (error) return absl::PermissionDeniedError(absl::StrCat(path.string(), ": ", error.message()));
+    if (error)
+      return absl::PermissionDeniedError(absl::StrCat(path.string(), ": ", error.message()));
     const absl::StatusOr<std::string> text =
         FormatSbu({sequence.capture.first, sequence.capture.second}, options);
     if (!text.ok()) return text.status();

@@ -112,8 +112,8 @@ class Importer {
     const fs::path out = fs::absolute(options_.out).lexically_normal();
     const std::string way = out.lexically_relative(from).generic_string();
     if (way != ".." && !absl::StartsWith(way, "../")) {
-      return absl::InvalidArgumentError(absl::StrCat("--out: ", options_.out.string(),
-                                                     " lies in --from, wanted another place"));
+      return absl::InvalidArgumentError(
+          absl::StrCat("--out: ", options_.out.string(), " lies in --from, wanted another place"));
     }
     return CheckOut(options_.out, options_.overwrite);
   }
@@ -145,7 +145,8 @@ class Importer {
                        " motion files, wanted names such as kick_01_a.bvh and kick_01_b.bvh, one "
                        "file for both people, or a table (docs/guides/own_data.md)"));
     }
-    Assume("pairs", absl::StrCat(pairs_.size(), " by ", table.empty() ? "their names" : table.string()),
+    Assume("pairs",
+           absl::StrCat(pairs_.size(), " by ", table.empty() ? "their names" : table.string()),
            "--table FILE");
     return absl::OkStatus();
   }
@@ -188,8 +189,8 @@ class Importer {
   }
 
   absl::Status AllRefused() const {
-    return absl::InvalidArgumentError(absl::StrCat("none of the ", report_.refused.size(),
-                                                   " pairs can be used"));
+    return absl::InvalidArgumentError(
+        absl::StrCat("none of the ", report_.refused.size(), " pairs can be used"));
   }
 
   std::vector<const motion::Poses*> People() const {
@@ -206,9 +207,8 @@ class Importer {
     for (const motion::Poses* poses : People()) {
       legs.push_back(LegLength(skeleton_.skeleton, *poses));
     }
-    const std::optional<Unit> unit = options_.metres_per_unit
-                                         ? Unit{*options_.metres_per_unit, "as said"}
-                                         : FindUnit(legs);
+    const std::optional<Unit> unit =
+        options_.metres_per_unit ? Unit{*options_.metres_per_unit, "as said"} : FindUnit(legs);
     if (!unit) {
       return absl::InvalidArgumentError(absl::StrFormat(
           "unit: legs are %.4g units long, which is no person's %g to %g m in metres, "
@@ -229,9 +229,10 @@ class Importer {
         }
       }
     }
-    Assume("unit", absl::StrFormat("%s: legs are then %.2f m long", unit->name,
-                                   legs.front() * unit->metres),
-           "--metres-per-unit METRES");
+    Assume(
+        "unit",
+        absl::StrFormat("%s: legs are then %.2f m long", unit->name, legs.front() * unit->metres),
+        "--metres-per-unit METRES");
     Assume("up axis", std::string(UpAxisName(*axis)), "--up-axis y-up|z-up|y-down");
     return absl::OkStatus();
   }
@@ -270,8 +271,11 @@ class Importer {
     captures_ = std::move(good);
     if (captures_.empty()) return AllRefused();
     if (differ > 0) {
-      Assume("length", absl::StrFormat("%d pairs whose people differ by up to %.2f s: cut to the "
-                                       "shorter", differ, most), "");
+      Assume("length",
+             absl::StrFormat("%d pairs whose people differ by up to %.2f s: cut to the "
+                             "shorter",
+                             differ, most),
+             "");
     }
     return absl::OkStatus();
   }
@@ -311,10 +315,11 @@ class Importer {
     if (status.ok()) status = SetEffectors();
     if (!status.ok()) return status;
     for (const dataset::ClassLayout& one : classes_) {
-      Assume("class", absl::StrCat(one.name, ": ", counts[one.name], " pairs; ",
-                                   one.symmetric ? "either may lead" : "one leads", ", ",
-                                   one.handed ? "with one hand by custom" : "with either hand", ", ",
-                                   one.touches ? "bodies may touch" : "bodies are kept apart"),
+      Assume("class",
+             absl::StrCat(one.name, ": ", counts[one.name], " pairs; ",
+                          one.symmetric ? "either may lead" : "one leads", ", ",
+                          one.handed ? "with one hand by custom" : "with either hand", ", ",
+                          one.touches ? "bodies may touch" : "bodies are kept apart"),
              "--symmetric, --handed, --touches CLASS");
     }
     return absl::OkStatus();
@@ -327,8 +332,8 @@ class Importer {
       if (one.name == label) return &one;
       labels.push_back(one.name);
     }
-    return absl::InvalidArgumentError(absl::StrCat(flag, ": came ", base::Quoted(label),
-                                                   ", wanted one of ", absl::StrJoin(labels, ", ")));
+    return absl::InvalidArgumentError(absl::StrCat(
+        flag, ": came ", base::Quoted(label), ", wanted one of ", absl::StrJoin(labels, ", ")));
   }
 
   template <typename Set>
@@ -376,7 +381,8 @@ class Importer {
     }
     for (const dataset::ClassLayout& one : classes_) {
       if (ruled.count(one.name) == 0) continue;
-      Assume("leader", absl::StrCat(one.name, ": who moves ", JointNames(one.effectors), " farther"),
+      Assume("leader",
+             absl::StrCat(one.name, ": who moves ", JointNames(one.effectors), " farther"),
              "--effectors CLASS=JOINT,...");
     }
     if (!close.empty()) {
@@ -418,10 +424,11 @@ class Importer {
     const dataset::Lean lean = dataset::MeanLean(directions);
     const double degrees = std::hypot(lean.x, lean.z);
     const double floor = dataset::HeightQuantile(feet, kFloorShare);
-    level_ = options_.level.value_or(degrees > kLeastLeanDegrees ||
-                                     std::abs(floor) > kLeastFloorMetres);
-    Assume("level", absl::StrFormat("%s: people lean %.1f degrees, feet stand at %.2f m",
-                                    level_ ? "yes" : "no", degrees, floor),
+    level_ =
+        options_.level.value_or(degrees > kLeastLeanDegrees || std::abs(floor) > kLeastFloorMetres);
+    Assume("level",
+           absl::StrFormat("%s: people lean %.1f degrees, feet stand at %.2f m",
+                           level_ ? "yes" : "no", degrees, floor),
            "--level yes|no");
   }
 
@@ -438,8 +445,9 @@ class Importer {
     }
     sequences_ = std::move(all);
     if (cut == 0) return;
-    Assume("longest", absl::StrFormat("%g s: %d longer pairs were cut into pieces",
-                                      options_.longest_seconds, cut),
+    Assume("longest",
+           absl::StrFormat("%g s: %d longer pairs were cut into pieces", options_.longest_seconds,
+                           cut),
            "--longest SECONDS");
   }
 

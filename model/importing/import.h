@@ -31,7 +31,7 @@ struct ImportOptions {
   // Properties of classes, by label.
   std::vector<std::string> symmetric, handed, touches;
   std::map<std::string, std::vector<std::string>> effectors;  // joints of the data set
-  std::optional<bool> level;  // absent: where people lean or float
+  std::optional<bool> level;                                  // absent: where people lean or float
   bool skip_refused = false;  // go on without pairs that cannot be used
   bool overwrite = false;     // replace a data set that is at `out`
 };

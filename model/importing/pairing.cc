@@ -27,10 +27,10 @@ struct RoleWords {
   const char* second;
   bool tells_leader;
 };
-constexpr RoleWords kRoleWords[] = {
-    {"leader", "follower", true},    {"a", "b", false},          {"p1", "p2", false},
-    {"person1", "person2", false},   {"actor1", "actor2", false}, {"first", "second", false},
-    {"left", "right", false}};
+constexpr RoleWords kRoleWords[] = {{"leader", "follower", true}, {"a", "b", false},
+                                    {"p1", "p2", false},          {"person1", "person2", false},
+                                    {"actor1", "actor2", false},  {"first", "second", false},
+                                    {"left", "right", false}};
 
 bool IsSeparator(char c) { return c == '_' || c == '-' || c == '.' || c == ' '; }
 bool IsDigit(char c) { return absl::ascii_isdigit(static_cast<unsigned char>(c)); }
@@ -38,10 +38,10 @@ bool IsDigit(char c) { return absl::ascii_isdigit(static_cast<unsigned char>(c))
 // A file name taken apart: "kick/day 1/02_a.bvh".
 struct Parsed {
   std::string file;
-  std::vector<std::string> folders;     // kick, day 1
-  std::string base;                     // 02; empty where the word is the whole name
-  const RoleWords* role = nullptr;      // whose word it ends with
-  bool second = false;                  // which of the two
+  std::vector<std::string> folders;  // kick, day 1
+  std::string base;                  // 02; empty where the word is the whole name
+  const RoleWords* role = nullptr;   // whose word it ends with
+  bool second = false;               // which of the two
 };
 
 Parsed ParseName(const std::string& file) {
@@ -114,8 +114,9 @@ std::string NameOf(const Parsed& parsed) {
 void Add(PairFiles pair, Pairing* pairing) {
   if (pair.label.empty()) {
     pairing->refused.push_back(
-        {pair.first, "its name tells no class, wanted CLASS_NUMBER, a folder for each class, or a "
-                     "table"});
+        {pair.first,
+         "its name tells no class, wanted CLASS_NUMBER, a folder for each class, or a "
+         "table"});
     return;
   }
   pairing->pairs.push_back(std::move(pair));
@@ -137,10 +138,10 @@ void AddGroup(const std::vector<Parsed>& group, Pairing* pairing) {
   for (const Parsed& one : group) {
     const bool alone = people[one.second ? 0 : 1].empty();
     pairing->refused.push_back(
-        {one.file,
-         alone ? absl::StrCat("the other person is missing, wanted a file that ends in ",
-                              one.second ? role.first : role.second)
-               : absl::StrCat("more than two files are called ", NameOf(one), ", wanted one a person")});
+        {one.file, alone ? absl::StrCat("the other person is missing, wanted a file that ends in ",
+                                        one.second ? role.first : role.second)
+                         : absl::StrCat("more than two files are called ", NameOf(one),
+                                        ", wanted one a person")});
   }
 }
 
@@ -202,8 +203,9 @@ absl::StatusOr<Pairing> PairByTable(absl::string_view table, absl::string_view s
     if (absl::StripAsciiWhitespace(line).empty()) continue;
     const std::vector<std::string> cells = absl::StrSplit(line, '\t');
     if (cells.size() != columns.size()) {
-      return base::ErrorAt(source, lines.number(), absl::StrCat("came ", cells.size(),
-                                                                " columns, wanted ", columns.size()));
+      return base::ErrorAt(
+          source, lines.number(),
+          absl::StrCat("came ", cells.size(), " columns, wanted ", columns.size()));
     }
     PairFiles pair;
     pair.first = cells[columns["leader"]];

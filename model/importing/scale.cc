@@ -8,11 +8,12 @@ namespace duet::importing {
 namespace {
 
 const std::vector<Unit>& Units() {
-  static const auto* const units = new std::vector<Unit>{{1, "metres"},
-                                                         {0.01, "centimetres"},
-                                                         {0.001, "millimetres"},
-                                                         {0.0254, "inches"},
-                                                         {0.0254 / 0.45, "CMU's (0.45 to the inch)"}};
+  static const auto* const units =
+      new std::vector<Unit>{{1, "metres"},
+                            {0.01, "centimetres"},
+                            {0.001, "millimetres"},
+                            {0.0254, "inches"},
+                            {0.0254 / 0.45, "CMU's (0.45 to the inch)"}};
   return *units;
 }
 

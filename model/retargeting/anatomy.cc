@@ -41,9 +41,9 @@ class Finder {
 
   absl::StatusOr<motion::JointPair> Require(const Landmark& landmark) const {
     if (const std::optional<motion::JointPair> pair = FindByName(landmark)) return *pair;
-    return absl::InvalidArgumentError(absl::StrCat(
-        "no joint's name says left and right ", landmark.name, " (such as ", landmark.examples,
-        "); the skeleton has ", SomeNames()));
+    return absl::InvalidArgumentError(absl::StrCat("no joint's name says left and right ",
+                                                   landmark.name, " (such as ", landmark.examples,
+                                                   "); the skeleton has ", SomeNames()));
   }
 
   std::vector<int> Below(int top) const {

@@ -374,9 +374,9 @@ absl::Status CheckAgainst(const TrainingOptions& options, const dataset::Dataset
   const std::vector<std::string> subjects = dataset.Subjects();
   for (const std::string& name : options.validation.subjects) {
     if (std::find(subjects.begin(), subjects.end(), name) != subjects.end()) continue;
-    return absl::InvalidArgumentError(absl::StrCat(
-        "validation.subjects: ", base::Quoted(name), ", wanted subjects of the data: ",
-        subjects.empty() ? "it names none" : absl::StrJoin(subjects, ", ")));
+    return absl::InvalidArgumentError(
+        absl::StrCat("validation.subjects: ", base::Quoted(name), ", wanted subjects of the data: ",
+                     subjects.empty() ? "it names none" : absl::StrJoin(subjects, ", ")));
   }
   return absl::OkStatus();
 }

@@ -28,7 +28,7 @@ Manifest Trained() {
   manifest.model.touching_classes = {"hug"};
   manifest.git_revision = "abc1234";
   manifest.created = "2026-01-02T03:04:05Z";
-  manifest.training = {{"data", "studio pairs"}, {"sequences", "20"}, {"seconds", "61"},
+  manifest.training = {{"data", "studio pairs"}, {"sequences", "20"},  {"seconds", "61"},
                        {"people", "ann bo"},     {"levelled", "true"}, {"losses.bone", "0.01"}};
   manifest.metrics = {{"validation.afd", 0.51239}};
   return manifest;

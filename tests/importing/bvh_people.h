@@ -26,10 +26,10 @@ struct BvhPerson {
 
 inline const std::vector<std::string>& BvhJointNames() {
   static const auto* const names = new std::vector<std::string>{
-      "Hips",        "Spine",       "Spine1",       "Chest",     "Neck",
-      "Head",        "LeftArm",     "LeftForeArm",  "LeftHand",  "RightArm",
-      "RightForeArm", "RightHand",  "LeftUpLeg",    "LeftLeg",   "LeftFoot",
-      "LeftToeBase", "RightUpLeg",  "RightLeg",     "RightFoot", "RightToeBase"};
+      "Hips",         "Spine",      "Spine1",      "Chest",     "Neck",
+      "Head",         "LeftArm",    "LeftForeArm", "LeftHand",  "RightArm",
+      "RightForeArm", "RightHand",  "LeftUpLeg",   "LeftLeg",   "LeftFoot",
+      "LeftToeBase",  "RightUpLeg", "RightLeg",    "RightFoot", "RightToeBase"};
   return *names;
 }
 
@@ -43,10 +43,10 @@ struct BvhLine {
 // In the order of BvhJointNames.
 inline const std::vector<BvhLine>& BvhTree() {
   static const auto* const tree = new std::vector<BvhLine>{
-      {0, 0, 0, 0},    {1, 0, 10, 0},   {2, 0, 10, 0},  {3, 0, 12, 0},   {4, 0, 14, 0},
-      {5, 0, 8, 0},    {4, 18, 8, 0},   {5, 28, 0, 0},  {6, 26, 0, 0},   {4, -18, 8, 0},
-      {5, -28, 0, 0},  {6, -26, 0, 0},  {1, 10, -4, 0}, {2, 0, -42, 0},  {3, 0, -40, 0},
-      {4, 0, -5, 12},  {1, -10, -4, 0}, {2, 0, -42, 0}, {3, 0, -40, 0},  {4, 0, -5, 12}};
+      {0, 0, 0, 0},   {1, 0, 10, 0},   {2, 0, 10, 0},  {3, 0, 12, 0},  {4, 0, 14, 0},
+      {5, 0, 8, 0},   {4, 18, 8, 0},   {5, 28, 0, 0},  {6, 26, 0, 0},  {4, -18, 8, 0},
+      {5, -28, 0, 0}, {6, -26, 0, 0},  {1, 10, -4, 0}, {2, 0, -42, 0}, {3, 0, -40, 0},
+      {4, 0, -5, 12}, {1, -10, -4, 0}, {2, 0, -42, 0}, {3, 0, -40, 0}, {4, 0, -5, 12}};
   return *tree;
 }
 
@@ -110,9 +110,8 @@ inline void WriteBvhPairs(const std::filesystem::path& folder, int pairs_a_class
         person.action = action;
         person.variant = i;
         person.leads = is_a == (i % 2 == 0);
-        test::WriteTestFile(
-            folder / absl::StrCat(action, "_0", i + 1, is_a ? "_a" : "_b", ".bvh"),
-            BvhText(person));
+        test::WriteTestFile(folder / absl::StrCat(action, "_0", i + 1, is_a ? "_a" : "_b", ".bvh"),
+                            BvhText(person));
       }
     }
   }

@@ -54,8 +54,7 @@ TEST_F(FindSkeletonTest, TakesTheHierarchyOfABvhInDuetsWords) {
 TEST_F(FindSkeletonTest, PassesByJointsThatLieOnTheirParents) {
   motion::ClipPair pair = {test::MakePerson(), test::MakePerson()};
   ASSERT_THAT(formats::WritePair(folder_ / "pair.bvh", pair, motion::SbuSkeleton()), IsOk());
-  const absl::StatusOr<CaptureSkeleton> found =
-      FindSkeleton(folder_ / "pair.leader.bvh", options_);
+  const absl::StatusOr<CaptureSkeleton> found = FindSkeleton(folder_ / "pair.leader.bvh", options_);
   ASSERT_THAT(found, IsOk());
   EXPECT_EQ(found->skeleton.joint_count(), 15);
   EXPECT_EQ(found->skeleton.joint_names[static_cast<std::size_t>(found->skeleton.root)], "torso");
@@ -92,8 +91,7 @@ TEST_F(FindSkeletonTest, NamesWhatIsMissing) {
 
 TEST_F(FindSkeletonTest, SaidSkeletonsWin) {
   options_.skeleton = "sbu";
-  EXPECT_EQ(Find("kick.bvh", BvhText({}))->skeleton.joint_names,
-            motion::SbuSkeleton().joint_names);
+  EXPECT_EQ(Find("kick.bvh", BvhText({}))->skeleton.joint_names, motion::SbuSkeleton().joint_names);
   options_.skeleton = (folder_ / "skeleton.json").string();
   WriteTestFile(options_.skeleton, R"({
       "joint_names": ["Hips", "LeftUpLeg", "LeftFoot", "RightUpLeg", "RightFoot", "LeftArm",

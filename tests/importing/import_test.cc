@@ -203,8 +203,8 @@ TEST_F(ImportTest, PositionsAloneTellSkeletonUnitAndAxis) {
   EXPECT_NEAR(dataset.sequences[0].pair.follower.at(0, 0).z, 1.2, 1e-3);
   const std::vector<int> parents = dataset.skeleton.Parents();
   const auto parent = [&](const char* joint) {
-    return dataset.skeleton
-        .joint_names[static_cast<size_t>(parents[static_cast<size_t>(dataset.skeleton.Find(joint))])];
+    return dataset.skeleton.joint_names[static_cast<size_t>(
+        parents[static_cast<size_t>(dataset.skeleton.Find(joint))])];
   };
   EXPECT_EQ(parent("left_foot"), "left_leg");
   EXPECT_EQ(parent("left_hip"), "hips");

@@ -17,8 +17,8 @@ using ::testing::HasSubstr;
 // Mixamo's names, with collar bones, fingers and toes.
 motion::Skeleton MixamoSkeleton() {
   motion::Skeleton skeleton;
-  skeleton.joint_names = {"Hips",     "Spine",     "LeftShoulder", "LeftArm",  "LeftForeArm",
-                          "LeftHand", "LeftThumb", "RightArm",     "RightHand", "LeftUpLeg",
+  skeleton.joint_names = {"Hips",     "Spine",     "LeftShoulder", "LeftArm",    "LeftForeArm",
+                          "LeftHand", "LeftThumb", "RightArm",     "RightHand",  "LeftUpLeg",
                           "LeftLeg",  "LeftFoot",  "LeftToeBase",  "RightUpLeg", "RightFoot"};
   skeleton.bones = {{0, 1}, {1, 2}, {2, 3},  {3, 4},   {4, 5},   {5, 6},  {1, 7},
                     {7, 8}, {0, 9}, {9, 10}, {10, 11}, {11, 12}, {0, 13}, {13, 14}};
@@ -44,11 +44,10 @@ TEST(FindAnatomyTest, CollarBonesAreTrunkAndToesAreLeg) {
   EXPECT_EQ(anatomy->parts[4].name, "trunk");
   EXPECT_THAT(anatomy->parts[4].joints, ElementsAre(0, 1, 2));
   EXPECT_EQ(anatomy->feet, (motion::JointPair{11, 14}));
-  EXPECT_THAT(anatomy->notes,
-              ElementsAre("left_hip, right_hip: LeftUpLeg, RightUpLeg",
-                          "left_foot, right_foot: LeftFoot, RightFoot",
-                          "left_shoulder, right_shoulder: LeftArm, RightArm",
-                          HasSubstr("trunk Hips, Spine, LeftShoulder")));
+  EXPECT_THAT(anatomy->notes, ElementsAre("left_hip, right_hip: LeftUpLeg, RightUpLeg",
+                                          "left_foot, right_foot: LeftFoot, RightFoot",
+                                          "left_shoulder, right_shoulder: LeftArm, RightArm",
+                                          HasSubstr("trunk Hips, Spine, LeftShoulder")));
 }
 
 TEST(FindAnatomyTest, TakesWhatIsKnown) {

@@ -48,8 +48,7 @@ class OwnDataTest : public ::testing::Test {
 
   // Trains a named configuration, made small, and asks the model for each sequence's follower.
   void TrainAndAsk(const std::string& config, const Replacements& smaller) {
-    const absl::StatusOr<TrainingOptions> options =
-        ParseConfig(FindConfig(config)->json, smaller);
+    const absl::StatusOr<TrainingOptions> options = ParseConfig(FindConfig(config)->json, smaller);
     ASSERT_THAT(options, IsOk());
     RunPlan plan;
     plan.options = *options;
