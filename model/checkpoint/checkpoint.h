@@ -31,10 +31,9 @@ absl::StatusOr<Checkpoint> ReadCheckpoint(const std::filesystem::path& folder);
 // training rather than after it.
 absl::Status CheckManifest(Manifest manifest);
 
-// Writes a checkpoint folder, with a model card beside manifest and weights, whole or not at all (a
-// temporary folder beside it, then a rename); fills in manifest.weights and an empty
-// manifest.created. Refuses what ReadCheckpoint would refuse, with its message. ALREADY_EXISTS when
-// the folder exists.
+// Writes a checkpoint folder, model card included, whole or not at all (a temporary folder, then a
+// rename); fills in manifest.weights and an empty manifest.created. Refuses what ReadCheckpoint
+// would refuse, with its message. ALREADY_EXISTS when the folder exists.
 absl::Status WriteCheckpoint(const std::filesystem::path& folder, Checkpoint checkpoint);
 
 }  // namespace duet::checkpoint
