@@ -31,11 +31,18 @@ absl::StatusOr<motion::Clip> ReadPerson(const fs::path& path, formats::Side side
   read.joint_overrides = options.joint_overrides;
   read.frame_rate_hz = options.frame_rate_hz;
   read.notes = options.notes;
-  if (absl::AsciiStrToLower(path.extension().string()) == ".bvh") {
+  const std::string extension = absl::AsciiStrToLower(path.extension().string());
+  if (extension == ".bvh") {
     read.metres_per_unit = 1;
     read.coordinates = motion::Coordinates{};
   }
-  return formats::ReadLeader(path, read);
+  absl::StatusOr<motion::Clip> person = formats::ReadLeader(path, read);
+  if (person.ok() || extension != ".npy") return person;
+  return absl::Status(
+      person.status().code(),
+      absl::StrCat(person.status().message(),
+                   "; NPY says neither rate nor joints: say them with --frame-rate, "
+                   "and with --skeleton if they are not the 15 of SBU"));
 }
 
 void ToRate(double rate_hz, motion::Clip* clip) {

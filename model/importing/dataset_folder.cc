@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <system_error>
 
 #include "absl/strings/str_cat.h"
@@ -69,8 +70,15 @@ absl::Status WriteAll(const fs::path& folder, const dataset::DatasetLayout& layo
   options.joint_names = layout.skeleton.joint_names;
   options.frame_rate_hz = layout.frame_rate_hz;
   options.coordinates = layout.coordinates;
+  std::set<std::string> written;
   for (const ImportedSequence& sequence : sequences) {
     const fs::path path = folder / PathOf(sequence);
+    if (!written.insert(PathOf(sequence)).second) {
+      return absl::InvalidArgumentError(absl::StrCat(PathOf(sequence),
+                                                     ": two sequences come out under this name, "
+                                                     "wanted another name for ",
+                                                     sequence.capture.files.first));
+    }
     std::error_code error;
     fs::create_directories(path.parent_path(), error);
     if (error)

@@ -27,38 +27,53 @@ struct Words {
 };
 
 void Declare(ImportOptions* options, Words* words, CLI::App* app) {
-  app->add_option("--from", options->from, "Folder of motion files")->required();
-  app->add_option("--out", options->out, "The data set to write")->required();
-  app->add_option("--name", options->name, "Of the data set (default: its folder's)");
+  app->add_option("--from", options->from, "Folder of motion files")->required()->type_name("DIR");
+  app->add_option("--out", options->out, "The data set to write")->required()->type_name("DIR");
+  app->add_option("--name", options->name, "Of the data set (default: its folder's)")
+      ->type_name("NAME");
   app->add_option("--table", options->table,
-                  "Tab-separated: leader, follower, label, subjects (default: FROM/pairs.tsv)");
+                  "Tab-separated: leader, follower, label, subjects (default: FROM/pairs.tsv)")
+      ->type_name("FILE");
   app->add_option("--skeleton", options->skeleton.skeleton,
-                  "sbu, or a file with the skeleton object of dataset.json");
-  app->add_option("--root", options->skeleton.root, "The joint that bodies are built from");
+                  "sbu, or a file with the skeleton object of dataset.json")
+      ->type_name("FILE");
+  app->add_option("--root", options->skeleton.root, "The joint that bodies are built from")
+      ->type_name("JOINT");
   app->add_flag("--all-joints", options->skeleton.all_joints, "Fingers and face as well");
-  app->add_option("--joint-map", words->joints, "JOINT=FILE_JOINT; repeatable");
+  app->add_option("--joint-map", words->joints,
+                  "Where names alone do not tell which is which; repeatable")
+      ->type_name("JOINT=FILE_JOINT");
   app->add_option("--frame-rate", options->frame_rate_hz, "Replaces what the files say")
-      ->check(CLI::Range(1.0, 1000.0));
+      ->check(CLI::Range(1.0, 1000.0))
+      ->type_name("HZ");
   app->add_option("--to-rate", options->to_rate_hz, "Of the data set (default: theirs, 30 at most)")
-      ->check(CLI::Range(1.0, 240.0));
+      ->check(CLI::Range(1.0, 240.0))
+      ->type_name("HZ");
   app->add_option("--metres-per-unit", options->metres_per_unit,
                   "Metres in one unit of the files (0.01 for centimetres)")
-      ->check(CLI::PositiveNumber);
-  app->add_option("--up-axis", words->up_axis, "y-up, z-up or y-down");
+      ->check(CLI::PositiveNumber)
+      ->type_name("METRES");
+  app->add_option("--up-axis", words->up_axis, "Of the files (default: along which people stand)")
+      ->type_name("y-up|z-up|y-down");
   app->add_option("--longest", options->longest_seconds, "Seconds; longer pairs are cut")
       ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+      ->capture_default_str()
+      ->type_name("SECONDS");
   app->add_option("--symmetric", options->symmetric, "Classes in which either person may lead")
-      ->delimiter(',');
+      ->delimiter(',')
+      ->type_name("CLASS");
   app->add_option("--handed", options->handed,
                   "Classes done with one hand by custom, which are not mirrored")
-      ->delimiter(',');
+      ->delimiter(',')
+      ->type_name("CLASS");
   app->add_option("--touches", options->touches, "Classes in which bodies may touch")
-      ->delimiter(',');
-  app->add_option("--effectors", words->effectors,
-                  "CLASS=JOINT,JOINT: whoever moves these farther leads; repeatable");
-  app->add_option("--level", words->level, "Level the people: yes or no")
-      ->check(CLI::IsMember({"yes", "no"}));
+      ->delimiter(',')
+      ->type_name("CLASS");
+  app->add_option("--effectors", words->effectors, "Whoever moves these farther leads; repeatable")
+      ->type_name("CLASS=JOINT,JOINT");
+  app->add_option("--level", words->level, "Level the people (default: where they lean)")
+      ->check(CLI::IsMember({"yes", "no"}))
+      ->type_name("yes|no");
   app->add_flag("--skip-refused", options->skip_refused, "Go on without pairs that are refused");
   app->add_flag("--overwrite", options->overwrite, "Replace the data set at --out");
 }

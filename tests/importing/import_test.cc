@@ -7,12 +7,13 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
-#include "absl/strings/str_replace.h"
+#include "absl/strings/str_split.h"
 #include "model/dataset/dataset.h"
 #include "model/formats/flat/csv.h"
 #include "model/formats/motion_file.h"
 #include "tests/importing/bvh_people.h"
 #include "tests/support/status_matchers.h"
+#include "tests/support/test_motion.h"
 
 namespace duet::importing {
 namespace {
@@ -208,7 +209,80 @@ TEST_F(ImportTest, PositionsAloneTellSkeletonUnitAndAxis) {
   };
   EXPECT_EQ(parent("left_foot"), "left_leg");
   EXPECT_EQ(parent("left_hip"), "hips");
-  EXPECT_EQ(parent("right_arm"), "chest");
+  EXPECT_EQ(parent("right_arm"), "neck");  // 0.7 cm nearer than the chest
+}
+
+// Two files of one person as one file of two ROOTs.
+std::string Joined(const std::string& a, const std::string& b) {
+  const std::vector<std::string> first = absl::StrSplit(a, "MOTION\n");
+  const std::vector<std::string> second = absl::StrSplit(b, "MOTION\n");
+  const std::vector<std::string> lines = absl::StrSplit(first[1], '\n');
+  const std::vector<std::string> more = absl::StrSplit(second[1], '\n');
+  std::string text = absl::StrCat(first[0], second[0].substr(std::string("HIERARCHY\n").size()),
+                                  "MOTION\n", lines[0], "\n", lines[1], "\n");
+  for (std::size_t i = 2; i + 1 < lines.size(); ++i) {
+    absl::StrAppend(&text, lines[i], " ", more[i], "\n");
+  }
+  return text;
+}
+
+TEST_F(ImportTest, OneFileMayHoldBothPeople) {
+  BvhPerson follower;
+  follower.leads = false;
+  follower.prefix = "Second:";
+  fs::create_directories(options_.from);
+  WriteTestFile(options_.from / "kick_01.bvh", Joined(BvhText({}), BvhText(follower)));
+  ASSERT_THAT(Go(), IsOk());
+  const dataset::Dataset dataset = Read();
+  EXPECT_EQ(dataset.sequences[0].id, "kick/kick_01.txt");
+  EXPECT_NEAR(dataset.sequences[0].pair.follower.at(0, 0).z, 1.2, 1e-3);
+}
+
+TEST_F(ImportTest, ReadsEveryFormatOfPairs) {
+  test::PersonOptions across;
+  across.at = {0, 1.1f, 1};
+  const motion::ClipPair pair = {test::MakePerson(), test::MakePerson(across)};
+  options_.level = false;
+  for (const char* extension : {"csv", "json", "npy"}) {
+    options_.from = folder_ / extension;
+    options_.out = folder_ / absl::StrCat(extension, "_set");
+    fs::create_directories(options_.from);
+    const fs::path file = options_.from / absl::StrCat("greet_1.", extension);
+    ASSERT_THAT(formats::WritePair(file, pair, motion::SbuSkeleton()), IsOk());
+    options_.frame_rate_hz = std::nullopt;
+    if (std::string(extension) == "npy") {
+      EXPECT_THAT(Go(), Not(IsOk()));
+      EXPECT_THAT(report_.refused[0].reason, HasSubstr("--frame-rate"));
+      options_.frame_rate_hz = 30;
+    }
+    ASSERT_THAT(Go(), IsOk()) << extension;
+    const dataset::Dataset dataset = Read();
+    EXPECT_EQ(dataset.skeleton.joint_names, motion::SbuSkeleton().joint_names);
+    EXPECT_LT(test::LargestDistance(dataset.sequences[0].pair.leader, pair.leader), 1e-5f);
+    EXPECT_LT(test::LargestDistance(dataset.sequences[0].pair.follower, pair.follower), 1e-5f);
+  }
+}
+
+TEST_F(ImportTest, SequencesThatWouldReplaceOneAnotherAreRefused) {
+  BvhPerson person;
+  person.frames = 150;
+  WriteBvhPairs(options_.from, 1, person);
+  fs::create_directories(options_.from / "shove" / "shove_01_p1");
+  for (const char* which : {"a", "b"}) {
+    fs::rename(options_.from / absl::StrCat("shove_01_", which, ".bvh"),
+               options_.from / "shove" / absl::StrCat("shove_01_", which, ".bvh"));
+    fs::copy(options_.from / "shove" / absl::StrCat("shove_01_", which, ".bvh"),
+             options_.from / "shove" / "shove_01_p1" / absl::StrCat(which, ".bvh"));
+  }
+  options_.longest_seconds = 1;
+  EXPECT_THAT(Go(), IsOk());  // names that end in _p1 are cut into _p1_p1 and so on
+  WriteTestFile(options_.from / "shove" / "shove_01_p1" / "a.bvh", BvhText({}));
+  BvhPerson follower;
+  follower.leads = false;
+  WriteTestFile(options_.from / "shove" / "shove_01_p1" / "b.bvh", BvhText(follower));
+  options_.overwrite = true;
+  EXPECT_THAT(Go(), StatusIs(absl::StatusCode::kInvalidArgument,
+                             HasSubstr("shove/shove_01_p1.txt: two sequences")));
 }
 
 TEST_F(ImportTest, NobodyIsLeftOutInSilence) {
