@@ -42,6 +42,7 @@ LAYERS = (
           sees=("base", "motion", "retargeting", "flat formats", "bvh format")),
     Layer("authoring", "model/authoring", sees=("base", "motion", "retargeting", "bvh format")),
     Layer("dataset", "model/dataset", sees=MOTION_FILES),
+    Layer("importing", "model/importing", sees=MOTION_FILES + ("dataset",)),
     Layer("cleanup", "model/cleanup", sees=("base", "motion")),
     Layer("engine", "model/engine", sees=("base", "motion", "cleanup")),
     Layer("checkpoint", "model/checkpoint", sees=("base", "motion", "engine")),
@@ -52,7 +53,7 @@ LAYERS = (
           sees=("base", "motion", "engine", "checkpoint", "embedded checkpoints", "network"),
           source_libraries=("torch",)),
     Layer("training", "model/training",
-          sees=("base", "motion", "dataset", "engine", "checkpoint", "network"),
+          sees=("base", "motion", "retargeting", "dataset", "engine", "checkpoint", "network"),
           libraries=("torch",)),
     # How good it is.
     Layer("metrics", "model/evaluation/metrics", sees=("base", "motion", "dataset")),

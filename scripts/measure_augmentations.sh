@@ -33,8 +33,7 @@ train with_root_distance augmentation.root_distance=0.05
 train with_yaw augmentation.yaw=0.15
 train without_graded_labels graded_labels=0
 train without_any augmentation.{mirror,swap_roles,body_scale,leader_yaw,noise,body_noise,crop}=0
-train with_right_handed_mirrored \
-  'augmentation.mirrored_classes=["kick","push","shake_hands","hug","exchange_object","punch"]'
+train with_right_handed_mirrored augmentation.mirror_handed=0.5
 train with_weight_average optimiser.average_decay=0.99
 train with_rmsprop optimiser.name=rmsprop optimiser.learning_rate=0.001
 train with_second_seed seed=1

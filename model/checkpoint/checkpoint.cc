@@ -10,6 +10,7 @@
 #include "absl/time/time.h"
 #include "model/base/file_io.h"
 #include "model/base/sha256.h"
+#include "model/checkpoint/model_card.h"
 
 namespace duet::checkpoint {
 namespace {
@@ -28,6 +29,10 @@ absl::Status CheckFile(const WeightsFile& expected, std::string_view weights) {
                                             expected.sha256, " as in manifest weights.sha256"));
   }
   return absl::OkStatus();
+}
+
+std::string FormatNow() {
+  return absl::FormatTime("%Y-%m-%dT%H:%M:%SZ", absl::Now(), absl::UTCTimeZone());
 }
 
 std::string ShapeText(const std::vector<int64_t>& shape) {
@@ -88,6 +93,16 @@ absl::StatusOr<Checkpoint> ReadCheckpoint(const std::filesystem::path& folder) {
   return ParseCheckpoint(*text, *weights);
 }
 
+absl::Status CheckManifest(Manifest manifest) {
+  absl::Status valid = Validate(manifest.model.skeleton);
+  if (valid.ok()) valid = Validate(manifest.generator.parts, manifest.model.skeleton);
+  if (!valid.ok()) return valid;
+  manifest.weights.bytes = 1;
+  manifest.weights.sha256 = base::Sha256Hex("");
+  manifest.created = FormatNow();
+  return ParseManifest(SerializeManifest(manifest)).status();
+}
+
 absl::Status WriteCheckpoint(const std::filesystem::path& folder, Checkpoint checkpoint) {
   const motion::Skeleton& skeleton = checkpoint.manifest.model.skeleton;
   absl::Status valid = Validate(skeleton);
@@ -98,12 +113,14 @@ absl::Status WriteCheckpoint(const std::filesystem::path& folder, Checkpoint che
   manifest.weights.bytes = weights.size();
   manifest.weights.sha256 = base::Sha256Hex(weights);
   if (manifest.created.empty()) {
-    manifest.created = absl::FormatTime("%Y-%m-%dT%H:%M:%SZ", absl::Now(), absl::UTCTimeZone());
+    manifest.created = FormatNow();
   }
   const std::string text = SerializeManifest(manifest);
   // What could not be read back must not replace a good run's result.
   if (absl::Status status = ParseCheckpoint(text, weights).status(); !status.ok()) return status;
-  return base::WriteFolder(folder, {{manifest.weights.file, weights}, {kManifestFile, text}});
+  return base::WriteFolder(folder, {{manifest.weights.file, weights},
+                                    {kManifestFile, text},
+                                    {kModelCardFile, ModelCard(manifest)}});
 }
 
 }  // namespace duet::checkpoint

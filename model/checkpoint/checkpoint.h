@@ -27,9 +27,13 @@ absl::StatusOr<Checkpoint> ParseCheckpoint(std::string_view manifest_json,
 // the folder, files over the size cap. NOT_FOUND when a file is absent.
 absl::StatusOr<Checkpoint> ReadCheckpoint(const std::filesystem::path& folder);
 
-// Writes a checkpoint folder whole or not at all (a temporary folder beside it, then a rename);
-// fills in manifest.weights and an empty manifest.created. Refuses what ReadCheckpoint would
-// refuse, with its message. ALREADY_EXISTS when the folder exists.
+// Whether WriteCheckpoint would take a manifest, its weights and time aside: to know before a long
+// training rather than after it.
+absl::Status CheckManifest(Manifest manifest);
+
+// Writes a checkpoint folder, model card included, whole or not at all (a temporary folder, then a
+// rename); fills in manifest.weights and an empty manifest.created. Refuses what ReadCheckpoint
+// would refuse, with its message. ALREADY_EXISTS when the folder exists.
 absl::Status WriteCheckpoint(const std::filesystem::path& folder, Checkpoint checkpoint);
 
 }  // namespace duet::checkpoint

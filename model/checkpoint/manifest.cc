@@ -1,5 +1,6 @@
 #include "model/checkpoint/manifest.h"
 
+#include <algorithm>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -32,16 +33,16 @@ constexpr std::size_t kMaxTextBytes = 4096;
 constexpr double kMaxFrameRateHz = 240;
 constexpr int kMaxDepth = 6;
 constexpr std::size_t kSha256HexBytes = 64;
+constexpr char kTouchingClasses[] = "touching_classes";
 
 // Names that serve as a file, a folder, a tensor or a metric name as they are.
+bool IsPlain(char c) {
+  return absl::ascii_isalnum(static_cast<unsigned char>(c)) || c == '.' || c == '_' || c == '-';
+}
+
 bool IsPlainName(const std::string& name) {
   if (name.empty() || name.size() > kMaxNameBytes || name.front() == '.') return false;
-  for (char c : name) {
-    if (!absl::ascii_isalnum(static_cast<unsigned char>(c)) && c != '.' && c != '_' && c != '-') {
-      return false;
-    }
-  }
-  return true;
+  return std::all_of(name.begin(), name.end(), IsPlain);
 }
 
 constexpr char kPlainName[] = "1 to 64 letters, digits, '_', '-' or '.', the first of them not '.'";
@@ -177,6 +178,23 @@ void Take(absl::StatusOr<T> section, base::ObjectReader* reader, T* out) {
   if (section.ok()) *out = *std::move(section);
 }
 
+// Checkpoints of before say nothing: their data's class of touching bodies was the hug.
+void ReadTouchingClasses(base::ObjectReader* reader, engine::ModelDescription* model) {
+  const std::vector<std::string>& classes = model->classes;
+  const auto is_class = [&](const std::string& name) {
+    return std::find(classes.begin(), classes.end(), name) != classes.end();
+  };
+  if (!reader->Has(kTouchingClasses)) {
+    if (is_class("hug")) model->touching_classes = {"hug"};
+    return;
+  }
+  model->touching_classes = ReadUniqueNames(reader, kTouchingClasses, kMaxClasses);
+  for (const std::string& name : model->touching_classes) {
+    if (is_class(name)) continue;
+    reader->Fail(kTouchingClasses, absl::StrCat(json(name).dump(), ", wanted one of classes"));
+  }
+}
+
 void ReadModel(base::ObjectReader* reader, engine::ModelDescription* model) {
   model->name = ReadName(reader, "name");
   model->version = static_cast<int>(reader->Int("version", 1, std::numeric_limits<int>::max()));
@@ -187,6 +205,7 @@ void ReadModel(base::ObjectReader* reader, engine::ModelDescription* model) {
   if (reader->ok() && model->classes.empty()) {
     reader->Fail("classes", "empty, wanted at least one class");
   }
+  ReadTouchingClasses(reader, model);
 }
 
 // Checkpoints of before have none; version 1 knew of none.
@@ -254,6 +273,15 @@ ordered_json GeneratorToJson(const Manifest& manifest) {
 
 }  // namespace
 
+std::string ToPlainName(std::string_view text) {
+  std::string name(text.substr(0, kMaxNameBytes));
+  for (char& c : name) {
+    if (!IsPlain(c)) c = '_';
+  }
+  if (name.empty() || name.front() == '.') name.insert(0, "_");
+  return name.substr(0, kMaxNameBytes);
+}
+
 absl::StatusOr<Manifest> ParseManifest(std::string_view text) {
   if (text.size() > kMaxManifestBytes) {
     return absl::InvalidArgumentError(
@@ -288,6 +316,7 @@ std::string SerializeManifest(const Manifest& manifest) {
         {"sha256", manifest.weights.sha256}}},
       {"training", manifest.training},
       {"metrics", manifest.metrics}};
+  if (manifest.format_version > 1) root[kTouchingClasses] = model.touching_classes;
   if (model.leader_statistics) {
     root[kLeaderStatistics] = LeaderStatisticsToJson(*model.leader_statistics);
   }

@@ -74,6 +74,9 @@ struct Manifest {
   std::map<std::string, double> metrics;        // "afd.kick": 0.61, ...
 };
 
+// `text` as the name of a model: what a name may not hold becomes '_'.
+std::string ToPlainName(std::string_view text);
+
 // Reads and writes manifest.json. Strict: unknown, missing, repeated or mistyped fields, sizes out
 // of range and inconsistent skeletons are INVALID_ARGUMENT, naming the field, what came and what
 // was wanted. `text` may come from anywhere. model.accepts_follower_start is taken from

@@ -5,6 +5,14 @@
 
 namespace duet::dataset {
 
+std::vector<std::string> Dataset::TouchingClasses() const {
+  std::vector<std::string> touching;
+  for (size_t c = 0; c < classes.size(); ++c) {
+    if (touches[c]) touching.push_back(classes[c]);
+  }
+  return touching;
+}
+
 std::vector<std::string> Dataset::Subjects() const {
   std::set<std::string> subjects;
   for (const Sequence& sequence : sequences) {

@@ -41,10 +41,18 @@ struct Dataset {
   std::vector<std::string> classes;
   // For each class: true where either person may lead, so that the two may be exchanged.
   std::vector<bool> symmetric;
+  // For each class: true where custom says which hand does it, so that its mirror image is not
+  // what people do.
+  std::vector<bool> handed;
+  // For each class: true where bodies touch as they like.
+  std::vector<bool> touches;
   double frame_rate_hz = 0;
   std::vector<Sequence> sequences;  // sorted by id
+  // What dataset.json left out and was found, for people to read.
+  std::vector<std::string> notes;
 
   int class_count() const { return static_cast<int>(classes.size()); }
+  std::vector<std::string> TouchingClasses() const;
   // Every subject, sorted.
   std::vector<std::string> Subjects() const;
   // Frames of the longest sequence.

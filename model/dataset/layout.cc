@@ -10,6 +10,8 @@ struct ClassRow {
   const char* name;
   const char* folder;
   bool symmetric;
+  bool handed;
+  bool touches;
 };
 
 // Both data sets share skeleton and units.
@@ -28,7 +30,8 @@ DatasetLayout KinectLayout(const std::string& name, double frame_rate_hz,
                                   layout.skeleton.Find("right_hand")};
   for (const ClassRow& row : rows) {
     const bool kick = std::string_view(row.name) == "kick";
-    layout.classes.push_back({row.name, row.folder, row.symmetric, kick ? feet : hands});
+    layout.classes.push_back(
+        {row.name, row.folder, row.symmetric, row.handed, row.touches, kick ? feet : hands});
   }
   return layout;
 }
@@ -37,24 +40,24 @@ DatasetLayout KinectLayout(const std::string& name, double frame_rate_hz,
 
 DatasetLayout SbuLayout() {
   return KinectLayout("sbu", kSbuFrameRateHz,
-                      {{"kick", "03", false},
-                       {"push", "04", false},
-                       {"shake_hands", "05", true},
-                       {"hug", "06", true},
-                       {"exchange_object", "07", true},
-                       {"punch", "08", false}});
+                      {{"kick", "03", false, false, false},
+                       {"push", "04", false, false, false},
+                       {"shake_hands", "05", true, true, false},
+                       {"hug", "06", true, false, true},
+                       {"exchange_object", "07", true, true, false},
+                       {"punch", "08", false, false, false}});
 }
 
 DatasetLayout K3hiLayout() {
   return KinectLayout("k3hi", kK3hiFrameRateHz,
-                      {{"approach", "approaching", false},
-                       {"depart", "departing", false},
-                       {"exchange_object", "exchanging", true},
-                       {"kick", "kicking", false},
-                       {"point", "pointing", false},
-                       {"punch", "punching", false},
-                       {"push", "pushing", false},
-                       {"shake_hands", "shaking", true}});
+                      {{"approach", "approaching", false, false, false},
+                       {"depart", "departing", false, false, false},
+                       {"exchange_object", "exchanging", true, true, false},
+                       {"kick", "kicking", false, false, false},
+                       {"point", "pointing", false, true, false},
+                       {"punch", "punching", false, false, false},
+                       {"push", "pushing", false, false, false},
+                       {"shake_hands", "shaking", true, true, false}});
 }
 
 }  // namespace duet::dataset

@@ -18,6 +18,8 @@ struct ClassLayout {
   std::string name;
   std::string folder;
   bool symmetric = false;      // either person may lead
+  bool handed = false;         // done with one hand by custom: its mirror image does not happen
+  bool touches = false;        // bodies touch as they like
   std::vector<int> effectors;  // joints whose motion tells the leader; empty: the index must
 };
 
@@ -32,6 +34,8 @@ struct DatasetLayout {
   // The horizontal world axis that the setup stands its people along, in either order.
   std::optional<motion::Vec3> people_axis;
   bool level = false;  // captured by a tilted camera: to be levelled
+  // What was found rather than said, for people to read.
+  std::vector<std::string> notes;
 };
 
 // SBU Kinect Interaction ("clean"): the six classes of the paper, folders 03 to 08.

@@ -5,6 +5,7 @@
 #include "model/base/strict_json.h"
 #include "model/base/text.h"
 #include "model/dataset/layout.h"
+#include "model/dataset/skeleton_completion.h"
 #include "model/motion/skeleton_json.h"
 
 namespace duet::dataset {
@@ -45,9 +46,12 @@ std::vector<int> ReadJoints(base::ObjectReader* reader, const std::string& key,
 }
 
 void ReadSkeleton(base::ObjectReader* document, DatasetLayout* layout) {
-  const Json& object = document->Object("skeleton");
+  const Json& written = document->Object("skeleton");
   if (!document->ok()) return;
-  absl::StatusOr<motion::SkeletonDocument> read = motion::ReadSkeleton(object, "skeleton");
+  const absl::StatusOr<Json> object = CompleteSkeleton(written, &layout->notes);
+  document->Update(object.status());
+  if (!object.ok()) return;
+  absl::StatusOr<motion::SkeletonDocument> read = motion::ReadSkeleton(*object, "skeleton");
   document->Update(read.status());
   if (!read.ok()) return;
   layout->skeleton = std::move(read->skeleton);
@@ -67,6 +71,8 @@ ClassLayout ReadClass(base::ObjectReader* reader, const motion::Skeleton& skelet
   }
   one.folder = one.name;
   if (reader->Has("symmetric")) one.symmetric = reader->Bool("symmetric");
+  if (reader->Has("handed")) one.handed = reader->Bool("handed");
+  if (reader->Has("touches")) one.touches = reader->Bool("touches");
   if (reader->Has("effectors")) one.effectors = ReadJoints(reader, "effectors", skeleton);
   return one;
 }

@@ -59,17 +59,6 @@ std::vector<std::string> ParseSubjects(absl::string_view text) {
   return subjects;
 }
 
-float PeakDisplacement(const motion::Clip& clip, int root, const std::vector<int>& effectors) {
-  float peak = 0;
-  for (const int effector : effectors) {
-    const motion::Vec3 start = clip.at(0, effector) - clip.at(0, root);
-    for (int t = 1; t < clip.frame_count(); ++t) {
-      peak = std::max(peak, Distance(clip.at(t, effector) - clip.at(t, root), start));
-    }
-  }
-  return peak;
-}
-
 }  // namespace
 
 absl::StatusOr<std::map<std::string, IndexEntry>> ParseIndex(absl::string_view text) {
@@ -108,6 +97,17 @@ absl::StatusOr<std::map<std::string, IndexEntry>> ParseIndex(absl::string_view t
     }
   }
   return entries;
+}
+
+float PeakDisplacement(const motion::Clip& clip, int root, const std::vector<int>& effectors) {
+  float peak = 0;
+  for (const int effector : effectors) {
+    const motion::Vec3 start = clip.at(0, effector) - clip.at(0, root);
+    for (int t = 1; t < clip.frame_count(); ++t) {
+      peak = std::max(peak, Distance(clip.at(t, effector) - clip.at(t, root), start));
+    }
+  }
+  return peak;
 }
 
 LeaderSide LeaderByMotion(const motion::Clip& left, const motion::Clip& right, int root,

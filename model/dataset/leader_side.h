@@ -28,6 +28,10 @@ struct IndexEntry {
 // Errors: INVALID_ARGUMENT naming the line, what came and what was wanted.
 absl::StatusOr<std::map<std::string, IndexEntry>> ParseIndex(absl::string_view text);
 
+// The farthest that any of the effectors gets from its first place, relative to the root joint,
+// metres.
+float PeakDisplacement(const motion::Clip& clip, int root, const std::vector<int>& effectors);
+
 // The motion rule: the leader is whose effector has the larger peak displacement from its first
 // place, relative to its own root joint. A tie is the left person's.
 // Source: data set notes; on SBU it agrees with a hand annotation on all kicks, on 26 of 33 pushes

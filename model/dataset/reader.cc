@@ -210,10 +210,13 @@ absl::StatusOr<Dataset> ReadFiles(const fs::path& folder, const DatasetLayout& l
   dataset.name = layout.name;
   dataset.skeleton = layout.skeleton;
   dataset.parts = layout.parts;
+  dataset.notes = layout.notes;
   dataset.frame_rate_hz = layout.frame_rate_hz;
   for (const ClassLayout& one : layout.classes) {
     dataset.classes.push_back(one.name);
     dataset.symmetric.push_back(one.symmetric);
+    dataset.handed.push_back(one.handed);
+    dataset.touches.push_back(one.touches);
   }
   for (const FoundFile& file : files) {
     const auto entry = index->find(file.id);

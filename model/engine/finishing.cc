@@ -44,12 +44,11 @@ void ShareFloor(const motion::Skeleton& skeleton, const SynthesisWindow& window,
   for (motion::Vec3& position : follower->all()) position += lift;
 }
 
-cleanup::Touch TouchOf(const ModelDescription& description, const SynthesisWindow& window,
-                       const std::vector<std::string>& touching_classes) {
+cleanup::Touch TouchOf(const ModelDescription& description, const SynthesisWindow& window) {
   const std::size_t classes = description.classes.size();
   cleanup::Touch touch(static_cast<std::size_t>(window.leader.frame_count()), 0);
   for (std::size_t c = 0; c < classes; ++c) {
-    const auto& names = touching_classes;
+    const auto& names = description.touching_classes;
     if (std::find(names.begin(), names.end(), description.classes[c]) == names.end()) continue;
     for (std::size_t t = 0; t < touch.size(); ++t) {
       touch[t] += std::max(0.0f, window.labels[t * classes + c]);

@@ -1,9 +1,6 @@
 #ifndef DUET_MODEL_ENGINE_FINISHING_H_
 #define DUET_MODEL_ENGINE_FINISHING_H_
 
-#include <string>
-#include <vector>
-
 #include "absl/status/status.h"
 #include "model/cleanup/clean_up.h"
 #include "model/engine/model_description.h"
@@ -27,10 +24,9 @@ void KeepLimbLengths(const motion::Skeleton& skeleton, const SynthesisWindow& wi
 void ShareFloor(const motion::Skeleton& skeleton, const SynthesisWindow& window,
                 motion::Poses* follower);
 
-// How far the two may touch in each frame: the weight of the classes of these names, from 0 to 1.
+// How far the two may touch in each frame: the weight of the model's touching classes, from 0 to 1.
 // Shapes: returns [frames].
-cleanup::Touch TouchOf(const ModelDescription& description, const SynthesisWindow& window,
-                       const std::vector<std::string>& touching_classes);
+cleanup::Touch TouchOf(const ModelDescription& description, const SynthesisWindow& window);
 
 // How many of the window's first frames nothing may change any more: those that are settled, or
 // else the one that a start tells.

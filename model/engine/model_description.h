@@ -18,8 +18,10 @@ struct ModelDescription {
   std::string description;
   motion::Skeleton skeleton;
   std::vector<std::string> classes;  // interaction classes, in the order of the label vector
-  double frame_rate_hz = 0;          // the network's own
-  int window_frames = 0;             // the longest window that the network was trained for
+  // Those of the classes in which bodies touch as they like.
+  std::vector<std::string> touching_classes;
+  double frame_rate_hz = 0;  // the network's own
+  int window_frames = 0;     // the longest window that the network was trained for
   bool accepts_follower_start = false;
   bool samples = false;  // answers depend on Sampling
   // Of the leaders that it was trained on, where that is known.

@@ -77,7 +77,7 @@ class NetworkSynthesizer : public Synthesizer {
     if (options_.keep_limb_lengths) KeepLimbLengths(description_.skeleton, window, &follower);
     if (options_.share_floor) ShareFloor(description_.skeleton, window, &follower);
     if (IsCleanedUp(window)) {
-      clean_up_.Apply(window.leader, TouchOf(description_, window, options_.touching_classes),
+      clean_up_.Apply(window.leader, TouchOf(description_, window),
                       {description_.frame_rate_hz, SettledFrames(window)}, &follower);
     }
     return follower;

@@ -2,8 +2,6 @@
 #define DUET_MODEL_ENGINE_NETWORK_SYNTHESIZER_H_
 
 #include <memory>
-#include <string>
-#include <vector>
 
 #include "model/cleanup/clean_up.h"
 #include "model/engine/model_description.h"
@@ -26,8 +24,6 @@ struct PipelineOptions {
   // otherwise.
   bool clean_up = true;
   cleanup::Options cleaning = {};
-  // Classes in which bodies touch as they like, as far as their label goes.
-  std::vector<std::string> touching_classes = {"hug"};
 };
 
 // A synthesizer around a network:

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "absl/strings/str_replace.h"
 #include "model/motion/resample.h"
+#include "model/retargeting/anatomy.h"
 
 namespace duet::training {
 namespace {
@@ -100,14 +100,7 @@ motion::Vec3 Horizontal(motion::Vec3 v) {
 }  // namespace
 
 std::vector<int> MirroredJoints(const motion::Skeleton& skeleton) {
-  std::vector<int> mirrored;
-  for (int joint = 0; joint < skeleton.joint_count(); ++joint) {
-    const std::string other = absl::StrReplaceAll(skeleton.joint_names[static_cast<size_t>(joint)],
-                                                  {{"left", "right"}, {"right", "left"}});
-    const int found = skeleton.Find(other);
-    mirrored.push_back(found < 0 ? joint : found);
-  }
-  return mirrored;
+  return retargeting::CounterpartJoints(skeleton.joint_names);
 }
 
 void Mirror(const std::vector<int>& mirrored_joints, dataset::Sequence* sequence) {
@@ -132,11 +125,9 @@ dataset::Sequence Augment(const dataset::Dataset& dataset, const dataset::Sequen
                           const TrainingOptions::Augmentation& options, base::Random* random) {
   dataset::Sequence variant = sequence;
   const size_t interaction = static_cast<size_t>(sequence.interaction_class);
-  const std::vector<std::string>& mirrored = options.mirrored_classes;
-  const bool may_mirror =
-      std::find(mirrored.begin(), mirrored.end(), dataset.classes[interaction]) != mirrored.end();
+  const double mirror = dataset.handed[interaction] ? options.mirror_handed : options.mirror;
   if (dataset.symmetric[interaction] && random->Chance(options.swap_roles)) SwapRoles(&variant);
-  if (may_mirror && random->Chance(options.mirror)) {
+  if (mirror > 0 && random->Chance(mirror)) {
     Mirror(MirroredJoints(dataset.skeleton), &variant);
   }
   motion::ClipPair* pair = &variant.pair;

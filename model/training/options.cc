@@ -11,6 +11,7 @@
 #include "model/base/text.h"
 #include "model/checkpoint/flow_json.h"
 #include "model/checkpoint/names.h"
+#include "model/retargeting/anatomy.h"
 
 namespace duet::training {
 namespace {
@@ -98,8 +99,8 @@ void Read(base::ObjectReader* reader, TrainingOptions::DiscriminatorSettings* ou
 }
 
 void Read(base::ObjectReader* reader, TrainingOptions::Augmentation* out) {
-  out->mirrored_classes = reader->Strings("mirrored_classes", 256);
   out->mirror = Probability(reader, "mirror");
+  out->mirror_handed = Probability(reader, "mirror_handed");
   out->swap_roles = Probability(reader, "swap_roles");
   out->body_scale = reader->Number("body_scale", 0, 0.9);
   out->time_warp = reader->Number("time_warp", 0, 2);
@@ -227,17 +228,6 @@ absl::Status Replace(const std::string& path, const std::string& text, json* roo
   return absl::OkStatus();
 }
 
-absl::Status CheckAllIn(const std::string& field, const std::vector<std::string>& names,
-                        const std::string& kind, const std::vector<std::string>& known) {
-  for (const std::string& name : names) {
-    if (std::find(known.begin(), known.end(), name) == known.end()) {
-      return absl::InvalidArgumentError(absl::StrCat(field, ": \"", name, "\", wanted ", kind,
-                                                     " of the data: ", absl::StrJoin(known, ", ")));
-    }
-  }
-  return absl::OkStatus();
-}
-
 // The shortest text that reads back as the same number: a state belongs to one setting exactly.
 std::string Text(double value) {
   const std::string text = json(value).dump();
@@ -334,8 +324,8 @@ std::map<std::string, std::string> Describe(const TrainingOptions& o) {
       {"epochs", absl::StrCat(o.epochs)},
       {"batch", absl::StrCat(o.batch)},
       {"seed", absl::StrCat(o.seed)},
-      {"augmentation.mirrored_classes", absl::StrJoin(o.augmentation.mirrored_classes, " ")},
       {"augmentation.mirror", Text(o.augmentation.mirror)},
+      {"augmentation.mirror_handed", Text(o.augmentation.mirror_handed)},
       {"augmentation.swap_roles", Text(o.augmentation.swap_roles)},
       {"augmentation.body_scale", Text(o.augmentation.body_scale)},
       {"augmentation.time_warp", Text(o.augmentation.time_warp)},
@@ -359,12 +349,36 @@ std::map<std::string, std::string> Describe(const TrainingOptions& o) {
   return description;
 }
 
-absl::Status CheckAgainst(const TrainingOptions& options, const std::vector<std::string>& classes,
-                          const std::vector<std::string>& subjects) {
-  absl::Status status = CheckAllIn("augmentation.mirrored_classes",
-                                   options.augmentation.mirrored_classes, "classes", classes);
-  if (!status.ok()) return status;
-  return CheckAllIn("validation.subjects", options.validation.subjects, "subjects", subjects);
+namespace {
+
+// Nobody's mirror image is right whose arms stay where they are.
+absl::Status CheckMirror(const TrainingOptions::Augmentation& augmentation,
+                         const motion::Skeleton& skeleton) {
+  if (augmentation.mirror == 0 && augmentation.mirror_handed == 0) return absl::OkStatus();
+  const std::vector<int> counterparts = retargeting::CounterpartJoints(skeleton.joint_names);
+  for (size_t joint = 0; joint < counterparts.size(); ++joint) {
+    if (counterparts[joint] != static_cast<int>(joint)) return absl::OkStatus();
+  }
+  return absl::InvalidArgumentError(absl::StrCat(
+      "augmentation.mirror: ", augmentation.mirror,
+      ", but no joint's name says left or right; wanted names such as left_hand and right_hand, or "
+      "augmentation.mirror=0"));
+}
+
+}  // namespace
+
+absl::Status CheckAgainst(const TrainingOptions& options, const dataset::Dataset& dataset) {
+  if (absl::Status status = CheckMirror(options.augmentation, dataset.skeleton); !status.ok()) {
+    return status;
+  }
+  const std::vector<std::string> subjects = dataset.Subjects();
+  for (const std::string& name : options.validation.subjects) {
+    if (std::find(subjects.begin(), subjects.end(), name) != subjects.end()) continue;
+    return absl::InvalidArgumentError(
+        absl::StrCat("validation.subjects: ", base::Quoted(name), ", wanted subjects of the data: ",
+                     subjects.empty() ? "it names none" : absl::StrJoin(subjects, ", ")));
+  }
+  return absl::OkStatus();
 }
 
 }  // namespace duet::training

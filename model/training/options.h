@@ -10,6 +10,7 @@
 
 #include "absl/status/statusor.h"
 #include "model/checkpoint/manifest.h"
+#include "model/dataset/dataset.h"
 
 namespace duet::training {
 
@@ -59,8 +60,8 @@ struct TrainingOptions {
   } discriminator;
 
   struct Augmentation {
-    std::vector<std::string> mirrored_classes;
-    double mirror = 0;         // probability, of the mirrored classes
+    double mirror = 0;         // probability, of classes that are not handed
+    double mirror_handed = 0;  // probability, of handed classes
     double swap_roles = 0;     // probability, of symmetric classes
     double body_scale = 0;     // +- share, each person alone
     double time_warp = 0;      // +- log of the speed
@@ -144,9 +145,9 @@ absl::StatusOr<TrainingOptions> ParseTrainingOptions(
 // Every setting by dotted path, as a manifest keeps it.
 std::map<std::string, std::string> Describe(const TrainingOptions& options);
 
-// Checks what depends on the data: that mirrored classes and held-back subjects exist.
-absl::Status CheckAgainst(const TrainingOptions& options, const std::vector<std::string>& classes,
-                          const std::vector<std::string>& subjects);
+// Checks what depends on the data: that held-back subjects exist, and that a skeleton that is to be
+// mirrored says in its joints' names which are left and right.
+absl::Status CheckAgainst(const TrainingOptions& options, const dataset::Dataset& dataset);
 
 }  // namespace duet::training
 

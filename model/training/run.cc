@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
+#include <set>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
 #include "model/engine/leader_statistics.h"
 #include "model/training/direction_fit.h"
 #include "model/training/flow_trainer.h"
@@ -20,6 +23,25 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr size_t kMostPeopleBytes = 4096;  // of a manifest's text
+
+// What a model card tells of the sequences trained on.
+void NoteData(const dataset::Dataset& dataset, const std::vector<int>& train,
+              std::map<std::string, std::string>* notes) {
+  std::set<std::string> people;
+  double seconds = 0;
+  bool levelled = false;
+  for (const int index : train) {
+    const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(index)];
+    people.insert(sequence.subjects.begin(), sequence.subjects.end());
+    seconds += sequence.pair.leader.frame_count() / dataset.frame_rate_hz;
+    levelled = levelled || sequence.levelling.up().y < 1 || sequence.levelling.floor_height() != 0;
+  }
+  (*notes)["seconds"] = absl::StrCat(std::lround(seconds));
+  (*notes)["people"] = absl::StrJoin(people, " ").substr(0, kMostPeopleBytes);
+  (*notes)["levelled"] = levelled ? "true" : "false";
+}
+
 checkpoint::Manifest MakeManifest(const RunPlan& plan, const dataset::Dataset& dataset) {
   checkpoint::Manifest manifest;
   manifest.model.name = plan.model_name;
@@ -27,6 +49,7 @@ checkpoint::Manifest MakeManifest(const RunPlan& plan, const dataset::Dataset& d
   manifest.model.description = plan.description;
   manifest.model.skeleton = dataset.skeleton;
   manifest.model.classes = dataset.classes;
+  manifest.model.touching_classes = dataset.TouchingClasses();
   manifest.model.frame_rate_hz = dataset.frame_rate_hz;
   manifest.model.window_frames = dataset.LongestFrameCount();
   manifest.generator = plan.options.generator;
@@ -39,6 +62,7 @@ checkpoint::Manifest MakeManifest(const RunPlan& plan, const dataset::Dataset& d
   manifest.training = Describe(plan.options);
   manifest.training["data"] = dataset.name;
   manifest.training["sequences"] = absl::StrCat(plan.train.size());
+  NoteData(dataset, plan.train, &manifest.training);
   return manifest;
 }
 
@@ -117,16 +141,17 @@ fs::path CheckpointFolder(const RunPlan& plan) {
 
 absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& dataset, bool terminal,
                          std::ostream* progress) {
-  absl::Status status = CheckAgainst(plan.options, dataset.classes, dataset.Subjects());
+  absl::Status status = CheckAgainst(plan.options, dataset);
   if (!status.ok()) return status;
   if (fs::exists(CheckpointFolder(plan))) {
     *progress << plan.title << " is finished: " << CheckpointFolder(plan).string() << "\n";
     return absl::OkStatus();
   }
+  checkpoint::Manifest manifest = MakeManifest(plan, dataset);
+  if (status = checkpoint::CheckManifest(manifest); !status.ok()) return status;
   std::error_code error;
   fs::create_directories(plan.folder, error);
   if (error) return absl::InternalError(absl::StrCat(plan.folder.string(), ": ", error.message()));
-  checkpoint::Manifest manifest = MakeManifest(plan, dataset);
   std::vector<int> train = plan.train;
   const std::vector<int> validation = HoldBack(plan.options, dataset, &train);
   if (train.empty()) {

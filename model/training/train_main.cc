@@ -9,6 +9,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "model/base/flag_names.h"
+#include "model/checkpoint/manifest.h"
 #include "model/training/named_configs.h"
 #include "model/training/run.h"
 
@@ -18,7 +19,7 @@ struct Arguments {
   std::string data;
   std::string config = "default";
   std::string out;
-  std::string name = "sbu";
+  std::string name;  // empty: the data set's
   int version = 1;
   std::string description;
   std::string protocol = "all";
@@ -60,10 +61,12 @@ absl::StatusOr<duet::training::TrainingOptions> ReadOptions(const Arguments& arg
 
 // A run before it is said what to train on and where to.
 duet::training::RunPlan CommonPlan(const Arguments& arguments,
-                                   const duet::training::TrainingOptions& options) {
+                                   const duet::training::TrainingOptions& options,
+                                   const duet::dataset::Dataset& dataset) {
   duet::training::RunPlan plan;
   plan.options = options;
-  plan.model_name = arguments.name;
+  plan.model_name =
+      arguments.name.empty() ? duet::checkpoint::ToPlainName(dataset.name) : arguments.name;
   plan.model_version = arguments.version;
   plan.description = arguments.description;
   return plan;
@@ -114,7 +117,7 @@ absl::StatusOr<std::vector<duet::training::RunPlan>> PlanHalves(
 absl::StatusOr<std::vector<duet::training::RunPlan>> Plans(
     const Arguments& arguments, const duet::training::TrainingOptions& options,
     const duet::dataset::Dataset& dataset) {
-  const duet::training::RunPlan common = CommonPlan(arguments, options);
+  const duet::training::RunPlan common = CommonPlan(arguments, options, dataset);
   if (arguments.protocol == "loso") return PlanFolds(arguments, common, dataset);
   if (arguments.protocol == "half") return PlanHalves(arguments, common, dataset);
   return PlanOnAll(arguments, common, dataset);
@@ -125,8 +128,10 @@ absl::Status Train(const Arguments& arguments) {
   if (!options.ok()) return options.status();
   absl::StatusOr<duet::dataset::Dataset> dataset = duet::dataset::ReadDataset(arguments.data);
   if (!dataset.ok()) return dataset.status();
+  for (const std::string& note : dataset->notes) std::cout << "assumed: " << note << "\n";
   absl::StatusOr<std::vector<duet::training::RunPlan>> plans = Plans(arguments, *options, *dataset);
   if (!plans.ok()) return plans.status();
+  std::cout << "model: " << plans->front().model_name << " " << arguments.version << "\n";
   for (const duet::training::RunPlan& plan : *plans) {
     absl::Status status =
         duet::training::RunTraining(plan, *dataset, isatty(STDOUT_FILENO) != 0, &std::cout);
@@ -143,7 +148,7 @@ void Declare(Arguments* arguments, CLI::App* app) {
   app->add_option("--config", arguments->config, "a named configuration or a JSON file")
       ->capture_default_str();
   app->add_option("--set", arguments->settings, "replace a setting: section.field=value");
-  app->add_option("--name", arguments->name, "the model's name")->capture_default_str();
+  app->add_option("--name", arguments->name, "the model's name (default: the data set's)");
   app->add_option("--version-number", arguments->version, "the model's version")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();

@@ -68,9 +68,9 @@ TEST_F(CheckpointFolder, RoundTrip) {
   EXPECT_EQ(read->manifest.weights.bytes, fs::file_size(at_ / "weights.safetensors"));
 }
 
-TEST_F(CheckpointFolder, HoldsTwoFilesAndLeavesNothingBeside) {
+TEST_F(CheckpointFolder, HoldsThreeFilesAndLeavesNothingBeside) {
   Write();
-  EXPECT_EQ(std::distance(fs::directory_iterator(at_), {}), 2);
+  EXPECT_EQ(std::distance(fs::directory_iterator(at_), {}), 3);
   EXPECT_EQ(std::distance(fs::directory_iterator(at_.parent_path()), {}), 1);
   // A server under another user must be able to read it.
   EXPECT_EQ(fs::status(at_).permissions() & fs::perms::mask, fs::perms(0755));

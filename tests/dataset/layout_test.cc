@@ -24,8 +24,8 @@ Json Complete() {
                 {"name": "rest", "joints": ["hip", "right_hip", "right_foot"]}],
       "root": "hip", "left_hip": "left_hip", "right_hip": "right_hip",
       "left_foot": "left_foot", "right_foot": "right_foot"},
-    "classes": [{"name": "kick", "effectors": ["left_foot", "right_foot"]},
-                {"name": "hug", "symmetric": true}]
+    "classes": [{"name": "kick", "effectors": ["left_foot", "right_foot"], "handed": true},
+                {"name": "hug", "symmetric": true, "touches": true}]
   })");
 }
 
@@ -54,6 +54,85 @@ TEST(DatasetLayoutTest, ReadsEveryField) {
   EXPECT_THAT(layout->classes[0].effectors, ElementsAre(3, 4));
   EXPECT_FALSE(layout->classes[0].symmetric);
   EXPECT_TRUE(layout->classes[1].symmetric);
+  EXPECT_TRUE(layout->classes[0].handed);
+  EXPECT_FALSE(layout->classes[1].handed);
+  EXPECT_FALSE(layout->classes[0].touches);
+  EXPECT_TRUE(layout->classes[1].touches);
+  EXPECT_TRUE(layout->notes.empty());
+}
+
+// Whom the configurations named when they named classes.
+TEST(DatasetLayoutTest, TheCapturesKnowTheirHandedAndTouchingClasses) {
+  const auto names = [](const DatasetLayout& layout, bool ClassLayout::*property) {
+    std::vector<std::string> found;
+    for (const ClassLayout& one : layout.classes) {
+      if (one.*property) found.push_back(one.name);
+    }
+    return found;
+  };
+  EXPECT_THAT(names(SbuLayout(), &ClassLayout::handed),
+              ElementsAre("shake_hands", "exchange_object"));
+  EXPECT_THAT(names(SbuLayout(), &ClassLayout::touches), ElementsAre("hug"));
+  EXPECT_THAT(names(K3hiLayout(), &ClassLayout::handed),
+              ElementsAre("exchange_object", "point", "shake_hands"));
+  EXPECT_THAT(names(K3hiLayout(), &ClassLayout::touches), ElementsAre());
+}
+
+// The skeleton of 20 joints of the second data set of the paper, as its author would write it.
+Json TwentyJoints() {
+  Json json = Complete();
+  json["skeleton"] = Json::parse(R"({
+      "joint_names": ["Hips", "Spine", "Chest", "Neck", "Head",
+                      "LeftCollar", "LeftArm", "LeftForeArm", "LeftHand",
+                      "RightCollar", "RightArm", "RightForeArm", "RightHand",
+                      "LeftUpLeg", "LeftLeg", "LeftFoot", "RightUpLeg", "RightLeg", "RightFoot",
+                      "RightToe"],
+      "bones": [["Hips", "Spine"], ["Spine", "Chest"], ["Chest", "Neck"], ["Neck", "Head"],
+                ["Chest", "LeftCollar"], ["LeftCollar", "LeftArm"], ["LeftArm", "LeftForeArm"],
+                ["LeftForeArm", "LeftHand"], ["Chest", "RightCollar"], ["RightCollar", "RightArm"],
+                ["RightArm", "RightForeArm"], ["RightForeArm", "RightHand"],
+                ["Hips", "LeftUpLeg"], ["LeftUpLeg", "LeftLeg"], ["LeftLeg", "LeftFoot"],
+                ["Hips", "RightUpLeg"], ["RightUpLeg", "RightLeg"], ["RightLeg", "RightFoot"],
+                ["RightFoot", "RightToe"]]})");
+  json["classes"] = Json::parse(R"([{"name": "kick"}])");
+  return json;
+}
+
+TEST(DatasetLayoutTest, FindsPartsRootHipsAndFeetThatAreLeftOut) {
+  const absl::StatusOr<DatasetLayout> layout = ParseDatasetLayout(TwentyJoints().dump());
+  ASSERT_TRUE(layout.ok()) << layout.status();
+  EXPECT_EQ(layout->skeleton.root, 0);
+  EXPECT_EQ(layout->skeleton.hips, (motion::JointPair{13, 16}));
+  EXPECT_EQ(layout->skeleton.feet, (motion::JointPair{15, 18}));
+  ASSERT_EQ(layout->parts.size(), 5u);
+  EXPECT_EQ(layout->parts[3].name, "right_leg");
+  EXPECT_THAT(layout->parts[3].joints, ElementsAre(16, 17, 18, 19));
+  EXPECT_THAT(layout->parts[4].joints, ElementsAre(0, 1, 2, 3, 4, 5, 9));
+  ASSERT_EQ(layout->notes.size(), 5u);
+  EXPECT_EQ(layout->notes[0], "root: Hips (no bone leads to it)");
+}
+
+TEST(DatasetLayoutTest, TakesWhatIsSaidBesideLeftOutParts) {
+  Json json = TwentyJoints();
+  json["skeleton"]["root"] = "Hips";
+  json["skeleton"]["left_foot"] = "LeftFoot";
+  json["skeleton"]["right_foot"] = "RightToe";
+  const absl::StatusOr<DatasetLayout> layout = ParseDatasetLayout(json.dump());
+  ASSERT_TRUE(layout.ok()) << layout.status();
+  EXPECT_EQ(layout->skeleton.feet, (motion::JointPair{15, 19}));
+}
+
+TEST(DatasetLayoutTest, SaysWhatOfASkeletonCannotBeFoundAndHowToSayIt) {
+  Json json = TwentyJoints();
+  json["skeleton"]["joint_names"][6] = "wing";
+  json["skeleton"]["bones"][5][1] = json["skeleton"]["bones"][6][0] = "wing";
+  EXPECT_THAT(ErrorOf(json), HasSubstr("left and right shoulder"));
+  EXPECT_THAT(ErrorOf(json), HasSubstr("say skeleton.parts, or rename the joints"));
+  json = TwentyJoints();
+  json["skeleton"]["bones"].erase(0);
+  EXPECT_THAT(ErrorOf(json), HasSubstr("skeleton.root: missing, and no single joint"));
+  json["skeleton"]["root"] = "Hips";
+  EXPECT_THAT(ErrorOf(json), HasSubstr("skeleton.bones: 18, wanted 19"));
 }
 
 TEST(DatasetLayoutTest, OwnDataIsLevelUnlessItSaysOtherwise) {
@@ -133,6 +212,8 @@ TEST(DatasetLayoutTest, RefusesEveryWrongValueByName) {
       {"/classes/1/name", "\"kick\"", "classes[1].name: \"kick\" again"},
       {"/classes/1/name", "\"../kick\"", "classes[1].name"},
       {"/classes/1/symmetric", "1", "classes[1].symmetric: 1, wanted true or false"},
+      {"/classes/0/handed", "\"yes\"", "classes[0].handed: \"yes\", wanted true or false"},
+      {"/classes/1/touches", "1", "classes[1].touches: 1, wanted true or false"},
       {"/classes/0/effectors/0", "\"tail\"", "classes[0].effectors[0]: \"tail\""},
   };
   for (const Case& one : cases) {

@@ -5,7 +5,7 @@ import unittest
 
 import tools
 
-PROGRAMS = ("duet", "duet-eval", "duet-keyframe", "duet-train")
+PROGRAMS = ("duet", "duet-eval", "duet-import", "duet-keyframe", "duet-train")
 
 
 def help_of(*command):

@@ -182,8 +182,8 @@ TEST(CleanUpStage, LeavesTheStartAndTheSettledFrames) {
   expect_unchanged(12);
 }
 
-TEST(CleanUpStage, BodiesTouchAsFarAsAHugsLabelGoes) {
-  const ModelDescription description = FakeDescription();
+TEST(CleanUpStage, BodiesTouchAsFarAsATouchingClasssLabelGoes) {
+  ModelDescription description = FakeDescription();
   const std::size_t hug = static_cast<std::size_t>(
       std::find(description.classes.begin(), description.classes.end(), "hug") -
       description.classes.begin());
@@ -194,10 +194,9 @@ TEST(CleanUpStage, BodiesTouchAsFarAsAHugsLabelGoes) {
   for (std::size_t t = 0; t < 3; ++t) {
     window.labels[t * description.classes.size() + hug] = static_cast<float>(t) - 0.75f;
   }
-  EXPECT_EQ(TouchOf(description, window, {"hug"}), (cleanup::Touch{0, 0.25f, 1}));
-  EXPECT_EQ(TouchOf(description, window, {}), (cleanup::Touch{0, 0, 0}));
-  PipelineOptions options;
-  EXPECT_EQ(options.touching_classes, std::vector<std::string>{"hug"});
+  EXPECT_EQ(TouchOf(description, window), (cleanup::Touch{0, 0.25f, 1}));
+  description.touching_classes.clear();
+  EXPECT_EQ(TouchOf(description, window), (cleanup::Touch{0, 0, 0}));
 }
 
 }  // namespace

@@ -13,6 +13,7 @@ engine::ModelDescription FakeDescription() {
   description.description = "Answers by a known rule";
   description.skeleton = motion::SbuSkeleton();
   description.classes = {"kick", "push", "shake_hands", "hug", "exchange_object", "punch"};
+  description.touching_classes = {"hug"};
   description.frame_rate_hz = 15;
   description.window_frames = 46;
   description.accepts_follower_start = true;

@@ -54,13 +54,21 @@ TEST(AugmentTest, RolesSwapInSymmetricClassesAlone) {
   EXPECT_EQ(AugmentedBy(options, 0).pair.leader.poses, dataset.sequences[0].pair.leader.poses);
 }
 
-TEST(AugmentTest, MirrorsTheNamedClassesAlone) {
+TEST(AugmentTest, MirrorsHandedClassesByAProbabilityOfTheirOwn) {
+  const dataset::Dataset dataset = MadeUpDataset();
+  ASSERT_EQ(dataset.handed, (std::vector<bool>{false, true, true}));
+  const auto is_mirrored = [&](const TrainingOptions::Augmentation& options, int index) {
+    const motion::Poses& before = dataset.sequences[static_cast<size_t>(index)].pair.leader.poses;
+    return AugmentedBy(options, index).pair.leader.poses != before;
+  };
   TrainingOptions::Augmentation options;
   options.mirror = 1;
-  options.mirrored_classes = {"punch"};
-  const dataset::Dataset dataset = MadeUpDataset();
-  EXPECT_NE(AugmentedBy(options, 2).pair.leader.poses, dataset.sequences[2].pair.leader.poses);
-  EXPECT_EQ(AugmentedBy(options, 0).pair.leader.poses, dataset.sequences[0].pair.leader.poses);
+  EXPECT_TRUE(is_mirrored(options, 0));
+  EXPECT_FALSE(is_mirrored(options, 2));
+  options.mirror = 0;
+  options.mirror_handed = 1;
+  EXPECT_FALSE(is_mirrored(options, 0));
+  EXPECT_TRUE(is_mirrored(options, 2));
 }
 
 TEST(AugmentTest, BodyScaleKeepsProportionsOfEachPerson) {

@@ -23,7 +23,6 @@ inline TrainingOptions SmallFlowOptions() {
   options.epochs = 4;
   options.batch = 3;
   options.seed = 5;
-  options.augmentation.mirrored_classes = {"kick"};
   options.augmentation.mirror = 0.5;
   options.augmentation.noise = 0.01;
   options.start = {0.1, 0.5};

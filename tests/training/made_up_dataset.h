@@ -12,7 +12,8 @@ namespace duet::training {
 using test::SwayingMotion;
 using test::SwayingPose;
 
-// Sequences of two made-up people in three classes, the second of them symmetric: the follower
+// Sequences of two made-up people in three classes, the second of them symmetric and of touching
+// bodies, all but the first handed: the follower
 // stands 1 m along +z of the leader and sways later and, by class, higher.
 inline dataset::Dataset MadeUpDataset(int sequences = 7) {
   dataset::Dataset dataset;
@@ -21,6 +22,8 @@ inline dataset::Dataset MadeUpDataset(int sequences = 7) {
   dataset.parts = motion::SbuParts();
   dataset.classes = {"kick", "hug", "punch"};
   dataset.symmetric = {false, true, false};
+  dataset.handed = {false, true, true};
+  dataset.touches = {false, true, false};
   dataset.frame_rate_hz = 15;
   for (int i = 0; i < sequences; ++i) {
     dataset::Sequence sequence;

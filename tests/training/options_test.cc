@@ -6,6 +6,7 @@
 
 #include "model/training/named_configs.h"
 #include "tests/support/status_matchers.h"
+#include "tests/training/made_up_dataset.h"
 
 namespace duet::training {
 namespace {
@@ -118,18 +119,31 @@ TEST(TrainingOptionsTest, RefusesByName) {
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("generator")));
 }
 
-TEST(TrainingOptionsTest, NamedClassesAndSubjectsMustExist) {
+TEST(TrainingOptionsTest, SubjectsHeldBackMustExist) {
+  const dataset::Dataset dataset = MadeUpDataset();
   TrainingOptions options;
-  options.augmentation.mirrored_classes = {"kick", "jump"};
-  EXPECT_THAT(CheckAgainst(options, {"kick", "jump"}, {}), IsOk());
-  EXPECT_THAT(CheckAgainst(options, {"kick"}, {}),
-              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("\"jump\"")));
-  options.augmentation.mirrored_classes.clear();
+  options.validation.subjects = {"s02"};
+  EXPECT_THAT(CheckAgainst(options, dataset), IsOk());
   options.validation.subjects = {"s09"};
   EXPECT_THAT(
-      CheckAgainst(options, {"kick"}, {"s01", "s02"}),
+      CheckAgainst(options, dataset),
       StatusIs(absl::StatusCode::kInvalidArgument,
-               HasSubstr("validation.subjects: \"s09\", wanted subjects of the data: s01")));
+               HasSubstr("validation.subjects: \"s09\", wanted subjects of the data: s01, s02")));
+}
+
+TEST(TrainingOptionsTest, OnlyJointsThatSayTheirSideAreMirrored) {
+  dataset::Dataset dataset = MadeUpDataset();
+  for (std::string& name : dataset.skeleton.joint_names) {
+    name = "joint" + std::to_string(&name - dataset.skeleton.joint_names.data());
+  }
+  TrainingOptions options;
+  EXPECT_THAT(CheckAgainst(options, dataset), IsOk());
+  options.augmentation.mirror = 0.5;
+  EXPECT_THAT(CheckAgainst(options, dataset),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("says left or right")));
+  dataset.skeleton.joint_names[5] = "LeftWrist";
+  dataset.skeleton.joint_names[8] = "RightWrist";
+  EXPECT_THAT(CheckAgainst(options, dataset), IsOk());
 }
 
 }  // namespace

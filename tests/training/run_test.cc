@@ -6,6 +6,7 @@
 
 #include "model/engine/leader_statistics.h"
 #include "model/torch_engine/torch_synthesizer.h"
+#include "model/training/named_configs.h"
 #include "model/training/run_log.h"
 #include "model/training/sampler.h"
 #include "tests/support/status_matchers.h"
@@ -134,10 +135,26 @@ TEST_F(RunTest, HeldBackSubjectsJudgeTheRun) {
   EXPECT_THAT(Go(), StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("every sequence")));
 }
 
-TEST_F(RunTest, UnknownMirroredClassIsRefusedBeforeAnythingIsWritten) {
-  plan_.options.augmentation.mirrored_classes = {"jump"};
-  EXPECT_THAT(Go(), StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("jump")));
+TEST_F(RunTest, UnknownSubjectIsRefusedBeforeAnythingIsWritten) {
+  plan_.options.validation.subjects = {"s09"};
+  EXPECT_THAT(Go(), StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("s09")));
   EXPECT_FALSE(std::filesystem::exists(plan_.folder));
+}
+
+TEST_F(RunTest, WhatCouldNotBeServedIsRefusedBeforeItIsTrained) {
+  plan_.model_name = "my studio";
+  EXPECT_THAT(Go(), StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("\"my studio\"")));
+  EXPECT_FALSE(std::filesystem::exists(plan_.folder));
+}
+
+TEST_F(RunTest, WorksForClassesThatNoConfigurationNames) {
+  dataset_.classes = {"bow", "lift", "spin"};
+  plan_.options = *ParseConfig(FindConfig("default")->json,
+                               {{"epochs", "1"}, {"generator.encoder_hidden", "4"}});
+  ASSERT_THAT(Go(), IsOk());
+  const auto checkpoint = checkpoint::ReadCheckpoint(CheckpointFolder(plan_));
+  ASSERT_THAT(checkpoint, IsOk());
+  EXPECT_EQ(checkpoint->manifest.model.touching_classes, std::vector<std::string>{"lift"});
 }
 
 TEST(RunLogTest, ResumingDropsRowsOfLostEpochs) {

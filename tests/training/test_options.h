@@ -25,7 +25,6 @@ inline TrainingOptions SmallOptions() {
   options.losses.continuity = 0.1;
   options.losses.adversarial = 0.1;
   options.discriminator.hidden = 4;
-  options.augmentation.mirrored_classes = {"kick"};
   options.augmentation.mirror = 0.5;
   options.augmentation.swap_roles = 0.5;
   options.augmentation.body_scale = 0.05;

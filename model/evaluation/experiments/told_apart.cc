@@ -19,6 +19,8 @@ dataset::Dataset PairsToTell(const dataset::Dataset& dataset,
   dataset::Dataset pairs = dataset;
   pairs.classes = {"captured", "synthesised"};
   pairs.symmetric = {false, false};
+  pairs.handed = {false, false};
+  pairs.touches = {false, false};
   pairs.sequences.clear();
   for (const metrics::ScoredMotion& answer : answers) {
     dataset::Sequence sequence = dataset.sequences[static_cast<size_t>(answer.sequence)];

@@ -73,6 +73,8 @@ dataset::Dataset MadeUpPairs(int sequences_a_class) {
   dataset.parts = motion::SbuParts();
   dataset.classes = {"give", "flinch"};
   dataset.symmetric = {false, false};
+  dataset.handed = {false, false};
+  dataset.touches = {false, false};
   dataset.frame_rate_hz = 15;
   for (int c = 0; c < dataset.class_count(); ++c) {
     for (int i = 0; i < sequences_a_class; ++i) {

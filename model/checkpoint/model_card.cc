@@ -1,0 +1,135 @@
+#include "model/checkpoint/model_card.h"
+
+#include <cstddef>
+#include <cstdint>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
+#include "absl/strings/str_replace.h"
+
+namespace duet::checkpoint {
+namespace {
+
+// What the run noted of its data stands apart from its settings.
+constexpr const char* kDataNotes[] = {"data", "sequences", "seconds", "people", "levelled"};
+
+bool IsDataNote(const std::string& key) {
+  for (const char* note : kDataNotes) {
+    if (key == note) return true;
+  }
+  return false;
+}
+
+std::string Note(const Manifest& manifest, const std::string& key) {
+  const auto it = manifest.training.find(key);
+  return it == manifest.training.end() ? "" : it->second;
+}
+
+int64_t ParameterCount(const Manifest& manifest) {
+  int64_t count = 0;
+  for (const TensorSpec& spec : ExpectedTensors(manifest)) {
+    int64_t values = 1;
+    for (const int64_t size : spec.shape) values *= size;
+    count += values;
+  }
+  return count;
+}
+
+std::string Row(const std::string& name, const std::string& value) {
+  return absl::StrCat("| ", name, " | ", absl::StrReplaceAll(value, {{"|", "\\|"}}), " |\n");
+}
+
+std::string Classes(const engine::ModelDescription& model) {
+  std::string text = absl::StrJoin(model.classes, ", ");
+  if (!model.touching_classes.empty()) {
+    absl::StrAppend(&text, "; bodies may touch in ", absl::StrJoin(model.touching_classes, ", "));
+  }
+  return text;
+}
+
+std::string SkeletonText(const Manifest& manifest) {
+  const motion::Skeleton& skeleton = manifest.model.skeleton;
+  return absl::StrCat(skeleton.joint_count(), " joints about ",
+                      skeleton.joint_names[static_cast<std::size_t>(skeleton.root)], ", in ",
+                      manifest.generator.parts.size(), " parts: ",
+                      absl::StrJoin(manifest.generator.parts, ", ",
+                                    [](std::string* out, const motion::BodyPart& part) {
+                                      out->append(part.name);
+                                    }));
+}
+
+std::string Kind(const Manifest& manifest) {
+  return absl::StrCat(manifest.flow ? "sampling (flow matching): answers depend on a seed"
+                                    : "one answer for each request (the paper's)",
+                      "; ", ParameterCount(manifest), " parameters");
+}
+
+std::string Data(const Manifest& manifest) {
+  std::string text = absl::StrCat(Note(manifest, "data"), ": ", Note(manifest, "sequences"),
+                                  " sequences of two people");
+  if (const std::string seconds = Note(manifest, "seconds"); !seconds.empty()) {
+    absl::StrAppend(&text, ", ", seconds, " s in all");
+  }
+  const std::string people = Note(manifest, "people");
+  absl::StrAppend(&text, "; people: ", people.empty() ? "not named" : people);
+  if (Note(manifest, "levelled") == "true") absl::StrAppend(&text, "; levelled");
+  return text;
+}
+
+std::string Facts(const Manifest& manifest) {
+  const engine::ModelDescription& model = manifest.model;
+  return absl::StrCat(
+      "| | |\n|---|---|\n", Row("classes", Classes(model)), Row("skeleton", SkeletonText(manifest)),
+      Row("frame rate", absl::StrFormat("%g Hz; trained on windows of up to %d frames",
+                                        model.frame_rate_hz, model.window_frames)),
+      Row("generator", Kind(manifest)), Row("trained on", Data(manifest)),
+      Row("made", absl::StrCat(manifest.created, ", by the code of revision ",
+                               manifest.git_revision.empty() ? "unknown" : manifest.git_revision)),
+      Row("weights", absl::StrCat("SHA-256 ", manifest.weights.sha256)));
+}
+
+std::string Figures(const Manifest& manifest) {
+  std::string text;
+  for (const auto& [name, value] : manifest.metrics) {
+    text += Row(name, absl::StrFormat("%.4g", value));
+  }
+  if (!text.empty()) text = absl::StrCat("| figure | value |\n|---|---|\n", text);
+  if (manifest.metrics.count("validation.afd") == 0) {
+    absl::StrAppend(&text, text.empty() ? "" : "\n",
+                    "Nothing was held back from training to judge the model by.\n");
+  }
+  return text;
+}
+
+std::string Settings(const Manifest& manifest) {
+  std::string text = "| setting | value |\n|---|---|\n";
+  for (const auto& [key, value] : manifest.training) {
+    if (!IsDataNote(key)) text += Row(key, value);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string ModelCard(const Manifest& manifest) {
+  const engine::ModelDescription& model = manifest.model;
+  return absl::StrCat(
+      "# ", model.name, ", version ", model.version, "\n\n",
+      model.description.empty() ? "Answers a leader's motion with a follower's."
+                                : model.description,
+      "\n\n", Facts(manifest), "\n## Figures\n\n", Figures(manifest), "\n## Meant for\n\n",
+      "Animation and research: synthesising the second character of an interaction of the classes\n"
+      "above from the first one's motion. Not for telling who people are or what they intend, and\n"
+      "not for steering machines near people.\n",
+      "\n## Limits\n\n",
+      "It knows what its data shows: those classes, clips of those lengths, bodies like those\n"
+      "captured. For a leader unlike these it answers all the same; the reply's summary says how\n"
+      "unfamiliar the leader is. Faces, fingers and objects are not part of it.\n",
+      "\n## Terms\n\n", "Terms: as those of the data set ",
+      Note(manifest, "data").empty() ? "that it was trained on" : Note(manifest, "data"),
+      " (complete this sentence before passing the model on).\n", "\n## Settings\n\n",
+      Settings(manifest));
+}
+
+}  // namespace duet::checkpoint

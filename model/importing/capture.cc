@@ -1,0 +1,142 @@
+#include "model/importing/capture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "model/formats/motion_file.h"
+#include "model/importing/scale.h"
+#include "model/motion/resample.h"
+
+namespace duet::importing {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kFewestFrames = 2;
+// Median distance of the roots, metres.
+constexpr double kNearest = 0.05, kFarthest = 10;
+// How far legs may be from those that the unit was told by, as a factor.
+constexpr double kLegTolerance = 1.5;
+
+absl::StatusOr<motion::Clip> ReadPerson(const fs::path& path, formats::Side side,
+                                        const CaptureOptions& options) {
+  formats::ReadOptions read;
+  read.side = side;
+  read.skeleton = options.skeleton;
+  read.joint_overrides = options.joint_overrides;
+  read.frame_rate_hz = options.frame_rate_hz;
+  read.notes = options.notes;
+  const std::string extension = absl::AsciiStrToLower(path.extension().string());
+  if (extension == ".bvh") {
+    read.metres_per_unit = 1;
+    read.coordinates = motion::Coordinates{};
+  }
+  absl::StatusOr<motion::Clip> person = formats::ReadLeader(path, read);
+  if (person.ok() || extension != ".npy") return person;
+  return absl::Status(
+      person.status().code(),
+      absl::StrCat(person.status().message(),
+                   "; NPY says neither rate nor joints: say them with --frame-rate, "
+                   "and with --skeleton if they are not the 15 of SBU"));
+}
+
+void ToRate(double rate_hz, motion::Clip* clip) {
+  if (clip->frame_rate_hz != rate_hz) {
+    const double whole =
+        std::floor((clip->frame_count() - 1) * rate_hz / clip->frame_rate_hz + 1e-6);
+    clip->poses = Resample(clip->poses, clip->frame_rate_hz, rate_hz);
+    // None beyond what was captured.
+    clip->poses.Resize(std::max(kFewestFrames, static_cast<int>(whole) + 1));
+  }
+  clip->frame_rate_hz = rate_hz;
+}
+
+double MedianRootDistance(const Capture& capture, int root) {
+  std::vector<double> distances;
+  for (int t = 0; t < capture.first.frame_count(); ++t) {
+    distances.push_back(Distance(capture.first.at(t, root), capture.second.at(t, root)));
+  }
+  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+  std::nth_element(distances.begin(), middle, distances.end());
+  return *middle;
+}
+
+motion::Clip Piece(const motion::Clip& whole, int first, int frames) {
+  motion::Clip piece;
+  piece.joint_names = whole.joint_names;
+  piece.frame_rate_hz = whole.frame_rate_hz;
+  piece.Append(whole.poses.frames(first, frames));
+  return piece;
+}
+
+}  // namespace
+
+absl::StatusOr<Capture> ReadCapture(const fs::path& folder, const PairFiles& files,
+                                    const CaptureOptions& options) {
+  const bool one_file = files.first == files.second;
+  absl::StatusOr<motion::Clip> first =
+      ReadPerson(folder / files.first, formats::Side::kLeft, options);
+  if (!first.ok()) return first.status();
+  absl::StatusOr<motion::Clip> second = ReadPerson(
+      folder / files.second, one_file ? formats::Side::kRight : formats::Side::kLeft, options);
+  if (!second.ok()) return second.status();
+  // The reader gives the only person for either side.
+  if (first->poses == second->poses) {
+    return absl::InvalidArgumentError(
+        one_file ? "holds one person, wanted both in it, or a file for each whose names end in _a "
+                   "and _b (or _leader and _follower)"
+                 : "both files hold the same motion, wanted one for each person");
+  }
+  const int frames = std::min(first->frame_count(), second->frame_count());
+  if (frames < kFewestFrames) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("came ", frames, " frame, wanted at least ", kFewestFrames));
+  }
+  return Capture{files, *std::move(first), *std::move(second)};
+}
+
+double Align(double rate_hz, Capture* capture) {
+  ToRate(rate_hz, &capture->first);
+  ToRate(rate_hz, &capture->second);
+  const int first = capture->first.frame_count(), second = capture->second.frame_count();
+  capture->first.poses.Resize(std::min(first, second));
+  capture->second.poses.Resize(std::min(first, second));
+  return std::abs(first - second) / rate_hz;
+}
+
+absl::Status CheckPlausible(const Capture& capture, const motion::Skeleton& skeleton) {
+  for (const motion::Clip* person : {&capture.first, &capture.second}) {
+    const double leg = LegLength(skeleton, person->poses);
+    if (leg > kShortestLeg / kLegTolerance && leg < kLongestLeg * kLegTolerance) continue;
+    return absl::InvalidArgumentError(absl::StrFormat(
+        "%s has legs of %.3g m in the unit that fits most of the files, wanted a person's",
+        person == &capture.first ? capture.files.first : capture.files.second, leg));
+  }
+  const double apart = MedianRootDistance(capture, skeleton.root);
+  if (apart >= kNearest && apart <= kFarthest) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrFormat(
+      "its people are %.3g m apart, wanted two people in one world, %g to %g m apart", apart,
+      kNearest, kFarthest));
+}
+
+std::vector<Capture> Cut(const Capture& capture, int longest) {
+  const int frames = capture.first.frame_count();
+  const int pieces = (frames + longest - 1) / longest;
+  if (pieces <= 1) return {capture};
+  std::vector<Capture> cut;
+  for (int i = 0; i < pieces; ++i) {
+    const int first = frames * i / pieces, count = frames * (i + 1) / pieces - first;
+    Capture piece = {capture.files, Piece(capture.first, first, count),
+                     Piece(capture.second, first, count)};
+    absl::StrAppend(&piece.files.name, "_p", i + 1);
+    cut.push_back(std::move(piece));
+  }
+  return cut;
+}
+
+}  // namespace duet::importing

@@ -1,0 +1,53 @@
+#ifndef DUET_MODEL_IMPORTING_CAPTURE_H_
+#define DUET_MODEL_IMPORTING_CAPTURE_H_
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "model/importing/pairing.h"
+#include "model/motion/clip.h"
+#include "model/motion/skeleton.h"
+#include "model/retargeting/joint_mapping.h"
+
+namespace duet::importing {
+
+// A pair as it was read.
+struct Capture {
+  PairFiles files;
+  motion::Clip first;  // of the data set's joints
+  motion::Clip second;
+};
+
+struct CaptureOptions {
+  motion::Skeleton skeleton;
+  retargeting::JointOverrides joint_overrides;
+  std::optional<double> frame_rate_hz;  // replaces what the files say
+  // Receives what was decided where names leave a choice of joints. May be null.
+  std::vector<std::string>* notes = nullptr;
+};
+
+// Reads both people: BVH in the file's own unit and axes, everything else in the metres, y up, that
+// the file states or that go without saying.
+// Errors: INVALID_ARGUMENT naming the file and what is wrong with it, one that holds a single
+// person among it.
+absl::StatusOr<Capture> ReadCapture(const std::filesystem::path& folder, const PairFiles& files,
+                                    const CaptureOptions& options);
+
+// Brings both people to one rate, and the longer one to the other's length. Returns by how many
+// seconds they differed.
+double Align(double rate_hz, Capture* capture);
+
+// Whether they are two people in one place, in metres, y up: legs of a person's length, people
+// apart but not out of each other's reach.
+absl::Status CheckPlausible(const Capture& capture, const motion::Skeleton& skeleton);
+
+// Cuts a capture into equal pieces of at most `longest` frames.
+std::vector<Capture> Cut(const Capture& capture, int longest);
+
+}  // namespace duet::importing
+
+#endif  // DUET_MODEL_IMPORTING_CAPTURE_H_

@@ -1,0 +1,398 @@
+#include "model/importing/capture_skeleton.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "model/base/file.h"
+#include "model/base/strict_json.h"
+#include "model/base/text.h"
+#include "model/dataset/skeleton_completion.h"
+#include "model/formats/bvh/bvh_document.h"
+#include "model/formats/flat/csv.h"
+#include "model/formats/flat/json_motion.h"
+#include "model/motion/motion_limits.h"
+#include "model/motion/recorded_motion.h"
+#include "model/motion/skeleton_json.h"
+#include "model/retargeting/anatomy.h"
+#include "model/retargeting/joint_names.h"
+
+namespace duet::importing {
+namespace {
+
+namespace fs = std::filesystem;
+using retargeting::BodySide;
+using retargeting::ParsedJointName;
+
+constexpr std::size_t kMaxSkeletonBytes = std::size_t{1} << 20;
+constexpr int kMaxSkeletonDepth = 5;
+constexpr int kMostFrames = 200;      // that bones are found in
+constexpr double kChangeWeight = 10;  // of a bone's deviation beside its length
+
+motion::Skeleton ParentsToSkeleton(std::vector<std::string> names,
+                                   const std::vector<int>& parents) {
+  motion::Skeleton skeleton;
+  skeleton.joint_names = std::move(names);
+  for (std::size_t joint = 0; joint < parents.size(); ++joint) {
+    if (parents[joint] < 0) {
+      skeleton.root = static_cast<int>(joint);
+    } else {
+      skeleton.bones.push_back({parents[joint], static_cast<int>(joint)});
+    }
+  }
+  return skeleton;
+}
+
+// Only the joints of `kept`, each below the nearest of its ancestors that is kept.
+motion::Skeleton Keep(const motion::Skeleton& all, const std::vector<bool>& kept) {
+  const std::vector<int> parents = all.Parents();
+  std::vector<int> index(kept.size(), -1);
+  std::vector<std::string> names;
+  for (std::size_t joint = 0; joint < kept.size(); ++joint) {
+    if (!kept[joint]) continue;
+    index[joint] = static_cast<int>(names.size());
+    names.push_back(all.joint_names[joint]);
+  }
+  std::vector<int> kept_parents;
+  for (std::size_t joint = 0; joint < kept.size(); ++joint) {
+    if (!kept[joint]) continue;
+    int parent = parents[joint];
+    while (parent >= 0 && !kept[static_cast<std::size_t>(parent)]) {
+      parent = parents[static_cast<std::size_t>(parent)];
+    }
+    kept_parents.push_back(parent < 0 ? -1 : index[static_cast<std::size_t>(parent)]);
+  }
+  return ParentsToSkeleton(std::move(names), kept_parents);
+}
+
+// Lies on its parent for good: exporters write such to turn each child on its own.
+bool IsHelper(const formats::bvh::BvhJoint& joint) {
+  using formats::bvh::BvhChannel;
+  const bool moves = std::any_of(joint.channels.begin(), joint.channels.end(), [](BvhChannel c) {
+    return c == BvhChannel::kXPosition || c == BvhChannel::kYPosition ||
+           c == BvhChannel::kZPosition;
+  });
+  return joint.parent >= 0 && !moves && Norm(joint.offset) == 0;
+}
+
+// The first person's.
+absl::StatusOr<motion::Skeleton> BvhSkeleton(const std::string& text, const std::string& source) {
+  const absl::StatusOr<formats::bvh::BvhDocument> document = formats::bvh::ParseBvh(text, source);
+  if (!document.ok()) return document.status();
+  std::vector<std::string> names;
+  std::vector<int> parents;
+  std::vector<bool> kept;
+  for (const formats::bvh::BvhJoint& joint : document->joints) {
+    if (joint.parent < 0 && !names.empty()) break;  // the second person
+    names.push_back(joint.name);
+    parents.push_back(joint.parent);
+    kept.push_back(!joint.end_site && !IsHelper(joint));
+  }
+  return Keep(ParentsToSkeleton(std::move(names), parents), kept);
+}
+
+// The joint that bodies are built from, among those of the middle.
+absl::StatusOr<int> FindRoot(const std::vector<std::string>& names, const std::string& source) {
+  for (const char* word : {"hips", "pelvis", "hip", "root", "torso", "spine", "waist", "chest"}) {
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (retargeting::ParseJointName(names[i]) == ParsedJointName{BodySide::kMiddle, word}) {
+        return static_cast<int>(i);
+      }
+    }
+  }
+  return absl::InvalidArgumentError(
+      absl::StrCat(source, ": no joint is called hips, pelvis, torso or spine; the file has ",
+                   absl::StrJoin(names, ", "), "; say which is the root with --root NAME"));
+}
+
+absl::StatusOr<motion::Skeleton> NamedSkeleton(const motion::RecordedMotion& motion,
+                                               const std::string& source, const std::string& root) {
+  const motion::Clip& person = motion.people.front();
+  const std::vector<std::string>& names = person.joint_names;
+  const motion::Skeleton sbu = motion::SbuSkeleton();
+  if (std::set<std::string>(names.begin(), names.end()) ==
+      std::set<std::string>(sbu.joint_names.begin(), sbu.joint_names.end())) {
+    return sbu;
+  }
+  motion::Skeleton skeleton;
+  skeleton.joint_names = names;
+  skeleton.root = skeleton.Find(root);
+  if (skeleton.root < 0) {
+    const absl::StatusOr<int> found = FindRoot(names, source);
+    if (!found.ok()) return found.status();
+    skeleton.root = *found;
+  }
+  skeleton.bones = FindBones(names, person.poses, skeleton.root);
+  return skeleton;
+}
+
+absl::StatusOr<motion::Skeleton> ReadCaptured(const fs::path& file, const std::string& root) {
+  const std::string extension = absl::AsciiStrToLower(file.extension().string());
+  if (extension == ".txt" || extension == ".npy") return motion::SbuSkeleton();
+  const absl::StatusOr<std::string> text =
+      base::ReadFile(file, motion::kMaxMotionFileBytes, "a motion");
+  if (!text.ok()) return text.status();
+  if (extension == ".bvh") return BvhSkeleton(*text, file.string());
+  if (extension != ".csv" && extension != ".json") {
+    return absl::InvalidArgumentError(absl::StrCat(
+        file.string(), ": its kind of file tells no skeleton; say it with --skeleton"));
+  }
+  const absl::StatusOr<motion::RecordedMotion> motion =
+      extension == ".csv" ? formats::flat::ParseCsv(*text, file.string())
+                          : formats::flat::ParseJsonMotion(*text, file.string());
+  if (!motion.ok()) return motion.status();
+  return NamedSkeleton(*motion, file.string(), root);
+}
+
+// The tree turned so that it starts at another joint.
+absl::Status MoveRoot(const std::string& name, motion::Skeleton* skeleton) {
+  const int root = skeleton->Find(name);
+  if (root < 0) {
+    return absl::InvalidArgumentError(absl::StrCat("--root: came ", base::Quoted(name),
+                                                   ", wanted one of ",
+                                                   absl::StrJoin(skeleton->joint_names, ", ")));
+  }
+  const std::vector<int> parents = skeleton->Parents();
+  for (int at = root; parents[static_cast<std::size_t>(at)] >= 0;
+       at = parents[static_cast<std::size_t>(at)]) {
+    const motion::Bone bone = {parents[static_cast<std::size_t>(at)], at};
+    for (motion::Bone& other : skeleton->bones) {
+      if (other == bone) std::swap(other.parent, other.child);
+    }
+  }
+  skeleton->root = root;
+  return absl::OkStatus();
+}
+
+// Fingers and face move little and count as much as a leg.
+motion::Skeleton WithoutFingersAndFace(const motion::Skeleton& skeleton, motion::JointPair hands) {
+  const std::vector<int> parents = skeleton.Parents();
+  std::vector<bool> kept(skeleton.joint_names.size(), true);
+  for (std::size_t joint = 0; joint < kept.size(); ++joint) {
+    for (int at = parents[joint]; at >= 0; at = parents[static_cast<std::size_t>(at)]) {
+      const bool is_head =
+          retargeting::ParseJointName(skeleton.joint_names[static_cast<std::size_t>(at)]) ==
+          ParsedJointName{BodySide::kMiddle, "head"};
+      if (at == hands.left || at == hands.right || is_head) kept[joint] = false;
+    }
+  }
+  return Keep(skeleton, kept);
+}
+
+bool AreUnique(const std::vector<std::string>& names) {
+  return std::set<std::string>(names.begin(), names.end()).size() == names.size();
+}
+
+// "mixamorig:LeftToeBase" -> "left_toebase".
+std::string PlainName(const std::string& name) {
+  const ParsedJointName parsed = retargeting::ParseJointName(name);
+  const char* const side = parsed.side == BodySide::kLeft    ? "left_"
+                           : parsed.side == BodySide::kRight ? "right_"
+                                                             : "";
+  return absl::StrCat(side, parsed.base);
+}
+
+// Duet's words where every joint still has a name of its own; else plain names; else the file's.
+void Rename(const retargeting::Anatomy& anatomy, motion::Skeleton* skeleton) {
+  std::vector<std::string> plain;
+  for (const std::string& name : skeleton->joint_names) plain.push_back(PlainName(name));
+  std::vector<std::string> known = plain;
+  const auto name_pair = [&](motion::JointPair pair, const std::string& word) {
+    known[static_cast<std::size_t>(pair.left)] = "left_" + word;
+    known[static_cast<std::size_t>(pair.right)] = "right_" + word;
+  };
+  name_pair(anatomy.hips, "hip");
+  name_pair(anatomy.feet, "foot");
+  name_pair(anatomy.hands, "hand");
+  if (AreUnique(known)) {
+    skeleton->joint_names = known;
+  } else if (AreUnique(plain)) {
+    skeleton->joint_names = plain;
+  }
+}
+
+absl::StatusOr<CaptureSkeleton> Complete(motion::Skeleton skeleton, const std::string& source,
+                                         bool all_joints) {
+  const auto in_file = [&](const absl::Status& status) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(source, ": ", status.message(), "; say the skeleton with --skeleton"));
+  };
+  if (const absl::Status valid = Validate(skeleton); !valid.ok()) return in_file(valid);
+  absl::StatusOr<retargeting::Anatomy> anatomy = retargeting::FindAnatomy(skeleton);
+  if (!anatomy.ok()) return in_file(anatomy.status());
+  const int before = skeleton.joint_count();
+  if (!all_joints) {
+    skeleton = WithoutFingersAndFace(skeleton, anatomy->hands);
+    skeleton.hips = skeleton.feet = std::nullopt;
+    anatomy = retargeting::FindAnatomy(skeleton);
+    if (!anatomy.ok()) return in_file(anatomy.status());
+  }
+  CaptureSkeleton found;
+  found.notes = anatomy->notes;
+  if (skeleton.joint_count() < before) {
+    found.notes.push_back(
+        absl::StrCat("left out: ", before - skeleton.joint_count(), " joints of fingers and face"));
+  }
+  Rename(*anatomy, &skeleton);
+  skeleton.hips = anatomy->hips;
+  skeleton.feet = anatomy->feet;
+  found.skeleton = std::move(skeleton);
+  found.parts = std::move(anatomy->parts);
+  found.hands = anatomy->hands;
+  found.origin = source;
+  return found;
+}
+
+absl::StatusOr<CaptureSkeleton> ReadSaid(const std::string& said) {
+  motion::SkeletonDocument document = {motion::SbuSkeleton(), motion::SbuParts()};
+  CaptureSkeleton found;
+  found.origin = "the 15 joints of Duet's own models";
+  if (said != "sbu") {
+    const absl::StatusOr<std::string> text = base::ReadFile(said, kMaxSkeletonBytes, "a skeleton");
+    if (!text.ok()) return text.status();
+    absl::StatusOr<nlohmann::json> json = base::ParseHandwrittenJson(*text, kMaxSkeletonDepth);
+    if (json.ok()) json = dataset::CompleteSkeleton(*std::move(json), &found.notes);
+    absl::StatusOr<motion::SkeletonDocument> read =
+        json.ok() ? motion::ReadSkeleton(*json, "skeleton") : json.status();
+    if (!read.ok()) {
+      return absl::InvalidArgumentError(absl::StrCat(said, ": ", read.status().message()));
+    }
+    document = *std::move(read);
+    found.origin = said;
+  }
+  const absl::StatusOr<retargeting::Anatomy> anatomy = retargeting::FindAnatomy(document.skeleton);
+  if (!anatomy.ok()) {
+    return absl::InvalidArgumentError(absl::StrCat(said, ": ", anatomy.status().message()));
+  }
+  found.skeleton = std::move(document.skeleton);
+  found.skeleton.hips = anatomy->hips;
+  found.skeleton.feet = anatomy->feet;
+  found.parts = std::move(document.parts);
+  found.hands = anatomy->hands;
+  return found;
+}
+
+}  // namespace
+
+namespace {
+
+enum class Limb { kNone, kArm, kLeg };
+
+// What names tell of joints before any position does.
+struct KnownJoint {
+  BodySide side = BodySide::kMiddle;
+  Limb limb = Limb::kNone;
+  int parent = -1;  // within the limb
+};
+
+int FindLimbJoint(const std::vector<ParsedJointName>& parsed, BodySide side, const char* word,
+                  const std::vector<KnownJoint>& known) {
+  for (const std::string& alias : retargeting::JointAliases(word)) {
+    for (std::size_t i = 0; i < parsed.size(); ++i) {
+      if (known[i].limb == Limb::kNone && parsed[i] == ParsedJointName{side, alias}) {
+        return static_cast<int>(i);
+      }
+    }
+  }
+  return -1;
+}
+
+std::vector<KnownJoint> KnowByName(const std::vector<std::string>& joint_names) {
+  std::vector<ParsedJointName> parsed;
+  std::vector<KnownJoint> known;
+  for (const std::string& name : joint_names) {
+    parsed.push_back(retargeting::ParseJointName(name));
+    known.push_back({parsed.back().side, Limb::kNone, -1});
+  }
+  constexpr const char* kArm[] = {"shoulder", "elbow", "hand"};
+  constexpr const char* kLeg[] = {"hip", "knee", "foot"};
+  for (const BodySide side : {BodySide::kLeft, BodySide::kRight}) {
+    for (const Limb limb : {Limb::kArm, Limb::kLeg}) {
+      int parent = -1;
+      for (const char* word : limb == Limb::kArm ? kArm : kLeg) {
+        const int joint = FindLimbJoint(parsed, side, word, known);
+        if (joint < 0) continue;
+        known[static_cast<std::size_t>(joint)].limb = limb;
+        known[static_cast<std::size_t>(joint)].parent = parent;
+        parent = joint;
+      }
+    }
+  }
+  return known;
+}
+
+// A hanging hand is nearer to the thigh than to the elbow: names say which joints cannot be joined.
+bool CannotBeJoined(const KnownJoint& a, const KnownJoint& b) {
+  const bool sides = a.side != b.side && a.side != BodySide::kMiddle && b.side != BodySide::kMiddle;
+  const bool limbs = a.limb != b.limb && a.limb != Limb::kNone && b.limb != Limb::kNone;
+  return sides || limbs;
+}
+
+// Mean length and how it changes, over some of the frames.
+double BoneCost(const motion::Poses& poses, std::size_t a, std::size_t b) {
+  const int step = std::max(1, poses.frame_count() / kMostFrames);
+  double sum = 0, squares = 0, count = 0;
+  for (int t = 0; t < poses.frame_count(); t += step) {
+    const double length = Distance(poses[t][a], poses[t][b]);
+    sum += length;
+    squares += length * length;
+    ++count;
+  }
+  const double mean = sum / count;
+  return mean + kChangeWeight * std::sqrt(std::max(0.0, squares / count - mean * mean));
+}
+
+}  // namespace
+
+std::vector<motion::Bone> FindBones(const std::vector<std::string>& joint_names,
+                                    const motion::Poses& poses, int root) {
+  const std::size_t joints = joint_names.size();
+  const std::vector<KnownJoint> known = KnowByName(joint_names);
+  const auto cost = [&](std::size_t a, std::size_t b) {
+    const bool is_limb =
+        known[a].parent == static_cast<int>(b) || known[b].parent == static_cast<int>(a);
+    if (is_limb) return 0.0;
+    if (CannotBeJoined(known[a], known[b])) return std::numeric_limits<double>::max();
+    return BoneCost(poses, a, b);
+  };
+  // Prim's tree: the cheapest bone from what is joined to what is not, until all are.
+  std::vector<motion::Bone> bones;
+  std::vector<double> best(joints, std::numeric_limits<double>::infinity());
+  std::vector<int> parent(joints, root);
+  std::vector<bool> joined(joints);
+  best[static_cast<std::size_t>(root)] = 0;
+  for (std::size_t round = 0; round < joints; ++round) {
+    std::size_t next = joints;
+    for (std::size_t j = 0; j < joints; ++j) {
+      if (!joined[j] && (next == joints || best[j] < best[next])) next = j;
+    }
+    joined[next] = true;
+    if (round > 0) bones.push_back({parent[next], static_cast<int>(next)});
+    for (std::size_t j = 0; j < joints; ++j) {
+      const double through = joined[j] ? 0 : cost(next, j);
+      if (joined[j] || through >= best[j]) continue;
+      best[j] = through;
+      parent[j] = static_cast<int>(next);
+    }
+  }
+  return bones;
+}
+
+absl::StatusOr<CaptureSkeleton> FindSkeleton(const fs::path& file, const SkeletonOptions& options) {
+  if (!options.skeleton.empty()) return ReadSaid(options.skeleton);
+  absl::StatusOr<motion::Skeleton> skeleton = ReadCaptured(file, options.root);
+  if (!skeleton.ok()) return skeleton.status();
+  if (!options.root.empty()) {
+    if (absl::Status status = MoveRoot(options.root, &*skeleton); !status.ok()) return status;
+  }
+  return Complete(*std::move(skeleton), file.filename().string(), options.all_joints);
+}
+
+}  // namespace duet::importing

@@ -1,0 +1,488 @@
+#include "model/importing/import.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <set>
+#include <system_error>
+#include <utility>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
+#include "model/base/file.h"
+#include "model/base/text.h"
+#include "model/dataset/posture.h"
+#include "model/formats/motion_file.h"
+#include "model/importing/capture.h"
+#include "model/importing/dataset_folder.h"
+#include "model/importing/scale.h"
+
+namespace duet::importing {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMaxTableBytes = std::size_t{16} << 20;
+constexpr char kTableName[] = "pairs.tsv";
+constexpr double kHighestOwnRate = 30;  // networks are made for it or less
+constexpr double kSameRate = 1e-3;
+// Data that is levelled unless its maker says otherwise.
+constexpr double kLeastLeanDegrees = 3;
+constexpr double kLeastFloorMetres = 0.1;
+constexpr double kFloorShare = 0.25;
+constexpr double kCloseCall = 1.2;  // the larger displacement by the smaller
+constexpr std::size_t kMostListed = 8;
+
+std::string ListSome(const std::vector<std::string>& names) {
+  const std::size_t shown = std::min(names.size(), kMostListed);
+  const std::vector<std::string> some(names.begin(),
+                                      names.begin() + static_cast<std::ptrdiff_t>(shown));
+  return absl::StrCat(absl::StrJoin(some, ", "), shown < names.size() ? ", ..." : "");
+}
+
+bool IsHidden(const fs::path& path) {
+  for (const fs::path& part : path) {
+    if (absl::StartsWith(part.string(), ".")) return true;
+  }
+  return false;
+}
+
+// What a folder holds: motion files below it, and how many others of each extension.
+struct Listing {
+  std::vector<std::string> motions;
+  std::map<std::string, int> others;
+};
+
+absl::StatusOr<Listing> ListMotions(const fs::path& folder) {
+  Listing listing;
+  std::error_code error;
+  fs::recursive_directory_iterator it(folder, error), end;
+  for (; !error && it != end; it.increment(error)) {
+    const fs::path path = it->path().lexically_relative(folder);
+    if (IsHidden(path) || !it->is_regular_file(error)) continue;
+    if (formats::IsReadable(path)) {
+      listing.motions.push_back(path.generic_string());
+    } else if (path != kTableName) {
+      ++listing.others[path.extension().string()];
+    }
+  }
+  if (error) return absl::NotFoundError(absl::StrCat(folder.string(), ": ", error.message()));
+  std::sort(listing.motions.begin(), listing.motions.end());
+  return listing;
+}
+
+// One import from beginning to end; each step leaves its assumptions.
+class Importer {
+ public:
+  Importer(const ImportOptions& options, ImportReport* report)
+      : options_(options), report_(*report) {}
+
+  absl::Status Run() {
+    absl::Status status = CheckFolders();
+    if (status.ok()) status = FindPairs();
+    if (status.ok()) status = FindJoints();
+    if (status.ok()) status = ReadPairs();
+    if (status.ok()) status = FindCoordinates();
+    if (status.ok()) status = FindRate();
+    if (status.ok()) status = AlignPairs();
+    if (status.ok()) status = CheckRefused();
+    if (status.ok()) status = DescribeClasses();
+    if (!status.ok()) return status;
+    SayWhoLeads();
+    FindLevel();
+    CutLongPairs();
+    return Write();
+  }
+
+ private:
+  void Assume(std::string what, std::string value, std::string flag) {
+    report_.assumptions.push_back({std::move(what), std::move(value), std::move(flag)});
+  }
+  void Refuse(const PairFiles& files, const absl::Status& status) {
+    report_.refused.push_back({files.first == files.second
+                                   ? files.first
+                                   : absl::StrCat(files.first, " and ", files.second),
+                               std::string(status.message())});
+  }
+
+  absl::Status CheckFolders() {
+    const fs::path from = fs::absolute(options_.from).lexically_normal();
+    const fs::path out = fs::absolute(options_.out).lexically_normal();
+    const std::string way = out.lexically_relative(from).generic_string();
+    if (way != ".." && !absl::StartsWith(way, "../")) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("--out: ", options_.out.string(), " lies in --from, wanted another place"));
+    }
+    return CheckOut(options_.out, options_.overwrite);
+  }
+
+  absl::Status FindPairs() {
+    const absl::StatusOr<Listing> listing = ListMotions(options_.from);
+    if (!listing.ok()) return listing.status();
+    for (const auto& [extension, count] : listing->others) {
+      Assume("passed by", absl::StrCat(count, " files ", extension, ", which are no motion"), "");
+    }
+    fs::path table = options_.table;
+    std::error_code error;
+    if (table.empty() && fs::exists(options_.from / kTableName, error)) {
+      table = options_.from / kTableName;
+    }
+    absl::StatusOr<Pairing> pairing = PairByName(listing->motions);
+    if (!table.empty()) {
+      const absl::StatusOr<std::string> text =
+          base::ReadFile(table, kMaxTableBytes, "a table of pairs");
+      if (!text.ok()) return text.status();
+      pairing = PairByTable(*text, table.string(), listing->motions);
+      if (!pairing.ok()) return pairing.status();
+    }
+    report_.refused = pairing->refused;
+    pairs_ = std::move(pairing->pairs);
+    if (pairs_.empty()) {
+      return absl::InvalidArgumentError(
+          absl::StrCat(options_.from.string(), ": no pairs among ", listing->motions.size(),
+                       " motion files, wanted names such as kick_01_a.bvh and kick_01_b.bvh, one "
+                       "file for both people, or a table (docs/guides/own_data.md)"));
+    }
+    Assume("pairs",
+           absl::StrCat(pairs_.size(), " by ", table.empty() ? "their names" : table.string()),
+           "--table FILE");
+    return absl::OkStatus();
+  }
+
+  absl::Status FindJoints() {
+    absl::StatusOr<CaptureSkeleton> found;
+    for (const PairFiles& files : pairs_) {  // the first that can be read: each says so itself
+      found = FindSkeleton(options_.from / files.first, options_.skeleton);
+      if (found.ok() || !options_.skeleton.skeleton.empty()) break;
+    }
+    if (!found.ok()) return found.status();
+    skeleton_ = *std::move(found);
+    const motion::Skeleton& skeleton = skeleton_.skeleton;
+    Assume("skeleton", absl::StrCat(skeleton.joint_count(), " joints, of ", skeleton_.origin),
+           "--skeleton FILE, --all-joints");
+    Assume("root", skeleton.joint_names[static_cast<std::size_t>(skeleton.root)], "--root JOINT");
+    for (const std::string& note : skeleton_.notes) Assume("joints", note, "--skeleton FILE");
+    return absl::OkStatus();
+  }
+
+  absl::Status ReadPairs() {
+    std::vector<std::string> notes;
+    const CaptureOptions options = {skeleton_.skeleton, options_.joint_overrides,
+                                    options_.frame_rate_hz, &notes};
+    for (const PairFiles& files : pairs_) {
+      absl::StatusOr<Capture> capture = ReadCapture(options_.from, files, options);
+      if (capture.ok()) {
+        captures_.push_back(*std::move(capture));
+      } else {
+        Refuse(files, capture.status());
+      }
+    }
+    std::map<std::string, int> people;
+    for (const std::string& note : notes) ++people[note];
+    for (const auto& [note, count] : people) {
+      Assume("joint map", absl::StrCat(note, ", of ", count, " people"), "--joint-map JOINT=NAME");
+    }
+    if (captures_.empty()) return AllRefused();
+    return absl::OkStatus();
+  }
+
+  absl::Status AllRefused() const {
+    return absl::InvalidArgumentError(
+        absl::StrCat("none of the ", report_.refused.size(), " pairs can be used"));
+  }
+
+  std::vector<const motion::Poses*> People() const {
+    std::vector<const motion::Poses*> people;
+    for (const Capture& capture : captures_) {
+      people.push_back(&capture.first.poses);
+      people.push_back(&capture.second.poses);
+    }
+    return people;
+  }
+
+  absl::Status FindCoordinates() {
+    std::vector<double> legs;
+    for (const motion::Poses* poses : People()) {
+      legs.push_back(LegLength(skeleton_.skeleton, *poses));
+    }
+    const std::optional<Unit> unit =
+        options_.metres_per_unit ? Unit{*options_.metres_per_unit, "as said"} : FindUnit(legs);
+    if (!unit) {
+      return absl::InvalidArgumentError(absl::StrFormat(
+          "unit: legs are %.4g units long, which is no person's %g to %g m in metres, "
+          "centimetres, millimetres, inches or CMU's; say it with --metres-per-unit",
+          legs.front(), kShortestLeg, kLongestLeg));
+    }
+    const std::optional<motion::UpAxis> axis =
+        options_.up_axis ? options_.up_axis : FindUpAxis(skeleton_.skeleton, People());
+    if (!axis) {
+      return absl::InvalidArgumentError(
+          "up axis: most people stand along x or -z; say it with --up-axis, or turn the files");
+    }
+    const motion::Coordinates coordinates{motion::LengthUnit::kMetres, *axis};
+    for (Capture& capture : captures_) {
+      for (motion::Clip* person : {&capture.first, &capture.second}) {
+        for (motion::Vec3& point : person->poses.all()) {
+          point = ToWorld(coordinates, point * static_cast<float>(unit->metres));
+        }
+      }
+    }
+    Assume(
+        "unit",
+        absl::StrFormat("%s: legs are then %.2f m long", unit->name, legs.front() * unit->metres),
+        "--metres-per-unit METRES");
+    Assume("up axis", std::string(UpAxisName(*axis)), "--up-axis y-up|z-up|y-down");
+    return absl::OkStatus();
+  }
+
+  absl::Status FindRate() {
+    std::map<double, int> rates;
+    for (const Capture& capture : captures_) {
+      ++rates[capture.first.frame_rate_hz];
+      ++rates[capture.second.frame_rate_hz];
+    }
+    const double found = std::max_element(rates.begin(), rates.end(), [](auto& a, auto& b) {
+                           return a.second < b.second;
+                         })->first;
+    const double nth = std::ceil(found / kHighestOwnRate - kSameRate);
+    rate_hz_ = options_.to_rate_hz.value_or(found / std::max(1.0, nth));
+    std::string value = absl::StrFormat("%g frames a second, of files with %g", rate_hz_, found);
+    if (rates.size() > 1) absl::StrAppend(&value, " and ", rates.size() - 1, " other rates");
+    Assume("frame rate", value, "--to-rate HZ, --frame-rate HZ");
+    return absl::OkStatus();
+  }
+
+  absl::Status AlignPairs() {
+    double most = 0;
+    int differ = 0;
+    std::vector<Capture> good;
+    for (Capture& capture : captures_) {
+      const double seconds = Align(rate_hz_, &capture);
+      if (seconds > 1 / rate_hz_) ++differ;
+      most = std::max(most, seconds);
+      if (const absl::Status status = CheckPlausible(capture, skeleton_.skeleton); !status.ok()) {
+        Refuse(capture.files, status);
+      } else {
+        good.push_back(std::move(capture));
+      }
+    }
+    captures_ = std::move(good);
+    if (captures_.empty()) return AllRefused();
+    if (differ > 0) {
+      Assume("length",
+             absl::StrFormat("%d pairs whose people differ by up to %.2f s: cut to the "
+                             "shorter",
+                             differ, most),
+             "");
+    }
+    return absl::OkStatus();
+  }
+
+  absl::Status CheckRefused() {
+    report_.pairs = static_cast<int>(captures_.size());
+    if (report_.refused.empty() || options_.skip_refused) return absl::OkStatus();
+    return absl::InvalidArgumentError(
+        absl::StrCat(report_.refused.size(), " refused and ", captures_.size(),
+                     " usable; nothing was written. Mend them, or go on without them with "
+                     "--skip-refused"));
+  }
+
+  // Classes in alphabetical order, with their properties.
+  absl::Status DescribeClasses() {
+    std::map<std::string, int> counts;
+    for (const Capture& capture : captures_) ++counts[capture.files.label];
+    for (const auto& [label, count] : counts) {
+      dataset::ClassLayout one;
+      one.name = one.folder = label;
+      one.effectors = {skeleton_.hands.left, skeleton_.hands.right};
+      if (absl::StrContains(label, "kick")) {
+        one.effectors = {skeleton_.skeleton.feet->left, skeleton_.skeleton.feet->right};
+      }
+      classes_.push_back(std::move(one));
+    }
+    absl::Status status = SetProperty("--symmetric", options_.symmetric,
+                                      [](dataset::ClassLayout* one) { one->symmetric = true; });
+    if (status.ok()) {
+      status = SetProperty("--handed", options_.handed,
+                           [](dataset::ClassLayout* one) { one->handed = true; });
+    }
+    if (status.ok()) {
+      status = SetProperty("--touches", options_.touches,
+                           [](dataset::ClassLayout* one) { one->touches = true; });
+    }
+    if (status.ok()) status = SetEffectors();
+    if (!status.ok()) return status;
+    for (const dataset::ClassLayout& one : classes_) {
+      Assume("class",
+             absl::StrCat(one.name, ": ", counts[one.name], " pairs; ",
+                          one.symmetric ? "either may lead" : "one leads", ", ",
+                          one.handed ? "with one hand by custom" : "with either hand", ", ",
+                          one.touches ? "bodies may touch" : "bodies are kept apart"),
+             "--symmetric, --handed, --touches CLASS");
+    }
+    return absl::OkStatus();
+  }
+
+  absl::StatusOr<dataset::ClassLayout*> FindClass(const std::string& flag,
+                                                  const std::string& label) {
+    std::vector<std::string> labels;
+    for (dataset::ClassLayout& one : classes_) {
+      if (one.name == label) return &one;
+      labels.push_back(one.name);
+    }
+    return absl::InvalidArgumentError(absl::StrCat(
+        flag, ": came ", base::Quoted(label), ", wanted one of ", absl::StrJoin(labels, ", ")));
+  }
+
+  template <typename Set>
+  absl::Status SetProperty(const std::string& flag, const std::vector<std::string>& labels,
+                           Set set) {
+    for (const std::string& label : labels) {
+      const absl::StatusOr<dataset::ClassLayout*> one = FindClass(flag, label);
+      if (!one.ok()) return one.status();
+      set(*one);
+    }
+    return absl::OkStatus();
+  }
+
+  absl::Status SetEffectors() {
+    for (const auto& [label, joints] : options_.effectors) {
+      const absl::StatusOr<dataset::ClassLayout*> one = FindClass("--effectors", label);
+      if (!one.ok()) return one.status();
+      (*one)->effectors.clear();
+      for (const std::string& joint : joints) {
+        (*one)->effectors.push_back(skeleton_.skeleton.Find(joint));
+        if ((*one)->effectors.back() >= 0) continue;
+        return absl::InvalidArgumentError(
+            absl::StrCat("--effectors: came joint ", base::Quoted(joint), ", wanted one of ",
+                         absl::StrJoin(skeleton_.skeleton.joint_names, ", ")));
+      }
+    }
+    return absl::OkStatus();
+  }
+
+  void SayWhoLeads() {
+    std::map<std::string, int> by_source;
+    std::vector<std::string> close;
+    std::set<std::string> ruled;  // classes
+    for (const Capture& capture : captures_) {
+      ImportedSequence sequence{capture, dataset::LeaderSide::kLeft, capture.files.leader_source};
+      if (sequence.leader_source.empty()) RuleByMotion(&sequence, &close);
+      if (capture.files.leader_source.empty()) ruled.insert(capture.files.label);
+      ++by_source[sequence.leader_source];
+      sequences_.push_back(std::move(sequence));
+    }
+    for (const auto& [source, count] : by_source) {
+      const bool guess = absl::StartsWith(source, "guess");
+      Assume("leader", absl::StrCat(count, " pairs by ", guess ? "who moves farther" : source),
+             guess ? "--table FILE, names with _leader and _follower" : "");
+    }
+    for (const dataset::ClassLayout& one : classes_) {
+      if (ruled.count(one.name) == 0) continue;
+      Assume("leader",
+             absl::StrCat(one.name, ": who moves ", JointNames(one.effectors), " farther"),
+             "--effectors CLASS=JOINT,...");
+    }
+    if (!close.empty()) {
+      Assume("leader", absl::StrCat(close.size(), " close calls: ", ListSome(close)),
+             "--table FILE");
+    }
+  }
+
+  std::string JointNames(const std::vector<int>& joints) const {
+    return absl::StrJoin(joints, " or ", [&](std::string* out, int joint) {
+      out->append(skeleton_.skeleton.joint_names[static_cast<std::size_t>(joint)]);
+    });
+  }
+
+  void RuleByMotion(ImportedSequence* sequence, std::vector<std::string>* close) const {
+    const Capture& capture = sequence->capture;
+    const int root = skeleton_.skeleton.root;
+    for (const dataset::ClassLayout& one : classes_) {
+      if (one.name != capture.files.label) continue;
+      const float first = dataset::PeakDisplacement(capture.first, root, one.effectors);
+      const float second = dataset::PeakDisplacement(capture.second, root, one.effectors);
+      sequence->leader_side =
+          dataset::LeaderByMotion(capture.first, capture.second, root, one.effectors);
+      if (std::max(first, second) < kCloseCall * std::min(first, second)) {
+        close->push_back(capture.files.first);
+      }
+    }
+    sequence->leader_source = "guess: motion";
+  }
+
+  void FindLevel() {
+    std::vector<motion::Vec3> directions, feet;
+    for (const motion::Poses* poses : People()) {
+      for (motion::Vec3 up : dataset::StandingDirections(skeleton_.skeleton, *poses)) {
+        directions.push_back(up);
+      }
+      for (motion::Vec3 foot : dataset::LowerFeet(skeleton_.skeleton, *poses)) feet.push_back(foot);
+    }
+    const dataset::Lean lean = dataset::MeanLean(directions);
+    const double degrees = std::hypot(lean.x, lean.z);
+    const double floor = dataset::HeightQuantile(feet, kFloorShare);
+    level_ =
+        options_.level.value_or(degrees > kLeastLeanDegrees || std::abs(floor) > kLeastFloorMetres);
+    Assume("level",
+           absl::StrFormat("%s: people lean %.1f degrees, feet stand at %.2f m",
+                           level_ ? "yes" : "no", degrees, floor),
+           "--level yes|no");
+  }
+
+  void CutLongPairs() {
+    const int longest = std::max(2, static_cast<int>(options_.longest_seconds * rate_hz_));
+    std::vector<ImportedSequence> all;
+    int cut = 0;
+    for (const ImportedSequence& sequence : sequences_) {
+      const std::vector<Capture> pieces = Cut(sequence.capture, longest);
+      if (pieces.size() > 1) ++cut;
+      for (const Capture& piece : pieces) {
+        all.push_back({piece, sequence.leader_side, sequence.leader_source});
+      }
+    }
+    sequences_ = std::move(all);
+    if (cut == 0) return;
+    Assume("longest",
+           absl::StrFormat("%g s: %d longer pairs were cut into pieces", options_.longest_seconds,
+                           cut),
+           "--longest SECONDS");
+  }
+
+  absl::Status Write() {
+    dataset::DatasetLayout layout;
+    layout.name = options_.name;
+    if (layout.name.empty()) {
+      const fs::path out = fs::absolute(options_.out).lexically_normal();
+      layout.name = (out.filename().empty() ? out.parent_path() : out).filename().string();
+    }
+    layout.frame_rate_hz = rate_hz_;
+    layout.skeleton = skeleton_.skeleton;
+    layout.parts = skeleton_.parts;
+    layout.classes = classes_;
+    layout.level = level_;
+    Assume("name", layout.name, "--name NAME");
+    report_.sequences = static_cast<int>(sequences_.size());
+    return WriteDataset(options_.out, layout, sequences_);
+  }
+
+  const ImportOptions& options_;
+  ImportReport& report_;
+  std::vector<PairFiles> pairs_;
+  CaptureSkeleton skeleton_;
+  std::vector<Capture> captures_;
+  double rate_hz_ = 0;
+  std::vector<dataset::ClassLayout> classes_;
+  std::vector<ImportedSequence> sequences_;
+  bool level_ = false;
+};
+
+}  // namespace
+
+absl::Status Import(const ImportOptions& options, ImportReport* report) {
+  return Importer(options, report).Run();
+}
+
+}  // namespace duet::importing

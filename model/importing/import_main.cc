@@ -1,0 +1,137 @@
+// duet-import: turns a folder of motion files of two people into a data set to train on.
+//
+//   duet-import --from captures --out studio
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "absl/strings/str_split.h"
+#include "model/base/flag_names.h"
+#include "model/importing/import.h"
+#include "model/motion/coordinates.h"
+
+namespace duet::importing {
+namespace {
+
+// Flags whose values CLI11 does not know, as they were typed.
+struct Words {
+  std::string up_axis;
+  std::string level;
+  std::vector<std::string> effectors;  // CLASS=JOINT,JOINT
+  std::vector<std::string> joints;     // JOINT=FILE_JOINT
+};
+
+void Declare(ImportOptions* options, Words* words, CLI::App* app) {
+  app->add_option("--from", options->from, "Folder of motion files")->required()->type_name("DIR");
+  app->add_option("--out", options->out, "The data set to write")->required()->type_name("DIR");
+  app->add_option("--name", options->name, "Of the data set (default: its folder's)")
+      ->type_name("NAME");
+  app->add_option("--table", options->table,
+                  "Tab-separated: leader, follower, label, subjects (default: FROM/pairs.tsv)")
+      ->type_name("FILE");
+  app->add_option("--skeleton", options->skeleton.skeleton,
+                  "sbu, or a file with the skeleton object of dataset.json")
+      ->type_name("FILE");
+  app->add_option("--root", options->skeleton.root, "The joint that bodies are built from")
+      ->type_name("JOINT");
+  app->add_flag("--all-joints", options->skeleton.all_joints, "Fingers and face as well");
+  app->add_option("--joint-map", words->joints,
+                  "Where names alone do not tell which is which; repeatable")
+      ->type_name("JOINT=FILE_JOINT");
+  app->add_option("--frame-rate", options->frame_rate_hz, "Replaces what the files say")
+      ->check(CLI::Range(1.0, 1000.0))
+      ->type_name("HZ");
+  app->add_option("--to-rate", options->to_rate_hz, "Of the data set (default: theirs, 30 at most)")
+      ->check(CLI::Range(1.0, 240.0))
+      ->type_name("HZ");
+  app->add_option("--metres-per-unit", options->metres_per_unit,
+                  "Metres in one unit of the files (0.01 for centimetres)")
+      ->check(CLI::PositiveNumber)
+      ->type_name("METRES");
+  app->add_option("--up-axis", words->up_axis, "Of the files (default: along which people stand)")
+      ->type_name("y-up|z-up|y-down");
+  app->add_option("--longest", options->longest_seconds, "Seconds; longer pairs are cut")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str()
+      ->type_name("SECONDS");
+  app->add_option("--symmetric", options->symmetric, "Classes in which either person may lead")
+      ->delimiter(',')
+      ->type_name("CLASS");
+  app->add_option("--handed", options->handed,
+                  "Classes done with one hand by custom, which are not mirrored")
+      ->delimiter(',')
+      ->type_name("CLASS");
+  app->add_option("--touches", options->touches, "Classes in which bodies may touch")
+      ->delimiter(',')
+      ->type_name("CLASS");
+  app->add_option("--effectors", words->effectors, "Whoever moves these farther leads; repeatable")
+      ->type_name("CLASS=JOINT,JOINT");
+  app->add_option("--level", words->level, "Level the people (default: where they lean)")
+      ->check(CLI::IsMember({"yes", "no"}))
+      ->type_name("yes|no");
+  app->add_flag("--skip-refused", options->skip_refused, "Go on without pairs that are refused");
+  app->add_flag("--overwrite", options->overwrite, "Replace the data set at --out");
+}
+
+absl::Status Wrong(const std::string& flag, const std::string& came, const std::string& wanted) {
+  return absl::InvalidArgumentError(absl::StrCat(flag, ": came ", came, ", wanted ", wanted));
+}
+
+absl::Status Parse(const Words& words, ImportOptions* options) {
+  if (!words.level.empty()) options->level = words.level == "yes";
+  if (!words.up_axis.empty()) {
+    options->up_axis = motion::ParseUpAxis(words.up_axis);
+    if (!options->up_axis) return Wrong("--up-axis", words.up_axis, motion::kUpAxisNames);
+  }
+  for (const std::string& word : words.effectors) {
+    const std::pair<std::string, std::string> parts = absl::StrSplit(word, absl::MaxSplits('=', 1));
+    if (parts.second.empty()) return Wrong("--effectors", word, "CLASS=JOINT,JOINT");
+    options->effectors[parts.first] = absl::StrSplit(parts.second, ',');
+  }
+  for (const std::string& word : words.joints) {
+    std::pair<std::string, std::string> parts = absl::StrSplit(word, absl::MaxSplits('=', 1));
+    if (parts.second.empty()) return Wrong("--joint-map", word, "JOINT=FILE_JOINT");
+    options->joint_overrides.insert(std::move(parts));
+  }
+  return absl::OkStatus();
+}
+
+void Print(const ImportReport& report) {
+  for (const Assumption& one : report.assumptions) {
+    std::cout << one.what << ": " << one.value;
+    if (!one.flag.empty()) std::cout << "  [" << one.flag << "]";
+    std::cout << "\n";
+  }
+  for (const Refusal& one : report.refused) {
+    std::cerr << "refused: " << one.name << ": " << one.reason << "\n";
+  }
+}
+
+}  // namespace
+}  // namespace duet::importing
+
+int main(int argc, char** argv) {
+  duet::importing::ImportOptions options;
+  duet::importing::Words words;
+  CLI::App app("Turns a folder of motion files of two people into a data set to train on.",
+               "duet-import");
+  Declare(&options, &words, &app);
+  const duet::base::KebabCaseCommandLine line(argc, argv);
+  CLI11_PARSE(app, line.argc(), line.argv());
+  duet::importing::ImportReport report;
+  absl::Status status = duet::importing::Parse(words, &options);
+  if (status.ok()) status = duet::importing::Import(options, &report);
+  duet::importing::Print(report);
+  if (!status.ok()) {
+    std::cerr << "duet-import: " << status.message() << "\n";
+    return 1;
+  }
+  std::cout << options.out.string() << ": " << report.sequences << " sequences of " << report.pairs
+            << " pairs; " << report.refused.size() << " refused\n";
+  return 0;
+}

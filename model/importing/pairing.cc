@@ -1,0 +1,240 @@
+#include "model/importing/pairing.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "absl/strings/str_split.h"
+#include "absl/strings/strip.h"
+#include "model/base/text.h"
+
+namespace duet::importing {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Whose file it is, said by a name's last word.
+struct RoleWords {
+  const char* first;
+  const char* second;
+  bool tells_leader;
+};
+constexpr RoleWords kRoleWords[] = {{"leader", "follower", true}, {"a", "b", false},
+                                    {"p1", "p2", false},          {"person1", "person2", false},
+                                    {"actor1", "actor2", false},  {"first", "second", false},
+                                    {"left", "right", false}};
+
+bool IsSeparator(char c) { return c == '_' || c == '-' || c == '.' || c == ' '; }
+bool IsDigit(char c) { return absl::ascii_isdigit(static_cast<unsigned char>(c)); }
+
+// A file name taken apart: "kick/day 1/02_a.bvh".
+struct Parsed {
+  std::string file;
+  std::vector<std::string> folders;  // kick, day 1
+  std::string base;                  // 02; empty where the word is the whole name
+  const RoleWords* role = nullptr;   // whose word it ends with
+  bool second = false;               // which of the two
+};
+
+Parsed ParseName(const std::string& file) {
+  Parsed parsed;
+  parsed.file = file;
+  const fs::path path(file);
+  for (const fs::path& folder : path.parent_path()) parsed.folders.push_back(folder.string());
+  parsed.base = path.stem().string();
+  const std::string stem = absl::AsciiStrToLower(parsed.base);
+  for (const RoleWords& role : kRoleWords) {
+    for (const bool second : {false, true}) {
+      const std::string word = second ? role.second : role.first;
+      if (!absl::EndsWith(stem, word)) continue;
+      const std::size_t rest = stem.size() - word.size();
+      if (rest > 0 && !IsSeparator(stem[rest - 1])) continue;
+      parsed.base.resize(rest > 0 ? rest - 1 : 0);
+      parsed.role = &role;
+      parsed.second = second;
+      return parsed;
+    }
+  }
+  return parsed;
+}
+
+// "kick_01" -> "kick"; a name that is a number alone stays.
+std::string WithoutNumber(const std::string& name) {
+  std::size_t end = name.size();
+  while (end > 0 && (IsDigit(name[end - 1]) || IsSeparator(name[end - 1]))) --end;
+  return end == 0 || end == name.size() || !IsDigit(name.back()) ? name : name.substr(0, end);
+}
+
+// A file name that every system takes.
+std::string ToFileName(absl::string_view text) {
+  std::string name(text);
+  for (char& c : name) {
+    const bool plain = absl::ascii_isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '.';
+    if (!plain) c = '_';
+  }
+  return std::string(absl::StripPrefix(name, "."));
+}
+
+// Label and name of the pair that a file belongs to.
+void NamePair(const Parsed& parsed, PairFiles* pair) {
+  std::vector<std::string> words = parsed.folders;
+  if (!parsed.base.empty()) words.push_back(parsed.base);
+  const bool in_class_folder = words.size() > 1;
+  if (words.empty()) return;
+  pair->label = ToLabel(in_class_folder ? words.front() : WithoutNumber(words.front()));
+  if (in_class_folder) words.erase(words.begin());
+  pair->name = ToFileName(absl::StrJoin(words, "_"));
+}
+
+// Names that came out alike are told apart by a number.
+void MakeNamesUnique(std::vector<PairFiles>* pairs) {
+  std::set<std::string> seen;
+  for (PairFiles& pair : *pairs) {
+    const std::string name = pair.name;
+    for (int number = 2; !seen.insert(absl::StrCat(pair.label, "/", pair.name)).second; ++number) {
+      pair.name = absl::StrCat(name, "_", number);
+    }
+  }
+}
+
+std::string NameOf(const Parsed& parsed) {
+  std::vector<std::string> words = parsed.folders;
+  if (!parsed.base.empty()) words.push_back(parsed.base);
+  return absl::StrJoin(words, "/");
+}
+
+void Add(PairFiles pair, Pairing* pairing) {
+  if (pair.label.empty()) {
+    pairing->refused.push_back(
+        {pair.first,
+         "its name tells no class, wanted CLASS_NUMBER, a folder for each class, or a "
+         "table"});
+    return;
+  }
+  pairing->pairs.push_back(std::move(pair));
+}
+
+// The files of one name and one pair of words.
+void AddGroup(const std::vector<Parsed>& group, Pairing* pairing) {
+  std::vector<const Parsed*> people[2];
+  for (const Parsed& one : group) people[one.second ? 1 : 0].push_back(&one);
+  const RoleWords& role = *group.front().role;
+  if (people[0].size() == 1 && people[1].size() == 1) {
+    PairFiles pair;
+    pair.first = people[0].front()->file;
+    pair.second = people[1].front()->file;
+    if (role.tells_leader) pair.leader_source = "name";
+    NamePair(group.front(), &pair);
+    return Add(std::move(pair), pairing);
+  }
+  for (const Parsed& one : group) {
+    const bool alone = people[one.second ? 0 : 1].empty();
+    pairing->refused.push_back(
+        {one.file, alone ? absl::StrCat("the other person is missing, wanted a file that ends in ",
+                                        one.second ? role.first : role.second)
+                         : absl::StrCat("more than two files are called ", NameOf(one),
+                                        ", wanted one a person")});
+  }
+}
+
+}  // namespace
+
+std::string ToLabel(absl::string_view text) {
+  std::string label;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (absl::ascii_isalnum(byte)) {
+      label.push_back(absl::ascii_tolower(byte));
+    } else if (!label.empty() && label.back() != '_') {
+      label.push_back('_');
+    }
+  }
+  return std::string(absl::StripSuffix(label, "_"));
+}
+
+Pairing PairByName(const std::vector<std::string>& files) {
+  Pairing pairing;
+  std::map<std::pair<std::string, const char*>, std::vector<Parsed>> groups;
+  for (const std::string& file : files) {
+    Parsed parsed = ParseName(file);
+    if (parsed.role != nullptr) {
+      groups[{NameOf(parsed), parsed.role->first}].push_back(std::move(parsed));
+      continue;
+    }
+    PairFiles pair;
+    pair.first = pair.second = file;
+    NamePair(parsed, &pair);
+    Add(std::move(pair), &pairing);
+  }
+  for (const auto& [name, group] : groups) AddGroup(group, &pairing);
+  std::sort(pairing.pairs.begin(), pairing.pairs.end(),
+            [](const PairFiles& a, const PairFiles& b) { return a.first < b.first; });
+  MakeNamesUnique(&pairing.pairs);
+  return pairing;
+}
+
+absl::StatusOr<Pairing> PairByTable(absl::string_view table, absl::string_view source,
+                                    const std::vector<std::string>& files) {
+  base::LineReader lines(base::SkipByteOrderMark(table));
+  absl::string_view line;
+  std::map<std::string, std::size_t> columns;
+  if (lines.Next(&line)) {
+    const std::vector<std::string> names = absl::StrSplit(line, '\t');
+    for (std::size_t i = 0; i < names.size(); ++i) columns.emplace(names[i], i);
+  }
+  for (const char* column : {"leader", "follower", "label"}) {
+    if (columns.count(column) > 0) continue;
+    return base::ErrorAt(source, 1,
+                         absl::StrCat("no column ", column,
+                                      ", wanted a header of tab-separated names with leader, "
+                                      "follower and label"));
+  }
+  const std::set<std::string> known(files.begin(), files.end());
+  Pairing pairing;
+  while (lines.Next(&line)) {
+    if (absl::StripAsciiWhitespace(line).empty()) continue;
+    const std::vector<std::string> cells = absl::StrSplit(line, '\t');
+    if (cells.size() != columns.size()) {
+      return base::ErrorAt(
+          source, lines.number(),
+          absl::StrCat("came ", cells.size(), " columns, wanted ", columns.size()));
+    }
+    PairFiles pair;
+    pair.first = cells[columns["leader"]];
+    pair.second = cells[columns["follower"]].empty() ? pair.first : cells[columns["follower"]];
+    pair.label = ToLabel(cells[columns["label"]]);
+    pair.leader_source = "table";
+    NamePair(ParseName(pair.first), &pair);
+    pair.label = ToLabel(cells[columns["label"]]);
+    if (pair.label.empty()) {
+      return base::ErrorAt(source, lines.number(), "label: came none, wanted a class's name");
+    }
+    if (columns.count("subjects") > 0) {
+      for (absl::string_view subject : absl::StrSplit(cells[columns["subjects"]], ',')) {
+        subject = absl::StripAsciiWhitespace(subject);
+        if (!subject.empty()) pair.subjects.emplace_back(subject);
+      }
+    }
+    const std::string* missing = known.count(pair.first) == 0    ? &pair.first
+                                 : known.count(pair.second) == 0 ? &pair.second
+                                                                 : nullptr;
+    if (missing != nullptr) {
+      pairing.refused.push_back({*missing, absl::StrCat("named in ", source, ":", lines.number(),
+                                                        ", but there is no such motion file")});
+      continue;
+    }
+    pairing.pairs.push_back(std::move(pair));
+  }
+  MakeNamesUnique(&pairing.pairs);
+  return pairing;
+}
+
+}  // namespace duet::importing

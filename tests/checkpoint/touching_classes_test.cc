@@ -1,0 +1,66 @@
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "model/checkpoint/manifest.h"
+#include "tests/support/status_matchers.h"
+#include "tests/support/tiny_checkpoint.h"
+
+namespace duet::checkpoint {
+namespace {
+
+using test::IsOk;
+using test::StatusIs;
+using test::TinyManifest;
+
+using nlohmann::json;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+// Of a model of the classes kick and hug.
+Manifest Written() {
+  Manifest manifest = TinyManifest();
+  manifest.weights.bytes = 1234;
+  manifest.weights.sha256 = std::string(64, 'a');
+  return manifest;
+}
+
+TEST(TouchingClassesInManifest, RoundTrip) {
+  Manifest manifest = Written();
+  manifest.model.touching_classes = {"kick"};
+  const absl::StatusOr<Manifest> read = ParseManifest(SerializeManifest(manifest));
+  ASSERT_THAT(read, IsOk());
+  EXPECT_THAT(read->model.touching_classes, ElementsAre("kick"));
+}
+
+TEST(TouchingClassesInManifest, NoneIsNotTheSameAsNotSaid) {
+  const std::string text = SerializeManifest(Written());
+  const absl::StatusOr<Manifest> none = ParseManifest(text);
+  ASSERT_THAT(none, IsOk());
+  EXPECT_THAT(none->model.touching_classes, IsEmpty());
+  json silent = json::parse(text);
+  silent.erase("touching_classes");
+  const absl::StatusOr<Manifest> earlier = ParseManifest(silent.dump());
+  ASSERT_THAT(earlier, IsOk());
+  EXPECT_THAT(earlier->model.touching_classes, ElementsAre("hug"));
+  silent["classes"] = {"kick", "bow"};
+  const absl::StatusOr<Manifest> without_hug = ParseManifest(silent.dump());
+  ASSERT_THAT(without_hug, IsOk());
+  EXPECT_THAT(without_hug->model.touching_classes, IsEmpty());
+}
+
+TEST(TouchingClassesInManifest, MustBeClasses) {
+  json root = json::parse(SerializeManifest(Written()));
+  root["touching_classes"] = {"hug", "dance"};
+  EXPECT_THAT(ParseManifest(root.dump()),
+              StatusIs(absl::StatusCode::kInvalidArgument,
+                       HasSubstr("touching_classes: \"dance\", wanted one of classes")));
+  root["touching_classes"] = {"hug", "hug"};
+  EXPECT_THAT(ParseManifest(root.dump()),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("repeated")));
+}
+
+}  // namespace
+}  // namespace duet::checkpoint
