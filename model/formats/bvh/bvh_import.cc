@@ -52,6 +52,7 @@ class Importer {
         source_, Names(), Pose(0), options_.skeleton, options_.joint_overrides);
     if (!map.ok()) return map.status();
     for (const std::string& note : map->notes) Note(note);
+    NotePositionChannels();
     motion::Clip clip;
     clip.joint_names = options_.skeleton.joint_names;
     clip.frame_rate_hz = FrameRate();
@@ -65,6 +66,14 @@ class Importer {
  private:
   void Note(std::string note) {
     if (options_.notes != nullptr) options_.notes->push_back(std::move(note));
+  }
+
+  void NotePositionChannels() {
+    const std::optional<PositionChannels> found = FindPositionChannels(document_);
+    if (!found.has_value()) return;
+    Note(*found == PositionChannels::kReplaceOffset
+             ? "position channels below the root: in place of OFFSET, as most joints have it"
+             : "position channels below the root: added to OFFSET, as most joints have it");
   }
 
   std::vector<std::string> Names() const {

@@ -14,6 +14,7 @@ namespace {
 
 using test::LargestDistance;
 using test::MakePerson;
+using test::PersonOptions;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -161,6 +162,73 @@ TEST(BvhImport, RoundsFrameTimesToTheRateThatIsMeant) {
     broadcast.frame_time_s = 1 / rate;
     EXPECT_NEAR(FromBvh(broadcast, "a.bvh")->frame_rate_hz, rate, 1e-6);
   }
+}
+
+// The person below a root that stands still, as some programs write it: every joint has position
+// channels, the pelvis those of the whole motion.
+BvhDocument BelowAStandingRoot(const BvhDocument& person, PositionChannels kind) {
+  const retargeting::Vec3d rest = {150, 90, -200};  // where the rig stood when it was made
+  BvhDocument document;
+  document.frame_time_s = person.frame_time_s;
+  document.frame_count = person.frame_count;
+  document.joints.push_back({"reference", -1, {}, {}, false});
+  for (BvhJoint joint : person.joints) {
+    const bool pelvis = joint.parent < 0;
+    ++joint.parent;
+    if (pelvis) {
+      joint.offset = rest;
+    } else if (!joint.end_site) {
+      joint.channels.insert(joint.channels.begin(), {BvhChannel::kXPosition, BvhChannel::kYPosition,
+                                                     BvhChannel::kZPosition});
+    }
+    document.joints.push_back(joint);
+  }
+  const bool adds = kind == PositionChannels::kAddToOffset;
+  const float* value = person.values.data();
+  for (int frame = 0; frame < person.frame_count; ++frame) {
+    for (const BvhJoint& joint : person.joints) {
+      const bool pelvis = joint.parent < 0;
+      if (joint.end_site) continue;
+      retargeting::Vec3d at = joint.offset;
+      if (pelvis) at = {value[0], value[1], value[2]};
+      if (adds) at = at - (pelvis ? rest : joint.offset);
+      for (double v : {at.x, at.y, at.z}) document.values.push_back(static_cast<float>(v));
+      value += pelvis ? 3 : 0;
+      document.values.insert(document.values.end(), value, value + 3);
+      value += 3;
+    }
+  }
+  return document;
+}
+
+TEST(BvhImport, ReadsPositionChannelsOfEveryJointHoweverTheyAreMeant) {
+  PersonOptions near, far;
+  near.at = {0.1f, 1, 0.05f};
+  far.at = {1.4f, 0.95f, -1.9f};
+  const std::pair<PositionChannels, const char*> kinds[] = {
+      {PositionChannels::kReplaceOffset, "position channels below the root: in place of OFFSET"},
+      {PositionChannels::kAddToOffset, "position channels below the root: added to OFFSET"}};
+  for (const PersonOptions& place : {near, far}) {
+    const motion::Clip clip = MakePerson(place);
+    for (const auto& [kind, note] : kinds) {
+      std::vector<std::string> notes;
+      BvhImportOptions options;
+      options.notes = &notes;
+      const absl::StatusOr<motion::Clip> read =
+          FromBvh(BelowAStandingRoot(Export(clip), kind), "a.bvh", options);
+      ASSERT_TRUE(read.ok()) << read.status();
+      EXPECT_LT(LargestDistance(*read, clip), kOneMillimetre) << note;
+      EXPECT_THAT(notes, Contains(HasSubstr(note)));
+    }
+  }
+}
+
+TEST(BvhImport, SaysNothingOfPositionChannelsWhereOnlyTheRootHasThem) {
+  std::vector<std::string> notes;
+  BvhImportOptions options;
+  options.notes = &notes;
+  ASSERT_TRUE(FromBvh(Export(MakePerson({2})), "a.bvh", options).ok());
+  EXPECT_THAT(notes, Not(Contains(HasSubstr("position channels"))));
 }
 
 TEST(BvhImport, ReadsTheSecondPersonOfAFileWithTwo) {
