@@ -42,7 +42,7 @@ absl::StatusOr<motion::Clip> ToSkeleton(const motion::RecordedMotion& motion,
   const bool second = options.side == Side::kRight && motion.people.size() > 1;
   const motion::Clip& person = motion.people[second ? 1 : 0];
   absl::StatusOr<retargeting::JointMap> map = retargeting::MapJoints(
-      source, person.joint_names, person.poses[0], options.skeleton, options.joint_overrides);
+      source, person.joint_names, person.poses, options.skeleton, options.joint_overrides);
   if (!map.ok()) return map.status();
   if (options.notes != nullptr) {
     options.notes->insert(options.notes->end(), map->notes.begin(), map->notes.end());

@@ -127,9 +127,9 @@ TEST_F(MotionFile, LetsTheCallerSayTheCoordinates) {
   EXPECT_LT(Distance(clip->at(0, 7), {1, 3, -2}), 1e-6f);
 }
 
-// Two joints may be the neck; in the first frame the lower one is between the shoulders, in the
-// second the upper one.
-TEST_F(MotionFile, MapsJointsByTheFirstFrame) {
+// Two joints may be the neck: in the first frame the upper one is between the shoulders, in all
+// others the lower one.
+TEST_F(MotionFile, MapsJointsByTheWholeMotion) {
   motion::Clip person = pair_.leader;
   person.joint_names[1] = "LowerNeck";
   person.joint_names.push_back("UpperNeck");
@@ -137,11 +137,11 @@ TEST_F(MotionFile, MapsJointsByTheFirstFrame) {
   for (const std::string& joint : person.joint_names) {
     absl::StrAppend(&text, ",", joint, "_x,", joint, "_y,", joint, "_z");
   }
-  for (const int frame : {0, 1}) {
+  for (const int frame : {0, 1, 2}) {
     absl::StrAppend(&text, "\n", frame);
     std::vector<motion::Vec3> pose(pair_.leader.poses[0].begin(), pair_.leader.poses[0].end());
     pose.push_back(pose[1] + motion::Vec3{0, 0.05f, 0});
-    if (frame == 1) std::swap(pose[1], pose.back());
+    if (frame == 0) std::swap(pose[1], pose.back());
     for (const motion::Vec3& p : pose) absl::StrAppend(&text, ",", p.x, ",", p.y, ",", p.z);
   }
   const fs::path path = folder_ / "a.csv";
