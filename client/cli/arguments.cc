@@ -101,6 +101,10 @@ void AddInputFlags(CLI::App* app, SynthesizeArguments* arguments) {
       [input](std::pair<std::string, std::string> joints) { input->joints.insert(joints); },
       "Where names alone do not tell which is which; repeatable")
       ->group(kGroup);
+  app->add_option("--joint-map-file", input->joint_table,
+                  "A table of such joints, one MODEL_JOINT=FILE_JOINT a line; --joint-map wins")
+      ->type_name("FILE")
+      ->group(kGroup);
 }
 
 void AddSamplingFlags(CLI::App* app, SynthesizeArguments* arguments) {

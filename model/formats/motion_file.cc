@@ -15,6 +15,7 @@
 #include "model/formats/flat/npy.h"
 #include "model/formats/flat/sbu_text.h"
 #include "model/motion/motion_limits.h"
+#include "model/motion/reading_setting.h"
 #include "model/motion/recorded_motion.h"
 
 namespace duet::formats {
@@ -149,8 +150,9 @@ absl::StatusOr<motion::Clip> ReadLeader(const fs::path& path, const ReadOptions&
   if (!clip.ok()) return clip.status();
   if (options.frame_rate_hz.has_value()) clip->frame_rate_hz = *options.frame_rate_hz;
   if (clip->frame_rate_hz > 0) return clip;
-  return absl::InvalidArgumentError(
-      absl::StrCat(path.string(), ": frame rate: the file has none, wanted one beside it"));
+  return MendedBy(absl::InvalidArgumentError(absl::StrCat(
+                      path.string(), ": frame rate: the file has none, wanted one beside it")),
+                  motion::ReadingSetting::kFrameRate);
 }
 
 absl::StatusOr<std::vector<motion::Vec3>> ReadFollowerStart(const fs::path& path,

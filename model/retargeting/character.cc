@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "model/motion/reading_setting.h"
 
 namespace duet::retargeting {
 namespace {
@@ -78,12 +79,16 @@ class ClipMaker {
         "metres per unit: came ", metres, ", wanted more than 0 and at most ", kLargestUnit));
   }
 
+  absl::Status UnitNeeded(absl::string_view why) const {
+    return MendedBy(absl::InvalidArgumentError(
+                        absl::StrCat(source_, ": size: ", why, "; say how many metres a unit has")),
+                    motion::ReadingSetting::kMetresPerUnit);
+  }
+
   absl::StatusOr<double> MetresPerUnit(const std::vector<motion::Vec3>& straight) {
     if (options_.metres_per_unit.has_value()) return CheckUnit(*options_.metres_per_unit);
     if (!options_.skeleton.feet) {
-      return absl::InvalidArgumentError(absl::StrCat(
-          source_,
-          ": size: the skeleton has no feet to tell it by; say how many metres a unit has"));
+      return UnitNeeded("the skeleton has no feet to tell it by");
     }
     const double length = LegLength(straight);
     const std::string& root =
@@ -96,9 +101,8 @@ class ClipMaker {
       return unit.metres;
     }
     if (!(length >= kSmallestLeg)) {
-      return absl::InvalidArgumentError(
-          absl::StrCat(source_, ": size: foot to ", root, " came as ", length,
-                       " units, which is no size; say how many metres a unit has"));
+      return UnitNeeded(
+          absl::StrCat("foot to ", root, " came as ", length, " units, which is no size"));
     }
     Note(absl::StrCat("warning: unit: a guess: foot to ", root, " is ", Rounded(length, 0.01),
                       " units, no person's in any usual unit, and was taken as ", kTypicalLeg,

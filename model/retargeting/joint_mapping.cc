@@ -10,6 +10,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "model/base/text.h"
+#include "model/motion/reading_setting.h"
 #include "model/retargeting/joint_names.h"
 
 namespace duet::retargeting {
@@ -149,9 +150,11 @@ class Mapper {
     }
     map.notes = std::move(notes_);
     if (missing.empty()) return map;
-    return absl::InvalidArgumentError(
-        absl::StrCat(source_, ": joints: nothing stands for ", absl::StrJoin(missing, ", "), "; ",
-                     ListNames(), "; say which with a joint map such as ", missing[0], "=NAME"));
+    return MendedBy(
+        absl::InvalidArgumentError(absl::StrCat(
+            source_, ": joints: nothing stands for ", absl::StrJoin(missing, ", "), "; ",
+            ListNames(), "; say which with a joint map such as ", missing[0], "=NAME")),
+        motion::ReadingSetting::kJointMap);
   }
 
   bool Found(int joint) const {
