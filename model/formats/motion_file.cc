@@ -17,6 +17,7 @@
 #include "model/motion/motion_limits.h"
 #include "model/motion/reading_setting.h"
 #include "model/motion/recorded_motion.h"
+#include "model/retargeting/character.h"
 
 namespace duet::formats {
 namespace {
@@ -35,6 +36,16 @@ Format FormatOf(const fs::path& path) {
   if (extension == ".npy") return Format::kNpy;
   if (extension == ".json") return Format::kJson;
   return Format::kUnknown;
+}
+
+// Positions alone do not say which axis is up where nobody does: Blender's is z.
+void WarnOfUpAxis(const motion::Clip& clip, const motion::Skeleton& skeleton,
+                  std::vector<std::string>* notes) {
+  const std::optional<motion::UpAxis> up = retargeting::FindUpAxis(clip, skeleton);
+  if (!up.has_value() || *up == motion::UpAxis::kYUp) return;
+  notes->push_back(absl::StrCat(
+      "warning: up axis: as the file was read, the feet are not below the root along y; ",
+      motion::UpAxisName(*up), " would fit; say which axis is up"));
 }
 
 // The joints of a file with positions as the skeleton's, in metres, y up.
@@ -56,6 +67,9 @@ absl::StatusOr<motion::Clip> ToSkeleton(const motion::RecordedMotion& motion,
     std::vector<motion::Vec3> pose = ApplyJointMap(*map, person.poses[frame]);
     for (motion::Vec3& position : pose) position = ToWorld(coordinates, position);
     clip.Append(pose);
+  }
+  if (options.notes != nullptr && !options.coordinates.has_value()) {
+    WarnOfUpAxis(clip, options.skeleton, options.notes);
   }
   return clip;
 }

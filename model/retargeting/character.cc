@@ -48,7 +48,7 @@ class ClipMaker {
     for (int frame = 0; frame < character_.frame_count; ++frame) {
       clip.Append(ApplyJointMap(*map, character_.pose(frame)));
     }
-    const motion::Coordinates coordinates{motion::LengthUnit::kMetres, FindUpAxis(clip)};
+    const motion::Coordinates coordinates{motion::LengthUnit::kMetres, UpAxis(clip)};
     for (motion::Vec3& position : clip.poses.all()) {
       position = ToWorld(coordinates, position * static_cast<float>(*scale));
     }
@@ -110,26 +110,14 @@ class ClipMaker {
     return kTypicalLeg / length;
   }
 
-  motion::UpAxis FindUpAxis(const motion::Clip& clip) {
+  motion::UpAxis UpAxis(const motion::Clip& clip) {
     if (options_.up_axis.has_value()) return *options_.up_axis;
-    const motion::Skeleton& skeleton = options_.skeleton;
-    if (!skeleton.feet) return motion::UpAxis::kYUp;
-    motion::Vec3 up;
-    for (int frame = 0; frame < clip.frame_count(); ++frame) {
-      const motion::Vec3 feet =
-          (clip.at(frame, skeleton.feet->left) + clip.at(frame, skeleton.feet->right)) / 2;
-      const motion::Vec3 body = clip.at(frame, skeleton.root) - feet;
-      if (Norm(body) > 0) up += body / Norm(body);
-    }
-    if (up.z > std::abs(up.y)) {
-      Note("up axis: z (the feet are below the root along it)");
-      return motion::UpAxis::kZUp;
-    }
-    if (-up.y > std::abs(up.z)) {
+    const motion::UpAxis up = FindUpAxis(clip, options_.skeleton).value_or(motion::UpAxis::kYUp);
+    if (up == motion::UpAxis::kZUp) Note("up axis: z (the feet are below the root along it)");
+    if (up == motion::UpAxis::kYDown) {
       Note("up axis: y pointing down (the feet are above the root along it)");
-      return motion::UpAxis::kYDown;
     }
-    return motion::UpAxis::kYUp;
+    return up;
   }
 
   const Character& character_;
@@ -138,6 +126,21 @@ class ClipMaker {
 };
 
 }  // namespace
+
+std::optional<motion::UpAxis> FindUpAxis(const motion::Clip& clip,
+                                         const motion::Skeleton& skeleton) {
+  if (!skeleton.feet) return std::nullopt;
+  motion::Vec3 up;
+  for (int frame = 0; frame < clip.frame_count(); ++frame) {
+    const motion::Vec3 feet =
+        (clip.at(frame, skeleton.feet->left) + clip.at(frame, skeleton.feet->right)) / 2;
+    const motion::Vec3 body = clip.at(frame, skeleton.root) - feet;
+    if (Norm(body) > 0) up += body / Norm(body);
+  }
+  if (up.z > std::abs(up.y)) return motion::UpAxis::kZUp;
+  if (-up.y > std::abs(up.z)) return motion::UpAxis::kYDown;
+  return motion::UpAxis::kYUp;
+}
 
 absl::StatusOr<motion::Clip> ToClip(const Character& character, absl::string_view source,
                                     const CharacterOptions& options) {

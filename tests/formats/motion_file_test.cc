@@ -127,6 +127,30 @@ TEST_F(MotionFile, LetsTheCallerSayTheCoordinates) {
   EXPECT_LT(Distance(clip->at(0, 7), {1, 3, -2}), 1e-6f);
 }
 
+TEST_F(MotionFile, WarnsOfPositionsWhoseUpAxisIsAnother) {
+  motion::ClipPair z_up = pair_;
+  for (motion::Clip* clip : {&z_up.leader, &z_up.follower}) {
+    for (motion::Vec3& p : clip->poses.all()) p = {p.x, -p.z, p.y};
+  }
+  const fs::path path = folder_ / "a.csv";
+  ASSERT_TRUE(WritePair(path, z_up, motion::SbuSkeleton()).ok());
+  std::vector<std::string> notes;
+  ReadOptions options;
+  options.notes = &notes;
+  ASSERT_TRUE(ReadLeader(path, options).ok());
+  EXPECT_THAT(notes, Contains(HasSubstr("not below the root along y; z-up would fit")));
+  notes.clear();
+  options.coordinates = {motion::LengthUnit::kMetres, motion::UpAxis::kZUp};
+  const absl::StatusOr<motion::Clip> clip = ReadLeader(path, options);
+  ASSERT_TRUE(clip.ok()) << clip.status();
+  EXPECT_LT(LargestDistance(*clip, pair_.leader), 1e-5f);
+  EXPECT_THAT(notes, ::testing::IsEmpty());
+  options.coordinates.reset();
+  ASSERT_TRUE(WritePair(path, pair_, motion::SbuSkeleton()).ok());
+  ASSERT_TRUE(ReadLeader(path, options).ok());
+  EXPECT_THAT(notes, ::testing::IsEmpty());
+}
+
 // Two joints may be the neck: in the first frame the upper one is between the shoulders, in all
 // others the lower one.
 TEST_F(MotionFile, MapsJointsByTheWholeMotion) {
