@@ -14,6 +14,8 @@
 #include "model/formats/flat/json_motion.h"
 #include "model/formats/flat/npy.h"
 #include "model/formats/flat/sbu_text.h"
+#include "model/formats/gltf/gltf_document.h"
+#include "model/formats/gltf/gltf_import.h"
 #include "model/motion/motion_limits.h"
 #include "model/motion/reading_setting.h"
 #include "model/motion/recorded_motion.h"
@@ -26,7 +28,7 @@ namespace fs = std::filesystem;
 
 constexpr double kSbuFrameRateHz = 15;
 
-enum class Format { kSbuText, kBvh, kCsv, kNpy, kJson, kUnknown };
+enum class Format { kSbuText, kBvh, kCsv, kNpy, kJson, kGltf, kUnknown };
 
 Format FormatOf(const fs::path& path) {
   const std::string extension = absl::AsciiStrToLower(path.extension().string());
@@ -35,6 +37,7 @@ Format FormatOf(const fs::path& path) {
   if (extension == ".csv") return Format::kCsv;
   if (extension == ".npy") return Format::kNpy;
   if (extension == ".json") return Format::kJson;
+  if (extension == ".gltf" || extension == ".glb") return Format::kGltf;
   return Format::kUnknown;
 }
 
@@ -85,22 +88,44 @@ absl::StatusOr<motion::Clip> ReadSbuPerson(const std::string& text, const std::s
   return options.side == Side::kLeft ? std::move(recording->left) : std::move(recording->right);
 }
 
+// Left is the first person of a file.
+int PersonOf(const ReadOptions& options) { return options.side == Side::kLeft ? 0 : 1; }
+
+retargeting::CharacterOptions CharacterOptionsOf(const ReadOptions& options) {
+  retargeting::CharacterOptions character;
+  character.skeleton = options.skeleton;
+  character.joint_overrides = options.joint_overrides;
+  character.metres_per_unit = options.metres_per_unit;
+  if (options.coordinates.has_value()) character.up_axis = options.coordinates->up_axis;
+  character.notes = options.notes;
+  return character;
+}
+
 absl::StatusOr<motion::Clip> ReadBvhPerson(const std::string& text, const std::string& source,
                                            const ReadOptions& options) {
   absl::StatusOr<bvh::BvhDocument> document = bvh::ParseBvh(text, source);
   if (!document.ok()) return document.status();
-  bvh::BvhImportOptions bvh;
-  bvh.skeleton = options.skeleton;
-  bvh.joint_overrides = options.joint_overrides;
-  bvh.metres_per_unit = options.metres_per_unit;
-  if (options.coordinates.has_value()) bvh.up_axis = options.coordinates->up_axis;
-  bvh.person = options.side == Side::kLeft ? 0 : 1;
-  bvh.notes = options.notes;
+  bvh::BvhImportOptions bvh{CharacterOptionsOf(options), PersonOf(options)};
   return FromBvh(*document, source, bvh);
 }
 
-absl::StatusOr<motion::Clip> ReadPerson(Format format, const std::string& content,
-                                        const std::string& source, const ReadOptions& options) {
+absl::StatusOr<motion::Clip> ReadGltfPerson(const std::string& content, const fs::path& path,
+                                            const ReadOptions& options) {
+  absl::StatusOr<gltf::GltfDocument> document = gltf::ParseGltf(content, path.string());
+  if (!document.ok()) return document.status();
+  gltf::GltfImportOptions gltf{CharacterOptionsOf(options), PersonOf(options),
+                               options.frame_rate_hz};
+  const auto read_beside = [&path](const std::string& name) {
+    return base::ReadFile(path.parent_path() / name, motion::kMaxMotionFileBytes, "a buffer");
+  };
+  return FromGltf(*document, path.string(), read_beside, gltf);
+}
+
+absl::StatusOr<motion::Clip> ReadPerson(const fs::path& path, const std::string& content,
+                                        const ReadOptions& options) {
+  const Format format = FormatOf(path);
+  const std::string source = path.string();
+  if (format == Format::kGltf) return ReadGltfPerson(content, path, options);
   if (format == Format::kSbuText) return ReadSbuPerson(content, source, options);
   if (format == Format::kBvh) return ReadBvhPerson(content, source, options);
   absl::StatusOr<motion::RecordedMotion> motion =
@@ -142,7 +167,8 @@ absl::Status CheckJoints(const motion::ClipPair& pair, const motion::Skeleton& s
 bool IsReadable(const fs::path& path) { return FormatOf(path) != Format::kUnknown; }
 
 bool IsWritable(const fs::path& path) {
-  return IsReadable(path) && FormatOf(path) != Format::kSbuText;
+  const Format format = FormatOf(path);
+  return IsReadable(path) && format != Format::kSbuText && format != Format::kGltf;
 }
 
 absl::Status UnknownExtension(const fs::path& path, absl::string_view known) {
@@ -160,7 +186,7 @@ absl::StatusOr<motion::Clip> ReadLeader(const fs::path& path, const ReadOptions&
   absl::StatusOr<std::string> content =
       base::ReadFile(path, motion::kMaxMotionFileBytes, "a motion");
   if (!content.ok()) return content.status();
-  absl::StatusOr<motion::Clip> clip = ReadPerson(FormatOf(path), *content, path.string(), options);
+  absl::StatusOr<motion::Clip> clip = ReadPerson(path, *content, options);
   if (!clip.ok()) return clip.status();
   if (options.frame_rate_hz.has_value()) clip->frame_rate_hz = *options.frame_rate_hz;
   if (clip->frame_rate_hz > 0) return clip;

@@ -13,6 +13,7 @@
 #include "gtest/gtest.h"
 #include "model/base/file.h"
 #include "model/formats/flat/sbu_text.h"
+#include "tests/formats/gltf/gltf_fixture.h"
 #include "tests/support/test_motion.h"
 
 namespace duet::formats {
@@ -94,6 +95,29 @@ TEST_F(MotionFile, WritesABvhForEachPersonInOneWorld) {
   ASSERT_TRUE(follower.ok()) << follower.status();
   EXPECT_LT(LargestDistance(*leader, pair_.leader), 0.001f);
   EXPECT_LT(LargestDistance(*follower, pair_.follower), 0.001f);
+}
+
+TEST_F(MotionFile, ReadsEitherPersonOfAGltfFileAndItsBufferBesideIt) {
+  test::GltfBuilder builder;
+  test::AddPerson(pair_.leader, {}, &builder);
+  test::AddPerson(pair_.follower, {}, &builder);
+  ASSERT_TRUE(base::WriteFile(folder_ / "a.glb", builder.Binary()).ok());
+  ASSERT_TRUE(base::WriteFile(folder_ / "b.gltf", builder.WithFile("b.bin")).ok());
+  ASSERT_TRUE(base::WriteFile(folder_ / "b.bin", builder.buffer()).ok());
+  for (const char* name : {"a.glb", "b.gltf"}) {
+    ReadOptions options;
+    options.metres_per_unit = 2;
+    options.frame_rate_hz = 30;
+    for (Side side : {Side::kLeft, Side::kRight}) {
+      options.side = side;
+      const absl::StatusOr<motion::Clip> clip = ReadLeader(folder_ / name, options);
+      ASSERT_TRUE(clip.ok()) << clip.status();
+      motion::Clip larger = side == Side::kLeft ? pair_.leader : pair_.follower;
+      for (motion::Vec3& p : larger.poses.all()) p = p * 2;
+      EXPECT_LT(LargestDistance(*clip, larger), 0.002f) << name;
+    }
+    EXPECT_FALSE(IsWritable(name));
+  }
 }
 
 TEST_F(MotionFile, ReadsEitherPersonOfSbuText) {
