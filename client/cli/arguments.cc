@@ -64,7 +64,7 @@ void AddServerFlags(CLI::App* app, ServerArguments* server) {
 void AddInputFlags(CLI::App* app, SynthesizeArguments* arguments) {
   constexpr char kGroup[] = "Input";
   app->add_option("--leader", arguments->leader,
-                  "Motion of the leader: .bvh, .gltf, .glb, .csv, .npy, .json or SBU .txt")
+                  "Motion of the leader: .bvh, .gltf, .glb, .amc, .csv, .npy, .json or SBU .txt")
       ->required()
       ->type_name("FILE")
       ->group(kGroup);
@@ -92,7 +92,7 @@ void AddInputFlags(CLI::App* app, SynthesizeArguments* arguments) {
       ->take_last()
       ->group(kGroup);
   app->add_option("--metres-per-unit", input->metres_per_unit,
-                  "BVH, glTF: metres in one unit of the file (0.01 for centimetres)")
+                  "BVH, glTF, ASF: metres in one unit of the file (0.01 for centimetres)")
       ->check(Undescribed(CLI::PositiveNumber))
       ->type_name("METRES")
       ->group(kGroup);

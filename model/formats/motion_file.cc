@@ -4,9 +4,11 @@
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
 #include "absl/types/span.h"
 #include "model/base/file.h"
 #include "model/base/text.h"
+#include "model/formats/asf/amc_import.h"
 #include "model/formats/bvh/bvh_document.h"
 #include "model/formats/bvh/bvh_export.h"
 #include "model/formats/bvh/bvh_import.h"
@@ -28,7 +30,7 @@ namespace fs = std::filesystem;
 
 constexpr double kSbuFrameRateHz = 15;
 
-enum class Format { kSbuText, kBvh, kCsv, kNpy, kJson, kGltf, kUnknown };
+enum class Format { kSbuText, kBvh, kCsv, kNpy, kJson, kGltf, kAmc, kUnknown };
 
 Format FormatOf(const fs::path& path) {
   const std::string extension = absl::AsciiStrToLower(path.extension().string());
@@ -38,6 +40,7 @@ Format FormatOf(const fs::path& path) {
   if (extension == ".npy") return Format::kNpy;
   if (extension == ".json") return Format::kJson;
   if (extension == ".gltf" || extension == ".glb") return Format::kGltf;
+  if (extension == ".amc") return Format::kAmc;
   return Format::kUnknown;
 }
 
@@ -121,11 +124,37 @@ absl::StatusOr<motion::Clip> ReadGltfPerson(const std::string& content, const fs
   return FromGltf(*document, path.string(), read_beside, gltf);
 }
 
+// The skeleton of a motion lies beside it.
+absl::StatusOr<asf::AsfSkeleton> ReadAsfBeside(const fs::path& path) {
+  const std::vector<std::string> names = asf::SkeletonNames(path.filename().string());
+  for (const std::string& name : names) {
+    const fs::path skeleton = path.parent_path() / name;
+    const absl::StatusOr<std::string> text =
+        base::ReadFile(skeleton, motion::kMaxMotionFileBytes, "a skeleton");
+    if (absl::IsNotFound(text.status())) continue;
+    if (!text.ok()) return text.status();
+    return asf::ParseAsf(*text, skeleton.string());
+  }
+  return absl::NotFoundError(absl::StrCat(path.string(), ": skeleton: wanted ",
+                                          absl::StrJoin(names, " or "), " in the same folder"));
+}
+
+absl::StatusOr<motion::Clip> ReadAmcPerson(const std::string& text, const fs::path& path,
+                                           const ReadOptions& options) {
+  const absl::StatusOr<asf::AsfSkeleton> skeleton = ReadAsfBeside(path);
+  if (!skeleton.ok()) return skeleton.status();
+  const absl::StatusOr<asf::AmcMotion> motion = asf::ParseAmc(text, path.string(), *skeleton);
+  if (!motion.ok()) return motion.status();
+  const asf::AmcImportOptions amc{CharacterOptionsOf(options), options.frame_rate_hz};
+  return FromAmc(*skeleton, *motion, path.string(), amc);
+}
+
 absl::StatusOr<motion::Clip> ReadPerson(const fs::path& path, const std::string& content,
                                         const ReadOptions& options) {
   const Format format = FormatOf(path);
   const std::string source = path.string();
   if (format == Format::kGltf) return ReadGltfPerson(content, path, options);
+  if (format == Format::kAmc) return ReadAmcPerson(content, path, options);
   if (format == Format::kSbuText) return ReadSbuPerson(content, source, options);
   if (format == Format::kBvh) return ReadBvhPerson(content, source, options);
   absl::StatusOr<motion::RecordedMotion> motion =
@@ -168,7 +197,8 @@ bool IsReadable(const fs::path& path) { return FormatOf(path) != Format::kUnknow
 
 bool IsWritable(const fs::path& path) {
   const Format format = FormatOf(path);
-  return IsReadable(path) && format != Format::kSbuText && format != Format::kGltf;
+  return IsReadable(path) && format != Format::kSbuText && format != Format::kGltf &&
+         format != Format::kAmc;
 }
 
 absl::Status UnknownExtension(const fs::path& path, absl::string_view known) {

@@ -13,6 +13,7 @@
 #include "gtest/gtest.h"
 #include "model/base/file.h"
 #include "model/formats/flat/sbu_text.h"
+#include "tests/formats/asf/asf_fixture.h"
 #include "tests/formats/gltf/gltf_fixture.h"
 #include "tests/support/test_motion.h"
 
@@ -118,6 +119,27 @@ TEST_F(MotionFile, ReadsEitherPersonOfAGltfFileAndItsBufferBesideIt) {
     }
     EXPECT_FALSE(IsWritable(name));
   }
+}
+
+TEST_F(MotionFile, ReadsAnAmcFileWithTheSkeletonBesideIt) {
+  const test::AsfFiles files = test::MakeAsfFiles(pair_.leader);
+  ASSERT_TRUE(base::WriteFile(folder_ / "01_02.amc", files.amc).ok());
+  const absl::Status missing = ReadLeader(folder_ / "01_02.amc").status();
+  EXPECT_EQ(missing.code(), absl::StatusCode::kNotFound);
+  EXPECT_THAT(std::string(missing.message()),
+              HasSubstr("01_02.amc: skeleton: wanted 01_02.asf or 01.asf in the same folder"));
+  ASSERT_TRUE(base::WriteFile(folder_ / "01.asf", files.asf).ok());
+  const absl::StatusOr<motion::Clip> clip = ReadLeader(folder_ / "01_02.amc");
+  ASSERT_TRUE(clip.ok()) << clip.status();
+  EXPECT_EQ(clip->frame_rate_hz, 120);
+  EXPECT_LT(LargestDistance(*clip, pair_.leader), 0.001f);
+  ReadOptions options;
+  options.frame_rate_hz = 60;
+  EXPECT_EQ(ReadLeader(folder_ / "01_02.amc", options)->frame_rate_hz, 60);
+  ASSERT_TRUE(base::WriteFile(folder_ / "01_02.asf", "nothing").ok());
+  EXPECT_THAT(std::string(ReadLeader(folder_ / "01_02.amc").status().message()),
+              HasSubstr("01_02.asf:1: no bones"));
+  EXPECT_FALSE(IsWritable("a.amc"));
 }
 
 TEST_F(MotionFile, ReadsEitherPersonOfSbuText) {
