@@ -25,7 +25,8 @@ class Layer:
     source_libraries: tuple = ()  # the same, but not from its headers
 
 
-MOTION_FILES = ("base", "motion", "retargeting", "flat formats", "bvh format", "formats")
+MOTION_FILES = ("base", "motion", "retargeting", "flat formats", "bvh format",
+                "gltf format", "asf format", "formats")
 MODELS = ("engine", "checkpoint", "embedded checkpoints", "network", "torch engine", "training")
 MEASURING = ("metrics", "protocol", "baselines", "judge", "experiments")
 SERVER = ("server common", "batching", "registry", "server metrics", "server config", "service",
@@ -38,8 +39,11 @@ LAYERS = (
     Layer("retargeting", "model/retargeting", sees=("base", "motion")),
     Layer("flat formats", "model/formats/flat", sees=("base", "motion")),
     Layer("bvh format", "model/formats/bvh", sees=("base", "motion", "retargeting")),
+    Layer("gltf format", "model/formats/gltf", sees=("base", "motion", "retargeting")),
+    Layer("asf format", "model/formats/asf", sees=("base", "motion", "retargeting")),
     Layer("formats", "model/formats",
-          sees=("base", "motion", "retargeting", "flat formats", "bvh format")),
+          sees=("base", "motion", "retargeting", "flat formats", "bvh format", "gltf format",
+                "asf format")),
     Layer("authoring", "model/authoring", sees=("base", "motion", "retargeting", "bvh format")),
     Layer("dataset", "model/dataset", sees=MOTION_FILES),
     Layer("importing", "model/importing", sees=MOTION_FILES + ("dataset",)),

@@ -64,7 +64,7 @@ void AddServerFlags(CLI::App* app, ServerArguments* server) {
 void AddInputFlags(CLI::App* app, SynthesizeArguments* arguments) {
   constexpr char kGroup[] = "Input";
   app->add_option("--leader", arguments->leader,
-                  "Motion of the leader: .bvh, .csv, .npy, .json or SBU .txt")
+                  "Motion of the leader: .bvh, .gltf, .glb, .amc, .csv, .npy, .json or SBU .txt")
       ->required()
       ->type_name("FILE")
       ->group(kGroup);
@@ -92,7 +92,7 @@ void AddInputFlags(CLI::App* app, SynthesizeArguments* arguments) {
       ->take_last()
       ->group(kGroup);
   app->add_option("--metres-per-unit", input->metres_per_unit,
-                  "BVH: metres in one unit of the file (0.01 for centimetres)")
+                  "BVH, glTF, ASF: metres in one unit of the file (0.01 for centimetres)")
       ->check(Undescribed(CLI::PositiveNumber))
       ->type_name("METRES")
       ->group(kGroup);
@@ -100,6 +100,10 @@ void AddInputFlags(CLI::App* app, SynthesizeArguments* arguments) {
       app, "--joint-map", "MODEL_JOINT=FILE_JOINT", ParseJointPair,
       [input](std::pair<std::string, std::string> joints) { input->joints.insert(joints); },
       "Where names alone do not tell which is which; repeatable")
+      ->group(kGroup);
+  app->add_option("--joint-map-file", input->joint_table,
+                  "A table of such joints, one MODEL_JOINT=FILE_JOINT a line; --joint-map wins")
+      ->type_name("FILE")
       ->group(kGroup);
 }
 

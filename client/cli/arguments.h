@@ -36,6 +36,7 @@ struct InputArguments {
   std::optional<motion::UpAxis> up_axis;
   std::optional<double> metres_per_unit;
   retargeting::JointOverrides joints;
+  std::filesystem::path joint_table;  // a file of such joints; `joints` win over it
 };
 
 // duet models

@@ -5,6 +5,7 @@
 #include "absl/strings/str_join.h"
 #include "client/cli/exit_code.h"
 #include "client/error_details.h"
+#include "model/motion/reading_setting.h"
 #include "nlohmann/json.hpp"
 
 namespace duet::client::cli {
@@ -82,7 +83,23 @@ json ModelJson(const ModelInfo& model) {
           {"description", model.description}};
 }
 
+// How the user of this program says what a motion file does not.
+std::string FlagFor(motion::ReadingSetting setting) {
+  switch (setting) {
+    case motion::ReadingSetting::kFrameRate:
+      return "--frame-rate HZ";
+    case motion::ReadingSetting::kMetresPerUnit:
+      return "--metres-per-unit METRES";
+    case motion::ReadingSetting::kJointMap:
+      return "--joint-map MODEL_JOINT=FILE_JOINT, or a table of them with --joint-map-file FILE";
+  }
+  return "";
+}
+
 std::string Advice(const absl::Status& status, const std::string& server_address) {
+  if (const auto setting = motion::MendingSetting(status); setting.has_value()) {
+    return absl::StrCat("Say it with ", FlagFor(*setting), ".\n");
+  }
   if (ExitCodeFor(status) != kExitRetry) return "";
   // A reason would mean that a Duet server answered.
   if (absl::IsUnavailable(status) && ErrorReason(status).empty()) {

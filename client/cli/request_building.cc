@@ -1,15 +1,20 @@
 #include "client/cli/request_building.h"
 
+#include <cstddef>
 #include <optional>
 #include <system_error>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "client/cli/value_syntax.h"
+#include "model/base/file.h"
 #include "model/formats/motion_file.h"
+#include "model/retargeting/joint_table.h"
 
 namespace duet::client::cli {
 namespace {
+
+constexpr std::size_t kMaxTableBytes = std::size_t{1} << 20;
 
 // Both joints, or nothing where the model lacks one of them.
 std::optional<motion::JointPair> FindPair(const motion::Skeleton& skeleton, const std::string& left,
@@ -19,12 +24,29 @@ std::optional<motion::JointPair> FindPair(const motion::Skeleton& skeleton, cons
   return pair;
 }
 
-formats::ReadOptions ToReadOptions(const InputArguments& input, const motion::Skeleton& skeleton) {
+// The joints of the table and of the flags.
+absl::StatusOr<retargeting::JointOverrides> ReadJoints(const InputArguments& input) {
+  retargeting::JointOverrides joints = input.joints;
+  if (input.joint_table.empty()) return joints;
+  const absl::StatusOr<std::string> text =
+      base::ReadFile(input.joint_table, kMaxTableBytes, "a table of joints");
+  if (!text.ok()) return text.status();
+  absl::StatusOr<retargeting::JointOverrides> table =
+      retargeting::ParseJointTable(*text, input.joint_table.string());
+  if (!table.ok()) return table.status();
+  joints.merge(*std::move(table));  // keeps those of the flags
+  return joints;
+}
+
+absl::StatusOr<formats::ReadOptions> ToReadOptions(const InputArguments& input,
+                                                   const motion::Skeleton& skeleton) {
   formats::ReadOptions options;
   options.skeleton = skeleton;
   options.frame_rate_hz = input.frame_rate_hz;
   options.metres_per_unit = input.metres_per_unit;
-  options.joint_overrides = input.joints;
+  absl::StatusOr<retargeting::JointOverrides> joints = ReadJoints(input);
+  if (!joints.ok()) return joints.status();
+  options.joint_overrides = *std::move(joints);
   if (input.unit.has_value() || input.up_axis.has_value()) {
     motion::Coordinates coordinates;
     coordinates.unit = input.unit.value_or(motion::LengthUnit::kMetres);
@@ -36,11 +58,15 @@ formats::ReadOptions ToReadOptions(const InputArguments& input, const motion::Sk
   return options;
 }
 
-absl::Status CheckInput(const std::filesystem::path& path) {
+absl::Status CheckExists(const std::filesystem::path& path) {
   std::error_code error;
-  if (!std::filesystem::exists(path, error)) {
-    return absl::NotFoundError(absl::StrCat(path.string(), ": no such file"));
-  }
+  if (std::filesystem::exists(path, error)) return absl::OkStatus();
+  return absl::NotFoundError(absl::StrCat(path.string(), ": no such file"));
+}
+
+absl::Status CheckInput(const std::filesystem::path& path) {
+  absl::Status status = CheckExists(path);
+  if (!status.ok()) return status;
   if (formats::IsReadable(path)) return absl::OkStatus();
   return formats::UnknownExtension(path, formats::kReadableExtensions);
 }
@@ -86,6 +112,9 @@ absl::StatusOr<motion::Skeleton> ToSkeleton(const ModelInfo& model) {
 
 absl::Status CheckInputs(const SynthesizeArguments& arguments) {
   absl::Status status = CheckInput(arguments.leader);
+  if (const auto& table = arguments.input.joint_table; status.ok() && !table.empty()) {
+    status = CheckExists(table);
+  }
   const std::string& start = arguments.follower_start;
   if (!status.ok() || start.empty() || ParsePoint(start).has_value()) return status;
   return CheckInput(start);
@@ -94,7 +123,9 @@ absl::Status CheckInputs(const SynthesizeArguments& arguments) {
 absl::StatusOr<SynthesisRequest> BuildRequest(const SynthesizeArguments& arguments,
                                               const motion::Skeleton& skeleton,
                                               std::vector<std::string>* notes) {
-  formats::ReadOptions options = ToReadOptions(arguments.input, skeleton);
+  absl::StatusOr<formats::ReadOptions> read_options = ToReadOptions(arguments.input, skeleton);
+  if (!read_options.ok()) return read_options.status();
+  formats::ReadOptions options = *std::move(read_options);
   SynthesisRequest request;
   if (!arguments.follower_start.empty()) {
     absl::StatusOr<FollowerStart> start = ReadStart(arguments, options);

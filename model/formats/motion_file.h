@@ -18,6 +18,8 @@
 //
 //   .txt    SBU text, two people
 //   .bvh    joint angles, one person a ROOT
+//   .gltf, .glb  an animated skeleton a person
+//   .amc    joint angles, with the skeleton in an .asf file beside it
 //   .csv    positions by column, one or two people
 //   .json   positions, one or two people
 //   .npy    positions as an array, [frames, joints, 3] or [2, frames, joints, 3]
@@ -37,7 +39,8 @@ struct ReadOptions {
   // Replaces what the file says or its format implies: SBU text the data set's normalised unit;
   // CSV and JSON what they state, else metres, y up; NPY metres, y up.
   std::optional<motion::Coordinates> coordinates;
-  // BVH: metres in one unit of the file (0.01 for centimetres). Found from the height when absent.
+  // BVH, glTF, ASF: metres in one unit of the file (0.01 for centimetres). Found from the height
+  // when absent.
   std::optional<double> metres_per_unit;
   retargeting::JointOverrides joint_overrides;
   // Receives what was decided (unit, up axis, torso joint), for people to read. May be null.
@@ -70,7 +73,8 @@ bool IsWritable(const std::filesystem::path& path);
 bool IsReadable(const std::filesystem::path& path);
 // Which those are, for UnknownExtension and for callers that know more.
 inline constexpr char kWritableExtensions[] = ".bvh, .csv, .npy or .json";
-inline constexpr char kReadableExtensions[] = ".txt (SBU text), .bvh, .csv, .npy or .json";
+inline constexpr char kReadableExtensions[] =
+    ".txt (SBU text), .bvh, .gltf, .glb, .amc (beside its .asf), .csv, .npy or .json";
 // INVALID_ARGUMENT "path: extension: came ..., wanted <known>".
 absl::Status UnknownExtension(const std::filesystem::path& path, absl::string_view known);
 

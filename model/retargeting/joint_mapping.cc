@@ -1,13 +1,16 @@
 #include "model/retargeting/joint_mapping.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <initializer_list>
 #include <optional>
 #include <utility>
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "model/base/text.h"
+#include "model/motion/reading_setting.h"
 #include "model/retargeting/joint_names.h"
 
 namespace duet::retargeting {
@@ -21,6 +24,8 @@ constexpr float kTorsoReach = 0.25f;
 constexpr float kShortestHead = 0.1f;
 constexpr float kShortestNeck = 0.05f, kLongestNeck = 0.35f;
 constexpr float kHeadRise = 0.19f;
+// Distances are means over as many frames, spread over the motion.
+constexpr int kMeasuredFrames = 100;
 
 JointSource Whole(int joint) { return {{{joint, 1.0f}}}; }
 
@@ -43,17 +48,53 @@ motion::Vec3 Evaluate(const JointSource& source, absl::Span<const motion::Vec3> 
   return position;
 }
 
+// Frames spread evenly over a motion.
+std::vector<absl::Span<const motion::Vec3>> Spread(const motion::Poses& poses) {
+  const int count = std::min(poses.frame_count(), kMeasuredFrames);
+  std::vector<absl::Span<const motion::Vec3>> frames;
+  for (int i = 0; i < count; ++i) {
+    frames.push_back(poses[static_cast<int>(int64_t{i} * poses.frame_count() / count)]);
+  }
+  return frames;
+}
+
 class Mapper {
  public:
   Mapper(absl::string_view source, const std::vector<std::string>& names,
-         absl::Span<const motion::Vec3> first_pose, const motion::Skeleton& skeleton)
-      : source_(source), names_(names), pose_(first_pose), skeleton_(skeleton) {
+         const motion::Skeleton& skeleton)
+      : source_(source), names_(names), skeleton_(skeleton) {
     found_.resize(skeleton.joint_names.size());
     overridden_.resize(skeleton.joint_names.size(), false);
     used_.resize(names.size(), false);
     for (const std::string& name : names) parsed_.push_back(ParseJointName(name));
   }
 
+  absl::StatusOr<JointMap> MapPoses(const motion::Poses& poses, const JointOverrides& overrides) {
+    absl::Status status = ApplyOverrides(overrides);
+    if (!status.ok()) return status;
+    if (!MapIdentity()) {
+      MapAliases();
+      measured_ = Spread(poses);
+      PlaceTrunk();
+    }
+    return Finish();
+  }
+
+  absl::StatusOr<JointMap> MapTree(const JointTree& tree, const JointOverrides& overrides) {
+    absl::Status status = ApplyOverrides(overrides);
+    if (!status.ok()) return status;
+    const bool identity = MapIdentity();
+    if (!identity) MapAliases();
+    if (!identity) PlaceHeadAtAnEnd(tree);
+    const std::vector<motion::Vec3> straight = PullStraight(tree, FindLandmarks());
+    measured_ = {straight};
+    if (!identity) PlaceTrunk();
+    absl::StatusOr<JointMap> map = Finish();
+    if (map.ok()) map->straight = ApplyJointMap(*map, straight);
+    return map;
+  }
+
+ private:
   absl::Status ApplyOverrides(const JointOverrides& overrides) {
     for (const auto& [target, name] : overrides) {
       const int joint = skeleton_.Find(target);
@@ -84,10 +125,14 @@ class Mapper {
     return true;
   }
 
-  void MapByConvention() {
+  void MapAliases() {
     for (int joint = 0; joint < skeleton_.joint_count(); ++joint) {
       if (!Found(joint) && !IsPlaced(joint)) MapByAlias(joint);
     }
+  }
+
+  // What goes by where joints are, in `measured_`.
+  void PlaceTrunk() {
     PlaceNeck();
     PlaceTorso();
     RaiseHead();
@@ -105,12 +150,13 @@ class Mapper {
     }
     map.notes = std::move(notes_);
     if (missing.empty()) return map;
-    return absl::InvalidArgumentError(
-        absl::StrCat(source_, ": joints: nothing stands for ", absl::StrJoin(missing, ", "), "; ",
-                     ListNames(), "; say which with a joint map such as ", missing[0], "=NAME"));
+    return MendedBy(
+        absl::InvalidArgumentError(absl::StrCat(
+            source_, ": joints: nothing stands for ", absl::StrJoin(missing, ", "), "; ",
+            ListNames(), "; say which with a joint map such as ", missing[0], "=NAME")),
+        motion::ReadingSetting::kJointMap);
   }
 
- private:
   bool Found(int joint) const {
     return joint >= 0 && found_[static_cast<size_t>(joint)].has_value();
   }
@@ -166,14 +212,76 @@ class Mapper {
         [&name](const std::string& target) { return ParseJointName(target) == name; });
   }
 
-  // The unused joint nearest to `point` and within `reach` of it for which `fits` holds, or -1.
+  // The joint of the file that stands for a skeleton's joint by itself, or -1.
+  int FileJoint(absl::string_view target) const {
+    const int joint = skeleton_.Find({target.data(), target.size()});
+    return Found(joint) ? found_[static_cast<size_t>(joint)]->terms[0].joint : -1;
+  }
+
+  // Before neck and torso are placed: every source is one joint.
+  Landmarks FindLandmarks() const {
+    const auto pair = [this](absl::string_view left, absl::string_view right) {
+      const motion::JointPair joints{FileJoint(left), FileJoint(right)};
+      return joints.left < 0 || joints.right < 0 ? std::nullopt : std::make_optional(joints);
+    };
+    Landmarks landmarks;
+    landmarks.head = FileJoint("head");
+    landmarks.shoulders = pair("left_shoulder", "right_shoulder");
+    if (skeleton_.hips) {
+      landmarks.hips = pair(TargetName(skeleton_.hips->left), TargetName(skeleton_.hips->right));
+    }
+    return landmarks;
+  }
+
+  // A neck that ends without a joint for the head: its end is the head.
+  void PlaceHeadAtAnEnd(const JointTree& tree) {
+    const int head = skeleton_.Find("head");
+    const Landmarks landmarks = FindLandmarks();
+    if (head < 0 || Found(head) || !landmarks.shoulders) return;
+    const int chest = CommonAncestor(tree, landmarks.shoulders->left, landmarks.shoulders->right);
+    const std::vector<motion::Vec3> straight = PullStraight(tree, landmarks);
+    int best = -1;
+    for (int joint = 0; joint < static_cast<int>(names_.size()); ++joint) {
+      if (!IsEndAbove(tree, chest, joint)) continue;
+      const auto height = [&straight](int j) { return straight[static_cast<size_t>(j)].y; };
+      if (best < 0 || height(joint) > height(best)) best = joint;
+    }
+    if (best < 0) return;
+    Take(head, best);
+    overridden_[static_cast<size_t>(head)] = true;
+    Note("head", best, "the end of the neck; no joint is called a head");
+  }
+
+  // Whether the file has `joint` as an end, in the middle of the body all the way from the chest.
+  bool IsEndAbove(const JointTree& tree, int chest, int joint) const {
+    const auto& parsed = parsed_[static_cast<size_t>(joint)];
+    if (used_[static_cast<size_t>(joint)] || !absl::EndsWith(parsed.base, "end")) return false;
+    if (chest < 0 || joint == chest || !IsAtOrBelow(tree, joint, chest)) return false;
+    for (; joint != chest; joint = tree.parents[static_cast<size_t>(joint)]) {
+      if (parsed_[static_cast<size_t>(joint)].side != BodySide::kMiddle) return false;
+    }
+    return true;
+  }
+
+  // The mean distance, over what is measured.
+  float MeanDistance(const JointSource& a, const JointSource& b) const {
+    double sum = 0;
+    for (absl::Span<const motion::Vec3> pose : measured_) {
+      sum += static_cast<double>(Distance(Evaluate(a, pose), Evaluate(b, pose)));
+    }
+    return static_cast<float>(sum / static_cast<double>(measured_.size()));
+  }
+
+  // The unused joint nearest to `place` and within `reach` of it for which `fits` holds, or -1.
   template <typename Fits>
-  int FindNearest(motion::Vec3 point, float reach, Fits fits) const {
+  int FindNearest(const JointSource& place, float reach, Fits fits) const {
     int best = -1;
     for (std::size_t i = 0; i < parsed_.size(); ++i) {
-      if (used_[i] || !fits(parsed_[i]) || Distance(pose_[i], point) > reach) continue;
+      if (used_[i] || !fits(parsed_[i])) continue;
+      const float distance = MeanDistance(Whole(static_cast<int>(i)), place);
+      if (distance > reach) continue;
       best = static_cast<int>(i);
-      reach = Distance(pose_[i], point);
+      reach = distance;
     }
     return best;
   }
@@ -184,8 +292,8 @@ class Mapper {
     if (neck < 0 || Found(neck)) return;
     if (!Found(left) || !Found(right)) return MapByAlias(neck);
     const JointSource middle = Mix({{&SourceOf(left), 0.5f}, {&SourceOf(right), 0.5f}});
-    const float width = Distance(PositionOf(SourceOf(left)), PositionOf(SourceOf(right)));
-    const int best = FindNearest(PositionOf(middle), width, IsNeck);
+    const float width = MeanDistance(SourceOf(left), SourceOf(right));
+    const int best = FindNearest(middle, width, IsNeck);
     if (best >= 0) {
       Take(neck, best);
       Note("neck", best, "the neck joint nearest to half way between the shoulders");
@@ -202,7 +310,7 @@ class Mapper {
     const JointSource middle = Mix({{&SourceOf(neck), 0.5f},
                                     {&SourceOf(skeleton_.hips->left), 0.25f},
                                     {&SourceOf(skeleton_.hips->right), 0.25f}});
-    const int best = FindNearest(PositionOf(middle), kTorsoReach * SpineLength(), IsSpine);
+    const int best = FindNearest(middle, kTorsoReach * SpineLength(), IsSpine);
     if (best >= 0) {
       Take(torso, best);
       Note("torso", best, "the spine joint nearest to half way from hips to neck");
@@ -218,16 +326,15 @@ class Mapper {
     const int head = skeleton_.Find("head"), neck = skeleton_.Find("neck");
     if (!Found(head) || overridden_[static_cast<size_t>(head)] || !HasSpineEnds()) return;
     const JointSource base = SourceOf(head);
-    const motion::Vec3 at = PositionOf(base);
     for (const char* end : {"headend", "headtopend", "headtop"}) {
       const int index = FindUnused({BodySide::kMiddle, end});
       if (index < 0) continue;
-      if (Distance(at, pose_[static_cast<size_t>(index)]) < kShortestHead * SpineLength()) continue;
       const JointSource top = Whole(index);
+      if (MeanDistance(base, top) < kShortestHead * SpineLength()) continue;
       SourceOf(head) = Mix({{&base, 0.5f}, {&top, 0.5f}});
       return Note("head", index, "half way to it from the head's joint");
     }
-    const float way = Distance(at, PositionOf(SourceOf(neck))) / SpineLength();
+    const float way = MeanDistance(base, SourceOf(neck)) / SpineLength();
     if (!(way > kShortestNeck && way < kLongestNeck)) return;
     const float rise = kHeadRise / way;
     SourceOf(head) = Mix({{&base, 1 + rise}, {&SourceOf(neck), -rise}});
@@ -239,11 +346,11 @@ class Mapper {
            Found(skeleton_.hips->right);
   }
 
-  // Hips to neck in the first frame; HasSpineEnds.
+  // Hips to neck; HasSpineEnds.
   float SpineLength() {
     const JointSource hips =
         Mix({{&SourceOf(skeleton_.hips->left), 0.5f}, {&SourceOf(skeleton_.hips->right), 0.5f}});
-    return Distance(PositionOf(hips), PositionOf(SourceOf(skeleton_.Find("neck"))));
+    return MeanDistance(hips, SourceOf(skeleton_.Find("neck")));
   }
 
   void Note(const char* target, int index, const char* reason) {
@@ -251,30 +358,29 @@ class Mapper {
         absl::StrCat(target, ": ", names_[static_cast<size_t>(index)], " (", reason, ")"));
   }
 
-  motion::Vec3 PositionOf(const JointSource& source) const { return Evaluate(source, pose_); }
-
   absl::string_view source_;
   const std::vector<std::string>& names_;
-  absl::Span<const motion::Vec3> pose_;
   const motion::Skeleton& skeleton_;
-  std::vector<ParsedJointName> parsed_;            // [names]
-  std::vector<bool> used_;                         // [names]
-  std::vector<std::optional<JointSource>> found_;  // [skeleton joints]
-  std::vector<bool> overridden_;                   // [skeleton joints] named by the user
+  std::vector<ParsedJointName> parsed_;                   // [names]
+  std::vector<bool> used_;                                // [names]
+  std::vector<std::optional<JointSource>> found_;         // [skeleton joints]
+  std::vector<bool> overridden_;                          // [skeleton joints] named by the user
+  std::vector<absl::Span<const motion::Vec3>> measured_;  // poses in which distances are taken
   std::vector<std::string> notes_;
 };
 
 }  // namespace
 
-absl::StatusOr<JointMap> MapJoints(absl::string_view source, const std::vector<std::string>& names,
-                                   absl::Span<const motion::Vec3> first_pose,
+absl::StatusOr<JointMap> MapJoints(absl::string_view source, const JointTree& tree,
                                    const motion::Skeleton& skeleton,
                                    const JointOverrides& overrides) {
-  Mapper mapper(source, names, first_pose, skeleton);
-  absl::Status status = mapper.ApplyOverrides(overrides);
-  if (!status.ok()) return status;
-  if (!mapper.MapIdentity()) mapper.MapByConvention();
-  return mapper.Finish();
+  return Mapper(source, tree.names, skeleton).MapTree(tree, overrides);
+}
+
+absl::StatusOr<JointMap> MapJoints(absl::string_view source, const std::vector<std::string>& names,
+                                   const motion::Poses& poses, const motion::Skeleton& skeleton,
+                                   const JointOverrides& overrides) {
+  return Mapper(source, names, skeleton).MapPoses(poses, overrides);
 }
 
 std::vector<motion::Vec3> ApplyJointMap(const JointMap& map, absl::Span<const motion::Vec3> pose) {

@@ -8,8 +8,10 @@
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
 #include "absl/types/span.h"
+#include "model/motion/poses.h"
 #include "model/motion/skeleton.h"
 #include "model/motion/vec3.h"
+#include "model/retargeting/joint_tree.h"
 
 namespace duet::retargeting {
 
@@ -28,6 +30,8 @@ struct JointSource {
 // How every joint of a skeleton is found in a file.
 struct JointMap {
   std::vector<JointSource> sources;  // [skeleton joints]
+  // The character pulled straight (PullStraight), where the file has a hierarchy.
+  std::vector<motion::Vec3> straight;  // [skeleton joints]
   // What was decided where the names leave a choice, for people to read:
   // "torso: mixamorig:Spine1 (the spine joint nearest to half way from hips to neck)".
   std::vector<std::string> notes;
@@ -36,16 +40,24 @@ struct JointMap {
 // Finds a skeleton's joints in a file by name (docs/formats.md has the table). A file with all of
 // the skeleton's names as they are is taken as it is. Otherwise a name counts without its prefix
 // (`mixamorig:`, `Bip01`), case, separators and wherever it says the side (`LeftArm`, `arm.L`,
-// `lArm`). Neck and torso go by their place in the first frame: the neck joint nearest to half way
+// `lArm`). Neck and torso go by where they are along the trunk: the neck joint nearest to half way
 // between the shoulders, the spine joint nearest to half way from hips to neck. A head's joint at
 // the base of the skull is raised to the head's middle.
 //
-// Shapes: first_pose [names], in any unit.
+// The hierarchy alone decides, so that all clips of one rig map alike. In one without a head the
+// end of the neck stands for it.
+//
 // Errors: INVALID_ARGUMENT naming `source`, the skeleton's joints without a source, the names that
 //         the file has, or an override that names no joint of the skeleton or of the file.
-absl::StatusOr<JointMap> MapJoints(absl::string_view source, const std::vector<std::string>& names,
-                                   absl::Span<const motion::Vec3> first_pose,
+absl::StatusOr<JointMap> MapJoints(absl::string_view source, const JointTree& tree,
                                    const motion::Skeleton& skeleton,
+                                   const JointOverrides& overrides = {});
+
+// The same in a file without a hierarchy: neck and torso go by mean distances over the motion.
+//
+// Shapes: poses [frames >= 1, names], in any unit.
+absl::StatusOr<JointMap> MapJoints(absl::string_view source, const std::vector<std::string>& names,
+                                   const motion::Poses& poses, const motion::Skeleton& skeleton,
                                    const JointOverrides& overrides = {});
 
 // One frame of the file's joints as one of the skeleton's. [names] -> [skeleton joints]

@@ -23,11 +23,17 @@ const std::vector<AliasRow>& AliasTable() {
       {"head", {"head", "skull"}},
       {"neck", {"neck", "neck1", "neck01", "lowerneck", "necklower"}},
       {"shoulder",
-       {"upperarm", "uparm", "arm", "humerus", "shldr", "shldrbend", "upperarmfk", "shoulder"}},
-      {"elbow", {"elbow", "forearm", "lowerarm", "lowarm", "forearmbend", "radius", "forearmfk"}},
+       {"upperarm", "uparm", "upperarm01", "arm", "humerus", "shldr", "shldrbend", "upperarmfk",
+        "shoulder"}},
+      {"elbow",
+       {"elbow", "forearm", "lowerarm", "lowarm", "loarm", "lowerarm01", "forearmbend", "radius",
+        "forearmfk"}},
       {"hand", {"wrist", "hand", "handfk", "palm"}},
-      {"hip", {"upleg", "upperleg", "thigh", "thighbend", "femur", "thighfk", "hip", "leg"}},
-      {"knee", {"knee", "shin", "calf", "lowerleg", "lowleg", "tibia", "shinfk", "leg"}},
+      {"hip",
+       {"upleg", "upperleg", "upperleg01", "thigh", "thighbend", "femur", "thighfk", "hip", "leg"}},
+      {"knee",
+       {"knee", "shin", "calf", "lowerleg", "lowleg", "loleg", "lowerleg01", "tibia", "shinfk",
+        "leg"}},
       {"foot", {"ankle", "foot", "footfk"}}};
   return *kTable;
 }

@@ -13,6 +13,8 @@
 #include "gtest/gtest.h"
 #include "model/base/file.h"
 #include "model/formats/flat/sbu_text.h"
+#include "tests/formats/asf/asf_fixture.h"
+#include "tests/formats/gltf/gltf_fixture.h"
 #include "tests/support/test_motion.h"
 
 namespace duet::formats {
@@ -96,6 +98,50 @@ TEST_F(MotionFile, WritesABvhForEachPersonInOneWorld) {
   EXPECT_LT(LargestDistance(*follower, pair_.follower), 0.001f);
 }
 
+TEST_F(MotionFile, ReadsEitherPersonOfAGltfFileAndItsBufferBesideIt) {
+  test::GltfBuilder builder;
+  test::AddPerson(pair_.leader, {}, &builder);
+  test::AddPerson(pair_.follower, {}, &builder);
+  ASSERT_TRUE(base::WriteFile(folder_ / "a.glb", builder.Binary()).ok());
+  ASSERT_TRUE(base::WriteFile(folder_ / "b.gltf", builder.WithFile("b.bin")).ok());
+  ASSERT_TRUE(base::WriteFile(folder_ / "b.bin", builder.buffer()).ok());
+  for (const char* name : {"a.glb", "b.gltf"}) {
+    ReadOptions options;
+    options.metres_per_unit = 2;
+    options.frame_rate_hz = 30;
+    for (Side side : {Side::kLeft, Side::kRight}) {
+      options.side = side;
+      const absl::StatusOr<motion::Clip> clip = ReadLeader(folder_ / name, options);
+      ASSERT_TRUE(clip.ok()) << clip.status();
+      motion::Clip larger = side == Side::kLeft ? pair_.leader : pair_.follower;
+      for (motion::Vec3& p : larger.poses.all()) p = p * 2;
+      EXPECT_LT(LargestDistance(*clip, larger), 0.002f) << name;
+    }
+    EXPECT_FALSE(IsWritable(name));
+  }
+}
+
+TEST_F(MotionFile, ReadsAnAmcFileWithTheSkeletonBesideIt) {
+  const test::AsfFiles files = test::MakeAsfFiles(pair_.leader);
+  ASSERT_TRUE(base::WriteFile(folder_ / "01_02.amc", files.amc).ok());
+  const absl::Status missing = ReadLeader(folder_ / "01_02.amc").status();
+  EXPECT_EQ(missing.code(), absl::StatusCode::kNotFound);
+  EXPECT_THAT(std::string(missing.message()),
+              HasSubstr("01_02.amc: skeleton: wanted 01_02.asf or 01.asf in the same folder"));
+  ASSERT_TRUE(base::WriteFile(folder_ / "01.asf", files.asf).ok());
+  const absl::StatusOr<motion::Clip> clip = ReadLeader(folder_ / "01_02.amc");
+  ASSERT_TRUE(clip.ok()) << clip.status();
+  EXPECT_EQ(clip->frame_rate_hz, 120);
+  EXPECT_LT(LargestDistance(*clip, pair_.leader), 0.001f);
+  ReadOptions options;
+  options.frame_rate_hz = 60;
+  EXPECT_EQ(ReadLeader(folder_ / "01_02.amc", options)->frame_rate_hz, 60);
+  ASSERT_TRUE(base::WriteFile(folder_ / "01_02.asf", "nothing").ok());
+  EXPECT_THAT(std::string(ReadLeader(folder_ / "01_02.amc").status().message()),
+              HasSubstr("01_02.asf:1: no bones"));
+  EXPECT_FALSE(IsWritable("a.amc"));
+}
+
 TEST_F(MotionFile, ReadsEitherPersonOfSbuText) {
   const fs::path path = folder_ / "skeleton_pos.txt";
   ASSERT_TRUE(base::WriteFile(path, *flat::FormatSbu({pair_.leader, pair_.follower})).ok());
@@ -127,9 +173,33 @@ TEST_F(MotionFile, LetsTheCallerSayTheCoordinates) {
   EXPECT_LT(Distance(clip->at(0, 7), {1, 3, -2}), 1e-6f);
 }
 
-// Two joints may be the neck; in the first frame the lower one is between the shoulders, in the
-// second the upper one.
-TEST_F(MotionFile, MapsJointsByTheFirstFrame) {
+TEST_F(MotionFile, WarnsOfPositionsWhoseUpAxisIsAnother) {
+  motion::ClipPair z_up = pair_;
+  for (motion::Clip* clip : {&z_up.leader, &z_up.follower}) {
+    for (motion::Vec3& p : clip->poses.all()) p = {p.x, -p.z, p.y};
+  }
+  const fs::path path = folder_ / "a.csv";
+  ASSERT_TRUE(WritePair(path, z_up, motion::SbuSkeleton()).ok());
+  std::vector<std::string> notes;
+  ReadOptions options;
+  options.notes = &notes;
+  ASSERT_TRUE(ReadLeader(path, options).ok());
+  EXPECT_THAT(notes, Contains(HasSubstr("not below the root along y; z-up would fit")));
+  notes.clear();
+  options.coordinates = {motion::LengthUnit::kMetres, motion::UpAxis::kZUp};
+  const absl::StatusOr<motion::Clip> clip = ReadLeader(path, options);
+  ASSERT_TRUE(clip.ok()) << clip.status();
+  EXPECT_LT(LargestDistance(*clip, pair_.leader), 1e-5f);
+  EXPECT_THAT(notes, ::testing::IsEmpty());
+  options.coordinates.reset();
+  ASSERT_TRUE(WritePair(path, pair_, motion::SbuSkeleton()).ok());
+  ASSERT_TRUE(ReadLeader(path, options).ok());
+  EXPECT_THAT(notes, ::testing::IsEmpty());
+}
+
+// Two joints may be the neck: in the first frame the upper one is between the shoulders, in all
+// others the lower one.
+TEST_F(MotionFile, MapsJointsByTheWholeMotion) {
   motion::Clip person = pair_.leader;
   person.joint_names[1] = "LowerNeck";
   person.joint_names.push_back("UpperNeck");
@@ -137,11 +207,11 @@ TEST_F(MotionFile, MapsJointsByTheFirstFrame) {
   for (const std::string& joint : person.joint_names) {
     absl::StrAppend(&text, ",", joint, "_x,", joint, "_y,", joint, "_z");
   }
-  for (const int frame : {0, 1}) {
+  for (const int frame : {0, 1, 2}) {
     absl::StrAppend(&text, "\n", frame);
     std::vector<motion::Vec3> pose(pair_.leader.poses[0].begin(), pair_.leader.poses[0].end());
     pose.push_back(pose[1] + motion::Vec3{0, 0.05f, 0});
-    if (frame == 1) std::swap(pose[1], pose.back());
+    if (frame == 0) std::swap(pose[1], pose.back());
     for (const motion::Vec3& p : pose) absl::StrAppend(&text, ",", p.x, ",", p.y, ",", p.z);
   }
   const fs::path path = folder_ / "a.csv";

@@ -1,6 +1,9 @@
 #include "model/retargeting/joint_mapping.h"
 
+#include <algorithm>
+#include <cmath>
 #include <map>
+#include <numeric>
 #include <string>
 
 #include "absl/strings/str_replace.h"
@@ -89,6 +92,53 @@ NamedPose MakePose(const Convention& c) {
     add_limb(c.toe, 0.1f, 0.02f, 0.15f);
   }
   return pose;
+}
+
+motion::Poses OneFrame(const NamedPose& pose) {
+  return motion::Poses(static_cast<int>(pose.names.size()), pose.positions);
+}
+
+// The pose as the rest pose of a rig: the middle as a chain from the lowest joint up, collars on
+// the highest joint of the spine, legs on the lowest one.
+JointTree MakeTree(const Convention& c) {
+  const NamedPose pose = MakePose(c);
+  JointTree tree;
+  std::vector<motion::Vec3> places;
+  const auto add = [&](std::size_t from, int parent) {
+    const motion::Vec3 origin = parent < 0 ? motion::Vec3{} : places[static_cast<size_t>(parent)];
+    tree.names.push_back(pose.names[from]);
+    tree.parents.push_back(parent);
+    tree.offsets.push_back(ToDouble(pose.positions[from] - origin));
+    places.push_back(pose.positions[from]);
+    return static_cast<int>(places.size()) - 1;
+  };
+  std::vector<std::size_t> middle(c.middle.size());
+  std::iota(middle.begin(), middle.end(), 0u);
+  std::stable_sort(middle.begin(), middle.end(), [&pose](std::size_t a, std::size_t b) {
+    return pose.positions[a].y < pose.positions[b].y;
+  });
+  int parent = -1, chest = 0;
+  for (std::size_t joint : middle) {
+    parent = add(joint, parent);
+    if (IsSpine(ParseJointName(pose.names[joint]))) chest = parent;
+  }
+  parent = -1;
+  for (std::size_t joint = middle.size(); joint < pose.names.size(); ++joint) {
+    const motion::Vec3 at = pose.positions[joint];
+    const bool starts = std::abs(at.x) < 0.06f || at.y == 0.92f;
+    parent = add(joint, !starts ? parent : at.y < 1 ? 0 : chest);
+  }
+  return tree;
+}
+
+std::vector<motion::Vec3> MapPose(const JointMap& map, const JointTree& tree,
+                                  const NamedPose& pose) {
+  std::vector<motion::Vec3> places;
+  for (const std::string& name : tree.names) {
+    const auto at = std::find(pose.names.begin(), pose.names.end(), name) - pose.names.begin();
+    places.push_back(pose.positions[static_cast<size_t>(at)]);
+  }
+  return ApplyJointMap(map, places);
 }
 
 const Convention kConventions[] = {
@@ -294,6 +344,46 @@ const Convention kConventions[] = {
      "@foot",
      "@toes",
      "upperback"},
+    {"MakeHuman",
+     "L",
+     "R",
+     {{"root", 0.95f},
+      {"spine05", 0.98f},
+      {"spine04", 1.07f},
+      {"spine03", 1.17f},
+      {"spine02", 1.27f},
+      {"spine01", 1.35f},
+      {"neck01", 1.43f},
+      {"neck02", 1.47f},
+      {"neck03", 1.51f},
+      {"head", 1.55f}},
+     "clavicle.@",
+     "upperarm01.@",
+     "lowerarm01.@",
+     "wrist.@",
+     "upperleg01.@",
+     "lowerleg01.@",
+     "foot.@",
+     "toe1-1.@",
+     "spine03"},
+    {"MakeHuman, early",
+     "L",
+     "R",
+     {{"Root", 0.95f},
+      {"Spine1", 1.03f},
+      {"Spine2", 1.16f},
+      {"Spine3", 1.28f},
+      {"Neck", 1.43f},
+      {"Head", 1.54f}},
+     "Clavicle_@",
+     "UpArm_@",
+     "LoArm_@",
+     "Hand_@",
+     "UpLeg_@",
+     "LoLeg_@",
+     "Foot_@",
+     "Toe_@",
+     "Spine2"},
     {"Unity, VRChat",
      "Left",
      "Right",
@@ -310,12 +400,8 @@ const Convention kConventions[] = {
 
 class Conventions : public ::testing::TestWithParam<Convention> {};
 
-TEST_P(Conventions, FindEveryJoint) {
-  const NamedPose pose = MakePose(GetParam());
+void ExpectEveryJoint(const std::vector<motion::Vec3>& mapped) {
   const motion::Skeleton skeleton = motion::SbuSkeleton();
-  const absl::StatusOr<JointMap> map = MapJoints("a.bvh", pose.names, pose.positions, skeleton);
-  ASSERT_TRUE(map.ok()) << map.status();
-  const std::vector<motion::Vec3> mapped = ApplyJointMap(*map, pose.positions);
   ASSERT_EQ(mapped.size(), 15u);
   const motion::Vec3 limbs[] = {{0.17f, 1.4f, 0}, {0.46f, 1.4f, 0}, {0.72f, 1.4f, 0},
                                 {0.1f, 0.92f, 0}, {0.1f, 0.5f, 0},  {0.1f, 0.08f, 0}};
@@ -327,6 +413,35 @@ TEST_P(Conventions, FindEveryJoint) {
   }
   EXPECT_NEAR(mapped[0].y, 1.63, 0.04) << "head";
   EXPECT_NEAR(mapped[1].y, 1.42, 0.05) << "neck";
+}
+
+TEST_P(Conventions, FindEveryJointInAHierarchy) {
+  const JointTree tree = MakeTree(GetParam());
+  const absl::StatusOr<JointMap> map = MapJoints("a.bvh", tree, motion::SbuSkeleton());
+  ASSERT_TRUE(map.ok()) << map.status();
+  ExpectEveryJoint(MapPose(*map, tree, MakePose(GetParam())));
+  EXPECT_THAT(map->notes, Contains(HasSubstr(std::string("torso: ") + GetParam().torso + " (")));
+}
+
+// Some rigs turn every joint's axes along its bone: at rest all bones lie on a line.
+TEST_P(Conventions, FindEveryJointWhicheverWayBonesPointAtRest) {
+  JointTree tree = MakeTree(GetParam());
+  for (std::size_t j = 0; j < tree.names.size(); ++j) {
+    if (ParseJointName(tree.names[j]).side != BodySide::kMiddle) continue;
+    tree.offsets[j] = {Norm(tree.offsets[j]), 0, 0};
+  }
+  const absl::StatusOr<JointMap> map = MapJoints("a.bvh", tree, motion::SbuSkeleton());
+  ASSERT_TRUE(map.ok()) << map.status();
+  ExpectEveryJoint(MapPose(*map, tree, MakePose(GetParam())));
+  EXPECT_THAT(map->notes, Contains(HasSubstr(std::string("torso: ") + GetParam().torso + " (")));
+}
+
+TEST_P(Conventions, FindEveryJointWithoutAHierarchy) {
+  const NamedPose pose = MakePose(GetParam());
+  const absl::StatusOr<JointMap> map =
+      MapJoints("a.csv", pose.names, OneFrame(pose), motion::SbuSkeleton());
+  ASSERT_TRUE(map.ok()) << map.status();
+  ExpectEveryJoint(ApplyJointMap(*map, pose.positions));
   EXPECT_THAT(map->notes, Contains(HasSubstr(std::string("torso: ") + GetParam().torso + " (")));
 }
 
@@ -338,7 +453,7 @@ TEST(JointMapping, TakesTheSkeletonsOwnNamesAsTheyAre) {
   names.insert(names.end(), skeleton.joint_names.rbegin(), skeleton.joint_names.rend());
   std::vector<motion::Vec3> pose;
   for (std::size_t i = 0; i < names.size(); ++i) pose.push_back({static_cast<float>(i), 0, 0});
-  const absl::StatusOr<JointMap> map = MapJoints("a.csv", names, pose, skeleton);
+  const absl::StatusOr<JointMap> map = MapJoints("a.csv", names, OneFrame({names, pose}), skeleton);
   ASSERT_TRUE(map.ok()) << map.status();
   EXPECT_TRUE(map->notes.empty());
   const std::vector<motion::Vec3> mapped = ApplyJointMap(*map, pose);
@@ -351,7 +466,7 @@ TEST(JointMapping, SaysWhichJointsAreMissingAndWhatThereIs) {
     if (name == "mixamorig:LeftHand") name = "paw";
   }
   const absl::StatusOr<JointMap> map =
-      MapJoints("a.bvh", pose.names, pose.positions, motion::SbuSkeleton());
+      MapJoints("a.bvh", pose.names, OneFrame(pose), motion::SbuSkeleton());
   EXPECT_EQ(map.status().code(), absl::StatusCode::kInvalidArgument);
   EXPECT_THAT(std::string(map.status().message()),
               AllOf(HasSubstr("a.bvh: joints: nothing stands for left_hand;"), HasSubstr("paw"),
@@ -365,7 +480,7 @@ TEST(JointMapping, FindsATorsoByNameWhereThereAreNoHipsToPlaceItBy) {
   motion::Skeleton skeleton;
   skeleton.joint_names = {"torso", "head", "left_hand", "right_hand"};
   skeleton.bones = {{0, 1}, {0, 2}, {0, 3}};
-  const absl::StatusOr<JointMap> map = MapJoints("a.bvh", pose.names, pose.positions, skeleton);
+  const absl::StatusOr<JointMap> map = MapJoints("a.bvh", pose.names, OneFrame(pose), skeleton);
   ASSERT_TRUE(map.ok()) << map.status();
   EXPECT_EQ(ApplyJointMap(*map, pose.positions), pose.positions);
 }
@@ -376,7 +491,7 @@ TEST(JointMapping, LetsTheUserNameJoints) {
     if (name == "mixamorig:LeftHand") name = "paw";
   }
   const absl::StatusOr<JointMap> map =
-      MapJoints("a.bvh", pose.names, pose.positions, motion::SbuSkeleton(),
+      MapJoints("a.bvh", pose.names, OneFrame(pose), motion::SbuSkeleton(),
                 {{"left_hand", "paw"}, {"head", "mixamorig:Head"}});
   ASSERT_TRUE(map.ok()) << map.status();
   const std::vector<motion::Vec3> mapped = ApplyJointMap(*map, pose.positions);
@@ -391,7 +506,7 @@ TEST(JointMapping, LetsTheUserNameJointsOfAFileWithTheSkeletonsOwnNames) {
   std::vector<motion::Vec3> pose;
   for (std::size_t i = 0; i < names.size(); ++i) pose.push_back({static_cast<float>(i), 0, 0});
   const absl::StatusOr<JointMap> map =
-      MapJoints("a.csv", names, pose, skeleton, {{"left_hand", "marker"}});
+      MapJoints("a.csv", names, OneFrame({names, pose}), skeleton, {{"left_hand", "marker"}});
   ASSERT_TRUE(map.ok()) << map.status();
   const std::vector<motion::Vec3> mapped = ApplyJointMap(*map, pose);
   for (std::size_t i = 0; i < 15; ++i) {
@@ -402,11 +517,11 @@ TEST(JointMapping, LetsTheUserNameJointsOfAFileWithTheSkeletonsOwnNames) {
 TEST(JointMapping, RefusesOverridesThatNameNothing) {
   const NamedPose pose = MakePose(kConventions[0]);
   const absl::StatusOr<JointMap> tail = MapJoints(
-      "a.bvh", pose.names, pose.positions, motion::SbuSkeleton(), {{"tail", "mixamorig:Hips"}});
+      "a.bvh", pose.names, OneFrame(pose), motion::SbuSkeleton(), {{"tail", "mixamorig:Hips"}});
   EXPECT_THAT(std::string(tail.status().message()),
               HasSubstr("came target \"tail\", wanted one of"));
   const absl::StatusOr<JointMap> nothing =
-      MapJoints("a.bvh", pose.names, pose.positions, motion::SbuSkeleton(), {{"torso", "Nothing"}});
+      MapJoints("a.bvh", pose.names, OneFrame(pose), motion::SbuSkeleton(), {{"torso", "Nothing"}});
   EXPECT_THAT(std::string(nothing.status().message()),
               HasSubstr("torso=Nothing: a.bvh has no such joint"));
 }
@@ -417,9 +532,48 @@ TEST(JointMapping, PlacesTheTorsoWhereNoSpineJointIsNear) {
     if (name.find("Spine") != std::string::npos) name = "part of " + name;
   }
   const absl::StatusOr<JointMap> map =
-      MapJoints("a.bvh", pose.names, pose.positions, motion::SbuSkeleton());
+      MapJoints("a.bvh", pose.names, OneFrame(pose), motion::SbuSkeleton());
   ASSERT_TRUE(map.ok()) << map.status();
   EXPECT_THAT(map->notes, Contains(HasSubstr("torso:")));
+}
+
+TEST(JointMapping, MeasuresTheTrunkOverTheWholeMotion) {
+  NamedPose pose = MakePose(kConventions[0]);
+  const auto spine1 = std::find(pose.names.begin(), pose.names.end(), "mixamorig:Spine1");
+  const auto at = static_cast<size_t>(spine1 - pose.names.begin());
+  motion::Poses poses = OneFrame(pose);
+  std::swap(poses.at(0, static_cast<int>(at)), poses.at(0, static_cast<int>(at) + 1));
+  for (int frame = 1; frame < 4; ++frame) poses.Append(pose.positions);
+  const absl::StatusOr<JointMap> map = MapJoints("a.csv", pose.names, poses, motion::SbuSkeleton());
+  ASSERT_TRUE(map.ok()) << map.status();
+  EXPECT_THAT(map->notes, Contains(HasSubstr("torso: mixamorig:Spine1 (")));
+}
+
+TEST(JointMapping, TakesTheEndOfTheNeckForAHeadThatIsMissing) {
+  Convention c = kConventions[0];
+  c.middle = {{"Hips", 0.97f}, {"Spine", 1.18f}, {"Neck", 1.43f}, {"Neck.end", 1.63f}};
+  const JointTree tree = MakeTree(c);
+  const absl::StatusOr<JointMap> map = MapJoints("a.bvh", tree, motion::SbuSkeleton());
+  ASSERT_TRUE(map.ok()) << map.status();
+  ExpectEveryJoint(MapPose(*map, tree, MakePose(c)));
+  EXPECT_THAT(map->notes, Contains(HasSubstr("head: Neck.end (the end of the neck")));
+}
+
+TEST(JointMapping, TakesNoOtherEndForAHead) {
+  Convention c = kConventions[0];
+  c.middle = {{"Hips", 0.97f}, {"Spine", 1.18f}, {"Neck", 1.43f}, {"left ear end", 1.63f}};
+  const absl::StatusOr<JointMap> map = MapJoints("a.bvh", MakeTree(c), motion::SbuSkeleton());
+  EXPECT_THAT(std::string(map.status().message()), HasSubstr("nothing stands for head;"));
+}
+
+TEST(JointMapping, GivesTheSkeletonsMeasuresFromTheHierarchyAlone) {
+  const absl::StatusOr<JointMap> map =
+      MapJoints("a.bvh", MakeTree(kConventions[0]), motion::SbuSkeleton());
+  ASSERT_TRUE(map.ok()) << map.status();
+  ASSERT_EQ(map->straight.size(), 15u);
+  EXPECT_NEAR(Distance(map->straight[9], map->straight[10]), 0.42, 1e-5) << "thigh";
+  EXPECT_NEAR(Distance(map->straight[3], map->straight[4]), 0.29, 1e-5) << "upper arm";
+  EXPECT_NEAR(map->straight[2].y - map->straight[9].y, 0.26, 1e-5) << "torso above the hips";
 }
 
 TEST(JointMapping, KeepsWristAndHandApartForASkeletonWithBoth) {
@@ -427,7 +581,7 @@ TEST(JointMapping, KeepsWristAndHandApartForASkeletonWithBoth) {
   skeleton.joint_names = {"left_hand", "left_wrist"};
   const std::vector<std::string> names = {"LeftWrist", "LeftHand"};
   const std::vector<motion::Vec3> pose = {{1, 0, 0}, {2, 0, 0}};
-  const absl::StatusOr<JointMap> map = MapJoints("a.bvh", names, pose, skeleton);
+  const absl::StatusOr<JointMap> map = MapJoints("a.bvh", names, OneFrame({names, pose}), skeleton);
   ASSERT_TRUE(map.ok()) << map.status();
   EXPECT_EQ(ApplyJointMap(*map, pose)[0].x, 2);
 }
@@ -436,7 +590,8 @@ TEST(JointMapping, SurvivesNamesOfEveryKind) {
   const std::vector<std::string> names = {"",     ":",        "_",    "l",
                                           "Left", "\xff\xfe", "head", "head.end"};
   const std::vector<motion::Vec3> pose(names.size());
-  const absl::StatusOr<JointMap> map = MapJoints("a.bvh", names, pose, motion::SbuSkeleton());
+  const absl::StatusOr<JointMap> map =
+      MapJoints("a.bvh", names, OneFrame({names, pose}), motion::SbuSkeleton());
   EXPECT_THAT(std::string(map.status().message()), Not(HasSubstr("for head")));
 }
 

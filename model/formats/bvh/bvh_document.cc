@@ -1,5 +1,6 @@
 #include "model/formats/bvh/bvh_document.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -17,6 +18,8 @@ constexpr int kMaxChannels = 6;
 constexpr int kOffsetDecimals = 6;
 constexpr int kValueDecimals = 5;
 constexpr int kFrameTimeDecimals = 9;
+// Of the longest OFFSET.
+constexpr double kRoundingOffset = 1e-4;
 
 struct ChannelName {
   BvhChannel channel;
@@ -344,6 +347,36 @@ double* Axis(BvhChannel position_channel, retargeting::Vec3d* vector) {
   }
 }
 
+// How far a joint's position channels are from zero and from OFFSET, summed over all frames, and
+// how far they count at most: a channel that is farther than OFFSET is long moves freely.
+struct PositionVote {
+  double from_zero = 0, from_offset = 0, most = 0;
+};
+
+// [joints]; of joints below a root alone. OFFSETs that are mere rounding have no vote.
+std::vector<PositionVote> PositionVotes(const BvhDocument& document) {
+  double longest = 0;
+  for (const BvhJoint& joint : document.joints) longest = std::max(longest, Norm(joint.offset));
+  std::vector<PositionVote> votes(document.joints.size());
+  const float* value = document.values.data();
+  for (int frame = 0; frame < document.frame_count; ++frame) {
+    for (std::size_t j = 0; j < document.joints.size(); ++j) {
+      const BvhJoint& joint = document.joints[j];
+      retargeting::Vec3d offset = joint.offset;
+      const bool votes_here = joint.parent >= 0 && Norm(offset) > kRoundingOffset * longest;
+      for (BvhChannel channel : joint.channels) {
+        const double v = static_cast<double>(*value++);
+        if (!votes_here || !IsPosition(channel)) continue;
+        const double o = *Axis(channel, &offset), most = std::abs(o);
+        votes[j].from_zero += std::min(std::abs(v), most);
+        votes[j].from_offset += std::min(std::abs(v - o), most);
+        votes[j].most += most;
+      }
+    }
+  }
+  return votes;
+}
+
 }  // namespace
 
 int BvhDocument::ChannelCount() const {
@@ -358,22 +391,22 @@ absl::StatusOr<BvhDocument> ParseBvh(absl::string_view text, absl::string_view s
 
 std::string FormatBvh(const BvhDocument& document) { return BvhFormatter(document).Format(); }
 
-BvhKinematics::BvhKinematics(const BvhDocument& document)
-    : document_(document), adds_to_offset_(document.joints.size(), false) {
-  const float* value = document.values.data();
-  for (std::size_t j = 0; j < document.joints.size(); ++j) {
-    const BvhJoint& joint = document.joints[j];
-    double to_zero = 0, to_offset = 0;
-    for (BvhChannel channel : joint.channels) {
-      const double v = static_cast<double>(*value++);
-      if (!IsPosition(channel)) continue;
-      retargeting::Vec3d offset = joint.offset;
-      to_zero += std::abs(v);
-      to_offset += std::abs(v - *Axis(channel, &offset));
-    }
-    adds_to_offset_[j] = joint.parent >= 0 && to_zero < to_offset;
+std::optional<PositionChannels> FindPositionChannels(const BvhDocument& document) {
+  const std::vector<PositionVote> votes = PositionVotes(document);
+  double sum = 0;
+  int voters = 0;
+  for (const PositionVote& vote : votes) {
+    if (!(vote.most > 0)) continue;
+    sum += (vote.from_zero - vote.from_offset) / vote.most;
+    ++voters;
   }
+  if (voters == 0) return std::nullopt;
+  return sum < 0 ? PositionChannels::kAddToOffset : PositionChannels::kReplaceOffset;
 }
+
+BvhKinematics::BvhKinematics(const BvhDocument& document)
+    : document_(document),
+      adds_to_offset_(FindPositionChannels(document) == PositionChannels::kAddToOffset) {}
 
 BvhKinematics::Local BvhKinematics::LocalTransform(std::size_t joint, const float* values) const {
   Local local{document_.joints[joint].offset, {}};
@@ -381,7 +414,7 @@ BvhKinematics::Local BvhKinematics::LocalTransform(std::size_t joint, const floa
     const double value = static_cast<double>(*values++);
     if (!IsPosition(channel)) {
       local.rotation = local.rotation * ChannelRotation(channel, value);
-    } else if (adds_to_offset_[joint]) {
+    } else if (adds_to_offset_ && document_.joints[joint].parent >= 0) {
       *Axis(channel, &local.translation) += value;
     } else {
       *Axis(channel, &local.translation) = value;

@@ -2,6 +2,7 @@
 #define DUET_MODEL_FORMATS_BVH_BVH_DOCUMENT_H_
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -48,13 +49,28 @@ absl::StatusOr<BvhDocument> ParseBvh(absl::string_view text, absl::string_view s
 // Writes what ParseBvh reads. The document's joints come depth first, as ParseBvh gives them.
 std::string FormatBvh(const BvhDocument& document);
 
+// What the position channels of joints below the root say. Both kinds are written, and a file is of
+// one kind throughout.
+enum class PositionChannels {
+  kReplaceOffset,  // the joint's place from its parent
+  kAddToOffset,    // how far from OFFSET it is
+};
+
+// How one file's position channels are to be read, from all of its joints and frames: bones hardly
+// change their length, so values that stay at OFFSET replace it and values that stay at zero add to
+// it. Each joint has one vote, from -1 to 1; a pelvis below a root that stands still moves freely
+// and says little. kReplaceOffset where nothing speaks for either. Absent where both come to the
+// same: no joint below a root has position channels and an OFFSET.
+std::optional<PositionChannels> FindPositionChannels(const BvhDocument& document);
+
 // Joint positions of one frame through forward kinematics, in the file's unit. [joints]
 //
 // The rotations of a joint apply in the order in which its channels are written, the first one
-// outermost. Position channels stand in place of OFFSET; below the root they count as an addition
-// to it where the first frame's values are nearer to zero than to OFFSET (both kinds are written).
+// outermost. A root's position channels stand in place of OFFSET, those of the other joints as
+// FindPositionChannels has it.
 class BvhKinematics {
  public:
+  // `document` outlives the kinematics.
   explicit BvhKinematics(const BvhDocument& document);
   std::vector<retargeting::Vec3d> Positions(int frame) const;
 
@@ -66,7 +82,7 @@ class BvhKinematics {
   Local LocalTransform(std::size_t joint, const float* values) const;
 
   const BvhDocument& document_;
-  std::vector<bool> adds_to_offset_;  // [joints]
+  bool adds_to_offset_ = false;  // of joints below the root
 };
 
 }  // namespace duet::formats::bvh

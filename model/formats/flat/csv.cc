@@ -1,8 +1,11 @@
 #include "model/formats/flat/csv.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <map>
 #include <optional>
-#include <set>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -10,8 +13,8 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
-#include "absl/strings/strip.h"
 #include "model/base/text.h"
+#include "model/formats/flat/csv_header.h"
 #include "model/motion/motion_limits.h"
 
 namespace duet::formats::flat {
@@ -20,21 +23,64 @@ namespace {
 constexpr absl::string_view kPrefixes[] = {"leader.", "follower."};
 constexpr const char* kSuffixes[] = {"_x", "_y", "_z"};
 constexpr std::size_t kMaxColumns = std::size_t{motion::kMaxFileJoints} * 6 + 2;
+constexpr std::size_t kMostHeaderRows = 3;
+// A time column that gives less is no column of seconds.
+constexpr double kSlowestTimedRateHz = 1;
+constexpr double kUsualRatesHz[] = {15, 24, 25, 30, 50, 60, 90, 100, 120, 240};
+constexpr std::size_t kMostDecimals = 9;  // of times; further ones are a computer's own rounding
 
-// Where a column's values go; person -1: nowhere.
-struct Column {
-  int person = -1;
-  int joint = 0;
-  int axis = 0;
-};
-
-absl::string_view Unquoted(absl::string_view field) {
-  field = absl::StripAsciiWhitespace(field);
-  if (field.size() >= 2 && field.front() == '"' && field.back() == '"') {
-    field = field.substr(1, field.size() - 2);
-  }
-  return field;
+float* AxisOf(motion::Vec3* position, int axis) {
+  return axis == 0 ? &position->x : axis == 1 ? &position->y : &position->z;
 }
+
+// The rate of the times that frames were taken at, as a time column has them.
+class TimeColumn {
+ public:
+  void Add(absl::string_view text) {
+    double seconds = 0;
+    readable_ = readable_ && base::ParseNumber(text, &seconds);
+    if (!readable_) return;
+    const std::size_t point = text.find('.');
+    const std::size_t decimals = point == absl::string_view::npos ? 0 : text.size() - point - 1;
+    decimals_ = std::max(decimals_, absl::StrContains(text, 'e') ? kMostDecimals : decimals);
+    seconds_.push_back(seconds);
+  }
+
+  // 0 where the times are no even steps in seconds. The nearest usual rate, or else a whole one,
+  // counts as such within the times' own rounding.
+  double FrameRate() const {
+    if (!readable_ || seconds_.size() < 2) return 0;
+    const double steps = static_cast<double>(seconds_.size() - 1);
+    const double rate = steps / (seconds_.back() - seconds_.front());
+    if (!(rate >= kSlowestTimedRateHz && rate <= motion::kMaxFrameRateHz)) return 0;
+    for (std::size_t i = 0; i < seconds_.size(); ++i) {
+      const double step = (seconds_[i] - seconds_.front()) * rate;
+      if (std::abs(step - static_cast<double>(i)) > 0.5) return 0;
+    }
+    return Meant(rate);
+  }
+
+ private:
+  double Meant(double rate) const {
+    const double rounding = std::pow(10, -static_cast<double>(std::min(decimals_, kMostDecimals)));
+    const double steps = static_cast<double>(seconds_.size() - 1);
+    const auto fits = [&](double candidate) {
+      return std::abs(steps / candidate - steps / rate) <= rounding;
+    };
+    double best = fits(std::round(rate)) ? std::round(rate) : rate;
+    double nearest = motion::kMaxFrameRateHz;
+    for (double usual : kUsualRatesHz) {
+      if (!fits(usual) || std::abs(usual - rate) >= nearest) continue;
+      best = usual;
+      nearest = std::abs(usual - rate);
+    }
+    return best;
+  }
+
+  std::vector<double> seconds_;
+  std::size_t decimals_ = 0;
+  bool readable_ = true;
+};
 
 class CsvParser {
  public:
@@ -42,19 +88,26 @@ class CsvParser {
       : lines_(base::SkipByteOrderMark(text)), source_(source) {}
 
   absl::StatusOr<motion::RecordedMotion> Parse() {
-    for (absl::string_view line; lines_.Next(&line);) {
-      line = absl::StripAsciiWhitespace(line);
-      if (line.empty()) continue;
-      absl::Status status = ParseLine(line);
-      if (!status.ok()) return status;
+    absl::Status status = ParseHeader();
+    CsvRow row;
+    while (status.ok() && NextRow(&row, &status)) {
+      status = header_.row_for_each_joint ? ParseJointRow(row) : ParseFrameRow(row);
     }
-    if (columns_.empty()) return Error("no header line, wanted frame,head_x,head_y,head_z,...");
+    if (status.ok() && header_.row_for_each_joint) status = CollectFrames();
+    if (!status.ok()) return status;
     if (motion_.people[0].poses.empty()) return Error("no frames after the header line");
-    for (motion::Clip& person : motion_.people) person.frame_rate_hz = frame_rate_hz_;
+    const double rate = frame_rate_hz_ > 0 ? frame_rate_hz_ : times_.FrameRate();
+    for (motion::Clip& person : motion_.people) person.frame_rate_hz = rate;
     return std::move(motion_);
   }
 
  private:
+  // One joint in one frame, of a file with a row for each joint.
+  struct Cell {
+    int frame = 0, joint = 0;
+    motion::Vec3 position;
+  };
+
   absl::Status Error(absl::string_view message) const {
     return base::ErrorAt(source_, std::max(lines_.number(), 1), message);
   }
@@ -68,10 +121,28 @@ class CsvParser {
     return Error(absl::StrCat(setting, ": came ", base::Quoted(came), ", wanted ", wanted));
   }
 
-  absl::Status ParseLine(absl::string_view line) {
-    if (line[0] == '#') return ParseComment(line.substr(1));
-    if (columns_.empty()) return ParseHeader(line);
-    return ParseFrame(line);
+  // The next line that is neither empty nor a comment; false at the end or where `status` fails.
+  bool NextLine(absl::string_view* line, absl::Status* status) {
+    while (lines_.Next(line)) {
+      *line = absl::StripAsciiWhitespace(*line);
+      if (line->empty()) continue;
+      if (line->front() != '#') return true;
+      *status = ParseComment(line->substr(1));
+      if (!status->ok()) return false;
+    }
+    return false;
+  }
+
+  // Rows that were read on the way to the end of the header come first.
+  bool NextRow(CsvRow* row, absl::Status* status) {
+    if (next_waiting_ < waiting_.size()) {
+      *row = std::move(waiting_[next_waiting_++]);
+      return true;
+    }
+    absl::string_view line;
+    if (!NextLine(&line, status)) return false;
+    *row = SplitRow(line, delimiter_);
+    return true;
   }
 
   absl::Status ParseComment(absl::string_view comment) {
@@ -103,118 +174,159 @@ class CsvParser {
     return absl::OkStatus();
   }
 
-  absl::Status ParseHeader(absl::string_view line) {
-    const std::vector<absl::string_view> fields = absl::StrSplit(line, ',');
-    if (fields.size() > kMaxColumns) {
-      return Error(absl::StrCat("came ", fields.size(), " columns, wanted at most ", kMaxColumns));
+  absl::Status ParseHeader() {
+    absl::Status status;
+    absl::string_view line;
+    if (!NextLine(&line, &status)) {
+      return status.ok() ? Error("no header line, wanted frame,head_x,head_y,head_z,...") : status;
     }
-    std::set<std::string> seen;
-    for (std::size_t i = 0; i < fields.size(); ++i) {
-      const std::string name(Unquoted(fields[i]));
-      if (!seen.insert(name).second) {
-        return ErrorInColumn(i + 1, absl::StrCat(base::Quoted(name), " comes twice"));
-      }
-      absl::Status status = AddColumn(i + 1, name);
-      if (!status.ok()) return status;
+    delimiter_ = FindDelimiter(line);
+    std::vector<CsvRow> rows = {SplitRow(line, delimiter_)};
+    if (rows[0].size() > kMaxColumns) {
+      return Error(absl::StrCat("came ", rows[0].size(), " columns, wanted at most ", kMaxColumns));
     }
-    return CheckColumns();
+    return NeedsFurtherRows(rows[0]) ? ParseLevels(std::move(rows)) : TakeHeader(rows);
   }
 
-  absl::Status AddColumn(std::size_t number, absl::string_view name) {
-    columns_.emplace_back();
-    if (name == "frame" || name == "time") return absl::OkStatus();
-    Column& column = columns_.back();
-    const bool prefixed =
-        absl::StartsWith(name, kPrefixes[0]) || absl::StartsWith(name, kPrefixes[1]);
-    absl::string_view joint = name;
-    column.person = absl::ConsumePrefix(&joint, kPrefixes[1]) ? 1 : 0;
-    absl::ConsumePrefix(&joint, kPrefixes[0]);
-    column.axis = -1;
-    for (int axis = 0; axis < 3 && column.axis < 0; ++axis) {
-      if (absl::ConsumeSuffix(&joint, kSuffixes[axis])) column.axis = axis;
-    }
-    if (column.axis < 0 || joint.empty()) {
-      return ErrorInColumn(number,
-                           absl::StrCat("came ", base::Quoted(name),
-                                        ", wanted frame, time or JOINT_x, JOINT_y, JOINT_z"));
-    }
-    (prefixed ? has_prefixed_ : has_plain_) = true;
-    column.joint = JointIndex(static_cast<size_t>(column.person), joint);
-    return absl::OkStatus();
+  // Whether a first row names no axis, as that of columns of several levels.
+  static bool NeedsFurtherRows(const CsvRow& row) { return !ReadHeader({row}).ok(); }
+
+  absl::Status ParseLevels(std::vector<CsvRow> rows) {
+    const absl::Status as_one_row = TakeHeader({rows[0]});
+    absl::Status status;
+    CsvRow row;
+    while (rows.size() < kMostHeaderRows && NextRow(&row, &status)) rows.push_back(row);
+    if (!status.ok()) return status;
+    const std::size_t count = CountHeaderRows(rows);
+    if (count == 1) return as_one_row;
+    waiting_.assign(rows.begin() + static_cast<std::ptrdiff_t>(count), rows.end());
+    rows.resize(count);
+    status = TakeHeader(rows);
+    if (!status.ok()) return status;
+    if (waiting_.empty() && NextRow(&row, &status)) waiting_.push_back(row);
+    if (waiting_.empty()) return status;
+    const std::optional<CsvColumn::Kind> index = ReadIndexName(waiting_[0]);
+    if (!index.has_value()) return status;
+    header_.columns[0].kind = *index;
+    waiting_.erase(waiting_.begin());
+    return status;
   }
 
-  int JointIndex(std::size_t person, absl::string_view name) {
-    while (motion_.people.size() <= person) motion_.people.emplace_back();
-    std::vector<std::string>& names = motion_.people[person].joint_names;
-    const auto it = std::find(names.begin(), names.end(), name);
-    if (it != names.end()) return static_cast<int>(it - names.begin());
-    names.emplace_back(name);
-    return static_cast<int>(names.size()) - 1;
-  }
-
-  absl::Status CheckColumns() const {
-    if (motion_.people.empty()) return Error("no joint columns, wanted JOINT_x, JOINT_y, JOINT_z");
-    if (has_prefixed_ && has_plain_) {
-      return Error("columns with and without \"leader.\" or \"follower.\", wanted one kind");
-    }
-    for (std::size_t person = 0; person < motion_.people.size(); ++person) {
-      absl::Status status = CheckAxes(static_cast<int>(person));
-      if (!status.ok()) return status;
+  absl::Status TakeHeader(const std::vector<CsvRow>& rows) {
+    absl::StatusOr<CsvHeader> header = ReadHeader(rows);
+    if (!header.ok()) return Error(header.status().message());
+    header_ = *std::move(header);
+    motion_.people.resize(std::max<std::size_t>(header_.joint_names.size(), 1));
+    for (std::size_t person = 0; person < header_.joint_names.size(); ++person) {
+      motion_.people[person].joint_names = header_.joint_names[person];
     }
     return absl::OkStatus();
   }
 
-  absl::Status CheckAxes(int person) const {
-    const std::vector<std::string>& names = motion_.people[static_cast<size_t>(person)].joint_names;
-    std::vector<int> axes(names.size(), 0);
-    for (const Column& column : columns_) {
-      if (column.person == person) axes[static_cast<size_t>(column.joint)] |= 1 << column.axis;
-    }
-    for (std::size_t joint = 0; joint < axes.size(); ++joint) {
-      for (int axis = 0; axis < 3; ++axis) {
-        if ((axes[joint] >> axis & 1) != 0) continue;
-        return Error(absl::StrCat("no column ", has_prefixed_ ? kPrefixes[person] : "",
-                                  names[joint], kSuffixes[axis]));
-      }
-    }
-    if (names.empty()) return Error("no leader columns beside the follower's");
-    return absl::OkStatus();
+  absl::Status CheckRow(const CsvRow& row) const {
+    if (row.size() == header_.columns.size()) return absl::OkStatus();
+    return Error(absl::StrCat("came ", row.size(), " values, wanted ", header_.columns.size(),
+                              " as in the header line"));
   }
 
-  absl::Status ParseFrame(absl::string_view line) {
-    const std::vector<absl::string_view> fields = absl::StrSplit(line, ',');
-    if (fields.size() != columns_.size()) {
-      return Error(absl::StrCat("came ", fields.size(), " values, wanted ", columns_.size(),
-                                " as in the header line"));
-    }
-    if (motion_.people[0].frame_count() >= motion::kMaxMotionFrames) {
-      return Error(absl::StrCat("more than ", motion::kMaxMotionFrames, " frames"));
-    }
+  absl::Status ParsePosition(const CsvRow& row, std::size_t column, float* value) const {
+    if (motion::ParseCoordinate(row[column], value)) return absl::OkStatus();
+    return ErrorInColumn(
+        column + 1, absl::StrCat("came ", base::Quoted(row[column]), ", wanted a finite number"));
+  }
+
+  absl::Status TooManyFrames() const {
+    return Error(absl::StrCat("more than ", motion::kMaxMotionFrames, " frames"));
+  }
+
+  absl::Status ParseFrameRow(const CsvRow& row) {
+    absl::Status status = CheckRow(row);
+    if (!status.ok()) return status;
+    const int frame = motion_.people[0].frame_count();
+    if (frame >= motion::kMaxMotionFrames) return TooManyFrames();
     for (motion::Clip& person : motion_.people) {
       person.Append(std::vector<motion::Vec3>(person.joint_names.size()));
     }
-    for (std::size_t i = 0; i < fields.size(); ++i) {
-      if (columns_[i].person < 0) continue;
-      if (!motion::ParseCoordinate(Unquoted(fields[i]), Destination(columns_[i]))) {
-        return ErrorInColumn(
-            i + 1, absl::StrCat("came ", base::Quoted(fields[i]), ", wanted a finite number"));
-      }
+    for (std::size_t i = 0; i < row.size() && status.ok(); ++i) {
+      const CsvColumn& column = header_.columns[i];
+      if (column.kind == CsvColumn::Kind::kTime) times_.Add(row[i]);
+      if (column.kind != CsvColumn::Kind::kPosition) continue;
+      motion::Vec3& at = motion_.people[static_cast<size_t>(column.person)].at(frame, column.joint);
+      status = ParsePosition(row, i, AxisOf(&at, column.axis));
     }
+    return status;
+  }
+
+  absl::Status ParseJointRow(const CsvRow& row) {
+    absl::Status status = CheckRow(row);
+    absl::string_view frame, time, joint;
+    Cell cell;
+    for (std::size_t i = 0; i < row.size() && status.ok(); ++i) {
+      const CsvColumn& column = header_.columns[i];
+      if (column.kind == CsvColumn::Kind::kPosition) {
+        status = ParsePosition(row, i, AxisOf(&cell.position, column.axis));
+      }
+      if (column.kind == CsvColumn::Kind::kFrame) frame = row[i];
+      if (column.kind == CsvColumn::Kind::kTime) time = row[i];
+      if (column.kind == CsvColumn::Kind::kJoint) joint = row[i];
+    }
+    if (!status.ok()) return status;
+    if (joint.empty()) return Error("a joint without a name");
+    // Of both, a frame's number tells frames apart that a rounded time does not.
+    const auto [known_frame, new_frame] = frames_.emplace(std::string(frame.empty() ? time : frame),
+                                                          static_cast<int>(frames_.size()));
+    const auto [known_joint, new_joint] =
+        joints_.emplace(std::string(joint), static_cast<int>(joints_.size()));
+    if (frames_.size() > motion::kMaxMotionFrames) return TooManyFrames();
+    if (joints_.size() > motion::kMaxFileJoints) {
+      return Error(absl::StrCat("more than ", motion::kMaxFileJoints, " joints"));
+    }
+    if (new_frame && !time.empty()) times_.Add(time);
+    if (new_joint) motion_.people[0].joint_names.emplace_back(joint);
+    cell.frame = known_frame->second;
+    cell.joint = known_joint->second;
+    cells_.push_back(cell);
     return absl::OkStatus();
   }
 
-  float* Destination(const Column& column) {
-    motion::Clip& person = motion_.people[static_cast<size_t>(column.person)];
-    motion::Vec3& position = person.at(person.frame_count() - 1, column.joint);
-    return column.axis == 0 ? &position.x : column.axis == 1 ? &position.y : &position.z;
+  // Every joint once in every frame.
+  absl::Status CollectFrames() {
+    if (cells_.empty()) return absl::OkStatus();
+    const std::size_t wanted = frames_.size() * joints_.size();
+    if (cells_.size() != wanted) {
+      return Error(absl::StrCat("came ", cells_.size(), " rows, wanted ", wanted,
+                                ": one for each of ", joints_.size(), " joints in each of ",
+                                frames_.size(), " frames"));
+    }
+    motion::Clip& person = motion_.people[0];
+    person.poses = motion::Poses(static_cast<int>(frames_.size()), person.joint_count());
+    std::vector<bool> given(wanted);
+    for (const Cell& cell : cells_) {
+      const std::size_t place =
+          static_cast<size_t>(cell.frame) * joints_.size() + static_cast<size_t>(cell.joint);
+      if (given[place]) {
+        return Error(absl::StrCat(base::Quoted(person.joint_names[static_cast<size_t>(cell.joint)]),
+                                  " comes twice in the frame that is number ", cell.frame + 1,
+                                  " of the file"));
+      }
+      given[place] = true;
+      person.at(cell.frame, cell.joint) = cell.position;
+    }
+    return absl::OkStatus();
   }
 
   base::LineReader lines_;
   absl::string_view source_;
+  char delimiter_ = ',';
+  CsvHeader header_;
+  std::vector<CsvRow> waiting_;
+  std::size_t next_waiting_ = 0;
   motion::RecordedMotion motion_;
-  double frame_rate_hz_ = 0;
-  std::vector<Column> columns_;
-  bool has_prefixed_ = false, has_plain_ = false;
+  double frame_rate_hz_ = 0;  // as a comment says
+  TimeColumn times_;
+  // With a row for each joint.
+  std::map<std::string, int> frames_, joints_;  // by what the rows call them
+  std::vector<Cell> cells_;
 };
 
 void AppendHeader(absl::string_view prefix, const motion::Clip& clip, std::string* out) {

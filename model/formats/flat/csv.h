@@ -18,7 +18,10 @@ namespace duet::formats::flat {
 //
 // A file of one person has columns without `leader.` and `follower.`. Reading: comment lines start
 // with '#'; frame_rate_hz (or fps), unit and up_axis (motion/coordinates.h) count, other
-// words do not; columns may come in any order, `frame` and `time` are passed over.
+// words do not; columns may come in any order, an index is passed over. Read besides
+// (docs/formats.md has examples): columns of several levels as pandas writes them, a row for each
+// joint, semicolons or tabs. A column of even times in seconds gives the rate where no comment
+// does.
 //
 // Errors: INVALID_ARGUMENT "source:line:column: ... came ..., wanted ...".
 absl::StatusOr<motion::RecordedMotion> ParseCsv(absl::string_view text, absl::string_view source);

@@ -118,6 +118,8 @@ TEST_F(ArgumentsTest, EveryFlagIsRead) {
                                               "left_hand=LHand",
                                               "--joint-map",
                                               "right_hand=RHand",
+                                              "--joint-map-file",
+                                              "rig.txt",
                                               "--model",
                                               "sbu@2",
                                               "--follower-start",
@@ -153,6 +155,7 @@ TEST_F(ArgumentsTest, EveryFlagIsRead) {
   EXPECT_EQ(arguments.input.metres_per_unit, 0.01);
   EXPECT_THAT(arguments.input.joints,
               ElementsAre(Pair("left_hand", "LHand"), Pair("right_hand", "RHand")));
+  EXPECT_EQ(arguments.input.joint_table, "rig.txt");
   EXPECT_EQ(arguments.model.name, "sbu");
   EXPECT_EQ(arguments.model.version, 2);
   EXPECT_EQ(arguments.follower_start, "-0.5,1,2");

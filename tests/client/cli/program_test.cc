@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "absl/strings/str_replace.h"
 #include "client/mocks/mock_connection.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
@@ -386,6 +387,59 @@ TEST_F(ProgramTest, AMalformedLeaderIsBadInput) {
   EXPECT_EQ(Synthesize("pair.html"), 42);
   EXPECT_THAT(err_.str(), HasSubstr("leader.csv"));
   EXPECT_FALSE(Exists("pair.html"));
+}
+
+TEST_F(ProgramTest, AJointTableSaysWhichJointIsWhich) {
+  std::string text = ReadTestFile(folder_ / "leader.csv");
+  text = absl::StrReplaceAll(text, {{".left_hand_", ".paw_"}, {".right_hand_", ".claw_"}});
+  WriteTestFile(folder_ / "leader.csv", text);
+  EXPECT_EQ(Synthesize("pair.html"), 42);
+  EXPECT_THAT(err_.str(), AllOf(HasSubstr("nothing stands for left_hand, right_hand"),
+                                HasSubstr("Say it with --joint-map MODEL_JOINT=FILE_JOINT, or a "
+                                          "table of them with --joint-map-file FILE.\n")));
+  SynthesisRequest sent;
+  EXPECT_CALL(*connection_, Synthesize)
+      .WillRepeatedly([&](const SynthesisRequest& request, const ChunkCallback&) {
+        sent = request;
+        return Follow(request);
+      });
+  WriteTestFile(folder_ / "rig.txt", "# ours\nleft_hand = paw\nright_hand = paw\n");
+  ASSERT_EQ(Synthesize("pair.html",
+                       {"--joint-map-file", Path("rig.txt"), "--joint-map", "right_hand=claw"}),
+            0)
+      << err_.str();
+  const int left = motion::SbuSkeleton().Find("left_hand");
+  const int right = motion::SbuSkeleton().Find("right_hand");
+  EXPECT_NEAR(sent.leader.at(3, left).x, leader_.at(3, left).x, 1e-5);
+  EXPECT_NEAR(sent.leader.at(3, right).x, leader_.at(3, right).x, 1e-5);
+  WriteTestFile(folder_ / "rig.txt", "left_hand\n");
+  EXPECT_EQ(Synthesize("pair.html", {"--joint-map-file", Path("rig.txt")}), 42);
+  EXPECT_THAT(err_.str(), HasSubstr("rig.txt:1: came \"left_hand\""));
+}
+
+TEST_F(ProgramTest, AMissingJointTableNeverReachesTheServer) {
+  EXPECT_CALL(*connection_, GetModel).Times(0);
+  EXPECT_EQ(Synthesize("pair.html", {"--joint-map-file", Path("no.txt")}), 42);
+  EXPECT_THAT(err_.str(), HasSubstr("no.txt: no such file"));
+}
+
+TEST_F(ProgramTest, AMissingFrameRateNamesItsFlag) {
+  std::string text = ReadTestFile(folder_ / "leader.csv");
+  WriteTestFile(folder_ / "leader.csv", text.substr(text.find('\n') + 1));
+  EXPECT_EQ(Synthesize("pair.html"), 42);
+  EXPECT_THAT(err_.str(), AllOf(HasSubstr("frame rate: the file has none"),
+                                HasSubstr("\nSay it with --frame-rate HZ.\n")));
+}
+
+TEST_F(ProgramTest, ASizeThatCannotBeToldNamesItsFlag) {
+  motion::Clip point = leader_;
+  for (motion::Vec3& position : point.poses.all()) position = {0, 1, 0};
+  ASSERT_THAT(formats::WritePair(folder_ / "pair.bvh", {point, point}, motion::SbuSkeleton()),
+              IsOk());
+  EXPECT_EQ(Run({"synthesize", "--leader", Path("pair.leader.bvh"), "--label", "kick=1", "--out",
+                 Path("pair.html")}),
+            42);
+  EXPECT_THAT(err_.str(), HasSubstr("\nSay it with --metres-per-unit METRES.\n"));
 }
 
 TEST_F(ProgramTest, ARefusalListsEveryField) {

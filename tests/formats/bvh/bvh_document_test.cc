@@ -1,5 +1,6 @@
 #include "model/formats/bvh/bvh_document.h"
 
+#include <optional>
 #include <string>
 
 #include "absl/strings/str_cat.h"
@@ -112,6 +113,60 @@ TEST(BvhDocument, ReadsPositionChannelsBelowTheRootOfBothKinds) {
   };
   ExpectNear(end_of("0 10.5 0"), {0, 11.5, 0});
   ExpectNear(end_of("0 0.5 0"), {0, 11.5, 0});
+}
+
+// A pelvis that moves freely below a root that stands still, and a spine. Where the pelvis is in
+// one frame says nothing: here it is nearer to zero than to its OFFSET, there the other way round.
+std::string PelvisAndSpine(const std::string& frames) {
+  return absl::StrCat(
+      "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 0\nJOINT pelvis\n{\nOFFSET 150 90 -200\n"
+      "CHANNELS 3 Xposition Yposition Zposition\nJOINT spine\n{\nOFFSET 0 10 0\n"
+      "CHANNELS 3 Xposition Yposition Zposition\n}\n}\n}\nMOTION\nFrames: 2\nFrame Time: 1\n",
+      frames);
+}
+
+TEST(BvhDocument, ReadsPositionChannelsOfOneKindThroughoutAFile) {
+  const absl::StatusOr<BvhDocument> replacing =
+      ParseBvh(PelvisAndSpine("10 92 5 0 10 0\n20 92 5 0 10 0\n"), "a.bvh");
+  ASSERT_TRUE(replacing.ok()) << replacing.status();
+  EXPECT_EQ(FindPositionChannels(*replacing), PositionChannels::kReplaceOffset);
+  ExpectNear(BvhKinematics(*replacing).Positions(0)[1], {10, 92, 5});
+  ExpectNear(BvhKinematics(*replacing).Positions(1)[2], {20, 102, 5});
+
+  const absl::StatusOr<BvhDocument> adding =
+      ParseBvh(PelvisAndSpine("150 90 -190 0 0 0\n140 90 -190 0 0 0\n"), "a.bvh");
+  ASSERT_TRUE(adding.ok()) << adding.status();
+  EXPECT_EQ(FindPositionChannels(*adding), PositionChannels::kAddToOffset);
+  ExpectNear(BvhKinematics(*adding).Positions(0)[1], {300, 180, -390});
+  ExpectNear(BvhKinematics(*adding).Positions(1)[2], {290, 190, -390});
+}
+
+// In the first frame the spine alone speaks for the wrong kind.
+TEST(BvhDocument, DecidesOnPositionChannelsByAllFrames) {
+  const absl::StatusOr<BvhDocument> document = ParseBvh(
+      "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 0\nJOINT b\n{\nOFFSET 0 10 0\n"
+      "CHANNELS 1 Yposition\n}\n}\nMOTION\nFrames: 3\nFrame Time: 1\n4\n10\n9\n",
+      "a.bvh");
+  ASSERT_TRUE(document.ok()) << document.status();
+  EXPECT_EQ(FindPositionChannels(*document), PositionChannels::kReplaceOffset);
+  ExpectNear(BvhKinematics(*document).Positions(0)[1], {0, 4, 0});
+}
+
+TEST(BvhDocument, OffsetsThatAreRoundingHaveNoVoteOnPositionChannels) {
+  const absl::StatusOr<BvhDocument> document = ParseBvh(
+      "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 0\nJOINT b\n{\nOFFSET 0 10 0\n"
+      "CHANNELS 1 Yposition\nJOINT c\n{\nOFFSET 0 1e-6 0\nCHANNELS 1 Yposition\n"
+      "JOINT d\n{\nOFFSET 0 1e-6 0\nCHANNELS 1 Yposition\n}\n}\n}\n}\n"
+      "MOTION\nFrames: 1\nFrame Time: 1\n10 0 0\n",
+      "a.bvh");
+  ASSERT_TRUE(document.ok()) << document.status();
+  EXPECT_EQ(FindPositionChannels(*document), PositionChannels::kReplaceOffset);
+}
+
+TEST(BvhDocument, PositionChannelsOfARootNeedNoDecision) {
+  const absl::StatusOr<BvhDocument> document = ParseBvh(kArm, "a.bvh");
+  ASSERT_TRUE(document.ok()) << document.status();
+  EXPECT_EQ(FindPositionChannels(*document), std::nullopt);
 }
 
 TEST(BvhDocument, WritesWhatItReads) {

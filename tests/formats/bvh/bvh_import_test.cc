@@ -1,5 +1,6 @@
 #include "model/formats/bvh/bvh_import.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -14,6 +15,7 @@ namespace {
 
 using test::LargestDistance;
 using test::MakePerson;
+using test::PersonOptions;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -59,11 +61,10 @@ TEST(BvhImport, ASkeletonWithoutFeetNeedsItsUnitSaid) {
 
 TEST(BvhImport, FindsTheUnitFromThePersonsSize) {
   const motion::Clip clip = MakePerson();
-  const std::pair<double, const char*> units[] = {{1, "unit: centimetres"},
-                                                  {0.01, "unit: metres"},
-                                                  {10, "unit: millimetres"},
-                                                  {1 / 2.54, "unit: inches"},
-                                                  {0.45 / 2.54, "unit: CMU's unit"}};
+  const std::pair<double, const char*> units[] = {
+      {1, "unit: centimetres"},          {0.01, "unit: metres"},
+      {10, "unit: millimetres"},         {1 / 2.54, "unit: inches"},
+      {0.45 / 2.54, "unit: CMU's unit"}, {0.1, "unit: decimetres"}};
   for (const auto& [factor, note] : units) {
     std::vector<std::string> notes;
     BvhImportOptions options;
@@ -76,24 +77,6 @@ TEST(BvhImport, FindsTheUnitFromThePersonsSize) {
   }
 }
 
-TEST(BvhImport, RefusesASizeThatIsNoPersonsUnlessTheUnitIsGiven) {
-  const motion::Clip clip = MakePerson();
-  const BvhDocument giant = Scaled(Export(clip), 77);
-  const absl::StatusOr<motion::Clip> refused = FromBvh(giant, "a.bvh");
-  EXPECT_EQ(refused.status().code(), absl::StatusCode::kInvalidArgument);
-  EXPECT_THAT(std::string(refused.status().message()), HasSubstr("a.bvh: size: foot to root came"));
-  BvhImportOptions options;
-  options.metres_per_unit = 0.01 / 77;
-  const absl::StatusOr<motion::Clip> read = FromBvh(giant, "a.bvh", options);
-  ASSERT_TRUE(read.ok()) << read.status();
-  EXPECT_LT(LargestDistance(*read, clip), kOneMillimetre);
-  for (double unit : {0.0, -1.0, 1e30, std::nan("")}) {
-    options.metres_per_unit = unit;
-    EXPECT_THAT(std::string(FromBvh(giant, "a.bvh", options).status().message()),
-                HasSubstr("metres per unit: came"));
-  }
-}
-
 TEST(BvhImport, TakesLegsOfSevenTenthsToOnePointFourMetresForAPersons) {
   const motion::Clip clip = MakePerson({2});
   const double leg = 0.41 + 0.43 + 0.237;  // of MakePerson, foot to torso
@@ -103,10 +86,61 @@ TEST(BvhImport, TakesLegsOfSevenTenthsToOnePointFourMetresForAPersons) {
     std::vector<std::string> notes;
     BvhImportOptions options;
     options.notes = &notes;
-    EXPECT_EQ(FromBvh(Scaled(Export(clip), metres / leg), "a.bvh", options).ok(), taken) << metres;
-    if (!taken) continue;
-    EXPECT_THAT(notes,
-                Contains(absl::StrCat("unit: centimetres (foot to torso is then ", metres, " m)")));
+    ASSERT_TRUE(FromBvh(Scaled(Export(clip), metres / leg), "a.bvh", options).ok());
+    const std::string note =
+        absl::StrCat("unit: centimetres (foot to torso is then ", metres, " m)");
+    EXPECT_EQ(std::find(notes.begin(), notes.end(), note) != notes.end(), taken) << metres;
+  }
+}
+
+TEST(BvhImport, GuessesTheUnitOfASizeThatIsNoPersonsAndWarns) {
+  const motion::Clip clip = MakePerson();
+  const double leg = 0.41 + 0.43 + 0.237;
+  const BvhDocument odd = Scaled(Export(clip), 2.24 / leg);  // 224 units from foot to root
+  std::vector<std::string> notes;
+  BvhImportOptions options;
+  options.notes = &notes;
+  const absl::StatusOr<motion::Clip> guessed = FromBvh(odd, "a.bvh", options);
+  ASSERT_TRUE(guessed.ok()) << guessed.status();
+  EXPECT_THAT(notes,
+              Contains(HasSubstr("warning: unit: a guess: foot to torso is 224 units, no person's "
+                                 "in any usual unit, and was taken as 1 m")));
+  motion::Clip smaller = clip;
+  for (motion::Vec3& p : smaller.poses.all()) p = p * static_cast<float>(1 / leg);
+  EXPECT_LT(LargestDistance(*guessed, smaller), kOneMillimetre);
+  options.metres_per_unit = 0.01 * leg / 2.24;
+  notes.clear();
+  const absl::StatusOr<motion::Clip> told = FromBvh(odd, "a.bvh", options);
+  ASSERT_TRUE(told.ok()) << told.status();
+  EXPECT_LT(LargestDistance(*told, clip), kOneMillimetre);
+  EXPECT_THAT(notes, Not(Contains(HasSubstr("unit:"))));
+}
+
+// What is guessed of one rig is the same whatever it does first.
+TEST(BvhImport, GuessesTheSameUnitForEveryClipOfARig) {
+  BvhDocument odd = Scaled(Export(MakePerson()), 2.24);
+  std::vector<std::string> before, after;
+  BvhImportOptions options;
+  options.notes = &before;
+  ASSERT_TRUE(FromBvh(odd, "a.bvh", options).ok());
+  for (std::size_t i = 3; i < odd.values.size(); ++i) odd.values[i] *= 0.5f;
+  options.notes = &after;
+  ASSERT_TRUE(FromBvh(odd, "a.bvh", options).ok());
+  EXPECT_EQ(before, after);
+}
+
+TEST(BvhImport, RefusesAFigureWithoutSizeAndUnitsThatAreNone) {
+  const motion::Clip clip = MakePerson({2});
+  const BvhDocument point = Scaled(Export(clip), 0);
+  const absl::StatusOr<motion::Clip> refused = FromBvh(point, "a.bvh");
+  EXPECT_EQ(refused.status().code(), absl::StatusCode::kInvalidArgument);
+  EXPECT_THAT(std::string(refused.status().message()),
+              HasSubstr("a.bvh: size: foot to torso came as 0 units"));
+  BvhImportOptions options;
+  for (double unit : {0.0, -1.0, 1e30, std::nan("")}) {
+    options.metres_per_unit = unit;
+    EXPECT_THAT(std::string(FromBvh(Export(clip), "a.bvh", options).status().message()),
+                HasSubstr("metres per unit: came"));
   }
 }
 
@@ -161,6 +195,73 @@ TEST(BvhImport, RoundsFrameTimesToTheRateThatIsMeant) {
     broadcast.frame_time_s = 1 / rate;
     EXPECT_NEAR(FromBvh(broadcast, "a.bvh")->frame_rate_hz, rate, 1e-6);
   }
+}
+
+// The person below a root that stands still, as some programs write it: every joint has position
+// channels, the pelvis those of the whole motion.
+BvhDocument BelowAStandingRoot(const BvhDocument& person, PositionChannels kind) {
+  const retargeting::Vec3d rest = {150, 90, -200};  // where the rig stood when it was made
+  BvhDocument document;
+  document.frame_time_s = person.frame_time_s;
+  document.frame_count = person.frame_count;
+  document.joints.push_back({"reference", -1, {}, {}, false});
+  for (BvhJoint joint : person.joints) {
+    const bool pelvis = joint.parent < 0;
+    ++joint.parent;
+    if (pelvis) {
+      joint.offset = rest;
+    } else if (!joint.end_site) {
+      joint.channels.insert(joint.channels.begin(), {BvhChannel::kXPosition, BvhChannel::kYPosition,
+                                                     BvhChannel::kZPosition});
+    }
+    document.joints.push_back(joint);
+  }
+  const bool adds = kind == PositionChannels::kAddToOffset;
+  const float* value = person.values.data();
+  for (int frame = 0; frame < person.frame_count; ++frame) {
+    for (const BvhJoint& joint : person.joints) {
+      const bool pelvis = joint.parent < 0;
+      if (joint.end_site) continue;
+      retargeting::Vec3d at = joint.offset;
+      if (pelvis) at = {value[0], value[1], value[2]};
+      if (adds) at = at - (pelvis ? rest : joint.offset);
+      for (double v : {at.x, at.y, at.z}) document.values.push_back(static_cast<float>(v));
+      value += pelvis ? 3 : 0;
+      document.values.insert(document.values.end(), value, value + 3);
+      value += 3;
+    }
+  }
+  return document;
+}
+
+TEST(BvhImport, ReadsPositionChannelsOfEveryJointHoweverTheyAreMeant) {
+  PersonOptions near, far;
+  near.at = {0.1f, 1, 0.05f};
+  far.at = {1.4f, 0.95f, -1.9f};
+  const std::pair<PositionChannels, const char*> kinds[] = {
+      {PositionChannels::kReplaceOffset, "position channels below the root: in place of OFFSET"},
+      {PositionChannels::kAddToOffset, "position channels below the root: added to OFFSET"}};
+  for (const PersonOptions& place : {near, far}) {
+    const motion::Clip clip = MakePerson(place);
+    for (const auto& [kind, note] : kinds) {
+      std::vector<std::string> notes;
+      BvhImportOptions options;
+      options.notes = &notes;
+      const absl::StatusOr<motion::Clip> read =
+          FromBvh(BelowAStandingRoot(Export(clip), kind), "a.bvh", options);
+      ASSERT_TRUE(read.ok()) << read.status();
+      EXPECT_LT(LargestDistance(*read, clip), kOneMillimetre) << note;
+      EXPECT_THAT(notes, Contains(HasSubstr(note)));
+    }
+  }
+}
+
+TEST(BvhImport, SaysNothingOfPositionChannelsWhereOnlyTheRootHasThem) {
+  std::vector<std::string> notes;
+  BvhImportOptions options;
+  options.notes = &notes;
+  ASSERT_TRUE(FromBvh(Export(MakePerson({2})), "a.bvh", options).ok());
+  EXPECT_THAT(notes, Not(Contains(HasSubstr("position channels"))));
 }
 
 TEST(BvhImport, ReadsTheSecondPersonOfAFileWithTwo) {

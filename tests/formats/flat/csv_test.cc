@@ -1,6 +1,7 @@
 #include "model/formats/flat/csv.h"
 
 #include <string>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_replace.h"
@@ -62,6 +63,139 @@ TEST(Csv, LeavesTheRateOpenWhereTheFileHasNone) {
   EXPECT_EQ(motion->people[0].frame_rate_hz, 0);
   EXPECT_EQ(motion->coordinates.unit, motion::LengthUnit::kMetres);
   EXPECT_EQ(motion->coordinates.up_axis, motion::UpAxis::kYUp);
+}
+
+// head and neck of one person at two moments.
+void ExpectHeadAndNeck(const std::string& text, double frame_rate_hz = 0) {
+  const absl::StatusOr<motion::RecordedMotion> motion = ParseCsv(text, "a.csv");
+  ASSERT_TRUE(motion.ok()) << motion.status() << "\n" << text;
+  ASSERT_EQ(motion->people.size(), 1u) << text;
+  const motion::Clip& clip = motion->people[0];
+  EXPECT_THAT(clip.joint_names, ::testing::ElementsAre("head", "neck")) << text;
+  ASSERT_EQ(clip.frame_count(), 2) << text;
+  EXPECT_EQ(clip.at(0, 0), (motion::Vec3{1, 2, 3})) << text;
+  EXPECT_EQ(clip.at(0, 1), (motion::Vec3{4, 5, 6})) << text;
+  EXPECT_EQ(clip.at(1, 0), (motion::Vec3{7, 8, 9})) << text;
+  EXPECT_EQ(clip.at(1, 1), (motion::Vec3{-4, -5, -6})) << text;
+  EXPECT_EQ(clip.frame_rate_hz, frame_rate_hz) << text;
+}
+
+constexpr char kRows[] = "0,1,2,3,4,5,6\n1,7,8,9,-4,-5,-6\n";
+
+TEST(Csv, ReadsAnIndexWhateverItIsCalled) {
+  for (const char* index : {"", "frame", "Frame", "index", "Unnamed: 0"}) {
+    ExpectHeadAndNeck(absl::StrCat(index, ",head_x,head_y,head_z,neck_x,neck_y,neck_z\n", kRows));
+  }
+}
+
+TEST(Csv, ReadsAxesHoweverTheyAreJoinedToTheName) {
+  for (const char* header :
+       {"head_X,head_Y,head_Z,neck_X,neck_Y,neck_Z", "head.x,head.y,head.z,neck.x,neck.y,neck.z",
+        "head x,head y,head z,neck x,neck y,neck z", "headX,headY,headZ,neckX,neckY,neckZ",
+        "head_loc_x,head_loc_y,head_loc_z,neck_loc_x,neck_loc_y,neck_loc_z",
+        "head.location.x,head.location.y,head.location.z,neck_pos_x,neck_pos_y,neck_pos_z"}) {
+    ExpectHeadAndNeck(absl::StrCat("frame,", header, "\n", kRows));
+  }
+}
+
+TEST(Csv, ReadsColumnsOfTwoLevels) {
+  const std::string axes = ",x,y,z,x,y,z\n";
+  ExpectHeadAndNeck(absl::StrCat(",head,head,head,neck,neck,neck\n", axes, kRows));
+  ExpectHeadAndNeck(absl::StrCat(",head,,,neck,,\n", axes, kRows));
+  ExpectHeadAndNeck(
+      absl::StrCat("joint,head,head,head,neck,neck,neck\naxis", axes, "frame,,,,,,\n", kRows));
+  ExpectHeadAndNeck(absl::StrCat("frame,\"('head', 'x')\",\"('head', 'y')\",\"('head', 'z')\",",
+                                 "\"('neck', 'x')\",\"('neck', 'y')\",\"('neck', 'z')\"\n", kRows));
+}
+
+TEST(Csv, ReadsColumnsOfThreeLevels) {
+  const absl::StatusOr<motion::RecordedMotion> motion = ParseCsv(
+      ",leader,leader,leader,follower,follower,follower\n,head,head,head,head,head,head\n"
+      ",x,y,z,x,y,z\n0,1,2,3,4,5,6\n",
+      "a.csv");
+  ASSERT_TRUE(motion.ok()) << motion.status();
+  ASSERT_EQ(motion->people.size(), 2u);
+  EXPECT_EQ(motion->people[0].at(0, 0), (motion::Vec3{1, 2, 3}));
+  EXPECT_EQ(motion->people[1].at(0, 0), (motion::Vec3{4, 5, 6}));
+}
+
+TEST(Csv, ReadsARowForEachJoint) {
+  ExpectHeadAndNeck(
+      "frame,bone,x,y,z\n1,head,1,2,3\n1,neck,4,5,6\n2,head,7,8,9\n2,neck,-4,-5,-6\n");
+  // Sorted by joint; columns that are no positions.
+  ExpectHeadAndNeck(
+      "object,joint,frame,loc_x,loc_y,loc_z,rot_x\nA,head,1,1,2,3,0\nA,head,2,7,8,9,0\n"
+      "A,neck,1,4,5,6,0\nA,neck,2,-4,-5,-6,0\n");
+  ExpectHeadAndNeck(
+      "time,name,x,y,z\n0.000,head,1,2,3\n0.000,neck,4,5,6\n0.100,head,7,8,9\n0.100,neck,-4,-5,-"
+      "6\n",
+      10);
+}
+
+TEST(Csv, WantsEveryJointOnceInEveryFrameWithARowForEach) {
+  EXPECT_THAT(ParseError("frame,bone,x,y,z\n1,head,1,2,3\n1,neck,4,5,6\n2,head,7,8,9\n"),
+              HasSubstr("came 3 rows, wanted 4: one for each of 2 joints in each of 2 frames"));
+  EXPECT_THAT(
+      ParseError("frame,bone,x,y,z\n1,head,1,2,3\n1,neck,4,5,6\n2,head,7,8,9\n2,head,7,8,9\n"),
+      HasSubstr("\"head\" comes twice in the frame that is number 2"));
+  EXPECT_THAT(ParseError("frame,bone,x,y,z\n1,,1,2,3\n"), HasSubstr("a joint without a name"));
+  EXPECT_THAT(ParseError("bone,x,y,z\nhead,1,2,3\n"), HasSubstr("and frame or time"));
+  EXPECT_THAT(ParseError("frame,bone,x,y,z,loc_x\n1,head,1,2,3,1\n"),
+              HasSubstr("one column of each of joint, x, y and z"));
+  EXPECT_THAT(ParseError("frame,bone,x,y,z\n1,head,1,2,w\n"),
+              HasSubstr("a.csv:2: column 5: came \"w\""));
+  EXPECT_THAT(ParseError("frame,bone,x,y,z\n"), HasSubstr("no frames"));
+}
+
+TEST(Csv, ReadsSemicolonsAndTabs) {
+  for (const char* delimiter : {";", "\t"}) {
+    ExpectHeadAndNeck(absl::StrReplaceAll(
+        absl::StrCat("frame,head_x,head_y,head_z,neck_x,neck_y,neck_z\n", kRows),
+        {{",", delimiter}}));
+  }
+}
+
+std::string Timed(const std::vector<std::string>& times) {
+  std::string text = "time,a_x,a_y,a_z\n";
+  for (const std::string& time : times) absl::StrAppend(&text, time, ",1,2,3\n");
+  return text;
+}
+
+double RateOf(const std::string& text) {
+  const absl::StatusOr<motion::RecordedMotion> motion = ParseCsv(text, "a.csv");
+  EXPECT_TRUE(motion.ok()) << motion.status();
+  return motion.ok() ? motion->people[0].frame_rate_hz : -1;
+}
+
+TEST(Csv, TakesTheRateFromEvenTimes) {
+  EXPECT_EQ(RateOf(Timed({"0.00", "0.03", "0.07", "0.10", "0.13"})), 30);
+  EXPECT_EQ(RateOf(Timed({"5", "5.04", "5.08"})), 25);
+  EXPECT_EQ(RateOf(Timed({"0.0", "0.03333333333333333", "0.06666666666666667"})), 30);
+  EXPECT_NEAR(RateOf(Timed({"0", "0.033367", "0.066733"})), 29.97, 1e-3);
+  EXPECT_NEAR(RateOf(Timed({"0", "3.3367e-2", "6.6733e-2"})), 29.97, 1e-3);
+  EXPECT_EQ(RateOf(absl::StrCat("# fps=50\n", Timed({"0.00", "0.04"}))), 50);
+}
+
+TEST(Csv, TakesNoRateFromOtherTimes) {
+  EXPECT_EQ(RateOf(Timed({"0"})), 0);
+  EXPECT_EQ(RateOf(Timed({"0", "0.1", "0.5"})), 0) << "uneven";
+  EXPECT_EQ(RateOf(Timed({"0", "40", "80"})), 0) << "milliseconds";
+  EXPECT_EQ(RateOf(Timed({"0.2", "0.1", "0"})), 0) << "backwards";
+  EXPECT_EQ(RateOf(Timed({"0.1", "0.1", "0.1"})), 0) << "at once";
+  EXPECT_EQ(RateOf(Timed({"00:00:01", "00:00:02"})), 0) << "no numbers";
+}
+
+TEST(Csv, TakesTheRateFromAnIndexOfTimes) {
+  EXPECT_EQ(RateOf(",a,a,a\n,x,y,z\ntime,,,\n0.000,1,2,3\n0.100,1,2,3\n"), 10);
+}
+
+TEST(Csv, RefusesEveryCutButThatOfALastValue) {
+  const std::string text = "joint,head,head,head\naxis,x,y,z\nframe,,,\n0,1,2,3\n1,7,8,9";
+  const std::size_t first_frame = text.find("0,1,2,3") + 7;
+  for (std::size_t size = 0; size < text.size(); ++size) {
+    const bool whole = size == first_frame || size == first_frame + 1;
+    EXPECT_EQ(ParseCsv(text.substr(0, size), "a.csv").ok(), whole) << size;
+  }
 }
 
 TEST(Csv, ReadsBackAPairExactly) {

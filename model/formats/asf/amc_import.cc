@@ -1,0 +1,61 @@
+#include "model/formats/asf/amc_import.h"
+
+#include <cstddef>
+
+#include "absl/strings/str_cat.h"
+
+namespace duet::formats::asf {
+namespace {
+
+constexpr double kCmuFrameRateHz = 120;
+
+retargeting::JointTree TreeOf(const AsfSkeleton& skeleton, const std::vector<int>& ends) {
+  retargeting::JointTree tree;
+  for (const AsfBone& bone : skeleton.bones) {
+    tree.names.push_back(bone.name);
+    tree.parents.push_back(bone.parent);
+    tree.offsets.push_back(bone.parent < 0
+                               ? retargeting::Vec3d{}
+                               : skeleton.bones[static_cast<size_t>(bone.parent)].extent);
+  }
+  for (int end : ends) {
+    const AsfBone& bone = skeleton.bones[static_cast<size_t>(end)];
+    tree.names.push_back(bone.name + ".end");
+    tree.parents.push_back(end);
+    tree.offsets.push_back(bone.extent);
+  }
+  return tree;
+}
+
+}  // namespace
+
+absl::StatusOr<motion::Clip> FromAmc(const AsfSkeleton& skeleton, const AmcMotion& motion,
+                                     absl::string_view source, const AmcImportOptions& options) {
+  const AsfKinematics kinematics(skeleton, motion);
+  retargeting::Character character;
+  character.tree = TreeOf(skeleton, kinematics.ends());
+  character.frame_count = motion.frame_count;
+  character.frame_rate_hz = options.frame_rate_hz.value_or(kCmuFrameRateHz);
+  character.pose = [&kinematics](int frame) {
+    std::vector<motion::Vec3> pose;
+    for (const retargeting::Vec3d& at : kinematics.Positions(frame)) pose.push_back(ToFloat(at));
+    return pose;
+  };
+  if (options.notes != nullptr && !options.frame_rate_hz.has_value()) {
+    options.notes->push_back(
+        absl::StrCat("frame rate: ", kCmuFrameRateHz, " Hz, as CMU's captures have"));
+  }
+  return ToClip(character, source, options);
+}
+
+std::vector<std::string> SkeletonNames(absl::string_view motion_name) {
+  const absl::string_view stem = motion_name.substr(0, motion_name.rfind('.'));
+  std::vector<std::string> names = {absl::StrCat(stem, ".asf")};
+  const std::size_t subject = stem.rfind('_');
+  if (subject != absl::string_view::npos && subject > 0) {
+    names.push_back(absl::StrCat(stem.substr(0, subject), ".asf"));
+  }
+  return names;
+}
+
+}  // namespace duet::formats::asf

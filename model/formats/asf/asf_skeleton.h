@@ -1,0 +1,46 @@
+#ifndef DUET_MODEL_FORMATS_ASF_ASF_SKELETON_H_
+#define DUET_MODEL_FORMATS_ASF_ASF_SKELETON_H_
+
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+#include "model/retargeting/rotation.h"
+
+namespace duet::formats::asf {
+
+// What one number of a bone's motion moves.
+enum class AsfFreedom { kTx, kTy, kTz, kRx, kRy, kRz };
+
+// A bone, from the joint where it starts to the one where it ends.
+struct AsfBone {
+  std::string name;
+  int parent = -1;                   // an earlier bone; -1 for the root, which is the first
+  retargeting::Vec3d extent;         // from start to end at rest, in the world's axes
+  retargeting::Quaternion axes;      // of its rotations, in the world's
+  std::vector<AsfFreedom> freedoms;  // in the order of the motion's values; bones turn only
+};
+
+// A skeleton of an .asf file. Lengths in the file's unit, angles of motions as `radians` says.
+struct AsfSkeleton {
+  std::vector<AsfBone> bones;   // parents first
+  retargeting::Vec3d position;  // of the root at rest
+  bool radians = false;
+
+  int Find(absl::string_view name) const;  // -1 where there is none
+};
+
+// Errors: INVALID_ARGUMENT "source:line: ... came ..., wanted ..."; bones that are no tree below
+//         the root.
+absl::StatusOr<AsfSkeleton> ParseAsf(absl::string_view text, absl::string_view source);
+
+// The rotation whose turns about these axes apply one after the other, the first one first.
+//
+// angles: [axes], radians
+retargeting::Quaternion TurnInOrder(const std::vector<AsfFreedom>& axes,
+                                    const std::vector<double>& angles);
+
+}  // namespace duet::formats::asf
+
+#endif  // DUET_MODEL_FORMATS_ASF_ASF_SKELETON_H_

@@ -1,0 +1,172 @@
+#include "model/formats/gltf/gltf_buffers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <utility>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/escaping.h"
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/strip.h"
+#include "model/base/text.h"
+#include "model/motion/motion_limits.h"
+
+namespace duet::formats::gltf {
+namespace {
+
+// Several accessors may share bytes: a small file must not become a large motion.
+constexpr std::size_t kMaxValues = std::size_t{64} << 20;
+constexpr int kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123,
+              kFloat = 5126;
+
+std::size_t ComponentBytes(const GltfAccessor& accessor) {
+  switch (accessor.component_type) {
+    case kByte:
+    case kUnsignedByte:
+      return accessor.normalized ? 1 : 0;
+    case kShort:
+    case kUnsignedShort:
+      return accessor.normalized ? 2 : 0;
+    case kFloat:
+      return 4;
+    default:
+      return 0;
+  }
+}
+
+float Value(const char* bytes, int component_type) {
+  const auto low = static_cast<uint8_t>(bytes[0]);
+  if (component_type == kByte)
+    return std::max(static_cast<float>(static_cast<int8_t>(low)) / 127, -1.0f);
+  if (component_type == kUnsignedByte) return static_cast<float>(low) / 255;
+  const auto both = static_cast<uint16_t>(low | static_cast<uint8_t>(bytes[1]) << 8);
+  if (component_type == kShort)
+    return std::max(static_cast<float>(static_cast<int16_t>(both)) / 32767, -1.0f);
+  if (component_type == kUnsignedShort) return static_cast<float>(both) / 65535;
+  const uint32_t bits = both | static_cast<uint32_t>(static_cast<uint8_t>(bytes[2])) << 16 |
+                        static_cast<uint32_t>(static_cast<uint8_t>(bytes[3])) << 24;
+  float value = 0;
+  std::memcpy(&value, &bits, sizeof(value));
+  return value;
+}
+
+// "my%20file.bin" -> my file.bin; nothing where a % is followed by no number.
+std::optional<std::string> Unescaped(absl::string_view uri) {
+  std::string name;
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    if (uri[i] != '%') {
+      name.push_back(uri[i]);
+      continue;
+    }
+    const absl::string_view digits = uri.substr(i + 1, 2);
+    if (digits.size() < 2 || !absl::ascii_isxdigit(static_cast<unsigned char>(digits[0])) ||
+        !absl::ascii_isxdigit(static_cast<unsigned char>(digits[1]))) {
+      return std::nullopt;
+    }
+    name += absl::HexStringToBytes(digits);
+    i += 2;
+  }
+  return name;
+}
+
+// A plain name in the document's folder.
+bool IsPlainName(absl::string_view name) {
+  return !name.empty() && name != "." && name != ".." &&
+         name.find_first_of(absl::string_view("/\\:\0", 4)) == absl::string_view::npos;
+}
+
+absl::StatusOr<std::string> DecodeData(absl::string_view uri) {
+  const std::size_t comma = uri.find(',');
+  std::string bytes;
+  if (comma == absl::string_view::npos || !absl::EndsWith(uri.substr(0, comma), ";base64") ||
+      !absl::Base64Unescape(uri.substr(comma + 1), &bytes)) {
+    return absl::InvalidArgumentError("uri: data that is no base64");
+  }
+  return bytes;
+}
+
+}  // namespace
+
+absl::StatusOr<std::string> GltfBuffers::Load(const GltfBuffer& buffer) const {
+  if (buffer.uri.empty()) {
+    if (document_.binary.has_value()) return *document_.binary;
+    return absl::InvalidArgumentError("no uri, and the file has no binary chunk");
+  }
+  if (absl::StartsWith(buffer.uri, "data:")) return DecodeData(buffer.uri);
+  const std::optional<std::string> name = Unescaped(buffer.uri);
+  if (!name.has_value() || !IsPlainName(*name)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("uri: came ", base::Quoted(buffer.uri), ", wanted a file in the same folder"));
+  }
+  return read_file_(*name);
+}
+
+absl::StatusOr<const std::string*> GltfBuffers::Find(int buffer) {
+  auto found = loaded_.find(buffer);
+  if (found == loaded_.end()) {
+    const GltfBuffer& described = document_.buffers[static_cast<size_t>(buffer)];
+    absl::StatusOr<std::string> bytes = Load(described);
+    if (bytes.ok() && bytes->size() < described.length) {
+      bytes = absl::InvalidArgumentError(absl::StrCat("came ", bytes->size(), " bytes, wanted the ",
+                                                      described.length, " of byteLength"));
+    }
+    if (bytes.ok() && described.length > motion::kMaxMotionFileBytes - bytes_loaded_) {
+      bytes = absl::InvalidArgumentError("more bytes in buffers than a motion may have");
+    }
+    if (!bytes.ok()) {
+      return absl::Status(bytes.status().code(),
+                          absl::StrCat("buffers[", buffer, "]: ", bytes.status().message()));
+    }
+    bytes->resize(described.length);
+    bytes_loaded_ += described.length;
+    found = loaded_.emplace(buffer, *std::move(bytes)).first;
+  }
+  return &found->second;
+}
+
+absl::StatusOr<std::vector<float>> GltfBuffers::Read(int index, int components) {
+  const auto error = [index](absl::string_view message) {
+    return absl::InvalidArgumentError(absl::StrCat("accessors[", index, "]: ", message));
+  };
+  const GltfAccessor& accessor = document_.accessors[static_cast<size_t>(index)];
+  const std::size_t bytes = ComponentBytes(accessor);
+  if (accessor.components != components || bytes == 0) {
+    return error(absl::StrCat("came ", accessor.components, " numbers of type ",
+                              accessor.component_type, ", wanted ", components,
+                              " floats or normalized whole numbers"));
+  }
+  if (accessor.view < 0 || accessor.sparse) return error("sparse, wanted values in a bufferView");
+  const GltfView& view = document_.views[static_cast<size_t>(accessor.view)];
+  const std::size_t width = bytes * static_cast<std::size_t>(components);
+  const std::size_t stride = view.stride == 0 ? width : view.stride;
+  const absl::StatusOr<const std::string*> buffer = Find(view.buffer);
+  if (!buffer.ok()) return buffer.status();
+  // Every number is below 2^32, so that 64 bits hold each product.
+  const uint64_t end = accessor.count == 0 ? 0
+                                           : uint64_t{accessor.offset} +
+                                                 uint64_t{accessor.count - 1} * stride + width;
+  if (stride < width || end > view.length ||
+      uint64_t{view.offset} + view.length > (*buffer)->size()) {
+    return error(absl::StrCat(accessor.count, " values that reach beyond their buffer"));
+  }
+  const std::size_t count = accessor.count * static_cast<std::size_t>(components);
+  if (count > kMaxValues - values_read_) return error("more values than a motion may have");
+  values_read_ += count;
+  std::vector<float> values(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t component = i % static_cast<std::size_t>(components);
+    const std::size_t at = view.offset + accessor.offset +
+                           i / static_cast<std::size_t>(components) * stride + component * bytes;
+    values[i] = Value((*buffer)->data() + at, accessor.component_type);
+    if (!(std::abs(values[i]) <= static_cast<float>(motion::kMaxCoordinate))) {
+      return error(absl::StrCat("value ", i, ": not finite, or beyond +-", motion::kMaxCoordinate));
+    }
+  }
+  return values;
+}
+
+}  // namespace duet::formats::gltf

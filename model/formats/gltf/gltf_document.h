@@ -1,0 +1,88 @@
+#ifndef DUET_MODEL_FORMATS_GLTF_GLTF_DOCUMENT_H_
+#define DUET_MODEL_FORMATS_GLTF_GLTF_DOCUMENT_H_
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+#include "model/retargeting/rotation.h"
+
+namespace duet::formats::gltf {
+
+// A node at rest: translation, rotation and scale, or a matrix in their place.
+struct GltfNode {
+  std::string name;  // "node 3" where the file has none
+  int parent = -1;
+  int depth = 0;  // nodes above
+  std::vector<int> children;
+  retargeting::Vec3d translation;
+  retargeting::Quaternion rotation;
+  retargeting::Vec3d scale = {1, 1, 1};
+  std::optional<std::array<double, 16>> matrix;  // column after column
+};
+
+struct GltfSkin {
+  std::vector<int> joints;  // nodes
+};
+
+enum class GltfPath { kTranslation, kRotation, kScale };
+enum class GltfInterpolation { kLinear, kStep, kCubicSpline };
+
+// One property of one node over time.
+struct GltfChannel {
+  int node = 0;
+  GltfPath path = GltfPath::kRotation;
+  GltfInterpolation interpolation = GltfInterpolation::kLinear;
+  int times = 0;   // accessor, seconds
+  int values = 0;  // accessor
+};
+
+struct GltfAnimation {
+  std::string name;                   // "animation 1" where the file has none
+  std::vector<GltfChannel> channels;  // morph targets are left out
+};
+
+// Where values are in a buffer.
+struct GltfAccessor {
+  int view = -1;  // -1: none
+  std::size_t offset = 0;
+  int component_type = 0;  // glTF's own numbers
+  bool normalized = false;
+  std::size_t count = 0;
+  int components = 1;
+  bool sparse = false;
+};
+struct GltfView {
+  int buffer = 0;
+  std::size_t offset = 0;
+  std::size_t length = 0;
+  std::size_t stride = 0;  // 0: packed
+};
+struct GltfBuffer {
+  std::string uri;  // empty: the binary chunk
+  std::size_t length = 0;
+};
+
+// What a glTF 2.0 file says of skeletons and their motion. Every index has been checked, nodes form
+// trees, and nobody has touched a buffer yet.
+struct GltfDocument {
+  std::vector<GltfNode> nodes;
+  std::vector<GltfSkin> skins;
+  std::vector<GltfAnimation> animations;
+  std::vector<GltfAccessor> accessors;
+  std::vector<GltfView> views;
+  std::vector<GltfBuffer> buffers;
+  std::optional<std::string> binary;  // the binary chunk of a .glb
+};
+
+// Reads a .gltf or a .glb, whichever the first bytes say.
+// Errors: INVALID_ARGUMENT "source: nodes[3].rotation: came ..., wanted ...".
+absl::StatusOr<GltfDocument> ParseGltf(absl::string_view content, absl::string_view source);
+
+}  // namespace duet::formats::gltf
+
+#endif  // DUET_MODEL_FORMATS_GLTF_GLTF_DOCUMENT_H_

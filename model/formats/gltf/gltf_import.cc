@@ -1,0 +1,368 @@
+#include "model/formats/gltf/gltf_import.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "model/base/text.h"
+#include "model/formats/gltf/gltf_animation.h"
+#include "model/motion/motion_limits.h"
+
+namespace duet::formats::gltf {
+namespace {
+
+using retargeting::Quaternion;
+using retargeting::Vec3d;
+
+// Keys farther apart than this were set by hand, and say nothing of a rate.
+constexpr double kSlowestKeysHz = 15, kHandKeyedRateHz = 30, kFastestRateHz = 240;
+constexpr double kRateTolerance = 0.01;
+constexpr std::size_t kMostCharacters = 64;
+
+std::size_t Index(int node) { return static_cast<std::size_t>(node); }
+
+// An affine map: where the axes go, and the origin.
+struct Affine {
+  Vec3d x = {1, 0, 0}, y = {0, 1, 0}, z = {0, 0, 1}, origin;
+
+  Vec3d Turn(Vec3d a) const { return x * a.x + y * a.y + z * a.z; }
+  // `inner` first, then this one.
+  Affine operator*(const Affine& inner) const {
+    return {Turn(inner.x), Turn(inner.y), Turn(inner.z), origin + Turn(inner.origin)};
+  }
+  // How much longer a length becomes, on average over the axes.
+  double Scale() const { return (Norm(x) + Norm(y) + Norm(z)) / 3; }
+};
+
+Affine FromParts(Vec3d translation, Quaternion rotation, Vec3d scale) {
+  return {Rotate(rotation, {1, 0, 0}) * scale.x, Rotate(rotation, {0, 1, 0}) * scale.y,
+          Rotate(rotation, {0, 0, 1}) * scale.z, translation};
+}
+
+Quaternion AtLengthOne(Quaternion q) {
+  const double norm = std::sqrt(Dot(q, q));
+  if (!(norm > 1e-12)) return {};
+  return {q.w / norm, q.x / norm, q.y / norm, q.z / norm};
+}
+
+Affine FromMatrix(const std::array<double, 16>& m) {
+  return {{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}, {m[12], m[13], m[14]}};
+}
+
+// Nodes of a character, and the nodes that it stands on.
+struct Members {
+  std::vector<int> above;  // from the outermost one to the root's parent
+  std::vector<int> nodes;  // the root and all below it, parents first
+};
+
+class Hierarchy {
+ public:
+  explicit Hierarchy(const GltfDocument& document) : nodes_(document.nodes) {}
+
+  // -1 where they are in different trees.
+  int CommonAncestor(int a, int b) const {
+    while (a != b && a >= 0 && b >= 0) {
+      int& deeper = nodes_[Index(a)].depth >= nodes_[Index(b)].depth ? a : b;
+      deeper = nodes_[Index(deeper)].parent;
+    }
+    return a == b ? a : -1;
+  }
+
+  Members MembersOf(int root) const {
+    Members members;
+    for (int node = nodes_[Index(root)].parent; node >= 0; node = nodes_[Index(node)].parent) {
+      members.above.push_back(node);
+    }
+    std::reverse(members.above.begin(), members.above.end());
+    std::vector<int> open = {root};
+    while (!open.empty()) {
+      const int node = open.back();
+      open.pop_back();
+      members.nodes.push_back(node);
+      const std::vector<int>& children = nodes_[Index(node)].children;
+      open.insert(open.end(), children.rbegin(), children.rend());
+    }
+    return members;
+  }
+
+ private:
+  const std::vector<GltfNode>& nodes_;
+};
+
+// The roots of the characters in the file, in its order.
+class CharacterFinder {
+ public:
+  CharacterFinder(const GltfDocument& document, const Hierarchy& hierarchy)
+      : document_(document), hierarchy_(hierarchy) {}
+
+  std::vector<int> Find() {
+    for (const GltfSkin& skin : document_.skins) Add(RootOf(skin.joints));
+    if (!roots_.empty()) return std::move(roots_);
+    std::set<int> moved;
+    for (const GltfAnimation& animation : document_.animations) {
+      for (const GltfChannel& channel : animation.channels) {
+        if (moved.insert(channel.node).second) Add(channel.node);
+      }
+    }
+    return std::move(roots_);
+  }
+
+ private:
+  // Where all joints hang from, or the first where they share nothing.
+  int RootOf(const std::vector<int>& joints) const {
+    int root = joints[0];
+    for (int joint : joints) {
+      const int common = hierarchy_.CommonAncestor(root, joint);
+      if (common >= 0) root = common;
+    }
+    return root;
+  }
+
+  // One character where one root is above the other, or, without skins, where they share a tree.
+  void Add(int root) {
+    for (int& known : roots_) {
+      const int common = hierarchy_.CommonAncestor(known, root);
+      if (common < 0) continue;
+      if (common == known) return;
+      if (common == root || document_.skins.empty()) {
+        known = common;
+        return;
+      }
+    }
+    if (roots_.size() < kMostCharacters) roots_.push_back(root);
+  }
+
+  const GltfDocument& document_;
+  const Hierarchy& hierarchy_;
+  std::vector<int> roots_;
+};
+
+// A character's nodes with the tracks that move them.
+class Puppet {
+ public:
+  Puppet(const GltfDocument& document, Members members)
+      : document_(document), members_(std::move(members)) {
+    tracks_.resize(document.nodes.size());
+    world_.resize(document.nodes.size());
+    is_member_.resize(document.nodes.size());
+    moves_.resize(document.nodes.size());
+    for (int node : members_.nodes) is_member_[Index(node)] = moves_[Index(node)] = true;
+    for (int node : members_.above) moves_[Index(node)] = true;
+  }
+
+  const Members& members() const { return members_; }
+
+  bool IsMovedBy(const GltfAnimation& animation) const {
+    return std::any_of(
+        animation.channels.begin(), animation.channels.end(),
+        [this](const GltfChannel& channel) { return is_member_[Index(channel.node)]; });
+  }
+
+  absl::Status ReadTracks(const GltfAnimation& animation, GltfBuffers* buffers) {
+    for (const GltfChannel& channel : animation.channels) {
+      if (!moves_[Index(channel.node)]) continue;
+      absl::StatusOr<GltfTrack> track = GltfTrack::Read(channel, buffers);
+      if (!track.ok()) return track.status();
+      tracks_[Index(channel.node)].push_back(*std::move(track));
+    }
+    return absl::OkStatus();
+  }
+
+  // Every track of the character.
+  template <typename Visit>
+  void ForEachTrack(Visit visit) const {
+    for (const std::vector<GltfTrack>& tracks : tracks_) {
+      for (const GltfTrack& track : tracks) visit(track);
+    }
+  }
+
+  // At rest: lengths in the world's unit, each bone in its parent's axes.
+  retargeting::JointTree Tree() {
+    Stand(std::nullopt);
+    retargeting::JointTree tree;
+    std::vector<int> places(document_.nodes.size(), -1);
+    for (int node : members_.nodes) {
+      const GltfNode& written = document_.nodes[Index(node)];
+      const int parent = tree.names.empty() ? -1 : places[Index(written.parent)];
+      const double scale = written.parent < 0 ? 1 : world_[Index(written.parent)].Scale();
+      const Vec3d at = Local(node, std::nullopt).origin;
+      places[Index(node)] = static_cast<int>(tree.names.size());
+      tree.names.push_back(written.name);
+      tree.parents.push_back(parent);
+      tree.offsets.push_back(parent < 0 ? Vec3d{} : at * scale);
+    }
+    return tree;
+  }
+
+  std::vector<motion::Vec3> PoseAt(double seconds) {
+    Stand(seconds);
+    std::vector<motion::Vec3> pose;
+    pose.reserve(members_.nodes.size());
+    for (int node : members_.nodes) pose.push_back(ToFloat(world_[Index(node)].origin));
+    return pose;
+  }
+
+ private:
+  // In its parent; at rest without a moment.
+  Affine Local(int node, std::optional<double> seconds) const {
+    const GltfNode& written = document_.nodes[Index(node)];
+    const std::vector<GltfTrack>& tracks = tracks_[Index(node)];
+    if (written.matrix.has_value() && (tracks.empty() || !seconds.has_value())) {
+      return FromMatrix(*written.matrix);
+    }
+    Vec3d translation = written.translation, scale = written.scale;
+    Quaternion rotation = AtLengthOne(written.rotation);
+    for (const GltfTrack& track : tracks) {
+      if (!seconds.has_value()) break;
+      if (track.channel().path == GltfPath::kRotation) rotation = track.RotationAt(*seconds);
+      if (track.channel().path == GltfPath::kTranslation) translation = track.VectorAt(*seconds);
+      if (track.channel().path == GltfPath::kScale) scale = track.VectorAt(*seconds);
+    }
+    return FromParts(translation, rotation, scale);
+  }
+
+  void Stand(std::optional<double> seconds) {
+    for (const std::vector<int>* nodes : {&members_.above, &members_.nodes}) {
+      for (int node : *nodes) {
+        const int parent = document_.nodes[Index(node)].parent;
+        const Affine local = Local(node, seconds);
+        world_[Index(node)] = parent < 0 ? local : world_[Index(parent)] * local;
+      }
+    }
+  }
+
+  const GltfDocument& document_;
+  Members members_;
+  std::vector<std::vector<GltfTrack>> tracks_;  // [nodes]
+  std::vector<bool> is_member_;                 // [nodes]
+  std::vector<bool> moves_;                     // [nodes], members and what they stand on
+  std::vector<Affine> world_;                   // [nodes]
+};
+
+// The time from the first key of all tracks to the last, and how often keys come.
+struct Timing {
+  double start = 0, end = 0;
+  double rate_hz = kHandKeyedRateHz;
+};
+
+double RateOfKeys(const std::vector<float>& times) {
+  if (times.size() < 2) return 0;
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    steps.push_back(static_cast<double>(times[i]) - static_cast<double>(times[i - 1]));
+  }
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  const double rate = 1 / *middle, whole = std::round(rate);
+  return std::abs(rate - whole) < kRateTolerance * whole ? whole : rate;
+}
+
+Timing FindTiming(const Puppet& puppet) {
+  Timing timing;
+  std::size_t most_keys = 0;
+  bool first = true;
+  puppet.ForEachTrack([&](const GltfTrack& track) {
+    const double start = static_cast<double>(track.times().front());
+    const double end = static_cast<double>(track.times().back());
+    timing.start = first ? start : std::min(timing.start, start);
+    timing.end = first ? end : std::max(timing.end, end);
+    first = false;
+    if (track.times().size() <= most_keys) return;
+    most_keys = track.times().size();
+    const double rate = RateOfKeys(track.times());
+    timing.rate_hz = rate < kSlowestKeysHz ? kHandKeyedRateHz : std::min(rate, kFastestRateHz);
+  });
+  return timing;
+}
+
+class Importer {
+ public:
+  Importer(const GltfDocument& document, const GltfFileReader& read_file,
+           const GltfImportOptions& options)
+      : document_(document), buffers_(document, read_file), options_(options) {}
+
+  absl::StatusOr<motion::Clip> Import(absl::string_view source) {
+    const Hierarchy hierarchy(document_);
+    const std::vector<int> roots = CharacterFinder(document_, hierarchy).Find();
+    if (roots.empty()) return Error(source, "no skin and no animated node, wanted a skeleton");
+    const std::size_t person = Index(options_.person) < roots.size() ? Index(options_.person) : 0;
+    Puppet puppet(document_, hierarchy.MembersOf(roots[person]));
+    if (puppet.members().nodes.size() > motion::kMaxFileJoints) {
+      return Error(source, absl::StrCat("skeleton: came ", puppet.members().nodes.size(),
+                                        " nodes, wanted at most ", motion::kMaxFileJoints));
+    }
+    const GltfAnimation* animation = Choose(puppet);
+    if (animation == nullptr) return Error(source, "no animation moves the skeleton");
+    absl::Status status = puppet.ReadTracks(*animation, &buffers_);
+    if (!status.ok()) return Error(source, status.message(), status.code());
+    return Play(&puppet, source);
+  }
+
+ private:
+  static absl::Status Error(absl::string_view source, absl::string_view message,
+                            absl::StatusCode code = absl::StatusCode::kInvalidArgument) {
+    return absl::Status(code, absl::StrCat(source, ": ", message));
+  }
+
+  void Note(std::string note) const {
+    if (options_.notes != nullptr) options_.notes->push_back(std::move(note));
+  }
+
+  // The first animation that moves the character.
+  const GltfAnimation* Choose(const Puppet& puppet) const {
+    const GltfAnimation* chosen = nullptr;
+    int count = 0;
+    for (const GltfAnimation& animation : document_.animations) {
+      if (!puppet.IsMovedBy(animation)) continue;
+      if (++count == 1) chosen = &animation;
+    }
+    if (count > 1) {
+      Note(absl::StrCat("animation: ", base::Quoted(chosen->name), ", the first of ", count,
+                        " that move the skeleton"));
+    }
+    return chosen;
+  }
+
+  absl::StatusOr<motion::Clip> Play(Puppet* puppet, absl::string_view source) const {
+    Timing timing = FindTiming(*puppet);
+    if (options_.frame_rate_hz.has_value()) {
+      timing.rate_hz = *options_.frame_rate_hz;
+    } else {
+      Note(absl::StrCat("frame rate: ", timing.rate_hz, " Hz, as the animation's keys suggest"));
+    }
+    // A last frame that falls short of the end by rounding alone counts.
+    const double frames = std::floor((timing.end - timing.start) * timing.rate_hz + 1e-3) + 1;
+    if (!(frames <= motion::kMaxMotionFrames)) {
+      return Error(
+          source, absl::StrCat("animation: came ", timing.end - timing.start, " s, wanted at most ",
+                               motion::kMaxMotionFrames, " frames"));
+    }
+    retargeting::Character character;
+    character.tree = puppet->Tree();
+    character.frame_count = static_cast<int>(frames);
+    character.frame_rate_hz = timing.rate_hz;
+    character.pose = [&](int frame) {
+      return puppet->PoseAt(timing.start + frame / timing.rate_hz);
+    };
+    return ToClip(character, source, options_);
+  }
+
+  const GltfDocument& document_;
+  GltfBuffers buffers_;
+  const GltfImportOptions& options_;
+};
+
+}  // namespace
+
+absl::StatusOr<motion::Clip> FromGltf(const GltfDocument& document, absl::string_view source,
+                                      const GltfFileReader& read_file,
+                                      const GltfImportOptions& options) {
+  return Importer(document, read_file, options).Import(source);
+}
+
+}  // namespace duet::formats::gltf

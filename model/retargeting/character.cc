@@ -1,0 +1,150 @@
+#include "model/retargeting/character.h"
+
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "model/motion/reading_setting.h"
+
+namespace duet::retargeting {
+namespace {
+
+// From the foot up to the root (torso or pelvis) along the bones, metres.
+constexpr double kShortestLeg = 0.7, kLongestLeg = 1.4, kTypicalLeg = 1;
+constexpr double kLargestUnit = 1000;
+// In units: what is smaller is a figure without size rather than one in a unit of its own.
+constexpr double kSmallestLeg = 1e-3;
+
+struct Unit {
+  const char* name;
+  double metres;
+};
+// The first one that fits counts: a leg of 13 units is a child's in CMU's unit.
+constexpr Unit kUnits[] = {{"centimetres", 0.01},
+                           {"metres", 1},
+                           {"millimetres", 0.001},
+                           {"inches", 0.0254},
+                           {"CMU's unit (0.45 to the inch)", 0.0254 / 0.45},
+                           {"decimetres", 0.1}};
+
+double Rounded(double value, double step) { return std::round(value / step) * step; }
+
+class ClipMaker {
+ public:
+  ClipMaker(const Character& character, absl::string_view source, const CharacterOptions& options)
+      : character_(character), source_(source), options_(options) {}
+
+  absl::StatusOr<motion::Clip> Make() {
+    absl::StatusOr<JointMap> map =
+        MapJoints(source_, character_.tree, options_.skeleton, options_.joint_overrides);
+    if (!map.ok()) return map.status();
+    for (std::string& note : map->notes) Note(std::move(note));
+    const absl::StatusOr<double> scale = MetresPerUnit(map->straight);
+    if (!scale.ok()) return scale.status();
+    motion::Clip clip;
+    clip.joint_names = options_.skeleton.joint_names;
+    clip.frame_rate_hz = character_.frame_rate_hz;
+    for (int frame = 0; frame < character_.frame_count; ++frame) {
+      clip.Append(ApplyJointMap(*map, character_.pose(frame)));
+    }
+    const motion::Coordinates coordinates{motion::LengthUnit::kMetres, UpAxis(clip)};
+    for (motion::Vec3& position : clip.poses.all()) {
+      position = ToWorld(coordinates, position * static_cast<float>(*scale));
+    }
+    return clip;
+  }
+
+ private:
+  void Note(std::string note) {
+    if (options_.notes != nullptr) options_.notes->push_back(std::move(note));
+  }
+
+  // Along the bones from the left foot to the root, in the file's unit. Requires feet.
+  double LegLength(const std::vector<motion::Vec3>& straight) const {
+    const std::vector<int> parents = options_.skeleton.Parents();
+    double length = 0;
+    for (int joint = options_.skeleton.feet->left; joint != options_.skeleton.root;) {
+      const int parent = parents[static_cast<size_t>(joint)];
+      length += static_cast<double>(
+          Distance(straight[static_cast<size_t>(joint)], straight[static_cast<size_t>(parent)]));
+      joint = parent;
+    }
+    return length;
+  }
+
+  static absl::StatusOr<double> CheckUnit(double metres) {
+    if (metres > 0 && metres <= kLargestUnit) return metres;
+    return absl::InvalidArgumentError(absl::StrCat(
+        "metres per unit: came ", metres, ", wanted more than 0 and at most ", kLargestUnit));
+  }
+
+  absl::Status UnitNeeded(absl::string_view why) const {
+    return MendedBy(absl::InvalidArgumentError(
+                        absl::StrCat(source_, ": size: ", why, "; say how many metres a unit has")),
+                    motion::ReadingSetting::kMetresPerUnit);
+  }
+
+  absl::StatusOr<double> MetresPerUnit(const std::vector<motion::Vec3>& straight) {
+    if (options_.metres_per_unit.has_value()) return CheckUnit(*options_.metres_per_unit);
+    if (!options_.skeleton.feet) {
+      return UnitNeeded("the skeleton has no feet to tell it by");
+    }
+    const double length = LegLength(straight);
+    const std::string& root =
+        options_.skeleton.joint_names[static_cast<size_t>(options_.skeleton.root)];
+    for (const Unit& unit : kUnits) {
+      const double metres = length * unit.metres;
+      if (metres < kShortestLeg || metres > kLongestLeg) continue;
+      Note(absl::StrCat("unit: ", unit.name, " (foot to ", root, " is then ", Rounded(metres, 0.01),
+                        " m)"));
+      return unit.metres;
+    }
+    if (!(length >= kSmallestLeg)) {
+      return UnitNeeded(
+          absl::StrCat("foot to ", root, " came as ", length, " units, which is no size"));
+    }
+    Note(absl::StrCat("warning: unit: a guess: foot to ", root, " is ", Rounded(length, 0.01),
+                      " units, no person's in any usual unit, and was taken as ", kTypicalLeg,
+                      " m; say how many metres a unit has where the size matters"));
+    return kTypicalLeg / length;
+  }
+
+  motion::UpAxis UpAxis(const motion::Clip& clip) {
+    if (options_.up_axis.has_value()) return *options_.up_axis;
+    const motion::UpAxis up = FindUpAxis(clip, options_.skeleton).value_or(motion::UpAxis::kYUp);
+    if (up == motion::UpAxis::kZUp) Note("up axis: z (the feet are below the root along it)");
+    if (up == motion::UpAxis::kYDown) {
+      Note("up axis: y pointing down (the feet are above the root along it)");
+    }
+    return up;
+  }
+
+  const Character& character_;
+  absl::string_view source_;
+  const CharacterOptions& options_;
+};
+
+}  // namespace
+
+std::optional<motion::UpAxis> FindUpAxis(const motion::Clip& clip,
+                                         const motion::Skeleton& skeleton) {
+  if (!skeleton.feet) return std::nullopt;
+  motion::Vec3 up;
+  for (int frame = 0; frame < clip.frame_count(); ++frame) {
+    const motion::Vec3 feet =
+        (clip.at(frame, skeleton.feet->left) + clip.at(frame, skeleton.feet->right)) / 2;
+    const motion::Vec3 body = clip.at(frame, skeleton.root) - feet;
+    if (Norm(body) > 0) up += body / Norm(body);
+  }
+  if (up.z > std::abs(up.y)) return motion::UpAxis::kZUp;
+  if (-up.y > std::abs(up.z)) return motion::UpAxis::kYDown;
+  return motion::UpAxis::kYUp;
+}
+
+absl::StatusOr<motion::Clip> ToClip(const Character& character, absl::string_view source,
+                                    const CharacterOptions& options) {
+  return ClipMaker(character, source, options).Make();
+}
+
+}  // namespace duet::retargeting

@@ -1,0 +1,118 @@
+#include "model/formats/gltf/gltf_animation.h"
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/formats/gltf/gltf_fixture.h"
+
+namespace duet::formats::gltf {
+namespace {
+
+using retargeting::Quaternion;
+using retargeting::Vec3d;
+using ::testing::HasSubstr;
+
+constexpr double kPi = 3.14159265358979323846;
+
+absl::StatusOr<std::string> NoFiles(const std::string&) { return absl::NotFoundError(""); }
+
+absl::StatusOr<GltfTrack> Track(GltfPath path, GltfInterpolation interpolation,
+                                const std::vector<float>& times, const std::vector<float>& values) {
+  test::GltfBuilder builder;
+  GltfChannel channel;
+  channel.path = path;
+  channel.interpolation = interpolation;
+  channel.times = builder.AddAccessor(times, "SCALAR");
+  channel.values = builder.AddAccessor(values, path == GltfPath::kRotation ? "VEC4" : "VEC3");
+  const absl::StatusOr<GltfDocument> document = ParseGltf(builder.Binary(), "a.glb");
+  EXPECT_TRUE(document.ok()) << document.status();
+  const GltfFileReader no_files = NoFiles;
+  GltfBuffers buffers(*document, no_files);
+  return GltfTrack::Read(channel, &buffers);
+}
+
+void ExpectNear(Vec3d a, Vec3d b) {
+  EXPECT_NEAR(a.x, b.x, 1e-6);
+  EXPECT_NEAR(a.y, b.y, 1e-6);
+  EXPECT_NEAR(a.z, b.z, 1e-6);
+}
+
+TEST(GltfTrack, GoesInLinesAndHoldsItsEnds) {
+  const auto track =
+      Track(GltfPath::kTranslation, GltfInterpolation::kLinear, {1, 3}, {0, 0, 0, 4, -8, 2});
+  ASSERT_TRUE(track.ok()) << track.status();
+  ExpectNear(track->VectorAt(0), {0, 0, 0});
+  ExpectNear(track->VectorAt(1.5), {1, -2, 0.5});
+  ExpectNear(track->VectorAt(3), {4, -8, 2});
+  ExpectNear(track->VectorAt(9), {4, -8, 2});
+}
+
+TEST(GltfTrack, StaysUntilTheNextStep) {
+  const auto track = Track(GltfPath::kScale, GltfInterpolation::kStep, {1, 3}, {1, 1, 1, 2, 2, 2});
+  ASSERT_TRUE(track.ok()) << track.status();
+  ExpectNear(track->VectorAt(2.999), {1, 1, 1});
+  ExpectNear(track->VectorAt(3), {2, 2, 2});
+}
+
+// 2 t^3 - 3 t^2 + 1 and its neighbours at t = 1/4 and 2 s between keys.
+TEST(GltfTrack, FollowsSplines) {
+  const auto track = Track(GltfPath::kTranslation, GltfInterpolation::kCubicSpline, {0, 2},
+                           {9, 9, 9, 1, 0, 0, 0, 1, 0,  // in, value, out
+                            0, 0, 1, 3, 0, 0, 9, 9, 9});
+  ASSERT_TRUE(track.ok()) << track.status();
+  ExpectNear(track->VectorAt(0.5), {0.84375 * 1 + 0.15625 * 3, 2 * 0.140625, 2 * -0.046875});
+  ExpectNear(track->VectorAt(0), {1, 0, 0});
+  ExpectNear(track->VectorAt(2), {3, 0, 0});
+}
+
+TEST(GltfTrack, TurnsAlongTheShorterArc) {
+  const float s = static_cast<float>(std::sin(kPi / 4)), c = static_cast<float>(std::cos(kPi / 4));
+  // From no turn to a quarter about z, written as its negative, twice as long.
+  const auto track = Track(GltfPath::kRotation, GltfInterpolation::kLinear, {0, 1},
+                           {0, 0, 0, 1, 0, 0, -2 * s, -2 * c});
+  ASSERT_TRUE(track.ok()) << track.status();
+  const Quaternion third = track->RotationAt(1.0 / 3);
+  EXPECT_LT(Angle(third, retargeting::AxisAngle({0, 0, 1}, kPi / 6)), 1e-5);
+  EXPECT_NEAR(Dot(third, third), 1, 1e-12);
+}
+
+TEST(GltfTrack, SplinesOfRotationsHaveLengthOne) {
+  const auto track = Track(GltfPath::kRotation, GltfInterpolation::kCubicSpline, {0, 1},
+                           {0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0,  //
+                            0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0});
+  ASSERT_TRUE(track.ok()) << track.status();
+  const Quaternion half = track->RotationAt(0.5);
+  EXPECT_LT(Angle(half, retargeting::AxisAngle({0, 0, 1}, kPi / 2)), 1e-5);
+  EXPECT_NEAR(Dot(half, half), 1, 1e-12);
+}
+
+TEST(GltfTrack, RefusesKeysThatMakeNoSense) {
+  const auto error = [](const std::vector<float>& times, const std::vector<float>& values,
+                        GltfInterpolation interpolation = GltfInterpolation::kLinear) {
+    const auto track = Track(GltfPath::kScale, interpolation, times, values);
+    EXPECT_EQ(track.status().code(), absl::StatusCode::kInvalidArgument);
+    return std::string(track.status().message());
+  };
+  EXPECT_THAT(error({1, 1}, {1, 1, 1, 2, 2, 2}), HasSubstr("accessors[0]: times that do not rise"));
+  EXPECT_THAT(error({1, 0}, {1, 1, 1, 2, 2, 2}), HasSubstr("times that do not rise"));
+  EXPECT_THAT(error({0, 1}, {1, 1, 1}), HasSubstr("accessors[1]: came 1 values for 2 keys"));
+  EXPECT_THAT(error({0}, {1, 1, 1}, GltfInterpolation::kCubicSpline),
+              HasSubstr("came 1 values for 1 keys, wanted 3 for each"));
+  EXPECT_THAT(error({}, {}), HasSubstr("at least one"));
+  EXPECT_THAT(error({0, std::nanf("")}, {1, 1, 1, 2, 2, 2}), HasSubstr("accessors[0]: value 1"));
+}
+
+TEST(Slerp, KeepsItsPace) {
+  const Quaternion none, half_turn = retargeting::AxisAngle({0, 1, 0}, 0.9 * kPi);
+  for (double share : {0.0, 0.25, 0.5, 1.0}) {
+    EXPECT_NEAR(Angle(none, Slerp(none, half_turn, share)), 0.9 * kPi * share, 1e-6);
+  }
+  const Quaternion little = retargeting::AxisAngle({0, 1, 0}, 1e-4);
+  EXPECT_NEAR(Angle(Slerp(none, little, 0.5), retargeting::AxisAngle({0, 1, 0}, 5e-5)), 0, 1e-6);
+}
+
+}  // namespace
+}  // namespace duet::formats::gltf

@@ -1,0 +1,157 @@
+#include "model/formats/gltf/gltf_buffers.h"
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/formats/gltf/gltf_fixture.h"
+
+namespace duet::formats::gltf {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+absl::StatusOr<std::string> NoFiles(const std::string& name) {
+  return absl::NotFoundError(name + ": no such file");
+}
+
+absl::StatusOr<std::vector<float>> Read(const std::string& content, int components,
+                                        const GltfFileReader& read_file = NoFiles) {
+  const absl::StatusOr<GltfDocument> document = ParseGltf(content, "a.glb");
+  EXPECT_TRUE(document.ok()) << document.status();
+  return GltfBuffers(*document, read_file).Read(0, components);
+}
+
+std::string ReadError(const std::string& content, int components) {
+  const absl::StatusOr<std::vector<float>> values = Read(content, components);
+  EXPECT_EQ(values.status().code(), absl::StatusCode::kInvalidArgument) << values.status();
+  return std::string(values.status().message());
+}
+
+class Buffers : public ::testing::Test {
+ protected:
+  Buffers() { builder_.AddAccessor({1, 2, 3, 4, 5, 6}, "VEC3"); }
+  nlohmann::json& Accessor() { return builder_.json()["accessors"][0]; }
+  nlohmann::json& View() { return builder_.json()["bufferViews"][0]; }
+  nlohmann::json& Buffer() { return builder_.json()["buffers"][0]; }
+
+  test::GltfBuilder builder_;
+};
+
+TEST_F(Buffers, ReadFloats) {
+  EXPECT_THAT(*Read(builder_.Binary(), 3), ElementsAre(1, 2, 3, 4, 5, 6));
+  EXPECT_THAT(*Read(builder_.WithDataUri(), 3), ElementsAre(1, 2, 3, 4, 5, 6));
+}
+
+TEST_F(Buffers, FollowOffsetsAndStrides) {
+  Accessor()["byteOffset"] = 4;
+  Accessor()["type"] = "SCALAR";
+  View()["byteStride"] = 12;
+  EXPECT_THAT(*Read(builder_.Binary(), 1), ElementsAre(2, 5));
+  View()["byteOffset"] = 4;
+  View()["byteLength"] = 20;
+  EXPECT_THAT(*Read(builder_.Binary(), 1), ElementsAre(3, 6));
+}
+
+TEST_F(Buffers, ScaleNormalizedNumbers) {
+  Accessor()["type"] = "SCALAR";
+  Accessor()["count"] = 4;
+  Accessor()["normalized"] = true;
+  const auto read_as = [this](int type, const std::string& bytes) {
+    builder_.buffer().replace(0, bytes.size(), bytes);
+    Accessor()["componentType"] = type;
+    return *Read(builder_.Binary(), 1);
+  };
+  EXPECT_THAT(read_as(5120, std::string("\x7f\x81\x80\x00", 4)), ElementsAre(1, -1, -1, 0));
+  EXPECT_THAT(read_as(5121, std::string("\xff\x00\xff\x00", 4)), ElementsAre(1, 0, 1, 0));
+  EXPECT_THAT(read_as(5122, std::string("\xff\x7f\x01\x80\x00\x80\x00\x00", 8)),
+              ElementsAre(1, -1, -1, 0));
+  EXPECT_THAT(read_as(5123, std::string("\xff\xff\x00\x00\xff\xff\x00\x00", 8)),
+              ElementsAre(1, 0, 1, 0));
+  Accessor()["normalized"] = false;
+  EXPECT_THAT(ReadError(builder_.Binary(), 1), HasSubstr("accessors[0]: came 1 numbers of type"));
+}
+
+TEST_F(Buffers, RefuseValuesOfAnotherKind) {
+  EXPECT_THAT(ReadError(builder_.Binary(), 4), HasSubstr("came 3 numbers of type 5126, wanted 4"));
+  Accessor()["componentType"] = 5125;
+  EXPECT_THAT(ReadError(builder_.Binary(), 3), HasSubstr("of type 5125"));
+  Accessor()["componentType"] = 5126;
+  Accessor()["sparse"] = nlohmann::json::object();
+  EXPECT_THAT(ReadError(builder_.Binary(), 3), HasSubstr("sparse"));
+  Accessor().erase("sparse");
+  Accessor().erase("bufferView");
+  EXPECT_THAT(ReadError(builder_.Binary(), 3), HasSubstr("wanted values in a bufferView"));
+}
+
+TEST_F(Buffers, StayWithinTheirBytes) {
+  const auto beyond = HasSubstr("reach beyond their buffer");
+  const std::string whole = builder_.json().dump();
+  const auto with = [&](const char* part, const char* field, uint64_t value) {
+    builder_.json() = nlohmann::json::parse(whole);
+    builder_.json()[part][0][field] = value;
+    return builder_.Binary();
+  };
+  EXPECT_THAT(ReadError(with("accessors", "count", 3), 3), beyond);
+  EXPECT_THAT(ReadError(with("accessors", "count", 4294967295u), 3), beyond);
+  EXPECT_THAT(ReadError(with("accessors", "byteOffset", 1), 3), beyond);
+  EXPECT_THAT(ReadError(with("accessors", "byteOffset", 4294967295u), 3), beyond);
+  EXPECT_THAT(ReadError(with("bufferViews", "byteOffset", 1), 3), beyond);
+  EXPECT_THAT(ReadError(with("bufferViews", "byteOffset", 4294967295u), 3), beyond);
+  EXPECT_THAT(ReadError(with("bufferViews", "byteLength", 23), 3), beyond);
+  EXPECT_THAT(ReadError(with("bufferViews", "byteLength", 25), 3), beyond);
+  EXPECT_THAT(ReadError(with("bufferViews", "byteStride", 13), 3), beyond);
+  EXPECT_THAT(ReadError(with("bufferViews", "byteStride", 4), 3), beyond);
+  EXPECT_THAT(ReadError(with("bufferViews", "byteStride", 4294967295u), 3), beyond);
+  EXPECT_THAT(ReadError(with("buffers", "byteLength", 23), 3), beyond);
+  EXPECT_THAT(ReadError(with("buffers", "byteLength", 4294967295u), 3),
+              HasSubstr("buffers[0]: came 24 bytes, wanted the 4294967295 of byteLength"));
+}
+
+TEST_F(Buffers, RefuseValuesThatAreNoPositions) {
+  for (float bad :
+       {std::numeric_limits<float>::quiet_NaN(), 1e30f, -std::numeric_limits<float>::infinity()}) {
+    test::GltfBuilder builder;
+    builder.AddAccessor({1, 2, bad}, "VEC3");
+    EXPECT_THAT(ReadError(builder.Binary(), 3), HasSubstr("accessors[0]: value 2: not finite"));
+  }
+}
+
+TEST_F(Buffers, ReadNoFileButOneInTheSameFolder) {
+  for (const char* uri : {"../a.bin", "/etc/passwd", "b/a.bin", "%2e%2e%2fa.bin", "..", ".",
+                          "file:a.bin", "http://x/a.bin", "a%00.bin", "a%2", "c:\\\\a.bin"}) {
+    EXPECT_THAT(ReadError(builder_.WithFile(uri), 3), HasSubstr("wanted a file in the same folder"))
+        << uri;
+  }
+  EXPECT_EQ(Read(builder_.WithFile("a.bin"), 3).status().code(), absl::StatusCode::kNotFound);
+}
+
+TEST_F(Buffers, RefuseDataThatIsNone) {
+  for (const char* uri : {"data:", "data:;base64", "data:text/plain,abc", "data:;base64,!!!!"}) {
+    EXPECT_THAT(ReadError(builder_.WithFile(uri), 3), HasSubstr("data that is no base64")) << uri;
+  }
+  EXPECT_THAT(ReadError(builder_.WithFile("data:;base64,AAAA"), 3), HasSubstr("came 3 bytes"));
+  EXPECT_THAT(ReadError(builder_.json().dump(), 3), HasSubstr("the file has no binary chunk"));
+}
+
+// Many accessors over the same bytes.
+TEST_F(Buffers, RefuseMoreValuesThanAMotionMayHave) {
+  test::GltfBuilder builder;
+  builder.AddAccessor(std::vector<float>(std::size_t{3} << 20, 1.0f), "VEC3");
+  const absl::StatusOr<GltfDocument> document = ParseGltf(builder.Binary(), "a.glb");
+  ASSERT_TRUE(document.ok()) << document.status();
+  const GltfFileReader no_files = NoFiles;
+  GltfBuffers buffers(*document, no_files);
+  absl::Status status;
+  int read = 0;
+  for (; status.ok() && read < 100; ++read) status = buffers.Read(0, 3).status();
+  EXPECT_EQ(read, 22);
+  EXPECT_THAT(std::string(status.message()), HasSubstr("more values than a motion may have"));
+}
+
+}  // namespace
+}  // namespace duet::formats::gltf

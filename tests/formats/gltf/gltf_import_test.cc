@@ -1,0 +1,255 @@
+#include "model/formats/gltf/gltf_import.h"
+
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/formats/gltf/gltf_fixture.h"
+#include "tests/support/test_motion.h"
+
+namespace duet::formats::gltf {
+namespace {
+
+using test::AddPerson;
+using test::GltfBuilder;
+using test::GltfPersonOptions;
+using test::LargestDistance;
+using test::MakePerson;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+constexpr float kOneMillimetre = 0.001f;
+
+absl::StatusOr<std::string> NoFiles(const std::string& name) {
+  return absl::NotFoundError(name + ": no such file");
+}
+
+absl::StatusOr<motion::Clip> Read(const std::string& content,
+                                  const GltfImportOptions& options = {}) {
+  const absl::StatusOr<GltfDocument> document = ParseGltf(content, "a.glb");
+  if (!document.ok()) return document.status();
+  return FromGltf(*document, "a.glb", NoFiles, options);
+}
+
+std::string ReadError(const std::string& content, const GltfImportOptions& options = {}) {
+  const absl::StatusOr<motion::Clip> clip = Read(content, options);
+  EXPECT_EQ(clip.status().code(), absl::StatusCode::kInvalidArgument) << clip.status();
+  return std::string(clip.status().message());
+}
+
+std::string OnePerson(const motion::Clip& clip, const GltfPersonOptions& options = {}) {
+  GltfBuilder builder;
+  AddPerson(clip, options, &builder);
+  return builder.Binary();
+}
+
+TEST(GltfImport, ReadsAPersonHoweverKeysAreJoined) {
+  const motion::Clip clip = MakePerson();
+  for (const char* interpolation : {"LINEAR", "STEP", "CUBICSPLINE"}) {
+    GltfPersonOptions options;
+    options.interpolation = interpolation;
+    const absl::StatusOr<motion::Clip> read = Read(OnePerson(clip, options));
+    ASSERT_TRUE(read.ok()) << read.status();
+    EXPECT_EQ(read->frame_rate_hz, 30);
+    // Keys fall between frames by rounding: a step may be a frame early or late.
+    const float close = std::string(interpolation) == "STEP" ? 0.2f : kOneMillimetre;
+    EXPECT_LT(LargestDistance(*read, clip), close) << interpolation;
+  }
+}
+
+TEST(GltfImport, ReadsABufferWithinTheDocument) {
+  GltfBuilder builder;
+  const motion::Clip clip = MakePerson();
+  AddPerson(clip, {}, &builder);
+  const absl::StatusOr<motion::Clip> read = Read(builder.WithDataUri());
+  ASSERT_TRUE(read.ok()) << read.status();
+  EXPECT_LT(LargestDistance(*read, clip), kOneMillimetre);
+}
+
+TEST(GltfImport, ReadsABufferBesideTheDocument) {
+  GltfBuilder builder;
+  const motion::Clip clip = MakePerson();
+  AddPerson(clip, {}, &builder);
+  const absl::StatusOr<GltfDocument> document =
+      ParseGltf(builder.WithFile("my%20walk.bin"), "a.gltf");
+  ASSERT_TRUE(document.ok()) << document.status();
+  const absl::StatusOr<motion::Clip> read =
+      FromGltf(*document, "a.gltf", [&](const std::string& name) {
+        EXPECT_EQ(name, "my walk.bin");
+        return absl::StatusOr<std::string>(builder.buffer());
+      });
+  ASSERT_TRUE(read.ok()) << read.status();
+  EXPECT_LT(LargestDistance(*read, clip), kOneMillimetre);
+  const absl::Status missing = FromGltf(*document, "a.gltf", NoFiles).status();
+  EXPECT_EQ(missing.code(), absl::StatusCode::kNotFound);
+  EXPECT_THAT(std::string(missing.message()),
+              HasSubstr("a.gltf: buffers[0]: my walk.bin: no such file"));
+}
+
+TEST(GltfImport, TakesWhatStandsAboveTheSkeletonIntoAccount) {
+  GltfPersonOptions options;
+  options.centimetres_below_an_armature = true;
+  const motion::Clip clip = MakePerson();
+  std::vector<std::string> notes;
+  GltfImportOptions read_options;
+  read_options.notes = &notes;
+  const absl::StatusOr<motion::Clip> read = Read(OnePerson(clip, options), read_options);
+  ASSERT_TRUE(read.ok()) << read.status();
+  EXPECT_LT(LargestDistance(*read, clip), kOneMillimetre);
+  EXPECT_THAT(notes, Contains(HasSubstr("unit: metres")));
+}
+
+TEST(GltfImport, ReadsASkeletonWithoutASkin) {
+  GltfPersonOptions options;
+  options.with_skin = false;
+  const motion::Clip clip = MakePerson();
+  const absl::StatusOr<motion::Clip> read = Read(OnePerson(clip, options));
+  ASSERT_TRUE(read.ok()) << read.status();
+  EXPECT_LT(LargestDistance(*read, clip), kOneMillimetre);
+}
+
+TEST(GltfImport, ReadsEitherCharacterOfAFileWithTwo) {
+  const motion::Clip first = MakePerson({30}), second = MakePerson({45, 3, 0, {0, 1, 1.5f}, 30});
+  for (const bool with_skin : {true, false}) {
+    GltfBuilder builder;
+    GltfPersonOptions options;
+    options.with_skin = with_skin;
+    AddPerson(first, options, &builder);
+    options.animation = "dance";
+    AddPerson(second, options, &builder);
+    GltfImportOptions read_options;
+    const absl::StatusOr<motion::Clip> left = Read(builder.Binary(), read_options);
+    ASSERT_TRUE(left.ok()) << left.status();
+    EXPECT_LT(LargestDistance(*left, first), kOneMillimetre) << with_skin;
+    read_options.person = 1;
+    const absl::StatusOr<motion::Clip> right = Read(builder.Binary(), read_options);
+    ASSERT_TRUE(right.ok()) << right.status();
+    EXPECT_LT(LargestDistance(*right, second), kOneMillimetre) << with_skin;
+  }
+}
+
+TEST(GltfImport, SeveralSkinsOfOneSkeletonAreOneCharacter) {
+  GltfBuilder builder;
+  const motion::Clip clip = MakePerson();
+  AddPerson(clip, {}, &builder);
+  const nlohmann::json joints = builder.json()["skins"][0]["joints"];
+  builder.json()["skins"].push_back({{"joints", {joints[3], joints[4]}}});
+  GltfImportOptions second;
+  second.person = 1;  // there is none: the first
+  const absl::StatusOr<motion::Clip> read = Read(builder.Binary(), second);
+  ASSERT_TRUE(read.ok()) << read.status();
+  EXPECT_LT(LargestDistance(*read, clip), kOneMillimetre);
+}
+
+TEST(GltfImport, TakesTheFirstOfSeveralAnimationsAndSaysSo) {
+  GltfBuilder builder;
+  const motion::Clip clip = MakePerson();
+  AddPerson(clip, {}, &builder);
+  nlohmann::json other = builder.json()["animations"][0];
+  other["name"] = "run";
+  builder.json()["animations"].push_back(other);
+  std::vector<std::string> notes;
+  GltfImportOptions options;
+  options.notes = &notes;
+  ASSERT_TRUE(Read(builder.Binary(), options).ok());
+  EXPECT_THAT(notes, Contains("animation: \"walk\", the first of 2 that move the skeleton"));
+}
+
+TEST(GltfImport, SamplesAtTheRateOfTheKeysOrTheOneGiven) {
+  motion::Clip clip = MakePerson({25});
+  clip.frame_rate_hz = 24;
+  std::vector<std::string> notes;
+  GltfImportOptions options;
+  options.notes = &notes;
+  const absl::StatusOr<motion::Clip> as_keyed = Read(OnePerson(clip), options);
+  ASSERT_TRUE(as_keyed.ok()) << as_keyed.status();
+  EXPECT_EQ(as_keyed->frame_rate_hz, 24);
+  EXPECT_EQ(as_keyed->frame_count(), 25);
+  EXPECT_THAT(notes, Contains(HasSubstr("frame rate: 24 Hz")));
+  options.frame_rate_hz = 48;
+  const absl::StatusOr<motion::Clip> given = Read(OnePerson(clip), options);
+  ASSERT_TRUE(given.ok()) << given.status();
+  EXPECT_EQ(given->frame_rate_hz, 48);
+  ASSERT_EQ(given->frame_count(), 49);
+  for (int frame = 0; frame < 25; ++frame) {
+    EXPECT_LT(Distance(given->at(2 * frame, 5), clip.at(frame, 5)), kOneMillimetre) << frame;
+  }
+  clip.frame_rate_hz = 2;  // keyed by hand
+  options.frame_rate_hz.reset();
+  EXPECT_EQ(Read(OnePerson(clip), options)->frame_rate_hz, 30);
+}
+
+TEST(GltfImport, RefusesFilesWithoutAMovingSkeleton) {
+  EXPECT_THAT(ReadError(R"({"asset": {"version": "2.0"}})"),
+              HasSubstr("a.glb: no skin and no animated node"));
+  GltfBuilder builder;
+  AddPerson(MakePerson({2}), {}, &builder);
+  builder.json().erase("animations");
+  EXPECT_THAT(ReadError(builder.Binary()), HasSubstr("a.glb: no animation moves the skeleton"));
+}
+
+TEST(GltfImport, RefusesJointsThatItCannotMap) {
+  GltfBuilder builder;
+  AddPerson(MakePerson({2}), {}, &builder);
+  for (nlohmann::json& node : builder.json()["nodes"]) node["name"] = "bone";
+  EXPECT_THAT(ReadError(builder.Binary()), HasSubstr("a.glb: joints: nothing stands for head"));
+}
+
+TEST(GltfImport, RefusesMoreFramesThanAMotionMayHave) {
+  GltfBuilder builder;
+  motion::Clip slow = MakePerson({3});
+  slow.frame_rate_hz = 1e-4;
+  AddPerson(slow, {}, &builder);
+  EXPECT_THAT(ReadError(builder.Binary()), HasSubstr("wanted at most 200000 frames"));
+}
+
+TEST(GltfImport, RefusesMoreNodesThanASkeletonMayHave) {
+  GltfBuilder builder;
+  AddPerson(MakePerson({2}), {}, &builder);
+  for (int i = 0; i < 1024; ++i) {
+    builder.json()["nodes"][0]["children"].push_back(builder.AddNode({{"name", "leaf"}}));
+  }
+  EXPECT_THAT(ReadError(builder.Binary()), HasSubstr("skeleton: came 10"));
+}
+
+TEST(GltfImport, RefusesEveryTruncation) {
+  GltfBuilder builder;
+  AddPerson(MakePerson({2}), {}, &builder);
+  const std::string binary = builder.Binary();
+  for (std::size_t size = 0; size < binary.size(); size += size < 64 ? 1 : 7) {
+    ReadError(binary.substr(0, size));
+  }
+  const std::string text = builder.WithFile("a.bin");
+  for (std::size_t size = 0; size < text.size(); size += 7) ReadError(text.substr(0, size));
+}
+
+// Bytes changed at random in structure and values: an error or a motion, never a crash.
+TEST(GltfImport, SurvivesDamage) {
+  GltfBuilder builder;
+  AddPerson(MakePerson({3}), {}, &builder);
+  const std::string json = builder.json().dump(), binary = builder.buffer();
+  std::mt19937 random(5);
+  int refused = 0;
+  for (int round = 0; round < 600; ++round) {
+    std::string damaged_json = json, damaged_binary = binary;
+    for (int change = 0; change < 2; ++change) {
+      const char interesting[] = "0123456789-e.,[]{}\"";
+      damaged_json[random() % json.size()] = interesting[random() % (sizeof(interesting) - 1)];
+      damaged_binary[random() % binary.size()] = static_cast<char>(random());
+    }
+    const absl::StatusOr<motion::Clip> clip = Read(test::BinaryGltf(damaged_json, damaged_binary));
+    refused += clip.ok() ? 0 : 1;
+    if (!clip.ok()) continue;
+    for (const motion::Vec3& position : clip->poses.all()) EXPECT_TRUE(IsFinite(position));
+  }
+  EXPECT_GT(refused, 100);
+}
+
+}  // namespace
+}  // namespace duet::formats::gltf
