@@ -122,6 +122,12 @@ TEST(KeepJointRanges, AnElbowDoesNotBendBackwards) {
   }
 }
 
+TEST(KeepJointRanges, ALimbRaisedAgainstItsRestIsLeftAlone) {
+  const motion::Poses overhead = Leg({0, 1, 0}, {0, 0.5f, 1}), arm = Arm({0, 1, -0.3f}, {0, 0, 1});
+  EXPECT_EQ(InRange(overhead), overhead);
+  EXPECT_EQ(InRange(arm), arm);
+}
+
 TEST(KeepJointRanges, TheHeadStaysOnTheNeck) {
   motion::Poses nodding = Puppet(), broken = nodding;
   Point(kNeck, kHead, {0, 0.7f, 1}, &nodding);
