@@ -46,4 +46,18 @@ BENCHMARK(BM_CleanUp)
     ->Unit(benchmark::kMicrosecond)
     ->Complexity();
 
+// The joints' ranges alone: of a person none of whose limbs is within them.
+void BM_JointRanges(benchmark::State& state) {
+  const int frames = static_cast<int>(state.range(0));
+  const duet::motion::Skeleton skeleton = duet::motion::SbuSkeleton();
+  const duet::cleanup::Body body = duet::cleanup::FindBody(skeleton);
+  const duet::motion::Poses follower = Person(frames, 0.6f);
+  for (auto _ : state) {
+    duet::motion::Poses limited = follower;
+    KeepJointRanges(skeleton, body, {}, {kRateHz, kSettled}, &limited);
+    benchmark::DoNotOptimize(limited);
+  }
+}
+BENCHMARK(BM_JointRanges)->Arg(46)->Unit(benchmark::kMicrosecond);
+
 }  // namespace

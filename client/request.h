@@ -57,6 +57,10 @@ struct SynthesisRequest {
   // How varied such a model's answers are over the seeds: 0 the typical answer, 1 as varied as
   // people are; at most RequestLimits::max_variety.
   float variety = 1;
+  // Whether the follower is corrected so that it stands, keeps its feet still and its joints within
+  // human ranges, and keeps out of the leader. Absent: the server's choice for the model; unless
+  // it is told otherwise, that is where the model samples.
+  std::optional<bool> clean_up;
   // Bulk work yields to interactive work, and waits its turn when the server is full.
   Priority priority = Priority::kInteractive;
   // Frames in one chunk of the reply. Absent: the server chooses.

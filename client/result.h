@@ -67,6 +67,7 @@ struct SynthesisResult {
   std::string request_id;                        // as in the server's log
   uint64_t seed = 0;                             // that the server used
   float variety = 0;                             // the same
+  bool cleaned_up = false;                       // whether the server corrected it, asked to or not
   // How far the request is from what the model was trained on: 1 as far as the farthest tenth of
   // the training leaders. Absent when the model does not know.
   std::optional<double> unfamiliarity;

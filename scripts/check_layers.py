@@ -71,7 +71,8 @@ LAYERS = (
     Layer("experiments", "model/evaluation/experiments",
           sees=MOTION_FILES + MODELS + ("dataset", "metrics", "protocol", "baselines", "judge"),
           source_libraries=("torch",)),
-    Layer("report", "model/evaluation/report", sees=("base", "motion", "dataset") + MEASURING),
+    Layer("report", "model/evaluation/report",
+          sees=("base", "motion", "dataset", "cleanup") + MEASURING),
     Layer("evaluation program", "model/evaluation/program",
           sees=MOTION_FILES + ("dataset", "engine", "checkpoint", "torch engine", "report")
           + MEASURING),

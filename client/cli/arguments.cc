@@ -31,6 +31,10 @@ const std::map<std::string, formats::Side> kSides = {{"left", formats::Side::kLe
 const std::map<std::string, Priority> kPriorities = {{"interactive", Priority::kInteractive},
                                                      {"bulk", Priority::kBulk}};
 
+// "auto" leaves the choice to the server.
+const std::map<std::string, std::optional<bool>> kCleanUps = {
+    {"auto", std::nullopt}, {"on", true}, {"off", false}};
+
 void AddServerFlags(CLI::App* app, ServerArguments* server) {
   constexpr char kGroup[] = "Server";
   app->add_option("--server", server->address, "Or any gRPC target, such as unix:/run/duet.sock")
@@ -168,6 +172,13 @@ void AddReactionFlags(CLI::App* app, SynthesizeArguments* arguments) {
       ->take_last()
       ->group(kGroup);
   AddSamplingFlags(app, arguments);
+  AddChoice<std::optional<bool>>(
+      app, "--clean-up", kCleanUps,
+      [arguments](std::optional<bool> clean_up) { arguments->clean_up = clean_up; },
+      "Correct the follower: stand, feet still, human joints, out of the leader; auto: as the "
+      "server does for the model")
+      ->default_str(NameOf(kCleanUps, arguments->clean_up))
+      ->group(kGroup);
   AddChoice<Priority>(
       app, "--priority", kPriorities,
       [arguments](Priority priority) { arguments->priority = priority; },

@@ -59,7 +59,8 @@ struct SynthesizeArguments {
   std::optional<motion::Vec3> partner_direction;
   uint64_t seed = SynthesisRequest().seed;
   float variety = SynthesisRequest().variety;
-  int samples = 1;  // answers, with seeds from `seed` on; none passes the largest seed
+  std::optional<bool> clean_up;  // absent: the server's choice
+  int samples = 1;               // answers, with seeds from `seed` on; none passes the largest seed
   Priority priority = Priority::kInteractive;
   std::optional<int> chunk_frames;
   std::string request_id;

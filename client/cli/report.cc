@@ -143,8 +143,13 @@ std::string DescribeAnswer(const Synthesis& synthesis,
                         Milliseconds(result.timings.first_chunk),
                         Plural(result.window_count, "window"),
                         absl::StrCat(Milliseconds(result.timings.compute), " in the network"));
+  std::vector<std::string> settings;
   if (synthesis.sampled) {
-    absl::StrAppend(&text, "          seed ", result.seed, ", variety ", result.variety, "\n");
+    settings.push_back(absl::StrCat("seed ", result.seed, ", variety ", result.variety));
+  }
+  if (result.cleaned_up) settings.push_back("cleaned up");
+  if (!settings.empty()) {
+    absl::StrAppend(&text, "          ", absl::StrJoin(settings, ", "), "\n");
   }
   if (result.unfamiliarity) {
     absl::StrAppendFormat(&text,
@@ -185,6 +190,7 @@ json SynthesisJson(const Synthesis& synthesis, const std::vector<std::filesystem
                  {"keyframes", keyframes},
                  {"seed", result.seed},
                  {"variety", result.variety},
+                 {"cleaned_up", result.cleaned_up},
                  {"windows", result.window_count},
                  {"attempts", result.attempt_count},
                  {"request_id", result.request_id},

@@ -143,6 +143,7 @@ absl::StatusOr<SynthesisRequest> BuildRequest(const SynthesizeArguments& argumen
   request.partner_direction = arguments.partner_direction;
   request.seed = arguments.seed;
   request.variety = arguments.variety;
+  request.clean_up = arguments.clean_up;
   request.priority = arguments.priority;
   request.chunk_frames = arguments.chunk_frames;
   request.request_id = arguments.request_id;

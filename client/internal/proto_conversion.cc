@@ -1,5 +1,6 @@
 #include "client/internal/proto_conversion.h"
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -87,6 +88,11 @@ v1::Priority ToProto(Priority priority) {
   return priority == Priority::kBulk ? v1::PRIORITY_BULK : v1::PRIORITY_INTERACTIVE;
 }
 
+v1::CleanUp ToProto(std::optional<bool> clean_up) {
+  if (!clean_up.has_value()) return v1::CLEAN_UP_UNSPECIFIED;
+  return *clean_up ? v1::CLEAN_UP_ON : v1::CLEAN_UP_OFF;
+}
+
 bool HasJoint(const v1::Bone& bone, int joints) {
   const auto count = static_cast<uint32_t>(joints);
   return bone.parent_joint() < count && bone.child_joint() < count;
@@ -132,6 +138,7 @@ absl::StatusOr<v1::SynthesizeRequest> ToProto(const SynthesisRequest& request) {
   }
   out.set_seed(request.seed);
   out.set_variety(request.variety);
+  out.set_clean_up(ToProto(request.clean_up));
   out.set_priority(ToProto(request.priority));
   if (request.chunk_frames.has_value()) {
     if (*request.chunk_frames < 1) {

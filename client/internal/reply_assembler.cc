@@ -172,6 +172,7 @@ SynthesisResult ReplyAssembler::TakeResult() && {
   result.request_id = header_->request_id();
   result.seed = header_->seed();
   result.variety = header_->variety();
+  result.cleaned_up = header_->clean_up() == v1::CLEAN_UP_ON;
   if (summary_->has_unfamiliarity()) result.unfamiliarity = summary_->unfamiliarity();
   result.window_count = static_cast<int>(summary_->window_count());
   result.timings.queue = absl::Seconds(summary_->queue_seconds());

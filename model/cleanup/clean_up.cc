@@ -34,6 +34,9 @@ void CleanUp::Apply(const motion::Poses& leader, const Touch& touch, const Timin
   if (options_.capsules.enabled) {
     PartArms(skeleton_, body_, radii_, leader, touch, options_.capsules, timing, follower);
   }
+  if (options_.joint_ranges.enabled) {
+    KeepJointRanges(skeleton_, body_, options_.joint_ranges, timing, follower);
+  }
 }
 
 }  // namespace duet::cleanup

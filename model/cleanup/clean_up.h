@@ -6,6 +6,7 @@
 #include "model/cleanup/capsules.h"
 #include "model/cleanup/contacts.h"
 #include "model/cleanup/floor.h"
+#include "model/cleanup/joint_ranges.h"
 #include "model/cleanup/limbs.h"
 #include "model/cleanup/spacing.h"
 #include "model/cleanup/timing.h"
@@ -14,13 +15,14 @@
 #include "model/motion/skeleton.h"
 
 // What a body can do and a network need not know: stands upright, on the floor and near the other,
-// on feet that do not slide, and passes through nobody. World metres, y up.
+// on feet that do not slide, bends as joints do, and passes through nobody. World metres, y up.
 namespace duet::cleanup {
 
 struct Options {
   UprightOptions upright;
   SpacingOptions spacing;
   CapsuleOptions capsules;
+  JointRangeOptions joint_ranges;
   FloorOptions floor;
   ContactOptions contacts;
 };

@@ -84,11 +84,22 @@ std::optional<int> FindChest(const Tree& tree, const motion::JointPair& hips) {
   return std::nullopt;
 }
 
-bool IsHead(const motion::Skeleton& skeleton, const std::vector<int>& branch) {
-  return std::any_of(branch.begin(), branch.end(), [&](int joint) {
+// The first joint of a branch with "head" in its name, the nearest to the body.
+std::optional<int> FindHead(const motion::Skeleton& skeleton, const std::vector<int>& branch) {
+  const auto head = std::find_if(branch.begin(), branch.end(), [&](int joint) {
     const std::string& name = skeleton.joint_names[static_cast<std::size_t>(joint)];
     return absl::StrContains(absl::AsciiStrToLower(name), "head");
   });
+  if (head == branch.end()) return std::nullopt;
+  return *head;
+}
+
+std::optional<Neck> FindNeck(const motion::Skeleton& skeleton, const Tree& tree, int chest) {
+  for (const int first : tree.Children(chest)) {
+    const std::optional<int> head = FindHead(skeleton, tree.Branch(first));
+    if (head) return Neck{tree.Parent(*head), *head, tree.Branch(*head)};
+  }
+  return std::nullopt;
 }
 
 std::vector<Limb> FindArms(const motion::Skeleton& skeleton, const Tree& tree, int chest,
@@ -96,7 +107,7 @@ std::vector<Limb> FindArms(const motion::Skeleton& skeleton, const Tree& tree, i
   std::vector<Limb> arms;
   for (const int first : tree.Children(chest)) {
     const std::vector<int> branch = tree.Branch(first);
-    if (Contains(branch, hips.left) || IsHead(skeleton, branch)) continue;
+    if (Contains(branch, hips.left) || FindHead(skeleton, branch)) continue;
     int joints = 1, end = first;
     for (; tree.Children(end).size() == 1; ++joints) end = tree.Children(end)[0];
     if (joints >= 3) arms.push_back(*LimbThatEndsAt(tree, end));
@@ -127,7 +138,9 @@ Body FindBody(const motion::Skeleton& skeleton) {
   if (skeleton.feet) body.legs = FindLegs(tree, *skeleton.feet);
   if (!skeleton.hips) return body;
   body.chest = FindChest(tree, *skeleton.hips);
-  if (body.chest) body.arms = FindArms(skeleton, tree, *body.chest, *skeleton.hips);
+  if (!body.chest) return body;
+  body.arms = FindArms(skeleton, tree, *body.chest, *skeleton.hips);
+  body.neck = FindNeck(skeleton, tree, *body.chest);
   return body;
 }
 

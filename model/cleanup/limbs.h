@@ -19,6 +19,13 @@ struct Limb {
   std::vector<int> beyond;
 };
 
+// What carries the head.
+struct Neck {
+  int base = 0;             // the joint that the head hangs on
+  int head = 0;             // the first joint with "head" in its name
+  std::vector<int> branch;  // the head and all beyond it
+};
+
 // What a skeleton's tree tells of a body. Requires a skeleton that Validate accepts.
 struct Body {
   // Where the arms meet the spine: the joint of three bones or more that is nearest to the pelvis,
@@ -26,6 +33,7 @@ struct Body {
   std::optional<int> chest;
   std::vector<Limb> legs;  // left and right, or none where a foot hangs on fewer than two bones
   std::vector<Limb> arms;  // chains of three joints or more from the chest, but for the head's
+  std::optional<Neck> neck;
 };
 Body FindBody(const motion::Skeleton& skeleton);
 

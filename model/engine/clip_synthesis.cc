@@ -58,6 +58,7 @@ SynthesisWindow ClipSynthesis::NextWindow() const {
   }
   window.sampling = {WindowSeed(request_.sampling.seed, next_window_), request_.sampling.variety};
   window.settled = NextSettled();
+  window.clean_up = request_.clean_up;
   return window;
 }
 

@@ -25,6 +25,7 @@ struct ClipRequest {
   // (ModelDescription::partner_direction).
   std::optional<motion::Vec3> partner_direction;
   Sampling sampling = {};
+  std::optional<bool> clean_up = {};  // see SynthesisWindow
 };
 
 // Turns a clip of any length into network windows and their results back into one motion.

@@ -30,6 +30,10 @@ struct ModelDescription {
   // face.
   std::optional<DirectionRegression> partner_direction;
 
+  // Where nobody says: what models that sample answer is cleaned up (model/cleanup), a model with
+  // one answer answers as it always did.
+  bool cleaned_up_by_default() const { return samples; }
+
   int class_count() const { return static_cast<int>(classes.size()); }
 };
 

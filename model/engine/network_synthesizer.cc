@@ -84,7 +84,7 @@ class NetworkSynthesizer : public Synthesizer {
   }
 
   bool IsCleanedUp(const SynthesisWindow& window) const {
-    return window.clean_up.value_or(options_.clean_up && description_.samples);
+    return window.clean_up.value_or(options_.clean_up && description_.cleaned_up_by_default());
   }
 
   const ModelDescription description_;

@@ -19,8 +19,8 @@ struct PipelineOptions {
   bool keep_limb_lengths = true;
   // A follower without a start is set, as a whole, on the leader's floor: both reach equally low.
   bool share_floor = true;
-  // A follower of a model that samples is made to stand, keep its feet still and keep out of the
-  // leader (model/cleanup). A model with one answer answers as it always did. A window may say
+  // A follower is made to stand, keep its feet still and its joints within human ranges, and keep
+  // out of the leader (model/cleanup), where its model is cleaned up by default. A window may say
   // otherwise.
   bool clean_up = true;
   cleanup::Options cleaning = {};

@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <sstream>
 #include <utility>
 #include <vector>
@@ -71,6 +72,18 @@ v1::VersionLabel ParseVersionLabel(const std::string& text) {
   return parsed;
 }
 
+// The names of --clean-up.
+const std::map<std::string, v1::CleanUpPolicy> kCleanUpPolicies = {
+    {"auto", v1::CLEAN_UP_POLICY_AUTO},
+    {"on", v1::CLEAN_UP_POLICY_ON},
+    {"off", v1::CLEAN_UP_POLICY_OFF}};
+
+v1::CleanUpPolicy ParseCleanUpPolicy(const std::string& text) {
+  const auto named = kCleanUpPolicies.find(text);
+  if (named != kCleanUpPolicies.end()) return named->second;
+  throw CLI::ValidationError("--clean-up", "is " + text + ", wanted auto, on or off");
+}
+
 // A flag's help with the default that holds without it.
 template <typename Value>
 std::string Defaulting(absl::string_view help, const Value& value) {
@@ -111,6 +124,12 @@ void AddServingFlags(CLI::App& app, v1::ServerConfig& config) {
       "--reflection,!--no-reflection",
       [&](std::int64_t count) { config.set_reflection(count > 0); },
       Defaulting("gRPC server reflection", defaults.reflection ? "on" : "off"));
+  app.add_option_function<std::string>(
+         "--clean-up",
+         [&](const std::string& value) { config.set_clean_up(ParseCleanUpPolicy(value)); },
+         "whether followers are cleaned up where a request does not say; auto: those of models "
+         "that sample (default auto)")
+      ->option_text("auto|on|off");
 }
 
 void AddCapacityFlags(CLI::App& app, v1::ServerConfig& config) {

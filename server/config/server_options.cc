@@ -97,6 +97,24 @@ void ReadLimits(const v1::ServerConfig& config, Reader& reader, ServerOptions& o
   }
 }
 
+void ReadCleanUp(const v1::ServerConfig& config, Reader& reader, ServerOptions& options) {
+  if (!config.has_clean_up()) return;
+  switch (config.clean_up()) {
+    case v1::CLEAN_UP_POLICY_AUTO:
+      break;
+    case v1::CLEAN_UP_POLICY_ON:
+      options.clean_up = true;
+      break;
+    case v1::CLEAN_UP_POLICY_OFF:
+      options.clean_up = false;
+      break;
+    default:
+      reader.Fail(absl::StrCat("clean_up: is ", config.clean_up(),
+                               ", wanted CLEAN_UP_POLICY_AUTO, CLEAN_UP_POLICY_ON or "
+                               "CLEAN_UP_POLICY_OFF"));
+  }
+}
+
 void ReadLabels(const v1::ServerConfig& config, Reader& reader, ServerOptions& options) {
   for (int i = 0; i < config.version_labels_size(); ++i) {
     const v1::VersionLabel& label = config.version_labels(i);
@@ -119,6 +137,7 @@ absl::StatusOr<ServerOptions> ToOptions(const v1::ServerConfig& config, int core
   options.model_repository = config.model_repository();
   options.default_model = config.default_model();
   if (config.has_reflection()) options.reflection = config.reflection();
+  ReadCleanUp(config, reader, options);
   ReadLabels(config, reader, options);
   ReadThreads(config, cores, reader, options);
   ReadLimits(config, reader, options);

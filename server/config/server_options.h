@@ -37,7 +37,8 @@ struct ServerOptions {
   std::string default_model;
   std::vector<VersionLabelOption> version_labels;
   bool reflection = true;
-  int workers = 1;  // ToOptions: as many as the cores allow
+  std::optional<bool> clean_up;  // absent: followers of models that sample are cleaned up
+  int workers = 1;               // ToOptions: as many as the cores allow
   int threads_per_worker = 1;
   int max_calls = 128;
   int max_queued_windows = 64;

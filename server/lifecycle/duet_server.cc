@@ -59,6 +59,7 @@ service::ServiceParts DuetServer::Parts() {
   parts.observers = {&metrics_, &log_};
   parts.limits = Limits(options_);
   parts.buffered_frames = options_.buffered_frames;
+  parts.clean_up = options_.clean_up;
   return parts;
 }
 

@@ -29,6 +29,7 @@ struct CallRecord {
   std::string_view priority;  // "interactive", "bulk", or empty
   uint64_t seed = 0;
   float variety = 0;
+  bool clean_up = false;
 
   absl::Status status;  // what the caller was told
   std::string cause;    // what the caller was not told: the model's own words

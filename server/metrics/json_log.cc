@@ -58,6 +58,7 @@ void JsonLog::CallFinished(const CallRecord& record) {
     fields["priority"] = record.priority;
     fields["seed"] = record.seed;
     fields["variety"] = record.variety;
+    fields["clean_up"] = record.clean_up;
     fields["frames"] = record.frames;
     fields["chunks"] = record.chunks;
     fields["windows"] = record.windows;

@@ -68,15 +68,18 @@ absl::StatusOr<SynthesisCall::Parts> MotionSynthesisService::Prepare(
     return ModelNotFoundRefusal(*not_found);
   }
   auto& served = std::get<registry::ServedModel>(found);
-  absl::StatusOr<ValidatedRequest> validated =
-      ValidateRequest(request, served.model->description(), parts_.limits);
+  const engine::ModelDescription& model = served.model->description();
+  absl::StatusOr<ValidatedRequest> validated = ValidateRequest(request, model, parts_.limits);
   if (!validated.ok()) return validated.status();
+  const bool servers_choice = parts_.clean_up.value_or(model.cleaned_up_by_default());
+  const bool clean_up = validated->clean_up.value_or(servers_choice);
   return SynthesisCall::Parts{std::move(served.model),
                               *std::move(validated),
                               std::move(slot),
                               std::move(incoming.scope),
                               DeadlineOf(context, *parts_.clock),
-                              parts_.buffered_frames};
+                              parts_.buffered_frames,
+                              clean_up};
 }
 
 template <typename Request, typename Answer>

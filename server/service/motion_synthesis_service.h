@@ -2,6 +2,7 @@
 #define DUET_SERVER_SERVICE_MOTION_SYNTHESIS_SERVICE_H_
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "duet/v1/synthesis.grpc.pb.h"
@@ -26,6 +27,9 @@ struct ServiceParts {
   const common::Clock* clock = &common::Clock::Real();
   RequestLimits limits;
   int buffered_frames = 0;  // see ClipStreamOptions
+  // Whether followers are cleaned up where the request does not say. Absent: as the model has it
+  // (ModelDescription::cleaned_up_by_default).
+  std::optional<bool> clean_up;
 };
 
 // The generated service with every method on the callback API, and bytes for messages (wire.h).

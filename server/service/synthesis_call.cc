@@ -24,6 +24,7 @@ std::shared_ptr<SynthesisCall> SynthesisCall::Create(Parts parts,
   options.deadline = parts.deadline;
   options.buffered_frames = parts.buffered_frames;
   engine::ClipRequest clip = std::move(parts.request.clip);
+  clip.clean_up = parts.clean_up;
   std::shared_ptr<SynthesisCall> call(new SynthesisCall(std::move(parts), clip.sampling, writer));
   // The clip outlives a finished call while its last window runs; it must not keep it.
   call->stream_ = std::make_shared<ClipStream>(call->model_, std::move(clip), options, scheduler,
@@ -47,6 +48,7 @@ SynthesisCall::SynthesisCall(Parts parts, const engine::Sampling& sampling, Repl
   record.priority = PriorityName(parts.request.priority);
   record.seed = sampling.seed;
   record.variety = sampling.variety;
+  record.clean_up = parts.clean_up;
 }
 
 void SynthesisCall::Start() {
@@ -147,6 +149,7 @@ void SynthesisCall::PrepareHeader() {
   header.set_request_id(record.request_id);
   header.set_seed(record.seed);
   header.set_variety(record.variety);
+  header.set_clean_up(record.clean_up ? v1::CLEAN_UP_ON : v1::CLEAN_UP_OFF);
 }
 
 void SynthesisCall::PrepareChunk(const ClipPart& part) {

@@ -44,6 +44,7 @@ class SynthesisCall : public std::enable_shared_from_this<SynthesisCall> {
     std::unique_ptr<CallScope> scope;
     common::TimePoint deadline = common::TimePoint::max();
     int buffered_frames = 0;  // see ClipStreamOptions
+    bool clean_up = false;    // what the request asks for, or else the server's choice
   };
 
   // `scheduler` outlives the call's windows, `writer` lives until it was told to finish.

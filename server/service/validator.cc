@@ -35,6 +35,7 @@ class Validation {
                                            const google::protobuf::RepeatedField<float>& values,
                                            const std::vector<int>& joints);
   engine::Sampling CallSampling();
+  std::optional<bool> CallCleanUp();
   void ReplyJoints();
   int ChunkFrames();
   batching::Priority CallPriority();
@@ -159,6 +160,22 @@ engine::Sampling Validation::CallSampling() {
   return sampling;
 }
 
+std::optional<bool> Validation::CallCleanUp() {
+  switch (request_.clean_up()) {
+    case v1::CLEAN_UP_UNSPECIFIED:
+      return std::nullopt;
+    case v1::CLEAN_UP_ON:
+      return true;
+    case v1::CLEAN_UP_OFF:
+      return false;
+    default:
+      violations_.Malformed("clean_up", absl::StrCat("is ", request_.clean_up(),
+                                                     ", wanted CLEAN_UP_ON, CLEAN_UP_OFF or no "
+                                                     "value"));
+      return std::nullopt;
+  }
+}
+
 void Validation::ReplyJoints() {
   const v1::Motion& leader = request_.leader();
   reply_.unit = leader.unit();
@@ -221,6 +238,7 @@ absl::StatusOr<ValidatedRequest> Validation::Run() {
   std::optional<engine::FollowerStart> start = Start();
   const std::optional<motion::Vec3> partner_direction = PartnerDirection();
   const engine::Sampling sampling = CallSampling();
+  const std::optional<bool> clean_up = CallCleanUp();
   ReplyJoints();
   const int chunk_frames = ChunkFrames();
   const batching::Priority priority = CallPriority();
@@ -229,6 +247,7 @@ absl::StatusOr<ValidatedRequest> Validation::Run() {
       {std::move(leader_), request_.leader().frame_rate_hz(), engine::LabelTrack(std::move(labels)),
        std::move(start), partner_direction, sampling},
       std::move(reply_),
+      clean_up,
       chunk_frames,
       priority};
 }

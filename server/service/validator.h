@@ -1,6 +1,8 @@
 #ifndef DUET_SERVER_SERVICE_VALIDATOR_H_
 #define DUET_SERVER_SERVICE_VALIDATOR_H_
 
+#include <optional>
+
 #include "absl/status/statusor.h"
 #include "duet/v1/synthesis.pb.h"
 #include "model/engine/clip_synthesis.h"
@@ -15,6 +17,8 @@ namespace duet::server::service {
 struct ValidatedRequest {
   engine::ClipRequest clip;
   ReplyMapping reply;
+  // Whether the follower is to be cleaned up. Absent: as the server is set up.
+  std::optional<bool> clean_up;
   int chunk_frames = 0;
   batching::Priority priority = batching::Priority::kInteractive;
 };

@@ -52,6 +52,17 @@ class CapturesTest : public ::testing::Test {
   int count_ = 0;
 };
 
+// The mean way that one stage moves the joints of a captured follower, metres.
+double MeanShift(const motion::Poses& follower, const motion::Skeleton& skeleton, double rate_hz) {
+  motion::Poses limited = follower;
+  KeepJointRanges(skeleton, FindBody(skeleton), {}, {rate_hz, 0}, &limited);
+  double sum = 0;
+  for (std::size_t i = 0; i < follower.all().size(); ++i) {
+    sum += Distance(follower.all()[i], limited.all()[i]);
+  }
+  return sum / static_cast<double>(follower.all().size());
+}
+
 TEST_F(CapturesTest, SlideLessAndOverlapLess) {
   const auto folder = test::FindData("sbu");
   if (!folder) GTEST_SKIP() << test::kNoData;
@@ -62,6 +73,18 @@ TEST_F(CapturesTest, SlideLessAndOverlapLess) {
   EXPECT_LT(after_.slide, before_.slide);
   EXPECT_LT(after_.overlap, before_.overlap);
   EXPECT_LT(after_.length_change, 1e-5);
+}
+
+TEST_F(CapturesTest, AreMostlyWithinTheRangesOfJoints) {
+  const auto folder = test::FindData("sbu");
+  if (!folder) GTEST_SKIP() << test::kNoData;
+  const absl::StatusOr<dataset::Dataset> data = dataset::ReadDataset(*folder);
+  ASSERT_THAT(data, test::IsOk());
+  double sum = 0;
+  for (const dataset::Sequence& sequence : data->sequences) {
+    sum += MeanShift(sequence.pair.follower.poses, data->skeleton, data->frame_rate_hz);
+  }
+  EXPECT_LT(sum / static_cast<double>(data->sequences.size()), 0.002);
 }
 
 }  // namespace

@@ -34,12 +34,15 @@ TEST(FindBody, KnowsTheSbuSkeleton) {
   EXPECT_EQ(body.arms[0].upper, 3);
   EXPECT_EQ(body.arms[0].middle, 4);
   EXPECT_EQ(body.arms[0].end, 5);
+  ASSERT_TRUE(body.neck.has_value());
+  EXPECT_EQ(body.neck->base, 1);
+  EXPECT_EQ(body.neck->head, 0);
 }
 
 TEST(FindBody, KnowsASpineCollarsToesAndFingers) {
   motion::Skeleton skeleton =
       Tree({{"pelvis", -1},  {"spine", 0},    {"chest", 1},      {"neck", 2},
-            {"skull", 3},    {"head_end", 4},  // 5
+            {"Head", 3},     {"head_end", 4},  // 5
             {"collar.L", 2}, {"arm.L", 6},    {"forearm.L", 7},  {"hand.L", 8},
             {"index.L", 9},  {"thumb.L", 9},                                      // 11
             {"collar.R", 2}, {"arm.R", 12},   {"forearm.R", 13}, {"hand.R", 14},  // 15
@@ -56,12 +59,17 @@ TEST(FindBody, KnowsASpineCollarsToesAndFingers) {
   ASSERT_EQ(body.legs.size(), 2u);
   EXPECT_EQ(body.legs[0].upper, 16);
   EXPECT_THAT(body.legs[0].beyond, ElementsAre(19));
+  ASSERT_TRUE(body.neck.has_value());
+  EXPECT_EQ(body.neck->base, 3);
+  EXPECT_EQ(body.neck->head, 4);
+  EXPECT_THAT(body.neck->branch, ElementsAre(4, 5));
 }
 
 TEST(FindBody, FindsNoLimbsWhereThereAreNone) {
   EXPECT_THAT(FindBody(WithoutFeet()).legs, IsEmpty());
   EXPECT_THAT(FindBody(WithoutHips()).arms, IsEmpty());
   EXPECT_EQ(FindBody(WithoutHips()).chest, std::nullopt);
+  EXPECT_FALSE(FindBody(WithoutHips()).neck.has_value());
   motion::Skeleton stubs = Tree({{"root", -1}, {"left", 0}, {"right", 0}});
   stubs.feet = motion::JointPair{1, 2};
   stubs.hips = motion::JointPair{1, 2};

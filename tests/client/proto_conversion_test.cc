@@ -51,6 +51,7 @@ TEST(SynthesizeRequestTest, WeightsKeepTheirOrder) {
   EXPECT_EQ(wire->priority(), v1::PRIORITY_INTERACTIVE);
   EXPECT_EQ(wire->seed(), 0u);
   EXPECT_EQ(wire->variety(), 1);
+  EXPECT_EQ(wire->clean_up(), v1::CLEAN_UP_UNSPECIFIED);
 }
 
 TEST(SynthesizeRequestTest, KeyframesReplaceTheLabelVector) {
@@ -71,6 +72,7 @@ TEST(SynthesizeRequestTest, OptionalFieldsAreCarried) {
   request.partner_direction = motion::Vec3{-1, 0.25f, 0.5f};
   request.seed = 18446744073709551615u;
   request.variety = 0.25f;
+  request.clean_up = false;
   request.chunk_frames = 8;
   request.priority = Priority::kBulk;
   request.model = {"dancer", 3, ""};
@@ -82,11 +84,14 @@ TEST(SynthesizeRequestTest, OptionalFieldsAreCarried) {
   EXPECT_EQ(wire->partner_direction().z(), 0.5f);
   EXPECT_EQ(wire->seed(), 18446744073709551615u);
   EXPECT_EQ(wire->variety(), 0.25f);
+  EXPECT_EQ(wire->clean_up(), v1::CLEAN_UP_OFF);
   EXPECT_EQ(wire->chunk_frames(), 8u);
   EXPECT_EQ(wire->priority(), v1::PRIORITY_BULK);
   EXPECT_EQ(wire->model().name(), "dancer");
   EXPECT_EQ(wire->model().version(), 3u);
 
+  request.clean_up = true;
+  EXPECT_EQ(ToProto(request)->clean_up(), v1::CLEAN_UP_ON);
   request.follower_start = std::vector<motion::Vec3>{{1, 2, 3}, {4, 5, 6}, {7, 8, 9}};
   request.model = {"dancer", std::nullopt, "canary"};
   wire = ToProto(request);

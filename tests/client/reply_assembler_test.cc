@@ -75,6 +75,7 @@ TEST_F(ReplyAssemblerTest, GathersAGoodReply) {
   EXPECT_EQ(result.request_id, "request-1");
   EXPECT_EQ(result.seed, 18446744073709551615u);
   EXPECT_EQ(result.variety, 0.5F);
+  EXPECT_TRUE(result.cleaned_up);
   EXPECT_FALSE(result.unfamiliarity.has_value());
   EXPECT_EQ(result.window_count, 2);
   EXPECT_EQ(result.timings.queue, absl::Milliseconds(250));

@@ -134,6 +134,20 @@ class ClientServerTest(unittest.TestCase):
             for p, q in zip(a, b):
                 self.assertLess(distance(p, q), 1e-4)
 
+    def test_clean_up_is_the_callers_choice(self):
+        frames, said = {}, {}
+        for choice in ("auto", "on", "off"):
+            out = self.out(f"{choice}.json")
+            result = self.good(tools.sample("kick"), "kick=1", out=out,
+                               more=("--json", "--clean-up", choice))
+            frames[choice], said[choice] = Pair(out).follower, json.loads(result.stdout)["cleaned_up"]
+        self.assertEqual(said, {"auto": True, "on": True, "off": False})  # the default model samples
+        apart = max(distance(p, q) for a, b in zip(frames["on"], frames["off"]) for p, q in zip(a, b))
+        self.assertGreater(apart, 1e-3)
+        for a, b in zip(frames["auto"], frames["on"]):
+            for p, q in zip(a, b):
+                self.assertLess(distance(p, q), 1e-4)
+
     def test_every_format_holds_the_same_follower(self):
         out = {extension: self.out(extension) for extension in ("json", "csv", "npy", "html", "bvh")}
         more = [flag for path in list(out.values())[1:] for flag in ("--out", path)]

@@ -166,6 +166,41 @@ TEST(CleanUpStage, IsForModelsThatSampleUnlessTheWindowSays) {
   EXPECT_EQ(RunOne(*Model(Sampling()), window), plain);
 }
 
+TEST(CleanUpStage, WindowsOfABatchHaveTheirOwnChoices) {
+  const auto model = Model(Sampling());
+  SynthesisWindow told = Leaning(), told_not = Leaning();
+  told.clean_up = true;
+  told_not.clean_up = false;
+  const motion::Poses cleaned = RunOne(*model, told), plain = RunOne(*model, told_not);
+  ASSERT_NE(cleaned, plain);
+  const SynthesisWindow unsaid = Leaning();
+  const auto batch = model->Synthesize({&told_not, &told, &unsaid, &told_not});
+  ASSERT_EQ(batch.size(), 4u);
+  EXPECT_EQ(*batch[0], plain);
+  EXPECT_EQ(*batch[1], cleaned);
+  EXPECT_EQ(*batch[2], cleaned);
+  EXPECT_EQ(*batch[3], plain);
+}
+
+TEST(CleanUpStage, AllWindowsOfAClipDoAsItsRequestSays) {
+  for (const std::optional<bool> wanted : {std::optional<bool>(), {true}, {false}}) {
+    ClipRequest request{SwayingMotion(120, 15),
+                        15,
+                        LabelTrack(std::vector<float>(6, 0)),
+                        std::nullopt,
+                        std::nullopt,
+                        {},
+                        wanted};
+    ClipSynthesis clip(FakeDescription(), std::move(request));
+    ASSERT_GT(clip.window_count(), 1);
+    while (clip.HasNextWindow()) {
+      const SynthesisWindow window = clip.NextWindow();
+      EXPECT_EQ(window.clean_up, wanted);
+      clip.Accept(window.leader);
+    }
+  }
+}
+
 TEST(CleanUpStage, LeavesTheStartAndTheSettledFrames) {
   PipelineOptions off;
   off.clean_up = false;

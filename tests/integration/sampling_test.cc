@@ -1,4 +1,5 @@
-// Seed and variety from the client library to a model that samples, over the wire and back.
+// Seed, variety and clean-up from the client library to a model that samples, over the wire and
+// back.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -79,6 +80,14 @@ TEST_F(ClientSamplingTest, ARequestThatSaysNothingIsSeedZeroAndVarietyOne) {
   EXPECT_EQ(plain->seed, 0u);
   EXPECT_EQ(plain->variety, 1);
   EXPECT_EQ(plain->pair.follower.poses, Ask(0, 1)->pair.follower.poses);
+}
+
+TEST_F(ClientSamplingTest, TheResultSaysWhetherItWasCleanedUp) {
+  EXPECT_TRUE(Ask()->cleaned_up);  // its model samples
+  request_.clean_up = false;
+  EXPECT_FALSE(Ask()->cleaned_up);
+  request_.clean_up = true;
+  EXPECT_TRUE(Ask()->cleaned_up);
 }
 
 TEST_F(ClientSamplingTest, TooMuchVarietyIsRefusedByName) {

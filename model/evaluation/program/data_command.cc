@@ -5,6 +5,7 @@
 #include "absl/strings/str_cat.h"
 #include "model/dataset/dataset.h"
 #include "model/evaluation/program/commands.h"
+#include "model/evaluation/report/clean_up_table.h"
 #include "model/evaluation/report/data_tables.h"
 #include "model/evaluation/report/result_section.h"
 
@@ -29,7 +30,8 @@ absl::Status Run(const Arguments& arguments) {
       "levelled set by set as they are read; figures in SBU's raw unit are taken in the world as "
       "captured."};
   section.tables = {report::LeanTable(*dataset), report::FloorTable(*dataset),
-                    report::NoiseTable(*dataset), report::LeaderTable(*dataset)};
+                    report::NoiseTable(*dataset), report::LeaderTable(*dataset),
+                    report::CleanUpTable(*dataset)};
   section.settings = {
       {"data", absl::StrCat(dataset->name, ", ", dataset->sequences.size(), " sequences")}};
   section.command = "duet-eval data --data DIR";
@@ -42,8 +44,9 @@ absl::Status Run(const Arguments& arguments) {
 
 void AddDataCommand(CLI::App* app, ChosenCommand* chosen) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app->add_subcommand(
-      "data", "Tilt, noise and leaders of a data set, before and after reading");
+  CLI::App* command = app->add_subcommand("data",
+                                          "Tilt, noise and leaders of a data set, before and after "
+                                          "reading, and what clean-up does to it");
   command->add_option("--data", arguments->data, "folder of captures (docs/datasets.md)")
       ->required();
   command->add_option("--out", arguments->out, "folder of results, for duet-eval report");

@@ -72,7 +72,8 @@ TEST_F(ArgumentsTest, HelpShowsDefaults) {
   for (const char* shown :
        {"--server HOST:PORT=localhost:50051", "--timeout SECONDS=120",
         "--leader-side left|right=left", "--priority bulk|interactive=interactive", "else left)",
-        "--seed SEED=0", "--variety VARIETY=1", "--samples COUNT=1"}) {
+        "--clean-up auto|off|on=auto", "--seed SEED=0", "--variety VARIETY=1",
+        "--samples COUNT=1"}) {
     EXPECT_THAT(help, HasSubstr(shown));
   }
 }
@@ -95,6 +96,7 @@ TEST_F(ArgumentsTest, SynthesizeHasDefaults) {
   EXPECT_EQ(arguments.priority, Priority::kInteractive);
   EXPECT_EQ(arguments.seed, 0u);
   EXPECT_EQ(arguments.variety, 1);
+  EXPECT_EQ(arguments.clean_up, std::nullopt);
   EXPECT_EQ(arguments.samples, 1);
   EXPECT_EQ(arguments.input.frame_rate_hz, std::nullopt);
   EXPECT_EQ(arguments.input.unit, std::nullopt);
@@ -132,6 +134,8 @@ TEST_F(ArgumentsTest, EveryFlagIsRead) {
                                               "0.25",
                                               "--samples",
                                               "6",
+                                              "--clean-up",
+                                              "off",
                                               "--priority",
                                               "bulk",
                                               "--chunk-frames",
@@ -163,6 +167,7 @@ TEST_F(ArgumentsTest, EveryFlagIsRead) {
   EXPECT_EQ(arguments.seed, 18446744073709551610u);
   EXPECT_EQ(arguments.variety, 0.25f);
   EXPECT_EQ(arguments.samples, 6);
+  EXPECT_EQ(arguments.clean_up, false);
   EXPECT_EQ(arguments.priority, Priority::kBulk);
   EXPECT_EQ(arguments.chunk_frames, 8);
   EXPECT_EQ(arguments.request_id, "job-7");

@@ -68,6 +68,7 @@ absl::StatusOr<SynthesisResult> Follow(const SynthesisRequest& request) {
   result.request_id = "request-1";
   result.seed = request.seed;
   result.variety = request.variety;
+  result.cleaned_up = request.clean_up.value_or(false);
   result.timings.first_chunk = absl::Milliseconds(12);
   result.timings.total = absl::Milliseconds(34);
   return result;
@@ -206,7 +207,9 @@ TEST_F(ProgramTest, SendsWhatTheFlagsSay) {
                                      "--seed",
                                      "7",
                                      "--variety",
-                                     "0.25"}),
+                                     "0.25",
+                                     "--clean-up",
+                                     "on"}),
             0)
       << err_.str();
   ASSERT_EQ(sent.weights.size(), 2u);
@@ -219,6 +222,7 @@ TEST_F(ProgramTest, SendsWhatTheFlagsSay) {
   EXPECT_EQ(sent.partner_direction, (motion::Vec3{1, 0, -1}));
   EXPECT_EQ(sent.seed, 7u);
   EXPECT_EQ(sent.variety, 0.25f);
+  EXPECT_EQ(sent.clean_up, true);
   EXPECT_EQ(sent.chunk_frames, 8);
   EXPECT_EQ(sent.request_id, "job-7");
   EXPECT_EQ(sent.leader.frame_rate_hz, 30);
@@ -256,6 +260,9 @@ TEST_F(ProgramTest, SummaryForPeople) {
   EXPECT_THAT(out_.str(), HasSubstr("reaction  kick 1, hug 0.5\n"));
   EXPECT_THAT(out_.str(), HasSubstr("follower  from sbu@1 in 34 ms, first frames after 12 ms"));
   EXPECT_THAT(out_.str(), HasSubstr("wrote     " + Path("pair.html") + "\n"));
+  EXPECT_THAT(out_.str(), Not(HasSubstr("cleaned up")));
+  ASSERT_EQ(Synthesize("pair.html", {"--clean-up", "on"}), 0);
+  EXPECT_THAT(out_.str(), HasSubstr("          cleaned up\n"));
 }
 
 TEST_F(ProgramTest, SummaryForPrograms) {
@@ -266,6 +273,7 @@ TEST_F(ProgramTest, SummaryForPrograms) {
   EXPECT_EQ(json["weights"]["kick"], 1);
   EXPECT_EQ(json["seed"], 0);
   EXPECT_EQ(json["variety"], 1);
+  EXPECT_EQ(json["cleaned_up"], false);
   EXPECT_EQ(json["seconds"]["total"], 0.034);
   EXPECT_EQ(json["files"], std::vector<std::string>{Path("pair.html")});
 }

@@ -94,7 +94,8 @@ TEST(ParseCommandLineTest, ReadsEveryFlag) {
       "--listen a:1 --metrics-listen off --model-repository /models --default-model sbu "
       "--version-label sbu:stable=3 --version-label sbu:canary=4 --no-reflection --workers 2 "
       "--threads-per-worker 3 --max-calls 4 --max-queued-windows 5 --max-request-bytes 6000 "
-      "--max-transport-bytes 20000 --buffered-frames 7 --drain-seconds 8 --grace-seconds 9",
+      "--max-transport-bytes 20000 --buffered-frames 7 --drain-seconds 8 --grace-seconds 9 "
+      "--clean-up off",
       ' '));
   ASSERT_THAT(line, IsOk());
   const absl::StatusOr<v1::ServerConfig> expected = ParseConfigText(
@@ -102,7 +103,8 @@ TEST(ParseCommandLineTest, ReadsEveryFlag) {
          version_labels { model: "sbu" label: "stable" version: 3 }
          version_labels { model: "sbu" label: "canary" version: 4 }
          reflection: false workers: 2 threads_per_worker: 3 max_calls: 4 max_queued_windows: 5
-         max_request_bytes: 6000 max_transport_bytes: 20000 buffered_frames: 7 drain_seconds: 8 grace_seconds: 9)",
+         max_request_bytes: 6000 max_transport_bytes: 20000 buffered_frames: 7 drain_seconds: 8 grace_seconds: 9
+         clean_up: CLEAN_UP_POLICY_OFF)",
       false);
   ASSERT_THAT(expected, IsOk());
   EXPECT_TRUE(google::protobuf::util::MessageDifferencer::Equals(line->config, *expected))
@@ -112,6 +114,14 @@ TEST(ParseCommandLineTest, ReadsEveryFlag) {
   std::vector<const google::protobuf::FieldDescriptor*> set;
   reflection->ListFields(line->config, &set);
   EXPECT_EQ(static_cast<int>(set.size()), v1::ServerConfig::descriptor()->field_count());
+}
+
+TEST(ParseCommandLineTest, CleanUpIsOneOfThreeNames) {
+  EXPECT_EQ(Parse({"--clean-up", "auto"})->config.clean_up(), v1::CLEAN_UP_POLICY_AUTO);
+  EXPECT_EQ(Parse({"--clean-up", "on"})->config.clean_up(), v1::CLEAN_UP_POLICY_ON);
+  EXPECT_THAT(
+      Parse({"--clean-up", "maybe"}),
+      StatusIs(kInvalidArgument, HasSubstr("--clean-up: is maybe, wanted auto, on or off")));
 }
 
 TEST(ParseCommandLineTest, HelpNamesEveryFieldOfTheSchema) {

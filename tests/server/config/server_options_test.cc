@@ -55,6 +55,7 @@ TEST(ServerOptionsTest, TakesOverEveryField) {
   config.set_buffered_frames(7);
   config.set_drain_seconds(8.5);
   config.set_grace_seconds(9);
+  config.set_clean_up(v1::CLEAN_UP_POLICY_OFF);
   const absl::StatusOr<ServerOptions> options = ToOptions(config, 4);
   ASSERT_THAT(options, IsOk());
   EXPECT_EQ(ToString(options->listen), "[::1]:1");
@@ -75,6 +76,16 @@ TEST(ServerOptionsTest, TakesOverEveryField) {
   EXPECT_EQ(options->buffered_frames, 7);
   EXPECT_EQ(options->drain_seconds, 8.5);
   EXPECT_EQ(options->grace_seconds, 9);
+  EXPECT_EQ(options->clean_up, false);
+}
+
+TEST(ServerOptionsTest, CleansUpAsTheModelHasItUnlessToldOtherwise) {
+  v1::ServerConfig config;
+  EXPECT_EQ(ToOptions(config, 4)->clean_up, std::nullopt);
+  config.set_clean_up(v1::CLEAN_UP_POLICY_AUTO);
+  EXPECT_EQ(ToOptions(config, 4)->clean_up, std::nullopt);
+  config.set_clean_up(v1::CLEAN_UP_POLICY_ON);
+  EXPECT_EQ(ToOptions(config, 4)->clean_up, true);
 }
 
 TEST(ServerOptionsTest, AnEmptyMetricsAddressTurnsMetricsOffAsWell) {
@@ -136,6 +147,10 @@ INSTANTIATE_TEST_SUITE_P(
                   [](v1::ServerConfig& c) {
                     c.set_grace_seconds(std::numeric_limits<double>::quiet_NaN());
                   }},
+        BadConfig{"clean_up: is 0, wanted CLEAN_UP_POLICY_AUTO",
+                  [](v1::ServerConfig& c) { c.set_clean_up(v1::CLEAN_UP_POLICY_UNSPECIFIED); }},
+        BadConfig{"clean_up: is 9, wanted CLEAN_UP_POLICY_AUTO",
+                  [](v1::ServerConfig& c) { c.set_clean_up(static_cast<v1::CleanUpPolicy>(9)); }},
         BadConfig{"version_labels[0]: is model \"\"",
                   [](v1::ServerConfig& c) { c.add_version_labels(); }}));
 

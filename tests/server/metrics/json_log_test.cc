@@ -36,6 +36,7 @@ CallRecord Record() {
   record.priority = "bulk";
   record.seed = 18446744073709551615u;
   record.variety = 0.5;
+  record.clean_up = true;
   record.unfamiliarity = 1.25;
   record.frames = 300;
   record.chunks = 10;
@@ -70,6 +71,7 @@ TEST_F(JsonLogTest, ACallIsOneLineOfJson) {
   EXPECT_EQ(line["priority"], "bulk");
   EXPECT_EQ(line["seed"], 18446744073709551615u);
   EXPECT_EQ(line["variety"], 0.5);
+  EXPECT_EQ(line["clean_up"], true);
   EXPECT_EQ(line["unfamiliarity"], 1.25);
   EXPECT_EQ(line["frames"], 300);
   EXPECT_EQ(line["chunks"], 10);
@@ -85,8 +87,9 @@ TEST_F(JsonLogTest, LeavesOutWhatACallDoesNotHave) {
   record.method = {"duet.v1.MotionSynthesis", "ListModels", "unary"};
   log_.CallFinished(record);
   const json line = sink_.Last();
-  for (const char* field : {"model", "version", "frames", "first_chunk_seconds", "traceparent",
-                            "message", "cause", "priority", "seed", "variety", "unfamiliarity"}) {
+  for (const char* field :
+       {"model", "version", "frames", "first_chunk_seconds", "traceparent", "message", "cause",
+        "priority", "seed", "variety", "clean_up", "unfamiliarity"}) {
     EXPECT_FALSE(line.contains(field)) << field;
   }
 }

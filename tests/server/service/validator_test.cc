@@ -331,6 +331,8 @@ INSTANTIATE_TEST_SUITE_P(
                 "is nan, wanted a finite value in [0, 2]"},
         Spoiled{"infinite_variety", [](Request& r) { r.set_variety(kInfinity); }, "variety",
                 "is inf, wanted a finite value in [0, 2]"},
+        Spoiled{"unknown_clean_up", [](Request& r) { r.set_clean_up(static_cast<v1::CleanUp>(9)); },
+                "clean_up", "is 9, wanted CLEAN_UP_ON, CLEAN_UP_OFF or no value"},
         Spoiled{"no_direction", [](Request& r) { SetDirection(r, 0, 0, 0); }, "partner_direction",
                 "is (0, 0, 0), wanted a direction"},
         Spoiled{"vertical_direction", [](Request& r) { SetDirection(r, 0, 3, 0); },
@@ -432,6 +434,7 @@ TEST(ValidateRequestTest, FillsInDefaults) {
   EXPECT_FALSE(request->clip.partner_direction.has_value());
   EXPECT_EQ(request->clip.sampling.seed, 0u);
   EXPECT_EQ(request->clip.sampling.variety, 1);
+  EXPECT_EQ(request->clean_up, std::nullopt);
   EXPECT_EQ(request->reply.joint_names, FakeDescription().skeleton.joint_names);
 }
 
@@ -448,6 +451,14 @@ TEST(ValidateRequestTest, TakesOverWhatIsGiven) {
   EXPECT_EQ(validated->clip.frame_rate_hz, 15);
   EXPECT_EQ(validated->clip.sampling.seed, std::numeric_limits<uint64_t>::max());
   EXPECT_EQ(validated->clip.sampling.variety, 0);
+}
+
+TEST(ValidateRequestTest, TakesOverWhetherToCleanUp) {
+  v1::SynthesizeRequest request = SampleRequest();
+  request.set_clean_up(v1::CLEAN_UP_ON);
+  EXPECT_EQ(Validate(request)->clean_up, true);
+  request.set_clean_up(v1::CLEAN_UP_OFF);
+  EXPECT_EQ(Validate(request)->clean_up, false);
 }
 
 // Writes the leader's joints in reverse order.

@@ -34,6 +34,7 @@ RunningService::RunningService(Setup setup) : admission_(setup.max_calls) {
   parts.observers = {&calls_};
   parts.limits = setup.limits;
   parts.buffered_frames = setup.buffered_frames;
+  parts.clean_up = setup.clean_up;
   service_ = std::make_unique<server::service::MotionSynthesisService>(parts);
   absl::StatusOr<server::lifecycle::GrpcServer> grpc = server::lifecycle::StartGrpcServer(
       {{"127.0.0.1", 0}, false, setup.limits.max_request_bytes, std::size_t{512} << 20, 16},

@@ -5,6 +5,7 @@
 #include <grpcpp/client_context.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,7 @@ class RunningService {
     std::size_t max_calls = 16;
     server::service::RequestLimits limits;
     int buffered_frames = 0;
+    std::optional<bool> clean_up;  // see ServiceParts
   };
 
   explicit RunningService(Setup setup);

@@ -1,0 +1,197 @@
+#include "model/cleanup/joint_ranges.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace duet::cleanup {
+namespace {
+
+using motion::Vec3;
+
+constexpr float kRadiansPerDegree = 0.01745329252f;
+// Below this, metres or as a sine, a vector tells no direction.
+constexpr float kNoDirection = 1e-5f;
+// An arm at rest points this far forwards of straight down: half of how much farther shoulders turn
+// it outwards than inwards, degrees.
+constexpr float kArmRestDegrees = 17.5f;
+// Cosines of 110 and 150 degrees from rest, between which a limb's reference fades out.
+constexpr float kFadesFrom = -0.342f, kFadesTo = -0.866f;
+
+float Float(double value) { return static_cast<float>(value); }
+
+float Within(const SoftRange& range, float degrees, float slack = 0) {
+  return SoftLimit(degrees, Float(range.free) + slack, Float(range.most) + slack);
+}
+
+// A body's own directions, each of length 1 and at right angles.
+struct Axes {
+  Vec3 up, forward;
+};
+
+// `across` points to the body's left.
+std::optional<Axes> AxesOf(Vec3 trunk, Vec3 across) {
+  const Vec3 forward = Cross(across, trunk);
+  const float height = Norm(trunk), area = Norm(forward);
+  if (height < kNoDirection || area < kNoDirection * height) return std::nullopt;
+  return Axes{trunk / height, forward / area};
+}
+
+// Which way a limb hangs at rest and bends then, and how far from there it may turn about itself.
+struct Hinge {
+  Vec3 rest, bend;
+  float turn_degrees = 0;
+};
+
+Hinge KneeOf(const Axes& axes, const JointRangeOptions& options) {
+  return {-axes.up, -axes.forward, Float(options.leg_turn)};
+}
+
+Hinge ElbowOf(const Axes& axes, const JointRangeOptions& options) {
+  const float c = std::cos(kArmRestDegrees * kRadiansPerDegree);
+  const float s = std::sin(kArmRestDegrees * kRadiansPerDegree);
+  return {axes.forward * s - axes.up * c, axes.forward * c + axes.up * s, Float(options.arm_turn)};
+}
+
+// `v` turned the shortest way that takes `from` to `to`, both of length 1 and not opposite.
+Vec3 Swing(Vec3 from, Vec3 to, Vec3 v) {
+  const Vec3 axis = Cross(from, to);
+  const float cosine = Dot(from, to);
+  return v * cosine + Cross(axis, v) + axis * (Dot(axis, v) / (1 + cosine));
+}
+
+// How a limb is bent: by the length of (ahead, aside) in degrees, straight at (0, 0), ahead the way
+// it is made for.
+struct Bend {
+  float ahead = 0, aside = 0;
+};
+
+Bend Limited(Bend bend, float turn_degrees, const JointRangeOptions& options) {
+  const float angle = std::hypot(bend.ahead, bend.aside);
+  const float kept = Within(options.folded, angle) / angle;
+  bend = {bend.ahead * kept, bend.aside * kept};
+  const bool turns_beyond = turn_degrees > 90;
+  const float slope =
+      std::tan((turns_beyond ? turn_degrees - 90 : turn_degrees) * kRadiansPerDegree);
+  const float slack = turns_beyond ? std::abs(bend.aside) * slope : 0;
+  bend.ahead = -Within(options.backwards, -bend.ahead, slack);
+  if (turns_beyond) return bend;
+  const float aside =
+      Within(options.knee_aside, std::abs(bend.aside), std::max(0.0f, bend.ahead) * slope);
+  bend.aside = std::copysign(aside, bend.aside);
+  return bend;
+}
+
+// The share of a correction that a limb gets whose direction has this cosine with its rest.
+float Certainty(float cosine) { return SmoothStep((cosine - kFadesTo) / (kFadesFrom - kFadesTo)); }
+
+// Where the outer bone, of length 1, ought to point; `inner` and `outer` are of length 1.
+Vec3 RightDirection(Vec3 inner, Vec3 outer, const Hinge& hinge, const JointRangeOptions& options,
+                    float share) {
+  share *= Certainty(Dot(hinge.rest, inner));
+  const float cosine = Dot(inner, outer);
+  const Vec3 across = outer - inner * cosine;
+  const float sine = Norm(across);
+  if (share == 0 || sine < kNoDirection) return outer;
+  const Vec3 ahead = Swing(hinge.rest, inner, hinge.bend), aside = Cross(inner, ahead);
+  const float degrees = std::atan2(sine, cosine) / kRadiansPerDegree;
+  const Bend bend{Dot(across, ahead) / sine * degrees, Dot(across, aside) / sine * degrees};
+  const Bend limited = Limited(bend, hinge.turn_degrees, options);
+  if (limited.ahead == bend.ahead && limited.aside == bend.aside) return outer;
+  const Bend now{bend.ahead + (limited.ahead - bend.ahead) * share,
+                 bend.aside + (limited.aside - bend.aside) * share};
+  const float angle = std::hypot(now.ahead, now.aside);
+  if (angle < kNoDirection) return inner;
+  const Vec3 way = (ahead * now.ahead + aside * now.aside) / angle;
+  return inner * std::cos(angle * kRadiansPerDegree) + way * std::sin(angle * kRadiansPerDegree);
+}
+
+// Bends a limb as far as it may, then turns it as a whole so that its end is where it was seen from
+// its upper joint. True when something moved.
+bool LimitLimb(const Limb& limb, const Hinge& hinge, const JointRangeOptions& options, float share,
+               absl::Span<Vec3> pose) {
+  const Vec3 upper = pose[static_cast<std::size_t>(limb.upper)];
+  Vec3& middle = pose[static_cast<std::size_t>(limb.middle)];
+  Vec3& end = pose[static_cast<std::size_t>(limb.end)];
+  const float thigh = Distance(upper, middle), shin = Distance(middle, end);
+  const float reach = Distance(upper, end);
+  if (thigh < kNoDirection || shin < kNoDirection || reach < kNoDirection) return false;
+  const Vec3 inner = (middle - upper) / thigh, outer = (end - middle) / shin;
+  const Vec3 right = RightDirection(inner, outer, hinge, options, share);
+  if (right == outer) return false;
+  const Vec3 bent = inner * thigh + right * shin;
+  const float bent_reach = Norm(bent);
+  if (bent_reach < kNoDirection) return false;
+  const Vec3 from = bent / bent_reach, to = (end - upper) / reach;
+  const Vec3 moved = to * bent_reach + upper - end;
+  middle = upper + Swing(from, to, inner) * thigh;
+  for (const int joint : limb.beyond) pose[static_cast<std::size_t>(joint)] += moved;
+  end += moved;
+  return true;
+}
+
+// Turning a limb turns what it is judged by: the second time little is left to do.
+void LimitLimbs(const std::vector<Limb>& limbs, const Hinge& hinge,
+                const JointRangeOptions& options, float share, absl::Span<Vec3> pose) {
+  for (const Limb& limb : limbs) {
+    if (LimitLimb(limb, hinge, options, share, pose)) LimitLimb(limb, hinge, options, share, pose);
+  }
+}
+
+void LimitNeck(const Neck& neck, Vec3 up, const JointRangeOptions& options, float share,
+               absl::Span<Vec3> pose) {
+  const Vec3 base = pose[static_cast<std::size_t>(neck.base)];
+  const Vec3 head = pose[static_cast<std::size_t>(neck.head)] - base;
+  const Vec3 axis = Cross(head, up);
+  const float sine = Norm(axis);
+  const float degrees = std::atan2(sine, Dot(head, up)) / kRadiansPerDegree;
+  const float excess = degrees - Within(options.neck, degrees);
+  if (excess <= 0 || sine < kNoDirection) return;
+  for (const int joint : neck.branch) {
+    Vec3& position = pose[static_cast<std::size_t>(joint)];
+    position = base + RotateAbout(position - base, axis / sine, excess * share * kRadiansPerDegree);
+  }
+}
+
+// The way from one arm's shoulder to the other's, in every frame, from the right one to the left
+// one: which is which tell the hips, over all frames. Shapes: returns [frames].
+std::vector<Vec3> ShouldersToTheLeft(const motion::JointPair& hips, const std::vector<Limb>& arms,
+                                     const motion::Poses& poses) {
+  std::vector<Vec3> across;
+  float agreement = 0;
+  for (int t = 0; t < poses.frame_count(); ++t) {
+    across.push_back(poses.at(t, arms[0].upper) - poses.at(t, arms[1].upper));
+    agreement += Dot(across.back(), poses.at(t, hips.left) - poses.at(t, hips.right));
+  }
+  if (agreement < 0) {
+    for (Vec3& way : across) way = -way;
+  }
+  return across;
+}
+
+}  // namespace
+
+void KeepJointRanges(const motion::Skeleton& skeleton, const Body& body,
+                     const JointRangeOptions& options, const Timing& timing, motion::Poses* poses) {
+  if (!skeleton.hips || !body.chest) return;
+  std::vector<Vec3> shoulders;
+  if (body.arms.size() == 2) shoulders = ShouldersToTheLeft(*skeleton.hips, body.arms, *poses);
+  for (int t = timing.settled; t < poses->frame_count(); ++t) {
+    const float share = EaseIn(timing, t);
+    const Vec3 left = poses->at(t, skeleton.hips->left), right = poses->at(t, skeleton.hips->right);
+    const Vec3 trunk = poses->at(t, *body.chest) - Lerp(left, right, 0.5f);
+    const absl::Span<Vec3> pose = (*poses)[t];
+    if (const auto axes = AxesOf(trunk, left - right)) {
+      LimitLimbs(body.legs, KneeOf(*axes, options), options, share, pose);
+      if (body.neck) LimitNeck(*body.neck, axes->up, options, share, pose);
+    }
+    if (shoulders.empty()) continue;
+    if (const auto axes = AxesOf(trunk, shoulders[static_cast<std::size_t>(t)])) {
+      LimitLimbs(body.arms, ElbowOf(*axes, options), options, share, pose);
+    }
+  }
+}
+
+}  // namespace duet::cleanup
