@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -94,6 +95,14 @@ void AppendLittle(std::string* out, uint64_t value, int bytes) {
   for (int i = 0; i < bytes; ++i) out->push_back(static_cast<char>(value >> (8 * i) & 0xff));
 }
 
+uint64_t FromLittle(absl::string_view bytes, size_t at, size_t count) {
+  uint64_t value = 0;
+  for (size_t i = count; i > 0; --i) value = value << 8 | static_cast<unsigned char>(bytes[at + i - 1]);
+  return value;
+}
+
+constexpr uint64_t kZipMember = 0x04034b50;
+
 class ZipArchive final : public Archive {
  public:
   explicit ZipArchive(DurableFile* file) : file_(file) {}
@@ -101,7 +110,7 @@ class ZipArchive final : public Archive {
   absl::Status Add(const std::string& path, absl::string_view content) override {
     Member member{path, content.size(), Crc(content), offset_};
     std::string header;
-    AppendLittle(&header, 0x04034b50, 4);
+    AppendLittle(&header, kZipMember, 4);
     AppendFields(member, &header);
     header += path;
     offset_ += header.size() + content.size();
@@ -171,6 +180,60 @@ class ZipArchive final : public Archive {
 };
 
 }  // namespace
+
+ArchiveReader::ArchiveReader(const std::filesystem::path& path)
+    : path_(path), file_(path, std::ios::binary) {}
+
+absl::Status ArchiveReader::Damaged() const {
+  return absl::DataLossError(absl::StrCat(path_.string(), ": is damaged"));
+}
+
+bool ArchiveReader::Read(size_t bytes, std::string* out) {
+  // No member is larger than the file that it is in.
+  std::error_code error;
+  if (bytes > std::filesystem::file_size(path_, error) || error) return false;
+  out->resize(bytes);
+  return static_cast<bool>(file_.read(out->data(), static_cast<std::streamsize>(bytes)));
+}
+
+absl::StatusOr<std::optional<ArchiveMember>> ArchiveReader::Next() {
+  return path_.extension() == ".tar" ? NextOfTar() : NextOfZip();
+}
+
+absl::StatusOr<std::optional<ArchiveMember>> ArchiveReader::NextOfTar() {
+  ArchiveMember member;
+  for (std::string header, padding; Read(kBlock, &header);) {
+    if (header[0] == '\0') return std::optional<ArchiveMember>();
+    uint64_t size = 0;
+    for (const char digit : header.substr(124, 11)) {
+      size = size * 8 + static_cast<uint64_t>(digit - '0');
+    }
+    const size_t beyond = (kBlock - size % kBlock) % kBlock;
+    if (!Read(size, &member.content) || !Read(beyond, &padding)) return Damaged();
+    const bool is_pax = header[156] == 'x';
+    if (is_pax) {
+      const size_t name = member.content.find('=') + 1;
+      member.path = member.content.substr(name, member.content.size() - name - 1);
+      continue;
+    }
+    if (member.path.empty()) member.path = std::string(header.substr(0, kUstarName).c_str());
+    return std::optional<ArchiveMember>(std::move(member));
+  }
+  return Damaged();
+}
+
+absl::StatusOr<std::optional<ArchiveMember>> ArchiveReader::NextOfZip() {
+  std::string header;
+  if (!Read(4, &header)) return Damaged();
+  if (FromLittle(header, 0, 4) != kZipMember) return std::optional<ArchiveMember>();
+  if (!Read(26, &header)) return Damaged();
+  ArchiveMember member;
+  if (!Read(FromLittle(header, 22, 2), &member.path) ||
+      !Read(FromLittle(header, 14, 4), &member.content)) {
+    return Damaged();
+  }
+  return std::optional<ArchiveMember>(std::move(member));
+}
 
 std::unique_ptr<Archive> MakeArchive(Packing packing, DurableFile* file) {
   if (packing == Packing::kTar) return std::make_unique<TarArchive>(file);

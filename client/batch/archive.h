@@ -1,10 +1,14 @@
 #ifndef DUET_CLIENT_BATCH_ARCHIVE_H_
 #define DUET_CLIENT_BATCH_ARCHIVE_H_
 
+#include <filesystem>
+#include <fstream>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "absl/status/status.h"
+#include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
 #include "client/batch/durable_file.h"
 #include "client/batch/recipe.h"
@@ -30,6 +34,29 @@ class Archive {
 // Source: PKZIP application note 6.3.3, members stored as they are.
 // `file` outlives the archive.
 std::unique_ptr<Archive> MakeArchive(Packing packing, DurableFile* file);
+
+// A member of a shard.
+struct ArchiveMember {
+  std::string path;
+  std::string content;
+};
+
+// Reads what MakeArchive wrote, member after member.
+class ArchiveReader {
+ public:
+  explicit ArchiveReader(const std::filesystem::path& path);
+  // The next member; nothing at the end. DATA_LOSS for what MakeArchive did not write.
+  absl::StatusOr<std::optional<ArchiveMember>> Next();
+
+ private:
+  absl::StatusOr<std::optional<ArchiveMember>> NextOfTar();
+  absl::StatusOr<std::optional<ArchiveMember>> NextOfZip();
+  bool Read(size_t bytes, std::string* out);
+  absl::Status Damaged() const;
+
+  std::filesystem::path path_;
+  std::ifstream file_;
+};
 
 }  // namespace duet::client::batch
 

@@ -9,11 +9,14 @@
 #include "client/batch/durable_file.h"
 #include "client/batch/packing.h"
 #include "client/batch/record.h"
+#include "model/base/file.h"
 
 namespace duet::client::batch {
 namespace {
 
 using nlohmann::ordered_json;
+
+constexpr size_t kMaxSummaryBytes = size_t{1} << 20;
 
 constexpr const char* kFields[] = {"item",      "id",      "name",       "leader", "leader_sha256",
                                    "side",      "reaction", "labels",    "model",  "seed",
@@ -152,17 +155,19 @@ class IndexWriter {
   SetCounts counts_;
 };
 
-std::string SummaryJson(const JobIdentity& identity, const SetCounts& counts, int64_t planned) {
+std::string SummaryJson(const JobIdentity& identity, const SetCounts& counts,
+                        const PlannedItems& planned) {
   ordered_json models = ordered_json::array();
   for (const ModelChoice& model : identity.models) {
     models.push_back(absl::StrCat(model.name, "@", model.version.value_or(0)));
   }
   const ordered_json summary = {
-      {"planned", planned},
+      {"planned", planned.count},
+      {"whole_plan", planned.whole},
       {"done", counts.done},
       {"rejected", counts.rejected},
       {"failed", counts.failed},
-      {"missing", planned - counts.done - counts.rejected - counts.failed},
+      {"missing", planned.count - counts.done - counts.rejected - counts.failed},
       {"bytes", counts.bytes},
       {"models", models},
       {"recipe_sha256", identity.recipe_digest},
@@ -173,7 +178,8 @@ std::string SummaryJson(const JobIdentity& identity, const SetCounts& counts, in
 }  // namespace
 
 absl::StatusOr<SetCounts> WriteIndex(const JournalReader& journal, const JobIdentity& identity,
-                                     int64_t planned, const std::filesystem::path& temporary,
+                                     const PlannedItems& planned,
+                                     const std::filesystem::path& temporary,
                                      const std::filesystem::path& out) {
   IndexWriter writer(identity, temporary);
   absl::Status status = writer.Open();
@@ -185,6 +191,18 @@ absl::StatusOr<SetCounts> WriteIndex(const JournalReader& journal, const JobIden
   status = ReplaceDurably(out / "summary.json", SummaryJson(identity, writer.counts(), planned));
   if (!status.ok()) return status;
   return writer.counts();
+}
+
+absl::StatusOr<PlannedItems> ReadPlanned(const std::filesystem::path& out) {
+  const std::filesystem::path file = out / "summary.json";
+  const absl::StatusOr<std::string> text = base::ReadFile(file, kMaxSummaryBytes, "a summary");
+  if (!text.ok()) return text.status();
+  const auto summary = nlohmann::json::parse(*text, nullptr, false);
+  for (const char* field : {"planned", "whole_plan", "missing"}) {
+    if (summary.is_object() && summary.contains(field)) continue;
+    return absl::DataLossError(absl::StrCat(file.string(), ": is no summary of duet batch"));
+  }
+  return PlannedItems{summary["planned"], summary["whole_plan"], summary["missing"]};
 }
 
 }  // namespace duet::client::batch

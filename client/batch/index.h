@@ -18,13 +18,23 @@ struct SetCounts {
   uint64_t bytes = 0;
 };
 
+// How many items there should be.
+struct PlannedItems {
+  int64_t count = 0;
+  bool whole = false;   // a run has come to the plan's end: there are no more
+  int64_t missing = 0;  // neither done, rejected nor failed; of what is read alone
+};
+
 // Writes index.jsonl and index.tsv (items that are done), rejected.tsv (those that the filter did
 // not let pass) and summary.json into `out`, in the order of the items and without times: the same
-// for the same journal records, in whatever order these were written. `planned`: how many items
-// there should be.
+// for the same journal records, in whatever order these were written.
 absl::StatusOr<SetCounts> WriteIndex(const JournalReader& journal, const JobIdentity& identity,
-                                     int64_t planned, const std::filesystem::path& temporary,
+                                     const PlannedItems& planned,
+                                     const std::filesystem::path& temporary,
                                      const std::filesystem::path& out);
+
+// What summary.json says of the plan. NOT_FOUND without one, DATA_LOSS for one that cannot be read.
+absl::StatusOr<PlannedItems> ReadPlanned(const std::filesystem::path& out);
 
 }  // namespace duet::client::batch
 

@@ -285,7 +285,7 @@ absl::StatusOr<JobReport> Job::Finish() {
   }
   if (!status.ok()) return status;
   absl::StatusOr<SetCounts> counts =
-      WriteIndex(*journal, identity, report.planned, folder.temporary(), folder.out());
+      WriteIndex(*journal, identity, {report.planned, whole_plan_}, folder.temporary(), folder.out());
   if (!counts.ok()) return counts.status();
   report.set = *counts;
   return report;

@@ -11,10 +11,13 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
 #include "client/batch/job.h"
 #include "client/batch/leader_source.h"
+#include "client/batch/merge.h"
 #include "client/batch/plan.h"
 #include "client/batch/setup.h"
+#include "client/batch/verify.h"
 #include "client/cli/batch_progress.h"
 #include "client/cli/server_options.h"
 #include "client/cli/stop_signals.h"
@@ -275,10 +278,57 @@ absl::StatusOr<ExitCode> Run(const BatchArguments& arguments,
   return code;
 }
 
+absl::StatusOr<ExitCode> RunMerge(const BatchArguments& arguments,
+                                  const ProgramEnvironment& environment) {
+  const absl::StatusOr<batch::MergeReport> report = batch::Merge(arguments.out);
+  if (!report.ok()) return report.status();
+  const bool complete = report->missing.empty();
+  if (arguments.json) {
+    const nlohmann::ordered_json object = {{"planned", report->planned},
+                                           {"missing", report->missing}};
+    *environment.out << object.dump() << "\n";
+    return complete ? kExitDone : kExitRetry;
+  }
+  *environment.out << arguments.out.string() << ": " << report->planned << " items merged\n";
+  if (complete) return kExitDone;
+  *environment.err << "duet: no shard has items " << absl::StrJoin(report->missing, ", ")
+                   << "; run their shards again\n";
+  return kExitRetry;
+}
+
+absl::StatusOr<ExitCode> RunVerify(const BatchArguments& arguments,
+                                   const ProgramEnvironment& environment) {
+  const absl::StatusOr<batch::VerifyReport> report = batch::Verify(arguments.out);
+  if (!report.ok()) return report.status();
+  if (arguments.json) {
+    const nlohmann::ordered_json object = {{"items", report->items},
+                                           {"files", report->files},
+                                           {"missing", report->missing},
+                                           {"problem_count", report->problem_count},
+                                           {"problems", report->problems}};
+    *environment.out << object.dump() << "\n";
+  } else {
+    *environment.out << arguments.out.string() << ": " << report->items << " items, "
+                     << report->files << " files, " << report->problem_count << " problems, "
+                     << report->missing << " items missing\n";
+    for (const std::string& problem : report->problems) *environment.err << problem << "\n";
+  }
+  if (report->problem_count > 0) return kExitBadInput;
+  return report->missing > 0 ? kExitRetry : kExitDone;
+}
+
 }  // namespace
 
 absl::StatusOr<ExitCode> RunBatch(const BatchArguments& arguments,
                                   const ProgramEnvironment& environment) {
+  switch (arguments.action) {
+    case BatchArguments::Action::kMerge:
+      return RunMerge(arguments, environment);
+    case BatchArguments::Action::kVerify:
+      return RunVerify(arguments, environment);
+    case BatchArguments::Action::kRun:
+      break;
+  }
   return Run(arguments, environment);
 }
 

@@ -83,6 +83,11 @@ class Server:
                 serving.put(entry["port"])
         serving.put(None)
 
+    def kill(self):
+        """Ends the server without warning."""
+        self._process.kill()
+        self.stop()
+
     def stop(self):
         """Asks the server to drain; returns its exit code."""
         self._process.terminate()
