@@ -11,7 +11,9 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
+#include "client/batch/estimate.h"
 #include "client/batch/job.h"
 #include "client/batch/leader_source.h"
 #include "client/batch/merge.h"
@@ -231,51 +233,116 @@ absl::StatusOr<ExitCode> RunJob(const BatchArguments& arguments, batch::Job& job
   return CodeOf(*report, running.stopped());
 }
 
-absl::StatusOr<ExitCode> Run(const BatchArguments& arguments,
-                             const ProgramEnvironment& environment) {
-  RunningJob running;
-  const StopSignals signals([&running] { running.Stop(); });
-  const absl::StatusOr<batch::Recipe> recipe =
-      batch::ReadRecipe(arguments.recipe, arguments.overrides);
-  if (!recipe.ok()) return recipe.status();
-  const absl::StatusOr<batch::Shard> shard = ShardOf(arguments);
-  if (!shard.ok()) return shard.status();
-  batch::JobFolder folder(ShardFolder(arguments.out, *shard));
-  const batch::JobIdentity wanted = IdentityOf(*recipe, *shard);
-  batch::JobIdentity begun;
-  absl::Status status = folder.Open(wanted, &begun);
-  if (!status.ok()) return status;
-  batch::Job::Parts parts;
+// What a run and a dry run have in common.
+struct Prepared {
+  batch::Recipe recipe;
+  batch::Shard shard;
+  std::vector<ModelInfo> models;
+  std::vector<motion::Skeleton> skeletons;
+  std::vector<std::vector<Client>> servers;
+};
+
+absl::Status Prepare(const BatchArguments& arguments, const ProgramEnvironment& environment,
+                     const std::vector<ModelChoice>& begun, Prepared* prepared) {
   absl::StatusOr<std::vector<ModelInfo>> models =
-      AskModels(arguments, environment, *recipe, begun.models);
+      AskModels(arguments, environment, prepared->recipe, begun);
   if (!models.ok()) return models.status();
   for (const ModelInfo& model : *models) {
     absl::StatusOr<motion::Skeleton> skeleton = ToSkeleton(model);
     if (!skeleton.ok()) return skeleton.status();
-    parts.skeletons.push_back(*std::move(skeleton));
+    prepared->skeletons.push_back(*std::move(skeleton));
   }
-  absl::StatusOr<batch::Plan> plan = MakePlan(arguments, *recipe, *models, environment.in);
-  if (!plan.ok()) return plan.status();
+  prepared->models = *std::move(models);
   absl::StatusOr<std::vector<std::vector<Client>>> servers = Connect(arguments, environment);
   if (!servers.ok()) return servers.status();
-  parts.recipe = *recipe;
-  parts.identity = WithModels(wanted, *models);
-  parts.models = *models;
-  parts.servers = *std::move(servers);
-  parts.folder = &folder;
-  if (begun.models.empty()) status = folder.Begin(parts.identity);
+  prepared->servers = *std::move(servers);
+  return absl::OkStatus();
+}
+
+void ReportEstimate(const BatchArguments& arguments, const batch::Estimate& estimate,
+                    const ProgramEnvironment& environment) {
+  if (arguments.json) {
+    const nlohmann::ordered_json event = {{"event", "estimate"},
+                                          {"items", estimate.items},
+                                          {"leaders", estimate.leaders},
+                                          {"unreadable", estimate.unreadable},
+                                          {"frames", estimate.frames},
+                                          {"seconds", estimate.seconds},
+                                          {"bytes", estimate.bytes},
+                                          {"problems", estimate.problems}};
+    *environment.out << event.dump() << "\n";
+    return;
+  }
+  *environment.out << absl::StrFormat(
+      "%d items of %d leaders, %d frames: about %.0f s of calls one after the other, %.1f MB\n",
+      estimate.items, estimate.leaders, estimate.frames, estimate.seconds, estimate.bytes / 1e6);
+  if (estimate.unreadable == 0) return;
+  *environment.err << estimate.unreadable << " leaders cannot be read:\n";
+  for (const std::string& problem : estimate.problems) *environment.err << "  " << problem << "\n";
+}
+
+absl::StatusOr<ExitCode> RunDry(const BatchArguments& arguments,
+                                const ProgramEnvironment& environment, Prepared prepared) {
+  const absl::StatusOr<batch::JobIdentity> begun =
+      batch::ReadJobIdentity(ShardFolder(arguments.out, prepared.shard));
+  absl::Status status =
+      Prepare(arguments, environment,
+              begun.ok() ? begun->models : std::vector<ModelChoice>(), &prepared);
+  if (!status.ok()) return status;
+  absl::StatusOr<batch::Plan> plan =
+      MakePlan(arguments, prepared.recipe, prepared.models, environment.in);
+  if (!plan.ok()) return plan.status();
+  const absl::StatusOr<batch::Estimate> estimate =
+      EstimateJob(prepared.recipe, prepared.models, prepared.skeletons, prepared.shard,
+                  arguments.limit, prepared.servers.front().front(), &*plan);
+  if (!estimate.ok()) return estimate.status();
+  ReportEstimate(arguments, *estimate, environment);
+  return estimate->unreadable > 0 ? kExitBadInput : kExitDone;
+}
+
+absl::StatusOr<ExitCode> RunWhole(const BatchArguments& arguments,
+                                  const ProgramEnvironment& environment, Prepared prepared) {
+  RunningJob running;
+  const StopSignals signals([&running] { running.Stop(); });
+  batch::JobFolder folder(ShardFolder(arguments.out, prepared.shard));
+  const batch::JobIdentity wanted = IdentityOf(prepared.recipe, prepared.shard);
+  batch::JobIdentity begun;
+  absl::Status status = folder.Open(wanted, &begun);
+  if (status.ok()) status = Prepare(arguments, environment, begun.models, &prepared);
+  if (!status.ok()) return status;
+  absl::StatusOr<batch::Plan> plan =
+      MakePlan(arguments, prepared.recipe, prepared.models, environment.in);
+  if (!plan.ok()) return plan.status();
+  const batch::JobIdentity identity = WithModels(wanted, prepared.models);
+  if (begun.models.empty()) status = folder.Begin(identity);
   if (!status.ok()) return status;
   // What a pipe brings can be read only once.
   const bool countable = arguments.manifest != "-" && arguments.share >= 1;
-  const Counting counting(countable ? MakePlan(arguments, *recipe, *models, nullptr)
-                                    : absl::StatusOr<batch::Plan>(absl::UnavailableError("pipe")),
-                          *shard, arguments.limit);
-  batch::Job job(std::move(parts), *std::move(plan), ToJobOptions(arguments));
+  const Counting counting(countable
+                              ? MakePlan(arguments, prepared.recipe, prepared.models, nullptr)
+                              : absl::StatusOr<batch::Plan>(absl::UnavailableError("unknown")),
+                          prepared.shard, arguments.limit);
+  batch::Job job({std::move(prepared.recipe), identity, std::move(prepared.models),
+                  std::move(prepared.skeletons), std::move(prepared.servers), &folder},
+                 *std::move(plan), ToJobOptions(arguments));
   running.Set(&job);
   absl::StatusOr<ExitCode> code =
       RunJob(arguments, job, folder.out(), counting.total(), environment, running);
   running.Set(nullptr);
   return code;
+}
+
+absl::StatusOr<ExitCode> Run(const BatchArguments& arguments,
+                             const ProgramEnvironment& environment) {
+  Prepared prepared;
+  absl::StatusOr<batch::Recipe> recipe = batch::ReadRecipe(arguments.recipe, arguments.overrides);
+  if (!recipe.ok()) return recipe.status();
+  prepared.recipe = *std::move(recipe);
+  const absl::StatusOr<batch::Shard> shard = ShardOf(arguments);
+  if (!shard.ok()) return shard.status();
+  prepared.shard = *shard;
+  return arguments.dry_run ? RunDry(arguments, environment, std::move(prepared))
+                           : RunWhole(arguments, environment, std::move(prepared));
 }
 
 absl::StatusOr<ExitCode> RunMerge(const BatchArguments& arguments,

@@ -65,6 +65,13 @@ class BatchTest(unittest.TestCase):
         shutil.copy(tools.sample("push"), cls.leaders / "far")
         cls.server = tools.Server()
         cls.addClassCleanup(cls.server.stop)
+        # What RECIPE gives when nothing is in the way.
+        cls.whole = cls.folder / "whole"
+        recipe = cls.folder / "whole.textproto"
+        recipe.write_text(RECIPE % "", encoding="utf-8")
+        made = tools.duet("batch", cls.leaders, "--recipe", recipe, "--out", cls.whole, "--server",
+                          cls.server.address, "--quiet")
+        assert made.returncode == 0, made.stderr
 
     def recipe(self, more="", text=RECIPE):
         path = self.folder / f"{self.id().split('.')[-1]}.textproto"
@@ -109,8 +116,7 @@ class BatchTest(unittest.TestCase):
         self.assertIn("push-kick-s1.npy: was changed", self.verified(out, 42).stderr)
 
     def test_an_answer_is_what_synthesize_gives(self):
-        out, single = self.out(), self.folder / "single.npy"
-        self.batch(out, self.recipe())
+        out, single = self.whole, self.folder / "single.npy"
         entry = next(e for e in entries(out) if e["name"] == "hug-kick-s0")
         result = tools.duet("synthesize", "--server", self.server.address, "--leader",
                             self.leaders / "hug.bvh", "--label", "kick=1", "--seed", entry["seed"],
@@ -119,8 +125,7 @@ class BatchTest(unittest.TestCase):
         self.assertEqual(single.read_bytes(), (out / "hug-kick-s0.npy").read_bytes())
 
     def test_killed_at_any_moment_it_makes_the_same(self):
-        recipe, whole, out = self.recipe(), self.out("whole"), self.out()
-        self.batch(whole, recipe)
+        recipe, out = self.recipe(), self.out()
         dice, server, kills = random.Random(), tools.Server("--reflection=false"), 0
         seconds = []
         try:
@@ -149,12 +154,11 @@ class BatchTest(unittest.TestCase):
                 break
         finally:
             server.stop()
-        self.assertEqual(digests(out), digests(whole), f"killed after {seconds}")
+        self.assertEqual(digests(out), digests(self.whole), f"killed after {seconds}")
         self.verified(out)
 
     def test_a_server_that_goes_and_comes_back_costs_nothing(self):
-        recipe, whole, out = self.recipe(), self.out("whole"), self.out()
-        self.batch(whole, recipe)
+        recipe, out = self.recipe(), self.out()
         server = tools.Server()
         port = server.port
         client = subprocess.Popen(
@@ -163,13 +167,13 @@ class BatchTest(unittest.TestCase):
         while not list(out.glob("*.npy")) and client.poll() is None:
             time.sleep(0.005)
         server.kill()
-        server = tools.Server("--listen", f"127.0.0.1:{port}")
+        server = tools.Server(port=port)
         try:
             said, _ = client.communicate(timeout=tools.RUN_SECONDS)
         finally:
             server.stop()
         self.assertEqual(client.returncode, 0, said)
-        self.assertEqual(digests(out), digests(whole))
+        self.assertEqual(digests(out), digests(self.whole))
 
     def test_a_server_that_stays_away_is_worth_another_run(self):
         out = self.out()
@@ -192,6 +196,17 @@ class BatchTest(unittest.TestCase):
                       else 1)
         self.batch(out, recipe)
         self.assertEqual(len(entries(out)), 48)
+
+    def test_a_dry_run_counts_and_writes_nothing(self):
+        out = self.out()
+        result = self.batch(out, self.recipe(), "--dry-run")
+        self.assertIn("48 items of 3 leaders", result.stdout)
+        self.assertFalse(out.exists())
+        (self.folder / "broken").mkdir(exist_ok=True)
+        (self.folder / "broken" / "a.bvh").write_text("HIERARCHY", encoding="utf-8")
+        result = self.batch(out, self.recipe(), "--dry-run", code=42,
+                            leaders=self.folder / "broken")
+        self.assertIn("1 leaders cannot be read", result.stderr)
 
     def test_another_recipe_is_refused(self):
         out = self.out()
@@ -219,8 +234,7 @@ class BatchTest(unittest.TestCase):
                 self.verified(out)
 
     def test_tar_shards_are_webdataset(self):
-        plain, out = self.out("plain"), self.out()
-        self.batch(plain, self.recipe())
+        plain, out = self.whole, self.out()
         self.batch(out, self.recipe(), "--pack", "tar")
         self.verified(out)
         found = {}
@@ -240,8 +254,7 @@ class BatchTest(unittest.TestCase):
         self.assertEqual(digests(out), before)
 
     def test_npz_shards_open(self):
-        plain, out = self.out("plain"), self.out()
-        self.batch(plain, self.recipe())
+        plain, out = self.whole, self.out()
         self.batch(out, self.recipe("packing: PACKING_NPZ shard_bytes: 200000"))
         self.verified(out)
         shards = sorted(out.glob("*.npz"))
