@@ -67,8 +67,7 @@ SynthesisRequest ToRequest(const Item& item, const Recipe& recipe, const ModelIn
 }
 
 RecordedAnswer ToRecorded(const SynthesisRequest& request, const SynthesisResult& result,
-                          const LoadedLeader& leader, const motion::Skeleton& skeleton,
-                          int retry) {
+                          const LoadedLeader& leader, const motion::Skeleton& skeleton, int retry) {
   RecordedAnswer answer;
   answer.leader_sha256 = leader.sha256;
   answer.model = absl::StrCat(result.model_name, "@", result.model_version);

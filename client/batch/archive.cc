@@ -97,7 +97,8 @@ void AppendLittle(std::string* out, uint64_t value, int bytes) {
 
 uint64_t FromLittle(absl::string_view bytes, size_t at, size_t count) {
   uint64_t value = 0;
-  for (size_t i = count; i > 0; --i) value = value << 8 | static_cast<unsigned char>(bytes[at + i - 1]);
+  for (size_t i = count; i > 0; --i)
+    value = value << 8 | static_cast<unsigned char>(bytes[at + i - 1]);
   return value;
 }
 

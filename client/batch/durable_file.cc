@@ -57,8 +57,8 @@ absl::Status Rename(const fs::path& from, const fs::path& to) {
 }  // namespace
 
 absl::Status CannotWrite(const fs::path& path, int error) {
-  return absl::AbortedError(absl::StrCat("cannot write ", path.string(), ": ",
-                                         std::generic_category().message(error)));
+  return absl::AbortedError(
+      absl::StrCat("cannot write ", path.string(), ": ", std::generic_category().message(error)));
 }
 
 absl::Status WriteDurably(const fs::path& temporary, const fs::path& path,
@@ -123,8 +123,8 @@ absl::Status FolderLock::Take(const fs::path& file) {
   if (descriptor_ < 0) return CannotWrite(file, errno);
   if (flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return absl::OkStatus();
   if (errno != EWOULDBLOCK) return CannotWrite(file, errno);
-  return absl::AbortedError(
-      absl::StrCat(file.parent_path().parent_path().string(), ": another duet batch is at work in it"));
+  return absl::AbortedError(absl::StrCat(file.parent_path().parent_path().string(),
+                                         ": another duet batch is at work in it"));
 }
 
 }  // namespace duet::client::batch

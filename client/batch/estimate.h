@@ -26,8 +26,8 @@ struct Estimate {
   std::vector<std::string> problems;  // why, of the first twenty
 };
 
-// Reads every leader of the plan's first `limit` items, and asks for the first item. Writes nothing.
-// Errors: the plan's, and what the server says to that item.
+// Reads every leader of the plan's first `limit` items, and asks for the first item. Writes
+// nothing. Errors: the plan's, and what the server says to that item.
 absl::StatusOr<Estimate> EstimateJob(const Recipe& recipe, const std::vector<ModelInfo>& models,
                                      const std::vector<motion::Skeleton>& skeletons,
                                      const Shard& shard, int64_t limit, const Client& client,

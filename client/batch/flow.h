@@ -29,11 +29,11 @@ struct FlowOptions {
 
 // The window of calls in flight at one server.
 //
-// Grows by one for each answer until the first refusal, then by one for each full window of answers;
-// halves when the server is full, once for all calls that were under way then; falls to one when
-// the server is away. After a refusal no call starts before the server's own delay is over; while it
-// is away, one call at a time asks after it, less and less often.
-// Source: TCP Reno's slow start and congestion avoidance (Jacobson 1988).
+// Grows by one for each answer until the first refusal, then by one for each full window of
+// answers; halves when the server is full, once for all calls that were under way then; falls to
+// one when the server is away. After a refusal no call starts before the server's own delay is
+// over; while it is away, one call at a time asks after it, less and less often. Source: TCP Reno's
+// slow start and congestion avoidance (Jacobson 1988).
 class FlowWindow {
  public:
   explicit FlowWindow(const FlowOptions& options) : options_(options) {}

@@ -18,15 +18,12 @@ using nlohmann::ordered_json;
 
 constexpr size_t kMaxSummaryBytes = size_t{1} << 20;
 
-constexpr const char* kFields[] = {"item",      "id",      "name",       "leader", "leader_sha256",
-                                   "side",      "reaction", "labels",    "model",  "seed",
-                                   "variety",   "request_id", "frames",  "frame_rate_hz"};
-constexpr const char* kFigures[] = {"lean_degrees",
-                                    "foot_above_floor_metres",
-                                    "foot_below_floor_metres",
-                                    "distance_metres",
-                                    "penetration_metres",
-                                    "range_of_motion_metres"};
+constexpr const char* kFields[] = {
+    "item",   "id",    "name", "leader",  "leader_sha256", "side",   "reaction",
+    "labels", "model", "seed", "variety", "request_id",    "frames", "frame_rate_hz"};
+constexpr const char* kFigures[] = {
+    "lean_degrees",    "foot_above_floor_metres", "foot_below_floor_metres",
+    "distance_metres", "penetration_metres",      "range_of_motion_metres"};
 
 // A cell holds no tab and no line end; what is not there is empty.
 std::string Cell(const ordered_json& object, const char* name) {
@@ -184,8 +181,8 @@ absl::StatusOr<SetCounts> WriteIndex(const JournalReader& journal, const JobIden
   IndexWriter writer(identity, temporary);
   absl::Status status = writer.Open();
   if (!status.ok()) return status;
-  status = journal.ForEach(
-      [&writer](int64_t, const std::string& record) { return writer.Add(record); });
+  status =
+      journal.ForEach([&writer](int64_t, const std::string& record) { return writer.Add(record); });
   if (status.ok()) status = writer.Finish(out);
   if (!status.ok()) return status;
   status = ReplaceDurably(out / "summary.json", SummaryJson(identity, writer.counts(), planned));

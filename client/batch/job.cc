@@ -16,8 +16,8 @@
 namespace duet::client::batch {
 namespace {
 
-constexpr int kAttempts = 3;       // at a call that fails for a passing reason
-constexpr int kReadingAhead = 4;   // threads beyond those that may have a call under way
+constexpr int kAttempts = 3;      // at a call that fails for a passing reason
+constexpr int kReadingAhead = 4;  // threads beyond those that may have a call under way
 constexpr size_t kQueuedItems = 64;
 constexpr size_t kQueuedRecords = 4096;
 
@@ -164,9 +164,8 @@ absl::Status Job::Judge(const Work& work, const SynthesisRequest& request,
   const auto model = static_cast<size_t>(work.item.model);
   const motion::Skeleton& skeleton = parts_.skeletons[model];
   const QualityFilter& filter = parts_.recipe.filter;
-  const RecordedAnswer answer =
-      ToRecorded(request, result, *work.leader->Get(parts_.recipe.input, skeleton), skeleton,
-                 retry);
+  const RecordedAnswer answer = ToRecorded(
+      request, result, *work.leader->Get(parts_.recipe.input, skeleton), skeleton, retry);
   const std::vector<std::string> reasons =
       WhyRejected(filter, answer.quality, answer.unfamiliarity);
   if (reasons.empty()) return Keep(work.item, answer, result.pair);
@@ -284,8 +283,8 @@ absl::StatusOr<JobReport> Job::Finish() {
                   folder.temporary(), folder.out());
   }
   if (!status.ok()) return status;
-  absl::StatusOr<SetCounts> counts =
-      WriteIndex(*journal, identity, {report.planned, whole_plan_}, folder.temporary(), folder.out());
+  absl::StatusOr<SetCounts> counts = WriteIndex(*journal, identity, {report.planned, whole_plan_},
+                                                folder.temporary(), folder.out());
   if (!counts.ok()) return counts.status();
   report.set = *counts;
   return report;

@@ -36,9 +36,9 @@ struct JobOptions {
 
 // How far a run is. Counts of items.
 struct Progress {
-  int64_t planned = 0;   // that the run has come to so far
-  int64_t resumed = 0;   // of these, settled by earlier runs
-  int64_t done = 0;      // by this run, as are all below
+  int64_t planned = 0;  // that the run has come to so far
+  int64_t resumed = 0;  // of these, settled by earlier runs
+  int64_t done = 0;     // by this run, as are all below
   int64_t rejected = 0;
   int64_t failed = 0;      // for good
   int64_t unfinished = 0;  // failed for a passing reason

@@ -61,8 +61,8 @@ fs::path IdentityFile(const fs::path& out) { return out / ".duet-batch" / "job.j
 
 absl::Status CheckSame(const fs::path& out, const JobIdentity& begun, const JobIdentity& wanted) {
   const auto refuse = [&out](const std::string& what) {
-    return absl::FailedPreconditionError(
-        absl::StrCat(out.string(), ": was begun with ", what, "; wanted the same, or another --out"));
+    return absl::FailedPreconditionError(absl::StrCat(out.string(), ": was begun with ", what,
+                                                      "; wanted the same, or another --out"));
   };
   if (begun.recipe_digest != wanted.recipe_digest) return refuse("another recipe");
   if (begun.shard.index != wanted.shard.index || begun.shard.count != wanted.shard.count) {

@@ -24,9 +24,9 @@ struct JobIdentity {
 
 // A data set's folder, held by one process.
 //
-//   <out>/                     the data set: files, index.tsv, index.jsonl, rejected.tsv, summary.json
-//   <out>/errors/              a file for each item that failed
-//   <out>/.duet-batch/         job.json, journal, lock; temporary files; items that wait to be packed
+//   <out>/                     the data set: files, index.tsv, index.jsonl, rejected.tsv,
+//   summary.json <out>/errors/              a file for each item that failed <out>/.duet-batch/
+//   job.json, journal, lock; temporary files; items that wait to be packed
 class JobFolder {
  public:
   explicit JobFolder(std::filesystem::path out) : out_(std::move(out)) {}

@@ -67,7 +67,8 @@ absl::Status JournalReader::Load() {
     int64_t item = 0;
     absl::string_view record;
     // A line without its end meets the end of the file.
-    if (torn) return absl::DataLossError(absl::StrCat(path_.string(), ": byte ", size_, ": damaged"));
+    if (torn)
+      return absl::DataLossError(absl::StrCat(path_.string(), ": byte ", size_, ": damaged"));
     torn = file.eof() || !ParseLine(line, &item, &record);
     if (torn) continue;
     if (item >= end()) offsets_.resize(static_cast<size_t>(item) + 1);
@@ -89,8 +90,8 @@ absl::StatusOr<std::string> JournalReader::LineAt(uint64_t offset) const {
   while (true) {
     const size_t before = line.size();
     line.resize(before + kReadBlock);
-    const ssize_t got = pread(descriptor_, line.data() + before, kReadBlock,
-                              static_cast<off_t>(offset + before));
+    const ssize_t got =
+        pread(descriptor_, line.data() + before, kReadBlock, static_cast<off_t>(offset + before));
     if (got < 0 && errno == EINTR) {
       line.resize(before);
       continue;

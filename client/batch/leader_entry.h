@@ -20,8 +20,8 @@ struct LeaderEntry {
   std::string given;  // as it was listed
   std::filesystem::path file;
   std::optional<formats::Side> side;
-  Labels labels;      // instead of the recipe's reactions where not empty
-  std::string model;  // one of the recipe's; empty: all of them
+  Labels labels;               // instead of the recipe's reactions where not empty
+  std::string model;           // one of the recipe's; empty: all of them
   std::string follower_start;  // a point or a file; empty: as the recipe says
   std::optional<formats::Side> follower_start_side;
   std::optional<motion::Vec3> partner_direction;

@@ -21,8 +21,7 @@ formats::ReadOptions ToReadOptions(const LeaderInput& input, const motion::Skele
   motion::Coordinates coordinates;
   coordinates.unit = input.unit.value_or(motion::LengthUnit::kMetres);
   const bool sbu = coordinates.unit == motion::LengthUnit::kSbuNormalised;
-  coordinates.up_axis =
-      input.up_axis.value_or(sbu ? motion::UpAxis::kYDown : motion::UpAxis::kYUp);
+  coordinates.up_axis = input.up_axis.value_or(sbu ? motion::UpAxis::kYDown : motion::UpAxis::kYUp);
   options.coordinates = coordinates;
   return options;
 }

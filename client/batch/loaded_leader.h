@@ -24,8 +24,7 @@ struct LoadedLeader {
 
 // Reads the leader's file, and that of the follower's start. Errors name the file.
 absl::StatusOr<LoadedLeader> LoadLeader(const LeaderEntry& entry, formats::Side side,
-                                        const LeaderInput& input,
-                                        const motion::Skeleton& skeleton);
+                                        const LeaderInput& input, const motion::Skeleton& skeleton);
 
 // A leader that several items share: read by the first that needs it, forgotten with the last.
 //

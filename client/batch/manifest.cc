@@ -99,8 +99,7 @@ absl::StatusOr<LeaderEntry> ToEntry(const std::filesystem::path& folder, Columns
   std::optional<Labels> labels;
   absl::Status status = TakeParsed("labels", ParseLabels, &columns, &labels);
   status.Update(TakeParsed("side", ParseSide, &columns, &entry.side));
-  status.Update(
-      TakeParsed("follower_start_side", ParseSide, &columns, &entry.follower_start_side));
+  status.Update(TakeParsed("follower_start_side", ParseSide, &columns, &entry.follower_start_side));
   status.Update(
       TakeParsed("partner_direction", ParseDirection, &columns, &entry.partner_direction));
   status.Update(TakeParsed("seed", ParseSeed, &columns, &entry.seed));
@@ -178,8 +177,8 @@ class Manifest final : public LeaderSource {
     }
     if (id.empty()) {
       const std::filesystem::path leader(entry->given);
-      entry->key = absl::StrCat(KeyOf(std::filesystem::path(leader).replace_extension()), "-",
-                                line_);
+      entry->key =
+          absl::StrCat(KeyOf(std::filesystem::path(leader).replace_extension()), "-", line_);
       return absl::OkStatus();
     }
     entry->key = KeyOf(id);

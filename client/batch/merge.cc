@@ -59,9 +59,9 @@ absl::StatusOr<Part> OpenPart(const fs::path& out, const JobIdentity& identity, 
   const fs::path path = ShardFolder(out, shard);
   const absl::StatusOr<PlannedItems> items = ReadPlanned(path);
   if (!items.ok() || !items->whole) {
-    return absl::AbortedError(
-        absl::StrCat(path.string(), ": is absent or was not run to its end, wanted all of ",
-                     shard.count, " shards"));
+    return absl::AbortedError(absl::StrCat(path.string(),
+                                           ": is absent or was not run to its end, wanted all of ",
+                                           shard.count, " shards"));
   }
   *planned += items->count;
   Part part{std::make_unique<JobFolder>(path), nullptr};
@@ -109,7 +109,8 @@ absl::Status RemoveShards(const fs::path& out, int count) {
 
 class Merger {
  public:
-  Merger(const fs::path& out, JobIdentity identity) : folder_(out), identity_(std::move(identity)) {}
+  Merger(const fs::path& out, JobIdentity identity)
+      : folder_(out), identity_(std::move(identity)) {}
 
   absl::Status Open() {
     const int count = identity_.shard.count;
@@ -151,8 +152,8 @@ class Merger {
                     folder_.items(identity_.packing), folder_.temporary(), folder_.out());
     }
     if (!status.ok()) return status;
-    absl::StatusOr<SetCounts> counts = WriteIndex(*journal, identity_, {planned_, true},
-                                                  folder_.temporary(), folder_.out());
+    absl::StatusOr<SetCounts> counts =
+        WriteIndex(*journal, identity_, {planned_, true}, folder_.temporary(), folder_.out());
     if (!counts.ok()) return counts.status();
     report_.set = *counts;
     report_.planned = planned_;

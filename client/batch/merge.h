@@ -21,7 +21,8 @@ struct MergeReport {
 // would have made it: checks every file against its digest, moves it, writes the index, packs where
 // the recipe says so, and removes the shards' folders. Stopped at any moment it can be run again.
 //
-// Errors: NOT_FOUND without shards, ABORTED where one is absent, at work, or was not run to its end,
+// Errors: NOT_FOUND without shards, ABORTED where one is absent, at work, or was not run to its
+// end,
 //         FAILED_PRECONDITION where they are not of one job, DATA_LOSS for a file that was changed.
 absl::StatusOr<MergeReport> Merge(const std::filesystem::path& out);
 

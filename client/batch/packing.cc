@@ -119,8 +119,8 @@ std::string ShardNames::Next(uint64_t item_bytes) {
 absl::Status Pack(const JournalReader& journal, Packing packing, uint64_t shard_bytes,
                   const fs::path& items, const fs::path& temporary, const fs::path& out) {
   Packer packer(packing, shard_bytes, items, temporary, out);
-  absl::Status status = journal.ForEach(
-      [&packer](int64_t, const std::string& record) { return packer.Add(record); });
+  absl::Status status =
+      journal.ForEach([&packer](int64_t, const std::string& record) { return packer.Add(record); });
   if (status.ok()) status = packer.FinishShard();
   std::error_code error;
   if (status.ok()) fs::remove_all(items, error);

@@ -27,7 +27,8 @@ class ShardNames {
 };
 
 // Puts the files below `items` of every item that is done into shards in `out`, each written to
-// `temporary` first, and removes them once their shard is on the disk. Goes on where it was stopped.
+// `temporary` first, and removes them once their shard is on the disk. Goes on where it was
+// stopped.
 //
 // Errors: ABORTED, DATA_LOSS where an item's file is not what the journal says.
 absl::Status Pack(const JournalReader& journal, Packing packing, uint64_t shard_bytes,

@@ -45,8 +45,8 @@ std::string Asked(const Item& item, const Recipe& recipe, const ModelInfo& model
   const LeaderEntry& leader = *item.leader;
   std::string text =
       absl::StrCat(leader.key, "\n", leader.given, "\n", SideName(item.side), "\n", item.reaction,
-                   "\n", Text(item.labels), "\n", model.name, "@", model.version, "\n",
-                   item.sample, "\n", recipe.variety, "\n", leader.follower_start, "\n");
+                   "\n", Text(item.labels), "\n", model.name, "@", model.version, "\n", item.sample,
+                   "\n", recipe.variety, "\n", leader.follower_start, "\n");
   for (const Schedule::Keyframe& keyframe : item.keyframes) {
     absl::StrAppend(&text, keyframe.at, ":", Text(keyframe.labels), "\n");
   }
@@ -132,9 +132,9 @@ absl::StatusOr<Plan> Plan::Create(Recipe recipe, std::vector<ModelInfo> models,
   if (!status.ok()) return status;
   for (const ModelInfo& model : plan.models_) {
     if (plan.recipe_.samples > 1 && !model.samples) {
-      return absl::InvalidArgumentError(
-          absl::StrCat("samples: came ", plan.recipe_.samples, ", wanted 1: ", model.name, "@",
-                       model.version, " has one answer, whatever the seed"));
+      return absl::InvalidArgumentError(absl::StrCat("samples: came ", plan.recipe_.samples,
+                                                     ", wanted 1: ", model.name, "@", model.version,
+                                                     " has one answer, whatever the seed"));
     }
   }
   return plan;
@@ -206,9 +206,9 @@ absl::Status Plan::CheckClasses() const {
     const std::vector<std::string> classes = ClassesOr(mixes.classes);
     wanted.insert(classes.begin(), classes.end());
     if (static_cast<size_t>(mixes.classes_in_mix) > classes.size()) {
-      return absl::InvalidArgumentError(
-          absl::StrCat("reactions: classes_in_mix: came ", mixes.classes_in_mix,
-                       ", wanted at most the ", classes.size(), " classes"));
+      return absl::InvalidArgumentError(absl::StrCat("reactions: classes_in_mix: came ",
+                                                     mixes.classes_in_mix, ", wanted at most the ",
+                                                     classes.size(), " classes"));
     }
   }
   for (const ModelInfo& model : models_) {
@@ -225,8 +225,8 @@ absl::Status Plan::CheckClasses() const {
 
 void Plan::Draw(const LeaderEntry& leader, int mixes_number, const Reaction& reaction) {
   const auto& mixes = std::get<Mixes>(reaction.kind);
-  base::Random random(DrawnNumber(
-      absl::StrCat("mixes ", recipe_.seed, " ", mixes_number, " ", leader.key)));
+  base::Random random(
+      DrawnNumber(absl::StrCat("mixes ", recipe_.seed, " ", mixes_number, " ", leader.key)));
   for (int i = 0; i < mixes.count; ++i) {
     std::vector<std::string> classes = ClassesOr(mixes.classes);
     random.Shuffle(&classes);
@@ -244,9 +244,10 @@ void Plan::Draw(const LeaderEntry& leader, int mixes_number, const Reaction& rea
 }
 
 absl::Status Plan::BeginLeader(LeaderEntry leader) {
-  reactions_ = leader.labels.empty()
-                   ? fixed_
-                   : std::vector<LabelledReaction>{{NameOfLabels(leader.labels), leader.labels, {}}};
+  reactions_ =
+      leader.labels.empty()
+          ? fixed_
+          : std::vector<LabelledReaction>{{NameOfLabels(leader.labels), leader.labels, {}}};
   if (leader.labels.empty()) {
     for (size_t i = 0; i < mixes_.size(); ++i) Draw(leader, static_cast<int>(i), mixes_[i]);
   }

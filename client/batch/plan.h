@@ -29,8 +29,8 @@ struct Item {
   int sample = 0;
 };
 
-// The seed of an item's answer, `retry` 0 the first. Below 2^53 where nobody gave one, so that every
-// JSON reader keeps it.
+// The seed of an item's answer, `retry` 0 the first. Below 2^53 where nobody gave one, so that
+// every JSON reader keeps it.
 uint64_t SeedOf(const Item& item, uint64_t recipe_seed, int retry);
 
 // The items of a recipe and a list of leaders, one after the other: nothing is kept of those before

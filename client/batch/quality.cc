@@ -42,8 +42,8 @@ Quality Measure(const motion::ClipPair& pair, const motion::Skeleton& skeleton) 
                                                     metrics::LeanFrom::kHips)
                                    .max_degrees);
   if (skeleton.feet.has_value()) {
-    const metrics::FloorGap gap = metrics::MeasureFloorGap(
-        follower, skeleton, cleanup::FloorHeight(*skeleton.feet, leader));
+    const metrics::FloorGap gap =
+        metrics::MeasureFloorGap(follower, skeleton, cleanup::FloorHeight(*skeleton.feet, leader));
     quality.foot_above_floor_metres = gap.above;
     quality.foot_below_floor_metres = gap.below;
   }

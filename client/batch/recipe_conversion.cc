@@ -60,9 +60,8 @@ Labels ReadLabels(const v1::Labels& proto, const std::string& field, Checker* ch
   return labels;
 }
 
-std::vector<std::string> ReadClasses(
-    const google::protobuf::RepeatedPtrField<std::string>& proto, const std::string& field,
-    Checker* check) {
+std::vector<std::string> ReadClasses(const google::protobuf::RepeatedPtrField<std::string>& proto,
+                                     const std::string& field, Checker* check) {
   std::vector<std::string> classes(proto.begin(), proto.end());
   check->Different(field, classes);
   return classes;
@@ -98,10 +97,10 @@ Mixes ReadMixes(const v1::Mixes& proto, const std::string& field, Checker* check
     check->Count(field + ".classes_in_mix", proto.classes_in_mix(), 1, 1000);
     mixes.classes_in_mix = static_cast<int>(proto.classes_in_mix());
   }
-  check->Want(mixes.classes.empty() ||
-                  static_cast<size_t>(mixes.classes_in_mix) <= mixes.classes.size(),
-              field + ".classes_in_mix", absl::StrCat(mixes.classes_in_mix),
-              "no more than there are classes");
+  check->Want(
+      mixes.classes.empty() || static_cast<size_t>(mixes.classes_in_mix) <= mixes.classes.size(),
+      field + ".classes_in_mix", absl::StrCat(mixes.classes_in_mix),
+      "no more than there are classes");
   if (proto.has_min_weight()) mixes.min_weight = proto.min_weight();
   if (proto.has_max_weight()) mixes.max_weight = proto.max_weight();
   check->Weight(field + ".min_weight", mixes.min_weight);
@@ -154,8 +153,7 @@ Reaction ReadReaction(const v1::Reaction& proto, const std::string& field, Check
       reaction.kind = ReadSchedule(proto.schedule(), field + ".schedule", check);
       break;
     case v1::Reaction::KIND_NOT_SET:
-      check->Want(false, field, "nothing",
-                  "one of labels, grid, mixes, each_class and schedule");
+      check->Want(false, field, "nothing", "one of labels, grid, mixes, each_class and schedule");
   }
   return reaction;
 }
@@ -204,8 +202,8 @@ QualityFilter ReadFilter(const v1::QualityFilter& proto, Checker* check) {
        &filter.min_distance_metres);
   read("max_distance_metres", proto.has_max_distance_metres(), proto.max_distance_metres(),
        &filter.max_distance_metres);
-  read("max_penetration_metres", proto.has_max_penetration_metres(),
-       proto.max_penetration_metres(), &filter.max_penetration_metres);
+  read("max_penetration_metres", proto.has_max_penetration_metres(), proto.max_penetration_metres(),
+       &filter.max_penetration_metres);
   read("min_range_of_motion_metres", proto.has_min_range_of_motion_metres(),
        proto.min_range_of_motion_metres(), &filter.min_range_of_motion_metres);
   read("max_unfamiliarity", proto.has_max_unfamiliarity(), proto.max_unfamiliarity(),
@@ -227,8 +225,8 @@ Output ReadOutput(const v1::Output& proto, Checker* check) {
   check->Different("output.formats", proto.formats());
   check->Want(v1::Layout_IsValid(proto.layout()), "output.layout", absl::StrCat(proto.layout()),
               "a layout");
-  check->Want(v1::Packing_IsValid(proto.packing()), "output.packing",
-              absl::StrCat(proto.packing()), "a packing");
+  check->Want(v1::Packing_IsValid(proto.packing()), "output.packing", absl::StrCat(proto.packing()),
+              "a packing");
   if (proto.layout() == v1::LAYOUT_CLASS_FOLDERS) output.layout = Layout::kClassFolders;
   if (proto.packing() == v1::PACKING_TAR) output.packing = Packing::kTar;
   if (proto.packing() == v1::PACKING_NPZ) output.packing = Packing::kNpz;

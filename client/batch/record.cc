@@ -45,8 +45,12 @@ ordered_json QualityJson(const Quality& quality) {
 }
 
 ordered_json Begin(const Item& item, const char* state) {
-  return {{"item", item.number},        {"id", item.id}, {"state", state}, {"name", item.name},
-          {"leader", item.leader->given}, {"leader_sha256", ""},
+  return {{"item", item.number},
+          {"id", item.id},
+          {"state", state},
+          {"name", item.name},
+          {"leader", item.leader->given},
+          {"leader_sha256", ""},
           {"side", std::string(SideName(item.side))},
           {"reaction", item.reaction}};
 }

@@ -69,8 +69,9 @@ absl::StatusOr<Shard> ParseShard(absl::string_view text) {
       shard.index >= 0 && shard.index < shard.count) {
     return shard;
   }
-  return absl::InvalidArgumentError(absl::StrCat(
-      base::Quoted(text), ", wanted INDEX/COUNT such as 0/8, the index from 0 and below the count"));
+  return absl::InvalidArgumentError(
+      absl::StrCat(base::Quoted(text),
+                   ", wanted INDEX/COUNT such as 0/8, the index from 0 and below the count"));
 }
 
 absl::StatusOr<Shard> ShardFromEnvironment(const ReadVariable& read) {

@@ -26,8 +26,7 @@ class ShardReader {
   explicit ShardReader(std::filesystem::path out) : out_(std::move(out)) {}
 
   // The next member that is a file of an item.
-  absl::Status Check(const std::string& shard, const std::string& path,
-                     const std::string& sha256) {
+  absl::Status Check(const std::string& shard, const std::string& path, const std::string& sha256) {
     if (shard != name_) {
       name_ = shard;
       reader_ = std::make_unique<ArchiveReader>(out_ / shard);

@@ -12,8 +12,8 @@ namespace duet::client::batch {
 
 // What a look at a data set found.
 struct VerifyReport {
-  int64_t items = 0;  // in the index
-  int64_t files = 0;  // as the index says
+  int64_t items = 0;    // in the index
+  int64_t files = 0;    // as the index says
   int64_t missing = 0;  // items that were planned and are neither done, rejected nor failed
   int64_t problem_count = 0;
   std::vector<std::string> problems;  // the first hundred: a file that is gone or was changed

@@ -36,7 +36,8 @@ constexpr double kFirstAnswerSeconds = 10;
 class OpenManifest final : public batch::LeaderSource {
  public:
   explicit OpenManifest(const std::string& path)
-      : file_(path), source_(batch::ReadManifest(file_, std::filesystem::path(path).parent_path(), path)) {}
+      : file_(path),
+        source_(batch::ReadManifest(file_, std::filesystem::path(path).parent_path(), path)) {}
   bool ok() const { return file_.is_open(); }
   absl::StatusOr<std::optional<batch::LeaderEntry>> Next() override { return source_->Next(); }
 
@@ -218,9 +219,9 @@ ExitCode CodeOf(const batch::JobReport& report, bool stopped) {
 }
 
 absl::StatusOr<ExitCode> RunJob(const BatchArguments& arguments, batch::Job& job,
-                                const std::filesystem::path& folder, const std::atomic<int64_t>& total,
-                                const ProgramEnvironment& environment,
-                                const RunningJob& running) {
+                                const std::filesystem::path& folder,
+                                const std::atomic<int64_t>& total,
+                                const ProgramEnvironment& environment, const RunningJob& running) {
   absl::StatusOr<batch::JobReport> report;
   {
     const ProgressDisplay display(DisplayKind(arguments, environment), job, total,
@@ -262,14 +263,11 @@ absl::Status Prepare(const BatchArguments& arguments, const ProgramEnvironment& 
 void ReportEstimate(const BatchArguments& arguments, const batch::Estimate& estimate,
                     const ProgramEnvironment& environment) {
   if (arguments.json) {
-    const nlohmann::ordered_json event = {{"event", "estimate"},
-                                          {"items", estimate.items},
-                                          {"leaders", estimate.leaders},
-                                          {"unreadable", estimate.unreadable},
-                                          {"frames", estimate.frames},
-                                          {"seconds", estimate.seconds},
-                                          {"bytes", estimate.bytes},
-                                          {"problems", estimate.problems}};
+    const nlohmann::ordered_json event = {
+        {"event", "estimate"},         {"items", estimate.items},
+        {"leaders", estimate.leaders}, {"unreadable", estimate.unreadable},
+        {"frames", estimate.frames},   {"seconds", estimate.seconds},
+        {"bytes", estimate.bytes},     {"problems", estimate.problems}};
     *environment.out << event.dump() << "\n";
     return;
   }
@@ -285,9 +283,8 @@ absl::StatusOr<ExitCode> RunDry(const BatchArguments& arguments,
                                 const ProgramEnvironment& environment, Prepared prepared) {
   const absl::StatusOr<batch::JobIdentity> begun =
       batch::ReadJobIdentity(ShardFolder(arguments.out, prepared.shard));
-  absl::Status status =
-      Prepare(arguments, environment,
-              begun.ok() ? begun->models : std::vector<ModelChoice>(), &prepared);
+  absl::Status status = Prepare(arguments, environment,
+                                begun.ok() ? begun->models : std::vector<ModelChoice>(), &prepared);
   if (!status.ok()) return status;
   absl::StatusOr<batch::Plan> plan =
       MakePlan(arguments, prepared.recipe, prepared.models, environment.in);

@@ -24,9 +24,8 @@ Example:
   duet batch walks/ --recipe mixes.textproto --out set
 )";
 
-const std::map<std::string, batch::Packing> kPackings = {{"none", batch::Packing::kNone},
-                                                         {"npz", batch::Packing::kNpz},
-                                                         {"tar", batch::Packing::kTar}};
+const std::map<std::string, batch::Packing> kPackings = {
+    {"none", batch::Packing::kNone}, {"npz", batch::Packing::kNpz}, {"tar", batch::Packing::kTar}};
 
 void AddInputFlags(CLI::App* app, BatchArguments* arguments) {
   constexpr char kGroup[] = "Input";

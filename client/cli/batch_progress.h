@@ -23,8 +23,8 @@ std::string ProgressLine(const batch::Progress& progress, std::optional<int64_t>
 std::string ProgressEvent(const batch::Progress& progress, std::optional<int64_t> total,
                           double seconds);
 
-// Shows the progress of a run while it lives: in place on a terminal, else a line every ten seconds,
-// as an event every second.
+// Shows the progress of a run while it lives: in place on a terminal, else a line every ten
+// seconds, as an event every second.
 class ProgressDisplay {
  public:
   enum class Kind { kNone, kTerminal, kLines, kEvents };

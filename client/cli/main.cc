@@ -7,7 +7,7 @@
 
 int main(int argc, char** argv) {
   const std::vector<std::string> arguments(argv + 1, argv + argc);
-  return duet::client::cli::RunProgram(arguments,
-                                       {duet::client::Client::Create, &std::cout, &std::cerr,
-                                        &std::cin, isatty(STDERR_FILENO) == 1});
+  return duet::client::cli::RunProgram(
+      arguments, {duet::client::Client::Create, &std::cout, &std::cerr, &std::cin,
+                  isatty(STDERR_FILENO) == 1});
 }

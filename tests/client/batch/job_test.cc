@@ -43,7 +43,9 @@ constexpr int kItems = 12;
 // Answers as `answer` says, unless that is empty: the leader, moved by how much its seed tells.
 class FakeConnection : public Connection {
  public:
-  absl::StatusOr<std::vector<ModelInfo>> ListModels() override { return absl::UnimplementedError(""); }
+  absl::StatusOr<std::vector<ModelInfo>> ListModels() override {
+    return absl::UnimplementedError("");
+  }
   absl::StatusOr<ModelDetails> GetModel(const ModelChoice&) override {
     return absl::UnimplementedError("");
   }
@@ -102,7 +104,8 @@ class JobTest : public ::testing::Test {
     const JobIdentity identity = WithModels(IdentityOf(*recipe, {}), {model});
     EXPECT_THAT(folder.Begin(identity), IsOk());
     std::istringstream in(manifest);
-    absl::StatusOr<Plan> plan = Plan::Create(*recipe, {model}, ReadManifest(in, folder_.path(), "m"));
+    absl::StatusOr<Plan> plan =
+        Plan::Create(*recipe, {model}, ReadManifest(in, folder_.path(), "m"));
     EXPECT_THAT(plan, IsOk());
     std::vector<std::vector<Client>> servers;
     for (const auto& connection : connections_) servers.push_back({Client(connection)});
@@ -188,7 +191,9 @@ TEST_F(JobTest, AFullServerIsAskedAgainAndNothingIsLost) {
 
 TEST_F(JobTest, AServerThatIsAwayIsLeftToTheOthers) {
   connections_.push_back(std::make_shared<FakeConnection>());
-  connections_[0]->answer = [](const SynthesisRequest&, int) { return absl::UnavailableError("away"); };
+  connections_[0]->answer = [](const SynthesisRequest&, int) {
+    return absl::UnavailableError("away");
+  };
   const auto report = Run("set");
   ASSERT_THAT(report, IsOk());
   EXPECT_EQ(connections_[1]->calls, kItems);
@@ -243,7 +248,9 @@ TEST_F(JobTest, WhatIsRefusedFailsForGoodUnlessAskedAgain) {
 }
 
 TEST_F(JobTest, CredentialsThatAreRefusedEndTheRunAndMarkNothing) {
-  connection().answer = [](const SynthesisRequest&, int) { return absl::UnauthenticatedError("who?"); };
+  connection().answer = [](const SynthesisRequest&, int) {
+    return absl::UnauthenticatedError("who?");
+  };
   const auto report = Run("set");
   ASSERT_THAT(report, IsOk());
   EXPECT_THAT(report->stopped, StatusIs(absl::StatusCode::kUnauthenticated, HasSubstr("who?")));

@@ -103,7 +103,8 @@ INSTANTIATE_TEST_SUITE_P(
 class ListLeadersTest : public ::testing::Test {
  protected:
   ListLeadersTest() {
-    for (const char* name : {"walks/b.bvh", "walks/a.csv", "walks/a.bvh", "walks/notes.md", "c.npy"}) {
+    for (const char* name :
+         {"walks/b.bvh", "walks/a.csv", "walks/a.bvh", "walks/notes.md", "c.npy"}) {
       std::filesystem::create_directories((folder_ / name).parent_path());
       test::WriteTestFile(folder_ / name, "");
     }
@@ -140,7 +141,8 @@ TEST_F(ListLeadersTest, WhatIsNotThereIsRefused) {
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("notes.md")));
   EXPECT_THAT(List({"c.npy", "c.npy", "c.npy"}),
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("another leader is named")));
-  EXPECT_THAT(ListLeaders({}), StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("no motion")));
+  EXPECT_THAT(ListLeaders({}),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("no motion")));
 }
 
 TEST(KeyOf, HoldsNothingThatFileSystemsOrArchivesTakeAmiss) {

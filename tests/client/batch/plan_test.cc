@@ -59,8 +59,8 @@ std::vector<std::string> Names(const std::vector<Item>& items) {
 constexpr char kKick[] = "reactions { labels { weights { key: 'kick' value: 1 } } }";
 
 TEST(Plan, GoesThroughLeadersReactionsModelsAndSamples) {
-  const auto items = PlanOf(std::string(kKick) + "models: 'sbu' models: 'k3hi' samples: 2", "leader\na.bvh\n",
-                            {Model("sbu"), Model("k3hi")});
+  const auto items = PlanOf(std::string(kKick) + "models: 'sbu' models: 'k3hi' samples: 2",
+                            "leader\na.bvh\n", {Model("sbu"), Model("k3hi")});
   ASSERT_THAT(items, IsOk());
   EXPECT_THAT(Names(*items), ElementsAre("a-2-kick-sbu_2-s0", "a-2-kick-sbu_2-s1",
                                          "a-2-kick-k3hi_2-s0", "a-2-kick-k3hi_2-s1"));
@@ -77,17 +77,17 @@ TEST(Plan, EveryKindOfReaction) {
     reactions { name: 'm' mixes { count: 2 classes_in_mix: 3 } })",
                             "leader\na.bvh\n");
   ASSERT_THAT(items, IsOk());
-  EXPECT_THAT(Names(*items),
-              ElementsAre("a-2-hugm1+kick0p5", "a-2-hug0+kick0p5", "a-2-hugm1+kick1",
-                          "a-2-hug0+kick1", "a-2-kick", "a-2-push", "a-2-hug", "a-2-turn",
-                          "a-2-m0", "a-2-m1"));
+  EXPECT_THAT(Names(*items), ElementsAre("a-2-hugm1+kick0p5", "a-2-hug0+kick0p5", "a-2-hugm1+kick1",
+                                         "a-2-hug0+kick1", "a-2-kick", "a-2-push", "a-2-hug",
+                                         "a-2-turn", "a-2-m0", "a-2-m1"));
   EXPECT_EQ((*items)[7].keyframes.size(), 2u);
   EXPECT_EQ((*items)[8].labels.size(), 3u);
 }
 
 TEST(Plan, MixesDifferFromLeaderToLeaderAndNotFromRunToRun) {
   const std::string recipe = "seed: 4 reactions { mixes { count: 3 min_weight: 0.5 } }";
-  const auto items = PlanOf(recipe), again = PlanOf(recipe), other = PlanOf("seed: 5" + recipe.substr(7));
+  const auto items = PlanOf(recipe), again = PlanOf(recipe),
+             other = PlanOf("seed: 5" + recipe.substr(7));
   ASSERT_THAT(items, IsOk());
   std::set<std::string> mixes;
   for (size_t i = 0; i < items->size(); ++i) {
@@ -128,12 +128,13 @@ TEST(Plan, SeedsDifferFromItemToItem) {
 }
 
 TEST(Plan, BothSidesLeadAndClassFoldersGoByTheLargestWeight) {
-  const auto items =
-      PlanOf("input { side: SIDE_BOTH } reactions { labels { "
-             "weights { key: 'kick' value: 0.5 } weights { key: 'hug' value: 1 } } }",
-             "leader\na.bvh\n", {Model("sbu")}, "layout: LAYOUT_CLASS_FOLDERS");
+  const auto items = PlanOf(
+      "input { side: SIDE_BOTH } reactions { labels { "
+      "weights { key: 'kick' value: 0.5 } weights { key: 'hug' value: 1 } } }",
+      "leader\na.bvh\n", {Model("sbu")}, "layout: LAYOUT_CLASS_FOLDERS");
   ASSERT_THAT(items, IsOk());
-  EXPECT_THAT(Names(*items), ElementsAre("hug/a-2-left-hug1+kick0p5", "hug/a-2-right-hug1+kick0p5"));
+  EXPECT_THAT(Names(*items),
+              ElementsAre("hug/a-2-left-hug1+kick0p5", "hug/a-2-right-hug1+kick0p5"));
   EXPECT_EQ((*items)[1].side, formats::Side::kRight);
 }
 
@@ -146,7 +147,8 @@ TEST(Plan, WhatMakesNoSenseIsRefused) {
   EXPECT_THAT(PlanOf(std::string(kKick) + kKick), refused("two are named kick"));
   EXPECT_THAT(PlanOf("reactions { mixes { count: 1 } } reactions { mixes { count: 1 } }"),
               refused("several mixes"));
-  EXPECT_THAT(PlanOf("reactions { mixes { count: 1 classes_in_mix: 4 } }"), refused("at most the 3"));
+  EXPECT_THAT(PlanOf("reactions { mixes { count: 1 classes_in_mix: 4 } }"),
+              refused("at most the 3"));
   EXPECT_THAT(PlanOf(std::string(kKick) + "samples: 2", "leader\na.bvh\n", {Model("sbu", false)}),
               refused("has one answer"));
   EXPECT_THAT(PlanOf(""), refused("a.bvh: wanted labels in the manifest"));
@@ -190,7 +192,8 @@ TEST(Shard, IsParsedStrictly) {
   EXPECT_EQ(ParseShard("2/8")->index, 2);
   EXPECT_EQ(ParseShard("2/8")->count, 8);
   for (const char* bad : {"", "1", "8/8", "-1/8", "a/b", "1/0"}) {
-    EXPECT_THAT(ParseShard(bad), StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("INDEX/COUNT")));
+    EXPECT_THAT(ParseShard(bad),
+                StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("INDEX/COUNT")));
   }
 }
 
@@ -216,11 +219,12 @@ TEST(Shard, IsFoundInAClustersEnvironment) {
   const auto aws = ShardFromEnvironment(
       Environment({{"AWS_BATCH_JOB_ARRAY_INDEX", "1"}, {"AWS_BATCH_JOB_ARRAY_SIZE", "2"}}));
   EXPECT_EQ(aws->index, 1);
-  EXPECT_THAT(ShardFromEnvironment(Environment({{"JOB_COMPLETION_INDEX", "3"}})),
-              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("JOB_COMPLETIONS: came none")));
-  EXPECT_THAT(ShardFromEnvironment(
-                  Environment({{"JOB_COMPLETION_INDEX", "4"}, {"JOB_COMPLETIONS", "4"}})),
-              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("wanted one of 4 from 0")));
+  EXPECT_THAT(
+      ShardFromEnvironment(Environment({{"JOB_COMPLETION_INDEX", "3"}})),
+      StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("JOB_COMPLETIONS: came none")));
+  EXPECT_THAT(
+      ShardFromEnvironment(Environment({{"JOB_COMPLETION_INDEX", "4"}, {"JOB_COMPLETIONS", "4"}})),
+      StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("wanted one of 4 from 0")));
 }
 
 }  // namespace
