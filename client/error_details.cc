@@ -43,4 +43,22 @@ std::string ErrorReason(const absl::Status& status) {
   return detail.has_value() ? detail->reason() : "";
 }
 
+bool IsPermanent(const absl::Status& status) {
+  switch (status.code()) {
+    case absl::StatusCode::kInvalidArgument:
+    case absl::StatusCode::kFailedPrecondition:
+    case absl::StatusCode::kOutOfRange:
+    case absl::StatusCode::kNotFound:
+    case absl::StatusCode::kAlreadyExists:
+    case absl::StatusCode::kPermissionDenied:
+    case absl::StatusCode::kUnauthenticated:
+    case absl::StatusCode::kUnimplemented:
+      return true;
+    case absl::StatusCode::kResourceExhausted:
+      return !RetryDelay(status).has_value();
+    default:
+      return false;
+  }
+}
+
 }  // namespace duet::client

@@ -29,6 +29,12 @@ std::optional<absl::Duration> RetryDelay(const absl::Status& status);
 // a Duet server.
 std::string ErrorReason(const absl::Status& status);
 
+// Whether the same call will fail again however often it is made: the input, the model or the
+// credentials are refused. INVALID_ARGUMENT, FAILED_PRECONDITION, OUT_OF_RANGE, NOT_FOUND,
+// ALREADY_EXISTS, PERMISSION_DENIED, UNAUTHENTICATED, UNIMPLEMENTED; RESOURCE_EXHAUSTED where the
+// server does not say when to come back (the message is too large).
+bool IsPermanent(const absl::Status& status);
+
 }  // namespace duet::client
 
 #endif  // DUET_CLIENT_ERROR_DETAILS_H_

@@ -39,6 +39,8 @@ struct ClientOptions {
   // Absent: plain text.
   std::optional<TlsOptions> tls;
   RetryOptions retry;
+  // A connection that no other Client of this process shares: several carry more than one.
+  bool own_connection = false;
 };
 
 }  // namespace duet::client

@@ -95,7 +95,9 @@ LAYERS = (
           libraries=("rpc", "prometheus")),
     # The client.
     Layer("viewer", "client/viewer", sees=("base", "motion", "client")),
-    Layer("client program", "client/cli", sees=MOTION_FILES + ("viewer", "client")),
+    Layer("batch", "client/batch", sees=MOTION_FILES + ("cleanup", "metrics", "client"),
+          libraries=("rpc",)),
+    Layer("client program", "client/cli", sees=MOTION_FILES + ("viewer", "batch", "client")),
     Layer("client", "client", sees=("base", "motion"), libraries=("rpc",)),
 )
 

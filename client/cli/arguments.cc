@@ -7,9 +7,11 @@
 
 #include "CLI/CLI.hpp"
 #include "absl/strings/str_cat.h"
+#include "client/cli/batch_flags.h"
 #include "client/cli/exit_code.h"
 #include "client/cli/flags.h"
 #include "client/cli/output.h"
+#include "client/cli/server_flags.h"
 #include "client/cli/value_syntax.h"
 
 namespace duet::client::cli {
@@ -34,36 +36,6 @@ const std::map<std::string, Priority> kPriorities = {{"interactive", Priority::k
 // "auto" leaves the choice to the server.
 const std::map<std::string, std::optional<bool>> kCleanUps = {
     {"auto", std::nullopt}, {"on", true}, {"off", false}};
-
-void AddServerFlags(CLI::App* app, ServerArguments* server) {
-  constexpr char kGroup[] = "Server";
-  app->add_option("--server", server->address, "Or any gRPC target, such as unix:/run/duet.sock")
-      ->capture_default_str()
-      ->type_name("HOST:PORT")
-      ->group(kGroup);
-  app->add_option("--timeout", server->timeout_seconds, "Seconds for the whole call, with retries")
-      ->check(Undescribed(CLI::Range(0.001, 86400.0)))
-      ->capture_default_str()
-      ->type_name("SECONDS")
-      ->group(kGroup);
-  app->add_flag("--tls", server->tls, "Encrypt; trust the system's authorities")->group(kGroup);
-  app->add_option("--tls-ca", server->tls_ca_file, "Encrypt; trust the authorities in this file")
-      ->type_name("FILE")
-      ->group(kGroup);
-  CLI::Option* certificate =
-      app->add_option("--tls-cert", server->tls_certificate_file, "This client's certificate")
-          ->type_name("FILE")
-          ->group(kGroup);
-  CLI::Option* key = app->add_option("--tls-key", server->tls_key_file, "This client's private key")
-                         ->type_name("FILE")
-                         ->group(kGroup);
-  certificate->needs(key);
-  key->needs(certificate);
-  app->add_option("--tls-server-name", server->tls_server_name,
-                  "Name in the server's certificate, where it is not the address")
-      ->type_name("NAME")
-      ->group(kGroup);
-}
 
 void AddInputFlags(CLI::App* app, SynthesizeArguments* arguments) {
   constexpr char kGroup[] = "Input";
@@ -261,6 +233,9 @@ ParsedCommandLine ParseCommandLine(const std::vector<std::string>& arguments) {
   synthesize_command->footer(kExitCodes);
   synthesize_command->callback([&synthesize] { CheckTogether(synthesize); });
 
+  BatchArguments batch;
+  const CLI::App* batch_command = AddBatchCommand(&app, &batch);
+
   ParsedCommandLine parsed;
   try {
     // CLI11 takes the arguments in reverse.
@@ -274,6 +249,7 @@ ParsedCommandLine ParseCommandLine(const std::vector<std::string>& arguments) {
   }
   if (models_command->parsed()) parsed.models = std::move(models);
   if (synthesize_command->parsed()) parsed.synthesize = std::move(synthesize);
+  if (batch_command->parsed()) parsed.batch = std::move(batch);
   return parsed;
 }
 

@@ -3,11 +3,15 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "absl/time/time.h"
+#include "client/batch/flow.h"
+#include "client/batch/recipe_file.h"
+#include "client/batch/shard.h"
 #include "client/options.h"
 #include "client/request.h"
 #include "model/formats/motion_file.h"
@@ -77,11 +81,35 @@ inline uint64_t SeedOf(const SynthesizeArguments& arguments, int sample) {
 // The files of one of the samples: with several, pair.html becomes pair.seed7.html.
 std::vector<std::filesystem::path> SampleOutputs(const SynthesizeArguments& arguments, int sample);
 
+// duet batch, duet batch merge and duet batch verify
+struct BatchArguments {
+  enum class Action { kRun, kMerge, kVerify };
+  Action action = Action::kRun;
+  std::vector<std::string> leaders;  // files, folders, patterns
+  std::string manifest;              // a file, "-" or empty
+  std::filesystem::path recipe;
+  std::filesystem::path out;
+  std::vector<std::string> servers = {ClientOptions().server_address};
+  ServerArguments connection;  // all but the address
+  std::optional<batch::Shard> shard;
+  batch::RecipeOverrides overrides;
+  int max_in_flight = batch::FlowOptions().max_in_flight;
+  int channels = 1;
+  double patience_seconds = 120;
+  int64_t limit = std::numeric_limits<int64_t>::max();
+  double share = 1;
+  bool retry_failed = false;
+  bool dry_run = false;
+  bool json = false;
+  bool quiet = false;
+};
+
 // What the command line asks for: one of the commands, or to print `text` and exit with `exit_code`
 // (help, version, a usage error).
 struct ParsedCommandLine {
   std::optional<ModelsArguments> models;
   std::optional<SynthesizeArguments> synthesize;
+  std::optional<BatchArguments> batch;
   std::string text;
   int exit_code = 0;
 };

@@ -16,6 +16,8 @@ struct ProgramEnvironment {
   std::function<absl::StatusOr<Client>(const ClientOptions&)> connect;
   std::ostream* out;
   std::ostream* err;
+  std::istream* in = nullptr;    // what `-` reads; none: there is nothing
+  bool err_is_terminal = false;  // progress is shown in place
 };
 
 // The whole `duet` program: parses, calls, writes, prints. Returns its exit code

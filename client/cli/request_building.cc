@@ -16,14 +16,6 @@ namespace {
 
 constexpr std::size_t kMaxTableBytes = std::size_t{1} << 20;
 
-// Both joints, or nothing where the model lacks one of them.
-std::optional<motion::JointPair> FindPair(const motion::Skeleton& skeleton, const std::string& left,
-                                          const std::string& right) {
-  const motion::JointPair pair{skeleton.Find(left), skeleton.Find(right)};
-  if (pair.left < 0 || pair.right < 0) return std::nullopt;
-  return pair;
-}
-
 // The joints of the table and of the flags.
 absl::StatusOr<retargeting::JointOverrides> ReadJoints(const InputArguments& input) {
   retargeting::JointOverrides joints = input.joints;
@@ -96,19 +88,6 @@ absl::StatusOr<FollowerStart> ReadStart(const SynthesizeArguments& arguments,
 }
 
 }  // namespace
-
-absl::StatusOr<motion::Skeleton> ToSkeleton(const ModelInfo& model) {
-  motion::Skeleton skeleton;
-  skeleton.joint_names = model.joint_names;
-  skeleton.bones = model.bones;
-  skeleton.root = skeleton.Find(model.root_joint);
-  skeleton.hips = FindPair(skeleton, "left_hip", "right_hip");
-  skeleton.feet = FindPair(skeleton, "left_foot", "right_foot");
-  absl::Status status = Validate(skeleton);
-  if (status.ok()) return skeleton;
-  return absl::InternalError(absl::StrCat("the server's model ", model.name, "@", model.version,
-                                          " has no usable skeleton: ", status.message()));
-}
 
 absl::Status CheckInputs(const SynthesizeArguments& arguments) {
   absl::Status status = CheckInput(arguments.leader);

@@ -7,14 +7,9 @@
 #include "absl/status/statusor.h"
 #include "client/cli/arguments.h"
 #include "client/request.h"
-#include "client/result.h"
 #include "model/motion/skeleton.h"
 
 namespace duet::client::cli {
-
-// A served model's joints as a skeleton, for reading and writing files. INTERNAL when they are no
-// tree.
-absl::StatusOr<motion::Skeleton> ToSkeleton(const ModelInfo& model);
 
 // Whether the files that the flags name exist and are of a known kind. Needs no skeleton, so that a
 // wrong name is refused before the server is asked for its model.

@@ -10,6 +10,7 @@
 #include "client/cli/report.h"
 #include "client/cli/request_building.h"
 #include "client/cli/server_options.h"
+#include "client/model_skeleton.h"
 #include "nlohmann/json.hpp"
 
 namespace duet::client::cli {

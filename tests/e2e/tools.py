@@ -50,10 +50,11 @@ def duet(*arguments):
 class Server:
     """A duet-server on a free port, and everything that it logged."""
 
-    def __init__(self, *flags):
+    def __init__(self, *flags, port=0):
         self.log = []
         self._process = subprocess.Popen(
-            [PROGRAMS / "duet-server", "--listen", "127.0.0.1:0", "--metrics-listen", "", *flags],
+            [PROGRAMS / "duet-server", "--listen", f"127.0.0.1:{port}", "--metrics-listen", "",
+             *flags],
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         serving = queue.Queue()
         # Reads to the end: a server whose log nobody reads stands still.
@@ -82,6 +83,11 @@ class Server:
             if entry.get("event") == "serving":
                 serving.put(entry["port"])
         serving.put(None)
+
+    def kill(self):
+        """Ends the server without warning."""
+        self._process.kill()
+        self.stop()
 
     def stop(self):
         """Asks the server to drain; returns its exit code."""

@@ -1,0 +1,86 @@
+#include "client/batch/answer.h"
+
+#include <cmath>
+
+#include "absl/strings/str_cat.h"
+#include "client/error_details.h"
+
+namespace duet::client::batch {
+namespace {
+
+// Keyframes of parts of a clip as frames; of several at one frame, in a short clip, the last.
+std::vector<WeightKeyframe> ToFrames(const std::vector<Schedule::Keyframe>& keyframes,
+                                     int frame_count) {
+  std::vector<WeightKeyframe> frames;
+  for (const Schedule::Keyframe& keyframe : keyframes) {
+    const int frame = static_cast<int>(std::lround(keyframe.at * (frame_count - 1)));
+    if (!frames.empty() && frames.back().frame == frame) frames.pop_back();
+    frames.push_back({frame, keyframe.labels});
+  }
+  return frames;
+}
+
+}  // namespace
+
+Meaning MeaningOf(const absl::Status& status) {
+  if (status.ok()) return Meaning::kAnswer;
+  switch (status.code()) {
+    case absl::StatusCode::kUnavailable:
+      return Meaning::kWait;
+    case absl::StatusCode::kResourceExhausted:
+      // Without a delay it is the request that is too large.
+      return RetryDelay(status).has_value() ? Meaning::kWait : Meaning::kRefused;
+    case absl::StatusCode::kNotFound:
+    case absl::StatusCode::kPermissionDenied:
+    case absl::StatusCode::kUnauthenticated:
+    case absl::StatusCode::kUnimplemented:
+      return Meaning::kStop;
+    default:
+      return IsPermanent(status) ? Meaning::kRefused : Meaning::kTryAgain;
+  }
+}
+
+CallEnd CallEndOf(const absl::Status& status) {
+  if (MeaningOf(status) != Meaning::kWait) return CallEnd::kAnswered;
+  return status.code() == absl::StatusCode::kUnavailable ? CallEnd::kAway : CallEnd::kRefused;
+}
+
+std::string RequestId(const Item& item, int retry) {
+  return absl::StrCat("batch-", item.id, retry == 0 ? "" : absl::StrCat("-", retry));
+}
+
+SynthesisRequest ToRequest(const Item& item, const Recipe& recipe, const ModelInfo& model,
+                           const LoadedLeader& leader, int retry) {
+  SynthesisRequest request;
+  request.model.name = model.name;
+  request.model.version = model.version;
+  request.leader = leader.clip;
+  request.weights = item.labels;
+  request.keyframes = ToFrames(item.keyframes, leader.clip.frame_count());
+  request.follower_start = leader.follower_start;
+  request.partner_direction = item.leader->partner_direction;
+  request.seed = SeedOf(item, recipe.seed, retry);
+  request.variety = recipe.variety;
+  request.priority = Priority::kBulk;
+  request.request_id = RequestId(item, retry);
+  return request;
+}
+
+RecordedAnswer ToRecorded(const SynthesisRequest& request, const SynthesisResult& result,
+                          const LoadedLeader& leader, const motion::Skeleton& skeleton, int retry) {
+  RecordedAnswer answer;
+  answer.leader_sha256 = leader.sha256;
+  answer.model = absl::StrCat(result.model_name, "@", result.model_version);
+  answer.seed = result.seed;
+  answer.variety = result.variety;
+  answer.request_id = result.request_id;
+  answer.keyframes = request.keyframes;
+  answer.frames = result.pair.follower.frame_count();
+  answer.frame_rate_hz = result.pair.follower.frame_rate_hz;
+  answer.quality = Measure(result.pair, skeleton);
+  answer.unfamiliarity = result.unfamiliarity;
+  answer.answers = retry + 1;
+  return answer;
+}
+
+}  // namespace duet::client::batch

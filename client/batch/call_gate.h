@@ -1,0 +1,50 @@
+#ifndef DUET_CLIENT_BATCH_CALL_GATE_H_
+#define DUET_CLIENT_BATCH_CALL_GATE_H_
+
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <optional>
+
+#include "client/batch/flow.h"
+
+namespace duet::client::batch {
+
+// Lets threads start calls as a ServerChoice has it.
+//
+// Threads: safe to call concurrently.
+class CallGate {
+ public:
+  // `patience`: how long all servers may be away before nobody waits any longer.
+  CallGate(int servers, const FlowOptions& options, Duration patience)
+      : servers_(servers, options), patience_(patience) {}
+
+  // Waits until a call may start. Nothing after Stop, and once the patience is over.
+  std::optional<ServerChoice::Call> Start();
+  void Finish(const ServerChoice::Call& call, CallEnd end, std::optional<Duration> delay);
+  // Nobody starts a call any longer; those under way go on.
+  void Stop();
+
+  struct State {
+    int in_flight = 0;
+    int limit = 0;
+    int64_t refusals = 0;
+    bool lost_patience = false;
+  };
+  State state() const;
+
+ private:
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  ServerChoice servers_;
+  Duration patience_;
+  std::optional<Time> away_since_;
+  int64_t refusals_ = 0;
+  bool lost_patience_ = false;
+  bool stopped_ = false;
+};
+
+}  // namespace duet::client::batch
+
+#endif  // DUET_CLIENT_BATCH_CALL_GATE_H_

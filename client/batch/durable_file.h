@@ -1,0 +1,67 @@
+#ifndef DUET_CLIENT_BATCH_DURABLE_FILE_H_
+#define DUET_CLIENT_BATCH_DURABLE_FILE_H_
+
+#include <filesystem>
+#include <string>
+
+#include "absl/status/status.h"
+#include "absl/strings/string_view.h"
+
+namespace duet::client::batch {
+
+// Files that are whole or not there, whenever the process or the machine stops.
+//
+// Errors: ABORTED naming the path and what the system says; a full disk may have room later, a
+//         closed folder be opened, so that the same run may succeed another time.
+
+// Writes `temporary`, brings it to the disk and gives it its place, whose folders are made as
+// needed. Both are on one file system. The name itself is on the disk after SyncFolder.
+absl::Status WriteDurably(const std::filesystem::path& temporary, const std::filesystem::path& path,
+                          absl::string_view content);
+// Brings a folder's names to the disk.
+absl::Status SyncFolder(const std::filesystem::path& folder);
+// Both, for a file that nobody else waits for.
+absl::Status ReplaceDurably(const std::filesystem::path& path, absl::string_view content);
+
+// A file that is written piece by piece and then given its place. A file that is not finished
+// leaves `temporary` behind.
+class DurableFile {
+ public:
+  explicit DurableFile(std::filesystem::path temporary) : temporary_(std::move(temporary)) {}
+  DurableFile(const DurableFile&) = delete;
+  DurableFile& operator=(const DurableFile&) = delete;
+  ~DurableFile();
+
+  // Replaces the temporary file. Once, before all else.
+  absl::Status Open();
+  absl::Status Append(absl::string_view content);
+  // On the disk at `path` when it returns.
+  absl::Status Finish(const std::filesystem::path& path);
+
+ private:
+  absl::Status Flush();
+
+  std::filesystem::path temporary_;
+  std::string buffer_;
+  int descriptor_ = -1;
+};
+
+// ABORTED "cannot write <path>: <what errno means>".
+absl::Status CannotWrite(const std::filesystem::path& path, int error);
+
+// Held while one process works in a folder; let go however it ends. ABORTED while another holds it.
+class FolderLock {
+ public:
+  FolderLock() = default;
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+  ~FolderLock();
+  absl::Status Take(const std::filesystem::path& file);
+
+ private:
+  int descriptor_ = -1;
+};
+
+}  // namespace duet::client::batch
+
+#endif  // DUET_CLIENT_BATCH_DURABLE_FILE_H_

@@ -1,0 +1,205 @@
+#include "client/batch/index.h"
+
+#include <string>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "absl/strings/str_replace.h"
+#include "client/batch/durable_file.h"
+#include "client/batch/packing.h"
+#include "client/batch/record.h"
+#include "model/base/file.h"
+
+namespace duet::client::batch {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr size_t kMaxSummaryBytes = size_t{1} << 20;
+
+constexpr const char* kFields[] = {
+    "item",   "id",    "name", "leader",  "leader_sha256", "side",   "reaction",
+    "labels", "model", "seed", "variety", "request_id",    "frames", "frame_rate_hz"};
+constexpr const char* kFigures[] = {
+    "lean_degrees",    "foot_above_floor_metres", "foot_below_floor_metres",
+    "distance_metres", "penetration_metres",      "range_of_motion_metres"};
+
+// A cell holds no tab and no line end; what is not there is empty.
+std::string Cell(const ordered_json& object, const char* name) {
+  const auto found = object.find(name);
+  if (found == object.end()) return "";
+  const std::string text = found->is_string() ? found->get<std::string>() : Line(*found);
+  return absl::StrReplaceAll(text, {{"\t", " "}, {"\n", " "}, {"\r", " "}});
+}
+
+// "kick=1,hug=0.5", or the keyframes as they are.
+std::string LabelsCell(const ordered_json& record) {
+  if (!record.contains("labels")) return Cell(record, "keyframes");
+  std::vector<std::string> labels;
+  for (const auto& [name, weight] : record["labels"].items()) {
+    labels.push_back(absl::StrCat(name, "=", weight.dump()));
+  }
+  return absl::StrReplaceAll(absl::StrJoin(labels, ","), {{"\t", " "}, {"\n", " "}});
+}
+
+std::vector<std::string> CommonCells(const ordered_json& record) {
+  std::vector<std::string> cells;
+  for (const char* field : kFields) {
+    cells.push_back(absl::string_view(field) == "labels" ? LabelsCell(record)
+                                                         : Cell(record, field));
+  }
+  for (const char* figure : kFigures) cells.push_back(Cell(record["quality"], figure));
+  cells.push_back(Cell(record, "unfamiliarity"));
+  return cells;
+}
+
+std::vector<std::string> CommonHeader() {
+  std::vector<std::string> header(std::begin(kFields), std::end(kFields));
+  header.insert(header.end(), std::begin(kFigures), std::end(kFigures));
+  header.emplace_back("unfamiliarity");
+  return header;
+}
+
+std::string Row(const std::vector<std::string>& cells) { return absl::StrJoin(cells, "\t") + "\n"; }
+
+std::vector<std::string> FileCells(const ordered_json& record, const char* field) {
+  std::vector<std::string> cells;
+  for (const ordered_json& file : record["files"]) cells.push_back(Cell(file, field));
+  return cells;
+}
+
+uint64_t BytesOf(const ordered_json& record) {
+  uint64_t bytes = 0;
+  for (const ordered_json& file : record["files"]) bytes += file["bytes"].get<uint64_t>();
+  return bytes;
+}
+
+// The files that grow with the items.
+class IndexWriter {
+ public:
+  IndexWriter(const JobIdentity& identity, const std::filesystem::path& temporary)
+      : shards_(identity.packing, identity.shard_bytes),
+        packed_(identity.packing != Packing::kNone),
+        json_(temporary / "index.jsonl"),
+        tsv_(temporary / "index.tsv"),
+        rejected_(temporary / "rejected.tsv") {}
+
+  absl::Status Open() {
+    std::vector<std::string> header = CommonHeader();
+    absl::Status status = json_.Open();
+    status.Update(tsv_.Open());
+    status.Update(rejected_.Open());
+    if (!status.ok()) return status;
+    std::vector<std::string> rejected = header;
+    rejected.insert(rejected.end(), {"answers", "reasons", "extra"});
+    status.Update(rejected_.Append(Row(rejected)));
+    if (packed_) header.emplace_back("shard");
+    header.insert(header.end(), {"files", "sha256", "extra"});
+    status.Update(tsv_.Append(Row(header)));
+    return status;
+  }
+
+  absl::Status Add(const std::string& text) {
+    ordered_json record = ordered_json::parse(text);
+    if (record["state"] == kFailed) {
+      ++counts_.failed;
+      return absl::OkStatus();
+    }
+    return record["state"] == kDone ? AddDone(&record) : AddRejected(record);
+  }
+
+  absl::Status Finish(const std::filesystem::path& out) {
+    absl::Status status = rejected_.Finish(out / "rejected.tsv");
+    status.Update(tsv_.Finish(out / "index.tsv"));
+    status.Update(json_.Finish(out / "index.jsonl"));
+    return status;
+  }
+
+  const SetCounts& counts() const { return counts_; }
+
+ private:
+  absl::Status AddDone(ordered_json* record) {
+    ++counts_.done;
+    counts_.bytes += BytesOf(*record);
+    std::vector<std::string> cells = CommonCells(*record);
+    if (packed_) {
+      (*record)["shard"] = shards_.Next(BytesOf(*record));
+      cells.push_back(Cell(*record, "shard"));
+    }
+    cells.push_back(absl::StrJoin(FileCells(*record, "path"), ","));
+    cells.push_back(absl::StrJoin(FileCells(*record, "sha256"), ","));
+    cells.push_back(Cell(*record, "extra"));
+    absl::Status status = json_.Append(Line(*record) + "\n");
+    status.Update(tsv_.Append(Row(cells)));
+    return status;
+  }
+
+  absl::Status AddRejected(const ordered_json& record) {
+    ++counts_.rejected;
+    std::vector<std::string> cells = CommonCells(record);
+    cells.push_back(Cell(record, "answers"));
+    std::vector<std::string> reasons;
+    for (const ordered_json& reason : record["reasons"]) reasons.push_back(reason);
+    cells.push_back(absl::StrJoin(reasons, "; "));
+    cells.push_back(Cell(record, "extra"));
+    return rejected_.Append(Row(cells));
+  }
+
+  ShardNames shards_;
+  bool packed_;
+  DurableFile json_, tsv_, rejected_;
+  SetCounts counts_;
+};
+
+std::string SummaryJson(const JobIdentity& identity, const SetCounts& counts,
+                        const PlannedItems& planned) {
+  ordered_json models = ordered_json::array();
+  for (const ModelChoice& model : identity.models) {
+    models.push_back(absl::StrCat(model.name, "@", model.version.value_or(0)));
+  }
+  const ordered_json summary = {
+      {"planned", planned.count},
+      {"whole_plan", planned.whole},
+      {"done", counts.done},
+      {"rejected", counts.rejected},
+      {"failed", counts.failed},
+      {"missing", planned.count - counts.done - counts.rejected - counts.failed},
+      {"bytes", counts.bytes},
+      {"models", models},
+      {"recipe_sha256", identity.recipe_digest},
+      {"shard", absl::StrCat(identity.shard.index, "/", identity.shard.count)}};
+  return summary.dump(2) + "\n";
+}
+
+}  // namespace
+
+absl::StatusOr<SetCounts> WriteIndex(const JournalReader& journal, const JobIdentity& identity,
+                                     const PlannedItems& planned,
+                                     const std::filesystem::path& temporary,
+                                     const std::filesystem::path& out) {
+  IndexWriter writer(identity, temporary);
+  absl::Status status = writer.Open();
+  if (!status.ok()) return status;
+  status =
+      journal.ForEach([&writer](int64_t, const std::string& record) { return writer.Add(record); });
+  if (status.ok()) status = writer.Finish(out);
+  if (!status.ok()) return status;
+  status = ReplaceDurably(out / "summary.json", SummaryJson(identity, writer.counts(), planned));
+  if (!status.ok()) return status;
+  return writer.counts();
+}
+
+absl::StatusOr<PlannedItems> ReadPlanned(const std::filesystem::path& out) {
+  const std::filesystem::path file = out / "summary.json";
+  const absl::StatusOr<std::string> text = base::ReadFile(file, kMaxSummaryBytes, "a summary");
+  if (!text.ok()) return text.status();
+  const auto summary = nlohmann::json::parse(*text, nullptr, false);
+  for (const char* field : {"planned", "whole_plan", "missing"}) {
+    if (summary.is_object() && summary.contains(field)) continue;
+    return absl::DataLossError(absl::StrCat(file.string(), ": is no summary of duet batch"));
+  }
+  return PlannedItems{summary["planned"], summary["whole_plan"], summary["missing"]};
+}
+
+}  // namespace duet::client::batch

@@ -1,0 +1,41 @@
+#ifndef DUET_CLIENT_BATCH_INDEX_H_
+#define DUET_CLIENT_BATCH_INDEX_H_
+
+#include <cstdint>
+#include <filesystem>
+
+#include "absl/status/statusor.h"
+#include "client/batch/job_folder.h"
+#include "client/batch/journal.h"
+
+namespace duet::client::batch {
+
+// What is in a data set.
+struct SetCounts {
+  int64_t done = 0;
+  int64_t rejected = 0;
+  int64_t failed = 0;
+  uint64_t bytes = 0;
+};
+
+// How many items there should be.
+struct PlannedItems {
+  int64_t count = 0;
+  bool whole = false;   // a run has come to the plan's end: there are no more
+  int64_t missing = 0;  // neither done, rejected nor failed; of what is read alone
+};
+
+// Writes index.jsonl and index.tsv (items that are done), rejected.tsv (those that the filter did
+// not let pass) and summary.json into `out`, in the order of the items and without times: the same
+// for the same journal records, in whatever order these were written.
+absl::StatusOr<SetCounts> WriteIndex(const JournalReader& journal, const JobIdentity& identity,
+                                     const PlannedItems& planned,
+                                     const std::filesystem::path& temporary,
+                                     const std::filesystem::path& out);
+
+// What summary.json says of the plan. NOT_FOUND without one, DATA_LOSS for one that cannot be read.
+absl::StatusOr<PlannedItems> ReadPlanned(const std::filesystem::path& out);
+
+}  // namespace duet::client::batch
+
+#endif  // DUET_CLIENT_BATCH_INDEX_H_

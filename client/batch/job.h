@@ -1,0 +1,142 @@
+#ifndef DUET_CLIENT_BATCH_JOB_H_
+#define DUET_CLIENT_BATCH_JOB_H_
+
+#include <atomic>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "client/batch/answer.h"
+#include "client/batch/bounded_queue.h"
+#include "client/batch/call_gate.h"
+#include "client/batch/index.h"
+#include "client/batch/job_folder.h"
+#include "client/batch/journal.h"
+#include "client/batch/loaded_leader.h"
+#include "client/batch/plan.h"
+#include "client/client.h"
+
+namespace duet::client::batch {
+
+struct JobOptions {
+  FlowOptions flow;
+  // How long servers may be away before the run ends.
+  Duration patience = std::chrono::minutes(2);
+  // A part of the plan: its first items, and of these a share that is chosen by hash.
+  int64_t limit = std::numeric_limits<int64_t>::max();
+  double share = 1;
+  // Items whose failure was for good are asked for again.
+  bool retry_failed = false;
+};
+
+// How far a run is. Counts of items.
+struct Progress {
+  int64_t planned = 0;  // that the run has come to so far
+  int64_t resumed = 0;  // of these, settled by earlier runs
+  int64_t done = 0;     // by this run, as are all below
+  int64_t rejected = 0;
+  int64_t failed = 0;      // for good
+  int64_t unfinished = 0;  // failed for a passing reason
+  uint64_t bytes = 0;
+  CallGate::State calls;
+};
+
+// How a run ended.
+struct JobReport {
+  SetCounts set;        // what is in the data set now
+  int64_t planned = 0;  // items that should be in it
+  int64_t unfinished = 0;
+  // Why the run ended before all items were settled; OK when it was not, or when it was asked to.
+  absl::Status stopped;
+  bool complete() const { return set.done + set.rejected + set.failed >= planned; }
+};
+
+// One run of a batch: asks for every item of a plan that is not settled yet, keeps what comes, and
+// writes the index. Reading, calls and writing overlap.
+//
+// An item is settled when its files are on the disk under their names and its record in the journal
+// is as well, in this order: whenever the process ends, the next run asks again for what is not
+// settled, gets the same and writes the same files.
+class Job {
+ public:
+  // `servers`: for each the clients that take turns, each with one attempt and bulk priority of its
+  // own accord. `models` and `skeletons` are the plan's. `folder` is open and begun as `identity`.
+  struct Parts {
+    Recipe recipe;
+    JobIdentity identity;
+    std::vector<ModelInfo> models;
+    std::vector<motion::Skeleton> skeletons;
+    std::vector<std::vector<Client>> servers;
+    const JobFolder* folder = nullptr;
+  };
+  Job(Parts parts, Plan plan, const JobOptions& options);
+
+  // Once. An error is of the input or of the disk, before which everything settled is kept.
+  absl::StatusOr<JobReport> Run();
+
+  // Lets calls under way end and asks for nothing more. From any thread.
+  void Stop();
+  Progress progress() const;
+
+ private:
+  struct Work {
+    Item item;
+    std::shared_ptr<SharedLeader> leader;
+  };
+  // An item whose files have their names.
+  struct Settled {
+    int64_t item = 0;
+    std::string record;
+    std::vector<std::filesystem::path> folders;
+  };
+
+  absl::Status Feed(const JournalReader& journal);
+  absl::StatusOr<bool> IsSettled(const Item& item, const JournalReader& journal) const;
+  bool Put(Item item);
+  void WorkUntilDone();
+  absl::Status Make(const Work& work);
+  absl::Status Judge(const Work& work, const SynthesisRequest& request,
+                     const SynthesisResult& result, int retry, bool* again);
+  absl::Status Keep(const Item& item, const RecordedAnswer& answer, const motion::ClipPair& pair);
+  absl::Status Fail(const Item& item, const absl::Status& error);
+  void FailForNow(const Item& item, const absl::Status& error);
+  void Settle(const Item& item, const nlohmann::ordered_json& record,
+              std::vector<std::filesystem::path> folders);
+  void WriteError(const Item& item, const absl::Status& error);
+  void RemoveError(const Item& item);
+  std::filesystem::path ErrorFile(const Item& item) const;
+  void CommitUntilClosed(JournalWriter* writer);
+  absl::Status RunThreads(const JournalReader& journal, JournalWriter* writer);
+  absl::StatusOr<JobReport> Finish();
+  void StopWith(const absl::Status& status);
+  Client& NextClient(int server);
+
+  Parts parts_;
+  Plan plan_;
+  JobOptions options_;
+  CallGate gate_;
+  BoundedQueue<Work> queue_;
+  BoundedQueue<Settled> settled_;
+
+  // The leaders of the item that Feed came to last, by model.
+  std::vector<std::shared_ptr<SharedLeader>> leaders_;
+  std::shared_ptr<const LeaderEntry> last_entry_;
+  formats::Side last_side_ = formats::Side::kLeft;
+
+  std::atomic<int64_t> planned_{0}, resumed_{0}, done_{0}, rejected_{0}, failed_{0};
+  std::atomic<int64_t> unfinished_{0};
+  std::atomic<uint64_t> bytes_{0}, turns_{0};
+  std::atomic<bool> errors_exist_{false};
+  bool whole_plan_ = false;  // Feed came to the plan's end
+  std::mutex stop_mutex_;
+  absl::Status stopped_with_;
+};
+
+}  // namespace duet::client::batch
+
+#endif  // DUET_CLIENT_BATCH_JOB_H_

@@ -1,0 +1,166 @@
+#include "client/batch/journal.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <fstream>
+#include <utility>
+
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_cat.h"
+#include "client/batch/durable_file.h"
+#include "model/base/sha256.h"
+
+namespace duet::client::batch {
+namespace {
+
+constexpr size_t kDigestDigits = 8;
+constexpr mode_t kFileMode = 0644;
+constexpr size_t kReadBlock = size_t{1} << 12;
+
+std::string Digest(absl::string_view text) {
+  return base::Sha256Hex({text.data(), text.size()}).substr(0, kDigestDigits);
+}
+
+// A line's item and record; false for one that is not whole.
+bool ParseLine(absl::string_view line, int64_t* item, absl::string_view* record) {
+  if (line.size() < kDigestDigits + 2 || line[kDigestDigits] != ' ') return false;
+  const absl::string_view rest = line.substr(kDigestDigits + 1);
+  const size_t space = rest.find(' ');
+  if (space == absl::string_view::npos || !absl::SimpleAtoi(rest.substr(0, space), item) ||
+      *item < 0 || line.substr(0, kDigestDigits) != Digest(rest)) {
+    return false;
+  }
+  *record = rest.substr(space + 1);
+  return true;
+}
+
+}  // namespace
+
+absl::StatusOr<JournalReader> JournalReader::Open(const std::filesystem::path& path) {
+  JournalReader reader;
+  reader.path_ = path;
+  reader.descriptor_ = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (reader.descriptor_ < 0 && errno == ENOENT) return reader;
+  if (reader.descriptor_ < 0) return absl::ErrnoToStatus(errno, path.string());
+  absl::Status status = reader.Load();
+  if (!status.ok()) return status;
+  return reader;
+}
+
+JournalReader::JournalReader(JournalReader&& other) noexcept
+    : path_(std::move(other.path_)),
+      descriptor_(std::exchange(other.descriptor_, -1)),
+      offsets_(std::move(other.offsets_)),
+      count_(other.count_),
+      size_(other.size_) {}
+
+JournalReader::~JournalReader() {
+  if (descriptor_ >= 0) close(descriptor_);
+}
+
+absl::Status JournalReader::Load() {
+  std::ifstream file(path_, std::ios::binary);
+  bool torn = false;
+  for (std::string line; std::getline(file, line);) {
+    int64_t item = 0;
+    absl::string_view record;
+    // A line without its end meets the end of the file.
+    if (torn)
+      return absl::DataLossError(absl::StrCat(path_.string(), ": byte ", size_, ": damaged"));
+    torn = file.eof() || !ParseLine(line, &item, &record);
+    if (torn) continue;
+    if (item >= end()) offsets_.resize(static_cast<size_t>(item) + 1);
+    uint64_t& offset = offsets_[static_cast<size_t>(item)];
+    count_ += offset == 0 ? 1 : 0;
+    offset = size_ + 1;
+    size_ += line.size() + 1;
+  }
+  return file.bad() ? absl::DataLossError(absl::StrCat(path_.string(), ": cannot be read"))
+                    : absl::OkStatus();
+}
+
+bool JournalReader::Has(int64_t item) const {
+  return item < end() && offsets_[static_cast<size_t>(item)] != 0;
+}
+
+absl::StatusOr<std::string> JournalReader::LineAt(uint64_t offset) const {
+  std::string line;
+  while (true) {
+    const size_t before = line.size();
+    line.resize(before + kReadBlock);
+    const ssize_t got =
+        pread(descriptor_, line.data() + before, kReadBlock, static_cast<off_t>(offset + before));
+    if (got < 0 && errno == EINTR) {
+      line.resize(before);
+      continue;
+    }
+    if (got <= 0) return absl::DataLossError(absl::StrCat(path_.string(), ": changed while read"));
+    line.resize(before + static_cast<size_t>(got));
+    const size_t end = line.find('\n', before);
+    if (end == std::string::npos) continue;
+    line.resize(end);
+    return line;
+  }
+}
+
+absl::StatusOr<std::string> JournalReader::Read(int64_t item) const {
+  absl::StatusOr<std::string> line = LineAt(offsets_[static_cast<size_t>(item)] - 1);
+  if (!line.ok()) return line;
+  int64_t found = 0;
+  absl::string_view record;
+  if (ParseLine(*line, &found, &record) && found == item) return std::string(record);
+  return absl::DataLossError(absl::StrCat(path_.string(), ": changed while read"));
+}
+
+absl::Status JournalReader::ForEach(
+    const std::function<absl::Status(int64_t item, const std::string& record)>& visit) const {
+  for (int64_t item = 0; item < end(); ++item) {
+    if (!Has(item)) continue;
+    const absl::StatusOr<std::string> record = Read(item);
+    if (!record.ok()) return record.status();
+    absl::Status status = visit(item, *record);
+    if (!status.ok()) return status;
+  }
+  return absl::OkStatus();
+}
+
+JournalWriter::~JournalWriter() {
+  if (descriptor_ >= 0) close(descriptor_);
+}
+
+absl::Status JournalWriter::Open(const std::filesystem::path& path, uint64_t size) {
+  path_ = path;
+  descriptor_ = open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, kFileMode);
+  if (descriptor_ < 0) return CannotWrite(path, errno);
+  const auto end = static_cast<off_t>(size);
+  if (ftruncate(descriptor_, end) != 0 || lseek(descriptor_, end, SEEK_SET) != end ||
+      fsync(descriptor_) != 0) {
+    return CannotWrite(path, errno);
+  }
+  return SyncFolder(path.parent_path());
+}
+
+void JournalWriter::Add(int64_t item, absl::string_view record) {
+  const std::string rest = absl::StrCat(item, " ", record);
+  absl::StrAppend(&pending_, Digest(rest), " ", rest, "\n");
+}
+
+absl::Status JournalWriter::Commit() {
+  absl::string_view rest = pending_;
+  while (broken_.ok() && !rest.empty()) {
+    const ssize_t written = write(descriptor_, rest.data(), rest.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) {
+      broken_ = CannotWrite(path_, errno);
+    } else {
+      rest.remove_prefix(static_cast<size_t>(written));
+    }
+  }
+  pending_.clear();
+  if (broken_.ok() && fdatasync(descriptor_) != 0) broken_ = CannotWrite(path_, errno);
+  return broken_;
+}
+
+}  // namespace duet::client::batch

@@ -1,0 +1,146 @@
+#include <fnmatch.h>
+
+#include <algorithm>
+#include <set>
+#include <system_error>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "client/batch/leader_source.h"
+#include "model/formats/motion_file.h"
+
+namespace duet::client::batch {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Files of a list that is made beforehand: a path each, as long as a folder's listing.
+class LeaderList final : public LeaderSource {
+ public:
+  absl::StatusOr<std::optional<LeaderEntry>> Next() override {
+    if (next_ == entries_.size()) return std::optional<LeaderEntry>();
+    return std::optional<LeaderEntry>(entries_[next_++]);
+  }
+
+  absl::Status Add(const fs::path& file, const fs::path& named) {
+    LeaderEntry entry;
+    entry.key = KeyOf(fs::path(named).replace_extension());
+    entry.given = file.string();
+    entry.file = file;
+    if (!keys_.insert(entry.key).second) {
+      // Two formats of one name: both with their endings.
+      entry.key = KeyOf(named);
+      if (!keys_.insert(entry.key).second) {
+        return absl::InvalidArgumentError(
+            absl::StrCat(file.string(), ": another leader is named ", entry.key,
+                         " as well, wanted files of different names or one folder above both"));
+      }
+    }
+    entries_.push_back(std::move(entry));
+    return absl::OkStatus();
+  }
+
+  bool empty() const { return entries_.empty(); }
+
+ private:
+  std::vector<LeaderEntry> entries_;
+  std::set<std::string> keys_;
+  size_t next_ = 0;
+};
+
+absl::Status AddFolder(const fs::path& folder, LeaderList* list) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (fs::recursive_directory_iterator it(folder, error), end; !error && it != end;
+       it.increment(error)) {
+    if (it->is_regular_file() && formats::IsReadable(it->path())) files.push_back(it->path());
+  }
+  if (error) {
+    return absl::PermissionDeniedError(absl::StrCat(folder.string(), ": ", error.message()));
+  }
+  std::sort(files.begin(), files.end());
+  for (const fs::path& file : files) {
+    absl::Status status = list->Add(file, file.lexically_relative(folder));
+    if (!status.ok()) return status;
+  }
+  return absl::OkStatus();
+}
+
+bool IsPattern(const fs::path& path) {
+  return path.string().find_first_of("*?") != std::string::npos;
+}
+
+// Every file that a pattern of several parts stands for, by name.
+std::vector<fs::path> Expand(const fs::path& pattern) {
+  std::vector<fs::path> found = {pattern.is_absolute() ? pattern.root_path() : fs::path()};
+  for (const fs::path& part : pattern.relative_path()) {
+    std::vector<fs::path> next;
+    for (const fs::path& folder : found) {
+      if (!IsPattern(part)) {
+        next.push_back(folder / part);
+        continue;
+      }
+      std::error_code error;
+      for (fs::directory_iterator it(folder.empty() ? "." : folder, error), end;
+           !error && it != end; it.increment(error)) {
+        const fs::path name = it->path().filename();
+        if (fnmatch(part.c_str(), name.c_str(), FNM_PERIOD) == 0) next.push_back(folder / name);
+      }
+    }
+    std::sort(next.begin(), next.end());
+    found = std::move(next);
+  }
+  return found;
+}
+
+// The folder that names are told from: all of a pattern before its first wildcard.
+fs::path FixedPart(const fs::path& pattern) {
+  fs::path fixed;
+  for (const fs::path& part : pattern.parent_path()) {
+    if (IsPattern(part)) break;
+    fixed /= part;
+  }
+  return fixed;
+}
+
+absl::Status AddPattern(const fs::path& pattern, LeaderList* list) {
+  bool any = false;
+  const fs::path fixed = FixedPart(pattern);
+  for (const fs::path& file : Expand(pattern)) {
+    std::error_code error;
+    if (!fs::is_regular_file(file, error) || !formats::IsReadable(file)) continue;
+    any = true;
+    absl::Status status = list->Add(file, fixed.empty() ? file : file.lexically_relative(fixed));
+    if (!status.ok()) return status;
+  }
+  if (any) return absl::OkStatus();
+  return absl::NotFoundError(absl::StrCat(pattern.string(), ": no motion file is named so"));
+}
+
+absl::Status AddInput(const fs::path& path, LeaderList* list) {
+  std::error_code error;
+  if (fs::is_directory(path, error)) return AddFolder(path, list);
+  if (fs::exists(path, error)) {
+    if (formats::IsReadable(path)) return list->Add(path, path.filename());
+    return formats::UnknownExtension(path, formats::kReadableExtensions);
+  }
+  if (IsPattern(path)) return AddPattern(path, list);
+  return absl::NotFoundError(absl::StrCat(path.string(), ": no such file or folder"));
+}
+
+}  // namespace
+
+absl::StatusOr<std::unique_ptr<LeaderSource>> ListLeaders(const std::vector<std::string>& inputs) {
+  auto list = std::make_unique<LeaderList>();
+  for (const std::string& input : inputs) {
+    absl::Status status = AddInput(input, list.get());
+    if (!status.ok()) return status;
+  }
+  if (list->empty()) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "leaders: came no motion file, wanted one or more: ", formats::kReadableExtensions));
+  }
+  return std::unique_ptr<LeaderSource>(std::move(list));
+}
+
+}  // namespace duet::client::batch

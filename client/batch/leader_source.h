@@ -1,0 +1,39 @@
+#ifndef DUET_CLIENT_BATCH_LEADER_SOURCE_H_
+#define DUET_CLIENT_BATCH_LEADER_SOURCE_H_
+
+#include <filesystem>
+#include <iosfwd>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "client/batch/leader_entry.h"
+
+namespace duet::client::batch {
+
+// Leaders one after the other, so that a list of any length takes no memory.
+class LeaderSource {
+ public:
+  virtual ~LeaderSource() = default;
+  // The next one; nothing at the end. A status that is not OK ends the list.
+  virtual absl::StatusOr<std::optional<LeaderEntry>> Next() = 0;
+};
+
+// Files, folders (all motion files below, by name) and patterns ("walks/*.bvh"; * and ? within one
+// part of a path). A folder's files are named by their path in it, a file by its own name.
+//
+// Errors: NOT_FOUND for what is not there, INVALID_ARGUMENT for a file of no known kind, for two
+//         leaders of one key, and where there is no motion file at all.
+absl::StatusOr<std::unique_ptr<LeaderSource>> ListLeaders(const std::vector<std::string>& inputs);
+
+// A manifest, line by line: JSON objects where the first line begins with '{', else TSV
+// (ManifestLine in proto/duet/batch/v1/batch.proto). `folder` is where relative paths begin, `name`
+// is how errors call the manifest. `in` outlives the source.
+std::unique_ptr<LeaderSource> ReadManifest(std::istream& in, const std::filesystem::path& folder,
+                                           const std::string& name);
+
+}  // namespace duet::client::batch
+
+#endif  // DUET_CLIENT_BATCH_LEADER_SOURCE_H_

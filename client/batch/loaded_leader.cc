@@ -1,0 +1,75 @@
+#include "client/batch/loaded_leader.h"
+
+#include <system_error>
+#include <vector>
+
+#include "client/batch/text_values.h"
+#include "model/base/file.h"
+#include "model/base/sha256.h"
+#include "model/motion/motion_limits.h"
+
+namespace duet::client::batch {
+namespace {
+
+formats::ReadOptions ToReadOptions(const LeaderInput& input, const motion::Skeleton& skeleton) {
+  formats::ReadOptions options;
+  options.skeleton = skeleton;
+  options.frame_rate_hz = input.frame_rate_hz;
+  options.metres_per_unit = input.metres_per_unit;
+  options.joint_overrides = input.joint_map;
+  if (!input.unit.has_value() && !input.up_axis.has_value()) return options;
+  motion::Coordinates coordinates;
+  coordinates.unit = input.unit.value_or(motion::LengthUnit::kMetres);
+  const bool sbu = coordinates.unit == motion::LengthUnit::kSbuNormalised;
+  coordinates.up_axis = input.up_axis.value_or(sbu ? motion::UpAxis::kYDown : motion::UpAxis::kYUp);
+  options.coordinates = coordinates;
+  return options;
+}
+
+absl::StatusOr<FollowerStart> ReadStart(const std::filesystem::path& file,
+                                        const formats::ReadOptions& options) {
+  absl::StatusOr<std::vector<motion::Vec3>> pose = formats::ReadFollowerStart(file, options);
+  if (!pose.ok()) return pose.status();
+  return FollowerStart(*std::move(pose));
+}
+
+absl::Status SetStart(const LeaderEntry& entry, formats::Side side, const LeaderInput& input,
+                      formats::ReadOptions options, LoadedLeader* loaded) {
+  const std::string& start = entry.follower_start;
+  if (start.empty() && !input.starts_as_other_person) return absl::OkStatus();
+  if (const std::optional<motion::Vec3> root = ParseTriple(start); root.has_value()) {
+    loaded->follower_start = *root;
+    return absl::OkStatus();
+  }
+  const std::filesystem::path file = start.empty() ? entry.file : std::filesystem::path(start);
+  std::error_code error;
+  // Of the leader's own file, the follower is the other person.
+  const bool own = start.empty() || std::filesystem::equivalent(file, entry.file, error);
+  options.side = entry.follower_start_side.value_or(own ? OtherSide(side) : formats::Side::kLeft);
+  absl::StatusOr<FollowerStart> pose = ReadStart(file, options);
+  if (!pose.ok()) return pose.status();
+  loaded->follower_start = *std::move(pose);
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+absl::StatusOr<LoadedLeader> LoadLeader(const LeaderEntry& entry, formats::Side side,
+                                        const LeaderInput& input,
+                                        const motion::Skeleton& skeleton) {
+  formats::ReadOptions options = ToReadOptions(input, skeleton);
+  options.side = side;
+  absl::StatusOr<motion::Clip> clip = formats::ReadLeader(entry.file, options);
+  if (!clip.ok()) return clip.status();
+  const absl::StatusOr<std::string> content =
+      base::ReadFile(entry.file, motion::kMaxMotionFileBytes, "a motion");
+  if (!content.ok()) return content.status();
+  LoadedLeader loaded;
+  loaded.clip = *std::move(clip);
+  loaded.sha256 = base::Sha256Hex(*content);
+  absl::Status status = SetStart(entry, side, input, options, &loaded);
+  if (!status.ok()) return status;
+  return loaded;
+}
+
+}  // namespace duet::client::batch

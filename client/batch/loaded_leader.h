@@ -1,0 +1,52 @@
+#ifndef DUET_CLIENT_BATCH_LOADED_LEADER_H_
+#define DUET_CLIENT_BATCH_LOADED_LEADER_H_
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "absl/status/statusor.h"
+#include "client/batch/leader_entry.h"
+#include "client/batch/recipe.h"
+#include "client/request.h"
+#include "model/motion/skeleton.h"
+
+namespace duet::client::batch {
+
+// A leader's motion in a model's joints, and what its request holds besides.
+struct LoadedLeader {
+  motion::Clip clip;
+  std::string sha256;  // of the file
+  std::optional<FollowerStart> follower_start;
+};
+
+// Reads the leader's file, and that of the follower's start. Errors name the file.
+absl::StatusOr<LoadedLeader> LoadLeader(const LeaderEntry& entry, formats::Side side,
+                                        const LeaderInput& input, const motion::Skeleton& skeleton);
+
+// A leader that several items share: read by the first that needs it, forgotten with the last.
+//
+// Threads: safe to call concurrently.
+class SharedLeader {
+ public:
+  SharedLeader(std::shared_ptr<const LeaderEntry> entry, formats::Side side)
+      : entry_(std::move(entry)), side_(side) {}
+
+  const absl::StatusOr<LoadedLeader>& Get(const LeaderInput& input,
+                                          const motion::Skeleton& skeleton) {
+    std::call_once(once_, [&] { loaded_ = LoadLeader(*entry_, side_, input, skeleton); });
+    return loaded_;
+  }
+
+ private:
+  std::shared_ptr<const LeaderEntry> entry_;
+  formats::Side side_;
+  std::once_flag once_;
+  absl::StatusOr<LoadedLeader> loaded_;
+};
+
+}  // namespace duet::client::batch
+
+#endif  // DUET_CLIENT_BATCH_LOADED_LEADER_H_

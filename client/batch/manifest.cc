@@ -1,0 +1,213 @@
+#include <cstdint>
+#include <istream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "absl/container/flat_hash_set.h"
+#include "absl/hash/hash.h"
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "absl/strings/str_split.h"
+#include "client/batch/leader_source.h"
+#include "client/batch/text_values.h"
+#include "model/base/strict_json.h"
+#include "model/base/text.h"
+
+namespace duet::client::batch {
+namespace {
+
+constexpr int kJsonDepth = 8;
+constexpr size_t kMaxLineBytes = size_t{1} << 20;
+
+// A line's columns by name, in either of the two forms; empty ones are left out.
+using Columns = std::map<std::string, std::string>;
+
+// A value of a JSON line as the text that a TSV cell would hold.
+std::string CellText(const nlohmann::json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  if (!value.is_object()) return value.dump();
+  std::vector<std::string> items;
+  for (const auto& [key, weight] : value.items()) {
+    items.push_back(absl::StrCat(key, "=", weight.dump()));
+  }
+  return absl::StrJoin(items, ",");
+}
+
+absl::StatusOr<Columns> ParseJsonLine(const std::string& line) {
+  const absl::StatusOr<nlohmann::json> object = base::ParseStrictJson(line, kJsonDepth);
+  if (!object.ok()) return object.status();
+  Columns columns;
+  for (const auto& [name, value] : object->items()) {
+    if (!value.is_null()) columns[name] = CellText(value);
+  }
+  return columns;
+}
+
+absl::Status Named(absl::string_view column, const absl::Status& status) {
+  if (status.ok()) return status;
+  return absl::Status(status.code(), absl::StrCat(column, ": ", status.message()));
+}
+
+// Takes a column out of those that are left.
+std::string Take(const char* name, Columns* columns) {
+  const auto found = columns->find(name);
+  if (found == columns->end()) return "";
+  std::string value = std::move(found->second);
+  columns->erase(found);
+  return value;
+}
+
+template <typename Value>
+absl::Status TakeParsed(const char* name, absl::StatusOr<Value> (*parse)(absl::string_view),
+                        Columns* columns, std::optional<Value>* value) {
+  const std::string text = Take(name, columns);
+  if (text.empty()) return absl::OkStatus();
+  absl::StatusOr<Value> parsed = parse(text);
+  if (!parsed.ok()) return Named(name, parsed.status());
+  *value = *std::move(parsed);
+  return absl::OkStatus();
+}
+
+absl::StatusOr<motion::Vec3> ParseDirection(absl::string_view text) {
+  const std::optional<motion::Vec3> direction = ParseTriple(text);
+  if (direction.has_value()) return *direction;
+  return absl::InvalidArgumentError(absl::StrCat("came ", base::Quoted(text), ", wanted X,Y,Z"));
+}
+
+absl::StatusOr<uint64_t> ParseSeed(absl::string_view text) {
+  uint64_t seed = 0;
+  if (absl::SimpleAtoi(text, &seed)) return seed;
+  return absl::InvalidArgumentError(
+      absl::StrCat("came ", base::Quoted(text), ", wanted a whole number from 0"));
+}
+
+// All but the key.
+absl::StatusOr<LeaderEntry> ToEntry(const std::filesystem::path& folder, Columns columns) {
+  LeaderEntry entry;
+  entry.given = Take("leader", &columns);
+  if (entry.given.empty()) return absl::InvalidArgumentError("leader: came none, wanted a file");
+  const std::filesystem::path path(entry.given);
+  entry.file = path.is_absolute() ? path : folder / path;
+  entry.model = Take("model", &columns);
+  entry.follower_start = Take("follower_start", &columns);
+  if (!entry.follower_start.empty() && !ParseTriple(entry.follower_start).has_value() &&
+      std::filesystem::path(entry.follower_start).is_relative()) {
+    entry.follower_start = (folder / entry.follower_start).string();
+  }
+  std::optional<Labels> labels;
+  absl::Status status = TakeParsed("labels", ParseLabels, &columns, &labels);
+  status.Update(TakeParsed("side", ParseSide, &columns, &entry.side));
+  status.Update(TakeParsed("follower_start_side", ParseSide, &columns, &entry.follower_start_side));
+  status.Update(
+      TakeParsed("partner_direction", ParseDirection, &columns, &entry.partner_direction));
+  status.Update(TakeParsed("seed", ParseSeed, &columns, &entry.seed));
+  if (!status.ok()) return status;
+  entry.labels = std::move(labels).value_or(Labels());
+  entry.extra.assign(columns.begin(), columns.end());
+  return entry;
+}
+
+class Manifest final : public LeaderSource {
+ public:
+  Manifest(std::istream& in, std::filesystem::path folder, std::string name)
+      : in_(in), folder_(std::move(folder)), name_(std::move(name)) {}
+
+  absl::StatusOr<std::optional<LeaderEntry>> Next() override {
+    for (std::string line; ReadLine(&line);) {
+      if (line.empty()) continue;
+      if (kind_ == Kind::kUnknown && !Begin(line)) continue;
+      absl::StatusOr<LeaderEntry> entry = ParseLine(line);
+      if (!entry.ok()) return At(entry.status());
+      return std::optional<LeaderEntry>(*std::move(entry));
+    }
+    if (in_.bad()) return absl::DataLossError(absl::StrCat(name_, ": cannot be read"));
+    return std::optional<LeaderEntry>();
+  }
+
+ private:
+  enum class Kind { kUnknown, kJson, kTsv };
+
+  bool ReadLine(std::string* line) {
+    if (!std::getline(in_, *line)) return false;
+    if (++line_ == 1) *line = std::string(base::SkipByteOrderMark(*line));
+    if (!line->empty() && line->back() == '\r') line->pop_back();
+    return true;
+  }
+
+  // What the first line says of the others; whether it is one of them.
+  bool Begin(const std::string& line) {
+    kind_ = line[0] == '{' ? Kind::kJson : Kind::kTsv;
+    if (kind_ == Kind::kTsv) header_ = absl::StrSplit(line, '\t');
+    return kind_ == Kind::kJson;
+  }
+
+  absl::StatusOr<Columns> ParseRow(const std::string& line) const {
+    const std::vector<std::string> cells = absl::StrSplit(line, '\t');
+    if (cells.size() != header_.size()) {
+      return absl::InvalidArgumentError(absl::StrCat("came ", cells.size(), " columns, wanted ",
+                                                     header_.size(), " as the first line names"));
+    }
+    Columns columns;
+    for (size_t i = 0; i < cells.size(); ++i) {
+      if (!cells[i].empty()) columns[header_[i]] = cells[i];
+    }
+    return columns;
+  }
+
+  absl::StatusOr<LeaderEntry> ParseLine(const std::string& line) {
+    if (line.size() > kMaxLineBytes) return absl::InvalidArgumentError("longer than 1 MiB");
+    absl::StatusOr<Columns> columns = kind_ == Kind::kJson ? ParseJsonLine(line) : ParseRow(line);
+    if (!columns.ok()) return columns.status();
+    const std::string id = Take("id", &*columns);
+    absl::StatusOr<LeaderEntry> entry = ToEntry(folder_, *std::move(columns));
+    if (!entry.ok()) return entry;
+    absl::Status status = SetKey(id, &*entry);
+    if (!status.ok()) return status;
+    return entry;
+  }
+
+  // An id's own key, which must differ from all others; the leader's path and the number of the
+  // line otherwise, which differs of itself.
+  absl::Status SetKey(const std::string& id, LeaderEntry* entry) {
+    if (!has_ids_.has_value()) has_ids_ = !id.empty();
+    if (*has_ids_ != !id.empty()) {
+      return absl::InvalidArgumentError("id: wanted on every line or on none");
+    }
+    if (id.empty()) {
+      const std::filesystem::path leader(entry->given);
+      entry->key =
+          absl::StrCat(KeyOf(std::filesystem::path(leader).replace_extension()), "-", line_);
+      return absl::OkStatus();
+    }
+    entry->key = KeyOf(id);
+    if (!entry->key.empty() && ids_.insert(absl::Hash<std::string>()(entry->key)).second) {
+      return absl::OkStatus();
+    }
+    return absl::InvalidArgumentError(
+        absl::StrCat("id: came ", base::Quoted(id), ", wanted one that no other line has"));
+  }
+
+  absl::Status At(const absl::Status& status) const {
+    return absl::Status(status.code(), absl::StrCat(name_, ":", line_, ": ", status.message()));
+  }
+
+  std::istream& in_;
+  std::filesystem::path folder_;
+  std::string name_;
+  int64_t line_ = 0;
+  Kind kind_ = Kind::kUnknown;
+  std::vector<std::string> header_;
+  std::optional<bool> has_ids_;
+  absl::flat_hash_set<size_t> ids_;
+};
+
+}  // namespace
+
+std::unique_ptr<LeaderSource> ReadManifest(std::istream& in, const std::filesystem::path& folder,
+                                           const std::string& name) {
+  return std::make_unique<Manifest>(in, folder, name);
+}
+
+}  // namespace duet::client::batch

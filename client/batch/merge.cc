@@ -1,0 +1,224 @@
+#include "client/batch/merge.h"
+
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <system_error>
+#include <utility>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "client/batch/durable_file.h"
+#include "client/batch/job_folder.h"
+#include "client/batch/journal.h"
+#include "client/batch/packing.h"
+#include "client/batch/record.h"
+#include "client/batch/setup.h"
+#include "client/batch/verify.h"
+
+namespace duet::client::batch {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+constexpr size_t kMissingKept = 100;
+
+struct Part {
+  std::unique_ptr<JobFolder> folder;
+  std::unique_ptr<JournalReader> journal;
+};
+
+// Any of the shards' identities; all others are checked against it.
+absl::StatusOr<JobIdentity> FindIdentity(const fs::path& out) {
+  std::error_code error;
+  std::vector<fs::path> folders;
+  for (fs::directory_iterator it(out, error), end; !error && it != end; it.increment(error)) {
+    if (absl::StartsWith(it->path().filename().string(), "shard-")) folders.push_back(it->path());
+  }
+  std::sort(folders.begin(), folders.end());
+  for (const fs::path& folder : folders) {
+    absl::StatusOr<JobIdentity> identity = ReadJobIdentity(folder);
+    if (identity.ok()) return identity;
+  }
+  return absl::NotFoundError(absl::StrCat(out.string(), ": has no shard of duet batch"));
+}
+
+bool SameModels(const JobIdentity& a, const JobIdentity& b) {
+  return std::equal(a.models.begin(), a.models.end(), b.models.begin(), b.models.end(),
+                    [](const ModelChoice& one, const ModelChoice& other) {
+                      return one.name == other.name && one.version == other.version;
+                    });
+}
+
+absl::StatusOr<Part> OpenPart(const fs::path& out, const JobIdentity& identity, int index,
+                              int64_t* planned) {
+  const Shard shard{index, identity.shard.count};
+  const fs::path path = ShardFolder(out, shard);
+  const absl::StatusOr<PlannedItems> items = ReadPlanned(path);
+  if (!items.ok() || !items->whole) {
+    return absl::AbortedError(absl::StrCat(path.string(),
+                                           ": is absent or was not run to its end, wanted all of ",
+                                           shard.count, " shards"));
+  }
+  *planned += items->count;
+  Part part{std::make_unique<JobFolder>(path), nullptr};
+  JobIdentity wanted = identity;
+  wanted.shard = shard;
+  JobIdentity begun;
+  absl::Status status = part.folder->Open(wanted, &begun);
+  if (!status.ok()) return status;
+  if (!SameModels(begun, identity)) {
+    return absl::FailedPreconditionError(absl::StrCat(
+        path.string(), ": was made by other models than the other shards, wanted the same"));
+  }
+  absl::StatusOr<JournalReader> journal = JournalReader::Open(part.folder->journal());
+  if (!journal.ok()) return journal.status();
+  part.journal = std::make_unique<JournalReader>(*std::move(journal));
+  return part;
+}
+
+// Moves an item's files; those that are there already were moved by a run that was stopped.
+absl::Status MoveFile(const fs::path& from, const fs::path& to, const std::string& sha256) {
+  absl::Status status = CheckFile(from, sha256);
+  if (absl::IsNotFound(status)) return CheckFile(to, sha256);
+  if (!status.ok()) return status;
+  std::error_code error;
+  fs::create_directories(to.parent_path(), error);
+  fs::rename(from, to, error);
+  return error ? CannotWrite(to, error.value()) : absl::OkStatus();
+}
+
+// Whether all was merged already, and only folders of shards may be left.
+bool IsMerged(const fs::path& out) {
+  const absl::StatusOr<JobIdentity> identity = ReadJobIdentity(out);
+  const absl::StatusOr<PlannedItems> planned = ReadPlanned(out);
+  return identity.ok() && planned.ok() && planned->whole && planned->missing == 0;
+}
+
+absl::Status RemoveShards(const fs::path& out, int count) {
+  for (int i = 0; i < count; ++i) {
+    std::error_code error;
+    fs::remove_all(ShardFolder(out, {i, count}), error);
+    if (error) return CannotWrite(out, error.value());
+  }
+  return absl::OkStatus();
+}
+
+class Merger {
+ public:
+  Merger(const fs::path& out, JobIdentity identity)
+      : folder_(out), identity_(std::move(identity)) {}
+
+  absl::Status Open() {
+    const int count = identity_.shard.count;
+    for (int i = 0; i < count; ++i) {
+      absl::StatusOr<Part> part = OpenPart(folder_.out(), identity_, i, &planned_);
+      if (!part.ok()) return part.status();
+      parts_.push_back(*std::move(part));
+    }
+    identity_.shard = Shard{};
+    JobIdentity begun;
+    absl::Status status = folder_.Open(identity_, &begun);
+    moved_ = !begun.models.empty();
+    return status;
+  }
+
+  absl::Status MoveAll() {
+    if (moved_) {
+      // A run that was stopped later on: files may be packed by now.
+      const absl::StatusOr<JournalReader> merged = JournalReader::Open(folder_.journal());
+      if (!merged.ok()) return merged.status();
+      if (merged->count() == planned_) return absl::OkStatus();
+    }
+    JournalWriter journal;
+    absl::Status status = journal.Open(folder_.journal(), 0);
+    int64_t end = 0;
+    for (const Part& part : parts_) end = std::max(end, part.journal->end());
+    for (int64_t item = 0; status.ok() && item < end; ++item) status = MoveItem(item, &journal);
+    for (const fs::path& folder : folders_) status.Update(SyncFolder(folder));
+    if (status.ok()) status = journal.Commit();
+    return status.ok() ? folder_.Begin(identity_) : status;
+  }
+
+  absl::StatusOr<MergeReport> Finish() {
+    const absl::StatusOr<JournalReader> journal = JournalReader::Open(folder_.journal());
+    if (!journal.ok()) return journal.status();
+    absl::Status status;
+    if (identity_.packing != Packing::kNone && journal->count() == planned_) {
+      status = Pack(*journal, identity_.packing, identity_.shard_bytes,
+                    folder_.items(identity_.packing), folder_.temporary(), folder_.out());
+    }
+    if (!status.ok()) return status;
+    absl::StatusOr<SetCounts> counts =
+        WriteIndex(*journal, identity_, {planned_, true}, folder_.temporary(), folder_.out());
+    if (!counts.ok()) return counts.status();
+    report_.set = *counts;
+    report_.planned = planned_;
+    // What is missing can still be made in its shard, and merged again.
+    if (journal->count() < planned_) return report_;
+    status = RemoveShards(folder_.out(), static_cast<int>(parts_.size()));
+    if (!status.ok()) return status;
+    return report_;
+  }
+
+ private:
+  absl::Status MoveItem(int64_t item, JournalWriter* journal) {
+    const auto part = std::find_if(parts_.begin(), parts_.end(), [item](const Part& candidate) {
+      return candidate.journal->Has(item);
+    });
+    if (part == parts_.end()) {
+      if (report_.missing.size() < kMissingKept) report_.missing.push_back(item);
+      return absl::OkStatus();
+    }
+    const absl::StatusOr<std::string> text = part->journal->Read(item);
+    if (!text.ok()) return text.status();
+    const ordered_json record = ordered_json::parse(*text);
+    journal->Add(item, *text);
+    if (record["state"] == kFailed) {
+      return WriteDurably(folder_.temporary() / "error",
+                          folder_.errors() / (record["name"].get<std::string>() + ".json"),
+                          *text + "\n");
+    }
+    if (record["state"] != kDone) return absl::OkStatus();
+    for (const ordered_json& file : record["files"]) {
+      const std::string path = file["path"];
+      const fs::path to = folder_.items(identity_.packing) / path;
+      folders_.insert(to.parent_path());
+      absl::Status status =
+          MoveFile(part->folder->items(identity_.packing) / path, to, file["sha256"]);
+      if (!status.ok()) return status;
+    }
+    return absl::OkStatus();
+  }
+
+  JobFolder folder_;
+  JobIdentity identity_;
+  std::vector<Part> parts_;
+  std::set<fs::path> folders_;
+  int64_t planned_ = 0;
+  bool moved_ = false;  // a run before this one came to the end of MoveAll
+  MergeReport report_;
+};
+
+}  // namespace
+
+absl::StatusOr<MergeReport> Merge(const fs::path& out) {
+  absl::StatusOr<JobIdentity> identity = FindIdentity(out);
+  if (!identity.ok()) return identity.status();
+  if (IsMerged(out)) {
+    const PlannedItems planned = *ReadPlanned(out);
+    absl::Status removed = RemoveShards(out, identity->shard.count);
+    if (!removed.ok()) return removed;
+    return MergeReport{{}, planned.count, {}};
+  }
+  Merger merger(out, *std::move(identity));
+  absl::Status status = merger.Open();
+  if (status.ok()) status = merger.MoveAll();
+  if (!status.ok()) return status;
+  return merger.Finish();
+}
+
+}  // namespace duet::client::batch

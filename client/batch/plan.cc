@@ -1,0 +1,335 @@
+#include "client/batch/plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_replace.h"
+#include "client/batch/text_values.h"
+#include "model/base/random.h"
+#include "model/base/sha256.h"
+#include "model/base/text.h"
+
+namespace duet::client::batch {
+namespace {
+
+constexpr size_t kIdDigits = 32;
+// A drawn weight is a multiple of this, so that it reads well.
+constexpr double kWeightsInOne = 1000;
+
+uint64_t DrawnNumber(const std::string& from) {
+  uint64_t number = 0;
+  // 13 hex digits: 52 bits.
+  (void)absl::SimpleHexAtoi(base::Sha256Hex(from).substr(0, 13), &number);
+  return number;
+}
+
+// A class or a model as a part of a file name: no dashes, which separate the parts.
+std::string PlainName(const std::string& name) {
+  return absl::StrReplaceAll(KeyOf(name), {{"/", "_"}, {"-", "_"}, {"+", "_"}});
+}
+
+std::string Text(const Labels& labels) {
+  std::string text;
+  for (const ClassWeight& label : labels) {
+    absl::StrAppend(&text, label.interaction_class, "=", WeightText(label.weight), ";");
+  }
+  return text;
+}
+
+// All that is asked, as a text of which two items have never the same.
+std::string Asked(const Item& item, const Recipe& recipe, const ModelInfo& model) {
+  const LeaderEntry& leader = *item.leader;
+  std::string text =
+      absl::StrCat(leader.key, "\n", leader.given, "\n", SideName(item.side), "\n", item.reaction,
+                   "\n", Text(item.labels), "\n", model.name, "@", model.version, "\n", item.sample,
+                   "\n", recipe.variety, "\n", leader.follower_start, "\n");
+  for (const Schedule::Keyframe& keyframe : item.keyframes) {
+    absl::StrAppend(&text, keyframe.at, ":", Text(keyframe.labels), "\n");
+  }
+  if (leader.follower_start_side) {
+    absl::StrAppend(&text, "start side ", SideName(*leader.follower_start_side), "\n");
+  }
+  if (leader.partner_direction) {
+    const motion::Vec3& to = *leader.partner_direction;
+    absl::StrAppend(&text, "direction ", to.x, ",", to.y, ",", to.z, "\n");
+  }
+  absl::StrAppend(&text, "seed ", leader.seed ? absl::StrCat(*leader.seed) : "", " ", recipe.seed);
+  return text;
+}
+
+// The class that is wanted most.
+std::string LargestClass(const Item& item) {
+  ClassWeight largest{"none", 0};
+  const auto look = [&largest](const Labels& labels) {
+    for (const ClassWeight& label : labels) {
+      if (label.weight > largest.weight) largest = label;
+    }
+  };
+  look(item.labels);
+  for (const Schedule::Keyframe& keyframe : item.keyframes) look(keyframe.labels);
+  return PlainName(largest.interaction_class);
+}
+
+// Every combination of a grid's weights, the last axis the fastest.
+std::vector<Labels> Combinations(const Grid& grid) {
+  std::vector<Labels> all = {{}};
+  for (const Grid::Axis& axis : grid.axes) {
+    std::vector<Labels> longer;
+    for (const Labels& labels : all) {
+      for (const float weight : axis.weights) {
+        longer.push_back(labels);
+        longer.back().push_back({axis.interaction_class, weight});
+      }
+    }
+    all = std::move(longer);
+  }
+  for (Labels& labels : all) SortByClass(&labels);
+  return all;
+}
+
+bool Means(const ModelChoice& choice, const ModelInfo& model) {
+  return choice.name == model.name && choice.version.value_or(model.version) == model.version &&
+         (choice.version_label.empty() ||
+          std::count(model.version_labels.begin(), model.version_labels.end(),
+                     choice.version_label) > 0);
+}
+
+}  // namespace
+
+std::string NameOfLabels(const Labels& labels) {
+  std::string name;
+  for (const ClassWeight& label : labels) {
+    if (!name.empty()) name += '+';
+    name += PlainName(label.interaction_class);
+    if (labels.size() == 1 && label.weight == 1) continue;
+    name += absl::StrReplaceAll(WeightText(label.weight), {{".", "p"}, {"-", "m"}, {"+", ""}});
+  }
+  return name;
+}
+
+uint64_t SeedOf(const Item& item, uint64_t recipe_seed, int retry) {
+  if (item.leader->seed.has_value() && retry == 0) {
+    return *item.leader->seed + static_cast<uint64_t>(item.sample);
+  }
+  return DrawnNumber(absl::StrCat("seed ", recipe_seed, " ", item.id, " ", retry));
+}
+
+Plan::Plan(Recipe recipe, std::vector<ModelInfo> models, std::unique_ptr<LeaderSource> leaders)
+    : recipe_(std::move(recipe)), models_(std::move(models)), leaders_(std::move(leaders)) {}
+
+absl::StatusOr<Plan> Plan::Create(Recipe recipe, std::vector<ModelInfo> models,
+                                  std::unique_ptr<LeaderSource> leaders) {
+  Plan plan(std::move(recipe), std::move(models), std::move(leaders));
+  for (const Reaction& reaction : plan.recipe_.reactions) {
+    absl::Status status = plan.AddReaction(reaction);
+    if (!status.ok()) return status;
+  }
+  absl::Status status = plan.CheckClasses();
+  if (!status.ok()) return status;
+  for (const ModelInfo& model : plan.models_) {
+    if (plan.recipe_.samples > 1 && !model.samples) {
+      return absl::InvalidArgumentError(absl::StrCat("samples: came ", plan.recipe_.samples,
+                                                     ", wanted 1: ", model.name, "@", model.version,
+                                                     " has one answer, whatever the seed"));
+    }
+  }
+  return plan;
+}
+
+std::vector<std::string> Plan::ClassesOr(const std::vector<std::string>& classes) const {
+  return classes.empty() ? models_.front().interaction_classes : classes;
+}
+
+absl::Status Plan::AddNamed(const Reaction& reaction, LabelledReaction labelled) {
+  // One reaction of a name has it alone, several have their own after it.
+  const std::string own = NameOfLabels(labelled.labels);
+  const bool alone = std::holds_alternative<Labels>(reaction.kind) ||
+                     std::holds_alternative<Schedule>(reaction.kind);
+  labelled.name = reaction.name;
+  if (labelled.name.empty()) labelled.name = own.empty() ? "schedule" : own;
+  if (!reaction.name.empty() && !alone) labelled.name = absl::StrCat(reaction.name, "_", own);
+  const auto same_name = [&labelled](const LabelledReaction& other) {
+    return other.name == labelled.name;
+  };
+  if (std::any_of(fixed_.begin(), fixed_.end(), same_name)) {
+    return absl::InvalidArgumentError(absl::StrCat("reactions: two are named ", labelled.name,
+                                                   ", wanted different ones: give them a name"));
+  }
+  fixed_.push_back(std::move(labelled));
+  return absl::OkStatus();
+}
+
+absl::Status Plan::AddReaction(const Reaction& reaction) {
+  if (std::holds_alternative<Mixes>(reaction.kind)) {
+    const auto same_name = [&reaction](const Reaction& other) {
+      return other.name == reaction.name;
+    };
+    if (std::any_of(mixes_.begin(), mixes_.end(), same_name)) {
+      return absl::InvalidArgumentError("reactions: several mixes, wanted each with its own name");
+    }
+    mixes_.push_back(reaction);
+    return absl::OkStatus();
+  }
+  std::vector<LabelledReaction> added;
+  if (const auto* labels = std::get_if<Labels>(&reaction.kind)) added.push_back({"", *labels, {}});
+  if (const auto* schedule = std::get_if<Schedule>(&reaction.kind)) {
+    added.push_back({"", {}, schedule->keyframes});
+  }
+  if (const auto* grid = std::get_if<Grid>(&reaction.kind)) {
+    for (Labels& labels : Combinations(*grid)) added.push_back({"", std::move(labels), {}});
+  }
+  if (const auto* each = std::get_if<EachClass>(&reaction.kind)) {
+    for (const std::string& name : ClassesOr(each->classes)) added.push_back({"", {{name, 1}}, {}});
+  }
+  for (LabelledReaction& labelled : added) {
+    absl::Status status = AddNamed(reaction, std::move(labelled));
+    if (!status.ok()) return status;
+  }
+  return absl::OkStatus();
+}
+
+absl::Status Plan::CheckClasses() const {
+  std::set<std::string> wanted;
+  const auto want = [&wanted](const Labels& labels) {
+    for (const ClassWeight& label : labels) wanted.insert(label.interaction_class);
+  };
+  for (const LabelledReaction& reaction : fixed_) {
+    want(reaction.labels);
+    for (const Schedule::Keyframe& keyframe : reaction.keyframes) want(keyframe.labels);
+  }
+  for (const Reaction& reaction : mixes_) {
+    const auto& mixes = std::get<Mixes>(reaction.kind);
+    const std::vector<std::string> classes = ClassesOr(mixes.classes);
+    wanted.insert(classes.begin(), classes.end());
+    if (static_cast<size_t>(mixes.classes_in_mix) > classes.size()) {
+      return absl::InvalidArgumentError(absl::StrCat("reactions: classes_in_mix: came ",
+                                                     mixes.classes_in_mix, ", wanted at most the ",
+                                                     classes.size(), " classes"));
+    }
+  }
+  for (const ModelInfo& model : models_) {
+    for (const std::string& name : wanted) {
+      const auto& known = model.interaction_classes;
+      if (std::count(known.begin(), known.end(), name) > 0) continue;
+      return absl::InvalidArgumentError(absl::StrCat("reactions: came class ", base::Quoted(name),
+                                                     ", wanted one of ", model.name, "@",
+                                                     model.version, "'s"));
+    }
+  }
+  return absl::OkStatus();
+}
+
+void Plan::Draw(const LeaderEntry& leader, int mixes_number, const Reaction& reaction) {
+  const auto& mixes = std::get<Mixes>(reaction.kind);
+  base::Random random(
+      DrawnNumber(absl::StrCat("mixes ", recipe_.seed, " ", mixes_number, " ", leader.key)));
+  for (int i = 0; i < mixes.count; ++i) {
+    std::vector<std::string> classes = ClassesOr(mixes.classes);
+    random.Shuffle(&classes);
+    LabelledReaction drawn;
+    drawn.name = absl::StrCat(reaction.name.empty() ? "mix" : reaction.name, i);
+    for (int c = 0; c < mixes.classes_in_mix; ++c) {
+      const double weight = random.Uniform(mixes.min_weight, mixes.max_weight);
+      drawn.labels.push_back(
+          {classes[static_cast<size_t>(c)],
+           static_cast<float>(std::round(weight * kWeightsInOne) / kWeightsInOne)});
+    }
+    SortByClass(&drawn.labels);
+    reactions_.push_back(std::move(drawn));
+  }
+}
+
+absl::Status Plan::BeginLeader(LeaderEntry leader) {
+  reactions_ =
+      leader.labels.empty()
+          ? fixed_
+          : std::vector<LabelledReaction>{{NameOfLabels(leader.labels), leader.labels, {}}};
+  if (leader.labels.empty()) {
+    for (size_t i = 0; i < mixes_.size(); ++i) Draw(leader, static_cast<int>(i), mixes_[i]);
+  }
+  if (reactions_.empty()) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        leader.given, ": wanted labels in the manifest, since the recipe has no reactions"));
+  }
+  sides_ = {recipe_.input.side == Sides::kRight ? formats::Side::kRight : formats::Side::kLeft};
+  if (recipe_.input.side == Sides::kBoth) sides_ = {formats::Side::kLeft, formats::Side::kRight};
+  if (leader.side.has_value()) sides_ = {*leader.side};
+  leader_models_.clear();
+  const absl::StatusOr<ModelChoice> choice =
+      leader.model.empty() ? ModelChoice() : ParseModelName(leader.model);
+  for (size_t i = 0; i < models_.size(); ++i) {
+    if (leader.model.empty() || (choice.ok() && Means(*choice, models_[i]))) {
+      leader_models_.push_back(static_cast<int>(i));
+    }
+  }
+  if (leader_models_.empty()) {
+    return absl::InvalidArgumentError(absl::StrCat(leader.given, ": model: came ",
+                                                   base::Quoted(leader.model),
+                                                   ", wanted one of the recipe's"));
+  }
+  leader_ = std::make_shared<const LeaderEntry>(std::move(leader));
+  side_ = reaction_ = model_ = 0;
+  sample_ = 0;
+  return absl::OkStatus();
+}
+
+std::string Plan::NameOf(const Item& item) const {
+  std::string name = item.leader->key;
+  if (recipe_.input.side == Sides::kBoth) absl::StrAppend(&name, "-", SideName(item.side));
+  absl::StrAppend(&name, "-", item.reaction);
+  if (models_.size() > 1) {
+    const ModelInfo& model = models_[static_cast<size_t>(item.model)];
+    absl::StrAppend(&name, "-", PlainName(model.name), "_", model.version);
+  }
+  if (recipe_.samples > 1) absl::StrAppend(&name, "-s", item.sample);
+  if (recipe_.output.layout == Layout::kMirror) return name;
+  return absl::StrCat(LargestClass(item), "/", name);
+}
+
+Item Plan::MakeItem() const {
+  const LabelledReaction& reaction = reactions_[reaction_];
+  Item item;
+  item.number = number_;
+  item.leader = leader_;
+  item.side = sides_[side_];
+  item.reaction = reaction.name;
+  item.labels = reaction.labels;
+  item.keyframes = reaction.keyframes;
+  item.model = leader_models_[model_];
+  item.sample = sample_;
+  item.name = NameOf(item);
+  const ModelInfo& model = models_[static_cast<size_t>(item.model)];
+  item.id = base::Sha256Hex(Asked(item, recipe_, model)).substr(0, kIdDigits);
+  return item;
+}
+
+// Whether the leader at hand has another item.
+bool Plan::Advance() {
+  if (++sample_ < recipe_.samples) return true;
+  sample_ = 0;
+  if (++model_ < leader_models_.size()) return true;
+  model_ = 0;
+  if (++reaction_ < reactions_.size()) return true;
+  reaction_ = 0;
+  return ++side_ < sides_.size();
+}
+
+absl::StatusOr<std::optional<Item>> Plan::Next() {
+  if (leader_ == nullptr) {
+    absl::StatusOr<std::optional<LeaderEntry>> next = leaders_->Next();
+    if (!next.ok()) return next.status();
+    if (!next->has_value()) return std::optional<Item>();
+    absl::Status status = BeginLeader(**std::move(next));
+    if (!status.ok()) return status;
+  }
+  Item item = MakeItem();
+  ++number_;
+  if (!Advance()) leader_ = nullptr;
+  return std::optional<Item>(std::move(item));
+}
+
+}  // namespace duet::client::batch

@@ -1,0 +1,103 @@
+#ifndef DUET_CLIENT_BATCH_RECIPE_H_
+#define DUET_CLIENT_BATCH_RECIPE_H_
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "client/request.h"
+#include "model/formats/motion_file.h"
+#include "model/motion/coordinates.h"
+
+namespace duet::client::batch {
+
+// What is asked for each leader, as proto/duet/batch/v1/batch.proto explains it field by field.
+
+using Labels = std::vector<ClassWeight>;  // by class name
+
+struct Grid {
+  struct Axis {
+    std::string interaction_class;
+    std::vector<float> weights;
+  };
+  std::vector<Axis> axes;
+};
+
+struct Mixes {
+  int count = 0;
+  std::vector<std::string> classes;  // empty: every class of the first model
+  int classes_in_mix = 2;
+  float min_weight = 0.25f;
+  float max_weight = 1;
+};
+
+struct EachClass {
+  std::vector<std::string> classes;  // as of Mixes
+};
+
+struct Schedule {
+  struct Keyframe {
+    double at = 0;  // 0 the leader's first frame, 1 its last
+    Labels labels;
+  };
+  std::vector<Keyframe> keyframes;
+};
+
+struct Reaction {
+  std::string name;  // may be empty
+  std::variant<Labels, Grid, Mixes, EachClass, Schedule> kind;
+};
+
+enum class Sides { kLeft, kRight, kBoth };
+
+struct LeaderInput {
+  Sides side = Sides::kLeft;
+  bool starts_as_other_person = false;
+  std::optional<double> frame_rate_hz;
+  std::optional<double> metres_per_unit;
+  std::optional<motion::LengthUnit> unit;
+  std::optional<motion::UpAxis> up_axis;
+  retargeting::JointOverrides joint_map;
+};
+
+struct QualityFilter {
+  std::optional<double> max_lean_degrees;
+  std::optional<double> max_foot_above_floor_metres;
+  std::optional<double> max_foot_below_floor_metres;
+  std::optional<double> min_distance_metres;
+  std::optional<double> max_distance_metres;
+  std::optional<double> max_penetration_metres;
+  std::optional<double> min_range_of_motion_metres;
+  std::optional<double> max_unfamiliarity;
+  int retries_per_item = 0;
+};
+
+enum class Format { kBvh, kCsv, kNpy, kJson };
+enum class Layout { kMirror, kClassFolders };
+enum class Packing { kNone, kTar, kNpz };
+
+struct Output {
+  std::vector<Format> formats;
+  Layout layout = Layout::kMirror;
+  Packing packing = Packing::kNone;
+  uint64_t shard_bytes = uint64_t{256} << 20;
+};
+
+struct Recipe {
+  uint64_t seed = 0;
+  std::vector<ModelChoice> models;  // one at least
+  std::vector<Reaction> reactions;
+  int samples = 1;
+  float variety = 1;
+  LeaderInput input;
+  QualityFilter filter;
+  Output output;
+  // Of everything above, in hex: two recipes with one digest ask for the same.
+  std::string digest;
+};
+
+}  // namespace duet::client::batch
+
+#endif  // DUET_CLIENT_BATCH_RECIPE_H_

@@ -1,0 +1,121 @@
+#include "client/batch/record.h"
+
+#include <cmath>
+
+#include "client/batch/text_values.h"
+
+namespace duet::client::batch {
+namespace {
+
+using nlohmann::ordered_json;
+
+// A float as the shortest decimal that reads back as the same: 0.1 rather than 0.10000000149.
+ordered_json Number(float value) { return ordered_json::parse(WeightText(value)); }
+
+// Rounded to micrometres and millionths of a degree, so that records stay short.
+double Rounded(double value) { return std::round(value * 1e6) / 1e6; }
+
+ordered_json LabelsJson(const Labels& labels) {
+  ordered_json object = ordered_json::object();
+  for (const ClassWeight& label : labels) object[label.interaction_class] = Number(label.weight);
+  return object;
+}
+
+ordered_json KeyframesJson(const std::vector<WeightKeyframe>& keyframes) {
+  ordered_json array = ordered_json::array();
+  for (const WeightKeyframe& keyframe : keyframes) {
+    array.push_back({{"frame", keyframe.frame}, {"labels", LabelsJson(keyframe.weights)}});
+  }
+  return array;
+}
+
+void AddIf(const char* name, const std::optional<double>& value, ordered_json* object) {
+  if (value.has_value()) (*object)[name] = Rounded(*value);
+}
+
+ordered_json QualityJson(const Quality& quality) {
+  ordered_json object = ordered_json::object();
+  AddIf("lean_degrees", quality.lean_degrees, &object);
+  AddIf("foot_above_floor_metres", quality.foot_above_floor_metres, &object);
+  AddIf("foot_below_floor_metres", quality.foot_below_floor_metres, &object);
+  object["distance_metres"] = Rounded(quality.distance_metres);
+  object["penetration_metres"] = Rounded(quality.penetration_metres);
+  object["range_of_motion_metres"] = Rounded(quality.range_of_motion_metres);
+  return object;
+}
+
+ordered_json Begin(const Item& item, const char* state) {
+  return {{"item", item.number},
+          {"id", item.id},
+          {"state", state},
+          {"name", item.name},
+          {"leader", item.leader->given},
+          {"leader_sha256", ""},
+          {"side", std::string(SideName(item.side))},
+          {"reaction", item.reaction}};
+}
+
+void AddExtra(const Item& item, ordered_json* record) {
+  if (item.leader->extra.empty()) return;
+  ordered_json extra = ordered_json::object();
+  for (const auto& [name, value] : item.leader->extra) extra[name] = value;
+  (*record)["extra"] = std::move(extra);
+}
+
+ordered_json WithAnswer(const Item& item, const char* state, const RecordedAnswer& answer) {
+  ordered_json record = Begin(item, state);
+  record["leader_sha256"] = answer.leader_sha256;
+  if (answer.keyframes.empty()) {
+    record["labels"] = LabelsJson(item.labels);
+  } else {
+    record["keyframes"] = KeyframesJson(answer.keyframes);
+  }
+  record["model"] = answer.model;
+  record["seed"] = answer.seed;
+  record["variety"] = Number(answer.variety);
+  record["request_id"] = answer.request_id;
+  record["frames"] = answer.frames;
+  record["frame_rate_hz"] = answer.frame_rate_hz;
+  record["quality"] = QualityJson(answer.quality);
+  AddIf("unfamiliarity", answer.unfamiliarity, &record);
+  record["answers"] = answer.answers;
+  return record;
+}
+
+}  // namespace
+
+ordered_json DoneRecord(const Item& item, const RecordedAnswer& answer,
+                        const std::vector<RecordedFile>& files) {
+  ordered_json record = WithAnswer(item, kDone, answer);
+  record["files"] = ordered_json::array();
+  for (const RecordedFile& file : files) {
+    record["files"].push_back(
+        {{"path", file.path}, {"bytes", file.bytes}, {"sha256", file.sha256}});
+  }
+  AddExtra(item, &record);
+  return record;
+}
+
+ordered_json RejectedRecord(const Item& item, const RecordedAnswer& answer,
+                            const std::vector<std::string>& reasons) {
+  ordered_json record = WithAnswer(item, kRejected, answer);
+  record["reasons"] = reasons;
+  AddExtra(item, &record);
+  return record;
+}
+
+ordered_json FailedRecord(const Item& item, const absl::Status& error) {
+  ordered_json record = Begin(item, kFailed);
+  record.erase("leader_sha256");
+  if (!item.labels.empty()) record["labels"] = LabelsJson(item.labels);
+  record["error"] = {{"code", absl::StatusCodeToString(error.code())},
+                     {"message", std::string(error.message())}};
+  AddExtra(item, &record);
+  return record;
+}
+
+std::string Line(const ordered_json& record) {
+  return record.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+}  // namespace duet::client::batch

@@ -1,0 +1,57 @@
+#ifndef DUET_CLIENT_BATCH_RECORD_H_
+#define DUET_CLIENT_BATCH_RECORD_H_
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "client/batch/plan.h"
+#include "client/batch/quality.h"
+#include "client/request.h"
+
+namespace duet::client::batch {
+
+// What became of an item: IndexEntry of proto/duet/batch/v1/batch.proto.
+
+inline constexpr char kDone[] = "done";
+inline constexpr char kRejected[] = "rejected";
+inline constexpr char kFailed[] = "failed";
+
+struct RecordedFile {
+  std::string path;
+  uint64_t bytes = 0;
+  std::string sha256;
+};
+
+// An answer as the index tells of it.
+struct RecordedAnswer {
+  std::string leader_sha256;
+  std::string model;  // name@version
+  uint64_t seed = 0;
+  float variety = 0;
+  std::string request_id;
+  std::vector<WeightKeyframe> keyframes;
+  int frames = 0;
+  double frame_rate_hz = 0;
+  Quality quality;
+  std::optional<double> unfamiliarity;
+  int answers = 1;
+};
+
+// One JSON object, fields in the proto's order, without times: the same item has the same record
+// whenever it is made.
+nlohmann::ordered_json DoneRecord(const Item& item, const RecordedAnswer& answer,
+                                  const std::vector<RecordedFile>& files);
+nlohmann::ordered_json RejectedRecord(const Item& item, const RecordedAnswer& answer,
+                                      const std::vector<std::string>& reasons);
+nlohmann::ordered_json FailedRecord(const Item& item, const absl::Status& error);
+
+// As one line, without its end. Bytes that are no UTF-8 come out as the replacement character.
+std::string Line(const nlohmann::ordered_json& record);
+
+}  // namespace duet::client::batch
+
+#endif  // DUET_CLIENT_BATCH_RECORD_H_

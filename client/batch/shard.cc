@@ -1,0 +1,85 @@
+#include "client/batch/shard.h"
+
+#include <cstdint>
+#include <string>
+#include <utility>
+
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
+#include "model/base/text.h"
+
+namespace duet::client::batch {
+namespace {
+
+// How a cluster tells a task which of how many it is.
+struct Convention {
+  const char* index;
+  const char* count;
+  const char* first;  // the number of the first task; null: 0
+};
+
+constexpr Convention kConventions[] = {
+    {"JOB_COMPLETION_INDEX", "JOB_COMPLETIONS", nullptr},
+    {"SLURM_ARRAY_TASK_ID", "SLURM_ARRAY_TASK_COUNT", "SLURM_ARRAY_TASK_MIN"},
+    {"AWS_BATCH_JOB_ARRAY_INDEX", "AWS_BATCH_JOB_ARRAY_SIZE", nullptr},
+};
+
+absl::StatusOr<int> ReadNumber(const ReadVariable& read, const char* name) {
+  const std::optional<std::string> text = read(name);
+  int value = 0;
+  if (text.has_value() && absl::SimpleAtoi(*text, &value)) return value;
+  return absl::InvalidArgumentError(
+      absl::StrCat(name, ": came ", text.has_value() ? base::Quoted(*text) : "none",
+                   ", wanted a number beside the task's index, or --shard INDEX/COUNT"));
+}
+
+absl::StatusOr<Shard> ReadConvention(const Convention& convention, const ReadVariable& read) {
+  const absl::StatusOr<int> index = ReadNumber(read, convention.index);
+  const absl::StatusOr<int> count = ReadNumber(read, convention.count);
+  if (!index.ok()) return index.status();
+  if (!count.ok()) return count.status();
+  int first = 0;
+  if (convention.first != nullptr && read(convention.first).has_value()) {
+    const absl::StatusOr<int> number = ReadNumber(read, convention.first);
+    if (!number.ok()) return number.status();
+    first = *number;
+  }
+  const Shard shard{*index - first, *count};
+  if (shard.index >= 0 && shard.index < shard.count) return shard;
+  return absl::InvalidArgumentError(absl::StrCat(convention.index, ": came ", *index,
+                                                 ", wanted one of ", shard.count, " from ", first));
+}
+
+}  // namespace
+
+bool Shard::Has(absl::string_view item_id) const {
+  // The id is a digest: its first 8 hex digits are as good as random.
+  uint32_t number = 0;
+  for (const char c : item_id.substr(0, 8)) {
+    number = number * 16 + static_cast<uint32_t>(c <= '9' ? c - '0' : c - 'a' + 10);
+  }
+  return static_cast<int>(number % static_cast<uint32_t>(count)) == index;
+}
+
+absl::StatusOr<Shard> ParseShard(absl::string_view text) {
+  const std::pair<std::string, std::string> parts = absl::StrSplit(text, absl::MaxSplits('/', 1));
+  Shard shard;
+  if (absl::SimpleAtoi(parts.first, &shard.index) && absl::SimpleAtoi(parts.second, &shard.count) &&
+      shard.index >= 0 && shard.index < shard.count) {
+    return shard;
+  }
+  return absl::InvalidArgumentError(
+      absl::StrCat(base::Quoted(text),
+                   ", wanted INDEX/COUNT such as 0/8, the index from 0 and below the count"));
+}
+
+absl::StatusOr<Shard> ShardFromEnvironment(const ReadVariable& read) {
+  for (const Convention& convention : kConventions) {
+    // An indexed job of Kubernetes always has the first, and a count only where somebody sets it.
+    if (read(convention.index).has_value()) return ReadConvention(convention, read);
+  }
+  return Shard{};
+}
+
+}  // namespace duet::client::batch

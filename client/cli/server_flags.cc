@@ -1,0 +1,41 @@
+#include "client/cli/server_flags.h"
+
+#include "client/cli/flags.h"
+
+namespace duet::client::cli {
+
+void AddServerFlags(CLI::App* app, ServerArguments* server) {
+  app->add_option("--server", server->address, "Or any gRPC target, such as unix:/run/duet.sock")
+      ->capture_default_str()
+      ->type_name("HOST:PORT")
+      ->group(kServerGroup);
+  AddConnectionFlags(app, server);
+}
+
+void AddConnectionFlags(CLI::App* app, ServerArguments* server) {
+  app->add_option("--timeout", server->timeout_seconds, "Seconds for the whole call, with retries")
+      ->check(Undescribed(CLI::Range(0.001, 86400.0)))
+      ->capture_default_str()
+      ->type_name("SECONDS")
+      ->group(kServerGroup);
+  app->add_flag("--tls", server->tls, "Encrypt; trust the system's authorities")
+      ->group(kServerGroup);
+  app->add_option("--tls-ca", server->tls_ca_file, "Encrypt; trust the authorities in this file")
+      ->type_name("FILE")
+      ->group(kServerGroup);
+  CLI::Option* certificate =
+      app->add_option("--tls-cert", server->tls_certificate_file, "This client's certificate")
+          ->type_name("FILE")
+          ->group(kServerGroup);
+  CLI::Option* key = app->add_option("--tls-key", server->tls_key_file, "This client's private key")
+                         ->type_name("FILE")
+                         ->group(kServerGroup);
+  certificate->needs(key);
+  key->needs(certificate);
+  app->add_option("--tls-server-name", server->tls_server_name,
+                  "Name in the server's certificate, where it is not the address")
+      ->type_name("NAME")
+      ->group(kServerGroup);
+}
+
+}  // namespace duet::client::cli

@@ -1,0 +1,326 @@
+// Whole runs against a connection that a test writes.
+#include "client/batch/job.h"
+
+#include <google/protobuf/util/json_util.h>
+
+#include <algorithm>
+#include <atomic>
+#include <fstream>
+#include <functional>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "client/batch/recipe_file.h"
+#include "client/batch/setup.h"
+#include "client/batch/verify.h"
+#include "duet/batch/v1/batch.pb.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "model/formats/motion_file.h"
+#include "nlohmann/json.hpp"
+#include "tests/support/sample_motion.h"
+#include "tests/support/status_matchers.h"
+#include "tests/support/temporary_folder.h"
+
+namespace duet::client::batch {
+namespace {
+
+using test::IsOk;
+using test::ReadTestFile;
+using test::StatusIs;
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+
+constexpr char kRecipe[] = R"(
+  reactions { labels { weights { key: "kick" value: 1 } } }
+  reactions { labels { weights { key: "hug" value: 0.5 } } }
+  samples: 3 filter { retries_per_item: 2 max_distance_metres: 9 }
+  output { formats: FORMAT_NPY })";
+constexpr int kItems = 12;
+
+// Answers as `answer` says, unless that is empty: the leader, moved by how much its seed tells.
+class FakeConnection : public Connection {
+ public:
+  absl::StatusOr<std::vector<ModelInfo>> ListModels() override {
+    return absl::UnimplementedError("");
+  }
+  absl::StatusOr<ModelDetails> GetModel(const ModelChoice&) override {
+    return absl::UnimplementedError("");
+  }
+  absl::StatusOr<SynthesisResult> Synthesize(const SynthesisRequest& request,
+                                             const ChunkCallback&) override {
+    const int call = calls++;
+    const absl::Status status = answer ? answer(request, call) : absl::OkStatus();
+    if (!status.ok()) return status;
+    SynthesisResult result;
+    result.pair = {request.leader, request.leader};
+    const auto by = static_cast<float>(request.seed % 1000) / 1000 + distance;
+    for (motion::Vec3& position : result.pair.follower.poses.all()) position.x += by;
+    result.model_name = request.model.name;
+    result.model_version = *request.model.version;
+    result.request_id = request.request_id;
+    result.seed = request.seed;
+    return result;
+  }
+  std::function<absl::Status(const SynthesisRequest&, int call)> answer;
+  float distance = 1;
+  std::atomic<int> calls{0};
+};
+
+JobOptions WithFewThreads(JobOptions options) {
+  options.flow.max_in_flight = std::min(options.flow.max_in_flight, 4);
+  return options;
+}
+
+class JobTest : public ::testing::Test {
+ protected:
+  JobTest() {
+    motion::ClipPair pair;
+    pair.leader.joint_names = motion::SbuSkeleton().joint_names;
+    pair.leader.frame_rate_hz = 15;
+    pair.leader.poses = test::SwayingMotion(5, 15);
+    pair.follower = pair.leader;
+    for (const char* name : {"a.csv", "b.csv"}) {
+      EXPECT_THAT(formats::WritePair(folder_ / name, pair, motion::SbuSkeleton()), IsOk());
+    }
+  }
+
+  // A run into <folder>/<out> with a connection of its own for each server.
+  absl::StatusOr<JobReport> Run(const std::string& out, const JobOptions& options = {},
+                                const std::string& manifest = "leader\na.csv\nb.csv\n") {
+    absl::StatusOr<Recipe> recipe = ParseRecipe(recipe_, false);
+    EXPECT_THAT(recipe, IsOk());
+    ModelInfo model;
+    model.name = "fake";
+    model.version = 3;
+    model.interaction_classes = {"kick", "hug"};
+    model.samples = true;
+    JobFolder folder(folder_ / out);
+    JobIdentity begun;
+    absl::Status status = folder.Open(IdentityOf(*recipe, {}), &begun);
+    if (!status.ok()) return status;
+    const JobIdentity identity = WithModels(IdentityOf(*recipe, {}), {model});
+    EXPECT_THAT(folder.Begin(identity), IsOk());
+    std::istringstream in(manifest);
+    absl::StatusOr<Plan> plan =
+        Plan::Create(*recipe, {model}, ReadManifest(in, folder_.path(), "m"));
+    EXPECT_THAT(plan, IsOk());
+    std::vector<std::vector<Client>> servers;
+    for (const auto& connection : connections_) servers.push_back({Client(connection)});
+    Job job({*recipe, identity, {model}, {motion::SbuSkeleton()}, servers, &folder},
+            *std::move(plan), WithFewThreads(options));
+    job_ = &job;
+    absl::StatusOr<JobReport> report = job.Run();
+    job_ = nullptr;
+    return report;
+  }
+
+  std::string Read(const std::string& path) { return ReadTestFile(folder_ / path); }
+  std::vector<std::string> Lines(const std::string& path) {
+    std::vector<std::string> lines;
+    std::istringstream in(Read(path));
+    for (std::string line; std::getline(in, line);) lines.push_back(line);
+    return lines;
+  }
+  void ExpectSameAsUndisturbed(const std::string& out) {
+    connections_ = {std::make_shared<FakeConnection>()};
+    ASSERT_THAT(Run("undisturbed"), IsOk());
+    for (const char* file : {"index.jsonl", "index.tsv", "rejected.tsv", "summary.json"}) {
+      EXPECT_EQ(Read(out + "/" + file), Read(std::string("undisturbed/") + file)) << file;
+    }
+    EXPECT_EQ(Verify(folder_ / out)->problem_count, 0);
+  }
+  FakeConnection& connection() { return *connections_[0]; }
+
+  test::TemporaryFolder folder_;
+  std::string recipe_ = kRecipe;
+  std::vector<std::shared_ptr<FakeConnection>> connections_ = {std::make_shared<FakeConnection>()};
+  std::atomic<Job*> job_{nullptr};
+};
+
+TEST_F(JobTest, KeepsEveryAnswerAndListsIt) {
+  const auto report = Run("set");
+  ASSERT_THAT(report, IsOk());
+  EXPECT_EQ(report->set.done, kItems);
+  EXPECT_TRUE(report->complete());
+  EXPECT_EQ(connection().calls, kItems);
+  const auto lines = Lines("set/index.jsonl");
+  ASSERT_THAT(lines, SizeIs(kItems));
+  for (size_t i = 0; i < lines.size(); ++i) {
+    ::duet::batch::v1::IndexEntry entry;
+    ASSERT_TRUE(google::protobuf::util::JsonStringToMessage(lines[i], &entry).ok()) << lines[i];
+    EXPECT_EQ(entry.item(), i);
+    EXPECT_EQ(entry.model(), "fake@3");
+    EXPECT_EQ(entry.request_id(), "batch-" + entry.id());
+    EXPECT_THAT(entry.leader_sha256(), SizeIs(64));
+  }
+}
+
+TEST_F(JobTest, ASecondRunAsksForNothing) {
+  ASSERT_THAT(Run("set"), IsOk());
+  ASSERT_THAT(Run("set"), IsOk());
+  EXPECT_EQ(connection().calls, kItems);
+}
+
+TEST_F(JobTest, GoesOnAfterTheJournalWasTornAnywhere) {
+  ASSERT_THAT(Run("set"), IsOk());
+  const std::filesystem::path journal = folder_ / "set/.duet-batch/journal";
+  const auto whole = std::filesystem::file_size(journal);
+  for (const auto size : {whole - 1, whole / 2, whole / 3, uintmax_t{0}}) {
+    std::filesystem::resize_file(journal, size);
+    ASSERT_THAT(Run("set"), IsOk());
+    ExpectSameAsUndisturbed("set");
+  }
+}
+
+TEST_F(JobTest, AFullServerIsAskedAgainAndNothingIsLost) {
+  connection().answer = [](const SynthesisRequest&, int call) {
+    if (call % 2 == 1) return absl::OkStatus();
+    absl::Status full = absl::ResourceExhaustedError("full");
+    // google.rpc.RetryInfo {retry_delay {nanos: 1000}}
+    full.SetPayload("type.googleapis.com/google.rpc.RetryInfo", absl::Cord("\x0a\x03\x10\xe8\x07"));
+    return full;
+  };
+  const auto report = Run("set");
+  ASSERT_THAT(report, IsOk());
+  EXPECT_TRUE(report->complete());
+  ExpectSameAsUndisturbed("set");
+}
+
+TEST_F(JobTest, AServerThatIsAwayIsLeftToTheOthers) {
+  connections_.push_back(std::make_shared<FakeConnection>());
+  connections_[0]->answer = [](const SynthesisRequest&, int) {
+    return absl::UnavailableError("away");
+  };
+  const auto report = Run("set");
+  ASSERT_THAT(report, IsOk());
+  EXPECT_EQ(connections_[1]->calls, kItems);
+  ExpectSameAsUndisturbed("set");
+}
+
+TEST_F(JobTest, ServersThatStayAwayEndTheRun) {
+  connection().answer = [](const SynthesisRequest&, int) { return absl::UnavailableError("away"); };
+  JobOptions options;
+  options.flow.first_backoff = options.patience = std::chrono::milliseconds(1);
+  const auto report = Run("set", options);
+  ASSERT_THAT(report, IsOk());
+  EXPECT_THAT(report->stopped, StatusIs(absl::StatusCode::kUnavailable, HasSubstr("no server")));
+  EXPECT_EQ(report->set.done, 0);
+  connection().answer = nullptr;
+  ASSERT_THAT(Run("set"), IsOk());
+  ExpectSameAsUndisturbed("set");
+}
+
+TEST_F(JobTest, PassingFailuresAreTriedAgainInTheRunAndInTheNext) {
+  connection().answer = [](const SynthesisRequest& request, int) {
+    return request.weights[0].interaction_class == "hug" ? absl::InternalError("hiccup")
+                                                         : absl::OkStatus();
+  };
+  const auto report = Run("set");
+  ASSERT_THAT(report, IsOk());
+  EXPECT_EQ(report->unfinished, kItems / 2);
+  EXPECT_FALSE(report->complete());
+  EXPECT_EQ(connection().calls, kItems / 2 + 3 * kItems / 2);
+  EXPECT_THAT(Read("set/errors/a-2-hug0p5-s0.json"), HasSubstr("hiccup"));
+  connection().answer = nullptr;
+  ASSERT_THAT(Run("set"), IsOk());
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "set/errors/a-2-hug0p5-s0.json"));
+  ExpectSameAsUndisturbed("set");
+}
+
+TEST_F(JobTest, WhatIsRefusedFailsForGoodUnlessAskedAgain) {
+  connection().answer = [](const SynthesisRequest& request, int) {
+    return request.weights[0].interaction_class == "hug" ? absl::InvalidArgumentError("no hugs")
+                                                         : absl::OkStatus();
+  };
+  auto report = Run("set");
+  ASSERT_THAT(report, IsOk());
+  EXPECT_EQ(report->set.failed, kItems / 2);
+  EXPECT_TRUE(report->complete());
+  connection().answer = nullptr;
+  EXPECT_EQ(Run("set")->set.failed, kItems / 2);
+  JobOptions options;
+  options.retry_failed = true;
+  EXPECT_EQ(Run("set", options)->set.failed, 0);
+  ExpectSameAsUndisturbed("set");
+}
+
+TEST_F(JobTest, CredentialsThatAreRefusedEndTheRunAndMarkNothing) {
+  connection().answer = [](const SynthesisRequest&, int) {
+    return absl::UnauthenticatedError("who?");
+  };
+  const auto report = Run("set");
+  ASSERT_THAT(report, IsOk());
+  EXPECT_THAT(report->stopped, StatusIs(absl::StatusCode::kUnauthenticated, HasSubstr("who?")));
+  EXPECT_EQ(report->set.failed, 0);
+}
+
+TEST_F(JobTest, RejectedAnswersAreAskedForWithOtherSeedsAndListed) {
+  connection().distance = 20;  // beyond the filter, whatever the seed
+  const auto report = Run("set");
+  ASSERT_THAT(report, IsOk());
+  EXPECT_EQ(report->set.rejected, kItems);
+  EXPECT_EQ(connection().calls, 3 * kItems);
+  const auto lines = Lines("set/rejected.tsv");
+  ASSERT_THAT(lines, SizeIs(kItems + 1));
+  EXPECT_THAT(lines[1], HasSubstr("wanted at most 9"));
+  EXPECT_THAT(Lines("set/index.jsonl"), SizeIs(0));
+}
+
+TEST_F(JobTest, StopsBetweenItems) {
+  connection().answer = [this](const SynthesisRequest&, int call) {
+    if (call == 3) job_.load()->Stop();
+    return absl::OkStatus();
+  };
+  JobOptions options;
+  options.flow.max_in_flight = 1;
+  const auto report = Run("set", options);
+  ASSERT_THAT(report, IsOk());
+  EXPECT_EQ(report->set.done, 4);
+  connection().answer = nullptr;
+  ASSERT_THAT(Run("set"), IsOk());
+  ExpectSameAsUndisturbed("set");
+}
+
+TEST_F(JobTest, LeadersInAnotherOrderAreRefused) {
+  ASSERT_THAT(Run("set"), IsOk());
+  EXPECT_THAT(Run("set", {}, "leader\nb.csv\na.csv\n"),
+              StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("item 0 was a-2-kick-s0")));
+  EXPECT_THAT(Run("set", {}, "leader\na.csv\nb.csv\na.csv\n"), IsOk());
+  EXPECT_EQ(connection().calls, kItems + kItems / 2);
+}
+
+TEST_F(JobTest, LimitAndShareTakeAPartOfThePlan) {
+  JobOptions options;
+  options.limit = 5;
+  EXPECT_EQ(Run("set", options)->set.done, 5);
+  options = {};
+  options.share = 0.5;
+  const auto report = Run("half", options);
+  EXPECT_GT(report->set.done, 0);
+  EXPECT_LT(report->set.done, kItems);
+  ASSERT_THAT(Run("set"), IsOk());
+  ASSERT_THAT(Run("half"), IsOk());
+  ExpectSameAsUndisturbed("set");
+  ExpectSameAsUndisturbed("half");
+}
+
+TEST_F(JobTest, ALeaderThatCannotBeReadFailsAlone) {
+  const auto report = Run("set", {}, "leader\na.csv\nnone.csv\n");
+  ASSERT_THAT(report, IsOk());
+  EXPECT_EQ(report->set.done, kItems / 2);
+  EXPECT_EQ(report->set.failed, kItems / 2);
+  EXPECT_THAT(Read("set/errors/none-3-kick-s0.json"), HasSubstr("no such file"));
+}
+
+TEST_F(JobTest, AnotherRecipeIsRefused) {
+  ASSERT_THAT(Run("set"), IsOk());
+  recipe_ += "seed: 9";
+  EXPECT_THAT(Run("set"), StatusIs(absl::StatusCode::kFailedPrecondition,
+                                   HasSubstr("was begun with another recipe")));
+}
+
+}  // namespace
+}  // namespace duet::client::batch

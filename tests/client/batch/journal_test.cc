@@ -1,0 +1,158 @@
+#include "client/batch/journal.h"
+
+#include <sys/resource.h>
+
+#include <csignal>
+#include <string>
+#include <vector>
+
+#include "client/batch/durable_file.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/support/status_matchers.h"
+#include "tests/support/temporary_folder.h"
+
+namespace duet::client::batch {
+namespace {
+
+using test::IsOk;
+using test::ReadTestFile;
+using test::StatusIs;
+using test::WriteTestFile;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+// While it lives, files take this many bytes and no more, as if the disk were full.
+class FullDisk {
+ public:
+  explicit FullDisk(rlim_t bytes) : handler_(signal(SIGXFSZ, SIG_IGN)) {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  FullDisk(const FullDisk&) = delete;
+  FullDisk& operator=(const FullDisk&) = delete;
+  ~FullDisk() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    signal(SIGXFSZ, handler_);
+  }
+
+ private:
+  void (*handler_)(int);
+  rlimit before_{};
+};
+
+class JournalTest : public ::testing::Test {
+ protected:
+  void Append(const std::vector<std::pair<int64_t, std::string>>& records) {
+    const auto before = JournalReader::Open(path_);
+    ASSERT_THAT(before, IsOk());
+    JournalWriter writer;
+    ASSERT_THAT(writer.Open(path_, before->size()), IsOk());
+    for (const auto& [item, record] : records) writer.Add(item, record);
+    EXPECT_THAT(writer.Commit(), IsOk());
+  }
+  std::vector<std::string> Records() {
+    std::vector<std::string> records;
+    const auto reader = JournalReader::Open(path_);
+    EXPECT_THAT(reader, IsOk());
+    EXPECT_THAT(reader->ForEach([&records](int64_t item, const std::string& record) {
+      records.push_back(std::to_string(item) + record);
+      return absl::OkStatus();
+    }),
+                IsOk());
+    return records;
+  }
+  test::TemporaryFolder folder_;
+  std::filesystem::path path_ = folder_ / "journal";
+};
+
+TEST_F(JournalTest, GivesRecordsInTheOrderOfTheItems) {
+  Append({{5, "{five}"}, {0, "{zero}"}});
+  Append({{2, std::string(10000, 'x')}});
+  EXPECT_THAT(Records(), ElementsAre("0{zero}", "2" + std::string(10000, 'x'), "5{five}"));
+  const auto reader = JournalReader::Open(path_);
+  EXPECT_EQ(reader->count(), 3);
+  EXPECT_EQ(reader->end(), 6);
+  EXPECT_TRUE(reader->Has(5));
+  EXPECT_FALSE(reader->Has(1));
+  EXPECT_FALSE(reader->Has(6));
+}
+
+TEST_F(JournalTest, TheLastRecordOfAnItemCounts) {
+  Append({{1, "failed"}, {1, "done"}});
+  EXPECT_THAT(Records(), ElementsAre("1done"));
+  EXPECT_EQ(JournalReader::Open(path_)->count(), 1);
+}
+
+TEST_F(JournalTest, AnyTornEndCountsAsNotWrittenAndIsWrittenOver) {
+  Append({{0, "zero"}, {1, "one"}});
+  const std::string whole = ReadTestFile(path_);
+  const size_t first = whole.find('\n') + 1;
+  for (size_t size = first; size < whole.size(); ++size) {
+    WriteTestFile(path_, whole.substr(0, size));
+    EXPECT_THAT(Records(), ElementsAre("0zero")) << size;
+  }
+  std::string damaged = whole;
+  damaged[whole.size() - 2] ^= 1;
+  WriteTestFile(path_, damaged);
+  EXPECT_THAT(Records(), ElementsAre("0zero"));
+  Append({{2, "two"}});
+  EXPECT_THAT(Records(), ElementsAre("0zero", "2two"));
+}
+
+TEST_F(JournalTest, DamageBeforeTheEndIsAnError) {
+  Append({{0, "zero"}, {1, "one"}});
+  std::string damaged = ReadTestFile(path_);
+  damaged[12] ^= 1;
+  WriteTestFile(path_, damaged);
+  EXPECT_THAT(JournalReader::Open(path_),
+              StatusIs(absl::StatusCode::kDataLoss, HasSubstr("byte 0: damaged")));
+}
+
+TEST_F(JournalTest, AFullDiskEndsIt) {
+  Append({{0, "zero"}});
+  {
+    JournalWriter writer;
+    ASSERT_THAT(writer.Open(path_, JournalReader::Open(path_)->size()), IsOk());
+    const FullDisk full(60);
+    writer.Add(1, std::string(100, 'x'));
+    EXPECT_THAT(writer.Commit(), StatusIs(absl::StatusCode::kAborted, HasSubstr("cannot write")));
+    writer.Add(2, "two");
+    EXPECT_THAT(writer.Commit(), StatusIs(absl::StatusCode::kAborted, HasSubstr("cannot write")));
+  }
+  EXPECT_THAT(Records(), ElementsAre("0zero"));
+  Append({{1, "one"}});
+  EXPECT_THAT(Records(), ElementsAre("0zero", "1one"));
+}
+
+TEST(DurableFiles, AreWholeOrNotThere) {
+  const test::TemporaryFolder folder;
+  EXPECT_THAT(WriteDurably(folder / "tmp", folder / "a" / "b" / "file", "content"), IsOk());
+  EXPECT_EQ(ReadTestFile(folder / "a" / "b" / "file"), "content");
+  EXPECT_FALSE(std::filesystem::exists(folder / "tmp"));
+  WriteTestFile(folder / "plain", "");
+  EXPECT_THAT(WriteDurably(folder / "tmp", folder / "plain" / "file", "content"),
+              StatusIs(absl::StatusCode::kAborted, HasSubstr("plain")));
+  EXPECT_FALSE(std::filesystem::exists(folder / "tmp"));
+  const FullDisk full(3);
+  EXPECT_THAT(WriteDurably(folder / "tmp", folder / "file", "content"),
+              StatusIs(absl::StatusCode::kAborted, HasSubstr("cannot write")));
+  EXPECT_FALSE(std::filesystem::exists(folder / "tmp"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "file"));
+}
+
+TEST(FolderLock, IsHeldByOne) {
+  const test::TemporaryFolder folder;
+  {
+    FolderLock first, second;
+    EXPECT_THAT(first.Take(folder / "lock"), IsOk());
+    EXPECT_THAT(second.Take(folder / "lock"),
+                StatusIs(absl::StatusCode::kAborted, HasSubstr("another duet batch")));
+  }
+  FolderLock third;
+  EXPECT_THAT(third.Take(folder / "lock"), IsOk());
+}
+
+}  // namespace
+}  // namespace duet::client::batch

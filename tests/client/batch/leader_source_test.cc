@@ -1,0 +1,154 @@
+#include "client/batch/leader_source.h"
+
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/support/status_matchers.h"
+#include "tests/support/temporary_folder.h"
+
+namespace duet::client::batch {
+namespace {
+
+using test::IsOk;
+using test::StatusIs;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Pair;
+
+// All that a source gives; the status of the first that it cannot.
+absl::StatusOr<std::vector<LeaderEntry>> ReadAll(LeaderSource& source) {
+  std::vector<LeaderEntry> entries;
+  while (true) {
+    absl::StatusOr<std::optional<LeaderEntry>> entry = source.Next();
+    if (!entry.ok()) return entry.status();
+    if (!entry->has_value()) return entries;
+    entries.push_back(**std::move(entry));
+  }
+}
+
+absl::StatusOr<std::vector<LeaderEntry>> ReadText(const std::string& text) {
+  std::istringstream in(text);
+  return ReadAll(*ReadManifest(in, "/data", "m"));
+}
+
+std::vector<std::string> Keys(const std::vector<LeaderEntry>& entries) {
+  std::vector<std::string> keys;
+  for (const LeaderEntry& entry : entries) keys.push_back(entry.key);
+  return keys;
+}
+
+TEST(Manifest, ReadsTsvByItsHeader) {
+  const auto entries = ReadText(
+      "side\tleader\tlabels\tmood\tseed\tpartner_direction\tfollower_start\n"
+      "right\twalks/a.bvh\thug=0.5,kick=1\tcalm\t7\t1,0,0\tstart.csv\n"
+      "\t/b.csv\t\t\t\t\t0,1,2\n");
+  ASSERT_THAT(entries, IsOk());
+  ASSERT_EQ(entries->size(), 2u);
+  const LeaderEntry& first = (*entries)[0];
+  EXPECT_EQ(first.given, "walks/a.bvh");
+  EXPECT_EQ(first.file, "/data/walks/a.bvh");
+  EXPECT_EQ(first.side, formats::Side::kRight);
+  ASSERT_EQ(first.labels.size(), 2u);
+  EXPECT_EQ(first.labels[1].interaction_class, "kick");
+  EXPECT_EQ(first.seed, 7u);
+  EXPECT_EQ(first.partner_direction->x, 1);
+  EXPECT_EQ(first.follower_start, "/data/start.csv");
+  EXPECT_THAT(first.extra, ElementsAre(Pair("mood", "calm")));
+  EXPECT_THAT(Keys(*entries), ElementsAre("walks/a-2", "b-3"));
+  EXPECT_EQ((*entries)[1].file, "/b.csv");
+  EXPECT_EQ((*entries)[1].follower_start, "0,1,2");
+  EXPECT_TRUE((*entries)[1].extra.empty());
+}
+
+TEST(Manifest, ReadsJsonLines) {
+  const auto entries = ReadText(
+      "\xEF\xBB\xBF{\"leader\": \"a.bvh\", \"id\": \"x/y.1\", \"labels\": {\"kick\": 0.5}, "
+      "\"take\": 3}\r\n\n{\"leader\": \"b.bvh\", \"id\": \"z\", \"model\": \"sbu@2\"}\n");
+  ASSERT_THAT(entries, IsOk());
+  EXPECT_THAT(Keys(*entries), ElementsAre("x/y_1", "z"));
+  EXPECT_EQ((*entries)[0].labels[0].weight, 0.5f);
+  EXPECT_THAT((*entries)[0].extra, ElementsAre(Pair("take", "3")));
+  EXPECT_EQ((*entries)[1].model, "sbu@2");
+}
+
+struct BadManifest {
+  const char* text;
+  const char* message;
+};
+class BadManifests : public ::testing::TestWithParam<BadManifest> {};
+
+TEST_P(BadManifests, AreRefusedByLine) {
+  EXPECT_THAT(ReadText(GetParam().text),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(GetParam().message)));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, BadManifests,
+    ::testing::Values(
+        BadManifest{"leader\tside\na.bvh\n", "m:2: came 1 columns, wanted 2"},
+        BadManifest{"leader\tside\na.bvh\tup\n", "m:2: side: came \"up\", wanted left or right"},
+        BadManifest{"side\nleft\n", "m:2: leader: came none"},
+        BadManifest{"leader\tseed\na.bvh\t-1\n", "m:2: seed: came \"-1\""},
+        BadManifest{"leader\tlabels\na.bvh\tkick\n", "m:2: labels: came \"kick\""},
+        BadManifest{"leader\tlabels\na.bvh\tkick=1,kick=0\n", "each class once"},
+        BadManifest{"leader\tlabels\na.bvh\tkick=2.5\n", "labels: came \"kick=2.5\""},
+        BadManifest{"leader\tpartner_direction\na.bvh\t1\n", "partner_direction: came \"1\""},
+        BadManifest{"leader\tid\na.bvh\tx\nb.bvh\tx\n", "m:3: id: came \"x\", wanted one that no"},
+        BadManifest{"leader\tid\na.bvh\tx\nb.bvh\t\n", "m:3: id: wanted on every line or on none"},
+        BadManifest{"{\"leader\": \"a.bvh\"}\nnot json\n", "m:2: "}));
+
+class ListLeadersTest : public ::testing::Test {
+ protected:
+  ListLeadersTest() {
+    for (const char* name :
+         {"walks/b.bvh", "walks/a.csv", "walks/a.bvh", "walks/notes.md", "c.npy"}) {
+      std::filesystem::create_directories((folder_ / name).parent_path());
+      test::WriteTestFile(folder_ / name, "");
+    }
+  }
+  absl::StatusOr<std::vector<std::string>> List(const std::vector<std::string>& names) {
+    std::vector<std::string> inputs;
+    for (const std::string& name : names) inputs.push_back((folder_ / name).string());
+    auto source = ListLeaders(inputs);
+    if (!source.ok()) return source.status();
+    const auto entries = ReadAll(**source);
+    if (!entries.ok()) return entries.status();
+    return Keys(*entries);
+  }
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(ListLeadersTest, FoldersAreMirroredByName) {
+  const auto keys = List({"."});
+  ASSERT_THAT(keys, IsOk());
+  // Two formats of one name: the second has its ending as well.
+  EXPECT_THAT(*keys, ElementsAre("c", "walks/a", "walks/a_csv", "walks/b"));
+}
+
+TEST_F(ListLeadersTest, PatternsAndFiles) {
+  const auto keys = List({"wal*/?.bvh", "c.npy"});
+  ASSERT_THAT(keys, IsOk());
+  EXPECT_THAT(*keys, ElementsAre("walks/a", "walks/b", "c"));
+}
+
+TEST_F(ListLeadersTest, WhatIsNotThereIsRefused) {
+  EXPECT_THAT(List({"none.bvh"}), StatusIs(absl::StatusCode::kNotFound, HasSubstr("none.bvh")));
+  EXPECT_THAT(List({"walks/x*.bvh"}), StatusIs(absl::StatusCode::kNotFound, HasSubstr("x*.bvh")));
+  EXPECT_THAT(List({"walks/notes.md"}),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("notes.md")));
+  EXPECT_THAT(List({"c.npy", "c.npy", "c.npy"}),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("another leader is named")));
+  EXPECT_THAT(ListLeaders({}),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("no motion")));
+}
+
+TEST(KeyOf, HoldsNothingThatFileSystemsOrArchivesTakeAmiss) {
+  EXPECT_EQ(KeyOf("../walks/./Kick 1.v2"), "walks/Kick_1_v2");
+  EXPECT_EQ(KeyOf("/abs/a:b+c-d_e"), "abs/a_b+c-d_e");
+}
+
+}  // namespace
+}  // namespace duet::client::batch

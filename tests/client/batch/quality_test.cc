@@ -1,0 +1,103 @@
+#include "client/batch/quality.h"
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/support/sample_motion.h"
+
+namespace duet::client::batch {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+constexpr int kFrames = 30;
+
+// A person, and the same one moved.
+motion::ClipPair Pair(motion::Vec3 by) {
+  motion::ClipPair pair;
+  pair.leader.joint_names = motion::SbuSkeleton().joint_names;
+  pair.leader.frame_rate_hz = 15;
+  pair.leader.poses = test::SwayingMotion(kFrames, 15);
+  pair.follower = pair.leader;
+  for (motion::Vec3& position : pair.follower.poses.all()) position += by;
+  return pair;
+}
+
+motion::Skeleton WithLandmarks() {
+  motion::Skeleton skeleton = motion::SbuSkeleton();
+  skeleton.hips = motion::JointPair{skeleton.Find("left_hip"), skeleton.Find("right_hip")};
+  skeleton.feet = motion::JointPair{skeleton.Find("left_foot"), skeleton.Find("right_foot")};
+  return skeleton;
+}
+
+TEST(Measure, TellsWhereTheFollowerIs) {
+  const Quality standing = Measure(Pair({3, 0, 4}), WithLandmarks());
+  EXPECT_NEAR(standing.distance_metres, 5, 1e-4);
+  EXPECT_EQ(standing.penetration_metres, 0);
+  EXPECT_GT(standing.range_of_motion_metres, 0);
+  EXPECT_LT(*standing.lean_degrees, 45);
+
+  const Quality floating = Measure(Pair({0, 0.5f, 0}), WithLandmarks());
+  EXPECT_NEAR(*floating.foot_above_floor_metres - *standing.foot_above_floor_metres, 0.5, 1e-4);
+  EXPECT_GT(floating.penetration_metres, 0);
+  const Quality sunk = Measure(Pair({3, -0.5f, 0}), WithLandmarks());
+  EXPECT_GT(*sunk.foot_below_floor_metres, 0.4);
+}
+
+TEST(Measure, LeavesOutWhatASkeletonDoesNotTell) {
+  motion::Skeleton skeleton = motion::SbuSkeleton();
+  skeleton.hips.reset();
+  skeleton.feet.reset();
+  const Quality quality = Measure(Pair({1, 0, 0}), skeleton);
+  EXPECT_FALSE(quality.lean_degrees.has_value());
+  EXPECT_FALSE(quality.foot_above_floor_metres.has_value());
+}
+
+Quality Good() {
+  Quality quality;
+  quality.lean_degrees = 10;
+  quality.foot_above_floor_metres = 0.1;
+  quality.foot_below_floor_metres = 0.1;
+  quality.distance_metres = 1;
+  quality.penetration_metres = 0.1;
+  quality.range_of_motion_metres = 0.1;
+  return quality;
+}
+
+TEST(WhyRejected, EachLimitByItself) {
+  EXPECT_THAT(WhyRejected({}, Good(), 5.0), IsEmpty());
+  const auto only = [](auto set) {
+    QualityFilter filter;
+    set(&filter);
+    return WhyRejected(filter, Good(), 5.0);
+  };
+  EXPECT_THAT(only([](QualityFilter* f) { f->max_lean_degrees = 9; }),
+              ElementsAre("lean_degrees 10, wanted at most 9"));
+  EXPECT_THAT(only([](QualityFilter* f) { f->max_lean_degrees = 10; }), IsEmpty());
+  EXPECT_THAT(only([](QualityFilter* f) { f->max_foot_above_floor_metres = 0.05; }),
+              ElementsAre("foot_above_floor_metres 0.1, wanted at most 0.05"));
+  EXPECT_THAT(only([](QualityFilter* f) { f->max_foot_below_floor_metres = 0.05; }),
+              ElementsAre("foot_below_floor_metres 0.1, wanted at most 0.05"));
+  EXPECT_THAT(only([](QualityFilter* f) { f->min_distance_metres = 1.5; }),
+              ElementsAre("distance_metres 1, wanted at least 1.5"));
+  EXPECT_THAT(only([](QualityFilter* f) { f->max_distance_metres = 0.5; }),
+              ElementsAre("distance_metres 1, wanted at most 0.5"));
+  EXPECT_THAT(only([](QualityFilter* f) { f->max_penetration_metres = 0; }),
+              ElementsAre("penetration_metres 0.1, wanted at most 0"));
+  EXPECT_THAT(only([](QualityFilter* f) { f->min_range_of_motion_metres = 0.2; }),
+              ElementsAre("range_of_motion_metres 0.1, wanted at least 0.2"));
+  EXPECT_THAT(only([](QualityFilter* f) { f->max_unfamiliarity = 1.5; }),
+              ElementsAre("unfamiliarity 5, wanted at most 1.5"));
+}
+
+TEST(WhyRejected, WhatIsNotKnownPasses) {
+  QualityFilter filter;
+  filter.max_lean_degrees = 1;
+  filter.max_unfamiliarity = 1;
+  Quality quality = Good();
+  quality.lean_degrees.reset();
+  EXPECT_THAT(WhyRejected(filter, quality, std::nullopt), IsEmpty());
+}
+
+}  // namespace
+}  // namespace duet::client::batch

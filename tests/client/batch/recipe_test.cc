@@ -1,0 +1,124 @@
+#include <string>
+
+#include "client/batch/recipe_file.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/support/status_matchers.h"
+#include "tests/support/temporary_folder.h"
+
+namespace duet::client::batch {
+namespace {
+
+using test::IsOk;
+using test::StatusIs;
+using ::testing::HasSubstr;
+
+// Of recipes that say nothing of it.
+constexpr char kOutput[] = " output { formats: FORMAT_NPY }";
+
+absl::StatusOr<Recipe> Parse(const std::string& text) {
+  const bool has_output = text.find("output") != std::string::npos;
+  return ParseRecipe(has_output ? text : text + kOutput, /*json=*/false);
+}
+
+TEST(Recipe, AbsentFieldsHaveTheirDefaults) {
+  const auto recipe = Parse("");
+  ASSERT_THAT(recipe, IsOk());
+  EXPECT_EQ(recipe->samples, 1);
+  EXPECT_EQ(recipe->variety, 1);
+  ASSERT_EQ(recipe->models.size(), 1u);
+  EXPECT_EQ(recipe->models[0].name, "");
+  EXPECT_EQ(recipe->output.packing, Packing::kNone);
+  EXPECT_EQ(recipe->output.shard_bytes, uint64_t{256} << 20);
+}
+
+TEST(Recipe, TextFormatAndJsonSayTheSame) {
+  const auto text = Parse(R"(
+    seed: 3 models: "sbu@2" variety: 0.5
+    reactions { labels { weights { key: "kick" value: 1 } weights { key: "hug" value: -0.5 } } }
+    filter { max_lean_degrees: 30 retries_per_item: 2 })");
+  const auto json = ParseRecipe(R"({
+    "seed": 3, "models": ["sbu@2"], "variety": 0.5,
+    "reactions": [{"labels": {"weights": {"hug": -0.5, "kick": 1}}}],
+    "filter": {"max_lean_degrees": 30, "retries_per_item": 2},
+    "output": {"formats": ["FORMAT_NPY"]}})",
+                                /*json=*/true);
+  ASSERT_THAT(text, IsOk());
+  ASSERT_THAT(json, IsOk());
+  EXPECT_EQ(text->digest, json->digest);
+  const auto& labels = std::get<Labels>(text->reactions[0].kind);
+  ASSERT_EQ(labels.size(), 2u);
+  EXPECT_EQ(labels[0].interaction_class, "hug");
+  EXPECT_EQ(labels[0].weight, -0.5f);
+  EXPECT_EQ(text->models[0].version, 2);
+  EXPECT_EQ(text->filter.max_lean_degrees, 30);
+  EXPECT_EQ(text->filter.retries_per_item, 2);
+}
+
+TEST(Recipe, WhatAsksForOtherFilesHasAnotherDigest) {
+  EXPECT_NE(Parse("seed: 1")->digest, Parse("seed: 2")->digest);
+  RecipeOverrides overrides;
+  overrides.packing = Packing::kTar;
+  const auto packed = ParseRecipe(kOutput, false, overrides);
+  EXPECT_EQ(packed->output.packing, Packing::kTar);
+  EXPECT_EQ(packed->digest,
+            ParseRecipe("output { formats: FORMAT_NPY packing: PACKING_TAR }", false)->digest);
+}
+
+struct BadRecipe {
+  const char* text;
+  const char* message;
+};
+
+class BadRecipes : public ::testing::TestWithParam<BadRecipe> {};
+
+TEST_P(BadRecipes, AreRefused) {
+  EXPECT_THAT(Parse(GetParam().text),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(GetParam().message)));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, BadRecipes,
+    ::testing::Values(
+        BadRecipe{"colour: 1", "line 1"},
+        BadRecipe{"reactions {}", "reactions[0]: came nothing, wanted one of labels"},
+        BadRecipe{"reactions { labels {} }", "reactions[0].labels.weights: came none"},
+        BadRecipe{"reactions { labels { weights { key: 'a' value: 3 } } }",
+                  "weights[a]: came 3, wanted a number from -2 to 2"},
+        BadRecipe{"reactions { grid {} }", "grid.axes: came none"},
+        BadRecipe{"reactions { grid { axes { interaction_class: 'a' weights: 1 weights: 1 } } }",
+                  "axes[0].weights: came 1 twice"},
+        BadRecipe{"reactions { mixes {} }", "mixes.count: came 0"},
+        BadRecipe{"reactions { mixes { count: 1 classes: 'a' } }", "classes_in_mix: came 2"},
+        BadRecipe{"reactions { mixes { count: 1 min_weight: 2 } }", "min_weight: came 2"},
+        BadRecipe{"reactions { name: 'a-b' each_class {} }", "name: came \"a-b\""},
+        BadRecipe{"reactions { schedule { keyframes { at: 2 labels { weights { key: 'a' } } } } }",
+                  "keyframes[0].at: came 2"},
+        BadRecipe{"samples: 0", "samples: came 0, wanted a number from 1"},
+        BadRecipe{"variety: 3", "variety: came 3"},
+        BadRecipe{"models: 'a@0'", "models: came \"a@0\""},
+        BadRecipe{"models: 'a' models: 'a'", "models: came a twice"},
+        BadRecipe{"filter { max_lean_degrees: -1 }", "filter.max_lean_degrees: came -1"},
+        BadRecipe{"filter { retries_per_item: 101 }", "retries_per_item: came 101"},
+        BadRecipe{"input { unit: 'feet' }", "input.unit: came \"feet\""},
+        BadRecipe{"input { frame_rate_hz: 0 }", "input.frame_rate_hz: came 0"},
+        BadRecipe{"output { formats: FORMAT_NPY shard_bytes: 0 }", "shard_bytes: came 0"},
+        BadRecipe{"output { formats: FORMAT_CSV packing: PACKING_NPZ }", "FORMAT_NPY alone"},
+        BadRecipe{"output { formats: FORMAT_NPY formats: FORMAT_NPY }", "formats: came 3 twice"}));
+
+TEST(Recipe, AFormatIsWanted) {
+  EXPECT_THAT(ParseRecipe("", false),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("output.formats: came none")));
+}
+
+TEST(ReadRecipe, NamesTheFileAndGoesByItsEnding) {
+  const test::TemporaryFolder folder;
+  test::WriteTestFile(folder / "r.json", R"({"output": {"formats": ["FORMAT_BVH"]}})");
+  EXPECT_THAT(ReadRecipe(folder / "r.json"), IsOk());
+  test::WriteTestFile(folder / "r.textproto", "{}");
+  EXPECT_THAT(ReadRecipe(folder / "r.textproto"),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("r.textproto: line 1")));
+}
+
+}  // namespace
+}  // namespace duet::client::batch

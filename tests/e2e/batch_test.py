@@ -1,0 +1,313 @@
+"""duet batch against duet-server: data sets that are whole and the same however often anything is
+killed, packed shards that Python reads, shards of a job, refusals, and Ctrl-C.
+
+    batch_test.py [KILLS]     how often the kill test kills; 6
+"""
+
+import hashlib
+import json
+import os
+import pathlib
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import tarfile
+import tempfile
+import time
+import unittest
+import zipfile
+
+import tools
+
+try:
+    import numpy
+except ImportError:
+    numpy = None
+
+KILLS = int(sys.argv.pop(1)) if len(sys.argv) > 1 else 6
+
+RECIPE = """
+seed: 7
+reactions { each_class {} }
+reactions { mixes { count: 2 } }
+samples: 2
+output { formats: FORMAT_NPY %s }
+"""
+
+
+def digests(folder):
+    """What is in a data set: path to digest, without the job's own folder."""
+    found = {}
+    for path in sorted(folder.rglob("*")):
+        name = path.relative_to(folder).as_posix()
+        if path.is_file() and not name.startswith(".duet-batch/"):
+            found[name] = hashlib.sha256(path.read_bytes()).hexdigest()
+    return found
+
+
+def entries(folder):
+    lines = (folder / "index.jsonl").read_text(encoding="utf-8").splitlines()
+    return [json.loads(line) for line in lines]
+
+
+class BatchTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        temporary = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(temporary.cleanup)
+        cls.folder = pathlib.Path(temporary.name)
+        cls.leaders = cls.folder / "leaders"
+        (cls.leaders / "far").mkdir(parents=True)
+        for name in ("kick", "hug"):
+            shutil.copy(tools.sample(name), cls.leaders)
+        shutil.copy(tools.sample("push"), cls.leaders / "far")
+        cls.server = tools.Server()
+        cls.addClassCleanup(cls.server.stop)
+        # What RECIPE gives when nothing is in the way.
+        cls.whole = cls.folder / "whole"
+        recipe = cls.folder / "whole.textproto"
+        recipe.write_text(RECIPE % "", encoding="utf-8")
+        made = tools.duet("batch", cls.leaders, "--recipe", recipe, "--out", cls.whole, "--server",
+                          cls.server.address, "--quiet")
+        assert made.returncode == 0, made.stderr
+
+    def recipe(self, more="", text=RECIPE):
+        path = self.folder / f"{self.id().split('.')[-1]}.textproto"
+        path.write_text(text % more, encoding="utf-8")
+        return path
+
+    def out(self, name="set"):
+        return self.folder / f"{self.id().split('.')[-1]}-{name}"
+
+    def command(self, out, recipe, *flags, server=None, leaders=None):
+        return [tools.PROGRAMS / "duet", "batch", leaders or self.leaders, "--recipe", recipe,
+                "--out", out, "--server", server or self.server.address, *flags]
+
+    def batch(self, out, recipe, *flags, code=0, **options):
+        result = tools.run(*self.command(out, recipe, *flags, **options))
+        self.assertEqual(result.returncode, code, result.stdout + result.stderr)
+        return result
+
+    def verified(self, out, code=0):
+        result = tools.duet("batch", "verify", out)
+        self.assertEqual(result.returncode, code, result.stdout + result.stderr)
+        return result
+
+    def test_a_folder_becomes_a_data_set(self):
+        out = self.out()
+        self.batch(out, self.recipe())
+        index = entries(out)
+        self.assertEqual(len(index), 3 * (6 + 2) * 2)
+        self.assertEqual([entry["item"] for entry in index], list(range(len(index))))
+        self.assertTrue((out / "far" / "push-kick-s1.npy").is_file())
+        rows = (out / "index.tsv").read_text(encoding="utf-8").splitlines()
+        self.assertEqual(len(rows), len(index) + 1)
+        for entry in index:
+            self.assertEqual(entry["request_id"], "batch-" + entry["id"])
+            for file in entry["files"]:
+                content = (out / file["path"]).read_bytes()
+                self.assertEqual(hashlib.sha256(content).hexdigest(), file["sha256"])
+        summary = json.loads((out / "summary.json").read_text(encoding="utf-8"))
+        self.assertEqual((summary["done"], summary["missing"]), (len(index), 0))
+        self.verified(out)
+        (out / "far" / "push-kick-s1.npy").write_bytes(b"changed")
+        self.assertIn("push-kick-s1.npy: was changed", self.verified(out, 42).stderr)
+
+    def test_an_answer_is_what_synthesize_gives(self):
+        out, single = self.whole, self.folder / "single.npy"
+        entry = next(e for e in entries(out) if e["name"] == "hug-kick-s0")
+        result = tools.duet("synthesize", "--server", self.server.address, "--leader",
+                            self.leaders / "hug.bvh", "--label", "kick=1", "--seed", entry["seed"],
+                            "--out", single)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(single.read_bytes(), (out / "hug-kick-s0.npy").read_bytes())
+
+    def test_killed_at_any_moment_it_makes_the_same(self):
+        # As many items as take longer than all the kills.
+        samples = f"samples: {max(2, KILLS // 3)}"
+        recipe = self.recipe(text=RECIPE.replace("samples: 2", samples))
+        whole, out = self.out("whole"), self.out()
+        self.batch(whole, recipe)
+        dice, server, kills = random.Random(), tools.Server("--reflection=false"), 0
+        seconds, unsettled = [], []
+        try:
+            while True:
+                client = subprocess.Popen(
+                    self.command(out, recipe, "--patience", "2", "--quiet", "--channels", "2",
+                                 server=server.address),
+                    stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+                if kills < KILLS:
+                    wait = dice.uniform(0.02, 0.5)
+                    seconds.append(round(wait, 3))
+                    try:
+                        client.wait(wait)
+                    except subprocess.TimeoutExpired:
+                        pass
+                    kills += 1
+                    unsettled.append(not (out / "summary.json").exists())
+                    if kills % 3 == 0:
+                        server.kill()
+                    client.kill()
+                    client.communicate()
+                    if kills % 3 == 0:
+                        server = tools.Server("--reflection=false")
+                    continue
+                _, errors = client.communicate(timeout=tools.RUN_SECONDS)
+                self.assertEqual(client.returncode, 0, errors)
+                break
+        finally:
+            server.stop()
+        self.assertEqual(digests(out), digests(whole), f"killed after {seconds}")
+        self.verified(out)
+        print(f"{KILLS} kills, {sum(unsettled)} of them before the last item", file=sys.stderr)
+
+    def test_a_server_that_goes_and_comes_back_costs_nothing(self):
+        recipe, out = self.recipe(), self.out()
+        server = tools.Server()
+        port = server.port
+        client = subprocess.Popen(
+            self.command(out, recipe, "--patience", "60", server=server.address),
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        while not list(out.glob("*.npy")) and client.poll() is None:
+            time.sleep(0.005)
+        server.kill()
+        server = tools.Server(port=port)
+        try:
+            said, _ = client.communicate(timeout=tools.RUN_SECONDS)
+        finally:
+            server.stop()
+        self.assertEqual(client.returncode, 0, said)
+        self.assertEqual(digests(out), digests(self.whole))
+
+    def test_a_server_that_stays_away_is_worth_another_run(self):
+        out = self.out()
+        result = self.batch(out, self.recipe(), "--patience", "0.2", code=1, server="127.0.0.1:1")
+        self.assertIn("Does a duet-server listen", result.stderr)
+
+    def test_an_interrupt_drains(self):
+        recipe, out = self.recipe("formats: FORMAT_BVH"), self.out()
+        client = subprocess.Popen(self.command(out, recipe, "--max-in-flight", "1"),
+                                  stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        while not list(out.glob("*.bvh")) and client.poll() is None:
+            time.sleep(0.005)
+        client.send_signal(signal.SIGINT)
+        said, errors = client.communicate(timeout=tools.RUN_SECONDS)
+        self.assertEqual(client.returncode, 1, said + errors)
+        made = entries(out)
+        self.assertGreater(len(made), 0)
+        self.assertLess(len(made), 48)
+        self.verified(out, 0 if json.loads((out / "summary.json").read_text())["missing"] == 0
+                      else 1)
+        self.batch(out, recipe)
+        self.assertEqual(len(entries(out)), 48)
+
+    def test_a_dry_run_counts_and_writes_nothing(self):
+        out = self.out()
+        result = self.batch(out, self.recipe(), "--dry-run")
+        self.assertIn("48 items of 3 leaders", result.stdout)
+        self.assertFalse(out.exists())
+        (self.folder / "broken").mkdir(exist_ok=True)
+        (self.folder / "broken" / "a.bvh").write_text("HIERARCHY", encoding="utf-8")
+        result = self.batch(out, self.recipe(), "--dry-run", code=42,
+                            leaders=self.folder / "broken")
+        self.assertIn("1 leaders cannot be read", result.stderr)
+
+    def test_another_recipe_is_refused(self):
+        out = self.out()
+        self.batch(out, self.recipe(), "--limit", "2")
+        result = self.batch(out, self.recipe("formats: FORMAT_CSV"), code=42)
+        self.assertIn("was begun with another recipe", result.stderr)
+
+    def test_shards_merge_to_what_one_run_makes(self):
+        for packing in ("", "packing: PACKING_TAR shard_bytes: 300000"):
+            with self.subTest(packing):
+                recipe = self.recipe(packing)
+                whole, out = self.out("whole" + packing[:3]), self.out("merged" + packing[:3])
+                self.batch(whole, recipe)
+                self.batch(out, recipe, "--shard", "0/3")
+                merged = tools.duet("batch", "merge", out)
+                self.assertEqual(merged.returncode, 1, merged.stdout)
+                self.assertIn("shard-1-of-3: is absent or was not run to its end", merged.stderr)
+                self.batch(out, recipe, "--shard", "1/3")
+                environment = dict(os.environ, JOB_COMPLETION_INDEX="2", JOB_COMPLETIONS="3")
+                last = tools.run(*self.command(out, recipe), env=environment)
+                self.assertEqual(last.returncode, 0, last.stderr)
+                merged = tools.duet("batch", "merge", out)
+                self.assertEqual(merged.returncode, 0, merged.stderr)
+                self.assertEqual(digests(out), digests(whole))
+                self.verified(out)
+
+    def test_tar_shards_are_webdataset(self):
+        plain, out = self.whole, self.out()
+        self.batch(out, self.recipe(), "--pack", "tar")
+        self.verified(out)
+        found = {}
+        for shard in sorted(out.glob("*.tar")):
+            with tarfile.open(shard) as archive:
+                names = [member.name for member in archive]
+                for first, second in zip(names[::2], names[1::2]):
+                    self.assertEqual(first.split(".")[0], second.split(".")[0])
+                    record = json.load(archive.extractfile(second))
+                    self.assertEqual(record["state"], "done")
+                    found[first] = archive.extractfile(first).read()
+        self.assertEqual(found, {path.relative_to(plain).as_posix(): path.read_bytes()
+                                 for path in plain.rglob("*.npy")})
+        self.assertFalse((out / ".duet-batch" / "items").exists())
+        before = digests(out)
+        self.batch(out, self.recipe(), "--pack", "tar")
+        self.assertEqual(digests(out), before)
+
+    def test_npz_shards_open(self):
+        plain, out = self.whole, self.out()
+        self.batch(out, self.recipe("packing: PACKING_NPZ shard_bytes: 200000"))
+        self.verified(out)
+        shards = sorted(out.glob("*.npz"))
+        self.assertGreater(len(shards), 2)
+        found = {}
+        for shard in shards:
+            with zipfile.ZipFile(shard) as archive:
+                self.assertIsNone(archive.testzip())
+                found.update({name: archive.read(name) for name in archive.namelist()
+                              if name.endswith(".npy")})
+        self.assertEqual(found, {path.relative_to(plain).as_posix(): path.read_bytes()
+                                 for path in plain.rglob("*.npy")})
+        if numpy is None:
+            self.skipTest("numpy is not installed: its own look at the shards is left out")
+        with numpy.load(shards[0]) as arrays:
+            name = next(name for name in arrays.files if name != "records.jsonl")
+            self.assertEqual(arrays[name].shape[0::2], (2, 15))
+            self.assertTrue(numpy.isfinite(arrays[name]).all())
+
+    def test_a_manifest_from_a_pipe(self):
+        out = self.out()
+        lines = [{"leader": str(self.leaders / "kick.bvh"), "labels": {"hug": 1}, "seed": 5,
+                  "take": "seven"},
+                 {"leader": str(self.leaders / "none.bvh"), "labels": {"hug": 1}}]
+        command = [tools.PROGRAMS / "duet", "batch", "--manifest", "-", "--recipe",
+                   self.recipe(text="output { formats: FORMAT_NPY %s }"), "--out", out, "--server",
+                   self.server.address]
+        result = tools.run(*command, input="\n".join(map(json.dumps, lines)))
+        self.assertEqual(result.returncode, 42, result.stderr)
+        self.assertIn("1 done, 0 rejected, 1 failed", result.stdout)
+        (entry,) = entries(out)
+        self.assertEqual((entry["seed"], entry["extra"]), (5, {"take": "seven"}))
+        (failed,) = out.glob("errors/**/*.json")
+        self.assertIn("no such file", json.loads(failed.read_text())["error"]["message"])
+
+    def test_what_the_filter_rejects_is_listed(self):
+        out = self.out()
+        self.batch(out, self.recipe("} filter { max_distance_metres: 0.9 retries_per_item: 2"))
+        summary = json.loads((out / "summary.json").read_text(encoding="utf-8"))
+        self.assertEqual(summary["done"] + summary["rejected"], 48)
+        self.assertGreater(summary["rejected"], 0)
+        rows = (out / "rejected.tsv").read_text(encoding="utf-8").splitlines()
+        self.assertEqual(len(rows), summary["rejected"] + 1)
+        self.assertIn("wanted at most 0.9", rows[1])
+        for entry in entries(out):
+            self.assertLessEqual(entry["quality"]["distance_metres"], 0.9)
+
+
+if __name__ == "__main__":
+    tools.main()
