@@ -355,12 +355,16 @@ std::vector<motion::Bone> FindBones(const std::vector<std::string>& joint_names,
                                     const motion::Poses& poses, int root) {
   const std::size_t joints = joint_names.size();
   const std::vector<KnownJoint> known = KnowByName(joint_names);
-  const auto cost = [&](std::size_t a, std::size_t b) {
-    const bool is_limb =
-        known[a].parent == static_cast<int>(b) || known[b].parent == static_cast<int>(a);
-    if (is_limb) return 0.0;
-    if (CannotBeJoined(known[a], known[b])) return std::numeric_limits<double>::max();
-    return BoneCost(poses, a, b);
+  const auto cost = [&](std::size_t joined, std::size_t next) {
+    const int parent = known[next].parent;
+    if (parent == static_cast<int>(joined) || known[joined].parent == static_cast<int>(next)) {
+      return 0.0;
+    }
+    // Whose place in a limb is known hangs there alone.
+    if (parent >= 0 || CannotBeJoined(known[joined], known[next])) {
+      return std::numeric_limits<double>::max();
+    }
+    return BoneCost(poses, joined, next);
   };
   // Prim's tree: the cheapest bone from what is joined to what is not, until all are.
   std::vector<motion::Bone> bones;
