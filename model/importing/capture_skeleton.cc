@@ -283,12 +283,10 @@ absl::StatusOr<CaptureSkeleton> ReadSaid(const std::string& said) {
 
 namespace {
 
-enum class Limb { kNone, kArm, kLeg };
-
 // What names tell of joints before any position does.
 struct KnownJoint {
   BodySide side = BodySide::kMiddle;
-  Limb limb = Limb::kNone;
+  bool in_limb = false;
   int parent = -1;  // within the limb
 };
 
@@ -296,7 +294,7 @@ int FindLimbJoint(const std::vector<ParsedJointName>& parsed, BodySide side, con
                   const std::vector<KnownJoint>& known) {
   for (const std::string& alias : retargeting::JointAliases(word)) {
     for (std::size_t i = 0; i < parsed.size(); ++i) {
-      if (known[i].limb == Limb::kNone && parsed[i] == ParsedJointName{side, alias}) {
+      if (!known[i].in_limb && parsed[i] == ParsedJointName{side, alias}) {
         return static_cast<int>(i);
       }
     }
@@ -309,17 +307,16 @@ std::vector<KnownJoint> KnowByName(const std::vector<std::string>& joint_names) 
   std::vector<KnownJoint> known;
   for (const std::string& name : joint_names) {
     parsed.push_back(retargeting::ParseJointName(name));
-    known.push_back({parsed.back().side, Limb::kNone, -1});
+    known.push_back({parsed.back().side, false, -1});
   }
-  constexpr const char* kArm[] = {"shoulder", "elbow", "hand"};
-  constexpr const char* kLeg[] = {"hip", "knee", "foot"};
+  constexpr const char* kLimbs[][3] = {{"shoulder", "elbow", "hand"}, {"hip", "knee", "foot"}};
   for (const BodySide side : {BodySide::kLeft, BodySide::kRight}) {
-    for (const Limb limb : {Limb::kArm, Limb::kLeg}) {
+    for (const auto& limb : kLimbs) {
       int parent = -1;
-      for (const char* word : limb == Limb::kArm ? kArm : kLeg) {
+      for (const char* word : limb) {
         const int joint = FindLimbJoint(parsed, side, word, known);
         if (joint < 0) continue;
-        known[static_cast<std::size_t>(joint)].limb = limb;
+        known[static_cast<std::size_t>(joint)].in_limb = true;
         known[static_cast<std::size_t>(joint)].parent = parent;
         parent = joint;
       }
@@ -328,11 +325,8 @@ std::vector<KnownJoint> KnowByName(const std::vector<std::string>& joint_names) 
   return known;
 }
 
-// A hanging hand is nearer to the thigh than to the elbow: names say which joints cannot be joined.
-bool CannotBeJoined(const KnownJoint& a, const KnownJoint& b) {
-  const bool sides = a.side != b.side && a.side != BodySide::kMiddle && b.side != BodySide::kMiddle;
-  const bool limbs = a.limb != b.limb && a.limb != Limb::kNone && b.limb != Limb::kNone;
-  return sides || limbs;
+bool AreAcross(const KnownJoint& a, const KnownJoint& b) {
+  return a.side != b.side && a.side != BodySide::kMiddle && b.side != BodySide::kMiddle;
 }
 
 // Mean length and how it changes, over some of the frames.
@@ -355,12 +349,16 @@ std::vector<motion::Bone> FindBones(const std::vector<std::string>& joint_names,
                                     const motion::Poses& poses, int root) {
   const std::size_t joints = joint_names.size();
   const std::vector<KnownJoint> known = KnowByName(joint_names);
-  const auto cost = [&](std::size_t a, std::size_t b) {
-    const bool is_limb =
-        known[a].parent == static_cast<int>(b) || known[b].parent == static_cast<int>(a);
-    if (is_limb) return 0.0;
-    if (CannotBeJoined(known[a], known[b])) return std::numeric_limits<double>::max();
-    return BoneCost(poses, a, b);
+  const auto cost = [&](std::size_t joined, std::size_t next) {
+    const int parent = known[next].parent;
+    if (parent == static_cast<int>(joined) || known[joined].parent == static_cast<int>(next)) {
+      return 0.0;
+    }
+    // Whose place in a limb is known hangs there alone: a hanging hand is near the hips.
+    if (parent >= 0 || AreAcross(known[joined], known[next])) {
+      return std::numeric_limits<double>::max();
+    }
+    return BoneCost(poses, joined, next);
   };
   // Prim's tree: the cheapest bone from what is joined to what is not, until all are.
   std::vector<motion::Bone> bones;

@@ -40,7 +40,7 @@ absl::StatusOr<CaptureSkeleton> FindSkeleton(const std::filesystem::path& file,
 
 // Bones for joints that have none: the tree over all joints that starts at `root` and whose bones
 // are shortest and keep their lengths best. Limbs go by their joints' names (shoulder, elbow, hand;
-// hip, knee, foot); no bone joins left to right, or an arm to a leg.
+// hip, knee, foot); no bone joins left to right.
 std::vector<motion::Bone> FindBones(const std::vector<std::string>& joint_names,
                                     const motion::Poses& poses, int root);
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "absl/status/statusor.h"
+#include "absl/status/status.h"
 #include "model/importing/capture_skeleton.h"
 #include "model/importing/pairing.h"
 #include "model/motion/coordinates.h"

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "absl/status/statusor.h"
 #include "model/motion/coordinates.h"
 #include "model/motion/poses.h"
 #include "model/motion/skeleton.h"

@@ -283,6 +283,7 @@ TEST_F(ImportTest, SequencesThatWouldReplaceOneAnotherAreRefused) {
   options_.overwrite = true;
   EXPECT_THAT(Go(), StatusIs(absl::StatusCode::kInvalidArgument,
                              HasSubstr("shove/shove_01_p1.txt: two sequences")));
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path()), {}), 2);  // nothing beside it
 }
 
 TEST_F(ImportTest, NobodyIsLeftOutInSilence) {
@@ -318,16 +319,16 @@ TEST_F(ImportTest, PeopleInWorldsOfTheirOwnAreRefused) {
 TEST_F(ImportTest, LongPairsAreCutAndUnequalOnesTrimmed) {
   BvhPerson person;
   person.frames = 150;
-  WriteBvhPairs(options_.from, 1, person);
+  WriteBvhPairs(options_.from, 2, person);
   person.leads = false;
   person.frames = 130;
   WriteTestFile(options_.from / "kick_01_b.bvh", BvhText(person));
   options_.longest_seconds = 1;
   ASSERT_THAT(Go(), IsOk());
-  EXPECT_EQ(report_.pairs, 2);
-  EXPECT_EQ(report_.sequences, 6);
+  EXPECT_EQ(report_.pairs, 4);
+  EXPECT_EQ(report_.sequences, 12);
   EXPECT_THAT(Assumed("length"), HasSubstr("1 pairs whose people differ by up to 0.33 s"));
-  EXPECT_THAT(Assumed("longest"), HasSubstr("2 longer pairs were cut"));
+  EXPECT_THAT(Assumed("longest"), HasSubstr("4 longer pairs were cut"));
   const dataset::Dataset dataset = Read();
   EXPECT_EQ(dataset.sequences[0].id, "kick/kick_01_p1.txt");
   int frames = 0;
@@ -336,7 +337,7 @@ TEST_F(ImportTest, LongPairsAreCutAndUnequalOnesTrimmed) {
     // The piece in which nobody acts is led by whoever leads the whole.
     EXPECT_NEAR(sequence.pair.leader.at(0, 0).z, 0, 0.01) << sequence.id;
   }
-  EXPECT_EQ(frames, 65);
+  EXPECT_EQ(frames, 65 + 75);
 }
 
 TEST_F(ImportTest, ReplacesOnlyDatasetsAndOnlyWhenAsked) {
