@@ -129,7 +129,9 @@ class KeyframeParser {
     std::vector<double> values;
     absl::Status status = ParseValues(words, 1, &values);
     if (!status.ok()) return status;
-    if (values[0] < 1 || values[0] > 240) return Error("frame_rate: wanted 1 to 240");
+    if (values[0] < 1 || values[0] > motion::kMaxServedFrameRateHz) {
+      return Error(absl::StrCat("frame_rate: wanted 1 to ", motion::kMaxServedFrameRateHz));
+    }
     frame_rate_hz_ = values[0];
     return absl::OkStatus();
   }

@@ -15,6 +15,7 @@
 #include "model/checkpoint/flow_json.h"
 #include "model/checkpoint/leader_statistics_json.h"
 #include "model/checkpoint/names.h"
+#include "model/motion/motion_limits.h"
 #include "model/motion/skeleton_json.h"
 
 namespace duet::checkpoint {
@@ -30,7 +31,6 @@ constexpr int kMaxWindowFrames = 4096;
 constexpr int kMaxMapEntries = 1024;
 constexpr std::size_t kMaxNameBytes = 64;
 constexpr std::size_t kMaxTextBytes = 4096;
-constexpr double kMaxFrameRateHz = 240;
 constexpr int kMaxDepth = 6;
 constexpr std::size_t kSha256HexBytes = 64;
 constexpr char kTouchingClasses[] = "touching_classes";
@@ -199,7 +199,7 @@ void ReadModel(base::ObjectReader* reader, engine::ModelDescription* model) {
   model->name = ReadName(reader, "name");
   model->version = static_cast<int>(reader->Int("version", 1, std::numeric_limits<int>::max()));
   model->description = reader->String("description", kMaxTextBytes);
-  model->frame_rate_hz = reader->Number("frame_rate_hz", 1, kMaxFrameRateHz);
+  model->frame_rate_hz = reader->Number("frame_rate_hz", 1, motion::kMaxServedFrameRateHz);
   model->window_frames = static_cast<int>(reader->Int("window_frames", 2, kMaxWindowFrames));
   model->classes = ReadUniqueNames(reader, "classes", kMaxClasses);
   if (reader->ok() && model->classes.empty()) {

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <vector>
 
 #include "model/cleanup/low_pass.h"
+#include "model/motion/feet.h"
 #include "model/motion/vec3.h"
 
 namespace duet::cleanup {
@@ -38,14 +40,6 @@ float Lift(float height, const FloorOptions& options) {
 }
 
 }  // namespace
-
-std::vector<float> LowerFoot(const motion::JointPair& feet, const motion::Poses& poses) {
-  std::vector<float> heights;
-  for (int t = 0; t < poses.frame_count(); ++t) {
-    heights.push_back(std::min(poses.at(t, feet.left).y, poses.at(t, feet.right).y));
-  }
-  return heights;
-}
 
 float FloorHeight(const motion::JointPair& feet, const motion::Poses& poses) {
   std::vector<float> heights = LowerFoot(feet, poses);

@@ -1,8 +1,6 @@
 #ifndef DUET_MODEL_CLEANUP_FLOOR_H_
 #define DUET_MODEL_CLEANUP_FLOOR_H_
 
-#include <vector>
-
 #include "model/cleanup/timing.h"
 #include "model/motion/poses.h"
 #include "model/motion/skeleton.h"
@@ -18,9 +16,6 @@ struct FloorOptions {
   // What is in the air for less is a jump, and stays.
   double jump_seconds = 0.2;
 };
-
-// The height of the lower foot in every frame, metres. Requires a frame. Shapes: returns [frames].
-std::vector<float> LowerFoot(const motion::JointPair& feet, const motion::Poses& poses);
 
 // Where the floor is that a motion stands on: a low percentile of its lower foot's heights, so that
 // neither a jump nor a foot that a tracker loses moves it.

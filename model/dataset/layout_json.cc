@@ -6,6 +6,7 @@
 #include "model/base/text.h"
 #include "model/dataset/layout.h"
 #include "model/dataset/skeleton_completion.h"
+#include "model/motion/motion_limits.h"
 #include "model/motion/skeleton_json.h"
 
 namespace duet::dataset {
@@ -14,7 +15,6 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr double kMinFrameRateHz = 1;
-constexpr double kMaxFrameRateHz = 240;
 constexpr int kMaxDepth = 6;
 constexpr std::size_t kMaxJoints = 256;
 constexpr std::size_t kMaxClasses = 256;
@@ -127,7 +127,8 @@ absl::StatusOr<DatasetLayout> ParseDatasetLayout(std::string_view text) {
   base::ObjectReader document(*json, "");
   DatasetLayout layout;
   layout.name = ReadName(&document, "name");
-  layout.frame_rate_hz = document.Number("frame_rate_hz", kMinFrameRateHz, kMaxFrameRateHz);
+  layout.frame_rate_hz =
+      document.Number("frame_rate_hz", kMinFrameRateHz, motion::kMaxServedFrameRateHz);
   layout.coordinates = ReadCoordinates(&document);
   ReadSkeleton(&document, &layout);
   layout.level = ReadLevel(&document, layout.skeleton);

@@ -2,23 +2,11 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <limits>
 
+#include "model/motion/feet.h"
 #include "model/motion/limb_lengths.h"
 
 namespace duet::engine {
-namespace {
-
-float LowestFoot(const motion::JointPair& feet, const motion::Poses& poses) {
-  float lowest = std::numeric_limits<float>::infinity();
-  for (int t = 0; t < poses.frame_count(); ++t) {
-    lowest = std::min({lowest, poses.at(t, feet.left).y, poses.at(t, feet.right).y});
-  }
-  return lowest;
-}
-
-}  // namespace
-
 absl::Status CheckFinite(const motion::Poses& follower) {
   if (std::all_of(follower.all().begin(), follower.all().end(), motion::IsFinite)) {
     return absl::OkStatus();

@@ -10,12 +10,14 @@
 
 namespace duet::motion {
 
-// Above every motion that the service accepts (10 minutes at 240 Hz), so that a wrong file is
-// refused before it fills the memory.
+// Above every motion that the service accepts (10 minutes at kMaxServedFrameRateHz), so that a
+// wrong file is refused before it fills the memory.
 inline constexpr std::size_t kMaxMotionFileBytes = std::size_t{512} << 20;
 inline constexpr int kMaxMotionFrames = 200'000;
 inline constexpr int kMaxFileJoints = 1024;
 inline constexpr double kMaxFrameRateHz = 1000;
+// The most that the service accepts, and so what models and data sets may have.
+inline constexpr double kMaxServedFrameRateHz = 240;
 // Far beyond any capture in any unit, and small enough for exact arithmetic in float.
 inline constexpr double kMaxCoordinate = 1e7;
 

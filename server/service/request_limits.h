@@ -3,12 +3,14 @@
 
 #include <cstddef>
 
+#include "model/motion/motion_limits.h"
+
 namespace duet::server::service {
 
 // What a request must keep to. GetModel tells callers; every refusal names the limit it enforces.
 struct RequestLimits {
   double min_frame_rate_hz = 1;
-  double max_frame_rate_hz = 240;
+  double max_frame_rate_hz = motion::kMaxServedFrameRateHz;
   int min_frames = 2;
   double max_duration_seconds = 600;
   int max_chunk_frames = 240;

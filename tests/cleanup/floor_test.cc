@@ -1,6 +1,7 @@
 #include "model/cleanup/floor.h"
 
 #include "model/authoring/puppet.h"
+#include "model/motion/feet.h"
 #include "tests/cleanup/bodies.h"
 
 namespace duet::cleanup {

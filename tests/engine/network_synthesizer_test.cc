@@ -9,6 +9,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "model/engine/window_standardisation.h"
+#include "model/motion/feet.h"
 #include "model/motion/limb_lengths.h"
 #include "tests/engine/rule_network.h"
 #include "tests/support/fake_synthesizer.h"
@@ -191,12 +192,7 @@ TEST(NetworkSynthesizer, LimbsKeepTheLengthsOfTheStartOrElseTheLeader) {
 }
 
 float LowestFoot(const motion::Poses& poses) {
-  const motion::JointPair feet = *motion::SbuSkeleton().feet;
-  float lowest = std::numeric_limits<float>::infinity();
-  for (int t = 0; t < poses.frame_count(); ++t) {
-    lowest = std::min({lowest, poses.at(t, feet.left).y, poses.at(t, feet.right).y});
-  }
-  return lowest;
+  return motion::LowestFoot(*motion::SbuSkeleton().feet, poses);
 }
 
 TEST(NetworkSynthesizer, FollowerWithoutAStartStandsOnTheLeadersFloor) {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "model/motion/feet.h"
+
 namespace duet::evaluation::metrics {
 namespace {
 
@@ -24,15 +26,6 @@ double Drift(const motion::Poses& poses, const motion::Bone& bone) {
   if (mean == 0) return 0;
   // Rounding may leave a tiny negative variance.
   return std::sqrt(std::max(0.0, squares / frames - mean * mean)) / mean;
-}
-
-// The height of the lowest point that either foot reaches.
-float LowestFoot(const motion::Poses& poses, const motion::JointPair& feet) {
-  float lowest = std::numeric_limits<float>::max();
-  for (int t = 0; t < poses.frame_count(); ++t) {
-    lowest = std::min({lowest, poses.at(t, feet.left).y, poses.at(t, feet.right).y});
-  }
-  return lowest;
 }
 
 }  // namespace
@@ -62,7 +55,7 @@ FootSlide MeasureFootSlide(const motion::Poses& poses, const motion::Skeleton& s
                            double frame_rate_hz) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   if (!skeleton.feet) return {kNone, kNone};
-  const float floor = LowestFoot(poses, *skeleton.feet);
+  const float floor = LowestFoot(*skeleton.feet, poses);
   double steps = 0, skating = 0, moved = 0;
   for (int t = 1; t < poses.frame_count(); ++t) {
     for (const int foot : {skeleton.feet->left, skeleton.feet->right}) {

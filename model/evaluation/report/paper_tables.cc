@@ -61,20 +61,6 @@ Table PaperFidSbu() {
                       1, Best::kLowest);
 }
 
-Table PaperFid2c() {
-  return PrintedTable("Frechet distance on 2C, as printed (Tables 3 and 5)", {"kick", "punch"},
-                      {{"MSHL22", {194.2, 148.1}},
-                       {"Goel et al. 2022", {164.2, 122.4}},
-                       {"w/o D", {174.4, 128.2}},
-                       {"w/o L_b", {166.4, 124.8}},
-                       {"w/o L_c", {180.2, 131.4}},
-                       {"w/o FC", {175.3, 129.1}},
-                       {"w/o multi-hot embedding", {175.1, 129.7}}},
-                      "The data set is not public; another one stands in for it here. The feature "
-                      "extractor is not known: only ratios between rows can be compared.",
-                      1, Best::kLowest);
-}
-
 Table PaperAugmentation() {
   return PrintedTable(
       "Accuracy of a classifier on SBU, as printed (Table 6)", SbuClasses(),

@@ -10,7 +10,6 @@ namespace duet::evaluation::report {
 
 Table PaperAfdSbu();        // Tables 1 and 4: average frame distance on SBU
 Table PaperFidSbu();        // Table 2
-Table PaperFid2c();         // Tables 3 and 5
 Table PaperAugmentation();  // Table 6: a classifier's accuracy without and with synthetic motion
 
 }  // namespace duet::evaluation::report

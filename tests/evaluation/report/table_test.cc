@@ -104,7 +104,7 @@ TEST(TableTest, MeanColumnIsMissingWhereAFigureIs) {
 }
 
 TEST(PaperTablesTest, AreWholeAndMarkedAsPrinted) {
-  for (const Table& table : {PaperAfdSbu(), PaperFidSbu(), PaperFid2c(), PaperAugmentation()}) {
+  for (const Table& table : {PaperAfdSbu(), PaperFidSbu(), PaperAugmentation()}) {
     EXPECT_FALSE(table.notes.empty()) << table.title;
     for (const TableRow& row : table.rows) {
       EXPECT_TRUE(row.printed) << row.name;
@@ -115,7 +115,6 @@ TEST(PaperTablesTest, AreWholeAndMarkedAsPrinted) {
   EXPECT_EQ(PaperAfdSbu().rows[6].values[5], .32);
   EXPECT_EQ(PaperAfdSbu().rows[1].values[4], 3.84);
   EXPECT_EQ(PaperFidSbu().rows[0].values[3], 29.5);
-  EXPECT_EQ(PaperFid2c().rows[4].values[1], 131.4);
   EXPECT_EQ(PaperAugmentation().rows[1].values[0], .996);
 }
 

@@ -1,0 +1,19 @@
+#ifndef DUET_MODEL_MOTION_FEET_H_
+#define DUET_MODEL_MOTION_FEET_H_
+
+#include <vector>
+
+#include "model/motion/poses.h"
+#include "model/motion/skeleton.h"
+
+namespace duet::motion {
+
+// How high the lower foot is in every frame. Shapes: returns [frames].
+std::vector<float> LowerFoot(const JointPair& feet, const Poses& poses);
+
+// The lowest that either foot gets; infinity without frames.
+float LowestFoot(const JointPair& feet, const Poses& poses);
+
+}  // namespace duet::motion
+
+#endif  // DUET_MODEL_MOTION_FEET_H_
