@@ -73,6 +73,14 @@ TEST(GltfDocument, ReadsTheChunksOfABinaryFile) {
   EXPECT_EQ(document->binary, "12345678");
 }
 
+TEST(GltfDocument, PassesOverChunksOfOtherKinds) {
+  std::string binary = test::BinaryGltf(kArm, "12345678");
+  binary.replace(binary.size() - 12, 3, "XYZ");
+  const absl::StatusOr<GltfDocument> document = ParseGltf(binary, "a.glb");
+  ASSERT_TRUE(document.ok()) << document.status();
+  EXPECT_FALSE(document->binary.has_value());
+}
+
 TEST(GltfDocument, RefusesBinaryFilesThatAreNone) {
   std::string binary = test::BinaryGltf(kArm, "1234");
   EXPECT_THAT(ParseError(binary.substr(0, 11)), HasSubstr("binary glTF: cut off in its header"));

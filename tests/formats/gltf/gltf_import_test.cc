@@ -185,6 +185,15 @@ TEST(GltfImport, SamplesAtTheRateOfTheKeysOrTheOneGiven) {
   EXPECT_EQ(Read(OnePerson(clip), options)->frame_rate_hz, 30);
 }
 
+// Times in floats fall short of whole frames by their rounding.
+TEST(GltfImport, KeepsTheLastFrame) {
+  for (int frames = 2; frames < 40; ++frames) {
+    const absl::StatusOr<motion::Clip> read = Read(OnePerson(MakePerson({frames})));
+    ASSERT_TRUE(read.ok()) << read.status();
+    EXPECT_EQ(read->frame_count(), frames);
+  }
+}
+
 TEST(GltfImport, RefusesFilesWithoutAMovingSkeleton) {
   EXPECT_THAT(ReadError(R"({"asset": {"version": "2.0"}})"),
               HasSubstr("a.glb: no skin and no animated node"));
