@@ -95,9 +95,11 @@ LAYERS = (
           libraries=("rpc", "prometheus")),
     # The client.
     Layer("viewer", "client/viewer", sees=("base", "motion", "client")),
-    Layer("batch", "client/batch", sees=MOTION_FILES + ("cleanup", "metrics", "client"),
+    Layer("batch flow", "client/batch/flow", sees=()),
+    Layer("batch", "client/batch",
+          sees=MOTION_FILES + ("cleanup", "metrics", "batch flow", "client"),
           libraries=("rpc",)),
-    Layer("client program", "client/cli", sees=MOTION_FILES + ("viewer", "batch", "client")),
+    Layer("client program", "client/cli", sees=MOTION_FILES + ("viewer", "batch flow", "batch", "client")),
     Layer("client", "client", sees=("base", "motion"), libraries=("rpc",)),
 )
 

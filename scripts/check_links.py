@@ -37,6 +37,7 @@ LIBRARIES = (
     ("prometheus/", "prometheus-cpp::core"),
     ("httplib.h", "PkgConfig::httplib"),
     ("openssl/", "OpenSSL::Crypto", "OpenSSL::SSL"),
+    ("zlib.h", "ZLIB::ZLIB"),
     ("cblas.h", "openblas"),
     ("gmock/", "GTest::gmock"),
     ("gtest/", "GTest::gtest", "GTest::gmock"),
@@ -45,7 +46,8 @@ LIBRARIES = (
     ("grpcpp/ext/proto_server_reflection_plugin.h", "gRPC::grpc++_reflection"),
     # Whoever speaks the wire links the generated code, which brings both.
     ("grpc", "gRPC::grpc++", "duet_proto", "duet_server_proto"),
-    ("google/protobuf/", "protobuf::libprotobuf", "duet_proto", "duet_server_proto"),
+    ("google/protobuf/", "protobuf::libprotobuf", "duet_proto", "duet_server_proto",
+     "duet_batch_proto"),
 )
 
 # The C++ library's headers that come with a target of their own. Linked without need they are told

@@ -40,9 +40,10 @@ Meaning MeaningOf(const absl::Status& status) {
   }
 }
 
-CallEnd CallEndOf(const absl::Status& status) {
-  if (MeaningOf(status) != Meaning::kWait) return CallEnd::kAnswered;
-  return status.code() == absl::StatusCode::kUnavailable ? CallEnd::kAway : CallEnd::kRefused;
+flow::CallEnd CallEndOf(const absl::Status& status) {
+  if (MeaningOf(status) != Meaning::kWait) return flow::CallEnd::kAnswered;
+  return status.code() == absl::StatusCode::kUnavailable ? flow::CallEnd::kAway
+                                                         : flow::CallEnd::kRefused;
 }
 
 std::string RequestId(const Item& item, int retry) {

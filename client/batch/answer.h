@@ -4,7 +4,7 @@
 #include <string>
 
 #include "absl/status/status.h"
-#include "client/batch/flow.h"
+#include "client/batch/flow/server_choice.h"
 #include "client/batch/loaded_leader.h"
 #include "client/batch/plan.h"
 #include "client/batch/record.h"
@@ -22,7 +22,7 @@ enum class Meaning {
   kStop,      // every item would be: credentials, or a model that is gone
 };
 Meaning MeaningOf(const absl::Status& status);
-CallEnd CallEndOf(const absl::Status& status);
+flow::CallEnd CallEndOf(const absl::Status& status);
 
 // The request of an item. `retry`: which seed, 0 the first.
 SynthesisRequest ToRequest(const Item& item, const Recipe& recipe, const ModelInfo& model,

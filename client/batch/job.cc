@@ -21,7 +21,7 @@ constexpr int kReadingAhead = 4;  // threads beyond those that may have a call u
 constexpr size_t kQueuedItems = 64;
 constexpr size_t kQueuedRecords = 4096;
 
-std::optional<Duration> DelayOf(const absl::Status& status) {
+std::optional<flow::Duration> DelayOf(const absl::Status& status) {
   const std::optional<absl::Duration> delay = RetryDelay(status);
   if (!delay.has_value()) return std::nullopt;
   return absl::ToChronoNanoseconds(*delay);
@@ -39,7 +39,7 @@ Job::Job(Parts parts, Plan plan, const JobOptions& options)
     : parts_(std::move(parts)),
       plan_(std::move(plan)),
       options_(options),
-      gate_(static_cast<int>(parts_.servers.size()), options.flow, options.patience),
+      gate_(static_cast<int>(parts_.servers.size()), options.calls, options.patience),
       queue_(kQueuedItems),
       settled_(kQueuedRecords),
       leaders_(parts_.models.size()) {}
@@ -130,7 +130,7 @@ absl::Status Job::Make(const Work& work) {
   for (int retry = 0, attempts = 0;;) {
     const SynthesisRequest request =
         ToRequest(item, parts_.recipe, parts_.models[model], *leader, retry);
-    const std::optional<ServerChoice::Call> call = gate_.Start();
+    const std::optional<flow::ServerChoice::Call> call = gate_.Start();
     if (!call.has_value()) {
       queue_.Stop();  // nobody gets a call any longer
       return absl::OkStatus();
@@ -254,7 +254,7 @@ void Job::CommitUntilClosed(JournalWriter* writer) {
 absl::Status Job::RunThreads(const JournalReader& journal, JournalWriter* writer) {
   std::thread committer([this, writer] { CommitUntilClosed(writer); });
   std::vector<std::thread> workers;
-  const int calls = options_.flow.max_in_flight * static_cast<int>(parts_.servers.size());
+  const int calls = options_.calls.max_in_flight * static_cast<int>(parts_.servers.size());
   for (int i = 0; i < calls + kReadingAhead; ++i) {
     workers.emplace_back([this] { WorkUntilDone(); });
   }

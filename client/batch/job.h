@@ -12,8 +12,8 @@
 
 #include "absl/status/status.h"
 #include "client/batch/answer.h"
-#include "client/batch/bounded_queue.h"
-#include "client/batch/call_gate.h"
+#include "client/batch/flow/bounded_queue.h"
+#include "client/batch/flow/call_gate.h"
 #include "client/batch/index.h"
 #include "client/batch/job_folder.h"
 #include "client/batch/journal.h"
@@ -24,9 +24,9 @@
 namespace duet::client::batch {
 
 struct JobOptions {
-  FlowOptions flow;
+  flow::Options calls;
   // How long servers may be away before the run ends.
-  Duration patience = std::chrono::minutes(2);
+  flow::Duration patience = std::chrono::minutes(2);
   // A part of the plan: its first items, and of these a share that is chosen by hash.
   int64_t limit = std::numeric_limits<int64_t>::max();
   double share = 1;
@@ -43,7 +43,7 @@ struct Progress {
   int64_t failed = 0;      // for good
   int64_t unfinished = 0;  // failed for a passing reason
   uint64_t bytes = 0;
-  CallGate::State calls;
+  flow::CallGate::State calls;
 };
 
 // How a run ended.
@@ -119,9 +119,9 @@ class Job {
   Parts parts_;
   Plan plan_;
   JobOptions options_;
-  CallGate gate_;
-  BoundedQueue<Work> queue_;
-  BoundedQueue<Settled> settled_;
+  flow::CallGate gate_;
+  flow::BoundedQueue<Work> queue_;
+  flow::BoundedQueue<Settled> settled_;
 
   // The leaders of the item that Feed came to last, by model.
   std::vector<std::shared_ptr<SharedLeader>> leaders_;

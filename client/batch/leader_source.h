@@ -1,8 +1,6 @@
 #ifndef DUET_CLIENT_BATCH_LEADER_SOURCE_H_
 #define DUET_CLIENT_BATCH_LEADER_SOURCE_H_
 
-#include <filesystem>
-#include <iosfwd>
 #include <memory>
 #include <optional>
 #include <string>
@@ -27,12 +25,6 @@ class LeaderSource {
 // Errors: NOT_FOUND for what is not there, INVALID_ARGUMENT for a file of no known kind, for two
 //         leaders of one key, and where there is no motion file at all.
 absl::StatusOr<std::unique_ptr<LeaderSource>> ListLeaders(const std::vector<std::string>& inputs);
-
-// A manifest, line by line: JSON objects where the first line begins with '{', else TSV
-// (ManifestLine in proto/duet/batch/v1/batch.proto). `folder` is where relative paths begin, `name`
-// is how errors call the manifest. `in` outlives the source.
-std::unique_ptr<LeaderSource> ReadManifest(std::istream& in, const std::filesystem::path& folder,
-                                           const std::string& name);
 
 }  // namespace duet::client::batch
 

@@ -1,3 +1,5 @@
+#include "client/batch/manifest.h"
+
 #include <cstdint>
 #include <istream>
 #include <map>
@@ -10,7 +12,6 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
-#include "client/batch/leader_source.h"
 #include "client/batch/text_values.h"
 #include "model/base/strict_json.h"
 #include "model/base/text.h"

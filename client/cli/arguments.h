@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "absl/time/time.h"
-#include "client/batch/flow.h"
+#include "client/batch/flow/server_choice.h"
 #include "client/batch/recipe_file.h"
 #include "client/batch/shard.h"
 #include "client/options.h"
@@ -93,7 +93,7 @@ struct BatchArguments {
   ServerArguments connection;  // all but the address
   std::optional<batch::Shard> shard;
   batch::RecipeOverrides overrides;
-  int max_in_flight = batch::FlowOptions().max_in_flight;
+  int max_in_flight = batch::flow::Options().max_in_flight;
   int channels = 1;
   double patience_seconds = 120;
   int64_t limit = std::numeric_limits<int64_t>::max();

@@ -16,6 +16,7 @@
 #include "client/batch/estimate.h"
 #include "client/batch/job.h"
 #include "client/batch/leader_source.h"
+#include "client/batch/manifest.h"
 #include "client/batch/merge.h"
 #include "client/batch/plan.h"
 #include "client/batch/setup.h"
@@ -176,7 +177,7 @@ absl::StatusOr<batch::Plan> MakePlan(const BatchArguments& arguments, const batc
 
 batch::JobOptions ToJobOptions(const BatchArguments& arguments) {
   batch::JobOptions options;
-  options.flow.max_in_flight = arguments.max_in_flight;
+  options.calls.max_in_flight = arguments.max_in_flight;
   options.patience = absl::ToChronoNanoseconds(absl::Seconds(arguments.patience_seconds));
   options.limit = arguments.limit;
   options.share = arguments.share;

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "client/batch/manifest.h"
 #include "client/batch/recipe_file.h"
 #include "client/batch/setup.h"
 #include "client/batch/verify.h"
@@ -19,7 +20,6 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "model/formats/motion_file.h"
-#include "nlohmann/json.hpp"
 #include "tests/support/sample_motion.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
@@ -70,7 +70,7 @@ class FakeConnection : public Connection {
 };
 
 JobOptions WithFewThreads(JobOptions options) {
-  options.flow.max_in_flight = std::min(options.flow.max_in_flight, 4);
+  options.calls.max_in_flight = std::min(options.calls.max_in_flight, 4);
   return options;
 }
 
@@ -203,7 +203,7 @@ TEST_F(JobTest, AServerThatIsAwayIsLeftToTheOthers) {
 TEST_F(JobTest, ServersThatStayAwayEndTheRun) {
   connection().answer = [](const SynthesisRequest&, int) { return absl::UnavailableError("away"); };
   JobOptions options;
-  options.flow.first_backoff = options.patience = std::chrono::milliseconds(1);
+  options.calls.first_backoff = options.patience = std::chrono::milliseconds(1);
   const auto report = Run("set", options);
   ASSERT_THAT(report, IsOk());
   EXPECT_THAT(report->stopped, StatusIs(absl::StatusCode::kUnavailable, HasSubstr("no server")));
@@ -275,7 +275,7 @@ TEST_F(JobTest, StopsBetweenItems) {
     return absl::OkStatus();
   };
   JobOptions options;
-  options.flow.max_in_flight = 1;
+  options.calls.max_in_flight = 1;
   const auto report = Run("set", options);
   ASSERT_THAT(report, IsOk());
   EXPECT_EQ(report->set.done, 4);

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "client/batch/manifest.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/support/status_matchers.h"

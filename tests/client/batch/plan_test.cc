@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "client/batch/answer.h"
+#include "client/batch/manifest.h"
 #include "client/batch/recipe_file.h"
 #include "client/batch/shard.h"
 #include "gmock/gmock.h"

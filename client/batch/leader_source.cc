@@ -1,3 +1,5 @@
+#include "client/batch/leader_source.h"
+
 #include <fnmatch.h>
 
 #include <algorithm>
@@ -6,7 +8,6 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "client/batch/leader_source.h"
 #include "model/formats/motion_file.h"
 
 namespace duet::client::batch {

@@ -1,6 +1,6 @@
-#include "client/batch/call_gate.h"
+#include "client/batch/flow/call_gate.h"
 
-namespace duet::client::batch {
+namespace duet::client::batch::flow {
 
 std::optional<ServerChoice::Call> CallGate::Start() {
   std::unique_lock<std::mutex> lock(mutex_);
@@ -44,4 +44,4 @@ CallGate::State CallGate::state() const {
   return {servers_.in_flight(), servers_.limit(), refusals_, lost_patience_};
 }
 
-}  // namespace duet::client::batch
+}  // namespace duet::client::batch::flow

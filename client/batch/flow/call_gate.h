@@ -1,5 +1,5 @@
-#ifndef DUET_CLIENT_BATCH_CALL_GATE_H_
-#define DUET_CLIENT_BATCH_CALL_GATE_H_
+#ifndef DUET_CLIENT_BATCH_FLOW_CALL_GATE_H_
+#define DUET_CLIENT_BATCH_FLOW_CALL_GATE_H_
 
 #include <condition_variable>
 #include <cstdint>
@@ -7,9 +7,9 @@
 #include <mutex>
 #include <optional>
 
-#include "client/batch/flow.h"
+#include "client/batch/flow/server_choice.h"
 
-namespace duet::client::batch {
+namespace duet::client::batch::flow {
 
 // Lets threads start calls as a ServerChoice has it.
 //
@@ -17,7 +17,7 @@ namespace duet::client::batch {
 class CallGate {
  public:
   // `patience`: how long all servers may be away before nobody waits any longer.
-  CallGate(int servers, const FlowOptions& options, Duration patience)
+  CallGate(int servers, const Options& options, Duration patience)
       : servers_(servers, options), patience_(patience) {}
 
   // Waits until a call may start. Nothing after Stop, and once the patience is over.
@@ -45,6 +45,6 @@ class CallGate {
   bool stopped_ = false;
 };
 
-}  // namespace duet::client::batch
+}  // namespace duet::client::batch::flow
 
-#endif  // DUET_CLIENT_BATCH_CALL_GATE_H_
+#endif  // DUET_CLIENT_BATCH_FLOW_CALL_GATE_H_

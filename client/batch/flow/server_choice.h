@@ -1,12 +1,12 @@
-#ifndef DUET_CLIENT_BATCH_FLOW_H_
-#define DUET_CLIENT_BATCH_FLOW_H_
+#ifndef DUET_CLIENT_BATCH_FLOW_SERVER_CHOICE_H_
+#define DUET_CLIENT_BATCH_FLOW_SERVER_CHOICE_H_
 
 #include <chrono>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
-namespace duet::client::batch {
+namespace duet::client::batch::flow {
 
 // How many calls a server gets at once, and when. Decides and measures nothing: time comes from
 // outside, so that tests play any course of events. No locks: the caller's.
@@ -21,7 +21,7 @@ enum class CallEnd {
   kAway,      // nobody answers, or the server is loading or draining
 };
 
-struct FlowOptions {
+struct Options {
   int max_in_flight = 64;  // of one server
   Duration first_backoff = std::chrono::milliseconds(50);
   Duration longest_backoff = std::chrono::seconds(5);
@@ -34,9 +34,9 @@ struct FlowOptions {
 // one when the server is away. After a refusal no call starts before the server's own delay is
 // over; while it is away, one call at a time asks after it, less and less often. Source: TCP Reno's
 // slow start and congestion avoidance (Jacobson 1988).
-class FlowWindow {
+class CallWindow {
  public:
-  explicit FlowWindow(const FlowOptions& options) : options_(options) {}
+  explicit CallWindow(const Options& options) : options_(options) {}
 
   // Whether a call may start. If not for the time alone, `opens` tells when.
   bool MayStart(Time now) const { return in_flight_ < limit() && now >= opens_; }
@@ -53,7 +53,7 @@ class FlowWindow {
  private:
   void Close(Duration wait, Time now);
 
-  FlowOptions options_;
+  Options options_;
   double window_ = 2;
   bool slow_start_ = true;
   int in_flight_ = 0;
@@ -66,8 +66,8 @@ class FlowWindow {
 // Several servers: each call goes to the one with the most room.
 class ServerChoice {
  public:
-  ServerChoice(int servers, const FlowOptions& options)
-      : windows_(static_cast<size_t>(servers), FlowWindow(options)) {}
+  ServerChoice(int servers, const Options& options)
+      : windows_(static_cast<size_t>(servers), CallWindow(options)) {}
 
   struct Call {
     int server = 0;
@@ -84,10 +84,10 @@ class ServerChoice {
   bool all_away() const;
 
  private:
-  std::vector<FlowWindow> windows_;
+  std::vector<CallWindow> windows_;
   size_t last_ = 0;  // turns are taken among equals
 };
 
-}  // namespace duet::client::batch
+}  // namespace duet::client::batch::flow
 
-#endif  // DUET_CLIENT_BATCH_FLOW_H_
+#endif  // DUET_CLIENT_BATCH_FLOW_SERVER_CHOICE_H_

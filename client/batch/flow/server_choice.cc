@@ -1,17 +1,17 @@
-#include "client/batch/flow.h"
+#include "client/batch/flow/server_choice.h"
 
 #include <algorithm>
 
-namespace duet::client::batch {
+namespace duet::client::batch::flow {
 
-int64_t FlowWindow::Start() {
+int64_t CallWindow::Start() {
   ++in_flight_;
   return started_++;
 }
 
-void FlowWindow::Close(Duration wait, Time now) { opens_ = std::max(opens_, now + wait); }
+void CallWindow::Close(Duration wait, Time now) { opens_ = std::max(opens_, now + wait); }
 
-void FlowWindow::Finish(int64_t call, CallEnd end, std::optional<Duration> delay, Time now) {
+void CallWindow::Finish(int64_t call, CallEnd end, std::optional<Duration> delay, Time now) {
   const bool was_full = in_flight_ >= limit();
   --in_flight_;
   if (end == CallEnd::kAnswered) {
@@ -42,7 +42,7 @@ std::optional<ServerChoice::Call> ServerChoice::Start(Time now) {
   int most_room = 0;
   for (size_t i = 1; i <= windows_.size(); ++i) {
     const size_t server = (last_ + i) % windows_.size();
-    const FlowWindow& window = windows_[server];
+    const CallWindow& window = windows_[server];
     const int room = window.limit() - window.in_flight();
     if (!window.MayStart(now) || room <= most_room) continue;
     best = server;
@@ -59,7 +59,7 @@ void ServerChoice::Finish(const Call& call, CallEnd end, std::optional<Duration>
 
 std::optional<Time> ServerChoice::NextOpening(Time now) const {
   std::optional<Time> next;
-  for (const FlowWindow& window : windows_) {
+  for (const CallWindow& window : windows_) {
     if (window.in_flight() >= window.limit() || window.opens() <= now) continue;
     next = std::min(next.value_or(window.opens()), window.opens());
   }
@@ -68,19 +68,19 @@ std::optional<Time> ServerChoice::NextOpening(Time now) const {
 
 int ServerChoice::in_flight() const {
   int sum = 0;
-  for (const FlowWindow& window : windows_) sum += window.in_flight();
+  for (const CallWindow& window : windows_) sum += window.in_flight();
   return sum;
 }
 
 int ServerChoice::limit() const {
   int sum = 0;
-  for (const FlowWindow& window : windows_) sum += window.limit();
+  for (const CallWindow& window : windows_) sum += window.limit();
   return sum;
 }
 
 bool ServerChoice::all_away() const {
   return std::all_of(windows_.begin(), windows_.end(),
-                     [](const FlowWindow& window) { return window.away(); });
+                     [](const CallWindow& window) { return window.away(); });
 }
 
-}  // namespace duet::client::batch
+}  // namespace duet::client::batch::flow

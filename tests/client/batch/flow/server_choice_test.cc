@@ -1,11 +1,11 @@
-#include "client/batch/flow.h"
+#include "client/batch/flow/server_choice.h"
 
 #include <vector>
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 
-namespace duet::client::batch {
+namespace duet::client::batch::flow {
 namespace {
 
 using std::chrono::milliseconds;
@@ -13,8 +13,8 @@ using std::chrono::seconds;
 
 constexpr Time kStart{};
 
-FlowOptions Options(int max_in_flight = 64) {
-  FlowOptions options;
+Options Limits(int max_in_flight = 64) {
+  Options options;
   options.max_in_flight = max_in_flight;
   options.first_backoff = milliseconds(100);
   options.longest_backoff = seconds(1);
@@ -22,19 +22,19 @@ FlowOptions Options(int max_in_flight = 64) {
 }
 
 // Starts as many calls as may start.
-std::vector<int64_t> Fill(FlowWindow* window, Time now = kStart) {
+std::vector<int64_t> Fill(CallWindow* window, Time now = kStart) {
   std::vector<int64_t> calls;
   while (window->MayStart(now)) calls.push_back(window->Start());
   return calls;
 }
 
-void FinishAll(const std::vector<int64_t>& calls, CallEnd end, FlowWindow* window,
+void FinishAll(const std::vector<int64_t>& calls, CallEnd end, CallWindow* window,
                Time now = kStart) {
   for (const int64_t call : calls) window->Finish(call, end, std::nullopt, now);
 }
 
-TEST(FlowWindow, GrowsQuicklyWhileNothingIsRefused) {
-  FlowWindow window(Options());
+TEST(CallWindow, GrowsQuicklyWhileNothingIsRefused) {
+  CallWindow window(Limits());
   const int first = window.limit();
   FinishAll(Fill(&window), CallEnd::kAnswered, &window);
   EXPECT_GT(window.limit(), first);
@@ -42,14 +42,14 @@ TEST(FlowWindow, GrowsQuicklyWhileNothingIsRefused) {
   EXPECT_GT(window.limit(), 15);
 }
 
-TEST(FlowWindow, StopsAtItsLargest) {
-  FlowWindow window(Options(5));
+TEST(CallWindow, StopsAtItsLargest) {
+  CallWindow window(Limits(5));
   for (int i = 0; i < 20; ++i) FinishAll(Fill(&window), CallEnd::kAnswered, &window);
   EXPECT_EQ(window.limit(), 5);
 }
 
-TEST(FlowWindow, DoesNotGrowWhileItIsNotFull) {
-  FlowWindow window(Options());
+TEST(CallWindow, DoesNotGrowWhileItIsNotFull) {
+  CallWindow window(Limits());
   FinishAll(Fill(&window), CallEnd::kAnswered, &window);
   const int limit = window.limit();
   for (int i = 0; i < 100; ++i) {
@@ -58,8 +58,8 @@ TEST(FlowWindow, DoesNotGrowWhileItIsNotFull) {
   EXPECT_EQ(window.limit(), limit);
 }
 
-TEST(FlowWindow, HalvesOnceForAllThatWereUnderWay) {
-  FlowWindow window(Options());
+TEST(CallWindow, HalvesOnceForAllThatWereUnderWay) {
+  CallWindow window(Limits());
   for (int i = 0; i < 20; ++i) FinishAll(Fill(&window), CallEnd::kAnswered, &window);
   const int before = window.limit();
   FinishAll(Fill(&window), CallEnd::kRefused, &window);
@@ -69,8 +69,8 @@ TEST(FlowWindow, HalvesOnceForAllThatWereUnderWay) {
   EXPECT_EQ(window.limit(), before / 4);
 }
 
-TEST(FlowWindow, GrowsByOneForEachFullWindowAfterARefusal) {
-  FlowWindow window(Options());
+TEST(CallWindow, GrowsByOneForEachFullWindowAfterARefusal) {
+  CallWindow window(Limits());
   for (int i = 0; i < 20; ++i) FinishAll(Fill(&window), CallEnd::kAnswered, &window);
   FinishAll(Fill(&window), CallEnd::kRefused, &window);
   const int limit = window.limit();
@@ -84,15 +84,15 @@ TEST(FlowWindow, GrowsByOneForEachFullWindowAfterARefusal) {
   EXPECT_EQ(window.limit(), limit + 1);
 }
 
-TEST(FlowWindow, ObeysTheServersDelay) {
-  FlowWindow window(Options());
+TEST(CallWindow, ObeysTheServersDelay) {
+  CallWindow window(Limits());
   window.Finish(window.Start(), CallEnd::kRefused, seconds(3), kStart);
   EXPECT_FALSE(window.MayStart(kStart + milliseconds(2999)));
   EXPECT_TRUE(window.MayStart(kStart + seconds(3)));
 }
 
-TEST(FlowWindow, AsksLessAndLessOftenWhileTheServerIsAway) {
-  FlowWindow window(Options());
+TEST(CallWindow, AsksLessAndLessOftenWhileTheServerIsAway) {
+  CallWindow window(Limits());
   for (int i = 0; i < 20; ++i) FinishAll(Fill(&window), CallEnd::kAnswered, &window);
   FinishAll(Fill(&window), CallEnd::kAway, &window);
   EXPECT_EQ(window.limit(), 1);
@@ -111,14 +111,14 @@ TEST(FlowWindow, AsksLessAndLessOftenWhileTheServerIsAway) {
 }
 
 TEST(ServerChoice, GivesEachServerItsShare) {
-  ServerChoice servers(2, Options());
+  ServerChoice servers(2, Limits());
   std::vector<int> calls(2);
   while (const auto call = servers.Start(kStart)) ++calls[static_cast<size_t>(call->server)];
-  EXPECT_THAT(calls, ::testing::Each(FlowWindow(Options()).limit()));
+  EXPECT_THAT(calls, ::testing::Each(CallWindow(Limits()).limit()));
 }
 
 TEST(ServerChoice, LeavesAloneWhoIsAway) {
-  ServerChoice servers(2, Options());
+  ServerChoice servers(2, Limits());
   auto call = servers.Start(kStart);
   servers.Finish(*call, CallEnd::kAway, seconds(5), kStart);
   const int away = call->server;
@@ -133,4 +133,4 @@ TEST(ServerChoice, LeavesAloneWhoIsAway) {
 }
 
 }  // namespace
-}  // namespace duet::client::batch
+}  // namespace duet::client::batch::flow

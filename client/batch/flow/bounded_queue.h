@@ -1,5 +1,5 @@
-#ifndef DUET_CLIENT_BATCH_BOUNDED_QUEUE_H_
-#define DUET_CLIENT_BATCH_BOUNDED_QUEUE_H_
+#ifndef DUET_CLIENT_BATCH_FLOW_BOUNDED_QUEUE_H_
+#define DUET_CLIENT_BATCH_FLOW_BOUNDED_QUEUE_H_
 
 #include <condition_variable>
 #include <cstddef>
@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace duet::client::batch {
+namespace duet::client::batch::flow {
 
 // Hands values from threads to threads; who puts waits while it is full.
 //
@@ -76,6 +76,6 @@ class BoundedQueue {
   bool stopped_ = false;
 };
 
-}  // namespace duet::client::batch
+}  // namespace duet::client::batch::flow
 
-#endif  // DUET_CLIENT_BATCH_BOUNDED_QUEUE_H_
+#endif  // DUET_CLIENT_BATCH_FLOW_BOUNDED_QUEUE_H_

@@ -1,20 +1,20 @@
-#include "client/batch/call_gate.h"
+#include "client/batch/flow/call_gate.h"
 
 #include <atomic>
 #include <thread>
 #include <vector>
 
-#include "client/batch/bounded_queue.h"
+#include "client/batch/flow/bounded_queue.h"
 #include "gtest/gtest.h"
 
-namespace duet::client::batch {
+namespace duet::client::batch::flow {
 namespace {
 
 using std::chrono::hours;
 using std::chrono::milliseconds;
 
 TEST(CallGate, NeverLetsMoreThroughThanTheWindow) {
-  FlowOptions options;
+  Options options;
   options.max_in_flight = 3;
   CallGate gate(1, options, hours(1));
   std::atomic<int> under_way{0}, most{0}, made{0};
@@ -38,7 +38,7 @@ TEST(CallGate, NeverLetsMoreThroughThanTheWindow) {
 }
 
 TEST(CallGate, StopsThoseWhoWait) {
-  CallGate gate(1, FlowOptions(), hours(1));
+  CallGate gate(1, Options(), hours(1));
   while (gate.state().in_flight < gate.state().limit) gate.Start();
   std::thread waiting([&gate] { EXPECT_FALSE(gate.Start().has_value()); });
   gate.Stop();
@@ -46,7 +46,7 @@ TEST(CallGate, StopsThoseWhoWait) {
 }
 
 TEST(CallGate, LosesPatienceWithServersThatStayAway) {
-  FlowOptions options;
+  Options options;
   options.first_backoff = options.longest_backoff = milliseconds(1);
   CallGate gate(1, options, milliseconds(0));
   gate.Finish(*gate.Start(), CallEnd::kAway, std::nullopt);
@@ -57,7 +57,7 @@ TEST(CallGate, LosesPatienceWithServersThatStayAway) {
 }
 
 TEST(CallGate, CountsRefusals) {
-  CallGate gate(1, FlowOptions(), hours(1));
+  CallGate gate(1, Options(), hours(1));
   gate.Finish(*gate.Start(), CallEnd::kRefused, milliseconds(0));
   EXPECT_EQ(gate.state().refusals, 1);
 }
@@ -97,4 +97,4 @@ TEST(BoundedQueue, TakesAllThatIsThere) {
 }
 
 }  // namespace
-}  // namespace duet::client::batch
+}  // namespace duet::client::batch::flow
