@@ -28,8 +28,8 @@ class CapturesTest : public ::testing::Test {
     motion::Poses follower = sequence.pair.follower.poses;
     SetBoneLengths(data.skeleton, MedianBoneLengths(data.skeleton, follower), &follower);
     motion::Poses cleaned = follower;
-    const bool hug = data.classes[static_cast<std::size_t>(sequence.interaction_class)] == "hug";
-    const Touch touch(static_cast<std::size_t>(leader.frame_count()), hug ? 1.0f : 0.0f);
+    const bool touches = data.touches[static_cast<std::size_t>(sequence.interaction_class)];
+    const Touch touch(static_cast<std::size_t>(leader.frame_count()), touches ? 1.0f : 0.0f);
     CleanUp(data.skeleton).Apply(leader, touch, {data.frame_rate_hz, 0}, &cleaned);
     Measure(leader, follower, data, &before_);
     Measure(leader, cleaned, data, &after_);

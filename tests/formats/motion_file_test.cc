@@ -15,6 +15,7 @@
 #include "model/formats/flat/sbu_text.h"
 #include "tests/formats/asf/asf_fixture.h"
 #include "tests/formats/gltf/gltf_fixture.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/support/test_motion.h"
 
 namespace duet::formats {
@@ -24,24 +25,15 @@ using test::LargestDistance;
 using test::MakePerson;
 
 namespace fs = std::filesystem;
-using test::LargestDistance;
-using test::MakePerson;
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 class MotionFile : public ::testing::Test {
  protected:
-  void SetUp() override {
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::path(::testing::TempDir()) / absl::StrCat("duet_", test->name());
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   const motion::ClipPair pair_{MakePerson(), MakePerson({60, 3, 0, {0, 1.1f, 1.2f}, 30})};
-  fs::path folder_;
+  const test::TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.path();
 };
 
 std::string Damaged(std::string bytes, std::mt19937* random) {

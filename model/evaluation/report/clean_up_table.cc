@@ -17,7 +17,6 @@ namespace {
 constexpr float kCentimetres = 100;
 constexpr float kMovedMetres = 0.01f;
 constexpr double kHigh = 0.99;
-constexpr char kEmbrace[] = "hug";
 
 cleanup::Options NoStage() {
   cleanup::Options none;
@@ -55,9 +54,9 @@ void Add(const dataset::Dataset& dataset, const dataset::Sequence& sequence,
          const cleanup::CleanUp& clean_up, Effect* effect) {
   const motion::Poses& leader = sequence.pair.leader.poses;
   const motion::Poses& captured = sequence.pair.follower.poses;
-  const std::string& name = dataset.classes[static_cast<std::size_t>(sequence.interaction_class)];
+  const bool touches = dataset.touches[static_cast<std::size_t>(sequence.interaction_class)];
   const cleanup::Touch touch(static_cast<std::size_t>(leader.frame_count()),
-                             name == kEmbrace ? 1.0f : 0.0f);
+                             touches ? 1.0f : 0.0f);
   motion::Poses cleaned = captured;
   clean_up.Apply(leader, touch, {dataset.frame_rate_hz, 0}, &cleaned);
   for (int t = 0; t < captured.frame_count(); ++t) {

@@ -10,7 +10,7 @@ namespace duet::evaluation::report {
 // captured, for each stage alone, and for all. Columns: the share of frames in which a joint moves
 // by more than a centimetre (percent), how far joints move (mean and 99th percentile, centimetres),
 // foot slide (centimetres a frame) and the deepest overlap with the leader (centimetres, mean over
-// sequences). Each sequence is one window; in "hug" bodies touch as they like.
+// sequences). Each sequence is one window; in classes that touch, bodies do as they like.
 Table CleanUpTable(const dataset::Dataset& dataset);
 
 }  // namespace duet::evaluation::report

@@ -10,6 +10,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "model/base/file.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/support/test_motion.h"
 
 namespace duet::formats::flat {
@@ -73,7 +74,7 @@ TEST(Npy, IsReadAndWrittenByNumPy) {
   if (std::system("/usr/bin/python3 -c 'import numpy' >/dev/null 2>&1") != 0) {
     GTEST_SKIP() << "no /usr/bin/python3 with numpy";
   }
-  const std::filesystem::path folder = ::testing::TempDir();
+  const test::TemporaryFolder folder;
   const std::filesystem::path ours = folder / "duet_ours.npy", theirs = folder / "duet_theirs.npy";
   const motion::ClipPair pair = MakePair();
   ASSERT_TRUE(base::WriteFile(ours, FormatNpy(pair)).ok());
