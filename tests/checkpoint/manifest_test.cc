@@ -165,6 +165,7 @@ bool IsFreeMap(const std::string& path) { return path == "/training" || path == 
 
 TEST(Manifest, RefusesEveryFieldThatIsMissing) {
   json root = CompleteJson();
+  root.erase("touching_classes");  // checkpoints of before have none
   int fields = 0;
   ForEachObject(root, "", [&](json& object, const std::string& path) {
     if (IsFreeMap(path)) return;
