@@ -105,6 +105,11 @@ absl::Status Job::Feed(const JournalReader& journal) {
     const absl::StatusOr<bool> settled = IsSettled(**item, journal);
     if (!settled.ok()) return settled.status();
     ++planned_;
+    if (!*settled && packed_) {
+      return absl::FailedPreconditionError(
+          absl::StrCat(parts_.folder->out().string(), ": is packed and takes no more items, but ",
+                       (*item)->name, " came; wanted another --out"));
+    }
     if (*settled) {
       ++resumed_;
     } else if (!Put(**std::move(item))) {
@@ -298,6 +303,11 @@ absl::StatusOr<JobReport> Job::Run() {
   if (!status.ok()) return status;
   std::error_code error;
   errors_exist_ = std::filesystem::exists(parts_.folder->errors(), error);
+  const JobIdentity& identity = parts_.identity;
+  packed_ =
+      identity.packing != Packing::kNone &&
+      std::filesystem::exists(
+          parts_.folder->out() / ShardNames(identity.packing, identity.shard_bytes).Next(0), error);
   status = RunThreads(*journal, &writer);
   if (!status.ok()) return status;
   absl::StatusOr<JobReport> report = Finish();

@@ -132,6 +132,7 @@ class Job {
   std::atomic<int64_t> unfinished_{0};
   std::atomic<uint64_t> bytes_{0}, turns_{0};
   std::atomic<bool> errors_exist_{false};
+  bool packed_ = false;      // the set is in shards already
   bool whole_plan_ = false;  // Feed came to the plan's end
   std::mutex stop_mutex_;
   absl::Status stopped_with_;

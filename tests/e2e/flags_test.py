@@ -37,10 +37,11 @@ class FlagsTest(unittest.TestCase):
         self.assertIn("--as-served", seen["duet-eval", "folds"])
 
     def test_flags_of_the_client_are_documented(self):
-        documented = (tools.SOURCE / "docs" / "client.md").read_text(encoding="utf-8")
-        for flag in flags_in(help_of("duet", "synthesize") + help_of("duet", "models")):
-            if flag != "--help":
-                self.assertRegex(documented, rf"`[^`]*{flag}(?![\w-])", flag)
+        for document, commands in (("client", ("synthesize", "models")), ("batch", ("batch",))):
+            documented = (tools.SOURCE / "docs" / f"{document}.md").read_text(encoding="utf-8")
+            for flag in flags_in("".join(help_of("duet", command) for command in commands)):
+                if flag != "--help":
+                    self.assertRegex(documented, rf"`[^`]*{flag}(?![\w-])", flag)
 
     def refused(self, *command):
         result = tools.run(tools.PROGRAMS / command[0], *command[1:])

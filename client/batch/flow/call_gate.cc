@@ -7,7 +7,12 @@ std::optional<ServerChoice::Call> CallGate::Start() {
   while (!stopped_) {
     const Time now = std::chrono::steady_clock::now();
     std::optional<ServerChoice::Call> call = servers_.Start(now);
-    if (call.has_value()) return call;
+    if (call.has_value()) {
+      // One is woken at a time, and wakes the next while there is room: for a call, or to wait
+      // for the moment when there may be one.
+      if (servers_.HasRoom()) changed_.notify_one();
+      return call;
+    }
     const std::optional<Time> opening = servers_.NextOpening(now);
     if (opening.has_value()) {
       changed_.wait_until(lock, *opening);
@@ -29,8 +34,9 @@ void CallGate::Finish(const ServerChoice::Call& call, CallEnd end, std::optional
     away_since_ = now;
   } else if (now - *away_since_ >= patience_) {
     lost_patience_ = stopped_ = true;
+    changed_.notify_all();
   }
-  changed_.notify_all();
+  changed_.notify_one();
 }
 
 void CallGate::Stop() {

@@ -78,6 +78,11 @@ int ServerChoice::limit() const {
   return sum;
 }
 
+bool ServerChoice::HasRoom() const {
+  return std::any_of(windows_.begin(), windows_.end(),
+                     [](const CallWindow& window) { return window.in_flight() < window.limit(); });
+}
+
 bool ServerChoice::all_away() const {
   return std::all_of(windows_.begin(), windows_.end(),
                      [](const CallWindow& window) { return window.away(); });

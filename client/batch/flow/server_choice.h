@@ -81,6 +81,8 @@ class ServerChoice {
   std::optional<Time> NextOpening(Time now) const;
   int in_flight() const;
   int limit() const;
+  // Whether a window is not full, at whatever time it may have a call.
+  bool HasRoom() const;
   bool all_away() const;
 
  private:

@@ -315,6 +315,18 @@ TEST_F(JobTest, ALeaderThatCannotBeReadFailsAlone) {
   EXPECT_THAT(Read("set/errors/none-3-kick-s0.json"), HasSubstr("no such file"));
 }
 
+TEST_F(JobTest, APackedSetTakesNoMoreItems) {
+  recipe_ = std::string(kRecipe);
+  recipe_.insert(recipe_.rfind('}'), "packing: PACKING_TAR ");
+  ASSERT_THAT(Run("set"), IsOk());
+  const std::string shard = Read("set/set-000000.tar");
+  EXPECT_THAT(Run("set", {}, "leader\na.csv\nb.csv\na.csv\n"),
+              StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("is packed")));
+  ASSERT_THAT(Run("set"), IsOk());
+  EXPECT_EQ(Read("set/set-000000.tar"), shard);
+  EXPECT_EQ(Verify(folder_ / "set")->problem_count, 0);
+}
+
 TEST_F(JobTest, AnotherRecipeIsRefused) {
   ASSERT_THAT(Run("set"), IsOk());
   recipe_ += "seed: 9";
