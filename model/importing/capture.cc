@@ -45,13 +45,10 @@ absl::StatusOr<motion::Clip> ReadPerson(const fs::path& path, formats::Side side
                    "and with --skeleton if they are not the 15 of SBU"));
 }
 
+// The whole duration, as the engine resamples its leaders.
 void ToRate(double rate_hz, motion::Clip* clip) {
   if (clip->frame_rate_hz != rate_hz) {
-    const double whole =
-        std::floor((clip->frame_count() - 1) * rate_hz / clip->frame_rate_hz + 1e-6);
     clip->poses = Resample(clip->poses, clip->frame_rate_hz, rate_hz);
-    // None beyond what was captured.
-    clip->poses.Resize(std::max(kFewestFrames, static_cast<int>(whole) + 1));
   }
   clip->frame_rate_hz = rate_hz;
 }

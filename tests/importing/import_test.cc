@@ -80,7 +80,7 @@ TEST_F(ImportTest, MakesADatasetOfBvhPairs) {
   ASSERT_THAT(dataset.sequences, SizeIs(6));
   const dataset::Sequence& kick = dataset.sequences[0];
   EXPECT_EQ(kick.id, "kick/kick_01.txt");
-  EXPECT_EQ(kick.pair.leader.frame_count(), 30);
+  EXPECT_EQ(kick.pair.leader.frame_count(), 31);  // 60 at 60 Hz
   // Leaders were put at the origin, their partners 1.2 m ahead; a leads in the odd pairs alone.
   for (const dataset::Sequence& sequence : dataset.sequences) {
     EXPECT_NEAR(sequence.pair.leader.at(0, 0).z, 0, 1e-3) << sequence.id;
@@ -130,7 +130,7 @@ TEST_F(ImportTest, TakesWhatItIsTold) {
   const dataset::Dataset dataset = Read();
   EXPECT_EQ(dataset.name, "fights");
   EXPECT_EQ(dataset.frame_rate_hz, 15);
-  EXPECT_EQ(dataset.sequences[0].pair.leader.frame_count(), 15);
+  EXPECT_EQ(dataset.sequences[0].pair.leader.frame_count(), 16);
   EXPECT_THAT(dataset.symmetric, ElementsAre(false, true));
   EXPECT_THAT(dataset.touches, ElementsAre(false, true));
   EXPECT_THAT(dataset.handed, ElementsAre(true, false));
@@ -276,10 +276,10 @@ TEST_F(ImportTest, SequencesThatWouldReplaceOneAnotherAreRefused) {
   }
   options_.longest_seconds = 1;
   EXPECT_THAT(Go(), IsOk());  // names that end in _p1 are cut into _p1_p1 and so on
-  WriteTestFile(options_.from / "shove" / "shove_01_p1" / "a.bvh", BvhText({}));
-  BvhPerson follower;
-  follower.leads = false;
-  WriteTestFile(options_.from / "shove" / "shove_01_p1" / "b.bvh", BvhText(follower));
+  person.frames = 50;
+  WriteTestFile(options_.from / "shove" / "shove_01_p1" / "a.bvh", BvhText(person));
+  person.leads = false;
+  WriteTestFile(options_.from / "shove" / "shove_01_p1" / "b.bvh", BvhText(person));
   options_.overwrite = true;
   EXPECT_THAT(Go(), StatusIs(absl::StatusCode::kInvalidArgument,
                              HasSubstr("shove/shove_01_p1.txt: two sequences")));
@@ -337,7 +337,7 @@ TEST_F(ImportTest, LongPairsAreCutAndUnequalOnesTrimmed) {
     // The piece in which nobody acts is led by whoever leads the whole.
     EXPECT_NEAR(sequence.pair.leader.at(0, 0).z, 0, 0.01) << sequence.id;
   }
-  EXPECT_EQ(frames, 65 + 75);
+  EXPECT_EQ(frames, 66 + 76);
 }
 
 TEST_F(ImportTest, ReplacesOnlyDatasetsAndOnlyWhenAsked) {
