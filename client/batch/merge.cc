@@ -27,8 +27,8 @@ using nlohmann::ordered_json;
 constexpr size_t kMissingKept = 100;
 
 struct Part {
-  std::unique_ptr<JobFolder> folder;
-  std::unique_ptr<JournalReader> journal;
+  std::shared_ptr<JobFolder> folder;
+  std::shared_ptr<JournalReader> journal;
 };
 
 // Any of the shards' identities; all others are checked against it.
@@ -64,7 +64,8 @@ absl::StatusOr<Part> OpenPart(const fs::path& out, const JobIdentity& identity, 
                                            shard.count, " shards"));
   }
   *planned += items->count;
-  Part part{std::make_unique<JobFolder>(path), nullptr};
+  Part part;
+  part.folder = std::make_shared<JobFolder>(path);
   JobIdentity wanted = identity;
   wanted.shard = shard;
   JobIdentity begun;
@@ -76,7 +77,7 @@ absl::StatusOr<Part> OpenPart(const fs::path& out, const JobIdentity& identity, 
   }
   absl::StatusOr<JournalReader> journal = JournalReader::Open(part.folder->journal());
   if (!journal.ok()) return journal.status();
-  part.journal = std::make_unique<JournalReader>(*std::move(journal));
+  part.journal = std::make_shared<JournalReader>(*std::move(journal));
   return part;
 }
 

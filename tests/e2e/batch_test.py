@@ -1,7 +1,7 @@
 """duet batch against duet-server: data sets that are whole and the same however often anything is
 killed, packed shards that Python reads, shards of a job, refusals, and Ctrl-C.
 
-    batch_test.py [KILLS]     how often the kill test kills; 6
+    batch_test.py [KILLS] [test...]     how often the kill test kills; 6
 """
 
 import hashlib
@@ -9,6 +9,7 @@ import json
 import os
 import pathlib
 import random
+import resource
 import shutil
 import signal
 import subprocess
@@ -26,7 +27,7 @@ try:
 except ImportError:
     numpy = None
 
-KILLS = int(sys.argv.pop(1)) if len(sys.argv) > 1 else 6
+KILLS = int(sys.argv.pop(1)) if sys.argv[1:] and sys.argv[1].isdigit() else 6
 
 RECIPE = """
 seed: 7
@@ -186,6 +187,20 @@ class BatchTest(unittest.TestCase):
         result = self.batch(out, self.recipe(), "--patience", "0.2", code=1, server="127.0.0.1:1")
         self.assertIn("Does a duet-server listen", result.stderr)
 
+    def test_a_full_disk_is_worth_another_run(self):
+        recipe, out = self.recipe(), self.out()
+
+        def fill_disk():  # files take no more than this; SIGXFSZ would end the process
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (20000, resource.RLIM_INFINITY))
+
+        result = tools.run(*self.command(out, recipe), preexec_fn=fill_disk)
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertIn("cannot write", result.stderr)
+        self.assertEqual(list(out.rglob("*.npy")), [])
+        self.batch(out, recipe)
+        self.assertEqual(digests(out), digests(self.whole))
+
     def test_an_interrupt_drains(self):
         recipe, out = self.recipe("formats: FORMAT_BVH"), self.out()
         client = subprocess.Popen(self.command(out, recipe, "--max-in-flight", "1"),
@@ -213,6 +228,23 @@ class BatchTest(unittest.TestCase):
         result = self.batch(out, self.recipe(), "--dry-run", code=42,
                             leaders=self.folder / "broken")
         self.assertIn("1 leaders cannot be read", result.stderr)
+
+    def test_what_makes_no_sense_is_refused(self):
+        for words, said in ((("--out", "x", "--recipe", "r"), "leaders or --manifest"),
+                            ((self.leaders, "--out", "x"), "--recipe"),
+                            ((self.leaders, "--recipe", "r"), "--out"),
+                            ((self.leaders, "--manifest", "m"), "excludes"),
+                            ((self.leaders, "--shard", "3/3"), "INDEX/COUNT"),
+                            ((self.leaders, "--pack", "zip"), "zip")):
+            result = tools.duet("batch", *words)
+            self.assertEqual(result.returncode, 2, result.stderr)
+            self.assertIn(said, result.stderr)
+
+    def test_events_are_json_lines(self):
+        result = self.batch(self.out(), self.recipe(), "--json")
+        events = [json.loads(line) for line in result.stdout.splitlines()]
+        self.assertEqual({event["event"] for event in events}, {"progress", "end"})
+        self.assertEqual((events[-1]["done"], events[-1]["missing"]), (48, 0))
 
     def test_another_recipe_is_refused(self):
         out = self.out()
