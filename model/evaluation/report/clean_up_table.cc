@@ -55,8 +55,7 @@ void Add(const dataset::Dataset& dataset, const dataset::Sequence& sequence,
   const motion::Poses& leader = sequence.pair.leader.poses;
   const motion::Poses& captured = sequence.pair.follower.poses;
   const bool touches = dataset.touches[static_cast<std::size_t>(sequence.interaction_class)];
-  const cleanup::Touch touch(static_cast<std::size_t>(leader.frame_count()),
-                             touches ? 1.0f : 0.0f);
+  const cleanup::Touch touch(static_cast<std::size_t>(leader.frame_count()), touches ? 1.0f : 0.0f);
   motion::Poses cleaned = captured;
   clean_up.Apply(leader, touch, {dataset.frame_rate_hz, 0}, &cleaned);
   for (int t = 0; t < captured.frame_count(); ++t) {
