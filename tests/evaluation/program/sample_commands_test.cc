@@ -87,7 +87,8 @@ TEST(SampleCommandsTest, SamplesHasARowAStart) {
   const auto section = RunCommand({"samples", "--samples", "2", "--starts", "none,pose"});
   ASSERT_THAT(section, IsOk());
   EXPECT_EQ(section->id, "14_samples");
-  EXPECT_THAT(RowNames(section->tables.at(0)), ElementsAre("captured", "duet", "duet+pose"));
+  EXPECT_THAT(RowNames(section->tables.at(0)),
+              ElementsAre("captured", "other people", "duet", "duet+pose"));
   EXPECT_THAT(section->command, HasSubstr("--embedded --starts none,pose --subjects s01"));
 }
 
