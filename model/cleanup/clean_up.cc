@@ -1,5 +1,7 @@
 #include "model/cleanup/clean_up.h"
 
+#include <optional>
+
 namespace duet::cleanup {
 
 CleanUp::CleanUp(const motion::Skeleton& skeleton, const Options& options)
@@ -24,18 +26,19 @@ void CleanUp::Apply(const motion::Poses& leader, const Touch& touch, const Timin
   if (options_.capsules.enabled) {
     PartBodies(skeleton_, body_, radii_, leader, touch, options_.capsules, timing, follower);
   }
+  std::optional<float> floor;
   if (skeleton_.feet) {
-    const float floor = FloorHeight(*skeleton_.feet, leader);
-    if (options_.floor.enabled) StandOnFloor(skeleton_, floor, options_.floor, timing, follower);
+    floor = FloorHeight(*skeleton_.feet, leader);
+    if (options_.floor.enabled) StandOnFloor(skeleton_, *floor, options_.floor, timing, follower);
     if (options_.contacts.enabled) {
-      HoldContacts(skeleton_, body_, floor, options_.contacts, timing, follower);
+      HoldContacts(skeleton_, body_, *floor, options_.contacts, timing, follower);
     }
   }
   if (options_.capsules.enabled) {
     PartArms(skeleton_, body_, radii_, leader, touch, options_.capsules, timing, follower);
   }
   if (options_.joint_ranges.enabled) {
-    KeepJointRanges(skeleton_, body_, options_.joint_ranges, timing, follower);
+    KeepJointRanges(skeleton_, body_, floor, options_.joint_ranges, timing, follower);
   }
 }
 

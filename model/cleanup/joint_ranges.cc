@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -17,6 +18,9 @@ constexpr float kNoDirection = 1e-5f;
 // An arm at rest points this far forwards of straight down: half of how much farther shoulders turn
 // it outwards than inwards, degrees.
 constexpr float kArmRestDegrees = 17.5f;
+constexpr float kNoFloor = -std::numeric_limits<float>::infinity();
+// To find how far a leg may straighten: to a thousandth.
+constexpr int kHalvings = 10;
 // Cosines of 110 and 150 degrees from rest, between which a limb's reference fades out.
 constexpr float kFadesFrom = -0.342f, kFadesTo = -0.866f;
 
@@ -108,35 +112,69 @@ Vec3 RightDirection(Vec3 inner, Vec3 outer, const Hinge& hinge, const JointRange
   return inner * std::cos(angle * kRadiansPerDegree) + way * std::sin(angle * kRadiansPerDegree);
 }
 
+// Where a limb's middle and end belong.
+struct Placed {
+  Vec3 middle, end;
+};
+
 // Bends a limb as far as it may, then turns it as a whole so that its end is where it was seen from
-// its upper joint. True when something moved.
-bool LimitLimb(const Limb& limb, const Hinge& hinge, const JointRangeOptions& options, float share,
-               absl::Span<Vec3> pose) {
-  const Vec3 upper = pose[static_cast<std::size_t>(limb.upper)];
-  Vec3& middle = pose[static_cast<std::size_t>(limb.middle)];
-  Vec3& end = pose[static_cast<std::size_t>(limb.end)];
+// its upper joint. Nothing where it may be as it is.
+std::optional<Placed> PlaceLimb(Vec3 upper, Vec3 middle, Vec3 end, const Hinge& hinge,
+                                const JointRangeOptions& options, float share) {
   const float thigh = Distance(upper, middle), shin = Distance(middle, end);
   const float reach = Distance(upper, end);
-  if (thigh < kNoDirection || shin < kNoDirection || reach < kNoDirection) return false;
+  if (std::min({thigh, shin, reach}) < kNoDirection) return std::nullopt;
   const Vec3 inner = (middle - upper) / thigh, outer = (end - middle) / shin;
   const Vec3 right = RightDirection(inner, outer, hinge, options, share);
-  if (right == outer) return false;
+  if (right == outer) return std::nullopt;
   const Vec3 bent = inner * thigh + right * shin;
   const float bent_reach = Norm(bent);
-  if (bent_reach < kNoDirection) return false;
-  const Vec3 from = bent / bent_reach, to = (end - upper) / reach;
-  const Vec3 moved = to * bent_reach + upper - end;
-  middle = upper + Swing(from, to, inner) * thigh;
+  if (bent_reach < kNoDirection) return std::nullopt;
+  const Vec3 to = (end - upper) / reach;
+  return Placed{upper + Swing(bent / bent_reach, to, inner) * thigh, upper + to * bent_reach};
+}
+
+// A leg that straightens reaches farther: as much of the correction as leaves its end no lower than
+// `lowest`.
+std::optional<Placed> PlaceAbove(float lowest, Vec3 upper, Vec3 middle, Vec3 end,
+                                 const Hinge& hinge, const JointRangeOptions& options,
+                                 float share) {
+  std::optional<Placed> placed = PlaceLimb(upper, middle, end, hinge, options, share);
+  if (!placed.has_value() || placed->end.y >= lowest) return placed;
+  placed.reset();
+  float above = 0, below = share;
+  for (int halving = 0; halving < kHalvings; ++halving) {
+    const float tried = (above + below) / 2;
+    const auto next = PlaceLimb(upper, middle, end, hinge, options, tried);
+    const bool stays = !next.has_value() || next->end.y >= lowest;
+    (stays ? above : below) = tried;
+    if (stays) placed = next;
+  }
+  return placed;
+}
+
+// True when something moved.
+bool LimitLimb(const Limb& limb, float floor, const Hinge& hinge, const JointRangeOptions& options,
+               float share, absl::Span<Vec3> pose) {
+  Vec3& middle = pose[static_cast<std::size_t>(limb.middle)];
+  Vec3& end = pose[static_cast<std::size_t>(limb.end)];
+  const auto placed = PlaceAbove(std::min(floor, end.y), pose[static_cast<std::size_t>(limb.upper)],
+                                 middle, end, hinge, options, share);
+  if (!placed.has_value()) return false;
+  const Vec3 moved = placed->end - end;
   for (const int joint : limb.beyond) pose[static_cast<std::size_t>(joint)] += moved;
-  end += moved;
+  middle = placed->middle;
+  end = placed->end;
   return true;
 }
 
 // Turning a limb turns what it is judged by: the second time little is left to do.
-void LimitLimbs(const std::vector<Limb>& limbs, const Hinge& hinge,
+void LimitLimbs(const std::vector<Limb>& limbs, float floor, const Hinge& hinge,
                 const JointRangeOptions& options, float share, absl::Span<Vec3> pose) {
   for (const Limb& limb : limbs) {
-    if (LimitLimb(limb, hinge, options, share, pose)) LimitLimb(limb, hinge, options, share, pose);
+    if (LimitLimb(limb, floor, hinge, options, share, pose)) {
+      LimitLimb(limb, floor, hinge, options, share, pose);
+    }
   }
 }
 
@@ -173,7 +211,7 @@ std::vector<Vec3> ShouldersToTheLeft(const motion::JointPair& hips, const std::v
 
 }  // namespace
 
-void KeepJointRanges(const motion::Skeleton& skeleton, const Body& body,
+void KeepJointRanges(const motion::Skeleton& skeleton, const Body& body, std::optional<float> floor,
                      const JointRangeOptions& options, const Timing& timing, motion::Poses* poses) {
   if (!skeleton.hips || !body.chest) return;
   std::vector<Vec3> shoulders;
@@ -184,12 +222,12 @@ void KeepJointRanges(const motion::Skeleton& skeleton, const Body& body,
     const Vec3 trunk = poses->at(t, *body.chest) - Lerp(left, right, 0.5f);
     const absl::Span<Vec3> pose = (*poses)[t];
     if (const auto axes = AxesOf(trunk, left - right)) {
-      LimitLimbs(body.legs, KneeOf(*axes, options), options, share, pose);
+      LimitLimbs(body.legs, floor.value_or(kNoFloor), KneeOf(*axes, options), options, share, pose);
       if (body.neck) LimitNeck(*body.neck, axes->up, options, share, pose);
     }
     if (shoulders.empty()) continue;
     if (const auto axes = AxesOf(trunk, shoulders[static_cast<std::size_t>(t)])) {
-      LimitLimbs(body.arms, ElbowOf(*axes, options), options, share, pose);
+      LimitLimbs(body.arms, kNoFloor, ElbowOf(*axes, options), options, share, pose);
     }
   }
 }

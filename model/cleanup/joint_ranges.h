@@ -1,6 +1,8 @@
 #ifndef DUET_MODEL_CLEANUP_JOINT_RANGES_H_
 #define DUET_MODEL_CLEANUP_JOINT_RANGES_H_
 
+#include <optional>
+
 #include "model/cleanup/limbs.h"
 #include "model/cleanup/timing.h"
 #include "model/motion/poses.h"
@@ -38,7 +40,10 @@ struct JointRangeOptions {
 // that is corrected keeps the direction from hip to foot or shoulder to hand. A skeleton without
 // hips, chest, limbs or head loses what needs them; a limb that is raised against its trunk's
 // direction, where that tells nothing of it, is left as it is.
-void KeepJointRanges(const motion::Skeleton& skeleton, const Body& body,
+//
+// A leg that is made straight reaches farther. `floor`, where there is one, is its height in
+// metres: no foot is brought below it, the leg keeps what is wrong with it instead.
+void KeepJointRanges(const motion::Skeleton& skeleton, const Body& body, std::optional<float> floor,
                      const JointRangeOptions& options, const Timing& timing, motion::Poses* poses);
 
 }  // namespace duet::cleanup

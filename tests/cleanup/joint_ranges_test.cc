@@ -19,7 +19,7 @@ constexpr double kDegrees = 3.14159265358979 / 180;
 
 motion::Poses InRange(motion::Poses poses, int settled = 0,
                       const motion::Skeleton& skeleton = motion::SbuSkeleton()) {
-  KeepJointRanges(skeleton, FindBody(skeleton), {}, {kRate, settled}, &poses);
+  KeepJointRanges(skeleton, FindBody(skeleton), std::nullopt, {}, {kRate, settled}, &poses);
   return poses;
 }
 
@@ -96,6 +96,26 @@ TEST(KeepJointRanges, AKneeDoesNotBendBackwards) {
   ExpectPointsAsBefore(after, before, kHip);
   const Vec3 raised = Vec3{0, 0.7f, 1};  // the thigh forwards, the shin above it
   EXPECT_LT(BendDegrees(InRange(Leg(kForwards, raised)), kHip), 10.1);
+}
+
+TEST(KeepJointRanges, AKneeStraightensOnlyAsFarAsTheFloorLetsTheFoot) {
+  // A knee that bends backwards over a foot on the floor: straight, the leg would reach below.
+  const motion::Poses before = Leg(Down(40, kBackwards), Down(40, kForwards));
+  const float floor = before.at(5, kFoot).y - 0.01f;
+  const motion::Skeleton skeleton = motion::SbuSkeleton();
+  const auto after = [&](std::optional<float> height) {
+    motion::Poses poses = before;
+    KeepJointRanges(skeleton, FindBody(skeleton), height, {}, {kRate, 0}, &poses);
+    return poses;
+  };
+  EXPECT_LT(after(std::nullopt).at(5, kFoot).y, floor - 0.1f);
+  const motion::Poses kept = after(floor);
+  EXPECT_NEAR(kept.at(5, kFoot).y, floor, 0.002);
+  EXPECT_LT(BendDegrees(kept, kHip), BendDegrees(before, kHip) - 1);
+  ExpectPointsAsBefore(kept, before, kHip);
+  // A foot that is below already comes no lower.
+  const float sunk = after(floor + 0.5f).at(5, kFoot).y;
+  EXPECT_GE(sunk, before.at(5, kFoot).y - 1e-5f);
 }
 
 TEST(KeepJointRanges, AKneeDoesNotBendToTheSide) {
