@@ -16,6 +16,7 @@ struct AskedSamples {
   int samples = 10;  // answers to each leader; a model that does not sample has one
   float variety = 1;
   uint64_t seed = 0;  // of the whole set
+  bool tell_direction = true;
 };
 
 // What is asked for the n-th answer to a sequence. No two leaders share a seed: with one noise for

@@ -56,6 +56,8 @@ struct LabelledLeader {
   const dataset::Sequence* sequence;
   std::vector<float> labels;
   engine::Sampling sampling = {};
+  // False: where the partner is is left to the leader's motion, as by a caller who tells nothing.
+  bool tell_direction = true;
 };
 
 // The same for many leaders, several windows to an evaluation of the network: much faster than one

@@ -102,12 +102,14 @@ report::ResultSection MakeSection(const Experiment& experiment, const Arguments&
   section.settings.emplace_back("answers to a leader", absl::StrCat(arguments.asked.samples));
   section.settings.emplace_back("variety", absl::StrCat(arguments.asked.variety));
   section.settings.emplace_back("seed", absl::StrCat(arguments.asked.seed));
+  section.settings.emplace_back("direction of the partner",
+                                arguments.asked.tell_direction ? "told" : "from the leader");
   for (auto& setting : scorer.JudgeSettings()) section.settings.push_back(std::move(setting));
-  section.command =
-      absl::StrCat("duet-eval samples --data DIR", ModelWords(arguments.flags.models), " --starts ",
-                   absl::StrJoin(arguments.starts, ","), " --subjects ",
-                   absl::StrJoin(experiment.subjects, ","), " --samples ", arguments.asked.samples,
-                   " --variety ", arguments.asked.variety, " --seed ", arguments.asked.seed);
+  section.command = absl::StrCat(
+      "duet-eval samples --data DIR", ModelWords(arguments.flags.models), " --starts ",
+      absl::StrJoin(arguments.starts, ","), " --subjects ", absl::StrJoin(experiment.subjects, ","),
+      " --samples ", arguments.asked.samples, " --variety ", arguments.asked.variety, " --seed ",
+      arguments.asked.seed, arguments.asked.tell_direction ? "" : " --untold-direction");
   return section;
 }
 
@@ -146,6 +148,8 @@ void AddSamplesCommand(CLI::App* app, ChosenCommand* chosen) {
                    "answers to each leader by a model that samples")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
+  command->add_flag("!--untold-direction", arguments->asked.tell_direction,
+                    "leave where the partner is to the leader's motion");
   command->callback([arguments, chosen] { *chosen = [arguments] { return Run(*arguments); }; });
 }
 

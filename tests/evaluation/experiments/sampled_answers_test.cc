@@ -18,7 +18,8 @@ using test::StatusIs;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
-// Stands still at a height that is the window's seed, at a distance that is its variety.
+// Stands still at a height that is the window's seed, at a distance that is its variety, and to the
+// side that its direction points to.
 class SeedTeller : public engine::Synthesizer {
  public:
   explicit SeedTeller(const dataset::Dataset& dataset) {
@@ -36,7 +37,8 @@ class SeedTeller : public engine::Synthesizer {
     for (const engine::SynthesisWindow* window : windows) {
       motion::Poses follower = window->leader;
       for (motion::Vec3& p : follower.all()) {
-        p = {0, static_cast<float>(window->sampling.seed), window->sampling.variety};
+        p = {window->partner_direction.value_or(motion::Vec3{}).x,
+             static_cast<float>(window->sampling.seed), window->sampling.variety};
       }
       results.emplace_back(std::move(follower));
     }
@@ -70,6 +72,19 @@ TEST(SampledAnswersTest, TheSeedOfTheSetMovesAllOfThem) {
   const dataset::Dataset dataset = MadeUpPairs(3);
   EXPECT_EQ(SamplingOf({2, 1, 7}, dataset, 4, 0).seed, SamplingOf({2, 1, 7}, dataset, 4, 0).seed);
   EXPECT_NE(SamplingOf({2, 1, 7}, dataset, 4, 0).seed, SamplingOf({2, 1, 8}, dataset, 4, 0).seed);
+}
+
+TEST(SampledAnswersTest, DirectionsAreToldUnlessTheyAreNotToBe) {
+  dataset::Dataset dataset = MadeUpPairs(1);
+  dataset.sequences[0].partner_direction = motion::Vec3{1, 0, 0};
+  const SeedTeller model(dataset);
+  AskedSamples asked = {1, 1, 0};
+  const auto told = AnswerWithSamples(model, dataset, {0}, StartGiven::kNone, asked);
+  asked.tell_direction = false;
+  const auto untold = AnswerWithSamples(model, dataset, {0}, StartGiven::kNone, asked);
+  ASSERT_TRUE(told.ok() && untold.ok());
+  EXPECT_EQ(told->front().front().follower.at(0, 0).x, 1);
+  EXPECT_NE(untold->front().front().follower.at(0, 0).x, 1);
 }
 
 TEST(SampledAnswersTest, AModelThatDoesNotSampleAnswersOnce) {
