@@ -19,6 +19,8 @@ constexpr float kNoDirection = 1e-5f;
 // it outwards than inwards, degrees.
 constexpr float kArmRestDegrees = 17.5f;
 constexpr float kNoFloor = -std::numeric_limits<float>::infinity();
+// How far a foot may come below the floor for its knee, metres: less than captures do.
+constexpr float kSink = 0.03f;
 // To find how far a leg may straighten: to a thousandth.
 constexpr int kHalvings = 10;
 // Cosines of 110 and 150 degrees from rest, between which a limb's reference fades out.
@@ -158,8 +160,9 @@ bool LimitLimb(const Limb& limb, float floor, const Hinge& hinge, const JointRan
                float share, absl::Span<Vec3> pose) {
   Vec3& middle = pose[static_cast<std::size_t>(limb.middle)];
   Vec3& end = pose[static_cast<std::size_t>(limb.end)];
-  const auto placed = PlaceAbove(std::min(floor, end.y), pose[static_cast<std::size_t>(limb.upper)],
-                                 middle, end, hinge, options, share);
+  const auto placed =
+      PlaceAbove(std::min(floor - kSink, end.y), pose[static_cast<std::size_t>(limb.upper)], middle,
+                 end, hinge, options, share);
   if (!placed.has_value()) return false;
   const Vec3 moved = placed->end - end;
   for (const int joint : limb.beyond) pose[static_cast<std::size_t>(joint)] += moved;

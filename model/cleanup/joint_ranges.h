@@ -42,7 +42,7 @@ struct JointRangeOptions {
 // direction, where that tells nothing of it, is left as it is.
 //
 // A leg that is made straight reaches farther. `floor`, where there is one, is its height in
-// metres: no foot is brought below it, the leg keeps what is wrong with it instead.
+// metres: no foot is brought more than 3 cm below it, the leg keeps what is wrong with it instead.
 void KeepJointRanges(const motion::Skeleton& skeleton, const Body& body, std::optional<float> floor,
                      const JointRangeOptions& options, const Timing& timing, motion::Poses* poses);
 
