@@ -50,6 +50,9 @@ sampled() {
   local start models=(--runs "flow=${runs}/flow" --runs "ours=${runs}/default")
   "${bin}/duet-eval" direction --data "${data}" --out "${results}" --runs "flow=${runs}/flow"
   "${bin}/duet-eval" samples --data "${data}" --out "${results}" "${models[@]}" --id 14_samples
+  "${bin}/duet-eval" samples --data "${data}" --out "${results}" "${models[@]}" --starts none \
+    --untold-direction --id 14_samples_untold \
+    --title "Many answers to one leader, where the partner's direction is not told"
   "${bin}/duet-eval" samples --data "${data}" --out "${results}" "${models[@]}" --as-served \
     --id 15_samples_as_served --title "Many answers to one leader, as a server answers"
   "${bin}/duet-eval" long --data "${data}" --out "${results}" "${models[@]}" --as-served \
