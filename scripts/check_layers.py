@@ -35,6 +35,7 @@ SERVER = ("server common", "batching", "registry", "server metrics", "server con
 LAYERS = (
     # The method, innermost first.
     Layer("base", "model/base", sees=()),
+    Layer("messages", "model/messages", sees=(), libraries=("rpc",)),
     Layer("motion", "model/motion", sees=("base",)),
     Layer("retargeting", "model/retargeting", sees=("base", "motion")),
     Layer("flat formats", "model/formats/flat", sees=("base", "motion")),
@@ -82,7 +83,8 @@ LAYERS = (
     Layer("registry", "server/registry", sees=("base", "motion", "engine", "server common")),
     Layer("server metrics", "server/metrics", sees=("base", "batching", "server common"),
           libraries=("prometheus",)),
-    Layer("server config", "server/config", sees=("base", "server common"), libraries=("rpc",)),
+    Layer("server config", "server/config", sees=("base", "messages", "server common"),
+          libraries=("rpc",)),
     Layer("service", "server/service",
           sees=("base", "motion", "engine", "server common", "batching", "registry",
                 "server metrics"),
@@ -97,7 +99,7 @@ LAYERS = (
     Layer("viewer", "client/viewer", sees=("base", "motion", "client")),
     Layer("batch flow", "client/batch/flow", sees=()),
     Layer("batch", "client/batch",
-          sees=MOTION_FILES + ("cleanup", "metrics", "batch flow", "client"),
+          sees=MOTION_FILES + ("messages", "cleanup", "metrics", "batch flow", "client"),
           libraries=("rpc",)),
     Layer("client program", "client/cli", sees=MOTION_FILES + ("viewer", "batch flow", "batch", "client")),
     Layer("client", "client", sees=("base", "motion"), libraries=("rpc",)),

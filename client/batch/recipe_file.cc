@@ -1,10 +1,7 @@
 #include "client/batch/recipe_file.h"
 
 #include <google/protobuf/io/coded_stream.h>
-#include <google/protobuf/io/tokenizer.h>
 #include <google/protobuf/io/zero_copy_stream_impl_lite.h>
-#include <google/protobuf/text_format.h>
-#include <google/protobuf/util/json_util.h>
 
 #include <cstddef>
 #include <string>
@@ -13,41 +10,12 @@
 #include "client/batch/recipe_conversion.h"
 #include "model/base/file.h"
 #include "model/base/sha256.h"
+#include "model/messages/message_text.h"
 
 namespace duet::client::batch {
 namespace {
 
 constexpr std::size_t kMaxRecipeBytes = std::size_t{4} << 20;
-
-// Keeps the first error of a text-format file.
-class FirstError final : public google::protobuf::io::ErrorCollector {
- public:
-  void AddError(int line, google::protobuf::io::ColumnNumber column,
-                const std::string& message) override {
-    // Both count from 0; -1 is the file as a whole.
-    if (text_.empty()) text_ = absl::StrCat("line ", line + 1, ":", column + 1, ": ", message);
-  }
-  const std::string& text() const { return text_; }
-
- private:
-  std::string text_;
-};
-
-absl::StatusOr<v1::Recipe> ParseJson(absl::string_view text) {
-  v1::Recipe recipe;
-  const auto status = google::protobuf::util::JsonStringToMessage(std::string(text), &recipe);
-  if (status.ok()) return recipe;
-  return absl::InvalidArgumentError(std::string(status.message()));
-}
-
-absl::StatusOr<v1::Recipe> ParseTextFormat(absl::string_view text) {
-  v1::Recipe recipe;
-  FirstError error;
-  google::protobuf::TextFormat::Parser parser;
-  parser.RecordErrorsTo(&error);
-  if (parser.ParseFromString(std::string(text), &recipe)) return recipe;
-  return absl::InvalidArgumentError(error.text());
-}
 
 // The same for two files that say the same: maps are written by key.
 std::string Digest(const v1::Recipe& recipe) {
@@ -85,11 +53,13 @@ void Apply(const RecipeOverrides& overrides, v1::Recipe* recipe) {
 
 absl::StatusOr<Recipe> ParseRecipe(absl::string_view text, bool json,
                                    const RecipeOverrides& overrides) {
-  absl::StatusOr<v1::Recipe> parsed = json ? ParseJson(text) : ParseTextFormat(text);
-  if (!parsed.ok()) return parsed.status();
-  Apply(overrides, &*parsed);
-  absl::StatusOr<Recipe> recipe = FromProto(*parsed);
-  if (recipe.ok()) recipe->digest = Digest(*parsed);
+  v1::Recipe parsed;
+  const absl::Status status = messages::ParseMessage(
+      text, json ? messages::MessageSyntax::kJson : messages::MessageSyntax::kTextFormat, &parsed);
+  if (!status.ok()) return status;
+  Apply(overrides, &parsed);
+  absl::StatusOr<Recipe> recipe = FromProto(parsed);
+  if (recipe.ok()) recipe->digest = Digest(parsed);
   return recipe;
 }
 

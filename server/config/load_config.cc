@@ -1,9 +1,5 @@
 #include "server/config/load_config.h"
 
-#include <google/protobuf/io/tokenizer.h>
-#include <google/protobuf/text_format.h>
-#include <google/protobuf/util/json_util.h>
-
 #include <CLI/CLI.hpp>
 #include <cstddef>
 #include <cstdint>
@@ -18,42 +14,13 @@
 #include "absl/strings/string_view.h"
 #include "model/base/file.h"
 #include "model/base/flag_names.h"
+#include "model/messages/message_text.h"
 #include "server/config/server_options.h"
 
 namespace duet::server::config {
 namespace {
 
 constexpr std::size_t kMaxConfigBytes = std::size_t{1} << 20;
-
-// Keeps the first error of a text-format file.
-class FirstError final : public google::protobuf::io::ErrorCollector {
- public:
-  void AddError(int line, google::protobuf::io::ColumnNumber column,
-                const std::string& message) override {
-    // Both count from 0; -1 is the file as a whole.
-    if (text_.empty()) text_ = absl::StrCat("line ", line + 1, ":", column + 1, ": ", message);
-  }
-  const std::string& text() const { return text_; }
-
- private:
-  std::string text_;
-};
-
-absl::StatusOr<v1::ServerConfig> ParseJson(std::string_view text) {
-  v1::ServerConfig config;
-  const auto status = google::protobuf::util::JsonStringToMessage(std::string(text), &config);
-  if (status.ok()) return config;
-  return absl::InvalidArgumentError(std::string(status.message()));
-}
-
-absl::StatusOr<v1::ServerConfig> ParseTextFormat(std::string_view text) {
-  v1::ServerConfig config;
-  FirstError error;
-  google::protobuf::TextFormat::Parser parser;
-  parser.RecordErrorsTo(&error);
-  if (parser.ParseFromString(std::string(text), &config)) return config;
-  return absl::InvalidArgumentError(error.text());
-}
 
 // "model:label=version"
 v1::VersionLabel ParseVersionLabel(const std::string& text) {
@@ -178,7 +145,12 @@ void AddCapacityFlags(CLI::App& app, v1::ServerConfig& config) {
 }  // namespace
 
 absl::StatusOr<v1::ServerConfig> ParseConfigText(std::string_view text, bool json) {
-  return json ? ParseJson(text) : ParseTextFormat(text);
+  v1::ServerConfig config;
+  const absl::Status status = messages::ParseMessage(
+      {text.data(), text.size()},
+      json ? messages::MessageSyntax::kJson : messages::MessageSyntax::kTextFormat, &config);
+  if (!status.ok()) return status;
+  return config;
 }
 
 absl::StatusOr<v1::ServerConfig> ReadConfigFile(const std::filesystem::path& path) {
