@@ -1,43 +1,35 @@
-// How fast the engine answers: frames a second by batch, and a long clip from end to end.
+// How fast the engines answer: windows by batch, and a long clip from end to end, side by side.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
 #include <cstdlib>
 #include <iostream>
-#include <string_view>
+#include <memory>
+#include <string>
+#include <vector>
 
+#include "model/cpu_engine/cpu_synthesizer.h"
+#include "model/cpu_engine/kernels/gemm_bf16.h"
 #include "model/engine/clip_synthesis.h"
 #include "model/torch_engine/torch_synthesizer.h"
 
 namespace {
 
+using duet::cpu_engine::kernels::Precision;
+using duet::engine::Synthesizer;
+using Models = std::vector<std::unique_ptr<Synthesizer>>;
+
 constexpr int kLongFrames = 18000;  // 10 minutes at 30 frames a second
 constexpr double kLongRateHz = 30;
 
-const duet::engine::Synthesizer& Embedded(std::string_view name, int version) {
-  static const auto* const kModels = [] {
-    duet::torch_engine::SetTorchThreads(1);
-    auto loaded = duet::torch_engine::LoadEmbeddedSynthesizers();
-    if (!loaded.ok()) {
-      std::cerr << loaded.status().message() << "\n";
-      std::exit(1);
-    }
-    return new std::vector<std::unique_ptr<duet::engine::Synthesizer>>(*std::move(loaded));
-  }();
-  for (const auto& model : *kModels) {
-    if (model->description().name == name && model->description().version == version) return *model;
-  }
-  std::cerr << "no " << name << " version " << version << "\n";
+Models Loaded(absl::StatusOr<Models> models) {
+  if (models.ok()) return *std::move(models);
+  std::cerr << models.status().message() << "\n";
   std::exit(1);
 }
 
-// The paper's generator, and the one that samples; the same skeleton and classes.
-const duet::engine::Synthesizer& Model() { return Embedded("sbu", 1); }
-const duet::engine::Synthesizer& SamplingModel() { return Embedded("sbu", 2); }
-
 // A made-up person who sways: speed does not depend on what the leader does.
-duet::motion::Poses Leader(int frames) {
-  const int joints = Model().description().skeleton.joint_count();
+duet::motion::Poses Leader(int frames, int joints) {
   duet::motion::Poses leader(frames, joints);
   for (int t = 0; t < frames; ++t) {
     for (int j = 0; j < joints; ++j) {
@@ -49,52 +41,72 @@ duet::motion::Poses Leader(int frames) {
   return leader;
 }
 
-std::vector<float> Label() {
-  std::vector<float> label(Model().description().classes.size(), 0);
+std::vector<float> Label(const Synthesizer& model) {
+  std::vector<float> label(model.description().classes.size(), 0);
   label[0] = 1;
   return label;
 }
 
-void Windows(const duet::engine::Synthesizer& model, benchmark::State& state) {
-  const int frames = Model().description().window_frames;
+void Windows(benchmark::State& state, const Synthesizer* model) {
+  const int frames = model->description().window_frames;
   duet::engine::SynthesisWindow window;
-  window.leader = Leader(frames);
+  window.leader = Leader(frames, model->description().skeleton.joint_count());
   for (int t = 0; t < frames; ++t) {
-    const std::vector<float> label = Label();
+    const std::vector<float> label = Label(*model);
     window.labels.insert(window.labels.end(), label.begin(), label.end());
   }
   const std::vector<const duet::engine::SynthesisWindow*> batch(static_cast<size_t>(state.range(0)),
                                                                 &window);
-  for (auto _ : state) benchmark::DoNotOptimize(model.Synthesize(batch));
-  state.counters["frames/s"] = benchmark::Counter(static_cast<double>(state.range(0)) * frames,
-                                                  benchmark::Counter::kIsIterationInvariantRate);
+  for (auto _ : state) benchmark::DoNotOptimize(model->Synthesize(batch));
+  state.counters["windows/s"] = benchmark::Counter(static_cast<double>(state.range(0)),
+                                                   benchmark::Counter::kIsIterationInvariantRate);
 }
 
-void BM_Windows(benchmark::State& state) { Windows(Model(), state); }
-BENCHMARK(BM_Windows)->Arg(1)->Arg(4)->Arg(16)->Arg(32)->Unit(benchmark::kMillisecond);
-
-void BM_SampledWindows(benchmark::State& state) { Windows(SamplingModel(), state); }
-BENCHMARK(BM_SampledWindows)->Arg(1)->Arg(4)->Arg(16)->Unit(benchmark::kMillisecond);
-
-void TenMinutes(const duet::engine::Synthesizer& model, benchmark::State& state) {
+void TenMinutes(benchmark::State& state, const Synthesizer* model) {
   const duet::engine::ClipRequest request{
-      Leader(kLongFrames), kLongRateHz, duet::engine::LabelTrack(Label()), {}, {}};
+      Leader(kLongFrames, model->description().skeleton.joint_count()), kLongRateHz,
+      duet::engine::LabelTrack(Label(*model)), {}, {}};
   for (auto _ : state) {
-    duet::engine::ClipSynthesis clip(model.description(), request);
+    duet::engine::ClipSynthesis clip(model->description(), request);
     while (clip.HasNextWindow()) {
       const duet::engine::SynthesisWindow window = clip.NextWindow();
       const duet::engine::SynthesisWindow* const one = &window;
-      benchmark::DoNotOptimize(clip.Accept(*model.Synthesize({&one, 1}).front()));
+      benchmark::DoNotOptimize(clip.Accept(*model->Synthesize({&one, 1}).front()));
     }
   }
   state.counters["frames/s"] =
       benchmark::Counter(kLongFrames, benchmark::Counter::kIsIterationInvariantRate);
 }
 
-void BM_TenMinutes(benchmark::State& state) { TenMinutes(Model(), state); }
-BENCHMARK(BM_TenMinutes)->Unit(benchmark::kMillisecond);
-
-void BM_SampledTenMinutes(benchmark::State& state) { TenMinutes(SamplingModel(), state); }
-BENCHMARK(BM_SampledTenMinutes)->Unit(benchmark::kMillisecond);
+void Register(const std::string& engine, const Models& models) {
+  for (const std::unique_ptr<Synthesizer>& model : models) {
+    const std::string name = model->description().name + "@" +
+                             std::to_string(model->description().version) + "/" + engine;
+    benchmark::RegisterBenchmark(("windows/" + name).c_str(), Windows, model.get())
+        ->Arg(1)
+        ->Arg(8)
+        ->Arg(32)
+        ->Arg(64)
+        ->Unit(benchmark::kMillisecond);
+    benchmark::RegisterBenchmark(("ten_minutes/" + name).c_str(), TenMinutes, model.get())
+        ->Unit(benchmark::kMillisecond);
+  }
+}
 
 }  // namespace
+
+int main(int argc, char** argv) {
+  duet::torch_engine::SetTorchThreads(1);
+  const Models torch = Loaded(duet::torch_engine::LoadEmbeddedSynthesizers());
+  const Models f32 =
+      Loaded(duet::cpu_engine::LoadEmbeddedSynthesizers({{}, Precision::kFloat32}));
+  Register("torch", torch);
+  Register("f32", f32);
+  Models bf16;
+  if (duet::cpu_engine::kernels::HasBf16()) {
+    bf16 = Loaded(duet::cpu_engine::LoadEmbeddedSynthesizers({{}, Precision::kBfloat16}));
+    Register("bf16", bf16);
+  }
+  benchmark::Initialize(&argc, argv);
+  benchmark::RunSpecifiedBenchmarks();
+}

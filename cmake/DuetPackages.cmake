@@ -10,6 +10,7 @@ find_package(CLI11 CONFIG REQUIRED)
 
 if(NOT DUET_CLIENT_ONLY)
   find_package(Eigen3 3.4 CONFIG REQUIRED)
+  find_package(HWY CONFIG REQUIRED)
   find_package(prometheus-cpp CONFIG REQUIRED)
   find_package(Torch CONFIG REQUIRED)
   # LibTorch runs on whatever libblas is installed; the reference one is 30 to 60 times slower, so

@@ -52,6 +52,9 @@ LAYERS = (
     Layer("engine", "model/engine", sees=("base", "motion", "cleanup")),
     Layer("checkpoint", "model/checkpoint", sees=("base", "motion", "engine")),
     Layer("embedded checkpoints", "model/checkpoints", sees=()),
+    Layer("cpu kernels", "model/cpu_engine/kernels", sees=(), source_libraries=("highway",)),
+    Layer("cpu engine", "model/cpu_engine",
+          sees=("base", "motion", "engine", "checkpoint", "embedded checkpoints", "cpu kernels")),
     Layer("network", "model/network", sees=("base", "motion", "engine", "checkpoint"),
           libraries=("torch",)),
     Layer("torch engine", "model/torch_engine",
@@ -108,6 +111,7 @@ LAYERS = (
 # Libraries that only some layers may know, by the start of the include path.
 GUARDED_LIBRARIES = {
     "torch": ("torch/", "ATen/", "c10/", "caffe2/"),
+    "highway": ("hwy/",),
     "rpc": ("grpc/", "grpcpp/", "grpc++/", "google/", "duet/v1/", "duet/rpc/"),
     "prometheus": ("prometheus/",),
 }

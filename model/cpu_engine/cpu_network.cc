@@ -1,0 +1,76 @@
+#include "model/cpu_engine/cpu_network.h"
+
+#include <algorithm>
+
+#include "model/cpu_engine/flow_network.h"
+#include "model/cpu_engine/kernels/gemm_bf16.h"
+#include "model/cpu_engine/paper_network.h"
+#include "model/cpu_engine/scratch.h"
+
+namespace duet::cpu_engine {
+namespace {
+
+// Frames that are evaluated together; more gain nothing, and what they need leaves the caches.
+constexpr int kFramesAtOnce = 1440;
+
+Scratch& ThreadScratch() {
+  thread_local Scratch scratch;
+  return scratch;
+}
+
+// How many of the inputs are evaluated together: one at least.
+std::size_t TakeTogether(absl::Span<const engine::NetworkInput> inputs) {
+  int frames = 0;
+  std::size_t count = 0;
+  for (; count < inputs.size(); ++count) {
+    frames += inputs[count].leader.frame_count();
+    if (count > 0 && frames > kFramesAtOnce) break;
+  }
+  return count;
+}
+
+// Either generator.
+template <typename Generator>
+class CpuNetwork : public engine::Network {
+ public:
+  CpuNetwork(const checkpoint::Checkpoint& checkpoint, kernels::Precision precision)
+      : generator_(checkpoint, precision) {}
+
+  absl::StatusOr<std::vector<motion::Poses>> Run(
+      absl::Span<const engine::NetworkInput> inputs) const override {
+    std::vector<motion::Poses> followers;
+    followers.reserve(inputs.size());
+    for (const engine::NetworkInput& input : inputs) {
+      followers.emplace_back(input.leader.frame_count(), input.leader.joint_count());
+    }
+    for (std::size_t first = 0; first < inputs.size();) {
+      const std::size_t count = TakeTogether(inputs.subspan(first));
+      Scratch::Use scratch(&ThreadScratch());
+      generator_.Run(inputs.subspan(first, count), &scratch,
+                     absl::MakeSpan(followers).subspan(first, count));
+      first += count;
+    }
+    return followers;
+  }
+
+ private:
+  const Generator generator_;
+};
+
+}  // namespace
+
+kernels::Precision BestPrecision() {
+  return kernels::HasBf16() ? kernels::Precision::kBfloat16 : kernels::Precision::kFloat32;
+}
+
+std::unique_ptr<const engine::Network> MakeCpuNetwork(const checkpoint::Checkpoint& checkpoint,
+                                                      kernels::Precision precision) {
+  if (checkpoint.manifest.flow) {
+    return std::make_unique<const CpuNetwork<FlowNetwork>>(checkpoint, precision);
+  }
+  return std::make_unique<const CpuNetwork<PaperNetwork>>(checkpoint, precision);
+}
+
+std::size_t ThreadScratchBytes() { return ThreadScratch().bytes(); }
+
+}  // namespace duet::cpu_engine

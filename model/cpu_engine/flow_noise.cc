@@ -1,0 +1,101 @@
+#include "model/cpu_engine/flow_noise.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "model/base/random.h"
+#include "model/cpu_engine/kernels/gemm_f32.h"
+
+namespace duet::cpu_engine {
+namespace {
+
+// On the kernel's diagonal: rounding must not make it indefinite.
+constexpr double kRidge = 1e-4;
+
+std::size_t At(int row, int columns, int column) {
+  return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
+         static_cast<std::size_t>(column);
+}
+
+// [frames, frames]: the lower-triangular root (Cholesky) of
+// constant + (1 - constant) exp(-(distance / length)^2 / 2). That of fewer frames is its corner.
+std::vector<float> FrameRoot(int frames, double length, double constant) {
+  std::vector<double> root(At(frames, frames, 0));
+  for (int i = 0; i < frames; ++i) {
+    for (int j = 0; j <= i; ++j) {
+      const double distance = (i - j) / length;
+      double sum = constant + (1 - constant) * std::exp(-0.5 * distance * distance);
+      if (i == j) sum += kRidge;
+      for (int k = 0; k < j; ++k) sum -= root[At(i, frames, k)] * root[At(j, frames, k)];
+      root[At(i, frames, j)] = i == j ? std::sqrt(sum) : sum / root[At(j, frames, j)];
+    }
+  }
+  return {root.begin(), root.end()};
+}
+
+std::vector<float> Transposed(const float* matrix, int width) {
+  std::vector<float> transposed(At(width, width, 0));
+  for (int i = 0; i < width; ++i) {
+    for (int j = 0; j < width; ++j) transposed[At(j, width, i)] = matrix[At(i, width, j)];
+  }
+  return transposed;
+}
+
+}  // namespace
+
+FlowNoise::FlowNoise(const checkpoint::FlowArchitecture::Noise& options,
+                     const std::vector<float>& roots, int width, int frames)
+    : options_(options), width_(width), frames_(frames) {
+  for (int state = 0; state < 2; ++state) {
+    const double constant = state == 0 ? options.constant_share : 0;
+    states_[state] = {FrameRoot(frames, options.frame_length, constant),
+                      {Transposed(roots.data() + At(state * width, width, 0), width),
+                       {},
+                       width,
+                       width,
+                       kernels::Precision::kFloat32}};
+  }
+}
+
+float FlowNoise::Ramp(int frame, int known_frames) const {
+  if (known_frames == 0) return 1;
+  const float ramp = static_cast<float>(options_.ramp_frames);
+  return std::clamp(static_cast<float>(frame - known_frames + 2) / ramp, 1 / ramp, 1.0f);
+}
+
+void FlowNoise::Fill(uint64_t seed, float variety, int known_frames, int frames,
+                     Scratch::Use* scratch, float* out) const {
+  const std::ptrdiff_t count = std::ptrdiff_t{frames} * width_;
+  if (variety == 0) {
+    std::fill_n(out, count, 0.0f);
+    return;
+  }
+  float* const drawn = scratch->Take<float>(2 * count);
+  base::Random random(seed, 0);
+  for (std::ptrdiff_t i = 0; i < 2 * count; ++i) {
+    drawn[i] = static_cast<float>(random.StandardNormal());
+  }
+  const State& state = states_[known_frames > 0 ? 1 : 0];
+  std::vector<float> longer;
+  if (frames > frames_) {
+    longer = FrameRoot(frames, options_.frame_length, known_frames > 0 ? 0 : options_.constant_share);
+  }
+  float* const panels =
+      scratch->Take<float>(std::ptrdiff_t{kernels::PanelCount(width_)} * frames * kernels::kPanel);
+  float* const smooth = scratch->Take<float>(count);
+  kernels::PackPanels(drawn, 1, width_, width_, frames, panels);
+  kernels::GemmF32({longer.empty() ? state.over_frames.data() : longer.data(),
+                    longer.empty() ? frames_ : frames, frames, frames},
+                   panels, nullptr, {smooth, width_, width_});
+  state.over_joints.Multiply(frames, smooth, out);
+  const float white = static_cast<float>(options_.white);
+  for (int t = 0; t < frames; ++t) {
+    const float ramp = Ramp(t, known_frames);
+    for (std::ptrdiff_t i = std::ptrdiff_t{t} * width_; i < std::ptrdiff_t{t + 1} * width_; ++i) {
+      out[i] = variety * (ramp * out[i] + white * drawn[count + i]);
+    }
+  }
+}
+
+}  // namespace duet::cpu_engine

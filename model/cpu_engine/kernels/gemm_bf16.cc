@@ -1,0 +1,154 @@
+#include "model/cpu_engine/kernels/gemm_bf16.h"
+
+#include <algorithm>
+#include <cstring>
+
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
+
+namespace duet::cpu_engine::kernels {
+
+uint16_t ToBf16(float value) {
+  uint32_t bits;
+  std::memcpy(&bits, &value, sizeof(bits));
+  return static_cast<uint16_t>((bits + 0x7fff + ((bits >> 16) & 1)) >> 16);
+}
+
+#if defined(__x86_64__)
+
+// Highway 1.0.3 has no such product: the instruction by its name.
+#define DUET_BF16 __attribute__((target("avx512f,avx512bw,avx512vl,avx512dq,avx512bf16")))
+
+namespace {
+
+constexpr int kLanes = 16;
+// Sums that fit the registers beside what is being multiplied, and rows of two vectors of them.
+constexpr int kSums = 24, kRows = kSums / 2;
+// Pairs of inputs that are multiplied before the sums go back to memory: a tile's rows, rounded,
+// stay in the first-level cache.
+constexpr int kPairsAtOnce = 256;
+
+// A block of inputs of a product: its tiles are computed.
+struct Block {
+  const uint16_t* x;       // [kRows, 2 kPairsAtOnce], rounded
+  const uint16_t* panels;  // from the block's first pair on
+  std::ptrdiff_t panel;    // values from one panel to the next
+  int pairs;
+  const float* bias;  // null without
+  bool adds;          // to what earlier blocks left in y
+  Output y;           // from the tile's first row on
+};
+
+DUET_BF16 inline __mmask16 FirstOf(int valid) {
+  const int clamped = std::clamp(valid, 0, kLanes);
+  return static_cast<__mmask16>((1u << clamped) - 1);
+}
+
+// kCount rows by kPanels panels from column `column` on, kept in registers over the block.
+template <int kCount, int kPanels>
+DUET_BF16 inline void Tile(const Block& block, int column) {
+  const uint16_t* weights = block.panels + column / kPanel * block.panel;
+  __mmask16 valid[2 * kPanels];
+  __m512 sums[kCount][2 * kPanels];
+  for (int v = 0; v < 2 * kPanels; ++v) {
+    valid[v] = FirstOf(block.y.width - column - v * kLanes);
+    const __m512 begin = block.bias == nullptr || block.adds
+                             ? _mm512_setzero_ps()
+                             : _mm512_loadu_ps(block.bias + column + v * kLanes);
+    for (int r = 0; r < kCount; ++r) {
+      sums[r][v] = block.adds ? _mm512_maskz_loadu_ps(valid[v], block.y.values + r * block.y.stride +
+                                                                    column + v * kLanes)
+                              : begin;
+    }
+  }
+  for (int pair = 0; pair < block.pairs; ++pair, weights += 2 * kPanel) {
+    __m512bh w[2 * kPanels];
+    for (int v = 0; v < 2 * kPanels; ++v) {
+      w[v] = reinterpret_cast<__m512bh>(
+          _mm512_loadu_si512(weights + v / 2 * block.panel + v % 2 * kPanel));
+    }
+    for (int r = 0; r < kCount; ++r) {
+      int both;
+      std::memcpy(&both, block.x + r * 2 * kPairsAtOnce + 2 * pair, sizeof(both));
+      const __m512bh value = reinterpret_cast<__m512bh>(_mm512_set1_epi32(both));
+      for (int v = 0; v < 2 * kPanels; ++v) {
+        sums[r][v] = _mm512_dpbf16_ps(sums[r][v], value, w[v]);
+      }
+    }
+  }
+  for (int r = 0; r < kCount; ++r) {
+    float* y = block.y.values + r * block.y.stride + column;
+    for (int v = 0; v < 2 * kPanels; ++v) {
+      _mm512_mask_storeu_ps(y + v * kLanes, valid[v], sums[r][v]);
+    }
+  }
+}
+
+// All columns of kCount rows, as many at once as the registers hold.
+template <int kCount>
+DUET_BF16 inline void Strip(const Block& block) {
+  constexpr int kPanels = kRows / kCount < 4 ? kRows / kCount : 4;
+  int column = 0;
+  for (; column + (kPanels - 1) * kPanel < block.y.width; column += kPanels * kPanel) {
+    Tile<kCount, kPanels>(block, column);
+  }
+  for (; column < block.y.width; column += kPanel) Tile<kCount, 1>(block, column);
+}
+
+template <int kCount>
+DUET_BF16 void StripOf(int count, const Block& block) {
+  if (count == kCount) {
+    Strip<kCount>(block);
+  } else if constexpr (kCount > 1) {
+    StripOf<kCount - 1>(count, block);
+  }
+}
+
+// Rounds `inputs` values of each of `count` rows from `first` on, a zero after an odd number.
+DUET_BF16 void Round(const Rows& x, int row, int count, int first, int inputs, uint16_t* out) {
+  for (int r = 0; r < count; ++r) {
+    const float* from = x.values + (row + r) * x.stride + first;
+    uint16_t* to = out + r * 2 * kPairsAtOnce;
+    int k = 0;
+    for (; k + kLanes <= inputs; k += kLanes) {
+      _mm256_storeu_si256(reinterpret_cast<__m256i*>(to + k),
+                          reinterpret_cast<__m256i>(_mm512_cvtneps_pbh(_mm512_loadu_ps(from + k))));
+    }
+    for (; k < inputs; ++k) to[k] = ToBf16(from[k]);
+    if (inputs % 2 != 0) to[inputs] = 0;
+  }
+}
+
+}  // namespace
+
+bool HasBf16() {
+  return __builtin_cpu_supports("avx512bf16") && __builtin_cpu_supports("avx512bw") &&
+         __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq");
+}
+
+void GemmBf16(const Rows& x, const uint16_t* panels, const float* bias, const Output& y) {
+  alignas(64) uint16_t rounded[kRows * 2 * kPairsAtOnce];
+  const int pairs = Bf16Pairs(x.width);
+  for (int row = 0; row < x.count;) {
+    const int count = NextTile(x.count - row, kRows);
+    for (int first = 0; first < pairs; first += kPairsAtOnce) {
+      const int size = std::min(kPairsAtOnce, pairs - first);
+      Round(x, row, count, 2 * first, std::min(2 * size, x.width - 2 * first), rounded);
+      const Output rows{y.values + row * y.stride, y.stride, y.width};
+      StripOf<kRows>(count, {rounded, panels + std::ptrdiff_t{first} * 2 * kPanel,
+                             std::ptrdiff_t{pairs} * 2 * kPanel, size, bias, first > 0, rows});
+    }
+    row += count;
+  }
+}
+
+#else
+
+bool HasBf16() { return false; }
+void GemmBf16(const Rows& /*x*/, const uint16_t* /*panels*/, const float* /*bias*/,
+              const Output& /*y*/) {}
+
+#endif
+
+}  // namespace duet::cpu_engine::kernels

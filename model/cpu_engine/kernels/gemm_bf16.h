@@ -1,0 +1,28 @@
+#ifndef DUET_MODEL_CPU_ENGINE_KERNELS_GEMM_BF16_H_
+#define DUET_MODEL_CPU_ENGINE_KERNELS_GEMM_BF16_H_
+
+#include <cstdint>
+
+#include "model/cpu_engine/kernels/matrix.h"
+
+namespace duet::cpu_engine::kernels {
+
+// Whether this processor multiplies bfloat16 (AVX-512 BF16).
+bool HasBf16();
+
+// `value` rounded to the nearest bfloat16, ties to even. Finite values only.
+uint16_t ToBf16(float value);
+
+// Inputs of a row that are multiplied as one: pairs.
+inline constexpr int Bf16Pairs(int inputs) { return (inputs + 1) / 2; }
+
+// y = x W^T + bias, or without one where it is null: factors in bfloat16, sums in float32. `panels`
+// are [PanelCount(outputs), Bf16Pairs(inputs), kPanel, 2], the bias is padded to whole panels. x is
+// rounded on the way in. Requires HasBf16().
+//
+// A row's result does not depend on the other rows.
+void GemmBf16(const Rows& x, const uint16_t* panels, const float* bias, const Output& y);
+
+}  // namespace duet::cpu_engine::kernels
+
+#endif  // DUET_MODEL_CPU_ENGINE_KERNELS_GEMM_BF16_H_

@@ -1,0 +1,17 @@
+#ifndef DUET_MODEL_CPU_ENGINE_KERNELS_GEMM_F32_H_
+#define DUET_MODEL_CPU_ENGINE_KERNELS_GEMM_F32_H_
+
+#include "model/cpu_engine/kernels/matrix.h"
+
+namespace duet::cpu_engine::kernels {
+
+// y = x W^T + bias in float32, or without one where it is null. `panels` are W's rows as PackPanels
+// lays them out, the bias is padded to whole panels.
+//
+// A row's sums are added up in the order of its inputs, however many rows there are: its result
+// does not depend on the others.
+void GemmF32(const Rows& x, const float* panels, const float* bias, const Output& y);
+
+}  // namespace duet::cpu_engine::kernels
+
+#endif  // DUET_MODEL_CPU_ENGINE_KERNELS_GEMM_F32_H_

@@ -1,0 +1,56 @@
+#ifndef DUET_MODEL_CPU_ENGINE_KERNELS_PACKED_MATRIX_H_
+#define DUET_MODEL_CPU_ENGINE_KERNELS_PACKED_MATRIX_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "model/cpu_engine/kernels/matrix.h"
+
+namespace duet::cpu_engine::kernels {
+
+// How factors of products are held; sums are float32.
+enum class Precision {
+  kFloat32,
+  kBfloat16  // half the memory and, where the processor has it, twice the speed; HasBf16()
+};
+
+// The values of a matrix [outputs, inputs] where the value of output n, input k is at
+// from[n output_stride + k input_stride], in the order that a product reads them:
+// [PanelCount(outputs), inputs, kPanel], zeros after the last output.
+void PackPanels(const float* from, std::ptrdiff_t output_stride, std::ptrdiff_t input_stride,
+                int outputs, int inputs, float* panels);
+
+// A layer's weights and bias, laid out for products once.
+//
+// Threads: const methods are safe to call concurrently.
+class PackedMatrix {
+ public:
+  PackedMatrix() = default;
+  // Shapes: weights [outputs, inputs] row-major, bias [outputs] or empty for none.
+  PackedMatrix(const std::vector<float>& weights, const std::vector<float>& bias, int outputs,
+               int inputs, Precision precision);
+
+  int outputs() const { return outputs_; }
+  int inputs() const { return inputs_; }
+  bool empty() const { return outputs_ == 0; }
+
+  // y [rows, outputs] = x [rows, inputs] W^T + bias. Rows of x are x_stride values apart, those of
+  // y y_stride. A row's result does not depend on the other rows.
+  void Multiply(int rows, const float* x, std::ptrdiff_t x_stride, float* y,
+                std::ptrdiff_t y_stride) const;
+  void Multiply(int rows, const float* x, float* y) const {
+    Multiply(rows, x, inputs_, y, outputs_);
+  }
+
+ private:
+  int outputs_ = 0, inputs_ = 0;
+  Precision precision_ = Precision::kFloat32;
+  std::vector<float> panels_;
+  std::vector<uint16_t> rounded_panels_;
+  std::vector<float> bias_;  // empty, or padded with zeros to whole panels
+};
+
+}  // namespace duet::cpu_engine::kernels
+
+#endif  // DUET_MODEL_CPU_ENGINE_KERNELS_PACKED_MATRIX_H_

@@ -1,0 +1,91 @@
+#include "model/cpu_engine/kernels/rowwise.h"
+
+#include <cmath>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "model/cpu_engine/kernels/rowwise.cc"
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
+
+#include "model/cpu_engine/kernels/softmax-inl.h"
+#include "model/cpu_engine/kernels/vector_math-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace duet::cpu_engine::kernels {
+namespace HWY_NAMESPACE {
+
+// What is left of `count` values after `at`, as much as a vector may hold.
+HWY_INLINE int Left(ptrdiff_t count, ptrdiff_t at) {
+  return count - at >= Lanes() ? Lanes() : static_cast<int>(count - at);
+}
+
+void GeluInPlace(ptrdiff_t count, float* HWY_RESTRICT values) {
+  const Tag d;
+  const Vector half = hn::Set(d, 0.5f), root_half = hn::Set(d, 0.70710678118654752f);
+  for (ptrdiff_t i = 0; i < count; i += Lanes()) {
+    const Vector x = LoadFirst(Left(count, i), values + i);
+    StoreFirst(Left(count, i), half * x * (hn::Set(d, 1.0f) + Erf(x * root_half)), values + i);
+  }
+}
+
+void SiluInPlace(ptrdiff_t count, float* HWY_RESTRICT values) {
+  for (ptrdiff_t i = 0; i < count; i += Lanes()) {
+    const Vector x = LoadFirst(Left(count, i), values + i);
+    StoreFirst(Left(count, i), x * Sigmoid(x), values + i);
+  }
+}
+
+void Norm(const NormRow& row) {
+  const Tag d;
+  Vector sum = hn::Zero(d);
+  for (int i = 0; i < row.width; i += Lanes()) sum = sum + LoadFirst(row.width - i, row.x + i);
+  const float width = static_cast<float>(row.width);
+  const Vector mean = hn::Set(d, hn::GetLane(hn::SumOfLanes(d, sum)) / width);
+  Vector squares = hn::Zero(d);
+  for (int i = 0; i < row.width; i += Lanes()) {
+    const auto valid = hn::FirstN(d, static_cast<size_t>(HWY_MIN(row.width - i, Lanes())));
+    const Vector from_mean =
+        hn::IfThenElseZero(valid, LoadFirst(row.width - i, row.x + i) - mean);
+    squares = hn::MulAdd(from_mean, from_mean, squares);
+  }
+  const float variance = hn::GetLane(hn::SumOfLanes(d, squares)) / width;
+  const Vector factor = hn::Set(d, 1 / std::sqrt(variance + 1e-5f));
+  const Vector offset = hn::Set(d, row.scale_offset);
+  for (int i = 0; i < row.width; i += Lanes()) {
+    const int valid = row.width - i;
+    const Vector normal = (LoadFirst(valid, row.x + i) - mean) * factor;
+    const Vector scale = LoadFirst(valid, row.scale + i) + offset;
+    StoreFirst(valid, hn::MulAdd(normal, scale, LoadFirst(valid, row.shift + i)), row.out + i);
+  }
+}
+
+void SoftmaxWithBias(int count, float factor, const float* bias, float* HWY_RESTRICT values) {
+  const Vector by = hn::Set(Tag(), factor);
+  for (int j = 0; j < count; j += Lanes()) {
+    const int valid = count - j;
+    StoreFirst(valid, hn::MulAdd(by, LoadFirst(valid, values + j), LoadFirst(valid, bias + j)),
+               values + j);
+  }
+  Softmax(count, values);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace duet::cpu_engine::kernels
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace duet::cpu_engine::kernels {
+
+HWY_EXPORT(GeluInPlace);
+HWY_EXPORT(SiluInPlace);
+HWY_EXPORT(Norm);
+HWY_EXPORT(SoftmaxWithBias);
+
+void Gelu(std::ptrdiff_t count, float* values) { HWY_DYNAMIC_DISPATCH(GeluInPlace)(count, values); }
+void Silu(std::ptrdiff_t count, float* values) { HWY_DYNAMIC_DISPATCH(SiluInPlace)(count, values); }
+void LayerNorm(const NormRow& row) { HWY_DYNAMIC_DISPATCH(Norm)(row); }
+void BiasedSoftmax(int count, float factor, const float* bias, float* values) {
+  HWY_DYNAMIC_DISPATCH(SoftmaxWithBias)(count, factor, bias, values);
+}
+
+}  // namespace duet::cpu_engine::kernels
+#endif

@@ -1,0 +1,260 @@
+#include "model/cpu_engine/paper_network.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <numeric>
+
+#include "absl/strings/str_cat.h"
+#include "model/cpu_engine/kernels/additive_attention.h"
+#include "model/cpu_engine/kernels/lstm_cell.h"
+
+namespace duet::cpu_engine {
+namespace {
+
+using checkpoint::GeneratorVariant;
+using kernels::Precision;
+
+constexpr const char* kDirections[] = {"forward", "backward"};
+
+// Columns of a row of the input that a slice reads.
+std::vector<int> ColumnsOf(const checkpoint::Manifest& manifest, int slice) {
+  const auto& parts = manifest.generator.parts;
+  std::vector<int> columns;
+  const auto add = [&](int first, int count) {
+    for (int i = 0; i < count; ++i) columns.push_back(first + i);
+  };
+  if (slice < static_cast<int>(parts.size())) {
+    for (const int joint : parts[static_cast<std::size_t>(slice)].joints) add(3 * joint, 3);
+    return columns;
+  }
+  const motion::Skeleton& skeleton = manifest.model.skeleton;
+  const int leader = 3 * skeleton.joint_count(), classes = manifest.model.class_count();
+  if (manifest.generator.variant != GeneratorVariant::kReleased) add(0, leader);
+  if (manifest.generator.variant != GeneratorVariant::kUnlabelled) add(leader, classes);
+  if (manifest.generator.follower_start) {
+    add(leader + classes, checkpoint::StartFeatureCount(skeleton));
+  }
+  return columns;
+}
+
+float* Copied(absl::Span<const motion::Vec3> points, float* out) {
+  if (points.empty()) return out;
+  return std::copy_n(&points.front().x, 3 * points.size(), out);
+}
+
+// Root, pose relative to the root, and two flags: what is known.
+void WriteStart(const std::optional<engine::FollowerStart>& start, int count, float* out) {
+  std::fill_n(out, count, 0.0f);
+  if (!start) return;
+  out[count - 2] = 1;
+  out[count - 1] = start->pose.empty() ? 0.0f : 1.0f;
+  out = Copied({&start->root, 1}, out);
+  for (const motion::Vec3& joint : start->pose) {
+    const motion::Vec3 from_root = joint - start->root;
+    out = Copied({&from_root, 1}, out);
+  }
+}
+
+// The frame that a direction of a window of `length` frames is at after `step` steps.
+int FrameAt(int direction, int length, int step) {
+  return direction == 0 ? step : length - 1 - step;
+}
+
+}  // namespace
+
+PaperNetwork::PaperNetwork(const checkpoint::Checkpoint& checkpoint, Precision precision)
+    : joints_(checkpoint.manifest.model.skeleton.joint_count()),
+      classes_(checkpoint.manifest.model.class_count()),
+      root_(checkpoint.manifest.model.skeleton.root),
+      encoder_(checkpoint.manifest.generator.encoder_hidden),
+      attention_(checkpoint.manifest.generator.attention),
+      has_start_(checkpoint.manifest.generator.follower_start),
+      has_base_(checkpoint.manifest.generator.base_pose),
+      precision_(precision) {
+  const checkpoint::Manifest& manifest = checkpoint.manifest;
+  const Weights weights(checkpoint);
+  inputs_ = 3 * joints_ + classes_ +
+            (has_start_ ? checkpoint::StartFeatureCount(manifest.model.skeleton) : 0);
+  const int slices = static_cast<int>(SliceShapes(manifest).size());
+  for (int slice = 0; slice < slices; ++slice) {
+    slices_.push_back(FindSlice(manifest, weights, slice));
+  }
+  state_ = slices * encoder_;
+  for (int d = 0; d < 2; ++d) {
+    const auto at = [&](const char* name) {
+      return absl::StrCat("decoder.", kDirections[d], ".", name);
+    };
+    directions_[d] = {weights.FindLayer(at("attention_encoded"), "").Pack(precision),
+                      weights.FindLayer(at("weight_ih"), at("bias")).Pack(precision),
+                      Stacked(weights.FindLayer(at("weight_hh"), ""),
+                              weights.FindLayer(at("attention_state"), ""))
+                          .Pack(precision),
+                      weights.Values(at("attention_score"))};
+  }
+  output_ = weights.FindLayer("output").Pack(Precision::kFloat32);
+  if (!has_base_) return;
+  base_.bias = weights.Values("base.bias");
+  if (weights.Has("base.weight")) base_ = weights.FindLayer("base");
+}
+
+PaperNetwork::Slice PaperNetwork::FindSlice(const checkpoint::Manifest& manifest,
+                                            const Weights& weights, int index) const {
+  const std::string at = absl::StrCat(
+      "encoder.", SliceShapes(manifest)[static_cast<std::size_t>(index)].name, ".");
+  Slice slice;
+  slice.columns = ColumnsOf(manifest, index);
+  Layer input[2];
+  for (int d = 0; d < 2; ++d) {
+    const std::string prefix = absl::StrCat(at, kDirections[d], ".");
+    input[d] = weights.FindLayer(prefix + "weight_ih", prefix + "bias");
+    if (weights.Has(at + "fc.weight")) input[d] = Chained(weights.FindLayer(at + "fc"), input[d]);
+    slice.recurrent[d] = weights.FindLayer(prefix + "weight_hh", "").Pack(precision_);
+  }
+  slice.input = Stacked(input[0], input[1]).Pack(Precision::kFloat32);
+  return slice;
+}
+
+void PaperNetwork::Run(absl::Span<const engine::NetworkInput> inputs, Scratch::Use* scratch,
+                       absl::Span<motion::Poses> followers) const {
+  Work work;
+  work.batch = MakeWindowBatch(inputs, scratch);
+  const std::ptrdiff_t rows = work.batch.rows, windows = work.batch.count;
+  work.input = ReadInput(work.batch, inputs, scratch);
+  work.encoded = scratch->Take<float>(rows * 2 * state_);
+  work.states = scratch->Take<float>(rows * 2 * state_);
+  for (int d = 0; d < 2; ++d) {
+    work.hidden[d] = scratch->Take<float>(windows * state_);
+    work.cell[d] = scratch->Take<float>(windows * state_);
+    std::fill_n(work.cell[d], windows * state_, 0.0f);
+  }
+  Encode(work, scratch);
+  for (int d = 0; d < 2; ++d) Decode(work, d, scratch);
+  float* const answer = scratch->Take<float>(rows * 3 * joints_);
+  output_.Multiply(work.batch.rows, work.states, answer);
+  if (has_base_) AddBase(work, answer);
+  for (int n = 0; n < work.batch.count; ++n) {
+    motion::Poses& follower = followers[static_cast<std::size_t>(work.batch.input[n])];
+    std::copy_n(answer + std::ptrdiff_t{work.batch.first_row[n]} * 3 * joints_,
+                3 * follower.all().size(), &follower.all().front().x);
+  }
+}
+
+float* PaperNetwork::ReadInput(const WindowBatch& batch,
+                               absl::Span<const engine::NetworkInput> inputs,
+                               Scratch::Use* scratch) const {
+  float* const rows = scratch->Take<float>(std::ptrdiff_t{batch.rows} * inputs_);
+  const int start = 3 * joints_ + classes_;
+  for (int n = 0; n < batch.count; ++n) {
+    const engine::NetworkInput& input = inputs[static_cast<std::size_t>(batch.input[n])];
+    float* const first = rows + std::ptrdiff_t{batch.first_row[n]} * inputs_;
+    if (has_start_) WriteStart(input.start, inputs_ - start, first + start);
+    for (int t = 0; t < batch.length[n]; ++t) {
+      float* const row = first + std::ptrdiff_t{t} * inputs_;
+      float* const labels = Copied(input.leader[t], row);
+      std::copy_n(input.labels.data() + std::ptrdiff_t{t} * classes_, classes_, labels);
+      if (t > 0) std::copy(first + start, first + inputs_, row + start);
+    }
+  }
+  return rows;
+}
+
+void PaperNetwork::Encode(const Work& work, Scratch::Use* scratch) const {
+  const std::ptrdiff_t rows = work.batch.rows;
+  float* const columns = scratch->Take<float>(rows * inputs_);
+  float* const gates = scratch->Take<float>(rows * 8 * encoder_);
+  for (int s = 0; s < static_cast<int>(slices_.size()); ++s) {
+    const Slice& slice = slices_[static_cast<std::size_t>(s)];
+    float* to = columns;
+    for (std::ptrdiff_t row = 0; row < rows; ++row) {
+      for (const int column : slice.columns) *to++ = work.input[row * inputs_ + column];
+    }
+    slice.input.Multiply(work.batch.rows, columns, gates);
+    for (int d = 0; d < 2; ++d) EncodeSlice(work, s, d, gates, scratch);
+  }
+}
+
+// `gates`: what the input gives to the gates, [R, 2 x 4 E].
+void PaperNetwork::EncodeSlice(const Work& work, int slice, int direction, const float* gates,
+                               Scratch::Use* scratch) const {
+  const WindowBatch& batch = work.batch;
+  const std::ptrdiff_t at = std::ptrdiff_t{slice} * encoder_;
+  float* const recurrent = scratch->Take<float>(std::ptrdiff_t{batch.count} * 4 * encoder_);
+  const float** inputs = scratch->Take<const float*>(batch.count);
+  float** outputs = scratch->Take<float*>(batch.count);
+  kernels::LstmStep cells{0,      encoder_, nullptr, 4 * encoder_, inputs, work.hidden[direction] + at,
+                          work.cell[direction] + at, state_,       outputs};
+  cells.count = batch.count;
+  for (int step = 0; step < batch.length[0]; ++step) {
+    cells.count = batch.LongerThan(step, cells.count);
+    if (step > 0) {
+      slices_[static_cast<std::size_t>(slice)].recurrent[direction].Multiply(
+          cells.count, cells.state, state_, recurrent, 4 * encoder_);
+      cells.gates = recurrent;
+    }
+    for (int n = 0; n < cells.count; ++n) {
+      const std::ptrdiff_t row =
+          batch.first_row[n] + FrameAt(direction, batch.length[n], step);
+      inputs[n] = gates + (row * 2 + direction) * 4 * encoder_;
+      outputs[n] = work.encoded + (row * 2 + direction) * state_ + at;
+    }
+    kernels::LstmCells(cells);
+  }
+}
+
+// Attention, then the cells, frame by frame in the direction's order.
+void PaperNetwork::Decode(const Work& work, int direction, Scratch::Use* scratch) const {
+  const WindowBatch& batch = work.batch;
+  const Direction& decoder = directions_[direction];
+  const int width = 4 * state_, both = width + attention_;
+  float* const encoded = scratch->Take<float>(std::ptrdiff_t{batch.rows} * attention_);
+  float* const values = scratch->Take<float>(std::ptrdiff_t{batch.rows} * width);
+  decoder.encoded.Multiply(batch.rows, work.encoded, encoded);
+  decoder.values.Multiply(batch.rows, work.encoded, values);
+  float* const gates = scratch->Take<float>(std::ptrdiff_t{batch.count} * both);
+  float* const weights = scratch->Take<float>(batch.length[0]);
+  float** outputs = scratch->Take<float*>(batch.count);
+  kernels::LstmStep cells{batch.count,          state_, gates,  both, nullptr, work.hidden[direction],
+                          work.cell[direction], state_, outputs};
+  for (int step = 0; step < batch.length[0]; ++step) {
+    cells.count = batch.LongerThan(step, cells.count);
+    decoder.state.Multiply(cells.count, cells.state, gates);
+    for (int n = 0; n < cells.count; ++n) {
+      const std::ptrdiff_t first = batch.first_row[n];
+      float* const sums = gates + std::ptrdiff_t{n} * both;
+      kernels::Attend({batch.length[n], attention_, width, encoded + first * attention_,
+              values + first * width, sums + width, decoder.score.data(), weights, sums});
+      const std::ptrdiff_t row = first + FrameAt(direction, batch.length[n], step);
+      outputs[n] = work.states + (row * 2 + direction) * state_;
+    }
+    kernels::LstmCells(cells);
+  }
+}
+
+// Adds the pose that the output layer adds to: root and pose relative to it, each from the
+// follower's start where that gives it, else from the label vector's mean pose.
+void PaperNetwork::AddBase(const Work& work, float* followers) const {
+  const int width = 3 * joints_;
+  for (std::ptrdiff_t row = 0; row < work.batch.rows; ++row) {
+    const float* const labels = work.input + row * inputs_ + width;
+    const float* const start = labels + classes_;
+    const auto mean = [&](int column) {
+      float value = base_.bias[static_cast<std::size_t>(column)];
+      for (int c = 0; c < base_.inputs; ++c) {
+        value += base_.weight[static_cast<std::size_t>(column * classes_ + c)] * labels[c];
+      }
+      return value;
+    };
+    const bool root_known = has_start_ && start[inputs_ - width - classes_ - 2] != 0;
+    const bool pose_known = has_start_ && start[inputs_ - width - classes_ - 1] != 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const float mean_root = mean(3 * root_ + axis);
+      const float root = root_known ? start[axis] : mean_root;
+      for (int j = 0; j < joints_; ++j) {
+        const float pose = pose_known ? start[3 + 3 * j + axis] : mean(3 * j + axis) - mean_root;
+        followers[row * width + 3 * j + axis] += root + pose;
+      }
+    }
+  }
+}
+
+}  // namespace duet::cpu_engine

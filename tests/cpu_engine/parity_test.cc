@@ -1,0 +1,203 @@
+// The same windows through this project's kernels and through LibTorch.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+#include "model/base/random.h"
+#include "model/checkpoints/embedded.h"
+#include "model/cpu_engine/cpu_network.h"
+#include "model/cpu_engine/kernels/gemm_bf16.h"
+#include "model/torch_engine/torch_network.h"
+#include "tests/cpu_engine/random_checkpoint.h"
+#include "tests/support/status_matchers.h"
+
+namespace duet::cpu_engine {
+namespace {
+
+using checkpoint::Checkpoint;
+using checkpoint::GeneratorVariant;
+using checkpoint::Manifest;
+using engine::NetworkInput;
+using kernels::Precision;
+using test::IsOk;
+
+std::vector<Checkpoint> Embedded() {
+  std::vector<Checkpoint> checkpoints;
+  for (const embedded::EmbeddedCheckpoint& embedded : embedded::EmbeddedCheckpoints()) {
+    auto checkpoint = checkpoint::ParseCheckpoint(embedded.manifest, embedded.weights);
+    EXPECT_THAT(checkpoint, IsOk());
+    if (checkpoint.ok()) checkpoints.push_back(*std::move(checkpoint));
+  }
+  return checkpoints;
+}
+
+// A made-up person about the origin, of the model's joints.
+motion::Poses Person(int frames, int joints, base::Random* random) {
+  motion::Poses person(frames, joints);
+  for (int j = 0; j < joints; ++j) {
+    motion::Vec3 at{static_cast<float>(random->Uniform(-0.5, 0.5)),
+                    static_cast<float>(random->Uniform(0, 1.7)),
+                    static_cast<float>(random->Uniform(-0.3, 0.3))};
+    for (int t = 0; t < frames; ++t) {
+      for (float* value : {&at.x, &at.y, &at.z}) {
+        *value += static_cast<float>(random->Normal(0.02));
+      }
+      person.at(t, j) = at;
+    }
+  }
+  return person;
+}
+
+enum class Told { kNothing, kRoot, kPose, kSettled };
+
+NetworkInput Input(const Manifest& manifest, int frames, Told told, uint64_t seed) {
+  base::Random random(seed);
+  const int joints = manifest.model.skeleton.joint_count();
+  NetworkInput input;
+  input.leader = Person(frames, joints, &random);
+  // Graded, mixed and avoided labels, some of them changing.
+  for (int t = 0; t < frames; ++t) {
+    for (int c = 0; c < manifest.model.class_count(); ++c) {
+      const double weight = c == 0 ? 1.0 - 0.5 * t / frames : c == 1 ? -0.3 : c == 2 ? 0.6 : 0;
+      input.labels.push_back(static_cast<float>(weight));
+    }
+  }
+  input.sampling = {seed, 1};
+  const motion::Poses follower = Person(frames, joints, &random);
+  const motion::Vec3 root = follower.at(0, manifest.model.skeleton.root);
+  if (told == Told::kRoot) input.start = engine::FollowerStart{root, {}};
+  if (told == Told::kPose || told == Told::kSettled) {
+    input.start = engine::FollowerStart{root, {follower[0].begin(), follower[0].end()}};
+  }
+  if (told == Told::kSettled && manifest.model.samples && frames > 6) {
+    input.settled = motion::Poses(joints, {follower.frames(0, 5).begin(), follower.frames(0, 5).end()});
+  }
+  return input;
+}
+
+// Windows of many lengths, told different things.
+std::vector<NetworkInput> Inputs(const Manifest& manifest) {
+  const int longest = manifest.model.window_frames;
+  std::vector<NetworkInput> inputs;
+  uint64_t seed = 1;
+  for (const int frames : {longest, 2, longest / 2, 7, longest}) {
+    for (const Told told : {Told::kNothing, Told::kRoot, Told::kPose, Told::kSettled}) {
+      inputs.push_back(Input(manifest, frames, told, seed++));
+    }
+  }
+  return inputs;
+}
+
+std::vector<motion::Poses> Answers(const engine::Network& network,
+                                   absl::Span<const NetworkInput> inputs) {
+  auto answers = network.Run(inputs);
+  EXPECT_THAT(answers, IsOk());
+  return answers.ok() ? *std::move(answers) : std::vector<motion::Poses>();
+}
+
+// The farthest that any joint is from where the other engine has it, metres.
+float Farthest(const std::vector<motion::Poses>& a, const std::vector<motion::Poses>& b) {
+  EXPECT_EQ(a.size(), b.size());
+  float farthest = 0;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
+    EXPECT_EQ(a[i].all().size(), b[i].all().size());
+    for (std::size_t k = 0; k < a[i].all().size(); ++k) {
+      farthest = std::max(farthest, Distance(a[i].all()[k], b[i].all()[k]));
+    }
+  }
+  return farthest;
+}
+
+float FromTorch(const Checkpoint& checkpoint, Precision precision) {
+  const auto torch = torch_engine::MakeTorchNetwork(checkpoint);
+  EXPECT_THAT(torch, IsOk());
+  if (!torch.ok()) return 1e9f;
+  const std::vector<NetworkInput> inputs = Inputs(checkpoint.manifest);
+  return Farthest(Answers(**torch, inputs), Answers(*MakeCpuNetwork(checkpoint, precision), inputs));
+}
+
+Manifest PaperManifest(GeneratorVariant variant, int slice_features, bool start, bool base) {
+  Manifest manifest;
+  manifest.model.name = "other";
+  manifest.model.version = 1;
+  manifest.model.skeleton = motion::SbuSkeleton();
+  manifest.model.classes = {"kick", "push", "hug"};
+  manifest.model.frame_rate_hz = 15;
+  manifest.model.window_frames = 33;
+  manifest.model.accepts_follower_start = start;
+  manifest.generator.parts = motion::SbuParts();
+  manifest.generator.variant = variant;
+  manifest.generator.follower_start = start;
+  manifest.generator.slice_features = slice_features;
+  manifest.generator.encoder_hidden = 7;
+  manifest.generator.attention = 19;
+  manifest.generator.base_pose = base;
+  return manifest;
+}
+
+Manifest FlowManifest() {
+  Manifest manifest = PaperManifest(GeneratorVariant::kPaper, 0, true, false);
+  manifest.model.samples = true;
+  manifest.flow = checkpoint::FlowArchitecture{};
+  manifest.flow->width = 36;
+  manifest.flow->heads = 3;
+  manifest.flow->feed_forward = 50;
+  manifest.flow->reach = 9;  // less than a window
+  manifest.flow->steps = 3;
+  manifest.flow->guidance = 1.7;
+  return manifest;
+}
+
+TEST(ParityTest, EmbeddedCheckpointsAnswerAsInLibTorch) {
+  for (const Checkpoint& checkpoint : Embedded()) {
+    EXPECT_LT(FromTorch(checkpoint, Precision::kFloat32), 1e-5f)
+        << checkpoint.manifest.model.name << " " << checkpoint.manifest.model.version;
+  }
+}
+
+TEST(ParityTest, EveryVariantOfThePapersGeneratorAnswersAsInLibTorch) {
+  uint64_t seed = 1;
+  for (const GeneratorVariant variant :
+       {GeneratorVariant::kPaper, GeneratorVariant::kReleased, GeneratorVariant::kUnlabelled}) {
+    for (const int slice_features : {0, 5}) {
+      for (const bool start : {false, true}) {
+        for (const bool base : {false, true}) {
+          const Manifest manifest = PaperManifest(variant, slice_features, start, base);
+          EXPECT_LT(FromTorch(RandomCheckpoint(manifest, seed++), Precision::kFloat32), 1e-5f)
+              << static_cast<int>(variant) << slice_features << start << base;
+        }
+      }
+    }
+  }
+}
+
+TEST(ParityTest, ASamplingGeneratorOfOtherSizesAnswersAsInLibTorch) {
+  EXPECT_LT(FromTorch(RandomCheckpoint(FlowManifest(), 3), Precision::kFloat32), 1e-5f);
+}
+
+TEST(ParityTest, RoundedWeightsMoveNoJointByTwoMillimetres) {
+  if (!kernels::HasBf16()) GTEST_SKIP() << "this processor does not multiply bfloat16";
+  for (const Checkpoint& checkpoint : Embedded()) {
+    const float farthest = FromTorch(checkpoint, Precision::kBfloat16);
+    EXPECT_LT(farthest, 2e-3f) << checkpoint.manifest.model.name << " "
+                               << checkpoint.manifest.model.version;
+    EXPECT_GT(farthest, 1e-6f);  // it is another precision
+  }
+}
+
+TEST(ParityTest, AnAnswerIsTheSameToTheBitWhateverElseIsInTheBatch) {
+  for (const Checkpoint& checkpoint : Embedded()) {
+    const std::vector<NetworkInput> inputs = Inputs(checkpoint.manifest);
+    for (const Precision precision : {Precision::kFloat32, BestPrecision()}) {
+      const auto network = MakeCpuNetwork(checkpoint, precision);
+      const std::vector<motion::Poses> together = Answers(*network, inputs);
+      ASSERT_EQ(together.size(), inputs.size());
+      for (std::size_t i = 0; i < inputs.size(); ++i) {
+        EXPECT_EQ(Answers(*network, {&inputs[i], 1}).front(), together[i]) << i;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace duet::cpu_engine
