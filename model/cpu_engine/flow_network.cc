@@ -49,7 +49,7 @@ FlowNetwork::FlowNetwork(const checkpoint::Checkpoint& checkpoint, Precision pre
       noise_(manifest_.flow->noise, Weights(checkpoint).Values("noise.roots"), pose_,
              manifest_.model.window_frames) {
   const Weights weights(checkpoint);
-  const auto exact = [&](const char* name) {
+  const auto exact = [&](const std::string& name) {
     return weights.FindLayer(name).Pack(Precision::kFloat32);
   };
   frames_ = exact("frames");
@@ -65,7 +65,7 @@ FlowNetwork::FlowNetwork(const checkpoint::Checkpoint& checkpoint, Precision pre
     const auto packed = [&](const char* name) {
       return weights.FindLayer(absl::StrCat("block", i, ".", name)).Pack(precision);
     };
-    blocks_.push_back({packed("modulation"), packed("attention"), packed("attended"),
+    blocks_.push_back({exact(absl::StrCat("block", i, ".modulation")), exact(absl::StrCat("block", i, ".attention")), exact(absl::StrCat("block", i, ".attended")),
                        packed("expand"), packed("contract"),
                        weights.Values(absl::StrCat("block", i, ".distance"))});
   }

@@ -45,10 +45,18 @@ const std::map<std::string, v1::CleanUpPolicy> kCleanUpPolicies = {
     {"on", v1::CLEAN_UP_POLICY_ON},
     {"off", v1::CLEAN_UP_POLICY_OFF}};
 
-v1::CleanUpPolicy ParseCleanUpPolicy(const std::string& text) {
-  const auto named = kCleanUpPolicies.find(text);
-  if (named != kCleanUpPolicies.end()) return named->second;
-  throw CLI::ValidationError("--clean-up", "is " + text + ", wanted auto, on or off");
+// The names of --engine and --precision.
+const std::map<std::string, v1::Engine> kEngines = {{"cpu", v1::ENGINE_CPU},
+                                                    {"torch", v1::ENGINE_TORCH}};
+const std::map<std::string, v1::Precision> kPrecisions = {
+    {"auto", v1::PRECISION_AUTO}, {"f32", v1::PRECISION_F32}, {"bf16", v1::PRECISION_BF16}};
+
+template <typename Value>
+Value Named(const std::map<std::string, Value>& names, const char* flag, const std::string& text,
+            const char* wanted) {
+  const auto named = names.find(text);
+  if (named != names.end()) return named->second;
+  throw CLI::ValidationError(flag, "is " + text + ", wanted " + wanted);
 }
 
 // A flag's help with the default that holds without it.
@@ -93,7 +101,9 @@ void AddServingFlags(CLI::App& app, v1::ServerConfig& config) {
       Defaulting("gRPC server reflection", defaults.reflection ? "on" : "off"));
   app.add_option_function<std::string>(
          "--clean-up",
-         [&](const std::string& value) { config.set_clean_up(ParseCleanUpPolicy(value)); },
+         [&](const std::string& value) { 
+           config.set_clean_up(Named(kCleanUpPolicies, "--clean-up", value, "auto, on or off"));
+         },
          "whether followers are cleaned up where a request does not say; auto: those of models "
          "that sample (default auto)")
       ->option_text("auto|on|off");
@@ -101,13 +111,29 @@ void AddServingFlags(CLI::App& app, v1::ServerConfig& config) {
 
 void AddCapacityFlags(CLI::App& app, v1::ServerConfig& config) {
   const ServerOptions defaults;
+  app.add_option_function<std::string>(
+         "--engine",
+         [&](const std::string& value) {
+           config.set_engine(Named(kEngines, "--engine", value, "cpu or torch"));
+         },
+         "what computes the answers: cpu, this project's own kernels; torch, LibTorch by way of "
+         "its plug-in (default cpu)")
+      ->option_text("cpu|torch");
+  app.add_option_function<std::string>(
+         "--precision",
+         [&](const std::string& value) {
+           config.set_precision(Named(kPrecisions, "--precision", value, "auto, f32 or bf16"));
+         },
+         "how the cpu engine holds weights; auto: bf16 where the processor multiplies it (default "
+         "auto)")
+      ->option_text("auto|f32|bf16");
   app.add_option_function<uint32_t>(
          "--workers", [&](uint32_t value) { config.set_workers(value); },
          "windows evaluated at the same time (default: the container's cores)")
       ->option_text("N");
   app.add_option_function<uint32_t>(
          "--threads-per-worker", [&](uint32_t value) { config.set_threads_per_worker(value); },
-         Defaulting("threads of one evaluation", defaults.threads_per_worker))
+         Defaulting("threads of one evaluation by the torch engine", defaults.engine.threads))
       ->option_text("N");
   app.add_option_function<uint32_t>(
          "--max-calls", [&](uint32_t value) { config.set_max_calls(value); },

@@ -44,24 +44,60 @@ void ReadMetricsListen(const v1::ServerConfig& config, Reader& reader, ServerOpt
   options.metrics_listen = reader.Address("metrics_listen", config.metrics_listen());
 }
 
-// Without `workers` and `threads_per_worker`, one-thread workers on every core: evaluations of one
-// window gain less from a second thread than from a second window. With one of them given, the
-// other uses up the cores.
+void ReadEngine(const v1::ServerConfig& config, Reader& reader, EngineOptions& options) {
+  using Engine = EngineOptions::Engine;
+  using Precision = EngineOptions::Precision;
+  if (config.has_engine()) {
+    if (config.engine() != v1::ENGINE_CPU && config.engine() != v1::ENGINE_TORCH) {
+      reader.Fail(
+          absl::StrCat("engine: is ", config.engine(), ", wanted ENGINE_CPU or ENGINE_TORCH"));
+    }
+    options.engine = config.engine() == v1::ENGINE_TORCH ? Engine::kTorch : Engine::kCpu;
+  }
+  if (!config.has_precision()) return;
+  switch (config.precision()) {
+    case v1::PRECISION_AUTO:
+      break;
+    case v1::PRECISION_F32:
+      options.precision = Precision::kFloat32;
+      break;
+    case v1::PRECISION_BF16:
+      options.precision = Precision::kBfloat16;
+      break;
+    default:
+      reader.Fail(absl::StrCat("precision: is ", config.precision(),
+                               ", wanted PRECISION_AUTO, PRECISION_F32 or PRECISION_BF16"));
+  }
+  if (options.engine == Engine::kTorch && options.precision == Precision::kBfloat16) {
+    reader.Fail("precision: is PRECISION_BF16, wanted PRECISION_F32 with ENGINE_TORCH");
+  }
+}
+
+// With nothing else said, one-thread workers on every core: evaluations of one window gain less
+// from a second thread than from a second window. LibTorch can use more: then, with one of the two
+// given, the other uses up the cores.
 void ReadThreads(const v1::ServerConfig& config, int cores, Reader& reader,
                  ServerOptions& options) {
   constexpr uint32_t kMax = 1024;
+  const bool one_thread = options.engine.engine == EngineOptions::Engine::kCpu;
+  int& threads = options.engine.threads;
   if (config.has_workers()) {
     options.workers =
         static_cast<int>(reader.InRange("workers", config.workers(), uint32_t{1}, kMax));
   }
   if (config.has_threads_per_worker()) {
-    options.threads_per_worker = static_cast<int>(
+    threads = static_cast<int>(
         reader.InRange("threads_per_worker", config.threads_per_worker(), uint32_t{1}, kMax));
+    if (one_thread && threads > 1) {
+      reader.Fail(absl::StrCat("threads_per_worker: is ", threads,
+                               ", wanted 1 with ENGINE_CPU, whose evaluations have one thread "
+                               "each; more workers use more cores"));
+    }
   }
   if (!reader.status().ok()) return;
-  if (!config.has_workers()) options.workers = std::max(1, cores / options.threads_per_worker);
-  if (!config.has_threads_per_worker()) {
-    options.threads_per_worker = std::max(1, cores / options.workers);
+  if (!config.has_workers()) options.workers = std::max(1, cores / threads);
+  if (!config.has_threads_per_worker() && !one_thread) {
+    threads = std::max(1, cores / options.workers);
   }
 }
 
@@ -139,6 +175,7 @@ absl::StatusOr<ServerOptions> ToOptions(const v1::ServerConfig& config, int core
   if (config.has_reflection()) options.reflection = config.reflection();
   ReadCleanUp(config, reader, options);
   ReadLabels(config, reader, options);
+  ReadEngine(config, reader, options.engine);
   ReadThreads(config, cores, reader, options);
   ReadLimits(config, reader, options);
   if (!reader.status().ok()) return reader.status();

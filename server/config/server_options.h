@@ -25,6 +25,15 @@ struct VersionLabelOption {
   uint32_t version = 0;
 };
 
+// What computes the answers, and how. server_config.proto says more.
+struct EngineOptions {
+  enum class Engine { kCpu, kTorch };
+  enum class Precision { kAuto, kFloat32, kBfloat16 };
+  Engine engine = Engine::kCpu;
+  Precision precision = Precision::kAuto;  // of kCpu
+  int threads = 1;                         // of one evaluation
+};
+
 // Unless the operator says otherwise, memory for as many of the largest requests at a time.
 inline constexpr std::size_t kTransportPerRequest = 16;
 
@@ -38,8 +47,8 @@ struct ServerOptions {
   std::vector<VersionLabelOption> version_labels;
   bool reflection = true;
   std::optional<bool> clean_up;  // absent: followers of models that sample are cleaned up
-  int workers = 1;               // ToOptions: as many as the cores allow
-  int threads_per_worker = 1;
+  EngineOptions engine;
+  int workers = 1;  // ToOptions: as many as the cores allow
   int max_calls = 128;
   int max_queued_windows = 64;
   std::size_t max_request_bytes = std::size_t{32} << 20;

@@ -114,7 +114,7 @@ absl::Status DuetServer::Serve() {
   log_.Info("serving", {{"port", port()},
                         {"metrics_port", metrics_port()},
                         {"workers", options_.workers},
-                        {"threads_per_worker", options_.threads_per_worker}});
+                        {"threads_per_worker", options_.engine.threads}});
   return absl::OkStatus();
 }
 

@@ -68,6 +68,7 @@ absl::Status Serve(const config::ServerOptions& options, const ModelSource& sour
                    StopSignal& stop, metrics::LogSink& sink) {
   metrics::JsonLog log(sink);
   const LibraryLogs library_logs(log);
+  log.Info("engine_opened", {{"engine", source.engine}});
   absl::StatusOr<std::unique_ptr<DuetServer>> server = DuetServer::Start(options, sink);
   absl::Status status = server.status();
   if (status.ok()) status = LoadModels(options, source, stop, **server);
@@ -84,7 +85,7 @@ absl::Status Serve(const config::ServerOptions& options, const ModelSource& sour
 
 }  // namespace
 
-int RunServer(int argc, const char* const* argv, const ModelSource& source, StopSignal& stop,
+int RunServer(int argc, const char* const* argv, const EngineOpener& open_engine, StopSignal& stop,
               std::shared_ptr<metrics::LogSink> sink) {
   const absl::StatusOr<config::CommandLine> command_line = config::ParseCommandLine(argc, argv);
   if (command_line.ok() && command_line->print.has_value()) {
@@ -98,13 +99,17 @@ int RunServer(int argc, const char* const* argv, const ModelSource& source, Stop
     std::cerr << "duet-server: " << options.status().message() << "\n";
     return kExitUsage;
   }
+  const absl::StatusOr<ModelSource> source = open_engine(options->engine);
+  if (!source.ok()) {
+    std::cerr << "duet-server: " << source.status().message() << "\n";
+    return kExitUsage;
+  }
   RaiseDescriptorLimit();
-  source.set_threads(options->threads_per_worker);
   metrics::QueuedLogSink::Options log;
   log.drop_notice = [](std::uint64_t dropped) { return metrics::DroppedLinesNotice(dropped); };
   // Outlives everything that logs, and writes its last lines before the process ends.
   metrics::QueuedLogSink queued_sink(std::move(sink), std::move(log));
-  return Serve(*options, source, stop, queued_sink).ok() ? kExitStopped : kExitFailed;
+  return Serve(*options, *source, stop, queued_sink).ok() ? kExitStopped : kExitFailed;
 }
 
 }  // namespace duet::server::lifecycle

@@ -3,24 +3,29 @@
 
 #include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "server/config/server_options.h"
 #include "server/lifecycle/stop_signal.h"
 #include "server/metrics/log_sink.h"
 #include "server/registry/model_repository.h"
 
 namespace duet::server::lifecycle {
 
-// Where models come from. Only the main program knows which engine that is.
+// Where models come from.
 struct ModelSource {
+  std::string engine;  // what computes their answers, for the log: "cpu, bfloat16"
   registry::ModelLoader load_folder;
   // The default model first.
   std::function<absl::StatusOr<std::vector<std::shared_ptr<const engine::Synthesizer>>>()>
       load_embedded;
-  // Called once before anything is loaded.
-  std::function<void(int threads)> set_threads;
 };
+
+// Opens the engine that the options ask for. Only the main program knows which ones there are.
+// Fails when it is not to be had here, naming the option, what came and what was wanted.
+using EngineOpener = std::function<absl::StatusOr<ModelSource>(const config::EngineOptions&)>;
 
 // Exit codes of duet-server.
 inline constexpr int kExitStopped = 0;  // drained after SIGTERM or SIGINT
@@ -30,7 +35,7 @@ inline constexpr int kExitUsage = 2;    // a flag or the configuration file is w
 // Everything that duet-server does, from the command line to the exit code: listen, load, serve,
 // drain. `stop` was constructed before any thread. A `sink` that is slow or stuck holds up nothing
 // but the log.
-int RunServer(int argc, const char* const* argv, const ModelSource& source, StopSignal& stop,
+int RunServer(int argc, const char* const* argv, const EngineOpener& open_engine, StopSignal& stop,
               std::shared_ptr<metrics::LogSink> sink);
 
 }  // namespace duet::server::lifecycle

@@ -1,4 +1,4 @@
-// duet-server: the only file of the server that knows which engine computes the motion.
+// duet-server: the only file of the server that knows which engines there are.
 
 #include <cstdio>
 #include <filesystem>
@@ -8,34 +8,77 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "model/torch_engine/torch_synthesizer.h"
+#include "model/cpu_engine/cpu_synthesizer.h"
+#include "model/cpu_engine/kernels/gemm_bf16.h"
+#include "model/torch_plugin/torch_plugin.h"
 #include "server/lifecycle/run_server.h"
 
 namespace {
 
+using duet::cpu_engine::CpuEngineOptions;
+using duet::cpu_engine::kernels::Precision;
 using duet::engine::Synthesizer;
+using duet::server::config::EngineOptions;
+using duet::server::lifecycle::ModelSource;
 
-absl::StatusOr<std::shared_ptr<const Synthesizer>> LoadFolder(const std::filesystem::path& folder) {
-  absl::StatusOr<std::unique_ptr<Synthesizer>> model =
-      duet::torch_engine::LoadTorchSynthesizer(folder);
+using Loaded = absl::StatusOr<std::unique_ptr<Synthesizer>>;
+using AllLoaded = absl::StatusOr<std::vector<std::unique_ptr<Synthesizer>>>;
+
+absl::StatusOr<std::shared_ptr<const Synthesizer>> Shared(Loaded model) {
   if (!model.ok()) return model.status();
   return *std::move(model);
 }
 
-absl::StatusOr<std::vector<std::shared_ptr<const Synthesizer>>> LoadEmbedded() {
-  absl::StatusOr<std::vector<std::unique_ptr<Synthesizer>>> models =
-      duet::torch_engine::LoadEmbeddedSynthesizers();
+absl::StatusOr<std::vector<std::shared_ptr<const Synthesizer>>> Shared(AllLoaded models) {
   if (!models.ok()) return models.status();
   return std::vector<std::shared_ptr<const Synthesizer>>(std::make_move_iterator(models->begin()),
                                                          std::make_move_iterator(models->end()));
+}
+
+absl::StatusOr<ModelSource> OpenCpuEngine(const EngineOptions& options) {
+  CpuEngineOptions engine;
+  if (options.precision == EngineOptions::Precision::kFloat32) {
+    engine.precision = Precision::kFloat32;
+  } else if (options.precision == EngineOptions::Precision::kBfloat16) {
+    if (!duet::cpu_engine::kernels::HasBf16()) {
+      return absl::InvalidArgumentError(
+          "precision: is PRECISION_BF16, wanted PRECISION_F32: this processor does not multiply "
+          "bfloat16 (AVX-512 BF16)");
+    }
+    engine.precision = Precision::kBfloat16;
+  }
+  return ModelSource{
+      engine.precision == Precision::kBfloat16 ? "cpu, bf16" : "cpu, f32",
+      [engine](const std::filesystem::path& folder) {
+        return Shared(duet::cpu_engine::LoadCpuSynthesizer(folder, engine));
+      },
+      [engine] { return Shared(duet::cpu_engine::LoadEmbeddedSynthesizers(engine)); }};
+}
+
+absl::StatusOr<ModelSource> OpenTorchEngine(const EngineOptions& options) {
+  const absl::StatusOr<duet::torch_plugin::TorchEngine> torch = duet::torch_plugin::Open();
+  if (!torch.ok()) {
+    return absl::InvalidArgumentError(
+        std::string("engine: is ENGINE_TORCH, which cannot be opened here: ") +
+        std::string(torch.status().message()));
+  }
+  torch->set_threads(options.threads);
+  return ModelSource{"torch",
+                     [load = torch->load_folder](const std::filesystem::path& folder) {
+                       return Shared(load(folder));
+                     },
+                     [load = torch->load_embedded] { return Shared(load()); }};
+}
+
+absl::StatusOr<ModelSource> OpenEngine(const EngineOptions& options) {
+  return options.engine == EngineOptions::Engine::kTorch ? OpenTorchEngine(options)
+                                                         : OpenCpuEngine(options);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   duet::server::lifecycle::StopSignal stop;
-  const duet::server::lifecycle::ModelSource source{LoadFolder, LoadEmbedded,
-                                                    duet::torch_engine::SetTorchThreads};
   return duet::server::lifecycle::RunServer(
-      argc, argv, source, stop, std::make_shared<duet::server::metrics::StreamLogSink>(stderr));
+      argc, argv, OpenEngine, stop, std::make_shared<duet::server::metrics::StreamLogSink>(stderr));
 }

@@ -28,7 +28,9 @@ TEST(ServerOptionsTest, DefaultsServeTheEmbeddedCheckpointOnTheWellKnownPorts) {
   EXPECT_TRUE(options->model_repository.empty());
   EXPECT_TRUE(options->reflection);
   EXPECT_EQ(options->workers, 4);
-  EXPECT_EQ(options->threads_per_worker, 1);
+  EXPECT_EQ(options->engine.threads, 1);
+  EXPECT_EQ(options->engine.engine, EngineOptions::Engine::kCpu);
+  EXPECT_EQ(options->engine.precision, EngineOptions::Precision::kAuto);
   EXPECT_EQ(options->max_request_bytes, 32u << 20);
   EXPECT_EQ(options->max_transport_bytes, 512u << 20);
   EXPECT_EQ(options->drain_seconds, 0);
@@ -46,6 +48,8 @@ TEST(ServerOptionsTest, TakesOverEveryField) {
   label.set_label("stable");
   label.set_version(3);
   config.set_reflection(false);
+  config.set_engine(v1::ENGINE_TORCH);
+  config.set_precision(v1::PRECISION_F32);
   config.set_workers(2);
   config.set_threads_per_worker(3);
   config.set_max_calls(5);
@@ -68,7 +72,9 @@ TEST(ServerOptionsTest, TakesOverEveryField) {
   EXPECT_EQ(options->version_labels[0].version, 3u);
   EXPECT_FALSE(options->reflection);
   EXPECT_EQ(options->workers, 2);
-  EXPECT_EQ(options->threads_per_worker, 3);
+  EXPECT_EQ(options->engine.threads, 3);
+  EXPECT_EQ(options->engine.engine, EngineOptions::Engine::kTorch);
+  EXPECT_EQ(options->engine.precision, EngineOptions::Precision::kFloat32);
   EXPECT_EQ(options->max_calls, 5);
   EXPECT_EQ(options->max_queued_windows, 6);
   EXPECT_EQ(options->max_request_bytes, 4096u);
@@ -96,13 +102,22 @@ TEST(ServerOptionsTest, AnEmptyMetricsAddressTurnsMetricsOffAsWell) {
 
 TEST(ServerOptionsTest, WorkersTimesThreadsUseTheCoresAndNoMore) {
   v1::ServerConfig config;
+  config.set_engine(v1::ENGINE_TORCH);
   config.set_threads_per_worker(2);
   EXPECT_EQ(ToOptions(config, 7)->workers, 3);
   EXPECT_EQ(ToOptions(config, 1)->workers, 1);
-  config.Clear();
+  config.clear_threads_per_worker();
   config.set_workers(2);
-  EXPECT_EQ(ToOptions(config, 7)->threads_per_worker, 3);
-  EXPECT_EQ(ToOptions(config, 1)->threads_per_worker, 1);
+  EXPECT_EQ(ToOptions(config, 7)->engine.threads, 3);
+  EXPECT_EQ(ToOptions(config, 1)->engine.threads, 1);
+}
+
+TEST(ServerOptionsTest, EvaluationsOfTheCpuEngineHaveOneThreadEach) {
+  v1::ServerConfig config;
+  config.set_workers(2);
+  EXPECT_EQ(ToOptions(config, 7)->engine.threads, 1);
+  config.set_threads_per_worker(1);
+  EXPECT_THAT(ToOptions(config, 7), IsOk());
 }
 
 struct BadConfig {
@@ -128,6 +143,17 @@ INSTANTIATE_TEST_SUITE_P(
         BadConfig{"workers: is 0, wanted 1 to 1024", [](v1::ServerConfig& c) { c.set_workers(0); }},
         BadConfig{"threads_per_worker: is 5000, wanted 1 to 1024",
                   [](v1::ServerConfig& c) { c.set_threads_per_worker(5000); }},
+        BadConfig{"threads_per_worker: is 3, wanted 1 with ENGINE_CPU",
+                  [](v1::ServerConfig& c) { c.set_threads_per_worker(3); }},
+        BadConfig{"engine: is 0, wanted ENGINE_CPU or ENGINE_TORCH",
+                  [](v1::ServerConfig& c) { c.set_engine(v1::ENGINE_UNSPECIFIED); }},
+        BadConfig{"precision: is 9, wanted PRECISION_AUTO, PRECISION_F32 or PRECISION_BF16",
+                  [](v1::ServerConfig& c) { c.set_precision(static_cast<v1::Precision>(9)); }},
+        BadConfig{"precision: is PRECISION_BF16, wanted PRECISION_F32 with ENGINE_TORCH",
+                  [](v1::ServerConfig& c) {
+                    c.set_engine(v1::ENGINE_TORCH);
+                    c.set_precision(v1::PRECISION_BF16);
+                  }},
         BadConfig{"max_calls: is 0, wanted 1", [](v1::ServerConfig& c) { c.set_max_calls(0); }},
         BadConfig{"max_queued_windows: is 0, wanted 1",
                   [](v1::ServerConfig& c) { c.set_max_queued_windows(0); }},

@@ -1,0 +1,16 @@
+#ifndef DUET_MODEL_TORCH_PLUGIN_BUILD_ID_H_
+#define DUET_MODEL_TORCH_PLUGIN_BUILD_ID_H_
+
+namespace duet::torch_plugin {
+
+// Compilers and settings that lay classes out differently give different ids; so do versions.
+inline constexpr char kBuildId[] = DUET_VERSION ", " __VERSION__
+#ifdef NDEBUG
+                                                ", release";
+#else
+                                                ", debug";
+#endif
+
+}  // namespace duet::torch_plugin
+
+#endif  // DUET_MODEL_TORCH_PLUGIN_BUILD_ID_H_

@@ -1,0 +1,36 @@
+#ifndef DUET_MODEL_TORCH_PLUGIN_TORCH_PLUGIN_H_
+#define DUET_MODEL_TORCH_PLUGIN_TORCH_PLUGIN_H_
+
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "model/engine/synthesizer.h"
+
+namespace duet::torch_plugin {
+
+// The functions of model/torch_engine/torch_synthesizer.h, from a library that is loaded when it is
+// asked for: LibTorch takes 0.4 s and 160 MB, and most servers do without it.
+struct TorchEngine {
+  void (*set_threads)(int threads);
+  absl::StatusOr<std::unique_ptr<engine::Synthesizer>> (*load_folder)(
+      const std::filesystem::path& folder);
+  absl::StatusOr<std::vector<std::unique_ptr<engine::Synthesizer>>> (*load_embedded)();
+};
+
+// Loads libduet_torch_engine.so, for good: from $DUET_TORCH_ENGINE, else from ../lib/duet beside the
+// program. NOT_FOUND says what the loader said, FAILED_PRECONDITION that it is another build's.
+absl::StatusOr<TorchEngine> Open();
+
+// What the library exports by the name of kSymbol. `build` tells whether both sides are of one
+// build: classes pass between them.
+inline constexpr char kSymbol[] = "duet_torch_engine";
+struct Exported {
+  const char* build;
+  TorchEngine engine;
+};
+
+}  // namespace duet::torch_plugin
+
+#endif  // DUET_MODEL_TORCH_PLUGIN_TORCH_PLUGIN_H_

@@ -1,0 +1,102 @@
+// Rounded weights on real leaders: what they change of the answers, and of how far these are from
+// the captured followers.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+#include "model/cpu_engine/cpu_synthesizer.h"
+#include "model/cpu_engine/kernels/gemm_bf16.h"
+#include "model/dataset/dataset.h"
+#include "tests/support/data_folder.h"
+#include "tests/support/status_matchers.h"
+
+namespace duet::cpu_engine {
+namespace {
+
+using engine::SynthesisWindow;
+using engine::Synthesizer;
+using kernels::Precision;
+using test::IsOk;
+
+// The beginning of a capture, as much as the network takes at once.
+SynthesisWindow WindowOf(const dataset::Sequence& sequence, const engine::ModelDescription& model,
+                         bool tell_pose) {
+  const motion::Poses &leader = sequence.pair.leader.poses,
+                      &follower = sequence.pair.follower.poses;
+  const int frames = std::min(leader.frame_count(), model.window_frames);
+  SynthesisWindow window;
+  window.leader = motion::Poses(
+      leader.joint_count(), {leader.frames(0, frames).begin(), leader.frames(0, frames).end()});
+  for (int t = 0; t < frames; ++t) {
+    for (int c = 0; c < model.class_count(); ++c) {
+      window.labels.push_back(c == sequence.interaction_class ? 1.0f : 0.0f);
+    }
+  }
+  window.partner_direction = sequence.partner_direction;
+  if (tell_pose) {
+    window.start = engine::FollowerStart{
+        follower.at(0, model.skeleton.root), {follower[0].begin(), follower[0].end()}};
+  }
+  return window;
+}
+
+// Of all answers of a model.
+struct Change {
+  float farthest = 0;                  // that a joint moved, metres
+  double error = 0, exact_error = 0;  // mean distance from the captured follower, metres
+
+  double RelativeError() const { return std::abs(error / exact_error - 1); }
+};
+
+Change ChangeByRounding(const Synthesizer& exact, const Synthesizer& rounded,
+                        const dataset::Dataset& data) {
+  Change change;
+  for (const dataset::Sequence& sequence : data.sequences) {
+    for (const bool tell_pose : {false, true}) {
+      const SynthesisWindow window = WindowOf(sequence, exact.description(), tell_pose);
+      const SynthesisWindow* const one = &window;
+      const auto a = exact.Synthesize({&one, 1}).front(), b = rounded.Synthesize({&one, 1}).front();
+      EXPECT_THAT(a, IsOk());
+      EXPECT_THAT(b, IsOk());
+      if (!a.ok() || !b.ok()) continue;
+      for (std::size_t i = 0; i < a->all().size(); ++i) {
+        const motion::Vec3& captured = sequence.pair.follower.poses.all()[i];
+        change.farthest = std::max(change.farthest, Distance(a->all()[i], b->all()[i]));
+        change.exact_error += Distance(a->all()[i], captured);
+        change.error += Distance(b->all()[i], captured);
+      }
+    }
+  }
+  return change;
+}
+
+void ExpectLittleChange(const char* folder, const std::string& name, bool clean_up) {
+  const auto path = test::FindData(folder);
+  if (!path) GTEST_SKIP() << test::kNoData;
+  if (!kernels::HasBf16()) GTEST_SKIP() << "this processor does not multiply bfloat16";
+  const auto data = dataset::ReadDataset(*path);
+  ASSERT_THAT(data, IsOk());
+  engine::PipelineOptions pipeline;
+  pipeline.clean_up = clean_up;
+  const auto exact = LoadEmbeddedSynthesizers({pipeline, Precision::kFloat32});
+  const auto rounded = LoadEmbeddedSynthesizers({pipeline, Precision::kBfloat16});
+  ASSERT_THAT(exact, IsOk());
+  ASSERT_THAT(rounded, IsOk());
+  for (std::size_t i = 0; i < exact->size(); ++i) {
+    const engine::ModelDescription& model = (*exact)[i]->description();
+    if (model.name != name) continue;
+    const Change change = ChangeByRounding(*(*exact)[i], *(*rounded)[i], *data);
+    EXPECT_LT(change.farthest, 2e-3f) << model.name << " " << model.version;
+    EXPECT_LT(change.RelativeError(), 5e-3) << model.name << " " << model.version;
+    std::printf("%s %d: %.2f mm %.4f %%\n", model.name.c_str(), model.version, change.farthest * 1000, change.RelativeError() * 100);
+  }
+}
+
+TEST(CapturesTest, RoundingHardlyMovesTheAnswersToSbu) { ExpectLittleChange("sbu", "sbu", false); }
+TEST(CapturesTest, RoundingHardlyMovesTheAnswersToK3hi) {
+  ExpectLittleChange("k3hi", "k3hi", false);
+}
+TEST(CapturesTest, C1) { ExpectLittleChange("sbu", "sbu", true); }
+
+}  // namespace
+}  // namespace duet::cpu_engine
