@@ -18,17 +18,33 @@ using Vector = hn::Vec<Tag>;
 
 inline int Lanes() { return static_cast<int>(hn::Lanes(Tag())); }
 
+// Whether a masked load or store touches nothing but what the mask names: before AVX2 Highway's
+// reads a whole vector, and wants it aligned.
+constexpr bool kMasksMemory = HWY_TARGET <= HWY_AVX2;
+
 // The first `valid` values, zeros after them; all of a vector when there are as many.
 HWY_INLINE Vector LoadFirst(int valid, const float* from) {
   const Tag d;
   if (valid >= Lanes()) return hn::LoadU(d, from);
-  return hn::MaskedLoad(hn::FirstN(d, static_cast<size_t>(valid)), d, from);
+  if constexpr (kMasksMemory) {
+    return hn::MaskedLoad(hn::FirstN(d, static_cast<size_t>(valid)), d, from);
+  } else {
+    HWY_ALIGN float whole[hn::MaxLanes(d)] = {};
+    for (int i = 0; i < valid; ++i) whole[i] = from[i];
+    return hn::Load(d, whole);
+  }
 }
 
 HWY_INLINE void StoreFirst(int valid, Vector v, float* to) {
   const Tag d;
   if (valid >= Lanes()) return hn::StoreU(v, d, to);
-  hn::BlendedStore(v, hn::FirstN(d, static_cast<size_t>(valid)), d, to);
+  if constexpr (kMasksMemory) {
+    hn::BlendedStore(v, hn::FirstN(d, static_cast<size_t>(valid)), d, to);
+  } else {
+    HWY_ALIGN float whole[hn::MaxLanes(d)];
+    hn::Store(v, d, whole);
+    for (int i = 0; i < valid; ++i) to[i] = whole[i];
+  }
 }
 
 // 1 / x, to the last digit or two. x is finite and neither 0 nor very small.

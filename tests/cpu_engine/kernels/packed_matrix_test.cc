@@ -1,0 +1,97 @@
+#include "model/cpu_engine/kernels/packed_matrix.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "model/cpu_engine/kernels/gemm_bf16.h"
+#include "tests/cpu_engine/kernels/every_target.h"
+
+namespace duet::cpu_engine::kernels {
+namespace {
+
+class PackedMatrixTest : public EveryTarget {};
+DUET_FOR_EVERY_TARGET(PackedMatrixTest);
+
+struct Case {
+  int rows, inputs, outputs;
+};
+// Every number of rows that a tile may have and more, odd numbers of inputs, more than are rounded
+// at once, outputs on either side of whole panels and vectors.
+std::vector<Case> Cases() {
+  std::vector<Case> cases;
+  for (int rows = 1; rows <= 26; ++rows) cases.push_back({rows, 7, 45});
+  for (const int outputs : {1, 15, 16, 17, 31, 32, 33, 64, 129, 200}) {
+    cases.push_back({3, 5, outputs});
+    cases.push_back({13, 40, outputs});
+  }
+  cases.push_back({5, 1, 33});
+  cases.push_back({5, 1237, 40});
+  cases.push_back({100, 64, 160});
+  return cases;
+}
+
+float Rounded(float value) {
+  const uint32_t bits = uint32_t{ToBf16(value)} << 16;
+  float rounded;
+  std::memcpy(&rounded, &bits, sizeof(rounded));
+  return rounded;
+}
+
+TEST_P(PackedMatrixTest, MultipliesAsTheSumsSay) {
+  for (const Precision precision : {Precision::kFloat32, Precision::kBfloat16}) {
+    const bool rounds = precision == Precision::kBfloat16;
+    if (rounds && !HasBf16()) continue;
+    for (const Case& c : Cases()) {
+      const std::vector<float> weights = Values(c.outputs * c.inputs), bias = Values(c.outputs);
+      // Rows lie further apart than they are long.
+      const int x_stride = c.inputs + 3, y_stride = c.outputs + 2;
+      const std::vector<float> x = Values(c.rows * x_stride);
+      std::vector<float> y(static_cast<std::size_t>(c.rows * y_stride), -99);
+      const PackedMatrix matrix(weights, bias, c.outputs, c.inputs, precision);
+      matrix.Multiply(c.rows, x.data(), x_stride, y.data(), y_stride);
+      const auto value = [&](float v) { return rounds ? Rounded(v) : v; };
+      for (int r = 0; r < c.rows; ++r) {
+        for (int n = 0; n < c.outputs; ++n) {
+          double sum = bias[static_cast<std::size_t>(n)];
+          for (int k = 0; k < c.inputs; ++k) {
+            sum += double{value(x[static_cast<std::size_t>(r * x_stride + k)])} *
+                   value(weights[static_cast<std::size_t>(n * c.inputs + k)]);
+          }
+          ASSERT_NEAR(y[static_cast<std::size_t>(r * y_stride + n)], sum, 2e-6 * c.inputs + 1e-6)
+              << c.rows << " rows, " << c.inputs << " -> " << c.outputs << " at " << r << ", " << n;
+        }
+        ASSERT_EQ(y[static_cast<std::size_t>(r * y_stride + c.outputs)], -99) << "wrote past a row";
+      }
+    }
+  }
+}
+
+TEST_P(PackedMatrixTest, ARowDoesNotDependOnTheOthers) {
+  constexpr int kRows = 25, kInputs = 601, kOutputs = 77;
+  for (const Precision precision : {Precision::kFloat32, Precision::kBfloat16}) {
+    if (precision == Precision::kBfloat16 && !HasBf16()) continue;
+    const PackedMatrix matrix(Values(kOutputs * kInputs), {}, kOutputs, kInputs, precision);
+    const std::vector<float> x = Values(kRows * kInputs);
+    std::vector<float> together(kRows * kOutputs), alone(kOutputs);
+    matrix.Multiply(kRows, x.data(), together.data());
+    for (int r = 0; r < kRows; ++r) {
+      matrix.Multiply(1, x.data() + r * kInputs, alone.data());
+      const std::vector<float> row(together.begin() + r * kOutputs,
+                                   together.begin() + (r + 1) * kOutputs);
+      EXPECT_EQ(alone, row) << r;
+    }
+  }
+}
+
+TEST(ToBf16Test, RoundsToTheNearestAndTiesToEven) {
+  EXPECT_EQ(ToBf16(1.0f), 0x3f80);
+  EXPECT_EQ(ToBf16(-2.0f), 0xc000);
+  EXPECT_EQ(ToBf16(1.0f + 0x1p-8f), 0x3f80);             // half way, down to even
+  EXPECT_EQ(ToBf16(1.0f + 3 * 0x1p-8f), 0x3f82);         // half way, up to even
+  EXPECT_EQ(ToBf16(1.0f + 0x1p-8f + 0x1p-20f), 0x3f81);  // just above half way
+}
+
+}  // namespace
+}  // namespace duet::cpu_engine::kernels

@@ -1,0 +1,7 @@
+// A library that says it is of another build.
+#include "model/torch_plugin/torch_plugin.h"
+
+extern "C" {
+extern const duet::torch_plugin::Exported duet_torch_engine;
+const duet::torch_plugin::Exported duet_torch_engine = {"another", {}};
+}
