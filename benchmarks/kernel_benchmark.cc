@@ -56,19 +56,48 @@ BENCHMARK_CAPTURE(Product, f32, Precision::kFloat32)->Apply(Sizes);
 BENCHMARK_CAPTURE(Product, bf16, Precision::kBfloat16)->Apply(Sizes);
 
 // One decoder state over a window of 45 frames.
-void BM_AdditiveAttention(benchmark::State& state) {
-  constexpr int kFrames = 45, kAttention = 128, kWidth = 960;
-  const std::vector<float> encoded = Values(kFrames * kAttention), values = Values(kFrames * kWidth),
-                           query = Values(kAttention), score = Values(kAttention);
-  std::vector<float> weights(kFrames), sums(kWidth);
+constexpr int kFrames = 45, kAttention = 128, kGates = 960;
+
+void BM_WeighFrames(benchmark::State& state) {
+  const std::vector<float> encoded = Values(kFrames * kAttention), query = Values(kAttention),
+                           score = Values(kAttention);
+  std::vector<float> weights(kFrames);
   for (auto _ : state) {
-    Attend({kFrames, kAttention, kWidth, encoded.data(), values.data(), query.data(), score.data(),
-            weights.data(), sums.data()});
+    WeighFrames({kFrames, kAttention, encoded.data(), query.data(), score.data(), weights.data()});
     benchmark::ClobberMemory();
   }
   PerSecond(state, "tanh/s", kFrames * kAttention);
 }
-BENCHMARK(BM_AdditiveAttention);
+BENCHMARK(BM_WeighFrames);
+
+void BM_AddWeighted(benchmark::State& state) {
+  const std::vector<float> values = Values(kFrames * kGates), weights = Values(kFrames);
+  std::vector<float> sums(kGates);
+  for (auto _ : state) {
+    AddWeighted({values.data(), kGates, kFrames, kGates}, weights.data(), sums.data());
+    benchmark::ClobberMemory();
+  }
+  PerSecond(state, "FLOP/s", 2.0 * kFrames * kGates);
+}
+BENCHMARK(BM_AddWeighted);
+
+void BM_AddWeightedBf16(benchmark::State& state) {
+  if (!HasBf16()) {
+    state.SkipWithError("this processor does not multiply bfloat16");
+    return;
+  }
+  const std::vector<float> values = Values(kFrames * kGates), weights = Values(kFrames);
+  std::vector<float> sums(kGates);
+  std::vector<uint16_t> panels(
+      static_cast<std::size_t>(PanelCount(kGates) * Bf16Pairs(kFrames) * kPanel * 2));
+  PackRowsBf16({values.data(), kGates, kFrames, kGates}, panels.data());
+  for (auto _ : state) {
+    AddGemmBf16({weights.data(), kFrames, 1, kFrames}, panels.data(), {sums.data(), kGates, kGates});
+    benchmark::ClobberMemory();
+  }
+  PerSecond(state, "FLOP/s", 2.0 * kFrames * kGates);
+}
+BENCHMARK(BM_AddWeightedBf16);
 
 void BM_LstmCells(benchmark::State& state) {
   constexpr int kRows = 16, kHidden = 240;
@@ -86,7 +115,7 @@ void BM_LstmCells(benchmark::State& state) {
 BENCHMARK(BM_LstmCells);
 
 void BM_SelfAttention(benchmark::State& state) {
-  constexpr int kFrames = 45, kSize = 40, kWidth = 160;
+  constexpr int kSize = 40, kWidth = 160;
   const std::vector<float> all = Values(kFrames * 3 * kWidth), distance = Values(2 * kFrames - 1);
   std::vector<float> out(kFrames * kWidth);
   std::vector<float> scratch(static_cast<std::size_t>(SelfAttentionScratch(kFrames, kSize)));

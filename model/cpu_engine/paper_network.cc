@@ -6,6 +6,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "model/cpu_engine/kernels/additive_attention.h"
+#include "model/cpu_engine/kernels/gemm_bf16.h"
 #include "model/cpu_engine/kernels/lstm_cell.h"
 
 namespace duet::cpu_engine {
@@ -15,6 +16,10 @@ using checkpoint::GeneratorVariant;
 using kernels::Precision;
 
 constexpr const char* kDirections[] = {"forward", "backward"};
+
+// Windows that are decoded together: as many as make a full tile of a product. More would push
+// their values out of the second-level cache, where every step reads them again.
+constexpr int kDecodedTogether = 4;
 
 // Columns of a row of the input that a slice reads.
 std::vector<int> ColumnsOf(const checkpoint::Manifest& manifest, int slice) {
@@ -128,7 +133,11 @@ void PaperNetwork::Run(absl::Span<const engine::NetworkInput> inputs, Scratch::U
     std::fill_n(work.cell[d], windows * state_, 0.0f);
   }
   Encode(work, scratch);
-  for (int d = 0; d < 2; ++d) Decode(work, d, scratch);
+  const DecoderWork decoder = PrepareDecoder(work.batch, scratch);
+  for (int first = 0; first < work.batch.count; first += kDecodedTogether) {
+    const WindowBatch some = work.batch.Some(first, kDecodedTogether);
+    for (int d = 0; d < 2; ++d) Decode(work, some, d, std::ptrdiff_t{first} * state_, decoder);
+  }
   float* const answer = scratch->Take<float>(rows * 3 * joints_);
   output_.Multiply(work.batch.rows, work.states, answer);
   if (has_base_) AddBase(work, answer);
@@ -201,32 +210,74 @@ void PaperNetwork::EncodeSlice(const Work& work, int slice, int direction, const
   }
 }
 
-// Attention, then the cells, frame by frame in the direction's order.
-void PaperNetwork::Decode(const Work& work, int direction, Scratch::Use* scratch) const {
-  const WindowBatch& batch = work.batch;
-  const Direction& decoder = directions_[direction];
+PaperNetwork::DecoderWork PaperNetwork::PrepareDecoder(const WindowBatch& batch,
+                                                       Scratch::Use* scratch) const {
+  const std::ptrdiff_t windows = std::min(batch.count, kDecodedTogether);
+  const std::ptrdiff_t rows = windows * batch.length[0], width = 4 * state_;
+  DecoderWork work{};
+  work.encoded = scratch->Take<float>(rows * attention_);
+  work.values = scratch->Take<float>(rows * width);
+  if (precision_ == Precision::kBfloat16) {
+    work.packed_window = std::ptrdiff_t{kernels::Bf16Pairs(batch.length[0])} * 2 *
+                         kernels::kPanel * kernels::PanelCount(4 * state_);
+    work.packed = scratch->Take<uint16_t>(windows * work.packed_window);
+  }
+  work.gates = scratch->Take<float>(windows * (width + attention_));
+  work.weights = scratch->Take<float>(batch.length[0]);
+  work.outputs = scratch->Take<float*>(windows);
+  return work;
+}
+
+// Attention, then the cells, frame by frame in the direction's order. `batch` are some windows of
+// work.batch.
+void PaperNetwork::Decode(const Work& work, const WindowBatch& batch, int direction,
+                          std::ptrdiff_t hidden, const DecoderWork& decoder) const {
+  const Direction& weights = directions_[direction];
   const int width = 4 * state_, both = width + attention_;
-  float* const encoded = scratch->Take<float>(std::ptrdiff_t{batch.rows} * attention_);
-  float* const values = scratch->Take<float>(std::ptrdiff_t{batch.rows} * width);
-  decoder.encoded.Multiply(batch.rows, work.encoded, encoded);
-  decoder.values.Multiply(batch.rows, work.encoded, values);
-  float* const gates = scratch->Take<float>(std::ptrdiff_t{batch.count} * both);
-  float* const weights = scratch->Take<float>(batch.length[0]);
-  float** outputs = scratch->Take<float*>(batch.count);
-  kernels::LstmStep cells{batch.count,          state_, gates,  both, nullptr, work.hidden[direction],
-                          work.cell[direction], state_, outputs};
+  const float* const encoded = work.encoded + std::ptrdiff_t{batch.first_row[0]} * 2 * state_;
+  weights.encoded.Multiply(batch.rows, encoded, decoder.encoded);
+  weights.values.Multiply(batch.rows, encoded, decoder.values);
+  for (int n = 0; n < batch.count && decoder.packed != nullptr; ++n) {
+    const std::ptrdiff_t row = batch.first_row[n] - batch.first_row[0];
+    kernels::PackRowsBf16({decoder.values + row * width, width, batch.length[n], width},
+                          decoder.packed + n * decoder.packed_window);
+  }
+  kernels::LstmStep cells{batch.count,
+                          state_,
+                          decoder.gates,
+                          both,
+                          nullptr,
+                          work.hidden[direction] + hidden,
+                          work.cell[direction] + hidden,
+                          state_,
+                          decoder.outputs};
   for (int step = 0; step < batch.length[0]; ++step) {
     cells.count = batch.LongerThan(step, cells.count);
-    decoder.state.Multiply(cells.count, cells.state, gates);
+    weights.state.Multiply(cells.count, cells.state, decoder.gates);
     for (int n = 0; n < cells.count; ++n) {
-      const std::ptrdiff_t first = batch.first_row[n];
-      float* const sums = gates + std::ptrdiff_t{n} * both;
-      kernels::Attend({batch.length[n], attention_, width, encoded + first * attention_,
-              values + first * width, sums + width, decoder.score.data(), weights, sums});
-      const std::ptrdiff_t row = first + FrameAt(direction, batch.length[n], step);
-      outputs[n] = work.states + (row * 2 + direction) * state_;
+      float* const gates = decoder.gates + std::ptrdiff_t{n} * both;
+      LookAt(batch, n, direction, decoder, gates);
+      const std::ptrdiff_t row =
+          batch.first_row[n] + FrameAt(direction, batch.length[n], step);
+      decoder.outputs[n] = work.states + (row * 2 + direction) * state_;
     }
     kernels::LstmCells(cells);
+  }
+}
+
+// Adds what window n's decoder sees of its frames to its gates; the query stands behind these.
+void PaperNetwork::LookAt(const WindowBatch& batch, int n, int direction,
+                          const DecoderWork& decoder, float* gates) const {
+  const std::ptrdiff_t row = batch.first_row[n] - batch.first_row[0];
+  const int width = 4 * state_, frames = batch.length[n];
+  kernels::WeighFrames({frames, attention_, decoder.encoded + row * attention_, gates + width,
+                        directions_[direction].score.data(), decoder.weights});
+  if (decoder.packed == nullptr) {
+    kernels::AddWeighted({decoder.values + row * width, width, frames, width}, decoder.weights,
+                         gates);
+  } else {
+    kernels::AddGemmBf16({decoder.weights, frames, 1, frames},
+                         decoder.packed + n * decoder.packed_window, {gates, width, width});
   }
 }
 

@@ -1,6 +1,8 @@
 #ifndef DUET_MODEL_CPU_ENGINE_PAPER_NETWORK_H_
 #define DUET_MODEL_CPU_ENGINE_PAPER_NETWORK_H_
 
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "absl/types/span.h"
@@ -53,13 +55,28 @@ class PaperNetwork {
     float* states;  // [R, 2 H] of the decoder, forward and backward
   };
 
+  // What a direction of the decoder needs for some windows.
+  struct DecoderWork {
+    float* encoded;                // [rows, A] U h
+    float* values;                 // [rows, 4 H]
+    uint16_t* packed;              // the values for products in bfloat16; null in float32
+    std::ptrdiff_t packed_window;  // values from one window to the next
+    float* gates;                  // [windows, 4 H + A], the query behind the gates
+    float* weights;                // [T] of the window at hand
+    float** outputs;               // [windows]
+  };
+
   Slice FindSlice(const checkpoint::Manifest& manifest, const Weights& weights, int index) const;
   float* ReadInput(const WindowBatch& batch, absl::Span<const engine::NetworkInput> inputs,
                    Scratch::Use* scratch) const;
   void Encode(const Work& work, Scratch::Use* scratch) const;
   void EncodeSlice(const Work& work, int slice, int direction, const float* gates,
                    Scratch::Use* scratch) const;
-  void Decode(const Work& work, int direction, Scratch::Use* scratch) const;
+  DecoderWork PrepareDecoder(const WindowBatch& batch, Scratch::Use* scratch) const;
+  void Decode(const Work& work, const WindowBatch& batch, int direction, std::ptrdiff_t hidden,
+              const DecoderWork& decoder) const;
+  void LookAt(const WindowBatch& batch, int n, int direction, const DecoderWork& decoder,
+              float* gates) const;
   void AddBase(const Work& work, float* followers) const;
 
   int joints_, classes_, root_, encoder_, state_, attention_;

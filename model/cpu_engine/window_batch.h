@@ -16,6 +16,14 @@ struct WindowBatch {
   const int* length;     // [count] frames, falling
   const int* first_row;  // [count]
 
+  // `most` of the windows from `begin` on, or as many as there are. Their rows stay where they are.
+  WindowBatch Some(int begin, int most) const {
+    const int size = begin + most < count ? most : count - begin;
+    const int last = begin + size - 1;
+    return {size, first_row[last] + length[last] - first_row[begin], input + begin, length + begin,
+            first_row + begin};
+  }
+
   // Windows that have a frame `step`: the first so many. `before` is the answer for an earlier
   // step.
   int LongerThan(int step, int before) const {

@@ -25,6 +25,10 @@ TEST(WindowBatchTest, LongestFirstEachWindowsFramesOneAfterTheOther) {
   EXPECT_EQ(batch.LongerThan(2, 4), 3);
   EXPECT_EQ(batch.LongerThan(3, 3), 2);
   EXPECT_EQ(batch.LongerThan(7, 2), 0);
+  const WindowBatch last = batch.Some(1, 2);
+  EXPECT_EQ(last.rows, 10);
+  EXPECT_THAT(List(last.first_row, last.count), ElementsAre(7, 14));
+  EXPECT_EQ(batch.Some(3, 9).count, 1);
 }
 
 }  // namespace

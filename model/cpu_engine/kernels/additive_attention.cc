@@ -24,38 +24,41 @@ HWY_INLINE float Energy(const AdditiveAttention& in, const float* HWY_RESTRICT e
   return hn::GetLane(hn::SumOfLanes(d, sum));
 }
 
-// kVectors vectors of the weighted sum, kept in registers over all frames.
-template <int kVectors>
-HWY_INLINE void AddWeighted(const AdditiveAttention& in, int first) {
-  const Tag d;
-  const int valid = in.width - first;
-  Vector sums[kVectors];
-  for (int v = 0; v < kVectors; ++v) {
-    sums[v] = LoadFirst(valid - v * Lanes(), in.sums + first + v * Lanes());
-  }
-  const float* HWY_RESTRICT values = in.values + first;
-  for (int j = 0; j < in.frames; ++j, values += in.width) {
-    const Vector weight = hn::Set(d, in.weights[j]);
-    for (int v = 0; v < kVectors; ++v) {
-      sums[v] = hn::MulAdd(weight, LoadFirst(valid - v * Lanes(), values + v * Lanes()), sums[v]);
-    }
-  }
-  for (int v = 0; v < kVectors; ++v) {
-    StoreFirst(valid - v * Lanes(), sums[v], in.sums + first + v * Lanes());
-  }
-}
-
-void AttendTo(const AdditiveAttention& in) {
+void Weigh(const AdditiveAttention& in) {
   for (int j = 0; j < in.frames; ++j) {
     in.weights[j] = Energy(in, in.encoded + static_cast<ptrdiff_t>(j) * in.attention);
   }
   Softmax(in.frames, in.weights);
+}
+
+// kVectors vectors of the weighted sum from column `first` on, kept in registers over all rows.
+template <int kVectors>
+HWY_INLINE void AddColumns(const Rows& values, const float* weights, int first, float* sums) {
+  const Tag d;
+  const int valid = values.width - first;
+  Vector sum[kVectors];
+  for (int v = 0; v < kVectors; ++v) {
+    sum[v] = LoadFirst(valid - v * Lanes(), sums + first + v * Lanes());
+  }
+  const float* HWY_RESTRICT row = values.values + first;
+  for (int j = 0; j < values.count; ++j, row += values.stride) {
+    const Vector weight = hn::Set(d, weights[j]);
+    for (int v = 0; v < kVectors; ++v) {
+      sum[v] = hn::MulAdd(weight, LoadFirst(valid - v * Lanes(), row + v * Lanes()), sum[v]);
+    }
+  }
+  for (int v = 0; v < kVectors; ++v) {
+    StoreFirst(valid - v * Lanes(), sum[v], sums + first + v * Lanes());
+  }
+}
+
+void AddAll(const Rows& values, const float* weights, float* sums) {
   constexpr int kAtOnce = 10;
   int first = 0;
-  for (; first + kAtOnce * Lanes() <= in.width; first += kAtOnce * Lanes()) {
-    AddWeighted<kAtOnce>(in, first);
+  for (; first + kAtOnce * Lanes() <= values.width; first += kAtOnce * Lanes()) {
+    AddColumns<kAtOnce>(values, weights, first, sums);
   }
-  for (; first < in.width; first += Lanes()) AddWeighted<1>(in, first);
+  for (; first < values.width; first += Lanes()) AddColumns<1>(values, weights, first, sums);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -65,9 +68,13 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace duet::cpu_engine::kernels {
 
-HWY_EXPORT(AttendTo);
+HWY_EXPORT(Weigh);
+HWY_EXPORT(AddAll);
 
-void Attend(const AdditiveAttention& attention) { HWY_DYNAMIC_DISPATCH(AttendTo)(attention); }
+void WeighFrames(const AdditiveAttention& attention) { HWY_DYNAMIC_DISPATCH(Weigh)(attention); }
+void AddWeighted(const Rows& values, const float* weights, float* sums) {
+  HWY_DYNAMIC_DISPATCH(AddAll)(values, weights, sums);
+}
 
 }  // namespace duet::cpu_engine::kernels
 #endif

@@ -1,25 +1,27 @@
 #ifndef DUET_MODEL_CPU_ENGINE_KERNELS_ADDITIVE_ATTENTION_H_
 #define DUET_MODEL_CPU_ENGINE_KERNELS_ADDITIVE_ATTENTION_H_
 
+#include "model/cpu_engine/kernels/matrix.h"
+
 namespace duet::cpu_engine::kernels {
 
 // What one decoder state looks at.
 struct AdditiveAttention {
   int frames;            // 1 or more
   int attention;         // A
-  int width;             // X
   const float* encoded;  // [frames, A]
-  const float* values;   // [frames, X]
   const float* query;    // [A]
   const float* score;    // [A]
   float* weights;        // [frames], written
-  float* sums;           // [X], added to
 };
 
-// weights = softmax over the frames j of score . tanh(encoded_j + query);
-// sums += sum_j weights_j values_j.
-// Source: paper Eq. 2 to 4 (Bahdanau et al. 2015).
-void Attend(const AdditiveAttention& attention);
+// weights = softmax over the frames j of score . tanh(encoded_j + query).
+// Source: paper Eq. 2 and 3 (Bahdanau et al. 2015).
+void WeighFrames(const AdditiveAttention& attention);
+
+// sums += sum_j weights_j values_j over the rows of `values`. Shapes: weights [values.count], sums
+// [values.width]. Source: paper Eq. 4.
+void AddWeighted(const Rows& values, const float* weights, float* sums);
 
 }  // namespace duet::cpu_engine::kernels
 

@@ -120,14 +120,8 @@ DUET_BF16 void Round(const Rows& x, int row, int count, int first, int inputs, u
   }
 }
 
-}  // namespace
-
-bool HasBf16() {
-  return __builtin_cpu_supports("avx512bf16") && __builtin_cpu_supports("avx512bw") &&
-         __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq");
-}
-
-void GemmBf16(const Rows& x, const uint16_t* panels, const float* bias, const Output& y) {
+DUET_BF16 void Gemm(const Rows& x, const uint16_t* panels, const float* bias, bool adds,
+                    const Output& y) {
   alignas(64) uint16_t rounded[kRows * 2 * kPairsAtOnce];
   const int pairs = Bf16Pairs(x.width);
   for (int row = 0; row < x.count;) {
@@ -137,9 +131,57 @@ void GemmBf16(const Rows& x, const uint16_t* panels, const float* bias, const Ou
       Round(x, row, count, 2 * first, std::min(2 * size, x.width - 2 * first), rounded);
       const Output rows{y.values + row * y.stride, y.stride, y.width};
       StripOf<kRows>(count, {rounded, panels + std::ptrdiff_t{first} * 2 * kPanel,
-                             std::ptrdiff_t{pairs} * 2 * kPanel, size, bias, first > 0, rows});
+                             std::ptrdiff_t{pairs} * 2 * kPanel, size, bias, adds || first > 0,
+                             rows});
     }
     row += count;
+  }
+}
+
+constexpr __mmask16 kAll = 0xffff;  // GCC 12 takes the forms without a mask as uninitialised
+
+// Rounded values in the lower halves of 32 bits.
+DUET_BF16 inline __m512i RoundedWide(const float* from, __mmask16 valid) {
+  return _mm512_maskz_cvtepu16_epi32(
+      kAll, reinterpret_cast<__m256i>(_mm512_cvtneps_pbh(_mm512_maskz_loadu_ps(valid, from))));
+}
+
+// Half a panel of two rows of inputs, or of one and zeros, pair by pair.
+DUET_BF16 inline void PackPair(const float* even, const float* odd, __mmask16 valid,
+                               uint16_t* pairs) {
+  __m512i both = RoundedWide(even, valid);
+  if (odd != nullptr) {
+    both = _mm512_or_si512(both, _mm512_maskz_slli_epi32(kAll, RoundedWide(odd, valid), 16));
+  }
+  _mm512_storeu_si512(pairs, both);
+}
+
+}  // namespace
+
+bool HasBf16() {
+  return __builtin_cpu_supports("avx512bf16") && __builtin_cpu_supports("avx512bw") &&
+         __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq");
+}
+
+void GemmBf16(const Rows& x, const uint16_t* panels, const float* bias, const Output& y) {
+  Gemm(x, panels, bias, false, y);
+}
+
+void AddGemmBf16(const Rows& x, const uint16_t* panels, const Output& y) {
+  Gemm(x, panels, nullptr, true, y);
+}
+
+DUET_BF16 void PackRowsBf16(const Rows& inputs, uint16_t* panels) {
+  const int pairs = Bf16Pairs(inputs.count);
+  for (int pair = 0; pair < pairs; ++pair) {
+    const float* even = inputs.values + 2 * pair * inputs.stride;
+    const bool has_odd = 2 * pair + 1 < inputs.count;
+    for (int column = 0; column < PanelCount(inputs.width) * kPanel; column += kLanes) {
+      uint16_t* to = panels + (std::ptrdiff_t{column / kPanel} * pairs + pair) * 2 * kPanel +
+                     2 * (column % kPanel);
+      PackPair(even + column, has_odd ? even + inputs.stride + column : nullptr,
+               FirstOf(inputs.width - column), to);
+    }
   }
 }
 
@@ -148,6 +190,8 @@ void GemmBf16(const Rows& x, const uint16_t* panels, const float* bias, const Ou
 bool HasBf16() { return false; }
 void GemmBf16(const Rows& /*x*/, const uint16_t* /*panels*/, const float* /*bias*/,
               const Output& /*y*/) {}
+void AddGemmBf16(const Rows& /*x*/, const uint16_t* /*panels*/, const Output& /*y*/) {}
+void PackRowsBf16(const Rows& /*inputs*/, uint16_t* /*panels*/) {}
 
 #endif
 

@@ -22,6 +22,12 @@ inline constexpr int Bf16Pairs(int inputs) { return (inputs + 1) / 2; }
 //
 // A row's result does not depend on the other rows.
 void GemmBf16(const Rows& x, const uint16_t* panels, const float* bias, const Output& y);
+// y += x W^T.
+void AddGemmBf16(const Rows& x, const uint16_t* panels, const Output& y);
+
+// Lays a matrix's transpose out as panels: the rows of `inputs` are what the product sums over.
+// Shape: panels [PanelCount(inputs.width), Bf16Pairs(inputs.count), kPanel, 2].
+void PackRowsBf16(const Rows& inputs, uint16_t* panels);
 
 }  // namespace duet::cpu_engine::kernels
 

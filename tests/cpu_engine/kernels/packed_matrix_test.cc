@@ -85,6 +85,29 @@ TEST_P(PackedMatrixTest, ARowDoesNotDependOnTheOthers) {
   }
 }
 
+TEST_P(PackedMatrixTest, RowsPackedOnTheFlyAddTheirWeightedSum) {
+  if (!HasBf16()) GTEST_SKIP() << "this processor does not multiply bfloat16";
+  for (const int inputs : {1, 2, 7, 46}) {
+    for (const int width : {5, 32, 100}) {
+      const std::vector<float> rows = Values(inputs * width), weights = Values(inputs),
+                               before = Values(width);
+      std::vector<uint16_t> panels(
+          static_cast<std::size_t>(PanelCount(width) * Bf16Pairs(inputs) * kPanel * 2));
+      PackRowsBf16({rows.data(), width, inputs, width}, panels.data());
+      std::vector<float> sums = before;
+      AddGemmBf16({weights.data(), inputs, 1, inputs}, panels.data(), {sums.data(), width, width});
+      for (int n = 0; n < width; ++n) {
+        double sum = before[static_cast<std::size_t>(n)];
+        for (int k = 0; k < inputs; ++k) {
+          sum += double{Rounded(weights[static_cast<std::size_t>(k)])} *
+                 Rounded(rows[static_cast<std::size_t>(k * width + n)]);
+        }
+        EXPECT_NEAR(sums[static_cast<std::size_t>(n)], sum, 1e-5) << inputs << " " << n;
+      }
+    }
+  }
+}
+
 TEST(ToBf16Test, RoundsToTheNearestAndTiesToEven) {
   EXPECT_EQ(ToBf16(1.0f), 0x3f80);
   EXPECT_EQ(ToBf16(-2.0f), 0xc000);

@@ -82,8 +82,9 @@ TEST_P(AdditiveAttentionTest, WeighsFramesAsTheDefinition) {
                                values = Values(frames * width), query = Values(attention),
                                score = Values(attention, 3), before = Values(width);
       std::vector<float> sums = before, weights(static_cast<std::size_t>(frames));
-      Attend({frames, attention, width, encoded.data(), values.data(), query.data(), score.data(),
-              weights.data(), sums.data()});
+      WeighFrames(
+          {frames, attention, encoded.data(), query.data(), score.data(), weights.data()});
+      AddWeighted({values.data(), width, frames, width}, weights.data(), sums.data());
       std::vector<double> expected;
       double all = 0;
       for (int j = 0; j < frames; ++j) {
