@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cmath>
 
+#include "absl/strings/str_cat.h"
 #include "model/cpu_engine/cpu_synthesizer.h"
 #include "model/cpu_engine/kernels/gemm_bf16.h"
 #include "model/dataset/dataset.h"
@@ -85,10 +87,14 @@ void ExpectLittleChange(const char* folder, const std::string& name, bool clean_
   for (std::size_t i = 0; i < exact->size(); ++i) {
     const engine::ModelDescription& model = (*exact)[i]->description();
     if (model.name != name) continue;
+    SCOPED_TRACE(absl::StrCat(model.name, " ", model.version));
     const Change change = ChangeByRounding(*(*exact)[i], *(*rounded)[i], *data);
-    EXPECT_LT(change.farthest, 2e-3f) << model.name << " " << model.version;
-    EXPECT_LT(change.RelativeError(), 5e-3) << model.name << " " << model.version;
-    std::printf("%s %d: %.2f mm %.4f %%\n", model.name.c_str(), model.version, change.farthest * 1000, change.RelativeError() * 100);
+    EXPECT_LT(change.RelativeError(), 5e-3);
+    // The clean-up decides: whether a foot stands, which way a body gives. A decision that falls
+    // differently moves a joint by centimetres.
+    if (!clean_up) {
+      EXPECT_LT(change.farthest, 2e-3f);
+    }
   }
 }
 
@@ -96,7 +102,7 @@ TEST(CapturesTest, RoundingHardlyMovesTheAnswersToSbu) { ExpectLittleChange("sbu
 TEST(CapturesTest, RoundingHardlyMovesTheAnswersToK3hi) {
   ExpectLittleChange("k3hi", "k3hi", false);
 }
-TEST(CapturesTest, C1) { ExpectLittleChange("sbu", "sbu", true); }
+TEST(CapturesTest, RoundedAnswersAreAsGoodCleanedUp) { ExpectLittleChange("sbu", "sbu", true); }
 
 }  // namespace
 }  // namespace duet::cpu_engine
