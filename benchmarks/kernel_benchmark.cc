@@ -1,4 +1,5 @@
-// The CPU engine's kernels one by one, and what the machine could do at best: a regression's address.
+// The CPU engine's kernels one by one, and what the machine could do at best: a regression's
+// address.
 #include <benchmark/benchmark.h>
 
 #include <vector>
@@ -92,7 +93,8 @@ void BM_AddWeightedBf16(benchmark::State& state) {
       static_cast<std::size_t>(PanelCount(kGates) * Bf16Pairs(kFrames) * kPanel * 2));
   PackRowsBf16({values.data(), kGates, kFrames, kGates}, panels.data());
   for (auto _ : state) {
-    AddGemmBf16({weights.data(), kFrames, 1, kFrames}, panels.data(), {sums.data(), kGates, kGates});
+    AddGemmBf16({weights.data(), kFrames, 1, kFrames}, panels.data(),
+                {sums.data(), kGates, kGates});
     benchmark::ClobberMemory();
   }
   PerSecond(state, "FLOP/s", 2.0 * kFrames * kGates);

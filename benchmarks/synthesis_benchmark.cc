@@ -64,8 +64,11 @@ void Windows(benchmark::State& state, const Synthesizer* model) {
 
 void TenMinutes(benchmark::State& state, const Synthesizer* model) {
   const duet::engine::ClipRequest request{
-      Leader(kLongFrames, model->description().skeleton.joint_count()), kLongRateHz,
-      duet::engine::LabelTrack(Label(*model)), {}, {}};
+      Leader(kLongFrames, model->description().skeleton.joint_count()),
+      kLongRateHz,
+      duet::engine::LabelTrack(Label(*model)),
+      {},
+      {}};
   for (auto _ : state) {
     duet::engine::ClipSynthesis clip(model->description(), request);
     while (clip.HasNextWindow()) {
@@ -98,8 +101,7 @@ void Register(const std::string& engine, const Models& models) {
 int main(int argc, char** argv) {
   duet::torch_engine::SetTorchThreads(1);
   const Models torch = Loaded(duet::torch_engine::LoadEmbeddedSynthesizers());
-  const Models f32 =
-      Loaded(duet::cpu_engine::LoadEmbeddedSynthesizers({{}, Precision::kFloat32}));
+  const Models f32 = Loaded(duet::cpu_engine::LoadEmbeddedSynthesizers({{}, Precision::kFloat32}));
   Register("torch", torch);
   Register("f32", f32);
   Models bf16;

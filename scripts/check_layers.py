@@ -52,7 +52,7 @@ LAYERS = (
     Layer("engine", "model/engine", sees=("base", "motion", "cleanup")),
     Layer("checkpoint", "model/checkpoint", sees=("base", "motion", "engine")),
     Layer("embedded checkpoints", "model/checkpoints", sees=()),
-    Layer("cpu kernels", "model/cpu_engine/kernels", sees=(), source_libraries=("highway",)),
+    Layer("cpu kernels", "model/cpu_engine/kernels", sees=(), libraries=("highway",)),
     Layer("cpu engine", "model/cpu_engine",
           sees=("base", "motion", "engine", "checkpoint", "embedded checkpoints", "cpu kernels")),
     Layer("network", "model/network", sees=("base", "motion", "engine", "checkpoint"),

@@ -34,6 +34,8 @@ LIBRARIES = (
     ("nlohmann/", "nlohmann_json::nlohmann_json"),
     ("CLI/", "CLI11::CLI11"),
     ("Eigen/", "Eigen3::Eigen"),
+    ("hwy/", "hwy::hwy"),
+    ("dlfcn.h", "dl"),
     ("prometheus/", "prometheus-cpp::core"),
     ("httplib.h", "PkgConfig::httplib"),
     ("openssl/", "OpenSSL::Crypto", "OpenSSL::SSL"),

@@ -65,9 +65,10 @@ FlowNetwork::FlowNetwork(const checkpoint::Checkpoint& checkpoint, Precision pre
     const auto packed = [&](const char* name) {
       return weights.FindLayer(absl::StrCat("block", i, ".", name)).Pack(precision);
     };
-    blocks_.push_back({exact(absl::StrCat("block", i, ".modulation")), exact(absl::StrCat("block", i, ".attention")), exact(absl::StrCat("block", i, ".attended")),
-                       packed("expand"), packed("contract"),
-                       weights.Values(absl::StrCat("block", i, ".distance"))});
+    blocks_.push_back({exact(absl::StrCat("block", i, ".modulation")),
+                       exact(absl::StrCat("block", i, ".attention")),
+                       exact(absl::StrCat("block", i, ".attended")), packed("expand"),
+                       packed("contract"), weights.Values(absl::StrCat("block", i, ".distance"))});
   }
 }
 
@@ -93,9 +94,8 @@ FlowNetwork::Work FlowNetwork::Prepare(absl::Span<const engine::NetworkInput> in
   work.answer = scratch->Take<float>(rows * pose_);
   for (int n = 0; n < work.windows; ++n) {
     const engine::Sampling& sampling = inputs[static_cast<std::size_t>(n)].sampling;
-    noise_.Fill(sampling.seed, sampling.variety, work.window[n].known_frames,
-                work.window[n].frames, scratch,
-                work.sample + std::ptrdiff_t{work.window_row[n]} * pose_);
+    noise_.Fill(sampling.seed, sampling.variety, work.window[n].known_frames, work.window[n].frames,
+                scratch, work.sample + std::ptrdiff_t{work.window_row[n]} * pose_);
   }
   work.condition = scratch->Take<float>(terms * width_);
   work.time = scratch->Take<float>(width_);
@@ -217,8 +217,8 @@ void FlowNetwork::Normalise(const Work& work, int scale) const {
     const float* const by = work.modulation + (q * 4 + scale) * width_;
     const int frames = work.window[work.term[q].window].frames;
     for (std::ptrdiff_t row = work.term_row[q]; row < work.term_row[q] + frames; ++row) {
-      kernels::LayerNorm({width_, work.frames + row * width_, by, 1, by + width_,
-                 work.normal + row * width_});
+      kernels::LayerNorm(
+          {width_, work.frames + row * width_, by, 1, by + width_, work.normal + row * width_});
     }
   }
 }
@@ -240,16 +240,16 @@ void FlowNetwork::Attend(const Block& block, const Work& work) const {
     for (int h = 0; h < heads_; ++h) {
       const float* const head = all + std::ptrdiff_t{h} * size;
       const float* const distance = work.distance + h * (2 * longest - 1) + longest - frames;
-      kernels::AttendToSelf({frames, size, head, head + width_, head + 2 * width_, 3 * width_, distance,
-                    out + std::ptrdiff_t{h} * size, width_, work.attention});
+      kernels::AttendToSelf({frames, size, head, head + width_, head + 2 * width_, 3 * width_,
+                             distance, out + std::ptrdiff_t{h} * size, width_, work.attention});
     }
   }
 }
 
 void FlowNetwork::Output(const Work& work) const {
   for (std::ptrdiff_t row = 0; row < work.term_rows; ++row) {
-    kernels::LayerNorm({width_, work.frames + row * width_, norm_.weight.data(), 0, norm_.bias.data(),
-               work.normal + row * width_});
+    kernels::LayerNorm({width_, work.frames + row * width_, norm_.weight.data(), 0,
+                        norm_.bias.data(), work.normal + row * width_});
   }
   output_.Multiply(work.term_rows, work.normal, work.branch);
   std::fill_n(work.answer, std::ptrdiff_t{work.rows} * pose_, 0.0f);

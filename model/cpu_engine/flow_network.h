@@ -18,8 +18,8 @@ namespace duet::cpu_engine {
 // steps from noise to motion with the transformer in each, the joint with the known frames.
 //
 // Source:  model/network/flow_generator.h and flow_sampler.h have the same in LibTorch.
-// Shapes:  T frames of a window, R of all windows, Q of all terms, J joints, W width, F feed-forward.
-// Threads: Run is safe to call concurrently, with a scratch each.
+// Shapes:  T frames of a window, R of all windows, Q of all terms, J joints, W width, F
+// feed-forward. Threads: Run is safe to call concurrently, with a scratch each.
 class FlowNetwork {
  public:
   FlowNetwork(const checkpoint::Checkpoint& checkpoint, kernels::Precision precision);
@@ -37,22 +37,22 @@ class FlowNetwork {
   // other, or those of the terms.
   struct Work {
     int windows, terms, rows, term_rows, longest;
-    FlowWindow* window;   // [windows]
-    FlowTerm* term;       // [terms], in the order of their windows
-    int* window_row;      // [windows] first row
-    int* term_row;        // [terms] first row
-    float* context;       // [R, W] what the frames say
-    float* told;          // [terms, W] what start and label say
-    float* sample;        // [R, 3 J] from noise to motion, in units of offset_scale
-    float* answer;        // [R, 3 J]
-    float* condition;     // [terms, W]
-    float* time;          // [W]
-    float* modulation;    // [terms, 4 W]
-    float* frames;        // [Q, W] the transformer's
-    float* normal;        // [Q, W]
-    float* branch;        // [Q, max(3 W, F)]
-    float* distance;      // [heads, 2 longest - 1]
-    float* attention;     // for SelfAttention
+    FlowWindow* window;  // [windows]
+    FlowTerm* term;      // [terms], in the order of their windows
+    int* window_row;     // [windows] first row
+    int* term_row;       // [terms] first row
+    float* context;      // [R, W] what the frames say
+    float* told;         // [terms, W] what start and label say
+    float* sample;       // [R, 3 J] from noise to motion, in units of offset_scale
+    float* answer;       // [R, 3 J]
+    float* condition;    // [terms, W]
+    float* time;         // [W]
+    float* modulation;   // [terms, 4 W]
+    float* frames;       // [Q, W] the transformer's
+    float* normal;       // [Q, W]
+    float* branch;       // [Q, max(3 W, F)]
+    float* distance;     // [heads, 2 longest - 1]
+    float* attention;    // for SelfAttention
   };
 
   Work Prepare(absl::Span<const engine::NetworkInput> inputs, Scratch::Use* scratch) const;

@@ -79,7 +79,8 @@ void FlowNoise::Fill(uint64_t seed, float variety, int known_frames, int frames,
   const State& state = states_[known_frames > 0 ? 1 : 0];
   std::vector<float> longer;
   if (frames > frames_) {
-    longer = FrameRoot(frames, options_.frame_length, known_frames > 0 ? 0 : options_.constant_share);
+    longer =
+        FrameRoot(frames, options_.frame_length, known_frames > 0 ? 0 : options_.constant_share);
   }
   float* const panels =
       scratch->Take<float>(std::ptrdiff_t{kernels::PanelCount(width_)} * frames * kernels::kPanel);

@@ -53,15 +53,18 @@ void WriteMeanPose(const checkpoint::Manifest& manifest, const std::vector<float
   const std::ptrdiff_t frames = input.leader.frame_count();
   for (std::ptrdiff_t i = 0; i < width; ++i) {
     float mean = 0;
-    for (std::ptrdiff_t c = 0; c < classes; ++c) mean += base_poses[static_cast<std::size_t>(c * width + i)];
+    for (std::ptrdiff_t c = 0; c < classes; ++c)
+      mean += base_poses[static_cast<std::size_t>(c * width + i)];
     base[i] = mean / static_cast<float>(classes);
   }
   for (std::ptrdiff_t i = 0; i < width; ++i) {
     const float mean = base[i];
     for (std::ptrdiff_t c = 0; c < classes; ++c) {
       float weight = 0;
-      for (std::ptrdiff_t t = 0; t < frames; ++t) weight += input.labels[static_cast<std::size_t>(t * classes + c)];
-      base[i] += weight / static_cast<float>(frames) * (base_poses[static_cast<std::size_t>(c * width + i)] - mean);
+      for (std::ptrdiff_t t = 0; t < frames; ++t)
+        weight += input.labels[static_cast<std::size_t>(t * classes + c)];
+      base[i] += weight / static_cast<float>(frames) *
+                 (base_poses[static_cast<std::size_t>(c * width + i)] - mean);
     }
   }
   if (!input.start) return;
@@ -78,11 +81,11 @@ void WriteFeatures(const engine::NetworkInput& input, int frame, int told, float
   const Frame leader = input.leader[frame];
   for (const motion::Vec3& joint : leader) out = Write(joint, out);
   for (std::size_t j = 0; j < leader.size(); ++j) {
-    const motion::Vec3 moved =
-        frame == 0 ? motion::Vec3{} : leader[j] - input.leader[frame - 1][j];
+    const motion::Vec3 moved = frame == 0 ? motion::Vec3{} : leader[j] - input.leader[frame - 1][j];
     out = Write(kVelocityScale * moved, out);
   }
-  const float at = static_cast<float>(frame), length = static_cast<float>(input.leader.frame_count());
+  const float at = static_cast<float>(frame),
+              length = static_cast<float>(input.leader.frame_count());
   *out++ = at / kPositionFrames;
   *out++ = at / length;
   *out++ = (length - at) / kPositionFrames;
@@ -126,8 +129,9 @@ int AddFlowTerms(const engine::NetworkInput& input, int window, int classes, dou
   const int frames = input.leader.frame_count();
   const float times = static_cast<float>(guidance);
   const auto weight = [&](int frame, int label) {
-    const float raw = input.labels[static_cast<std::size_t>(frame) * static_cast<std::size_t>(classes) +
-                                   static_cast<std::size_t>(label)];
+    const float raw =
+        input.labels[static_cast<std::size_t>(frame) * static_cast<std::size_t>(classes) +
+                     static_cast<std::size_t>(label)];
     return raw > 0 ? times * raw : raw;
   };
   int count = 0;

@@ -12,11 +12,11 @@ namespace duet::cpu_engine {
 // What the sampling generator is told of one window, in the standard coordinates;
 // model/network/flow_input.h has the same in LibTorch and explains it.
 struct FlowWindow {
-  int frames;         // T
-  int known_frames;   // the first so many of the follower's frames are known
-  float* features;    // [T, 2 x 3 J + 4 + 3 J + 1] leader, velocity, positions, known, whether known
-  float* start;       // [StartFeatureCount]
-  float* base;        // [3 J] metres
+  int frames;        // T
+  int known_frames;  // the first so many of the follower's frames are known
+  float* features;   // [T, 2 x 3 J + 4 + 3 J + 1] leader, velocity, positions, known, whether known
+  float* start;      // [StartFeatureCount]
+  float* base;       // [3 J] metres
   const float* known(int frame, int width) const {  // [3 J] offset from the base
     return features + frame * (3 * width + 5) + 2 * width + 4;
   }

@@ -104,8 +104,8 @@ PaperNetwork::PaperNetwork(const checkpoint::Checkpoint& checkpoint, Precision p
 
 PaperNetwork::Slice PaperNetwork::FindSlice(const checkpoint::Manifest& manifest,
                                             const Weights& weights, int index) const {
-  const std::string at = absl::StrCat(
-      "encoder.", SliceShapes(manifest)[static_cast<std::size_t>(index)].name, ".");
+  const std::string at =
+      absl::StrCat("encoder.", SliceShapes(manifest)[static_cast<std::size_t>(index)].name, ".");
   Slice slice;
   slice.columns = ColumnsOf(manifest, index);
   Layer input[2];
@@ -190,8 +190,15 @@ void PaperNetwork::EncodeSlice(const Work& work, int slice, int direction, const
   float* const recurrent = scratch->Take<float>(std::ptrdiff_t{batch.count} * 4 * encoder_);
   const float** inputs = scratch->Take<const float*>(batch.count);
   float** outputs = scratch->Take<float*>(batch.count);
-  kernels::LstmStep cells{0,      encoder_, nullptr, 4 * encoder_, inputs, work.hidden[direction] + at,
-                          work.cell[direction] + at, state_,       outputs};
+  kernels::LstmStep cells{0,
+                          encoder_,
+                          nullptr,
+                          4 * encoder_,
+                          inputs,
+                          work.hidden[direction] + at,
+                          work.cell[direction] + at,
+                          state_,
+                          outputs};
   cells.count = batch.count;
   for (int step = 0; step < batch.length[0]; ++step) {
     cells.count = batch.LongerThan(step, cells.count);
@@ -201,8 +208,7 @@ void PaperNetwork::EncodeSlice(const Work& work, int slice, int direction, const
       cells.gates = recurrent;
     }
     for (int n = 0; n < cells.count; ++n) {
-      const std::ptrdiff_t row =
-          batch.first_row[n] + FrameAt(direction, batch.length[n], step);
+      const std::ptrdiff_t row = batch.first_row[n] + FrameAt(direction, batch.length[n], step);
       inputs[n] = gates + (row * 2 + direction) * 4 * encoder_;
       outputs[n] = work.encoded + (row * 2 + direction) * state_ + at;
     }
@@ -218,8 +224,8 @@ PaperNetwork::DecoderWork PaperNetwork::PrepareDecoder(const WindowBatch& batch,
   work.encoded = scratch->Take<float>(rows * attention_);
   work.values = scratch->Take<float>(rows * width);
   if (precision_ == Precision::kBfloat16) {
-    work.packed_window = std::ptrdiff_t{kernels::Bf16Pairs(batch.length[0])} * 2 *
-                         kernels::kPanel * kernels::PanelCount(4 * state_);
+    work.packed_window = std::ptrdiff_t{kernels::Bf16Pairs(batch.length[0])} * 2 * kernels::kPanel *
+                         kernels::PanelCount(4 * state_);
     work.packed = scratch->Take<uint16_t>(windows * work.packed_window);
   }
   work.gates = scratch->Take<float>(windows * (width + attention_));
@@ -257,8 +263,7 @@ void PaperNetwork::Decode(const Work& work, const WindowBatch& batch, int direct
     for (int n = 0; n < cells.count; ++n) {
       float* const gates = decoder.gates + std::ptrdiff_t{n} * both;
       LookAt(batch, n, direction, decoder, gates);
-      const std::ptrdiff_t row =
-          batch.first_row[n] + FrameAt(direction, batch.length[n], step);
+      const std::ptrdiff_t row = batch.first_row[n] + FrameAt(direction, batch.length[n], step);
       decoder.outputs[n] = work.states + (row * 2 + direction) * state_;
     }
     kernels::LstmCells(cells);

@@ -20,7 +20,8 @@ namespace duet::cpu_engine {
 //
 // Source:  paper sections 3.1 and 3.2; model/network/generator.h has the same in LibTorch, and says
 //          where it deviates.
-// Shapes:  T frames of a window, R of all windows, J joints, C classes, S slices, E encoder units of
+// Shapes:  T frames of a window, R of all windows, J joints, C classes, S slices, E encoder units
+// of
 //          a slice and direction, H = S E decoder units of a direction, A rows of the attention.
 // Threads: Run is safe to call concurrently, with a scratch each.
 class PaperNetwork {

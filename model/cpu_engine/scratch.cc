@@ -11,7 +11,7 @@ constexpr std::size_t kSmallestBlock = std::size_t{1} << 16;
 }  // namespace
 
 void Scratch::Free::operator()(std::byte* bytes) const {
-  ::operator delete(bytes, std::align_val_t{kAlignment});
+  ::operator delete (bytes, std::align_val_t{kAlignment});
 }
 
 std::size_t Scratch::bytes() const {
@@ -21,7 +21,7 @@ std::size_t Scratch::bytes() const {
 }
 
 void Scratch::Add(std::size_t size) {
-  void* bytes = ::operator new(size, std::align_val_t{kAlignment});
+  void* bytes = ::operator new (size, std::align_val_t{kAlignment});
   blocks_.push_back({std::unique_ptr<std::byte, Free>(static_cast<std::byte*>(bytes)), size});
   used_ = 0;
 }

@@ -19,8 +19,8 @@ struct TorchEngine {
   absl::StatusOr<std::vector<std::unique_ptr<engine::Synthesizer>>> (*load_embedded)();
 };
 
-// Loads libduet_torch_engine.so, for good: from $DUET_TORCH_ENGINE, else from ../lib/duet beside the
-// program. NOT_FOUND says what the loader said, FAILED_PRECONDITION that it is another build's.
+// Loads libduet_torch_engine.so, for good: from $DUET_TORCH_ENGINE, else from ../lib/duet beside
+// the program. NOT_FOUND says what the loader said, FAILED_PRECONDITION that it is another build's.
 absl::StatusOr<TorchEngine> Open();
 
 // What the library exports by the name of kSymbol. `build` tells whether both sides are of one

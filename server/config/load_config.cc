@@ -101,7 +101,7 @@ void AddServingFlags(CLI::App& app, v1::ServerConfig& config) {
       Defaulting("gRPC server reflection", defaults.reflection ? "on" : "off"));
   app.add_option_function<std::string>(
          "--clean-up",
-         [&](const std::string& value) { 
+         [&](const std::string& value) {
            config.set_clean_up(Named(kCleanUpPolicies, "--clean-up", value, "auto, on or off"));
          },
          "whether followers are cleaned up where a request does not say; auto: those of models "

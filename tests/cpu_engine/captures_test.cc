@@ -27,8 +27,8 @@ SynthesisWindow WindowOf(const dataset::Sequence& sequence, const engine::ModelD
                       &follower = sequence.pair.follower.poses;
   const int frames = std::min(leader.frame_count(), model.window_frames);
   SynthesisWindow window;
-  window.leader = motion::Poses(
-      leader.joint_count(), {leader.frames(0, frames).begin(), leader.frames(0, frames).end()});
+  window.leader = motion::Poses(leader.joint_count(),
+                                {leader.frames(0, frames).begin(), leader.frames(0, frames).end()});
   for (int t = 0; t < frames; ++t) {
     for (int c = 0; c < model.class_count(); ++c) {
       window.labels.push_back(c == sequence.interaction_class ? 1.0f : 0.0f);
@@ -36,15 +36,15 @@ SynthesisWindow WindowOf(const dataset::Sequence& sequence, const engine::ModelD
   }
   window.partner_direction = sequence.partner_direction;
   if (tell_pose) {
-    window.start = engine::FollowerStart{
-        follower.at(0, model.skeleton.root), {follower[0].begin(), follower[0].end()}};
+    window.start = engine::FollowerStart{follower.at(0, model.skeleton.root),
+                                         {follower[0].begin(), follower[0].end()}};
   }
   return window;
 }
 
 // Of all answers of a model.
 struct Change {
-  float farthest = 0;                  // that a joint moved, metres
+  float farthest = 0;                 // that a joint moved, metres
   double error = 0, exact_error = 0;  // mean distance from the captured follower, metres
 
   double RelativeError() const { return std::abs(error / exact_error - 1); }

@@ -71,7 +71,8 @@ NetworkInput Input(const Manifest& manifest, int frames, Told told, uint64_t see
     input.start = engine::FollowerStart{root, {follower[0].begin(), follower[0].end()}};
   }
   if (told == Told::kSettled && manifest.model.samples && frames > 6) {
-    input.settled = motion::Poses(joints, {follower.frames(0, 5).begin(), follower.frames(0, 5).end()});
+    input.settled =
+        motion::Poses(joints, {follower.frames(0, 5).begin(), follower.frames(0, 5).end()});
   }
   return input;
 }
@@ -114,7 +115,8 @@ float FromTorch(const Checkpoint& checkpoint, Precision precision,
   const auto torch = torch_engine::MakeTorchNetwork(checkpoint);
   EXPECT_THAT(torch, IsOk());
   if (!torch.ok()) return 1e9f;
-  return Farthest(Answers(**torch, inputs), Answers(*MakeCpuNetwork(checkpoint, precision), inputs));
+  return Farthest(Answers(**torch, inputs),
+                  Answers(*MakeCpuNetwork(checkpoint, precision), inputs));
 }
 
 float FromTorch(const Checkpoint& checkpoint, Precision precision) {

@@ -30,11 +30,11 @@ absl::StatusOr<std::shared_ptr<const Synthesizer>> LoadFolder(const std::filesys
 int main(int argc, char** argv) {
   duet::server::lifecycle::StopSignal stop;
   const duet::server::lifecycle::ModelSource source{
-      "fake", LoadFolder,
-      [] {
+      "fake", LoadFolder, [] {
         return std::vector<std::shared_ptr<const Synthesizer>>{
             std::make_shared<duet::test::FakeSynthesizer>()};
       }};
   return duet::server::lifecycle::RunServer(
-      argc, argv, [&](const auto&) { return source; }, stop, std::make_shared<duet::server::metrics::StreamLogSink>(stderr));
+      argc, argv, [&](const auto&) { return source; }, stop,
+      std::make_shared<duet::server::metrics::StreamLogSink>(stderr));
 }

@@ -32,7 +32,8 @@ TEST(TorchPluginTest, OpensTheLibraryAndLoadsModels) {
   window.labels.assign(4 * model.description().classes.size(), 0);
   const engine::SynthesisWindow* const one = &window;
   EXPECT_THAT(model.Synthesize({&one, 1}).front(), IsOk());
-  EXPECT_THAT(torch->load_folder("/no/such/folder"), StatusIs(absl::StatusCode::kNotFound, HasSubstr("no/such")));
+  EXPECT_THAT(torch->load_folder("/no/such/folder"),
+              StatusIs(absl::StatusCode::kNotFound, HasSubstr("no/such")));
 }
 
 TEST(TorchPluginTest, AMissingLibraryIsNamed) {

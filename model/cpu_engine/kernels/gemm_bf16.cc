@@ -57,9 +57,10 @@ DUET_BF16 inline void Tile(const Block& block, int column) {
                              ? _mm512_setzero_ps()
                              : _mm512_loadu_ps(block.bias + column + v * kLanes);
     for (int r = 0; r < kCount; ++r) {
-      sums[r][v] = block.adds ? _mm512_maskz_loadu_ps(valid[v], block.y.values + r * block.y.stride +
-                                                                    column + v * kLanes)
-                              : begin;
+      sums[r][v] = block.adds
+                       ? _mm512_maskz_loadu_ps(
+                             valid[v], block.y.values + r * block.y.stride + column + v * kLanes)
+                       : begin;
     }
   }
   for (int pair = 0; pair < block.pairs; ++pair, weights += 2 * kPanel) {
@@ -130,9 +131,9 @@ DUET_BF16 void Gemm(const Rows& x, const uint16_t* panels, const float* bias, bo
       const int size = std::min(kPairsAtOnce, pairs - first);
       Round(x, row, count, 2 * first, std::min(2 * size, x.width - 2 * first), rounded);
       const Output rows{y.values + row * y.stride, y.stride, y.width};
-      StripOf<kRows>(count, {rounded, panels + std::ptrdiff_t{first} * 2 * kPanel,
-                             std::ptrdiff_t{pairs} * 2 * kPanel, size, bias, adds || first > 0,
-                             rows});
+      StripOf<kRows>(count,
+                     {rounded, panels + std::ptrdiff_t{first} * 2 * kPanel,
+                      std::ptrdiff_t{pairs} * 2 * kPanel, size, bias, adds || first > 0, rows});
     }
     row += count;
   }

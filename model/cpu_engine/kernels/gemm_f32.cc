@@ -36,9 +36,8 @@ HWY_INLINE void Tile(const Product& product, int row, int column) {
     weights[p] = product.panels + static_cast<ptrdiff_t>(at / kPanel) * product.x.width * kPanel +
                  at % kPanel;
     for (int side = 0; side < 2; ++side) {
-      const Vector begin = product.bias == nullptr
-                               ? hn::Zero(d)
-                               : hn::LoadU(d, product.bias + at + side * lanes);
+      const Vector begin =
+          product.bias == nullptr ? hn::Zero(d) : hn::LoadU(d, product.bias + at + side * lanes);
       for (int r = 0; r < kCount; ++r) sums[r][2 * p + side] = begin;
     }
   }

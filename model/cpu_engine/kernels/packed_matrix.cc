@@ -1,5 +1,7 @@
 #include "model/cpu_engine/kernels/packed_matrix.h"
 
+#include <algorithm>
+
 #include "model/cpu_engine/kernels/gemm_bf16.h"
 #include "model/cpu_engine/kernels/gemm_f32.h"
 
@@ -27,12 +29,21 @@ std::vector<uint16_t> RoundedPanels(const std::vector<float>& panels, int output
 void PackPanels(const float* from, std::ptrdiff_t output_stride, std::ptrdiff_t input_stride,
                 int outputs, int inputs, float* panels) {
   for (int first = 0; first < outputs; first += kPanel) {
-    for (int k = 0; k < inputs; ++k) {
-      for (int c = 0; c < kPanel; ++c) {
-        const int n = first + c;
-        *panels++ = n < outputs ? from[n * output_stride + k * input_stride] : 0;
+    const int count = std::min(kPanel, outputs - first);
+    const float* const columns = from + first * output_stride;
+    if (count < kPanel) std::fill_n(panels, std::ptrdiff_t{inputs} * kPanel, 0.0f);
+    if (output_stride == 1) {
+      for (int k = 0; k < inputs; ++k) {
+        std::copy_n(columns + k * input_stride, count, panels + std::ptrdiff_t{k} * kPanel);
+      }
+    } else {
+      for (int c = 0; c < count; ++c) {
+        const float* column = columns + c * output_stride;
+        float* to = panels + c;
+        for (int k = 0; k < inputs; ++k, column += input_stride, to += kPanel) *to = *column;
       }
     }
+    panels += std::ptrdiff_t{inputs} * kPanel;
   }
 }
 

@@ -43,8 +43,7 @@ void Norm(const NormRow& row) {
   Vector squares = hn::Zero(d);
   for (int i = 0; i < row.width; i += Lanes()) {
     const auto valid = hn::FirstN(d, static_cast<size_t>(HWY_MIN(row.width - i, Lanes())));
-    const Vector from_mean =
-        hn::IfThenElseZero(valid, LoadFirst(row.width - i, row.x + i) - mean);
+    const Vector from_mean = hn::IfThenElseZero(valid, LoadFirst(row.width - i, row.x + i) - mean);
     squares = hn::MulAdd(from_mean, from_mean, squares);
   }
   const float variance = hn::GetLane(hn::SumOfLanes(d, squares)) / width;

@@ -19,15 +19,13 @@ HWY_INLINE void Softmax(int count, float* HWY_RESTRICT values) {
   Vector largest = lowest;
   for (int j = 0; j < count; j += Lanes()) {
     const auto valid = hn::FirstN(d, static_cast<size_t>(HWY_MIN(count - j, Lanes())));
-    largest =
-        hn::Max(largest, hn::IfThenElse(valid, LoadFirst(count - j, values + j), lowest));
+    largest = hn::Max(largest, hn::IfThenElse(valid, LoadFirst(count - j, values + j), lowest));
   }
   largest = hn::MaxOfLanes(d, largest);
   Vector sum = hn::Zero(d);
   for (int j = 0; j < count; j += Lanes()) {
     const auto valid = hn::FirstN(d, static_cast<size_t>(HWY_MIN(count - j, Lanes())));
-    const Vector e =
-        hn::IfThenElseZero(valid, Exp(LoadFirst(count - j, values + j) - largest));
+    const Vector e = hn::IfThenElseZero(valid, Exp(LoadFirst(count - j, values + j) - largest));
     sum = sum + e;
     StoreFirst(count - j, e, values + j);
   }

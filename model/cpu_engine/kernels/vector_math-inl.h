@@ -82,9 +82,7 @@ HWY_INLINE Vector Within(float low, Vector x, float high) {
 }
 
 // e^x, relative error below 2e-7 near 0 and 1e-5 at the ends; x is taken as within [-87, 88].
-HWY_INLINE Vector Exp(Vector x) {
-  return Exp2(hn::Set(Tag(), kLog2E) * Within(-87, x, 88));
-}
+HWY_INLINE Vector Exp(Vector x) { return Exp2(hn::Set(Tag(), kLog2E) * Within(-87, x, 88)); }
 
 HWY_INLINE Vector Sigmoid(Vector x) {
   const Vector one = hn::Set(Tag(), 1.0f);

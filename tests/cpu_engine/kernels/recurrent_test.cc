@@ -25,9 +25,11 @@ TEST_P(LstmCellsTest, StepsAsTheDefinition) {
   for (const int hidden : {1, 7, 16, 40}) {
     const int gates = 4 * hidden, stride = hidden + 5;
     // Up to where the functions saturate.
-    const std::vector<float> recurrent = Values(kRows * gates, 20), input = Values(kRows * gates, 3);
+    const std::vector<float> recurrent = Values(kRows * gates, 20),
+                             input = Values(kRows * gates, 3);
     const std::vector<float> before = Values(kRows * stride, 2);
-    std::vector<float> cell = before, state(before.size(), -99), out(static_cast<std::size_t>(kRows * hidden));
+    std::vector<float> cell = before, state(before.size(), -99),
+                       out(static_cast<std::size_t>(kRows * hidden));
     const float* inputs[kRows];
     float* outputs[kRows];
     for (int r = 0; r < kRows; ++r) {
@@ -42,8 +44,8 @@ TEST_P(LstmCellsTest, StepsAsTheDefinition) {
           const std::size_t at = At(r, gates, g * hidden + u);
           return double{recurrent[at]} + input[at];
         };
-        const double after = Sigmoid(gate(1)) * before[At(r, stride, u)] +
-                             Sigmoid(gate(0)) * std::tanh(gate(2));
+        const double after =
+            Sigmoid(gate(1)) * before[At(r, stride, u)] + Sigmoid(gate(0)) * std::tanh(gate(2));
         const double h = Sigmoid(gate(3)) * std::tanh(after);
         EXPECT_NEAR(cell[At(r, stride, u)], after, 1e-6) << hidden << " " << u;
         EXPECT_NEAR(state[At(r, stride, u)], h, 1e-6) << hidden << " " << u;
@@ -62,8 +64,8 @@ TEST_P(LstmCellsTest, EitherPartOfTheGatesMayBeMissing) {
   const auto run = [&](const float* recurrent, const float* const* input, std::vector<float>* out) {
     std::vector<float> cell(kHidden, 0.5f);
     float* outputs[] = {out->data()};
-    LstmCells({1, kHidden, recurrent, 4 * kHidden, input, state.data(), cell.data(), kHidden,
-               outputs});
+    LstmCells(
+        {1, kHidden, recurrent, 4 * kHidden, input, state.data(), cell.data(), kHidden, outputs});
   };
   run(nullptr, inputs, &from_input);
   run(gates.data(), nullptr, &from_gates);
@@ -82,8 +84,7 @@ TEST_P(AdditiveAttentionTest, WeighsFramesAsTheDefinition) {
                                values = Values(frames * width), query = Values(attention),
                                score = Values(attention, 3), before = Values(width);
       std::vector<float> sums = before, weights(static_cast<std::size_t>(frames));
-      WeighFrames(
-          {frames, attention, encoded.data(), query.data(), score.data(), weights.data()});
+      WeighFrames({frames, attention, encoded.data(), query.data(), score.data(), weights.data()});
       AddWeighted({values.data(), width, frames, width}, weights.data(), sums.data());
       std::vector<double> expected;
       double all = 0;

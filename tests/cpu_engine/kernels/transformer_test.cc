@@ -62,7 +62,8 @@ TEST_P(RowwiseTest, SoftmaxAddsUpToOneHoweverLargeTheValues) {
     for (std::size_t i = 0; i < values.size(); ++i) {
       largest = std::max<double>(largest, 0.5 * before[i] + bias[i]);
     }
-    for (std::size_t i = 0; i < values.size(); ++i) all += std::exp(0.5 * before[i] + bias[i] - largest);
+    for (std::size_t i = 0; i < values.size(); ++i)
+      all += std::exp(0.5 * before[i] + bias[i] - largest);
     for (std::size_t i = 0; i < values.size(); ++i) {
       sum += values[i];
       EXPECT_NEAR(values[i], std::exp(0.5 * before[i] + bias[i] - largest) / all, 1e-5);
