@@ -1,4 +1,5 @@
-# Builds duet-server and duet, and packs them with the libraries that they load and nothing else.
+# Builds duet-server and duet, and packs them with the libraries that they load and nothing else: LibTorch,
+# the server's other engine, is not among them.
 #
 #   docker build -t duet .
 #   docker run --rm -p 50051:50051 -p 9464:9464 duet

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Checks that packages/runtime.txt holds exactly the packages whose libraries the programs load by
-# name, and that the client does without LibTorch.
+# name, and that none of them is LibTorch.
 #   scripts/check_runtime_packages.sh build/release/bin
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -44,8 +44,10 @@ if ! difference="$(diff --label "runtime.txt lists" --label "the programs load" 
   exit 1
 fi
 
-if ldd "${bin_dir}/duet" | grep -F libtorch >&2; then
-  echo "The client program loads LibTorch." >&2
-  exit 1
-fi
+for program in "${programs[@]}"; do
+  if ldd "${bin_dir}/${program}" | grep -F libtorch >&2; then
+    echo "${program} loads LibTorch." >&2
+    exit 1
+  fi
+done
 echo "packages/runtime.txt matches ${programs[*]}."
