@@ -34,6 +34,9 @@ class Random {
   // (0, 1). Not Normal(1) in the last digits; the published t-SNE maps start from these.
   double StandardNormal();
 
+  // In (0, 1): the middle of a step of 2^-53. StandardNormal takes two: radius, then angle.
+  double OpenUniform();
+
   // Puts the values in a random order. Source: Fisher, Yates; Durstenfeld 1964.
   template <typename T>
   void Shuffle(std::vector<T>* values) {
@@ -44,8 +47,6 @@ class Random {
   }
 
  private:
-  double OpenUniform();
-
   std::mt19937_64 bits_;
 };
 

@@ -6,6 +6,7 @@
 
 #include "model/base/random.h"
 #include "model/cpu_engine/kernels/gemm_f32.h"
+#include "model/cpu_engine/kernels/normal.h"
 
 namespace duet::cpu_engine {
 namespace {
@@ -71,11 +72,12 @@ void FlowNoise::Fill(uint64_t seed, float variety, int known_frames, int frames,
     std::fill_n(out, count, 0.0f);
     return;
   }
+  // First what becomes smooth in time, then what stays as it is.
   float* const drawn = scratch->Take<float>(2 * count);
+  double* const uniform = scratch->Take<double>(4 * count);
   base::Random random(seed, 0);
-  for (std::ptrdiff_t i = 0; i < 2 * count; ++i) {
-    drawn[i] = static_cast<float>(random.StandardNormal());
-  }
+  for (std::ptrdiff_t i = 0; i < 4 * count; ++i) uniform[i] = random.OpenUniform();
+  kernels::StandardNormals(2 * count, uniform, drawn);
   const State& state = states_[known_frames > 0 ? 1 : 0];
   std::vector<float> longer;
   if (frames > frames_) {

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "model/base/random.h"
+#include "model/cpu_engine/kernels/normal.h"
 #include "model/cpu_engine/kernels/rowwise.h"
 #include "model/cpu_engine/kernels/self_attention.h"
 #include "tests/cpu_engine/kernels/every_target.h"
@@ -70,6 +72,29 @@ TEST_P(RowwiseTest, SoftmaxAddsUpToOneHoweverLargeTheValues) {
     }
     EXPECT_NEAR(sum, 1, 1e-5);
   }
+}
+
+class StandardNormalsTest : public EveryTarget {};
+DUET_FOR_EVERY_TARGET(StandardNormalsTest);
+
+TEST_P(StandardNormalsTest, AreWhatRandomDraws) {
+  for (const int count : {1, 7, 8, 1001}) {
+    base::Random uniform(5, 0), normal(5, 0);
+    std::vector<double> pairs;
+    for (int i = 0; i < 2 * count; ++i) pairs.push_back(uniform.OpenUniform());
+    std::vector<float> out(static_cast<std::size_t>(count));
+    StandardNormals(count, pairs.data(), out.data());
+    for (const float value : out) EXPECT_NEAR(value, normal.StandardNormal(), 1e-6);
+  }
+}
+
+TEST_P(StandardNormalsTest, TheEndsOfTheUniformNumbersAreFine) {
+  const double step = 0x1p-54;
+  const std::vector<double> pairs = {step, 1 - 2 * step, 1 - 2 * step, step};
+  float out[2];
+  StandardNormals(2, pairs.data(), out);
+  EXPECT_NEAR(out[0], std::sqrt(-2 * std::log(step)), 1e-5);
+  EXPECT_NEAR(out[1], 0, 1e-6);
 }
 
 class SelfAttentionTest : public EveryTarget {};
