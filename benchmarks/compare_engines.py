@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
-"""The engines beside eager PyTorch, one thread each, in one run: windows a second and how many times
-eager's best batch.
+"""The engines beside eager PyTorch and ONNX Runtime, one thread each, in one run: windows a second,
+and how many times those of the peers.
 
-    benchmarks/compare_engines.py build/release
+    benchmarks/compare_engines.py build/release [NODE_MODULES]
 
-Needs Debian's python3-torch. Each figure is the better of two rounds, in which all take turns:
-machines are noisy.
+Needs Debian's python3-torch; for ONNX Runtime also node and a folder with it: `npm install
+--ignore-scripts onnxruntime-node@1.17.3`. Times are the processor's, and each figure is the best of
+three rounds, in which all take turns: machines are noisy. Ours are whole answers (standard coordinates, checks, limb lengths; the
+clean-up is off), those of the peers the network alone.
 """
 import collections
 import json
@@ -13,6 +15,7 @@ import os
 import pathlib
 import subprocess
 import sys
+import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 BATCHES = (1, 8, 32, 64)
@@ -23,13 +26,13 @@ ENVIRONMENT = dict(os.environ, OMP_NUM_THREADS="1", MKL_NUM_THREADS="1")
 def ours(build):
     """(model, engine, batch) -> windows a second."""
     run = subprocess.run(
-        [build / "benchmarks/synthesis_benchmark", "--benchmark_filter=windows/sbu",
+        [build / "benchmarks/synthesis_benchmark", "--benchmark_filter=^windows/sbu",
          "--benchmark_min_time=0.5", "--benchmark_format=json"],
         stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=True, env=ENVIRONMENT)
     speeds = {}
     for row in json.loads(run.stdout)["benchmarks"]:
         _, model, engine, batch = row["name"].split("/")
-        speeds[model, engine, int(batch)] = 1000 * int(batch) / row["real_time"]
+        speeds[model, engine, int(batch)] = 1000 * int(batch) / row["cpu_time"]
     return speeds
 
 
@@ -39,6 +42,14 @@ def eager():
         stdout=subprocess.PIPE, check=True, env=ENVIRONMENT)
     rows = [json.loads(line) for line in run.stdout.splitlines()]
     return {(row["model"], "eager", row["batch"]): 1000 * row["batch"] / row["milliseconds"]
+            for row in rows}
+
+
+def onnx(modules, graphs):
+    run = subprocess.run(["node", HERE / "inference_onnx.mjs", modules, graphs,
+                          *map(str, BATCHES)], stdout=subprocess.PIPE, check=True)
+    rows = [json.loads(line) for line in run.stdout.splitlines()]
+    return {(row["model"], "onnx runtime", row["batch"]): 1000 * row["batch"] / row["milliseconds"]
             for row in rows}
 
 
@@ -53,24 +64,38 @@ def processor():
 
 def main():
     build = pathlib.Path(sys.argv[1]).resolve()
+    modules = pathlib.Path(sys.argv[2]).resolve() if len(sys.argv) > 2 else None
     best = collections.defaultdict(float)
-    for _ in range(2):
-        for measured in (eager(), ours(build)):
-            for key, speed in measured.items():
-                best[key] = max(best[key], speed)
+    with tempfile.TemporaryDirectory() as graphs:
+        peers = [eager]
+        if modules:
+            subprocess.run(["/usr/bin/python3", HERE / "inference_eager.py", "--export", graphs],
+                           stderr=subprocess.DEVNULL, check=True)
+            peers.append(lambda: onnx(modules, graphs))
+        for _ in range(3):
+            for measure in [*peers, lambda: ours(build)]:
+                for key, speed in measure().items():
+                    best[key] = max(best[key], speed)
+    print_tables(best)
+
+
+def print_tables(best):
     print(processor())
     for model, what in (("sbu@1", "the paper's generator"), ("sbu@2", "the sampling generator")):
         print(f"\n{what} ({model}), windows of 45 frames a second, one thread")
         print("| engine | " + " | ".join(f"batch {b}" for b in BATCHES)
-              + " | one window / eager's | best batch / eager's best |")
-        print("|---" * (len(BATCHES) + 3) + "|")
-        peer = max(best[model, "eager", b] for b in BATCHES)
-        for engine in ENGINES + ("eager",):
+              + " | one window / eager's | best / eager's best | / onnx runtime's, each batch |")
+        print("|---" * (len(BATCHES) + 4) + "|")
+        eagers, others = ([best[model, peer, b] for b in BATCHES]
+                          for peer in ("eager", "onnx runtime"))
+        for engine in ENGINES + ("eager", "onnx runtime"):
             row = [best[model, engine, b] for b in BATCHES]
             if max(row) == 0:
                 continue
+            ratios = [f"{speed / other:.1f}" for speed, other in zip(row, others) if other]
             print(f"| {engine} | " + " | ".join(f"{speed:.0f}" for speed in row)
-                  + f" | {row[0] / best[model, 'eager', 1]:.1f} | {max(row) / peer:.1f} |")
+                  + f" | {row[0] / eagers[0]:.1f} | {max(row) / max(eagers):.1f} | "
+                  + " ".join(ratios) + " |")
 
 
 if __name__ == "__main__":

@@ -1,7 +1,8 @@
 """The peers of synthesis_benchmark.cc: the same two generators in eager PyTorch, as one would write
-them first. Prints a line of JSON for each generator and batch: milliseconds, the median of a few.
+them first. Prints a line of JSON for each generator and batch: milliseconds of processor time, the median of a few.
 
     inference_eager.py THREADS BATCH...
+    inference_eager.py --export FOLDER      writes sbu@1.onnx and sbu@2.onnx, of any batch, instead
 
 Sizes: the embedded checkpoints' (sbu@1: the paper's sections 3.1 and 3.2; sbu@2: width 160, 4
 blocks, 4 heads, feed-forward 480, one step), 45 frames. Weights are random: speed does not depend
@@ -39,7 +40,7 @@ class Paper(nn.Module):
         self.output = nn.Linear(2 * state, 3 * JOINTS)
 
     def forward(self, leader, labels, start):
-        joints = leader.unflatten(2, (JOINTS, 3))
+        joints = leader.reshape(-1, FRAMES, JOINTS, 3)
         slices = [joints[:, :, part].flatten(2) for part in PARTS]
         slices.append(torch.cat([leader, labels, start.unsqueeze(1).expand(-1, FRAMES, -1)], 2))
         outputs, hidden, cell = [], ([], []), ([], [])
@@ -80,7 +81,7 @@ class Block(nn.Module):
     def forward(self, frames, condition):
         scale, shift, scale2, shift2 = self.modulation(condition).unsqueeze(1).chunk(4, 2)
         normal = nn.functional.layer_norm(frames, (WIDTH,)) * (1 + scale) + shift
-        q, k, v = self.attention(normal).unflatten(2, (3, HEADS, -1)).permute(2, 0, 3, 1, 4)
+        q, k, v = self.attention(normal).reshape(-1, FRAMES, 3, HEADS, WIDTH // HEADS).permute(2, 0, 3, 1, 4).unbind(0)
         scores = q @ k.transpose(2, 3) / math.sqrt(WIDTH // HEADS) + self.distance[:, self.at]
         frames = frames + self.attended((scores.softmax(3) @ v).transpose(1, 2).flatten(2))
         normal = nn.functional.layer_norm(frames, (WIDTH,)) * (1 + scale2) + shift2
@@ -123,13 +124,25 @@ def milliseconds(network, batch):
     with torch.no_grad():
         network(leader, labels, start)  # warms up
         while len(times) < 5 or sum(times) < 0.5:
-            begin = time.perf_counter()
+            begin = time.process_time()
             network(leader, labels, start)
-            times.append(time.perf_counter() - begin)
+            times.append(time.process_time() - begin)
     return 1000 * statistics.median(times)
 
 
+def export(folder):
+    arguments = {"leader": torch.randn(2, FRAMES, 3 * JOINTS),
+                 "labels": torch.zeros(2, FRAMES, CLASSES), "start": torch.zeros(2, START)}
+    for name, network in (("sbu@1", Paper()), ("sbu@2", Sampling())):
+        torch.onnx.export(network.eval(), tuple(arguments.values()), f"{folder}/{name}.onnx",
+                          input_names=list(arguments), output_names=["follower"],
+                          dynamic_axes={name: {0: "batch"} for name in (*arguments, "follower")},
+                          opset_version=14)
+
+
 def main():
+    if sys.argv[1] == "--export":
+        return export(sys.argv[2])
     threads, batches = int(sys.argv[1]), [int(batch) for batch in sys.argv[2:]]
     torch.set_num_threads(threads)
     torch.manual_seed(0)

@@ -47,10 +47,11 @@ std::vector<float> Label(const Synthesizer& model) {
   return label;
 }
 
-void Windows(benchmark::State& state, const Synthesizer* model) {
+void Windows(benchmark::State& state, const Synthesizer* model, bool clean_up) {
   const int frames = model->description().window_frames;
   duet::engine::SynthesisWindow window;
   window.leader = Leader(frames, model->description().skeleton.joint_count());
+  window.clean_up = clean_up;
   for (int t = 0; t < frames; ++t) {
     const std::vector<float> label = Label(*model);
     window.labels.insert(window.labels.end(), label.begin(), label.end());
@@ -85,12 +86,15 @@ void Register(const std::string& engine, const Models& models) {
   for (const std::unique_ptr<Synthesizer>& model : models) {
     const std::string name = model->description().name + "@" +
                              std::to_string(model->description().version) + "/" + engine;
-    benchmark::RegisterBenchmark(("windows/" + name).c_str(), Windows, model.get())
-        ->Arg(1)
-        ->Arg(8)
-        ->Arg(32)
-        ->Arg(64)
-        ->Unit(benchmark::kMillisecond);
+    for (const bool clean_up : {false, true}) {
+      const std::string what = clean_up ? "cleaned_windows/" : "windows/";
+      benchmark::RegisterBenchmark((what + name).c_str(), Windows, model.get(), clean_up)
+          ->Arg(1)
+          ->Arg(8)
+          ->Arg(32)
+          ->Arg(64)
+          ->Unit(benchmark::kMillisecond);
+    }
     benchmark::RegisterBenchmark(("ten_minutes/" + name).c_str(), TenMinutes, model.get())
         ->Unit(benchmark::kMillisecond);
   }
