@@ -193,7 +193,7 @@ void PaperNetwork::EncodeSlice(const Work& work, int slice, int direction, const
   kernels::LstmStep cells{0,
                           encoder_,
                           nullptr,
-                          4 * encoder_,
+                          4 * std::ptrdiff_t{encoder_},
                           inputs,
                           work.hidden[direction] + at,
                           work.cell[direction] + at,
@@ -204,7 +204,7 @@ void PaperNetwork::EncodeSlice(const Work& work, int slice, int direction, const
     cells.count = batch.LongerThan(step, cells.count);
     if (step > 0) {
       slices_[static_cast<std::size_t>(slice)].recurrent[direction].Multiply(
-          cells.count, cells.state, state_, recurrent, 4 * encoder_);
+          cells.count, cells.state, state_, recurrent, 4 * std::ptrdiff_t{encoder_});
       cells.gates = recurrent;
     }
     for (int n = 0; n < cells.count; ++n) {
@@ -219,7 +219,7 @@ void PaperNetwork::EncodeSlice(const Work& work, int slice, int direction, const
 PaperNetwork::DecoderWork PaperNetwork::PrepareDecoder(const WindowBatch& batch,
                                                        Scratch::Use* scratch) const {
   const std::ptrdiff_t windows = std::min(batch.count, kDecodedTogether);
-  const std::ptrdiff_t rows = windows * batch.length[0], width = 4 * state_;
+  const std::ptrdiff_t rows = windows * batch.length[0], width = 4 * std::ptrdiff_t{state_};
   DecoderWork work{};
   work.encoded = scratch->Take<float>(rows * attention_);
   work.values = scratch->Take<float>(rows * width);
@@ -294,9 +294,10 @@ void PaperNetwork::AddBase(const Work& work, float* followers) const {
     const float* const labels = work.input + row * inputs_ + width;
     const float* const start = labels + classes_;
     const auto mean = [&](int column) {
+      const float* const weights = base_.weight.data() + std::ptrdiff_t{column} * base_.inputs;
       float value = base_.bias[static_cast<std::size_t>(column)];
       for (int c = 0; c < base_.inputs; ++c) {
-        value += base_.weight[static_cast<std::size_t>(column * classes_ + c)] * labels[c];
+        value += weights[c] * labels[c];
       }
       return value;
     };
@@ -306,8 +307,9 @@ void PaperNetwork::AddBase(const Work& work, float* followers) const {
       const float mean_root = mean(3 * root_ + axis);
       const float root = root_known ? start[axis] : mean_root;
       for (int j = 0; j < joints_; ++j) {
-        const float pose = pose_known ? start[3 + 3 * j + axis] : mean(3 * j + axis) - mean_root;
-        followers[row * width + 3 * j + axis] += root + pose;
+        const int column = 3 * j + axis;
+        const float pose = pose_known ? start[3 + column] : mean(column) - mean_root;
+        followers[row * width + column] += root + pose;
       }
     }
   }

@@ -108,7 +108,7 @@ int RunServer(int argc, const char* const* argv, const EngineOpener& open_engine
   metrics::QueuedLogSink::Options log;
   log.drop_notice = [](std::uint64_t dropped) { return metrics::DroppedLinesNotice(dropped); };
   // Outlives everything that logs, and writes its last lines before the process ends.
-  metrics::QueuedLogSink queued_sink(std::move(sink), std::move(log));
+  metrics::QueuedLogSink queued_sink(std::move(sink), log);
   return Serve(*options, *source, stop, queued_sink).ok() ? kExitStopped : kExitFailed;
 }
 

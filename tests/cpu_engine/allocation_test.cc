@@ -49,7 +49,7 @@ TEST(AllocationTest, AnEvaluationAllocatesItsAnswersAlone) {
     for (const int frames : {model.window_frames, 3, 20}) {
       engine::NetworkInput input;
       input.leader = motion::Poses(frames, model.skeleton.joint_count());
-      input.labels.assign(static_cast<std::size_t>(frames * model.class_count()), 0.25f);
+      input.labels.assign(static_cast<std::size_t>(frames) * model.classes.size(), 0.25f);
       inputs.push_back(std::move(input));
     }
     for (const kernels::Precision precision : {kernels::Precision::kFloat32, BestPrecision()}) {

@@ -19,10 +19,9 @@ TEST(ScratchTest, PiecesDoNotOverlapAndBeginOnACacheLine) {
       EXPECT_EQ(reinterpret_cast<std::uintptr_t>(pieces.back()) % 64, 0u);
     }
     for (int i = 0; i < 200; ++i) {
-      EXPECT_TRUE(std::all_of(pieces[static_cast<std::size_t>(i)],
-                              pieces[static_cast<std::size_t>(i)] + i * 10 + 1,
-                              [i](int value) { return value == i; }))
-          << i;
+      const int* const piece = pieces[static_cast<std::size_t>(i)];
+      const std::ptrdiff_t size = std::ptrdiff_t{i} * 10 + 1;
+      EXPECT_TRUE(std::all_of(piece, piece + size, [i](int value) { return value == i; })) << i;
     }
   }
 }

@@ -35,6 +35,7 @@ int main(int argc, char** argv) {
             std::make_shared<duet::test::FakeSynthesizer>()};
       }};
   return duet::server::lifecycle::RunServer(
-      argc, argv, [&](const auto&) { return source; }, stop,
-      std::make_shared<duet::server::metrics::StreamLogSink>(stderr));
+      argc, argv,
+      [&](const auto&) -> absl::StatusOr<duet::server::lifecycle::ModelSource> { return source; },
+      stop, std::make_shared<duet::server::metrics::StreamLogSink>(stderr));
 }

@@ -10,8 +10,7 @@
 #include "model/cpu_engine/kernels/vector_math-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace duet::cpu_engine::kernels {
-namespace HWY_NAMESPACE {
+namespace duet::cpu_engine::kernels::HWY_NAMESPACE {
 
 HWY_INLINE float Energy(const AdditiveAttention& in, const float* HWY_RESTRICT encoded) {
   const Tag d;
@@ -61,8 +60,7 @@ void AddAll(const Rows& values, const float* weights, float* sums) {
   for (; first < values.width; first += Lanes()) AddColumns<1>(values, weights, first, sums);
 }
 
-}  // namespace HWY_NAMESPACE
-}  // namespace duet::cpu_engine::kernels
+}  // namespace duet::cpu_engine::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE

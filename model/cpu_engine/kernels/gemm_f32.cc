@@ -7,8 +7,7 @@
 #include "model/cpu_engine/kernels/vector_math-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace duet::cpu_engine::kernels {
-namespace HWY_NAMESPACE {
+namespace duet::cpu_engine::kernels::HWY_NAMESPACE {
 
 // Sums that fit the registers beside what is being multiplied.
 constexpr int kSums = HWY_TARGET <= HWY_AVX3 ? 24 : 12;
@@ -28,7 +27,7 @@ struct Product {
 template <int kCount, int kPairs>
 HWY_INLINE void Tile(const Product& product, int row, int column) {
   const Tag d;
-  const int lanes = Lanes(), step = 2 * lanes;
+  const int lanes = static_cast<int>(Lanes()), step = 2 * lanes;
   const float* weights[kPairs];
   Vector sums[kCount][2 * kPairs];
   for (int p = 0; p < kPairs; ++p) {
@@ -67,7 +66,7 @@ HWY_INLINE void Tile(const Product& product, int row, int column) {
 template <int kCount>
 HWY_INLINE void Strip(const Product& product, int row, int column, int end) {
   constexpr int kPairs = kRows / kCount < 4 ? kRows / kCount : 4;
-  const int step = 2 * Lanes();
+  const int step = 2 * static_cast<int>(Lanes());
   for (; column + (kPairs - 1) * step < end; column += kPairs * step) {
     Tile<kCount, kPairs>(product, row, column);
   }
@@ -105,8 +104,7 @@ void Gemm(const Rows& x, const float* panels, const float* bias, const Output& y
   }
 }
 
-}  // namespace HWY_NAMESPACE
-}  // namespace duet::cpu_engine::kernels
+}  // namespace duet::cpu_engine::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE

@@ -7,8 +7,7 @@
 #include "model/cpu_engine/kernels/vector_math-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace duet::cpu_engine::kernels {
-namespace HWY_NAMESPACE {
+namespace duet::cpu_engine::kernels::HWY_NAMESPACE {
 
 // The gates of one row, either part of which may be missing.
 struct Gates {
@@ -42,8 +41,7 @@ void Cells(const LstmStep& step) {
   }
 }
 
-}  // namespace HWY_NAMESPACE
-}  // namespace duet::cpu_engine::kernels
+}  // namespace duet::cpu_engine::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE

@@ -2,14 +2,12 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "model/cpu_engine/kernels/normal.cc"
+#include <hwy/contrib/math/math-inl.h>
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
 
-#include <hwy/contrib/math/math-inl.h>
-
 HWY_BEFORE_NAMESPACE();
-namespace duet::cpu_engine::kernels {
-namespace HWY_NAMESPACE {
+namespace duet::cpu_engine::kernels::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 using Tag = hn::CappedTag<double, 8>;
@@ -40,8 +38,7 @@ void BoxMuller(ptrdiff_t count, const double* uniform, float* out) {
   }
 }
 
-}  // namespace HWY_NAMESPACE
-}  // namespace duet::cpu_engine::kernels
+}  // namespace duet::cpu_engine::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE

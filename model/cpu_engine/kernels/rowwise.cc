@@ -10,13 +10,10 @@
 #include "model/cpu_engine/kernels/vector_math-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace duet::cpu_engine::kernels {
-namespace HWY_NAMESPACE {
+namespace duet::cpu_engine::kernels::HWY_NAMESPACE {
 
 // What is left of `count` values after `at`, as much as a vector may hold.
-HWY_INLINE int Left(ptrdiff_t count, ptrdiff_t at) {
-  return count - at >= Lanes() ? Lanes() : static_cast<int>(count - at);
-}
+HWY_INLINE ptrdiff_t Left(ptrdiff_t count, ptrdiff_t at) { return HWY_MIN(count - at, Lanes()); }
 
 void GeluInPlace(ptrdiff_t count, float* HWY_RESTRICT values) {
   const Tag d;
@@ -67,8 +64,7 @@ void SoftmaxWithBias(int count, float factor, const float* bias, float* HWY_REST
   Softmax(count, values);
 }
 
-}  // namespace HWY_NAMESPACE
-}  // namespace duet::cpu_engine::kernels
+}  // namespace duet::cpu_engine::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE

@@ -9,8 +9,7 @@
 #include "model/cpu_engine/kernels/vector_math-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace duet::cpu_engine::kernels {
-namespace HWY_NAMESPACE {
+namespace duet::cpu_engine::kernels::HWY_NAMESPACE {
 
 // Turns `count` values, 1 or more, into weights that add up to 1.
 HWY_INLINE void Softmax(int count, float* HWY_RESTRICT values) {
@@ -35,8 +34,7 @@ HWY_INLINE void Softmax(int count, float* HWY_RESTRICT values) {
   }
 }
 
-}  // namespace HWY_NAMESPACE
-}  // namespace duet::cpu_engine::kernels
+}  // namespace duet::cpu_engine::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

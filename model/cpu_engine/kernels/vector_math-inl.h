@@ -9,33 +9,32 @@
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace duet::cpu_engine::kernels {
-namespace HWY_NAMESPACE {
+namespace duet::cpu_engine::kernels::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 using Tag = hn::CappedTag<float, 16>;
 using Vector = hn::Vec<Tag>;
 
-inline int Lanes() { return static_cast<int>(hn::Lanes(Tag())); }
+inline ptrdiff_t Lanes() { return static_cast<ptrdiff_t>(hn::Lanes(Tag())); }
 
 // Whether a masked load or store touches nothing but what the mask names: before AVX2 Highway's
 // reads a whole vector, and wants it aligned.
 constexpr bool kMasksMemory = HWY_TARGET <= HWY_AVX2;
 
 // The first `valid` values, zeros after them; all of a vector when there are as many.
-HWY_INLINE Vector LoadFirst(int valid, const float* from) {
+HWY_INLINE Vector LoadFirst(ptrdiff_t valid, const float* from) {
   const Tag d;
   if (valid >= Lanes()) return hn::LoadU(d, from);
   if constexpr (kMasksMemory) {
     return hn::MaskedLoad(hn::FirstN(d, static_cast<size_t>(valid)), d, from);
   } else {
     HWY_ALIGN float whole[hn::MaxLanes(d)] = {};
-    for (int i = 0; i < valid; ++i) whole[i] = from[i];
+    for (ptrdiff_t i = 0; i < valid; ++i) whole[i] = from[i];
     return hn::Load(d, whole);
   }
 }
 
-HWY_INLINE void StoreFirst(int valid, Vector v, float* to) {
+HWY_INLINE void StoreFirst(ptrdiff_t valid, Vector v, float* to) {
   const Tag d;
   if (valid >= Lanes()) return hn::StoreU(v, d, to);
   if constexpr (kMasksMemory) {
@@ -43,7 +42,7 @@ HWY_INLINE void StoreFirst(int valid, Vector v, float* to) {
   } else {
     HWY_ALIGN float whole[hn::MaxLanes(d)];
     hn::Store(v, d, whole);
-    for (int i = 0; i < valid; ++i) to[i] = whole[i];
+    for (ptrdiff_t i = 0; i < valid; ++i) to[i] = whole[i];
   }
 }
 
@@ -113,8 +112,7 @@ HWY_INLINE Vector Erf(Vector x) {
   return hn::CopySignToAbs(result, x);
 }
 
-}  // namespace HWY_NAMESPACE
-}  // namespace duet::cpu_engine::kernels
+}  // namespace duet::cpu_engine::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

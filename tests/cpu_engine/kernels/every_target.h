@@ -13,10 +13,11 @@ namespace duet::cpu_engine::kernels {
 
 // Runs its tests once with each instruction set that this processor has, the plainest included.
 class EveryTarget : public ::testing::TestWithParam<int64_t> {
- protected:
+ public:
   EveryTarget();
   ~EveryTarget() override;
 
+ protected:
   // `count` values in [-size, size].
   std::vector<float> Values(int count, float size = 1);
 

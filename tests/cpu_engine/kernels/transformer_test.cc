@@ -82,7 +82,7 @@ TEST_P(StandardNormalsTest, AreWhatRandomDraws) {
     base::Random uniform(5, 0), normal(5, 0);
     std::vector<double> pairs;
     for (int i = 0; i < 2 * count; ++i) pairs.push_back(uniform.OpenUniform());
-    std::vector<float> out(static_cast<std::size_t>(count));
+    std::vector<float> out(pairs.size() / 2);
     StandardNormals(count, pairs.data(), out.data());
     for (const float value : out) EXPECT_NEAR(value, normal.StandardNormal(), 1e-6);
   }
