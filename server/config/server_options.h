@@ -42,6 +42,8 @@ struct ServerOptions {
   int threads_per_worker = 1;
   int max_calls = 128;
   int max_queued_windows = 64;
+  int max_batch_windows = 16;
+  double max_batch_delay_seconds = 0;
   std::size_t max_request_bytes = std::size_t{32} << 20;
   std::size_t max_transport_bytes = kTransportPerRequest * max_request_bytes;
   int buffered_frames = 240;
