@@ -14,13 +14,17 @@ using Indices = std::vector<std::size_t>;
 using common::SecondsBetween;
 using common::TimePoint;
 
-// Frames of higher lanes for each frame of a lane that waits: an eighth of the whole is its.
-constexpr int kOvertaking = 7;
 // When a window is wanted that has no deadline before: late enough for nearer deadlines to go
 // first, soon enough for it not to be passed over for long.
 constexpr std::chrono::seconds kPatience(1);
 // The part of throughput that an urgent window may not cost.
 constexpr double kThroughputKept = 0.75;
+// Of the time from a window's coming to its deadline, kept for its answer's way to the caller.
+constexpr int kWayBack = 8;
+// How long a batch of a lower lane may be while short calls come: so many windows alone, and they
+// come until none has for so long.
+constexpr double kHeldUp = 4;
+constexpr std::chrono::seconds kShortCallsCome(1);
 
 // The decision's steps on one state.
 class Decider {
@@ -35,9 +39,12 @@ class Decider {
   const CostEstimate& CostOf(std::size_t index) const {
     return state_.models[Window(index).model].cost;
   }
-  double SecondsLeft(std::size_t index) const {
-    return SecondsBetween(now_, Window(index).deadline);
+  // When its evaluation must have ended.
+  TimePoint DueAt(std::size_t index) const {
+    const TimePoint deadline = Window(index).deadline;
+    return deadline - (deadline - Window(index).queued_at) / kWayBack;
   }
+  double SecondsLeft(std::size_t index) const { return SecondsBetween(now_, DueAt(index)); }
   int FramesOf(const Indices& windows) const;
   double SecondsOf(const Indices& batch) const;  // of one model, not empty
 
@@ -45,6 +52,7 @@ class Decider {
   Indices LaneBatch(Lane lane) const;
   Indices WantedFirst(Lane lane, std::size_t model) const;
   std::size_t MostOf(const Indices& line) const;
+  std::size_t NotHeldUp(const Indices& line) const;
   Indices InTime(const Indices& line, std::size_t most) const;
   Indices ForTheMostUrgent(const Indices& full) const;
   Indices WithTimeFor(double seconds, const Indices& line, std::size_t most) const;
@@ -88,18 +96,19 @@ double Decider::SecondsOf(const Indices& batch) const {
 }
 
 absl::Status Decider::ReasonToDrop(std::size_t index) const {
-  const double left = SecondsLeft(index);
-  const double needed = CostOf(index).Seconds(Window(index).frames);
-  if (Window(index).cancelled) {
+  const WaitingWindow& window = Window(index);
+  if (window.cancelled) {
     return absl::CancelledError("the call was cancelled before this window started");
   }
-  if (left <= 0) {
+  if (now_ >= window.deadline) {
     return absl::DeadlineExceededError("the deadline passed before this window started");
   }
-  if (left < needed) {
+  const double needed = CostOf(index).Seconds(window.frames);
+  if (SecondsLeft(index) < needed) {
     return absl::DeadlineExceededError(
-        "the deadline was " + std::to_string(left) + " s away when this window's turn came, which" +
-        " takes about " + std::to_string(needed) + " s: it was not started");
+        "this window would have come too late: it takes about " + std::to_string(needed) +
+        " s, the deadline is " + std::to_string(SecondsBetween(now_, window.deadline)) +
+        " s away, and the answer needs time as well; it was not started");
   }
   return absl::OkStatus();
 }
@@ -127,7 +136,9 @@ Indices Decider::LaneBatch(Lane lane) const {
   }
   if (!model) return {};
   const Indices line = WantedFirst(lane, *model);
-  return InTime(line, MostOf(line));
+  std::size_t most = MostOf(line);
+  if (lane != Lane::kShort) most = std::min(most, NotHeldUp(line));
+  return InTime(line, most);
 }
 
 Indices Decider::WantedFirst(Lane lane, std::size_t model) const {
@@ -158,17 +169,35 @@ std::size_t Decider::MostOf(const Indices& line) const {
   return std::min(line.size(), static_cast<std::size_t>(std::min(limits_.max_windows, share)));
 }
 
-// At most so many of a line, 1 or more, whose batch ends before the deadline of each of them.
-Indices Decider::InTime(const Indices& line, std::size_t most) const {
-  const Indices full(line.begin(), line.begin() + static_cast<std::ptrdiff_t>(most));
-  Indices small = ForTheMostUrgent(full);
-  if (small.size() == full.size()) return small;
-  Indices later = WithTimeFor(SecondsOf(full), line, most);
-  if (later.empty() || Throughput(small) >= kThroughputKept * Throughput(later)) return small;
-  return later;
+// How many windows of a line hold a short call up no longer than they may.
+std::size_t Decider::NotHeldUp(const Indices& line) const {
+  if (now_ >= state_.last_short + kShortCallsCome) return line.size();
+  const CostEstimate& cost = CostOf(line.front());
+  // A hair more, so that rounding errors make no window less.
+  const double longest = (kHeldUp + 1e-6) * cost.Seconds(Window(line.front()).frames);
+  std::size_t count = 1;
+  int frames = Window(line.front()).frames;
+  for (; count < line.size(); ++count) {
+    frames += Window(line[count]).frames;
+    if (cost.Seconds(frames) > longest) break;
+  }
+  return count;
 }
 
-// The longest beginning of a batch that ends before the deadline of each of its windows.
+// At most so many of a line, 1 or more, whose batch is done in time for each of them.
+Indices Decider::InTime(const Indices& line, std::size_t most) const {
+  Indices full(line.begin(), line.begin() + static_cast<std::ptrdiff_t>(most));
+  const Indices urgent = ForTheMostUrgent(full);
+  // Others in its place: as large a batch as comes in time for enough of them.
+  for (; full.size() > urgent.size(); full.resize(full.size() / 2)) {
+    Indices others = WithTimeFor(SecondsOf(full), line, full.size());
+    if (others.empty()) continue;
+    if (Throughput(urgent) < kThroughputKept * Throughput(others)) return others;
+  }
+  return urgent;
+}
+
+// The longest beginning of a batch that is done in time for each of its windows.
 Indices Decider::ForTheMostUrgent(const Indices& full) const {
   Indices batch;
   double least_left = SecondsLeft(full.front());
@@ -210,8 +239,7 @@ std::optional<TimePoint> Decider::WaitFor(const Indices& batch) const {
   const std::chrono::duration<double> needed(SecondsOf(batch));
   for (const std::size_t i : batch) {
     end = std::min(end, Window(i).queued_at + limits_.max_delay);
-    end =
-        std::min(end, Window(i).deadline - std::chrono::duration_cast<TimePoint::duration>(needed));
+    end = std::min(end, DueAt(i) - std::chrono::duration_cast<TimePoint::duration>(needed));
   }
   if (end <= now_) return std::nullopt;
   return end;

@@ -29,17 +29,23 @@ struct ModelLoad {
   double served_seconds = 0;  // computing time that its windows have had
 };
 
+// So many frames of higher lanes may overtake each frame of a lane: an eighth of the whole is its.
+inline constexpr int kOvertaking = 7;
+
 // Everything that decides what a worker does next.
 struct QueueState {
   std::vector<WaitingWindow> windows;  // in the order they came
   std::vector<ModelLoad> models;
-  // For each lane, the frames of batches of higher lanes since it last had its turn or was empty.
+  // For each lane, the frames of higher lanes' batches that overtook it since it last was empty,
+  // less kOvertaking times those of its own.
   std::array<int, kLanes> overtaken_frames = {};
   int free_workers = 1;  // with the one that asks
   // When the batches of the other workers are expected to end.
   std::vector<common::TimePoint> busy_until;
   // When windows of more than one call were last seen together: a batch of them ended.
   common::TimePoint last_company = common::TimePoint::min();
+  // When the last window of a short call came.
+  common::TimePoint last_short = common::TimePoint::min();
 };
 
 struct BatchLimits {
@@ -63,16 +69,20 @@ struct Decision {
 // Decides what a free worker does. A function of its arguments alone.
 //
 // 1. Windows that are cancelled, expired, or so close to their deadline that the model would not be
-//    done by then even with each alone, are dropped.
-// 2. The highest lane with windows has its turn, unless higher lanes have evaluated seven times as
-//    many frames as a lower one's next batch holds while that waited: no lane starves, the lower
-//    ones are sure of an eighth each.
+//    done in time even with each alone, are dropped. In time is an eighth of a window's time before
+//    its deadline: the answer has a way to go, and under overload every window would else be
+//    evaluated just too late.
+// 2. The highest lane with windows has its turn, unless a lower one has been overtaken by
+// kOvertaking
+//    times as many frames as its next batch holds: no lane starves.
 // 3. Within the lane, the model whose windows have had the least computing time.
 // 4. Of its windows, those that are wanted first: at their deadline, or a second after they came.
-//    At most max_windows, and no more than let all workers end at about the same time. A batch is
-//    kept small enough for its most urgent window, unless that costs more than a quarter of
-//    throughput: then those for which the batch comes in time go, as many as there are.
-// 5. A batch that is not full waits, up to max_delay, if nothing else does and company is likely:
+//    At most max_windows, and no more than let all workers end at about the same time. While short
+//    calls come, a batch of a lower lane is no longer than four of its windows alone: that is what
+//    the next short call waits for.
+// 5. A batch is kept small enough for its most urgent window, unless that costs more than a quarter
+//    of throughput: then those for which the batch comes in time go, as many as there are.
+// 6. A batch that is not full waits, up to max_delay, if nothing else does and company is likely:
 //    another worker is busy or windows of several calls were there within max_delay. A lone call on
 //    an idle server waits for nobody.
 //

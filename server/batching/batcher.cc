@@ -83,13 +83,13 @@ absl::Status Batcher::Submit(WindowJob job) {
   {
     common::MutexLock lock(mutex_);
     if (stopping_) return ShuttingDown();
-    if (!queue_.HasRoomFor(job)) {
-      return absl::ResourceExhaustedError(
-          "the queue is full: " + std::to_string(queue_.first_windows()) +
-          " calls wait for their first window, at most " + std::to_string(queue_.capacity()) +
-          " may");
+    const common::TimePoint now = clock_.Now();
+    if (!queue_.HasRoomFor(job, now)) {
+      return absl::ResourceExhaustedError("the queue is full: at most " +
+                                          std::to_string(queue_.capacity()) +
+                                          " calls may wait for their first window");
     }
-    queue_.Push(std::move(job), clock_.Now());
+    queue_.Push(std::move(job), now);
   }
   changed_.NotifyOne();
   return absl::OkStatus();

@@ -28,9 +28,13 @@ int Batch::Frames() const {
   return frames;
 }
 
-bool WindowQueue::HasRoomFor(const WindowJob& job) const {
-  if (job.continues_call) return true;
-  return first_windows_ < ShareOf(options_.capacity, job.priority);
+bool WindowQueue::HasRoomFor(const WindowJob& job, TimePoint now) const {
+  const std::size_t most = ShareOf(options_.capacity, job.priority);
+  if (job.continues_call || waiting_.size() < most) return true;
+  const auto taken = std::count_if(waiting_.begin(), waiting_.end(), [&](const auto& window) {
+    return !window.job.continues_call && !IsCancelled(window.job) && now < window.job.deadline;
+  });
+  return static_cast<std::size_t>(taken) < most;
 }
 
 void WindowQueue::Push(WindowJob job, TimePoint now) {
@@ -39,7 +43,7 @@ void WindowQueue::Push(WindowJob job, TimePoint now) {
     account.served_seconds = std::max(account.served_seconds, served_by_now_);
   }
   ++account.waiting;
-  first_windows_ += job.continues_call ? 0 : 1;
+  if (LaneOf(job) == Lane::kShort) last_short_ = now;
   waiting_.push_back({std::move(job), now});
 }
 
@@ -106,13 +110,12 @@ QueueState WindowQueue::StateAt(TimePoint now) const {
   state.free_workers = options_.workers - static_cast<int>(running_.size());
   for (const auto& [number, end] : running_) state.busy_until.push_back(end);
   state.last_company = last_company_;
+  state.last_short = last_short_;
   return state;
 }
 
 QueuedWindow WindowQueue::TakeOut(std::size_t index) {
-  const WindowJob& job = waiting_[index].job;
-  --AccountOf(job).waiting;
-  first_windows_ -= job.continues_call ? 0 : 1;
+  --AccountOf(waiting_[index].job).waiting;
   return std::exchange(waiting_[index], {});
 }
 
@@ -122,15 +125,16 @@ void WindowQueue::RemoveTaken() {
 }
 
 void WindowQueue::CountOvertaking(const Batch& batch) {
+  if (batch.windows.empty()) return;
   std::array<bool, kLanes> waits = {};
   for (const QueuedWindow& window : waiting_) {
     waits[static_cast<std::size_t>(LaneOf(window.job))] = true;
   }
-  const std::size_t served =
-      batch.windows.empty() ? kLanes : static_cast<std::size_t>(LaneOf(batch.windows.front().job));
-  for (std::size_t lane = 0; lane < kLanes; ++lane) {
-    if (lane > served) overtaken_frames_[lane] += batch.Frames();
-    if (lane == served || !waits[lane]) overtaken_frames_[lane] = 0;
+  const auto served = static_cast<std::size_t>(LaneOf(batch.windows.front().job));
+  const int frames = batch.Frames();
+  overtaken_frames_[served] = std::max(0, overtaken_frames_[served] - kOvertaking * frames);
+  for (std::size_t lane = served + 1; lane < kLanes; ++lane) {
+    overtaken_frames_[lane] = waits[lane] ? overtaken_frames_[lane] + frames : 0;
   }
 }
 

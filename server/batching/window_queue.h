@@ -65,7 +65,8 @@ class WindowQueue {
 
   // True when a job like this may join: a further window of a call always; a call's first one while
   // fewer first windows wait, of whatever priority, than its own priority's share of the capacity.
-  bool HasRoomFor(const WindowJob& job) const;
+  // Those that are cancelled or expired take no room.
+  bool HasRoomFor(const WindowJob& job, common::TimePoint now) const;
   void Push(WindowJob job, common::TimePoint now);
 
   // What the worker that asks is to do.
@@ -76,7 +77,6 @@ class WindowQueue {
   std::vector<DroppedWindow> DropAll(const absl::Status& reason, common::TimePoint now);
 
   std::size_t size() const { return waiting_.size(); }
-  std::size_t first_windows() const { return first_windows_; }
   std::size_t capacity() const { return options_.capacity; }
 
  private:
@@ -98,11 +98,11 @@ class WindowQueue {
 
   const WindowQueueOptions options_;
   std::vector<QueuedWindow> waiting_;  // in the order they came
-  std::size_t first_windows_ = 0;      // of those that wait
   std::map<const engine::Synthesizer*, Account> accounts_;
   std::map<int, common::TimePoint> running_;  // batch number -> expected end
   std::array<int, kLanes> overtaken_frames_ = {};
   common::TimePoint last_company_ = common::TimePoint::min();
+  common::TimePoint last_short_ = common::TimePoint::min();
   // What the model whose batch started last had had by then. A model whose line was empty goes on
   // from here: having had nothing for a while gives no claim to everything now.
   double served_by_now_ = 0;

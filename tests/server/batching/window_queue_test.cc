@@ -80,52 +80,66 @@ TEST(WindowQueueTest, GivesAWindowOnce) {
 TEST(WindowQueueTest, TakesNoNewCallWhenFull) {
   const Model model = NewModel();
   WindowQueue queue({2, 1, {1}});
-  EXPECT_TRUE(queue.HasRoomFor(Job(model)));
+  EXPECT_TRUE(queue.HasRoomFor(Job(model), kNow));
   queue.Push(Job(model), kNow);
   queue.Push(Job(model), kNow);
-  EXPECT_FALSE(queue.HasRoomFor(Job(model)));
+  EXPECT_FALSE(queue.HasRoomFor(Job(model), kNow));
   Serve(queue, kNow, milliseconds(1));
-  EXPECT_TRUE(queue.HasRoomFor(Job(model)));
+  EXPECT_TRUE(queue.HasRoomFor(Job(model), kNow));
 }
 
 TEST(WindowQueueTest, AlwaysTakesTheNextWindowOfACallBegun) {
   const Model model = NewModel();
   WindowQueue queue({1, 1, {1}});
   queue.Push(Job(model), kNow);
-  EXPECT_TRUE(queue.HasRoomFor(LaterJob(model)));
-  EXPECT_TRUE(queue.HasRoomFor(LaterJob(model, Priority::kBulk)));
+  EXPECT_TRUE(queue.HasRoomFor(LaterJob(model), kNow));
+  EXPECT_TRUE(queue.HasRoomFor(LaterJob(model, Priority::kBulk), kNow));
 }
 
 TEST(WindowQueueTest, CallsBegunTakeNoRoomFromNewOnes) {
   const Model model = NewModel();
   WindowQueue queue({1, 1, {1}});
   for (int i = 0; i < 66; ++i) queue.Push(LaterJob(model), kNow);
-  EXPECT_TRUE(queue.HasRoomFor(Job(model)));
+  EXPECT_TRUE(queue.HasRoomFor(Job(model), kNow));
   queue.Push(Job(model), kNow);
-  EXPECT_FALSE(queue.HasRoomFor(Job(model)));
+  EXPECT_FALSE(queue.HasRoomFor(Job(model), kNow));
   EXPECT_EQ(queue.size(), 67u);
-  EXPECT_EQ(queue.first_windows(), 1u);
+}
+
+TEST(WindowQueueTest, WhatWillNeverStartTakesNoRoom) {
+  const Model model = NewModel();
+  WindowQueue queue({2, 1, {1}});
+  WindowJob cancelled = Job(model), expired = Job(model);
+  const auto flag = std::make_shared<std::atomic<bool>>(false);
+  cancelled.cancelled = flag;
+  expired.deadline = kNow + seconds(1);
+  queue.Push(std::move(cancelled), kNow);
+  queue.Push(std::move(expired), kNow);
+  EXPECT_FALSE(queue.HasRoomFor(Job(model), kNow));
+  EXPECT_TRUE(queue.HasRoomFor(Job(model), kNow + seconds(1)));
+  flag->store(true);
+  EXPECT_TRUE(queue.HasRoomFor(Job(model), kNow));
 }
 
 TEST(WindowQueueTest, KeepsAQuarterFreeOfBulk) {
   const Model model = NewModel();
   WindowQueue queue({4, 1, {1}});
   for (int i = 1; i <= 3; ++i) {
-    ASSERT_TRUE(queue.HasRoomFor(Job(model, Priority::kBulk)));
+    ASSERT_TRUE(queue.HasRoomFor(Job(model, Priority::kBulk), kNow));
     queue.Push(Job(model, Priority::kBulk), kNow);
   }
-  EXPECT_FALSE(queue.HasRoomFor(Job(model, Priority::kBulk)));
-  EXPECT_TRUE(queue.HasRoomFor(Job(model)));
+  EXPECT_FALSE(queue.HasRoomFor(Job(model, Priority::kBulk), kNow));
+  EXPECT_TRUE(queue.HasRoomFor(Job(model), kNow));
 }
 
 TEST(WindowQueueTest, WaitingInteractiveWindowsLeaveLessRoomForBulk) {
   const Model model = NewModel();
   WindowQueue queue({4, 1, {1}});
   for (int i = 1; i <= 2; ++i) queue.Push(Job(model), kNow);
-  EXPECT_TRUE(queue.HasRoomFor(Job(model, Priority::kBulk)));
+  EXPECT_TRUE(queue.HasRoomFor(Job(model, Priority::kBulk), kNow));
   queue.Push(Job(model), kNow);
-  EXPECT_FALSE(queue.HasRoomFor(Job(model, Priority::kBulk)));
-  EXPECT_TRUE(queue.HasRoomFor(Job(model)));
+  EXPECT_FALSE(queue.HasRoomFor(Job(model, Priority::kBulk), kNow));
+  EXPECT_TRUE(queue.HasRoomFor(Job(model), kNow));
 }
 
 TEST(WindowQueueTest, DropsCancelledAndExpiredWindows) {
@@ -145,7 +159,6 @@ TEST(WindowQueueTest, DropsCancelledAndExpiredWindows) {
   EXPECT_THAT(turn.dropped[1].reason, StatusIs(absl::StatusCode::kDeadlineExceeded, ::testing::_));
   EXPECT_EQ(turn.batch.windows.size(), 1u);
   EXPECT_EQ(queue.size(), 0u);
-  EXPECT_EQ(queue.first_windows(), 0u);
 }
 
 TEST(WindowQueueTest, LearnsWhatABatchCosts) {
@@ -155,8 +168,9 @@ TEST(WindowQueueTest, LearnsWhatABatchCosts) {
   EXPECT_EQ(Serve(queue, kNow, milliseconds(20)).windows, 1u);
   const common::TimePoint now = kNow + milliseconds(20);
   WindowJob hopeless = Job(model), sound = Job(model);
-  hopeless.deadline = now + milliseconds(19);
-  sound.deadline = now + milliseconds(21);
+  // Seven eighths of which are for the model.
+  hopeless.deadline = now + milliseconds(22);
+  sound.deadline = now + milliseconds(23);
   queue.Push(std::move(hopeless), now);
   queue.Push(std::move(sound), now);
   const Turn turn = queue.Next(now);
@@ -277,6 +291,29 @@ TEST(WindowQueueTest, AModelThatWasIdleHasNoClaimToEverything) {
   }
   EXPECT_GE(of_busy, 4);
   EXPECT_LE(of_busy, 6);
+}
+
+TEST(WindowQueueTest, LongCallsAndBulkGoInShortBatchesWhileShortCallsCome) {
+  const Model model = NewModel();
+  for (const Priority priority : {Priority::kInteractive, Priority::kBulk}) {
+    WindowQueue queue(Options(1, 16));
+    const auto push_long = [&](int count) {
+      for (int i = 0; i < count; ++i) {
+        WindowJob job = LaterJob(model, priority);
+        job.evaluated_frames = kLongCallFrames;
+        queue.Push(std::move(job), kNow);
+      }
+    };
+    push_long(1);
+    EXPECT_EQ(Serve(queue, kNow, milliseconds(5)).windows, 1u);
+    push_long(16);
+    EXPECT_EQ(Serve(queue, kNow, milliseconds(5 * 16)).windows, 16u);
+    queue.Push(Job(model), kNow);
+    EXPECT_EQ(Serve(queue, kNow, milliseconds(5)).windows, 1u);
+    push_long(16);
+    EXPECT_EQ(Serve(queue, kNow, milliseconds(5 * 4)).windows, 4u);
+    EXPECT_EQ(Serve(queue, kNow + seconds(1), milliseconds(5 * 12)).windows, 12u);
+  }
 }
 
 TEST(WindowQueueTest, LetsGoOfModelsThatAreGone) {
