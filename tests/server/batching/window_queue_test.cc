@@ -239,15 +239,21 @@ TEST(WindowQueueTest, BulkIsSureOfAnEighth) {
 TEST(WindowQueueTest, ALaneThatWasEmptyHasNoOldClaims) {
   const Model model = NewModel();
   WindowQueue queue(Options(1, 1));
-  const auto interactive = [&] {
-    queue.Push(Job(model), kNow);
-    EXPECT_EQ(Serve(queue, kNow, milliseconds(1)).priority, Priority::kInteractive);
+  const auto serve_interactive = [&](int times) {
+    for (int i = 0; i < times; ++i) {
+      queue.Push(Job(model), kNow);
+      EXPECT_EQ(Serve(queue, kNow, milliseconds(1)).priority, Priority::kInteractive);
+    }
   };
+  WindowJob given_up = Job(model, Priority::kBulk);
+  const auto flag = std::make_shared<std::atomic<bool>>(false);
+  given_up.cancelled = flag;
+  queue.Push(std::move(given_up), kNow);
+  serve_interactive(6);
+  flag->store(true);
+  serve_interactive(1);
   queue.Push(Job(model, Priority::kBulk), kNow);
-  for (int i = 0; i < 6; ++i) interactive();
-  EXPECT_EQ(Serve(queue, kNow, milliseconds(1)).priority, Priority::kBulk);
-  queue.Push(Job(model, Priority::kBulk), kNow);
-  for (int i = 0; i < 7; ++i) interactive();
+  serve_interactive(7);
   queue.Push(Job(model), kNow);
   EXPECT_EQ(Serve(queue, kNow, milliseconds(1)).priority, Priority::kBulk);
 }
@@ -277,6 +283,8 @@ TEST(WindowQueueTest, AModelThatWasIdleHasNoClaimToEverything) {
   const Model busy = NewModel(), idle = NewModel();
   WindowQueue queue(Options(1, 1));
   common::TimePoint now = kNow;
+  queue.Push(Job(idle), now);
+  Serve(queue, now, milliseconds(10));
   for (int i = 0; i < 100; ++i) {
     queue.Push(Job(busy), now);
     Serve(queue, now, milliseconds(10));
