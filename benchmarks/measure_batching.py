@@ -27,7 +27,7 @@ LOADS = [
     ("1 caller", ["--callers", "1"]),
     ("8 callers", ["--callers", "8"]),
     ("64 callers", ["--callers", "64"]),
-    ("1 caller beside 66 clips of ten minutes", ["--callers", "1", "--background-callers", "66"]),
+    ("1 caller beside 66 clips of ten minutes", ["--callers", "1", "--background-callers", "66", "--warm-up-seconds", "3"]),
     ("64 callers, deadline 0.3 s", ["--callers", "64", "--deadline-seconds", "0.3"]),
     ("64 callers, deadline 0.05 s", ["--callers", "64", "--deadline-seconds", "0.05"]),
 ]

@@ -16,7 +16,9 @@ TimePoint After(TimePoint start, double seconds) {
 
 int FramesOf(const WindowJob& job) { return job.window.leader.frame_count(); }
 
-Lane LaneOf(const WindowJob& job) { return LaneOf(job.priority, job.evaluated_frames); }
+Lane LaneOf(const WindowJob& job) {
+  return LaneOf(job.priority, job.call_windows, job.continues_call);
+}
 
 bool IsCancelled(const WindowJob& job) { return job.cancelled->load(std::memory_order_acquire); }
 

@@ -36,8 +36,8 @@ struct WindowJob {
   // A further window of a call that is being answered. Never refused for a full queue: what was
   // begun is finished, and a call has one window in the queue at most.
   bool continues_call = false;
-  // Of the call's windows so far, 0 or more. A call that has had much gives way to shorter ones.
-  int evaluated_frames = 0;
+  // How many windows the whole call has, 1 or more. A long call gives way to shorter ones.
+  int call_windows = 1;
   // Called once, on a thread of the scheduler, under no lock. Must not throw.
   std::function<void(WindowOutcome)> done;
 };

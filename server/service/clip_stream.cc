@@ -81,12 +81,11 @@ absl::Status ClipStream::ScheduleNext(bool continues_call) {
   job.deadline = options_.deadline;
   job.cancelled = cancelled_;
   job.continues_call = continues_call;
-  job.evaluated_frames = evaluated_frames_;
+  job.call_windows = clip_.window_count();
   job.done = [self = shared_from_this()](const batching::WindowOutcome& outcome) {
     self->OnWindow(outcome);
   };
   expected_frames_ = job.window.leader.frame_count();
-  evaluated_frames_ += expected_frames_;
   return scheduler_.Submit(std::move(job));
 }
 

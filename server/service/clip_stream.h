@@ -98,8 +98,7 @@ class ClipStream : public std::enable_shared_from_this<ClipStream> {
 
   // Used only by the thread that set in_flight_ or was given its window; frame_count() is constant.
   engine::ClipSynthesis clip_;
-  int expected_frames_ = 0;   // of the window in flight
-  int evaluated_frames_ = 0;  // of the windows before it
+  int expected_frames_ = 0;  // of the window in flight
 
   mutable common::Mutex mutex_;
   bool in_flight_ DUET_GUARDED_BY(mutex_) = false;

@@ -21,6 +21,7 @@ using std::chrono::milliseconds;
 
 constexpr TimePoint kStart(std::chrono::hours(1));
 constexpr int kFrames = 45;
+constexpr int kTenMinutes = 240;  // windows
 
 TimePoint After(TimePoint start, double seconds) {
   return start +
@@ -54,8 +55,8 @@ class Simulation {
       event();
     }
   }
-  // A window of a call that has had so many; `done` gets whether it was evaluated.
-  void Submit(int earlier_windows, Priority priority, TimePoint deadline,
+  // A window of a call of so many; `done` gets whether it was evaluated.
+  void Submit(int call_windows, bool continues_call, Priority priority, TimePoint deadline,
               std::function<void(bool)> done) {
     WindowJob job;
     job.model = model_;
@@ -63,8 +64,8 @@ class Simulation {
     job.priority = priority;
     job.deadline = deadline;
     job.cancelled = never_;
-    job.continues_call = earlier_windows > 0;
-    job.evaluated_frames = earlier_windows * kFrames;
+    job.call_windows = call_windows;
+    job.continues_call = continues_call;
     job.done = [done](const WindowOutcome& outcome) { done(outcome.result.ok()); };
     if (!queue_.HasRoomFor(job, now_)) return done(false);
     queue_.Push(std::move(job), now_);
@@ -112,7 +113,7 @@ double Goodput(const Engine& engine, double calls_per_second, double deadline_se
   for (int i = 0; i < static_cast<int>(kSeconds * calls_per_second); ++i) {
     simulation.At(After(kStart, i / calls_per_second), [&, deadline_seconds] {
       const TimePoint deadline = After(simulation.now(), deadline_seconds);
-      simulation.Submit(0, Priority::kInteractive, deadline, [&, deadline](bool evaluated) {
+      simulation.Submit(1, false, Priority::kInteractive, deadline, [&, deadline](bool evaluated) {
         in_time += evaluated && simulation.now() + milliseconds(3) <= deadline ? 1 : 0;
       });
     });
@@ -141,12 +142,12 @@ TEST(SimulatedLoadTest, WithoutTooManyCallsEachIsInTime) {
   }
 }
 
-// A call that asks for one window after the other.
-void KeepAsking(Simulation& simulation, Priority priority, int earlier_windows, int* evaluated) {
-  simulation.Submit(earlier_windows, priority, TimePoint::max(),
-                    [&simulation, priority, earlier_windows, evaluated](bool) {
+// A call that asks for one of so many windows after the other, and has done so for a while.
+void KeepAsking(Simulation& simulation, int call_windows, Priority priority, int* evaluated) {
+  simulation.Submit(call_windows, true, priority, TimePoint::max(),
+                    [&simulation, call_windows, priority, evaluated](bool) {
                       ++*evaluated;
-                      KeepAsking(simulation, priority, earlier_windows + 1, evaluated);
+                      KeepAsking(simulation, call_windows, priority, evaluated);
                     });
 }
 
@@ -157,14 +158,13 @@ double MedianWait(const Engine& engine, int long_calls, Priority priority) {
   int others = 0;
   for (int i = 0; i < long_calls; ++i) {
     // They are under way when the first short call comes.
-    simulation.At(kStart + i * milliseconds(1), [&] {
-      KeepAsking(simulation, priority, kLongCallFrames / kFrames + 1, &others);
-    });
+    simulation.At(kStart + i * milliseconds(1),
+                  [&] { KeepAsking(simulation, kTenMinutes, priority, &others); });
   }
   std::vector<double> waits;
   for (int i = 0; i < kCalls; ++i) {
     simulation.At(After(kStart, 1 + 0.0371 * i), [&] {
-      simulation.Submit(0, Priority::kInteractive, TimePoint::max(),
+      simulation.Submit(1, false, Priority::kInteractive, TimePoint::max(),
                         [&, start = simulation.now()](bool) {
                           waits.push_back(common::SecondsBetween(start, simulation.now()));
                         });
@@ -189,12 +189,12 @@ TEST(SimulatedLoadTest, NobodyStarvesBesideEndlessShortCalls) {
   Simulation simulation(kFast, 16);
   int bulk = 0, long_calls = 0, short_calls = 0;
   for (int i = 0; i < 20; ++i) {
-    KeepAsking(simulation, Priority::kBulk, 1, &bulk);
-    KeepAsking(simulation, Priority::kInteractive, kLongCallFrames, &long_calls);
+    KeepAsking(simulation, kTenMinutes, Priority::kBulk, &bulk);
+    KeepAsking(simulation, kTenMinutes, Priority::kInteractive, &long_calls);
   }
   std::function<void(bool)> again = [&](bool evaluated) {
     short_calls += evaluated ? 1 : 0;
-    simulation.Submit(0, Priority::kInteractive, TimePoint::max(), again);
+    simulation.Submit(1, false, Priority::kInteractive, TimePoint::max(), again);
   };
   for (int i = 0; i < 60; ++i) again(false);
   simulation.RunUntil(After(kStart, 5));

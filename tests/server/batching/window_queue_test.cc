@@ -207,12 +207,12 @@ TEST(WindowQueueTest, ALongCallGivesWayToShortOnes) {
   const Model model = NewModel();
   WindowQueue queue(Options(1, 1));
   WindowJob long_call = LaterJob(model);
-  long_call.evaluated_frames = kLongCallFrames;
+  long_call.call_windows = kShortCallWindows + 1;
   WindowJob short_call = LaterJob(model);
-  short_call.evaluated_frames = kLongCallFrames - 1;
+  short_call.call_windows = kShortCallWindows;
   queue.Push(std::move(long_call), kNow);
   queue.Push(std::move(short_call), kNow);
-  EXPECT_EQ(queue.Next(kNow).batch.windows[0].job.evaluated_frames, kLongCallFrames - 1);
+  EXPECT_EQ(queue.Next(kNow).batch.windows[0].job.call_windows, kShortCallWindows);
 }
 
 // Both ask for more than there is.
@@ -308,7 +308,7 @@ TEST(WindowQueueTest, LongCallsAndBulkGoInShortBatchesWhileShortCallsCome) {
     const auto push_long = [&](int count) {
       for (int i = 0; i < count; ++i) {
         WindowJob job = LaterJob(model, priority);
-        job.evaluated_frames = kLongCallFrames;
+        job.call_windows = kShortCallWindows + 1;
         queue.Push(std::move(job), kNow);
       }
     };
@@ -370,12 +370,14 @@ TEST(ShareOfTest, LeavesSomethingToBulkWhateverTheLimit) {
   EXPECT_EQ(ShareOf(128, Priority::kInteractive), 128u);
 }
 
-TEST(LaneTest, DependsOnPriorityAndOnWhatTheCallHasHad) {
-  EXPECT_EQ(LaneOf(Priority::kInteractive, 0), Lane::kShort);
-  EXPECT_EQ(LaneOf(Priority::kInteractive, kLongCallFrames - 1), Lane::kShort);
-  EXPECT_EQ(LaneOf(Priority::kInteractive, kLongCallFrames), Lane::kLong);
-  EXPECT_EQ(LaneOf(Priority::kBulk, 0), Lane::kBulk);
-  EXPECT_EQ(LaneOf(Priority::kBulk, kLongCallFrames), Lane::kBulk);
+TEST(LaneTest, DependsOnPriorityAndOnTheCallsLength) {
+  constexpr int kLong = kShortCallWindows + 1;
+  EXPECT_EQ(LaneOf(Priority::kInteractive, 1, false), Lane::kShort);
+  EXPECT_EQ(LaneOf(Priority::kInteractive, kShortCallWindows, true), Lane::kShort);
+  EXPECT_EQ(LaneOf(Priority::kInteractive, kLong, true), Lane::kLong);
+  EXPECT_EQ(LaneOf(Priority::kInteractive, kLong, false), Lane::kShort) << "its first window";
+  EXPECT_EQ(LaneOf(Priority::kBulk, 1, false), Lane::kBulk);
+  EXPECT_EQ(LaneOf(Priority::kBulk, kLong, true), Lane::kBulk);
 }
 
 }  // namespace

@@ -165,15 +165,14 @@ TEST(ClipStreamTest, PassesOnPriorityAndDeadline) {
   EXPECT_EQ(stream.scheduler().NextDeadline(), common::TimePoint(std::chrono::seconds(7)));
 }
 
-TEST(ClipStreamTest, TellsHowMuchTheClipHasHadSoFar) {
+TEST(ClipStreamTest, TellsHowManyWindowsTheClipHas) {
   PuppetStream stream(200);
   ASSERT_THAT(stream->Start(), IsOk());
-  EXPECT_EQ(stream.scheduler().NextEvaluatedFrames(), 0);
+  const int windows = stream.scheduler().NextCallWindows();
   stream.scheduler().RunNext();
-  const int window = FakeDescription().window_frames;
-  EXPECT_EQ(stream.scheduler().NextEvaluatedFrames(), window);
-  stream.scheduler().RunNext();
-  EXPECT_EQ(stream.scheduler().NextEvaluatedFrames(), 2 * window);
+  EXPECT_EQ(stream.scheduler().NextCallWindows(), windows);
+  stream.RunAll();
+  EXPECT_EQ(stream->stats().windows, windows);
 }
 
 TEST(ClipStreamTest, AReaderThatDoesNotTakePausesTheClip) {

@@ -52,9 +52,9 @@ server::common::TimePoint PuppetScheduler::NextDeadline() const {
   return jobs_.front().deadline;
 }
 
-int PuppetScheduler::NextEvaluatedFrames() const {
+int PuppetScheduler::NextCallWindows() const {
   server::common::MutexLock lock(mutex_);
-  return jobs_.front().evaluated_frames;
+  return jobs_.front().call_windows;
 }
 
 server::batching::WindowJob PuppetScheduler::Take() {
