@@ -23,7 +23,7 @@ constexpr double kThroughputKept = 0.75;
 constexpr int kWayBack = 8;
 // How long a batch of a lower lane may be while short calls come: so many windows alone, and they
 // come until none has for so long.
-constexpr double kHeldUp = 4;
+constexpr double kHeldUp = 3;
 constexpr std::chrono::seconds kShortCallsCome(1);
 
 // The decision's steps on one state.

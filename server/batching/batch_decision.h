@@ -78,7 +78,7 @@ struct Decision {
 // 3. Within the lane, the model whose windows have had the least computing time.
 // 4. Of its windows, those that are wanted first: at their deadline, or a second after they came.
 //    At most max_windows, and no more than let all workers end at about the same time. While short
-//    calls come, a batch of a lower lane is no longer than four of its windows alone: that is what
+//    calls come, a batch of a lower lane is no longer than three of its windows alone: that is what
 //    the next short call waits for.
 // 5. A batch is kept small enough for its most urgent window, unless that costs more than a quarter
 //    of throughput: then those for which the batch comes in time go, as many as there are.

