@@ -1,25 +1,153 @@
 #include "server/batching/window_queue.h"
 
+#include <algorithm>
+#include <chrono>
 #include <utility>
 
 namespace duet::server::batching {
+namespace {
 
-bool WindowQueue::HasRoomFor(const WindowJob& job) const {
-  if (job.continues_call) return true;
-  return size() < ShareOf(capacity_, job.priority);
+using common::TimePoint;
+
+TimePoint After(TimePoint start, double seconds) {
+  return start +
+         std::chrono::duration_cast<TimePoint::duration>(std::chrono::duration<double>(seconds));
 }
 
-void WindowQueue::Push(QueuedWindow window) {
-  std::deque<QueuedWindow>& line = window.job.priority == Priority::kBulk ? bulk_ : interactive_;
-  line.push_back(std::move(window));
+int FramesOf(const WindowJob& job) { return job.window.leader.frame_count(); }
+
+Lane LaneOf(const WindowJob& job) {
+  return LaneOf(job.priority, job.call_windows, job.continues_call);
 }
 
-std::optional<QueuedWindow> WindowQueue::Pop() {
-  std::deque<QueuedWindow>& line = interactive_.empty() ? bulk_ : interactive_;
-  if (line.empty()) return std::nullopt;
-  QueuedWindow next = std::move(line.front());
-  line.pop_front();
-  return next;
+bool IsCancelled(const WindowJob& job) { return job.cancelled->load(std::memory_order_acquire); }
+
+}  // namespace
+
+int Batch::Frames() const {
+  int frames = 0;
+  for (const QueuedWindow& window : windows) frames += FramesOf(window.job);
+  return frames;
+}
+
+bool WindowQueue::HasRoomFor(const WindowJob& job, TimePoint now) const {
+  const std::size_t most = ShareOf(options_.capacity, job.priority);
+  if (job.continues_call || waiting_.size() < most) return true;
+  const auto taken = std::count_if(waiting_.begin(), waiting_.end(), [&](const auto& window) {
+    return !window.job.continues_call && !IsCancelled(window.job) && now < window.job.deadline;
+  });
+  return static_cast<std::size_t>(taken) < most;
+}
+
+void WindowQueue::Push(WindowJob job, TimePoint now) {
+  Account& account = AccountOf(job);
+  if (account.waiting == 0) {
+    account.served_seconds = std::max(account.served_seconds, served_by_now_);
+  }
+  ++account.waiting;
+  if (LaneOf(job) == Lane::kShort) last_short_ = now;
+  waiting_.push_back({std::move(job), now});
+}
+
+Turn WindowQueue::Next(TimePoint now) {
+  Decision decision = Decide(StateAt(now), options_.limits, now);
+  Turn turn;
+  turn.look_again = decision.look_again;
+  for (Decision::Drop& drop : decision.dropped) {
+    turn.dropped.push_back({TakeOut(drop.window), std::move(drop.reason)});
+  }
+  for (const std::size_t index : decision.batch) turn.batch.windows.push_back(TakeOut(index));
+  RemoveTaken();
+  CountOvertaking(turn.batch);
+  if (!turn.batch.windows.empty()) Start(turn.batch, now);
+  return turn;
+}
+
+void WindowQueue::Finished(const Batch& batch, TimePoint now) {
+  const double seconds = common::SecondsBetween(batch.started_at, now);
+  Account& account = AccountOf(batch.windows.front().job);
+  account.cost.Observe(batch.Frames(), seconds, now);
+  account.served_seconds += seconds - batch.expected_seconds;
+  running_.erase(batch.number);
+  if (batch.windows.size() > 1) last_company_ = now;
+}
+
+std::vector<DroppedWindow> WindowQueue::DropAll(const absl::Status& reason, TimePoint now) {
+  std::vector<DroppedWindow> dropped;
+  std::vector<Decision::Drop> over = Decide(StateAt(now), options_.limits, now).dropped;
+  for (Decision::Drop& drop : over) {
+    dropped.push_back({TakeOut(drop.window), std::move(drop.reason)});
+  }
+  RemoveTaken();
+  for (std::size_t i = 0; i < waiting_.size(); ++i) dropped.push_back({TakeOut(i), reason});
+  RemoveTaken();
+  return dropped;
+}
+
+WindowQueue::Account& WindowQueue::AccountOf(const WindowJob& job) {
+  const auto found = accounts_.find(job.model.get());
+  if (found != accounts_.end() && !found->second.model.expired()) return found->second;
+  // Models that are gone, one at the same address among them.
+  for (auto account = accounts_.begin(); account != accounts_.end();) {
+    account = account->second.model.expired() ? accounts_.erase(account) : std::next(account);
+  }
+  Account& account = accounts_[job.model.get()];
+  account.model = job.model;
+  return account;
+}
+
+QueueState WindowQueue::StateAt(TimePoint now) const {
+  QueueState state;
+  std::map<const engine::Synthesizer*, std::size_t> index;
+  for (const auto& [model, account] : accounts_) {
+    index[model] = state.models.size();
+    state.models.push_back({account.cost.At(now), account.served_seconds});
+  }
+  state.windows.reserve(waiting_.size());
+  for (const auto& [job, queued_at] : waiting_) {
+    state.windows.push_back({index[job.model.get()], LaneOf(job), FramesOf(job), queued_at,
+                             job.deadline, IsCancelled(job)});
+  }
+  state.overtaken_frames = overtaken_frames_;
+  state.free_workers = options_.workers - static_cast<int>(running_.size());
+  for (const auto& [number, end] : running_) state.busy_until.push_back(end);
+  state.last_company = last_company_;
+  state.last_short = last_short_;
+  return state;
+}
+
+QueuedWindow WindowQueue::TakeOut(std::size_t index) {
+  --AccountOf(waiting_[index].job).waiting;
+  return std::exchange(waiting_[index], {});
+}
+
+void WindowQueue::RemoveTaken() {
+  const auto taken = [](const QueuedWindow& window) { return window.job.model == nullptr; };
+  waiting_.erase(std::remove_if(waiting_.begin(), waiting_.end(), taken), waiting_.end());
+}
+
+void WindowQueue::CountOvertaking(const Batch& batch) {
+  if (batch.windows.empty()) return;
+  std::array<bool, kLanes> waits = {};
+  for (const QueuedWindow& window : waiting_) {
+    waits[static_cast<std::size_t>(LaneOf(window.job))] = true;
+  }
+  const auto served = static_cast<std::size_t>(LaneOf(batch.windows.front().job));
+  const int frames = batch.Frames();
+  overtaken_frames_[served] = std::max(0, overtaken_frames_[served] - kOvertaking * frames);
+  for (std::size_t lane = served + 1; lane < kLanes; ++lane) {
+    overtaken_frames_[lane] = waits[lane] ? overtaken_frames_[lane] + frames : 0;
+  }
+}
+
+void WindowQueue::Start(Batch& batch, TimePoint now) {
+  Account& account = AccountOf(batch.windows.front().job);
+  batch.number = ++batches_;
+  batch.started_at = now;
+  batch.expected_seconds = account.cost.At(now).Seconds(batch.Frames());
+  running_[batch.number] = After(now, batch.expected_seconds);
+  served_by_now_ = std::max(served_by_now_, account.served_seconds);
+  account.served_seconds += batch.expected_seconds;
 }
 
 }  // namespace duet::server::batching

@@ -16,8 +16,8 @@ namespace duet::server::batching {
 // Where a window's time went.
 struct WindowTimings {
   double queue_seconds = 0;
-  double compute_seconds = 0;
-  int batch_size = 0;  // windows evaluated together; 0 when the window never started
+  double compute_seconds = 0;  // of the batch that the window was part of
+  int batch_size = 0;          // windows evaluated together; 0 when the window never started
 };
 
 struct WindowOutcome {
@@ -36,28 +36,32 @@ struct WindowJob {
   // A further window of a call that is being answered. Never refused for a full queue: what was
   // begun is finished, and a call has one window in the queue at most.
   bool continues_call = false;
+  // How many windows the whole call has, 1 or more. A long call gives way to shorter ones.
+  int call_windows = 1;
   // Called once, on a thread of the scheduler, under no lock. Must not throw.
   std::function<void(WindowOutcome)> done;
 };
 
-// Told of every window that left a scheduler's queue, whether it was evaluated or dropped.
+// Told of every batch, and of every window that left a scheduler's queue, whether it was evaluated
+// or dropped.
 //
 // Threads: called concurrently, on the scheduler's threads, under no lock. Must neither block nor
 // throw.
 class WindowObserver {
  public:
   virtual ~WindowObserver() = default;
+  // A batch was evaluated: compute_seconds and batch_size are set.
+  virtual void BatchFinished(const WindowTimings& timings) = 0;
   virtual void WindowFinished(Priority priority, const WindowTimings& timings) = 0;
 };
 
-// Decides when windows are evaluated, and with which others. A scheduler that batches windows of
-// many calls takes the place of one that does not without its callers noticing.
+// Decides when windows are evaluated, and with which others. Callers do not notice the others.
 //
 //   absl::Status admitted = scheduler.Submit(std::move(job));
 //   if (!admitted.ok()) return admitted;   // job.done will never run
 //
-// A job that is cancelled or past its deadline when its turn comes never starts: done gets
-// CANCELLED or DEADLINE_EXCEEDED.
+// A job that is cancelled, past its deadline or too close to it to be done in time never starts:
+// done gets CANCELLED or DEADLINE_EXCEEDED.
 //
 // Threads: safe to call concurrently.
 class WindowScheduler {

@@ -12,8 +12,8 @@ namespace duet::server::config {
 std::optional<double> ParseCpuMax(const std::string& text);
 
 // The cores that this process may keep busy, 1 or more: the tightest of its cgroups' limits
-// (version 2) and the machine's. More threads than this throttle each other: a limit of 4 on 40
-// cores leaves 10 ms of every 100.
+// (version 1 and 2) and of the processors that the calling thread may run on. More threads than
+// this throttle each other: a limit of 4 on 40 cores leaves 10 ms of every 100.
 //
 // `system_root` is "/" but in tests.
 int AvailableCores(const std::filesystem::path& system_root = "/");

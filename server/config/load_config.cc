@@ -129,7 +129,7 @@ void AddCapacityFlags(CLI::App& app, v1::ServerConfig& config) {
       ->option_text("auto|f32|bf16");
   app.add_option_function<uint32_t>(
          "--workers", [&](uint32_t value) { config.set_workers(value); },
-         "windows evaluated at the same time (default: the container's cores)")
+         "batches evaluated at the same time (default: the container's cores)")
       ->option_text("N");
   app.add_option_function<uint32_t>(
          "--threads-per-worker", [&](uint32_t value) { config.set_threads_per_worker(value); },
@@ -141,9 +141,19 @@ void AddCapacityFlags(CLI::App& app, v1::ServerConfig& config) {
       ->option_text("N");
   app.add_option_function<uint32_t>(
          "--max-queued-windows", [&](uint32_t value) { config.set_max_queued_windows(value); },
-         Defaulting("waiting windows above which new calls are refused",
+         Defaulting("calls waiting for their first window above which new ones are refused",
                     defaults.max_queued_windows))
       ->option_text("N");
+  app.add_option_function<uint32_t>(
+         "--max-batch-windows", [&](uint32_t value) { config.set_max_batch_windows(value); },
+         Defaulting("windows of different calls evaluated together", defaults.max_batch_windows))
+      ->option_text("N");
+  app.add_option_function<double>(
+         "--max-batch-delay-seconds",
+         [&](double value) { config.set_max_batch_delay_seconds(value); },
+         Defaulting("how long a batch that is not full waits for more",
+                    defaults.max_batch_delay_seconds))
+      ->option_text("S");
   app.add_option_function<uint64_t>(
          "--max-request-bytes", [&](uint64_t value) { config.set_max_request_bytes(value); },
          Defaulting("size of a request", defaults.max_request_bytes))

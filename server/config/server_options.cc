@@ -133,6 +133,17 @@ void ReadLimits(const v1::ServerConfig& config, Reader& reader, ServerOptions& o
   }
 }
 
+void ReadBatching(const v1::ServerConfig& config, Reader& reader, ServerOptions& options) {
+  if (config.has_max_batch_windows()) {
+    options.max_batch_windows = static_cast<int>(reader.InRange(
+        "max_batch_windows", config.max_batch_windows(), uint32_t{1}, uint32_t{1024}));
+  }
+  if (config.has_max_batch_delay_seconds()) {
+    options.max_batch_delay_seconds =
+        reader.InRange("max_batch_delay_seconds", config.max_batch_delay_seconds(), 0, 1);
+  }
+}
+
 void ReadCleanUp(const v1::ServerConfig& config, Reader& reader, ServerOptions& options) {
   if (!config.has_clean_up()) return;
   switch (config.clean_up()) {
@@ -178,6 +189,7 @@ absl::StatusOr<ServerOptions> ToOptions(const v1::ServerConfig& config, int core
   ReadEngine(config, reader, options.engine);
   ReadThreads(config, cores, reader, options);
   ReadLimits(config, reader, options);
+  ReadBatching(config, reader, options);
   if (!reader.status().ok()) return reader.status();
   return options;
 }

@@ -51,6 +51,8 @@ struct ServerOptions {
   int workers = 1;  // ToOptions: as many as the cores allow
   int max_calls = 128;
   int max_queued_windows = 64;
+  int max_batch_windows = 16;
+  double max_batch_delay_seconds = 0;
   std::size_t max_request_bytes = std::size_t{32} << 20;
   std::size_t max_transport_bytes = kTransportPerRequest * max_request_bytes;
   int buffered_frames = 240;

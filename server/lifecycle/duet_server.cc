@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "server/batching/worker_pool.h"
+#include "server/batching/batcher.h"
 #include "server/service/refusals.h"
 
 namespace duet::server::lifecycle {
@@ -25,6 +25,13 @@ service::RequestLimits Limits(const config::ServerOptions& options) {
   return limits;
 }
 
+batching::BatcherOptions Batching(const config::ServerOptions& options) {
+  const std::chrono::duration<double> delay(options.max_batch_delay_seconds);
+  return {options.workers,
+          options.max_queued_windows,
+          {options.max_batch_windows, std::chrono::duration_cast<std::chrono::nanoseconds>(delay)}};
+}
+
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<DuetServer>> DuetServer::Start(const config::ServerOptions& options,
@@ -39,8 +46,7 @@ DuetServer::DuetServer(const config::ServerOptions& options, metrics::LogSink& s
     : options_(options),
       log_(sink),
       admission_(static_cast<std::size_t>(options.max_calls)),
-      scheduler_(batching::MakeWorkerPool({options.workers, options.max_queued_windows},
-                                          common::Clock::Real(), &metrics_)),
+      scheduler_(batching::MakeBatcher(Batching(options), common::Clock::Real(), &metrics_)),
       service_(Parts()) {
   metrics_.SetQueueLength([this] { return static_cast<double>(scheduler_->queued_windows()); });
   metrics_.SetDroppedLogLines([&sink] { return static_cast<double>(sink.dropped_lines()); });
@@ -114,7 +120,8 @@ absl::Status DuetServer::Serve() {
   log_.Info("serving", {{"port", port()},
                         {"metrics_port", metrics_port()},
                         {"workers", options_.workers},
-                        {"threads_per_worker", options_.engine.threads}});
+                        {"threads_per_worker", options_.engine.threads},
+                        {"max_batch_windows", options_.max_batch_windows}});
   return absl::OkStatus();
 }
 

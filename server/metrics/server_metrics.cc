@@ -80,7 +80,7 @@ ServerMetrics::ServerMetrics()
                          .Register(registry_)),
       compute_seconds_(BuildHistogram()
                            .Name("duet_compute_seconds")
-                           .Help("Time of one evaluation of the network.")
+                           .Help("Time of one batch in the network.")
                            .Register(registry_)
                            .Add({}, SecondsBuckets())),
       batch_size_(BuildHistogram()
@@ -88,10 +88,11 @@ ServerMetrics::ServerMetrics()
                       .Help("Windows evaluated together.")
                       .Register(registry_)
                       .Add({}, BatchBuckets())),
-      windows_dropped_(BuildCounter()
-                           .Name("duet_windows_dropped_total")
-                           .Help("Windows that were cancelled or expired before they started.")
-                           .Register(registry_)),
+      windows_dropped_(
+          BuildCounter()
+              .Name("duet_windows_dropped_total")
+              .Help("Windows that never started: cancelled, or not to be done in time.")
+              .Register(registry_)),
       queued_windows_(BuildGauge()
                           .Name("duet_queued_windows")
                           .Help("Windows waiting for a worker.")
@@ -138,8 +139,10 @@ void ServerMetrics::WindowFinished(batching::Priority priority,
   queue_seconds_.Add(PriorityLabels(priority), SecondsBuckets()).Observe(timings.queue_seconds);
   if (timings.batch_size == 0) {
     windows_dropped_.Add(PriorityLabels(priority)).Increment();
-    return;
   }
+}
+
+void ServerMetrics::BatchFinished(const batching::WindowTimings& timings) {
   compute_seconds_.Observe(timings.compute_seconds);
   batch_size_.Observe(timings.batch_size);
 }

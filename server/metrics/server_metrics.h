@@ -28,10 +28,11 @@ namespace duet::server::metrics {
 //   duet_frames_total{model, version}                  follower frames sent
 // Of windows:
 //   duet_queue_seconds{priority}                       one window's wait for a worker
-//   duet_compute_seconds                               one evaluation of the network
-//   duet_batch_size                                    windows evaluated together
-//   duet_windows_dropped_total{priority}               never started: cancelled or expired
+//   duet_windows_dropped_total{priority}               never started: cancelled, or too late
 //   duet_queued_windows                                waiting now
+// Of batches:
+//   duet_compute_seconds                               one batch in the network
+//   duet_batch_size                                    windows of one batch
 // Of models:
 //   duet_model_load_seconds{checkpoint}                time that loading took
 //   duet_model_state{checkpoint}                       1 served, 0 failed to load
@@ -46,6 +47,7 @@ class ServerMetrics final : public CallObserver, public batching::WindowObserver
   void CallStarted(const MethodInfo& method) override;
   void CallFinished(const CallRecord& record) override;
 
+  void BatchFinished(const batching::WindowTimings& timings) override;
   void WindowFinished(batching::Priority priority, const batching::WindowTimings& timings) override;
 
   // A checkpoint was loaded, or was refused.

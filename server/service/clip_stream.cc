@@ -81,6 +81,7 @@ absl::Status ClipStream::ScheduleNext(bool continues_call) {
   job.deadline = options_.deadline;
   job.cancelled = cancelled_;
   job.continues_call = continues_call;
+  job.call_windows = clip_.window_count();
   job.done = [self = shared_from_this()](const batching::WindowOutcome& outcome) {
     self->OnWindow(outcome);
   };

@@ -1,87 +1,365 @@
 #include "server/batching/window_queue.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <optional>
+#include <algorithm>
+#include <memory>
+#include <string>
 #include <vector>
+
+#include "tests/support/fake_synthesizer.h"
+#include "tests/support/status_matchers.h"
 
 namespace duet::server::batching {
 namespace {
 
-// A job that its deadline tells from others.
-WindowJob Job(Priority priority, int number, bool continues_call = false) {
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using test::FakeSynthesizer;
+using test::StatusIs;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+using Model = std::shared_ptr<const engine::Synthesizer>;
+
+constexpr common::TimePoint kNow(seconds(1000));
+constexpr int kFrames = 4;
+
+Model NewModel() { return std::make_shared<FakeSynthesizer>(); }
+
+WindowJob Job(const Model& model, Priority priority = Priority::kInteractive,
+              int frames = kFrames) {
   WindowJob job;
+  job.model = model;
+  job.window.leader = motion::Poses(frames, 15);
   job.priority = priority;
-  job.deadline = common::TimePoint(std::chrono::seconds(number));
-  job.continues_call = continues_call;
+  job.cancelled = std::make_shared<std::atomic<bool>>(false);
   return job;
 }
 
-int NumberOf(const QueuedWindow& window) {
-  return static_cast<int>(
-      std::chrono::duration_cast<std::chrono::seconds>(window.job.deadline.time_since_epoch())
-          .count());
+WindowJob LaterJob(const Model& model, Priority priority = Priority::kInteractive) {
+  WindowJob job = Job(model, priority);
+  job.continues_call = true;
+  return job;
 }
 
-std::vector<int> PopAll(WindowQueue& queue) {
-  std::vector<int> numbers;
-  while (std::optional<QueuedWindow> window = queue.Pop()) numbers.push_back(NumberOf(*window));
-  return numbers;
+WindowQueueOptions Options(int workers, int max_windows) { return {64, workers, {max_windows}}; }
+
+// A worker asks, and evaluates what it gets in this time; how many windows of which priority.
+struct Served {
+  std::size_t windows = 0;
+  Priority priority = Priority::kInteractive;
+  Model model;
+};
+Served Serve(WindowQueue& queue, common::TimePoint now, milliseconds takes) {
+  const Turn turn = queue.Next(now);
+  if (turn.batch.windows.empty()) return {};
+  queue.Finished(turn.batch, now + takes);
+  const WindowJob& job = turn.batch.windows.front().job;
+  return {turn.batch.windows.size(), job.priority, job.model};
 }
 
 TEST(WindowQueueTest, IsEmptyAtFirst) {
-  WindowQueue queue(4);
+  WindowQueue queue(Options(1, 4));
   EXPECT_EQ(queue.size(), 0u);
-  EXPECT_FALSE(queue.Pop().has_value());
+  EXPECT_THAT(queue.Next(kNow).batch.windows, IsEmpty());
 }
 
-TEST(WindowQueueTest, GivesWindowsOfOnePriorityInTheOrderTheyCame) {
-  WindowQueue queue(4);
-  for (int i = 1; i <= 3; ++i) queue.Push({Job(Priority::kInteractive, i), {}});
-  EXPECT_EQ(PopAll(queue), (std::vector<int>{1, 2, 3}));
-}
-
-TEST(WindowQueueTest, InteractiveGoesBeforeBulkThatCameEarlier) {
-  WindowQueue queue(4);
-  queue.Push({Job(Priority::kBulk, 1), {}});
-  queue.Push({Job(Priority::kInteractive, 2), {}});
-  queue.Push({Job(Priority::kBulk, 3), {}});
-  queue.Push({Job(Priority::kInteractive, 4), {}});
-  EXPECT_EQ(PopAll(queue), (std::vector<int>{2, 4, 1, 3}));
+TEST(WindowQueueTest, GivesAWindowOnce) {
+  const Model model = NewModel();
+  WindowQueue queue(Options(1, 2));
+  for (int i = 0; i < 3; ++i) queue.Push(Job(model), kNow);
+  EXPECT_EQ(queue.size(), 3u);
+  EXPECT_EQ(Serve(queue, kNow, milliseconds(1)).windows, 2u);
+  EXPECT_EQ(queue.size(), 1u);
+  EXPECT_EQ(Serve(queue, kNow, milliseconds(1)).windows, 1u);
+  EXPECT_EQ(Serve(queue, kNow, milliseconds(1)).windows, 0u);
 }
 
 TEST(WindowQueueTest, TakesNoNewCallWhenFull) {
-  WindowQueue queue(2);
-  EXPECT_TRUE(queue.HasRoomFor(Job(Priority::kInteractive, 1)));
-  queue.Push({Job(Priority::kInteractive, 1), {}});
-  queue.Push({Job(Priority::kInteractive, 2), {}});
-  EXPECT_FALSE(queue.HasRoomFor(Job(Priority::kInteractive, 3)));
+  const Model model = NewModel();
+  WindowQueue queue({2, 1, {1}});
+  EXPECT_TRUE(queue.HasRoomFor(Job(model), kNow));
+  queue.Push(Job(model), kNow);
+  queue.Push(Job(model), kNow);
+  EXPECT_FALSE(queue.HasRoomFor(Job(model), kNow));
+  Serve(queue, kNow, milliseconds(1));
+  EXPECT_TRUE(queue.HasRoomFor(Job(model), kNow));
 }
 
 TEST(WindowQueueTest, AlwaysTakesTheNextWindowOfACallBegun) {
-  WindowQueue queue(1);
-  queue.Push({Job(Priority::kInteractive, 1), {}});
-  EXPECT_TRUE(queue.HasRoomFor(Job(Priority::kInteractive, 2, /*continues_call=*/true)));
-  EXPECT_TRUE(queue.HasRoomFor(Job(Priority::kBulk, 2, /*continues_call=*/true)));
+  const Model model = NewModel();
+  WindowQueue queue({1, 1, {1}});
+  queue.Push(Job(model), kNow);
+  EXPECT_TRUE(queue.HasRoomFor(LaterJob(model), kNow));
+  EXPECT_TRUE(queue.HasRoomFor(LaterJob(model, Priority::kBulk), kNow));
+}
+
+TEST(WindowQueueTest, CallsBegunTakeNoRoomFromNewOnes) {
+  const Model model = NewModel();
+  WindowQueue queue({1, 1, {1}});
+  for (int i = 0; i < 66; ++i) queue.Push(LaterJob(model), kNow);
+  EXPECT_TRUE(queue.HasRoomFor(Job(model), kNow));
+  queue.Push(Job(model), kNow);
+  EXPECT_FALSE(queue.HasRoomFor(Job(model), kNow));
+  EXPECT_EQ(queue.size(), 67u);
+}
+
+TEST(WindowQueueTest, WhatWillNeverStartTakesNoRoom) {
+  const Model model = NewModel();
+  WindowQueue queue({2, 1, {1}});
+  WindowJob cancelled = Job(model), expired = Job(model);
+  const auto flag = std::make_shared<std::atomic<bool>>(false);
+  cancelled.cancelled = flag;
+  expired.deadline = kNow + seconds(1);
+  queue.Push(std::move(cancelled), kNow);
+  queue.Push(std::move(expired), kNow);
+  EXPECT_FALSE(queue.HasRoomFor(Job(model), kNow));
+  EXPECT_TRUE(queue.HasRoomFor(Job(model), kNow + seconds(1)));
+  flag->store(true);
+  EXPECT_TRUE(queue.HasRoomFor(Job(model), kNow));
 }
 
 TEST(WindowQueueTest, KeepsAQuarterFreeOfBulk) {
-  WindowQueue queue(4);
+  const Model model = NewModel();
+  WindowQueue queue({4, 1, {1}});
   for (int i = 1; i <= 3; ++i) {
-    ASSERT_TRUE(queue.HasRoomFor(Job(Priority::kBulk, i)));
-    queue.Push({Job(Priority::kBulk, i), {}});
+    ASSERT_TRUE(queue.HasRoomFor(Job(model, Priority::kBulk), kNow));
+    queue.Push(Job(model, Priority::kBulk), kNow);
   }
-  EXPECT_FALSE(queue.HasRoomFor(Job(Priority::kBulk, 4)));
-  EXPECT_TRUE(queue.HasRoomFor(Job(Priority::kInteractive, 4)));
+  EXPECT_FALSE(queue.HasRoomFor(Job(model, Priority::kBulk), kNow));
+  EXPECT_TRUE(queue.HasRoomFor(Job(model), kNow));
 }
 
 TEST(WindowQueueTest, WaitingInteractiveWindowsLeaveLessRoomForBulk) {
-  WindowQueue queue(4);
-  for (int i = 1; i <= 2; ++i) queue.Push({Job(Priority::kInteractive, i), {}});
-  EXPECT_TRUE(queue.HasRoomFor(Job(Priority::kBulk, 3)));
-  queue.Push({Job(Priority::kInteractive, 3), {}});
-  EXPECT_FALSE(queue.HasRoomFor(Job(Priority::kBulk, 4)));
-  EXPECT_TRUE(queue.HasRoomFor(Job(Priority::kInteractive, 4)));
+  const Model model = NewModel();
+  WindowQueue queue({4, 1, {1}});
+  for (int i = 1; i <= 2; ++i) queue.Push(Job(model), kNow);
+  EXPECT_TRUE(queue.HasRoomFor(Job(model, Priority::kBulk), kNow));
+  queue.Push(Job(model), kNow);
+  EXPECT_FALSE(queue.HasRoomFor(Job(model, Priority::kBulk), kNow));
+  EXPECT_TRUE(queue.HasRoomFor(Job(model), kNow));
+}
+
+TEST(WindowQueueTest, DropsCancelledAndExpiredWindows) {
+  const Model model = NewModel();
+  WindowQueue queue(Options(1, 4));
+  WindowJob cancelled = Job(model), expired = Job(model);
+  const auto flag = std::make_shared<std::atomic<bool>>(false);
+  cancelled.cancelled = flag;
+  expired.deadline = kNow + seconds(1);
+  queue.Push(std::move(cancelled), kNow);
+  queue.Push(std::move(expired), kNow);
+  queue.Push(Job(model), kNow);
+  flag->store(true);
+  const Turn turn = queue.Next(kNow + seconds(2));
+  ASSERT_EQ(turn.dropped.size(), 2u);
+  EXPECT_THAT(turn.dropped[0].reason, StatusIs(absl::StatusCode::kCancelled, ::testing::_));
+  EXPECT_THAT(turn.dropped[1].reason, StatusIs(absl::StatusCode::kDeadlineExceeded, ::testing::_));
+  EXPECT_EQ(turn.batch.windows.size(), 1u);
+  EXPECT_EQ(queue.size(), 0u);
+}
+
+TEST(WindowQueueTest, LearnsWhatABatchCosts) {
+  const Model model = NewModel();
+  WindowQueue queue(Options(1, 4));
+  queue.Push(Job(model), kNow);
+  EXPECT_EQ(Serve(queue, kNow, milliseconds(20)).windows, 1u);
+  const common::TimePoint now = kNow + milliseconds(20);
+  WindowJob hopeless = Job(model), sound = Job(model);
+  // Seven eighths of which are for the model.
+  hopeless.deadline = now + milliseconds(22);
+  sound.deadline = now + milliseconds(23);
+  queue.Push(std::move(hopeless), now);
+  queue.Push(std::move(sound), now);
+  const Turn turn = queue.Next(now);
+  EXPECT_EQ(turn.dropped.size(), 1u);
+  EXPECT_EQ(turn.batch.windows.size(), 1u);
+  EXPECT_NEAR(turn.batch.expected_seconds, 0.02, 1e-9);
+}
+
+TEST(WindowQueueTest, TriesAgainWhenAnEstimateIsOld) {
+  const Model model = NewModel();
+  WindowQueue queue(Options(1, 4));
+  queue.Push(Job(model), kNow);
+  Serve(queue, kNow, seconds(1));  // a slow start
+  const common::TimePoint later = kNow + seconds(11);
+  WindowJob job = Job(model);
+  job.deadline = later + milliseconds(10);
+  queue.Push(std::move(job), later);
+  EXPECT_EQ(Serve(queue, later, milliseconds(1)).windows, 1u);
+}
+
+TEST(WindowQueueTest, FreeWorkersShareWhatWaits) {
+  const Model model = NewModel();
+  WindowQueue queue(Options(2, 16));
+  for (int i = 0; i < 8; ++i) queue.Push(Job(model), kNow);
+  const Turn first = queue.Next(kNow), second = queue.Next(kNow);
+  EXPECT_EQ(first.batch.windows.size(), 4u);
+  EXPECT_EQ(second.batch.windows.size(), 4u);
+  queue.Finished(first.batch, kNow);
+  for (int i = 0; i < 8; ++i) queue.Push(Job(model), kNow);
+  EXPECT_EQ(queue.Next(kNow).batch.windows.size(), 8u) << "the other worker is busy";
+}
+
+TEST(WindowQueueTest, ALongCallGivesWayToShortOnes) {
+  const Model model = NewModel();
+  WindowQueue queue(Options(1, 1));
+  WindowJob long_call = LaterJob(model);
+  long_call.call_windows = kShortCallWindows + 1;
+  WindowJob short_call = LaterJob(model);
+  short_call.call_windows = kShortCallWindows;
+  queue.Push(std::move(long_call), kNow);
+  queue.Push(std::move(short_call), kNow);
+  EXPECT_EQ(queue.Next(kNow).batch.windows[0].job.call_windows, kShortCallWindows);
+}
+
+// Both ask for more than there is.
+TEST(WindowQueueTest, BulkIsSureOfAnEighth) {
+  const Model model = NewModel();
+  WindowQueue queue(Options(1, 4));
+  common::TimePoint now = kNow;
+  std::size_t bulk = 0, all = 0;
+  for (int i = 0; i < 8; ++i) queue.Push(LaterJob(model, Priority::kInteractive), now);
+  for (int i = 0; i < 8; ++i) queue.Push(LaterJob(model, Priority::kBulk), now);
+  for (int i = 0; i < 400; ++i) {
+    const Served served = Serve(queue, now, milliseconds(4));
+    now += milliseconds(4);
+    for (std::size_t n = 0; n < served.windows; ++n) {
+      queue.Push(LaterJob(model, served.priority), now);
+    }
+    all += served.windows;
+    bulk += served.priority == Priority::kBulk ? served.windows : 0;
+  }
+  EXPECT_NEAR(static_cast<double>(bulk) / static_cast<double>(all), 1.0 / 8, 0.002);
+}
+
+TEST(WindowQueueTest, ALaneThatWasEmptyHasNoOldClaims) {
+  const Model model = NewModel();
+  WindowQueue queue(Options(1, 1));
+  const auto serve_interactive = [&](int times) {
+    for (int i = 0; i < times; ++i) {
+      queue.Push(Job(model), kNow);
+      EXPECT_EQ(Serve(queue, kNow, milliseconds(1)).priority, Priority::kInteractive);
+    }
+  };
+  WindowJob given_up = Job(model, Priority::kBulk);
+  const auto flag = std::make_shared<std::atomic<bool>>(false);
+  given_up.cancelled = flag;
+  queue.Push(std::move(given_up), kNow);
+  serve_interactive(6);
+  flag->store(true);
+  serve_interactive(1);
+  queue.Push(Job(model, Priority::kBulk), kNow);
+  serve_interactive(7);
+  queue.Push(Job(model), kNow);
+  EXPECT_EQ(Serve(queue, kNow, milliseconds(1)).priority, Priority::kBulk);
+}
+
+// Two models, the second four times as slow: each gets half of the time.
+TEST(WindowQueueTest, ModelsShareTheTime) {
+  const Model fast = NewModel(), slow = NewModel();
+  WindowQueue queue(Options(1, 2));
+  common::TimePoint now = kNow;
+  milliseconds fast_time(0), slow_time(0);
+  for (int i = 0; i < 8; ++i) queue.Push(LaterJob(i % 2 == 0 ? fast : slow), now);
+  for (int i = 0; i < 500; ++i) {
+    const Turn turn = queue.Next(now);
+    const bool is_fast = turn.batch.windows[0].job.model == fast;
+    const milliseconds takes(is_fast ? 5 : 20);
+    for (std::size_t n = 0; n < turn.batch.windows.size(); ++n) {
+      queue.Push(LaterJob(is_fast ? fast : slow), now);
+    }
+    (is_fast ? fast_time : slow_time) += takes;
+    now += takes;
+    queue.Finished(turn.batch, now);
+  }
+  EXPECT_NEAR(static_cast<double>(fast_time.count()), static_cast<double>(slow_time.count()), 40);
+}
+
+TEST(WindowQueueTest, AModelThatWasIdleHasNoClaimToEverything) {
+  const Model busy = NewModel(), idle = NewModel();
+  WindowQueue queue(Options(1, 1));
+  common::TimePoint now = kNow;
+  queue.Push(Job(idle), now);
+  Serve(queue, now, milliseconds(10));
+  for (int i = 0; i < 100; ++i) {
+    queue.Push(Job(busy), now);
+    Serve(queue, now, milliseconds(10));
+    now += milliseconds(10);
+  }
+  int of_busy = 0;
+  for (int i = 0; i < 10; ++i) {
+    queue.Push(Job(busy), now);
+    queue.Push(Job(idle), now);
+    of_busy += Serve(queue, now, milliseconds(10)).model == busy ? 1 : 0;
+    now += milliseconds(10);
+  }
+  EXPECT_GE(of_busy, 4);
+  EXPECT_LE(of_busy, 6);
+}
+
+TEST(WindowQueueTest, LongCallsAndBulkGoInShortBatchesWhileShortCallsCome) {
+  const Model model = NewModel();
+  for (const Priority priority : {Priority::kInteractive, Priority::kBulk}) {
+    WindowQueue queue(Options(1, 16));
+    const auto push_long = [&](int count) {
+      for (int i = 0; i < count; ++i) {
+        WindowJob job = LaterJob(model, priority);
+        job.call_windows = kShortCallWindows + 1;
+        queue.Push(std::move(job), kNow);
+      }
+    };
+    push_long(1);
+    EXPECT_EQ(Serve(queue, kNow, milliseconds(5)).windows, 1u);
+    push_long(16);
+    EXPECT_EQ(Serve(queue, kNow, milliseconds(5 * 16)).windows, 16u);
+    queue.Push(Job(model), kNow);
+    EXPECT_EQ(Serve(queue, kNow, milliseconds(5)).windows, 1u);
+    push_long(16);
+    EXPECT_EQ(Serve(queue, kNow, milliseconds(5 * 3)).windows, 3u);
+    EXPECT_EQ(Serve(queue, kNow + seconds(1), milliseconds(5 * 13)).windows, 13u);
+  }
+}
+
+TEST(WindowQueueTest, LetsGoOfModelsThatAreGone) {
+  WindowQueue queue(Options(1, 1));
+  Model model = NewModel();
+  const std::weak_ptr<const engine::Synthesizer> watched = model;
+  queue.Push(Job(model), kNow);
+  Serve(queue, kNow, milliseconds(1));
+  model.reset();
+  EXPECT_TRUE(watched.expired());
+  queue.Push(Job(NewModel()), kNow);
+  EXPECT_EQ(Serve(queue, kNow, milliseconds(1)).windows, 1u);
+}
+
+TEST(WindowQueueTest, DropsAllWithAReason) {
+  const Model model = NewModel();
+  WindowQueue queue(Options(1, 1));
+  WindowJob expired = Job(model);
+  expired.deadline = kNow;
+  queue.Push(Job(model), kNow);
+  queue.Push(std::move(expired), kNow);
+  const std::vector<DroppedWindow> dropped = queue.DropAll(absl::UnavailableError("over"), kNow);
+  ASSERT_EQ(dropped.size(), 2u);
+  EXPECT_THAT(dropped[0].reason, StatusIs(absl::StatusCode::kDeadlineExceeded, ::testing::_));
+  EXPECT_THAT(dropped[1].reason, StatusIs(absl::StatusCode::kUnavailable, "over"));
+  EXPECT_EQ(queue.size(), 0u);
+}
+
+TEST(WindowQueueTest, WaitsForCompanyAfterABatchOfSeveral) {
+  const Model model = NewModel();
+  WindowQueue queue({64, 1, {4, milliseconds(50)}});
+  queue.Push(Job(model), kNow);
+  EXPECT_EQ(Serve(queue, kNow, milliseconds(0)).windows, 1u);
+  queue.Push(Job(model), kNow);
+  EXPECT_EQ(Serve(queue, kNow, milliseconds(0)).windows, 1u) << "a lone call, one after the other";
+  for (int i = 0; i < 2; ++i) queue.Push(Job(model), kNow);
+  EXPECT_EQ(Serve(queue, kNow, milliseconds(0)).windows, 2u);
+  queue.Push(Job(model), kNow + milliseconds(10));
+  EXPECT_EQ(queue.Next(kNow + milliseconds(10)).look_again, kNow + milliseconds(50));
 }
 
 TEST(ShareOfTest, LeavesSomethingToBulkWhateverTheLimit) {
@@ -89,6 +367,16 @@ TEST(ShareOfTest, LeavesSomethingToBulkWhateverTheLimit) {
   EXPECT_EQ(ShareOf(4, Priority::kBulk), 3u);
   EXPECT_EQ(ShareOf(128, Priority::kBulk), 96u);
   EXPECT_EQ(ShareOf(128, Priority::kInteractive), 128u);
+}
+
+TEST(LaneTest, DependsOnPriorityAndOnTheCallsLength) {
+  constexpr int kLong = kShortCallWindows + 1;
+  EXPECT_EQ(LaneOf(Priority::kInteractive, 1, false), Lane::kShort);
+  EXPECT_EQ(LaneOf(Priority::kInteractive, kShortCallWindows, true), Lane::kShort);
+  EXPECT_EQ(LaneOf(Priority::kInteractive, kLong, true), Lane::kLong);
+  EXPECT_EQ(LaneOf(Priority::kInteractive, kLong, false), Lane::kShort) << "its first window";
+  EXPECT_EQ(LaneOf(Priority::kBulk, 1, false), Lane::kBulk);
+  EXPECT_EQ(LaneOf(Priority::kBulk, kLong, true), Lane::kBulk);
 }
 
 }  // namespace

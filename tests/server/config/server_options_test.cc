@@ -35,6 +35,8 @@ TEST(ServerOptionsTest, DefaultsServeTheEmbeddedCheckpointOnTheWellKnownPorts) {
   EXPECT_EQ(options->max_transport_bytes, 512u << 20);
   EXPECT_EQ(options->drain_seconds, 0);
   EXPECT_EQ(options->grace_seconds, 30);
+  EXPECT_EQ(options->max_batch_windows, 16);
+  EXPECT_EQ(options->max_batch_delay_seconds, 0);
 }
 
 TEST(ServerOptionsTest, TakesOverEveryField) {
@@ -54,6 +56,8 @@ TEST(ServerOptionsTest, TakesOverEveryField) {
   config.set_threads_per_worker(3);
   config.set_max_calls(5);
   config.set_max_queued_windows(6);
+  config.set_max_batch_windows(8);
+  config.set_max_batch_delay_seconds(0.25);
   config.set_max_request_bytes(4096);
   config.set_max_transport_bytes(10000);
   config.set_buffered_frames(7);
@@ -77,6 +81,8 @@ TEST(ServerOptionsTest, TakesOverEveryField) {
   EXPECT_EQ(options->engine.precision, EngineOptions::Precision::kFloat32);
   EXPECT_EQ(options->max_calls, 5);
   EXPECT_EQ(options->max_queued_windows, 6);
+  EXPECT_EQ(options->max_batch_windows, 8);
+  EXPECT_EQ(options->max_batch_delay_seconds, 0.25);
   EXPECT_EQ(options->max_request_bytes, 4096u);
   EXPECT_EQ(options->max_transport_bytes, 10000u);
   EXPECT_EQ(options->buffered_frames, 7);
@@ -157,6 +163,14 @@ INSTANTIATE_TEST_SUITE_P(
         BadConfig{"max_calls: is 0, wanted 1", [](v1::ServerConfig& c) { c.set_max_calls(0); }},
         BadConfig{"max_queued_windows: is 0, wanted 1",
                   [](v1::ServerConfig& c) { c.set_max_queued_windows(0); }},
+        BadConfig{"max_batch_windows: is 0, wanted 1 to 1024",
+                  [](v1::ServerConfig& c) { c.set_max_batch_windows(0); }},
+        BadConfig{"max_batch_windows: is 1025, wanted 1 to 1024",
+                  [](v1::ServerConfig& c) { c.set_max_batch_windows(1025); }},
+        BadConfig{"max_batch_delay_seconds: is -0.5, wanted 0 to 1",
+                  [](v1::ServerConfig& c) { c.set_max_batch_delay_seconds(-0.5); }},
+        BadConfig{"max_batch_delay_seconds: is 1.5, wanted 0 to 1",
+                  [](v1::ServerConfig& c) { c.set_max_batch_delay_seconds(1.5); }},
         BadConfig{"max_request_bytes: is 10, wanted 1024",
                   [](v1::ServerConfig& c) { c.set_max_request_bytes(10); }},
         BadConfig{"max_request_bytes: is 4294967296, wanted 1024",

@@ -80,6 +80,7 @@ std::vector<std::string> Buckets(const std::string& text, const std::string& his
 TEST(ServerMetricsTest, BucketsReachFromAMillisecondToAMinuteAndFromOneWindowToSixtyFour) {
   ServerMetrics metrics;
   metrics.WindowFinished(batching::Priority::kBulk, {0.2, 0.04, 1});
+  metrics.BatchFinished({0, 0.04, 1});
   const std::string text = metrics.Render();
   EXPECT_THAT(Buckets(text, "duet_batch_size"),
               ElementsAre("1", "2", "4", "8", "16", "32", "64", "+Inf"));
@@ -111,9 +112,18 @@ TEST(ServerMetricsTest, CountsWindowsAndThoseDropped) {
   metrics.WindowFinished(batching::Priority::kBulk, {0.2, 0, 0});
   const std::string text = metrics.Render();
   EXPECT_THAT(text, HasSubstr(R"(duet_queue_seconds_count{priority="bulk"} 2)"));
-  EXPECT_THAT(text, HasSubstr("duet_compute_seconds_count 1\n"));
-  EXPECT_THAT(text, HasSubstr("duet_batch_size_sum 1\n"));
   EXPECT_THAT(text, HasSubstr(R"(duet_windows_dropped_total{priority="bulk"} 1)"));
+}
+
+TEST(ServerMetricsTest, MeasuresABatchOnceHoweverManyWindowsItHolds) {
+  ServerMetrics metrics;
+  metrics.BatchFinished({0, 0.04, 3});
+  for (int i = 0; i < 3; ++i) metrics.WindowFinished(batching::Priority::kBulk, {0.2, 0.04, 3});
+  const std::string text = metrics.Render();
+  EXPECT_THAT(text, HasSubstr("duet_compute_seconds_count 1\n"));
+  EXPECT_THAT(text, HasSubstr("duet_compute_seconds_sum 0.04\n"));
+  EXPECT_THAT(text, HasSubstr("duet_batch_size_count 1\n"));
+  EXPECT_THAT(text, HasSubstr("duet_batch_size_sum 3\n"));
 }
 
 TEST(ServerMetricsTest, AsksForTheQueueLengthAtEveryScrape) {

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "server/batching/worker_pool.h"
+#include "server/batching/batcher.h"
 #include "tests/server/support/puppet_scheduler.h"
 #include "tests/support/fake_synthesizer.h"
 #include "tests/support/sample_motion.h"
@@ -165,6 +165,16 @@ TEST(ClipStreamTest, PassesOnPriorityAndDeadline) {
   EXPECT_EQ(stream.scheduler().NextDeadline(), common::TimePoint(std::chrono::seconds(7)));
 }
 
+TEST(ClipStreamTest, TellsHowManyWindowsTheClipHas) {
+  PuppetStream stream(200);
+  ASSERT_THAT(stream->Start(), IsOk());
+  const int windows = stream.scheduler().NextCallWindows();
+  stream.scheduler().RunNext();
+  EXPECT_EQ(stream.scheduler().NextCallWindows(), windows);
+  stream.RunAll();
+  EXPECT_EQ(stream->stats().windows, windows);
+}
+
 TEST(ClipStreamTest, AReaderThatDoesNotTakePausesTheClip) {
   constexpr int kBuffered = 50;
   PuppetStream stream(3000, kBuffered);
@@ -313,7 +323,7 @@ TEST(ClipStreamTest, LivesUntilItsLastWindowIsDone) {
   EXPECT_FALSE(stream.scheduler().RunNext());
 }
 
-TEST(ClipStreamTest, WorksWithManyReadersOnAPool) {
+TEST(ClipStreamTest, WorksWithManyReadersOnABatcher) {
   const auto model = std::make_shared<FakeSynthesizer>();
   struct Reader {
     common::Mutex mutex;
@@ -325,11 +335,11 @@ TEST(ClipStreamTest, WorksWithManyReadersOnAPool) {
   };
   std::vector<Reader> readers(6);
   // Ends before the readers that it tells of progress.
-  const auto pool = batching::MakeWorkerPool({3, 64}, common::Clock::Real());
+  const auto batcher = batching::MakeBatcher({3, 64, {4}}, common::Clock::Real());
   for (Reader& reader : readers) {
     ClipStreamOptions options;
     options.buffered_frames = 40;
-    reader.stream = std::make_shared<ClipStream>(model, Request(500), options, *pool, [&reader] {
+    reader.stream = std::make_shared<ClipStream>(model, Request(500), options, *batcher, [&reader] {
       common::MutexLock lock(reader.mutex);
       reader.progress = true;
       reader.changed.NotifyAll();

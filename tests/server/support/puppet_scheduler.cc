@@ -52,6 +52,11 @@ server::common::TimePoint PuppetScheduler::NextDeadline() const {
   return jobs_.front().deadline;
 }
 
+int PuppetScheduler::NextCallWindows() const {
+  server::common::MutexLock lock(mutex_);
+  return jobs_.front().call_windows;
+}
+
 server::batching::WindowJob PuppetScheduler::Take() {
   server::common::MutexLock lock(mutex_);
   while (jobs_.empty()) came_.Wait(mutex_);

@@ -32,6 +32,7 @@ class PuppetScheduler final : public server::batching::WindowScheduler {
   // Looks at the oldest job's field. There is one.
   server::batching::Priority NextPriority() const;
   server::common::TimePoint NextDeadline() const;
+  int NextCallWindows() const;
 
  private:
   server::batching::WindowJob Take();

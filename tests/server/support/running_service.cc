@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "server/batching/worker_pool.h"
+#include "server/batching/batcher.h"
 #include "server/config/server_options.h"
 #include "tests/server/support/timed_context.h"
 
@@ -24,8 +24,8 @@ RunningService::RunningService(Setup setup) : admission_(setup.max_calls) {
   registry_.Serve(std::move(setup.model));
   admission_.SetState(server::service::Admission::State::kServing);
   if (setup.scheduler == nullptr) {
-    pool_ = server::batching::MakeWorkerPool({2, 64}, server::common::Clock::Real());
-    setup.scheduler = pool_.get();
+    batcher_ = server::batching::MakeBatcher({2, 64, {4}}, server::common::Clock::Real());
+    setup.scheduler = batcher_.get();
   }
   server::service::ServiceParts parts;
   parts.registry = &registry_;

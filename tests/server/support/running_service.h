@@ -28,7 +28,7 @@ class RunningService {
     Setup();  // limits and buffer as the server's defaults
 
     std::shared_ptr<const engine::Synthesizer> model = std::make_shared<FakeSynthesizer>();
-    server::batching::WindowScheduler* scheduler = nullptr;  // null: a pool with two workers
+    server::batching::WindowScheduler* scheduler = nullptr;  // null: a batcher with two workers
     std::size_t max_calls = 16;
     server::service::RequestLimits limits;
     int buffered_frames = 0;
@@ -51,7 +51,7 @@ class RunningService {
   RecordingObserver calls_;
   server::registry::ModelRegistry registry_;
   server::service::Admission admission_;
-  std::unique_ptr<server::batching::WindowScheduler> pool_;
+  std::unique_ptr<server::batching::WindowScheduler> batcher_;
   std::unique_ptr<server::service::MotionSynthesisService> service_;
   server::lifecycle::GrpcServer grpc_;
   std::shared_ptr<grpc::Channel> channel_;

@@ -1,0 +1,254 @@
+#include "server/batching/batch_decision.h"
+
+#include <algorithm>
+#include <numeric>
+#include <optional>
+#include <string>
+
+#include "server/batching/even_share.h"
+
+namespace duet::server::batching {
+namespace {
+
+using Indices = std::vector<std::size_t>;
+using common::SecondsBetween;
+using common::TimePoint;
+
+// When a window is wanted that has no deadline before: late enough for nearer deadlines to go
+// first, soon enough for it not to be passed over for long.
+constexpr std::chrono::seconds kPatience(1);
+// The part of throughput that an urgent window may not cost.
+constexpr double kThroughputKept = 0.75;
+// Of the time from a window's coming to its deadline, kept for its answer's way to the caller.
+constexpr int kWayBack = 8;
+// How long a batch of a lower lane may be while short calls come: so many windows alone, and they
+// come until none has for so long.
+constexpr double kHeldUp = 3;
+constexpr std::chrono::seconds kShortCallsCome(1);
+
+// The decision's steps on one state.
+class Decider {
+ public:
+  Decider(const QueueState& state, const BatchLimits& limits, TimePoint now)
+      : state_(state), limits_(limits), now_(now) {}
+
+  Decision Decide();
+
+ private:
+  const WaitingWindow& Window(std::size_t index) const { return state_.windows[index]; }
+  const CostEstimate& CostOf(std::size_t index) const {
+    return state_.models[Window(index).model].cost;
+  }
+  // When its evaluation must have ended.
+  TimePoint DueAt(std::size_t index) const {
+    const TimePoint deadline = Window(index).deadline;
+    return deadline - (deadline - Window(index).queued_at) / kWayBack;
+  }
+  double SecondsLeft(std::size_t index) const { return SecondsBetween(now_, DueAt(index)); }
+  int FramesOf(const Indices& windows) const;
+  double SecondsOf(const Indices& batch) const;  // of one model, not empty
+
+  absl::Status ReasonToDrop(std::size_t index) const;
+  Indices LaneBatch(Lane lane) const;
+  Indices WantedFirst(Lane lane, std::size_t model) const;
+  std::size_t MostOf(const Indices& line) const;
+  std::size_t NotHeldUp(const Indices& line) const;
+  Indices InTime(const Indices& line, std::size_t most) const;
+  Indices ForTheMostUrgent(const Indices& full) const;
+  Indices WithTimeFor(double seconds, const Indices& line, std::size_t most) const;
+  double Throughput(const Indices& batch) const;
+  Indices NextBatch() const;
+  std::optional<TimePoint> WaitFor(const Indices& batch) const;
+
+  const QueueState& state_;
+  const BatchLimits& limits_;
+  const TimePoint now_;
+  Indices alive_;  // windows that are not dropped
+};
+
+Decision Decider::Decide() {
+  Decision decision;
+  for (std::size_t i = 0; i < state_.windows.size(); ++i) {
+    absl::Status reason = ReasonToDrop(i);
+    if (reason.ok()) {
+      alive_.push_back(i);
+    } else {
+      decision.dropped.push_back({i, std::move(reason)});
+    }
+  }
+  Indices batch = NextBatch();
+  if (batch.empty()) return decision;
+  if (const std::optional<TimePoint> start_at = WaitFor(batch)) {
+    decision.look_again = *start_at;
+  } else {
+    decision.batch = std::move(batch);
+  }
+  return decision;
+}
+
+int Decider::FramesOf(const Indices& windows) const {
+  return std::accumulate(windows.begin(), windows.end(), 0,
+                         [&](int sum, std::size_t window) { return sum + Window(window).frames; });
+}
+
+double Decider::SecondsOf(const Indices& batch) const {
+  return CostOf(batch.front()).Seconds(FramesOf(batch));
+}
+
+absl::Status Decider::ReasonToDrop(std::size_t index) const {
+  const WaitingWindow& window = Window(index);
+  if (window.cancelled) {
+    return absl::CancelledError("the call was cancelled before this window started");
+  }
+  if (now_ >= window.deadline) {
+    return absl::DeadlineExceededError("the deadline passed before this window started");
+  }
+  const double needed = CostOf(index).Seconds(window.frames);
+  if (SecondsLeft(index) < needed) {
+    return absl::DeadlineExceededError(
+        "this window would have come too late: it takes about " + std::to_string(needed) +
+        " s, the deadline is " + std::to_string(SecondsBetween(now_, window.deadline)) +
+        " s away, and the answer needs time as well; it was not started");
+  }
+  return absl::OkStatus();
+}
+
+// The batch of the lane whose turn it is; empty when nothing waits.
+Indices Decider::NextBatch() const {
+  Indices highest;
+  for (std::size_t lane = kLanes; lane-- > 0;) {
+    Indices batch = LaneBatch(static_cast<Lane>(lane));
+    if (batch.empty()) continue;
+    if (state_.overtaken_frames[lane] >= kOvertaking * FramesOf(batch)) return batch;
+    highest = std::move(batch);
+  }
+  return highest;
+}
+
+Indices Decider::LaneBatch(Lane lane) const {
+  std::optional<std::size_t> model;  // the least served; the first to have come of equals
+  for (const std::size_t i : alive_) {
+    if (Window(i).lane != lane) continue;
+    const std::size_t other = Window(i).model;
+    if (!model || state_.models[other].served_seconds < state_.models[*model].served_seconds) {
+      model = other;
+    }
+  }
+  if (!model) return {};
+  const Indices line = WantedFirst(lane, *model);
+  std::size_t most = MostOf(line);
+  if (lane != Lane::kShort) most = std::min(most, NotHeldUp(line));
+  return InTime(line, most);
+}
+
+Indices Decider::WantedFirst(Lane lane, std::size_t model) const {
+  Indices line;
+  for (const std::size_t i : alive_) {
+    if (Window(i).lane == lane && Window(i).model == model) line.push_back(i);
+  }
+  const auto wanted_at = [&](std::size_t i) {
+    return std::min(Window(i).deadline, Window(i).queued_at + kPatience);
+  };
+  std::stable_sort(line.begin(), line.end(),
+                   [&](std::size_t a, std::size_t b) { return wanted_at(a) < wanted_at(b); });
+  return line;
+}
+
+// How many windows of a line a batch may hold.
+std::size_t Decider::MostOf(const Indices& line) const {
+  std::vector<double> busy_seconds;
+  for (const TimePoint end : state_.busy_until) {
+    busy_seconds.push_back(std::max(0.0, SecondsBetween(now_, end)));
+  }
+  const CostEstimate& cost = CostOf(line.front());
+  const double mean_frames =
+      static_cast<double>(FramesOf(alive_)) / static_cast<double>(alive_.size());
+  const int share =
+      EvenShare(static_cast<int>(alive_.size()), state_.free_workers, std::move(busy_seconds),
+                {cost.batch_seconds, cost.frame_seconds * mean_frames});
+  return std::min(line.size(), static_cast<std::size_t>(std::min(limits_.max_windows, share)));
+}
+
+// How many windows of a line hold a short call up no longer than they may.
+std::size_t Decider::NotHeldUp(const Indices& line) const {
+  if (now_ >= state_.last_short + kShortCallsCome) return line.size();
+  const CostEstimate& cost = CostOf(line.front());
+  // A hair more, so that rounding errors make no window less.
+  const double longest = (kHeldUp + 1e-6) * cost.Seconds(Window(line.front()).frames);
+  std::size_t count = 1;
+  int frames = Window(line.front()).frames;
+  for (; count < line.size(); ++count) {
+    frames += Window(line[count]).frames;
+    if (cost.Seconds(frames) > longest) break;
+  }
+  return count;
+}
+
+// At most so many of a line, 1 or more, whose batch is done in time for each of them.
+Indices Decider::InTime(const Indices& line, std::size_t most) const {
+  Indices full(line.begin(), line.begin() + static_cast<std::ptrdiff_t>(most));
+  const Indices urgent = ForTheMostUrgent(full);
+  // Others in its place: as large a batch as comes in time for enough of them.
+  for (; full.size() > urgent.size(); full.resize(full.size() / 2)) {
+    Indices others = WithTimeFor(SecondsOf(full), line, full.size());
+    if (others.empty()) continue;
+    if (Throughput(urgent) < kThroughputKept * Throughput(others)) return others;
+  }
+  return urgent;
+}
+
+// The longest beginning of a batch that is done in time for each of its windows.
+Indices Decider::ForTheMostUrgent(const Indices& full) const {
+  Indices batch;
+  double least_left = SecondsLeft(full.front());
+  for (const std::size_t window : full) {
+    least_left = std::min(least_left, SecondsLeft(window));
+    batch.push_back(window);
+    if (batch.size() > 1 && SecondsOf(batch) > least_left) {
+      batch.pop_back();
+      break;
+    }
+  }
+  return batch;
+}
+
+// The first windows of a line, at most so many, that have this long, and whose own batch takes no
+// longer.
+Indices Decider::WithTimeFor(double seconds, const Indices& line, std::size_t most) const {
+  Indices batch;
+  for (const std::size_t window : line) {
+    if (batch.size() == most) break;
+    if (SecondsLeft(window) < seconds) continue;
+    batch.push_back(window);
+    if (SecondsOf(batch) > seconds) batch.pop_back();
+  }
+  return batch;
+}
+
+// Frames a second. Only compared where the cost is known: otherwise no batch is too long.
+double Decider::Throughput(const Indices& batch) const {
+  return FramesOf(batch) / SecondsOf(batch);
+}
+
+// Until when a batch waits for company; nothing when it starts now.
+std::optional<TimePoint> Decider::WaitFor(const Indices& batch) const {
+  const bool full = batch.size() == static_cast<std::size_t>(limits_.max_windows);
+  if (full || batch.size() < alive_.size()) return std::nullopt;
+  TimePoint end = TimePoint::max();
+  if (state_.busy_until.empty()) end = state_.last_company + limits_.max_delay;
+  const std::chrono::duration<double> needed(SecondsOf(batch));
+  for (const std::size_t i : batch) {
+    end = std::min(end, Window(i).queued_at + limits_.max_delay);
+    end = std::min(end, DueAt(i) - std::chrono::duration_cast<TimePoint::duration>(needed));
+  }
+  if (end <= now_) return std::nullopt;
+  return end;
+}
+
+}  // namespace
+
+Decision Decide(const QueueState& state, const BatchLimits& limits, TimePoint now) {
+  return Decider(state, limits, now).Decide();
+}
+
+}  // namespace duet::server::batching

@@ -1,0 +1,176 @@
+#include "server/batching/batcher.h"
+
+#include <chrono>
+#include <cstddef>
+#include <exception>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "server/batching/window_queue.h"
+#include "server/common/mutex.h"
+
+namespace duet::server::batching {
+namespace {
+
+absl::Status ShuttingDown() { return absl::UnavailableError("the server is shutting down"); }
+
+// A model reports failures as a status; whatever else escapes it must not take the server down.
+std::vector<engine::WindowResult> Evaluate(const Batch& batch) {
+  std::vector<const engine::SynthesisWindow*> windows;
+  for (const QueuedWindow& queued : batch.windows) windows.push_back(&queued.job.window);
+  absl::Status failure;
+  try {
+    std::vector<engine::WindowResult> results = batch.windows[0].job.model->Synthesize(windows);
+    if (results.size() == windows.size()) return results;
+    failure = absl::InternalError("the model gave " + std::to_string(results.size()) +
+                                  " results for a batch of " + std::to_string(windows.size()));
+  } catch (const std::exception& error) {
+    failure = absl::InternalError(std::string("the model threw: ") + error.what());
+  } catch (...) {
+    failure = absl::InternalError("the model threw something that is no exception");
+  }
+  return {windows.size(), failure};
+}
+
+WindowQueueOptions QueueOptions(const BatcherOptions& options) {
+  return {static_cast<std::size_t>(options.max_queued_windows), options.workers, options.limits};
+}
+
+class Batcher final : public WindowScheduler {
+ public:
+  Batcher(const BatcherOptions& options, const common::Clock& clock, WindowObserver* observer);
+  ~Batcher() override;
+
+  absl::Status Submit(WindowJob job) override;
+  std::size_t queued_windows() const override;
+
+ private:
+  void Work();
+  // Waits until there is something to do; nothing when there will be no more.
+  std::optional<Turn> Next();
+  void WaitUntil(common::TimePoint time) DUET_REQUIRES(mutex_);
+  void Run(Batch batch);
+  void Answer(QueuedWindow window, engine::WindowResult result, WindowTimings timings) const;
+
+  const common::Clock& clock_;
+  WindowObserver* const observer_;
+  mutable common::Mutex mutex_;
+  common::CondVar changed_;
+  WindowQueue queue_ DUET_GUARDED_BY(mutex_);
+  bool stopping_ DUET_GUARDED_BY(mutex_) = false;
+  std::vector<std::thread> workers_;
+};
+
+Batcher::Batcher(const BatcherOptions& options, const common::Clock& clock,
+                 WindowObserver* observer)
+    : clock_(clock), observer_(observer), queue_(QueueOptions(options)) {
+  for (int i = 0; i < options.workers; ++i) workers_.emplace_back([this] { Work(); });
+}
+
+Batcher::~Batcher() {
+  {
+    common::MutexLock lock(mutex_);
+    stopping_ = true;
+  }
+  changed_.NotifyAll();
+  for (std::thread& worker : workers_) worker.join();
+}
+
+absl::Status Batcher::Submit(WindowJob job) {
+  {
+    common::MutexLock lock(mutex_);
+    if (stopping_) return ShuttingDown();
+    const common::TimePoint now = clock_.Now();
+    if (!queue_.HasRoomFor(job, now)) {
+      return absl::ResourceExhaustedError("the queue is full: at most " +
+                                          std::to_string(queue_.capacity()) +
+                                          " calls may wait for their first window");
+    }
+    queue_.Push(std::move(job), now);
+  }
+  changed_.NotifyOne();
+  return absl::OkStatus();
+}
+
+std::size_t Batcher::queued_windows() const {
+  common::MutexLock lock(mutex_);
+  return queue_.size();
+}
+
+void Batcher::Work() {
+  while (std::optional<Turn> turn = Next()) {
+    for (DroppedWindow& dropped : turn->dropped) {
+      WindowTimings timings;
+      timings.queue_seconds = common::SecondsBetween(dropped.window.queued_at, clock_.Now());
+      Answer(std::move(dropped.window), std::move(dropped.reason), timings);
+    }
+    if (!turn->batch.windows.empty()) Run(std::move(turn->batch));
+  }
+}
+
+std::optional<Turn> Batcher::Next() {
+  common::MutexLock lock(mutex_);
+  while (true) {
+    Turn turn;
+    if (stopping_) {
+      turn.dropped = queue_.DropAll(ShuttingDown(), clock_.Now());
+      if (turn.dropped.empty()) return std::nullopt;
+      return turn;
+    }
+    turn = queue_.Next(clock_.Now());
+    if (!turn.dropped.empty() || !turn.batch.windows.empty()) {
+      // What this worker leaves may be for another that is free.
+      if (queue_.size() > 0) changed_.NotifyOne();
+      return turn;
+    }
+    WaitUntil(turn.look_again);
+  }
+}
+
+void Batcher::WaitUntil(common::TimePoint time) {
+  if (time == common::TimePoint::max()) {
+    changed_.Wait(mutex_);
+  } else {
+    changed_.WaitUntil(mutex_, std::chrono::steady_clock::now() + (time - clock_.Now()));
+  }
+}
+
+// By value, so that the model is let go of as soon as its windows are done.
+// NOLINTNEXTLINE(performance-unnecessary-value-param)
+void Batcher::Run(Batch batch) {
+  std::vector<engine::WindowResult> results = Evaluate(batch);
+  const common::TimePoint end = clock_.Now();
+  {
+    common::MutexLock lock(mutex_);
+    queue_.Finished(batch, end);
+  }
+  WindowTimings timings;
+  timings.compute_seconds = common::SecondsBetween(batch.started_at, end);
+  timings.batch_size = static_cast<int>(batch.windows.size());
+  if (observer_ != nullptr) observer_->BatchFinished(timings);
+  for (std::size_t i = 0; i < batch.windows.size(); ++i) {
+    QueuedWindow& window = batch.windows[i];
+    timings.queue_seconds = common::SecondsBetween(window.queued_at, batch.started_at);
+    Answer(std::move(window), std::move(results[i]), timings);
+  }
+}
+
+// By value: what the job holds is let go of as soon as it is answered.
+// NOLINTNEXTLINE(performance-unnecessary-value-param)
+void Batcher::Answer(QueuedWindow window, engine::WindowResult result,
+                     WindowTimings timings) const {
+  if (observer_ != nullptr) observer_->WindowFinished(window.job.priority, timings);
+  window.job.done({std::move(result), timings});
+}
+
+}  // namespace
+
+std::unique_ptr<WindowScheduler> MakeBatcher(const BatcherOptions& options,
+                                             const common::Clock& clock, WindowObserver* observer) {
+  return std::make_unique<Batcher>(options, clock, observer);
+}
+
+}  // namespace duet::server::batching

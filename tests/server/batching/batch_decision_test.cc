@@ -1,0 +1,434 @@
+#include "server/batching/batch_decision.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "tests/support/status_matchers.h"
+
+namespace duet::server::batching {
+namespace {
+
+using common::TimePoint;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using test::StatusIs;
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::ElementsAreArray;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+constexpr auto kCancelled = absl::StatusCode::kCancelled;
+constexpr auto kDeadlineExceeded = absl::StatusCode::kDeadlineExceeded;
+constexpr TimePoint kNow(seconds(1000));
+constexpr int kFrames = 40;
+// 10 ms for a batch, 5 ms for a window of kFrames.
+constexpr CostEstimate kCost = {0.010, 0.005 / kFrames};
+
+// A window that came 100 ms ago.
+WaitingWindow Window(Lane lane = Lane::kShort, std::size_t model = 0) {
+  WaitingWindow window;
+  window.lane = lane;
+  window.model = model;
+  window.frames = kFrames;
+  window.queued_at = kNow - milliseconds(100);
+  return window;
+}
+
+// One whose evaluation must end so much later: with an eighth of its time left then.
+WaitingWindow Due(milliseconds left) {
+  WaitingWindow window = Window();
+  window.deadline = window.queued_at + (milliseconds(100) + left) * 8 / 7;
+  return window;
+}
+
+// One worker, models of known cost.
+QueueState State(std::vector<WaitingWindow> windows, std::size_t models = 1) {
+  QueueState state;
+  state.windows = std::move(windows);
+  state.models.assign(models, {kCost, 0});
+  return state;
+}
+
+QueueState Waiting(int count) {
+  return State(std::vector<WaitingWindow>(static_cast<std::size_t>(count), Window()));
+}
+
+std::vector<std::size_t> BatchOf(const QueueState& state, int max_windows = 16) {
+  return Decide(state, {max_windows}, kNow).batch;
+}
+
+std::vector<std::size_t> UpTo(std::size_t count) {
+  std::vector<std::size_t> indices(count);
+  std::iota(indices.begin(), indices.end(), 0);
+  return indices;
+}
+
+TEST(DecideTest, HasNothingToDoWhenNothingWaits) {
+  const Decision decision = Decide(QueueState(), {16}, kNow);
+  EXPECT_THAT(decision.batch, IsEmpty());
+  EXPECT_THAT(decision.dropped, IsEmpty());
+  EXPECT_EQ(decision.look_again, TimePoint::max());
+}
+
+TEST(DecideTest, TakesAllThatWait) { EXPECT_THAT(BatchOf(Waiting(5)), ElementsAre(0, 1, 2, 3, 4)); }
+
+TEST(DecideTest, TakesNoMoreThanABatchMayHold) {
+  EXPECT_THAT(BatchOf(Waiting(5), 3), ElementsAre(0, 1, 2));
+  EXPECT_THAT(BatchOf(Waiting(5), 1), ElementsAre(0));
+}
+
+TEST(DecideTest, BatchesWindowsOfAnyLengths) {
+  QueueState state = Waiting(3);
+  state.windows[1].frames = 3;
+  EXPECT_THAT(BatchOf(state), ElementsAre(0, 1, 2));
+}
+
+// Dropping.
+
+TEST(DecideTest, DropsWhatIsCancelled) {
+  QueueState state = Waiting(3);
+  state.windows[1].cancelled = true;
+  const Decision decision = Decide(state, {16}, kNow);
+  EXPECT_THAT(decision.batch, ElementsAre(0, 2));
+  ASSERT_EQ(decision.dropped.size(), 1u);
+  EXPECT_EQ(decision.dropped[0].window, 1u);
+  EXPECT_THAT(decision.dropped[0].reason,
+              StatusIs(kCancelled, HasSubstr("before this window started")));
+}
+
+TEST(DecideTest, DropsWhatIsExpired) {
+  WaitingWindow expired = Window();
+  expired.deadline = kNow;
+  const Decision decision = Decide(State({expired}), {16}, kNow);
+  EXPECT_THAT(decision.batch, IsEmpty());
+  ASSERT_EQ(decision.dropped.size(), 1u);
+  EXPECT_THAT(decision.dropped[0].reason,
+              StatusIs(kDeadlineExceeded, HasSubstr("before this window started")));
+}
+
+TEST(DecideTest, DropsWhatCannotBeDoneInTimeAndSaysSo) {
+  const Decision late = Decide(State({Due(milliseconds(14))}), {16}, kNow);
+  EXPECT_THAT(late.batch, IsEmpty());
+  ASSERT_EQ(late.dropped.size(), 1u);
+  EXPECT_THAT(late.dropped[0].reason,
+              StatusIs(kDeadlineExceeded,
+                       AllOf(HasSubstr("takes about 0.015"), HasSubstr("it was not started"))));
+  EXPECT_THAT(BatchOf(State({Due(milliseconds(16))})), ElementsAre(0));
+}
+
+TEST(DecideTest, AShortWindowNeedsLessTime) {
+  WaitingWindow window = Due(milliseconds(12));
+  window.frames = kFrames / 4;
+  EXPECT_THAT(BatchOf(State({window})), ElementsAre(0));
+}
+
+TEST(DecideTest, WhileTheCostIsUnknownAWindowNeedsTimeForItsAnswerAlone) {
+  QueueState state = State({Due(milliseconds(1))});
+  state.models[0].cost = {};
+  EXPECT_THAT(BatchOf(state), ElementsAre(0));
+  state.windows[0] = Due(milliseconds(-1));
+  EXPECT_THAT(BatchOf(state), IsEmpty());
+}
+
+// Lanes.
+
+TEST(DecideTest, ShortCallsGoBeforeLongOnesAndThoseBeforeBulk) {
+  const WaitingWindow bulk = Window(Lane::kBulk), long_call = Window(Lane::kLong),
+                      short_call = Window(Lane::kShort);
+  EXPECT_THAT(BatchOf(State({bulk, long_call, short_call})), ElementsAre(2));
+  EXPECT_THAT(BatchOf(State({bulk, long_call})), ElementsAre(1));
+  EXPECT_THAT(BatchOf(State({bulk})), ElementsAre(0));
+}
+
+TEST(DecideTest, ALowerLaneHasItsTurnAfterSevenTimesItsFrames) {
+  for (const Lane lane : {Lane::kLong, Lane::kBulk}) {
+    QueueState state = State({Window(Lane::kShort), Window(lane), Window(lane)});
+    int& overtaken = state.overtaken_frames[static_cast<std::size_t>(lane)];
+    overtaken = 7 * 2 * kFrames - 1;
+    EXPECT_THAT(BatchOf(state), ElementsAre(0));
+    overtaken = 7 * 2 * kFrames;
+    EXPECT_THAT(BatchOf(state), ElementsAre(1, 2));
+  }
+}
+
+// Models.
+
+TEST(DecideTest, ABatchHoldsWindowsOfOneModel) {
+  EXPECT_THAT(BatchOf(State(
+                  {Window(Lane::kShort, 0), Window(Lane::kShort, 1), Window(Lane::kShort, 0)}, 2)),
+              ElementsAre(0, 2));
+}
+
+TEST(DecideTest, TheModelThatHasHadLeastGoesFirst) {
+  QueueState state = State({Window(Lane::kShort, 0), Window(Lane::kShort, 1)}, 2);
+  state.models[0].served_seconds = 2;
+  state.models[1].served_seconds = 1;
+  EXPECT_THAT(BatchOf(state), ElementsAre(1));
+  state.models[1].served_seconds = 3;
+  EXPECT_THAT(BatchOf(state), ElementsAre(0));
+}
+
+TEST(DecideTest, OfEqualModelsTheOneWhoseWindowCameFirst) {
+  EXPECT_THAT(BatchOf(State({Window(Lane::kShort, 1), Window(Lane::kShort, 0)}, 2)),
+              ElementsAre(0));
+}
+
+TEST(DecideTest, LanesComeBeforeModels) {
+  QueueState state = State({Window(Lane::kBulk, 0), Window(Lane::kShort, 1)}, 2);
+  state.models[1].served_seconds = 5;
+  EXPECT_THAT(BatchOf(state), ElementsAre(1));
+}
+
+// Deadlines.
+
+TEST(DecideTest, TheNearestDeadlineGoesFirst) {
+  EXPECT_THAT(
+      BatchOf(State({Due(milliseconds(500)), Due(milliseconds(300)), Due(milliseconds(400))}), 2),
+      ElementsAre(1, 2));
+}
+
+TEST(DecideTest, AWindowWithoutADeadlineIsWantedASecondAfterItCame) {
+  WaitingWindow other = Window();
+  other.deadline = other.queued_at + milliseconds(999);
+  EXPECT_THAT(BatchOf(State({Window(), other}), 1), ElementsAre(1));
+  other.deadline = other.queued_at + milliseconds(1001);
+  EXPECT_THAT(BatchOf(State({Window(), other}), 1), ElementsAre(0));
+}
+
+TEST(DecideTest, ABatchIsKeptSmallForItsMostUrgentWindow) {
+  // 10 ms and 5 ms a window: 12 take 70 ms, at 171 windows a second, 16 at 178.
+  QueueState state = Waiting(15);
+  state.windows.push_back(Due(milliseconds(71)));
+  std::vector<std::size_t> batch = BatchOf(state);
+  EXPECT_EQ(batch.size(), 12u);
+  EXPECT_EQ(batch.front(), 15u);
+}
+
+TEST(DecideTest, ButNotSoSmallThatThroughputFallsByMoreThanAQuarter) {
+  // One that can only go alone, at 67 windows a second: the 16 others go.
+  QueueState state = Waiting(16);
+  state.windows.insert(state.windows.begin(), Due(milliseconds(16)));
+  std::vector<std::size_t> others = UpTo(17);
+  others.erase(others.begin());
+  EXPECT_THAT(BatchOf(state), ElementsAreArray(others));
+  EXPECT_THAT(Decide(state, {16}, kNow).dropped, IsEmpty());
+}
+
+TEST(DecideTest, TheUrgentGoAloneWhenThereAreNoOthers) {
+  const std::vector<WaitingWindow> urgent(16, Due(milliseconds(22)));
+  EXPECT_THAT(BatchOf(State(urgent)), ElementsAre(0, 1));
+}
+
+TEST(DecideTest, WhatGoesInPlaceOfTheUrgentIsDoneInTimeItself) {
+  // The batch of the first 16 would take 90 ms; 6 of the others have that long, the longest does
+  // not fit beside them.
+  std::vector<WaitingWindow> windows(16, Due(milliseconds(16)));
+  windows.resize(22, Due(milliseconds(91)));
+  windows.resize(23, Window());
+  windows.back().frames = 20 * kFrames;
+  EXPECT_THAT(BatchOf(State(windows)), ElementsAre(16, 17, 18, 19, 20, 21));
+}
+
+TEST(DecideTest, OthersGoInASmallerBatchWhereALargeOneWouldBeTooLate) {
+  // 16 take 90 ms, for which nobody has time; 8 take 50 ms.
+  std::vector<WaitingWindow> windows(16, Due(milliseconds(55)));
+  windows[0] = Due(milliseconds(16));
+  EXPECT_THAT(BatchOf(State(windows)), ElementsAre(1, 2, 3, 4, 5, 6, 7, 8));
+}
+
+// Lower lanes.
+
+TEST(DecideTest, ABatchOfALowerLaneIsShortWhileShortCallsCome) {
+  for (const Lane lane : {Lane::kLong, Lane::kBulk}) {
+    QueueState state = State(std::vector<WaitingWindow>(16, Window(lane)));
+    EXPECT_EQ(BatchOf(state).size(), 16u);
+    state.last_short = kNow - milliseconds(999);
+    // Three of 15 ms: 7 windows take 45 ms.
+    EXPECT_THAT(BatchOf(state), ElementsAreArray(UpTo(7)));
+    state.windows[1].frames *= 3;
+    EXPECT_THAT(BatchOf(state), ElementsAreArray(UpTo(5)));
+    state.last_short = kNow - seconds(1);
+    EXPECT_EQ(BatchOf(state).size(), 16u);
+  }
+}
+
+TEST(DecideTest, ABatchOfShortCallsIsAsLongAsItMayBe) {
+  QueueState state = Waiting(16);
+  state.last_short = kNow;
+  EXPECT_EQ(BatchOf(state).size(), 16u);
+}
+
+// Workers.
+
+TEST(DecideTest, FreeWorkersShareWhatWaits) {
+  QueueState state = Waiting(8);
+  state.free_workers = 2;
+  EXPECT_THAT(BatchOf(state), ElementsAre(0, 1, 2, 3));
+  state.free_workers = 4;
+  EXPECT_THAT(BatchOf(state), ElementsAre(0, 1));
+}
+
+TEST(DecideTest, LeavesAWorkerThatIsAboutToBeFreeItsShare) {
+  QueueState state = Waiting(8);
+  state.busy_until = {kNow - milliseconds(3)};
+  EXPECT_THAT(BatchOf(state), ElementsAreArray(UpTo(4)));
+  // 20 ms more, in which this worker takes four windows more than the other.
+  state.busy_until = {kNow + milliseconds(20)};
+  EXPECT_THAT(BatchOf(state), ElementsAreArray(UpTo(6)));
+  state.busy_until = {kNow + seconds(1)};
+  EXPECT_THAT(BatchOf(state), ElementsAreArray(UpTo(8)));
+}
+
+TEST(DecideTest, OtherModelsWindowsAreWorkForTheOthers) {
+  QueueState state = Waiting(4);
+  state.models.resize(2, {kCost, 1});
+  state.windows.resize(8, Window(Lane::kShort, 1));
+  state.free_workers = 2;
+  EXPECT_THAT(BatchOf(state), ElementsAre(0, 1, 2, 3));
+}
+
+// Delay.
+
+// Two windows that came 10 and 5 ms ago while another worker is busy.
+QueueState WithCompany() {
+  QueueState state = Waiting(2);
+  state.windows[0].queued_at = kNow - milliseconds(10);
+  state.windows[1].queued_at = kNow - milliseconds(5);
+  state.busy_until = {kNow + seconds(1)};
+  return state;
+}
+
+const BatchLimits kPatient = {16, milliseconds(50)};
+
+TEST(DecideTest, WaitsForCompanyWhileThereIsAny) {
+  const Decision decision = Decide(WithCompany(), kPatient, kNow);
+  EXPECT_THAT(decision.batch, IsEmpty());
+  EXPECT_EQ(decision.look_again, kNow + milliseconds(40));
+  EXPECT_THAT(Decide(WithCompany(), kPatient, kNow + milliseconds(39)).batch, IsEmpty());
+  EXPECT_THAT(Decide(WithCompany(), kPatient, kNow + milliseconds(40)).batch, ElementsAre(0, 1));
+}
+
+TEST(DecideTest, DoesNotWaitWithoutADelay) {
+  EXPECT_THAT(Decide(WithCompany(), {16}, kNow).batch, ElementsAre(0, 1));
+}
+
+TEST(DecideTest, ALoneCallOnAnIdleServerWaitsForNobody) {
+  QueueState state = WithCompany();
+  state.windows.resize(1);
+  state.busy_until.clear();
+  EXPECT_THAT(Decide(state, {16, seconds(1)}, kNow).batch, ElementsAre(0));
+}
+
+TEST(DecideTest, WaitsForThoseWhoWereThereAMomentAgo) {
+  QueueState state = WithCompany();
+  state.busy_until.clear();
+  state.last_company = kNow - milliseconds(45);
+  EXPECT_EQ(Decide(state, kPatient, kNow).look_again, kNow + milliseconds(5));
+  state.last_company = kNow - milliseconds(50);
+  EXPECT_THAT(Decide(state, kPatient, kNow).batch, ElementsAre(0, 1));
+}
+
+TEST(DecideTest, AFullBatchDoesNotWait) {
+  EXPECT_THAT(Decide(WithCompany(), {2, milliseconds(50)}, kNow).batch, ElementsAre(0, 1));
+}
+
+TEST(DecideTest, DoesNotWaitWhileSomethingElseDoes) {
+  QueueState state = WithCompany();
+  state.windows.push_back(Window(Lane::kBulk));
+  EXPECT_THAT(Decide(state, kPatient, kNow).batch, ElementsAre(0, 1));
+}
+
+TEST(DecideTest, DoesNotWaitSoLongThatADeadlineIsMissed) {
+  QueueState state = WithCompany();
+  // It must be done 30 ms from now, 35 ms after it came.
+  state.windows[1].deadline = state.windows[1].queued_at + milliseconds(40);
+  // The two take 20 ms.
+  EXPECT_EQ(Decide(state, kPatient, kNow).look_again, kNow + milliseconds(10));
+}
+
+// Any state.
+
+QueueState RandomState(std::mt19937& random) {
+  const auto below = [&](int end) {
+    return static_cast<int>(random() % static_cast<unsigned>(end));
+  };
+  QueueState state;
+  for (int i = 0; i <= below(3); ++i) {
+    state.models.push_back({{0.001 * below(20), 0.0001 * below(3)}, 0.1 * below(5)});
+  }
+  for (int i = below(40); i > 0; --i) {
+    WaitingWindow window =
+        Window(static_cast<Lane>(below(3)),
+               static_cast<std::size_t>(below(static_cast<int>(state.models.size()))));
+    window.frames = 2 + below(45);
+    window.queued_at = kNow - milliseconds(below(3000));
+    if (below(2) == 0) window.deadline = kNow + milliseconds(below(200) - 10);
+    window.cancelled = below(10) == 0;
+    state.windows.push_back(window);
+  }
+  for (int& frames : state.overtaken_frames) frames = below(3000);
+  state.overtaken_frames[0] = 0;
+  state.free_workers = 1 + below(3);
+  for (int i = below(3); i > 0; --i) state.busy_until.push_back(kNow + milliseconds(below(50) - 5));
+  if (below(2) == 0) state.last_company = kNow - milliseconds(below(20));
+  if (below(2) == 0) state.last_short = kNow - milliseconds(below(2000));
+  return state;
+}
+
+// What must hold of every decision.
+void Check(const QueueState& state, const BatchLimits& limits, const Decision& decision) {
+  const auto cost = [&](std::size_t i) { return state.models[state.windows[i].model].cost; };
+  const auto left = [&](std::size_t i) {
+    const WaitingWindow& window = state.windows[i];
+    return common::SecondsBetween(kNow, window.deadline - (window.deadline - window.queued_at) / 8);
+  };
+  std::map<std::size_t, int> seen;
+  for (const Decision::Drop& drop : decision.dropped) ++seen[drop.window];
+  for (const std::size_t i : decision.batch) ++seen[i];
+  for (const auto& [window, times] : seen) ASSERT_EQ(times, 1) << "window " << window;
+  ASSERT_LE(static_cast<int>(decision.batch.size()), limits.max_windows);
+  for (std::size_t i = 0; i < state.windows.size(); ++i) {
+    const WaitingWindow& window = state.windows[i];
+    const bool hopeless = window.deadline <= kNow || left(i) < cost(i).Seconds(window.frames);
+    const bool dropped = std::any_of(decision.dropped.begin(), decision.dropped.end(),
+                                     [&](const Decision::Drop& drop) { return drop.window == i; });
+    ASSERT_EQ(dropped, window.cancelled || hopeless) << "window " << i;
+  }
+  int frames = 0;
+  for (const std::size_t i : decision.batch) {
+    ASSERT_EQ(state.windows[i].model, state.windows[decision.batch[0]].model);
+    ASSERT_EQ(state.windows[i].lane, state.windows[decision.batch[0]].lane);
+    frames += state.windows[i].frames;
+  }
+  for (const std::size_t i : decision.batch) {
+    ASSERT_LE(cost(i).Seconds(frames), left(i));
+  }
+  // A worker rests only when nothing waits, or until a time to come.
+  if (decision.batch.empty() && decision.dropped.size() < state.windows.size()) {
+    ASSERT_GT(decision.look_again, kNow);
+    ASSERT_LE(decision.look_again, kNow + limits.max_delay);
+  }
+}
+
+TEST(DecideTest, KeepsItsPromisesInEveryState) {
+  std::mt19937 random(1);
+  for (int i = 0; i < 20000; ++i) {
+    SCOPED_TRACE("state " + std::to_string(i));
+    const QueueState state = RandomState(random);
+    const BatchLimits limits = {1 + static_cast<int>(random() % 20),
+                                milliseconds(random() % 2 == 0 ? 0 : random() % 30)};
+    Check(state, limits, Decide(state, limits, kNow));
+    if (HasFatalFailure()) return;
+  }
+}
+
+}  // namespace
+}  // namespace duet::server::batching

@@ -1,0 +1,449 @@
+#include "server/batching/batcher.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <future>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "tests/server/support/fake_clock.h"
+#include "tests/server/support/gated_model.h"
+#include "tests/support/fake_synthesizer.h"
+#include "tests/support/sample_motion.h"
+#include "tests/support/status_matchers.h"
+
+namespace duet::server::batching {
+namespace {
+
+using std::chrono::hours;
+using std::chrono::milliseconds;
+using test::FakeAnswer;
+using test::FakeClock;
+using test::FakeDescription;
+using test::FakeSynthesizer;
+using test::GatedModel;
+using test::IsOk;
+using test::StatusIs;
+using test::SwayingMotion;
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+constexpr auto kCancelled = absl::StatusCode::kCancelled;
+constexpr auto kDeadlineExceeded = absl::StatusCode::kDeadlineExceeded;
+constexpr auto kInternal = absl::StatusCode::kInternal;
+constexpr auto kResourceExhausted = absl::StatusCode::kResourceExhausted;
+constexpr auto kUnavailable = absl::StatusCode::kUnavailable;
+
+// A job and its outcome.
+struct Ticket {
+  std::shared_ptr<std::atomic<bool>> cancelled = std::make_shared<std::atomic<bool>>(false);
+  std::shared_ptr<std::promise<WindowOutcome>> promise =
+      std::make_shared<std::promise<WindowOutcome>>();
+  std::future<WindowOutcome> outcome = promise->get_future();
+
+  WindowJob Job(std::shared_ptr<const engine::Synthesizer> model) {
+    WindowJob job;
+    job.window.leader = SwayingMotion(4, 15);
+    job.window.labels.assign(4 * model->description().classes.size(), 0.0F);
+    job.model = std::move(model);
+    job.cancelled = cancelled;
+    // set_value throws when called twice, which would end the test program.
+    job.done = [promise = promise](WindowOutcome result) { promise->set_value(std::move(result)); };
+    return job;
+  }
+};
+
+TEST(BatcherTest, EvaluatesAWindow) {
+  const auto batcher = MakeBatcher({1, 4, {4}}, common::Clock::Real());
+  Ticket ticket;
+  ASSERT_THAT(batcher->Submit(ticket.Job(std::make_shared<FakeSynthesizer>())), IsOk());
+  const WindowOutcome outcome = ticket.outcome.get();
+  ASSERT_THAT(outcome.result, IsOk());
+  const motion::Vec3 expected =
+      FakeAnswer(SwayingMotion(4, 15).at(0, 7), std::vector<float>(6, 0.0F));
+  EXPECT_EQ(outcome.result->at(0, 7), expected);
+  EXPECT_EQ(outcome.timings.batch_size, 1);
+}
+
+TEST(BatcherTest, EvaluatesAsManyBatchesAtOnceAsThereAreWorkers) {
+  const auto batcher = MakeBatcher({2, 4, {4}}, common::Clock::Real());
+  GatedModel model;
+  Ticket first, second;
+  ASSERT_THAT(batcher->Submit(first.Job(model.get())), IsOk());
+  ASSERT_THAT(batcher->Submit(second.Job(model.get())), IsOk());
+  model.WaitUntilStarted(2);  // would wait for ever with one worker
+  model.Open();
+  EXPECT_THAT(first.outcome.get().result, IsOk());
+  EXPECT_THAT(second.outcome.get().result, IsOk());
+}
+
+TEST(BatcherTest, RefusesANewCallWhenTheQueueIsFull) {
+  GatedModel model;
+  const auto batcher = MakeBatcher({1, 1, {4}}, common::Clock::Real());
+  Ticket running, waiting, refused, continued;
+  ASSERT_THAT(batcher->Submit(running.Job(model.get())), IsOk());
+  model.WaitUntilStarted(1);
+  ASSERT_THAT(batcher->Submit(waiting.Job(model.get())), IsOk());
+  EXPECT_EQ(batcher->queued_windows(), 1u);
+  EXPECT_THAT(
+      batcher->Submit(refused.Job(model.get())),
+      StatusIs(kResourceExhausted, HasSubstr("at most 1 calls may wait for their first window")));
+  WindowJob next = continued.Job(model.get());
+  next.continues_call = true;
+  EXPECT_THAT(batcher->Submit(std::move(next)), IsOk());
+  model.Open();
+  EXPECT_THAT(waiting.outcome.get().result, IsOk());
+  EXPECT_THAT(continued.outcome.get().result, IsOk());
+}
+
+TEST(BatcherTest, NeverStartsACancelledWindow) {
+  GatedModel model;
+  const auto batcher = MakeBatcher({1, 4, {4}}, common::Clock::Real());
+  Ticket running, cancelled;
+  ASSERT_THAT(batcher->Submit(running.Job(model.get())), IsOk());
+  model.WaitUntilStarted(1);
+  ASSERT_THAT(batcher->Submit(cancelled.Job(model.get())), IsOk());
+  cancelled.cancelled->store(true);
+  model.Open();
+  const WindowOutcome outcome = cancelled.outcome.get();
+  EXPECT_THAT(outcome.result, StatusIs(kCancelled, HasSubstr("before this window started")));
+  EXPECT_EQ(outcome.timings.batch_size, 0);
+  EXPECT_EQ(model.started(), 1);
+}
+
+TEST(BatcherTest, NeverStartsAnExpiredWindow) {
+  FakeClock clock;
+  GatedModel model;
+  const auto batcher = MakeBatcher({1, 4, {4}}, clock);
+  Ticket running, expired;
+  ASSERT_THAT(batcher->Submit(running.Job(model.get())), IsOk());
+  model.WaitUntilStarted(1);
+  WindowJob job = expired.Job(model.get());
+  job.deadline = clock.Now() + milliseconds(100);
+  ASSERT_THAT(batcher->Submit(std::move(job)), IsOk());
+  clock.Advance(milliseconds(100));
+  model.Open();
+  EXPECT_THAT(expired.outcome.get().result,
+              StatusIs(kDeadlineExceeded, HasSubstr("before this window started")));
+  EXPECT_EQ(model.started(), 1);
+}
+
+TEST(BatcherTest, StartsInteractiveWindowsFirst) {
+  GatedModel gate;
+  const auto batcher = MakeBatcher({1, 8, {4}}, common::Clock::Real());
+  Ticket running, bulk, interactive;
+  ASSERT_THAT(batcher->Submit(running.Job(gate.get())), IsOk());
+  gate.WaitUntilStarted(1);
+  std::vector<std::string> order;  // written by the one worker, read after both outcomes
+  const auto naming = [&order](const char* name) {
+    auto model = std::make_shared<FakeSynthesizer>();
+    model->on_batch = [&order, name](absl::Span<const engine::SynthesisWindow* const>) {
+      order.push_back(name);
+    };
+    return model;
+  };
+  WindowJob bulk_job = bulk.Job(naming("bulk"));
+  bulk_job.priority = Priority::kBulk;
+  ASSERT_THAT(batcher->Submit(std::move(bulk_job)), IsOk());
+  ASSERT_THAT(batcher->Submit(interactive.Job(naming("interactive"))), IsOk());
+  gate.Open();
+  bulk.outcome.wait();
+  interactive.outcome.wait();
+  EXPECT_THAT(order, ElementsAre("interactive", "bulk"));
+}
+
+// Keeps the timings of the second window that it is told of.
+class TimingsObserver final : public WindowObserver {
+ public:
+  void BatchFinished(const WindowTimings&) override {}
+  void WindowFinished(Priority, const WindowTimings& timings) override {
+    if (++seen_ == 2) second_.set_value(timings);
+  }
+  WindowTimings WaitForSecond() { return second_.get_future().get(); }
+
+ private:
+  std::atomic<int> seen_{0};
+  std::promise<WindowTimings> second_;
+};
+
+TEST(BatcherTest, SaysWhereTheTimeWent) {
+  FakeClock clock;
+  auto model = std::make_shared<FakeSynthesizer>();
+  GatedModel gate;
+  model->on_batch = [&](absl::Span<const engine::SynthesisWindow* const>) {
+    clock.Advance(milliseconds(250));
+  };
+  TimingsObserver observer;
+  const auto batcher = MakeBatcher({1, 4, {4}}, clock, &observer);
+  Ticket running, measured;
+  ASSERT_THAT(batcher->Submit(running.Job(gate.get())), IsOk());
+  gate.WaitUntilStarted(1);
+  ASSERT_THAT(batcher->Submit(measured.Job(model)), IsOk());
+  clock.Advance(milliseconds(125));
+  gate.Open();
+  const WindowTimings timings = measured.outcome.get().timings;
+  EXPECT_DOUBLE_EQ(timings.queue_seconds, 0.125);
+  EXPECT_DOUBLE_EQ(timings.compute_seconds, 0.25);
+  EXPECT_DOUBLE_EQ(observer.WaitForSecond().compute_seconds, 0.25);
+}
+
+// Fails in ways that the interface does not allow.
+class BrokenModel final : public engine::Synthesizer {
+ public:
+  explicit BrokenModel(bool throws) : throws_(throws) {}
+  const engine::ModelDescription& description() const override { return description_; }
+  std::vector<engine::WindowResult> Synthesize(
+      absl::Span<const engine::SynthesisWindow* const>) const override {
+    if (throws_) throw std::runtime_error("out of luck");
+    return {};
+  }
+
+ private:
+  const bool throws_;
+  const engine::ModelDescription description_ = FakeDescription();
+};
+
+// Counts windows and batches.
+class CountingObserver final : public WindowObserver {
+ public:
+  void BatchFinished(const WindowTimings& timings) override {
+    ++batches;
+    batched_windows += timings.batch_size;
+  }
+  void WindowFinished(Priority, const WindowTimings& timings) override {
+    ++(timings.batch_size > 0 ? evaluated : dropped);
+  }
+  std::atomic<int> batches{0}, batched_windows{0}, evaluated{0}, dropped{0};
+};
+
+// A worker that is held up, so that what comes meanwhile waits for it.
+class HeldWorker {
+ public:
+  explicit HeldWorker(WindowScheduler& batcher) {
+    EXPECT_THAT(batcher.Submit(ticket_.Job(gate_.get())), IsOk());
+    gate_.WaitUntilStarted(1);
+  }
+  ~HeldWorker() {
+    Release();
+    ticket_.outcome.wait();
+  }
+  void Release() { gate_.Open(); }
+
+ private:
+  GatedModel gate_;
+  Ticket ticket_;
+};
+
+TEST(BatcherTest, EvaluatesWhatWaitedTogether) {
+  CountingObserver observer;
+  const auto model = std::make_shared<FakeSynthesizer>();
+  {
+    const auto batcher = MakeBatcher({1, 8, {4}}, common::Clock::Real(), &observer);
+    HeldWorker held(*batcher);
+    std::vector<Ticket> tickets(6);
+    for (Ticket& ticket : tickets) ASSERT_THAT(batcher->Submit(ticket.Job(model)), IsOk());
+    held.Release();
+    std::vector<int> sizes;
+    for (Ticket& ticket : tickets) sizes.push_back(ticket.outcome.get().timings.batch_size);
+    EXPECT_THAT(sizes, ElementsAre(4, 4, 4, 4, 2, 2));
+  }
+  EXPECT_EQ(observer.batches, 3);  // with the one that held the worker
+  EXPECT_EQ(observer.batched_windows, 7);
+  EXPECT_EQ(observer.evaluated, 7);
+  EXPECT_EQ(observer.dropped, 0);
+}
+
+TEST(BatcherTest, GivesEveryCallItsOwnResult) {
+  const auto batcher = MakeBatcher({1, 8, {4}}, common::Clock::Real());
+  const auto model = std::make_shared<FakeSynthesizer>();
+  HeldWorker held(*batcher);
+  std::vector<Ticket> tickets(4);
+  for (int i = 0; i < 4; ++i) {
+    WindowJob job = tickets[static_cast<std::size_t>(i)].Job(model);
+    job.window.leader = motion::Poses(2 + i, 15);
+    job.window.labels.assign(6 * static_cast<std::size_t>(2 + i), 0.0F);
+    ASSERT_THAT(batcher->Submit(std::move(job)), IsOk());
+  }
+  held.Release();
+  for (int i = 0; i < 4; ++i) {
+    const WindowOutcome outcome = tickets[static_cast<std::size_t>(i)].outcome.get();
+    ASSERT_THAT(outcome.result, IsOk());
+    EXPECT_EQ(outcome.result->frame_count(), 2 + i);
+    EXPECT_EQ(outcome.timings.batch_size, 4);
+  }
+}
+
+TEST(BatcherTest, OneWindowFailsAlone) {
+  const auto batcher = MakeBatcher({1, 8, {4}}, common::Clock::Real());
+  const auto model = std::make_shared<FakeSynthesizer>();
+  model->window_status = [](const engine::SynthesisWindow& window) {
+    return window.leader.frame_count() == 3 ? absl::InternalError("broken") : absl::OkStatus();
+  };
+  HeldWorker held(*batcher);
+  Ticket first, broken, last;
+  ASSERT_THAT(batcher->Submit(first.Job(model)), IsOk());
+  WindowJob job = broken.Job(model);
+  job.window.leader = motion::Poses(3, 15);
+  ASSERT_THAT(batcher->Submit(std::move(job)), IsOk());
+  ASSERT_THAT(batcher->Submit(last.Job(model)), IsOk());
+  held.Release();
+  EXPECT_THAT(first.outcome.get().result, IsOk());
+  EXPECT_THAT(broken.outcome.get().result, StatusIs(kInternal, "broken"));
+  EXPECT_THAT(last.outcome.get().result, IsOk());
+}
+
+TEST(BatcherTest, NeverStartsAWindowThatCannotBeDoneInTime) {
+  FakeClock clock;
+  CountingObserver observer;
+  const auto slow = std::make_shared<FakeSynthesizer>();
+  slow->on_batch = [&](absl::Span<const engine::SynthesisWindow* const>) {
+    clock.Advance(milliseconds(250));
+  };
+  const auto batcher = MakeBatcher({1, 8, {4}}, clock, &observer);
+  Ticket teaches, hopeless, sound;
+  ASSERT_THAT(batcher->Submit(teaches.Job(slow)), IsOk());
+  ASSERT_THAT(teaches.outcome.get().result, IsOk());
+  WindowJob job = hopeless.Job(slow);
+  // Seven eighths of which are for the model.
+  job.deadline = clock.Now() + milliseconds(280);
+  ASSERT_THAT(batcher->Submit(std::move(job)), IsOk());
+  EXPECT_THAT(hopeless.outcome.get().result,
+              StatusIs(kDeadlineExceeded, HasSubstr("it was not started")));
+  EXPECT_EQ(observer.dropped, 1);
+  job = sound.Job(slow);
+  job.deadline = clock.Now() + milliseconds(290);
+  ASSERT_THAT(batcher->Submit(std::move(job)), IsOk());
+  EXPECT_THAT(sound.outcome.get().result, IsOk());
+}
+
+// Delays: an hour is longer than any test; what waits for it in vain runs into the time limit.
+
+TEST(BatcherTest, ABatchWaitsForCompanyWhileAnotherWorkerIsBusy) {
+  const auto batcher = MakeBatcher({2, 8, {2, hours(1)}}, common::Clock::Real());
+  HeldWorker held(*batcher);
+  const auto model = std::make_shared<FakeSynthesizer>();
+  Ticket first, second;
+  ASSERT_THAT(batcher->Submit(first.Job(model)), IsOk());
+  ASSERT_THAT(batcher->Submit(second.Job(model)), IsOk());
+  EXPECT_EQ(first.outcome.get().timings.batch_size, 2);
+  EXPECT_EQ(second.outcome.get().timings.batch_size, 2);
+}
+
+TEST(BatcherTest, ABatchThatIsNotFullStartsAfterTheDelay) {
+  const auto batcher = MakeBatcher({2, 8, {2, milliseconds(1)}}, common::Clock::Real());
+  HeldWorker held(*batcher);
+  Ticket ticket;
+  ASSERT_THAT(batcher->Submit(ticket.Job(std::make_shared<FakeSynthesizer>())), IsOk());
+  EXPECT_EQ(ticket.outcome.get().timings.batch_size, 1);
+}
+
+TEST(BatcherTest, ALoneCallOnAnIdleServerWaitsForNobody) {
+  const auto batcher = MakeBatcher({2, 8, {2, hours(1)}}, common::Clock::Real());
+  const auto model = std::make_shared<FakeSynthesizer>();
+  for (int i = 0; i < 3; ++i) {
+    Ticket ticket;
+    ASSERT_THAT(batcher->Submit(ticket.Job(model)), IsOk());
+    EXPECT_EQ(ticket.outcome.get().timings.batch_size, 1);
+  }
+}
+
+TEST(BatcherTest, TheNextWindowOfALoneCallWaitsForNobody) {
+  const auto batcher = MakeBatcher({2, 8, {2, hours(1)}}, common::Clock::Real());
+  const auto model = std::make_shared<FakeSynthesizer>();
+  Ticket first, second;
+  WindowJob job = first.Job(model);
+  job.done = [&](const WindowOutcome&) { EXPECT_THAT(batcher->Submit(second.Job(model)), IsOk()); };
+  ASSERT_THAT(batcher->Submit(std::move(job)), IsOk());
+  EXPECT_EQ(second.outcome.get().timings.batch_size, 1);
+}
+
+TEST(BatcherTest, SurvivesAModelThatThrows) {
+  const auto batcher = MakeBatcher({1, 4, {4}}, common::Clock::Real());
+  Ticket broken, sound;
+  ASSERT_THAT(batcher->Submit(broken.Job(std::make_shared<BrokenModel>(true))), IsOk());
+  EXPECT_THAT(broken.outcome.get().result, StatusIs(kInternal, HasSubstr("out of luck")));
+  ASSERT_THAT(batcher->Submit(sound.Job(std::make_shared<FakeSynthesizer>())), IsOk());
+  EXPECT_THAT(sound.outcome.get().result, IsOk());
+}
+
+TEST(BatcherTest, AModelThatThrowsFailsItsBatchAlone) {
+  const auto batcher = MakeBatcher({1, 8, {2}}, common::Clock::Real());
+  HeldWorker held(*batcher);
+  const auto broken_model = std::make_shared<BrokenModel>(true);
+  std::vector<Ticket> broken(2), sound(2);
+  for (Ticket& ticket : broken) ASSERT_THAT(batcher->Submit(ticket.Job(broken_model)), IsOk());
+  const auto sound_model = std::make_shared<FakeSynthesizer>();
+  for (Ticket& ticket : sound) ASSERT_THAT(batcher->Submit(ticket.Job(sound_model)), IsOk());
+  held.Release();
+  for (Ticket& ticket : broken) {
+    EXPECT_THAT(ticket.outcome.get().result, StatusIs(kInternal, HasSubstr("out of luck")));
+  }
+  for (Ticket& ticket : sound) EXPECT_THAT(ticket.outcome.get().result, IsOk());
+}
+
+TEST(BatcherTest, SurvivesAModelThatGivesTooFewResults) {
+  const auto batcher = MakeBatcher({1, 4, {4}}, common::Clock::Real());
+  Ticket ticket;
+  ASSERT_THAT(batcher->Submit(ticket.Job(std::make_shared<BrokenModel>(false))), IsOk());
+  EXPECT_THAT(ticket.outcome.get().result,
+              StatusIs(kInternal, HasSubstr("0 results for a batch of 1")));
+}
+
+TEST(BatcherTest, ShutdownFinishesWhatRunsAndAnswersWhatWaits) {
+  GatedModel model;
+  Ticket running, waiting;
+  std::thread opener;
+  {
+    const auto batcher = MakeBatcher({1, 4, {4}}, common::Clock::Real());
+    ASSERT_THAT(batcher->Submit(running.Job(model.get())), IsOk());
+    model.WaitUntilStarted(1);
+    ASSERT_THAT(batcher->Submit(waiting.Job(model.get())), IsOk());
+    // Opens only once the batcher refuses, which is when its destructor has begun.
+    opener = std::thread([&] {
+      Ticket probe;
+      while (batcher->Submit(probe.Job(model.get())).code() != kUnavailable) probe = Ticket();
+      model.Open();
+    });
+  }
+  opener.join();
+  EXPECT_THAT(running.outcome.get().result, IsOk());
+  EXPECT_THAT(waiting.outcome.get().result, StatusIs(kUnavailable, HasSubstr("shutting down")));
+  EXPECT_EQ(model.started(), 1);
+}
+
+TEST(BatcherTest, AnswersEveryWindowOnceUnderLoad) {
+  constexpr int kThreads = 4;
+  constexpr int kJobs = 50;
+  const auto model = std::make_shared<FakeSynthesizer>();
+  std::atomic<int> answered{0};
+  std::atomic<int> refused{0};
+  {
+    const auto batcher = MakeBatcher({3, 16, {4}}, common::Clock::Real());
+    std::vector<std::thread> callers;
+    for (int t = 0; t < kThreads; ++t) {
+      callers.emplace_back([&, t] {
+        for (int i = 0; i < kJobs; ++i) {
+          Ticket ticket;
+          WindowJob job = ticket.Job(model);
+          job.priority = i % 2 == 0 ? Priority::kBulk : Priority::kInteractive;
+          job.done = [&](WindowOutcome) { ++answered; };
+          if (!batcher->Submit(std::move(job)).ok()) ++refused;
+          if ((i + t) % 5 == 0) ticket.cancelled->store(true);
+        }
+      });
+    }
+    for (std::thread& caller : callers) caller.join();
+  }
+  EXPECT_EQ(answered + refused, kThreads * kJobs);
+}
+
+}  // namespace
+}  // namespace duet::server::batching

@@ -1,0 +1,207 @@
+// The queue under load, in simulated time: what callers see when workers ask it what to do.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "server/batching/window_queue.h"
+#include "tests/support/fake_synthesizer.h"
+
+namespace duet::server::batching {
+namespace {
+
+using common::TimePoint;
+using std::chrono::milliseconds;
+
+constexpr TimePoint kStart(std::chrono::hours(1));
+constexpr int kFrames = 45;
+constexpr int kTenMinutes = 240;  // windows
+
+TimePoint After(TimePoint start, double seconds) {
+  return start +
+         std::chrono::duration_cast<TimePoint::duration>(std::chrono::duration<double>(seconds));
+}
+
+// What an engine takes.
+struct Engine {
+  double batch_seconds = 0;
+  double window_seconds = 0;
+  double Seconds(std::size_t windows) const {
+    return batch_seconds + window_seconds * static_cast<double>(windows);
+  }
+};
+constexpr Engine kFast = {0.001, 0.0007};
+constexpr Engine kSlow = {0.008, 0.005};
+
+// A scheduler with two workers whose threads are events.
+class Simulation {
+ public:
+  Simulation(const Engine& engine, int max_windows)
+      : engine_(engine), queue_({64, kWorkers, {max_windows}}) {}
+
+  TimePoint now() const { return now_; }
+  void At(TimePoint time, std::function<void()> event) { events_.emplace(time, std::move(event)); }
+  void RunUntil(TimePoint end) {
+    while (!events_.empty() && events_.begin()->first < end) {
+      now_ = events_.begin()->first;
+      const std::function<void()> event = std::move(events_.begin()->second);
+      events_.erase(events_.begin());
+      event();
+    }
+  }
+  // A window of a call of so many; `done` gets whether it was evaluated.
+  void Submit(int call_windows, bool continues_call, Priority priority, TimePoint deadline,
+              std::function<void(bool)> done) {
+    WindowJob job;
+    job.model = model_;
+    job.window.leader = motion::Poses(kFrames, 1);
+    job.priority = priority;
+    job.deadline = deadline;
+    job.cancelled = never_;
+    job.call_windows = call_windows;
+    job.continues_call = continues_call;
+    job.done = [done](const WindowOutcome& outcome) { done(outcome.result.ok()); };
+    if (!queue_.HasRoomFor(job, now_)) return done(false);
+    queue_.Push(std::move(job), now_);
+    LetWorkersAsk();
+  }
+
+ private:
+  static constexpr int kWorkers = 2;
+
+  void LetWorkersAsk() {
+    while (busy_ < kWorkers) {
+      Turn turn = queue_.Next(now_);
+      if (!turn.batch.windows.empty()) Evaluate(std::move(turn.batch));
+      for (DroppedWindow& dropped : turn.dropped) dropped.window.job.done({dropped.reason, {}});
+      if (turn.batch.windows.empty()) return;
+    }
+  }
+  void Evaluate(Batch batch) {
+    ++busy_;
+    const TimePoint end = After(now_, engine_.Seconds(batch.windows.size()));
+    At(end, [this, batch = std::move(batch)] {
+      queue_.Finished(batch, now_);
+      --busy_;
+      for (const QueuedWindow& window : batch.windows) window.job.done({motion::Poses(), {}});
+      LetWorkersAsk();
+    });
+  }
+
+  const Engine engine_;
+  WindowQueue queue_;
+  const std::shared_ptr<const engine::Synthesizer> model_ =
+      std::make_shared<test::FakeSynthesizer>();
+  const std::shared_ptr<std::atomic<bool>> never_ = std::make_shared<std::atomic<bool>>(false);
+  std::multimap<TimePoint, std::function<void()>> events_;
+  TimePoint now_ = kStart;
+  int busy_ = 0;
+};
+
+// Calls of one window answered in time, a second, when they come at a steady rate for ten seconds.
+// An answer is on its way for 3 ms.
+double Goodput(const Engine& engine, double calls_per_second, double deadline_seconds) {
+  constexpr double kSeconds = 10;
+  Simulation simulation(engine, 16);
+  int in_time = 0;
+  for (int i = 0; i < static_cast<int>(kSeconds * calls_per_second); ++i) {
+    simulation.At(After(kStart, i / calls_per_second), [&, deadline_seconds] {
+      const TimePoint deadline = After(simulation.now(), deadline_seconds);
+      simulation.Submit(1, false, Priority::kInteractive, deadline, [&, deadline](bool evaluated) {
+        in_time += evaluated && simulation.now() + milliseconds(3) <= deadline ? 1 : 0;
+      });
+    });
+  }
+  simulation.RunUntil(After(kStart, kSeconds));
+  return in_time / kSeconds;
+}
+
+TEST(SimulatedLoadTest, GoodputHoldsUnderTightDeadlines) {
+  for (const Engine& engine : {kFast, kSlow}) {
+    const double capacity = 2 * 16 / engine.Seconds(16);
+    for (const double deadline : {10.0, 1.0, 0.3, 0.15, 0.1}) {
+      const double goodput = Goodput(engine, 2 * capacity, deadline);
+      EXPECT_GT(goodput, 0.85 * capacity)
+          << "deadline " << deadline << " s, a batch takes " << engine.Seconds(16) << " s";
+    }
+  }
+}
+
+TEST(SimulatedLoadTest, WithoutTooManyCallsEachIsInTime) {
+  for (const Engine& engine : {kFast, kSlow}) {
+    const double offered = 0.9 * 2 * 16 / engine.Seconds(16);
+    for (const double deadline : {1.0, 0.15}) {
+      EXPECT_GT(Goodput(engine, offered, deadline), 0.99 * offered) << deadline << " s";
+    }
+  }
+}
+
+// A call that asks for one of so many windows after the other, and has done so for a while.
+void KeepAsking(Simulation& simulation, int call_windows, Priority priority, int* evaluated) {
+  simulation.Submit(call_windows, true, priority, TimePoint::max(),
+                    [&simulation, call_windows, priority, evaluated](bool) {
+                      ++*evaluated;
+                      KeepAsking(simulation, call_windows, priority, evaluated);
+                    });
+}
+
+// How long calls of one window wait, in the median, while so many others ask for long clips.
+double MedianWait(const Engine& engine, int long_calls, Priority priority) {
+  constexpr int kCalls = 200;
+  Simulation simulation(engine, 16);
+  int others = 0;
+  for (int i = 0; i < long_calls; ++i) {
+    // They are under way when the first short call comes.
+    simulation.At(kStart + i * milliseconds(1),
+                  [&] { KeepAsking(simulation, kTenMinutes, priority, &others); });
+  }
+  std::vector<double> waits;
+  for (int i = 0; i < kCalls; ++i) {
+    simulation.At(After(kStart, 1 + 0.0371 * i), [&] {
+      simulation.Submit(1, false, Priority::kInteractive, TimePoint::max(),
+                        [&, start = simulation.now()](bool) {
+                          waits.push_back(common::SecondsBetween(start, simulation.now()));
+                        });
+    });
+  }
+  simulation.RunUntil(After(kStart, 10));
+  EXPECT_EQ(waits.size(), static_cast<std::size_t>(kCalls)) << "every short call is admitted";
+  std::sort(waits.begin(), waits.end());
+  return waits[waits.size() / 2];
+}
+
+TEST(SimulatedLoadTest, LongCallsDoNotShutShortOnesOut) {
+  for (const Engine& engine : {kFast, kSlow}) {
+    const double idle = MedianWait(engine, 0, Priority::kInteractive);
+    EXPECT_DOUBLE_EQ(idle, engine.Seconds(1));
+    EXPECT_LT(MedianWait(engine, 66, Priority::kInteractive), 3 * idle);
+    EXPECT_LT(MedianWait(engine, 66, Priority::kBulk), 3 * idle);
+  }
+}
+
+TEST(SimulatedLoadTest, NobodyStarvesBesideEndlessShortCalls) {
+  Simulation simulation(kFast, 16);
+  int bulk = 0, long_calls = 0, short_calls = 0;
+  for (int i = 0; i < 20; ++i) {
+    KeepAsking(simulation, kTenMinutes, Priority::kBulk, &bulk);
+    KeepAsking(simulation, kTenMinutes, Priority::kInteractive, &long_calls);
+  }
+  std::function<void(bool)> again = [&](bool evaluated) {
+    short_calls += evaluated ? 1 : 0;
+    simulation.Submit(1, false, Priority::kInteractive, TimePoint::max(), again);
+  };
+  for (int i = 0; i < 60; ++i) again(false);
+  simulation.RunUntil(After(kStart, 5));
+  const double all = bulk + long_calls + short_calls;
+  EXPECT_NEAR(bulk / all, 1.0 / 8, 0.02);
+  EXPECT_NEAR(long_calls / (all - bulk), 1.0 / 8, 0.02);
+}
+
+}  // namespace
+}  // namespace duet::server::batching
