@@ -140,11 +140,12 @@ absl::Status Job::Make(const Work& work) {
       queue_.Stop();  // nobody gets a call any longer
       return absl::OkStatus();
     }
-    const absl::StatusOr<SynthesisResult> result = NextClient(call->server).Synthesize(request);
+    absl::StatusOr<SynthesisResult> result = NextClient(call->server).Synthesize(request);
     gate_.Finish(*call, CallEndOf(result.status()), DelayOf(result.status()));
     switch (MeaningOf(result.status())) {
       case Meaning::kAnswer: {
         bool again = false;
+        result->pair = AtOutputRate(std::move(result->pair), parts_.recipe.output);
         absl::Status status = Judge(work, request, *result, retry, &again);
         if (!again || !status.ok()) return status;
         ++retry;
@@ -187,18 +188,17 @@ absl::Status Job::Keep(const Item& item, const RecordedAnswer& answer,
   const std::filesystem::path root = parts_.folder->items(parts_.identity.packing);
   const motion::Skeleton& skeleton = parts_.skeletons[static_cast<size_t>(item.model)];
   std::vector<RecordedFile> files;
-  for (const Format format : parts_.recipe.output.formats) {
-    const absl::StatusOr<std::vector<EncodedFile>> encoded = Encode(format, pair, skeleton);
-    if (!encoded.ok()) return Fail(item, encoded.status());
-    for (const EncodedFile& file : *encoded) {
-      const std::string path = item.name + file.ending;
-      const std::filesystem::path temporary =
-          parts_.folder->temporary() / absl::StrCat(item.number, file.ending);
-      absl::Status status = WriteDurably(temporary, root / path, file.content);
-      if (!status.ok()) return status;
-      files.push_back({path, file.content.size(), base::Sha256Hex(file.content)});
-      bytes_ += file.content.size();
-    }
+  const absl::StatusOr<std::vector<EncodedFile>> encoded =
+      Encode(parts_.recipe.output, item.side, pair, skeleton);
+  if (!encoded.ok()) return Fail(item, encoded.status());
+  for (const EncodedFile& file : *encoded) {
+    const std::string path = item.name + file.ending;
+    const std::filesystem::path temporary =
+        parts_.folder->temporary() / absl::StrCat(item.number, file.ending);
+    absl::Status status = WriteDurably(temporary, root / path, file.content);
+    if (!status.ok()) return status;
+    files.push_back({path, file.content.size(), base::Sha256Hex(file.content)});
+    bytes_ += file.content.size();
   }
   RemoveError(item);
   ++done_;

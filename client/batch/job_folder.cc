@@ -30,6 +30,7 @@ std::string ToJson(const JobIdentity& identity) {
                                          {"recipe_sha256", identity.recipe_digest},
                                          {"models", models},
                                          {"shard", ShardText(identity.shard)},
+                                         {"layout", static_cast<int>(identity.layout)},
                                          {"packing", static_cast<int>(identity.packing)},
                                          {"shard_bytes", identity.shard_bytes}};
   return object.dump(2) + "\n";
@@ -50,6 +51,7 @@ absl::StatusOr<JobIdentity> FromJson(const std::string& text) {
   const absl::StatusOr<Shard> shard = ParseShard(reader.String("shard", 32));
   reader.Update(shard.status());
   if (shard.ok()) identity.shard = *shard;
+  identity.layout = static_cast<Layout>(reader.Int("layout", 0, 3));
   identity.packing = static_cast<Packing>(reader.Int("packing", 0, 2));
   identity.shard_bytes = static_cast<uint64_t>(reader.Int("shard_bytes", 0, int64_t{1} << 40));
   absl::Status status = reader.Finish();

@@ -17,6 +17,7 @@ namespace duet::client::batch {
 struct JobIdentity {
   std::string recipe_digest;
   Shard shard;
+  Layout layout = Layout::kMirror;
   Packing packing = Packing::kNone;
   uint64_t shard_bytes = 0;
   std::vector<ModelChoice> models;  // names and versions; empty before a job has begun

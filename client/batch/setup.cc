@@ -21,6 +21,7 @@ JobIdentity IdentityOf(const Recipe& recipe, const Shard& shard) {
   JobIdentity identity;
   identity.recipe_digest = recipe.digest;
   identity.shard = shard;
+  identity.layout = recipe.output.layout;
   identity.packing = recipe.output.packing;
   identity.shard_bytes = recipe.output.shard_bytes;
   return identity;

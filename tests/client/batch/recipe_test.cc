@@ -91,6 +91,12 @@ INSTANTIATE_TEST_SUITE_P(
         BadRecipe{"reactions { mixes {} }", "mixes.count: came 0"},
         BadRecipe{"reactions { mixes { count: 1 classes: 'a' } }", "classes_in_mix: came 2"},
         BadRecipe{"reactions { mixes { count: 1 min_weight: 2 } }", "min_weight: came 2"},
+        BadRecipe{"reactions { each_class { min_weight: 1.5 } }",
+                  "each_class.min_weight: came 1.5"},
+        BadRecipe{"reactions { each_class { classes: 'a' beside {} } }",
+                  "each_class.classes: came one, wanted two or more"},
+        BadRecipe{"reactions { each_class { beside { min_weight: 1 max_weight: 0 } } }",
+                  "beside.min_weight: came 1"},
         BadRecipe{"reactions { name: 'a-b' each_class {} }", "name: came \"a-b\""},
         BadRecipe{"reactions { schedule { keyframes { at: 2 labels { weights { key: 'a' } } } } }",
                   "keyframes[0].at: came 2"},
@@ -104,6 +110,10 @@ INSTANTIATE_TEST_SUITE_P(
         BadRecipe{"input { frame_rate_hz: 0 }", "input.frame_rate_hz: came 0"},
         BadRecipe{"output { formats: FORMAT_NPY shard_bytes: 0 }", "shard_bytes: came 0"},
         BadRecipe{"output { formats: FORMAT_CSV packing: PACKING_NPZ }", "FORMAT_NPY alone"},
+        BadRecipe{"output { formats: FORMAT_NPY layout: LAYOUT_SBU }",
+                  "output.formats: came some, wanted none"},
+        BadRecipe{"output { layout: LAYOUT_K3HI packing: PACKING_TAR }",
+                  "output.packing: came one, wanted none"},
         BadRecipe{"output { formats: FORMAT_NPY formats: FORMAT_NPY }", "formats: came 3 twice"}));
 
 TEST(Recipe, AFormatIsWanted) {
