@@ -10,6 +10,7 @@
 #include "client/batch/durable_file.h"
 #include "client/batch/packing.h"
 #include "client/batch/record.h"
+#include "client/batch/text_values.h"
 #include "model/base/file.h"
 
 namespace duet::client::batch {
@@ -165,7 +166,7 @@ std::string SummaryJson(const JobIdentity& identity, const SetCounts& counts,
                         const PlannedItems& planned) {
   ordered_json models = ordered_json::array();
   for (const ModelChoice& model : identity.models) {
-    models.push_back(absl::StrCat(model.name, "@", model.version.value_or(0)));
+    models.push_back(ModelText(model));
   }
   const ordered_json summary = {
       {"planned", planned.count},

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "client/batch/contact_sheet.h"
 #include "client/batch/encode.h"
 #include "client/batch/packing.h"
 #include "client/error_details.h"
@@ -283,7 +284,11 @@ absl::StatusOr<JobReport> Job::Finish() {
   // A shard of a set that is made in several is packed when they are merged.
   const bool packs = whole_plan_ && journal->count() == planned_ && identity.shard.count == 1;
   absl::Status status;
-  if (packs && identity.packing != Packing::kNone) {
+  // What is in shards by now was drawn when it was not.
+  if (!packed_) {
+    status = WriteContactSheet(*journal, identity, folder.items(identity.packing), folder.out());
+  }
+  if (status.ok() && packs && identity.packing != Packing::kNone) {
     status = Pack(*journal, identity.packing, identity.shard_bytes, folder.items(identity.packing),
                   folder.temporary(), folder.out());
   }
@@ -304,10 +309,7 @@ absl::StatusOr<JobReport> Job::Run() {
   std::error_code error;
   errors_exist_ = std::filesystem::exists(parts_.folder->errors(), error);
   const JobIdentity& identity = parts_.identity;
-  packed_ =
-      identity.packing != Packing::kNone &&
-      std::filesystem::exists(
-          parts_.folder->out() / ShardNames(identity.packing, identity.shard_bytes).Next(0), error);
+  packed_ = IsPacked(identity.packing, identity.shard_bytes, parts_.folder->out());
   status = RunThreads(*journal, &writer);
   if (!status.ok()) return status;
   absl::StatusOr<JobReport> report = Finish();

@@ -27,7 +27,9 @@ JobIdentity IdentityOf(const Recipe& recipe, const Shard& shard) {
   return identity;
 }
 
-JobIdentity WithModels(JobIdentity identity, const std::vector<ModelInfo>& models) {
+JobIdentity WithModels(JobIdentity identity, const std::vector<ModelInfo>& models,
+                       const std::vector<motion::Skeleton>& skeletons) {
+  identity.skeletons = skeletons;
   identity.models.clear();
   for (const ModelInfo& model : models) {
     ModelChoice choice;

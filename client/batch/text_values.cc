@@ -38,6 +38,10 @@ absl::StatusOr<ModelChoice> ParseModelName(absl::string_view text) {
   return choice;
 }
 
+std::string ModelText(const ModelChoice& model) {
+  return absl::StrCat(model.name, "@", model.version.value_or(0));
+}
+
 absl::StatusOr<std::vector<ClassWeight>> ParseLabels(absl::string_view text) {
   constexpr char kForm[] = "CLASS=WEIGHT,... such as kick=1,hug=0.5, weights from -2 to 2";
   std::vector<ClassWeight> labels;

@@ -18,6 +18,8 @@ namespace duet::client::batch {
 
 // "NAME", "NAME@VERSION" or "NAME:LABEL"
 absl::StatusOr<ModelChoice> ParseModelName(absl::string_view text);
+// "NAME@VERSION" of a version that is settled.
+std::string ModelText(const ModelChoice& model);
 // "kick=1,hug=0.5", by class name. Each class once, weights within [-2, 2].
 absl::StatusOr<std::vector<ClassWeight>> ParseLabels(absl::string_view text);
 // "left" or "right"

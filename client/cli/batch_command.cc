@@ -311,7 +311,7 @@ absl::StatusOr<ExitCode> RunWhole(const BatchArguments& arguments,
   absl::StatusOr<batch::Plan> plan =
       MakePlan(arguments, prepared.recipe, prepared.models, environment.in);
   if (!plan.ok()) return plan.status();
-  const batch::JobIdentity identity = WithModels(wanted, prepared.models);
+  const batch::JobIdentity identity = WithModels(wanted, prepared.models, prepared.skeletons);
   if (begun.models.empty()) status = folder.Begin(identity);
   if (!status.ok()) return status;
   // What a pipe brings can be read only once.

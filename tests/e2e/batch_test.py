@@ -4,11 +4,13 @@ killed, packed shards that Python reads, shards of a job, refusals, and Ctrl-C.
     batch_test.py [KILLS] [test...]     how often the kill test kills; 6
 """
 
+import collections
 import hashlib
 import json
 import os
 import pathlib
 import random
+import re
 import resource
 import shutil
 import signal
@@ -91,6 +93,12 @@ class BatchTest(unittest.TestCase):
         self.assertEqual(result.returncode, code, result.stdout + result.stderr)
         return result
 
+    @staticmethod
+    def classes(index):
+        """How many items each class has the largest weight of."""
+        return collections.Counter(max(entry["labels"], key=entry["labels"].get)
+                                   for entry in index)
+
     def verified(self, out, code=0):
         result = tools.duet("batch", "verify", out)
         self.assertEqual(result.returncode, code, result.stdout + result.stderr)
@@ -112,6 +120,13 @@ class BatchTest(unittest.TestCase):
                 self.assertEqual(hashlib.sha256(content).hexdigest(), file["sha256"])
         summary = json.loads((out / "summary.json").read_text(encoding="utf-8"))
         self.assertEqual((summary["done"], summary["missing"]), (len(index), 0))
+        sheet = (out / "contact_sheet.html").read_text(encoding="utf-8")
+        shown = sum(min(12, count) for count in self.classes(index).values())
+        self.assertEqual(sheet.count("<svg"), shown)
+        self.assertEqual(len(re.findall('<a href="([^"]*)"', sheet)), shown)
+        for file in re.findall('<a href="([^"]*)"', sheet):
+            self.assertTrue((out / file).is_file(), file)
+        self.assertNotIn("://", sheet)
         self.verified(out)
         (out / "far" / "push-kick-s1.npy").write_bytes(b"changed")
         self.assertIn("push-kick-s1.npy: was changed", self.verified(out, 42).stderr)
@@ -287,6 +302,12 @@ class BatchTest(unittest.TestCase):
         self.assertEqual(found, {path.relative_to(plain).as_posix(): path.read_bytes()
                                  for path in plain.rglob("*.npy")})
         self.assertFalse((out / ".duet-batch" / "items").exists())
+        # The sheet is drawn before its files go into shards, and has nothing to open.
+        sheet = (out / "contact_sheet.html").read_text(encoding="utf-8")
+        self.assertEqual(re.sub("</?(a|span)( href=[^>]*)?>", "", sheet),
+                         re.sub("</?(a|span)( href=[^>]*)?>", "",
+                                (plain / "contact_sheet.html").read_text(encoding="utf-8")))
+        self.assertNotIn("<a ", sheet)
         before = digests(out)
         self.batch(out, self.recipe(), "--pack", "tar")
         self.assertEqual(digests(out), before)

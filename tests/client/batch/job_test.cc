@@ -104,7 +104,8 @@ class JobTest : public ::testing::Test {
     JobIdentity begun;
     absl::Status status = folder.Open(IdentityOf(*recipe, {}), &begun);
     if (!status.ok()) return status;
-    const JobIdentity identity = WithModels(IdentityOf(*recipe, {}), {model});
+    const JobIdentity identity =
+        WithModels(IdentityOf(*recipe, {}), {model}, {motion::SbuSkeleton()});
     EXPECT_THAT(folder.Begin(identity), IsOk());
     std::istringstream in(manifest);
     absl::StatusOr<Plan> plan =
@@ -130,7 +131,8 @@ class JobTest : public ::testing::Test {
   void ExpectSameAsUndisturbed(const std::string& out) {
     connections_ = {std::make_shared<FakeConnection>()};
     ASSERT_THAT(Run("undisturbed"), IsOk());
-    for (const char* file : {"index.jsonl", "index.tsv", "rejected.tsv", "summary.json"}) {
+    for (const char* file :
+         {"contact_sheet.html", "index.jsonl", "index.tsv", "rejected.tsv", "summary.json"}) {
       EXPECT_EQ(Read(out + "/" + file), Read(std::string("undisturbed/") + file)) << file;
     }
     EXPECT_EQ(Verify(folder_ / out)->problem_count, 0);
