@@ -57,7 +57,7 @@ absl::StatusOr<JobIdentity> FromJson(const std::string& text) {
   reader.Int("format", kFormat, kFormat);
   identity.recipe_digest = reader.String("recipe_sha256", 64);
   for (const std::string& name : reader.Strings("models", kMaxModels)) {
-    const absl::StatusOr<ModelChoice> model = ParseModelName(name);
+    const absl::StatusOr<ModelChoice> model = ParseModelChoice(name);
     reader.Update(model.status());
     if (model.ok()) identity.models.push_back(*model);
   }

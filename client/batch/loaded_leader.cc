@@ -17,12 +17,7 @@ formats::ReadOptions ToReadOptions(const LeaderInput& input, const motion::Skele
   options.frame_rate_hz = input.frame_rate_hz;
   options.metres_per_unit = input.metres_per_unit;
   options.joint_overrides = input.joint_map;
-  if (!input.unit.has_value() && !input.up_axis.has_value()) return options;
-  motion::Coordinates coordinates;
-  coordinates.unit = input.unit.value_or(motion::LengthUnit::kMetres);
-  const bool sbu = coordinates.unit == motion::LengthUnit::kSbuNormalised;
-  coordinates.up_axis = input.up_axis.value_or(sbu ? motion::UpAxis::kYDown : motion::UpAxis::kYUp);
-  options.coordinates = coordinates;
+  options.coordinates = motion::StatedCoordinates(input.unit, input.up_axis);
   return options;
 }
 
@@ -37,7 +32,7 @@ absl::Status SetStart(const LeaderEntry& entry, formats::Side side, const Leader
                       formats::ReadOptions options, LoadedLeader* loaded) {
   const std::string& start = entry.follower_start;
   if (start.empty() && !input.starts_as_other_person) return absl::OkStatus();
-  if (const std::optional<motion::Vec3> root = ParseTriple(start); root.has_value()) {
+  if (const std::optional<motion::Vec3> root = ParsePoint(start); root.has_value()) {
     loaded->follower_start = *root;
     return absl::OkStatus();
   }

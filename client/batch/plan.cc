@@ -244,7 +244,7 @@ absl::Status Plan::BeginLeader(LeaderEntry leader) {
   if (leader.side.has_value()) sides_ = {*leader.side};
   leader_models_.clear();
   const absl::StatusOr<ModelChoice> choice =
-      leader.model.empty() ? ModelChoice() : ParseModelName(leader.model);
+      leader.model.empty() ? ModelChoice() : ParseModelChoice(leader.model);
   for (size_t i = 0; i < models_.size(); ++i) {
     if (leader.model.empty() || (choice.ok() && Means(*choice, models_[i]))) {
       leader_models_.push_back(static_cast<int>(i));

@@ -278,7 +278,7 @@ Output ReadOutput(const v1::Output& proto, Checker* check) {
 void ReadModels(const v1::Recipe& proto, Checker* check, Recipe* recipe) {
   check->Different("models", proto.models());
   for (const std::string& name : proto.models()) {
-    const absl::StatusOr<ModelChoice> choice = ParseModelName(name);
+    const absl::StatusOr<ModelChoice> choice = ParseModelChoice(name);
     check->Want(choice.ok(), "models", base::Quoted(name), "NAME, NAME@VERSION or NAME:LABEL");
     if (choice.ok()) recipe->models.push_back(*choice);
   }

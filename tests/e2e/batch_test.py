@@ -131,6 +131,18 @@ class BatchTest(unittest.TestCase):
         (out / "far" / "push-kick-s1.npy").write_bytes(b"changed")
         self.assertIn("push-kick-s1.npy: was changed", self.verified(out, 42).stderr)
 
+    def test_files_beside_motions_are_passed_over(self):
+        leaders, out = self.out("leaders"), self.out()
+        leaders.mkdir()
+        shutil.copy(tools.sample("kick"), leaders)
+        keyframes = leaders / "kick.txt"
+        shutil.copy(tools.SOURCE / "samples" / "keyframes" / "kick.txt", keyframes)
+        result = self.batch(out, self.recipe(), "--limit", "1", leaders=leaders)
+        self.assertIn(f"passed over, no motion: {keyframes}\n", result.stderr)
+        self.assertEqual([entry["leader"] for entry in entries(out)], [str(leaders / "kick.bvh")])
+        quiet = self.batch(out, self.recipe(), "--limit", "1", "--quiet", leaders=leaders)
+        self.assertEqual(quiet.stderr, "")
+
     def test_an_answer_is_what_synthesize_gives(self):
         out, single = self.whole, self.folder / "single.npy"
         entry = next(e for e in entries(out) if e["name"] == "hug-kick-s0")

@@ -59,10 +59,37 @@ TEST(Recipe, WhatAsksForOtherFilesHasAnotherDigest) {
   EXPECT_NE(Parse("seed: 1")->digest, Parse("seed: 2")->digest);
   RecipeOverrides overrides;
   overrides.packing = Packing::kTar;
-  const auto packed = ParseRecipe(kOutput, false, overrides);
+  const auto packed = ParseRecipe(kOutput, false, "", overrides);
   EXPECT_EQ(packed->output.packing, Packing::kTar);
   EXPECT_EQ(packed->digest,
             ParseRecipe("output { formats: FORMAT_NPY packing: PACKING_TAR }", false)->digest);
+}
+
+TEST(ReadRecipe, TakesATableOfJoints) {
+  const test::TemporaryFolder folder;
+  const std::string output = "output { formats: FORMAT_NPY } ";
+  test::WriteTestFile(folder / "rig.txt", "# ours\nhead = Skull\ntorso = Chest 3\n");
+  test::WriteTestFile(folder / "r.textproto", output +
+                                                  "input { joint_map_file: 'rig.txt' "
+                                                  "joint_map { key: 'head' value: 'Hat' } }");
+  const absl::StatusOr<Recipe> recipe = ReadRecipe(folder / "r.textproto");
+  ASSERT_THAT(recipe, IsOk());
+  EXPECT_EQ(recipe->input.joint_map,
+            (retargeting::JointOverrides{{"head", "Hat"}, {"torso", "Chest 3"}}));
+  // What the table says counts, not where it is said.
+  test::WriteTestFile(folder / "same.textproto",
+                      output +
+                          "input { joint_map { key: 'torso' value: 'Chest 3' } "
+                          "joint_map { key: 'head' value: 'Hat' } }");
+  EXPECT_EQ(ReadRecipe(folder / "same.textproto")->digest, recipe->digest);
+  test::WriteTestFile(folder / "rig.txt", "torso = Chest 4\n");
+  EXPECT_NE(ReadRecipe(folder / "r.textproto")->digest, recipe->digest);
+  test::WriteTestFile(folder / "rig.txt", "torso\n");
+  EXPECT_THAT(ReadRecipe(folder / "r.textproto"),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("rig.txt:1")));
+  std::filesystem::remove(folder / "rig.txt");
+  EXPECT_THAT(ReadRecipe(folder / "r.textproto"),
+              StatusIs(absl::StatusCode::kNotFound, HasSubstr("rig.txt")));
 }
 
 struct BadRecipe {
