@@ -12,7 +12,7 @@ namespace duet::client::cli {
 namespace {
 
 // The longest that a server is waited for before a run begins.
-constexpr double kFirstAnswerSeconds = 10;
+constexpr double kFirstAnswerSeconds = 30;
 
 }  // namespace
 

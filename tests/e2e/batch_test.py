@@ -14,6 +14,7 @@ import re
 import resource
 import shutil
 import signal
+import socket
 import subprocess
 import sys
 import tarfile
@@ -208,6 +209,20 @@ class BatchTest(unittest.TestCase):
             server.stop()
         self.assertEqual(client.returncode, 0, said)
         self.assertEqual(digests(out), digests(self.whole))
+
+    def test_a_server_that_comes_late_is_waited_for(self):
+        # gRPC's own look at a lost connection every five seconds is left out: the client looks.
+        environment = dict(os.environ, GRPC_CLIENT_CHANNEL_BACKUP_POLL_INTERVAL_MS="0")
+        with socket.create_server(("127.0.0.1", 0)) as listener:
+            port = listener.getsockname()[1]
+            client = subprocess.Popen(
+                self.command(self.out(), self.recipe(), "--limit", "2", "--quiet",
+                             server=f"127.0.0.1:{port}"), env=environment)
+            listener.settimeout(tools.RUN_SECONDS)
+            listener.accept()[0].close()
+        server = tools.Server(port=port)
+        self.addCleanup(server.stop)
+        self.assertEqual(client.wait(timeout=tools.RUN_SECONDS), 0)
 
     def test_a_server_that_stays_away_is_worth_another_run(self):
         out = self.out()
