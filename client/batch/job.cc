@@ -84,14 +84,8 @@ absl::StatusOr<bool> Job::IsSettled(const Item& item, const JournalReader& journ
 
 // False when the run is being stopped.
 bool Job::Put(Item item) {
-  if (item.leader != last_entry_ || item.side != last_side_) {
-    std::fill(leaders_.begin(), leaders_.end(), nullptr);
-    last_entry_ = item.leader;
-    last_side_ = item.side;
-  }
-  std::shared_ptr<SharedLeader>& leader = leaders_[static_cast<size_t>(item.model)];
-  if (leader == nullptr) leader = std::make_shared<SharedLeader>(item.leader, item.side);
-  return queue_.Put({std::move(item), leader});
+  std::shared_ptr<SharedLeader> leader = leaders_.Get(item.leader, item.side, item.model);
+  return queue_.Put({std::move(item), std::move(leader)});
 }
 
 absl::Status Job::Feed(const JournalReader& journal) {
