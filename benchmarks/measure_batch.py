@@ -4,7 +4,8 @@ server whose engine answers at once (tests/duet-fake-server).
 
     benchmarks/measure_batch.py BUILD [--items 20000] [--lines 1000000]
 
-Two runs: --items items end to end; and a manifest of --lines lines of which one in a thousand is
+Three runs: --items items end to end, each of a leader of its own, which is read for it; the same
+with 20 items a leader; and a manifest of --lines lines of which one in a thousand is
 asked for, which shows the memory that a long list takes.
 """
 
@@ -34,11 +35,12 @@ def write_leader(path, frames=30):
                     encoding="utf-8")
 
 
-def write_manifest(path, lines):
+def write_manifest(path, lines, leaders=1):
+    """Lines leader by leader, as many of each."""
     with path.open("w", encoding="utf-8") as file:
         file.write("leader\n")
-        for _ in range(lines):
-            file.write("leader.json\n")
+        for line in range(lines):
+            file.write(f"leader{line * leaders // lines}.json\n")
 
 
 def start_server(build, log):
@@ -86,12 +88,16 @@ def main():
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(temporary)
-        write_leader(folder / "leader.json")
+        write_leader(folder / "leader0.json")
+        for number in range(1, arguments.items):
+            os.link(folder / "leader0.json", folder / f"leader{number}.json")
         (folder / "recipe").write_text(RECIPE, encoding="utf-8")
-        write_manifest(folder / "items.tsv", arguments.items)
+        write_manifest(folder / "leaders.tsv", arguments.items, arguments.items)
+        write_manifest(folder / "items.tsv", arguments.items, max(1, arguments.items // 20))
         write_manifest(folder / "lines.tsv", arguments.lines)
         server, address = start_server(arguments.build, folder / "log")
         try:
+            measure("leaders", arguments.build, server, address, folder, folder / "leaders.tsv")
             measure("items", arguments.build, server, address, folder, folder / "items.tsv")
             measure("lines", arguments.build, server, address, folder, folder / "lines.tsv",
                     "--shard", "0/1000")

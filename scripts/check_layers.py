@@ -103,7 +103,7 @@ LAYERS = (
     Layer("viewer", "client/viewer", sees=("base", "motion", "client")),
     Layer("batch flow", "client/batch/flow", sees=()),
     Layer("batch", "client/batch",
-          sees=MOTION_FILES + ("messages", "cleanup", "metrics", "batch flow", "client"),
+          sees=MOTION_FILES + ("messages", "dataset", "cleanup", "metrics", "batch flow", "client"),
           libraries=("rpc",)),
     Layer("client program", "client/cli", sees=MOTION_FILES + ("viewer", "batch flow", "batch", "client")),
     Layer("client", "client", sees=("base", "motion"), libraries=("rpc",)),

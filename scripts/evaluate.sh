@@ -29,6 +29,27 @@ ablate() { # CONFIG [FOLD...]
   for fold in "$@"; do "${command[@]}" --fold "${fold}"; done
 }
 
+# The paper's augmented set of one half, through server and client.
+make_set() { # HALF
+  local jobs="${runs}/jobs-$1" log="${runs}/set-$1.log" server="" port=""
+  "${bin}/duet-eval" augmentation --data "${data}" --seeds "$1" --write-jobs "${jobs}"
+  "${bin}/duet-server" --listen 127.0.0.1:0 --metrics-listen off \
+    --model-repository "${runs}/half/half-$1/checkpoint" >"${log}" 2>&1 &
+  server=$!
+  # shellcheck disable=SC2064  # this server, whatever comes after it
+  trap "kill ${server}" EXIT
+  until [[ -n "${port}" ]]; do
+    sleep 0.1
+    kill -0 "${server}" # a server that could not start: ${log}
+    port="$(sed -n 's/.*"event":"serving".*"port":\([0-9]*\).*/\1/p' "${log}")"
+  done
+  "${bin}/duet" batch --manifest "${jobs}/manifest.tsv" --recipe recipes/sbu_300.textproto \
+    --out "${runs}/set-$1" --server "127.0.0.1:${port}" --quiet
+  kill "${server}"
+  wait "${server}"
+  trap - EXIT
+}
+
 train() {
   local config folds half
   read -ra folds <<<"${FOLDS:-}"
@@ -40,8 +61,7 @@ train() {
   "${bin}/duet-train" --data "${data}" --out "${runs}/half" --protocol half --seeds 1,2,3,4,5
   scripts/measure_augmentations.sh "${bin}" "${data}" "${runs}/augmentations"
   for half in {1..5}; do
-    scripts/augmentation_set.sh "${bin}" "${runs}/half/half-${half}" "${data}" \
-      "${runs}/set-${half}"
+    make_set "${half}"
   done
 }
 

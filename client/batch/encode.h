@@ -17,9 +17,13 @@ struct EncodedFile {
   std::string content;
 };
 
-// The files that a pair has in a format: two of BVH, one of any other. INVALID_ARGUMENT for a pair
-// that no file can hold.
-absl::StatusOr<std::vector<EncodedFile>> Encode(Format format, const motion::ClipPair& pair,
+// A pair at the frame rate of the output's layout, where that has one of its own.
+motion::ClipPair AtOutputRate(motion::ClipPair pair, const Output& output);
+
+// The files that such a pair has: two of BVH, one of any other format; of a layout of captures one,
+// with the leader on its side. INVALID_ARGUMENT for a pair that no file can hold.
+absl::StatusOr<std::vector<EncodedFile>> Encode(const Output& output, formats::Side leader_side,
+                                                const motion::ClipPair& pair,
                                                 const motion::Skeleton& skeleton);
 
 }  // namespace duet::client::batch

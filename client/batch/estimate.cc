@@ -28,12 +28,11 @@ absl::StatusOr<Probe> Ask(const Item& item, const Recipe& recipe, const ModelInf
   const double frames = result->pair.follower.frame_count();
   Probe probe;
   probe.seconds_a_frame = absl::ToDoubleSeconds(result->timings.total) / frames;
-  for (const Format format : recipe.output.formats) {
-    const absl::StatusOr<std::vector<EncodedFile>> files = Encode(format, result->pair, skeleton);
-    if (!files.ok()) return files.status();
-    for (const EncodedFile& file : *files) {
-      probe.bytes_a_frame += static_cast<double>(file.content.size()) / frames;
-    }
+  const absl::StatusOr<std::vector<EncodedFile>> files =
+      Encode(recipe.output, item.side, AtOutputRate(result->pair, recipe.output), skeleton);
+  if (!files.ok()) return files.status();
+  for (const EncodedFile& file : *files) {
+    probe.bytes_a_frame += static_cast<double>(file.content.size()) / frames;
   }
   return probe;
 }

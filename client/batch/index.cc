@@ -6,9 +6,11 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_replace.h"
+#include "client/batch/capture_layout.h"
 #include "client/batch/durable_file.h"
 #include "client/batch/packing.h"
 #include "client/batch/record.h"
+#include "client/batch/text_values.h"
 #include "model/base/file.h"
 
 namespace duet::client::batch {
@@ -79,7 +81,8 @@ uint64_t BytesOf(const ordered_json& record) {
 class IndexWriter {
  public:
   IndexWriter(const JobIdentity& identity, const std::filesystem::path& temporary)
-      : shards_(identity.packing, identity.shard_bytes),
+      : captures_(CapturesOf(identity.layout) != nullptr),
+        shards_(identity.packing, identity.shard_bytes),
         packed_(identity.packing != Packing::kNone),
         json_(temporary / "index.jsonl"),
         tsv_(temporary / "index.tsv"),
@@ -95,6 +98,8 @@ class IndexWriter {
     rejected.insert(rejected.end(), {"answers", "reasons", "extra"});
     status.Update(rejected_.Append(Row(rejected)));
     if (packed_) header.emplace_back("shard");
+    // What readers of captures look for.
+    if (captures_) header.insert(header.end(), {"path", "leader_side"});
     header.insert(header.end(), {"files", "sha256", "extra"});
     status.Update(tsv_.Append(Row(header)));
     return status;
@@ -127,6 +132,10 @@ class IndexWriter {
       (*record)["shard"] = shards_.Next(BytesOf(*record));
       cells.push_back(Cell(*record, "shard"));
     }
+    if (captures_) {
+      cells.push_back(FileCells(*record, "path").front());
+      cells.push_back(Cell(*record, "side"));
+    }
     cells.push_back(absl::StrJoin(FileCells(*record, "path"), ","));
     cells.push_back(absl::StrJoin(FileCells(*record, "sha256"), ","));
     cells.push_back(Cell(*record, "extra"));
@@ -146,6 +155,7 @@ class IndexWriter {
     return rejected_.Append(Row(cells));
   }
 
+  bool captures_;  // in a layout of captures
   ShardNames shards_;
   bool packed_;
   DurableFile json_, tsv_, rejected_;
@@ -156,7 +166,7 @@ std::string SummaryJson(const JobIdentity& identity, const SetCounts& counts,
                         const PlannedItems& planned) {
   ordered_json models = ordered_json::array();
   for (const ModelChoice& model : identity.models) {
-    models.push_back(absl::StrCat(model.name, "@", model.version.value_or(0)));
+    models.push_back(ModelText(model));
   }
   const ordered_json summary = {
       {"planned", planned.count},

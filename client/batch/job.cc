@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "client/batch/contact_sheet.h"
 #include "client/batch/encode.h"
 #include "client/batch/packing.h"
 #include "client/error_details.h"
@@ -83,14 +84,8 @@ absl::StatusOr<bool> Job::IsSettled(const Item& item, const JournalReader& journ
 
 // False when the run is being stopped.
 bool Job::Put(Item item) {
-  if (item.leader != last_entry_ || item.side != last_side_) {
-    std::fill(leaders_.begin(), leaders_.end(), nullptr);
-    last_entry_ = item.leader;
-    last_side_ = item.side;
-  }
-  std::shared_ptr<SharedLeader>& leader = leaders_[static_cast<size_t>(item.model)];
-  if (leader == nullptr) leader = std::make_shared<SharedLeader>(item.leader, item.side);
-  return queue_.Put({std::move(item), leader});
+  std::shared_ptr<SharedLeader> leader = leaders_.Get(item.leader, item.side, item.model);
+  return queue_.Put({std::move(item), std::move(leader)});
 }
 
 absl::Status Job::Feed(const JournalReader& journal) {
@@ -140,11 +135,12 @@ absl::Status Job::Make(const Work& work) {
       queue_.Stop();  // nobody gets a call any longer
       return absl::OkStatus();
     }
-    const absl::StatusOr<SynthesisResult> result = NextClient(call->server).Synthesize(request);
+    absl::StatusOr<SynthesisResult> result = NextClient(call->server).Synthesize(request);
     gate_.Finish(*call, CallEndOf(result.status()), DelayOf(result.status()));
     switch (MeaningOf(result.status())) {
       case Meaning::kAnswer: {
         bool again = false;
+        result->pair = AtOutputRate(std::move(result->pair), parts_.recipe.output);
         absl::Status status = Judge(work, request, *result, retry, &again);
         if (!again || !status.ok()) return status;
         ++retry;
@@ -187,18 +183,17 @@ absl::Status Job::Keep(const Item& item, const RecordedAnswer& answer,
   const std::filesystem::path root = parts_.folder->items(parts_.identity.packing);
   const motion::Skeleton& skeleton = parts_.skeletons[static_cast<size_t>(item.model)];
   std::vector<RecordedFile> files;
-  for (const Format format : parts_.recipe.output.formats) {
-    const absl::StatusOr<std::vector<EncodedFile>> encoded = Encode(format, pair, skeleton);
-    if (!encoded.ok()) return Fail(item, encoded.status());
-    for (const EncodedFile& file : *encoded) {
-      const std::string path = item.name + file.ending;
-      const std::filesystem::path temporary =
-          parts_.folder->temporary() / absl::StrCat(item.number, file.ending);
-      absl::Status status = WriteDurably(temporary, root / path, file.content);
-      if (!status.ok()) return status;
-      files.push_back({path, file.content.size(), base::Sha256Hex(file.content)});
-      bytes_ += file.content.size();
-    }
+  const absl::StatusOr<std::vector<EncodedFile>> encoded =
+      Encode(parts_.recipe.output, item.side, pair, skeleton);
+  if (!encoded.ok()) return Fail(item, encoded.status());
+  for (const EncodedFile& file : *encoded) {
+    const std::string path = item.name + file.ending;
+    const std::filesystem::path temporary =
+        parts_.folder->temporary() / absl::StrCat(item.number, file.ending);
+    absl::Status status = WriteDurably(temporary, root / path, file.content);
+    if (!status.ok()) return status;
+    files.push_back({path, file.content.size(), base::Sha256Hex(file.content)});
+    bytes_ += file.content.size();
   }
   RemoveError(item);
   ++done_;
@@ -283,7 +278,11 @@ absl::StatusOr<JobReport> Job::Finish() {
   // A shard of a set that is made in several is packed when they are merged.
   const bool packs = whole_plan_ && journal->count() == planned_ && identity.shard.count == 1;
   absl::Status status;
-  if (packs && identity.packing != Packing::kNone) {
+  // What is in shards by now was drawn when it was not.
+  if (!packed_) {
+    status = WriteContactSheet(*journal, identity, folder.items(identity.packing), folder.out());
+  }
+  if (status.ok() && packs && identity.packing != Packing::kNone) {
     status = Pack(*journal, identity.packing, identity.shard_bytes, folder.items(identity.packing),
                   folder.temporary(), folder.out());
   }
@@ -304,10 +303,7 @@ absl::StatusOr<JobReport> Job::Run() {
   std::error_code error;
   errors_exist_ = std::filesystem::exists(parts_.folder->errors(), error);
   const JobIdentity& identity = parts_.identity;
-  packed_ =
-      identity.packing != Packing::kNone &&
-      std::filesystem::exists(
-          parts_.folder->out() / ShardNames(identity.packing, identity.shard_bytes).Next(0), error);
+  packed_ = IsPacked(identity.packing, identity.shard_bytes, parts_.folder->out());
   status = RunThreads(*journal, &writer);
   if (!status.ok()) return status;
   absl::StatusOr<JobReport> report = Finish();

@@ -123,10 +123,7 @@ class Job {
   flow::BoundedQueue<Work> queue_;
   flow::BoundedQueue<Settled> settled_;
 
-  // The leaders of the item that Feed came to last, by model.
-  std::vector<std::shared_ptr<SharedLeader>> leaders_;
-  std::shared_ptr<const LeaderEntry> last_entry_;
-  formats::Side last_side_ = formats::Side::kLeft;
+  LastLeaders leaders_;  // Feed's alone
 
   std::atomic<int64_t> planned_{0}, resumed_{0}, done_{0}, rejected_{0}, failed_{0};
   std::atomic<int64_t> unfinished_{0};

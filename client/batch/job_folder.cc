@@ -8,6 +8,7 @@
 #include "client/batch/text_values.h"
 #include "model/base/file.h"
 #include "model/base/strict_json.h"
+#include "model/motion/skeleton_json.h"
 #include "nlohmann/json.hpp"
 
 namespace duet::client::batch {
@@ -16,40 +17,62 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int64_t kFormat = 1;
-constexpr size_t kMaxIdentityBytes = size_t{1} << 20;
+constexpr size_t kMaxIdentityBytes = size_t{16} << 20;
 constexpr size_t kMaxModels = 1000;
 
 std::string ShardText(const Shard& shard) { return absl::StrCat(shard.index, "/", shard.count); }
 
+// The file's skeletons have parts, which nobody asks for here.
+std::vector<motion::BodyPart> WholeBody(const motion::Skeleton& skeleton) {
+  motion::BodyPart body{"body", {}};
+  for (int joint = 0; joint < skeleton.joint_count(); ++joint) body.joints.push_back(joint);
+  return {body};
+}
+
 std::string ToJson(const JobIdentity& identity) {
   nlohmann::ordered_json models = nlohmann::ordered_json::array();
   for (const ModelChoice& model : identity.models) {
-    models.push_back(absl::StrCat(model.name, "@", model.version.value_or(0)));
+    models.push_back(ModelText(model));
+  }
+  nlohmann::ordered_json skeletons = nlohmann::ordered_json::array();
+  for (const motion::Skeleton& skeleton : identity.skeletons) {
+    skeletons.push_back(SkeletonToJson(skeleton, WholeBody(skeleton)));
   }
   const nlohmann::ordered_json object = {{"format", kFormat},
                                          {"recipe_sha256", identity.recipe_digest},
                                          {"models", models},
+                                         {"skeletons", skeletons},
                                          {"shard", ShardText(identity.shard)},
+                                         {"layout", static_cast<int>(identity.layout)},
                                          {"packing", static_cast<int>(identity.packing)},
                                          {"shard_bytes", identity.shard_bytes}};
   return object.dump(2) + "\n";
 }
 
 absl::StatusOr<JobIdentity> FromJson(const std::string& text) {
-  const absl::StatusOr<nlohmann::json> object = base::ParseStrictJson(text, 4);
+  const absl::StatusOr<nlohmann::json> object = base::ParseStrictJson(text, 6);
   if (!object.ok()) return object.status();
   base::ObjectReader reader(*object, "");
   JobIdentity identity;
   reader.Int("format", kFormat, kFormat);
   identity.recipe_digest = reader.String("recipe_sha256", 64);
   for (const std::string& name : reader.Strings("models", kMaxModels)) {
-    const absl::StatusOr<ModelChoice> model = ParseModelName(name);
+    const absl::StatusOr<ModelChoice> model = ParseModelChoice(name);
     reader.Update(model.status());
     if (model.ok()) identity.models.push_back(*model);
+  }
+  for (const nlohmann::json& skeleton : reader.Array("skeletons", kMaxModels)) {
+    absl::StatusOr<motion::SkeletonDocument> document = motion::ReadSkeleton(skeleton, "skeletons");
+    reader.Update(document.status());
+    if (document.ok()) identity.skeletons.push_back(std::move(document->skeleton));
+  }
+  if (reader.ok() && identity.skeletons.size() != identity.models.size()) {
+    reader.Fail("skeletons", "wanted as many as models");
   }
   const absl::StatusOr<Shard> shard = ParseShard(reader.String("shard", 32));
   reader.Update(shard.status());
   if (shard.ok()) identity.shard = *shard;
+  identity.layout = static_cast<Layout>(reader.Int("layout", 0, 3));
   identity.packing = static_cast<Packing>(reader.Int("packing", 0, 2));
   identity.shard_bytes = static_cast<uint64_t>(reader.Int("shard_bytes", 0, int64_t{1} << 40));
   absl::Status status = reader.Finish();

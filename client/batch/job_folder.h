@@ -10,6 +10,7 @@
 #include "client/batch/durable_file.h"
 #include "client/batch/recipe.h"
 #include "client/batch/shard.h"
+#include "model/motion/skeleton.h"
 
 namespace duet::client::batch {
 
@@ -17,9 +18,11 @@ namespace duet::client::batch {
 struct JobIdentity {
   std::string recipe_digest;
   Shard shard;
+  Layout layout = Layout::kMirror;
   Packing packing = Packing::kNone;
   uint64_t shard_bytes = 0;
-  std::vector<ModelChoice> models;  // names and versions; empty before a job has begun
+  std::vector<ModelChoice> models;          // names and versions; empty before a job has begun
+  std::vector<motion::Skeleton> skeletons;  // theirs
 };
 
 // A data set's folder, held by one process.

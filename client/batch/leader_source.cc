@@ -3,10 +3,13 @@
 #include <fnmatch.h>
 
 #include <algorithm>
+#include <fstream>
 #include <set>
 #include <system_error>
 #include <utility>
 
+#include "absl/strings/ascii.h"
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "model/formats/motion_file.h"
 
@@ -14,6 +17,8 @@ namespace duet::client::batch {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::streamsize kLookedAtBytes = 4096;
 
 // Files of a list that is made beforehand: a path each, as long as a folder's listing.
 class LeaderList final : public LeaderSource {
@@ -49,7 +54,28 @@ class LeaderList final : public LeaderSource {
   size_t next_ = 0;
 };
 
-absl::Status AddFolder(const fs::path& folder, LeaderList* list) {
+// Whether a file that a folder happens to hold looks like a motion. Of .txt and .json files, which
+// hold much else, the beginning tells: rows of numbers, the names of a motion's fields.
+bool LooksLikeMotion(const fs::path& file) {
+  const std::string extension = absl::AsciiStrToLower(file.extension().string());
+  if (extension != ".txt" && extension != ".json") return true;
+  std::string beginning(kLookedAtBytes, '\0');
+  std::ifstream in(file, std::ios::binary);
+  in.read(beginning.data(), kLookedAtBytes);
+  beginning.resize(static_cast<size_t>(in.gcount()));
+  if (extension == ".json") {
+    return absl::StrContains(beginning, "\"duet-motion\"") ||
+           absl::StrContains(beginning, "\"joint_names\"") ||
+           absl::StrContains(beginning, "\"leader\"");
+  }
+  absl::string_view row = absl::StripLeadingAsciiWhitespace(beginning);
+  row = row.substr(0, row.find('\n'));
+  return absl::StrContains(row, ',') &&
+         row.find_first_not_of("0123456789+-.eE, \t\r") == absl::string_view::npos;
+}
+
+absl::Status AddFolder(const fs::path& folder, LeaderList* list,
+                       std::vector<std::string>* passed_over) {
   std::vector<fs::path> files;
   std::error_code error;
   for (fs::recursive_directory_iterator it(folder, error), end; !error && it != end;
@@ -61,6 +87,10 @@ absl::Status AddFolder(const fs::path& folder, LeaderList* list) {
   }
   std::sort(files.begin(), files.end());
   for (const fs::path& file : files) {
+    if (!LooksLikeMotion(file)) {
+      if (passed_over != nullptr) passed_over->push_back(file.string());
+      continue;
+    }
     absl::Status status = list->Add(file, file.lexically_relative(folder));
     if (!status.ok()) return status;
   }
@@ -118,9 +148,10 @@ absl::Status AddPattern(const fs::path& pattern, LeaderList* list) {
   return absl::NotFoundError(absl::StrCat(pattern.string(), ": no motion file is named so"));
 }
 
-absl::Status AddInput(const fs::path& path, LeaderList* list) {
+absl::Status AddInput(const fs::path& path, LeaderList* list,
+                      std::vector<std::string>* passed_over) {
   std::error_code error;
-  if (fs::is_directory(path, error)) return AddFolder(path, list);
+  if (fs::is_directory(path, error)) return AddFolder(path, list, passed_over);
   if (fs::exists(path, error)) {
     if (formats::IsReadable(path)) return list->Add(path, path.filename());
     return formats::UnknownExtension(path, formats::kReadableExtensions);
@@ -131,10 +162,11 @@ absl::Status AddInput(const fs::path& path, LeaderList* list) {
 
 }  // namespace
 
-absl::StatusOr<std::unique_ptr<LeaderSource>> ListLeaders(const std::vector<std::string>& inputs) {
+absl::StatusOr<std::unique_ptr<LeaderSource>> ListLeaders(const std::vector<std::string>& inputs,
+                                                          std::vector<std::string>* passed_over) {
   auto list = std::make_unique<LeaderList>();
   for (const std::string& input : inputs) {
-    absl::Status status = AddInput(input, list.get());
+    absl::Status status = AddInput(input, list.get(), passed_over);
     if (!status.ok()) return status;
   }
   if (list->empty()) {

@@ -19,12 +19,15 @@ class LeaderSource {
   virtual absl::StatusOr<std::optional<LeaderEntry>> Next() = 0;
 };
 
-// Files, folders (all motion files below, by name) and patterns ("walks/*.bvh"; * and ? within one
-// part of a path). A folder's files are named by their path in it, a file by its own name.
+// Files, folders (all motion files below, by name; .txt and .json files that hold something else
+// are passed over and named in `passed_over`, which may be null) and patterns ("walks/*.bvh"; * and
+// ? within one part of a path). A folder's files are named by their path in it, a file by its own
+// name.
 //
 // Errors: NOT_FOUND for what is not there, INVALID_ARGUMENT for a file of no known kind, for two
 //         leaders of one key, and where there is no motion file at all.
-absl::StatusOr<std::unique_ptr<LeaderSource>> ListLeaders(const std::vector<std::string>& inputs);
+absl::StatusOr<std::unique_ptr<LeaderSource>> ListLeaders(
+    const std::vector<std::string>& inputs, std::vector<std::string>* passed_over = nullptr);
 
 }  // namespace duet::client::batch
 

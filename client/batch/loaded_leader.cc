@@ -17,12 +17,7 @@ formats::ReadOptions ToReadOptions(const LeaderInput& input, const motion::Skele
   options.frame_rate_hz = input.frame_rate_hz;
   options.metres_per_unit = input.metres_per_unit;
   options.joint_overrides = input.joint_map;
-  if (!input.unit.has_value() && !input.up_axis.has_value()) return options;
-  motion::Coordinates coordinates;
-  coordinates.unit = input.unit.value_or(motion::LengthUnit::kMetres);
-  const bool sbu = coordinates.unit == motion::LengthUnit::kSbuNormalised;
-  coordinates.up_axis = input.up_axis.value_or(sbu ? motion::UpAxis::kYDown : motion::UpAxis::kYUp);
-  options.coordinates = coordinates;
+  options.coordinates = motion::StatedCoordinates(input.unit, input.up_axis);
   return options;
 }
 
@@ -37,7 +32,7 @@ absl::Status SetStart(const LeaderEntry& entry, formats::Side side, const Leader
                       formats::ReadOptions options, LoadedLeader* loaded) {
   const std::string& start = entry.follower_start;
   if (start.empty() && !input.starts_as_other_person) return absl::OkStatus();
-  if (const std::optional<motion::Vec3> root = ParseTriple(start); root.has_value()) {
+  if (const std::optional<motion::Vec3> root = ParsePoint(start); root.has_value()) {
     loaded->follower_start = *root;
     return absl::OkStatus();
   }
@@ -52,7 +47,22 @@ absl::Status SetStart(const LeaderEntry& entry, formats::Side side, const Leader
   return absl::OkStatus();
 }
 
+// Whether two lines name the same motion to read.
+bool SameMotion(const LeaderEntry& a, const LeaderEntry& b) {
+  return a.file == b.file && a.follower_start == b.follower_start &&
+         a.follower_start_side == b.follower_start_side;
+}
+
 }  // namespace
+
+std::shared_ptr<SharedLeader> LastLeaders::Get(const std::shared_ptr<const LeaderEntry>& entry,
+                                               formats::Side side, int model) {
+  Last& last = last_[static_cast<size_t>(model)];
+  const bool same = last.leader != nullptr && last.side == side &&
+                    (last.entry == entry || SameMotion(*last.entry, *entry));
+  if (!same) last = {entry, side, std::make_shared<SharedLeader>(entry, side)};
+  return last.leader;
+}
 
 absl::StatusOr<LoadedLeader> LoadLeader(const LeaderEntry& entry, formats::Side side,
                                         const LeaderInput& input,

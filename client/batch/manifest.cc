@@ -8,7 +8,6 @@
 
 #include "absl/container/flat_hash_set.h"
 #include "absl/hash/hash.h"
-#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
@@ -48,7 +47,7 @@ absl::StatusOr<Columns> ParseJsonLine(const std::string& line) {
 
 absl::Status Named(absl::string_view column, const absl::Status& status) {
   if (status.ok()) return status;
-  return absl::Status(status.code(), absl::StrCat(column, ": ", status.message()));
+  return absl::Status(status.code(), absl::StrCat(column, ": came ", status.message()));
 }
 
 // Takes a column out of those that are left.
@@ -71,19 +70,6 @@ absl::Status TakeParsed(const char* name, absl::StatusOr<Value> (*parse)(absl::s
   return absl::OkStatus();
 }
 
-absl::StatusOr<motion::Vec3> ParseDirection(absl::string_view text) {
-  const std::optional<motion::Vec3> direction = ParseTriple(text);
-  if (direction.has_value()) return *direction;
-  return absl::InvalidArgumentError(absl::StrCat("came ", base::Quoted(text), ", wanted X,Y,Z"));
-}
-
-absl::StatusOr<uint64_t> ParseSeed(absl::string_view text) {
-  uint64_t seed = 0;
-  if (absl::SimpleAtoi(text, &seed)) return seed;
-  return absl::InvalidArgumentError(
-      absl::StrCat("came ", base::Quoted(text), ", wanted a whole number from 0"));
-}
-
 // All but the key.
 absl::StatusOr<LeaderEntry> ToEntry(const std::filesystem::path& folder, Columns columns) {
   LeaderEntry entry;
@@ -93,7 +79,7 @@ absl::StatusOr<LeaderEntry> ToEntry(const std::filesystem::path& folder, Columns
   entry.file = path.is_absolute() ? path : folder / path;
   entry.model = Take("model", &columns);
   entry.follower_start = Take("follower_start", &columns);
-  if (!entry.follower_start.empty() && !ParseTriple(entry.follower_start).has_value() &&
+  if (!entry.follower_start.empty() && !ParsePoint(entry.follower_start).has_value() &&
       std::filesystem::path(entry.follower_start).is_relative()) {
     entry.follower_start = (folder / entry.follower_start).string();
   }

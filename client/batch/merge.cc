@@ -10,6 +10,7 @@
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "client/batch/contact_sheet.h"
 #include "client/batch/durable_file.h"
 #include "client/batch/job_folder.h"
 #include "client/batch/journal.h"
@@ -147,10 +148,14 @@ class Merger {
   absl::StatusOr<MergeReport> Finish() {
     const absl::StatusOr<JournalReader> journal = JournalReader::Open(folder_.journal());
     if (!journal.ok()) return journal.status();
+    const fs::path items = folder_.items(identity_.packing);
     absl::Status status;
-    if (identity_.packing != Packing::kNone && journal->count() == planned_) {
-      status = Pack(*journal, identity_.packing, identity_.shard_bytes,
-                    folder_.items(identity_.packing), folder_.temporary(), folder_.out());
+    if (!IsPacked(identity_.packing, identity_.shard_bytes, folder_.out())) {
+      status = WriteContactSheet(*journal, identity_, items, folder_.out());
+    }
+    if (status.ok() && identity_.packing != Packing::kNone && journal->count() == planned_) {
+      status = Pack(*journal, identity_.packing, identity_.shard_bytes, items, folder_.temporary(),
+                    folder_.out());
     }
     if (!status.ok()) return status;
     absl::StatusOr<SetCounts> counts =

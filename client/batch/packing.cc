@@ -116,6 +116,12 @@ std::string ShardNames::Next(uint64_t item_bytes) {
   return absl::StrFormat("set-%06d.%s", number_, packing_ == Packing::kTar ? "tar" : "npz");
 }
 
+bool IsPacked(Packing packing, uint64_t shard_bytes, const fs::path& out) {
+  std::error_code error;
+  return packing != Packing::kNone &&
+         fs::exists(out / ShardNames(packing, shard_bytes).Next(0), error);
+}
+
 absl::Status Pack(const JournalReader& journal, Packing packing, uint64_t shard_bytes,
                   const fs::path& items, const fs::path& temporary, const fs::path& out) {
   Packer packer(packing, shard_bytes, items, temporary, out);

@@ -26,6 +26,9 @@ class ShardNames {
   int number_ = 0;
 };
 
+// Whether a set has shards already, and so takes no more items.
+bool IsPacked(Packing packing, uint64_t shard_bytes, const std::filesystem::path& out);
+
 // Puts the files below `items` of every item that is done into shards in `out`, each written to
 // `temporary` first, and removes them once their shard is on the disk. Goes on where it was
 // stopped.

@@ -1,13 +1,14 @@
 #include "client/batch/plan.h"
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 #include <utility>
 
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_replace.h"
+#include "client/batch/capture_layout.h"
+#include "client/batch/drawn_labels.h"
 #include "client/batch/text_values.h"
 #include "model/base/random.h"
 #include "model/base/sha256.h"
@@ -17,19 +18,12 @@ namespace duet::client::batch {
 namespace {
 
 constexpr size_t kIdDigits = 32;
-// A drawn weight is a multiple of this, so that it reads well.
-constexpr double kWeightsInOne = 1000;
 
 uint64_t DrawnNumber(const std::string& from) {
   uint64_t number = 0;
   // 13 hex digits: 52 bits.
   (void)absl::SimpleHexAtoi(base::Sha256Hex(from).substr(0, 13), &number);
   return number;
-}
-
-// A class or a model as a part of a file name: no dashes, which separate the parts.
-std::string PlainName(const std::string& name) {
-  return absl::StrReplaceAll(KeyOf(name), {{"/", "_"}, {"-", "_"}, {"+", "_"}});
 }
 
 std::string Text(const Labels& labels) {
@@ -71,7 +65,7 @@ std::string LargestClass(const Item& item) {
   };
   look(item.labels);
   for (const Schedule::Keyframe& keyframe : item.keyframes) look(keyframe.labels);
-  return PlainName(largest.interaction_class);
+  return largest.interaction_class;
 }
 
 // Every combination of a grid's weights, the last axis the fastest.
@@ -131,6 +125,9 @@ absl::StatusOr<Plan> Plan::Create(Recipe recipe, std::vector<ModelInfo> models,
   absl::Status status = plan.CheckClasses();
   if (!status.ok()) return status;
   for (const ModelInfo& model : plan.models_) {
+    const dataset::DatasetLayout* const captures = CapturesOf(plan.recipe_.output.layout);
+    if (captures != nullptr) status.Update(CheckJoints(*captures, model));
+    if (!status.ok()) return status;
     if (plan.recipe_.samples > 1 && !model.samples) {
       return absl::InvalidArgumentError(absl::StrCat("samples: came ", plan.recipe_.samples,
                                                      ", wanted 1: ", model.name, "@", model.version,
@@ -163,17 +160,21 @@ absl::Status Plan::AddNamed(const Reaction& reaction, LabelledReaction labelled)
   return absl::OkStatus();
 }
 
-absl::Status Plan::AddReaction(const Reaction& reaction) {
-  if (std::holds_alternative<Mixes>(reaction.kind)) {
-    const auto same_name = [&reaction](const Reaction& other) {
-      return other.name == reaction.name;
-    };
-    if (std::any_of(mixes_.begin(), mixes_.end(), same_name)) {
-      return absl::InvalidArgumentError("reactions: several mixes, wanted each with its own name");
-    }
-    mixes_.push_back(reaction);
-    return absl::OkStatus();
+absl::Status Plan::AddDrawn(const Reaction& reaction) {
+  const std::vector<std::string> classes = ClassesOr(ClassesOf(reaction));
+  absl::Status status = CheckDrawn(reaction, classes);
+  if (!status.ok()) return status;
+  const auto same_name = [&reaction](const Reaction& other) { return other.name == reaction.name; };
+  if (std::any_of(drawn_.begin(), drawn_.end(), same_name)) {
+    return absl::InvalidArgumentError(
+        "reactions: several that are drawn, wanted each with its own name");
   }
+  drawn_.push_back(reaction);
+  return absl::OkStatus();
+}
+
+absl::Status Plan::AddReaction(const Reaction& reaction) {
+  if (IsDrawn(reaction)) return AddDrawn(reaction);
   std::vector<LabelledReaction> added;
   if (const auto* labels = std::get_if<Labels>(&reaction.kind)) added.push_back({"", *labels, {}});
   if (const auto* schedule = std::get_if<Schedule>(&reaction.kind)) {
@@ -183,7 +184,9 @@ absl::Status Plan::AddReaction(const Reaction& reaction) {
     for (Labels& labels : Combinations(*grid)) added.push_back({"", std::move(labels), {}});
   }
   if (const auto* each = std::get_if<EachClass>(&reaction.kind)) {
-    for (const std::string& name : ClassesOr(each->classes)) added.push_back({"", {{name, 1}}, {}});
+    for (const std::string& name : ClassesOr(each->classes)) {
+      added.push_back({"", {{name, each->weight.min}}, {}});
+    }
   }
   for (LabelledReaction& labelled : added) {
     absl::Status status = AddNamed(reaction, std::move(labelled));
@@ -201,15 +204,9 @@ absl::Status Plan::CheckClasses() const {
     want(reaction.labels);
     for (const Schedule::Keyframe& keyframe : reaction.keyframes) want(keyframe.labels);
   }
-  for (const Reaction& reaction : mixes_) {
-    const auto& mixes = std::get<Mixes>(reaction.kind);
-    const std::vector<std::string> classes = ClassesOr(mixes.classes);
+  for (const Reaction& reaction : drawn_) {
+    const std::vector<std::string> classes = ClassesOr(ClassesOf(reaction));
     wanted.insert(classes.begin(), classes.end());
-    if (static_cast<size_t>(mixes.classes_in_mix) > classes.size()) {
-      return absl::InvalidArgumentError(absl::StrCat("reactions: classes_in_mix: came ",
-                                                     mixes.classes_in_mix, ", wanted at most the ",
-                                                     classes.size(), " classes"));
-    }
   }
   for (const ModelInfo& model : models_) {
     for (const std::string& name : wanted) {
@@ -223,23 +220,12 @@ absl::Status Plan::CheckClasses() const {
   return absl::OkStatus();
 }
 
-void Plan::Draw(const LeaderEntry& leader, int mixes_number, const Reaction& reaction) {
-  const auto& mixes = std::get<Mixes>(reaction.kind);
-  base::Random random(
-      DrawnNumber(absl::StrCat("mixes ", recipe_.seed, " ", mixes_number, " ", leader.key)));
-  for (int i = 0; i < mixes.count; ++i) {
-    std::vector<std::string> classes = ClassesOr(mixes.classes);
-    random.Shuffle(&classes);
-    LabelledReaction drawn;
-    drawn.name = absl::StrCat(reaction.name.empty() ? "mix" : reaction.name, i);
-    for (int c = 0; c < mixes.classes_in_mix; ++c) {
-      const double weight = random.Uniform(mixes.min_weight, mixes.max_weight);
-      drawn.labels.push_back(
-          {classes[static_cast<size_t>(c)],
-           static_cast<float>(std::round(weight * kWeightsInOne) / kWeightsInOne)});
+void Plan::DrawFor(const LeaderEntry& leader) {
+  for (size_t i = 0; i < drawn_.size(); ++i) {
+    base::Random random(DrawnNumber(absl::StrCat("mixes ", recipe_.seed, " ", i, " ", leader.key)));
+    for (DrawnLabels& one : Draw(drawn_[i], ClassesOr(ClassesOf(drawn_[i])), &random)) {
+      reactions_.push_back({std::move(one.name), std::move(one.labels), {}});
     }
-    SortByClass(&drawn.labels);
-    reactions_.push_back(std::move(drawn));
   }
 }
 
@@ -248,9 +234,7 @@ absl::Status Plan::BeginLeader(LeaderEntry leader) {
       leader.labels.empty()
           ? fixed_
           : std::vector<LabelledReaction>{{NameOfLabels(leader.labels), leader.labels, {}}};
-  if (leader.labels.empty()) {
-    for (size_t i = 0; i < mixes_.size(); ++i) Draw(leader, static_cast<int>(i), mixes_[i]);
-  }
+  if (leader.labels.empty()) DrawFor(leader);
   if (reactions_.empty()) {
     return absl::InvalidArgumentError(absl::StrCat(
         leader.given, ": wanted labels in the manifest, since the recipe has no reactions"));
@@ -260,7 +244,7 @@ absl::Status Plan::BeginLeader(LeaderEntry leader) {
   if (leader.side.has_value()) sides_ = {*leader.side};
   leader_models_.clear();
   const absl::StatusOr<ModelChoice> choice =
-      leader.model.empty() ? ModelChoice() : ParseModelName(leader.model);
+      leader.model.empty() ? ModelChoice() : ParseModelChoice(leader.model);
   for (size_t i = 0; i < models_.size(); ++i) {
     if (leader.model.empty() || (choice.ok() && Means(*choice, models_[i]))) {
       leader_models_.push_back(static_cast<int>(i));
@@ -277,7 +261,15 @@ absl::Status Plan::BeginLeader(LeaderEntry leader) {
   return absl::OkStatus();
 }
 
-std::string Plan::NameOf(const Item& item) const {
+absl::StatusOr<std::string> Plan::NameOf(const Item& item) {
+  const Layout layout = recipe_.output.layout;
+  if (CapturesOf(layout) != nullptr) {
+    const absl::StatusOr<std::string> folder =
+        CaptureFolder(layout, LargestClass(item), item.leader->given);
+    if (folder.ok()) return CaptureName(layout, *folder, ++clips_[*folder]);
+    return absl::InvalidArgumentError(absl::StrCat(item.leader->given, ": reaction ", item.reaction,
+                                                   ": ", folder.status().message()));
+  }
   std::string name = item.leader->key;
   if (recipe_.input.side == Sides::kBoth) absl::StrAppend(&name, "-", SideName(item.side));
   absl::StrAppend(&name, "-", item.reaction);
@@ -286,11 +278,11 @@ std::string Plan::NameOf(const Item& item) const {
     absl::StrAppend(&name, "-", PlainName(model.name), "_", model.version);
   }
   if (recipe_.samples > 1) absl::StrAppend(&name, "-s", item.sample);
-  if (recipe_.output.layout == Layout::kMirror) return name;
-  return absl::StrCat(LargestClass(item), "/", name);
+  if (layout == Layout::kMirror) return name;
+  return absl::StrCat(PlainName(LargestClass(item)), "/", name);
 }
 
-Item Plan::MakeItem() const {
+absl::StatusOr<Item> Plan::MakeItem() {
   const LabelledReaction& reaction = reactions_[reaction_];
   Item item;
   item.number = number_;
@@ -301,7 +293,9 @@ Item Plan::MakeItem() const {
   item.keyframes = reaction.keyframes;
   item.model = leader_models_[model_];
   item.sample = sample_;
-  item.name = NameOf(item);
+  absl::StatusOr<std::string> name = NameOf(item);
+  if (!name.ok()) return name.status();
+  item.name = *std::move(name);
   const ModelInfo& model = models_[static_cast<size_t>(item.model)];
   item.id = base::Sha256Hex(Asked(item, recipe_, model)).substr(0, kIdDigits);
   return item;
@@ -326,10 +320,11 @@ absl::StatusOr<std::optional<Item>> Plan::Next() {
     absl::Status status = BeginLeader(**std::move(next));
     if (!status.ok()) return status;
   }
-  Item item = MakeItem();
+  absl::StatusOr<Item> item = MakeItem();
+  if (!item.ok()) return item.status();
   ++number_;
   if (!Advance()) leader_ = nullptr;
-  return std::optional<Item>(std::move(item));
+  return std::optional<Item>(*std::move(item));
 }
 
 }  // namespace duet::client::batch

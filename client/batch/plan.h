@@ -2,6 +2,7 @@
 #define DUET_CLIENT_BATCH_PLAN_H_
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -38,11 +39,13 @@ uint64_t SeedOf(const Item& item, uint64_t recipe_seed, int retry);
 class Plan {
  public:
   // `models` are what the recipe's stand for, in its order. INVALID_ARGUMENT for classes that a
-  // model does not have, two reactions of one name, and samples of a model that has one answer.
+  // model does not have, two reactions of one name, samples of a model that has one answer, and
+  // joints that the layout does not have.
   static absl::StatusOr<Plan> Create(Recipe recipe, std::vector<ModelInfo> models,
                                      std::unique_ptr<LeaderSource> leaders);
 
-  // The next item; nothing at the end.
+  // The next item; nothing at the end. INVALID_ARGUMENT also for a class that the layout has no
+  // folder for.
   absl::StatusOr<std::optional<Item>> Next();
 
  private:
@@ -54,20 +57,21 @@ class Plan {
 
   Plan(Recipe recipe, std::vector<ModelInfo> models, std::unique_ptr<LeaderSource> leaders);
   absl::Status AddReaction(const Reaction& reaction);
+  absl::Status AddDrawn(const Reaction& reaction);
   absl::Status AddNamed(const Reaction& reaction, LabelledReaction labelled);
   absl::Status CheckClasses() const;
   std::vector<std::string> ClassesOr(const std::vector<std::string>& classes) const;
-  void Draw(const LeaderEntry& leader, int mixes_number, const Reaction& reaction);
+  void DrawFor(const LeaderEntry& leader);
   absl::Status BeginLeader(LeaderEntry leader);
-  Item MakeItem() const;
-  std::string NameOf(const Item& item) const;
+  absl::StatusOr<Item> MakeItem();
+  absl::StatusOr<std::string> NameOf(const Item& item);
   bool Advance();
 
   Recipe recipe_;
   std::vector<ModelInfo> models_;
   std::unique_ptr<LeaderSource> leaders_;
   std::vector<LabelledReaction> fixed_;  // the same for each leader
-  std::vector<Reaction> mixes_;          // drawn for each
+  std::vector<Reaction> drawn_;          // another for each
 
   // The leader at hand, and where in it the next item is.
   std::shared_ptr<const LeaderEntry> leader_;
@@ -77,6 +81,7 @@ class Plan {
   size_t side_ = 0, reaction_ = 0, model_ = 0;
   int sample_ = 0;
   int64_t number_ = 0;
+  std::map<std::string, int> clips_;  // of a layout of captures, so far by folder
 };
 
 // "kick", "kick0p5+hug1": classes and weights as a name; a lone weight of 1 goes without saying.

@@ -25,16 +25,22 @@ struct Grid {
   std::vector<Axis> axes;
 };
 
+struct WeightRange {
+  float min = 1;
+  float max = 1;
+};
+
 struct Mixes {
   int count = 0;
   std::vector<std::string> classes;  // empty: every class of the first model
   int classes_in_mix = 2;
-  float min_weight = 0.25f;
-  float max_weight = 1;
+  WeightRange weight = {0.25f, 1};
 };
 
 struct EachClass {
   std::vector<std::string> classes;  // as of Mixes
+  WeightRange weight;
+  std::optional<WeightRange> beside;  // of another class
 };
 
 struct Schedule {
@@ -75,11 +81,11 @@ struct QualityFilter {
 };
 
 enum class Format { kBvh, kCsv, kNpy, kJson };
-enum class Layout { kMirror, kClassFolders };
+enum class Layout { kMirror, kClassFolders, kSbu, kK3hi };
 enum class Packing { kNone, kTar, kNpz };
 
 struct Output {
-  std::vector<Format> formats;
+  std::vector<Format> formats;  // none where the layout has its own
   Layout layout = Layout::kMirror;
   Packing packing = Packing::kNone;
   uint64_t shard_bytes = uint64_t{256} << 20;

@@ -9,6 +9,7 @@
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
+#include "client/batch/capture_layout.h"
 #include "client/batch/text_values.h"
 #include "model/base/text.h"
 
@@ -88,6 +89,13 @@ Grid ReadGrid(const v1::Grid& proto, const std::string& field, Checker* check) {
   return grid;
 }
 
+WeightRange ReadRange(float min, float max, const std::string& field, Checker* check) {
+  check->Weight(field + ".min_weight", min);
+  check->Weight(field + ".max_weight", max);
+  check->Want(min <= max, field + ".min_weight", absl::StrCat(min), "at most max_weight");
+  return {min, max};
+}
+
 Mixes ReadMixes(const v1::Mixes& proto, const std::string& field, Checker* check) {
   Mixes mixes;
   check->Count(field + ".count", proto.count(), 1, kMaxMixes);
@@ -101,13 +109,23 @@ Mixes ReadMixes(const v1::Mixes& proto, const std::string& field, Checker* check
       mixes.classes.empty() || static_cast<size_t>(mixes.classes_in_mix) <= mixes.classes.size(),
       field + ".classes_in_mix", absl::StrCat(mixes.classes_in_mix),
       "no more than there are classes");
-  if (proto.has_min_weight()) mixes.min_weight = proto.min_weight();
-  if (proto.has_max_weight()) mixes.max_weight = proto.max_weight();
-  check->Weight(field + ".min_weight", mixes.min_weight);
-  check->Weight(field + ".max_weight", mixes.max_weight);
-  check->Want(mixes.min_weight <= mixes.max_weight, field + ".min_weight",
-              absl::StrCat(mixes.min_weight), "at most max_weight");
+  mixes.weight =
+      ReadRange(proto.has_min_weight() ? proto.min_weight() : mixes.weight.min,
+                proto.has_max_weight() ? proto.max_weight() : mixes.weight.max, field, check);
   return mixes;
+}
+
+EachClass ReadEachClass(const v1::EachClass& proto, const std::string& field, Checker* check) {
+  EachClass each;
+  each.classes = ReadClasses(proto.classes(), field + ".classes", check);
+  each.weight =
+      ReadRange(proto.has_min_weight() ? proto.min_weight() : each.weight.min,
+                proto.has_max_weight() ? proto.max_weight() : each.weight.max, field, check);
+  if (!proto.has_beside()) return each;
+  each.beside =
+      ReadRange(proto.beside().min_weight(), proto.beside().max_weight(), field + ".beside", check);
+  check->Want(each.classes.size() != 1, field + ".classes", "one", "two or more with beside");
+  return each;
 }
 
 Schedule ReadSchedule(const v1::Schedule& proto, const std::string& field, Checker* check) {
@@ -146,8 +164,7 @@ Reaction ReadReaction(const v1::Reaction& proto, const std::string& field, Check
       reaction.kind = ReadMixes(proto.mixes(), field + ".mixes", check);
       break;
     case v1::Reaction::kEachClass:
-      reaction.kind = EachClass{
-          ReadClasses(proto.each_class().classes(), field + ".each_class.classes", check)};
+      reaction.kind = ReadEachClass(proto.each_class(), field + ".each_class", check);
       break;
     case v1::Reaction::kSchedule:
       reaction.kind = ReadSchedule(proto.schedule(), field + ".schedule", check);
@@ -213,9 +230,28 @@ QualityFilter ReadFilter(const v1::QualityFilter& proto, Checker* check) {
   return filter;
 }
 
+Layout ToLayout(v1::Layout layout) {
+  switch (layout) {
+    case v1::LAYOUT_CLASS_FOLDERS:
+      return Layout::kClassFolders;
+    case v1::LAYOUT_SBU:
+      return Layout::kSbu;
+    case v1::LAYOUT_K3HI:
+      return Layout::kK3hi;
+    default:
+      return Layout::kMirror;
+  }
+}
+
 Output ReadOutput(const v1::Output& proto, Checker* check) {
   Output output;
-  check->Want(proto.formats_size() > 0, "output.formats", "none", "one or more");
+  check->Want(v1::Layout_IsValid(proto.layout()), "output.layout", absl::StrCat(proto.layout()),
+              "a layout");
+  output.layout = ToLayout(proto.layout());
+  const bool own_format = CapturesOf(output.layout) != nullptr;
+  check->Want(own_format || proto.formats_size() > 0, "output.formats", "none", "one or more");
+  check->Want(!own_format || proto.formats_size() == 0, "output.formats", "some",
+              "none: the layout has its own");
   for (const int format : proto.formats()) {
     check->Want(v1::Format_IsValid(format) && format != v1::FORMAT_UNSPECIFIED, "output.formats",
                 absl::StrCat(format), "FORMAT_BVH, FORMAT_CSV, FORMAT_NPY or FORMAT_JSON");
@@ -223,17 +259,16 @@ Output ReadOutput(const v1::Output& proto, Checker* check) {
     output.formats.push_back(static_cast<Format>(format - v1::FORMAT_BVH));
   }
   check->Different("output.formats", proto.formats());
-  check->Want(v1::Layout_IsValid(proto.layout()), "output.layout", absl::StrCat(proto.layout()),
-              "a layout");
   check->Want(v1::Packing_IsValid(proto.packing()), "output.packing", absl::StrCat(proto.packing()),
               "a packing");
-  if (proto.layout() == v1::LAYOUT_CLASS_FOLDERS) output.layout = Layout::kClassFolders;
   if (proto.packing() == v1::PACKING_TAR) output.packing = Packing::kTar;
   if (proto.packing() == v1::PACKING_NPZ) output.packing = Packing::kNpz;
   if (proto.has_shard_bytes()) output.shard_bytes = proto.shard_bytes();
   // A zip file counts in 32 bits.
   check->Want(output.shard_bytes >= 1 && output.shard_bytes <= (uint64_t{2} << 30),
               "output.shard_bytes", absl::StrCat(output.shard_bytes), "1 to 2147483648");
+  check->Want(!own_format || output.packing == Packing::kNone, "output.packing", "one",
+              "none: the layout is of folders");
   const bool npy = std::count(output.formats.begin(), output.formats.end(), Format::kNpy) > 0;
   check->Want(output.packing != Packing::kNpz || (npy && output.formats.size() == 1),
               "output.formats", "others", "FORMAT_NPY alone with PACKING_NPZ");
@@ -243,7 +278,7 @@ Output ReadOutput(const v1::Output& proto, Checker* check) {
 void ReadModels(const v1::Recipe& proto, Checker* check, Recipe* recipe) {
   check->Different("models", proto.models());
   for (const std::string& name : proto.models()) {
-    const absl::StatusOr<ModelChoice> choice = ParseModelName(name);
+    const absl::StatusOr<ModelChoice> choice = ParseModelChoice(name);
     check->Want(choice.ok(), "models", base::Quoted(name), "NAME, NAME@VERSION or NAME:LABEL");
     if (choice.ok()) recipe->models.push_back(*choice);
   }

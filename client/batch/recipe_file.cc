@@ -11,11 +11,13 @@
 #include "model/base/file.h"
 #include "model/base/sha256.h"
 #include "model/messages/message_text.h"
+#include "model/retargeting/joint_table.h"
 
 namespace duet::client::batch {
 namespace {
 
 constexpr std::size_t kMaxRecipeBytes = std::size_t{4} << 20;
+constexpr std::size_t kMaxTableBytes = std::size_t{1} << 20;
 
 // The same for two files that say the same: maps are written by key.
 std::string Digest(const v1::Recipe& recipe) {
@@ -49,13 +51,30 @@ void Apply(const RecipeOverrides& overrides, v1::Recipe* recipe) {
   }
 }
 
+// Puts the joints of the table that the recipe names into it.
+absl::Status TakeJointTable(const std::filesystem::path& folder, v1::LeaderInput* input) {
+  if (input->joint_map_file().empty()) return absl::OkStatus();
+  const std::filesystem::path path = folder / input->joint_map_file();
+  const absl::StatusOr<std::string> text =
+      base::ReadFile(path, kMaxTableBytes, "a table of joints");
+  if (!text.ok()) return text.status();
+  const absl::StatusOr<retargeting::JointOverrides> table =
+      retargeting::ParseJointTable(*text, path.string());
+  if (!table.ok()) return table.status();
+  input->clear_joint_map_file();
+  input->mutable_joint_map()->insert(table->begin(), table->end());  // keeps what is there
+  return absl::OkStatus();
+}
+
 }  // namespace
 
 absl::StatusOr<Recipe> ParseRecipe(absl::string_view text, bool json,
+                                   const std::filesystem::path& folder,
                                    const RecipeOverrides& overrides) {
   v1::Recipe parsed;
-  const absl::Status status = messages::ParseMessage(
+  absl::Status status = messages::ParseMessage(
       text, json ? messages::MessageSyntax::kJson : messages::MessageSyntax::kTextFormat, &parsed);
+  if (status.ok() && parsed.has_input()) status = TakeJointTable(folder, parsed.mutable_input());
   if (!status.ok()) return status;
   Apply(overrides, &parsed);
   absl::StatusOr<Recipe> recipe = FromProto(parsed);
@@ -67,7 +86,8 @@ absl::StatusOr<Recipe> ReadRecipe(const std::filesystem::path& path,
                                   const RecipeOverrides& overrides) {
   const absl::StatusOr<std::string> text = base::ReadFile(path, kMaxRecipeBytes, "a recipe");
   if (!text.ok()) return text.status();
-  absl::StatusOr<Recipe> recipe = ParseRecipe(*text, path.extension() == ".json", overrides);
+  absl::StatusOr<Recipe> recipe =
+      ParseRecipe(*text, path.extension() == ".json", path.parent_path(), overrides);
   if (recipe.ok()) return recipe;
   return absl::Status(recipe.status().code(),
                       absl::StrCat(path.string(), ": ", recipe.status().message()));

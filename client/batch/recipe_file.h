@@ -16,9 +16,10 @@ struct RecipeOverrides {
   std::optional<int> retries_per_item;
 };
 
-// Parses a recipe: JSON or text format. Unknown fields are refused.
-// INVALID_ARGUMENT says where, what came and what was wanted.
+// Parses a recipe: JSON or text format. Unknown fields are refused. `folder` is where the files
+// that it names lie. INVALID_ARGUMENT says where, what came and what was wanted.
 absl::StatusOr<Recipe> ParseRecipe(absl::string_view text, bool json,
+                                   const std::filesystem::path& folder = {},
                                    const RecipeOverrides& overrides = {});
 
 // The same of a file; ".json" is JSON, anything else text format. Also NOT_FOUND; names the file.

@@ -70,6 +70,10 @@ ordered_json WithAnswer(const Item& item, const char* state, const RecordedAnswe
   } else {
     record["keyframes"] = KeyframesJson(answer.keyframes);
   }
+  if (item.leader->partner_direction.has_value()) {
+    const motion::Vec3& to = *item.leader->partner_direction;
+    record["partner_direction"] = {Number(to.x), Number(to.y), Number(to.z)};
+  }
   record["model"] = answer.model;
   record["seed"] = answer.seed;
   record["variety"] = Number(answer.variety);

@@ -21,12 +21,15 @@ JobIdentity IdentityOf(const Recipe& recipe, const Shard& shard) {
   JobIdentity identity;
   identity.recipe_digest = recipe.digest;
   identity.shard = shard;
+  identity.layout = recipe.output.layout;
   identity.packing = recipe.output.packing;
   identity.shard_bytes = recipe.output.shard_bytes;
   return identity;
 }
 
-JobIdentity WithModels(JobIdentity identity, const std::vector<ModelInfo>& models) {
+JobIdentity WithModels(JobIdentity identity, const std::vector<ModelInfo>& models,
+                       const std::vector<motion::Skeleton>& skeletons) {
+  identity.skeletons = skeletons;
   identity.models.clear();
   for (const ModelInfo& model : models) {
     ModelChoice choice;

@@ -20,7 +20,8 @@ absl::StatusOr<std::vector<ModelInfo>> ResolveModels(const Client& client, const
 // What a job of this recipe is known by; no models yet.
 JobIdentity IdentityOf(const Recipe& recipe, const Shard& shard);
 // The same once it has begun.
-JobIdentity WithModels(JobIdentity identity, const std::vector<ModelInfo>& models);
+JobIdentity WithModels(JobIdentity identity, const std::vector<ModelInfo>& models,
+                       const std::vector<motion::Skeleton>& skeletons);
 
 // Where a shard's data set lies: `out` itself unless there are several.
 std::filesystem::path ShardFolder(const std::filesystem::path& out, const Shard& shard);

@@ -15,12 +15,12 @@ namespace {
 constexpr float kMaxAbsWeight = 2;
 
 absl::Status Wanted(absl::string_view text, absl::string_view wanted) {
-  return absl::InvalidArgumentError(absl::StrCat("came ", base::Quoted(text), ", wanted ", wanted));
+  return absl::InvalidArgumentError(absl::StrCat(base::Quoted(text), ", wanted ", wanted));
 }
 
 }  // namespace
 
-absl::StatusOr<ModelChoice> ParseModelName(absl::string_view text) {
+absl::StatusOr<ModelChoice> ParseModelChoice(absl::string_view text) {
   constexpr char kForm[] = "NAME, NAME@VERSION or NAME:LABEL";
   const size_t mark = text.find_first_of("@:");
   ModelChoice choice;
@@ -33,9 +33,13 @@ absl::StatusOr<ModelChoice> ParseModelName(absl::string_view text) {
     return rest.empty() ? absl::StatusOr<ModelChoice>(Wanted(text, kForm)) : choice;
   }
   if (!absl::SimpleAtoi(rest, &choice.version.emplace()) || *choice.version < 1) {
-    return Wanted(text, kForm);
+    return Wanted(text, absl::StrCat(kForm, ", a version being a number from 1"));
   }
   return choice;
+}
+
+std::string ModelText(const ModelChoice& model) {
+  return absl::StrCat(model.name, "@", model.version.value_or(0));
 }
 
 absl::StatusOr<std::vector<ClassWeight>> ParseLabels(absl::string_view text) {
@@ -69,7 +73,13 @@ absl::string_view SideName(formats::Side side) {
   return side == formats::Side::kLeft ? "left" : "right";
 }
 
-std::optional<motion::Vec3> ParseTriple(absl::string_view text) {
+absl::StatusOr<uint64_t> ParseSeed(absl::string_view text) {
+  uint64_t seed = 0;
+  if (absl::SimpleAtoi(text, &seed)) return seed;
+  return Wanted(text, "a whole number from 0 to 18446744073709551615");
+}
+
+std::optional<motion::Vec3> ParsePoint(absl::string_view text) {
   const std::vector<absl::string_view> parts = absl::StrSplit(text, ',');
   motion::Vec3 point;
   if (parts.size() != 3 || !absl::SimpleAtof(parts[0], &point.x) ||
@@ -77,6 +87,12 @@ std::optional<motion::Vec3> ParseTriple(absl::string_view text) {
     return std::nullopt;
   }
   return point;
+}
+
+absl::StatusOr<motion::Vec3> ParseDirection(absl::string_view text) {
+  const std::optional<motion::Vec3> direction = ParsePoint(text);
+  if (direction.has_value()) return *direction;
+  return Wanted(text, "X,Y,Z such as 1,0,0");
 }
 
 void SortByClass(std::vector<ClassWeight>* labels) {

@@ -1,6 +1,7 @@
 #ifndef DUET_CLIENT_BATCH_TEXT_VALUES_H_
 #define DUET_CLIENT_BATCH_TEXT_VALUES_H_
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,11 +14,13 @@
 
 namespace duet::client::batch {
 
-// How values are written in recipes and manifests. Errors: INVALID_ARGUMENT with what came and what
-// was wanted.
+// How values are written in recipes, manifests and flags. Errors: INVALID_ARGUMENT '"text", wanted
+// ...'.
 
 // "NAME", "NAME@VERSION" or "NAME:LABEL"
-absl::StatusOr<ModelChoice> ParseModelName(absl::string_view text);
+absl::StatusOr<ModelChoice> ParseModelChoice(absl::string_view text);
+// "NAME@VERSION" of a version that is settled.
+std::string ModelText(const ModelChoice& model);
 // "kick=1,hug=0.5", by class name. Each class once, weights within [-2, 2].
 absl::StatusOr<std::vector<ClassWeight>> ParseLabels(absl::string_view text);
 // "left" or "right"
@@ -26,8 +29,12 @@ absl::string_view SideName(formats::Side side);
 inline formats::Side OtherSide(formats::Side side) {
   return side == formats::Side::kLeft ? formats::Side::kRight : formats::Side::kLeft;
 }
-// "X,Y,Z"; nothing for anything else
-std::optional<motion::Vec3> ParseTriple(absl::string_view text);
+// "7": a whole number from 0 to 2^64 - 1
+absl::StatusOr<uint64_t> ParseSeed(absl::string_view text);
+// "0.5,1.1,-2" in metres; nothing when the text is no list of three numbers (but, say, a file)
+std::optional<motion::Vec3> ParsePoint(absl::string_view text);
+// "1,0,0": a direction of any length
+absl::StatusOr<motion::Vec3> ParseDirection(absl::string_view text);
 
 void SortByClass(std::vector<ClassWeight>* labels);
 // The shortest text that reads back as the same weight.

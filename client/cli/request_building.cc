@@ -39,14 +39,7 @@ absl::StatusOr<formats::ReadOptions> ToReadOptions(const InputArguments& input,
   absl::StatusOr<retargeting::JointOverrides> joints = ReadJoints(input);
   if (!joints.ok()) return joints.status();
   options.joint_overrides = *std::move(joints);
-  if (input.unit.has_value() || input.up_axis.has_value()) {
-    motion::Coordinates coordinates;
-    coordinates.unit = input.unit.value_or(motion::LengthUnit::kMetres);
-    coordinates.up_axis = input.up_axis.value_or(
-        coordinates.unit == motion::LengthUnit::kSbuNormalised ? motion::UpAxis::kYDown
-                                                               : motion::UpAxis::kYUp);
-    options.coordinates = coordinates;
-  }
+  options.coordinates = motion::StatedCoordinates(input.unit, input.up_axis);
   return options;
 }
 

@@ -1,21 +1,25 @@
 #ifndef DUET_CLIENT_CLI_VALUE_SYNTAX_H_
 #define DUET_CLIENT_CLI_VALUE_SYNTAX_H_
 
-#include <cstdint>
-#include <optional>
 #include <string>
 #include <utility>
 
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
+#include "client/batch/text_values.h"
 #include "client/request.h"
 #include "model/motion/coordinates.h"
-#include "model/motion/vec3.h"
 
 namespace duet::client::cli {
 
 // How the values of the program's flags are written. Errors: INVALID_ARGUMENT with what came and
 // what was wanted. Whether a class exists and a weight is in range, the server checks.
+
+// As in recipes and manifests.
+using batch::ParseDirection;
+using batch::ParseModelChoice;
+using batch::ParsePoint;
+using batch::ParseSeed;
 
 // "kick=1"
 absl::StatusOr<ClassWeight> ParseClassWeight(absl::string_view text);
@@ -23,23 +27,11 @@ absl::StatusOr<ClassWeight> ParseClassWeight(absl::string_view text);
 // "30:kick=1,hug=0": weights at a frame
 absl::StatusOr<WeightKeyframe> ParseKeyframe(absl::string_view text);
 
-// "NAME", "NAME@VERSION" or "NAME:LABEL"
-absl::StatusOr<ModelChoice> ParseModelChoice(absl::string_view text);
-
 // "left_hand=LeftWrist": a joint of the model, and the file's joint that it is read from
 absl::StatusOr<std::pair<std::string, std::string>> ParseJointPair(absl::string_view text);
 
-// "7": a whole number from 0 to 2^64 - 1
-absl::StatusOr<uint64_t> ParseSeed(absl::string_view text);
-
 // "0.5": a number from 0 to 2
 absl::StatusOr<float> ParseVariety(absl::string_view text);
-
-// "0.5,1.1,-2" in metres; nothing when the text is no list of three numbers (but, say, a file).
-std::optional<motion::Vec3> ParsePoint(absl::string_view text);
-
-// "1,0,0": a direction of any length
-absl::StatusOr<motion::Vec3> ParseDirection(absl::string_view text);
 
 // "millimetres", "z-up": as ParseLengthUnit and ParseUpAxis know them
 absl::StatusOr<motion::LengthUnit> ParseUnit(absl::string_view text);

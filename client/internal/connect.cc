@@ -4,6 +4,8 @@
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "absl/time/clock.h"
+#include "absl/time/time.h"
 #include "client/internal/connection_impl.h"
 #include "client/internal/grpc_stub.h"
 #include "grpcpp/create_channel.h"
@@ -72,6 +74,20 @@ grpc::ChannelArguments Arguments(const ClientOptions& options) {
   return arguments;
 }
 
+// Waits as long as is asked, and looks after a lost connection meanwhile: between calls that fail
+// at once nobody else does, but for gRPC's own look every five seconds.
+RetryEnvironment LookingAfter(std::shared_ptr<grpc::Channel> channel) {
+  RetryEnvironment environment = SystemEnvironment();
+  environment.sleep = [channel = std::move(channel)](absl::Duration wait) {
+    const absl::Time end = absl::Now() + wait;
+    if (channel->GetState(false) != GRPC_CHANNEL_READY) {
+      channel->WaitForConnected(absl::ToChronoTime(end));
+    }
+    absl::SleepFor(end - absl::Now());
+  };
+  return environment;
+}
+
 }  // namespace
 
 std::string GrpcTarget(std::string_view server_address) {
@@ -87,7 +103,9 @@ absl::StatusOr<std::shared_ptr<Connection>> Connect(const ClientOptions& options
   if (!status.ok()) return status;
   std::shared_ptr<grpc::Channel> channel = grpc::CreateCustomChannel(
       GrpcTarget(options.server_address), Credentials(options), Arguments(options));
-  return std::make_shared<ConnectionImpl>(MakeGrpcStub(std::move(channel)), options);
+  RetryEnvironment environment = LookingAfter(channel);
+  return std::make_shared<ConnectionImpl>(MakeGrpcStub(std::move(channel)), options,
+                                          std::move(environment));
 }
 
 }  // namespace duet::client::internal

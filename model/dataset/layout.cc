@@ -48,6 +48,12 @@ DatasetLayout SbuLayout() {
                        {"punch", "08", false, false, false}});
 }
 
+bool IsSbuSet(std::string_view name) {
+  const auto digit = [&](size_t i) { return name[i] >= '0' && name[i] <= '9'; };
+  return name.size() == 6 && name[0] == 's' && name[3] == 's' && digit(1) && digit(2) && digit(4) &&
+         digit(5);
+}
+
 DatasetLayout K3hiLayout() {
   return KinectLayout("k3hi", kK3hiFrameRateHz,
                       {{"approach", "approaching", false, false, false},

@@ -41,6 +41,9 @@ struct DatasetLayout {
 // SBU Kinect Interaction ("clean"): the six classes of the paper, folders 03 to 08.
 DatasetLayout SbuLayout();
 
+// sXXsYY, the two subjects of one of its sets in the order of their columns.
+bool IsSbuSet(std::string_view name);
+
 // K3HI in SBU's line layout. Rate and units are inferred, not documented by its authors.
 DatasetLayout K3hiLayout();
 

@@ -1,6 +1,5 @@
 // ReadDataset: recognises a layout, lists its files, reads each.
 #include <algorithm>
-#include <cctype>
 #include <map>
 #include <optional>
 #include <system_error>
@@ -51,13 +50,6 @@ bool IsFolder(const fs::path& path) {
 bool Exists(const fs::path& path) {
   std::error_code error;
   return fs::exists(path, error);
-}
-
-// sXXsYY: the two subjects of an SBU set.
-bool IsSbuSet(const std::string& name) {
-  const auto digit = [&](size_t i) { return std::isdigit(static_cast<unsigned char>(name[i])); };
-  return name.size() == 6 && name[0] == 's' && name[3] == 's' && digit(1) && digit(2) && digit(4) &&
-         digit(5);
 }
 
 int FindFolder(const DatasetLayout& layout, const std::string& folder) {

@@ -76,6 +76,16 @@ Vec3 FromYUp(UpAxis up_axis, Vec3 p) {
 
 }  // namespace
 
+std::optional<Coordinates> StatedCoordinates(const std::optional<LengthUnit>& unit,
+                                             const std::optional<UpAxis>& up_axis) {
+  if (!unit.has_value() && !up_axis.has_value()) return std::nullopt;
+  Coordinates coordinates;
+  coordinates.unit = unit.value_or(LengthUnit::kMetres);
+  const bool sbu = coordinates.unit == LengthUnit::kSbuNormalised;
+  coordinates.up_axis = up_axis.value_or(sbu ? UpAxis::kYDown : UpAxis::kYUp);
+  return coordinates;
+}
+
 Vec3 ToWorld(const Coordinates& coordinates, Vec3 p) {
   switch (coordinates.unit) {
     case LengthUnit::kMetres:

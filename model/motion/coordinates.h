@@ -20,6 +20,11 @@ struct Coordinates {
   UpAxis up_axis = UpAxis::kYUp;
 };
 
+// What is said of a file beside it: nothing where neither is; the unit metres, the axis what the
+// unit implies.
+std::optional<Coordinates> StatedCoordinates(const std::optional<LengthUnit>& unit,
+                                             const std::optional<UpAxis>& up_axis);
+
 // From the caller's coordinates to metres, y up; and back. Exact inverses up to rounding.
 Vec3 ToWorld(const Coordinates& coordinates, Vec3 position);
 Vec3 FromWorld(const Coordinates& coordinates, Vec3 position);

@@ -4,14 +4,17 @@ killed, packed shards that Python reads, shards of a job, refusals, and Ctrl-C.
     batch_test.py [KILLS] [test...]     how often the kill test kills; 6
 """
 
+import collections
 import hashlib
 import json
 import os
 import pathlib
 import random
+import re
 import resource
 import shutil
 import signal
+import socket
 import subprocess
 import sys
 import tarfile
@@ -91,6 +94,12 @@ class BatchTest(unittest.TestCase):
         self.assertEqual(result.returncode, code, result.stdout + result.stderr)
         return result
 
+    @staticmethod
+    def classes(index):
+        """How many items each class has the largest weight of."""
+        return collections.Counter(max(entry["labels"], key=entry["labels"].get)
+                                   for entry in index)
+
     def verified(self, out, code=0):
         result = tools.duet("batch", "verify", out)
         self.assertEqual(result.returncode, code, result.stdout + result.stderr)
@@ -112,9 +121,28 @@ class BatchTest(unittest.TestCase):
                 self.assertEqual(hashlib.sha256(content).hexdigest(), file["sha256"])
         summary = json.loads((out / "summary.json").read_text(encoding="utf-8"))
         self.assertEqual((summary["done"], summary["missing"]), (len(index), 0))
+        sheet = (out / "contact_sheet.html").read_text(encoding="utf-8")
+        shown = sum(min(12, count) for count in self.classes(index).values())
+        self.assertEqual(sheet.count("<svg"), shown)
+        self.assertEqual(len(re.findall('<a href="([^"]*)"', sheet)), shown)
+        for file in re.findall('<a href="([^"]*)"', sheet):
+            self.assertTrue((out / file).is_file(), file)
+        self.assertNotIn("://", sheet)
         self.verified(out)
         (out / "far" / "push-kick-s1.npy").write_bytes(b"changed")
         self.assertIn("push-kick-s1.npy: was changed", self.verified(out, 42).stderr)
+
+    def test_files_beside_motions_are_passed_over(self):
+        leaders, out = self.out("leaders"), self.out()
+        leaders.mkdir()
+        shutil.copy(tools.sample("kick"), leaders)
+        keyframes = leaders / "kick.txt"
+        shutil.copy(tools.SOURCE / "samples" / "keyframes" / "kick.txt", keyframes)
+        result = self.batch(out, self.recipe(), "--limit", "1", leaders=leaders)
+        self.assertIn(f"passed over, no motion: {keyframes}\n", result.stderr)
+        self.assertEqual([entry["leader"] for entry in entries(out)], [str(leaders / "kick.bvh")])
+        quiet = self.batch(out, self.recipe(), "--limit", "1", "--quiet", leaders=leaders)
+        self.assertEqual(quiet.stderr, "")
 
     def test_an_answer_is_what_synthesize_gives(self):
         out, single = self.whole, self.folder / "single.npy"
@@ -181,6 +209,20 @@ class BatchTest(unittest.TestCase):
             server.stop()
         self.assertEqual(client.returncode, 0, said)
         self.assertEqual(digests(out), digests(self.whole))
+
+    def test_a_server_that_comes_late_is_waited_for(self):
+        # gRPC's own look at a lost connection every five seconds is left out: the client looks.
+        environment = dict(os.environ, GRPC_CLIENT_CHANNEL_BACKUP_POLL_INTERVAL_MS="0")
+        with socket.create_server(("127.0.0.1", 0)) as listener:
+            port = listener.getsockname()[1]
+            client = subprocess.Popen(
+                self.command(self.out(), self.recipe(), "--limit", "2", "--quiet",
+                             server=f"127.0.0.1:{port}"), env=environment)
+            listener.settimeout(tools.RUN_SECONDS)
+            listener.accept()[0].close()
+        server = tools.Server(port=port)
+        self.addCleanup(server.stop)
+        self.assertEqual(client.wait(timeout=tools.RUN_SECONDS), 0)
 
     def test_a_server_that_stays_away_is_worth_another_run(self):
         out = self.out()
@@ -287,6 +329,12 @@ class BatchTest(unittest.TestCase):
         self.assertEqual(found, {path.relative_to(plain).as_posix(): path.read_bytes()
                                  for path in plain.rglob("*.npy")})
         self.assertFalse((out / ".duet-batch" / "items").exists())
+        # The sheet is drawn before its files go into shards, and has nothing to open.
+        sheet = (out / "contact_sheet.html").read_text(encoding="utf-8")
+        self.assertEqual(re.sub("</?(a|span)( href=[^>]*)?>", "", sheet),
+                         re.sub("</?(a|span)( href=[^>]*)?>", "",
+                                (plain / "contact_sheet.html").read_text(encoding="utf-8")))
+        self.assertNotIn("<a ", sheet)
         before = digests(out)
         self.batch(out, self.recipe(), "--pack", "tar")
         self.assertEqual(digests(out), before)

@@ -75,6 +75,16 @@ TEST(Coordinates, SbuImpliesItsUpAxis) {
   EXPECT_EQ(ToWorld({LengthUnit::kSbuNormalised, UpAxis::kZUp}, position), wanted);
 }
 
+TEST(Coordinates, AreStatedByUnitOrAxis) {
+  EXPECT_FALSE(StatedCoordinates({}, {}).has_value());
+  const auto axis = StatedCoordinates({}, UpAxis::kZUp);
+  EXPECT_EQ(axis->unit, LengthUnit::kMetres);
+  EXPECT_EQ(axis->up_axis, UpAxis::kZUp);
+  EXPECT_EQ(StatedCoordinates(LengthUnit::kMillimetres, {})->up_axis, UpAxis::kYUp);
+  EXPECT_EQ(StatedCoordinates(LengthUnit::kSbuNormalised, {})->up_axis, UpAxis::kYDown);
+  EXPECT_EQ(StatedCoordinates(LengthUnit::kSbuNormalised, UpAxis::kYUp)->up_axis, UpAxis::kYUp);
+}
+
 TEST(Coordinates, HaveOneSpellingThatReadsBack) {
   for (const LengthUnit unit :
        {LengthUnit::kMetres, LengthUnit::kMillimetres, LengthUnit::kSbuNormalised}) {

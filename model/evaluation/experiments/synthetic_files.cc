@@ -1,41 +1,37 @@
 #include "model/evaluation/experiments/synthetic_files.h"
 
-#include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <system_error>
 #include <utility>
 
-#include "absl/strings/ascii.h"
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
-#include "absl/strings/str_split.h"
 #include "model/base/file.h"
+#include "model/base/strict_json.h"
 #include "model/base/text.h"
-#include "model/formats/flat/json_motion.h"
-#include "model/motion/motion_limits.h"
 
 namespace duet::evaluation::experiments {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr char kHeader[] = "id\tclass\thalf\tlabels\tpartner";
-constexpr size_t kColumns = 5;
-constexpr size_t kMaxJobsBytes = size_t{16} << 20;
+constexpr size_t kMaxIndexBytes = size_t{256} << 20;
+constexpr int kIndexDepth = 8;
 
 std::string LabelText(const dataset::Dataset& dataset, const std::vector<float>& labels) {
   std::vector<std::string> words;
   for (size_t c = 0; c < labels.size(); ++c) {
     if (labels[c] != 0) words.push_back(absl::StrCat(dataset.classes[c], "=", labels[c]));
   }
-  return absl::StrJoin(words, ";");
+  return absl::StrJoin(words, ",");
 }
 
 std::string PartnerText(const std::optional<motion::Vec3>& direction) {
-  if (!direction) return "-";
+  if (!direction) return "";
   const motion::Vec3 plain = *direction + motion::Vec3{};  // no minus before a zero
   return absl::StrCat(plain.x, ",", plain.y, ",", plain.z);
 }
@@ -58,119 +54,99 @@ std::string LeaderJson(const motion::Clip& leader) {
       .dump();
 }
 
-// An id that names a file in its folder and nothing else.
-bool IsFileName(absl::string_view id) {
-  return !id.empty() && id.front() != '.' && std::all_of(id.begin(), id.end(), [](char c) {
-    return absl::ascii_isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-' || c == '.';
-  });
+// Where a job's leader is, below the folder; the set that it was captured in names the data set's.
+std::string LeaderPath(const dataset::Sequence& sequence) {
+  return absl::StrCat("leaders/", sequence.set, sequence.set.empty() ? "" : "/", sequence.id,
+                      ".json");
 }
 
-// A line of jobs.tsv, or why it is none.
-class JobLine {
- public:
-  JobLine(const dataset::Dataset& dataset, const std::string& source, int number,
-          absl::string_view text)
-      : dataset_(dataset), source_(source), number_(number), fields_(absl::StrSplit(text, '\t')) {}
-
-  absl::Status Read(uint64_t* half, dataset::Sequence* sequence) const {
-    if (fields_.size() != kColumns) {
-      return Error(absl::StrCat(fields_.size(), " columns came, wanted ", kColumns));
-    }
-    if (!IsFileName(fields_[0])) {
-      return Error(
-          absl::StrCat("id: ", base::Quoted(fields_[0]), " came, wanted letters, digits, _-."));
-    }
-    sequence->id = fields_[0];
-    const auto found = std::find(dataset_.classes.begin(), dataset_.classes.end(), fields_[1]);
-    if (found == dataset_.classes.end()) {
-      return Error(absl::StrCat("class: ", base::Quoted(fields_[1]), " came, wanted one of ",
-                                absl::StrJoin(dataset_.classes, ", ")));
-    }
-    sequence->interaction_class = static_cast<int>(found - dataset_.classes.begin());
-    if (!absl::SimpleAtoi(fields_[2], half)) {
-      return Error(absl::StrCat("half: ", base::Quoted(fields_[2]), " came, wanted a seed"));
-    }
-    return ReadPartner(sequence);
+absl::Status WriteLeader(const dataset::Sequence& sequence, const fs::path& file) {
+  std::error_code error;
+  fs::create_directories(file.parent_path(), error);
+  if (error) {
+    return absl::InternalError(absl::StrCat(file.parent_path().string(), ": ", error.message()));
   }
+  return base::WriteFile(file, LeaderJson(sequence.pair.leader));
+}
 
- private:
-  absl::Status ReadPartner(dataset::Sequence* sequence) const {
-    if (fields_[4] == "-") return absl::OkStatus();
-    const std::vector<absl::string_view> values = absl::StrSplit(fields_[4], ',');
-    motion::Vec3 direction;
-    if (values.size() != 3 || !motion::ParseCoordinate(values[0], &direction.x) ||
-        !motion::ParseCoordinate(values[1], &direction.y) ||
-        !motion::ParseCoordinate(values[2], &direction.z) ||
-        (direction.x == 0 && direction.z == 0)) {
-      return Error(absl::StrCat("partner: ", base::Quoted(fields_[4]),
-                                " came, wanted - or x,y,z of a horizontal direction"));
-    }
-    sequence->partner_direction = direction;
-    return absl::OkStatus();
-  }
-
-  absl::Status Error(absl::string_view message) const {
-    return base::ErrorAt(source_, number_, message);
-  }
-
-  const dataset::Dataset& dataset_;
-  const std::string& source_;
-  int number_;
-  std::vector<std::string> fields_;
+// What the index says of a clip beyond its motion.
+struct Asked {
+  uint64_t half = 0;
+  std::optional<motion::Vec3> partner_direction;
 };
 
-absl::Status WrongAnswer(const fs::path& file, absl::string_view message) {
-  return absl::InvalidArgumentError(absl::StrCat(file.string(), ": ", message));
+std::optional<motion::Vec3> ToDirection(const nlohmann::json& value) {
+  if (!value.is_array() || value.size() != 3) return std::nullopt;
+  for (const nlohmann::json& coordinate : value) {
+    if (!coordinate.is_number()) return std::nullopt;
+  }
+  return motion::Vec3{value[0].get<float>(), value[1].get<float>(), value[2].get<float>()};
 }
 
-// An answer as the client writes it. Stricter than ReadLeader, which takes the only person of a
-// file for either.
-absl::Status ReadPair(const dataset::Dataset& dataset, const fs::path& file,
-                      motion::ClipPair* pair) {
-  absl::StatusOr<std::string> text = base::ReadFile(file, motion::kMaxMotionFileBytes, "a motion");
-  if (!text.ok()) return text.status();
-  absl::StatusOr<motion::RecordedMotion> motion =
-      formats::flat::ParseJsonMotion(*text, file.string());
-  if (!motion.ok()) return motion.status();
-  if (motion->people.size() != 2) return WrongAnswer(file, "1 person came, wanted 2");
-  if (motion->people[0].joint_names != dataset.skeleton.joint_names) {
-    return WrongAnswer(file, "joint_names: wanted those of the data, in their order");
+// A line of index.jsonl.
+absl::StatusOr<std::pair<std::string, Asked>> ParseEntry(absl::string_view line) {
+  const absl::StatusOr<nlohmann::json> entry =
+      base::ParseStrictJson({line.data(), line.size()}, kIndexDepth);
+  if (!entry.ok()) return entry.status();
+  const auto text = [&entry](const char* pointer) -> std::string {
+    const nlohmann::json::json_pointer at(pointer);
+    return entry->contains(at) && (*entry)[at].is_string() ? (*entry)[at].get<std::string>() : "";
+  };
+  const std::string path = text("/files/0/path"), half = text("/extra/half");
+  Asked asked;
+  if (path.empty()) return absl::InvalidArgumentError("files: none came, wanted one");
+  if (!absl::SimpleAtoi(half, &asked.half)) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "extra: half: ", base::Quoted(half), " came, wanted a seed as --write-jobs tells it"));
   }
-  if (motion->people[0].frame_rate_hz != dataset.frame_rate_hz) {
-    return WrongAnswer(file, absl::StrCat("frame_rate_hz: ", motion->people[0].frame_rate_hz,
-                                          " came, wanted the data's ", dataset.frame_rate_hz));
-  }
-  for (motion::Clip& clip : motion->people) {
-    for (motion::Vec3& point : clip.poses.all()) point = ToWorld(motion->coordinates, point);
-  }
-  *pair = {std::move(motion->people[0]), std::move(motion->people[1])};
-  return CheckPair(*pair);
-}
-
-absl::StatusOr<SyntheticSet> ParseJobs(const dataset::Dataset& dataset, const std::string& source,
-                                       absl::string_view text) {
-  SyntheticSet set;
-  base::LineReader lines(text);
-  absl::string_view line;
-  if (!lines.Next(&line) || line != kHeader) {
-    return base::ErrorAt(
-        source, 1,
-        absl::StrCat(base::Quoted(line), " came, wanted the header ", base::Quoted(kHeader)));
-  }
-  while (lines.Next(&line)) {
-    dataset::Sequence sequence;
-    uint64_t half = 0;
-    absl::Status status = JobLine(dataset, source, lines.number(), line).Read(&half, &sequence);
-    if (!status.ok()) return status;
-    if (!set.sequences.empty() && half != set.half) {
-      return base::ErrorAt(source, lines.number(),
-                           absl::StrCat("half: ", half, " came, wanted ", set.half, " as above"));
+  if (entry->contains("partner_direction")) {
+    asked.partner_direction = ToDirection((*entry)["partner_direction"]);
+    if (!asked.partner_direction) {
+      return absl::InvalidArgumentError("partner_direction: wanted three numbers");
     }
-    set.half = half;
-    set.sequences.push_back(std::move(sequence));
   }
-  if (!set.sequences.empty()) return set;
-  return base::ErrorAt(source, 1, "no job came, wanted one or more");
+  return std::make_pair(path, asked);
+}
+
+// By path.
+absl::StatusOr<std::map<std::string, Asked>> ReadIndex(const fs::path& file) {
+  absl::StatusOr<std::string> text = base::ReadFile(file, kMaxIndexBytes, "an index");
+  if (!text.ok()) return text.status();
+  std::map<std::string, Asked> index;
+  base::LineReader lines(*text);
+  for (absl::string_view line; lines.Next(&line);) {
+    absl::StatusOr<std::pair<std::string, Asked>> entry = ParseEntry(line);
+    if (!entry.ok()) {
+      return base::ErrorAt(file.string(), lines.number(), entry.status().message());
+    }
+    if (!index.empty() && entry->second.half != index.begin()->second.half) {
+      return base::ErrorAt(file.string(), lines.number(),
+                           absl::StrCat("half: ", entry->second.half, " came, wanted ",
+                                        index.begin()->second.half, " as above"));
+    }
+    index.insert(*std::move(entry));
+  }
+  return index;
+}
+
+absl::Status CheckSame(const dataset::Dataset& wanted, const dataset::Dataset& came,
+                       const fs::path& folder) {
+  const auto refuse = [&folder](absl::string_view what) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(folder.string(), ": wanted the ", what, " of the data"));
+  };
+  if (came.skeleton.joint_names != wanted.skeleton.joint_names) return refuse("joints");
+  if (came.classes != wanted.classes) return refuse("classes");
+  if (came.frame_rate_hz != wanted.frame_rate_hz) return refuse("frame rate");
+  return absl::OkStatus();
+}
+
+// As it was asked and answered: in a level world, whatever its reader made of it.
+void UndoLevelling(dataset::Sequence* sequence) {
+  for (motion::Clip* clip : {&sequence->pair.leader, &sequence->pair.follower}) {
+    clip->poses = sequence->levelling.Invert(std::move(clip->poses));
+  }
+  sequence->levelling = {};
 }
 
 }  // namespace
@@ -178,38 +154,37 @@ absl::StatusOr<SyntheticSet> ParseJobs(const dataset::Dataset& dataset, const st
 absl::Status WriteSyntheticJobs(const dataset::Dataset& dataset,
                                 const std::vector<SyntheticJob>& jobs, uint64_t half,
                                 const fs::path& folder) {
-  for (const char* const name : {"leaders", "followers"}) {
-    std::error_code error;
-    fs::create_directories(folder / name, error);
-    if (error) {
-      return absl::InternalError(absl::StrCat((folder / name).string(), ": ", error.message()));
-    }
-  }
-  std::string lines = absl::StrCat(kHeader, "\n");
+  std::string lines = "leader\tlabels\tpartner_direction\thalf\n";
   for (const SyntheticJob& job : jobs) {
-    const dataset::Sequence& sequence = job.sequence;
-    absl::StrAppend(&lines, sequence.id, "\t",
-                    dataset.classes[static_cast<size_t>(sequence.interaction_class)], "\t", half,
-                    "\t", LabelText(dataset, job.labels), "\t",
-                    PartnerText(sequence.partner_direction), "\n");
-    absl::Status status = base::WriteFile(folder / "leaders" / absl::StrCat(sequence.id, ".json"),
-                                          LeaderJson(sequence.pair.leader));
+    const std::string leader = LeaderPath(job.sequence);
+    absl::StrAppend(&lines, leader, "\t", LabelText(dataset, job.labels), "\t",
+                    PartnerText(job.sequence.partner_direction), "\t", half, "\n");
+    absl::Status status = WriteLeader(job.sequence, folder / leader);
     if (!status.ok()) return status;
   }
-  return base::WriteFile(folder / "jobs.tsv", lines);
+  return base::WriteFile(folder / "manifest.tsv", lines);
 }
 
 absl::StatusOr<SyntheticSet> ReadSyntheticSet(const dataset::Dataset& dataset,
                                               const fs::path& folder) {
-  const fs::path file = folder / "jobs.tsv";
-  absl::StatusOr<std::string> text = base::ReadFile(file, kMaxJobsBytes, "jobs.tsv");
-  if (!text.ok()) return text.status();
-  absl::StatusOr<SyntheticSet> set = ParseJobs(dataset, file.string(), *text);
-  if (!set.ok()) return set;
-  for (dataset::Sequence& sequence : set->sequences) {
-    absl::Status status = ReadPair(
-        dataset, folder / "followers" / absl::StrCat(sequence.id, ".json"), &sequence.pair);
-    if (!status.ok()) return status;
+  absl::StatusOr<dataset::Dataset> read = dataset::ReadDataset(folder);
+  if (!read.ok()) return read.status();
+  absl::Status status = CheckSame(dataset, *read, folder);
+  if (!status.ok()) return status;
+  absl::StatusOr<std::map<std::string, Asked>> index = ReadIndex(folder / "index.jsonl");
+  if (!index.ok()) return index.status();
+  SyntheticSet set;
+  set.sequences = std::move(read->sequences);
+  for (dataset::Sequence& sequence : set.sequences) {
+    const auto asked = index->find(sequence.id);
+    if (asked == index->end() || index->size() != set.sequences.size()) {
+      return absl::InvalidArgumentError(absl::StrCat((folder / "index.jsonl").string(), ": ",
+                                                     index->size(), " clips came, wanted the ",
+                                                     set.sequences.size(), " of the folder"));
+    }
+    set.half = asked->second.half;
+    sequence.partner_direction = asked->second.partner_direction;
+    UndoLevelling(&sequence);
   }
   return set;
 }

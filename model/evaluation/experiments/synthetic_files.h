@@ -9,19 +9,18 @@
 #include "absl/status/statusor.h"
 #include "model/evaluation/experiments/synthetic_job.h"
 
-// A folder through which a synthetic set passes on its way to a server and back:
+// How a synthetic set is asked of a server and comes back:
 //
-//   jobs.tsv             a header, then one motion a line: id, class, half, labels, partner
-//   leaders/<id>.json    what is asked, one person (docs/formats.md)
-//   followers/<id>.json  what `duet synthesize` answered, both people
+//   manifest.tsv               for `duet batch --manifest`: leader, labels, partner_direction, half
+//   leaders/<set>/<id>.json    the leaders, one person each (docs/formats.md)
 //
-// labels are "kick=1.1;hug=0.2"; partner is "x,y,z", the direction from leader to follower, or "-";
-// All of it is in the level world that the data set was read into: servers learnt there.
-// half is the seed of SplitInHalves whose training half the generator and the leaders come from.
+// All of it is in the level world that the data set was read into: servers learnt there. half is
+// the seed of SplitInHalves whose training half the generator and the leaders come from. The answer
+// is a data set of `duet batch` in a layout of captures (recipes/sbu_300.textproto, docs/batch.md).
 
 namespace duet::evaluation::experiments {
 
-// Writes jobs.tsv and the leaders; makes the three folders where they are missing.
+// Writes the manifest and the leaders; makes the folders where they are missing.
 absl::Status WriteSyntheticJobs(const dataset::Dataset& dataset,
                                 const std::vector<SyntheticJob>& jobs, uint64_t half,
                                 const std::filesystem::path& folder);
@@ -31,10 +30,10 @@ struct SyntheticSet {
   std::vector<dataset::Sequence> sequences;  // the leader as asked and the follower as answered
 };
 
-// Reads jobs.tsv and every follower. Strict. Errors: NOT_FOUND for a missing file;
-// INVALID_ARGUMENT naming file, line, what came and what was wanted: an unknown class, an id that
-// is no file name, halves that differ, no job at all; an answer of one person alone, of other
-// joints or another frame rate than the data's.
+// Reads such a data set as captures are read, in the world that it was asked in, and of its
+// index.jsonl the half and the partner's direction. Errors: NOT_FOUND for a missing file;
+// INVALID_ARGUMENT naming file, line, what came and what was wanted: joints, classes or a frame
+// rate other than the data's, an index of other clips, halves that differ or that nobody told.
 absl::StatusOr<SyntheticSet> ReadSyntheticSet(const dataset::Dataset& dataset,
                                               const std::filesystem::path& folder);
 

@@ -8,17 +8,37 @@
 namespace duet::evaluation::metrics {
 namespace {
 
-// The deepest overlap of two bodies in one frame.
-double FrameDepth(const motion::Poses& leader, const motion::Poses& follower, int frame,
-                  const motion::Skeleton& skeleton, const std::vector<double>& radii) {
+// Beyond rounding, metres.
+constexpr float kSlack = 1e-4f;
+
+// A bone in one frame, and the sphere around it.
+struct PlacedBone {
+  motion::Vec3 from, to, middle;
+  float reach = 0;
+};
+
+void Place(const motion::Poses& body, int frame, const motion::Skeleton& skeleton,
+           std::vector<PlacedBone>* bones) {
+  bones->clear();
+  for (const motion::Bone& bone : skeleton.bones) {
+    const motion::Vec3 from = body.at(frame, bone.parent), to = body.at(frame, bone.child);
+    bones->push_back({from, to, (from + to) * 0.5f, Distance(from, to) * 0.5f});
+  }
+}
+
+// The deepest overlap of two bodies.
+double Depth(const std::vector<PlacedBone>& leader, const std::vector<PlacedBone>& follower,
+             const std::vector<double>& radii) {
   double deepest = 0;
-  for (size_t i = 0; i < skeleton.bones.size(); ++i) {
-    const motion::Bone& a = skeleton.bones[i];
-    for (size_t j = 0; j < skeleton.bones.size(); ++j) {
-      const motion::Bone& b = skeleton.bones[j];
-      const double distance =
-          SegmentDistance(leader.at(frame, a.parent), leader.at(frame, a.child),
-                          follower.at(frame, b.parent), follower.at(frame, b.child));
+  for (size_t i = 0; i < leader.size(); ++i) {
+    const PlacedBone& a = leader[i];
+    for (size_t j = 0; j < follower.size(); ++j) {
+      const PlacedBone& b = follower[j];
+      // Most bones are so far apart that their spheres tell.
+      const auto near = static_cast<float>(radii[i] + radii[j] - deepest) + a.reach + b.reach;
+      const motion::Vec3 apart = a.middle - b.middle;
+      if (Dot(apart, apart) > (near + kSlack) * (near + kSlack)) continue;
+      const double distance = SegmentDistance(a.from, a.to, b.from, b.to);
       deepest = std::max(deepest, radii[i] + radii[j] - distance);
     }
   }
@@ -31,10 +51,13 @@ Penetration MeasurePenetration(const motion::Poses& leader, const motion::Poses&
                                const motion::Skeleton& skeleton,
                                const std::vector<motion::BodyPart>& parts) {
   const std::vector<double> radii = CapsuleRadii(skeleton, parts);
+  std::vector<PlacedBone> leading, following;
   Penetration result;
   double touching = 0, sum = 0;
   for (int t = 0; t < leader.frame_count(); ++t) {
-    const double depth = FrameDepth(leader, follower, t, skeleton, radii);
+    Place(leader, t, skeleton, &leading);
+    Place(follower, t, skeleton, &following);
+    const double depth = Depth(leading, following, radii);
     if (depth <= 0) continue;
     ++touching;
     sum += depth;

@@ -196,11 +196,11 @@ void AddAugmentationCommand(CLI::App* app, ChosenCommand* chosen) {
                     "in-process answers with constant limb lengths on the leader's floor");
   command
       ->add_option("--synthetic", arguments->synthetic,
-                   "a folder that scripts/augmentation_set.sh filled; repeatable")
+                   "a set that duet batch made of --write-jobs' manifest; repeatable")
       ->allow_extra_args(false);
   CLI::Option* write_jobs = command->add_option(
       "--write-jobs", arguments->write_jobs,
-      "only write the leaders and label vectors of one half's set into this folder");
+      "only write the leaders of one half's set and their manifest into this folder");
   write_jobs->excludes(runs);
   command->add_option("--out", arguments->out, "folder of results, for duet-eval report");
   command->add_option("--id", arguments->id, "of the section")->capture_default_str();

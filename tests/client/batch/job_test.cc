@@ -19,7 +19,9 @@
 #include "duet/batch/v1/batch.pb.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "model/dataset/dataset.h"
 #include "model/formats/motion_file.h"
+#include "model/motion/resample.h"
 #include "tests/support/sample_motion.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
@@ -96,12 +98,14 @@ class JobTest : public ::testing::Test {
     model.name = "fake";
     model.version = 3;
     model.interaction_classes = {"kick", "hug"};
+    model.joint_names = motion::SbuSkeleton().joint_names;
     model.samples = true;
     JobFolder folder(folder_ / out);
     JobIdentity begun;
     absl::Status status = folder.Open(IdentityOf(*recipe, {}), &begun);
     if (!status.ok()) return status;
-    const JobIdentity identity = WithModels(IdentityOf(*recipe, {}), {model});
+    const JobIdentity identity =
+        WithModels(IdentityOf(*recipe, {}), {model}, {motion::SbuSkeleton()});
     EXPECT_THAT(folder.Begin(identity), IsOk());
     std::istringstream in(manifest);
     absl::StatusOr<Plan> plan =
@@ -127,7 +131,8 @@ class JobTest : public ::testing::Test {
   void ExpectSameAsUndisturbed(const std::string& out) {
     connections_ = {std::make_shared<FakeConnection>()};
     ASSERT_THAT(Run("undisturbed"), IsOk());
-    for (const char* file : {"index.jsonl", "index.tsv", "rejected.tsv", "summary.json"}) {
+    for (const char* file :
+         {"contact_sheet.html", "index.jsonl", "index.tsv", "rejected.tsv", "summary.json"}) {
       EXPECT_EQ(Read(out + "/" + file), Read(std::string("undisturbed/") + file)) << file;
     }
     EXPECT_EQ(Verify(folder_ / out)->problem_count, 0);
@@ -332,6 +337,88 @@ TEST_F(JobTest, AnotherRecipeIsRefused) {
   recipe_ += "seed: 9";
   EXPECT_THAT(Run("set"), StatusIs(absl::StatusCode::kFailedPrecondition,
                                    HasSubstr("was begun with another recipe")));
+}
+
+TEST(LastLeaders, AreSharedByWhateverReadsTheSameMotion) {
+  const auto entry = [](const char* file, const char* start = "") {
+    LeaderEntry made;
+    made.file = file;
+    made.follower_start = start;
+    return std::make_shared<const LeaderEntry>(made);
+  };
+  const formats::Side left = formats::Side::kLeft, right = formats::Side::kRight;
+  LastLeaders leaders(2);
+  const auto first = leaders.Get(entry("a"), left, 0);
+  EXPECT_EQ(leaders.Get(entry("a"), left, 0), first);
+  // Each model has its own joints, and its own last leader.
+  const auto other_model = leaders.Get(entry("a"), left, 1);
+  EXPECT_NE(other_model, first);
+  EXPECT_EQ(leaders.Get(entry("a"), left, 0), first);
+  EXPECT_EQ(leaders.Get(entry("a"), left, 1), other_model);
+  EXPECT_NE(leaders.Get(entry("a"), right, 0), first);
+  const auto started = leaders.Get(entry("a", "start.csv"), left, 0);
+  EXPECT_NE(started, first);
+  EXPECT_NE(leaders.Get(entry("a", "0,0,1"), left, 0), started);
+  LeaderEntry sided;
+  sided.file = "a";
+  sided.follower_start = "0,0,1";
+  sided.follower_start_side = right;
+  const auto with_side = leaders.Get(std::make_shared<const LeaderEntry>(sided), left, 0);
+  EXPECT_NE(with_side, leaders.Get(entry("a", "0,0,1"), left, 0));
+  EXPECT_NE(leaders.Get(entry("b"), left, 0), with_side);
+}
+
+// What duet-train would read of a run's data set.
+class CapturesTest : public JobTest {
+ protected:
+  absl::StatusOr<dataset::Dataset> Made(const std::string& layout) {
+    recipe_ = R"(reactions { labels { weights { key: "kick" value: 1 } } } output { layout: )" +
+              layout + " }";
+    const absl::StatusOr<JobReport> report =
+        Run("set", {}, "leader\tside\na.csv\tleft\ns01s02/b.csv\tright\n");
+    if (!report.ok()) return report.status();
+    EXPECT_EQ(report->set.done, 2);
+    return dataset::ReadDataset(folder_ / "set");
+  }
+  void SetUp() override {
+    std::filesystem::create_directory(folder_ / "s01s02");
+    std::filesystem::copy_file(folder_ / "b.csv", folder_ / "s01s02/b.csv");
+  }
+  // Where each follower stands: the fake's answer, x alone.
+  static float Aside(const dataset::Sequence& sequence) {
+    return (sequence.pair.follower.at(0, 0) - sequence.pair.leader.at(0, 0)).x;
+  }
+};
+
+TEST_F(CapturesTest, SbuIsReadBackWithTheRightLeaders) {
+  const absl::StatusOr<dataset::Dataset> set = Made("LAYOUT_SBU");
+  ASSERT_THAT(set, IsOk());
+  EXPECT_EQ(set->name, "sbu");
+  ASSERT_THAT(set->sequences, SizeIs(2));
+  EXPECT_EQ(set->sequences[0].id, "s00s00/03/001/skeleton_pos.txt");
+  EXPECT_EQ(set->sequences[1].id, "s01s02/03/001/skeleton_pos.txt");
+  for (const dataset::Sequence& sequence : set->sequences) {
+    EXPECT_EQ(set->classes[static_cast<size_t>(sequence.interaction_class)], "kick");
+    EXPECT_EQ(sequence.leader_source, "index");
+    EXPECT_EQ(sequence.pair.leader.frame_count(), 5);
+    EXPECT_GE(Aside(sequence), 0.99f);
+    EXPECT_LE(Aside(sequence), 2.01f);
+  }
+  EXPECT_EQ(set->Subjects(), (std::vector<std::string>{"s00", "s01", "s02"}));
+}
+
+TEST_F(CapturesTest, K3hiIsReadBackAtItsRate) {
+  const absl::StatusOr<dataset::Dataset> set = Made("LAYOUT_K3HI");
+  ASSERT_THAT(set, IsOk());
+  EXPECT_EQ(set->name, "k3hi");
+  ASSERT_THAT(set->sequences, SizeIs(2));
+  EXPECT_EQ(set->sequences[1].id, "kicking/002.txt");
+  for (const dataset::Sequence& sequence : set->sequences) {
+    EXPECT_EQ(set->classes[static_cast<size_t>(sequence.interaction_class)], "kick");
+    EXPECT_EQ(sequence.pair.leader.frame_count(), motion::ResampledFrameCount(5, 15, 30));
+    EXPECT_GE(Aside(sequence), 0.99f);
+  }
+  EXPECT_EQ(Verify(folder_ / "set")->problem_count, 0);
 }
 
 }  // namespace

@@ -129,6 +129,30 @@ TEST_F(ListLeadersTest, FoldersAreMirroredByName) {
   EXPECT_THAT(*keys, ElementsAre("c", "walks/a", "walks/a_csv", "walks/b"));
 }
 
+TEST_F(ListLeadersTest, WhatHoldsNoMotionIsPassedOver) {
+  const test::TemporaryFolder folder;
+  test::WriteTestFile(folder / "walk.txt", "\n1,0.5,-1e-3,\t2\n");
+  test::WriteTestFile(folder / "keys.txt", "# A kick, key by key\nat 0\n");
+  test::WriteTestFile(folder / "count.txt", "12\n");
+  test::WriteTestFile(folder / "motion.json", R"({"format": "duet-motion", "version": 1})");
+  test::WriteTestFile(folder / "plain.JSON", R"({"leader": []})");
+  test::WriteTestFile(folder / "keys.json", R"({"keyframes": [{"at": 0}]})");
+  test::WriteTestFile(folder / "empty.json", "");
+  test::WriteTestFile(folder / "walk.bvh", "# looked at when its turn comes");
+  std::vector<std::string> passed_over;
+  auto source = ListLeaders({folder.path().string()}, &passed_over);
+  ASSERT_THAT(source, IsOk());
+  EXPECT_THAT(Keys(*ReadAll(**source)), ElementsAre("motion", "plain", "walk", "walk_txt"));
+  std::vector<std::string> wanted;
+  for (const char* name : {"count.txt", "empty.json", "keys.json", "keys.txt"}) {
+    wanted.push_back((folder / name).string());
+  }
+  EXPECT_EQ(passed_over, wanted);
+  // Somebody who names a file means it.
+  source = ListLeaders({(folder / "keys.txt").string()}, &passed_over);
+  EXPECT_THAT(Keys(*ReadAll(**source)), ElementsAre("keys"));
+}
+
 TEST_F(ListLeadersTest, PatternsAndFiles) {
   const auto keys = List({"wal*/?.bvh", "c.npy"});
   ASSERT_THAT(keys, IsOk());

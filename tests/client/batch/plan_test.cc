@@ -1,18 +1,24 @@
 #include "client/batch/plan.h"
 
+#include <cstdlib>
+#include <filesystem>
+#include <map>
 #include <set>
 #include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "absl/strings/str_cat.h"
 #include "client/batch/answer.h"
 #include "client/batch/manifest.h"
 #include "client/batch/recipe_file.h"
 #include "client/batch/shard.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "model/motion/skeleton.h"
 #include "tests/support/status_matchers.h"
+#include "tests/support/temporary_folder.h"
 
 namespace duet::client::batch {
 namespace {
@@ -21,6 +27,7 @@ using test::IsOk;
 using test::StatusIs;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Pair;
 
 ModelInfo Model(const std::string& name, bool samples = true) {
   ModelInfo model;
@@ -31,12 +38,10 @@ ModelInfo Model(const std::string& name, bool samples = true) {
   return model;
 }
 
-absl::StatusOr<std::vector<Item>> PlanOf(const std::string& recipe_text,
-                                         const std::string& manifest = "leader\na.bvh\nb.bvh\n",
-                                         std::vector<ModelInfo> models = {Model("sbu")},
-                                         const std::string& output = "") {
-  absl::StatusOr<Recipe> recipe =
-      ParseRecipe(recipe_text + " output { formats: FORMAT_NPY " + output + " }", false);
+absl::StatusOr<std::vector<Item>> PlanOfRecipe(const std::string& recipe_text,
+                                               const std::string& manifest,
+                                               std::vector<ModelInfo> models) {
+  absl::StatusOr<Recipe> recipe = ParseRecipe(recipe_text, false);
   if (!recipe.ok()) return recipe.status();
   std::istringstream in(manifest);
   absl::StatusOr<Plan> plan =
@@ -49,6 +54,15 @@ absl::StatusOr<std::vector<Item>> PlanOf(const std::string& recipe_text,
     if (!item->has_value()) return items;
     items.push_back(**std::move(item));
   }
+}
+
+// The same of files of arrays.
+absl::StatusOr<std::vector<Item>> PlanOf(const std::string& recipe_text,
+                                         const std::string& manifest = "leader\na.bvh\nb.bvh\n",
+                                         std::vector<ModelInfo> models = {Model("sbu")},
+                                         const std::string& output = "") {
+  return PlanOfRecipe(recipe_text + " output { formats: FORMAT_NPY " + output + " }", manifest,
+                      std::move(models));
 }
 
 std::vector<std::string> Names(const std::vector<Item>& items) {
@@ -139,6 +153,108 @@ TEST(Plan, BothSidesLeadAndClassFoldersGoByTheLargestWeight) {
   EXPECT_EQ((*items)[1].side, formats::Side::kRight);
 }
 
+TEST(Plan, EachClassIsDrawnWithAnotherBeside) {
+  const std::string recipe = R"(reactions { name: 'mix' each_class {
+      min_weight: 0.5 max_weight: 1 beside { min_weight: 0.1 max_weight: 0.3 } } })";
+  const auto items = PlanOf(recipe);
+  ASSERT_THAT(items, IsOk());
+  EXPECT_THAT(Names(*items), ElementsAre("a-2-mix_kick", "a-2-mix_push", "a-2-mix_hug",
+                                         "b-3-mix_kick", "b-3-mix_push", "b-3-mix_hug"));
+  const std::vector<std::string> classes = Model("").interaction_classes;
+  std::set<float> weights;
+  for (size_t i = 0; i < items->size(); ++i) {
+    Labels labels = (*items)[i].labels;
+    ASSERT_EQ(labels.size(), 2u);
+    EXPECT_LT(labels[0].interaction_class, labels[1].interaction_class);
+    if (labels[0].interaction_class != classes[i % 3]) std::swap(labels[0], labels[1]);
+    EXPECT_EQ(labels[0].interaction_class, classes[i % 3]);
+    EXPECT_GE(labels[0].weight, 0.5f);
+    EXPECT_LE(labels[0].weight, 1.f);
+    EXPECT_GE(labels[1].weight, 0.1f);
+    EXPECT_LE(labels[1].weight, 0.3f);
+    weights.insert(labels[0].weight);
+  }
+  EXPECT_GT(weights.size(), 3u);
+}
+
+TEST(Plan, EachClassTakesAFixedWeight) {
+  const auto items =
+      PlanOf("reactions { each_class { classes: 'hug' min_weight: 0.5 max_weight: 0.5 } }");
+  ASSERT_THAT(items, IsOk());
+  EXPECT_THAT(Names(*items), ElementsAre("a-2-hug0p5", "b-3-hug0p5"));
+}
+
+// Of a layout of captures.
+absl::StatusOr<std::vector<Item>> CapturesPlan(
+    const std::string& layout, const std::string& manifest,
+    std::vector<std::string> joints = motion::SbuSkeleton().joint_names) {
+  ModelInfo model = Model("sbu");
+  model.interaction_classes = {"kick", "push", "hug", "waltz"};
+  model.joint_names = std::move(joints);
+  return PlanOfRecipe("output { layout: " + layout + " } ", manifest, {model});
+}
+
+TEST(Plan, SbuClipsAreCountedInTheirSetsAndClasses) {
+  const auto items = CapturesPlan("LAYOUT_SBU",
+                                  "leader\tlabels\n"
+                                  "sbu/s01s02/03/001/skeleton_pos.txt\tkick=1\n"
+                                  "sbu/s01s02/03/002/skeleton_pos.txt\tkick=0.3,hug=0.2\n"
+                                  "sbu/s03s01/x.bvh\tkick=0.3,hug=0.4\n"
+                                  "sbu/s03s01/s01s02/y.bvh\tkick=-1,hug=1\n"
+                                  "walk.bvh\tpush=1\n");
+  ASSERT_THAT(items, IsOk());
+  EXPECT_THAT(Names(*items), ElementsAre("s01s02/03/001/skeleton_pos", "s01s02/03/002/skeleton_pos",
+                                         "s03s01/06/001/skeleton_pos", "s01s02/06/001/skeleton_pos",
+                                         "s00s00/04/001/skeleton_pos"));
+}
+
+TEST(Plan, K3hiClipsAreCountedInTheirClasses) {
+  const auto items = CapturesPlan(
+      "LAYOUT_K3HI", "leader\tlabels\ns01s02/a.bvh\tkick=1\nb.bvh\tkick=1\nb.bvh\tpush=1\n");
+  ASSERT_THAT(items, IsOk());
+  EXPECT_THAT(Names(*items), ElementsAre("kicking/001", "kicking/002", "pushing/001"));
+}
+
+TEST(Plan, WhatCapturesCannotHoldIsRefused) {
+  const auto refused = [](const char* message) {
+    return StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(message));
+  };
+  EXPECT_THAT(CapturesPlan("LAYOUT_K3HI", "leader\tlabels\na.bvh\thug=1\n"),
+              refused("a.bvh: reaction hug: came \"hug\" as the class of the largest weight, "
+                      "wanted one that the layout has a folder for: approach,"));
+  EXPECT_THAT(CapturesPlan("LAYOUT_SBU", "leader\tlabels\na.bvh\tkick=-1\n"),
+              refused("came \"none\" as the class"));
+  EXPECT_THAT(CapturesPlan("LAYOUT_SBU", "leader\tlabels\na.bvh\tkick=1\n", {"head", "tail"}),
+              refused("output.layout: came sbu@2 with the joints head, tail, wanted a model of"));
+}
+
+// The recipe of Table 6's set: 25 leaders make 300 clips, 50 of each class.
+TEST(Plan, SbuThreeHundred) {
+  ModelInfo model = Model("sbu", false);
+  model.interaction_classes = {"kick", "push", "shake_hands", "hug", "exchange_object", "punch"};
+  model.joint_names = motion::SbuSkeleton().joint_names;
+  std::string manifest = "leader\n";
+  for (int i = 0; i < 25; ++i) manifest += absl::StrCat("walk", i, ".bvh\n");
+  const char* const source = std::getenv("DUET_SOURCE_DIR");
+  ASSERT_NE(source, nullptr);
+  const auto items =
+      PlanOfRecipe(test::ReadTestFile(std::filesystem::path(source) / "recipes/sbu_300.textproto"),
+                   manifest, {model});
+  ASSERT_THAT(items, IsOk());
+  std::map<std::string, int> clips, alone;
+  for (const Item& item : *items) {
+    const std::string folder = item.name.substr(0, 9);
+    ++clips[folder];
+    if (item.labels.size() == 1) ++alone[folder];
+  }
+  EXPECT_THAT(clips,
+              ElementsAre(Pair("s00s00/03", 50), Pair("s00s00/04", 50), Pair("s00s00/05", 50),
+                          Pair("s00s00/06", 50), Pair("s00s00/07", 50), Pair("s00s00/08", 50)));
+  EXPECT_THAT(alone,
+              ElementsAre(Pair("s00s00/03", 25), Pair("s00s00/04", 25), Pair("s00s00/05", 25),
+                          Pair("s00s00/06", 25), Pair("s00s00/07", 25), Pair("s00s00/08", 25)));
+}
+
 TEST(Plan, WhatMakesNoSenseIsRefused) {
   const auto refused = [](const char* message) {
     return StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(message));
@@ -147,7 +263,10 @@ TEST(Plan, WhatMakesNoSenseIsRefused) {
               refused("came class \"waltz\", wanted one of sbu@2's"));
   EXPECT_THAT(PlanOf(std::string(kKick) + kKick), refused("two are named kick"));
   EXPECT_THAT(PlanOf("reactions { mixes { count: 1 } } reactions { mixes { count: 1 } }"),
-              refused("several mixes"));
+              refused("several that are drawn"));
+  EXPECT_THAT(PlanOf("reactions { name: 'a' mixes { count: 1 } } "
+                     "reactions { name: 'a' each_class { min_weight: 0.5 } }"),
+              refused("several that are drawn"));
   EXPECT_THAT(PlanOf("reactions { mixes { count: 1 classes_in_mix: 4 } }"),
               refused("at most the 3"));
   EXPECT_THAT(PlanOf(std::string(kKick) + "samples: 2", "leader\na.bvh\n", {Model("sbu", false)}),

@@ -59,10 +59,37 @@ TEST(Recipe, WhatAsksForOtherFilesHasAnotherDigest) {
   EXPECT_NE(Parse("seed: 1")->digest, Parse("seed: 2")->digest);
   RecipeOverrides overrides;
   overrides.packing = Packing::kTar;
-  const auto packed = ParseRecipe(kOutput, false, overrides);
+  const auto packed = ParseRecipe(kOutput, false, "", overrides);
   EXPECT_EQ(packed->output.packing, Packing::kTar);
   EXPECT_EQ(packed->digest,
             ParseRecipe("output { formats: FORMAT_NPY packing: PACKING_TAR }", false)->digest);
+}
+
+TEST(ReadRecipe, TakesATableOfJoints) {
+  const test::TemporaryFolder folder;
+  const std::string output = "output { formats: FORMAT_NPY } ";
+  test::WriteTestFile(folder / "rig.txt", "# ours\nhead = Skull\ntorso = Chest 3\n");
+  test::WriteTestFile(folder / "r.textproto", output +
+                                                  "input { joint_map_file: 'rig.txt' "
+                                                  "joint_map { key: 'head' value: 'Hat' } }");
+  const absl::StatusOr<Recipe> recipe = ReadRecipe(folder / "r.textproto");
+  ASSERT_THAT(recipe, IsOk());
+  EXPECT_EQ(recipe->input.joint_map,
+            (retargeting::JointOverrides{{"head", "Hat"}, {"torso", "Chest 3"}}));
+  // What the table says counts, not where it is said.
+  test::WriteTestFile(folder / "same.textproto",
+                      output +
+                          "input { joint_map { key: 'torso' value: 'Chest 3' } "
+                          "joint_map { key: 'head' value: 'Hat' } }");
+  EXPECT_EQ(ReadRecipe(folder / "same.textproto")->digest, recipe->digest);
+  test::WriteTestFile(folder / "rig.txt", "torso = Chest 4\n");
+  EXPECT_NE(ReadRecipe(folder / "r.textproto")->digest, recipe->digest);
+  test::WriteTestFile(folder / "rig.txt", "torso\n");
+  EXPECT_THAT(ReadRecipe(folder / "r.textproto"),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("rig.txt:1")));
+  std::filesystem::remove(folder / "rig.txt");
+  EXPECT_THAT(ReadRecipe(folder / "r.textproto"),
+              StatusIs(absl::StatusCode::kNotFound, HasSubstr("rig.txt")));
 }
 
 struct BadRecipe {
@@ -91,6 +118,12 @@ INSTANTIATE_TEST_SUITE_P(
         BadRecipe{"reactions { mixes {} }", "mixes.count: came 0"},
         BadRecipe{"reactions { mixes { count: 1 classes: 'a' } }", "classes_in_mix: came 2"},
         BadRecipe{"reactions { mixes { count: 1 min_weight: 2 } }", "min_weight: came 2"},
+        BadRecipe{"reactions { each_class { min_weight: 1.5 } }",
+                  "each_class.min_weight: came 1.5"},
+        BadRecipe{"reactions { each_class { classes: 'a' beside {} } }",
+                  "each_class.classes: came one, wanted two or more"},
+        BadRecipe{"reactions { each_class { beside { min_weight: 1 max_weight: 0 } } }",
+                  "beside.min_weight: came 1"},
         BadRecipe{"reactions { name: 'a-b' each_class {} }", "name: came \"a-b\""},
         BadRecipe{"reactions { schedule { keyframes { at: 2 labels { weights { key: 'a' } } } } }",
                   "keyframes[0].at: came 2"},
@@ -104,6 +137,10 @@ INSTANTIATE_TEST_SUITE_P(
         BadRecipe{"input { frame_rate_hz: 0 }", "input.frame_rate_hz: came 0"},
         BadRecipe{"output { formats: FORMAT_NPY shard_bytes: 0 }", "shard_bytes: came 0"},
         BadRecipe{"output { formats: FORMAT_CSV packing: PACKING_NPZ }", "FORMAT_NPY alone"},
+        BadRecipe{"output { formats: FORMAT_NPY layout: LAYOUT_SBU }",
+                  "output.formats: came some, wanted none"},
+        BadRecipe{"output { layout: LAYOUT_K3HI packing: PACKING_TAR }",
+                  "output.packing: came one, wanted none"},
         BadRecipe{"output { formats: FORMAT_NPY formats: FORMAT_NPY }", "formats: came 3 twice"}));
 
 TEST(Recipe, AFormatIsWanted) {

@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "model/base/random.h"
+#include "model/motion/capsules.h"
+
 namespace duet::evaluation::metrics {
 namespace {
 
@@ -31,6 +36,36 @@ TEST(PenetrationTest, IsZeroForBodiesApart) {
   EXPECT_EQ(penetration.frequency, 0);
   EXPECT_EQ(penetration.mean_depth_metres, 0);
   EXPECT_EQ(penetration.max_depth_metres, 0);
+}
+
+// Bones that are passed over for their distance make no difference, not even in the last digit.
+TEST(Penetration, IsThatOfEveryPairOfBones) {
+  const motion::Skeleton skeleton = motion::SbuSkeleton();
+  const std::vector<double> radii = CapsuleRadii(skeleton, motion::SbuParts());
+  base::Random random(3);
+  for (int trial = 0; trial < 300; ++trial) {
+    motion::Poses bodies[2] = {motion::Poses(1, 15), motion::Poses(1, 15)};
+    const double apart = random.Uniform(0, 1.5);
+    for (motion::Poses& body : bodies) {
+      for (motion::Vec3& joint : body.all()) {
+        joint = {static_cast<float>(random.Normal(0.4)), static_cast<float>(random.Normal(0.4)),
+                 static_cast<float>(random.Normal(0.4) + (&body == bodies ? 0 : apart))};
+      }
+    }
+    double deepest = 0;
+    for (size_t i = 0; i < radii.size(); ++i) {
+      for (size_t j = 0; j < radii.size(); ++j) {
+        const motion::Bone &a = skeleton.bones[i], &b = skeleton.bones[j];
+        const double distance =
+            motion::SegmentDistance(bodies[0].at(0, a.parent), bodies[0].at(0, a.child),
+                                    bodies[1].at(0, b.parent), bodies[1].at(0, b.child));
+        deepest = std::max(deepest, radii[i] + radii[j] - distance);
+      }
+    }
+    EXPECT_EQ(
+        MeasurePenetration(bodies[0], bodies[1], skeleton, motion::SbuParts()).max_depth_metres,
+        deepest);
+  }
 }
 
 }  // namespace

@@ -1,0 +1,64 @@
+#include "client/batch/capture_layout.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
+#include "model/base/text.h"
+
+namespace duet::client::batch {
+namespace {
+
+// Of people whom SBU does not have.
+constexpr char kNobodysSet[] = "s00s00";
+
+std::string SetOf(const std::string& leader) {
+  std::string set = kNobodysSet;
+  for (const std::filesystem::path& part : std::filesystem::path(leader)) {
+    if (dataset::IsSbuSet(part.string())) set = part.string();
+  }
+  return set;
+}
+
+}  // namespace
+
+const dataset::DatasetLayout* CapturesOf(Layout layout) {
+  static const auto* const sbu = new dataset::DatasetLayout(dataset::SbuLayout());
+  static const auto* const k3hi = new dataset::DatasetLayout(dataset::K3hiLayout());
+  if (layout == Layout::kSbu) return sbu;
+  return layout == Layout::kK3hi ? k3hi : nullptr;
+}
+
+absl::Status CheckJoints(const dataset::DatasetLayout& captures, const ModelInfo& model) {
+  const std::vector<std::string>& wanted = captures.skeleton.joint_names;
+  if (model.joint_names == wanted) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat(
+      "output.layout: came ", model.name, "@", model.version, " with the joints ",
+      absl::StrJoin(model.joint_names, ", "), ", wanted a model of ", absl::StrJoin(wanted, ", ")));
+}
+
+absl::StatusOr<std::string> CaptureFolder(Layout layout, const std::string& interaction_class,
+                                          const std::string& leader) {
+  const std::vector<dataset::ClassLayout>& classes = CapturesOf(layout)->classes;
+  const auto found =
+      std::find_if(classes.begin(), classes.end(),
+                   [&](const dataset::ClassLayout& one) { return one.name == interaction_class; });
+  if (found != classes.end()) {
+    return layout == Layout::kSbu ? absl::StrCat(SetOf(leader), "/", found->folder) : found->folder;
+  }
+  std::vector<std::string> names;
+  for (const dataset::ClassLayout& one : classes) names.push_back(one.name);
+  return absl::InvalidArgumentError(
+      absl::StrCat("came ", base::Quoted(interaction_class), " as the class of the largest weight",
+                   ", wanted one that the layout has a folder for: ", absl::StrJoin(names, ", ")));
+}
+
+std::string CaptureName(Layout layout, const std::string& folder, int number) {
+  const std::string sequence = absl::StrFormat("%s/%03d", folder, number);
+  return layout == Layout::kSbu ? sequence + "/skeleton_pos" : sequence;
+}
+
+}  // namespace duet::client::batch

@@ -1,0 +1,22 @@
+#ifndef DUET_CLIENT_BATCH_CONTACT_SHEET_H_
+#define DUET_CLIENT_BATCH_CONTACT_SHEET_H_
+
+#include <filesystem>
+
+#include "absl/status/status.h"
+#include "client/batch/job_folder.h"
+#include "client/batch/journal.h"
+
+namespace duet::client::batch {
+
+// Writes <out>/contact_sheet.html, a self-contained page to look a data set through: a strip of
+// poses for some items of each class (by the largest weight), chosen by their ids, so that the same
+// data set has the same page. Reads their files below `items`; what cannot be read is said in its
+// place. ABORTED where the page cannot be written.
+absl::Status WriteContactSheet(const JournalReader& journal, const JobIdentity& identity,
+                               const std::filesystem::path& items,
+                               const std::filesystem::path& out);
+
+}  // namespace duet::client::batch
+
+#endif  // DUET_CLIENT_BATCH_CONTACT_SHEET_H_

@@ -1,0 +1,62 @@
+#include "client/cli/batch_servers.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "absl/time/time.h"
+#include "client/batch/setup.h"
+#include "client/cli/server_options.h"
+
+namespace duet::client::cli {
+namespace {
+
+// The longest that a server is waited for before a run begins.
+constexpr double kFirstAnswerSeconds = 30;
+
+}  // namespace
+
+absl::StatusOr<std::vector<std::vector<Client>>> Connect(const BatchArguments& arguments,
+                                                         const ProgramEnvironment& environment) {
+  std::vector<std::vector<Client>> servers;
+  for (const std::string& address : arguments.servers) {
+    ServerArguments server = arguments.connection;
+    server.address = address;
+    absl::StatusOr<ClientOptions> options = ToClientOptions(server);
+    if (!options.ok()) return options.status();
+    options->retry.max_attempts = 1;
+    options->own_connection = arguments.channels > 1;
+    servers.emplace_back();
+    for (int i = 0; i < arguments.channels; ++i) {
+      absl::StatusOr<Client> client = environment.connect(*options);
+      if (!client.ok()) return client.status();
+      servers.back().push_back(*std::move(client));
+    }
+  }
+  return servers;
+}
+
+absl::StatusOr<std::vector<ModelInfo>> AskModels(const BatchArguments& arguments,
+                                                 const ProgramEnvironment& environment,
+                                                 const batch::Recipe& recipe,
+                                                 const std::vector<ModelChoice>& begun) {
+  absl::Status status;
+  for (const std::string& address : arguments.servers) {
+    ServerArguments server = arguments.connection;
+    server.address = address;
+    absl::StatusOr<ClientOptions> options = ToClientOptions(server);
+    if (!options.ok()) return options.status();
+    options->deadline =
+        absl::Seconds(std::max(0.1, std::min(arguments.patience_seconds, kFirstAnswerSeconds)));
+    options->retry.max_attempts = 1000;
+    const absl::StatusOr<Client> client = environment.connect(*options);
+    if (!client.ok()) return client.status();
+    absl::StatusOr<std::vector<ModelInfo>> models = ResolveModels(*client, recipe, begun);
+    if (models.ok()) return models;
+    status = models.status();
+    if (!absl::IsUnavailable(status) && !absl::IsDeadlineExceeded(status)) break;
+  }
+  return status;
+}
+
+}  // namespace duet::client::cli

@@ -1,0 +1,215 @@
+#include "client/batch/contact_sheet.h"
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <string>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "client/batch/pose_strip.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "model/formats/motion_file.h"
+#include "tests/support/sample_motion.h"
+#include "tests/support/status_matchers.h"
+#include "tests/support/temporary_folder.h"
+
+namespace duet::client::batch {
+namespace {
+
+using test::IsOk;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+// People who sway, the follower `apart` from the leader.
+motion::ClipPair Pair(motion::Vec3 apart, int frames = 9) {
+  motion::ClipPair pair;
+  pair.leader.joint_names = motion::SbuSkeleton().joint_names;
+  pair.leader.frame_rate_hz = 15;
+  pair.leader.poses = test::SwayingMotion(frames, 15);
+  pair.follower = pair.leader;
+  for (motion::Vec3& point : pair.follower.poses.all()) point += apart;
+  return pair;
+}
+
+// Where the lines of a person's path begin, x and y in turn.
+std::vector<int> Points(const std::string& svg, const std::string& person) {
+  const size_t begin = svg.find("class=\"" + person + "\"");
+  const std::string d = svg.substr(begin, svg.find("/>", begin) - begin);
+  std::vector<int> points;
+  const std::regex point("[ML](-?[0-9]+) (-?[0-9]+)");
+  for (std::sregex_iterator it(d.begin(), d.end(), point), end; it != end; ++it) {
+    points.push_back(std::stoi((*it)[1]));
+    points.push_back(std::stoi((*it)[2]));
+  }
+  return points;
+}
+
+TEST(PoseStrip, TheLeaderIsOnTheLeftWhereverPeopleStand) {
+  for (const motion::Vec3 apart : {motion::Vec3{1, 0, 0}, {-1, 0, 0}, {0, 0, 2}, {1, 0.5f, -1}}) {
+    const std::string svg = PoseStrip(Pair(apart), motion::SbuSkeleton());
+    const std::vector<int> leader = Points(svg, "leader"), follower = Points(svg, "follower");
+    ASSERT_EQ(leader.size(), follower.size());
+    // Six moments of 14 bones and a head.
+    EXPECT_EQ(leader.size(), 2u * 6 * (2 * 14 + 1));
+    for (size_t i = 0; i < leader.size(); i += 2) EXPECT_LT(leader[i], follower[i]);
+  }
+}
+
+TEST(PoseStrip, EveryMomentStaysInItsPlace) {
+  for (const float apart : {0.f, 0.3f, 30.f}) {
+    const std::string svg = PoseStrip(Pair({apart, 0, 0}), motion::SbuSkeleton());
+    for (const char* person : {"leader", "follower"}) {
+      const std::vector<int> points = Points(svg, person);
+      for (size_t i = 0; i < points.size(); i += 2) {
+        const int place = static_cast<int>(i / (points.size() / 6)) * 1000;
+        EXPECT_GE(points[i], place);
+        EXPECT_LE(points[i], place + 1000);
+        EXPECT_GE(points[i + 1], 0);
+        EXPECT_LE(points[i + 1], 950);
+      }
+    }
+  }
+}
+
+TEST(PoseStrip, AShortClipHasFewerMoments) {
+  const std::string svg = PoseStrip(Pair({1, 0, 0}, 2), motion::SbuSkeleton());
+  EXPECT_EQ(Points(svg, "leader").size(), 2u * 2 * (2 * 14 + 1));
+  EXPECT_EQ(Points(PoseStrip(Pair({1, 0, 0}, 1), motion::SbuSkeleton()), "leader").size(),
+            2u * (2 * 14 + 1));
+}
+
+class ContactSheetTest : public ::testing::Test {
+ protected:
+  ContactSheetTest() {
+    ModelChoice model;
+    model.name = "sbu";
+    model.version = 2;
+    identity_.models = {model};
+    identity_.skeletons = {motion::SbuSkeleton()};
+  }
+
+  nlohmann::ordered_json Record(int item, const nlohmann::ordered_json& labels) {
+    const std::string path = absl::StrCat("pair", item, ".csv");
+    return {{"id", absl::StrFormat("%032x", (item * 7919) % 1000)},
+            {"state", "done"},
+            {"name", absl::StrCat("pair", item)},
+            {"side", "left"},
+            {"labels", labels},
+            {"model", "sbu@2"},
+            {"frames", 9},
+            {"frame_rate_hz", 15},
+            {"quality", {{"distance_metres", 1.25}, {"lean_degrees", 7.6}}},
+            {"files", {{{"path", path}, {"bytes", 1}, {"sha256", ""}}}}};
+  }
+
+  void Add(const nlohmann::ordered_json& record) {
+    EXPECT_THAT(formats::WritePair(folder_ / record["files"][0]["path"].get<std::string>(),
+                                   Pair({1, 0, 0}), motion::SbuSkeleton()),
+                IsOk());
+    records_.push_back(record.dump());
+  }
+
+  std::string Sheet() {
+    JournalWriter writer;
+    EXPECT_THAT(writer.Open(folder_ / "journal", 0), IsOk());
+    for (size_t i = 0; i < records_.size(); ++i) writer.Add(static_cast<int>(i), records_[i]);
+    EXPECT_THAT(writer.Commit(), IsOk());
+    const absl::StatusOr<JournalReader> journal = JournalReader::Open(folder_ / "journal");
+    EXPECT_THAT(WriteContactSheet(*journal, identity_, folder_.path(), folder_.path()), IsOk());
+    return test::ReadTestFile(folder_ / "contact_sheet.html");
+  }
+
+  static int Count(const std::string& text, const std::string& part) {
+    int count = 0;
+    for (size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) {
+      ++count;
+    }
+    return count;
+  }
+
+  test::TemporaryFolder folder_;
+  JobIdentity identity_;
+  std::vector<std::string> records_;
+};
+
+TEST_F(ContactSheetTest, ShowsSomeOfEachClass) {
+  for (int i = 0; i < 30; ++i) Add(Record(i, {{"hug", 0.3}, {"kick", 0.5}}));
+  Add(Record(30, {{"hug", 1}}));
+  const std::string sheet = Sheet();
+  EXPECT_THAT(sheet, HasSubstr("<h2>kick <small>12 of 30</small></h2>"));
+  EXPECT_THAT(sheet, HasSubstr("<h2>hug <small>1 of 1</small></h2>"));
+  EXPECT_EQ(Count(sheet, "<svg"), 13);
+  EXPECT_THAT(sheet, HasSubstr("31 followers by sbu@2"));
+  EXPECT_THAT(sheet, HasSubstr("<a href=\"pair30.csv\">pair30</a>"));
+  EXPECT_THAT(sheet, HasSubstr("hug 0.3, kick 0.5"));
+  EXPECT_THAT(sheet, HasSubstr("0.6 s \u00b7 1.25 m apart \u00b7 leans 8\u00b0"));
+}
+
+TEST_F(ContactSheetTest, IsTheSameInWhateverOrderItemsCame) {
+  for (int i = 0; i < 30; ++i) Add(Record(i, {{"kick", 1}}));
+  const std::string sheet = Sheet();
+  std::reverse(records_.begin(), records_.end());
+  EXPECT_EQ(Sheet(), sheet);
+}
+
+TEST_F(ContactSheetTest, OnlyWhatIsDoneIsShown) {
+  nlohmann::ordered_json rejected = Record(0, {{"kick", 1}});
+  rejected["state"] = "rejected";
+  rejected.erase("files");
+  records_.push_back(rejected.dump());
+  records_.push_back(R"({"state":"failed"})");
+  EXPECT_EQ(Count(Sheet(), "<figure>"), 0);
+}
+
+TEST_F(ContactSheetTest, WhatCannotBeReadIsSaidInItsPlace) {
+  Add(Record(0, {{"kick", 1}}));
+  Add(Record(1, {{"kick", 1}}));
+  std::filesystem::remove(folder_ / "pair0.csv");
+  const std::string sheet = Sheet();
+  EXPECT_EQ(Count(sheet, "<svg"), 1);
+  EXPECT_THAT(sheet, HasSubstr("pair0.csv: no such file"));
+}
+
+TEST_F(ContactSheetTest, NamesAreText) {
+  nlohmann::ordered_json record = Record(0, {{"<kick>", 1}});
+  record["name"] = "a<b>&\"c";
+  Add(record);
+  const std::string sheet = Sheet();
+  EXPECT_THAT(sheet, HasSubstr("&lt;kick&gt;"));
+  EXPECT_THAT(sheet, HasSubstr("a&lt;b&gt;&amp;&quot;c"));
+  EXPECT_THAT(sheet, Not(HasSubstr("<kick>")));
+}
+
+TEST_F(ContactSheetTest, APackedSetHasNothingToOpen) {
+  identity_.packing = Packing::kTar;
+  Add(Record(0, {{"kick", 1}}));
+  EXPECT_THAT(Sheet(), Not(HasSubstr("<a ")));
+}
+
+TEST_F(ContactSheetTest, EveryFormatIsReadBack) {
+  int item = 0;
+  for (const char* ending : {".npy", ".json", ".csv", ".bvh"}) {
+    nlohmann::ordered_json record = Record(item++, {{"kick", 1}});
+    const std::string name = record["name"];
+    record["files"][0]["path"] = name + ending;
+    if (std::string(ending) == ".bvh") {
+      record["files"] = {{{"path", name + ".leader.bvh"}}, {{"path", name + ".follower.bvh"}}};
+    }
+    EXPECT_THAT(
+        formats::WritePair(folder_ / (name + ending), Pair({1, 0, 0}), motion::SbuSkeleton()),
+        IsOk());
+    records_.push_back(record.dump());
+  }
+  const std::string sheet = Sheet();
+  EXPECT_EQ(Count(sheet, "<svg"), 4) << sheet;
+  // The three that hold positions show the same.
+  const std::string svg = PoseStrip(Pair({1, 0, 0}), motion::SbuSkeleton());
+  EXPECT_EQ(Count(sheet, svg), 3);
+}
+
+}  // namespace
+}  // namespace duet::client::batch
