@@ -30,7 +30,7 @@ FlagEntry EntryOf(const CLI::Option& option) {
   entry.group = option.get_group();
   entry.default_value = option.get_default_str();
   entry.choices = ChoicesOf(entry.form);
-  entry.takes_file = absl::StrContains(entry.form, "FILE") && !absl::StrContains(entry.form, "_FILE");
+  entry.takes_file = absl::StrContains(entry.form, "FILE") && !absl::StrContains(entry.form, "FILE_");
   entry.takes_file |= absl::StrContains(entry.form, "FOLDER");
   entry.is_required = option.get_required();
   return entry;

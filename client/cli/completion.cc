@@ -1,11 +1,13 @@
 #include "client/cli/completion.h"
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_replace.h"
+#include "absl/strings/str_split.h"
 #include "client/cli/command_table.h"
 #include "client/cli/help_topics.h"
 
@@ -181,21 +183,24 @@ std::string FishQuoted(const std::string& text) {
   return absl::StrCat("'", absl::StrReplaceAll(text, {{"\\", "\\\\"}, {"'", "\\'"}}), "'");
 }
 
-std::string FishCondition(const CommandEntry& command, const CommandEntry& program) {
+// Whether the words before the cursor name this command and none of its own.
+std::string FishCondition(const CommandEntry& command) {
   if (command.name.empty()) return "__fish_use_subcommand";
-  const std::size_t space = command.name.find(' ');
-  if (space != std::string::npos) {
-    return absl::StrCat("__fish_seen_subcommand_from ", command.name.substr(0, space),
-                        "; and __fish_seen_subcommand_from ", command.name.substr(space + 1));
+  const Strings words = absl::StrSplit(command.name, ' ');
+  std::string condition = "set -l words (commandline -opc)";
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    absl::StrAppend(&condition, i == 0 ? "; " : "; and ", "test \"$words[", i + 2, "]\" = ", words[i]);
   }
-  // The first command of the line counts: `duet help batch` is help's.
-  return absl::StrCat("test (commandline -opc)[2] = ", command.name,
-                      program.subcommands.empty() ? "" : " 2>/dev/null");
+  if (!command.subcommands.empty()) {
+    absl::StrAppend(&condition, "; and not __fish_seen_subcommand_from ",
+                    absl::StrJoin(command.subcommands, " "));
+  }
+  return condition;
 }
 
 std::string FishCommand(const CommandEntry& command, const std::vector<CommandEntry>& all) {
   const std::string start =
-      absl::StrCat("complete -c duet -n ", FishQuoted(FishCondition(command, all[0])));
+      absl::StrCat("complete -c duet -n ", FishQuoted(FishCondition(command)));
   std::string text;
   for (const FlagEntry& flag : command.flags) {
     if (flag.is_argument) continue;

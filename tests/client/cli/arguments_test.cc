@@ -187,7 +187,7 @@ TEST_F(ArgumentsTest, KeyframesStandInForLabels) {
 }
 
 TEST_F(ArgumentsTest, WhatIsMissingIsNamed) {
-  ExpectUsageError({}, "There is no command \"dance\"");
+  ExpectUsageError({}, "subcommand is required");
   ExpectUsageError({"synthesize", "--label", "kick=1", "--out", Out("pair.html")}, "--leader");
   ExpectUsageError({"synthesize", "--leader", "kick.bvh", "--label", "kick=1"}, "--out");
   ExpectRefused({}, "--label or --keyframe is required");
