@@ -67,11 +67,12 @@ Displacement Displace(const motion::Poses& a, const motion::Poses& b,
   displacement.root_aligned_metres =
       MeanDistance(AtRoot(a, skeleton.root), AtRoot(b, skeleton.root));
   displacement.joint_metres.resize(Index(skeleton.joint_count()));
+  displacement.most_joint = skeleton.joint_names[0];
   for (int frame = 0; frame < a.frame_count(); ++frame) {
     for (int joint = 0; joint < a.joint_count(); ++joint) {
       const double distance = static_cast<double>(Distance(a.at(frame, joint), b.at(frame, joint)));
       displacement.joint_metres[Index(joint)] += distance / a.frame_count();
-      if (distance < displacement.most_metres) continue;
+      if (distance <= displacement.most_metres) continue;
       displacement.most_metres = distance;
       displacement.most_joint = skeleton.joint_names[Index(joint)];
       displacement.most_frame = frame;

@@ -18,12 +18,10 @@ using retargeting::Setting;
 
 constexpr std::size_t kMostNames = 12;
 
+// Nothing for what reading did not come to.
 std::string DescribeSetting(const char* name, const std::optional<Setting>& setting,
-                            const char* flag, const Style& style) {
-  if (!setting.has_value()) {
-    return absl::StrFormat("  %-11s %s\n", name,
-                           style.Warning(absl::StrCat("unknown; say it with ", flag)));
-  }
+                            const Style& style) {
+  if (!setting.has_value()) return "";
   std::string origin(OriginName(setting->origin));
   if (!setting->why.empty()) absl::StrAppend(&origin, ": ", setting->why);
   return absl::StrFormat("  %-11s %s  %s\n", name, setting->value,
@@ -80,10 +78,9 @@ std::string DescribeUnused(const retargeting::ReadingReport& report) {
 }
 
 std::string DescribeReading(const retargeting::ReadingReport& report, const Style& style) {
-  std::string text = absl::StrCat(
-      DescribeSetting("frame rate", report.frame_rate, "--frame-rate HZ", style),
-      DescribeSetting("unit", report.unit, "--metres-per-unit METRES", style),
-      DescribeSetting("up axis", report.up_axis, "--up-axis AXIS", style));
+  std::string text = absl::StrCat(DescribeSetting("frame rate", report.frame_rate, style),
+                                  DescribeSetting("unit", report.unit, style),
+                                  DescribeSetting("up axis", report.up_axis, style));
   for (const std::string& remark : report.remarks) {
     absl::StrAppend(&text, "  ", style.Warning(remark), "\n");
   }
@@ -168,17 +165,18 @@ std::string DescribeInspection(const Inspection& inspection, const Style& style)
   const motion::Clip& clip = inspection.people[0].clip;
   if (clip.frame_count() > 0) absl::StrAppend(&text, ", ", DescribeLength(clip));
   text += "\n";
+  if (clip.frame_count() > 0 && !first.frame_rate.has_value()) {
+    absl::StrAppend(&text, "  frame rate  ", style.Warning("unknown; say it with --frame-rate HZ"),
+                    "\n");
+  }
   for (std::size_t i = 0; i < inspection.people.size(); ++i) {
     const InspectedPerson& person = inspection.people[i];
     if (inspection.people.size() > 1) {
       absl::StrAppend(&text, style.Heading(i == 0 ? "  left person" : "  right person"), "\n");
     }
     const std::string reading = DescribeReading(person.report, style);
-    if (i > 0 && reading == DescribeReading(first, style)) {
-      absl::StrAppend(&text, "  read as the other\n");
-    } else if (person.report.frame_rate.has_value() || !person.report.file_joints.empty()) {
-      absl::StrAppend(&text, reading);
-    }
+    const bool repeated = i > 0 && reading == DescribeReading(first, style);
+    absl::StrAppend(&text, repeated ? "  read as the other\n" : reading);
     if (!person.checks.empty()) absl::StrAppend(&text, DescribeChecks(person.checks, style));
   }
   if (!inspection.status.ok()) {
