@@ -219,8 +219,8 @@ absl::StatusOr<Comparison> Compare(const Answer& a, const Answer& b,
       std::floor((b.person.frame_count() - 1) * rate / b.person.frame_rate_hz + 1e-6) + 1;
   const int frames = comparison.frame_count =
       static_cast<int>(std::min(static_cast<double>(a.person.frame_count()), b_frames));
-  comparison.displacement = Displace(AtRate(a.person, rate, frames),
-                                     AtRate(b.person, rate, frames), skeleton, rate);
+  comparison.displacement =
+      Displace(AtRate(a.person, rate, frames), AtRate(b.person, rate, frames), skeleton, rate);
   if (a.partner && b.partner) {
     comparison.partner_metres =
         MeanDistance(AtRate(*a.partner, rate, frames), AtRate(*b.partner, rate, frames));

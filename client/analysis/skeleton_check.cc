@@ -100,8 +100,9 @@ class Checker {
     const bool good = leg >= kShortestLeg && leg <= kLongestLeg;
     Add("size", good,
         absl::StrFormat("foot to %s %.2f m%s", skeleton_.joint_names[Index(skeleton_.root)], leg,
-                        good ? "" : absl::StrFormat(", people have %.1f to %.1f m: is the unit right?",
-                                                    kShortestLeg, kLongestLeg)),
+                        good ? ""
+                             : absl::StrFormat(", people have %.1f to %.1f m: is the unit right?",
+                                               kShortestLeg, kLongestLeg)),
         {{"foot_to_root_metres", leg}});
   }
 
@@ -129,7 +130,8 @@ class Checker {
       worst = bone;
     }
     std::string text = absl::StrCat("change by ", Percent(mean));
-    if (most > 0) absl::StrAppend(&text, ", most ", BoneName(skeleton_, worst), ", ", Percent(most));
+    if (most > 0)
+      absl::StrAppend(&text, ", most ", BoneName(skeleton_, worst), ", ", Percent(most));
     Add("limb lengths", most <= kMostDrift, text, {{"mean_change", mean}, {"most_change", most}});
   }
 
@@ -176,8 +178,7 @@ class Checker {
     if (!skeleton_.feet) return;
     const float floor = cleanup::FloorHeight(*skeleton_.feet, clip_.poses);
     const std::vector<float> feet = LowerFoot(*skeleton_.feet, clip_.poses);
-    const double below =
-        static_cast<double>(floor - *std::min_element(feet.begin(), feet.end()));
+    const double below = static_cast<double>(floor - *std::min_element(feet.begin(), feet.end()));
     const auto is_high = [floor](float foot) {
       return static_cast<double>(foot - floor) > kHighAboveFloor;
     };
@@ -217,9 +218,9 @@ class Checker {
     }
     std::string text = absl::StrFormat("fastest %s, %.1f m/s",
                                        skeleton_.joint_names[Index(fastest_joint)], fastest);
-    if (jumps > 0) absl::StrAppend(&text, "; faster than people in ", jumps, " frames, first ", first);
-    Add("jumps", jumps == 0, text,
-        {{"jumps", jumps}, {"fastest_metres_per_second", fastest}});
+    if (jumps > 0)
+      absl::StrAppend(&text, "; faster than people in ", jumps, " frames, first ", first);
+    Add("jumps", jumps == 0, text, {{"jumps", jumps}, {"fastest_metres_per_second", fastest}});
   }
 
   // A frame in which a joint and its counterpart are where the other one was.
@@ -233,8 +234,9 @@ class Checker {
   int CountSwaps() const {
     int swaps = 0;
     for (int frame = 1; frame < clip_.frame_count(); ++frame) {
-      bool swapped = SwapsAt(frame, skeleton_.hips->left, skeleton_.hips->right) ||
-                     (skeleton_.feet && SwapsAt(frame, skeleton_.feet->left, skeleton_.feet->right));
+      bool swapped =
+          SwapsAt(frame, skeleton_.hips->left, skeleton_.hips->right) ||
+          (skeleton_.feet && SwapsAt(frame, skeleton_.feet->left, skeleton_.feet->right));
       if (body_.arms.size() == 2) {
         swapped |= SwapsAt(frame, body_.arms[0].upper, body_.arms[1].upper) ||
                    SwapsAt(frame, body_.arms[0].end, body_.arms[1].end);
@@ -276,7 +278,8 @@ class Checker {
     const int right = body_.arms[first_is_left ? 1 : 0].upper;
     double sum = 0;
     for (int frame = 0; frame < clip_.frame_count(); ++frame) {
-      const Vec3 hips = clip_.at(frame, skeleton_.hips->right) - clip_.at(frame, skeleton_.hips->left);
+      const Vec3 hips =
+          clip_.at(frame, skeleton_.hips->right) - clip_.at(frame, skeleton_.hips->left);
       const Vec3 shoulders = clip_.at(frame, right) - clip_.at(frame, left);
       sum += static_cast<double>(Dot(hips, shoulders));
     }
@@ -289,13 +292,16 @@ class Checker {
     const std::optional<double> backwards = ShareBentBackwards();
     const bool oppose = ShouldersOppose();
     std::vector<std::string> wrong;
-    if (oppose) wrong.push_back("the shoulders have left and right the other way round than the hips");
+    if (oppose)
+      wrong.push_back("the shoulders have left and right the other way round than the hips");
     if (backwards.value_or(0) > kMostBackwards) {
-      wrong.push_back(absl::StrFormat("%.0f %% of the bent knees bend backwards, as where left and "
-                                      "right are swapped",
-                                      100 * *backwards));
+      wrong.push_back(
+          absl::StrFormat("%.0f %% of the bent knees bend backwards, as where left and "
+                          "right are swapped",
+                          100 * *backwards));
     }
-    if (swaps > 0) wrong.push_back(absl::StrCat("left and right change places in ", swaps, " frames"));
+    if (swaps > 0)
+      wrong.push_back(absl::StrCat("left and right change places in ", swaps, " frames"));
     std::string text = wrong.empty() ? "left and right are where they belong" : "";
     for (const std::string& what : wrong) absl::StrAppend(&text, text.empty() ? "" : "; ", what);
     std::map<std::string, double> figures = {{"swaps", swaps}, {"shoulders_oppose_hips", oppose}};

@@ -194,8 +194,8 @@ ParsedCommandLine ParseCommandLine(const std::vector<std::string>& arguments,
     const int code = line.app.exit(error, out, out);
     if (code == 0) return Text(out.str());
     ParsedCommandLine parsed;
-    parsed.text = absl::StrCat(settled.SourceOf(error.what()), SuggestFlag(line.app, arguments),
-                               out.str());
+    parsed.text =
+        absl::StrCat(settled.SourceOf(error.what()), SuggestFlag(line.app, arguments), out.str());
     parsed.exit_code = kExitUsage;
     return parsed;
   }

@@ -74,7 +74,7 @@ struct SynthesizeArguments {
   uint64_t seed = SynthesisRequest().seed;
   float variety = SynthesisRequest().variety;
   std::optional<bool> clean_up;  // absent: the server's choice
-  int samples = 1;  // answers, with seeds from `seed` on; none passes the largest seed
+  int samples = 1;               // answers, with seeds from `seed` on; none passes the largest seed
   Priority priority = Priority::kInteractive;
   std::optional<int> chunk_frames;
   std::string request_id;

@@ -24,13 +24,15 @@ std::vector<std::string> ChoicesOf(const std::string& form) {
 FlagEntry EntryOf(const CLI::Option& option) {
   FlagEntry entry;
   entry.is_argument = option.get_positional();
-  entry.name = entry.is_argument ? option.get_name(true) : absl::StrCat("--", option.get_lnames()[0]);
+  entry.name =
+      entry.is_argument ? option.get_name(true) : absl::StrCat("--", option.get_lnames()[0]);
   entry.form = option.get_items_expected_max() == 0 ? "" : option.get_type_name();
   entry.help = option.get_description();
   entry.group = option.get_group();
   entry.default_value = option.get_default_str();
   entry.choices = ChoicesOf(entry.form);
-  entry.takes_file = absl::StrContains(entry.form, "FILE") && !absl::StrContains(entry.form, "FILE_");
+  entry.takes_file =
+      absl::StrContains(entry.form, "FILE") && !absl::StrContains(entry.form, "FILE_");
   entry.takes_file |= absl::StrContains(entry.form, "FOLDER");
   entry.is_required = option.get_required();
   return entry;

@@ -79,8 +79,7 @@ std::string DescribeTake(const char* letter, const Take& take) {
 
 std::string DescribeComparison(const ComparedTakes& compared, const Style& style) {
   const analysis::Comparison& comparison = compared.comparison;
-  std::string text =
-      absl::StrCat(DescribeTake("A", compared.a), DescribeTake("B", compared.b));
+  std::string text = absl::StrCat(DescribeTake("A", compared.a), DescribeTake("B", compared.b));
   absl::StrAppendFormat(&text, "compared  %d frames at %g Hz%s\n\n", comparison.frame_count,
                         comparison.frame_rate_hz,
                         comparison.resampled ? ", B resampled to A's rate" : "");
@@ -126,7 +125,9 @@ json ComparisonJson(const ComparedTakes& compared, const motion::Skeleton& skele
     joints[skeleton.joint_names[joint]] = d.joint_metres[joint];
   }
   json figures = json::object();
-  const auto known = [](const std::optional<double>& value) { return value ? json(*value) : json(); };
+  const auto known = [](const std::optional<double>& value) {
+    return value ? json(*value) : json();
+  };
   for (const Figure& figure : comparison.figures) {
     figures[figure.name] = {{"a", known(figure.a)}, {"b", known(figure.b)}};
   }
@@ -157,9 +158,9 @@ absl::StatusOr<std::string> RenderComparison(const ComparedTakes& compared,
   }
   content.bones = skeleton.bones;
   content.title = absl::StrCat(compared.a.name, " and ", compared.b.name);
-  content.subtitle = absl::StrFormat("compared over %d frames at %g Hz",
-                                     compared.comparison.frame_count,
-                                     compared.comparison.frame_rate_hz);
+  content.subtitle =
+      absl::StrFormat("compared over %d frames at %g Hz", compared.comparison.frame_count,
+                      compared.comparison.frame_rate_hz);
   content.value_titles = {compared.a.name, compared.b.name};
   for (const Line& line : DisplacementLines(compared.comparison)) {
     content.figures.push_back({"displacement", line.title, {line.value}});

@@ -50,10 +50,10 @@ std::string BashCase(const CommandEntry& command, const std::vector<CommandEntry
   std::string text = absl::StrCat("    '", command.name, "')\n      case \"$before\" in\n");
   for (const FlagEntry& flag : command.flags) {
     if (flag.is_argument || flag.form.empty()) continue;
-    absl::StrAppend(&text, "        ", flag.name, ") ",
-                    flag.takes_file ? "files=1" : "",
-                    flag.takes_file ? "" : absl::StrCat("words='", absl::StrJoin(flag.choices, " "), "'"),
-                    "; flags='' ;;\n");
+    absl::StrAppend(
+        &text, "        ", flag.name, ") ", flag.takes_file ? "files=1" : "",
+        flag.takes_file ? "" : absl::StrCat("words='", absl::StrJoin(flag.choices, " "), "'"),
+        "; flags='' ;;\n");
   }
   absl::StrAppend(&text, "        *) words='", absl::StrJoin(WordsOf(command, all), " "),
                   "'; flags='", absl::StrJoin(FlagNames(command), " "), "'",
@@ -62,7 +62,8 @@ std::string BashCase(const CommandEntry& command, const std::vector<CommandEntry
 }
 
 // The command that the words before the cursor name, as "batch merge".
-constexpr char kBashHead[] = R"(# bash completion for duet: source it, or install it as completions/duet.
+constexpr char kBashHead[] =
+    R"(# bash completion for duet: source it, or install it as completions/duet.
 _duet() {
   local word="${COMP_WORDS[COMP_CWORD]}" before="${COMP_WORDS[COMP_CWORD-1]}"
   # bash takes the '=' of --flag=value for a word of its own.
@@ -100,7 +101,8 @@ std::string BashScript(const std::vector<CommandEntry>& commands) {
   std::string steps;
   for (const CommandEntry& command : commands) {
     if (command.name.empty()) continue;
-    absl::StrAppend(&steps, "      '", StepOf(command.name), "') command='", command.name, "' ;;\n");
+    absl::StrAppend(&steps, "      '", StepOf(command.name), "') command='", command.name,
+                    "' ;;\n");
   }
   std::string text = absl::StrReplaceAll(kBashHead, {{"@COMMANDS@", steps}});
   for (const CommandEntry& command : commands) absl::StrAppend(&text, BashCase(command, commands));
@@ -144,27 +146,29 @@ std::string ZshCommand(const CommandEntry& command, const std::vector<CommandEnt
   absl::StrAppend(&text, "  _arguments", command.subcommands.empty() ? "" : " -C");
   for (const FlagEntry& flag : command.flags) {
     if (flag.is_argument) continue;
-    const std::string spec =
-        absl::StrCat("*", flag.name, flag.form.empty() ? "" : "=", "[", ZshText(flag.help), "]",
-                     flag.form.empty() ? "" : absl::StrCat(":", ZshText(flag.form), ":",
-                                                           ZshAction(flag)));
+    const std::string spec = absl::StrCat(
+        "*", flag.name, flag.form.empty() ? "" : "=", "[", ZshText(flag.help), "]",
+        flag.form.empty() ? "" : absl::StrCat(":", ZshText(flag.form), ":", ZshAction(flag)));
     absl::StrAppend(&text, " \\\n    ", Quoted(spec));
   }
   if (!command.subcommands.empty()) {
     absl::StrAppend(&text, " \\\n    '1: :->command' \\\n    '*:: :->rest'\n");
     absl::StrAppend(&text, "  case $state in\n    command) _describe command commands",
-                    TakesFiles(command) ? "; _files" : "", " ;;\n    rest)\n      case $words[1] in\n");
+                    TakesFiles(command) ? "; _files" : "",
+                    " ;;\n    rest)\n      case $words[1] in\n");
     for (const std::string& subcommand : command.subcommands) {
       const std::string full =
           absl::StrCat(command.name, command.name.empty() ? "" : " ", subcommand);
       absl::StrAppend(&text, "        ", subcommand, ") ", ZshFunction(full), " ;;\n");
     }
-    absl::StrAppend(&text, TakesFiles(command) ? "        *) _files ;;\n" : "", "      esac ;;\n  esac\n}\n");
+    absl::StrAppend(&text, TakesFiles(command) ? "        *) _files ;;\n" : "",
+                    "      esac ;;\n  esac\n}\n");
     return text;
   }
   const Strings words = WordsOf(command, all);
   if (!words.empty()) {
-    absl::StrAppend(&text, " \\\n    ", Quoted(absl::StrCat("*:word:(", absl::StrJoin(words, " "), ")")));
+    absl::StrAppend(&text, " \\\n    ",
+                    Quoted(absl::StrCat("*:word:(", absl::StrJoin(words, " "), ")")));
   } else if (TakesFiles(command)) {
     absl::StrAppend(&text, " \\\n    '*:file:_files'");
   }
@@ -174,8 +178,10 @@ std::string ZshCommand(const CommandEntry& command, const std::vector<CommandEnt
 std::string ZshScript(const std::vector<CommandEntry>& commands) {
   std::string text =
       "#compdef duet\n# zsh completion for duet: install it as _duet in a folder of $fpath.\n";
-  for (const CommandEntry& command : commands) absl::StrAppend(&text, ZshCommand(command, commands));
-  return text + "if [ \"$funcstack[1]\" = _duet ]; then _duet \"$@\"; else compdef _duet duet; fi\n";
+  for (const CommandEntry& command : commands)
+    absl::StrAppend(&text, ZshCommand(command, commands));
+  return text +
+         "if [ \"$funcstack[1]\" = _duet ]; then _duet \"$@\"; else compdef _duet duet; fi\n";
 }
 
 // fish escapes a quote inside single quotes with a backslash.
@@ -189,7 +195,8 @@ std::string FishCondition(const CommandEntry& command) {
   const Strings words = absl::StrSplit(command.name, ' ');
   std::string condition = "set -l words (commandline -opc)";
   for (std::size_t i = 0; i < words.size(); ++i) {
-    absl::StrAppend(&condition, i == 0 ? "; " : "; and ", "test \"$words[", i + 2, "]\" = ", words[i]);
+    absl::StrAppend(&condition, i == 0 ? "; " : "; and ", "test \"$words[", i + 2,
+                    "]\" = ", words[i]);
   }
   if (!command.subcommands.empty()) {
     absl::StrAppend(&condition, "; and not __fish_seen_subcommand_from ",
@@ -221,7 +228,8 @@ std::string FishCommand(const CommandEntry& command, const std::vector<CommandEn
 std::string FishScript(const std::vector<CommandEntry>& commands) {
   std::string text =
       "# fish completion for duet: install it as completions/duet.fish.\ncomplete -c duet -f\n";
-  for (const CommandEntry& command : commands) absl::StrAppend(&text, FishCommand(command, commands));
+  for (const CommandEntry& command : commands)
+    absl::StrAppend(&text, FishCommand(command, commands));
   return text;
 }
 

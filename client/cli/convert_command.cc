@@ -63,9 +63,9 @@ absl::Status Resample(double rate_hz, motion::Clip* clip) {
   const double step = clip->frame_rate_hz / rate_hz;
   const double frames = std::floor((clip->frame_count() - 1) / step + 1e-6) + 1;
   if (frames > motion::kMaxMotionFrames) {
-    return absl::InvalidArgumentError(absl::StrCat("--resample: came ", rate_hz, " Hz, which makes ",
-                                                   frames, " frames, wanted at most ",
-                                                   motion::kMaxMotionFrames));
+    return absl::InvalidArgumentError(
+        absl::StrCat("--resample: came ", rate_hz, " Hz, which makes ", frames,
+                     " frames, wanted at most ", motion::kMaxMotionFrames));
   }
   motion::Poses poses(static_cast<int>(frames), clip->joint_count());
   for (int frame = 0; frame < poses.frame_count(); ++frame) {
@@ -115,8 +115,8 @@ absl::StatusOr<double> ErrorOf(const std::string& content, Format format, const 
     const absl::StatusOr<motion::Clip> clip = formats::ParseLeader(content, "the result", options);
     if (!clip.ok()) return clip.status();
     for (std::size_t j = 0; j < clip->poses.all().size(); ++j) {
-      largest = std::max(largest, static_cast<double>(
-                                      Distance(clip->poses.all()[j], people[i].poses.all()[j])));
+      largest = std::max(
+          largest, static_cast<double>(Distance(clip->poses.all()[j], people[i].poses.all()[j])));
     }
   }
   return largest;
@@ -124,13 +124,12 @@ absl::StatusOr<double> ErrorOf(const std::string& content, Format format, const 
 
 std::vector<std::string> MissingIn(Format format, double rate_hz) {
   if (format != Format::kNpy) return {};
-  return {"joint names",
-          absl::StrFormat("the frame rate: read it with --frame-rate %g", rate_hz)};
+  return {"joint names", absl::StrFormat("the frame rate: read it with --frame-rate %g", rate_hz)};
 }
 
 // The content of each file: BVH has one for each person.
 absl::StatusOr<std::vector<std::string>> FormatFiles(const Conversion& conversion, Format format,
-                                                 double* largest_error) {
+                                                     double* largest_error) {
   std::vector<Clips> files = {conversion.people};
   if (format == Format::kBvh && conversion.people.size() == 2) {
     files = {{conversion.people[0]}, {conversion.people[1]}};
@@ -186,19 +185,20 @@ std::string DescribeExactness(const Written& written) {
 
 std::string Describe(const Conversion& conversion, const std::vector<Written>& written) {
   const motion::Clip& first = conversion.people[0];
-  std::string text = absl::StrFormat(
-      "read      %s: %d %s, %d frames at %g Hz\n", conversion.source, conversion.people.size(),
-      conversion.people.size() == 1 ? "person" : "people", first.frame_count(),
-      first.frame_rate_hz);
+  std::string text =
+      absl::StrFormat("read      %s: %d %s, %d frames at %g Hz\n", conversion.source,
+                      conversion.people.size(), conversion.people.size() == 1 ? "person" : "people",
+                      first.frame_count(), first.frame_rate_hz);
   if (first.frame_rate_hz != conversion.source_rate_hz) {
     absl::StrAppendFormat(&text, "          resampled from %g Hz\n", conversion.source_rate_hz);
   }
   for (const std::string& note : conversion.notes) absl::StrAppend(&text, "          ", note, "\n");
   for (const Written& output : written) {
     for (std::size_t i = 0; i < output.files.size(); ++i) {
-      absl::StrAppend(&text, "wrote     ",
-                      output.files[i] == kStandardStream ? "standard output" : output.files[i].string(),
-                      i == 0 ? absl::StrCat(" (", DescribeExactness(output), ")") : "", "\n");
+      absl::StrAppend(
+          &text, "wrote     ",
+          output.files[i] == kStandardStream ? "standard output" : output.files[i].string(),
+          i == 0 ? absl::StrCat(" (", DescribeExactness(output), ")") : "", "\n");
     }
   }
   return text;

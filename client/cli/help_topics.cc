@@ -101,8 +101,9 @@ ParsedCommandLine ExplainTopic(const CLI::App& app, const std::string& topic) {
   } else {
     std::vector<std::string> known = CommandNames(app);
     for (std::string& name : HelpTopics()) known.push_back(std::move(name));
-    parsed.text = absl::StrCat("There is no command or topic ", base::Quoted(topic),
-                               base::DidYouMean(topic, known), "\nTopics: ", HelpTopicNames(), "\n");
+    parsed.text =
+        absl::StrCat("There is no command or topic ", base::Quoted(topic),
+                     base::DidYouMean(topic, known), "\nTopics: ", HelpTopicNames(), "\n");
     parsed.exit_code = kExitUsage;
   }
   return parsed;

@@ -13,9 +13,9 @@ namespace {
 using formats::Format;
 
 const std::map<std::string, Format> kInputFormats = {
-    {"amc", Format::kAmc}, {"bvh", Format::kBvh},   {"csv", Format::kCsv}, {"glb", Format::kGltf},
-    {"gltf", Format::kGltf}, {"json", Format::kJson}, {"npy", Format::kNpy},
-    {"sbu", Format::kSbuText}};
+    {"amc", Format::kAmc},  {"bvh", Format::kBvh},    {"csv", Format::kCsv},
+    {"glb", Format::kGltf}, {"gltf", Format::kGltf},  {"json", Format::kJson},
+    {"npy", Format::kNpy},  {"sbu", Format::kSbuText}};
 
 const std::map<std::string, OutputFormat> kOutputFormats = {{"bvh", {Format::kBvh}},
                                                             {"csv", {Format::kCsv}},

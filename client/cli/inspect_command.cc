@@ -76,9 +76,7 @@ ExitCode RunInspect(const InspectArguments& arguments, const ProgramEnvironment&
       continue;
     }
     *environment.out << (i == 0 ? "" : "\n") << DescribeInspection(inspection, style)
-                     << (inspection.status.ok()
-                             ? ""
-                             : DescribeAdvice(inspection.status));
+                     << (inspection.status.ok() ? "" : DescribeAdvice(inspection.status));
   }
   if (arguments.json) *environment.out << Print({{"files", files}});
   return worst;

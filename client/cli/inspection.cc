@@ -71,10 +71,9 @@ std::string DescribeUnused(const retargeting::ReadingReport& report) {
   const std::size_t shown = std::min(unused.size(), kMostNames);
   const std::vector<std::string> some(unused.begin(),
                                       unused.begin() + static_cast<std::ptrdiff_t>(shown));
-  return absl::StrCat("    not used: ", absl::StrJoin(some, ", "),
-                      shown < unused.size() ? absl::StrCat(" and ", unused.size() - shown, " more")
-                                            : "",
-                      "\n");
+  return absl::StrCat(
+      "    not used: ", absl::StrJoin(some, ", "),
+      shown < unused.size() ? absl::StrCat(" and ", unused.size() - shown, " more") : "", "\n");
 }
 
 std::string DescribeReading(const retargeting::ReadingReport& report, const Style& style) {

@@ -58,9 +58,9 @@ std::string Synopsis(const CommandEntry& command) {
   for (const FlagEntry& flag : command.flags) {
     if (!flag.is_argument) continue;
     const std::string form = Escaped(flag.form);
-    absl::StrAppend(&text,
-                    flag.is_required ? absl::StrCat(".I ", form) : absl::StrCat("[\\fI", form, "\\fR]"),
-                    "\n");
+    absl::StrAppend(
+        &text, flag.is_required ? absl::StrCat(".I ", form) : absl::StrCat("[\\fI", form, "\\fR]"),
+        "\n");
   }
   return text;
 }
@@ -68,9 +68,9 @@ std::string Synopsis(const CommandEntry& command) {
 std::string Options(const CommandEntry& command) {
   std::string text, group;
   for (const FlagEntry& flag : command.flags) {
-    const std::string heading = flag.is_argument            ? "Arguments"
+    const std::string heading = flag.is_argument          ? "Arguments"
                                 : flag.group == "Options" ? "General"
-                                                            : flag.group;
+                                                          : flag.group;
     if (heading != group) absl::StrAppend(&text, ".SS ", Escaped(heading), "\n");
     group = heading;
     absl::StrAppend(&text, ".TP\n");
@@ -95,8 +95,8 @@ std::string Commands(const CommandEntry& command, const std::vector<CommandEntry
     const std::string full = absl::StrCat(command.name, command.name.empty() ? "" : " ", name);
     for (const CommandEntry& other : all) {
       if (other.name != full) continue;
-      absl::StrAppend(&text, ".TP\n\\fB", Escaped(PageName(other)), "\\fR(1)\n", Escaped(other.help),
-                      ".\n");
+      absl::StrAppend(&text, ".TP\n\\fB", Escaped(PageName(other)), "\\fR(1)\n",
+                      Escaped(other.help), ".\n");
     }
   }
   return text;
@@ -108,8 +108,9 @@ std::string Topics() {
   for (const std::string& topic : HelpTopics()) {
     const std::string explained = TopicText(topic);
     const std::size_t end = explained.find('\n');
-    absl::StrAppend(&text, ".SH ", absl::AsciiStrToUpper(Escaped(absl::StripAsciiWhitespace(topic))),
-                    "\n", Escaped(absl::StripAsciiWhitespace(explained.substr(0, end))), "\n.PP\n",
+    absl::StrAppend(&text, ".SH ",
+                    absl::AsciiStrToUpper(Escaped(absl::StripAsciiWhitespace(topic))), "\n",
+                    Escaped(absl::StripAsciiWhitespace(explained.substr(0, end))), "\n.PP\n",
                     Example(absl::StripAsciiWhitespace(explained.substr(end))));
   }
   return text;

@@ -41,8 +41,9 @@ void AddTakeFlags(CLI::App* app, TakeArguments* takes) {
 void CheckTakes(const TakeArguments& takes) {
   const std::size_t sides = takes.leader_sides.size();
   if (sides != 1 && sides != takes.takes.size()) {
-    throw CLI::ValidationError("--leader-side", absl::StrCat("came ", sides, " times, wanted once or ",
-                                                             takes.takes.size(), " times"));
+    throw CLI::ValidationError(
+        "--leader-side",
+        absl::StrCat("came ", sides, " times, wanted once or ", takes.takes.size(), " times"));
   }
   int pipes = 0;
   for (const std::string& take : takes.takes) pipes += take == kStandardStream ? 1 : 0;
@@ -78,9 +79,10 @@ CLI::App* AddInspectCommand(CLI::App* app, InspectArguments* arguments) {
   CLI::App* command = app->add_subcommand(
       "inspect", "Tell what is in motion files, how they are understood, and what looks wrong");
   command
-      ->add_option("files", arguments->files,
-                   "Motions: .bvh, .gltf, .glb, .amc, .csv, .npy, .json or SBU .txt; - for standard "
-                   "input")
+      ->add_option(
+          "files", arguments->files,
+          "Motions: .bvh, .gltf, .glb, .amc, .csv, .npy, .json or SBU .txt; - for standard "
+          "input")
       ->required()
       ->type_name("FILE");
   AddInputFlags(command, &arguments->input);
@@ -125,8 +127,7 @@ CLI::App* AddConvertCommand(CLI::App* app, ConvertArguments* arguments) {
 }
 
 CLI::App* AddViewCommand(CLI::App* app, ViewArguments* arguments) {
-  CLI::App* command =
-      app->add_subcommand("view", "Make a page that plays motions side by side");
+  CLI::App* command = app->add_subcommand("view", "Make a page that plays motions side by side");
   command->add_option("files", arguments->takes.takes, "Motions to show, at most 12")
       ->required()
       ->expected(1, 12)

@@ -37,9 +37,9 @@ absl::StatusOr<std::string> ReadWhole(std::istream* in) {
   while (in->read(block.data(), static_cast<std::streamsize>(block.size())) || in->gcount() > 0) {
     content.append(block, 0, static_cast<std::size_t>(in->gcount()));
     if (content.size() > motion::kMaxMotionFileBytes) {
-      return absl::InvalidArgumentError(
-          absl::StrCat(kStandardInput, ": larger than ", motion::kMaxMotionFileBytes >> 20,
-                       " MiB, wanted a motion"));
+      return absl::InvalidArgumentError(absl::StrCat(kStandardInput, ": larger than ",
+                                                     motion::kMaxMotionFileBytes >> 20,
+                                                     " MiB, wanted a motion"));
     }
   }
   return content;
@@ -47,8 +47,7 @@ absl::StatusOr<std::string> ReadWhole(std::istream* in) {
 
 }  // namespace
 
-absl::StatusOr<MotionInput> MotionInput::Open(const std::filesystem::path& path,
-                                              std::istream* in) {
+absl::StatusOr<MotionInput> MotionInput::Open(const std::filesystem::path& path, std::istream* in) {
   MotionInput input;
   input.name_ = path.string();
   if (path != kStandardStream) return input;

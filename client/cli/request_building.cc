@@ -50,8 +50,7 @@ absl::Status CheckInputs(const SynthesizeArguments& arguments) {
 
 absl::StatusOr<SynthesisRequest> BuildRequest(const SynthesizeArguments& arguments,
                                               const motion::Skeleton& skeleton,
-                                              std::vector<std::string>* notes,
-                                              std::istream* in) {
+                                              std::vector<std::string>* notes, std::istream* in) {
   absl::StatusOr<formats::ReadOptions> read_options = ToReadOptions(arguments.input, skeleton);
   if (!read_options.ok()) return read_options.status();
   formats::ReadOptions options = *std::move(read_options);

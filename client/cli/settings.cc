@@ -40,8 +40,7 @@ absl::StatusOr<std::vector<Setting>> ReadConfig(const Variables& variables) {
   const std::filesystem::path file =
       named.has_value() ? std::filesystem::path(*named) : DefaultFile(variables);
   if (file.empty()) return std::vector<Setting>();
-  const absl::StatusOr<std::string> text =
-      base::ReadFile(file, kMaxConfigBytes, "a configuration");
+  const absl::StatusOr<std::string> text = base::ReadFile(file, kMaxConfigBytes, "a configuration");
   if (text.ok()) return ParseSettings(*text, file.string());
   if (!named.has_value() && absl::IsNotFound(text.status())) return std::vector<Setting>();
   return absl::Status(text.status().code(),

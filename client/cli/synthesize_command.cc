@@ -64,10 +64,10 @@ absl::Status CheckLabels(const SynthesizeArguments& arguments, const ModelInfo& 
   for (const ClassWeight& weight : weights) {
     const std::string& name = weight.interaction_class;
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    return absl::InvalidArgumentError(absl::StrCat(
-        arguments.keyframes.empty() ? "--label" : "--keyframe", ": class: came ",
-        base::Quoted(name), ", ", model.name, " knows ", absl::StrJoin(known, ", "),
-        base::DidYouMean(name, known)));
+    return absl::InvalidArgumentError(
+        absl::StrCat(arguments.keyframes.empty() ? "--label" : "--keyframe", ": class: came ",
+                     base::Quoted(name), ", ", model.name, " knows ", absl::StrJoin(known, ", "),
+                     base::DidYouMean(name, known)));
   }
   return absl::OkStatus();
 }
@@ -103,8 +103,8 @@ absl::Status RunSamples(const SynthesizeArguments& arguments, const Job& job, co
     if (!result.ok()) return result.status();
     const Synthesis synthesis{std::move(request), *std::move(result), job.skeleton,
                               arguments.leader, job.sampled};
-    const absl::StatusOr<Paths> written = WriteAll(
-        arguments, SampleOutputs(arguments, sample), synthesis, *environment.out);
+    const absl::StatusOr<Paths> written =
+        WriteAll(arguments, SampleOutputs(arguments, sample), synthesis, *environment.out);
     if (!written.ok()) return written.status();
     if (arguments.quiet) continue;
     if (arguments.json) {

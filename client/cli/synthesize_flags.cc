@@ -121,7 +121,7 @@ void AddReactionFlags(CLI::App* app, SynthesizeArguments* arguments) {
 }
 
 void AddOutputFlags(CLI::App* app, SynthesizeArguments* arguments) {
-    app->add_option("--out", arguments->outputs,
+  app->add_option("--out", arguments->outputs,
                   "File to write: .html (a page to watch), .bvh (two files), .csv, .npy or .json; "
                   "repeatable; - for standard output")
       ->required()

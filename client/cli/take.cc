@@ -42,8 +42,7 @@ std::vector<fs::path> SplitFiles(const std::string& text) {
 void AddFollowerBeside(TakeFiles* take) {
   const std::string file = take->files[0].string();
   if (take->files.size() > 1 || !absl::EndsWith(file, kLeaderEnding)) return;
-  const fs::path follower =
-      absl::StrCat(absl::StripSuffix(file, kLeaderEnding), kFollowerEnding);
+  const fs::path follower = absl::StrCat(absl::StripSuffix(file, kLeaderEnding), kFollowerEnding);
   if (Exists(follower)) take->files.push_back(follower);
 }
 
@@ -61,8 +60,7 @@ void Match(Take* take) {
   motion::Clip &leader = take->leader, &follower = *take->follower;
   const double step = follower.frame_rate_hz / leader.frame_rate_hz;
   const double reach = std::floor((follower.frame_count() - 1) / step + 1e-6) + 1;
-  const int frames =
-      static_cast<int>(std::min(static_cast<double>(leader.frame_count()), reach));
+  const int frames = static_cast<int>(std::min(static_cast<double>(leader.frame_count()), reach));
   motion::Poses poses(frames, follower.joint_count());
   for (int frame = 0; frame < frames; ++frame) {
     SampleLinear(follower.poses, frame * step, poses[frame]);

@@ -51,8 +51,8 @@ absl::Status CheckMotion(const GalleryMotion& motion, const motion::Clip& first)
 
 absl::Status Check(const GalleryContent& content) {
   if (content.motions.empty() || content.motions.size() > kMostMotions) {
-    return absl::InvalidArgumentError(absl::StrCat("motions: came ", content.motions.size(),
-                                                   ", wanted 1 to ", kMostMotions));
+    return absl::InvalidArgumentError(
+        absl::StrCat("motions: came ", content.motions.size(), ", wanted 1 to ", kMostMotions));
   }
   const motion::Clip& first = content.motions[0].leader;
   for (const GalleryMotion& motion : content.motions) {
@@ -105,8 +105,8 @@ absl::StatusOr<std::string> RenderGallery(const GalleryContent& content) {
   PageParts parts;
   parts.index = Embedded(duet_page_gallery_index, duet_page_gallery_index_end);
   parts.title = content.title;
-  parts.style = absl::StrCat(SharedStyle(),
-                             Embedded(duet_page_gallery_style, duet_page_gallery_style_end));
+  parts.style =
+      absl::StrCat(SharedStyle(), Embedded(duet_page_gallery_style, duet_page_gallery_style_end));
   parts.data = SafeJson(Data(content));
   parts.script = absl::StrCat(SharedScript(), Embedded(duet_page_cell, duet_page_cell_end),
                               Embedded(duet_page_curves, duet_page_curves_end),

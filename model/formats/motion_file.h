@@ -62,8 +62,8 @@ struct ReadOptions {
 absl::StatusOr<motion::Clip> ReadLeader(const std::filesystem::path& path,
                                         const ReadOptions& options = {});
 
-// The same of a motion that is no file, such as a pipe's: `content` is all of it, `name` what errors
-// call it. Wants options.format, and a motion that needs no file beside it.
+// The same of a motion that is no file, such as a pipe's: `content` is all of it, `name` what
+// errors call it. Wants options.format, and a motion that needs no file beside it.
 absl::StatusOr<motion::Clip> ParseLeader(const std::string& content, const std::string& name,
                                          const ReadOptions& options);
 
@@ -80,8 +80,8 @@ absl::StatusOr<std::vector<std::filesystem::path>> WritePair(const std::filesyst
                                                              const motion::ClipPair& pair,
                                                              const motion::Skeleton& skeleton);
 
-// The same for a person alone (one file, .bvh as well), or a leader and a follower, in a format that
-// need not be the extension's.
+// The same for a person alone (one file, .bvh as well), or a leader and a follower, in a format
+// that need not be the extension's.
 absl::StatusOr<std::vector<std::filesystem::path>> WritePeople(
     const std::filesystem::path& path, Format format, const std::vector<motion::Clip>& people,
     const motion::Skeleton& skeleton);

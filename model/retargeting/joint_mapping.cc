@@ -109,9 +109,9 @@ class Mapper {
       }
       const int index = FindExactly(name);
       if (index < 0) {
-        return absl::InvalidArgumentError(absl::StrCat(
-            "joint map: ", target, "=", name, ": ", source_, " has no such joint; ", ListNames(),
-            base::DidYouMean(name, names_)));
+        return absl::InvalidArgumentError(absl::StrCat("joint map: ", target, "=", name, ": ",
+                                                       source_, " has no such joint; ", ListNames(),
+                                                       base::DidYouMean(name, names_)));
       }
       Take(joint, index);
       overridden_[static_cast<size_t>(joint)] = true;

@@ -15,11 +15,11 @@ const std::vector<std::string>& Classes() {
 }
 
 TEST(Nearest, ForgivesASlip) {
-  EXPECT_THAT(Nearest("kik", Classes()), Optional(std::string("kick")));          // left out
-  EXPECT_THAT(Nearest("kickk", Classes()), Optional(std::string("kick")));        // added
-  EXPECT_THAT(Nearest("kock", Classes()), Optional(std::string("kick")));         // changed
-  EXPECT_THAT(Nearest("kcik", Classes()), Optional(std::string("kick")));         // swapped
-  EXPECT_THAT(Nearest("Kick", Classes()), Optional(std::string("kick")));         // case
+  EXPECT_THAT(Nearest("kik", Classes()), Optional(std::string("kick")));    // left out
+  EXPECT_THAT(Nearest("kickk", Classes()), Optional(std::string("kick")));  // added
+  EXPECT_THAT(Nearest("kock", Classes()), Optional(std::string("kick")));   // changed
+  EXPECT_THAT(Nearest("kcik", Classes()), Optional(std::string("kick")));   // swapped
+  EXPECT_THAT(Nearest("Kick", Classes()), Optional(std::string("kick")));   // case
   EXPECT_THAT(Nearest("shakehands", Classes()), Optional(std::string("shake_hands")));
 }
 

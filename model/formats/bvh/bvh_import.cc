@@ -59,12 +59,11 @@ void NotePositionChannels(const BvhDocument& document, const BvhImportOptions& o
   if (options.report != nullptr) options.report->remarks.push_back(note);
 }
 
-void Report(const BvhDocument& document, double frame_rate_hz,
-            retargeting::ReadingReport* report) {
+void Report(const BvhDocument& document, double frame_rate_hz, retargeting::ReadingReport* report) {
   if (report == nullptr) return;
-  report->people = static_cast<int>(
-      std::count_if(document.joints.begin(), document.joints.end(),
-                    [](const BvhJoint& joint) { return joint.parent < 0; }));
+  report->people =
+      static_cast<int>(std::count_if(document.joints.begin(), document.joints.end(),
+                                     [](const BvhJoint& joint) { return joint.parent < 0; }));
   report->frame_rate =
       retargeting::Setting{absl::StrCat(frame_rate_hz, " Hz"), retargeting::Origin::kFile,
                            absl::StrCat("Frame Time ", document.frame_time_s)};

@@ -167,9 +167,8 @@ void AppendPositions(const motion::Clip& clip, std::string* out) {
 
 // All before the values; `people` is the first dimension.
 std::string FormatHeader(absl::string_view people, const motion::Clip& clip) {
-  std::string dict =
-      absl::StrCat("{'descr': '<f4', 'fortran_order': False, 'shape': (", people,
-                   clip.frame_count(), ", ", clip.joint_count(), ", 3), }");
+  std::string dict = absl::StrCat("{'descr': '<f4', 'fortran_order': False, 'shape': (", people,
+                                  clip.frame_count(), ", ", clip.joint_count(), ", 3), }");
   const std::size_t before = kMagic.size() + 4;
   dict.append(kAlignment - (before + dict.size() + 1) % kAlignment, ' ');
   dict.push_back('\n');

@@ -109,9 +109,8 @@ TEST(CheckSkeleton, SomebodyWhoFliesHasLeftTheFloor) {
 }
 
 TEST(CheckSkeleton, AFootBelowTheFloorIsSeen) {
-  const Check check = Spoilt("floor", [](motion::Clip* clip) {
-    clip->at(30, Sbu().feet->left).y -= 0.5f;
-  });
+  const Check check =
+      Spoilt("floor", [](motion::Clip* clip) { clip->at(30, Sbu().feet->left).y -= 0.5f; });
   EXPECT_THAT(check.text, HasSubstr("a foot gets"));
 }
 

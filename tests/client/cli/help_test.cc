@@ -77,9 +77,9 @@ TEST(CommandTable, HoldsEveryCommandAndFlag) {
   const std::vector<CommandEntry> commands = ListCommands(line.app);
   std::vector<std::string> names;
   for (const CommandEntry& command : commands) names.push_back(command.name);
-  EXPECT_THAT(names, ElementsAre("", "models", "synthesize", "batch", "batch merge", "batch verify",
-                                 "inspect", "convert", "view", "compare", "help", "completion",
-                                 "man"));
+  EXPECT_THAT(names,
+              ElementsAre("", "models", "synthesize", "batch", "batch merge", "batch verify",
+                          "inspect", "convert", "view", "compare", "help", "completion", "man"));
   EXPECT_THAT(FlagOf(commands[2], "--leader-side").choices, ElementsAre("left", "right"));
   EXPECT_EQ(FlagOf(commands[2], "--leader-side").default_value, "left");
   EXPECT_TRUE(FlagOf(commands[2], "--leader").takes_file);
@@ -100,9 +100,9 @@ TEST(Completion, KnowsEveryFlag) {
 
 TEST(ManualPage, TellsAllThatHelpTells) {
   const std::string page = ParseCommandLine({"man", "convert"}).text;
-  EXPECT_THAT(page, AllOf(StartsWith(".TH DUET\\-CONVERT 1 "), HasSubstr(".SH SYNOPSIS"),
-                          HasSubstr("\\fB\\-\\-resample\\fR \\fIHZ\\fR"),
-                          HasSubstr("(default: all)")));
+  EXPECT_THAT(page,
+              AllOf(StartsWith(".TH DUET\\-CONVERT 1 "), HasSubstr(".SH SYNOPSIS"),
+                    HasSubstr("\\fB\\-\\-resample\\fR \\fIHZ\\fR"), HasSubstr("(default: all)")));
   EXPECT_THAT(ParseCommandLine({"man", "synthesize"}).text, HasSubstr("(default: left)"));
   EXPECT_THAT(ParseCommandLine({"man"}).text,
               AllOf(StartsWith(".TH DUET 1 "), HasSubstr("\\fBduet\\-batch\\fR(1)\n"),
@@ -118,8 +118,8 @@ TEST(ManualPage, AllAreWrittenIntoAFolder) {
   for (const auto& file : std::filesystem::directory_iterator(folder / "new/man1")) {
     names.push_back(file.path().filename().string());
   }
-  EXPECT_THAT(names, AllOf(Contains("duet.1"), Contains("duet-inspect.1"),
-                           Contains("duet-batch-merge.1")));
+  EXPECT_THAT(
+      names, AllOf(Contains("duet.1"), Contains("duet-inspect.1"), Contains("duet-batch-merge.1")));
   EXPECT_EQ(names.size(), 13u);
 }
 

@@ -89,10 +89,10 @@ class MotionCommandsTest : public ::testing::Test {
 
 TEST_F(MotionCommandsTest, InspectTellsWhatWasUnderstoodAndWhy) {
   ASSERT_EQ(Run({"inspect", Path("one.bvh")}), 0);
-  EXPECT_THAT(out_.str(), StartsWith(Path("one.bvh") +
-                                     ": BVH, 1 person, 60 frames, 2.00 s at 30 Hz\n"
-                                     "  frame rate  30 Hz  (file: Frame Time 0.0333333)\n"
-                                     "  unit        centimetres  (guessed: foot to torso"));
+  EXPECT_THAT(out_.str(),
+              StartsWith(Path("one.bvh") + ": BVH, 1 person, 60 frames, 2.00 s at 30 Hz\n"
+                                           "  frame rate  30 Hz  (file: Frame Time 0.0333333)\n"
+                                           "  unit        centimetres  (guessed: foot to torso"));
   EXPECT_THAT(out_.str(), AllOf(HasSubstr("  up axis     y-up  (guessed"),
                                 HasSubstr("    left_hand       left_hand\n"),
                                 HasSubstr("    not used: torso_to_neck"),
@@ -134,10 +134,10 @@ TEST_F(MotionCommandsTest, InspectNamesWhatIsMissing) {
   WriteTestFile(folder_ / "odd.bvh",
                 absl::StrReplaceAll(ReadTestFile(folder_ / "one.bvh"), {{"left_hand", "paw"}}));
   EXPECT_EQ(Run({"inspect", Path("odd.bvh")}), 42);
-  EXPECT_THAT(out_.str(), AllOf(HasSubstr("    left_hand       missing\n"),
-                                HasSubstr("    right_hand      right_hand\n"),
-                                HasSubstr("cannot be read: "), HasSubstr("--joint-map"),
-                                Not(HasSubstr("skeleton\n"))));
+  EXPECT_THAT(out_.str(),
+              AllOf(HasSubstr("    left_hand       missing\n"),
+                    HasSubstr("    right_hand      right_hand\n"), HasSubstr("cannot be read: "),
+                    HasSubstr("--joint-map"), Not(HasSubstr("skeleton\n"))));
   EXPECT_EQ(Run({"inspect", "--json", Path("odd.bvh")}), 42);
   const json file = json::parse(out_.str())["files"][0];
   EXPECT_EQ(file["readable"], false);
@@ -217,8 +217,8 @@ TEST_F(MotionCommandsTest, ConvertSaysHowFarAFormatIsOff) {
   const int elbow = motion::SbuSkeleton().Find("left_elbow");
   const int hand = motion::SbuSkeleton().Find("left_hand");
   for (int frame = 0; frame < 60; ++frame) {
-    growing.at(frame, hand) = Lerp(growing.at(frame, elbow), growing.at(frame, hand),
-                                   frame < 50 ? 1.0f : 1.2f);
+    growing.at(frame, hand) =
+        Lerp(growing.at(frame, elbow), growing.at(frame, hand), frame < 50 ? 1.0f : 1.2f);
   }
   Write("growing.csv", Format::kCsv, {growing});
   const json output =
@@ -257,9 +257,9 @@ TEST_F(MotionCommandsTest, ResamplingKeepsThePaceAndFrameRateDoesNot) {
 
 TEST_F(MotionCommandsTest, ConvertBetweenPipes) {
   const std::string csv = ReadTestFile(folder_ / "pair.csv");
-  ASSERT_EQ(Run({"convert", "-", "--input-format", "csv", "--out", "-", "--output-format", "json"},
-                csv),
-            0)
+  ASSERT_EQ(
+      Run({"convert", "-", "--input-format", "csv", "--out", "-", "--output-format", "json"}, csv),
+      0)
       << err_.str();
   EXPECT_THAT(err_.str(), HasSubstr("wrote     standard output (every position kept)"));
   WriteTestFile(folder_ / "piped.json", out_.str());
@@ -308,9 +308,8 @@ TEST_F(MotionCommandsTest, ConvertNeverReplacesWhatItReads) {
 }
 
 TEST_F(MotionCommandsTest, ViewShowsMotionsSideBySide) {
-  ASSERT_EQ(Run({"view", Path("one.bvh"), "captured=" + Path("pair.csv"), "--out",
-                 Path("view.html")}),
-            0)
+  ASSERT_EQ(
+      Run({"view", Path("one.bvh"), "captured=" + Path("pair.csv"), "--out", Path("view.html")}), 0)
       << err_.str();
   EXPECT_THAT(ReadTestFile(folder_ / "view.html"),
               AllOf(HasSubstr("<title>one, captured</title>"), HasSubstr("\"name\":\"captured\"")));
@@ -347,7 +346,8 @@ TEST_F(MotionCommandsTest, WhoLeadsMayBeSaidForEach) {
   const Strings files = {Path("pair.csv"), Path("turned.csv")};
   const auto mean = [&](const Strings& sides) {
     Strings arguments = {"compare", "--json", files[0], files[1]};
-    for (const std::string& side : sides) arguments.insert(arguments.end(), {"--leader-side", side});
+    for (const std::string& side : sides)
+      arguments.insert(arguments.end(), {"--leader-side", side});
     return RunJson(arguments)["displacement"]["mean_metres"].get<double>();
   };
   EXPECT_GT(mean({}), 0.5);

@@ -410,9 +410,9 @@ TEST_F(ProgramTest, WhatPipesCannotDoNeverReachesTheServer) {
   refused(2, {"--leader", Path("leader.csv"), "--out", "-"}, "--output-format");
   refused(2, {"--leader", Path("leader.csv"), "--out", "-", "--output-format", "bvh"},
           "bvh has a file for each person");
-  refused(2,
-          {"--leader", Path("leader.csv"), "--out", "-", "--output-format", "csv", "--samples", "2"},
-          "each wants a file");
+  refused(
+      2, {"--leader", Path("leader.csv"), "--out", "-", "--output-format", "csv", "--samples", "2"},
+      "each wants a file");
 }
 
 TEST_F(ProgramTest, AnUnknownClassIsRefusedWithTheOneThatWasMeant) {

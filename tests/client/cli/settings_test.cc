@@ -39,8 +39,8 @@ std::vector<std::string> Read(const std::map<std::string, std::string>& variable
 }
 
 TEST(ParseSettings, ReadsFlagsWithoutDashes) {
-  const auto settings =
-      ParseSettings("\xEF\xBB\xBF# ours\r\n\r\n  server = lab:50051 \nlabel=kick=1\nquiet =\n", "c");
+  const auto settings = ParseSettings(
+      "\xEF\xBB\xBF# ours\r\n\r\n  server = lab:50051 \nlabel=kick=1\nquiet =\n", "c");
   ASSERT_THAT(settings, IsOk());
   ASSERT_EQ(settings->size(), 3u);
   EXPECT_EQ((*settings)[0].name, "server");
@@ -118,7 +118,8 @@ TEST(Settings, AFlagWinsOverThemAndTheyOverDefaults) {
 
 TEST(Settings, ACommandTakesThoseThatItHas) {
   const ParsedCommandLine parsed = ParseCommandLine(
-      {"models"}, {{"json", "true", "c:1"}, {"leader-side", "right", "c:2"}, {"tls", "false", "c:3"}});
+      {"models"},
+      {{"json", "true", "c:1"}, {"leader-side", "right", "c:2"}, {"tls", "false", "c:3"}});
   ASSERT_TRUE(parsed.models.has_value()) << parsed.text;
   EXPECT_TRUE(parsed.models->json);
   EXPECT_FALSE(parsed.models->server.tls);
@@ -136,9 +137,9 @@ TEST(Settings, WhatAFlagExcludesDoesNotCount) {
 
 TEST(Settings, ARepeatableFlagMayHaveSeveral) {
   const TemporaryFolder folder;
-  const ParsedCommandLine parsed = ParseCommandLine(
-      {"synthesize", "--leader", "a.bvh", "--out", (folder / "a.csv").string()},
-      {{"label", "hug=1", "c:1"}, {"label", "kick=0.5", "c:2"}});
+  const ParsedCommandLine parsed =
+      ParseCommandLine({"synthesize", "--leader", "a.bvh", "--out", (folder / "a.csv").string()},
+                       {{"label", "hug=1", "c:1"}, {"label", "kick=0.5", "c:2"}});
   ASSERT_TRUE(parsed.synthesize.has_value()) << parsed.text;
   ASSERT_EQ(parsed.synthesize->weights.size(), 2u);
   EXPECT_EQ(parsed.synthesize->weights[1].interaction_class, "kick");
