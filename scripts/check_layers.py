@@ -101,11 +101,13 @@ LAYERS = (
           libraries=("rpc", "prometheus")),
     # The client.
     Layer("viewer", "client/viewer", sees=("base", "motion", "client")),
+    Layer("analysis", "client/analysis", sees=("base", "motion", "cleanup", "metrics")),
     Layer("batch flow", "client/batch/flow", sees=()),
     Layer("batch", "client/batch",
           sees=MOTION_FILES + ("messages", "dataset", "cleanup", "metrics", "batch flow", "client"),
           libraries=("rpc",)),
-    Layer("client program", "client/cli", sees=MOTION_FILES + ("viewer", "batch flow", "batch", "client")),
+    Layer("client program", "client/cli",
+          sees=MOTION_FILES + ("analysis", "viewer", "batch flow", "batch", "client")),
     Layer("client", "client", sees=("base", "motion"), libraries=("rpc",)),
 )
 

@@ -1,201 +1,168 @@
 #include "client/cli/arguments.h"
 
-#include <limits>
-#include <map>
+#include <algorithm>
+#include <cstddef>
 #include <sstream>
 #include <utility>
 
-#include "CLI/CLI.hpp"
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
-#include "client/cli/batch_flags.h"
+#include "client/cli/command_line.h"
+#include "client/cli/completion.h"
 #include "client/cli/exit_code.h"
-#include "client/cli/flags.h"
-#include "client/cli/output.h"
-#include "client/cli/server_flags.h"
-#include "client/cli/value_syntax.h"
+#include "client/cli/help_topics.h"
+#include "client/cli/man_page.h"
+#include "model/base/nearest.h"
+#include "model/base/text.h"
 
 namespace duet::client::cli {
 namespace {
 
-constexpr char kExitCodes[] = R"(
-Exit codes:
-  0   done
-  1   failed, but the same call may succeed later (server away, busy or draining)
-  2   the command line makes no sense
-  42  failed, and will again: the input, the model or the credentials are refused
+using Strings = std::vector<std::string>;
 
-Example:
-  duet synthesize --leader kick.bvh --label kick=1 --out pair.html --out pair.bvh
-)";
-
-const std::map<std::string, formats::Side> kSides = {{"left", formats::Side::kLeft},
-                                                     {"right", formats::Side::kRight}};
-const std::map<std::string, Priority> kPriorities = {{"interactive", Priority::kInteractive},
-                                                     {"bulk", Priority::kBulk}};
-
-// "auto" leaves the choice to the server.
-const std::map<std::string, std::optional<bool>> kCleanUps = {
-    {"auto", std::nullopt}, {"on", true}, {"off", false}};
-
-void AddInputFlags(CLI::App* app, SynthesizeArguments* arguments) {
-  constexpr char kGroup[] = "Input";
-  app->add_option("--leader", arguments->leader,
-                  "Motion of the leader: .bvh, .gltf, .glb, .amc, .csv, .npy, .json or SBU .txt")
-      ->required()
-      ->type_name("FILE")
-      ->group(kGroup);
-  AddChoice<formats::Side>(
-      app, "--leader-side", kSides,
-      [arguments](formats::Side side) { arguments->leader_side = side; },
-      "Which person of a file with two leads")
-      ->default_str(NameOf(kSides, arguments->leader_side))
-      ->group(kGroup);
-  InputArguments* input = &arguments->input;
-  app->add_option("--frame-rate", input->frame_rate_hz, "Replaces what the file says")
-      ->check(Undescribed(CLI::PositiveNumber))
-      ->type_name("HZ")
-      ->group(kGroup);
-  AddParsed<motion::LengthUnit>(
-      app, "--unit", "metres|millimetres|sbu-normalised", ParseUnit,
-      [input](motion::LengthUnit unit) { input->unit = unit; },
-      "Unit of positions; replaces what the file says")
-      ->take_last()
-      ->group(kGroup);
-  AddParsed<motion::UpAxis>(
-      app, "--up-axis", "y-up|z-up|y-down", ParseAxis,
-      [input](motion::UpAxis axis) { input->up_axis = axis; },
-      "Up axis of positions; replaces what the file says")
-      ->take_last()
-      ->group(kGroup);
-  app->add_option("--metres-per-unit", input->metres_per_unit,
-                  "BVH, glTF, ASF: metres in one unit of the file (0.01 for centimetres)")
-      ->check(Undescribed(CLI::PositiveNumber))
-      ->type_name("METRES")
-      ->group(kGroup);
-  AddParsed<std::pair<std::string, std::string>>(
-      app, "--joint-map", "MODEL_JOINT=FILE_JOINT", ParseJointPair,
-      [input](std::pair<std::string, std::string> joints) { input->joints.insert(joints); },
-      "Where names alone do not tell which is which; repeatable")
-      ->group(kGroup);
-  app->add_option("--joint-map-file", input->joint_table,
-                  "A table of such joints, one MODEL_JOINT=FILE_JOINT a line; --joint-map wins")
-      ->type_name("FILE")
-      ->group(kGroup);
+ParsedCommandLine UsageError(const std::string& message) {
+  ParsedCommandLine parsed;
+  parsed.text = absl::StrCat(message, "\nRun with --help for more information.\n");
+  parsed.exit_code = kExitUsage;
+  return parsed;
 }
 
-void AddSamplingFlags(CLI::App* app, SynthesizeArguments* arguments) {
-  constexpr char kGroup[] = "Reaction";
-  AddParsed<uint64_t>(
-      app, "--seed", "SEED", ParseSeed, [arguments](uint64_t seed) { arguments->seed = seed; },
-      "Which answer of a model that samples; the same seed gives the same answer")
-      ->take_last()
-      ->default_str(absl::StrCat(arguments->seed))
-      ->group(kGroup);
-  AddParsed<float>(
-      app, "--variety", "VARIETY", ParseVariety,
-      [arguments](float variety) { arguments->variety = variety; },
-      "How varied such answers are: 0 the typical one, 1 as varied as people, up to 2")
-      ->take_last()
-      ->default_str(absl::StrCat(arguments->variety))
-      ->group(kGroup);
-  app->add_option("--samples", arguments->samples,
-                  "Answers to ask for, with seeds SEED, SEED+1, ...; with several, each --out "
-                  "pair.html becomes pair.seed0.html and so on")
-      ->check(Undescribed(CLI::Range(1, 1000)))
-      ->capture_default_str()
-      ->type_name("COUNT")
-      ->group(kGroup);
+ParsedCommandLine Text(std::string text) {
+  ParsedCommandLine parsed;
+  parsed.text = std::move(text);
+  return parsed;
 }
 
-void AddReactionFlags(CLI::App* app, SynthesizeArguments* arguments) {
-  constexpr char kGroup[] = "Reaction";
-  CLI::Option* label = AddParsed<ClassWeight>(app, "--label", "CLASS=WEIGHT", ParseClassWeight,
-                                              AppendTo(&arguments->weights),
-                                              "Such as kick=1 or hug=-0.5; repeatable")
-                           ->group(kGroup);
-  AddParsed<WeightKeyframe>(app, "--keyframe", "FRAME:CLASS=WEIGHT,...", ParseKeyframe,
-                            AppendTo(&arguments->keyframes),
-                            "For weights that change over time; repeatable")
-      ->excludes(label)
-      ->group(kGroup);
-  AddParsed<ModelChoice>(
-      app, "--model", "NAME[@VERSION|:LABEL]", ParseModelChoice,
-      [arguments](ModelChoice choice) { arguments->model = std::move(choice); },
-      "Default: the server's own")
-      ->take_last()
-      ->group(kGroup);
-  app->add_option("--follower-start", arguments->follower_start,
-                  "Where the follower begins: a motion file (its first frame), or X,Y,Z of the "
-                  "root joint in metres, y up")
-      ->type_name("FILE|X,Y,Z")
-      ->group(kGroup);
-  AddChoice<formats::Side>(
-      app, "--follower-start-side", kSides,
-      [arguments](formats::Side side) { arguments->follower_start_side = side; },
-      absl::StrCat("Which person of a file with two (default: not the leader where it is the "
-                   "leader's file, else ",
-                   NameOf(kSides, kDefaultSide), ")"))
-      ->group(kGroup);
-  AddParsed<motion::Vec3>(
-      app, "--partner-direction", "X,Y,Z", ParseDirection,
-      [arguments](motion::Vec3 direction) { arguments->partner_direction = direction; },
-      "Where the follower should be, as a horizontal direction from the leader (default: towards "
-      "--follower-start, else as the model tells from the leader)")
-      ->take_last()
-      ->group(kGroup);
-  AddSamplingFlags(app, arguments);
-  AddChoice<std::optional<bool>>(
-      app, "--clean-up", kCleanUps,
-      [arguments](std::optional<bool> clean_up) { arguments->clean_up = clean_up; },
-      "Correct the follower: stand, feet still, human joints, out of the leader; auto: as the "
-      "server does for the model")
-      ->default_str(NameOf(kCleanUps, arguments->clean_up))
-      ->group(kGroup);
-  AddChoice<Priority>(
-      app, "--priority", kPriorities,
-      [arguments](Priority priority) { arguments->priority = priority; },
-      "bulk yields to interactive calls and waits when the server is full")
-      ->default_str(NameOf(kPriorities, arguments->priority))
-      ->group(kGroup);
-  app->add_option("--chunk-frames", arguments->chunk_frames, "Frames in one chunk of the reply")
-      ->check(Undescribed(CLI::Range(1, 100000)))
-      ->type_name("FRAMES")
-      ->group(kGroup);
-  app->add_option("--request-id", arguments->request_id, "Names the call in the server's log")
-      ->type_name("ID")
-      ->group(kGroup);
-}
+// "--server" of "--server" and "--server=lab:50051".
+std::string FlagOf(const std::string& argument) { return argument.substr(0, argument.find('=')); }
 
-void AddOutputFlags(CLI::App* app, SynthesizeArguments* arguments) {
-  constexpr char kGroup[] = "Output";
-  app->add_option("--out", arguments->outputs,
-                  "File to write: .html (a page to watch), .bvh (two files), .csv, .npy or .json; "
-                  "repeatable")
-      ->required()
-      ->allow_extra_args(false)
-      ->type_name("FILE")
-      ->group(kGroup);
-  app->add_flag("--json", arguments->json, "Print the summary as JSON")->group(kGroup);
-  app->add_flag("--quiet", arguments->quiet, "Print errors alone")->group(kGroup);
-}
-
-// What no single flag can tell.
-void CheckTogether(const SynthesizeArguments& arguments) {
-  if (arguments.weights.empty() && arguments.keyframes.empty()) {
-    throw CLI::RequiredError("--label or --keyframe");
+bool IsGiven(const std::string& flag, const Strings& arguments) {
+  for (const std::string& argument : arguments) {
+    if (argument == "--") return false;
+    if (FlagOf(argument) == flag) return true;
   }
-  const uint64_t left = std::numeric_limits<uint64_t>::max() - arguments.seed;
-  if (static_cast<uint64_t>(arguments.samples) - 1 > left) {
-    throw CLI::ValidationError(
-        "--samples", absl::StrCat(arguments.samples, " from --seed ", arguments.seed,
-                                  " on pass the largest seed, wanted at most ", left + 1));
+  return false;
+}
+
+Strings FlagNames(const CLI::App& command) {
+  Strings names;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back(absl::StrCat("--", name));
   }
-  for (int sample = 0; sample < arguments.samples; ++sample) {
-    for (const std::filesystem::path& output : SampleOutputs(arguments, sample)) {
-      const absl::Status status = CheckOutput(output, arguments.leader);
-      if (!status.ok()) throw CLI::ValidationError("--out", std::string(status.message()));
+  return names;
+}
+
+// Whether a flag that the command line has rules a setting out.
+bool IsExcluded(const CLI::App& command, const std::string& flag, const Strings& arguments) {
+  for (const CLI::Option* option : command.get_option(flag)->get_excludes()) {
+    for (const std::string& name : option->get_lnames()) {
+      if (IsGiven(absl::StrCat("--", name), arguments)) return true;
     }
   }
+  return false;
+}
+
+// The command line's arguments with the settings that count among them.
+class Settled {
+ public:
+  Settled(const CLI::App& app, const Strings& arguments, const std::vector<Setting>& settings)
+      : arguments_(arguments) {
+    const auto command =
+        std::find_if(arguments.begin(), arguments.end(),
+                     [](const std::string& argument) { return !absl::StartsWith(argument, "-"); });
+    if (command == arguments.end()) return;
+    const CLI::App* chosen = FindCommand(app, *command);
+    if (chosen == nullptr) return;
+    Strings added;
+    for (const Setting& setting : settings) {
+      const std::string flag = absl::StrCat("--", setting.name);
+      if (!Knows(*chosen, flag)) continue;
+      if (IsGiven(flag, arguments) || IsExcluded(*chosen, flag, arguments)) continue;
+      added.push_back(absl::StrCat(flag, "=", setting.value));
+      used_.push_back(setting);
+    }
+    arguments_.insert(arguments_.begin() + (command - arguments.begin()) + 1, added.begin(),
+                      added.end());
+  }
+
+  const Strings& arguments() const { return arguments_; }
+
+  // Where an error about a setting comes from: "config:3: "; empty for those of the command line.
+  std::string SourceOf(const std::string& error) const {
+    for (const Setting& setting : used_) {
+      if (absl::StrContains(error, absl::StrCat("--", setting.name))) {
+        return absl::StrCat(setting.source, ": ");
+      }
+    }
+    return "";
+  }
+
+ private:
+  static bool Knows(const CLI::App& command, const std::string& flag) {
+    const Strings names = FlagNames(command);
+    return std::find(names.begin(), names.end(), flag) != names.end();
+  }
+
+  Strings arguments_;
+  std::vector<Setting> used_;
+};
+
+// A setting that no command has a flag for; empty where there is none.
+std::string FindUnknownSetting(const CLI::App& app, const std::vector<Setting>& settings) {
+  Strings known;
+  for (const CLI::App* command : app.get_subcommands({})) {
+    for (const std::string& flag : FlagNames(*command)) known.push_back(flag.substr(2));
+  }
+  for (const Setting& setting : settings) {
+    if (std::find(known.begin(), known.end(), setting.name) != known.end()) continue;
+    return absl::StrCat(setting.source, ": no command has a flag --", setting.name,
+                        base::DidYouMean(setting.name, known));
+  }
+  return "";
+}
+
+// A first word that is no command; empty where it is one.
+std::string FindUnknownCommand(const CLI::App& app, const Strings& arguments) {
+  if (arguments.empty() || absl::StartsWith(arguments[0], "-")) return "";
+  if (FindCommand(app, arguments[0]) != nullptr) return "";
+  return absl::StrCat("There is no command ", base::Quoted(arguments[0]),
+                      base::DidYouMean(arguments[0], CommandNames(app)));
+}
+
+// The flag that was most likely meant by one that the command does not have.
+std::string SuggestFlag(const CLI::App& app, const Strings& arguments) {
+  const CLI::App* command = arguments.empty() ? nullptr : FindCommand(app, arguments[0]);
+  if (command == nullptr) return "";
+  const Strings known = FlagNames(*command);
+  for (const std::string& argument : arguments) {
+    if (!absl::StartsWith(argument, "--")) continue;
+    const std::string flag = FlagOf(argument);
+    if (std::find(known.begin(), known.end(), flag) != known.end()) continue;
+    const std::optional<std::string> nearest = base::Nearest(flag, known);
+    if (nearest.has_value()) return absl::StrCat("Did you mean ", *nearest, "?\n");
+  }
+  return "";
+}
+
+ParsedCommandLine Collect(CommandLine* line) {
+  const auto is_parsed = [line](const char* name) {
+    return line->app.get_subcommand(name)->parsed();
+  };
+  if (is_parsed("help")) return ExplainTopic(line->app, line->help_topic);
+  if (is_parsed("completion")) return Text(CompletionScript(line->app, line->shell));
+  ParsedCommandLine parsed;
+  if (is_parsed("man")) {
+    if (line->man.folder.empty()) return PrintManualPage(line->app, line->manual_page);
+    parsed.man = std::move(line->man);
+  }
+  if (is_parsed("models")) parsed.models = std::move(line->models);
+  if (is_parsed("synthesize")) parsed.synthesize = std::move(line->synthesize);
+  if (is_parsed("batch")) parsed.batch = std::move(line->batch);
+  if (is_parsed("inspect")) parsed.inspect = std::move(line->inspect);
+  if (is_parsed("convert")) parsed.convert = std::move(line->convert);
+  if (is_parsed("view")) parsed.view = std::move(line->view);
+  if (is_parsed("compare")) parsed.compare = std::move(line->compare);
+  return parsed;
 }
 
 }  // namespace
@@ -211,46 +178,28 @@ std::vector<std::filesystem::path> SampleOutputs(const SynthesizeArguments& argu
   return outputs;
 }
 
-ParsedCommandLine ParseCommandLine(const std::vector<std::string>& arguments) {
-  CLI::App app("Asks a Duet server to answer one character's motion with another's.", "duet");
-  app.set_version_flag("--version", "duet " DUET_VERSION);
-  app.require_subcommand(1);
-  app.footer(kExitCodes);
-  app.get_formatter()->column_width(34);
-
-  ModelsArguments models;
-  CLI::App* models_command = app.add_subcommand("models", "List the models being served");
-  AddServerFlags(models_command, &models.server);
-  models_command->add_flag("--json", models.json, "Print JSON");
-
-  SynthesizeArguments synthesize;
-  CLI::App* synthesize_command =
-      app.add_subcommand("synthesize", "Synthesise the follower of a leader");
-  AddInputFlags(synthesize_command, &synthesize);
-  AddReactionFlags(synthesize_command, &synthesize);
-  AddOutputFlags(synthesize_command, &synthesize);
-  AddServerFlags(synthesize_command, &synthesize.server);
-  synthesize_command->footer(kExitCodes);
-  synthesize_command->callback([&synthesize] { CheckTogether(synthesize); });
-
-  BatchArguments batch;
-  const CLI::App* batch_command = AddBatchCommand(&app, &batch);
-
-  ParsedCommandLine parsed;
+ParsedCommandLine ParseCommandLine(const std::vector<std::string>& arguments,
+                                   const std::vector<Setting>& settings) {
+  CommandLine line;
+  for (const std::string& error :
+       {FindUnknownSetting(line.app, settings), FindUnknownCommand(line.app, arguments)}) {
+    if (!error.empty()) return UsageError(error);
+  }
+  const Settled settled(line.app, arguments, settings);
   try {
     // CLI11 takes the arguments in reverse.
-    app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+    line.app.parse(Strings(settled.arguments().rbegin(), settled.arguments().rend()));
   } catch (const CLI::ParseError& error) {
     std::ostringstream out;
-    const int code = app.exit(error, out, out);
-    parsed.text = out.str();
-    parsed.exit_code = code == 0 ? kExitDone : kExitUsage;
+    const int code = line.app.exit(error, out, out);
+    if (code == 0) return Text(out.str());
+    ParsedCommandLine parsed;
+    parsed.text =
+        absl::StrCat(settled.SourceOf(error.what()), SuggestFlag(line.app, arguments), out.str());
+    parsed.exit_code = kExitUsage;
     return parsed;
   }
-  if (models_command->parsed()) parsed.models = std::move(models);
-  if (synthesize_command->parsed()) parsed.synthesize = std::move(synthesize);
-  if (batch_command->parsed()) parsed.batch = std::move(batch);
-  return parsed;
+  return Collect(&line);
 }
 
 }  // namespace duet::client::cli

@@ -12,6 +12,7 @@
 #include "client/batch/flow/server_choice.h"
 #include "client/batch/recipe_file.h"
 #include "client/batch/shard.h"
+#include "client/cli/settings.h"
 #include "client/options.h"
 #include "client/request.h"
 #include "model/formats/motion_file.h"
@@ -33,14 +34,23 @@ struct ServerArguments {
 // Of a file with two people, the one that is read where nothing else is said.
 inline constexpr formats::Side kDefaultSide = formats::Side::kLeft;
 
+// What stands for standard input or output where a file is wanted.
+inline constexpr char kStandardStream[] = "-";
+
 // How a motion file is to be read where the file itself does not say.
 struct InputArguments {
+  std::optional<formats::Format> format;
   std::optional<double> frame_rate_hz;
   std::optional<motion::LengthUnit> unit;
   std::optional<motion::UpAxis> up_axis;
   std::optional<double> metres_per_unit;
   retargeting::JointOverrides joints;
   std::filesystem::path joint_table;  // a file of such joints; `joints` win over it
+};
+
+// What a result is written as: a motion, or a page to watch.
+struct OutputFormat {
+  std::optional<formats::Format> motion;  // absent: a page
 };
 
 // duet models
@@ -69,6 +79,7 @@ struct SynthesizeArguments {
   std::optional<int> chunk_frames;
   std::string request_id;
   std::vector<std::filesystem::path> outputs;
+  std::optional<OutputFormat> output_format;  // of standard output
   bool json = false;
   bool quiet = false;
 };
@@ -104,18 +115,75 @@ struct BatchArguments {
   bool quiet = false;
 };
 
+// duet inspect
+struct InspectArguments {
+  std::vector<std::filesystem::path> files;
+  InputArguments input;
+  bool json = false;
+};
+
+// Who of a file with two people.
+enum class People { kLeft, kRight, kBoth };
+
+// duet convert
+struct ConvertArguments {
+  std::filesystem::path file;
+  InputArguments input;
+  std::optional<People> people;  // absent: all that the file has
+  std::optional<double> resample_hz;
+  std::vector<std::filesystem::path> outputs;
+  std::optional<OutputFormat> output_format;  // of standard output
+  bool json = false;
+  bool quiet = false;
+};
+
+// The motions that duet view and duet compare show: "[NAME=]FILE" or "[NAME=]LEADER,FOLLOWER".
+struct TakeArguments {
+  std::vector<std::string> takes;
+  // Who leads in a file with two people: of all files, or of each in their order.
+  std::vector<formats::Side> leader_sides = {kDefaultSide};
+  InputArguments input;
+};
+
+// duet view
+struct ViewArguments {
+  TakeArguments takes;
+  std::filesystem::path out;
+  std::string title;  // empty: the takes' names
+  bool quiet = false;
+};
+
+// duet compare
+struct CompareArguments {
+  TakeArguments takes;  // two
+  std::filesystem::path html;
+  bool json = false;
+};
+
+// duet man
+struct ManArguments {
+  std::filesystem::path folder;
+};
+
 // What the command line asks for: one of the commands, or to print `text` and exit with `exit_code`
 // (help, version, a usage error).
 struct ParsedCommandLine {
   std::optional<ModelsArguments> models;
   std::optional<SynthesizeArguments> synthesize;
   std::optional<BatchArguments> batch;
+  std::optional<InspectArguments> inspect;
+  std::optional<ConvertArguments> convert;
+  std::optional<ViewArguments> view;
+  std::optional<CompareArguments> compare;
+  std::optional<ManArguments> man;
   std::string text;
   int exit_code = 0;
 };
 
-// `arguments` without the program's name. Never touches the network; looks at output folders only.
-ParsedCommandLine ParseCommandLine(const std::vector<std::string>& arguments);
+// `arguments` without the program's name; `settings` count for flags that are not among them. Never
+// touches the network; looks at output folders only.
+ParsedCommandLine ParseCommandLine(const std::vector<std::string>& arguments,
+                                   const std::vector<Setting>& settings = {});
 
 }  // namespace duet::client::cli
 

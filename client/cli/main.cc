@@ -1,13 +1,23 @@
 // duet: the command-line client of a Duet server.
 #include <unistd.h>
 
+#include <cstdlib>
 #include <iostream>
 
 #include "client/cli/program.h"
+
+namespace {
+
+std::optional<std::string> Variable(const std::string& name) {
+  const char* value = std::getenv(name.c_str());
+  return value == nullptr ? std::nullopt : std::optional<std::string>(value);
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   const std::vector<std::string> arguments(argv + 1, argv + argc);
   return duet::client::cli::RunProgram(
       arguments, {duet::client::Client::Create, &std::cout, &std::cerr, &std::cin,
-                  isatty(STDERR_FILENO) == 1});
+                  isatty(STDERR_FILENO) == 1, isatty(STDOUT_FILENO) == 1, Variable});
 }

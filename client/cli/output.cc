@@ -35,9 +35,13 @@ absl::StatusOr<std::string> RenderSynthesis(const Synthesis& synthesis) {
 
 }  // namespace
 
-absl::Status CheckOutput(const std::filesystem::path& output, const std::filesystem::path& leader) {
-  if (!IsPage(output) && !formats::IsWritable(output)) {
-    return formats::UnknownExtension(output, absl::StrCat(".html, ", formats::kWritableExtensions));
+absl::Status CheckOutput(const std::filesystem::path& output, const std::filesystem::path& input,
+                         PageAllowed page) {
+  if (output == kStandardStream) return absl::OkStatus();
+  const bool page_allowed = page == PageAllowed::kYes;
+  if (!formats::IsWritable(output) && !(page_allowed && IsPage(output))) {
+    return formats::UnknownExtension(
+        output, absl::StrCat(page_allowed ? ".html, " : "", formats::kWritableExtensions));
   }
   std::error_code error;
   const std::filesystem::path folder = output.has_parent_path() ? output.parent_path() : ".";
@@ -45,9 +49,9 @@ absl::Status CheckOutput(const std::filesystem::path& output, const std::filesys
     return absl::InvalidArgumentError(
         absl::StrCat(output.string(), ": there is no folder ", folder.string()));
   }
-  if (std::filesystem::equivalent(output, leader, error)) {
+  if (std::filesystem::equivalent(output, input, error)) {
     return absl::InvalidArgumentError(
-        absl::StrCat(output.string(), ": would replace the leader's own file"));
+        absl::StrCat(output.string(), ": would replace the file that is read"));
   }
   return absl::OkStatus();
 }
@@ -60,6 +64,25 @@ absl::StatusOr<std::vector<std::filesystem::path>> WriteOutput(const std::filesy
   absl::Status status = base::WriteFile(output, *page);
   if (!status.ok()) return status;
   return std::vector<std::filesystem::path>{output};
+}
+
+absl::StatusOr<std::string> FormatOutput(const OutputFormat& format, const Synthesis& synthesis) {
+  if (!format.motion.has_value()) return RenderSynthesis(synthesis);
+  const motion::ClipPair& pair = synthesis.result.pair;
+  return formats::FormatPeople(*format.motion, {pair.leader, pair.follower}, synthesis.skeleton);
+}
+
+absl::Status WriteToStream(const std::string& content, std::ostream& out) {
+  out.write(content.data(), static_cast<std::streamsize>(content.size()));
+  out.flush();
+  if (out.good()) return absl::OkStatus();
+  return NotWritten(absl::AbortedError("standard output: not all of it arrived"));
+}
+
+absl::Status NotWritten(const absl::Status& status) {
+  if (status.ok()) return status;
+  const auto code = absl::IsPermissionDenied(status) ? absl::StatusCode::kAborted : status.code();
+  return absl::Status(code, absl::StrCat("cannot write the result: ", status.message()));
 }
 
 }  // namespace duet::client::cli

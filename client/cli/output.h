@@ -2,10 +2,13 @@
 #define DUET_CLIENT_CLI_OUTPUT_H_
 
 #include <filesystem>
+#include <ostream>
+#include <string>
 #include <vector>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "client/cli/arguments.h"
 #include "client/request.h"
 #include "client/result.h"
 #include "model/motion/skeleton.h"
@@ -21,13 +24,24 @@ struct Synthesis {
   bool sampled = false;  // the model samples: the follower is one of several
 };
 
+enum class PageAllowed { kNo, kYes };
 // Whether an output can be written at all, before any work is done for it: a known extension, a
-// folder that exists, and not the leader's own file. INVALID_ARGUMENT.
-absl::Status CheckOutput(const std::filesystem::path& output, const std::filesystem::path& leader);
+// folder that exists, and not the file that is read. Standard output always is. INVALID_ARGUMENT.
+absl::Status CheckOutput(const std::filesystem::path& output, const std::filesystem::path& input,
+                         PageAllowed page = PageAllowed::kYes);
 
 // Writes the pair as the extension says, whole files or none, and returns them (.bvh makes two).
 absl::StatusOr<std::vector<std::filesystem::path>> WriteOutput(const std::filesystem::path& output,
                                                                const Synthesis& synthesis);
+// The same as bytes, for a pipe.
+absl::StatusOr<std::string> FormatOutput(const OutputFormat& format, const Synthesis& synthesis);
+
+// Writes all of it. ABORTED where it does not arrive: a full disk, a reader that went.
+absl::Status WriteToStream(const std::string& content, std::ostream& out);
+
+// ABORTED instead of PERMISSION_DENIED: a disk may be full or a folder closed for a while, so the
+// same call may succeed later.
+absl::Status NotWritten(const absl::Status& status);
 
 }  // namespace duet::client::cli
 

@@ -3,10 +3,13 @@
 
 #include <functional>
 #include <iosfwd>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "client/cli/settings.h"
+#include "client/cli/style.h"
 #include "client/client.h"
 
 namespace duet::client::cli {
@@ -17,7 +20,16 @@ struct ProgramEnvironment {
   std::ostream* out;
   std::ostream* err;
   std::istream* in = nullptr;    // what `-` reads; none: there is nothing
-  bool err_is_terminal = false;  // progress is shown in place
+  bool err_is_terminal = false;  // progress is shown in place, and with colour
+  bool out_is_terminal = false;  // shown with colour
+  Variables variables = [](const std::string&) { return std::nullopt; };
+
+  // Colour on a terminal, and never where NO_COLOR is set to anything.
+  Style OutStyle() const { return Style(out_is_terminal && WantsColour()); }
+  Style ErrStyle() const { return Style(err_is_terminal && WantsColour()); }
+
+ private:
+  bool WantsColour() const { return variables("NO_COLOR").value_or("").empty(); }
 };
 
 // The whole `duet` program: parses, calls, writes, prints. Returns its exit code

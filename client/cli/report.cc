@@ -16,10 +16,6 @@ using nlohmann::json;
 // Of captured leaders that a model was not trained on, hardly any is farther.
 constexpr double kFarUnfamiliarity = 1.5;
 
-std::string Print(const json& value) {
-  return value.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
-}
-
 std::string Milliseconds(absl::Duration duration) {
   return absl::StrFormat("%.0f ms", absl::ToDoubleMilliseconds(duration));
 }
@@ -86,6 +82,8 @@ json ModelJson(const ModelInfo& model) {
 // How the user of this program says what a motion file does not.
 std::string FlagFor(motion::ReadingSetting setting) {
   switch (setting) {
+    case motion::ReadingSetting::kFormat:
+      return "--input-format FORMAT";
     case motion::ReadingSetting::kFrameRate:
       return "--frame-rate HZ";
     case motion::ReadingSetting::kMetresPerUnit:
@@ -97,9 +95,7 @@ std::string FlagFor(motion::ReadingSetting setting) {
 }
 
 std::string Advice(const absl::Status& status, const std::string& server_address) {
-  if (const auto setting = motion::MendingSetting(status); setting.has_value()) {
-    return absl::StrCat("Say it with ", FlagFor(*setting), ".\n");
-  }
+  if (std::string advice = DescribeAdvice(status); !advice.empty()) return advice;
   if (ExitCodeFor(status) != kExitRetry) return "";
   // A reason would mean that a Duet server answered.
   if (absl::IsUnavailable(status) && ErrorReason(status).empty()) {
@@ -109,6 +105,15 @@ std::string Advice(const absl::Status& status, const std::string& server_address
 }
 
 }  // namespace
+
+std::string Print(const json& value) {
+  return value.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+}
+
+std::string DescribeAdvice(const absl::Status& status) {
+  const auto setting = motion::MendingSetting(status);
+  return setting.has_value() ? absl::StrCat("Say it with ", FlagFor(*setting), ".\n") : "";
+}
 
 std::string DescribeModels(const std::vector<ModelInfo>& models) {
   if (models.empty()) return "The server serves no model.\n";
@@ -209,14 +214,16 @@ std::string SamplesJson(const std::vector<json>& samples) {
   return Print(samples.size() == 1 ? samples.front() : json{{"samples", samples}});
 }
 
-std::string DescribeFailure(const absl::Status& status, const std::string& server_address) {
+std::string DescribeFailure(const absl::Status& status, const std::string& server_address,
+                            const Style& style) {
   const std::string code = absl::StatusCodeToString(status.code());
   const std::vector<FieldViolation> violations = FieldViolations(status);
   if (violations.empty()) {
-    return absl::StrCat("duet: ", status.message(), " (", code, ")\n",
+    return absl::StrCat(style.Bad("duet:"), " ", status.message(), " (", code, ")\n",
                         Advice(status, server_address));
   }
-  std::string text = absl::StrCat("duet: the server refuses the request (", code, ")\n");
+  std::string text =
+      absl::StrCat(style.Bad("duet:"), " the server refuses the request (", code, ")\n");
   for (const FieldViolation& violation : violations) {
     absl::StrAppend(&text, "  ", violation.field, violation.field.empty() ? "" : ": ",
                     violation.description, "\n");

@@ -7,6 +7,7 @@
 
 #include "absl/status/status.h"
 #include "client/cli/output.h"
+#include "client/cli/style.h"
 #include "client/result.h"
 #include "nlohmann/json_fwd.hpp"
 
@@ -30,7 +31,13 @@ nlohmann::json SynthesisJson(const Synthesis& synthesis,
 std::string SamplesJson(const std::vector<nlohmann::json>& samples);
 
 // Why it failed, one line for every refused field, and what may help.
-std::string DescribeFailure(const absl::Status& status, const std::string& server_address);
+std::string DescribeFailure(const absl::Status& status, const std::string& server_address,
+                            const Style& style);
+// The flag that mends how a file was read: "Say it with --frame-rate HZ.\n"; empty where none does.
+std::string DescribeAdvice(const absl::Status& status);
+
+// As this program prints JSON.
+std::string Print(const nlohmann::json& value);
 
 }  // namespace duet::client::cli
 

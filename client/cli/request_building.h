@@ -1,6 +1,7 @@
 #ifndef DUET_CLIENT_CLI_REQUEST_BUILDING_H_
 #define DUET_CLIENT_CLI_REQUEST_BUILDING_H_
 
+#include <istream>
 #include <string>
 #include <vector>
 
@@ -16,10 +17,12 @@ namespace duet::client::cli {
 absl::Status CheckInputs(const SynthesizeArguments& arguments);
 
 // The request that the flags describe; reads the files that they name, in the skeleton's joints.
-// `notes` receives what was decided where the leader's file leaves a choice.
+// `notes` receives what was decided where the leader's file leaves a choice; a leader `-` is read
+// from `in`.
 absl::StatusOr<SynthesisRequest> BuildRequest(const SynthesizeArguments& arguments,
                                               const motion::Skeleton& skeleton,
-                                              std::vector<std::string>* notes);
+                                              std::vector<std::string>* notes,
+                                              std::istream* in = nullptr);
 
 }  // namespace duet::client::cli
 

@@ -1,16 +1,21 @@
 #include "client/cli/synthesize_command.h"
 
+#include <algorithm>
 #include <ostream>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "client/cli/input_flags.h"
 #include "client/cli/output.h"
 #include "client/cli/report.h"
 #include "client/cli/request_building.h"
 #include "client/cli/server_options.h"
 #include "client/model_skeleton.h"
+#include "model/base/nearest.h"
+#include "model/base/text.h"
 #include "nlohmann/json.hpp"
 
 namespace duet::client::cli {
@@ -18,16 +23,22 @@ namespace {
 
 using Paths = std::vector<std::filesystem::path>;
 
-// ABORTED instead of PERMISSION_DENIED: a disk may be full or a folder closed for a while, so the
-// same call may succeed later.
-absl::Status NotWritten(const absl::Status& status) {
-  const auto code = absl::IsPermissionDenied(status) ? absl::StatusCode::kAborted : status.code();
-  return absl::Status(code, absl::StrCat("cannot write the result: ", status.message()));
+absl::Status WriteToStandardOutput(const OutputFormat& format, const Synthesis& synthesis,
+                                   std::ostream& out) {
+  const absl::StatusOr<std::string> content = FormatOutput(format, synthesis);
+  return content.ok() ? WriteToStream(*content, out) : content.status();
 }
 
-absl::StatusOr<Paths> WriteAll(const Paths& outputs, const Synthesis& synthesis) {
+absl::StatusOr<Paths> WriteAll(const SynthesizeArguments& arguments, const Paths& outputs,
+                               const Synthesis& synthesis, std::ostream& out) {
   Paths written;
   for (const std::filesystem::path& output : outputs) {
+    if (output == kStandardStream) {
+      absl::Status status = WriteToStandardOutput(*arguments.output_format, synthesis, out);
+      if (!status.ok()) return status;
+      written.push_back(output);
+      continue;
+    }
     absl::StatusOr<Paths> files = WriteOutput(output, synthesis);
     if (!files.ok()) return NotWritten(files.status());
     written.insert(written.end(), files->begin(), files->end());
@@ -43,13 +54,34 @@ struct Job {
   std::vector<std::string> notes;  // on how the leader was read
 };
 
-absl::StatusOr<Job> PrepareJob(const SynthesizeArguments& arguments, const Client& client) {
+// A class that the model does not know is refused here, where its near namesake can be told.
+absl::Status CheckLabels(const SynthesizeArguments& arguments, const ModelInfo& model) {
+  std::vector<ClassWeight> weights = arguments.weights;
+  for (const WeightKeyframe& keyframe : arguments.keyframes) {
+    weights.insert(weights.end(), keyframe.weights.begin(), keyframe.weights.end());
+  }
+  const std::vector<std::string>& known = model.interaction_classes;
+  for (const ClassWeight& weight : weights) {
+    const std::string& name = weight.interaction_class;
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    return absl::InvalidArgumentError(
+        absl::StrCat(arguments.keyframes.empty() ? "--label" : "--keyframe", ": class: came ",
+                     base::Quoted(name), ", ", model.name, " knows ", absl::StrJoin(known, ", "),
+                     base::DidYouMean(name, known)));
+  }
+  return absl::OkStatus();
+}
+
+absl::StatusOr<Job> PrepareJob(const SynthesizeArguments& arguments, const Client& client,
+                               std::istream* in) {
   const absl::StatusOr<ModelDetails> details = client.GetModel(arguments.model);
   if (!details.ok()) return details.status();
+  const absl::Status labels = CheckLabels(arguments, details->model);
+  if (!labels.ok()) return labels;
   absl::StatusOr<motion::Skeleton> skeleton = ToSkeleton(details->model);
   if (!skeleton.ok()) return skeleton.status();
   Job job;
-  absl::StatusOr<SynthesisRequest> request = BuildRequest(arguments, *skeleton, &job.notes);
+  absl::StatusOr<SynthesisRequest> request = BuildRequest(arguments, *skeleton, &job.notes, in);
   if (!request.ok()) return request.status();
   job.request = *std::move(request);
   job.skeleton = *std::move(skeleton);
@@ -59,7 +91,10 @@ absl::StatusOr<Job> PrepareJob(const SynthesizeArguments& arguments, const Clien
 
 // Asks for every sample in turn, and writes and reports each before the next.
 absl::Status RunSamples(const SynthesizeArguments& arguments, const Job& job, const Client& client,
-                        std::ostream& out) {
+                        const ProgramEnvironment& environment) {
+  // With a motion on standard output, what is told goes beside it.
+  std::ostream& out =
+      WritesToStandardOutput(arguments.outputs) ? *environment.err : *environment.out;
   std::vector<nlohmann::json> samples;
   for (int sample = 0; sample < arguments.samples; ++sample) {
     SynthesisRequest request = job.request;
@@ -68,7 +103,8 @@ absl::Status RunSamples(const SynthesizeArguments& arguments, const Job& job, co
     if (!result.ok()) return result.status();
     const Synthesis synthesis{std::move(request), *std::move(result), job.skeleton,
                               arguments.leader, job.sampled};
-    const absl::StatusOr<Paths> written = WriteAll(SampleOutputs(arguments, sample), synthesis);
+    const absl::StatusOr<Paths> written =
+        WriteAll(arguments, SampleOutputs(arguments, sample), synthesis, *environment.out);
     if (!written.ok()) return written.status();
     if (arguments.quiet) continue;
     if (arguments.json) {
@@ -92,9 +128,9 @@ absl::Status RunSynthesize(const SynthesizeArguments& arguments,
   if (!options.ok()) return options.status();
   const absl::StatusOr<Client> client = environment.connect(*options);
   if (!client.ok()) return client.status();
-  const absl::StatusOr<Job> job = PrepareJob(arguments, *client);
+  const absl::StatusOr<Job> job = PrepareJob(arguments, *client, environment.in);
   if (!job.ok()) return job.status();
-  return RunSamples(arguments, *job, *client, *environment.out);
+  return RunSamples(arguments, *job, *client, environment);
 }
 
 }  // namespace duet::client::cli

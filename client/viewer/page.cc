@@ -1,31 +1,19 @@
 #include "client/viewer/page.h"
 
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_replace.h"
-#include "absl/strings/string_view.h"
 #include "client/viewer/page_data.h"
+#include "client/viewer/page_parts.h"
 
 // The page's parts, linked in by duet_embed_file.
 extern "C" {
 extern const char duet_page_index[], duet_page_index_end[];
-extern const char duet_page_style[], duet_page_style_end[];
-extern const char duet_page_three[], duet_page_three_end[];
-extern const char duet_page_controls[], duet_page_controls_end[];
-extern const char duet_page_motion[], duet_page_motion_end[];
-extern const char duet_page_figure[], duet_page_figure_end[];
 extern const char duet_page_stage[], duet_page_stage_end[];
-extern const char duet_page_player[], duet_page_player_end[];
 extern const char duet_page_panel[], duet_page_panel_end[];
-extern const char duet_page_input[], duet_page_input_end[];
 extern const char duet_page_main[], duet_page_main_end[];
 }
 
 namespace duet::client::viewer {
 namespace {
-
-absl::string_view Text(const char* begin, const char* end) {
-  return {begin, static_cast<size_t>(end - begin)};
-}
 
 absl::Status Check(const PageContent& content) {
   const motion::Clip& leader = content.pair.leader;
@@ -59,17 +47,10 @@ absl::Status Check(const PageContent& content) {
   return absl::OkStatus();
 }
 
-std::string EscapeHtml(absl::string_view text) {
-  return absl::StrReplaceAll(text,
-                             {{"&", "&amp;"}, {"<", "&lt;"}, {">", "&gt;"}, {"\"", "&quot;"}});
-}
-
 std::string Script() {
-  return absl::StrCat(
-      Text(duet_page_motion, duet_page_motion_end), Text(duet_page_stage, duet_page_stage_end),
-      Text(duet_page_figure, duet_page_figure_end), Text(duet_page_player, duet_page_player_end),
-      Text(duet_page_panel, duet_page_panel_end), Text(duet_page_input, duet_page_input_end),
-      Text(duet_page_main, duet_page_main_end));
+  return absl::StrCat(SharedScript(), Embedded(duet_page_stage, duet_page_stage_end),
+                      Embedded(duet_page_panel, duet_page_panel_end),
+                      Embedded(duet_page_main, duet_page_main_end));
 }
 
 }  // namespace
@@ -77,15 +58,8 @@ std::string Script() {
 absl::StatusOr<std::string> RenderPage(const PageContent& content) {
   absl::Status status = Check(content);
   if (!status.ok()) return status;
-  // In one pass: text that was put in is not searched again, so that a title with "{{DATA}}" in it
-  // stays a title.
-  return absl::StrReplaceAll(Text(duet_page_index, duet_page_index_end),
-                             {{"{{TITLE}}", EscapeHtml(content.title)},
-                              {"{{STYLE}}", Text(duet_page_style, duet_page_style_end)},
-                              {"{{DATA}}", PageDataJson(content)},
-                              {"{{THREE}}", Text(duet_page_three, duet_page_three_end)},
-                              {"{{CONTROLS}}", Text(duet_page_controls, duet_page_controls_end)},
-                              {"{{SCRIPT}}", Script()}});
+  return FillPage({Embedded(duet_page_index, duet_page_index_end), content.title,
+                   std::string(SharedStyle()), PageDataJson(content), Script()});
 }
 
 }  // namespace duet::client::viewer

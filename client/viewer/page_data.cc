@@ -1,32 +1,12 @@
 #include "client/viewer/page_data.h"
 
 #include <algorithm>
-#include <cstdint>
-#include <cstring>
 
-#include "absl/strings/escaping.h"
-#include "absl/strings/str_replace.h"
+#include "client/viewer/page_parts.h"
 #include "nlohmann/json.hpp"
 
 namespace duet::client::viewer {
 namespace {
-
-void AppendLittleEndian(float value, std::string* bytes) {
-  uint32_t bits = 0;
-  std::memcpy(&bits, &value, sizeof bits);
-  for (int shift = 0; shift < 32; shift += 8) bytes->push_back(static_cast<char>(bits >> shift));
-}
-
-std::string EncodePositions(const motion::Clip& clip) {
-  std::string bytes;
-  bytes.reserve(clip.poses.all().size() * sizeof(motion::Vec3));
-  for (const motion::Vec3& position : clip.poses.all()) {
-    AppendLittleEndian(position.x, &bytes);
-    AppendLittleEndian(position.y, &bytes);
-    AppendLittleEndian(position.z, &bytes);
-  }
-  return absl::Base64Escape(bytes);
-}
 
 // Every class that any keyframe names, in the order of first mention.
 std::vector<std::string> Classes(const std::vector<WeightKeyframe>& keyframes) {
@@ -73,10 +53,7 @@ std::string PageDataJson(const PageContent& content) {
                                {"keyframes", keyframes},
                                {"leader", EncodePositions(leader)},
                                {"follower", EncodePositions(content.pair.follower)}};
-  // "</script>" inside a string would end the script. In JSON "<" stands inside strings alone,
-  // where it may be written as an escape.
-  return absl::StrReplaceAll(data.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace),
-                             {{"<", "\\u003c"}});
+  return SafeJson(data);
 }
 
 }  // namespace duet::client::viewer

@@ -1,5 +1,7 @@
 #include "model/formats/motion_file.h"
 
+#include <cstddef>
+#include <map>
 #include <utility>
 
 #include "absl/strings/ascii.h"
@@ -30,28 +32,73 @@ namespace fs = std::filesystem;
 
 constexpr double kSbuFrameRateHz = 15;
 
-enum class Format { kSbuText, kBvh, kCsv, kNpy, kJson, kGltf, kAmc, kUnknown };
+using retargeting::Origin;
+using retargeting::Setting;
 
-Format FormatOf(const fs::path& path) {
-  const std::string extension = absl::AsciiStrToLower(path.extension().string());
-  if (extension == ".txt") return Format::kSbuText;
-  if (extension == ".bvh") return Format::kBvh;
-  if (extension == ".csv") return Format::kCsv;
-  if (extension == ".npy") return Format::kNpy;
-  if (extension == ".json") return Format::kJson;
-  if (extension == ".gltf" || extension == ".glb") return Format::kGltf;
-  if (extension == ".amc") return Format::kAmc;
-  return Format::kUnknown;
-}
+// What a motion is read from besides its own bytes.
+struct Source {
+  std::string name;                // for errors
+  std::optional<fs::path> folder;  // where files beside it lie; a pipe has none
+
+  // `what` says what the file is, with its article.
+  absl::StatusOr<std::string> ReadBeside(const std::string& file, const char* what) const {
+    if (folder.has_value()) {
+      return base::ReadFile(*folder / file, motion::kMaxMotionFileBytes, what);
+    }
+    return absl::InvalidArgumentError(absl::StrCat(name, ": came without ", base::Quoted(file),
+                                                   ", ", what,
+                                                   " that lies beside it; wanted both as files"));
+  }
+};
 
 // Positions alone do not say which axis is up where nobody does: Blender's is z.
-void WarnOfUpAxis(const motion::Clip& clip, const motion::Skeleton& skeleton,
-                  std::vector<std::string>* notes) {
-  const std::optional<motion::UpAxis> up = retargeting::FindUpAxis(clip, skeleton);
+void WarnOfUpAxis(const motion::Clip& clip, const ReadOptions& options) {
+  const std::optional<motion::UpAxis> up = retargeting::FindUpAxis(clip, options.skeleton);
   if (!up.has_value() || *up == motion::UpAxis::kYUp) return;
-  notes->push_back(absl::StrCat(
+  const std::string warning = absl::StrCat(
       "warning: up axis: as the file was read, the feet are not below the root along y; ",
-      motion::UpAxisName(*up), " would fit; say which axis is up"));
+      motion::UpAxisName(*up), " would fit; say which axis is up");
+  if (options.notes != nullptr) options.notes->push_back(warning);
+  if (options.report != nullptr) options.report->remarks.push_back(warning);
+}
+
+void ReportCoordinates(const motion::Coordinates& coordinates, Origin unit, Origin up_axis,
+                       retargeting::ReadingReport* report) {
+  report->unit = Setting{std::string(LengthUnitName(coordinates.unit)), unit, ""};
+  report->up_axis = Setting{std::string(UpAxisName(coordinates.up_axis)), up_axis, ""};
+}
+
+// What a file with positions says itself. SBU text says nothing.
+void Report(const motion::RecordedMotion& motion, const motion::Clip& person,
+            const ReadOptions& options) {
+  retargeting::ReadingReport* report = options.report;
+  if (report == nullptr) return;
+  report->people = static_cast<int>(motion.people.size());
+  report->file_joints = person.joint_names;
+  if (person.frame_rate_hz > 0) {
+    report->frame_rate = Setting{absl::StrCat(person.frame_rate_hz, " Hz"), Origin::kFile,
+                                 motion.rate_from_times ? "its column of times" : ""};
+  }
+  if (options.coordinates.has_value()) {
+    return ReportCoordinates(*options.coordinates, Origin::kGiven, Origin::kGiven, report);
+  }
+  ReportCoordinates(motion.coordinates, motion.says_unit ? Origin::kFile : Origin::kDefault,
+                    motion.says_up_axis ? Origin::kFile : Origin::kDefault, report);
+}
+
+// SBU text has the skeleton's joints in its order.
+void ReportSbu(const flat::SbuOptions& sbu, const ReadOptions& options) {
+  retargeting::ReadingReport* report = options.report;
+  if (report == nullptr) return;
+  report->people = 2;
+  report->file_joints = sbu.joint_names;
+  report->frame_rate = Setting{absl::StrCat(sbu.frame_rate_hz, " Hz"), Origin::kDefault,
+                               "as SBU's captures have; K3HI's have 30"};
+  const Origin origin = options.coordinates.has_value() ? Origin::kGiven : Origin::kDefault;
+  ReportCoordinates(sbu.coordinates, origin, origin, report);
+  for (const std::string& joint : sbu.joint_names) {
+    report->joints.push_back({joint, {{joint, 1}}, Origin::kDefault, ""});
+  }
 }
 
 // The joints of a file with positions as the skeleton's, in metres, y up.
@@ -59,8 +106,10 @@ absl::StatusOr<motion::Clip> ToSkeleton(const motion::RecordedMotion& motion,
                                         const std::string& source, const ReadOptions& options) {
   const bool second = options.side == Side::kRight && motion.people.size() > 1;
   const motion::Clip& person = motion.people[second ? 1 : 0];
+  Report(motion, person, options);
   absl::StatusOr<retargeting::JointMap> map = retargeting::MapJoints(
-      source, person.joint_names, person.poses, options.skeleton, options.joint_overrides);
+      source, person.joint_names, person.poses, options.skeleton, options.joint_overrides,
+      options.report == nullptr ? nullptr : &options.report->joints);
   if (!map.ok()) return map.status();
   if (options.notes != nullptr) {
     options.notes->insert(options.notes->end(), map->notes.begin(), map->notes.end());
@@ -74,9 +123,7 @@ absl::StatusOr<motion::Clip> ToSkeleton(const motion::RecordedMotion& motion,
     for (motion::Vec3& position : pose) position = ToWorld(coordinates, position);
     clip.Append(pose);
   }
-  if (options.notes != nullptr && !options.coordinates.has_value()) {
-    WarnOfUpAxis(clip, options.skeleton, options.notes);
-  }
+  if (!options.coordinates.has_value()) WarnOfUpAxis(clip, options);
   return clip;
 }
 
@@ -86,6 +133,7 @@ absl::StatusOr<motion::Clip> ReadSbuPerson(const std::string& text, const std::s
   sbu.joint_names = options.skeleton.joint_names;
   sbu.frame_rate_hz = options.frame_rate_hz.value_or(kSbuFrameRateHz);
   sbu.coordinates = options.coordinates.value_or(sbu.coordinates);
+  ReportSbu(sbu, options);
   absl::StatusOr<flat::SbuRecording> recording = ParseSbu(text, source, sbu);
   if (!recording.ok()) return recording.status();
   return options.side == Side::kLeft ? std::move(recording->left) : std::move(recording->right);
@@ -101,6 +149,7 @@ retargeting::CharacterOptions CharacterOptionsOf(const ReadOptions& options) {
   character.metres_per_unit = options.metres_per_unit;
   if (options.coordinates.has_value()) character.up_axis = options.coordinates->up_axis;
   character.notes = options.notes;
+  character.report = options.report;
   return character;
 }
 
@@ -112,93 +161,184 @@ absl::StatusOr<motion::Clip> ReadBvhPerson(const std::string& text, const std::s
   return FromBvh(*document, source, bvh);
 }
 
-absl::StatusOr<motion::Clip> ReadGltfPerson(const std::string& content, const fs::path& path,
+absl::StatusOr<motion::Clip> ReadGltfPerson(const std::string& content, const Source& source,
                                             const ReadOptions& options) {
-  absl::StatusOr<gltf::GltfDocument> document = gltf::ParseGltf(content, path.string());
+  absl::StatusOr<gltf::GltfDocument> document = gltf::ParseGltf(content, source.name);
   if (!document.ok()) return document.status();
   gltf::GltfImportOptions gltf{CharacterOptionsOf(options), PersonOf(options),
                                options.frame_rate_hz};
-  const auto read_beside = [&path](const std::string& name) {
-    return base::ReadFile(path.parent_path() / name, motion::kMaxMotionFileBytes, "a buffer");
+  const auto read_beside = [&source](const std::string& name) {
+    return source.ReadBeside(name, "a buffer");
   };
-  return FromGltf(*document, path.string(), read_beside, gltf);
+  return FromGltf(*document, source.name, read_beside, gltf);
 }
 
 // The skeleton of a motion lies beside it.
-absl::StatusOr<asf::AsfSkeleton> ReadAsfBeside(const fs::path& path) {
-  const std::vector<std::string> names = asf::SkeletonNames(path.filename().string());
+absl::StatusOr<asf::AsfSkeleton> ReadAsfBeside(const Source& source) {
+  if (!source.folder.has_value()) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        source.name, ": came as AMC without its skeleton; wanted both as files in one folder"));
+  }
+  const fs::path motion(source.name);
+  const std::vector<std::string> names = asf::SkeletonNames(motion.filename().string());
   for (const std::string& name : names) {
-    const fs::path skeleton = path.parent_path() / name;
-    const absl::StatusOr<std::string> text =
-        base::ReadFile(skeleton, motion::kMaxMotionFileBytes, "a skeleton");
+    const absl::StatusOr<std::string> text = source.ReadBeside(name, "a skeleton");
     if (absl::IsNotFound(text.status())) continue;
     if (!text.ok()) return text.status();
-    return asf::ParseAsf(*text, skeleton.string());
+    return asf::ParseAsf(*text, (*source.folder / name).string());
   }
-  return absl::NotFoundError(absl::StrCat(path.string(), ": skeleton: wanted ",
+  return absl::NotFoundError(absl::StrCat(source.name, ": skeleton: wanted ",
                                           absl::StrJoin(names, " or "), " in the same folder"));
 }
 
-absl::StatusOr<motion::Clip> ReadAmcPerson(const std::string& text, const fs::path& path,
+absl::StatusOr<motion::Clip> ReadAmcPerson(const std::string& text, const Source& source,
                                            const ReadOptions& options) {
-  const absl::StatusOr<asf::AsfSkeleton> skeleton = ReadAsfBeside(path);
+  const absl::StatusOr<asf::AsfSkeleton> skeleton = ReadAsfBeside(source);
   if (!skeleton.ok()) return skeleton.status();
-  const absl::StatusOr<asf::AmcMotion> motion = asf::ParseAmc(text, path.string(), *skeleton);
+  const absl::StatusOr<asf::AmcMotion> motion = asf::ParseAmc(text, source.name, *skeleton);
   if (!motion.ok()) return motion.status();
   const asf::AmcImportOptions amc{CharacterOptionsOf(options), options.frame_rate_hz};
-  return FromAmc(*skeleton, *motion, path.string(), amc);
+  return FromAmc(*skeleton, *motion, source.name, amc);
 }
 
-absl::StatusOr<motion::Clip> ReadPerson(const fs::path& path, const std::string& content,
-                                        const ReadOptions& options) {
-  const Format format = FormatOf(path);
-  const std::string source = path.string();
-  if (format == Format::kGltf) return ReadGltfPerson(content, path, options);
-  if (format == Format::kAmc) return ReadAmcPerson(content, path, options);
-  if (format == Format::kSbuText) return ReadSbuPerson(content, source, options);
-  if (format == Format::kBvh) return ReadBvhPerson(content, source, options);
+const char* FormatTitle(Format format) {
+  switch (format) {
+    case Format::kSbuText:
+      return "SBU text";
+    case Format::kBvh:
+      return "BVH";
+    case Format::kGltf:
+      return "glTF";
+    case Format::kAmc:
+      return "ASF/AMC";
+    case Format::kCsv:
+      return "CSV";
+    case Format::kJson:
+      return "JSON";
+    case Format::kNpy:
+      return "NPY";
+  }
+  return "";
+}
+
+absl::StatusOr<motion::Clip> ReadPerson(Format format, const std::string& content,
+                                        const Source& source, const ReadOptions& options) {
+  if (options.report != nullptr) options.report->format = FormatTitle(format);
+  if (format == Format::kGltf) return ReadGltfPerson(content, source, options);
+  if (format == Format::kAmc) return ReadAmcPerson(content, source, options);
+  if (format == Format::kSbuText) return ReadSbuPerson(content, source.name, options);
+  if (format == Format::kBvh) return ReadBvhPerson(content, source.name, options);
   absl::StatusOr<motion::RecordedMotion> motion =
-      format == Format::kCsv   ? flat::ParseCsv(content, source)
-      : format == Format::kNpy ? flat::ParseNpy(content, source, options.skeleton.joint_names)
-                               : flat::ParseJsonMotion(content, source);
+      format == Format::kCsv   ? flat::ParseCsv(content, source.name)
+      : format == Format::kNpy ? flat::ParseNpy(content, source.name, options.skeleton.joint_names)
+                               : flat::ParseJsonMotion(content, source.name);
   if (!motion.ok()) return motion.status();
-  return ToSkeleton(*motion, source, options);
+  return ToSkeleton(*motion, source.name, options);
 }
 
-absl::Status WriteBvh(const fs::path& path, const motion::Clip& clip,
-                      const motion::Skeleton& skeleton) {
+// The person at the rate that was given or the file's.
+absl::StatusOr<motion::Clip> ReadAtRate(Format format, const std::string& content,
+                                        const Source& source, const ReadOptions& options) {
+  absl::StatusOr<motion::Clip> clip = ReadPerson(format, content, source, options);
+  if (!clip.ok()) return clip.status();
+  if (options.frame_rate_hz.has_value()) {
+    clip->frame_rate_hz = *options.frame_rate_hz;
+    if (options.report != nullptr) {
+      options.report->frame_rate =
+          Setting{absl::StrCat(clip->frame_rate_hz, " Hz"), Origin::kGiven, ""};
+    }
+  }
+  if (clip->frame_rate_hz > 0) return clip;
+  return MendedBy(absl::InvalidArgumentError(absl::StrCat(
+                      source.name, ": frame rate: the file has none, wanted one beside it")),
+                  motion::ReadingSetting::kFrameRate);
+}
+
+absl::Status CheckOptions(const ReadOptions& options) {
+  if (!options.frame_rate_hz.has_value()) return absl::OkStatus();
+  return motion::CheckFrameRate("frame rate given", *options.frame_rate_hz);
+}
+
+absl::StatusOr<std::string> FormatBvhPerson(const motion::Clip& clip,
+                                            const motion::Skeleton& skeleton) {
   absl::StatusOr<bvh::BvhDocument> document = bvh::ToBvh(clip, skeleton);
   if (!document.ok()) return document.status();
-  return base::WriteFile(path, FormatBvh(*document));
+  return FormatBvh(*document);
 }
 
-absl::StatusOr<std::vector<fs::path>> WriteBvhPair(const fs::path& path,
-                                                   const motion::ClipPair& pair,
-                                                   const motion::Skeleton& skeleton) {
-  fs::path leader = path, follower = path;
-  leader.replace_extension(".leader.bvh");
-  follower.replace_extension(".follower.bvh");
-  absl::Status status = WriteBvh(leader, pair.leader, skeleton);
-  if (status.ok()) status = WriteBvh(follower, pair.follower, skeleton);
-  if (!status.ok()) return status;
-  return std::vector<fs::path>{leader, follower};
-}
-
-absl::Status CheckJoints(const motion::ClipPair& pair, const motion::Skeleton& skeleton) {
-  if (pair.leader.joint_names == skeleton.joint_names) return CheckPair(pair);
-  return absl::InvalidArgumentError(absl::StrCat("pair: came ", pair.leader.joint_count(),
+absl::Status CheckJoints(const std::vector<motion::Clip>& people,
+                         const motion::Skeleton& skeleton) {
+  if (people.empty() || people.size() > 2) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("people: came ", people.size(), ", wanted one or two"));
+  }
+  if (people[0].joint_names == skeleton.joint_names) {
+    return people.size() == 1 ? CheckClip("person", people[0])
+                              : CheckPair(motion::ClipPair{people[0], people[1]});
+  }
+  return absl::InvalidArgumentError(absl::StrCat("pair: came ", people[0].joint_count(),
                                                  " joints, wanted the skeleton's ",
                                                  skeleton.joint_count(), " in its order"));
 }
 
+// People that CheckJoints accepts.
+absl::StatusOr<std::string> FormatChecked(Format format, const std::vector<motion::Clip>& people,
+                                          const motion::Skeleton& skeleton) {
+  if (people.size() == 1) {
+    return format == Format::kBvh   ? FormatBvhPerson(people[0], skeleton)
+           : format == Format::kCsv ? flat::FormatCsv(people[0])
+           : format == Format::kNpy ? flat::FormatNpy(people[0])
+                                    : flat::FormatJsonMotion(people[0], skeleton);
+  }
+  const motion::ClipPair pair{people[0], people[1]};
+  if (format == Format::kCsv) return flat::FormatCsv(pair);
+  if (format == Format::kNpy) return flat::FormatNpy(pair);
+  return flat::FormatJsonMotion(pair, skeleton);
+}
+
+absl::StatusOr<std::vector<fs::path>> WriteBvhPair(const fs::path& path,
+                                                   const std::vector<motion::Clip>& people,
+                                                   const motion::Skeleton& skeleton) {
+  std::vector<fs::path> files;
+  for (std::size_t i = 0; i < people.size(); ++i) {
+    const absl::StatusOr<std::string> text = FormatBvhPerson(people[i], skeleton);
+    if (!text.ok()) return text.status();
+    fs::path file = path;
+    file.replace_extension(i == 0 ? ".leader.bvh" : ".follower.bvh");
+    absl::Status status = base::WriteFile(file, *text);
+    if (!status.ok()) return status;
+    files.push_back(std::move(file));
+  }
+  return files;
+}
+
 }  // namespace
 
-bool IsReadable(const fs::path& path) { return FormatOf(path) != Format::kUnknown; }
+std::optional<Format> FormatOf(const fs::path& path) {
+  const std::string extension = absl::AsciiStrToLower(path.extension().string());
+  if (extension == ".txt") return Format::kSbuText;
+  if (extension.size() < 2 || extension == ".sbu") return std::nullopt;
+  return ParseFormat(extension.substr(1));
+}
+
+std::optional<Format> ParseFormat(absl::string_view name) {
+  static const auto& formats = *new std::map<absl::string_view, Format>{
+      {"sbu", Format::kSbuText}, {"bvh", Format::kBvh}, {"gltf", Format::kGltf},
+      {"glb", Format::kGltf},    {"amc", Format::kAmc}, {"csv", Format::kCsv},
+      {"json", Format::kJson},   {"npy", Format::kNpy}};
+  const auto found = formats.find(name);
+  return found == formats.end() ? std::nullopt : std::optional<Format>(found->second);
+}
+
+bool IsReadable(const fs::path& path) { return FormatOf(path).has_value(); }
+
+bool IsWritable(Format format) {
+  return format != Format::kSbuText && format != Format::kGltf && format != Format::kAmc;
+}
 
 bool IsWritable(const fs::path& path) {
-  const Format format = FormatOf(path);
-  return IsReadable(path) && format != Format::kSbuText && format != Format::kGltf &&
-         format != Format::kAmc;
+  const std::optional<Format> format = FormatOf(path);
+  return format.has_value() && IsWritable(*format);
 }
 
 absl::Status UnknownExtension(const fs::path& path, absl::string_view known) {
@@ -208,21 +348,25 @@ absl::Status UnknownExtension(const fs::path& path, absl::string_view known) {
 }
 
 absl::StatusOr<motion::Clip> ReadLeader(const fs::path& path, const ReadOptions& options) {
-  if (!IsReadable(path)) return UnknownExtension(path, kReadableExtensions);
-  if (options.frame_rate_hz.has_value()) {
-    absl::Status status = motion::CheckFrameRate("frame rate given", *options.frame_rate_hz);
-    if (!status.ok()) return status;
-  }
+  const std::optional<Format> format = options.format.has_value() ? options.format : FormatOf(path);
+  if (!format.has_value()) return UnknownExtension(path, kReadableExtensions);
+  absl::Status status = CheckOptions(options);
+  if (!status.ok()) return status;
   absl::StatusOr<std::string> content =
       base::ReadFile(path, motion::kMaxMotionFileBytes, "a motion");
   if (!content.ok()) return content.status();
-  absl::StatusOr<motion::Clip> clip = ReadPerson(path, *content, options);
-  if (!clip.ok()) return clip.status();
-  if (options.frame_rate_hz.has_value()) clip->frame_rate_hz = *options.frame_rate_hz;
-  if (clip->frame_rate_hz > 0) return clip;
-  return MendedBy(absl::InvalidArgumentError(absl::StrCat(
-                      path.string(), ": frame rate: the file has none, wanted one beside it")),
-                  motion::ReadingSetting::kFrameRate);
+  return ReadAtRate(*format, *content, {path.string(), path.parent_path()}, options);
+}
+
+absl::StatusOr<motion::Clip> ParseLeader(const std::string& content, const std::string& name,
+                                         const ReadOptions& options) {
+  if (!options.format.has_value()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(name, ": format: nothing says which, wanted one of ", kReadableExtensions));
+  }
+  absl::Status status = CheckOptions(options);
+  if (!status.ok()) return status;
+  return ReadAtRate(*options.format, content, {name, std::nullopt}, options);
 }
 
 absl::StatusOr<std::vector<motion::Vec3>> ReadFollowerStart(const fs::path& path,
@@ -239,13 +383,34 @@ absl::StatusOr<std::vector<motion::Vec3>> ReadFollowerStart(const fs::path& path
 absl::StatusOr<std::vector<fs::path>> WritePair(const fs::path& path, const motion::ClipPair& pair,
                                                 const motion::Skeleton& skeleton) {
   if (!IsWritable(path)) return UnknownExtension(path, kWritableExtensions);
-  absl::Status status = CheckJoints(pair, skeleton);
+  return WritePeople(path, *FormatOf(path), {pair.leader, pair.follower}, skeleton);
+}
+
+absl::StatusOr<std::string> FormatPeople(Format format, const std::vector<motion::Clip>& people,
+                                         const motion::Skeleton& skeleton) {
+  absl::Status status = CheckJoints(people, skeleton);
   if (!status.ok()) return status;
-  const Format format = FormatOf(path);
-  if (format == Format::kBvh) return WriteBvhPair(path, pair, skeleton);
-  status = base::WriteFile(path, format == Format::kCsv   ? flat::FormatCsv(pair)
-                                 : format == Format::kNpy ? flat::FormatNpy(pair)
-                                                          : flat::FormatJsonMotion(pair, skeleton));
+  if (!IsWritable(format)) {
+    return absl::InvalidArgumentError(absl::StrCat("format: came ", FormatTitle(format),
+                                                   ", wanted one of ", kWritableExtensions));
+  }
+  if (format == Format::kBvh && people.size() > 1) {
+    return absl::InvalidArgumentError("people: came 2, wanted one: BVH has a file for each");
+  }
+  return FormatChecked(format, people, skeleton);
+}
+
+absl::StatusOr<std::vector<fs::path>> WritePeople(const fs::path& path, Format format,
+                                                  const std::vector<motion::Clip>& people,
+                                                  const motion::Skeleton& skeleton) {
+  if (format == Format::kBvh && people.size() == 2) {
+    absl::Status status = CheckJoints(people, skeleton);
+    if (!status.ok()) return status;
+    return WriteBvhPair(path, people, skeleton);
+  }
+  const absl::StatusOr<std::string> content = FormatPeople(format, people, skeleton);
+  if (!content.ok()) return content.status();
+  absl::Status status = base::WriteFile(path, *content);
   if (!status.ok()) return status;
   return std::vector<fs::path>{path};
 }

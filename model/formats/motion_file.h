@@ -13,6 +13,7 @@
 #include "model/motion/coordinates.h"
 #include "model/motion/skeleton.h"
 #include "model/retargeting/joint_mapping.h"
+#include "model/retargeting/reading_report.h"
 
 // The front door of motion files: the extension decides the format (docs/formats.md).
 //
@@ -30,7 +31,11 @@ namespace duet::formats {
 // the first person (the leader of a pair), right the second.
 enum class Side { kLeft, kRight };
 
+enum class Format { kSbuText, kBvh, kGltf, kAmc, kCsv, kJson, kNpy };
+
 struct ReadOptions {
+  // Replaces what the file's extension says.
+  std::optional<Format> format;
   Side side = Side::kLeft;
   // The joints wanted, in their order.
   motion::Skeleton skeleton = motion::SbuSkeleton();
@@ -45,6 +50,8 @@ struct ReadOptions {
   retargeting::JointOverrides joint_overrides;
   // Receives what was decided (unit, up axis, torso joint), for people to read. May be null.
   std::vector<std::string>* notes = nullptr;
+  // The same with all its details, also where reading fails half way. May be null.
+  retargeting::ReadingReport* report = nullptr;
 };
 
 // Reads one person's motion.
@@ -54,6 +61,11 @@ struct ReadOptions {
 //         came and what was wanted.
 absl::StatusOr<motion::Clip> ReadLeader(const std::filesystem::path& path,
                                         const ReadOptions& options = {});
+
+// The same of a motion that is no file, such as a pipe's: `content` is all of it, `name` what
+// errors call it. Wants options.format, and a motion that needs no file beside it.
+absl::StatusOr<motion::Clip> ParseLeader(const std::string& content, const std::string& name,
+                                         const ReadOptions& options);
 
 // The first frame of any file that ReadLeader reads: where a follower starts. [skeleton joints]
 absl::StatusOr<std::vector<motion::Vec3>> ReadFollowerStart(const std::filesystem::path& path,
@@ -67,6 +79,21 @@ absl::StatusOr<std::vector<motion::Vec3>> ReadFollowerStart(const std::filesyste
 absl::StatusOr<std::vector<std::filesystem::path>> WritePair(const std::filesystem::path& path,
                                                              const motion::ClipPair& pair,
                                                              const motion::Skeleton& skeleton);
+
+// The same for a person alone (one file, .bvh as well), or a leader and a follower, in a format
+// that need not be the extension's.
+absl::StatusOr<std::vector<std::filesystem::path>> WritePeople(
+    const std::filesystem::path& path, Format format, const std::vector<motion::Clip>& people,
+    const motion::Skeleton& skeleton);
+// What WritePeople writes where it writes one file: .bvh holds one person.
+absl::StatusOr<std::string> FormatPeople(Format format, const std::vector<motion::Clip>& people,
+                                         const motion::Skeleton& skeleton);
+
+// The format that an extension stands for; absent for an unknown one.
+std::optional<Format> FormatOf(const std::filesystem::path& path);
+// By name: "bvh", "gltf", "glb", "amc", "csv", "json", "npy" or "sbu".
+std::optional<Format> ParseFormat(absl::string_view name);
+bool IsWritable(Format format);
 
 // Whether WritePair, ReadLeader know the extension; the file need not exist.
 bool IsWritable(const std::filesystem::path& path);

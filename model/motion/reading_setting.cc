@@ -12,7 +12,8 @@ struct Name {
   ReadingSetting setting;
   absl::string_view name;
 };
-constexpr Name kNames[] = {{ReadingSetting::kFrameRate, "frame_rate"},
+constexpr Name kNames[] = {{ReadingSetting::kFormat, "format"},
+                           {ReadingSetting::kFrameRate, "frame_rate"},
                            {ReadingSetting::kMetresPerUnit, "metres_per_unit"},
                            {ReadingSetting::kJointMap, "joint_map"}};
 

@@ -8,7 +8,7 @@
 namespace duet::motion {
 
 // What a reader of motion files can be told beside the file.
-enum class ReadingSetting { kFrameRate, kMetresPerUnit, kJointMap };
+enum class ReadingSetting { kFormat, kFrameRate, kMetresPerUnit, kJointMap };
 
 // `status`, an error, with the setting that would mend it as a detail, for a program that knows how
 // its user says that setting.

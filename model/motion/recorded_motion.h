@@ -14,6 +14,9 @@ namespace duet::motion {
 struct RecordedMotion {
   std::vector<Clip> people;  // one or two, the same joints and frames; frame rate 0 when unknown
   Coordinates coordinates;
+  // What the file says itself; the rest are defaults.
+  bool says_unit = false, says_up_axis = false;
+  bool rate_from_times = false;  // the frame rate is that of a column of times
 };
 
 // Refuses what no writer can express: no frame, a rate that is no rate, a position that is not

@@ -36,8 +36,10 @@ class ClipMaker {
       : character_(character), source_(source), options_(options) {}
 
   absl::StatusOr<motion::Clip> Make() {
+    if (options_.report != nullptr) options_.report->file_joints = character_.tree.names;
     absl::StatusOr<JointMap> map =
-        MapJoints(source_, character_.tree, options_.skeleton, options_.joint_overrides);
+        MapJoints(source_, character_.tree, options_.skeleton, options_.joint_overrides,
+                  options_.report == nullptr ? nullptr : &options_.report->joints);
     if (!map.ok()) return map.status();
     for (std::string& note : map->notes) Note(std::move(note));
     const absl::StatusOr<double> scale = MetresPerUnit(map->straight);
@@ -86,7 +88,10 @@ class ClipMaker {
   }
 
   absl::StatusOr<double> MetresPerUnit(const std::vector<motion::Vec3>& straight) {
-    if (options_.metres_per_unit.has_value()) return CheckUnit(*options_.metres_per_unit);
+    if (options_.metres_per_unit.has_value()) {
+      ReportUnit({absl::StrCat(*options_.metres_per_unit, " m"), Origin::kGiven, ""});
+      return CheckUnit(*options_.metres_per_unit);
+    }
     if (!options_.skeleton.feet) {
       return UnitNeeded("the skeleton has no feet to tell it by");
     }
@@ -96,23 +101,44 @@ class ClipMaker {
     for (const Unit& unit : kUnits) {
       const double metres = length * unit.metres;
       if (metres < kShortestLeg || metres > kLongestLeg) continue;
-      Note(absl::StrCat("unit: ", unit.name, " (foot to ", root, " is then ", Rounded(metres, 0.01),
-                        " m)"));
+      const std::string why =
+          absl::StrCat("foot to ", root, " is then ", Rounded(metres, 0.01), " m");
+      Note(absl::StrCat("unit: ", unit.name, " (", why, ")"));
+      ReportUnit({unit.name, Origin::kGuessed, why});
       return unit.metres;
     }
     if (!(length >= kSmallestLeg)) {
       return UnitNeeded(
           absl::StrCat("foot to ", root, " came as ", length, " units, which is no size"));
     }
-    Note(absl::StrCat("warning: unit: a guess: foot to ", root, " is ", Rounded(length, 0.01),
-                      " units, no person's in any usual unit, and was taken as ", kTypicalLeg,
-                      " m; say how many metres a unit has where the size matters"));
+    const std::string why =
+        absl::StrCat("foot to ", root, " is ", Rounded(length, 0.01),
+                     " units, no person's in any usual unit, and was taken as ", kTypicalLeg,
+                     " m; say how many metres a unit has where the size matters");
+    Note(absl::StrCat("warning: unit: a guess: ", why));
+    ReportUnit({absl::StrCat(kTypicalLeg / length, " m"), Origin::kGuessed, why});
+    if (options_.report != nullptr) options_.report->remarks.push_back("warning: unit: a guess");
     return kTypicalLeg / length;
   }
 
+  void ReportUnit(Setting unit) const {
+    if (options_.report != nullptr) options_.report->unit = std::move(unit);
+  }
+
+  void ReportUpAxis(motion::UpAxis axis, Origin origin, const char* why) const {
+    if (options_.report == nullptr) return;
+    options_.report->up_axis = Setting{std::string(UpAxisName(axis)), origin, why};
+  }
+
   motion::UpAxis UpAxis(const motion::Clip& clip) {
-    if (options_.up_axis.has_value()) return *options_.up_axis;
-    const motion::UpAxis up = FindUpAxis(clip, options_.skeleton).value_or(motion::UpAxis::kYUp);
+    if (options_.up_axis.has_value()) {
+      ReportUpAxis(*options_.up_axis, Origin::kGiven, "");
+      return *options_.up_axis;
+    }
+    const std::optional<motion::UpAxis> found = FindUpAxis(clip, options_.skeleton);
+    const motion::UpAxis up = found.value_or(motion::UpAxis::kYUp);
+    ReportUpAxis(up, found.has_value() ? Origin::kGuessed : Origin::kDefault,
+                 found.has_value() ? "the feet are below the root along it" : "");
     if (up == motion::UpAxis::kZUp) Note("up axis: z (the feet are below the root along it)");
     if (up == motion::UpAxis::kYDown) {
       Note("up axis: y pointing down (the feet are above the root along it)");

@@ -13,6 +13,7 @@
 #include "model/motion/skeleton.h"
 #include "model/retargeting/joint_mapping.h"
 #include "model/retargeting/joint_tree.h"
+#include "model/retargeting/reading_report.h"
 
 namespace duet::retargeting {
 
@@ -36,6 +37,7 @@ struct CharacterOptions {
   // Absent: the axis along which the root stands above the feet.
   std::optional<motion::UpAxis> up_axis;
   std::vector<std::string>* notes = nullptr;  // receives what was decided; may be null
+  ReadingReport* report = nullptr;            // the same with all its details; may be null
 };
 
 // The axis along which the root stands above the feet, over the whole motion: y where none does

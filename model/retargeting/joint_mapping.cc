@@ -4,11 +4,13 @@
 #include <cstdint>
 #include <initializer_list>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "model/base/nearest.h"
 #include "model/base/text.h"
 #include "model/motion/reading_setting.h"
 #include "model/retargeting/joint_names.h"
@@ -61,9 +63,10 @@ std::vector<absl::Span<const motion::Vec3>> Spread(const motion::Poses& poses) {
 class Mapper {
  public:
   Mapper(absl::string_view source, const std::vector<std::string>& names,
-         const motion::Skeleton& skeleton)
-      : source_(source), names_(names), skeleton_(skeleton) {
+         const motion::Skeleton& skeleton, std::vector<JointReading>* readings)
+      : source_(source), names_(names), skeleton_(skeleton), readings_(readings) {
     found_.resize(skeleton.joint_names.size());
+    why_.resize(skeleton.joint_names.size());
     overridden_.resize(skeleton.joint_names.size(), false);
     used_.resize(names.size(), false);
     for (const std::string& name : names) parsed_.push_back(ParseJointName(name));
@@ -101,15 +104,18 @@ class Mapper {
       if (joint < 0) {
         return absl::InvalidArgumentError(
             absl::StrCat("joint map: came target ", base::Quoted(target),
-                         ", wanted one of: ", absl::StrJoin(skeleton_.joint_names, ", ")));
+                         ", wanted one of: ", absl::StrJoin(skeleton_.joint_names, ", "),
+                         base::DidYouMean(target, skeleton_.joint_names)));
       }
       const int index = FindExactly(name);
       if (index < 0) {
-        return absl::InvalidArgumentError(absl::StrCat(
-            "joint map: ", target, "=", name, ": ", source_, " has no such joint; ", ListNames()));
+        return absl::InvalidArgumentError(absl::StrCat("joint map: ", target, "=", name, ": ",
+                                                       source_, " has no such joint; ", ListNames(),
+                                                       base::DidYouMean(name, names_)));
       }
       Take(joint, index);
       overridden_[static_cast<size_t>(joint)] = true;
+      given_.insert(joint);
     }
     return absl::OkStatus();
   }
@@ -141,6 +147,7 @@ class Mapper {
   absl::StatusOr<JointMap> Finish() {
     std::vector<std::string> missing;
     JointMap map;
+    Report();
     for (std::size_t joint = 0; joint < found_.size(); ++joint) {
       if (!found_[joint].has_value()) {
         missing.push_back(skeleton_.joint_names[joint]);
@@ -155,6 +162,35 @@ class Mapper {
             source_, ": joints: nothing stands for ", absl::StrJoin(missing, ", "), "; ",
             ListNames(), "; say which with a joint map such as ", missing[0], "=NAME")),
         motion::ReadingSetting::kJointMap);
+  }
+
+  void Report() const {
+    if (readings_ == nullptr) return;
+    readings_->clear();
+    for (std::size_t joint = 0; joint < found_.size(); ++joint) {
+      JointReading reading;
+      reading.joint = skeleton_.joint_names[joint];
+      reading.why = why_[joint];
+      reading.origin = given_.count(static_cast<int>(joint)) > 0 ? Origin::kGiven
+                       : reading.why.empty()                     ? Origin::kFile
+                                                                 : Origin::kGuessed;
+      if (found_[joint].has_value()) {
+        for (const JointSource::Term& term : found_[joint]->terms) AddPart(term, &reading.parts);
+      }
+      readings_->push_back(std::move(reading));
+    }
+  }
+
+  // Each joint of the file once.
+  void AddPart(const JointSource::Term& term, std::vector<JointReading::Part>* parts) const {
+    const std::string& name = names_[static_cast<size_t>(term.joint)];
+    const auto known = std::find_if(parts->begin(), parts->end(),
+                                    [&name](const auto& part) { return part.name == name; });
+    if (known == parts->end()) {
+      parts->push_back({name, term.weight});
+    } else {
+      known->weight += term.weight;
+    }
   }
 
   bool Found(int joint) const {
@@ -299,7 +335,7 @@ class Mapper {
       Note("neck", best, "the neck joint nearest to half way between the shoulders");
     } else {
       found_[static_cast<size_t>(neck)] = middle;
-      notes_.push_back("neck: half way between the shoulders (no neck joint is near)");
+      Note("neck", "half way between the shoulders", "no neck joint is near");
     }
   }
 
@@ -316,7 +352,7 @@ class Mapper {
       Note("torso", best, "the spine joint nearest to half way from hips to neck");
     } else {
       found_[static_cast<size_t>(torso)] = middle;
-      notes_.push_back("torso: half way from hips to neck (no spine joint is near)");
+      Note("torso", "half way from hips to neck", "no spine joint is near");
     }
   }
 
@@ -338,7 +374,9 @@ class Mapper {
     if (!(way > kShortestNeck && way < kLongestNeck)) return;
     const float rise = kHeadRise / way;
     SourceOf(head) = Mix({{&base, 1 + rise}, {&SourceOf(neck), -rise}});
-    notes_.push_back("head: raised from the base of the skull to its middle, away from the neck");
+    why_[static_cast<size_t>(head)] =
+        "raised from the base of the skull to its middle, away from the neck";
+    notes_.push_back(absl::StrCat("head: ", why_[static_cast<size_t>(head)]));
   }
 
   bool HasSpineEnds() const {
@@ -354,33 +392,44 @@ class Mapper {
   }
 
   void Note(const char* target, int index, const char* reason) {
+    why_[static_cast<size_t>(skeleton_.Find(target))] = reason;
     notes_.push_back(
         absl::StrCat(target, ": ", names_[static_cast<size_t>(index)], " (", reason, ")"));
+  }
+  // A joint that stands between others.
+  void Note(const char* target, const char* place, const char* reason) {
+    why_[static_cast<size_t>(skeleton_.Find(target))] = absl::StrCat(place, "; ", reason);
+    notes_.push_back(absl::StrCat(target, ": ", place, " (", reason, ")"));
   }
 
   absl::string_view source_;
   const std::vector<std::string>& names_;
   const motion::Skeleton& skeleton_;
+  std::vector<JointReading>* readings_;                   // may be null
   std::vector<ParsedJointName> parsed_;                   // [names]
   std::vector<bool> used_;                                // [names]
   std::vector<std::optional<JointSource>> found_;         // [skeleton joints]
   std::vector<bool> overridden_;                          // [skeleton joints] named by the user
   std::vector<absl::Span<const motion::Vec3>> measured_;  // poses in which distances are taken
   std::vector<std::string> notes_;
+  std::vector<std::string> why_;  // [skeleton joints] where a name alone does not say it
+  std::set<int> given_;           // joints that the user names
 };
 
 }  // namespace
 
 absl::StatusOr<JointMap> MapJoints(absl::string_view source, const JointTree& tree,
                                    const motion::Skeleton& skeleton,
-                                   const JointOverrides& overrides) {
-  return Mapper(source, tree.names, skeleton).MapTree(tree, overrides);
+                                   const JointOverrides& overrides,
+                                   std::vector<JointReading>* readings) {
+  return Mapper(source, tree.names, skeleton, readings).MapTree(tree, overrides);
 }
 
 absl::StatusOr<JointMap> MapJoints(absl::string_view source, const std::vector<std::string>& names,
                                    const motion::Poses& poses, const motion::Skeleton& skeleton,
-                                   const JointOverrides& overrides) {
-  return Mapper(source, names, skeleton).MapPoses(poses, overrides);
+                                   const JointOverrides& overrides,
+                                   std::vector<JointReading>* readings) {
+  return Mapper(source, names, skeleton, readings).MapPoses(poses, overrides);
 }
 
 std::vector<motion::Vec3> ApplyJointMap(const JointMap& map, absl::Span<const motion::Vec3> pose) {

@@ -12,6 +12,7 @@
 #include "model/motion/skeleton.h"
 #include "model/motion/vec3.h"
 #include "model/retargeting/joint_tree.h"
+#include "model/retargeting/reading_report.h"
 
 namespace duet::retargeting {
 
@@ -49,16 +50,21 @@ struct JointMap {
 //
 // Errors: INVALID_ARGUMENT naming `source`, the skeleton's joints without a source, the names that
 //         the file has, or an override that names no joint of the skeleton or of the file.
+//
+// `readings`, where it is not null, receives what became of every joint of the skeleton, also where
+// some are missing.
 absl::StatusOr<JointMap> MapJoints(absl::string_view source, const JointTree& tree,
                                    const motion::Skeleton& skeleton,
-                                   const JointOverrides& overrides = {});
+                                   const JointOverrides& overrides = {},
+                                   std::vector<JointReading>* readings = nullptr);
 
 // The same in a file without a hierarchy: neck and torso go by mean distances over the motion.
 //
 // Shapes: poses [frames >= 1, names], in any unit.
 absl::StatusOr<JointMap> MapJoints(absl::string_view source, const std::vector<std::string>& names,
                                    const motion::Poses& poses, const motion::Skeleton& skeleton,
-                                   const JointOverrides& overrides = {});
+                                   const JointOverrides& overrides = {},
+                                   std::vector<JointReading>* readings = nullptr);
 
 // One frame of the file's joints as one of the skeleton's. [names] -> [skeleton joints]
 std::vector<motion::Vec3> ApplyJointMap(const JointMap& map, absl::Span<const motion::Vec3> pose);

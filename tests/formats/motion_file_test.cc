@@ -36,6 +36,79 @@ class MotionFile : public ::testing::Test {
   const fs::path folder_ = temporary_.path();
 };
 
+TEST_F(MotionFile, OnePersonIsWrittenInEveryFormat) {
+  for (const char* name : {"one.csv", "one.json", "one.npy", "one.bvh"}) {
+    const fs::path file = folder_ / name;
+    const auto written = WritePeople(file, *FormatOf(file), {pair_.leader}, motion::SbuSkeleton());
+    ASSERT_TRUE(written.ok()) << written.status();
+    EXPECT_THAT(*written, ElementsAre(file));
+    retargeting::ReadingReport report;
+    ReadOptions options;
+    options.frame_rate_hz = 30;
+    options.side = Side::kRight;  // one person serves either side
+    options.report = &report;
+    const auto read = ReadLeader(file, options);
+    ASSERT_TRUE(read.ok()) << read.status();
+    EXPECT_LT(LargestDistance(*read, pair_.leader), 1e-4f) << name;
+    EXPECT_EQ(report.people, 1) << name;
+  }
+}
+
+TEST_F(MotionFile, AMotionThatIsNoFileIsParsed) {
+  const auto csv =
+      FormatPeople(Format::kCsv, {pair_.leader, pair_.follower}, motion::SbuSkeleton());
+  ASSERT_TRUE(csv.ok());
+  ReadOptions options;
+  options.side = Side::kRight;
+  EXPECT_FALSE(ParseLeader(*csv, "a pipe", options).ok());
+  options.format = Format::kCsv;
+  const auto follower = ParseLeader(*csv, "a pipe", options);
+  ASSERT_TRUE(follower.ok()) << follower.status();
+  EXPECT_EQ(LargestDistance(*follower, pair_.follower), 0);
+  options.format = Format::kBvh;
+  EXPECT_THAT(std::string(ParseLeader(*csv, "a pipe", options).status().message()),
+              HasSubstr("a pipe:1: "));
+}
+
+TEST_F(MotionFile, WhatAFormatCannotHoldIsRefused) {
+  const motion::Skeleton skeleton = motion::SbuSkeleton();
+  const auto refused = [&](Format format, const std::vector<motion::Clip>& people) {
+    return std::string(FormatPeople(format, people, skeleton).status().message());
+  };
+  EXPECT_THAT(refused(Format::kBvh, {pair_.leader, pair_.follower}),
+              HasSubstr("came 2, wanted one"));
+  EXPECT_THAT(refused(Format::kGltf, {pair_.leader}), HasSubstr("format: came glTF"));
+  EXPECT_THAT(refused(Format::kCsv, {}), HasSubstr("people: came 0"));
+  EXPECT_THAT(refused(Format::kCsv, {pair_.leader, pair_.follower, pair_.leader}),
+              HasSubstr("people: came 3"));
+}
+
+TEST_F(MotionFile, AReportSaysWhoDecided) {
+  using retargeting::Origin;
+  const fs::path file = folder_ / "half.csv";
+  auto text = FormatPeople(Format::kCsv, {pair_.leader}, motion::SbuSkeleton());
+  ASSERT_TRUE(text.ok());
+  const std::string comment = text->substr(0, text->find('\n'));
+  text->replace(0, comment.size(), "# unit=metres");
+  ASSERT_TRUE(base::WriteFile(file, *text).ok());
+  retargeting::ReadingReport report;
+  ReadOptions options;
+  options.report = &report;
+  EXPECT_FALSE(ReadLeader(file, options).ok());
+  EXPECT_EQ(report.format, "CSV");
+  EXPECT_EQ(report.frame_rate, std::nullopt);
+  EXPECT_EQ(report.unit->origin, Origin::kFile);
+  EXPECT_EQ(report.up_axis->origin, Origin::kDefault);
+  ASSERT_EQ(report.joints.size(), 15u);
+  EXPECT_EQ(report.joints[0].parts[0].name, "head");
+  options.frame_rate_hz = 25;
+  options.coordinates = motion::Coordinates{};
+  EXPECT_TRUE(ReadLeader(file, options).ok());
+  EXPECT_EQ(report.frame_rate->value, "25 Hz");
+  EXPECT_EQ(report.frame_rate->origin, Origin::kGiven);
+  EXPECT_EQ(report.up_axis->origin, Origin::kGiven);
+}
+
 std::string Damaged(std::string bytes, std::mt19937* random) {
   const char interesting[] = "0-9.e{}[](),:#\n \"\\\xff";
   for (int change = 0; change < 3; ++change) {

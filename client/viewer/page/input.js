@@ -1,5 +1,6 @@
 // Mouse, touch and keys of everything but the camera, which orbits by itself.
-function connectInput({player, people, chooseView, touch}) {
+// `showPerson(name, visible)` shows or hides the leader or the follower.
+function connectInput({player, showPerson, chooseView, touch}) {
   const element = (id) => document.getElementById(id);
   const onClick = (target, action) => target.addEventListener('click', (event) => {
     action();
@@ -18,9 +19,9 @@ function connectInput({player, people, chooseView, touch}) {
   }
   for (const button of document.querySelectorAll('[data-person]')) {
     onClick(button, () => {
-      const {figure, path} = people[button.dataset.person];
-      figure.group.visible = path.visible = !figure.group.visible;
-      button.setAttribute('aria-pressed', figure.group.visible);
+      const visible = button.getAttribute('aria-pressed') !== 'true';
+      showPerson(button.dataset.person, visible);
+      button.setAttribute('aria-pressed', visible);
     });
   }
   element('scrub').addEventListener('input', () => {

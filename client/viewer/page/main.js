@@ -1,43 +1,9 @@
-// Puts the page together. `document.documentElement.dataset` tells programs how it stands: state
-// (loading, ready, failed), frames, frame, draws, triangles, error.
-const COLOURS = {leader: 0xf0a04b, follower: 0x4fb3bf};
-const root = document.documentElement;
-
-function fail(message) {
-  root.dataset.state = 'failed';
-  root.dataset.error = message;
-  const box = document.getElementById('failure');
-  box.hidden = false;
-  box.textContent = message;
-}
-
-window.addEventListener('error', (event) => fail(event.message));
-window.addEventListener('unhandledrejection', (event) => fail(String(event.reason)));
-
-// "#frame=12&view=side&paused", or the same after "?".
-function openingState() {
-  const text = `${location.search.slice(1)}&${location.hash.slice(1)}`;
-  const state = {};
-  for (const part of text.split('&')) {
-    const [key, value] = part.split('=');
-    if (key) state[key] = value === undefined ? '' : decodeURIComponent(value);
-  }
-  return state;
-}
-
-function webGlWorks() {
-  const canvas = document.createElement('canvas');
-  return Boolean(canvas.getContext('webgl') || canvas.getContext('experimental-webgl'));
-}
-
+// Puts the page together.
 function start() {
   const data = JSON.parse(document.getElementById('data').textContent);
   const motion = new Motion(data);
   root.dataset.frames = motion.frames;
-  if (!webGlWorks()) {
-    fail('This browser shows no WebGL: switch on hardware acceleration, or try another browser.');
-    return;
-  }
+  if (!webGlWorks()) return;
 
   const stage = new Stage(document.getElementById('stage'), motion);
   const player = new Player(motion);
@@ -74,7 +40,10 @@ function start() {
     document.getElementById('hint').classList.add('gone');
     for (const button of document.querySelectorAll('[data-view]')) button.classList.remove('chosen');
   });
-  connectInput({player, people, chooseView, touch});
+  const showPerson = (name, visible) => {
+    people[name].figure.group.visible = people[name].path.visible = visible;
+  };
+  connectInput({player, showPerson, chooseView, touch});
 
   const opening = openingState();
   if ('frame' in opening) player.seek(Number(opening.frame) || 0);

@@ -1,4 +1,4 @@
-// The motion of both characters, as the page carries it: positions [frames, joints, 3] in metres,
+// The motion of one character or two, as the page carries it: positions [frames, joints, 3] in metres,
 // y up, as base64 of little-endian float32.
 class Motion {
   constructor(data) {
@@ -6,12 +6,12 @@ class Motion {
     this.bones = data.bones;
     this.frameRate = data.frameRate;
     this.frames = data.frames;
-    this.classes = data.classes;
-    this.keyframes = data.keyframes;
-    this.people = {
-      leader: Motion.decode(data.leader),
-      follower: Motion.decode(data.follower),
-    };
+    this.classes = data.classes || [];
+    this.keyframes = data.keyframes || [];
+    this.people = {};
+    for (const name of ['leader', 'follower']) {
+      if (name in data) this.people[name] = Motion.decode(data[name]);
+    }
     for (const [name, positions] of Object.entries(this.people)) {
       if (positions.length !== this.frames * this.joints.length * 3) {
         throw new Error(`the ${name} has ${positions.length} values, ` +
@@ -101,5 +101,22 @@ class Motion {
     const point = new THREE.Vector3();
     for (let i = 0; i < positions.length; i += 3) sum.add(point.fromArray(positions, i));
     return sum.multiplyScalar(3 / positions.length);
+  }
+
+  // Horizontal direction from the leader to the follower, or of one alone where the hips face; +z
+  // where there is none.
+  axis() {
+    const axis = this.people.follower ? this.centre('follower').sub(this.centre('leader'))
+                                      : this.facing();
+    axis.setY(0);
+    return axis.length() < 0.05 ? new THREE.Vector3(0, 0, 1) : axis.normalize();
+  }
+
+  // Where the leader's hips face in the first frame; nowhere without hips.
+  facing() {
+    const [left, right] = [this.find('left_hip'), this.find('right_hip')];
+    if (left < 0 || right < 0) return new THREE.Vector3();
+    const at = (joint) => new THREE.Vector3().fromArray(this.people.leader, joint * 3);
+    return new THREE.Vector3(0, 1, 0).cross(at(right).sub(at(left)));
   }
 }

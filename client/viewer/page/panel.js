@@ -7,7 +7,6 @@ class Panel {
     this.element('title').textContent = data.title;
     this.element('subtitle').textContent = data.subtitle;
     this.element('scrub').max = player.last;
-    this.element('of').textContent = ` / ${player.last}`;
     this.addWeights();
     this.addMarks();
   }
@@ -45,18 +44,7 @@ class Panel {
 
   update() {
     const {player, motion} = this;
-    const shown = Math.round(player.frame);
-    const scrub = this.element('scrub');
-    scrub.value = shown;
-    scrub.style.setProperty('--done', `${100 * player.frame / Math.max(1, player.last)}%`);
-    this.element('frame').textContent = shown;
-    const seconds = (frames) => (frames / motion.frameRate).toFixed(2);
-    this.element('time').textContent = `${seconds(player.frame)} / ${seconds(player.last)} s`;
-    this.element('play').classList.toggle('playing', player.playing);
-    this.element('loop').setAttribute('aria-pressed', player.looping);
-    for (const button of document.querySelectorAll('[data-speed]')) {
-      button.classList.toggle('chosen', Number(button.dataset.speed) === player.speed);
-    }
+    showTime({player, frameRate: motion.frameRate});
     motion.weights(player.frame).forEach((weight, i) => Panel.show(this.rows[i], weight));
   }
 

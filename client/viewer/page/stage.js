@@ -1,163 +1,29 @@
-const BACKGROUND = 0x24262b;
-
-// Materials are lit in linear light; colours are chosen as they should look. (Background and fog
-// are drawn as they are.)
-function linear(hex) {
-  return new THREE.Color(hex).convertSRGBToLinear();
-}
-
-// Floor, lights, cameras. Draws only when asked to.
+// Scenery and camera of one motion. Draws only when asked to.
 class Stage {
   constructor(canvas, motion) {
     this.canvas = canvas;
     this.motion = motion;
-    this.floor = motion.floor() - 0.043;  // the ball of the foot rests on it
-    this.box = motion.bounds();
-    this.scene = new THREE.Scene();
-    this.scene.background = new THREE.Color(BACKGROUND);
-    const reach = this.box.getSize(new THREE.Vector3()).length();
-    this.scene.fog = new THREE.Fog(BACKGROUND, 5 + 2 * reach, 13 + 4 * reach);
-    this.renderer = this.makeRenderer();
+    this.renderer = makeRenderer(canvas);
+    this.scenery = new Scenery(motion, this.renderer, 2048);
     this.camera = new THREE.PerspectiveCamera(32, 1, 0.05, 400);
-    this.controls = new THREE.OrbitControls(this.camera, canvas);
-    this.controls.enableDamping = true;
-    this.controls.dampingFactor = 0.12;
-    this.controls.enableKeys = false;  // the arrow keys step through frames
-    this.controls.screenSpacePanning = true;
-    this.controls.maxPolarAngle = Math.PI * 0.52;
-    this.controls.minDistance = 0.4;
-    this.controls.maxDistance = 30 + 4 * reach;
-    this.addLights();
-    this.addFloor();
+    this.controls = makeControls(this.camera, canvas, this.scenery.reach);
   }
 
-  makeRenderer() {
-    const renderer = new THREE.WebGLRenderer({canvas: this.canvas, antialias: true});
-    renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
-    renderer.shadowMap.enabled = true;
-    renderer.shadowMap.type = THREE.PCFSoftShadowMap;
-    renderer.gammaOutput = true;
-    renderer.gammaFactor = 2.2;
-    return renderer;
+  get scene() {
+    return this.scenery.scene;
   }
 
-  addLights() {
-    const centre = this.box.getCenter(new THREE.Vector3());
-    const radius = Math.max(1.6, this.box.getSize(new THREE.Vector3()).length() * 0.62);
-    this.scene.add(new THREE.HemisphereLight(0xe8eefc, 0x3c3a3a, 0.62));
-    const key = new THREE.DirectionalLight(0xfff3e2, 0.78);
-    key.position.copy(centre).add(new THREE.Vector3(0.45, 1.5, 0.7).multiplyScalar(2 * radius));
-    key.target.position.copy(centre);
-    key.castShadow = true;
-    key.shadow.mapSize.set(2048, 2048);
-    key.shadow.radius = 5;
-    key.shadow.bias = -0.0006;
-    Object.assign(key.shadow.camera,
-                  {left: -radius, right: radius, top: radius, bottom: -radius,
-                   near: 0.1, far: 6 * radius});
-    const rim = new THREE.DirectionalLight(0xbcd4ff, 0.38);
-    rim.position.copy(centre).add(new THREE.Vector3(-1, 0.9, -1.2));
-    rim.target.position.copy(centre);
-    this.scene.add(key, key.target, rim, rim.target);
-  }
-
-  addFloor() {
-    const centre = this.box.getCenter(new THREE.Vector3());
-    const size = 240;
-    const grid = this.gridTexture();
-    grid.repeat.set(size, size);
-    const ground = new THREE.Mesh(
-        new THREE.PlaneBufferGeometry(size, size),
-        new THREE.MeshStandardMaterial({map: grid, roughness: 1, metalness: 0}));
-    ground.rotation.x = -Math.PI / 2;
-    // On a whole metre, so that the grid is the world's.
-    ground.position.set(Math.round(centre.x), this.floor, Math.round(centre.z));
-    ground.receiveShadow = true;
-    this.scene.add(ground);
-  }
-
-  // One square metre: its edges, and fainter the half metres. A texture, unlike lines, stays smooth
-  // into the distance.
-  gridTexture() {
-    const pixels = 512;
-    const canvas = document.createElement('canvas');
-    canvas.width = canvas.height = pixels;
-    const paint = canvas.getContext('2d');
-    paint.fillStyle = '#3a3d44';
-    paint.fillRect(0, 0, pixels, pixels);
-    for (const [at, width, colour] of [[pixels / 2, 3, '#43464e'], [0, 6, '#545861'],
-                                       [pixels, 6, '#545861']]) {
-      paint.fillStyle = colour;
-      paint.fillRect(at - width / 2, 0, width, pixels);
-      paint.fillRect(0, at - width / 2, pixels, width);
-    }
-    const texture = new THREE.CanvasTexture(canvas);
-    texture.wrapS = texture.wrapT = THREE.RepeatWrapping;
-    texture.encoding = THREE.sRGBEncoding;
-    texture.anisotropy = this.renderer.capabilities.getMaxAnisotropy();
-    return texture;
-  }
-
-  // A faint line on the floor where a person's root went.
   addPath(person, colour) {
-    const motion = this.motion;
-    const root = Math.max(0, motion.find('torso'));
-    const positions = motion.people[person];
-    const points = [];
-    for (let frame = 0; frame < motion.frames; ++frame) {
-      const at = (frame * motion.joints.length + root) * 3;
-      points.push(new THREE.Vector3(positions[at], this.floor + 0.008, positions[at + 2]));
-    }
-    const line = new THREE.Line(
-        new THREE.BufferGeometry().setFromPoints(points),
-        new THREE.LineBasicMaterial({color: linear(colour), transparent: true, opacity: 0.55}));
-    line.frustumCulled = false;
-    this.scene.add(line);
-    return line;
-  }
-
-  // Horizontal direction from the leader to the follower; +z when they stand in one another.
-  axis() {
-    const axis = this.motion.centre('follower').sub(this.motion.centre('leader')).setY(0);
-    return axis.length() < 0.05 ? new THREE.Vector3(0, 0, 1) : axis.normalize();
+    return this.scenery.addPath(person, colour);
   }
 
   // Puts the camera where the whole motion is in view.
   view(name) {
-    const axis = this.axis();
-    const across = axis.clone().cross(new THREE.Vector3(0, 1, 0));  // leader left, follower right
-    const up = (height) => new THREE.Vector3(0, height, 0);
-    const directions = {
-      reset: across.clone().multiplyScalar(0.82).addScaledVector(axis, -0.42).add(up(0.3)),
-      front: across.clone().add(up(0.1)),
-      side: axis.clone().addScaledVector(across, 0.4).add(up(0.16)),
-      top: up(1).addScaledVector(across, 0.002),
-    };
-    const direction = directions[name].normalize();
-    this.controls.target.copy(this.box.getCenter(new THREE.Vector3()));
+    const direction = viewDirection(name, this.motion.axis());
+    this.controls.target.copy(this.scenery.box.getCenter(new THREE.Vector3()));
     this.camera.position.copy(this.controls.target)
-        .addScaledVector(direction, this.distance(direction));
+        .addScaledVector(direction, fittingDistance(this.scenery.box, direction, this.camera));
     this.controls.update();
-  }
-
-  // How far back the box's corners fit into the frame, looking along -direction.
-  distance(direction) {
-    const centre = this.box.getCenter(new THREE.Vector3());
-    const side = new THREE.Vector3(0, 1, 0).cross(direction).normalize();
-    const top = direction.clone().cross(side);
-    const margin = 0.22;  // the body around the joints, and room for the panels
-    const tanV = Math.tan(THREE.Math.degToRad(this.camera.fov / 2));
-    const tanH = tanV * this.camera.aspect;
-    let distance = 1.5;
-    for (let corner = 0; corner < 8; ++corner) {
-      const point = new THREE.Vector3(corner & 1 ? this.box.max.x : this.box.min.x,
-                                      corner & 2 ? this.box.max.y : this.box.min.y,
-                                      corner & 4 ? this.box.max.z : this.box.min.z).sub(centre);
-      const depth = point.dot(direction);
-      distance = Math.max(distance, depth + (Math.abs(point.dot(side)) + margin) / tanH,
-                          depth + (Math.abs(point.dot(top)) + margin) / (tanV * 0.86));
-    }
-    return distance;
   }
 
   resize() {

@@ -41,6 +41,12 @@ absl::StatusOr<motion::Clip> FromAmc(const AsfSkeleton& skeleton, const AmcMotio
     for (const retargeting::Vec3d& at : kinematics.Positions(frame)) pose.push_back(ToFloat(at));
     return pose;
   };
+  if (options.report != nullptr) {
+    options.report->people = 1;
+    options.report->frame_rate =
+        retargeting::Setting{absl::StrCat(character.frame_rate_hz, " Hz"),
+                             retargeting::Origin::kDefault, "as CMU's captures have"};
+  }
   if (options.notes != nullptr && !options.frame_rate_hz.has_value()) {
     options.notes->push_back(
         absl::StrCat("frame rate: ", kCmuFrameRateHz, " Hz, as CMU's captures have"));

@@ -1,5 +1,6 @@
 #include "model/formats/bvh/bvh_import.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -47,13 +48,25 @@ double FrameRate(const BvhDocument& document) {
   return whole >= 1 && std::abs(rate - whole) < kRateTolerance * whole ? whole : rate;
 }
 
-void NotePositionChannels(const BvhDocument& document, std::vector<std::string>* notes) {
+void NotePositionChannels(const BvhDocument& document, const BvhImportOptions& options) {
   const std::optional<PositionChannels> found = FindPositionChannels(document);
-  if (notes == nullptr || !found.has_value()) return;
+  if (!found.has_value()) return;
   const bool replace = *found == PositionChannels::kReplaceOffset;
-  notes->push_back(
+  const std::string note =
       absl::StrCat("position channels below the root: ", replace ? "in place of" : "added to",
-                   " OFFSET (as most joints have it)"));
+                   " OFFSET (as most joints have it)");
+  if (options.notes != nullptr) options.notes->push_back(note);
+  if (options.report != nullptr) options.report->remarks.push_back(note);
+}
+
+void Report(const BvhDocument& document, double frame_rate_hz, retargeting::ReadingReport* report) {
+  if (report == nullptr) return;
+  report->people =
+      static_cast<int>(std::count_if(document.joints.begin(), document.joints.end(),
+                                     [](const BvhJoint& joint) { return joint.parent < 0; }));
+  report->frame_rate =
+      retargeting::Setting{absl::StrCat(frame_rate_hz, " Hz"), retargeting::Origin::kFile,
+                           absl::StrCat("Frame Time ", document.frame_time_s)};
 }
 
 }  // namespace
@@ -62,7 +75,8 @@ absl::StatusOr<motion::Clip> FromBvh(const BvhDocument& document, absl::string_v
                                      const BvhImportOptions& options) {
   const std::vector<int> joints = JointsOfPerson(document, options.person);
   const BvhKinematics kinematics(document);
-  NotePositionChannels(document, options.notes);
+  NotePositionChannels(document, options);
+  Report(document, FrameRate(document), options.report);
   retargeting::Character character;
   character.tree = TreeOf(document, joints);
   character.frame_count = document.frame_count;

@@ -96,7 +96,8 @@ class CsvParser {
     if (status.ok() && header_.row_for_each_joint) status = CollectFrames();
     if (!status.ok()) return status;
     if (motion_.people[0].poses.empty()) return Error("no frames after the header line");
-    const double rate = frame_rate_hz_ > 0 ? frame_rate_hz_ : times_.FrameRate();
+    motion_.rate_from_times = frame_rate_hz_ <= 0;
+    const double rate = motion_.rate_from_times ? times_.FrameRate() : frame_rate_hz_;
     for (motion::Clip& person : motion_.people) person.frame_rate_hz = rate;
     return std::move(motion_);
   }
@@ -166,10 +167,12 @@ class CsvParser {
       const std::optional<motion::LengthUnit> unit = motion::ParseLengthUnit(value);
       if (!unit.has_value()) return UnknownName(key, value, motion::kLengthUnitNames);
       motion_.coordinates.unit = *unit;
+      motion_.says_unit = true;
     } else if (key == "up_axis") {
       const std::optional<motion::UpAxis> axis = motion::ParseUpAxis(value);
       if (!axis.has_value()) return UnknownName(key, value, motion::kUpAxisNames);
       motion_.coordinates.up_axis = *axis;
+      motion_.says_up_axis = true;
     }
     return absl::OkStatus();
   }
@@ -345,6 +348,24 @@ void AppendFrame(const motion::Clip& clip, int frame, std::string* out) {
   }
 }
 
+// One person without a prefix, or a leader and a follower.
+std::string Format(const std::vector<const motion::Clip*>& people) {
+  std::string text = "# duet motion: frame_rate_hz=";
+  base::AppendNumber(&text, people[0]->frame_rate_hz);
+  absl::StrAppend(&text, " unit=", LengthUnitName(motion::LengthUnit::kMetres),
+                  " up_axis=", UpAxisName(motion::UpAxis::kYUp), "\nframe");
+  for (std::size_t i = 0; i < people.size(); ++i) {
+    AppendHeader(people.size() == 1 ? "" : kPrefixes[i], *people[i], &text);
+  }
+  text += '\n';
+  for (int frame = 0; frame < people[0]->frame_count(); ++frame) {
+    absl::StrAppend(&text, frame);
+    for (const motion::Clip* person : people) AppendFrame(*person, frame, &text);
+    text += '\n';
+  }
+  return text;
+}
+
 }  // namespace
 
 absl::StatusOr<motion::RecordedMotion> ParseCsv(absl::string_view text, absl::string_view source) {
@@ -352,20 +373,9 @@ absl::StatusOr<motion::RecordedMotion> ParseCsv(absl::string_view text, absl::st
 }
 
 std::string FormatCsv(const motion::ClipPair& pair) {
-  std::string text = "# duet motion: frame_rate_hz=";
-  base::AppendNumber(&text, pair.leader.frame_rate_hz);
-  absl::StrAppend(&text, " unit=", LengthUnitName(motion::LengthUnit::kMetres),
-                  " up_axis=", UpAxisName(motion::UpAxis::kYUp), "\nframe");
-  AppendHeader(kPrefixes[0], pair.leader, &text);
-  AppendHeader(kPrefixes[1], pair.follower, &text);
-  text += '\n';
-  for (int frame = 0; frame < pair.leader.frame_count(); ++frame) {
-    absl::StrAppend(&text, frame);
-    AppendFrame(pair.leader, frame, &text);
-    AppendFrame(pair.follower, frame, &text);
-    text += '\n';
-  }
-  return text;
+  return Format({&pair.leader, &pair.follower});
 }
+
+std::string FormatCsv(const motion::Clip& person) { return Format({&person}); }
 
 }  // namespace duet::formats::flat

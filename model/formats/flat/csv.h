@@ -26,8 +26,9 @@ namespace duet::formats::flat {
 // Errors: INVALID_ARGUMENT "source:line:column: ... came ..., wanted ...".
 absl::StatusOr<motion::RecordedMotion> ParseCsv(absl::string_view text, absl::string_view source);
 
-// Metres, y up. The pair is as CheckPair wants it.
+// Metres, y up. The pair is as CheckPair wants it, one person as CheckClip does.
 std::string FormatCsv(const motion::ClipPair& pair);
+std::string FormatCsv(const motion::Clip& person);
 
 }  // namespace duet::formats::flat
 

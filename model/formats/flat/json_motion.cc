@@ -39,10 +39,12 @@ motion::RecordedMotion ReadSettings(base::ObjectReader* reader, motion::Clip* em
   if (reader->Has("unit")) {
     motion.coordinates.unit =
         reader->Choice("unit", motion::ParseLengthUnit, motion::kLengthUnitNames);
+    motion.says_unit = true;
   }
   if (reader->Has("up_axis")) {
     motion.coordinates.up_axis =
         reader->Choice("up_axis", motion::ParseUpAxis, motion::kUpAxisNames);
+    motion.says_up_axis = true;
   }
   empty->joint_names = reader->Strings("joint_names", motion::kMaxFileJoints);
   if (empty->joint_names.empty()) reader->Fail("joint_names", "empty, wanted at least one name");
@@ -110,6 +112,20 @@ void AppendPerson(const char* field, const motion::Clip& clip, std::string* out)
   *out += "]";
 }
 
+// The fields before the people's.
+std::string FormatSettings(const motion::Clip& clip, const motion::Skeleton& skeleton) {
+  Json bones = Json::array();
+  for (const motion::Bone& bone : skeleton.bones) bones.push_back({bone.parent, bone.child});
+  std::string text = absl::StrCat("{\"format\": \"", kFormat, "\", \"version\": ", kVersion,
+                                  ", \"frame_rate_hz\": ");
+  base::AppendNumber(&text, clip.frame_rate_hz);
+  absl::StrAppend(&text, ", \"unit\": \"", LengthUnitName(motion::LengthUnit::kMetres),
+                  "\", \"up_axis\": \"", UpAxisName(motion::UpAxis::kYUp),
+                  "\",\n\"joint_names\": ", Json(clip.joint_names).dump(),
+                  ",\n\"bones\": ", bones.dump());
+  return text;
+}
+
 }  // namespace
 
 absl::StatusOr<motion::RecordedMotion> ParseJsonMotion(absl::string_view text,
@@ -133,19 +149,16 @@ absl::StatusOr<motion::RecordedMotion> ParseJsonMotion(absl::string_view text,
 }
 
 std::string FormatJsonMotion(const motion::ClipPair& pair, const motion::Skeleton& skeleton) {
-  Json bones = Json::array();
-  for (const motion::Bone& bone : skeleton.bones) bones.push_back({bone.parent, bone.child});
-  std::string text = absl::StrCat("{\"format\": \"", kFormat, "\", \"version\": ", kVersion,
-                                  ", \"frame_rate_hz\": ");
-  base::AppendNumber(&text, pair.leader.frame_rate_hz);
-  absl::StrAppend(&text, ", \"unit\": \"", LengthUnitName(motion::LengthUnit::kMetres),
-                  "\", \"up_axis\": \"", UpAxisName(motion::UpAxis::kYUp),
-                  "\",\n\"joint_names\": ", Json(pair.leader.joint_names).dump(),
-                  ",\n\"bones\": ", bones.dump());
+  std::string text = FormatSettings(pair.leader, skeleton);
   AppendPerson(kPeople[0], pair.leader, &text);
   AppendPerson(kPeople[1], pair.follower, &text);
-  text += "}\n";
-  return text;
+  return text + "}\n";
+}
+
+std::string FormatJsonMotion(const motion::Clip& person, const motion::Skeleton& skeleton) {
+  std::string text = FormatSettings(person, skeleton);
+  AppendPerson(kPeople[0], person, &text);
+  return text + "}\n";
 }
 
 }  // namespace duet::formats::flat

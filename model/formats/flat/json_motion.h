@@ -25,8 +25,10 @@ namespace duet::formats::flat {
 absl::StatusOr<motion::RecordedMotion> ParseJsonMotion(absl::string_view text,
                                                        absl::string_view source);
 
-// Metres, y up. The pair is as CheckPair wants it, with the skeleton's joints.
+// Metres, y up. The pair is as CheckPair wants it, one person (without a follower) as CheckClip
+// does, with the skeleton's joints.
 std::string FormatJsonMotion(const motion::ClipPair& pair, const motion::Skeleton& skeleton);
+std::string FormatJsonMotion(const motion::Clip& person, const motion::Skeleton& skeleton);
 
 }  // namespace duet::formats::flat
 

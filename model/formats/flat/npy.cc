@@ -165,6 +165,20 @@ void AppendPositions(const motion::Clip& clip, std::string* out) {
               clip.poses.all().size() * sizeof(motion::Vec3));
 }
 
+// All before the values; `people` is the first dimension.
+std::string FormatHeader(absl::string_view people, const motion::Clip& clip) {
+  std::string dict = absl::StrCat("{'descr': '<f4', 'fortran_order': False, 'shape': (", people,
+                                  clip.frame_count(), ", ", clip.joint_count(), ", 3), }");
+  const std::size_t before = kMagic.size() + 4;
+  dict.append(kAlignment - (before + dict.size() + 1) % kAlignment, ' ');
+  dict.push_back('\n');
+  std::string bytes(kMagic);
+  bytes.append(
+      {'\x01', '\x00', static_cast<char>(dict.size() & 0xff), static_cast<char>(dict.size() >> 8)});
+  bytes += dict;
+  return bytes;
+}
+
 }  // namespace
 
 absl::StatusOr<motion::RecordedMotion> ParseNpy(absl::string_view bytes, absl::string_view source,
@@ -173,18 +187,15 @@ absl::StatusOr<motion::RecordedMotion> ParseNpy(absl::string_view bytes, absl::s
 }
 
 std::string FormatNpy(const motion::ClipPair& pair) {
-  std::string dict =
-      absl::StrCat("{'descr': '<f4', 'fortran_order': False, 'shape': (2, ",
-                   pair.leader.frame_count(), ", ", pair.leader.joint_count(), ", 3), }");
-  const std::size_t before = kMagic.size() + 4;
-  dict.append(kAlignment - (before + dict.size() + 1) % kAlignment, ' ');
-  dict.push_back('\n');
-  std::string bytes(kMagic);
-  bytes.append(
-      {'\x01', '\x00', static_cast<char>(dict.size() & 0xff), static_cast<char>(dict.size() >> 8)});
-  bytes += dict;
+  std::string bytes = FormatHeader("2, ", pair.leader);
   AppendPositions(pair.leader, &bytes);
   AppendPositions(pair.follower, &bytes);
+  return bytes;
+}
+
+std::string FormatNpy(const motion::Clip& person) {
+  std::string bytes = FormatHeader("", person);
+  AppendPositions(person, &bytes);
   return bytes;
 }
 

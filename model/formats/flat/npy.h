@@ -20,8 +20,10 @@ namespace duet::formats::flat {
 absl::StatusOr<motion::RecordedMotion> ParseNpy(absl::string_view bytes, absl::string_view source,
                                                 const std::vector<std::string>& joint_names);
 
-// float32 [2, frames, joints, 3], leader first. The pair is as CheckPair wants it.
+// float32 [2, frames, joints, 3], leader first; of one person [frames, joints, 3]. The pair is as
+// CheckPair wants it, one person as CheckClip does.
 std::string FormatNpy(const motion::ClipPair& pair);
+std::string FormatNpy(const motion::Clip& person);
 
 }  // namespace duet::formats::flat
 

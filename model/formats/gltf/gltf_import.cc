@@ -290,6 +290,7 @@ class Importer {
     const Hierarchy hierarchy(document_);
     const std::vector<int> roots = CharacterFinder(document_, hierarchy).Find();
     if (roots.empty()) return Error(source, "no skin and no animated node, wanted a skeleton");
+    if (options_.report != nullptr) options_.report->people = static_cast<int>(roots.size());
     const std::size_t person = Index(options_.person) < roots.size() ? Index(options_.person) : 0;
     Puppet puppet(document_, hierarchy.MembersOf(roots[person]));
     if (puppet.members().nodes.size() > motion::kMaxFileJoints) {
@@ -322,8 +323,10 @@ class Importer {
       if (++count == 1) chosen = &animation;
     }
     if (count > 1) {
-      Note(absl::StrCat("animation: ", base::Quoted(chosen->name), ", the first of ", count,
-                        " that move the skeleton"));
+      const std::string note = absl::StrCat("animation: ", base::Quoted(chosen->name),
+                                            ", the first of ", count, " that move the skeleton");
+      if (options_.report != nullptr) options_.report->remarks.push_back(note);
+      Note(note);
     }
     return chosen;
   }
@@ -334,6 +337,11 @@ class Importer {
       timing.rate_hz = *options_.frame_rate_hz;
     } else {
       Note(absl::StrCat("frame rate: ", timing.rate_hz, " Hz, as the animation's keys suggest"));
+    }
+    if (options_.report != nullptr) {
+      options_.report->frame_rate =
+          retargeting::Setting{absl::StrCat(timing.rate_hz, " Hz"), retargeting::Origin::kGuessed,
+                               "as the animation's keys suggest"};
     }
     // A last frame that falls short of the end by rounding alone counts.
     const double frames = std::floor((timing.end - timing.start) * timing.rate_hz + 1e-3) + 1;

@@ -194,7 +194,7 @@ TEST_F(ArgumentsTest, WhatIsMissingIsNamed) {
 }
 
 TEST_F(ArgumentsTest, WhatMakesNoSenseIsNamed) {
-  ExpectUsageError({"dance"}, "subcommand is required");
+  ExpectUsageError({"dance"}, "There is no command \"dance\"");
   ExpectUsageError({"models", "--frobnicate"}, "--frobnicate");
   ExpectRefused({"--label", "kick"}, "--label: \"kick\", wanted CLASS=WEIGHT");
   ExpectRefused({"--label", "kick=1", "hug=1"}, "hug=1");
@@ -223,7 +223,7 @@ TEST_F(ArgumentsTest, OutputsThatCannotBeWrittenAreRefusedBeforeAnyWork) {
   const std::string leader = Out("leader.csv");
   WriteTestFile(leader, "");
   ExpectUsageError({"synthesize", "--leader", leader, "--label", "kick=1", "--out", leader},
-                   "would replace the leader's own file");
+                   "would replace the file that is read");
 }
 
 TEST_F(ArgumentsTest, EachOfSeveralSamplesHasFilesNamedAfterItsSeed) {
@@ -246,7 +246,7 @@ TEST_F(ArgumentsTest, NoSampleReplacesTheLeader) {
   WriteTestFile(leader, "");
   ExpectUsageError({"synthesize", "--leader", leader, "--label", "kick=1", "--out", Out("pair.csv"),
                     "--seed", "7", "--samples", "2"},
-                   "would replace the leader's own file");
+                   "would replace the file that is read");
 }
 
 }  // namespace

@@ -1,7 +1,9 @@
 // The whole program against a connection that a test scripts.
 #include "client/cli/program.h"
 
+#include <map>
 #include <memory>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -92,11 +94,16 @@ class ProgramTest : public ::testing::Test {
   int Run(const std::vector<std::string>& arguments) {
     out_.str("");
     err_.str("");
-    return RunProgram(arguments, {[this](const ClientOptions& options) {
-                                    options_ = options;
-                                    return absl::StatusOr<Client>(Client(connection_));
-                                  },
-                                  &out_, &err_});
+    ProgramEnvironment environment{[this](const ClientOptions& options) {
+                                     options_ = options;
+                                     return absl::StatusOr<Client>(Client(connection_));
+                                   },
+                                   &out_, &err_, &in_};
+    environment.variables = [this](const std::string& name) {
+      const auto found = variables_.find(name);
+      return found == variables_.end() ? std::nullopt : std::optional<std::string>(found->second);
+    };
+    return RunProgram(arguments, environment);
   }
 
   // duet synthesize --leader leader.csv --label kick=1 ... --out <name>
@@ -115,6 +122,8 @@ class ProgramTest : public ::testing::Test {
   std::shared_ptr<::testing::NiceMock<MockConnection>> connection_ =
       std::make_shared<::testing::NiceMock<MockConnection>>();
   ClientOptions options_;
+  std::map<std::string, std::string> variables_;
+  std::istringstream in_;
   std::ostringstream out_;
   std::ostringstream err_;
 };
@@ -366,6 +375,60 @@ TEST_F(ProgramTest, WarnsOfALeaderThatIsFarFromTheTrainingLeaders) {
 TEST_F(ProgramTest, QuietPrintsNothing) {
   ASSERT_EQ(Synthesize("pair.html", {"--quiet"}), 0);
   EXPECT_EQ(out_.str() + err_.str(), "");
+}
+
+TEST_F(ProgramTest, SynthesizesBetweenPipes) {
+  in_.str(ReadTestFile(folder_ / "leader.csv"));
+  ASSERT_EQ(Run({"synthesize", "--leader", "-", "--input-format", "csv", "--label", "kick=1",
+                 "--out", "-", "--output-format", "csv"}),
+            0)
+      << err_.str();
+  EXPECT_THAT(err_.str(), HasSubstr("wrote     -\n"));
+  WriteTestFile(folder_ / "piped.csv", out_.str());
+  formats::ReadOptions options;
+  options.side = formats::Side::kRight;
+  const absl::StatusOr<motion::Clip> follower = ReadLeader(folder_ / "piped.csv", options);
+  ASSERT_THAT(follower, IsOk());
+  EXPECT_NEAR(follower->at(3, 0).z, leader_.at(3, 0).z - 2, 1e-5);
+  ASSERT_EQ(Run({"synthesize", "--leader", Path("leader.csv"), "--label", "kick=1", "--quiet",
+                 "--out", "-", "--output-format", "html"}),
+            0);
+  EXPECT_THAT(out_.str(), StartsWith("<!doctype html>"));
+  EXPECT_EQ(err_.str(), "");
+}
+
+TEST_F(ProgramTest, WhatPipesCannotDoNeverReachesTheServer) {
+  EXPECT_CALL(*connection_, GetModel).Times(0);
+  const auto refused = [this](int code, const std::vector<std::string>& more,
+                              const std::string& message) {
+    std::vector<std::string> arguments = {"synthesize", "--label", "kick=1"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    EXPECT_EQ(Run(arguments), code) << message;
+    EXPECT_THAT(err_.str(), HasSubstr(message));
+  };
+  refused(42, {"--leader", "-", "--out", Path("a.csv")}, "standard input: format");
+  refused(2, {"--leader", Path("leader.csv"), "--out", "-"}, "--output-format");
+  refused(2, {"--leader", Path("leader.csv"), "--out", "-", "--output-format", "bvh"},
+          "bvh has a file for each person");
+  refused(
+      2, {"--leader", Path("leader.csv"), "--out", "-", "--output-format", "csv", "--samples", "2"},
+      "each wants a file");
+}
+
+TEST_F(ProgramTest, AnUnknownClassIsRefusedWithTheOneThatWasMeant) {
+  EXPECT_CALL(*connection_, Synthesize).Times(0);
+  EXPECT_EQ(Synthesize("pair.html", {"--label", "hugg=1"}), 42);
+  EXPECT_THAT(err_.str(), HasSubstr("--label: class: came \"hugg\", sbu knows kick, hug; did you "
+                                    "mean hug?"));
+}
+
+TEST_F(ProgramTest, AServerMayComeFromTheEnvironment) {
+  variables_["DUET_SERVER"] = "lab:7";
+  EXPECT_CALL(*connection_, ListModels).WillRepeatedly(Return(std::vector{SbuModel().model}));
+  EXPECT_EQ(Run({"models"}), 0);
+  EXPECT_EQ(options_.server_address, "lab:7");
+  EXPECT_EQ(Run({"models", "--server", "mine:8"}), 0);
+  EXPECT_EQ(options_.server_address, "mine:8");
 }
 
 TEST_F(ProgramTest, AUsageErrorNeverReachesTheServer) {

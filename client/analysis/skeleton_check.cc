@@ -1,0 +1,324 @@
+#include "client/analysis/skeleton_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "absl/types/span.h"
+#include "model/cleanup/floor.h"
+#include "model/cleanup/limbs.h"
+#include "model/motion/feet.h"
+#include "model/motion/limb_lengths.h"
+
+namespace duet::client::analysis {
+namespace {
+
+using motion::Vec3;
+
+// From the foot along the bones to the root.
+constexpr double kShortestLeg = 0.7, kLongestLeg = 1.4;
+// Standard deviation of a bone's length over its mean: Kinect's bones reach a tenth.
+constexpr double kMostDrift = 0.1;
+// A left bone's length over the right one's, or the other way round.
+constexpr double kMostAsymmetry = 1.15;
+constexpr double kMostBelowFloor = 0.1, kHighAboveFloor = 0.15, kMostTimeInTheAir = 0.25;
+// A fist in boxing reaches 11 m/s, a kicking foot 16.
+constexpr double kFastestJoint = 20, kFastestRoot = 10;
+// Joints that change places come from farther apart than this.
+constexpr float kLeastSwap = 0.15f;
+// A knee counts as bent where it is so far off the line from hip to foot.
+constexpr float kLeastKneeBend = 0.04f;
+constexpr double kMostBackwards = 0.5;
+
+std::size_t Index(int i) { return static_cast<std::size_t>(i); }
+
+std::string Percent(double share) { return absl::StrFormat("%.1f %%", 100 * share); }
+
+std::string BoneName(const motion::Skeleton& skeleton, std::size_t bone) {
+  return absl::StrCat(skeleton.joint_names[Index(skeleton.bones[bone].parent)], " to ",
+                      skeleton.joint_names[Index(skeleton.bones[bone].child)]);
+}
+
+class Checker {
+ public:
+  Checker(const motion::Clip& clip, const motion::Skeleton& skeleton)
+      : clip_(clip), skeleton_(skeleton), body_(cleanup::FindBody(skeleton)) {}
+
+  std::vector<Check> Run() {
+    CheckFinite();
+    if (!checks_.back().good) return std::move(checks_);
+    CheckSize();
+    CheckLimbLengths();
+    CheckSymmetry();
+    CheckFloor();
+    CheckJumps();
+    CheckSides();
+    return std::move(checks_);
+  }
+
+ private:
+  void Add(std::string name, bool good, std::string text, std::map<std::string, double> figures) {
+    checks_.push_back({std::move(name), good, std::move(text), std::move(figures)});
+  }
+
+  void CheckFinite() {
+    int bad = 0, first = 0;
+    for (int frame = clip_.frame_count() - 1; frame >= 0; --frame) {
+      const absl::Span<const Vec3> pose = clip_.poses[frame];
+      if (std::all_of(pose.begin(), pose.end(), [](Vec3 at) { return IsFinite(at); })) continue;
+      ++bad;
+      first = frame;
+    }
+    Add("finite", bad == 0,
+        bad == 0 ? "every position is a finite number"
+                 : absl::StrCat("a position is not finite in ", bad, " frames, first in ", first),
+        {{"bad_frames", bad}});
+  }
+
+  // Along the bones' medians from a foot to the root.
+  double LegLength(int foot) const {
+    const std::vector<float> lengths = MedianBoneLengths(skeleton_, clip_.poses);
+    double length = 0;
+    for (int joint = foot; joint != skeleton_.root;) {
+      for (std::size_t bone = 0; bone < skeleton_.bones.size(); ++bone) {
+        if (skeleton_.bones[bone].child != joint) continue;
+        length += static_cast<double>(lengths[bone]);
+        joint = skeleton_.bones[bone].parent;
+        break;
+      }
+    }
+    return length;
+  }
+
+  void CheckSize() {
+    if (!skeleton_.feet) return;
+    const double leg = LegLength(skeleton_.feet->left);
+    const bool good = leg >= kShortestLeg && leg <= kLongestLeg;
+    Add("size", good,
+        absl::StrFormat("foot to %s %.2f m%s", skeleton_.joint_names[Index(skeleton_.root)], leg,
+                        good ? ""
+                             : absl::StrFormat(", people have %.1f to %.1f m: is the unit right?",
+                                               kShortestLeg, kLongestLeg)),
+        {{"foot_to_root_metres", leg}});
+  }
+
+  double Drift(const motion::Bone& bone) const {
+    double sum = 0, squares = 0;
+    for (int frame = 0; frame < clip_.frame_count(); ++frame) {
+      const double length =
+          static_cast<double>(Distance(clip_.at(frame, bone.parent), clip_.at(frame, bone.child)));
+      sum += length;
+      squares += length * length;
+    }
+    const double mean = sum / clip_.frame_count();
+    if (!(mean > 0)) return 0;
+    return std::sqrt(std::max(0.0, squares / clip_.frame_count() - mean * mean)) / mean;
+  }
+
+  void CheckLimbLengths() {
+    double mean = 0, most = 0;
+    std::size_t worst = 0;
+    for (std::size_t bone = 0; bone < skeleton_.bones.size(); ++bone) {
+      const double drift = Drift(skeleton_.bones[bone]);
+      mean += drift / static_cast<double>(skeleton_.bones.size());
+      if (drift <= most) continue;
+      most = drift;
+      worst = bone;
+    }
+    std::string text = absl::StrCat("change by ", Percent(mean));
+    if (most > 0)
+      absl::StrAppend(&text, ", most ", BoneName(skeleton_, worst), ", ", Percent(most));
+    Add("limb lengths", most <= kMostDrift, text, {{"mean_change", mean}, {"most_change", most}});
+  }
+
+  // Limbs come as left and right, or the other way round.
+  void CheckSymmetry() {
+    double most = 1;
+    std::string worst;
+    for (const std::vector<cleanup::Limb>* limbs : {&body_.arms, &body_.legs}) {
+      if (limbs->size() != 2) continue;
+      const cleanup::Limb &a = (*limbs)[0], &b = (*limbs)[1];
+      Compare({a.upper, a.middle}, {b.upper, b.middle}, &most, &worst);
+      Compare({a.middle, a.end}, {b.middle, b.end}, &most, &worst);
+    }
+    if (body_.arms.size() != 2 && body_.legs.size() != 2) return;
+    const bool good = most <= kMostAsymmetry;
+    Add("symmetry", good,
+        absl::StrFormat("left and right limbs differ by at most %s%s", Percent(most - 1),
+                        good ? "" : absl::StrCat(" (", worst, ")")),
+        {{"most_difference", most - 1}});
+  }
+
+  double MedianLength(const motion::Bone& bone) const {
+    std::vector<float> lengths;
+    for (int frame = 0; frame < clip_.frame_count(); ++frame) {
+      lengths.push_back(Distance(clip_.at(frame, bone.parent), clip_.at(frame, bone.child)));
+    }
+    const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+    std::nth_element(lengths.begin(), middle, lengths.end());
+    return static_cast<double>(*middle);
+  }
+
+  void Compare(const motion::Bone& a, const motion::Bone& b, double* most,
+               std::string* worst) const {
+    const double first = MedianLength(a), second = MedianLength(b);
+    if (!(std::min(first, second) > 0)) return;
+    const double ratio = std::max(first, second) / std::min(first, second);
+    if (ratio <= *most) return;
+    *most = ratio;
+    *worst = absl::StrCat(skeleton_.joint_names[Index(a.parent)], " to ",
+                          skeleton_.joint_names[Index(a.child)], " and its counterpart");
+  }
+
+  void CheckFloor() {
+    if (!skeleton_.feet) return;
+    const float floor = cleanup::FloorHeight(*skeleton_.feet, clip_.poses);
+    const std::vector<float> feet = LowerFoot(*skeleton_.feet, clip_.poses);
+    const double below = static_cast<double>(floor - *std::min_element(feet.begin(), feet.end()));
+    const auto is_high = [floor](float foot) {
+      return static_cast<double>(foot - floor) > kHighAboveFloor;
+    };
+    const double high = static_cast<double>(std::count_if(feet.begin(), feet.end(), is_high)) /
+                        static_cast<double>(feet.size());
+    std::string text = absl::StrFormat("at y = %.2f m", static_cast<double>(floor));
+    if (below > kMostBelowFloor) absl::StrAppendFormat(&text, ", a foot gets %.2f m below", below);
+    if (high > 0) {
+      absl::StrAppendFormat(&text, ", both feet more than %.2f m above for %s of the time",
+                            kHighAboveFloor, Percent(high));
+    }
+    Add("floor", below <= kMostBelowFloor && high <= kMostTimeInTheAir, text,
+        {{"height_metres", static_cast<double>(floor)},
+         {"below_metres", std::max(0.0, below)},
+         {"share_in_the_air", high}});
+  }
+
+  void CheckJumps() {
+    if (!(clip_.frame_rate_hz > 0) || clip_.frame_count() < 2) return;
+    int jumps = 0, first = 0;
+    double fastest = 0;
+    int fastest_joint = 0;
+    for (int frame = clip_.frame_count() - 1; frame > 0; --frame) {
+      bool jumped = false;
+      for (int joint = 0; joint < clip_.joint_count(); ++joint) {
+        const double speed =
+            static_cast<double>(Distance(clip_.at(frame, joint), clip_.at(frame - 1, joint))) *
+            clip_.frame_rate_hz;
+        jumped |= speed > (joint == skeleton_.root ? kFastestRoot : kFastestJoint);
+        if (speed <= fastest) continue;
+        fastest = speed;
+        fastest_joint = joint;
+      }
+      if (!jumped) continue;
+      ++jumps;
+      first = frame;
+    }
+    std::string text = absl::StrFormat("fastest %s, %.1f m/s",
+                                       skeleton_.joint_names[Index(fastest_joint)], fastest);
+    if (jumps > 0)
+      absl::StrAppend(&text, "; faster than people in ", jumps, " frames, first ", first);
+    Add("jumps", jumps == 0, text, {{"jumps", jumps}, {"fastest_metres_per_second", fastest}});
+  }
+
+  // A frame in which a joint and its counterpart are where the other one was.
+  bool SwapsAt(int frame, int left, int right) const {
+    const Vec3 l = clip_.at(frame, left), r = clip_.at(frame, right);
+    const Vec3 l0 = clip_.at(frame - 1, left), r0 = clip_.at(frame - 1, right);
+    return Distance(l0, r0) > kLeastSwap &&
+           Distance(l, r0) + Distance(r, l0) < (Distance(l, l0) + Distance(r, r0)) / 2;
+  }
+
+  int CountSwaps() const {
+    int swaps = 0;
+    for (int frame = 1; frame < clip_.frame_count(); ++frame) {
+      bool swapped =
+          SwapsAt(frame, skeleton_.hips->left, skeleton_.hips->right) ||
+          (skeleton_.feet && SwapsAt(frame, skeleton_.feet->left, skeleton_.feet->right));
+      if (body_.arms.size() == 2) {
+        swapped |= SwapsAt(frame, body_.arms[0].upper, body_.arms[1].upper) ||
+                   SwapsAt(frame, body_.arms[0].end, body_.arms[1].end);
+      }
+      swaps += swapped ? 1 : 0;
+    }
+    return swaps;
+  }
+
+  // Of the bent knees, the share that bends the wrong way for where the hips face; swapped sides
+  // turn that round. Absent where no knee bends.
+  std::optional<double> ShareBentBackwards() const {
+    int bent = 0, backwards = 0;
+    for (int frame = 0; frame < clip_.frame_count(); ++frame) {
+      const absl::Span<const Vec3> pose = clip_.poses[frame];
+      const Vec3 facing = cleanup::Facing(*skeleton_.hips, pose);
+      for (const cleanup::Limb& leg : body_.legs) {
+        const Vec3 hip = pose[Index(leg.upper)], foot = pose[Index(leg.end)];
+        const Vec3 along = foot - hip;
+        const float length = Dot(along, along);
+        if (!(length > 0)) continue;
+        const Vec3 knee = pose[Index(leg.middle)] - hip;
+        const float forwards = Dot(knee - along * (Dot(knee, along) / length), facing);
+        if (std::abs(forwards) < kLeastKneeBend) continue;
+        ++bent;
+        backwards += forwards < 0 ? 1 : 0;
+      }
+    }
+    if (bent == 0) return std::nullopt;
+    return static_cast<double>(backwards) / bent;
+  }
+
+  // Whether the shoulders are turned round against the hips, on average.
+  bool ShouldersOppose() const {
+    if (body_.arms.size() != 2) return false;
+    const bool first_is_left =
+        skeleton_.joint_names[Index(body_.arms[0].upper)].find("left") != std::string::npos;
+    const int left = body_.arms[first_is_left ? 0 : 1].upper;
+    const int right = body_.arms[first_is_left ? 1 : 0].upper;
+    double sum = 0;
+    for (int frame = 0; frame < clip_.frame_count(); ++frame) {
+      const Vec3 hips =
+          clip_.at(frame, skeleton_.hips->right) - clip_.at(frame, skeleton_.hips->left);
+      const Vec3 shoulders = clip_.at(frame, right) - clip_.at(frame, left);
+      sum += static_cast<double>(Dot(hips, shoulders));
+    }
+    return sum < 0;
+  }
+
+  void CheckSides() {
+    if (!skeleton_.hips) return;
+    const int swaps = CountSwaps();
+    const std::optional<double> backwards = ShareBentBackwards();
+    const bool oppose = ShouldersOppose();
+    std::vector<std::string> wrong;
+    if (oppose)
+      wrong.push_back("the shoulders have left and right the other way round than the hips");
+    if (backwards.value_or(0) > kMostBackwards) {
+      wrong.push_back(
+          absl::StrFormat("%.0f %% of the bent knees bend backwards, as where left and "
+                          "right are swapped",
+                          100 * *backwards));
+    }
+    if (swaps > 0)
+      wrong.push_back(absl::StrCat("left and right change places in ", swaps, " frames"));
+    std::string text = wrong.empty() ? "left and right are where they belong" : "";
+    for (const std::string& what : wrong) absl::StrAppend(&text, text.empty() ? "" : "; ", what);
+    std::map<std::string, double> figures = {{"swaps", swaps}, {"shoulders_oppose_hips", oppose}};
+    if (backwards.has_value()) figures["knees_bent_backwards"] = *backwards;
+    Add("sides", wrong.empty(), text, std::move(figures));
+  }
+
+  const motion::Clip& clip_;
+  const motion::Skeleton& skeleton_;
+  cleanup::Body body_;
+  std::vector<Check> checks_;
+};
+
+}  // namespace
+
+std::vector<Check> CheckSkeleton(const motion::Clip& clip, const motion::Skeleton& skeleton) {
+  return Checker(clip, skeleton).Run();
+}
+
+}  // namespace duet::client::analysis

@@ -1,0 +1,245 @@
+#include "client/cli/convert_command.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <ostream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
+#include "client/cli/input_flags.h"
+#include "client/cli/motion_input.h"
+#include "client/cli/output.h"
+#include "client/cli/report.h"
+#include "model/motion/motion_limits.h"
+#include "model/motion/resample.h"
+#include "nlohmann/json.hpp"
+
+namespace duet::client::cli {
+namespace {
+
+using formats::Format;
+using Clips = std::vector<motion::Clip>;
+using Paths = std::vector<std::filesystem::path>;
+
+// Below this, positions differ by rounding alone.
+constexpr double kExactMetres = 2e-5;
+
+// A motion that is to be written.
+struct Conversion {
+  std::string source;
+  Clips people;
+  motion::Skeleton skeleton;
+  std::vector<std::string> notes;
+  double source_rate_hz = 0;
+};
+
+struct Written {
+  Paths files;
+  double largest_error_metres = 0;   // of a position that is read back
+  std::vector<std::string> missing;  // what the format has no place for
+};
+
+absl::Status ChoosePeople(const std::optional<People>& wanted, Clips* people) {
+  if (!wanted.has_value()) return absl::OkStatus();
+  if (*wanted == People::kBoth) {
+    if (people->size() == 2) return absl::OkStatus();
+    return absl::InvalidArgumentError("--side: came both, but the file has one person");
+  }
+  // A file of one person serves either side.
+  if (*wanted == People::kRight && people->size() > 1) std::swap((*people)[0], (*people)[1]);
+  people->resize(1);
+  return absl::OkStatus();
+}
+
+// To another rate through a spline, from the first frame to the last that lies within the motion.
+absl::Status Resample(double rate_hz, motion::Clip* clip) {
+  absl::Status status = motion::CheckFrameRate("--resample", rate_hz);
+  if (!status.ok()) return status;
+  const double step = clip->frame_rate_hz / rate_hz;
+  const double frames = std::floor((clip->frame_count() - 1) / step + 1e-6) + 1;
+  if (frames > motion::kMaxMotionFrames) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("--resample: came ", rate_hz, " Hz, which makes ", frames,
+                     " frames, wanted at most ", motion::kMaxMotionFrames));
+  }
+  motion::Poses poses(static_cast<int>(frames), clip->joint_count());
+  for (int frame = 0; frame < poses.frame_count(); ++frame) {
+    SampleCubic(clip->poses, frame * step, poses[frame]);
+  }
+  clip->poses = std::move(poses);
+  clip->frame_rate_hz = rate_hz;
+  return absl::OkStatus();
+}
+
+absl::StatusOr<Conversion> ReadConversion(const ConvertArguments& arguments, std::istream* in) {
+  absl::Status status = CheckInput(arguments.file, arguments.input.format);
+  if (!status.ok()) return status;
+  Conversion conversion;
+  conversion.skeleton = motion::SbuSkeleton();
+  const absl::StatusOr<formats::ReadOptions> options =
+      ToReadOptions(arguments.input, conversion.skeleton);
+  if (!options.ok()) return options.status();
+  const absl::StatusOr<MotionInput> input = MotionInput::Open(arguments.file, in);
+  if (!input.ok()) return input.status();
+  absl::StatusOr<ReadPeople> read = ReadAllPeople(*input, *options);
+  if (!read.ok()) return read.status();
+  conversion.source = input->name();
+  conversion.people = std::move(read->people);
+  conversion.notes = std::move(read->notes);
+  conversion.source_rate_hz = conversion.people[0].frame_rate_hz;
+  status = ChoosePeople(arguments.people, &conversion.people);
+  for (motion::Clip& person : conversion.people) {
+    if (status.ok() && arguments.resample_hz) status = Resample(*arguments.resample_hz, &person);
+  }
+  if (!status.ok()) return status;
+  return conversion;
+}
+
+// How far off a motion is that was written as `content`.
+absl::StatusOr<double> ErrorOf(const std::string& content, Format format, const Clips& people,
+                               const motion::Skeleton& skeleton) {
+  formats::ReadOptions options;
+  options.format = format;
+  options.skeleton = skeleton;
+  options.frame_rate_hz = people[0].frame_rate_hz;
+  options.coordinates = motion::Coordinates{};
+  if (format == Format::kBvh) options.metres_per_unit = 0.01;
+  double largest = 0;
+  for (std::size_t i = 0; i < people.size(); ++i) {
+    options.side = i == 0 ? formats::Side::kLeft : formats::Side::kRight;
+    const absl::StatusOr<motion::Clip> clip = formats::ParseLeader(content, "the result", options);
+    if (!clip.ok()) return clip.status();
+    for (std::size_t j = 0; j < clip->poses.all().size(); ++j) {
+      largest = std::max(
+          largest, static_cast<double>(Distance(clip->poses.all()[j], people[i].poses.all()[j])));
+    }
+  }
+  return largest;
+}
+
+std::vector<std::string> MissingIn(Format format, double rate_hz) {
+  if (format != Format::kNpy) return {};
+  return {"joint names", absl::StrFormat("the frame rate: read it with --frame-rate %g", rate_hz)};
+}
+
+// The content of each file: BVH has one for each person.
+absl::StatusOr<std::vector<std::string>> FormatFiles(const Conversion& conversion, Format format,
+                                                     double* largest_error) {
+  std::vector<Clips> files = {conversion.people};
+  if (format == Format::kBvh && conversion.people.size() == 2) {
+    files = {{conversion.people[0]}, {conversion.people[1]}};
+  }
+  std::vector<std::string> contents;
+  for (const Clips& people : files) {
+    absl::StatusOr<std::string> content =
+        formats::FormatPeople(format, people, conversion.skeleton);
+    if (!content.ok()) return content.status();
+    const absl::StatusOr<double> error = ErrorOf(*content, format, people, conversion.skeleton);
+    if (!error.ok()) return error.status();
+    *largest_error = std::max(*largest_error, *error);
+    contents.push_back(*std::move(content));
+  }
+  return contents;
+}
+
+absl::StatusOr<Written> Write(const Conversion& conversion, const std::filesystem::path& output,
+                              Format format, std::ostream& out) {
+  Written written;
+  const absl::StatusOr<std::vector<std::string>> contents =
+      FormatFiles(conversion, format, &written.largest_error_metres);
+  if (!contents.ok()) return contents.status();
+  written.missing = MissingIn(format, conversion.people[0].frame_rate_hz);
+  if (output == kStandardStream) {
+    if (contents->size() > 1) {
+      return absl::InvalidArgumentError(
+          "--out -: BVH has a file for each of two people; choose one with --side");
+    }
+    absl::Status status = WriteToStream((*contents)[0], out);
+    if (!status.ok()) return status;
+    written.files = {output};
+    return written;
+  }
+  absl::StatusOr<Paths> files =
+      formats::WritePeople(output, format, conversion.people, conversion.skeleton);
+  if (!files.ok()) return NotWritten(files.status());
+  written.files = *std::move(files);
+  return written;
+}
+
+std::string DescribeExactness(const Written& written) {
+  std::string text =
+      written.largest_error_metres < kExactMetres
+          ? "every position kept"
+          : absl::StrFormat("positions up to %.1f mm off: a bone has one length there",
+                            1000 * written.largest_error_metres);
+  if (!written.missing.empty()) {
+    absl::StrAppend(&text, "; no place for ", absl::StrJoin(written.missing, " and "));
+  }
+  return text;
+}
+
+std::string Describe(const Conversion& conversion, const std::vector<Written>& written) {
+  const motion::Clip& first = conversion.people[0];
+  std::string text =
+      absl::StrFormat("read      %s: %d %s, %d frames at %g Hz\n", conversion.source,
+                      conversion.people.size(), conversion.people.size() == 1 ? "person" : "people",
+                      first.frame_count(), first.frame_rate_hz);
+  if (first.frame_rate_hz != conversion.source_rate_hz) {
+    absl::StrAppendFormat(&text, "          resampled from %g Hz\n", conversion.source_rate_hz);
+  }
+  for (const std::string& note : conversion.notes) absl::StrAppend(&text, "          ", note, "\n");
+  for (const Written& output : written) {
+    for (std::size_t i = 0; i < output.files.size(); ++i) {
+      absl::StrAppend(
+          &text, "wrote     ",
+          output.files[i] == kStandardStream ? "standard output" : output.files[i].string(),
+          i == 0 ? absl::StrCat(" (", DescribeExactness(output), ")") : "", "\n");
+    }
+  }
+  return text;
+}
+
+nlohmann::json ToJson(const Conversion& conversion, const std::vector<Written>& written) {
+  nlohmann::json outputs = nlohmann::json::array();
+  for (const Written& output : written) {
+    nlohmann::json files = nlohmann::json::array();
+    for (const std::filesystem::path& file : output.files) files.push_back(file.string());
+    outputs.push_back({{"files", files},
+                       {"largest_error_metres", output.largest_error_metres},
+                       {"no_place_for", output.missing}});
+  }
+  return {{"file", conversion.source},
+          {"people_count", conversion.people.size()},
+          {"frames", conversion.people[0].frame_count()},
+          {"frame_rate_hz", conversion.people[0].frame_rate_hz},
+          {"source_frame_rate_hz", conversion.source_rate_hz},
+          {"notes", conversion.notes},
+          {"outputs", outputs}};
+}
+
+}  // namespace
+
+absl::Status RunConvert(const ConvertArguments& arguments, const ProgramEnvironment& environment) {
+  const absl::StatusOr<Conversion> conversion = ReadConversion(arguments, environment.in);
+  if (!conversion.ok()) return conversion.status();
+  std::vector<Written> all;
+  for (const std::filesystem::path& output : arguments.outputs) {
+    const Format format =
+        output == kStandardStream ? *arguments.output_format->motion : *formats::FormatOf(output);
+    absl::StatusOr<Written> written = Write(*conversion, output, format, *environment.out);
+    if (!written.ok()) return written.status();
+    all.push_back(*std::move(written));
+  }
+  if (arguments.quiet) return absl::OkStatus();
+  std::ostream& out =
+      WritesToStandardOutput(arguments.outputs) ? *environment.err : *environment.out;
+  out << (arguments.json ? Print(ToJson(*conversion, all)) : Describe(*conversion, all));
+  return absl::OkStatus();
+}
+
+}  // namespace duet::client::cli

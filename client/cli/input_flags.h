@@ -1,0 +1,33 @@
+#ifndef DUET_CLIENT_CLI_INPUT_FLAGS_H_
+#define DUET_CLIENT_CLI_INPUT_FLAGS_H_
+
+#include <map>
+#include <string>
+
+#include "CLI/CLI.hpp"
+#include "client/cli/arguments.h"
+
+namespace duet::client::cli {
+
+// How motion files are to be read: --frame-rate, --unit, --joint-map and so on.
+void AddInputFlags(CLI::App* app, InputArguments* input);
+
+// --output-format, of what goes to standard output.
+void AddOutputFormatFlag(CLI::App* app, std::optional<OutputFormat>* format);
+
+// What standard output cannot take: several results, a summary besides, a result without
+// --output-format. Throws what CLI11 reports as a usage error.
+void CheckStandardOutput(const std::vector<std::filesystem::path>& outputs,
+                         const std::optional<OutputFormat>& format, bool json);
+
+// Whether one of the outputs is standard output.
+bool WritesToStandardOutput(const std::vector<std::filesystem::path>& outputs);
+
+extern const std::map<std::string, formats::Side> kSides;
+
+inline constexpr char kInputGroup[] = "Input";
+inline constexpr char kOutputGroup[] = "Output";
+
+}  // namespace duet::client::cli
+
+#endif  // DUET_CLIENT_CLI_INPUT_FLAGS_H_

@@ -1,0 +1,85 @@
+#include "client/cli/inspect_command.h"
+
+#include <algorithm>
+#include <ostream>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "client/cli/inspection.h"
+#include "client/cli/motion_input.h"
+#include "client/cli/report.h"
+#include "model/motion/reading_setting.h"
+#include "nlohmann/json.hpp"
+
+namespace duet::client::cli {
+namespace {
+
+// A rate that lets a motion without one be read; it is told of none.
+constexpr double kStandInRateHz = 30;
+
+// A file without a frame rate is looked at all the same.
+absl::StatusOr<motion::Clip> ReadAtAnyRate(const MotionInput& input, formats::ReadOptions options) {
+  absl::StatusOr<motion::Clip> clip = input.Read(options);
+  if (motion::MendingSetting(clip.status()) != motion::ReadingSetting::kFrameRate) return clip;
+  options.frame_rate_hz = kStandInRateHz;
+  clip = input.Read(options);
+  if (!clip.ok()) return clip;
+  clip->frame_rate_hz = 0;
+  options.report->frame_rate.reset();
+  return clip;
+}
+
+absl::Status InspectPerson(const MotionInput& input, formats::ReadOptions options,
+                           InspectedPerson* person) {
+  options.report = &person->report;
+  absl::StatusOr<motion::Clip> clip = ReadAtAnyRate(input, options);
+  if (!clip.ok()) return clip.status();
+  person->clip = *std::move(clip);
+  person->checks = analysis::CheckSkeleton(person->clip, options.skeleton);
+  return absl::OkStatus();
+}
+
+Inspection Inspect(const std::filesystem::path& file, const InputArguments& input_arguments,
+                   std::istream* in) {
+  Inspection inspection;
+  inspection.file = file.string();
+  inspection.people.emplace_back();
+  inspection.status = CheckInput(file, input_arguments.format);
+  if (!inspection.status.ok()) return inspection;
+  absl::StatusOr<formats::ReadOptions> options =
+      ToReadOptions(input_arguments, motion::SbuSkeleton());
+  const absl::StatusOr<MotionInput> input = MotionInput::Open(file, in);
+  inspection.status.Update(options.status());
+  inspection.status.Update(input.status());
+  if (!inspection.status.ok()) return inspection;
+  inspection.file = input->name();
+  inspection.status = InspectPerson(*input, *options, &inspection.people[0]);
+  if (!inspection.status.ok() || inspection.people[0].report.people < 2) return inspection;
+  options->side = formats::Side::kRight;
+  inspection.people.emplace_back();
+  inspection.status = InspectPerson(*input, *options, &inspection.people[1]);
+  return inspection;
+}
+
+}  // namespace
+
+ExitCode RunInspect(const InspectArguments& arguments, const ProgramEnvironment& environment) {
+  const Style style = environment.OutStyle();
+  ExitCode worst = kExitDone;
+  nlohmann::json files = nlohmann::json::array();
+  for (std::size_t i = 0; i < arguments.files.size(); ++i) {
+    const Inspection inspection = Inspect(arguments.files[i], arguments.input, environment.in);
+    worst = std::max(worst, ExitCodeFor(inspection.status));
+    if (arguments.json) {
+      files.push_back(InspectionJson(inspection));
+      continue;
+    }
+    *environment.out << (i == 0 ? "" : "\n") << DescribeInspection(inspection, style)
+                     << (inspection.status.ok() ? "" : DescribeAdvice(inspection.status));
+  }
+  if (arguments.json) *environment.out << Print({{"files", files}});
+  return worst;
+}
+
+}  // namespace duet::client::cli

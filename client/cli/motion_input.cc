@@ -1,0 +1,125 @@
+#include "client/cli/motion_input.h"
+
+#include <cstddef>
+#include <system_error>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "model/base/file.h"
+#include "model/motion/motion_limits.h"
+#include "model/motion/reading_setting.h"
+#include "model/retargeting/joint_table.h"
+
+namespace duet::client::cli {
+namespace {
+
+constexpr std::size_t kMaxTableBytes = std::size_t{1} << 20;
+constexpr char kStandardInput[] = "standard input";
+
+// The joints of the table and of the flags.
+absl::StatusOr<retargeting::JointOverrides> ReadJoints(const InputArguments& input) {
+  retargeting::JointOverrides joints = input.joints;
+  if (input.joint_table.empty()) return joints;
+  const absl::StatusOr<std::string> text =
+      base::ReadFile(input.joint_table, kMaxTableBytes, "a table of joints");
+  if (!text.ok()) return text.status();
+  absl::StatusOr<retargeting::JointOverrides> table =
+      retargeting::ParseJointTable(*text, input.joint_table.string());
+  if (!table.ok()) return table.status();
+  joints.merge(*std::move(table));  // keeps those of the flags
+  return joints;
+}
+
+absl::StatusOr<std::string> ReadWhole(std::istream* in) {
+  std::string content;
+  if (in == nullptr) return content;
+  std::string block(std::size_t{1} << 16, '\0');
+  while (in->read(block.data(), static_cast<std::streamsize>(block.size())) || in->gcount() > 0) {
+    content.append(block, 0, static_cast<std::size_t>(in->gcount()));
+    if (content.size() > motion::kMaxMotionFileBytes) {
+      return absl::InvalidArgumentError(absl::StrCat(kStandardInput, ": larger than ",
+                                                     motion::kMaxMotionFileBytes >> 20,
+                                                     " MiB, wanted a motion"));
+    }
+  }
+  return content;
+}
+
+}  // namespace
+
+absl::StatusOr<MotionInput> MotionInput::Open(const std::filesystem::path& path, std::istream* in) {
+  MotionInput input;
+  input.name_ = path.string();
+  if (path != kStandardStream) return input;
+  input.name_ = kStandardInput;
+  absl::StatusOr<std::string> content = ReadWhole(in);
+  if (!content.ok()) return content.status();
+  if (content->empty()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(kStandardInput, ": came empty, wanted a motion"));
+  }
+  input.content_ = *std::move(content);
+  return input;
+}
+
+absl::StatusOr<motion::Clip> MotionInput::Read(const formats::ReadOptions& options) const {
+  return content_.has_value() ? formats::ParseLeader(*content_, name_, options)
+                              : formats::ReadLeader(name_, options);
+}
+
+absl::StatusOr<ReadPeople> ReadAllPeople(const MotionInput& input,
+                                         const formats::ReadOptions& options) {
+  ReadPeople read;
+  retargeting::ReadingReport report;
+  formats::ReadOptions first = options;
+  first.side = formats::Side::kLeft;
+  first.notes = &read.notes;
+  first.report = &report;
+  absl::StatusOr<motion::Clip> person = input.Read(first);
+  if (!person.ok()) return person.status();
+  read.people.push_back(*std::move(person));
+  if (report.people < 2) return read;
+  formats::ReadOptions second = options;
+  second.side = formats::Side::kRight;
+  second.notes = nullptr;
+  person = input.Read(second);
+  if (!person.ok()) return person.status();
+  read.people.push_back(*std::move(person));
+  return read;
+}
+
+absl::StatusOr<formats::ReadOptions> ToReadOptions(const InputArguments& input,
+                                                   const motion::Skeleton& skeleton) {
+  formats::ReadOptions options;
+  options.format = input.format;
+  options.skeleton = skeleton;
+  options.frame_rate_hz = input.frame_rate_hz;
+  options.metres_per_unit = input.metres_per_unit;
+  absl::StatusOr<retargeting::JointOverrides> joints = ReadJoints(input);
+  if (!joints.ok()) return joints.status();
+  options.joint_overrides = *std::move(joints);
+  options.coordinates = motion::StatedCoordinates(input.unit, input.up_axis);
+  return options;
+}
+
+absl::Status CheckExists(const std::filesystem::path& path) {
+  std::error_code error;
+  if (std::filesystem::exists(path, error)) return absl::OkStatus();
+  return absl::NotFoundError(absl::StrCat(path.string(), ": no such file"));
+}
+
+absl::Status CheckInput(const std::filesystem::path& path,
+                        const std::optional<formats::Format>& format) {
+  if (path == kStandardStream) {
+    if (format.has_value()) return absl::OkStatus();
+    return MendedBy(absl::InvalidArgumentError(
+                        absl::StrCat(kStandardInput, ": format: nothing says which it is")),
+                    motion::ReadingSetting::kFormat);
+  }
+  absl::Status status = CheckExists(path);
+  if (!status.ok() || format.has_value() || formats::IsReadable(path)) return status;
+  return MendedBy(formats::UnknownExtension(path, formats::kReadableExtensions),
+                  motion::ReadingSetting::kFormat);
+}
+
+}  // namespace duet::client::cli

@@ -1,0 +1,174 @@
+#include "client/cli/synthesize_flags.h"
+
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "client/cli/flags.h"
+#include "client/cli/input_flags.h"
+#include "client/cli/output.h"
+#include "client/cli/server_flags.h"
+#include "client/cli/value_syntax.h"
+
+namespace duet::client::cli {
+namespace {
+
+const std::map<std::string, Priority> kPriorities = {{"interactive", Priority::kInteractive},
+                                                     {"bulk", Priority::kBulk}};
+
+// "auto" leaves the choice to the server.
+const std::map<std::string, std::optional<bool>> kCleanUps = {
+    {"auto", std::nullopt}, {"on", true}, {"off", false}};
+
+void AddLeaderFlags(CLI::App* app, SynthesizeArguments* arguments) {
+  app->add_option("--leader", arguments->leader,
+                  "Motion of the leader: .bvh, .gltf, .glb, .amc, .csv, .npy, .json or SBU .txt; "
+                  "- for standard input")
+      ->required()
+      ->type_name("FILE")
+      ->group(kInputGroup);
+  AddChoice<formats::Side>(
+      app, "--leader-side", kSides,
+      [arguments](formats::Side side) { arguments->leader_side = side; },
+      "Which person of a file with two leads")
+      ->default_str(NameOf(kSides, arguments->leader_side))
+      ->group(kInputGroup);
+  AddInputFlags(app, &arguments->input);
+}
+
+void AddSamplingFlags(CLI::App* app, SynthesizeArguments* arguments) {
+  constexpr char kGroup[] = "Reaction";
+  AddParsed<uint64_t>(
+      app, "--seed", "SEED", ParseSeed, [arguments](uint64_t seed) { arguments->seed = seed; },
+      "Which answer of a model that samples; the same seed gives the same answer")
+      ->take_last()
+      ->default_str(absl::StrCat(arguments->seed))
+      ->group(kGroup);
+  AddParsed<float>(
+      app, "--variety", "VARIETY", ParseVariety,
+      [arguments](float variety) { arguments->variety = variety; },
+      "How varied such answers are: 0 the typical one, 1 as varied as people, up to 2")
+      ->take_last()
+      ->default_str(absl::StrCat(arguments->variety))
+      ->group(kGroup);
+  app->add_option("--samples", arguments->samples,
+                  "Answers to ask for, with seeds SEED, SEED+1, ...; with several, each --out "
+                  "pair.html becomes pair.seed0.html and so on")
+      ->check(Undescribed(CLI::Range(1, 1000)))
+      ->capture_default_str()
+      ->type_name("COUNT")
+      ->group(kGroup);
+}
+
+void AddReactionFlags(CLI::App* app, SynthesizeArguments* arguments) {
+  constexpr char kGroup[] = "Reaction";
+  CLI::Option* label = AddParsed<ClassWeight>(app, "--label", "CLASS=WEIGHT", ParseClassWeight,
+                                              AppendTo(&arguments->weights),
+                                              "Such as kick=1 or hug=-0.5; repeatable")
+                           ->group(kGroup);
+  AddParsed<WeightKeyframe>(app, "--keyframe", "FRAME:CLASS=WEIGHT,...", ParseKeyframe,
+                            AppendTo(&arguments->keyframes),
+                            "For weights that change over time; repeatable")
+      ->excludes(label)
+      ->group(kGroup);
+  AddParsed<ModelChoice>(
+      app, "--model", "NAME[@VERSION|:LABEL]", ParseModelChoice,
+      [arguments](ModelChoice choice) { arguments->model = std::move(choice); },
+      "Default: the server's own")
+      ->take_last()
+      ->group(kGroup);
+  app->add_option("--follower-start", arguments->follower_start,
+                  "Where the follower begins: a motion file (its first frame), or X,Y,Z of the "
+                  "root joint in metres, y up")
+      ->type_name("FILE|X,Y,Z")
+      ->group(kGroup);
+  AddChoice<formats::Side>(
+      app, "--follower-start-side", kSides,
+      [arguments](formats::Side side) { arguments->follower_start_side = side; },
+      absl::StrCat("Which person of a file with two (default: not the leader where it is the "
+                   "leader's file, else ",
+                   NameOf(kSides, kDefaultSide), ")"))
+      ->group(kGroup);
+  AddParsed<motion::Vec3>(
+      app, "--partner-direction", "X,Y,Z", ParseDirection,
+      [arguments](motion::Vec3 direction) { arguments->partner_direction = direction; },
+      "Where the follower should be, as a horizontal direction from the leader (default: towards "
+      "--follower-start, else as the model tells from the leader)")
+      ->take_last()
+      ->group(kGroup);
+  AddSamplingFlags(app, arguments);
+  AddChoice<std::optional<bool>>(
+      app, "--clean-up", kCleanUps,
+      [arguments](std::optional<bool> clean_up) { arguments->clean_up = clean_up; },
+      "Correct the follower: stand, feet still, human joints, out of the leader; auto: as the "
+      "server does for the model")
+      ->default_str(NameOf(kCleanUps, arguments->clean_up))
+      ->group(kGroup);
+  AddChoice<Priority>(
+      app, "--priority", kPriorities,
+      [arguments](Priority priority) { arguments->priority = priority; },
+      "bulk yields to interactive calls and waits when the server is full")
+      ->default_str(NameOf(kPriorities, arguments->priority))
+      ->group(kGroup);
+  app->add_option("--chunk-frames", arguments->chunk_frames, "Frames in one chunk of the reply")
+      ->check(Undescribed(CLI::Range(1, 100000)))
+      ->type_name("FRAMES")
+      ->group(kGroup);
+  app->add_option("--request-id", arguments->request_id, "Names the call in the server's log")
+      ->type_name("ID")
+      ->group(kGroup);
+}
+
+void AddOutputFlags(CLI::App* app, SynthesizeArguments* arguments) {
+  app->add_option("--out", arguments->outputs,
+                  "File to write: .html (a page to watch), .bvh (two files), .csv, .npy or .json; "
+                  "repeatable; - for standard output")
+      ->required()
+      ->allow_extra_args(false)
+      ->type_name("FILE")
+      ->group(kOutputGroup);
+  AddOutputFormatFlag(app, &arguments->output_format);
+  app->add_flag("--json", arguments->json, "Print the summary as JSON")->group(kOutputGroup);
+  app->add_flag("--quiet", arguments->quiet, "Print errors alone")->group(kOutputGroup);
+}
+
+// What no single flag can tell.
+void CheckTogether(const SynthesizeArguments& arguments) {
+  if (arguments.weights.empty() && arguments.keyframes.empty()) {
+    throw CLI::RequiredError("--label or --keyframe");
+  }
+  CheckStandardOutput(arguments.outputs, arguments.output_format, arguments.json);
+  if (arguments.samples > 1 && WritesToStandardOutput(arguments.outputs)) {
+    throw CLI::ValidationError("--samples", "of several answers each wants a file, not --out -");
+  }
+  if (arguments.output_format && arguments.output_format->motion == formats::Format::kBvh) {
+    throw CLI::ValidationError("--output-format", "bvh has a file for each person, not --out -");
+  }
+  const uint64_t left = std::numeric_limits<uint64_t>::max() - arguments.seed;
+  if (static_cast<uint64_t>(arguments.samples) - 1 > left) {
+    throw CLI::ValidationError(
+        "--samples", absl::StrCat(arguments.samples, " from --seed ", arguments.seed,
+                                  " on pass the largest seed, wanted at most ", left + 1));
+  }
+  for (int sample = 0; sample < arguments.samples; ++sample) {
+    for (const std::filesystem::path& output : SampleOutputs(arguments, sample)) {
+      const absl::Status status = CheckOutput(output, arguments.leader);
+      if (!status.ok()) throw CLI::ValidationError("--out", std::string(status.message()));
+    }
+  }
+}
+
+}  // namespace
+
+CLI::App* AddSynthesizeCommand(CLI::App* app, SynthesizeArguments* arguments) {
+  CLI::App* command = app->add_subcommand("synthesize", "Synthesise the follower of a leader");
+  AddLeaderFlags(command, arguments);
+  AddReactionFlags(command, arguments);
+  AddOutputFlags(command, arguments);
+  AddServerFlags(command, &arguments->server);
+  command->callback([arguments] { CheckTogether(*arguments); });
+  return command;
+}
+
+}  // namespace duet::client::cli

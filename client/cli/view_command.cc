@@ -1,0 +1,73 @@
+#include "client/cli/view_command.h"
+
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "client/cli/output.h"
+#include "client/cli/take.h"
+#include "client/viewer/gallery.h"
+#include "model/base/file.h"
+#include "model/motion/skeleton.h"
+
+namespace duet::client::cli {
+namespace {
+
+constexpr std::size_t kMostNamesInTitle = 3;
+
+std::string TitleOf(const std::vector<Take>& takes) {
+  std::vector<std::string> names;
+  for (const Take& take : takes) {
+    if (names.size() < kMostNamesInTitle) names.push_back(take.name);
+  }
+  std::string title = absl::StrJoin(names, ", ");
+  if (takes.size() > names.size()) {
+    absl::StrAppend(&title, " and ", takes.size() - names.size(), " more");
+  }
+  return title;
+}
+
+std::string Describe(const std::vector<Take>& takes, const std::filesystem::path& out) {
+  std::string text;
+  for (const Take& take : takes) {
+    absl::StrAppend(&text, "shown     ", take.name, ": ",
+                    absl::StrJoin(take.files, " and ",
+                                  [](std::string* joined, const std::filesystem::path& file) {
+                                    joined->append(file.string());
+                                  }),
+                    take.follower ? "" : " (one person)", "\n");
+    for (const std::string& note : take.notes) absl::StrAppend(&text, "          ", note, "\n");
+  }
+  return absl::StrCat(text, "wrote     ", out.string(), "\n");
+}
+
+}  // namespace
+
+absl::Status RunView(const ViewArguments& arguments, const ProgramEnvironment& environment) {
+  const motion::Skeleton skeleton = motion::SbuSkeleton();
+  const absl::StatusOr<std::vector<Take>> takes =
+      ReadTakes(arguments.takes, skeleton, environment.in);
+  if (!takes.ok()) return takes.status();
+  viewer::GalleryContent content;
+  for (const Take& take : *takes) {
+    content.motions.push_back({take.name, take.leader, take.follower});
+  }
+  content.bones = skeleton.bones;
+  content.title = arguments.title.empty() ? TitleOf(*takes) : arguments.title;
+  content.subtitle =
+      absl::StrCat(takes->size(), takes->size() == 1 ? " motion" : " motions side by side");
+  const absl::StatusOr<std::string> page = RenderGallery(content);
+  if (!page.ok()) return page.status();
+  const bool to_stream = arguments.out == kStandardStream;
+  const absl::Status status = to_stream ? WriteToStream(*page, *environment.out)
+                                        : NotWritten(base::WriteFile(arguments.out, *page));
+  if (!status.ok()) return status;
+  if (!arguments.quiet) {
+    (to_stream ? *environment.err : *environment.out) << Describe(*takes, arguments.out);
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace duet::client::cli

@@ -1,0 +1,118 @@
+#include "client/viewer/gallery.h"
+
+#include "absl/strings/str_cat.h"
+#include "client/viewer/page_parts.h"
+#include "nlohmann/json.hpp"
+
+extern "C" {
+extern const char duet_page_gallery_index[], duet_page_gallery_index_end[];
+extern const char duet_page_gallery_style[], duet_page_gallery_style_end[];
+extern const char duet_page_cell[], duet_page_cell_end[];
+extern const char duet_page_curves[], duet_page_curves_end[];
+extern const char duet_page_gallery[], duet_page_gallery_end[];
+extern const char duet_page_gallery_main[], duet_page_gallery_main_end[];
+}
+
+namespace duet::client::viewer {
+namespace {
+
+using nlohmann::json;
+
+absl::Status CheckPerson(const std::string& name, const motion::Clip& clip,
+                         const motion::Clip& first) {
+  if (clip.frame_count() < 1 || !(clip.frame_rate_hz > 0)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(name, ": ", clip.frame_count(), " frames at ", clip.frame_rate_hz,
+                     " Hz, wanted at least one frame and a rate above 0"));
+  }
+  if (clip.joint_names != first.joint_names || clip.poses.joint_count() != clip.joint_count()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(name, ": joints other than those of the first motion"));
+  }
+  for (const motion::Vec3& position : clip.poses.all()) {
+    if (IsFinite(position)) continue;
+    return absl::InvalidArgumentError(absl::StrCat(name, ": a position is not finite"));
+  }
+  return absl::OkStatus();
+}
+
+absl::Status CheckMotion(const GalleryMotion& motion, const motion::Clip& first) {
+  absl::Status status = CheckPerson(motion.name, motion.leader, first);
+  if (!status.ok() || !motion.follower) return status;
+  status = CheckPerson(motion.name, *motion.follower, first);
+  if (!status.ok()) return status;
+  if (motion.follower->frame_count() == motion.leader.frame_count() &&
+      motion.follower->frame_rate_hz == motion.leader.frame_rate_hz) {
+    return status;
+  }
+  return absl::InvalidArgumentError(
+      absl::StrCat(motion.name, ": leader and follower differ in frames or frame rate"));
+}
+
+absl::Status Check(const GalleryContent& content) {
+  if (content.motions.empty() || content.motions.size() > kMostMotions) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("motions: came ", content.motions.size(), ", wanted 1 to ", kMostMotions));
+  }
+  const motion::Clip& first = content.motions[0].leader;
+  for (const GalleryMotion& motion : content.motions) {
+    absl::Status status = CheckMotion(motion, first);
+    if (!status.ok()) return status;
+  }
+  for (const motion::Bone& bone : content.bones) {
+    for (int joint : {bone.parent, bone.child}) {
+      if (joint >= 0 && joint < first.joint_count()) continue;
+      return absl::InvalidArgumentError(
+          absl::StrCat("bones: joint ", joint, ", wanted 0 to ", first.joint_count() - 1));
+    }
+  }
+  return absl::OkStatus();
+}
+
+json MotionJson(const GalleryMotion& motion) {
+  json object = {{"name", motion.name},
+                 {"frameRate", motion.leader.frame_rate_hz},
+                 {"frames", motion.leader.frame_count()},
+                 {"leader", EncodePositions(motion.leader)}};
+  if (motion.follower) object["follower"] = EncodePositions(*motion.follower);
+  return object;
+}
+
+// {title, subtitle, joints, bones, motions [{name, frameRate, frames, leader, follower?}],
+//  valueTitles, figures [{group, title, values}]}
+json Data(const GalleryContent& content) {
+  json motions = json::array(), bones = json::array(), figures = json::array();
+  for (const GalleryMotion& motion : content.motions) motions.push_back(MotionJson(motion));
+  for (const motion::Bone& bone : content.bones) bones.push_back({bone.parent, bone.child});
+  for (const GalleryFigure& figure : content.figures) {
+    figures.push_back(
+        {{"group", figure.group}, {"title", figure.title}, {"values", figure.values}});
+  }
+  return {{"title", content.title},
+          {"subtitle", content.subtitle},
+          {"joints", content.motions[0].leader.joint_names},
+          {"bones", bones},
+          {"motions", motions},
+          {"valueTitles", content.value_titles},
+          {"figures", figures}};
+}
+
+}  // namespace
+
+absl::StatusOr<std::string> RenderGallery(const GalleryContent& content) {
+  absl::Status status = Check(content);
+  if (!status.ok()) return status;
+  PageParts parts;
+  parts.index = Embedded(duet_page_gallery_index, duet_page_gallery_index_end);
+  parts.title = content.title;
+  parts.style =
+      absl::StrCat(SharedStyle(), Embedded(duet_page_gallery_style, duet_page_gallery_style_end));
+  parts.data = SafeJson(Data(content));
+  parts.script = absl::StrCat(SharedScript(), Embedded(duet_page_cell, duet_page_cell_end),
+                              Embedded(duet_page_curves, duet_page_curves_end),
+                              Embedded(duet_page_gallery, duet_page_gallery_end),
+                              Embedded(duet_page_gallery_main, duet_page_gallery_main_end));
+  return FillPage(parts);
+}
+
+}  // namespace duet::client::viewer

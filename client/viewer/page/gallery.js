@@ -1,0 +1,102 @@
+// All cells on one canvas, seen from the same place in the space that they share.
+class Gallery {
+  constructor(canvas, data) {
+    this.canvas = canvas;
+    this.renderer = makeRenderer(canvas);
+    this.renderer.setScissorTest(true);
+    this.renderer.info.autoReset = false;
+    this.cells = data.motions.map((motion, index) => new Cell(
+        {...motion, joints: data.joints, bones: data.bones}, index, this.renderer));
+    for (const cell of this.cells.slice(1)) cell.shareWorld(this.cells[0]);
+    this.box = new THREE.Box3();
+    for (const cell of this.cells) this.box.union(cell.sharedBox());
+    this.camera = new THREE.PerspectiveCamera(32, 1, 0.05, 400);
+    this.mount = new THREE.Group();  // the shared space as it lies in a cell
+    this.eye = this.camera.clone();  // the camera there
+    this.mount.add(this.eye);
+    this.controls = makeControls(this.camera, canvas, this.box.getSize(new THREE.Vector3()).length());
+    this.labels = this.cells.map((cell) => this.addLabel(cell));
+  }
+
+  get duration() {
+    return Math.max(...this.cells.map((cell) => cell.motion.duration));
+  }
+
+  addLabel(cell) {
+    const label = document.createElement('div');
+    label.className = 'label';
+    const swatch = document.createElement('i');
+    swatch.style.background = cell.colour;
+    const name = document.createElement('b');
+    name.textContent = cell.name;
+    const length = document.createElement('span');
+    length.textContent = `${cell.motion.frames} frames at ${Number(cell.motion.frameRate.toFixed(2))} Hz`;
+    label.append(swatch, name, length);
+    this.canvas.parentElement.append(label);
+    return label;
+  }
+
+  // The number of columns with which the cells are nearest to the shape that shows most.
+  columns(width, height) {
+    const count = this.cells.length;
+    const wanted = 0.9;  // two people who stand face to face
+    let best = 1;
+    let least = Infinity;
+    for (let columns = 1; columns <= count; ++columns) {
+      const aspect = (width / columns) / (height / Math.ceil(count / columns));
+      const waste = Math.ceil(count / columns) * columns / count;
+      const badness = Math.abs(Math.log(aspect / wanted)) + Math.log(waste);
+      if (badness < least) [best, least] = [columns, badness];
+    }
+    return best;
+  }
+
+  resize() {
+    const {clientWidth: width, clientHeight: height} = this.canvas;
+    this.renderer.setSize(width, height, false);
+    const columns = this.columns(width, height);
+    const rows = Math.ceil(this.cells.length / columns);
+    const gap = 2;
+    this.cells.forEach((cell, i) => {
+      const [column, row] = [i % columns, Math.floor(i / columns)];
+      const left = Math.round(width * column / columns);
+      const right = Math.round(width * (column + 1) / columns) - (column + 1 < columns ? gap : 0);
+      const top = Math.round(height * row / rows) + (row > 0 ? gap : 0);
+      const bottom = Math.round(height * (row + 1) / rows);
+      cell.place = {x: left, y: height - bottom, width: right - left, height: bottom - top};
+      Object.assign(this.labels[i].style,
+                    {left: `${left + 12}px`, top: `${top + 10}px`, maxWidth: `${right - left - 24}px`});
+    });
+    const {width: w, height: h} = this.cells[0].place;
+    this.camera.aspect = w / Math.max(1, h);
+    this.camera.updateProjectionMatrix();
+  }
+
+  view(name) {
+    const direction = viewDirection(name, new THREE.Vector3(0, 0, 1));
+    this.controls.target.copy(this.box.getCenter(new THREE.Vector3()));
+    this.camera.position.copy(this.controls.target)
+        .addScaledVector(direction, fittingDistance(this.box, direction, this.camera));
+    this.controls.update();
+  }
+
+  // Returns the triangles drawn.
+  draw(seconds) {
+    this.renderer.info.reset();
+    this.eye.position.copy(this.camera.position);
+    this.eye.quaternion.copy(this.camera.quaternion);
+    for (const cell of this.cells) {
+      cell.update(seconds);
+      const {x, y, width, height} = cell.place;
+      this.renderer.setViewport(x, y, width, height);
+      this.renderer.setScissor(x, y, width, height);
+      this.eye.aspect = width / Math.max(1, height);
+      this.eye.updateProjectionMatrix();
+      this.mount.position.copy(cell.start);
+      this.mount.rotation.y = cell.yaw;
+      this.mount.updateMatrixWorld(true);
+      this.renderer.render(cell.scenery.scene, this.eye);
+    }
+    return this.renderer.info.render.triangles;
+  }
+}

@@ -1,0 +1,127 @@
+// Puts a gallery together.
+function showFigures(data) {
+  if (data.figures.length === 0) return;
+  const table = document.getElementById('figures');
+  const addRow = (className, texts) => {
+    const row = table.insertRow();
+    row.className = className;
+    for (const text of texts) row.insertCell().textContent = text;
+    return row;
+  };
+  addRow('heads', ['', ...data.valueTitles]);
+  let group = '';
+  for (const figure of data.figures) {
+    if (figure.group !== group) {
+      group = figure.group;
+      addRow('group', [group]).cells[0].colSpan = data.valueTitles.length + 1;
+    }
+    const row = addRow('', [figure.title, ...figure.values]);
+    // A figure of all together.
+    if (figure.values.length === 1) row.cells[1].colSpan = data.valueTitles.length;
+  }
+  document.body.classList.add('with-figures');
+}
+
+function start() {
+  const data = JSON.parse(document.getElementById('data').textContent);
+  if (!webGlWorks()) return;
+  const element = (id) => document.getElementById(id);
+  element('title').textContent = data.title;
+  element('subtitle').textContent = data.subtitle;
+  showFigures(data);
+  const gallery = new Gallery(element('stage'), data);
+  const {duration} = gallery;
+
+  // Time runs in the frames of the fastest motion.
+  const frameRate = Math.max(...gallery.cells.map((cell) => cell.motion.frameRate));
+  const timeline = {frameRate, frames: Math.round(duration * frameRate) + 1};
+  const player = new Player(timeline);
+  root.dataset.frames = timeline.frames;
+  root.dataset.cells = gallery.cells.length;
+
+  const curves = (make) => gallery.cells.map((cell) => ({cell, values: make(cell.motion)}))
+      .filter(({values}) => values !== null);
+  const distances = curves(distanceCurve);
+  const pairs = distances.length === gallery.cells.length;
+  const charts = [new Chart(element('charts'), pairs ? 'Speed of the follower' : 'Speed', 'm/s',
+                            curves(speedCurve), duration)];
+  if (distances.length > 0) {
+    charts.push(new Chart(element('charts'), 'Distance between them', 'm', distances, duration));
+  } else {
+    element('people').hidden = true;
+  }
+
+  let view = 'reset';  // until the camera is moved by hand
+  let stale = true;    // something changed since the last drawing
+  let draws = 0;
+  const touch = () => { stale = true; };
+  const chooseView = (name) => {
+    view = name;
+    gallery.view(name);
+    for (const button of document.querySelectorAll('[data-view]')) {
+      button.classList.toggle('chosen', button.dataset.view === name && name !== 'reset');
+    }
+    touch();
+  };
+  const resize = () => {
+    gallery.resize();
+    if (view) chooseView(view);
+    touch();
+  };
+  window.addEventListener('resize', resize);
+  gallery.controls.addEventListener('change', touch);
+  gallery.controls.addEventListener('start', () => {
+    view = null;
+    for (const button of document.querySelectorAll('[data-view]')) button.classList.remove('chosen');
+  });
+  const showPerson = (person, visible) => {
+    for (const cell of gallery.cells) cell.show(person, visible);
+  };
+  connectInput({player, showPerson, chooseView, touch});
+  element('scrub').max = player.last;
+  const seekTo = (event) => {
+    const {left, width} = element('charts').getBoundingClientRect();
+    player.playing = false;
+    player.seek(player.last * (event.clientX - left) / width);
+    touch();
+  };
+  element('charts').addEventListener('pointerdown', (event) => {
+    element('charts').setPointerCapture(event.pointerId);
+    seekTo(event);
+  });
+  element('charts').addEventListener('pointermove', (event) => {
+    if (event.buttons & 1) seekTo(event);
+  });
+
+  const opening = openingState();
+  if ('frame' in opening) player.seek(Number(opening.frame) || 0);
+  if ('paused' in opening) player.playing = false;
+  if (['front', 'side', 'top'].includes(opening.view)) view = opening.view;
+  resize();
+
+  let before = null;
+  function tick(now) {
+    // A tab that slept does not leap ahead.
+    const seconds = before === null ? 0 : Math.min((now - before) / 1000, 0.1);
+    before = now;
+    if (player.playing) {
+      player.advance(seconds);
+      touch();
+    }
+    gallery.controls.update();
+    if (stale) {
+      stale = false;
+      const at = player.frame / frameRate;
+      root.dataset.triangles = gallery.draw(at);
+      for (const chart of charts) chart.update(Math.min(at, duration));
+      showTime({player, frameRate});
+      root.dataset.draws = ++draws;
+      root.dataset.frame = Math.round(player.frame);
+      if (root.dataset.state === 'loading') root.dataset.state = 'ready';
+    }
+    window.requestAnimationFrame(tick);
+  }
+  window.requestAnimationFrame(tick);
+}
+
+start();

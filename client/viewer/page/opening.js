@@ -1,0 +1,33 @@
+// How a page begins, and how it fails. `document.documentElement.dataset` tells programs how it
+// stands: state (loading, ready, failed), frames, frame, draws, triangles, error.
+const root = document.documentElement;
+
+function fail(message) {
+  root.dataset.state = 'failed';
+  root.dataset.error = message;
+  const box = document.getElementById('failure');
+  box.hidden = false;
+  box.textContent = message;
+}
+
+window.addEventListener('error', (event) => fail(event.message));
+window.addEventListener('unhandledrejection', (event) => fail(String(event.reason)));
+
+// "#frame=12&view=side&paused", or the same after "?".
+function openingState() {
+  const text = `${location.search.slice(1)}&${location.hash.slice(1)}`;
+  const state = {};
+  for (const part of text.split('&')) {
+    const [key, value] = part.split('=');
+    if (key) state[key] = value === undefined ? '' : decodeURIComponent(value);
+  }
+  return state;
+}
+
+// Whether anything can be drawn; says so where not.
+function webGlWorks() {
+  const canvas = document.createElement('canvas');
+  if (canvas.getContext('webgl') || canvas.getContext('experimental-webgl')) return true;
+  fail('This browser shows no WebGL: switch on hardware acceleration, or try another browser.');
+  return false;
+}

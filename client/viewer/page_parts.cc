@@ -1,0 +1,85 @@
+#include "client/viewer/page_parts.h"
+
+#include <cstdint>
+#include <cstring>
+
+#include "absl/strings/escaping.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_replace.h"
+#include "nlohmann/json.hpp"
+
+// Linked in by duet_embed_file.
+extern "C" {
+extern const char duet_page_style[], duet_page_style_end[];
+extern const char duet_page_three[], duet_page_three_end[];
+extern const char duet_page_controls[], duet_page_controls_end[];
+extern const char duet_page_licence[], duet_page_licence_end[];
+extern const char duet_page_motion[], duet_page_motion_end[];
+extern const char duet_page_scenery[], duet_page_scenery_end[];
+extern const char duet_page_figure[], duet_page_figure_end[];
+extern const char duet_page_player[], duet_page_player_end[];
+extern const char duet_page_opening[], duet_page_opening_end[];
+extern const char duet_page_transport[], duet_page_transport_end[];
+extern const char duet_page_input[], duet_page_input_end[];
+}
+
+namespace duet::client::viewer {
+namespace {
+
+std::string EscapeHtml(absl::string_view text) {
+  return absl::StrReplaceAll(text,
+                             {{"&", "&amp;"}, {"<", "&lt;"}, {">", "&gt;"}, {"\"", "&quot;"}});
+}
+
+void AppendLittleEndian(float value, std::string* bytes) {
+  uint32_t bits = 0;
+  std::memcpy(&bits, &value, sizeof bits);
+  for (int shift = 0; shift < 32; shift += 8) bytes->push_back(static_cast<char>(bits >> shift));
+}
+
+}  // namespace
+
+std::string FillPage(const PageParts& parts) {
+  // In one pass: text that was put in is not searched again, so that a title with "{{DATA}}" in it
+  // stays a title.
+  return absl::StrReplaceAll(
+      parts.index, {{"{{TITLE}}", EscapeHtml(parts.title)},
+                    {"{{STYLE}}", parts.style},
+                    {"{{DATA}}", parts.data},
+                    {"{{LICENCE}}", Embedded(duet_page_licence, duet_page_licence_end)},
+                    {"{{THREE}}", Embedded(duet_page_three, duet_page_three_end)},
+                    {"{{CONTROLS}}", Embedded(duet_page_controls, duet_page_controls_end)},
+                    {"{{SCRIPT}}", parts.script}});
+}
+
+std::string SafeJson(const nlohmann::json& data) {
+  // "</script>" inside a string would end the script. In JSON "<" stands inside strings alone,
+  // where it may be written as an escape.
+  return absl::StrReplaceAll(data.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace),
+                             {{"<", "\\u003c"}});
+}
+
+std::string EncodePositions(const motion::Clip& clip) {
+  std::string bytes;
+  bytes.reserve(clip.poses.all().size() * sizeof(motion::Vec3));
+  for (const motion::Vec3& position : clip.poses.all()) {
+    AppendLittleEndian(position.x, &bytes);
+    AppendLittleEndian(position.y, &bytes);
+    AppendLittleEndian(position.z, &bytes);
+  }
+  return absl::Base64Escape(bytes);
+}
+
+std::string SharedScript() {
+  return absl::StrCat(Embedded(duet_page_motion, duet_page_motion_end),
+                      Embedded(duet_page_scenery, duet_page_scenery_end),
+                      Embedded(duet_page_figure, duet_page_figure_end),
+                      Embedded(duet_page_player, duet_page_player_end),
+                      Embedded(duet_page_opening, duet_page_opening_end),
+                      Embedded(duet_page_transport, duet_page_transport_end),
+                      Embedded(duet_page_input, duet_page_input_end));
+}
+
+absl::string_view SharedStyle() { return Embedded(duet_page_style, duet_page_style_end); }
+
+}  // namespace duet::client::viewer

@@ -1,0 +1,172 @@
+#include "client/analysis/skeleton_check.h"
+
+#include <algorithm>
+#include <limits>
+#include <string>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/support/test_motion.h"
+
+namespace duet::client::analysis {
+namespace {
+
+using test::MakePerson;
+
+using ::testing::HasSubstr;
+
+const motion::Skeleton& Sbu() {
+  static const auto& skeleton = *new motion::Skeleton(motion::SbuSkeleton());
+  return skeleton;
+}
+
+Check Find(const std::vector<Check>& checks, const std::string& name) {
+  for (const Check& check : checks) {
+    if (check.name == name) return check;
+  }
+  ADD_FAILURE() << "no check of " << name;
+  return {};
+}
+
+// What is wrong with a person after `spoil`; every other check stays good.
+Check Spoilt(const std::string& name, void (*spoil)(motion::Clip*)) {
+  motion::Clip clip = MakePerson();
+  spoil(&clip);
+  const Check check = Find(CheckSkeleton(clip, Sbu()), name);
+  EXPECT_FALSE(check.good) << check.text;
+  return check;
+}
+
+void SwapSides(motion::Clip* clip, int first_frame, int last_frame) {
+  for (int joint = 0; joint < clip->joint_count(); ++joint) {
+    const std::string& name = clip->joint_names[static_cast<size_t>(joint)];
+    if (name.rfind("left_", 0) != 0) continue;
+    const int other = Sbu().Find("right_" + name.substr(5));
+    for (int frame = first_frame; frame <= last_frame; ++frame) {
+      std::swap(clip->at(frame, joint), clip->at(frame, other));
+    }
+  }
+}
+
+TEST(CheckSkeleton, APersonIsGoodInEveryWay) {
+  const std::vector<Check> checks = CheckSkeleton(MakePerson(), Sbu());
+  std::vector<std::string> names;
+  for (const Check& check : checks) {
+    names.push_back(check.name);
+    EXPECT_TRUE(check.good) << check.name << ": " << check.text;
+  }
+  EXPECT_THAT(names, ::testing::ElementsAre("finite", "size", "limb lengths", "symmetry", "floor",
+                                            "jumps", "sides"));
+}
+
+TEST(CheckSkeleton, AfterAPositionThatIsNotFiniteThereIsNothingMoreToSay) {
+  motion::Clip clip = MakePerson();
+  clip.at(7, 3).y = std::numeric_limits<float>::infinity();
+  clip.at(9, 3).y = std::numeric_limits<float>::quiet_NaN();
+  const std::vector<Check> checks = CheckSkeleton(clip, Sbu());
+  ASSERT_EQ(checks.size(), 1u);
+  EXPECT_FALSE(checks[0].good);
+  EXPECT_EQ(checks[0].figures.at("bad_frames"), 2);
+  EXPECT_THAT(checks[0].text, HasSubstr("in 2 frames, first in 7"));
+}
+
+TEST(CheckSkeleton, AGiantIsInTheWrongUnit) {
+  const Check check = Spoilt("size", [](motion::Clip* clip) {
+    for (motion::Vec3& at : clip->poses.all()) at = at * 100;
+  });
+  EXPECT_GT(check.figures.at("foot_to_root_metres"), 70);
+}
+
+TEST(CheckSkeleton, ALimbThatGrowsIsNamed) {
+  const Check check = Spoilt("limb lengths", [](motion::Clip* clip) {
+    const int elbow = Sbu().Find("left_elbow"), hand = Sbu().Find("left_hand");
+    for (int frame = 0; frame < clip->frame_count(); ++frame) {
+      const motion::Vec3 along = clip->at(frame, hand) - clip->at(frame, elbow);
+      clip->at(frame, hand) += along * (static_cast<float>(frame) / clip->frame_count());
+    }
+  });
+  EXPECT_THAT(check.text, HasSubstr("most left_elbow to left_hand"));
+}
+
+TEST(CheckSkeleton, AShortArmIsNamed) {
+  const Check check = Spoilt("symmetry", [](motion::Clip* clip) {
+    const int elbow = Sbu().Find("left_elbow"), hand = Sbu().Find("left_hand");
+    for (int frame = 0; frame < clip->frame_count(); ++frame) {
+      clip->at(frame, hand) = Lerp(clip->at(frame, elbow), clip->at(frame, hand), 0.5f);
+    }
+  });
+  EXPECT_NEAR(check.figures.at("most_difference"), 1, 0.05);
+  EXPECT_THAT(check.text, HasSubstr("elbow to"));
+}
+
+TEST(CheckSkeleton, SomebodyWhoFliesHasLeftTheFloor) {
+  const Check check = Spoilt("floor", [](motion::Clip* clip) {
+    for (int frame = 20; frame < clip->frame_count(); ++frame) {
+      for (motion::Vec3& at : clip->poses[frame]) at.y += 1;
+    }
+  });
+  EXPECT_NEAR(check.figures.at("share_in_the_air"), 40.0 / 60, 0.01);
+}
+
+TEST(CheckSkeleton, AFootBelowTheFloorIsSeen) {
+  const Check check =
+      Spoilt("floor", [](motion::Clip* clip) { clip->at(30, Sbu().feet->left).y -= 0.5f; });
+  EXPECT_THAT(check.text, HasSubstr("a foot gets"));
+}
+
+TEST(CheckSkeleton, AJumpIsCountedAndPlaced) {
+  const Check check = Spoilt("jumps", [](motion::Clip* clip) {
+    for (int frame = 12; frame < clip->frame_count(); ++frame) {
+      for (motion::Vec3& at : clip->poses[frame]) at.x += 2;
+    }
+  });
+  EXPECT_EQ(check.figures.at("jumps"), 1);
+  EXPECT_THAT(check.text, HasSubstr("first 12"));
+}
+
+TEST(CheckSkeleton, WithoutARateNothingIsSaidOfJumps) {
+  motion::Clip clip = MakePerson();
+  clip.frame_rate_hz = 0;
+  for (const Check& check : CheckSkeleton(clip, Sbu())) EXPECT_NE(check.name, "jumps");
+}
+
+TEST(CheckSkeleton, SidesThatAreSwappedThroughoutBendTheKneesBackwards) {
+  const Check check =
+      Spoilt("sides", [](motion::Clip* clip) { SwapSides(clip, 0, clip->frame_count() - 1); });
+  EXPECT_EQ(check.figures.at("knees_bent_backwards"), 1);
+  EXPECT_EQ(check.figures.at("swaps"), 0);
+}
+
+TEST(CheckSkeleton, SidesThatChangePlacesForAMomentAreCounted) {
+  const Check check = Spoilt("sides", [](motion::Clip* clip) { SwapSides(clip, 10, 14); });
+  EXPECT_EQ(check.figures.at("swaps"), 2);
+}
+
+TEST(CheckSkeleton, ShouldersThatAreSwappedOpposeTheHips) {
+  const Check check = Spoilt("sides", [](motion::Clip* clip) {
+    for (const char* joint : {"shoulder", "elbow", "hand"}) {
+      const int left = Sbu().Find(std::string("left_") + joint);
+      const int right = Sbu().Find(std::string("right_") + joint);
+      for (int frame = 0; frame < clip->frame_count(); ++frame) {
+        std::swap(clip->at(frame, left), clip->at(frame, right));
+      }
+    }
+  });
+  EXPECT_EQ(check.figures.at("shoulders_oppose_hips"), 1);
+}
+
+TEST(CheckSkeleton, WhatASkeletonLacksIsLeftOut) {
+  motion::Skeleton rod;
+  rod.joint_names = {"root", "tip"};
+  rod.bones = {{0, 1}};
+  motion::Clip clip;
+  clip.joint_names = rod.joint_names;
+  clip.frame_rate_hz = 30;
+  clip.Append(std::vector<motion::Vec3>{{0, 0, 0}, {0, 1, 0}});
+  for (const Check& check : CheckSkeleton(clip, rod)) {
+    EXPECT_TRUE(check.name == "finite" || check.name == "limb lengths") << check.name;
+  }
+}
+
+}  // namespace
+}  // namespace duet::client::analysis

@@ -1,0 +1,127 @@
+// Everything that the program tells of itself.
+#include <string>
+#include <vector>
+
+#include "client/cli/arguments.h"
+#include "client/cli/command_line.h"
+#include "client/cli/command_table.h"
+#include "client/cli/help_topics.h"
+#include "client/cli/program.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/support/temporary_folder.h"
+
+namespace duet::client::cli {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+TEST(Help, ExplainsCommandsAndTopics) {
+  EXPECT_THAT(ParseCommandLine({"help"}).text,
+              AllOf(HasSubstr("Usage: duet [OPTIONS] SUBCOMMAND"),
+                    HasSubstr("exit-codes, formats, joints, labels, settings")));
+  EXPECT_THAT(ParseCommandLine({"help", "convert"}).text, HasSubstr("Usage: duet convert"));
+  EXPECT_EQ(ParseCommandLine({"help", "convert"}).text,
+            ParseCommandLine({"convert", "--help"}).text);
+  for (const std::string& topic : HelpTopics()) {
+    const ParsedCommandLine parsed = ParseCommandLine({"help", topic});
+    EXPECT_EQ(parsed.exit_code, 0);
+    EXPECT_THAT(parsed.text, HasSubstr(".\n\n")) << topic;
+  }
+  EXPECT_THAT(ParseCommandLine({"help", "settings"}).text, HasSubstr("DUET_SERVER"));
+}
+
+TEST(Help, SuggestsWhatWasMeant) {
+  const auto expect = [](const std::vector<std::string>& arguments, const char* text) {
+    const ParsedCommandLine parsed = ParseCommandLine(arguments);
+    EXPECT_EQ(parsed.exit_code, 2);
+    EXPECT_THAT(parsed.text, HasSubstr(text));
+  };
+  expect({"sinthesize"}, "There is no command \"sinthesize\"; did you mean synthesize?");
+  expect({"help", "lables"}, "did you mean labels?");
+  expect({"help", "konvert"}, "did you mean convert?");
+  expect({"man", "modls"}, "did you mean models?");
+  expect({"models", "--sever", "x"}, "Did you mean --server?");
+  expect({"models", "--sever=x"}, "Did you mean --server?");
+  EXPECT_THAT(ParseCommandLine({"models", "--xyzzy"}).text, Not(HasSubstr("Did you mean")));
+}
+
+TEST(Help, WorksWhateverTheSettingsAre) {
+  std::ostringstream out, err;
+  ProgramEnvironment environment{nullptr, &out, &err};
+  environment.variables = [](const std::string& name) {
+    return name == "DUET_CONFIG" ? std::optional<std::string>("/nowhere/at/all") : std::nullopt;
+  };
+  EXPECT_EQ(RunProgram({"models"}, environment), 2);
+  EXPECT_THAT(err.str(), HasSubstr("DUET_CONFIG: /nowhere/at/all: no such file"));
+  for (const char* word : {"help", "--help", "--version", "man"}) {
+    EXPECT_EQ(RunProgram({word}, environment), 0) << word;
+  }
+}
+
+FlagEntry FlagOf(const CommandEntry& command, const std::string& name) {
+  for (const FlagEntry& flag : command.flags) {
+    if (flag.name == name) return flag;
+  }
+  ADD_FAILURE() << command.name << " has no " << name;
+  return {};
+}
+
+TEST(CommandTable, HoldsEveryCommandAndFlag) {
+  const CommandLine line;
+  const std::vector<CommandEntry> commands = ListCommands(line.app);
+  std::vector<std::string> names;
+  for (const CommandEntry& command : commands) names.push_back(command.name);
+  EXPECT_THAT(names,
+              ElementsAre("", "models", "synthesize", "batch", "batch merge", "batch verify",
+                          "inspect", "convert", "view", "compare", "help", "completion", "man"));
+  EXPECT_THAT(FlagOf(commands[2], "--leader-side").choices, ElementsAre("left", "right"));
+  EXPECT_EQ(FlagOf(commands[2], "--leader-side").default_value, "left");
+  EXPECT_TRUE(FlagOf(commands[2], "--leader").takes_file);
+  EXPECT_TRUE(FlagOf(commands[2], "--leader").is_required);
+  EXPECT_FALSE(FlagOf(commands[2], "--joint-map").takes_file);
+  EXPECT_EQ(FlagOf(commands[2], "--quiet").form, "");
+  EXPECT_TRUE(FlagOf(commands[6], "files").is_argument);
+}
+
+TEST(Completion, KnowsEveryFlag) {
+  for (const char* shell : {"bash", "zsh", "fish"}) {
+    const std::string script = ParseCommandLine({"completion", shell}).text;
+    EXPECT_THAT(script, AllOf(HasSubstr("joint-map-file"), HasSubstr("retries-per-item"),
+                              HasSubstr("resample"), HasSubstr("left right")));
+  }
+  EXPECT_EQ(ParseCommandLine({"completion", "tcsh"}).exit_code, 2);
+}
+
+TEST(ManualPage, TellsAllThatHelpTells) {
+  const std::string page = ParseCommandLine({"man", "convert"}).text;
+  EXPECT_THAT(page,
+              AllOf(StartsWith(".TH DUET\\-CONVERT 1 "), HasSubstr(".SH SYNOPSIS"),
+                    HasSubstr("\\fB\\-\\-resample\\fR \\fIHZ\\fR"), HasSubstr("(default: all)")));
+  EXPECT_THAT(ParseCommandLine({"man", "synthesize"}).text, HasSubstr("(default: left)"));
+  EXPECT_THAT(ParseCommandLine({"man"}).text,
+              AllOf(StartsWith(".TH DUET 1 "), HasSubstr("\\fBduet\\-batch\\fR(1)\n"),
+                    HasSubstr(".SH SETTINGS")));
+}
+
+TEST(ManualPage, AllAreWrittenIntoAFolder) {
+  const test::TemporaryFolder folder;
+  std::ostringstream out, err;
+  ASSERT_EQ(RunProgram({"man", "--out", (folder / "new/man1").string()}, {nullptr, &out, &err}), 0)
+      << err.str();
+  std::vector<std::string> names;
+  for (const auto& file : std::filesystem::directory_iterator(folder / "new/man1")) {
+    names.push_back(file.path().filename().string());
+  }
+  EXPECT_THAT(
+      names, AllOf(Contains("duet.1"), Contains("duet-inspect.1"), Contains("duet-batch-merge.1")));
+  EXPECT_EQ(names.size(), 13u);
+}
+
+}  // namespace
+}  // namespace duet::client::cli

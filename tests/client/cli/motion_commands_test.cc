@@ -1,0 +1,407 @@
+// inspect, convert, view and compare: the whole program, which never reaches for a server.
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "absl/strings/str_replace.h"
+#include "client/cli/program.h"
+#include "client/cli/take.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "model/formats/motion_file.h"
+#include "model/motion/skeleton.h"
+#include "nlohmann/json.hpp"
+#include "tests/support/status_matchers.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/test_motion.h"
+
+namespace duet::client::cli {
+namespace {
+
+using formats::Format;
+using nlohmann::json;
+using test::IsOk;
+using test::LargestDistance;
+using test::MakePerson;
+using test::ReadTestFile;
+using test::TemporaryFolder;
+using test::WriteTestFile;
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+using Strings = std::vector<std::string>;
+
+class MotionCommandsTest : public ::testing::Test {
+ protected:
+  MotionCommandsTest() {
+    Write("pair.csv", Format::kCsv, {leader_, follower_});
+    Write("one.csv", Format::kCsv, {leader_});
+    Write("one.bvh", Format::kBvh, {leader_});
+    Write("one.npy", Format::kNpy, {leader_});
+  }
+
+  void Write(const std::string& name, Format format, const std::vector<motion::Clip>& people) {
+    EXPECT_THAT(formats::WritePeople(folder_ / name, format, people, motion::SbuSkeleton()),
+                IsOk());
+  }
+
+  int Run(const Strings& arguments, const std::string& input = "") {
+    out_.str("");
+    err_.str("");
+    std::istringstream in(input);
+    ProgramEnvironment environment{[](const ClientOptions&) -> absl::StatusOr<Client> {
+                                     ADD_FAILURE() << "no server was to be asked";
+                                     return absl::UnavailableError("");
+                                   },
+                                   &out_, &err_, &in};
+    environment.out_is_terminal = terminal_;
+    environment.variables = [this](const std::string& name) {
+      return name == "NO_COLOR" ? no_color_ : std::nullopt;
+    };
+    return RunProgram(arguments, environment);
+  }
+
+  json RunJson(const Strings& arguments, const std::string& input = "") {
+    EXPECT_EQ(Run(arguments, input), 0) << err_.str() << out_.str();
+    return json::parse(out_.str(), nullptr, false);
+  }
+
+  motion::Clip Read(const std::string& name, formats::ReadOptions options = {}) {
+    absl::StatusOr<motion::Clip> clip = ReadLeader(folder_ / name, options);
+    EXPECT_THAT(clip, IsOk());
+    return clip.value_or(motion::Clip{});
+  }
+
+  std::string Path(const std::string& name) const { return (folder_ / name).string(); }
+  bool Exists(const std::string& name) const { return std::filesystem::exists(folder_ / name); }
+
+  TemporaryFolder folder_;
+  const motion::Clip leader_ = MakePerson();
+  const motion::Clip follower_ = MakePerson({60, 3, 0, {0, 1.1f, 1.2f}, 30});
+  bool terminal_ = false;
+  std::optional<std::string> no_color_;
+  std::ostringstream out_, err_;
+};
+
+TEST_F(MotionCommandsTest, InspectTellsWhatWasUnderstoodAndWhy) {
+  ASSERT_EQ(Run({"inspect", Path("one.bvh")}), 0);
+  EXPECT_THAT(out_.str(),
+              StartsWith(Path("one.bvh") + ": BVH, 1 person, 60 frames, 2.00 s at 30 Hz\n"
+                                           "  frame rate  30 Hz  (file: Frame Time 0.0333333)\n"
+                                           "  unit        centimetres  (guessed: foot to torso"));
+  EXPECT_THAT(out_.str(), AllOf(HasSubstr("  up axis     y-up  (guessed"),
+                                HasSubstr("    left_hand       left_hand\n"),
+                                HasSubstr("    not used: torso_to_neck"),
+                                HasSubstr("    ok   limb lengths"), Not(HasSubstr("\x1b"))));
+  ASSERT_EQ(Run({"inspect", Path("one.bvh"), "--metres-per-unit", "0.01", "--up-axis", "y-up",
+                 "--frame-rate", "60"}),
+            0);
+  EXPECT_THAT(out_.str(), AllOf(HasSubstr("frame rate  60 Hz  (given)"),
+                                HasSubstr("unit        0.01 m  (given)"),
+                                HasSubstr("up axis     y-up  (given)")));
+}
+
+TEST_F(MotionCommandsTest, InspectTellsEachOfTwoPeople) {
+  ASSERT_EQ(Run({"inspect", Path("pair.csv")}), 0);
+  EXPECT_THAT(out_.str(), AllOf(HasSubstr(": CSV, 2 people, 60 frames"),
+                                HasSubstr("  left person\n  frame rate  30 Hz  (file)\n"),
+                                HasSubstr("  right person\n  read as the other\n  skeleton\n")));
+}
+
+TEST_F(MotionCommandsTest, InspectForPrograms) {
+  const json files = RunJson({"inspect", "--json", Path("pair.csv"), Path("one.bvh")})["files"];
+  ASSERT_EQ(files.size(), 2u);
+  EXPECT_EQ(files[0]["format"], "CSV");
+  EXPECT_EQ(files[0]["people_count"], 2);
+  EXPECT_EQ(files[0]["frames"], 60);
+  EXPECT_EQ(files[0]["seconds"], 2);
+  EXPECT_EQ(files[0]["readable"], true);
+  ASSERT_EQ(files[0]["people"].size(), 2u);
+  EXPECT_EQ(files[0]["people"][0]["unit"], json({{"value", "metres"}, {"origin", "file"}}));
+  const json& person = files[1]["people"][0];
+  EXPECT_EQ(person["unit"]["origin"], "guessed");
+  EXPECT_EQ(person["joints"][0]["joint"], "head");
+  EXPECT_EQ(person["joints"][0]["parts"], json::parse(R"([{"joint": "head", "weight": 1.0}])"));
+  EXPECT_EQ(person["checks"][1]["name"], "size");
+  EXPECT_EQ(person["checks"][1]["good"], true);
+}
+
+TEST_F(MotionCommandsTest, InspectNamesWhatIsMissing) {
+  WriteTestFile(folder_ / "odd.bvh",
+                absl::StrReplaceAll(ReadTestFile(folder_ / "one.bvh"), {{"left_hand", "paw"}}));
+  EXPECT_EQ(Run({"inspect", Path("odd.bvh")}), 42);
+  EXPECT_THAT(out_.str(),
+              AllOf(HasSubstr("    left_hand       missing\n"),
+                    HasSubstr("    right_hand      right_hand\n"), HasSubstr("cannot be read: "),
+                    HasSubstr("--joint-map"), Not(HasSubstr("skeleton\n"))));
+  EXPECT_EQ(Run({"inspect", "--json", Path("odd.bvh")}), 42);
+  const json file = json::parse(out_.str())["files"][0];
+  EXPECT_EQ(file["readable"], false);
+  EXPECT_EQ(file["people"][0]["missing_joints"], json({"left_hand"}));
+  ASSERT_EQ(Run({"inspect", Path("odd.bvh"), "--joint-map", "left_hand=paw"}), 0);
+  EXPECT_THAT(out_.str(), HasSubstr("    left_hand       paw  (given)\n"));
+}
+
+TEST_F(MotionCommandsTest, InspectSuggestsTheJointThatWasMeant) {
+  EXPECT_EQ(Run({"inspect", Path("one.bvh"), "--joint-map", "left_hnd=left_hand"}), 42);
+  EXPECT_THAT(out_.str(), HasSubstr("did you mean left_hand?"));
+  EXPECT_EQ(Run({"inspect", Path("one.bvh"), "--joint-map", "left_hand=left_elbw"}), 42);
+  EXPECT_THAT(out_.str(), HasSubstr("did you mean left_elbow?"));
+}
+
+TEST_F(MotionCommandsTest, InspectLooksAtAFileWithoutARate) {
+  ASSERT_EQ(Run({"inspect", Path("one.npy")}), 0);
+  EXPECT_THAT(out_.str(), AllOf(HasSubstr("NPY, 1 person, 60 frames\n"),
+                                HasSubstr("frame rate  unknown; say it with --frame-rate HZ\n"),
+                                HasSubstr("unit        metres  (default)\n"),
+                                HasSubstr("ok   symmetry"), Not(HasSubstr("jumps"))));
+  EXPECT_EQ(RunJson({"inspect", "--json", Path("one.npy")})["files"][0]["people"][0]["frame_rate"],
+            nullptr);
+}
+
+TEST_F(MotionCommandsTest, InspectGoesOnAfterAFileThatCannotBeRead) {
+  WriteTestFile(folder_ / "empty.bvh", "");
+  EXPECT_EQ(Run({"inspect", Path("empty.bvh"), Path("no.csv"), Path("one.csv")}), 42);
+  EXPECT_THAT(out_.str(), AllOf(HasSubstr("empty.bvh:1: came the end of the file"),
+                                HasSubstr("no.csv: no such file"), HasSubstr("CSV, 1 person")));
+}
+
+TEST_F(MotionCommandsTest, InspectTellsWhatLooksWrong) {
+  motion::Clip odd = leader_;
+  for (motion::Vec3& at : odd.poses.all()) at = at * 3;
+  Write("odd.csv", Format::kCsv, {odd});
+  ASSERT_EQ(Run({"inspect", Path("odd.csv")}), 0);
+  EXPECT_THAT(out_.str(), HasSubstr("look size"));
+}
+
+TEST_F(MotionCommandsTest, ColourIsForTerminalsThatWantIt) {
+  terminal_ = true;
+  ASSERT_EQ(Run({"inspect", Path("one.csv")}), 0);
+  EXPECT_THAT(out_.str(), StartsWith("\x1b[1m"));
+  no_color_ = "1";
+  ASSERT_EQ(Run({"inspect", Path("one.csv")}), 0);
+  EXPECT_THAT(out_.str(), Not(HasSubstr("\x1b")));
+  no_color_ = "";
+  ASSERT_EQ(Run({"inspect", Path("one.csv")}), 0);
+  EXPECT_THAT(out_.str(), HasSubstr("\x1b"));
+}
+
+TEST_F(MotionCommandsTest, ConvertKeepsEveryPosition) {
+  ASSERT_EQ(Run({"convert", Path("pair.csv"), "--out", Path("b.json"), "--out", Path("b.npy"),
+                 "--out", Path("b.csv"), "--out", Path("b.bvh")}),
+            0)
+      << err_.str();
+  formats::ReadOptions second;
+  second.side = formats::Side::kRight;
+  for (const char* name : {"b.json", "b.csv"}) {
+    EXPECT_EQ(LargestDistance(Read(name), leader_), 0) << name;
+    EXPECT_EQ(LargestDistance(Read(name, second), follower_), 0) << name;
+    EXPECT_EQ(Read(name).frame_rate_hz, 30);
+  }
+  second.frame_rate_hz = 30;
+  EXPECT_EQ(LargestDistance(Read("b.npy", second), follower_), 0);
+  EXPECT_LT(LargestDistance(Read("b.leader.bvh"), leader_), 1e-4f);
+  EXPECT_LT(LargestDistance(Read("b.follower.bvh"), follower_), 1e-4f);
+  EXPECT_THAT(out_.str(), AllOf(HasSubstr("2 people, 60 frames at 30 Hz"),
+                                HasSubstr("b.json (every position kept)\n"),
+                                HasSubstr("no place for joint names and the frame rate: read it "
+                                          "with --frame-rate 30")));
+}
+
+TEST_F(MotionCommandsTest, ConvertSaysHowFarAFormatIsOff) {
+  motion::Clip growing = leader_;
+  const int elbow = motion::SbuSkeleton().Find("left_elbow");
+  const int hand = motion::SbuSkeleton().Find("left_hand");
+  for (int frame = 0; frame < 60; ++frame) {
+    growing.at(frame, hand) =
+        Lerp(growing.at(frame, elbow), growing.at(frame, hand), frame < 50 ? 1.0f : 1.2f);
+  }
+  Write("growing.csv", Format::kCsv, {growing});
+  const json output =
+      RunJson({"convert", "--json", Path("growing.csv"), "--out", Path("g.bvh")})["outputs"][0];
+  const double off = output["largest_error_metres"];
+  EXPECT_NEAR(off, static_cast<double>(LargestDistance(Read("g.bvh"), growing)), 1e-4);
+  EXPECT_GT(off, 0.02);
+  ASSERT_EQ(Run({"convert", Path("growing.csv"), "--out", Path("g.bvh")}), 0);
+  EXPECT_THAT(out_.str(), HasSubstr(" mm off: a bone has one length there"));
+}
+
+TEST_F(MotionCommandsTest, ConvertTakesOnePersonOrBoth) {
+  ASSERT_EQ(Run({"convert", Path("pair.csv"), "--side", "right", "--out", Path("r.bvh")}), 0);
+  EXPECT_LT(LargestDistance(Read("r.bvh"), follower_), 1e-4f);
+  EXPECT_FALSE(Exists("r.leader.bvh"));
+  ASSERT_EQ(Run({"convert", Path("one.csv"), "--side", "right", "--out", Path("r.csv")}), 0);
+  EXPECT_EQ(ReadTestFile(folder_ / "r.csv"), ReadTestFile(folder_ / "one.csv"));
+  EXPECT_EQ(Run({"convert", Path("one.csv"), "--side", "both", "--out", Path("r.csv")}), 42);
+  EXPECT_THAT(err_.str(), HasSubstr("--side: came both, but the file has one person"));
+}
+
+TEST_F(MotionCommandsTest, ResamplingKeepsThePaceAndFrameRateDoesNot) {
+  ASSERT_EQ(Run({"convert", Path("one.csv"), "--resample", "15", "--out", Path("slow.csv")}), 0);
+  const motion::Clip resampled = Read("slow.csv");
+  EXPECT_EQ(resampled.frame_rate_hz, 15);
+  ASSERT_EQ(resampled.frame_count(), 30);
+  EXPECT_EQ(resampled.at(7, 4), leader_.at(14, 4));
+  EXPECT_THAT(out_.str(), HasSubstr("resampled from 30 Hz"));
+
+  ASSERT_EQ(Run({"convert", Path("one.csv"), "--frame-rate", "15", "--out", Path("said.csv")}), 0);
+  EXPECT_EQ(Read("said.csv").frame_rate_hz, 15);
+  EXPECT_EQ(Read("said.csv").frame_count(), 60);
+  EXPECT_EQ(Run({"convert", Path("one.csv"), "--resample", "1e5", "--out", Path("x.csv")}), 42);
+  EXPECT_THAT(err_.str(), HasSubstr("--resample"));
+}
+
+TEST_F(MotionCommandsTest, ConvertBetweenPipes) {
+  const std::string csv = ReadTestFile(folder_ / "pair.csv");
+  ASSERT_EQ(
+      Run({"convert", "-", "--input-format", "csv", "--out", "-", "--output-format", "json"}, csv),
+      0)
+      << err_.str();
+  EXPECT_THAT(err_.str(), HasSubstr("wrote     standard output (every position kept)"));
+  WriteTestFile(folder_ / "piped.json", out_.str());
+  EXPECT_EQ(LargestDistance(Read("piped.json"), leader_), 0);
+}
+
+TEST_F(MotionCommandsTest, AFormatThatIsSaidWinsOverTheExtension) {
+  WriteTestFile(folder_ / "walk.data", ReadTestFile(folder_ / "one.bvh"));
+  EXPECT_EQ(Run({"inspect", Path("walk.data")}), 42);
+  EXPECT_THAT(out_.str(), HasSubstr("Say it with --input-format FORMAT.\n"));
+  ASSERT_EQ(Run({"inspect", Path("walk.data"), "--input-format", "bvh"}), 0);
+  EXPECT_THAT(out_.str(), HasSubstr(": BVH, 1 person"));
+}
+
+TEST_F(MotionCommandsTest, WhatPipesCannotDoIsSaid) {
+  const std::string csv = ReadTestFile(folder_ / "pair.csv");
+  const auto refused = [&](int code, const Strings& arguments, const std::string& message) {
+    EXPECT_EQ(Run(arguments, csv), code) << message;
+    EXPECT_THAT(err_.str(), HasSubstr(message));
+    EXPECT_EQ(out_.str(), "");
+  };
+  const std::string one = Path("one.csv"), pair = Path("pair.csv");
+  refused(42, {"convert", "-", "--out", Path("x.csv")},
+          "standard input: format: nothing says which it is");
+  refused(2, {"convert", one, "--out", "-"}, "--output-format, which --out - needs");
+  refused(2, {"convert", one, "--out", Path("x.csv"), "--output-format", "csv"},
+          "--output-format: counts for --out - alone");
+  refused(2, {"convert", one, "--out", "-", "--output-format", "csv", "--json"}, "--json");
+  refused(2, {"convert", one, "--out", "-", "--output-format", "html"}, "html is no motion");
+  refused(42, {"convert", pair, "--out", "-", "--output-format", "bvh"}, "choose one with --side");
+  refused(42, {"convert", "-", "--input-format", "amc", "--out", Path("x.csv")},
+          "came as AMC without its skeleton");
+  refused(2, {"compare", "-", "-", "--input-format", "csv"}, "- came twice");
+}
+
+TEST_F(MotionCommandsTest, AnEmptyPipeIsNoMotion) {
+  EXPECT_EQ(Run({"convert", "-", "--input-format", "csv", "--out", Path("x.csv")}), 42);
+  EXPECT_THAT(err_.str(), HasSubstr("standard input: came empty, wanted a motion"));
+}
+
+TEST_F(MotionCommandsTest, ConvertNeverReplacesWhatItReads) {
+  EXPECT_EQ(Run({"convert", Path("one.csv"), "--out", Path("one.csv")}), 2);
+  EXPECT_THAT(err_.str(), HasSubstr("would replace the file that is read"));
+  EXPECT_EQ(Run({"convert", Path("one.csv"), "--out", Path("one.html")}), 2);
+  EXPECT_THAT(err_.str(), HasSubstr("wanted .bvh, .csv, .npy or .json"));
+}
+
+TEST_F(MotionCommandsTest, ViewShowsMotionsSideBySide) {
+  ASSERT_EQ(
+      Run({"view", Path("one.bvh"), "captured=" + Path("pair.csv"), "--out", Path("view.html")}), 0)
+      << err_.str();
+  EXPECT_THAT(ReadTestFile(folder_ / "view.html"),
+              AllOf(HasSubstr("<title>one, captured</title>"), HasSubstr("\"name\":\"captured\"")));
+  EXPECT_THAT(out_.str(), AllOf(HasSubstr("shown     one: " + Path("one.bvh") + " (one person)\n"),
+                                HasSubstr("shown     captured: " + Path("pair.csv") + "\n"),
+                                HasSubstr("wrote     " + Path("view.html") + "\n")));
+  ASSERT_EQ(Run({"view", Path("one.bvh"), "--title", "Tuesday", "--quiet", "--out", "-"}), 0);
+  EXPECT_THAT(out_.str(), AllOf(StartsWith("<!doctype html>"), HasSubstr("<title>Tuesday<")));
+  EXPECT_EQ(Run({"view", Path("one.bvh"), "--out", Path("view.csv")}), 2);
+}
+
+TEST_F(MotionCommandsTest, CompareTellsHowFollowersDiffer) {
+  motion::Clip moved = follower_;
+  for (motion::Vec3& at : moved.poses.all()) at.x += 0.25f;
+  Write("moved.csv", Format::kCsv, {leader_, moved});
+  ASSERT_EQ(Run({"compare", Path("pair.csv"), Path("moved.csv"), "--html", Path("c.html")}), 0)
+      << err_.str();
+  EXPECT_THAT(out_.str(), AllOf(HasSubstr("A         pair: 60 frames at 30 Hz, its follower\n"),
+                                HasSubstr("joints, on average                           0.250 m"),
+                                HasSubstr("the same with roots put together             0.000 m"),
+                                HasSubstr("their partners, on average                   0.000 m"),
+                                HasSubstr("touches the partner"), HasSubstr("c.html")));
+  EXPECT_THAT(ReadTestFile(folder_ / "c.html"), HasSubstr("\"title\":\"joints, on average\""));
+  const json compared = RunJson({"compare", "--json", Path("pair.csv"), "b=" + Path("moved.csv")});
+  EXPECT_NEAR(compared["displacement"]["mean_metres"], 0.25, 1e-5);
+  EXPECT_NEAR(compared["displacement"]["joints"]["left_foot"], 0.25, 1e-5);
+  EXPECT_EQ(compared["partner_metres"], 0);
+  EXPECT_EQ(compared["b"]["name"], "b");
+  EXPECT_TRUE(compared["figures"]["mean_lean_degrees"]["a"].is_number());
+}
+
+TEST_F(MotionCommandsTest, WhoLeadsMayBeSaidForEach) {
+  Write("turned.csv", Format::kCsv, {follower_, leader_});
+  const Strings files = {Path("pair.csv"), Path("turned.csv")};
+  const auto mean = [&](const Strings& sides) {
+    Strings arguments = {"compare", "--json", files[0], files[1]};
+    for (const std::string& side : sides)
+      arguments.insert(arguments.end(), {"--leader-side", side});
+    return RunJson(arguments)["displacement"]["mean_metres"].get<double>();
+  };
+  EXPECT_GT(mean({}), 0.5);
+  EXPECT_GT(mean({"right"}), 0.5);
+  EXPECT_EQ(mean({"left", "right"}), 0);
+  EXPECT_EQ(Run({"view", files[0], "--leader-side", "left", "--leader-side", "right", "--out",
+                 Path("v.html")}),
+            2);
+  EXPECT_THAT(err_.str(), HasSubstr("--leader-side: came 2 times, wanted once or 1 times"));
+}
+
+TEST_F(MotionCommandsTest, CompareRefusesOneMotion) {
+  EXPECT_EQ(Run({"compare", Path("one.csv")}), 2);
+  EXPECT_EQ(Run({"compare", Path("one.csv"), Path("no.csv")}), 42);
+  EXPECT_THAT(err_.str(), HasSubstr("no.csv: no such file"));
+}
+
+TEST_F(MotionCommandsTest, ATakeIsOneFileOrTwo) {
+  Write("walk.bvh", Format::kBvh, {leader_, follower_});
+  const std::string first = Path("walk.leader.bvh"), second = Path("walk.follower.bvh");
+  EXPECT_EQ(ParseTake(first).name, "walk");
+  EXPECT_THAT(ParseTake(first).files, ElementsAre(first, second));
+  EXPECT_THAT(ParseTake(second).files, ElementsAre(second));
+  EXPECT_EQ(ParseTake("best=" + second).name, "best");
+  EXPECT_THAT(ParseTake("x=" + Path("one.csv") + "," + second).files,
+              ElementsAre(Path("one.csv"), second));
+  EXPECT_EQ(ParseTake(Path("no.csv")).name, "no");
+  WriteTestFile(folder_ / "a=b,c.csv", "");
+  EXPECT_EQ(ParseTake(Path("a=b,c.csv")).name, "a=b,c");
+
+  TakeArguments arguments;
+  arguments.takes = {first, second};
+  const auto takes = ReadTakes(arguments, motion::SbuSkeleton(), nullptr);
+  ASSERT_THAT(takes, IsOk());
+  ASSERT_EQ(takes->size(), 1u);
+  ASSERT_TRUE((*takes)[0].follower.has_value());
+  EXPECT_LT(LargestDistance(*(*takes)[0].follower, follower_), 1e-4f);
+}
+
+TEST_F(MotionCommandsTest, TwoFilesOfATakeAreMatched) {
+  test::PersonOptions slow;
+  slow.frames = 20;
+  slow.frame_rate_hz = 15;
+  Write("slow.csv", Format::kCsv, {MakePerson(slow)});
+  TakeArguments arguments;
+  arguments.takes = {Path("one.csv") + "," + Path("slow.csv")};
+  const auto takes = ReadTakes(arguments, motion::SbuSkeleton(), nullptr);
+  ASSERT_THAT(takes, IsOk());
+  const Take& take = (*takes)[0];
+  EXPECT_EQ(take.leader.frame_count(), 39);
+  EXPECT_EQ(take.follower->frame_count(), 39);
+  EXPECT_EQ(take.follower->frame_rate_hz, 30);
+  EXPECT_EQ(take.follower->at(8, 3), MakePerson(slow).at(4, 3));
+}
+
+}  // namespace
+}  // namespace duet::client::cli

@@ -1,0 +1,111 @@
+"""The pages of duet view and duet compare in a real browser."""
+
+import pathlib
+import tempfile
+import unittest
+
+import browser
+import tools
+
+
+class GalleryTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.folder = pathlib.Path(folder.name)
+        cls.file = cls.folder / "view.html"
+        cls.compared = cls.folder / "compare.html"
+        pair = f"{tools.sample('kick')},{tools.sample('punch')}"
+        for command in (("view", f"pair={pair}", tools.sample("hug"), "--out", cls.file),
+                        ("compare", f"first={pair}", f"second={pair}", "--html", cls.compared)):
+            result = tools.duet(*command)
+            assert result.returncode == 0, result.stderr
+        cls.browser = browser.Browser()
+        cls.addClassCleanup(cls.browser.close)
+
+    def open(self, suffix="", file=None, **size):
+        page = self.browser.open((file or self.file).as_uri() + suffix, **size)
+        self.addCleanup(page.close)
+        self.assertEqual(page.state()["state"], "ready", page.state())
+        return page
+
+    def test_plays_all_motions_at_once(self):
+        page = self.open()
+        self.assertEqual(page.state()["cells"], "2")
+        self.assertGreater(int(page.state()["triangles"]), 20_000)
+        page.wait_until("Number(document.documentElement.dataset.frame) > 2")
+        self.assertEqual(page.events("Runtime.exceptionThrown"), [])
+
+    def test_nothing_is_fetched(self):
+        page = self.open("#paused")
+        urls = [event["request"]["url"] for event in page.events("Network.requestWillBeSent")]
+        self.assertEqual(urls, [self.file.as_uri()])
+
+    def test_every_motion_is_in_view_from_every_side(self):
+        for view in ("reset", "front", "side", "top"):
+            picture = self.open(f"#frame=20&paused&view={view}", width=1000, height=640).picture()
+            sides = {"left": 0.0, "right": 0.5, "top": 0.1, "bottom": 0.65}
+            left = {**sides, "right": 0.5}
+            right = {**sides, "left": 0.5, "right": 1.0}
+            self.assertGreater(picture.count(tools.is_leader_orange, **left), 300, view)
+            self.assertGreater(picture.count(tools.is_follower_teal, **left), 300, view)
+            self.assertGreater(picture.count(tools.is_leader_orange, **right), 300, view)
+            self.assertEqual(picture.count(tools.is_follower_teal, **right), 0, view)
+
+    def test_shows_motions_on_a_phone(self):
+        picture = self.open("#frame=20&paused", width=400, height=760).picture()
+        self.assertGreater(picture.count(tools.is_leader_orange, left=0, right=1), 200)
+
+    def test_curves_go_with_the_time_line(self):
+        page = self.open("#frame=30&paused", width=1000, height=640)
+        titles = page.evaluate(
+            "[...document.querySelectorAll('.chart b')].map((title) => title.textContent)")
+        self.assertEqual(titles, ["Speed", "Distance between them"])
+        counts = page.evaluate("[...document.querySelectorAll('.chart')]"
+                               ".map((chart) => chart.querySelectorAll('polyline').length)")
+        self.assertEqual(counts, [2, 1])  # one alone has no distance
+        line, thumb = page.evaluate("""(() => {
+          const last = Number(document.getElementById('scrub').max);
+          const track = document.getElementById('scrub').getBoundingClientRect();
+          return [document.querySelector('.chart .now').getBoundingClientRect().left,
+                  track.left + 7 + (track.width - 14) * 30 / last];
+        })()""")
+        self.assertAlmostEqual(line, thumb, delta=1.5)
+
+    def test_a_click_into_the_curves_goes_there(self):
+        page = self.open("", width=1000, height=640)
+        page.click("#charts")
+        last = int(page.evaluate("document.getElementById('scrub').max"))
+        self.assertFalse(page.evaluate("Boolean(document.querySelector('#play.playing'))"))
+        self.assertAlmostEqual(int(page.text("#frame")), last / 2, delta=2)
+
+    def test_keys_move_through_time(self):
+        page = self.open("#paused")
+        for key, frame in (("ArrowRight", "1"), ("Home", "0")):
+            page.press(key)
+            self.assertEqual(page.text("#frame"), frame)
+
+    def test_people_can_be_hidden_everywhere(self):
+        page = self.open("#frame=20&paused", width=1000, height=640)
+        page.click("[data-person=leader]")
+        picture = page.picture()
+        everywhere = {"left": 0, "right": 1, "top": 0.2, "bottom": 0.65}
+        self.assertEqual(picture.count(tools.is_leader_orange, **everywhere), 0)
+        self.assertGreater(picture.count(tools.is_follower_teal, **everywhere), 300)
+
+    def test_a_comparison_has_its_figures_beside_it(self):
+        page = self.open("#paused", self.compared, width=1200, height=800)
+        rows = page.evaluate("[...document.querySelectorAll('#figures tr')]"
+                             ".map((row) => [...row.cells].map((cell) => cell.textContent))")
+        self.assertEqual(rows[0], ["", "first", "second"])
+        self.assertIn(["displacement"], rows)
+        self.assertIn(["joints, on average", "0.000 m"], rows)
+        lean = next(row for row in rows if row[0].startswith("lean from the hips"))
+        self.assertEqual(lean[1], lean[2])
+        self.assertEqual(page.text(".chart b"), "Speed of the follower")
+
+
+if __name__ == "__main__":
+    browser.find_chromium()
+    tools.main()
