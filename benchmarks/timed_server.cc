@@ -38,7 +38,9 @@ void KeepBusy(absl::Span<const duet::engine::SynthesisWindow* const> windows) {
 
 int main(int argc, char** argv) {
   duet::server::lifecycle::StopSignal stop;
-  const duet::server::lifecycle::ModelSource source{
+  using duet::server::lifecycle::ModelSource;
+  const ModelSource source{
+      "timed",
       [](const std::filesystem::path&) {
         return absl::UnimplementedError("this engine has no checkpoints");
       },
@@ -46,8 +48,8 @@ int main(int argc, char** argv) {
         auto model = std::make_shared<duet::test::FakeSynthesizer>();
         model->on_batch = KeepBusy;
         return std::vector<std::shared_ptr<const Synthesizer>>{std::move(model)};
-      },
-      [](int) {}};
+      }};
   return duet::server::lifecycle::RunServer(
-      argc, argv, source, stop, std::make_shared<duet::server::metrics::StreamLogSink>(stderr));
+      argc, argv, [&](const auto&) -> absl::StatusOr<ModelSource> { return source; }, stop,
+      std::make_shared<duet::server::metrics::StreamLogSink>(stderr));
 }

@@ -193,7 +193,8 @@ def check_namespaces(root, path):
     wanted = NAMESPACES.get(str(pathlib.PurePosixPath(path).parent)) or namespace_of(path)
     for number, line in enumerate((root / path).read_text(encoding="utf-8").splitlines(), start=1):
         opened = NAMESPACE.match(line)
-        if opened and opened[1] != wanted:
+        # Highway's macro names what is compiled once for each instruction set.
+        if opened and opened[1].removesuffix("::HWY_NAMESPACE") != wanted:
             yield number, f"opens namespace {opened[1]}, wanted {wanted}"
 
 

@@ -184,9 +184,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadConfig{"drain_seconds: is -1, wanted 0 to 3600",
                   [](v1::ServerConfig& c) { c.set_drain_seconds(-1); }},
         BadConfig{"grace_seconds: is nan, wanted 0 to 3600",
-                  [](v1::ServerConfig& c) {
-                    c.set_grace_seconds(std::numeric_limits<double>::quiet_NaN());
-                  }},
+                  [](v1::ServerConfig&
+                         c) { c.set_grace_seconds(std::numeric_limits<double>::quiet_NaN()); }},
         BadConfig{"clean_up: is 0, wanted CLEAN_UP_POLICY_AUTO",
                   [](v1::ServerConfig& c) { c.set_clean_up(v1::CLEAN_UP_POLICY_UNSPECIFIED); }},
         BadConfig{"clean_up: is 9, wanted CLEAN_UP_POLICY_AUTO",
