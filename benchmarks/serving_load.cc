@@ -23,6 +23,7 @@ using std::chrono::steady_clock;
 
 struct Load {
   std::string address;
+  duet::client::ModelChoice model;
   int callers = 1;
   int frames = 45;
   int background_callers = 0;
@@ -121,10 +122,11 @@ void Print(const Load& load, Seen& seen) {
 void Run(const Load& load) {
   const duet::client::Client patient = Connect(load, 600);
   const duet::client::Client client = Connect(load, load.deadline_seconds);
-  const absl::StatusOr<duet::client::ModelDetails> details = patient.GetModel();
+  const absl::StatusOr<duet::client::ModelDetails> details = patient.GetModel(load.model);
   if (!details.ok()) Fail(details.status());
-  const duet::client::SynthesisRequest request = Request(details->model, load.frames);
-  const duet::client::SynthesisRequest background = Request(details->model, load.background_frames);
+  duet::client::SynthesisRequest request = Request(details->model, load.frames);
+  duet::client::SynthesisRequest background = Request(details->model, load.background_frames);
+  request.model = background.model = load.model;
   std::atomic<bool> over{false};
   std::vector<std::thread> behind, measured;
   for (int i = 0; i < load.background_callers; ++i) {
@@ -152,6 +154,8 @@ int main(int argc, char** argv) {
   Load load;
   CLI::App app("Asks a server for followers and tells how long that took.", "serving_load");
   app.add_option("--server", load.address, "host:port")->required();
+  app.add_option("--model", load.model.name, "the server's default unless told");
+  app.add_option("--version", load.model.version, "of the model");
   app.add_option("--callers", load.callers, "calls at a time");
   app.add_option("--frames", load.frames, "frames of each leader, at the model's rate");
   app.add_option("--background-callers", load.background_callers, "unmeasured calls at a time");
