@@ -43,7 +43,6 @@ absl::Status ParseTextFormat(absl::string_view text, google::protobuf::Message* 
 
 absl::Status ParseMessage(absl::string_view text, MessageSyntax syntax,
                           google::protobuf::Message* message) {
-  message->Clear();
   return syntax == MessageSyntax::kJson ? ParseJson(text, message) : ParseTextFormat(text, message);
 }
 

@@ -58,6 +58,7 @@ TEST(CleanUp, EveryStageHasItsSwitch) {
   none.floor.enabled = none.contacts.enabled = none.joint_ranges.enabled = false;
   const motion::Poses soiled = Moved(Soiled(), {3, 0, 0});
   EXPECT_EQ(Cleaned(soiled, 0, none), soiled);
+  EXPECT_EQ(Cleaned(Soiled(), 0, none), Soiled());
   const auto alone = [&](auto set, const motion::Poses& poses) {
     Options one = none;
     set(&one);

@@ -31,6 +31,11 @@ TEST(ToSkeleton, FindsLandmarksByName) {
   EXPECT_EQ(skeleton->feet, (motion::JointPair{3, 1}));
 }
 
+TEST(ToSkeleton, ALandmarkMayBeTheFirstJoint) {
+  EXPECT_EQ(ToSkeleton(Model({"left_hip", "right_hip"}))->hips, (motion::JointPair{0, 1}));
+  EXPECT_EQ(ToSkeleton(Model({"right_foot", "left_foot"}))->feet, (motion::JointPair{1, 0}));
+}
+
 TEST(ToSkeleton, AModelMayLackLandmarks) {
   const auto skeleton = ToSkeleton(Model({"thorax", "wing", "left_hip", "tail"}));
   ASSERT_THAT(skeleton, IsOk());

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "model/dataset/dataset.h"
 #include "nlohmann/json.hpp"
 
 namespace duet::dataset {
@@ -59,6 +60,13 @@ TEST(DatasetLayoutTest, ReadsEveryField) {
   EXPECT_FALSE(layout->classes[0].touches);
   EXPECT_TRUE(layout->classes[1].touches);
   EXPECT_TRUE(layout->notes.empty());
+}
+
+TEST(DatasetTest, AnyOfTheClassesMayBeOneInWhichBodiesTouch) {
+  Dataset dataset;
+  dataset.classes = {"hug", "wave", "dance"};
+  dataset.touches = {true, false, true};
+  EXPECT_THAT(dataset.TouchingClasses(), ElementsAre("hug", "dance"));
 }
 
 // Whom the configurations named when they named classes.

@@ -166,6 +166,17 @@ TEST(LevelSetsTest, TooFewPosesStay) {
   ExpectUnchanged(dataset);
 }
 
+TEST(LevelSetsTest, SixtyPosesAreEnough) {
+  Dataset dataset = Upright(1);
+  Capture(motion::Levelling(Up(0, 9), 0.5f), &dataset);
+  for (motion::Clip* clip :
+       {&dataset.sequences[0].pair.leader, &dataset.sequences[0].pair.follower}) {
+    clip->poses.Resize(30);
+  }
+  LevelSets(&dataset);
+  EXPECT_NE(dataset.sequences[0].levelling.floor_height(), 0);
+}
+
 TEST(LevelSetsTest, PeopleWithoutFeetStay) {
   Dataset dataset = Upright(3);
   Capture(motion::Levelling(Up(0, 9), 0.5f), &dataset);

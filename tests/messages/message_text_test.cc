@@ -28,7 +28,7 @@ TEST(ParseMessage, SaysWhereTheFirstErrorIs) {
   google::protobuf::Duration message;
   EXPECT_THAT(ParseMessage("seconds: 3\nhours: 1\ndays: 1", MessageSyntax::kTextFormat, &message),
               StatusIs(absl::StatusCode::kInvalidArgument,
-                       ::testing::AllOf(StartsWith("line 2:"), HasSubstr("hours"))));
+                       ::testing::AllOf(StartsWith("line 2:6: "), HasSubstr("hours"))));
   EXPECT_THAT(ParseMessage("{", MessageSyntax::kJson, &message),
               StatusIs(absl::StatusCode::kInvalidArgument, ::testing::_));
 }

@@ -1,5 +1,6 @@
 // Whole runs against a connection that a test writes.
 #include "client/batch/job.h"
+#include "client/batch/job_folder.h"
 
 #include <google/protobuf/util/json_util.h>
 
@@ -272,6 +273,13 @@ TEST_F(JobTest, RejectedAnswersAreAskedForWithOtherSeedsAndListed) {
   ASSERT_THAT(lines, SizeIs(kItems + 1));
   EXPECT_THAT(lines[1], HasSubstr("wanted at most 9"));
   EXPECT_THAT(Lines("set/index.jsonl"), SizeIs(0));
+  // Each is settled once, by its last answer.
+  std::ifstream journal(JobFolder(folder_ / "set").journal());
+  int rejected = 0;
+  for (std::string line; std::getline(journal, line);) {
+    rejected += line.find("\"rejected\"") != std::string::npos ? 1 : 0;
+  }
+  EXPECT_EQ(rejected, kItems);
 }
 
 TEST_F(JobTest, StopsBetweenItems) {

@@ -32,6 +32,12 @@ TEST(Recipe, AbsentFieldsHaveTheirDefaults) {
   EXPECT_EQ(recipe->output.shard_bytes, uint64_t{256} << 20);
 }
 
+TEST(Recipe, TheLeaderIsThePersonOnTheSideThatItSays) {
+  EXPECT_EQ(Parse("input { side: SIDE_LEFT }")->input.side, Sides::kLeft);
+  EXPECT_EQ(Parse("input { side: SIDE_RIGHT }")->input.side, Sides::kRight);
+  EXPECT_EQ(Parse("input { side: SIDE_BOTH }")->input.side, Sides::kBoth);
+}
+
 TEST(Recipe, TextFormatAndJsonSayTheSame) {
   const auto text = Parse(R"(
     seed: 3 models: "sbu@2" variety: 0.5

@@ -1,5 +1,6 @@
 #include "model/evaluation/metrics/features.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
@@ -98,6 +99,12 @@ TEST(FrechetDistanceTest, RefusesWhatIsNoSetOfFeatures) {
     EXPECT_EQ(FrechetDistance(bad, good).status().code(), absl::StatusCode::kInvalidArgument);
     EXPECT_EQ(FrechetDistance(good, bad).status().code(), absl::StatusCode::kInvalidArgument);
   }
+}
+
+TEST(FrechetDistanceTest, SamplesWithoutFeaturesWantOneAtLeast) {
+  const FeatureSet empty = {{}, {}};
+  EXPECT_THAT(std::string(FrechetDistance(empty, empty).status().message()),
+              testing::HasSubstr("[0]: 0 values, wanted 1"));
 }
 
 TEST(DiversityTest, IsTheMeanPairwiseDistance) {

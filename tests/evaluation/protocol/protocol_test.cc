@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <functional>
 
@@ -19,12 +20,17 @@ using test::StatusIs;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
+constexpr std::chrono::microseconds kTraining(200);
+
 // Answers with the leader moved, and writes down what it was given.
 class Recorder : public Method {
  public:
   std::string name() const override { return "recorder"; }
   absl::Status Train(const dataset::Dataset&, const std::vector<int>& train) override {
     trained.push_back(train);
+    const auto begin = std::chrono::steady_clock::now();
+    while (std::chrono::steady_clock::now() - begin < kTraining) {
+    }
     return status;
   }
   absl::StatusOr<motion::Poses> Predict(const dataset::Sequence& sequence) const override {
@@ -55,6 +61,7 @@ TEST(ProtocolTest, LeavesEachSubjectOutOnce) {
   EXPECT_THAT(method.trained[0], ElementsAre(1, 2, 4, 5));
   ASSERT_EQ((*folds)[0].motions.size(), 2u);
   EXPECT_EQ((*folds)[0].motions[1].sequence, 3);
+  EXPECT_GE((*folds)[0].train_seconds, std::chrono::duration<double>(kTraining).count());
   EXPECT_EQ(PoolMotions(*folds).size(), 6u);
 }
 

@@ -112,6 +112,7 @@ TEST(PaperTablesTest, AreWholeAndMarkedAsPrinted) {
     }
   }
   EXPECT_EQ(PaperAfdSbu().rows.size(), 12u);
+  EXPECT_EQ(PaperAfdSbu().decimals, 2);  // as it is printed
   EXPECT_EQ(PaperAfdSbu().rows[6].values[5], .32);
   EXPECT_EQ(PaperAfdSbu().rows[1].values[4], 3.84);
   EXPECT_EQ(PaperFidSbu().rows[0].values[3], 29.5);

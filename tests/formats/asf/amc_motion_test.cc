@@ -101,6 +101,7 @@ TEST(AmcMotion, NamesThePlaceOfAnError) {
   EXPECT_THAT(error("arm 90", "arm 90 1"), HasSubstr("\"arm\": came 2 values, wanted 1"));
   EXPECT_THAT(error("arm 90", "leg 90"), HasSubstr("\"leg\", which is no bone of the skeleton"));
   EXPECT_THAT(error("arm 90\n", ""), HasSubstr("frame 2: no values for \"arm\""));
+  EXPECT_THAT(error("arm 0\n2\n", "2\n"), HasSubstr("frame 1: no values for \"arm\""));
   EXPECT_THAT(error("arm 90\n", "arm 90\narm 90\n"), HasSubstr("a.amc:9: \"arm\" comes twice"));
   EXPECT_THAT(error("1\nroot", "root"), HasSubstr("came \"root\", wanted the number of a frame"));
   EXPECT_THAT(error("root 0 0 0 90 90\narm 0\nhand\n", ""),

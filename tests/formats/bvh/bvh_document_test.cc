@@ -163,6 +163,28 @@ TEST(BvhDocument, OffsetsThatAreRoundingHaveNoVoteOnPositionChannels) {
   EXPECT_EQ(FindPositionChannels(*document), PositionChannels::kReplaceOffset);
 }
 
+// The root's channels are not those of the joint that is asked.
+TEST(BvhDocument, DecidesOnPositionChannelsBehindThoseOfTheRoot) {
+  const absl::StatusOr<BvhDocument> document = ParseBvh(
+      "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Yposition\nJOINT b\n{\nOFFSET 0 10 0\n"
+      "CHANNELS 1 Yposition\n}\n}\nMOTION\nFrames: 1\nFrame Time: 1\n0 10\n",
+      "a.bvh");
+  ASSERT_TRUE(document.ok()) << document.status();
+  EXPECT_EQ(FindPositionChannels(*document), PositionChannels::kReplaceOffset);
+}
+
+// A thousandth of a unit is rounding where bones are hundreds long.
+TEST(BvhDocument, RoundingIsAShareOfTheLongestOffset) {
+  const absl::StatusOr<BvhDocument> document = ParseBvh(
+      "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 0\nJOINT b\n{\nOFFSET 0 100 0\n"
+      "CHANNELS 1 Yposition\nJOINT c\n{\nOFFSET 0 1e-3 0\nCHANNELS 1 Yposition\n"
+      "JOINT d\n{\nOFFSET 0 1e-3 0\nCHANNELS 1 Yposition\n}\n}\n}\n}\n"
+      "MOTION\nFrames: 1\nFrame Time: 1\n100 0 0\n",
+      "a.bvh");
+  ASSERT_TRUE(document.ok()) << document.status();
+  EXPECT_EQ(FindPositionChannels(*document), PositionChannels::kReplaceOffset);
+}
+
 TEST(BvhDocument, PositionChannelsOfARootNeedNoDecision) {
   const absl::StatusOr<BvhDocument> document = ParseBvh(kArm, "a.bvh");
   ASSERT_TRUE(document.ok()) << document.status();
