@@ -10,8 +10,10 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "client/batch/pose_strip.h"
+#include "client/batch/stored_pair.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "model/formats/flat/sbu_text.h"
 #include "model/formats/motion_file.h"
 #include "tests/support/sample_motion.h"
 #include "tests/support/status_matchers.h"
@@ -56,6 +58,14 @@ TEST(PoseStrip, TheLeaderIsOnTheLeftWhereverPeopleStand) {
     // Six moments of 14 bones and a head.
     EXPECT_EQ(leader.size(), 2u * 6 * (2 * 14 + 1));
     for (size_t i = 0; i < leader.size(); i += 2) EXPECT_LT(leader[i], follower[i]);
+  }
+}
+
+TEST(PoseStrip, WhoStandsHigherIsDrawnHigher) {
+  const std::string svg = PoseStrip(Pair({1, 4, 0}), motion::SbuSkeleton());
+  const std::vector<int> leader = Points(svg, "leader"), follower = Points(svg, "follower");
+  for (size_t i = 0; i < leader.size(); i += 2) {
+    EXPECT_NEAR(leader[i + 1] - follower[i + 1], 4 * (follower[i] - leader[i]), 5);
   }
 }
 
@@ -138,7 +148,7 @@ class ContactSheetTest : public ::testing::Test {
 
 TEST_F(ContactSheetTest, ShowsSomeOfEachClass) {
   for (int i = 0; i < 30; ++i) Add(Record(i, {{"hug", 0.3}, {"kick", 0.5}}));
-  Add(Record(30, {{"hug", 1}}));
+  Add(Record(30, {{"hug", 1}, {"kick", 0.9}}));
   const std::string sheet = Sheet();
   EXPECT_THAT(sheet, HasSubstr("<h2>kick <small>12 of 30</small></h2>"));
   EXPECT_THAT(sheet, HasSubstr("<h2>hug <small>1 of 1</small></h2>"));
@@ -209,6 +219,20 @@ TEST_F(ContactSheetTest, EveryFormatIsReadBack) {
   // The three that hold positions show the same.
   const std::string svg = PoseStrip(Pair({1, 0, 0}), motion::SbuSkeleton());
   EXPECT_EQ(Count(sheet, svg), 3);
+}
+
+TEST_F(ContactSheetTest, ALeaderOnTheRightOfACaptureLeads) {
+  const motion::ClipPair pair = Pair({1, 0, 0});
+  const auto text = formats::flat::FormatSbu({pair.follower, pair.leader});
+  ASSERT_THAT(text, IsOk());
+  test::WriteTestFile(folder_ / "clip.txt", *text);
+  nlohmann::ordered_json record = Record(0, {{"kick", 1}});
+  record["files"][0]["path"] = "clip.txt";
+  record["side"] = "right";
+  const auto read = ReadStoredPair(folder_.path(), record, motion::SbuSkeleton());
+  ASSERT_THAT(read, IsOk());
+  EXPECT_LT(Distance(read->leader.at(2, 3), pair.leader.at(2, 3)), 1e-4f);
+  EXPECT_LT(Distance(read->follower.at(2, 3), pair.follower.at(2, 3)), 1e-4f);
 }
 
 }  // namespace
