@@ -187,7 +187,7 @@ std::size_t Decider::NotHeldUp(const Indices& line) const {
 // At most so many of a line, 1 or more, whose batch is done in time for each of them.
 Indices Decider::InTime(const Indices& line, std::size_t most) const {
   Indices full(line.begin(), line.begin() + static_cast<std::ptrdiff_t>(most));
-  const Indices urgent = ForTheMostUrgent(full);
+  Indices urgent = ForTheMostUrgent(full);
   // Others in its place: as large a batch as comes in time for enough of them.
   for (; full.size() > urgent.size(); full.resize(full.size() / 2)) {
     Indices others = WithTimeFor(SecondsOf(full), line, full.size());

@@ -57,7 +57,7 @@ class Simulation {
   }
   // A window of a call of so many; `done` gets whether it was evaluated.
   void Submit(int call_windows, bool continues_call, Priority priority, TimePoint deadline,
-              std::function<void(bool)> done) {
+              const std::function<void(bool)>& done) {
     WindowJob job;
     job.model = model_;
     job.window.leader = motion::Poses(kFrames, 1);
