@@ -30,9 +30,10 @@ constexpr double kMostBelowFloor = 0.1, kHighAboveFloor = 0.15, kMostTimeInTheAi
 constexpr double kFastestJoint = 20, kFastestRoot = 10;
 // Joints that change places come from farther apart than this.
 constexpr float kLeastSwap = 0.15f;
-// A knee counts as bent where it is so far off the line from hip to foot.
-constexpr float kLeastKneeBend = 0.04f;
-constexpr double kMostBackwards = 0.5;
+// A knee or an elbow counts as bent where it is so far off the line between the limb's ends; of
+// that bending, more than the share the wrong way is no noise.
+constexpr float kLeastBend = 0.04f;
+constexpr double kMostBentWrongly = 0.8;
 
 std::size_t Index(int i) { return static_cast<std::size_t>(i); }
 
@@ -246,27 +247,34 @@ class Checker {
     return swaps;
   }
 
-  // Of the bent knees, the share that bends the wrong way for where the hips face; swapped sides
-  // turn that round. Absent where no knee bends.
-  std::optional<double> ShareBentBackwards() const {
-    int bent = 0, backwards = 0;
+  // How far the middle of a limb is off the line from its upper end to its lower one, along the way
+  // that the hips face. 0 where it hardly is.
+  static double BendForwards(const cleanup::Limb& limb, Vec3 facing, absl::Span<const Vec3> pose) {
+    const Vec3 upper = pose[Index(limb.upper)], along = pose[Index(limb.end)] - upper;
+    const float length = Dot(along, along);
+    if (!(length > 0)) return 0;
+    const Vec3 middle = pose[Index(limb.middle)] - upper;
+    const float bend = Dot(middle - along * (Dot(middle, along) / length), facing);
+    return std::abs(bend) < kLeastBend ? 0 : static_cast<double>(bend);
+  }
+
+  // Of all bending of knees and elbows, the share that goes the wrong way for where the hips face:
+  // knees go forwards and elbows backwards, and swapped sides turn that round. Absent where nothing
+  // bends.
+  std::optional<double> ShareBentWrongly() const {
+    double all = 0, wrong = 0;
     for (int frame = 0; frame < clip_.frame_count(); ++frame) {
       const absl::Span<const Vec3> pose = clip_.poses[frame];
       const Vec3 facing = cleanup::Facing(*skeleton_.hips, pose);
-      for (const cleanup::Limb& leg : body_.legs) {
-        const Vec3 hip = pose[Index(leg.upper)], foot = pose[Index(leg.end)];
-        const Vec3 along = foot - hip;
-        const float length = Dot(along, along);
-        if (!(length > 0)) continue;
-        const Vec3 knee = pose[Index(leg.middle)] - hip;
-        const float forwards = Dot(knee - along * (Dot(knee, along) / length), facing);
-        if (std::abs(forwards) < kLeastKneeBend) continue;
-        ++bent;
-        backwards += forwards < 0 ? 1 : 0;
-      }
+      const auto add = [&](double right_way) {
+        all += std::abs(right_way);
+        wrong += std::max(0.0, -right_way);
+      };
+      for (const cleanup::Limb& leg : body_.legs) add(BendForwards(leg, facing, pose));
+      for (const cleanup::Limb& arm : body_.arms) add(-BendForwards(arm, facing, pose));
     }
-    if (bent == 0) return std::nullopt;
-    return static_cast<double>(backwards) / bent;
+    if (all == 0) return std::nullopt;
+    return wrong / all;
   }
 
   // Whether the shoulders are turned round against the hips, on average.
@@ -289,23 +297,23 @@ class Checker {
   void CheckSides() {
     if (!skeleton_.hips) return;
     const int swaps = CountSwaps();
-    const std::optional<double> backwards = ShareBentBackwards();
+    const std::optional<double> bent_wrongly = ShareBentWrongly();
     const bool oppose = ShouldersOppose();
     std::vector<std::string> wrong;
     if (oppose)
       wrong.push_back("the shoulders have left and right the other way round than the hips");
-    if (backwards.value_or(0) > kMostBackwards) {
+    if (bent_wrongly.value_or(0) > kMostBentWrongly) {
       wrong.push_back(
-          absl::StrFormat("%.0f %% of the bent knees bend backwards, as where left and "
-                          "right are swapped",
-                          100 * *backwards));
+          absl::StrFormat("knees and elbows bend the wrong way (%.0f %% of their "
+                          "bending), as where left and right are swapped",
+                          100 * *bent_wrongly));
     }
     if (swaps > 0)
       wrong.push_back(absl::StrCat("left and right change places in ", swaps, " frames"));
     std::string text = wrong.empty() ? "left and right are where they belong" : "";
     for (const std::string& what : wrong) absl::StrAppend(&text, text.empty() ? "" : "; ", what);
     std::map<std::string, double> figures = {{"swaps", swaps}, {"shoulders_oppose_hips", oppose}};
-    if (backwards.has_value()) figures["knees_bent_backwards"] = *backwards;
+    if (bent_wrongly.has_value()) figures["bent_wrongly"] = *bent_wrongly;
     Add("sides", wrong.empty(), text, std::move(figures));
   }
 

@@ -124,7 +124,7 @@ std::string FindUnknownSetting(const CLI::App& app, const std::vector<Setting>& 
 // A first word that is no command; empty where it is one.
 std::string FindUnknownCommand(const CLI::App& app, const Strings& arguments) {
   if (arguments.empty() || absl::StartsWith(arguments[0], "-")) return "";
-  if (FindCommand(app, arguments[0]) != nullptr) return "";
+  if (FindCommand(app, arguments[0]) != nullptr || IsGiven("--help", arguments)) return "";
   return absl::StrCat("There is no command ", base::Quoted(arguments[0]),
                       base::DidYouMean(arguments[0], CommandNames(app)));
 }

@@ -37,7 +37,8 @@ class FlagsTest(unittest.TestCase):
         self.assertIn("--as-served", seen["duet-eval", "folds"])
 
     def test_flags_of_the_client_are_documented(self):
-        for document, commands in (("client", ("synthesize", "models")), ("batch", ("batch",))):
+        client = ("synthesize", "models", "inspect", "convert", "view", "compare", "man")
+        for document, commands in (("client", client), ("batch", ("batch",))):
             documented = (tools.SOURCE / "docs" / f"{document}.md").read_text(encoding="utf-8")
             for flag in flags_in("".join(help_of("duet", command) for command in commands)):
                 if flag != "--help":

@@ -130,10 +130,10 @@ TEST(CheckSkeleton, WithoutARateNothingIsSaidOfJumps) {
   for (const Check& check : CheckSkeleton(clip, Sbu())) EXPECT_NE(check.name, "jumps");
 }
 
-TEST(CheckSkeleton, SidesThatAreSwappedThroughoutBendTheKneesBackwards) {
+TEST(CheckSkeleton, SidesThatAreSwappedThroughoutBendTheLimbsTheWrongWay) {
   const Check check =
       Spoilt("sides", [](motion::Clip* clip) { SwapSides(clip, 0, clip->frame_count() - 1); });
-  EXPECT_EQ(check.figures.at("knees_bent_backwards"), 1);
+  EXPECT_EQ(check.figures.at("bent_wrongly"), 1);
   EXPECT_EQ(check.figures.at("swaps"), 0);
 }
 
