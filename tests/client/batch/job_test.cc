@@ -1,6 +1,5 @@
 // Whole runs against a connection that a test writes.
 #include "client/batch/job.h"
-#include "client/batch/job_folder.h"
 
 #include <google/protobuf/util/json_util.h>
 
@@ -13,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "client/batch/job_folder.h"
 #include "client/batch/manifest.h"
 #include "client/batch/recipe_file.h"
 #include "client/batch/setup.h"
