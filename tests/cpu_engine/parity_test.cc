@@ -199,6 +199,18 @@ TEST(ParityTest, ASamplingGeneratorOfOtherSizesAnswersAsInLibTorch) {
   EXPECT_LT(FromTorch(RandomCheckpoint(FlowManifest(), 3), Precision::kFloat32), 1e-5f);
 }
 
+TEST(ParityTest, AWideGeneratorAnswersAsInLibTorch) {
+  Manifest manifest = PaperManifest(GeneratorVariant::kPaper, 50, true, true);
+  manifest.model.window_frames = 9;
+  manifest.generator.encoder_hidden = 200;  // a decoder of 1,200 units
+  const Checkpoint checkpoint = RandomCheckpoint(manifest, 5);
+  std::vector<NetworkInput> inputs;
+  for (const int frames : {9, 4, 9}) inputs.push_back(Input(manifest, frames, Told::kRoot, 3));
+  EXPECT_LT(FromTorch(checkpoint, Precision::kFloat32, inputs), 1e-5f);
+  if (!kernels::HasBf16()) return;
+  EXPECT_LT(FromTorch(checkpoint, Precision::kBfloat16, inputs), 2e-3f);
+}
+
 TEST(ParityTest, RoundedWeightsMoveNoJointByTwoMillimetres) {
   if (!kernels::HasBf16()) GTEST_SKIP() << "this processor does not multiply bfloat16";
   for (const Checkpoint& checkpoint : Embedded()) {
