@@ -49,7 +49,7 @@ struct Ticket {
       std::make_shared<std::promise<WindowOutcome>>();
   std::future<WindowOutcome> outcome = promise->get_future();
 
-  WindowJob Job(std::shared_ptr<const engine::Synthesizer> model) {
+  WindowJob Job(std::shared_ptr<const engine::Synthesizer> model) const {
     WindowJob job;
     job.window.leader = SwayingMotion(4, 15);
     job.window.labels.assign(4 * model->description().classes.size(), 0.0F);
@@ -146,7 +146,7 @@ TEST(BatcherTest, StartsInteractiveWindowsFirst) {
   const auto naming = [&order](const char* name) {
     auto model = std::make_shared<FakeSynthesizer>();
     model->on_batch = [&order, name](absl::Span<const engine::SynthesisWindow* const>) {
-      order.push_back(name);
+      order.emplace_back(name);
     };
     return model;
   };
@@ -252,6 +252,7 @@ TEST(BatcherTest, EvaluatesWhatWaitedTogether) {
     for (Ticket& ticket : tickets) ASSERT_THAT(batcher->Submit(ticket.Job(model)), IsOk());
     held.Release();
     std::vector<int> sizes;
+    sizes.reserve(tickets.size());
     for (Ticket& ticket : tickets) sizes.push_back(ticket.outcome.get().timings.batch_size);
     EXPECT_THAT(sizes, ElementsAre(4, 4, 4, 4, 2, 2));
   }
@@ -428,13 +429,14 @@ TEST(BatcherTest, AnswersEveryWindowOnceUnderLoad) {
   {
     const auto batcher = MakeBatcher({3, 16, {4}}, common::Clock::Real());
     std::vector<std::thread> callers;
+    callers.reserve(kThreads);
     for (int t = 0; t < kThreads; ++t) {
       callers.emplace_back([&, t] {
         for (int i = 0; i < kJobs; ++i) {
           Ticket ticket;
           WindowJob job = ticket.Job(model);
           job.priority = i % 2 == 0 ? Priority::kBulk : Priority::kInteractive;
-          job.done = [&](WindowOutcome) { ++answered; };
+          job.done = [&](const WindowOutcome&) { ++answered; };
           if (!batcher->Submit(std::move(job)).ok()) ++refused;
           if ((i + t) % 5 == 0) ticket.cancelled->store(true);
         }

@@ -18,7 +18,6 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 using test::FakeSynthesizer;
 using test::StatusIs;
-using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
 using Model = std::shared_ptr<const engine::Synthesizer>;
