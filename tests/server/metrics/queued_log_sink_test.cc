@@ -105,6 +105,18 @@ TEST(QueuedLogSinkTest, SaysHowManyLinesWereDroppedWhenTheSinkRecovers) {
   EXPECT_THAT(sink->lines(), ElementsAre("stuck", "a", "b", "2 dropped", "c"));
 }
 
+TEST(QueuedLogSinkTest, ASingleLostLineIsSaidAsWell) {
+  const auto sink = std::make_shared<GatedSink>();
+  {
+    QueuedLogSink log(sink, Options(2));
+    log.Write("stuck");
+    sink->WaitUntilBegun(1);
+    for (const char* line : {"a", "b", "lost"}) log.Write(line);
+    sink->Open();
+  }
+  EXPECT_THAT(sink->lines(), ElementsAre("stuck", "a", "b", "1 dropped"));
+}
+
 TEST(QueuedLogSinkTest, WritesTheLinesLeftBeforeItGoes) {
   const auto sink = std::make_shared<GatedSink>();
   std::thread opener;
