@@ -33,16 +33,16 @@ void* Scratch::Bytes(std::size_t size) {
   }
   void* taken = blocks_.back().bytes.get() + used_;
   used_ += rounded;
+  taken_ += rounded;
   return taken;
 }
 
 void Scratch::Reset() {
   if (blocks_.size() > 1) {
-    const std::size_t all = bytes();
     blocks_.clear();
-    Add(all);
+    Add(taken_);
   }
-  used_ = 0;
+  used_ = taken_ = 0;
 }
 
 }  // namespace duet::cpu_engine

@@ -50,12 +50,14 @@ class Scratch {
   };
 
   void* Bytes(std::size_t size);
-  // Makes one block of several, so that the next evaluation finds all its memory in one piece.
+  // Makes one block of several, as large as what was taken of them: the next evaluation finds all
+  // its memory in one piece.
   void Reset();
   void Add(std::size_t size);
 
   std::vector<Block> blocks_;
-  std::size_t used_ = 0;  // of the last block
+  std::size_t used_ = 0;   // of the last block
+  std::size_t taken_ = 0;  // of all blocks
 };
 
 }  // namespace duet::cpu_engine

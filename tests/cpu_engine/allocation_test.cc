@@ -62,5 +62,22 @@ TEST(AllocationTest, AnEvaluationAllocatesItsAnswersAlone) {
   }
 }
 
+TEST(AllocationTest, WhatAThreadKeepsIsBoundedHoweverLargeTheBatch) {
+  for (const embedded::EmbeddedCheckpoint& embedded : embedded::EmbeddedCheckpoints()) {
+    const auto checkpoint = checkpoint::ParseCheckpoint(embedded.manifest, embedded.weights);
+    ASSERT_TRUE(checkpoint.ok());
+    const engine::ModelDescription& model = checkpoint->manifest.model;
+    engine::NetworkInput input;
+    input.leader = motion::Poses(model.window_frames, model.skeleton.joint_count());
+    input.labels.assign(static_cast<std::size_t>(model.window_frames) * model.classes.size(), 1);
+    const auto network = MakeCpuNetwork(*checkpoint, BestPrecision());
+    ASSERT_TRUE(network->Run(std::vector<engine::NetworkInput>(40, input)).ok());
+    const std::size_t kept = ThreadScratchBytes();
+    ASSERT_TRUE(network->Run(std::vector<engine::NetworkInput>(160, input)).ok());
+    EXPECT_EQ(ThreadScratchBytes(), kept) << model.name << " " << model.version;
+    EXPECT_LT(kept, std::size_t{32} << 20) << model.name << " " << model.version;
+  }
+}
+
 }  // namespace
 }  // namespace duet::cpu_engine
