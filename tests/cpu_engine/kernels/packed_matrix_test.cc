@@ -108,6 +108,26 @@ TEST_P(PackedMatrixTest, RowsPackedOnTheFlyAddTheirWeightedSum) {
   }
 }
 
+TEST(PackPanelsTest, LaysColumnsOutWithZerosBehindTheLast) {
+  constexpr int kOutputs = 34, kInputs = 2;
+  std::vector<float> by_output, by_input(kOutputs * kInputs);
+  for (int n = 0; n < kOutputs; ++n) {
+    for (int k = 0; k < kInputs; ++k) {
+      by_output.push_back(static_cast<float>(100 * k + n + 1));
+      by_input[static_cast<std::size_t>(k * kOutputs + n)] = by_output.back();
+    }
+  }
+  std::vector<float> panels(2 * kInputs * kPanel, -99), same = panels;
+  PackPanels(by_output.data(), kInputs, 1, kOutputs, kInputs, panels.data());
+  PackPanels(by_input.data(), 1, kOutputs, kOutputs, kInputs, same.data());
+  EXPECT_EQ(panels, same);
+  EXPECT_EQ(panels[0], 1);
+  EXPECT_EQ(panels[kPanel], 101);               // the second input
+  EXPECT_EQ(panels[kInputs * kPanel + 1], 34);  // the last output
+  EXPECT_EQ(panels[kInputs * kPanel + 2], 0);   // behind it
+  EXPECT_EQ(panels[(kInputs + 1) * kPanel + 31], 0);
+}
+
 TEST(ToBf16Test, RoundsToTheNearestAndTiesToEven) {
   EXPECT_EQ(ToBf16(1.0f), 0x3f80);
   EXPECT_EQ(ToBf16(-2.0f), 0xc000);
