@@ -82,14 +82,16 @@ TEST(CleanUp, AShortWindowAndALoneFrameAreWindowsToo) {
   for (const int frames : {1, 2, 3}) {
     motion::Poses soiled = Soiled();
     soiled.Resize(frames);
-    for (const Vec3& joint : Cleaned(soiled).all()) EXPECT_TRUE(IsFinite(joint));
+    const motion::Poses cleaned = Cleaned(soiled);
+    for (const Vec3& joint : cleaned.all()) EXPECT_TRUE(IsFinite(joint));
     EXPECT_EQ(Cleaned(soiled, frames), soiled);
   }
 }
 
 TEST(CleanUp, ABodyInOnePointStaysFinite) {
   const motion::Poses point(kFrames, 15);
-  for (const Vec3& joint : Cleaned(point).all()) EXPECT_TRUE(IsFinite(joint));
+  const motion::Poses cleaned = Cleaned(point);
+  for (const Vec3& joint : cleaned.all()) EXPECT_TRUE(IsFinite(joint));
 }
 
 }  // namespace
