@@ -24,11 +24,11 @@ WIDTH, BLOCKS, HEADS, FEED_FORWARD, REACH = 160, 4, 4, 480, 50
 
 
 class Paper(nn.Module):
-    """Hierarchical encoders, an attentive decoder in each direction."""
+    """Hierarchical encoders, an attentive decoder in each direction; told a start of so many values."""
 
-    def __init__(self):
+    def __init__(self, start=START):
         super().__init__()
-        widths = [9] * 5 + [3 * JOINTS + CLASSES + START]
+        widths = [9] * 5 + [3 * JOINTS + CLASSES + start]
         self.fc = nn.ModuleList(nn.Linear(w, w + 50) for w in widths)
         self.encoders = nn.ModuleList(
             nn.LSTM(w + 50, ENCODER, batch_first=True, bidirectional=True) for w in widths)

@@ -85,20 +85,6 @@ Displacement Displace(const motion::Poses& a, const motion::Poses& b,
   return displacement;
 }
 
-// Arms and legs, as what touches and reaches into somebody has them.
-std::vector<motion::BodyPart> LimbsOf(const motion::Skeleton& skeleton) {
-  const cleanup::Body body = cleanup::FindBody(skeleton);
-  std::vector<motion::BodyPart> parts;
-  const auto add = [&parts](const char* name, const cleanup::Limb& limb) {
-    motion::BodyPart part{name, {limb.upper, limb.middle, limb.end}};
-    part.joints.insert(part.joints.end(), limb.beyond.begin(), limb.beyond.end());
-    parts.push_back(std::move(part));
-  };
-  for (const cleanup::Limb& arm : body.arms) add("arm", arm);
-  for (const cleanup::Limb& leg : body.legs) add("leg", leg);
-  return parts;
-}
-
 // The share of the time that a foot stands, over both feet.
 double StandingShare(const motion::Clip& clip, const motion::JointPair& feet) {
   const float floor = cleanup::FloorHeight(feet, clip.poses);
@@ -150,7 +136,7 @@ class Measurer {
 
   std::vector<double> MeasureWithPartner() const {
     if (partner_ == nullptr) return {kNone, kNone, kNone, kNone, kNone};
-    const std::vector<motion::BodyPart> limbs = LimbsOf(skeleton_);
+    const std::vector<motion::BodyPart> limbs = cleanup::LimbParts(cleanup::FindBody(skeleton_));
     const motion::Poses &partner = partner_->poses, &person = person_.poses;
     const metrics::Penetration penetration =
         metrics::MeasurePenetration(partner, person, skeleton_, limbs);

@@ -14,20 +14,6 @@ namespace {
 
 namespace metrics = evaluation::metrics;
 
-// Arms and legs as the parts that capsules have their radii from.
-std::vector<motion::BodyPart> PartsOf(const motion::Skeleton& skeleton) {
-  const cleanup::Body body = cleanup::FindBody(skeleton);
-  std::vector<motion::BodyPart> parts;
-  const auto add = [&parts](const char* name, const cleanup::Limb& limb) {
-    motion::BodyPart part{name, {limb.upper, limb.middle, limb.end}};
-    part.joints.insert(part.joints.end(), limb.beyond.begin(), limb.beyond.end());
-    parts.push_back(std::move(part));
-  };
-  for (const cleanup::Limb& arm : body.arms) add("arm", arm);
-  for (const cleanup::Limb& leg : body.legs) add("leg", leg);
-  return parts;
-}
-
 std::optional<double> Known(double figure) {
   return std::isnan(figure) ? std::nullopt : std::optional<double>(figure);
 }
@@ -49,7 +35,9 @@ Quality Measure(const motion::ClipPair& pair, const motion::Skeleton& skeleton) 
   }
   quality.distance_metres = metrics::RootDistance(leader, follower, skeleton);
   quality.penetration_metres =
-      metrics::MeasurePenetration(leader, follower, skeleton, PartsOf(skeleton)).max_depth_metres;
+      metrics::MeasurePenetration(leader, follower, skeleton,
+                                  cleanup::LimbParts(cleanup::FindBody(skeleton)))
+          .max_depth_metres;
   quality.range_of_motion_metres = metrics::RangeOfMotion(follower);
   return quality;
 }

@@ -144,11 +144,15 @@ Body FindBody(const motion::Skeleton& skeleton) {
   return body;
 }
 
-std::vector<double> CapsuleRadii(const motion::Skeleton& skeleton, const Body& body) {
+std::vector<motion::BodyPart> LimbParts(const Body& body) {
   std::vector<motion::BodyPart> parts;
   for (const Limb& arm : body.arms) parts.push_back(PartOf("arm", arm));
   for (const Limb& leg : body.legs) parts.push_back(PartOf("leg", leg));
-  return motion::CapsuleRadii(skeleton, parts);
+  return parts;
+}
+
+std::vector<double> CapsuleRadii(const motion::Skeleton& skeleton, const Body& body) {
+  return motion::CapsuleRadii(skeleton, LimbParts(body));
 }
 
 void Reach(const Limb& limb, Vec3 target, Vec3 forward, absl::Span<Vec3> pose) {

@@ -37,6 +37,9 @@ struct Body {
 };
 Body FindBody(const motion::Skeleton& skeleton);
 
+// Arms and legs as parts, in the body's order: what capsules have their radii from.
+std::vector<motion::BodyPart> LimbParts(const Body& body);
+
 // The radius of every bone's capsule, metres; see motion::CapsuleRadii. Shapes: returns [bones].
 std::vector<double> CapsuleRadii(const motion::Skeleton& skeleton, const Body& body);
 

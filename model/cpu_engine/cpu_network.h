@@ -17,7 +17,7 @@ kernels::Precision BestPrecision();
 //
 // A window's answer is the same to the bit whatever else is in the batch. Batches of many frames
 // are taken in parts, so that what a thread needs is bounded; it keeps that for the next batch
-// (ThreadScratchBytes). bfloat16 requires kernels::HasBf16().
+// (ThreadScratchBytes). bfloat16 is slow without kernels::HasBf16().
 std::unique_ptr<const engine::Network> MakeCpuNetwork(const checkpoint::Checkpoint& checkpoint,
                                                       kernels::Precision precision);
 

@@ -6,7 +6,6 @@
 #include "model/base/random.h"
 #include "model/checkpoints/embedded.h"
 #include "model/cpu_engine/cpu_network.h"
-#include "model/cpu_engine/kernels/gemm_bf16.h"
 #include "model/torch_engine/torch_network.h"
 #include "tests/cpu_engine/random_checkpoint.h"
 #include "tests/support/sample_motion.h"
@@ -207,12 +206,10 @@ TEST(ParityTest, AWideGeneratorAnswersAsInLibTorch) {
   std::vector<NetworkInput> inputs;
   for (const int frames : {9, 4, 9}) inputs.push_back(Input(manifest, frames, Told::kRoot, 3));
   EXPECT_LT(FromTorch(checkpoint, Precision::kFloat32, inputs), 1e-5f);
-  if (!kernels::HasBf16()) return;
   EXPECT_LT(FromTorch(checkpoint, Precision::kBfloat16, inputs), 2e-3f);
 }
 
 TEST(ParityTest, RoundedWeightsMoveNoJointByTwoMillimetres) {
-  if (!kernels::HasBf16()) GTEST_SKIP() << "this processor does not multiply bfloat16";
   for (const Checkpoint& checkpoint : Embedded()) {
     const float farthest =
         FromTorch(checkpoint, Precision::kBfloat16, HumanInputs(checkpoint.manifest));
@@ -225,7 +222,7 @@ TEST(ParityTest, RoundedWeightsMoveNoJointByTwoMillimetres) {
 TEST(ParityTest, AnAnswerIsTheSameToTheBitWhateverElseIsInTheBatch) {
   for (const Checkpoint& checkpoint : Embedded()) {
     const std::vector<NetworkInput> inputs = Inputs(checkpoint.manifest);
-    for (const Precision precision : {Precision::kFloat32, BestPrecision()}) {
+    for (const Precision precision : {Precision::kFloat32, Precision::kBfloat16}) {
       const auto network = MakeCpuNetwork(checkpoint, precision);
       const std::vector<motion::Poses> together = Answers(*network, inputs);
       ASSERT_EQ(together.size(), inputs.size());

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "model/cpu_engine/kernels/gemm_bf16_portable.h"
+
 #if defined(__x86_64__)
 #include <immintrin.h>
 #endif
@@ -157,22 +159,7 @@ DUET_BF16 inline void PackPair(const float* even, const float* odd, __mmask16 va
   _mm512_storeu_si512(pairs, both);
 }
 
-}  // namespace
-
-bool HasBf16() {
-  return __builtin_cpu_supports("avx512bf16") && __builtin_cpu_supports("avx512bw") &&
-         __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq");
-}
-
-void GemmBf16(const Rows& x, const uint16_t* panels, const float* bias, const Output& y) {
-  Gemm(x, panels, bias, false, y);
-}
-
-void AddGemmBf16(const Rows& x, const uint16_t* panels, const Output& y) {
-  Gemm(x, panels, nullptr, true, y);
-}
-
-DUET_BF16 void PackRowsBf16(const Rows& inputs, uint16_t* panels) {
+DUET_BF16 void PackRows(const Rows& inputs, uint16_t* panels) {
   const int pairs = Bf16Pairs(inputs.count);
   for (int pair = 0; pair < pairs; ++pair) {
     const float* even = inputs.values + 2 * pair * inputs.stride;
@@ -186,14 +173,41 @@ DUET_BF16 void PackRowsBf16(const Rows& inputs, uint16_t* panels) {
   }
 }
 
+}  // namespace
+
+bool HasBf16() {
+  return __builtin_cpu_supports("avx512bf16") && __builtin_cpu_supports("avx512bw") &&
+         __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq");
+}
+
 #else
 
+namespace {
+
+void Gemm(const Rows& x, const uint16_t* panels, const float* bias, bool adds, const Output& y) {
+  GemmBf16Portable(x, panels, bias, adds, y);
+}
+void PackRows(const Rows& inputs, uint16_t* panels) { PackRowsBf16Portable(inputs, panels); }
+
+}  // namespace
+
 bool HasBf16() { return false; }
-void GemmBf16(const Rows& /*x*/, const uint16_t* /*panels*/, const float* /*bias*/,
-              const Output& /*y*/) {}
-void AddGemmBf16(const Rows& /*x*/, const uint16_t* /*panels*/, const Output& /*y*/) {}
-void PackRowsBf16(const Rows& /*inputs*/, uint16_t* /*panels*/) {}
 
 #endif
+
+void GemmBf16(const Rows& x, const uint16_t* panels, const float* bias, const Output& y) {
+  static const bool has = HasBf16();
+  (has ? Gemm : GemmBf16Portable)(x, panels, bias, false, y);
+}
+
+void AddGemmBf16(const Rows& x, const uint16_t* panels, const Output& y) {
+  static const bool has = HasBf16();
+  (has ? Gemm : GemmBf16Portable)(x, panels, nullptr, true, y);
+}
+
+void PackRowsBf16(const Rows& inputs, uint16_t* panels) {
+  static const bool has = HasBf16();
+  (has ? PackRows : PackRowsBf16Portable)(inputs, panels);
+}
 
 }  // namespace duet::cpu_engine::kernels

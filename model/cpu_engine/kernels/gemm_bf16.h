@@ -7,7 +7,8 @@
 
 namespace duet::cpu_engine::kernels {
 
-// Whether this processor multiplies bfloat16 (AVX-512 BF16).
+// Whether this processor multiplies bfloat16 (AVX-512 BF16). Without, products of the same rounding
+// are slower than those of float32.
 bool HasBf16();
 
 // `value` rounded to the nearest bfloat16, ties to even. Finite values only.
@@ -18,7 +19,7 @@ inline constexpr int Bf16Pairs(int inputs) { return (inputs + 1) / 2; }
 
 // y = x W^T + bias, or without one where it is null: factors in bfloat16, sums in float32. `panels`
 // are [PanelCount(outputs), Bf16Pairs(inputs), kPanel, 2], the bias is padded to whole panels. x is
-// rounded on the way in. Requires HasBf16().
+// rounded on the way in. Slow without HasBf16().
 //
 // A row's result does not depend on the other rows.
 void GemmBf16(const Rows& x, const uint16_t* panels, const float* bias, const Output& y);

@@ -12,7 +12,7 @@ namespace duet::cpu_engine::kernels {
 // How factors of products are held; sums are float32.
 enum class Precision {
   kFloat32,
-  kBfloat16  // half the memory and, where the processor has it, twice the speed; HasBf16()
+  kBfloat16  // half the memory and, where the processor has it, twice the speed: HasBf16()
 };
 
 // The values of a matrix [outputs, inputs] where the value of output n, input k is at

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "model/cpu_engine/kernels/gemm_bf16.h"
+#include "model/cpu_engine/kernels/gemm_bf16_portable.h"
 #include "tests/cpu_engine/kernels/every_target.h"
 
 namespace duet::cpu_engine::kernels {
@@ -42,7 +43,6 @@ float Rounded(float value) {
 TEST_P(PackedMatrixTest, MultipliesAsTheSumsSay) {
   for (const Precision precision : {Precision::kFloat32, Precision::kBfloat16}) {
     const bool rounds = precision == Precision::kBfloat16;
-    if (rounds && !HasBf16()) continue;
     for (const Case& c : Cases()) {
       const std::vector<float> weights = Values(c.outputs * c.inputs), bias = Values(c.outputs);
       // Rows lie further apart than they are long.
@@ -71,7 +71,6 @@ TEST_P(PackedMatrixTest, MultipliesAsTheSumsSay) {
 TEST_P(PackedMatrixTest, ARowDoesNotDependOnTheOthers) {
   constexpr int kRows = 25, kInputs = 601, kOutputs = 77;
   for (const Precision precision : {Precision::kFloat32, Precision::kBfloat16}) {
-    if (precision == Precision::kBfloat16 && !HasBf16()) continue;
     const PackedMatrix matrix(Values(kOutputs * kInputs), {}, kOutputs, kInputs, precision);
     const std::vector<float> x = Values(kRows * kInputs);
     std::vector<float> together(kRows * kOutputs), alone(kOutputs);
@@ -86,7 +85,6 @@ TEST_P(PackedMatrixTest, ARowDoesNotDependOnTheOthers) {
 }
 
 TEST_P(PackedMatrixTest, RowsPackedOnTheFlyAddTheirWeightedSum) {
-  if (!HasBf16()) GTEST_SKIP() << "this processor does not multiply bfloat16";
   for (const int inputs : {1, 2, 7, 46}) {
     for (const int width : {5, 32, 100}) {
       const std::vector<float> rows = Values(inputs * width), weights = Values(inputs),
@@ -106,6 +104,29 @@ TEST_P(PackedMatrixTest, RowsPackedOnTheFlyAddTheirWeightedSum) {
       }
     }
   }
+}
+
+// Where the processor multiplies bfloat16, that its products and the plain ones are the same.
+TEST_P(PackedMatrixTest, PortableProductsRoundAsTheProcessors) {
+  constexpr int kRows = 3, kInputs = 45, kOutputs = 70;
+  const std::vector<float> weights = Values(kInputs * kOutputs), x = Values(kRows * kInputs),
+                           before = Values(kRows * kOutputs);
+  std::vector<uint16_t> panels(
+      static_cast<std::size_t>(PanelCount(kOutputs) * Bf16Pairs(kInputs) * kPanel * 2), 7);
+  std::vector<uint16_t> portable = panels;
+  PackRowsBf16({weights.data(), kOutputs, kInputs, kOutputs}, panels.data());
+  PackRowsBf16Portable({weights.data(), kOutputs, kInputs, kOutputs}, portable.data());
+  EXPECT_EQ(panels, portable);
+  std::vector<float> y = before, same = before;
+  AddGemmBf16({x.data(), kInputs, kRows, kInputs}, panels.data(), {y.data(), kOutputs, kOutputs});
+  GemmBf16Portable({x.data(), kInputs, kRows, kInputs}, panels.data(), nullptr, true,
+                   {same.data(), kOutputs, kOutputs});
+  for (std::size_t i = 0; i < y.size(); ++i) EXPECT_NEAR(y[i], same[i], 1e-5);
+  GemmBf16Portable({x.data(), kInputs, kRows, kInputs}, panels.data(), before.data(), false,
+                   {same.data(), kOutputs, kOutputs});
+  GemmBf16({x.data(), kInputs, kRows, kInputs}, panels.data(), before.data(),
+           {y.data(), kOutputs, kOutputs});
+  for (std::size_t i = 0; i < y.size(); ++i) EXPECT_NEAR(y[i], same[i], 1e-5);
 }
 
 TEST(PackPanelsTest, LaysColumnsOutWithZerosBehindTheLast) {
