@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "server/common/clock.h"
 #include "server/common/grpc_status.h"
 #include "server/metrics/call_record.h"
+#include "server/security/call_guard.h"
 #include "server/service/admission.h"
 #include "server/service/call_scope.h"
 
@@ -32,7 +34,8 @@ struct IncomingCall {
 // The one way into the service, whatever the method, and the one way out of it. What every call
 // must pass has its place here, so that it is written once.
 //
-// In:   identity and scope (from here on the call is counted) -> size -> parser -> admission.
+// In:   identity and scope (from here on the call is counted) -> guard -> size -> parser ->
+//       admission.
 //       The steps after a refusal are not taken.
 // Out:  observers -> status and trailers for the wire. A caller that has its status finds the call
 //       in the metrics.
@@ -40,10 +43,16 @@ struct IncomingCall {
 // Threads: const methods are safe to call concurrently.
 class CallPipeline {
  public:
-  // Everything outlives the pipeline and its calls.
+  // `trace_ratio`: see ServiceParts. Everything outlives the pipeline and its calls.
   CallPipeline(std::size_t max_request_bytes, std::vector<metrics::CallObserver*> observers,
-               const common::Clock& clock)
-      : max_request_bytes_(max_request_bytes), observers_(std::move(observers)), clock_(clock) {}
+               const common::Clock& clock, security::CallGuard guard, security::Role role,
+               std::optional<double> trace_ratio)
+      : max_request_bytes_(max_request_bytes),
+        observers_(std::move(observers)),
+        clock_(clock),
+        guard_(guard),
+        role_(role),
+        trace_ratio_(trace_ratio) {}
 
   // Begins a call. `admit` is the method's own last step: a StatusOr<AdmissionSlot> from
   // (const Request&); the slot is empty for a method whose calls are not limited in number.
@@ -53,7 +62,8 @@ class CallPipeline {
                              const Admit& admit) const {
     IncomingCall<Request> call;
     call.scope = OpenScope(context, method);
-    call.status = Read(bytes, call.request);
+    call.status = call.scope->Enter(guard_.Admit(context, role_));
+    if (call.status.ok()) call.status = Read(bytes, call.request);
     if (!call.status.ok()) return call;
     absl::StatusOr<AdmissionSlot> slot = admit(std::as_const(call.request));
     call.status = slot.status();
@@ -67,10 +77,13 @@ class CallPipeline {
                     Reactor& reactor) {
     scope.Finish(status);
     common::AddRetryPushback(status, context);
+    AddTraceparent(scope, context);
     reactor.Finish(common::ToGrpcStatus(status));
   }
 
  private:
+  // Tells the caller under which span the call is known here.
+  static void AddTraceparent(CallScope& scope, grpc::ServerContextBase& context);
   std::unique_ptr<CallScope> OpenScope(const grpc::ServerContextBase& context,
                                        const metrics::MethodInfo& method) const;
   // RESOURCE_EXHAUSTED when the bytes are too many, INVALID_ARGUMENT when they are no such message.
@@ -79,6 +92,9 @@ class CallPipeline {
   const std::size_t max_request_bytes_;
   const std::vector<metrics::CallObserver*> observers_;
   const common::Clock& clock_;
+  const security::CallGuard guard_;
+  const security::Role role_;  // that every method asks for
+  const std::optional<double> trace_ratio_;
 };
 
 }  // namespace duet::server::service

@@ -35,7 +35,8 @@ common::TimePoint DeadlineOf(const grpc::CallbackServerContext& context,
 
 MotionSynthesisService::MotionSynthesisService(ServiceParts parts)
     : parts_(std::move(parts)),
-      pipeline_(parts_.limits.max_request_bytes, parts_.observers, *parts_.clock) {}
+      pipeline_(parts_.limits.max_request_bytes, parts_.observers, *parts_.clock, parts_.guard,
+                security::Role::kSynthesise, parts_.trace_ratio) {}
 
 grpc::ServerWriteReactor<grpc::ByteBuffer>* MotionSynthesisService::Synthesize(
     grpc::CallbackServerContext* context, const grpc::ByteBuffer* request) {
@@ -71,6 +72,8 @@ absl::StatusOr<SynthesisCall::Parts> MotionSynthesisService::Prepare(
   const engine::ModelDescription& model = served.model->description();
   absl::StatusOr<ValidatedRequest> validated = ValidateRequest(request, model, parts_.limits);
   if (!validated.ok()) return validated.status();
+  const absl::Status held = incoming.scope->HoldFrames(validated->clip.leader.frame_count());
+  if (!held.ok()) return held;
   const bool servers_choice = parts_.clean_up.value_or(model.cleaned_up_by_default());
   const bool clean_up = validated->clean_up.value_or(servers_choice);
   return SynthesisCall::Parts{std::move(served.model),

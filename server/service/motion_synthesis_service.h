@@ -11,6 +11,7 @@
 #include "server/common/mutex.h"
 #include "server/metrics/call_record.h"
 #include "server/registry/model_registry.h"
+#include "server/security/call_guard.h"
 #include "server/service/admission.h"
 #include "server/service/call_pipeline.h"
 #include "server/service/request_limits.h"
@@ -26,7 +27,11 @@ struct ServiceParts {
   std::vector<metrics::CallObserver*> observers;
   const common::Clock* clock = &common::Clock::Real();
   RequestLimits limits;
-  int buffered_frames = 0;  // see ClipStreamOptions
+  int buffered_frames = 0;             // see ClipStreamOptions
+  security::CallGuard guard{nullptr};  // who may call; everybody unless it has a list
+  // Of calls that come without a trace, the part that is sampled in one begun here. Absent: no
+  // trace is begun.
+  std::optional<double> trace_ratio;
   // Whether followers are cleaned up where the request does not say. Absent: as the model has it
   // (ModelDescription::cleaned_up_by_default).
   std::optional<bool> clean_up;
