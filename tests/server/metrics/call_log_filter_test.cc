@@ -24,7 +24,7 @@ std::string Successes(double ratio, int calls) {
 TEST(CallLogFilterTest, SpreadsSuccessesEvenly) {
   EXPECT_EQ(Successes(1, 4), "xxxx");
   EXPECT_EQ(Successes(0.25, 8), "x...x...");
-  EXPECT_EQ(Successes(0.75, 8), "xx.xxx.x");
+  EXPECT_EQ(Successes(0.75, 8), "x.xxx.xx");
   EXPECT_EQ(Successes(0, 4), "....");
 }
 
