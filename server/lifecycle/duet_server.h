@@ -4,11 +4,15 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "server/batching/window_scheduler.h"
 #include "server/config/server_options.h"
 #include "server/lifecycle/grpc_server.h"
+#include "server/lifecycle/heap_trimmer.h"
+#include "server/lifecycle/repeated_task.h"
+#include "server/lifecycle/self_check.h"
 #include "server/metrics/json_log.h"
 #include "server/metrics/metrics_endpoint.h"
 #include "server/metrics/server_metrics.h"
@@ -59,6 +63,8 @@ class DuetServer {
  private:
   DuetServer(const config::ServerOptions& options, metrics::LogSink& sink);
   absl::Status Listen();
+  // Starts what looks after the server while it runs: time limits, memory, its own port.
+  void Watch();
   void SetHealth(bool serving);
   void Close();
   service::ServiceParts Parts();
@@ -71,6 +77,9 @@ class DuetServer {
   const std::unique_ptr<batching::WindowScheduler> scheduler_;
   service::MotionSynthesisService service_;
   GrpcServer grpc_;
+  HeapTrimmer heap_trimmer_;
+  std::vector<std::unique_ptr<RepeatedTask>> watch_;
+  std::unique_ptr<SelfCheck> self_check_;  // null when the options want none
   std::unique_ptr<metrics::MetricsEndpoint> endpoint_;
 };
 
