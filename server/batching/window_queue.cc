@@ -30,13 +30,18 @@ int Batch::Frames() const {
   return frames;
 }
 
-bool WindowQueue::HasRoomFor(const WindowJob& job, TimePoint now) const {
-  const std::size_t most = ShareOf(options_.capacity, job.priority);
-  if (job.continues_call || waiting_.size() < most) return true;
-  const auto taken = std::count_if(waiting_.begin(), waiting_.end(), [&](const auto& window) {
-    return !window.job.continues_call && !IsCancelled(window.job) && now < window.job.deadline;
-  });
-  return static_cast<std::size_t>(taken) < most;
+bool WindowQueue::HasRoomFor(Priority priority, const std::string& client, TimePoint now) const {
+  const std::size_t most = ShareOf(options_.capacity, priority);
+  std::size_t taken = 0, held = 0;
+  for (const QueuedWindow& window : waiting_) {
+    const WindowJob& job = window.job;
+    if (job.continues_call || IsCancelled(job) || now >= job.deadline) continue;
+    ++taken;
+    held += job.client == client ? 1 : 0;
+  }
+  if (taken >= most) return false;
+  return held == 0 || (1 - options_.client_share) * static_cast<double>(held) <
+                          options_.client_share * static_cast<double>(most - taken);
 }
 
 void WindowQueue::Push(WindowJob job, TimePoint now) {

@@ -185,6 +185,48 @@ void AddCapacityFlags(CLI::App& app, v1::ServerConfig& config) {
       ->option_text("S");
 }
 
+void AddSharingFlags(CLI::App& app, v1::ServerConfig& config) {
+  const ServerOptions defaults;
+  app.add_option_function<double>(
+         "--client-share", [&](double value) { config.set_client_share(value); },
+         Defaulting("part of calls, bytes and queue that one client can come to hold, over 0 to 1",
+                    defaults.client_share))
+      ->option_text("PART");
+  app.add_option_function<std::string>(
+         "--client-key", [&](const std::string& value) { config.set_client_key(value); },
+         "metadata key by which a proxy in front names its client (default: clients are addresses)")
+      ->option_text("KEY");
+  app.add_option_function<uint64_t>(
+         "--max-held-bytes", [&](uint64_t value) { config.set_max_held_bytes(value); },
+         absl::StrCat("bytes of the requests of calls being answered (default ",
+                      kTransportPerRequest, " x max-request-bytes)"))
+      ->option_text("BYTES");
+  app.add_option_function<double>(
+         "--receive-timeout-seconds",
+         [&](double value) { config.set_receive_timeout_seconds(value); },
+         Defaulting("how long a request may take to arrive", defaults.receive_timeout_seconds))
+      ->option_text("S");
+  app.add_option_function<uint32_t>(
+         "--max-slow-requests", [&](uint32_t value) { config.set_max_slow_requests(value); },
+         "requests that take more than 0.1 s to arrive, at the same time (default: "
+         "max-transport-bytes / max-request-bytes / 2)")
+      ->option_text("N");
+  app.add_option_function<double>(
+         "--write-timeout-seconds", [&](double value) { config.set_write_timeout_seconds(value); },
+         Defaulting("how long one message of an answer may wait for its reader",
+                    defaults.write_timeout_seconds))
+      ->option_text("S");
+  app.add_option_function<double>(
+         "--max-call-seconds", [&](double value) { config.set_max_call_seconds(value); },
+         Defaulting("how long a call may last, whatever its deadline", defaults.max_call_seconds))
+      ->option_text("S");
+  app.add_option_function<double>(
+         "--self-check-seconds", [&](double value) { config.set_self_check_seconds(value); },
+         Defaulting("how often the server connects to its own port, for /healthz; 0: never",
+                    defaults.self_check_seconds))
+      ->option_text("S");
+}
+
 void AddSecurityFlags(CLI::App& app, v1::ServerConfig& config) {
   app.add_option_function<std::string>(
          "--tls-certificate-file",
@@ -275,6 +317,7 @@ absl::StatusOr<CommandLine> ParseCommandLine(int argc, const char* const* argv) 
   v1::ServerConfig flags;
   AddServingFlags(app, flags);
   AddCapacityFlags(app, flags);
+  AddSharingFlags(app, flags);
   AddSecurityFlags(app, flags);
   AddObservabilityFlags(app, flags);
   CommandLine command_line;

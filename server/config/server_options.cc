@@ -133,6 +133,42 @@ void ReadLimits(const v1::ServerConfig& config, Reader& reader, ServerOptions& o
   }
 }
 
+// After ReadLimits: some defaults follow from the sizes there.
+void ReadSharing(const v1::ServerConfig& config, Reader& reader, ServerOptions& options) {
+  constexpr double kHour = 3600;
+  if (config.has_client_share()) {
+    options.client_share = reader.InRange("client_share", config.client_share(), 0.01, 1.0);
+  }
+  options.client_key = config.client_key();
+  options.max_held_bytes = static_cast<std::size_t>(
+      config.has_max_held_bytes()
+          ? reader.InRange("max_held_bytes", config.max_held_bytes(),
+                           uint64_t{options.max_request_bytes}, uint64_t{1} << 40)
+          : uint64_t{kTransportPerRequest} * options.max_request_bytes);
+  options.max_slow_requests =
+      config.has_max_slow_requests()
+          ? static_cast<int>(reader.InRange("max_slow_requests", config.max_slow_requests(),
+                                            uint32_t{1}, uint32_t{100000}))
+          : static_cast<int>(std::clamp<std::size_t>(
+                options.max_transport_bytes / (2 * options.max_request_bytes), 1, 100000));
+  if (config.has_receive_timeout_seconds()) {
+    options.receive_timeout_seconds =
+        reader.InRange("receive_timeout_seconds", config.receive_timeout_seconds(), 0.1, kHour);
+  }
+  if (config.has_write_timeout_seconds()) {
+    options.write_timeout_seconds =
+        reader.InRange("write_timeout_seconds", config.write_timeout_seconds(), 0.1, kHour);
+  }
+  if (config.has_max_call_seconds()) {
+    options.max_call_seconds =
+        reader.InRange("max_call_seconds", config.max_call_seconds(), 1.0, 24 * kHour);
+  }
+  if (config.has_self_check_seconds()) {
+    options.self_check_seconds =
+        reader.InRange("self_check_seconds", config.self_check_seconds(), 0.0, kHour);
+  }
+}
+
 void ReadBatching(const v1::ServerConfig& config, Reader& reader, ServerOptions& options) {
   if (config.has_max_batch_windows()) {
     options.max_batch_windows = static_cast<int>(reader.InRange(
@@ -241,6 +277,7 @@ absl::StatusOr<ServerOptions> ToOptions(const v1::ServerConfig& config, int core
   ReadEngine(config, reader, options.engine);
   ReadThreads(config, cores, reader, options);
   ReadLimits(config, reader, options);
+  ReadSharing(config, reader, options);
   ReadBatching(config, reader, options);
   if (!reader.status().ok()) return reader.status();
   return options;

@@ -82,6 +82,14 @@ struct ServerOptions {
   double max_batch_delay_seconds = 0;
   std::size_t max_request_bytes = std::size_t{32} << 20;
   std::size_t max_transport_bytes = kTransportPerRequest * max_request_bytes;
+  double client_share = 0.75;
+  std::string client_key;  // empty: clients are addresses
+  std::size_t max_held_bytes = kTransportPerRequest * max_request_bytes;
+  double receive_timeout_seconds = 30;
+  int max_slow_requests = kTransportPerRequest / 2;
+  double write_timeout_seconds = 30;
+  double max_call_seconds = 660;  // ten minutes of motion, watched as it comes, and a little more
+  double self_check_seconds = 10;
   int buffered_frames = 240;
   double drain_seconds = 0;
   double grace_seconds = 30;

@@ -17,10 +17,13 @@ namespace {
 
 // How long gRPC may take to hand out the statuses of calls that were ended.
 constexpr std::chrono::seconds kFlush(1);
-// How soon a file that changed is noticed.
-constexpr std::chrono::seconds kHousekeeping(1);
-// How often a drain looks whether the last call has finished or a second signal has come.
+// How soon a file that changed is noticed, and how often calls without a line are told of.
+constexpr double kHousekeepingSeconds = 1;
+// How often a drain looks whether the last call has finished or a second signal has come, and the
+// service at the time that its calls take.
 constexpr double kLookSeconds = 0.05;
+// How often memory of large requests is given back.
+constexpr double kTrimSeconds = 1;
 
 service::RequestLimits Limits(const config::ServerOptions& options) {
   service::RequestLimits limits;
@@ -32,7 +35,17 @@ batching::BatcherOptions Batching(const config::ServerOptions& options) {
   const std::chrono::duration<double> delay(options.max_batch_delay_seconds);
   return {options.workers,
           options.max_queued_windows,
-          {options.max_batch_windows, std::chrono::duration_cast<std::chrono::nanoseconds>(delay)}};
+          {options.max_batch_windows, std::chrono::duration_cast<std::chrono::nanoseconds>(delay)},
+          options.client_share};
+}
+
+service::AdmissionLimits AdmissionOf(const config::ServerOptions& options) {
+  service::AdmissionLimits limits;
+  limits.max_calls = static_cast<std::size_t>(options.max_calls);
+  limits.max_held_bytes = options.max_held_bytes;
+  limits.max_slow_requests = static_cast<std::size_t>(options.max_slow_requests);
+  limits.client_share = options.client_share;
+  return limits;
 }
 
 security::SecretFiles::Options Secrets(const config::SecurityOptions& options) {
@@ -79,10 +92,6 @@ absl::StatusOr<std::unique_ptr<DuetServer>> DuetServer::Start(const config::Serv
       new DuetServer(options, sink, *std::move(secrets), std::move(tracer)));
   const absl::Status listening = server->Listen();
   if (!listening.ok()) return listening;
-  server->housekeeping_ = std::make_unique<common::Periodic>(kHousekeeping, [raw = server.get()] {
-    raw->RefreshSecrets();
-    raw->log_.TellUnlogged();
-  });
   return server;
 }
 
@@ -93,7 +102,7 @@ DuetServer::DuetServer(const config::ServerOptions& options, metrics::LogSink& s
       log_(sink, absl::Now, LogOptionsOf(options.logging)),
       tracer_(std::move(tracer)),
       secrets_(std::move(secrets)),
-      admission_(static_cast<std::size_t>(options.max_calls)),
+      admission_(AdmissionOf(options)),
       scheduler_(batching::MakeBatcher(Batching(options), common::Clock::Real(), &metrics_)),
       service_(Parts()) {
   metrics_.SetQueueLength([this] { return static_cast<double>(scheduler_->queued_windows()); });
@@ -111,9 +120,10 @@ DuetServer::DuetServer(const config::ServerOptions& options, metrics::LogSink& s
 }
 
 DuetServer::~DuetServer() {
-  housekeeping_.reset();
   endpoint_.reset();
+  self_check_.reset();
   if (grpc_.server != nullptr) Close();
+  watch_.clear();
 }
 
 service::ServiceParts DuetServer::Parts() {
@@ -128,24 +138,30 @@ service::ServiceParts DuetServer::Parts() {
   }
   parts.guard = security::CallGuard(secrets_->access());
   parts.limits = Limits(options_);
+  parts.reception.timeout_seconds = options_.receive_timeout_seconds;
   parts.buffered_frames = options_.buffered_frames;
+  parts.write_timeout_seconds = options_.write_timeout_seconds;
+  parts.max_call_seconds = options_.max_call_seconds;
+  parts.client_key = options_.client_key;
   parts.clean_up = options_.clean_up;
   return parts;
 }
 
 absl::Status DuetServer::Listen() {
-  absl::StatusOr<GrpcServer> grpc =
-      StartGrpcServer({options_.listen, options_.reflection, options_.max_request_bytes,
-                       options_.max_transport_bytes, options_.max_calls, Credentials()},
-                      service_);
+  absl::StatusOr<GrpcServer> grpc = StartGrpcServer(
+      {options_.listen, options_.reflection, options_.max_request_bytes,
+       options_.max_transport_bytes, options_.max_calls, options_.max_call_seconds, Credentials()},
+      service_);
   if (!grpc.ok()) return grpc.status();
   grpc_ = *std::move(grpc);
   SetHealth(false);
+  Watch();
   if (!options_.metrics_listen.has_value()) return absl::OkStatus();
   metrics::MetricsEndpointOptions endpoint;
   endpoint.host = options_.metrics_listen->host;
   endpoint.port = options_.metrics_listen->port;
   endpoint.render = [this] { return metrics_.Render(); };
+  endpoint.healthy = [this] { return self_check_ == nullptr || self_check_->healthy(); };
   endpoint.ready = [this] { return admission_.state() == service::Admission::State::kServing; };
   absl::StatusOr<std::unique_ptr<metrics::MetricsEndpoint>> started =
       metrics::MetricsEndpoint::Start(std::move(endpoint));
@@ -169,6 +185,26 @@ void DuetServer::RefreshSecrets() {
                  {{"kind", reload.kind}, {"message", std::string(reload.status.message())}});
     }
   }
+}
+
+void DuetServer::Watch() {
+  watch_.push_back(std::make_unique<RepeatedTask>(kLookSeconds, [this] { service_.CheckTime(); }));
+  watch_.push_back(std::make_unique<RepeatedTask>(kTrimSeconds, [this] {
+    heap_trimmer_.Look(service_.large_request_bytes(), admission_.held_bytes());
+  }));
+  watch_.push_back(std::make_unique<RepeatedTask>(kHousekeepingSeconds, [this] {
+    RefreshSecrets();
+    log_.TellUnlogged();
+  }));
+  if (options_.self_check_seconds <= 0) return;
+  SelfCheckOptions check;
+  check.host = options_.listen.host;
+  check.port = grpc_.port;
+  check.interval_seconds = options_.self_check_seconds;
+  check.failed = [this](const absl::Status& status) {
+    log_.Error("self_check_failed", {{"message", std::string(status.message())}});
+  };
+  self_check_ = std::make_unique<SelfCheck>(std::move(check));
 }
 
 void DuetServer::Add(const registry::LoadReport& report) {

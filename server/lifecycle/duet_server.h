@@ -4,12 +4,15 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "server/batching/window_scheduler.h"
-#include "server/common/periodic.h"
 #include "server/config/server_options.h"
 #include "server/lifecycle/grpc_server.h"
+#include "server/lifecycle/heap_trimmer.h"
+#include "server/lifecycle/repeated_task.h"
+#include "server/lifecycle/self_check.h"
 #include "server/metrics/json_log.h"
 #include "server/metrics/metrics_endpoint.h"
 #include "server/metrics/server_metrics.h"
@@ -72,6 +75,9 @@ class DuetServer {
              std::unique_ptr<security::SecretFiles> secrets,
              std::unique_ptr<tracing::CallTracer> tracer);
   absl::Status Listen();
+  // Starts what looks after the server while it runs: time limits, memory, secrets, the
+  // log's counts, its own port.
+  void Watch();
   // Null: plain text.
   std::shared_ptr<grpc::ServerCredentials> Credentials() const;
   void SetHealth(bool serving);
@@ -88,8 +94,10 @@ class DuetServer {
   const std::unique_ptr<batching::WindowScheduler> scheduler_;
   service::MotionSynthesisService service_;
   GrpcServer grpc_;
+  HeapTrimmer heap_trimmer_;
+  std::vector<std::unique_ptr<RepeatedTask>> watch_;
+  std::unique_ptr<SelfCheck> self_check_;  // null when the options want none
   std::unique_ptr<metrics::MetricsEndpoint> endpoint_;
-  std::unique_ptr<common::Periodic> housekeeping_;
 };
 
 }  // namespace duet::server::lifecycle

@@ -19,6 +19,7 @@ struct GrpcServerOptions {
   std::size_t max_request_bytes = 0;
   std::size_t max_transport_bytes = 0;
   int max_calls = 0;
+  double max_call_seconds = 660;
   std::shared_ptr<grpc::ServerCredentials> credentials = nullptr;  // null: plain text
 };
 

@@ -17,6 +17,9 @@ namespace duet::server::metrics {
 // Threads: safe to call concurrently. Uses neither gRPC nor abseil.
 class CallLogFilter {
  public:
+  // Stands among the codes for what libraries have to say; a success is never refused.
+  static constexpr int kLibraries = 0;
+
   // Calls of one status code that got no line.
   struct Unlogged {
     int code = 0;
@@ -29,7 +32,8 @@ class CallLogFilter {
 
   // Whether a successful call gets a line: evenly spread, the first one does unless none do.
   bool LogSuccess();
-  // Whether a refused call does. `code`: a gRPC status code, 1 to 16; `now`: in seconds.
+  // Whether a refused call does. `code`: a gRPC status code, 1 to 16, or kLibraries; `now`: in
+  // seconds.
   bool LogRefusal(int code, double now);
 
   // How many refused calls got no line since this was asked last, by code.

@@ -108,6 +108,10 @@ bool JsonLog::IsWanted(const CallRecord& record, Severity severity) {
 
 void JsonLog::TellUnlogged() {
   for (const CallLogFilter::Unlogged& calls : filter_.TakeUnlogged()) {
+    if (calls.code == CallLogFilter::kLibraries) {
+      Write(Severity::kWarning, "library_lines_not_logged", {{"lines", calls.calls}});
+      continue;
+    }
     const auto code = static_cast<absl::StatusCode>(calls.code);
     Write(SeverityOf(code), "calls_not_logged",
           {{"code", absl::StatusCodeToString(code)}, {"calls", calls.calls}});
@@ -123,6 +127,13 @@ void JsonLog::Audit(const AdminAction& action) {
   fields["code"] = absl::StatusCodeToString(action.status.code());
   if (!action.status.ok()) fields["message"] = std::string(action.status.message());
   sink_.Write(Line(now_(), Severity::kInfo, "admin_action", fields));
+}
+
+void JsonLog::Library(std::string_view library, Severity severity, const std::string& message) {
+  if (severity < options_.level) return;
+  if (!filter_.LogRefusal(CallLogFilter::kLibraries, ToSeconds(now_()))) return;
+  TellUnlogged();
+  Write(severity, "library", {{"library", library}, {"message", message}});
 }
 
 void JsonLog::Info(std::string_view event, Json fields) { Write(Severity::kInfo, event, fields); }

@@ -35,7 +35,8 @@ std::string DroppedLinesNotice(std::uint64_t dropped, absl::Time now = absl::Now
 //    "request_id":"...","code":"OK","frames":300,...}
 //
 // A server's own failures always have a line; for other calls see LogOptions. Calls that got none
-// are told by "calls_not_logged" {code, calls}.
+// are told by "calls_not_logged" {code, calls}; libraries' lines by "library_lines_not_logged"
+// {lines}.
 //
 // Threads: safe to call concurrently.
 class JsonLog final : public CallObserver {
@@ -58,6 +59,10 @@ class JsonLog final : public CallObserver {
 
   // An administrator's doing, which has a line whatever the options say.
   void Audit(const AdminAction& action);
+
+  // What a library has to say, such as gRPC of a handshake that failed: a client can cause any
+  // number of those. As with refused calls, some a second have a line.
+  void Library(std::string_view library, Severity severity, const std::string& message);
 
   // An event of the server's life: `event` is a stable snake_case name, `fields` an object.
   void Info(std::string_view event, nlohmann::ordered_json fields);

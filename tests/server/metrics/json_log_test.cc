@@ -195,6 +195,21 @@ TEST_F(JsonLogTest, AServersOwnFailuresAlwaysHaveALine) {
   EXPECT_EQ(sink_.lines.size(), 20u);
 }
 
+TEST_F(JsonLogTest, WhatLibrariesSayCannotFillTheDisk) {
+  {
+    JsonLog log(sink_, [] { return absl::FromUnixSeconds(5); }, {Severity::kInfo, 1, 2});
+    for (int i = 0; i < 50; ++i) log.Library("grpc", Severity::kError, "handshake failed");
+    ASSERT_EQ(sink_.lines.size(), 2u);
+    EXPECT_EQ(sink_.Last()["event"], "library");
+    EXPECT_EQ(sink_.Last()["severity"], "ERROR");
+    EXPECT_EQ(sink_.Last()["library"], "grpc");
+    EXPECT_EQ(sink_.Last()["message"], "handshake failed");
+  }
+  ASSERT_EQ(sink_.lines.size(), 3u);
+  EXPECT_EQ(sink_.Last()["event"], "library_lines_not_logged");
+  EXPECT_EQ(sink_.Last()["lines"], 48);
+}
+
 TEST_F(JsonLogTest, AnAdministratorsDoingHasALineWhateverTheLevel) {
   JsonLog log(sink_, absl::Now, {Severity::kError, 0, 0});
   AdminAction action{"ops", "ipv4:10.0.0.1:4711", "id-1", "LoadModel", {{"model", "sbu"}}, {}};

@@ -11,6 +11,9 @@
 namespace duet::server::tracing {
 namespace {
 
+// Far longer than anything here takes: what never comes fails its test instead of hanging it.
+constexpr std::chrono::seconds kLongestWait(60);
+
 // A collector that waits at a gate, and takes what comes or refuses it.
 class Collector {
  public:
@@ -32,12 +35,18 @@ class Collector {
     changed_.NotifyAll();
   }
   void WaitUntilAsked(int times) {
+    const auto end = std::chrono::steady_clock::now() + kLongestWait;
     common::MutexLock lock(mutex_);
-    while (asked_ < times) changed_.Wait(mutex_);
+    while (asked_ < times && changed_.WaitUntil(mutex_, end)) {
+    }
+    EXPECT_GE(asked_, times);
   }
   void WaitForSpans(std::size_t count) {
+    const auto end = std::chrono::steady_clock::now() + kLongestWait;
     common::MutexLock lock(mutex_);
-    while (names_.size() < count) changed_.Wait(mutex_);
+    while (names_.size() < count && changed_.WaitUntil(mutex_, end)) {
+    }
+    EXPECT_GE(names_.size(), count);
   }
   std::vector<std::string> names() {
     common::MutexLock lock(mutex_);
