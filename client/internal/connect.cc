@@ -1,5 +1,6 @@
 #include "client/internal/connect.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "absl/strings/match.h"
@@ -21,6 +22,8 @@ constexpr char kServiceConfig[] = R"({
   "loadBalancingConfig": [{"round_robin": {}}],
   "healthCheckConfig": {"serviceName": ""}
 })";
+
+constexpr absl::Duration kLongestReconnectWait = absl::Seconds(1);
 
 absl::Status Check(const ClientOptions& options) {
   if (options.server_address.empty()) {
@@ -61,12 +64,14 @@ grpc::ChannelArguments Arguments(const ClientOptions& options) {
   grpc::ChannelArguments arguments;
   arguments.SetLoadBalancingPolicyName("round_robin");
   arguments.SetServiceConfigJSON(kServiceConfig);
-  // A lost connection is tried again as soon as a call is. With gRPC's own first wait of a second,
-  // a call could use up its attempts while the server has long been back.
+  // A lost connection is tried again as soon as a call is, and often: gRPC's own waits grow to two
+  // minutes, while the server has long been back.
   arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS,
                    static_cast<int>(absl::ToInt64Milliseconds(options.retry.initial_backoff)));
   arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS,
-                   static_cast<int>(absl::ToInt64Milliseconds(options.retry.max_backoff)));
+                   static_cast<int>(absl::ToInt64Milliseconds(
+                       std::max(options.retry.initial_backoff,
+                                std::min(options.retry.max_backoff, kLongestReconnectWait)))));
   if (options.own_connection) arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);
   if (options.tls.has_value() && !options.tls->server_name.empty()) {
     arguments.SetSslTargetNameOverride(options.tls->server_name);

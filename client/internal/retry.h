@@ -23,7 +23,8 @@ RetryEnvironment SystemEnvironment();
 
 // Whether another attempt may succeed where this one failed.
 //
-// UNAVAILABLE always. RESOURCE_EXHAUSTED only for bulk work, which can wait, and only where the
+// UNAVAILABLE always. CANCELLED without details as well: a server that shuts down ends so what it
+// has not begun to look at, and whoever cancels a call here is not asked. RESOURCE_EXHAUSTED only for bulk work, which can wait, and only where the
 // server says when to come back (RetryInfo): without that the code means a message that is too
 // large, which no later attempt makes smaller.
 bool IsRetryable(const absl::Status& status, Priority priority);

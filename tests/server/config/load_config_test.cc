@@ -96,7 +96,9 @@ TEST(ParseCommandLineTest, ReadsEveryFlag) {
       "--threads-per-worker 3 --max-calls 4 --max-queued-windows 5 --max-request-bytes 6000 "
       "--max-transport-bytes 20000 --buffered-frames 7 --drain-seconds 8 --grace-seconds 9 "
       "--clean-up off --engine torch --precision f32 --max-batch-windows 10 "
-      "--max-batch-delay-seconds 0.5",
+      "--max-batch-delay-seconds 0.5 --client-share 0.5 --client-key x-client "
+      "--max-held-bytes 30000 --receive-timeout-seconds 11 --write-timeout-seconds 12 "
+      "--max-call-seconds 13 --self-check-seconds 14 --max-slow-requests 15",
       ' '));
   ASSERT_THAT(line, IsOk());
   const absl::StatusOr<v1::ServerConfig> expected = ParseConfigText(
@@ -106,7 +108,10 @@ TEST(ParseCommandLineTest, ReadsEveryFlag) {
          reflection: false workers: 2 threads_per_worker: 3 max_calls: 4 max_queued_windows: 5
          max_request_bytes: 6000 max_transport_bytes: 20000 buffered_frames: 7 drain_seconds: 8 grace_seconds: 9
          clean_up: CLEAN_UP_POLICY_OFF engine: ENGINE_TORCH precision: PRECISION_F32
-         max_batch_windows: 10 max_batch_delay_seconds: 0.5)",
+         max_batch_windows: 10 max_batch_delay_seconds: 0.5
+         client_share: 0.5 client_key: "x-client" max_held_bytes: 30000
+         receive_timeout_seconds: 11 write_timeout_seconds: 12 max_call_seconds: 13
+         self_check_seconds: 14 max_slow_requests: 15)",
       false);
   ASSERT_THAT(expected, IsOk());
   EXPECT_TRUE(google::protobuf::util::MessageDifferencer::Equals(line->config, *expected))
