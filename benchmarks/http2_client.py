@@ -43,17 +43,21 @@ class Connection:
         settings = b"" if window is None else struct.pack(">HI", SETTING_INITIAL_WINDOW, window)
         self.socket.sendall(PREFACE + frame(SETTINGS, 0, 0, settings))
         self.next_stream = 1
+        self.credit = 65535  # bytes of all streams that the server takes now
 
     def close(self):
         self.socket.close()
 
     def open(self, path, payload=None, extra=(), end=True):
-        """Begins a call, with a small message unless that is None; its stream."""
+        """Begins a call, with a message of a few kilobytes unless that is None; its stream."""
         stream = self.next_stream
         self.next_stream += 2
         data = frame(HEADERS, END_HEADERS, stream, request_headers(path, extra))
         if payload is not None:
             body = message(payload)
+            while self.credit < len(body):
+                next(self.frames())
+            self.credit -= len(body)
             pieces = [body[at:at + 16384] for at in range(0, len(body), 16384)]
             for i, piece in enumerate(pieces):
                 last = end and i == len(pieces) - 1
@@ -76,6 +80,8 @@ class Connection:
                 self.socket.sendall(frame(SETTINGS, ACK, 0))
             if kind == PING and not flags & ACK:
                 self.socket.sendall(frame(PING, ACK, 0, payload))
+            if kind == WINDOW_UPDATE and int.from_bytes(head[5:], "big") == 0:
+                self.credit += int.from_bytes(payload, "big")
             yield kind, flags, int.from_bytes(head[5:], "big") & 0x7FFFFFFF, payload
 
     def _read(self, count):

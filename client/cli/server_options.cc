@@ -1,6 +1,9 @@
 #include "client/cli/server_options.h"
 
+#include <atomic>
 #include <cstddef>
+#include <memory>
+#include <ostream>
 #include <string>
 #include <utility>
 
@@ -55,6 +58,16 @@ absl::StatusOr<ClientOptions> ToClientOptions(const ServerArguments& arguments) 
   if (!status.ok()) return status;
   options.tls = std::move(tls);
   return options;
+}
+
+void SayWhenWaiting(const ServerArguments& arguments, std::ostream& err, ClientOptions* options) {
+  options->retry.on_wait = [&err, address = arguments.address, seconds = arguments.timeout_seconds,
+                            waits = std::make_shared<std::atomic<int>>(0)](const absl::Status& why,
+                                                                           absl::Duration) {
+    if (++*waits != 2) return;
+    err << "duet: " << address << " does not answer: " << why.message()
+        << "; asked again until --timeout " << seconds << " s is over\n";
+  };
 }
 
 }  // namespace duet::client::cli

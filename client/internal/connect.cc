@@ -26,6 +26,8 @@ constexpr char kServiceConfig[] = R"({
   "healthCheckConfig": {"serviceName": ""}
 })";
 
+constexpr absl::Duration kLongestReconnectWait = absl::Seconds(1);
+
 bool IsToken(absl::string_view text) {
   return std::all_of(text.begin(), text.end(),
                      [](unsigned char c) { return absl::ascii_isgraph(c); });
@@ -100,12 +102,14 @@ grpc::ChannelArguments Arguments(const ClientOptions& options) {
   grpc::ChannelArguments arguments;
   arguments.SetLoadBalancingPolicyName("round_robin");
   arguments.SetServiceConfigJSON(kServiceConfig);
-  // A lost connection is tried again as soon as a call is. With gRPC's own first wait of a second,
-  // a call could use up its attempts while the server has long been back.
+  // A lost connection is tried again as soon as a call is, and often: gRPC's own waits grow to two
+  // minutes, while the server has long been back.
   arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS,
                    static_cast<int>(absl::ToInt64Milliseconds(options.retry.initial_backoff)));
   arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS,
-                   static_cast<int>(absl::ToInt64Milliseconds(options.retry.max_backoff)));
+                   static_cast<int>(absl::ToInt64Milliseconds(
+                       std::max(options.retry.initial_backoff,
+                                std::min(options.retry.max_backoff, kLongestReconnectWait)))));
   // Plain text to this machine must not take the way of the environment's proxy.
   if (!options.token.empty() && !options.tls.has_value()) {
     arguments.SetInt(GRPC_ARG_ENABLE_HTTP_PROXY, 0);

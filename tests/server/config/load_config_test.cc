@@ -99,7 +99,9 @@ TEST(ParseCommandLineTest, ReadsEveryFlag) {
       "--threads-per-worker 3 --max-calls 4 --max-queued-windows 5 --max-request-bytes 6000 "
       "--max-transport-bytes 20000 --buffered-frames 7 --drain-seconds 8 --grace-seconds 9 "
       "--clean-up off --engine torch --precision f32 --max-batch-windows 10 "
-      "--max-batch-delay-seconds 0.5",
+      "--max-batch-delay-seconds 0.5 --client-share 0.5 --client-key x-client "
+      "--max-held-bytes 30000 --receive-timeout-seconds 11 --write-timeout-seconds 12 "
+      "--max-call-seconds 13 --self-check-seconds 14 --max-slow-requests 15",
       ' '));
   ASSERT_THAT(line, IsOk());
   const absl::StatusOr<v1::ServerConfig> expected = ParseConfigText(
@@ -112,7 +114,10 @@ TEST(ParseCommandLineTest, ReadsEveryFlag) {
          max_batch_windows: 10 max_batch_delay_seconds: 0.5
          tls_certificate_file: "/c" tls_key_file: "/k" tls_client_ca_file: "/a" access_file: "/l"
          otlp_endpoint: "http://o:1" trace_ratio: 0.25 log_format: LOG_FORMAT_TEXT
-         log_level: LOG_LEVEL_WARNING log_success_ratio: 0.5 log_refusals_per_second: 3)",
+         log_level: LOG_LEVEL_WARNING log_success_ratio: 0.5 log_refusals_per_second: 3
+         client_share: 0.5 client_key: "x-client" max_held_bytes: 30000
+         receive_timeout_seconds: 11 write_timeout_seconds: 12 max_call_seconds: 13
+         self_check_seconds: 14 max_slow_requests: 15)",
       false);
   ASSERT_THAT(expected, IsOk());
   EXPECT_TRUE(google::protobuf::util::MessageDifferencer::Equals(line->config, *expected))
