@@ -278,6 +278,35 @@ TEST_F(SecuredServerTest, FramesInFlightAreACallersOwn) {
   for (int i = 0; i < 3; ++i) EXPECT_TRUE(call("s", kFrames).ok()) << i;
 }
 
+TEST_F(SecuredServerTest, PlacesAreSharedByCallerNotByAddress) {
+  UseAccess(absl::StrCat("studio synthesise ", Known("s"), "\n", "farm synthesise ", Known("f"),
+                         "\n"));
+  options_.max_calls = 4;
+  options_.client_share = 0.5;  // alone, a client comes to hold two of four
+  options_.workers = 4;
+  options_.max_batch_windows = 1;
+  GatedModel model;
+  Start(model.get());
+  const auto call = [this](const std::string& token) {
+    TimedContext context;
+    context.AddMetadata("authorization", "Bearer " + token);
+    return Call(*v1::MotionSynthesis::NewStub(PlainText()), SampleRequest(kFrames), context).status;
+  };
+  std::vector<std::thread> held;
+  std::atomic<int> answered{0};
+  const auto hold = [&](const std::string& token, int started) {
+    held.emplace_back([&, token] { answered += call(token).ok() ? 1 : 0; });
+    model.WaitUntilStarted(started);
+  };
+  hold("s", 1);
+  hold("s", 2);
+  EXPECT_EQ(call("s").error_code(), StatusCode::RESOURCE_EXHAUSTED);
+  hold("f", 3);  // from the same address
+  model.Open();
+  for (std::thread& thread : held) thread.join();
+  EXPECT_EQ(answered.load(), 3);
+}
+
 TEST_F(SecuredServerTest, TokensRotateWhileCallsCome) {
   UseAccess(absl::StrCat("studio synthesise ", Known("s"), " ", Known("old"), "\n"));
   Start();
