@@ -26,9 +26,10 @@ import time
 
 import grpc
 
-import http2_client as http2
-
 SOURCE = pathlib.Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(SOURCE / "tests/e2e"))
+import http2_client as http2  # pylint: disable=wrong-import-position
+
 HOSTILE = "127.0.0.2"
 SYNTHESIZE = "/duet.v1.MotionSynthesis/Synthesize"
 LIST_MODELS = "/duet.v1.MotionSynthesis/ListModels"

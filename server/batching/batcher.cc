@@ -23,6 +23,13 @@ absl::Status QueueFull(std::size_t capacity) {
       " calls may wait for their first window, and no client's calls may fill all of it");
 }
 
+absl::Status QueueTooLong(const WindowJob& job, common::TimePoint now) {
+  return absl::ResourceExhaustedError(
+      "the queue is too long: by the time of its turn the deadline, " +
+      std::to_string(common::SecondsBetween(now, job.deadline)) +
+      " s away, would be too near for an answer");
+}
+
 // A model reports failures as a status; whatever else escapes it must not take the server down.
 std::vector<engine::WindowResult> Evaluate(const Batch& batch) {
   std::vector<const engine::SynthesisWindow*> windows;
@@ -93,6 +100,7 @@ absl::Status Batcher::Submit(WindowJob job) {
     if (stopping_) return ShuttingDown();
     const common::TimePoint now = clock_.Now();
     if (!queue_.HasRoomFor(job, now)) return QueueFull(queue_.capacity());
+    if (!job.continues_call && !queue_.ComesInTime(job, now)) return QueueTooLong(job, now);
     queue_.Push(std::move(job), now);
   }
   changed_.NotifyOne();

@@ -74,6 +74,10 @@ class WindowQueue {
   bool HasRoomFor(const WindowJob& job, common::TimePoint now) const {
     return job.continues_call || HasRoomFor(job.priority, job.client, now);
   }
+  // Whether a first window would be done by its deadline, an eighth of its time before it, if all
+  // that waits in its lane and above went before it: by what windows cost of late. True for one
+  // that would wait for nobody: whether it is done in time alone is for Decide to say.
+  bool ComesInTime(const WindowJob& job, common::TimePoint now) const;
   void Push(WindowJob job, common::TimePoint now);
 
   // What the worker that asks is to do.
@@ -96,6 +100,7 @@ class WindowQueue {
   };
 
   Account& AccountOf(const WindowJob& job);
+  CostEstimate CostOf(const WindowJob& job, common::TimePoint now) const;
   QueueState StateAt(common::TimePoint now) const;
   // Takes the windows at these indices out, in this order; leaves null models behind.
   QueuedWindow TakeOut(std::size_t index);

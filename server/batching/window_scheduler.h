@@ -72,7 +72,8 @@ class WindowScheduler {
   virtual ~WindowScheduler() = default;
 
   // Takes the job: done will run exactly once, never within Submit.
-  // Fails with RESOURCE_EXHAUSTED when the queue is full, with UNAVAILABLE when shutting down;
+  // Fails with RESOURCE_EXHAUSTED when the queue is full or too long for the deadline of a call's
+  // first window, with UNAVAILABLE when shutting down;
   // done then never runs.
   virtual absl::Status Submit(WindowJob job) = 0;
 

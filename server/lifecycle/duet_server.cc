@@ -175,8 +175,8 @@ std::shared_ptr<grpc::ServerCredentials> DuetServer::Credentials() const {
   return security::MakeServerCredentials(*secrets_->certificates());
 }
 
-void DuetServer::RefreshSecrets() {
-  for (const security::Reload& reload : secrets_->Refresh()) {
+void DuetServer::Tell(const std::vector<security::Reload>& reloads) {
+  for (const security::Reload& reload : reloads) {
     metrics_.SecretsReloaded(std::string(reload.kind), reload.status.ok());
     if (reload.status.ok()) {
       log_.Info("secrets_reloaded", {{"kind", reload.kind}});
@@ -193,7 +193,7 @@ void DuetServer::Watch() {
     heap_trimmer_.Look(service_.large_request_bytes(), admission_.held_bytes());
   }));
   watch_.push_back(std::make_unique<RepeatedTask>(kHousekeepingSeconds, [this] {
-    RefreshSecrets();
+    Tell(secrets_->Look());
     log_.TellUnlogged();
   }));
   if (options_.self_check_seconds <= 0) return;

@@ -62,9 +62,9 @@ class DuetServer {
   // as after a second signal, both times are cut short.
   void Drain(const std::function<bool(double seconds)>& wait);
 
-  // Reads certificates and the access file again and takes over what changed, as happens by itself
-  // every second. Safe to call concurrently.
-  void RefreshSecrets();
+  // Reads certificates and the access file again and takes over what changed, at once. By itself
+  // that happens every second, for files that do not change any more. Safe to call concurrently.
+  void RefreshSecrets() { Tell(secrets_->Refresh()); }
 
   int port() const { return grpc_.port; }
   int metrics_port() const { return endpoint_ == nullptr ? 0 : endpoint_->port(); }
@@ -78,6 +78,7 @@ class DuetServer {
   // Starts what looks after the server while it runs: time limits, memory, secrets, the
   // log's counts, its own port.
   void Watch();
+  void Tell(const std::vector<security::Reload>& reloads);
   // Null: plain text.
   std::shared_ptr<grpc::ServerCredentials> Credentials() const;
   void SetHealth(bool serving);

@@ -24,16 +24,20 @@ absl::StatusOr<std::unique_ptr<SecretFiles>> SecretFiles::Open(Options options) 
   return files;
 }
 
-std::vector<Reload> SecretFiles::Refresh() {
+std::vector<Reload> SecretFiles::Refresh() { return Read(/*settled=*/false); }
+
+std::vector<Reload> SecretFiles::Look() { return Read(/*settled=*/true); }
+
+std::vector<Reload> SecretFiles::Read(bool settled) {
   std::vector<Reload> changes;
   common::MutexLock lock(mutex_);
   if (!options_.access.empty()) {
     const absl::StatusOr<std::string> text = ReadAccess();
-    if (seen_access_.Changed(text)) changes.push_back({"access", TakeAccess(text)});
+    if (seen_access_.Changed(text, settled)) changes.push_back({"access", TakeAccess(text)});
   }
   if (!options_.tls.certificate.empty()) {
     const absl::StatusOr<TlsMaterial> material = ReadTlsMaterial(options_.tls);
-    if (seen_tls_.Changed(material)) changes.push_back({"tls", TakeTls(material)});
+    if (seen_tls_.Changed(material, settled)) changes.push_back({"tls", TakeTls(material)});
   }
   return changes;
 }

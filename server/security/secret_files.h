@@ -47,8 +47,13 @@ class SecretFiles {
   // setting, the file, and in an access file the line.
   static absl::StatusOr<std::unique_ptr<SecretFiles>> Open(Options options);
 
-  // Reads them again and takes over what changed; says what that was.
+  // Reads them again and takes over what changed; says what that was. For when somebody says that
+  // they are ready.
   std::vector<Reload> Refresh();
+
+  // The same for what has settled: contents that the last look found as well, so that a file that
+  // is being written is left alone. Call about once a second.
+  std::vector<Reload> Look();
 
   // Null without a certificate.
   const TlsCertificates* certificates() const { return certificates_.get(); }
@@ -59,21 +64,31 @@ class SecretFiles {
 
  private:
   explicit SecretFiles(Options options) : options_(std::move(options)) {}
+  std::vector<Reload> Read(bool settled);
   absl::StatusOr<std::string> ReadAccess() const;
   absl::Status TakeAccess(const absl::StatusOr<std::string>& text);
   absl::Status TakeTls(const absl::StatusOr<TlsMaterial>& material) DUET_REQUIRES(mutex_);
 
-  // What was looked at last: a change is reported once, whatever came of it.
+  // What a file held: its contents, or why it could not be read.
   template <typename Content>
-  struct Seen {
-    absl::StatusOr<Content> content = absl::UnknownError("not read yet");
-    // Whether it is another one now, or another failure to read it.
-    bool Changed(const absl::StatusOr<Content>& now) {
-      const bool same = content.ok() == now.ok() &&
-                        (now.ok() ? *content == *now : content.status() == now.status());
-      if (!same) content = now;
-      return !same;
+  class Seen {
+   public:
+    // Whether it is another one than was taken last, and has settled if it is to. A change is told
+    // once, whatever comes of it.
+    bool Changed(const absl::StatusOr<Content>& now, bool settled) {
+      const bool is_settled = !settled || Same(found_, now);
+      found_ = now;
+      if (!is_settled || Same(taken_, now)) return false;
+      taken_ = now;
+      return true;
     }
+
+   private:
+    static bool Same(const absl::StatusOr<Content>& a, const absl::StatusOr<Content>& b) {
+      return a.ok() == b.ok() && (a.ok() ? *a == *b : a.status() == b.status());
+    }
+    absl::StatusOr<Content> found_ = absl::UnknownError("not read yet");  // by the last look
+    absl::StatusOr<Content> taken_ = absl::UnknownError("not read yet");
   };
 
   const Options options_;

@@ -44,7 +44,7 @@ def needs(program, package="prometheus"):
 class MetricsTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.server = tools.Server(metrics=True)
+        cls.server = tools.Server(metrics="127.0.0.1:0")
         cls.addClassCleanup(cls.server.stop)
         answer = tools.duet("synthesize", "--server", cls.server.address, "--leader",
                             tools.sample("kick"), "--label", "kick=1", "--out",
@@ -200,7 +200,7 @@ class TraceTest(unittest.TestCase):
         self.addCleanup(self.collector.stop)
 
     def start(self, *flags):
-        server = tools.Server(*flags, metrics=True)
+        server = tools.Server(*flags, metrics="127.0.0.1:0")
         self.addCleanup(server.stop)
         channel = grpc.insecure_channel(server.address)
         self.addCleanup(channel.close)

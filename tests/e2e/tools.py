@@ -52,12 +52,13 @@ def duet(*arguments):
 class Server:
     """A duet-server on a free port, and everything that it logged."""
 
-    def __init__(self, *flags, port=0, metrics=False):
+    def __init__(self, *flags, port=0, metrics="", descriptors=None):
         self.log = []
-        self.metrics_port = None
+        self.metrics_port = None  # with metrics="127.0.0.1:0"
+        limit = [] if descriptors is None else ["prlimit", f"--nofile={descriptors}"]
         self._process = subprocess.Popen(
-            [PROGRAMS / "duet-server", "--listen", f"127.0.0.1:{port}", "--metrics-listen",
-             "127.0.0.1:0" if metrics else "", *flags],
+            [*limit, PROGRAMS / "duet-server", "--listen", f"127.0.0.1:{port}",
+             "--metrics-listen", metrics, *flags],
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         serving = queue.Queue()
         # Reads to the end: a server whose log nobody reads stands still.
@@ -71,6 +72,10 @@ class Server:
             self._process.kill()
             self.stop()
             raise AssertionError(f"the server did not come to serve: {self.log}")
+
+    @property
+    def pid(self):
+        return self._process.pid
 
     @property
     def address(self):

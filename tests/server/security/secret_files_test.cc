@@ -98,6 +98,27 @@ TEST_F(SecretFilesTest, AListThatIsRewrittenCounts) {
   EXPECT_THAT(files_->Refresh(), IsEmpty());
 }
 
+TEST_F(SecretFilesTest, AListThatIsBeingWrittenIsLeftAloneUntilItHasSettled) {
+  UseAccess(Line("a"));
+  UseTls();
+  ASSERT_THAT(Open(), IsOk());
+  EXPECT_THAT(files_->Look(), IsEmpty());
+  for (const std::string& unfinished : {std::string(), std::string("b synth")}) {
+    WriteTestFile(options_.access, unfinished);
+    EXPECT_THAT(files_->Look(), IsEmpty());
+    EXPECT_TRUE(Knows("a"));
+  }
+  WriteTestFile(options_.access, Line("b"));
+  EXPECT_THAT(files_->Look(), IsEmpty());
+  ASSERT_EQ(files_->Look().size(), 1u);
+  EXPECT_TRUE(Knows("b"));
+  WritePair(second_);
+  EXPECT_THAT(files_->Look(), IsEmpty());
+  ASSERT_EQ(files_->Look().size(), 1u);
+  EXPECT_EQ(Shown(), second_.certificate);
+  EXPECT_THAT(files_->Look(), IsEmpty());
+}
+
 TEST_F(SecretFilesTest, AListBehindALinkThatMovesCounts) {
   // As Kubernetes mounts a secret: file -> ..data/file, ..data -> a folder of the day.
   for (const char* day : {"monday", "tuesday"}) {

@@ -279,8 +279,8 @@ TEST_F(SecuredServerTest, FramesInFlightAreACallersOwn) {
 }
 
 TEST_F(SecuredServerTest, PlacesAreSharedByCallerNotByAddress) {
-  UseAccess(absl::StrCat("studio synthesise ", Known("s"), "\n", "farm synthesise ", Known("f"),
-                         "\n"));
+  UseAccess(
+      absl::StrCat("studio synthesise ", Known("s"), "\n", "farm synthesise ", Known("f"), "\n"));
   options_.max_calls = 4;
   options_.client_share = 0.5;  // alone, a client comes to hold two of four
   options_.workers = 4;
