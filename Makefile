@@ -65,6 +65,11 @@ python: ## Make the Python package: wheel and sdist in build/python
 	@scripts/install_packages.sh test
 	@scripts/build_python.sh
 
+.PHONY: site
+site: ## Make the site of all documents, with the Python, C++ and wire references: build/site/index.html
+	@scripts/install_packages.sh test develop
+	@scripts/build_site.sh
+
 .PHONY: clean
 clean: ## Remove everything that was built or made
 	rm -rf build out
