@@ -48,13 +48,15 @@ def duet(*arguments):
 
 
 class Server:
-    """A duet-server on a free port, and everything that it logged."""
+    """A duet-server on a free port, and everything that it logged. `metrics_port` is that of its
+    figures where `metrics_listen` names an address."""
 
-    def __init__(self, *flags, port=0):
+    def __init__(self, *flags, port=0, metrics_listen=""):
         self.log = []
+        self.metrics_port = None
         self._process = subprocess.Popen(
-            [PROGRAMS / "duet-server", "--listen", f"127.0.0.1:{port}", "--metrics-listen", "",
-             *flags],
+            [PROGRAMS / "duet-server", "--listen", f"127.0.0.1:{port}", "--metrics-listen",
+             metrics_listen, *flags],
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         serving = queue.Queue()
         # Reads to the end: a server whose log nobody reads stands still.
@@ -81,6 +83,7 @@ class Server:
                 entry = {"text": line}  # gRPC's own words
             self.log.append(entry)
             if entry.get("event") == "serving":
+                self.metrics_port = entry["metrics_port"]
                 serving.put(entry["port"])
         serving.put(None)
 
@@ -102,8 +105,8 @@ class Server:
 
 
 @contextlib.contextmanager
-def running_server(*flags):
-    server = Server(*flags)
+def running_server(*flags, **options):
+    server = Server(*flags, **options)
     try:
         yield server
     finally:
