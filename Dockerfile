@@ -21,10 +21,12 @@ RUN scripts/install_packages.sh build image && rm -rf /var/lib/apt/lists/*
 # What was compiled before comes from the compiler's cache: a change costs what it touches.
 FROM tools AS build
 ARG CCACHE_DIR=/var/cache/ccache
+# Further settings of CMake.
+ARG CMAKE_FLAGS=
 ENV CCACHE_DIR=$CCACHE_DIR CCACHE_BASEDIR=/src CCACHE_NOHASHDIR=1
 COPY . .
 RUN --mount=type=cache,id=duet-ccache,target=/var/cache/ccache \
-    cmake --preset release -DDUET_BUILD_TESTS=OFF -DDUET_BUILD_BENCHMARKS=OFF \
+    cmake --preset release -DDUET_BUILD_TESTS=OFF -DDUET_BUILD_BENCHMARKS=OFF $CMAKE_FLAGS \
     && cmake --build --preset release --parallel "$(scripts/build_jobs.sh)" \
        --target duet-server duet \
     && mkdir -p /out/usr/local/bin \
