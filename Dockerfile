@@ -23,7 +23,7 @@ FROM tools AS build
 ARG CCACHE_DIR=/var/cache/ccache
 # Further settings of CMake.
 ARG CMAKE_FLAGS=
-ENV CCACHE_DIR=$CCACHE_DIR CCACHE_BASEDIR=/src CCACHE_NOHASHDIR=1
+ENV LANG=C.UTF-8 CCACHE_DIR=$CCACHE_DIR CCACHE_BASEDIR=/src CCACHE_NOHASHDIR=1
 COPY . .
 RUN --mount=type=cache,id=duet-ccache,target=/var/cache/ccache \
     cmake --preset release -DDUET_BUILD_TESTS=OFF -DDUET_BUILD_BENCHMARKS=OFF $CMAKE_FLAGS \

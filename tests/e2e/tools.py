@@ -51,11 +51,12 @@ class Server:
     """A duet-server on a free port, and everything that it logged. `metrics_port` is that of its
     figures where `metrics_listen` names an address."""
 
-    def __init__(self, *flags, port=0, metrics_listen=""):
+    def __init__(self, *flags, port=0, metrics_listen="",
+                 program=PROGRAMS / "duet-server"):
         self.log = []
         self.metrics_port = None
         self._process = subprocess.Popen(
-            [PROGRAMS / "duet-server", "--listen", f"127.0.0.1:{port}", "--metrics-listen",
+            [program, "--listen", f"127.0.0.1:{port}", "--metrics-listen",
              metrics_listen, *flags],
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         serving = queue.Queue()
