@@ -53,10 +53,9 @@ record() {
 }
 
 main() {
-  local list package
-  for list in "$@"; do
-    for package in $(sed -e 's/#.*//' -e '/^[[:space:]]*$/d' "${list}"); do add "${package}"; done
-  done
+  local package
+  while read -r package; do add "${package}"; done \
+    < <(sed -e 's/#.*//' -e '/^[[:space:]]*$/d' "$@")
 
   mkdir -p "${root}"/{etc/ssl/certs,tmp,usr/lib,usr/lib64,usr/bin,usr/share/doc} \
     "${root}/var/lib/dpkg/status.d"
