@@ -110,7 +110,7 @@ class ProxyTest(unittest.TestCase):
         self.folder.chmod(0o755)
         certificate(self.folder)
         self.server = stack.enter_context(
-            tools.running_server(metrics_listen="127.0.0.1:0"))
+            tools.running_server("--client-key", "x-duet-client", metrics="127.0.0.1:0"))
         self.stack = stack
 
     def check_calls(self, proxy):

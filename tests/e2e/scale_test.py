@@ -26,7 +26,7 @@ class ScaleTest(unittest.TestCase):
         self.stack = contextlib.ExitStack()
         self.addCleanup(self.stack.close)
         self.folder = pathlib.Path(self.stack.enter_context(tempfile.TemporaryDirectory()))
-        self.servers = [tools.Server(metrics_listen="127.0.0.1:0") for _ in range(SERVERS)]
+        self.servers = [tools.Server(metrics="127.0.0.1:0") for _ in range(SERVERS)]
         for server in self.servers:
             self.stack.callback(server.kill)
         self.recipe = self.folder / "recipe.textproto"
