@@ -1,6 +1,6 @@
 // Callers that ask a server for one follower after the other, or so many a second whatever becomes
-// of them, and how long they waited. Some of them may ask for long clips in the background; they are
-// not measured. Prints one line of JSON.
+// of them, and how long they waited. Some of them may ask for long clips in the background; they
+// are not measured. Prints one line of JSON.
 
 #include <CLI/CLI.hpp>
 #include <algorithm>

@@ -46,8 +46,8 @@ absl::StatusOr<ClientOptions> ToClientOptions(const ServerArguments& arguments) 
 
 void SayWhenWaiting(const ServerArguments& arguments, std::ostream& err, ClientOptions* options) {
   options->retry.on_wait = [&err, address = arguments.address, seconds = arguments.timeout_seconds,
-                            waits = std::make_shared<std::atomic<int>>(0)](
-                               const absl::Status& why, absl::Duration) {
+                            waits = std::make_shared<std::atomic<int>>(0)](const absl::Status& why,
+                                                                           absl::Duration) {
     if (++*waits != 2) return;
     err << "duet: " << address << " does not answer: " << why.message()
         << "; asked again until --timeout " << seconds << " s is over\n";

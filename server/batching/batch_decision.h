@@ -33,10 +33,6 @@ struct ModelLoad {
 // So many frames of higher lanes may overtake each frame of a lane: an eighth of the whole is its.
 inline constexpr int kOvertaking = 7;
 
-// Of the time from a window's coming to its deadline, the part kept for its answer's way to the
-// caller: an eighth.
-inline constexpr int kWayBack = 8;
-
 // Everything that decides what a worker does next.
 struct QueueState {
   std::vector<WaitingWindow> windows;  // in the order they came
@@ -83,9 +79,9 @@ struct Decision {
 // 3. Within the lane, the model whose windows have had the least computing time.
 // 4. Clients take turns: one window of each, the second of each, and so on. Of the windows of one
 //    client, and of each such round, those that are wanted first: at their deadline, or a second
-//    after they came. At most max_windows, and no more than let all workers end at about the same time. While short
-//    calls come, a batch of a lower lane is no longer than three of its windows alone: that is what
-//    the next short call waits for.
+//    after they came. At most max_windows, and no more than let all workers end at about the same
+//    time. While short calls come, a batch of a lower lane is no longer than three of its windows
+//    alone: that is what the next short call waits for.
 // 5. A batch is kept small enough for its most urgent window, unless that costs more than a quarter
 //    of throughput: then those for which the batch comes in time go, as many as there are.
 // 6. A batch that is not full waits, up to max_delay, if nothing else does and company is likely:

@@ -152,8 +152,8 @@ void ReadSharing(const v1::ServerConfig& config, Reader& reader, ServerOptions& 
           : static_cast<int>(std::clamp<std::size_t>(
                 options.max_transport_bytes / (2 * options.max_request_bytes), 1, 100000));
   if (config.has_receive_timeout_seconds()) {
-    options.receive_timeout_seconds = reader.InRange("receive_timeout_seconds",
-                                                     config.receive_timeout_seconds(), 0.1, kHour);
+    options.receive_timeout_seconds =
+        reader.InRange("receive_timeout_seconds", config.receive_timeout_seconds(), 0.1, kHour);
   }
   if (config.has_write_timeout_seconds()) {
     options.write_timeout_seconds =

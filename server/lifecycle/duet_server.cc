@@ -91,8 +91,7 @@ service::ServiceParts DuetServer::Parts() {
 absl::Status DuetServer::Listen() {
   absl::StatusOr<GrpcServer> grpc =
       StartGrpcServer({options_.listen, options_.reflection, options_.max_request_bytes,
-                       options_.max_transport_bytes, options_.max_calls,
-                       options_.max_call_seconds},
+                       options_.max_transport_bytes, options_.max_calls, options_.max_call_seconds},
                       service_);
   if (!grpc.ok()) return grpc.status();
   grpc_ = *std::move(grpc);
@@ -113,8 +112,7 @@ absl::Status DuetServer::Listen() {
 }
 
 void DuetServer::Watch() {
-  watch_.push_back(
-      std::make_unique<RepeatedTask>(kLookSeconds, [this] { service_.CheckTime(); }));
+  watch_.push_back(std::make_unique<RepeatedTask>(kLookSeconds, [this] { service_.CheckTime(); }));
   watch_.push_back(std::make_unique<RepeatedTask>(kTrimSeconds, [this] {
     heap_trimmer_.Look(service_.large_request_bytes(), admission_.held_bytes());
   }));

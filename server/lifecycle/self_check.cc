@@ -62,7 +62,8 @@ bool WaitFor(int socket, short events, steady_clock::time_point end) {
 }
 
 absl::Status Greet(const addrinfo& address, steady_clock::time_point end) {
-  const Descriptor socket(::socket(address.ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  const Descriptor socket(
+      ::socket(address.ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   if (socket.get() < 0) return Failure("cannot open a socket", errno);
   if (connect(socket.get(), address.ai_addr, address.ai_addrlen) != 0) {
     if (errno != EINPROGRESS) return Failure("cannot connect", errno);
@@ -90,7 +91,8 @@ absl::Status CheckListener(const std::string& host, int port, double timeout_sec
   addrinfo* found = nullptr;
   const int error =
       getaddrinfo(Reachable(host).c_str(), std::to_string(port).c_str(), &hints, &found);
-  if (error != 0) return Failure(absl::StrCat("cannot resolve ", host, ": ", gai_strerror(error)), 0);
+  if (error != 0)
+    return Failure(absl::StrCat("cannot resolve ", host, ": ", gai_strerror(error)), 0);
   const absl::Status status = Greet(*found, end);
   freeaddrinfo(found);
   return status;
@@ -100,8 +102,7 @@ SelfCheck::SelfCheck(SelfCheckOptions options)
     : options_(std::move(options)), task_(options_.interval_seconds, [this] { Check(); }) {}
 
 void SelfCheck::Check() {
-  const absl::Status status =
-      CheckListener(options_.host, options_.port, options_.timeout_seconds);
+  const absl::Status status = CheckListener(options_.host, options_.port, options_.timeout_seconds);
   if (status.ok()) {
     failures_ = 0;
   } else {

@@ -111,8 +111,8 @@ class Connection {
   }
 
   bool Send() {
-    const ssize_t sent = send(socket_.get(), reply_->data() + sent_, reply_->size() - sent_,
-                              MSG_NOSIGNAL);
+    const ssize_t sent =
+        send(socket_.get(), reply_->data() + sent_, reply_->size() - sent_, MSG_NOSIGNAL);
     if (sent < 0) return errno == EAGAIN || errno == EINTR;
     sent_ += static_cast<std::size_t>(sent);
     if (sent_ < reply_->size()) return true;
@@ -160,13 +160,14 @@ class PollingEndpoint final : public MetricsEndpoint {
     const auto state = [](bool good, const char* yes, const char* no) {
       return HttpPage{good ? 200 : 503, "text/plain", good ? yes : no};
     };
-    return {{"/metrics",
-             [this] {
-               return HttpPage{200, "text/plain; version=0.0.4; charset=utf-8", options_.render()};
-             }},
-            {"/healthz",
-             [this, state] { return state(options_.healthy(), "ok\n", "not reachable\n"); }},
-            {"/readyz", [this, state] { return state(options_.ready(), "ready\n", "not ready\n"); }}};
+    return {
+        {"/metrics",
+         [this] {
+           return HttpPage{200, "text/plain; version=0.0.4; charset=utf-8", options_.render()};
+         }},
+        {"/healthz",
+         [this, state] { return state(options_.healthy(), "ok\n", "not reachable\n"); }},
+        {"/readyz", [this, state] { return state(options_.ready(), "ready\n", "not ready\n"); }}};
   }
 
   void Run() {
@@ -219,10 +220,10 @@ class PollingEndpoint final : public MetricsEndpoint {
         return;
       }
       if (connections_.size() >= options_.max_connections) connections_.pop_front();
-      connections_.emplace_back(std::move(socket),
-                                steady_clock::now() +
-                                    std::chrono::duration_cast<steady_clock::duration>(
-                                        std::chrono::duration<double>(options_.connection_seconds)));
+      connections_.emplace_back(
+          std::move(socket),
+          steady_clock::now() + std::chrono::duration_cast<steady_clock::duration>(
+                                    std::chrono::duration<double>(options_.connection_seconds)));
     }
   }
 

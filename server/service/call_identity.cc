@@ -48,12 +48,12 @@ std::string ClientOf(std::string_view peer) {
   if (!ipv6) return host;
   constexpr std::string_view kOpen = "ipv6:%5B", kClose = "%5D";
   if (host.size() < kOpen.size() + kClose.size()) return host;
-  const std::string text =
-      host.substr(kOpen.size(), host.size() - kOpen.size() - kClose.size());
+  const std::string text = host.substr(kOpen.size(), host.size() - kOpen.size() - kClose.size());
   in6_addr address = {};
   if (inet_pton(AF_INET6, text.c_str(), &address) != 1) return host;
   // IPv4 clients of a socket for both.
-  if (IN6_IS_ADDR_V4MAPPED(&address)) return absl::StrCat("ipv4:", text.substr(text.rfind(':') + 1));
+  if (IN6_IS_ADDR_V4MAPPED(&address))
+    return absl::StrCat("ipv4:", text.substr(text.rfind(':') + 1));
   constexpr std::size_t kNetworkBytes = 8;
   std::fill(address.s6_addr + kNetworkBytes, address.s6_addr + sizeof(address.s6_addr), 0);
   char network[INET6_ADDRSTRLEN] = {};

@@ -72,11 +72,10 @@ RawService::Reactor* MotionSynthesisService::Synthesize(Context* context) {
     reactor->Finish(*opened.scope, admitted);
     return reactor;
   }
-  reactor->Receive(Receive(std::move(opened), *std::move(place), *reactor),
-                   [this](CallReactor& received_by, const std::shared_ptr<Reception>& reception,
-                          grpc::ByteBuffer bytes) {
-                     Handle(received_by, reception, std::move(bytes));
-                   });
+  reactor->Receive(
+      Receive(std::move(opened), *std::move(place), *reactor),
+      [this](CallReactor& received_by, const std::shared_ptr<Reception>& reception,
+             grpc::ByteBuffer bytes) { Handle(received_by, reception, std::move(bytes)); });
   return reactor;
 }
 

@@ -74,7 +74,8 @@ class MotionSynthesisService final : public RawService {
 
   Reactor* Synthesize(Context* context);
   void CountIfLarge(const grpc::ByteBuffer& bytes);
-  void Handle(CallReactor& reactor, const std::shared_ptr<Reception>& reception, grpc::ByteBuffer bytes);
+  void Handle(CallReactor& reactor, const std::shared_ptr<Reception>& reception,
+              grpc::ByteBuffer bytes);
   // Finds the model and checks the request. Takes place and scope of a call that goes on; those of
   // a refused one stay.
   absl::StatusOr<SynthesisCall::Parts> Prepare(const Context& context, Reception& reception,

@@ -63,8 +63,8 @@ absl::Status ReceiveTimeoutRefusal(double seconds) {
 }
 
 absl::Status WriteTimeoutRefusal(double seconds) {
-  absl::Status status = absl::DeadlineExceededError(absl::StrCat(
-      "the caller took nothing of the answer for write_timeout_seconds = ", seconds));
+  absl::Status status = absl::DeadlineExceededError(
+      absl::StrCat("the caller took nothing of the answer for write_timeout_seconds = ", seconds));
   common::AddErrorInfo(status, common::kReasonWriteTimeout);
   return status;
 }

@@ -148,8 +148,8 @@ bool Surveyor::Count(const std::string& path, std::size_t& count, std::size_t li
     violations.Malformed("", absl::StrCat("the request has more than ", limit,
                                           " fields that it does not know, wanted at most ", limit));
   } else {
-    violations.Malformed(path, absl::StrCat("comes more than ", limit,
-                                            " times, wanted at most ", limit, " in a request"));
+    violations.Malformed(path, absl::StrCat("comes more than ", limit, " times, wanted at most ",
+                                            limit, " in a request"));
   }
   too_many_ = violations.ToStatus();
   return false;

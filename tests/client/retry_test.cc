@@ -67,10 +67,9 @@ TEST_F(RetryTest, WaitsGrowToSecondsAndNeverExceedTheLongest) {
   options_.max_attempts = 9;
   time_.uniform = 1;
   EXPECT_THAT(Run(std::vector<absl::Status>(9, Unavailable())), Not(IsOk()));
-  EXPECT_THAT(time_.sleeps,
-              ElementsAre(100 * kMillisecond, 200 * kMillisecond, 400 * kMillisecond,
-                          800 * kMillisecond, 1600 * kMillisecond, 3200 * kMillisecond,
-                          absl::Seconds(5), absl::Seconds(5)));
+  EXPECT_THAT(time_.sleeps, ElementsAre(100 * kMillisecond, 200 * kMillisecond, 400 * kMillisecond,
+                                        800 * kMillisecond, 1600 * kMillisecond,
+                                        3200 * kMillisecond, absl::Seconds(5), absl::Seconds(5)));
 }
 
 TEST_F(RetryTest, TheDeadlineAloneEndsTheAttempts) {

@@ -14,8 +14,9 @@ using ::testing::Not;
 using ::testing::StartsWith;
 
 const HttpPages& Pages() {
-  static const auto* const pages =
-      new HttpPages{{"/page", [] { return HttpPage{200, "text/plain", "hello\n"}; }}};
+  static const auto* const pages = new HttpPages{{"/page", [] {
+                                                    return HttpPage{200, "text/plain", "hello\n"};
+                                                  }}};
   return *pages;
 }
 

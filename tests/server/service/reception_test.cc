@@ -56,9 +56,9 @@ class ReceptionTest : public ::testing::Test {
     parts.admission = &admission_;
     parts.clock = &clock_;
     parts.limits = {0.1, 30};
-    parts.scope = std::make_unique<CallScope>(metrics::MethodInfo{"service", "Method", "unary"},
-                                              CallIdentity{"id", "", "peer", "client"}, observers_,
-                                              clock_);
+    parts.scope =
+        std::make_unique<CallScope>(metrics::MethodInfo{"service", "Method", "unary"},
+                                    CallIdentity{"id", "", "peer", "client"}, observers_, clock_);
     parts.client = "client";
     parts.place = *admission_.Admit("client");
     return std::make_unique<Reception>(std::move(parts));

@@ -91,8 +91,7 @@ INSTANTIATE_TEST_SUITE_P(
              "leader.joint_names"},
         Bomb{"reply_joint_names", Times(65537, std::string("\x42\x00", 2)), "reply_joint_names"},
         Bomb{"one_message_again_and_again", Times(1025, std::string("\x12\x00", 2)), "leader"},
-        Bomb{"one_number_again_and_again", Times(1025, std::string("\x30\x01", 2)),
-             "chunk_frames"},
+        Bomb{"one_number_again_and_again", Times(1025, std::string("\x30\x01", 2)), "chunk_frames"},
         Bomb{"unknown_numbers", Times(1025, std::string("\xf8\x06\x01", 3)), ""},
         Bomb{"unknown_below", Field(2, Times(1025, std::string("\xf8\x06\x01", 3))), ""},
         Bomb{"unknown_strings", Times(1025, std::string("\xfa\x06\x00", 3)), ""},
@@ -102,8 +101,9 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& bomb) { return bomb.param.name; });
 
 TEST(WireSurveyTest, WhatIsNoMessageIsTheParsers) {
-  for (const std::string& bytes : {std::string("\x0a\x7f"), std::string("\xff\xff\xff"),
-                                   std::string("\xfc\x06"), std::string("\x0a\xff\xff\xff\xff\x0f")}) {
+  for (const std::string& bytes :
+       {std::string("\x0a\x7f"), std::string("\xff\xff\xff"), std::string("\xfc\x06"),
+        std::string("\x0a\xff\xff\xff\xff\x0f")}) {
     EXPECT_THAT(Survey(bytes), IsOk());
   }
 }

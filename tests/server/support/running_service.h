@@ -30,7 +30,7 @@ class RunningService {
 
     std::shared_ptr<const engine::Synthesizer> model = std::make_shared<FakeSynthesizer>();
     server::batching::WindowScheduler* scheduler = nullptr;  // null: a batcher with two workers
-    server::service::AdmissionLimits admission;  // 16 calls
+    server::service::AdmissionLimits admission;              // 16 calls
     server::service::RequestLimits limits;
     server::service::ReceptionLimits reception;
     const server::common::Clock* clock = &server::common::Clock::Real();
