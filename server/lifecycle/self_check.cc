@@ -102,7 +102,7 @@ SelfCheck::SelfCheck(SelfCheckOptions options)
     : options_(std::move(options)), task_(options_.interval_seconds, [this] { Check(); }) {}
 
 void SelfCheck::Check() {
-  const absl::Status status = CheckListener(options_.host, options_.port, options_.timeout_seconds);
+  const absl::Status status = options_.check();
   if (status.ok()) {
     failures_ = 0;
   } else {

@@ -22,10 +22,8 @@ namespace duet::server::lifecycle {
 absl::Status CheckListener(const std::string& host, int port, double timeout_seconds);
 
 struct SelfCheckOptions {
-  std::string host;
-  int port = 0;
   double interval_seconds = 10;
-  double timeout_seconds = 5;
+  std::function<absl::Status()> check;              // such as CheckListener
   std::function<void(const absl::Status&)> failed;  // told of each failure
 };
 
