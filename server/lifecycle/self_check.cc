@@ -48,16 +48,15 @@ std::string Reachable(const std::string& host) {
   return host == "::" ? "::1" : host;
 }
 
-// Whether the socket is ready before `end`.
+// Whether the socket is ready before `end`; looks at least once.
 bool WaitFor(int socket, short events, steady_clock::time_point end) {
   while (true) {
     const auto left =
         std::chrono::duration_cast<std::chrono::milliseconds>(end - steady_clock::now()).count();
-    if (left <= 0) return false;
     pollfd wanted = {socket, events, 0};
-    const int ready = poll(&wanted, 1, static_cast<int>(left));
+    const int ready = poll(&wanted, 1, static_cast<int>(left > 0 ? left : 0));
     if (ready > 0) return true;
-    if (ready < 0 && errno != EINTR) return false;
+    if (left <= 0 || (ready < 0 && errno != EINTR)) return false;
   }
 }
 
