@@ -21,6 +21,8 @@ using common::TimePoint;
 constexpr std::chrono::seconds kPatience(1);
 // The part of throughput that an urgent window may not cost.
 constexpr double kThroughputKept = 0.75;
+// Of the time from a window's coming to its deadline, kept for its answer's way to the caller.
+constexpr int kWayBack = 8;
 // How long a batch of a lower lane may be while short calls come: so many windows alone, and they
 // come until none has for so long.
 constexpr double kHeldUp = 3;

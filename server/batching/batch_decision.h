@@ -33,10 +33,6 @@ struct ModelLoad {
 // So many frames of higher lanes may overtake each frame of a lane: an eighth of the whole is its.
 inline constexpr int kOvertaking = 7;
 
-// Of the time from a window's coming to its deadline, the part kept for its answer's way to the
-// caller: an eighth.
-inline constexpr int kWayBack = 8;
-
 // Everything that decides what a worker does next.
 struct QueueState {
   std::vector<WaitingWindow> windows;  // in the order they came

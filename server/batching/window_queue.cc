@@ -62,8 +62,7 @@ bool WindowQueue::ComesInTime(const WindowJob& job, TimePoint now) const {
     work += std::max(0.0, common::SecondsBetween(now, end));
   }
   const double seconds = work / options_.workers + CostOf(job, now).Seconds(FramesOf(job));
-  return job.deadline == TimePoint::max() ||
-         seconds <= common::SecondsBetween(now, job.deadline) * (kWayBack - 1) / kWayBack;
+  return job.deadline == TimePoint::max() || seconds <= common::SecondsBetween(now, job.deadline);
 }
 
 CostEstimate WindowQueue::CostOf(const WindowJob& job, TimePoint now) const {

@@ -74,9 +74,9 @@ class WindowQueue {
   bool HasRoomFor(const WindowJob& job, common::TimePoint now) const {
     return job.continues_call || HasRoomFor(job.priority, job.client, now);
   }
-  // Whether a first window would be done by its deadline, an eighth of its time before it, if all
-  // that waits in its lane and above went before it: by what windows cost of late. True for one
-  // that would wait for nobody: whether it is done in time alone is for Decide to say.
+  // Whether a first window would be done by its deadline if all that waits in its lane and above
+  // went before it: by what windows cost of late. True for one that would wait for nobody: whether
+  // it is done in time alone, and with time left for its answer's way, is for Decide to say.
   bool ComesInTime(const WindowJob& job, common::TimePoint now) const;
   void Push(WindowJob job, common::TimePoint now);
 

@@ -24,6 +24,8 @@ constexpr double kHousekeepingSeconds = 1;
 // How often a drain looks whether the last call has finished or a second signal has come, and the
 // service at the time that its calls take.
 constexpr double kLookSeconds = 0.05;
+// How long the server may take to answer itself.
+constexpr double kSelfCheckTimeoutSeconds = 5;
 // How often memory of large requests is given back.
 constexpr double kTrimSeconds = 1;
 
@@ -200,9 +202,10 @@ void DuetServer::Watch() {
   }));
   if (options_.self_check_seconds <= 0) return;
   SelfCheckOptions check;
-  check.host = options_.listen.host;
-  check.port = grpc_.port;
   check.interval_seconds = options_.self_check_seconds;
+  check.check = [this] {
+    return CheckListener(options_.listen.host, grpc_.port, kSelfCheckTimeoutSeconds);
+  };
   check.failed = [this](const absl::Status& status) {
     log_.Error("self_check_failed", {{"message", std::string(status.message())}});
   };

@@ -11,8 +11,8 @@
 
 namespace duet::server::lifecycle {
 
-// Whether a server of HTTP/2 still takes connections: connects, greets, and waits for any word, or
-// for the connection to be closed, as a server that wants TLS does.
+// Whether a server still takes connections: connects, takes leave at once, and waits for any word,
+// or for the connection to be closed.
 //
 // A listening socket is not enough. gRPC 1.51 stops accepting for good once it has run out of
 // descriptors (CVE-2023-4785); the kernel goes on connecting clients that nobody serves.
@@ -22,10 +22,8 @@ namespace duet::server::lifecycle {
 absl::Status CheckListener(const std::string& host, int port, double timeout_seconds);
 
 struct SelfCheckOptions {
-  std::string host;
-  int port = 0;
   double interval_seconds = 10;
-  double timeout_seconds = 5;
+  std::function<absl::Status()> check;              // such as CheckListener
   std::function<void(const absl::Status&)> failed;  // told of each failure
 };
 
