@@ -16,6 +16,8 @@
 #include "duet/v1/synthesis.grpc.pb.h"
 #include "model/base/sha256.h"
 #include "server/lifecycle/duet_server.h"
+#include "server/lifecycle/library_logs.h"
+#include "server/lifecycle/self_check.h"
 #include "tests/server/support/gated_model.h"
 #include "tests/server/support/http_get.h"
 #include "tests/server/support/raw_call.h"
@@ -145,6 +147,15 @@ TEST_F(SecuredServerTest, EncryptsAndAnswersNobodyInPlainText) {
   EXPECT_TRUE(List(Tls()).ok());
   EXPECT_EQ(List(PlainText()).error_code(), StatusCode::UNAVAILABLE);
   EXPECT_EQ(Health(Tls(), ""), "SERVING");
+}
+
+TEST_F(SecuredServerTest, TheServersLookAtItsOwnPortIsNoErrorInItsLog) {
+  UseTls();
+  metrics::JsonLog log(log_);
+  const lifecycle::LibraryLogs library_logs(log);
+  Start();
+  EXPECT_THAT(lifecycle::CheckListener("127.0.0.1", server_->port(), 60), IsOk());
+  EXPECT_THAT(log_.text(), Not(HasSubstr("ERROR")));
 }
 
 TEST_F(SecuredServerTest, ACertificateThatMakesNoSenseStopsTheStart) {
