@@ -35,7 +35,7 @@ SERVER = ("server common", "batching", "registry", "server metrics", "server con
 LAYERS = (
     # The method, innermost first.
     Layer("base", "model/base", sees=()),
-    Layer("messages", "model/messages", sees=(), libraries=("rpc",)),
+    Layer("messages", "model/messages", sees=("base",), libraries=("rpc",)),
     Layer("motion", "model/motion", sees=("base",)),
     Layer("retargeting", "model/retargeting", sees=("base", "motion")),
     Layer("flat formats", "model/formats/flat", sees=("base", "motion")),

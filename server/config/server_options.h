@@ -10,6 +10,7 @@
 
 #include "absl/status/statusor.h"
 #include "duet/v1/server_config.pb.h"
+#include "server/config/setting_sources.h"
 
 namespace duet::server::config {
 
@@ -61,8 +62,13 @@ struct ServerOptions {
 };
 
 // Fills in defaults and checks every field. `cores` is what the container may use.
-// Fails with INVALID_ARGUMENT naming the field, what came and what was wanted.
-absl::StatusOr<ServerOptions> ToOptions(const v1::ServerConfig& config, int cores);
+// Fails with INVALID_ARGUMENT, one line for each field that is wrong: its name, what came, what was
+// wanted, and where it came from if `sources` know.
+absl::StatusOr<ServerOptions> ToOptions(const v1::ServerConfig& config, int cores,
+                                        const SettingSources& sources = {});
+
+// The other way round: every setting, those with their defaults too.
+v1::ServerConfig ToConfig(const ServerOptions& options);
 
 // "host:port"; an IPv6 host is in brackets, an empty one means every interface.
 absl::StatusOr<ListenAddress> ParseListenAddress(const std::string& text);

@@ -5,9 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
 #include "server/config/server_options.h"
 #include "tests/support/status_matchers.h"
@@ -25,13 +27,19 @@ using ::testing::AllOf;
 using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::Not;
+using ::testing::Pair;
+using ::testing::StartsWith;
+using ::testing::UnorderedElementsAre;
 
 constexpr auto kInvalidArgument = absl::StatusCode::kInvalidArgument;
 
-absl::StatusOr<CommandLine> Parse(std::vector<std::string> arguments) {
+absl::StatusOr<CommandLine> Parse(std::vector<std::string> arguments,
+                                  const Environment& environment = {}) {
   std::vector<const char*> argv = {"duet-server"};
   for (const std::string& argument : arguments) argv.push_back(argument.c_str());
-  return ParseCommandLine(static_cast<int>(argv.size()), argv.data());
+  CommandLine line = ParseCommandLine(static_cast<int>(argv.size()), argv.data(), environment);
+  if (line.errors.empty()) return line;
+  return absl::InvalidArgumentError(absl::StrJoin(line.errors, "\n"));
 }
 
 TEST(ParseConfigTextTest, ReadsTextFormatWithComments) {
@@ -71,15 +79,31 @@ TEST(ParseConfigTextTest, AnEmptyFileSetsNothing) {
   EXPECT_THAT(ParseConfigText("{}", true), IsOk());
 }
 
+absl::Status Read(const std::filesystem::path& path) {
+  v1::ServerConfig config;
+  messages::FieldPlaces places;
+  return ReadConfigFile(path, &config, &places);
+}
+
 TEST(ReadConfigFileTest, NamesTheFile) {
   TemporaryFolder folder;
-  EXPECT_THAT(ReadConfigFile(folder / "absent.txtpb"),
+  EXPECT_THAT(Read(folder / "absent.txtpb"),
               StatusIs(absl::StatusCode::kNotFound, HasSubstr("absent.txtpb")));
-  EXPECT_THAT(ReadConfigFile(folder.path()),
+  EXPECT_THAT(Read(folder.path()),
               StatusIs(kInvalidArgument, HasSubstr(folder.path().string() + ": is a folder")));
   WriteTestFile(folder / "bad.json", "{");
-  EXPECT_THAT(ReadConfigFile(folder / "bad.json"),
-              StatusIs(kInvalidArgument, HasSubstr("bad.json")));
+  EXPECT_THAT(Read(folder / "bad.json"), StatusIs(kInvalidArgument, HasSubstr("bad.json")));
+}
+
+TEST(ReadConfigFileTest, TellsEverythingThatIsWrongAndWhere) {
+  TemporaryFolder folder;
+  WriteTestFile(folder / "bad.json", "{\"workers\": -2,\n  \"max_call\": 7, \"maxCalls\": 9}");
+  const std::string start = "--config: " + (folder / "bad.json").string();
+  EXPECT_THAT(Read(folder / "bad.json"),
+              StatusIs(kInvalidArgument,
+                       AllOf(StartsWith(start + ": line 1:2: (workers)"),
+                             HasSubstr("\n" + start + ": line 2:3: there is no field \"max_call\"; "
+                                       "did you mean max_calls?"))));
 }
 
 TEST(ParseCommandLineTest, NoFlagsSetNothing) {
@@ -200,6 +224,82 @@ TEST(ParseCommandLineTest, NamesAFlagThatIsWrong) {
                 StatusIs(kInvalidArgument, HasSubstr("model:label=version")))
         << label;
   }
+}
+
+TEST(ParseCommandLineTest, VariablesCountWhereNoFlagDoesAndBeforeTheFile) {
+  TemporaryFolder folder;
+  WriteTestFile(folder / "server.txtpb",
+                "listen: \"file:1\" max_calls: 9\nmax_queued_windows: 3\n"
+                "version_labels { model: \"a\" label: \"b\" version: 1 }");
+  const std::string file = (folder / "server.txtpb").string();
+  const absl::StatusOr<CommandLine> line = Parse({"--listen", "flag:2"},
+                                                 {{"DUET_SERVER_CONFIG", file},
+                                                  {"DUET_SERVER_LISTEN", "variable:3"},
+                                                  {"DUET_SERVER_MAX_CALLS", "4"},
+                                                  {"DUET_SERVER_METRICS_LISTEN", ""},
+                                                  {"DUET_SERVER_REFLECTION", "false"},
+                                                  {"DUET_SERVER_VERSION_LABEL", "a:c=2 a:d=3"}});
+  ASSERT_THAT(line, IsOk());
+  EXPECT_EQ(line->config.listen(), "flag:2");
+  EXPECT_EQ(line->config.max_calls(), 4u);
+  EXPECT_EQ(line->config.max_queued_windows(), 3u);
+  EXPECT_TRUE(line->config.has_metrics_listen());
+  EXPECT_FALSE(line->config.reflection());
+  ASSERT_EQ(line->config.version_labels_size(), 3);
+  EXPECT_THAT(line->sources,
+              UnorderedElementsAre(Pair("listen", "command line"),
+                                   Pair("max_calls", "environment DUET_SERVER_MAX_CALLS"),
+                                   Pair("max_queued_windows", "file " + file + ":2:1"),
+                                   Pair("metrics_listen", "environment DUET_SERVER_METRICS_LISTEN"),
+                                   Pair("reflection", "environment DUET_SERVER_REFLECTION"),
+                                   Pair("version_labels[0]", "file " + file + ":3:1"),
+                                   Pair("version_labels[1]", "environment DUET_SERVER_VERSION_LABEL"),
+                                   Pair("version_labels[2]", "environment DUET_SERVER_VERSION_LABEL")));
+}
+
+TEST(ParseCommandLineTest, TheFlagSaysWhichFileWhereAVariableDoesToo) {
+  TemporaryFolder folder;
+  WriteTestFile(folder / "flag.txtpb", "max_calls: 9");
+  const absl::StatusOr<CommandLine> line = Parse({"--config", (folder / "flag.txtpb").string()},
+                                                 {{"DUET_SERVER_CONFIG", "/nonexistent"}});
+  ASSERT_THAT(line, IsOk());
+  EXPECT_EQ(line->config.max_calls(), 9u);
+}
+
+TEST(ParseCommandLineTest, NamesAVariableThatIsWrong) {
+  EXPECT_THAT(Parse({}, {{"DUET_SERVER_MAX_CALL", "1"}, {"DUET_SERVER_WORKERS", "two"}}),
+              StatusIs(kInvalidArgument,
+                       AllOf(HasSubstr("DUET_SERVER_MAX_CALL: sets nothing; did you mean "
+                                       "DUET_SERVER_MAX_CALLS?"),
+                             HasSubstr("\nDUET_SERVER_WORKERS: "), HasSubstr("two"))));
+  EXPECT_THAT(Parse({}, {{"DUET_SERVER_CHECK_CONFIG", "true"}}),
+              StatusIs(kInvalidArgument, HasSubstr("sets nothing")));
+}
+
+TEST(ParseCommandLineTest, HasTasks) {
+  EXPECT_EQ(Parse({})->task, CommandLine::Task::kServe);
+  EXPECT_EQ(Parse({"--check-config"})->task, CommandLine::Task::kCheckConfig);
+  EXPECT_EQ(Parse({"--print-config"})->task, CommandLine::Task::kPrintConfig);
+}
+
+TEST(ToOptionsTest, TellsAllThatIsWrongAnywhereAndWhereItComesFrom) {
+  TemporaryFolder folder;
+  WriteTestFile(folder / "a.json", "{\n  \"prot\": 1,\n  \"maxCalls\": 0}");
+  const std::string file = (folder / "a.json").string();
+  const std::vector<const char*> argv = {"duet-server", "--config", file.c_str(), "--workers", "0"};
+  const CommandLine line =
+      ParseCommandLine(static_cast<int>(argv.size()), argv.data(),
+                       {{"DUET_SERVER_GRACE_SECONDS", "-1"}, {"DUET_SERVER_DRAIN_SECONDS", "x"}});
+  const absl::StatusOr<ServerOptions> options = ToOptions(line, 4);
+  EXPECT_THAT(
+      options,
+      StatusIs(kInvalidArgument,
+               AllOf(HasSubstr("DUET_SERVER_DRAIN_SECONDS: "),
+                     HasSubstr("a.json: line 2:3: there is no field \"prot\""),
+                     HasSubstr("\nmax_calls: is 0, wanted 1 to 100000 (file " + file + ":3:3)"),
+                     HasSubstr("\nworkers: is 0, wanted 1 to 1024 (command line)"),
+                     HasSubstr("\ngrace_seconds: is -1, wanted 0 to 3600 (environment "
+                               "DUET_SERVER_GRACE_SECONDS)"))));
 }
 
 }  // namespace

@@ -15,6 +15,7 @@ namespace {
 using test::IsOk;
 using test::StatusIs;
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 constexpr auto kInvalidArgument = absl::StatusCode::kInvalidArgument;
@@ -192,6 +193,35 @@ INSTANTIATE_TEST_SUITE_P(
                   [](v1::ServerConfig& c) { c.set_clean_up(static_cast<v1::CleanUpPolicy>(9)); }},
         BadConfig{"version_labels[0]: is model \"\"",
                   [](v1::ServerConfig& c) { c.add_version_labels(); }}));
+
+TEST(ServerOptionsTest, TellsEveryFieldThatIsWrong) {
+  v1::ServerConfig config;
+  config.set_listen("nowhere");
+  config.set_max_calls(0);
+  config.set_drain_seconds(-1);
+  EXPECT_THAT(ToOptions(config, 4, {{"max_calls", "file a:1:2"}}),
+              StatusIs(kInvalidArgument,
+                       AllOf(HasSubstr("listen: "),
+                             HasSubstr("\nmax_calls: is 0, wanted 1 to 100000 (file a:1:2)\n"),
+                             HasSubstr("\ndrain_seconds: is -1"))));
+}
+
+TEST(ServerOptionsTest, RefusesMoreThreadsThanCoresCanMakeUseOf) {
+  v1::ServerConfig config;
+  config.set_workers(33);
+  EXPECT_THAT(ToOptions(config, 2),
+              StatusIs(kInvalidArgument, "workers: is 33, wanted 1 to 32 on 2 cores"));
+  EXPECT_THAT(ToOptions(config, 9), IsOk());
+  config.set_engine(v1::ENGINE_TORCH);
+  config.set_workers(2);
+  config.set_threads_per_worker(1024);
+  EXPECT_THAT(ToOptions(config, 2),
+              StatusIs(kInvalidArgument,
+                       "threads_per_worker: is 1024, wanted 1 to 16 with 2 workers: together at "
+                       "most 32 threads on 2 cores"));
+  config.set_threads_per_worker(16);
+  EXPECT_THAT(ToOptions(config, 2), IsOk());
+}
 
 TEST(ListenAddressTest, ReadsHostAndPort) {
   for (const char* text : {"0.0.0.0:50051", "localhost:0", "[::]:9464", "10.1.2.3:65535"}) {
