@@ -30,7 +30,7 @@ MOTION_FILES = ("base", "motion", "retargeting", "flat formats", "bvh format",
 MODELS = ("engine", "checkpoint", "embedded checkpoints", "network", "torch engine", "training")
 MEASURING = ("metrics", "protocol", "baselines", "judge", "experiments")
 SERVER = ("server common", "batching", "registry", "server metrics", "server config", "service",
-          "lifecycle")
+          "admin", "lifecycle")
 
 LAYERS = (
     # The method, innermost first.
@@ -93,6 +93,10 @@ LAYERS = (
           sees=("base", "motion", "engine", "server common", "batching", "registry",
                 "server metrics"),
           libraries=("rpc", "prometheus")),
+    Layer("admin", "server/admin",
+          sees=("base", "engine", "server common", "batching", "registry", "server metrics",
+                "service"),
+          libraries=("rpc", "prometheus")),
     Layer("lifecycle", "server/lifecycle", sees=("base", "motion", "engine") + SERVER,
           libraries=("rpc", "prometheus")),
     Layer("server program", "server/program",
@@ -115,7 +119,8 @@ LAYERS = (
 GUARDED_LIBRARIES = {
     "torch": ("torch/", "ATen/", "c10/", "caffe2/"),
     "highway": ("hwy/",),
-    "rpc": ("grpc/", "grpcpp/", "grpc++/", "google/", "duet/v1/", "duet/rpc/"),
+    "rpc": ("grpc/", "grpcpp/", "grpc++/", "google/", "duet/v1/", "duet/rpc/",
+            "duet/admin/"),
     "prometheus": ("prometheus/",),
 }
 

@@ -148,7 +148,8 @@ class PlaceFinder : public nlohmann::json_sax<json> {
 JsonPlaces FindJsonPlaces(absl::string_view text) {
   const char* latest = text.data();
   PlaceFinder finder(text, &latest);
-  json::sax_parse(Cursor(text.data(), &latest), Cursor(text.data() + text.size(), &latest), &finder);
+  json::sax_parse(Cursor(text.data(), &latest), Cursor(text.data() + text.size(), &latest),
+                  &finder);
   return finder.Take();
 }
 

@@ -31,9 +31,7 @@ using nlohmann::json;
 // Everything that is wrong with a text, and where.
 class Problems {
  public:
-  void Add(Place place, std::string problem) {
-    problems_.emplace_back(place, std::move(problem));
-  }
+  void Add(Place place, std::string problem) { problems_.emplace_back(place, std::move(problem)); }
   bool empty() const { return problems_.empty(); }
   absl::Status ToStatus() {
     if (problems_.empty()) return absl::OkStatus();

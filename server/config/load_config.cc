@@ -17,6 +17,7 @@
 #include "absl/strings/str_replace.h"
 #include "absl/strings/str_split.h"
 #include "absl/strings/string_view.h"
+#include "absl/strings/strip.h"
 #include "model/base/file.h"
 #include "model/base/flag_names.h"
 #include "model/base/nearest.h"
@@ -43,6 +44,32 @@ v1::VersionLabel ParseVersionLabel(const std::string& text) {
   parsed.set_label(label[0]);
   parsed.set_version(version);
   return parsed;
+}
+
+// "model=all", "model=latest:2" or "model=1,3"
+v1::VersionPolicy ParseVersionPolicy(const std::string& text) {
+  const auto malformed = [&text] {
+    return CLI::ValidationError("--version-policy", "is " + text +
+                                                        ", wanted model=all, model=latest:2 or "
+                                                        "model=1,3; the model * is every other");
+  };
+  const std::vector<std::string> parts = absl::StrSplit(text, absl::MaxSplits('=', 1));
+  if (parts.size() != 2) throw malformed();
+  v1::VersionPolicy policy;
+  policy.set_model(parts[0]);
+  absl::string_view versions = parts[1];
+  if (versions == "all") return policy;
+  uint32_t number = 0;
+  if (absl::ConsumePrefix(&versions, "latest:")) {
+    if (!absl::SimpleAtoi(versions, &number)) throw malformed();
+    policy.set_latest(number);
+    return policy;
+  }
+  for (const absl::string_view version : absl::StrSplit(versions, ',')) {
+    if (!absl::SimpleAtoi(version, &number)) throw malformed();
+    policy.add_versions(number);
+  }
+  return policy;
 }
 
 // The names of --clean-up.
@@ -101,6 +128,20 @@ void AddServingFlags(CLI::App& app, v1::ServerConfig& config) {
          },
          "label of a model version, model:label=version; may be repeated")
       ->option_text("LABEL");
+  app.add_option_function<std::vector<std::string>>(
+         "--version-policy",
+         [&](const std::vector<std::string>& values) {
+           for (const std::string& value : values) {
+             *config.add_version_policies() = ParseVersionPolicy(value);
+           }
+         },
+         "which versions of a model are served: model=all, model=latest:2, model=1,3; the model * "
+         "is every other; may be repeated (default *=all)")
+      ->option_text("POLICY");
+  app.add_option_function<std::string>(
+         "--admin-listen", [&](const std::string& value) { config.set_admin_listen(value); },
+         "address of the admin service, host:port, or \"off\" (default off)")
+      ->option_text("ADDRESS");
   app.add_flag_function(
       "--reflection,!--no-reflection",
       [&](std::int64_t count) { config.set_reflection(count > 0); },
@@ -284,8 +325,8 @@ class FlagParser {
   CLI::App app_;
 };
 
-// Puts settings over those that are there. `source` tells of a field where it comes from, by the name
-// that it has in its own message.
+// Puts settings over those that are there. `source` tells of a field where it comes from, by the
+// name that it has in its own message.
 template <typename Source>
 void Override(const v1::ServerConfig& settings, const Source& source, CommandLine* command_line) {
   using google::protobuf::FieldDescriptor;
@@ -324,8 +365,7 @@ void ReadFile(const std::string& path, CommandLine* command_line) {
 }
 
 std::string PrefixLines(absl::string_view prefix, absl::string_view lines) {
-  return absl::StrCat(
-      prefix, absl::StrReplaceAll(lines, {{"\n", absl::StrCat("\n", prefix)}}));
+  return absl::StrCat(prefix, absl::StrReplaceAll(lines, {{"\n", absl::StrCat("\n", prefix)}}));
 }
 
 }  // namespace
@@ -374,11 +414,13 @@ CommandLine ParseCommandLine(int argc, const char* const* argv, const Environmen
   if (!config_path.empty()) ReadFile(config_path, &command_line);
   for (const auto& [name, variable] : variables) {
     const std::string source = absl::StrCat("environment ", name);
-    Override(variable.config, [&source](const std::string&) { return source; }, &command_line);
+    Override(
+        variable.config, [&source](const std::string&) { return source; }, &command_line);
   }
   if (flags.ok()) {
     command_line.task = flags->task;
-    Override(flags->config, [](const std::string&) { return "command line"; }, &command_line);
+    Override(
+        flags->config, [](const std::string&) { return "command line"; }, &command_line);
   }
   return command_line;
 }

@@ -23,8 +23,8 @@ absl::StatusOr<v1::ServerConfig> ParseConfigText(std::string_view text, bool jso
 
 // Replaces `config` by what a configuration file says, where it fails by what could be read of it;
 // ".json" is JSON, anything else text format. `places` receives where the file sets what.
-// Fails with NOT_FOUND, or INVALID_ARGUMENT with one line for each thing that is wrong; each line names
-// the file.
+// Fails with NOT_FOUND, or INVALID_ARGUMENT with one line for each thing that is wrong; each line
+// names the file.
 absl::Status ReadConfigFile(const std::filesystem::path& path, v1::ServerConfig* config,
                             messages::FieldPlaces* places);
 
@@ -40,15 +40,15 @@ struct CommandLine {
   // come one after the other.
   v1::ServerConfig config;
   SettingSources sources;
-  // All that is wrong with flags, variables and the file, for people. What `config` lacks for it has
-  // its default.
+  // All that is wrong with flags, variables and the file, for people. What `config` lacks for it
+  // has its default.
   std::vector<std::string> errors;
   std::optional<std::string> print;  // --help or --version
 };
 
 // Reads the flags, the variables (DUET_SERVER_MAX_CALLS for --max-calls; of a flag that may be
-// repeated the values with spaces between them) and, where --config or DUET_SERVER_CONFIG names one,
-// the file.
+// repeated the values with spaces between them) and, where --config or DUET_SERVER_CONFIG names
+// one, the file.
 CommandLine ParseCommandLine(int argc, const char* const* argv,
                              const Environment& environment = {});
 

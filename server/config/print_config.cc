@@ -26,8 +26,7 @@ class Printer {
     std::string value;
     printer_.PrintFieldValueToString(config_, &field, index, &value);
     const bool is_message = field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE;
-    const std::string name =
-        index < 0 ? field.name() : absl::StrCat(field.name(), "[", index, "]");
+    const std::string name = index < 0 ? field.name() : absl::StrCat(field.name(), "[", index, "]");
     const auto source = sources_.find(name);
     absl::StrAppend(&text_, field.name(), is_message ? " { " : ": ", value, is_message ? "}" : "",
                     "  # ", source == sources_.end() ? "default" : source->second, "\n");

@@ -1,6 +1,7 @@
 #include "server/config/server_options.h"
 
 #include <algorithm>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -38,9 +39,8 @@ class Reader {
   // `message` begins with the field and a colon.
   void Fail(const std::string& message) {
     const auto source = sources_.find(message.substr(0, message.find(':')));
-    failures_.push_back(source == sources_.end()
-                            ? message
-                            : absl::StrCat(message, " (", source->second, ")"));
+    failures_.push_back(
+        source == sources_.end() ? message : absl::StrCat(message, " (", source->second, ")"));
   }
 
   bool ok() const { return failures_.empty(); }
@@ -53,10 +53,11 @@ class Reader {
   std::vector<std::string> failures_;
 };
 
-void ReadMetricsListen(const v1::ServerConfig& config, Reader& reader, ServerOptions& options) {
-  options.metrics_listen.reset();
-  if (config.metrics_listen().empty() || config.metrics_listen() == "off") return;
-  options.metrics_listen = reader.Address("metrics_listen", config.metrics_listen());
+// An address that may be "off".
+std::optional<ListenAddress> ReadListen(absl::string_view field, const std::string& text,
+                                        Reader& reader) {
+  if (text.empty() || text == "off") return std::nullopt;
+  return reader.Address(field, text);
 }
 
 void ReadEngine(const v1::ServerConfig& config, Reader& reader, EngineOptions& options) {
@@ -209,6 +210,30 @@ void ReadLabels(const v1::ServerConfig& config, Reader& reader, ServerOptions& o
   }
 }
 
+void ReadPolicies(const v1::ServerConfig& config, Reader& reader, ServerOptions& options) {
+  std::set<std::string> models;
+  for (int i = 0; i < config.version_policies_size(); ++i) {
+    const v1::VersionPolicy& message = config.version_policies(i);
+    const std::string field = absl::StrCat("version_policies[", i, "]");
+    VersionPolicyOption policy;
+    if (message.model() != "*") policy.model = message.model();
+    if (message.has_latest()) policy.latest = message.latest();
+    policy.versions.assign(message.versions().begin(), message.versions().end());
+    const bool has_zero = std::count(policy.versions.begin(), policy.versions.end(), 0u) > 0;
+    if (message.model().empty()) {
+      reader.Fail(absl::StrCat(field, ": has no model, wanted a name, or \"*\" for every other"));
+    } else if (!models.insert(policy.model).second) {
+      reader.Fail(absl::StrCat(field, ": is the second of model \"", message.model(),
+                               "\", wanted one for each"));
+    } else if (policy.latest.has_value() && !policy.versions.empty()) {
+      reader.Fail(absl::StrCat(field, ": has both latest and versions, wanted one of them"));
+    } else if (policy.latest == 0u || has_zero) {
+      reader.Fail(absl::StrCat(field, ": has a 0, wanted 1 or more"));
+    }
+    options.version_policies.push_back(std::move(policy));
+  }
+}
+
 }  // namespace
 
 absl::StatusOr<ServerOptions> ToOptions(const v1::ServerConfig& config, int cores,
@@ -216,12 +241,16 @@ absl::StatusOr<ServerOptions> ToOptions(const v1::ServerConfig& config, int core
   Reader reader(sources);
   ServerOptions options;
   if (config.has_listen()) options.listen = reader.Address("listen", config.listen());
-  if (config.has_metrics_listen()) ReadMetricsListen(config, reader, options);
+  if (config.has_metrics_listen()) {
+    options.metrics_listen = ReadListen("metrics_listen", config.metrics_listen(), reader);
+  }
+  options.admin_listen = ReadListen("admin_listen", config.admin_listen(), reader);
   options.model_repository = config.model_repository();
   options.default_model = config.default_model();
   if (config.has_reflection()) options.reflection = config.reflection();
   ReadCleanUp(config, reader, options);
   ReadLabels(config, reader, options);
+  ReadPolicies(config, reader, options);
   ReadEngine(config, reader, options.engine);
   ReadThreads(config, cores, reader, options);
   ReadLimits(config, reader, options);

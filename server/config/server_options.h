@@ -26,6 +26,12 @@ struct VersionLabelOption {
   uint32_t version = 0;
 };
 
+struct VersionPolicyOption {
+  std::string model;  // empty: every model without a policy of its own
+  std::optional<uint32_t> latest;
+  std::vector<uint32_t> versions;
+};
+
 // What computes the answers, and how. server_config.proto says more.
 struct EngineOptions {
   enum class Engine { kCpu, kTorch };
@@ -46,6 +52,8 @@ struct ServerOptions {
   std::filesystem::path model_repository;  // empty: the embedded checkpoints
   std::string default_model;
   std::vector<VersionLabelOption> version_labels;
+  std::vector<VersionPolicyOption> version_policies;
+  std::optional<ListenAddress> admin_listen;
   bool reflection = true;
   std::optional<bool> clean_up;  // absent: followers of models that sample are cleaned up
   EngineOptions engine;

@@ -45,8 +45,8 @@ void WriteLimits(const ServerOptions& options, v1::ServerConfig* config) {
 v1::ServerConfig ToConfig(const ServerOptions& options) {
   v1::ServerConfig config;
   config.set_listen(ToString(options.listen));
-  config.set_metrics_listen(
-      options.metrics_listen.has_value() ? ToString(*options.metrics_listen) : "off");
+  config.set_metrics_listen(options.metrics_listen.has_value() ? ToString(*options.metrics_listen)
+                                                               : "off");
   config.set_model_repository(options.model_repository.string());
   config.set_default_model(options.default_model);
   for (const VersionLabelOption& label : options.version_labels) {
@@ -55,6 +55,14 @@ v1::ServerConfig ToConfig(const ServerOptions& options) {
     message->set_label(label.label);
     message->set_version(label.version);
   }
+  for (const VersionPolicyOption& policy : options.version_policies) {
+    v1::VersionPolicy* message = config.add_version_policies();
+    message->set_model(policy.model.empty() ? "*" : policy.model);
+    if (policy.latest.has_value()) message->set_latest(*policy.latest);
+    for (const uint32_t version : policy.versions) message->add_versions(version);
+  }
+  config.set_admin_listen(options.admin_listen.has_value() ? ToString(*options.admin_listen)
+                                                           : "off");
   config.set_reflection(options.reflection);
   WriteEngine(options.engine, &config);
   WriteLimits(options, &config);

@@ -41,7 +41,8 @@ class HttplibEndpoint final : public MetricsEndpoint {
     server_.Get("/readyz", [this](const httplib::Request&, httplib::Response& response) {
       const bool ready = options_.ready();
       response.status = ready ? 200 : 503;
-      response.set_content(ready ? "ready\n" : "not ready\n", "text/plain");
+      const std::string detail = options_.describe ? options_.describe() : "";
+      response.set_content((ready ? "ready\n" : "not ready\n") + detail, "text/plain");
     });
   }
 

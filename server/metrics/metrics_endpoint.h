@@ -14,10 +14,12 @@ struct MetricsEndpointOptions {
   int port = 0;                         // 0: any free one
   std::function<std::string()> render;  // the Prometheus text; called concurrently
   std::function<bool()> ready;          // whether calls are being served
+  // How it stands in detail, for people: lines. May be empty; called concurrently.
+  std::function<std::string()> describe;
 };
 
 // A small HTTP server beside gRPC: GET /metrics for Prometheus, /healthz (200 while the process
-// answers) and /readyz (200 while calls are served, else 503).
+// answers) and /readyz (200 while calls are served, else 503; the text says how it stands).
 //
 // Not prometheus::Exposer: its threads have 100 kB stacks, which do not hold the static thread
 // storage of OpenBLAS and LibTorch, so that it throws in a server that has loaded them.

@@ -35,7 +35,10 @@ namespace duet::server::metrics {
 //   duet_batch_size                                    windows of one batch
 // Of models:
 //   duet_model_load_seconds{checkpoint}                time that loading took
-//   duet_model_state{checkpoint}                       1 served, 0 failed to load
+//   duet_model_state{checkpoint}                       1 served, 0 failed to load or unloaded
+//   duet_model_loads_total{result}                     checkpoints loaded: ok or refused
+//   duet_model_folders_skipped                         in the repository, but no checkpoints
+//   duet_reloads_total{result}                         reloads asked for: ok or failed
 // Of the log:
 //   duet_log_lines_dropped_total                       lines lost to a slow reader of the log
 //
@@ -50,8 +53,12 @@ class ServerMetrics final : public CallObserver, public batching::WindowObserver
   void BatchFinished(const batching::WindowTimings& timings) override;
   void WindowFinished(batching::Priority priority, const batching::WindowTimings& timings) override;
 
-  // A checkpoint was loaded, or was refused.
-  void ModelLoaded(const std::string& checkpoint, double seconds, bool served);
+  // A checkpoint was loaded, or was refused; `served` tells of a refused one whether what was
+  // loaded before in its place is served on.
+  void ModelLoaded(const std::string& checkpoint, double seconds, bool loaded, bool served);
+  void ModelUnloaded(const std::string& checkpoint);
+  void FoldersSkipped(int folders);
+  void Reloaded(bool ok);
 
   // What is asked for at every scrape. Call before the first Render.
   void SetQueueLength(std::function<double()> queued_windows);
@@ -75,6 +82,9 @@ class ServerMetrics final : public CallObserver, public batching::WindowObserver
   prometheus::Gauge& queued_windows_;
   prometheus::Family<prometheus::Gauge>& load_seconds_;
   prometheus::Family<prometheus::Gauge>& model_state_;
+  prometheus::Family<prometheus::Counter>& model_loads_;
+  prometheus::Gauge& folders_skipped_;
+  prometheus::Family<prometheus::Counter>& reloads_;
   prometheus::Counter& log_lines_dropped_;
   std::function<double()> queue_length_;
   std::function<double()> dropped_log_lines_;

@@ -80,11 +80,12 @@ TEST(ParseMessage, TellsEverythingThatIsWrongWithJson) {
   "version": "2"
 })",
                                            MessageSyntax::kJson, &api);
-  EXPECT_THAT(status,
-              StatusIs(absl::StatusCode::kInvalidArgument,
-                       AllOf(StartsWith("line 2:3: there is no field \"nam\"; did you mean name?\n"),
-                             HasSubstr("\nline 4:3: (syntax)"), HasSubstr("\nline 6:15: "),
-                             HasSubstr("methods[1]"), HasSubstr("\nline 7:3: version: is repeated"))));
+  EXPECT_THAT(
+      status,
+      StatusIs(absl::StatusCode::kInvalidArgument,
+               AllOf(StartsWith("line 2:3: there is no field \"nam\"; did you mean name?\n"),
+                     HasSubstr("\nline 4:3: (syntax)"), HasSubstr("\nline 6:15: "),
+                     HasSubstr("methods[1]"), HasSubstr("\nline 7:3: version: is repeated"))));
   EXPECT_EQ(api.version(), "2") << "what is right is read all the same";
 }
 
@@ -99,11 +100,12 @@ TEST(ParseMessage, TellsWhereJsonEnds) {
 
 TEST(ParseMessage, TellsEveryUnknownFieldOfTheTextFormat) {
   google::protobuf::Api api;
-  EXPECT_THAT(ParseMessage("nam: \"a\"\nversion: \"1\"\nmethod { name: \"x\" }\nsyntax: 12345678901",
-                           MessageSyntax::kTextFormat, &api),
-              StatusIs(absl::StatusCode::kInvalidArgument,
-                       AllOf(StartsWith("line 1:4: "), HasSubstr("nam"), HasSubstr("\nline 3:8: "),
-                             HasSubstr("\nline 4:"))));
+  EXPECT_THAT(
+      ParseMessage("nam: \"a\"\nversion: \"1\"\nmethod { name: \"x\" }\nsyntax: 12345678901",
+                   MessageSyntax::kTextFormat, &api),
+      StatusIs(absl::StatusCode::kInvalidArgument,
+               AllOf(StartsWith("line 1:4: "), HasSubstr("nam"), HasSubstr("\nline 3:8: "),
+                     HasSubstr("\nline 4:"))));
   EXPECT_EQ(api.version(), "1");
 }
 

@@ -99,11 +99,12 @@ TEST(ReadConfigFileTest, TellsEverythingThatIsWrongAndWhere) {
   TemporaryFolder folder;
   WriteTestFile(folder / "bad.json", "{\"workers\": -2,\n  \"max_call\": 7, \"maxCalls\": 9}");
   const std::string start = "--config: " + (folder / "bad.json").string();
-  EXPECT_THAT(Read(folder / "bad.json"),
-              StatusIs(kInvalidArgument,
-                       AllOf(StartsWith(start + ": line 1:2: (workers)"),
-                             HasSubstr("\n" + start + ": line 2:3: there is no field \"max_call\"; "
-                                       "did you mean max_calls?"))));
+  EXPECT_THAT(
+      Read(folder / "bad.json"),
+      StatusIs(kInvalidArgument, AllOf(StartsWith(start + ": line 1:2: (workers)"),
+                                       HasSubstr("\n" + start +
+                                                 ": line 2:3: there is no field \"max_call\"; "
+                                                 "did you mean max_calls?"))));
 }
 
 TEST(ParseCommandLineTest, NoFlagsSetNothing) {
@@ -120,7 +121,8 @@ TEST(ParseCommandLineTest, ReadsEveryFlag) {
       "--threads-per-worker 3 --max-calls 4 --max-queued-windows 5 --max-request-bytes 6000 "
       "--max-transport-bytes 20000 --buffered-frames 7 --drain-seconds 8 --grace-seconds 9 "
       "--clean-up off --engine torch --precision f32 --max-batch-windows 10 "
-      "--max-batch-delay-seconds 0.5",
+      "--max-batch-delay-seconds 0.5 --version-policy sbu=latest:2 --version-policy *=1,3 "
+      "--version-policy k3hi=all --admin-listen b:2",
       ' '));
   ASSERT_THAT(line, IsOk());
   const absl::StatusOr<v1::ServerConfig> expected = ParseConfigText(
@@ -130,7 +132,10 @@ TEST(ParseCommandLineTest, ReadsEveryFlag) {
          reflection: false workers: 2 threads_per_worker: 3 max_calls: 4 max_queued_windows: 5
          max_request_bytes: 6000 max_transport_bytes: 20000 buffered_frames: 7 drain_seconds: 8 grace_seconds: 9
          clean_up: CLEAN_UP_POLICY_OFF engine: ENGINE_TORCH precision: PRECISION_F32
-         max_batch_windows: 10 max_batch_delay_seconds: 0.5)",
+         max_batch_windows: 10 max_batch_delay_seconds: 0.5
+         version_policies { model: "sbu" latest: 2 }
+         version_policies { model: "*" versions: 1 versions: 3 }
+         version_policies { model: "k3hi" } admin_listen: "b:2")",
       false);
   ASSERT_THAT(expected, IsOk());
   EXPECT_TRUE(google::protobuf::util::MessageDifferencer::Equals(line->config, *expected))
@@ -157,6 +162,7 @@ TEST(ParseCommandLineTest, HelpNamesEveryFieldOfTheSchema) {
   for (int i = 0; i < v1::ServerConfig::descriptor()->field_count(); ++i) {
     std::string name = v1::ServerConfig::descriptor()->field(i)->name();
     if (name == "version_labels") name = "version_label";  // one a flag
+    if (name == "version_policies") name = "version_policy";
     std::replace(name.begin(), name.end(), '_', '-');
     EXPECT_THAT(*line->print, HasSubstr("--" + name));
   }
@@ -224,6 +230,11 @@ TEST(ParseCommandLineTest, NamesAFlagThatIsWrong) {
                 StatusIs(kInvalidArgument, HasSubstr("model:label=version")))
         << label;
   }
+  for (const char* policy : {"sbu", "sbu=", "sbu=latest", "sbu=latest:x", "sbu=1,", "sbu=none"}) {
+    EXPECT_THAT(Parse({"--version-policy", policy}),
+                StatusIs(kInvalidArgument, HasSubstr("model=latest:2")))
+        << policy;
+  }
 }
 
 TEST(ParseCommandLineTest, VariablesCountWhereNoFlagDoesAndBeforeTheFile) {
@@ -232,13 +243,13 @@ TEST(ParseCommandLineTest, VariablesCountWhereNoFlagDoesAndBeforeTheFile) {
                 "listen: \"file:1\" max_calls: 9\nmax_queued_windows: 3\n"
                 "version_labels { model: \"a\" label: \"b\" version: 1 }");
   const std::string file = (folder / "server.txtpb").string();
-  const absl::StatusOr<CommandLine> line = Parse({"--listen", "flag:2"},
-                                                 {{"DUET_SERVER_CONFIG", file},
-                                                  {"DUET_SERVER_LISTEN", "variable:3"},
-                                                  {"DUET_SERVER_MAX_CALLS", "4"},
-                                                  {"DUET_SERVER_METRICS_LISTEN", ""},
-                                                  {"DUET_SERVER_REFLECTION", "false"},
-                                                  {"DUET_SERVER_VERSION_LABEL", "a:c=2 a:d=3"}});
+  const absl::StatusOr<CommandLine> line =
+      Parse({"--listen", "flag:2"}, {{"DUET_SERVER_CONFIG", file},
+                                     {"DUET_SERVER_LISTEN", "variable:3"},
+                                     {"DUET_SERVER_MAX_CALLS", "4"},
+                                     {"DUET_SERVER_METRICS_LISTEN", ""},
+                                     {"DUET_SERVER_REFLECTION", "false"},
+                                     {"DUET_SERVER_VERSION_LABEL", "a:c=2 a:d=3"}});
   ASSERT_THAT(line, IsOk());
   EXPECT_EQ(line->config.listen(), "flag:2");
   EXPECT_EQ(line->config.max_calls(), 4u);
@@ -246,15 +257,16 @@ TEST(ParseCommandLineTest, VariablesCountWhereNoFlagDoesAndBeforeTheFile) {
   EXPECT_TRUE(line->config.has_metrics_listen());
   EXPECT_FALSE(line->config.reflection());
   ASSERT_EQ(line->config.version_labels_size(), 3);
-  EXPECT_THAT(line->sources,
-              UnorderedElementsAre(Pair("listen", "command line"),
-                                   Pair("max_calls", "environment DUET_SERVER_MAX_CALLS"),
-                                   Pair("max_queued_windows", "file " + file + ":2:1"),
-                                   Pair("metrics_listen", "environment DUET_SERVER_METRICS_LISTEN"),
-                                   Pair("reflection", "environment DUET_SERVER_REFLECTION"),
-                                   Pair("version_labels[0]", "file " + file + ":3:1"),
-                                   Pair("version_labels[1]", "environment DUET_SERVER_VERSION_LABEL"),
-                                   Pair("version_labels[2]", "environment DUET_SERVER_VERSION_LABEL")));
+  EXPECT_THAT(
+      line->sources,
+      UnorderedElementsAre(Pair("listen", "command line"),
+                           Pair("max_calls", "environment DUET_SERVER_MAX_CALLS"),
+                           Pair("max_queued_windows", "file " + file + ":2:1"),
+                           Pair("metrics_listen", "environment DUET_SERVER_METRICS_LISTEN"),
+                           Pair("reflection", "environment DUET_SERVER_REFLECTION"),
+                           Pair("version_labels[0]", "file " + file + ":3:1"),
+                           Pair("version_labels[1]", "environment DUET_SERVER_VERSION_LABEL"),
+                           Pair("version_labels[2]", "environment DUET_SERVER_VERSION_LABEL")));
 }
 
 TEST(ParseCommandLineTest, TheFlagSaysWhichFileWhereAVariableDoesToo) {
@@ -267,11 +279,11 @@ TEST(ParseCommandLineTest, TheFlagSaysWhichFileWhereAVariableDoesToo) {
 }
 
 TEST(ParseCommandLineTest, NamesAVariableThatIsWrong) {
-  EXPECT_THAT(Parse({}, {{"DUET_SERVER_MAX_CALL", "1"}, {"DUET_SERVER_WORKERS", "two"}}),
-              StatusIs(kInvalidArgument,
-                       AllOf(HasSubstr("DUET_SERVER_MAX_CALL: sets nothing; did you mean "
-                                       "DUET_SERVER_MAX_CALLS?"),
-                             HasSubstr("\nDUET_SERVER_WORKERS: "), HasSubstr("two"))));
+  EXPECT_THAT(
+      Parse({}, {{"DUET_SERVER_MAX_CALL", "1"}, {"DUET_SERVER_WORKERS", "two"}}),
+      StatusIs(kInvalidArgument, AllOf(HasSubstr("DUET_SERVER_MAX_CALL: sets nothing; did you mean "
+                                                 "DUET_SERVER_MAX_CALLS?"),
+                                       HasSubstr("\nDUET_SERVER_WORKERS: "), HasSubstr("two"))));
   EXPECT_THAT(Parse({}, {{"DUET_SERVER_CHECK_CONFIG", "true"}}),
               StatusIs(kInvalidArgument, HasSubstr("sets nothing")));
 }

@@ -47,8 +47,8 @@ TEST(PrintConfigTest, CanBeReadAgain) {
   ASSERT_THAT(again, IsOk());
   const absl::StatusOr<ServerOptions> same = ToOptions(*again, 7);
   ASSERT_THAT(same, IsOk());
-  EXPECT_TRUE(google::protobuf::util::MessageDifferencer::Equals(ToConfig(*same),
-                                                                 ToConfig(*options)));
+  EXPECT_TRUE(
+      google::protobuf::util::MessageDifferencer::Equals(ToConfig(*same), ToConfig(*options)));
 }
 
 TEST(PrintConfigTest, LeavesNoFieldOut) {

@@ -148,8 +148,8 @@ TEST(ServerMetricsTest, CountsDroppedLogLines) {
 
 TEST(ServerMetricsTest, TellsWhichCheckpointsAreServed) {
   ServerMetrics metrics;
-  metrics.ModelLoaded("sbu/3", 1.5, true);
-  metrics.ModelLoaded("sbu/4", 0.1, false);
+  metrics.ModelLoaded("sbu/3", 1.5, true, true);
+  metrics.ModelLoaded("sbu/4", 0.1, false, false);
   const std::string text = metrics.Render();
   EXPECT_THAT(text, HasSubstr(R"(duet_model_state{checkpoint="sbu/3"} 1)"));
   EXPECT_THAT(text, HasSubstr(R"(duet_model_state{checkpoint="sbu/4"} 0)"));
