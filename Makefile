@@ -52,6 +52,11 @@ docs: ## Make the API reference from headers and proto files: build/docs/html/in
 	@mkdir -p build/docs
 	doxygen docs/Doxyfile
 
+.PHONY: python
+python: ## Make the Python package: wheel and sdist in build/python
+	@scripts/install_packages.sh test
+	@scripts/build_python.sh
+
 .PHONY: clean
 clean: ## Remove everything that was built or made
 	rm -rf build out

@@ -80,13 +80,13 @@ duet() {
   "${bin_dir}/duet" "$@" || fail "'duet $*' failed with status $?"
 }
 
-# synthesize <name> <leader> <label>...: a page to look at, and the pair as BVH.
+# synthesize <name> <leader> <label>...: a page to look at, and the pair as glTF.
 synthesize() {
   local name="$1" leader="$2" labels=() label
   shift 2
   for label in "$@"; do labels+=(--label "${label}"); done
   duet synthesize --server "${address}" --leader "${leader}" "${labels[@]}" \
-    --out "${out_dir}/${name}.html" --out "${out_dir}/${name}.bvh"
+    --out "${out_dir}/${name}.html" --out "${out_dir}/${name}.glb"
   echo
 }
 
@@ -108,11 +108,11 @@ main() {
   ((server_status == 0)) || fail "the server ended with status ${server_status} on SIGTERM"
 
   echo "Made in ${SECONDS} s:"
-  find "${out_dir}" -name '*.html' -o -name '*.bvh' | sort | xargs du -h | sed 's/^/  /'
+  find "${out_dir}" -name '*.html' -o -name '*.glb' | sort | xargs du -h | sed 's/^/  /'
   echo
   echo "Open a page in any browser (drag to orbit, space to play):"
   find "$(pwd)/${out_dir}" -name '*.html' | sort | sed 's,^,  file://,'
-  echo "The BVH pairs load in Blender: File, Import, Motion Capture."
+  echo "Blender, three.js and game engines open the .glb (docs/formats.md says how)."
 }
 
 address=""

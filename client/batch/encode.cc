@@ -10,6 +10,7 @@
 #include "model/formats/flat/json_motion.h"
 #include "model/formats/flat/npy.h"
 #include "model/formats/flat/sbu_text.h"
+#include "model/formats/gltf/gltf_export.h"
 #include "model/motion/recorded_motion.h"
 #include "model/motion/resample.h"
 
@@ -28,6 +29,15 @@ absl::StatusOr<std::vector<EncodedFile>> EncodeBvh(const motion::ClipPair& pair,
                                   {".follower.bvh", FormatBvh(*follower)}};
 }
 
+absl::StatusOr<std::vector<EncodedFile>> EncodeGlb(const motion::ClipPair& pair,
+                                                   const motion::Skeleton& skeleton) {
+  // Labels and model of an item are in the index.
+  absl::StatusOr<std::string> content = formats::gltf::FormatGltf(
+      {pair.leader, pair.follower}, skeleton, nullptr, formats::gltf::GltfContainer::kBinary);
+  if (!content.ok()) return content.status();
+  return std::vector<EncodedFile>{{".glb", *std::move(content)}};
+}
+
 absl::StatusOr<std::vector<EncodedFile>> EncodeFormat(Format format, const motion::ClipPair& pair,
                                                       const motion::Skeleton& skeleton) {
   switch (format) {
@@ -37,6 +47,8 @@ absl::StatusOr<std::vector<EncodedFile>> EncodeFormat(Format format, const motio
       return std::vector<EncodedFile>{{".csv", formats::flat::FormatCsv(pair)}};
     case Format::kNpy:
       return std::vector<EncodedFile>{{".npy", formats::flat::FormatNpy(pair)}};
+    case Format::kGlb:
+      return EncodeGlb(pair, skeleton);
     case Format::kJson:
       break;
   }

@@ -80,7 +80,7 @@ struct QualityFilter {
   int retries_per_item = 0;
 };
 
-enum class Format { kBvh, kCsv, kNpy, kJson };
+enum class Format { kBvh, kCsv, kNpy, kJson, kGlb };
 enum class Layout { kMirror, kClassFolders, kSbu, kK3hi };
 enum class Packing { kNone, kTar, kNpz };
 

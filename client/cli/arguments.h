@@ -99,6 +99,7 @@ struct SynthesizeArguments {
   std::string request_id;
   std::vector<std::filesystem::path> outputs;
   std::optional<OutputFormat> output_format;  // of standard output
+  double bvh_metres_per_unit = formats::kCentimetre;
   bool json = false;
   bool quiet = false;
 };
@@ -152,6 +153,7 @@ struct ConvertArguments {
   std::optional<double> resample_hz;
   std::vector<std::filesystem::path> outputs;
   std::optional<OutputFormat> output_format;  // of standard output
+  double bvh_metres_per_unit = formats::kCentimetre;
   bool json = false;
   bool quiet = false;
 };

@@ -36,6 +36,7 @@ struct Conversion {
   motion::Skeleton skeleton;
   std::vector<std::string> notes;
   double source_rate_hz = 0;
+  formats::WriteOptions writing;
 };
 
 struct Written {
@@ -81,6 +82,7 @@ absl::StatusOr<Conversion> ReadConversion(const ConvertArguments& arguments, std
   if (!status.ok()) return status;
   Conversion conversion;
   conversion.skeleton = motion::SbuSkeleton();
+  conversion.writing.bvh_metres_per_unit = arguments.bvh_metres_per_unit;
   const absl::StatusOr<formats::ReadOptions> options =
       ToReadOptions(arguments.input, conversion.skeleton);
   if (!options.ok()) return options.status();
@@ -102,13 +104,13 @@ absl::StatusOr<Conversion> ReadConversion(const ConvertArguments& arguments, std
 
 // How far off a motion is that was written as `content`.
 absl::StatusOr<double> ErrorOf(const std::string& content, Format format, const Clips& people,
-                               const motion::Skeleton& skeleton) {
+                               const Conversion& conversion) {
   formats::ReadOptions options;
   options.format = format;
-  options.skeleton = skeleton;
+  options.skeleton = conversion.skeleton;
   options.frame_rate_hz = people[0].frame_rate_hz;
   options.coordinates = motion::Coordinates{};
-  if (format == Format::kBvh) options.metres_per_unit = 0.01;
+  options.metres_per_unit = format == Format::kBvh ? conversion.writing.bvh_metres_per_unit : 1;
   double largest = 0;
   for (std::size_t i = 0; i < people.size(); ++i) {
     options.side = i == 0 ? formats::Side::kLeft : formats::Side::kRight;
@@ -137,9 +139,9 @@ absl::StatusOr<std::vector<std::string>> FormatFiles(const Conversion& conversio
   std::vector<std::string> contents;
   for (const Clips& people : files) {
     absl::StatusOr<std::string> content =
-        formats::FormatPeople(format, people, conversion.skeleton);
+        formats::FormatPeople(format, people, conversion.skeleton, conversion.writing);
     if (!content.ok()) return content.status();
-    const absl::StatusOr<double> error = ErrorOf(*content, format, people, conversion.skeleton);
+    const absl::StatusOr<double> error = ErrorOf(*content, format, people, conversion);
     if (!error.ok()) return error.status();
     *largest_error = std::max(*largest_error, *error);
     contents.push_back(*std::move(content));
@@ -164,8 +166,8 @@ absl::StatusOr<Written> Write(const Conversion& conversion, const std::filesyste
     written.files = {output};
     return written;
   }
-  absl::StatusOr<Paths> files =
-      formats::WritePeople(output, format, conversion.people, conversion.skeleton);
+  absl::StatusOr<Paths> files = formats::WritePeople(output, format, conversion.people,
+                                                     conversion.skeleton, conversion.writing);
   if (!files.ok()) return NotWritten(files.status());
   written.files = *std::move(files);
   return written;

@@ -13,15 +13,17 @@ namespace {
 using formats::Format;
 
 const std::map<std::string, Format> kInputFormats = {
-    {"amc", Format::kAmc},  {"bvh", Format::kBvh},    {"csv", Format::kCsv},
-    {"glb", Format::kGltf}, {"gltf", Format::kGltf},  {"json", Format::kJson},
-    {"npy", Format::kNpy},  {"sbu", Format::kSbuText}};
+    {"amc", Format::kAmc}, {"bvh", Format::kBvh},    {"csv", Format::kCsv},
+    {"glb", Format::kGlb}, {"gltf", Format::kGltf},  {"json", Format::kJson},
+    {"npy", Format::kNpy}, {"sbu", Format::kSbuText}};
 
-const std::map<std::string, OutputFormat> kOutputFormats = {{"bvh", {Format::kBvh}},
-                                                            {"csv", {Format::kCsv}},
-                                                            {"html", {std::nullopt}},
-                                                            {"json", {Format::kJson}},
-                                                            {"npy", {Format::kNpy}}};
+const std::map<std::string, OutputFormat> kOutputFormats = {
+    {"bvh", {Format::kBvh}},   {"csv", {Format::kCsv}},  {"glb", {Format::kGlb}},
+    {"gltf", {Format::kGltf}}, {"html", {std::nullopt}}, {"json", {Format::kJson}},
+    {"npy", {Format::kNpy}}};
+
+const std::map<std::string, double> kBvhUnits = {{"centimetres", formats::kCentimetre},
+                                                 {"metres", 1}};
 
 }  // namespace
 
@@ -69,6 +71,15 @@ void AddOutputFormatFlag(CLI::App* app, std::optional<OutputFormat>* format) {
   AddChoice<OutputFormat>(
       app, "--output-format", kOutputFormats, [format](OutputFormat chosen) { *format = chosen; },
       "What is written to standard output (--out -)")
+      ->group(kOutputGroup);
+}
+
+void AddBvhUnitFlag(CLI::App* app, double* metres_per_unit) {
+  AddChoice<double>(
+      app, "--bvh-unit", kBvhUnits, [metres_per_unit](double metres) { *metres_per_unit = metres; },
+      "Unit of .bvh that is written, which the format does not tell: centimetres as Maya, "
+      "MotionBuilder and Unreal take it, metres as Blender does")
+      ->default_str("centimetres")
       ->group(kOutputGroup);
 }
 

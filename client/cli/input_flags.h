@@ -15,6 +15,9 @@ void AddInputFlags(CLI::App* app, InputArguments* input);
 // --output-format, of what goes to standard output.
 void AddOutputFormatFlag(CLI::App* app, std::optional<OutputFormat>* format);
 
+// --bvh-unit, of what is written.
+void AddBvhUnitFlag(CLI::App* app, double* metres_per_unit);
+
 // What standard output cannot take: several results, a summary besides, a result without
 // --output-format. Throws what CLI11 reports as a usage error.
 void CheckStandardOutput(const std::vector<std::filesystem::path>& outputs,

@@ -105,9 +105,10 @@ CLI::App* AddConvertCommand(CLI::App* app, ConvertArguments* arguments) {
       ->group(kInputGroup);
   AddInputFlags(command, &arguments->input);
   command
-      ->add_option("--out", arguments->outputs,
-                   "File to write: .bvh (a file for each person), .csv, .npy or .json; repeatable; "
-                   "- for standard output")
+      ->add_option(
+          "--out", arguments->outputs,
+          "File to write: .glb, .gltf, .bvh (a file for each person), .csv, .npy or .json; "
+          "repeatable; - for standard output")
       ->required()
       ->allow_extra_args(false)
       ->type_name("FILE")
@@ -120,6 +121,7 @@ CLI::App* AddConvertCommand(CLI::App* app, ConvertArguments* arguments) {
       ->type_name("HZ")
       ->group(kOutputGroup);
   AddOutputFormatFlag(command, &arguments->output_format);
+  AddBvhUnitFlag(command, &arguments->bvh_metres_per_unit);
   command->add_flag("--json", arguments->json, "Print the summary as JSON")->group(kOutputGroup);
   command->add_flag("--quiet", arguments->quiet, "Print errors alone")->group(kOutputGroup);
   command->callback([arguments] { CheckTogether(*arguments); });

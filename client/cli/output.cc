@@ -2,6 +2,8 @@
 
 #include <string>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
@@ -18,6 +20,31 @@ bool IsPage(const std::filesystem::path& path) {
   return extension == ".html" || extension == ".htm";
 }
 
+// Weights for the whole clip are those of its first frame.
+std::vector<WeightKeyframe> KeyframesOf(const SynthesisRequest& request) {
+  if (!request.keyframes.empty()) return request.keyframes;
+  return {{0, request.weights}};
+}
+
+motion::Provenance ProvenanceOf(const Synthesis& synthesis) {
+  const SynthesisResult& result = synthesis.result;
+  motion::Provenance provenance;
+  provenance.model = result.model_name;
+  provenance.model_version = result.model_version;
+  provenance.seed = result.seed;
+  provenance.variety = result.variety;
+  provenance.cleaned_up = result.cleaned_up;
+  for (const WeightKeyframe& keyframe : KeyframesOf(synthesis.request)) {
+    motion::Provenance::Labels labels;
+    labels.frame = keyframe.frame;
+    for (const ClassWeight& weight : keyframe.weights) {
+      labels.weights.emplace_back(weight.interaction_class, weight.weight);
+    }
+    provenance.labels.push_back(std::move(labels));
+  }
+  return provenance;
+}
+
 absl::StatusOr<std::string> RenderSynthesis(const Synthesis& synthesis) {
   const SynthesisResult& result = synthesis.result;
   viewer::PageContent content;
@@ -28,8 +55,7 @@ absl::StatusOr<std::string> RenderSynthesis(const Synthesis& synthesis) {
       absl::StrFormat("%s@%d · %d frames at %g Hz", result.model_name, result.model_version,
                       result.pair.leader.frame_count(), result.pair.leader.frame_rate_hz);
   if (synthesis.sampled) absl::StrAppend(&content.subtitle, " · seed ", result.seed);
-  content.weights = synthesis.request.keyframes;
-  if (content.weights.empty()) content.weights = {{0, synthesis.request.weights}};
+  content.weights = KeyframesOf(synthesis.request);
   return RenderPage(content);
 }
 
@@ -58,7 +84,11 @@ absl::Status CheckOutput(const std::filesystem::path& output, const std::filesys
 
 absl::StatusOr<std::vector<std::filesystem::path>> WriteOutput(const std::filesystem::path& output,
                                                                const Synthesis& synthesis) {
-  if (!IsPage(output)) return formats::WritePair(output, synthesis.result.pair, synthesis.skeleton);
+  if (!IsPage(output)) {
+    const motion::Provenance provenance = ProvenanceOf(synthesis);
+    return formats::WritePair(output, synthesis.result.pair, synthesis.skeleton,
+                              {&provenance, synthesis.bvh_metres_per_unit});
+  }
   const absl::StatusOr<std::string> page = RenderSynthesis(synthesis);
   if (!page.ok()) return page.status();
   absl::Status status = base::WriteFile(output, *page);
@@ -69,7 +99,9 @@ absl::StatusOr<std::vector<std::filesystem::path>> WriteOutput(const std::filesy
 absl::StatusOr<std::string> FormatOutput(const OutputFormat& format, const Synthesis& synthesis) {
   if (!format.motion.has_value()) return RenderSynthesis(synthesis);
   const motion::ClipPair& pair = synthesis.result.pair;
-  return formats::FormatPeople(*format.motion, {pair.leader, pair.follower}, synthesis.skeleton);
+  const motion::Provenance provenance = ProvenanceOf(synthesis);
+  return formats::FormatPeople(*format.motion, {pair.leader, pair.follower}, synthesis.skeleton,
+                               {&provenance, synthesis.bvh_metres_per_unit});
 }
 
 absl::Status WriteToStream(const std::string& content, std::ostream& out) {

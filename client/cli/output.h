@@ -11,6 +11,7 @@
 #include "client/cli/arguments.h"
 #include "client/request.h"
 #include "client/result.h"
+#include "model/formats/motion_file.h"
 #include "model/motion/skeleton.h"
 
 namespace duet::client::cli {
@@ -22,6 +23,7 @@ struct Synthesis {
   motion::Skeleton skeleton;
   std::filesystem::path leader_file;
   bool sampled = false;  // the model samples: the follower is one of several
+  double bvh_metres_per_unit = formats::kCentimetre;
 };
 
 enum class PageAllowed { kNo, kYes };

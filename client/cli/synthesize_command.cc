@@ -101,8 +101,9 @@ absl::Status RunSamples(const SynthesizeArguments& arguments, const Job& job, co
     request.seed = SeedOf(arguments, sample);
     absl::StatusOr<SynthesisResult> result = client.Synthesize(request);
     if (!result.ok()) return result.status();
-    const Synthesis synthesis{std::move(request), *std::move(result), job.skeleton,
-                              arguments.leader, job.sampled};
+    const Synthesis synthesis{std::move(request), *std::move(result),
+                              job.skeleton,       arguments.leader,
+                              job.sampled,        arguments.bvh_metres_per_unit};
     const absl::StatusOr<Paths> written =
         WriteAll(arguments, SampleOutputs(arguments, sample), synthesis, *environment.out);
     if (!written.ok()) return written.status();

@@ -121,14 +121,17 @@ void AddReactionFlags(CLI::App* app, SynthesizeArguments* arguments) {
 }
 
 void AddOutputFlags(CLI::App* app, SynthesizeArguments* arguments) {
-  app->add_option("--out", arguments->outputs,
-                  "File to write: .html (a page to watch), .bvh (two files), .csv, .npy or .json; "
-                  "repeatable; - for standard output")
+  app->add_option(
+         "--out", arguments->outputs,
+         "File to write: .html (a page to watch), .glb or .gltf (both people, for Blender and "
+         "engines), .bvh (two files), .csv, .npy or .json; repeatable; - for standard "
+         "output")
       ->required()
       ->allow_extra_args(false)
       ->type_name("FILE")
       ->group(kOutputGroup);
   AddOutputFormatFlag(app, &arguments->output_format);
+  AddBvhUnitFlag(app, &arguments->bvh_metres_per_unit);
   app->add_flag("--json", arguments->json, "Print the summary as JSON")->group(kOutputGroup);
   app->add_flag("--quiet", arguments->quiet, "Print errors alone")->group(kOutputGroup);
 }

@@ -77,7 +77,7 @@ void FlowNetwork::Run(absl::Span<const engine::NetworkInput> inputs, Scratch::Us
   const Work work = Prepare(inputs, scratch);
   const int steps = manifest_.flow->steps;
   for (int step = 0; step < steps; ++step) {
-    Answer(work, static_cast<double>(step) / steps);
+    if (!Answer(work, inputs, static_cast<double>(step) / steps)) return;
     // The last step would end on the answer itself.
     if (step + 1 < steps) Step(work, steps - step);
   }
@@ -157,12 +157,18 @@ void FlowNetwork::ReadTerms(absl::Span<const engine::NetworkInput> inputs, Scrat
   }
 }
 
-// The guided answer to the sample at a time, into work.answer.
-void FlowNetwork::Answer(const Work& work, double time) const {
+// The guided answer to the sample at a time, into work.answer. False where all were cancelled
+// before it was complete.
+bool FlowNetwork::Answer(const Work& work, absl::Span<const engine::NetworkInput> inputs,
+                         double time) const {
   Condition(work, time);
   Embed(work);
-  for (const Block& block : blocks_) Apply(block, work);
+  for (const Block& block : blocks_) {
+    if (engine::AllCancelled(inputs)) return false;
+    Apply(block, work);
+  }
   Output(work);
+  return true;
 }
 
 void FlowNetwork::Condition(const Work& work, double time) const {

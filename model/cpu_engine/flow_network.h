@@ -60,7 +60,7 @@ class FlowNetwork {
                    Work* work) const;
   void ReadTerms(absl::Span<const engine::NetworkInput> inputs, Scratch::Use* scratch,
                  Work* work) const;
-  void Answer(const Work& work, double time) const;
+  bool Answer(const Work& work, absl::Span<const engine::NetworkInput> inputs, double time) const;
   void Condition(const Work& work, double time) const;
   void Embed(const Work& work) const;
   void Apply(const Block& block, const Work& work) const;

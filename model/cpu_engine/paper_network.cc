@@ -60,6 +60,12 @@ void WriteStart(const std::optional<engine::FollowerStart>& start, int count, fl
   }
 }
 
+// Whether nobody wants the answer to any of these windows.
+bool AllCancelled(const WindowBatch& batch, absl::Span<const engine::NetworkInput> inputs) {
+  return std::all_of(batch.input, batch.input + batch.count,
+                     [&](int n) { return IsCancelled(inputs[static_cast<std::size_t>(n)]); });
+}
+
 // The frame that a direction of a window of `length` frames is at after `step` steps.
 int FrameAt(int direction, int length, int step) {
   return direction == 0 ? step : length - 1 - step;
@@ -122,6 +128,7 @@ PaperNetwork::Slice PaperNetwork::FindSlice(const checkpoint::Manifest& manifest
 void PaperNetwork::Run(absl::Span<const engine::NetworkInput> inputs, Scratch::Use* scratch,
                        absl::Span<motion::Poses> followers) const {
   Work work;
+  work.inputs = inputs;
   work.batch = MakeWindowBatch(inputs, scratch);
   const std::ptrdiff_t rows = work.batch.rows, windows = work.batch.count;
   work.input = ReadInput(work.batch, inputs, scratch);
@@ -138,6 +145,7 @@ void PaperNetwork::Run(absl::Span<const engine::NetworkInput> inputs, Scratch::U
     const WindowBatch some = work.batch.Some(first, kDecodedTogether);
     for (int d = 0; d < 2; ++d) Decode(work, some, d, std::ptrdiff_t{first} * state_, decoder);
   }
+  if (engine::AllCancelled(inputs)) return;
   float* const answer = scratch->Take<float>(rows * 3 * joints_);
   output_.Multiply(work.batch.rows, work.states, answer);
   if (has_base_) AddBase(work, answer);
@@ -172,6 +180,7 @@ void PaperNetwork::Encode(const Work& work, Scratch::Use* scratch) const {
   float* const columns = scratch->Take<float>(rows * inputs_);
   float* const gates = scratch->Take<float>(rows * 8 * encoder_);
   for (int s = 0; s < static_cast<int>(slices_.size()); ++s) {
+    if (engine::AllCancelled(work.inputs)) return;
     const Slice& slice = slices_[static_cast<std::size_t>(s)];
     float* to = columns;
     for (std::ptrdiff_t row = 0; row < rows; ++row) {
@@ -235,9 +244,10 @@ PaperNetwork::DecoderWork PaperNetwork::PrepareDecoder(const WindowBatch& batch,
 }
 
 // Attention, then the cells, frame by frame in the direction's order. `batch` are some windows of
-// work.batch.
+// work.batch; once all of them are cancelled, the rest of their states is left as it was.
 void PaperNetwork::Decode(const Work& work, const WindowBatch& batch, int direction,
                           std::ptrdiff_t hidden, const DecoderWork& decoder) const {
+  if (AllCancelled(batch, work.inputs)) return;
   const Direction& weights = directions_[direction];
   const int width = 4 * state_, both = width + attention_;
   const float* const encoded = work.encoded + std::ptrdiff_t{batch.first_row[0]} * 2 * state_;
@@ -258,6 +268,7 @@ void PaperNetwork::Decode(const Work& work, const WindowBatch& batch, int direct
                           state_,
                           decoder.outputs};
   for (int step = 0; step < batch.length[0]; ++step) {
+    if (AllCancelled(batch, work.inputs)) return;
     cells.count = batch.LongerThan(step, cells.count);
     weights.state.Multiply(cells.count, cells.state, decoder.gates);
     for (int n = 0; n < cells.count; ++n) {

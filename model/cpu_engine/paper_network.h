@@ -48,6 +48,7 @@ class PaperNetwork {
   };
   // What passes between the steps of Run.
   struct Work {
+    absl::Span<const engine::NetworkInput> inputs;
     WindowBatch batch;
     const float* input;  // [R, inputs_]
     float* encoded;      // [R, 2 H]: every slice forward, then every slice backward

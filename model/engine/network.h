@@ -1,6 +1,8 @@
 #ifndef DUET_MODEL_ENGINE_NETWORK_H_
 #define DUET_MODEL_ENGINE_NETWORK_H_
 
+#include <algorithm>
+#include <atomic>
 #include <optional>
 #include <vector>
 
@@ -19,7 +21,15 @@ struct NetworkInput {
   std::optional<FollowerStart> start;
   Sampling sampling;
   motion::Poses settled;  // [frames, joints], perhaps none; see SynthesisWindow
+  const std::atomic<bool>* cancelled = nullptr;  // see SynthesisWindow
 };
+
+inline bool IsCancelled(const NetworkInput& input) {
+  return input.cancelled != nullptr && input.cancelled->load(std::memory_order_relaxed);
+}
+inline bool AllCancelled(absl::Span<const NetworkInput> inputs) {
+  return std::all_of(inputs.begin(), inputs.end(), IsCancelled);
+}
 
 // The numbers in the middle of a synthesizer: what an engine implements. Everything around it
 // (standard coordinates, checks, limb lengths, floor, clean-up) is MakeSynthesizer's.
@@ -31,7 +41,8 @@ class Network {
 
   // Evaluates inputs of any lengths together. Returns each one's follower in the standard
   // coordinates, in order, of as many frames and joints as its leader; the numbers need not be
-  // finite. Numbers do not depend on what else is in the batch (within 1e-4 m). Throws nothing:
+  // finite. Numbers do not depend on what else is in the batch (within 1e-4 m); those of a
+  // cancelled input mean nothing, and nothing more need be computed for it. Throws nothing:
   // INTERNAL says what went wrong.
   virtual absl::StatusOr<std::vector<motion::Poses>> Run(
       absl::Span<const NetworkInput> inputs) const = 0;

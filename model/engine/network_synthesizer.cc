@@ -38,7 +38,9 @@ class NetworkSynthesizer : public Synthesizer {
     if (!followers.ok()) return {windows.size(), followers.status()};
     std::vector<WindowResult> results;
     for (std::size_t i = 0; i < windows.size(); ++i) {
-      results.push_back(Finish(*windows[i], standardisations[i], (*followers)[i]));
+      results.push_back(IsCancelled(inputs[i])
+                            ? absl::CancelledError("cancelled while it was being answered")
+                            : Finish(*windows[i], standardisations[i], (*followers)[i]));
     }
     return results;
   }

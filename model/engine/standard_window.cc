@@ -9,6 +9,7 @@ NetworkInput Standardise(const motion::Standardisation& standardisation,
   input.labels = window.labels;
   input.sampling = window.sampling;
   input.settled = standardisation.Apply(window.settled);
+  input.cancelled = window.cancelled.get();
   if (!window.start) return input;
   input.start = FollowerStart{standardisation.Apply(window.start->root), {}};
   for (const motion::Vec3& joint : window.start->pose) {

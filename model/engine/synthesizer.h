@@ -1,6 +1,8 @@
 #ifndef DUET_MODEL_ENGINE_SYNTHESIZER_H_
 #define DUET_MODEL_ENGINE_SYNTHESIZER_H_
 
+#include <atomic>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -39,6 +41,9 @@ struct SynthesisWindow {
   motion::Poses settled;
   // Whether the answer is cleaned up (model/cleanup). Absent: as the model's pipeline does.
   std::optional<bool> clean_up;
+  // Set by whoever no longer wants the answer, at any time, from any thread; then it may be
+  // CANCELLED before it is complete. Null: it is wanted.
+  std::shared_ptr<const std::atomic<bool>> cancelled;
 };
 
 // A follower's motion for one window: [frames, joints] in the leader's world, metres, y up.
@@ -54,8 +59,9 @@ class Synthesizer {
   virtual const ModelDescription& description() const = 0;
 
   // Synthesises windows of any lengths together: standardise, network, inverse. Returns one result
-  // for each window, in order. A window whose result is not finite fails alone, with INTERNAL; an
-  // item's result does not depend on what else is in the batch (within 1e-4 m).
+  // for each window, in order. A window whose result is not finite fails alone, with INTERNAL, one
+  // that was cancelled meanwhile with CANCELLED; an item's result does not depend on what else is
+  // in the batch (within 1e-4 m).
   virtual std::vector<WindowResult> Synthesize(
       absl::Span<const SynthesisWindow* const> windows) const = 0;
 

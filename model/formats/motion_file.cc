@@ -19,6 +19,7 @@
 #include "model/formats/flat/npy.h"
 #include "model/formats/flat/sbu_text.h"
 #include "model/formats/gltf/gltf_document.h"
+#include "model/formats/gltf/gltf_export.h"
 #include "model/formats/gltf/gltf_import.h"
 #include "model/motion/motion_limits.h"
 #include "model/motion/reading_setting.h"
@@ -201,6 +202,8 @@ absl::StatusOr<motion::Clip> ReadAmcPerson(const std::string& text, const Source
   return FromAmc(*skeleton, *motion, source.name, amc);
 }
 
+bool IsGltf(Format format) { return format == Format::kGltf || format == Format::kGlb; }
+
 const char* FormatTitle(Format format) {
   switch (format) {
     case Format::kSbuText:
@@ -208,6 +211,7 @@ const char* FormatTitle(Format format) {
     case Format::kBvh:
       return "BVH";
     case Format::kGltf:
+    case Format::kGlb:
       return "glTF";
     case Format::kAmc:
       return "ASF/AMC";
@@ -224,7 +228,7 @@ const char* FormatTitle(Format format) {
 absl::StatusOr<motion::Clip> ReadPerson(Format format, const std::string& content,
                                         const Source& source, const ReadOptions& options) {
   if (options.report != nullptr) options.report->format = FormatTitle(format);
-  if (format == Format::kGltf) return ReadGltfPerson(content, source, options);
+  if (IsGltf(format)) return ReadGltfPerson(content, source, options);
   if (format == Format::kAmc) return ReadAmcPerson(content, source, options);
   if (format == Format::kSbuText) return ReadSbuPerson(content, source.name, options);
   if (format == Format::kBvh) return ReadBvhPerson(content, source.name, options);
@@ -260,8 +264,10 @@ absl::Status CheckOptions(const ReadOptions& options) {
 }
 
 absl::StatusOr<std::string> FormatBvhPerson(const motion::Clip& clip,
-                                            const motion::Skeleton& skeleton) {
-  absl::StatusOr<bvh::BvhDocument> document = bvh::ToBvh(clip, skeleton);
+                                            const motion::Skeleton& skeleton,
+                                            const WriteOptions& options) {
+  absl::StatusOr<bvh::BvhDocument> document =
+      bvh::ToBvh(clip, skeleton, options.bvh_metres_per_unit);
   if (!document.ok()) return document.status();
   return FormatBvh(*document);
 }
@@ -283,9 +289,15 @@ absl::Status CheckJoints(const std::vector<motion::Clip>& people,
 
 // People that CheckJoints accepts.
 absl::StatusOr<std::string> FormatChecked(Format format, const std::vector<motion::Clip>& people,
-                                          const motion::Skeleton& skeleton) {
+                                          const motion::Skeleton& skeleton,
+                                          const WriteOptions& options) {
+  if (IsGltf(format)) {
+    return gltf::FormatGltf(
+        people, skeleton, options.provenance,
+        format == Format::kGlb ? gltf::GltfContainer::kBinary : gltf::GltfContainer::kText);
+  }
   if (people.size() == 1) {
-    return format == Format::kBvh   ? FormatBvhPerson(people[0], skeleton)
+    return format == Format::kBvh   ? FormatBvhPerson(people[0], skeleton, options)
            : format == Format::kCsv ? flat::FormatCsv(people[0])
            : format == Format::kNpy ? flat::FormatNpy(people[0])
                                     : flat::FormatJsonMotion(people[0], skeleton);
@@ -298,10 +310,11 @@ absl::StatusOr<std::string> FormatChecked(Format format, const std::vector<motio
 
 absl::StatusOr<std::vector<fs::path>> WriteBvhPair(const fs::path& path,
                                                    const std::vector<motion::Clip>& people,
-                                                   const motion::Skeleton& skeleton) {
+                                                   const motion::Skeleton& skeleton,
+                                                   const WriteOptions& options) {
   std::vector<fs::path> files;
   for (std::size_t i = 0; i < people.size(); ++i) {
-    const absl::StatusOr<std::string> text = FormatBvhPerson(people[i], skeleton);
+    const absl::StatusOr<std::string> text = FormatBvhPerson(people[i], skeleton, options);
     if (!text.ok()) return text.status();
     fs::path file = path;
     file.replace_extension(i == 0 ? ".leader.bvh" : ".follower.bvh");
@@ -324,7 +337,7 @@ std::optional<Format> FormatOf(const fs::path& path) {
 std::optional<Format> ParseFormat(absl::string_view name) {
   static const auto& formats = *new std::map<absl::string_view, Format>{
       {"sbu", Format::kSbuText}, {"bvh", Format::kBvh}, {"gltf", Format::kGltf},
-      {"glb", Format::kGltf},    {"amc", Format::kAmc}, {"csv", Format::kCsv},
+      {"glb", Format::kGlb},     {"amc", Format::kAmc}, {"csv", Format::kCsv},
       {"json", Format::kJson},   {"npy", Format::kNpy}};
   const auto found = formats.find(name);
   return found == formats.end() ? std::nullopt : std::optional<Format>(found->second);
@@ -332,9 +345,7 @@ std::optional<Format> ParseFormat(absl::string_view name) {
 
 bool IsReadable(const fs::path& path) { return FormatOf(path).has_value(); }
 
-bool IsWritable(Format format) {
-  return format != Format::kSbuText && format != Format::kGltf && format != Format::kAmc;
-}
+bool IsWritable(Format format) { return format != Format::kSbuText && format != Format::kAmc; }
 
 bool IsWritable(const fs::path& path) {
   const std::optional<Format> format = FormatOf(path);
@@ -381,13 +392,15 @@ absl::StatusOr<std::vector<motion::Vec3>> ReadFollowerStart(const fs::path& path
 }
 
 absl::StatusOr<std::vector<fs::path>> WritePair(const fs::path& path, const motion::ClipPair& pair,
-                                                const motion::Skeleton& skeleton) {
+                                                const motion::Skeleton& skeleton,
+                                                const WriteOptions& options) {
   if (!IsWritable(path)) return UnknownExtension(path, kWritableExtensions);
-  return WritePeople(path, *FormatOf(path), {pair.leader, pair.follower}, skeleton);
+  return WritePeople(path, *FormatOf(path), {pair.leader, pair.follower}, skeleton, options);
 }
 
 absl::StatusOr<std::string> FormatPeople(Format format, const std::vector<motion::Clip>& people,
-                                         const motion::Skeleton& skeleton) {
+                                         const motion::Skeleton& skeleton,
+                                         const WriteOptions& options) {
   absl::Status status = CheckJoints(people, skeleton);
   if (!status.ok()) return status;
   if (!IsWritable(format)) {
@@ -397,18 +410,19 @@ absl::StatusOr<std::string> FormatPeople(Format format, const std::vector<motion
   if (format == Format::kBvh && people.size() > 1) {
     return absl::InvalidArgumentError("people: came 2, wanted one: BVH has a file for each");
   }
-  return FormatChecked(format, people, skeleton);
+  return FormatChecked(format, people, skeleton, options);
 }
 
 absl::StatusOr<std::vector<fs::path>> WritePeople(const fs::path& path, Format format,
                                                   const std::vector<motion::Clip>& people,
-                                                  const motion::Skeleton& skeleton) {
+                                                  const motion::Skeleton& skeleton,
+                                                  const WriteOptions& options) {
   if (format == Format::kBvh && people.size() == 2) {
     absl::Status status = CheckJoints(people, skeleton);
     if (!status.ok()) return status;
-    return WriteBvhPair(path, people, skeleton);
+    return WriteBvhPair(path, people, skeleton, options);
   }
-  const absl::StatusOr<std::string> content = FormatPeople(format, people, skeleton);
+  const absl::StatusOr<std::string> content = FormatPeople(format, people, skeleton, options);
   if (!content.ok()) return content.status();
   absl::Status status = base::WriteFile(path, *content);
   if (!status.ok()) return status;

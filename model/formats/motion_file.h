@@ -11,6 +11,7 @@
 #include "absl/strings/string_view.h"
 #include "model/motion/clip.h"
 #include "model/motion/coordinates.h"
+#include "model/motion/provenance.h"
 #include "model/motion/skeleton.h"
 #include "model/retargeting/joint_mapping.h"
 #include "model/retargeting/reading_report.h"
@@ -31,7 +32,8 @@ namespace duet::formats {
 // the first person (the leader of a pair), right the second.
 enum class Side { kLeft, kRight };
 
-enum class Format { kSbuText, kBvh, kGltf, kAmc, kCsv, kJson, kNpy };
+// kGlb is binary glTF; reading tells the two apart by their first bytes.
+enum class Format { kSbuText, kBvh, kGltf, kGlb, kAmc, kCsv, kJson, kNpy };
 
 struct ReadOptions {
   // Replaces what the file's extension says.
@@ -71,23 +73,34 @@ absl::StatusOr<motion::Clip> ParseLeader(const std::string& content, const std::
 absl::StatusOr<std::vector<motion::Vec3>> ReadFollowerStart(const std::filesystem::path& path,
                                                             const ReadOptions& options = {});
 
-// Writes a pair: .csv, .npy, .json as one file; .bvh as <stem>.leader.bvh and <stem>.follower.bvh
-// in one shared world. Returns the files written.
+inline constexpr double kCentimetre = 0.01;
+
+struct WriteOptions {
+  // Who made the follower: .glb and .gltf have a place for it. May be null.
+  const motion::Provenance* provenance = nullptr;
+  // BVH says no unit. Animation tools take it for centimetres, Blender for its own unit, a metre.
+  double bvh_metres_per_unit = kCentimetre;
+};
+
+// Writes a pair: .glb, .gltf, .csv, .npy, .json as one file; .bvh as <stem>.leader.bvh and
+// <stem>.follower.bvh in one shared world. Returns the files written.
 //
 // Errors: INVALID_ARGUMENT for an unknown extension, joints other than the skeleton's, people of
 //         different length, positions that are not finite; PERMISSION_DENIED.
 absl::StatusOr<std::vector<std::filesystem::path>> WritePair(const std::filesystem::path& path,
                                                              const motion::ClipPair& pair,
-                                                             const motion::Skeleton& skeleton);
+                                                             const motion::Skeleton& skeleton,
+                                                             const WriteOptions& options = {});
 
 // The same for a person alone (one file, .bvh as well), or a leader and a follower, in a format
 // that need not be the extension's.
 absl::StatusOr<std::vector<std::filesystem::path>> WritePeople(
     const std::filesystem::path& path, Format format, const std::vector<motion::Clip>& people,
-    const motion::Skeleton& skeleton);
+    const motion::Skeleton& skeleton, const WriteOptions& options = {});
 // What WritePeople writes where it writes one file: .bvh holds one person.
 absl::StatusOr<std::string> FormatPeople(Format format, const std::vector<motion::Clip>& people,
-                                         const motion::Skeleton& skeleton);
+                                         const motion::Skeleton& skeleton,
+                                         const WriteOptions& options = {});
 
 // The format that an extension stands for; absent for an unknown one.
 std::optional<Format> FormatOf(const std::filesystem::path& path);
@@ -99,7 +112,7 @@ bool IsWritable(Format format);
 bool IsWritable(const std::filesystem::path& path);
 bool IsReadable(const std::filesystem::path& path);
 // Which those are, for UnknownExtension and for callers that know more.
-inline constexpr char kWritableExtensions[] = ".bvh, .csv, .npy or .json";
+inline constexpr char kWritableExtensions[] = ".glb, .gltf, .bvh, .csv, .npy or .json";
 inline constexpr char kReadableExtensions[] =
     ".txt (SBU text), .bvh, .gltf, .glb, .amc (beside its .asf), .csv, .npy or .json";
 // INVALID_ARGUMENT "path: extension: came ..., wanted <known>".

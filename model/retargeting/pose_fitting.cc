@@ -37,7 +37,10 @@ Quaternion FitBranch(const RigJoint& joint, Quaternion to_parent, Quaternion pre
 
 }  // namespace
 
-PoseFitter::PoseFitter(const Rig& rig) : rig_(rig) { pose_.rotations.resize(rig.joints.size()); }
+PoseFitter::PoseFitter(const Rig& rig, BoneLengths lengths) : rig_(rig), lengths_(lengths) {
+  pose_.rotations.resize(rig.joints.size());
+  pose_.translations.resize(rig.joints.size());
+}
 
 const RigPose& PoseFitter::Fit(absl::Span<const motion::Vec3> positions) {
   const std::size_t count = rig_.joints.size();
@@ -48,10 +51,15 @@ const RigPose& PoseFitter::Fit(absl::Span<const motion::Vec3> positions) {
     const RigJoint& joint = rig_.joints[j];
     const std::size_t parent = static_cast<std::size_t>(joint.parent);
     const Quaternion parent_world = joint.parent < 0 ? Quaternion{} : world[parent];
-    stands_at[j] = joint.parent < 0 ? pose_.root_position
-                                    : stands_at[parent] + Rotate(parent_world, joint.offset);
-    Quaternion& rotation = pose_.rotations[j];
     const Quaternion to_parent = Inverse(parent_world);
+    const Vec3d above = joint.parent < 0 ? Vec3d{} : stands_at[parent];
+    if (joint.parent < 0 || lengths_ == BoneLengths::kCaptured) {
+      stands_at[j] = ToDouble(positions[Index(joint.joint)]);
+    } else {
+      stands_at[j] = above + Rotate(parent_world, joint.offset);
+    }
+    pose_.translations[j] = Rotate(to_parent, stands_at[j] - above);
+    Quaternion& rotation = pose_.rotations[j];
     if (joint.kind == RigJoint::Kind::kBranch) {
       rotation = FitBranch(joint, to_parent, rotation, positions);
     } else if (joint.kind == RigJoint::Kind::kAim) {

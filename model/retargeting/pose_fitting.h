@@ -14,6 +14,14 @@ namespace duet::retargeting {
 struct RigPose {
   Vec3d root_position;
   std::vector<Quaternion> rotations;  // [rig joints]
+  // Where each joint is from its parent, in its parent's axes; the root's is its position.
+  std::vector<Vec3d> translations;  // [rig joints]
+};
+
+// Captured bones change their lengths.
+enum class BoneLengths {
+  kRigs,     // every bone as long as the rig's: joints may be off
+  kCaptured  // joints stand where they were captured: translations differ from the rig's offsets
 };
 
 // From joint positions to joint angles, frame after frame; what a frame leaves open (the twist of a
@@ -25,7 +33,7 @@ struct RigPose {
 class PoseFitter {
  public:
   // `rig` outlives the fitter.
-  explicit PoseFitter(const Rig& rig);
+  explicit PoseFitter(const Rig& rig, BoneLengths lengths = BoneLengths::kRigs);
   // positions: [skeleton joints], metres.
   const RigPose& Fit(absl::Span<const motion::Vec3> positions);
 
@@ -36,6 +44,7 @@ class PoseFitter {
                      Quaternion previous) const;
 
   const Rig& rig_;
+  BoneLengths lengths_;
   bool first_ = true;
   RigPose pose_;
 };

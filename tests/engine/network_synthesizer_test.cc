@@ -275,5 +275,29 @@ TEST(NetworkSynthesizer, AnAnswerOfAnotherShapeIsRefused) {
   refused({motion::Poses(3, 14)}, "answered 3 frames of 14 joints, wanted 3 of 15");
 }
 
+TEST(NetworkSynthesizer, AWindowThatNobodyWantsFailsAlone) {
+  std::vector<SynthesisWindow> windows = {Window(), Window(), Window()};
+  windows[1].cancelled = std::make_shared<std::atomic<bool>>(true);
+  windows[2].cancelled = std::make_shared<std::atomic<bool>>(false);
+  const auto results = Model(LargerAndHigher)->Synthesize({&windows[0], &windows[1], &windows[2]});
+  EXPECT_THAT(results[0], IsOk());
+  EXPECT_THAT(results[1], StatusIs(absl::StatusCode::kCancelled, HasSubstr("cancelled")));
+  EXPECT_THAT(results[2], IsOk());
+}
+
+TEST(NetworkSynthesizer, TheNetworkSeesAWindowCancelledMeanwhile) {
+  SynthesisWindow window = Window();
+  const auto cancelled = std::make_shared<std::atomic<bool>>(false);
+  window.cancelled = cancelled;
+  const auto model = Model([&](Inputs inputs) -> Answer {
+    EXPECT_FALSE(AllCancelled(inputs));
+    cancelled->store(true);
+    EXPECT_TRUE(AllCancelled(inputs));
+    return LargerAndHigher(inputs);
+  });
+  EXPECT_THAT(RunOne(*model, window),
+              StatusIs(absl::StatusCode::kCancelled, HasSubstr("cancelled")));
+}
+
 }  // namespace
 }  // namespace duet::engine

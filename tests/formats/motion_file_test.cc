@@ -77,7 +77,7 @@ TEST_F(MotionFile, WhatAFormatCannotHoldIsRefused) {
   };
   EXPECT_THAT(refused(Format::kBvh, {pair_.leader, pair_.follower}),
               HasSubstr("came 2, wanted one"));
-  EXPECT_THAT(refused(Format::kGltf, {pair_.leader}), HasSubstr("format: came glTF"));
+  EXPECT_THAT(refused(Format::kAmc, {pair_.leader}), HasSubstr("format: came ASF/AMC"));
   EXPECT_THAT(refused(Format::kCsv, {}), HasSubstr("people: came 0"));
   EXPECT_THAT(refused(Format::kCsv, {pair_.leader, pair_.follower, pair_.leader}),
               HasSubstr("people: came 3"));
@@ -150,6 +150,35 @@ TEST_F(MotionFile, ReadsBackWhatItWrites) {
   }
 }
 
+TEST_F(MotionFile, WritesBothPeopleAsGltfInTheFormOfTheExtension) {
+  for (const char* name : {"a.glb", "a.gltf"}) {
+    const fs::path path = folder_ / name;
+    ASSERT_TRUE(WritePair(path, pair_, motion::SbuSkeleton()).ok());
+    const bool binary = base::ReadFile(path, 1 << 24, "a motion")->substr(0, 4) == "glTF";
+    EXPECT_EQ(binary, path.extension() == ".glb");
+    ReadOptions options;
+    for (Side side : {Side::kLeft, Side::kRight}) {
+      options.side = side;
+      const absl::StatusOr<motion::Clip> clip = ReadLeader(path, options);
+      ASSERT_TRUE(clip.ok()) << clip.status();
+      EXPECT_LT(LargestDistance(*clip, side == Side::kLeft ? pair_.leader : pair_.follower), 2e-5f);
+    }
+  }
+}
+
+TEST_F(MotionFile, WritesBvhInTheUnitThatIsAskedFor) {
+  WriteOptions metres;
+  metres.bvh_metres_per_unit = 1;
+  const auto text = FormatPeople(Format::kBvh, {pair_.leader}, motion::SbuSkeleton(), metres);
+  ASSERT_TRUE(text.ok()) << text.status();
+  ReadOptions options;
+  options.format = Format::kBvh;
+  options.metres_per_unit = 1;
+  const absl::StatusOr<motion::Clip> clip = ParseLeader(*text, "written", options);
+  ASSERT_TRUE(clip.ok()) << clip.status();
+  EXPECT_LT(LargestDistance(*clip, pair_.leader), 1e-3f);
+}
+
 TEST_F(MotionFile, WritesABvhForEachPersonInOneWorld) {
   const absl::StatusOr<std::vector<fs::path>> written =
       WritePair(folder_ / "a.b.bvh", pair_, motion::SbuSkeleton());
@@ -182,7 +211,7 @@ TEST_F(MotionFile, ReadsEitherPersonOfAGltfFileAndItsBufferBesideIt) {
       for (motion::Vec3& p : larger.poses.all()) p = p * 2;
       EXPECT_LT(LargestDistance(*clip, larger), 0.002f) << name;
     }
-    EXPECT_FALSE(IsWritable(name));
+    EXPECT_TRUE(IsWritable(name));
   }
 }
 
@@ -306,7 +335,7 @@ TEST_F(MotionFile, NamesExtensionsItKnows) {
   EXPECT_THAT(std::string(ReadLeader("a.fbx").status().message()),
               HasSubstr("extension: came \".fbx\", wanted .txt (SBU text), .bvh"));
   EXPECT_THAT(std::string(WritePair("a.txt", pair_, motion::SbuSkeleton()).status().message()),
-              HasSubstr("extension: came \".txt\", wanted .bvh, .csv"));
+              HasSubstr("extension: came \".txt\", wanted .glb, .gltf, .bvh, .csv"));
   EXPECT_TRUE(IsWritable("a.json"));
   EXPECT_FALSE(IsWritable("a.txt"));
   EXPECT_FALSE(IsWritable("a"));

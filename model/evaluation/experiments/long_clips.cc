@@ -10,7 +10,7 @@
 namespace duet::evaluation::experiments {
 namespace {
 
-constexpr double kSpeedSeconds = 10;
+constexpr double kEndSeconds = 10;
 
 double Floor(const motion::Skeleton& skeleton, const motion::Poses& leader) {
   if (!skeleton.feet) return 0;
@@ -34,31 +34,37 @@ double Farthest(const motion::Skeleton& skeleton, const motion::Poses& leader,
   return farthest;
 }
 
-double SpeedOf(const motion::Poses& poses, int first, int count, double rate) {
+motion::Poses Part(const motion::Poses& poses, int first, int count) {
   motion::Poses part(0, poses.joint_count());
   part.Append(poses.frames(first, count));
-  return metrics::JointSpeed(part, rate);
+  return part;
 }
 
 }  // namespace
 
 LongClipFigures MeasureLongClip(const motion::Skeleton& skeleton, const motion::Poses& leader,
                                 const motion::Poses& follower, double frame_rate_hz) {
-  const metrics::FloorGap gap =
-      metrics::MeasureFloorGap(follower, skeleton, Floor(skeleton, leader));
+  const double floor = Floor(skeleton, leader);
   const motion::Poses calm = metrics::WithoutNoise(follower, frame_rate_hz);
   const int frames = calm.frame_count();
-  const int part = std::min(frames, static_cast<int>(std::lround(kSpeedSeconds * frame_rate_hz)));
-  const auto lean = [&](metrics::LeanFrom from) {
-    return MeasureLean(follower, skeleton, frame_rate_hz, from).max_degrees;
+  const int part = std::min(frames, static_cast<int>(std::lround(kEndSeconds * frame_rate_hz)));
+  const motion::Poses end = Part(follower, frames - part, part);
+  const auto lean = [&](const motion::Poses& poses, metrics::LeanFrom from) {
+    return MeasureLean(poses, skeleton, frame_rate_hz, from);
   };
-  return {lean(metrics::LeanFrom::kHips),
-          lean(metrics::LeanFrom::kFeet),
-          gap.above,
-          gap.below,
-          Farthest(skeleton, leader, follower),
-          SpeedOf(calm, 0, part, frame_rate_hz),
-          SpeedOf(calm, frames - part, part, frame_rate_hz)};
+  const metrics::FloorGap gap = metrics::MeasureFloorGap(follower, skeleton, floor);
+  LongClipFigures figures;
+  figures.trunk_lean = lean(follower, metrics::LeanFrom::kHips).max_degrees;
+  figures.body_lean = lean(follower, metrics::LeanFrom::kFeet).max_degrees;
+  figures.feet_above = gap.above;
+  figures.feet_below = gap.below;
+  figures.farthest = Farthest(skeleton, leader, follower);
+  figures.first_speed = metrics::JointSpeed(Part(calm, 0, part), frame_rate_hz);
+  figures.last_speed = metrics::JointSpeed(Part(calm, frames - part, part), frame_rate_hz);
+  figures.last_lean = std::fmax(lean(end, metrics::LeanFrom::kHips).mean_degrees,
+                                lean(end, metrics::LeanFrom::kFeet).mean_degrees);
+  figures.last_feet = metrics::MeasureFloorGap(end, skeleton, floor).mean;
+  return figures;
 }
 
 LongClipFigures Worst(const std::vector<LongClipRow>& rows) {
@@ -72,6 +78,8 @@ LongClipFigures Worst(const std::vector<LongClipRow>& rows) {
     worst.farthest = std::fmax(worst.farthest, figures.farthest);
     worst.first_speed = std::fmin(worst.first_speed, figures.first_speed);
     worst.last_speed = std::fmin(worst.last_speed, figures.last_speed);
+    worst.last_lean = std::fmax(worst.last_lean, figures.last_lean);
+    worst.last_feet = std::fmax(worst.last_feet, figures.last_feet);
   }
   return worst;
 }

@@ -21,6 +21,8 @@ struct LongClipFigures {
   double farthest = 0;     // the largest distance of the two roots along the floor
   double first_speed = 0;  // of the joints, over the first ten seconds,
   double last_speed = 0;   // and over the last ten, both without noise
+  double last_lean = 0;    // over the last ten seconds, the larger of the two leans' means,
+  double last_feet = 0;    // and the mean of how far the lower foot is from the floor
 };
 
 // The floor is where the leader's lower foot is in half of the frames.

@@ -91,13 +91,14 @@ double RootDistance(const motion::Poses& leader, const motion::Poses& follower,
 
 FloorGap MeasureFloorGap(const motion::Poses& poses, const motion::Skeleton& skeleton,
                          double floor) {
-  if (!skeleton.feet) return {kNone, kNone};
+  if (!skeleton.feet) return {kNone, kNone, kNone};
   FloorGap gap;
   for (int t = 0; t < poses.frame_count(); ++t) {
     const double lower =
         std::min(poses.at(t, skeleton.feet->left).y, poses.at(t, skeleton.feet->right).y) - floor;
     gap.above = std::max(gap.above, lower);
     gap.below = std::max(gap.below, -lower);
+    gap.mean += std::abs(lower) / poses.frame_count();
   }
   return gap;
 }

@@ -32,10 +32,11 @@ double FacingDegrees(const motion::Poses& leader, const motion::Poses& follower,
 double RootDistance(const motion::Poses& leader, const motion::Poses& follower,
                     const motion::Skeleton& skeleton);
 
-// How far the lower foot gets from a floor at a height. Both 0 or more.
+// How far the lower foot gets from a floor at a height. All 0 or more.
 struct FloorGap {
   double above = 0;
   double below = 0;
+  double mean = 0;  // above or below, over all frames
 };
 FloorGap MeasureFloorGap(const motion::Poses& poses, const motion::Skeleton& skeleton,
                          double floor);

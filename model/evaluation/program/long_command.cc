@@ -65,6 +65,21 @@ absl::Status AddFold(const dataset::Dataset& dataset, const FoldModel& model,
   return absl::OkStatus();
 }
 
+// What captured followers of the left-out people show on the same measures, clip by clip.
+absl::Status AddCaptured(const dataset::Dataset& dataset, const std::string& subject,
+                         std::vector<experiments::LongClipRow>* rows) {
+  absl::StatusOr<dataset::Split> split = LeaveSubjectOut(dataset, subject);
+  if (!split.ok()) return split.status();
+  for (const int s : split->test) {
+    const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(s)];
+    rows->push_back(
+        {"people", "clips as captured", sequence.interaction_class,
+         experiments::MeasureLongClip(dataset.skeleton, sequence.pair.leader.poses,
+                                      sequence.pair.follower.poses, dataset.frame_rate_hz)});
+  }
+  return absl::OkStatus();
+}
+
 absl::StatusOr<std::vector<report::Table>> Tables(const dataset::Dataset& dataset,
                                                   const std::vector<FoldModel>& models,
                                                   const std::vector<std::string>& subjects,
@@ -73,6 +88,10 @@ absl::StatusOr<std::vector<report::Table>> Tables(const dataset::Dataset& datase
   for (const double seconds : arguments.seconds) {
     for (const std::string& start : arguments.starts) {
       std::vector<experiments::LongClipRow> rows;
+      for (const std::string& subject : subjects) {
+        absl::Status status = AddCaptured(dataset, subject, &rows);
+        if (!status.ok()) return status;
+      }
       for (const FoldModel& model : models) {
         for (const std::string& subject : subjects) {
           absl::Status status =
@@ -96,7 +115,8 @@ report::ResultSection MakeSection(const Experiment& experiment, const Arguments&
       "one before. Four are made by formulas and unlike anything in the captures: one stands and "
       "sways, one walks an eight, one dances, one sits down and gets up. \"captured\" are the "
       "class's clips of the left-out person one after the other. A figure is the worst over the "
-      "folds.");
+      "folds. The first row, for comparison: the left-out people's own captured followers, clip by "
+      "clip, a few seconds each.");
   section.settings.emplace_back("variety", absl::StrCat(arguments.asked.variety));
   section.settings.emplace_back("seed", absl::StrCat(arguments.asked.seed));
   section.command = absl::StrCat("duet-eval long --data DIR", ModelWords(arguments.flags.models),

@@ -56,20 +56,21 @@ Table LeanTable(const std::string& what, const std::vector<std::string>& classes
 Table WorstTable(const std::string& title, const Groups& groups) {
   Table table;
   table.title = title;
-  table.columns = {"trunk lean", "body lean",   "feet above", "feet below",
-                   "farthest",   "first speed", "last speed"};
+  table.columns = {"trunk lean", "body lean", "feet above",  "feet below", "farthest",
+                   "last lean",  "last feet", "first speed", "last speed"};
   for (const auto& [name, rows] : groups) {
     const LongClipFigures w = Worst(rows);
     table.rows.push_back({name,
                           {w.trunk_lean, w.body_lean, w.feet_above, w.feet_below, w.farthest,
-                           w.first_speed, w.last_speed},
+                           w.last_lean, w.last_feet, w.first_speed, w.last_speed},
                           false});
   }
   table.notes = {
       "Leans: degrees. Feet: how far the lower foot gets from the leader's floor, metres. "
       "Farthest: "
-      "distance to the leader, metres. Speeds of the joints over the first and the last ten "
-      "seconds, without noise, m/s."};
+      "distance to the leader, metres. Over the last ten seconds: the larger lean's mean, and the "
+      "lower foot's mean distance from the floor. Speeds of the joints over the first and the last "
+      "ten seconds, without noise, m/s."};
   return table;
 }
 

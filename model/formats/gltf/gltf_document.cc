@@ -180,6 +180,7 @@ class DocumentReader {
     if (reader.ok() && !absl::StartsWith(version, "2.")) {
       reader.Fail("version", absl::StrCat(base::Quoted(version), ", wanted 2.0"));
     }
+    ReadWriter(asset);
     root_.Update(reader.status());
     if (!root_.ok() || !root_.Has("extensionsRequired")) return;
     for (const std::string& extension : root_.Strings("extensionsRequired", kMaxItems)) {
@@ -187,6 +188,16 @@ class DocumentReader {
         root_.Fail("extensionsRequired", absl::StrCat(extension, ": export without compression"));
       }
     }
+  }
+
+  // Nothing depends on it: what another program has there in another form is passed over.
+  void ReadWriter(const Json& asset) {
+    const auto writer = asset.find("generator");
+    if (writer != asset.end() && writer->is_string()) document_.writer = *writer;
+    const auto extras = asset.find("extras");
+    if (extras == asset.end() || !extras->is_object()) return;
+    const auto rate = extras->find("frame_rate_hz");
+    if (rate != extras->end() && rate->is_number()) document_.frame_rate_hz = rate->get<double>();
   }
 
   void ReadBuffer(base::ObjectReader* reader) {

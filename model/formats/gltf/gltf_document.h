@@ -70,6 +70,8 @@ struct GltfBuffer {
 // What a glTF 2.0 file says of skeletons and their motion. Every index has been checked, nodes form
 // trees, and nobody has touched a buffer yet.
 struct GltfDocument {
+  std::string writer;                   // the program, where the file says it
+  std::optional<double> frame_rate_hz;  // where Duet wrote it
   std::vector<GltfNode> nodes;
   std::vector<GltfSkin> skins;
   std::vector<GltfAnimation> animations;

@@ -11,6 +11,7 @@
 #include "absl/strings/str_cat.h"
 #include "model/base/text.h"
 #include "model/formats/gltf/gltf_animation.h"
+#include "model/formats/gltf/gltf_writer.h"
 #include "model/motion/motion_limits.h"
 
 namespace duet::formats::gltf {
@@ -333,15 +334,21 @@ class Importer {
 
   absl::StatusOr<motion::Clip> Play(Puppet* puppet, absl::string_view source) const {
     Timing timing = FindTiming(*puppet);
+    const std::optional<double> stated = StatedRate();
     if (options_.frame_rate_hz.has_value()) {
       timing.rate_hz = *options_.frame_rate_hz;
+    } else if (stated.has_value()) {
+      timing.rate_hz = *stated;
     } else {
       Note(absl::StrCat("frame rate: ", timing.rate_hz, " Hz, as the animation's keys suggest"));
     }
     if (options_.report != nullptr) {
-      options_.report->frame_rate =
-          retargeting::Setting{absl::StrCat(timing.rate_hz, " Hz"), retargeting::Origin::kGuessed,
-                               "as the animation's keys suggest"};
+      options_.report->frame_rate = stated.has_value()
+                                        ? retargeting::Setting{absl::StrCat(timing.rate_hz, " Hz"),
+                                                               retargeting::Origin::kFile, ""}
+                                        : retargeting::Setting{absl::StrCat(timing.rate_hz, " Hz"),
+                                                               retargeting::Origin::kGuessed,
+                                                               "as the animation's keys suggest"};
     }
     // A last frame that falls short of the end by rounding alone counts.
     const double frames = std::floor((timing.end - timing.start) * timing.rate_hz + 1e-3) + 1;
@@ -357,7 +364,22 @@ class Importer {
     character.pose = [&](int frame) {
       return puppet->PoseAt(timing.start + frame / timing.rate_hz);
     };
-    return ToClip(character, source, options_);
+    retargeting::CharacterOptions options = options_;
+    if (document_.writer == kDuetsWriter) {
+      // As the format has them; a child's legs would suggest another unit.
+      options.metres_per_unit = options.metres_per_unit.value_or(1);
+      options.up_axis = options.up_axis.value_or(motion::UpAxis::kYUp);
+    }
+    return ToClip(character, source, options);
+  }
+
+  // The rate that a file of Duet's own says; absent where that is none.
+  std::optional<double> StatedRate() const {
+    if (document_.writer != kDuetsWriter || !document_.frame_rate_hz.has_value() ||
+        !motion::CheckFrameRate("frame rate", *document_.frame_rate_hz).ok()) {
+      return std::nullopt;
+    }
+    return document_.frame_rate_hz;
   }
 
   const GltfDocument& document_;

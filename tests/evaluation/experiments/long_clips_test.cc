@@ -24,6 +24,8 @@ TEST(LongClipsTest, SeesAFollowerFallOverAndDriftAway) {
   EXPECT_LT(upright.feet_below, 0.01);
   EXPECT_LT(upright.farthest, 0.01);
   EXPECT_NEAR(upright.first_speed, upright.last_speed, 0.01);
+  EXPECT_LT(upright.last_lean, 5);
+  EXPECT_LT(upright.last_feet, 0.01);
   // It lies in the air, 3 m away, from the middle on.
   motion::Poses follower = leader;
   for (int t = 300; t < follower.frame_count(); ++t) {
@@ -34,6 +36,21 @@ TEST(LongClipsTest, SeesAFollowerFallOverAndDriftAway) {
   EXPECT_NEAR(fallen.body_lean, 90, 5);
   EXPECT_NEAR(fallen.feet_above, 0.4, 0.01);
   EXPECT_GT(fallen.farthest, 2.5);
+  EXPECT_NEAR(fallen.last_lean, 90, 5);
+  EXPECT_NEAR(fallen.last_feet, 0.4, 0.01);
+}
+
+TEST(LongClipsTest, TheEndTellsWhetherItStoodUpAgain) {
+  const motion::Poses leader = MakeLeader("idle", 40, kRate);
+  motion::Poses follower = leader;
+  for (int t = 200; t < 300; ++t) {
+    for (motion::Vec3& p : follower[t]) p = {p.y, 0.4f, p.z};
+  }
+  const LongClipFigures figures = MeasureLongClip(motion::SbuSkeleton(), leader, follower, kRate);
+  EXPECT_NEAR(figures.trunk_lean, 90, 5);
+  EXPECT_NEAR(figures.feet_above, 0.4, 0.01);
+  EXPECT_LT(figures.last_lean, 5);
+  EXPECT_LT(figures.last_feet, 0.01);
 }
 
 TEST(LongClipsTest, TellsTheFirstSecondsFromTheLast) {
@@ -49,8 +66,8 @@ TEST(LongClipsTest, TellsTheFirstSecondsFromTheLast) {
 
 TEST(LongClipsTest, TheWorstIsTheLargestLeanAndTheLeastSpeed) {
   const double none = std::numeric_limits<double>::quiet_NaN();
-  const LongClipFigures worst = Worst({{"a", "idle", 0, {1, 5, 0.1, 0.4, 2, 0.3, 0.5}},
-                                       {"a", "idle", 1, {3, 4, none, 0.3, 1, 0.2, 0.6}}});
+  const LongClipFigures worst = Worst({{"a", "idle", 0, {1, 5, 0.1, 0.4, 2, 0.3, 0.5, 7, 0.1}},
+                                       {"a", "idle", 1, {3, 4, none, 0.3, 1, 0.2, 0.6, 8, none}}});
   EXPECT_EQ(worst.trunk_lean, 3);
   EXPECT_EQ(worst.body_lean, 5);
   EXPECT_EQ(worst.feet_above, 0.1);
@@ -58,6 +75,8 @@ TEST(LongClipsTest, TheWorstIsTheLargestLeanAndTheLeastSpeed) {
   EXPECT_EQ(worst.farthest, 2);
   EXPECT_EQ(worst.first_speed, 0.2);
   EXPECT_EQ(worst.last_speed, 0.5);
+  EXPECT_EQ(worst.last_lean, 8);
+  EXPECT_EQ(worst.last_feet, 0.1);
 }
 
 }  // namespace

@@ -93,6 +93,7 @@ TEST(FloorGapTest, IsOfTheLowerFoot) {
   const FloorGap gap = MeasureFloorGap(poses, Figure(), 0);
   EXPECT_NEAR(gap.above, 0.2, 1e-6);
   EXPECT_NEAR(gap.below, 0.1, 1e-6);
+  EXPECT_NEAR(gap.mean, (0.2 + 0.1) / 3, 1e-6);
   EXPECT_NEAR(MeasureFloorGap(poses, Figure(), 0.05).above, 0.15, 1e-6);
 }
 

@@ -96,10 +96,10 @@ TEST(SampleCommandsTest, LongHasARowALeader) {
   const auto section = RunCommand({"long", "--seconds", "5", "--starts", "pose"});
   ASSERT_THAT(section, IsOk());
   ASSERT_THAT(section->tables, SizeIs(3));
-  EXPECT_THAT(
-      RowNames(section->tables[0]),
-      ElementsAre("duet: idle", "duet: walk_eight", "duet: dance", "duet: sit", "duet: captured"));
-  EXPECT_THAT(section->tables[2].rows, SizeIs(6));
+  EXPECT_THAT(RowNames(section->tables[0]),
+              ElementsAre("people: clips as captured", "duet: idle", "duet: walk_eight",
+                          "duet: dance", "duet: sit", "duet: captured"));
+  EXPECT_THAT(section->tables[2].rows, SizeIs(2 * 6));
 }
 
 TEST(SampleCommandsTest, ToldApartHasAColumnAFold) {

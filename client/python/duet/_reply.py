@@ -1,0 +1,162 @@
+"""Checks a response stream message by message and gathers the follower.
+
+A call whose stream broke is run again from its first frame: ``start_stream`` begins each stream,
+and frames that an earlier one handed out are not handed out twice. The counterpart of the C++
+client's ReplyAssembler (client/internal/reply_assembler.h).
+"""
+
+from __future__ import annotations
+
+from typing import List, Optional
+
+import grpc
+import numpy as np
+
+from duet._wire import UNITS, UP_AXES
+from duet.errors import DuetError, MalformedReplyError, make_error
+from duet.motion import Motion, Positions
+from duet.result import FollowerChunk, SynthesisResult, Timings
+from duet.v1 import synthesis_pb2
+
+# What a proxy or a dying server resets streams under. What the service itself says under these
+# codes always carries a reason.
+_RESETS = (grpc.StatusCode.INTERNAL, grpc.StatusCode.UNKNOWN, grpc.StatusCode.CANCELLED)
+
+
+def _is_broken_connection(error: DuetError) -> bool:
+    if error.code is grpc.StatusCode.UNAVAILABLE:
+        return True
+    return error.code in _RESETS and not error.reason
+
+
+def _malformed(what: str) -> MalformedReplyError:
+    return MalformedReplyError(grpc.StatusCode.INTERNAL,
+                               f"the server's reply is malformed: {what}")
+
+
+class ReplyAssembler:
+    """One call's reply, over all its streams."""
+
+    def __init__(self, leader: Motion) -> None:
+        self._leader = leader
+        self.handed_out = 0
+        """Frames that the caller has, over all streams."""
+        self.start_stream()
+
+    def start_stream(self) -> None:
+        self.header: Optional[synthesis_pb2.SynthesisHeader] = None
+        self._summary: Optional[synthesis_pb2.SynthesisSummary] = None
+        self._chunks: List[Positions] = []
+        self.received = 0
+
+    def accept(self, response: synthesis_pb2.SynthesizeResponse) -> Optional[FollowerChunk]:
+        """Takes a message; frames that the caller does not have yet, where there are any.
+
+        Raises MalformedReplyError when the message breaks the contract.
+        """
+        if self._summary is not None:
+            raise _malformed("a message after the summary")
+        kind = response.WhichOneof("payload")
+        if kind == "header":
+            self._accept_header(response.header)
+        elif kind == "chunk":
+            return self._accept_chunk(response.chunk)
+        elif kind == "summary":
+            self._accept_summary(response.summary)
+        else:
+            raise _malformed("a message without a payload")
+        return None
+
+    def _accept_header(self, header: synthesis_pb2.SynthesisHeader) -> None:
+        leader = self._leader
+        if self.header is not None:
+            raise _malformed("a second header")
+        if tuple(header.joint_names) != leader.joint_names:
+            raise _malformed("header.joint_names differ from the leader's")
+        if header.frame_rate_hz != leader.frame_rate_hz:
+            raise _malformed(f"header.frame_rate_hz: {header.frame_rate_hz}, wanted the leader's "
+                             f"{leader.frame_rate_hz}")
+        if (header.unit, header.up_axis) != (UNITS[leader.unit], UP_AXES[leader.up_axis]):
+            raise _malformed(f"header.unit and up_axis: {header.unit}, {header.up_axis}, wanted "
+                             f"{leader.unit}, {leader.up_axis}")
+        if header.frame_count != leader.frame_count:
+            raise _malformed(f"header.frame_count: {header.frame_count}, wanted the leader's "
+                             f"{leader.frame_count}")
+        self.header = header
+
+    def _accept_chunk(self, chunk: synthesis_pb2.MotionChunk) -> Optional[FollowerChunk]:
+        positions = self._read_chunk(chunk)
+        self._chunks.append(positions)
+        first, self.received = self.received, self.received + chunk.frame_count
+        if self.received <= self.handed_out:
+            return None
+        new = FollowerChunk(max(first, self.handed_out),
+                            positions[max(self.handed_out - first, 0):])
+        self.handed_out = self.received
+        return new
+
+    def _read_chunk(self, chunk: synthesis_pb2.MotionChunk) -> Positions:
+        if self.header is None:
+            raise _malformed("a chunk before the header")
+        if chunk.first_frame != self.received:
+            raise _malformed(f"chunk.first_frame: {chunk.first_frame}, wanted {self.received}")
+        left = self._leader.frame_count - self.received
+        if not 1 <= chunk.frame_count <= left:
+            raise _malformed(f"chunk.frame_count: {chunk.frame_count}, wanted 1 to {left}")
+        shape = (chunk.frame_count, self._leader.joint_count, 3)
+        if len(chunk.positions) != np.prod(shape):
+            raise _malformed(f"chunk.positions: {len(chunk.positions)} values, wanted "
+                             f"{np.prod(shape)} for {chunk.frame_count} frames")
+        positions = np.array(chunk.positions, dtype=np.float32).reshape(shape)
+        finite = np.isfinite(positions.ravel())
+        if not finite.all():
+            raise _malformed(f"chunk.positions[{int(np.argmin(finite))}] is not finite, in the "
+                             f"chunk of frame {chunk.first_frame}")
+        return positions
+
+    def _accept_summary(self, summary: synthesis_pb2.SynthesisSummary) -> None:
+        if self.header is None:
+            raise _malformed("a summary before the header")
+        if self.received != self._leader.frame_count:
+            raise _malformed(f"a summary after {self.received} of {self._leader.frame_count} "
+                             "frames")
+        if summary.frame_count != self.received:
+            raise _malformed(f"summary.frame_count: {summary.frame_count}, wanted {self.received}")
+        if summary.chunk_count != len(self._chunks):
+            raise _malformed(f"summary.chunk_count: {summary.chunk_count}, but "
+                             f"{len(self._chunks)} chunks came")
+        if summary.HasField("unfamiliarity") and not (
+                np.isfinite(summary.unfamiliarity) and summary.unfamiliarity >= 0):
+            raise _malformed(f"summary.unfamiliarity: {summary.unfamiliarity}, wanted a finite "
+                             "value of 0 or more")
+        self._summary = summary
+
+    def end_stream(self, error: Optional[DuetError]) -> Optional[DuetError]:
+        """None where the reply is whole, after the stream ended with ``error`` or well."""
+        if error is not None and not _is_broken_connection(error):
+            return error
+        if self._summary is not None:
+            return None  # the reply was whole before anything broke
+        if error is not None and self.header is None:
+            return error
+        message = (f"the reply ended without a summary, after {self.received} of "
+                   f"{self._leader.frame_count} frames{f': {error.message}' if error else ''}")
+        return make_error(grpc.StatusCode.UNAVAILABLE, message,
+                          violations=error.violations if error else (),
+                          reason=error.reason if error else "",
+                          retry_delay=error.retry_delay if error else None)
+
+    def result(self, attempts: int, first_chunk: float, total: float) -> SynthesisResult:
+        """The gathered reply, after end_stream returned None."""
+        assert self.header is not None and self._summary is not None
+        header, summary = self.header, self._summary
+        return SynthesisResult(
+            leader=self._leader,
+            follower=self._leader.with_positions(np.concatenate(self._chunks)),
+            model_name=header.model_name, model_version=header.model_version,
+            interaction_classes=tuple(header.interaction_classes), request_id=header.request_id,
+            seed=header.seed, variety=header.variety,
+            cleaned_up=header.clean_up == synthesis_pb2.CLEAN_UP_ON,
+            unfamiliarity=(summary.unfamiliarity if summary.HasField("unfamiliarity") else None),
+            window_count=summary.window_count, attempt_count=attempts,
+            timings=Timings(first_chunk, total, summary.queue_seconds, summary.compute_seconds))

@@ -1,0 +1,25 @@
+"""How values are spelled, here and on the wire."""
+
+from __future__ import annotations
+
+from duet.v1 import motion_pb2, synthesis_pb2
+
+UNITS = {
+    "metres": motion_pb2.LENGTH_UNIT_METRES,
+    "millimetres": motion_pb2.LENGTH_UNIT_MILLIMETRES,
+    "sbu-normalised": motion_pb2.LENGTH_UNIT_SBU_NORMALISED,
+}
+UP_AXES = {
+    "y-up": motion_pb2.UP_AXIS_Y_UP,
+    "z-up": motion_pb2.UP_AXIS_Z_UP,
+    "y-down": motion_pb2.UP_AXIS_Y_DOWN,
+}
+PRIORITIES = {
+    "interactive": synthesis_pb2.PRIORITY_INTERACTIVE,
+    "bulk": synthesis_pb2.PRIORITY_BULK,
+}
+CLEAN_UP = {
+    None: synthesis_pb2.CLEAN_UP_UNSPECIFIED,
+    True: synthesis_pb2.CLEAN_UP_ON,
+    False: synthesis_pb2.CLEAN_UP_OFF,
+}

@@ -1,0 +1,199 @@
+"""The client whose calls wait for their answers. :mod:`duet.aio` has its asynchronous twin."""
+
+from __future__ import annotations
+
+import threading
+from types import TracebackType
+from typing import Any, Callable, Generator, Iterable, Iterator, List, Optional, Type, TypeVar
+
+import grpc
+
+from duet import _channel, batch
+from duet._call import Attempts, CallSettings, SynthesisCall
+from duet._signature import spelled_out
+from duet.errors import CancelledError, DuetError, from_rpc_error
+from duet.options import TlsOptions
+from duet.request import SynthesisRequest, to_selector
+from duet.result import (FollowerChunk, ModelDetails, ModelInfo, SynthesisResult,
+                         details_from_proto, model_from_proto)
+from duet.retry import RetryOptions
+from duet.v1 import synthesis_pb2, synthesis_pb2_grpc
+
+_Answer = TypeVar("_Answer")
+
+
+class Client:
+    """Asks a Duet server to answer one character's motion with another's.
+
+    >>> client = duet.Client("localhost:50051")
+    >>> result = client.synthesize(leader, labels={"hug": 1, "push": 0.5}, seed=3)
+    >>> result.follower.positions                     # [frames, joints, 3]
+
+    Calls may come from several threads. A client is closed by :meth:`close` or by ``with``.
+
+    Args:
+        address: ``host:port``, or any gRPC target (``unix:/run/duet.sock``). A name that stands for
+            several servers is balanced over all of them.
+        timeout: seconds for a whole call, all its attempts included.
+        tls: encrypts; None: plain text.
+        token: a bearer token, for servers that ask for one. Wants ``tls``, but on this machine.
+        retry: how often and how patiently a call is attempted.
+
+    Raises:
+        ValueError: an argument makes no sense.
+    """
+
+    def __init__(self, address: str = "localhost:50051", *, timeout: float = 120.0,
+                 tls: Optional[TlsOptions] = None, token: str = "",
+                 retry: RetryOptions = RetryOptions()) -> None:
+        self._settings = _channel.check_settings(address, timeout, retry, tls, token)
+        target, arguments = _channel.target(address), _channel.channel_arguments(retry, tls)
+        if tls is None:
+            self._channel = grpc.insecure_channel(target, arguments)
+        else:
+            self._channel = grpc.secure_channel(target, _channel.credentials(tls), arguments)
+        self._stub = synthesis_pb2_grpc.MotionSynthesisStub(  # type: ignore[no-untyped-call]
+            self._channel)
+
+    def close(self) -> None:
+        """Ends the connection, and every call that is still being answered."""
+        self._channel.close()
+
+    def __enter__(self) -> Client:
+        return self
+
+    def __exit__(self, kind: Optional[Type[BaseException]], error: Optional[BaseException],
+                 traceback: Optional[TracebackType]) -> None:
+        self.close()
+
+    def list_models(self) -> List[ModelInfo]:
+        """Every model version being served, by name, newest version first."""
+        response = self._unary(self._stub.ListModels, synthesis_pb2.ListModelsRequest())
+        return [model_from_proto(model) for model in response.models]
+
+    def get_model(self, model: str = "") -> ModelDetails:
+        """One model version (as :attr:`duet.SynthesisRequest.model` names it) and its limits."""
+        request = synthesis_pb2.GetModelRequest(model=to_selector(model))
+        return details_from_proto(self._unary(self._stub.GetModel, request))
+
+    def synthesize_request(self, request: SynthesisRequest) -> SynthesisResult:
+        """Waits for the whole follower."""
+        return self.stream_request(request).result()
+
+    def stream_request(self, request: SynthesisRequest) -> SynthesisStream:
+        """The follower's frames as they arrive."""
+        return SynthesisStream(self._stub, self._channel, SynthesisCall(request, self._settings))
+
+    synthesize = spelled_out(synthesize_request, SynthesisRequest, "synthesize")
+    stream = spelled_out(stream_request, SynthesisRequest, "stream")
+
+    def synthesize_many(self, requests: Iterable[SynthesisRequest], *,
+                        concurrency: int = 4) -> Iterator[batch.Outcome]:
+        """Answers many requests, at most ``concurrency`` of them at a time.
+
+        Outcomes come in the order of the requests, each with a result or with what that call failed
+        with: one refusal does not end the others. Requests are taken from the iterable as they are
+        needed, so that it may be long or made on the way. Give them ``priority="bulk"``: then they
+        yield to interactive calls and wait while the server is full.
+        """
+        return batch.run(self.synthesize_request, requests, concurrency)
+
+    def _unary(self, method: Any, request: Any) -> Any:
+        attempts = Attempts(self._settings)
+        while True:
+            try:
+                return method(request, timeout=attempts.begin(), metadata=attempts.metadata)
+            except grpc.RpcError as error:
+                wait = attempts.wait_after(from_rpc_error(error))
+            _wait(self._channel, wait, threading.Event())
+
+
+class SynthesisStream(Iterator[FollowerChunk]):
+    """The follower's frames as they arrive, in order and each once, also where a call is retried.
+
+    >>> with client.stream(leader, {"kick": 1}) as stream:
+    ...     for chunk in stream:
+    ...         show(chunk.first_frame, chunk.positions)
+    >>> stream.result().unfamiliarity
+
+    Iterating raises :class:`duet.DuetError` where the call fails. Leaving ``with`` early, or
+    :meth:`cancel` (from any thread), ends the call.
+    """
+
+    def __init__(self, stub: synthesis_pb2_grpc.MotionSynthesisStub, channel: grpc.Channel,
+                 call: SynthesisCall) -> None:
+        self._stub, self._channel, self._call = stub, channel, call
+        self._cancelled = threading.Event()
+        self._cancel_stream: Callable[[], Any] = lambda: None
+        self._result: Optional[SynthesisResult] = None
+        self._frames = self._receive()
+
+    def __iter__(self) -> SynthesisStream:
+        return self
+
+    def __next__(self) -> FollowerChunk:
+        return next(self._frames)
+
+    def __enter__(self) -> SynthesisStream:
+        return self
+
+    def __exit__(self, kind: Optional[Type[BaseException]], error: Optional[BaseException],
+                 traceback: Optional[TracebackType]) -> None:
+        self.cancel()
+
+    def cancel(self) -> None:
+        """Ends the call. A result that is whole already stays."""
+        self._cancelled.set()
+        self._cancel_stream()
+
+    def result(self) -> SynthesisResult:
+        """The whole follower: waits for the chunks that nobody has taken yet."""
+        for _ in self._frames:
+            pass
+        if self._result is None:
+            raise CancelledError(grpc.StatusCode.CANCELLED, "the stream ended before its result")
+        return self._result
+
+    def _receive(self) -> Generator[FollowerChunk, None, None]:
+        wait: Optional[float] = 0.0
+        while wait is not None:
+            self._sleep(wait)
+            error = yield from self._attempt()
+            if error is not None and self._cancelled.is_set():
+                raise CancelledError(grpc.StatusCode.CANCELLED, "the call was cancelled")
+            wait = self._call.wait_after(error)
+        self._result = self._call.result()
+
+    def _attempt(self) -> Generator[FollowerChunk, None, Optional[DuetError]]:
+        """One stream from its first message to its end; what it ended with."""
+        request, seconds = self._call.begin()
+        responses = self._stub.Synthesize(request, timeout=seconds,
+                                          metadata=self._call.attempts.metadata)
+        self._cancel_stream = responses.cancel
+        if self._cancelled.is_set():
+            responses.cancel()
+        try:
+            for response in responses:
+                chunk = self._call.accept(response)
+                if chunk is not None:
+                    yield chunk
+        except grpc.RpcError as error:
+            return from_rpc_error(error)
+        finally:
+            responses.cancel()  # of no effect where the stream is at its end
+        return None
+
+    def _sleep(self, seconds: float) -> None:
+        if seconds > 0:
+            _wait(self._channel, seconds, self._cancelled)
+
+
+def _wait(channel: grpc.Channel, seconds: float, ended: threading.Event) -> None:
+    """Waits, and looks after a lost connection meanwhile: between calls nobody else does. A question
+    about the server's health waits for the connection; what it is answered is of no interest."""
+    probe = channel.unary_unary("/grpc.health.v1.Health/Check").future(
+        b"", timeout=seconds, wait_for_ready=True)
+    try:
+        ended.wait(seconds)
+    finally:
+        probe.cancel()

@@ -1,0 +1,1 @@
+"""Made from the proto files: scripts/python_stubs.sh."""

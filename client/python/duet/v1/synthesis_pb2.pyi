@@ -1,0 +1,181 @@
+from duet.v1 import model_pb2 as _model_pb2
+from duet.v1 import motion_pb2 as _motion_pb2
+from google.protobuf.internal import containers as _containers
+from google.protobuf.internal import enum_type_wrapper as _enum_type_wrapper
+from google.protobuf import descriptor as _descriptor
+from google.protobuf import message as _message
+from typing import ClassVar as _ClassVar, Iterable as _Iterable, Mapping as _Mapping, Optional as _Optional, Union as _Union
+
+CLEAN_UP_OFF: CleanUp
+CLEAN_UP_ON: CleanUp
+CLEAN_UP_UNSPECIFIED: CleanUp
+DESCRIPTOR: _descriptor.FileDescriptor
+PRIORITY_BULK: Priority
+PRIORITY_INTERACTIVE: Priority
+PRIORITY_UNSPECIFIED: Priority
+
+class ClassWeight(_message.Message):
+    __slots__ = ["interaction_class", "weight"]
+    INTERACTION_CLASS_FIELD_NUMBER: _ClassVar[int]
+    WEIGHT_FIELD_NUMBER: _ClassVar[int]
+    interaction_class: str
+    weight: float
+    def __init__(self, interaction_class: _Optional[str] = ..., weight: _Optional[float] = ...) -> None: ...
+
+class GetModelRequest(_message.Message):
+    __slots__ = ["model"]
+    MODEL_FIELD_NUMBER: _ClassVar[int]
+    model: _model_pb2.ModelSelector
+    def __init__(self, model: _Optional[_Union[_model_pb2.ModelSelector, _Mapping]] = ...) -> None: ...
+
+class GetModelResponse(_message.Message):
+    __slots__ = ["limits", "model"]
+    LIMITS_FIELD_NUMBER: _ClassVar[int]
+    MODEL_FIELD_NUMBER: _ClassVar[int]
+    limits: RequestLimits
+    model: _model_pb2.Model
+    def __init__(self, model: _Optional[_Union[_model_pb2.Model, _Mapping]] = ..., limits: _Optional[_Union[RequestLimits, _Mapping]] = ...) -> None: ...
+
+class LabelKeyframe(_message.Message):
+    __slots__ = ["frame", "label_vector"]
+    FRAME_FIELD_NUMBER: _ClassVar[int]
+    LABEL_VECTOR_FIELD_NUMBER: _ClassVar[int]
+    frame: int
+    label_vector: LabelVector
+    def __init__(self, frame: _Optional[int] = ..., label_vector: _Optional[_Union[LabelVector, _Mapping]] = ...) -> None: ...
+
+class LabelVector(_message.Message):
+    __slots__ = ["weights"]
+    WEIGHTS_FIELD_NUMBER: _ClassVar[int]
+    weights: _containers.RepeatedCompositeFieldContainer[ClassWeight]
+    def __init__(self, weights: _Optional[_Iterable[_Union[ClassWeight, _Mapping]]] = ...) -> None: ...
+
+class ListModelsRequest(_message.Message):
+    __slots__ = []
+    def __init__(self) -> None: ...
+
+class ListModelsResponse(_message.Message):
+    __slots__ = ["models"]
+    MODELS_FIELD_NUMBER: _ClassVar[int]
+    models: _containers.RepeatedCompositeFieldContainer[_model_pb2.Model]
+    def __init__(self, models: _Optional[_Iterable[_Union[_model_pb2.Model, _Mapping]]] = ...) -> None: ...
+
+class MotionChunk(_message.Message):
+    __slots__ = ["first_frame", "frame_count", "positions"]
+    FIRST_FRAME_FIELD_NUMBER: _ClassVar[int]
+    FRAME_COUNT_FIELD_NUMBER: _ClassVar[int]
+    POSITIONS_FIELD_NUMBER: _ClassVar[int]
+    first_frame: int
+    frame_count: int
+    positions: _containers.RepeatedScalarFieldContainer[float]
+    def __init__(self, first_frame: _Optional[int] = ..., frame_count: _Optional[int] = ..., positions: _Optional[_Iterable[float]] = ...) -> None: ...
+
+class RequestLimits(_message.Message):
+    __slots__ = ["max_abs_weight", "max_chunk_frames", "max_duration_seconds", "max_frame_rate_hz", "max_label_keyframes", "max_request_bytes", "max_variety", "min_frame_rate_hz", "min_frames"]
+    MAX_ABS_WEIGHT_FIELD_NUMBER: _ClassVar[int]
+    MAX_CHUNK_FRAMES_FIELD_NUMBER: _ClassVar[int]
+    MAX_DURATION_SECONDS_FIELD_NUMBER: _ClassVar[int]
+    MAX_FRAME_RATE_HZ_FIELD_NUMBER: _ClassVar[int]
+    MAX_LABEL_KEYFRAMES_FIELD_NUMBER: _ClassVar[int]
+    MAX_REQUEST_BYTES_FIELD_NUMBER: _ClassVar[int]
+    MAX_VARIETY_FIELD_NUMBER: _ClassVar[int]
+    MIN_FRAMES_FIELD_NUMBER: _ClassVar[int]
+    MIN_FRAME_RATE_HZ_FIELD_NUMBER: _ClassVar[int]
+    max_abs_weight: float
+    max_chunk_frames: int
+    max_duration_seconds: float
+    max_frame_rate_hz: float
+    max_label_keyframes: int
+    max_request_bytes: int
+    max_variety: float
+    min_frame_rate_hz: float
+    min_frames: int
+    def __init__(self, min_frame_rate_hz: _Optional[float] = ..., max_frame_rate_hz: _Optional[float] = ..., min_frames: _Optional[int] = ..., max_duration_seconds: _Optional[float] = ..., max_chunk_frames: _Optional[int] = ..., max_label_keyframes: _Optional[int] = ..., max_abs_weight: _Optional[float] = ..., max_request_bytes: _Optional[int] = ..., max_variety: _Optional[float] = ...) -> None: ...
+
+class SynthesisHeader(_message.Message):
+    __slots__ = ["clean_up", "frame_count", "frame_rate_hz", "interaction_classes", "joint_names", "model_name", "model_version", "request_id", "seed", "unit", "up_axis", "variety"]
+    CLEAN_UP_FIELD_NUMBER: _ClassVar[int]
+    FRAME_COUNT_FIELD_NUMBER: _ClassVar[int]
+    FRAME_RATE_HZ_FIELD_NUMBER: _ClassVar[int]
+    INTERACTION_CLASSES_FIELD_NUMBER: _ClassVar[int]
+    JOINT_NAMES_FIELD_NUMBER: _ClassVar[int]
+    MODEL_NAME_FIELD_NUMBER: _ClassVar[int]
+    MODEL_VERSION_FIELD_NUMBER: _ClassVar[int]
+    REQUEST_ID_FIELD_NUMBER: _ClassVar[int]
+    SEED_FIELD_NUMBER: _ClassVar[int]
+    UNIT_FIELD_NUMBER: _ClassVar[int]
+    UP_AXIS_FIELD_NUMBER: _ClassVar[int]
+    VARIETY_FIELD_NUMBER: _ClassVar[int]
+    clean_up: CleanUp
+    frame_count: int
+    frame_rate_hz: float
+    interaction_classes: _containers.RepeatedScalarFieldContainer[str]
+    joint_names: _containers.RepeatedScalarFieldContainer[str]
+    model_name: str
+    model_version: int
+    request_id: str
+    seed: int
+    unit: _motion_pb2.LengthUnit
+    up_axis: _motion_pb2.UpAxis
+    variety: float
+    def __init__(self, model_name: _Optional[str] = ..., model_version: _Optional[int] = ..., joint_names: _Optional[_Iterable[str]] = ..., frame_rate_hz: _Optional[float] = ..., unit: _Optional[_Union[_motion_pb2.LengthUnit, str]] = ..., up_axis: _Optional[_Union[_motion_pb2.UpAxis, str]] = ..., frame_count: _Optional[int] = ..., interaction_classes: _Optional[_Iterable[str]] = ..., request_id: _Optional[str] = ..., seed: _Optional[int] = ..., variety: _Optional[float] = ..., clean_up: _Optional[_Union[CleanUp, str]] = ...) -> None: ...
+
+class SynthesisSummary(_message.Message):
+    __slots__ = ["chunk_count", "compute_seconds", "frame_count", "queue_seconds", "unfamiliarity", "window_count"]
+    CHUNK_COUNT_FIELD_NUMBER: _ClassVar[int]
+    COMPUTE_SECONDS_FIELD_NUMBER: _ClassVar[int]
+    FRAME_COUNT_FIELD_NUMBER: _ClassVar[int]
+    QUEUE_SECONDS_FIELD_NUMBER: _ClassVar[int]
+    UNFAMILIARITY_FIELD_NUMBER: _ClassVar[int]
+    WINDOW_COUNT_FIELD_NUMBER: _ClassVar[int]
+    chunk_count: int
+    compute_seconds: float
+    frame_count: int
+    queue_seconds: float
+    unfamiliarity: float
+    window_count: int
+    def __init__(self, frame_count: _Optional[int] = ..., chunk_count: _Optional[int] = ..., window_count: _Optional[int] = ..., queue_seconds: _Optional[float] = ..., compute_seconds: _Optional[float] = ..., unfamiliarity: _Optional[float] = ...) -> None: ...
+
+class SynthesizeRequest(_message.Message):
+    __slots__ = ["chunk_frames", "clean_up", "follower_start", "label_keyframes", "label_vector", "leader", "model", "partner_direction", "priority", "reply_joint_names", "seed", "variety"]
+    CHUNK_FRAMES_FIELD_NUMBER: _ClassVar[int]
+    CLEAN_UP_FIELD_NUMBER: _ClassVar[int]
+    FOLLOWER_START_FIELD_NUMBER: _ClassVar[int]
+    LABEL_KEYFRAMES_FIELD_NUMBER: _ClassVar[int]
+    LABEL_VECTOR_FIELD_NUMBER: _ClassVar[int]
+    LEADER_FIELD_NUMBER: _ClassVar[int]
+    MODEL_FIELD_NUMBER: _ClassVar[int]
+    PARTNER_DIRECTION_FIELD_NUMBER: _ClassVar[int]
+    PRIORITY_FIELD_NUMBER: _ClassVar[int]
+    REPLY_JOINT_NAMES_FIELD_NUMBER: _ClassVar[int]
+    SEED_FIELD_NUMBER: _ClassVar[int]
+    VARIETY_FIELD_NUMBER: _ClassVar[int]
+    chunk_frames: int
+    clean_up: CleanUp
+    follower_start: _motion_pb2.FollowerStart
+    label_keyframes: _containers.RepeatedCompositeFieldContainer[LabelKeyframe]
+    label_vector: LabelVector
+    leader: _motion_pb2.Motion
+    model: _model_pb2.ModelSelector
+    partner_direction: _motion_pb2.Direction
+    priority: Priority
+    reply_joint_names: _containers.RepeatedScalarFieldContainer[str]
+    seed: int
+    variety: float
+    def __init__(self, model: _Optional[_Union[_model_pb2.ModelSelector, _Mapping]] = ..., leader: _Optional[_Union[_motion_pb2.Motion, _Mapping]] = ..., label_vector: _Optional[_Union[LabelVector, _Mapping]] = ..., label_keyframes: _Optional[_Iterable[_Union[LabelKeyframe, _Mapping]]] = ..., follower_start: _Optional[_Union[_motion_pb2.FollowerStart, _Mapping]] = ..., chunk_frames: _Optional[int] = ..., priority: _Optional[_Union[Priority, str]] = ..., reply_joint_names: _Optional[_Iterable[str]] = ..., partner_direction: _Optional[_Union[_motion_pb2.Direction, _Mapping]] = ..., seed: _Optional[int] = ..., variety: _Optional[float] = ..., clean_up: _Optional[_Union[CleanUp, str]] = ...) -> None: ...
+
+class SynthesizeResponse(_message.Message):
+    __slots__ = ["chunk", "header", "summary"]
+    CHUNK_FIELD_NUMBER: _ClassVar[int]
+    HEADER_FIELD_NUMBER: _ClassVar[int]
+    SUMMARY_FIELD_NUMBER: _ClassVar[int]
+    chunk: MotionChunk
+    header: SynthesisHeader
+    summary: SynthesisSummary
+    def __init__(self, header: _Optional[_Union[SynthesisHeader, _Mapping]] = ..., chunk: _Optional[_Union[MotionChunk, _Mapping]] = ..., summary: _Optional[_Union[SynthesisSummary, _Mapping]] = ...) -> None: ...
+
+class Priority(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
+    __slots__ = []
+
+class CleanUp(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
+    __slots__ = []

@@ -1,0 +1,37 @@
+"""Follows a reaction as it arrives, without waiting for its end: stream.py LEADER CLASS
+
+    python3 examples/stream.py samples/kick.bvh kick
+"""
+
+import argparse
+import asyncio
+
+import duet
+import duet.aio
+import numpy as np
+
+
+async def follow(server, leader, interaction_class):
+    async with duet.aio.Client(server) as client:
+        async with client.stream(leader, {interaction_class: 1}, chunk_frames=15) as stream:
+            async for chunk in stream:
+                last = chunk.first_frame + len(chunk.positions) - 1
+                gap = np.linalg.norm(chunk.positions - leader.positions[chunk.first_frame:last + 1],
+                                     axis=-1).min()
+                print(f"frames {chunk.first_frame} to {last}: like joints come within "
+                      f"{gap:.2f} m of each other")
+        print(f"done after {(await stream.result()).timings.total:.2f} s")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("leader")
+    parser.add_argument("interaction_class")
+    parser.add_argument("--server", default="localhost:50051")
+    options = parser.parse_args()
+    leader = duet.read_motion(options.leader)
+    asyncio.run(follow(options.server, leader, options.interaction_class))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,201 @@
+#include "model/formats/gltf/gltf_writer.h"
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <utility>
+
+#include "absl/strings/escaping.h"
+#include "absl/strings/str_cat.h"
+
+namespace duet::formats::gltf {
+namespace {
+
+using nlohmann::ordered_json;
+using retargeting::Quaternion;
+using retargeting::Vec3d;
+
+// glTF's own numbers.
+constexpr int kUnsignedByte = 5121, kUnsignedShort = 5123, kUnsignedInt = 5125, kFloat = 5126;
+constexpr int kArrayBuffer = 34962, kElementArrayBuffer = 34963;
+constexpr uint32_t kMagic = 0x46546C67, kVersion = 2, kJsonChunk = 0x4E4F534A,
+                   kBinaryChunk = 0x004E4942;
+constexpr std::size_t kHeaderBytes = 12, kChunkHeaderBytes = 8;
+
+void AppendWord(uint32_t word, std::string* bytes) {
+  for (int shift = 0; shift < 32; shift += 8) bytes->push_back(static_cast<char>(word >> shift));
+}
+
+void PadTo4(char with, std::string* bytes) {
+  while (bytes->size() % 4 != 0) bytes->push_back(with);
+}
+
+void AppendChunk(uint32_t type, absl::string_view content, std::string* bytes) {
+  AppendWord(static_cast<uint32_t>(content.size()), bytes);
+  AppendWord(type, bytes);
+  bytes->append(content.data(), content.size());
+}
+
+std::string Dump(const ordered_json& json) {
+  return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+}  // namespace
+
+GltfWriter::GltfWriter() { json_["asset"] = {{"version", "2.0"}, {"generator", kDuetsWriter}}; }
+
+int GltfWriter::Add(const char* array, ordered_json value) {
+  ordered_json& all = json_[array];
+  all.push_back(std::move(value));
+  return static_cast<int>(all.size()) - 1;
+}
+
+void GltfWriter::BeginView(Use use) {
+  ordered_json view = {{"buffer", 0}, {"byteOffset", buffer_.size()}, {"byteLength", 0}};
+  if (use == Use::kVertices) view["target"] = kArrayBuffer;
+  if (use == Use::kIndices) view["target"] = kElementArrayBuffer;
+  Add("bufferViews", std::move(view));
+}
+
+int GltfWriter::AddAccessor(int component_type, const char* type, std::size_t count) {
+  const ordered_json& view = json_["bufferViews"].back();
+  return Add("accessors", {{"bufferView", json_["bufferViews"].size() - 1},
+                           {"byteOffset", buffer_.size() - view["byteOffset"].get<std::size_t>()},
+                           {"componentType", component_type},
+                           {"count", count},
+                           {"type", type}});
+}
+
+void GltfWriter::Append(float value) {
+  uint32_t bits = 0;
+  std::memcpy(&bits, &value, sizeof bits);
+  AppendWord(bits, &buffer_);
+}
+
+template <typename T>
+void GltfWriter::AppendWhole(T value) {
+  for (std::size_t byte = 0; byte < sizeof value; ++byte) {
+    buffer_.push_back(static_cast<char>(static_cast<uint32_t>(value) >> (8 * byte)));
+  }
+}
+
+void GltfWriter::EndAccessor() {
+  PadTo4('\0', &buffer_);
+  ordered_json& view = json_["bufferViews"].back();
+  view["byteLength"] = buffer_.size() - view["byteOffset"].get<std::size_t>();
+}
+
+int GltfWriter::AddTimes(const std::vector<float>& seconds) {
+  const int accessor = AddAccessor(kFloat, "SCALAR", seconds.size());
+  for (float second : seconds) Append(second);
+  EndAccessor();
+  json_["accessors"].back()["min"] = {seconds.front()};
+  json_["accessors"].back()["max"] = {seconds.back()};
+  return accessor;
+}
+
+int GltfWriter::AddVectors(const std::vector<Vec3d>& vectors) {
+  const int accessor = AddAccessor(kFloat, "VEC3", vectors.size());
+  for (const Vec3d& vector : vectors) {
+    for (double value : {vector.x, vector.y, vector.z}) Append(static_cast<float>(value));
+  }
+  EndAccessor();
+  return accessor;
+}
+
+int GltfWriter::AddPositions(const std::vector<Vec3d>& positions) {
+  const int accessor = AddVectors(positions);
+  motion::Vec3 low = ToFloat(positions.front()), high = low;
+  for (const Vec3d& position : positions) {
+    const motion::Vec3 at = ToFloat(position);
+    low = {std::min(low.x, at.x), std::min(low.y, at.y), std::min(low.z, at.z)};
+    high = {std::max(high.x, at.x), std::max(high.y, at.y), std::max(high.z, at.z)};
+  }
+  json_["accessors"].back()["min"] = {low.x, low.y, low.z};
+  json_["accessors"].back()["max"] = {high.x, high.y, high.z};
+  return accessor;
+}
+
+int GltfWriter::AddRotations(const std::vector<Quaternion>& rotations) {
+  const int accessor = AddAccessor(kFloat, "VEC4", rotations.size());
+  for (const Quaternion& q : rotations) {
+    for (double value : {q.x, q.y, q.z, q.w}) Append(static_cast<float>(value));
+  }
+  EndAccessor();
+  return accessor;
+}
+
+int GltfWriter::AddTranslationMatrices(const std::vector<Vec3d>& translations) {
+  const int accessor = AddAccessor(kFloat, "MAT4", translations.size());
+  for (const Vec3d& t : translations) {
+    for (double value :
+         {1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, t.x, t.y, t.z, 1.0}) {
+      Append(static_cast<float>(value));
+    }
+  }
+  EndAccessor();
+  return accessor;
+}
+
+int GltfWriter::AddIndices(const std::vector<uint32_t>& indices, std::size_t vertices) {
+  // The largest number of either kind is not an index.
+  const bool small = vertices <= std::numeric_limits<uint16_t>::max();
+  const int accessor = AddAccessor(small ? kUnsignedShort : kUnsignedInt, "SCALAR", indices.size());
+  for (uint32_t index : indices) {
+    if (small) {
+      AppendWhole(static_cast<uint16_t>(index));
+    } else {
+      AppendWhole(index);
+    }
+  }
+  EndAccessor();
+  return accessor;
+}
+
+int GltfWriter::AddVertexJoints(const std::vector<int>& joints, std::size_t joint_count) {
+  const bool small = joint_count <= std::size_t{std::numeric_limits<uint8_t>::max()} + 1;
+  const int accessor = AddAccessor(small ? kUnsignedByte : kUnsignedShort, "VEC4", joints.size());
+  for (int joint : joints) {
+    for (int influence : {joint, 0, 0, 0}) {
+      if (small) {
+        AppendWhole(static_cast<uint8_t>(influence));
+      } else {
+        AppendWhole(static_cast<uint16_t>(influence));
+      }
+    }
+  }
+  EndAccessor();
+  return accessor;
+}
+
+int GltfWriter::AddWholeWeights(std::size_t vertices) {
+  const int accessor = AddAccessor(kUnsignedByte, "VEC4", vertices);
+  json_["accessors"].back()["normalized"] = true;
+  for (std::size_t vertex = 0; vertex < vertices; ++vertex) buffer_.append("\xFF\0\0\0", 4);
+  EndAccessor();
+  return accessor;
+}
+
+std::string GltfWriter::Binary() {
+  json_["buffers"] = {{{"byteLength", buffer_.size()}}};
+  std::string text = Dump(json_);
+  PadTo4(' ', &text);
+  std::string file;
+  const std::size_t size = kHeaderBytes + 2 * kChunkHeaderBytes + text.size() + buffer_.size();
+  file.reserve(size);
+  AppendWord(kMagic, &file);
+  AppendWord(kVersion, &file);
+  AppendWord(static_cast<uint32_t>(size), &file);
+  AppendChunk(kJsonChunk, text, &file);
+  AppendChunk(kBinaryChunk, buffer_, &file);
+  return file;
+}
+
+std::string GltfWriter::Text() {
+  json_["buffers"] = {{{"byteLength", buffer_.size()},
+                       {"uri", absl::StrCat("data:application/octet-stream;base64,",
+                                            absl::Base64Escape(buffer_))}}};
+  return Dump(json_) + "\n";
+}
+
+}  // namespace duet::formats::gltf

@@ -1,0 +1,23 @@
+#ifndef DUET_MODEL_RETARGETING_FOOT_POSE_H_
+#define DUET_MODEL_RETARGETING_FOOT_POSE_H_
+
+#include "model/motion/clip.h"
+#include "model/motion/skeleton.h"
+#include "model/retargeting/rotation.h"
+
+// Which way feet point, where nothing but the ankle is known.
+
+namespace duet::retargeting {
+
+// How high ankles are when they stand: lower than in nearly every frame. Of both feet over the
+// clip, so that one that never comes down does not count. Without feet 0.
+double AnkleHeightOnFloor(const motion::Skeleton& skeleton, const motion::Clip& clip);
+
+// The foot's rotation in the world, which at rest points along +z with y up. `shin` is the shin's,
+// which at rest hangs down and faces +z. The foot is at a right angle to the shin in the air and
+// level where it stands.
+Quaternion FootRotation(Quaternion shin, Vec3d ankle, double ankle_height_on_floor);
+
+}  // namespace duet::retargeting
+
+#endif  // DUET_MODEL_RETARGETING_FOOT_POSE_H_

@@ -1,0 +1,18 @@
+#!/usr/bin/env bash
+# Makes the Python package's stubs from the proto files, for whoever changes a proto file.
+#   scripts/python_stubs.sh           rewrites client/python/duet/{v1,rpc/v1}
+#   scripts/python_stubs.sh FOLDER    writes them below FOLDER instead
+# By protoc with gRPC's own plugin: Debian 12's grpc_tools is of 2018 and does not know `optional`.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+out="${1:-client/python}"
+plugin="$(command -v grpc_python_plugin)" || {
+  echo "python_stubs.sh: no grpc_python_plugin; install the package protobuf-compiler-grpc" >&2
+  exit 1
+}
+
+messages=(duet/v1/motion.proto duet/v1/model.proto duet/v1/synthesis.proto duet/rpc/v1/status.proto)
+protoc -Iproto --python_out="${out}" --pyi_out="${out}" "${messages[@]}"
+protoc -Iproto --grpc_python_out="${out}" --plugin=protoc-gen-grpc_python="${plugin}" \
+  duet/v1/synthesis.proto

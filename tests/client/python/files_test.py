@@ -1,0 +1,89 @@
+"""Motion files, through the program `duet`."""
+
+import os
+import pathlib
+import tempfile
+import unittest
+from unittest import mock
+
+import support
+import duet
+import numpy as np
+
+PROGRAM = pathlib.Path(os.environ.get("DUET_BIN_DIR", support.SOURCE / "build/release/bin")) / "duet"
+HUG = support.SOURCE / "samples" / "hug.bvh"
+
+
+@unittest.skipUnless(PROGRAM.exists(), f"no program at {PROGRAM}; build it, or set DUET_BIN_DIR")
+class FilesTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.enterContext(mock.patch.dict(os.environ, {"DUET_PROGRAM": str(PROGRAM)}))
+        self.hug = duet.read_motion(HUG)
+        self.other = self.hug.with_positions(self.hug.positions + np.float32([0, 0, 1]))
+
+    def test_reads_any_file_in_metres_y_up(self):
+        self.assertEqual((self.hug.frame_count, self.hug.joint_count), (91, 15))
+        self.assertEqual((self.hug.frame_rate_hz, self.hug.unit, self.hug.up_axis),
+                         (30, "metres", "y-up"))
+        head, foot = self.hug.joint("head")[0], self.hug.joint("left_foot")[0]
+        self.assertGreater(head[1] - foot[1], 1.3)
+        self.assertLess(head[1] - foot[1], 1.7)
+
+    def test_says_how_a_file_is_meant(self):
+        half = duet.read_motion(HUG, metres_per_unit=0.005, frame_rate_hz=60)
+        np.testing.assert_allclose(half.positions, self.hug.positions / 2, atol=1e-5)
+        self.assertEqual(half.frame_rate_hz, 60)
+        self.assertEqual(duet.read_motion(HUG, resample_hz=15).frame_count, 46)
+        swapped = duet.read_motion(HUG, joint_map={"left_hand": "right_hand"})
+        np.testing.assert_array_equal(swapped.joint("left_hand"), self.hug.joint("right_hand"))
+
+    def test_what_is_written_is_read_again_to_the_bit(self):
+        for name in ("pair.json", "pair.csv"):
+            duet.write_motion(self.folder / name, self.hug, self.other)
+            for read, written in zip(duet.read_pair(self.folder / name), (self.hug, self.other)):
+                np.testing.assert_array_equal(read.positions, written.positions)
+        right = duet.read_motion(self.folder / "pair.csv", side="right")
+        np.testing.assert_array_equal(right.positions, self.other.positions)
+
+    def test_units_and_axes_of_any_kind_are_written(self):
+        duet.write_motion(self.folder / "one.json", self.hug.converted("millimetres", "z-up"))
+        read = duet.read_motion(self.folder / "one.json")
+        np.testing.assert_allclose(read.positions, self.hug.positions, atol=1e-6)
+
+    def test_two_people_as_bvh_are_two_files(self):
+        duet.write_motion(self.folder / "pair.bvh", self.hug, self.other)
+        self.assertEqual(sorted(path.name for path in self.folder.iterdir()),
+                         ["pair.follower.bvh", "pair.leader.bvh"])
+
+    def test_a_page_shows_motions_side_by_side(self):
+        duet.write_page(self.folder / "page.html", {"hug": self.hug,
+                                                    "with a friend": (self.hug, self.other)},
+                        title="Two of them")
+        page = (self.folder / "page.html").read_text(encoding="utf-8")
+        for words in ("Two of them", "with a friend"):
+            self.assertIn(words, page)
+
+    def test_errors_are_the_programs_own_words(self):
+        with self.assertRaisesRegex(duet.MotionFileError, "absent.bvh"):
+            duet.read_motion(self.folder / "absent.bvh")
+        duet.write_motion(self.folder / "one.json", self.hug)
+        with self.assertRaisesRegex(duet.MotionFileError, "one person, wanted two"):
+            duet.read_pair(self.folder / "one.json")
+        with self.assertRaisesRegex(ValueError, "follower.frame_count: 90, wanted the leader's 91"):
+            duet.write_motion(self.folder / "x.json", self.hug, self.other.frames(1))
+        with mock.patch.dict(os.environ, {"DUET_PROGRAM": "no-such-duet"}):
+            with self.assertRaisesRegex(FileNotFoundError, "no program 'no-such-duet'.*DUET_PROG"):
+                duet.read_motion(HUG)
+
+    def test_the_settings_of_a_user_do_not_count(self):
+        settings = self.folder / "config"
+        settings.write_text("resample = 10\n", encoding="utf-8")
+        with mock.patch.dict(os.environ, {"DUET_CONFIG": str(settings)}):
+            self.assertEqual(duet.read_motion(HUG).frame_rate_hz, 30)
+
+
+if __name__ == "__main__":
+    unittest.main()

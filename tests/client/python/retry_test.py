@@ -1,0 +1,78 @@
+"""When a call is made again: the rule of the C++ client (tests/client/retry_test.cc)."""
+
+import unittest
+
+import support
+import duet
+import grpc
+from duet._call import Attempts, CallSettings, Environment
+from duet.errors import make_error
+from duet.retry import is_retryable, retry_wait
+
+UNAVAILABLE, FULL = grpc.StatusCode.UNAVAILABLE, grpc.StatusCode.RESOURCE_EXHAUSTED
+
+
+class RetryTest(unittest.TestCase):
+    def test_the_unavailable_is_tried_again_and_the_full_by_bulk_work_alone(self):
+        self.assertTrue(is_retryable(make_error(UNAVAILABLE, ""), "interactive"))
+        self.assertTrue(is_retryable(make_error(FULL, "", retry_delay=1.0), "bulk"))
+        self.assertFalse(is_retryable(make_error(FULL, "", retry_delay=1.0), "interactive"))
+        self.assertFalse(is_retryable(make_error(FULL, ""), "bulk"))
+        self.assertFalse(is_retryable(make_error(grpc.StatusCode.INTERNAL, ""), "bulk"))
+
+    def test_waits_double_up_to_the_longest(self):
+        error, options = make_error(UNAVAILABLE, ""), duet.RetryOptions()
+        waits = [retry_wait(options, attempt, error, 1.0) for attempt in range(1, 7)]
+        for wait, wanted in zip(waits, (0.1, 0.2, 0.4, 0.8, 1.0, 1.0)):
+            self.assertAlmostEqual(wait, wanted)
+        self.assertAlmostEqual(retry_wait(options, 1, error, 0.0), 0.05)
+        self.assertAlmostEqual(retry_wait(options, 10**6, error, 1.0), 1.0)
+
+    def test_the_servers_word_is_the_shortest_wait_and_is_spread(self):
+        options = duet.RetryOptions()
+        asked = make_error(UNAVAILABLE, "", retry_delay=5.0)
+        self.assertAlmostEqual(retry_wait(options, 1, asked, 0.0), 5.0)
+        self.assertAlmostEqual(retry_wait(options, 1, asked, 1.0), 5.05)
+        sooner = make_error(UNAVAILABLE, "", retry_delay=0.01)
+        self.assertAlmostEqual(retry_wait(options, 1, sooner, 1.0), 0.1)
+
+    def test_options_that_make_no_sense_are_refused(self):
+        for fields in ({"max_attempts": 0}, {"initial_backoff": 0}, {"max_backoff": 0.01}):
+            with self.subTest(fields=fields), self.assertRaisesRegex(ValueError, "retry"):
+                duet.RetryOptions(**fields)
+
+
+class AttemptsTest(unittest.TestCase):
+    def setUp(self):
+        self.now = 100.0
+        environment = Environment(now=lambda: self.now, uniform=lambda: 1.0)
+        self.attempts = Attempts(CallSettings(10.0, duet.RetryOptions(), environment=environment))
+
+    def test_each_attempt_has_what_is_left_of_the_time(self):
+        self.assertAlmostEqual(self.attempts.begin(), 10)
+        self.now += 4
+        self.assertAlmostEqual(self.attempts.begin(), 6)
+        self.assertEqual(self.attempts.made, 2)
+
+    def test_the_last_attempts_error_tells_how_many_there_were(self):
+        for wait in (0.1, 0.2, 0.4):
+            self.attempts.begin()
+            self.assertAlmostEqual(self.attempts.wait_after(make_error(UNAVAILABLE, "away")), wait)
+        self.attempts.begin()
+        with self.assertRaisesRegex(duet.UnavailableError, r"away \(after 4 attempts\)"):
+            self.attempts.wait_after(make_error(UNAVAILABLE, "away"))
+
+    def test_a_first_refusal_is_told_as_it_came(self):
+        self.attempts.begin()
+        with self.assertRaisesRegex(duet.InvalidRequestError, "^INVALID_ARGUMENT: no$"):
+            self.attempts.wait_after(make_error(grpc.StatusCode.INVALID_ARGUMENT, "no"))
+
+    def test_nobody_waits_past_the_deadline(self):
+        self.attempts.begin()
+        self.now += 9.95
+        with self.assertRaisesRegex(duet.UnavailableError, "1 attempt, the deadline leaves no time"):
+            self.attempts.wait_after(make_error(UNAVAILABLE, "away"))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,186 @@
+"""What the tests of the Python package share: a leader, good replies, a server that answers as a
+test says."""
+
+import concurrent.futures
+import contextlib
+import os
+import pathlib
+import sys
+import threading
+
+SOURCE = pathlib.Path(__file__).parents[3]
+PACKAGE = SOURCE / "client" / "python"
+sys.path.insert(0, str(PACKAGE))
+# These servers have no health service, of which gRPC would complain at every connection.
+os.environ.setdefault("GRPC_VERBOSITY", "NONE")
+
+try:
+    import grpc
+    import numpy as np
+except ImportError as error:
+    print(f"skipped: {error}; install the packages python3-grpcio and python3-numpy")
+    sys.exit(77)  # tells CTest that a test was skipped
+
+import duet  # noqa: E402
+from duet.rpc.v1 import status_pb2  # noqa: E402
+from duet.v1 import synthesis_pb2, synthesis_pb2_grpc  # noqa: E402
+
+JOINTS = ("root", "left", "right")
+# Waits that no test notices; the longest that one waits for what ought to come at once.
+QUICK = duet.RetryOptions(max_attempts=4, initial_backoff=0.001, max_backoff=0.001)
+LONGEST_CALL = 60
+
+
+def leader(frames=6, **changes):
+    """Every position is different."""
+    positions = np.arange(frames * 9, dtype=np.float32).reshape(frames, 3, 3)
+    return duet.Motion(**{"positions": positions, "joint_names": JOINTS, "frame_rate_hz": 30,
+                          **changes})
+
+
+def header(motion, **changes):
+    values = {"model_name": "m", "model_version": 1, "joint_names": motion.joint_names,
+              "frame_rate_hz": motion.frame_rate_hz, "unit": 1, "up_axis": 1,
+              "frame_count": motion.frame_count, "interaction_classes": ["hug"],
+              "request_id": "r", "seed": 3, "variety": 0.5, "clean_up": 1}
+    return synthesis_pb2.SynthesizeResponse(
+        header=synthesis_pb2.SynthesisHeader(**{**values, **changes}))
+
+
+def follower_of(motion):
+    """Of a good reply: the leader moved by a metre."""
+    return motion.positions + np.float32([1, 0, 0])
+
+
+def chunk(motion, first, count, **changes):
+    positions = follower_of(motion)[first:first + count]
+    values = {"first_frame": first, "frame_count": count, "positions": positions.ravel().tolist()}
+    return synthesis_pb2.SynthesizeResponse(
+        chunk=synthesis_pb2.MotionChunk(**{**values, **changes}))
+
+
+def summary(motion, chunks, **changes):
+    values = {"frame_count": motion.frame_count, "chunk_count": chunks, "window_count": 1,
+              "queue_seconds": 0.25, "compute_seconds": 0.5, "unfamiliarity": 0.75}
+    return synthesis_pb2.SynthesizeResponse(
+        summary=synthesis_pb2.SynthesisSummary(**{**values, **changes}))
+
+
+def good_reply(motion, size=2, **changes):
+    firsts = range(0, motion.frame_count, size)
+    return [header(motion, **changes),
+            *(chunk(motion, first, min(size, motion.frame_count - first)) for first in firsts),
+            summary(motion, len(firsts))]
+
+
+def details(*messages):
+    """Trailing metadata with google.rpc details."""
+    status = status_pb2.Status()
+    for message in messages:
+        name = message.DESCRIPTOR.name
+        status.details.add(type_url=f"type.googleapis.com/google.rpc.{name}",
+                           value=message.SerializeToString())
+    return (("grpc-status-details-bin", status.SerializeToString()),)
+
+
+def retry_info(seconds):
+    info = status_pb2.RetryInfo()
+    info.retry_delay.FromNanoseconds(int(seconds * 1e9))
+    return info
+
+
+class Failure(Exception):
+    """What a scripted stream or call ends with."""
+
+    def __init__(self, code, message="", *messages):
+        super().__init__(code, message)
+        self.code, self.message, self.details = code, message, details(*messages)
+
+
+class Script(synthesis_pb2_grpc.MotionSynthesisServicer):
+    """Answers as scripted, an entry for each attempt, and remembers what it was asked. An entry is
+    a message, a Failure, or a list of messages that may end in a Failure or hold a callable to
+    call with the context."""
+
+    def __init__(self, *answers):
+        self.answers, self.requests, self.metadata = list(answers), [], []
+
+    def _next(self, request, context):
+        self.requests.append(request)
+        self.metadata.append(dict(context.invocation_metadata()))
+        return self.answers.pop(0)
+
+    def _abort(self, failure, context):
+        context.set_trailing_metadata(failure.details)
+        context.abort(failure.code, failure.message)
+
+    def _unary(self, request, context):
+        answer = self._next(request, context)
+        if isinstance(answer, Failure):
+            self._abort(answer, context)
+        return answer
+
+    ListModels = GetModel = _unary
+
+    def Synthesize(self, request, context):
+        for item in self._next(request, context):
+            if isinstance(item, Failure):
+                self._abort(item, context)
+            elif callable(item):
+                item(context)
+            else:
+                yield item
+
+
+def held_reply(motion, ended, go_on):
+    """A stream that stands still after its first chunk until `go_on`, and sets `ended` when the
+    call is over."""
+    head, first = good_reply(motion)[:2]
+    # Who has the chunk knows that the end will be told.
+    return [head, lambda context: context.add_callback(ended.set) or ended.set(), first,
+            lambda context: go_on.wait(LONGEST_CALL)]
+
+
+@contextlib.contextmanager
+def serving(servicer, credentials=None, threads=8):
+    """The address of a server with this servicer."""
+    server = grpc.server(concurrent.futures.ThreadPoolExecutor(threads))
+    synthesis_pb2_grpc.add_MotionSynthesisServicer_to_server(servicer, server)
+    if credentials is None:
+        port = server.add_insecure_port("127.0.0.1:0")
+    else:
+        port = server.add_secure_port("127.0.0.1:0", credentials)
+    server.start()
+    try:
+        yield f"127.0.0.1:{port}"
+    finally:
+        server.stop(None).wait()
+
+
+class Together(synthesis_pb2_grpc.MotionSynthesisServicer):
+    """Answers calls of as many at a time as it is told, and refuses seed 3.
+
+    The first `wanted` calls wait for each other, so that a client which makes fewer at a time does
+    not come to its end; `most` is how many there were at once.
+    """
+
+    def __init__(self, wanted):
+        self._barrier = threading.Barrier(wanted)
+        self._lock = threading.Lock()
+        self._begun, self._wanted = 0, wanted
+        self._running, self.most = 0, 0
+
+    def Synthesize(self, request, context):
+        with self._lock:
+            self._begun += 1
+            self._running += 1
+            self.most = max(self.most, self._running)
+            is_first = self._begun <= self._wanted
+        if is_first:
+            self._barrier.wait(LONGEST_CALL)
+        with self._lock:
+            self._running -= 1
+        if request.seed == 3:
+            context.abort(grpc.StatusCode.INVALID_ARGUMENT, "seed: 3")
+        motion = leader(request.leader.frame_count)
+        yield from good_reply(motion, seed=request.seed)

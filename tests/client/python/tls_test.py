@@ -1,0 +1,66 @@
+"""The client over TLS: what must connect, and what must not."""
+
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+import support
+import duet
+import grpc
+from duet.v1 import synthesis_pb2
+
+LISTING = synthesis_pb2.ListModelsResponse(models=[{"name": "m"}])
+
+
+@unittest.skipIf(shutil.which("openssl") is None, "no openssl; install the package openssl")
+class TlsTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.folder = pathlib.Path(folder.name)
+        for name in ("server", "client"):
+            subprocess.run(
+                ["openssl", "req", "-x509", "-newkey", "ec", "-pkeyopt",
+                 "ec_paramgen_curve:prime256v1", "-nodes", "-days", "2", "-subj", f"/CN={name}.test",
+                 "-addext", f"subjectAltName=DNS:{name}.test", "-keyout", cls.folder / f"{name}.key",
+                 "-out", cls.folder / f"{name}.crt"], check=True, capture_output=True)
+
+    def list_models(self, tls, asks_for_certificates=False):
+        files = {path.name: path.read_bytes() for path in self.folder.iterdir()}
+        credentials = grpc.ssl_server_credentials(
+            [(files["server.key"], files["server.crt"])], files["client.crt"],
+            require_client_auth=asks_for_certificates)
+        retry = duet.RetryOptions(max_attempts=1)
+        with support.serving(support.Script(LISTING), credentials) as address:
+            with duet.Client(address, tls=tls, retry=retry, timeout=support.LONGEST_CALL) as client:
+                return [model.name for model in client.list_models()]
+
+    def options(self, **files):
+        paths = {flag: self.folder / name for flag, name in files.items()}
+        return duet.TlsOptions.from_files(**paths, server_name="server.test")
+
+    def test_a_server_with_a_trusted_certificate_is_reached(self):
+        self.assertEqual(self.list_models(self.options(ca="server.crt")), ["m"])
+
+    def test_another_name_or_authority_is_not(self):
+        stranger = duet.TlsOptions.from_files(ca=self.folder / "server.crt", server_name="x.test")
+        for tls in (stranger, self.options(ca="client.crt"), None):
+            with self.subTest(tls=tls), self.assertRaises(duet.UnavailableError):
+                self.list_models(tls)
+
+    def test_a_client_shows_its_certificate(self):
+        mine = self.options(ca="server.crt", cert="client.crt", key="client.key")
+        self.assertEqual(self.list_models(mine, asks_for_certificates=True), ["m"])
+        with self.assertRaises(duet.UnavailableError):
+            self.list_models(self.options(ca="server.crt"), asks_for_certificates=True)
+
+    def test_a_certificate_wants_its_key(self):
+        with self.assertRaisesRegex(ValueError, "wanted both or neither"):
+            self.options(ca="server.crt", cert="client.crt")
+
+
+if __name__ == "__main__":
+    unittest.main()

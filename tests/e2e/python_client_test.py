@@ -1,0 +1,174 @@
+"""The Python package against a real server: what a user's script does, and the examples."""
+
+import asyncio
+import os
+import pathlib
+import sys
+import tempfile
+import threading
+import unittest
+
+import tools
+
+try:
+    import grpc  # noqa: F401
+    import numpy as np
+except ImportError as error:
+    tools.skip(f"{error}; install the packages python3-grpcio and python3-numpy")
+
+PACKAGE = tools.SOURCE / "client" / "python"
+os.environ["DUET_PROGRAM"] = str(tools.PROGRAMS / "duet")
+sys.path.insert(0, str(PACKAGE))
+
+import duet  # noqa: E402
+import duet.aio  # noqa: E402
+
+
+class PythonClientTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.server = tools.Server()
+        cls.addClassCleanup(cls.server.stop)
+        cls.client = duet.Client(cls.server.address)
+        cls.addClassCleanup(cls.client.close)
+        cls.hug = duet.read_motion(tools.sample("hug"))
+
+    def test_models_are_listed(self):
+        models = self.client.list_models()
+        self.assertEqual([(model.name, model.is_default) for model in models],
+                         [("k3hi", False), ("sbu", True), ("sbu", False)])
+        details = self.client.get_model()
+        self.assertEqual(set(details.model.interaction_classes), set(tools.CLASSES))
+        self.assertEqual(details.limits.max_abs_weight, 2)
+        self.assertEqual(self.client.get_model("sbu@1").model.version, 1)
+
+    def test_arrays_go_in_and_come_out(self):
+        result = self.client.synthesize(self.hug, labels={"hug": 1}, seed=3)
+        self.assertEqual(result.follower.positions.shape, (91, 15, 3))
+        self.assertEqual(result.follower.joint_names, self.hug.joint_names)
+        self.assertEqual((result.model_name, result.seed), ("sbu", 3))
+        height = result.follower.joint("head")[:, 1] - result.follower.joint("left_foot")[:, 1]
+        self.assertGreater(height.mean(), 1)
+        self.assertGreater(result.unfamiliarity, 0)
+
+    def test_the_same_request_has_the_same_answer_and_another_seed_another(self):
+        answers = [self.client.synthesize(self.hug, {"hug": 1}, seed=seed).follower.positions
+                   for seed in (5, 5, 6)]
+        np.testing.assert_array_equal(answers[0], answers[1])
+        self.assertGreater(np.abs(answers[0] - answers[2]).max(), 0.01)
+
+    def test_the_program_has_the_same_answer(self):
+        with tempfile.TemporaryDirectory() as folder:
+            out = pathlib.Path(folder) / "pair.json"
+            tools.duet("synthesize", "--server", self.server.address, "--leader",
+                       tools.sample("hug"), "--label", "hug=1", "--seed", 3, "--out",
+                       out).check_returncode()
+            _, follower = duet.read_pair(out)
+        result = self.client.synthesize(self.hug, {"hug": 1}, seed=3)
+        np.testing.assert_array_equal(result.follower.positions, follower.positions)
+
+    def test_the_reply_is_in_the_leaders_unit_and_world(self):
+        metres = self.client.synthesize(self.hug, {"hug": 1})
+        other = self.client.synthesize(self.hug.converted("millimetres", "z-up"), {"hug": 1})
+        self.assertEqual((other.follower.unit, other.follower.up_axis), ("millimetres", "z-up"))
+        np.testing.assert_allclose(other.follower.converted().positions,
+                                   metres.follower.positions, atol=0.02)
+
+    def test_weights_change_over_time(self):
+        result = self.client.synthesize(self.hug, keyframes={0: {"hug": 1}, 60: {"push": 1}})
+        plain = self.client.synthesize(self.hug, {"hug": 1})
+        self.assertGreater(
+            np.abs(result.follower.positions - plain.follower.positions)[-20:].max(), 0.05)
+
+    def test_a_follower_starts_where_it_is_told(self):
+        result = self.client.synthesize(self.hug, {"hug": 1}, follower_start=(0, 1.1, 1.5),
+                                        clean_up=False)
+        self.assertFalse(result.cleaned_up)
+        start = result.follower.joint("torso")[0]
+        self.assertLess(np.linalg.norm(start[[0, 2]] - [0, 1.5]), 0.3)
+
+    def test_frames_come_before_the_end(self):
+        with self.client.stream(self.hug, {"hug": 1}, chunk_frames=10) as stream:
+            firsts = [chunk.first_frame for chunk in stream]
+            result = stream.result()
+        self.assertEqual(firsts[0], 0)
+        self.assertGreaterEqual(len(firsts), 10)
+        self.assertLessEqual(result.timings.first_chunk, result.timings.total)
+
+    def test_a_refusal_names_every_field(self):
+        positions = self.hug.positions.copy()
+        positions[0, 1, 2] = np.nan
+        leader = duet.Motion(positions, self.hug.joint_names, frame_rate_hz=0)
+        with self.assertRaises(duet.InvalidRequestError) as caught:
+            self.client.synthesize(leader, {"hug": 1, "dance": 1}, variety=3)
+        error = caught.exception
+        self.assertEqual(error.reason, "INVALID_REQUEST")
+        fields = {violation.field for violation in error.violations}
+        self.assertLessEqual({"leader.frame_rate_hz", "leader.positions[5]", "variety"}, fields)
+        self.assertIn("dance", str(error))
+        with self.assertRaises(duet.ModelNotFoundError):
+            self.client.synthesize(self.hug, {"hug": 1}, model="nobody")
+        with self.assertRaises(duet.RequestMismatchError):
+            self.client.synthesize(self.hug.select(["head", "neck"]), {"hug": 1})
+
+    def test_many_requests_are_answered_alike(self):
+        requests = [duet.SynthesisRequest(self.hug, {name: 1}, priority="bulk")
+                    for name in tools.CLASSES]
+        outcomes = list(self.client.synthesize_many(requests, concurrency=3))
+        self.assertEqual(len(outcomes), len(tools.CLASSES))
+        alone = self.client.synthesize(self.hug, {"hug": 1})
+        together = outcomes[tools.CLASSES.index("hug")].unwrap()
+        np.testing.assert_array_equal(together.follower.positions, alone.follower.positions)
+
+    def test_the_asynchronous_client_has_the_same_answers(self):
+        async def ask():
+            async with duet.aio.Client(self.server.address) as client:
+                models = await client.list_models()
+                return models, await asyncio.gather(
+                    client.synthesize(self.hug, {"hug": 1}, seed=3),
+                    client.synthesize(self.hug, {"kick": 1}))
+        models, (hug, kick) = asyncio.run(ask())
+        self.assertEqual(models, self.client.list_models())
+        waited = self.client.synthesize(self.hug, {"hug": 1}, seed=3)
+        np.testing.assert_array_equal(hug.follower.positions, waited.follower.positions)
+        self.assertGreater(np.abs(kick.follower.positions - hug.follower.positions).max(), 0.05)
+
+    def test_a_server_that_comes_back_is_reached(self):
+        server = tools.Server()
+        patient = duet.RetryOptions(max_attempts=10_000, initial_backoff=0.05, max_backoff=0.1)
+        with duet.Client(server.address, retry=patient, timeout=tools.RUN_SECONDS) as client:
+            before = client.synthesize(self.hug, {"hug": 1}, seed=3)
+            server.kill()
+            answers = []
+            caller = threading.Thread(target=lambda: answers.append(
+                client.synthesize(self.hug, {"hug": 1}, seed=3)))
+            caller.start()
+            server = tools.Server(port=server.port)
+            self.addCleanup(server.stop)
+            caller.join(tools.RUN_SECONDS)
+        np.testing.assert_array_equal(answers[0].follower.positions, before.follower.positions)
+
+    def example(self, name, *arguments):
+        ran = tools.run(sys.executable, "-B", PACKAGE / "examples" / name, *arguments, "--server",
+                        self.server.address, env={**os.environ, "PYTHONPATH": str(PACKAGE)})
+        self.assertEqual(ran.returncode, 0, ran.stderr)
+        return ran.stdout
+
+    def test_the_examples_run(self):
+        with tempfile.TemporaryDirectory() as folder:
+            out = pathlib.Path(folder)
+            told = self.example("react.py", tools.sample("hug"), "hug=1", "push=0.5", "--out",
+                                out / "mix.bvh", "--out", out / "mix.csv")
+            self.assertIn("91 frames at 30 Hz", told)
+            self.assertEqual({path.name for path in out.iterdir()},
+                             {"mix.leader.bvh", "mix.follower.bvh", "mix.csv"})
+            told = self.example("augment.py", out / "set.npz", tools.sample("kick"), "--seeds", 1)
+            self.assertIn("6 of 6 reactions", told)
+            rows = np.load(out / "set.npz")
+            self.assertEqual(sorted(rows["interaction_class"]), sorted(tools.CLASSES))
+            self.assertEqual(rows["follower_5"].shape[1:], (15, 3))
+        self.assertIn("frames 0 to", self.example("stream.py", tools.sample("kick"), "kick"))
+
+
+if __name__ == "__main__":
+    tools.main()

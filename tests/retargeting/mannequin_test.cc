@@ -1,0 +1,72 @@
+#include "model/retargeting/mannequin.h"
+
+#include <algorithm>
+#include <set>
+#include <string>
+
+#include "gtest/gtest.h"
+#include "model/retargeting/rig_animation.h"
+#include "tests/support/test_motion.h"
+
+namespace duet::retargeting {
+namespace {
+
+class MannequinTest : public ::testing::Test {
+ protected:
+  const motion::Skeleton skeleton_ = motion::SbuSkeleton();
+  const Rig rig_ = MakeRig(skeleton_, test::MakePerson());
+  const std::vector<Vec3d> rest_ = RestPositions(rig_);
+  const Mannequin mannequin_ = MakeMannequin(skeleton_, rig_, rest_);
+};
+
+TEST_F(MannequinTest, TrianglesFaceOutwards) {
+  for (const SkinnedMesh* mesh : {&mannequin_.body, &mannequin_.visor}) {
+    ASSERT_EQ(mesh->indices.size() % 3, 0u);
+    for (std::size_t i = 0; i < mesh->indices.size(); i += 3) {
+      const Vec3d a = mesh->positions[mesh->indices[i]], b = mesh->positions[mesh->indices[i + 1]],
+                  c = mesh->positions[mesh->indices[i + 2]];
+      const Vec3d facing = Cross(b - a, c - a);
+      ASSERT_GT(Norm(facing), 1e-9) << "triangle " << i / 3;
+      EXPECT_GT(Dot(facing, mesh->normals[mesh->indices[i]]), 0) << "triangle " << i / 3;
+    }
+  }
+}
+
+TEST_F(MannequinTest, EveryJointOfTheSkeletonHasFlesh) {
+  const std::set<int> fleshed(mannequin_.body.joints.begin(), mannequin_.body.joints.end());
+  for (std::size_t j = 0; j < rig_.joints.size(); ++j) {
+    const bool helper = rig_.joints[j].name.find("_to_") != std::string::npos;
+    EXPECT_TRUE(helper || fleshed.count(static_cast<int>(j)) == 1) << rig_.joints[j].name;
+  }
+}
+
+TEST_F(MannequinTest, FeetPointAheadAndHandsReachBeyondTheirJoints) {
+  double toe = 0, finger = 0;
+  for (std::size_t v = 0; v < mannequin_.body.positions.size(); ++v) {
+    const Vec3d at = mannequin_.body.positions[v];
+    const std::size_t joint = static_cast<std::size_t>(mannequin_.body.joints[v]);
+    if (rig_.joints[joint].name == "left_foot") toe = std::max(toe, at.z - rest_[joint].z);
+    if (rig_.joints[joint].name == "left_hand") finger = std::max(finger, at.x - rest_[joint].x);
+  }
+  EXPECT_GT(toe, 0.15);
+  EXPECT_GT(finger, 0.1);
+}
+
+// Any skeleton has limbs and balls; only one with a head has a face.
+TEST(Mannequin, ASkeletonOfOtherNamesHasABodyWithoutAFace) {
+  motion::Skeleton arm;
+  arm.joint_names = {"a", "b", "c"};
+  arm.bones = {{0, 1}, {1, 2}};
+  motion::Clip clip;
+  clip.joint_names = arm.joint_names;
+  clip.frame_rate_hz = 30;
+  clip.Append({{0, 0, 0}, {0, 1, 0}, {0, 2, 0}});
+  const Rig rig = MakeRig(arm, clip);
+  const Mannequin mannequin = MakeMannequin(arm, rig, RestPositions(rig));
+  const std::set<int> fleshed(mannequin.body.joints.begin(), mannequin.body.joints.end());
+  EXPECT_EQ(fleshed, (std::set<int>{0, 1, 2}));
+  EXPECT_TRUE(mannequin.visor.indices.empty());
+}
+
+}  // namespace
+}  // namespace duet::retargeting
