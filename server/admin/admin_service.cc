@@ -41,9 +41,12 @@ class AdminService::Call {
   Call(grpc::CallbackServerContext& context, const metrics::MethodInfo& method,
        const google::protobuf::Message& request, const AdminParts& parts)
       : context_(context),
+        reactor_(*context.DefaultReactor()),  // gRPC makes another at every call of this
         request_(Shown(request)),
         log_(*parts.log),
         scope_(method, service::IdentifyCall(context), parts.observers, *parts.clock) {}
+
+  grpc::ServerUnaryReactor* reactor() const { return &reactor_; }
 
   void Finish(const absl::Status& status) {
     // A server that stops gives up what it had not begun.
@@ -55,11 +58,12 @@ class AdminService::Call {
                         {"request_id", record.request_id},
                         {"code", absl::StatusCodeToString(told.code())},
                         {"message", std::string(told.message())}});
-    service::CallPipeline::Close(scope_, told, context_, *context_.DefaultReactor());
+    service::CallPipeline::Close(scope_, told, context_, reactor_);
   }
 
  private:
   grpc::CallbackServerContext& context_;
+  grpc::ServerUnaryReactor& reactor_;
   const nlohmann::ordered_json request_;
   metrics::JsonLog& log_;
   service::CallScope scope_;
@@ -71,7 +75,6 @@ template <typename Request, typename Answer>
 grpc::ServerUnaryReactor* AdminService::Open(grpc::CallbackServerContext& context,
                                              const metrics::MethodInfo& method,
                                              const Request& request, const Answer& answer) {
-  grpc::ServerUnaryReactor* reactor = context.DefaultReactor();
   const auto call = std::make_shared<Call>(context, method, request, parts_);
   const absl::Status valid = Validate(request);
   if (valid.ok()) {
@@ -79,7 +82,7 @@ grpc::ServerUnaryReactor* AdminService::Open(grpc::CallbackServerContext& contex
   } else {
     call->Finish(valid);
   }
-  return reactor;
+  return call->reactor();
 }
 
 grpc::ServerUnaryReactor* AdminService::ListModels(grpc::CallbackServerContext* context,
