@@ -46,6 +46,14 @@ mutate: ## Break the code in small ways, count what the tests notice: docs/mutat
 	@scripts/install_packages.sh build test
 	@JOBS=$(JOBS) scripts/mutate.py --report docs/mutation.md
 
+.PHONY: bench
+bench: ## Time the engine and its kernels beside the figures that were committed last
+	@scripts/install_packages.sh build test
+	@cmake --preset release -DDUET_BUILD_BENCHMARKS=ON >/dev/null
+	@JOBS=$(JOBS) scripts/build.sh $(BUILD) roofline_benchmark kernel_benchmark clean_up_benchmark \
+	  synthesis_benchmark
+	@benchmarks/bench.py $(BUILD)
+
 .PHONY: docs
 docs: ## Make the API reference from headers and proto files: build/docs/html/index.html
 	@scripts/install_packages.sh develop
@@ -56,6 +64,11 @@ docs: ## Make the API reference from headers and proto files: build/docs/html/in
 python: ## Make the Python package: wheel and sdist in build/python
 	@scripts/install_packages.sh test
 	@scripts/build_python.sh
+
+.PHONY: site
+site: ## Make the site of all documents, with the Python, C++ and wire references: build/site/index.html
+	@scripts/install_packages.sh test develop
+	@scripts/build_site.sh
 
 .PHONY: clean
 clean: ## Remove everything that was built or made

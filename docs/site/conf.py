@@ -1,0 +1,93 @@
+"""How Sphinx makes the site: scripts/build_site.sh. The source folder is the repository's root, so
+that every document is read where it stands and its links are checked as they are."""
+
+import fnmatch
+import pathlib
+import posixpath
+import re
+import sys
+
+ROOT = pathlib.Path(__file__).parents[2]
+sys.path[:0] = [str(ROOT / "client" / "python"), str(ROOT / "docs" / "site")]
+
+from notebook_parser import NotebookParser  # noqa: E402
+
+project = "Duet"
+copyright = "the Duet authors"  # noqa: A001 (Sphinx wants this name)
+version = release = re.search(r"project\(duet VERSION ([\d.]+)",
+                              (ROOT / "CMakeLists.txt").read_text(encoding="utf-8"))[1]
+
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
+root_doc = "docs/site/index"
+source_suffix = {".md": "markdown", ".ipynb": "notebook"}
+include_patterns = ["*.md", "client/**.ipynb", "docs/**.md", "client/**.md", "deploy/**.md", "model/**.md",
+                    "benchmarks/**.md", "tests/**.md", "samples/**.md", "recipes/**.md"]
+exclude_patterns = ["**/node_modules/**"]
+
+# A heading of any document may be linked to, as on a page of the repository.
+myst_heading_anchors = 4
+suppress_warnings = ["myst.header"]  # documents may begin below the first level
+nitpicky = False
+
+autodoc_member_order = "bysource"
+autodoc_typehints = "signature"
+autodoc_typehints_format = "short"
+python_use_unqualified_type_names = True
+autodoc_type_aliases = {"Positions": "Positions", "Labels": "Labels", "Path": "Path",
+                        "Shown": "Shown", "npt.ArrayLike": "ArrayLike"}
+napoleon_google_docstring = True
+
+html_theme = "furo"
+html_title = f"Duet {version}"
+html_static_path = ["style.css"]
+html_css_files = ["style.css"]
+html_extra_path = ["extra"]
+html_copy_source = False
+html_show_sourcelink = False
+html_show_sphinx = False
+# Pages load nothing from elsewhere.
+html_theme_options = {
+    "light_css_variables": {"color-brand-primary": "#0b6e6e", "color-brand-content": "#0b6e6e"},
+    "dark_css_variables": {"color-brand-primary": "#4cc4c4", "color-brand-content": "#4cc4c4"},
+}
+
+
+ANCHOR = re.compile(r'^<a id="([^"]+)"></a>$', re.MULTILINE)
+ANCHOR_LINK = re.compile(r"\[([^\]]*)\]\(#([^)]+)\)")
+TITLED = re.compile(r"^.*<|>$")
+TOCTREE = re.compile(r"^```\{toctree\}\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+# Pages below a page, in the sidebar. "*" alone: every document that no other list has.
+BELOW = {
+    "docs/results/README": ["The paper's generator <report>",
+                            "The generator that samples <sampling/report>"],
+    "docs/decisions/README": ["0*"],
+    "docs/README": ["*"],
+}
+
+
+def adapt_source(app, docname, source):
+    """What a page of the repository may do and MyST reads otherwise; pages below it."""
+    anchors = set(ANCHOR.findall(source[0]))
+    source[0] = ANCHOR_LINK.sub(
+        lambda link: f'<a href="#{link[2]}">{link[1]}</a>' if link[2] in anchors else link[0],
+        source[0])
+    if docname in BELOW:
+        entries = the_rest(app.env.found_docs) if BELOW[docname] == ["*"] else BELOW[docname]
+        source[0] += "\n```{toctree}\n:hidden:\n:glob:\n\n" + "\n".join(entries) + "\n```\n"
+
+
+def the_rest(documents):
+    """Absolute paths of the documents that neither the index nor another list has."""
+    index = (ROOT / f"{root_doc}.md").read_text(encoding="utf-8")
+    lists = [(root_doc, [line for block in TOCTREE.findall(index) for line in block.splitlines()]),
+             *BELOW.items()]
+    patterns = [posixpath.normpath(posixpath.join(posixpath.dirname(page), TITLED.sub("", entry)))
+                for page, entries in lists for entry in entries
+                if entry not in ("", "*") and not entry.startswith(":")]
+    return [f"/{name}" for name in sorted(documents - {root_doc})
+            if not any(fnmatch.fnmatch(name, pattern) for pattern in patterns)]
+
+
+def setup(app):
+    app.add_source_parser(NotebookParser)
+    app.connect("source-read", adapt_source)
