@@ -56,8 +56,10 @@ ReloadResult FromMessage(const v1::ReloadResponse& response) {
 
 class GrpcAdminClient final : public AdminClient {
  public:
-  GrpcAdminClient(std::shared_ptr<grpc::Channel> channel, absl::Duration deadline)
-      : stub_(v1::Admin::NewStub(std::move(channel))), deadline_(deadline) {}
+  GrpcAdminClient(std::shared_ptr<grpc::Channel> channel, const ClientOptions& options)
+      : stub_(v1::Admin::NewStub(std::move(channel))),
+        deadline_(options.deadline),
+        authorization_(options.token.empty() ? "" : "Bearer " + options.token) {}
 
   absl::StatusOr<ServedModels> ListModels() override {
     v1::ListModelsResponse response;
@@ -115,11 +117,13 @@ class GrpcAdminClient final : public AdminClient {
                     const Request& request, Response* response) {
     grpc::ClientContext context;
     context.set_deadline(absl::ToChronoTime(absl::Now() + deadline_));
+    if (!authorization_.empty()) context.AddMetadata("authorization", authorization_);
     return internal::FromGrpc((*stub_.*method)(&context, request, response));
   }
 
   const std::unique_ptr<v1::Admin::Stub> stub_;
   const absl::Duration deadline_;
+  const std::string authorization_;  // a whole "Bearer TOKEN", or empty
 };
 
 }  // namespace
@@ -127,7 +131,7 @@ class GrpcAdminClient final : public AdminClient {
 absl::StatusOr<std::unique_ptr<AdminClient>> AdminClient::Create(const ClientOptions& options) {
   absl::StatusOr<std::shared_ptr<grpc::Channel>> channel = internal::OpenChannel(options);
   if (!channel.ok()) return channel.status();
-  return std::make_unique<GrpcAdminClient>(*std::move(channel), options.deadline);
+  return std::make_unique<GrpcAdminClient>(*std::move(channel), options);
 }
 
 }  // namespace duet::client

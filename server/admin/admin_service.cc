@@ -1,16 +1,17 @@
 #include "server/admin/admin_service.h"
 
-#include <google/protobuf/util/json_util.h>
+#include <google/protobuf/descriptor.h>
+#include <google/protobuf/message.h>
 
-#include <nlohmann/json.hpp>
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
+#include "absl/strings/str_cat.h"
 #include "server/admin/admin_message.h"
-#include "server/service/call_identity.h"
-#include "server/service/call_pipeline.h"
-#include "server/service/call_scope.h"
 #include "server/service/refusals.h"
 
 namespace duet::server::admin {
@@ -26,11 +27,24 @@ constexpr metrics::MethodInfo kReload = Method("Reload");
 constexpr metrics::MethodInfo kSetLabel = Method("SetLabel");
 constexpr metrics::MethodInfo kDeleteLabel = Method("DeleteLabel");
 
-// A request as the log shows it.
-nlohmann::ordered_json Shown(const google::protobuf::Message& request) {
-  std::string text;
-  if (!google::protobuf::util::MessageToJsonString(request, &text).ok()) return nullptr;
-  return nlohmann::ordered_json::parse(text, nullptr, /*allow_exceptions=*/false);
+// gRPC reads the messages, whose size the listener limits.
+constexpr std::size_t kNoRawRequests = 0;
+
+// A request's fields, for the audit.
+std::vector<std::pair<std::string, std::string>> ArgumentsOf(
+    const google::protobuf::Message& request) {
+  using google::protobuf::FieldDescriptor;
+  std::vector<const FieldDescriptor*> fields;
+  request.GetReflection()->ListFields(request, &fields);
+  std::vector<std::pair<std::string, std::string>> arguments;
+  for (const FieldDescriptor* field : fields) {
+    const bool is_text = field->cpp_type() == FieldDescriptor::CPPTYPE_STRING;
+    arguments.emplace_back(
+        field->name(),
+        is_text ? request.GetReflection()->GetString(request, field)
+                : absl::StrCat(request.GetReflection()->GetUInt32(request, field)));
+  }
+  return arguments;
 }
 
 }  // namespace
@@ -39,48 +53,49 @@ nlohmann::ordered_json Shown(const google::protobuf::Message& request) {
 class AdminService::Call {
  public:
   Call(grpc::CallbackServerContext& context, const metrics::MethodInfo& method,
-       const google::protobuf::Message& request, const AdminParts& parts)
+       const google::protobuf::Message& request, const AdminService& service)
       : context_(context),
         reactor_(*context.DefaultReactor()),  // gRPC makes another at every call of this
-        request_(Shown(request)),
-        log_(*parts.log),
-        scope_(method, service::IdentifyCall(context), parts.observers, *parts.clock) {}
+        arguments_(ArgumentsOf(request)),
+        log_(*service.parts_.log),
+        opened_(service.pipeline_.Open(context, method)) {}
 
   grpc::ServerUnaryReactor* reactor() const { return &reactor_; }
+  // OK, or why its caller was turned away.
+  const absl::Status& status() const { return opened_.status; }
 
   void Finish(const absl::Status& status) {
     // A server that stops gives up what it had not begun.
     const absl::Status told = absl::IsCancelled(status) ? service::DrainingRefusal() : status;
-    const metrics::CallRecord& record = scope_.record();
-    log_.Info("admin", {{"method", record.method.name},
-                        {"request", request_},
-                        {"peer", record.peer},
-                        {"request_id", record.request_id},
-                        {"code", absl::StatusCodeToString(told.code())},
-                        {"message", std::string(told.message())}});
-    service::CallPipeline::Close(scope_, told, context_, reactor_);
+    const metrics::CallRecord& record = opened_.scope->record();
+    log_.Audit({record.caller, record.peer, record.request_id, std::string(record.method.name),
+                arguments_, told});
+    service::CallPipeline::Close(*opened_.scope, told, context_, reactor_);
   }
 
  private:
   grpc::CallbackServerContext& context_;
   grpc::ServerUnaryReactor& reactor_;
-  const nlohmann::ordered_json request_;
+  const std::vector<std::pair<std::string, std::string>> arguments_;
   metrics::JsonLog& log_;
-  service::CallScope scope_;
+  const service::OpenedCall opened_;
 };
 
-AdminService::AdminService(AdminParts parts) : parts_(std::move(parts)) {}
+AdminService::AdminService(AdminParts parts)
+    : parts_(std::move(parts)),
+      pipeline_(kNoRawRequests, /*client_key=*/"", parts_.observers, *parts_.clock, parts_.guard,
+                security::Role::kAdmin, /*trace_ratio=*/std::nullopt) {}
 
 template <typename Request, typename Answer>
 grpc::ServerUnaryReactor* AdminService::Open(grpc::CallbackServerContext& context,
                                              const metrics::MethodInfo& method,
                                              const Request& request, const Answer& answer) {
-  const auto call = std::make_shared<Call>(context, method, request, parts_);
-  const absl::Status valid = Validate(request);
-  if (valid.ok()) {
+  const auto call = std::make_shared<Call>(context, method, request, *this);
+  const absl::Status admitted = call->status().ok() ? Validate(request) : call->status();
+  if (admitted.ok()) {
     answer(call);
   } else {
-    call->Finish(valid);
+    call->Finish(admitted);
   }
   return call->reactor();
 }

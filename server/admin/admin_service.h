@@ -10,7 +10,9 @@
 #include "server/metrics/call_record.h"
 #include "server/metrics/json_log.h"
 #include "server/registry/model_control.h"
+#include "server/security/call_guard.h"
 #include "server/service/admission.h"
+#include "server/service/call_pipeline.h"
 
 namespace duet::server::admin {
 
@@ -22,6 +24,7 @@ struct AdminParts {
   const service::Admission* admission = nullptr;  // says whether the server serves
   metrics::JsonLog* log = nullptr;
   std::vector<metrics::CallObserver*> observers;
+  security::CallGuard guard = security::CallGuard(nullptr);  // says who may administer
   const common::Clock* clock = &common::Clock::Real();
 };
 
@@ -65,6 +68,7 @@ class AdminService final : public v1::Admin::CallbackService {
                                  const Answer& answer);
 
   const AdminParts parts_;
+  const service::CallPipeline pipeline_;
 };
 
 }  // namespace duet::server::admin

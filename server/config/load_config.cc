@@ -84,6 +84,13 @@ const std::map<std::string, v1::Engine> kEngines = {{"cpu", v1::ENGINE_CPU},
 const std::map<std::string, v1::Precision> kPrecisions = {
     {"auto", v1::PRECISION_AUTO}, {"f32", v1::PRECISION_F32}, {"bf16", v1::PRECISION_BF16}};
 
+// The names of --log-format and --log-level.
+const std::map<std::string, v1::LogFormat> kLogFormats = {{"json", v1::LOG_FORMAT_JSON},
+                                                          {"text", v1::LOG_FORMAT_TEXT}};
+const std::map<std::string, v1::LogLevel> kLogLevels = {{"info", v1::LOG_LEVEL_INFO},
+                                                        {"warning", v1::LOG_LEVEL_WARNING},
+                                                        {"error", v1::LOG_LEVEL_ERROR}};
+
 template <typename Value>
 Value Named(const std::map<std::string, Value>& names, const char* flag, const std::string& text,
             const char* wanted) {
@@ -236,8 +243,8 @@ constexpr char kFooter[] = R"(
 Every flag but the two --...-config switches may be an environment variable instead: DUET_SERVER_MAX_CALLS=64
 for --max-calls 64. Flags win over variables, variables over the file.
 
-Signals: SIGTERM and SIGINT drain and stop, a second one at once. SIGHUP reads labels, policies and
-the model repository again.
+Signals: SIGTERM and SIGINT drain and stop, a second one at once. SIGHUP reads labels, policies,
+the model repository, certificates and the access file again.
 )";
 
 void AddFlags(CLI::App& app, Flags& flags) {
@@ -254,6 +261,9 @@ void AddFlags(CLI::App& app, Flags& flags) {
       "print every setting and where it comes from, and leave");
   AddServingFlags(app, flags.config);
   AddCapacityFlags(app, flags.config);
+  AddSharingFlags(app, flags.config);
+  AddSecurityFlags(app, flags.config);
+  AddObservabilityFlags(app, flags.config);
 }
 
 // Flags that ask for something to be done once and so are no settings.

@@ -6,6 +6,7 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "server/admin/admin_service.h"
@@ -13,7 +14,10 @@
 #include "server/common/mutex.h"
 #include "server/config/server_options.h"
 #include "server/lifecycle/grpc_server.h"
+#include "server/lifecycle/heap_trimmer.h"
 #include "server/lifecycle/model_events.h"
+#include "server/lifecycle/repeated_task.h"
+#include "server/lifecycle/self_check.h"
 #include "server/metrics/json_log.h"
 #include "server/metrics/metrics_endpoint.h"
 #include "server/metrics/server_metrics.h"
@@ -21,10 +25,15 @@
 #include "server/registry/model_manager.h"
 #include "server/registry/model_registry.h"
 #include "server/registry/model_source.h"
+#include "server/security/secret_files.h"
 #include "server/service/admission.h"
 #include "server/service/motion_synthesis_service.h"
+#include "server/tracing/call_tracer.h"
 
 namespace duet::server::lifecycle {
+
+// The part of the options that the log keeps to.
+metrics::LogOptions LogOptionsOf(const config::LoggingOptions& options);
 
 // The whole server in one object: listens from the start, refuses calls as UNAVAILABLE until
 // Serve(), answers them until Drain().
@@ -38,7 +47,8 @@ namespace duet::server::lifecycle {
 // Threads: one thread at a time, but for control().
 class DuetServer {
  public:
-  // `sink` outlives the server. Fails with UNAVAILABLE when an address cannot be listened on.
+  // `sink` outlives the server. Fails with UNAVAILABLE when an address cannot be listened on; as
+  // SecretFiles::Open and CallTracer::Open when what they are given makes no sense.
   static absl::StatusOr<std::unique_ptr<DuetServer>> Start(const config::ServerOptions& options,
                                                            metrics::LogSink& sink);
   ~DuetServer();
@@ -65,14 +75,27 @@ class DuetServer {
   // as after a second signal, both times are cut short.
   void Drain(const std::function<bool(double seconds)>& wait);
 
+  // Reads certificates and the access file again and takes over what changed, at once. By itself
+  // that happens every second, for files that do not change any more. Safe to call concurrently.
+  // Fails as the first of them does.
+  absl::Status RefreshSecrets();
+
   int port() const { return grpc_.port; }
   int metrics_port() const { return endpoint_ == nullptr ? 0 : endpoint_->port(); }
   metrics::JsonLog& log() { return log_; }
 
  private:
-  DuetServer(const config::ServerOptions& options, metrics::LogSink& sink);
+  DuetServer(const config::ServerOptions& options, metrics::LogSink& sink,
+             std::unique_ptr<security::SecretFiles> secrets,
+             std::unique_ptr<tracing::CallTracer> tracer);
   absl::Status Listen();
   absl::Status ListenForAdmin();
+  // Starts what looks after the server while it runs: time limits, memory, secrets, the
+  // log's counts, its own port.
+  void Watch();
+  void Tell(const std::vector<security::Reload>& reloads);
+  // Null: plain text.
+  std::shared_ptr<grpc::ServerCredentials> Credentials() const;
   bool Ready() const;
   // How it stands with each model, for people: a line each.
   std::string Describe() const;
@@ -86,7 +109,9 @@ class DuetServer {
 
   const config::ServerOptions options_;
   metrics::JsonLog log_;
+  const std::unique_ptr<tracing::CallTracer> tracer_;  // null: spans go nowhere
   metrics::ServerMetrics metrics_;
+  const std::unique_ptr<security::SecretFiles> secrets_;
   ModelEvents events_;
   registry::ModelRegistry registry_;
   registry::ModelManager manager_;
@@ -98,6 +123,9 @@ class DuetServer {
   common::Mutex health_mutex_;
   bool healthy_ DUET_GUARDED_BY(health_mutex_) = false;
   std::set<std::string> health_models_ DUET_GUARDED_BY(health_mutex_);  // ever told of
+  HeapTrimmer heap_trimmer_;
+  std::vector<std::unique_ptr<RepeatedTask>> watch_;
+  std::unique_ptr<SelfCheck> self_check_;  // null when the options want none
   std::unique_ptr<metrics::MetricsEndpoint> endpoint_;
   registry::ModelControl control_;
   admin::AdminService admin_;

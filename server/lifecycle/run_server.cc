@@ -20,6 +20,7 @@
 #include "server/lifecycle/library_logs.h"
 #include "server/lifecycle/service_manager.h"
 #include "server/metrics/queued_log_sink.h"
+#include "server/metrics/text_log_sink.h"
 
 namespace duet::server::lifecycle {
 namespace {
@@ -60,7 +61,7 @@ void ServeUntilStopped(DuetServer& server, StopSignal& stop, const ServiceManage
 // Serves until told to stop; what it cannot serve for is in the log as well.
 absl::Status Serve(const config::ServerOptions& options, const ModelSource& source,
                    const ReadSettings& read_settings, StopSignal& stop, metrics::LogSink& sink) {
-  metrics::JsonLog log(sink);
+  metrics::JsonLog log(sink, absl::Now, LogOptionsOf(options.logging));
   const LibraryLogs library_logs(log);
   const ServiceManager manager = ServiceManager::OfProcess();
   log.Info("engine_opened", {{"engine", source.engine}});
@@ -124,6 +125,9 @@ int RunServer(int argc, const char* const* argv, const EngineOpener& open_engine
   RaiseDescriptorLimit();
   metrics::QueuedLogSink::Options log;
   log.drop_notice = [](std::uint64_t dropped) { return metrics::DroppedLinesNotice(dropped); };
+  if (options->logging.format == config::LoggingOptions::Format::kText) {
+    sink = std::make_shared<metrics::TextLogSink>(std::move(sink));
+  }
   // Outlives everything that logs, and writes its last lines before the process ends.
   metrics::QueuedLogSink queued_sink(std::move(sink), log);
   const auto read_settings = [&] { return config::ToOptions(read(), cores); };

