@@ -40,9 +40,8 @@ std::vector<std::pair<std::string, std::string>> ArgumentsOf(
   for (const FieldDescriptor* field : fields) {
     const bool is_text = field->cpp_type() == FieldDescriptor::CPPTYPE_STRING;
     arguments.emplace_back(
-        field->name(),
-        is_text ? request.GetReflection()->GetString(request, field)
-                : absl::StrCat(request.GetReflection()->GetUInt32(request, field)));
+        field->name(), is_text ? request.GetReflection()->GetString(request, field)
+                               : absl::StrCat(request.GetReflection()->GetUInt32(request, field)));
   }
   return arguments;
 }

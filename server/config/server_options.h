@@ -110,8 +110,8 @@ struct ServerOptions {
 absl::StatusOr<ServerOptions> ToOptions(const v1::ServerConfig& config, int cores,
                                         const SettingSources& sources = {});
 
-// The other way round: every setting, those with their defaults too, but for names and files that are
-// absent.
+// The other way round: every setting, those with their defaults too, but for names and files that
+// are absent.
 v1::ServerConfig ToConfig(const ServerOptions& options);
 
 // "host:port"; an IPv6 host is in brackets, an empty one means every interface.

@@ -25,6 +25,7 @@ class Findings final : public registry::ModelObserver {
     }
   }
   void Unloaded(const std::string&) override {}
+  void Forgotten(const std::string&) override {}
   void Scanned(const std::vector<registry::SkippedFolder>& skipped) override {
     for (const registry::SkippedFolder& folder : skipped) {
       Problem(folder.folder + ": skipped: " + folder.reason);

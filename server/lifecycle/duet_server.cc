@@ -116,7 +116,7 @@ DuetServer::DuetServer(const config::ServerOptions& options, metrics::LogSink& s
       control_(manager_, registry_, events_),
       admin_(AdminParts()) {
   Configure(options);
-  control_.AddReloadable({"certificates and access file", [this] { return RefreshSecrets(); }});
+  control_.AddReloadable({"certificates and access file", [this] { return ReloadSecrets(); }});
   metrics_.SetQueueLength([this] { return static_cast<double>(scheduler_->queued_windows()); });
   metrics_.SetCapacity({options_.max_calls, options_.max_queued_windows, options_.workers});
   metrics_.SetBuild(DUET_VERSION);
@@ -231,7 +231,7 @@ void DuetServer::Tell(const std::vector<security::Reload>& reloads) {
   }
 }
 
-absl::Status DuetServer::RefreshSecrets() {
+absl::Status DuetServer::ReloadSecrets() {
   const std::vector<security::Reload> reloads = secrets_->Refresh();
   Tell(reloads);
   absl::Status status;

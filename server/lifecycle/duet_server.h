@@ -77,8 +77,7 @@ class DuetServer {
 
   // Reads certificates and the access file again and takes over what changed, at once. By itself
   // that happens every second, for files that do not change any more. Safe to call concurrently.
-  // Fails as the first of them does.
-  absl::Status RefreshSecrets();
+  void RefreshSecrets() { Tell(secrets_->Refresh()); }
 
   int port() const { return grpc_.port; }
   int metrics_port() const { return endpoint_ == nullptr ? 0 : endpoint_->port(); }
@@ -94,6 +93,8 @@ class DuetServer {
   // log's counts, its own port.
   void Watch();
   void Tell(const std::vector<security::Reload>& reloads);
+  // The same as RefreshSecrets; fails as the first of what was read again does.
+  absl::Status ReloadSecrets();
   // Null: plain text.
   std::shared_ptr<grpc::ServerCredentials> Credentials() const;
   bool Ready() const;

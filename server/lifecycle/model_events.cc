@@ -26,6 +26,8 @@ void ModelEvents::Unloaded(const std::string& source) {
   log_.Info("model_unloaded", {{"source", source}});
 }
 
+void ModelEvents::Forgotten(const std::string& source) { metrics_.ModelUnloaded(source); }
+
 void ModelEvents::Scanned(const std::vector<registry::SkippedFolder>& skipped) {
   metrics_.FoldersSkipped(static_cast<int>(skipped.size()));
   common::MutexLock lock(mutex_);

@@ -24,6 +24,7 @@ class ModelEvents final : public registry::ModelObserver {
 
   void Loaded(const registry::LoadReport& report, bool still_served) override;
   void Unloaded(const std::string& source) override;
+  void Forgotten(const std::string& source) override;
   // A folder that is skipped time and again has one line.
   void Scanned(const std::vector<registry::SkippedFolder>& skipped) override;
   void Reloaded(const absl::StatusOr<registry::ReloadReport>& report) override;

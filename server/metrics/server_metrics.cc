@@ -123,8 +123,7 @@ ServerMetrics::ServerMetrics()
                         .Register(registry_)),
       model_state_(BuildGauge()
                        .Name("duet_model_state")
-                       .Help("1 when a checkpoint is served, 0 when it failed to load or was "
-                             "unloaded.")
+                       .Help("1 when a checkpoint is served, 0 when it was refused.")
                        .Register(registry_)),
       model_loads_(BuildCounter()
                        .Name("duet_model_loads_total")
@@ -215,7 +214,10 @@ void ServerMetrics::ModelLoaded(const std::string& checkpoint, double seconds, b
 }
 
 void ServerMetrics::ModelUnloaded(const std::string& checkpoint) {
-  model_state_.Add({{"checkpoint", checkpoint}}).Set(0);
+  // An alert on 0 is for what should be served.
+  const Labels labels = {{"checkpoint", checkpoint}};
+  model_state_.Remove(&model_state_.Add(labels));
+  load_seconds_.Remove(&load_seconds_.Add(labels));
 }
 
 void ServerMetrics::FoldersSkipped(int folders) { folders_skipped_.Set(folders); }

@@ -62,7 +62,7 @@ struct ServedVersion {
 //   duet_workers                                       batches that may be evaluated at a time
 // Of models:
 //   duet_model_load_seconds{checkpoint}                time that loading took
-//   duet_model_state{checkpoint}                       1 served, 0 failed to load or unloaded
+//   duet_model_state{checkpoint}                       1 served, 0 refused; not of unloaded ones
 //   duet_model_info{model, version, default}           1 for each version served now
 //   duet_model_loads_total{result}                     checkpoints loaded: ok or refused
 //   duet_model_folders_skipped                         in the repository, but no checkpoints
@@ -90,6 +90,7 @@ class ServerMetrics final : public CallObserver, public batching::WindowObserver
   // A checkpoint was loaded, or was refused; `served` tells of a refused one whether what was
   // loaded before in its place is served on.
   void ModelLoaded(const std::string& checkpoint, double seconds, bool loaded, bool served);
+  // A checkpoint is not served any more, nor is it to be.
   void ModelUnloaded(const std::string& checkpoint);
   void FoldersSkipped(int folders);
   void Reloaded(bool ok);

@@ -141,8 +141,7 @@ bool ModelManager::ReloadModel(const std::string& name, const Folders::mapped_ty
     const bool wanted = IsWanted(name, version, policy, places);
     if (wanted) keep.push_back(version);
     if (!wanted && !IsLabelled(name, version) && !WillBeLabelled(name, version)) {
-      common::MutexLock lock(mutex_);
-      models_[name][version];  // is there, and so is listed
+      PassOver(name, version);
       continue;
     }
     if (IsUnchanged(name, version, folder)) {
@@ -163,14 +162,7 @@ bool ModelManager::ReloadModel(const std::string& name, const Folders::mapped_ty
     if (folders.count(version) > 0 && IsLabelled(name, version)) continue;
     Retire(name, version, report);
   }
-  // What has neither a folder nor is served is forgotten.
-  common::MutexLock lock(mutex_);
-  Versions& versions = models_[name];
-  for (auto version = versions.begin(); version != versions.end();) {
-    const bool gone = folders.count(version->first) == 0 && !version->second.served;
-    version = gone ? versions.erase(version) : std::next(version);
-  }
-  if (versions.empty()) models_.erase(name);
+  ForgetWithout(folders, name);
   for (const uint32_t version : policy.versions) {
     if (policy.model == name && folders.count(version) == 0) {
       report.problems.push_back(absl::StrCat("version_policies: version ", version, " of model ",
@@ -178,6 +170,32 @@ bool ModelManager::ReloadModel(const std::string& name, const Folders::mapped_ty
     }
   }
   return true;
+}
+
+void ModelManager::PassOver(const std::string& name, uint32_t version) {
+  {
+    common::MutexLock lock(mutex_);
+    Version& known = models_[name][version];
+    if (known.served || known.error.empty()) return;
+    known.error.clear();
+  }
+  observer_.Forgotten(SourceOf(name, version));
+}
+
+void ModelManager::ForgetWithout(const Folders::mapped_type& folders, const std::string& name) {
+  std::vector<std::string> forgotten;
+  {
+    common::MutexLock lock(mutex_);
+    Versions& versions = models_[name];
+    for (auto version = versions.begin(); version != versions.end();) {
+      const auto& [number, known] = *version;
+      const bool gone = folders.count(number) == 0 && !known.served;
+      if (gone && !known.error.empty()) forgotten.push_back(SourceOf(name, number));
+      version = gone ? versions.erase(version) : std::next(version);
+    }
+    if (versions.empty()) models_.erase(name);
+  }
+  for (const std::string& source : forgotten) observer_.Forgotten(source);
 }
 
 bool ModelManager::IsWanted(const std::string& name, uint32_t version, const VersionPolicy& policy,

@@ -99,6 +99,10 @@ class ModelManager {
   // Whether policy or operator want a version. `places`: for how many the policy still has room.
   bool IsWanted(const std::string& name, uint32_t version, const VersionPolicy& policy,
                 uint32_t places) const;
+  // Lists a version that is there and not wanted.
+  void PassOver(const std::string& name, uint32_t version);
+  // Forgets every version of a model that has neither a folder nor is served.
+  void ForgetWithout(const Folders::mapped_type& folders, const std::string& name);
   Wish WishFor(const std::string& name, uint32_t version) const;
   // Whether a label points at a version, or is to as the configuration has it.
   bool IsLabelled(const std::string& name, uint32_t version) const;

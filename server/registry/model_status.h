@@ -52,6 +52,8 @@ class ModelObserver {
   virtual void Loaded(const LoadReport& report, bool still_served) = 0;
   // A version is served no longer.
   virtual void Unloaded(const std::string& source) = 0;
+  // A version that could not be loaded is no longer there, or no longer wanted.
+  virtual void Forgotten(const std::string& source) = 0;
   // The repository was looked through; each folder that is no checkpoint, new or not.
   virtual void Scanned(const std::vector<SkippedFolder>& skipped) = 0;
   // A reload that an operator asked for is over.

@@ -379,8 +379,7 @@ TEST_F(ModelLifecycleTest, EachAdminCallLeavesALine) {
   const std::vector<json> lines = server_->log.Events("admin_action");
   ASSERT_EQ(lines.size(), 2u);
   EXPECT_EQ(lines[0]["action"], "SetLabel");
-  EXPECT_EQ(lines[0]["arguments"],
-            json({{"name", "fake"}, {"label", "stable"}, {"version", "1"}}));
+  EXPECT_EQ(lines[0]["arguments"], json({{"name", "fake"}, {"label", "stable"}, {"version", "1"}}));
   EXPECT_EQ(lines[0]["code"], "OK");
   EXPECT_THAT(lines[0]["peer"].get<std::string>(), HasSubstr("127.0.0.1"));
   EXPECT_EQ(lines[1]["code"], "FAILED_PRECONDITION");

@@ -31,6 +31,7 @@ class Events final : public ModelObserver {
  public:
   void Loaded(const LoadReport&, bool) override {}
   void Unloaded(const std::string&) override {}
+  void Forgotten(const std::string&) override {}
   void Scanned(const std::vector<SkippedFolder>&) override {}
   void Reloaded(const absl::StatusOr<ReloadReport>& report) override {
     reloaded.push_back(report.ok() ? "ok" : std::string(report.status().message()));

@@ -59,6 +59,7 @@ class Events final : public ModelObserver {
                                !report.model.ok() && still_served ? ", served on" : ""));
   }
   void Unloaded(const std::string& source) override { log.push_back("unloaded " + source); }
+  void Forgotten(const std::string& source) override { log.push_back("forgotten " + source); }
   void Scanned(const std::vector<SkippedFolder>&) override {}
   void Reloaded(const absl::StatusOr<ReloadReport>&) override {}
   void Changed() override {}
@@ -170,6 +171,21 @@ TEST_F(ModelManagerTest, TriesAgainWhatDidNotLoad) {
   EXPECT_EQ(StatusOf("a", 2).state, ModelState::kFailed);
   EXPECT_THAT(Reload().refused, ElementsAre("a/2"));
   EXPECT_THAT(events_.Take(), ElementsAre("refused a/2", "loaded a/1", "refused a/2"));
+}
+
+TEST_F(ModelManagerTest, ForgetsWhatDidNotLoadOnceItIsGoneOrUnwanted) {
+  manager_.SetPolicies({{"a", 1, {}}});
+  Write("a", 1);
+  Write("a", 2, "bad");
+  Write("a", 3, "bad");
+  Reload();
+  events_.Take();
+  Delete("a/3");
+  Write("a", 4);
+  Reload();
+  EXPECT_THAT(events_.Take(),
+              ElementsAre("loaded a/4", "forgotten a/2", "unloaded a/1", "forgotten a/3"));
+  EXPECT_EQ(StatusOf("a", 2).state, ModelState::kUnloaded);
 }
 
 TEST_F(ModelManagerTest, LetsGoOfWhatIsNoLongerThereOnceItsSuccessorIs) {
