@@ -20,11 +20,11 @@
 
 #include "absl/strings/str_cat.h"
 #include "duet/admin/v1/admin.grpc.pb.h"
+#include "tests/integration/running_server.h"
 #include "tests/server/support/gated_model.h"
 #include "tests/server/support/http_get.h"
 #include "tests/server/support/raw_call.h"
 #include "tests/server/support/refusal.h"
-#include "tests/server/support/running_server.h"
 #include "tests/server/support/running_service.h"
 #include "tests/server/support/sample_request.h"
 #include "tests/server/support/timed_context.h"

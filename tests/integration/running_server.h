@@ -1,5 +1,5 @@
-#ifndef DUET_TESTS_SERVER_SUPPORT_RUNNING_SERVER_H_
-#define DUET_TESTS_SERVER_SUPPORT_RUNNING_SERVER_H_
+#ifndef DUET_TESTS_INTEGRATION_RUNNING_SERVER_H_
+#define DUET_TESTS_INTEGRATION_RUNNING_SERVER_H_
 
 #include <grpcpp/create_channel.h>
 #include <grpcpp/security/credentials.h>
@@ -88,4 +88,4 @@ class Running {
 
 }  // namespace duet::test
 
-#endif  // DUET_TESTS_SERVER_SUPPORT_RUNNING_SERVER_H_
+#endif  // DUET_TESTS_INTEGRATION_RUNNING_SERVER_H_
