@@ -12,6 +12,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
+#include "absl/time/clock.h"
 #include "server/config/cpu_budget.h"
 #include "server/config/load_config.h"
 #include "server/config/print_config.h"
