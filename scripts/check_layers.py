@@ -30,12 +30,12 @@ MOTION_FILES = ("base", "motion", "retargeting", "flat formats", "bvh format",
 MODELS = ("engine", "checkpoint", "embedded checkpoints", "network", "torch engine", "training")
 MEASURING = ("metrics", "protocol", "baselines", "judge", "experiments")
 SERVER = ("server common", "batching", "registry", "server metrics", "security", "tracing",
-          "server config", "service", "lifecycle")
+          "server config", "service", "admin", "lifecycle")
 
 LAYERS = (
     # The method, innermost first.
     Layer("base", "model/base", sees=()),
-    Layer("messages", "model/messages", sees=(), libraries=("rpc",)),
+    Layer("messages", "model/messages", sees=("base",), libraries=("rpc",)),
     Layer("motion", "model/motion", sees=("base",)),
     Layer("retargeting", "model/retargeting", sees=("base", "motion")),
     Layer("flat formats", "model/formats/flat", sees=("base", "motion")),
@@ -96,6 +96,10 @@ LAYERS = (
           sees=("base", "motion", "engine", "server common", "batching", "registry",
                 "server metrics", "security"),
           libraries=("rpc", "prometheus")),
+    Layer("admin", "server/admin",
+          sees=("base", "engine", "server common", "batching", "registry", "server metrics",
+                "security", "service"),
+          libraries=("rpc", "prometheus")),
     Layer("lifecycle", "server/lifecycle", sees=("base", "motion", "engine") + SERVER,
           libraries=("rpc", "prometheus")),
     Layer("server program", "server/program",
@@ -118,7 +122,8 @@ LAYERS = (
 GUARDED_LIBRARIES = {
     "torch": ("torch/", "ATen/", "c10/", "caffe2/"),
     "highway": ("hwy/",),
-    "rpc": ("grpc/", "grpcpp/", "grpc++/", "google/", "duet/v1/", "duet/rpc/", "duet/otlp/"),
+    "rpc": ("grpc/", "grpcpp/", "grpc++/", "google/", "duet/v1/", "duet/rpc/", "duet/otlp/",
+            "duet/admin/"),
     "prometheus": ("prometheus/",),
 }
 

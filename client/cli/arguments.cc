@@ -156,6 +156,7 @@ ParsedCommandLine Collect(CommandLine* line) {
     parsed.man = std::move(line->man);
   }
   if (is_parsed("models")) parsed.models = std::move(line->models);
+  if (is_parsed("admin")) parsed.admin = std::move(line->admin);
   if (is_parsed("synthesize")) parsed.synthesize = std::move(line->synthesize);
   if (is_parsed("batch")) parsed.batch = std::move(line->batch);
   if (is_parsed("inspect")) parsed.inspect = std::move(line->inspect);

@@ -61,6 +61,25 @@ struct ModelsArguments {
   bool json = false;
 };
 
+// duet admin
+struct AdminArguments {
+  enum class Action { kModels, kReload, kLoad, kUnload, kLabel };
+  Action action = Action::kModels;
+  ServerArguments server = AdminServer();
+  std::string name;
+  uint32_t version = 0;
+  std::string label;
+  bool delete_label = false;
+  bool json = false;
+
+ private:
+  static ServerArguments AdminServer() {
+    ServerArguments server;
+    server.address = "localhost:50052";
+    return server;
+  }
+};
+
 // duet synthesize
 struct SynthesizeArguments {
   ServerArguments server;
@@ -175,6 +194,7 @@ struct ManArguments {
 // (help, version, a usage error).
 struct ParsedCommandLine {
   std::optional<ModelsArguments> models;
+  std::optional<AdminArguments> admin;
   std::optional<SynthesizeArguments> synthesize;
   std::optional<BatchArguments> batch;
   std::optional<InspectArguments> inspect;

@@ -1,5 +1,6 @@
 #include "client/cli/command_line.h"
 
+#include "client/cli/admin_flags.h"
 #include "client/cli/batch_flags.h"
 #include "client/cli/flags.h"
 #include "client/cli/help_topics.h"
@@ -60,6 +61,7 @@ CommandLine::CommandLine()
   AddConvertCommand(&app, &convert);
   AddViewCommand(&app, &view);
   AddCompareCommand(&app, &compare);
+  AddAdminCommand(&app, &admin);
   AddHelpCommands(this);
 }
 

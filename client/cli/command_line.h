@@ -18,6 +18,7 @@ class CommandLine {
 
   CLI::App app;
   ModelsArguments models;
+  AdminArguments admin;
   SynthesizeArguments synthesize;
   BatchArguments batch;
   InspectArguments inspect;

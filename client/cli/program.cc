@@ -5,6 +5,7 @@
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_join.h"
+#include "client/cli/admin_command.h"
 #include "client/cli/arguments.h"
 #include "client/cli/batch_command.h"
 #include "client/cli/compare_command.h"
@@ -37,6 +38,10 @@ absl::StatusOr<ExitCode> RunCommand(const ParsedCommandLine& parsed,
   if (parsed.models.has_value()) {
     *server = parsed.models->server.address;
     return Done(RunModels(*parsed.models, environment));
+  }
+  if (parsed.admin.has_value()) {
+    *server = parsed.admin->server.address;
+    return RunAdmin(*parsed.admin, environment);
   }
   if (parsed.synthesize.has_value()) {
     *server = parsed.synthesize->server.address;

@@ -3,11 +3,13 @@
 
 #include <functional>
 #include <iosfwd>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "client/admin_client.h"
 #include "client/cli/settings.h"
 #include "client/cli/style.h"
 #include "client/client.h"
@@ -23,6 +25,8 @@ struct ProgramEnvironment {
   bool err_is_terminal = false;  // progress is shown in place, and with colour
   bool out_is_terminal = false;  // shown with colour
   Variables variables = [](const std::string&) { return std::nullopt; };
+  std::function<absl::StatusOr<std::unique_ptr<AdminClient>>(const ClientOptions&)> connect_admin =
+      AdminClient::Create;
 
   // Colour on a terminal, and never where NO_COLOR is set to anything.
   Style OutStyle() const { return Style(out_is_terminal && WantsColour()); }

@@ -148,13 +148,18 @@ std::string GrpcTarget(std::string_view server_address) {
   return "dns:///" + address;
 }
 
-absl::StatusOr<std::shared_ptr<Connection>> Connect(const ClientOptions& options) {
+absl::StatusOr<std::shared_ptr<grpc::Channel>> OpenChannel(const ClientOptions& options) {
   absl::Status status = Check(options);
   if (!status.ok()) return status;
-  std::shared_ptr<grpc::Channel> channel = grpc::CreateCustomChannel(
-      GrpcTarget(options.server_address), Credentials(options), Arguments(options));
-  RetryEnvironment environment = LookingAfter(channel);
-  return std::make_shared<ConnectionImpl>(MakeGrpcStub(std::move(channel), options.token), options,
+  return grpc::CreateCustomChannel(GrpcTarget(options.server_address), Credentials(options),
+                                   Arguments(options));
+}
+
+absl::StatusOr<std::shared_ptr<Connection>> Connect(const ClientOptions& options) {
+  absl::StatusOr<std::shared_ptr<grpc::Channel>> channel = OpenChannel(options);
+  if (!channel.ok()) return channel.status();
+  RetryEnvironment environment = LookingAfter(*channel);
+  return std::make_shared<ConnectionImpl>(MakeGrpcStub(*std::move(channel), options.token), options,
                                           std::move(environment));
 }
 

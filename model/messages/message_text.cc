@@ -4,46 +4,215 @@
 #include <google/protobuf/text_format.h>
 #include <google/protobuf/util/json_util.h>
 
+#include <algorithm>
+#include <cstddef>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "absl/strings/str_replace.h"
+#include "model/base/nearest.h"
+#include "model/base/text.h"
+#include "model/messages/json_places.h"
 
 namespace duet::messages {
 namespace {
 
-// Keeps the first error of a text-format file.
-class FirstError final : public google::protobuf::io::ErrorCollector {
+using google::protobuf::Descriptor;
+using google::protobuf::FieldDescriptor;
+using google::protobuf::Message;
+using nlohmann::json;
+
+// Everything that is wrong with a text, and where.
+class Problems {
  public:
-  void AddError(int line, google::protobuf::io::ColumnNumber column,
-                const std::string& message) override {
-    // Both count from 0; -1 is the file as a whole.
-    if (text_.empty()) text_ = absl::StrCat("line ", line + 1, ":", column + 1, ": ", message);
+  void Add(Place place, std::string problem) { problems_.emplace_back(place, std::move(problem)); }
+  bool empty() const { return problems_.empty(); }
+  absl::Status ToStatus() {
+    if (problems_.empty()) return absl::OkStatus();
+    std::stable_sort(problems_.begin(), problems_.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    return absl::InvalidArgumentError(
+        absl::StrJoin(problems_, "\n", [](std::string* out, const auto& problem) {
+          const auto& [place, what] = problem;
+          absl::StrAppend(out, "line ", place.line, ":", place.column, ": ", what);
+        }));
   }
-  const std::string& text() const { return text_; }
 
  private:
-  std::string text_;
+  std::vector<std::pair<Place, std::string>> problems_;
 };
 
-absl::Status ParseJson(absl::string_view text, google::protobuf::Message* message) {
-  const auto status = google::protobuf::util::JsonStringToMessage(std::string(text), message);
-  if (status.ok()) return absl::OkStatus();
-  return absl::InvalidArgumentError(std::string(status.message()));
+std::string ElementName(const FieldDescriptor& field, int index) {
+  return absl::StrCat(field.name(), "[", index, "]");
 }
 
-absl::Status ParseTextFormat(absl::string_view text, google::protobuf::Message* message) {
-  FirstError error;
+// The parser counts from 0; -1 is the file as a whole.
+Place FromZero(int line, int column) { return {line + 1, column + 1}; }
+
+// Unknown fields come as warnings, after which the parser goes on.
+class ProblemCollector final : public google::protobuf::io::ErrorCollector {
+ public:
+  explicit ProblemCollector(Problems* problems) : problems_(problems) {}
+  void AddError(int line, google::protobuf::io::ColumnNumber column,
+                const std::string& message) override {
+    problems_->Add(FromZero(line, column), message);
+  }
+  void AddWarning(int line, google::protobuf::io::ColumnNumber column,
+                  const std::string& message) override {
+    problems_->Add(FromZero(line, column), message);
+  }
+
+ private:
+  Problems* const problems_;
+};
+
+// Where the text format's parser found a message's fields.
+FieldPlaces ToPlaces(const google::protobuf::TextFormat::ParseInfoTree& tree,
+                     const Message& message) {
+  FieldPlaces places;
+  std::vector<const FieldDescriptor*> fields;
+  message.GetReflection()->ListFields(message, &fields);
+  const auto add = [&](const FieldDescriptor& field, int index, const std::string& name) {
+    const auto location = tree.GetLocation(&field, index);
+    places[name] = FromZero(location.line, location.column);
+  };
+  for (const FieldDescriptor* field : fields) {
+    if (!field->is_repeated()) add(*field, -1, field->name());
+    for (int i = 0; field->is_repeated() && i < message.GetReflection()->FieldSize(message, field);
+         ++i) {
+      add(*field, i, ElementName(*field, i));
+    }
+  }
+  return places;
+}
+
+void ParseTextFormat(absl::string_view text, Message* message, FieldPlaces* places,
+                     Problems* problems) {
+  ProblemCollector collector(problems);
+  google::protobuf::TextFormat::ParseInfoTree tree;
   google::protobuf::TextFormat::Parser parser;
-  parser.RecordErrorsTo(&error);
-  if (parser.ParseFromString(std::string(text), message)) return absl::OkStatus();
-  return absl::InvalidArgumentError(error.text());
+  parser.RecordErrorsTo(&collector);
+  parser.WriteLocationsTo(&tree);
+  parser.AllowUnknownField(true);
+  parser.ParseFromString(std::string(text), message);
+  *places = ToPlaces(tree, *message);
+}
+
+// Takes a JSON object field by field, so that each error has its place.
+class JsonFields {
+ public:
+  JsonFields(Message* message, FieldPlaces* places, Problems* problems)
+      : message_(*message),
+        descriptor_(*message->GetDescriptor()),
+        places_(*places),
+        problems_(*problems) {}
+
+  // `object` has the keys of `found`, of a repeated one the last value.
+  void Read(const json& object, const JsonPlaces& found) {
+    std::set<const FieldDescriptor*> seen;
+    for (const JsonPlaces::Element& element : found.keys) {
+      const FieldDescriptor* field = Find(element.key);
+      if (field == nullptr) {
+        problems_.Add(element.place, absl::StrCat("there is no field ", base::Quoted(element.key),
+                                                  base::DidYouMean(element.key, Names())));
+      } else if (!seen.insert(field).second) {
+        problems_.Add(element.place, absl::StrCat(field->name(), ": is repeated"));
+      } else {
+        ReadField(*field, object.at(element.key), element);
+      }
+    }
+  }
+
+ private:
+  // As the schema spells it, or as protobuf spells it in JSON.
+  const FieldDescriptor* Find(const std::string& key) const {
+    for (int i = 0; i < descriptor_.field_count(); ++i) {
+      const FieldDescriptor* field = descriptor_.field(i);
+      if (field->name() == key || field->json_name() == key) return field;
+    }
+    return nullptr;
+  }
+
+  std::vector<std::string> Names() const {
+    std::vector<std::string> names;
+    for (int i = 0; i < descriptor_.field_count(); ++i) {
+      names.push_back(descriptor_.field(i)->name());
+    }
+    return names;
+  }
+
+  void ReadField(const FieldDescriptor& field, const json& value,
+                 const JsonPlaces::Element& element) {
+    if (!field.is_repeated() || !value.is_array()) {
+      places_[field.name()] = element.place;
+      ReadValue(field, value, element.place, 0);
+      return;
+    }
+    for (std::size_t i = 0; i < value.size(); ++i) {
+      const int index = static_cast<int>(i);
+      places_[ElementName(field, index)] = element.elements[i];
+      ReadValue(field, json::array({value[i]}), element.elements[i], index);
+    }
+  }
+
+  void ReadValue(const FieldDescriptor& field, const json& value, Place place, int index) {
+    const std::unique_ptr<Message> part(message_.New());
+    const auto status = google::protobuf::util::JsonStringToMessage(
+        json::object({{field.name(), value}}).dump(), part.get());
+    if (status.ok()) {
+      message_.MergeFrom(*part);
+      return;
+    }
+    // Its own count is that of the part, which has one element.
+    problems_.Add(place, absl::StrReplaceAll(std::string(status.message()),
+                                             {{ElementName(field, 0), ElementName(field, index)}}));
+  }
+
+  Message& message_;
+  const Descriptor& descriptor_;
+  FieldPlaces& places_;
+  Problems& problems_;
+};
+
+void ParseJson(absl::string_view text, Message* message, FieldPlaces* places, Problems* problems) {
+  const auto whole = google::protobuf::util::JsonStringToMessage(std::string(text), message);
+  const JsonPlaces found = FindJsonPlaces(text);
+  // Protobuf's parser takes a little more than JSON.
+  if (whole.ok() && !found.error.empty()) return;
+  if (!found.error.empty()) {
+    problems->Add(found.error_place, found.error);
+    return;
+  }
+  const json object = json::parse(text.begin(), text.end(), nullptr, /*allow_exceptions=*/false);
+  if (object.is_object()) {
+    const std::unique_ptr<Message> read(message->New());
+    JsonFields(read.get(), places, problems).Read(object, found);
+    // What the parts do not show, such as two of which only one may be set, the whole does.
+    if (!whole.ok()) message->CopyFrom(*read);
+  }
+  if (!whole.ok() && problems->empty()) problems->Add({}, std::string(whole.message()));
 }
 
 }  // namespace
 
-absl::Status ParseMessage(absl::string_view text, MessageSyntax syntax,
-                          google::protobuf::Message* message) {
-  return syntax == MessageSyntax::kJson ? ParseJson(text, message) : ParseTextFormat(text, message);
+absl::Status ParseMessage(absl::string_view text, MessageSyntax syntax, Message* message,
+                          FieldPlaces* places) {
+  message->Clear();
+  Problems problems;
+  FieldPlaces found;
+  if (syntax == MessageSyntax::kJson) {
+    ParseJson(text, message, &found, &problems);
+  } else {
+    ParseTextFormat(text, message, &found, &problems);
+  }
+  if (places != nullptr) *places = std::move(found);
+  return problems.ToStatus();
 }
 
 }  // namespace duet::messages

@@ -1,5 +1,8 @@
 #include "server/config/load_config.h"
 
+#include <google/protobuf/descriptor.h>
+#include <google/protobuf/message.h>
+
 #include <CLI/CLI.hpp>
 #include <cstddef>
 #include <cstdint>
@@ -10,10 +13,14 @@
 
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "absl/strings/str_replace.h"
 #include "absl/strings/str_split.h"
 #include "absl/strings/string_view.h"
+#include "absl/strings/strip.h"
 #include "model/base/file.h"
 #include "model/base/flag_names.h"
+#include "model/base/nearest.h"
 #include "model/messages/message_text.h"
 #include "server/config/server_options.h"
 
@@ -37,6 +44,32 @@ v1::VersionLabel ParseVersionLabel(const std::string& text) {
   parsed.set_label(label[0]);
   parsed.set_version(version);
   return parsed;
+}
+
+// "model=all", "model=latest:2" or "model=1,3"
+v1::VersionPolicy ParseVersionPolicy(const std::string& text) {
+  const auto malformed = [&text] {
+    return CLI::ValidationError("--version-policy", "is " + text +
+                                                        ", wanted model=all, model=latest:2 or "
+                                                        "model=1,3; the model * is every other");
+  };
+  const std::vector<std::string> parts = absl::StrSplit(text, absl::MaxSplits('=', 1));
+  if (parts.size() != 2) throw malformed();
+  v1::VersionPolicy policy;
+  policy.set_model(parts[0]);
+  absl::string_view versions = parts[1];
+  if (versions == "all") return policy;
+  uint32_t number = 0;
+  if (absl::ConsumePrefix(&versions, "latest:")) {
+    if (!absl::SimpleAtoi(versions, &number)) throw malformed();
+    policy.set_latest(number);
+    return policy;
+  }
+  for (const absl::string_view version : absl::StrSplit(versions, ',')) {
+    if (!absl::SimpleAtoi(version, &number)) throw malformed();
+    policy.add_versions(number);
+  }
+  return policy;
 }
 
 // The names of --clean-up.
@@ -102,6 +135,20 @@ void AddServingFlags(CLI::App& app, v1::ServerConfig& config) {
          },
          "label of a model version, model:label=version; may be repeated")
       ->option_text("LABEL");
+  app.add_option_function<std::vector<std::string>>(
+         "--version-policy",
+         [&](const std::vector<std::string>& values) {
+           for (const std::string& value : values) {
+             *config.add_version_policies() = ParseVersionPolicy(value);
+           }
+         },
+         "which versions of a model are served: model=all, model=latest:2, model=1,3; the model * "
+         "is every other; may be repeated (default *=all)")
+      ->option_text("POLICY");
+  app.add_option_function<std::string>(
+         "--admin-listen", [&](const std::string& value) { config.set_admin_listen(value); },
+         "address of the admin service, host:port, or \"off\" (default off)")
+      ->option_text("ADDRESS");
   app.add_flag_function(
       "--reflection,!--no-reflection",
       [&](std::int64_t count) { config.set_reflection(count > 0); },
@@ -285,6 +332,152 @@ void AddObservabilityFlags(CLI::App& app, v1::ServerConfig& config) {
       ->option_text("RATIO");
 }
 
+// What flags say.
+struct Flags {
+  v1::ServerConfig config;
+  std::string config_path;
+  CommandLine::Task task = CommandLine::Task::kServe;
+};
+
+constexpr char kFooter[] = R"(
+Every flag but the two --...-config switches may be an environment variable instead: DUET_SERVER_MAX_CALLS=64
+for --max-calls 64. Flags win over variables, variables over the file.
+
+Signals: SIGTERM and SIGINT drain and stop, a second one at once. SIGHUP reads labels, policies,
+the model repository, certificates and the access file again.
+)";
+
+void AddFlags(CLI::App& app, Flags& flags) {
+  app.set_version_flag("--version", std::string("duet-server ") + DUET_VERSION);
+  app.footer(kFooter);
+  app.add_option("--config", flags.config_path,
+                 "configuration file: text format of duet.v1.ServerConfig, or JSON; flags win")
+      ->option_text("FILE");
+  app.add_flag_callback(
+      "--check-config", [&flags] { flags.task = CommandLine::Task::kCheckConfig; },
+      "check the settings, load every model, say all that is wrong, and leave");
+  app.add_flag_callback(
+      "--print-config", [&flags] { flags.task = CommandLine::Task::kPrintConfig; },
+      "print every setting and where it comes from, and leave");
+  AddServingFlags(app, flags.config);
+  AddCapacityFlags(app, flags.config);
+  AddSharingFlags(app, flags.config);
+  AddSecurityFlags(app, flags.config);
+  AddObservabilityFlags(app, flags.config);
+}
+
+// Flags that ask for something to be done once and so are no settings.
+bool IsSetting(const std::string& flag) {
+  return flag != "--help" && flag != "--version" && flag != "--check-config" &&
+         flag != "--print-config";
+}
+
+// A program's flags, fresh: CLI11 keeps what it has parsed.
+class FlagParser {
+ public:
+  FlagParser() : app_("Answers one character's motion with another's, over gRPC.", "duet-server") {
+    AddFlags(app_, flags_);
+  }
+  FlagParser(const FlagParser&) = delete;
+  FlagParser& operator=(const FlagParser&) = delete;
+
+  // Fails with INVALID_ARGUMENT. `print` receives what --help and --version print.
+  absl::StatusOr<Flags> Parse(int argc, const char* const* argv,
+                              std::optional<std::string>* print) {
+    try {
+      app_.parse(argc, argv);
+    } catch (const CLI::Success& wanted) {
+      std::ostringstream text;
+      app_.exit(wanted, text, text);
+      *print = text.str();
+    } catch (const CLI::ParseError& error) {
+      return absl::InvalidArgumentError(error.what());
+    }
+    return flags_;
+  }
+
+  // What a variable sets, its value spelt as on the command line.
+  absl::StatusOr<Flags> ParseVariable(const std::string& name, const std::string& value) {
+    const std::string flag = FlagOfVariable(name);
+    const CLI::Option* option = app_.get_option_no_throw(flag);
+    if (option == nullptr || !IsSetting(flag)) return UnknownVariable(name);
+    std::vector<std::string> values = {value};
+    if (option->get_expected_max() > 1) values = absl::StrSplit(value, ' ', absl::SkipEmpty());
+    // CLI11 takes the words in reverse. One word, so that a value may begin with a hyphen; CLI11
+    // takes an empty value as a word of its own alone.
+    std::vector<std::string> words;
+    for (const std::string& each : values) {
+      if (each.empty()) words.insert(words.end(), {each, flag});
+      if (!each.empty()) words.push_back(absl::StrCat(flag, "=", each));
+    }
+    try {
+      app_.parse(std::move(words));
+    } catch (const CLI::ParseError& error) {
+      return absl::InvalidArgumentError(absl::StrCat(name, ": ", error.what()));
+    }
+    return flags_;
+  }
+
+ private:
+  absl::Status UnknownVariable(const std::string& name) const {
+    std::vector<std::string> known;
+    for (const CLI::Option* option : app_.get_options()) {
+      for (const std::string& flag : option->get_lnames()) {
+        if (!IsSetting(absl::StrCat("--", flag))) continue;
+        known.push_back(VariableOfFlag(flag));
+      }
+    }
+    return absl::InvalidArgumentError(
+        absl::StrCat(name, ": sets nothing", base::DidYouMean(name, known)));
+  }
+
+  Flags flags_;
+  CLI::App app_;
+};
+
+// Puts settings over those that are there. `source` tells of a field where it comes from, by the
+// name that it has in its own message.
+template <typename Source>
+void Override(const v1::ServerConfig& settings, const Source& source, CommandLine* command_line) {
+  using google::protobuf::FieldDescriptor;
+  const google::protobuf::Reflection& reflection = *settings.GetReflection();
+  std::vector<const FieldDescriptor*> fields;
+  reflection.ListFields(settings, &fields);
+  for (const FieldDescriptor* field : fields) {
+    if (!field->is_repeated()) {
+      command_line->sources[field->name()] = source(field->name());
+      continue;
+    }
+    const int before = reflection.FieldSize(command_line->config, field);
+    for (int i = 0; i < reflection.FieldSize(settings, field); ++i) {
+      command_line->sources[absl::StrCat(field->name(), "[", before + i, "]")] =
+          source(absl::StrCat(field->name(), "[", i, "]"));
+    }
+  }
+  command_line->config.MergeFrom(settings);
+}
+
+void AddErrors(const absl::Status& status, CommandLine* command_line) {
+  for (absl::string_view line : absl::StrSplit(status.message(), '\n', absl::SkipEmpty())) {
+    command_line->errors.emplace_back(line);
+  }
+}
+
+void ReadFile(const std::string& path, CommandLine* command_line) {
+  v1::ServerConfig config;
+  messages::FieldPlaces places;
+  AddErrors(ReadConfigFile(path, &config, &places), command_line);
+  const auto source = [&](const std::string& field) {
+    const messages::Place place = places[field];
+    return absl::StrCat("file ", path, ":", place.line, ":", place.column);
+  };
+  Override(config, source, command_line);
+}
+
+std::string PrefixLines(absl::string_view prefix, absl::string_view lines) {
+  return absl::StrCat(prefix, absl::StrReplaceAll(lines, {{"\n", absl::StrCat("\n", prefix)}}));
+}
+
 }  // namespace
 
 absl::StatusOr<v1::ServerConfig> ParseConfigText(std::string_view text, bool json) {
@@ -296,49 +489,59 @@ absl::StatusOr<v1::ServerConfig> ParseConfigText(std::string_view text, bool jso
   return config;
 }
 
-absl::StatusOr<v1::ServerConfig> ReadConfigFile(const std::filesystem::path& path) {
+absl::Status ReadConfigFile(const std::filesystem::path& path, v1::ServerConfig* config,
+                            messages::FieldPlaces* places) {
+  config->Clear();
   const absl::StatusOr<std::string> text = base::ReadFile(path, kMaxConfigBytes, "a configuration");
   if (!text.ok()) {
     return absl::Status(text.status().code(), absl::StrCat("--config: ", text.status().message()));
   }
-  absl::StatusOr<v1::ServerConfig> config = ParseConfigText(*text, path.extension() == ".json");
-  if (config.ok()) return config;
+  const messages::MessageSyntax syntax = path.extension() == ".json"
+                                             ? messages::MessageSyntax::kJson
+                                             : messages::MessageSyntax::kTextFormat;
+  const absl::Status status = messages::ParseMessage(*text, syntax, config, places);
+  if (status.ok()) return status;
   return absl::InvalidArgumentError(
-      absl::StrCat("--config: ", path.string(), ": ", config.status().message()));
+      PrefixLines(absl::StrCat("--config: ", path.string(), ": "), status.message()));
 }
 
-absl::StatusOr<CommandLine> ParseCommandLine(int argc, const char* const* argv) {
-  CLI::App app("Answers one character's motion with another's, over gRPC.", "duet-server");
-  app.set_version_flag("--version", std::string("duet-server ") + DUET_VERSION);
-  std::string config_path;
-  app.add_option("--config", config_path,
-                 "configuration file: text format of duet.v1.ServerConfig, or JSON; flags win")
-      ->option_text("FILE");
-  v1::ServerConfig flags;
-  AddServingFlags(app, flags);
-  AddCapacityFlags(app, flags);
-  AddSharingFlags(app, flags);
-  AddSecurityFlags(app, flags);
-  AddObservabilityFlags(app, flags);
+CommandLine ParseCommandLine(int argc, const char* const* argv, const Environment& environment) {
   CommandLine command_line;
   const base::KebabCaseCommandLine line(argc, argv);
-  try {
-    app.parse(line.argc(), line.argv());
-  } catch (const CLI::Success& wanted) {
-    std::ostringstream text;
-    app.exit(wanted, text, text);
-    command_line.print = text.str();
-    return command_line;
-  } catch (const CLI::ParseError& error) {
-    return absl::InvalidArgumentError(error.what());
+  absl::StatusOr<Flags> flags = FlagParser().Parse(line.argc(), line.argv(), &command_line.print);
+  if (command_line.print.has_value()) return command_line;
+  AddErrors(flags.status(), &command_line);
+  std::map<std::string, Flags> variables;
+  std::string config_path;
+  for (const auto& [name, value] : environment) {
+    absl::StatusOr<Flags> variable = FlagParser().ParseVariable(name, value);
+    AddErrors(variable.status(), &command_line);
+    if (!variable.ok()) continue;
+    if (!variable->config_path.empty()) config_path = variable->config_path;
+    variables[name] = *std::move(variable);
   }
-  if (!config_path.empty()) {
-    absl::StatusOr<v1::ServerConfig> file = ReadConfigFile(config_path);
-    if (!file.ok()) return file.status();
-    command_line.config = *std::move(file);
+  if (flags.ok() && !flags->config_path.empty()) config_path = flags->config_path;
+  if (!config_path.empty()) ReadFile(config_path, &command_line);
+  for (const auto& [name, variable] : variables) {
+    const std::string source = absl::StrCat("environment ", name);
+    Override(
+        variable.config, [&source](const std::string&) { return source; }, &command_line);
   }
-  command_line.config.MergeFrom(flags);
+  if (flags.ok()) {
+    command_line.task = flags->task;
+    Override(
+        flags->config, [](const std::string&) { return "command line"; }, &command_line);
+  }
   return command_line;
+}
+
+absl::StatusOr<ServerOptions> ToOptions(const CommandLine& command_line, int cores) {
+  absl::StatusOr<ServerOptions> options =
+      ToOptions(command_line.config, cores, command_line.sources);
+  if (command_line.errors.empty()) return options;
+  std::vector<std::string> errors = command_line.errors;
+  if (!options.ok()) errors.emplace_back(options.status().message());
+  return absl::InvalidArgumentError(absl::StrJoin(errors, "\n"));
 }
 
 }  // namespace duet::server::config

@@ -1,27 +1,32 @@
 #include "server/config/server_options.h"
 
 #include <algorithm>
+#include <set>
 #include <utility>
+#include <vector>
 
 #include "absl/strings/match.h"
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
 #include "absl/strings/string_view.h"
 #include "absl/strings/strip.h"
 
 namespace duet::server::config {
 namespace {
 
-// Reads fields one after the other and keeps the first failure.
+// Reads fields one after the other and keeps every failure.
 class Reader {
  public:
+  explicit Reader(const SettingSources& sources) : sources_(sources) {}
+
+  // The value, or `min` after a failure.
   template <typename T, typename Limit>
   T InRange(absl::string_view field, T value, Limit min, Limit max) {
     // Written so that NaN is out of range.
-    if (!(value >= min && value <= max)) {
-      Fail(absl::StrCat(field, ": is ", value, ", wanted ", min, " to ", max));
-    }
-    return value;
+    if (value >= min && value <= max) return value;
+    Fail(absl::StrCat(field, ": is ", value, ", wanted ", min, " to ", max));
+    return static_cast<T>(min);
   }
 
   ListenAddress Address(absl::string_view field, const std::string& text) {
@@ -31,17 +36,28 @@ class Reader {
     return {};
   }
 
-  void Fail(const std::string& message) { status_.Update(absl::InvalidArgumentError(message)); }
-  const absl::Status& status() const { return status_; }
+  // `message` begins with the field and a colon.
+  void Fail(const std::string& message) {
+    const auto source = sources_.find(message.substr(0, message.find(':')));
+    failures_.push_back(
+        source == sources_.end() ? message : absl::StrCat(message, " (", source->second, ")"));
+  }
+
+  bool ok() const { return failures_.empty(); }
+  absl::Status status() const {
+    return ok() ? absl::OkStatus() : absl::InvalidArgumentError(absl::StrJoin(failures_, "\n"));
+  }
 
  private:
-  absl::Status status_;
+  const SettingSources& sources_;
+  std::vector<std::string> failures_;
 };
 
-void ReadMetricsListen(const v1::ServerConfig& config, Reader& reader, ServerOptions& options) {
-  options.metrics_listen.reset();
-  if (config.metrics_listen().empty() || config.metrics_listen() == "off") return;
-  options.metrics_listen = reader.Address("metrics_listen", config.metrics_listen());
+// An address that may be "off".
+std::optional<ListenAddress> ReadListen(absl::string_view field, const std::string& text,
+                                        Reader& reader) {
+  if (text.empty() || text == "off") return std::nullopt;
+  return reader.Address(field, text);
 }
 
 void ReadEngine(const v1::ServerConfig& config, Reader& reader, EngineOptions& options) {
@@ -73,6 +89,25 @@ void ReadEngine(const v1::ServerConfig& config, Reader& reader, EngineOptions& o
   }
 }
 
+// More threads than this for each core would only take turns; hundreds of them take the machine a
+// minute to start. Small machines may have some to try things with.
+constexpr int kThreadsPerCore = 4;
+constexpr int kThreadsAnywhere = 32;
+
+void CheckThreads(int cores, bool workers_given, Reader& reader, const ServerOptions& options) {
+  const int most = std::max(kThreadsAnywhere, kThreadsPerCore * cores);
+  if (options.workers * options.engine.threads <= most) return;
+  const bool workers_alone = options.engine.threads == 1;
+  if (workers_given && workers_alone) {
+    reader.Fail(absl::StrCat("workers: is ", options.workers, ", wanted 1 to ", most, " on ", cores,
+                             " cores"));
+    return;
+  }
+  reader.Fail(absl::StrCat("threads_per_worker: is ", options.engine.threads, ", wanted 1 to ",
+                           std::max(1, most / options.workers), " with ", options.workers,
+                           " workers: together at most ", most, " threads on ", cores, " cores"));
+}
+
 // With nothing else said, one-thread workers on every core: evaluations of one window gain less
 // from a second thread than from a second window. LibTorch can use more: then, with one of the two
 // given, the other uses up the cores.
@@ -92,13 +127,14 @@ void ReadThreads(const v1::ServerConfig& config, int cores, Reader& reader,
       reader.Fail(absl::StrCat("threads_per_worker: is ", threads,
                                ", wanted 1 with ENGINE_CPU, whose evaluations have one thread "
                                "each; more workers use more cores"));
+      threads = 1;
     }
   }
-  if (!reader.status().ok()) return;
   if (!config.has_workers()) options.workers = std::max(1, cores / threads);
   if (!config.has_threads_per_worker() && !one_thread) {
     threads = std::max(1, cores / options.workers);
   }
+  CheckThreads(cores, config.has_workers(), reader, options);
 }
 
 void ReadLimits(const v1::ServerConfig& config, Reader& reader, ServerOptions& options) {
@@ -259,13 +295,41 @@ void ReadLabels(const v1::ServerConfig& config, Reader& reader, ServerOptions& o
   }
 }
 
+void ReadPolicies(const v1::ServerConfig& config, Reader& reader, ServerOptions& options) {
+  std::set<std::string> models;
+  for (int i = 0; i < config.version_policies_size(); ++i) {
+    const v1::VersionPolicy& message = config.version_policies(i);
+    const std::string field = absl::StrCat("version_policies[", i, "]");
+    VersionPolicyOption policy;
+    if (message.model() != "*") policy.model = message.model();
+    if (message.has_latest()) policy.latest = message.latest();
+    policy.versions.assign(message.versions().begin(), message.versions().end());
+    const bool has_zero = std::count(policy.versions.begin(), policy.versions.end(), 0u) > 0;
+    if (message.model().empty()) {
+      reader.Fail(absl::StrCat(field, ": has no model, wanted a name, or \"*\" for every other"));
+    } else if (!models.insert(policy.model).second) {
+      reader.Fail(absl::StrCat(field, ": is the second of model \"", message.model(),
+                               "\", wanted one for each"));
+    } else if (policy.latest.has_value() && !policy.versions.empty()) {
+      reader.Fail(absl::StrCat(field, ": has both latest and versions, wanted one of them"));
+    } else if (policy.latest == 0u || has_zero) {
+      reader.Fail(absl::StrCat(field, ": has a 0, wanted 1 or more"));
+    }
+    options.version_policies.push_back(std::move(policy));
+  }
+}
+
 }  // namespace
 
-absl::StatusOr<ServerOptions> ToOptions(const v1::ServerConfig& config, int cores) {
-  Reader reader;
+absl::StatusOr<ServerOptions> ToOptions(const v1::ServerConfig& config, int cores,
+                                        const SettingSources& sources) {
+  Reader reader(sources);
   ServerOptions options;
   if (config.has_listen()) options.listen = reader.Address("listen", config.listen());
-  if (config.has_metrics_listen()) ReadMetricsListen(config, reader, options);
+  if (config.has_metrics_listen()) {
+    options.metrics_listen = ReadListen("metrics_listen", config.metrics_listen(), reader);
+  }
+  options.admin_listen = ReadListen("admin_listen", config.admin_listen(), reader);
   options.model_repository = config.model_repository();
   options.default_model = config.default_model();
   if (config.has_reflection()) options.reflection = config.reflection();
@@ -274,12 +338,13 @@ absl::StatusOr<ServerOptions> ToOptions(const v1::ServerConfig& config, int core
   ReadLogging(config, reader, options.logging);
   ReadTracing(config, reader, options.tracing);
   ReadLabels(config, reader, options);
+  ReadPolicies(config, reader, options);
   ReadEngine(config, reader, options.engine);
   ReadThreads(config, cores, reader, options);
   ReadLimits(config, reader, options);
   ReadSharing(config, reader, options);
   ReadBatching(config, reader, options);
-  if (!reader.status().ok()) return reader.status();
+  if (!reader.ok()) return reader.status();
   return options;
 }
 

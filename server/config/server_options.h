@@ -10,6 +10,7 @@
 
 #include "absl/status/statusor.h"
 #include "duet/v1/server_config.pb.h"
+#include "server/config/setting_sources.h"
 
 namespace duet::server::config {
 
@@ -23,6 +24,12 @@ struct VersionLabelOption {
   std::string model;
   std::string label;
   uint32_t version = 0;
+};
+
+struct VersionPolicyOption {
+  std::string model;  // empty: every model without a policy of its own
+  std::optional<uint32_t> latest;
+  std::vector<uint32_t> versions;
 };
 
 // What computes the answers, and how. server_config.proto says more.
@@ -69,6 +76,8 @@ struct ServerOptions {
   std::filesystem::path model_repository;  // empty: the embedded checkpoints
   std::string default_model;
   std::vector<VersionLabelOption> version_labels;
+  std::vector<VersionPolicyOption> version_policies;
+  std::optional<ListenAddress> admin_listen;
   bool reflection = true;
   std::optional<bool> clean_up;  // absent: followers of models that sample are cleaned up
   EngineOptions engine;
@@ -96,8 +105,14 @@ struct ServerOptions {
 };
 
 // Fills in defaults and checks every field. `cores` is what the container may use.
-// Fails with INVALID_ARGUMENT naming the field, what came and what was wanted.
-absl::StatusOr<ServerOptions> ToOptions(const v1::ServerConfig& config, int cores);
+// Fails with INVALID_ARGUMENT, one line for each field that is wrong: its name, what came, what was
+// wanted, and where it came from if `sources` know.
+absl::StatusOr<ServerOptions> ToOptions(const v1::ServerConfig& config, int cores,
+                                        const SettingSources& sources = {});
+
+// The other way round: every setting, those with their defaults too, but for names and files that
+// are absent.
+v1::ServerConfig ToConfig(const ServerOptions& options);
 
 // "host:port"; an IPv6 host is in brackets, an empty one means every interface.
 absl::StatusOr<ListenAddress> ParseListenAddress(const std::string& text);

@@ -11,6 +11,7 @@
 #include "absl/time/clock.h"
 #include "absl/time/time.h"
 #include "server/batching/batcher.h"
+#include "server/lifecycle/load_models.h"
 #include "server/security/server_credentials.h"
 #include "server/service/refusals.h"
 
@@ -28,6 +29,11 @@ constexpr double kLookSeconds = 0.05;
 constexpr double kSelfCheckTimeoutSeconds = 5;
 // How often memory of large requests is given back.
 constexpr double kTrimSeconds = 1;
+
+// Far more than an operator needs.
+constexpr std::size_t kAdminRequestBytes = std::size_t{64} << 10;
+constexpr std::size_t kAdminTransportBytes = std::size_t{16} << 20;
+constexpr int kAdminCalls = 32;
 
 service::RequestLimits Limits(const config::ServerOptions& options) {
   service::RequestLimits limits;
@@ -106,9 +112,15 @@ DuetServer::DuetServer(const config::ServerOptions& options, metrics::LogSink& s
       log_(sink, absl::Now, LogOptionsOf(options.logging)),
       tracer_(std::move(tracer)),
       secrets_(std::move(secrets)),
+      events_(log_, metrics_, [this] { UpdateHealth(); }),
+      manager_(registry_, events_),
       admission_(AdmissionOf(options)),
       scheduler_(batching::MakeBatcher(Batching(options), common::Clock::Real(), &metrics_)),
-      service_(Parts()) {
+      service_(Parts()),
+      control_(manager_, registry_, events_),
+      admin_(AdminParts()) {
+  Configure(options);
+  control_.AddReloadable({"certificates and access file", [this] { return ReloadSecrets(); }});
   metrics_.SetQueueLength([this] { return static_cast<double>(scheduler_->queued_windows()); });
   metrics_.SetCapacity({options_.max_calls, options_.max_queued_windows, options_.workers});
   metrics_.SetBuild(DUET_VERSION);
@@ -124,6 +136,11 @@ DuetServer::DuetServer(const config::ServerOptions& options, metrics::LogSink& s
 }
 
 DuetServer::~DuetServer() {
+  // What loads reaches everything else, and admin calls wait for it.
+  control_.Stop();
+  if (admin_grpc_.server != nullptr) {
+    admin_grpc_.server->Shutdown(std::chrono::system_clock::now() + kFlush);
+  }
   endpoint_.reset();
   self_check_.reset();
   if (grpc_.server != nullptr) Close();
@@ -151,6 +168,31 @@ service::ServiceParts DuetServer::Parts() {
   return parts;
 }
 
+admin::AdminParts DuetServer::AdminParts() {
+  admin::AdminParts parts;
+  parts.control = &control_;
+  parts.admission = &admission_;
+  parts.log = &log_;
+  parts.observers = {&metrics_};
+  parts.guard = security::CallGuard(secrets_->access());
+  return parts;
+}
+
+absl::Status DuetServer::ListenForAdmin() {
+  if (!options_.admin_listen.has_value()) return absl::OkStatus();
+  GrpcServerOptions options;
+  options.listen = *options_.admin_listen;
+  options.reflection = options_.reflection;
+  options.max_request_bytes = kAdminRequestBytes;
+  options.max_transport_bytes = kAdminTransportBytes;
+  options.max_calls = kAdminCalls;
+  options.credentials = Credentials();
+  absl::StatusOr<GrpcServer> started = StartGrpcServer(options, admin_);
+  if (!started.ok()) return started.status();
+  admin_grpc_ = *std::move(started);
+  return absl::OkStatus();
+}
+
 absl::Status DuetServer::Listen() {
   absl::StatusOr<GrpcServer> grpc = StartGrpcServer(
       {options_.listen, options_.reflection, options_.max_request_bytes,
@@ -159,6 +201,7 @@ absl::Status DuetServer::Listen() {
   if (!grpc.ok()) return grpc.status();
   grpc_ = *std::move(grpc);
   SetHealth(false);
+  if (absl::Status admin = ListenForAdmin(); !admin.ok()) return admin;
   Watch();
   if (!options_.metrics_listen.has_value()) return absl::OkStatus();
   metrics::MetricsEndpointOptions endpoint;
@@ -166,7 +209,8 @@ absl::Status DuetServer::Listen() {
   endpoint.port = options_.metrics_listen->port;
   endpoint.render = [this] { return metrics_.Render(); };
   endpoint.healthy = [this] { return self_check_ == nullptr || self_check_->healthy(); };
-  endpoint.ready = [this] { return admission_.state() == service::Admission::State::kServing; };
+  endpoint.ready = [this] { return Ready(); };
+  endpoint.describe = [this] { return Describe(); };
   absl::StatusOr<std::unique_ptr<metrics::MetricsEndpoint>> started =
       metrics::MetricsEndpoint::Start(std::move(endpoint));
   if (!started.ok()) return started.status();
@@ -191,6 +235,14 @@ void DuetServer::Tell(const std::vector<security::Reload>& reloads) {
   }
 }
 
+absl::Status DuetServer::ReloadSecrets() {
+  const std::vector<security::Reload> reloads = secrets_->Refresh();
+  Tell(reloads);
+  absl::Status status;
+  for (const security::Reload& reload : reloads) status.Update(reload.status);
+  return status;
+}
+
 void DuetServer::Watch() {
   watch_.push_back(std::make_unique<RepeatedTask>(kLookSeconds, [this] { service_.CheckTime(); }));
   watch_.push_back(std::make_unique<RepeatedTask>(kTrimSeconds, [this] {
@@ -212,35 +264,52 @@ void DuetServer::Watch() {
   self_check_ = std::make_unique<SelfCheck>(std::move(check));
 }
 
-void DuetServer::Add(const registry::LoadReport& report) {
-  metrics_.ModelLoaded(report.source, report.load_seconds, report.model.ok());
-  if (!report.model.ok()) {
-    log_.Error("model_refused",
-               {{"source", report.source}, {"message", report.model.status().ToString()}});
-    return;
+bool DuetServer::Ready() const {
+  return !draining_ && admission_.state() == service::Admission::State::kServing;
+}
+
+std::string DuetServer::Describe() const {
+  std::string text;
+  if (draining_) text = "draining\n";
+  for (const registry::ModelStatus& model : manager_.List()) {
+    if (model.state == registry::ModelState::kUnloaded) continue;
+    absl::StrAppend(&text, "model ", model.name, "/", model.version, ": ",
+                    model.state == registry::ModelState::kServed    ? "served"
+                    : model.state == registry::ModelState::kLoading ? "loading"
+                                                                    : "failed",
+                    model.error.empty() ? "" : ": ", model.error, "\n");
   }
-  registry_.Serve(*report.model);
-  const engine::ModelDescription& model = (*report.model)->description();
-  log_.Info("model_loaded", {{"source", report.source},
-                             {"model", model.name},
-                             {"version", model.version},
-                             {"seconds", report.load_seconds}});
+  for (const registry::SkippedFolder& folder : manager_.skipped()) {
+    absl::StrAppend(&text, "skipped ", folder.folder, ": ", folder.reason, "\n");
+  }
+  return text;
+}
+
+void DuetServer::Configure(const config::ServerOptions& options) {
+  ConfigureModels(options, manager_);
+}
+
+absl::Status DuetServer::Load(const registry::ModelSource& source,
+                              const std::function<bool()>& stop) {
+  const absl::StatusOr<std::vector<std::string>> problems =
+      LoadModels(options_, source, stop, manager_, registry_);
+  if (!problems.ok()) return problems.status();
+  for (const std::string& problem : *problems) log_.Error("load_problem", {{"message", problem}});
+  return absl::OkStatus();
 }
 
 absl::Status DuetServer::Serve() {
-  if (registry_.List().empty()) return absl::FailedPreconditionError("no model could be loaded");
-  for (const config::VersionLabelOption& label : options_.version_labels) {
-    const absl::Status set = registry_.SetLabel(label.model, label.label, label.version);
-    if (!set.ok()) log_.Error("version_label_refused", {{"message", std::string(set.message())}});
-  }
-  if (!options_.default_model.empty()) {
-    const absl::Status set = registry_.SetDefault(options_.default_model);
-    if (!set.ok()) return set;
+  const absl::StatusOr<std::vector<std::string>> refused_labels =
+      SettleModels(options_, manager_, registry_);
+  if (!refused_labels.ok()) return refused_labels.status();
+  for (const std::string& label : *refused_labels) {
+    log_.Error("version_label_refused", {{"message", label}});
   }
   admission_.SetState(service::Admission::State::kServing);
   SetHealth(true);
   log_.Info("serving", {{"port", port()},
                         {"metrics_port", metrics_port()},
+                        {"admin_port", admin_port()},
                         {"workers", options_.workers},
                         {"threads_per_worker", options_.engine.threads},
                         {"max_batch_windows", options_.max_batch_windows}});
@@ -248,8 +317,10 @@ absl::Status DuetServer::Serve() {
 }
 
 void DuetServer::Drain(const std::function<bool(double seconds)>& wait) {
-  log_.Info("draining", {{"calls", admission_.calls()}});
+  draining_ = true;  // from here on nobody is told that the server is ready
   SetHealth(false);
+  control_.Stop();
+  log_.Info("draining", {{"calls", admission_.calls()}});
   bool patient = options_.drain_seconds <= 0 || wait(options_.drain_seconds);
   // From here on new calls are refused as UNAVAILABLE. gRPC's own Shutdown comes last: it would
   // wait for health watches as well, which never end by themselves.
@@ -272,11 +343,31 @@ void DuetServer::Close() {
 }
 
 void DuetServer::SetHealth(bool serving) {
+  common::MutexLock lock(health_mutex_);
+  healthy_ = serving;
+  UpdateHealthLocked();
+}
+
+void DuetServer::UpdateHealth() {
+  common::MutexLock lock(health_mutex_);
+  UpdateHealthLocked();
+}
+
+void DuetServer::UpdateHealthLocked() {
   grpc::HealthCheckServiceInterface* health = grpc_.server->GetHealthCheckService();
-  health->SetServingStatus("", serving);
-  health->SetServingStatus(service::MotionSynthesisService::kServiceName, serving);
-  for (const registry::ServedModel& served : registry_.List()) {
-    health->SetServingStatus(absl::StrCat("model:", served.model->description().name), serving);
+  const std::string service = service::MotionSynthesisService::kServiceName;
+  health->SetServingStatus("", healthy_);
+  health->SetServingStatus(service, healthy_);
+  std::set<std::string> served;
+  for (const registry::ServedModel& model : registry_.List()) {
+    served.insert(model.model->description().name);
+  }
+  health_models_.insert(served.begin(), served.end());
+  for (const std::string& model : health_models_) {
+    const bool serving = healthy_ && served.count(model) > 0;
+    health->SetServingStatus(absl::StrCat(service, "/", model), serving);
+    // The name that the first version gave it.
+    health->SetServingStatus(absl::StrCat("model:", model), serving);
   }
 }
 

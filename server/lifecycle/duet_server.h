@@ -1,23 +1,30 @@
 #ifndef DUET_SERVER_LIFECYCLE_DUET_SERVER_H_
 #define DUET_SERVER_LIFECYCLE_DUET_SERVER_H_
 
+#include <atomic>
 #include <functional>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "server/admin/admin_service.h"
 #include "server/batching/window_scheduler.h"
+#include "server/common/mutex.h"
 #include "server/config/server_options.h"
 #include "server/lifecycle/grpc_server.h"
 #include "server/lifecycle/heap_trimmer.h"
+#include "server/lifecycle/model_events.h"
 #include "server/lifecycle/repeated_task.h"
 #include "server/lifecycle/self_check.h"
 #include "server/metrics/json_log.h"
 #include "server/metrics/metrics_endpoint.h"
 #include "server/metrics/server_metrics.h"
+#include "server/registry/model_control.h"
+#include "server/registry/model_manager.h"
 #include "server/registry/model_registry.h"
-#include "server/registry/model_repository.h"
+#include "server/registry/model_source.h"
 #include "server/security/secret_files.h"
 #include "server/service/admission.h"
 #include "server/service/motion_synthesis_service.h"
@@ -32,12 +39,12 @@ metrics::LogOptions LogOptionsOf(const config::LoggingOptions& options);
 // Serve(), answers them until Drain().
 //
 //   auto server = DuetServer::Start(options, sink);
-//   (*server)->Add(LoadCheckpoint(folder, loader));
+//   (*server)->Load(source, stop);
 //   (*server)->Serve();
-//   ... until asked to stop ...
+//   ... control().Reload(done) when asked to; until asked to stop ...
 //   (*server)->Drain(wait);
 //
-// Threads: one thread at a time.
+// Threads: one thread at a time, but for control().
 class DuetServer {
  public:
   // `sink` outlives the server. Fails with UNAVAILABLE when an address cannot be listened on; as
@@ -46,16 +53,22 @@ class DuetServer {
                                                            metrics::LogSink& sink);
   ~DuetServer();
 
+  // Loads the models that the options name; each is logged and counted, served or refused. Fails
+  // when there is nothing to load from, with CANCELLED once `stop` gives true.
+  absl::Status Load(const registry::ModelSource& source, const std::function<bool()>& stop);
   // Serves a loaded model, or logs why it is not; both are counted.
-  void Add(const registry::LoadReport& report);
-
-  // The model that answers when a request names none, unless the options name one. NOT_FOUND when
-  // it is not served.
-  absl::Status SetDefault(const std::string& model) { return registry_.SetDefault(model); }
+  void Add(const registry::LoadReport& report) { manager_.Add(report); }
 
   // Opens the service: version labels, default model, health. Fails with FAILED_PRECONDITION when
-  // there is no model, NOT_FOUND when the default model is not among them.
+  // there is no model, NOT_FOUND when the default model is not among them, INVALID_ARGUMENT when a
+  // label names a model that there is not.
   absl::Status Serve();
+
+  // What may be done to models meanwhile.
+  registry::ModelControl& control() { return control_; }
+  int admin_port() const { return admin_grpc_.port; }
+  // Labels and policies as these options have them, from the next reload on.
+  void Configure(const config::ServerOptions& options);
 
   // Says NOT_SERVING, serves on for drain_seconds, then lets calls finish for grace_seconds, ends
   // the others as UNAVAILABLE and closes. `wait` sleeps for so many seconds; when it gives false,
@@ -75,30 +88,49 @@ class DuetServer {
              std::unique_ptr<security::SecretFiles> secrets,
              std::unique_ptr<tracing::CallTracer> tracer);
   absl::Status Listen();
+  absl::Status ListenForAdmin();
   // Starts what looks after the server while it runs: time limits, memory, secrets, the
   // log's counts, its own port.
   void Watch();
   void Tell(const std::vector<security::Reload>& reloads);
+  // The same as RefreshSecrets; fails as the first of what was read again does.
+  absl::Status ReloadSecrets();
   // Null: plain text.
   std::shared_ptr<grpc::ServerCredentials> Credentials() const;
+  bool Ready() const;
+  // How it stands with each model, for people: a line each.
+  std::string Describe() const;
+  // Tells gRPC's health service how it stands with the whole and with each model.
   void SetHealth(bool serving);
+  void UpdateHealth();
+  void UpdateHealthLocked() DUET_REQUIRES(health_mutex_);
   void Close();
   service::ServiceParts Parts();
+  admin::AdminParts AdminParts();
 
   const config::ServerOptions options_;
   metrics::JsonLog log_;
   const std::unique_ptr<tracing::CallTracer> tracer_;  // null: spans go nowhere
   metrics::ServerMetrics metrics_;
   const std::unique_ptr<security::SecretFiles> secrets_;
+  ModelEvents events_;
   registry::ModelRegistry registry_;
+  registry::ModelManager manager_;
   service::Admission admission_;
   const std::unique_ptr<batching::WindowScheduler> scheduler_;
   service::MotionSynthesisService service_;
   GrpcServer grpc_;
+  std::atomic<bool> draining_{false};
+  common::Mutex health_mutex_;
+  bool healthy_ DUET_GUARDED_BY(health_mutex_) = false;
+  std::set<std::string> health_models_ DUET_GUARDED_BY(health_mutex_);  // ever told of
   HeapTrimmer heap_trimmer_;
   std::vector<std::unique_ptr<RepeatedTask>> watch_;
   std::unique_ptr<SelfCheck> self_check_;  // null when the options want none
   std::unique_ptr<metrics::MetricsEndpoint> endpoint_;
+  registry::ModelControl control_;
+  admin::AdminService admin_;
+  GrpcServer admin_grpc_;  // empty unless it is configured
 };
 
 }  // namespace duet::server::lifecycle

@@ -2,18 +2,24 @@
 
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
 #include "absl/time/clock.h"
 #include "server/config/cpu_budget.h"
 #include "server/config/load_config.h"
+#include "server/config/print_config.h"
+#include "server/lifecycle/check_config.h"
 #include "server/lifecycle/duet_server.h"
 #include "server/lifecycle/library_logs.h"
+#include "server/lifecycle/service_manager.h"
 #include "server/metrics/queued_log_sink.h"
 #include "server/metrics/text_log_sink.h"
 
@@ -28,83 +34,94 @@ void RaiseDescriptorLimit() {
   setrlimit(RLIMIT_NOFILE, &limit);
 }
 
-// The checkpoints linked into the program; the first is the default unless the operator says so.
-absl::Status LoadEmbedded(const ModelSource& source, DuetServer& server) {
-  const common::TimePoint begin = common::Clock::Real().Now();
-  const auto models = source.load_embedded();
-  const double seconds = common::SecondsBetween(begin, common::Clock::Real().Now());
-  if (!models.ok()) {
-    server.Add({"embedded", models.status(), seconds});
-    return absl::OkStatus();
-  }
-  for (const std::shared_ptr<const engine::Synthesizer>& model : *models) {
-    const engine::ModelDescription& description = model->description();
-    server.Add({absl::StrCat("embedded/", description.name, "/", description.version), model,
-                seconds / static_cast<double>(models->size())});
-  }
-  if (models->empty()) return absl::OkStatus();
-  return server.SetDefault(models->front()->description().name);
+// The settings as they are now: flags and variables stay, the file may have changed.
+using ReadSettings = std::function<absl::StatusOr<config::ServerOptions>()>;
+
+// How many models are served, for the service manager's status line.
+std::string ServedText(DuetServer& server) {
+  const std::vector<registry::ModelStatus> models = server.control().List();
+  const auto served = std::count_if(models.begin(), models.end(), [](const auto& model) {
+    return model.state == registry::ModelState::kServed;
+  });
+  return absl::StrCat("serving ", served, " models");
 }
 
-// Loads what the options name, one after the other, until told to stop.
-absl::Status LoadModels(const config::ServerOptions& options, const ModelSource& source,
-                        StopSignal& stop, DuetServer& server) {
-  if (options.model_repository.empty()) {
-    return LoadEmbedded(source, server);
+// Serves until told to stop, and reloads when told to.
+void ServeUntilStopped(DuetServer& server, StopSignal& stop, const ServiceManager& manager) {
+  manager.Ready(ServedText(server));
+  while (stop.Wait() == StopSignal::Kind::kReload) {
+    manager.Reloading();
+    server.control().Reload([&server, &manager](const auto& report) {
+      if (!absl::IsCancelled(report.status())) manager.Ready(ServedText(server));
+    });
   }
-  const absl::StatusOr<registry::RepositoryListing> listing =
-      registry::ListCheckpoints(options.model_repository);
-  if (!listing.ok()) return listing.status();
-  for (const absl::Status& unreadable : listing->unreadable) {
-    server.log().Error("folder_skipped", {{"message", std::string(unreadable.message())}});
-  }
-  for (const std::filesystem::path& folder : listing->checkpoints) {
-    if (stop.WaitFor(0)) return absl::CancelledError("told to stop while loading");
-    server.Add(registry::LoadCheckpoint(folder, source.load_folder));
-  }
-  return absl::OkStatus();
+  manager.Stopping();
+  server.Drain([&stop](double seconds) { return !stop.WaitFor(seconds); });
 }
 
 // Serves until told to stop; what it cannot serve for is in the log as well.
 absl::Status Serve(const config::ServerOptions& options, const ModelSource& source,
-                   StopSignal& stop, metrics::LogSink& sink) {
+                   const ReadSettings& read_settings, StopSignal& stop, metrics::LogSink& sink) {
   metrics::JsonLog log(sink, absl::Now, LogOptionsOf(options.logging));
   const LibraryLogs library_logs(log);
+  const ServiceManager manager = ServiceManager::OfProcess();
   log.Info("engine_opened", {{"engine", source.engine}});
   absl::StatusOr<std::unique_ptr<DuetServer>> server = DuetServer::Start(options, sink);
   absl::Status status = server.status();
-  if (status.ok()) status = LoadModels(options, source, stop, **server);
+  if (status.ok()) status = (*server)->Load(source, [&stop] { return stop.WaitFor(0); });
   if (absl::IsCancelled(status)) return absl::OkStatus();
   if (status.ok()) status = (*server)->Serve();
   if (!status.ok()) {
     log.Error("cannot_serve", {{"message", std::string(status.message())}});
     return status;
   }
-  stop.Wait();
-  (*server)->Drain([&stop](double seconds) { return !stop.WaitFor(seconds); });
+  DuetServer& serving = **server;
+  const auto configure = [&serving, &read_settings] {
+    const absl::StatusOr<config::ServerOptions> settings = read_settings();
+    if (settings.ok()) serving.Configure(*settings);
+    return settings.status();
+  };
+  serving.control().AddReloadable({"configuration", configure});
+  ServeUntilStopped(serving, stop, manager);
   return absl::OkStatus();
+}
+
+// Writes one line for each thing that is wrong.
+void Complain(const absl::Status& status) {
+  for (absl::string_view line : absl::StrSplit(status.message(), '\n')) {
+    std::cerr << "duet-server: " << line << "\n";
+  }
 }
 
 }  // namespace
 
 int RunServer(int argc, const char* const* argv, const EngineOpener& open_engine, StopSignal& stop,
               std::shared_ptr<metrics::LogSink> sink) {
-  const absl::StatusOr<config::CommandLine> command_line = config::ParseCommandLine(argc, argv);
-  if (command_line.ok() && command_line->print.has_value()) {
-    std::cout << *command_line->print;
+  const auto read = [argc, argv] {
+    return config::ParseCommandLine(argc, argv, config::ProcessEnvironment());
+  };
+  const config::CommandLine command_line = read();
+  if (command_line.print.has_value()) {
+    std::cout << *command_line.print;
     return kExitStopped;
   }
-  const absl::StatusOr<config::ServerOptions> options =
-      command_line.ok() ? config::ToOptions(command_line->config, config::AvailableCores())
-                        : absl::StatusOr<config::ServerOptions>(command_line.status());
+  const int cores = config::AvailableCores();
+  const absl::StatusOr<config::ServerOptions> options = config::ToOptions(command_line, cores);
   if (!options.ok()) {
-    std::cerr << "duet-server: " << options.status().message() << "\n";
+    Complain(options.status());
     return kExitUsage;
+  }
+  if (command_line.task == config::CommandLine::Task::kPrintConfig) {
+    std::cout << config::PrintConfig(*options, command_line.sources);
+    return kExitStopped;
   }
   const absl::StatusOr<ModelSource> source = open_engine(options->engine);
   if (!source.ok()) {
-    std::cerr << "duet-server: " << source.status().message() << "\n";
+    Complain(source.status());
     return kExitUsage;
+  }
+  if (command_line.task == config::CommandLine::Task::kCheckConfig) {
+    return CheckConfig(*options, *source, std::cout) ? kExitStopped : kExitFailed;
   }
   RaiseDescriptorLimit();
   metrics::QueuedLogSink::Options log;
@@ -114,7 +131,9 @@ int RunServer(int argc, const char* const* argv, const EngineOpener& open_engine
   }
   // Outlives everything that logs, and writes its last lines before the process ends.
   metrics::QueuedLogSink queued_sink(std::move(sink), log);
-  return Serve(*options, *source, stop, queued_sink).ok() ? kExitStopped : kExitFailed;
+  const auto read_settings = [&] { return config::ToOptions(read(), cores); };
+  return Serve(*options, *source, read_settings, stop, queued_sink).ok() ? kExitStopped
+                                                                         : kExitFailed;
 }
 
 }  // namespace duet::server::lifecycle

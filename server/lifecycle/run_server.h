@@ -3,38 +3,30 @@
 
 #include <functional>
 #include <memory>
-#include <string>
-#include <vector>
 
 #include "absl/status/statusor.h"
 #include "server/config/server_options.h"
 #include "server/lifecycle/stop_signal.h"
 #include "server/metrics/log_sink.h"
-#include "server/registry/model_repository.h"
+#include "server/registry/model_source.h"
 
 namespace duet::server::lifecycle {
 
-// Where models come from.
-struct ModelSource {
-  std::string engine;  // what computes their answers, for the log: "cpu, bfloat16"
-  registry::ModelLoader load_folder;
-  // The default model first.
-  std::function<absl::StatusOr<std::vector<std::shared_ptr<const engine::Synthesizer>>>()>
-      load_embedded;
-};
+using registry::ModelSource;
 
 // Opens the engine that the options ask for. Only the main program knows which ones there are.
 // Fails when it is not to be had here, naming the option, what came and what was wanted.
 using EngineOpener = std::function<absl::StatusOr<ModelSource>(const config::EngineOptions&)>;
 
 // Exit codes of duet-server.
-inline constexpr int kExitStopped = 0;  // drained after SIGTERM or SIGINT
-inline constexpr int kExitFailed = 1;   // cannot listen, or nothing to serve
-inline constexpr int kExitUsage = 2;    // a flag or the configuration file is wrong
+inline constexpr int kExitStopped =
+    0;                                 // drained after SIGTERM or SIGINT, or nothing to complain of
+inline constexpr int kExitFailed = 1;  // cannot listen, or not everything can be served
+inline constexpr int kExitUsage = 2;   // a flag or the configuration file is wrong
 
 // Everything that duet-server does, from the command line to the exit code: listen, load, serve,
-// drain. `stop` was constructed before any thread. A `sink` that is slow or stuck holds up nothing
-// but the log.
+// reload on SIGHUP, drain. `stop` was constructed before any thread. A `sink` that is slow or stuck
+// holds up nothing but the log.
 int RunServer(int argc, const char* const* argv, const EngineOpener& open_engine, StopSignal& stop,
               std::shared_ptr<metrics::LogSink> sink);
 

@@ -20,18 +20,26 @@ sigset_t StopSignals() {
   return signals;
 }
 
+sigset_t AllSignals() {
+  sigset_t signals = StopSignals();
+  sigaddset(&signals, SIGHUP);
+  return signals;
+}
+
 }  // namespace
 
 StopSignal::StopSignal() {
-  const sigset_t signals = StopSignals();
+  const sigset_t signals = AllSignals();
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
 }
 
-void StopSignal::Wait() {
-  const sigset_t signals = StopSignals();
+StopSignal::Kind StopSignal::Wait() {
+  if (WaitFor(0)) return Kind::kStop;
+  const sigset_t signals = AllSignals();
   int signal = 0;
   while (sigwait(&signals, &signal) == EINTR) {
   }
+  return signal == SIGHUP ? Kind::kReload : Kind::kStop;
 }
 
 bool StopSignal::WaitFor(double seconds) {

@@ -3,18 +3,22 @@
 
 namespace duet::server::lifecycle {
 
-// Waits for SIGTERM and SIGINT without signal handlers.
+// Waits for SIGTERM and SIGINT, which stop, and SIGHUP, which reloads, without signal handlers.
 //
 // Construct it before any other thread starts: threads inherit that the signals are blocked, and
 // then only Wait sees them, even while models are being loaded.
 // Threads: one thread waits.
 class StopSignal {
  public:
+  enum class Kind { kStop, kReload };
+
   StopSignal();
 
-  // Waits until a signal came.
-  void Wait();
-  // Waits for at most `seconds`. True when a signal came; 0 just looks.
+  // Waits until a signal came, and says which. Of several that came before, one that stops is
+  // first.
+  Kind Wait();
+  // Waits for one that stops for at most `seconds`. True when it came; 0 just looks. A reload that
+  // is asked for meanwhile waits for Wait.
   bool WaitFor(double seconds);
 };
 

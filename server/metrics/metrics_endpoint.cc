@@ -160,14 +160,17 @@ class PollingEndpoint final : public MetricsEndpoint {
     const auto state = [](bool good, const char* yes, const char* no) {
       return HttpPage{good ? 200 : 503, "text/plain", good ? yes : no};
     };
-    return {
-        {"/metrics",
-         [this] {
-           return HttpPage{200, "text/plain; version=0.0.4; charset=utf-8", options_.render()};
-         }},
-        {"/healthz",
-         [this, state] { return state(options_.healthy(), "ok\n", "not reachable\n"); }},
-        {"/readyz", [this, state] { return state(options_.ready(), "ready\n", "not ready\n"); }}};
+    return {{"/metrics",
+             [this] {
+               return HttpPage{200, "text/plain; version=0.0.4; charset=utf-8", options_.render()};
+             }},
+            {"/healthz",
+             [this, state] { return state(options_.healthy(), "ok\n", "not reachable\n"); }},
+            {"/readyz", [this, state] {
+               HttpPage page = state(options_.ready(), "ready\n", "not ready\n");
+               if (options_.describe) page.body += options_.describe();
+               return page;
+             }}};
   }
 
   void Run() {

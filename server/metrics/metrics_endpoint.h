@@ -15,6 +15,8 @@ struct MetricsEndpointOptions {
   std::function<std::string()> render;  // the Prometheus text
   std::function<bool()> healthy;        // whether the server can still be reached
   std::function<bool()> ready;          // whether calls are being served
+  // How it stands in detail, for people: lines. May be empty.
+  std::function<std::string()> describe;
   // How long a connection may last, from the first byte to the last, and how many there may be: the
   // oldest makes room for the next.
   double connection_seconds = 5;
@@ -22,7 +24,8 @@ struct MetricsEndpointOptions {
 };
 
 // A small HTTP server beside gRPC: GET /metrics for Prometheus, /healthz (200 while the process
-// answers and is healthy, else 503) and /readyz (200 while calls are served, else 503).
+// answers and is healthy, else 503) and /readyz (200 while calls are served, else 503; the text
+// says how it stands).
 //
 // One thread and no waiting: whoever sends or reads slowly, or says nothing, holds up nobody. The
 // callbacks run on that thread, and must be quick.

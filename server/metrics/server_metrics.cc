@@ -123,8 +123,21 @@ ServerMetrics::ServerMetrics()
                         .Register(registry_)),
       model_state_(BuildGauge()
                        .Name("duet_model_state")
-                       .Help("1 when a checkpoint is served, 0 when it failed to load.")
+                       .Help("1 when a checkpoint is served, 0 when it was refused.")
                        .Register(registry_)),
+      model_loads_(BuildCounter()
+                       .Name("duet_model_loads_total")
+                       .Help("Checkpoints that were loaded, or refused.")
+                       .Register(registry_)),
+      folders_skipped_(BuildGauge()
+                           .Name("duet_model_folders_skipped")
+                           .Help("Folders in the model repository that are no checkpoints.")
+                           .Register(registry_)
+                           .Add({})),
+      reloads_(BuildCounter()
+                   .Name("duet_reloads_total")
+                   .Help("Reloads of settings and models that were asked for.")
+                   .Register(registry_)),
       log_lines_dropped_(
           BuildCounter()
               .Name("duet_log_lines_dropped_total")
@@ -192,10 +205,25 @@ void ServerMetrics::BatchFinished(const batching::WindowTimings& timings) {
   batch_size_.Observe(timings.batch_size);
 }
 
-void ServerMetrics::ModelLoaded(const std::string& checkpoint, double seconds, bool served) {
+void ServerMetrics::ModelLoaded(const std::string& checkpoint, double seconds, bool loaded,
+                                bool served) {
   const Labels labels = {{"checkpoint", checkpoint}};
   load_seconds_.Add(labels).Set(seconds);
   model_state_.Add(labels).Set(served ? 1 : 0);
+  model_loads_.Add({{"result", loaded ? "ok" : "refused"}}).Increment();
+}
+
+void ServerMetrics::ModelUnloaded(const std::string& checkpoint) {
+  // An alert on 0 is for what should be served.
+  const Labels labels = {{"checkpoint", checkpoint}};
+  model_state_.Remove(&model_state_.Add(labels));
+  load_seconds_.Remove(&load_seconds_.Add(labels));
+}
+
+void ServerMetrics::FoldersSkipped(int folders) { folders_skipped_.Set(folders); }
+
+void ServerMetrics::Reloaded(bool ok) {
+  reloads_.Add({{"result", ok ? "ok" : "failed"}}).Increment();
 }
 
 void ServerMetrics::SetQueueLength(std::function<double()> queued_windows) {

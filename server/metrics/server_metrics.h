@@ -62,8 +62,11 @@ struct ServedVersion {
 //   duet_workers                                       batches that may be evaluated at a time
 // Of models:
 //   duet_model_load_seconds{checkpoint}                time that loading took
-//   duet_model_state{checkpoint}                       1 served, 0 failed to load
+//   duet_model_state{checkpoint}                       1 served, 0 refused; not of unloaded ones
 //   duet_model_info{model, version, default}           1 for each version served now
+//   duet_model_loads_total{result}                     checkpoints loaded: ok or refused
+//   duet_model_folders_skipped                         in the repository, but no checkpoints
+//   duet_reloads_total{result}                         reloads asked for: ok or failed
 // Of certificates and the access file:
 //   duet_secrets_reloads_total{kind, outcome}          times they were read again
 //   duet_tls_certificate_expiry_timestamp_seconds      end of the server's certificate
@@ -84,8 +87,13 @@ class ServerMetrics final : public CallObserver, public batching::WindowObserver
   void BatchFinished(const batching::WindowTimings& timings) override;
   void WindowFinished(batching::Priority priority, const batching::WindowTimings& timings) override;
 
-  // A checkpoint was loaded, or was refused.
-  void ModelLoaded(const std::string& checkpoint, double seconds, bool served);
+  // A checkpoint was loaded, or was refused; `served` tells of a refused one whether what was
+  // loaded before in its place is served on.
+  void ModelLoaded(const std::string& checkpoint, double seconds, bool loaded, bool served);
+  // A checkpoint is not served any more, nor is it to be.
+  void ModelUnloaded(const std::string& checkpoint);
+  void FoldersSkipped(int folders);
+  void Reloaded(bool ok);
 
   // What is asked for at every scrape. Call before the first Render.
   void SetQueueLength(std::function<double()> queued_windows);
@@ -119,6 +127,9 @@ class ServerMetrics final : public CallObserver, public batching::WindowObserver
   prometheus::Gauge& queued_windows_;
   prometheus::Family<prometheus::Gauge>& load_seconds_;
   prometheus::Family<prometheus::Gauge>& model_state_;
+  prometheus::Family<prometheus::Counter>& model_loads_;
+  prometheus::Gauge& folders_skipped_;
+  prometheus::Family<prometheus::Counter>& reloads_;
   prometheus::Counter& log_lines_dropped_;
   prometheus::Family<prometheus::Counter>& refusals_;
   prometheus::Family<prometheus::Counter>& caller_calls_;

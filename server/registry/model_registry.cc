@@ -16,13 +16,18 @@ std::string Keys(const Map& map) {
       map, ", ", [](std::string* out, const auto& entry) { absl::StrAppend(out, entry.first); });
 }
 
+absl::Status NotServed(absl::string_view name, uint32_t version) {
+  return absl::NotFoundError(
+      absl::StrCat("version ", version, " of model ", base::Quoted(name), " is not served"));
+}
+
 }  // namespace
 
 void ModelRegistry::Serve(std::shared_ptr<const engine::Synthesizer> model) {
   const engine::ModelDescription& description = model->description();
   common::MutexLock lock(mutex_);
-  entries_[description.name].versions[static_cast<uint32_t>(description.version)] =
-      std::move(model);
+  // What was served in its place goes with the parameter, after the lock: freeing takes time.
+  entries_[description.name].versions[static_cast<uint32_t>(description.version)].swap(model);
 }
 
 absl::Status ModelRegistry::SetLabel(absl::string_view name, absl::string_view label,
@@ -35,6 +40,50 @@ absl::Status ModelRegistry::SetLabel(absl::string_view name, absl::string_view l
                                             base::Quoted(name), ", which is not served"));
   }
   entry->second.labels[std::string(label)] = version;
+  return absl::OkStatus();
+}
+
+absl::Status ModelRegistry::DeleteLabel(absl::string_view name, absl::string_view label) {
+  common::MutexLock lock(mutex_);
+  const auto entry = entries_.find(name);
+  if (entry == entries_.end()) {
+    return absl::NotFoundError(absl::StrCat("model ", base::Quoted(name), " is not served"));
+  }
+  const auto found = entry->second.labels.find(label);
+  if (found == entry->second.labels.end()) {
+    return absl::NotFoundError(absl::StrCat("model ", base::Quoted(name), " has no version label ",
+                                            base::Quoted(label),
+                                            "; it has: ", Keys(entry->second.labels)));
+  }
+  entry->second.labels.erase(found);
+  return absl::OkStatus();
+}
+
+absl::Status ModelRegistry::CheckRemovable(absl::string_view name, const Entry& entry,
+                                           uint32_t version) const {
+  for (const auto& [label, labelled] : entry.labels) {
+    if (labelled != version) continue;
+    return absl::FailedPreconditionError(absl::StrCat("version label ", base::Quoted(label),
+                                                      " points at version ", version, " of model ",
+                                                      base::Quoted(name)));
+  }
+  if (entry.versions.size() > 1 || name != DefaultName()) return absl::OkStatus();
+  return absl::FailedPreconditionError(absl::StrCat("version ", version, " is the last of model ",
+                                                    base::Quoted(name), ", the default model"));
+}
+
+absl::Status ModelRegistry::Remove(absl::string_view name, uint32_t version) {
+  std::shared_ptr<const engine::Synthesizer> removed;  // is freed after the lock
+  common::MutexLock lock(mutex_);
+  const auto entry = entries_.find(name);
+  if (entry == entries_.end()) return NotServed(name, version);
+  const auto found = entry->second.versions.find(version);
+  if (found == entry->second.versions.end()) return NotServed(name, version);
+  const absl::Status removable = CheckRemovable(name, entry->second, version);
+  if (!removable.ok()) return removable;
+  removed = std::move(found->second);
+  entry->second.versions.erase(found);
+  if (entry->second.versions.empty()) entries_.erase(entry);
   return absl::OkStatus();
 }
 
@@ -92,6 +141,20 @@ FindResult ModelRegistry::Find(const ModelQuery& query) const {
     }
   }
   return Describe(found->first, entry, version);
+}
+
+std::vector<uint32_t> ModelRegistry::LabelledVersions(absl::string_view name) const {
+  common::MutexLock lock(mutex_);
+  std::vector<uint32_t> versions;
+  const auto entry = entries_.find(name);
+  if (entry == entries_.end()) return versions;
+  for (const auto& [label, version] : entry->second.labels) versions.push_back(version);
+  return versions;
+}
+
+std::string ModelRegistry::default_model() const {
+  common::MutexLock lock(mutex_);
+  return DefaultName();
 }
 
 std::vector<ServedModel> ModelRegistry::List() const {

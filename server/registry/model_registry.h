@@ -41,7 +41,8 @@ using FindResult = std::variant<ServedModel, ModelNotFound>;
 
 // The models being served, by name and version.
 //
-// Find hands out shared ownership: a call keeps its model when another takes its place here.
+// Find hands out shared ownership: a call keeps its model when another takes its place here. A
+// label always points at a version that is served, and the default model, once set, always has one.
 // Threads: safe to call concurrently.
 class ModelRegistry {
  public:
@@ -52,6 +53,13 @@ class ModelRegistry {
   // NOT_FOUND when that version is not served.
   absl::Status SetLabel(absl::string_view name, absl::string_view label, uint32_t version);
 
+  // NOT_FOUND when there is no such label.
+  absl::Status DeleteLabel(absl::string_view name, absl::string_view label);
+
+  // Serves a version no longer; calls that found it go on. NOT_FOUND when it is not served,
+  // FAILED_PRECONDITION when a label points at it or it is the default model's last.
+  absl::Status Remove(absl::string_view name, uint32_t version);
+
   // The model that answers when a request names none; until set, the first name in order.
   // NOT_FOUND when no version of it is served.
   absl::Status SetDefault(absl::string_view name);
@@ -60,6 +68,12 @@ class ModelRegistry {
 
   // Every version, by name, newest first.
   std::vector<ServedModel> List() const;
+
+  // The versions that labels of a model point at.
+  std::vector<uint32_t> LabelledVersions(absl::string_view name) const;
+
+  // The name of the default model; empty while nothing is served.
+  std::string default_model() const;
 
  private:
   using Versions = std::map<uint32_t, std::shared_ptr<const engine::Synthesizer>, std::greater<>>;
@@ -70,6 +84,9 @@ class ModelRegistry {
   using Entries = std::map<std::string, Entry, std::less<>>;
 
   const std::string& DefaultName() const DUET_REQUIRES(mutex_);
+  // Whether a version that is served may be taken away.
+  absl::Status CheckRemovable(absl::string_view name, const Entry& entry, uint32_t version) const
+      DUET_REQUIRES(mutex_);
   ServedModel Describe(const std::string& name, const Entry& entry, uint32_t version) const
       DUET_REQUIRES(mutex_);
 

@@ -1,13 +1,18 @@
 #include "server/registry/model_repository.h"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <system_error>
 #include <utility>
 
+#include "absl/strings/match.h"
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
 #include "server/common/clock.h"
+#include "server/registry/golden_check.h"
 
 namespace duet::server::registry {
 namespace {
@@ -45,6 +50,42 @@ absl::Status CheckPlace(const fs::path& folder, const engine::ModelDescription& 
                                                  name, " version ", version));
 }
 
+bool IsHidden(const fs::path& path) { return absl::StartsWith(path.filename().string(), "."); }
+
+// A volume's folder whose content changes all at once lies behind this link.
+constexpr char kVolumeData[] = "..data";
+
+constexpr char kManifest[] = "manifest.json";
+
+// Looks through one model's folder.
+void ListVersions(const fs::path& name, RepositoryListing& listing) {
+  const std::string model = name.filename().string();
+  absl::StatusOr<std::vector<fs::path>> versions = Subfolders(name);
+  // A volume's own folders (lost+found) may well be closed to us.
+  if (!versions.ok()) {
+    listing.skipped.push_back({model, std::string(versions.status().message())});
+    return;
+  }
+  bool has_versions = false;
+  for (fs::path& version : *versions) {
+    if (IsHidden(version)) continue;
+    has_versions = true;
+    const std::string folder = absl::StrCat(model, "/", version.filename().string());
+    std::error_code ignored;
+    if (!IsVersion(version.filename().string())) {
+      listing.skipped.push_back(
+          {folder, "is no version, wanted a number of 1 or more without leading zeros"});
+    } else if (!fs::exists(ResolveCheckpoint(version) / kManifest, ignored)) {
+      listing.skipped.push_back({folder, "has no manifest.json"});
+    } else {
+      listing.checkpoints.push_back(std::move(version));
+    }
+  }
+  if (!has_versions) {
+    listing.skipped.push_back({model, "has no folder of a version, such as 1"});
+  }
+}
+
 }  // namespace
 
 absl::StatusOr<RepositoryListing> ListCheckpoints(const fs::path& repository) {
@@ -52,32 +93,42 @@ absl::StatusOr<RepositoryListing> ListCheckpoints(const fs::path& repository) {
   if (!names.ok()) return names.status();
   RepositoryListing listing;
   for (const fs::path& name : *names) {
-    absl::StatusOr<std::vector<fs::path>> versions = Subfolders(name);
-    // A volume's own folders (lost+found) may well be closed to us.
-    if (!versions.ok()) {
-      listing.unreadable.push_back(versions.status());
-      continue;
-    }
-    for (fs::path& version : *versions) {
-      std::error_code ignored;
-      if (!IsVersion(version.filename().string())) continue;
-      if (!fs::exists(version / "manifest.json", ignored)) continue;
-      listing.checkpoints.push_back(std::move(version));
-    }
+    if (!IsHidden(name)) ListVersions(name, listing);
   }
   std::sort(listing.checkpoints.begin(), listing.checkpoints.end());
+  std::sort(listing.skipped.begin(), listing.skipped.end(),
+            [](const auto& a, const auto& b) { return a.folder < b.folder; });
   return listing;
+}
+
+fs::path ResolveCheckpoint(const fs::path& folder) {
+  std::error_code error;
+  fs::path resolved = fs::canonical(folder / kVolumeData, error);
+  if (error) resolved = fs::canonical(folder, error);
+  return error ? folder : resolved;
+}
+
+std::string CheckpointFingerprint(const fs::path& folder) {
+  struct stat file = {};
+  if (stat((ResolveCheckpoint(folder) / kManifest).c_str(), &file) != 0) return "";
+  return absl::StrJoin(
+      {static_cast<int64_t>(file.st_dev), static_cast<int64_t>(file.st_ino),
+       static_cast<int64_t>(file.st_size), static_cast<int64_t>(file.st_mtim.tv_sec),
+       static_cast<int64_t>(file.st_mtim.tv_nsec), static_cast<int64_t>(file.st_ctim.tv_sec),
+       static_cast<int64_t>(file.st_ctim.tv_nsec)},
+      ":");
 }
 
 LoadReport LoadCheckpoint(const fs::path& folder, const ModelLoader& loader) {
   const common::TimePoint begin = common::Clock::Real().Now();
-  LoadReport report{(folder.parent_path().filename() / folder.filename()).string(), loader(folder),
-                    0};
-  report.load_seconds = common::SecondsBetween(begin, common::Clock::Real().Now());
+  LoadReport report{(folder.parent_path().filename() / folder.filename()).string(),
+                    loader(ResolveCheckpoint(folder)), 0};
   if (report.model.ok()) {
-    const absl::Status placed = CheckPlace(folder, (*report.model)->description());
-    if (!placed.ok()) report.model = placed;
+    absl::Status checked = CheckPlace(folder, (*report.model)->description());
+    if (checked.ok()) checked = CheckAnswers(**report.model);
+    if (!checked.ok()) report.model = checked;
   }
+  report.load_seconds = common::SecondsBetween(begin, common::Clock::Real().Now());
   return report;
 }
 

@@ -18,6 +18,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/lifecycle/duet_server.h"
+#include "tests/integration/running_server.h"
 #include "tests/server/support/gated_model.h"
 #include "tests/server/support/http_get.h"
 #include "tests/server/support/raw_call.h"
@@ -31,6 +32,7 @@ namespace duet::test {
 namespace {
 
 using ::testing::_;
+using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -38,66 +40,6 @@ using ::testing::StartsWith;
 
 using absl::StatusCode;
 using nlohmann::json;
-
-server::config::ServerOptions TestOptions() {
-  server::config::ServerOptions options;
-  options.listen = {"127.0.0.1", 0};
-  options.metrics_listen = server::config::ListenAddress{"127.0.0.1", 0};
-  return options;
-}
-
-class EventSink final : public server::metrics::LogSink {
- public:
-  void Write(std::string_view line) override {
-    server::common::MutexLock lock(mutex_);
-    lines_.push_back(json::parse(line));
-  }
-  // The lines of one event, in order.
-  std::vector<json> Events(const std::string& event) const {
-    server::common::MutexLock lock(mutex_);
-    std::vector<json> events;
-    for (const json& line : lines_) {
-      if (line["event"] == event) events.push_back(line);
-    }
-    return events;
-  }
-
- private:
-  mutable server::common::Mutex mutex_;
-  std::vector<json> lines_ DUET_GUARDED_BY(mutex_);
-};
-
-// A server, a channel to it and its log.
-class Running {
- public:
-  explicit Running(const server::config::ServerOptions& options = TestOptions()) {
-    absl::StatusOr<std::unique_ptr<server::lifecycle::DuetServer>> server =
-        server::lifecycle::DuetServer::Start(options, log);
-    EXPECT_THAT(server, IsOk());
-    server_ = *std::move(server);
-    channel = grpc::CreateChannel(absl::StrCat("127.0.0.1:", server_->port()),
-                                  grpc::InsecureChannelCredentials());
-    stub = v1::MotionSynthesis::NewStub(channel);
-  }
-  server::lifecycle::DuetServer* operator->() { return server_.get(); }
-  server::lifecycle::DuetServer& operator*() { return *server_; }
-  void Load(
-      std::shared_ptr<const engine::Synthesizer> model = std::make_shared<FakeSynthesizer>()) {
-    server_->Add({"fake/1", std::move(model), 0.5});
-  }
-  grpc::Status List() {
-    TimedContext context;
-    v1::ListModelsResponse response;
-    return stub->ListModels(&context, v1::ListModelsRequest(), &response);
-  }
-
-  EventSink log;
-  std::shared_ptr<grpc::Channel> channel;
-  std::unique_ptr<v1::MotionSynthesis::Stub> stub;
-
- private:
-  std::unique_ptr<server::lifecycle::DuetServer> server_;
-};
 
 const auto kPatient = [](double) { return true; };
 
@@ -117,6 +59,7 @@ TEST(LoadingTest, ServesOnceItsModelsAreThere) {
   EXPECT_EQ(Health(server.channel, ""), "SERVING");
   EXPECT_EQ(Health(server.channel, "duet.v1.MotionSynthesis"), "SERVING");
   EXPECT_EQ(Health(server.channel, "model:fake"), "SERVING");
+  EXPECT_EQ(Health(server.channel, "duet.v1.MotionSynthesis/fake"), "SERVING");
   EXPECT_EQ(Health(server.channel, "model:other"), "service name unknown");
   EXPECT_THAT(HttpGet(server->metrics_port(), "/readyz"), StartsWith("HTTP/1.1 200"));
   EXPECT_TRUE(Call(*server.stub, SampleRequest()).status.ok());
@@ -168,6 +111,26 @@ TEST(LoadingTest, SetsVersionLabelsAndReportsThoseThatPointNowhere) {
   const std::vector<json> refused = server.log.Events("version_label_refused");
   ASSERT_EQ(refused.size(), 1u);
   EXPECT_THAT(refused[0]["message"].get<std::string>(), HasSubstr("canary"));
+}
+
+TEST(LoadingTest, RefusesALabelOfAModelThatThereIsNot) {
+  server::config::ServerOptions options = TestOptions();
+  options.version_labels = {{"fake", "stable", 1}, {"fak", "canary", 1}};
+  Running server(options);
+  server.Load();
+  EXPECT_THAT(server->Serve(),
+              StatusIs(StatusCode::kInvalidArgument,
+                       "version_labels[1]: names model \"fak\", wanted one of: fake; did you mean "
+                       "fake?"));
+  EXPECT_EQ(Health(server.channel, ""), "NOT_SERVING");
+}
+
+TEST(ReadinessTest, TellsHowItStandsWithEachModel) {
+  Running server;
+  server.Load();
+  ASSERT_THAT(server->Serve(), IsOk());
+  EXPECT_THAT(HttpGet(server->metrics_port(), "/readyz"),
+              HasSubstr("ready\nmodel fake/1: served\n"));
 }
 
 TEST(ListenTest, ASecondServerOnAPortFailsAndSaysWhere) {
@@ -295,6 +258,10 @@ TEST(DrainTest, ServesOnForDrainSecondsWhileHealthSaysNo) {
     waits.push_back(seconds);
     EXPECT_EQ(Health(server.channel, ""), "NOT_SERVING");
     EXPECT_EQ(Health(server.channel, "model:fake"), "NOT_SERVING");
+    EXPECT_EQ(Health(server.channel, "duet.v1.MotionSynthesis/fake"), "NOT_SERVING");
+    EXPECT_THAT(HttpGet(server->metrics_port(), "/readyz"),
+                AllOf(StartsWith("HTTP/1.1 503"), HasSubstr("draining")));
+    EXPECT_THAT(HttpGet(server->metrics_port(), "/healthz"), StartsWith("HTTP/1.1 200"));
     EXPECT_TRUE(Call(*server.stub, SampleRequest()).status.ok());
     return true;
   });

@@ -6,12 +6,15 @@
 #include <grpcpp/security/credentials.h>
 #include <gtest/gtest.h>
 #include <spawn.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/un.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -32,6 +35,8 @@ namespace {
 namespace fs = std::filesystem;
 
 using nlohmann::json;
+using ::testing::AllOf;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 // A running fake server and what it writes.
@@ -199,6 +204,196 @@ TEST(ServerProcessTest, ServesARepositoryPastABadCheckpoint) {
   EXPECT_EQ(list.models(1).version_labels(0), "stable");
   server.Signal(SIGTERM);
   EXPECT_EQ(server.Wait(), 0);
+}
+
+void WriteCheckpoint(const TemporaryFolder& folder, const std::string& place,
+                     const std::string& manifest = "good") {
+  fs::create_directories(folder / place);
+  WriteTestFile(folder / "next", manifest);
+  fs::rename(folder / "next", folder / (place + "/manifest.json"));
+}
+
+// "name/version+label+label" of each model that is served.
+std::vector<std::string> ListModels(v1::MotionSynthesis::Stub& stub) {
+  TimedContext context;
+  v1::ListModelsResponse list;
+  EXPECT_TRUE(stub.ListModels(&context, v1::ListModelsRequest(), &list).ok());
+  std::vector<std::string> models;
+  for (const v1::Model& model : list.models()) {
+    models.push_back(absl::StrCat(model.name(), "/", model.version()));
+    for (const std::string& label : model.version_labels()) models.back() += "+" + label;
+  }
+  return models;
+}
+
+TEST(ServerProcessTest, SaysWhichFoldersItSkips) {
+  TemporaryFolder folder;
+  WriteCheckpoint(folder, "sbu/01");
+  WriteCheckpoint(folder, "sbu/1");
+  Process server(Flags({"--model-repository", folder.path().string()}));
+  const json skipped = server.WaitForEvent("folder_skipped");
+  EXPECT_EQ(skipped["folder"], "sbu/01");
+  EXPECT_THAT(skipped.value("message", ""), HasSubstr("is no version"));
+  EXPECT_FALSE(server.WaitForEvent("serving").is_null());
+}
+
+TEST(ServerProcessTest, SighupReadsTheRepositoryAgain) {
+  TemporaryFolder folder;
+  WriteCheckpoint(folder, "sbu/1");
+  Process server(Flags({"--model-repository", folder.path().string()}));
+  const auto stub = Connect(server.WaitForEvent("serving"));
+  WriteCheckpoint(folder, "sbu/2");
+  WriteCheckpoint(folder, "sbu/1", "bad");
+  server.Signal(SIGHUP);
+  const json refused = server.WaitForEvent("model_refused");
+  EXPECT_EQ(refused["source"], "sbu/1");
+  EXPECT_EQ(refused["still_served"], true);
+  const json reloaded = server.WaitForEvent("reloaded");
+  EXPECT_EQ(reloaded["loaded"], json({"sbu/2"}));
+  EXPECT_EQ(reloaded["refused"], json({"sbu/1"}));
+  EXPECT_THAT(ListModels(*stub), ElementsAre("sbu/2", "sbu/1"));
+  server.Signal(SIGTERM);
+  EXPECT_EQ(server.Wait(), 0);
+}
+
+TEST(ServerProcessTest, SighupReadsLabelsFromTheConfigurationFile) {
+  TemporaryFolder folder;
+  TemporaryFolder settings;
+  const std::string file = (settings / "duet.txtpb").string();
+  const auto write = [&](const std::string& stable, const std::string& more) {
+    WriteTestFile(file,
+                  absl::StrCat("model_repository: \"", folder.path().string(),
+                               "\"\nversion_labels { model: \"sbu\" label: \"stable\" version: ",
+                               stable, " }\n", more));
+  };
+  WriteCheckpoint(folder, "sbu/1");
+  WriteCheckpoint(folder, "sbu/2");
+  write("1", "version_labels { model: \"sbu\" label: \"old\" version: 1 }");
+  Process server(Flags({"--config", file}));
+  const auto stub = Connect(server.WaitForEvent("serving"));
+  EXPECT_THAT(ListModels(*stub), ElementsAre("sbu/2", "sbu/1+old+stable"));
+  write("2", "");
+  server.Signal(SIGHUP);
+  EXPECT_FALSE(server.WaitForEvent("reloaded").is_null());
+  EXPECT_THAT(ListModels(*stub), ElementsAre("sbu/2+stable", "sbu/1"));
+  write("1", "max_call: 7");
+  server.Signal(SIGHUP);
+  EXPECT_THAT(server.WaitForEvent("reload_problem").value("message", ""),
+              AllOf(HasSubstr("configuration: "), HasSubstr("duet.txtpb: line 3:9:"),
+                    HasSubstr("max_call")));
+  EXPECT_FALSE(server.WaitForEvent("reloaded").is_null());
+  EXPECT_THAT(ListModels(*stub), ElementsAre("sbu/2+stable", "sbu/1")) << "as it was";
+}
+
+TEST(ServerProcessTest, SigtermDuringAReloadStopsAfterTheCheckpointUnderWay) {
+  TemporaryFolder folder;
+  WriteCheckpoint(folder, "a/1");
+  Process server(Flags({"--model-repository", folder.path().string()}));
+  EXPECT_FALSE(server.WaitForEvent("serving").is_null());
+  fs::create_directories(folder / "a/3");
+  // Reading it waits until this test has opened and closed it.
+  ASSERT_EQ(mkfifo((folder / "a/3/manifest.json").c_str(), 0600), 0);
+  WriteCheckpoint(folder, "a/2");
+  server.Signal(SIGHUP);
+  const int manifest = open((folder / "a/3/manifest.json").c_str(), O_WRONLY);
+  ASSERT_GE(manifest, 0);
+  server.Signal(SIGTERM);
+  EXPECT_FALSE(server.WaitForEvent("stopped").is_null()) << "the drain does not wait for it";
+  close(manifest);
+  EXPECT_EQ(server.Wait(), 0);
+  EXPECT_THAT(server.Rest(), testing::Not(HasSubstr("model_loaded")));
+}
+
+TEST(ServerProcessTest, ASecondSignalEndsTheDrainSecondsAsWell) {
+  Process server(Flags({"--drain-seconds", "3600", "--grace-seconds", "3600"}));
+  const auto stub = Connect(server.WaitForEvent("serving"));
+  TimedContext context;
+  const auto reader = stub->Synthesize(&context, LongRequest());
+  v1::SynthesizeResponse message;
+  ASSERT_TRUE(reader->Read(&message));
+  server.Signal(SIGTERM);
+  EXPECT_EQ(server.WaitForEvent("draining")["calls"], 1);
+  server.Signal(SIGTERM);
+  EXPECT_EQ(server.WaitForEvent("stopped")["aborted_calls"], 1);
+  EXPECT_EQ(server.Wait(), 0);
+}
+
+// What a service manager hears.
+class NotifySocket {
+ public:
+  explicit NotifySocket(const std::string& path)
+      : descriptor_(socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
+    sockaddr_un address = {};
+    address.sun_family = AF_UNIX;
+    path.copy(address.sun_path, sizeof(address.sun_path) - 1);
+    EXPECT_EQ(bind(descriptor_, reinterpret_cast<sockaddr*>(&address), sizeof(address)), 0);
+  }
+  ~NotifySocket() { close(descriptor_); }
+  std::string Receive() {
+    char text[4096];
+    const ssize_t length = recv(descriptor_, text, sizeof(text), 0);
+    return length < 0 ? "" : std::string(text, static_cast<std::size_t>(length));
+  }
+
+ private:
+  const int descriptor_;
+};
+
+TEST(ServerProcessTest, TellsTheServiceManagerHowItStands) {
+  TemporaryFolder folder;
+  NotifySocket socket((folder / "notify").string());
+  setenv("NOTIFY_SOCKET", (folder / "notify").c_str(), 1);
+  Process server(Flags());
+  unsetenv("NOTIFY_SOCKET");
+  EXPECT_EQ(socket.Receive(), "READY=1\nSTATUS=serving 1 models");
+  server.Signal(SIGHUP);
+  EXPECT_THAT(socket.Receive(), testing::MatchesRegex("RELOADING=1\nMONOTONIC_USEC=[0-9]+"));
+  EXPECT_EQ(socket.Receive(), "READY=1\nSTATUS=serving 1 models");
+  server.Signal(SIGTERM);
+  EXPECT_EQ(socket.Receive(), "STOPPING=1");
+  EXPECT_EQ(server.Wait(), 0);
+}
+
+TEST(ServerProcessTest, CheckConfigLoadsEverythingAndLeaves) {
+  TemporaryFolder folder;
+  WriteCheckpoint(folder, "sbu/1");
+  const std::string repository = folder.path().string();
+  {
+    Process server(Flags({"--check-config", "--model-repository", repository}));
+    EXPECT_EQ(server.Rest(), "ok: sbu/1\n");
+    EXPECT_EQ(server.Wait(), 0);
+  }
+  WriteCheckpoint(folder, "sbu/2", "bad");
+  WriteCheckpoint(folder, "sbu/latest");
+  Process server(Flags(
+      {"--check-config", "--model-repository", repository, "--version-label", "sub:stable=1"}));
+  EXPECT_THAT(server.Rest(),
+              AllOf(HasSubstr("wrong: sbu/latest: skipped: is no version"),
+                    HasSubstr("wrong: sbu/2: the manifest is not good\n"), HasSubstr("ok: sbu/1\n"),
+                    HasSubstr("wrong: version_labels[0]: names model \"sub\"")));
+  EXPECT_EQ(server.Wait(), 1);
+}
+
+TEST(ServerProcessTest, PrintConfigTellsWhereEachSettingComesFrom) {
+  setenv("DUET_SERVER_MAX_CALLS", "64", 1);
+  Process server({"--print-config", "--listen", "127.0.0.1:7"});
+  unsetenv("DUET_SERVER_MAX_CALLS");
+  EXPECT_THAT(server.Rest(),
+              AllOf(HasSubstr("listen: \"127.0.0.1:7\"  # command line\n"),
+                    HasSubstr("\nmax_calls: 64  # environment DUET_SERVER_MAX_CALLS\n"),
+                    HasSubstr("\ngrace_seconds: 30  # default\n")));
+  EXPECT_EQ(server.Wait(), 0);
+}
+
+TEST(ServerProcessTest, EverythingThatIsWrongIsSaidAtOnce) {
+  TemporaryFolder folder;
+  WriteTestFile(folder / "a.json", "{\"maxCalls\": 0,\n \"prot\": 1}");
+  Process server({"--config", (folder / "a.json").string(), "--workers", "0"});
+  EXPECT_THAT(server.Rest(), AllOf(HasSubstr("duet-server: --config: "),
+                                   HasSubstr("a.json: line 2:2: there is no field \"prot\""),
+                                   HasSubstr("duet-server: max_calls: is 0"),
+                                   HasSubstr("duet-server: workers: is 0")));
+  EXPECT_EQ(server.Wait(), 2);
 }
 
 TEST(ServerProcessTest, FailsWithoutAnythingToServe) {

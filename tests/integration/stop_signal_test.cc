@@ -32,5 +32,17 @@ TEST(StopSignalTest, WaitEndsWithASignal) {
   EXPECT_FALSE(stop.WaitFor(0));
 }
 
+TEST(StopSignalTest, TellsReloadsFromStops) {
+  using server::lifecycle::StopSignal;
+  StopSignal stop;
+  kill(getpid(), SIGHUP);
+  EXPECT_FALSE(stop.WaitFor(0)) << "a reload stops nothing";
+  EXPECT_EQ(stop.Wait(), StopSignal::Kind::kReload);
+  kill(getpid(), SIGHUP);
+  kill(getpid(), SIGTERM);
+  EXPECT_EQ(stop.Wait(), StopSignal::Kind::kStop) << "before the reload that came first";
+  EXPECT_EQ(stop.Wait(), StopSignal::Kind::kReload);
+}
+
 }  // namespace
 }  // namespace duet::test

@@ -1,8 +1,11 @@
 #include "model/messages/message_text.h"
 
 #include <gmock/gmock.h>
+#include <google/protobuf/api.pb.h>
 #include <google/protobuf/duration.pb.h>
 #include <gtest/gtest.h>
+
+#include <string>
 
 #include "tests/support/status_matchers.h"
 
@@ -11,6 +14,7 @@ namespace {
 
 using test::IsOk;
 using test::StatusIs;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
@@ -31,6 +35,78 @@ TEST(ParseMessage, SaysWhereTheFirstErrorIs) {
                        ::testing::AllOf(StartsWith("line 2:6: "), HasSubstr("hours"))));
   EXPECT_THAT(ParseMessage("{", MessageSyntax::kJson, &message),
               StatusIs(absl::StatusCode::kInvalidArgument, ::testing::_));
+}
+
+// "line:column" of a field, or "nowhere".
+std::string PlaceOf(const FieldPlaces& places, const std::string& field) {
+  const auto place = places.find(field);
+  if (place == places.end()) return "nowhere";
+  return std::to_string(place->second.line) + ":" + std::to_string(place->second.column);
+}
+
+constexpr char kJson[] = R"({
+  "name": "a \"b\" {",
+  "methods": [{"name": "x"},
+              {"name": "y"}], "sourceContext": {"file_name": "f"}
+})";
+constexpr char kText[] = R"(name: "a"
+  methods { name: "x" }
+methods { name: "y" } source_context { file_name: "f" })";
+
+TEST(ParseMessage, TellsWhereEachFieldIs) {
+  google::protobuf::Api api;
+  FieldPlaces places;
+  ASSERT_THAT(ParseMessage(kJson, MessageSyntax::kJson, &api, &places), IsOk());
+  EXPECT_EQ(PlaceOf(places, "name"), "2:3");
+  EXPECT_EQ(PlaceOf(places, "methods[0]"), "3:15");
+  EXPECT_EQ(PlaceOf(places, "methods[1]"), "4:15");
+  EXPECT_EQ(PlaceOf(places, "source_context"), "4:31");
+  EXPECT_EQ(PlaceOf(places, "version"), "nowhere");
+  ASSERT_THAT(ParseMessage(kText, MessageSyntax::kTextFormat, &api, &places), IsOk());
+  EXPECT_EQ(PlaceOf(places, "name"), "1:1");
+  EXPECT_EQ(PlaceOf(places, "methods[0]"), "2:3");
+  EXPECT_EQ(PlaceOf(places, "methods[1]"), "3:1");
+  EXPECT_EQ(PlaceOf(places, "source_context"), "3:23");
+}
+
+TEST(ParseMessage, TellsEverythingThatIsWrongWithJson) {
+  google::protobuf::Api api;
+  const absl::Status status = ParseMessage(R"({
+  "nam": "a",
+  "version": "1",
+  "syntax": "SYNTAX_PROTO9",
+  "methods": [{"name": "x"},
+              {"request": "y"}],
+  "version": "2"
+})",
+                                           MessageSyntax::kJson, &api);
+  EXPECT_THAT(
+      status,
+      StatusIs(absl::StatusCode::kInvalidArgument,
+               AllOf(StartsWith("line 2:3: there is no field \"nam\"; did you mean name?\n"),
+                     HasSubstr("\nline 4:3: (syntax)"), HasSubstr("\nline 6:15: "),
+                     HasSubstr("methods[1]"), HasSubstr("\nline 7:3: version: is repeated"))));
+  EXPECT_EQ(api.version(), "2") << "what is right is read all the same";
+}
+
+TEST(ParseMessage, TellsWhereJsonEnds) {
+  google::protobuf::Api api;
+  EXPECT_THAT(ParseMessage("{\n  \"name\": \"a\",\n  \"version\" 3\n}", MessageSyntax::kJson, &api),
+              StatusIs(absl::StatusCode::kInvalidArgument, StartsWith("line 3:")));
+  const std::string deep = "{\"name\": " + std::string(200000, '[');
+  EXPECT_THAT(ParseMessage(deep, MessageSyntax::kJson, &api),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("nested deeper")));
+}
+
+TEST(ParseMessage, TellsEveryUnknownFieldOfTheTextFormat) {
+  google::protobuf::Api api;
+  EXPECT_THAT(
+      ParseMessage("nam: \"a\"\nversion: \"1\"\nmethod { name: \"x\" }\nsyntax: 12345678901",
+                   MessageSyntax::kTextFormat, &api),
+      StatusIs(absl::StatusCode::kInvalidArgument,
+               AllOf(StartsWith("line 1:4: "), HasSubstr("nam"), HasSubstr("\nline 3:8: "),
+                     HasSubstr("\nline 4:"))));
+  EXPECT_EQ(api.version(), "1");
 }
 
 }  // namespace

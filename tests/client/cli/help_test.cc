@@ -77,9 +77,10 @@ TEST(CommandTable, HoldsEveryCommandAndFlag) {
   const std::vector<CommandEntry> commands = ListCommands(line.app);
   std::vector<std::string> names;
   for (const CommandEntry& command : commands) names.push_back(command.name);
-  EXPECT_THAT(names,
-              ElementsAre("", "models", "synthesize", "batch", "batch merge", "batch verify",
-                          "inspect", "convert", "view", "compare", "help", "completion", "man"));
+  EXPECT_THAT(names, ElementsAre("", "models", "synthesize", "batch", "batch merge", "batch verify",
+                                 "inspect", "convert", "view", "compare", "admin", "admin models",
+                                 "admin reload", "admin load", "admin unload", "admin label",
+                                 "help", "completion", "man"));
   EXPECT_THAT(FlagOf(commands[2], "--leader-side").choices, ElementsAre("left", "right"));
   EXPECT_EQ(FlagOf(commands[2], "--leader-side").default_value, "left");
   EXPECT_TRUE(FlagOf(commands[2], "--leader").takes_file);

@@ -5,9 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
 #include "server/config/server_options.h"
 #include "tests/support/status_matchers.h"
@@ -25,13 +27,19 @@ using ::testing::AllOf;
 using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::Not;
+using ::testing::Pair;
+using ::testing::StartsWith;
+using ::testing::UnorderedElementsAre;
 
 constexpr auto kInvalidArgument = absl::StatusCode::kInvalidArgument;
 
-absl::StatusOr<CommandLine> Parse(std::vector<std::string> arguments) {
+absl::StatusOr<CommandLine> Parse(std::vector<std::string> arguments,
+                                  const Environment& environment = {}) {
   std::vector<const char*> argv = {"duet-server"};
   for (const std::string& argument : arguments) argv.push_back(argument.c_str());
-  return ParseCommandLine(static_cast<int>(argv.size()), argv.data());
+  CommandLine line = ParseCommandLine(static_cast<int>(argv.size()), argv.data(), environment);
+  if (line.errors.empty()) return line;
+  return absl::InvalidArgumentError(absl::StrJoin(line.errors, "\n"));
 }
 
 TEST(ParseConfigTextTest, ReadsTextFormatWithComments) {
@@ -71,15 +79,32 @@ TEST(ParseConfigTextTest, AnEmptyFileSetsNothing) {
   EXPECT_THAT(ParseConfigText("{}", true), IsOk());
 }
 
+absl::Status Read(const std::filesystem::path& path) {
+  v1::ServerConfig config;
+  messages::FieldPlaces places;
+  return ReadConfigFile(path, &config, &places);
+}
+
 TEST(ReadConfigFileTest, NamesTheFile) {
   TemporaryFolder folder;
-  EXPECT_THAT(ReadConfigFile(folder / "absent.txtpb"),
+  EXPECT_THAT(Read(folder / "absent.txtpb"),
               StatusIs(absl::StatusCode::kNotFound, HasSubstr("absent.txtpb")));
-  EXPECT_THAT(ReadConfigFile(folder.path()),
+  EXPECT_THAT(Read(folder.path()),
               StatusIs(kInvalidArgument, HasSubstr(folder.path().string() + ": is a folder")));
   WriteTestFile(folder / "bad.json", "{");
-  EXPECT_THAT(ReadConfigFile(folder / "bad.json"),
-              StatusIs(kInvalidArgument, HasSubstr("bad.json")));
+  EXPECT_THAT(Read(folder / "bad.json"), StatusIs(kInvalidArgument, HasSubstr("bad.json")));
+}
+
+TEST(ReadConfigFileTest, TellsEverythingThatIsWrongAndWhere) {
+  TemporaryFolder folder;
+  WriteTestFile(folder / "bad.json", "{\"workers\": -2,\n  \"max_call\": 7, \"maxCalls\": 9}");
+  const std::string start = "--config: " + (folder / "bad.json").string();
+  EXPECT_THAT(
+      Read(folder / "bad.json"),
+      StatusIs(kInvalidArgument, AllOf(StartsWith(start + ": line 1:2: (workers)"),
+                                       HasSubstr("\n" + start +
+                                                 ": line 2:3: there is no field \"max_call\"; "
+                                                 "did you mean max_calls?"))));
 }
 
 TEST(ParseCommandLineTest, NoFlagsSetNothing) {
@@ -99,6 +124,8 @@ TEST(ParseCommandLineTest, ReadsEveryFlag) {
       "--threads-per-worker 3 --max-calls 4 --max-queued-windows 5 --max-request-bytes 6000 "
       "--max-transport-bytes 20000 --buffered-frames 7 --drain-seconds 8 --grace-seconds 9 "
       "--clean-up off --engine torch --precision f32 --max-batch-windows 10 "
+      "--version-policy sbu=latest:2 --version-policy *=1,3 "
+      "--version-policy k3hi=all --admin-listen b:2 "
       "--max-batch-delay-seconds 0.5 --client-share 0.5 --client-key x-client "
       "--max-held-bytes 30000 --receive-timeout-seconds 11 --write-timeout-seconds 12 "
       "--max-call-seconds 13 --self-check-seconds 14 --max-slow-requests 15",
@@ -112,6 +139,9 @@ TEST(ParseCommandLineTest, ReadsEveryFlag) {
          max_request_bytes: 6000 max_transport_bytes: 20000 buffered_frames: 7 drain_seconds: 8 grace_seconds: 9
          clean_up: CLEAN_UP_POLICY_OFF engine: ENGINE_TORCH precision: PRECISION_F32
          max_batch_windows: 10 max_batch_delay_seconds: 0.5
+         version_policies { model: "sbu" latest: 2 }
+         version_policies { model: "*" versions: 1 versions: 3 }
+         version_policies { model: "k3hi" } admin_listen: "b:2"
          tls_certificate_file: "/c" tls_key_file: "/k" tls_client_ca_file: "/a" access_file: "/l"
          otlp_endpoint: "http://o:1" trace_ratio: 0.25 log_format: LOG_FORMAT_TEXT
          log_level: LOG_LEVEL_WARNING log_success_ratio: 0.5 log_refusals_per_second: 3
@@ -144,6 +174,7 @@ TEST(ParseCommandLineTest, HelpNamesEveryFieldOfTheSchema) {
   for (int i = 0; i < v1::ServerConfig::descriptor()->field_count(); ++i) {
     std::string name = v1::ServerConfig::descriptor()->field(i)->name();
     if (name == "version_labels") name = "version_label";  // one a flag
+    if (name == "version_policies") name = "version_policy";
     std::replace(name.begin(), name.end(), '_', '-');
     EXPECT_THAT(*line->print, HasSubstr("--" + name));
   }
@@ -211,6 +242,88 @@ TEST(ParseCommandLineTest, NamesAFlagThatIsWrong) {
                 StatusIs(kInvalidArgument, HasSubstr("model:label=version")))
         << label;
   }
+  for (const char* policy : {"sbu", "sbu=", "sbu=latest", "sbu=latest:x", "sbu=1,", "sbu=none"}) {
+    EXPECT_THAT(Parse({"--version-policy", policy}),
+                StatusIs(kInvalidArgument, HasSubstr("model=latest:2")))
+        << policy;
+  }
+}
+
+TEST(ParseCommandLineTest, VariablesCountWhereNoFlagDoesAndBeforeTheFile) {
+  TemporaryFolder folder;
+  WriteTestFile(folder / "server.txtpb",
+                "listen: \"file:1\" max_calls: 9\nmax_queued_windows: 3\n"
+                "version_labels { model: \"a\" label: \"b\" version: 1 }");
+  const std::string file = (folder / "server.txtpb").string();
+  const absl::StatusOr<CommandLine> line =
+      Parse({"--listen", "flag:2"}, {{"DUET_SERVER_CONFIG", file},
+                                     {"DUET_SERVER_LISTEN", "variable:3"},
+                                     {"DUET_SERVER_MAX_CALLS", "4"},
+                                     {"DUET_SERVER_METRICS_LISTEN", ""},
+                                     {"DUET_SERVER_REFLECTION", "false"},
+                                     {"DUET_SERVER_VERSION_LABEL", "a:c=2 a:d=3"}});
+  ASSERT_THAT(line, IsOk());
+  EXPECT_EQ(line->config.listen(), "flag:2");
+  EXPECT_EQ(line->config.max_calls(), 4u);
+  EXPECT_EQ(line->config.max_queued_windows(), 3u);
+  EXPECT_TRUE(line->config.has_metrics_listen());
+  EXPECT_FALSE(line->config.reflection());
+  ASSERT_EQ(line->config.version_labels_size(), 3);
+  EXPECT_THAT(
+      line->sources,
+      UnorderedElementsAre(Pair("listen", "command line"),
+                           Pair("max_calls", "environment DUET_SERVER_MAX_CALLS"),
+                           Pair("max_queued_windows", "file " + file + ":2:1"),
+                           Pair("metrics_listen", "environment DUET_SERVER_METRICS_LISTEN"),
+                           Pair("reflection", "environment DUET_SERVER_REFLECTION"),
+                           Pair("version_labels[0]", "file " + file + ":3:1"),
+                           Pair("version_labels[1]", "environment DUET_SERVER_VERSION_LABEL"),
+                           Pair("version_labels[2]", "environment DUET_SERVER_VERSION_LABEL")));
+}
+
+TEST(ParseCommandLineTest, TheFlagSaysWhichFileWhereAVariableDoesToo) {
+  TemporaryFolder folder;
+  WriteTestFile(folder / "flag.txtpb", "max_calls: 9");
+  const absl::StatusOr<CommandLine> line = Parse({"--config", (folder / "flag.txtpb").string()},
+                                                 {{"DUET_SERVER_CONFIG", "/nonexistent"}});
+  ASSERT_THAT(line, IsOk());
+  EXPECT_EQ(line->config.max_calls(), 9u);
+}
+
+TEST(ParseCommandLineTest, NamesAVariableThatIsWrong) {
+  EXPECT_THAT(
+      Parse({}, {{"DUET_SERVER_MAX_CALL", "1"}, {"DUET_SERVER_WORKERS", "two"}}),
+      StatusIs(kInvalidArgument, AllOf(HasSubstr("DUET_SERVER_MAX_CALL: sets nothing; did you mean "
+                                                 "DUET_SERVER_MAX_CALLS?"),
+                                       HasSubstr("\nDUET_SERVER_WORKERS: "), HasSubstr("two"))));
+  EXPECT_THAT(Parse({}, {{"DUET_SERVER_CHECK_CONFIG", "true"}}),
+              StatusIs(kInvalidArgument, HasSubstr("sets nothing")));
+}
+
+TEST(ParseCommandLineTest, HasTasks) {
+  EXPECT_EQ(Parse({})->task, CommandLine::Task::kServe);
+  EXPECT_EQ(Parse({"--check-config"})->task, CommandLine::Task::kCheckConfig);
+  EXPECT_EQ(Parse({"--print-config"})->task, CommandLine::Task::kPrintConfig);
+}
+
+TEST(ToOptionsTest, TellsAllThatIsWrongAnywhereAndWhereItComesFrom) {
+  TemporaryFolder folder;
+  WriteTestFile(folder / "a.json", "{\n  \"prot\": 1,\n  \"maxCalls\": 0}");
+  const std::string file = (folder / "a.json").string();
+  const std::vector<const char*> argv = {"duet-server", "--config", file.c_str(), "--workers", "0"};
+  const CommandLine line =
+      ParseCommandLine(static_cast<int>(argv.size()), argv.data(),
+                       {{"DUET_SERVER_GRACE_SECONDS", "-1"}, {"DUET_SERVER_DRAIN_SECONDS", "x"}});
+  const absl::StatusOr<ServerOptions> options = ToOptions(line, 4);
+  EXPECT_THAT(
+      options,
+      StatusIs(kInvalidArgument,
+               AllOf(HasSubstr("DUET_SERVER_DRAIN_SECONDS: "),
+                     HasSubstr("a.json: line 2:3: there is no field \"prot\""),
+                     HasSubstr("\nmax_calls: is 0, wanted 1 to 100000 (file " + file + ":3:3)"),
+                     HasSubstr("\nworkers: is 0, wanted 1 to 1024 (command line)"),
+                     HasSubstr("\ngrace_seconds: is -1, wanted 0 to 3600 (environment "
+                               "DUET_SERVER_GRACE_SECONDS)"))));
 }
 
 }  // namespace

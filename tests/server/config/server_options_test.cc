@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "tests/support/status_matchers.h"
 
@@ -15,6 +16,7 @@ namespace {
 using test::IsOk;
 using test::StatusIs;
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 constexpr auto kInvalidArgument = absl::StatusCode::kInvalidArgument;
@@ -26,6 +28,7 @@ TEST(ServerOptionsTest, DefaultsServeTheEmbeddedCheckpointOnTheWellKnownPorts) {
   ASSERT_TRUE(options->metrics_listen.has_value());
   EXPECT_EQ(ToString(*options->metrics_listen), "0.0.0.0:9464");
   EXPECT_TRUE(options->model_repository.empty());
+  EXPECT_FALSE(options->admin_listen.has_value());
   EXPECT_TRUE(options->reflection);
   EXPECT_EQ(options->workers, 4);
   EXPECT_EQ(options->engine.threads, 1);
@@ -49,6 +52,11 @@ TEST(ServerOptionsTest, TakesOverEveryField) {
   label.set_model("sbu");
   label.set_label("stable");
   label.set_version(3);
+  config.add_version_policies()->set_model("sbu");
+  config.mutable_version_policies(0)->set_latest(2);
+  config.add_version_policies()->set_model("*");
+  for (const uint32_t version : {1u, 3u}) config.mutable_version_policies(1)->add_versions(version);
+  config.set_admin_listen(":7");
   config.set_reflection(false);
   config.set_engine(v1::ENGINE_TORCH);
   config.set_precision(v1::PRECISION_F32);
@@ -74,6 +82,12 @@ TEST(ServerOptionsTest, TakesOverEveryField) {
   EXPECT_EQ(options->version_labels[0].model, "sbu");
   EXPECT_EQ(options->version_labels[0].label, "stable");
   EXPECT_EQ(options->version_labels[0].version, 3u);
+  ASSERT_EQ(options->version_policies.size(), 2u);
+  EXPECT_EQ(options->version_policies[0].model, "sbu");
+  EXPECT_EQ(options->version_policies[0].latest, 2u);
+  EXPECT_EQ(options->version_policies[1].model, "");
+  EXPECT_EQ(options->version_policies[1].versions, std::vector<uint32_t>({1, 3}));
+  EXPECT_EQ(ToString(*options->admin_listen), "0.0.0.0:7");
   EXPECT_FALSE(options->reflection);
   EXPECT_EQ(options->workers, 2);
   EXPECT_EQ(options->engine.threads, 3);
@@ -139,59 +153,144 @@ TEST_P(BadConfigTest, IsRefusedByName) {
   EXPECT_THAT(ToOptions(config, 4), StatusIs(kInvalidArgument, HasSubstr(GetParam().message)));
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Every, BadConfigTest,
-    ::testing::Values(
-        BadConfig{"listen: is \"50051\", wanted host:port",
-                  [](v1::ServerConfig& c) { c.set_listen("50051"); }},
-        BadConfig{"metrics_listen: is \"a:b\", wanted host:port",
-                  [](v1::ServerConfig& c) { c.set_metrics_listen("a:b"); }},
-        BadConfig{"workers: is 0, wanted 1 to 1024", [](v1::ServerConfig& c) { c.set_workers(0); }},
-        BadConfig{"threads_per_worker: is 5000, wanted 1 to 1024",
-                  [](v1::ServerConfig& c) { c.set_threads_per_worker(5000); }},
-        BadConfig{"threads_per_worker: is 3, wanted 1 with ENGINE_CPU",
-                  [](v1::ServerConfig& c) { c.set_threads_per_worker(3); }},
-        BadConfig{"engine: is 0, wanted ENGINE_CPU or ENGINE_TORCH",
-                  [](v1::ServerConfig& c) { c.set_engine(v1::ENGINE_UNSPECIFIED); }},
-        BadConfig{"precision: is 9, wanted PRECISION_AUTO, PRECISION_F32 or PRECISION_BF16",
-                  [](v1::ServerConfig& c) { c.set_precision(static_cast<v1::Precision>(9)); }},
-        BadConfig{"precision: is PRECISION_BF16, wanted PRECISION_F32 with ENGINE_TORCH",
-                  [](v1::ServerConfig& c) {
-                    c.set_engine(v1::ENGINE_TORCH);
-                    c.set_precision(v1::PRECISION_BF16);
-                  }},
-        BadConfig{"max_calls: is 0, wanted 1", [](v1::ServerConfig& c) { c.set_max_calls(0); }},
-        BadConfig{"max_queued_windows: is 0, wanted 1",
-                  [](v1::ServerConfig& c) { c.set_max_queued_windows(0); }},
-        BadConfig{"max_batch_windows: is 0, wanted 1 to 1024",
-                  [](v1::ServerConfig& c) { c.set_max_batch_windows(0); }},
-        BadConfig{"max_batch_windows: is 1025, wanted 1 to 1024",
-                  [](v1::ServerConfig& c) { c.set_max_batch_windows(1025); }},
-        BadConfig{"max_batch_delay_seconds: is -0.5, wanted 0 to 1",
-                  [](v1::ServerConfig& c) { c.set_max_batch_delay_seconds(-0.5); }},
-        BadConfig{"max_batch_delay_seconds: is 1.5, wanted 0 to 1",
-                  [](v1::ServerConfig& c) { c.set_max_batch_delay_seconds(1.5); }},
-        BadConfig{"max_request_bytes: is 10, wanted 1024",
-                  [](v1::ServerConfig& c) { c.set_max_request_bytes(10); }},
-        BadConfig{"max_request_bytes: is 4294967296, wanted 1024",
-                  [](v1::ServerConfig& c) { c.set_max_request_bytes(uint64_t{1} << 32); }},
-        BadConfig{"max_request_bytes: is 536870913, wanted 1024 to 536870912",
-                  [](v1::ServerConfig& c) { c.set_max_request_bytes((uint64_t{1} << 29) + 1); }},
-        BadConfig{"max_transport_bytes: is 67108863, wanted 67108864 to",
-                  [](v1::ServerConfig& c) { c.set_max_transport_bytes((64 << 20) - 1); }},
-        BadConfig{"buffered_frames: is 0, wanted 1",
-                  [](v1::ServerConfig& c) { c.set_buffered_frames(0); }},
-        BadConfig{"drain_seconds: is -1, wanted 0 to 3600",
-                  [](v1::ServerConfig& c) { c.set_drain_seconds(-1); }},
-        BadConfig{"grace_seconds: is nan, wanted 0 to 3600",
-                  [](v1::ServerConfig&
-                         c) { c.set_grace_seconds(std::numeric_limits<double>::quiet_NaN()); }},
-        BadConfig{"clean_up: is 0, wanted CLEAN_UP_POLICY_AUTO",
-                  [](v1::ServerConfig& c) { c.set_clean_up(v1::CLEAN_UP_POLICY_UNSPECIFIED); }},
-        BadConfig{"clean_up: is 9, wanted CLEAN_UP_POLICY_AUTO",
-                  [](v1::ServerConfig& c) { c.set_clean_up(static_cast<v1::CleanUpPolicy>(9)); }},
-        BadConfig{"version_labels[0]: is model \"\"",
-                  [](v1::ServerConfig& c) { c.add_version_labels(); }}));
+INSTANTIATE_TEST_SUITE_P(Every, BadConfigTest,
+                         ::testing::
+                             Values(BadConfig{"listen: is \"50051\", wanted host:port",
+                                              [](v1::ServerConfig& c) { c.set_listen("50051"); }},
+                                    BadConfig{
+                                        "metrics_listen: is \"a:b\", wanted host:port",
+                                        [](v1::ServerConfig& c) { c.set_metrics_listen("a:b"); }},
+                                    BadConfig{"workers: is 0, wanted 1 to 1024",
+                                              [](v1::ServerConfig& c) { c.set_workers(0); }},
+                                    BadConfig{"threads_per_worker: is 5000, wanted 1 to 1024",
+                                              [](v1::ServerConfig& c) {
+                                                c.set_threads_per_worker(5000);
+                                              }},
+                                    BadConfig{
+                                        "threads_per_worker: is 3, wanted 1 with ENGINE_CPU",
+                                        [](v1::ServerConfig& c) { c.set_threads_per_worker(3); }},
+                                    BadConfig{"engine: is 0, wanted ENGINE_CPU or ENGINE_TORCH",
+                                              [](v1::ServerConfig& c) {
+                                                c.set_engine(v1::ENGINE_UNSPECIFIED);
+                                              }},
+                                    BadConfig{"precision: is 9, wanted PRECISION_AUTO, "
+                                              "PRECISION_F32 or PRECISION_BF16",
+                                              [](v1::ServerConfig& c) {
+                                                c.set_precision(static_cast<v1::Precision>(9));
+                                              }},
+                                    BadConfig{"precision: is PRECISION_BF16, wanted PRECISION_F32 "
+                                              "with ENGINE_TORCH",
+                                              [](v1::ServerConfig& c) {
+                                                c.set_engine(v1::ENGINE_TORCH);
+                                                c.set_precision(v1::PRECISION_BF16);
+                                              }},
+                                    BadConfig{"max_calls: is 0, wanted 1",
+                                              [](v1::ServerConfig& c) { c.set_max_calls(0); }},
+                                    BadConfig{
+                                        "max_queued_windows: is 0, wanted 1",
+                                        [](v1::ServerConfig& c) { c.set_max_queued_windows(0); }},
+                                    BadConfig{
+                                        "max_batch_windows: is 0, wanted 1 to 1024",
+                                        [](v1::ServerConfig& c) { c.set_max_batch_windows(0); }},
+                                    BadConfig{
+                                        "max_batch_windows: is 1025, wanted 1 to 1024",
+                                        [](v1::ServerConfig& c) { c.set_max_batch_windows(1025); }},
+                                    BadConfig{"max_batch_delay_seconds: is -0.5, wanted 0 to 1",
+                                              [](v1::ServerConfig& c) {
+                                                c.set_max_batch_delay_seconds(-0.5);
+                                              }},
+                                    BadConfig{"max_batch_delay_seconds: is 1.5, wanted 0 to 1",
+                                              [](v1::ServerConfig& c) {
+                                                c.set_max_batch_delay_seconds(1.5);
+                                              }},
+                                    BadConfig{
+                                        "max_request_bytes: is 10, wanted 1024",
+                                        [](v1::ServerConfig& c) { c.set_max_request_bytes(10); }},
+                                    BadConfig{"max_request_bytes: is 4294967296, wanted 1024",
+                                              [](v1::ServerConfig& c) {
+                                                c.set_max_request_bytes(uint64_t{1} << 32);
+                                              }},
+                                    BadConfig{
+                                        "max_request_bytes: is 536870913, wanted 1024 to 536870912",
+                                        [](v1::ServerConfig& c) {
+                                          c.set_max_request_bytes((uint64_t{1} << 29) + 1);
+                                        }},
+                                    BadConfig{
+                                        "max_transport_bytes: is 67108863, wanted 67108864 to",
+                                        [](v1::ServerConfig& c) {
+                                          c.set_max_transport_bytes((64 << 20) - 1);
+                                        }},
+                                    BadConfig{
+                                        "buffered_frames: is 0, wanted 1",
+                                        [](v1::ServerConfig& c) { c.set_buffered_frames(0); }},
+                                    BadConfig{"drain_seconds: is -1, wanted 0 to 3600",
+                                              [](v1::ServerConfig& c) { c.set_drain_seconds(-1); }},
+                                    BadConfig{"grace_seconds: is nan, wanted 0 to 3600",
+                                              [](v1::ServerConfig& c) {
+                                                c.set_grace_seconds(
+                                                    std::numeric_limits<double>::quiet_NaN());
+                                              }},
+                                    BadConfig{"clean_up: is 0, wanted CLEAN_UP_POLICY_AUTO",
+                                              [](v1::ServerConfig& c) {
+                                                c.set_clean_up(v1::CLEAN_UP_POLICY_UNSPECIFIED);
+                                              }},
+                                    BadConfig{"clean_up: is 9, wanted CLEAN_UP_POLICY_AUTO",
+                                              [](v1::ServerConfig& c) {
+                                                c.set_clean_up(static_cast<v1::CleanUpPolicy>(9));
+                                              }},
+                                    BadConfig{"admin_listen: is \"b\", wanted host:port",
+                                              [](v1::ServerConfig& c) { c.set_admin_listen("b"); }},
+                                    BadConfig{
+                                        "version_policies[0]: has no model",
+                                        [](v1::ServerConfig& c) { c.add_version_policies(); }},
+                                    BadConfig{"version_policies[1]: is the second of model \"a\"",
+                                              [](v1::ServerConfig& c) {
+                                                c.add_version_policies()->set_model("a");
+                                                c.add_version_policies()->set_model("a");
+                                              }},
+                                    BadConfig{"version_policies[0]: has both latest and versions",
+                                              [](v1::ServerConfig& c) {
+                                                c.add_version_policies()->set_model("a");
+                                                c.mutable_version_policies(0)->set_latest(1);
+                                                c.mutable_version_policies(0)->add_versions(1);
+                                              }},
+                                    BadConfig{"version_policies[0]: has a 0",
+                                              [](v1::ServerConfig& c) {
+                                                c.add_version_policies()->set_model("*");
+                                                c.mutable_version_policies(0)->set_latest(0);
+                                              }},
+                                    BadConfig{
+                                        "version_labels[0]: is model \"\"",
+                                        [](v1::ServerConfig& c) { c.add_version_labels(); }}));
+
+TEST(ServerOptionsTest, TellsEveryFieldThatIsWrong) {
+  v1::ServerConfig config;
+  config.set_listen("nowhere");
+  config.set_max_calls(0);
+  config.set_drain_seconds(-1);
+  EXPECT_THAT(ToOptions(config, 4, {{"max_calls", "file a:1:2"}}),
+              StatusIs(kInvalidArgument,
+                       AllOf(HasSubstr("listen: "),
+                             HasSubstr("\nmax_calls: is 0, wanted 1 to 100000 (file a:1:2)\n"),
+                             HasSubstr("\ndrain_seconds: is -1"))));
+}
+
+TEST(ServerOptionsTest, RefusesMoreThreadsThanCoresCanMakeUseOf) {
+  v1::ServerConfig config;
+  config.set_workers(33);
+  EXPECT_THAT(ToOptions(config, 2),
+              StatusIs(kInvalidArgument, "workers: is 33, wanted 1 to 32 on 2 cores"));
+  EXPECT_THAT(ToOptions(config, 9), IsOk());
+  config.set_engine(v1::ENGINE_TORCH);
+  config.set_workers(2);
+  config.set_threads_per_worker(1024);
+  EXPECT_THAT(ToOptions(config, 2),
+              StatusIs(kInvalidArgument,
+                       "threads_per_worker: is 1024, wanted 1 to 16 with 2 workers: together at "
+                       "most 32 threads on 2 cores"));
+  config.set_threads_per_worker(16);
+  EXPECT_THAT(ToOptions(config, 2), IsOk());
+}
 
 TEST(ListenAddressTest, ReadsHostAndPort) {
   for (const char* text : {"0.0.0.0:50051", "localhost:0", "[::]:9464", "10.1.2.3:65535"}) {

@@ -245,12 +245,22 @@ TEST(ServerMetricsTest, CountsOpenDescriptorsExactly) {
 
 TEST(ServerMetricsTest, TellsWhichCheckpointsAreServed) {
   ServerMetrics metrics;
-  metrics.ModelLoaded("sbu/3", 1.5, true);
-  metrics.ModelLoaded("sbu/4", 0.1, false);
+  metrics.ModelLoaded("sbu/3", 1.5, true, true);
+  metrics.ModelLoaded("sbu/4", 0.1, false, false);
   const std::string text = metrics.Render();
   EXPECT_THAT(text, HasSubstr(R"(duet_model_state{checkpoint="sbu/3"} 1)"));
   EXPECT_THAT(text, HasSubstr(R"(duet_model_state{checkpoint="sbu/4"} 0)"));
   EXPECT_THAT(text, HasSubstr(R"(duet_model_load_seconds{checkpoint="sbu/3"} 1.5)"));
+  EXPECT_THAT(text, HasSubstr(R"(duet_model_loads_total{result="ok"} 1)"));
+  EXPECT_THAT(text, HasSubstr(R"(duet_model_loads_total{result="refused"} 1)"));
+  metrics.ModelUnloaded("sbu/4");
+  metrics.FoldersSkipped(2);
+  metrics.Reloaded(false);
+  const std::string later = metrics.Render();
+  EXPECT_THAT(later, Not(HasSubstr("sbu/4")));
+  EXPECT_THAT(later, HasSubstr(R"(duet_model_state{checkpoint="sbu/3"} 1)"));
+  EXPECT_THAT(later, HasSubstr("duet_model_folders_skipped 2"));
+  EXPECT_THAT(later, HasSubstr(R"(duet_reloads_total{result="failed"} 1)"));
 }
 
 }  // namespace

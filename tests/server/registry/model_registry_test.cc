@@ -89,6 +89,35 @@ TEST(ModelRegistryTest, RefusesALabelOfAVersionThatIsNotServed) {
   EXPECT_THAT(registry.SetLabel("b", "stable", 1), StatusIs(kNotFound, HasSubstr("model \"b\"")));
 }
 
+TEST(ModelRegistryTest, DeletesALabel) {
+  ModelRegistry registry;
+  registry.Serve(Model("a", 1));
+  ASSERT_THAT(registry.SetLabel("a", "stable", 1), IsOk());
+  EXPECT_THAT(registry.LabelledVersions("a"), ElementsAre(1));
+  EXPECT_THAT(registry.DeleteLabel("a", "canary"),
+              StatusIs(kNotFound, HasSubstr("\"canary\"; it has: stable")));
+  EXPECT_THAT(registry.DeleteLabel("b", "stable"), StatusIs(kNotFound, HasSubstr("model \"b\"")));
+  EXPECT_THAT(registry.DeleteLabel("a", "stable"), IsOk());
+  EXPECT_THAT(registry.LabelledVersions("a"), IsEmpty());
+}
+
+TEST(ModelRegistryTest, RemovesWhatNothingNeeds) {
+  constexpr auto kFailedPrecondition = absl::StatusCode::kFailedPrecondition;
+  ModelRegistry registry;
+  for (const int version : {1, 2}) registry.Serve(Model("a", version));
+  registry.Serve(Model("b", 1));
+  ASSERT_THAT(registry.SetLabel("a", "stable", 1), IsOk());
+  EXPECT_THAT(registry.Remove("a", 1), StatusIs(kFailedPrecondition, HasSubstr("\"stable\"")));
+  EXPECT_THAT(registry.Remove("a", 3), StatusIs(kNotFound, HasSubstr("version 3")));
+  EXPECT_THAT(registry.Remove("c", 1), StatusIs(kNotFound, HasSubstr("model \"c\"")));
+  EXPECT_THAT(registry.Remove("b", 1), IsOk());
+  EXPECT_THAT(Answer(registry, {"b", {}, {}}), HasSubstr("served are: a"));
+  EXPECT_THAT(registry.Remove("a", 2), IsOk());
+  EXPECT_EQ(Answer(registry, {}), "a/1");
+  ASSERT_THAT(registry.DeleteLabel("a", "stable"), IsOk());
+  EXPECT_THAT(registry.Remove("a", 1), StatusIs(kFailedPrecondition, HasSubstr("last")));
+}
+
 TEST(ModelRegistryTest, NamesTheFieldThatWasNotFoundAndWhatThereIs) {
   ModelRegistry registry;
   registry.Serve(Model("a", 1));

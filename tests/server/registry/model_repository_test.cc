@@ -29,6 +29,7 @@ using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::StartsWith;
 
 void MakeCheckpoint(const TemporaryFolder& folder, const std::string& place) {
   fs::create_directories(folder / place);
@@ -44,7 +45,7 @@ TEST(ListCheckpointsTest, FindsNameAndVersionFolders) {
   ASSERT_THAT(listing, IsOk());
   EXPECT_THAT(listing->checkpoints,
               ElementsAre(folder / "k3hi/3", folder / "sbu/1", folder / "sbu/12"));
-  EXPECT_THAT(listing->unreadable, IsEmpty());
+  EXPECT_THAT(listing->skipped, IsEmpty());
 }
 
 TEST(ListCheckpointsTest, HasAnOrderOfItsOwn) {
@@ -59,16 +60,82 @@ TEST(ListCheckpointsTest, HasAnOrderOfItsOwn) {
   EXPECT_EQ(ListCheckpoints(folder.path())->checkpoints, sorted);
 }
 
-TEST(ListCheckpointsTest, LeavesOtherThingsAlone) {
+// "folder: reason" of each.
+std::vector<std::string> Skipped(const RepositoryListing& listing) {
+  std::vector<std::string> skipped;
+  for (const SkippedFolder& folder : listing.skipped) {
+    skipped.push_back(folder.folder + ": " + folder.reason);
+  }
+  return skipped;
+}
+
+TEST(ListCheckpointsTest, SaysWhichFoldersAreNoCheckpointsAndWhy) {
   TemporaryFolder folder;
   for (const char* version : {"0", "01", "v2", "-1", "1.tmp", "99999999999"}) {
     MakeCheckpoint(folder, std::string("sbu/") + version);
   }
-  fs::create_directories(folder / "sbu/7");  // no manifest
-  WriteTestFile(folder / "README.md", "");
+  fs::create_directories(folder / "sbu/7");
+  fs::create_directories(folder / "k3hi");
   const absl::StatusOr<RepositoryListing> listing = ListCheckpoints(folder.path());
   ASSERT_THAT(listing, IsOk());
   EXPECT_THAT(listing->checkpoints, IsEmpty());
+  const auto no_version = [](const std::string& name) {
+    return StartsWith("sbu/" + name + ": is no version, wanted a number of 1 or more");
+  };
+  EXPECT_THAT(Skipped(*listing), ElementsAre("k3hi: has no folder of a version, such as 1",
+                                             no_version("-1"), no_version("0"), no_version("01"),
+                                             no_version("1.tmp"), "sbu/7: has no manifest.json",
+                                             no_version("99999999999"), no_version("v2")));
+}
+
+TEST(ListCheckpointsTest, FilesAndHiddenFoldersAreNobodysBusiness) {
+  TemporaryFolder folder;
+  WriteTestFile(folder / "README.md", "");
+  MakeCheckpoint(folder, ".git/1");
+  MakeCheckpoint(folder, "sbu/.1.partial");
+  MakeCheckpoint(folder, "sbu/1");
+  const absl::StatusOr<RepositoryListing> listing = ListCheckpoints(folder.path());
+  ASSERT_THAT(listing, IsOk());
+  EXPECT_THAT(listing->checkpoints, ElementsAre(folder / "sbu/1"));
+  EXPECT_THAT(listing->skipped, IsEmpty());
+}
+
+// As Kubernetes mounts a volume: files behind ..data, which a new generation takes over all at
+// once.
+TEST(ListCheckpointsTest, FollowsTheLinksOfVolumes) {
+  TemporaryFolder folder;
+  MakeCheckpoint(folder, "..2026_01/sbu/1");
+  MakeCheckpoint(folder, "..2026_02/sbu/2");
+  fs::create_directory_symlink("..2026_01", folder / "..data");
+  fs::create_directory_symlink("..data/sbu", folder / "sbu");
+  EXPECT_THAT(ListCheckpoints(folder.path())->checkpoints, ElementsAre(folder / "sbu/1"));
+  fs::create_directory_symlink("..2026_02", folder / "..new");
+  fs::rename(folder / "..new", folder / "..data");
+  EXPECT_THAT(ListCheckpoints(folder.path())->checkpoints, ElementsAre(folder / "sbu/2"));
+  EXPECT_EQ(ResolveCheckpoint(folder / "sbu/2"), fs::canonical(folder / "..2026_02/sbu/2"));
+}
+
+TEST(ListCheckpointsTest, AVersionMayBeAVolume) {
+  TemporaryFolder folder;
+  MakeCheckpoint(folder, "sbu/1/..2026_01");
+  fs::create_directory_symlink("..2026_01", folder / "sbu/1/..data");
+  fs::create_symlink("..data/manifest.json", folder / "sbu/1/manifest.json");
+  const absl::StatusOr<RepositoryListing> listing = ListCheckpoints(folder.path());
+  EXPECT_THAT(listing->checkpoints, ElementsAre(folder / "sbu/1"));
+  EXPECT_THAT(listing->skipped, IsEmpty());
+  EXPECT_EQ(ResolveCheckpoint(folder / "sbu/1"), fs::canonical(folder / "sbu/1/..2026_01"));
+}
+
+TEST(CheckpointFingerprintTest, ChangesWithTheManifest) {
+  TemporaryFolder folder;
+  MakeCheckpoint(folder, "sbu/1");
+  const std::string before = CheckpointFingerprint(folder / "sbu/1");
+  EXPECT_NE(before, "");
+  EXPECT_EQ(CheckpointFingerprint(folder / "sbu/1"), before);
+  MakeCheckpoint(folder, "sbu/2");
+  fs::rename(folder / "sbu/2/manifest.json", folder / "sbu/1/manifest.json");
+  EXPECT_NE(CheckpointFingerprint(folder / "sbu/1"), before) << "the same content, another file";
+  EXPECT_EQ(CheckpointFingerprint(folder / "sbu/2"), "");
 }
 
 TEST(ListCheckpointsTest, NamesARepositoryThatIsNotThere) {
@@ -111,8 +178,8 @@ TEST(ListCheckpointsTest, GoesOnPastAFolderThatIsClosed) {
   fs::permissions(folder / "lost+found", fs::perms::owner_all);
   ASSERT_THAT(listing, IsOk());
   EXPECT_THAT(listing->checkpoints, ElementsAre(folder / "sbu/1"));
-  EXPECT_THAT(listing->unreadable,
-              ElementsAre(StatusIs(absl::StatusCode::kPermissionDenied, HasSubstr("lost+found"))));
+  EXPECT_THAT(Skipped(*listing),
+              ElementsAre(AllOf(StartsWith("lost+found: "), HasSubstr("ermission denied"))));
 }
 
 ModelLoader LoaderOf(const std::string& name, int version) {
@@ -137,6 +204,17 @@ TEST(LoadCheckpointTest, RefusesAManifestThatContradictsItsFolder) {
                        AllOf(HasSubstr("model sbu version 4"), HasSubstr("sbu version 3"))));
   EXPECT_THAT(LoadCheckpoint("/models/sbu/3", LoaderOf("k3hi", 3)).model,
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("model k3hi version 3")));
+}
+
+TEST(LoadCheckpointTest, RefusesAModelWhoseAnswersAreAbsurd) {
+  const ModelLoader loader =
+      [](const fs::path&) -> absl::StatusOr<std::shared_ptr<const engine::Synthesizer>> {
+    auto model = std::make_shared<FakeSynthesizer>();
+    model->answer = [](motion::Vec3, absl::Span<const float>) { return motion::Vec3{6e32f, 0, 0}; };
+    return model;
+  };
+  EXPECT_THAT(LoadCheckpoint("/models/fake/1", loader).model,
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("the weights answer")));
 }
 
 TEST(LoadCheckpointTest, PassesOnWhyALoaderFailed) {

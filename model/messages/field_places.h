@@ -1,0 +1,24 @@
+#ifndef DUET_MODEL_MESSAGES_FIELD_PLACES_H_
+#define DUET_MODEL_MESSAGES_FIELD_PLACES_H_
+
+#include <map>
+#include <string>
+
+namespace duet::messages {
+
+// A place in a text, both from 1.
+struct Place {
+  int line = 1;
+  int column = 1;
+  friend bool operator<(const Place& a, const Place& b) {
+    return a.line != b.line ? a.line < b.line : a.column < b.column;
+  }
+};
+
+// Where a text sets a message's fields, by the names that the schema has: "max_calls", and of each
+// element of a repeated field "version_labels[0]".
+using FieldPlaces = std::map<std::string, Place>;
+
+}  // namespace duet::messages
+
+#endif  // DUET_MODEL_MESSAGES_FIELD_PLACES_H_

@@ -1,0 +1,163 @@
+#include "server/admin/admin_service.h"
+
+#include <google/protobuf/descriptor.h>
+#include <google/protobuf/message.h>
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "server/admin/admin_message.h"
+#include "server/service/refusals.h"
+
+namespace duet::server::admin {
+namespace {
+
+constexpr metrics::MethodInfo Method(std::string_view name) {
+  return {AdminService::kServiceName, name, "unary"};
+}
+constexpr metrics::MethodInfo kListModels = Method("ListModels");
+constexpr metrics::MethodInfo kLoadModel = Method("LoadModel");
+constexpr metrics::MethodInfo kUnloadModel = Method("UnloadModel");
+constexpr metrics::MethodInfo kReload = Method("Reload");
+constexpr metrics::MethodInfo kSetLabel = Method("SetLabel");
+constexpr metrics::MethodInfo kDeleteLabel = Method("DeleteLabel");
+
+// gRPC reads the messages, whose size the listener limits.
+constexpr std::size_t kNoRawRequests = 0;
+
+// A request's fields, for the audit.
+std::vector<std::pair<std::string, std::string>> ArgumentsOf(
+    const google::protobuf::Message& request) {
+  using google::protobuf::FieldDescriptor;
+  std::vector<const FieldDescriptor*> fields;
+  request.GetReflection()->ListFields(request, &fields);
+  std::vector<std::pair<std::string, std::string>> arguments;
+  for (const FieldDescriptor* field : fields) {
+    const bool is_text = field->cpp_type() == FieldDescriptor::CPPTYPE_STRING;
+    arguments.emplace_back(
+        field->name(), is_text ? request.GetReflection()->GetString(request, field)
+                               : absl::StrCat(request.GetReflection()->GetUInt32(request, field)));
+  }
+  return arguments;
+}
+
+}  // namespace
+
+// Threads: one at a time; who ends it need not be who began it.
+class AdminService::Call {
+ public:
+  Call(grpc::CallbackServerContext& context, const metrics::MethodInfo& method,
+       const google::protobuf::Message& request, const AdminService& service)
+      : context_(context),
+        reactor_(*context.DefaultReactor()),  // gRPC makes another at every call of this
+        arguments_(ArgumentsOf(request)),
+        log_(*service.parts_.log),
+        opened_(service.pipeline_.Open(context, method)) {}
+
+  grpc::ServerUnaryReactor* reactor() const { return &reactor_; }
+  // OK, or why its caller was turned away.
+  const absl::Status& status() const { return opened_.status; }
+
+  void Finish(const absl::Status& status) {
+    // A server that stops gives up what it had not begun.
+    const absl::Status told = absl::IsCancelled(status) ? service::DrainingRefusal() : status;
+    const metrics::CallRecord& record = opened_.scope->record();
+    log_.Audit({record.caller, record.peer, record.request_id, std::string(record.method.name),
+                arguments_, told});
+    service::CallPipeline::Close(*opened_.scope, told, context_, reactor_);
+  }
+
+ private:
+  grpc::CallbackServerContext& context_;
+  grpc::ServerUnaryReactor& reactor_;
+  const std::vector<std::pair<std::string, std::string>> arguments_;
+  metrics::JsonLog& log_;
+  const service::OpenedCall opened_;
+};
+
+AdminService::AdminService(AdminParts parts)
+    : parts_(std::move(parts)),
+      pipeline_(kNoRawRequests, /*client_key=*/"", parts_.observers, *parts_.clock, parts_.guard,
+                security::Role::kAdmin, /*trace_ratio=*/std::nullopt) {}
+
+template <typename Request, typename Answer>
+grpc::ServerUnaryReactor* AdminService::Open(grpc::CallbackServerContext& context,
+                                             const metrics::MethodInfo& method,
+                                             const Request& request, const Answer& answer) {
+  const auto call = std::make_shared<Call>(context, method, request, *this);
+  const absl::Status admitted = call->status().ok() ? Validate(request) : call->status();
+  if (admitted.ok()) {
+    answer(call);
+  } else {
+    call->Finish(admitted);
+  }
+  return call->reactor();
+}
+
+grpc::ServerUnaryReactor* AdminService::ListModels(grpc::CallbackServerContext* context,
+                                                   const v1::ListModelsRequest* request,
+                                                   v1::ListModelsResponse* response) {
+  return Open(*context, kListModels, *request, [&](const auto& call) {
+    *response = ToMessage(parts_.control->List(), parts_.control->skipped());
+    call->Finish(absl::OkStatus());
+  });
+}
+
+grpc::ServerUnaryReactor* AdminService::LoadModel(grpc::CallbackServerContext* context,
+                                                  const v1::LoadModelRequest* request,
+                                                  v1::LoadModelResponse*) {
+  return Open(*context, kLoadModel, *request, [&](const auto& call) {
+    const absl::Status serving = parts_.admission->CheckServing();
+    if (!serving.ok()) return call->Finish(serving);
+    parts_.control->Load(request->name(), request->version(),
+                         [call](const absl::Status& status) { call->Finish(status); });
+  });
+}
+
+grpc::ServerUnaryReactor* AdminService::UnloadModel(grpc::CallbackServerContext* context,
+                                                    const v1::UnloadModelRequest* request,
+                                                    v1::UnloadModelResponse*) {
+  return Open(*context, kUnloadModel, *request, [&](const auto& call) {
+    const absl::Status serving = parts_.admission->CheckServing();
+    if (!serving.ok()) return call->Finish(serving);
+    parts_.control->Unload(request->name(), request->version(),
+                           [call](const absl::Status& status) { call->Finish(status); });
+  });
+}
+
+grpc::ServerUnaryReactor* AdminService::Reload(grpc::CallbackServerContext* context,
+                                               const v1::ReloadRequest* request,
+                                               v1::ReloadResponse* response) {
+  return Open(*context, kReload, *request, [&](const auto& call) {
+    const absl::Status serving = parts_.admission->CheckServing();
+    if (!serving.ok()) return call->Finish(serving);
+    // The response lives until the call has ended.
+    parts_.control->Reload([call, response](const absl::StatusOr<registry::ReloadReport>& report) {
+      if (report.ok()) *response = ToMessage(*report);
+      call->Finish(report.status());
+    });
+  });
+}
+
+grpc::ServerUnaryReactor* AdminService::SetLabel(grpc::CallbackServerContext* context,
+                                                 const v1::SetLabelRequest* request,
+                                                 v1::SetLabelResponse*) {
+  return Open(*context, kSetLabel, *request, [&](const auto& call) {
+    call->Finish(parts_.control->SetLabel(request->name(), request->label(), request->version()));
+  });
+}
+
+grpc::ServerUnaryReactor* AdminService::DeleteLabel(grpc::CallbackServerContext* context,
+                                                    const v1::DeleteLabelRequest* request,
+                                                    v1::DeleteLabelResponse*) {
+  return Open(*context, kDeleteLabel, *request, [&](const auto& call) {
+    call->Finish(parts_.control->DeleteLabel(request->name(), request->label()));
+  });
+}
+
+}  // namespace duet::server::admin

@@ -1,0 +1,76 @@
+#ifndef DUET_SERVER_ADMIN_ADMIN_SERVICE_H_
+#define DUET_SERVER_ADMIN_ADMIN_SERVICE_H_
+
+#include <memory>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "duet/admin/v1/admin.grpc.pb.h"
+#include "server/common/clock.h"
+#include "server/metrics/call_record.h"
+#include "server/metrics/json_log.h"
+#include "server/registry/model_control.h"
+#include "server/security/call_guard.h"
+#include "server/service/admission.h"
+#include "server/service/call_pipeline.h"
+
+namespace duet::server::admin {
+
+namespace v1 = ::duet::admin::v1;
+
+// What the service works with. Everything outlives the service and its calls.
+struct AdminParts {
+  registry::ModelControl* control = nullptr;
+  const service::Admission* admission = nullptr;  // says whether the server serves
+  metrics::JsonLog* log = nullptr;
+  std::vector<metrics::CallObserver*> observers;
+  security::CallGuard guard = security::CallGuard(nullptr);  // says who may administer
+  const common::Clock* clock = &common::Clock::Real();
+};
+
+// duet.admin.v1.Admin: what an operator may do to models while calls are answered. No method
+// blocks: what loads ends its call from the thread that loads. Each call leaves a line in the log
+// (event "admin"): who asked for what, and how it ended.
+class AdminService final : public v1::Admin::CallbackService {
+ public:
+  static constexpr char kServiceName[] = "duet.admin.v1.Admin";
+
+  explicit AdminService(AdminParts parts);
+
+  grpc::ServerUnaryReactor* ListModels(grpc::CallbackServerContext* context,
+                                       const v1::ListModelsRequest* request,
+                                       v1::ListModelsResponse* response) override;
+  grpc::ServerUnaryReactor* LoadModel(grpc::CallbackServerContext* context,
+                                      const v1::LoadModelRequest* request,
+                                      v1::LoadModelResponse* response) override;
+  grpc::ServerUnaryReactor* UnloadModel(grpc::CallbackServerContext* context,
+                                        const v1::UnloadModelRequest* request,
+                                        v1::UnloadModelResponse* response) override;
+  grpc::ServerUnaryReactor* Reload(grpc::CallbackServerContext* context,
+                                   const v1::ReloadRequest* request,
+                                   v1::ReloadResponse* response) override;
+  grpc::ServerUnaryReactor* SetLabel(grpc::CallbackServerContext* context,
+                                     const v1::SetLabelRequest* request,
+                                     v1::SetLabelResponse* response) override;
+  grpc::ServerUnaryReactor* DeleteLabel(grpc::CallbackServerContext* context,
+                                        const v1::DeleteLabelRequest* request,
+                                        v1::DeleteLabelResponse* response) override;
+
+ private:
+  // One call from its headers to its end.
+  class Call;
+
+  // The one way in: counts and checks a call, and hands it to `answer`, which ends it now or later,
+  // unless it is refused.
+  template <typename Request, typename Answer>
+  grpc::ServerUnaryReactor* Open(grpc::CallbackServerContext& context,
+                                 const metrics::MethodInfo& method, const Request& request,
+                                 const Answer& answer);
+
+  const AdminParts parts_;
+  const service::CallPipeline pipeline_;
+};
+
+}  // namespace duet::server::admin
+
+#endif  // DUET_SERVER_ADMIN_ADMIN_SERVICE_H_

@@ -1,0 +1,67 @@
+#include "server/common/background_thread.h"
+
+#include <sys/resource.h>
+
+#include <utility>
+
+namespace duet::server::common {
+namespace {
+
+// The kernel gives a thread so nice a ninth of what it gives an ordinary one.
+constexpr int kNiceness = 10;
+
+}  // namespace
+
+BackgroundThread::BackgroundThread() : thread_([this] { Work(); }) {}
+
+BackgroundThread::~BackgroundThread() {
+  Stop();
+  thread_.join();
+}
+
+void BackgroundThread::Post(std::function<void(bool run)> job) {
+  {
+    MutexLock lock(mutex_);
+    if (!stopping_) {
+      jobs_.push_back(std::move(job));
+      changed_.NotifyOne();
+      return;
+    }
+  }
+  job(false);
+}
+
+void BackgroundThread::Stop() {
+  std::deque<std::function<void(bool run)>> dropped;
+  {
+    MutexLock lock(mutex_);
+    stopping_ = true;
+    dropped.swap(jobs_);
+    changed_.NotifyOne();
+  }
+  for (const auto& job : dropped) job(false);
+}
+
+bool BackgroundThread::stopping() const {
+  MutexLock lock(mutex_);
+  return stopping_;
+}
+
+void BackgroundThread::Work() {
+  // Of this thread alone: on Linux 0 is the caller, not its process. Where it may not, it works on
+  // as any other.
+  setpriority(PRIO_PROCESS, 0, kNiceness);
+  while (true) {
+    std::function<void(bool run)> job;
+    {
+      MutexLock lock(mutex_);
+      while (jobs_.empty() && !stopping_) changed_.Wait(mutex_);
+      if (stopping_) return;
+      job = std::move(jobs_.front());
+      jobs_.pop_front();
+    }
+    job(true);
+  }
+}
+
+}  // namespace duet::server::common

@@ -1,0 +1,67 @@
+#include "server/lifecycle/check_config.h"
+
+#include <string>
+#include <vector>
+
+#include "absl/strings/str_split.h"
+#include "server/lifecycle/load_models.h"
+#include "server/registry/model_manager.h"
+#include "server/registry/model_registry.h"
+#include "server/registry/model_status.h"
+
+namespace duet::server::lifecycle {
+namespace {
+
+// Writes what becomes of models.
+class Findings final : public registry::ModelObserver {
+ public:
+  explicit Findings(std::ostream& out) : out_(out) {}
+
+  void Loaded(const registry::LoadReport& report, bool) override {
+    if (report.model.ok()) {
+      out_ << "ok: " << report.source << "\n";
+    } else {
+      Problem(report.source + ": " + std::string(report.model.status().message()));
+    }
+  }
+  void Unloaded(const std::string&) override {}
+  void Forgotten(const std::string&) override {}
+  void Scanned(const std::vector<registry::SkippedFolder>& skipped) override {
+    for (const registry::SkippedFolder& folder : skipped) {
+      Problem(folder.folder + ": skipped: " + folder.reason);
+    }
+  }
+  void Reloaded(const absl::StatusOr<registry::ReloadReport>&) override {}
+  void Changed() override {}
+
+  void Problem(const std::string& problem) {
+    for (absl::string_view line : absl::StrSplit(problem, '\n')) out_ << "wrong: " << line << "\n";
+    all_right_ = false;
+  }
+  void Problems(const absl::StatusOr<std::vector<std::string>>& problems) {
+    if (!problems.ok()) return Problem(std::string(problems.status().message()));
+    for (const std::string& problem : *problems) Problem(problem);
+  }
+  bool all_right() const { return all_right_; }
+
+ private:
+  std::ostream& out_;
+  bool all_right_ = true;
+};
+
+}  // namespace
+
+bool CheckConfig(const config::ServerOptions& options, const registry::ModelSource& source,
+                 std::ostream& out) {
+  Findings findings(out);
+  registry::ModelRegistry registry;
+  registry::ModelManager manager(registry, findings);
+  ConfigureModels(options, manager);
+  const auto loaded = LoadModels(
+      options, source, [] { return false; }, manager, registry);
+  findings.Problems(loaded);
+  if (loaded.ok()) findings.Problems(SettleModels(options, manager, registry));
+  return findings.all_right();
+}
+
+}  // namespace duet::server::lifecycle

@@ -1,0 +1,106 @@
+#include "server/lifecycle/load_models.h"
+
+#include <memory>
+#include <set>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "model/base/nearest.h"
+#include "model/base/text.h"
+#include "server/common/clock.h"
+#include "server/registry/golden_check.h"
+
+namespace duet::server::lifecycle {
+namespace {
+
+// The checkpoints linked into the program; the first is the default unless the operator says so.
+absl::Status LoadEmbedded(const registry::ModelSource& source, registry::ModelManager& manager,
+                          registry::ModelRegistry& registry) {
+  const common::TimePoint begin = common::Clock::Real().Now();
+  const auto models = source.load_embedded();
+  const double seconds = common::SecondsBetween(begin, common::Clock::Real().Now());
+  if (!models.ok()) {
+    manager.Add({"embedded", models.status(), seconds});
+    return absl::OkStatus();
+  }
+  for (const std::shared_ptr<const engine::Synthesizer>& model : *models) {
+    const engine::ModelDescription& description = model->description();
+    registry::LoadReport report{
+        absl::StrCat("embedded/", description.name, "/", description.version), model,
+        seconds / static_cast<double>(models->size())};
+    const absl::Status checked = registry::CheckAnswers(*model);
+    if (!checked.ok()) report.model = checked;
+    manager.Add(report);
+  }
+  if (registry.List().empty()) return absl::OkStatus();
+  return registry.SetDefault(models->front()->description().name);
+}
+
+// "version_labels: names model ..." for each that there is not.
+absl::Status CheckNames(const config::ServerOptions& options,
+                        const registry::ModelManager& manager) {
+  std::set<std::string> known;
+  for (const registry::ModelStatus& model : manager.List()) known.insert(model.name);
+  const std::vector<std::string> names(known.begin(), known.end());
+  std::vector<std::string> unknown;
+  const auto check = [&](absl::string_view field, std::size_t index, const std::string& model) {
+    if (model.empty() || known.count(model) > 0) return;
+    unknown.push_back(absl::StrCat(field, "[", index, "]: names model ", base::Quoted(model),
+                                   ", wanted one of: ", absl::StrJoin(names, ", "),
+                                   base::DidYouMean(model, names)));
+  };
+  for (std::size_t i = 0; i < options.version_labels.size(); ++i) {
+    check("version_labels", i, options.version_labels[i].model);
+  }
+  for (std::size_t i = 0; i < options.version_policies.size(); ++i) {
+    check("version_policies", i, options.version_policies[i].model);
+  }
+  if (unknown.empty()) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrJoin(unknown, "\n"));
+}
+
+}  // namespace
+
+void ConfigureModels(const config::ServerOptions& options, registry::ModelManager& manager) {
+  std::vector<registry::VersionLabel> labels;
+  for (const config::VersionLabelOption& label : options.version_labels) {
+    labels.push_back({label.model, label.label, label.version});
+  }
+  manager.SetLabels(std::move(labels));
+  std::vector<registry::VersionPolicy> policies;
+  for (const config::VersionPolicyOption& policy : options.version_policies) {
+    policies.push_back({policy.model, policy.latest, policy.versions});
+  }
+  manager.SetPolicies(std::move(policies));
+}
+
+absl::StatusOr<std::vector<std::string>> LoadModels(const config::ServerOptions& options,
+                                                    const registry::ModelSource& source,
+                                                    const std::function<bool()>& stop,
+                                                    registry::ModelManager& manager,
+                                                    registry::ModelRegistry& registry) {
+  if (options.model_repository.empty()) {
+    const absl::Status loaded = LoadEmbedded(source, manager, registry);
+    if (!loaded.ok()) return loaded;
+    return std::vector<std::string>();
+  }
+  manager.UseRepository(options.model_repository, source.load_folder);
+  absl::StatusOr<registry::ReloadReport> report = manager.Reload(stop);
+  if (!report.ok()) return report.status();
+  return std::move(report->problems);
+}
+
+absl::StatusOr<std::vector<std::string>> SettleModels(const config::ServerOptions& options,
+                                                      registry::ModelManager& manager,
+                                                      registry::ModelRegistry& registry) {
+  if (registry.List().empty()) return absl::FailedPreconditionError("no model could be loaded");
+  if (absl::Status known = CheckNames(options, manager); !known.ok()) return known;
+  // Set even where the operator names none: a model that comes later must not become the default.
+  const absl::Status set = registry.SetDefault(
+      options.default_model.empty() ? registry.default_model() : options.default_model);
+  if (!set.ok()) return set;
+  return manager.ApplyLabels();
+}
+
+}  // namespace duet::server::lifecycle

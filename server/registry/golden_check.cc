@@ -1,0 +1,136 @@
+#include "server/registry/golden_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "model/motion/vec3.h"
+
+namespace duet::server::registry {
+namespace {
+
+using motion::Vec3;
+
+// As many frames as tell good weights from bad ones, however long the windows are.
+constexpr int kFrames = 60;
+constexpr double kBoneMetres = 0.3;
+constexpr double kHipMetres = 0.12;
+constexpr double kSwayMetres = 0.05;
+
+// The joints from the root down to `foot`.
+std::vector<bool> LegTo(int foot, const motion::Skeleton& skeleton) {
+  std::vector<bool> leg(skeleton.joint_names.size());
+  const std::vector<int> parents = skeleton.Parents();
+  for (int joint = foot; joint >= 0 && joint != skeleton.root;
+       joint = parents[static_cast<std::size_t>(joint)]) {
+    leg[static_cast<std::size_t>(joint)] = true;
+  }
+  return leg;
+}
+
+// Legs point down; everything else goes up and outwards, each bone another way.
+std::vector<Vec3> StandingPose(const motion::Skeleton& skeleton) {
+  std::vector<Vec3> pose(skeleton.joint_names.size());
+  std::vector<bool> left(pose.size());
+  std::vector<bool> right(pose.size());
+  if (skeleton.feet.has_value()) {
+    left = LegTo(skeleton.feet->left, skeleton);
+    right = LegTo(skeleton.feet->right, skeleton);
+  }
+  constexpr double kGoldenAngle = 2.4;
+  for (const int index : BonesFromRoot(skeleton)) {
+    const motion::Bone& bone = skeleton.bones[static_cast<std::size_t>(index)];
+    const auto child = static_cast<std::size_t>(bone.child);
+    const double angle = kGoldenAngle * index;
+    Vec3 offset = {static_cast<float>(kBoneMetres * 0.6 * std::cos(angle)),
+                   static_cast<float>(kBoneMetres * 0.7),
+                   static_cast<float>(kBoneMetres * 0.4 * std::sin(angle))};
+    if (left[child] != right[child]) {
+      const auto parent = static_cast<std::size_t>(bone.parent);
+      const double side = left[parent] == right[parent] ? kHipMetres : 0;  // where the legs part
+      offset = {static_cast<float>(left[child] ? side : -side), static_cast<float>(-kBoneMetres),
+                0};
+    }
+    pose[child] = pose[static_cast<std::size_t>(bone.parent)] + offset;
+  }
+  const auto lowest = std::min_element(pose.begin(), pose.end(),
+                                       [](const Vec3& a, const Vec3& b) { return a.y < b.y; });
+  const Vec3 lift = {0, -lowest->y, 0};
+  for (Vec3& position : pose) position += lift;
+  return pose;
+}
+
+// One window for no class and one for each.
+std::vector<engine::SynthesisWindow> GoldenWindows(const engine::ModelDescription& model) {
+  const int frames = std::min(kFrames, model.window_frames);
+  const std::size_t classes = model.classes.size();
+  engine::SynthesisWindow window;
+  window.leader = GoldenLeader(model.skeleton, frames, model.frame_rate_hz);
+  window.labels.assign(static_cast<std::size_t>(frames) * classes, 0);
+  window.clean_up = false;
+  std::vector<engine::SynthesisWindow> windows(classes + 1, window);
+  for (std::size_t label = 0; label < classes; ++label) {
+    for (std::size_t t = 0; t < static_cast<std::size_t>(frames); ++t) {
+      windows[label + 1].labels[t * classes + label] = 1;
+    }
+  }
+  return windows;
+}
+
+absl::Status CheckFollower(const motion::Poses& follower, const engine::SynthesisWindow& window,
+                           const engine::ModelDescription& model) {
+  const int frames = std::min(follower.frame_count(), window.leader.frame_count());
+  for (int t = 0; t < frames; ++t) {
+    const Vec3 leader = window.leader.at(t, model.skeleton.root);
+    for (int joint = 0; joint < follower.joint_count(); ++joint) {
+      const float distance = Distance(follower.at(t, joint), leader);
+      // Written so that NaN is too far.
+      if (distance <= kFarthestFollower) continue;
+      return absl::InvalidArgumentError(absl::StrCat(
+          "the weights answer a leader who stands still with a follower whose ",
+          model.skeleton.joint_names[static_cast<std::size_t>(joint)], " is ", distance,
+          " m away in frame ", t, ", wanted ", kFarthestFollower, " m at most"));
+    }
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+motion::Poses GoldenLeader(const motion::Skeleton& skeleton, int frames, double frame_rate_hz) {
+  const std::vector<Vec3> pose = StandingPose(skeleton);
+  motion::Poses leader(frames, skeleton.joint_count());
+  for (int t = 0; t < frames; ++t) {
+    const double seconds = t / frame_rate_hz;
+    for (int joint = 0; joint < skeleton.joint_count(); ++joint) {
+      // What is higher sways farther, and joints do so one after the other.
+      const Vec3 position = pose[static_cast<std::size_t>(joint)];
+      const double sway = kSwayMetres * position.y;
+      leader.at(t, joint) =
+          position + Vec3{static_cast<float>(sway * std::sin(2 * seconds + 0.1 * joint)), 0,
+                          static_cast<float>(sway * std::cos(3 * seconds + 0.2 * joint))};
+    }
+  }
+  return leader;
+}
+
+absl::Status CheckAnswers(const engine::Synthesizer& model) {
+  const std::vector<engine::SynthesisWindow> windows = GoldenWindows(model.description());
+  std::vector<const engine::SynthesisWindow*> pointers;
+  for (const engine::SynthesisWindow& window : windows) pointers.push_back(&window);
+  const std::vector<engine::WindowResult> results = model.Synthesize(pointers);
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    if (!results[i].ok()) {
+      return absl::Status(results[i].status().code(),
+                          absl::StrCat("the weights do not answer a leader who stands still: ",
+                                       results[i].status().message()));
+    }
+    const absl::Status checked = CheckFollower(*results[i], windows[i], model.description());
+    if (!checked.ok()) return checked;
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace duet::server::registry

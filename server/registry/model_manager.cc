@@ -1,0 +1,380 @@
+#include "server/registry/model_manager.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_cat.h"
+#include "model/base/text.h"
+
+namespace duet::server::registry {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string SourceOf(absl::string_view name, uint32_t version) {
+  return absl::StrCat(name, "/", version);
+}
+
+}  // namespace
+
+void ModelManager::UseRepository(fs::path repository, ModelLoader loader) {
+  common::MutexLock lock(mutex_);
+  repository_ = std::move(repository);
+  loader_ = std::move(loader);
+}
+
+void ModelManager::SetPolicies(std::vector<VersionPolicy> policies) {
+  common::MutexLock lock(mutex_);
+  policies_ = std::move(policies);
+}
+
+void ModelManager::SetLabels(std::vector<VersionLabel> labels) {
+  common::MutexLock lock(mutex_);
+  labels_ = std::move(labels);
+}
+
+std::vector<std::string> ModelManager::ApplyLabels() { return ApplyLabelsOf(""); }
+
+std::vector<std::string> ModelManager::ApplyLabelsOf(absl::string_view name) {
+  const auto contains = [](const std::vector<VersionLabel>& labels, const VersionLabel& label) {
+    return std::find(labels.begin(), labels.end(), label) != labels.end();
+  };
+  std::vector<VersionLabel> wanted;
+  std::vector<VersionLabel> applied;
+  {
+    common::MutexLock lock(mutex_);
+    wanted = labels_;
+    applied = applied_labels_;
+  }
+  std::vector<VersionLabel> now;
+  std::vector<std::string> problems;
+  for (const VersionLabel& label : applied) {
+    if (!name.empty() && label.model != name) now.push_back(label);
+    if (!name.empty() && label.model != name) continue;
+    const bool goes = std::none_of(wanted.begin(), wanted.end(), [&](const VersionLabel& other) {
+      return other.model == label.model && other.label == label.label;
+    });
+    // The operator may have deleted it already.
+    if (goes) registry_.DeleteLabel(label.model, label.label).IgnoreError();
+  }
+  for (const VersionLabel& label : wanted) {
+    if (!name.empty() && label.model != name) continue;
+    const absl::Status set = contains(applied, label)
+                                 ? absl::OkStatus()
+                                 : registry_.SetLabel(label.model, label.label, label.version);
+    if (set.ok()) now.push_back(label);
+    if (!set.ok()) problems.emplace_back(set.message());
+  }
+  common::MutexLock lock(mutex_);
+  applied_labels_ = std::move(now);
+  return problems;
+}
+
+void ModelManager::Add(const LoadReport& report) {
+  if (!report.model.ok()) {
+    observer_.Loaded(report, /*still_served=*/false);
+    return;
+  }
+  const engine::ModelDescription& model = (*report.model)->description();
+  Take(model.name, static_cast<uint32_t>(model.version), report, "");
+}
+
+absl::StatusOr<ModelManager::Folders> ModelManager::Scan() {
+  fs::path repository;
+  {
+    common::MutexLock lock(mutex_);
+    repository = repository_;
+  }
+  absl::StatusOr<RepositoryListing> listing = ListCheckpoints(repository);
+  if (!listing.ok()) return listing.status();
+  Folders folders;
+  for (const fs::path& folder : listing->checkpoints) {
+    uint32_t version = 0;
+    if (!absl::SimpleAtoi(folder.filename().string(), &version)) continue;
+    folders[folder.parent_path().filename().string()][version] = folder;
+  }
+  {
+    common::MutexLock lock(mutex_);
+    skipped_ = listing->skipped;
+  }
+  observer_.Scanned(listing->skipped);
+  return folders;
+}
+
+absl::StatusOr<ReloadReport> ModelManager::Reload(const std::function<bool()>& stop) {
+  common::MutexLock working(work_mutex_);
+  ReloadReport report;
+  if (!CheckRepository().ok()) {
+    report.refused_labels = ApplyLabels();
+    return report;
+  }
+  absl::StatusOr<Folders> folders = Scan();
+  if (!folders.ok()) return folders.status();
+  if (folders->empty()) {
+    return absl::FailedPreconditionError("no model could be loaded: the repository holds none");
+  }
+  {
+    // Models whose folders are gone take part as well.
+    common::MutexLock lock(mutex_);
+    for (const auto& [name, versions] : models_) (*folders)[name];
+  }
+  for (const auto& [name, versions] : *folders) {
+    if (!ReloadModel(name, versions, stop, report)) {
+      return absl::CancelledError("told to stop while loading");
+    }
+  }
+  return report;
+}
+
+bool ModelManager::ReloadModel(const std::string& name, const Folders::mapped_type& folders,
+                               const std::function<bool()>& stop, ReloadReport& report) {
+  VersionPolicy policy;
+  {
+    common::MutexLock lock(mutex_);
+    policy = PolicyOf(name, policies_);
+  }
+  uint32_t places = policy.latest.value_or(std::numeric_limits<uint32_t>::max());
+  std::vector<uint32_t> keep;
+  for (const auto& [version, folder] : folders) {
+    const bool wanted = IsWanted(name, version, policy, places);
+    if (wanted) keep.push_back(version);
+    if (!wanted && !IsLabelled(name, version) && !WillBeLabelled(name, version)) {
+      PassOver(name, version);
+      continue;
+    }
+    if (IsUnchanged(name, version, folder)) {
+      ++report.unchanged;
+    } else {
+      if (stop()) return false;
+      const bool loaded = LoadFolder(name, version, folder).ok();
+      (loaded ? report.loaded : report.refused).push_back(SourceOf(name, version));
+    }
+    // One that does not load leaves its place to the next older.
+    const std::vector<uint32_t> served = ServedVersions(name);
+    if (std::find(served.begin(), served.end(), version) != served.end() && places > 0) --places;
+  }
+  // Before anything goes: what a label leaves may.
+  for (std::string& label : ApplyLabelsOf(name)) report.refused_labels.push_back(std::move(label));
+  for (const uint32_t version : ServedVersions(name)) {
+    if (std::find(keep.begin(), keep.end(), version) != keep.end()) continue;
+    if (folders.count(version) > 0 && IsLabelled(name, version)) continue;
+    Retire(name, version, report);
+  }
+  ForgetWithout(folders, name);
+  for (const uint32_t version : policy.versions) {
+    if (policy.model == name && folders.count(version) == 0) {
+      report.problems.push_back(absl::StrCat("version_policies: version ", version, " of model ",
+                                             name, " is not in the repository"));
+    }
+  }
+  return true;
+}
+
+void ModelManager::PassOver(const std::string& name, uint32_t version) {
+  {
+    common::MutexLock lock(mutex_);
+    Version& known = models_[name][version];
+    if (known.served || known.error.empty()) return;
+    known.error.clear();
+  }
+  observer_.Forgotten(SourceOf(name, version));
+}
+
+void ModelManager::ForgetWithout(const Folders::mapped_type& folders, const std::string& name) {
+  std::vector<std::string> forgotten;
+  {
+    common::MutexLock lock(mutex_);
+    Versions& versions = models_[name];
+    for (auto version = versions.begin(); version != versions.end();) {
+      const auto& [number, known] = *version;
+      const bool gone = folders.count(number) == 0 && !known.served;
+      if (gone && !known.error.empty()) forgotten.push_back(SourceOf(name, number));
+      version = gone ? versions.erase(version) : std::next(version);
+    }
+    if (versions.empty()) models_.erase(name);
+  }
+  for (const std::string& source : forgotten) observer_.Forgotten(source);
+}
+
+bool ModelManager::IsWanted(const std::string& name, uint32_t version, const VersionPolicy& policy,
+                            uint32_t places) const {
+  const Wish wish = WishFor(name, version);
+  if (wish != Wish::kAsThePolicySays) return wish == Wish::kLoaded;
+  return policy.Names(version) && places > 0;
+}
+
+ModelManager::Wish ModelManager::WishFor(const std::string& name, uint32_t version) const {
+  common::MutexLock lock(mutex_);
+  const auto model = models_.find(name);
+  if (model == models_.end()) return Wish::kAsThePolicySays;
+  const auto known = model->second.find(version);
+  return known == model->second.end() ? Wish::kAsThePolicySays : known->second.wish;
+}
+
+bool ModelManager::IsLabelled(const std::string& name, uint32_t version) const {
+  const std::vector<uint32_t> labelled = registry_.LabelledVersions(name);
+  return std::find(labelled.begin(), labelled.end(), version) != labelled.end();
+}
+
+bool ModelManager::WillBeLabelled(const std::string& name, uint32_t version) const {
+  if (WishFor(name, version) == Wish::kUnloaded) return false;
+  common::MutexLock lock(mutex_);
+  return std::any_of(labels_.begin(), labels_.end(), [&](const VersionLabel& label) {
+    return label.model == name && label.version == version;
+  });
+}
+
+bool ModelManager::IsUnchanged(const std::string& name, uint32_t version,
+                               const fs::path& folder) const {
+  const std::string fingerprint = CheckpointFingerprint(folder);
+  common::MutexLock lock(mutex_);
+  const auto model = models_.find(name);
+  if (model == models_.end()) return false;
+  const auto known = model->second.find(version);
+  return known != model->second.end() && known->second.served && !fingerprint.empty() &&
+         known->second.fingerprint == fingerprint;
+}
+
+absl::Status ModelManager::LoadFolder(const std::string& name, uint32_t version,
+                                      const fs::path& folder) {
+  ModelLoader loader;
+  {
+    common::MutexLock lock(mutex_);
+    models_[name][version].loading = true;
+    loader = loader_;
+  }
+  // Taken before: if the files change meanwhile, the next reload sees that they did.
+  const std::string fingerprint = CheckpointFingerprint(folder);
+  const LoadReport report = LoadCheckpoint(folder, loader);
+  Take(name, version, report, fingerprint);
+  return report.model.status();
+}
+
+void ModelManager::Take(const std::string& name, uint32_t version, const LoadReport& report,
+                        const std::string& fingerprint) {
+  if (report.model.ok()) registry_.Serve(*report.model);
+  bool served = false;
+  {
+    common::MutexLock lock(mutex_);
+    Version& known = models_[name][version];
+    known.loading = false;
+    known.error = std::string(report.model.status().message());
+    if (report.model.ok()) {
+      known.served = true;
+      known.fingerprint = fingerprint;
+      known.load_seconds = report.load_seconds;
+    }
+    served = known.served;
+  }
+  observer_.Loaded(report, served);
+}
+
+void ModelManager::Retire(const std::string& name, uint32_t version, ReloadReport& report) {
+  const absl::Status removed = registry_.Remove(name, version);
+  if (!removed.ok()) {
+    report.problems.push_back(absl::StrCat(SourceOf(name, version), " stays: ", removed.message()));
+    return;
+  }
+  {
+    common::MutexLock lock(mutex_);
+    models_[name][version].served = false;
+  }
+  observer_.Unloaded(SourceOf(name, version));
+  report.unloaded.push_back(SourceOf(name, version));
+}
+
+absl::Status ModelManager::Load(absl::string_view name, uint32_t version) {
+  common::MutexLock working(work_mutex_);
+  if (absl::Status status = CheckRepository(); !status.ok()) return status;
+  const absl::StatusOr<Folders> folders = Scan();
+  if (!folders.ok()) return folders.status();
+  const auto model = folders->find(name);
+  if (model == folders->end() || model->second.count(version) == 0) {
+    return absl::NotFoundError(absl::StrCat("version ", version, " of model ", base::Quoted(name),
+                                            " is not in the repository"));
+  }
+  const absl::Status loaded = LoadFolder(model->first, version, model->second.at(version));
+  if (!loaded.ok()) {
+    return absl::FailedPreconditionError(
+        absl::StrCat(SourceOf(name, version), " does not load: ", loaded.message()));
+  }
+  common::MutexLock lock(mutex_);
+  models_[model->first][version].wish = Wish::kLoaded;
+  return absl::OkStatus();
+}
+
+absl::Status ModelManager::Unload(absl::string_view name, uint32_t version) {
+  common::MutexLock working(work_mutex_);
+  if (absl::Status status = CheckRepository(); !status.ok()) return status;
+  if (absl::Status status = registry_.Remove(name, version); !status.ok()) return status;
+  {
+    common::MutexLock lock(mutex_);
+    Version& known = models_[std::string(name)][version];
+    known.served = false;
+    known.wish = Wish::kUnloaded;
+  }
+  observer_.Unloaded(SourceOf(name, version));
+  return absl::OkStatus();
+}
+
+std::vector<uint32_t> ModelManager::ServedVersions(const std::string& name) const {
+  common::MutexLock lock(mutex_);
+  std::vector<uint32_t> served;
+  const auto model = models_.find(name);
+  if (model == models_.end()) return served;
+  for (const auto& [version, known] : model->second) {
+    if (known.served) served.push_back(version);
+  }
+  return served;
+}
+
+absl::Status ModelManager::CheckRepository() const {
+  common::MutexLock lock(mutex_);
+  if (!repository_.empty()) return absl::OkStatus();
+  return absl::FailedPreconditionError(
+      "the server serves the models inside the program, wanted one with a model_repository");
+}
+
+std::vector<ModelStatus> ModelManager::List() const {
+  // The registry knows labels and default of what is served.
+  std::map<std::pair<std::string, uint32_t>, ServedModel> served;
+  for (ServedModel& model : registry_.List()) {
+    const engine::ModelDescription& description = model.model->description();
+    served[{description.name, static_cast<uint32_t>(description.version)}] = std::move(model);
+  }
+  common::MutexLock lock(mutex_);
+  std::vector<ModelStatus> list;
+  for (const auto& [name, versions] : models_) {
+    for (const auto& [version, known] : versions) {
+      ModelStatus status;
+      status.name = name;
+      status.version = version;
+      status.state = known.served           ? ModelState::kServed
+                     : known.loading        ? ModelState::kLoading
+                     : !known.error.empty() ? ModelState::kFailed
+                                            : ModelState::kUnloaded;
+      status.error = known.error;
+      status.load_seconds = known.load_seconds;
+      if (const auto found = served.find({name, version}); found != served.end()) {
+        status.version_labels = found->second.version_labels;
+        status.is_default = found->second.is_default;
+      }
+      list.push_back(std::move(status));
+    }
+  }
+  return list;
+}
+
+std::vector<SkippedFolder> ModelManager::skipped() const {
+  common::MutexLock lock(mutex_);
+  return skipped_;
+}
+
+bool ModelManager::Knows(absl::string_view name) const {
+  common::MutexLock lock(mutex_);
+  return models_.find(name) != models_.end();
+}
+
+}  // namespace duet::server::registry

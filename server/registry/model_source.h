@@ -1,0 +1,26 @@
+#ifndef DUET_SERVER_REGISTRY_MODEL_SOURCE_H_
+#define DUET_SERVER_REGISTRY_MODEL_SOURCE_H_
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "model/engine/synthesizer.h"
+#include "server/registry/model_repository.h"
+
+namespace duet::server::registry {
+
+// Where models come from.
+struct ModelSource {
+  std::string engine;  // what computes their answers, for the log: "cpu, bf16"
+  ModelLoader load_folder;
+  // The default model first.
+  std::function<absl::StatusOr<std::vector<std::shared_ptr<const engine::Synthesizer>>>()>
+      load_embedded;
+};
+
+}  // namespace duet::server::registry
+
+#endif  // DUET_SERVER_REGISTRY_MODEL_SOURCE_H_

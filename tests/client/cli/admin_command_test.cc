@@ -1,0 +1,126 @@
+// duet admin against a server that a test scripts.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "client/admin_client.h"
+#include "client/cli/exit_code.h"
+#include "client/cli/program.h"
+#include "nlohmann/json.hpp"
+
+namespace duet::client::cli {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Return;
+
+class MockAdminClient : public AdminClient {
+ public:
+  MOCK_METHOD(absl::StatusOr<ServedModels>, ListModels, (), (override));
+  MOCK_METHOD(absl::Status, LoadModel, (const std::string&, uint32_t), (override));
+  MOCK_METHOD(absl::Status, UnloadModel, (const std::string&, uint32_t), (override));
+  MOCK_METHOD(absl::StatusOr<ReloadResult>, Reload, (), (override));
+  MOCK_METHOD(absl::Status, SetLabel, (const std::string&, const std::string&, uint32_t),
+              (override));
+  MOCK_METHOD(absl::Status, DeleteLabel, (const std::string&, const std::string&), (override));
+};
+
+class AdminCommandTest : public ::testing::Test {
+ protected:
+  AdminCommandTest() {
+    ServedModels models;
+    models.models.push_back({"sbu", 3, ServedVersion::State::kServed, "", {"canary"}, true, 0.5});
+    models.models.push_back(
+        {"sbu", 2, ServedVersion::State::kFailed, "weights: 7 bytes, wanted 9", {}, false, 0});
+    models.skipped_folders.push_back({"sbu/01", "is no version"});
+    ON_CALL(*client_, ListModels).WillByDefault(Return(models));
+  }
+
+  // Runs "duet admin ...".
+  int Run(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "admin");
+    ProgramEnvironment environment{nullptr, &out_, &err_};
+    environment.connect_admin = [this](const ClientOptions& options) {
+      options_ = options;
+      return absl::StatusOr<std::unique_ptr<AdminClient>>(std::move(client_));
+    };
+    return RunProgram(arguments, environment);
+  }
+
+  std::unique_ptr<::testing::NiceMock<MockAdminClient>> client_ =
+      std::make_unique<::testing::NiceMock<MockAdminClient>>();
+  ClientOptions options_;
+  std::ostringstream out_;
+  std::ostringstream err_;
+};
+
+TEST_F(AdminCommandTest, ListsModels) {
+  EXPECT_EQ(Run({"models"}), kExitDone);
+  EXPECT_EQ(out_.str(),
+            "sbu/3  served, default, labels: canary\n"
+            "sbu/2  failed\n    weights: 7 bytes, wanted 9\n"
+            "sbu/01  skipped: is no version\n");
+  EXPECT_EQ(options_.server_address, "localhost:50052");
+}
+
+TEST_F(AdminCommandTest, ListsModelsAsJson) {
+  EXPECT_EQ(Run({"models", "--json", "--admin-server", "lab:7"}), kExitDone);
+  const auto json = nlohmann::json::parse(out_.str());
+  EXPECT_EQ(json["models"][0]["state"], "served");
+  EXPECT_EQ(json["models"][1]["error"], "weights: 7 bytes, wanted 9");
+  EXPECT_EQ(json["skipped_folders"][0]["folder"], "sbu/01");
+  EXPECT_EQ(options_.server_address, "lab:7");
+}
+
+TEST_F(AdminCommandTest, LoadsAndShowsWhatCameOfIt) {
+  EXPECT_CALL(*client_, LoadModel("sbu", 3));
+  EXPECT_EQ(Run({"load", "sbu", "3"}), kExitDone);
+  EXPECT_THAT(out_.str(), HasSubstr("sbu/3  served"));
+}
+
+TEST_F(AdminCommandTest, TellsWhyItCouldNot) {
+  EXPECT_CALL(*client_, UnloadModel("sbu", 3))
+      .WillOnce(Return(absl::FailedPreconditionError("version label \"canary\" points at it")));
+  EXPECT_EQ(Run({"unload", "sbu", "3"}), kExitBadInput);
+  EXPECT_THAT(err_.str(), HasSubstr("version label \"canary\" points at it"));
+}
+
+TEST_F(AdminCommandTest, MovesAndDeletesLabels) {
+  EXPECT_CALL(*client_, SetLabel("sbu", "canary", 4));
+  EXPECT_EQ(Run({"label", "sbu", "canary", "4"}), kExitDone);
+  client_ = std::make_unique<::testing::NiceMock<MockAdminClient>>();
+  EXPECT_CALL(*client_, DeleteLabel("sbu", "canary"));
+  ON_CALL(*client_, ListModels).WillByDefault(Return(ServedModels()));
+  EXPECT_EQ(Run({"label", "sbu", "canary", "--delete"}), kExitDone);
+}
+
+TEST_F(AdminCommandTest, AReloadThatDidNotDoEverythingSaysSo) {
+  EXPECT_CALL(*client_, Reload())
+      .WillOnce(Return(ReloadResult{{"sbu/4"}, {"sbu/5"}, {"sbu/1"}, 2, {"no label"}}));
+  EXPECT_EQ(Run({"reload"}), kExitRetry);
+  EXPECT_EQ(out_.str(),
+            "loaded: sbu/4\nrefused: sbu/5\nunloaded: sbu/1\nunchanged: 2\nproblem: no label\n");
+}
+
+TEST_F(AdminCommandTest, AReloadThatChangedNothingIsFine) {
+  EXPECT_CALL(*client_, Reload()).WillOnce(Return(ReloadResult{{}, {}, {}, 2, {}}));
+  EXPECT_EQ(Run({"reload"}), kExitDone);
+  EXPECT_EQ(out_.str(), "unchanged: 2\n");
+}
+
+TEST_F(AdminCommandTest, WantsACommandAndWhatItNeeds) {
+  EXPECT_EQ(Run({}), kExitUsage);
+  EXPECT_EQ(Run({"load", "sbu"}), kExitUsage);
+  EXPECT_EQ(Run({"load", "sbu", "three"}), kExitUsage);
+  EXPECT_EQ(Run({"label", "sbu", "canary"}), kExitUsage);
+  EXPECT_EQ(Run({"label", "sbu", "canary", "3", "--delete"}), kExitUsage);
+}
+
+}  // namespace
+}  // namespace duet::client::cli

@@ -1,0 +1,382 @@
+#include "server/registry/model_manager.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "tests/support/fake_synthesizer.h"
+#include "tests/support/status_matchers.h"
+#include "tests/support/temporary_folder.h"
+
+namespace duet::server::registry {
+namespace {
+
+using test::FakeSynthesizer;
+using test::IsOk;
+using test::StatusIs;
+using test::TemporaryFolder;
+using test::WriteTestFile;
+
+namespace fs = std::filesystem;
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+constexpr auto kNotFound = absl::StatusCode::kNotFound;
+constexpr auto kFailedPrecondition = absl::StatusCode::kFailedPrecondition;
+
+const auto kNever = [] { return false; };
+
+// A model whose description is its manifest's text; "bad" does not load.
+absl::StatusOr<std::shared_ptr<const engine::Synthesizer>> LoadTestModel(const fs::path& folder) {
+  std::string name, description;
+  int version = 0;
+  std::ifstream(folder / "manifest.json") >> name >> version >> description;
+  if (name == "bad") return absl::DataLossError("weights: 7 bytes, wanted 9");
+  engine::ModelDescription model = test::FakeDescription();
+  model.name = name;
+  model.version = version;
+  model.description = description;
+  return std::make_shared<FakeSynthesizer>(model);
+}
+
+class Events final : public ModelObserver {
+ public:
+  void Loaded(const LoadReport& report, bool still_served) override {
+    log.push_back(absl::StrCat(report.model.ok() ? "loaded " : "refused ", report.source,
+                               !report.model.ok() && still_served ? ", served on" : ""));
+  }
+  void Unloaded(const std::string& source) override { log.push_back("unloaded " + source); }
+  void Forgotten(const std::string& source) override { log.push_back("forgotten " + source); }
+  void Scanned(const std::vector<SkippedFolder>&) override {}
+  void Reloaded(const absl::StatusOr<ReloadReport>&) override {}
+  void Changed() override {}
+
+  // What was heard since the last time.
+  std::vector<std::string> Take() { return std::exchange(log, {}); }
+  std::vector<std::string> log;
+};
+
+class ModelManagerTest : public ::testing::Test {
+ protected:
+  // Writes <name>/<version> whole; another manifest is another file.
+  void Write(const std::string& name, int version, const std::string& text = "first") {
+    const fs::path place = folder_ / absl::StrCat(name, "/", version);
+    fs::create_directories(place);
+    const std::string manifest =
+        text == "bad" ? "bad" : absl::StrCat(name, " ", version, " ", text);
+    WriteTestFile(folder_ / "next", manifest);
+    fs::rename(folder_ / "next", place / "manifest.json");
+  }
+  void Delete(const std::string& place) { fs::remove_all(folder_ / place); }
+
+  ReloadReport Reload() {
+    const absl::StatusOr<ReloadReport> report = manager_.Reload(kNever);
+    EXPECT_THAT(report, IsOk());
+    return report.ok() ? *report : ReloadReport();
+  }
+
+  // "name/version text" of what is served, or what was not found.
+  std::string Answer(const ModelQuery& query) const {
+    const FindResult found = registry_.Find(query);
+    if (const auto* not_found = std::get_if<ModelNotFound>(&found)) return not_found->description;
+    const engine::ModelDescription& model = std::get<ServedModel>(found).model->description();
+    return absl::StrCat(model.name, "/", model.version, " ", model.description);
+  }
+  // "name/version" of all that is served.
+  std::string Served() const {
+    return absl::StrJoin(registry_.List(), " ", [](std::string* out, const ServedModel& served) {
+      const engine::ModelDescription& model = served.model->description();
+      absl::StrAppend(out, model.name, "/", model.version);
+    });
+  }
+  ModelStatus StatusOf(const std::string& name, uint32_t version) const {
+    for (ModelStatus& status : manager_.List()) {
+      if (status.name == name && status.version == version) return status;
+    }
+    ADD_FAILURE() << name << "/" << version << " is not listed";
+    return {};
+  }
+
+  TemporaryFolder folder_;
+  ModelRegistry registry_;
+  Events events_;
+  ModelManager manager_{registry_, events_};
+
+ private:
+  void SetUp() override { manager_.UseRepository(folder_.path(), LoadTestModel); }
+};
+
+TEST_F(ModelManagerTest, ServesEveryVersionOfEveryModel) {
+  Write("a", 1);
+  Write("a", 2);
+  Write("b", 7);
+  EXPECT_THAT(Reload().loaded, ElementsAre("a/2", "a/1", "b/7"));
+  EXPECT_EQ(Served(), "a/2 a/1 b/7");
+}
+
+TEST_F(ModelManagerTest, ASecondReloadLeavesAloneWhatHasNotChanged) {
+  Write("a", 1);
+  Reload();
+  events_.Take();
+  const ReloadReport report = Reload();
+  EXPECT_THAT(report.loaded, IsEmpty());
+  EXPECT_EQ(report.unchanged, 1);
+  EXPECT_THAT(events_.Take(), IsEmpty());
+}
+
+TEST_F(ModelManagerTest, ReplacesAVersionThatHasChanged) {
+  Write("a", 1, "old");
+  Reload();
+  FindResult held = registry_.Find({});
+  Write("a", 1, "new");
+  EXPECT_THAT(Reload().loaded, ElementsAre("a/1"));
+  EXPECT_EQ(Answer({}), "a/1 new");
+  EXPECT_EQ(std::get<ServedModel>(held).model->description().description, "old")
+      << "whoever found the old one keeps it";
+}
+
+TEST_F(ModelManagerTest, ABrokenCheckpointNeverReplacesAGoodOne) {
+  Write("a", 1, "good");
+  Reload();
+  events_.Take();
+  Write("a", 1, "bad");
+  EXPECT_THAT(Reload().refused, ElementsAre("a/1"));
+  EXPECT_EQ(Answer({}), "a/1 good");
+  EXPECT_EQ(StatusOf("a", 1).state, ModelState::kServed);
+  EXPECT_EQ(StatusOf("a", 1).error, "weights: 7 bytes, wanted 9");
+  EXPECT_THAT(events_.Take(), ElementsAre("refused a/1, served on"));
+  Write("a", 1, "mended");
+  Reload();
+  EXPECT_EQ(Answer({}), "a/1 mended");
+  EXPECT_EQ(StatusOf("a", 1).error, "");
+}
+
+TEST_F(ModelManagerTest, TriesAgainWhatDidNotLoad) {
+  Write("a", 1);
+  Write("a", 2, "bad");
+  EXPECT_THAT(Reload().refused, ElementsAre("a/2"));
+  EXPECT_EQ(StatusOf("a", 2).state, ModelState::kFailed);
+  EXPECT_THAT(Reload().refused, ElementsAre("a/2"));
+  EXPECT_THAT(events_.Take(), ElementsAre("refused a/2", "loaded a/1", "refused a/2"));
+}
+
+TEST_F(ModelManagerTest, ForgetsWhatDidNotLoadOnceItIsGoneOrUnwanted) {
+  manager_.SetPolicies({{"a", 1, {}}});
+  Write("a", 1);
+  Write("a", 2, "bad");
+  Write("a", 3, "bad");
+  Reload();
+  events_.Take();
+  Delete("a/3");
+  Write("a", 4);
+  Reload();
+  EXPECT_THAT(events_.Take(),
+              ElementsAre("loaded a/4", "forgotten a/2", "unloaded a/1", "forgotten a/3"));
+  EXPECT_EQ(StatusOf("a", 2).state, ModelState::kUnloaded);
+}
+
+TEST_F(ModelManagerTest, LetsGoOfWhatIsNoLongerThereOnceItsSuccessorIs) {
+  Write("a", 1);
+  Reload();
+  events_.Take();
+  Delete("a/1");
+  Write("a", 2);
+  EXPECT_THAT(Reload().unloaded, ElementsAre("a/1"));
+  EXPECT_THAT(events_.Take(), ElementsAre("loaded a/2", "unloaded a/1")) << "in this order";
+  EXPECT_EQ(manager_.List().size(), 1u);
+}
+
+TEST_F(ModelManagerTest, TheDefaultModelIsNeverLeftWithoutAVersion) {
+  Write("a", 1);
+  Write("b", 1);
+  Reload();
+  ASSERT_THAT(registry_.SetDefault("a"), IsOk());
+  Delete("a");
+  const ReloadReport report = Reload();
+  EXPECT_THAT(report.problems, ElementsAre(AllOf(HasSubstr("a/1 stays"), HasSubstr("last"))));
+  EXPECT_EQ(Served(), "a/1 b/1");
+}
+
+TEST_F(ModelManagerTest, AnEmptyRepositoryChangesNothing) {
+  Write("a", 1);
+  Reload();
+  Delete("a");
+  EXPECT_THAT(manager_.Reload(kNever), StatusIs(kFailedPrecondition, HasSubstr("holds none")));
+  EXPECT_EQ(Served(), "a/1");
+}
+
+TEST_F(ModelManagerTest, ARepositoryThatCannotBeReadChangesNothing) {
+  Write("a", 1);
+  Reload();
+  Delete("");
+  EXPECT_THAT(manager_.Reload(kNever), StatusIs(kNotFound, HasSubstr("cannot read")));
+  EXPECT_EQ(Served(), "a/1");
+}
+
+TEST_F(ModelManagerTest, StopsBeforeTheNextCheckpoint) {
+  Write("a", 1);
+  Write("a", 2);
+  int asked = 0;
+  EXPECT_THAT(manager_.Reload([&] { return ++asked > 1; }),
+              StatusIs(absl::StatusCode::kCancelled, HasSubstr("stop")));
+  EXPECT_EQ(Served(), "a/2");
+}
+
+TEST_F(ModelManagerTest, TheLatestVersionsAreThoseThatLoad) {
+  manager_.SetPolicies({{"a", 2, {}}, {"", 1, {}}});
+  for (const int version : {1, 2, 3, 10}) Write("a", version);
+  for (const int version : {1, 2}) Write("b", version);
+  Reload();
+  EXPECT_EQ(Served(), "a/10 a/3 b/2");
+  EXPECT_EQ(StatusOf("a", 2).state, ModelState::kUnloaded);
+  Write("a", 11, "bad");
+  Write("a", 12);
+  EXPECT_THAT(Reload().unloaded, ElementsAre("a/3"));
+  EXPECT_EQ(Served(), "a/12 a/10 b/2") << "11 leaves its place to 10";
+}
+
+TEST_F(ModelManagerTest, NamedVersionsAreServedAlone) {
+  manager_.SetPolicies({{"a", {}, {1, 3, 9}}});
+  for (const int version : {1, 2, 3}) Write("a", version);
+  EXPECT_THAT(Reload().problems, ElementsAre(HasSubstr("version 9 of model a")));
+  EXPECT_EQ(Served(), "a/3 a/1");
+}
+
+TEST_F(ModelManagerTest, ALabelKeepsItsVersionWhateverThePolicySays) {
+  manager_.SetPolicies({{"a", 1, {}}});
+  manager_.SetLabels({{"a", "stable", 1}});
+  for (const int version : {1, 2, 3}) Write("a", version);
+  Reload();
+  EXPECT_EQ(Served(), "a/3 a/1");
+  EXPECT_THAT(Answer({"a", {}, "stable"}), HasSubstr("a/1"));
+  Delete("a/1");
+  EXPECT_THAT(Reload().problems, ElementsAre(AllOf(HasSubstr("a/1 stays"), HasSubstr("stable"))));
+  EXPECT_THAT(Answer({"a", {}, "stable"}), HasSubstr("a/1"));
+}
+
+TEST_F(ModelManagerTest, MovesALabelAndLetsGoOfWhatItLeaves) {
+  manager_.SetPolicies({{"a", 1, {}}});
+  manager_.SetLabels({{"a", "stable", 1}, {"a", "old", 2}});
+  for (const int version : {1, 2, 3}) Write("a", version);
+  Reload();
+  manager_.SetLabels({{"a", "stable", 3}});
+  EXPECT_THAT(Reload().unloaded, ElementsAre("a/2", "a/1"));
+  EXPECT_THAT(Answer({"a", {}, "stable"}), HasSubstr("a/3"));
+  EXPECT_THAT(Answer({"a", {}, "old"}), HasSubstr("labels of model a are: stable"));
+}
+
+TEST_F(ModelManagerTest, ALabelThatTheOperatorMovedStaysThere) {
+  manager_.SetLabels({{"a", "stable", 1}});
+  for (const int version : {1, 2}) Write("a", version);
+  Reload();
+  ASSERT_THAT(registry_.SetLabel("a", "stable", 2), IsOk());
+  ASSERT_THAT(registry_.SetLabel("a", "mine", 2), IsOk());
+  Reload();
+  EXPECT_THAT(Answer({"a", {}, "stable"}), HasSubstr("a/2"));
+  EXPECT_THAT(Answer({"a", {}, "mine"}), HasSubstr("a/2"));
+}
+
+TEST_F(ModelManagerTest, ALabelWhoseVersionDoesNotLoadIsTriedAgain) {
+  manager_.SetLabels({{"a", "canary", 2}});
+  Write("a", 1);
+  Write("a", 2, "bad");
+  EXPECT_THAT(Reload().refused_labels, ElementsAre(HasSubstr("\"canary\" points at version 2")));
+  Write("a", 2, "good");
+  EXPECT_THAT(Reload().refused_labels, IsEmpty());
+  EXPECT_EQ(Answer({"a", {}, "canary"}), "a/2 good");
+}
+
+TEST_F(ModelManagerTest, LoadsByNameWhatNoPolicyWants) {
+  manager_.SetPolicies({{"a", 1, {}}});
+  for (const int version : {1, 2}) Write("a", version);
+  Reload();
+  EXPECT_THAT(manager_.Load("a", 1), IsOk());
+  EXPECT_EQ(Served(), "a/2 a/1");
+  Reload();
+  EXPECT_EQ(Served(), "a/2 a/1") << "it stays";
+}
+
+TEST_F(ModelManagerTest, LoadsAgainEvenWhatHasNotChanged) {
+  Write("a", 1);
+  Reload();
+  const std::weak_ptr<const engine::Synthesizer> before =
+      std::get<ServedModel>(registry_.Find({})).model;
+  EXPECT_THAT(manager_.Load("a", 1), IsOk());
+  EXPECT_TRUE(before.expired());
+}
+
+TEST_F(ModelManagerTest, LoadTellsWhatIsNotThereAndWhatIsBroken) {
+  Write("a", 1);
+  Write("a", 2, "bad");
+  EXPECT_THAT(manager_.Load("a", 3), StatusIs(kNotFound, HasSubstr("version 3 of model \"a\"")));
+  EXPECT_THAT(manager_.Load("../a", 1), StatusIs(kNotFound, HasSubstr("../a")));
+  EXPECT_THAT(manager_.Load("a", 2),
+              StatusIs(kFailedPrecondition, HasSubstr("weights: 7 bytes, wanted 9")));
+}
+
+TEST_F(ModelManagerTest, UnloadedIsUnloadedUntilItIsLoadedByName) {
+  for (const int version : {1, 2}) Write("a", version);
+  Reload();
+  events_.Take();
+  EXPECT_THAT(manager_.Unload("a", 2), IsOk());
+  EXPECT_THAT(events_.Take(), ElementsAre("unloaded a/2"));
+  EXPECT_EQ(StatusOf("a", 2).state, ModelState::kUnloaded);
+  Reload();
+  EXPECT_EQ(Served(), "a/1");
+  EXPECT_THAT(manager_.Load("a", 2), IsOk());
+  Reload();
+  EXPECT_EQ(Served(), "a/2 a/1");
+}
+
+TEST_F(ModelManagerTest, RefusesToUnloadWhatIsNeeded) {
+  for (const int version : {1, 2}) Write("a", version);
+  Reload();
+  ASSERT_THAT(registry_.SetLabel("a", "stable", 1), IsOk());
+  EXPECT_THAT(manager_.Unload("a", 1), StatusIs(kFailedPrecondition, HasSubstr("\"stable\"")));
+  EXPECT_THAT(manager_.Unload("a", 2), IsOk());
+  ASSERT_THAT(registry_.DeleteLabel("a", "stable"), IsOk());
+  EXPECT_THAT(manager_.Unload("a", 1), StatusIs(kFailedPrecondition, HasSubstr("last")));
+  EXPECT_THAT(manager_.Unload("a", 9), StatusIs(kNotFound, HasSubstr("version 9")));
+}
+
+TEST_F(ModelManagerTest, ListsLabelsDefaultAndTimes) {
+  for (const int version : {1, 2}) Write("a", version);
+  Reload();
+  ASSERT_THAT(registry_.SetLabel("a", "stable", 1), IsOk());
+  EXPECT_THAT(StatusOf("a", 1).version_labels, ElementsAre("stable"));
+  EXPECT_FALSE(StatusOf("a", 1).is_default);
+  EXPECT_TRUE(StatusOf("a", 2).is_default);
+  EXPECT_GE(StatusOf("a", 2).load_seconds, 0);
+}
+
+TEST(ModelManagerWithoutRepositoryTest, ServesWhatItIsGivenAndHasLabels) {
+  ModelRegistry registry;
+  Events events;
+  ModelManager manager(registry, events);
+  manager.Add({"embedded/fake/1", std::make_shared<FakeSynthesizer>(), 0.5});
+  manager.Add({"embedded", absl::DataLossError("torn"), 0.5});
+  EXPECT_THAT(events.Take(), ElementsAre("loaded embedded/fake/1", "refused embedded"));
+  manager.SetLabels({{"fake", "stable", 1}, {"fake", "canary", 2}});
+  const absl::StatusOr<ReloadReport> report = manager.Reload(kNever);
+  ASSERT_THAT(report, IsOk());
+  EXPECT_THAT(report->refused_labels, ElementsAre(HasSubstr("canary")));
+  EXPECT_THAT(registry.List()[0].version_labels, ElementsAre("stable"));
+  EXPECT_THAT(manager.Load("fake", 1), StatusIs(kFailedPrecondition, HasSubstr("repository")));
+  EXPECT_THAT(manager.Unload("fake", 1), StatusIs(kFailedPrecondition, HasSubstr("repository")));
+}
+
+}  // namespace
+}  // namespace duet::server::registry
