@@ -45,6 +45,12 @@ struct ClientOptions {
   absl::Duration deadline = absl::Minutes(2);
   // Absent: plain text.
   std::optional<TlsOptions> tls;
+  // Says who calls, as `authorization: Bearer TOKEN` of every call. Empty: nobody. Without `tls` it
+  // goes to this machine alone ("localhost:50051", "127.0.0.1:50051", "unix:/run/duet.sock").
+  std::string token;
+  // What calls name as the server they are for, where it is not the address; a proxy may choose by
+  // it. With `tls` the server's certificate must carry it. Optional.
+  std::string authority;
   RetryOptions retry;
   // A connection that no other Client of this process shares: several carry more than one.
   bool own_connection = false;

@@ -35,11 +35,20 @@ inline constexpr absl::string_view kReasonQueueFull = "QUEUE_FULL";
 inline constexpr absl::string_view kReasonLoading = "SERVER_LOADING";
 inline constexpr absl::string_view kReasonDraining = "SERVER_DRAINING";
 inline constexpr absl::string_view kReasonModelFailed = "MODEL_FAILED";
+inline constexpr absl::string_view kReasonCredentialsMissing = "CREDENTIALS_MISSING";
+inline constexpr absl::string_view kReasonCredentialsInvalid = "CREDENTIALS_INVALID";
+inline constexpr absl::string_view kReasonCallerUnknown = "CALLER_UNKNOWN";
+inline constexpr absl::string_view kReasonRoleMissing = "ROLE_MISSING";
+inline constexpr absl::string_view kReasonCallRate = "CALL_RATE_EXCEEDED";
+inline constexpr absl::string_view kReasonFramesInFlight = "FRAMES_IN_FLIGHT_EXCEEDED";
 
 void AddBadRequest(absl::Status& status, const std::vector<FieldViolation>& violations);
 void AddRetryInfo(absl::Status& status, absl::Duration delay);
 void AddErrorInfo(absl::Status& status, absl::string_view reason,
                   const std::map<std::string, std::string>& metadata = {});
+
+// The reason of a status's ErrorInfo; empty where it has none.
+std::string ReasonOf(const absl::Status& status);
 
 }  // namespace duet::server::common
 

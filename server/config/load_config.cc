@@ -51,6 +51,13 @@ const std::map<std::string, v1::Engine> kEngines = {{"cpu", v1::ENGINE_CPU},
 const std::map<std::string, v1::Precision> kPrecisions = {
     {"auto", v1::PRECISION_AUTO}, {"f32", v1::PRECISION_F32}, {"bf16", v1::PRECISION_BF16}};
 
+// The names of --log-format and --log-level.
+const std::map<std::string, v1::LogFormat> kLogFormats = {{"json", v1::LOG_FORMAT_JSON},
+                                                          {"text", v1::LOG_FORMAT_TEXT}};
+const std::map<std::string, v1::LogLevel> kLogLevels = {{"info", v1::LOG_LEVEL_INFO},
+                                                        {"warning", v1::LOG_LEVEL_WARNING},
+                                                        {"error", v1::LOG_LEVEL_ERROR}};
+
 template <typename Value>
 Value Named(const std::map<std::string, Value>& names, const char* flag, const std::string& text,
             const char* wanted) {
@@ -220,6 +227,64 @@ void AddSharingFlags(CLI::App& app, v1::ServerConfig& config) {
       ->option_text("S");
 }
 
+void AddSecurityFlags(CLI::App& app, v1::ServerConfig& config) {
+  app.add_option_function<std::string>(
+         "--tls-certificate-file",
+         [&](const std::string& value) { config.set_tls_certificate_file(value); },
+         "certificate chain of the server, PEM, read again when it changes (default: plain text)")
+      ->option_text("FILE");
+  app.add_option_function<std::string>(
+         "--tls-key-file", [&](const std::string& value) { config.set_tls_key_file(value); },
+         "its private key, PEM")
+      ->option_text("FILE");
+  app.add_option_function<std::string>(
+         "--tls-client-ca-file",
+         [&](const std::string& value) { config.set_tls_client_ca_file(value); },
+         "authorities that sign clients' certificates, PEM (default: clients need none)")
+      ->option_text("FILE");
+  app.add_option_function<std::string>(
+         "--access-file", [&](const std::string& value) { config.set_access_file(value); },
+         "who may call: names, roles, hashed tokens, certificate names and limits, read again when "
+         "it changes (default: everybody may synthesise)")
+      ->option_text("FILE");
+}
+
+void AddObservabilityFlags(CLI::App& app, v1::ServerConfig& config) {
+  const ServerOptions defaults;
+  app.add_option_function<std::string>(
+         "--log-format",
+         [&](const std::string& value) {
+           config.set_log_format(Named(kLogFormats, "--log-format", value, "json or text"));
+         },
+         "how the log is written (default json)")
+      ->option_text("json|text");
+  app.add_option_function<std::string>(
+         "--log-level",
+         [&](const std::string& value) {
+           config.set_log_level(Named(kLogLevels, "--log-level", value, "info, warning or error"));
+         },
+         "the least grave lines that are written (default info)")
+      ->option_text("info|warning|error");
+  app.add_option_function<double>(
+         "--log-success-ratio", [&](double value) { config.set_log_success_ratio(value); },
+         Defaulting("part of successful calls that get a line", defaults.logging.success_ratio))
+      ->option_text("RATIO");
+  app.add_option_function<uint32_t>(
+         "--log-refusals-per-second",
+         [&](uint32_t value) { config.set_log_refusals_per_second(value); },
+         Defaulting("refused calls of one status code that get a line in a second",
+                    defaults.logging.refusals_per_second))
+      ->option_text("N");
+  app.add_option_function<std::string>(
+         "--otlp-endpoint", [&](const std::string& value) { config.set_otlp_endpoint(value); },
+         "where spans are sent, http://HOST:PORT or https://HOST:PORT (default: nowhere)")
+      ->option_text("URL");
+  app.add_option_function<double>(
+         "--trace-ratio", [&](double value) { config.set_trace_ratio(value); },
+         Defaulting("part of calls without a trace whose spans are sent", defaults.tracing.ratio))
+      ->option_text("RATIO");
+}
+
 }  // namespace
 
 absl::StatusOr<v1::ServerConfig> ParseConfigText(std::string_view text, bool json) {
@@ -253,6 +318,8 @@ absl::StatusOr<CommandLine> ParseCommandLine(int argc, const char* const* argv) 
   AddServingFlags(app, flags);
   AddCapacityFlags(app, flags);
   AddSharingFlags(app, flags);
+  AddSecurityFlags(app, flags);
+  AddObservabilityFlags(app, flags);
   CommandLine command_line;
   const base::KebabCaseCommandLine line(argc, argv);
   try {

@@ -69,8 +69,9 @@ absl::StatusOr<GrpcServer> StartGrpcServer(const GrpcServerOptions& options,
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();
   grpc::ServerBuilder builder;
   GrpcServer started;
-  builder.AddListeningPort(ToString(options.listen), grpc::InsecureServerCredentials(),
-                           &started.port);
+  started.credentials =
+      options.credentials == nullptr ? grpc::InsecureServerCredentials() : options.credentials;
+  builder.AddListeningPort(ToString(options.listen), started.credentials, &started.port);
   builder.RegisterService(&service);
   if (!options.reflection) builder.SetOption(std::make_unique<WithoutReflection>());
   SetConnectionLimits(builder, options);

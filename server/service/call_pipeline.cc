@@ -1,7 +1,9 @@
 #include "server/service/call_pipeline.h"
 
+#include <string>
 #include <utility>
 
+#include "server/common/trace_context.h"
 #include "server/service/call_identity.h"
 #include "server/service/refusals.h"
 #include "server/service/wire.h"
@@ -11,9 +13,28 @@ namespace duet::server::service {
 OpenedCall CallPipeline::Open(const grpc::ServerContextBase& context,
                               const metrics::MethodInfo& method) const {
   CallIdentity identity = IdentifyCall(context, client_key_);
-  std::string client = identity.client;
-  return {std::make_unique<CallScope>(method, std::move(identity), observers_, clock_),
-          std::move(client)};
+  OpenedCall opened;
+  opened.client = identity.client;
+  opened.scope = std::make_unique<CallScope>(method, std::move(identity), observers_, clock_);
+  metrics::CallRecord& record = opened.scope->record();
+  if (auto trace = common::ContinueTrace(record.traceparent)) {
+    record.trace = *std::move(trace);
+  } else if (trace_ratio_.has_value()) {
+    record.trace = common::BeginTrace(*trace_ratio_);
+  }
+  opened.status = opened.scope->Enter(guard_.Admit(context, role_));
+  // Whoever is known shares as that, from wherever they call.
+  if (record.caller_is_listed) opened.client = "caller:" + record.caller;
+  return opened;
+}
+
+void CallPipeline::Report(CallScope& scope, const absl::Status& status,
+                          grpc::ServerContextBase& context) {
+  scope.Finish(status);
+  common::AddRetryPushback(status, context);
+  // Tells the caller under which span the call is known here.
+  const std::string traceparent = common::Traceparent(scope.record().trace);
+  if (!traceparent.empty()) context.AddTrailingMetadata("traceparent", traceparent);
 }
 
 absl::Status CallPipeline::CheckSize(const grpc::ByteBuffer& bytes) const {

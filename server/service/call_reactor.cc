@@ -38,7 +38,7 @@ void CallReactor::OnReadDone(bool ok) {
 
 void CallReactor::Respond(CallScope& scope, grpc::ByteBuffer response) {
   reply_.Swap(&response);
-  scope.Finish(absl::OkStatus());
+  CallPipeline::Report(scope, absl::OkStatus(), context_);
   StartWriteAndFinish(&reply_, grpc::WriteOptions(), grpc::Status::OK);
 }
 

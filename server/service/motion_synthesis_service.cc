@@ -41,8 +41,8 @@ common::TimePoint DeadlineOf(const grpc::ServerContextBase& context, const commo
 
 MotionSynthesisService::MotionSynthesisService(ServiceParts parts)
     : parts_(std::move(parts)),
-      pipeline_(parts_.limits.max_request_bytes, parts_.client_key, parts_.observers,
-                *parts_.clock) {
+      pipeline_(parts_.limits.max_request_bytes, parts_.client_key, parts_.observers, *parts_.clock,
+                parts_.guard, security::Role::kSynthesise, parts_.trace_ratio) {
   Serve("/duet.v1.MotionSynthesis/Synthesize",
         [this](Context* context) { return Synthesize(context); });
   ServeUnary<v1::ListModelsRequest>(
@@ -58,7 +58,8 @@ MotionSynthesisService::MotionSynthesisService(ServiceParts parts)
 RawService::Reactor* MotionSynthesisService::Synthesize(Context* context) {
   OpenedCall opened = pipeline_.Open(*context, kSynthesize);
   auto* reactor = new CallReactor(*context);
-  absl::StatusOr<ShareLease> place = parts_.admission->Admit(opened.client);
+  absl::StatusOr<ShareLease> place = opened.status.ok() ? parts_.admission->Admit(opened.client)
+                                                        : absl::StatusOr<ShareLease>(opened.status);
   absl::Status admitted = place.status();
   // Whether there is a place, and room in the queue, takes no look at the request. A bulk call's
   // smaller share of both does: that comes when it has been read.
@@ -136,6 +137,8 @@ absl::StatusOr<SynthesisCall::Parts> MotionSynthesisService::Prepare(const Conte
   const engine::ModelDescription& model = served.model->description();
   absl::StatusOr<ValidatedRequest> validated = ValidateRequest(request, model, parts_.limits);
   if (!validated.ok()) return validated.status();
+  const absl::Status frames = reception.HoldFrames(validated->clip.leader.frame_count());
+  if (!frames.ok()) return frames;
   const bool servers_choice = parts_.clean_up.value_or(model.cleaned_up_by_default());
   const bool clean_up = validated->clean_up.value_or(servers_choice);
   return SynthesisCall::Parts{std::move(served.model),
@@ -169,7 +172,8 @@ void MotionSynthesisService::ServeUnary(const char* path, const metrics::MethodI
   Serve(path, [this, method, handle](Context* context) -> Reactor* {
     OpenedCall opened = pipeline_.Open(*context, method);
     auto* reactor = new CallReactor(*context);
-    const absl::Status serving = parts_.admission->CheckServing();
+    const absl::Status serving =
+        opened.status.ok() ? parts_.admission->CheckServing() : opened.status;
     if (serving.ok()) {
       reactor->Receive(Receive(std::move(opened), ShareLease(), *reactor), handle);
     } else {

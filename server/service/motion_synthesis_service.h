@@ -17,6 +17,7 @@
 #include "server/common/clock.h"
 #include "server/metrics/call_record.h"
 #include "server/registry/model_registry.h"
+#include "server/security/call_guard.h"
 #include "server/service/admission.h"
 #include "server/service/call_pipeline.h"
 #include "server/service/call_reactor.h"
@@ -42,7 +43,11 @@ struct ServiceParts {
   // by whoever calls CheckTime.
   double write_timeout_seconds = std::numeric_limits<double>::infinity();
   double max_call_seconds = std::numeric_limits<double>::infinity();
-  std::string client_key;  // see IdentifyCall
+  std::string client_key;              // see IdentifyCall
+  security::CallGuard guard{nullptr};  // who may call; everybody unless it has a list
+  // Of calls that come without a trace, the part that is sampled in one begun here. Absent: no
+  // trace is begun.
+  std::optional<double> trace_ratio;
   // Whether followers are cleaned up where the request does not say. Absent: as the model has it
   // (ModelDescription::cleaned_up_by_default).
   std::optional<bool> clean_up;

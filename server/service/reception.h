@@ -54,6 +54,8 @@ class Reception final : public LiveCall {
   void Refuse(const absl::Status& reason);
   // Ends the call as answered: its scope, to be closed by the caller.
   std::unique_ptr<CallScope> Answer();
+  // Takes frames of the caller's share. RESOURCE_EXHAUSTED when it has not so many left.
+  absl::Status HoldFrames(int frames) { return parts_.scope->HoldFrames(frames); }
   // What a call that goes on is made of.
   std::unique_ptr<CallScope> TakeScope();
   ShareLease TakePlace();
