@@ -326,9 +326,9 @@ def restarts(args, protos):
         with tempfile.TemporaryDirectory() as folder:
             while not over.is_set():
                 done = subprocess.run(
-                    [args.client, "synthesize", leader, "--class", "punch", "--output",
-                     f"{folder}/{i}.bvh", "--overwrite", "--server", f"127.0.0.1:{port}",
-                     "--timeout", "120"], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                    [args.client, "synthesize", "--leader", leader, "--label", "punch=1", "--out",
+                     f"{folder}/{i}-{runs[0]}.bvh", "--server", f"127.0.0.1:{port}", "--timeout",
+                     "120"], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                     check=False, text=True)
                 runs[0] += 1
                 if done.returncode != 0:

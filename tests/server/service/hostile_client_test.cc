@@ -2,7 +2,10 @@
 
 #include <gmock/gmock.h>
 #include <grpcpp/completion_queue.h>
+#include <grpcpp/create_channel.h>
 #include <grpcpp/generic/generic_stub.h>
+#include <grpcpp/security/credentials.h>
+#include <grpcpp/support/channel_arguments.h>
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -192,7 +195,13 @@ TEST(HostileClientTest, AReaderThatNeverReadsIsGivenUp) {
   // Far more than the transport takes from a server whose client does not read.
   v1::SynthesizeRequest request = SampleRequest(9000);
   request.set_chunk_frames(240);
-  const auto reader = running.stub().Synthesize(&context, request);
+  // A client that takes no more than its first window, which grows where it is measured.
+  grpc::ChannelArguments arguments;
+  arguments.SetInt(GRPC_ARG_HTTP2_BDP_PROBE, 0);
+  arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);
+  const auto stub = v1::MotionSynthesis::NewStub(
+      grpc::CreateCustomChannel(running.address(), grpc::InsecureChannelCredentials(), arguments));
+  const auto reader = stub->Synthesize(&context, request);
   while (running.calls().records().empty()) {
     clock.Advance(std::chrono::seconds(31));
     running.service().CheckTime();
