@@ -1,5 +1,6 @@
-// Callers that ask a server for one follower after the other, and how long they waited. Some of
-// them may ask for long clips in the background; they are not measured. Prints one line of JSON.
+// Callers that ask a server for one follower after the other, or so many a second whatever becomes
+// of them, and how long they waited. Some of them may ask for long clips in the background; they
+// are not measured. Prints one line of JSON.
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -26,6 +27,7 @@ struct Load {
   std::string address;
   duet::client::ModelChoice model;
   int callers = 1;
+  double rate = 0;  // calls a second; 0: each caller asks again as soon as it is answered
   int frames = 45;
   int background_callers = 0;
   int background_frames = 9000;
@@ -74,10 +76,30 @@ duet::client::SynthesisRequest Request(const duet::client::ModelInfo& model, int
   return request;
 }
 
+// When each call is to begin: calls take turns at one timetable, so that slow answers make no
+// caller ask less. A call that begins late, as all callers were busy, has waited since its time.
+class Timetable {
+ public:
+  Timetable(double rate, steady_clock::time_point begin) : rate_(rate), begin_(begin) {}
+  steady_clock::time_point WaitForNext() {
+    if (rate_ <= 0) return steady_clock::now();
+    const auto time = begin_ + std::chrono::duration_cast<steady_clock::duration>(
+                                   std::chrono::duration<double>(next_++ / rate_));
+    std::this_thread::sleep_until(time);
+    return time;
+  }
+
+ private:
+  const double rate_;
+  const steady_clock::time_point begin_;
+  std::atomic<int> next_{0};
+};
+
 void Measure(const duet::client::Client& client, const duet::client::SynthesisRequest& request,
-             steady_clock::time_point begin, steady_clock::time_point end, Seen* seen) {
+             Timetable& timetable, steady_clock::time_point begin, steady_clock::time_point end,
+             Seen* seen) {
   while (steady_clock::now() < end) {
-    const steady_clock::time_point start = steady_clock::now();
+    const steady_clock::time_point start = timetable.WaitForNext();
     const absl::Status status = client.Synthesize(request).status();
     const steady_clock::time_point stop = steady_clock::now();
     if (stop < begin || stop >= end) continue;
@@ -140,8 +162,9 @@ void Run(const Load& load) {
   };
   const steady_clock::time_point begin = after(load.warm_up_seconds);
   const steady_clock::time_point end = after(load.warm_up_seconds + load.seconds);
+  Timetable timetable(load.rate, steady_clock::now());
   for (int i = 0; i < load.callers; ++i) {
-    measured.emplace_back([&] { Measure(client, request, begin, end, &seen); });
+    measured.emplace_back([&] { Measure(client, request, timetable, begin, end, &seen); });
   }
   for (std::thread& thread : measured) thread.join();
   over = true;
@@ -158,6 +181,7 @@ int main(int argc, char** argv) {
   app.add_option("--model", load.model.name, "the server's default unless told");
   app.add_option("--version", load.model.version, "of the model");
   app.add_option("--callers", load.callers, "calls at a time");
+  app.add_option("--rate", load.rate, "calls a second, by as many callers as that takes");
   app.add_option("--frames", load.frames, "frames of each leader, at the model's rate");
   app.add_option("--background-callers", load.background_callers, "unmeasured calls at a time");
   app.add_option("--background-frames", load.background_frames, "frames of their leaders");

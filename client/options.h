@@ -1,9 +1,12 @@
 #ifndef DUET_CLIENT_OPTIONS_H_
 #define DUET_CLIENT_OPTIONS_H_
 
+#include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 
+#include "absl/status/status.h"
 #include "absl/time/time.h"
 
 namespace duet::client {
@@ -22,11 +25,15 @@ struct TlsOptions {
 // How often and how patiently a call is attempted.
 //
 // The wait before attempt n + 1 is drawn from [0.5, 1] x min(max_backoff, initial_backoff x
-// 2^(n-1)) and is never shorter than the RetryInfo that the server sent.
+// 2^(n-1)) and is never shorter than the RetryInfo that the server sent. Unless there is a limit to
+// their number, the deadline alone ends the attempts: a server that restarts, or is moved, is away
+// for seconds.
 struct RetryOptions {
-  int max_attempts = 4;  // 1: never retry
+  int max_attempts = std::numeric_limits<int>::max();  // 1: never retry
   absl::Duration initial_backoff = absl::Milliseconds(100);
-  absl::Duration max_backoff = absl::Seconds(1);
+  absl::Duration max_backoff = absl::Seconds(5);
+  // Told before each wait, on the caller's thread: why, and for how long. Optional.
+  std::function<void(const absl::Status& why, absl::Duration wait)> on_wait;
 };
 
 // How a Client reaches its server.
@@ -38,6 +45,12 @@ struct ClientOptions {
   absl::Duration deadline = absl::Minutes(2);
   // Absent: plain text.
   std::optional<TlsOptions> tls;
+  // Says who calls, as `authorization: Bearer TOKEN` of every call. Empty: nobody. Without `tls` it
+  // goes to this machine alone ("localhost:50051", "127.0.0.1:50051", "unix:/run/duet.sock").
+  std::string token;
+  // What calls name as the server they are for, where it is not the address; a proxy may choose by
+  // it. With `tls` the server's certificate must carry it. Optional.
+  std::string authority;
   RetryOptions retry;
   // A connection that no other Client of this process shares: several carry more than one.
   bool own_connection = false;

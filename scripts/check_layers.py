@@ -29,8 +29,8 @@ MOTION_FILES = ("base", "motion", "retargeting", "flat formats", "bvh format",
                 "gltf format", "asf format", "formats")
 MODELS = ("engine", "checkpoint", "embedded checkpoints", "network", "torch engine", "training")
 MEASURING = ("metrics", "protocol", "baselines", "judge", "experiments")
-SERVER = ("server common", "batching", "registry", "server metrics", "server config", "service",
-          "lifecycle")
+SERVER = ("server common", "batching", "registry", "server metrics", "security", "tracing",
+          "server config", "service", "lifecycle")
 
 LAYERS = (
     # The method, innermost first.
@@ -87,11 +87,14 @@ LAYERS = (
     Layer("registry", "server/registry", sees=("base", "motion", "engine", "server common")),
     Layer("server metrics", "server/metrics", sees=("base", "batching", "server common"),
           libraries=("prometheus",)),
+    Layer("security", "server/security", sees=("base", "server common"), libraries=("rpc",)),
+    Layer("tracing", "server/tracing", sees=("base", "server common", "server metrics"),
+          libraries=("rpc",)),
     Layer("server config", "server/config", sees=("base", "messages", "server common"),
           libraries=("rpc",)),
     Layer("service", "server/service",
           sees=("base", "motion", "engine", "server common", "batching", "registry",
-                "server metrics"),
+                "server metrics", "security"),
           libraries=("rpc", "prometheus")),
     Layer("lifecycle", "server/lifecycle", sees=("base", "motion", "engine") + SERVER,
           libraries=("rpc", "prometheus")),
@@ -115,7 +118,7 @@ LAYERS = (
 GUARDED_LIBRARIES = {
     "torch": ("torch/", "ATen/", "c10/", "caffe2/"),
     "highway": ("hwy/",),
-    "rpc": ("grpc/", "grpcpp/", "grpc++/", "google/", "duet/v1/", "duet/rpc/"),
+    "rpc": ("grpc/", "grpcpp/", "grpc++/", "google/", "duet/v1/", "duet/rpc/", "duet/otlp/"),
     "prometheus": ("prometheus/",),
 }
 

@@ -37,7 +37,6 @@ LIBRARIES = (
     ("hwy/", "hwy::hwy"),
     ("dlfcn.h", "dl"),
     ("prometheus/", "prometheus-cpp::core"),
-    ("httplib.h", "PkgConfig::httplib"),
     ("openssl/", "OpenSSL::Crypto", "OpenSSL::SSL"),
     ("zlib.h", "ZLIB::ZLIB"),
     ("cblas.h", "openblas"),

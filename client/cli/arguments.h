@@ -29,6 +29,8 @@ struct ServerArguments {
   std::string tls_certificate_file;
   std::string tls_key_file;
   std::string tls_server_name;
+  std::string token_file;
+  std::string authority;
 };
 
 // Of a file with two people, the one that is read where nothing else is said.

@@ -9,8 +9,9 @@
 namespace duet::client::cli {
 
 absl::Status RunModels(const ModelsArguments& arguments, const ProgramEnvironment& environment) {
-  const absl::StatusOr<ClientOptions> options = ToClientOptions(arguments.server);
+  absl::StatusOr<ClientOptions> options = ToClientOptions(arguments.server);
   if (!options.ok()) return options.status();
+  SayWhenWaiting(arguments.server, *environment.err, &*options);
   const absl::StatusOr<Client> client = environment.connect(*options);
   if (!client.ok()) return client.status();
   const absl::StatusOr<std::vector<ModelInfo>> models = client->ListModels();

@@ -36,6 +36,14 @@ void AddConnectionFlags(CLI::App* app, ServerArguments* server) {
                   "Name in the server's certificate, where it is not the address")
       ->type_name("NAME")
       ->group(kServerGroup);
+  app->add_option("--token-file", server->token_file,
+                  "A token that says who calls; sent encrypted or to this machine alone")
+      ->type_name("FILE")
+      ->group(kServerGroup);
+  app->add_option("--authority", server->authority,
+                  "Name of the server that a proxy chooses by, where it is not the address")
+      ->type_name("NAME")
+      ->group(kServerGroup);
 }
 
 }  // namespace duet::client::cli

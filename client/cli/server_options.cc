@@ -1,9 +1,14 @@
 #include "client/cli/server_options.h"
 
+#include <atomic>
 #include <cstddef>
+#include <memory>
+#include <ostream>
 #include <string>
 #include <utility>
 
+#include "absl/strings/ascii.h"
+#include "absl/strings/str_cat.h"
 #include "model/base/file.h"
 
 namespace duet::client::cli {
@@ -11,6 +16,17 @@ namespace {
 
 // A key or a chain of certificates is some kilobytes; whatever is far larger is another file.
 constexpr std::size_t kMaxPemBytes = std::size_t{1} << 20;
+
+// The token in a file: its one line. Nothing for a file that was not named.
+absl::Status ReadToken(const std::string& path, std::string* token) {
+  if (path.empty()) return absl::OkStatus();
+  constexpr std::size_t kMaxTokenBytes = 4096;
+  absl::StatusOr<std::string> content = base::ReadFile(path, kMaxTokenBytes, "a token");
+  if (!content.ok()) return content.status();
+  *token = std::string(absl::StripAsciiWhitespace(*content));
+  if (!token->empty()) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat(path, ": empty, wanted a token"));
+}
 
 // Nothing for a file that was not named.
 absl::Status ReadPem(const std::string& path, std::string* pem) {
@@ -27,18 +43,31 @@ absl::StatusOr<ClientOptions> ToClientOptions(const ServerArguments& arguments) 
   ClientOptions options;
   options.server_address = arguments.address;
   options.deadline = absl::Seconds(arguments.timeout_seconds);
+  options.authority = arguments.authority;
+  absl::Status status = ReadToken(arguments.token_file, &options.token);
+  if (!status.ok()) return status;
   const bool encrypted = arguments.tls || !arguments.tls_ca_file.empty() ||
                          !arguments.tls_certificate_file.empty() ||
                          !arguments.tls_server_name.empty();
   if (!encrypted) return options;
   TlsOptions tls;
   tls.server_name = arguments.tls_server_name;
-  absl::Status status = ReadPem(arguments.tls_ca_file, &tls.root_certificates);
+  status = ReadPem(arguments.tls_ca_file, &tls.root_certificates);
   status.Update(ReadPem(arguments.tls_certificate_file, &tls.certificate_chain));
   status.Update(ReadPem(arguments.tls_key_file, &tls.private_key));
   if (!status.ok()) return status;
   options.tls = std::move(tls);
   return options;
+}
+
+void SayWhenWaiting(const ServerArguments& arguments, std::ostream& err, ClientOptions* options) {
+  options->retry.on_wait = [&err, address = arguments.address, seconds = arguments.timeout_seconds,
+                            waits = std::make_shared<std::atomic<int>>(0)](const absl::Status& why,
+                                                                           absl::Duration) {
+    if (++*waits != 2) return;
+    err << "duet: " << address << " does not answer: " << why.message()
+        << "; asked again until --timeout " << seconds << " s is over\n";
+  };
 }
 
 }  // namespace duet::client::cli

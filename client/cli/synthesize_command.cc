@@ -132,8 +132,9 @@ absl::Status RunSynthesize(const SynthesizeArguments& arguments,
                            const ProgramEnvironment& environment) {
   absl::Status inputs = CheckInputs(arguments);
   if (!inputs.ok()) return inputs;
-  const absl::StatusOr<ClientOptions> options = ToClientOptions(arguments.server);
+  absl::StatusOr<ClientOptions> options = ToClientOptions(arguments.server);
   if (!options.ok()) return options.status();
+  SayWhenWaiting(arguments.server, *environment.err, &*options);
   const absl::StatusOr<Client> client = environment.connect(*options);
   if (!client.ok()) return client.status();
   const absl::StatusOr<Job> job = PrepareJob(arguments, *client, environment.in);

@@ -1,9 +1,13 @@
 #include "client/internal/connect.h"
 
+#include <algorithm>
 #include <utility>
 
+#include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/string_view.h"
+#include "absl/strings/strip.h"
 #include "absl/time/clock.h"
 #include "absl/time/time.h"
 #include "client/internal/connection_impl.h"
@@ -22,6 +26,33 @@ constexpr char kServiceConfig[] = R"({
   "healthCheckConfig": {"serviceName": ""}
 })";
 
+constexpr absl::Duration kLongestReconnectWait = absl::Seconds(1);
+
+bool IsToken(absl::string_view text) {
+  return std::all_of(text.begin(), text.end(),
+                     [](unsigned char c) { return absl::ascii_isgraph(c); });
+}
+
+// Whether what is sent to an address leaves this machine by no network. A host name other than
+// localhost may be anybody's.
+bool IsThisMachine(absl::string_view address) {
+  if (absl::StartsWith(address, "unix:") || absl::StartsWith(address, "unix-abstract:")) {
+    return true;
+  }
+  for (const char* scheme : {"dns:///", "dns:", "ipv4:", "ipv6:"}) {
+    if (absl::ConsumePrefix(&address, scheme)) break;
+  }
+  // Several addresses behind one target would each have to be looked at.
+  if (absl::StrContains(address, ',')) return false;
+  if (address == "[::1]" || absl::StartsWith(address, "[::1]:")) return true;
+  const absl::string_view host = address.substr(0, address.find(':'));
+  if (host == "localhost") return true;
+  // 127.0.0.0/8 as four numbers: "127.example.com" is a name.
+  return absl::StartsWith(host, "127.") &&
+         std::all_of(host.begin(), host.end(),
+                     [](unsigned char c) { return absl::ascii_isdigit(c) || c == '.'; });
+}
+
 absl::Status Check(const ClientOptions& options) {
   if (options.server_address.empty()) {
     return absl::InvalidArgumentError("server_address: empty, wanted host:port");
@@ -39,6 +70,16 @@ absl::Status Check(const ClientOptions& options) {
     return absl::InvalidArgumentError(absl::StrCat(
         "retry: initial_backoff ", absl::FormatDuration(retry.initial_backoff), ", max_backoff ",
         absl::FormatDuration(retry.max_backoff), ", wanted 0 < initial <= max"));
+  }
+  if (!IsToken(options.token)) {
+    // Not repeated: messages go to logs.
+    return absl::InvalidArgumentError(
+        "token: has a blank or a character that is not printable ASCII, wanted none");
+  }
+  if (!options.token.empty() && !options.tls.has_value() &&
+      !IsThisMachine(options.server_address)) {
+    return absl::InvalidArgumentError(absl::StrCat("token: would travel in plain text to ",
+                                                   options.server_address, ", wanted tls"));
   }
   if (options.tls.has_value() &&
       options.tls->certificate_chain.empty() != options.tls->private_key.empty()) {
@@ -61,12 +102,21 @@ grpc::ChannelArguments Arguments(const ClientOptions& options) {
   grpc::ChannelArguments arguments;
   arguments.SetLoadBalancingPolicyName("round_robin");
   arguments.SetServiceConfigJSON(kServiceConfig);
-  // A lost connection is tried again as soon as a call is. With gRPC's own first wait of a second,
-  // a call could use up its attempts while the server has long been back.
+  // A lost connection is tried again as soon as a call is, and often: gRPC's own waits grow to two
+  // minutes, while the server has long been back.
   arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS,
                    static_cast<int>(absl::ToInt64Milliseconds(options.retry.initial_backoff)));
   arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS,
-                   static_cast<int>(absl::ToInt64Milliseconds(options.retry.max_backoff)));
+                   static_cast<int>(absl::ToInt64Milliseconds(
+                       std::max(options.retry.initial_backoff,
+                                std::min(options.retry.max_backoff, kLongestReconnectWait)))));
+  // Plain text to this machine must not take the way of the environment's proxy.
+  if (!options.token.empty() && !options.tls.has_value()) {
+    arguments.SetInt(GRPC_ARG_ENABLE_HTTP_PROXY, 0);
+  }
+  if (!options.authority.empty()) {
+    arguments.SetString(GRPC_ARG_DEFAULT_AUTHORITY, options.authority);
+  }
   if (options.own_connection) arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);
   if (options.tls.has_value() && !options.tls->server_name.empty()) {
     arguments.SetSslTargetNameOverride(options.tls->server_name);
@@ -104,7 +154,7 @@ absl::StatusOr<std::shared_ptr<Connection>> Connect(const ClientOptions& options
   std::shared_ptr<grpc::Channel> channel = grpc::CreateCustomChannel(
       GrpcTarget(options.server_address), Credentials(options), Arguments(options));
   RetryEnvironment environment = LookingAfter(channel);
-  return std::make_shared<ConnectionImpl>(MakeGrpcStub(std::move(channel)), options,
+  return std::make_shared<ConnectionImpl>(MakeGrpcStub(std::move(channel), options.token), options,
                                           std::move(environment));
 }
 

@@ -1,5 +1,6 @@
 #include "client/internal/grpc_stub.h"
 
+#include <string>
 #include <utility>
 
 #include "client/internal/grpc_status.h"
@@ -10,16 +11,19 @@
 namespace duet::client::internal {
 namespace {
 
-void Prepare(const CallContext& call, grpc::ClientContext* context) {
+// `authorization`: a whole "Bearer TOKEN", or empty.
+void Prepare(const CallContext& call, const std::string& authorization,
+             grpc::ClientContext* context) {
   context->set_deadline(absl::ToChronoTime(call.deadline));
+  if (!authorization.empty()) context->AddMetadata("authorization", authorization);
   if (!call.request_id.empty()) context->AddMetadata("x-request-id", call.request_id);
 }
 
 class GrpcResponseStream final : public ResponseStream {
  public:
   GrpcResponseStream(v1::MotionSynthesis::Stub& stub, const CallContext& call,
-                     const v1::SynthesizeRequest& request) {
-    Prepare(call, &context_);
+                     const std::string& authorization, const v1::SynthesizeRequest& request) {
+    Prepare(call, authorization, &context_);
     reader_ = stub.Synthesize(&context_, request);
   }
 
@@ -34,13 +38,14 @@ class GrpcResponseStream final : public ResponseStream {
 
 class GrpcStub final : public Stub {
  public:
-  explicit GrpcStub(std::shared_ptr<grpc::Channel> channel)
-      : stub_(v1::MotionSynthesis::NewStub(std::move(channel))) {}
+  GrpcStub(std::shared_ptr<grpc::Channel> channel, const std::string& token)
+      : stub_(v1::MotionSynthesis::NewStub(std::move(channel))),
+        authorization_(token.empty() ? "" : "Bearer " + token) {}
 
   absl::StatusOr<v1::ListModelsResponse> ListModels(const CallContext& call,
                                                     const v1::ListModelsRequest& request) override {
     grpc::ClientContext context;
-    Prepare(call, &context);
+    Prepare(call, authorization_, &context);
     v1::ListModelsResponse response;
     absl::Status status = FromGrpc(stub_->ListModels(&context, request, &response));
     if (!status.ok()) return status;
@@ -50,7 +55,7 @@ class GrpcStub final : public Stub {
   absl::StatusOr<v1::GetModelResponse> GetModel(const CallContext& call,
                                                 const v1::GetModelRequest& request) override {
     grpc::ClientContext context;
-    Prepare(call, &context);
+    Prepare(call, authorization_, &context);
     v1::GetModelResponse response;
     absl::Status status = FromGrpc(stub_->GetModel(&context, request, &response));
     if (!status.ok()) return status;
@@ -59,17 +64,19 @@ class GrpcStub final : public Stub {
 
   std::unique_ptr<ResponseStream> Synthesize(const CallContext& call,
                                              const v1::SynthesizeRequest& request) override {
-    return std::make_unique<GrpcResponseStream>(*stub_, call, request);
+    return std::make_unique<GrpcResponseStream>(*stub_, call, authorization_, request);
   }
 
  private:
   std::unique_ptr<v1::MotionSynthesis::Stub> stub_;
+  const std::string authorization_;
 };
 
 }  // namespace
 
-std::shared_ptr<Stub> MakeGrpcStub(std::shared_ptr<grpc::Channel> channel) {
-  return std::make_shared<GrpcStub>(std::move(channel));
+std::shared_ptr<Stub> MakeGrpcStub(std::shared_ptr<grpc::Channel> channel,
+                                   const std::string& token) {
+  return std::make_shared<GrpcStub>(std::move(channel), token);
 }
 
 }  // namespace duet::client::internal

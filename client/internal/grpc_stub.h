@@ -2,14 +2,16 @@
 #define DUET_CLIENT_INTERNAL_GRPC_STUB_H_
 
 #include <memory>
+#include <string>
 
 #include "client/internal/stub.h"
 #include "grpcpp/channel.h"
 
 namespace duet::client::internal {
 
-// The stub that really calls.
-std::shared_ptr<Stub> MakeGrpcStub(std::shared_ptr<grpc::Channel> channel);
+// The stub that really calls, as whoever `token` says; empty: as nobody.
+std::shared_ptr<Stub> MakeGrpcStub(std::shared_ptr<grpc::Channel> channel,
+                                   const std::string& token = "");
 
 }  // namespace duet::client::internal
 

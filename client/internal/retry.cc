@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "absl/random/random.h"
+#include "absl/strings/cord.h"
 #include "absl/strings/str_cat.h"
 #include "absl/synchronization/mutex.h"
 #include "absl/time/clock.h"
@@ -19,6 +20,12 @@ absl::Status AfterAttempts(const absl::Status& status, int attempts, std::string
   return AppendMessage(status,
                        absl::StrCat(" (after ", attempts, attempts == 1 ? " attempt" : " attempts",
                                     std::string(reason), ")"));
+}
+
+bool HasDetails(const absl::Status& status) {
+  bool any = false;
+  status.ForEachPayload([&any](absl::string_view, const absl::Cord&) { any = true; });
+  return any;
 }
 
 // Random numbers in [0, 1) for calls from any thread; copies share one generator.
@@ -46,6 +53,7 @@ RetryEnvironment SystemEnvironment() {
 
 bool IsRetryable(const absl::Status& status, Priority priority) {
   if (status.code() == absl::StatusCode::kUnavailable) return true;
+  if (status.code() == absl::StatusCode::kCancelled) return !HasDetails(status);
   return status.code() == absl::StatusCode::kResourceExhausted && priority == Priority::kBulk &&
          RetryDelay(status).has_value();
 }
@@ -74,6 +82,7 @@ absl::Status Retry(const RetryOptions& options, const RetryEnvironment& environm
     if (environment.now() + wait >= deadline) {
       return AfterAttempts(status, made, ", the deadline leaves no time for another");
     }
+    if (options.on_wait) options.on_wait(status, wait);
     environment.sleep(wait);
   }
 }

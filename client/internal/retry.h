@@ -23,9 +23,10 @@ RetryEnvironment SystemEnvironment();
 
 // Whether another attempt may succeed where this one failed.
 //
-// UNAVAILABLE always. RESOURCE_EXHAUSTED only for bulk work, which can wait, and only where the
-// server says when to come back (RetryInfo): without that the code means a message that is too
-// large, which no later attempt makes smaller.
+// UNAVAILABLE always. CANCELLED without details as well: a server that shuts down ends so what it
+// has not begun to look at, and whoever cancels a call here is not asked. RESOURCE_EXHAUSTED only
+// for bulk work, which can wait, and only where the server says when to come back (RetryInfo):
+// without that the code means a message that is too large, which no later attempt makes smaller.
 bool IsRetryable(const absl::Status& status, Priority priority);
 
 // The wait after the `attempt`-th attempt (from 1) failed with `status`. Jitter comes on top of the

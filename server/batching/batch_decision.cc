@@ -1,9 +1,11 @@
 #include "server/batching/batch_decision.h"
 
 #include <algorithm>
+#include <map>
 #include <numeric>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "server/batching/even_share.h"
 
@@ -19,8 +21,6 @@ using common::TimePoint;
 constexpr std::chrono::seconds kPatience(1);
 // The part of throughput that an urgent window may not cost.
 constexpr double kThroughputKept = 0.75;
-// Of the time from a window's coming to its deadline, kept for its answer's way to the caller.
-constexpr int kWayBack = 8;
 // How long a batch of a lower lane may be while short calls come: so many windows alone, and they
 // come until none has for so long.
 constexpr double kHeldUp = 3;
@@ -51,6 +51,7 @@ class Decider {
   absl::Status ReasonToDrop(std::size_t index) const;
   Indices LaneBatch(Lane lane) const;
   Indices WantedFirst(Lane lane, std::size_t model) const;
+  Indices InTurns(const Indices& line) const;
   std::size_t MostOf(const Indices& line) const;
   std::size_t NotHeldUp(const Indices& line) const;
   Indices InTime(const Indices& line, std::size_t most) const;
@@ -151,7 +152,21 @@ Indices Decider::WantedFirst(Lane lane, std::size_t model) const {
   };
   std::stable_sort(line.begin(), line.end(),
                    [&](std::size_t a, std::size_t b) { return wanted_at(a) < wanted_at(b); });
-  return line;
+  return InTurns(line);
+}
+
+// The same line with clients taking turns.
+Indices Decider::InTurns(const Indices& line) const {
+  std::map<std::size_t, std::size_t> had;  // client -> windows of it so far
+  std::vector<std::pair<std::size_t, std::size_t>> turns;
+  turns.reserve(line.size());
+  for (const std::size_t i : line) turns.emplace_back(had[Window(i).client]++, i);
+  std::stable_sort(turns.begin(), turns.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  Indices taking_turns;
+  taking_turns.reserve(line.size());
+  for (const auto& [turn, i] : turns) taking_turns.push_back(i);
+  return taking_turns;
 }
 
 // How many windows of a line a batch may hold.

@@ -17,6 +17,7 @@ namespace duet::server::batching {
 struct WaitingWindow {
   std::size_t model = 0;  // index into QueueState::models
   Lane lane = Lane::kShort;
+  std::size_t client = 0;  // a number for each client that waits
   int frames = 0;
   common::TimePoint queued_at;
   common::TimePoint deadline = common::TimePoint::max();
@@ -31,6 +32,10 @@ struct ModelLoad {
 
 // So many frames of higher lanes may overtake each frame of a lane: an eighth of the whole is its.
 inline constexpr int kOvertaking = 7;
+
+// Of the time from a window's coming to its deadline, the part kept for its answer's way to the
+// caller: an eighth.
+inline constexpr int kWayBack = 8;
 
 // Everything that decides what a worker does next.
 struct QueueState {
@@ -76,10 +81,11 @@ struct Decision {
 // kOvertaking
 //    times as many frames as its next batch holds: no lane starves.
 // 3. Within the lane, the model whose windows have had the least computing time.
-// 4. Of its windows, those that are wanted first: at their deadline, or a second after they came.
-//    At most max_windows, and no more than let all workers end at about the same time. While short
-//    calls come, a batch of a lower lane is no longer than three of its windows alone: that is what
-//    the next short call waits for.
+// 4. Clients take turns: one window of each, the second of each, and so on. Of the windows of one
+//    client, and of each such round, those that are wanted first: at their deadline, or a second
+//    after they came. At most max_windows, and no more than let all workers end at about the same
+//    time. While short calls come, a batch of a lower lane is no longer than three of its windows
+//    alone: that is what the next short call waits for.
 // 5. A batch is kept small enough for its most urgent window, unless that costs more than a quarter
 //    of throughput: then those for which the batch comes in time go, as many as there are.
 // 6. A batch that is not full waits, up to max_delay, if nothing else does and company is likely:

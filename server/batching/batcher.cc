@@ -17,6 +17,19 @@ namespace {
 
 absl::Status ShuttingDown() { return absl::UnavailableError("the server is shutting down"); }
 
+absl::Status QueueFull(std::size_t capacity) {
+  return absl::ResourceExhaustedError(
+      "the queue is full: at most " + std::to_string(capacity) +
+      " calls may wait for their first window, and no client's calls may fill all of it");
+}
+
+absl::Status QueueTooLong(const WindowJob& job, common::TimePoint now) {
+  return absl::ResourceExhaustedError(
+      "the queue is too long: by the time of its turn the deadline, " +
+      std::to_string(common::SecondsBetween(now, job.deadline)) +
+      " s away, would be too near for an answer");
+}
+
 // A model reports failures as a status; whatever else escapes it must not take the server down.
 std::vector<engine::WindowResult> Evaluate(const Batch& batch) {
   std::vector<const engine::SynthesisWindow*> windows;
@@ -36,7 +49,8 @@ std::vector<engine::WindowResult> Evaluate(const Batch& batch) {
 }
 
 WindowQueueOptions QueueOptions(const BatcherOptions& options) {
-  return {static_cast<std::size_t>(options.max_queued_windows), options.workers, options.limits};
+  return {static_cast<std::size_t>(options.max_queued_windows), options.workers, options.limits,
+          options.client_share};
 }
 
 class Batcher final : public WindowScheduler {
@@ -45,6 +59,7 @@ class Batcher final : public WindowScheduler {
   ~Batcher() override;
 
   absl::Status Submit(WindowJob job) override;
+  absl::Status CheckRoom(Priority priority, const std::string& client) const override;
   std::size_t queued_windows() const override;
 
  private:
@@ -84,15 +99,19 @@ absl::Status Batcher::Submit(WindowJob job) {
     common::MutexLock lock(mutex_);
     if (stopping_) return ShuttingDown();
     const common::TimePoint now = clock_.Now();
-    if (!queue_.HasRoomFor(job, now)) {
-      return absl::ResourceExhaustedError("the queue is full: at most " +
-                                          std::to_string(queue_.capacity()) +
-                                          " calls may wait for their first window");
-    }
+    if (!queue_.HasRoomFor(job, now)) return QueueFull(queue_.capacity());
+    if (!job.continues_call && !queue_.ComesInTime(job, now)) return QueueTooLong(job, now);
     queue_.Push(std::move(job), now);
   }
   changed_.NotifyOne();
   return absl::OkStatus();
+}
+
+absl::Status Batcher::CheckRoom(Priority priority, const std::string& client) const {
+  common::MutexLock lock(mutex_);
+  if (stopping_) return ShuttingDown();
+  return queue_.HasRoomFor(priority, client, clock_.Now()) ? absl::OkStatus()
+                                                           : QueueFull(queue_.capacity());
 }
 
 std::size_t Batcher::queued_windows() const {

@@ -13,6 +13,7 @@ struct BatcherOptions {
   int workers = 1;
   int max_queued_windows = 1;  // calls waiting for their first window
   BatchLimits limits;
+  double client_share = 1;  // see WindowQueueOptions
 };
 
 // A scheduler with a fixed number of threads, each evaluating a batch of one model's windows at a

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <string_view>
 #include <utility>
 
 namespace duet::server::batching {
@@ -30,13 +31,44 @@ int Batch::Frames() const {
   return frames;
 }
 
-bool WindowQueue::HasRoomFor(const WindowJob& job, TimePoint now) const {
-  const std::size_t most = ShareOf(options_.capacity, job.priority);
-  if (job.continues_call || waiting_.size() < most) return true;
-  const auto taken = std::count_if(waiting_.begin(), waiting_.end(), [&](const auto& window) {
-    return !window.job.continues_call && !IsCancelled(window.job) && now < window.job.deadline;
-  });
-  return static_cast<std::size_t>(taken) < most;
+bool WindowQueue::HasRoomFor(Priority priority, const std::string& client, TimePoint now) const {
+  const std::size_t most = ShareOf(options_.capacity, priority);
+  std::size_t taken = 0, held = 0;
+  for (const QueuedWindow& window : waiting_) {
+    const WindowJob& job = window.job;
+    if (job.continues_call || IsCancelled(job) || now >= job.deadline) continue;
+    ++taken;
+    held += job.client == client ? 1 : 0;
+  }
+  if (taken >= most) return false;
+  return held == 0 || (1 - options_.client_share) * static_cast<double>(held) <
+                          options_.client_share * static_cast<double>(most - taken);
+}
+
+bool WindowQueue::ComesInTime(const WindowJob& job, TimePoint now) const {
+  double work = 0, batch_seconds = 0;
+  int windows = 0;
+  for (const auto& [waiting, queued_at] : waiting_) {
+    if (LaneOf(waiting) > LaneOf(job) || IsCancelled(waiting) || now >= waiting.deadline) continue;
+    const CostEstimate cost = CostOf(waiting, now);
+    work += cost.frame_seconds * FramesOf(waiting);
+    batch_seconds = std::max(batch_seconds, cost.batch_seconds);
+    ++windows;
+  }
+  if (windows == 0) return true;
+  const int batches = (windows + options_.limits.max_windows - 1) / options_.limits.max_windows;
+  work += batches * batch_seconds;
+  for (const auto& [number, end] : running_) {
+    work += std::max(0.0, common::SecondsBetween(now, end));
+  }
+  const double seconds = work / options_.workers + CostOf(job, now).Seconds(FramesOf(job));
+  return job.deadline == TimePoint::max() ||
+         seconds <= common::SecondsBetween(now, job.deadline) * (kWayBack - 1) / kWayBack;
+}
+
+CostEstimate WindowQueue::CostOf(const WindowJob& job, TimePoint now) const {
+  const auto found = accounts_.find(job.model.get());
+  return found == accounts_.end() ? CostEstimate() : found->second.cost.At(now);
 }
 
 void WindowQueue::Push(WindowJob job, TimePoint now) {
@@ -103,9 +135,11 @@ QueueState WindowQueue::StateAt(TimePoint now) const {
     index[model] = state.models.size();
     state.models.push_back({account.cost.At(now), account.served_seconds});
   }
+  std::map<std::string_view, std::size_t> clients;
   state.windows.reserve(waiting_.size());
   for (const auto& [job, queued_at] : waiting_) {
-    state.windows.push_back({index[job.model.get()], LaneOf(job), FramesOf(job), queued_at,
+    const std::size_t client = clients.emplace(job.client, clients.size()).first->second;
+    state.windows.push_back({index[job.model.get()], LaneOf(job), client, FramesOf(job), queued_at,
                              job.deadline, IsCancelled(job)});
   }
   state.overtaken_frames = overtaken_frames_;

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <map>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "absl/status/status.h"
@@ -49,6 +50,9 @@ struct WindowQueueOptions {
   std::size_t capacity = 1;  // calls waiting for their first window above which no new one is taken
   int workers = 1;
   BatchLimits limits;
+  // A client's first windows may wait as long as they are fewer than this part of the room left by
+  // all, over 1 less this part: alone it fills this part of the capacity, 1 all of it.
+  double client_share = 1;
 };
 
 // The windows that wait, and what Decide needs to know of the past: which batches run, what each
@@ -63,10 +67,17 @@ class WindowQueue {
  public:
   explicit WindowQueue(const WindowQueueOptions& options) : options_(options) {}
 
-  // True when a job like this may join: a further window of a call always; a call's first one while
-  // fewer first windows wait, of whatever priority, than its own priority's share of the capacity.
-  // Those that are cancelled or expired take no room.
-  bool HasRoomFor(const WindowJob& job, common::TimePoint now) const;
+  // True when the first window of a call may join: while fewer first windows wait, of whatever
+  // priority, than its own priority's share of the capacity, and fewer of its client's than the
+  // client's share. Those that are cancelled or expired take no room. Further windows always may.
+  bool HasRoomFor(Priority priority, const std::string& client, common::TimePoint now) const;
+  bool HasRoomFor(const WindowJob& job, common::TimePoint now) const {
+    return job.continues_call || HasRoomFor(job.priority, job.client, now);
+  }
+  // Whether a first window would be done by its deadline, an eighth of its time before it, if all
+  // that waits in its lane and above went before it: by what windows cost of late. True for one
+  // that would wait for nobody: whether it is done in time alone is for Decide to say.
+  bool ComesInTime(const WindowJob& job, common::TimePoint now) const;
   void Push(WindowJob job, common::TimePoint now);
 
   // What the worker that asks is to do.
@@ -89,6 +100,7 @@ class WindowQueue {
   };
 
   Account& AccountOf(const WindowJob& job);
+  CostEstimate CostOf(const WindowJob& job, common::TimePoint now) const;
   QueueState StateAt(common::TimePoint now) const;
   // Takes the windows at these indices out, in this order; leaves null models behind.
   QueuedWindow TakeOut(std::size_t index);

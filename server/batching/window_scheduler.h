@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <string>
 
 #include "absl/status/status.h"
 #include "model/engine/synthesizer.h"
@@ -36,6 +37,8 @@ struct WindowJob {
   // A further window of a call that is being answered. Never refused for a full queue: what was
   // begun is finished, and a call has one window in the queue at most.
   bool continues_call = false;
+  // Whose call it is: clients take turns. Empty is a client as well.
+  std::string client;
   // How many windows the whole call has, 1 or more. A long call gives way to shorter ones.
   int call_windows = 1;
   // Called once, on a thread of the scheduler, under no lock. Must not throw.
@@ -69,9 +72,14 @@ class WindowScheduler {
   virtual ~WindowScheduler() = default;
 
   // Takes the job: done will run exactly once, never within Submit.
-  // Fails with RESOURCE_EXHAUSTED when the queue is full, with UNAVAILABLE when shutting down;
+  // Fails with RESOURCE_EXHAUSTED when the queue is full or too long for the deadline of a call's
+  // first window, with UNAVAILABLE when shutting down;
   // done then never runs.
   virtual absl::Status Submit(WindowJob job) = 0;
+
+  // Whether the first window of a call of this priority and client would find room in the queue
+  // now: OK, or what Submit would say. Asked before a call is worked on at all.
+  virtual absl::Status CheckRoom(Priority priority, const std::string& client) const = 0;
 
   // Windows that wait for their turn now.
   virtual std::size_t queued_windows() const = 0;

@@ -43,4 +43,11 @@ void AddErrorInfo(absl::Status& status, absl::string_view reason,
   AddPayload(status, kErrorInfoUrl, detail);
 }
 
+std::string ReasonOf(const absl::Status& status) {
+  const auto payload = status.GetPayload({kErrorInfoUrl.data(), kErrorInfoUrl.size()});
+  rpc::v1::ErrorInfo detail;
+  if (!payload.has_value() || !detail.ParseFromString(std::string(*payload))) return "";
+  return detail.reason();
+}
+
 }  // namespace duet::server::common

@@ -28,15 +28,27 @@ inline constexpr absl::string_view kReasonModelMismatch = "MODEL_MISMATCH";
 inline constexpr absl::string_view kReasonModelNotFound = "MODEL_NOT_FOUND";
 inline constexpr absl::string_view kReasonRequestTooLarge = "REQUEST_TOO_LARGE";
 inline constexpr absl::string_view kReasonTooManyCalls = "TOO_MANY_CALLS";
+inline constexpr absl::string_view kReasonTooManyBytes = "TOO_MANY_BYTES";
+inline constexpr absl::string_view kReasonReceiveTimeout = "RECEIVE_TIMEOUT";
+inline constexpr absl::string_view kReasonWriteTimeout = "WRITE_TIMEOUT";
 inline constexpr absl::string_view kReasonQueueFull = "QUEUE_FULL";
 inline constexpr absl::string_view kReasonLoading = "SERVER_LOADING";
 inline constexpr absl::string_view kReasonDraining = "SERVER_DRAINING";
 inline constexpr absl::string_view kReasonModelFailed = "MODEL_FAILED";
+inline constexpr absl::string_view kReasonCredentialsMissing = "CREDENTIALS_MISSING";
+inline constexpr absl::string_view kReasonCredentialsInvalid = "CREDENTIALS_INVALID";
+inline constexpr absl::string_view kReasonCallerUnknown = "CALLER_UNKNOWN";
+inline constexpr absl::string_view kReasonRoleMissing = "ROLE_MISSING";
+inline constexpr absl::string_view kReasonCallRate = "CALL_RATE_EXCEEDED";
+inline constexpr absl::string_view kReasonFramesInFlight = "FRAMES_IN_FLIGHT_EXCEEDED";
 
 void AddBadRequest(absl::Status& status, const std::vector<FieldViolation>& violations);
 void AddRetryInfo(absl::Status& status, absl::Duration delay);
 void AddErrorInfo(absl::Status& status, absl::string_view reason,
                   const std::map<std::string, std::string>& metadata = {});
+
+// The reason of a status's ErrorInfo; empty where it has none.
+std::string ReasonOf(const absl::Status& status);
 
 }  // namespace duet::server::common
 

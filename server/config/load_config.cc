@@ -51,6 +51,13 @@ const std::map<std::string, v1::Engine> kEngines = {{"cpu", v1::ENGINE_CPU},
 const std::map<std::string, v1::Precision> kPrecisions = {
     {"auto", v1::PRECISION_AUTO}, {"f32", v1::PRECISION_F32}, {"bf16", v1::PRECISION_BF16}};
 
+// The names of --log-format and --log-level.
+const std::map<std::string, v1::LogFormat> kLogFormats = {{"json", v1::LOG_FORMAT_JSON},
+                                                          {"text", v1::LOG_FORMAT_TEXT}};
+const std::map<std::string, v1::LogLevel> kLogLevels = {{"info", v1::LOG_LEVEL_INFO},
+                                                        {"warning", v1::LOG_LEVEL_WARNING},
+                                                        {"error", v1::LOG_LEVEL_ERROR}};
+
 template <typename Value>
 Value Named(const std::map<std::string, Value>& names, const char* flag, const std::string& text,
             const char* wanted) {
@@ -178,6 +185,106 @@ void AddCapacityFlags(CLI::App& app, v1::ServerConfig& config) {
       ->option_text("S");
 }
 
+void AddSharingFlags(CLI::App& app, v1::ServerConfig& config) {
+  const ServerOptions defaults;
+  app.add_option_function<double>(
+         "--client-share", [&](double value) { config.set_client_share(value); },
+         Defaulting("part of calls, bytes and queue that one client can come to hold, over 0 to 1",
+                    defaults.client_share))
+      ->option_text("PART");
+  app.add_option_function<std::string>(
+         "--client-key", [&](const std::string& value) { config.set_client_key(value); },
+         "metadata key by which a proxy in front names its client (default: clients are addresses)")
+      ->option_text("KEY");
+  app.add_option_function<uint64_t>(
+         "--max-held-bytes", [&](uint64_t value) { config.set_max_held_bytes(value); },
+         absl::StrCat("bytes of the requests of calls being answered (default ",
+                      kTransportPerRequest, " x max-request-bytes)"))
+      ->option_text("BYTES");
+  app.add_option_function<double>(
+         "--receive-timeout-seconds",
+         [&](double value) { config.set_receive_timeout_seconds(value); },
+         Defaulting("how long a request may take to arrive", defaults.receive_timeout_seconds))
+      ->option_text("S");
+  app.add_option_function<uint32_t>(
+         "--max-slow-requests", [&](uint32_t value) { config.set_max_slow_requests(value); },
+         "requests that take more than 0.1 s to arrive, at the same time (default: "
+         "max-transport-bytes / max-request-bytes / 2)")
+      ->option_text("N");
+  app.add_option_function<double>(
+         "--write-timeout-seconds", [&](double value) { config.set_write_timeout_seconds(value); },
+         Defaulting("how long one message of an answer may wait for its reader",
+                    defaults.write_timeout_seconds))
+      ->option_text("S");
+  app.add_option_function<double>(
+         "--max-call-seconds", [&](double value) { config.set_max_call_seconds(value); },
+         Defaulting("how long a call may last, whatever its deadline", defaults.max_call_seconds))
+      ->option_text("S");
+  app.add_option_function<double>(
+         "--self-check-seconds", [&](double value) { config.set_self_check_seconds(value); },
+         Defaulting("how often the server connects to its own port, for /healthz; 0: never",
+                    defaults.self_check_seconds))
+      ->option_text("S");
+}
+
+void AddSecurityFlags(CLI::App& app, v1::ServerConfig& config) {
+  app.add_option_function<std::string>(
+         "--tls-certificate-file",
+         [&](const std::string& value) { config.set_tls_certificate_file(value); },
+         "certificate chain of the server, PEM, read again when it changes (default: plain text)")
+      ->option_text("FILE");
+  app.add_option_function<std::string>(
+         "--tls-key-file", [&](const std::string& value) { config.set_tls_key_file(value); },
+         "its private key, PEM")
+      ->option_text("FILE");
+  app.add_option_function<std::string>(
+         "--tls-client-ca-file",
+         [&](const std::string& value) { config.set_tls_client_ca_file(value); },
+         "authorities that sign clients' certificates, PEM (default: clients need none)")
+      ->option_text("FILE");
+  app.add_option_function<std::string>(
+         "--access-file", [&](const std::string& value) { config.set_access_file(value); },
+         "who may call: names, roles, hashed tokens, certificate names and limits, read again when "
+         "it changes (default: everybody may synthesise)")
+      ->option_text("FILE");
+}
+
+void AddObservabilityFlags(CLI::App& app, v1::ServerConfig& config) {
+  const ServerOptions defaults;
+  app.add_option_function<std::string>(
+         "--log-format",
+         [&](const std::string& value) {
+           config.set_log_format(Named(kLogFormats, "--log-format", value, "json or text"));
+         },
+         "how the log is written (default json)")
+      ->option_text("json|text");
+  app.add_option_function<std::string>(
+         "--log-level",
+         [&](const std::string& value) {
+           config.set_log_level(Named(kLogLevels, "--log-level", value, "info, warning or error"));
+         },
+         "the least grave lines that are written (default info)")
+      ->option_text("info|warning|error");
+  app.add_option_function<double>(
+         "--log-success-ratio", [&](double value) { config.set_log_success_ratio(value); },
+         Defaulting("part of successful calls that get a line", defaults.logging.success_ratio))
+      ->option_text("RATIO");
+  app.add_option_function<uint32_t>(
+         "--log-refusals-per-second",
+         [&](uint32_t value) { config.set_log_refusals_per_second(value); },
+         Defaulting("refused calls of one status code that get a line in a second",
+                    defaults.logging.refusals_per_second))
+      ->option_text("N");
+  app.add_option_function<std::string>(
+         "--otlp-endpoint", [&](const std::string& value) { config.set_otlp_endpoint(value); },
+         "where spans are sent, http://HOST:PORT or https://HOST:PORT (default: nowhere)")
+      ->option_text("URL");
+  app.add_option_function<double>(
+         "--trace-ratio", [&](double value) { config.set_trace_ratio(value); },
+         Defaulting("part of calls without a trace whose spans are sent", defaults.tracing.ratio))
+      ->option_text("RATIO");
+}
+
 }  // namespace
 
 absl::StatusOr<v1::ServerConfig> ParseConfigText(std::string_view text, bool json) {
@@ -210,6 +317,9 @@ absl::StatusOr<CommandLine> ParseCommandLine(int argc, const char* const* argv) 
   v1::ServerConfig flags;
   AddServingFlags(app, flags);
   AddCapacityFlags(app, flags);
+  AddSharingFlags(app, flags);
+  AddSecurityFlags(app, flags);
+  AddObservabilityFlags(app, flags);
   CommandLine command_line;
   const base::KebabCaseCommandLine line(argc, argv);
   try {

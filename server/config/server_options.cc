@@ -133,6 +133,42 @@ void ReadLimits(const v1::ServerConfig& config, Reader& reader, ServerOptions& o
   }
 }
 
+// After ReadLimits: some defaults follow from the sizes there.
+void ReadSharing(const v1::ServerConfig& config, Reader& reader, ServerOptions& options) {
+  constexpr double kHour = 3600;
+  if (config.has_client_share()) {
+    options.client_share = reader.InRange("client_share", config.client_share(), 0.01, 1.0);
+  }
+  options.client_key = config.client_key();
+  options.max_held_bytes = static_cast<std::size_t>(
+      config.has_max_held_bytes()
+          ? reader.InRange("max_held_bytes", config.max_held_bytes(),
+                           uint64_t{options.max_request_bytes}, uint64_t{1} << 40)
+          : uint64_t{kTransportPerRequest} * options.max_request_bytes);
+  options.max_slow_requests =
+      config.has_max_slow_requests()
+          ? static_cast<int>(reader.InRange("max_slow_requests", config.max_slow_requests(),
+                                            uint32_t{1}, uint32_t{100000}))
+          : static_cast<int>(std::clamp<std::size_t>(
+                options.max_transport_bytes / (2 * options.max_request_bytes), 1, 100000));
+  if (config.has_receive_timeout_seconds()) {
+    options.receive_timeout_seconds =
+        reader.InRange("receive_timeout_seconds", config.receive_timeout_seconds(), 0.1, kHour);
+  }
+  if (config.has_write_timeout_seconds()) {
+    options.write_timeout_seconds =
+        reader.InRange("write_timeout_seconds", config.write_timeout_seconds(), 0.1, kHour);
+  }
+  if (config.has_max_call_seconds()) {
+    options.max_call_seconds =
+        reader.InRange("max_call_seconds", config.max_call_seconds(), 1.0, 24 * kHour);
+  }
+  if (config.has_self_check_seconds()) {
+    options.self_check_seconds =
+        reader.InRange("self_check_seconds", config.self_check_seconds(), 0.0, kHour);
+  }
+}
+
 void ReadBatching(const v1::ServerConfig& config, Reader& reader, ServerOptions& options) {
   if (config.has_max_batch_windows()) {
     options.max_batch_windows = static_cast<int>(reader.InRange(
@@ -162,6 +198,55 @@ void ReadCleanUp(const v1::ServerConfig& config, Reader& reader, ServerOptions& 
   }
 }
 
+void ReadSecurity(const v1::ServerConfig& config, Reader& reader, SecurityOptions& options) {
+  options.tls_certificate_file = config.tls_certificate_file();
+  options.tls_key_file = config.tls_key_file();
+  options.tls_client_ca_file = config.tls_client_ca_file();
+  options.access_file = config.access_file();
+  if (options.tls_certificate_file.empty() != options.tls_key_file.empty()) {
+    reader.Fail(
+        absl::StrCat(options.tls_key_file.empty() ? "tls_key_file" : "tls_certificate_file",
+                     ": is empty, wanted tls_certificate_file and tls_key_file or neither"));
+  }
+  if (!options.tls_client_ca_file.empty() && options.tls_certificate_file.empty()) {
+    reader.Fail("tls_client_ca_file: needs tls_certificate_file and tls_key_file");
+  }
+}
+
+void ReadLogging(const v1::ServerConfig& config, Reader& reader, LoggingOptions& options) {
+  if (config.has_log_format()) {
+    if (config.log_format() != v1::LOG_FORMAT_JSON && config.log_format() != v1::LOG_FORMAT_TEXT) {
+      reader.Fail(absl::StrCat("log_format: is ", config.log_format(),
+                               ", wanted LOG_FORMAT_JSON or LOG_FORMAT_TEXT"));
+    }
+    options.format = config.log_format() == v1::LOG_FORMAT_TEXT ? LoggingOptions::Format::kText
+                                                                : LoggingOptions::Format::kJson;
+  }
+  if (config.has_log_level()) {
+    if (config.log_level() < v1::LOG_LEVEL_INFO || config.log_level() > v1::LOG_LEVEL_ERROR) {
+      reader.Fail(absl::StrCat("log_level: is ", config.log_level(),
+                               ", wanted LOG_LEVEL_INFO, LOG_LEVEL_WARNING or LOG_LEVEL_ERROR"));
+    }
+    options.level = config.log_level() == v1::LOG_LEVEL_ERROR     ? LoggingOptions::Level::kError
+                    : config.log_level() == v1::LOG_LEVEL_WARNING ? LoggingOptions::Level::kWarning
+                                                                  : LoggingOptions::Level::kInfo;
+  }
+  if (config.has_log_success_ratio()) {
+    options.success_ratio = reader.InRange("log_success_ratio", config.log_success_ratio(), 0, 1);
+  }
+  if (config.has_log_refusals_per_second()) {
+    options.refusals_per_second = static_cast<int>(reader.InRange(
+        "log_refusals_per_second", config.log_refusals_per_second(), uint32_t{0}, 1000000U));
+  }
+}
+
+void ReadTracing(const v1::ServerConfig& config, Reader& reader, TracingOptions& options) {
+  options.otlp_endpoint = config.otlp_endpoint();
+  if (config.has_trace_ratio()) {
+    options.ratio = reader.InRange("trace_ratio", config.trace_ratio(), 0, 1);
+  }
+}
+
 void ReadLabels(const v1::ServerConfig& config, Reader& reader, ServerOptions& options) {
   for (int i = 0; i < config.version_labels_size(); ++i) {
     const v1::VersionLabel& label = config.version_labels(i);
@@ -185,10 +270,14 @@ absl::StatusOr<ServerOptions> ToOptions(const v1::ServerConfig& config, int core
   options.default_model = config.default_model();
   if (config.has_reflection()) options.reflection = config.reflection();
   ReadCleanUp(config, reader, options);
+  ReadSecurity(config, reader, options.security);
+  ReadLogging(config, reader, options.logging);
+  ReadTracing(config, reader, options.tracing);
   ReadLabels(config, reader, options);
   ReadEngine(config, reader, options.engine);
   ReadThreads(config, cores, reader, options);
   ReadLimits(config, reader, options);
+  ReadSharing(config, reader, options);
   ReadBatching(config, reader, options);
   if (!reader.status().ok()) return reader.status();
   return options;

@@ -34,6 +34,30 @@ struct EngineOptions {
   int threads = 1;                         // of one evaluation
 };
 
+// Files that are read again when they change. An empty path: none.
+struct SecurityOptions {
+  std::filesystem::path tls_certificate_file;
+  std::filesystem::path tls_key_file;
+  std::filesystem::path tls_client_ca_file;
+  std::filesystem::path access_file;
+};
+
+// What is written to standard error, and how.
+struct LoggingOptions {
+  enum class Format { kJson, kText };
+  enum class Level { kInfo, kWarning, kError };
+  Format format = Format::kJson;
+  Level level = Level::kInfo;
+  double success_ratio = 1;      // of successful calls, that get a line
+  int refusals_per_second = 10;  // of one status code, that get a line
+};
+
+// Spans of calls.
+struct TracingOptions {
+  std::string otlp_endpoint;  // empty: not sent anywhere
+  double ratio = 1;           // of calls that come without a trace
+};
+
 // Unless the operator says otherwise, memory for as many of the largest requests at a time.
 inline constexpr std::size_t kTransportPerRequest = 16;
 
@@ -48,6 +72,9 @@ struct ServerOptions {
   bool reflection = true;
   std::optional<bool> clean_up;  // absent: followers of models that sample are cleaned up
   EngineOptions engine;
+  SecurityOptions security;
+  LoggingOptions logging;
+  TracingOptions tracing;
   int workers = 1;  // ToOptions: as many as the cores allow
   int max_calls = 128;
   int max_queued_windows = 64;
@@ -55,6 +82,14 @@ struct ServerOptions {
   double max_batch_delay_seconds = 0;
   std::size_t max_request_bytes = std::size_t{32} << 20;
   std::size_t max_transport_bytes = kTransportPerRequest * max_request_bytes;
+  double client_share = 0.75;
+  std::string client_key;  // empty: clients are addresses
+  std::size_t max_held_bytes = kTransportPerRequest * max_request_bytes;
+  double receive_timeout_seconds = 30;
+  int max_slow_requests = kTransportPerRequest / 2;
+  double write_timeout_seconds = 30;
+  double max_call_seconds = 660;  // ten minutes of motion, watched as it comes, and a little more
+  double self_check_seconds = 10;
   int buffered_frames = 240;
   double drain_seconds = 0;
   double grace_seconds = 30;

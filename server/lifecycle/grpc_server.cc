@@ -34,7 +34,7 @@ class WithoutReflection final : public grpc::ServerBuilderOption {
   }
 };
 
-void SetConnectionLimits(grpc::ServerBuilder& builder, int max_calls) {
+void SetConnectionLimits(grpc::ServerBuilder& builder, const GrpcServerOptions& options) {
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, kMinute);
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, 20 * kSecond);
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 1);
@@ -42,9 +42,10 @@ void SetConnectionLimits(grpc::ServerBuilder& builder, int max_calls) {
   builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_IDLE_MS, 5 * kMinute);
   // Old connections go, so that clients come to know new replicas; the longest call may finish.
   builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_AGE_MS, 30 * kMinute);
-  builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_AGE_GRACE_MS, 11 * kMinute);
+  builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_AGE_GRACE_MS,
+                             static_cast<int>(options.max_call_seconds * kSecond));
   builder.AddChannelArgument(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, 10 * kSecond);
-  builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, 2 * max_calls);
+  builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, 2 * options.max_calls);
   // A second server on the same port fails to start instead of taking half of the connections.
   builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
 }
@@ -68,11 +69,12 @@ absl::StatusOr<GrpcServer> StartGrpcServer(const GrpcServerOptions& options,
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();
   grpc::ServerBuilder builder;
   GrpcServer started;
-  builder.AddListeningPort(ToString(options.listen), grpc::InsecureServerCredentials(),
-                           &started.port);
+  started.credentials =
+      options.credentials == nullptr ? grpc::InsecureServerCredentials() : options.credentials;
+  builder.AddListeningPort(ToString(options.listen), started.credentials, &started.port);
   builder.RegisterService(&service);
   if (!options.reflection) builder.SetOption(std::make_unique<WithoutReflection>());
-  SetConnectionLimits(builder, options.max_calls);
+  SetConnectionLimits(builder, options);
   SetMessageLimits(builder, options);
   started.server = builder.BuildAndStart();
   if (started.server == nullptr) {

@@ -1,6 +1,7 @@
 #ifndef DUET_SERVER_LIFECYCLE_GRPC_SERVER_H_
 #define DUET_SERVER_LIFECYCLE_GRPC_SERVER_H_
 
+#include <grpcpp/security/server_credentials.h>
 #include <grpcpp/server.h>
 
 #include <cstddef>
@@ -18,9 +19,12 @@ struct GrpcServerOptions {
   std::size_t max_request_bytes = 0;
   std::size_t max_transport_bytes = 0;
   int max_calls = 0;
+  double max_call_seconds = 660;
+  std::shared_ptr<grpc::ServerCredentials> credentials = nullptr;  // null: plain text
 };
 
 struct GrpcServer {
+  std::shared_ptr<grpc::ServerCredentials> credentials;  // asked while the server listens
   std::unique_ptr<grpc::Server> server;
   int port = 0;
 };

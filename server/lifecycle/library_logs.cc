@@ -4,9 +4,7 @@
 #include <grpc/support/log.h>
 
 #include <atomic>
-#include <nlohmann/json.hpp>
 #include <string>
-#include <utility>
 
 namespace duet::server::lifecycle {
 namespace {
@@ -17,12 +15,7 @@ std::atomic<metrics::JsonLog*> current_log{nullptr};
 void Log(const char* library, bool error, const std::string& message) {
   metrics::JsonLog* log = current_log.load(std::memory_order_acquire);
   if (log == nullptr) return;
-  nlohmann::ordered_json fields = {{"library", library}, {"message", message}};
-  if (error) {
-    log->Error("library", std::move(fields));
-  } else {
-    log->Info("library", std::move(fields));
-  }
+  log->Library(library, error ? metrics::Severity::kError : metrics::Severity::kInfo, message);
 }
 
 void LogGrpc(gpr_log_func_args* args) {

@@ -14,6 +14,7 @@
 #include "server/lifecycle/duet_server.h"
 #include "server/lifecycle/library_logs.h"
 #include "server/metrics/queued_log_sink.h"
+#include "server/metrics/text_log_sink.h"
 
 namespace duet::server::lifecycle {
 namespace {
@@ -66,7 +67,7 @@ absl::Status LoadModels(const config::ServerOptions& options, const ModelSource&
 // Serves until told to stop; what it cannot serve for is in the log as well.
 absl::Status Serve(const config::ServerOptions& options, const ModelSource& source,
                    StopSignal& stop, metrics::LogSink& sink) {
-  metrics::JsonLog log(sink);
+  metrics::JsonLog log(sink, absl::Now, LogOptionsOf(options.logging));
   const LibraryLogs library_logs(log);
   log.Info("engine_opened", {{"engine", source.engine}});
   absl::StatusOr<std::unique_ptr<DuetServer>> server = DuetServer::Start(options, sink);
@@ -107,6 +108,9 @@ int RunServer(int argc, const char* const* argv, const EngineOpener& open_engine
   RaiseDescriptorLimit();
   metrics::QueuedLogSink::Options log;
   log.drop_notice = [](std::uint64_t dropped) { return metrics::DroppedLinesNotice(dropped); };
+  if (options->logging.format == config::LoggingOptions::Format::kText) {
+    sink = std::make_shared<metrics::TextLogSink>(std::move(sink));
+  }
   // Outlives everything that logs, and writes its last lines before the process ends.
   metrics::QueuedLogSink queued_sink(std::move(sink), log);
   return Serve(*options, *source, stop, queued_sink).ok() ? kExitStopped : kExitFailed;

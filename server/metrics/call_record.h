@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "absl/status/status.h"
+#include "server/common/trace_context.h"
 
 namespace duet::server::metrics {
 
@@ -21,8 +22,11 @@ struct MethodInfo {
 struct CallRecord {
   MethodInfo method;
   std::string request_id;
-  std::string traceparent;  // W3C trace context, empty when the caller sent none
+  std::string traceparent;     // W3C trace context, empty when the caller sent none
+  common::TraceContext trace;  // of this call in it, or in a trace begun here
   std::string peer;
+  std::string caller;             // by its token or certificate; empty for somebody unknown
+  bool caller_is_listed = false;  // in the access file, so that such names are few
 
   std::string model;  // empty until a served model was found: bounded by what is served
   int version = 0;

@@ -8,27 +8,40 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // A server's own failures stand out from what callers did wrong.
-std::string_view Severity(absl::StatusCode code) {
+Severity SeverityOf(absl::StatusCode code) {
   switch (code) {
     case absl::StatusCode::kInternal:
     case absl::StatusCode::kUnknown:
     case absl::StatusCode::kDataLoss:
-      return "ERROR";
+      return Severity::kError;
     case absl::StatusCode::kResourceExhausted:
     case absl::StatusCode::kUnavailable:
     case absl::StatusCode::kDeadlineExceeded:
-      return "WARNING";
+      return Severity::kWarning;
     default:
-      return "INFO";
+      return Severity::kInfo;
   }
 }
 
+std::string_view Name(Severity severity) {
+  switch (severity) {
+    case Severity::kInfo:
+      return "INFO";
+    case Severity::kWarning:
+      return "WARNING";
+    case Severity::kError:
+      break;
+  }
+  return "ERROR";
+}
+
+double ToSeconds(absl::Time time) { return absl::ToDoubleSeconds(time - absl::UnixEpoch()); }
+
 // One line of the log: when, how grave, what, and its fields.
-std::string Line(absl::Time now, std::string_view severity, std::string_view event,
-                 const Json& fields) {
+std::string Line(absl::Time now, Severity severity, std::string_view event, const Json& fields) {
   Json line;
   line["time"] = absl::FormatTime("%Y-%m-%dT%H:%M:%E6SZ", now, absl::UTCTimeZone());
-  line["severity"] = severity;
+  line["severity"] = Name(severity);
   line["event"] = event;
   if (fields.is_object()) line.update(fields);
   // Callers' bytes may be anything; a log line is always valid UTF-8.
@@ -38,15 +51,24 @@ std::string Line(absl::Time now, std::string_view severity, std::string_view eve
 }  // namespace
 
 std::string DroppedLinesNotice(std::uint64_t dropped, absl::Time now) {
-  return Line(now, "WARNING", "log_lines_dropped", {{"dropped", dropped}});
+  return Line(now, Severity::kWarning, "log_lines_dropped", {{"dropped", dropped}});
 }
 
+JsonLog::~JsonLog() { TellUnlogged(); }
+
 void JsonLog::CallFinished(const CallRecord& record) {
+  const Severity severity = SeverityOf(record.status.code());
+  if (!IsWanted(record, severity)) return;
   Json fields;
   fields["method"] = record.method.name;
   fields["request_id"] = record.request_id;
   if (!record.traceparent.empty()) fields["traceparent"] = record.traceparent;
+  if (!record.trace.trace_id.empty()) {
+    fields["trace_id"] = record.trace.trace_id;
+    fields["span_id"] = record.trace.span_id;
+  }
   fields["peer"] = record.peer;
+  if (!record.caller.empty()) fields["caller"] = record.caller;
   fields["code"] = absl::StatusCodeToString(record.status.code());
   if (!record.status.ok()) fields["message"] = std::string(record.status.message());
   if (!record.cause.empty()) fields["cause"] = record.cause;
@@ -71,14 +93,55 @@ void JsonLog::CallFinished(const CallRecord& record) {
     fields["compute_seconds"] = record.compute_seconds;
   }
   fields["total_seconds"] = record.total_seconds;
-  Write(Severity(record.status.code()), "call", fields);
+  if (record.status.ok() && options_.success_ratio < 1) {
+    fields["sampled_ratio"] = options_.success_ratio;
+  }
+  Write(severity, "call", fields);
 }
 
-void JsonLog::Info(std::string_view event, Json fields) { Write("INFO", event, fields); }
+bool JsonLog::IsWanted(const CallRecord& record, Severity severity) {
+  if (severity < options_.level) return false;
+  if (record.status.ok()) return filter_.LogSuccess();
+  return severity == Severity::kError ||
+         filter_.LogRefusal(static_cast<int>(record.status.code()), ToSeconds(now_()));
+}
 
-void JsonLog::Error(std::string_view event, Json fields) { Write("ERROR", event, fields); }
+void JsonLog::TellUnlogged() {
+  for (const CallLogFilter::Unlogged& calls : filter_.TakeUnlogged()) {
+    if (calls.code == CallLogFilter::kLibraries) {
+      Write(Severity::kWarning, "library_lines_not_logged", {{"lines", calls.calls}});
+      continue;
+    }
+    const auto code = static_cast<absl::StatusCode>(calls.code);
+    Write(SeverityOf(code), "calls_not_logged",
+          {{"code", absl::StatusCodeToString(code)}, {"calls", calls.calls}});
+  }
+}
 
-void JsonLog::Write(std::string_view severity, std::string_view event, const Json& fields) {
+void JsonLog::Audit(const AdminAction& action) {
+  Json fields = {{"caller", action.caller},
+                 {"peer", action.peer},
+                 {"request_id", action.request_id},
+                 {"action", action.action}};
+  for (const auto& [key, value] : action.arguments) fields["arguments"][key] = value;
+  fields["code"] = absl::StatusCodeToString(action.status.code());
+  if (!action.status.ok()) fields["message"] = std::string(action.status.message());
+  sink_.Write(Line(now_(), Severity::kInfo, "admin_action", fields));
+}
+
+void JsonLog::Library(std::string_view library, Severity severity, const std::string& message) {
+  if (severity < options_.level) return;
+  if (!filter_.LogRefusal(CallLogFilter::kLibraries, ToSeconds(now_()))) return;
+  TellUnlogged();
+  Write(severity, "library", {{"library", library}, {"message", message}});
+}
+
+void JsonLog::Info(std::string_view event, Json fields) { Write(Severity::kInfo, event, fields); }
+
+void JsonLog::Error(std::string_view event, Json fields) { Write(Severity::kError, event, fields); }
+
+void JsonLog::Write(Severity severity, std::string_view event, const Json& fields) {
+  if (severity < options_.level) return;
   sink_.Write(Line(now_(), severity, event, fields));
 }
 

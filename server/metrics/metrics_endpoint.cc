@@ -1,74 +1,238 @@
 #include "server/metrics/metrics_endpoint.h"
 
-#include <httplib.h>
+#include <fcntl.h>
+#include <netdb.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
+#include "server/metrics/http_reply.h"
 
 namespace duet::server::metrics {
 namespace {
 
-// Scrapes are rare and short; more threads would only hold slow clients.
-constexpr std::size_t kThreads = 2;
-constexpr int kTimeoutSeconds = 2;
+using std::chrono::steady_clock;
 
-// The library would set SO_REUSEPORT, with which a second server takes half of the first one's
-// connections instead of failing to start.
-void SetSocketOptions(socket_t socket) {
-  const int yes = 1;
-  setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
+constexpr int kBacklog = 128;
+// How long the listener rests when a connection cannot be taken (no descriptors): the kernel keeps
+// it waiting, and asking again at once would keep a core busy.
+constexpr std::chrono::milliseconds kRest(100);
+
+// Owns a descriptor.
+class Socket {
+ public:
+  Socket() = default;
+  explicit Socket(int number) : number_(number) {}
+  Socket(Socket&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
+  Socket& operator=(Socket&& other) noexcept {
+    std::swap(number_, other.number_);
+    return *this;
+  }
+  ~Socket() {
+    if (number_ >= 0) close(number_);
+  }
+  int get() const { return number_; }
+  explicit operator bool() const { return number_ >= 0; }
+
+ private:
+  int number_ = -1;
+};
+
+// No SO_REUSEPORT: a second server on the port fails to start instead of taking half of the first
+// one's connections.
+Socket ListenOn(const std::string& host, int port) {
+  addrinfo hints = {};
+  hints.ai_flags = AI_PASSIVE;
+  hints.ai_socktype = SOCK_STREAM;
+  addrinfo* found = nullptr;
+  if (getaddrinfo(host.c_str(), std::to_string(port).c_str(), &hints, &found) != 0) return Socket();
+  const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> addresses(found, freeaddrinfo);
+  for (const addrinfo* at = found; at != nullptr; at = at->ai_next) {
+    Socket socket(::socket(at->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+    const int yes = 1;
+    if (socket) setsockopt(socket.get(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
+    if (socket && bind(socket.get(), at->ai_addr, at->ai_addrlen) == 0 &&
+        listen(socket.get(), kBacklog) == 0) {
+      return socket;
+    }
+  }
+  return Socket();
 }
 
-class HttplibEndpoint final : public MetricsEndpoint {
+int PortOf(const Socket& socket) {
+  sockaddr_storage address = {};
+  socklen_t size = sizeof(address);
+  getsockname(socket.get(), reinterpret_cast<sockaddr*>(&address), &size);
+  return ntohs(address.ss_family == AF_INET6
+                   ? reinterpret_cast<const sockaddr_in6&>(address).sin6_port
+                   : reinterpret_cast<const sockaddr_in&>(address).sin_port);
+}
+
+// One client: what it has sent, what it is to get.
+class Connection {
  public:
-  explicit HttplibEndpoint(MetricsEndpointOptions options) : options_(std::move(options)) {
-    server_.set_socket_options(SetSocketOptions);
-    server_.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
-    server_.set_read_timeout(kTimeoutSeconds);
-    server_.set_write_timeout(kTimeoutSeconds);
-    // One request a connection, so that stopping never waits for an idle scraper.
-    server_.set_keep_alive_max_count(1);
-    server_.set_payload_max_length(0);
-    server_.Get("/metrics", [this](const httplib::Request&, httplib::Response& response) {
-      response.set_content(options_.render(), "text/plain; version=0.0.4; charset=utf-8");
-    });
-    server_.Get("/healthz", [](const httplib::Request&, httplib::Response& response) {
-      response.set_content("ok\n", "text/plain");
-    });
-    server_.Get("/readyz", [this](const httplib::Request&, httplib::Response& response) {
-      const bool ready = options_.ready();
-      response.status = ready ? 200 : 503;
-      response.set_content(ready ? "ready\n" : "not ready\n", "text/plain");
-    });
+  Connection(Socket socket, steady_clock::time_point end) : socket_(std::move(socket)), end_(end) {}
+
+  pollfd Wanted() const {
+    return {socket_.get(), static_cast<short>(reply_ ? POLLOUT : POLLIN), 0};
+  }
+  steady_clock::time_point end() const { return end_; }
+
+  // Reads or writes as far as that goes at once. False when the connection is over.
+  bool Proceed(const HttpPages& pages) {
+    if (!reply_ && !Receive(pages)) return false;
+    return !reply_ || Send();
   }
 
-  ~HttplibEndpoint() override {
-    server_.stop();
-    if (thread_.joinable()) thread_.join();
+ private:
+  bool Receive(const HttpPages& pages) {
+    char bytes[2048];
+    const ssize_t got = recv(socket_.get(), bytes, sizeof(bytes), 0);
+    if (got == 0) return false;
+    if (got < 0) return errno == EAGAIN || errno == EINTR;
+    received_.append(bytes, static_cast<std::size_t>(got));
+    reply_ = HttpReply(received_, pages);
+    return true;
+  }
+
+  bool Send() {
+    const ssize_t sent =
+        send(socket_.get(), reply_->data() + sent_, reply_->size() - sent_, MSG_NOSIGNAL);
+    if (sent < 0) return errno == EAGAIN || errno == EINTR;
+    sent_ += static_cast<std::size_t>(sent);
+    if (sent_ < reply_->size()) return true;
+    // What the client sent beyond its request's head would turn the close into a reset, which may
+    // overtake the reply.
+    shutdown(socket_.get(), SHUT_WR);
+    char bytes[2048];
+    while (recv(socket_.get(), bytes, sizeof(bytes), 0) > 0) {
+    }
+    return false;
+  }
+
+  Socket socket_;
+  steady_clock::time_point end_;
+  std::string received_;
+  std::optional<std::string> reply_;
+  std::size_t sent_ = 0;
+};
+
+class PollingEndpoint final : public MetricsEndpoint {
+ public:
+  explicit PollingEndpoint(MetricsEndpointOptions options)
+      : options_(std::move(options)), pages_(Pages()), stop_(eventfd(0, EFD_CLOEXEC)) {}
+
+  ~PollingEndpoint() override {
+    const std::uint64_t one = 1;
+    if (thread_.joinable() && write(stop_.get(), &one, sizeof(one)) == sizeof(one)) thread_.join();
   }
 
   absl::Status Start() {
-    port_ = options_.port == 0 ? server_.bind_to_any_port(options_.host)
-            : server_.bind_to_port(options_.host, options_.port) ? options_.port
-                                                                 : -1;
-    if (port_ < 0) {
+    listener_ = ListenOn(options_.host, options_.port);
+    if (!listener_) {
       return absl::UnavailableError(absl::StrCat("cannot listen on ", options_.host, ":",
                                                  options_.port, " for metrics; is it in use?"));
     }
-    thread_ = std::thread([this] { server_.listen_after_bind(); });
-    // stop() is lost on a server that does not run yet.
-    while (!server_.is_running()) std::this_thread::yield();
+    port_ = PortOf(listener_);
+    thread_ = std::thread([this] { Run(); });
     return absl::OkStatus();
   }
 
   int port() const override { return port_; }
 
  private:
+  HttpPages Pages() const {
+    const auto state = [](bool good, const char* yes, const char* no) {
+      return HttpPage{good ? 200 : 503, "text/plain", good ? yes : no};
+    };
+    return {
+        {"/metrics",
+         [this] {
+           return HttpPage{200, "text/plain; version=0.0.4; charset=utf-8", options_.render()};
+         }},
+        {"/healthz",
+         [this, state] { return state(options_.healthy(), "ok\n", "not reachable\n"); }},
+        {"/readyz", [this, state] { return state(options_.ready(), "ready\n", "not ready\n"); }}};
+  }
+
+  void Run() {
+    std::vector<pollfd> wanted;
+    while (true) {
+      wanted = {{stop_.get(), POLLIN, 0}, {listener_.get(), POLLIN, 0}};
+      const auto now = steady_clock::now();
+      if (now < rests_until_) wanted[1].events = 0;
+      for (const Connection& connection : connections_) wanted.push_back(connection.Wanted());
+      if (poll(wanted.data(), wanted.size(), Timeout(now)) < 0 && errno != EINTR) return;
+      if (wanted[0].revents != 0) return;
+      Serve(wanted);
+      if ((wanted[1].revents & POLLIN) != 0) Accept();
+    }
+  }
+
+  // Milliseconds until something is to be done though nobody says a word.
+  int Timeout(steady_clock::time_point now) const {
+    auto next = steady_clock::time_point::max();
+    if (now < rests_until_) next = rests_until_;
+    if (!connections_.empty()) next = std::min(next, connections_.front().end());
+    if (next == steady_clock::time_point::max()) return -1;
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(next - now).count();
+    return static_cast<int>(std::max<std::int64_t>(0, left) + 1);
+  }
+
+  // Proceeds with those that are ready and ends those whose time is over. `wanted` holds two
+  // descriptors before the connections'.
+  void Serve(const std::vector<pollfd>& wanted) {
+    const auto now = steady_clock::now();
+    std::deque<Connection> open;
+    for (std::size_t i = 0; i < connections_.size(); ++i) {
+      Connection& connection = connections_[i];
+      const bool ready = wanted[i + 2].revents != 0;
+      if (now < connection.end() && (!ready || connection.Proceed(pages_))) {
+        open.push_back(std::move(connection));
+      }
+    }
+    connections_ = std::move(open);
+  }
+
+  void Accept() {
+    while (true) {
+      Socket socket(accept4(listener_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
+      if (!socket) {
+        if (errno == EAGAIN || errno == EINTR || errno == ECONNABORTED) return;
+        // Out of descriptors: one of our own is worth more as the next client's.
+        if (!connections_.empty()) connections_.pop_front();
+        rests_until_ = steady_clock::now() + kRest;
+        return;
+      }
+      if (connections_.size() >= options_.max_connections) connections_.pop_front();
+      connections_.emplace_back(
+          std::move(socket),
+          steady_clock::now() + std::chrono::duration_cast<steady_clock::duration>(
+                                    std::chrono::duration<double>(options_.connection_seconds)));
+    }
+  }
+
   const MetricsEndpointOptions options_;
-  httplib::Server server_;
+  const HttpPages pages_;
+  const Socket stop_;
+  Socket listener_;
+  std::deque<Connection> connections_;  // the oldest first
+  steady_clock::time_point rests_until_;
   std::thread thread_;
   int port_ = 0;
 };
@@ -77,7 +241,7 @@ class HttplibEndpoint final : public MetricsEndpoint {
 
 absl::StatusOr<std::unique_ptr<MetricsEndpoint>> MetricsEndpoint::Start(
     MetricsEndpointOptions options) {
-  auto endpoint = std::make_unique<HttplibEndpoint>(std::move(options));
+  auto endpoint = std::make_unique<PollingEndpoint>(std::move(options));
   const absl::Status started = endpoint->Start();
   if (!started.ok()) return started;
   return endpoint;

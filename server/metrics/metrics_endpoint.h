@@ -12,15 +12,20 @@ namespace duet::server::metrics {
 struct MetricsEndpointOptions {
   std::string host;
   int port = 0;                         // 0: any free one
-  std::function<std::string()> render;  // the Prometheus text; called concurrently
+  std::function<std::string()> render;  // the Prometheus text
+  std::function<bool()> healthy;        // whether the server can still be reached
   std::function<bool()> ready;          // whether calls are being served
+  // How long a connection may last, from the first byte to the last, and how many there may be: the
+  // oldest makes room for the next.
+  double connection_seconds = 5;
+  std::size_t max_connections = 256;
 };
 
 // A small HTTP server beside gRPC: GET /metrics for Prometheus, /healthz (200 while the process
-// answers) and /readyz (200 while calls are served, else 503).
+// answers and is healthy, else 503) and /readyz (200 while calls are served, else 503).
 //
-// Not prometheus::Exposer: its threads have 100 kB stacks, which do not hold the static thread
-// storage of OpenBLAS and LibTorch, so that it throws in a server that has loaded them.
+// One thread and no waiting: whoever sends or reads slowly, or says nothing, holds up nobody. The
+// callbacks run on that thread, and must be quick.
 class MetricsEndpoint {
  public:
   // Fails with UNAVAILABLE naming the address when it cannot be listened on.

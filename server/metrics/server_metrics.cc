@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "absl/status/status.h"
+#include "server/common/error_details.h"
+#include "server/metrics/process_metrics.h"
 
 namespace duet::server::metrics {
 namespace {
@@ -41,6 +43,23 @@ std::string CodeLabel(absl::StatusCode code) {
       "Aborted",  "OutOfRange",     "Unimplemented",    "Internal",          "Unavailable",
       "DataLoss", "Unauthenticated"};
   return kNames[static_cast<int>(code)];
+}
+
+// Made anew for every scrape, so that a version that is no longer served goes.
+prometheus::MetricFamily ModelInfo(const std::vector<ServedVersion>& models) {
+  prometheus::MetricFamily family;
+  family.name = "duet_model_info";
+  family.help = "1 for each model version that is served.";
+  family.type = prometheus::MetricType::Gauge;
+  for (const ServedVersion& model : models) {
+    prometheus::ClientMetric metric;
+    metric.label = {{"model", model.model},
+                    {"version", std::to_string(model.version)},
+                    {"default", model.is_default ? "true" : "false"}};
+    metric.gauge.value = 1;
+    family.metric.push_back(std::move(metric));
+  }
+  return family;
 }
 
 Labels PriorityLabels(batching::Priority priority) {
@@ -111,7 +130,27 @@ ServerMetrics::ServerMetrics()
               .Name("duet_log_lines_dropped_total")
               .Help("Log lines dropped because whoever reads the log did not keep up.")
               .Register(registry_)
-              .Add({})) {}
+              .Add({})),
+      refusals_(BuildCounter()
+                    .Name("duet_refusals_total")
+                    .Help("RPCs that were refused, by the reason in their error details.")
+                    .Register(registry_)),
+      caller_calls_(BuildCounter()
+                        .Name("duet_caller_calls_total")
+                        .Help("RPCs of the access file's callers, whatever their outcome.")
+                        .Register(registry_)),
+      secrets_reloads_(
+          BuildCounter()
+              .Name("duet_secrets_reloads_total")
+              .Help("Times that certificates or the access file were read again after a change.")
+              .Register(registry_)) {
+  // From 0 on, or the first refusal would be no increase.
+  for (const char* kind : {"access", "tls"}) {
+    for (const char* outcome : {"taken", "refused"}) {
+      secrets_reloads_.Add({{"kind", kind}, {"outcome", outcome}});
+    }
+  }
+}
 
 void ServerMetrics::CallStarted(const MethodInfo& method) {
   started_.Add(MethodLabels(method)).Increment();
@@ -123,6 +162,12 @@ void ServerMetrics::CallFinished(const CallRecord& record) {
   handling_seconds_.Add(labels, SecondsBuckets()).Observe(record.total_seconds);
   labels["grpc_code"] = CodeLabel(record.status.code());
   handled_.Add(labels).Increment();
+  if (const std::string reason = common::ReasonOf(record.status); !reason.empty()) {
+    refusals_.Add({{"reason", reason}}).Increment();
+  }
+  if (record.caller_is_listed) {
+    caller_calls_.Add({{"caller", record.caller}, {"grpc_code", labels["grpc_code"]}}).Increment();
+  }
   in_flight_.Add({{"method", std::string(record.method.name)}}).Decrement();
   if (record.first_chunk_seconds >= 0) {
     first_chunk_seconds_.Add({{"priority", std::string(record.priority)}}, SecondsBuckets())
@@ -161,13 +206,64 @@ void ServerMetrics::SetDroppedLogLines(std::function<double()> dropped_log_lines
   dropped_log_lines_ = std::move(dropped_log_lines);
 }
 
+void ServerMetrics::SetModels(std::function<std::vector<ServedVersion>()> models) {
+  models_ = std::move(models);
+}
+
+void ServerMetrics::SetCertificateEnd(std::function<double()> certificate_end) {
+  certificate_end_ = std::move(certificate_end);
+}
+
+void ServerMetrics::SetSpans(std::function<SpanCounts()> spans) { spans_ = std::move(spans); }
+
+void ServerMetrics::SetCapacity(const Capacity& capacity) {
+  const auto set = [this](const char* name, const char* help, int value) {
+    BuildGauge().Name(name).Help(help).Register(registry_).Add({}).Set(value);
+  };
+  set("duet_max_calls", "Synthesize RPCs that may be answered at a time.", capacity.calls);
+  set("duet_max_queued_windows", "First windows of RPCs that may wait for a worker.",
+      capacity.queued_windows);
+  set("duet_workers", "Batches that may be evaluated at a time.", capacity.workers);
+}
+
+void ServerMetrics::SetBuild(const std::string& version) {
+  BuildGauge()
+      .Name("duet_build_info")
+      .Help("1; its labels say which program this is.")
+      .Register(registry_)
+      .Add({{"version", version}})
+      .Set(1);
+}
+
+void ServerMetrics::SecretsReloaded(const std::string& kind, bool taken) {
+  secrets_reloads_.Add({{"kind", kind}, {"outcome", taken ? "taken" : "refused"}}).Increment();
+}
+
 std::string ServerMetrics::Render() {
   common::MutexLock lock(render_mutex_);
   if (queue_length_) queued_windows_.Set(queue_length_());
   if (dropped_log_lines_) {
     log_lines_dropped_.Increment(dropped_log_lines_() - log_lines_dropped_.Value());
   }
-  return prometheus::TextSerializer().Serialize(registry_.Collect());
+  std::vector<prometheus::MetricFamily> families = registry_.Collect();
+  if (models_) families.push_back(ModelInfo(models_()));
+  if (certificate_end_) {
+    families.push_back(Gauge("duet_tls_certificate_expiry_timestamp_seconds",
+                             "When the server's certificate ceases to be valid.",
+                             certificate_end_()));
+  }
+  if (spans_) {
+    const SpanCounts spans = spans_();
+    families.push_back(Counter("duet_spans_sent_total", "Spans that the collector took.",
+                               static_cast<double>(spans.sent)));
+    families.push_back(Counter("duet_spans_dropped_total",
+                               "Spans lost to a collector that was away or too slow.",
+                               static_cast<double>(spans.dropped)));
+  }
+  for (prometheus::MetricFamily& family : ReadProcessMetrics()) {
+    families.push_back(std::move(family));
+  }
+  return prometheus::TextSerializer().Serialize(families);
 }
 
 }  // namespace duet::server::metrics

@@ -7,14 +7,36 @@
 #include <prometheus/histogram.h>
 #include <prometheus/registry.h>
 
+#include <cstdint>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "server/batching/window_scheduler.h"
 #include "server/common/mutex.h"
 #include "server/metrics/call_record.h"
 
 namespace duet::server::metrics {
+
+// How much the server takes at a time.
+struct Capacity {
+  int calls = 0;
+  int queued_windows = 0;
+  int workers = 0;
+};
+
+// Spans since the start.
+struct SpanCounts {
+  std::uint64_t sent = 0;
+  std::uint64_t dropped = 0;
+};
+
+// A model version that is served.
+struct ServedVersion {
+  std::string model;
+  int version = 0;
+  bool is_default = false;
+};
 
 // Every number that the server gives to Prometheus. Durations are histograms in seconds; labels
 // take their values from what is served, never from a request.
@@ -26,16 +48,28 @@ namespace duet::server::metrics {
 //   duet_calls_in_flight{method}                       calls being answered now
 //   duet_first_chunk_seconds{priority}                 from a call's start to its first chunk
 //   duet_frames_total{model, version}                  follower frames sent
+//   duet_refusals_total{reason}                        calls refused, by the reason of ErrorInfo
+//   duet_caller_calls_total{caller, grpc_code}         calls of the access file's callers
+//   duet_max_calls                                     calls that may be answered at a time
 // Of windows:
 //   duet_queue_seconds{priority}                       one window's wait for a worker
 //   duet_windows_dropped_total{priority}               never started: cancelled, or too late
 //   duet_queued_windows                                waiting now
+//   duet_max_queued_windows                            first windows that may wait
 // Of batches:
 //   duet_compute_seconds                               one batch in the network
 //   duet_batch_size                                    windows of one batch
+//   duet_workers                                       batches that may be evaluated at a time
 // Of models:
 //   duet_model_load_seconds{checkpoint}                time that loading took
 //   duet_model_state{checkpoint}                       1 served, 0 failed to load
+//   duet_model_info{model, version, default}           1 for each version served now
+// Of certificates and the access file:
+//   duet_secrets_reloads_total{kind, outcome}          times they were read again
+//   duet_tls_certificate_expiry_timestamp_seconds      end of the server's certificate
+// Of the program: duet_build_info{version}, and the usual process_* (process_metrics.h).
+// Of tracing, where it is on:
+//   duet_spans_sent_total, duet_spans_dropped_total    spans taken by the collector, and lost
 // Of the log:
 //   duet_log_lines_dropped_total                       lines lost to a slow reader of the log
 //
@@ -56,6 +90,16 @@ class ServerMetrics final : public CallObserver, public batching::WindowObserver
   // What is asked for at every scrape. Call before the first Render.
   void SetQueueLength(std::function<double()> queued_windows);
   void SetDroppedLogLines(std::function<double()> dropped_log_lines);
+  void SetModels(std::function<std::vector<ServedVersion>()> models);
+  void SetSpans(std::function<SpanCounts()> spans);
+  // Seconds since 1970.
+  void SetCertificateEnd(std::function<double()> certificate_end);
+
+  void SetCapacity(const Capacity& capacity);
+  void SetBuild(const std::string& version);
+
+  // Files of one kind were read again, and taken over or refused.
+  void SecretsReloaded(const std::string& kind, bool taken);
 
   // The Prometheus text format.
   std::string Render();
@@ -76,6 +120,12 @@ class ServerMetrics final : public CallObserver, public batching::WindowObserver
   prometheus::Family<prometheus::Gauge>& load_seconds_;
   prometheus::Family<prometheus::Gauge>& model_state_;
   prometheus::Counter& log_lines_dropped_;
+  prometheus::Family<prometheus::Counter>& refusals_;
+  prometheus::Family<prometheus::Counter>& caller_calls_;
+  prometheus::Family<prometheus::Counter>& secrets_reloads_;
+  std::function<std::vector<ServedVersion>()> models_;
+  std::function<double()> certificate_end_;
+  std::function<SpanCounts()> spans_;
   std::function<double()> queue_length_;
   std::function<double()> dropped_log_lines_;
   common::Mutex render_mutex_;  // one scrape brings the numbers that are asked for up to date

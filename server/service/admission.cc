@@ -1,5 +1,8 @@
 #include "server/service/admission.h"
 
+#include <optional>
+#include <utility>
+
 #include "server/service/refusals.h"
 
 namespace duet::server::service {
@@ -19,9 +22,10 @@ absl::Status Refusal(Admission::State state) {
 
 }  // namespace
 
-AdmissionSlot::~AdmissionSlot() {
-  if (admission_ != nullptr) admission_->Leave();
-}
+Admission::Admission(const AdmissionLimits& limits)
+    : places_(limits.max_calls, limits.client_share),
+      bytes_(limits.max_held_bytes, limits.client_share),
+      slow_requests_(limits.max_slow_requests, limits.client_share) {}
 
 void Admission::SetState(State state) {
   common::MutexLock lock(mutex_);
@@ -35,26 +39,33 @@ Admission::State Admission::state() const {
 
 absl::Status Admission::CheckServing() const { return Refusal(state()); }
 
-absl::StatusOr<AdmissionSlot> Admission::Admit(batching::Priority priority) {
-  const std::size_t limit = batching::ShareOf(max_calls_, priority);
+absl::StatusOr<ShareLease> Admission::Admit(const std::string& client) {
   common::MutexLock lock(mutex_);
-  // The state is read under the lock that guards the count: once SetState(kDraining) has returned,
+  // The place is taken under the lock that guards the state: once SetState(kDraining) has returned,
   // no further call is admitted, and calls() counts every call that was.
   const absl::Status serving = Refusal(state_);
   if (!serving.ok()) return serving;
-  if (calls_ >= limit) return TooManyCallsRefusal(calls_, limit);
-  ++calls_;
-  return AdmissionSlot(this);
+  std::optional<ShareLease> place = places_.Take(client);
+  if (!place) return TooManyCallsRefusal(places_.taken(), places_.amount());
+  return *std::move(place);
 }
 
-std::size_t Admission::calls() const {
-  common::MutexLock lock(mutex_);
-  return calls_;
+absl::Status Admission::CheckShare(batching::Priority priority) const {
+  const std::size_t limit = batching::ShareOf(places_.amount(), priority);
+  const std::size_t calls = places_.taken();
+  return calls > limit ? TooManyCallsRefusal(calls - 1, limit) : absl::OkStatus();
 }
 
-void Admission::Leave() {
-  common::MutexLock lock(mutex_);
-  --calls_;
+absl::StatusOr<ShareLease> Admission::Hold(const std::string& client, std::size_t bytes) {
+  std::optional<ShareLease> held = bytes_.Take(client, bytes);
+  if (!held) return TooManyBytesRefusal(bytes, bytes_.taken(), bytes_.amount());
+  return *std::move(held);
+}
+
+absl::StatusOr<ShareLease> Admission::ArriveSlowly(const std::string& client) {
+  std::optional<ShareLease> leave = slow_requests_.Take(client);
+  if (!leave) return TooManySlowRequestsRefusal(slow_requests_.amount());
+  return *std::move(leave);
 }
 
 }  // namespace duet::server::service

@@ -2,44 +2,34 @@
 #define DUET_SERVER_SERVICE_ADMISSION_H_
 
 #include <cstddef>
-#include <utility>
+#include <string>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "server/batching/priority.h"
 #include "server/common/mutex.h"
+#include "server/service/share_pool.h"
 
 namespace duet::server::service {
 
-class Admission;
-
-// Holds one of the places for calls being answered; its destructor gives the place back.
-class AdmissionSlot {
- public:
-  AdmissionSlot() = default;
-  AdmissionSlot(AdmissionSlot&& other) noexcept
-      : admission_(std::exchange(other.admission_, nullptr)) {}
-  AdmissionSlot& operator=(AdmissionSlot&& other) noexcept {
-    std::swap(admission_, other.admission_);
-    return *this;
-  }
-  ~AdmissionSlot();
-
- private:
-  friend class Admission;
-  explicit AdmissionSlot(Admission* admission) : admission_(admission) {}
-  Admission* admission_ = nullptr;
+struct AdmissionLimits {
+  std::size_t max_calls = 1;  // answered at the same time
+  // Bytes of the requests of calls being answered, as they came.
+  std::size_t max_held_bytes = std::size_t{1} << 40;
+  // Requests that take long to arrive, at the same time.
+  std::size_t max_slow_requests = 1024;
+  double client_share = 1;  // see SharePool
 };
 
-// Decides whether the server takes one more Synthesize call.
+// Decides what the server takes on: calls, the bytes of their requests, and how many requests may
+// be long on their way. Each is shared among clients.
 //
 // Threads: safe to call concurrently.
 class Admission {
  public:
   enum class State { kLoading, kServing, kDraining };
 
-  // `max_calls`: calls answered at the same time, 1 or more; bulk calls may fill their share of it.
-  explicit Admission(std::size_t max_calls) : max_calls_(max_calls) {}
+  explicit Admission(const AdmissionLimits& limits);
 
   void SetState(State state);
   State state() const;
@@ -47,20 +37,29 @@ class Admission {
   // Whether new calls are answered at all: UNAVAILABLE with RetryInfo while loading or draining.
   absl::Status CheckServing() const;
 
-  // UNAVAILABLE as above; RESOURCE_EXHAUSTED with RetryInfo when there are too many calls.
-  // The slot must not outlive the admission.
-  absl::StatusOr<AdmissionSlot> Admit(batching::Priority priority);
+  // A place among the Synthesize calls being answered. UNAVAILABLE as above; RESOURCE_EXHAUSTED
+  // with RetryInfo when there are too many calls, altogether or of this client.
+  absl::StatusOr<ShareLease> Admit(const std::string& client);
 
-  std::size_t calls() const;
+  // Whether a call that has its place may keep it as work of this priority: bulk calls may fill
+  // their share of the places. RESOURCE_EXHAUSTED as above.
+  absl::Status CheckShare(batching::Priority priority) const;
+
+  // Room for a request that has come. RESOURCE_EXHAUSTED with RetryInfo when there is none.
+  absl::StatusOr<ShareLease> Hold(const std::string& client, std::size_t bytes);
+
+  // Leave for a request to take its time to arrive. RESOURCE_EXHAUSTED with RetryInfo.
+  absl::StatusOr<ShareLease> ArriveSlowly(const std::string& client);
+
+  std::size_t calls() const { return places_.taken(); }
+  std::size_t held_bytes() const { return bytes_.taken(); }
 
  private:
-  friend class AdmissionSlot;
-  void Leave();
-
-  const std::size_t max_calls_;
   mutable common::Mutex mutex_;
   State state_ DUET_GUARDED_BY(mutex_) = State::kLoading;
-  std::size_t calls_ DUET_GUARDED_BY(mutex_) = 0;
+  SharePool places_;
+  SharePool bytes_;
+  SharePool slow_requests_;
 };
 
 }  // namespace duet::server::service

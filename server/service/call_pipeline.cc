@@ -1,22 +1,52 @@
 #include "server/service/call_pipeline.h"
 
+#include <string>
+#include <utility>
+
+#include "server/common/trace_context.h"
 #include "server/service/call_identity.h"
 #include "server/service/refusals.h"
 #include "server/service/wire.h"
 
 namespace duet::server::service {
 
-std::unique_ptr<CallScope> CallPipeline::OpenScope(const grpc::ServerContextBase& context,
-                                                   const metrics::MethodInfo& method) const {
-  return std::make_unique<CallScope>(method, IdentifyCall(context), observers_, clock_);
+OpenedCall CallPipeline::Open(const grpc::ServerContextBase& context,
+                              const metrics::MethodInfo& method) const {
+  CallIdentity identity = IdentifyCall(context, client_key_);
+  OpenedCall opened;
+  opened.client = identity.client;
+  opened.scope = std::make_unique<CallScope>(method, std::move(identity), observers_, clock_);
+  metrics::CallRecord& record = opened.scope->record();
+  if (auto trace = common::ContinueTrace(record.traceparent)) {
+    record.trace = *std::move(trace);
+  } else if (trace_ratio_.has_value()) {
+    record.trace = common::BeginTrace(*trace_ratio_);
+  }
+  opened.status = opened.scope->Enter(guard_.Admit(context, role_));
+  // Whoever is known shares as that, from wherever they call.
+  if (record.caller_is_listed) opened.client = "caller:" + record.caller;
+  return opened;
 }
 
-absl::Status CallPipeline::Read(const grpc::ByteBuffer& bytes,
-                                google::protobuf::Message& request) const {
-  if (bytes.Length() > max_request_bytes_) {
-    return TooLargeRefusal(bytes.Length(), max_request_bytes_);
-  }
-  return ParseMessage(bytes, request);
+void CallPipeline::Report(CallScope& scope, const absl::Status& status,
+                          grpc::ServerContextBase& context) {
+  scope.Finish(status);
+  common::AddRetryPushback(status, context);
+  // Tells the caller under which span the call is known here.
+  const std::string traceparent = common::Traceparent(scope.record().trace);
+  if (!traceparent.empty()) context.AddTrailingMetadata("traceparent", traceparent);
+}
+
+absl::Status CallPipeline::CheckSize(const grpc::ByteBuffer& bytes) const {
+  if (bytes.Length() <= max_request_bytes_) return absl::OkStatus();
+  return TooLargeRefusal(bytes.Length(), max_request_bytes_);
+}
+
+// By value, so that the caller's bytes go as soon as they are read.
+// NOLINTNEXTLINE(performance-unnecessary-value-param)
+absl::Status CallPipeline::Read(grpc::ByteBuffer bytes, google::protobuf::Message& request) const {
+  const absl::Status fits = CheckSize(bytes);
+  return fits.ok() ? ParseMessage(std::move(bytes), request) : fits;
 }
 
 }  // namespace duet::server::service

@@ -15,7 +15,16 @@ CallScope::CallScope(const metrics::MethodInfo& method, CallIdentity identity,
   for (metrics::CallObserver* observer : observers_) observer->CallStarted(method);
 }
 
+absl::Status CallScope::Enter(security::CallPass pass) {
+  pass_ = std::move(pass);
+  record_.caller = pass_.name();
+  record_.caller_is_listed = pass_.is_listed();
+  return pass_.status();
+}
+
 void CallScope::Finish(const absl::Status& status) {
+  // A caller that has its status has its share as well.
+  pass_.Release();
   record_.status = status;
   record_.total_seconds = ElapsedSeconds();
   for (metrics::CallObserver* observer : observers_) observer->CallFinished(record_);

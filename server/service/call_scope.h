@@ -6,6 +6,7 @@
 #include "absl/status/status.h"
 #include "server/common/clock.h"
 #include "server/metrics/call_record.h"
+#include "server/security/call_guard.h"
 #include "server/service/call_identity.h"
 
 namespace duet::server::service {
@@ -19,6 +20,11 @@ class CallScope {
   CallScope(const metrics::MethodInfo& method, CallIdentity identity,
             const std::vector<metrics::CallObserver*>& observers, const common::Clock& clock);
 
+  // The guard's answer: whether the call may go on. What it holds is its caller's again at the end.
+  absl::Status Enter(security::CallPass pass);
+  // RESOURCE_EXHAUSTED when the caller has not so many frames left.
+  absl::Status HoldFrames(int frames) { return pass_.HoldFrames(frames); }
+
   // Filled in as the call goes on.
   metrics::CallRecord& record() { return record_; }
   double ElapsedSeconds() const { return common::SecondsBetween(begin_, clock_.Now()); }
@@ -30,6 +36,7 @@ class CallScope {
   const common::Clock& clock_;
   const common::TimePoint begin_;
   metrics::CallRecord record_;
+  security::CallPass pass_;
 };
 
 }  // namespace duet::server::service

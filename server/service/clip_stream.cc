@@ -80,6 +80,8 @@ absl::Status ClipStream::ScheduleNext(bool continues_call) {
   job.priority = options_.priority;
   job.deadline = options_.deadline;
   job.cancelled = cancelled_;
+  job.window.cancelled = cancelled_;
+  job.client = options_.client;
   job.continues_call = continues_call;
   job.call_windows = clip_.window_count();
   job.done = [self = shared_from_this()](const batching::WindowOutcome& outcome) {

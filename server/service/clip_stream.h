@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "absl/status/status.h"
@@ -22,6 +23,7 @@ struct ClipStreamOptions {
   // The next window is scheduled while fewer finished frames than this wait for the reader; 1 or
   // more. Required.
   int buffered_frames = 0;
+  std::string client;  // see WindowJob
 };
 
 // What one call did, for its summary, its metrics and its log line.

@@ -5,10 +5,10 @@
 #include <utility>
 #include <variant>
 
+#include "server/service/call_deadline.h"
 #include "server/service/model_message.h"
 #include "server/service/priority_message.h"
 #include "server/service/refusals.h"
-#include "server/service/synthesize_reactor.h"
 #include "server/service/validator.h"
 #include "server/service/wire.h"
 
@@ -22,47 +22,113 @@ constexpr metrics::MethodInfo kSynthesize = Method("Synthesize", "server_stream"
 constexpr metrics::MethodInfo kListModels = Method("ListModels", "unary");
 constexpr metrics::MethodInfo kGetModel = Method("GetModel", "unary");
 
-// A call's deadline on the scheduler's clock.
-common::TimePoint DeadlineOf(const grpc::CallbackServerContext& context,
-                             const common::Clock& clock) {
-  const auto left = context.deadline() - std::chrono::system_clock::now();
-  // "No deadline" is so far away that adding to it overflows; beyond a day is as good as none.
-  if (left > std::chrono::hours(24)) return common::TimePoint::max();
-  return clock.Now() + std::chrono::duration_cast<common::TimePoint::duration>(left);
+// Requests whose memory is worth giving back to the system.
+constexpr std::size_t kLargeRequestBytes = std::size_t{1} << 20;
+
+// A call's deadline on the scheduler's clock: the caller's, or the server's own where that is
+// nearer.
+common::TimePoint DeadlineOf(const grpc::ServerContextBase& context, const common::Clock& clock,
+                             double max_seconds) {
+  const double seconds = std::min(SecondsLeft(context), max_seconds);
+  // Beyond ten days is as good as none, and adding to it may overflow.
+  constexpr double kNever = 10 * 24 * 3600;
+  if (seconds > kNever) return common::TimePoint::max();
+  return clock.Now() + std::chrono::duration_cast<common::TimePoint::duration>(
+                           std::chrono::duration<double>(seconds));
 }
 
 }  // namespace
 
 MotionSynthesisService::MotionSynthesisService(ServiceParts parts)
     : parts_(std::move(parts)),
-      pipeline_(parts_.limits.max_request_bytes, parts_.observers, *parts_.clock) {}
-
-grpc::ServerWriteReactor<grpc::ByteBuffer>* MotionSynthesisService::Synthesize(
-    grpc::CallbackServerContext* context, const grpc::ByteBuffer* request) {
-  auto incoming = pipeline_.Open<v1::SynthesizeRequest>(
-      *context, kSynthesize, *request, [this](const v1::SynthesizeRequest& opened) {
-        // An unknown priority is refused by the validator, together with all else that is wrong.
-        return parts_.admission->Admit(
-            PriorityOf(opened).value_or(batching::Priority::kInteractive));
+      pipeline_(parts_.limits.max_request_bytes, parts_.client_key, parts_.observers, *parts_.clock,
+                parts_.guard, security::Role::kSynthesise, parts_.trace_ratio) {
+  Serve("/duet.v1.MotionSynthesis/Synthesize",
+        [this](Context* context) { return Synthesize(context); });
+  ServeUnary<v1::ListModelsRequest>(
+      "/duet.v1.MotionSynthesis/ListModels", kListModels,
+      [this](const v1::ListModelsRequest&) -> absl::StatusOr<v1::ListModelsResponse> {
+        return List();
       });
-  auto* reactor = new SynthesizeReactor(*context);
-  absl::StatusOr<SynthesisCall::Parts> prepared = Prepare(*context, incoming);
-  if (!prepared.ok()) {
-    reactor->Finish(*incoming.scope, prepared.status());
+  ServeUnary<v1::GetModelRequest>(
+      "/duet.v1.MotionSynthesis/GetModel", kGetModel,
+      [this](const v1::GetModelRequest& request) { return Get(request); });
+}
+
+RawService::Reactor* MotionSynthesisService::Synthesize(Context* context) {
+  OpenedCall opened = pipeline_.Open(*context, kSynthesize);
+  auto* reactor = new CallReactor(*context);
+  absl::StatusOr<ShareLease> place = opened.status.ok() ? parts_.admission->Admit(opened.client)
+                                                        : absl::StatusOr<ShareLease>(opened.status);
+  absl::Status admitted = place.status();
+  // Whether there is a place, and room in the queue, takes no look at the request. A bulk call's
+  // smaller share of both does: that comes when it has been read.
+  if (admitted.ok()) {
+    const absl::Status room =
+        parts_.scheduler->CheckRoom(batching::Priority::kInteractive, opened.client);
+    if (!room.ok()) admitted = QueueRefusal(room);
+  }
+  if (!admitted.ok()) {
+    place = admitted;  // free again before the caller knows
+    reactor->Finish(*opened.scope, admitted);
     return reactor;
   }
-  auto call = SynthesisCall::Create(*std::move(prepared), *parts_.scheduler, *reactor);
-  Remember(call);
-  reactor->Run(std::move(call));
+  reactor->Receive(
+      Receive(std::move(opened), *std::move(place), *reactor),
+      [this](CallReactor& received_by, const std::shared_ptr<Reception>& reception,
+             grpc::ByteBuffer bytes) { Handle(received_by, reception, std::move(bytes)); });
   return reactor;
 }
 
-absl::StatusOr<SynthesisCall::Parts> MotionSynthesisService::Prepare(
-    const grpc::CallbackServerContext& context,
-    IncomingCall<v1::SynthesizeRequest>& incoming) const {
-  if (!incoming.status.ok()) return incoming.status;
-  AdmissionSlot slot = std::move(incoming.slot);  // free again when the request is refused
-  const v1::SynthesizeRequest& request = incoming.request;
+std::shared_ptr<Reception> MotionSynthesisService::Receive(OpenedCall opened, ShareLease place,
+                                                           CallReactor& reactor) {
+  Reception::Parts parts;
+  parts.writer = &reactor;
+  parts.admission = parts_.admission;
+  parts.clock = parts_.clock;
+  parts.limits = parts_.reception;
+  parts.scope = std::move(opened.scope);
+  parts.client = std::move(opened.client);
+  parts.place = std::move(place);
+  auto reception = std::make_shared<Reception>(std::move(parts));
+  calls_.Add(reception);
+  return reception;
+}
+
+void MotionSynthesisService::CountIfLarge(const grpc::ByteBuffer& bytes) {
+  if (bytes.Length() >= kLargeRequestBytes) large_request_bytes_ += bytes.Length();
+}
+
+void MotionSynthesisService::Handle(CallReactor& reactor,
+                                    const std::shared_ptr<Reception>& reception,
+                                    grpc::ByteBuffer bytes) {
+  CountIfLarge(bytes);
+  absl::StatusOr<SynthesisCall::Parts> prepared =
+      Prepare(reactor.context(), *reception, std::move(bytes));
+  if (!prepared.ok()) {
+    reception->Refuse(prepared.status());
+    return;
+  }
+  reactor.Run(SynthesisCall::Create(*std::move(prepared), *parts_.scheduler, reactor));
+}
+
+absl::StatusOr<SynthesisCall::Parts> MotionSynthesisService::Prepare(const Context& context,
+                                                                     Reception& reception,
+                                                                     grpc::ByteBuffer bytes) {
+  const absl::Status fits = pipeline_.CheckSize(bytes);
+  if (!fits.ok()) return fits;
+  absl::StatusOr<ShareLease> held = parts_.admission->Hold(reception.client(), bytes.Length());
+  if (!held.ok()) return held.status();
+  v1::SynthesizeRequest request;
+  const absl::Status read = pipeline_.Read(std::move(bytes), request);
+  if (!read.ok()) return read;
+  // An unknown priority is refused by the validator, together with all else that is wrong.
+  const batching::Priority priority =
+      PriorityOf(request).value_or(batching::Priority::kInteractive);
+  const absl::Status place = parts_.admission->CheckShare(priority);
+  if (!place.ok()) return place;
+  const absl::Status room = parts_.scheduler->CheckRoom(priority, reception.client());
+  if (!room.ok()) return QueueRefusal(room);
   registry::FindResult found = parts_.registry->Find(ToQuery(request.model()));
   if (const auto* not_found = std::get_if<registry::ModelNotFound>(&found)) {
     return ModelNotFoundRefusal(*not_found);
@@ -71,46 +137,50 @@ absl::StatusOr<SynthesisCall::Parts> MotionSynthesisService::Prepare(
   const engine::ModelDescription& model = served.model->description();
   absl::StatusOr<ValidatedRequest> validated = ValidateRequest(request, model, parts_.limits);
   if (!validated.ok()) return validated.status();
+  const absl::Status frames = reception.HoldFrames(validated->clip.leader.frame_count());
+  if (!frames.ok()) return frames;
   const bool servers_choice = parts_.clean_up.value_or(model.cleaned_up_by_default());
   const bool clean_up = validated->clean_up.value_or(servers_choice);
   return SynthesisCall::Parts{std::move(served.model),
                               *std::move(validated),
-                              std::move(slot),
-                              std::move(incoming.scope),
-                              DeadlineOf(context, *parts_.clock),
+                              reception.TakePlace(),
+                              *std::move(held),
+                              reception.TakeScope(),
+                              DeadlineOf(context, *parts_.clock, parts_.max_call_seconds),
                               parts_.buffered_frames,
-                              clean_up};
+                              clean_up,
+                              reception.client(),
+                              parts_.write_timeout_seconds,
+                              parts_.clock};
 }
 
 template <typename Request, typename Answer>
-grpc::ServerUnaryReactor* MotionSynthesisService::AnswerUnary(grpc::CallbackServerContext& context,
-                                                              const metrics::MethodInfo& method,
-                                                              const grpc::ByteBuffer& bytes,
-                                                              grpc::ByteBuffer& response,
-                                                              const Answer& answer) const {
-  const auto incoming = pipeline_.Open<Request>(context, method, bytes, [this](const Request&) {
-    const absl::Status serving = parts_.admission->CheckServing();
-    return serving.ok() ? absl::StatusOr<AdmissionSlot>(AdmissionSlot()) : serving;
+void MotionSynthesisService::ServeUnary(const char* path, const metrics::MethodInfo& method,
+                                        Answer answer) {
+  const auto handle = [this, answer](CallReactor& reactor,
+                                     const std::shared_ptr<Reception>& reception,
+                                     grpc::ByteBuffer bytes) {
+    CountIfLarge(bytes);
+    Request request;
+    const absl::Status read = pipeline_.Read(std::move(bytes), request);
+    if (!read.ok()) return reception->Refuse(read);
+    const auto answered = answer(request);
+    if (!answered.ok()) return reception->Refuse(answered.status());
+    const std::unique_ptr<CallScope> scope = reception->Answer();
+    reactor.Respond(*scope, SerializeMessage(*answered));
+  };
+  Serve(path, [this, method, handle](Context* context) -> Reactor* {
+    OpenedCall opened = pipeline_.Open(*context, method);
+    auto* reactor = new CallReactor(*context);
+    const absl::Status serving =
+        opened.status.ok() ? parts_.admission->CheckServing() : opened.status;
+    if (serving.ok()) {
+      reactor->Receive(Receive(std::move(opened), ShareLease(), *reactor), handle);
+    } else {
+      reactor->Finish(*opened.scope, serving);
+    }
+    return reactor;
   });
-  absl::Status status = incoming.status;
-  if (status.ok()) {
-    const auto answered = answer(incoming.request);
-    status = answered.status();
-    if (answered.ok()) response = SerializeMessage(*answered);
-  }
-  grpc::ServerUnaryReactor* reactor = context.DefaultReactor();
-  CallPipeline::Close(*incoming.scope, status, context, *reactor);
-  return reactor;
-}
-
-grpc::ServerUnaryReactor* MotionSynthesisService::ListModels(grpc::CallbackServerContext* context,
-                                                             const grpc::ByteBuffer* request,
-                                                             grpc::ByteBuffer* response) {
-  return AnswerUnary<v1::ListModelsRequest>(
-      *context, kListModels, *request, *response,
-      [this](const v1::ListModelsRequest&) -> absl::StatusOr<v1::ListModelsResponse> {
-        return List();
-      });
 }
 
 v1::ListModelsResponse MotionSynthesisService::List() const {
@@ -119,14 +189,6 @@ v1::ListModelsResponse MotionSynthesisService::List() const {
     *response.add_models() = ToMessage(served);
   }
   return response;
-}
-
-grpc::ServerUnaryReactor* MotionSynthesisService::GetModel(grpc::CallbackServerContext* context,
-                                                           const grpc::ByteBuffer* request,
-                                                           grpc::ByteBuffer* response) {
-  return AnswerUnary<v1::GetModelRequest>(
-      *context, kGetModel, *request, *response,
-      [this](const v1::GetModelRequest& opened) { return Get(opened); });
 }
 
 absl::StatusOr<v1::GetModelResponse> MotionSynthesisService::Get(
@@ -139,26 +201,6 @@ absl::StatusOr<v1::GetModelResponse> MotionSynthesisService::Get(
   *response.mutable_model() = ToMessage(std::get<registry::ServedModel>(found));
   *response.mutable_limits() = ToMessage(parts_.limits);
   return response;
-}
-
-void MotionSynthesisService::Remember(const std::shared_ptr<SynthesisCall>& call) {
-  common::MutexLock lock(mutex_);
-  // Admission bounds how many are alive, and so what this costs.
-  calls_.erase(
-      std::remove_if(calls_.begin(), calls_.end(), [](const auto& weak) { return weak.expired(); }),
-      calls_.end());
-  calls_.push_back(call);
-}
-
-void MotionSynthesisService::AbortAll(const absl::Status& reason) {
-  std::vector<std::weak_ptr<SynthesisCall>> calls;
-  {
-    common::MutexLock lock(mutex_);
-    calls = calls_;
-  }
-  for (const std::weak_ptr<SynthesisCall>& weak : calls) {
-    if (const auto call = weak.lock()) call->Abort(reason);
-  }
 }
 
 }  // namespace duet::server::service

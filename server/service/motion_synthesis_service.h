@@ -1,18 +1,29 @@
 #ifndef DUET_SERVER_SERVICE_MOTION_SYNTHESIS_SERVICE_H_
 #define DUET_SERVER_SERVICE_MOTION_SYNTHESIS_SERVICE_H_
 
+#include <grpcpp/server_context.h>
+#include <grpcpp/support/byte_buffer.h>
+
+#include <atomic>
+#include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
-#include "duet/v1/synthesis.grpc.pb.h"
+#include "duet/v1/synthesis.pb.h"
 #include "server/batching/window_scheduler.h"
 #include "server/common/clock.h"
-#include "server/common/mutex.h"
 #include "server/metrics/call_record.h"
 #include "server/registry/model_registry.h"
+#include "server/security/call_guard.h"
 #include "server/service/admission.h"
 #include "server/service/call_pipeline.h"
+#include "server/service/call_reactor.h"
+#include "server/service/live_calls.h"
+#include "server/service/raw_service.h"
+#include "server/service/reception.h"
 #include "server/service/request_limits.h"
 #include "server/service/synthesis_call.h"
 
@@ -26,59 +37,65 @@ struct ServiceParts {
   std::vector<metrics::CallObserver*> observers;
   const common::Clock* clock = &common::Clock::Real();
   RequestLimits limits;
+  ReceptionLimits reception;
   int buffered_frames = 0;  // see ClipStreamOptions
+  // How long one message of an answer may wait for its reader, and how long a call may last. Kept
+  // by whoever calls CheckTime.
+  double write_timeout_seconds = std::numeric_limits<double>::infinity();
+  double max_call_seconds = std::numeric_limits<double>::infinity();
+  std::string client_key;              // see IdentifyCall
+  security::CallGuard guard{nullptr};  // who may call; everybody unless it has a list
+  // Of calls that come without a trace, the part that is sampled in one begun here. Absent: no
+  // trace is begun.
+  std::optional<double> trace_ratio;
   // Whether followers are cleaned up where the request does not say. Absent: as the model has it
   // (ModelDescription::cleaned_up_by_default).
   std::optional<bool> clean_up;
 };
 
-// The generated service with every method on the callback API, and bytes for messages (wire.h).
-using RawMotionSynthesis = v1::MotionSynthesis::WithRawCallbackMethod_Synthesize<
-    v1::MotionSynthesis::WithRawCallbackMethod_ListModels<
-        v1::MotionSynthesis::WithRawCallbackMethod_GetModel<v1::MotionSynthesis::Service>>>;
-
 // The contract's service: no method blocks.
 //
-// Every call comes in by the CallPipeline. A Synthesize call goes on model -> validator ->
-// SynthesisCall, which lives until its last reply was taken or the caller went away.
-class MotionSynthesisService final : public RawMotionSynthesis {
+// Every call comes in by the CallPipeline and is admitted before its message is read (Reception). A
+// Synthesize call goes on model -> validator -> SynthesisCall, which lives until its last reply was
+// taken or the caller went away.
+class MotionSynthesisService final : public RawService {
  public:
   static constexpr char kServiceName[] = "duet.v1.MotionSynthesis";
 
   explicit MotionSynthesisService(ServiceParts parts);
 
-  grpc::ServerWriteReactor<grpc::ByteBuffer>* Synthesize(grpc::CallbackServerContext* context,
-                                                         const grpc::ByteBuffer* request) override;
-  grpc::ServerUnaryReactor* ListModels(grpc::CallbackServerContext* context,
-                                       const grpc::ByteBuffer* request,
-                                       grpc::ByteBuffer* response) override;
-  grpc::ServerUnaryReactor* GetModel(grpc::CallbackServerContext* context,
-                                     const grpc::ByteBuffer* request,
-                                     grpc::ByteBuffer* response) override;
-
   // Ends every call that is still being answered.
-  void AbortAll(const absl::Status& reason);
+  void AbortAll(const absl::Status& reason) { calls_.AbortAll(reason); }
+
+  // Ends the calls that have taken longer than they may: to arrive, to be answered, to be read. To
+  // be called every few hundredths of a second.
+  void CheckTime() { calls_.CheckTime(parts_.clock->Now()); }
+
+  // Bytes of all large requests so far: memory that was used and is no more, or soon will not be.
+  std::uint64_t large_request_bytes() const { return large_request_bytes_; }
 
  private:
-  // Finds the model and checks the request. Takes the call's slot, and its scope where the call
-  // goes on; that of a refused call stays.
-  absl::StatusOr<SynthesisCall::Parts> Prepare(const grpc::CallbackServerContext& context,
-                                               IncomingCall<v1::SynthesizeRequest>& incoming) const;
+  using Context = grpc::CallbackServerContext;
+
+  Reactor* Synthesize(Context* context);
+  void CountIfLarge(const grpc::ByteBuffer& bytes);
+  void Handle(CallReactor& reactor, const std::shared_ptr<Reception>& reception,
+              grpc::ByteBuffer bytes);
+  // Finds the model and checks the request. Takes place and scope of a call that goes on; those of
+  // a refused one stay.
+  absl::StatusOr<SynthesisCall::Parts> Prepare(const Context& context, Reception& reception,
+                                               grpc::ByteBuffer bytes);
   v1::ListModelsResponse List() const;
   absl::StatusOr<v1::GetModelResponse> Get(const v1::GetModelRequest& request) const;
-  // A unary call, from the bytes of its request to those of its response. `answer`: a response or a
-  // status from (const Request&).
+  // A method with one answer: `answer` is a StatusOr<Response> from (const Request&).
   template <typename Request, typename Answer>
-  grpc::ServerUnaryReactor* AnswerUnary(grpc::CallbackServerContext& context,
-                                        const metrics::MethodInfo& method,
-                                        const grpc::ByteBuffer& bytes, grpc::ByteBuffer& response,
-                                        const Answer& answer) const;
-  void Remember(const std::shared_ptr<SynthesisCall>& call);
+  void ServeUnary(const char* path, const metrics::MethodInfo& method, Answer answer);
+  std::shared_ptr<Reception> Receive(OpenedCall opened, ShareLease place, CallReactor& reactor);
 
   const ServiceParts parts_;
   const CallPipeline pipeline_;
-  common::Mutex mutex_;
-  std::vector<std::weak_ptr<SynthesisCall>> calls_ DUET_GUARDED_BY(mutex_);
+  LiveCalls calls_;
+  std::atomic<std::uint64_t> large_request_bytes_{0};
 };
 
 }  // namespace duet::server::service

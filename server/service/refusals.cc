@@ -34,8 +34,47 @@ absl::Status DrainingRefusal() {
 absl::Status TooManyCallsRefusal(std::size_t calls, std::size_t limit) {
   return Retryable(
       absl::ResourceExhaustedError(absl::StrCat(calls, " calls are being answered, at most ", limit,
-                                                " of this priority may")),
+                                                " of this priority may, and no client may fill "
+                                                "all of them alone")),
       common::kReasonTooManyCalls, {{"max_calls", absl::StrCat(limit)}});
+}
+
+absl::Status TooManyBytesRefusal(std::size_t bytes, std::size_t held, std::size_t limit) {
+  return Retryable(absl::ResourceExhaustedError(absl::StrCat(
+                       "the request has ", bytes, " bytes; the requests being answered hold ", held,
+                       " already, at most max_held_bytes = ", limit,
+                       " may be held, and not all of them for one client")),
+                   common::kReasonTooManyBytes, {{"max_held_bytes", absl::StrCat(limit)}});
+}
+
+absl::Status TooManySlowRequestsRefusal(std::size_t limit) {
+  return Retryable(absl::ResourceExhaustedError(absl::StrCat(
+                       "the request is taking long to arrive, and as many others are as may: at "
+                       "most ",
+                       limit, ", and not all of them of one client")),
+                   common::kReasonTooManyBytes);
+}
+
+absl::Status ReceiveTimeoutRefusal(double seconds) {
+  absl::Status status = absl::DeadlineExceededError(
+      absl::StrCat("the request did not arrive within receive_timeout_seconds = ", seconds));
+  common::AddErrorInfo(status, common::kReasonReceiveTimeout);
+  return status;
+}
+
+absl::Status WriteTimeoutRefusal(double seconds) {
+  absl::Status status = absl::DeadlineExceededError(
+      absl::StrCat("the caller took nothing of the answer for write_timeout_seconds = ", seconds));
+  common::AddErrorInfo(status, common::kReasonWriteTimeout);
+  return status;
+}
+
+absl::Status NoMessageRefusal() {
+  absl::Status status = absl::InvalidArgumentError(
+      "no request came: the call ended without one, or with one of more than twice "
+      "max_request_bytes, which the transport does not take");
+  common::AddErrorInfo(status, common::kReasonInvalidRequest);
+  return status;
 }
 
 absl::Status QueueRefusal(const absl::Status& scheduler_status) {

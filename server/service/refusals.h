@@ -16,8 +16,19 @@ namespace duet::server::service {
 absl::Status LoadingRefusal();
 // UNAVAILABLE: the server is going away; another replica, or this one restarted, will answer.
 absl::Status DrainingRefusal();
-// RESOURCE_EXHAUSTED: as many calls are being answered as the limit allows.
+// RESOURCE_EXHAUSTED: as many calls are being answered as the limit, or this client's share of it,
+// allows.
 absl::Status TooManyCallsRefusal(std::size_t calls, std::size_t limit);
+// RESOURCE_EXHAUSTED: the requests of calls being answered hold as many bytes as the limit, or this
+// client's share of it, allows.
+absl::Status TooManyBytesRefusal(std::size_t bytes, std::size_t held, std::size_t limit);
+// RESOURCE_EXHAUSTED: as many requests are long on their way as may be.
+absl::Status TooManySlowRequestsRefusal(std::size_t limit);
+// DEADLINE_EXCEEDED: the request, or its answer's reader, took longer than the server waits.
+absl::Status ReceiveTimeoutRefusal(double seconds);
+absl::Status WriteTimeoutRefusal(double seconds);
+// INVALID_ARGUMENT: the call ended without a message.
+absl::Status NoMessageRefusal();
 // RESOURCE_EXHAUSTED: the scheduler's refusal with RetryInfo. Other codes: DrainingRefusal, the
 // only other cause.
 absl::Status QueueRefusal(const absl::Status& scheduler_status);

@@ -23,6 +23,7 @@ std::shared_ptr<SynthesisCall> SynthesisCall::Create(Parts parts,
   options.priority = parts.request.priority;
   options.deadline = parts.deadline;
   options.buffered_frames = parts.buffered_frames;
+  options.client = parts.client;
   engine::ClipRequest clip = std::move(parts.request.clip);
   clip.clean_up = parts.clean_up;
   std::shared_ptr<SynthesisCall> call(new SynthesisCall(std::move(parts), clip.sampling, writer));
@@ -39,8 +40,12 @@ SynthesisCall::SynthesisCall(Parts parts, const engine::Sampling& sampling, Repl
     : model_(std::move(parts.model)),
       reply_mapping_(std::move(parts.request.reply)),
       chunk_frames_(parts.request.chunk_frames),
+      deadline_(parts.deadline),
+      write_timeout_seconds_(parts.write_timeout_seconds),
+      clock_(*parts.clock),
       writer_(writer),
-      slot_(std::move(parts.slot)),
+      place_(std::move(parts.place)),
+      held_bytes_(std::move(parts.held_bytes)),
       scope_(std::move(parts.scope)) {
   metrics::CallRecord& record = scope_->record();
   record.model = model_->description().name;
@@ -76,16 +81,46 @@ void SynthesisCall::Abort(const absl::Status& reason) {
   Advance();
 }
 
+void SynthesisCall::CheckTime(common::TimePoint now) {
+  bool break_off = false;
+  {
+    common::MutexLock lock(mutex_);
+    if (state_ == State::kFinished || breaking_off_) return;
+    break_off = EndLate(now);
+    if (!end_.has_value()) return;
+    breaking_off_ = break_off;
+  }
+  stream_->Cancel();
+  if (break_off) {
+    writer_.BreakOff();
+    common::MutexLock lock(mutex_);
+    breaking_off_ = false;
+  }
+  Advance();
+}
+
+bool SynthesisCall::EndLate(common::TimePoint now) {
+  if (now >= deadline_ && !end_.has_value()) {
+    end_ = absl::DeadlineExceededError(
+        "the call's deadline passed, or it took longer than the server answers any call");
+  }
+  const bool stalled = state_ == State::kWriting &&
+                       common::SecondsBetween(write_began_, now) >= write_timeout_seconds_;
+  if (stalled && !end_.has_value()) end_ = WriteTimeoutRefusal(write_timeout_seconds_);
+  return stalled;
+}
+
 void SynthesisCall::Advance() {
   // The writer's Finish may drop the last other reference.
   const std::shared_ptr<SynthesisCall> self = shared_from_this();
   std::optional<absl::Status> end;
   {
     common::MutexLock lock(mutex_);
-    if (state_ != State::kIdle) return;
+    if (state_ != State::kIdle || breaking_off_) return;
     const bool write = !end_.has_value() && PrepareReply();
     if (!write && !end_.has_value()) return;
     state_ = write ? State::kWriting : State::kFinished;
+    if (write) write_began_ = clock_.Now();
     if (!write) end = end_;
   }
   if (end.has_value()) {
@@ -175,11 +210,12 @@ void SynthesisCall::PrepareSummary() {
 }
 
 void SynthesisCall::Finish(const absl::Status& status) {
-  AdmissionSlot slot;
+  ShareLease place, held_bytes;
   std::unique_ptr<CallScope> scope;
   {
     common::MutexLock lock(mutex_);
-    slot = std::move(slot_);
+    place = std::move(place_);
+    held_bytes = std::move(held_bytes_);
     scope = std::move(scope_);
   }
   const ClipStreamStats stats = stream_->stats();
@@ -191,7 +227,8 @@ void SynthesisCall::Finish(const absl::Status& status) {
   record.unfamiliarity = stats.unfamiliarity;
   // The place is free before the call is reported, and the call is reported before its caller gets
   // the status: none of them is seen without the one before. Under no lock: observers may be slow.
-  slot = AdmissionSlot();
+  place = ShareLease();
+  held_bytes = ShareLease();
   writer_.Finish(*scope, status);
 }
 

@@ -1,17 +1,20 @@
 #ifndef DUET_SERVER_SERVICE_SYNTHESIS_CALL_H_
 #define DUET_SERVER_SERVICE_SYNTHESIS_CALL_H_
 
+#include <limits>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "absl/status/status.h"
 #include "duet/v1/synthesis.pb.h"
 #include "model/engine/synthesizer.h"
 #include "server/batching/window_scheduler.h"
+#include "server/common/clock.h"
 #include "server/common/mutex.h"
-#include "server/service/admission.h"
 #include "server/service/call_scope.h"
 #include "server/service/clip_stream.h"
+#include "server/service/share_pool.h"
 #include "server/service/validator.h"
 
 namespace duet::server::service {
@@ -25,6 +28,8 @@ class ReplyWriter {
   // Ends the call: reports it through its scope, then tells the caller. Nothing is called on the
   // writer afterwards.
   virtual void Finish(CallScope& scope, const absl::Status& status) = 0;
+  // Gives up the write under way, so that OnWritten follows soon. The caller gets no status then.
+  virtual void BreakOff() = 0;
 };
 
 // One admitted Synthesize call: pulls finished frames from its clip as fast as its reader takes
@@ -40,11 +45,16 @@ class SynthesisCall : public std::enable_shared_from_this<SynthesisCall> {
   struct Parts {
     std::shared_ptr<const engine::Synthesizer> model;
     ValidatedRequest request;
-    AdmissionSlot slot;
+    ShareLease place;
+    ShareLease held_bytes;  // of the request
     std::unique_ptr<CallScope> scope;
     common::TimePoint deadline = common::TimePoint::max();
     int buffered_frames = 0;  // see ClipStreamOptions
     bool clean_up = false;    // what the request asks for, or else the server's choice
+    std::string client;       // see CallIdentity
+    // How long one message of the answer may wait for its reader.
+    double write_timeout_seconds = std::numeric_limits<double>::infinity();
+    const common::Clock* clock = &common::Clock::Real();
   };
 
   // `scheduler` outlives the call's windows, `writer` lives until it was told to finish.
@@ -61,6 +71,10 @@ class SynthesisCall : public std::enable_shared_from_this<SynthesisCall> {
   // Ends the call early: a window that has not started never will. The first reason counts.
   void Abort(const absl::Status& reason);
 
+  // Ends a call whose deadline has passed, or whose reader takes nothing. Of the latter the write
+  // under way is broken off.
+  void CheckTime(common::TimePoint now);
+
  private:
   enum class State { kIdle, kWriting, kFinished };
   enum class Next { kHeader, kFrames, kEnd };
@@ -68,6 +82,8 @@ class SynthesisCall : public std::enable_shared_from_this<SynthesisCall> {
   SynthesisCall(Parts parts, const engine::Sampling& sampling, ReplyWriter& writer);
 
   void Advance();
+  // Sets end_ where the call has taken too long; true when the write under way is to be broken off.
+  bool EndLate(common::TimePoint now) DUET_REQUIRES(mutex_);
   // Prepares the next reply, if any: true when reply_ is to be written. May set end_ instead.
   bool PrepareReply() DUET_REQUIRES(mutex_);
   bool PrepareFrames() DUET_REQUIRES(mutex_);
@@ -79,6 +95,9 @@ class SynthesisCall : public std::enable_shared_from_this<SynthesisCall> {
   const std::shared_ptr<const engine::Synthesizer> model_;
   const ReplyMapping reply_mapping_;
   const int chunk_frames_;
+  const common::TimePoint deadline_;
+  const double write_timeout_seconds_;
+  const common::Clock& clock_;
   ReplyWriter& writer_;
   std::shared_ptr<ClipStream> stream_;
 
@@ -87,7 +106,11 @@ class SynthesisCall : public std::enable_shared_from_this<SynthesisCall> {
   Next next_ DUET_GUARDED_BY(mutex_) = Next::kHeader;
   std::optional<absl::Status> end_ DUET_GUARDED_BY(mutex_);  // how the call is to finish
   v1::SynthesizeResponse reply_;                             // owned by the writer while kWriting
-  AdmissionSlot slot_ DUET_GUARDED_BY(mutex_);
+  common::TimePoint write_began_ DUET_GUARDED_BY(mutex_);
+  // While it is, the call is not finished: the writer must stay.
+  bool breaking_off_ DUET_GUARDED_BY(mutex_) = false;
+  ShareLease place_ DUET_GUARDED_BY(mutex_);
+  ShareLease held_bytes_ DUET_GUARDED_BY(mutex_);
   std::unique_ptr<CallScope> scope_ DUET_GUARDED_BY(mutex_);  // null once finished
 };
 

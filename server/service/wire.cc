@@ -5,12 +5,17 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/service/violations.h"
+#include "server/service/wire_survey.h"
 
 namespace duet::server::service {
 
-absl::Status ParseMessage(const grpc::ByteBuffer& bytes, google::protobuf::Message& message) {
-  grpc::ByteBuffer shared = bytes;  // reading needs its own; the bytes themselves are shared
-  grpc::ProtoBufferReader reader(&shared);
+absl::Status ParseMessage(grpc::ByteBuffer bytes, google::protobuf::Message& message) {
+  {
+    grpc::ProtoBufferReader reader(&bytes);
+    const absl::Status bounded = SurveyMessage(reader, *message.GetDescriptor());
+    if (!bounded.ok()) return bounded;
+  }
+  grpc::ProtoBufferReader reader(&bytes);
   if (reader.status().ok() && message.ParseFromZeroCopyStream(&reader)) return absl::OkStatus();
   Violations violations;
   violations.Malformed(

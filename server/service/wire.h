@@ -9,12 +9,12 @@
 namespace duet::server::service {
 
 // Messages and the bytes that travel. The service takes bytes, because gRPC's generated code would
-// refuse malformed ones as UNIMPLEMENTED, and parses a request only once it is known to be small
-// enough.
+// refuse malformed ones as UNIMPLEMENTED, and parses a request only once it is known that it will
+// be small enough when parsed (wire_survey.h).
 
-// Fails with INVALID_ARGUMENT, saying which message was wanted, when the bytes are no such
-// message.
-absl::Status ParseMessage(const grpc::ByteBuffer& bytes, google::protobuf::Message& message);
+// Fails with INVALID_ARGUMENT, saying which message was wanted, when the bytes are no such message,
+// or naming the field that comes too often. The bytes are let go of in either case.
+absl::Status ParseMessage(grpc::ByteBuffer bytes, google::protobuf::Message& message);
 
 grpc::ByteBuffer SerializeMessage(const google::protobuf::Message& message);
 

@@ -153,6 +153,7 @@ TEST_F(GrpcClientTest, AServerThatSaysNotServingGetsNoCalls) {
 TEST_F(GrpcClientTest, AServerThatIsNotThereIsUnavailableAfterEveryAttempt) {
   // Port 1 of this machine: nothing listens there.
   options_.server_address = "127.0.0.1:1";
+  options_.retry.max_attempts = 4;
   EXPECT_THAT(Synthesize(),
               StatusIs(absl::StatusCode::kUnavailable, HasSubstr("after 4 attempts")));
 }

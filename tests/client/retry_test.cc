@@ -48,7 +48,8 @@ TEST_F(RetryTest, FirstSuccessEndsIt) {
   EXPECT_THAT(time_.sleeps, IsEmpty());
 }
 
-TEST_F(RetryTest, UnavailableIsTriedFourTimesWithGrowingWaits) {
+TEST_F(RetryTest, UnavailableIsTriedAsOftenAsIsWantedWithGrowingWaits) {
+  options_.max_attempts = 4;
   time_.uniform = 1;
   absl::Status status = Run(std::vector<absl::Status>(4, Unavailable()));
   EXPECT_THAT(status, StatusIs(absl::StatusCode::kUnavailable, HasSubstr("after 4 attempts")));
@@ -62,12 +63,36 @@ TEST_F(RetryTest, RecoversInTheMiddle) {
   EXPECT_EQ(attempts_, 3);
 }
 
-TEST_F(RetryTest, WaitsNeverExceedTheLongest) {
-  options_.max_attempts = 7;
+TEST_F(RetryTest, WaitsGrowToSecondsAndNeverExceedTheLongest) {
+  options_.max_attempts = 9;
   time_.uniform = 1;
-  EXPECT_THAT(Run(std::vector<absl::Status>(7, Unavailable())), Not(IsOk()));
+  EXPECT_THAT(Run(std::vector<absl::Status>(9, Unavailable())), Not(IsOk()));
   EXPECT_THAT(time_.sleeps, ElementsAre(100 * kMillisecond, 200 * kMillisecond, 400 * kMillisecond,
-                                        800 * kMillisecond, absl::Seconds(1), absl::Seconds(1)));
+                                        800 * kMillisecond, 1600 * kMillisecond,
+                                        3200 * kMillisecond, absl::Seconds(5), absl::Seconds(5)));
+}
+
+TEST_F(RetryTest, TheDeadlineAloneEndsTheAttempts) {
+  const absl::Time begin = time_.now;
+  EXPECT_THAT(Run(std::vector<absl::Status>(100, Unavailable())),
+              StatusIs(absl::StatusCode::kUnavailable,
+                       HasSubstr("the deadline leaves no time for another")));
+  EXPECT_GT(time_.now - begin, deadline_ - options_.max_backoff);
+}
+
+TEST_F(RetryTest, ACallThatAServerDroppedWithoutAWordIsMadeAgain) {
+  EXPECT_THAT(Run({absl::CancelledError("CANCELLED"), absl::OkStatus()}), IsOk());
+  EXPECT_EQ(attempts_, 2);
+}
+
+TEST_F(RetryTest, TellsWhyItWaitsAndForHowLong) {
+  std::vector<absl::Duration> told;
+  options_.on_wait = [&](const absl::Status& why, absl::Duration wait) {
+    EXPECT_THAT(why, StatusIs(absl::StatusCode::kUnavailable, "away"));
+    told.push_back(wait);
+  };
+  EXPECT_THAT(Run({Unavailable(), Unavailable(), absl::OkStatus()}), IsOk());
+  EXPECT_EQ(told, time_.sleeps);
 }
 
 TEST_F(RetryTest, OtherCodesAreFinal) {

@@ -1,12 +1,13 @@
 // The client over TLS: what must connect, and what must not.
 #include <memory>
+#include <string>
 
 #include "client/client.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/client/support/fake_service.h"
-#include "tests/client/support/test_certificate.h"
 #include "tests/support/status_matchers.h"
+#include "tests/support/test_certificate.h"
 
 namespace duet::client::internal {
 namespace {
@@ -18,7 +19,9 @@ using test::MakeTestCertificate;
 using test::StatusIs;
 using test::TestCertificate;
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 class TlsTest : public ::testing::Test {
  protected:
@@ -82,6 +85,65 @@ TEST_F(TlsTest, AServerThatAsksForACertificateGetsOne) {
   options_.tls->certificate_chain = clients_.certificate;
   options_.tls->private_key = clients_.private_key;
   EXPECT_THAT(Call(), IsOk());
+}
+
+TEST_F(TlsTest, ATokenTravelsEncryptedWithEveryCall) {
+  StartServer(false);
+  std::string came;
+  server_->service().on_list_models = [&](grpc::ServerContext* context, v1::ListModelsResponse*) {
+    const auto found = context->client_metadata().find("authorization");
+    if (found != context->client_metadata().end()) {
+      came = std::string(found->second.data(), found->second.size());
+    }
+    return grpc::Status::OK;
+  };
+  EXPECT_THAT(Call(), IsOk());
+  EXPECT_EQ(came, "");
+  options_.token = "secret-1";
+  EXPECT_THAT(Call(), IsOk());
+  EXPECT_EQ(came, "Bearer secret-1");
+}
+
+TEST_F(TlsTest, AnAuthorityIsWhatTheServerIsCalled) {
+  StartServer(false);
+  options_.tls->server_name.clear();
+  EXPECT_THAT(Call(), StatusIs(kUnavailable, HasSubstr("")));
+  options_.authority = "duet.test";
+  EXPECT_THAT(Call(), IsOk());
+}
+
+TEST(TokenTest, TravelsInPlainTextToThisMachineAlone) {
+  ClientOptions options;
+  options.token = "secret-1";
+  for (const char* here :
+       {"localhost:50051", "127.0.0.1:50051", "127.1.2.3:1", "[::1]:50051", "dns:///localhost:1",
+        "dns:localhost:1", "ipv4:127.0.0.1:1", "ipv6:[::1]:1", "unix:/run/duet.sock",
+        "unix-abstract:duet", "localhost"}) {
+    options.server_address = here;
+    EXPECT_THAT(Client::Create(options), IsOk()) << here;
+  }
+  for (const char* elsewhere :
+       {"duet.example:50051", "10.0.0.1:50051", "127.example.com:1", "localhost.example:1",
+        "dns://8.8.8.8/localhost:1", "ipv4:127.0.0.1:1,10.0.0.1:1", "[::1].example:1", "[::2]:1",
+        "xds:///localhost:1"}) {
+    options.server_address = elsewhere;
+    EXPECT_THAT(Client::Create(options),
+                StatusIs(absl::StatusCode::kInvalidArgument,
+                         HasSubstr("token: would travel in plain text to ")))
+        << elsewhere;
+  }
+  options.tls.emplace();
+  EXPECT_THAT(Client::Create(options), IsOk());
+}
+
+TEST(TokenTest, IsPrintableAndNotRepeated) {
+  ClientOptions options;
+  for (const char* token : {"two words", "line\nbreak", "\xff"}) {
+    options.token = token;
+    EXPECT_THAT(Client::Create(options),
+                StatusIs(absl::StatusCode::kInvalidArgument,
+                         AllOf(HasSubstr("token: "), Not(HasSubstr(token)))));
+  }
 }
 
 }  // namespace

@@ -243,9 +243,10 @@ class ClientServerTest(unittest.TestCase):
             for arguments in (("models",),
                               ("synthesize", "--leader", tools.sample("kick"), "--label", "kick=1",
                                "--out", self.out("html"))):
-                result = tools.duet(*arguments, "--server", address)
+                result = tools.duet(*arguments, "--server", address, "--timeout", "2")
                 self.assertEqual(result.returncode, 1, result.stderr)
                 self.assertIn("UNAVAILABLE", result.stderr)
+                self.assertIn("asked again until --timeout 2 s is over", result.stderr)
                 self.assertIn(f"Does a duet-server listen at {address}?", result.stderr)
 
     def test_a_deadline_that_passes_is_1(self):
@@ -259,7 +260,8 @@ class StoppingTest(unittest.TestCase):
         server = tools.Server()
         self.assertEqual(tools.duet("models", "--server", server.address).returncode, 0)
         self.assertEqual(server.stop(), 0, server.log)
-        self.assertEqual(tools.duet("models", "--server", server.address).returncode, 1)
+        self.assertEqual(tools.duet("models", "--server", server.address, "--timeout", "1")
+                         .returncode, 1)
 
 
 if __name__ == "__main__":

@@ -1,8 +1,6 @@
 """A client that shares no code with ours: Python's grpcio, with stubs generated from the protos."""
 
 import math
-import shutil
-import sys
 import tempfile
 import unittest
 
@@ -16,18 +14,6 @@ except ImportError as error:
 PROTOS = ("duet/v1/model.proto", "duet/v1/motion.proto", "duet/v1/synthesis.proto",
           "duet/rpc/v1/status.proto")
 FRAMES = 40
-
-
-def generate_stubs(folder):
-    # Not grpc_tools.protoc: Debian 12's is of 2018 and does not know `optional`.
-    plugin = shutil.which("grpc_python_plugin")
-    if plugin is None:
-        tools.skip("no grpc_python_plugin; install the package protobuf-compiler-grpc")
-    tools.run(
-        "protoc", f"-I{tools.SOURCE / 'proto'}", f"--python_out={folder}",
-        f"--grpc_python_out={folder}", f"--plugin=protoc-gen-grpc_python={plugin}",
-        *PROTOS).check_returncode()
-    sys.path.insert(0, folder)
 
 
 class ForeignClientTest(unittest.TestCase):
@@ -143,7 +129,7 @@ def standing(joint, phase):
 
 if __name__ == "__main__":
     with tempfile.TemporaryDirectory() as stubs:
-        generate_stubs(stubs)
+        tools.generate_stubs(stubs, *PROTOS)
         from duet.rpc.v1 import status_pb2
         from duet.v1 import motion_pb2, synthesis_pb2, synthesis_pb2_grpc
         tools.main()

@@ -5,10 +5,12 @@ import json
 import os
 import pathlib
 import queue
+import shutil
 import struct
 import subprocess
 import sys
 import threading
+import time
 import unittest
 import zlib
 
@@ -48,12 +50,16 @@ def duet(*arguments):
 
 
 class Server:
-    """A duet-server on a free port, and everything that it logged."""
+    """A duet-server on a free port, and everything that it logged. `metrics_port` is that of its
+    figures where `metrics` names an address."""
 
-    def __init__(self, *flags, port=0):
+    def __init__(self, *flags, port=0, metrics="", descriptors=None,
+                 program=PROGRAMS / "duet-server"):
         self.log = []
+        self.metrics_port = None
+        limit = [] if descriptors is None else ["prlimit", f"--nofile={descriptors}"]
         self._process = subprocess.Popen(
-            [PROGRAMS / "duet-server", "--listen", f"127.0.0.1:{port}", "--metrics-listen", "",
+            [*limit, program, "--listen", f"127.0.0.1:{port}", "--metrics-listen", metrics,
              *flags],
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         serving = queue.Queue()
@@ -70,6 +76,10 @@ class Server:
             raise AssertionError(f"the server did not come to serve: {self.log}")
 
     @property
+    def pid(self):
+        return self._process.pid
+
+    @property
     def address(self):
         return f"127.0.0.1:{self.port}"
 
@@ -81,8 +91,13 @@ class Server:
                 entry = {"text": line}  # gRPC's own words
             self.log.append(entry)
             if entry.get("event") == "serving":
+                self.metrics_port = entry["metrics_port"]
                 serving.put(entry["port"])
         serving.put(None)
+
+    def events(self, name):
+        """The lines of one event, in order."""
+        return [entry for entry in list(self.log) if entry.get("event") == name]
 
     def kill(self):
         """Ends the server without warning."""
@@ -101,9 +116,29 @@ class Server:
             self._process.stdout.close()
 
 
+def wait_until(happened, what):
+    """Looks again and again whether something outside this process has happened."""
+    end = time.monotonic() + RUN_SECONDS
+    while not happened():
+        if time.monotonic() > end:
+            raise AssertionError(f"waited in vain: {what}")
+        time.sleep(0.05)
+
+
+def generate_stubs(folder, *protos):
+    """Python stubs of protos, below `folder`, which becomes importable. Skips without the plugin."""
+    # Not grpc_tools.protoc: Debian 12's is of 2018 and does not know `optional`.
+    plugin = shutil.which("grpc_python_plugin")
+    if plugin is None:
+        skip("no grpc_python_plugin; install the package protobuf-compiler-grpc")
+    run("protoc", f"-I{SOURCE / 'proto'}", f"--python_out={folder}", f"--grpc_python_out={folder}",
+        f"--plugin=protoc-gen-grpc_python={plugin}", *protos).check_returncode()
+    sys.path.insert(0, folder)
+
+
 @contextlib.contextmanager
-def running_server(*flags):
-    server = Server(*flags)
+def running_server(*flags, **options):
+    server = Server(*flags, **options)
     try:
         yield server
     finally:

@@ -627,6 +627,23 @@ TEST_F(ProgramTest, CertificatesAreReadFromTheirFiles) {
   EXPECT_EQ(out_.str(), "The server serves no model.\n");
 }
 
+TEST_F(ProgramTest, ATokenIsTheOneLineOfItsFile) {
+  WriteTestFile(folder_ / "token", "secret-1\n");
+  EXPECT_CALL(*connection_, ListModels).WillOnce(Return(std::vector<ModelInfo>{}));
+  EXPECT_EQ(Run({"models", "--token-file", Path("token"), "--authority", "duet.example"}), 0);
+  EXPECT_EQ(options_.token, "secret-1");
+  EXPECT_EQ(options_.authority, "duet.example");
+  EXPECT_FALSE(options_.tls.has_value());
+}
+
+TEST_F(ProgramTest, ATokenFileWithoutATokenIsBadInput) {
+  WriteTestFile(folder_ / "token", " \n");
+  EXPECT_EQ(Run({"models", "--token-file", Path("token")}), 42);
+  EXPECT_THAT(err_.str(), HasSubstr("token: empty, wanted a token"));
+  EXPECT_EQ(Run({"models", "--token-file", Path("no-token")}), 42);
+  EXPECT_THAT(err_.str(), HasSubstr("no-token"));
+}
+
 TEST_F(ProgramTest, AMissingCertificateIsBadInput) {
   EXPECT_EQ(Run({"models", "--tls-ca", Path("no.pem")}), 42);
   EXPECT_THAT(err_.str(), HasSubstr("no.pem"));

@@ -430,5 +430,15 @@ TEST(DecideTest, KeepsItsPromisesInEveryState) {
   }
 }
 
+TEST(BatchDecisionTest, ClientsTakeTurns) {
+  std::vector<WaitingWindow> windows(6, Window());
+  for (const std::size_t i : {4, 5}) windows[i].client = 1;  // came last
+  BatchLimits limits;
+  limits.max_windows = 3;
+  EXPECT_THAT(Decide(State(windows), limits, kNow).batch, ElementsAre(0, 4, 1));
+  windows[5].client = 2;
+  EXPECT_THAT(Decide(State(windows), limits, kNow).batch, ElementsAre(0, 4, 5));
+}
+
 }  // namespace
 }  // namespace duet::server::batching

@@ -46,6 +46,8 @@ class Simulation {
       : engine_(engine), queue_({64, kWorkers, {max_windows}}) {}
 
   TimePoint now() const { return now_; }
+  // Calls refused because their turn would have come too late.
+  int too_late() const { return too_late_; }
   void At(TimePoint time, std::function<void()> event) { events_.emplace(time, std::move(event)); }
   void RunUntil(TimePoint end) {
     while (!events_.empty() && events_.begin()->first < end) {
@@ -68,6 +70,10 @@ class Simulation {
     job.continues_call = continues_call;
     job.done = [done](const WindowOutcome& outcome) { done(outcome.result.ok()); };
     if (!queue_.HasRoomFor(job, now_)) return done(false);
+    if (!continues_call && !queue_.ComesInTime(job, now_)) {
+      ++too_late_;
+      return done(false);
+    }
     queue_.Push(std::move(job), now_);
     LetWorkersAsk();
   }
@@ -102,11 +108,13 @@ class Simulation {
   std::multimap<TimePoint, std::function<void()>> events_;
   TimePoint now_ = kStart;
   int busy_ = 0;
+  int too_late_ = 0;
 };
 
 // Calls of one window answered in time, a second, when they come at a steady rate for ten seconds.
 // An answer is on its way for 3 ms.
-double Goodput(const Engine& engine, double calls_per_second, double deadline_seconds) {
+double Goodput(const Engine& engine, double calls_per_second, double deadline_seconds,
+               int* too_late = nullptr) {
   constexpr double kSeconds = 10;
   Simulation simulation(engine, 16);
   int in_time = 0;
@@ -119,6 +127,7 @@ double Goodput(const Engine& engine, double calls_per_second, double deadline_se
     });
   }
   simulation.RunUntil(After(kStart, kSeconds));
+  if (too_late != nullptr) *too_late = simulation.too_late();
   return in_time / kSeconds;
 }
 
@@ -140,6 +149,15 @@ TEST(SimulatedLoadTest, WithoutTooManyCallsEachIsInTime) {
       EXPECT_GT(Goodput(engine, offered, deadline), 0.99 * offered) << deadline << " s";
     }
   }
+}
+
+TEST(SimulatedLoadTest, WhatCannotComeInTimeIsRefusedRatherThanDropped) {
+  int too_late = 0;
+  const double capacity = 2 * 16 / kSlow.Seconds(16);
+  const double goodput = Goodput(kSlow, 2 * capacity, 0.15, &too_late);
+  // Ten seconds of what comes and is not answered in time: most of it hears so at once.
+  EXPECT_GT(too_late, 0.8 * 10 * (2 * capacity - goodput));
+  EXPECT_EQ((Goodput(kSlow, 0.5 * capacity, 0.15, &too_late), too_late), 0);
 }
 
 // A call that asks for one of so many windows after the other, and has done so for a while.

@@ -378,5 +378,86 @@ TEST(LaneTest, DependsOnPriorityAndOnTheCallsLength) {
   EXPECT_EQ(LaneOf(Priority::kBulk, kLong, true), Lane::kBulk);
 }
 
+WindowJob JobOf(const Model& model, const std::string& client) {
+  WindowJob job = Job(model);
+  job.client = client;
+  return job;
+}
+
+TEST(WindowQueueTest, AClientLeavesRoomForOthers) {
+  const Model model = NewModel();
+  WindowQueueOptions options{8, 1, {1}};
+  options.client_share = 0.75;
+  WindowQueue queue(options);
+  int greedy = 0;
+  for (; queue.HasRoomFor(JobOf(model, "greedy"), kNow); ++greedy) {
+    queue.Push(JobOf(model, "greedy"), kNow);
+  }
+  EXPECT_EQ(greedy, 6);
+  EXPECT_TRUE(queue.HasRoomFor(JobOf(model, "other"), kNow));
+}
+
+TEST(WindowQueueTest, ABatchHoldsSomebodyOfEachClient) {
+  const Model model = NewModel();
+  WindowQueue queue(Options(1, 2));
+  for (const char* client : {"a", "a", "a", "b"}) queue.Push(JobOf(model, client), kNow);
+  const Turn turn = queue.Next(kNow);
+  ASSERT_EQ(turn.batch.windows.size(), 2u);
+  EXPECT_EQ(turn.batch.windows[0].job.client, "a");
+  EXPECT_EQ(turn.batch.windows[1].job.client, "b");
+}
+
+// A queue of a model whose windows take 10 ms each.
+class ComesInTimeTest : public ::testing::Test {
+ protected:
+  ComesInTimeTest() {
+    queue_.Push(Job(model_), kNow);
+    Serve(queue_, kNow, milliseconds(10));
+  }
+  WindowJob Due(milliseconds left) const {
+    WindowJob job = Job(model_);
+    job.deadline = now_ + left;
+    return job;
+  }
+  const Model model_ = NewModel();
+  const common::TimePoint now_ = kNow + milliseconds(10);
+  WindowQueue queue_{Options(1, 1)};
+};
+
+TEST_F(ComesInTimeTest, WhoeverWaitsForNobodyMayTry) {
+  EXPECT_TRUE(queue_.ComesInTime(Due(milliseconds(1)), now_));
+}
+
+TEST_F(ComesInTimeTest, CountsWhatWaitsBeforeIt) {
+  for (int i = 0; i < 6; ++i) queue_.Push(Job(model_), now_);
+  // 60 ms and its own 10, with an eighth of the time kept for the answer's way: 80 ms.
+  EXPECT_TRUE(queue_.ComesInTime(Due(milliseconds(81)), now_));
+  EXPECT_FALSE(queue_.ComesInTime(Due(milliseconds(79)), now_));
+  EXPECT_TRUE(queue_.ComesInTime(Job(model_), now_)) << "it has no deadline";
+}
+
+TEST_F(ComesInTimeTest, DoesNotCountWhatNeverRunsOrRunsLater) {
+  queue_.Push(Job(model_, Priority::kBulk), now_);
+  const auto cancelled = std::make_shared<std::atomic<bool>>(true);
+  for (int i = 0; i < 6; ++i) {
+    WindowJob job = Job(model_);
+    job.cancelled = cancelled;
+    queue_.Push(std::move(job), now_);
+    WindowJob late = Job(model_);
+    late.deadline = now_;
+    queue_.Push(std::move(late), now_);
+  }
+  EXPECT_TRUE(queue_.ComesInTime(Due(milliseconds(13)), now_));
+}
+
+TEST_F(ComesInTimeTest, CountsWhatRuns) {
+  queue_.Push(Job(model_), now_);
+  const Turn turn = queue_.Next(now_);
+  queue_.Push(Job(model_), now_);
+  // 10 ms run, 10 wait, 10 its own.
+  EXPECT_TRUE(queue_.ComesInTime(Due(milliseconds(35)), now_));
+  EXPECT_FALSE(queue_.ComesInTime(Due(milliseconds(33)), now_));
+}
+
 }  // namespace
 }  // namespace duet::server::batching

@@ -91,12 +91,17 @@ TEST(ParseCommandLineTest, NoFlagsSetNothing) {
 
 TEST(ParseCommandLineTest, ReadsEveryFlag) {
   const absl::StatusOr<CommandLine> line = Parse(absl::StrSplit(
-      "--listen a:1 --metrics-listen off --model-repository /models --default-model sbu "
+      "--tls-certificate-file /c --tls-key-file /k --tls-client-ca-file /a --access-file /l "
+      "--otlp-endpoint http://o:1 --trace-ratio 0.25 --log-format text --log-level warning "
+      "--log-success-ratio 0.5 --log-refusals-per-second 3 --listen a:1 --metrics-listen off "
+      "--model-repository /models --default-model sbu "
       "--version-label sbu:stable=3 --version-label sbu:canary=4 --no-reflection --workers 2 "
       "--threads-per-worker 3 --max-calls 4 --max-queued-windows 5 --max-request-bytes 6000 "
       "--max-transport-bytes 20000 --buffered-frames 7 --drain-seconds 8 --grace-seconds 9 "
       "--clean-up off --engine torch --precision f32 --max-batch-windows 10 "
-      "--max-batch-delay-seconds 0.5",
+      "--max-batch-delay-seconds 0.5 --client-share 0.5 --client-key x-client "
+      "--max-held-bytes 30000 --receive-timeout-seconds 11 --write-timeout-seconds 12 "
+      "--max-call-seconds 13 --self-check-seconds 14 --max-slow-requests 15",
       ' '));
   ASSERT_THAT(line, IsOk());
   const absl::StatusOr<v1::ServerConfig> expected = ParseConfigText(
@@ -106,7 +111,13 @@ TEST(ParseCommandLineTest, ReadsEveryFlag) {
          reflection: false workers: 2 threads_per_worker: 3 max_calls: 4 max_queued_windows: 5
          max_request_bytes: 6000 max_transport_bytes: 20000 buffered_frames: 7 drain_seconds: 8 grace_seconds: 9
          clean_up: CLEAN_UP_POLICY_OFF engine: ENGINE_TORCH precision: PRECISION_F32
-         max_batch_windows: 10 max_batch_delay_seconds: 0.5)",
+         max_batch_windows: 10 max_batch_delay_seconds: 0.5
+         tls_certificate_file: "/c" tls_key_file: "/k" tls_client_ca_file: "/a" access_file: "/l"
+         otlp_endpoint: "http://o:1" trace_ratio: 0.25 log_format: LOG_FORMAT_TEXT
+         log_level: LOG_LEVEL_WARNING log_success_ratio: 0.5 log_refusals_per_second: 3
+         client_share: 0.5 client_key: "x-client" max_held_bytes: 30000
+         receive_timeout_seconds: 11 write_timeout_seconds: 12 max_call_seconds: 13
+         self_check_seconds: 14 max_slow_requests: 15)",
       false);
   ASSERT_THAT(expected, IsOk());
   EXPECT_TRUE(google::protobuf::util::MessageDifferencer::Equals(line->config, *expected))

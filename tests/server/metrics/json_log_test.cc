@@ -134,6 +134,100 @@ TEST_F(JsonLogTest, EventsCarryTheirFields) {
   EXPECT_EQ(sink_.Last()["source"], "sbu/3");
 }
 
+TEST_F(JsonLogTest, ACallSaysWhoMadeItAndInWhichTrace) {
+  CallRecord record = Record();
+  record.caller = "studio";
+  record.trace = {"4bf92f3577b34da6a3ce929d0e0e4736", "00f067aa0ba902b7", "", true};
+  log_.CallFinished(record);
+  EXPECT_EQ(sink_.Last()["caller"], "studio");
+  EXPECT_EQ(sink_.Last()["trace_id"], "4bf92f3577b34da6a3ce929d0e0e4736");
+  EXPECT_EQ(sink_.Last()["span_id"], "00f067aa0ba902b7");
+}
+
+TEST_F(JsonLogTest, LinesBelowTheLevelAreLeftOut) {
+  JsonLog log(sink_, absl::Now, {Severity::kWarning, 1, 10});
+  log.Info("serving", {});
+  log.CallFinished(Record());
+  EXPECT_TRUE(sink_.lines.empty());
+  CallRecord refused = Record();
+  refused.status = absl::ResourceExhaustedError("full");
+  log.CallFinished(refused);
+  log.Error("model_refused", {});
+  EXPECT_EQ(sink_.lines.size(), 2u);
+}
+
+TEST_F(JsonLogTest, APartOfTheSuccessesSaysWhichPart) {
+  {
+    JsonLog log(sink_, absl::Now, {Severity::kInfo, 0.5, 10});
+    for (int i = 0; i < 6; ++i) log.CallFinished(Record());
+  }
+  ASSERT_EQ(sink_.lines.size(), 3u);
+  EXPECT_EQ(sink_.Last()["sampled_ratio"], 0.5);
+}
+
+TEST_F(JsonLogTest, AFloodOfRefusalsIsToldInOneLineMore) {
+  CallRecord refused = Record();
+  refused.status = absl::ResourceExhaustedError("full");
+  {
+    JsonLog log(sink_, [] { return absl::FromUnixSeconds(5); }, {Severity::kInfo, 1, 2});
+    for (int i = 0; i < 100; ++i) log.CallFinished(refused);
+    EXPECT_EQ(sink_.lines.size(), 2u);
+    log.TellUnlogged();
+    ASSERT_EQ(sink_.lines.size(), 3u);
+    EXPECT_EQ(sink_.Last()["event"], "calls_not_logged");
+    EXPECT_EQ(sink_.Last()["severity"], "WARNING");
+    EXPECT_EQ(sink_.Last()["code"], "RESOURCE_EXHAUSTED");
+    EXPECT_EQ(sink_.Last()["calls"], 98);
+    log.TellUnlogged();
+    EXPECT_EQ(sink_.lines.size(), 3u);
+    log.CallFinished(refused);
+  }
+  // Its end tells the rest.
+  ASSERT_EQ(sink_.lines.size(), 4u);
+  EXPECT_EQ(sink_.Last()["calls"], 1);
+}
+
+TEST_F(JsonLogTest, AServersOwnFailuresAlwaysHaveALine) {
+  JsonLog log(sink_, absl::Now, {Severity::kError, 0, 0});
+  CallRecord failed = Record();
+  failed.status = absl::InternalError("the model failed");
+  for (int i = 0; i < 20; ++i) log.CallFinished(failed);
+  EXPECT_EQ(sink_.lines.size(), 20u);
+}
+
+TEST_F(JsonLogTest, WhatLibrariesSayCannotFillTheDisk) {
+  {
+    JsonLog log(sink_, [] { return absl::FromUnixSeconds(5); }, {Severity::kInfo, 1, 2});
+    for (int i = 0; i < 50; ++i) log.Library("grpc", Severity::kError, "handshake failed");
+    ASSERT_EQ(sink_.lines.size(), 2u);
+    EXPECT_EQ(sink_.Last()["event"], "library");
+    EXPECT_EQ(sink_.Last()["severity"], "ERROR");
+    EXPECT_EQ(sink_.Last()["library"], "grpc");
+    EXPECT_EQ(sink_.Last()["message"], "handshake failed");
+  }
+  ASSERT_EQ(sink_.lines.size(), 3u);
+  EXPECT_EQ(sink_.Last()["event"], "library_lines_not_logged");
+  EXPECT_EQ(sink_.Last()["lines"], 48);
+}
+
+TEST_F(JsonLogTest, AnAdministratorsDoingHasALineWhateverTheLevel) {
+  JsonLog log(sink_, absl::Now, {Severity::kError, 0, 0});
+  AdminAction action{"ops", "ipv4:10.0.0.1:4711", "id-1", "LoadModel", {{"model", "sbu"}}, {}};
+  log.Audit(action);
+  const json line = sink_.Last();
+  EXPECT_EQ(line["event"], "admin_action");
+  EXPECT_EQ(line["caller"], "ops");
+  EXPECT_EQ(line["peer"], "ipv4:10.0.0.1:4711");
+  EXPECT_EQ(line["request_id"], "id-1");
+  EXPECT_EQ(line["action"], "LoadModel");
+  EXPECT_EQ(line["arguments"]["model"], "sbu");
+  EXPECT_EQ(line["code"], "OK");
+  action.status = absl::NotFoundError("no such model");
+  log.Audit(action);
+  EXPECT_EQ(sink_.Last()["code"], "NOT_FOUND");
+  EXPECT_EQ(sink_.Last()["message"], "no such model");
+}
+
 TEST(DroppedLinesNoticeTest, IsALineOfTheLog) {
   const json line = json::parse(DroppedLinesNotice(7, absl::FromUnixMicros(1650000000123456)));
   EXPECT_EQ(line["time"], "2022-04-15T05:20:00.123456Z");

@@ -1,9 +1,14 @@
 #include "server/metrics/metrics_endpoint.h"
 
+#include <arpa/inet.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include <atomic>
+#include <deque>
 #include <memory>
 #include <string>
 #include <utility>
@@ -27,8 +32,10 @@ class MetricsEndpointTest : public ::testing::Test {
   MetricsEndpointTest() {
     MetricsEndpointOptions options;
     options.host = "127.0.0.1";
-    options.render = [] { return std::string("duet_frames_total 7\n"); };
+    options.render = [this] { return text_; };
+    options.healthy = [this] { return healthy_.load(); };
     options.ready = [this] { return ready_.load(); };
+    options.max_connections = 8;
     absl::StatusOr<std::unique_ptr<MetricsEndpoint>> endpoint =
         MetricsEndpoint::Start(std::move(options));
     EXPECT_THAT(endpoint, IsOk());
@@ -37,6 +44,8 @@ class MetricsEndpointTest : public ::testing::Test {
 
   std::string Get(const std::string& path) { return HttpGet(endpoint_->port(), path); }
 
+  std::string text_ = "duet_frames_total 7\n";  // not changed while it is asked for
+  std::atomic<bool> healthy_{true};
   std::atomic<bool> ready_{false};
   std::unique_ptr<MetricsEndpoint> endpoint_;
 };
@@ -48,8 +57,10 @@ TEST_F(MetricsEndpointTest, ServesMetricsAsPrometheusWantsThem) {
   EXPECT_THAT(response, HasSubstr("\r\n\r\nduet_frames_total 7\n"));
 }
 
-TEST_F(MetricsEndpointTest, IsHealthyWheneverItAnswers) {
+TEST_F(MetricsEndpointTest, IsHealthyUnlessToldOtherwise) {
   EXPECT_THAT(Get("/healthz"), StartsWith("HTTP/1.1 200 OK"));
+  healthy_ = false;
+  EXPECT_THAT(Get("/healthz"), StartsWith("HTTP/1.1 503"));
 }
 
 TEST_F(MetricsEndpointTest, IsReadyWhileCallsAreServed) {
@@ -69,6 +80,65 @@ TEST_F(MetricsEndpointTest, RefusesWhatIsNoRequest) {
   EXPECT_THAT(Exchange(endpoint_->port(),
                        "POST /metrics HTTP/1.1\r\nHost: a\r\nContent-Length: 5\r\n\r\nhello"),
               StartsWith("HTTP/1.1 4"));
+}
+
+// A client that connects and sends no whole request.
+class Loiterer {
+ public:
+  Loiterer(int port, const std::string& words) : socket_(socket(AF_INET, SOCK_STREAM, 0)) {
+    sockaddr_in address = {};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(static_cast<uint16_t>(port));
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    EXPECT_EQ(connect(socket_, reinterpret_cast<sockaddr*>(&address), sizeof(address)), 0);
+    EXPECT_EQ(send(socket_, words.data(), words.size(), MSG_NOSIGNAL),
+              static_cast<ssize_t>(words.size()));
+  }
+  ~Loiterer() { close(socket_); }
+  Loiterer(const Loiterer&) = delete;
+  Loiterer& operator=(const Loiterer&) = delete;
+
+  // Whether the server has ended the connection; waits until it says anything at all.
+  bool IsSentAway() const {
+    char byte = 0;
+    return recv(socket_, &byte, 1, 0) <= 0;
+  }
+
+ private:
+  const int socket_;
+};
+
+TEST_F(MetricsEndpointTest, NobodyWaitsForWhoeverSaysNothingOrLittle) {
+  std::deque<Loiterer> loiterers;
+  for (const char* words : {"", "G", "GET /metr", "GET /healthz HTTP/1.1\r\n", "", "G"}) {
+    loiterers.emplace_back(endpoint_->port(), words);
+  }
+  for (const char* path : {"/healthz", "/metrics"}) {
+    EXPECT_THAT(Get(path), StartsWith("HTTP/1.1 200 OK"));
+  }
+}
+
+TEST_F(MetricsEndpointTest, TheOldestMakesRoomForTheNext) {
+  std::deque<Loiterer> loiterers;
+  for (int i = 0; i < 9; ++i) loiterers.emplace_back(endpoint_->port(), "");
+  EXPECT_TRUE(loiterers.front().IsSentAway());
+  EXPECT_THAT(Get("/healthz"), StartsWith("HTTP/1.1 200 OK"));
+}
+
+TEST(MetricsEndpointTimeTest, AConnectionLastsOnlySoLong) {
+  MetricsEndpointOptions options;
+  options.host = "127.0.0.1";
+  options.connection_seconds = 0.01;
+  absl::StatusOr<std::unique_ptr<MetricsEndpoint>> endpoint =
+      MetricsEndpoint::Start(std::move(options));
+  ASSERT_THAT(endpoint, IsOk());
+  const Loiterer loiterer((*endpoint)->port(), "");
+  EXPECT_TRUE(loiterer.IsSentAway());
+}
+
+TEST_F(MetricsEndpointTest, ALongAnswerArrivesWhole) {
+  text_ = std::string(20'000'000, 'x');
+  EXPECT_GT(Get("/metrics").size(), text_.size());
 }
 
 TEST_F(MetricsEndpointTest, ASecondOneOnThePortFailsAndSaysWhere) {

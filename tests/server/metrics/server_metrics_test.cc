@@ -2,10 +2,14 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <ctime>
 #include <sstream>
 #include <string>
 #include <vector>
+
+#include "server/common/error_details.h"
 
 namespace duet::server::metrics {
 namespace {
@@ -144,6 +148,99 @@ TEST(ServerMetricsTest, CountsDroppedLogLines) {
   dropped = 5;
   EXPECT_THAT(metrics.Render(), HasSubstr("duet_log_lines_dropped_total 5\n"));
   EXPECT_THAT(metrics.Render(), HasSubstr("# TYPE duet_log_lines_dropped_total counter"));
+}
+
+TEST(ServerMetricsTest, CountsRefusalsByTheirReason) {
+  ServerMetrics metrics;
+  CallRecord record = Record();
+  record.status = absl::ResourceExhaustedError("full");
+  common::AddErrorInfo(record.status, common::kReasonQueueFull);
+  metrics.CallFinished(record);
+  metrics.CallFinished(Record());
+  const std::string text = metrics.Render();
+  EXPECT_THAT(text, HasSubstr(R"(duet_refusals_total{reason="QUEUE_FULL"} 1)"));
+  EXPECT_THAT(text, Not(HasSubstr(R"(duet_refusals_total{reason=""})")));
+}
+
+TEST(ServerMetricsTest, CountsCallsOfListedCallersAlone) {
+  ServerMetrics metrics;
+  CallRecord record = Record();
+  record.caller = "stranger-7";
+  metrics.CallFinished(record);
+  record.caller = "studio";
+  record.caller_is_listed = true;
+  metrics.CallFinished(record);
+  const std::string text = metrics.Render();
+  EXPECT_THAT(text, HasSubstr(R"(duet_caller_calls_total{caller="studio",grpc_code="OK"} 1)"));
+  EXPECT_THAT(text, Not(HasSubstr("stranger-7")));
+}
+
+TEST(ServerMetricsTest, TellsWhatTheServerTakesAndWhatItIs) {
+  ServerMetrics metrics;
+  metrics.SetCapacity({128, 64, 2});
+  metrics.SetBuild("1.2.3");
+  const std::string text = metrics.Render();
+  EXPECT_THAT(text, HasSubstr("duet_max_calls 128\n"));
+  EXPECT_THAT(text, HasSubstr("duet_max_queued_windows 64\n"));
+  EXPECT_THAT(text, HasSubstr("duet_workers 2\n"));
+  EXPECT_THAT(text, HasSubstr(R"(duet_build_info{version="1.2.3"} 1)"));
+}
+
+TEST(ServerMetricsTest, AsksForModelsAtEveryScrape) {
+  ServerMetrics metrics;
+  std::vector<ServedVersion> models = {{"sbu", 3, true}, {"k3hi", 1, false}};
+  metrics.SetModels([&] { return models; });
+  EXPECT_THAT(metrics.Render(),
+              HasSubstr(R"(duet_model_info{model="sbu",version="3",default="true"} 1)"));
+  models.erase(models.begin());
+  const std::string text = metrics.Render();
+  EXPECT_THAT(text, HasSubstr(R"(duet_model_info{model="k3hi",version="1",default="false"} 1)"));
+  EXPECT_THAT(text, Not(HasSubstr(R"(duet_model_info{model="sbu")")));
+}
+
+TEST(ServerMetricsTest, TellsOfCertificatesAndSpansWhereThereAreAny) {
+  ServerMetrics metrics;
+  EXPECT_THAT(metrics.Render(), Not(HasSubstr("duet_tls_certificate_expiry")));
+  EXPECT_THAT(metrics.Render(), Not(HasSubstr("duet_spans_")));
+  metrics.SetCertificateEnd([] { return 1900000000.0; });
+  metrics.SetSpans([] { return SpanCounts{5, 2}; });
+  metrics.SecretsReloaded("access", true);
+  metrics.SecretsReloaded("tls", false);
+  const std::string text = metrics.Render();
+  EXPECT_THAT(text, HasSubstr("duet_tls_certificate_expiry_timestamp_seconds 1900000000\n"));
+  EXPECT_THAT(text, HasSubstr("duet_spans_sent_total 5\n"));
+  EXPECT_THAT(text, HasSubstr("duet_spans_dropped_total 2\n"));
+  EXPECT_THAT(text, HasSubstr(R"(duet_secrets_reloads_total{kind="access",outcome="taken"} 1)"));
+  EXPECT_THAT(text, HasSubstr(R"(duet_secrets_reloads_total{kind="tls",outcome="refused"} 1)"));
+}
+
+// The value of a metric without labels.
+double Value(const std::string& text, const std::string& metric) {
+  const std::size_t at = text.find("\n" + metric + " ");
+  if (at == std::string::npos) ADD_FAILURE() << "no " << metric;
+  return at == std::string::npos ? -1 : std::stod(text.substr(at + metric.size() + 2));
+}
+
+TEST(ServerMetricsTest, TellsOfTheProcess) {
+  const std::string text = "\n" + ServerMetrics().Render();
+  const double now = static_cast<double>(std::time(nullptr));
+  EXPECT_GE(Value(text, "process_cpu_seconds_total"), 0);
+  EXPECT_GT(Value(text, "process_start_time_seconds"), now - 86400);
+  EXPECT_LT(Value(text, "process_start_time_seconds"), now + 5);
+  EXPECT_GE(Value(text, "process_threads"), 1);
+  EXPECT_GT(Value(text, "process_resident_memory_bytes"), 1e6);
+  EXPECT_GE(Value(text, "process_virtual_memory_bytes"),
+            Value(text, "process_resident_memory_bytes"));
+  EXPECT_GE(Value(text, "process_open_fds"), 3);
+  EXPECT_LT(Value(text, "process_open_fds"), Value(text, "process_max_fds"));
+  EXPECT_THAT(text, HasSubstr("# TYPE process_cpu_seconds_total counter"));
+}
+
+TEST(ServerMetricsTest, CountsOpenDescriptorsExactly) {
+  const double before = Value("\n" + ServerMetrics().Render(), "process_open_fds");
+  const int opened = dup(0);
+  EXPECT_EQ(Value("\n" + ServerMetrics().Render(), "process_open_fds"), before + 1);
+  close(opened);
 }
 
 TEST(ServerMetricsTest, TellsWhichCheckpointsAreServed) {

@@ -1,10 +1,12 @@
 #include "server/service/admission.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <utility>
 #include <vector>
 
+#include "tests/server/support/refusal.h"
 #include "tests/support/status_matchers.h"
 
 namespace duet::server::service {
@@ -14,60 +16,82 @@ using test::IsOk;
 using test::StatusIs;
 
 using ::testing::_;
+using ::testing::HasSubstr;
 
 using absl::StatusCode;
 
+AdmissionLimits Calls(std::size_t max_calls) {
+  AdmissionLimits limits;
+  limits.max_calls = max_calls;
+  return limits;
+}
+
 TEST(AdmissionTest, LoadsBeforeItServes) {
-  Admission admission(4);
-  EXPECT_THAT(admission.Admit(batching::Priority::kInteractive),
-              StatusIs(StatusCode::kUnavailable, _));
+  Admission admission(Calls(4));
+  EXPECT_THAT(admission.Admit("a"), StatusIs(StatusCode::kUnavailable, _));
   EXPECT_THAT(admission.CheckServing(), StatusIs(StatusCode::kUnavailable, _));
 }
 
 TEST(AdmissionTest, AdmitsUpToItsLimitAndAgainWhenOneLeaves) {
-  Admission admission(2);
+  Admission admission(Calls(2));
   admission.SetState(Admission::State::kServing);
-  absl::StatusOr<AdmissionSlot> first = admission.Admit(batching::Priority::kInteractive);
-  absl::StatusOr<AdmissionSlot> second = admission.Admit(batching::Priority::kInteractive);
+  absl::StatusOr<ShareLease> first = admission.Admit("a");
+  absl::StatusOr<ShareLease> second = admission.Admit("a");
   EXPECT_THAT(second, IsOk());
-  EXPECT_THAT(admission.Admit(batching::Priority::kInteractive),
-              StatusIs(StatusCode::kResourceExhausted, _));
+  EXPECT_THAT(admission.Admit("a"), StatusIs(StatusCode::kResourceExhausted, _));
   EXPECT_EQ(admission.calls(), 2u);
-  { const AdmissionSlot gone = *std::move(first); }
-  EXPECT_THAT(admission.Admit(batching::Priority::kInteractive), IsOk());
+  { const ShareLease gone = *std::move(first); }
+  EXPECT_THAT(admission.Admit("a"), IsOk());
 }
 
 TEST(AdmissionTest, KeepsAQuarterFreeOfBulk) {
-  Admission admission(4);
+  Admission admission(Calls(4));
   admission.SetState(Admission::State::kServing);
-  std::vector<AdmissionSlot> slots;
-  for (int i = 0; i < 3; ++i) slots.push_back(*admission.Admit(batching::Priority::kBulk));
-  EXPECT_THAT(admission.Admit(batching::Priority::kBulk),
-              StatusIs(StatusCode::kResourceExhausted, _));
-  EXPECT_THAT(admission.Admit(batching::Priority::kInteractive), IsOk());
-}
-
-TEST(AdmissionTest, ASlotCountsOnceHoweverItMoves) {
-  Admission admission(4);
-  admission.SetState(Admission::State::kServing);
-  {
-    AdmissionSlot first = *admission.Admit(batching::Priority::kInteractive);
-    AdmissionSlot second = std::move(first);
-    AdmissionSlot third;
-    third = std::move(second);
-    EXPECT_EQ(admission.calls(), 1u);
+  std::vector<ShareLease> places;
+  for (int i = 0; i < 3; ++i) {
+    places.push_back(*admission.Admit("a"));
+    EXPECT_THAT(admission.CheckShare(batching::Priority::kBulk), IsOk()) << i;
   }
-  EXPECT_EQ(admission.calls(), 0u);
+  const absl::StatusOr<ShareLease> fourth = admission.Admit("a");
+  ASSERT_THAT(fourth, IsOk());
+  EXPECT_THAT(admission.CheckShare(batching::Priority::kInteractive), IsOk());
+  EXPECT_THAT(admission.CheckShare(batching::Priority::kBulk),
+              StatusIs(StatusCode::kResourceExhausted, HasSubstr("3 calls")));
 }
 
 TEST(AdmissionTest, DrainingAdmitsNobodyButKeepsWhoIsIn) {
-  Admission admission(4);
+  Admission admission(Calls(4));
   admission.SetState(Admission::State::kServing);
-  const absl::StatusOr<AdmissionSlot> slot = admission.Admit(batching::Priority::kInteractive);
+  const absl::StatusOr<ShareLease> place = admission.Admit("a");
   admission.SetState(Admission::State::kDraining);
-  EXPECT_THAT(admission.Admit(batching::Priority::kInteractive),
-              StatusIs(StatusCode::kUnavailable, _));
+  EXPECT_THAT(admission.Admit("a"), StatusIs(StatusCode::kUnavailable, _));
   EXPECT_EQ(admission.calls(), 1u);
+}
+
+TEST(AdmissionTest, OneClientLeavesPlacesToOthers) {
+  AdmissionLimits limits = Calls(4);
+  limits.client_share = 0.75;
+  Admission admission(limits);
+  admission.SetState(Admission::State::kServing);
+  std::vector<ShareLease> places;
+  for (int i = 0; i < 3; ++i) places.push_back(*admission.Admit("greedy"));
+  EXPECT_THAT(admission.Admit("greedy"), StatusIs(StatusCode::kResourceExhausted, _));
+  EXPECT_THAT(admission.Admit("other"), IsOk());
+}
+
+TEST(AdmissionTest, HoldsAsManyBytesAsMayBeHeld) {
+  AdmissionLimits limits;
+  limits.max_held_bytes = 100;
+  Admission admission(limits);
+  absl::StatusOr<ShareLease> held = admission.Hold("a", 60);
+  ASSERT_THAT(held, IsOk());
+  const absl::StatusOr<ShareLease> more = admission.Hold("b", 41);
+  EXPECT_THAT(more, StatusIs(StatusCode::kResourceExhausted, HasSubstr("max_held_bytes = 100")));
+  EXPECT_EQ(test::Decode(more.status()).reason, "TOO_MANY_BYTES");
+  EXPECT_EQ(test::Decode(more.status()).retry_seconds, 1);
+  EXPECT_EQ(admission.held_bytes(), 60u);
+  held = ShareLease();
+  EXPECT_THAT(admission.Hold("b", 41), IsOk());
 }
 
 }  // namespace

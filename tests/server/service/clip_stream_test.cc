@@ -118,6 +118,9 @@ class QuickScheduler final : public batching::WindowScheduler {
     }).join();
     return absl::OkStatus();
   }
+  absl::Status CheckRoom(batching::Priority, const std::string&) const override {
+    return absl::OkStatus();
+  }
   std::size_t queued_windows() const override { return 0; }
 };
 

@@ -3,11 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "server/service/admission.h"
 #include "server/service/refusals.h"
 #include "tests/server/support/fake_clock.h"
 #include "tests/server/support/puppet_scheduler.h"
@@ -48,7 +50,14 @@ class FakeWriter final : public ReplyWriter {
     finished = status;
   }
 
+  void BreakOff() override {
+    ++broken_off;
+    if (on_break_off) on_break_off();
+  }
+
   bool writing = false;
+  int broken_off = 0;
+  std::function<void()> on_break_off;
   std::vector<v1::SynthesizeResponse> replies;
   std::optional<absl::Status> finished;
 };
@@ -60,15 +69,23 @@ class SynthesisCallTest : public ::testing::Test {
     absl::StatusOr<ValidatedRequest> request =
         ValidateRequest(SampleRequest(frames), model->description(), RequestLimits());
     ASSERT_THAT(request, IsOk());
-    absl::StatusOr<AdmissionSlot> slot = admission_.Admit(batching::Priority::kInteractive);
-    ASSERT_THAT(slot, IsOk());
+    absl::StatusOr<ShareLease> place = admission_.Admit("client");
+    ASSERT_THAT(place, IsOk());
     auto scope =
         std::make_unique<CallScope>(metrics::MethodInfo{"service", "Synthesize", "server_stream"},
-                                    CallIdentity{"id", "", "peer"}, observers_, clock_);
-    call_ = SynthesisCall::Create({std::move(model), *std::move(request), *std::move(slot),
-                                   std::move(scope), common::TimePoint::max(),
-                                   /*buffered_frames=*/240},
-                                  scheduler_, writer_);
+                                    CallIdentity{"id", "", "peer", "client"}, observers_, clock_);
+    SynthesisCall::Parts parts{std::move(model),
+                               *std::move(request),
+                               *std::move(place),
+                               ShareLease(),
+                               std::move(scope),
+                               deadline_,
+                               /*buffered_frames=*/240,
+                               /*clean_up=*/false,
+                               "client",
+                               /*write_timeout_seconds=*/30,
+                               &clock_};
+    call_ = SynthesisCall::Create(std::move(parts), scheduler_, writer_);
   }
 
   // The reader took the message under way.
@@ -81,7 +98,12 @@ class SynthesisCallTest : public ::testing::Test {
   FakeClock clock_;
   RecordingObserver observer_;
   std::vector<metrics::CallObserver*> observers_ = {&observer_};
-  Admission admission_{4};
+  Admission admission_{[] {
+    AdmissionLimits limits;
+    limits.max_calls = 4;
+    return limits;
+  }()};
+  common::TimePoint deadline_ = common::TimePoint::max();
   PuppetScheduler scheduler_;
   FakeWriter writer_;
   std::shared_ptr<SynthesisCall> call_;
@@ -209,6 +231,63 @@ TEST_F(SynthesisCallTest, AMessageThatCannotBeWrittenEndsTheCall) {
   Written(/*ok=*/false);
   ASSERT_TRUE(writer_.finished.has_value());
   EXPECT_THAT(*writer_.finished, StatusIs(StatusCode::kCancelled, testing::_));
+  EXPECT_FALSE(scheduler_.RunNext()) << "its window was evaluated";
+}
+
+TEST_F(SynthesisCallTest, AReaderThatTakesNothingIsGivenUp) {
+  Create(46);
+  call_->Start();
+  clock_.Advance(std::chrono::seconds(29));
+  call_->CheckTime(clock_.Now());
+  EXPECT_EQ(writer_.broken_off, 0);
+  clock_.Advance(std::chrono::seconds(1));
+  call_->CheckTime(clock_.Now());
+  EXPECT_EQ(writer_.broken_off, 1);
+  EXPECT_FALSE(writer_.finished.has_value()) << "its write has not come back";
+  Written(/*ok=*/false);
+  ASSERT_TRUE(writer_.finished.has_value());
+  EXPECT_THAT(*writer_.finished, StatusIs(StatusCode::kDeadlineExceeded,
+                                          testing::HasSubstr("write_timeout_seconds = 30")));
+  EXPECT_EQ(admission_.calls(), 0u);
+  EXPECT_FALSE(scheduler_.RunNext()) << "its window was evaluated";
+}
+
+TEST_F(SynthesisCallTest, AReaderThatTakesEachMessageInTimeIsNot) {
+  Create(46);
+  call_->Start();
+  scheduler_.RunNext();
+  while (writer_.writing) {
+    clock_.Advance(std::chrono::seconds(29));
+    call_->CheckTime(clock_.Now());
+    Written();
+  }
+  EXPECT_THAT(*writer_.finished, IsOk());
+  EXPECT_EQ(writer_.broken_off, 0);
+}
+
+TEST_F(SynthesisCallTest, AWriteThatComesBackWhileItIsBrokenOffKeepsTheWriter) {
+  Create(46);
+  call_->Start();
+  writer_.on_break_off = [this] {
+    Written(/*ok=*/false);
+    EXPECT_FALSE(writer_.finished.has_value()) << "the writer would be gone";
+  };
+  clock_.Advance(std::chrono::seconds(30));
+  call_->CheckTime(clock_.Now());
+  EXPECT_THAT(*writer_.finished, StatusIs(StatusCode::kDeadlineExceeded, testing::_));
+}
+
+TEST_F(SynthesisCallTest, ACallEndsAtItsDeadlineThoughNobodyElseEndsIt) {
+  deadline_ = clock_.Now() + std::chrono::seconds(5);
+  Create(46);
+  call_->Start();
+  Written();
+  clock_.Advance(std::chrono::milliseconds(4999));
+  call_->CheckTime(clock_.Now());
+  EXPECT_FALSE(writer_.finished.has_value());
+  clock_.Advance(std::chrono::milliseconds(1));
+  call_->CheckTime(clock_.Now());
+  EXPECT_THAT(*writer_.finished, StatusIs(StatusCode::kDeadlineExceeded, testing::_));
   EXPECT_FALSE(scheduler_.RunNext()) << "its window was evaluated";
 }
 

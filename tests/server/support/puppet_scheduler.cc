@@ -13,6 +13,11 @@ absl::Status PuppetScheduler::Submit(server::batching::WindowJob job) {
   return absl::OkStatus();
 }
 
+absl::Status PuppetScheduler::CheckRoom(server::batching::Priority, const std::string&) const {
+  server::common::MutexLock lock(mutex_);
+  return refusal_.value_or(absl::OkStatus());
+}
+
 void PuppetScheduler::Refuse(absl::Status status) {
   server::common::MutexLock lock(mutex_);
   refusal_ = std::move(status);
@@ -55,6 +60,11 @@ server::common::TimePoint PuppetScheduler::NextDeadline() const {
 int PuppetScheduler::NextCallWindows() const {
   server::common::MutexLock lock(mutex_);
   return jobs_.front().call_windows;
+}
+
+std::string PuppetScheduler::NextClient() const {
+  server::common::MutexLock lock(mutex_);
+  return jobs_.front().client;
 }
 
 server::batching::WindowJob PuppetScheduler::Take() {

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <deque>
 #include <optional>
+#include <string>
 
 #include "absl/status/status.h"
 #include "server/batching/window_scheduler.h"
@@ -18,7 +19,10 @@ class PuppetScheduler final : public server::batching::WindowScheduler {
  public:
   absl::Status Submit(server::batching::WindowJob job) override;
 
-  // From now on Submit refuses with this.
+  absl::Status CheckRoom(server::batching::Priority priority,
+                         const std::string& client) const override;
+
+  // From now on Submit and CheckRoom refuse with this.
   void Refuse(absl::Status status);
 
   // Waits for a job and evaluates the oldest, or drops it as cancelled. True when it was evaluated.
@@ -33,6 +37,7 @@ class PuppetScheduler final : public server::batching::WindowScheduler {
   server::batching::Priority NextPriority() const;
   server::common::TimePoint NextDeadline() const;
   int NextCallWindows() const;
+  std::string NextClient() const;
 
  private:
   server::batching::WindowJob Take();

@@ -16,11 +16,12 @@ namespace duet::test {
 
 RunningService::Setup::Setup() {
   const server::config::ServerOptions defaults;
+  admission.max_calls = 16;
   limits.max_request_bytes = defaults.max_request_bytes;
   buffered_frames = defaults.buffered_frames;
 }
 
-RunningService::RunningService(Setup setup) : admission_(setup.max_calls) {
+RunningService::RunningService(Setup setup) : admission_(setup.admission) {
   registry_.Serve(std::move(setup.model));
   admission_.SetState(server::service::Admission::State::kServing);
   if (setup.scheduler == nullptr) {
@@ -33,6 +34,11 @@ RunningService::RunningService(Setup setup) : admission_(setup.max_calls) {
   parts.admission = &admission_;
   parts.observers = {&calls_};
   parts.limits = setup.limits;
+  parts.reception = setup.reception;
+  parts.clock = setup.clock;
+  parts.write_timeout_seconds = setup.write_timeout_seconds;
+  parts.max_call_seconds = setup.max_call_seconds;
+  parts.client_key = setup.client_key;
   parts.buffered_frames = setup.buffered_frames;
   parts.clean_up = setup.clean_up;
   service_ = std::make_unique<server::service::MotionSynthesisService>(parts);

@@ -4,6 +4,7 @@
 #include <grpcpp/channel.h>
 #include <grpcpp/client_context.h>
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -29,8 +30,13 @@ class RunningService {
 
     std::shared_ptr<const engine::Synthesizer> model = std::make_shared<FakeSynthesizer>();
     server::batching::WindowScheduler* scheduler = nullptr;  // null: a batcher with two workers
-    std::size_t max_calls = 16;
+    server::service::AdmissionLimits admission;              // 16 calls
     server::service::RequestLimits limits;
+    server::service::ReceptionLimits reception;
+    const server::common::Clock* clock = &server::common::Clock::Real();
+    double write_timeout_seconds = std::numeric_limits<double>::infinity();
+    double max_call_seconds = std::numeric_limits<double>::infinity();
+    std::string client_key;
     int buffered_frames = 0;
     std::optional<bool> clean_up;  // see ServiceParts
   };

@@ -1,4 +1,4 @@
-#include "tests/client/support/test_certificate.h"
+#include "tests/support/test_certificate.h"
 
 #include <openssl/evp.h>
 #include <openssl/pem.h>
@@ -29,23 +29,44 @@ void AddExtension(X509* certificate, int kind, const std::string& value) {
   EXPECT_EQ(X509_add_ext(certificate, extension.get(), -1), 1);
 }
 
+std::unique_ptr<BIO, decltype(&BIO_free)> Reading(const std::string& pem) {
+  return {BIO_new_mem_buf(pem.data(), static_cast<int>(pem.size())), BIO_free};
+}
+
+// Has `certificate` vouched for by `signer`.
+void Sign(X509* certificate, const TestCertificate& signer) {
+  const Certificate issuer(
+      PEM_read_bio_X509(Reading(signer.certificate).get(), nullptr, nullptr, nullptr), X509_free);
+  const Key key(
+      PEM_read_bio_PrivateKey(Reading(signer.private_key).get(), nullptr, nullptr, nullptr),
+      EVP_PKEY_free);
+  X509_set_issuer_name(certificate, X509_get_subject_name(issuer.get()));
+  EXPECT_GT(X509_sign(certificate, key.get(), EVP_sha256()), 0);
+}
+
 }  // namespace
 
-TestCertificate MakeTestCertificate(const std::string& name) {
+TestCertificate MakeTestCertificate(const std::string& name,
+                                    const TestCertificateOptions& options) {
   const Key key(EVP_EC_gen("P-256"), EVP_PKEY_free);
   const Certificate certificate(X509_new(), X509_free);
   X509_set_version(certificate.get(), 2);  // counted from 0: version 3
   ASN1_INTEGER_set(X509_get_serialNumber(certificate.get()), 1);
-  X509_gmtime_adj(X509_getm_notBefore(certificate.get()), -1800);
-  X509_gmtime_adj(X509_getm_notAfter(certificate.get()), 1800);
+  X509_gmtime_adj(X509_getm_notBefore(certificate.get()), options.valid_from);
+  X509_gmtime_adj(X509_getm_notAfter(certificate.get()), options.valid_until);
   X509_set_pubkey(certificate.get(), key.get());
   X509_NAME* subject = X509_get_subject_name(certificate.get());
   X509_NAME_add_entry_by_txt(subject, "CN", MBSTRING_ASC,
                              reinterpret_cast<const unsigned char*>(name.c_str()), -1, -1, 0);
   X509_set_issuer_name(certificate.get(), subject);
-  AddExtension(certificate.get(), NID_basic_constraints, "critical,CA:TRUE");
+  AddExtension(certificate.get(), NID_basic_constraints,
+               options.signer == nullptr ? "critical,CA:TRUE" : "critical,CA:FALSE");
   AddExtension(certificate.get(), NID_subject_alt_name, "DNS:" + name);
-  EXPECT_GT(X509_sign(certificate.get(), key.get(), EVP_sha256()), 0);
+  if (options.signer == nullptr) {
+    EXPECT_GT(X509_sign(certificate.get(), key.get(), EVP_sha256()), 0);
+  } else {
+    Sign(certificate.get(), *options.signer);
+  }
   return {ToPem([&](BIO* out) { return PEM_write_bio_X509(out, certificate.get()); }),
           ToPem([&](BIO* out) {
             return PEM_write_bio_PrivateKey(out, key.get(), nullptr, nullptr, 0, nullptr, nullptr);

@@ -1,0 +1,29 @@
+#ifndef DUET_SERVER_LIFECYCLE_REPEATED_TASK_H_
+#define DUET_SERVER_LIFECYCLE_REPEATED_TASK_H_
+
+#include <functional>
+#include <thread>
+
+#include "server/common/mutex.h"
+
+namespace duet::server::lifecycle {
+
+// Runs a task on a thread of its own, again and again with a pause between, until destroyed.
+class RepeatedTask {
+ public:
+  RepeatedTask(double pause_seconds, std::function<void()> task);
+  // Waits for a task that runs.
+  ~RepeatedTask();
+
+ private:
+  void Run(double pause_seconds, const std::function<void()>& task);
+
+  common::Mutex mutex_;
+  common::CondVar changed_;
+  bool stopping_ DUET_GUARDED_BY(mutex_) = false;
+  std::thread thread_;
+};
+
+}  // namespace duet::server::lifecycle
+
+#endif  // DUET_SERVER_LIFECYCLE_REPEATED_TASK_H_

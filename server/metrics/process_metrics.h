@@ -1,0 +1,23 @@
+#ifndef DUET_SERVER_METRICS_PROCESS_METRICS_H_
+#define DUET_SERVER_METRICS_PROCESS_METRICS_H_
+
+#include <prometheus/metric_family.h>
+
+#include <string>
+#include <vector>
+
+namespace duet::server::metrics {
+
+// What Prometheus' own clients tell of every process, under the same names, read from /proc now:
+//   process_cpu_seconds_total, process_start_time_seconds, process_threads,
+//   process_resident_memory_bytes, process_virtual_memory_bytes, process_open_fds, process_max_fds
+// What cannot be read is left out.
+std::vector<prometheus::MetricFamily> ReadProcessMetrics();
+
+// A gauge and a counter without labels.
+prometheus::MetricFamily Gauge(const std::string& name, const std::string& help, double value);
+prometheus::MetricFamily Counter(const std::string& name, const std::string& help, double value);
+
+}  // namespace duet::server::metrics
+
+#endif  // DUET_SERVER_METRICS_PROCESS_METRICS_H_

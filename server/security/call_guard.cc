@@ -1,0 +1,141 @@
+#include "server/security/call_guard.h"
+
+#include <iterator>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/string_view.h"
+#include "absl/time/time.h"
+#include "model/base/sha256.h"
+#include "server/common/error_details.h"
+
+namespace duet::server::security {
+namespace {
+
+// For frames to come free: about a long call's time between two windows.
+constexpr absl::Duration kFramesDelay = absl::Seconds(1);
+
+std::vector<std::string> CertificateNames(const grpc::ServerContextBase& context) {
+  std::vector<std::string> names;
+  const auto authenticated = context.auth_context();
+  if (authenticated == nullptr || !authenticated->IsPeerAuthenticated()) return names;
+  // The subject's alternative names, or its common name where there are none.
+  for (const grpc::string_ref& name : authenticated->GetPeerIdentity()) {
+    names.emplace_back(name.data(), name.size());
+  }
+  return names;
+}
+
+// The token of "Bearer TOKEN"; empty for anything else.
+absl::string_view BearerToken(absl::string_view authorization) {
+  constexpr absl::string_view kScheme = "Bearer ";
+  return absl::StartsWithIgnoreCase(authorization, kScheme) ? authorization.substr(kScheme.size())
+                                                            : absl::string_view();
+}
+
+Credentials CredentialsOf(const grpc::ServerContextBase& context) {
+  Credentials credentials;
+  credentials.certificate_names = CertificateNames(context);
+  const auto [begin, end] = context.client_metadata().equal_range("authorization");
+  if (begin == end) return credentials;
+  credentials.has_token = true;
+  if (std::next(begin) != end) return credentials;  // which one counts is nobody's to guess
+  const absl::string_view token = BearerToken({begin->second.data(), begin->second.size()});
+  if (!token.empty()) credentials.token_digest = base::Sha256Hex({token.data(), token.size()});
+  return credentials;
+}
+
+bool IsFromThisMachine(const grpc::ServerContextBase& context) {
+  const std::string peer = context.peer();
+  return absl::StartsWith(peer, "ipv4:127.") || absl::StartsWith(peer, "ipv6:%5B::1%5D:") ||
+         absl::StartsWith(peer, "ipv6:[::1]:") || absl::StartsWith(peer, "unix:");
+}
+
+absl::Status Refusal(absl::StatusCode code, absl::string_view message, absl::string_view reason,
+                     const std::map<std::string, std::string>& metadata = {}) {
+  absl::Status status(code, message);
+  common::AddErrorInfo(status, reason, metadata);
+  return status;
+}
+
+absl::Status RoleRefusal(Role role) {
+  return Refusal(absl::StatusCode::kPermissionDenied,
+                 absl::StrCat("the caller has not the role ", RoleName(role)),
+                 common::kReasonRoleMissing, {{"role", RoleName(role)}});
+}
+
+absl::Status CallRateRefusal(const Caller& caller, double retry_seconds) {
+  const std::string limit = absl::StrCat(caller.limits.calls_per_second.value_or(0));
+  absl::Status status =
+      Refusal(absl::StatusCode::kResourceExhausted,
+              absl::StrCat("the caller makes more than its ", limit, " calls a second"),
+              common::kReasonCallRate, {{"calls_per_second", limit}});
+  common::AddRetryInfo(status, absl::Seconds(retry_seconds));
+  return status;
+}
+
+absl::Status ToStatus(const AccessControl::Decision& decision, Role role) {
+  switch (decision.answer) {
+    case AccessControl::Answer::kAllowed:
+      break;
+    case AccessControl::Answer::kNoCredentials:
+      return Refusal(absl::StatusCode::kUnauthenticated,
+                     "the call says not who makes it, wanted \"authorization: Bearer TOKEN\" in "
+                     "its metadata, or a client certificate where the server asks for one",
+                     common::kReasonCredentialsMissing);
+    case AccessControl::Answer::kWrongToken:
+      return Refusal(absl::StatusCode::kUnauthenticated,
+                     "the call's authorization is not \"Bearer TOKEN\" with a token known here",
+                     common::kReasonCredentialsInvalid);
+    case AccessControl::Answer::kUnknownCertificate:
+      return Refusal(absl::StatusCode::kPermissionDenied,
+                     "the client's certificate is of nobody who may call",
+                     common::kReasonCallerUnknown);
+    case AccessControl::Answer::kWrongRole:
+      return RoleRefusal(role);
+    case AccessControl::Answer::kTooManyCalls:
+      return CallRateRefusal(decision.caller->caller, decision.retry_seconds);
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+absl::Status CallPass::HoldFrames(std::int64_t frames) {
+  if (caller_ == nullptr || !caller_->caller.limits.frames_in_flight.has_value()) {
+    return absl::OkStatus();
+  }
+  const std::int64_t limit = *caller_->caller.limits.frames_in_flight;
+  if (caller_->usage->TakeFrames(frames, limit)) {
+    frames_ = FrameLease(caller_->usage, frames);
+    return absl::OkStatus();
+  }
+  absl::Status status =
+      Refusal(absl::StatusCode::kResourceExhausted,
+              absl::StrCat("the call has ", frames, " frames, the caller may have ", limit,
+                           " frames of calls being answered"),
+              common::kReasonFramesInFlight, {{"frames_in_flight", absl::StrCat(limit)}});
+  if (frames <= limit) common::AddRetryInfo(status, kFramesDelay);
+  return status;
+}
+
+CallPass CallGuard::Admit(const grpc::ServerContextBase& context, Role role) const {
+  const Credentials credentials = CredentialsOf(context);
+  const std::vector<std::string>& names = credentials.certificate_names;
+  const std::string certificate = names.empty() ? "" : names.front();
+  if (access_ == nullptr) {
+    const bool allowed = role == Role::kSynthesise || IsFromThisMachine(context);
+    return {allowed ? absl::OkStatus() : RoleRefusal(role), certificate, nullptr};
+  }
+  AccessControl::Decision decision = access_->Decide(credentials, role);
+  const absl::Status status = ToStatus(decision, role);
+  if (decision.caller == nullptr) return {status, certificate, nullptr};
+  std::string name = decision.caller->caller.name;
+  return {status, std::move(name), std::move(decision.caller)};
+}
+
+}  // namespace duet::server::security

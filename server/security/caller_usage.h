@@ -1,0 +1,58 @@
+#ifndef DUET_SERVER_SECURITY_CALLER_USAGE_H_
+#define DUET_SERVER_SECURITY_CALLER_USAGE_H_
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "server/common/clock.h"
+#include "server/common/mutex.h"
+
+namespace duet::server::security {
+
+// What one caller uses at the moment.
+//
+// Threads: safe to call concurrently. Uses neither gRPC nor abseil.
+class CallerUsage {
+ public:
+  // Counts a call. Nothing when it may go on; otherwise the seconds after which one may. Calls come
+  // at `per_second` in the long run; after a pause, as many as come in a second may come at once.
+  std::optional<double> TakeCall(double per_second, common::TimePoint now);
+
+  // Counts frames, unless they would be more than `limit` in all.
+  bool TakeFrames(std::int64_t frames, std::int64_t limit);
+  void GiveFrames(std::int64_t frames);
+  std::int64_t frames() const;
+
+ private:
+  mutable common::Mutex mutex_;
+  double tokens_ DUET_GUARDED_BY(mutex_) = 0;                         // calls that may come now
+  std::optional<common::TimePoint> counted_ DUET_GUARDED_BY(mutex_);  // when tokens_ was right
+  std::int64_t frames_ DUET_GUARDED_BY(mutex_) = 0;
+};
+
+// Frames that a call holds; its destructor gives them back.
+class FrameLease {
+ public:
+  FrameLease() = default;
+  FrameLease(std::shared_ptr<CallerUsage> usage, std::int64_t frames)
+      : usage_(std::move(usage)), frames_(frames) {}
+  FrameLease(FrameLease&&) = default;
+  FrameLease& operator=(FrameLease&& other) noexcept {
+    std::swap(usage_, other.usage_);
+    std::swap(frames_, other.frames_);
+    return *this;
+  }
+  ~FrameLease() {
+    if (usage_ != nullptr) usage_->GiveFrames(frames_);
+  }
+
+ private:
+  std::shared_ptr<CallerUsage> usage_;
+  std::int64_t frames_ = 0;
+};
+
+}  // namespace duet::server::security
+
+#endif  // DUET_SERVER_SECURITY_CALLER_USAGE_H_

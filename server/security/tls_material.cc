@@ -1,0 +1,115 @@
+#include "server/security/tls_material.h"
+
+#include <openssl/err.h>
+#include <openssl/evp.h>
+#include <openssl/pem.h>
+#include <openssl/x509.h>
+
+#include <cstddef>
+#include <ctime>
+#include <memory>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/string_view.h"
+#include "model/base/file.h"
+
+namespace duet::server::security {
+namespace {
+
+// A bundle of all public authorities has some 200 kB; whatever is far larger is another file.
+constexpr std::size_t kMaxPemBytes = std::size_t{1} << 20;
+
+using Bio = std::unique_ptr<BIO, decltype(&BIO_free)>;
+using Key = std::unique_ptr<EVP_PKEY, decltype(&EVP_PKEY_free)>;
+using Certificate = std::unique_ptr<X509, decltype(&X509_free)>;
+
+Bio Reading(const std::string& text) {
+  return {BIO_new_mem_buf(text.data(), static_cast<int>(text.size())), BIO_free};
+}
+
+// OpenSSL would ask for a password on the terminal.
+int NoPassword(char*, int, int, void*) { return -1; }
+
+std::vector<Certificate> ReadCertificates(const std::string& pem) {
+  std::vector<Certificate> certificates;
+  const Bio bio = Reading(pem);
+  while (X509* certificate = PEM_read_bio_X509(bio.get(), nullptr, NoPassword, nullptr)) {
+    certificates.emplace_back(certificate, X509_free);
+  }
+  ERR_clear_error();  // the end of the text is an error to OpenSSL
+  return certificates;
+}
+
+Key ReadKey(const std::string& pem) {
+  Key key(PEM_read_bio_PrivateKey(Reading(pem).get(), nullptr, NoPassword, nullptr), EVP_PKEY_free);
+  ERR_clear_error();
+  return key;
+}
+
+absl::Time ToTime(const ASN1_TIME* time) {
+  std::tm fields = {};
+  return ASN1_TIME_to_tm(time, &fields) == 1 ? absl::FromTimeT(timegm(&fields))
+                                             : absl::InfinitePast();
+}
+
+absl::Status ReadPem(absl::string_view setting, const std::filesystem::path& path,
+                     std::string* pem) {
+  if (path.empty()) return absl::OkStatus();
+  absl::StatusOr<std::string> text = base::ReadFile(path, kMaxPemBytes, "a PEM file");
+  if (!text.ok()) {
+    return absl::Status(text.status().code(), absl::StrCat(setting, ": ", text.status().message()));
+  }
+  *pem = *std::move(text);
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+absl::StatusOr<TlsMaterial> ReadTlsMaterial(const TlsFiles& files) {
+  TlsMaterial material;
+  absl::Status status =
+      ReadPem("tls_certificate_file", files.certificate, &material.certificate_chain);
+  status.Update(ReadPem("tls_key_file", files.key, &material.private_key));
+  status.Update(ReadPem("tls_client_ca_file", files.client_ca, &material.client_authorities));
+  if (!status.ok()) return status;
+  if (!files.client_ca.empty() && material.client_authorities.empty()) {
+    // Empty would mean that nobody is asked for a certificate.
+    return absl::InvalidArgumentError("tls_client_ca_file: is empty, wanted PEM certificates");
+  }
+  return material;
+}
+
+absl::StatusOr<absl::Time> CheckTlsMaterial(const TlsMaterial& material, absl::Time now) {
+  const std::vector<Certificate> chain = ReadCertificates(material.certificate_chain);
+  if (chain.empty()) {
+    return absl::InvalidArgumentError(
+        "tls_certificate_file: holds no certificate, wanted PEM, the server's own first");
+  }
+  const Key key = ReadKey(material.private_key);
+  if (key == nullptr) {
+    return absl::InvalidArgumentError(
+        "tls_key_file: holds no private key, wanted PEM without a password");
+  }
+  if (X509_check_private_key(chain.front().get(), key.get()) != 1) {
+    ERR_clear_error();
+    return absl::InvalidArgumentError(
+        "tls_key_file: is another certificate's key, wanted that of the first certificate in "
+        "tls_certificate_file");
+  }
+  const absl::Time from = ToTime(X509_get0_notBefore(chain.front().get()));
+  const absl::Time until = ToTime(X509_get0_notAfter(chain.front().get()));
+  if (now < from || now > until) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("tls_certificate_file: is valid from ", absl::FormatTime(from), " to ",
+                     absl::FormatTime(until), ", wanted a certificate that is valid now"));
+  }
+  if (!material.client_authorities.empty() &&
+      ReadCertificates(material.client_authorities).empty()) {
+    return absl::InvalidArgumentError(
+        "tls_client_ca_file: holds no certificate, wanted PEM of those who sign clients'");
+  }
+  return until;
+}
+
+}  // namespace duet::server::security

@@ -1,0 +1,68 @@
+#include "server/service/call_reactor.h"
+
+#include <utility>
+
+#include "server/service/call_deadline.h"
+#include "server/service/call_pipeline.h"
+#include "server/service/wire.h"
+
+namespace duet::server::service {
+namespace {
+
+// A client whose deadline passes resets the call; that may arrive a little before the deadline
+// passes here, where it began later by the request's way.
+constexpr double kDeadlineSlackSeconds = 0.1;
+
+using GrpcReactor = grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>;
+
+}  // namespace
+
+void CallReactor::Receive(std::shared_ptr<Reception> reception, Handler handle) {
+  reception_ = std::move(reception);
+  handle_ = std::move(handle);
+  StartRead(&request_);
+}
+
+void CallReactor::OnReadDone(bool ok) {
+  // The answer may come, and this reactor go, while it is being handled.
+  const std::shared_ptr<Reception> reception = reception_;
+  if (!ok) {
+    reception->Lost(context_.IsCancelled());
+  } else if (reception->Received()) {
+    grpc::ByteBuffer bytes;
+    bytes.Swap(&request_);
+    const Handler handle = std::move(handle_);
+    handle(*this, reception, std::move(bytes));
+  }
+}
+
+void CallReactor::Respond(CallScope& scope, grpc::ByteBuffer response) {
+  reply_.Swap(&response);
+  CallPipeline::Report(scope, absl::OkStatus(), context_);
+  StartWriteAndFinish(&reply_, grpc::WriteOptions(), grpc::Status::OK);
+}
+
+void CallReactor::Run(std::shared_ptr<SynthesisCall> call) {
+  const std::shared_ptr<Reception> reception = reception_;
+  call_ = call;
+  reception->GoOn(std::move(call));
+}
+
+void CallReactor::Write(const v1::SynthesizeResponse& reply) {
+  reply_ = SerializeMessage(reply);
+  StartWrite(&reply_);
+}
+
+void CallReactor::Finish(CallScope& scope, const absl::Status& status) {
+  GrpcReactor& reactor = *this;
+  CallPipeline::Close(scope, status, context_, reactor);
+}
+
+void CallReactor::OnCancel() {
+  if (reception_ == nullptr) return;
+  const bool expired = SecondsLeft(context_) <= kDeadlineSlackSeconds;
+  reception_->Abort(expired ? absl::DeadlineExceededError("the call's deadline passed")
+                            : absl::CancelledError("the caller cancelled"));
+}
+
+}  // namespace duet::server::service

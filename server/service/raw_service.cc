@@ -1,0 +1,23 @@
+#include "server/service/raw_service.h"
+
+#include <grpcpp/impl/codegen/server_callback_handlers.h>
+#include <grpcpp/impl/rpc_method.h>
+#include <grpcpp/impl/rpc_service_method.h>
+
+#include <utility>
+
+namespace duet::server::service {
+
+// What generated code does in its constructors; gRPC serves single messages as streams itself
+// (grpc::Service::MarkMethodStreamed).
+void RawService::Serve(const char* method,
+                       std::function<Reactor*(grpc::CallbackServerContext*)> open) {
+  using grpc::internal::CallbackBidiHandler;
+  using grpc::internal::RpcMethod;
+  using grpc::internal::RpcServiceMethod;
+  AddMethod(new RpcServiceMethod(method, RpcMethod::BIDI_STREAMING, nullptr));
+  MarkMethodRawCallback(
+      methods_++, new CallbackBidiHandler<grpc::ByteBuffer, grpc::ByteBuffer>(std::move(open)));
+}
+
+}  // namespace duet::server::service

@@ -1,0 +1,80 @@
+#ifndef DUET_SERVER_SERVICE_SHARE_POOL_H_
+#define DUET_SERVER_SERVICE_SHARE_POOL_H_
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "server/common/mutex.h"
+
+namespace duet::server::service {
+
+class SharePool;
+
+// A part of a pool that a client holds; its destructor gives it back.
+class ShareLease {
+ public:
+  ShareLease() = default;
+  ShareLease(ShareLease&& other) noexcept
+      : pool_(std::exchange(other.pool_, nullptr)),
+        client_(std::move(other.client_)),
+        amount_(other.amount_) {}
+  ShareLease& operator=(ShareLease&& other) noexcept {
+    std::swap(pool_, other.pool_);
+    std::swap(client_, other.client_);
+    std::swap(amount_, other.amount_);
+    return *this;
+  }
+  ~ShareLease();
+
+  explicit operator bool() const { return pool_ != nullptr; }
+
+ private:
+  friend class SharePool;
+  ShareLease(SharePool* pool, std::string client, std::size_t amount)
+      : pool_(pool), client_(std::move(client)), amount_(amount) {}
+
+  SharePool* pool_ = nullptr;
+  std::string client_;
+  std::size_t amount_ = 0;
+};
+
+// An amount of something that clients share: places, bytes.
+//
+// A client may take more as long as it holds less than client_share / (1 - client_share) times what
+// is free. Alone it can come to hold that share of the whole; two such clients with a share of 3/4
+// come to hold 3/7 each. So whoever comes finds something free, however greedy the others are, and
+// nobody needs to say beforehand who will come (Choudhury and Hahne 1998, "Dynamic queue length
+// thresholds for shared-memory packet switches").
+//
+// Threads: safe to call concurrently.
+class SharePool {
+ public:
+  // `client_share`: over 0, at most 1; with 1 a client may hold everything.
+  SharePool(std::size_t amount, double client_share)
+      : amount_(amount), client_share_(client_share) {}
+
+  // Nothing when not so much is free, or the client has its share. The lease must not outlive the
+  // pool.
+  std::optional<ShareLease> Take(const std::string& client, std::size_t amount = 1);
+
+  std::size_t amount() const { return amount_; }
+  std::size_t taken() const;
+
+ private:
+  friend class ShareLease;
+  bool MayTake(const std::string& client, std::size_t amount) const DUET_REQUIRES(mutex_);
+  void GiveBack(const std::string& client, std::size_t amount);
+
+  const std::size_t amount_;
+  const double client_share_;
+  mutable common::Mutex mutex_;
+  std::size_t taken_ DUET_GUARDED_BY(mutex_) = 0;
+  std::map<std::string, std::size_t> held_ DUET_GUARDED_BY(mutex_);  // by those who hold any
+};
+
+}  // namespace duet::server::service
+
+#endif  // DUET_SERVER_SERVICE_SHARE_POOL_H_

@@ -1,0 +1,58 @@
+#ifndef DUET_SERVER_TRACING_SPAN_QUEUE_H_
+#define DUET_SERVER_TRACING_SPAN_QUEUE_H_
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <thread>
+#include <vector>
+
+#include "server/common/mutex.h"
+#include "server/tracing/span.h"
+
+namespace duet::server::tracing {
+
+// Hands spans on in batches, from a thread of its own: whoever adds one never waits. Spans that
+// find the queue full, or that cannot be sent, are dropped and counted.
+//
+// Threads: safe to call concurrently. Uses neither gRPC nor abseil.
+class SpanQueue {
+ public:
+  struct Options {
+    std::size_t capacity = 2048;   // waiting spans
+    std::size_t batch_size = 512;  // at most, and what is sent at once
+    std::chrono::milliseconds interval = std::chrono::seconds(2);  // between smaller batches
+    // Sends a batch; false when it failed. May take seconds. Required.
+    std::function<bool(const std::vector<Span>&)> send;
+  };
+
+  explicit SpanQueue(Options options);
+  // Sends what is left, once.
+  ~SpanQueue();
+  SpanQueue(const SpanQueue&) = delete;
+  SpanQueue& operator=(const SpanQueue&) = delete;
+
+  void Add(Span span);
+
+  std::uint64_t sent() const;
+  std::uint64_t dropped() const;
+
+ private:
+  void Run();
+  // Waits for a batch; an empty one ends the thread.
+  std::vector<Span> Next();
+
+  const Options options_;
+  mutable common::Mutex mutex_;
+  common::CondVar changed_;
+  std::vector<Span> spans_ DUET_GUARDED_BY(mutex_);
+  std::uint64_t sent_ DUET_GUARDED_BY(mutex_) = 0;
+  std::uint64_t dropped_ DUET_GUARDED_BY(mutex_) = 0;
+  bool closed_ DUET_GUARDED_BY(mutex_) = false;
+  std::thread thread_;  // the last member: it uses the others
+};
+
+}  // namespace duet::server::tracing
+
+#endif  // DUET_SERVER_TRACING_SPAN_QUEUE_H_

@@ -1,0 +1,225 @@
+"""Clients that keep to the protocol and mean no good, against the real server: it stays small, and
+answers others. benchmarks/measure_hostile.py measures the same."""
+
+import contextlib
+import http.client
+import pathlib
+import re
+import socket
+import subprocess
+import tempfile
+import threading
+import time
+import unittest
+
+import http2_client as http2
+import tools
+
+SYNTHESIZE = "/duet.v1.MotionSynthesis/Synthesize"
+LIST_MODELS = "/duet.v1.MotionSynthesis/ListModels"
+HOSTILE = "127.0.0.2"
+MEGABYTE = 1_000_000
+
+
+def get(server, path):
+    """A page of the metrics port: status and text."""
+    connection = http.client.HTTPConnection("127.0.0.1", server.metrics_port,
+                                            timeout=tools.RUN_SECONDS)
+    with contextlib.closing(connection):
+        connection.request("GET", path)
+        response = connection.getresponse()
+        return response.status, response.read().decode()
+
+
+def wait_until(condition, what):
+    end = time.monotonic() + tools.RUN_SECONDS
+    while not condition():
+        if time.monotonic() > end:
+            raise AssertionError(f"waited in vain until {what}")
+        time.sleep(0.01)
+
+
+def in_flight(server):
+    found = re.search(r'duet_calls_in_flight\{method="Synthesize"\} (\d+)',
+                      get(server, "/metrics")[1])
+    return int(found[1]) if found else 0
+
+
+def ended(server):
+    """Codes and messages of the Synthesize calls that are over."""
+    return [(entry["code"], entry.get("message", "")) for entry in list(server.log)
+            if entry.get("event") == "call" and entry["method"] == "Synthesize"]
+
+
+def peak_megabytes(server):
+    status = pathlib.Path(f"/proc/{server.pid}/status").read_text(encoding="utf-8")
+    return int(re.search(r"VmHWM:\s+(\d+)", status)[1]) * 1024 / MEGABYTE
+
+
+def upload(connection, payload):
+    """Sends a whole message, as fast as the server takes it, and reads to the end of the call."""
+    stream = connection.open(SYNTHESIZE)
+    body = http2.message(payload)
+    stream_credit, sent, over = 65535, 0, False
+    frames = connection.frames()
+    while not over:
+        while sent < len(body) and (room := min(16384, connection.credit, stream_credit)) > 0:
+            piece = body[sent:sent + room]
+            sent += len(piece)
+            connection.credit -= len(piece)
+            stream_credit -= len(piece)
+            flags = http2.END_STREAM if sent == len(body) else 0
+            connection.socket.sendall(http2.frame(http2.DATA, flags, stream, piece))
+        kind, flags, number, payload = next(frames)
+        if kind == http2.WINDOW_UPDATE and number == stream:
+            stream_credit += int.from_bytes(payload, "big")
+        if kind == http2.SETTINGS and not flags & http2.ACK:
+            for at in range(0, len(payload), 6):
+                if int.from_bytes(payload[at:at + 2], "big") == http2.SETTING_INITIAL_WINDOW:
+                    stream_credit += int.from_bytes(payload[at + 2:at + 6], "big") - 65535
+        over = number == stream and (kind == http2.RST_STREAM or
+                                     bool(flags & http2.END_STREAM and kind == http2.HEADERS))
+
+
+class HostileClientTest(unittest.TestCase):
+    def serve(self, *flags, **options):
+        server = tools.Server(*flags, metrics="127.0.0.1:0", **options)
+        self.addCleanup(server.stop)
+        return server
+
+    def connect(self, server, **options):
+        connection = http2.Connection(server.port, source=HOSTILE, **options)
+        self.addCleanup(connection.close)
+        return connection
+
+    def assert_others_are_answered(self, server):
+        result = tools.duet("models", "--server", server.address)
+        self.assertEqual(result.returncode, 0, result.stderr)
+
+    def test_requests_of_tiny_messages_stay_small(self):
+        server = self.serve()
+        # 16 million empty keyframes' worth of bytes: over 1 GB each, if they were parsed.
+        bomb = b"\x22\x02\x12\x00" * (31 * (1 << 20) // 4)
+        senders = [threading.Thread(target=upload, args=(self.connect(server), bomb))
+                   for _ in range(2)]
+        for sender in senders:
+            sender.start()
+        self.assert_others_are_answered(server)
+        for sender in senders:
+            sender.join()
+        wait_until(lambda: len(ended(server)) == 2, "both have ended")
+        for code, message in ended(server):
+            self.assertEqual(code, "INVALID_ARGUMENT")
+            self.assertIn("label_keyframes: comes more than 65536 times", message)
+        self.assertLess(peak_megabytes(server), 600)
+
+    def test_readers_that_never_read_give_their_places_back(self):
+        server = self.serve("--write-timeout-seconds", "0.5")
+        connection = self.connect(server, window=0)
+        # Malformed requests end at once: their refusal needs no window. These are good.
+        with tempfile.TemporaryDirectory() as folder:
+            request = small_request(folder)
+        for _ in range(200):
+            connection.open(SYNTHESIZE, request)
+        self.assert_others_are_answered(server)
+        wait_until(lambda: len(ended(server)) == 200, "all have ended")
+        codes = {code for code, _ in ended(server)}
+        self.assertEqual(codes, {"DEADLINE_EXCEEDED", "RESOURCE_EXHAUSTED"})
+        self.assertTrue(any("write_timeout_seconds = 0.5" in text for _, text in ended(server)))
+        self.assertEqual(in_flight(server), 0)
+
+    def test_requests_that_never_come_give_their_places_back(self):
+        server = self.serve("--receive-timeout-seconds", "0.5")
+        connection = self.connect(server)
+        for _ in range(200):
+            connection.open(SYNTHESIZE)
+        self.assert_others_are_answered(server)
+        wait_until(lambda: len(ended(server)) == 200, "all have ended")
+        self.assertEqual(in_flight(server), 0)
+
+    def test_sockets_that_say_little_hold_up_no_page(self):
+        server = self.serve()
+        for words in ("", "G", "GET /metr") * 30:
+            loiterer = socket.create_connection(("127.0.0.1", server.metrics_port))
+            self.addCleanup(loiterer.close)
+            loiterer.sendall(words.encode())
+        for path in ("/healthz", "/readyz", "/metrics"):
+            self.assertEqual(get(server, path)[0], 200)
+
+    def test_a_listener_that_is_dead_is_not_healthy(self):
+        server = self.serve("--self-check-seconds", "0.1", descriptors=64)
+        self.assertEqual(get(server, "/healthz")[0], 200)
+        held = []
+        self.addCleanup(lambda: [each.close() for each in held])
+        for _ in range(80):
+            held.append(socket.create_connection(("127.0.0.1", server.port)))
+        # With none left, not even its own check has a descriptor.
+        wait_until(lambda: any(entry.get("event") == "self_check_failed"
+                               for entry in list(server.log)), "its check fails")
+        for each in held:
+            each.close()
+        wait_until(lambda: get(server, "/healthz")[0] == 503, "it says so")
+
+    def test_a_deadline_beyond_all_time_is_one(self):
+        server = self.serve()
+        connection = self.connect(server)
+        with tempfile.TemporaryDirectory() as folder:
+            request = small_request(folder)
+        connection.open(SYNTHESIZE, request, extra=[("grpc-timeout", "99999999H")])
+        for kind, flags, _, _ in connection.frames():
+            if kind == http2.HEADERS and flags & http2.END_STREAM:
+                break
+        wait_until(lambda: ended(server), "the call is logged")
+        self.assertEqual(ended(server), [("OK", "")])
+
+    def test_a_call_cancelled_before_its_request_counts_as_cancelled(self):
+        server = self.serve()
+        connection = self.connect(server)
+        stream = connection.open(SYNTHESIZE)
+        wait_until(lambda: in_flight(server) == 1, "the call has begun")
+        connection.socket.sendall(
+            http2.frame(http2.RST_STREAM, 0, stream, (8).to_bytes(4, "big")))
+        wait_until(lambda: ended(server), "the call is logged")
+        self.assertEqual(ended(server)[0][0], "CANCELLED")
+
+
+class RestartTest(unittest.TestCase):
+    def test_a_call_waits_for_a_server_that_restarts(self):
+        server = tools.Server()
+        server.kill()
+        with tempfile.TemporaryDirectory() as folder:
+            call = subprocess.Popen(
+                [str(tools.PROGRAMS / "duet"), "synthesize", "--leader", tools.sample("punch"),
+                 "--label", "punch=1", "--out", f"{folder}/pair.html", "--server",
+                 server.address, "--timeout", str(tools.RUN_SECONDS)],
+                stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+            with call:
+                self.assertIn("does not answer", call.stderr.readline())
+                again = tools.Server(port=server.port)
+                self.addCleanup(again.stop)
+                _, error = call.communicate(timeout=tools.RUN_SECONDS)
+            self.assertEqual(call.returncode, 0, error)
+
+
+def small_request(folder):
+    """A request of a few kilobytes that the default model answers."""
+    text = pathlib.Path(folder) / "request.txtpb"
+    joints = ("head neck torso left_shoulder left_elbow left_hand right_shoulder right_elbow "
+              "right_hand left_hip left_knee left_foot right_hip right_knee right_foot").split()
+    frames = 20
+    names = "".join(f'joint_names: "{joint}" ' for joint in joints)
+    positions = "".join(f"positions: {0.1 * (i % 3) + 0.05 * (i // 3 % 15):.3f} "
+                        for i in range(frames * 45))
+    text.write_text(
+        f"leader {{ {names} frame_rate_hz: 15 unit: LENGTH_UNIT_METRES up_axis: UP_AXIS_Y_UP "
+        f"frame_count: {frames} {positions} }} "
+        'label_vector { weights { interaction_class: "punch" weight: 1 } }', encoding="utf-8")
+    with text.open(encoding="utf-8") as message:
+        return subprocess.run(
+            ["protoc", f"-I{tools.SOURCE / 'proto'}", "--encode=duet.v1.SynthesizeRequest",
+             "duet/v1/synthesis.proto"], stdin=message, stdout=subprocess.PIPE,
+            check=True).stdout
+
+
+if __name__ == "__main__":
+    tools.main()

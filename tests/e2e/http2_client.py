@@ -1,0 +1,97 @@
+"""HTTP/2 and gRPC by hand (RFC 9113, RFC 7541 without its tables), for clients that do what no
+library would: read nothing, send a byte a second, reset at once."""
+
+import socket
+import struct
+
+DATA, HEADERS, RST_STREAM, SETTINGS, PING, GOAWAY, WINDOW_UPDATE = 0, 1, 3, 4, 6, 7, 8
+END_STREAM, ACK, END_HEADERS = 1, 1, 4
+PREFACE = b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n"
+SETTING_INITIAL_WINDOW = 4
+
+
+def frame(kind, flags, stream, payload=b""):
+    return struct.pack(">I", len(payload))[1:] + bytes((kind, flags)) + struct.pack(
+        ">I", stream) + payload
+
+
+def literal(name, value):
+    """A header field that enters no table."""
+    text = b"\x00"
+    for part in (name.encode(), value.encode()):
+        assert len(part) < 127
+        text += bytes((len(part),)) + part
+    return text
+
+
+def request_headers(path, extra=()):
+    fields = [(":method", "POST"), (":scheme", "http"), (":path", path), (":authority", "test"),
+              ("content-type", "application/grpc"), ("te", "trailers"), *extra]
+    return b"".join(literal(*field) for field in fields)
+
+
+def message(payload):
+    """A gRPC message as it travels."""
+    return b"\x00" + struct.pack(">I", len(payload)) + payload
+
+
+class Connection:
+    """One connection, blocking. With `window` the server may send so many bytes of each stream."""
+
+    def __init__(self, port, source="127.0.0.1", window=None, host="127.0.0.1"):
+        self.socket = socket.create_connection((host, port), 30, source_address=(source, 0))
+        settings = b"" if window is None else struct.pack(">HI", SETTING_INITIAL_WINDOW, window)
+        self.socket.sendall(PREFACE + frame(SETTINGS, 0, 0, settings))
+        self.next_stream = 1
+        self.credit = 65535  # bytes of all streams that the server takes now
+
+    def close(self):
+        self.socket.close()
+
+    def open(self, path, payload=None, extra=(), end=True):
+        """Begins a call, with a message of a few kilobytes unless that is None; its stream."""
+        stream = self.next_stream
+        self.next_stream += 2
+        data = frame(HEADERS, END_HEADERS, stream, request_headers(path, extra))
+        if payload is not None:
+            body = message(payload)
+            while self.credit < len(body):
+                next(self.frames())
+            self.credit -= len(body)
+            pieces = [body[at:at + 16384] for at in range(0, len(body), 16384)]
+            for i, piece in enumerate(pieces):
+                last = end and i == len(pieces) - 1
+                data += frame(DATA, END_STREAM if last else 0, stream, piece)
+        self.socket.sendall(data)
+        return stream
+
+    def frames(self):
+        """What the server sends, as (kind, flags, stream, payload), until it ends or a time-out."""
+        while True:
+            head = self._read(9)
+            if head is None:
+                return
+            length = int.from_bytes(head[:3], "big")
+            payload = self._read(length)
+            if payload is None:
+                return
+            kind, flags = head[3], head[4]
+            if kind == SETTINGS and not flags & ACK:
+                self.socket.sendall(frame(SETTINGS, ACK, 0))
+            if kind == PING and not flags & ACK:
+                self.socket.sendall(frame(PING, ACK, 0, payload))
+            if kind == WINDOW_UPDATE and int.from_bytes(head[5:], "big") == 0:
+                self.credit += int.from_bytes(payload, "big")
+            yield kind, flags, int.from_bytes(head[5:], "big") & 0x7FFFFFFF, payload
+
+    def _read(self, count):
+        data = b""
+        while len(data) < count:
+            try:
+                piece = self.socket.recv(count - len(data))
+            except OSError:
+                return None
+            if not piece:
+                return None
+            data += piece
+        return data

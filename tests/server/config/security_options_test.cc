@@ -1,0 +1,101 @@
+// The options of certificates, callers, log and traces.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+#include <string>
+
+#include "server/config/server_options.h"
+#include "tests/support/status_matchers.h"
+
+namespace duet::server::config {
+namespace {
+
+using test::IsOk;
+using test::StatusIs;
+using ::testing::HasSubstr;
+
+TEST(SecurityOptionsTest, NothingIsAskedForUnlessSaid) {
+  const absl::StatusOr<ServerOptions> options = ToOptions(v1::ServerConfig(), 4);
+  ASSERT_THAT(options, IsOk());
+  EXPECT_TRUE(options->security.tls_certificate_file.empty());
+  EXPECT_TRUE(options->security.access_file.empty());
+  EXPECT_EQ(options->logging.format, LoggingOptions::Format::kJson);
+  EXPECT_EQ(options->logging.level, LoggingOptions::Level::kInfo);
+  EXPECT_EQ(options->logging.success_ratio, 1);
+  EXPECT_EQ(options->logging.refusals_per_second, 10);
+  EXPECT_TRUE(options->tracing.otlp_endpoint.empty());
+  EXPECT_EQ(options->tracing.ratio, 1);
+}
+
+TEST(SecurityOptionsTest, TakesOverEveryField) {
+  v1::ServerConfig config;
+  config.set_tls_certificate_file("/c");
+  config.set_tls_key_file("/k");
+  config.set_tls_client_ca_file("/a");
+  config.set_access_file("/l");
+  config.set_otlp_endpoint("http://o:1");
+  config.set_trace_ratio(0.25);
+  config.set_log_format(v1::LOG_FORMAT_TEXT);
+  config.set_log_level(v1::LOG_LEVEL_ERROR);
+  config.set_log_success_ratio(0.5);
+  config.set_log_refusals_per_second(3);
+  const absl::StatusOr<ServerOptions> options = ToOptions(config, 4);
+  ASSERT_THAT(options, IsOk());
+  EXPECT_EQ(options->security.tls_certificate_file, "/c");
+  EXPECT_EQ(options->security.tls_key_file, "/k");
+  EXPECT_EQ(options->security.tls_client_ca_file, "/a");
+  EXPECT_EQ(options->security.access_file, "/l");
+  EXPECT_EQ(options->logging.format, LoggingOptions::Format::kText);
+  EXPECT_EQ(options->logging.level, LoggingOptions::Level::kError);
+  EXPECT_EQ(options->logging.success_ratio, 0.5);
+  EXPECT_EQ(options->logging.refusals_per_second, 3);
+  EXPECT_EQ(options->tracing.otlp_endpoint, "http://o:1");
+  EXPECT_EQ(options->tracing.ratio, 0.25);
+  config.set_log_level(v1::LOG_LEVEL_WARNING);
+  config.set_log_format(v1::LOG_FORMAT_JSON);
+  EXPECT_EQ(ToOptions(config, 4)->logging.level, LoggingOptions::Level::kWarning);
+  EXPECT_EQ(ToOptions(config, 4)->logging.format, LoggingOptions::Format::kJson);
+}
+
+struct BadConfig {
+  std::string message;
+  std::function<void(v1::ServerConfig&)> spoil;
+};
+
+class BadSecurityTest : public ::testing::TestWithParam<BadConfig> {};
+
+TEST_P(BadSecurityTest, IsRefusedByName) {
+  v1::ServerConfig config;
+  GetParam().spoil(config);
+  EXPECT_THAT(ToOptions(config, 4),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(GetParam().message)));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Every, BadSecurityTest,
+    ::testing::Values(
+        BadConfig{"tls_key_file: is empty, wanted",
+                  [](v1::ServerConfig& c) { c.set_tls_certificate_file("/c"); }},
+        BadConfig{"tls_certificate_file: is empty, wanted",
+                  [](v1::ServerConfig& c) { c.set_tls_key_file("/k"); }},
+        BadConfig{"tls_client_ca_file: needs tls_certificate_file",
+                  [](v1::ServerConfig& c) { c.set_tls_client_ca_file("/a"); }},
+        BadConfig{"log_format: is 0, wanted LOG_FORMAT_JSON",
+                  [](v1::ServerConfig& c) { c.set_log_format(v1::LOG_FORMAT_UNSPECIFIED); }},
+        BadConfig{"log_level: is 0, wanted LOG_LEVEL_INFO",
+                  [](v1::ServerConfig& c) { c.set_log_level(v1::LOG_LEVEL_UNSPECIFIED); }},
+        BadConfig{"log_level: is 9, wanted LOG_LEVEL_INFO",
+                  [](v1::ServerConfig& c) { c.set_log_level(static_cast<v1::LogLevel>(9)); }},
+        BadConfig{"log_success_ratio: is 1.5, wanted 0 to 1",
+                  [](v1::ServerConfig& c) { c.set_log_success_ratio(1.5); }},
+        BadConfig{"log_refusals_per_second: is 1000001, wanted 0 to 1000000",
+                  [](v1::ServerConfig& c) { c.set_log_refusals_per_second(1000001); }},
+        BadConfig{"trace_ratio: is nan, wanted 0 to 1", [](v1::ServerConfig& c) {
+                    c.set_trace_ratio(std::numeric_limits<double>::quiet_NaN());
+                  }}));
+
+}  // namespace
+}  // namespace duet::server::config

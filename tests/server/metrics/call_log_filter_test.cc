@@ -1,0 +1,72 @@
+#include "server/metrics/call_log_filter.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace duet::server::metrics {
+namespace {
+
+constexpr int kFull = 8;  // RESOURCE_EXHAUSTED
+constexpr int kWho = 16;  // UNAUTHENTICATED
+
+// Which of so many successes get a line: "x..x..".
+std::string Successes(double ratio, int calls) {
+  CallLogFilter filter(ratio, 0);
+  std::string pattern;
+  for (int i = 0; i < calls; ++i) pattern += filter.LogSuccess() ? 'x' : '.';
+  return pattern;
+}
+
+TEST(CallLogFilterTest, SpreadsSuccessesEvenly) {
+  EXPECT_EQ(Successes(1, 4), "xxxx");
+  EXPECT_EQ(Successes(0.25, 8), "x...x...");
+  EXPECT_EQ(Successes(0.75, 8), "x.xxx.xx");
+  EXPECT_EQ(Successes(0, 4), "....");
+}
+
+TEST(CallLogFilterTest, LogsTheFirstRefusalsOfASecondAndCountsTheOthers) {
+  CallLogFilter filter(1, 2);
+  EXPECT_TRUE(filter.LogRefusal(kFull, 100.0));
+  EXPECT_TRUE(filter.LogRefusal(kFull, 100.5));
+  EXPECT_FALSE(filter.LogRefusal(kFull, 100.6));
+  EXPECT_FALSE(filter.LogRefusal(kFull, 100.9));
+  EXPECT_TRUE(filter.LogRefusal(kFull, 101.0));
+  const std::vector<CallLogFilter::Unlogged> unlogged = filter.TakeUnlogged();
+  ASSERT_EQ(unlogged.size(), 1u);
+  EXPECT_EQ(unlogged[0].code, kFull);
+  EXPECT_EQ(unlogged[0].calls, 2u);
+  EXPECT_TRUE(filter.TakeUnlogged().empty());
+}
+
+TEST(CallLogFilterTest, AFloodOfOneCodeHidesNoOther) {
+  CallLogFilter filter(1, 1);
+  for (int i = 0; i < 100; ++i) filter.LogRefusal(kFull, 5);
+  EXPECT_TRUE(filter.LogRefusal(kWho, 5));
+}
+
+TEST(CallLogFilterTest, AClockThatIsSetBackSilencesNothing) {
+  CallLogFilter filter(1, 1);
+  EXPECT_TRUE(filter.LogRefusal(kFull, 5000));
+  EXPECT_TRUE(filter.LogRefusal(kFull, 10));
+}
+
+TEST(CallLogFilterTest, EveryCallIsLoggedOrCounted) {
+  CallLogFilter filter(1, 10);
+  std::atomic<int> logged{0};
+  std::vector<std::thread> threads;
+  for (int t = 0; t < 4; ++t) {
+    threads.emplace_back([&] {
+      for (int i = 0; i < 500; ++i) logged += filter.LogRefusal(kFull, 7) ? 1 : 0;
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(logged.load(), 10);
+  EXPECT_EQ(filter.TakeUnlogged().at(0).calls, 1990u);
+}
+
+}  // namespace
+}  // namespace duet::server::metrics

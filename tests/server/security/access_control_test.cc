@@ -1,0 +1,135 @@
+#include "server/security/access_control.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "server/security/constant_time.h"
+#include "tests/server/support/fake_clock.h"
+
+namespace duet::server::security {
+namespace {
+
+using Answer = AccessControl::Answer;
+using test::FakeClock;
+
+Caller Studio() { return {"studio", {Role::kSynthesise}, {"digest-1", "digest-2"}, {}, {}}; }
+Caller Farm() { return {"farm", {Role::kSynthesise}, {}, {"farm.example"}, {}}; }
+Caller Ops() { return {"ops", {Role::kAdmin}, {"digest-ops"}, {"ops.example"}, {}}; }
+
+Credentials Token(const std::string& digest) { return {true, digest, {}}; }
+Credentials Certificate(const std::string& name) { return {false, "", {name}}; }
+
+class AccessControlTest : public ::testing::Test {
+ protected:
+  AccessControlTest() { access_.Replace({Studio(), Farm(), Ops()}); }
+  Answer Ask(const Credentials& credentials, Role role = Role::kSynthesise) const {
+    return access_.Decide(credentials, role).answer;
+  }
+
+  FakeClock clock_;
+  AccessControl access_{clock_};
+};
+
+TEST_F(AccessControlTest, AnyOfACallersTokensIsItsOwn) {
+  for (const char* digest : {"digest-1", "digest-2"}) {
+    const AccessControl::Decision decision = access_.Decide(Token(digest), Role::kSynthesise);
+    EXPECT_EQ(decision.answer, Answer::kAllowed);
+    EXPECT_EQ(decision.caller->caller.name, "studio");
+  }
+}
+
+TEST_F(AccessControlTest, ACertificatesNameIsEnough) {
+  EXPECT_EQ(Ask(Certificate("farm.example")), Answer::kAllowed);
+  EXPECT_EQ(Ask({false, "", {"other.example", "farm.example"}}), Answer::kAllowed);
+}
+
+TEST_F(AccessControlTest, NobodyIsRefused) {
+  EXPECT_EQ(Ask({}), Answer::kNoCredentials);
+  EXPECT_EQ(Ask(Token("digest-3")), Answer::kWrongToken);
+  EXPECT_EQ(Ask(Token("")), Answer::kWrongToken);
+  EXPECT_EQ(Ask(Certificate("stranger.example")), Answer::kUnknownCertificate);
+}
+
+TEST_F(AccessControlTest, AWrongTokenIsRefusedWhateverTheCertificateSays) {
+  EXPECT_EQ(Ask({true, "digest-3", {"farm.example"}}), Answer::kWrongToken);
+}
+
+TEST_F(AccessControlTest, ATokenDecidesWhereThereIsACertificateAsWell) {
+  const auto decision = access_.Decide({true, "digest-1", {"farm.example"}}, Role::kSynthesise);
+  EXPECT_EQ(decision.caller->caller.name, "studio");
+}
+
+TEST_F(AccessControlTest, NeitherRoleIncludesTheOther) {
+  EXPECT_EQ(Ask(Token("digest-1"), Role::kAdmin), Answer::kWrongRole);
+  EXPECT_EQ(Ask(Token("digest-ops"), Role::kSynthesise), Answer::kWrongRole);
+  EXPECT_EQ(Ask(Token("digest-ops"), Role::kAdmin), Answer::kAllowed);
+}
+
+TEST_F(AccessControlTest, OneCallersCallsTakeNothingFromAnother) {
+  Caller limited = Studio();
+  limited.limits.calls_per_second = 2;
+  access_.Replace({limited, Farm()});
+  EXPECT_EQ(Ask(Token("digest-1")), Answer::kAllowed);
+  EXPECT_EQ(Ask(Token("digest-2")), Answer::kAllowed);
+  const auto refused = access_.Decide(Token("digest-1"), Role::kSynthesise);
+  EXPECT_EQ(refused.answer, Answer::kTooManyCalls);
+  EXPECT_DOUBLE_EQ(refused.retry_seconds, 0.5);
+  EXPECT_EQ(refused.caller->caller.name, "studio");
+  EXPECT_EQ(Ask(Certificate("farm.example")), Answer::kAllowed);
+}
+
+TEST_F(AccessControlTest, AWrongRoleUsesUpNoCalls) {
+  Caller limited = Studio();
+  limited.limits.calls_per_second = 1;
+  access_.Replace({limited});
+  EXPECT_EQ(Ask(Token("digest-1"), Role::kAdmin), Answer::kWrongRole);
+  EXPECT_EQ(Ask(Token("digest-1")), Answer::kAllowed);
+}
+
+TEST_F(AccessControlTest, ANewListCountsAtOnce) {
+  Caller rotated = Studio();
+  rotated.token_digests = {"digest-9"};
+  access_.Replace({rotated});
+  EXPECT_EQ(Ask(Token("digest-1")), Answer::kWrongToken);
+  EXPECT_EQ(Ask(Token("digest-9")), Answer::kAllowed);
+  EXPECT_EQ(Ask(Certificate("farm.example")), Answer::kUnknownCertificate);
+}
+
+TEST_F(AccessControlTest, ANewListForgetsNothingThatIsInUse) {
+  Caller limited = Studio();
+  limited.limits.calls_per_second = 1;
+  access_.Replace({limited});
+  const auto decision = access_.Decide(Token("digest-1"), Role::kSynthesise);
+  ASSERT_TRUE(decision.caller->usage->TakeFrames(50, 100));
+  access_.Replace({limited});
+  EXPECT_EQ(Ask(Token("digest-1")), Answer::kTooManyCalls);
+  EXPECT_EQ(access_.Decide(Token("digest-1"), Role::kAdmin).caller->usage->frames(), 50);
+}
+
+TEST_F(AccessControlTest, ListsChangeWhileCallsCome) {
+  std::atomic<int> allowed{0};
+  std::vector<std::thread> callers;
+  for (int t = 0; t < 3; ++t) {
+    callers.emplace_back([&] {
+      for (int i = 0; i < 200; ++i) allowed += Ask(Token("digest-1")) == Answer::kAllowed ? 1 : 0;
+    });
+  }
+  for (int i = 0; i < 100; ++i) access_.Replace({Studio(), Farm()});
+  for (std::thread& caller : callers) caller.join();
+  EXPECT_EQ(allowed.load(), 600);
+}
+
+TEST(ConstantTimeTest, TellsEqualFromDifferent) {
+  EXPECT_TRUE(EqualInConstantTime("", ""));
+  EXPECT_TRUE(EqualInConstantTime("abc", "abc"));
+  EXPECT_FALSE(EqualInConstantTime("abc", "abd"));
+  EXPECT_FALSE(EqualInConstantTime("abc", "bbc"));
+  EXPECT_FALSE(EqualInConstantTime("abc", "ab"));
+}
+
+}  // namespace
+}  // namespace duet::server::security

@@ -1,0 +1,104 @@
+#include "server/security/access_list.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "absl/strings/str_cat.h"
+#include "tests/support/status_matchers.h"
+
+namespace duet::server::security {
+namespace {
+
+using test::IsOk;
+using test::StatusIs;
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr auto kInvalid = absl::StatusCode::kInvalidArgument;
+const std::string kDigestA(64, 'a');
+const std::string kDigestB(64, 'b');
+
+absl::StatusOr<std::vector<Caller>> Parse(const std::string& text) {
+  return ParseAccessList(text, "access");
+}
+
+TEST(AccessListTest, ReadsCallersAndSkipsTheRest) {
+  const auto callers =
+      Parse(absl::StrCat("# who may call\n\n", "studio-a\tsynthesise  sha256:", kDigestA,
+                         " sha256:", kDigestB, " calls_per_second=2.5 frames_in_flight=20000\r\n",
+                         "ops admin,synthesise cert:ops.example cert:spiffe://duet/ops\n"));
+  ASSERT_THAT(callers, IsOk());
+  ASSERT_EQ(callers->size(), 2u);
+  const Caller& studio = callers->front();
+  EXPECT_EQ(studio.name, "studio-a");
+  EXPECT_THAT(studio.roles, ElementsAre(Role::kSynthesise));
+  EXPECT_THAT(studio.token_digests, ElementsAre(kDigestA, kDigestB));
+  EXPECT_EQ(studio.limits.calls_per_second, 2.5);
+  EXPECT_EQ(studio.limits.frames_in_flight, 20000);
+  const Caller& ops = callers->back();
+  EXPECT_THAT(ops.roles, ElementsAre(Role::kSynthesise, Role::kAdmin));
+  EXPECT_THAT(ops.certificate_names, ElementsAre("ops.example", "spiffe://duet/ops"));
+  EXPECT_FALSE(ops.limits.calls_per_second.has_value());
+  EXPECT_FALSE(ops.limits.frames_in_flight.has_value());
+}
+
+TEST(AccessListTest, ADigestMayBeInCapitals) {
+  const auto callers = Parse(absl::StrCat("a synthesise sha256:", std::string(64, 'F')));
+  ASSERT_THAT(callers, IsOk());
+  EXPECT_THAT(callers->front().token_digests, ElementsAre(std::string(64, 'f')));
+}
+
+TEST(AccessListTest, NobodyIsAListAsWell) { EXPECT_THAT(Parse("# closed\n"), IsOk()); }
+
+TEST(AccessListTest, EveryMistakeNamesItsLine) {
+  const std::string good = absl::StrCat(" synthesise sha256:", kDigestA);
+  const auto refused = [](const std::string& line, const std::string& why) {
+    EXPECT_THAT(Parse("#\n" + line),
+                StatusIs(kInvalid, AllOf(HasSubstr("access:2: "), HasSubstr(why))))
+        << line;
+  };
+  refused("a", "has 1 words");
+  refused("a synthesise", "has 2 words");
+  refused("a/b" + good, "the name is \"a/b\"");
+  refused(std::string(65, 'a') + good, "1 to 64");
+  refused(absl::StrCat("a reader sha256:", kDigestA), "a role is \"reader\"");
+  refused(absl::StrCat("a synthesise, sha256:", kDigestA), "a role is \"\"");
+  refused("a synthesise calls_per_second=3", "known by nothing");
+  refused("a synthesise cert:", "none of");
+  refused("a" + good + " quota=3", "none of");
+  for (const char* rate : {"0", "-1", "nan", "inf", "many", "", "1000001"}) {
+    refused(absl::StrCat("a", good, " calls_per_second=", rate), "calls_per_second is");
+  }
+  for (const char* frames : {"0", "-1", "1.5", "", "9999999999"}) {
+    refused(absl::StrCat("a", good, " frames_in_flight=", frames), "frames_in_flight is");
+  }
+}
+
+TEST(AccessListTest, ATokenTakenForItsDigestIsNotRepeated) {
+  EXPECT_THAT(Parse("a synthesise sha256:hunter2"),
+              StatusIs(kInvalid, AllOf(HasSubstr("has 7 characters"), Not(HasSubstr("hunter2")))));
+  EXPECT_THAT(Parse("a synthesise hunter2"), StatusIs(kInvalid, Not(HasSubstr("hunter2"))));
+}
+
+TEST(AccessListTest, NothingIsSharedByTwo) {
+  const std::string first = absl::StrCat("a synthesise cert:x sha256:", kDigestA, "\n");
+  EXPECT_THAT(Parse(first + "a synthesise cert:y"), StatusIs(kInvalid, HasSubstr("second time")));
+  EXPECT_THAT(Parse(first + "b synthesise cert:x"), StatusIs(kInvalid, HasSubstr("second time")));
+  EXPECT_THAT(Parse(absl::StrCat(first, "b admin sha256:", kDigestA)),
+              StatusIs(kInvalid, AllOf(HasSubstr("second time"), Not(HasSubstr(kDigestA)))));
+}
+
+TEST(AccessListTest, ThereMayBeAThousand) {
+  std::string text;
+  for (int i = 0; i < 1000; ++i) absl::StrAppend(&text, "c", i, " synthesise cert:n", i, "\n");
+  EXPECT_THAT(Parse(text), IsOk());
+  EXPECT_THAT(Parse(text + "more synthesise cert:more"),
+              StatusIs(kInvalid, HasSubstr("at most 1000 callers")));
+}
+
+}  // namespace
+}  // namespace duet::server::security

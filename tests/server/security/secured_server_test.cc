@@ -1,0 +1,380 @@
+// The whole server behind certificates and an access file, over the wire.
+
+#include <gmock/gmock.h>
+#include <grpcpp/create_channel.h>
+#include <grpcpp/security/credentials.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "duet/v1/synthesis.grpc.pb.h"
+#include "model/base/sha256.h"
+#include "server/lifecycle/duet_server.h"
+#include "tests/server/support/gated_model.h"
+#include "tests/server/support/http_get.h"
+#include "tests/server/support/raw_call.h"
+#include "tests/server/support/refusal.h"
+#include "tests/server/support/running_service.h"
+#include "tests/server/support/sample_request.h"
+#include "tests/server/support/timed_context.h"
+#include "tests/support/status_matchers.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/test_certificate.h"
+
+namespace duet::server::security {
+namespace {
+
+using grpc::StatusCode;
+using test::Call;
+using test::Decode;
+using test::FakeSynthesizer;
+using test::GatedModel;
+using test::Health;
+using test::HttpGet;
+using test::IsOk;
+using test::MakeTestCertificate;
+using test::Refusal;
+using test::Reply;
+using test::SampleRequest;
+using test::StatusIs;
+using test::TemporaryFolder;
+using test::TestCertificate;
+using test::TimedContext;
+using test::WriteTestFile;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr int kFrames = 40;  // of a sample request
+
+class LineSink final : public metrics::LogSink {
+ public:
+  void Write(std::string_view line) override {
+    common::MutexLock lock(mutex_);
+    text_ += std::string(line) + "\n";
+  }
+  std::string text() const {
+    common::MutexLock lock(mutex_);
+    return text_;
+  }
+
+ private:
+  mutable common::Mutex mutex_;
+  std::string text_ DUET_GUARDED_BY(mutex_);
+};
+
+class SecuredServerTest : public ::testing::Test {
+ protected:
+  SecuredServerTest() {
+    options_.listen = {"127.0.0.1", 0};
+    options_.metrics_listen = config::ListenAddress{"127.0.0.1", 0};
+  }
+
+  void UseTls() {
+    options_.security.tls_certificate_file = folder_ / "cert.pem";
+    options_.security.tls_key_file = folder_ / "key.pem";
+    ShowCertificate(MakeTestCertificate("duet.test", {&authority_}));
+  }
+  void ShowCertificate(const TestCertificate& certificate) {
+    WriteTestFile(folder_ / "cert.pem", certificate.certificate);
+    WriteTestFile(folder_ / "key.pem", certificate.private_key);
+  }
+  void AskForClientCertificates() {
+    options_.security.tls_client_ca_file = folder_ / "ca.pem";
+    WriteTestFile(folder_ / "ca.pem", authority_.certificate);
+  }
+  void UseAccess(const std::string& text) {
+    options_.security.access_file = folder_ / "access";
+    WriteTestFile(folder_ / "access", text);
+  }
+  // "sha256:..." of a token.
+  static std::string Known(const std::string& token) {
+    return absl::StrCat("sha256:", base::Sha256Hex(token));
+  }
+
+  void Start(
+      std::shared_ptr<const engine::Synthesizer> model = std::make_shared<FakeSynthesizer>()) {
+    auto started = lifecycle::DuetServer::Start(options_, log_);
+    ASSERT_THAT(started, IsOk());
+    server_ = *std::move(started);
+    server_->Add({"fake/1", std::move(model), 0.5});
+    ASSERT_THAT(server_->Serve(), IsOk());
+  }
+
+  // A connection of its own each time, so that every one shakes hands.
+  std::shared_ptr<grpc::Channel> Connect(
+      const std::shared_ptr<grpc::ChannelCredentials>& credentials) {
+    grpc::ChannelArguments arguments;
+    arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);
+    if (!options_.security.tls_certificate_file.empty()) {
+      arguments.SetSslTargetNameOverride("duet.test");
+    }
+    return grpc::CreateCustomChannel(absl::StrCat("127.0.0.1:", server_->port()), credentials,
+                                     arguments);
+  }
+  std::shared_ptr<grpc::Channel> PlainText() { return Connect(grpc::InsecureChannelCredentials()); }
+  std::shared_ptr<grpc::Channel> Tls(const TestCertificate& client = {}) {
+    return Connect(
+        grpc::SslCredentials({authority_.certificate, client.private_key, client.certificate}));
+  }
+  static grpc::Status List(const std::shared_ptr<grpc::Channel>& channel,
+                           const std::string& authorization = "") {
+    TimedContext context;
+    if (!authorization.empty()) context.AddMetadata("authorization", authorization);
+    v1::ListModelsResponse response;
+    return v1::MotionSynthesis::NewStub(channel)->ListModels(&context, v1::ListModelsRequest(),
+                                                             &response);
+  }
+
+  const TemporaryFolder folder_;
+  const TestCertificate authority_ = MakeTestCertificate("authority.test");
+  const TestCertificate stranger_ = MakeTestCertificate("stranger.test");
+  config::ServerOptions options_;
+  LineSink log_;
+  std::unique_ptr<lifecycle::DuetServer> server_;
+};
+
+TEST_F(SecuredServerTest, EncryptsAndAnswersNobodyInPlainText) {
+  UseTls();
+  Start();
+  EXPECT_TRUE(List(Tls()).ok());
+  EXPECT_EQ(List(PlainText()).error_code(), StatusCode::UNAVAILABLE);
+  EXPECT_EQ(Health(Tls(), ""), "SERVING");
+}
+
+TEST_F(SecuredServerTest, ACertificateThatMakesNoSenseStopsTheStart) {
+  UseTls();
+  WriteTestFile(folder_ / "cert.pem", "nonsense");
+  EXPECT_THAT(lifecycle::DuetServer::Start(options_, log_),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("tls_certificate_file: ")));
+}
+
+TEST_F(SecuredServerTest, ClientsNeedACertificateOfTheAuthoritys) {
+  UseTls();
+  AskForClientCertificates();
+  Start();
+  EXPECT_TRUE(List(Tls(MakeTestCertificate("client.test", {&authority_}))).ok());
+  EXPECT_EQ(List(Tls()).error_code(), StatusCode::UNAVAILABLE);
+  EXPECT_EQ(List(Tls(MakeTestCertificate("client.test", {&stranger_}))).error_code(),
+            StatusCode::UNAVAILABLE);
+  EXPECT_EQ(List(Tls(MakeTestCertificate("client.test", {&authority_, -7200, -3600}))).error_code(),
+            StatusCode::UNAVAILABLE);
+  EXPECT_THAT(log_.text(), HasSubstr(R"("caller":"client.test")"));
+}
+
+TEST_F(SecuredServerTest, ACertificateOnTheListMayCallAndAnotherMayNot) {
+  UseTls();
+  AskForClientCertificates();
+  UseAccess("farm synthesise cert:farm.test\nops admin cert:ops.test\n");
+  Start();
+  EXPECT_TRUE(List(Tls(MakeTestCertificate("farm.test", {&authority_}))).ok());
+  const Refusal unknown = Decode(List(Tls(MakeTestCertificate("other.test", {&authority_}))));
+  EXPECT_EQ(unknown.code, absl::StatusCode::kPermissionDenied);
+  EXPECT_EQ(unknown.reason, "CALLER_UNKNOWN");
+  const Refusal role = Decode(List(Tls(MakeTestCertificate("ops.test", {&authority_}))));
+  EXPECT_EQ(role.code, absl::StatusCode::kPermissionDenied);
+  EXPECT_EQ(role.reason, "ROLE_MISSING");
+  EXPECT_EQ(role.metadata.at("role"), "synthesise");
+}
+
+TEST_F(SecuredServerTest, ATokenOpensTheDoor) {
+  UseAccess("studio synthesise " + Known("secret-1"));
+  Start();
+  EXPECT_TRUE(List(PlainText(), "Bearer secret-1").ok());
+  EXPECT_TRUE(List(PlainText(), "bearer secret-1").ok());
+  EXPECT_THAT(log_.text(), HasSubstr(R"("caller":"studio")"));
+  EXPECT_THAT(log_.text(), Not(HasSubstr("secret-1")));
+  EXPECT_THAT(HttpGet(server_->metrics_port(), "/metrics"),
+              HasSubstr(R"(duet_caller_calls_total{caller="studio",grpc_code="OK"} 2)"));
+}
+
+TEST_F(SecuredServerTest, WithoutATokenTheDoorStaysShutWithoutAWordTooMuch) {
+  UseAccess("studio synthesise " + Known("secret-1"));
+  Start();
+  const Refusal missing = Decode(List(PlainText()));
+  EXPECT_EQ(missing.code, absl::StatusCode::kUnauthenticated);
+  EXPECT_EQ(missing.reason, "CREDENTIALS_MISSING");
+  for (const char* wrong : {"Bearer secret-2", "Bearer ", "Basic c2VjcmV0LTE=", "secret-1"}) {
+    const Refusal refusal = Decode(List(PlainText(), wrong));
+    EXPECT_EQ(refusal.code, absl::StatusCode::kUnauthenticated) << wrong;
+    EXPECT_EQ(refusal.reason, "CREDENTIALS_INVALID") << wrong;
+    EXPECT_THAT(refusal.message, Not(HasSubstr("secret"))) << wrong;
+    EXPECT_THAT(refusal.message, Not(HasSubstr("studio"))) << wrong;
+  }
+  EXPECT_THAT(HttpGet(server_->metrics_port(), "/metrics"),
+              HasSubstr(R"(duet_refusals_total{reason="CREDENTIALS_INVALID"} 4)"));
+}
+
+TEST_F(SecuredServerTest, TwoAuthorizationsAreNone) {
+  UseAccess("studio synthesise " + Known("secret-1"));
+  Start();
+  TimedContext context;
+  context.AddMetadata("authorization", "Bearer secret-1");
+  context.AddMetadata("authorization", "Bearer secret-2");
+  v1::ListModelsResponse response;
+  EXPECT_EQ(v1::MotionSynthesis::NewStub(PlainText())
+                ->ListModels(&context, v1::ListModelsRequest(), &response)
+                .error_code(),
+            StatusCode::UNAUTHENTICATED);
+}
+
+TEST_F(SecuredServerTest, EveryMethodIsBehindTheDoorAndHealthBefore) {
+  UseAccess("studio synthesise " + Known("secret-1"));
+  Start();
+  const auto stub = v1::MotionSynthesis::NewStub(PlainText());
+  EXPECT_EQ(Call(*stub, SampleRequest(kFrames)).status.error_code(), StatusCode::UNAUTHENTICATED);
+  TimedContext context;
+  v1::GetModelResponse model;
+  EXPECT_EQ(stub->GetModel(&context, v1::GetModelRequest(), &model).error_code(),
+            StatusCode::UNAUTHENTICATED);
+  EXPECT_EQ(Health(PlainText(), ""), "SERVING");
+}
+
+TEST_F(SecuredServerTest, ACallerThatCallsTooOftenIsToldWhenToComeBack) {
+  // So few that none comes back while the test runs.
+  UseAccess(absl::StrCat("studio synthesise ", Known("s"), " calls_per_second=0.001\n",
+                         "farm synthesise ", Known("f"), "\n"));
+  Start();
+  const auto channel = PlainText();
+  EXPECT_TRUE(List(channel, "Bearer s").ok());
+  const Refusal refusal = Decode(List(channel, "Bearer s"));
+  EXPECT_EQ(refusal.code, absl::StatusCode::kResourceExhausted);
+  EXPECT_EQ(refusal.reason, "CALL_RATE_EXCEEDED");
+  EXPECT_GT(refusal.retry_seconds, 1);
+  EXPECT_LE(refusal.retry_seconds, 1000);
+  EXPECT_TRUE(List(channel, "Bearer f").ok());
+}
+
+TEST_F(SecuredServerTest, FramesInFlightAreACallersOwn) {
+  UseAccess(absl::StrCat("studio synthesise ", Known("s"), " frames_in_flight=", kFrames + 10, "\n",
+                         "farm synthesise ", Known("f"), "\n"));
+  GatedModel model;
+  Start(model.get());
+  const auto stub = v1::MotionSynthesis::NewStub(PlainText());
+  const auto call = [&stub](const std::string& token, int frames) {
+    TimedContext context;
+    context.AddMetadata("authorization", "Bearer " + token);
+    return Call(*stub, SampleRequest(frames), context).status;
+  };
+  grpc::Status first;
+  std::thread held([&] { first = call("s", kFrames); });
+  model.WaitUntilStarted(1);
+  const Refusal refusal = Decode(call("s", kFrames));
+  EXPECT_EQ(refusal.code, absl::StatusCode::kResourceExhausted);
+  EXPECT_EQ(refusal.reason, "FRAMES_IN_FLIGHT_EXCEEDED");
+  EXPECT_GT(refusal.retry_seconds, 0);
+  const Refusal never = Decode(call("s", kFrames + 11));
+  EXPECT_EQ(never.reason, "FRAMES_IN_FLIGHT_EXCEEDED");
+  EXPECT_LT(never.retry_seconds, 0);
+  model.Open();
+  EXPECT_TRUE(call("f", kFrames).ok());
+  held.join();
+  EXPECT_TRUE(first.ok());
+  // Whoever has the status has the frames back.
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(call("s", kFrames).ok()) << i;
+}
+
+TEST_F(SecuredServerTest, PlacesAreSharedByCallerNotByAddress) {
+  UseAccess(
+      absl::StrCat("studio synthesise ", Known("s"), "\n", "farm synthesise ", Known("f"), "\n"));
+  options_.max_calls = 4;
+  options_.client_share = 0.5;  // alone, a client comes to hold two of four
+  options_.workers = 4;
+  options_.max_batch_windows = 1;
+  GatedModel model;
+  Start(model.get());
+  const auto call = [this](const std::string& token) {
+    TimedContext context;
+    context.AddMetadata("authorization", "Bearer " + token);
+    return Call(*v1::MotionSynthesis::NewStub(PlainText()), SampleRequest(kFrames), context).status;
+  };
+  std::vector<std::thread> held;
+  std::atomic<int> answered{0};
+  const auto hold = [&](const std::string& token, int started) {
+    held.emplace_back([&, token] { answered += call(token).ok() ? 1 : 0; });
+    model.WaitUntilStarted(started);
+  };
+  hold("s", 1);
+  hold("s", 2);
+  EXPECT_EQ(call("s").error_code(), StatusCode::RESOURCE_EXHAUSTED);
+  hold("f", 3);  // from the same address
+  model.Open();
+  for (std::thread& thread : held) thread.join();
+  EXPECT_EQ(answered.load(), 3);
+}
+
+TEST_F(SecuredServerTest, TokensRotateWhileCallsCome) {
+  UseAccess(absl::StrCat("studio synthesise ", Known("s"), " ", Known("old"), "\n"));
+  Start();
+  std::atomic<bool> stop{false};
+  std::atomic<int> failed{0};
+  std::thread load([&] {
+    const auto channel = PlainText();
+    while (!stop) failed += List(channel, "Bearer s").ok() ? 0 : 1;
+  });
+  for (int i = 0; i < 20; ++i) {
+    WriteTestFile(folder_ / "access", absl::StrCat("studio synthesise ", Known("s"), " ",
+                                                   Known(absl::StrCat("new-", i)), "\n"));
+    server_->RefreshSecrets();
+    EXPECT_TRUE(List(PlainText(), absl::StrCat("Bearer new-", i)).ok());
+    EXPECT_EQ(List(PlainText(), "Bearer old").error_code(), StatusCode::UNAUTHENTICATED);
+  }
+  stop = true;
+  load.join();
+  EXPECT_EQ(failed.load(), 0);
+}
+
+TEST_F(SecuredServerTest, CertificatesRotateWhileCallsCome) {
+  UseTls();
+  Start();
+  std::atomic<bool> stop{false};
+  std::atomic<int> failed{0};
+  std::thread load([&] {
+    const auto channel = Tls();
+    while (!stop) failed += List(channel).ok() ? 0 : 1;
+  });
+  // A new authority: only who trusts it gets in, and only with the new certificate.
+  const TestCertificate next = MakeTestCertificate("next.test");
+  const auto trusting_next = [&] {
+    return Connect(grpc::SslCredentials({next.certificate, "", ""}));
+  };
+  EXPECT_EQ(List(trusting_next()).error_code(), StatusCode::UNAVAILABLE);
+  ShowCertificate(MakeTestCertificate("duet.test", {&next}));
+  server_->RefreshSecrets();
+  EXPECT_TRUE(List(trusting_next()).ok());
+  EXPECT_EQ(List(Tls()).error_code(), StatusCode::UNAVAILABLE);
+  // Nonsense replaces nothing.
+  WriteTestFile(folder_ / "key.pem", "nonsense");
+  server_->RefreshSecrets();
+  EXPECT_TRUE(List(trusting_next()).ok());
+  EXPECT_THAT(log_.text(), HasSubstr("secrets_refused"));
+  stop = true;
+  load.join();
+  // The connection that was there before goes on.
+  EXPECT_EQ(failed.load(), 0);
+  const std::string metrics = HttpGet(server_->metrics_port(), "/metrics");
+  EXPECT_THAT(metrics, HasSubstr(R"(duet_secrets_reloads_total{kind="tls",outcome="taken"} 1)"));
+  EXPECT_THAT(metrics, HasSubstr(R"(duet_secrets_reloads_total{kind="tls",outcome="refused"} 1)"));
+  EXPECT_THAT(metrics, HasSubstr("duet_tls_certificate_expiry_timestamp_seconds "));
+}
+
+TEST_F(SecuredServerTest, ClientAuthoritiesRotate) {
+  UseTls();
+  AskForClientCertificates();
+  Start();
+  const TestCertificate next = MakeTestCertificate("next.test");
+  const TestCertificate client = MakeTestCertificate("client.test", {&next});
+  EXPECT_EQ(List(Tls(client)).error_code(), StatusCode::UNAVAILABLE);
+  WriteTestFile(folder_ / "ca.pem", next.certificate);
+  server_->RefreshSecrets();
+  EXPECT_TRUE(List(Tls(client)).ok());
+  EXPECT_EQ(List(Tls(MakeTestCertificate("client.test", {&authority_}))).error_code(),
+            StatusCode::UNAVAILABLE);
+}
+
+}  // namespace
+}  // namespace duet::server::security

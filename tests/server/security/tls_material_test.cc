@@ -1,0 +1,94 @@
+#include "server/security/tls_material.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/status_matchers.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/test_certificate.h"
+
+namespace duet::server::security {
+namespace {
+
+using test::IsOk;
+using test::MakeTestCertificate;
+using test::StatusIs;
+using test::TemporaryFolder;
+using test::TestCertificate;
+using test::TestCertificateOptions;
+using test::WriteTestFile;
+using ::testing::HasSubstr;
+
+constexpr auto kInvalid = absl::StatusCode::kInvalidArgument;
+
+class TlsMaterialTest : public ::testing::Test {
+ protected:
+  absl::StatusOr<absl::Time> Check() const { return CheckTlsMaterial(material_, absl::Now()); }
+
+  const TestCertificate authority_ = MakeTestCertificate("authority.test");
+  const TestCertificate server_ = MakeTestCertificate("duet.test", {&authority_});
+  TlsMaterial material_{server_.certificate, server_.private_key, authority_.certificate};
+};
+
+TEST_F(TlsMaterialTest, SaysUntilWhenACertificateIsValid) {
+  const absl::StatusOr<absl::Time> until = Check();
+  ASSERT_THAT(until, IsOk());
+  EXPECT_GT(*until, absl::Now() + absl::Minutes(20));
+  EXPECT_LT(*until, absl::Now() + absl::Minutes(40));
+}
+
+TEST_F(TlsMaterialTest, AChainsFirstCertificateCounts) {
+  material_.certificate_chain += authority_.certificate;
+  EXPECT_THAT(Check(), IsOk());
+  material_.certificate_chain = authority_.certificate + server_.certificate;
+  EXPECT_THAT(Check(), StatusIs(kInvalid, HasSubstr("tls_key_file: is another certificate's key")));
+}
+
+TEST_F(TlsMaterialTest, WhatIsNoPemIsNamed) {
+  for (const char* nonsense : {"", "nonsense", "-----BEGIN CERTIFICATE-----\nAAAA\n"}) {
+    TlsMaterial material = material_;
+    material.certificate_chain = nonsense;
+    EXPECT_THAT(CheckTlsMaterial(material, absl::Now()),
+                StatusIs(kInvalid, HasSubstr("tls_certificate_file: holds no certificate")));
+    material = material_;
+    material.private_key = nonsense;
+    EXPECT_THAT(CheckTlsMaterial(material, absl::Now()),
+                StatusIs(kInvalid, HasSubstr("tls_key_file: holds no private key")));
+  }
+  material_.client_authorities = "nonsense";
+  EXPECT_THAT(Check(), StatusIs(kInvalid, HasSubstr("tls_client_ca_file: holds no certificate")));
+}
+
+TEST_F(TlsMaterialTest, ACertificateOfAnotherTimeIsRefused) {
+  for (const TestCertificateOptions& time : {TestCertificateOptions{&authority_, -7200, -3600},
+                                             TestCertificateOptions{&authority_, 3600, 7200}}) {
+    const TestCertificate other = MakeTestCertificate("duet.test", time);
+    material_.certificate_chain = other.certificate;
+    material_.private_key = other.private_key;
+    EXPECT_THAT(Check(), StatusIs(kInvalid, HasSubstr("wanted a certificate that is valid now")));
+  }
+}
+
+TEST_F(TlsMaterialTest, AFileThatIsNotThereIsNamedWithItsSetting) {
+  const TemporaryFolder folder;
+  WriteTestFile(folder / "cert.pem", "c");
+  WriteTestFile(folder / "key.pem", "k");
+  const absl::StatusOr<TlsMaterial> read =
+      ReadTlsMaterial({folder / "cert.pem", folder / "key.pem", {}});
+  ASSERT_THAT(read, IsOk());
+  EXPECT_EQ(read->certificate_chain, "c");
+  EXPECT_EQ(read->private_key, "k");
+  EXPECT_THAT(ReadTlsMaterial({folder / "cert.pem", folder / "none.pem", {}}),
+              StatusIs(absl::StatusCode::kNotFound, HasSubstr("tls_key_file: ")));
+}
+
+TEST_F(TlsMaterialTest, AnEmptyFileOfAuthoritiesDoesNotOpenTheDoor) {
+  const TemporaryFolder folder;
+  for (const char* name : {"cert.pem", "key.pem"}) WriteTestFile(folder / name, "x");
+  WriteTestFile(folder / "ca.pem", "");
+  EXPECT_THAT(ReadTlsMaterial({folder / "cert.pem", folder / "key.pem", folder / "ca.pem"}),
+              StatusIs(kInvalid, HasSubstr("tls_client_ca_file: is empty")));
+}
+
+}  // namespace
+}  // namespace duet::server::security

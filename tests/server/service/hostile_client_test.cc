@@ -1,0 +1,266 @@
+// Callers that keep to the protocol and mean no good, or no longer care: over the wire.
+
+#include <gmock/gmock.h>
+#include <grpcpp/completion_queue.h>
+#include <grpcpp/generic/generic_stub.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <limits>
+#include <memory>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "tests/server/support/fake_clock.h"
+#include "tests/server/support/puppet_scheduler.h"
+#include "tests/server/support/raw_call.h"
+#include "tests/server/support/refusal.h"
+#include "tests/server/support/running_service.h"
+#include "tests/server/support/sample_request.h"
+#include "tests/server/support/timed_context.h"
+
+namespace duet::server::service {
+namespace {
+
+using test::Call;
+using test::Decode;
+using test::FakeClock;
+using test::LimitCall;
+using test::PuppetScheduler;
+using test::RawCall;
+using test::ReadAll;
+using test::Refusal;
+using test::RunningService;
+using test::SampleRequest;
+using test::TimedContext;
+
+using ::testing::HasSubstr;
+
+using absl::StatusCode;
+
+// A call that sends its headers and then nothing, until told to.
+class SilentCall {
+ public:
+  explicit SilentCall(const RunningService& running,
+                      const std::string& method = "/duet.v1.MotionSynthesis/Synthesize")
+      : stub_(running.channel()) {
+    LimitCall(context_);
+    call_ = stub_.PrepareCall(&context_, method, &queue_);
+    call_->StartCall(nullptr);
+    Next();
+  }
+  ~SilentCall() {
+    context_.TryCancel();
+    queue_.Shutdown();
+    while (Next()) {
+    }
+  }
+  void SendNoMore() {
+    call_->WritesDone(nullptr);
+    Next();
+  }
+  void Cancel() { context_.TryCancel(); }
+  grpc::Status Finish() {
+    grpc::Status status;
+    call_->Finish(&status, nullptr);
+    Next();
+    return status;
+  }
+
+ private:
+  bool Next() {
+    void* tag = nullptr;
+    bool ok = false;
+    return queue_.Next(&tag, &ok) && ok;
+  }
+
+  grpc::GenericStub stub_;
+  grpc::ClientContext context_;
+  grpc::CompletionQueue queue_;
+  std::unique_ptr<grpc::GenericClientAsyncReaderWriter> call_;
+};
+
+// Waits until so many calls have begun.
+void WaitForCalls(RunningService& running, std::size_t count) {
+  while (running.calls().started() < count) std::this_thread::yield();
+}
+
+TEST(HostileClientTest, ARequestOfTinyMessagesIsRefusedBeforeItIsParsed) {
+  RunningService running;
+  std::string bomb;
+  for (int i = 0; i < 1 << 20; ++i) bomb.append("\x22\x02\x12\x00", 4);
+  RawCall call(running.channel(), "/duet.v1.MotionSynthesis/Synthesize", bomb);
+  EXPECT_FALSE(call.Read().has_value());
+  const Refusal refusal = Decode(call.Finish());
+  EXPECT_EQ(refusal.code, StatusCode::kInvalidArgument);
+  EXPECT_THAT(refusal.Of("label_keyframes"), HasSubstr("wanted at most 65536"));
+}
+
+TEST(HostileClientTest, EveryMethodBoundsWhatItDoesNotKnow) {
+  RunningService running;
+  std::string bomb;
+  for (int i = 0; i < 2000; ++i) bomb.append("\xf8\x06\x01", 3);
+  for (const char* method : {"Synthesize", "ListModels", "GetModel"}) {
+    RawCall call(running.channel(), std::string("/duet.v1.MotionSynthesis/") + method, bomb);
+    EXPECT_FALSE(call.Read().has_value()) << method;
+    EXPECT_EQ(Decode(call.Finish()).code, StatusCode::kInvalidArgument) << method;
+  }
+}
+
+TEST(HostileClientTest, AFullServerRefusesWithoutReadingTheRequest) {
+  PuppetScheduler puppet;
+  RunningService::Setup setup;
+  setup.scheduler = &puppet;
+  RunningService running(setup);
+  puppet.Refuse(absl::ResourceExhaustedError("the queue is full"));
+  SilentCall call(running);
+  const Refusal refusal = Decode(call.Finish());
+  EXPECT_EQ(refusal.code, StatusCode::kResourceExhausted);
+  EXPECT_EQ(refusal.reason, "QUEUE_FULL");
+  EXPECT_EQ(running.admission().calls(), 0u);
+}
+
+TEST(HostileClientTest, CallsThatSendNothingLeavePlacesToOtherClients) {
+  RunningService::Setup setup;
+  setup.admission.max_calls = 4;
+  setup.admission.client_share = 0.75;
+  setup.client_key = "x-client";
+  RunningService running(setup);
+  const auto synthesize = [&](const std::string& client) {
+    TimedContext context;
+    context.AddMetadata("x-client", client);
+    return Call(running.stub(), SampleRequest(), context).status;
+  };
+  // Without the key a client is its address: this machine's.
+  SilentCall first(running), second(running), third(running);
+  WaitForCalls(running, 3);
+  TimedContext context;
+  const Refusal refusal = Decode(Call(running.stub(), SampleRequest(), context).status);
+  EXPECT_EQ(refusal.reason, "TOO_MANY_CALLS");
+  EXPECT_TRUE(synthesize("somebody else").ok());
+}
+
+TEST(HostileClientTest, ACallCancelledBeforeItsMessageIsCountedAsCancelled) {
+  RunningService running;
+  SilentCall call(running);
+  WaitForCalls(running, 1);
+  call.Cancel();
+  EXPECT_EQ(running.calls().WaitFor(1).status.code(), StatusCode::kCancelled);
+  EXPECT_EQ(running.admission().calls(), 0u);
+}
+
+TEST(HostileClientTest, ACallWithoutAMessageIsMalformed) {
+  RunningService running;
+  for (const char* method : {"Synthesize", "GetModel"}) {
+    SilentCall call(running, std::string("/duet.v1.MotionSynthesis/") + method);
+    call.SendNoMore();
+    EXPECT_EQ(Decode(call.Finish()).code, StatusCode::kInvalidArgument) << method;
+  }
+}
+
+TEST(HostileClientTest, AMessageThatDoesNotComeIsNotWaitedFor) {
+  FakeClock clock;
+  RunningService::Setup setup;
+  setup.clock = &clock;
+  RunningService running(setup);
+  SilentCall call(running);
+  WaitForCalls(running, 1);
+  clock.Advance(std::chrono::seconds(30));
+  running.service().CheckTime();
+  EXPECT_EQ(Decode(call.Finish()).reason, "RECEIVE_TIMEOUT");
+  EXPECT_EQ(running.admission().calls(), 0u);
+}
+
+TEST(HostileClientTest, ACallThatWaitsForItsMessageEndsWithTheServer) {
+  RunningService running;
+  SilentCall call(running);
+  WaitForCalls(running, 1);
+  running.service().AbortAll(absl::UnavailableError("the server is shutting down"));
+  EXPECT_EQ(Decode(call.Finish()).code, StatusCode::kUnavailable);
+}
+
+TEST(HostileClientTest, AReaderThatNeverReadsIsGivenUp) {
+  FakeClock clock;
+  RunningService::Setup setup;
+  setup.clock = &clock;
+  setup.reception.timeout_seconds = std::numeric_limits<double>::infinity();
+  setup.reception.slow_seconds = std::numeric_limits<double>::infinity();
+  setup.write_timeout_seconds = 30;
+  RunningService running(setup);
+  grpc::ClientContext context;
+  // Far more than the transport takes from a server whose client does not read.
+  v1::SynthesizeRequest request = SampleRequest(9000);
+  request.set_chunk_frames(240);
+  const auto reader = running.stub().Synthesize(&context, request);
+  while (running.calls().records().empty()) {
+    clock.Advance(std::chrono::seconds(31));
+    running.service().CheckTime();
+    std::this_thread::yield();
+  }
+  const metrics::CallRecord record = running.calls().WaitFor(1);
+  EXPECT_EQ(record.status.code(), StatusCode::kDeadlineExceeded);
+  EXPECT_THAT(std::string(record.status.message()), HasSubstr("write_timeout_seconds = 30"));
+  EXPECT_EQ(running.admission().calls(), 0u);
+  EXPECT_EQ(running.admission().held_bytes(), 0u);
+  grpc::ClientContext other;  // no deadline: the batcher's clock is not the test's
+  EXPECT_TRUE(Call(running.stub(), SampleRequest(), other).status.ok()) << "others are answered";
+  EXPECT_FALSE(ReadAll(*reader).status.ok());
+}
+
+TEST(HostileClientTest, NoCallLastsLongerThanTheServerAllows) {
+  FakeClock clock;
+  PuppetScheduler puppet;
+  RunningService::Setup setup;
+  setup.clock = &clock;
+  setup.scheduler = &puppet;
+  setup.max_call_seconds = 600;
+  RunningService running(setup);
+  grpc::ClientContext context;  // without a deadline
+  const auto reader = running.stub().Synthesize(&context, SampleRequest());
+  puppet.WaitForJobs(1);
+  EXPECT_EQ(puppet.NextDeadline(), clock.Now() + std::chrono::seconds(600));
+  clock.Advance(std::chrono::seconds(600));
+  running.service().CheckTime();
+  // The header may be under way still: it ends when that has been written.
+  EXPECT_EQ(ReadAll(*reader).status.error_code(), grpc::StatusCode::DEADLINE_EXCEEDED);
+  EXPECT_FALSE(puppet.RunNext()) << "its window was evaluated";
+}
+
+TEST(HostileClientTest, TheBytesOfRequestsAreSharedAndGivenBack) {
+  RunningService::Setup setup;
+  PuppetScheduler puppet;
+  setup.scheduler = &puppet;
+  const std::size_t bytes = SampleRequest(40).ByteSizeLong();
+  setup.admission.max_held_bytes = bytes + bytes / 2;
+  RunningService running(setup);
+  TimedContext context;
+  const auto first = running.stub().Synthesize(&context, SampleRequest(40));
+  puppet.WaitForJobs(1);
+  EXPECT_EQ(running.admission().held_bytes(), bytes);
+  const Refusal refusal = Decode(Call(running.stub(), SampleRequest(40)).status);
+  EXPECT_EQ(refusal.code, StatusCode::kResourceExhausted);
+  EXPECT_EQ(refusal.reason, "TOO_MANY_BYTES");
+  EXPECT_EQ(refusal.retry_seconds, 1);
+  puppet.RunNext();
+  EXPECT_TRUE(ReadAll(*first).status.ok());
+  EXPECT_EQ(running.admission().held_bytes(), 0u);
+}
+
+TEST(HostileClientTest, WindowsCarryTheNameOfTheirClient) {
+  PuppetScheduler puppet;
+  RunningService::Setup setup;
+  setup.scheduler = &puppet;
+  setup.client_key = "x-client";
+  RunningService running(setup);
+  TimedContext context;
+  context.AddMetadata("x-client", "studio");
+  const auto reader = running.stub().Synthesize(&context, SampleRequest());
+  puppet.WaitForJobs(1);
+  EXPECT_EQ(puppet.NextClient(), "studio");
+  puppet.RunNext();
+  EXPECT_TRUE(ReadAll(*reader).status.ok());
+}
+
+}  // namespace
+}  // namespace duet::server::service

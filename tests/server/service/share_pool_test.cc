@@ -1,0 +1,87 @@
+#include "server/service/share_pool.h"
+
+#include <gtest/gtest.h>
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace duet::server::service {
+namespace {
+
+// Takes one at a time until refused; what was taken.
+std::vector<ShareLease> TakeAll(SharePool& pool, const std::string& client) {
+  std::vector<ShareLease> taken;
+  while (std::optional<ShareLease> lease = pool.Take(client)) taken.push_back(*std::move(lease));
+  return taken;
+}
+
+TEST(SharePoolTest, GivesWhatThereIsAndNoMore) {
+  SharePool pool(3, 1);
+  const std::vector<ShareLease> taken = TakeAll(pool, "a");
+  EXPECT_EQ(taken.size(), 3u);
+  EXPECT_EQ(pool.taken(), 3u);
+}
+
+TEST(SharePoolTest, ALeaseGivesBackOnceHoweverItMoves) {
+  SharePool pool(4, 1);
+  {
+    ShareLease first = *pool.Take("a", 3);
+    ShareLease second = std::move(first);
+    ShareLease third;
+    third = std::move(second);
+    EXPECT_TRUE(third);
+    EXPECT_EQ(pool.taken(), 3u);
+  }
+  EXPECT_EQ(pool.taken(), 0u);
+}
+
+TEST(SharePoolTest, AloneAClientComesToHoldItsShare) {
+  SharePool pool(128, 0.75);
+  const std::vector<ShareLease> greedy = TakeAll(pool, "greedy");
+  EXPECT_EQ(greedy.size(), 96u);
+}
+
+TEST(SharePoolTest, TwoGreedyClientsComeToHoldAlikeAndLeaveSome) {
+  SharePool pool(70, 0.75);
+  std::vector<ShareLease> a, b;
+  for (bool any = true; any;) {
+    any = false;
+    if (auto lease = pool.Take("a")) a.push_back(*std::move(lease)), any = true;
+    if (auto lease = pool.Take("b")) b.push_back(*std::move(lease)), any = true;
+  }
+  EXPECT_EQ(a.size(), 30u);  // 3/7
+  EXPECT_EQ(b.size(), 30u);
+}
+
+TEST(SharePoolTest, WhoeverComesFindsSomethingAfterAGreedyOne) {
+  SharePool pool(8, 0.75);
+  const std::vector<ShareLease> greedy = TakeAll(pool, "greedy");
+  for (const char* client : {"b", "c"}) {
+    std::optional<ShareLease> lease = pool.Take(client);
+    EXPECT_TRUE(lease.has_value()) << client;
+  }
+}
+
+TEST(SharePoolTest, TheSmallestPoolServesOneAtATime) {
+  SharePool pool(1, 0.5);
+  {
+    const std::optional<ShareLease> lease = pool.Take("a");
+    EXPECT_TRUE(lease.has_value());
+    EXPECT_FALSE(pool.Take("b").has_value());
+  }
+  EXPECT_TRUE(pool.Take("b").has_value());
+}
+
+TEST(SharePoolTest, AmountsCount) {
+  SharePool pool(100, 0.5);
+  const std::optional<ShareLease> large = pool.Take("a", 60);
+  EXPECT_TRUE(large.has_value()) << "a client that holds nothing may take what is free";
+  EXPECT_FALSE(pool.Take("a", 1).has_value());
+  EXPECT_FALSE(pool.Take("b", 41).has_value());
+  EXPECT_TRUE(pool.Take("b", 40).has_value());
+}
+
+}  // namespace
+}  // namespace duet::server::service

@@ -1,0 +1,112 @@
+#include "server/service/wire_survey.h"
+
+#include <gmock/gmock.h>
+#include <google/protobuf/io/zero_copy_stream_impl_lite.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+
+#include "duet/v1/synthesis.pb.h"
+#include "tests/server/support/refusal.h"
+#include "tests/server/support/sample_request.h"
+#include "tests/support/status_matchers.h"
+
+namespace duet::server::service {
+namespace {
+
+using test::IsOk;
+using test::Refusal;
+using test::StatusIs;
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+// In pieces of `block` bytes, as they come from the network.
+absl::Status Survey(const std::string& bytes, int block = -1) {
+  google::protobuf::io::ArrayInputStream stream(bytes.data(), static_cast<int>(bytes.size()),
+                                                block);
+  return SurveyMessage(stream, *v1::SynthesizeRequest::descriptor());
+}
+
+std::string Times(std::size_t count, const std::string& bytes) {
+  std::string all;
+  all.reserve(count * bytes.size());
+  for (std::size_t i = 0; i < count; ++i) all += bytes;
+  return all;
+}
+
+// Field `number`, length-delimited.
+std::string Field(int number, const std::string& content) {
+  std::string bytes(1, static_cast<char>(number << 3 | 2));
+  for (std::size_t left = content.size();; left >>= 7) {
+    bytes += static_cast<char>((left & 127) | (left > 127 ? 128 : 0));
+    if (left <= 127) break;
+  }
+  return bytes + content;
+}
+
+TEST(WireSurveyTest, LetsARequestPass) {
+  v1::SynthesizeRequest request = test::SampleRequest(300);
+  for (uint32_t i = 0; i < 4096; ++i) {
+    v1::LabelKeyframe& keyframe = *request.add_label_keyframes();
+    keyframe.set_frame(i);
+    for (const char* name : {"kick", "push", "hug", "punch", "shake_hands", "exchange_object"}) {
+      test::AddWeight(*keyframe.mutable_label_vector(), name, 1);
+    }
+  }
+  EXPECT_THAT(Survey(request.SerializeAsString()), IsOk());
+  EXPECT_THAT(Survey(request.SerializeAsString(), 7), IsOk());
+}
+
+TEST(WireSurveyTest, NumbersMayComeOneByOne) {
+  // leader.positions, not packed: 100,000 of them.
+  EXPECT_THAT(Survey(Field(2, Times(100000, std::string("\x35\0\0\0\0", 5)))), IsOk());
+}
+
+struct Bomb {
+  std::string name, bytes, field;
+};
+
+class WireBombTest : public ::testing::TestWithParam<Bomb> {};
+
+TEST_P(WireBombTest, IsRefusedByTheNameOfItsField) {
+  for (const int block : {-1, 4096}) {
+    const Refusal refusal = test::Decode(Survey(GetParam().bytes, block));
+    EXPECT_EQ(refusal.code, absl::StatusCode::kInvalidArgument);
+    EXPECT_THAT(refusal.Fields(), ElementsAre(GetParam().field));
+    EXPECT_THAT(refusal.Of(GetParam().field), HasSubstr("wanted at most "));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Fields, WireBombTest,
+    ::testing::Values(
+        Bomb{"keyframes", Times(65537, std::string("\x22\x02\x12\x00", 4)), "label_keyframes"},
+        Bomb{"weights_of_keyframes",
+             Times(1024, Field(4, Field(2, Times(257, std::string("\x0a\x00", 2))))),
+             "label_keyframes.label_vector.weights"},
+        Bomb{"weights", Field(3, Times(65537, std::string("\x0a\x00", 2))), "label_vector.weights"},
+        Bomb{"joint_names", Field(2, Times(65537, std::string("\x0a\x00", 2))),
+             "leader.joint_names"},
+        Bomb{"reply_joint_names", Times(65537, std::string("\x42\x00", 2)), "reply_joint_names"},
+        Bomb{"one_message_again_and_again", Times(1025, std::string("\x12\x00", 2)), "leader"},
+        Bomb{"one_number_again_and_again", Times(1025, std::string("\x30\x01", 2)), "chunk_frames"},
+        Bomb{"unknown_numbers", Times(1025, std::string("\xf8\x06\x01", 3)), ""},
+        Bomb{"unknown_below", Field(2, Times(1025, std::string("\xf8\x06\x01", 3))), ""},
+        Bomb{"unknown_strings", Times(1025, std::string("\xfa\x06\x00", 3)), ""},
+        Bomb{"groups", Times(1025, "\xfb\x06\xfc\x06"), ""},
+        Bomb{"groups_in_groups", Times(1025, "\xfb\x06"), ""},
+        Bomb{"known_of_another_type", Times(1025, std::string("\x20\x01", 2)), ""}),
+    [](const auto& bomb) { return bomb.param.name; });
+
+TEST(WireSurveyTest, WhatIsNoMessageIsTheParsers) {
+  for (const std::string& bytes :
+       {std::string("\x0a\x7f"), std::string("\xff\xff\xff"), std::string("\xfc\x06"),
+        std::string("\x0a\xff\xff\xff\xff\x0f")}) {
+    EXPECT_THAT(Survey(bytes), IsOk());
+  }
+}
+
+}  // namespace
+}  // namespace duet::server::service
