@@ -74,16 +74,31 @@ absl::StatusOr<std::string> RenderSynthesis(const Synthesis& synthesis) {
   return RenderPage(content);
 }
 
-// The follower on somebody else's rig, in place of Duet's own.
+// Whether the rig that the follower is wanted on is one of the output's format.
+bool HasRig(const std::filesystem::path& output, const Synthesis& synthesis) {
+  if (!synthesis.follower_rig) return false;
+  const std::optional<formats::Format> written = formats::FormatOf(output);
+  const std::optional<formats::Format> rig = formats::FormatOf(synthesis.follower_rig->file);
+  return written && rig && formats::FitsRig(*written, *rig);
+}
+
+// The follower on somebody else's rig: of BVH in place of Duet's own, of glTF beside the pair.
 absl::StatusOr<std::vector<std::filesystem::path>> WriteWithRig(const std::filesystem::path& output,
                                                                 const Synthesis& synthesis) {
   const motion::ClipPair& pair = synthesis.result.pair;
+  const formats::Format format = *formats::FormatOf(output);
   const absl::StatusOr<std::string> follower =
-      formats::FormatOntoRig(pair.follower, *synthesis.follower_rig);
+      formats::FormatOntoRig(pair.follower, *synthesis.follower_rig, format);
   if (!follower.ok()) return follower.status();
+  const motion::Provenance provenance = ProvenanceOf(synthesis);
   absl::StatusOr<std::vector<std::filesystem::path>> written = formats::WritePair(
-      output, pair, synthesis.skeleton, {nullptr, synthesis.bvh_metres_per_unit});
+      output, pair, synthesis.skeleton, {&provenance, synthesis.bvh_metres_per_unit});
   if (!written.ok()) return written.status();
+  if (format != formats::Format::kBvh) {
+    std::filesystem::path beside = output;
+    beside.replace_extension(absl::StrCat(".follower", output.extension().string()));
+    written->push_back(beside);
+  }
   absl::Status status = base::WriteFile(written->back(), *follower);
   if (!status.ok()) return status;
   return written;
@@ -114,9 +129,7 @@ absl::Status CheckOutput(const std::filesystem::path& output, const std::filesys
 
 absl::StatusOr<std::vector<std::filesystem::path>> WriteOutput(const std::filesystem::path& output,
                                                                const Synthesis& synthesis) {
-  if (synthesis.follower_rig && formats::FormatOf(output) == formats::Format::kBvh) {
-    return WriteWithRig(output, synthesis);
-  }
+  if (HasRig(output, synthesis)) return WriteWithRig(output, synthesis);
   if (!IsPage(output)) {
     const motion::Provenance provenance = ProvenanceOf(synthesis);
     return formats::WritePair(output, synthesis.result.pair, synthesis.skeleton,

@@ -26,7 +26,7 @@ struct Synthesis {
   std::filesystem::path leader_file;
   bool sampled = false;  // the model samples: the follower is one of several
   double bvh_metres_per_unit = formats::kCentimetre;
-  std::optional<formats::FollowerRig> follower_rig;  // of .bvh
+  std::optional<formats::FollowerRig> follower_rig;
 };
 
 enum class PageAllowed { kNo, kYes };

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <limits>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -12,6 +13,7 @@
 #include "client/cli/output.h"
 #include "client/cli/server_flags.h"
 #include "client/cli/value_syntax.h"
+#include "model/formats/follower_rig.h"
 
 namespace duet::client::cli {
 namespace {
@@ -135,32 +137,31 @@ void AddOutputFlags(CLI::App* app, SynthesizeArguments* arguments) {
   AddOutputFormatFlag(app, &arguments->output_format);
   AddBvhUnitFlag(app, &arguments->bvh_metres_per_unit);
   app->add_option("--follower-rig", arguments->follower_rig,
-                  "Rig of the follower in .bvh that is written: the leader's, or that of another "
-                  ".bvh (default: Duet's own)")
+                  "Rig of the follower: the leader's, or that of another file; of a .bvh for --out "
+                  "FILE.bvh, of a .glb or .gltf for --out FILE.glb or FILE.gltf (default: Duet's "
+                  "own)")
       ->type_name("leader|FILE")
       ->group(kOutputGroup);
   app->add_flag("--json", arguments->json, "Print the summary as JSON")->group(kOutputGroup);
   app->add_flag("--quiet", arguments->quiet, "Print errors alone")->group(kOutputGroup);
 }
 
-bool IsBvh(const std::filesystem::path& path) {
-  return formats::FormatOf(path) == formats::Format::kBvh;
-}
-
 void CheckFollowerRig(const SynthesizeArguments& arguments) {
   if (arguments.follower_rig.empty()) return;
   const bool leaders = arguments.follower_rig == kLeadersRig;
-  const std::filesystem::path rig =
+  const std::filesystem::path file =
       leaders ? arguments.leader : std::filesystem::path(arguments.follower_rig);
-  const bool as_bvh =
-      !leaders || !arguments.input.format || *arguments.input.format == formats::Format::kBvh;
-  if (!IsBvh(rig) || !as_bvh) {
-    throw CLI::ValidationError("--follower-rig",
-                               absl::StrCat(rig.string(), ": wanted a .bvh, whose rig it is"));
-  }
-  if (std::none_of(arguments.outputs.begin(), arguments.outputs.end(), IsBvh)) {
-    throw CLI::ValidationError("--follower-rig", "counts for --out FILE.bvh, which is not there");
-  }
+  const std::optional<formats::Format> rig = formats::FormatOf(file);
+  const bool fits = rig && std::any_of(arguments.outputs.begin(), arguments.outputs.end(),
+                                       [rig](const std::filesystem::path& output) {
+                                         const auto written = formats::FormatOf(output);
+                                         return written && formats::FitsRig(*written, *rig);
+                                       });
+  if (fits) return;
+  throw CLI::ValidationError(
+      "--follower-rig", absl::StrCat(file.string(),
+                                     ": wanted a .bvh and --out FILE.bvh, or a .glb or .gltf and "
+                                     "--out FILE.glb or FILE.gltf"));
 }
 
 // What no single flag can tell.

@@ -10,15 +10,22 @@
 
 namespace duet::formats {
 
-// A BVH whose rig a follower is written onto, and how that file is read.
+// A BVH or glTF whose rig a follower is written onto, and how that file is read.
 struct FollowerRig {
   std::filesystem::path file;
   ReadOptions reading;
 };
 
-// The follower as BVH on that rig (bvh::OntoBvhRig).
-// Errors: those of reading the rig; INVALID_ARGUMENT for a rig that cannot be the follower's.
-absl::StatusOr<std::string> FormatOntoRig(const motion::Clip& follower, const FollowerRig& rig);
+// Whether a rig of one format may be written in another: as BVH on a BVH's, as glTF of either kind
+// on a glTF's.
+bool FitsRig(Format written, Format rig);
+
+// The follower on that rig (bvh::OntoBvhRig, gltf::OntoGltfRig).
+// Errors: those of reading the rig; INVALID_ARGUMENT for a rig that cannot be the follower's, or
+// one
+//         that `format` does not fit.
+absl::StatusOr<std::string> FormatOntoRig(const motion::Clip& follower, const FollowerRig& rig,
+                                          Format format);
 
 }  // namespace duet::formats
 

@@ -243,6 +243,16 @@ class BatchTest(unittest.TestCase):
         self.batch(out, recipe)
         self.assertEqual(digests(out), digests(self.whole))
 
+    def test_pairs_as_gltf(self):
+        out = self.out()
+        self.batch(out, self.recipe("formats: FORMAT_GLB"), "--limit", "3")
+        made = entries(out)
+        self.assertEqual(len(made), 3)
+        for entry in made:
+            (glb,) = [file["path"] for file in entry["files"] if file["path"].endswith(".glb")]
+            self.assertEqual((out / glb).read_bytes()[:4], b"glTF")
+        self.verified(out)
+
     def test_an_interrupt_drains(self):
         recipe, out = self.recipe("formats: FORMAT_BVH"), self.out()
         client = subprocess.Popen(self.command(out, recipe, "--max-in-flight", "1"),

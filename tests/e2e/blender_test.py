@@ -46,6 +46,23 @@ class BlenderTest(unittest.TestCase):
         self.assertGreater(self.state["vertices"], 1000)
         self.assertIn("Duet follower", self.state["materials"])  # in a colour of their own
 
+    def test_labels_with_key_frames_are_sent_as_they_change(self):
+        flags = self.state["flags"]
+        self.assertEqual(set(flags[::2]), {"--keyframe"})
+        keys = [flag.split(":") for flag in flags[1::2]]
+        self.assertEqual([keys[0][0], keys[-1][0]], ["0", "39"])
+        self.assertIn("kick=1,", keys[0][1])
+        self.assertIn("kick=0,", keys[-1][1])
+        self.assertGreater(len(keys), 2)  # Blender eases between its key frames
+
+    def test_the_place_is_sent_in_metres_with_y_up(self):
+        flag, place = self.state["place"]
+        self.assertEqual(flag, "--follower-start")
+        x, y, z = map(float, place.split(","))
+        self.assertAlmostEqual(x, 1.2, delta=1e-3)
+        self.assertAlmostEqual(y, 1.1, delta=0.15)
+        self.assertAlmostEqual(z, 0, delta=1e-3)
+
     def test_the_scene_stays_as_it_was(self):
         self.assertEqual(self.state["frame"], 20)
         self.assertEqual(self.state["fps"], 24)

@@ -19,7 +19,7 @@ def _let_importer_run():
 def add(scene, path):
     """Imports one person, in the unit of the scene; their armature. The scene keeps rate, range and
     current frame."""
-    if not hasattr(bpy.ops.import_scene, "gltf"):
+    if "gltf" not in dir(bpy.ops.import_scene):
         raise DuetError("Switch on the add-on glTF 2.0, which reads the partner")
     _let_importer_run()
     things, actions = set(bpy.data.objects), set(bpy.data.actions)

@@ -105,7 +105,7 @@ absl::StatusOr<std::string> GltfBuffers::Load(const GltfBuffer& buffer) const {
   return read_file_(*name);
 }
 
-absl::StatusOr<const std::string*> GltfBuffers::Find(int buffer) {
+absl::StatusOr<const std::string*> GltfBuffers::Whole(int buffer) {
   auto found = loaded_.find(buffer);
   if (found == loaded_.end()) {
     const GltfBuffer& described = document_.buffers[static_cast<size_t>(buffer)];
@@ -143,7 +143,7 @@ absl::StatusOr<std::vector<float>> GltfBuffers::Read(int index, int components) 
   const GltfView& view = document_.views[static_cast<size_t>(accessor.view)];
   const std::size_t width = bytes * static_cast<std::size_t>(components);
   const std::size_t stride = view.stride == 0 ? width : view.stride;
-  const absl::StatusOr<const std::string*> buffer = Find(view.buffer);
+  const absl::StatusOr<const std::string*> buffer = Whole(view.buffer);
   if (!buffer.ok()) return buffer.status();
   // Every number is below 2^32, so that 64 bits hold each product.
   const uint64_t end = accessor.count == 0 ? 0

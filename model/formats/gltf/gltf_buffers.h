@@ -33,9 +33,11 @@ class GltfBuffers {
   //         what `read_file` says.
   absl::StatusOr<std::vector<float>> Read(int accessor, int components);
 
+  // All bytes of a buffer. Lives as long as this. Errors as of Read.
+  absl::StatusOr<const std::string*> Whole(int buffer);
+
  private:
   absl::StatusOr<std::string> Load(const GltfBuffer& buffer) const;
-  absl::StatusOr<const std::string*> Find(int buffer);
 
   const GltfDocument& document_;
   const GltfFileReader& read_file_;

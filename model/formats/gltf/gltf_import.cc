@@ -298,9 +298,13 @@ class Importer {
       return Error(source, absl::StrCat("skeleton: came ", puppet.members().nodes.size(),
                                         " nodes, wanted at most ", motion::kMaxFileJoints));
     }
+    if (options_.nodes != nullptr) *options_.nodes = puppet.members().nodes;
     const GltfAnimation* animation = Choose(puppet);
-    if (animation == nullptr) return Error(source, "no animation moves the skeleton");
-    absl::Status status = puppet.ReadTracks(*animation, &buffers_);
+    if (animation == nullptr && options_.nodes == nullptr) {
+      return Error(source, "no animation moves the skeleton");
+    }
+    const absl::Status status =
+        animation == nullptr ? absl::OkStatus() : puppet.ReadTracks(*animation, &buffers_);
     if (!status.ok()) return Error(source, status.message(), status.code());
     return Play(&puppet, source);
   }

@@ -2,6 +2,7 @@
 #define DUET_MODEL_FORMATS_GLTF_GLTF_IMPORT_H_
 
 #include <optional>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
@@ -18,6 +19,9 @@ struct GltfImportOptions : retargeting::CharacterOptions {
   int person = 0;
   // Absent: as close as the keys are, 30 where they are farther apart than at 15.
   std::optional<double> frame_rate_hz;
+  // Receives the nodes that the character's joints are, in the order of its tree; may be null. Who
+  // asks for them is after the rig: a character that nothing moves will do, and stands at rest.
+  std::vector<int>* nodes = nullptr;
 };
 
 // An animated skeleton through forward kinematics to the skeleton's joint positions: the first

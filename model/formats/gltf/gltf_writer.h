@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "absl/strings/string_view.h"
@@ -19,6 +20,9 @@ inline constexpr char kDuetsWriter[] = "Duet";
 class GltfWriter {
  public:
   GltfWriter();
+  // Goes on from a document with one buffer.
+  GltfWriter(nlohmann::ordered_json json, std::string buffer)
+      : json_(std::move(json)), buffer_(std::move(buffer)) {}
 
   // Members of the document, by the format's names.
   nlohmann::ordered_json& json() { return json_; }

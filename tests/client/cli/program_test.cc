@@ -212,6 +212,14 @@ TEST_F(ProgramTest, WritesTheFollowerOnTheLeadersRig) {
   EXPECT_EQ(HierarchyOf(folder_ / "other.follower.bvh"), HierarchyOf(folder_ / "rig.leader.bvh"));
 }
 
+TEST_F(ProgramTest, WritesTheFollowerOnAGltfRigBesideThePair) {
+  const motion::ClipPair pair{leader_, leader_};
+  ASSERT_THAT(formats::WritePair(folder_ / "rig.glb", pair, motion::SbuSkeleton()), IsOk());
+  ASSERT_EQ(Synthesize("pair.gltf", {"--follower-rig", Path("rig.glb")}), 0) << err_.str();
+  EXPECT_THAT(out_.str(), HasSubstr(Path("pair.follower.gltf")));
+  EXPECT_TRUE(Exists("pair.gltf") && Exists("pair.follower.gltf"));
+}
+
 TEST_F(ProgramTest, SendsWhatTheFlagsSay) {
   SynthesisRequest sent;
   EXPECT_CALL(*connection_, GetModel(Field(&ModelChoice::name, "sbu")));

@@ -15,6 +15,7 @@ import numpy
 addon_folder, leader_file, server, duet, out = sys.argv[sys.argv.index("--") + 1:]
 sys.path.insert(0, addon_folder)
 import duet_blender  # noqa: E402
+import duet_blender.leader  # noqa: E402
 
 if "bool" not in numpy.__dict__:  # Debian 12's importer, see duet_blender.partner
     numpy.bool = bool
@@ -77,11 +78,16 @@ missing = react()
 settings.program = duet
 finished = react()
 
+recording = duet_blender.leader.Recording(scene, leader)
+for _ in recording.take():
+    pass
+
 follower = bpy.data.objects.get("Duet follower")
 body = bpy.data.objects.get("Duet follower body")
 state = {
     "known": known, "asked": asked, "refused_without_leader": refused, "still": still,
     "missing": missing, "finished": finished, "failures": failures,
+    "flags": recording.label_flags(), "place": recording.place_flags(),
     "frame": scene.frame_current, "fps": scene.render.fps,
     "range": [scene.frame_start, scene.frame_end],
 }

@@ -157,6 +157,40 @@ TEST_P(BvhRig, HierarchyNamesOffsetsAndChannelsStay) {
   EXPECT_EQ(written.frame_count, 120);
 }
 
+// The toes are ahead of an ankle that stands, as far down as at rest.
+TEST_P(BvhRig, FeetPointAheadAndLieFlatWhereTheyStand) {
+  const motion::Clip clip = Follower();
+  const BvhDocument written = OntoRig(clip, GetParam().document);
+  // The left one comes first.
+  const auto toe =
+      std::find_if(written.joints.begin(), written.joints.end(), [](const auto& joint) {
+        return joint.name.find("Toe") != std::string::npos ||
+               joint.name.find("toe") != std::string::npos || joint.name == "ball_l";
+      });
+  if (toe == written.joints.end()) return;  // a rig that ends at the foot
+  const int ankle = motion::SbuSkeleton().Find("left_foot");
+  const bool z_up = toe->offset.z < 0;  // toes are below the ankle, and ahead
+  const BvhKinematics kinematics(written);
+  const int hips = motion::SbuSkeleton().Find("left_hip");
+  int lowest = 0;
+  for (int frame = 0; frame < clip.frame_count(); ++frame) {
+    if (clip.at(frame, ankle).y < clip.at(lowest, ankle).y) lowest = frame;
+  }
+  const std::vector<retargeting::Vec3d> at = kinematics.Positions(lowest);
+  const std::size_t joint = static_cast<std::size_t>(toe - written.joints.begin());
+  retargeting::Vec3d foot = at[joint] - at[static_cast<std::size_t>(toe->parent)];
+  retargeting::Vec3d rest = toe->offset;
+  if (z_up) {
+    foot = {foot.x, foot.z, -foot.y};
+    rest = {rest.x, rest.z, -rest.y};
+  }
+  EXPECT_NEAR(foot.y / Norm(foot), rest.y / Norm(rest), 0.05);
+  const motion::Vec3 left_to_right = clip.at(lowest, hips + 3) - clip.at(lowest, hips);
+  const retargeting::Vec3d ahead =
+      retargeting::Cross({0, 1, 0}, retargeting::ToDouble(left_to_right));
+  EXPECT_GT(retargeting::Dot(foot, ahead) / (Norm(foot) * Norm(ahead)), 0.7);
+}
+
 // Bones keep their lengths: only what moves freely, root and pelvis, changes its place.
 TEST_P(BvhRig, BonesKeepTheRigsLengths) {
   const BvhDocument written = OntoRig(Follower(), GetParam().document);

@@ -1,0 +1,238 @@
+#include "model/formats/gltf/gltf_rig.h"
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "model/formats/gltf/gltf_document.h"
+#include "model/formats/gltf/gltf_writer.h"
+#include "model/motion/coordinates.h"
+#include "model/retargeting/rig_transfer.h"
+
+namespace duet::formats::gltf {
+namespace {
+
+using nlohmann::ordered_json;
+using retargeting::CharacterPose;
+using retargeting::Quaternion;
+using retargeting::Vec3d;
+
+constexpr double kNoTurn = 1e-6;  // radians
+constexpr std::size_t kJsonBegins = 20, kJsonLengthAt = 12, kAlignment = 4;
+
+std::size_t Index(int node) { return static_cast<std::size_t>(node); }
+
+// The document's text: of a .glb its first chunk. Requires a file that ParseGltf accepts.
+absl::string_view JsonOf(absl::string_view content) {
+  if (!absl::StartsWith(content, "glTF")) return content;
+  std::size_t length = 0;
+  for (std::size_t byte = 4; byte-- > 0;) {
+    length = length << 8 | static_cast<uint8_t>(content[kJsonLengthAt + byte]);
+  }
+  return content.substr(kJsonBegins, length);
+}
+
+// A node at rest, in its parent or in the world; scale is the same along all axes, or their mean.
+struct Place {
+  Vec3d at;
+  Quaternion turn;
+  double scale = 1;
+
+  Place operator*(const Place& inner) const {
+    return {at + Rotate(turn, inner.at * scale), turn * inner.turn, scale * inner.scale};
+  }
+};
+
+Quaternion AtLengthOne(Quaternion q) {
+  const double norm = std::sqrt(Dot(q, q));
+  if (!(norm > 1e-12)) return {};
+  return {q.w / norm, q.x / norm, q.y / norm, q.z / norm};
+}
+
+Place LocalPlace(const GltfNode& node) {
+  if (!node.matrix.has_value()) {
+    const Vec3d s = node.scale;
+    return {node.translation, AtLengthOne(node.rotation), (s.x + s.y + s.z) / 3};
+  }
+  const auto& m = *node.matrix;
+  const Vec3d x{m[0], m[1], m[2]}, y{m[4], m[5], m[6]}, z{m[8], m[9], m[10]};
+  return {{m[12], m[13], m[14]},
+          retargeting::FromAxes(Unit(x, {1, 0, 0}), Unit(y, {0, 1, 0}), Unit(z, {0, 0, 1})),
+          (Norm(x) + Norm(y) + Norm(z)) / 3};
+}
+
+// From the file's axes to the world's.
+Quaternion ToWorldAxes(motion::UpAxis up_axis) {
+  const motion::Coordinates file{motion::LengthUnit::kMetres, up_axis};
+  const auto in_world = [&file](motion::Vec3 axis) {
+    return retargeting::ToDouble(ToWorld(file, axis));
+  };
+  return retargeting::FromAxes(in_world({1, 0, 0}), in_world({0, 1, 0}), in_world({0, 0, 1}));
+}
+
+class RigAnimator {
+ public:
+  RigAnimator(const GltfDocument& document, std::vector<int> nodes,
+              const retargeting::CharacterFit& fit)
+      : document_(document),
+        nodes_(std::move(nodes)),
+        fit_(fit),
+        to_world_(ToWorldAxes(fit.up_axis)) {
+    std::vector<int> place_of(document.nodes.size(), -1);
+    for (std::size_t j = 0; j < nodes_.size(); ++j)
+      place_of[Index(nodes_[j])] = static_cast<int>(j);
+    for (int node : nodes_) {
+      const int parent = document.nodes[Index(node)].parent;
+      parents_.push_back(parent < 0 ? -1 : place_of[Index(parent)]);
+      const Place above = parents_.back() < 0 ? RestAbove(parent) : rest_[Index(parents_.back())];
+      rest_.push_back(above * LocalPlace(document.nodes[Index(node)]));
+    }
+  }
+
+  retargeting::CharacterRig Rig() const {
+    retargeting::CharacterRig rig;
+    rig.joints = fit_.joints;
+    rig.parents = parents_;
+    for (std::size_t j = 0; j < nodes_.size(); ++j) {
+      rig.names.push_back(document_.nodes[Index(nodes_[j])].name);
+      rig.positions.push_back(Rotate(to_world_, rest_[j].at) * fit_.metres_per_unit);
+      rig.moves.push_back(true);
+    }
+    return rig;
+  }
+
+  // Adds the animation, and makes room for it in the nodes that it moves.
+  void Write(const std::vector<CharacterPose>& poses, double frame_rate_hz, GltfWriter* writer) {
+    animation_ = {
+        {"name", "duet"}, {"channels", ordered_json::array()}, {"samplers", ordered_json::array()}};
+    std::vector<float> seconds;
+    for (std::size_t frame = 0; frame < poses.size(); ++frame) {
+      seconds.push_back(static_cast<float>(static_cast<double>(frame) / frame_rate_hz));
+    }
+    writer->BeginView(GltfWriter::Use::kOther);
+    times_ = writer->AddTimes(seconds);
+    for (std::size_t j = 0; j < nodes_.size(); ++j) AddJoint(j, poses, writer);
+    writer->json()["animations"] = ordered_json::array({std::move(animation_)});
+  }
+
+ private:
+  Place RestAbove(int node) const {
+    if (node < 0) return {};
+    const GltfNode& written = document_.nodes[Index(node)];
+    return RestAbove(written.parent) * LocalPlace(written);
+  }
+
+  // A joint in the file's world when the character stands so.
+  Place Posed(const CharacterPose& pose, std::size_t j) const {
+    const Quaternion turn = Inverse(to_world_) * pose.turns[j] * to_world_;
+    return {Rotate(Inverse(to_world_), pose.positions[j]) * (1 / fit_.metres_per_unit),
+            turn * rest_[j].turn, rest_[j].scale};
+  }
+
+  Place PosedAbove(const CharacterPose& pose, std::size_t j) const {
+    if (parents_[j] >= 0) return Posed(pose, Index(parents_[j]));
+    return RestAbove(document_.nodes[Index(nodes_[j])].parent);
+  }
+
+  void AddJoint(std::size_t j, const std::vector<CharacterPose>& poses, GltfWriter* writer) {
+    const Place rest = LocalPlace(document_.nodes[Index(nodes_[j])]);
+    std::vector<Quaternion> turns;
+    std::vector<Vec3d> places;
+    bool turned = false, moved = false;
+    for (const CharacterPose& pose : poses) {
+      const Place above = PosedAbove(pose, j), here = Posed(pose, j);
+      Quaternion turn = AtLengthOne(Inverse(above.turn) * here.turn);
+      if (!turns.empty() && Dot(turn, turns.back()) < 0)
+        turn = {-turn.w, -turn.x, -turn.y, -turn.z};
+      turns.push_back(turn);
+      places.push_back(Rotate(Inverse(above.turn), here.at - above.at) * (1 / above.scale));
+      turned = turned || Angle(turn, rest.turn) > kNoTurn;
+      moved = moved || Norm(places.back() - rest.at) > 1e-5 * (1 + Norm(rest.at));
+    }
+    if (!turned && !moved) return;
+    MakeMovable(nodes_[j], rest, writer);
+    if (moved) AddTrack(nodes_[j], "translation", writer->AddVectors(places));
+    if (turned) AddTrack(nodes_[j], "rotation", writer->AddRotations(turns));
+  }
+
+  // A node that is animated may not have a matrix.
+  void MakeMovable(int node, const Place& rest, GltfWriter* writer) const {
+    ordered_json& written = writer->json()["nodes"][Index(node)];
+    if (!written.contains("matrix")) return;
+    written.erase("matrix");
+    written["translation"] = {rest.at.x, rest.at.y, rest.at.z};
+    written["rotation"] = {rest.turn.x, rest.turn.y, rest.turn.z, rest.turn.w};
+    written["scale"] = {rest.scale, rest.scale, rest.scale};
+  }
+
+  void AddTrack(int node, const char* path, int values) {
+    animation_["channels"].push_back(
+        {{"sampler", animation_["samplers"].size()}, {"target", {{"node", node}, {"path", path}}}});
+    animation_["samplers"].push_back(
+        {{"input", times_}, {"interpolation", "LINEAR"}, {"output", values}});
+  }
+
+  const GltfDocument& document_;
+  std::vector<int> nodes_;    // [joints]
+  std::vector<int> parents_;  // [joints]
+  std::vector<Place> rest_;   // [joints], in the file's world
+  retargeting::CharacterFit fit_;
+  Quaternion to_world_;
+  ordered_json animation_;
+  int times_ = 0;  // accessor
+};
+
+// The document with all of its buffers as one.
+absl::StatusOr<GltfWriter> Gather(absl::string_view content, const GltfDocument& document,
+                                  GltfBuffers* buffers) {
+  ordered_json json = ordered_json::parse(JsonOf(content), nullptr, false);
+  std::string all;
+  std::vector<std::size_t> begins;
+  for (std::size_t i = 0; i < document.buffers.size(); ++i) {
+    const absl::StatusOr<const std::string*> bytes = buffers->Whole(static_cast<int>(i));
+    if (!bytes.ok()) return bytes.status();
+    begins.push_back(all.size());
+    all.append(**bytes);
+    all.resize((all.size() + kAlignment - 1) / kAlignment * kAlignment, '\0');
+  }
+  for (std::size_t i = 0; i < document.views.size(); ++i) {
+    ordered_json& view = json["bufferViews"][i];
+    view["byteOffset"] = document.views[i].offset + begins[Index(document.views[i].buffer)];
+    view["buffer"] = 0;
+  }
+  return GltfWriter(std::move(json), std::move(all));
+}
+
+}  // namespace
+
+absl::StatusOr<std::string> OntoGltfRig(const motion::Clip& clip, absl::string_view content,
+                                        absl::string_view source, const GltfFileReader& read_file,
+                                        const GltfImportOptions& options, GltfContainer container) {
+  const absl::StatusOr<GltfDocument> document = ParseGltf(content, source);
+  if (!document.ok()) return document.status();
+  retargeting::CharacterFit fit;
+  std::vector<int> nodes;
+  GltfImportOptions reading = options;
+  reading.fit = &fit;
+  reading.nodes = &nodes;
+  reading.notes = nullptr;
+  reading.report = nullptr;
+  const absl::StatusOr<motion::Clip> read = FromGltf(*document, source, read_file, reading);
+  if (!read.ok()) return read.status();
+  RigAnimator animator(*document, nodes, fit);
+  const absl::StatusOr<std::vector<CharacterPose>> poses =
+      TransferToRig(clip, animator.Rig(), source);
+  if (!poses.ok()) return poses.status();
+  GltfBuffers buffers(*document, read_file);
+  absl::StatusOr<GltfWriter> writer = Gather(content, *document, &buffers);
+  if (!writer.ok()) return writer.status();
+  animator.Write(*poses, clip.frame_rate_hz, &*writer);
+  return container == GltfContainer::kBinary ? writer->Binary() : writer->Text();
+}
+
+}  // namespace duet::formats::gltf
