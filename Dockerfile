@@ -1,32 +1,95 @@
-# Builds duet-server and duet, and packs them with the libraries that they load and nothing else: LibTorch,
-# the server's other engine, is not among them.
+# Two images. `server` (the last stage, what a plain build makes) holds duet-server, duet and the
+# libraries that they load, and nothing else: no shell, no package manager, no LibTorch. `training` is
+# Debian with LibTorch and every program.
 #
 #   docker build -t duet .
-#   docker run --rm -p 50051:50051 -p 9464:9464 duet
+#   docker build -t duet-training --target training .
+#   deploy/image/build.sh              the same with podman, with labels filled in
 #
-# The container runs as an unprivileged user and writes nothing: --read-only and --cap-drop=ALL are
-# fine, and deploy/README.md says more.
+# The server's container runs as an unprivileged user and writes nothing; deploy/README.md has the line
+# that runs it.
 
-FROM debian:bookworm-slim AS build
+ARG BASE=debian:bookworm-slim
+
+# Compiler and libraries: made again when a package list changes, never for a change to the sources.
+FROM ${BASE} AS tools
 WORKDIR /src
-# The package list alone first, so that a change to the sources does not install it again.
-COPY packages/build.txt packages/
+COPY packages/build.txt packages/image.txt packages/
 COPY scripts/install_packages.sh scripts/
-RUN scripts/install_packages.sh build && rm -rf /var/lib/apt/lists/*
+RUN scripts/install_packages.sh build image && rm -rf /var/lib/apt/lists/*
+
+# What was compiled before comes from the compiler's cache: a change costs what it touches.
+FROM tools AS build
+ARG CCACHE_DIR=/var/cache/ccache
+# Further settings of CMake.
+ARG CMAKE_FLAGS=
+ENV LANG=C.UTF-8 CCACHE_DIR=$CCACHE_DIR CCACHE_BASEDIR=/src CCACHE_NOHASHDIR=1
 COPY . .
-RUN cmake --preset release -DDUET_BUILD_TESTS=OFF -DDUET_BUILD_BENCHMARKS=OFF \
+RUN --mount=type=cache,id=duet-ccache,target=/var/cache/ccache \
+    cmake --preset release -DDUET_BUILD_TESTS=OFF -DDUET_BUILD_BENCHMARKS=OFF $CMAKE_FLAGS \
     && cmake --build --preset release --parallel "$(scripts/build_jobs.sh)" \
        --target duet-server duet \
-    && strip build/release/bin/duet-server build/release/bin/duet
+    && mkdir -p /out/usr/local/bin \
+    && for program in duet-server duet; do \
+         strip -o /out/usr/local/bin/$program build/release/bin/$program; \
+       done
 
-FROM debian:bookworm-slim AS runtime
-LABEL org.opencontainers.image.title="Duet" \
-      org.opencontainers.image.description="Answers one character's motion with another's, over gRPC"
-COPY packages/runtime.txt /tmp/install/packages/
+FROM build AS build-training
+RUN --mount=type=cache,id=duet-ccache,target=/var/cache/ccache \
+    cmake --build --preset release --parallel "$(scripts/build_jobs.sh)" \
+    --target duet-train duet-eval duet-import duet-keyframe duet_torch_engine_module \
+    && cmake --install build/release --prefix /out/usr/local --strip --component training \
+    && cmake --install build/release --prefix /out/usr/local --strip --component torch
+
+# The server image's root, of the packages' files alone, with the list of what is in it.
+FROM ${BASE} AS root
+ARG VERSION=0.1.0
+ARG CREATED=1970-01-01T00:00:00Z
+WORKDIR /src
+COPY packages/runtime.txt packages/image_root.txt packages/
+COPY scripts/install_packages.sh scripts/
+RUN scripts/install_packages.sh runtime image_root && rm -rf /var/lib/apt/lists/*
+COPY deploy/image/make_root.sh deploy/image/write_sbom.py deploy/image/
+COPY LICENSE ./
+RUN deploy/image/make_root.sh /root-of-image packages/runtime.txt \
+    && mkdir -p /root-of-image/usr/share/doc/duet \
+    && cp LICENSE /root-of-image/usr/share/doc/duet/copyright \
+    && deploy/image/write_sbom.py --version "$VERSION" --created "$CREATED" /root-of-image \
+       >/duet.spdx.json \
+    && mv /duet.spdx.json /root-of-image/usr/share/doc/duet/
+
+FROM ${BASE} AS training
+COPY packages/runtime.txt packages/training.txt /tmp/install/packages/
 COPY scripts/install_packages.sh /tmp/install/scripts/
-RUN /tmp/install/scripts/install_packages.sh runtime \
+RUN /tmp/install/scripts/install_packages.sh runtime training \
     && rm -rf /tmp/install /var/lib/apt/lists/* /var/cache/apt/* /var/log/apt /var/log/dpkg.log
-COPY --from=build /src/build/release/bin/duet-server /src/build/release/bin/duet /usr/local/bin/
+COPY --from=build-training /out /
+ARG VERSION=0.1.0
+ARG REVISION=unknown
+ARG SOURCE=unknown
+LABEL org.opencontainers.image.title="Duet, training and evaluation" \
+      org.opencontainers.image.description="Trains and measures the networks that Duet serves" \
+      org.opencontainers.image.version="$VERSION" \
+      org.opencontainers.image.revision="$REVISION" \
+      org.opencontainers.image.source="$SOURCE" \
+      org.opencontainers.image.licenses="Apache-2.0"
+USER 65532:65532
+WORKDIR /tmp
+ENTRYPOINT ["duet-train"]
+
+FROM scratch AS server
+COPY --from=root /root-of-image /
+COPY --from=build /out /
+ARG VERSION=0.1.0
+ARG REVISION=unknown
+ARG SOURCE=unknown
+LABEL org.opencontainers.image.title="Duet" \
+      org.opencontainers.image.description="Answers one character's motion with another's, over gRPC" \
+      org.opencontainers.image.version="$VERSION" \
+      org.opencontainers.image.revision="$REVISION" \
+      org.opencontainers.image.source="$SOURCE" \
+      org.opencontainers.image.licenses="Apache-2.0"
+ENV PATH=/usr/local/bin:/usr/bin
 # By number: a cluster can then see that it is not root.
 USER 65532:65532
 # gRPC; Prometheus metrics.

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Checks that packages/runtime.txt holds exactly the packages whose libraries the programs load by
-# name, and that none of them is LibTorch.
+# name, that none of them is LibTorch, and that packages/training.txt has what training loads beyond.
 #   scripts/check_runtime_packages.sh build/release/bin
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -13,6 +13,7 @@ fi
 
 readonly bin_dir="$1"
 readonly programs=(duet-server duet)
+readonly training_programs=(duet-train duet-eval duet-import duet-keyframe)
 
 # Prints the files of the libraries that a program names.
 libraries_of() {
@@ -33,10 +34,21 @@ package_of() {
     2>/dev/null | sed -n '1s/:.*//p'
 }
 
-loaded="$(for program in "${programs[@]}"; do
-  libraries_of "${bin_dir}/${program}" | while read -r file; do package_of "${file}"; done
-done | sort -u)"
-listed="$(sed -e 's/#.*//' -e '/^\s*$/d' packages/runtime.txt | sort -u)"
+# Prints the packages of the libraries that programs load.
+packages_of() {
+  local program
+  for program in "$@"; do
+    libraries_of "${bin_dir}/${program}" | while read -r file; do package_of "${file}"; done
+  done | sort -u
+}
+
+# Prints the names of lists of packages.
+listed_in() {
+  sed -e 's/#.*//' -e '/^\s*$/d' "$@" | sort -u
+}
+
+loaded="$(packages_of "${programs[@]}")"
+listed="$(listed_in packages/runtime.txt)"
 
 if ! difference="$(diff --label "runtime.txt lists" --label "the programs load" -u0 \
   <(echo "${listed}") <(echo "${loaded}"))"; then
@@ -50,4 +62,10 @@ for program in "${programs[@]}"; do
     exit 1
   fi
 done
+missing="$(comm -23 <(packages_of "${training_programs[@]}") \
+  <(listed_in packages/runtime.txt packages/training.txt))"
+if [[ -n "${missing}" ]]; then
+  printf 'packages/training.txt lacks:\n%s\n' "${missing}" >&2
+  exit 1
+fi
 echo "packages/runtime.txt matches ${programs[*]}."

@@ -50,15 +50,17 @@ def duet(*arguments):
 
 
 class Server:
-    """A duet-server on a free port, and everything that it logged."""
+    """A duet-server on a free port, and everything that it logged. `metrics_port` is that of its
+    figures where `metrics` names an address."""
 
-    def __init__(self, *flags, port=0, metrics="", descriptors=None):
+    def __init__(self, *flags, port=0, metrics="", descriptors=None,
+                 program=PROGRAMS / "duet-server"):
         self.log = []
-        self.metrics_port = None  # with metrics="127.0.0.1:0"
+        self.metrics_port = None
         limit = [] if descriptors is None else ["prlimit", f"--nofile={descriptors}"]
         self._process = subprocess.Popen(
-            [*limit, PROGRAMS / "duet-server", "--listen", f"127.0.0.1:{port}",
-             "--metrics-listen", metrics, *flags],
+            [*limit, program, "--listen", f"127.0.0.1:{port}", "--metrics-listen", metrics,
+             *flags],
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         serving = queue.Queue()
         # Reads to the end: a server whose log nobody reads stands still.

@@ -1,0 +1,47 @@
+#!/usr/bin/env bash
+# Builds the images with podman, labels filled in from the working tree, and checks the server's size.
+#   deploy/image/build.sh                 localhost/duet:VERSION
+#   deploy/image/build.sh training        localhost/duet-training:VERSION
+# BASE names another base; without it `localhost/debian:bookworm-slim` is used where make_base.sh made
+# it. DUET_CCACHE_DIR, a folder of this machine, serves as the compiler's cache. Flags of `podman build`
+# may follow the target's name.
+# The same sources, packages and SOURCE_DATE_EPOCH (the last commit's time, by default) give the same
+# layers.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+
+readonly limit_mb=250
+
+target="${1:-server}"
+shift || true
+case "${target}" in
+  server) name=localhost/duet ;;
+  training) name=localhost/duet-training ;;
+  *) echo "build.sh: target '${target}', wanted server or training" >&2 && exit 2 ;;
+esac
+
+version="$(sed -n 's/^project(duet VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)"
+revision="$(git rev-parse HEAD)$(git diff --quiet HEAD || echo -dirty)"
+source_url="$(git remote get-url origin 2>/dev/null || echo unknown)"
+epoch="${SOURCE_DATE_EPOCH:-$(git log -1 --format=%ct)}"
+created="$(date --utc --date "@${epoch}" +%Y-%m-%dT%H:%M:%SZ)"
+
+flags=()
+local_base=localhost/debian:bookworm-slim
+if [[ -z "${BASE:-}" ]] && podman image exists "${local_base}"; then BASE="${local_base}"; fi
+[[ -z "${BASE:-}" ]] || flags+=(--build-arg "BASE=${BASE}")
+[[ -z "${DUET_CCACHE_DIR:-}" ]] || flags+=(
+  --volume "${DUET_CCACHE_DIR}:/var/cache/host-ccache" --build-arg CCACHE_DIR=/var/cache/host-ccache)
+
+# Podman's own format has no HEALTHCHECK.
+podman build --format docker --timestamp "${epoch}" --target "${target}" \
+  --build-arg "VERSION=${version}" --build-arg "REVISION=${revision}" \
+  --build-arg "SOURCE=${source_url}" --build-arg "CREATED=${created}" \
+  "${flags[@]}" "$@" --tag "${name}:${version}" --tag "${name}:latest" .
+
+bytes="$(podman image inspect --format '{{.Size}}' "${name}:${version}")"
+echo "${name}:${version}: $((bytes / 1000000)) MB"
+if [[ "${target}" == server ]] && ((bytes > limit_mb * 1000000)); then
+  echo "build.sh: the server's image is above ${limit_mb} MB" >&2
+  exit 1
+fi

@@ -1,0 +1,9 @@
+#!/usr/bin/env bash
+# Joins the shards of a batch once all of them are settled; submit_batch.sh submits it.
+#SBATCH --job-name=duet-merge
+#SBATCH --requeue
+#SBATCH --open-mode=append
+set -euo pipefail
+
+duet batch merge "$1"
+duet batch verify "$1"

@@ -1,0 +1,89 @@
+"""The Debian packages: what is in them, what lintian and systemd say of them, and a server that runs from
+their files with their configuration.
+
+    package_test.py <build folder> <cpack>
+"""
+
+import os
+import pathlib
+import re
+import shutil
+import sys
+import tempfile
+import unittest
+
+import tools
+
+BUILD, CPACK = sys.argv[1:]
+del sys.argv[1:]
+
+
+def run(*command, **options):
+    result = tools.run(*command, **options)
+    assert result.returncode == 0, f"{command}: {result.stdout}{result.stderr}"
+    return result.stdout
+
+
+class PackageTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.folder = pathlib.Path(folder.name)
+        run(CPACK, "-G", "DEB", "-B", cls.folder, "-D", "CPACK_COMPONENTS_ALL=client;server",
+            cwd=BUILD, timeout=600)
+        cls.packages = {file.name.split("_")[0]: file for file in cls.folder.glob("*.deb")}
+        cls.root = cls.folder / "root"
+        for package in cls.packages.values():
+            run("dpkg-deb", "-x", package, cls.root)
+
+    def test_client_and_server_are_packages_of_their_own(self):
+        self.assertEqual(sorted(self.packages), ["duet", "duet-server"])
+        for package in self.packages.values():
+            needed = run("dpkg-deb", "-f", package, "Depends")
+            self.assertIn("libgrpc++1.51", needed)
+            self.assertNotIn("torch", needed)
+        for path in ("usr/bin/duet", "usr/share/man/man1/duet-batch.1.gz",
+                     "usr/share/bash-completion/completions/duet",
+                     "usr/bin/duet-server", "usr/share/man/man8/duet-server.8.gz",
+                     "usr/lib/systemd/system/duet-server.service",
+                     "usr/lib/sysusers.d/duet-server.conf", "etc/duet/server.textproto"):
+            self.assertTrue((self.root / path).is_file(), path)
+        # What an operator changed stays on an upgrade.
+        self.assertEqual(run("dpkg-deb", "-I", self.packages["duet-server"], "conffiles"),
+                         "/etc/duet/server.textproto\n")
+
+    def test_the_unit_waits_longer_than_the_server_drains(self):
+        unit = (self.root / "usr/lib/systemd/system/duet-server.service").read_text()
+        config = (self.root / "etc/duet/server.textproto").read_text()
+        seconds = [int(found) for found in re.findall(r"^\w+_seconds: (\d+)$", config, re.M)]
+        self.assertEqual(len(seconds), 2)
+        self.assertGreater(int(re.search(r"TimeoutStopSec=(\d+)", unit)[1]), sum(seconds))
+
+    def test_the_server_runs_with_the_packaged_configuration(self):
+        config = self.root / "etc/duet/server.textproto"
+        program = self.root / "usr/bin/duet-server"
+        server = tools.Server("--config", config, "--drain-seconds", "0", program=program)
+        client = self.root / "usr/bin/duet"
+        result = tools.run(client, "models", "--server", server.address)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(server.stop(), 0)
+
+    @unittest.skipUnless(shutil.which("lintian"), "needs lintian")
+    def test_lintian_finds_nothing(self):
+        root = ["--allow-root"] if os.geteuid() == 0 else []
+        found = tools.run("lintian", *root, *self.packages.values())
+        self.assertEqual(found.stdout, "")
+
+    @unittest.skipUnless(shutil.which("systemd-analyze"), "needs systemd-analyze")
+    def test_the_service_may_do_little(self):
+        unit = self.root / "usr/lib/systemd/system/duet-server.service"
+        # In tenths, of 100.
+        run("systemd-analyze", "security", "--offline=yes", "--threshold=15", unit)
+
+
+if __name__ == "__main__":
+    for needed in ("dpkg-deb", "dpkg-shlibdeps"):
+        if not shutil.which(needed):
+            tools.skip(f"{needed} is not installed")
+    tools.main()

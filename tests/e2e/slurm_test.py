@@ -1,0 +1,220 @@
+"""deploy/slurm on a real Slurm of two nodes on this machine: tasks that are killed, whose server is killed,
+that Slurm requeues and whose node is lost run again, and the merged data set is byte for byte the one
+that a single run without faults makes. Needs root, slurmctld, slurmd and munge."""
+
+import contextlib
+import filecmp
+import os
+import pathlib
+import re
+import shutil
+import signal
+import socket
+import subprocess
+import tempfile
+import time
+import unittest
+
+import tools
+
+SLURM = tools.SOURCE / "deploy/slurm"
+SHARDS = 6
+RECIPE = """seed: 7
+reactions { each_class {} }
+reactions { mixes { count: 20 } }
+output { formats: FORMAT_NPY }
+"""
+LONGEST_RUN = 600  # seconds, on a busy machine
+
+
+def free_ports(count):
+    with contextlib.ExitStack() as stack:
+        sockets = [stack.enter_context(socket.socket()) for _ in range(count)]
+        for one in sockets:
+            one.bind(("127.0.0.1", 0))
+        return [one.getsockname()[1] for one in sockets]
+
+
+def wait_for(what, condition):
+    """Looks ten times a second until the condition is true; returns its value."""
+    end = time.monotonic() + LONGEST_RUN
+    while time.monotonic() < end:
+        value = condition()
+        if value:
+            return value
+        time.sleep(0.1)
+    raise AssertionError(f"waited {LONGEST_RUN} s for {what}")
+
+
+class Cluster:
+    """A controller and two nodes of one core each, all on this machine, in a folder of their own."""
+
+    NODES = ("first", "second")
+
+    def __init__(self, folder, stack):
+        self._folder = folder
+        self._stack = stack
+        self._nodes = {}
+        controller, *nodes = free_ports(3)
+        (folder / "state").mkdir()
+        key = folder / "munge.key"
+        key.write_bytes(os.urandom(128))
+        key.chmod(0o400)
+        host = socket.gethostname().split(".")[0]
+        lines = [
+            "ClusterName=test", f"SlurmctldHost={host}(127.0.0.1)", f"SlurmctldPort={controller}",
+            "SlurmUser=root", "SlurmdUser=root",
+            # Requeued tasks may begin once their old credentials are void: in 5 s, not in 2 minutes.
+            f"AuthInfo=socket={folder}/munge.sock,cred_expire=5",
+            f"StateSaveLocation={folder}/state", f"SlurmdSpoolDir={folder}/spool-%n",
+            f"SlurmctldPidFile={folder}/slurmctld.pid", f"SlurmdPidFile={folder}/slurmd-%n.pid",
+            "ProctrackType=proctrack/pgid", "TaskPlugin=task/none", "MpiDefault=none",
+            "SelectType=select/cons_tres", "SelectTypeParameters=CR_Core", "ReturnToService=2",
+            "SlurmdTimeout=6", "KillWait=5", "SchedulerParameters=sched_interval=1",
+            "SlurmdParameters=config_overrides",
+            *(f"NodeName={name} NodeHostname={host} NodeAddr=127.0.0.1 Port={port} CPUs=1"
+              for name, port in zip(self.NODES, nodes)),
+            "PartitionName=all Nodes=ALL Default=YES State=UP"]
+        (folder / "slurm.conf").write_text("\n".join(lines) + "\n")
+        self.environment = {**os.environ, "SLURM_CONF": str(folder / "slurm.conf"),
+                            "PATH": f"{tools.PROGRAMS}:{os.environ['PATH']}"}
+        self._start("munged", "--foreground", "--force", f"--socket={folder}/munge.sock",
+                    f"--key-file={key}", f"--pid-file={folder}/munge.pid",
+                    f"--seed-file={folder}/munge.seed", f"--log-file={folder}/munge.log")
+        wait_for("munge", (folder / "munge.sock").exists)
+        self._start("slurmctld", "-D", "-i")
+        for name in self.NODES:
+            self.start_node(name)
+        wait_for("two idle nodes", lambda: self.run("sinfo", "-h", "-o", "%D %t") == "2 idle")
+
+    def _start(self, *command):
+        log = self._stack.enter_context(open(self._folder / "daemons.log", "a", encoding="utf-8"))
+        process = subprocess.Popen(command, stdout=log, stderr=log, env=self.environment,
+                                   start_new_session=True)
+        self._stack.callback(process.wait, timeout=tools.STOP_SECONDS)
+        self._stack.callback(process.terminate)
+        return process
+
+    def start_node(self, name):
+        self._nodes[name] = self._start("slurmd", "-D", "-N", name)
+
+    def lose_node(self, name, process):
+        """As if the power of a node that runs the process had failed: nobody there is left to tell."""
+        line = [process]
+        while line[-1] > 1:  # the process, the task's script, Slurm's own process for the task
+            line.append(parent_of(line[-1]))
+        for victim in (*line[2:0:-1], self._nodes[name].pid, process):
+            os.kill(victim, signal.SIGKILL)
+        for entry in pathlib.Path("/proc").glob("[0-9]*"):
+            with contextlib.suppress(OSError):
+                if f"SLURMD_NODENAME={name}".encode() in (entry / "environ").read_bytes().split(b"\0"):
+                    os.kill(int(entry.name), signal.SIGKILL)
+
+    def run(self, *command):
+        result = tools.run(*command, env=self.environment)
+        assert result.returncode == 0, f"{command}: {result.stdout}{result.stderr}"
+        return result.stdout.strip()
+
+    def node_of(self, task):
+        return self.run("squeue", "-h", "-o", "%N", "-j", task)
+
+
+def parent_of(process):
+    stat = pathlib.Path(f"/proc/{process}/stat").read_text()
+    return int(stat.rpartition(")")[2].split()[1])
+
+
+def pids_of_task(job, shard, program):
+    """The processes of a program that a task of an array runs."""
+    found = []
+    for entry in pathlib.Path("/proc").glob("[0-9]*"):
+        with contextlib.suppress(OSError):
+            words = (entry / "cmdline").read_bytes().split(b"\0")
+            environment = (entry / "environ").read_bytes().split(b"\0")
+            if (words[0].endswith(program.encode())
+                    and f"SLURM_ARRAY_JOB_ID={job}".encode() in environment
+                    and f"SLURM_ARRAY_TASK_ID={shard}".encode() in environment):
+                found.append(int(entry.name))
+    return found
+
+
+def contents(folder):
+    """The files of a data set, without the shards, journal and logs that led to it."""
+    return sorted(file.relative_to(folder).as_posix() for file in folder.rglob("*")
+                  if file.is_file() and not file.relative_to(folder).parts[0].startswith(
+                      ("shard-", ".duet-batch", "logs")))
+
+
+class SlurmTest(unittest.TestCase):
+    def setUp(self):
+        stack = contextlib.ExitStack()
+        self.addCleanup(stack.close)
+        self.folder = pathlib.Path(stack.enter_context(tempfile.TemporaryDirectory()))
+        self.recipe = self.folder / "recipe.textproto"
+        self.recipe.write_text(RECIPE)
+        self.cluster = Cluster(self.folder, stack)
+
+    def settled(self, out, shard):
+        """How many items of a shard are in its journal."""
+        index = out / f"shard-{shard}-of-{SHARDS}"
+        return sum(1 for _ in index.rglob("*.npy"))
+
+    def kill(self, job, shard, program):
+        for process in wait_for(f"{program} of {shard}",
+                                lambda: pids_of_task(job, shard, program)):
+            os.kill(process, signal.SIGKILL)
+
+    def restarts(self, job, shard):
+        found = re.search(r"Restarts=(\d+)",
+                          self.cluster.run("scontrol", "show", "job", f"{job}_{shard}"))
+        return int(found[1])
+
+    def test_faults_leave_no_trace_in_the_data_set(self):
+        words = [tools.SOURCE / "samples", "--recipe", self.recipe, "--quiet"]
+        whole = self.folder / "whole"
+        with tools.running_server() as server:
+            result = tools.run(tools.PROGRAMS / "duet", "batch", *words, "--out", whole,
+                               "--server", server.address, timeout=LONGEST_RUN)
+            self.assertEqual(result.returncode, 0, result.stderr)
+
+        out = self.folder / "set"
+        said = self.cluster.run(SLURM / "submit_batch.sh", str(SHARDS), out, "--cpus-per-task=1",
+                                "--", *words, "--max-in-flight", "2")
+        job, merge = re.fullmatch(r"shards (\d+), merge (\d+)", said).groups()
+
+        # Each fault strikes a shard that has begun and is not done.
+        def begun(shard):
+            wait_for(f"items of shard {shard}", lambda: self.settled(out, shard) > 3)
+        begun(0)
+        self.kill(job, 0, "duet")
+        begun(1)
+        self.kill(job, 1, "duet-server")
+        begun(2)
+        self.cluster.run("scontrol", "requeue", f"{job}_2")
+        begun(3)
+        node = self.cluster.node_of(f"{job}_3")
+        self.cluster.lose_node(node, pids_of_task(job, 3, "duet")[0])
+        wait_for("the node to be missed",
+                 lambda: "down" in self.cluster.run("sinfo", "-h", "-n", node, "-o", "%t"))
+        self.cluster.start_node(node)
+
+        ended = wait_for("the merge", lambda: re.search(
+            "JobState=(COMPLETED|FAILED|CANCELLED)",
+            self.cluster.run("scontrol", "show", "job", merge)))
+        self.assertEqual(ended[1], "COMPLETED")
+        for shard in range(4):
+            self.assertGreaterEqual(self.restarts(job, shard), 1, shard)
+        names = contents(whole)
+        self.assertGreater(len(names), 150)
+        self.assertEqual(contents(out), names)
+        _, different, unreadable = filecmp.cmpfiles(whole, out, names, shallow=False)
+        self.assertEqual((different, unreadable), ([], []))
+
+
+if __name__ == "__main__":
+    for needed in ("slurmctld", "slurmd", "sbatch", "munged"):
+        if not shutil.which(needed):
+            tools.skip(f"{needed} is not installed")
+    if os.geteuid() != 0:
+        tools.skip("needs root")
+    tools.main()
