@@ -58,6 +58,10 @@ class FilesTest(unittest.TestCase):
         self.assertEqual(sorted(path.name for path in self.folder.iterdir()),
                          ["pair.follower.bvh", "pair.leader.bvh"])
 
+    def test_two_people_as_glb_are_one_file(self):
+        duet.write_motion(self.folder / "pair.glb", self.hug, self.other)
+        self.assertEqual((self.folder / "pair.glb").read_bytes()[:4], b"glTF")
+
     def test_a_page_shows_motions_side_by_side(self):
         duet.write_page(self.folder / "page.html", {"hug": self.hug,
                                                     "with a friend": (self.hug, self.other)},

@@ -17,6 +17,9 @@ class MotionSynthesisStub(object):
     NOT_FOUND            unknown model, version or version label
     RESOURCE_EXHAUSTED   too many calls, or bytes of them; the queue is full, or too long for the
     deadline (all with RetryInfo); or the message is too large
+    UNAUTHENTICATED      the call says not who makes it, or not truly (CREDENTIALS_MISSING,
+    CREDENTIALS_INVALID), where the server asks for tokens
+    PERMISSION_DENIED    whoever makes it may not (CALLER_UNKNOWN, ROLE_MISSING)
     UNAVAILABLE          the server is loading or draining (RetryInfo)
     DEADLINE_EXCEEDED    the deadline passed, or is too near for the answer to be done by then; work
     that had not started never starts. Also a request that takes too long to
@@ -63,6 +66,9 @@ class MotionSynthesisServicer(object):
     NOT_FOUND            unknown model, version or version label
     RESOURCE_EXHAUSTED   too many calls, or bytes of them; the queue is full, or too long for the
     deadline (all with RetryInfo); or the message is too large
+    UNAUTHENTICATED      the call says not who makes it, or not truly (CREDENTIALS_MISSING,
+    CREDENTIALS_INVALID), where the server asks for tokens
+    PERMISSION_DENIED    whoever makes it may not (CALLER_UNKNOWN, ROLE_MISSING)
     UNAVAILABLE          the server is loading or draining (RetryInfo)
     DEADLINE_EXCEEDED    the deadline passed, or is too near for the answer to be done by then; work
     that had not started never starts. Also a request that takes too long to
@@ -133,6 +139,9 @@ class MotionSynthesis(object):
     NOT_FOUND            unknown model, version or version label
     RESOURCE_EXHAUSTED   too many calls, or bytes of them; the queue is full, or too long for the
     deadline (all with RetryInfo); or the message is too large
+    UNAUTHENTICATED      the call says not who makes it, or not truly (CREDENTIALS_MISSING,
+    CREDENTIALS_INVALID), where the server asks for tokens
+    PERMISSION_DENIED    whoever makes it may not (CALLER_UNKNOWN, ROLE_MISSING)
     UNAVAILABLE          the server is loading or draining (RetryInfo)
     DEADLINE_EXCEEDED    the deadline passed, or is too near for the answer to be done by then; work
     that had not started never starts. Also a request that takes too long to
