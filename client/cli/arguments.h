@@ -83,9 +83,11 @@ struct SynthesizeArguments {
   std::vector<std::filesystem::path> outputs;
   std::optional<OutputFormat> output_format;  // of standard output
   double bvh_metres_per_unit = formats::kCentimetre;
+  std::string follower_rig;  // empty, kLeadersRig or a BVH
   bool json = false;
   bool quiet = false;
 };
+inline constexpr char kLeadersRig[] = "leader";
 
 // The seed of one of the samples, 0 the first.
 inline uint64_t SeedOf(const SynthesizeArguments& arguments, int sample) {

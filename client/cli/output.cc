@@ -15,6 +15,9 @@
 namespace duet::client::cli {
 namespace {
 
+// A page holds the motion a second time, as a file to take away: two minutes at 30 Hz are 3 MB.
+constexpr int kMostFramesToHandOut = 3600;
+
 bool IsPage(const std::filesystem::path& path) {
   const std::string extension = absl::AsciiStrToLower(path.extension().string());
   return extension == ".html" || extension == ".htm";
@@ -45,6 +48,13 @@ motion::Provenance ProvenanceOf(const Synthesis& synthesis) {
   return provenance;
 }
 
+absl::StatusOr<std::string> FormatPair(formats::Format format, const Synthesis& synthesis) {
+  const motion::Provenance provenance = ProvenanceOf(synthesis);
+  const motion::ClipPair& pair = synthesis.result.pair;
+  return formats::FormatPeople(format, {pair.leader, pair.follower}, synthesis.skeleton,
+                               {&provenance, synthesis.bvh_metres_per_unit});
+}
+
 absl::StatusOr<std::string> RenderSynthesis(const Synthesis& synthesis) {
   const SynthesisResult& result = synthesis.result;
   viewer::PageContent content;
@@ -56,7 +66,27 @@ absl::StatusOr<std::string> RenderSynthesis(const Synthesis& synthesis) {
                       result.pair.leader.frame_count(), result.pair.leader.frame_rate_hz);
   if (synthesis.sampled) absl::StrAppend(&content.subtitle, " · seed ", result.seed);
   content.weights = KeyframesOf(synthesis.request);
+  if (content.pair.leader.frame_count() <= kMostFramesToHandOut) {
+    absl::StatusOr<std::string> glb = FormatPair(formats::Format::kGlb, synthesis);
+    if (!glb.ok()) return glb.status();
+    content.glb = *std::move(glb);
+  }
   return RenderPage(content);
+}
+
+// The follower on somebody else's rig, in place of Duet's own.
+absl::StatusOr<std::vector<std::filesystem::path>> WriteWithRig(const std::filesystem::path& output,
+                                                                const Synthesis& synthesis) {
+  const motion::ClipPair& pair = synthesis.result.pair;
+  const absl::StatusOr<std::string> follower =
+      formats::FormatOntoRig(pair.follower, *synthesis.follower_rig);
+  if (!follower.ok()) return follower.status();
+  absl::StatusOr<std::vector<std::filesystem::path>> written = formats::WritePair(
+      output, pair, synthesis.skeleton, {nullptr, synthesis.bvh_metres_per_unit});
+  if (!written.ok()) return written.status();
+  absl::Status status = base::WriteFile(written->back(), *follower);
+  if (!status.ok()) return status;
+  return written;
 }
 
 }  // namespace
@@ -84,6 +114,9 @@ absl::Status CheckOutput(const std::filesystem::path& output, const std::filesys
 
 absl::StatusOr<std::vector<std::filesystem::path>> WriteOutput(const std::filesystem::path& output,
                                                                const Synthesis& synthesis) {
+  if (synthesis.follower_rig && formats::FormatOf(output) == formats::Format::kBvh) {
+    return WriteWithRig(output, synthesis);
+  }
   if (!IsPage(output)) {
     const motion::Provenance provenance = ProvenanceOf(synthesis);
     return formats::WritePair(output, synthesis.result.pair, synthesis.skeleton,
@@ -98,10 +131,7 @@ absl::StatusOr<std::vector<std::filesystem::path>> WriteOutput(const std::filesy
 
 absl::StatusOr<std::string> FormatOutput(const OutputFormat& format, const Synthesis& synthesis) {
   if (!format.motion.has_value()) return RenderSynthesis(synthesis);
-  const motion::ClipPair& pair = synthesis.result.pair;
-  const motion::Provenance provenance = ProvenanceOf(synthesis);
-  return formats::FormatPeople(*format.motion, {pair.leader, pair.follower}, synthesis.skeleton,
-                               {&provenance, synthesis.bvh_metres_per_unit});
+  return FormatPair(*format.motion, synthesis);
 }
 
 absl::Status WriteToStream(const std::string& content, std::ostream& out) {

@@ -2,6 +2,7 @@
 #define DUET_CLIENT_CLI_OUTPUT_H_
 
 #include <filesystem>
+#include <optional>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "client/cli/arguments.h"
 #include "client/request.h"
 #include "client/result.h"
+#include "model/formats/follower_rig.h"
 #include "model/formats/motion_file.h"
 #include "model/motion/skeleton.h"
 
@@ -24,6 +26,7 @@ struct Synthesis {
   std::filesystem::path leader_file;
   bool sampled = false;  // the model samples: the follower is one of several
   double bvh_metres_per_unit = formats::kCentimetre;
+  std::optional<formats::FollowerRig> follower_rig;  // of .bvh
 };
 
 enum class PageAllowed { kNo, kYes };

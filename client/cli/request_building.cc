@@ -80,4 +80,20 @@ absl::StatusOr<SynthesisRequest> BuildRequest(const SynthesizeArguments& argumen
   return request;
 }
 
+absl::StatusOr<formats::FollowerRig> BuildFollowerRig(const SynthesizeArguments& arguments,
+                                                      const motion::Skeleton& skeleton) {
+  formats::FollowerRig rig;
+  if (arguments.follower_rig != kLeadersRig) {
+    rig.file = arguments.follower_rig;
+    rig.reading.skeleton = skeleton;
+    return rig;
+  }
+  absl::StatusOr<formats::ReadOptions> reading = ToReadOptions(arguments.input, skeleton);
+  if (!reading.ok()) return reading.status();
+  rig.file = arguments.leader;
+  rig.reading = *std::move(reading);
+  rig.reading.side = arguments.leader_side;
+  return rig;
+}
+
 }  // namespace duet::client::cli

@@ -8,6 +8,7 @@
 #include "absl/status/statusor.h"
 #include "client/cli/arguments.h"
 #include "client/request.h"
+#include "model/formats/follower_rig.h"
 #include "model/motion/skeleton.h"
 
 namespace duet::client::cli {
@@ -23,6 +24,10 @@ absl::StatusOr<SynthesisRequest> BuildRequest(const SynthesizeArguments& argumen
                                               const motion::Skeleton& skeleton,
                                               std::vector<std::string>* notes,
                                               std::istream* in = nullptr);
+
+// The rig that the follower is written onto. The leader's is read as the leader was.
+absl::StatusOr<formats::FollowerRig> BuildFollowerRig(const SynthesizeArguments& arguments,
+                                                      const motion::Skeleton& skeleton);
 
 }  // namespace duet::client::cli
 

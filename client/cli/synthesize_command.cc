@@ -1,6 +1,7 @@
 #include "client/cli/synthesize_command.h"
 
 #include <algorithm>
+#include <optional>
 #include <ostream>
 #include <string>
 #include <utility>
@@ -51,6 +52,7 @@ struct Job {
   SynthesisRequest request;
   motion::Skeleton skeleton;
   bool sampled = false;
+  std::optional<formats::FollowerRig> follower_rig;
   std::vector<std::string> notes;  // on how the leader was read
 };
 
@@ -86,6 +88,11 @@ absl::StatusOr<Job> PrepareJob(const SynthesizeArguments& arguments, const Clien
   job.request = *std::move(request);
   job.skeleton = *std::move(skeleton);
   job.sampled = details->model.samples;
+  if (!arguments.follower_rig.empty()) {
+    absl::StatusOr<formats::FollowerRig> rig = BuildFollowerRig(arguments, job.skeleton);
+    if (!rig.ok()) return rig.status();
+    job.follower_rig = *std::move(rig);
+  }
   return job;
 }
 
@@ -101,9 +108,9 @@ absl::Status RunSamples(const SynthesizeArguments& arguments, const Job& job, co
     request.seed = SeedOf(arguments, sample);
     absl::StatusOr<SynthesisResult> result = client.Synthesize(request);
     if (!result.ok()) return result.status();
-    const Synthesis synthesis{std::move(request), *std::move(result),
-                              job.skeleton,       arguments.leader,
-                              job.sampled,        arguments.bvh_metres_per_unit};
+    const Synthesis synthesis{std::move(request), *std::move(result), job.skeleton,
+                              arguments.leader,   job.sampled,        arguments.bvh_metres_per_unit,
+                              job.follower_rig};
     const absl::StatusOr<Paths> written =
         WriteAll(arguments, SampleOutputs(arguments, sample), synthesis, *environment.out);
     if (!written.ok()) return written.status();

@@ -1,5 +1,7 @@
 #include "client/cli/synthesize_flags.h"
 
+#include <algorithm>
+#include <filesystem>
 #include <limits>
 #include <map>
 #include <utility>
@@ -132,8 +134,33 @@ void AddOutputFlags(CLI::App* app, SynthesizeArguments* arguments) {
       ->group(kOutputGroup);
   AddOutputFormatFlag(app, &arguments->output_format);
   AddBvhUnitFlag(app, &arguments->bvh_metres_per_unit);
+  app->add_option("--follower-rig", arguments->follower_rig,
+                  "Rig of the follower in .bvh that is written: the leader's, or that of another "
+                  ".bvh (default: Duet's own)")
+      ->type_name("leader|FILE")
+      ->group(kOutputGroup);
   app->add_flag("--json", arguments->json, "Print the summary as JSON")->group(kOutputGroup);
   app->add_flag("--quiet", arguments->quiet, "Print errors alone")->group(kOutputGroup);
+}
+
+bool IsBvh(const std::filesystem::path& path) {
+  return formats::FormatOf(path) == formats::Format::kBvh;
+}
+
+void CheckFollowerRig(const SynthesizeArguments& arguments) {
+  if (arguments.follower_rig.empty()) return;
+  const bool leaders = arguments.follower_rig == kLeadersRig;
+  const std::filesystem::path rig =
+      leaders ? arguments.leader : std::filesystem::path(arguments.follower_rig);
+  const bool as_bvh =
+      !leaders || !arguments.input.format || *arguments.input.format == formats::Format::kBvh;
+  if (!IsBvh(rig) || !as_bvh) {
+    throw CLI::ValidationError("--follower-rig",
+                               absl::StrCat(rig.string(), ": wanted a .bvh, whose rig it is"));
+  }
+  if (std::none_of(arguments.outputs.begin(), arguments.outputs.end(), IsBvh)) {
+    throw CLI::ValidationError("--follower-rig", "counts for --out FILE.bvh, which is not there");
+  }
 }
 
 // What no single flag can tell.
@@ -142,6 +169,7 @@ void CheckTogether(const SynthesizeArguments& arguments) {
     throw CLI::RequiredError("--label or --keyframe");
   }
   CheckStandardOutput(arguments.outputs, arguments.output_format, arguments.json);
+  CheckFollowerRig(arguments);
   if (arguments.samples > 1 && WritesToStandardOutput(arguments.outputs)) {
     throw CLI::ValidationError("--samples", "of several answers each wants a file, not --out -");
   }

@@ -19,6 +19,8 @@ struct PageContent {
   std::string subtitle;
   // Class weights over time; one keyframe for weights that never change, none to show no weights.
   std::vector<WeightKeyframe> weights;
+  // The same as a binary glTF file, for the page to hand out; empty for none.
+  std::string glb;
 };
 
 // A self-contained HTML page that plays both characters in three dimensions: nothing is fetched,

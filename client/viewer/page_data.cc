@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "absl/strings/escaping.h"
 #include "client/viewer/page_parts.h"
 #include "nlohmann/json.hpp"
 
@@ -43,16 +44,17 @@ std::string PageDataJson(const PageContent& content) {
   for (const WeightKeyframe& keyframe : content.weights) {
     keyframes.push_back(WeightsJson(keyframe, classes));
   }
-  const nlohmann::json data = {{"title", content.title},
-                               {"subtitle", content.subtitle},
-                               {"joints", leader.joint_names},
-                               {"bones", bones},
-                               {"frameRate", leader.frame_rate_hz},
-                               {"frames", leader.frame_count()},
-                               {"classes", classes},
-                               {"keyframes", keyframes},
-                               {"leader", EncodePositions(leader)},
-                               {"follower", EncodePositions(content.pair.follower)}};
+  nlohmann::json data = {{"title", content.title},
+                         {"subtitle", content.subtitle},
+                         {"joints", leader.joint_names},
+                         {"bones", bones},
+                         {"frameRate", leader.frame_rate_hz},
+                         {"frames", leader.frame_count()},
+                         {"classes", classes},
+                         {"keyframes", keyframes},
+                         {"leader", EncodePositions(leader)},
+                         {"follower", EncodePositions(content.pair.follower)}};
+  if (!content.glb.empty()) data["glb"] = absl::Base64Escape(content.glb);
   return SafeJson(data);
 }
 

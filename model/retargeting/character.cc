@@ -54,6 +54,9 @@ class ClipMaker {
     for (motion::Vec3& position : clip.poses.all()) {
       position = ToWorld(coordinates, position * static_cast<float>(*scale));
     }
+    if (options_.fit != nullptr) {
+      *options_.fit = {*scale, coordinates.up_axis, *std::move(map)};
+    }
     return clip;
   }
 

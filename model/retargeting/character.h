@@ -26,6 +26,13 @@ struct Character {
   std::function<std::vector<motion::Vec3>(int frame)> pose;
 };
 
+// How a character was understood.
+struct CharacterFit {
+  double metres_per_unit = 1;
+  motion::UpAxis up_axis = motion::UpAxis::kYUp;
+  JointMap joints;  // on the character's tree
+};
+
 // What the reader of a file with a hierarchy is told beside it.
 struct CharacterOptions {
   motion::Skeleton skeleton = motion::SbuSkeleton();
@@ -38,6 +45,7 @@ struct CharacterOptions {
   std::optional<motion::UpAxis> up_axis;
   std::vector<std::string>* notes = nullptr;  // receives what was decided; may be null
   ReadingReport* report = nullptr;            // the same with all its details; may be null
+  CharacterFit* fit = nullptr;                // receives the same as values; may be null
 };
 
 // The axis along which the root stands above the feet, over the whole motion: y where none does

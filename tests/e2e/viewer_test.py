@@ -74,6 +74,42 @@ class ViewerTest(unittest.TestCase):
         self.assertEqual(self.open_good("#frame=1000&paused").state()["frame"], str(FRAMES - 1))
         self.assertEqual(self.open_good("#frame=x&paused").state()["frame"], "0")
 
+    def test_measures_when_asked(self):
+        page = self.open_good("#paused")
+        self.assertEqual(page.text("#measures"), "")
+        page.press("m")
+        page.wait_until("document.getElementById('measures').textContent.includes('above the floor')")
+        self.assertRegex(page.text("#measures"), r"(touch|nearest): .* to .*, \d\.\d\d m")
+        page.click("#measure")
+        self.assertTrue(page.evaluate("document.getElementById('measures').hidden"))
+
+    def test_hands_out_a_picture_and_the_motion(self):
+        page = self.open_good("#paused")
+        page.click("#save-picture")
+        page.wait_until("(document.documentElement.dataset.saved || '').includes('.png')")
+        self.assertGreater(int(page.state()["saved"].split()[-1]), 10_000)
+        page.click("#save-motion")
+        self.assertRegex(page.state()["saved"], r"\.glb 12$")
+
+    def test_records_a_film_of_one_run(self):
+        page = self.open_good("#frame=80&paused")
+        page.click("#save-film")
+        page.wait_until("(document.documentElement.dataset.saved || '').includes('.webm')")
+        self.assertEqual(page.state()["frame"], str(FRAMES - 1))
+
+    def test_the_floor_is_the_worlds_even_where_everybody_floats(self):
+        page = self.open_good("#paused")
+        heights = "(() => { const motion = new Motion(JSON.parse(document.getElementById('data')" \
+                  ".textContent)); const rise = (by) => { for (const positions of" \
+                  " Object.values(motion.people)) for (let i = 1; i < positions.length; i += 3)" \
+                  " positions[i] += by; return motion.floor(); };" \
+                  " const stands = motion.standingHeight('leader');" \
+                  " return [rise(0.3 - stands), rise(-2)]; })()"
+        floating, sunk = page.evaluate(heights)
+        self.assertEqual(floating, {"height": 0, "ofWorld": True})
+        self.assertFalse(sunk["ofWorld"])
+        self.assertAlmostEqual(sunk["height"], 0.3 - 2 - 0.043, delta=0.01)
+
     def test_draws_only_what_changes(self):
         page = self.open_good("#paused")
         drawn = page.state()["draws"]

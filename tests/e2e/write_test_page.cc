@@ -24,6 +24,7 @@ int main(int argc, char** argv) {
   content.bones = duet::motion::SbuSkeleton().bones;
   content.title = "two \"people\" & a <test>";
   content.subtitle = "90 frames";
+  content.glb = "glTF, in all";  // 12 bytes
   content.weights = {{0, {{"kick", 1}, {"hug", -1}}}, {60, {{"kick", -2}, {"hug", 0.5f}}}};
   const absl::StatusOr<std::string> page = duet::client::viewer::RenderPage(content);
   if (!page.ok()) {

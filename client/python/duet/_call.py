@@ -61,12 +61,15 @@ class Attempts:
     def wait_after(self, error: DuetError) -> float:
         """Seconds until the next attempt; raises the error where there is none."""
         options = self._settings.retry
-        if not is_retryable(error, self._priority) or self.made >= options.max_attempts:
+        is_last = options.max_attempts is not None and self.made >= options.max_attempts
+        if is_last or not is_retryable(error, self._priority):
             raise self._tell(error, "")
         environment = self._settings.environment
         wait = retry_wait(options, self.made, error, environment.uniform())
         if environment.now() + wait >= self.start + self._settings.timeout:
             raise self._tell(error, ", the deadline leaves no time for another")
+        if options.on_wait is not None:
+            options.on_wait(error, wait)
         return wait
 
     def elapsed(self) -> float:

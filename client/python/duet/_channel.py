@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from typing import Any, List, Optional, Tuple
 
 import grpc
@@ -12,8 +13,11 @@ from duet.options import TlsOptions
 from duet.retry import RetryOptions
 
 _SCHEMES = ("dns:", "ipv4:", "ipv6:", "unix:", "unix-abstract:", "xds:")
-_LOCAL = ("localhost", "127.", "[::1]", "ipv4:127.", "ipv6:[::1]", "unix:", "unix-abstract:",
-          "dns:///localhost", "dns:localhost")
+# What a token may be sent to in plain text: it leaves this machine by no network. A host name other
+# than localhost may be anybody's, and of several addresses each would have to be looked at.
+_THIS_MACHINE = re.compile(
+    r"(unix:|unix-abstract:).*|((dns:///|dns:|ipv4:)?(localhost|127\.[\d.]+)|(ipv6:)?\[::1\])(:\d+)?")
+_LONGEST_RECONNECT_SECONDS = 1.0
 
 # Calls take turns over all servers behind the name whose health service says that they serve, so
 # that a draining server gets no new work. The empty service name asks for the server as a whole.
@@ -28,20 +32,31 @@ def target(address: str) -> str:
     return address if address.startswith(_SCHEMES) else f"dns:///{address}"
 
 
-def channel_arguments(retry: RetryOptions, tls: Optional[TlsOptions]) -> List[Tuple[str, Any]]:
+def channel_arguments(retry: RetryOptions, tls: Optional[TlsOptions], token: str = "",
+                      authority: str = "") -> List[Tuple[str, Any]]:
     arguments: List[Tuple[str, Any]] = [
         ("grpc.lb_policy_name", "round_robin"),
         ("grpc.service_config", _SERVICE_CONFIG),
-        # A lost connection is tried again as soon as a call is. With gRPC's own first wait of a
-        # second, a call could use up its attempts while the server has long been back.
-        ("grpc.initial_reconnect_backoff_ms", max(int(retry.initial_backoff * 1000), 1)),
-        ("grpc.max_reconnect_backoff_ms", max(int(retry.max_backoff * 1000), 1)),
+        # A lost connection is tried again as soon as a call is, and often: gRPC's own waits grow to
+        # two minutes, while the server has long been back.
+        ("grpc.initial_reconnect_backoff_ms", _milliseconds(retry.initial_backoff)),
+        ("grpc.max_reconnect_backoff_ms", _milliseconds(max(
+            retry.initial_backoff, min(retry.max_backoff, _LONGEST_RECONNECT_SECONDS)))),
         # gRPC's own retries would come on top of ours.
         ("grpc.enable_retries", 0),
     ]
     if tls is not None and tls.server_name:
         arguments.append(("grpc.ssl_target_name_override", tls.server_name))
+    if token and tls is None:
+        # Plain text to this machine must not take the way of the environment's proxy.
+        arguments.append(("grpc.enable_http_proxy", 0))
+    if authority:
+        arguments.append(("grpc.default_authority", authority))
     return arguments
+
+
+def _milliseconds(seconds: float) -> int:
+    return max(int(seconds * 1000), 1)
 
 
 def credentials(tls: TlsOptions) -> grpc.ChannelCredentials:
@@ -63,7 +78,10 @@ def check_settings(address: str, timeout: float, retry: RetryOptions, tls: Optio
 def _authorization(address: str, tls: Optional[TlsOptions], token: str) -> Metadata:
     if not token:
         return ()
-    if tls is None and not address.startswith(_LOCAL):
-        raise ValueError("token: wanted together with tls; on a plain connection whoever is on the "
-                         "way reads it")
+    if not all("!" <= character <= "~" for character in token):
+        # Not repeated: messages go to logs.
+        raise ValueError("token: has a blank or a character that is not printable ASCII, wanted "
+                         "none")
+    if tls is None and not _THIS_MACHINE.fullmatch(address):
+        raise ValueError(f"token: would travel in plain text to {address}, wanted tls")
     return (("authorization", f"Bearer {token}"),)

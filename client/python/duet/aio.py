@@ -35,9 +35,10 @@ class Client:
 
     def __init__(self, address: str = "localhost:50051", *, timeout: float = 120.0,
                  tls: Optional[TlsOptions] = None, token: str = "",
-                 retry: RetryOptions = RetryOptions()) -> None:
+                 authority: str = "", retry: RetryOptions = RetryOptions()) -> None:
         self._settings = _channel.check_settings(address, timeout, retry, tls, token)
-        target, arguments = _channel.target(address), _channel.channel_arguments(retry, tls)
+        target = _channel.target(address)
+        arguments = _channel.channel_arguments(retry, tls, token, authority)
         if tls is None:
             self._channel = grpc.aio.insecure_channel(target, arguments)
         else:

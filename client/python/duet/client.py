@@ -36,7 +36,9 @@ class Client:
             several servers is balanced over all of them.
         timeout: seconds for a whole call, all its attempts included.
         tls: encrypts; None: plain text.
-        token: a bearer token, for servers that ask for one. Wants ``tls``, but on this machine.
+        token: says who calls, as ``authorization: Bearer TOKEN``. Without ``tls`` it goes to this
+            machine alone.
+        authority: what calls name as the server they are for, where it is not the address.
         retry: how often and how patiently a call is attempted.
 
     Raises:
@@ -45,18 +47,21 @@ class Client:
 
     def __init__(self, address: str = "localhost:50051", *, timeout: float = 120.0,
                  tls: Optional[TlsOptions] = None, token: str = "",
-                 retry: RetryOptions = RetryOptions()) -> None:
+                 authority: str = "", retry: RetryOptions = RetryOptions()) -> None:
         self._settings = _channel.check_settings(address, timeout, retry, tls, token)
-        target, arguments = _channel.target(address), _channel.channel_arguments(retry, tls)
+        target = _channel.target(address)
+        arguments = _channel.channel_arguments(retry, tls, token, authority)
         if tls is None:
             self._channel = grpc.insecure_channel(target, arguments)
         else:
             self._channel = grpc.secure_channel(target, _channel.credentials(tls), arguments)
+        self._closed = threading.Event()
         self._stub = synthesis_pb2_grpc.MotionSynthesisStub(  # type: ignore[no-untyped-call]
             self._channel)
 
     def close(self) -> None:
         """Ends the connection, and every call that is still being answered."""
+        self._closed.set()
         self._channel.close()
 
     def __enter__(self) -> Client:
@@ -82,7 +87,8 @@ class Client:
 
     def stream_request(self, request: SynthesisRequest) -> SynthesisStream:
         """The follower's frames as they arrive."""
-        return SynthesisStream(self._stub, self._channel, SynthesisCall(request, self._settings))
+        return SynthesisStream(self._stub, self._channel, self._closed,
+                               SynthesisCall(request, self._settings))
 
     synthesize = spelled_out(synthesize_request, SynthesisRequest, "synthesize")
     stream = spelled_out(stream_request, SynthesisRequest, "stream")
@@ -101,11 +107,13 @@ class Client:
     def _unary(self, method: Any, request: Any) -> Any:
         attempts = Attempts(self._settings)
         while True:
+            _check_open(self._closed)
             try:
                 return method(request, timeout=attempts.begin(), metadata=attempts.metadata)
             except grpc.RpcError as error:
+                _check_open(self._closed)
                 wait = attempts.wait_after(from_rpc_error(error))
-            _wait(self._channel, wait, threading.Event())
+            _wait(self._channel, wait, self._closed)
 
 
 class SynthesisStream(Iterator[FollowerChunk]):
@@ -121,8 +129,8 @@ class SynthesisStream(Iterator[FollowerChunk]):
     """
 
     def __init__(self, stub: synthesis_pb2_grpc.MotionSynthesisStub, channel: grpc.Channel,
-                 call: SynthesisCall) -> None:
-        self._stub, self._channel, self._call = stub, channel, call
+                 closed: threading.Event, call: SynthesisCall) -> None:
+        self._stub, self._channel, self._closed, self._call = stub, channel, closed, call
         self._cancelled = threading.Event()
         self._cancel_stream: Callable[[], Any] = lambda: None
         self._result: Optional[SynthesisResult] = None
@@ -158,9 +166,12 @@ class SynthesisStream(Iterator[FollowerChunk]):
         wait: Optional[float] = 0.0
         while wait is not None:
             self._sleep(wait)
+            _check_open(self._closed)
             error = yield from self._attempt()
             if error is not None and self._cancelled.is_set():
                 raise CancelledError(grpc.StatusCode.CANCELLED, "the call was cancelled")
+            if error is not None:
+                _check_open(self._closed)
             wait = self._call.wait_after(error)
         self._result = self._call.result()
 
@@ -188,12 +199,18 @@ class SynthesisStream(Iterator[FollowerChunk]):
             _wait(self._channel, seconds, self._cancelled)
 
 
+def _check_open(closed: threading.Event) -> None:
+    if closed.is_set():
+        raise CancelledError(grpc.StatusCode.CANCELLED, "the client was closed")
+
+
 def _wait(channel: grpc.Channel, seconds: float, ended: threading.Event) -> None:
     """Waits, and looks after a lost connection meanwhile: between calls nobody else does. A question
     about the server's health waits for the connection; what it is answered is of no interest."""
-    probe = channel.unary_unary("/grpc.health.v1.Health/Check").future(
-        b"", timeout=seconds, wait_for_ready=True)
     try:
-        ended.wait(seconds)
-    finally:
-        probe.cancel()
+        probe = channel.unary_unary("/grpc.health.v1.Health/Check").future(
+            b"", timeout=seconds, wait_for_ready=True)
+    except ValueError:  # the channel was closed meanwhile, which the caller looks at
+        return
+    ended.wait(seconds)
+    probe.cancel()

@@ -154,5 +154,5 @@ def _run(*arguments: str) -> str:
     done = subprocess.run([_program(), *arguments], capture_output=True, check=False,
                           env={**os.environ, "DUET_CONFIG": "", "NO_COLOR": "1"})
     if done.returncode != 0:
-        raise MotionFileError(done.stderr.decode(errors="replace").strip())
+        raise MotionFileError(done.stderr.decode(errors="replace").strip().removeprefix("duet: "))
     return done.stdout.decode()

@@ -14,6 +14,10 @@ class Figure {
     this.balls = motion.joints.map((name, joint) => this.addBall(joint));
     this.addTrunk();
     this.addHead();
+    for (const side of ['left', 'right']) {
+      this.addHand(side);
+      this.addFoot(side);
+    }
     // A character moves out of any box computed once.
     this.group.traverse((object) => { object.frustumCulled = false; });
   }
@@ -126,6 +130,41 @@ class Figure {
       place.size = [0.074, 0.042, 0.074];
       return place;
     });
+  }
+
+  // Goes on from the forearm.
+  addHand(side) {
+    const [elbow, hand] = [`${side}_elbow`, `${side}_hand`];
+    if (!this.has(elbow, hand)) return;
+    this.addEllipsoid(this.skin, () => {
+      const up = this.joint(hand).clone().sub(this.joint(elbow)).normalize();
+      return {centre: this.joint(hand).clone().addScaledVector(up, 0.06), right: Figure.across(up), up,
+              size: [0.042, 0.085, 0.022]};
+    });
+  }
+
+  // Ahead of the ankle: at a right angle to the shin in the air, level where it stands.
+  addFoot(side) {
+    const [knee, foot] = [`${side}_knee`, `${side}_foot`];
+    if (!this.has(knee, foot, 'left_hip', 'right_hip')) return;
+    const floor = this.motion.standingHeight(this.person);
+    this.addEllipsoid(this.skin, () => {
+      const ankle = this.joint(foot);
+      const shin = this.joint(knee).clone().sub(ankle).normalize();
+      const raised = THREE.Math.smoothstep(ankle.y - floor, 0.03, 0.18);
+      const upright = THREE.Math.smoothstep(shin.y, 0.1, 0.6);
+      const up = new THREE.Vector3(0, 1, 0).lerp(shin, 1 - (1 - raised) * upright).normalize();
+      const right = this.joint('right_hip').clone().sub(this.joint('left_hip'));
+      const ahead = up.clone().cross(right).normalize();
+      return {centre: ankle.clone().addScaledVector(ahead, 0.07).addScaledVector(up, -0.024),
+              right: ahead.clone().cross(up), up, size: [0.046, 0.032, 0.13]};
+    });
+  }
+
+  // Any direction across another.
+  static across(along) {
+    const axis = Math.abs(along.y) < 0.8 ? new THREE.Vector3(0, 1, 0) : new THREE.Vector3(1, 0, 0);
+    return axis.cross(along).normalize();
   }
 
   // Takes the pose of a fractional frame.

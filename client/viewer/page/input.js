@@ -1,6 +1,7 @@
 // Mouse, touch and keys of everything but the camera, which orbits by itself.
 // `showPerson(name, visible)` shows or hides the leader or the follower.
-function connectInput({player, showPerson, chooseView, touch}) {
+// `more`: actions by the id of their button, with the key that does the same.
+function connectInput({player, showPerson, chooseView, touch, more = []}) {
   const element = (id) => document.getElementById(id);
   const onClick = (target, action) => target.addEventListener('click', (event) => {
     action();
@@ -24,6 +25,7 @@ function connectInput({player, showPerson, chooseView, touch}) {
       button.setAttribute('aria-pressed', visible);
     });
   }
+  for (const {id, action} of more) onClick(element(id), action);
   element('scrub').addEventListener('input', () => {
     player.playing = false;
     player.seek(Number(element('scrub').value));
@@ -42,6 +44,7 @@ function connectInput({player, showPerson, chooseView, touch}) {
     2: () => chooseView('side'),
     3: () => chooseView('top'),
   };
+  for (const {key, action} of more) if (key) keys[key] = action;
   window.addEventListener('keydown', (event) => {
     const action = keys[event.key];
     if (!action || event.ctrlKey || event.metaKey || event.altKey) return;

@@ -43,11 +43,29 @@ function start() {
   const showPerson = (name, visible) => {
     people[name].figure.group.visible = people[name].path.visible = visible;
   };
-  connectInput({player, showPerson, chooseView, touch});
+  const element = (id) => document.getElementById(id);
+  const measures = new Measures(stage, motion, element('measures'));
+  const film = new Film(stage.canvas, player, data.title);
+  element('save-film').hidden = !film.possible;
+  element('save-motion').hidden = !data.glb;
+  const draw = () => {
+    for (const {figure} of Object.values(people)) figure.update(player.frame);
+    measures.update(player.frame);
+    panel.update();
+    root.dataset.triangles = stage.draw();
+  };
+  const measure = () => element('measure').setAttribute('aria-pressed', measures.toggle());
+  connectInput({player, showPerson, chooseView, touch, more: [
+    {id: 'measure', key: 'm', action: measure},
+    {id: 'save-picture', key: 'p', action: () => savePicture(stage.canvas, draw, data.title)},
+    {id: 'save-film', key: film.possible ? 'r' : '', action: () => film.start()},
+    {id: 'save-motion', action: () => saveMotion(data.glb, data.title)},
+  ]});
 
   const opening = openingState();
   if ('frame' in opening) player.seek(Number(opening.frame) || 0);
   if ('paused' in opening) player.playing = false;
+  if ('measure' in opening) measure();
   if (['front', 'side', 'top'].includes(opening.view)) view = opening.view;
   resize();
 
@@ -60,12 +78,11 @@ function start() {
       player.advance(seconds);
       touch();
     }
+    film.follow();
     stage.controls.update();
     if (stale) {
       stale = false;
-      for (const {figure} of Object.values(people)) figure.update(player.frame);
-      panel.update();
-      root.dataset.triangles = stage.draw();
+      draw();
       root.dataset.draws = ++draws;
       root.dataset.frame = Math.round(player.frame);
       if (root.dataset.state === 'loading') root.dataset.state = 'ready';

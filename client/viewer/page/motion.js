@@ -78,17 +78,23 @@ class Motion {
     return box;
   }
 
-  // Height of the floor under both characters: the lowest joint of nearly every frame. Captures
-  // jitter, and one bad frame should not leave everybody floating.
+  // The floor is the world's, y = 0, so that somebody who floats is seen to float. Captures without a
+  // floor of their own have it far away: there it is under the leader's feet, and `ofWorld` is false.
   floor() {
+    const stands = this.standingHeight('leader');
+    const ofWorld = Math.abs(stands) < 0.6;
+    return {height: ofWorld ? 0 : stands - 0.043, ofWorld};
+  }
+
+  // The lowest joint of nearly every frame. Captures jitter, and one bad frame says nothing.
+  standingHeight(person) {
+    const positions = this.people[person];
+    const stride = this.joints.length * 3;
     const lowest = [];
-    for (const positions of Object.values(this.people)) {
-      const stride = this.joints.length * 3;
-      for (let start = 0; start < positions.length; start += stride) {
-        let low = Infinity;
-        for (let i = start + 1; i < start + stride; i += 3) low = Math.min(low, positions[i]);
-        lowest.push(low);
-      }
+    for (let start = 0; start < positions.length; start += stride) {
+      let low = Infinity;
+      for (let i = start + 1; i < start + stride; i += 3) low = Math.min(low, positions[i]);
+      lowest.push(low);
     }
     lowest.sort((a, b) => a - b);
     return lowest[Math.floor(lowest.length * 0.02)];

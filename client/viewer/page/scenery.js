@@ -68,7 +68,7 @@ class Scenery {
   constructor(motion, renderer, shadowPixels) {
     this.motion = motion;
     this.renderer = renderer;
-    this.floor = motion.floor() - 0.043;  // the ball of the foot rests on it
+    this.floor = motion.floor().height;
     this.box = motion.bounds();
     this.scene = new THREE.Scene();
     this.scene.background = new THREE.Color(BACKGROUND);

@@ -216,6 +216,17 @@ TEST_F(ArgumentsTest, WhatMakesNoSenseIsNamed) {
   ExpectRefused({"--label", "kick=1", "--tls-cert", "a.pem"}, "--tls-key");
 }
 
+TEST_F(ArgumentsTest, ARigIsThatOfABvhAndForABvh) {
+  const std::vector<std::string> bvh = {"--label", "kick=1", "--out", Out("pair.bvh")};
+  const auto with = [&bvh](std::vector<std::string> more) {
+    more.insert(more.end(), bvh.begin(), bvh.end());
+    return more;
+  };
+  ExpectRefused(with({"--follower-rig", "rig.glb"}), "--follower-rig: rig.glb: wanted a .bvh");
+  ExpectRefused({"--label", "kick=1", "--out", Out("pair.glb"), "--follower-rig", "rig.bvh"},
+                "--follower-rig: counts for --out FILE.bvh");
+}
+
 TEST_F(ArgumentsTest, OutputsThatCannotBeWrittenAreRefusedBeforeAnyWork) {
   ExpectRefused({"--label", "kick=1", "--out", Out("pair.fbx")},
                 "\".fbx\", wanted .html, .glb, .gltf, .bvh, .csv, .npy or .json");

@@ -189,6 +189,29 @@ TEST_F(ProgramTest, TheWrittenFollowerIsTheSynthesisedOne) {
   EXPECT_NEAR(follower->at(3, 0).z, leader_.at(3, 0).z - 2, 1e-5);
 }
 
+// The hierarchy of a BVH, down to where the motion begins.
+std::string HierarchyOf(const std::filesystem::path& file) {
+  const std::string text = ReadTestFile(file);
+  return text.substr(0, text.find("MOTION"));
+}
+
+TEST_F(ProgramTest, WritesTheFollowerOnTheLeadersRig) {
+  motion::Clip slower = leader_;
+  ASSERT_THAT(formats::WritePair(folder_ / "rig.bvh", {slower, slower}, motion::SbuSkeleton(),
+                                 {nullptr, 1}),
+              IsOk());
+  ASSERT_EQ(Run({"synthesize", "--leader", Path("rig.leader.bvh"), "--label", "kick=1",
+                 "--follower-rig", "leader", "--out", Path("pair.bvh"), "--out", Path("pair.glb")}),
+            0)
+      << err_.str();
+  EXPECT_EQ(HierarchyOf(folder_ / "pair.follower.bvh"), HierarchyOf(folder_ / "rig.leader.bvh"));
+  EXPECT_NE(HierarchyOf(folder_ / "pair.leader.bvh"), HierarchyOf(folder_ / "rig.leader.bvh"));
+  EXPECT_TRUE(Exists("pair.glb"));
+  // Another's rig, for a leader without one.
+  ASSERT_EQ(Synthesize("other.bvh", {"--follower-rig", Path("rig.leader.bvh")}), 0) << err_.str();
+  EXPECT_EQ(HierarchyOf(folder_ / "other.follower.bvh"), HierarchyOf(folder_ / "rig.leader.bvh"));
+}
+
 TEST_F(ProgramTest, SendsWhatTheFlagsSay) {
   SynthesisRequest sent;
   EXPECT_CALL(*connection_, GetModel(Field(&ModelChoice::name, "sbu")));

@@ -158,12 +158,29 @@ class Calls:
         _, script = self.synthesize(support.good_reply(self.leader), token="secret")
         self.assertEqual(script.metadata[0]["authorization"], "Bearer secret")
 
+    def test_the_authority_is_what_calls_are_for(self):
+        asked = []
+        # gRPC for Python tells it nowhere else.
+        script = Script([lambda context: asked.append(context._rpc_event.call_details.host),
+                         *support.good_reply(self.leader)])
+        self.calls(script, lambda client, get, _: get(client.synthesize(self.leader, {"hug": 1})),
+                   authority="duet.test")
+        self.assertEqual(asked, [b"duet.test"])
+
     def test_options_that_make_no_sense_are_refused(self):
         for options, message in (({"address": ""}, "address: empty"),
                                  ({"timeout": 0}, "timeout: 0, wanted more than 0"),
-                                 ({"address": "far:1", "token": "x"}, "token: wanted together")):
+                                 ({"address": "far:1", "token": "x"}, "plain text to far:1, wanted tls"),
+                                 ({"address": "127.evil.test:1", "token": "x"}, "plain text to 127"),
+                                 ({"address": "localhost.test:1", "token": "x"}, "plain text to"),
+                                 ({"address": "ipv4:127.0.0.1:1,8.8.8.8:1", "token": "x"}, "plain"),
+                                 ({"token": "a b"}, "^token: has a blank"),
+                                 ({"token": "a\n"}, "^token: has a blank")):
             with self.subTest(options=options), self.assertRaisesRegex(ValueError, message):
                 duet.Client(**options)
+        for address in ("localhost:1", "127.0.0.1:1", "[::1]:1", "dns:///localhost:1", "unix:/x",
+                        "ipv4:127.0.0.1:1"):
+            duet.Client(address, token="x").close()
 
     def test_many_requests_have_their_outcomes_in_order(self):
         together = support.Together(4)
@@ -216,6 +233,22 @@ class WaitingTest(Calls, Waiting, unittest.TestCase):
             go_on.set()
         self.calls(script, calls)
         self.assertEqual(len(script.requests), 1)
+
+
+    def test_closing_the_client_ends_its_calls(self):
+        go_on = threading.Event()
+        script = Script(support.held_reply(self.leader, threading.Event(), go_on))
+
+        def calls(client, *_):
+            stream = client.stream(self.leader, {"hug": 1})
+            next(stream)
+            client.close()
+            with self.assertRaisesRegex(duet.CancelledError, "the client was closed"):
+                next(stream)
+            with self.assertRaisesRegex(duet.CancelledError, "the client was closed"):
+                client.list_models()
+            go_on.set()
+        self.calls(script, calls)
 
 
 class AwaitingTest(Calls, Awaiting, unittest.TestCase):

@@ -67,7 +67,7 @@ class FilesTest(unittest.TestCase):
             self.assertIn(words, page)
 
     def test_errors_are_the_programs_own_words(self):
-        with self.assertRaisesRegex(duet.MotionFileError, "absent.bvh"):
+        with self.assertRaisesRegex(duet.MotionFileError, f"^{self.folder}/absent.bvh"):
             duet.read_motion(self.folder / "absent.bvh")
         duet.write_motion(self.folder / "one.json", self.hug)
         with self.assertRaisesRegex(duet.MotionFileError, "one person, wanted two"):

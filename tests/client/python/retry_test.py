@@ -1,5 +1,6 @@
 """When a call is made again: the rule of the C++ client (tests/client/retry_test.cc)."""
 
+import dataclasses
 import unittest
 
 import support
@@ -20,8 +21,13 @@ class RetryTest(unittest.TestCase):
         self.assertFalse(is_retryable(make_error(FULL, ""), "bulk"))
         self.assertFalse(is_retryable(make_error(grpc.StatusCode.INTERNAL, ""), "bulk"))
 
+    def test_what_a_server_dropped_as_it_shut_down_is_tried_again(self):
+        cancelled = grpc.StatusCode.CANCELLED
+        self.assertTrue(is_retryable(make_error(cancelled, ""), "interactive"))
+        self.assertFalse(is_retryable(make_error(cancelled, "", reason="CALL_ENDED"), "bulk"))
+
     def test_waits_double_up_to_the_longest(self):
-        error, options = make_error(UNAVAILABLE, ""), duet.RetryOptions()
+        error, options = make_error(UNAVAILABLE, ""), duet.RetryOptions(max_backoff=1)
         waits = [retry_wait(options, attempt, error, 1.0) for attempt in range(1, 7)]
         for wait, wanted in zip(waits, (0.1, 0.2, 0.4, 0.8, 1.0, 1.0)):
             self.assertAlmostEqual(wait, wanted)
@@ -46,7 +52,11 @@ class AttemptsTest(unittest.TestCase):
     def setUp(self):
         self.now = 100.0
         environment = Environment(now=lambda: self.now, uniform=lambda: 1.0)
-        self.attempts = Attempts(CallSettings(10.0, duet.RetryOptions(), environment=environment))
+        self.waits = []
+        self.retry = duet.RetryOptions(
+            max_attempts=4, on_wait=lambda error, wait: self.waits.append((error.message, wait)))
+        self.settings = CallSettings(10.0, self.retry, environment=environment)
+        self.attempts = Attempts(self.settings)
 
     def test_each_attempt_has_what_is_left_of_the_time(self):
         self.assertAlmostEqual(self.attempts.begin(), 10)
@@ -61,6 +71,17 @@ class AttemptsTest(unittest.TestCase):
         self.attempts.begin()
         with self.assertRaisesRegex(duet.UnavailableError, r"away \(after 4 attempts\)"):
             self.attempts.wait_after(make_error(UNAVAILABLE, "away"))
+        self.assertEqual(self.waits, [("away", 0.1), ("away", 0.2), ("away", 0.4)])
+
+    def test_the_deadline_alone_ends_attempts_without_a_limit(self):
+        endless = dataclasses.replace(self.settings, retry=duet.RetryOptions())
+        attempts = Attempts(endless)
+        with self.assertRaisesRegex(duet.UnavailableError, "the deadline leaves no time"):
+            while True:
+                attempts.begin()
+                self.now += attempts.wait_after(make_error(UNAVAILABLE, "away"))
+        # 0.1 + 0.2 + ... + 3.2 s, and 5 s more would be too long.
+        self.assertEqual(attempts.made, 7)
 
     def test_a_first_refusal_is_told_as_it_came(self):
         self.attempts.begin()

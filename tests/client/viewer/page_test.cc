@@ -75,6 +75,15 @@ TEST(PageDataTest, HoldsTheMotion) {
   EXPECT_EQ(LittleEndian(bytes, 11), 0.25f);
 }
 
+TEST(PageDataTest, HoldsAFileToHandOutWhereThereIsOne) {
+  PageContent content = SmallContent();
+  EXPECT_FALSE(Data(content).contains("glb"));
+  content.glb = std::string("glTF\0\x01", 6);
+  std::string bytes;
+  ASSERT_TRUE(absl::Base64Unescape(Data(content)["glb"].get<std::string>(), &bytes));
+  EXPECT_EQ(bytes, content.glb);
+}
+
 TEST(PageDataTest, EveryKeyframeWeighsEveryClass) {
   const nlohmann::json data = Data(SmallContent());
   EXPECT_EQ(data["classes"], nlohmann::json({"kick", "hug", "push"}));

@@ -15,10 +15,13 @@ class MotionSynthesisStub(object):
     INVALID_ARGUMENT     a field is malformed; BadRequest names every such field
     FAILED_PRECONDITION  the request does not fit the model (skeleton, follower start)
     NOT_FOUND            unknown model, version or version label
-    RESOURCE_EXHAUSTED   the queue is full (RetryInfo), or the message is too large
+    RESOURCE_EXHAUSTED   too many calls, or bytes of them; the queue is full, or too long for the
+    deadline (all with RetryInfo); or the message is too large
     UNAVAILABLE          the server is loading or draining (RetryInfo)
     DEADLINE_EXCEEDED    the deadline passed, or is too near for the answer to be done by then; work
-    that had not started never starts
+    that had not started never starts. Also a request that takes too long to
+    arrive, an answer that nobody reads, and a call longer than the server
+    answers any (ErrorInfo tells which)
     INTERNAL             the model failed; the text carries no internal detail
 
     A live bidirectional call (leader frames in as they are captured) will join this service as its
@@ -58,10 +61,13 @@ class MotionSynthesisServicer(object):
     INVALID_ARGUMENT     a field is malformed; BadRequest names every such field
     FAILED_PRECONDITION  the request does not fit the model (skeleton, follower start)
     NOT_FOUND            unknown model, version or version label
-    RESOURCE_EXHAUSTED   the queue is full (RetryInfo), or the message is too large
+    RESOURCE_EXHAUSTED   too many calls, or bytes of them; the queue is full, or too long for the
+    deadline (all with RetryInfo); or the message is too large
     UNAVAILABLE          the server is loading or draining (RetryInfo)
     DEADLINE_EXCEEDED    the deadline passed, or is too near for the answer to be done by then; work
-    that had not started never starts
+    that had not started never starts. Also a request that takes too long to
+    arrive, an answer that nobody reads, and a call longer than the server
+    answers any (ErrorInfo tells which)
     INTERNAL             the model failed; the text carries no internal detail
 
     A live bidirectional call (leader frames in as they are captured) will join this service as its
@@ -125,10 +131,13 @@ class MotionSynthesis(object):
     INVALID_ARGUMENT     a field is malformed; BadRequest names every such field
     FAILED_PRECONDITION  the request does not fit the model (skeleton, follower start)
     NOT_FOUND            unknown model, version or version label
-    RESOURCE_EXHAUSTED   the queue is full (RetryInfo), or the message is too large
+    RESOURCE_EXHAUSTED   too many calls, or bytes of them; the queue is full, or too long for the
+    deadline (all with RetryInfo); or the message is too large
     UNAVAILABLE          the server is loading or draining (RetryInfo)
     DEADLINE_EXCEEDED    the deadline passed, or is too near for the answer to be done by then; work
-    that had not started never starts
+    that had not started never starts. Also a request that takes too long to
+    arrive, an answer that nobody reads, and a call longer than the server
+    answers any (ErrorInfo tells which)
     INTERNAL             the model failed; the text carries no internal detail
 
     A live bidirectional call (leader frames in as they are captured) will join this service as its

@@ -1,0 +1,25 @@
+"""Duet in Blender: an answer to the armature that leads, as a second armature beside it."""
+
+bl_info = {
+    "name": "Duet",
+    "author": "Duet",
+    "version": (1, 0, 0),
+    "blender": (3, 4, 0),
+    "location": "3D View > Sidebar > Duet",
+    "description": "Synthesises a partner who reacts to an animated armature",
+    "category": "Animation",
+}
+
+from . import operators, panel, settings  # noqa: E402  (Blender wants bl_info first)
+
+_MODULES = (settings, operators, panel)
+
+
+def register():
+    for module in _MODULES:
+        module.register()
+
+
+def unregister():
+    for module in reversed(_MODULES):
+        module.unregister()

@@ -1,0 +1,138 @@
+"""What the panel's buttons do. Work goes on in small steps between Blender's own, so that it never
+stands still; without a window (blender --background) the steps follow one another."""
+
+import os
+import tempfile
+import time
+
+import bpy
+
+from . import leader, partner, program, settings
+
+STEP_SECONDS = 0.02  # of Blender's time at each tick
+TICK_SECONDS = 0.05
+
+
+class _Working(bpy.types.Operator):
+    """An operator whose work is the generator `work`; each yield lets Blender go on."""
+
+    bl_options = {"REGISTER"}
+    _timer = None
+    _steps = None
+
+    def work(self, context):
+        raise NotImplementedError
+
+    def invoke(self, context, _event):
+        if bpy.app.background:
+            return self.execute(context)
+        self._steps = self.work(context)
+        self._timer = context.window_manager.event_timer_add(TICK_SECONDS, window=context.window)
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def execute(self, context):
+        try:
+            for _ in self.work(context):
+                time.sleep(0)
+        except program.DuetError as error:
+            return self._fail(context, error)
+        return {"FINISHED"}
+
+    def modal(self, context, event):
+        if event.type == "ESC":
+            self._steps.close()
+            self._end(context, "Stopped")
+            return {"CANCELLED"}
+        if event.type != "TIMER":
+            return {"PASS_THROUGH"}
+        until = time.monotonic() + STEP_SECONDS
+        try:
+            while time.monotonic() < until:
+                next(self._steps)
+        except StopIteration:
+            self._end(context, context.scene.duet.state)
+            return {"FINISHED"}
+        except program.DuetError as error:
+            self._end(context, "")
+            return self._fail(context, error)
+        self._redraw(context)
+        return {"PASS_THROUGH"}
+
+    def _end(self, context, state):
+        context.window_manager.event_timer_remove(self._timer)
+        context.scene.duet.state = state
+        self._redraw(context)
+
+    def _fail(self, context, error):
+        context.scene.duet.state = ""
+        self.report({"ERROR"}, str(error))
+        return {"CANCELLED"}
+
+    @staticmethod
+    def _redraw(context):
+        for area in context.screen.areas if context.screen else ():
+            area.tag_redraw()
+
+
+class DUET_OT_ask_for_classes(_Working):
+    """Makes the sliders those of the server's model"""
+
+    bl_idname = "duet.ask_for_classes"
+    bl_label = "Ask for classes"
+
+    def work(self, context):
+        duet = context.scene.duet
+        if not duet.labels:
+            settings.set_classes(duet, settings.CLASSES)
+            return
+        duet.state = "Asking the server"
+        settings.set_classes(duet, (yield from program.classes(duet)))
+        duet.state = ""
+
+
+class DUET_OT_react(_Working):
+    """Synthesises a partner who reacts to the leader; Esc stops"""
+
+    bl_idname = "duet.react"
+    bl_label = "React"
+
+    @classmethod
+    def poll(cls, context):
+        return context.scene.duet.leader is not None and context.mode == "OBJECT"
+
+    def work(self, context):
+        scene, duet = context.scene, context.scene.duet
+        program.find(duet.program)
+        with tempfile.TemporaryDirectory() as folder:
+            duet.state = "Reading the leader"
+            recording = leader.Recording(scene, duet.leader)
+            yield from recording.take()
+            motion = os.path.join(folder, "leader.json")
+            pair = os.path.join(folder, "pair.json")
+            follower = os.path.join(folder, "follower.glb")
+            recording.write(motion)
+            duet.state = "Waiting for the server"
+            yield from program.run(
+                duet, "synthesize", "--server", duet.server, "--leader", motion,
+                *recording.label_flags(), *recording.place_flags(), "--seed", duet.seed,
+                "--variety", f"{duet.variety:.4g}", "--out", pair, "--quiet")
+            yield from program.run(duet, "convert", pair, "--side", "right", "--out", follower,
+                                   "--quiet")
+            partner.add(scene, follower)
+        duet.state = f"{partner.NAME}: seed {duet.seed}"
+        if not bpy.app.background:
+            bpy.ops.ed.undo_push(message="React")
+
+
+_CLASSES = (DUET_OT_ask_for_classes, DUET_OT_react)
+
+
+def register():
+    for operator in _CLASSES:
+        bpy.utils.register_class(operator)
+
+
+def unregister():
+    for operator in reversed(_CLASSES):
+        bpy.utils.unregister_class(operator)

@@ -1,0 +1,66 @@
+'use strict';
+// One call over gRPC-web: a frame out; frames of messages in, and a last one with the trailers.
+
+// What a call failed with: the server's own words, which name every refused field.
+class CallError extends Error {}
+
+class FrameReader {
+  constructor(stream) {
+    this.reader = stream.getReader();
+    this.buffer = new Uint8Array(0);
+  }
+
+  // So many bytes, or null at the stream's end.
+  async take(count) {
+    while (this.buffer.length < count) {
+      const {done, value} = await this.reader.read();
+      if (done) return null;
+      const joined = new Uint8Array(this.buffer.length + value.length);
+      joined.set(this.buffer);
+      joined.set(value, this.buffer.length);
+      this.buffer = joined;
+    }
+    const taken = this.buffer.slice(0, count);
+    this.buffer = this.buffer.slice(count);
+    return taken;
+  }
+
+  // {isTrailer, data}, or null at the stream's end.
+  async next() {
+    const head = await this.take(5);
+    if (!head) return null;
+    const data = await this.take(new DataView(head.buffer).getUint32(1));
+    return data && {isTrailer: head[0] >= 128, data};
+  }
+}
+
+function readTrailers(data) {
+  const lines = new TextDecoder().decode(data).trim().split('\r\n');
+  return Object.fromEntries(lines.map((line) => {
+    const colon = line.indexOf(':');
+    return [line.slice(0, colon).toLowerCase(), line.slice(colon + 1).trim()];
+  }));
+}
+
+// Yields the messages of type `answer` with which the server answers.
+async function* callServer(method, request, message, answer, signal) {
+  const body = encode(request, message);
+  const frame = new Uint8Array(5 + body.length);
+  new DataView(frame.buffer).setUint32(1, body.length);
+  frame.set(body, 5);
+  const response = await fetch(`/duet.v1.MotionSynthesis/${method}`, {
+    method: 'POST', body: frame, signal, headers: {'Content-Type': 'application/grpc-web+proto'},
+  });
+  if (!response.ok) throw new CallError(await response.text());
+  const frames = new FrameReader(response.body);
+  for (let next = await frames.next(); next; next = await frames.next()) {
+    if (!next.isTrailer) {
+      yield decode(answer, next.data);
+      continue;
+    }
+    const trailers = readTrailers(next.data);
+    if (trailers['grpc-status'] === '0') return;
+    throw new CallError(decodeURIComponent(trailers['grpc-message'] || 'the call failed'));
+  }
+  throw new CallError('the answer broke off');
+}

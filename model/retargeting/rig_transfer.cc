@@ -1,0 +1,401 @@
+#include "model/retargeting/rig_transfer.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "model/motion/recorded_motion.h"
+#include "model/retargeting/foot_pose.h"
+#include "model/retargeting/limb_reach.h"
+
+namespace duet::retargeting {
+namespace {
+
+constexpr Vec3d kUp = {0, 1, 0};
+// Metres: shorter limbs have no direction; a root so near to the pelvis turns with it.
+constexpr double kNoLength = 0.01, kAtThePelvis = 0.3;
+// Sine of the bend at rest above which the rest pose itself says where elbow or knee bend.
+constexpr double kBentAtRest = 0.15;
+// Cosine of the shin's lean at rest up to which the foot is taken to be flat there.
+constexpr double kShinHangs = 0.8;
+// What a fit leaves open stays as it was.
+constexpr double kPreviousPrior = 1e-3;
+
+std::size_t Index(int joint) { return static_cast<std::size_t>(joint); }
+
+Quaternion Slerp(Quaternion a, Quaternion b, double share) {
+  if (Dot(a, b) < 0) b = {-b.w, -b.x, -b.y, -b.z};
+  const Quaternion between = b * Inverse(a);
+  const Vec3d axis = Unit({between.x, between.y, between.z}, kUp);
+  return AxisAngle(axis, Angle(a, b) * share) * a;
+}
+
+// Two directions in one frame: the first exactly, the second as far as it is across.
+Quaternion Frame(Vec3d along, Vec3d across) {
+  const Vec3d y = Unit(across - along * Dot(across, along), kUp);
+  return FromAxes(along, y, Cross(along, y));
+}
+
+// An arm or a leg: joints of the rig, and how it is at rest.
+struct Limb {
+  int start = 0, middle = 0, end = 0;                 // of the rig
+  int clip_start = 0, clip_middle = 0, clip_end = 0;  // of the skeleton
+  double upper_length = 0, lower_length = 0;          // metres
+  Quaternion upper_rest, lower_rest;                  // Frame(bone, hinge)
+  bool leg = false;
+  PoleTracker pole;
+};
+
+class Transfer {
+ public:
+  Transfer(const CharacterRig& rig, absl::string_view source)
+      : rig_(rig), skeleton_(motion::SbuSkeleton()), source_(source) {}
+
+  absl::Status Prepare() {
+    const std::vector<motion::Vec3> rest = ToFloats(rig_.positions);
+    for (const motion::Vec3& landmark : ApplyJointMap(rig_.joints, rest)) {
+      landmarks_.push_back(ToDouble(landmark));
+    }
+    FindBody();
+    absl::Status status = AddLimb("left_shoulder", "left_elbow", "left_hand", false);
+    if (status.ok()) status = AddLimb("right_shoulder", "right_elbow", "right_hand", false);
+    if (status.ok()) status = AddLimb("left_hip", "left_knee", "left_foot", true);
+    if (status.ok()) status = AddLimb("right_hip", "right_knee", "right_foot", true);
+    if (!status.ok()) return status;
+    return FindTrunk();
+  }
+
+  std::vector<CharacterPose> Run(const motion::Clip& clip) {
+    ankle_height_ = AnkleHeightOnFloor(skeleton_, clip);
+    leg_ratio_ = LegRatio(clip);
+    std::vector<CharacterPose> poses;
+    for (int frame = 0; frame < clip.frame_count(); ++frame) poses.push_back(Pose(clip, frame));
+    return poses;
+  }
+
+ private:
+  static std::vector<motion::Vec3> ToFloats(const std::vector<Vec3d>& positions) {
+    std::vector<motion::Vec3> floats;
+    for (const Vec3d& position : positions) floats.push_back(ToFloat(position));
+    return floats;
+  }
+
+  absl::Status Error(absl::string_view what) const {
+    return absl::InvalidArgumentError(absl::StrCat(source_, ": rig: ", what));
+  }
+
+  Vec3d Rest(absl::string_view joint) const {
+    return landmarks_[Index(skeleton_.Find(std::string(joint)))];
+  }
+  Vec3d RestAt(int joint) const { return rig_.positions[Index(joint)]; }
+
+  // Which way the rest pose faces.
+  void FindBody() {
+    const Vec3d hips = (Rest("left_hip") + Rest("right_hip")) * 0.5;
+    const Vec3d left = Unit(Rest("left_hip") - Rest("right_hip"),
+                            Unit(Rest("left_shoulder") - Rest("right_shoulder"), {1, 0, 0}));
+    const Vec3d trunk = Unit(Rest("neck") - hips, kUp);
+    const Vec3d up = Unit(trunk - left * Dot(trunk, left), kUp);
+    body_ = FromAxes(left, up, Cross(left, up));
+  }
+
+  absl::StatusOr<int> JointFor(const std::string& name) const {
+    const JointSource& found = rig_.joints.sources[Index(skeleton_.Find(name))];
+    if (found.terms.size() == 1) return found.terms[0].joint;
+    return Error(absl::StrCat(name, " lies between joints, wanted one of the rig's own"));
+  }
+
+  bool IsBelow(int joint, int ancestor) const {
+    for (; joint >= 0; joint = rig_.parents[Index(joint)]) {
+      if (joint == ancestor) return true;
+    }
+    return false;
+  }
+
+  absl::Status AddLimb(const std::string& start, const std::string& middle, const std::string& end,
+                       bool leg) {
+    const absl::StatusOr<int> first = JointFor(start), second = JointFor(middle),
+                              third = JointFor(end);
+    for (const auto* joint : {&first, &second, &third}) {
+      if (!joint->ok()) return joint->status();
+    }
+    if (!IsBelow(*third, *second) || !IsBelow(*second, *first)) {
+      return Error(absl::StrCat(start, ", ", middle, " and ", end, " are no chain"));
+    }
+    Limb limb;
+    limb.start = *first, limb.middle = *second, limb.end = *third;
+    limb.clip_start = skeleton_.Find(start);
+    limb.clip_middle = skeleton_.Find(middle);
+    limb.clip_end = skeleton_.Find(end);
+    limb.leg = leg;
+    const Vec3d upper = RestAt(limb.middle) - RestAt(limb.start);
+    const Vec3d lower = RestAt(limb.end) - RestAt(limb.middle);
+    limb.upper_length = Norm(upper), limb.lower_length = Norm(lower);
+    if (limb.upper_length < kNoLength || limb.lower_length < kNoLength) {
+      return Error(absl::StrCat(middle, ": bones of ", limb.upper_length, " and ",
+                                limb.lower_length, " m, wanted a limb"));
+    }
+    const Vec3d u = Unit(upper, kUp), l = Unit(lower, kUp);
+    const Vec3d hinge = RestHinge(u, l, leg, absl::string_view(start).substr(0, 4) == "left");
+    limb.upper_rest = Frame(u, hinge);
+    limb.lower_rest = Frame(l, hinge);
+    limbs_.push_back(limb);
+    return absl::OkStatus();
+  }
+
+  // About which a limb bends: knees about the line to the left, elbows of a T pose about the
+  // vertical, forearms coming forward.
+  Vec3d RestHinge(Vec3d upper, Vec3d lower, bool leg, bool left) const {
+    const Vec3d side = Rotate(body_, {left ? 1.0 : -1.0, 0, 0});
+    const Vec3d vertical = Rotate(body_, {0, left ? -1.0 : 1.0, 0});
+    const Vec3d expected =
+        leg ? Rotate(body_, {1, 0, 0})
+            : Rotate(ShortestArc(side, upper, Rotate(body_, {0, 0, 1})), vertical);
+    const Vec3d bend = Cross(upper, lower);
+    // A bend the wrong way is slack of the rest pose, not a plane.
+    return Norm(bend) > kBentAtRest && Dot(bend, expected) > 0 ? Unit(bend, expected) : expected;
+  }
+
+  int CommonAncestor(int a, int b) const {
+    while (!IsBelow(b, a)) a = rig_.parents[Index(a)];
+    return a;
+  }
+
+  // From below `top` down to `joint`.
+  std::vector<int> Chain(int top, int joint) const {
+    std::vector<int> chain;
+    for (; joint >= 0 && joint != top; joint = rig_.parents[Index(joint)]) chain.push_back(joint);
+    std::reverse(chain.begin(), chain.end());
+    return chain;
+  }
+
+  absl::Status FindTrunk() {
+    for (const Limb& limb : limbs_) {
+      if (IsBelow(limb.start, 0)) continue;
+      return Error("limbs hang from different roots");
+    }
+    pelvis_ = CommonAncestor(limbs_[2].start, limbs_[3].start);
+    chest_ = CommonAncestor(limbs_[0].start, limbs_[1].start);
+    pelvis_ = CommonAncestor(pelvis_, chest_);
+    spine_ = Chain(pelvis_, chest_);
+    const JointSource& head = rig_.joints.sources[Index(skeleton_.Find("head"))];
+    // The head's middle lies between its joint and its end.
+    int joint = head.terms[0].joint;
+    for (const JointSource::Term& term : head.terms) {
+      if (IsBelow(joint, term.joint)) joint = term.joint;
+    }
+    if (IsBelow(joint, chest_)) neck_ = Chain(chest_, joint);
+    driven_.assign(rig_.names.size(), false);
+    return absl::OkStatus();
+  }
+
+  double LegRatio(const motion::Clip& clip) const {
+    std::vector<double> lengths;
+    const Limb& leg = limbs_[2];
+    for (int frame = 0; frame < clip.frame_count(); ++frame) {
+      const Vec3d knee = ToDouble(clip.at(frame, leg.clip_middle));
+      lengths.push_back(Norm(ToDouble(clip.at(frame, leg.clip_start)) - knee) +
+                        Norm(ToDouble(clip.at(frame, leg.clip_end)) - knee));
+    }
+    const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+    std::nth_element(lengths.begin(), middle, lengths.end());
+    return *middle > kNoLength ? (leg.upper_length + leg.lower_length) / *middle : 1;
+  }
+
+  Vec3d At(const motion::Clip& clip, int frame, absl::string_view joint) const {
+    return ToDouble(clip.at(frame, skeleton_.Find(std::string(joint))));
+  }
+
+  // The turn that takes a side-to-side line and a direction up the trunk from rest to the clip.
+  static Quaternion FitTurn(Vec3d rest_side, Vec3d rest_up, Vec3d side, Vec3d up,
+                            Quaternion previous) {
+    return FitRotation({{Unit(rest_side, {1, 0, 0}), Unit(side, {1, 0, 0}), 1},
+                        {Unit(rest_up, kUp), Unit(up, kUp), 1}},
+                       {{previous, kPreviousPrior}});
+  }
+
+  CharacterPose Pose(const motion::Clip& clip, int frame) {
+    CharacterPose pose;
+    pose.turns.resize(rig_.names.size());
+    pose.positions.resize(rig_.names.size());
+    std::fill(driven_.begin(), driven_.end(), false);
+    TurnTrunk(clip, frame, &pose);
+    PlacePelvis(clip, frame, &pose);
+    LeanSpine(clip, frame, &pose);
+    TurnHead(clip, frame, &pose);
+    Stand(&pose);
+    for (Limb& limb : limbs_) TurnLimb(clip, frame, &limb, &pose);
+    Stand(&pose);
+    return pose;
+  }
+
+  void Turn(int joint, Quaternion turn, CharacterPose* pose) {
+    pose->turns[Index(joint)] = turn;
+    driven_[Index(joint)] = true;
+  }
+
+  void TurnTrunk(const motion::Clip& clip, int frame, CharacterPose* pose) {
+    const Vec3d hips = (At(clip, frame, "left_hip") + At(clip, frame, "right_hip")) * 0.5;
+    const Vec3d rest_hips = (Rest("left_hip") + Rest("right_hip")) * 0.5;
+    // The joint that stands for the torso may lie in the hips; the shoulders never do.
+    const Vec3d rest_torso = Rest("torso") - rest_hips;
+    const bool low = Norm(rest_torso) < kNoLength * 5;
+    const char* upper = low ? "neck" : "torso";
+    pelvis_turn_ = FitTurn(Rest("left_hip") - Rest("right_hip"), Rest(upper) - rest_hips,
+                           At(clip, frame, "left_hip") - At(clip, frame, "right_hip"),
+                           At(clip, frame, upper) - hips, pelvis_turn_);
+    const char* below = low ? "left_hip" : "torso";
+    const Vec3d rest_from = low ? rest_hips : Rest(below);
+    const Vec3d from = low ? hips : At(clip, frame, below);
+    chest_turn_ = FitTurn(Rest("left_shoulder") - Rest("right_shoulder"), Rest("neck") - rest_from,
+                          At(clip, frame, "left_shoulder") - At(clip, frame, "right_shoulder"),
+                          At(clip, frame, "neck") - from, chest_turn_);
+    // A root at the pelvis turns with it, one on the floor stays.
+    for (int joint = rig_.parents[Index(pelvis_)]; joint >= 0; joint = rig_.parents[Index(joint)]) {
+      const bool near = Norm(RestAt(joint) - RestAt(pelvis_)) < kAtThePelvis;
+      Turn(joint, near ? pelvis_turn_ : Quaternion{}, pose);
+    }
+    Turn(pelvis_, pelvis_turn_, pose);
+    for (std::size_t i = 0; i < spine_.size(); ++i) {
+      const double share = static_cast<double>(i + 1) / static_cast<double>(spine_.size());
+      Turn(spine_[i], Slerp(pelvis_turn_, chest_turn_, share), pose);
+    }
+  }
+
+  // Hips as high as the rig's legs are long, and no higher than both legs reach.
+  void PlacePelvis(const motion::Clip& clip, int frame, CharacterPose* pose) {
+    const Vec3d hips = (At(clip, frame, "left_hip") + At(clip, frame, "right_hip")) * 0.5;
+    Vec3d wanted = hips;
+    wanted.y = ankle_height_ + (hips.y - ankle_height_) * leg_ratio_;
+    const Vec3d rest_hips = (RestAt(limbs_[2].start) + RestAt(limbs_[3].start)) * 0.5;
+    for (const Limb& limb : limbs_) {
+      if (!limb.leg) continue;
+      const Vec3d ankle = ToDouble(clip.at(frame, limb.clip_end));
+      const Vec3d hip = wanted + Rotate(pelvis_turn_, RestAt(limb.start) - rest_hips);
+      const double reach = 0.9999 * (limb.upper_length + limb.lower_length);
+      const double across = std::hypot(ankle.x - hip.x, ankle.z - hip.z);
+      if (across >= reach) continue;
+      wanted.y -= std::max(0.0, hip.y - ankle.y - std::sqrt(reach * reach - across * across));
+    }
+    pelvis_at_ = wanted + Rotate(pelvis_turn_, RestAt(pelvis_) - rest_hips);
+    Stand(pose);
+  }
+
+  // Shoulders in the direction from the hips that the clip has them in.
+  void LeanSpine(const motion::Clip& clip, int frame, CharacterPose* pose) {
+    if (spine_.empty()) return;
+    const Vec3d hips = (At(clip, frame, "left_hip") + At(clip, frame, "right_hip")) * 0.5;
+    const Vec3d shoulders =
+        (At(clip, frame, "left_shoulder") + At(clip, frame, "right_shoulder")) * 0.5;
+    const Vec3d wanted = Unit(shoulders - hips, kUp);
+    const auto stands = [&](int joint) { return pose->positions[Index(joint)]; };
+    const Vec3d from = (stands(limbs_[2].start) + stands(limbs_[3].start)) * 0.5;
+    const Vec3d to = (stands(limbs_[0].start) + stands(limbs_[1].start)) * 0.5;
+    const Quaternion lean = ShortestArc(Unit(to - from, wanted), wanted, {1, 0, 0});
+    for (int joint : spine_) Turn(joint, lean * pose->turns[Index(joint)], pose);
+    Stand(pose);
+  }
+
+  void TurnHead(const motion::Clip& clip, int frame, CharacterPose* pose) {
+    if (neck_.empty()) return;
+    const Quaternion chest = pose->turns[Index(chest_)];
+    const Vec3d at_rest = Unit(Rotate(chest, Rest("head") - Rest("neck")), kUp);
+    const Vec3d wanted = Unit(At(clip, frame, "head") - At(clip, frame, "neck"), at_rest);
+    const Quaternion whole = ShortestArc(at_rest, wanted, {1, 0, 0}) * chest;
+    for (std::size_t i = 0; i < neck_.size(); ++i) {
+      const double share = static_cast<double>(i + 1) / static_cast<double>(neck_.size());
+      Turn(neck_[i], Slerp(chest, whole, share), pose);
+    }
+  }
+
+  void TurnLimb(const motion::Clip& clip, int frame, Limb* limb, CharacterPose* pose) {
+    const Vec3d start = pose->positions[Index(limb->start)];
+    const Vec3d target = ToDouble(clip.at(frame, limb->clip_end));
+    // Knees go out to the front, elbows to the back.
+    const Quaternion trunk = pose->turns[Index(limb->leg ? pelvis_ : chest_)];
+    const Vec3d otherwise = Rotate(trunk * body_, {0, 0, limb->leg ? 1.0 : -1.0});
+    const Vec3d pole =
+        limb->pole.Follow(ToDouble(clip.at(frame, limb->clip_start)),
+                          ToDouble(clip.at(frame, limb->clip_middle)), target, otherwise);
+    const LimbPose reach = ReachFor(start, target, limb->upper_length, limb->lower_length, pole);
+    const Quaternion lower = Frame(reach.lower, reach.hinge);
+    Turn(limb->start, Frame(reach.upper, reach.hinge) * Inverse(limb->upper_rest), pose);
+    Turn(limb->middle, lower * Inverse(limb->lower_rest), pose);
+    if (!limb->leg) return;
+    // Canonically the shin hangs and bends about the left.
+    const Quaternion hangs = Frame({0, -1, 0}, {1, 0, 0});
+    const Quaternion shin = lower * Inverse(hangs);
+    const Quaternion rest_shin = limb->lower_rest * Inverse(hangs);
+    const Vec3d rest_down = Rotate(limb->lower_rest, {1, 0, 0});
+    const bool flat_at_rest = Dot(rest_down, Rotate(body_, {0, -1, 0})) > kShinHangs;
+    const Vec3d ankle = start + reach.upper * limb->upper_length + reach.lower * limb->lower_length;
+    Turn(limb->end,
+         FootRotation(shin, ankle, ankle_height_) * Inverse(flat_at_rest ? body_ : rest_shin),
+         pose);
+  }
+
+  // Undriven joints follow their parents; places follow from the turns.
+  void Stand(CharacterPose* pose) const {
+    for (std::size_t j = 0; j < rig_.names.size(); ++j) {
+      const int parent = rig_.parents[j];
+      if (parent < 0) {
+        if (!driven_[j]) pose->turns[j] = {};
+        pose->positions[j] = {};
+        continue;
+      }
+      if (!driven_[j]) pose->turns[j] = pose->turns[Index(parent)];
+      pose->positions[j] = pose->positions[Index(parent)] +
+                           Rotate(pose->turns[Index(parent)], rig_.positions[j] - RestAt(parent));
+    }
+    Move(pose);
+  }
+
+  // Brings the pelvis to its place: by itself where the rig lets it move, otherwise with all.
+  void Move(CharacterPose* pose) const {
+    const bool alone = pelvis_ != 0 && rig_.moves[Index(pelvis_)];
+    const Vec3d root = alone ? rig_.positions[0] : Vec3d{};
+    const Vec3d by = pelvis_at_ - pose->positions[Index(pelvis_)];
+    for (std::size_t j = 0; j < rig_.names.size(); ++j) {
+      const bool with_pelvis = !alone || IsBelow(static_cast<int>(j), pelvis_);
+      pose->positions[j] += with_pelvis ? by : root;
+    }
+  }
+
+  const CharacterRig& rig_;
+  const motion::Skeleton skeleton_;
+  const std::string source_;
+  std::vector<Vec3d> landmarks_;  // the skeleton's joints on the rig at rest
+  Quaternion body_;               // from x left, y up, z ahead to the rest pose
+  std::vector<Limb> limbs_;       // arms, then legs, the left one first
+  int pelvis_ = 0, chest_ = 0;
+  std::vector<int> spine_, neck_;  // below the pelvis to the chest; below the chest to the head
+  std::vector<bool> driven_;
+  double ankle_height_ = 0, leg_ratio_ = 1;
+  Quaternion pelvis_turn_, chest_turn_;
+  Vec3d pelvis_at_;
+};
+
+}  // namespace
+
+absl::StatusOr<std::vector<CharacterPose>> TransferToRig(const motion::Clip& clip,
+                                                         const CharacterRig& rig,
+                                                         absl::string_view source) {
+  const motion::Skeleton skeleton = motion::SbuSkeleton();
+  if (clip.joint_names != skeleton.joint_names) {
+    return absl::InvalidArgumentError(absl::StrCat("follower: came ", clip.joint_count(),
+                                                   " joints, wanted the ", skeleton.joint_count(),
+                                                   " of SBU to write them onto a rig"));
+  }
+  absl::Status status = CheckClip("follower", clip);
+  if (!status.ok()) return status;
+  Transfer transfer(rig, source);
+  status = transfer.Prepare();
+  if (!status.ok()) return status;
+  return transfer.Run(clip);
+}
+
+}  // namespace duet::retargeting

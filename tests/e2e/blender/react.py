@@ -1,0 +1,100 @@
+"""A scene with an animated armature, answered by the add-on; run by Blender itself.
+
+    blender --background --factory-startup --python react.py -- ADD_ON_FOLDER LEADER.glb SERVER DUET OUT
+
+Writes what there is afterwards as JSON into the folder OUT, and the scene as out.blend.
+"""
+
+import json
+import pathlib
+import sys
+
+import bpy
+import numpy
+
+addon_folder, leader_file, server, duet, out = sys.argv[sys.argv.index("--") + 1:]
+sys.path.insert(0, addon_folder)
+import duet_blender  # noqa: E402
+
+if "bool" not in numpy.__dict__:  # Debian 12's importer, see duet_blender.partner
+    numpy.bool = bool
+
+OUT = pathlib.Path(out)
+FIRST_FRAME, LAST_FRAME = 11, 50
+
+bpy.ops.wm.read_factory_settings(use_empty=True)
+scene = bpy.context.scene
+scene.render.fps, scene.render.fps_base = 24, 1
+scene.unit_settings.scale_length = 0.5  # a unit of half a metre
+bpy.ops.import_scene.gltf(filepath=leader_file)
+scene.render.fps = 24
+scene.frame_start, scene.frame_end = FIRST_FRAME, LAST_FRAME
+scene.frame_set(20)
+leader = next(thing for thing in scene.objects if thing.type == "ARMATURE")
+leader.name = "Rig"
+
+duet_blender.register()
+settings = scene.duet
+assert bpy.ops.duet.ask_for_classes() == {"FINISHED"}  # those that are known without a server
+known = [label.name for label in settings.labels]
+settings.server, settings.program = server, duet
+assert bpy.ops.duet.ask_for_classes() == {"FINISHED"}
+asked = [label.name for label in settings.labels]
+
+failures = []
+
+
+def react():
+    try:
+        return sorted(bpy.ops.duet.react())
+    except RuntimeError as error:  # a report of an error, as Blender hands it to scripts
+        failures.append(str(error))
+        return ["CANCELLED"]
+
+
+def without_a_leader():
+    try:
+        bpy.ops.duet.react()
+    except RuntimeError:
+        return True
+    return False
+
+
+refused = without_a_leader()
+settings.leader = leader
+still = react()  # every label 0
+kick = settings.labels[known.index("kick")]
+kick.weight = 1
+kick.keyframe_insert("weight", frame=FIRST_FRAME)
+kick.weight = 0
+kick.keyframe_insert("weight", frame=LAST_FRAME)
+empty = bpy.data.objects.new("Place", None)
+scene.collection.objects.link(empty)
+empty.location = (2.4, 0, 0)
+settings.place = empty
+settings.program = "no-such-program"
+missing = react()
+settings.program = duet
+finished = react()
+
+follower = bpy.data.objects.get("Duet follower")
+body = bpy.data.objects.get("Duet follower body")
+state = {
+    "known": known, "asked": asked, "refused_without_leader": refused, "still": still,
+    "missing": missing, "finished": finished, "failures": failures,
+    "frame": scene.frame_current, "fps": scene.render.fps,
+    "range": [scene.frame_start, scene.frame_end],
+}
+if follower:
+    torso = []
+    for frame in range(FIRST_FRAME, LAST_FRAME + 1):
+        scene.frame_set(frame)
+        torso.append(list(follower.matrix_world @ follower.pose.bones["torso"].head))
+    state["torso"] = torso
+    state["bones"] = len(follower.pose.bones)
+    state["materials"] = sorted(slot.name for slot in body.data.materials)
+    state["vertices"] = len(body.data.vertices) if body else 0
+    state["keys"] = list(follower.animation_data.action.frame_range)
+(OUT / "state.json").write_text(json.dumps(state), encoding="utf-8")
+bpy.ops.wm.save_as_mainfile(filepath=str(OUT / "out.blend"))
+duet_blender.unregister()

@@ -1,0 +1,69 @@
+"""Blender's add-on on a scene of its own: rate, unit, first frame and axes unlike Duet's."""
+
+import json
+import pathlib
+import shutil
+import tempfile
+import unittest
+
+import tools
+
+BLENDER = shutil.which("blender")
+REACT = pathlib.Path(__file__).parent / "blender" / "react.py"
+UNITS_PER_METRE = 2  # of the scene
+
+
+class BlenderTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.folder = pathlib.Path(folder.name)
+        leader = cls.folder / "leader.glb"
+        done = tools.duet("convert", tools.sample("kick"), "--out", leader)
+        assert done.returncode == 0, done.stderr
+        with tools.running_server() as server:
+            done = tools.run(BLENDER, "--background", "--factory-startup", "--python-exit-code",
+                             "1", "--python", REACT, "--", tools.SOURCE / "client" / "blender",
+                             leader, server.address, tools.PROGRAMS / "duet", cls.folder)
+        assert done.returncode == 0, done.stdout + done.stderr
+        cls.state = json.loads((cls.folder / "state.json").read_text(encoding="utf-8"))
+
+    def test_sliders_are_those_of_the_server(self):
+        self.assertEqual(sorted(self.state["known"]), sorted(tools.CLASSES))
+        self.assertEqual(sorted(self.state["asked"]), sorted(tools.CLASSES))
+
+    def test_what_cannot_be_done_is_said(self):
+        self.assertTrue(self.state["refused_without_leader"])
+        self.assertEqual([self.state["still"], self.state["missing"]], [["CANCELLED"]] * 2)
+        zero, program = self.state["failures"]
+        self.assertIn("Every label is 0", zero)
+        self.assertIn("no-such-program", program)
+
+    def test_a_follower_comes_with_body_and_action(self):
+        self.assertEqual(self.state["finished"], ["FINISHED"])
+        self.assertEqual(self.state["bones"], 21)
+        self.assertGreater(self.state["vertices"], 1000)
+        self.assertIn("Duet follower", self.state["materials"])  # in a colour of their own
+
+    def test_the_scene_stays_as_it_was(self):
+        self.assertEqual(self.state["frame"], 20)
+        self.assertEqual(self.state["fps"], 24)
+        self.assertEqual(self.state["range"], [11, 50])
+
+    def test_the_action_lies_where_the_leaders_frames_do(self):
+        first, last = self.state["keys"]
+        self.assertAlmostEqual(first, 11, delta=0.01)
+        self.assertAlmostEqual(last, 50, delta=0.01)
+
+    def test_the_follower_stands_in_the_scenes_unit_where_the_empty_is(self):
+        x, y, z = self.state["torso"][0]
+        self.assertAlmostEqual(x / UNITS_PER_METRE, 1.2, delta=0.3)
+        self.assertAlmostEqual(y / UNITS_PER_METRE, 0, delta=0.3)
+        self.assertAlmostEqual(z / UNITS_PER_METRE, 1.1, delta=0.25)
+
+
+if __name__ == "__main__":
+    if not BLENDER:
+        tools.skip("no blender; install the package blender")
+    tools.main()

@@ -1,0 +1,200 @@
+#include "model/formats/bvh/bvh_rig.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "model/retargeting/euler.h"
+#include "tests/formats/bvh/rig_families.h"
+#include "tests/support/status_matchers.h"
+#include "tests/support/test_motion.h"
+
+namespace duet::formats::bvh {
+namespace {
+
+using retargeting::Quaternion;
+using test::IsOk;
+using test::RigFamily;
+using ::testing::HasSubstr;
+
+constexpr double kDegrees = 180 / 3.14159265358979323846;
+
+// Walks on the spot in a turn, arms and legs swinging; ankles as high as the rigs' are.
+motion::Clip Follower() {
+  test::PersonOptions options;
+  options.frames = 120;
+  options.yaw = 2;
+  options.turn = 5;
+  options.at = {0.4f, 1.13f, -0.8f};
+  return test::MakePerson(options);
+}
+
+BvhDocument OntoRig(const motion::Clip& clip, const BvhDocument& rig) {
+  absl::StatusOr<BvhDocument> written = OntoBvhRig(clip, rig, "rig.bvh", {});
+  EXPECT_THAT(written.status(), IsOk());
+  return written.value_or(BvhDocument());
+}
+
+// How a written file compares with the clip that it was written from.
+struct Figures {
+  double feet_metres = 0, hands_metres = 0;  // the largest distances
+  double beyond_reach_metres = 0;            // of them, by what the longest arm is too short
+  double hands_in_reach_metres = 0;          // what is left of the hands'
+  double trunk_degrees = 0;                  // of the line between the shoulders
+  double true_step = 0, euler_step = 0;      // degrees a frame
+};
+
+double Angle(motion::Vec3 a, motion::Vec3 b) {
+  const double cosine = static_cast<double>(Dot(a, b) / (Norm(a) * Norm(b)));
+  return kDegrees * std::acos(std::clamp(cosine, -1.0, 1.0));
+}
+
+// Of every joint with three rotation channels, from one frame to the next.
+void MeasureSteps(const BvhDocument& document, Figures* figures) {
+  const std::size_t channels = static_cast<std::size_t>(document.ChannelCount());
+  std::size_t first = 0;
+  for (const BvhJoint& joint : document.joints) {
+    const std::size_t turns = first + joint.channels.size() - (joint.channels.empty() ? 0 : 3);
+    first += joint.channels.size();
+    if (joint.channels.empty()) continue;
+    retargeting::EulerOrder order;
+    for (std::size_t i = 0; i < 3; ++i) {
+      order[i] = static_cast<int>(joint.channels[joint.channels.size() - 3 + i]) -
+                 static_cast<int>(BvhChannel::kXRotation);
+    }
+    retargeting::EulerAngles before = {};
+    for (int frame = 0; frame < document.frame_count; ++frame) {
+      retargeting::EulerAngles now;
+      for (std::size_t i = 0; i < 3; ++i) {
+        now[i] = static_cast<double>(
+                     document.values[static_cast<std::size_t>(frame) * channels + turns + i]) /
+                 kDegrees;
+      }
+      if (frame > 0) {
+        const double step = retargeting::Angle(retargeting::FromEuler(now, order),
+                                               retargeting::FromEuler(before, order));
+        figures->true_step = std::max(figures->true_step, step * kDegrees);
+        for (std::size_t i = 0; i < 3; ++i) {
+          figures->euler_step =
+              std::max(figures->euler_step, std::abs(now[i] - before[i]) * kDegrees);
+        }
+      }
+      before = now;
+    }
+  }
+}
+
+Figures Measure(const motion::Clip& clip, const BvhDocument& written) {
+  Figures figures;
+  const absl::StatusOr<motion::Clip> read = FromBvh(written, "written", {});
+  EXPECT_THAT(read.status(), IsOk());
+  if (!read.ok()) return figures;
+  const motion::Skeleton skeleton = motion::SbuSkeleton();
+  const auto find = [&](const char* name) { return skeleton.Find(name); };
+  for (int frame = 0; frame < clip.frame_count(); ++frame) {
+    const auto apart = [&](const char* name) {
+      return static_cast<double>(Distance(read->at(frame, find(name)), clip.at(frame, find(name))));
+    };
+    for (const std::string side : {"left", "right"}) {
+      const auto at = [&](const motion::Clip& of, const char* joint) {
+        return of.at(frame, find((side + joint).c_str()));
+      };
+      const motion::Vec3 shoulder = at(*read, "_shoulder"), elbow = at(*read, "_elbow"),
+                         hand = at(*read, "_hand"), wanted = at(clip, "_hand");
+      const double arm = static_cast<double>(Distance(shoulder, elbow) + Distance(elbow, hand));
+      const double beyond = std::max(0.0, static_cast<double>(Distance(shoulder, wanted)) - arm);
+      const double error = static_cast<double>(Distance(hand, wanted));
+      figures.hands_metres = std::max(figures.hands_metres, error);
+      figures.beyond_reach_metres = std::max(figures.beyond_reach_metres, beyond);
+      figures.hands_in_reach_metres = std::max(figures.hands_in_reach_metres, error - beyond);
+    }
+    figures.feet_metres = std::max({figures.feet_metres, apart("left_foot"), apart("right_foot")});
+    const auto shoulders = [&](const motion::Clip& of) {
+      return of.at(frame, find("left_shoulder")) - of.at(frame, find("right_shoulder"));
+    };
+    figures.trunk_degrees =
+        std::max(figures.trunk_degrees, Angle(shoulders(*read), shoulders(clip)));
+  }
+  MeasureSteps(written, &figures);
+  return figures;
+}
+
+class BvhRig : public ::testing::TestWithParam<RigFamily> {};
+
+TEST_P(BvhRig, TheFollowerStandsAndReachesOnTheRig) {
+  const motion::Clip clip = Follower();
+  const Figures figures = Measure(clip, OntoRig(clip, GetParam().document));
+  EXPECT_LT(figures.feet_metres, 0.002);
+  EXPECT_LT(figures.hands_in_reach_metres, 0.002);
+  EXPECT_LT(figures.trunk_degrees, 8);
+  std::printf("| %s | %.1f | %.1f | %.0f | %.1f | %.0f | %.0f |\n", GetParam().name.c_str(),
+              figures.feet_metres * 1000, figures.hands_in_reach_metres * 1000,
+              figures.beyond_reach_metres * 1000, figures.trunk_degrees, figures.true_step * 30,
+              figures.euler_step * 30);
+}
+
+// Far from gimbal lock each angle changes about as fast as the joint turns.
+TEST_P(BvhRig, NoAngleJumps) {
+  const motion::Clip clip = Follower();
+  const Figures figures = Measure(clip, OntoRig(clip, GetParam().document));
+  EXPECT_LT(figures.true_step, 15);
+  EXPECT_LT(figures.euler_step, 60);
+}
+
+TEST_P(BvhRig, HierarchyNamesOffsetsAndChannelsStay) {
+  const BvhDocument& rig = GetParam().document;
+  const BvhDocument written = OntoRig(Follower(), rig);
+  ASSERT_EQ(written.joints.size(), rig.joints.size());
+  for (std::size_t j = 0; j < rig.joints.size(); ++j) {
+    EXPECT_EQ(written.joints[j].name, rig.joints[j].name);
+    EXPECT_EQ(written.joints[j].parent, rig.joints[j].parent);
+    EXPECT_EQ(written.joints[j].channels, rig.joints[j].channels);
+    EXPECT_EQ(Norm(written.joints[j].offset - rig.joints[j].offset), 0);
+  }
+  EXPECT_EQ(written.frame_count, 120);
+}
+
+// Bones keep their lengths: only what moves freely, root and pelvis, changes its place.
+TEST_P(BvhRig, BonesKeepTheRigsLengths) {
+  const BvhDocument written = OntoRig(Follower(), GetParam().document);
+  const BvhKinematics kinematics(written);
+  for (int frame = 0; frame < written.frame_count; frame += 7) {
+    const std::vector<retargeting::Vec3d> at = kinematics.Positions(frame);
+    for (std::size_t j = 0; j < written.joints.size(); ++j) {
+      const int parent = written.joints[j].parent;
+      if (parent < 0 || written.joints[static_cast<std::size_t>(parent)].name == "root") continue;
+      const double length = Norm(at[j] - at[static_cast<std::size_t>(parent)]);
+      const double offset = Norm(written.joints[j].offset);
+      EXPECT_NEAR(length, offset, 2e-3 * offset + 1e-4) << written.joints[j].name;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Families, BvhRig, ::testing::ValuesIn(test::RigFamilies()),
+                         [](const ::testing::TestParamInfo<RigFamily>& family) {
+                           std::string name = family.param.name;
+                           name.erase(std::remove(name.begin(), name.end(), ' '), name.end());
+                           return name;
+                         });
+
+TEST(OntoBvhRig, RefusesARigThatCannotBeAPerson) {
+  BvhDocument rig = test::RigFamilies()[1].document;
+  for (BvhJoint& joint : rig.joints) {
+    if (joint.name == "mixamorig:LeftForeArm") joint.channels.resize(1);
+  }
+  rig.values.resize(static_cast<std::size_t>(rig.ChannelCount()));
+  EXPECT_THAT(std::string(OntoBvhRig(Follower(), rig, "rig.bvh", {}).status().message()),
+              HasSubstr("\"mixamorig:LeftForeArm\" has to turn, and has not three"));
+  motion::Clip other = Follower();
+  other.joint_names[0] = "skull";
+  EXPECT_THAT(
+      std::string(
+          OntoBvhRig(other, test::RigFamilies()[0].document, "rig.bvh", {}).status().message()),
+      HasSubstr("wanted the 15 of SBU"));
+}
+
+}  // namespace
+}  // namespace duet::formats::bvh
