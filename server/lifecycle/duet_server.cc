@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "absl/time/clock.h"
+#include "absl/time/time.h"
 #include "server/batching/batcher.h"
 #include "server/security/server_credentials.h"
 #include "server/service/refusals.h"

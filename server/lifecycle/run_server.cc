@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "absl/time/clock.h"
 #include "server/config/cpu_budget.h"
 #include "server/config/load_config.h"
 #include "server/lifecycle/duet_server.h"

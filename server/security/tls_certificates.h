@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <utility>
 
 #include "server/common/mutex.h"
 #include "server/security/tls_material.h"
@@ -21,18 +20,10 @@ class TlsCertificates {
     std::uint64_t generation = 0;  // another one after each Replace
   };
 
-  explicit TlsCertificates(TlsMaterial material) { Replace(std::move(material)); }
+  explicit TlsCertificates(TlsMaterial material);
 
-  void Replace(TlsMaterial material) {
-    auto next = std::make_shared<const TlsMaterial>(std::move(material));
-    common::MutexLock lock(mutex_);
-    current_ = {std::move(next), current_.generation + 1};
-  }
-
-  Current current() const {
-    common::MutexLock lock(mutex_);
-    return current_;
-  }
+  void Replace(TlsMaterial material);
+  Current current() const;
 
  private:
   mutable common::Mutex mutex_;
