@@ -97,13 +97,11 @@ def simulate(first_pods, clips_per_second, random):
 
 
 def summary(pods, rows):
-    busy = rows[:, 0] >= RISE_AT
-    calm = rows[:, 3] < MAX_QUEUED / 2
-    recovered = next((time for time, ok, row_busy in zip(rows[:, 0], calm, busy)
-                      if row_busy and time > RISE_AT + RISE_SECONDS and ok), None)
+    crowded = rows[rows[:, 3] >= MAX_QUEUED / 2, 0]
     refusing = rows[rows[:, 4] > 0.01, 0]
+    calm = crowded[-1] + 1 - RISE_AT if len(crowded) else 0
     return (pods, int(rows[:, 2].max()), rows[:, 3].max(), 100 * rows[:, 4].max(),
-            len(refusing), recovered - RISE_AT if recovered is not None else math.nan)
+            len(refusing), calm)
 
 
 def draw(results, out):

@@ -72,7 +72,7 @@ class PackageTest(unittest.TestCase):
     @unittest.skipUnless(shutil.which("lintian"), "needs lintian")
     def test_lintian_finds_nothing(self):
         root = ["--allow-root"] if os.geteuid() == 0 else []
-        found = tools.run("lintian", *root, *self.packages.values())
+        found = tools.run("lintian", *root, *self.packages.values(), timeout=600)
         self.assertEqual(found.stdout, "")
 
     @unittest.skipUnless(shutil.which("systemd-analyze"), "needs systemd-analyze")
