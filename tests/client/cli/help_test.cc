@@ -121,7 +121,7 @@ TEST(ManualPage, AllAreWrittenIntoAFolder) {
   }
   EXPECT_THAT(
       names, AllOf(Contains("duet.1"), Contains("duet-inspect.1"), Contains("duet-batch-merge.1")));
-  EXPECT_EQ(names.size(), 13u);
+  EXPECT_EQ(names.size(), 19u);
 }
 
 }  // namespace
