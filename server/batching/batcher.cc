@@ -95,6 +95,7 @@ Batcher::~Batcher() {
 }
 
 absl::Status Batcher::Submit(WindowJob job) {
+  job.window.cancelled = job.cancelled;  // the model looks at it while it computes
   {
     common::MutexLock lock(mutex_);
     if (stopping_) return ShuttingDown();

@@ -32,7 +32,7 @@ struct WindowJob {
   engine::SynthesisWindow window;
   Priority priority = Priority::kInteractive;
   common::TimePoint deadline = common::TimePoint::max();
-  // The owner sets it to give the result up. Required.
+  // The owner sets it to give the result up, the model stops soon if it has begun. Required.
   std::shared_ptr<const std::atomic<bool>> cancelled;
   // A further window of a call that is being answered. Never refused for a full queue: what was
   // begun is finished, and a call has one window in the queue at most.

@@ -119,6 +119,22 @@ TEST(BatcherTest, NeverStartsACancelledWindow) {
   EXPECT_EQ(model.started(), 1);
 }
 
+TEST(BatcherTest, TheModelSeesThatAWindowIsCancelledMeanwhile) {
+  const auto batcher = MakeBatcher({1, 4, {4}}, common::Clock::Real());
+  const auto model = std::make_shared<FakeSynthesizer>();
+  Ticket ticket;
+  bool before = true, after = false;
+  model->on_batch = [&](auto windows) {
+    before = windows[0]->cancelled->load();
+    ticket.cancelled->store(true);
+    after = windows[0]->cancelled->load();
+  };
+  ASSERT_THAT(batcher->Submit(ticket.Job(model)), IsOk());
+  EXPECT_THAT(ticket.outcome.get().result, IsOk());
+  EXPECT_FALSE(before);
+  EXPECT_TRUE(after);
+}
+
 TEST(BatcherTest, NeverStartsAnExpiredWindow) {
   FakeClock clock;
   GatedModel model;
