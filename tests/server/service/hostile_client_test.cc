@@ -137,7 +137,7 @@ TEST(HostileClientTest, CallsThatSendNothingLeavePlacesToOtherClients) {
   };
   // Without the key a client is its address: this machine's.
   SilentCall first(running), second(running), third(running);
-  WaitForCalls(running, 3);
+  while (running.admission().calls() < 3) std::this_thread::yield();
   TimedContext context;
   const Refusal refusal = Decode(Call(running.stub(), SampleRequest(), context).status);
   EXPECT_EQ(refusal.reason, "TOO_MANY_CALLS");
@@ -166,11 +166,15 @@ TEST(HostileClientTest, AMessageThatDoesNotComeIsNotWaitedFor) {
   FakeClock clock;
   RunningService::Setup setup;
   setup.clock = &clock;
+  setup.reception.slow_seconds = std::numeric_limits<double>::infinity();
   RunningService running(setup);
   SilentCall call(running);
-  WaitForCalls(running, 1);
-  clock.Advance(std::chrono::seconds(30));
-  running.service().CheckTime();
+  // Begun is not yet waited for.
+  while (running.calls().records().empty()) {
+    clock.Advance(std::chrono::seconds(30));
+    running.service().CheckTime();
+    std::this_thread::yield();
+  }
   EXPECT_EQ(Decode(call.Finish()).reason, "RECEIVE_TIMEOUT");
   EXPECT_EQ(running.admission().calls(), 0u);
 }
@@ -178,8 +182,10 @@ TEST(HostileClientTest, AMessageThatDoesNotComeIsNotWaitedFor) {
 TEST(HostileClientTest, ACallThatWaitsForItsMessageEndsWithTheServer) {
   RunningService running;
   SilentCall call(running);
-  WaitForCalls(running, 1);
-  running.service().AbortAll(absl::UnavailableError("the server is shutting down"));
+  while (running.calls().records().empty()) {
+    running.service().AbortAll(absl::UnavailableError("the server is shutting down"));
+    std::this_thread::yield();
+  }
   EXPECT_EQ(Decode(call.Finish()).code, StatusCode::kUnavailable);
 }
 
