@@ -212,22 +212,22 @@ class PollingEndpoint final : public MetricsEndpoint {
     connections_ = std::move(open);
   }
 
+  // One at a time: without descriptors accept fails before it looks whether anybody waits, and
+  // only of the first one did poll say so.
   void Accept() {
-    while (true) {
-      Socket socket(accept4(listener_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
-      if (!socket) {
-        if (errno == EAGAIN || errno == EINTR || errno == ECONNABORTED) return;
-        // Out of descriptors: one of our own is worth more as the next client's.
-        if (!connections_.empty()) connections_.pop_front();
-        rests_until_ = steady_clock::now() + kRest;
-        return;
-      }
-      if (connections_.size() >= options_.max_connections) connections_.pop_front();
-      connections_.emplace_back(
-          std::move(socket),
-          steady_clock::now() + std::chrono::duration_cast<steady_clock::duration>(
-                                    std::chrono::duration<double>(options_.connection_seconds)));
+    Socket socket(accept4(listener_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
+    if (!socket) {
+      if (errno == EAGAIN || errno == EINTR || errno == ECONNABORTED) return;
+      // Out of descriptors: one of our own is worth more as the next client's.
+      if (!connections_.empty()) connections_.pop_front();
+      rests_until_ = steady_clock::now() + kRest;
+      return;
     }
+    if (connections_.size() >= options_.max_connections) connections_.pop_front();
+    connections_.emplace_back(
+        std::move(socket),
+        steady_clock::now() + std::chrono::duration_cast<steady_clock::duration>(
+                                  std::chrono::duration<double>(options_.connection_seconds)));
   }
 
   const MetricsEndpointOptions options_;

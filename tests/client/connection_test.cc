@@ -89,6 +89,7 @@ TEST_F(ConnectionTest, ABrokenStreamIsRunAgain) {
 TEST_F(ConnectionTest, AMissingSummaryIsRunAgainAndThenAnError) {
   ScriptedStream unfinished = Good();
   unfinished.responses.pop_back();
+  options_.retry.max_attempts = 4;
   stub_->streams = {unfinished, unfinished, unfinished, unfinished};
   EXPECT_THAT(Synthesize(), StatusIs(absl::StatusCode::kUnavailable,
                                      HasSubstr("without a summary, after 5 of 5 frames")));
