@@ -19,9 +19,10 @@ import tools
 
 SLURM = tools.SOURCE / "deploy/slurm"
 SHARDS = 6
+# So many that a shard takes seconds: a fault must find it begun and not done.
 RECIPE = """seed: 7
 reactions { each_class {} }
-reactions { mixes { count: 20 } }
+reactions { mixes { count: 600 } }
 output { formats: FORMAT_NPY }
 """
 LONGEST_RUN = 600  # seconds, on a busy machine
