@@ -9,7 +9,7 @@
 
 namespace duet::client::internal {
 
-// The stub that really calls, as whoever `token` says; empty: as nobody.
+// Calls by gRPC, as whoever `token` says; empty: as nobody.
 std::shared_ptr<Stub> MakeGrpcStub(std::shared_ptr<grpc::Channel> channel,
                                    const std::string& token = "");
 

@@ -82,25 +82,15 @@ void AddDescriptors(Families& families) {
 }  // namespace
 
 prometheus::MetricFamily Gauge(const std::string& name, const std::string& help, double value) {
-  prometheus::MetricFamily family;
-  family.name = name;
-  family.help = help;
-  family.type = prometheus::MetricType::Gauge;
   prometheus::ClientMetric metric;
   metric.gauge.value = value;
-  family.metric.push_back(std::move(metric));
-  return family;
+  return {name, help, prometheus::MetricType::Gauge, {metric}};
 }
 
 prometheus::MetricFamily Counter(const std::string& name, const std::string& help, double value) {
-  prometheus::MetricFamily family;
-  family.name = name;
-  family.help = help;
-  family.type = prometheus::MetricType::Counter;
   prometheus::ClientMetric metric;
   metric.counter.value = value;
-  family.metric.push_back(std::move(metric));
-  return family;
+  return {name, help, prometheus::MetricType::Counter, {metric}};
 }
 
 std::vector<prometheus::MetricFamily> ReadProcessMetrics() {

@@ -153,16 +153,28 @@ v1::SynthesizeRequest LongRequest() {
   return request;
 }
 
+// Such a call, begun: its first message has come.
+class LongCall {
+ public:
+  explicit LongCall(const nlohmann::json& serving)
+      : stub_(Connect(serving)), reader_(stub_->Synthesize(&context_, LongRequest())) {
+    v1::SynthesizeResponse message;
+    EXPECT_TRUE(reader_->Read(&message));
+  }
+  Reply Finish() { return ReadAll(*reader_); }
+
+ private:
+  TimedContext context_;
+  std::unique_ptr<v1::MotionSynthesis::Stub> stub_;
+  std::unique_ptr<grpc::ClientReader<v1::SynthesizeResponse>> reader_;
+};
+
 TEST(ServerProcessTest, SigtermLetsACallFinish) {
   Process server(Flags({"--grace-seconds", "120"}));
-  const auto stub = Connect(server.WaitForEvent("serving"));
-  TimedContext context;
-  const auto reader = stub->Synthesize(&context, LongRequest());
-  v1::SynthesizeResponse message;
-  ASSERT_TRUE(reader->Read(&message));
+  LongCall call(server.WaitForEvent("serving"));
   server.Signal(SIGTERM);
   EXPECT_EQ(server.WaitForEvent("draining")["calls"], 1);
-  const Reply reply = ReadAll(*reader);
+  const Reply reply = call.Finish();
   EXPECT_TRUE(reply.status.ok()) << reply.status.error_message();
   EXPECT_EQ(server.WaitForEvent("stopped")["aborted_calls"], 0);
   EXPECT_EQ(server.Wait(), 0);
@@ -170,17 +182,13 @@ TEST(ServerProcessTest, SigtermLetsACallFinish) {
 
 TEST(ServerProcessTest, ASecondSignalEndsTheGrace) {
   Process server(Flags({"--grace-seconds", "3600"}));
-  const auto stub = Connect(server.WaitForEvent("serving"));
-  TimedContext context;
-  const auto reader = stub->Synthesize(&context, LongRequest());
-  v1::SynthesizeResponse message;
-  ASSERT_TRUE(reader->Read(&message));
+  LongCall call(server.WaitForEvent("serving"));
   server.Signal(SIGTERM);
   EXPECT_EQ(server.WaitForEvent("draining")["calls"], 1);
   server.Signal(SIGTERM);
   EXPECT_EQ(server.WaitForEvent("stopped")["aborted_calls"], 1);
   EXPECT_EQ(server.Wait(), 0);
-  EXPECT_FALSE(ReadAll(*reader).status.ok());
+  EXPECT_FALSE(call.Finish().status.ok());
 }
 
 TEST(ServerProcessTest, ServesARepositoryPastABadCheckpoint) {
@@ -306,11 +314,7 @@ TEST(ServerProcessTest, SigtermDuringAReloadStopsAfterTheCheckpointUnderWay) {
 
 TEST(ServerProcessTest, ASecondSignalEndsTheDrainSecondsAsWell) {
   Process server(Flags({"--drain-seconds", "3600", "--grace-seconds", "3600"}));
-  const auto stub = Connect(server.WaitForEvent("serving"));
-  TimedContext context;
-  const auto reader = stub->Synthesize(&context, LongRequest());
-  v1::SynthesizeResponse message;
-  ASSERT_TRUE(reader->Read(&message));
+  LongCall call(server.WaitForEvent("serving"));
   server.Signal(SIGTERM);
   EXPECT_EQ(server.WaitForEvent("draining")["calls"], 1);
   server.Signal(SIGTERM);

@@ -14,14 +14,12 @@ TICK_SECONDS = 0.05
 
 
 class _Working(bpy.types.Operator):
-    """An operator whose work is the generator `work`; each yield lets Blender go on."""
+    """An operator whose work is the generator work(context) of the class that inherits this; each
+    yield lets Blender go on."""
 
     bl_options = {"REGISTER"}
     _timer = None
     _steps = None
-
-    def work(self, context):
-        raise NotImplementedError
 
     def invoke(self, context, _event):
         if bpy.app.background:
