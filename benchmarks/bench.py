@@ -33,7 +33,8 @@ def run(build, program, chosen, seconds):
                              env={**os.environ, "OMP_NUM_THREADS": "1"})
     scale = {"ns": 1e-6, "us": 1e-3, "ms": 1.0, "s": 1e3}
     return {entry["name"]: entry["cpu_time"] * scale[entry["time_unit"]]
-            for entry in json.loads(printed.stdout)["benchmarks"] if "error_occurred" not in entry}
+            for entry in json.loads(printed.stdout)["benchmarks"]
+            if entry["run_type"] == "iteration" and "error_occurred" not in entry}
 
 
 def machine():
