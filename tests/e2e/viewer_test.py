@@ -3,12 +3,14 @@
     viewer_test.py <write_test_page program>
 """
 
+import base64
 import pathlib
 import sys
 import tempfile
 import unittest
 
 import browser
+import gif_reader
 import tools
 
 FRAMES = 90
@@ -98,6 +100,41 @@ class ViewerTest(unittest.TestCase):
         page.wait_until(f"document.documentElement.dataset.frame > {FRAMES // 2}")
         page.wait_until("(document.documentElement.dataset.saved || '').includes('.webm')")
         self.assertEqual(page.state()["frame"], str(FRAMES - 1))
+
+    def test_makes_an_animated_picture_of_one_run(self):
+        page = self.open_good("#frame=5&paused&view=front", width=600, height=400)
+        page.evaluate("(() => { const make = URL.createObjectURL; URL.createObjectURL = (blob) => {"
+                      " window.saved = blob; return make(blob); }; })()")
+        page.press("g")
+        page.wait_until("(document.documentElement.dataset.saved || '').includes('.gif')")
+        data = base64.b64decode(page.evaluate(
+            "new Promise((resolve) => { const reader = new FileReader();"
+            " reader.onload = () => resolve(reader.result.split(',')[1]);"
+            " reader.readAsDataURL(window.saved); })"))
+        gif = gif_reader.Gif(data)
+        self.assertEqual((gif.width, gif.height), (480, 320))
+        self.assertTrue(gif.repeats)
+        # 2.97 s at 30 Hz, as frames of 6 hundredths.
+        self.assertEqual([frame.hundredths for frame in gif.frames], [6] * 50)
+        for frame in (gif.frames[0], gif.frames[-1]):
+            self.assertGreater(sum(map(lambda colour: tools.is_leader_orange(*colour), frame.pixels)), 1000)
+            self.assertGreater(sum(map(lambda colour: tools.is_follower_teal(*colour), frame.pixels)), 1000)
+        self.assertNotEqual(gif.frames[0].pixels, gif.frames[20].pixels)
+        self.assertEqual(page.state()["frame"], "5")
+        self.assert_looks_alike(page, gif.frames[0])
+
+    def assert_looks_alike(self, page, shown):
+        """A frame of the film and the page's own picture of the first frame."""
+        page.press("Home")
+        pixels = page.evaluate(
+            "(() => { const scene = document.getElementById('stage'); scene.draw();"
+            " const small = Object.assign(document.createElement('canvas'), {width: 480, height: 320});"
+            " const paint = small.getContext('2d'); paint.drawImage(scene.canvas, 0, 0, 480, 320);"
+            " return Array.from(paint.getImageData(0, 0, 480, 320).data); })()")
+        off = [max(abs(pixels[4 * i + channel] - colour[channel]) for channel in range(3))
+               for i, colour in enumerate(shown.pixels)]
+        self.assertLess(sum(off) / len(off), 5)
+        self.assertLess(sum(value > 40 for value in off), len(off) / 200)
 
     def test_the_floor_is_the_worlds_even_where_everybody_floats(self):
         page = self.open_good("#paused")
