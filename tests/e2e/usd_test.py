@@ -1,14 +1,25 @@
 """USD that `duet` writes, read by a reader of its own (usd_reader.py): every joint stands where the
-motion has it, at rest and in every frame, and the mannequins go with them."""
+motion has it, at rest and in every frame, and the mannequins go with them. And by three.js, where
+npm's is there:
+
+    npm install --prefix FOLDER three
+    DUET_NODE_MODULES=FOLDER/node_modules
+"""
 
 import json
 import math
+import os
 import pathlib
+import shutil
 import tempfile
 import unittest
 
 import tools
 import usd_reader
+
+
+NODE = shutil.which("node")
+MODULES = pathlib.Path(os.environ.get("DUET_NODE_MODULES", "/nonexistent"))
 
 
 def rotate(turn, vector):
@@ -86,6 +97,19 @@ class UsdTest(unittest.TestCase):
                 for joint, wanted in zip(self.motion["joint_names"], pose):
                     largest = max(largest, math.dist(named[joint], wanted))
         self.assertLess(largest, 1e-4)  # metres
+
+    @unittest.skipUnless(NODE and (MODULES / "three" / "examples" / "jsm" / "loaders" / "usd").is_dir(),
+                         "no three.js of npm that reads USD; see the head of usd_test.py")
+    def test_three_js_has_every_joint_there_too(self):
+        frames = len(self.motion["leader"])
+        script = pathlib.Path(__file__).parent / "usd" / "positions.mjs"
+        found = tools.run(NODE, script, MODULES, self.folder / "pair.usda", frames)
+        self.assertEqual(found.returncode, 0, found.stderr)
+        there = json.loads(found.stdout)
+        largest = max(math.dist(there[person][joint][frame], self.motion[person][frame][k])
+                      for person in ("leader", "follower") for frame in range(frames)
+                      for k, joint in enumerate(self.motion["joint_names"]))
+        self.assertLess(largest, 0.001)
 
     def test_bind_and_rest_transforms_are_the_same_pose(self):
         for person in ("leader", "follower"):
