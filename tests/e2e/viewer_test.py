@@ -103,6 +103,8 @@ class ViewerTest(unittest.TestCase):
 
     def test_makes_an_animated_picture_of_one_run(self):
         page = self.open_good("#frame=5&paused&view=front", width=600, height=400)
+        # A run of a third of a second, which is soon drawn.
+        page.evaluate("document.getElementById('stage').player.speed = 9")
         page.evaluate("(() => { const make = URL.createObjectURL; URL.createObjectURL = (blob) => {"
                       " window.saved = blob; return make(blob); }; })()")
         page.press("g")
@@ -114,12 +116,11 @@ class ViewerTest(unittest.TestCase):
         gif = gif_reader.Gif(data)
         self.assertEqual((gif.width, gif.height), (480, 320))
         self.assertTrue(gif.repeats)
-        # 2.97 s at 30 Hz, as frames of 6 hundredths.
-        self.assertEqual([frame.hundredths for frame in gif.frames], [6] * 50)
+        self.assertEqual([frame.hundredths for frame in gif.frames], [6] * 6)
         for frame in (gif.frames[0], gif.frames[-1]):
-            self.assertGreater(sum(map(lambda colour: tools.is_leader_orange(*colour), frame.pixels)), 1000)
-            self.assertGreater(sum(map(lambda colour: tools.is_follower_teal(*colour), frame.pixels)), 1000)
-        self.assertNotEqual(gif.frames[0].pixels, gif.frames[20].pixels)
+            for is_person in (tools.is_leader_orange, tools.is_follower_teal):
+                self.assertGreater(sum(is_person(*colour) for colour in frame.pixels), 500)
+        self.assertNotEqual(gif.frames[0].pixels, gif.frames[3].pixels)
         self.assertEqual(page.state()["frame"], "5")
         self.assert_looks_alike(page, gif.frames[0])
 

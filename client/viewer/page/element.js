@@ -117,7 +117,7 @@ class DuetMotion extends HTMLElement {
     const asked = this.asked;
     try {
       const data = source ? await DuetMotion.fetched(source) : JSON.parse(inside.textContent);
-      if (asked === this.asked) this.motion = data;  // nothing newer was asked for
+      if (asked === this.asked) this.motion = Motion.of(data);  // nothing newer was asked for
     } catch (error) {
       this.fail(`${source || 'the motion inside the element'}: ${error.message}`);
     }

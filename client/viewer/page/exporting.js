@@ -107,7 +107,7 @@ class Gif {
       await new Promise((resolve) => setTimeout(resolve));  // the page stays awake
     }
     Object.assign(player, before);
-    this.element.touch();
+    this.element.draw();
     this.running = false;
     save(writer.blob(), `${this.name}.gif`);
   }
