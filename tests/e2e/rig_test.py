@@ -60,8 +60,7 @@ class RigTest(unittest.TestCase):
             f"left_hand = {self.strange['left_hand']}", "left_hand = Nowhere"), encoding="utf-8")
         flags = ("--follower-rig", self.rig, "--follower-rig-joint-map-file", spoilt)
         done = self.synthesize("spoilt.bvh", *flags)
-        self.assertIn("Nowhere", done.stderr)
-        self.assertIn(ADVICE, done.stderr)
+        self.assertIn("left_hand=Nowhere", done.stderr)
         done = self.synthesize("mended.bvh", *flags, "--follower-rig-joint-map",
                                f"left_hand={self.strange['left_hand']}")
         self.assertEqual(done.returncode, 0, done.stderr)
