@@ -5,8 +5,9 @@
 # Needs the packages golang-go, dpkg-dev and, for the test, etcd-server; deb-src in apt's sources.
 set -euo pipefail
 
-readonly out="${1:?make_api_server.sh: wanted a folder}"
-mkdir -p "${out}"
+mkdir -p "${1:?make_api_server.sh: wanted a folder}"
+out="$(realpath "$1")"
+readonly out
 work="$(mktemp -d)"
 readonly work
 trap 'rm -rf "${work}"' EXIT
@@ -20,10 +21,25 @@ tar --extract --file "$(compgen -G "${work}/kubernetes_*.orig.tar.gz")" --direct
 
 version="$(sed -n 's/^kubernetes-\([0-9.]*\)\/$/\1/p' \
   < <(tar --list --file "$(compgen -G "${work}/kubernetes_*.orig.tar.gz")" | sed -n 1p))"
-readonly component=k8s.io/kubernetes/vendor/k8s.io/component-base/version
 cd "${source}"
-GO111MODULE=off GOPATH="${work}/go" GOCACHE="${work}/cache" CGO_ENABLED=0 go build -tags providerless \
+export GO111MODULE=off GOPATH="${work}/go" GOCACHE="${work}/cache" CGO_ENABLED=0
+
+# The one generated file that the sources lack: descriptions of all types that ask for one.
+mapfile -t described < <(grep -rl --include='*.go' '+k8s:openapi-gen=true' pkg \
+  staging/src/k8s.io/{api,apimachinery,apiserver,apiextensions-apiserver,client-go} \
+  staging/src/k8s.io/{kube-aggregator,metrics,cloud-provider,controller-manager} \
+  staging/src/k8s.io/{kube-controller-manager,kube-proxy,kube-scheduler,kubelet} |
+  grep -v /example | xargs -n1 dirname | sort -u |
+  sed -e 's#^staging/src/#k8s.io/kubernetes/vendor/#' -e 's#^pkg#k8s.io/kubernetes/pkg#')
+go build -o "${work}/openapi-gen" ./vendor/k8s.io/kube-openapi/cmd/openapi-gen
+"${work}/openapi-gen" -i "$(IFS=, && echo "${described[*]}")" -O zz_generated.openapi \
+  -p k8s.io/kubernetes/pkg/generated/openapi -r "${work}/violations" \
+  -h hack/boilerplate/boilerplate.generatego.txt
+
+# Without the clouds, which would be half of the work.
+readonly component=k8s.io/kubernetes/vendor/k8s.io/component-base/version
+go build -tags providerless \
   -ldflags "-s -w -X ${component}.gitVersion=v${version} -X ${component}.gitMajor=1 \
     -X ${component}.gitMinor=$(cut -d. -f2 <<<"${version}")" \
-  -o "$(realpath -m "${OLDPWD}/${out}")" ./cmd/kube-apiserver
+  -o "${out}/kube-apiserver" ./cmd/kube-apiserver
 echo "${out}/kube-apiserver: Kubernetes ${version}"

@@ -32,9 +32,9 @@ API_SERVER = os.environ.get("DUET_KUBE_APISERVER") or shutil.which("kube-apiserv
 FOREIGN = ("ScaledObject", "ServiceMonitor")
 OLD_VERSIONS = {("PodDisruptionBudget", "policy/v1"): "policy/v1beta1",
                 ("HorizontalPodAutoscaler", "autoscaling/v2"): "autoscaling/v2beta2"}
-# Fields of a Job that came after 1.20.
+# Fields of a Job that came, or came into force, after 1.20.
 LATER_JOB_FIELDS = ("backoffLimitPerIndex", "completionMode", "maxFailedIndexes",
-                    "podFailurePolicy", "podReplacementPolicy")
+                    "podFailurePolicy", "podReplacementPolicy", "ttlSecondsAfterFinished")
 
 
 def objects_of(folder):
@@ -65,12 +65,15 @@ def as_of_1_20(one):
 
 
 def missing_of(sent, kept, path=""):
-    """The paths of what was sent and was not kept; quantities and defaults may be written otherwise."""
+    """The paths of what was sent and was not kept; text, quantities for instance, may be written otherwise,
+    and an empty list as none."""
     if isinstance(sent, dict):
         if not isinstance(kept, dict):
             return [path]
         return [wrong for key, value in sent.items()
                 for wrong in missing_of(value, kept.get(key), f"{path}.{key}")]
+    if sent == [] and kept is None:
+        return []
     if isinstance(sent, list):
         if not isinstance(kept, list) or len(sent) != len(kept):
             return [path]
