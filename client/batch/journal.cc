@@ -71,6 +71,10 @@ absl::Status JournalReader::Load() {
       return absl::DataLossError(absl::StrCat(path_.string(), ": byte ", size_, ": damaged"));
     torn = file.eof() || !ParseLine(line, &item, &record);
     if (torn) continue;
+    if (item >= kMaxItems) {
+      return absl::DataLossError(absl::StrCat(path_.string(), ": byte ", size_, ": item ", item,
+                                              ", wanted one below ", kMaxItems));
+    }
     if (item >= end()) offsets_.resize(static_cast<size_t>(item) + 1);
     uint64_t& offset = offsets_[static_cast<size_t>(item)];
     count_ += offset == 0 ? 1 : 0;

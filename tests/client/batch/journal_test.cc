@@ -110,6 +110,14 @@ TEST_F(JournalTest, DamageBeforeTheEndIsAnError) {
               StatusIs(absl::StatusCode::kDataLoss, HasSubstr("byte 0: damaged")));
 }
 
+TEST_F(JournalTest, AnItemBeyondAllPlansIsAnErrorAndTakesNoMemory) {
+  Append({{0, "zero"}, {kMaxItems - 1, "last"}});
+  EXPECT_THAT(JournalReader::Open(path_), IsOk());
+  Append({{kMaxItems, "beyond"}});
+  EXPECT_THAT(JournalReader::Open(path_),
+              StatusIs(absl::StatusCode::kDataLoss, HasSubstr("item 67108864, wanted one below")));
+}
+
 TEST_F(JournalTest, AFullDiskEndsIt) {
   Append({{0, "zero"}});
   {
