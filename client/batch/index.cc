@@ -9,6 +9,7 @@
 #include "client/batch/capture_layout.h"
 #include "client/batch/durable_file.h"
 #include "client/batch/packing.h"
+#include "client/batch/parse_record.h"
 #include "client/batch/record.h"
 #include "client/batch/text_values.h"
 #include "model/base/file.h"

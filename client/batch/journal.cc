@@ -10,6 +10,7 @@
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "client/batch/durable_file.h"
+#include "client/batch/item_limit.h"
 #include "model/base/sha256.h"
 
 namespace duet::client::batch {

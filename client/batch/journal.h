@@ -13,9 +13,6 @@
 
 namespace duet::client::batch {
 
-// The most items that a plan may have; half a GiB of a journal in memory.
-inline constexpr int64_t kMaxItems = int64_t{1} << 26;
-
 // What is known of each item for good: a file of lines, only ever appended to.
 //
 //   <first 8 hex digits of the SHA-256 of the rest> <item number> <record as JSON>
@@ -28,8 +25,7 @@ inline constexpr int64_t kMaxItems = int64_t{1} << 26;
 // Threads: const methods are safe to call concurrently.
 class JournalReader {
  public:
-  // A journal that is not there is empty. DATA_LOSS for a bad line that is not the last, and for an
-  // item of kMaxItems or more.
+  // A journal that is not there is empty. DATA_LOSS for a bad line that is not the last.
   static absl::StatusOr<JournalReader> Open(const std::filesystem::path& path);
   JournalReader(JournalReader&& other) noexcept;
   JournalReader& operator=(JournalReader&&) = delete;

@@ -9,7 +9,7 @@
 #include "absl/strings/str_replace.h"
 #include "client/batch/capture_layout.h"
 #include "client/batch/drawn_labels.h"
-#include "client/batch/journal.h"
+#include "client/batch/item_limit.h"
 #include "client/batch/text_values.h"
 #include "model/base/random.h"
 #include "model/base/sha256.h"

@@ -8,8 +8,6 @@
 #include <vector>
 
 #include "absl/status/status.h"
-#include "absl/status/statusor.h"
-#include "absl/strings/string_view.h"
 #include "client/batch/plan.h"
 #include "client/batch/quality.h"
 #include "client/request.h"
@@ -50,11 +48,6 @@ nlohmann::ordered_json DoneRecord(const Item& item, const RecordedAnswer& answer
 nlohmann::ordered_json RejectedRecord(const Item& item, const RecordedAnswer& answer,
                                       const std::vector<std::string>& reasons);
 nlohmann::ordered_json FailedRecord(const Item& item, const absl::Status& error);
-
-// Reads a record back: what a file says that this program may not have written. Of the fields that
-// readers rely on, those that are there are of their types, and those of its state are there;
-// whatever else it holds is kept. Errors: DATA_LOSS "field: what came, what was wanted".
-absl::StatusOr<nlohmann::ordered_json> ParseRecord(absl::string_view text);
 
 // As one line, without its end. Bytes that are no UTF-8 come out as the replacement character.
 std::string Line(const nlohmann::ordered_json& record);

@@ -9,6 +9,7 @@
 #include "absl/strings/str_cat.h"
 #include "client/batch/archive.h"
 #include "client/batch/index.h"
+#include "client/batch/parse_record.h"
 #include "client/batch/record.h"
 #include "model/base/file.h"
 #include "model/base/sha256.h"

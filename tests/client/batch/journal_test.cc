@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "client/batch/durable_file.h"
+#include "client/batch/item_limit.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/support/status_matchers.h"

@@ -1,9 +1,10 @@
-#include "client/batch/record.h"
+#include "client/batch/parse_record.h"
 
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "client/batch/index.h"
+#include "client/batch/record.h"
 #include "client/batch/verify.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
