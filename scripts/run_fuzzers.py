@@ -14,8 +14,10 @@ import dataclasses
 import os
 import pathlib
 import re
+import signal
 import subprocess
 import sys
+import tempfile
 import time
 
 FUZZ_FOLDER = pathlib.Path("tests/fuzz")
@@ -23,6 +25,7 @@ MOST_FINDINGS = 3  # of one target in one run: more of them are mostly the same 
 SLOW_SECONDS = 1
 # libFuzzer measures by the clock on the wall: generous, for a machine that does something else too.
 HANG_SECONDS = 60
+LOOK_SECONDS = 0.05
 LONGEST_INPUT = 32768
 MEMORY_MIB = 2048
 # The largest single piece of memory that any of these inputs justifies.
@@ -65,14 +68,30 @@ def merge_rows(document, rows):
     return before + "\n".join(lines) + after
 
 
-def run(command, environment):
-    """Runs a command; its exit status, what it wrote and its seconds of processor time."""
-    process = subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL,
-                               stderr=subprocess.PIPE, text=True, errors="replace")
-    with process.stderr:
-        text = process.stderr.read()
-    _, status, usage = os.wait4(process.pid, 0)
-    process.returncode = os.waitstatus_to_exitcode(status)
+def processor_seconds(pid):
+    """What a process that was not waited for has used so far."""
+    fields = pathlib.Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rsplit(")", 1)[1].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def run(command, environment, seconds=None):
+    """Runs a command, tells it to end after so much processor time (as libFuzzer wants to be told);
+    its exit status, what it wrote and what it used."""
+    with tempfile.TemporaryFile() as written:
+        process = subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL,
+                                   stderr=written)
+        told = False
+        while True:
+            pid, status, usage = os.wait4(process.pid, 0 if seconds is None else os.WNOHANG)
+            if pid:
+                break
+            if not told and processor_seconds(process.pid) >= seconds:
+                process.send_signal(signal.SIGUSR1)
+                told = True
+            time.sleep(LOOK_SECONDS)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        written.seek(0)
+        text = written.read().decode(errors="replace")
     return process.returncode, text, usage.ru_utime + usage.ru_stime
 
 
@@ -89,13 +108,12 @@ class Fuzzer:
         self.environment = dict(os.environ, UBSAN_OPTIONS="print_stacktrace=1",
                                 ASAN_OPTIONS="detect_container_overflow=0")
 
-    def command(self, seconds):
+    def command(self):
         folders = [self.learnt] + [FUZZ_FOLDER / kind / self.target
                                    for kind in ("corpus", "regressions")]
         dictionary = FUZZ_FOLDER / "dictionaries" / f"{self.target}.dict"
-        return [self.program, f"-max_total_time={max(1, round(seconds))}", "-print_final_stats=1",
-                f"-timeout={HANG_SECONDS}", f"-report_slow_units={SLOW_SECONDS}",
-                f"-rss_limit_mb={MEMORY_MIB}",
+        return [self.program, "-print_final_stats=1", f"-timeout={HANG_SECONDS}",
+                f"-report_slow_units={SLOW_SECONDS}", f"-rss_limit_mb={MEMORY_MIB}",
                 f"-malloc_limit_mb={PIECES_MIB.get(self.target, PIECE_MIB)}",
                 f"-max_len={LONGEST_INPUT}", f"-artifact_prefix={self.findings}/",
                 *([f"-dict={dictionary}"] if dictionary.exists() else []),
@@ -105,16 +123,15 @@ class Fuzzer:
         outcome = Outcome(self.target)
         before = set(self.findings.iterdir())
         while outcome.seconds < seconds and outcome.findings < MOST_FINDINGS:
-            status, text, used = run(self.command(seconds - outcome.seconds), self.environment)
+            status, text, used = run(self.command(), self.environment, seconds - outcome.seconds)
             runs, edges = read_output(text)
             outcome.runs += runs
             outcome.edges = max(outcome.edges, edges)
             outcome.seconds += used
-            if status != 0:
-                outcome.findings += 1
-                print(text[-6000:])
-            if runs == 0:
+            if status == 0:
                 break
+            outcome.findings += 1
+            print(text[-6000:])
         slow = [path for path in set(self.findings.iterdir()) - before
                 if path.name.startswith("slow-unit-")]
         outcome.findings += sum(self.is_slow(path) for path in slow)

@@ -1,3 +1,5 @@
+#include "tests/fuzz/batch_targets.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -19,7 +21,6 @@
 #include "client/batch/verify.h"
 #include "model/base/sha256.h"
 #include "tests/fuzz/promises.h"
-#include "tests/fuzz/targets.h"
 #include "tests/support/temporary_folder.h"
 
 namespace duet::fuzz {

@@ -1,3 +1,5 @@
+#include "tests/fuzz/checkpoint_targets.h"
+
 #include <string>
 
 #include "absl/status/status.h"
@@ -7,7 +9,6 @@
 #include "model/checkpoint/checkpoint.h"
 #include "model/checkpoint/model_card.h"
 #include "tests/fuzz/promises.h"
-#include "tests/fuzz/targets.h"
 
 namespace duet::fuzz {
 namespace {

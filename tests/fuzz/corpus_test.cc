@@ -14,8 +14,12 @@
 #include "absl/strings/escaping.h"
 #include "absl/strings/numbers.h"
 #include "model/base/random.h"
+#include "tests/fuzz/batch_targets.h"
+#include "tests/fuzz/checkpoint_targets.h"
+#include "tests/fuzz/motion_targets.h"
 #include "tests/fuzz/mutation.h"
-#include "tests/fuzz/targets.h"
+#include "tests/fuzz/promises.h"
+#include "tests/fuzz/server_targets.h"
 #include "tests/support/temporary_folder.h"
 
 namespace duet::fuzz {

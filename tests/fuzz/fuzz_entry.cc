@@ -1,10 +1,11 @@
-// What libFuzzer calls. Built once for each target, with DUET_FUZZ_TARGET naming its function.
+// What libFuzzer calls. Built once for each target: DUET_FUZZ_TARGET is its function,
+// DUET_FUZZ_HEADER declares it.
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 
-#include "tests/fuzz/targets.h"
+#include DUET_FUZZ_HEADER
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const duet::fuzz::Broken broken =

@@ -1,3 +1,5 @@
+#include "tests/fuzz/motion_targets.h"
+
 #include <map>
 #include <optional>
 #include <string>
@@ -5,7 +7,6 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_format.h"
 #include "model/authoring/keyframes.h"
 #include "model/dataset/layout.h"
 #include "model/dataset/leader_side.h"
@@ -18,7 +19,6 @@
 #include "model/motion/recorded_motion.h"
 #include "model/retargeting/joint_table.h"
 #include "tests/fuzz/promises.h"
-#include "tests/fuzz/targets.h"
 #include "tests/support/test_motion.h"
 
 namespace duet::fuzz {

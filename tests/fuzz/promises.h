@@ -2,14 +2,23 @@
 #define DUET_TESTS_FUZZ_PROMISES_H_
 
 #include <initializer_list>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "absl/status/status.h"
 #include "absl/strings/string_view.h"
-#include "tests/fuzz/targets.h"
 
 namespace duet::fuzz {
+
+// Whatever reads bytes of strangers has a target, a function of the input (*_targets.h). Any input
+// at all is a fair one: a fuzzer makes them up, corpus_test runs those that are kept
+// (docs/fuzzing.md).
+//
+// A target returns the promise that the input made the code break ("a clip that was read has no
+// frame"), empty when it broke none. That a reader refuses an input is no finding; that it refuses
+// it in words that say nothing is one.
+using Broken = std::string;
 
 // What every refusal keeps: one of `codes`, and a message of printable lines that is no longer than
 // a person would read. Nothing is wrong with OK.

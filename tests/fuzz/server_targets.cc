@@ -1,3 +1,5 @@
+#include "tests/fuzz/server_targets.h"
+
 #include <google/protobuf/io/tokenizer.h>
 #include <google/protobuf/io/zero_copy_stream_impl_lite.h>
 #include <google/protobuf/stubs/logging.h>
@@ -33,7 +35,6 @@
 #include "server/service/wire.h"
 #include "server/service/wire_survey.h"
 #include "tests/fuzz/promises.h"
-#include "tests/fuzz/targets.h"
 #include "tests/support/fake_synthesizer.h"
 
 namespace duet::fuzz {
