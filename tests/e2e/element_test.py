@@ -121,6 +121,11 @@ class ElementTest(unittest.TestCase):
                 for event in page.events("Network.requestWillBeSent")}
         self.assertLessEqual(urls, {f"{self.pages}.html", "events.js", "duet-motion.js"})
 
+    def test_the_script_may_come_first(self):
+        page = self.open('<script src="duet-motion.js"></script>'
+                         f'<duet-motion paused>{INLINE}</duet-motion>', over="file")
+        self.sees(page)
+
     def test_fetches_what_src_says_and_leaves_no_name_behind(self):
         page = self.open('<duet-motion src="pair.json" paused></duet-motion>')
         self.sees(page)

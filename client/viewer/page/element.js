@@ -112,7 +112,13 @@ class DuetMotion extends HTMLElement {
   async load() {
     const source = this.getAttribute('src');
     const inside = this.querySelector('script[type="application/json"]');
-    if (!source && !inside) return;
+    if (!source && !inside) {
+      // An element is told of before the page has read what is in it.
+      if (document.readyState === 'loading') {
+        document.addEventListener('DOMContentLoaded', () => this.load(), {once: true});
+      }
+      return;
+    }
     this.asked = (this.asked || 0) + 1;
     const asked = this.asked;
     try {
