@@ -195,7 +195,7 @@ absl::StatusOr<SetCounts> WriteIndex(const JournalReader& journal, const JobIden
   absl::Status status = writer.Open();
   if (!status.ok()) return status;
   status =
-      journal.ForEach([&writer](int64_t, const std::string& record) { return writer.Add(record); });
+      journal.ForEach([&writer](const JournalEntry& entry) { return writer.Add(entry.record); });
   if (status.ok()) status = writer.Finish(out);
   if (!status.ok()) return status;
   status = ReplaceDurably(out / "summary.json", SummaryJson(identity, writer.counts(), planned));
