@@ -21,6 +21,11 @@ void Reception::Lost(bool cancelled) {
                     : NoMessageRefusal());
 }
 
+std::optional<absl::Status> Reception::ended_meanwhile() const {
+  common::MutexLock lock(mutex_);
+  return end_;
+}
+
 void Reception::Refuse(const absl::Status& reason) { EndFrom(State::kHandling, reason); }
 
 bool Reception::EndFrom(State state, const absl::Status& reason) {

@@ -107,7 +107,10 @@ TEST_F(ReceptionTest, WhatComesAfterTheEndIsNobodys) {
 TEST_F(ReceptionTest, AnEndThatComesWhileTheMessageIsHandledWaitsForThat) {
   const auto reception = Receive(writer_);
   EXPECT_TRUE(reception->Received());
+  EXPECT_FALSE(reception->ended_meanwhile().has_value());
   reception->Abort(absl::CancelledError("gone"));
+  EXPECT_THAT(reception->ended_meanwhile().value_or(absl::OkStatus()),
+              StatusIs(StatusCode::kCancelled, _));
   reception->CheckTime(clock_.Now() + std::chrono::hours(1));
   EXPECT_FALSE(writer_.finished.has_value());
   const std::unique_ptr<CallScope> scope = reception->Answer();
