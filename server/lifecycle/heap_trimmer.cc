@@ -2,6 +2,8 @@
 
 #include <malloc.h>
 
+#include <algorithm>
+#include <thread>
 #include <utility>
 
 namespace duet::server::lifecycle {
@@ -19,6 +21,7 @@ constexpr int kKeptBytes = 1 << 20;
 void LimitFreeMemory() {
   mallopt(M_MMAP_THRESHOLD, kKeptBytes);
   mallopt(M_TRIM_THRESHOLD, kKeptBytes);
+  mallopt(M_ARENA_MAX, 2 * static_cast<int>(std::max(1U, std::thread::hardware_concurrency())));
 }
 
 HeapTrimmer::HeapTrimmer() : HeapTrimmer([] { malloc_trim(0); }) {}
