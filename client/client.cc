@@ -29,4 +29,8 @@ absl::StatusOr<SynthesisResult> Client::SynthesizeStreaming(const SynthesisReque
   return connection_->Synthesize(request, on_chunk);
 }
 
+void Client::SynthesizeAsync(SynthesisRequest request, const SynthesisCallback& done) const {
+  connection_->SynthesizeAsync(std::move(request), done);
+}
+
 }  // namespace duet::client

@@ -45,6 +45,11 @@ class Client {
   // The same, and hands out frames as soon as they arrive.
   absl::StatusOr<SynthesisResult> SynthesizeStreaming(const SynthesisRequest& request,
                                                       const ChunkCallback& on_chunk) const;
+  // For callers that keep many calls under way and decide themselves what to do about one that
+  // failed: one attempt, whatever the retry options say. Does not wait; `done` comes once, on the
+  // connection's own thread, which reads all its replies and so should not be kept. The last copy
+  // of a Client waits for calls under way: no `done` may hold it.
+  void SynthesizeAsync(SynthesisRequest request, const SynthesisCallback& done) const;
 
  private:
   std::shared_ptr<Connection> connection_;

@@ -1,6 +1,8 @@
 #ifndef DUET_CLIENT_CONNECTION_H_
 #define DUET_CLIENT_CONNECTION_H_
 
+#include <functional>
+#include <utility>
 #include <vector>
 
 #include "absl/status/statusor.h"
@@ -8,6 +10,9 @@
 #include "client/result.h"
 
 namespace duet::client {
+
+// Told once how a call ended.
+using SynthesisCallback = std::function<void(absl::StatusOr<SynthesisResult>)>;
 
 // How a Client reaches a server. Tests of programs that use a Client replace it
 // (client/mocks/mock_connection.h).
@@ -22,6 +27,10 @@ class Connection {
   // `on_chunk` may be empty.
   virtual absl::StatusOr<SynthesisResult> Synthesize(const SynthesisRequest& request,
                                                      const ChunkCallback& on_chunk) = 0;
+  // One attempt. A connection that can only wait does so, and is done when this returns.
+  virtual void SynthesizeAsync(SynthesisRequest request, const SynthesisCallback& done) {
+    done(Synthesize(request, nullptr));
+  }
 };
 
 }  // namespace duet::client

@@ -67,7 +67,7 @@ SynthesisRequest ToRequest(const Item& item, const Recipe& recipe, const ModelIn
   return request;
 }
 
-RecordedAnswer ToRecorded(const SynthesisRequest& request, const SynthesisResult& result,
+RecordedAnswer ToRecorded(const Item& item, const SynthesisResult& result,
                           const LoadedLeader& leader, const motion::Skeleton& skeleton, int retry) {
   RecordedAnswer answer;
   answer.leader_sha256 = leader.sha256;
@@ -75,7 +75,7 @@ RecordedAnswer ToRecorded(const SynthesisRequest& request, const SynthesisResult
   answer.seed = result.seed;
   answer.variety = result.variety;
   answer.request_id = result.request_id;
-  answer.keyframes = request.keyframes;
+  answer.keyframes = ToFrames(item.keyframes, leader.clip.frame_count());
   answer.frames = result.pair.follower.frame_count();
   answer.frame_rate_hz = result.pair.follower.frame_rate_hz;
   answer.quality = Measure(result.pair, skeleton);

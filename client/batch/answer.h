@@ -32,7 +32,7 @@ SynthesisRequest ToRequest(const Item& item, const Recipe& recipe, const ModelIn
 std::string RequestId(const Item& item, int retry);
 
 // What the index tells of an answer.
-RecordedAnswer ToRecorded(const SynthesisRequest& request, const SynthesisResult& result,
+RecordedAnswer ToRecorded(const Item& item, const SynthesisResult& result,
                           const LoadedLeader& leader, const motion::Skeleton& skeleton, int retry);
 
 }  // namespace duet::client::batch

@@ -102,22 +102,22 @@ std::string FiguresText(const ordered_json& record) {
 
 // Some items of a class: those of the lowest ids, which are as good as random.
 struct Sample {
-  int64_t items = 0;                        // of the class
-  std::map<std::string, std::string> kept;  // id to record
+  int64_t items = 0;                         // of the class
+  std::map<std::string, JournalEntry> kept;  // by id
 };
 
 class Sheet {
  public:
-  Sheet(const JobIdentity& identity, std::filesystem::path items)
-      : identity_(identity), items_(std::move(items)) {}
+  Sheet(const JobIdentity& identity, const ItemReader& items)
+      : identity_(identity), items_(items) {}
 
-  void Add(const std::string& text) {
-    const ordered_json record = ordered_json::parse(text);
+  void Add(const JournalEntry& entry) {
+    const ordered_json record = ordered_json::parse(entry.record);
     if (record["state"] != kDone) return;
     Sample& sample = samples_[ClassOf(record)];
     ++sample.items;
     ++total_;
-    sample.kept.emplace(record["id"].get<std::string>(), text);
+    sample.kept.emplace(record["id"].get<std::string>(), entry);
     if (sample.kept.size() > kItemsOfAClass) sample.kept.erase(std::prev(sample.kept.end()));
   }
 
@@ -142,14 +142,16 @@ class Sheet {
   void AppendClass(const std::string& name, const Sample& sample, std::string* page) const {
     absl::StrAppend(page, "<h2>", Escaped(name), " <small>", sample.kept.size(), " of ",
                     sample.items, "</small></h2>\n<div class=\"items\">\n");
-    for (const auto& [id, text] : sample.kept) AppendItem(ordered_json::parse(text), page);
+    for (const auto& [id, entry] : sample.kept) {
+      AppendItem(ordered_json::parse(entry.record), entry.place, page);
+    }
     absl::StrAppend(page, "</div>\n");
   }
 
-  void AppendItem(const ordered_json& record, std::string* page) const {
+  void AppendItem(const ordered_json& record, const SpoolPlace& place, std::string* page) const {
     const std::string name = Escaped(record["name"].get<std::string>());
     const std::string file = Escaped(record["files"][0]["path"].get<std::string>());
-    absl::StrAppend(page, "<figure>", Picture(record), "<figcaption>");
+    absl::StrAppend(page, "<figure>", Picture(record, place), "<figcaption>");
     // A file in a shard is nothing to open.
     if (identity_.packing == Packing::kNone) {
       absl::StrAppend(page, "<a href=\"", file, "\">", name, "</a>");
@@ -161,7 +163,7 @@ class Sheet {
                     "</span></figcaption></figure>\n");
   }
 
-  std::string Picture(const ordered_json& record) const {
+  std::string Picture(const ordered_json& record, const SpoolPlace& place) const {
     const auto unread = [](absl::string_view why) {
       return absl::StrCat("<div class=\"unread\">", Escaped(why), "</div>");
     };
@@ -169,14 +171,14 @@ class Sheet {
     for (size_t i = 0; i < identity_.models.size(); ++i) {
       if (ModelText(identity_.models[i]) != model) continue;
       const motion::Skeleton& skeleton = identity_.skeletons[i];
-      const absl::StatusOr<motion::ClipPair> pair = ReadStoredPair(items_, record, skeleton);
+      const absl::StatusOr<motion::ClipPair> pair = ReadStoredPair(items_, record, place, skeleton);
       return pair.ok() ? PoseStrip(*pair, skeleton) : unread(pair.status().message());
     }
     return unread(model + " is no model of the job");
   }
 
   const JobIdentity& identity_;
-  std::filesystem::path items_;
+  const ItemReader& items_;
   std::map<std::string, Sample> samples_;
   int64_t total_ = 0;
 };
@@ -184,11 +186,10 @@ class Sheet {
 }  // namespace
 
 absl::Status WriteContactSheet(const JournalReader& journal, const JobIdentity& identity,
-                               const std::filesystem::path& items,
-                               const std::filesystem::path& out) {
+                               const ItemReader& items, const std::filesystem::path& out) {
   Sheet sheet(identity, items);
-  absl::Status status = journal.ForEach([&sheet](int64_t, const std::string& record) {
-    sheet.Add(record);
+  absl::Status status = journal.ForEach([&sheet](const JournalEntry& entry) {
+    sheet.Add(entry);
     return absl::OkStatus();
   });
   if (!status.ok()) return status;

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "absl/status/status.h"
+#include "client/batch/item_files.h"
 #include "client/batch/job_folder.h"
 #include "client/batch/journal.h"
 
@@ -11,11 +12,10 @@ namespace duet::client::batch {
 
 // Writes <out>/contact_sheet.html, a self-contained page to look a data set through: a strip of
 // poses for some items of each class (by the largest weight), chosen by their ids, so that the same
-// data set has the same page. Reads their files below `items`; what cannot be read is said in its
-// place. ABORTED where the page cannot be written.
+// data set has the same page. What cannot be read is said in its place. ABORTED where the page
+// cannot be written.
 absl::Status WriteContactSheet(const JournalReader& journal, const JobIdentity& identity,
-                               const std::filesystem::path& items,
-                               const std::filesystem::path& out);
+                               const ItemReader& items, const std::filesystem::path& out);
 
 }  // namespace duet::client::batch
 

@@ -46,19 +46,36 @@ absl::Status MakeFolders(const fs::path& folder) {
   return absl::OkStatus();
 }
 
-absl::Status Rename(const fs::path& from, const fs::path& to) {
-  if (rename(from.c_str(), to.c_str()) == 0) return absl::OkStatus();
-  if (errno != ENOENT) return CannotWrite(to, errno);
-  absl::Status status = MakeFolders(to.parent_path());
-  if (!status.ok()) return status;
-  return rename(from.c_str(), to.c_str()) == 0 ? absl::OkStatus() : CannotWrite(to, errno);
-}
-
 }  // namespace
 
 absl::Status CannotWrite(const fs::path& path, int error) {
   return absl::AbortedError(
       absl::StrCat("cannot write ", path.string(), ": ", std::generic_category().message(error)));
+}
+
+absl::Status RenameInto(const std::string& from, const std::string& to) {
+  if (rename(from.c_str(), to.c_str()) == 0) return absl::OkStatus();
+  if (errno != ENOENT) return CannotWrite(to, errno);
+  absl::Status status = MakeFolders(fs::path(to).parent_path());
+  if (!status.ok()) return status;
+  return rename(from.c_str(), to.c_str()) == 0 ? absl::OkStatus() : CannotWrite(to, errno);
+}
+
+absl::Status WriteFileUnsynced(const std::string& path, absl::string_view content) {
+  const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, kFileMode);
+  if (file < 0) return CannotWrite(path, errno);
+  absl::Status status = WriteAll(file, content, path);
+  if (close(file) != 0 && status.ok()) status = CannotWrite(path, errno);
+  return status;
+}
+
+absl::Status SyncFileSystem(const fs::path& folder) {
+  const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return CannotWrite(folder, errno);
+  const absl::Status status =
+      syncfs(descriptor) == 0 ? absl::OkStatus() : CannotWrite(folder, errno);
+  close(descriptor);
+  return status;
 }
 
 absl::Status WriteDurably(const fs::path& temporary, const fs::path& path,
@@ -68,7 +85,7 @@ absl::Status WriteDurably(const fs::path& temporary, const fs::path& path,
   absl::Status status = WriteAll(file, content, path);
   if (status.ok() && fsync(file) != 0) status = CannotWrite(path, errno);
   close(file);
-  if (status.ok()) status = Rename(temporary, path);
+  if (status.ok()) status = RenameInto(temporary, path);
   if (!status.ok()) unlink(temporary.c_str());
   return status;
 }
@@ -110,8 +127,41 @@ absl::Status DurableFile::Append(absl::string_view content) {
 absl::Status DurableFile::Finish(const fs::path& path) {
   absl::Status status = Flush();
   if (status.ok() && fsync(descriptor_) != 0) status = CannotWrite(temporary_, errno);
-  if (status.ok()) status = Rename(temporary_, path);
+  if (status.ok()) status = RenameInto(temporary_, path);
   return status.ok() ? SyncFolder(path.parent_path()) : status;
+}
+
+AppendedFile::~AppendedFile() {
+  if (descriptor_ >= 0) close(descriptor_);
+}
+
+absl::Status AppendedFile::Open() {
+  if (descriptor_ >= 0 || !broken_.ok()) return broken_;
+  descriptor_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, kFileMode);
+  const off_t end = descriptor_ < 0 ? -1 : lseek(descriptor_, 0, SEEK_END);
+  if (end < 0) return broken_ = CannotWrite(path_, errno);
+  size_ = synced_size_ = static_cast<uint64_t>(end);
+  return broken_ = SyncFolder(path_.parent_path());
+}
+
+absl::Status AppendedFile::Flush() {
+  if (broken_.ok()) broken_ = WriteAll(descriptor_, buffer_, path_);
+  buffer_.clear();
+  return broken_;
+}
+
+absl::Status AppendedFile::Append(absl::string_view content) {
+  buffer_.append(content.data(), content.size());
+  size_ += content.size();
+  return buffer_.size() < kBufferBytes ? broken_ : Flush();
+}
+
+absl::Status AppendedFile::Commit() {
+  if (size_ == synced_size_) return broken_;
+  absl::Status status = Flush();
+  if (status.ok() && fdatasync(descriptor_) != 0) broken_ = CannotWrite(path_, errno);
+  synced_size_ = size_;
+  return broken_;
 }
 
 FolderLock::~FolderLock() {

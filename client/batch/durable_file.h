@@ -1,8 +1,10 @@
 #ifndef DUET_CLIENT_BATCH_DURABLE_FILE_H_
 #define DUET_CLIENT_BATCH_DURABLE_FILE_H_
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
+#include <utility>
 
 #include "absl/status/status.h"
 #include "absl/strings/string_view.h"
@@ -18,6 +20,12 @@ namespace duet::client::batch {
 // needed. Both are on one file system. The name itself is on the disk after SyncFolder.
 absl::Status WriteDurably(const std::filesystem::path& temporary, const std::filesystem::path& path,
                           absl::string_view content);
+// The steps of it, for many files at once. A file that is written and not yet brought to the disk;
+absl::Status WriteFileUnsynced(const std::string& path, absl::string_view content);
+// everything on the file system that `folder` is on brought there;
+absl::Status SyncFileSystem(const std::filesystem::path& folder);
+// its place, whose folders are made as needed.
+absl::Status RenameInto(const std::string& from, const std::string& to);
 // Brings a folder's names to the disk.
 absl::Status SyncFolder(const std::filesystem::path& folder);
 // Both, for a file that nobody else waits for.
@@ -44,6 +52,33 @@ class DurableFile {
   std::filesystem::path temporary_;
   std::string buffer_;
   int descriptor_ = -1;
+};
+
+// A file that grows at its end; what is there already stays.
+class AppendedFile {
+ public:
+  explicit AppendedFile(std::filesystem::path path) : path_(std::move(path)) {}
+  AppendedFile(const AppendedFile&) = delete;
+  AppendedFile& operator=(const AppendedFile&) = delete;
+  ~AppendedFile();
+
+  // Before all else; once it is open, nothing.
+  absl::Status Open();
+  absl::Status Append(absl::string_view content);
+  // On the disk when it returns.
+  absl::Status Commit();
+  // With all that was appended.
+  uint64_t size() const { return size_; }
+
+ private:
+  absl::Status Flush();
+
+  std::filesystem::path path_;
+  std::string buffer_;
+  int descriptor_ = -1;
+  uint64_t size_ = 0;
+  uint64_t synced_size_ = 0;
+  absl::Status broken_;
 };
 
 // ABORTED "cannot write <path>: <what errno means>".

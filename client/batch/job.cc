@@ -1,7 +1,6 @@
 #include "client/batch/job.h"
 
 #include <algorithm>
-#include <set>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -17,10 +16,13 @@
 namespace duet::client::batch {
 namespace {
 
-constexpr int kAttempts = 3;      // at a call that fails for a passing reason
-constexpr int kReadingAhead = 4;  // threads beyond those that may have a call under way
+constexpr int kAttempts = 3;  // at a call that fails for a passing reason
 constexpr size_t kQueuedItems = 64;
-constexpr size_t kQueuedRecords = 4096;
+constexpr size_t kQueuedAnswers = 64;
+constexpr size_t kUnwrittenBytes = size_t{64} << 20;
+// How long items gather before they are brought to the disk together: a look at the disk costs as
+// much as several items, and one that is not written yet is only asked for again.
+constexpr flow::Duration kGatherTime = std::chrono::milliseconds(100);
 
 std::optional<flow::Duration> DelayOf(const absl::Status& status) {
   const std::optional<absl::Duration> delay = RetryDelay(status);
@@ -34,6 +36,12 @@ bool InShare(const Item& item, double share) {
   return std::stoul(item.id.substr(8, 8), nullptr, 16) < share * 4294967296.0;
 }
 
+// Askers, and keepers: as many as can work at once, of whom the first two overlap reading and
+// waiting.
+int ThreadsOfAKind() {
+  return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 2, 8);
+}
+
 }  // namespace
 
 Job::Job(Parts parts, Plan plan, const JobOptions& options)
@@ -42,7 +50,8 @@ Job::Job(Parts parts, Plan plan, const JobOptions& options)
       options_(options),
       gate_(static_cast<int>(parts_.servers.size()), options.calls, options.patience),
       queue_(kQueuedItems),
-      settled_(kQueuedRecords),
+      answers_(kQueuedAnswers),
+      settled_(kUnwrittenBytes),
       leaders_(parts_.models.size()) {}
 
 Client& Job::NextClient(int server) {
@@ -69,9 +78,9 @@ Progress Job::progress() const {
 
 absl::StatusOr<bool> Job::IsSettled(const Item& item, const JournalReader& journal) const {
   if (!journal.Has(item.number)) return false;
-  const absl::StatusOr<std::string> text = journal.Read(item.number);
-  if (!text.ok()) return text.status();
-  const auto record = nlohmann::json::parse(*text, nullptr, false);
+  const absl::StatusOr<JournalEntry> entry = journal.Read(item.number);
+  if (!entry.ok()) return entry.status();
+  const auto record = nlohmann::json::parse(entry->record, nullptr, false);
   const std::string id = record.is_object() ? record.value("id", "") : "";
   if (id != item.id) {
     return absl::FailedPreconditionError(absl::StrCat(
@@ -114,98 +123,98 @@ absl::Status Job::Feed(const JournalReader& journal) {
   return absl::OkStatus();
 }
 
-void Job::WorkUntilDone() {
-  while (std::optional<Work> work = queue_.Take()) {
-    const absl::Status status = Make(*work);
-    if (!status.ok()) return StopWith(status);
-  }
+void Job::AskUntilDone() {
+  while (std::optional<Work> work = queue_.Take()) Ask(*std::move(work));
 }
 
-absl::Status Job::Make(const Work& work) {
-  const Item& item = work.item;
-  const auto model = static_cast<size_t>(item.model);
+void Job::Ask(Work work) {
+  const auto model = static_cast<size_t>(work.item.model);
   const absl::StatusOr<LoadedLeader>& leader =
       work.leader->Get(parts_.recipe.input, parts_.skeletons[model]);
-  if (!leader.ok()) return Fail(item, leader.status());
-  for (int retry = 0, attempts = 0;;) {
-    const SynthesisRequest request =
-        ToRequest(item, parts_.recipe, parts_.models[model], *leader, retry);
-    const std::optional<flow::ServerChoice::Call> call = gate_.Start();
-    if (!call.has_value()) {
-      queue_.Stop();  // nobody gets a call any longer
-      return absl::OkStatus();
-    }
-    absl::StatusOr<SynthesisResult> result = NextClient(call->server).Synthesize(request);
-    gate_.Finish(*call, CallEndOf(result.status()), DelayOf(result.status()));
-    switch (MeaningOf(result.status())) {
-      case Meaning::kAnswer: {
-        bool again = false;
-        result->pair = AtOutputRate(std::move(result->pair), parts_.recipe.output);
-        absl::Status status = Judge(work, request, *result, retry, &again);
-        if (!again || !status.ok()) return status;
-        ++retry;
-        break;
-      }
-      case Meaning::kWait:
-        break;
-      case Meaning::kTryAgain:
-        if (++attempts < kAttempts) break;
-        FailForNow(item, result.status());
-        return absl::OkStatus();
-      case Meaning::kRefused:
-        return Fail(item, result.status());
-      case Meaning::kStop:
-        return result.status();
-    }
+  if (!leader.ok()) {
+    Fail(work.item, leader.status());
+    return queue_.Done();
   }
+  SynthesisRequest request =
+      ToRequest(work.item, parts_.recipe, parts_.models[model], *leader, work.retry);
+  const std::optional<flow::ServerChoice::Call> call = gate_.Start();
+  if (!call.has_value()) {
+    queue_.Done();
+    return queue_.Stop();  // nobody gets a call any longer
+  }
+  NextClient(call->server)
+      .SynthesizeAsync(std::move(request), [this, call = *call, work = std::move(work)](
+                                               absl::StatusOr<SynthesisResult> result) {
+        gate_.Finish(call, CallEndOf(result.status()), DelayOf(result.status()));
+        answers_.Put({work, std::move(result)});
+      });
 }
 
-absl::Status Job::Judge(const Work& work, const SynthesisRequest& request,
-                        const SynthesisResult& result, int retry, bool* again) {
+void Job::KeepUntilClosed() {
+  while (std::optional<Answered> answered = answers_.Take()) Receive(*std::move(answered));
+}
+
+// The item is done, or goes back to be asked for again.
+void Job::Receive(Answered answered) {
+  const absl::Status status = answered.result.status();
+  Work& work = answered.work;
+  switch (MeaningOf(status)) {
+    case Meaning::kAnswer:
+      answered.result->pair = AtOutputRate(std::move(answered.result->pair), parts_.recipe.output);
+      return Judge(std::move(work), *answered.result);
+    case Meaning::kWait:
+      return queue_.PutBack(std::move(work));
+    case Meaning::kTryAgain:
+      if (++work.attempts < kAttempts) return queue_.PutBack(std::move(work));
+      FailForNow(work.item, status);
+      break;
+    case Meaning::kRefused:
+      Fail(work.item, status);
+      break;
+    case Meaning::kStop:
+      StopWith(status);
+      break;
+  }
+  queue_.Done();
+}
+
+void Job::Judge(Work work, const SynthesisResult& result) {
   const auto model = static_cast<size_t>(work.item.model);
   const motion::Skeleton& skeleton = parts_.skeletons[model];
   const QualityFilter& filter = parts_.recipe.filter;
   const RecordedAnswer answer = ToRecorded(
-      request, result, *work.leader->Get(parts_.recipe.input, skeleton), skeleton, retry);
+      work.item, result, *work.leader->Get(parts_.recipe.input, skeleton), skeleton, work.retry);
   const std::vector<std::string> reasons =
       WhyRejected(filter, answer.quality, answer.unfamiliarity);
-  if (reasons.empty()) return Keep(work.item, answer, result.pair);
-  *again = parts_.models[model].samples && retry < filter.retries_per_item;
-  if (*again) return absl::OkStatus();
-  RemoveError(work.item);
-  ++rejected_;
-  Settle(work.item, RejectedRecord(work.item, answer, reasons), {});
-  return absl::OkStatus();
+  if (reasons.empty()) {
+    Keep(work.item, answer, result.pair);
+  } else if (parts_.models[model].samples && work.retry < filter.retries_per_item) {
+    ++work.retry;
+    return queue_.PutBack(std::move(work));
+  } else {
+    Settle({work.item, kRejected, Line(RejectedRecord(work.item, answer, reasons)), {}});
+  }
+  queue_.Done();
 }
 
-absl::Status Job::Keep(const Item& item, const RecordedAnswer& answer,
-                       const motion::ClipPair& pair) {
-  const std::filesystem::path root = parts_.folder->items(parts_.identity.packing);
+void Job::Keep(const Item& item, const RecordedAnswer& answer, const motion::ClipPair& pair) {
   const motion::Skeleton& skeleton = parts_.skeletons[static_cast<size_t>(item.model)];
-  std::vector<RecordedFile> files;
-  const absl::StatusOr<std::vector<EncodedFile>> encoded =
+  absl::StatusOr<std::vector<EncodedFile>> encoded =
       Encode(parts_.recipe.output, item.side, pair, skeleton);
   if (!encoded.ok()) return Fail(item, encoded.status());
-  for (const EncodedFile& file : *encoded) {
-    const std::string path = item.name + file.ending;
-    const std::filesystem::path temporary =
-        parts_.folder->temporary() / absl::StrCat(item.number, file.ending);
-    absl::Status status = WriteDurably(temporary, root / path, file.content);
-    if (!status.ok()) return status;
-    files.push_back({path, file.content.size(), base::Sha256Hex(file.content)});
-    bytes_ += file.content.size();
+  std::vector<RecordedFile> recorded;
+  std::vector<ItemFile> files;
+  for (EncodedFile& file : *encoded) {
+    files.push_back({item.name + file.ending, std::move(file.content)});
+    const ItemFile& kept = files.back();
+    recorded.push_back({kept.path, kept.content.size(), base::Sha256Hex(kept.content)});
   }
-  RemoveError(item);
-  ++done_;
-  Settle(item, DoneRecord(item, answer, files), {(root / item.name).parent_path()});
-  return absl::OkStatus();
+  Settle({item, kDone, Line(DoneRecord(item, answer, recorded)), std::move(files)});
 }
 
-absl::Status Job::Fail(const Item& item, const absl::Status& error) {
+void Job::Fail(const Item& item, const absl::Status& error) {
   WriteError(item, error);
-  ++failed_;
-  Settle(item, FailedRecord(item, error), {});
-  return absl::OkStatus();
+  Settle({item, kFailed, Line(FailedRecord(item, error)), {}});
 }
 
 void Job::FailForNow(const Item& item, const absl::Status& error) {
@@ -229,41 +238,68 @@ void Job::RemoveError(const Item& item) {
   if (errors_exist_) std::filesystem::remove(ErrorFile(item), error);
 }
 
-void Job::Settle(const Item& item, const nlohmann::ordered_json& record,
-                 std::vector<std::filesystem::path> folders) {
-  settled_.Put({item.number, Line(record), std::move(folders)});
+void Job::Settle(Settled settled) {
+  size_t bytes = settled.record.size();
+  for (const ItemFile& file : settled.files) bytes += file.content.size();
+  settled_.Put(std::move(settled), bytes);
 }
 
 // Many items share one look at the disk.
-void Job::CommitUntilClosed(JournalWriter* writer) {
-  for (std::vector<Settled> all; !(all = settled_.TakeAll()).empty();) {
-    std::set<std::filesystem::path> folders;
-    for (const Settled& settled : all) {
-      folders.insert(settled.folders.begin(), settled.folders.end());
-      writer->Add(settled.item, settled.record);
-    }
-    absl::Status status;
-    for (const std::filesystem::path& folder : folders) status.Update(SyncFolder(folder));
-    if (status.ok()) status = writer->Commit();
+void Job::WriteUntilClosed(JournalWriter* journal) {
+  const std::unique_ptr<ItemWriter> items = MakeItemWriter(*parts_.folder, parts_.identity.packing);
+  for (std::vector<Settled> all; !(all = settled_.Gather(kGatherTime)).empty();) {
+    const absl::Status status = Write(all, items.get(), journal);
     if (status.ok()) continue;
     settled_.Stop();
     return StopWith(status);
   }
 }
 
+// Files before records: a record never names what is not there.
+absl::Status Job::Write(const std::vector<Settled>& all, ItemWriter* items,
+                        JournalWriter* journal) {
+  for (const Settled& settled : all) {
+    SpoolPlace place;
+    if (!settled.files.empty()) {
+      const absl::StatusOr<SpoolPlace> added = items->Add(settled.files);
+      if (!added.ok()) return added.status();
+      place = *added;
+    }
+    journal->Add(settled.item.number, settled.record, place);
+  }
+  absl::Status status = items->Commit();
+  if (status.ok()) status = journal->Commit();
+  if (!status.ok()) return status;
+  for (const Settled& settled : all) Count(settled);
+  return absl::OkStatus();
+}
+
+void Job::Count(const Settled& settled) {
+  for (const ItemFile& file : settled.files) bytes_ += file.content.size();
+  if (settled.state == kFailed) {
+    ++failed_;
+    return;
+  }
+  ++(settled.state == kDone ? done_ : rejected_);
+  RemoveError(settled.item);
+}
+
 absl::Status Job::RunThreads(const JournalReader& journal, JournalWriter* writer) {
-  std::thread committer([this, writer] { CommitUntilClosed(writer); });
-  std::vector<std::thread> workers;
-  const int calls = options_.calls.max_in_flight * static_cast<int>(parts_.servers.size());
-  for (int i = 0; i < calls + kReadingAhead; ++i) {
-    workers.emplace_back([this] { WorkUntilDone(); });
+  std::thread on_disk([this, writer] { WriteUntilClosed(writer); });
+  std::vector<std::thread> askers, keepers;
+  for (int i = 0; i < ThreadsOfAKind(); ++i) {
+    askers.emplace_back([this] { AskUntilDone(); });
+    keepers.emplace_back([this] { KeepUntilClosed(); });
   }
   const absl::Status fed = Feed(journal);
   queue_.Close();
   if (!fed.ok()) Stop();
-  for (std::thread& worker : workers) worker.join();
+  for (std::thread& asker : askers) asker.join();
+  queue_.WaitUntilNoneIsTaken();
+  answers_.Close();
+  for (std::thread& keeper : keepers) keeper.join();
   settled_.Close();
-  committer.join();
+  on_disk.join();
   return fed;
 }
 
@@ -280,11 +316,11 @@ absl::StatusOr<JobReport> Job::Finish() {
   absl::Status status;
   // What is in shards by now was drawn when it was not.
   if (!packed_) {
-    status = WriteContactSheet(*journal, identity, folder.items(identity.packing), folder.out());
+    const ItemReader items(folder.items(identity.packing), folder.spool());
+    status = WriteContactSheet(*journal, identity, items, folder.out());
   }
   if (status.ok() && packs && identity.packing != Packing::kNone) {
-    status = Pack(*journal, identity.packing, identity.shard_bytes, folder.items(identity.packing),
-                  folder.temporary(), folder.out());
+    status = Pack(*journal, identity.packing, identity.shard_bytes, folder);
   }
   if (!status.ok()) return status;
   absl::StatusOr<SetCounts> counts = WriteIndex(*journal, identity, {report.planned, whole_plan_},

@@ -11,10 +11,13 @@
 #include <vector>
 
 #include "absl/status/status.h"
+#include "absl/strings/string_view.h"
 #include "client/batch/answer.h"
 #include "client/batch/flow/bounded_queue.h"
 #include "client/batch/flow/call_gate.h"
+#include "client/batch/flow/work_queue.h"
 #include "client/batch/index.h"
+#include "client/batch/item_files.h"
 #include "client/batch/job_folder.h"
 #include "client/batch/journal.h"
 #include "client/batch/loaded_leader.h"
@@ -57,7 +60,9 @@ struct JobReport {
 };
 
 // One run of a batch: asks for every item of a plan that is not settled yet, keeps what comes, and
-// writes the index. Reading, calls and writing overlap.
+// writes the index. Reading, calls and writing overlap: an item goes from the feeder (its plan) to
+// an asker (its leader, its turn at a server), to a keeper (what came: judged, put into files) and
+// to the writer, which brings many items to the disk at once. Nobody waits for a call.
 //
 // An item is settled when its files are on the disk under their names and its record in the journal
 // is as well, in this order: whenever the process ends, the next run asks again for what is not
@@ -87,30 +92,39 @@ class Job {
   struct Work {
     Item item;
     std::shared_ptr<SharedLeader> leader;
+    int retry = 0;     // which seed
+    int attempts = 0;  // that failed for a passing reason
   };
-  // An item whose files have their names.
+  struct Answered {
+    Work work;
+    absl::StatusOr<SynthesisResult> result;
+  };
+  // An item that is known for good, on its way to the disk.
   struct Settled {
-    int64_t item = 0;
+    Item item;
+    absl::string_view state;  // as its record tells
     std::string record;
-    std::vector<std::filesystem::path> folders;
+    std::vector<ItemFile> files;
   };
 
   absl::Status Feed(const JournalReader& journal);
   absl::StatusOr<bool> IsSettled(const Item& item, const JournalReader& journal) const;
   bool Put(Item item);
-  void WorkUntilDone();
-  absl::Status Make(const Work& work);
-  absl::Status Judge(const Work& work, const SynthesisRequest& request,
-                     const SynthesisResult& result, int retry, bool* again);
-  absl::Status Keep(const Item& item, const RecordedAnswer& answer, const motion::ClipPair& pair);
-  absl::Status Fail(const Item& item, const absl::Status& error);
+  void AskUntilDone();
+  void Ask(Work work);
+  void KeepUntilClosed();
+  void Receive(Answered answered);
+  void Judge(Work work, const SynthesisResult& result);
+  void Keep(const Item& item, const RecordedAnswer& answer, const motion::ClipPair& pair);
+  void Fail(const Item& item, const absl::Status& error);
   void FailForNow(const Item& item, const absl::Status& error);
-  void Settle(const Item& item, const nlohmann::ordered_json& record,
-              std::vector<std::filesystem::path> folders);
+  void Settle(Settled settled);
+  void WriteUntilClosed(JournalWriter* journal);
+  absl::Status Write(const std::vector<Settled>& all, ItemWriter* items, JournalWriter* journal);
+  void Count(const Settled& settled);
   void WriteError(const Item& item, const absl::Status& error);
   void RemoveError(const Item& item);
   std::filesystem::path ErrorFile(const Item& item) const;
-  void CommitUntilClosed(JournalWriter* writer);
   absl::Status RunThreads(const JournalReader& journal, JournalWriter* writer);
   absl::StatusOr<JobReport> Finish();
   void StopWith(const absl::Status& status);
@@ -120,8 +134,9 @@ class Job {
   Plan plan_;
   JobOptions options_;
   flow::CallGate gate_;
-  flow::BoundedQueue<Work> queue_;
-  flow::BoundedQueue<Settled> settled_;
+  flow::WorkQueue<Work> queue_;
+  flow::BoundedQueue<Answered> answers_;
+  flow::BoundedQueue<Settled> settled_;  // by bytes
 
   LastLeaders leaders_;  // Feed's alone
 

@@ -43,6 +43,8 @@ class JobFolder {
 
   const std::filesystem::path& out() const { return out_; }
   std::filesystem::path journal() const { return state() / "journal"; }
+  // Where they lie in a single file until then; see item_files.h.
+  std::filesystem::path spool() const { return state() / "spool"; }
   std::filesystem::path temporary() const { return state() / "tmp"; }
   std::filesystem::path errors() const { return out_ / "errors"; }
   // Where items' files lie until they are packed, or for good.

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <fstream>
 #include <utility>
@@ -10,6 +11,7 @@
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "client/batch/durable_file.h"
+#include "client/batch/item_limit.h"
 #include "model/base/sha256.h"
 
 namespace duet::client::batch {
@@ -23,16 +25,28 @@ std::string Digest(absl::string_view text) {
   return base::Sha256Hex({text.data(), text.size()}).substr(0, kDigestDigits);
 }
 
-// A line's item and record; false for one that is not whole.
-bool ParseLine(absl::string_view line, int64_t* item, absl::string_view* record) {
+struct ParsedLine {
+  int64_t item = 0;
+  std::optional<uint64_t> place;
+  absl::string_view record;
+};
+
+// False for a line that is not whole.
+bool ParseLine(absl::string_view line, ParsedLine* parsed) {
   if (line.size() < kDigestDigits + 2 || line[kDigestDigits] != ' ') return false;
   const absl::string_view rest = line.substr(kDigestDigits + 1);
   const size_t space = rest.find(' ');
-  if (space == absl::string_view::npos || !absl::SimpleAtoi(rest.substr(0, space), item) ||
-      *item < 0 || line.substr(0, kDigestDigits) != Digest(rest)) {
+  if (space == absl::string_view::npos || !absl::SimpleAtoi(rest.substr(0, space), &parsed->item) ||
+      parsed->item < 0 || line.substr(0, kDigestDigits) != Digest(rest)) {
     return false;
   }
-  *record = rest.substr(space + 1);
+  parsed->record = rest.substr(space + 1);
+  if (parsed->record.empty() || parsed->record[0] != '@') return true;
+  const size_t end = std::min(parsed->record.find(' '), parsed->record.size() - 1);
+  uint64_t place = 0;
+  if (!absl::SimpleAtoi(parsed->record.substr(1, end - 1), &place)) return false;
+  parsed->place = place;
+  parsed->record.remove_prefix(end + 1);
   return true;
 }
 
@@ -64,15 +78,18 @@ absl::Status JournalReader::Load() {
   std::ifstream file(path_, std::ios::binary);
   bool torn = false;
   for (std::string line; std::getline(file, line);) {
-    int64_t item = 0;
-    absl::string_view record;
+    ParsedLine parsed;
     // A line without its end meets the end of the file.
     if (torn)
       return absl::DataLossError(absl::StrCat(path_.string(), ": byte ", size_, ": damaged"));
-    torn = file.eof() || !ParseLine(line, &item, &record);
+    torn = file.eof() || !ParseLine(line, &parsed);
     if (torn) continue;
-    if (item >= end()) offsets_.resize(static_cast<size_t>(item) + 1);
-    uint64_t& offset = offsets_[static_cast<size_t>(item)];
+    if (parsed.item >= kMaxItems) {
+      return absl::DataLossError(absl::StrCat(path_.string(), ": byte ", size_, ": item ",
+                                              parsed.item, ", wanted one below ", kMaxItems));
+    }
+    if (parsed.item >= end()) offsets_.resize(static_cast<size_t>(parsed.item) + 1);
+    uint64_t& offset = offsets_[static_cast<size_t>(parsed.item)];
     count_ += offset == 0 ? 1 : 0;
     offset = size_ + 1;
     size_ += line.size() + 1;
@@ -105,22 +122,23 @@ absl::StatusOr<std::string> JournalReader::LineAt(uint64_t offset) const {
   }
 }
 
-absl::StatusOr<std::string> JournalReader::Read(int64_t item) const {
-  absl::StatusOr<std::string> line = LineAt(offsets_[static_cast<size_t>(item)] - 1);
-  if (!line.ok()) return line;
-  int64_t found = 0;
-  absl::string_view record;
-  if (ParseLine(*line, &found, &record) && found == item) return std::string(record);
+absl::StatusOr<JournalEntry> JournalReader::Read(int64_t item) const {
+  const absl::StatusOr<std::string> line = LineAt(offsets_[static_cast<size_t>(item)] - 1);
+  if (!line.ok()) return line.status();
+  ParsedLine parsed;
+  if (ParseLine(*line, &parsed) && parsed.item == item) {
+    return JournalEntry{item, parsed.place, std::string(parsed.record)};
+  }
   return absl::DataLossError(absl::StrCat(path_.string(), ": changed while read"));
 }
 
 absl::Status JournalReader::ForEach(
-    const std::function<absl::Status(int64_t item, const std::string& record)>& visit) const {
+    const std::function<absl::Status(const JournalEntry&)>& visit) const {
   for (int64_t item = 0; item < end(); ++item) {
     if (!Has(item)) continue;
-    const absl::StatusOr<std::string> record = Read(item);
-    if (!record.ok()) return record.status();
-    absl::Status status = visit(item, *record);
+    const absl::StatusOr<JournalEntry> entry = Read(item);
+    if (!entry.ok()) return entry.status();
+    absl::Status status = visit(*entry);
     if (!status.ok()) return status;
   }
   return absl::OkStatus();
@@ -142,8 +160,9 @@ absl::Status JournalWriter::Open(const std::filesystem::path& path, uint64_t siz
   return SyncFolder(path.parent_path());
 }
 
-void JournalWriter::Add(int64_t item, absl::string_view record) {
-  const std::string rest = absl::StrCat(item, " ", record);
+void JournalWriter::Add(int64_t item, absl::string_view record, std::optional<uint64_t> place) {
+  const std::string rest =
+      place ? absl::StrCat(item, " @", *place, " ", record) : absl::StrCat(item, " ", record);
   absl::StrAppend(&pending_, Digest(rest), " ", rest, "\n");
 }
 

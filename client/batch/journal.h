@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,9 +17,18 @@ namespace duet::client::batch {
 // What is known of each item for good: a file of lines, only ever appended to.
 //
 //   <first 8 hex digits of the SHA-256 of the rest> <item number> <record as JSON>
+//   <first 8 hex digits of the SHA-256 of the rest> <item number> @<place> <record as JSON>
+//
+// The place is that of the item's files in the spool (item_files.h), where they are there.
 //
 // What a process was writing when it stopped is a last line that is cut off or does not fit its
 // digest; it counts as not written.
+
+struct JournalEntry {
+  int64_t item = 0;
+  std::optional<uint64_t> place;
+  std::string record;
+};
 
 // The journal as it is; 8 bytes of memory an item.
 //
@@ -33,10 +43,9 @@ class JournalReader {
 
   bool Has(int64_t item) const;
   // The record of an item that it has. Where there are several the last one.
-  absl::StatusOr<std::string> Read(int64_t item) const;
+  absl::StatusOr<JournalEntry> Read(int64_t item) const;
   // Every record, in the order of the items. Stops at what is not OK and returns it.
-  absl::Status ForEach(
-      const std::function<absl::Status(int64_t item, const std::string& record)>& visit) const;
+  absl::Status ForEach(const std::function<absl::Status(const JournalEntry&)>& visit) const;
 
   // One beyond the last item of which there is a record, and how many records there are.
   int64_t end() const { return static_cast<int64_t>(offsets_.size()); }
@@ -66,7 +75,7 @@ class JournalWriter {
 
   // Cuts off what is beyond `size`, a reader's. ABORTED.
   absl::Status Open(const std::filesystem::path& path, uint64_t size);
-  void Add(int64_t item, absl::string_view record);
+  void Add(int64_t item, absl::string_view record, std::optional<uint64_t> place = std::nullopt);
   // Brings what was added to the disk. ABORTED; after that the journal takes nothing more.
   absl::Status Commit();
 

@@ -12,6 +12,7 @@
 #include "absl/strings/str_cat.h"
 #include "client/batch/contact_sheet.h"
 #include "client/batch/durable_file.h"
+#include "client/batch/item_files.h"
 #include "client/batch/job_folder.h"
 #include "client/batch/journal.h"
 #include "client/batch/packing.h"
@@ -26,10 +27,12 @@ namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
 constexpr size_t kMissingKept = 100;
+constexpr uint64_t kBytesOfACommit = uint64_t{64} << 20;
 
 struct Part {
   std::shared_ptr<JobFolder> folder;
   std::shared_ptr<JournalReader> journal;
+  std::shared_ptr<ItemReader> items;
 };
 
 // Any of the shards' identities; all others are checked against it.
@@ -79,6 +82,8 @@ absl::StatusOr<Part> OpenPart(const fs::path& out, const JobIdentity& identity, 
   absl::StatusOr<JournalReader> journal = JournalReader::Open(part.folder->journal());
   if (!journal.ok()) return journal.status();
   part.journal = std::make_shared<JournalReader>(*std::move(journal));
+  part.items =
+      std::make_shared<ItemReader>(part.folder->items(identity.packing), part.folder->spool());
   return part;
 }
 
@@ -123,39 +128,36 @@ class Merger {
     }
     identity_.shard = Shard{};
     JobIdentity begun;
-    absl::Status status = folder_.Open(identity_, &begun);
-    moved_ = !begun.models.empty();
-    return status;
+    return folder_.Open(identity_, &begun);
   }
 
+  // Goes on where a run before this one was stopped: what the merged journal has is moved.
   absl::Status MoveAll() {
-    if (moved_) {
-      // A run that was stopped later on: files may be packed by now.
-      const absl::StatusOr<JournalReader> merged = JournalReader::Open(folder_.journal());
-      if (!merged.ok()) return merged.status();
-      if (merged->count() == planned_) return absl::OkStatus();
-    }
-    JournalWriter journal;
-    absl::Status status = journal.Open(folder_.journal(), 0);
+    const absl::StatusOr<JournalReader> merged = JournalReader::Open(folder_.journal());
+    if (!merged.ok()) return merged.status();
+    absl::Status status = journal_.Open(folder_.journal(), merged->size());
+    writer_ = MakeItemWriter(folder_, identity_.packing);
     int64_t end = 0;
     for (const Part& part : parts_) end = std::max(end, part.journal->end());
-    for (int64_t item = 0; status.ok() && item < end; ++item) status = MoveItem(item, &journal);
-    for (const fs::path& folder : folders_) status.Update(SyncFolder(folder));
-    if (status.ok()) status = journal.Commit();
+    for (int64_t item = 0; status.ok() && item < end; ++item) {
+      status = MoveItem(item, *merged);
+      if (status.ok() && uncommitted_ >= kBytesOfACommit) status = Commit();
+    }
+    if (status.ok()) status = Commit();
     return status.ok() ? folder_.Begin(identity_) : status;
   }
 
   absl::StatusOr<MergeReport> Finish() {
     const absl::StatusOr<JournalReader> journal = JournalReader::Open(folder_.journal());
     if (!journal.ok()) return journal.status();
-    const fs::path items = folder_.items(identity_.packing);
     absl::Status status;
     if (!IsPacked(identity_.packing, identity_.shard_bytes, folder_.out())) {
-      status = WriteContactSheet(*journal, identity_, items, folder_.out());
+      status = WriteContactSheet(*journal, identity_,
+                                 ItemReader(folder_.items(identity_.packing), folder_.spool()),
+                                 folder_.out());
     }
     if (status.ok() && identity_.packing != Packing::kNone && journal->count() == planned_) {
-      status = Pack(*journal, identity_.packing, identity_.shard_bytes, items, folder_.temporary(),
-                    folder_.out());
+      status = Pack(*journal, identity_.packing, identity_.shard_bytes, folder_);
     }
     if (!status.ok()) return status;
     absl::StatusOr<SetCounts> counts =
@@ -171,7 +173,7 @@ class Merger {
   }
 
  private:
-  absl::Status MoveItem(int64_t item, JournalWriter* journal) {
+  absl::Status MoveItem(int64_t item, const JournalReader& merged) {
     const auto part = std::find_if(parts_.begin(), parts_.end(), [item](const Part& candidate) {
       return candidate.journal->Has(item);
     });
@@ -179,33 +181,74 @@ class Merger {
       if (report_.missing.size() < kMissingKept) report_.missing.push_back(item);
       return absl::OkStatus();
     }
-    const absl::StatusOr<std::string> text = part->journal->Read(item);
-    if (!text.ok()) return text.status();
-    const ordered_json record = ordered_json::parse(*text);
-    journal->Add(item, *text);
+    const absl::StatusOr<JournalEntry> entry = part->journal->Read(item);
+    if (!entry.ok()) return entry.status();
+    if (merged.Has(item)) {
+      const absl::StatusOr<JournalEntry> moved = merged.Read(item);
+      if (moved.ok() && moved->record == entry->record) return absl::OkStatus();
+    }
+    const ordered_json record = ordered_json::parse(entry->record);
+    if (record["state"] == kDone && identity_.packing != Packing::kNone) {
+      return CopyToSpool(*part, *entry, record);
+    }
+    journal_.Add(item, entry->record);
     if (record["state"] == kFailed) {
       return WriteDurably(folder_.temporary() / "error",
                           folder_.errors() / (record["name"].get<std::string>() + ".json"),
-                          *text + "\n");
+                          entry->record + "\n");
     }
-    if (record["state"] != kDone) return absl::OkStatus();
+    return record["state"] == kDone ? MoveFiles(*part, record) : absl::OkStatus();
+  }
+
+  absl::Status MoveFiles(const Part& part, const ordered_json& record) {
     for (const ordered_json& file : record["files"]) {
       const std::string path = file["path"];
       const fs::path to = folder_.items(identity_.packing) / path;
       folders_.insert(to.parent_path());
       absl::Status status =
-          MoveFile(part->folder->items(identity_.packing) / path, to, file["sha256"]);
+          MoveFile(part.folder->items(identity_.packing) / path, to, file["sha256"]);
       if (!status.ok()) return status;
     }
     return absl::OkStatus();
   }
 
+  absl::Status CopyToSpool(const Part& part, const JournalEntry& entry,
+                           const ordered_json& record) {
+    std::vector<ItemFile> files;
+    for (size_t i = 0; i < record["files"].size(); ++i) {
+      absl::StatusOr<std::string> content = part.items->Read(record, entry.place, i);
+      if (!content.ok()) return content.status();
+      uncommitted_ += content->size();
+      files.push_back({record["files"][i]["path"], *std::move(content)});
+    }
+    const absl::StatusOr<SpoolPlace> place = writer_->Add(files);
+    if (!place.ok()) return place.status();
+    part.items->Forget(record, entry.place);
+    journal_.Add(entry.item, entry.record, *place);
+    return absl::OkStatus();
+  }
+
+  // Only what is on the disk in its new place is let go of in the old.
+  absl::Status Commit() {
+    absl::Status status = writer_->Commit();
+    for (const fs::path& folder : folders_) status.Update(SyncFolder(folder));
+    if (status.ok()) status = journal_.Commit();
+    for (const Part& part : parts_) {
+      if (status.ok()) part.items->Release();
+    }
+    folders_.clear();
+    uncommitted_ = 0;
+    return status;
+  }
+
   JobFolder folder_;
   JobIdentity identity_;
   std::vector<Part> parts_;
+  JournalWriter journal_;
+  std::unique_ptr<ItemWriter> writer_;
   std::set<fs::path> folders_;
+  uint64_t uncommitted_ = 0;  // bytes
   int64_t planned_ = 0;
-  bool moved_ = false;  // a run before this one came to the end of MoveAll
   MergeReport report_;
 };
 

@@ -3,16 +3,13 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <system_error>
-#include <vector>
+#include <utility>
 
-#include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "client/batch/archive.h"
 #include "client/batch/durable_file.h"
+#include "client/batch/item_files.h"
 #include "client/batch/record.h"
-#include "model/base/file.h"
-#include "model/base/sha256.h"
-#include "model/motion/motion_limits.h"
 
 namespace duet::client::batch {
 namespace {
@@ -23,15 +20,15 @@ using nlohmann::ordered_json;
 // Fills one shard after the other.
 class Packer {
  public:
-  Packer(Packing packing, uint64_t shard_bytes, fs::path items, fs::path temporary, fs::path out)
+  Packer(Packing packing, uint64_t shard_bytes, const JobFolder& folder)
       : packing_(packing),
         names_(packing, shard_bytes),
-        items_(std::move(items)),
-        temporary_(std::move(temporary)),
-        out_(std::move(out)) {}
+        items_(folder.items(packing), folder.spool()),
+        temporary_(folder.temporary()),
+        out_(folder.out()) {}
 
-  absl::Status Add(const std::string& text) {
-    const ordered_json record = ordered_json::parse(text);
+  absl::Status Add(const JournalEntry& entry) {
+    const ordered_json record = ordered_json::parse(entry.record);
     if (record["state"] != kDone) return absl::OkStatus();
     uint64_t bytes = 0;
     for (const ordered_json& file : record["files"]) bytes += file["bytes"].get<uint64_t>();
@@ -41,19 +38,18 @@ class Packer {
       if (status.ok()) status = BeginShard(name);
       if (!status.ok()) return status;
     }
-    return exists_ ? Forget(record) : AddItem(record);
+    items_.Forget(record, entry.place);
+    return exists_ ? absl::OkStatus() : AddItem(record, entry.place);
   }
 
   absl::Status FinishShard() {
-    if (file_ == nullptr) return absl::OkStatus();
-    absl::Status status = archive_->Finish();
-    if (status.ok()) status = file_->Finish(out_ / name_);
-    file_.reset();
-    for (const fs::path& packed : packed_) {
-      std::error_code error;
-      if (status.ok()) fs::remove(packed, error);
+    absl::Status status;
+    if (file_ != nullptr) {
+      status = archive_->Finish();
+      if (status.ok()) status = file_->Finish(out_ / name_);
+      file_.reset();
     }
-    packed_.clear();
+    if (status.ok()) items_.Release();
     return status;
   }
 
@@ -70,38 +66,24 @@ class Packer {
     return status;
   }
 
-  absl::Status AddItem(const ordered_json& record) {
-    for (const ordered_json& file : record["files"]) {
-      const std::string path = file["path"];
-      const absl::StatusOr<std::string> content =
-          base::ReadFile(items_ / path, motion::kMaxMotionFileBytes, "a motion");
+  absl::Status AddItem(const ordered_json& record, const SpoolPlace& place) {
+    for (size_t i = 0; i < record["files"].size(); ++i) {
+      const absl::StatusOr<std::string> content = items_.Read(record, place, i);
       if (!content.ok()) return content.status();
-      if (base::Sha256Hex(*content) != file["sha256"]) {
-        return absl::DataLossError(absl::StrCat((items_ / path).string(), ": was changed"));
-      }
-      absl::Status status = archive_->Add(path, *content);
+      absl::Status status = archive_->Add(record["files"][i]["path"], *content);
       if (!status.ok()) return status;
-      packed_.push_back(items_ / path);
     }
     return archive_->AddRecord(record["name"], Line(record) + "\n");
   }
 
-  absl::Status Forget(const ordered_json& record) {
-    for (const ordered_json& file : record["files"]) {
-      std::error_code error;
-      fs::remove(items_ / file["path"].get<std::string>(), error);
-    }
-    return absl::OkStatus();
-  }
-
   Packing packing_;
   ShardNames names_;
-  fs::path items_, temporary_, out_;
+  ItemReader items_;
+  fs::path temporary_, out_;
   std::string name_;
   bool exists_ = false;
   std::unique_ptr<DurableFile> file_;
   std::unique_ptr<Archive> archive_;
-  std::vector<fs::path> packed_;
 };
 
 }  // namespace
@@ -123,13 +105,14 @@ bool IsPacked(Packing packing, uint64_t shard_bytes, const fs::path& out) {
 }
 
 absl::Status Pack(const JournalReader& journal, Packing packing, uint64_t shard_bytes,
-                  const fs::path& items, const fs::path& temporary, const fs::path& out) {
-  Packer packer(packing, shard_bytes, items, temporary, out);
+                  const JobFolder& folder) {
+  Packer packer(packing, shard_bytes, folder);
   absl::Status status =
-      journal.ForEach([&packer](int64_t, const std::string& record) { return packer.Add(record); });
+      journal.ForEach([&packer](const JournalEntry& entry) { return packer.Add(entry); });
   if (status.ok()) status = packer.FinishShard();
   std::error_code error;
-  if (status.ok()) fs::remove_all(items, error);
+  if (status.ok()) fs::remove_all(folder.items(packing), error);
+  if (status.ok()) fs::remove(folder.spool(), error);
   return status;
 }
 

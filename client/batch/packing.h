@@ -6,6 +6,7 @@
 #include <string>
 
 #include "absl/status/status.h"
+#include "client/batch/job_folder.h"
 #include "client/batch/journal.h"
 #include "client/batch/recipe.h"
 
@@ -29,14 +30,12 @@ class ShardNames {
 // Whether a set has shards already, and so takes no more items.
 bool IsPacked(Packing packing, uint64_t shard_bytes, const std::filesystem::path& out);
 
-// Puts the files below `items` of every item that is done into shards in `out`, each written to
-// `temporary` first, and removes them once their shard is on the disk. Goes on where it was
-// stopped.
+// Puts the files of every item that is done into shards in `folder`, each written under another
+// name first, and removes them once their shard is on the disk. Goes on where it was stopped.
 //
 // Errors: ABORTED, DATA_LOSS where an item's file is not what the journal says.
 absl::Status Pack(const JournalReader& journal, Packing packing, uint64_t shard_bytes,
-                  const std::filesystem::path& items, const std::filesystem::path& temporary,
-                  const std::filesystem::path& out);
+                  const JobFolder& folder);
 
 }  // namespace duet::client::batch
 

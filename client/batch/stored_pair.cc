@@ -10,24 +10,28 @@
 
 namespace duet::client::batch {
 
-absl::StatusOr<motion::ClipPair> ReadStoredPair(const std::filesystem::path& items,
+absl::StatusOr<motion::ClipPair> ReadStoredPair(const ItemReader& items,
                                                 const nlohmann::ordered_json& record,
+                                                const SpoolPlace& place,
                                                 const motion::Skeleton& skeleton) {
-  const nlohmann::ordered_json& files = record["files"];
-  const std::filesystem::path first = items / files[0]["path"].get<std::string>();
+  const std::filesystem::path first = record["files"][0]["path"].get<std::string>();
   // Of BVH the other person has a file of its own.
   const bool apart = first.extension() == ".bvh";
-  const std::filesystem::path second = apart ? items / files[1]["path"].get<std::string>() : first;
+  const absl::StatusOr<std::string> content = items.Read(record, place, 0);
+  if (!content.ok()) return content.status();
+  const absl::StatusOr<std::string> other = apart ? items.Read(record, place, 1) : content;
+  if (!other.ok()) return other.status();
   // Only captures' files keep the leader's side.
   const bool leader_right = first.extension() == ".txt" && record["side"] == "right";
   formats::ReadOptions options;
+  options.format = formats::FormatOf(first);
   options.skeleton = skeleton;
   options.frame_rate_hz = record["frame_rate_hz"].get<double>();
   options.side = leader_right ? formats::Side::kRight : formats::Side::kLeft;
-  absl::StatusOr<motion::Clip> leader = formats::ReadLeader(first, options);
+  absl::StatusOr<motion::Clip> leader = formats::ParseLeader(*content, first.string(), options);
   if (!leader.ok()) return leader.status();
   if (!apart) options.side = OtherSide(options.side);
-  absl::StatusOr<motion::Clip> follower = formats::ReadLeader(second, options);
+  absl::StatusOr<motion::Clip> follower = formats::ParseLeader(*other, first.string(), options);
   if (!follower.ok()) return follower.status();
   motion::ClipPair pair = {*std::move(leader), *std::move(follower)};
   absl::Status status = CheckPair(pair);

@@ -1,6 +1,8 @@
 #include "client/internal/connection_impl.h"
 
 #include <algorithm>
+#include <functional>
+#include <memory>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -23,6 +25,45 @@ absl::Status ModelIsGone(const absl::Status& status, const v1::ModelSelector& pi
                                               " frames and cannot be resumed: ", pinned.name(), "@",
                                               pinned.version(), " is no longer served")));
 }
+
+// Gathers the reply of a call that nobody waits for.
+class ReplyListener final : public StreamListener {
+ public:
+  ReplyListener(SynthesisRequest request, SynthesisCallback done, std::function<absl::Time()> now)
+      : request_(std::move(request)),
+        done_(std::move(done)),
+        now_(std::move(now)),
+        start_(now_()),
+        reply_(request_.leader, no_callback_) {
+    reply_.StartStream();
+  }
+
+  bool OnMessage(const v1::SynthesizeResponse& response) override {
+    accepted_ = reply_.Accept(response);
+    if (reply_.has_frames() && first_chunk_ == absl::InfiniteFuture()) first_chunk_ = now_();
+    return accepted_.ok();
+  }
+
+  void OnEnd(const absl::Status& status) override {
+    const absl::Status ended = accepted_.ok() ? reply_.EndStream(status) : accepted_;
+    if (!ended.ok()) return done_(ended);
+    SynthesisResult result = std::move(reply_).TakeResult();
+    result.attempt_count = 1;
+    result.timings.first_chunk = first_chunk_ - start_;
+    result.timings.total = now_() - start_;
+    done_(std::move(result));
+  }
+
+ private:
+  const SynthesisRequest request_;
+  const SynthesisCallback done_;
+  const std::function<absl::Time()> now_;
+  const absl::Time start_;
+  absl::Time first_chunk_ = absl::InfiniteFuture();
+  const ChunkCallback no_callback_;
+  ReplyAssembler reply_;
+  absl::Status accepted_;
+};
 
 }  // namespace
 
@@ -93,6 +134,14 @@ absl::StatusOr<SynthesisResult> ConnectionImpl::Synthesize(const SynthesisReques
   result.timings.first_chunk = first_chunk - start;
   result.timings.total = environment_.now() - start;
   return result;
+}
+
+void ConnectionImpl::SynthesizeAsync(SynthesisRequest request, const SynthesisCallback& done) {
+  const absl::StatusOr<v1::SynthesizeRequest> wire = ToProto(request);
+  if (!wire.ok()) return done(wire.status());
+  const CallContext call{Deadline(), request.request_id};
+  stub_->Start(call, *wire,
+               std::make_unique<ReplyListener>(std::move(request), done, environment_.now));
 }
 
 absl::Status ConnectionImpl::RunStream(const CallContext& call,

@@ -23,6 +23,7 @@ class ConnectionImpl final : public Connection {
   absl::StatusOr<ModelDetails> GetModel(const ModelChoice& choice) override;
   absl::StatusOr<SynthesisResult> Synthesize(const SynthesisRequest& request,
                                              const ChunkCallback& on_chunk) override;
+  void SynthesizeAsync(SynthesisRequest request, const SynthesisCallback& done) override;
 
  private:
   absl::Status RunStream(const CallContext& call, const v1::SynthesizeRequest& request,

@@ -1,11 +1,17 @@
 #include "client/internal/grpc_stub.h"
 
+#include <condition_variable>
+#include <memory>
+#include <mutex>
 #include <string>
+#include <thread>
 #include <utility>
 
 #include "client/internal/grpc_status.h"
 #include "duet/v1/synthesis.grpc.pb.h"
 #include "grpcpp/client_context.h"
+#include "grpcpp/completion_queue.h"
+#include "grpcpp/support/async_stream.h"
 #include "grpcpp/support/sync_stream.h"
 
 namespace duet::client::internal {
@@ -34,6 +40,106 @@ class GrpcResponseStream final : public ResponseStream {
  private:
   grpc::ClientContext context_;
   std::unique_ptr<grpc::ClientReader<v1::SynthesizeResponse>> reader_;
+};
+
+// A stream that takes its next step whenever the queue hands it out, and ends itself.
+class ListenedStream {
+ public:
+  ListenedStream(v1::MotionSynthesis::Stub& stub, const CallContext& call,
+                 const std::string& authorization, const v1::SynthesizeRequest& request,
+                 std::unique_ptr<StreamListener> listener, grpc::CompletionQueue* queue)
+      : listener_(std::move(listener)) {
+    Prepare(call, authorization, &context_);
+    reader_ = stub.PrepareAsyncSynthesize(&context_, request, queue);
+    reader_->StartCall(this);
+  }
+
+  // `ok`: the step before this one had what it asked for. False: the stream is over.
+  bool Step(bool ok) {
+    switch (state_) {
+      case State::kStarting:
+        state_ = ok ? State::kReading : State::kFinishing;
+        break;
+      case State::kReading:
+        if (!ok) state_ = State::kFinishing;
+        if (ok && wanted_ && !listener_->OnMessage(response_)) {
+          wanted_ = false;
+          context_.TryCancel();
+        }
+        break;
+      case State::kFinishing:
+        listener_->OnEnd(FromGrpc(status_));
+        return false;
+    }
+    if (state_ == State::kReading) {
+      reader_->Read(&response_, this);
+    } else {
+      reader_->Finish(&status_, this);
+    }
+    return true;
+  }
+
+ private:
+  enum class State { kStarting, kReading, kFinishing };
+
+  grpc::ClientContext context_;
+  std::unique_ptr<StreamListener> listener_;
+  std::unique_ptr<grpc::ClientAsyncReader<v1::SynthesizeResponse>> reader_;
+  v1::SynthesizeResponse response_;
+  grpc::Status status_;
+  State state_ = State::kStarting;
+  bool wanted_ = true;
+};
+
+// A queue of streams and the thread that takes their steps: one for many calls, since a call of
+// which only its own thread hears costs a wake-up for each message. Waits for calls under way when
+// it goes.
+class StreamThread {
+ public:
+  StreamThread() : thread_([this] { Run(); }) {}
+  StreamThread(const StreamThread&) = delete;
+  StreamThread& operator=(const StreamThread&) = delete;
+  ~StreamThread() {
+    {
+      // A queue that is being shut down takes no steps of streams that are still under way.
+      std::unique_lock<std::mutex> lock(mutex_);
+      none_under_way_.wait(lock, [this] { return under_way_ == 0; });
+    }
+    queue_.Shutdown();
+    thread_.join();
+  }
+
+  void Start(v1::MotionSynthesis::Stub& stub, const CallContext& call,
+             const std::string& authorization, const v1::SynthesizeRequest& request,
+             std::unique_ptr<StreamListener> listener) {
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      ++under_way_;
+    }
+    // The queue hands it to the thread, which deletes it.
+    new ListenedStream(stub, call, authorization, request, std::move(listener), &queue_);
+  }
+
+ private:
+  void Run() {
+    void* tag = nullptr;
+    for (bool ok = false; queue_.Next(&tag, &ok);) {
+      std::unique_ptr<ListenedStream> stream(static_cast<ListenedStream*>(tag));
+      if (stream->Step(ok)) {
+        (void)stream.release();  // it comes out of the queue again
+        continue;
+      }
+      stream.reset();
+      const std::lock_guard<std::mutex> lock(mutex_);
+      if (--under_way_ == 0) none_under_way_.notify_all();
+    }
+  }
+
+  grpc::CompletionQueue queue_;
+  std::mutex mutex_;
+  std::condition_variable none_under_way_;
+  int under_way_ = 0;
+  std::thread thread_;  // last: it uses all of the above
 };
 
 class GrpcStub final : public Stub {
@@ -67,9 +173,17 @@ class GrpcStub final : public Stub {
     return std::make_unique<GrpcResponseStream>(*stub_, call, authorization_, request);
   }
 
+  void Start(const CallContext& call, const v1::SynthesizeRequest& request,
+             std::unique_ptr<StreamListener> listener) override {
+    std::call_once(first_start_, [this] { streams_ = std::make_unique<StreamThread>(); });
+    streams_->Start(*stub_, call, authorization_, request, std::move(listener));
+  }
+
  private:
   std::unique_ptr<v1::MotionSynthesis::Stub> stub_;
   const std::string authorization_;
+  std::once_flag first_start_;
+  std::unique_ptr<StreamThread> streams_;
 };
 
 }  // namespace

@@ -29,6 +29,16 @@ class ResponseStream {
   virtual absl::Status Finish() = 0;
 };
 
+// Hears of a stream that Stub::Start began: in its order, on one thread at a time.
+class StreamListener {
+ public:
+  virtual ~StreamListener() = default;
+  // False: the rest is of no use, the stream is cancelled and no other message comes.
+  virtual bool OnMessage(const v1::SynthesizeResponse& response) = 0;
+  // How the stream ended. Last.
+  virtual void OnEnd(const absl::Status& status) = 0;
+};
+
 // One attempt at each call of duet.v1.MotionSynthesis: proto in, proto out, no retry. Statuses
 // carry their google.rpc details as payloads (client/error_details.h).
 class Stub {
@@ -40,6 +50,9 @@ class Stub {
                                                         const v1::GetModelRequest& request) = 0;
   virtual std::unique_ptr<ResponseStream> Synthesize(const CallContext& context,
                                                      const v1::SynthesizeRequest& request) = 0;
+  // The same without waiting.
+  virtual void Start(const CallContext& context, const v1::SynthesizeRequest& request,
+                     std::unique_ptr<StreamListener> listener) = 0;
 };
 
 }  // namespace duet::client::internal

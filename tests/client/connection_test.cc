@@ -103,6 +103,30 @@ TEST_F(ConnectionTest, AMalformedReplyIsCancelledAndNotRunAgain) {
   EXPECT_EQ(stub_->cancelled, 1);
 }
 
+TEST_F(ConnectionTest, ACallThatNobodyWaitsForIsOneAttempt) {
+  std::vector<absl::StatusOr<SynthesisResult>> results;
+  const auto done = [&results](absl::StatusOr<SynthesisResult> result) {
+    results.push_back(std::move(result));
+  };
+  ScriptedStream malformed = Good();
+  malformed.responses.erase(malformed.responses.begin() + 1);
+  stub_->streams = {Good(), Broken(), Refused(absl::UnavailableError("away")), malformed};
+  ConnectionImpl connection(stub_, options_, time_.Environment());
+  for (int call = 0; call < 4; ++call) connection.SynthesizeAsync(request_, done);
+  request_.chunk_frames = 0;
+  connection.SynthesizeAsync(request_, done);
+  ASSERT_THAT(results, SizeIs(5));
+  ASSERT_THAT(results[0], IsOk());
+  EXPECT_EQ(results[0]->pair.follower.poses, FollowerFor(request_.leader));
+  EXPECT_EQ(results[0]->attempt_count, 1);
+  EXPECT_THAT(results[1], StatusIs(absl::StatusCode::kUnavailable, HasSubstr("after 2 of 5")));
+  EXPECT_THAT(results[2], StatusIs(absl::StatusCode::kUnavailable, "away"));
+  EXPECT_THAT(results[3], StatusIs(absl::StatusCode::kInternal, HasSubstr("chunk.first_frame")));
+  EXPECT_EQ(stub_->cancelled, 1);
+  EXPECT_THAT(results[4], StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("chunk_frames")));
+  EXPECT_THAT(time_.sleeps, SizeIs(0));
+}
+
 TEST_F(ConnectionTest, AFullServerIsRetriedForBulkAlone) {
   const ScriptedStream full = Refused(
       ServiceError(absl::StatusCode::kResourceExhausted, "queue full", absl::Milliseconds(500)));

@@ -174,6 +174,52 @@ TEST_F(GrpcClientTest, CallsRunConcurrentlyOnOneClient) {
   EXPECT_EQ(good, 8);
 }
 
+TEST_F(GrpcClientTest, ManyCallsThatNobodyWaitsForEndOnceEach) {
+  constexpr int kCalls = 20;
+  std::atomic<int> arrived{0};
+  server_.service().on_synthesize = [&](grpc::ServerContext*, const v1::SynthesizeRequest& request,
+                                        Writer* writer) {
+    // The last one is there before the first is answered: they do not wait for one another.
+    if (++arrived == 4) finished_.Notify();
+    finished_.WaitForNotification();
+    if (request.seed() % 2 == 1) return grpc::Status(grpc::StatusCode::UNAVAILABLE, "odd");
+    return WriteAll(ReplyFor(request_.leader, 2), writer);
+  };
+  std::atomic<int> answered{0}, refused{0};
+  {
+    const absl::StatusOr<Client> client = Client::Create(options_);
+    ASSERT_THAT(client, IsOk());
+    for (uint64_t seed = 0; seed < kCalls; ++seed) {
+      request_.seed = seed;
+      client->SynthesizeAsync(request_, [&, seed](const absl::StatusOr<SynthesisResult>& result) {
+        EXPECT_EQ(result.ok(), seed % 2 == 0);
+        ++(result.ok() ? answered : refused);
+      });
+    }
+  }  // waits for them
+  EXPECT_EQ(answered, kCalls / 2);
+  EXPECT_EQ(refused, kCalls / 2);
+}
+
+TEST_F(GrpcClientTest, ACallThatNobodyWaitsForEndsByItsDeadline) {
+  server_.service().on_synthesize = [&](grpc::ServerContext*, const v1::SynthesizeRequest&,
+                                        Writer*) {
+    finished_.WaitForNotification();
+    return grpc::Status::OK;
+  };
+  options_.deadline = absl::Milliseconds(20);
+  absl::Status ended;
+  {
+    const absl::StatusOr<Client> client = Client::Create(options_);
+    ASSERT_THAT(client, IsOk());
+    client->SynthesizeAsync(request_, [&ended](const absl::StatusOr<SynthesisResult>& result) {
+      ended = result.status();
+    });
+  }
+  finished_.Notify();
+  EXPECT_THAT(ended, StatusIs(absl::StatusCode::kDeadlineExceeded, testing::_));
+}
+
 TEST(GrpcTargetTest, HostsAreResolvedToEveryServerBehindThem) {
   EXPECT_EQ(GrpcTarget("duet.example.com:50051"), "dns:///duet.example.com:50051");
   EXPECT_EQ(GrpcTarget("[::1]:50051"), "dns:///[::1]:50051");

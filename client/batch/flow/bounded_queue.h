@@ -1,6 +1,7 @@
 #ifndef DUET_CLIENT_BATCH_FLOW_BOUNDED_QUEUE_H_
 #define DUET_CLIENT_BATCH_FLOW_BOUNDED_QUEUE_H_
 
+#include <chrono>
 #include <condition_variable>
 #include <cstddef>
 #include <deque>
@@ -18,15 +19,19 @@ namespace duet::client::batch::flow {
 template <typename Value>
 class BoundedQueue {
  public:
+  // `capacity`: of what its values cost.
   explicit BoundedQueue(std::size_t capacity) : capacity_(capacity) {}
 
-  // False after Stop: the value is not taken.
-  bool Put(Value value) {
+  // False after Stop: the value is not taken. A value that costs more than all the room there is
+  // waits until the queue is empty.
+  bool Put(Value value, std::size_t cost = 1) {
     std::unique_lock<std::mutex> lock(mutex_);
-    has_room_.wait(lock, [this] { return stopped_ || values_.size() < capacity_; });
+    has_room_.wait(lock, [&] { return stopped_ || values_.empty() || cost_ + cost <= capacity_; });
     if (stopped_) return false;
-    values_.push_back(std::move(value));
+    values_.push_back({std::move(value), cost});
+    cost_ += cost;
     has_values_.notify_one();
+    if (HasMuch()) has_much_.notify_one();
     return true;
   }
 
@@ -35,20 +40,25 @@ class BoundedQueue {
     std::unique_lock<std::mutex> lock(mutex_);
     has_values_.wait(lock, [this] { return stopped_ || closed_ || !values_.empty(); });
     if (stopped_ || values_.empty()) return std::nullopt;
-    std::optional<Value> value(std::move(values_.front()));
+    std::optional<Value> value(std::move(values_.front().value));
+    cost_ -= values_.front().cost;
     values_.pop_front();
     has_room_.notify_one();
     return value;
   }
 
-  // Everything there is, one at least; empty as Take has nothing.
-  std::vector<Value> TakeAll() {
+  // Everything that comes within `time` from now, at least one value; less time where the queue
+  // fills or is closed. Empty as Take has nothing.
+  std::vector<Value> Gather(std::chrono::nanoseconds time) {
     std::unique_lock<std::mutex> lock(mutex_);
+    has_much_.wait_for(lock, time, [this] { return stopped_ || closed_ || HasMuch(); });
     has_values_.wait(lock, [this] { return stopped_ || closed_ || !values_.empty(); });
     std::vector<Value> all;
     if (stopped_) return all;
-    all.assign(std::make_move_iterator(values_.begin()), std::make_move_iterator(values_.end()));
+    all.reserve(values_.size());
+    for (Priced& priced : values_) all.push_back(std::move(priced.value));
     values_.clear();
+    cost_ = 0;
     has_room_.notify_all();
     return all;
   }
@@ -58,21 +68,31 @@ class BoundedQueue {
     const std::lock_guard<std::mutex> lock(mutex_);
     closed_ = true;
     has_values_.notify_all();
+    has_much_.notify_all();
   }
   // What is in it is dropped.
   void Stop() {
     const std::lock_guard<std::mutex> lock(mutex_);
     stopped_ = true;
     values_.clear();
+    cost_ = 0;
     has_values_.notify_all();
+    has_much_.notify_all();
     has_room_.notify_all();
   }
 
  private:
+  struct Priced {
+    Value value;
+    std::size_t cost;
+  };
+  bool HasMuch() const { return cost_ > capacity_ / 2; }
+
   const std::size_t capacity_;
   std::mutex mutex_;
-  std::condition_variable has_values_, has_room_;
-  std::deque<Value> values_;
+  std::condition_variable has_values_, has_much_, has_room_;
+  std::deque<Priced> values_;
+  std::size_t cost_ = 0;
   bool closed_ = false;
   bool stopped_ = false;
 };

@@ -13,6 +13,7 @@
 #include "client/batch/stored_pair.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "model/base/sha256.h"
 #include "model/formats/flat/sbu_text.h"
 #include "model/formats/motion_file.h"
 #include "tests/support/sample_motion.h"
@@ -116,10 +117,20 @@ class ContactSheetTest : public ::testing::Test {
             {"files", {{{"path", path}, {"bytes", 1}, {"sha256", ""}}}}};
   }
 
-  void Add(const nlohmann::ordered_json& record) {
+  // Files as they are.
+  void Sign(nlohmann::ordered_json* record) {
+    for (nlohmann::ordered_json& file : (*record)["files"]) {
+      const std::string content = test::ReadTestFile(folder_ / file["path"].get<std::string>());
+      file["bytes"] = content.size();
+      file["sha256"] = base::Sha256Hex(content);
+    }
+  }
+
+  void Add(nlohmann::ordered_json record) {
     EXPECT_THAT(formats::WritePair(folder_ / record["files"][0]["path"].get<std::string>(),
                                    Pair({1, 0, 0}), motion::SbuSkeleton()),
                 IsOk());
+    Sign(&record);
     records_.push_back(record.dump());
   }
 
@@ -129,7 +140,9 @@ class ContactSheetTest : public ::testing::Test {
     for (size_t i = 0; i < records_.size(); ++i) writer.Add(static_cast<int>(i), records_[i]);
     EXPECT_THAT(writer.Commit(), IsOk());
     const absl::StatusOr<JournalReader> journal = JournalReader::Open(folder_ / "journal");
-    EXPECT_THAT(WriteContactSheet(*journal, identity_, folder_.path(), folder_.path()), IsOk());
+    EXPECT_THAT(
+        WriteContactSheet(*journal, identity_, ItemReader(folder_.path(), ""), folder_.path()),
+        IsOk());
     return test::ReadTestFile(folder_ / "contact_sheet.html");
   }
 
@@ -212,6 +225,7 @@ TEST_F(ContactSheetTest, EveryFormatIsReadBack) {
     EXPECT_THAT(
         formats::WritePair(folder_ / (name + ending), Pair({1, 0, 0}), motion::SbuSkeleton()),
         IsOk());
+    Sign(&record);
     records_.push_back(record.dump());
   }
   const std::string sheet = Sheet();
@@ -229,7 +243,9 @@ TEST_F(ContactSheetTest, ALeaderOnTheRightOfACaptureLeads) {
   nlohmann::ordered_json record = Record(0, {{"kick", 1}});
   record["files"][0]["path"] = "clip.txt";
   record["side"] = "right";
-  const auto read = ReadStoredPair(folder_.path(), record, motion::SbuSkeleton());
+  Sign(&record);
+  const auto read =
+      ReadStoredPair(ItemReader(folder_.path(), ""), record, {}, motion::SbuSkeleton());
   ASSERT_THAT(read, IsOk());
   EXPECT_LT(Distance(read->leader.at(2, 3), pair.leader.at(2, 3)), 1e-4f);
   EXPECT_LT(Distance(read->follower.at(2, 3), pair.follower.at(2, 3)), 1e-4f);

@@ -56,8 +56,8 @@ class JournalTest : public ::testing::Test {
     std::vector<std::string> records;
     const auto reader = JournalReader::Open(path_);
     EXPECT_THAT(reader, IsOk());
-    EXPECT_THAT(reader->ForEach([&records](int64_t item, const std::string& record) {
-      records.push_back(std::to_string(item) + record);
+    EXPECT_THAT(reader->ForEach([&records](const JournalEntry& entry) {
+      records.push_back(std::to_string(entry.item) + entry.record);
       return absl::OkStatus();
     }),
                 IsOk());
@@ -83,6 +83,20 @@ TEST_F(JournalTest, TheLastRecordOfAnItemCounts) {
   Append({{1, "failed"}, {1, "done"}});
   EXPECT_THAT(Records(), ElementsAre("1done"));
   EXPECT_EQ(JournalReader::Open(path_)->count(), 1);
+}
+
+TEST_F(JournalTest, KeepsTheFilesPlaceBesideTheRecord) {
+  {
+    JournalWriter writer;
+    ASSERT_THAT(writer.Open(path_, 0), IsOk());
+    writer.Add(0, "{zero}", uint64_t{1} << 40);
+    writer.Add(1, "{one}");
+    ASSERT_THAT(writer.Commit(), IsOk());
+  }
+  EXPECT_THAT(Records(), ElementsAre("0{zero}", "1{one}"));
+  const auto reader = JournalReader::Open(path_);
+  EXPECT_EQ(reader->Read(0)->place, uint64_t{1} << 40);
+  EXPECT_EQ(reader->Read(1)->place, std::nullopt);
 }
 
 TEST_F(JournalTest, AnyTornEndCountsAsNotWrittenAndIsWrittenOver) {

@@ -71,6 +71,16 @@ std::unique_ptr<client::internal::ResponseStream> FakeStub::Synthesize(
   return std::make_unique<ScriptedResponseStream>(std::move(script), &cancelled);
 }
 
+void FakeStub::Start(const client::internal::CallContext& context,
+                     const v1::SynthesizeRequest& request,
+                     std::unique_ptr<client::internal::StreamListener> listener) {
+  const std::unique_ptr<client::internal::ResponseStream> stream = Synthesize(context, request);
+  for (v1::SynthesizeResponse response; stream->Read(&response);) {
+    if (!listener->OnMessage(response)) stream->Cancel();
+  }
+  listener->OnEnd(stream->Finish());
+}
+
 client::internal::RetryEnvironment FakeTime::Environment() {
   return {[this] { return now; },
           [this](absl::Duration wait) {

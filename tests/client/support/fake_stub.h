@@ -30,6 +30,9 @@ class FakeStub : public client::internal::Stub {
   std::unique_ptr<client::internal::ResponseStream> Synthesize(
       const client::internal::CallContext& context, const v1::SynthesizeRequest& request) override;
 
+  void Start(const client::internal::CallContext& context, const v1::SynthesizeRequest& request,
+             std::unique_ptr<client::internal::StreamListener> listener) override;
+
   std::vector<absl::StatusOr<v1::ListModelsResponse>> list_models;
   std::vector<absl::StatusOr<v1::GetModelResponse>> get_model;
   std::vector<ScriptedStream> streams;

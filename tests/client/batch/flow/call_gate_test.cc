@@ -86,14 +86,45 @@ TEST(BoundedQueue, WhoPutsWaitsForRoomAndIsLetGoByStop) {
   EXPECT_FALSE(queue.Take().has_value());
 }
 
-TEST(BoundedQueue, TakesAllThatIsThere) {
-  BoundedQueue<int> queue(5);
+TEST(BoundedQueue, GathersWhatComesAndEndsEarlyWhenItFills) {
+  BoundedQueue<int> queue(4);
   for (int i = 0; i < 3; ++i) queue.Put(i);
-  EXPECT_EQ(queue.TakeAll(), (std::vector<int>{0, 1, 2}));
+  // More than half full: there is nothing to wait for.
+  EXPECT_EQ(queue.Gather(hours(1)), (std::vector<int>{0, 1, 2}));
   queue.Put(3);
-  queue.Close();
-  EXPECT_EQ(queue.TakeAll(), (std::vector<int>{3}));
-  EXPECT_TRUE(queue.TakeAll().empty());
+  EXPECT_EQ(queue.Gather(milliseconds(0)), (std::vector<int>{3}));
+  std::thread late([&queue] {
+    queue.Put(4);
+    queue.Put(5);
+    queue.Close();
+  });
+  EXPECT_EQ(queue.Gather(hours(1)), (std::vector<int>{4, 5}));
+  late.join();
+  EXPECT_TRUE(queue.Gather(hours(1)).empty());
+}
+
+TEST(BoundedQueue, IsFullByWhatValuesCost) {
+  BoundedQueue<int> queue(10);
+  queue.Put(1, 100);  // more than there is room for: alone
+  std::atomic<bool> put{false};
+  std::thread putting([&] {
+    queue.Put(2, 6);
+    queue.Put(3, 6);
+    put = true;
+  });
+  EXPECT_EQ(queue.Take(), 1);
+  EXPECT_EQ(queue.Take(), 2);
+  EXPECT_EQ(queue.Take(), 3);
+  putting.join();
+  EXPECT_TRUE(put);
+}
+
+TEST(BoundedQueue, AValueThatCostsTooMuchWaits) {
+  BoundedQueue<int> queue(10);
+  queue.Put(1, 6);
+  std::thread putting([&queue] { EXPECT_FALSE(queue.Put(2, 6)); });
+  queue.Stop();
+  putting.join();
 }
 
 }  // namespace

@@ -1,0 +1,97 @@
+#ifndef DUET_CLIENT_BATCH_FLOW_WORK_QUEUE_H_
+#define DUET_CLIENT_BATCH_FLOW_WORK_QUEUE_H_
+
+#include <condition_variable>
+#include <cstddef>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+namespace duet::client::batch::flow {
+
+// Work that is taken, and then either done or put back to be taken again. It ends when all is done,
+// not when it is empty: what is taken may come back.
+//
+// Threads: safe to call concurrently.
+template <typename Value>
+class WorkQueue {
+ public:
+  explicit WorkQueue(std::size_t capacity) : capacity_(capacity) {}
+
+  // Waits while it is full. False after Stop: the value is not taken.
+  bool Put(Value value) {
+    std::unique_lock<std::mutex> lock(mutex_);
+    has_room_.wait(lock, [this] { return stopped_ || values_.size() < capacity_; });
+    if (stopped_) return false;
+    values_.push_back(std::move(value));
+    has_values_.notify_one();
+    return true;
+  }
+
+  // A value that was taken is to be taken again, before all others. Never waits.
+  void PutBack(Value value) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!stopped_) values_.push_front(std::move(value));
+    EndOne();
+    has_values_.notify_one();
+  }
+  // A value that was taken needs nothing more.
+  void Done() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    EndOne();
+  }
+
+  // Nothing after Stop, and after Close once all is done.
+  std::optional<Value> Take() {
+    std::unique_lock<std::mutex> lock(mutex_);
+    has_values_.wait(lock, [this] { return stopped_ || !values_.empty() || AllDone(); });
+    if (stopped_ || values_.empty()) return std::nullopt;
+    std::optional<Value> value(std::move(values_.front()));
+    values_.pop_front();
+    ++taken_;
+    has_room_.notify_one();
+    return value;
+  }
+
+  // Nothing more will be put, but for what is put back.
+  void Close() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    closed_ = true;
+    has_values_.notify_all();
+  }
+  // What is in it is dropped.
+  void Stop() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    stopped_ = true;
+    values_.clear();
+    has_values_.notify_all();
+    has_room_.notify_all();
+  }
+  // Until nothing is taken any longer.
+  void WaitUntilNoneIsTaken() {
+    std::unique_lock<std::mutex> lock(mutex_);
+    none_taken_.wait(lock, [this] { return taken_ == 0; });
+  }
+
+ private:
+  bool AllDone() const { return closed_ && values_.empty() && taken_ == 0; }
+  void EndOne() {
+    --taken_;
+    if (taken_ > 0) return;
+    none_taken_.notify_all();
+    if (AllDone()) has_values_.notify_all();
+  }
+
+  const std::size_t capacity_;
+  std::mutex mutex_;
+  std::condition_variable has_values_, has_room_, none_taken_;
+  std::deque<Value> values_;
+  std::size_t taken_ = 0;
+  bool closed_ = false;
+  bool stopped_ = false;
+};
+
+}  // namespace duet::client::batch::flow
+
+#endif  // DUET_CLIENT_BATCH_FLOW_WORK_QUEUE_H_
