@@ -116,6 +116,8 @@ LAYERS = (
           libraries=("rpc",)),
     Layer("client program", "client/cli",
           sees=MOTION_FILES + ("analysis", "viewer", "batch flow", "batch", "client")),
+    Layer("load program", "client/load/program", sees=MOTION_FILES + ("load", "client program", "client")),
+    Layer("load", "client/load", sees=("base", "motion", "client"), libraries=("rpc",)),
     Layer("client", "client", sees=("base", "motion"), libraries=("rpc",)),
 )
 

@@ -257,7 +257,12 @@ absl::StatusOr<motion::Clip> ReadAtRate(Format format, const std::string& conten
           Setting{absl::StrCat(clip->frame_rate_hz, " Hz"), Origin::kGiven, ""};
     }
   }
-  if (clip->frame_rate_hz > 0) return clip;
+  if (clip->frame_rate_hz > 0) {
+    // In metres a position may be beyond what it was within in the file's unit.
+    const absl::Status valid = CheckClip(source.name, *clip);
+    if (!valid.ok()) return valid;
+    return clip;
+  }
   return MendedBy(absl::InvalidArgumentError(absl::StrCat(
                       source.name, ": frame rate: the file has none, wanted one beside it")),
                   motion::ReadingSetting::kFrameRate);
