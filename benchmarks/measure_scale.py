@@ -28,6 +28,8 @@ import threading
 import time
 import urllib.request
 
+from load_tool import run_load
+
 SOURCE = pathlib.Path(__file__).resolve().parent.parent
 CALLERS_A_SERVER = 16
 PERIOD_US = 20_000  # of a quota: short, so that no call waits long for its server's next turn
@@ -126,11 +128,8 @@ def start_proxy(folder, servers, stack):
 def load(chosen, address, servers):
     """Clips a second, and the greatest difference of a server's calls from its share of all."""
     before = [server.calls() for server in servers]
-    printed = subprocess.run(
-        [chosen.build / "benchmarks/serving_load", "--server", address, "--callers",
-         str(CALLERS_A_SERVER * len(servers)), "--seconds", str(chosen.seconds)],
-        check=True, capture_output=True, text=True).stdout
-    seen = json.loads(printed)
+    seen = run_load(chosen.build, address, "--callers", CALLERS_A_SERVER * len(servers),
+                    "--seconds", chosen.seconds)
     if seen["failed"]:
         raise SystemExit(f"calls failed: {seen['failed']}")
     calls = [server.calls() - count for server, count in zip(servers, before)]
