@@ -66,17 +66,19 @@ class Axis {
     return ticks;
   }
 
-  // 1, 2 and 5 of each decade where few decades are shown; else the decades.
+  // The decades; 1, 2 and 5 of each where few decades are shown, and all nine where less than one.
   std::vector<ChartTick> LogTicks() const {
+    const double decades = high_ - low_;
+    std::vector<double> digits = {1};
+    if (decades < 2.5) digits = {1, 2, 5};
+    if (decades < 0.7) digits = {1, 2, 3, 4, 5, 6, 7, 8, 9};
     std::vector<ChartTick> ticks;
-    const bool fine = high_ - low_ < 2.5;
     for (double decade = std::floor(low_); decade <= high_; ++decade) {
-      for (const double digit : {1.0, 2.0, 5.0}) {
+      for (const double digit : digits) {
         const double value = digit * std::pow(10, decade);
         const double at = std::log10(value);
-        if ((digit == 1 || fine) && at >= low_ - 1e-9 && at <= high_ + 1e-9) {
-          ticks.push_back({value, Label(std::stod(absl::StrFormat("%.10g", value)))});
-        }
+        if (at < low_ - 1e-9 || at > high_ + 1e-9) continue;
+        ticks.push_back({value, Label(std::stod(absl::StrFormat("%.10g", value)))});
       }
     }
     return ticks;

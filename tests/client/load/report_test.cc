@@ -140,6 +140,17 @@ TEST(ChartTest, WhatCannotBeDrawnLeavesAGap) {
   EXPECT_THAT(svg, Not(HasSubstr("inf")));
 }
 
+TEST(ChartTest, EvenAPartOfADecadeHasTicks) {
+  Chart chart;
+  chart.log_y = true;
+  chart.series = {{"a", {{0, 500}, {1, 900}}}};
+  const std::string svg = ToSvg(chart);
+  for (const char* label : {">500<", ">600<", ">900<", ">1000<"}) {
+    EXPECT_THAT(svg, HasSubstr(label));
+  }
+  EXPECT_THAT(svg, Not(HasSubstr(">400<")));
+}
+
 TEST(ChartTest, NothingIsAnEmptyChart) { EXPECT_THAT(ToSvg(Chart()), HasSubstr("</svg>")); }
 
 }  // namespace
