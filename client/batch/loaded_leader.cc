@@ -85,6 +85,7 @@ const char* MendingField(const absl::Status& status) {
     case motion::ReadingSetting::kJointMap:
       return "joint_map";
     case motion::ReadingSetting::kFormat:
+    case motion::ReadingSetting::kRigJointMap:  // of a rig, which a batch has none of
       break;
   }
   return nullptr;
