@@ -192,6 +192,7 @@ class Handler(http.server.BaseHTTPRequestHandler):
 
 class Gateway(http.server.ThreadingHTTPServer):
     daemon_threads = True
+    request_queue_size = 128  # that wait to be accepted; of more, some are cut off
 
     def __init__(self, listen, server, tls=None):
         host, _, port = listen.rpartition(":")
