@@ -63,16 +63,19 @@ class LoggingServer:
         self.metrics_port = serving["metrics_port"]
 
     def lines(self):
-        """What it has written in whole, each line as an object; None in place of what is none."""
+        """What it has written in whole, each line as an object, or as bytes where it is none."""
         def parsed(line):
             try:
                 return json.loads(line)
             except json.JSONDecodeError:
-                return None
+                return line
         return [parsed(line) for line in self._path.read_bytes().split(b"\n")[:-1]]
 
     def events(self, name):
-        return [line for line in self.lines() if line and line["event"] == name]
+        return [line for line in self.lines() if isinstance(line, dict) and line["event"] == name]
+
+    def torn_lines(self):
+        return [line for line in self.lines() if isinstance(line, bytes)]
 
     def leave_room(self, size):
         """Lets its files grow by so many bytes, or without limit."""
@@ -93,6 +96,13 @@ class LoggingServer:
     def kill(self):
         self._process.kill()
         self._process.wait(timeout=tools.STOP_SECONDS)
+
+
+def started(server):
+    """How many Synthesize calls have begun."""
+    found = re.search(r'grpc_server_started_total\{grpc_method="Synthesize".*\} (\d+)',
+                      get(server, "/metrics")[1])
+    return int(found[1]) if found else 0
 
 
 def descriptors(server):
@@ -122,7 +132,8 @@ class FaultsTest(unittest.TestCase):
     def test_a_log_on_a_full_disk_stops_nothing(self):
         server = LoggingServer(self.folder / "log")
         self.addCleanup(server.kill)
-        server.leave_room(20)  # a part of a line
+        part = 20  # bytes of a line
+        server.leave_room(part)
         calls = 3
         for _ in range(calls):
             self.assert_others_are_answered(server.address)
@@ -133,7 +144,8 @@ class FaultsTest(unittest.TestCase):
         tools.wait_until(lambda: server.events("log_lines_dropped"), "it says so")
         lost = server.lost_lines()
         self.assertEqual(server.events("log_lines_dropped")[0]["dropped"], lost)
-        self.assertEqual(server.lines().count(None), 1)  # the part; what came later stands alone
+        # What came later stands on lines of its own.
+        self.assertEqual([len(line) for line in server.torn_lines()], [part])
         self.assertEqual(server.stop(), 0)
         self.assertEqual(len(server.events("stopped")), 1)
 
@@ -178,16 +190,20 @@ class FaultsTest(unittest.TestCase):
                 silent = stack.enter_context(
                     socket.create_connection(("127.0.0.1", server.port), tools.RUN_SECONDS))
                 silent.sendall(http2.PREFACE[:(0, 12, 24)[i % 3]])
-            tools.wait_until(lambda: descriptors(server) >= before + SILENT, "all are there")
+            # On a slow machine the first may be closed before the last is there.
+            tools.wait_until(lambda: descriptors(server) >= before + SILENT // 2, "they are there")
             self.assert_others_are_answered(server.address)
             self.assertEqual(get(server, "/healthz")[0], 200)
             self.assertEqual(get(server, "/readyz")[0], 200)
-        tools.wait_until(lambda: descriptors(server) < before + SILENT // 10, "they are closed")
+            tools.wait_until(lambda: descriptors(server) < before + SILENT // 10,
+                             "the server closes them")
 
     def test_a_flood_of_resets_leaves_nothing_behind(self):
         server = self.serve()
         self.assertGreater(reset_flood.flood(server.port, False, FLOOD), 0)
-        tools.wait_until(lambda: in_flight(server) == 0, "every call is over")
+        tools.wait_until(lambda: 0 < started(server) == sum(handled(server).values()),
+                         "every call is over")
+        self.assertEqual(in_flight(server), 0)
         self.assertLessEqual(set(handled(server)), {"Canceled", "ResourceExhausted"})
         self.assert_others_are_answered(server.address)
 
