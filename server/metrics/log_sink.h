@@ -23,11 +23,12 @@ class LogSink {
 };
 
 // Writes each line to a C stream whole, in one write. Waits while the stream takes no more. A line
-// that the stream refuses, as on a full disk, is lost; after one that it took in part the next begins
-// on a line of its own.
+// that the stream refuses, as on a full disk, is lost; after one that it took in part the next
+// begins on a line of its own.
 class StreamLogSink final : public LogSink {
  public:
-  // `stream` outlives the sink, has not been used yet unless it is standard error, and gets no buffer.
+  // `stream` outlives the sink, has not been used yet unless it is standard error, and gets no
+  // buffer.
   explicit StreamLogSink(std::FILE* stream);
   bool Write(std::string_view line) override;
   std::uint64_t dropped_lines() const override { return dropped_; }

@@ -39,8 +39,8 @@ class QueuedLogSink::Queue {
       std::uint64_t lost = 0;
       for (const std::string& line : batch.lines) lost += sink_->Write(line) ? 0 : 1;
       CountLost(lost);
-      // Lines are dropped only while the queue is full, so they came after those of the batch. While
-      // nothing can be written the notice is lost as well, and the next one tells of all.
+      // Lines are dropped only while the queue is full, so they came after those of the batch.
+      // While nothing can be written the notice is lost as well, and the next one tells of all.
       const std::uint64_t untold = batch.dropped + lost - told;
       if (untold > 0 && sink_->Write(options_.drop_notice(untold))) told += untold;
     }

@@ -94,7 +94,9 @@ class StatusCodesTest(unittest.TestCase):
         self.serve()
         request = self.request()
         request.leader.frame_rate_hz = -1
-        self.assertEqual(self.code_of(self.synthesize(request)), "INVALID_ARGUMENT")
+        code, message = self.end_of(self.synthesize(request))
+        self.assertEqual(code, "INVALID_ARGUMENT")
+        self.assertIn("leader.frame_rate_hz: is -1", message)
 
     def test_failed_precondition(self):
         self.serve()

@@ -163,8 +163,7 @@ TEST(QueuedLogSinkTest, CountsLinesThatTheSinkLosesAndTellsOfThemOnce) {
     EXPECT_EQ(log.dropped_lines(), 2u) << "a notice is no line";
     sink->MakeSpace();
     log.Write("a");
-    // The notice comes with "a", not with "b".
-    while (sink->lines().size() < 2) std::this_thread::yield();
+    sink->WaitUntilTried(6);  // the notice comes with "a", not with "b"
     log.Write("b");
     dropped = log.dropped_lines();
   }

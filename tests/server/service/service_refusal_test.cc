@@ -296,8 +296,8 @@ TEST(ServiceEndTest, AFailedCallDoesNotFailOthers) {
   EXPECT_TRUE(Call(running.stub(), SampleRequest(30)).status.ok());
 }
 
-// Whether a call's window was in line before its deadline of so many seconds passed, which then ended
-// the call.
+// Whether a call's window was in line before its deadline of so many seconds passed, which then
+// ended the call.
 bool ExpiresInLine(int seconds) {
   PuppetService service;
   TimedContext context;
