@@ -107,8 +107,8 @@ CLI::App* AddConvertCommand(CLI::App* app, ConvertArguments* arguments) {
   command
       ->add_option(
           "--out", arguments->outputs,
-          "File to write: .glb, .gltf, .bvh (a file for each person), .csv, .npy or .json; "
-          "repeatable; - for standard output")
+          "File to write: .glb, .gltf, .bvh (a file for each person), .csv, .npy, .json or .txt "
+          "(SBU text); repeatable; - for standard output")
       ->required()
       ->allow_extra_args(false)
       ->type_name("FILE")

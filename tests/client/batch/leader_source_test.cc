@@ -15,6 +15,7 @@ namespace {
 
 using test::IsOk;
 using test::StatusIs;
+using ::testing::_;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Pair;
@@ -140,7 +141,7 @@ TEST_F(ListLeadersTest, WhatHoldsNoMotionIsPassedOver) {
   test::WriteTestFile(folder / "empty.json", "");
   test::WriteTestFile(folder / "walk.bvh", "# looked at when its turn comes");
   std::vector<std::string> passed_over;
-  auto source = ListLeaders({folder.path().string()}, &passed_over);
+  auto source = ListLeaders({folder.path().string()}, std::nullopt, &passed_over);
   ASSERT_THAT(source, IsOk());
   EXPECT_THAT(Keys(*ReadAll(**source)), ElementsAre("motion", "plain", "walk", "walk_txt"));
   std::vector<std::string> wanted;
@@ -149,8 +150,22 @@ TEST_F(ListLeadersTest, WhatHoldsNoMotionIsPassedOver) {
   }
   EXPECT_EQ(passed_over, wanted);
   // Somebody who names a file means it.
-  source = ListLeaders({(folder / "keys.txt").string()}, &passed_over);
+  source = ListLeaders({(folder / "keys.txt").string()}, std::nullopt, &passed_over);
   EXPECT_THAT(Keys(*ReadAll(**source)), ElementsAre("keys"));
+}
+
+TEST_F(ListLeadersTest, AFormatThatIsSaidMakesNamesFree) {
+  test::WriteTestFile(folder_ / "walks/take1", "");
+  test::WriteTestFile(folder_ / "walks/take2.mocap", "");
+  std::vector<std::string> keys;
+  auto source = ListLeaders({folder_.path().string()}, formats::Format::kBvh);
+  ASSERT_THAT(source, IsOk());
+  // notes.md might be one; a.csv and c.npy say that they are none.
+  EXPECT_THAT(Keys(*ReadAll(**source)), ElementsAre("walks/a", "walks/b", "walks/notes_md",
+                                                    "walks/take1", "walks/take2_mocap"));
+  EXPECT_THAT(List({"walks/take2.mocap"}), StatusIs(absl::StatusCode::kInvalidArgument, _));
+  source = ListLeaders({(folder_ / "walks/take2.mocap").string()}, formats::Format::kBvh);
+  EXPECT_THAT(source, IsOk());
 }
 
 TEST_F(ListLeadersTest, PatternsAndFiles) {
