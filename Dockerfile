@@ -23,7 +23,9 @@ FROM tools AS build
 ARG CCACHE_DIR=/var/cache/ccache
 # Further settings of CMake.
 ARG CMAKE_FLAGS=
-ENV LANG=C.UTF-8 CCACHE_DIR=$CCACHE_DIR CCACHE_BASEDIR=/src CCACHE_NOHASHDIR=1
+# The compiler is told by its content: files of an image have no times of their own.
+ENV LANG=C.UTF-8 CCACHE_DIR=$CCACHE_DIR CCACHE_BASEDIR=/src CCACHE_NOHASHDIR=1 \
+    CCACHE_COMPILERCHECK=content
 COPY . .
 RUN --mount=type=cache,id=duet-ccache,target=/var/cache/ccache \
     cmake --preset release -DDUET_BUILD_TESTS=OFF -DDUET_BUILD_BENCHMARKS=OFF $CMAKE_FLAGS \
@@ -44,7 +46,7 @@ RUN --mount=type=cache,id=duet-ccache,target=/var/cache/ccache \
 # The server image's root, of the packages' files alone, with the list of what is in it.
 FROM ${BASE} AS root
 ARG VERSION=0.1.0
-ARG CREATED=1970-01-01T00:00:00Z
+ARG SBOM_TIME=1970-01-01T00:00:00Z
 WORKDIR /src
 COPY packages/runtime.txt packages/image_root.txt packages/
 COPY scripts/install_packages.sh scripts/
@@ -54,24 +56,41 @@ COPY LICENSE ./
 RUN deploy/image/make_root.sh /root-of-image packages/runtime.txt \
     && mkdir -p /root-of-image/usr/share/doc/duet \
     && cp LICENSE /root-of-image/usr/share/doc/duet/copyright \
-    && deploy/image/write_sbom.py --version "$VERSION" --created "$CREATED" /root-of-image \
+    && deploy/image/write_sbom.py --version "$VERSION" --created "$SBOM_TIME" /root-of-image \
        >/duet.spdx.json \
     && mv /duet.spdx.json /root-of-image/usr/share/doc/duet/
 
-FROM ${BASE} AS training
+# The training image's packages, and the list of them.
+FROM ${BASE} AS training-packages
 COPY packages/runtime.txt packages/training.txt /tmp/install/packages/
 COPY scripts/install_packages.sh /tmp/install/scripts/
 RUN /tmp/install/scripts/install_packages.sh runtime training \
     && rm -rf /tmp/install /var/lib/apt/lists/* /var/cache/apt/* /var/log/apt /var/log/dpkg.log
+
+FROM root AS training-records
+ARG VERSION=0.1.0
+ARG SBOM_TIME=1970-01-01T00:00:00Z
+COPY --from=training-packages /var/lib/dpkg/status /records/var/lib/dpkg/status
+COPY --from=training-packages /usr/share/doc /records/usr/share/doc
+RUN deploy/image/write_sbom.py --version "$VERSION" --created "$SBOM_TIME" /records \
+    >/duet.spdx.json
+
+FROM training-packages AS training
+COPY --from=training-records /duet.spdx.json /usr/share/doc/duet/
+COPY LICENSE /usr/share/doc/duet/copyright
+# Nobody becomes root here.
+RUN find / -xdev -type f -perm /6000 -exec chmod a-s {} +
 COPY --from=build-training /out /
 ARG VERSION=0.1.0
 ARG REVISION=unknown
 ARG SOURCE=unknown
+ARG CREATED=1970-01-01T00:00:00Z
 LABEL org.opencontainers.image.title="Duet, training and evaluation" \
       org.opencontainers.image.description="Trains and measures the networks that Duet serves" \
       org.opencontainers.image.version="$VERSION" \
       org.opencontainers.image.revision="$REVISION" \
       org.opencontainers.image.source="$SOURCE" \
+      org.opencontainers.image.created="$CREATED" \
       org.opencontainers.image.licenses="Apache-2.0"
 USER 65532:65532
 WORKDIR /tmp
@@ -83,11 +102,13 @@ COPY --from=build /out /
 ARG VERSION=0.1.0
 ARG REVISION=unknown
 ARG SOURCE=unknown
+ARG CREATED=1970-01-01T00:00:00Z
 LABEL org.opencontainers.image.title="Duet" \
       org.opencontainers.image.description="Answers one character's motion with another's, over gRPC" \
       org.opencontainers.image.version="$VERSION" \
       org.opencontainers.image.revision="$REVISION" \
       org.opencontainers.image.source="$SOURCE" \
+      org.opencontainers.image.created="$CREATED" \
       org.opencontainers.image.licenses="Apache-2.0"
 ENV PATH=/usr/local/bin:/usr/bin
 # By number: a cluster can then see that it is not root.

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """duet-server beside the service that a user would write: a Python gRPC server around the same network
-in eager PyTorch. The same load on both, which take turns; the load's program runs on the same cores.
+in eager PyTorch. The same load on both, which take turns; duet-load runs on the same cores.
 
     benchmarks/compare_servers.py build/release [ROUNDS]
 
@@ -16,6 +16,8 @@ import subprocess
 import sys
 import tempfile
 import time
+
+from load_tool import run_load
 
 HERE = pathlib.Path(__file__).resolve().parent
 SECONDS = 4
@@ -33,10 +35,7 @@ def wait_for(find, process):
 
 
 def load(build, address, callers, *model):
-    run = subprocess.run([build / "benchmarks/serving_load", "--server", address, "--callers",
-                          str(callers), "--seconds", str(SECONDS), *model],
-                         check=True, capture_output=True, text=True)
-    return json.loads(run.stdout)
+    return run_load(build, address, "--callers", callers, "--seconds", SECONDS, *model)
 
 
 def with_duet(build, version, folder, callers):
@@ -47,8 +46,7 @@ def with_duet(build, version, folder, callers):
     try:
         port = wait_for(lambda: re.search(r'"event":"serving".*?"port":(\d+)',
                                           log.read_text(encoding="utf-8")), server)[1]
-        return load(build, f"127.0.0.1:{port}", callers, "--model", "sbu", "--version",
-                    str(version))
+        return load(build, f"127.0.0.1:{port}", callers, "--model", f"sbu@{version}")
     finally:
         server.terminate()
         server.wait()

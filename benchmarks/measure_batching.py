@@ -14,7 +14,6 @@ clips of ten minutes; and how many calls are answered in time where deadlines ar
 
 import argparse
 import collections
-import json
 import pathlib
 import re
 import statistics
@@ -22,14 +21,16 @@ import subprocess
 import tempfile
 import time
 
-# (name, flags of the load's program)
+from load_tool import run_load
+
+# (name, flags of duet-load)
 LOADS = [
     ("1 caller", ["--callers", "1"]),
     ("8 callers", ["--callers", "8"]),
     ("64 callers", ["--callers", "64"]),
-    ("1 caller beside 66 clips of ten minutes", ["--callers", "1", "--background-callers", "66", "--warm-up-seconds", "3"]),
-    ("64 callers, deadline 0.3 s", ["--callers", "64", "--deadline-seconds", "0.3"]),
-    ("64 callers, deadline 0.05 s", ["--callers", "64", "--deadline-seconds", "0.05"]),
+    ("1 caller beside 66 clips of ten minutes", ["--callers", "1", "--background-callers", "66", "--warm-up", "3"]),
+    ("64 callers, deadline 0.3 s", ["--callers", "64", "--deadline", "0.3"]),
+    ("64 callers, deadline 0.05 s", ["--callers", "64", "--deadline", "0.05"]),
 ]
 
 
@@ -50,14 +51,10 @@ def measure(chosen, batch, flags):
     with tempfile.TemporaryDirectory() as folder:
         server, address = start_server(chosen.server, pathlib.Path(folder) / "log", batch)
         try:
-            printed = subprocess.run(
-                [chosen.build / "benchmarks" / "serving_load", "--server", address,
-                 "--seconds", str(chosen.seconds), *flags],
-                check=True, capture_output=True, text=True).stdout
+            return run_load(chosen.build, address, "--seconds", chosen.seconds, *flags)
         finally:
             server.terminate()
             server.wait()
-    return json.loads(printed)
 
 
 def median(results, figure):

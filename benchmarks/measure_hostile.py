@@ -29,6 +29,7 @@ import grpc
 SOURCE = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(SOURCE / "tests/e2e"))
 import http2_client as http2  # pylint: disable=wrong-import-position
+from load_tool import run_load  # pylint: disable=wrong-import-position
 
 HOSTILE = "127.0.0.2"
 SYNTHESIZE = "/duet.v1.MotionSynthesis/Synthesize"
@@ -84,8 +85,12 @@ class Server:
                           self.get("/metrics")[1])
         return int(found[1]) if found else 0
 
+    @property
+    def address(self):
+        return f"127.0.0.1:{self.port}"
+
     def channel(self):
-        return grpc.insecure_channel(f"127.0.0.1:{self.port}", options=[
+        return grpc.insecure_channel(self.address, options=[
             ("grpc.use_local_subchannel_pool", 1), ("grpc.max_send_message_length", -1),
             ("grpc.max_receive_message_length", -1)])
 
@@ -180,27 +185,23 @@ def counted(outcomes):
 
 
 class Beside:
-    """Makes a call again and again beside what is measured."""
+    """Makes a call again and again beside what is measured, from a process of its own."""
 
     def __init__(self, server, path, request=b"", pause=0.02):
-        self.outcomes, self.over = [], threading.Event()
-        self.channel = server.channel()
-        self.thread = threading.Thread(target=self._run, args=(path, request, pause))
-
-    def _run(self, path, request, pause):
-        while not self.over.is_set():
-            self.outcomes.append(call(self.channel, path, request))
-            time.sleep(pause)
+        self.outcomes, self.request = [], request
+        self.process = subprocess.Popen(
+            [sys.executable, "-B", pathlib.Path(__file__).with_name("ask_beside.py"), server.address,
+             path, str(pause)], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
 
     def __enter__(self):
-        call(self.channel, LIST_MODELS, b"")  # connected
-        self.thread.start()
+        self.process.stdin.write(b"%d\n" % len(self.request) + self.request)
+        self.process.stdin.flush()
+        self.process.stdout.readline()  # connected
         return self
 
     def __exit__(self, *_):
-        self.over.set()
-        self.thread.join()
-        self.channel.close()
+        out, _ = self.process.communicate()
+        self.outcomes = [Outcome(code, seconds=seconds) for code, seconds in json.loads(out)]
 
     def slowest(self):
         return max(outcome.seconds for outcome in self.outcomes)
@@ -284,20 +285,13 @@ def large(args, protos):
         say("large", "slowest ListModels beside, s", f"{beside.slowest():.3f}")
 
 
-def run_load(args, server, *flags):
-    found = subprocess.run([args.build / "benchmarks/serving_load", "--server",
-                            f"127.0.0.1:{server.port}", *map(str, flags)],
-                           stdout=subprocess.PIPE, check=True, text=True)
-    return json.loads(found.stdout)
-
-
 def deadlines(args, protos):
     best = None
     for deadline in (10, 1, 0.3, 0.15):
         with running(args.server) as server:
-            run_load(args, server, "--callers", 8, "--seconds", 2)  # its costs are known then
-            seen = run_load(args, server, "--rate", 400, "--callers", 256, "--deadline-seconds",
-                            deadline, "--warm-up-seconds", 2, "--seconds", 8)
+            run_load(args.build, server.address, "--callers", 8, "--seconds", 2)  # its costs are known
+            seen = run_load(args.build, server.address, "--rate", 400, "--max-in-flight", 256,
+                            "--deadline", deadline, "--warm-up", 2, "--seconds", 8)
             good = seen["clips_per_second"]
             best = best or good
             say("deadlines", f"400 calls/s, deadline {deadline} s: clips/s in time",
@@ -306,9 +300,9 @@ def deadlines(args, protos):
 
 def long_clips(args, protos):
     with running(args.server) as server:
-        idle = run_load(args, server, "--callers", 1)
-        beside = run_load(args, server, "--callers", 1, "--background-callers", 66,
-                          "--background-frames", 9000, "--warm-up-seconds", 5)
+        idle = run_load(args.build, server.address, "--callers", 1, "--seconds", 5)
+        beside = run_load(args.build, server.address, "--callers", 1, "--seconds", 5,
+                          "--background-callers", 66, "--background-frames", 9000, "--warm-up", 5)
         say("long_clips", "a short call on an idle server: p50, ms", f"{idle['p50_ms']:.1f}")
         say("long_clips", "beside 66 of ten minutes: p50, ms, refused",
             f"{beside['p50_ms']:.1f} ({beside['p50_ms'] / idle['p50_ms']:.1f} x), "

@@ -14,6 +14,10 @@ mark_as_advanced(DUET_SYSTEMD_UNIT_DIR DUET_SYSUSERS_DIR)
 set(deploy ${PROJECT_SOURCE_DIR}/deploy)
 install(FILES ${deploy}/debian/duet-server.8 DESTINATION ${CMAKE_INSTALL_MANDIR}/man8
   COMPONENT server)
+foreach(program duet-train duet-eval duet-import duet-keyframe)
+  install(FILES ${deploy}/debian/${program}.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1
+    COMPONENT training)
+endforeach()
 install(FILES ${deploy}/systemd/duet-server.service DESTINATION ${DUET_SYSTEMD_UNIT_DIR}
   COMPONENT server)
 install(FILES ${deploy}/systemd/duet-server.sysusers RENAME duet-server.conf

@@ -26,7 +26,7 @@ class Layer:
 
 
 MOTION_FILES = ("base", "motion", "retargeting", "flat formats", "bvh format",
-                "gltf format", "asf format", "formats")
+                "gltf format", "asf format", "usd format", "formats")
 MODELS = ("engine", "checkpoint", "embedded checkpoints", "network", "torch engine", "training")
 MEASURING = ("metrics", "protocol", "baselines", "judge", "experiments")
 SERVER = ("server common", "batching", "registry", "server metrics", "security", "tracing",
@@ -42,9 +42,10 @@ LAYERS = (
     Layer("bvh format", "model/formats/bvh", sees=("base", "motion", "retargeting")),
     Layer("gltf format", "model/formats/gltf", sees=("base", "motion", "retargeting")),
     Layer("asf format", "model/formats/asf", sees=("base", "motion", "retargeting")),
+    Layer("usd format", "model/formats/usd", sees=("base", "motion", "retargeting")),
     Layer("formats", "model/formats",
           sees=("base", "motion", "retargeting", "flat formats", "bvh format", "gltf format",
-                "asf format")),
+                "asf format", "usd format")),
     Layer("authoring", "model/authoring", sees=("base", "motion", "retargeting", "bvh format")),
     Layer("dataset", "model/dataset", sees=MOTION_FILES),
     Layer("importing", "model/importing", sees=MOTION_FILES + ("dataset",)),
@@ -117,6 +118,8 @@ LAYERS = (
           libraries=("rpc",)),
     Layer("client program", "client/cli",
           sees=MOTION_FILES + ("analysis", "viewer", "batch flow", "batch", "client")),
+    Layer("load program", "client/load/program", sees=MOTION_FILES + ("load", "client program", "client")),
+    Layer("load", "client/load", sees=("base", "motion", "client"), libraries=("rpc",)),
     Layer("client", "client", sees=("base", "motion"), libraries=("rpc",)),
 )
 

@@ -12,6 +12,7 @@
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_replace.h"
 #include "client/batch/durable_file.h"
+#include "client/batch/parse_record.h"
 #include "client/batch/pose_strip.h"
 #include "client/batch/record.h"
 #include "client/batch/stored_pair.h"
@@ -111,14 +112,17 @@ class Sheet {
   Sheet(const JobIdentity& identity, const ItemReader& items)
       : identity_(identity), items_(items) {}
 
-  void Add(const JournalEntry& entry) {
-    const ordered_json record = ordered_json::parse(entry.record);
-    if (record["state"] != kDone) return;
+  absl::Status Add(const JournalEntry& entry) {
+    const absl::StatusOr<ordered_json> parsed = ParseRecord(entry.record);
+    if (!parsed.ok()) return parsed.status();
+    const ordered_json& record = *parsed;
+    if (record["state"] != kDone) return absl::OkStatus();
     Sample& sample = samples_[ClassOf(record)];
     ++sample.items;
     ++total_;
     sample.kept.emplace(record["id"].get<std::string>(), entry);
     if (sample.kept.size() > kItemsOfAClass) sample.kept.erase(std::prev(sample.kept.end()));
+    return absl::OkStatus();
   }
 
   std::string Page() const {
@@ -188,10 +192,8 @@ class Sheet {
 absl::Status WriteContactSheet(const JournalReader& journal, const JobIdentity& identity,
                                const ItemReader& items, const std::filesystem::path& out) {
   Sheet sheet(identity, items);
-  absl::Status status = journal.ForEach([&sheet](const JournalEntry& entry) {
-    sheet.Add(entry);
-    return absl::OkStatus();
-  });
+  absl::Status status =
+      journal.ForEach([&sheet](const JournalEntry& entry) { return sheet.Add(entry); });
   if (!status.ok()) return status;
   return ReplaceDurably(out / "contact_sheet.html", sheet.Page());
 }

@@ -11,6 +11,7 @@
 #include "model/formats/flat/npy.h"
 #include "model/formats/flat/sbu_text.h"
 #include "model/formats/gltf/gltf_export.h"
+#include "model/formats/usd/usda_export.h"
 #include "model/motion/recorded_motion.h"
 #include "model/motion/resample.h"
 
@@ -29,13 +30,21 @@ absl::StatusOr<std::vector<EncodedFile>> EncodeBvh(const motion::ClipPair& pair,
                                   {".follower.bvh", FormatBvh(*follower)}};
 }
 
+// Labels and model of an item are in the index.
 absl::StatusOr<std::vector<EncodedFile>> EncodeGlb(const motion::ClipPair& pair,
                                                    const motion::Skeleton& skeleton) {
-  // Labels and model of an item are in the index.
   absl::StatusOr<std::string> content = formats::gltf::FormatGltf(
       {pair.leader, pair.follower}, skeleton, nullptr, formats::gltf::GltfContainer::kBinary);
   if (!content.ok()) return content.status();
   return std::vector<EncodedFile>{{".glb", *std::move(content)}};
+}
+
+absl::StatusOr<std::vector<EncodedFile>> EncodeUsda(const motion::ClipPair& pair,
+                                                    const motion::Skeleton& skeleton) {
+  absl::StatusOr<std::string> content =
+      formats::usd::FormatUsda({pair.leader, pair.follower}, skeleton, nullptr);
+  if (!content.ok()) return content.status();
+  return std::vector<EncodedFile>{{".usda", *std::move(content)}};
 }
 
 absl::StatusOr<std::vector<EncodedFile>> EncodeFormat(Format format, const motion::ClipPair& pair,
@@ -49,6 +58,8 @@ absl::StatusOr<std::vector<EncodedFile>> EncodeFormat(Format format, const motio
       return std::vector<EncodedFile>{{".npy", formats::flat::FormatNpy(pair)}};
     case Format::kGlb:
       return EncodeGlb(pair, skeleton);
+    case Format::kUsda:
+      return EncodeUsda(pair, skeleton);
     case Format::kJson:
       break;
   }

@@ -9,6 +9,7 @@
 #include "client/batch/capture_layout.h"
 #include "client/batch/durable_file.h"
 #include "client/batch/packing.h"
+#include "client/batch/parse_record.h"
 #include "client/batch/record.h"
 #include "client/batch/text_values.h"
 #include "model/base/file.h"
@@ -107,7 +108,9 @@ class IndexWriter {
   }
 
   absl::Status Add(const std::string& text) {
-    ordered_json record = ordered_json::parse(text);
+    absl::StatusOr<ordered_json> parsed = ParseRecord(text);
+    if (!parsed.ok()) return parsed.status();
+    ordered_json& record = *parsed;
     if (record["state"] == kFailed) {
       ++counts_.failed;
       return absl::OkStatus();
@@ -206,8 +209,11 @@ absl::StatusOr<PlannedItems> ReadPlanned(const std::filesystem::path& out) {
   const absl::StatusOr<std::string> text = base::ReadFile(file, kMaxSummaryBytes, "a summary");
   if (!text.ok()) return text.status();
   const auto summary = nlohmann::json::parse(*text, nullptr, false);
-  for (const char* field : {"planned", "whole_plan", "missing"}) {
-    if (summary.is_object() && summary.contains(field)) continue;
+  const auto is_count = [&summary](const char* field) {
+    return summary.contains(field) && summary[field].is_number_integer();
+  };
+  if (!summary.is_object() || !is_count("planned") || !is_count("missing") ||
+      !summary.contains("whole_plan") || !summary["whole_plan"].is_boolean()) {
     return absl::DataLossError(absl::StrCat(file.string(), ": is no summary of duet batch"));
   }
   return PlannedItems{summary["planned"], summary["whole_plan"], summary["missing"]};

@@ -11,6 +11,7 @@
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "client/batch/durable_file.h"
+#include "client/batch/item_limit.h"
 #include "model/base/sha256.h"
 
 namespace duet::client::batch {
@@ -83,6 +84,10 @@ absl::Status JournalReader::Load() {
       return absl::DataLossError(absl::StrCat(path_.string(), ": byte ", size_, ": damaged"));
     torn = file.eof() || !ParseLine(line, &parsed);
     if (torn) continue;
+    if (parsed.item >= kMaxItems) {
+      return absl::DataLossError(absl::StrCat(path_.string(), ": byte ", size_, ": item ",
+                                              parsed.item, ", wanted one below ", kMaxItems));
+    }
     if (parsed.item >= end()) offsets_.resize(static_cast<size_t>(parsed.item) + 1);
     uint64_t& offset = offsets_[static_cast<size_t>(parsed.item)];
     count_ += offset == 0 ? 1 : 0;

@@ -78,8 +78,8 @@ bool LooksLikeMotion(const fs::path& file) {
 // Whether a file of a folder or a pattern may be a leader: as its name says, or, where it is said
 // what leaders are, unless its name says otherwise.
 bool MayLead(const fs::path& file, const std::optional<formats::Format>& format) {
-  const std::optional<formats::Format> named = formats::FormatOf(file);
-  return format.has_value() ? named.value_or(*format) == *format : named.has_value();
+  if (!format.has_value()) return formats::IsReadable(file);
+  return formats::FormatOf(file).value_or(*format) == *format;
 }
 
 absl::Status AddFolder(const fs::path& folder, const std::optional<formats::Format>& format,

@@ -1,12 +1,15 @@
 #include "client/batch/loaded_leader.h"
 
+#include <optional>
 #include <system_error>
 #include <vector>
 
+#include "absl/strings/str_cat.h"
 #include "client/batch/text_values.h"
 #include "model/base/file.h"
 #include "model/base/sha256.h"
 #include "model/motion/motion_limits.h"
+#include "model/motion/reading_setting.h"
 
 namespace duet::client::batch {
 namespace {
@@ -56,6 +59,48 @@ bool SameMotion(const LeaderEntry& a, const LeaderEntry& b) {
          a.follower_start_side == b.follower_start_side;
 }
 
+absl::StatusOr<LoadedLeader> Load(const LeaderEntry& entry, formats::Side side,
+                                  const LeaderInput& input, const motion::Skeleton& skeleton) {
+  formats::ReadOptions options = ToReadOptions(input, skeleton);
+  options.side = side;
+  absl::StatusOr<motion::Clip> clip = formats::ReadLeader(entry.file, options);
+  if (!clip.ok()) return clip.status();
+  const absl::StatusOr<std::string> content =
+      base::ReadFile(entry.file, motion::kMaxMotionFileBytes, "a motion");
+  if (!content.ok()) return content.status();
+  LoadedLeader loaded;
+  loaded.clip = *std::move(clip);
+  loaded.sha256 = base::Sha256Hex(*content);
+  absl::Status status = SetStart(entry, side, input, options, &loaded);
+  if (!status.ok()) return status;
+  return loaded;
+}
+
+// Field of the recipe that would mend what a reader could not know; null where there is none.
+const char* MendingField(const absl::Status& status) {
+  const std::optional<motion::ReadingSetting> setting = motion::MendingSetting(status);
+  if (!setting.has_value()) return nullptr;
+  switch (*setting) {
+    case motion::ReadingSetting::kFrameRate:
+      return "frame_rate_hz";
+    case motion::ReadingSetting::kMetresPerUnit:
+      return "metres_per_unit";
+    case motion::ReadingSetting::kJointMap:
+      return "joint_map";
+    case motion::ReadingSetting::kFormat:
+    case motion::ReadingSetting::kRigJointMap:  // of a rig, which a batch has none of
+      break;
+  }
+  return nullptr;
+}
+
+absl::Status WithMendingField(const absl::Status& status) {
+  const char* const field = MendingField(status);
+  if (field == nullptr) return status;
+  return absl::Status(status.code(), absl::StrCat(status.message(),
+                                                  "; say it in the recipe: input { ", field, " }"));
+}
+
 }  // namespace
 
 std::shared_ptr<SharedLeader> LastLeaders::Get(const std::shared_ptr<const LeaderEntry>& entry,
@@ -70,18 +115,8 @@ std::shared_ptr<SharedLeader> LastLeaders::Get(const std::shared_ptr<const Leade
 absl::StatusOr<LoadedLeader> LoadLeader(const LeaderEntry& entry, formats::Side side,
                                         const LeaderInput& input,
                                         const motion::Skeleton& skeleton) {
-  formats::ReadOptions options = ToReadOptions(input, skeleton);
-  options.side = side;
-  absl::StatusOr<motion::Clip> clip = formats::ReadLeader(entry.file, options);
-  if (!clip.ok()) return clip.status();
-  const absl::StatusOr<std::string> content =
-      base::ReadFile(entry.file, motion::kMaxMotionFileBytes, "a motion");
-  if (!content.ok()) return content.status();
-  LoadedLeader loaded;
-  loaded.clip = *std::move(clip);
-  loaded.sha256 = base::Sha256Hex(*content);
-  absl::Status status = SetStart(entry, side, input, options, &loaded);
-  if (!status.ok()) return status;
+  absl::StatusOr<LoadedLeader> loaded = Load(entry, side, input, skeleton);
+  if (!loaded.ok()) return WithMendingField(loaded.status());
   return loaded;
 }
 

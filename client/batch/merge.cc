@@ -16,6 +16,7 @@
 #include "client/batch/job_folder.h"
 #include "client/batch/journal.h"
 #include "client/batch/packing.h"
+#include "client/batch/parse_record.h"
 #include "client/batch/record.h"
 #include "client/batch/setup.h"
 #include "client/batch/verify.h"
@@ -187,7 +188,9 @@ class Merger {
       const absl::StatusOr<JournalEntry> moved = merged.Read(item);
       if (moved.ok() && moved->record == entry->record) return absl::OkStatus();
     }
-    const ordered_json record = ordered_json::parse(entry->record);
+    const absl::StatusOr<ordered_json> parsed = ParseRecord(entry->record);
+    if (!parsed.ok()) return parsed.status();
+    const ordered_json& record = *parsed;
     if (record["state"] == kDone && identity_.packing != Packing::kNone) {
       return CopyToSpool(*part, *entry, record);
     }

@@ -9,6 +9,7 @@
 #include "client/batch/archive.h"
 #include "client/batch/durable_file.h"
 #include "client/batch/item_files.h"
+#include "client/batch/parse_record.h"
 #include "client/batch/record.h"
 
 namespace duet::client::batch {
@@ -28,7 +29,9 @@ class Packer {
         out_(folder.out()) {}
 
   absl::Status Add(const JournalEntry& entry) {
-    const ordered_json record = ordered_json::parse(entry.record);
+    const absl::StatusOr<ordered_json> parsed = ParseRecord(entry.record);
+    if (!parsed.ok()) return parsed.status();
+    const ordered_json& record = *parsed;
     if (record["state"] != kDone) return absl::OkStatus();
     uint64_t bytes = 0;
     for (const ordered_json& file : record["files"]) bytes += file["bytes"].get<uint64_t>();

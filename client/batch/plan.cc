@@ -9,6 +9,7 @@
 #include "absl/strings/str_replace.h"
 #include "client/batch/capture_layout.h"
 #include "client/batch/drawn_labels.h"
+#include "client/batch/item_limit.h"
 #include "client/batch/text_values.h"
 #include "model/base/random.h"
 #include "model/base/sha256.h"
@@ -331,6 +332,10 @@ absl::StatusOr<std::optional<Item>> Plan::Next() {
     if (!next->has_value()) return std::optional<Item>();
     absl::Status status = BeginLeader(**std::move(next));
     if (!status.ok()) return status;
+  }
+  if (number_ == kMaxItems) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("plan: came more than ", kMaxItems, " items, wanted several data sets"));
   }
   absl::StatusOr<Item> item = MakeItem();
   if (!item.ok()) return item.status();

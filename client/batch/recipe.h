@@ -85,7 +85,7 @@ struct QualityFilter {
   int retries_per_item = 0;
 };
 
-enum class Format { kBvh, kCsv, kNpy, kJson, kGlb };
+enum class Format { kBvh, kCsv, kNpy, kJson, kGlb, kUsda };
 enum class Layout { kMirror, kClassFolders, kSbu, kK3hi };
 enum class Packing { kNone, kTar, kNpz };
 

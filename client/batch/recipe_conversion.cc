@@ -199,8 +199,8 @@ LeaderInput ReadInput(const v1::LeaderInput& proto, Checker* check) {
   }
   if (proto.has_format()) {
     input.format = formats::ParseFormat(proto.format());
-    check->Want(input.format.has_value(), "input.format", base::Quoted(proto.format()),
-                formats::kFormatNames);
+    check->Want(input.format.has_value() && formats::IsReadable(*input.format), "input.format",
+                base::Quoted(proto.format()), formats::kReadableFormatNames);
   }
   input.joint_map.insert(proto.joint_map().begin(), proto.joint_map().end());
   return input;
@@ -268,7 +268,7 @@ Output ReadOutput(const v1::Output& proto, Checker* check) {
   for (const int format : proto.formats()) {
     check->Want(v1::Format_IsValid(format) && format != v1::FORMAT_UNSPECIFIED, "output.formats",
                 absl::StrCat(format),
-                "FORMAT_BVH, FORMAT_CSV, FORMAT_NPY, FORMAT_JSON or FORMAT_GLB");
+                "FORMAT_BVH, FORMAT_CSV, FORMAT_NPY, FORMAT_JSON, FORMAT_GLB or FORMAT_USDA");
     // Both count up in the same order, the proto from 1.
     output.formats.push_back(static_cast<Format>(format - v1::FORMAT_BVH));
   }

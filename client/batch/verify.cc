@@ -9,6 +9,8 @@
 #include "absl/strings/str_cat.h"
 #include "client/batch/archive.h"
 #include "client/batch/index.h"
+#include "client/batch/parse_record.h"
+#include "client/batch/record.h"
 #include "model/base/file.h"
 #include "model/base/sha256.h"
 #include "model/motion/motion_limits.h"
@@ -16,7 +18,7 @@
 namespace duet::client::batch {
 namespace {
 
-using nlohmann::json;
+using nlohmann::ordered_json;
 
 constexpr size_t kProblemsKept = 100;
 
@@ -60,14 +62,14 @@ class Verifier {
  public:
   explicit Verifier(const std::filesystem::path& out) : out_(out), shards_(out) {}
 
-  void Check(const json& record) {
+  void Check(const ordered_json& record) {
     ++report_.items;
     const std::string shard = record.value("shard", "");
-    for (const json& file : record["files"]) {
+    for (const ordered_json& file : record["files"]) {
       ++report_.files;
-      const absl::Status status = shard.empty()
-                                      ? CheckFile(out_ / file["path"], file["sha256"])
-                                      : shards_.Check(shard, file["path"], file["sha256"]);
+      const absl::Status status =
+          shard.empty() ? CheckFile(out_ / file["path"].get<std::string>(), file["sha256"])
+                        : shards_.Check(shard, file["path"], file["sha256"]);
       if (status.ok()) continue;
       ++report_.problem_count;
       if (report_.problems.size() < kProblemsKept) {
@@ -103,11 +105,12 @@ absl::StatusOr<VerifyReport> Verify(const std::filesystem::path& out) {
   int64_t number = 0;
   for (std::string line; std::getline(lines, line);) {
     ++number;
-    const json record = json::parse(line, nullptr, false);
-    if (!record.is_object() || !record.contains("files")) {
-      return absl::DataLossError(absl::StrCat(index.string(), ":", number, ": is no entry"));
+    const absl::StatusOr<ordered_json> record = ParseRecord(line);
+    if (!record.ok() || (*record)["state"] != kDone) {
+      return absl::DataLossError(absl::StrCat(index.string(), ":", number, ": is no entry",
+                                              record.ok() ? "" : ": ", record.status().message()));
     }
-    verifier.Check(record);
+    verifier.Check(*record);
   }
   verifier.report().missing = planned->missing;
   return verifier.report();

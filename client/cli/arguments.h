@@ -55,6 +55,12 @@ struct OutputFormat {
   std::optional<formats::Format> motion;  // absent: a page
 };
 
+// How .bvh is written.
+struct BvhArguments {
+  double metres_per_unit = formats::kCentimetre;
+  int keys_per_frame = 1;
+};
+
 // duet models
 struct ModelsArguments {
   ServerArguments server;
@@ -101,8 +107,10 @@ struct SynthesizeArguments {
   std::string request_id;
   std::vector<std::filesystem::path> outputs;
   std::optional<OutputFormat> output_format;  // of standard output
-  double bvh_metres_per_unit = formats::kCentimetre;
-  std::string follower_rig;  // empty, kLeadersRig or a BVH
+  BvhArguments bvh;
+  std::string follower_rig;                // empty, kLeadersRig or a file
+  retargeting::JointOverrides rig_joints;  // of such a file
+  std::filesystem::path rig_joint_table;   // a file of such joints; `rig_joints` win over it
   bool json = false;
   bool quiet = false;
 };
@@ -157,7 +165,7 @@ struct ConvertArguments {
   std::optional<double> resample_hz;
   std::vector<std::filesystem::path> outputs;
   std::optional<OutputFormat> output_format;  // of standard output
-  double bvh_metres_per_unit = formats::kCentimetre;
+  BvhArguments bvh;
   bool json = false;
   bool quiet = false;
 };

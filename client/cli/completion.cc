@@ -16,6 +16,9 @@ namespace {
 
 using Strings = std::vector<std::string>;
 
+// In all scripts @PROGRAM@ stands for the program's name and @FUNCTION@ for that of the shell's
+// function that completes it.
+
 // Words that may stand where no flag does.
 Strings WordsOf(const CommandEntry& command, const std::vector<CommandEntry>& all) {
   Strings words = command.subcommands;
@@ -63,8 +66,8 @@ std::string BashCase(const CommandEntry& command, const std::vector<CommandEntry
 
 // The command that the words before the cursor name, as "batch merge".
 constexpr char kBashHead[] =
-    R"(# bash completion for duet: source it, or install it as completions/duet.
-_duet() {
+    R"(# bash completion for @PROGRAM@: source it, or install it as completions/@PROGRAM@.
+@FUNCTION@() {
   local word="${COMP_WORDS[COMP_CWORD]}" before="${COMP_WORDS[COMP_CWORD-1]}"
   # bash takes the '=' of --flag=value for a word of its own.
   if [[ $word == '=' ]]; then word=''; fi
@@ -89,7 +92,7 @@ constexpr char kBashTail[] = R"(  esac
     COMPREPLY+=($(compgen -f -- "$word"))
   fi
 }
-complete -F _duet duet
+complete -F @FUNCTION@ @PROGRAM@
 )";
 
 // The pattern that matches a command after the one that it belongs to: " batch", "batch merge".
@@ -125,7 +128,8 @@ std::string ZshAction(const FlagEntry& flag) {
 }
 
 std::string ZshFunction(const std::string& name) {
-  return absl::StrCat("_duet", name.empty() ? "" : "_", absl::StrReplaceAll(name, {{" ", "_"}}));
+  return absl::StrCat("@FUNCTION@", name.empty() ? "" : "_",
+                      absl::StrReplaceAll(name, {{" ", "_"}}));
 }
 
 std::string ZshCommand(const CommandEntry& command, const std::vector<CommandEntry>& all) {
@@ -177,11 +181,13 @@ std::string ZshCommand(const CommandEntry& command, const std::vector<CommandEnt
 
 std::string ZshScript(const std::vector<CommandEntry>& commands) {
   std::string text =
-      "#compdef duet\n# zsh completion for duet: install it as _duet in a folder of $fpath.\n";
+      "#compdef @PROGRAM@\n# zsh completion for @PROGRAM@: install it as _@PROGRAM@ in a folder of "
+      "$fpath.\n";
   for (const CommandEntry& command : commands)
     absl::StrAppend(&text, ZshCommand(command, commands));
   return text +
-         "if [ \"$funcstack[1]\" = _duet ]; then _duet \"$@\"; else compdef _duet duet; fi\n";
+         "if [ \"$funcstack[1]\" = _@PROGRAM@ ]; then @FUNCTION@ \"$@\"; "
+         "else compdef @FUNCTION@ @PROGRAM@; fi\n";
 }
 
 // fish escapes a quote inside single quotes with a backslash.
@@ -207,7 +213,7 @@ std::string FishCondition(const CommandEntry& command) {
 
 std::string FishCommand(const CommandEntry& command, const std::vector<CommandEntry>& all) {
   const std::string start =
-      absl::StrCat("complete -c duet -n ", FishQuoted(FishCondition(command)));
+      absl::StrCat("complete -c @PROGRAM@ -n ", FishQuoted(FishCondition(command)));
   std::string text;
   for (const FlagEntry& flag : command.flags) {
     if (flag.is_argument) continue;
@@ -227,7 +233,8 @@ std::string FishCommand(const CommandEntry& command, const std::vector<CommandEn
 
 std::string FishScript(const std::vector<CommandEntry>& commands) {
   std::string text =
-      "# fish completion for duet: install it as completions/duet.fish.\ncomplete -c duet -f\n";
+      "# fish completion for @PROGRAM@: install it as completions/@PROGRAM@.fish.\n"
+      "complete -c @PROGRAM@ -f\n";
   for (const CommandEntry& command : commands)
     absl::StrAppend(&text, FishCommand(command, commands));
   return text;
@@ -237,9 +244,11 @@ std::string FishScript(const std::vector<CommandEntry>& commands) {
 
 std::string CompletionScript(const CLI::App& app, const std::string& shell) {
   const std::vector<CommandEntry> commands = ListCommands(app);
-  if (shell == "zsh") return ZshScript(commands);
-  if (shell == "fish") return FishScript(commands);
-  return BashScript(commands);
+  const std::string script = shell == "zsh"    ? ZshScript(commands)
+                             : shell == "fish" ? FishScript(commands)
+                                               : BashScript(commands);
+  const std::string function = absl::StrCat("_", absl::StrReplaceAll(app.get_name(), {{"-", "_"}}));
+  return absl::StrReplaceAll(script, {{"@PROGRAM@", app.get_name()}, {"@FUNCTION@", function}});
 }
 
 }  // namespace duet::client::cli

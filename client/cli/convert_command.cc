@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <ostream>
 #include <string>
 #include <utility>
@@ -42,8 +43,10 @@ struct Conversion {
 
 struct Written {
   Paths files;
-  double largest_error_metres = 0;   // of a position that is read back
+  // Of a position that is read back; absent for what Duet does not read.
+  std::optional<double> largest_error_metres = 0;
   std::vector<std::string> missing;  // what the format has no place for
+  std::vector<std::string> notes;
 };
 
 absl::Status ChoosePeople(const std::optional<People>& wanted, Clips* people) {
@@ -83,7 +86,8 @@ absl::StatusOr<Conversion> ReadConversion(const ConvertArguments& arguments, std
   if (!status.ok()) return status;
   Conversion conversion;
   conversion.skeleton = motion::SbuSkeleton();
-  conversion.writing.bvh_metres_per_unit = arguments.bvh_metres_per_unit;
+  conversion.writing.bvh_metres_per_unit = arguments.bvh.metres_per_unit;
+  conversion.writing.bvh_keys_per_frame = arguments.bvh.keys_per_frame;
   const absl::StatusOr<formats::ReadOptions> options =
       ToReadOptions(arguments.input, conversion.skeleton);
   if (!options.ok()) return options.status();
@@ -103,7 +107,7 @@ absl::StatusOr<Conversion> ReadConversion(const ConvertArguments& arguments, std
   return conversion;
 }
 
-// How far off a motion is that was written as `content`.
+// How far off a motion is that was written as `content`, in a format that is read.
 absl::StatusOr<double> ErrorOf(const std::string& content, Format format, const Clips& people,
                                const Conversion& conversion) {
   formats::ReadOptions options;
@@ -113,14 +117,17 @@ absl::StatusOr<double> ErrorOf(const std::string& content, Format format, const 
   // SBU text has its own, which it always means.
   if (format != Format::kSbuText) options.coordinates = motion::Coordinates{};
   options.metres_per_unit = format == Format::kBvh ? conversion.writing.bvh_metres_per_unit : 1;
+  const int keys = format == Format::kBvh ? conversion.writing.bvh_keys_per_frame : 1;
   double largest = 0;
   for (std::size_t i = 0; i < people.size(); ++i) {
     options.side = i == 0 ? formats::Side::kLeft : formats::Side::kRight;
     const absl::StatusOr<motion::Clip> clip = formats::ParseLeader(content, "the result", options);
     if (!clip.ok()) return clip.status();
-    for (std::size_t j = 0; j < clip->poses.all().size(); ++j) {
-      largest = std::max(
-          largest, static_cast<double>(Distance(clip->poses.all()[j], people[i].poses.all()[j])));
+    for (int frame = 0; frame < people[i].frame_count(); ++frame) {
+      for (int j = 0; j < clip->joint_count(); ++j) {
+        const float off = Distance(clip->at(frame * keys, j), people[i].at(frame, j));
+        largest = std::max(largest, static_cast<double>(off));
+      }
     }
   }
   return largest;
@@ -134,7 +141,7 @@ std::vector<std::string> MissingIn(Format format, double rate_hz) {
 
 // The content of each file: BVH has one for each person.
 absl::StatusOr<std::vector<std::string>> FormatFiles(const Conversion& conversion, Format format,
-                                                     double* largest_error) {
+                                                     std::optional<double>* largest_error) {
   std::vector<Clips> files = {conversion.people};
   if (format == Format::kBvh && conversion.people.size() == 2) {
     files = {{conversion.people[0]}, {conversion.people[1]}};
@@ -144,10 +151,14 @@ absl::StatusOr<std::vector<std::string>> FormatFiles(const Conversion& conversio
     absl::StatusOr<std::string> content =
         formats::FormatPeople(format, people, conversion.skeleton, conversion.writing);
     if (!content.ok()) return content.status();
-    const absl::StatusOr<double> error = ErrorOf(*content, format, people, conversion);
-    if (!error.ok()) return error.status();
-    *largest_error = std::max(*largest_error, *error);
     contents.push_back(*std::move(content));
+    if (!formats::IsReadable(format)) {
+      largest_error->reset();
+      continue;
+    }
+    const absl::StatusOr<double> error = ErrorOf(contents.back(), format, people, conversion);
+    if (!error.ok()) return error.status();
+    *largest_error = std::max(largest_error->value_or(0), *error);
   }
   return contents;
 }
@@ -169,19 +180,22 @@ absl::StatusOr<Written> Write(const Conversion& conversion, const std::filesyste
     written.files = {output};
     return written;
   }
-  absl::StatusOr<Paths> files = formats::WritePeople(output, format, conversion.people,
-                                                     conversion.skeleton, conversion.writing);
+  formats::WriteOptions writing = conversion.writing;
+  writing.notes = &written.notes;
+  absl::StatusOr<Paths> files =
+      formats::WritePeople(output, format, conversion.people, conversion.skeleton, writing);
   if (!files.ok()) return NotWritten(files.status());
   written.files = *std::move(files);
   return written;
 }
 
 std::string DescribeExactness(const Written& written) {
+  if (!written.largest_error_metres) return "not read back: Duet writes this format alone";
   std::string text =
-      written.largest_error_metres < kExactMetres
+      *written.largest_error_metres < kExactMetres
           ? "every position kept"
           : absl::StrFormat("positions up to %.1f mm off: a bone has one length there",
-                            1000 * written.largest_error_metres);
+                            1000 * *written.largest_error_metres);
   if (!written.missing.empty()) {
     absl::StrAppend(&text, "; no place for ", absl::StrJoin(written.missing, " and "));
   }
@@ -205,6 +219,7 @@ std::string Describe(const Conversion& conversion, const std::vector<Written>& w
           output.files[i] == kStandardStream ? "standard output" : output.files[i].string(),
           i == 0 ? absl::StrCat(" (", DescribeExactness(output), ")") : "", "\n");
     }
+    for (const std::string& note : output.notes) absl::StrAppend(&text, "          ", note, "\n");
   }
   return text;
 }
@@ -214,9 +229,10 @@ nlohmann::json ToJson(const Conversion& conversion, const std::vector<Written>& 
   for (const Written& output : written) {
     nlohmann::json files = nlohmann::json::array();
     for (const std::filesystem::path& file : output.files) files.push_back(file.string());
-    outputs.push_back({{"files", files},
-                       {"largest_error_metres", output.largest_error_metres},
-                       {"no_place_for", output.missing}});
+    nlohmann::json object = {
+        {"files", files}, {"no_place_for", output.missing}, {"notes", output.notes}};
+    if (output.largest_error_metres) object["largest_error_metres"] = *output.largest_error_metres;
+    outputs.push_back(std::move(object));
   }
   return {{"file", conversion.source},
           {"people_count", conversion.people.size()},

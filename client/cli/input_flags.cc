@@ -18,9 +18,9 @@ const std::map<std::string, Format> kInputFormats = {
     {"npy", Format::kNpy}, {"sbu", Format::kSbuText}};
 
 const std::map<std::string, OutputFormat> kOutputFormats = {
-    {"bvh", {Format::kBvh}},   {"csv", {Format::kCsv}},    {"glb", {Format::kGlb}},
-    {"gltf", {Format::kGltf}}, {"html", {std::nullopt}},   {"json", {Format::kJson}},
-    {"npy", {Format::kNpy}},   {"sbu", {Format::kSbuText}}};
+    {"bvh", {Format::kBvh}},     {"csv", {Format::kCsv}},  {"glb", {Format::kGlb}},
+    {"gltf", {Format::kGltf}},   {"html", {std::nullopt}}, {"json", {Format::kJson}},
+    {"npy", {Format::kNpy}},     {"sbu", {Format::kSbuText}}, {"usda", {Format::kUsda}}};
 
 const std::map<std::string, double> kBvhUnits = {{"centimetres", formats::kCentimetre},
                                                  {"metres", 1}};
@@ -74,12 +74,19 @@ void AddOutputFormatFlag(CLI::App* app, std::optional<OutputFormat>* format) {
       ->group(kOutputGroup);
 }
 
-void AddBvhUnitFlag(CLI::App* app, double* metres_per_unit) {
+void AddBvhFlags(CLI::App* app, BvhArguments* bvh) {
   AddChoice<double>(
-      app, "--bvh-unit", kBvhUnits, [metres_per_unit](double metres) { *metres_per_unit = metres; },
+      app, "--bvh-unit", kBvhUnits, [bvh](double metres) { bvh->metres_per_unit = metres; },
       "Unit of .bvh that is written, which the format does not tell: centimetres as Maya, "
       "MotionBuilder and Unreal take it, metres as Blender does")
       ->default_str("centimetres")
+      ->group(kOutputGroup);
+  app->add_option("--bvh-keys-per-frame", bvh->keys_per_frame,
+                  "Keys in .bvh for each frame of the motion: with more, programs that draw lines "
+                  "from angle to angle stay near the motion where a joint passes gimbal lock")
+      ->check(Undescribed(CLI::Range(1, formats::kMostBvhKeysPerFrame)))
+      ->capture_default_str()
+      ->type_name("COUNT")
       ->group(kOutputGroup);
 }
 

@@ -15,8 +15,8 @@ void AddInputFlags(CLI::App* app, InputArguments* input);
 // --output-format, of what goes to standard output.
 void AddOutputFormatFlag(CLI::App* app, std::optional<OutputFormat>* format);
 
-// --bvh-unit, of what is written.
-void AddBvhUnitFlag(CLI::App* app, double* metres_per_unit);
+// --bvh-unit and --bvh-keys-per-frame, of what is written.
+void AddBvhFlags(CLI::App* app, BvhArguments* bvh);
 
 // What standard output cannot take: several results, a summary besides, a result without
 // --output-format. Throws what CLI11 reports as a usage error.

@@ -37,16 +37,16 @@ std::string Example(absl::string_view text) {
   return page + ".fi\n";
 }
 
-std::string FullName(const CommandEntry& command) {
-  return absl::StrCat("duet", command.name.empty() ? "" : " ", command.name);
+std::string FullName(const CLI::App& app, const CommandEntry& command) {
+  return absl::StrCat(app.get_name(), command.name.empty() ? "" : " ", command.name);
 }
 
-std::string PageName(const CommandEntry& command) {
-  return absl::StrReplaceAll(FullName(command), {{" ", "-"}});
+std::string PageName(const CLI::App& app, const CommandEntry& command) {
+  return absl::StrReplaceAll(FullName(app, command), {{" ", "-"}});
 }
 
-std::string Synopsis(const CommandEntry& command) {
-  std::string text = absl::StrCat(".B ", Escaped(FullName(command)), "\n");
+std::string Synopsis(const CLI::App& app, const CommandEntry& command) {
+  std::string text = absl::StrCat(".B ", Escaped(FullName(app, command)), "\n");
   if (!command.subcommands.empty()) {
     absl::StrAppend(&text, command.name.empty() ? ".I COMMAND\n" : ".RI [ COMMAND ]\n");
   }
@@ -89,13 +89,14 @@ std::string Options(const CommandEntry& command) {
   return text;
 }
 
-std::string Commands(const CommandEntry& command, const std::vector<CommandEntry>& all) {
+std::string Commands(const CLI::App& app, const CommandEntry& command,
+                     const std::vector<CommandEntry>& all) {
   std::string text;
   for (const std::string& name : command.subcommands) {
     const std::string full = absl::StrCat(command.name, command.name.empty() ? "" : " ", name);
     for (const CommandEntry& other : all) {
       if (other.name != full) continue;
-      absl::StrAppend(&text, ".TP\n\\fB", Escaped(PageName(other)), "\\fR(1)\n",
+      absl::StrAppend(&text, ".TP\n\\fB", Escaped(PageName(app, other)), "\\fR(1)\n",
                       Escaped(other.help), ".\n");
     }
   }
@@ -116,24 +117,27 @@ std::string Topics() {
   return text;
 }
 
-std::string Page(const CommandEntry& command, const std::vector<CommandEntry>& all) {
+std::string Page(const CLI::App& app, const CommandEntry& command,
+                 const std::vector<CommandEntry>& all) {
   const bool program = command.name.empty();
   std::string help(absl::StripSuffix(command.help, "."));
-  std::string text = absl::StrCat(".TH ", absl::AsciiStrToUpper(Escaped(PageName(command))),
+  std::string text = absl::StrCat(".TH ", absl::AsciiStrToUpper(Escaped(PageName(app, command))),
                                   " 1 \"\" \"duet ", DUET_VERSION, "\" \"User Commands\"\n");
-  absl::StrAppend(&text, ".SH NAME\n", Escaped(PageName(command)), " \\- ", Escaped(help), "\n");
-  absl::StrAppend(&text, ".SH SYNOPSIS\n", Synopsis(command));
+  absl::StrAppend(&text, ".SH NAME\n", Escaped(PageName(app, command)), " \\- ", Escaped(help),
+                  "\n");
+  absl::StrAppend(&text, ".SH SYNOPSIS\n", Synopsis(app, command));
   absl::StrAppend(&text, ".SH DESCRIPTION\n", Escaped(help), ".\n");
   if (!command.subcommands.empty()) {
-    absl::StrAppend(&text, ".SH COMMANDS\n", Commands(command, all));
+    absl::StrAppend(&text, ".SH COMMANDS\n", Commands(app, command, all));
   }
   absl::StrAppend(&text, ".SH OPTIONS\n", Options(command));
   const absl::string_view footer = absl::StripAsciiWhitespace(command.footer);
   if (!footer.empty()) absl::StrAppend(&text, ".SH NOTES\n", Example(footer));
-  if (program) absl::StrAppend(&text, Topics());
+  const bool explains = FindCommand(app, "help") != nullptr;
+  if (program && explains) absl::StrAppend(&text, Topics());
   absl::StrAppend(&text, ".SH SEE ALSO\n");
-  if (program) {
-    absl::StrAppend(&text, ".BR duet\\-server (1)\n");
+  if (program && explains) {
+    absl::StrAppend(&text, ".BR duet\\-load (1),\n.BR duet\\-server (8)\n");
   } else {
     absl::StrAppend(&text, ".BR duet (1)\n");
   }
@@ -146,7 +150,7 @@ ParsedCommandLine PrintManualPage(const CLI::App& app, const std::string& comman
   const std::vector<CommandEntry> all = ListCommands(app);
   ParsedCommandLine parsed;
   for (const CommandEntry& entry : all) {
-    if (entry.name == command) parsed.text = Page(entry, all);
+    if (entry.name == command) parsed.text = Page(app, entry, all);
   }
   if (!parsed.text.empty()) return parsed;
   parsed.text = absl::StrCat("There is no command ", base::Quoted(command),
@@ -155,14 +159,13 @@ ParsedCommandLine PrintManualPage(const CLI::App& app, const std::string& comman
   return parsed;
 }
 
-absl::Status WriteManualPages(const std::filesystem::path& folder) {
+absl::Status WriteManualPages(const CLI::App& app, const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  const CommandLine line;
-  const std::vector<CommandEntry> all = ListCommands(line.app);
+  const std::vector<CommandEntry> all = ListCommands(app);
   for (const CommandEntry& command : all) {
-    const absl::Status status =
-        base::WriteFile(folder / absl::StrCat(PageName(command), ".1"), Page(command, all));
+    const absl::Status status = base::WriteFile(folder / absl::StrCat(PageName(app, command), ".1"),
+                                                Page(app, command, all));
     if (!status.ok()) return status;
   }
   return absl::OkStatus();

@@ -14,8 +14,9 @@ namespace duet::client::cli {
 // a usage error for an unknown one.
 ParsedCommandLine PrintManualPage(const CLI::App& app, const std::string& command);
 
-// Writes duet.1, duet-synthesize.1 and so on into a folder, which is made where it is not there.
-absl::Status WriteManualPages(const std::filesystem::path& folder);
+// Writes duet.1, duet-synthesize.1 and so on, by the name of the program, into a folder, which is
+// made where it is not there.
+absl::Status WriteManualPages(const CLI::App& app, const std::filesystem::path& folder);
 
 }  // namespace duet::client::cli
 

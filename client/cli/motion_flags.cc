@@ -107,7 +107,7 @@ CLI::App* AddConvertCommand(CLI::App* app, ConvertArguments* arguments) {
   command
       ->add_option(
           "--out", arguments->outputs,
-          "File to write: .glb, .gltf, .bvh (a file for each person), .csv, .npy, .json or .txt "
+          "File to write: .glb, .gltf, .usda, .bvh (a file for each person), .csv, .npy, .json or .txt "
           "(SBU text); repeatable; - for standard output")
       ->required()
       ->allow_extra_args(false)
@@ -121,7 +121,7 @@ CLI::App* AddConvertCommand(CLI::App* app, ConvertArguments* arguments) {
       ->type_name("HZ")
       ->group(kOutputGroup);
   AddOutputFormatFlag(command, &arguments->output_format);
-  AddBvhUnitFlag(command, &arguments->bvh_metres_per_unit);
+  AddBvhFlags(command, &arguments->bvh);
   command->add_flag("--json", arguments->json, "Print the summary as JSON")->group(kOutputGroup);
   command->add_flag("--quiet", arguments->quiet, "Print errors alone")->group(kOutputGroup);
   command->callback([arguments] { CheckTogether(*arguments); });

@@ -16,20 +16,6 @@ namespace {
 constexpr std::size_t kMaxTableBytes = std::size_t{1} << 20;
 constexpr char kStandardInput[] = "standard input";
 
-// The joints of the table and of the flags.
-absl::StatusOr<retargeting::JointOverrides> ReadJoints(const InputArguments& input) {
-  retargeting::JointOverrides joints = input.joints;
-  if (input.joint_table.empty()) return joints;
-  const absl::StatusOr<std::string> text =
-      base::ReadFile(input.joint_table, kMaxTableBytes, "a table of joints");
-  if (!text.ok()) return text.status();
-  absl::StatusOr<retargeting::JointOverrides> table =
-      retargeting::ParseJointTable(*text, input.joint_table.string());
-  if (!table.ok()) return table.status();
-  joints.merge(*std::move(table));  // keeps those of the flags
-  return joints;
-}
-
 absl::StatusOr<std::string> ReadWhole(std::istream* in) {
   std::string content;
   if (in == nullptr) return content;
@@ -88,6 +74,19 @@ absl::StatusOr<ReadPeople> ReadAllPeople(const MotionInput& input,
   return read;
 }
 
+absl::StatusOr<retargeting::JointOverrides> ReadJoints(retargeting::JointOverrides joints,
+                                                       const std::filesystem::path& table_file) {
+  if (table_file.empty()) return joints;
+  const absl::StatusOr<std::string> text =
+      base::ReadFile(table_file, kMaxTableBytes, "a table of joints");
+  if (!text.ok()) return text.status();
+  absl::StatusOr<retargeting::JointOverrides> table =
+      retargeting::ParseJointTable(*text, table_file.string());
+  if (!table.ok()) return table.status();
+  joints.merge(*std::move(table));  // keeps those that were given
+  return joints;
+}
+
 absl::StatusOr<formats::ReadOptions> ToReadOptions(const InputArguments& input,
                                                    const motion::Skeleton& skeleton) {
   formats::ReadOptions options;
@@ -95,7 +94,7 @@ absl::StatusOr<formats::ReadOptions> ToReadOptions(const InputArguments& input,
   options.skeleton = skeleton;
   options.frame_rate_hz = input.frame_rate_hz;
   options.metres_per_unit = input.metres_per_unit;
-  absl::StatusOr<retargeting::JointOverrides> joints = ReadJoints(input);
+  absl::StatusOr<retargeting::JointOverrides> joints = ReadJoints(input.joints, input.joint_table);
   if (!joints.ok()) return joints.status();
   options.joint_overrides = *std::move(joints);
   options.coordinates = motion::StatedCoordinates(input.unit, input.up_axis);

@@ -41,6 +41,10 @@ struct ReadPeople {
 absl::StatusOr<ReadPeople> ReadAllPeople(const MotionInput& input,
                                          const formats::ReadOptions& options);
 
+// `joints` and those of a table; `joints` win over it. Without a table's file, as they are.
+absl::StatusOr<retargeting::JointOverrides> ReadJoints(retargeting::JointOverrides joints,
+                                                       const std::filesystem::path& table_file);
+
 // Reads the table of joints that the flags name, if any.
 absl::StatusOr<formats::ReadOptions> ToReadOptions(const InputArguments& input,
                                                    const motion::Skeleton& skeleton);

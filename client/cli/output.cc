@@ -48,11 +48,16 @@ motion::Provenance ProvenanceOf(const Synthesis& synthesis) {
   return provenance;
 }
 
+formats::WriteOptions WritingOf(const Synthesis& synthesis, const motion::Provenance& provenance,
+                                std::vector<std::string>* notes) {
+  return {&provenance, synthesis.bvh.metres_per_unit, synthesis.bvh.keys_per_frame, notes};
+}
+
 absl::StatusOr<std::string> FormatPair(formats::Format format, const Synthesis& synthesis) {
   const motion::Provenance provenance = ProvenanceOf(synthesis);
   const motion::ClipPair& pair = synthesis.result.pair;
   return formats::FormatPeople(format, {pair.leader, pair.follower}, synthesis.skeleton,
-                               {&provenance, synthesis.bvh_metres_per_unit});
+                               WritingOf(synthesis, provenance, nullptr));
 }
 
 absl::StatusOr<std::string> RenderSynthesis(const Synthesis& synthesis) {
@@ -83,23 +88,27 @@ bool HasRig(const std::filesystem::path& output, const Synthesis& synthesis) {
 }
 
 // The follower on somebody else's rig: of BVH in place of Duet's own, of glTF beside the pair.
-absl::StatusOr<std::vector<std::filesystem::path>> WriteWithRig(const std::filesystem::path& output,
-                                                                const Synthesis& synthesis) {
+absl::StatusOr<WrittenFiles> WriteWithRig(const std::filesystem::path& output,
+                                          const Synthesis& synthesis) {
   const motion::ClipPair& pair = synthesis.result.pair;
   const formats::Format format = *formats::FormatOf(output);
-  const absl::StatusOr<std::string> follower =
-      formats::FormatOntoRig(pair.follower, *synthesis.follower_rig, format);
-  if (!follower.ok()) return follower.status();
   const motion::Provenance provenance = ProvenanceOf(synthesis);
-  absl::StatusOr<std::vector<std::filesystem::path>> written = formats::WritePair(
-      output, pair, synthesis.skeleton, {&provenance, synthesis.bvh_metres_per_unit});
-  if (!written.ok()) return written.status();
+  WrittenFiles written;
+  const absl::StatusOr<std::string> follower =
+      formats::FormatOntoRig(pair.follower, *synthesis.follower_rig, format,
+                             WritingOf(synthesis, provenance, &written.notes));
+  if (!follower.ok()) return follower.status();
+  // Of the follower on Duet's own rig, which is replaced, nothing is told.
+  absl::StatusOr<std::vector<std::filesystem::path>> files = formats::WritePair(
+      output, pair, synthesis.skeleton, WritingOf(synthesis, provenance, nullptr));
+  if (!files.ok()) return files.status();
+  written.files = *std::move(files);
   if (format != formats::Format::kBvh) {
     std::filesystem::path beside = output;
     beside.replace_extension(absl::StrCat(".follower", output.extension().string()));
-    written->push_back(beside);
+    written.files.push_back(beside);
   }
-  absl::Status status = base::WriteFile(written->back(), *follower);
+  absl::Status status = base::WriteFile(written.files.back(), *follower);
   if (!status.ok()) return status;
   return written;
 }
@@ -127,19 +136,24 @@ absl::Status CheckOutput(const std::filesystem::path& output, const std::filesys
   return absl::OkStatus();
 }
 
-absl::StatusOr<std::vector<std::filesystem::path>> WriteOutput(const std::filesystem::path& output,
-                                                               const Synthesis& synthesis) {
+absl::StatusOr<WrittenFiles> WriteOutput(const std::filesystem::path& output,
+                                         const Synthesis& synthesis) {
   if (HasRig(output, synthesis)) return WriteWithRig(output, synthesis);
   if (!IsPage(output)) {
     const motion::Provenance provenance = ProvenanceOf(synthesis);
-    return formats::WritePair(output, synthesis.result.pair, synthesis.skeleton,
-                              {&provenance, synthesis.bvh_metres_per_unit});
+    WrittenFiles written;
+    absl::StatusOr<std::vector<std::filesystem::path>> files =
+        formats::WritePair(output, synthesis.result.pair, synthesis.skeleton,
+                           WritingOf(synthesis, provenance, &written.notes));
+    if (!files.ok()) return files.status();
+    written.files = *std::move(files);
+    return written;
   }
   const absl::StatusOr<std::string> page = RenderSynthesis(synthesis);
   if (!page.ok()) return page.status();
   absl::Status status = base::WriteFile(output, *page);
   if (!status.ok()) return status;
-  return std::vector<std::filesystem::path>{output};
+  return WrittenFiles{{output}, {}};
 }
 
 absl::StatusOr<std::string> FormatOutput(const OutputFormat& format, const Synthesis& synthesis) {

@@ -25,7 +25,7 @@ struct Synthesis {
   motion::Skeleton skeleton;
   std::filesystem::path leader_file;
   bool sampled = false;  // the model samples: the follower is one of several
-  double bvh_metres_per_unit = formats::kCentimetre;
+  BvhArguments bvh;
   std::optional<formats::FollowerRig> follower_rig;
 };
 
@@ -35,9 +35,13 @@ enum class PageAllowed { kNo, kYes };
 absl::Status CheckOutput(const std::filesystem::path& output, const std::filesystem::path& input,
                          PageAllowed page = PageAllowed::kYes);
 
+struct WrittenFiles {
+  std::vector<std::filesystem::path> files;
+  std::vector<std::string> notes;  // what is worth telling of them
+};
 // Writes the pair as the extension says, whole files or none, and returns them (.bvh makes two).
-absl::StatusOr<std::vector<std::filesystem::path>> WriteOutput(const std::filesystem::path& output,
-                                                               const Synthesis& synthesis);
+absl::StatusOr<WrittenFiles> WriteOutput(const std::filesystem::path& output,
+                                         const Synthesis& synthesis);
 // The same as bytes, for a pipe.
 absl::StatusOr<std::string> FormatOutput(const OutputFormat& format, const Synthesis& synthesis);
 

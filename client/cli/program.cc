@@ -8,6 +8,7 @@
 #include "client/cli/admin_command.h"
 #include "client/cli/arguments.h"
 #include "client/cli/batch_command.h"
+#include "client/cli/command_line.h"
 #include "client/cli/compare_command.h"
 #include "client/cli/convert_command.h"
 #include "client/cli/exit_code.h"
@@ -55,7 +56,7 @@ absl::StatusOr<ExitCode> RunCommand(const ParsedCommandLine& parsed,
   if (parsed.convert.has_value()) return Done(RunConvert(*parsed.convert, environment));
   if (parsed.view.has_value()) return Done(RunView(*parsed.view, environment));
   if (parsed.compare.has_value()) return Done(RunCompare(*parsed.compare, environment));
-  if (parsed.man.has_value()) return Done(WriteManualPages(parsed.man->folder));
+  if (parsed.man.has_value()) return Done(WriteManualPages(CommandLine().app, parsed.man->folder));
   (parsed.exit_code == kExitDone ? *environment.out : *environment.err) << parsed.text;
   return static_cast<ExitCode>(parsed.exit_code);
 }

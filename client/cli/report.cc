@@ -90,6 +90,9 @@ std::string FlagFor(motion::ReadingSetting setting) {
       return "--metres-per-unit METRES";
     case motion::ReadingSetting::kJointMap:
       return "--joint-map MODEL_JOINT=FILE_JOINT, or a table of them with --joint-map-file FILE";
+    case motion::ReadingSetting::kRigJointMap:
+      return "--follower-rig-joint-map MODEL_JOINT=RIG_JOINT, or a table of them with "
+             "--follower-rig-joint-map-file FILE";
   }
   return "";
 }
@@ -139,8 +142,7 @@ std::string DescribeRequest(const Synthesis& synthesis, const std::vector<std::s
   return text;
 }
 
-std::string DescribeAnswer(const Synthesis& synthesis,
-                           const std::vector<std::filesystem::path>& written) {
+std::string DescribeAnswer(const Synthesis& synthesis, const WrittenFiles& written) {
   const SynthesisResult& result = synthesis.result;
   std::string text;
   absl::StrAppendFormat(&text, "follower  from %s@%d in %s, first frames after %s (%s, %s)\n",
@@ -171,13 +173,14 @@ std::string DescribeAnswer(const Synthesis& synthesis,
   if (result.attempt_count > 1) {
     absl::StrAppend(&text, "          ", Plural(result.attempt_count, "attempt"), "\n");
   }
-  for (size_t i = 0; i < written.size(); ++i) {
-    absl::StrAppend(&text, i == 0 ? "wrote     " : "          ", written[i].string(), "\n");
+  for (size_t i = 0; i < written.files.size(); ++i) {
+    absl::StrAppend(&text, i == 0 ? "wrote     " : "          ", written.files[i].string(), "\n");
   }
+  for (const std::string& note : written.notes) absl::StrAppend(&text, "          ", note, "\n");
   return text;
 }
 
-json SynthesisJson(const Synthesis& synthesis, const std::vector<std::filesystem::path>& written,
+json SynthesisJson(const Synthesis& synthesis, const WrittenFiles& written,
                    const std::vector<std::string>& notes) {
   const SynthesisResult& result = synthesis.result;
   const motion::Clip& leader = result.pair.leader;
@@ -186,7 +189,9 @@ json SynthesisJson(const Synthesis& synthesis, const std::vector<std::filesystem
     keyframes.push_back({{"frame", keyframe.frame}, {"weights", WeightsJson(keyframe.weights)}});
   }
   json files = json::array();
-  for (const std::filesystem::path& file : written) files.push_back(file.string());
+  for (const std::filesystem::path& file : written.files) files.push_back(file.string());
+  std::vector<std::string> all_notes = notes;
+  all_notes.insert(all_notes.end(), written.notes.begin(), written.notes.end());
   json object = {{"model", {{"name", result.model_name}, {"version", result.model_version}}},
                  {"leader", synthesis.leader_file.string()},
                  {"frames", leader.frame_count()},
@@ -204,7 +209,7 @@ json SynthesisJson(const Synthesis& synthesis, const std::vector<std::filesystem
                    {"total", absl::ToDoubleSeconds(result.timings.total)},
                    {"queue", absl::ToDoubleSeconds(result.timings.queue)},
                    {"compute", absl::ToDoubleSeconds(result.timings.compute)}}},
-                 {"notes", notes},
+                 {"notes", all_notes},
                  {"files", files}};
   if (result.unfamiliarity) object["unfamiliarity"] = *result.unfamiliarity;
   return object;

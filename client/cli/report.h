@@ -20,13 +20,11 @@ std::string ModelsJson(const std::vector<ModelInfo>& models);
 
 // What was asked, the same for every sample; and what came of one of them.
 std::string DescribeRequest(const Synthesis& synthesis, const std::vector<std::string>& notes);
-std::string DescribeAnswer(const Synthesis& synthesis,
-                           const std::vector<std::filesystem::path>& written);
+std::string DescribeAnswer(const Synthesis& synthesis, const WrittenFiles& written);
 
 // Both of one sample; and the text for all samples: the one's object, of several
 // {"samples": [object, ...]}.
-nlohmann::json SynthesisJson(const Synthesis& synthesis,
-                             const std::vector<std::filesystem::path>& written,
+nlohmann::json SynthesisJson(const Synthesis& synthesis, const WrittenFiles& written,
                              const std::vector<std::string>& notes);
 std::string SamplesJson(const std::vector<nlohmann::json>& samples);
 

@@ -7,6 +7,7 @@
 #include "client/cli/motion_input.h"
 #include "client/cli/value_syntax.h"
 #include "model/formats/motion_file.h"
+#include "model/motion/reading_setting.h"
 
 namespace duet::client::cli {
 namespace {
@@ -36,11 +37,21 @@ absl::StatusOr<FollowerStart> ReadStart(const SynthesizeArguments& arguments,
   return FollowerStart(*std::move(pose));
 }
 
+// Whether somebody else's rig can be understood: before anything is asked of the server.
+absl::Status CheckRig(const formats::FollowerRig& rig) {
+  absl::Status status = ReadLeader(rig.file, rig.reading).status();
+  if (motion::MendingSetting(status) != motion::ReadingSetting::kJointMap) return status;
+  return MendedBy(std::move(status), motion::ReadingSetting::kRigJointMap);
+}
+
 }  // namespace
 
 absl::Status CheckInputs(const SynthesizeArguments& arguments) {
   absl::Status status = CheckInput(arguments.leader, arguments.input.format);
   if (const auto& table = arguments.input.joint_table; status.ok() && !table.empty()) {
+    status = CheckExists(table);
+  }
+  if (const auto& table = arguments.rig_joint_table; status.ok() && !table.empty()) {
     status = CheckExists(table);
   }
   const std::string& start = arguments.follower_start;
@@ -86,6 +97,12 @@ absl::StatusOr<formats::FollowerRig> BuildFollowerRig(const SynthesizeArguments&
   if (arguments.follower_rig != kLeadersRig) {
     rig.file = arguments.follower_rig;
     rig.reading.skeleton = skeleton;
+    absl::StatusOr<retargeting::JointOverrides> joints =
+        ReadJoints(arguments.rig_joints, arguments.rig_joint_table);
+    if (!joints.ok()) return joints.status();
+    rig.reading.joint_overrides = *std::move(joints);
+    absl::Status status = CheckRig(rig);
+    if (!status.ok()) return status;
     return rig;
   }
   absl::StatusOr<formats::ReadOptions> reading = ToReadOptions(arguments.input, skeleton);

@@ -18,6 +18,10 @@ void AddConnectionFlags(CLI::App* app, ServerArguments* server) {
       ->capture_default_str()
       ->type_name("SECONDS")
       ->group(kServerGroup);
+  AddCredentialFlags(app, server);
+}
+
+void AddCredentialFlags(CLI::App* app, ServerArguments* server) {
   app->add_flag("--tls", server->tls, "Encrypt; trust the system's authorities")
       ->group(kServerGroup);
   app->add_option("--tls-ca", server->tls_ca_file, "Encrypt; trust the authorities in this file")

@@ -10,6 +10,8 @@ namespace duet::client::cli {
 void AddServerFlags(CLI::App* app, ServerArguments* server);
 // All but --server itself.
 void AddConnectionFlags(CLI::App* app, ServerArguments* server);
+// The same without --timeout.
+void AddCredentialFlags(CLI::App* app, ServerArguments* server);
 
 inline constexpr char kServerGroup[] = "Server";
 

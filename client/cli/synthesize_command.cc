@@ -1,6 +1,7 @@
 #include "client/cli/synthesize_command.h"
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <ostream>
 #include <string>
@@ -30,19 +31,20 @@ absl::Status WriteToStandardOutput(const OutputFormat& format, const Synthesis& 
   return content.ok() ? WriteToStream(*content, out) : content.status();
 }
 
-absl::StatusOr<Paths> WriteAll(const SynthesizeArguments& arguments, const Paths& outputs,
-                               const Synthesis& synthesis, std::ostream& out) {
-  Paths written;
+absl::StatusOr<WrittenFiles> WriteAll(const SynthesizeArguments& arguments, const Paths& outputs,
+                                      const Synthesis& synthesis, std::ostream& out) {
+  WrittenFiles written;
   for (const std::filesystem::path& output : outputs) {
     if (output == kStandardStream) {
       absl::Status status = WriteToStandardOutput(*arguments.output_format, synthesis, out);
       if (!status.ok()) return status;
-      written.push_back(output);
+      written.files.push_back(output);
       continue;
     }
-    absl::StatusOr<Paths> files = WriteOutput(output, synthesis);
-    if (!files.ok()) return NotWritten(files.status());
-    written.insert(written.end(), files->begin(), files->end());
+    absl::StatusOr<WrittenFiles> one = WriteOutput(output, synthesis);
+    if (!one.ok()) return NotWritten(one.status());
+    std::move(one->files.begin(), one->files.end(), std::back_inserter(written.files));
+    std::move(one->notes.begin(), one->notes.end(), std::back_inserter(written.notes));
   }
   return written;
 }
@@ -109,9 +111,9 @@ absl::Status RunSamples(const SynthesizeArguments& arguments, const Job& job, co
     absl::StatusOr<SynthesisResult> result = client.Synthesize(request);
     if (!result.ok()) return result.status();
     const Synthesis synthesis{std::move(request), *std::move(result), job.skeleton,
-                              arguments.leader,   job.sampled,        arguments.bvh_metres_per_unit,
+                              arguments.leader,   job.sampled,        arguments.bvh,
                               job.follower_rig};
-    const absl::StatusOr<Paths> written =
+    const absl::StatusOr<WrittenFiles> written =
         WriteAll(arguments, SampleOutputs(arguments, sample), synthesis, *environment.out);
     if (!written.ok()) return written.status();
     if (arguments.quiet) continue;

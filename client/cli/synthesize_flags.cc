@@ -127,28 +127,48 @@ void AddReactionFlags(CLI::App* app, SynthesizeArguments* arguments) {
 void AddOutputFlags(CLI::App* app, SynthesizeArguments* arguments) {
   app->add_option(
          "--out", arguments->outputs,
-         "File to write: .html (a page to watch), .glb or .gltf (both people, for Blender and "
-         "engines), .bvh (two files), .csv, .npy or .json; repeatable; - for standard "
+         "File to write: .html (a page to watch), .glb, .gltf or .usda (both people, for Blender "
+         "and engines), .bvh (two files), .csv, .npy or .json; repeatable; - for standard "
          "output")
       ->required()
       ->allow_extra_args(false)
       ->type_name("FILE")
       ->group(kOutputGroup);
   AddOutputFormatFlag(app, &arguments->output_format);
-  AddBvhUnitFlag(app, &arguments->bvh_metres_per_unit);
+  AddBvhFlags(app, &arguments->bvh);
   app->add_option("--follower-rig", arguments->follower_rig,
                   "Rig of the follower: the leader's, or that of another file; of a .bvh for --out "
                   "FILE.bvh, of a .glb or .gltf for --out FILE.glb or FILE.gltf (default: Duet's "
                   "own)")
       ->type_name("leader|FILE")
       ->group(kOutputGroup);
+  AddParsed<std::pair<std::string, std::string>>(
+      app, "--follower-rig-joint-map", "MODEL_JOINT=RIG_JOINT", ParseJointPair,
+      [arguments](std::pair<std::string, std::string> joints) {
+        arguments->rig_joints.insert(joints);
+      },
+      "Where the names of --follower-rig FILE alone do not tell which is which; repeatable (the "
+      "leader's own rig goes by --joint-map)")
+      ->group(kOutputGroup);
+  app->add_option("--follower-rig-joint-map-file", arguments->rig_joint_table,
+                  "A table of such joints, one MODEL_JOINT=RIG_JOINT a line; "
+                  "--follower-rig-joint-map wins")
+      ->type_name("FILE")
+      ->group(kOutputGroup);
   app->add_flag("--json", arguments->json, "Print the summary as JSON")->group(kOutputGroup);
   app->add_flag("--quiet", arguments->quiet, "Print errors alone")->group(kOutputGroup);
 }
 
 void CheckFollowerRig(const SynthesizeArguments& arguments) {
-  if (arguments.follower_rig.empty()) return;
   const bool leaders = arguments.follower_rig == kLeadersRig;
+  const bool names_joints = !arguments.rig_joints.empty() || !arguments.rig_joint_table.empty();
+  if (names_joints && (leaders || arguments.follower_rig.empty())) {
+    throw CLI::ValidationError(
+        arguments.rig_joints.empty() ? "--follower-rig-joint-map-file" : "--follower-rig-joint-map",
+        "is for --follower-rig FILE; of the leader's rig, --joint-map and --joint-map-file say "
+        "which joint is which");
+  }
+  if (arguments.follower_rig.empty()) return;
   const std::filesystem::path file =
       leaders ? arguments.leader : std::filesystem::path(arguments.follower_rig);
   const std::optional<formats::Format> rig = formats::FormatOf(file);

@@ -8,6 +8,8 @@
 extern "C" {
 extern const char duet_page_index[], duet_page_index_end[];
 extern const char duet_page_stage[], duet_page_stage_end[];
+extern const char duet_page_element[], duet_page_element_end[];
+extern const char duet_page_gif[], duet_page_gif_end[];
 extern const char duet_page_panel[], duet_page_panel_end[];
 extern const char duet_page_measures[], duet_page_measures_end[];
 extern const char duet_page_exporting[], duet_page_exporting_end[];
@@ -51,6 +53,8 @@ absl::Status Check(const PageContent& content) {
 
 std::string Script() {
   return absl::StrCat(SharedScript(), Embedded(duet_page_stage, duet_page_stage_end),
+                      Embedded(duet_page_element, duet_page_element_end),
+                      Embedded(duet_page_gif, duet_page_gif_end),
                       Embedded(duet_page_panel, duet_page_panel_end),
                       Embedded(duet_page_measures, duet_page_measures_end),
                       Embedded(duet_page_exporting, duet_page_exporting_end),

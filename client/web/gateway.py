@@ -20,19 +20,16 @@ import urllib.parse
 import zipfile
 
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parent / "python"))
+sys.path[:0] = [str(HERE.parent / "python"), str(HERE.parent / "viewer")]
 
 import duet  # noqa: E402
+import element  # noqa: E402
 import grpc_web  # noqa: E402
 
 MAX_BODY_BYTES = 32 * 2**20  # a request's limit at the server
-THREE = pathlib.Path("/usr/share/javascript/three")
 FOLDERS = {
     "/": HERE / "page",
-    "/viewer/": HERE.parent / "viewer" / "page",
     "/samples/": HERE.parents[1] / "samples",
-    "/three/": THREE,
-    "/three/controls/": THREE / "examples" / "js" / "controls",
 }
 TYPES = {".html": "text/html; charset=utf-8", ".js": "text/javascript; charset=utf-8",
          ".css": "text/css; charset=utf-8", ".bvh": "text/plain; charset=utf-8"}
@@ -139,6 +136,9 @@ class Handler(http.server.BaseHTTPRequestHandler):
                      "samples": sorted(file.stem for file in FOLDERS["/samples/"].glob("*.bvh"))}
             self._reply(200, "application/json", json.dumps(about).encode())
             return
+        if url.path == "/duet-motion.js":
+            self._reply(200, TYPES[".js"], self.server.element)
+            return
         folder, name = url.path.rsplit("/", 1)
         file = FOLDERS.get(f"{folder}/", HERE / "nowhere") / (name or "index.html")
         if file.suffix not in TYPES or not file.is_file():
@@ -192,11 +192,13 @@ class Handler(http.server.BaseHTTPRequestHandler):
 
 class Gateway(http.server.ThreadingHTTPServer):
     daemon_threads = True
+    request_queue_size = 128  # that wait to be accepted; of more, some are cut off
 
     def __init__(self, listen, server, tls=None):
         host, _, port = listen.rpartition(":")
         self.channel = grpc_web.connect(server, tls)
         self.formats = writable()
+        self.element = element.script().encode()
         self.conversions = threading.BoundedSemaphore(4)  # programs that run at a time
         super().__init__((host, int(port)), Handler)
 

@@ -5,8 +5,9 @@
 # BASE names another base; without it `localhost/debian:bookworm-slim` is used where make_base.sh made
 # it. DUET_CCACHE_DIR, a folder of this machine, serves as the compiler's cache. Flags of `podman build`
 # may follow the target's name.
-# The same sources, packages and SOURCE_DATE_EPOCH (the last commit's time, by default) give the same
-# layers.
+# The same sources and packages give the same layers: all files have one time, SOURCE_DATE_EPOCH's, 1970
+# by default, so that layers which a change does not touch stay in the cache. The label `created` has the
+# last commit's time.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
@@ -23,8 +24,9 @@ esac
 version="$(sed -n 's/^project(duet VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)"
 revision="$(git rev-parse HEAD)$(git diff --quiet HEAD || echo -dirty)"
 source_url="$(git remote get-url origin 2>/dev/null || echo unknown)"
-epoch="${SOURCE_DATE_EPOCH:-$(git log -1 --format=%ct)}"
-created="$(date --utc --date "@${epoch}" +%Y-%m-%dT%H:%M:%SZ)"
+epoch="${SOURCE_DATE_EPOCH:-0}"
+rfc3339() { date --utc --date "@$1" +%Y-%m-%dT%H:%M:%SZ; }
+created="$(rfc3339 "$(git log -1 --format=%ct)")"
 
 flags=()
 local_base=localhost/debian:bookworm-slim
@@ -37,6 +39,7 @@ if [[ -z "${BASE:-}" ]] && podman image exists "${local_base}"; then BASE="${loc
 podman build --format docker --timestamp "${epoch}" --target "${target}" \
   --build-arg "VERSION=${version}" --build-arg "REVISION=${revision}" \
   --build-arg "SOURCE=${source_url}" --build-arg "CREATED=${created}" \
+  --build-arg "SBOM_TIME=$(rfc3339 "${epoch}")" \
   "${flags[@]}" "$@" --tag "${name}:${version}" --tag "${name}:latest" .
 
 bytes="$(podman image inspect --format '{{.Size}}' "${name}:${version}")"

@@ -8,8 +8,10 @@ import re
 import sys
 
 ROOT = pathlib.Path(__file__).parents[2]
-sys.path[:0] = [str(ROOT / "client" / "python"), str(ROOT / "docs" / "site")]
+sys.path[:0] = [str(ROOT / "client" / "python"), str(ROOT / "client" / "viewer"),
+                str(ROOT / "docs" / "site")]
 
+import element  # noqa: E402
 from notebook_parser import NotebookParser  # noqa: E402
 
 project = "Duet"
@@ -88,6 +90,13 @@ def the_rest(documents):
             if not any(fnmatch.fnmatch(name, pattern) for pattern in patterns)]
 
 
+def add_element(app, failure):
+    """The script of <duet-motion>, for the pages that show motion."""
+    if failure is None:
+        element.main([str(pathlib.Path(app.outdir) / "_static" / "duet-motion.js")])
+
+
 def setup(app):
+    app.connect("build-finished", add_element)
     app.add_source_parser(NotebookParser)
     app.connect("source-read", adapt_source)

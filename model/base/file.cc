@@ -1,5 +1,6 @@
 #include "model/base/file.h"
 
+#include <cerrno>
 #include <fstream>
 #include <ios>
 #include <system_error>
@@ -59,12 +60,15 @@ absl::Status WriteFile(const fs::path& path, absl::string_view content) {
   // A pipe or a device cannot be replaced, only written to.
   const bool special = fs::exists(path, error) && !fs::is_regular_file(path, error);
   const fs::path target = special ? path : fs::path(path.string() + ".partial");
+  errno = 0;
   std::ofstream file(target, std::ios::binary | std::ios::trunc);
   file.write(content.data(), static_cast<std::streamsize>(content.size()));
   file.close();
   if (!file) {
+    const std::error_code why(errno, std::generic_category());
     if (!special) fs::remove(target, error);
-    return absl::PermissionDeniedError(absl::StrCat(path.string(), ": cannot be written"));
+    return absl::PermissionDeniedError(
+        absl::StrCat(path.string(), ": cannot be written", why ? ": " + why.message() : ""));
   }
   if (!special) fs::rename(target, path, error);
   if (error) {

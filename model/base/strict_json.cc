@@ -4,10 +4,13 @@
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
+#include "model/base/printable.h"
 #include "model/base/text.h"
 
 namespace duet::base {
 namespace {
+
+constexpr std::size_t kLongestProblem = 1000;
 
 using nlohmann::json;
 
@@ -107,7 +110,9 @@ std::string ObjectReader::PathOf(const std::string& key) const {
 }
 
 void ObjectReader::Fail(const std::string& key, const std::string& problem) {
-  Update(absl::InvalidArgumentError(absl::StrCat(PathOf(key), ": ", problem)));
+  // A key may be the file's own, and a problem may quote what came.
+  Update(absl::InvalidArgumentError(
+      Printable(absl::StrCat(PathOf(key), ": ", problem), kLongestProblem)));
 }
 
 void ObjectReader::Update(const absl::Status& status) { status_.Update(status); }

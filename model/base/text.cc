@@ -8,11 +8,15 @@
 #include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/strip.h"
+#include "model/base/printable.h"
 
 namespace duet::base {
 namespace {
 
 constexpr int kMaxInteger = 999'999'999;  // differences of two still fit
+
+// Readers put names of the file into their messages: a message stays a printable line all the same.
+constexpr std::size_t kLongestError = 1000;
 
 // from_chars takes no '+'; files by hand have it.
 absl::string_view StripPlus(absl::string_view text) {
@@ -66,11 +70,13 @@ std::string Quoted(absl::string_view text) {
 }
 
 absl::Status ErrorAt(absl::string_view source, int line, absl::string_view message) {
-  return absl::InvalidArgumentError(absl::StrCat(source, ":", line, ": ", message));
+  return absl::InvalidArgumentError(
+      absl::StrCat(source, ":", line, ": ", Printable(message, kLongestError)));
 }
 
 absl::Status ErrorAt(absl::string_view source, int line, int column, absl::string_view message) {
-  return absl::InvalidArgumentError(absl::StrCat(source, ":", line, ":", column, ": ", message));
+  return absl::InvalidArgumentError(
+      absl::StrCat(source, ":", line, ":", column, ": ", Printable(message, kLongestError)));
 }
 
 absl::string_view SkipByteOrderMark(absl::string_view text) {

@@ -10,6 +10,7 @@
 #include "absl/time/time.h"
 #include "model/base/file_io.h"
 #include "model/base/sha256.h"
+#include "model/base/text.h"
 #include "model/checkpoint/model_card.h"
 
 namespace duet::checkpoint {
@@ -64,7 +65,7 @@ absl::StatusOr<std::vector<Tensor>> Arrange(std::vector<Tensor> tensors,
   }
   if (by_name.empty()) return arranged;
   return absl::InvalidArgumentError(
-      absl::StrCat("weights: unknown tensor \"", by_name.begin()->first, "\""));
+      absl::StrCat("weights: unknown tensor ", base::Quoted(by_name.begin()->first)));
 }
 
 }  // namespace

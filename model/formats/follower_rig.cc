@@ -26,12 +26,13 @@ retargeting::CharacterOptions CharacterOptionsOf(const ReadOptions& reading) {
 int PersonOf(const ReadOptions& reading) { return reading.side == Side::kLeft ? 0 : 1; }
 
 absl::StatusOr<std::string> OntoBvh(const motion::Clip& follower, const std::string& text,
-                                    const FollowerRig& rig) {
+                                    const FollowerRig& rig, const WriteOptions& writing) {
   const std::string source = rig.file.string();
   const absl::StatusOr<bvh::BvhDocument> document = bvh::ParseBvh(text, source);
   if (!document.ok()) return document.status();
   const bvh::BvhImportOptions options{CharacterOptionsOf(rig.reading), PersonOf(rig.reading)};
-  const absl::StatusOr<bvh::BvhDocument> written = OntoBvhRig(follower, *document, source, options);
+  const absl::StatusOr<bvh::BvhDocument> written =
+      OntoBvhRig(follower, *document, source, options, {writing.bvh_keys_per_frame, writing.notes});
   if (!written.ok()) return written.status();
   return FormatBvh(*written);
 }
@@ -56,7 +57,7 @@ bool FitsRig(Format written, Format rig) {
 }
 
 absl::StatusOr<std::string> FormatOntoRig(const motion::Clip& follower, const FollowerRig& rig,
-                                          Format format) {
+                                          Format format, const WriteOptions& options) {
   const std::optional<Format> rigs = FormatOf(rig.file);
   if (!rigs.has_value() || !FitsRig(format, *rigs)) {
     return absl::InvalidArgumentError(absl::StrCat(
@@ -65,7 +66,7 @@ absl::StatusOr<std::string> FormatOntoRig(const motion::Clip& follower, const Fo
   const absl::StatusOr<std::string> content =
       base::ReadFile(rig.file, motion::kMaxMotionFileBytes, "a rig");
   if (!content.ok()) return content.status();
-  return format == Format::kBvh ? OntoBvh(follower, *content, rig)
+  return format == Format::kBvh ? OntoBvh(follower, *content, rig, options)
                                 : OntoGltf(follower, *content, rig, format);
 }
 

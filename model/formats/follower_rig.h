@@ -20,12 +20,13 @@ struct FollowerRig {
 // on a glTF's.
 bool FitsRig(Format written, Format rig);
 
-// The follower on that rig (bvh::OntoBvhRig, gltf::OntoGltfRig).
+// The follower on that rig (bvh::OntoBvhRig, gltf::OntoGltfRig); of `options`, how keys are written
+// counts.
 // Errors: those of reading the rig; INVALID_ARGUMENT for a rig that cannot be the follower's, or
 // one
 //         that `format` does not fit.
 absl::StatusOr<std::string> FormatOntoRig(const motion::Clip& follower, const FollowerRig& rig,
-                                          Format format);
+                                          Format format, const WriteOptions& options = {});
 
 }  // namespace duet::formats
 

@@ -21,6 +21,7 @@
 #include "model/formats/gltf/gltf_document.h"
 #include "model/formats/gltf/gltf_export.h"
 #include "model/formats/gltf/gltf_import.h"
+#include "model/formats/usd/usda_export.h"
 #include "model/motion/motion_limits.h"
 #include "model/motion/reading_setting.h"
 #include "model/motion/recorded_motion.h"
@@ -30,6 +31,8 @@ namespace duet::formats {
 namespace {
 
 namespace fs = std::filesystem;
+
+static_assert(kMostBvhKeysPerFrame == bvh::kMostKeysPerFrame);
 
 constexpr double kSbuFrameRateHz = 15;
 
@@ -221,6 +224,8 @@ const char* FormatTitle(Format format) {
       return "JSON";
     case Format::kNpy:
       return "NPY";
+    case Format::kUsda:
+      return "USD";
   }
   return "";
 }
@@ -252,7 +257,12 @@ absl::StatusOr<motion::Clip> ReadAtRate(Format format, const std::string& conten
           Setting{absl::StrCat(clip->frame_rate_hz, " Hz"), Origin::kGiven, ""};
     }
   }
-  if (clip->frame_rate_hz > 0) return clip;
+  if (clip->frame_rate_hz > 0) {
+    // In metres a position may be beyond what it was within in the file's unit.
+    const absl::Status valid = CheckClip(source.name, *clip);
+    if (!valid.ok()) return valid;
+    return clip;
+  }
   return MendedBy(absl::InvalidArgumentError(absl::StrCat(
                       source.name, ": frame rate: the file has none, wanted one beside it")),
                   motion::ReadingSetting::kFrameRate);
@@ -266,28 +276,13 @@ absl::Status CheckOptions(const ReadOptions& options) {
 absl::StatusOr<std::string> FormatBvhPerson(const motion::Clip& clip,
                                             const motion::Skeleton& skeleton,
                                             const WriteOptions& options) {
-  absl::StatusOr<bvh::BvhDocument> document =
-      bvh::ToBvh(clip, skeleton, options.bvh_metres_per_unit);
+  absl::StatusOr<bvh::BvhDocument> document = bvh::ToBvh(
+      clip, skeleton, options.bvh_metres_per_unit, {options.bvh_keys_per_frame, options.notes});
   if (!document.ok()) return document.status();
   return FormatBvh(*document);
 }
 
-absl::Status CheckJoints(const std::vector<motion::Clip>& people,
-                         const motion::Skeleton& skeleton) {
-  if (people.empty() || people.size() > 2) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("people: came ", people.size(), ", wanted one or two"));
-  }
-  if (people[0].joint_names == skeleton.joint_names) {
-    return people.size() == 1 ? CheckClip("person", people[0])
-                              : CheckPair(motion::ClipPair{people[0], people[1]});
-  }
-  return absl::InvalidArgumentError(absl::StrCat("pair: came ", people[0].joint_count(),
-                                                 " joints, wanted the skeleton's ",
-                                                 skeleton.joint_count(), " in its order"));
-}
-
-// People that CheckJoints accepts.
+// People that CheckPeople accepts.
 absl::StatusOr<std::string> FormatChecked(Format format, const std::vector<motion::Clip>& people,
                                           const motion::Skeleton& skeleton,
                                           const WriteOptions& options) {
@@ -296,6 +291,7 @@ absl::StatusOr<std::string> FormatChecked(Format format, const std::vector<motio
         people, skeleton, options.provenance,
         format == Format::kGlb ? gltf::GltfContainer::kBinary : gltf::GltfContainer::kText);
   }
+  if (format == Format::kUsda) return usd::FormatUsda(people, skeleton, options.provenance);
   if (people.size() == 1) {
     return format == Format::kBvh   ? FormatBvhPerson(people[0], skeleton, options)
            : format == Format::kCsv ? flat::FormatCsv(people[0])
@@ -319,8 +315,16 @@ absl::StatusOr<std::vector<fs::path>> WriteBvhPair(const fs::path& path,
                                                    const WriteOptions& options) {
   std::vector<fs::path> files;
   for (std::size_t i = 0; i < people.size(); ++i) {
-    const absl::StatusOr<std::string> text = FormatBvhPerson(people[i], skeleton, options);
+    std::vector<std::string> notes;
+    WriteOptions writing = options;
+    writing.notes = &notes;
+    const absl::StatusOr<std::string> text = FormatBvhPerson(people[i], skeleton, writing);
     if (!text.ok()) return text.status();
+    if (options.notes != nullptr) {
+      for (const std::string& note : notes) {
+        options.notes->push_back(absl::StrCat(i == 0 ? "leader: " : "follower: ", note));
+      }
+    }
     fs::path file = path;
     file.replace_extension(i == 0 ? ".leader.bvh" : ".follower.bvh");
     absl::Status status = base::WriteFile(file, *text);
@@ -343,12 +347,17 @@ std::optional<Format> ParseFormat(absl::string_view name) {
   static const auto& formats = *new std::map<absl::string_view, Format>{
       {"sbu", Format::kSbuText}, {"bvh", Format::kBvh}, {"gltf", Format::kGltf},
       {"glb", Format::kGlb},     {"amc", Format::kAmc}, {"csv", Format::kCsv},
-      {"json", Format::kJson},   {"npy", Format::kNpy}};
+      {"json", Format::kJson},   {"npy", Format::kNpy}, {"usda", Format::kUsda}};
   const auto found = formats.find(name);
   return found == formats.end() ? std::nullopt : std::optional<Format>(found->second);
 }
 
-bool IsReadable(const fs::path& path) { return FormatOf(path).has_value(); }
+bool IsReadable(Format format) { return format != Format::kUsda; }
+
+bool IsReadable(const fs::path& path) {
+  const std::optional<Format> format = FormatOf(path);
+  return format.has_value() && IsReadable(*format);
+}
 
 bool IsWritable(Format format) { return format != Format::kAmc; }
 
@@ -365,7 +374,9 @@ absl::Status UnknownExtension(const fs::path& path, absl::string_view known) {
 
 absl::StatusOr<motion::Clip> ReadLeader(const fs::path& path, const ReadOptions& options) {
   const std::optional<Format> format = options.format.has_value() ? options.format : FormatOf(path);
-  if (!format.has_value()) return UnknownExtension(path, kReadableExtensions);
+  if (!format.has_value() || !IsReadable(*format)) {
+    return UnknownExtension(path, kReadableExtensions);
+  }
   absl::Status status = CheckOptions(options);
   if (!status.ok()) return status;
   absl::StatusOr<std::string> content =
@@ -376,9 +387,10 @@ absl::StatusOr<motion::Clip> ReadLeader(const fs::path& path, const ReadOptions&
 
 absl::StatusOr<motion::Clip> ParseLeader(const std::string& content, const std::string& name,
                                          const ReadOptions& options) {
-  if (!options.format.has_value()) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(name, ": format: nothing says which, wanted one of ", kReadableExtensions));
+  if (!options.format.has_value() || !IsReadable(*options.format)) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        name, ": format: ", options.format.has_value() ? "is written alone" : "nothing says which",
+        ", wanted one of ", kReadableExtensions));
   }
   absl::Status status = CheckOptions(options);
   if (!status.ok()) return status;
@@ -406,7 +418,7 @@ absl::StatusOr<std::vector<fs::path>> WritePair(const fs::path& path, const moti
 absl::StatusOr<std::string> FormatPeople(Format format, const std::vector<motion::Clip>& people,
                                          const motion::Skeleton& skeleton,
                                          const WriteOptions& options) {
-  absl::Status status = CheckJoints(people, skeleton);
+  absl::Status status = CheckPeople(people, skeleton);
   if (!status.ok()) return status;
   if (!IsWritable(format)) {
     return absl::InvalidArgumentError(absl::StrCat("format: came ", FormatTitle(format),
@@ -426,7 +438,7 @@ absl::StatusOr<std::vector<fs::path>> WritePeople(const fs::path& path, Format f
                                                   const motion::Skeleton& skeleton,
                                                   const WriteOptions& options) {
   if (format == Format::kBvh && people.size() == 2) {
-    absl::Status status = CheckJoints(people, skeleton);
+    absl::Status status = CheckPeople(people, skeleton);
     if (!status.ok()) return status;
     return WriteBvhPair(path, people, skeleton, options);
   }

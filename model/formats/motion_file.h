@@ -25,6 +25,7 @@
 //   .csv    positions by column, one or two people
 //   .json   positions, one or two people
 //   .npy    positions as an array, [frames, joints, 3] or [2, frames, joints, 3]
+//   .usda   an animated skeleton a person; written, not read
 
 namespace duet::formats {
 
@@ -33,7 +34,7 @@ namespace duet::formats {
 enum class Side { kLeft, kRight };
 
 // kGlb is binary glTF; reading tells the two apart by their first bytes.
-enum class Format { kSbuText, kBvh, kGltf, kGlb, kAmc, kCsv, kJson, kNpy };
+enum class Format { kSbuText, kBvh, kGltf, kGlb, kAmc, kCsv, kJson, kNpy, kUsda };
 
 struct ReadOptions {
   // Replaces what the file's extension says.
@@ -76,14 +77,20 @@ absl::StatusOr<std::vector<motion::Vec3>> ReadFollowerStart(const std::filesyste
 inline constexpr double kCentimetre = 0.01;
 
 struct WriteOptions {
-  // Who made the follower: .glb and .gltf have a place for it. May be null.
+  // Who made the follower: .glb, .gltf and .usda have a place for it. May be null.
   const motion::Provenance* provenance = nullptr;
   // BVH says no unit. Animation tools take it for centimetres, Blender for its own unit, a metre.
   double bvh_metres_per_unit = kCentimetre;
+  // BVH has angles, near gimbal lock unlike what turns between frames: more keys say more
+  // (bvh::BvhKeys), 1 to kMostBvhKeysPerFrame.
+  int bvh_keys_per_frame = 1;
+  // Receives what is worth telling of what was written. May be null.
+  std::vector<std::string>* notes = nullptr;
 };
+inline constexpr int kMostBvhKeysPerFrame = 16;
 
-// Writes a pair: .glb, .gltf, .csv, .npy, .json and .txt (in SBU's own unit) as one file; .bvh as
-// <stem>.leader.bvh and <stem>.follower.bvh in one shared world. Returns the files written.
+// Writes a pair: .glb, .gltf, .usda, .csv, .npy, .json and .txt (in SBU's own unit) as one file; .bvh
+// as <stem>.leader.bvh and <stem>.follower.bvh in one shared world. Returns the files written.
 //
 // Errors: INVALID_ARGUMENT for an unknown extension, joints other than the skeleton's, people of
 //         different length, positions that are not finite; PERMISSION_DENIED.
@@ -104,17 +111,19 @@ absl::StatusOr<std::string> FormatPeople(Format format, const std::vector<motion
 
 // The format that an extension stands for; absent for an unknown one.
 std::optional<Format> FormatOf(const std::filesystem::path& path);
-// By name: "bvh", "gltf", "glb", "amc", "csv", "json", "npy" or "sbu".
+// By name: "bvh", "gltf", "glb", "usda", "amc", "csv", "json", "npy" or "sbu".
 std::optional<Format> ParseFormat(absl::string_view name);
-inline constexpr char kFormatNames[] = "amc, bvh, csv, glb, gltf, json, npy or sbu";
+// The names of those that are read.
+inline constexpr char kReadableFormatNames[] = "amc, bvh, csv, glb, gltf, json, npy or sbu";
 bool IsWritable(Format format);
+bool IsReadable(Format format);
 
 // Whether WritePair, ReadLeader know the extension; the file need not exist.
 bool IsWritable(const std::filesystem::path& path);
 bool IsReadable(const std::filesystem::path& path);
 // Which those are, for UnknownExtension and for callers that know more.
 inline constexpr char kWritableExtensions[] =
-    ".glb, .gltf, .bvh, .csv, .npy, .json or .txt (SBU text)";
+    ".glb, .gltf, .usda, .bvh, .csv, .npy, .json or .txt (SBU text)";
 inline constexpr char kReadableExtensions[] =
     ".txt (SBU text), .bvh, .gltf, .glb, .amc (beside its .asf), .csv, .npy or .json";
 // INVALID_ARGUMENT "path: extension: came ..., wanted <known>".

@@ -17,6 +17,7 @@
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_replace.h"
 #include "model/base/nearest.h"
+#include "model/base/printable.h"
 #include "model/base/text.h"
 #include "model/messages/json_places.h"
 
@@ -28,10 +29,15 @@ using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
 using nlohmann::json;
 
+constexpr std::size_t kLongestProblem = 500;
+
 // Everything that is wrong with a text, and where.
 class Problems {
  public:
-  void Add(Place place, std::string problem) { problems_.emplace_back(place, std::move(problem)); }
+  // The parsers quote what they found as it is.
+  void Add(Place place, absl::string_view problem) {
+    problems_.emplace_back(place, base::Printable(problem, kLongestProblem));
+  }
   bool empty() const { return problems_.empty(); }
   absl::Status ToStatus() {
     if (problems_.empty()) return absl::OkStatus();

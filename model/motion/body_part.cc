@@ -1,6 +1,7 @@
 #include "model/motion/body_part.h"
 
 #include "absl/strings/str_cat.h"
+#include "model/base/text.h"
 
 namespace duet::motion {
 
@@ -8,7 +9,8 @@ absl::Status Validate(const std::vector<BodyPart>& parts, const Skeleton& skelet
   if (parts.empty()) return absl::InvalidArgumentError("parts: empty, wanted at least one");
   for (const BodyPart& part : parts) {
     if (part.joints.empty()) {
-      return absl::InvalidArgumentError(absl::StrCat("parts: \"", part.name, "\" has no joints"));
+      return absl::InvalidArgumentError(
+          absl::StrCat("parts: ", base::Quoted(part.name), " has no joints"));
     }
     for (const int joint : part.joints) {
       absl::Status status = CheckJoint(absl::StrCat("parts.", part.name), joint, skeleton);

@@ -15,7 +15,8 @@ struct Name {
 constexpr Name kNames[] = {{ReadingSetting::kFormat, "format"},
                            {ReadingSetting::kFrameRate, "frame_rate"},
                            {ReadingSetting::kMetresPerUnit, "metres_per_unit"},
-                           {ReadingSetting::kJointMap, "joint_map"}};
+                           {ReadingSetting::kJointMap, "joint_map"},
+                           {ReadingSetting::kRigJointMap, "rig_joint_map"}};
 
 }  // namespace
 

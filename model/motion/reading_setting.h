@@ -7,8 +7,9 @@
 
 namespace duet::motion {
 
-// What a reader of motion files can be told beside the file.
-enum class ReadingSetting { kFormat, kFrameRate, kMetresPerUnit, kJointMap };
+// What a reader of motion files can be told beside the file. kRigJointMap is the joint map of a
+// file that is read for its rig alone.
+enum class ReadingSetting { kFormat, kFrameRate, kMetresPerUnit, kJointMap, kRigJointMap };
 
 // `status`, an error, with the setting that would mend it as a detail, for a program that knows how
 // its user says that setting.

@@ -51,4 +51,19 @@ absl::Status CheckPair(const ClipPair& pair) {
   return status.ok() ? CheckClip("follower", b) : status;
 }
 
+absl::Status CheckPeople(const std::vector<Clip>& people, const Skeleton& skeleton) {
+  if (people.empty() || people.size() > 2) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("people: came ", people.size(), ", wanted one or two"));
+  }
+  for (const Clip& person : people) {
+    if (person.joint_names == skeleton.joint_names) continue;
+    return absl::InvalidArgumentError(absl::StrCat("people: came ", person.joint_count(),
+                                                   " joints, wanted the skeleton's ",
+                                                   skeleton.joint_count(), " in its order"));
+  }
+  return people.size() == 1 ? CheckClip("person", people[0])
+                            : CheckPair(ClipPair{people[0], people[1]});
+}
+
 }  // namespace duet::motion

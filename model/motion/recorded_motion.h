@@ -7,6 +7,7 @@
 #include "absl/strings/string_view.h"
 #include "model/motion/clip.h"
 #include "model/motion/coordinates.h"
+#include "model/motion/skeleton.h"
 
 namespace duet::motion {
 
@@ -24,6 +25,8 @@ struct RecordedMotion {
 absl::Status CheckClip(absl::string_view name, const Clip& clip);
 // The same for both people, who share joints, frames and rate.
 absl::Status CheckPair(const ClipPair& pair);
+// The same for one person or a leader and a follower, of the skeleton's joints in its order.
+absl::Status CheckPeople(const std::vector<Clip>& people, const Skeleton& skeleton);
 
 }  // namespace duet::motion
 

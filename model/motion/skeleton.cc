@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "model/base/text.h"
 
 namespace duet::motion {
 namespace {
@@ -17,7 +18,8 @@ absl::Status CheckNames(const Skeleton& skeleton) {
   for (const std::string& name : skeleton.joint_names) {
     if (name.empty()) return absl::InvalidArgumentError("joint_names: an empty name");
     if (!seen.insert(name).second) {
-      return absl::InvalidArgumentError(absl::StrCat("joint_names: \"", name, "\" is repeated"));
+      return absl::InvalidArgumentError(
+          absl::StrCat("joint_names: ", base::Quoted(name), " is repeated"));
     }
   }
   return absl::OkStatus();

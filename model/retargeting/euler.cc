@@ -31,6 +31,41 @@ double SquaredDifference(const EulerAngles& a, const EulerAngles& b) {
   return sum;
 }
 
+// Cosine of the middle angle.
+double MiddleCosine(Quaternion q, EulerOrder order) {
+  const Vec3d i = Rotate(q, AxisOf(order[0])), j = Rotate(q, AxisOf(order[1]));
+  return std::hypot(Component(i, order[0]), Component(j, order[0]));
+}
+
+bool InGimbalLock(Quaternion q, EulerOrder order) { return MiddleCosine(q, order) < kGimbalLock; }
+
+// The angles of frames `begin` to `end`, all in gimbal lock, between those before and after. The
+// last one turns while the joint stays in the lock, where that changes no pose; of one frame alone
+// half on the way in.
+void FillLock(const std::vector<Quaternion>& turns, EulerOrder order, std::size_t begin,
+              std::size_t end, std::vector<EulerAngles>* track) {
+  EulerAngles angles = begin > 0 ? (*track)[begin - 1] : EulerAngles{};
+  double last = angles[2], step = 0;
+  if (end < turns.size()) {
+    const EulerAngles after = ToEuler(turns[end], order, ToEuler(turns[end - 1], order, angles));
+    if (begin == 0) {
+      last = after[2];
+    } else if (end - begin == 1) {
+      last = (last + after[2]) / 2;
+    } else {
+      step = (after[2] - last) / static_cast<double>(end - begin - 1);
+    }
+  }
+  for (std::size_t frame = begin; frame < end; ++frame, last += step) {
+    angles = ToEuler(turns[frame], order, {angles[0], angles[1], last});
+    (*track)[frame] = angles;
+  }
+}
+
+EulerAngles Middle(const EulerAngles& a, const EulerAngles& b) {
+  return {(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (a[2] + b[2]) / 2};
+}
+
 }  // namespace
 
 Quaternion FromEuler(EulerAngles angles, EulerOrder order) {
@@ -45,7 +80,7 @@ EulerAngles ToEuler(Quaternion q, EulerOrder order, EulerAngles previous) {
   const auto at = [&q](int row, int column) { return Component(Rotate(q, AxisOf(column)), row); };
   const double parity = (i + 1) % 3 == j ? 1 : -1;
   const double sine = std::clamp(parity * at(i, k), -1.0, 1.0);
-  const double cosine = std::hypot(at(i, i), at(i, j));
+  const double cosine = MiddleCosine(q, order);
   if (cosine < kGimbalLock) {
     const double sign = sine > 0 ? 1 : -1;
     const double sum = std::atan2(parity * at(k, j), at(j, j));
@@ -56,6 +91,43 @@ EulerAngles ToEuler(Quaternion q, EulerOrder order, EulerAngles previous) {
   const EulerAngles second = {first[0] + kPi, kPi - first[1], first[2] + kPi};
   const EulerAngles a = Nearest(first, previous), b = Nearest(second, previous);
   return SquaredDifference(a, previous) <= SquaredDifference(b, previous) ? a : b;
+}
+
+std::vector<EulerAngles> ToEulerTrack(const std::vector<Quaternion>& turns, EulerOrder order) {
+  std::vector<EulerAngles> track(turns.size());
+  for (std::size_t frame = 0; frame < turns.size(); ++frame) {
+    std::size_t end = frame;
+    while (end < turns.size() && InGimbalLock(turns[end], order)) ++end;
+    if (end > frame) {
+      FillLock(turns, order, frame, end, &track);
+      frame = end - 1;
+    } else {
+      track[frame] = ToEuler(turns[frame], order, frame > 0 ? track[frame - 1] : EulerAngles{});
+    }
+  }
+  return track;
+}
+
+std::vector<Quaternion> WithKeysBetween(const std::vector<Quaternion>& turns, int keys) {
+  std::vector<Quaternion> all;
+  for (std::size_t frame = 0; frame + 1 < turns.size(); ++frame) {
+    for (int key = 0; key < keys; ++key) {
+      all.push_back(Slerp(turns[frame], turns[frame + 1], static_cast<double>(key) / keys));
+    }
+  }
+  if (!turns.empty()) all.push_back(turns.back());
+  return all;
+}
+
+InBetween LargestInBetween(const std::vector<Quaternion>& turns,
+                           const std::vector<EulerAngles>& track, EulerOrder order) {
+  InBetween largest;
+  for (std::size_t frame = 0; frame + 1 < turns.size(); ++frame) {
+    const double off = Angle(FromEuler(Middle(track[frame], track[frame + 1]), order),
+                             Slerp(turns[frame], turns[frame + 1], 0.5));
+    if (off > largest.radians) largest = {off, frame};
+  }
+  return largest;
 }
 
 }  // namespace duet::retargeting

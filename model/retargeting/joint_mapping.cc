@@ -10,7 +10,9 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "absl/types/span.h"
 #include "model/base/nearest.h"
+#include "model/base/printable.h"
 #include "model/base/text.h"
 #include "model/motion/reading_setting.h"
 #include "model/retargeting/joint_names.h"
@@ -224,9 +226,11 @@ class Mapper {
 
   std::string ListNames() const {
     const std::size_t shown = std::min(names_.size(), kMostNamesInError);
-    const std::vector<std::string> some(names_.begin(),
-                                        names_.begin() + static_cast<std::ptrdiff_t>(shown));
-    return absl::StrCat("the file has ", absl::StrJoin(some, ", "),
+    const auto some = absl::MakeConstSpan(names_).first(shown);
+    const auto append = [](std::string* out, const std::string& name) {
+      absl::StrAppend(out, base::Printable(name, base::kLongestQuote));
+    };
+    return absl::StrCat("the file has ", absl::StrJoin(some, ", ", append),
                         shown < names_.size() ? ", ..." : "");
   }
 

@@ -27,13 +27,6 @@ constexpr double kPreviousPrior = 1e-3;
 
 std::size_t Index(int joint) { return static_cast<std::size_t>(joint); }
 
-Quaternion Slerp(Quaternion a, Quaternion b, double share) {
-  if (Dot(a, b) < 0) b = {-b.w, -b.x, -b.y, -b.z};
-  const Quaternion between = b * Inverse(a);
-  const Vec3d axis = Unit({between.x, between.y, between.z}, kUp);
-  return AxisAngle(axis, Angle(a, b) * share) * a;
-}
-
 // Two directions in one frame: the first exactly, the second as far as it is across.
 Quaternion Frame(Vec3d along, Vec3d across) {
   const Vec3d y = Unit(across - along * Dot(across, along), kUp);

@@ -8,8 +8,7 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kTiny = 1e-12;
-// Cosine of x below which z and y turn about the same axis and only their sum is defined.
-constexpr double kGimbalLock = 1e-5;
+constexpr double kNearlyEqual = 1e-4;  // radians
 constexpr int kMaxSweeps = 32;
 
 using Matrix4 = std::array<std::array<double, 4>, 4>;
@@ -89,20 +88,6 @@ void Add(const RotationPrior& prior, Matrix4* m) {
   }
 }
 
-// `angle` plus the whole turns that bring it nearest to `previous`.
-double Nearest(double angle, double previous) {
-  return angle + 2 * kPi * std::round((previous - angle) / (2 * kPi));
-}
-
-EulerZxy Nearest(EulerZxy angles, EulerZxy previous) {
-  return {Nearest(angles.z, previous.z), Nearest(angles.x, previous.x),
-          Nearest(angles.y, previous.y)};
-}
-
-double SquaredDifference(EulerZxy a, EulerZxy b) {
-  return (a.z - b.z) * (a.z - b.z) + (a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y);
-}
-
 }  // namespace
 
 Vec3d Unit(Vec3d a, Vec3d fallback) {
@@ -139,6 +124,17 @@ Quaternion FromAxes(Vec3d x, Vec3d y, Vec3d z) {
   return FitRotation({{{1, 0, 0}, x}, {{0, 1, 0}, y}, {{0, 0, 1}, z}}, {});
 }
 
+Quaternion Slerp(Quaternion a, Quaternion b, double share) {
+  const double cosine = Dot(a, b), side = cosine < 0 ? -1 : 1;
+  const double angle = std::acos(std::min(1.0, std::abs(cosine)));
+  // Between rotations that hardly differ, as straight as an arc.
+  const bool line = angle < kNearlyEqual;
+  const double from = line ? 1 - share : std::sin((1 - share) * angle);
+  const double to = side * (line ? share : std::sin(share * angle));
+  return Normalised(
+      {from * a.w + to * b.w, from * a.x + to * b.x, from * a.y + to * b.y, from * a.z + to * b.z});
+}
+
 Quaternion ShortestArc(Vec3d from, Vec3d to, Vec3d axis_if_opposite) {
   const Vec3d half = from + to;
   if (Norm(half) < 1e-9) return AxisAngle(axis_if_opposite, kPi);
@@ -157,28 +153,6 @@ Quaternion FitRotation(const std::vector<Correspondence>& correspondences,
     for (size_t j = 0; j < i; ++j) m[i][j] = m[j][i];
   }
   return LargestEigenvector(m);
-}
-
-Quaternion FromEuler(EulerZxy angles) {
-  return AxisAngle({0, 0, 1}, angles.z) * AxisAngle({1, 0, 0}, angles.x) *
-         AxisAngle({0, 1, 0}, angles.y);
-}
-
-EulerZxy ToEuler(Quaternion q, EulerZxy previous) {
-  // Columns of the rotation matrix: where the axes go.
-  const Vec3d x = Rotate(q, {1, 0, 0}), y = Rotate(q, {0, 1, 0}), z = Rotate(q, {0, 0, 1});
-  const double sin_x = std::clamp(y.z, -1.0, 1.0);
-  const double cos_x = std::hypot(x.z, z.z);
-  if (cos_x < kGimbalLock) {
-    // Only z + y (or z - y) is defined: y stays where it was.
-    const double sign = sin_x > 0 ? 1 : -1;
-    const double turn = std::atan2(x.y, x.x);
-    return Nearest({turn - sign * previous.y, sign * kPi / 2, previous.y}, previous);
-  }
-  const EulerZxy first = {std::atan2(-y.x, y.y), std::atan2(sin_x, cos_x), std::atan2(-x.z, z.z)};
-  const EulerZxy second = {first.z + kPi, kPi - first.x, first.y + kPi};
-  const EulerZxy a = Nearest(first, previous), b = Nearest(second, previous);
-  return SquaredDifference(a, previous) <= SquaredDifference(b, previous) ? a : b;
 }
 
 }  // namespace duet::retargeting

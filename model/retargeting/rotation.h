@@ -47,6 +47,8 @@ double Angle(Quaternion a, Quaternion b);
 Quaternion AxisAngle(Vec3d unit_axis, double radians);
 // The rotation that takes the right-handed orthonormal axes x, y, z to these.
 Quaternion FromAxes(Vec3d x, Vec3d y, Vec3d z);
+// a (share 0) to b (share 1) along the shorter arc, at a constant pace.
+Quaternion Slerp(Quaternion a, Quaternion b, double share);
 // The smallest rotation between two unit directions; opposite ones turn about `axis_if_opposite`, a
 // unit vector across `from`.
 Quaternion ShortestArc(Vec3d from, Vec3d to, Vec3d axis_if_opposite);
@@ -68,15 +70,6 @@ struct RotationPrior {
 // matrix.
 Quaternion FitRotation(const std::vector<Correspondence>& correspondences,
                        const std::vector<RotationPrior>& priors);
-
-// R = Rz Rx Ry, radians.
-struct EulerZxy {
-  double z = 0, x = 0, y = 0;
-};
-Quaternion FromEuler(EulerZxy angles);
-// The angles of `q` nearest to `previous`: of the two solutions and all their whole turns, so that
-// a smooth motion has smooth angles.
-EulerZxy ToEuler(Quaternion q, EulerZxy previous);
 
 }  // namespace duet::retargeting
 

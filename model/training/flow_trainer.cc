@@ -119,6 +119,7 @@ torch::Tensor FlowTrainer::MatchingLoss(const FlowBatch& batch, EpochReport* rep
 void FlowTrainer::TrainEpoch(int64_t first_step, EpochReport* report) {
   const bool is_energy = static_cast<double>(epoch()) >=
                          options_.flow->energy.from * static_cast<double>(options_.epochs);
+  generator_->set_dropout(is_energy ? options_.flow->energy.dropout : options_.flow->dropout);
   int64_t step = first_step;
   for (const FlowBatch& batch :
        SampleFlowEpoch(manifest_, dataset_, generator_->base_poses(), train_, options_, epoch())) {

@@ -141,6 +141,7 @@ void Read(base::ObjectReader* reader, TrainingOptions::Flow::Drift* out) {
 void Read(base::ObjectReader* reader, TrainingOptions::Flow::Energy* out) {
   out->from = Probability(reader, "from");
   out->answers = reader->Int("answers", 2, 64);
+  out->dropout = reader->Number("dropout", 0, 0.95);
   out->velocity_weight = reader->Number("velocity_weight", 0, 1e6);
   out->block_weight = reader->Number("block_weight", 0, 1e6);
   out->block_frames = reader->Int("block_frames", 2, 1000);
@@ -304,6 +305,7 @@ void DescribeFlow(const TrainingOptions::Flow& f, Description* out) {
                {"drift.frames", absl::StrCat(f.drift.frames)},
                {"energy.from", Text(f.energy.from)},
                {"energy.answers", absl::StrCat(f.energy.answers)},
+               {"energy.dropout", Text(f.energy.dropout)},
                {"energy.velocity_weight", Text(f.energy.velocity_weight)},
                {"energy.block_weight", Text(f.energy.block_weight)},
                {"energy.block_frames", absl::StrCat(f.energy.block_frames)}});

@@ -110,8 +110,10 @@ struct TrainingOptions {
     // The last part of a run trains whole answers, in as many steps as they are sampled in, by the
     // energy score: near what was captured, and as far from one another as captured answers are.
     struct Energy {
-      double from = 0.5;           // share of the epochs before it begins; 1: never
-      int64_t answers = 2;         // drawn for each clip
+      double from = 0.5;    // share of the epochs before it begins; 1: never
+      int64_t answers = 2;  // drawn for each clip
+      double dropout = 0;   // in place of the flow's: what it adds to the spread of the answers
+                            // in training is missing afterwards
       double velocity_weight = 1;  // of the score of velocities, frame by frame
       double block_weight = 1;     // of the score of velocities over several frames together
       int64_t block_frames = 6;

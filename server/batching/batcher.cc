@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "absl/status/statusor.h"
+#include "absl/types/span.h"
 #include "server/batching/window_queue.h"
 #include "server/common/mutex.h"
 
@@ -30,22 +32,38 @@ absl::Status QueueTooLong(const WindowJob& job, common::TimePoint now) {
       " s away, would be too near for an answer");
 }
 
+using Windows = absl::Span<const engine::SynthesisWindow* const>;
+using Results = std::vector<engine::WindowResult>;
+
 // A model reports failures as a status; whatever else escapes it must not take the server down.
-std::vector<engine::WindowResult> Evaluate(const Batch& batch) {
+absl::StatusOr<Results> EvaluateTogether(const engine::Synthesizer& model, Windows windows) {
+  try {
+    Results results = model.Synthesize(windows);
+    if (results.size() == windows.size()) return results;
+    return absl::InternalError("the model gave " + std::to_string(results.size()) +
+                               " results for a batch of " + std::to_string(windows.size()));
+  } catch (const std::exception& error) {
+    return absl::InternalError(std::string("the model threw: ") + error.what());
+  } catch (...) {
+    return absl::InternalError("the model threw something that is no exception");
+  }
+}
+
+// A batch that failed as a whole did so by one of its windows, as far as anybody knows: each has
+// another chance alone, so that none pays for its neighbours.
+Results Evaluate(const Batch& batch) {
+  const engine::Synthesizer& model = *batch.windows[0].job.model;
   std::vector<const engine::SynthesisWindow*> windows;
   for (const QueuedWindow& queued : batch.windows) windows.push_back(&queued.job.window);
-  absl::Status failure;
-  try {
-    std::vector<engine::WindowResult> results = batch.windows[0].job.model->Synthesize(windows);
-    if (results.size() == windows.size()) return results;
-    failure = absl::InternalError("the model gave " + std::to_string(results.size()) +
-                                  " results for a batch of " + std::to_string(windows.size()));
-  } catch (const std::exception& error) {
-    failure = absl::InternalError(std::string("the model threw: ") + error.what());
-  } catch (...) {
-    failure = absl::InternalError("the model threw something that is no exception");
+  absl::StatusOr<Results> together = EvaluateTogether(model, windows);
+  if (together.ok()) return *std::move(together);
+  if (windows.size() == 1) return {together.status()};
+  Results each;
+  for (const engine::SynthesisWindow* const& window : windows) {
+    absl::StatusOr<Results> alone = EvaluateTogether(model, absl::MakeConstSpan(&window, 1));
+    each.push_back(alone.ok() ? std::move(alone->front()) : alone.status());
   }
-  return {windows.size(), failure};
+  return each;
 }
 
 WindowQueueOptions QueueOptions(const BatcherOptions& options) {

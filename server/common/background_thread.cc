@@ -12,7 +12,7 @@ constexpr int kNiceness = 10;
 
 }  // namespace
 
-BackgroundThread::BackgroundThread() : thread_([this] { Work(); }) {}
+BackgroundThread::BackgroundThread(Share share) : thread_([this, share] { Work(share); }) {}
 
 BackgroundThread::~BackgroundThread() {
   Stop();
@@ -47,10 +47,10 @@ bool BackgroundThread::stopping() const {
   return stopping_;
 }
 
-void BackgroundThread::Work() {
+void BackgroundThread::Work(Share share) {
   // Of this thread alone: on Linux 0 is the caller, not its process. Where it may not, it works on
   // as any other.
-  setpriority(PRIO_PROCESS, 0, kNiceness);
+  if (share == Share::kSmall) setpriority(PRIO_PROCESS, 0, kNiceness);
   while (true) {
     std::function<void(bool run)> job;
     {

@@ -9,13 +9,17 @@
 
 namespace duet::server::common {
 
-// A thread that does one job after the other with a small share of the processors: where all of
-// them are busy answering calls, it has about a tenth of one.
+// A thread that does one job after the other, so that whoever has the job need not.
 //
 // Threads: safe to call concurrently.
 class BackgroundThread {
  public:
-  BackgroundThread();
+  enum class Share {
+    kSmall,     // of processors that are all busy answering calls, about a tenth of one
+    kOrdinary,  // as any other thread
+  };
+
+  explicit BackgroundThread(Share share);
   // Waits for the job under way; those that were not begun are told.
   ~BackgroundThread();
   BackgroundThread(const BackgroundThread&) = delete;
@@ -31,7 +35,7 @@ class BackgroundThread {
   bool stopping() const;
 
  private:
-  void Work();
+  void Work(Share share);
 
   mutable Mutex mutex_;
   CondVar changed_;

@@ -11,9 +11,12 @@
 #include "absl/strings/str_join.h"
 #include "absl/strings/string_view.h"
 #include "absl/strings/strip.h"
+#include "model/base/printable.h"
 
 namespace duet::server::config {
 namespace {
+
+constexpr std::size_t kLongestFailure = 1000;
 
 // Reads fields one after the other and keeps every failure.
 class Reader {
@@ -36,11 +39,12 @@ class Reader {
     return {};
   }
 
-  // `message` begins with the field and a colon.
+  // `message` begins with the field and a colon; it may quote what came as it is.
   void Fail(const std::string& message) {
     const auto source = sources_.find(message.substr(0, message.find(':')));
-    failures_.push_back(
-        source == sources_.end() ? message : absl::StrCat(message, " (", source->second, ")"));
+    std::string failure = base::Printable(message, kLongestFailure);
+    if (source != sources_.end()) absl::StrAppend(&failure, " (", source->second, ")");
+    failures_.push_back(std::move(failure));
   }
 
   bool ok() const { return failures_.empty(); }

@@ -2,6 +2,8 @@
 
 #include <malloc.h>
 
+#include <algorithm>
+#include <thread>
 #include <utility>
 
 namespace duet::server::lifecycle {
@@ -10,7 +12,17 @@ namespace {
 // Less is not worth the walk through the heap.
 constexpr std::size_t kWorthIt = std::size_t{1} << 20;
 
+// Blocks from this size on are mapped by themselves, and no more than this stays free at the end of
+// a heap. Larger than what short clips take, so that they do not go to the system for memory.
+constexpr int kKeptBytes = 1 << 20;
+
 }  // namespace
+
+void LimitFreeMemory() {
+  mallopt(M_MMAP_THRESHOLD, kKeptBytes);
+  mallopt(M_TRIM_THRESHOLD, kKeptBytes);
+  mallopt(M_ARENA_MAX, 2 * static_cast<int>(std::max(1U, std::thread::hardware_concurrency())));
+}
 
 HeapTrimmer::HeapTrimmer() : HeapTrimmer([] { malloc_trim(0); }) {}
 

@@ -7,6 +7,15 @@
 
 namespace duet::server::lifecycle {
 
+// Has the heap give back what is freed rather than keep it: to be called before there are threads.
+//
+// Left to itself glibc raises the size above which a block is mapped by itself, and with it what
+// may stay free at the end of each thread's heap, up to 64 MiB, after the sizes that it has seen
+// freed; HeapTrimmer cannot reach that part. What a server holds would then depend on which thread
+// served which request. It would also have eight heaps a core for its threads, each with pages that
+// are used in part; there are two a core here.
+void LimitFreeMemory();
+
 // Gives memory of large requests back to the system. glibc keeps what is freed for later, pages
 // among blocks that are still used above all: after a burst of large requests that is hundreds of
 // megabytes, for good.

@@ -11,6 +11,7 @@
 #include "model/cpu_engine/cpu_synthesizer.h"
 #include "model/cpu_engine/kernels/gemm_bf16.h"
 #include "model/torch_plugin/torch_plugin.h"
+#include "server/lifecycle/heap_trimmer.h"
 #include "server/lifecycle/run_server.h"
 
 namespace {
@@ -78,6 +79,7 @@ absl::StatusOr<ModelSource> OpenEngine(const EngineOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  duet::server::lifecycle::LimitFreeMemory();
   duet::server::lifecycle::StopSignal stop;
   return duet::server::lifecycle::RunServer(
       argc, argv, OpenEngine, stop, std::make_shared<duet::server::metrics::StreamLogSink>(stderr));

@@ -60,7 +60,7 @@ class ModelControl {
   ModelRegistry& registry_;
   ModelObserver& observer_;
   std::vector<Reloadable> reloadables_;
-  common::BackgroundThread thread_;
+  common::BackgroundThread thread_{common::BackgroundThread::Share::kSmall};
 };
 
 }  // namespace duet::server::registry

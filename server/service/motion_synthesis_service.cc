@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <memory>
+#include <optional>
 #include <utility>
 #include <variant>
 
@@ -22,7 +24,8 @@ constexpr metrics::MethodInfo kSynthesize = Method("Synthesize", "server_stream"
 constexpr metrics::MethodInfo kListModels = Method("ListModels", "unary");
 constexpr metrics::MethodInfo kGetModel = Method("GetModel", "unary");
 
-// Requests whose memory is worth giving back to the system.
+// Requests whose memory is worth giving back to the system, and that take so long to parse and
+// check (eight milliseconds a mebibyte) that they have a thread of their own.
 constexpr std::size_t kLargeRequestBytes = std::size_t{1} << 20;
 
 // A call's deadline on the scheduler's clock: the caller's, or the server's own where that is
@@ -103,8 +106,40 @@ void MotionSynthesisService::Handle(CallReactor& reactor,
                                     const std::shared_ptr<Reception>& reception,
                                     grpc::ByteBuffer bytes) {
   CountIfLarge(bytes);
+  const absl::Status fits = pipeline_.CheckSize(bytes);
+  absl::StatusOr<ShareLease> held =
+      fits.ok() ? parts_.admission->Hold(reception->client(), bytes.Length())
+                : absl::StatusOr<ShareLease>(fits);
+  if (!held.ok()) {
+    reception->Refuse(held.status());
+  } else if (bytes.Length() >= kLargeRequestBytes) {
+    HandleElsewhere(reactor, reception, std::move(bytes), *std::move(held));
+  } else {
+    Begin(reactor, reception, std::move(bytes), *std::move(held));
+  }
+}
+
+// The reactor lives until the reception was told how the call ends, and so does the service.
+void MotionSynthesisService::HandleElsewhere(CallReactor& reactor,
+                                             const std::shared_ptr<Reception>& reception,
+                                             grpc::ByteBuffer bytes, ShareLease held) {
+  auto lease = std::make_shared<ShareLease>(std::move(held));
+  large_requests_.Post([this, &reactor, reception, bytes = std::move(bytes), lease](bool run) {
+    const std::optional<absl::Status> ended = reception->ended_meanwhile();
+    if (ended.has_value() || !run) {
+      *lease = ShareLease();  // free before the caller knows
+      reception->Refuse(ended.value_or(DrainingRefusal()));
+    } else {
+      Begin(reactor, reception, bytes, std::move(*lease));
+    }
+  });
+}
+
+void MotionSynthesisService::Begin(CallReactor& reactor,
+                                   const std::shared_ptr<Reception>& reception,
+                                   grpc::ByteBuffer bytes, ShareLease held) {
   absl::StatusOr<SynthesisCall::Parts> prepared =
-      Prepare(reactor.context(), *reception, std::move(bytes));
+      Prepare(reactor.context(), *reception, std::move(bytes), std::move(held));
   if (!prepared.ok()) {
     reception->Refuse(prepared.status());
     return;
@@ -114,11 +149,8 @@ void MotionSynthesisService::Handle(CallReactor& reactor,
 
 absl::StatusOr<SynthesisCall::Parts> MotionSynthesisService::Prepare(const Context& context,
                                                                      Reception& reception,
-                                                                     grpc::ByteBuffer bytes) {
-  const absl::Status fits = pipeline_.CheckSize(bytes);
-  if (!fits.ok()) return fits;
-  absl::StatusOr<ShareLease> held = parts_.admission->Hold(reception.client(), bytes.Length());
-  if (!held.ok()) return held.status();
+                                                                     grpc::ByteBuffer bytes,
+                                                                     ShareLease held) {
   v1::SynthesizeRequest request;
   const absl::Status read = pipeline_.Read(std::move(bytes), request);
   if (!read.ok()) return read;
@@ -144,7 +176,7 @@ absl::StatusOr<SynthesisCall::Parts> MotionSynthesisService::Prepare(const Conte
   return SynthesisCall::Parts{std::move(served.model),
                               *std::move(validated),
                               reception.TakePlace(),
-                              *std::move(held),
+                              std::move(held),
                               reception.TakeScope(),
                               DeadlineOf(context, *parts_.clock, parts_.max_call_seconds),
                               parts_.buffered_frames,

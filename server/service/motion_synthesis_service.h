@@ -14,6 +14,7 @@
 
 #include "duet/v1/synthesis.pb.h"
 #include "server/batching/window_scheduler.h"
+#include "server/common/background_thread.h"
 #include "server/common/clock.h"
 #include "server/metrics/call_record.h"
 #include "server/registry/model_registry.h"
@@ -53,7 +54,7 @@ struct ServiceParts {
   std::optional<bool> clean_up;
 };
 
-// The contract's service: no method blocks.
+// The contract's service: no method blocks, or keeps a thread of gRPC's for long.
 //
 // Every call comes in by the CallPipeline and is admitted before its message is read (Reception). A
 // Synthesize call goes on model -> validator -> SynthesisCall, which lives until its last reply was
@@ -79,12 +80,19 @@ class MotionSynthesisService final : public RawService {
 
   Reactor* Synthesize(Context* context);
   void CountIfLarge(const grpc::ByteBuffer& bytes);
+  // Handles a message that came, a large one elsewhere: gRPC has few threads, and all other calls
+  // would wait.
   void Handle(CallReactor& reactor, const std::shared_ptr<Reception>& reception,
               grpc::ByteBuffer bytes);
+  void HandleElsewhere(CallReactor& reactor, const std::shared_ptr<Reception>& reception,
+                       grpc::ByteBuffer bytes, ShareLease held);
+  // Parses the message and begins to answer; `held` are its bytes.
+  void Begin(CallReactor& reactor, const std::shared_ptr<Reception>& reception,
+             grpc::ByteBuffer bytes, ShareLease held);
   // Finds the model and checks the request. Takes place and scope of a call that goes on; those of
   // a refused one stay.
   absl::StatusOr<SynthesisCall::Parts> Prepare(const Context& context, Reception& reception,
-                                               grpc::ByteBuffer bytes);
+                                               grpc::ByteBuffer bytes, ShareLease held);
   v1::ListModelsResponse List() const;
   absl::StatusOr<v1::GetModelResponse> Get(const v1::GetModelRequest& request) const;
   // A method with one answer: `answer` is a StatusOr<Response> from (const Request&).
@@ -96,6 +104,7 @@ class MotionSynthesisService final : public RawService {
   const CallPipeline pipeline_;
   LiveCalls calls_;
   std::atomic<std::uint64_t> large_request_bytes_{0};
+  common::BackgroundThread large_requests_{common::BackgroundThread::Share::kOrdinary};
 };
 
 }  // namespace duet::server::service

@@ -9,9 +9,11 @@ namespace duet::server::service {
 Reception::Reception(Parts parts) : parts_(std::move(parts)), begin_(parts_.clock->Now()) {}
 
 bool Reception::Received() {
+  ShareLease slow;  // others may arrive slowly while this one waits to be handled
   common::MutexLock lock(mutex_);
   if (state_ != State::kReceiving) return false;
   state_ = State::kHandling;
+  slow = std::move(slow_);
   return true;
 }
 
@@ -19,6 +21,11 @@ void Reception::Lost(bool cancelled) {
   EndFrom(State::kReceiving,
           cancelled ? absl::CancelledError("the caller went away before its request had come")
                     : NoMessageRefusal());
+}
+
+std::optional<absl::Status> Reception::ended_meanwhile() const {
+  common::MutexLock lock(mutex_);
+  return end_;
 }
 
 void Reception::Refuse(const absl::Status& reason) { EndFrom(State::kHandling, reason); }
@@ -40,10 +47,8 @@ bool Reception::EndFrom(State state, const absl::Status& reason) {
 }
 
 std::unique_ptr<CallScope> Reception::Answer() {
-  ShareLease slow;
   common::MutexLock lock(mutex_);
   state_ = State::kEnded;
-  slow = std::move(slow_);
   return std::move(parts_.scope);
 }
 
@@ -55,12 +60,10 @@ void Reception::GoOn(std::shared_ptr<SynthesisCall> call) {
   // First, so that what ends the call finds one that has begun.
   call->Start();
   std::optional<absl::Status> end;
-  ShareLease slow;
   {
     common::MutexLock lock(mutex_);
     state_ = State::kAnswering;
     call_ = call;
-    slow = std::move(slow_);
     end = end_;
   }
   if (end) call->Abort(*end);

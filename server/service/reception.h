@@ -50,6 +50,9 @@ class Reception final : public LiveCall {
   // There will be no message.
   void Lost(bool cancelled);
 
+  // Why the call is to end, where that came up while its message is handled: whoever handles it may
+  // as well refuse it with this.
+  std::optional<absl::Status> ended_meanwhile() const;
   // The first step that the request does not pass. The scope is the reception's until GoOn.
   void Refuse(const absl::Status& reason);
   // Ends the call as answered: its scope, to be closed by the caller.
@@ -73,7 +76,7 @@ class Reception final : public LiveCall {
   bool EndFrom(State state, const absl::Status& reason);
   absl::Status LeaveToArrive(double waited) DUET_REQUIRES(mutex_);
 
-  common::Mutex mutex_;
+  mutable common::Mutex mutex_;
   State state_ DUET_GUARDED_BY(mutex_) = State::kReceiving;
   Parts parts_;  // scope and place: of who moved the state on
   const common::TimePoint begin_;

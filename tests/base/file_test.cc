@@ -58,6 +58,9 @@ TEST_F(FileTest, NamesWhatCannotBeWritten) {
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("is a folder")));
   EXPECT_THAT(WriteFile(Path("no") / "file", "x"),
               StatusIs(absl::StatusCode::kPermissionDenied, HasSubstr("cannot be written")));
+  EXPECT_THAT(WriteFile("/dev/full", "x"),
+              StatusIs(absl::StatusCode::kPermissionDenied,
+                       HasSubstr("/dev/full: cannot be written: No space left on device")));
 }
 
 TEST_F(FileTest, LeavesNothingBesideTheFile) {

@@ -78,6 +78,12 @@ TEST(ErrorAt, PointsAtAPlace) {
   EXPECT_EQ(ErrorAt("a.csv", 3, 7, "no"), absl::InvalidArgumentError("a.csv:3:7: no"));
 }
 
+TEST(ErrorAt, StaysAPrintableLineWhateverItQuotes) {
+  EXPECT_EQ(ErrorAt("a.bvh", 3, "after a\rb").message(), "a.bvh:3: after a\\rb");
+  EXPECT_EQ(ErrorAt("a.bvh", 3, 7, "after a\rb").message(), "a.bvh:3:7: after a\\rb");
+  EXPECT_LT(ErrorAt("a.bvh", 3, std::string(100'000, 'x')).message().size(), 1100u);
+}
+
 TEST(SkipByteOrderMark, SkipsThatAlone) {
   EXPECT_EQ(SkipByteOrderMark("\xEF\xBB\xBFx"), "x");
   EXPECT_EQ(SkipByteOrderMark("x\xEF\xBB\xBF"), "x\xEF\xBB\xBF");

@@ -207,12 +207,11 @@ class RestartTest(unittest.TestCase):
             self.assertEqual(call.returncode, 0, error)
 
 
-def small_request(folder):
-    """A request of a few kilobytes that the default model answers."""
+def small_request(folder, frames=20):
+    """A request of some kilobytes that the default model answers."""
     text = pathlib.Path(folder) / "request.txtpb"
     joints = ("head neck torso left_shoulder left_elbow left_hand right_shoulder right_elbow "
               "right_hand left_hip left_knee left_foot right_hip right_knee right_foot").split()
-    frames = 20
     names = "".join(f'joint_names: "{joint}" ' for joint in joints)
     positions = "".join(f"positions: {0.1 * (i % 3) + 0.05 * (i // 3 % 15):.3f} "
                         for i in range(frames * 45))

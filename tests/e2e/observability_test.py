@@ -4,6 +4,7 @@ whoever reads its log."""
 import concurrent.futures
 import json
 import pathlib
+import re
 import shutil
 import socket
 import struct
@@ -71,9 +72,28 @@ class MetricsTest(unittest.TestCase):
             checked = tools.run("promtool", *arguments)
             self.assertEqual(checked.returncode, 0, checked.stdout + checked.stderr)
 
-    def test_every_metric_of_the_rules_and_the_document_is_there(self):
+    def told(self):
+        """The metrics that the server has once it has answered a call."""
         text = get(self.server.metrics_port, "/metrics")
-        told = {line.split()[2] for line in text.splitlines() if line.startswith("# TYPE ")}
+        return {line.split()[2] for line in text.splitlines() if line.startswith("# TYPE ")}
+
+    def test_whoever_asks_for_metrics_asks_for_some_that_are_there(self):
+        asked = set()
+        for file in ("prometheus/rules.yml", "grafana/duet.json",
+                     "kubernetes/components/scale_by_adapter/adapter_rules.yaml",
+                     "kubernetes/components/scale_by_keda/scaled_object.yaml"):
+            text = (tools.SOURCE / "deploy" / file).read_text(encoding="utf-8")
+            text = re.sub(r"^\s*-? *name: .*$", "", text, flags=re.MULTILINE)
+            # A colon stands in what rules record.
+            names = set(re.findall(r"(?<![:\w])(?:duet|grpc_server)_\w+(?![:\w])", text))
+            self.assertGreater(len(names), 0, file)
+            asked |= {re.sub(r"_(bucket|count|sum)$", "", name) for name in names}
+        # These two are there once a call was refused, and with TLS.
+        self.assertEqual(asked - self.told(), {
+            "duet_refusals_total", "duet_tls_certificate_expiry_timestamp_seconds"})
+
+    def test_every_metric_is_in_the_document(self):
+        told = self.told()
         document = (tools.SOURCE / "docs" / "metrics.md").read_text(encoding="utf-8")
         self.assertEqual({name for name in told if f"`{name}`" not in document}, set())
 

@@ -30,24 +30,30 @@ class PackageTest(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         cls.addClassCleanup(folder.cleanup)
         cls.folder = pathlib.Path(folder.name)
-        run(CPACK, "-G", "DEB", "-B", cls.folder, "-D", "CPACK_COMPONENTS_ALL=client;server",
+        run(CPACK, "-G", "DEB", "-B", cls.folder, "-D", "CPACK_COMPONENTS_ALL=client;server;training;torch",
             cwd=BUILD, timeout=600)
         cls.packages = {file.name.split("_")[0]: file for file in cls.folder.glob("*.deb")}
         cls.root = cls.folder / "root"
         for package in cls.packages.values():
             run("dpkg-deb", "-x", package, cls.root)
 
-    def test_client_and_server_are_packages_of_their_own(self):
-        self.assertEqual(sorted(self.packages), ["duet", "duet-server"])
-        for package in self.packages.values():
+    def test_each_package_has_its_files_and_needs_no_more_than_they_do(self):
+        self.assertEqual(sorted(self.packages), ["duet", "duet-server", "duet-training"])
+        for name, package in self.packages.items():
             needed = run("dpkg-deb", "-f", package, "Depends")
-            self.assertIn("libgrpc++1.51", needed)
-            self.assertNotIn("torch", needed)
+            training = name == "duet-training"
+            self.assertEqual("libgrpc++1.51" in needed, not training, name)
+            self.assertEqual("libtorch1.13" in needed, training, name)
         for path in ("usr/bin/duet", "usr/share/man/man1/duet-batch.1.gz",
                      "usr/share/bash-completion/completions/duet",
+                     "usr/bin/duet-load", "usr/share/man/man1/duet-load.1.gz",
+                     "usr/share/bash-completion/completions/duet-load",
                      "usr/bin/duet-server", "usr/share/man/man8/duet-server.8.gz",
                      "usr/lib/systemd/system/duet-server.service",
-                     "usr/lib/sysusers.d/duet-server.conf", "etc/duet/server.textproto"):
+                     "usr/lib/sysusers.d/duet-server.conf", "etc/duet/server.textproto",
+                     "usr/bin/duet-train", "usr/share/man/man1/duet-train.1.gz",
+                     "usr/bin/duet-eval", "usr/bin/duet-import", "usr/bin/duet-keyframe",
+                     "usr/lib/duet/libduet_torch_engine.so"):
             self.assertTrue((self.root / path).is_file(), path)
         # What an operator changed stays on an upgrade.
         self.assertEqual(run("dpkg-deb", "-I", self.packages["duet-server"], "conffiles"),

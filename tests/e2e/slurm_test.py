@@ -1,6 +1,7 @@
 """deploy/slurm on a real Slurm of two nodes on this machine: tasks that are killed, whose server is killed,
-that Slurm requeues and whose node is lost run again, and the merged data set is byte for byte the one
-that a single run without faults makes. Needs root, slurmctld, slurmd and munge."""
+that Slurm requeues and whose node is lost run again; the merged data set is byte for byte the one that a
+single run without faults makes, and so are folds that are trained and their figures. Needs root,
+slurmctld, slurmd and munge."""
 
 import contextlib
 import filecmp
@@ -15,6 +16,7 @@ import tempfile
 import time
 import unittest
 
+import puppets
 import tools
 
 SLURM = tools.SOURCE / "deploy/slurm"
@@ -25,6 +27,10 @@ reactions { each_class {} }
 reactions { mixes { count: 600 } }
 output { formats: FORMAT_NPY }
 """
+# A network so small that an epoch takes a tenth of a second, and enough of them to be struck within.
+TRAINING = [word for setting in (
+    "epochs=40", "batch=16", "generator.slice_features=10", "generator.encoder_hidden=8",
+    "generator.attention=8", "discriminator.hidden=8") for word in ("--set", setting)]
 LONGEST_RUN = 600  # seconds, on a busy machine
 
 
@@ -146,14 +152,44 @@ def contents(folder):
                       ("shard-", ".duet-batch", "logs")))
 
 
+def timeless(folder):
+    """The files that training and measuring leave, without what tells when and how long they ran."""
+    found = {}
+    for file in sorted(folder.rglob("*")):
+        name = file.relative_to(folder)
+        # The state from which a killed training goes on holds its times among the rest.
+        if not file.is_file() or name.parts[0] == "logs" or name.name == "state":
+            continue
+        content = file.read_bytes()
+        if file.name == "log.csv":
+            content = re.sub(rb",[^,\n]*$", b"", content, flags=re.MULTILINE)
+        elif file.name in ("manifest.json", "MODEL_CARD.md"):
+            content = re.sub(rb"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ", b"", content)
+        found[name.as_posix()] = content
+    return found
+
+
 class SlurmTest(unittest.TestCase):
-    def setUp(self):
+    @classmethod
+    def setUpClass(cls):
         stack = contextlib.ExitStack()
-        self.addCleanup(stack.close)
-        self.folder = pathlib.Path(stack.enter_context(tempfile.TemporaryDirectory()))
-        self.recipe = self.folder / "recipe.textproto"
-        self.recipe.write_text(RECIPE)
-        self.cluster = Cluster(self.folder, stack)
+        cls.addClassCleanup(stack.close)
+        cls.folder = pathlib.Path(stack.enter_context(tempfile.TemporaryDirectory()))
+        cls.cluster = Cluster(cls.folder, stack)
+
+    def strike_node(self, task, process):
+        """Takes the power from the task's node, and starts the node again once Slurm has missed it."""
+        node = self.cluster.node_of(task)
+        self.cluster.lose_node(node, process)
+        wait_for("the node to be missed",
+                 lambda: "down" in self.cluster.run("sinfo", "-h", "-n", node, "-o", "%t"))
+        self.cluster.start_node(node)
+
+    def wait_for_end(self, job):
+        ended = wait_for(f"job {job}", lambda: re.search(
+            "JobState=(COMPLETED|FAILED|CANCELLED)",
+            self.cluster.run("scontrol", "show", "job", job)))
+        self.assertEqual(ended[1], "COMPLETED")
 
     def settled(self, out, shard):
         """How many items of a shard are in its journal."""
@@ -171,7 +207,9 @@ class SlurmTest(unittest.TestCase):
         return int(found[1])
 
     def test_faults_leave_no_trace_in_the_data_set(self):
-        words = [tools.SOURCE / "samples", "--recipe", self.recipe, "--quiet"]
+        recipe = self.folder / "recipe.textproto"
+        recipe.write_text(RECIPE)
+        words = [tools.SOURCE / "samples", "--recipe", recipe, "--quiet"]
         whole = self.folder / "whole"
         with tools.running_server() as server:
             result = tools.run(tools.PROGRAMS / "duet", "batch", *words, "--out", whole,
@@ -193,16 +231,9 @@ class SlurmTest(unittest.TestCase):
         begun(2)
         self.cluster.run("scontrol", "requeue", f"{job}_2")
         begun(3)
-        node = self.cluster.node_of(f"{job}_3")
-        self.cluster.lose_node(node, pids_of_task(job, 3, "duet")[0])
-        wait_for("the node to be missed",
-                 lambda: "down" in self.cluster.run("sinfo", "-h", "-n", node, "-o", "%t"))
-        self.cluster.start_node(node)
+        self.strike_node(f"{job}_3", pids_of_task(job, 3, "duet")[0])
 
-        ended = wait_for("the merge", lambda: re.search(
-            "JobState=(COMPLETED|FAILED|CANCELLED)",
-            self.cluster.run("scontrol", "show", "job", merge)))
-        self.assertEqual(ended[1], "COMPLETED")
+        self.wait_for_end(merge)
         for shard in range(4):
             self.assertGreaterEqual(self.restarts(job, shard), 1, shard)
         names = contents(whole)
@@ -210,6 +241,45 @@ class SlurmTest(unittest.TestCase):
         self.assertEqual(contents(out), names)
         _, different, unreadable = filecmp.cmpfiles(whole, out, names, shallow=False)
         self.assertEqual((different, unreadable), ([], []))
+
+    def test_faults_leave_no_trace_in_what_is_trained(self):
+        data = puppets.make_data_set(self.folder)
+        folds = " ".join(puppets.SUBJECTS)
+        runs = self.folder / "runs"
+        said = self.cluster.run(SLURM / "submit_training.sh", data, runs, folds,
+                                "--cpus-per-task=1", "--", *TRAINING)
+        job, measure = re.fullmatch(r"folds (\d+), measure (\d+)", said).groups()
+
+        # Each fault strikes a fold that is being trained.
+        def begun(fold):
+            log = runs / puppets.SUBJECTS[fold] / "log.csv"
+            wait_for(f"epochs of fold {fold}",
+                     lambda: log.exists() and log.read_text().count("\n") > 5)
+        begun(0)
+        self.kill(job, 0, "duet-train")
+        begun(1)
+        self.cluster.run("scontrol", "requeue", f"{job}_1")
+        begun(2)
+        self.strike_node(f"{job}_2", pids_of_task(job, 2, "duet-train")[0])
+
+        # Meanwhile the same without Slurm.
+        whole = self.folder / "whole-runs"
+        one_thread = {**os.environ, "OMP_NUM_THREADS": "1"}
+        for words in (("duet-train", "--data", data, "--out", whole, "--protocol", "loso", *TRAINING),
+                      ("duet-eval", "folds", "--data", data, "--runs", f"trained={whole}",
+                       "--subjects", *puppets.SUBJECTS, "--out", whole / "results")):
+            result = tools.run(tools.PROGRAMS / words[0], *words[1:], timeout=LONGEST_RUN,
+                               env=one_thread)
+            self.assertEqual(result.returncode, 0, result.stderr)
+
+        self.wait_for_end(measure)
+        for fold in range(len(puppets.SUBJECTS)):
+            self.assertGreaterEqual(self.restarts(job, fold), 1, fold)
+        expected, found = timeless(whole), timeless(runs)
+        self.assertIn("ann/checkpoint/studio/1/weights.safetensors", expected)
+        self.assertIn("results/10_folds.json", expected)
+        self.assertEqual(list(found), list(expected))
+        self.assertEqual([name for name in expected if found[name] != expected[name]], [])
 
 
 if __name__ == "__main__":

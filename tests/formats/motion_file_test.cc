@@ -335,7 +335,7 @@ TEST_F(MotionFile, NamesExtensionsItKnows) {
   EXPECT_THAT(std::string(ReadLeader("a.fbx").status().message()),
               HasSubstr("extension: came \".fbx\", wanted .txt (SBU text), .bvh"));
   EXPECT_THAT(std::string(WritePair("a.amc", pair_, motion::SbuSkeleton()).status().message()),
-              HasSubstr("extension: came \".amc\", wanted .glb, .gltf, .bvh, .csv"));
+              HasSubstr("extension: came \".amc\", wanted .glb, .gltf, .usda, .bvh, .csv"));
   EXPECT_TRUE(IsWritable("a.json"));
   EXPECT_TRUE(IsWritable("a.txt"));
   EXPECT_FALSE(IsWritable("a"));

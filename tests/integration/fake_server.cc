@@ -1,11 +1,19 @@
 // duet-server with a fake engine, for tests of the process as a whole. A checkpoint folder whose
 // manifest.json begins with "good" loads; anything else is refused.
+//
+// A weight of -1 makes the engine fail as engines may, that window alone or all of its batch:
+//   kick  it throws           hug          it says that it failed
+//   push  its answer is NaN   shake_hands  it takes until nobody wants the answer any more
 
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <memory>
+#include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "server/lifecycle/run_server.h"
@@ -15,6 +23,28 @@ namespace {
 
 using duet::engine::Synthesizer;
 
+enum Class { kKick, kPush, kShakeHands, kHug };  // as FakeDescription has them
+
+absl::Status FailAsAsked(const duet::engine::SynthesisWindow& window) {
+  const auto is_asked = [&window](Class one) { return window.labels[one] == -1; };
+  if (is_asked(kKick)) throw std::runtime_error("out of luck");
+  if (is_asked(kHug)) return absl::InternalError("out of order");
+  while (is_asked(kShakeHands) && window.cancelled != nullptr && !*window.cancelled) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return absl::OkStatus();
+}
+
+std::shared_ptr<const Synthesizer> MakeSynthesizer(duet::engine::ModelDescription description) {
+  auto model = std::make_shared<duet::test::FakeSynthesizer>(std::move(description));
+  model->window_status = FailAsAsked;
+  model->answer = [](duet::motion::Vec3 leader, absl::Span<const float> labels) {
+    if (labels[kPush] == -1) leader.x = std::numeric_limits<float>::quiet_NaN();
+    return duet::test::FakeAnswer(leader, labels);
+  };
+  return model;
+}
+
 absl::StatusOr<std::shared_ptr<const Synthesizer>> LoadFolder(const std::filesystem::path& folder) {
   std::string word;
   std::ifstream(folder / "manifest.json") >> word;
@@ -22,7 +52,7 @@ absl::StatusOr<std::shared_ptr<const Synthesizer>> LoadFolder(const std::filesys
   duet::engine::ModelDescription description = duet::test::FakeDescription();
   description.name = folder.parent_path().filename().string();
   description.version = std::stoi(folder.filename().string());
-  return std::make_shared<duet::test::FakeSynthesizer>(description);
+  return MakeSynthesizer(std::move(description));
 }
 
 }  // namespace
@@ -32,7 +62,7 @@ int main(int argc, char** argv) {
   const duet::server::lifecycle::ModelSource source{
       "fake", LoadFolder, [] {
         return std::vector<std::shared_ptr<const Synthesizer>>{
-            std::make_shared<duet::test::FakeSynthesizer>()};
+            MakeSynthesizer(duet::test::FakeDescription())};
       }};
   return duet::server::lifecycle::RunServer(
       argc, argv,

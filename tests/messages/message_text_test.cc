@@ -37,6 +37,16 @@ TEST(ParseMessage, SaysWhereTheFirstErrorIs) {
               StatusIs(absl::StatusCode::kInvalidArgument, ::testing::_));
 }
 
+TEST(ParseMessage, AnErrorIsALineOfPrintableText) {
+  google::protobuf::Duration message;
+  for (const MessageSyntax syntax : {MessageSyntax::kTextFormat, MessageSyntax::kJson}) {
+    const std::string text =
+        syntax == MessageSyntax::kJson ? "{\"seconds\": \x7f\r}" : "seconds: \x7f\r";
+    const absl::Status status = ParseMessage(text, syntax, &message);
+    EXPECT_THAT(status, StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("\\x7f")));
+  }
+}
+
 // "line:column" of a field, or "nowhere".
 std::string PlaceOf(const FieldPlaces& places, const std::string& field) {
   const auto place = places.find(field);

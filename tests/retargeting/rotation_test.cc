@@ -54,30 +54,19 @@ TEST(Rotation, LeavesWhatThePointsLeaveOpenToThePrior) {
   EXPECT_LT(Angle(FitRotation({}, {}), {}), 1e-7);
 }
 
-TEST(Rotation, GivesAnglesThatMakeTheRotationAgain) {
-  for (double z = -7; z < 7; z += 0.9) {
-    for (double x : {-kPi / 2, -1.5707, -1.0, 0.0, 0.4, 1.57079, kPi / 2, 2.5}) {
-      for (double y = -4; y < 4; y += 0.7) {
-        const Quaternion q = FromEuler({z, x, y});
-        EXPECT_LT(Angle(FromEuler(ToEuler(q, {})), q), 2e-5) << z << " " << x << " " << y;
-        EXPECT_LT(Angle(FromEuler(ToEuler(q, {1, 2, 3})), q), 2e-5) << z << " " << x << " " << y;
-      }
+TEST(Rotation, GoesTheShortWayBetweenTwoAtAConstantSpeed) {
+  const Quaternion a = AxisAngle({0, 1, 0}, 0.3);
+  const Quaternion b = a * AxisAngle(Unit({1, 2, 3}, {}), 2);
+  const Quaternion minus_b = {-b.w, -b.x, -b.y, -b.z};
+  for (const double share : {0.0, 0.25, 0.5, 1.0}) {
+    for (const Quaternion& end : {b, minus_b}) {
+      EXPECT_NEAR(Angle(a, Slerp(a, end, share)), 2 * share, 1e-7);
+      EXPECT_NEAR(Angle(b, Slerp(a, end, share)), 2 * (1 - share), 1e-7);
     }
   }
-}
-
-TEST(Rotation, KeepsAnglesNearThoseBefore) {
-  EulerZxy angles;
-  for (int step = 0; step <= 1000; ++step) {
-    // Four whole turns about y and a pitch that passes over the top.
-    const EulerZxy truth = {0.2, step * 0.003, step * 0.025};
-    const EulerZxy next = ToEuler(FromEuler(truth), angles);
-    EXPECT_LT(std::abs(next.y - angles.y), 0.1) << step;
-    EXPECT_LT(std::abs(next.x - angles.x), 0.1) << step;
-    angles = next;
-  }
-  EXPECT_NEAR(angles.y, 25, 1e-6);
-  EXPECT_NEAR(angles.x, 3, 1e-6);
+  EXPECT_NEAR(Angle(Slerp(a, a, 0.4), a), 0, 1e-7);
+  const Quaternion little = a * AxisAngle({1, 0, 0}, 1e-4);
+  EXPECT_NEAR(Angle(Slerp(a, little, 0.5), little), 5e-5, 1e-7);
 }
 
 }  // namespace

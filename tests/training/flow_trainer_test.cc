@@ -116,6 +116,17 @@ TEST_F(FlowTrainerTest, EnergyBeginsAtItsShareOfTheRun) {
   EXPECT_NE(half[2], never[2]);
 }
 
+TEST_F(FlowTrainerTest, TheEnergyScoreHasADropoutOfItsOwn) {
+  const auto loss = [&](double flow, double energy) {
+    options_.flow->energy.from = 0;
+    options_.flow->dropout = flow;
+    options_.flow->energy.dropout = energy;
+    return Make().RunEpoch().generator;
+  };
+  EXPECT_EQ(loss(0.1, 0), loss(0.5, 0));
+  EXPECT_NE(loss(0.1, 0), loss(0.1, 0.5));
+}
+
 TEST_F(FlowTrainerTest, LossesWithoutWeightAreLeftOut) {
   FlowTrainer plain = Make();
   const double without = plain.RunEpoch().generator;

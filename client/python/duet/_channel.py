@@ -1,16 +1,19 @@
-"""How a client reaches its server."""
+"""How a client reaches its server, whether its calls wait or are awaited."""
 
 from __future__ import annotations
 
 import json
 import re
-from typing import Any, List, Optional, Tuple
+import threading
+from typing import Any, ClassVar, List, Optional, Tuple
 
 import grpc
 
 from duet._call import CallSettings, Metadata
+from duet.errors import CancelledError
 from duet.options import TlsOptions
 from duet.retry import RetryOptions
+from duet.v1 import synthesis_pb2_grpc
 
 _SCHEMES = ("dns:", "ipv4:", "ipv6:", "unix:", "unix-abstract:", "xds:")
 # What a token may be sent to in plain text: it leaves this machine by no network. A host name other
@@ -25,6 +28,31 @@ _SERVICE_CONFIG = json.dumps({
     "loadBalancingConfig": [{"round_robin": {}}],
     "healthCheckConfig": {"serviceName": ""},
 })
+
+
+class Connected:
+    """What both clients are made of: settings, a channel, and the stub that speaks over it."""
+
+    _grpc: ClassVar[Any]
+    """The module whose channels carry the calls: ``grpc`` or ``grpc.aio``."""
+
+    def __init__(self, address: str = "localhost:50051", *, timeout: float = 120.0,
+                 tls: Optional[TlsOptions] = None, token: str = "",
+                 authority: str = "", retry: RetryOptions = RetryOptions()) -> None:
+        self._settings = check_settings(address, timeout, retry, tls, token)
+        arguments = channel_arguments(retry, tls, token, authority)
+        if tls is None:
+            self._channel = self._grpc.insecure_channel(target(address), arguments)
+        else:
+            self._channel = self._grpc.secure_channel(target(address), credentials(tls), arguments)
+        self._closed = threading.Event()
+        self._stub = synthesis_pb2_grpc.MotionSynthesisStub(  # type: ignore[no-untyped-call]
+            self._channel)
+
+
+def check_open(closed: threading.Event) -> None:
+    if closed.is_set():
+        raise CancelledError(grpc.StatusCode.CANCELLED, "the client was closed")
 
 
 def target(address: str) -> str:

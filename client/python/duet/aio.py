@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import asyncio
 import collections
+import threading
 from types import TracebackType
 from typing import (Any, AsyncGenerator, AsyncIterator, Coroutine, Deque, Iterable, Iterator, List,
                     Optional, Type)
@@ -19,35 +20,23 @@ from duet import _channel, batch
 from duet._call import Attempts, SynthesisCall
 from duet._signature import spelled_out
 from duet.errors import CancelledError, DuetError, from_rpc_error
-from duet.options import TlsOptions
 from duet.request import SynthesisRequest, to_selector
 from duet.result import (FollowerChunk, ModelDetails, ModelInfo, SynthesisResult,
                          details_from_proto, model_from_proto)
-from duet.retry import RetryOptions
 from duet.v1 import synthesis_pb2, synthesis_pb2_grpc
 
 
-class Client:
+class Client(_channel.Connected):
     """Asks a Duet server, without waiting: :class:`duet.Client` says what the arguments mean.
 
     Made and used within one event loop. Cancelling a task that awaits a call ends the call.
     """
 
-    def __init__(self, address: str = "localhost:50051", *, timeout: float = 120.0,
-                 tls: Optional[TlsOptions] = None, token: str = "",
-                 authority: str = "", retry: RetryOptions = RetryOptions()) -> None:
-        self._settings = _channel.check_settings(address, timeout, retry, tls, token)
-        target = _channel.target(address)
-        arguments = _channel.channel_arguments(retry, tls, token, authority)
-        if tls is None:
-            self._channel = grpc.aio.insecure_channel(target, arguments)
-        else:
-            self._channel = grpc.aio.secure_channel(target, _channel.credentials(tls), arguments)
-        self._stub = synthesis_pb2_grpc.MotionSynthesisStub(  # type: ignore[no-untyped-call]
-            self._channel)
+    _grpc = grpc.aio
 
     async def close(self) -> None:
         """Ends the connection, and every call that is still being answered."""
+        self._closed.set()
         await self._channel.close()
 
     async def __aenter__(self) -> Client:
@@ -74,7 +63,8 @@ class Client:
 
     def stream_request(self, request: SynthesisRequest) -> SynthesisStream:
         """The follower's frames as they arrive."""
-        return SynthesisStream(self._stub, self._channel, SynthesisCall(request, self._settings))
+        return SynthesisStream(self._stub, self._channel, self._closed,
+                               SynthesisCall(request, self._settings))
 
     synthesize = spelled_out(synthesize_request, SynthesisRequest, "synthesize")
     stream = spelled_out(stream_request, SynthesisRequest, "stream")
@@ -117,6 +107,7 @@ class Client:
     async def _unary(self, method: Any, request: Any) -> Any:
         attempts = Attempts(self._settings)
         while True:
+            _channel.check_open(self._closed)
             try:
                 return await method(request, timeout=attempts.begin(), metadata=attempts.metadata)
             except grpc.RpcError as error:
@@ -137,8 +128,8 @@ class SynthesisStream(AsyncIterator[FollowerChunk]):
     """
 
     def __init__(self, stub: synthesis_pb2_grpc.MotionSynthesisStub, channel: grpc.aio.Channel,
-                 call: SynthesisCall) -> None:
-        self._stub, self._channel, self._call = stub, channel, call
+                 closed: threading.Event, call: SynthesisCall) -> None:
+        self._stub, self._channel, self._closed, self._call = stub, channel, closed, call
         self._result: Optional[SynthesisResult] = None
         self._frames = self._receive()
 
@@ -168,6 +159,7 @@ class SynthesisStream(AsyncIterator[FollowerChunk]):
         while wait is not None:
             if wait > 0:
                 await _wait(self._channel, wait)
+            _channel.check_open(self._closed)
             request, seconds = self._call.begin()
             responses = self._stub.Synthesize(request, timeout=seconds,
                                               metadata=self._call.attempts.metadata)

@@ -9,20 +9,18 @@ from typing import Any, Callable, Generator, Iterable, Iterator, List, Optional,
 import grpc
 
 from duet import _channel, batch
-from duet._call import Attempts, CallSettings, SynthesisCall
+from duet._call import Attempts, SynthesisCall
 from duet._signature import spelled_out
 from duet.errors import CancelledError, DuetError, from_rpc_error
-from duet.options import TlsOptions
 from duet.request import SynthesisRequest, to_selector
 from duet.result import (FollowerChunk, ModelDetails, ModelInfo, SynthesisResult,
                          details_from_proto, model_from_proto)
-from duet.retry import RetryOptions
 from duet.v1 import synthesis_pb2, synthesis_pb2_grpc
 
 _Answer = TypeVar("_Answer")
 
 
-class Client:
+class Client(_channel.Connected):
     """Asks a Duet server to answer one character's motion with another's.
 
     >>> client = duet.Client("localhost:50051")
@@ -45,19 +43,7 @@ class Client:
         ValueError: an argument makes no sense.
     """
 
-    def __init__(self, address: str = "localhost:50051", *, timeout: float = 120.0,
-                 tls: Optional[TlsOptions] = None, token: str = "",
-                 authority: str = "", retry: RetryOptions = RetryOptions()) -> None:
-        self._settings = _channel.check_settings(address, timeout, retry, tls, token)
-        target = _channel.target(address)
-        arguments = _channel.channel_arguments(retry, tls, token, authority)
-        if tls is None:
-            self._channel = grpc.insecure_channel(target, arguments)
-        else:
-            self._channel = grpc.secure_channel(target, _channel.credentials(tls), arguments)
-        self._closed = threading.Event()
-        self._stub = synthesis_pb2_grpc.MotionSynthesisStub(  # type: ignore[no-untyped-call]
-            self._channel)
+    _grpc = grpc
 
     def close(self) -> None:
         """Ends the connection, and every call that is still being answered."""
@@ -107,11 +93,11 @@ class Client:
     def _unary(self, method: Any, request: Any) -> Any:
         attempts = Attempts(self._settings)
         while True:
-            _check_open(self._closed)
+            _channel.check_open(self._closed)
             try:
                 return method(request, timeout=attempts.begin(), metadata=attempts.metadata)
             except grpc.RpcError as error:
-                _check_open(self._closed)
+                _channel.check_open(self._closed)
                 wait = attempts.wait_after(from_rpc_error(error))
             _wait(self._channel, wait, self._closed)
 
@@ -166,12 +152,12 @@ class SynthesisStream(Iterator[FollowerChunk]):
         wait: Optional[float] = 0.0
         while wait is not None:
             self._sleep(wait)
-            _check_open(self._closed)
+            _channel.check_open(self._closed)
             error = yield from self._attempt()
             if error is not None and self._cancelled.is_set():
                 raise CancelledError(grpc.StatusCode.CANCELLED, "the call was cancelled")
             if error is not None:
-                _check_open(self._closed)
+                _channel.check_open(self._closed)
             wait = self._call.wait_after(error)
         self._result = self._call.result()
 
@@ -197,11 +183,6 @@ class SynthesisStream(Iterator[FollowerChunk]):
     def _sleep(self, seconds: float) -> None:
         if seconds > 0:
             _wait(self._channel, seconds, self._cancelled)
-
-
-def _check_open(closed: threading.Event) -> None:
-    if closed.is_set():
-        raise CancelledError(grpc.StatusCode.CANCELLED, "the client was closed")
 
 
 def _wait(channel: grpc.Channel, seconds: float, ended: threading.Event) -> None:

@@ -24,7 +24,10 @@ function showFigures(data) {
 
 function start() {
   const data = JSON.parse(document.getElementById('data').textContent);
-  if (!webGlWorks()) return;
+  if (!drawsWebGl()) {
+    fail(NO_WEBGL);
+    return;
+  }
   const element = (id) => document.getElementById(id);
   element('title').textContent = data.title;
   element('subtitle').textContent = data.subtitle;

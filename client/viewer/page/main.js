@@ -1,95 +1,63 @@
-// Puts the page together.
+// Puts the page together: the motion's element, and around it what is known of the motion.
 function start() {
   const data = JSON.parse(document.getElementById('data').textContent);
-  const motion = new Motion(data);
+  const element = (id) => document.getElementById(id);
+  const scene = element('stage');
+  scene.addEventListener('error', ({detail}) => fail(detail.message));
+  scene.motion = data;
+  if (!scene.stage) return;
+  const {motion, player, stage} = scene;
   root.dataset.frames = motion.frames;
-  if (!webGlWorks()) return;
 
-  const stage = new Stage(document.getElementById('stage'), motion);
-  const player = new Player(motion);
   const panel = new Panel(data, motion, player);
-  const people = {};
-  for (const [name, colour] of Object.entries(COLOURS)) {
-    const figure = new Figure(motion, name, colour);
-    stage.scene.add(figure.group);
-    people[name] = {figure, path: stage.addPath(name, colour)};
-  }
-
-  let view = 'reset';  // until the camera is moved by hand
-  let stale = true;    // something changed since the last drawing
-  let draws = 0;
-  const touch = () => { stale = true; };
-  const chooseView = (name) => {
-    view = name;
-    stage.view(name);
+  const measures = new Measures(stage, motion, element('measures'));
+  const film = new Film(scene, data.title);
+  const gif = new Gif(scene, data.title);
+  const showChosen = (name) => {
     for (const button of document.querySelectorAll('[data-view]')) {
       button.classList.toggle('chosen', button.dataset.view === name && name !== 'reset');
     }
-    touch();
   };
-
-  const resize = () => {
-    stage.resize();
-    if (view) chooseView(view);
-    touch();
+  const chooseView = (name) => {
+    scene.look(name);
+    showChosen(name);
   };
-  window.addEventListener('resize', resize);
-  stage.controls.addEventListener('change', touch);
-  stage.controls.addEventListener('start', () => {
-    view = null;
-    document.getElementById('hint').classList.add('gone');
-    for (const button of document.querySelectorAll('[data-view]')) button.classList.remove('chosen');
+  scene.addEventListener('orbit', () => {
+    showChosen(null);
+    element('hint').classList.add('gone');
   });
-  const showPerson = (name, visible) => {
-    people[name].figure.group.visible = people[name].path.visible = visible;
-  };
-  const element = (id) => document.getElementById(id);
-  const measures = new Measures(stage, motion, element('measures'));
-  const film = new Film(stage.canvas, player, data.title);
-  element('save-film').hidden = !film.possible;
-  element('save-motion').hidden = !data.glb;
-  const draw = () => {
-    for (const {figure} of Object.values(people)) figure.update(player.frame);
+  scene.addEventListener('frame', () => {
     measures.update(player.frame);
     panel.update();
-    root.dataset.triangles = stage.draw();
-  };
+  });
+  scene.addEventListener('drawn', () => {
+    root.dataset.triangles = scene.triangles;
+    root.dataset.draws = scene.draws;
+    root.dataset.frame = Math.round(player.frame);
+    if (root.dataset.state === 'loading') root.dataset.state = 'ready';
+  });
+
+  element('save-film').hidden = !film.possible;
+  element('save-motion').hidden = !data.glb;
   const measure = () => element('measure').setAttribute('aria-pressed', measures.toggle());
-  connectInput({player, showPerson, chooseView, touch, more: [
-    {id: 'measure', key: 'm', action: measure},
-    {id: 'save-picture', key: 'p', action: () => savePicture(stage.canvas, draw, data.title)},
-    {id: 'save-film', key: film.possible ? 'r' : '', action: () => film.start()},
-    {id: 'save-motion', action: () => saveMotion(data.glb, data.title)},
-  ]});
+  connectInput({
+    player, chooseView,
+    showPerson: (name, visible) => scene.show(name, visible),
+    touch: () => scene.touch(),
+    more: [
+      {id: 'measure', key: 'm', action: measure},
+      {id: 'save-picture', key: 'p', action: () => savePicture(scene, data.title)},
+      {id: 'save-film', key: film.possible ? 'r' : '', action: () => film.start()},
+      {id: 'save-gif', key: 'g', action: () => gif.start()},
+      {id: 'save-motion', action: () => saveMotion(data.glb, data.title)},
+    ],
+  });
 
   const opening = openingState();
   if ('frame' in opening) player.seek(Number(opening.frame) || 0);
   if ('paused' in opening) player.playing = false;
   if ('measure' in opening) measure();
-  if (['front', 'side', 'top'].includes(opening.view)) view = opening.view;
-  resize();
-
-  let before = null;
-  function tick(now) {
-    // A tab that slept does not leap ahead.
-    const seconds = before === null ? 0 : Math.min((now - before) / 1000, 0.1);
-    before = now;
-    if (player.playing) {
-      player.advance(seconds);
-      touch();
-    }
-    film.follow();
-    stage.controls.update();
-    if (stale) {
-      stale = false;
-      draw();
-      root.dataset.draws = ++draws;
-      root.dataset.frame = Math.round(player.frame);
-      if (root.dataset.state === 'loading') root.dataset.state = 'ready';
-    }
-    window.requestAnimationFrame(tick);
-  }
-  window.requestAnimationFrame(tick);
+  chooseView(['front', 'side', 'top'].includes(opening.view) ? opening.view : 'reset');
 }
 
 start();

@@ -10,7 +10,7 @@ class Motion {
     this.keyframes = data.keyframes || [];
     this.people = {};
     for (const name of ['leader', 'follower']) {
-      if (name in data) this.people[name] = Motion.decode(data[name]);
+      if (data[name]) this.people[name] = Motion.decode(data[name]);
     }
     for (const [name, positions] of Object.entries(this.people)) {
       if (positions.length !== this.frames * this.joints.length * 3) {
@@ -20,7 +20,26 @@ class Motion {
     }
   }
 
+  // A Motion as it is, what the constructor takes, or the content of a "duet-motion" JSON file
+  // (docs/formats.md) in metres, y up.
+  static of(data) {
+    if (data instanceof Motion) return data;
+    if (!data || data.format !== 'duet-motion') return new Motion(data);
+    if ((data.unit || 'metres') !== 'metres' || (data.up_axis || 'y-up') !== 'y-up') {
+      throw new Error(`came ${data.unit}, ${data.up_axis}, wanted metres, y-up`);
+    }
+    if (!data.leader || !data.joint_names || !(data.frame_rate_hz > 0)) {
+      throw new Error('wanted joint_names, frame_rate_hz and a leader');
+    }
+    const flat = (frames) => frames && Float32Array.from(frames.flat(2));
+    return new Motion({joints: data.joint_names, bones: data.bones || [],
+                       frameRate: data.frame_rate_hz, frames: data.leader.length,
+                       leader: flat(data.leader), follower: flat(data.follower)});
+  }
+
+  // Base64 of little-endian float32, or the values themselves.
   static decode(base64) {
+    if (base64 instanceof Float32Array) return base64;
     const bytes = Uint8Array.from(atob(base64), (character) => character.charCodeAt(0));
     const view = new DataView(bytes.buffer);
     const values = new Float32Array(bytes.length / 4);

@@ -24,10 +24,3 @@ function openingState() {
   return state;
 }
 
-// Whether anything can be drawn; says so where not.
-function webGlWorks() {
-  const canvas = document.createElement('canvas');
-  if (canvas.getContext('webgl') || canvas.getContext('experimental-webgl')) return true;
-  fail('This browser shows no WebGL: switch on hardware acceleration, or try another browser.');
-  return false;
-}

@@ -7,6 +7,15 @@ function linear(hex) {
   return new THREE.Color(hex).convertSRGBToLinear();
 }
 
+const NO_WEBGL =
+    'This browser shows no WebGL: switch on hardware acceleration, or try another browser.';
+
+// Whether anything can be drawn.
+function drawsWebGl() {
+  const canvas = document.createElement('canvas');
+  return Boolean(canvas.getContext('webgl') || canvas.getContext('experimental-webgl'));
+}
+
 function makeRenderer(canvas) {
   const renderer = new THREE.WebGLRenderer({canvas, antialias: true});
   renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));

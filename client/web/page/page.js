@@ -15,13 +15,16 @@ const state = {
   answers: 0,
 };
 
-const theatre = new Theatre(element('stage'), (player) => {
+const theatre = element('stage');
+theatre.addEventListener('drawn', () => {
+  const {motion, player} = theatre;
   element('scrub').value = Math.round(player.frame);
-  element('time').value = `${(player.frame / player.motion.frameRate).toFixed(2)} of ` +
-                          `${player.motion.duration.toFixed(2)} s`;
+  element('time').value = `${(player.frame / motion.frameRate).toFixed(2)} of ` +
+                          `${motion.duration.toFixed(2)} s`;
   element('play').textContent = player.playing ? 'Pause' : 'Play';
   root.dataset.draws = theatre.draws;
 });
+theatre.addEventListener('error', ({detail}) => tell(detail.message, true));
 
 function tell(text, failed = false) {
   element('status').textContent = text;
@@ -71,11 +74,12 @@ async function readLeader(name, body) {
   state.leader = {...motion, positions};
   state.follower = null;
   const index = (joint) => motion.joint_names.indexOf(state.model.joint_names[joint]);
-  theatre.setLeader({
-    joints: motion.joint_names, frameRate: motion.frame_rate_hz, leader: positions,
+  theatre.motion = {
+    joints: motion.joint_names, frameRate: motion.frame_rate_hz, frames: motion.leader.length,
+    leader: positions,
     bones: state.model.bones.map((bone) => [index(bone.parent_joint ?? 0),
                                             index(bone.child_joint ?? 0)]),
-  });
+  };
   element('scrub').max = theatre.motion.frames - 1;
   element('empty').hidden = true;
   element('transport').hidden = false;
@@ -188,13 +192,11 @@ function connectControls() {
     react();
   });
   element('play').addEventListener('click', () => {
-    theatre.player.toggle();
-    theatre.touch();
+    theatre.toggle();
   });
   element('scrub').addEventListener('input', () => {
     theatre.player.playing = false;
-    theatre.player.seek(Number(element('scrub').value));
-    theatre.touch();
+    theatre.seek(Number(element('scrub').value));
   });
 }
 

@@ -12,8 +12,6 @@
 namespace duet::formats::bvh {
 namespace {
 
-constexpr double kDegreesPerRadian = 180 / 3.14159265358979323846;
-
 absl::Status CheckJoints(const motion::Clip& clip, const motion::Skeleton& skeleton) {
   if (clip.joint_names == skeleton.joint_names) return CheckClip("clip", clip);
   return absl::InvalidArgumentError(absl::StrCat("clip: joints: came ", clip.joint_count(),
@@ -49,34 +47,31 @@ BvhDocument MakeHierarchy(const retargeting::Rig& rig, double units_per_metre,
   return document;
 }
 
-void AppendFrame(const retargeting::RigPose& pose, double units_per_metre,
-                 std::vector<retargeting::EulerZxy>* angles, std::vector<float>* values) {
-  const retargeting::Vec3d root = pose.root_position * units_per_metre;
-  for (double value : {root.x, root.y, root.z}) values->push_back(static_cast<float>(value));
-  for (std::size_t j = 0; j < pose.rotations.size(); ++j) {
-    retargeting::EulerZxy& angle = (*angles)[j];
-    angle = ToEuler(pose.rotations[j], angle);
-    for (double value : {angle.z, angle.x, angle.y}) {
-      values->push_back(static_cast<float>(value * kDegreesPerRadian));
+std::vector<BvhTrack> TracksOf(const retargeting::Rig& rig, const motion::Clip& clip,
+                               const std::vector<int>& document_joints, std::size_t joint_count,
+                               double units_per_metre) {
+  std::vector<BvhTrack> tracks(joint_count);
+  retargeting::PoseFitter fitter(rig);
+  for (int frame = 0; frame < clip.frame_count(); ++frame) {
+    const retargeting::RigPose& pose = fitter.Fit(clip.poses[frame]);
+    tracks[0].places.push_back(pose.root_position * units_per_metre);
+    for (std::size_t j = 0; j < pose.rotations.size(); ++j) {
+      tracks[static_cast<std::size_t>(document_joints[j])].turns.push_back(pose.rotations[j]);
     }
   }
+  return tracks;
 }
 
 }  // namespace
 
 absl::StatusOr<BvhDocument> ToBvh(const motion::Clip& clip, const motion::Skeleton& skeleton,
-                                  double metres_per_unit) {
+                                  double metres_per_unit, const BvhKeys& keys) {
   if (absl::Status status = CheckJoints(clip, skeleton); !status.ok()) return status;
   const retargeting::Rig rig = retargeting::MakeRig(skeleton, clip);
   std::vector<int> document_joints;
   BvhDocument document = MakeHierarchy(rig, 1 / metres_per_unit, &document_joints);
-  document.frame_time_s = 1 / clip.frame_rate_hz;
-  document.frame_count = clip.frame_count();
-  retargeting::PoseFitter fitter(rig);
-  std::vector<retargeting::EulerZxy> angles(rig.joints.size());
-  for (int frame = 0; frame < clip.frame_count(); ++frame) {
-    AppendFrame(fitter.Fit(clip.poses[frame]), 1 / metres_per_unit, &angles, &document.values);
-  }
+  WriteMotion(TracksOf(rig, clip, document_joints, document.joints.size(), 1 / metres_per_unit),
+              clip.frame_rate_hz, keys, &document);
   return document;
 }
 

@@ -3,6 +3,7 @@
 
 #include "absl/status/statusor.h"
 #include "model/formats/bvh/bvh_document.h"
+#include "model/formats/bvh/bvh_motion.h"
 #include "model/motion/clip.h"
 #include "model/motion/skeleton.h"
 
@@ -17,7 +18,7 @@ namespace duet::formats::bvh {
 // Errors: INVALID_ARGUMENT when the clip's joints are not the skeleton's, it has no frame, its rate
 //         is no rate or a position is not finite.
 absl::StatusOr<BvhDocument> ToBvh(const motion::Clip& clip, const motion::Skeleton& skeleton,
-                                  double metres_per_unit = 0.01);
+                                  double metres_per_unit = 0.01, const BvhKeys& keys = {});
 
 }  // namespace duet::formats::bvh
 

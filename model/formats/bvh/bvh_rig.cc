@@ -1,5 +1,6 @@
 #include "model/formats/bvh/bvh_rig.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -9,7 +10,6 @@
 #include "absl/strings/str_cat.h"
 #include "model/base/text.h"
 #include "model/motion/coordinates.h"
-#include "model/retargeting/euler.h"
 #include "model/retargeting/rig_transfer.h"
 
 namespace duet::formats::bvh {
@@ -19,20 +19,9 @@ using retargeting::CharacterPose;
 using retargeting::Quaternion;
 using retargeting::Vec3d;
 
-constexpr double kDegreesPerRadian = 180 / 3.14159265358979323846;
 constexpr double kNoTurn = 1e-4;  // radians
 
 std::size_t Index(int joint) { return static_cast<std::size_t>(joint); }
-
-bool IsRotation(BvhChannel channel) { return channel >= BvhChannel::kXRotation; }
-
-// 0 x, 1 y, 2 z.
-int AxisOf(BvhChannel channel) {
-  const BvhChannel first = IsRotation(channel) ? BvhChannel::kXRotation : BvhChannel::kXPosition;
-  return static_cast<int>(channel) - static_cast<int>(first);
-}
-
-double Component(Vec3d a, int axis) { return axis == 0 ? a.x : axis == 1 ? a.y : a.z; }
 
 // From the file's axes to the world's.
 Quaternion ToWorldAxes(motion::UpAxis up_axis) {
@@ -68,31 +57,18 @@ class RigWriter {
         source_(source),
         fit_(fit),
         adds_to_offset_(positions == PositionChannels::kAddToOffset),
-        to_world_(ToWorldAxes(fit.up_axis)) {
-    for (const BvhJoint& joint : document_.joints) {
-      std::vector<int> axes;
-      for (BvhChannel channel : joint.channels) {
-        if (IsRotation(channel)) axes.push_back(AxisOf(channel));
-      }
-      const bool any_turn =
-          axes.size() == 3 && axes[0] != axes[1] && axes[1] != axes[2] && axes[0] != axes[2];
-      orders_.push_back(any_turn ? std::optional<retargeting::EulerOrder>(
-                                       retargeting::EulerOrder{axes[0], axes[1], axes[2]})
-                                 : std::nullopt);
-      angles_.push_back({});
-    }
-  }
+        to_world_(ToWorldAxes(fit.up_axis)) {}
 
-  absl::StatusOr<BvhDocument> Write(const motion::Clip& clip) {
-    const retargeting::CharacterRig rig = Rig();
-    const absl::StatusOr<std::vector<CharacterPose>> poses = TransferToRig(clip, rig, source_);
+  absl::StatusOr<BvhDocument> Write(const motion::Clip& clip, const BvhKeys& keys) {
+    const absl::StatusOr<std::vector<CharacterPose>> poses = TransferToRig(clip, Rig(), source_);
     if (!poses.ok()) return poses.status();
-    document_.frame_time_s = 1 / clip.frame_rate_hz;
-    document_.frame_count = clip.frame_count();
-    for (const CharacterPose& pose : *poses) {
-      absl::Status status = AppendFrame(pose);
+    std::vector<BvhTrack> tracks(document_.joints.size());
+    for (const CharacterPose& pose : *poses) AppendFrame(pose, &tracks);
+    for (std::size_t j = 0; j < tracks.size(); ++j) {
+      absl::Status status = CheckTurns(document_.joints[j], tracks[j]);
       if (!status.ok()) return status;
     }
+    WriteMotion(tracks, clip.frame_rate_hz, keys, &document_);
     return std::move(document_);
   }
 
@@ -116,41 +92,31 @@ class RigWriter {
     return rig;
   }
 
-  absl::Status AppendFrame(const CharacterPose& pose) {
+  void AppendFrame(const CharacterPose& pose, std::vector<BvhTrack>* tracks) const {
     for (std::size_t j = 0; j < document_.joints.size(); ++j) {
       const BvhJoint& joint = document_.joints[j];
       const Quaternion above =
           joint.parent < 0 ? Quaternion{} : InFile(pose.turns[Index(joint.parent)]);
-      const Quaternion turn = Inverse(above) * InFile(pose.turns[j]);
       const Vec3d parent_at = joint.parent < 0 ? Vec3d{} : pose.positions[Index(joint.parent)];
       Vec3d place = Rotate(Inverse(above), ToFile(pose.positions[j] - parent_at));
       if (joint.parent >= 0 && adds_to_offset_) place = place - joint.offset;
-      absl::Status status = AppendJoint(j, turn, place);
-      if (!status.ok()) return status;
+      (*tracks)[j].turns.push_back(Inverse(above) * InFile(pose.turns[j]));
+      (*tracks)[j].places.push_back(place);
     }
-    return absl::OkStatus();
   }
 
   // A turn of the world in the file's axes.
   Quaternion InFile(Quaternion turn) const { return Inverse(to_world_) * turn * to_world_; }
 
-  absl::Status AppendJoint(std::size_t j, Quaternion turn, Vec3d place) {
-    const BvhJoint& joint = document_.joints[j];
-    if (orders_[j].has_value()) {
-      angles_[j] = ToEuler(turn, *orders_[j], angles_[j]);
-    } else if (!joint.end_site && Angle(turn, {}) > kNoTurn) {
-      return absl::InvalidArgumentError(
-          absl::StrCat(source_, ": rig: ", base::Quoted(joint.name),
-                       " has to turn, and has not three rotation channels about three axes"));
+  absl::Status CheckTurns(const BvhJoint& joint, const BvhTrack& track) const {
+    const auto turns = [](Quaternion turn) { return Angle(turn, {}) > kNoTurn; };
+    if (joint.end_site || RotationOrder(joint).has_value() ||
+        std::none_of(track.turns.begin(), track.turns.end(), turns)) {
+      return absl::OkStatus();
     }
-    std::size_t rotation = 0;
-    for (BvhChannel channel : joint.channels) {
-      const double value = !IsRotation(channel)     ? Component(place, AxisOf(channel))
-                           : orders_[j].has_value() ? angles_[j][rotation++] * kDegreesPerRadian
-                                                    : 0;
-      document_.values.push_back(static_cast<float>(value));
-    }
-    return absl::OkStatus();
+    return absl::InvalidArgumentError(
+        absl::StrCat(source_, ": rig: ", base::Quoted(joint.name),
+                     " has to turn, and has not three rotation channels about three axes"));
   }
 
   BvhDocument document_;
@@ -158,14 +124,13 @@ class RigWriter {
   retargeting::CharacterFit fit_;
   bool adds_to_offset_;
   Quaternion to_world_;
-  std::vector<std::optional<retargeting::EulerOrder>> orders_;  // [joints], where a joint turns
-  std::vector<retargeting::EulerAngles> angles_;                // [joints], of the last frame
 };
 
 }  // namespace
 
 absl::StatusOr<BvhDocument> OntoBvhRig(const motion::Clip& clip, const BvhDocument& rig,
-                                       absl::string_view source, const BvhImportOptions& options) {
+                                       absl::string_view source, const BvhImportOptions& options,
+                                       const BvhKeys& keys) {
   retargeting::CharacterFit fit;
   BvhImportOptions reading = options;
   reading.fit = &fit;
@@ -174,7 +139,7 @@ absl::StatusOr<BvhDocument> OntoBvhRig(const motion::Clip& clip, const BvhDocume
   const absl::StatusOr<motion::Clip> read = FromBvh(rig, source, reading);
   if (!read.ok()) return read.status();
   return RigWriter(PersonOf(rig, options.person), source, fit, FindPositionChannels(rig))
-      .Write(clip);
+      .Write(clip, keys);
 }
 
 }  // namespace duet::formats::bvh

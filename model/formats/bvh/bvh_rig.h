@@ -5,6 +5,7 @@
 #include "absl/strings/string_view.h"
 #include "model/formats/bvh/bvh_document.h"
 #include "model/formats/bvh/bvh_import.h"
+#include "model/formats/bvh/bvh_motion.h"
 #include "model/motion/clip.h"
 
 namespace duet::formats::bvh {
@@ -18,7 +19,8 @@ namespace duet::formats::bvh {
 // joint that
 //         has to turn and has not three rotation channels.
 absl::StatusOr<BvhDocument> OntoBvhRig(const motion::Clip& clip, const BvhDocument& rig,
-                                       absl::string_view source, const BvhImportOptions& options);
+                                       absl::string_view source, const BvhImportOptions& options,
+                                       const BvhKeys& keys = {});
 
 }  // namespace duet::formats::bvh
 

@@ -11,6 +11,7 @@
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
+#include "model/base/printable.h"
 #include "model/base/text.h"
 
 namespace duet::formats::flat {
@@ -252,7 +253,8 @@ class HeaderReader {
         if (counts[joint][axis] == 1) continue;
         return absl::InvalidArgumentError(
             absl::StrCat(counts[joint][axis] == 0 ? "no column " : "several columns for ",
-                         has_prefixed_ ? kPrefixes[person] : "", names[joint], kSuffixes[axis]));
+                         has_prefixed_ ? kPrefixes[person] : "",
+                         base::Printable(names[joint], base::kLongestQuote), kSuffixes[axis]));
       }
     }
     if (names.empty()) {

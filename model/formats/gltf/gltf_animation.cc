@@ -22,8 +22,6 @@ Quaternion Scaled(Quaternion q, double factor) {
   return {q.w * factor, q.x * factor, q.y * factor, q.z * factor};
 }
 
-Quaternion Sum(Quaternion a, Quaternion b) { return {a.w + b.w, a.x + b.x, a.y + b.y, a.z + b.z}; }
-
 // At length 1; no turn where there is no direction.
 Quaternion Normalised(Quaternion q) {
   const double norm = std::sqrt(Dot(q, q));
@@ -31,16 +29,6 @@ Quaternion Normalised(Quaternion q) {
 }
 
 }  // namespace
-
-Quaternion Slerp(Quaternion a, Quaternion b, double share) {
-  double cosine = Dot(a, b);
-  if (cosine < 0) b = Scaled(b, -1);
-  cosine = std::abs(cosine);
-  if (cosine > kNearlyEqual) return Normalised(Sum(Scaled(a, 1 - share), Scaled(b, share)));
-  const double angle = std::acos(cosine);
-  return Normalised(
-      Sum(Scaled(a, std::sin((1 - share) * angle)), Scaled(b, std::sin(share * angle))));
-}
 
 absl::StatusOr<GltfTrack> GltfTrack::Read(const GltfChannel& channel, GltfBuffers* buffers) {
   GltfTrack track;

@@ -46,9 +46,6 @@ class GltfTrack {
   std::vector<float> values_;  // [keys, components], or [keys, 3 parts, components] of splines
 };
 
-// a to b along the shorter arc, at a constant pace.
-retargeting::Quaternion Slerp(retargeting::Quaternion a, retargeting::Quaternion b, double share);
-
 }  // namespace duet::formats::gltf
 
 #endif  // DUET_MODEL_FORMATS_GLTF_GLTF_ANIMATION_H_

@@ -1,6 +1,5 @@
 #include "model/formats/gltf/gltf_export.h"
 
-#include <cmath>
 #include <cstddef>
 #include <utility>
 
@@ -8,47 +7,22 @@
 #include "model/formats/gltf/gltf_writer.h"
 #include "model/motion/recorded_motion.h"
 #include "model/retargeting/mannequin.h"
+#include "model/retargeting/mannequin_look.h"
 #include "model/retargeting/rig_animation.h"
 
 namespace duet::formats::gltf {
 namespace {
 
 using nlohmann::ordered_json;
+using retargeting::Linear;
+using retargeting::Look;
 using retargeting::Quaternion;
 using retargeting::RigAnimation;
 using retargeting::RigPose;
 using retargeting::Vec3d;
 
-// As they should look (sRGB): those of the page (client/viewer).
-struct Colour {
-  int red, green, blue;
-};
-constexpr Colour kLeaderColour = {0xf0, 0xa0, 0x4b}, kFollowerColour = {0x4f, 0xb3, 0xbf},
-                 kVisorColour = {0x1b, 0x1d, 0x22};
-
-double Linear(int channel) {
-  const double share = channel / 255.0;
-  return share <= 0.04045 ? share / 12.92 : std::pow((share + 0.055) / 1.055, 2.4);
-}
-
 ordered_json Array(Vec3d a) {
   return {static_cast<float>(a.x), static_cast<float>(a.y), static_cast<float>(a.z)};
-}
-
-absl::Status CheckPeople(const std::vector<motion::Clip>& people,
-                         const motion::Skeleton& skeleton) {
-  if (people.empty() || people.size() > 2) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("people: came ", people.size(), ", wanted one or two"));
-  }
-  for (const motion::Clip& person : people) {
-    if (person.joint_names == skeleton.joint_names) continue;
-    return absl::InvalidArgumentError(absl::StrCat("people: came ", person.joint_count(),
-                                                   " joints, wanted the skeleton's ",
-                                                   skeleton.joint_count(), " in its order"));
-  }
-  return people.size() == 1 ? CheckClip("person", people[0])
-                            : CheckPair(motion::ClipPair{people[0], people[1]});
 }
 
 ordered_json Extras(const motion::Provenance& provenance) {
@@ -79,7 +53,8 @@ class GltfExporter {
     std::vector<Person> all;
     for (std::size_t i = 0; i < people.size(); ++i) {
       const std::string name = alone ? "person" : i == 0 ? "leader" : "follower";
-      all.push_back(AddPerson(name, people[i], i == 0 ? kLeaderColour : kFollowerColour));
+      all.push_back(AddPerson(name, people[i],
+                              i == 0 ? retargeting::kLeaderLook : retargeting::kFollowerLook));
       scene["nodes"].push_back(all.back().node);
       scene["nodes"].push_back(all.back().mannequin);
     }
@@ -100,14 +75,14 @@ class GltfExporter {
     int mannequin = 0;    // node
   };
 
-  Person AddPerson(const std::string& name, const motion::Clip& clip, Colour colour) {
+  Person AddPerson(const std::string& name, const motion::Clip& clip, const Look& look) {
     Person person;
     person.animation = retargeting::AnimateRig(skeleton_, clip);
     person.node = writer_.Add("nodes", {{"name", name}});
     person.first_joint = person.node + 1;
     AddJoints(person);
     const int skin = AddSkin(name, person);
-    const int mesh = AddMesh(name, person.animation, colour);
+    const int mesh = AddMesh(name, person.animation, look);
     person.mannequin = writer_.Add(
         "nodes", {{"name", absl::StrCat(name, "_mannequin")}, {"mesh", mesh}, {"skin", skin}});
     return person;
@@ -141,28 +116,29 @@ class GltfExporter {
                                  {"joints", std::move(joints)}});
   }
 
-  int AddMesh(const std::string& name, const RigAnimation& animation, Colour colour) {
+  int AddMesh(const std::string& name, const RigAnimation& animation, const Look& look) {
     const retargeting::Mannequin mannequin =
         MakeMannequin(skeleton_, animation.rig, animation.rest_positions);
     const std::size_t joints = animation.rig.joints.size();
     ordered_json primitives = ordered_json::array();
-    primitives.push_back(AddPrimitive(mannequin.body, joints, AddMaterial(name, colour, 0.62)));
+    primitives.push_back(AddPrimitive(mannequin.body, joints, AddMaterial(name, look)));
     if (!mannequin.visor.indices.empty()) {
-      if (visor_ < 0) visor_ = AddMaterial("visor", kVisorColour, 0.25);
+      if (visor_ < 0) visor_ = AddMaterial("visor", retargeting::kVisorLook);
       primitives.push_back(AddPrimitive(mannequin.visor, joints, visor_));
     }
     return writer_.Add("meshes", {{"name", absl::StrCat(name, "_mannequin")},
                                   {"primitives", std::move(primitives)}});
   }
 
-  int AddMaterial(const std::string& name, Colour colour, double roughness) {
+  int AddMaterial(const std::string& name, const Look& look) {
+    const retargeting::Colour colour = look.colour;
     return writer_.Add(
         "materials",
         {{"name", name},
          {"pbrMetallicRoughness",
           {{"baseColorFactor", {Linear(colour.red), Linear(colour.green), Linear(colour.blue), 1}},
            {"metallicFactor", 0},
-           {"roughnessFactor", roughness}}}});
+           {"roughnessFactor", look.roughness}}}});
   }
 
   ordered_json AddPrimitive(const retargeting::SkinnedMesh& mesh, std::size_t joints,

@@ -24,6 +24,7 @@ namespace duet::client::batch {
 namespace {
 
 using test::IsOk;
+using test::StatusIs;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -134,15 +135,17 @@ class ContactSheetTest : public ::testing::Test {
     records_.push_back(record.dump());
   }
 
-  std::string Sheet() {
+  absl::Status Write() {
     JournalWriter writer;
     EXPECT_THAT(writer.Open(folder_ / "journal", 0), IsOk());
     for (size_t i = 0; i < records_.size(); ++i) writer.Add(static_cast<int>(i), records_[i]);
     EXPECT_THAT(writer.Commit(), IsOk());
     const absl::StatusOr<JournalReader> journal = JournalReader::Open(folder_ / "journal");
-    EXPECT_THAT(
-        WriteContactSheet(*journal, identity_, ItemReader(folder_.path(), ""), folder_.path()),
-        IsOk());
+    return WriteContactSheet(*journal, identity_, ItemReader(folder_.path(), ""), folder_.path());
+  }
+
+  std::string Sheet() {
+    EXPECT_THAT(Write(), IsOk());
     return test::ReadTestFile(folder_ / "contact_sheet.html");
   }
 
@@ -182,10 +185,18 @@ TEST_F(ContactSheetTest, IsTheSameInWhateverOrderItemsCame) {
 TEST_F(ContactSheetTest, OnlyWhatIsDoneIsShown) {
   nlohmann::ordered_json rejected = Record(0, {{"kick", 1}});
   rejected["state"] = "rejected";
+  rejected["reasons"] = {"lean_degrees 40, wanted at most 20"};
   rejected.erase("files");
   records_.push_back(rejected.dump());
-  records_.push_back(R"({"state":"failed"})");
+  records_.push_back(R"({"state":"failed","name":"pair1"})");
   EXPECT_EQ(Count(Sheet(), "<figure>"), 0);
+}
+
+TEST_F(ContactSheetTest, ADamagedRecordIsNamed) {
+  nlohmann::ordered_json record = Record(0, {{"kick", 1}});
+  record["id"] = 7;
+  records_.push_back(record.dump());
+  EXPECT_THAT(Write(), StatusIs(absl::StatusCode::kDataLoss, HasSubstr("id: ")));
 }
 
 TEST_F(ContactSheetTest, WhatCannotBeReadIsSaidInItsPlace) {

@@ -351,6 +351,19 @@ TEST_F(JobTest, ALeaderThatCannotBeReadFailsAlone) {
   EXPECT_THAT(Read("set/errors/none-3-kick-s0.json"), HasSubstr("no such file"));
 }
 
+TEST_F(JobTest, ALeaderThatLacksSomethingSaysWhereToTellIt) {
+  motion::Clip walk;
+  walk.joint_names = motion::SbuSkeleton().joint_names;
+  walk.frame_rate_hz = 15;
+  walk.poses = test::SwayingMotion(5, 15);
+  ASSERT_THAT(formats::WritePeople(folder_ / "walk.npy", formats::Format::kNpy, {walk},
+                                   motion::SbuSkeleton()),
+              IsOk());
+  ASSERT_THAT(Run("set", {}, "leader\nwalk.npy\n"), IsOk());
+  EXPECT_THAT(Read("set/errors/walk-2-kick-s0.json"),
+              HasSubstr("say it in the recipe: input { frame_rate_hz }"));
+}
+
 TEST_F(JobTest, APackedSetTakesNoMoreItems) {
   recipe_ = std::string(kRecipe);
   recipe_.insert(recipe_.rfind('}'), "packing: PACKING_TAR ");

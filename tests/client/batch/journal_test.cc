@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "client/batch/durable_file.h"
+#include "client/batch/item_limit.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/support/status_matchers.h"
@@ -122,6 +123,14 @@ TEST_F(JournalTest, DamageBeforeTheEndIsAnError) {
   WriteTestFile(path_, damaged);
   EXPECT_THAT(JournalReader::Open(path_),
               StatusIs(absl::StatusCode::kDataLoss, HasSubstr("byte 0: damaged")));
+}
+
+TEST_F(JournalTest, AnItemBeyondAllPlansIsAnErrorAndTakesNoMemory) {
+  Append({{0, "zero"}, {kMaxItems - 1, "last"}});
+  EXPECT_THAT(JournalReader::Open(path_), IsOk());
+  Append({{kMaxItems, "beyond"}});
+  EXPECT_THAT(JournalReader::Open(path_),
+              StatusIs(absl::StatusCode::kDataLoss, HasSubstr("item 67108864, wanted one below")));
 }
 
 TEST_F(JournalTest, AFullDiskEndsIt) {

@@ -345,7 +345,7 @@ TEST_F(MotionCommandsTest, ConvertNeverReplacesWhatItReads) {
   EXPECT_EQ(Run({"convert", Path("one.csv"), "--out", Path("one.csv")}), 2);
   EXPECT_THAT(err_.str(), HasSubstr("would replace the file that is read"));
   EXPECT_EQ(Run({"convert", Path("one.csv"), "--out", Path("one.html")}), 2);
-  EXPECT_THAT(err_.str(), HasSubstr("wanted .glb, .gltf, .bvh, .csv, .npy or .json"));
+  EXPECT_THAT(err_.str(), HasSubstr("wanted .glb, .gltf, .usda, .bvh, .csv, .npy or .json"));
 }
 
 TEST_F(MotionCommandsTest, ViewShowsMotionsSideBySide) {

@@ -252,6 +252,15 @@ class WaitingTest(Calls, Waiting, unittest.TestCase):
 
 
 class AwaitingTest(Calls, Awaiting, unittest.TestCase):
+    def test_a_closed_client_answers_no_more(self):
+        def calls(client, get, gather):
+            get(client.close())
+            with self.assertRaisesRegex(duet.CancelledError, "the client was closed"):
+                get(client.list_models())
+            with self.assertRaisesRegex(duet.CancelledError, "the client was closed"):
+                gather(client.stream(self.leader, {"hug": 1}))
+        self.calls(Script(), calls)
+
     def test_cancelling_the_task_ends_the_call(self):
         ended, go_on = threading.Event(), threading.Event()
         script = Script(support.held_reply(self.leader, ended, go_on))

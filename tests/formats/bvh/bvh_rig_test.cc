@@ -32,8 +32,8 @@ motion::Clip Follower() {
   return test::MakePerson(options);
 }
 
-BvhDocument OntoRig(const motion::Clip& clip, const BvhDocument& rig) {
-  absl::StatusOr<BvhDocument> written = OntoBvhRig(clip, rig, "rig.bvh", {});
+BvhDocument OntoRig(const motion::Clip& clip, const BvhDocument& rig, const BvhKeys& keys = {}) {
+  absl::StatusOr<BvhDocument> written = OntoBvhRig(clip, rig, "rig.bvh", {}, keys);
   EXPECT_THAT(written.status(), IsOk());
   return written.value_or(BvhDocument());
 }
@@ -45,6 +45,7 @@ struct Figures {
   double hands_in_reach_metres = 0;          // what is left of the hands'
   double trunk_degrees = 0;                  // of the line between the shoulders
   double true_step = 0, euler_step = 0;      // degrees a frame
+  double between = 0;  // degrees that lines from angle to angle are off, half way between frames
 };
 
 double Angle(motion::Vec3 a, motion::Vec3 b) {
@@ -65,25 +66,23 @@ void MeasureSteps(const BvhDocument& document, Figures* figures) {
       order[i] = static_cast<int>(joint.channels[joint.channels.size() - 3 + i]) -
                  static_cast<int>(BvhChannel::kXRotation);
     }
-    retargeting::EulerAngles before = {};
+    std::vector<retargeting::EulerAngles> angles;
+    std::vector<Quaternion> rotations;
     for (int frame = 0; frame < document.frame_count; ++frame) {
-      retargeting::EulerAngles now;
-      for (std::size_t i = 0; i < 3; ++i) {
-        now[i] = static_cast<double>(
-                     document.values[static_cast<std::size_t>(frame) * channels + turns + i]) /
-                 kDegrees;
-      }
-      if (frame > 0) {
-        const double step = retargeting::Angle(retargeting::FromEuler(now, order),
-                                               retargeting::FromEuler(before, order));
-        figures->true_step = std::max(figures->true_step, step * kDegrees);
-        for (std::size_t i = 0; i < 3; ++i) {
-          figures->euler_step =
-              std::max(figures->euler_step, std::abs(now[i] - before[i]) * kDegrees);
-        }
-      }
-      before = now;
+      const float* values = &document.values[static_cast<std::size_t>(frame) * channels + turns];
+      angles.push_back({values[0] / kDegrees, values[1] / kDegrees, values[2] / kDegrees});
+      rotations.push_back(retargeting::FromEuler(angles.back(), order));
     }
+    for (std::size_t frame = 1; frame < angles.size(); ++frame) {
+      figures->true_step =
+          std::max(figures->true_step, Angle(rotations[frame], rotations[frame - 1]) * kDegrees);
+      for (std::size_t i = 0; i < 3; ++i) {
+        const double step = std::abs(angles[frame][i] - angles[frame - 1][i]);
+        figures->euler_step = std::max(figures->euler_step, step * kDegrees);
+      }
+    }
+    figures->between =
+        std::max(figures->between, LargestInBetween(rotations, angles, order).radians * kDegrees);
   }
 }
 
@@ -130,10 +129,13 @@ TEST_P(BvhRig, TheFollowerStandsAndReachesOnTheRig) {
   EXPECT_LT(figures.feet_metres, 0.002);
   EXPECT_LT(figures.hands_in_reach_metres, 0.002);
   EXPECT_LT(figures.trunk_degrees, 8);
-  std::printf("| %s | %.1f | %.1f | %.0f | %.1f | %.0f | %.0f |\n", GetParam().name.c_str(),
-              figures.feet_metres * 1000, figures.hands_in_reach_metres * 1000,
-              figures.beyond_reach_metres * 1000, figures.trunk_degrees, figures.true_step * 30,
-              figures.euler_step * 30);
+  Figures finer;
+  MeasureSteps(OntoRig(clip, GetParam().document, {4, nullptr}), &finer);
+  std::printf("| %s | %.1f | %.1f | %.0f | %.1f | %.0f | %.0f | %.1f | %.1f |\n",
+              GetParam().name.c_str(), figures.feet_metres * 1000,
+              figures.hands_in_reach_metres * 1000, figures.beyond_reach_metres * 1000,
+              figures.trunk_degrees, figures.true_step * 30, figures.euler_step * 30,
+              figures.between, finer.between);
 }
 
 // Far from gimbal lock each angle changes about as fast as the joint turns.
@@ -142,6 +144,27 @@ TEST_P(BvhRig, NoAngleJumps) {
   const Figures figures = Measure(clip, OntoRig(clip, GetParam().document));
   EXPECT_LT(figures.true_step, 15);
   EXPECT_LT(figures.euler_step, 60);
+  EXPECT_LT(figures.between, 0.5);
+}
+
+// Keys between frames are on the way of the joints: every fourth is a frame, as it was.
+TEST_P(BvhRig, KeysBetweenFramesKeepTheFramesAndComeNearerToTheMotion) {
+  const motion::Clip clip = Follower();
+  const BvhDocument coarse = OntoRig(clip, GetParam().document);
+  const BvhDocument fine = OntoRig(clip, GetParam().document, {4, nullptr});
+  ASSERT_EQ(fine.frame_count, 4 * (coarse.frame_count - 1) + 1);
+  EXPECT_NEAR(fine.frame_time_s, coarse.frame_time_s / 4, 1e-12);
+  const BvhKinematics coarse_joints(coarse), fine_joints(fine);
+  for (int frame = 0; frame < coarse.frame_count; frame += 7) {
+    const auto before = coarse_joints.Positions(frame), after = fine_joints.Positions(4 * frame);
+    for (std::size_t j = 0; j < before.size(); ++j) {
+      EXPECT_LT(Norm(before[j] - after[j]), 1e-3 * (1 + Norm(before[j])));
+    }
+  }
+  Figures of_coarse, of_fine;
+  MeasureSteps(coarse, &of_coarse);
+  MeasureSteps(fine, &of_fine);
+  EXPECT_LT(of_fine.between, std::max(0.3 * of_coarse.between, 0.05));
 }
 
 TEST_P(BvhRig, HierarchyNamesOffsetsAndChannelsStay) {

@@ -228,6 +228,7 @@ TEST(Csv, RefusesARowOfAnotherLength) {
 
 TEST(Csv, RefusesAHeaderThatDescribesNoJoints) {
   EXPECT_THAT(ParseError("a_x,a_y\n1,2\n"), HasSubstr("no column a_z"));
+  EXPECT_THAT(ParseError("a\rb_x,a\rb_y\n1,2\n"), HasSubstr(R"(no column a\rb_z)"));
   EXPECT_THAT(ParseError("a_x,a_y,a_z,a_x\n1,2,3,4\n"), HasSubstr("column 4: \"a_x\" comes twice"));
   EXPECT_THAT(ParseError("a_x,a_y,a_z,speed\n1,2,3,4\n"), HasSubstr("column 4: came \"speed\""));
   EXPECT_THAT(ParseError("frame\n1\n"), HasSubstr("no joint columns"));

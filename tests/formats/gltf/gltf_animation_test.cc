@@ -105,14 +105,5 @@ TEST(GltfTrack, RefusesKeysThatMakeNoSense) {
   EXPECT_THAT(error({0, std::nanf("")}, {1, 1, 1, 2, 2, 2}), HasSubstr("accessors[0]: value 1"));
 }
 
-TEST(Slerp, KeepsItsPace) {
-  const Quaternion none, half_turn = retargeting::AxisAngle({0, 1, 0}, 0.9 * kPi);
-  for (double share : {0.0, 0.25, 0.5, 1.0}) {
-    EXPECT_NEAR(Angle(none, Slerp(none, half_turn, share)), 0.9 * kPi * share, 1e-6);
-  }
-  const Quaternion little = retargeting::AxisAngle({0, 1, 0}, 1e-4);
-  EXPECT_NEAR(Angle(Slerp(none, little, 0.5), retargeting::AxisAngle({0, 1, 0}, 5e-5)), 0, 1e-6);
-}
-
 }  // namespace
 }  // namespace duet::formats::gltf

@@ -406,6 +406,28 @@ TEST(BatcherTest, AModelThatThrowsFailsItsBatchAlone) {
   for (Ticket& ticket : sound) EXPECT_THAT(ticket.outcome.get().result, IsOk());
 }
 
+TEST(BatcherTest, AWindowThatMakesTheModelThrowFailsAlone) {
+  const auto batcher = MakeBatcher({1, 8, {4}}, common::Clock::Real());
+  const auto model = std::make_shared<FakeSynthesizer>();
+  model->window_status = [](const engine::SynthesisWindow& window) -> absl::Status {
+    if (window.sampling.seed == 3) throw std::runtime_error("three is too much");
+    return absl::OkStatus();
+  };
+  HeldWorker held(*batcher);
+  Ticket first, poison, last;
+  ASSERT_THAT(batcher->Submit(first.Job(model)), IsOk());
+  WindowJob job = poison.Job(model);
+  job.window.sampling.seed = 3;
+  ASSERT_THAT(batcher->Submit(std::move(job)), IsOk());
+  ASSERT_THAT(batcher->Submit(last.Job(model)), IsOk());
+  held.Release();
+  const WindowOutcome outcome = first.outcome.get();
+  EXPECT_THAT(outcome.result, IsOk());
+  EXPECT_EQ(outcome.timings.batch_size, 3);
+  EXPECT_THAT(poison.outcome.get().result, StatusIs(kInternal, HasSubstr("three is too much")));
+  EXPECT_THAT(last.outcome.get().result, IsOk());
+}
+
 TEST(BatcherTest, SurvivesAModelThatGivesTooFewResults) {
   const auto batcher = MakeBatcher({1, 4, {4}}, common::Clock::Real());
   Ticket ticket;

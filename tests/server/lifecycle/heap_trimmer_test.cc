@@ -1,11 +1,31 @@
 #include "server/lifecycle/heap_trimmer.h"
 
 #include <gtest/gtest.h>
+#include <malloc.h>
+
+#include <cstdlib>
 
 namespace duet::server::lifecycle {
 namespace {
 
 constexpr std::size_t kMegabyte = std::size_t{1} << 20;
+
+// Whether a block of this size is mapped by itself, and so given back as soon as it is freed.
+bool IsMappedByItself(std::size_t bytes) {
+  const std::size_t before = mallinfo2().hblks;
+  void* const block = std::malloc(bytes);
+  const bool mapped = mallinfo2().hblks > before;
+  std::free(block);
+  return mapped;
+}
+
+TEST(LimitFreeMemoryTest, LargeBlocksAreNeverKept) {
+  LimitFreeMemory();
+  EXPECT_TRUE(IsMappedByItself(16 * kMegabyte));
+  // Left to itself the heap would keep blocks up to the largest that it has seen freed.
+  EXPECT_TRUE(IsMappedByItself(2 * kMegabyte));
+  EXPECT_FALSE(IsMappedByItself(kMegabyte / 2));
+}
 
 class HeapTrimmerTest : public ::testing::Test {
  protected:

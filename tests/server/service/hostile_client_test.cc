@@ -14,6 +14,7 @@
 #include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "tests/server/support/fake_clock.h"
 #include "tests/server/support/puppet_scheduler.h"
@@ -98,6 +99,67 @@ TEST(HostileClientTest, ARequestOfTinyMessagesIsRefusedBeforeItIsParsed) {
   const Refusal refusal = Decode(call.Finish());
   EXPECT_EQ(refusal.code, StatusCode::kInvalidArgument);
   EXPECT_THAT(refusal.Of("label_keyframes"), HasSubstr("wanted at most 65536"));
+}
+
+// A scheduler that keeps whoever asks it about bulk work waiting: that is asked when a message has
+// been parsed.
+class StandingScheduler final : public batching::WindowScheduler {
+ public:
+  absl::Status Submit(batching::WindowJob) override {
+    return absl::UnavailableError("a puppet's end");
+  }
+  absl::Status CheckRoom(batching::Priority priority, const std::string&) const override {
+    common::MutexLock lock(mutex_);
+    if (priority == batching::Priority::kBulk) ++waiting_;
+    changed_.NotifyAll();
+    while (priority == batching::Priority::kBulk && !may_go_on_) changed_.Wait(mutex_);
+    return absl::OkStatus();
+  }
+  std::size_t queued_windows() const override { return 0; }
+
+  void WaitForOne() const {
+    common::MutexLock lock(mutex_);
+    while (waiting_ == 0) changed_.Wait(mutex_);
+  }
+  void GoOn() {
+    common::MutexLock lock(mutex_);
+    may_go_on_ = true;
+    changed_.NotifyAll();
+  }
+
+ private:
+  mutable common::Mutex mutex_;
+  mutable common::CondVar changed_;
+  mutable int waiting_ DUET_GUARDED_BY(mutex_) = 0;
+  bool may_go_on_ DUET_GUARDED_BY(mutex_) = false;
+};
+
+// A request of somewhat more than a mebibyte, of bulk work.
+std::string LargeRequest() {
+  v1::SynthesizeRequest request = SampleRequest();
+  request.set_priority(v1::PRIORITY_BULK);
+  request.mutable_leader()->mutable_positions()->Resize(300000, 0.0F);
+  return request.SerializeAsString();
+}
+
+TEST(HostileClientTest, LargeRequestsThatAreBeingCheckedKeepNobodyWaiting) {
+  StandingScheduler scheduler;
+  RunningService::Setup setup;
+  setup.scheduler = &scheduler;
+  setup.admission.max_calls = 64;
+  RunningService running(setup);
+  // More than gRPC has threads, 16 at most.
+  std::vector<std::unique_ptr<RawCall>> calls;
+  for (int i = 0; i < 18; ++i) {
+    calls.push_back(std::make_unique<RawCall>(
+        running.channel(), "/duet.v1.MotionSynthesis/Synthesize", LargeRequest()));
+  }
+  scheduler.WaitForOne();
+  TimedContext context;
+  v1::ListModelsResponse models;
+  EXPECT_TRUE(running.stub().ListModels(&context, {}, &models).ok());
+  scheduler.GoOn();
+  for (const auto& call : calls) EXPECT_FALSE(call->Finish().ok());
 }
 
 TEST(HostileClientTest, EveryMethodBoundsWhatItDoesNotKnow) {

@@ -104,10 +104,22 @@ TEST_F(ReceptionTest, WhatComesAfterTheEndIsNobodys) {
   EXPECT_EQ(observer_.records().size(), 1u);
 }
 
+TEST_F(ReceptionTest, AMessageThatHasComeNoLongerArrivesSlowly) {
+  FakeWriter other_writer;
+  const auto first = Receive(writer_), second = Receive(other_writer);
+  first->CheckTime(clock_.Now() + std::chrono::seconds(1));
+  ASSERT_TRUE(first->Received());
+  second->CheckTime(clock_.Now() + std::chrono::seconds(1));
+  EXPECT_FALSE(other_writer.finished.has_value()) << "the only leave to arrive slowly was kept";
+}
+
 TEST_F(ReceptionTest, AnEndThatComesWhileTheMessageIsHandledWaitsForThat) {
   const auto reception = Receive(writer_);
   EXPECT_TRUE(reception->Received());
+  EXPECT_FALSE(reception->ended_meanwhile().has_value());
   reception->Abort(absl::CancelledError("gone"));
+  EXPECT_THAT(reception->ended_meanwhile().value_or(absl::OkStatus()),
+              StatusIs(StatusCode::kCancelled, _));
   reception->CheckTime(clock_.Now() + std::chrono::hours(1));
   EXPECT_FALSE(writer_.finished.has_value());
   const std::unique_ptr<CallScope> scope = reception->Answer();

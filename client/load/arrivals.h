@@ -1,0 +1,35 @@
+#ifndef DUET_CLIENT_LOAD_ARRIVALS_H_
+#define DUET_CLIENT_LOAD_ARRIVALS_H_
+
+#include <cstdint>
+
+#include "client/load/time.h"
+#include "model/base/random.h"
+
+namespace duet::client::load {
+
+enum class ArrivalKind {
+  kPoisson,   // as callers that know nothing of each other come: gaps drawn from an exponential
+  kConstant,  // one gap for all
+};
+
+// When calls of an open loop are due: a timetable that knows nothing of the answers.
+class Arrivals {
+ public:
+  // `rate_hz`: calls a second on average, above 0. The same seed gives the same times.
+  Arrivals(ArrivalKind kind, double rate_hz, uint64_t seed);
+
+  // When the next call is due, from the start. The first of a constant timetable is due at once.
+  Duration Next();
+
+ private:
+  const ArrivalKind kind_;
+  const double rate_hz_;
+  base::Random random_;
+  int64_t calls_ = 0;
+  double seconds_ = 0;
+};
+
+}  // namespace duet::client::load
+
+#endif  // DUET_CLIENT_LOAD_ARRIVALS_H_

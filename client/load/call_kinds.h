@@ -1,0 +1,45 @@
+#ifndef DUET_CLIENT_LOAD_CALL_KINDS_H_
+#define DUET_CLIENT_LOAD_CALL_KINDS_H_
+
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "client/client.h"
+#include "client/request.h"
+
+namespace duet::client::load {
+
+// How often one of several is drawn, against the others.
+template <typename T>
+struct Weighted {
+  T value;
+  double weight = 1;
+};
+
+// What calls ask for: every model with every length.
+struct CallMix {
+  std::vector<Weighted<ModelChoice>> models = {{ModelChoice(), 1}};
+  std::vector<Weighted<int>> frames = {{46, 1}};  // of leaders at the model's own rate
+  std::vector<ClassWeight> labels;                // empty: 1 for the first class of each model
+  Priority priority = Priority::kInteractive;
+};
+
+// Calls that are all alike.
+struct CallKind {
+  std::string model;  // "sbu@2"
+  int frames = 0;
+  double weight = 1;
+  std::string request;  // a serialised duet.v1.SynthesizeRequest
+};
+
+// Asks the server which models these are, and for the beginning of an answer of each kind, so that
+// what it refuses is known before anything is measured. The leader is made up: a figure that sways,
+// in the model's joints; what it does costs the server nothing more or less.
+//
+// Errors: the server's status; that of a kind which it has merely no room for is passed over.
+absl::StatusOr<std::vector<CallKind>> FindKinds(const Client& client, const CallMix& mix);
+
+}  // namespace duet::client::load
+
+#endif  // DUET_CLIENT_LOAD_CALL_KINDS_H_

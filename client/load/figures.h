@@ -1,0 +1,16 @@
+#ifndef DUET_CLIENT_LOAD_FIGURES_H_
+#define DUET_CLIENT_LOAD_FIGURES_H_
+
+#include <cstdint>
+
+namespace duet::client::load {
+
+// How many of what is counted make one of what is shown.
+inline constexpr double kMillisecond = 1e6;  // nanoseconds
+inline constexpr double kHertz = 1e3;        // millihertz
+
+inline double In(double unit, int64_t value) { return static_cast<double>(value) / unit; }
+
+}  // namespace duet::client::load
+
+#endif  // DUET_CLIENT_LOAD_FIGURES_H_

@@ -1,0 +1,251 @@
+#include "client/load/program/load_flags.h"
+
+#include <algorithm>
+#include <map>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "absl/strings/str_split.h"
+#include "client/cli/flags.h"
+#include "client/cli/server_flags.h"
+#include "client/cli/value_syntax.h"
+#include "model/base/text.h"
+
+namespace duet::client::load::program {
+namespace {
+
+using cli::AddChoice;
+using cli::AddParsed;
+using cli::Undescribed;
+
+constexpr char kLoadGroup[] = "Load", kCallGroup[] = "Calls", kOutputGroup[] = "Output";
+
+const std::map<std::string, ArrivalKind> kArrivals = {{"poisson", ArrivalKind::kPoisson},
+                                                      {"constant", ArrivalKind::kConstant}};
+const std::map<std::string, Priority> kPriorities = {{"interactive", Priority::kInteractive},
+                                                     {"bulk", Priority::kBulk}};
+
+constexpr char kFooter[] = R"(
+Measures how fast a server answers: so many callers who each ask again once they are answered
+(--callers), or so many calls a second whatever becomes of them (--rate). Several values make
+several steps. Every time runs from when a call was due. Nothing is tried twice.
+
+Exit codes:
+  0   done
+  1   no call was answered
+  2   the command line makes no sense
+  42  the server refuses such calls, or a file cannot be written
+
+Examples:
+  duet-load --server lab:50051 --callers 1,8,64
+  duet-load --rate 50,100,200 --frames 46=9,460 --seconds 30 --html load.html
+)";
+
+absl::Status Wanted(absl::string_view text, absl::string_view wanted) {
+  return absl::InvalidArgumentError(
+      absl::StrCat(base::Quoted(text), ", wanted ", wanted, ", such as 46=9,460"));
+}
+
+// A list of values, each with its weight or none; `parse` reads a value.
+template <typename T, typename Parse>
+absl::StatusOr<std::vector<Weighted<T>>> ParseMix(absl::string_view text, const Parse& parse) {
+  std::vector<Weighted<T>> mix;
+  for (const absl::string_view part : absl::StrSplit(text, ',')) {
+    const std::size_t equals = part.find('=');
+    absl::StatusOr<T> value = parse(part.substr(0, equals));
+    if (!value.ok()) return value.status();
+    double weight = 1;
+    if (equals != absl::string_view::npos &&
+        (!base::ParseNumber(part.substr(equals + 1), &weight) || weight <= 0)) {
+      return Wanted(part, "a weight above 0 after the =");
+    }
+    mix.push_back({*std::move(value), weight});
+  }
+  return mix;
+}
+
+absl::StatusOr<int> ParseFrameCount(absl::string_view text) {
+  int frames = 0;
+  if (base::ParseInteger(text, &frames) && frames >= 1) return frames;
+  return Wanted(text, "numbers of frames, 1 or more");
+}
+
+void AddLoad(CLI::App* app, LoadArguments* arguments) {
+  CLI::Option* callers =
+      app->add_option("--callers", arguments->callers,
+                      "Calls at a time: each caller asks again once it is answered (default: 1)")
+          ->delimiter(',')
+          ->allow_extra_args(false)
+          ->check(Undescribed(CLI::Range(1, 100000)))
+          ->type_name("N[,N...]")
+          ->group(kLoadGroup);
+  app->add_option("--rate", arguments->rates, "Calls a second, whatever becomes of them")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(Undescribed(CLI::Range(0.001, 1e6)))
+      ->excludes(callers)
+      ->type_name("HZ[,HZ...]")
+      ->group(kLoadGroup);
+  AddChoice<ArrivalKind>(
+      app, "--arrivals", kArrivals, [arguments](ArrivalKind kind) { arguments->arrivals = kind; },
+      "Whether calls of a rate come as strangers do, or one after the other")
+      ->default_str(cli::NameOf(kArrivals, arguments->arrivals))
+      ->group(kLoadGroup);
+  app->add_option("--warm-up", arguments->warm_up_seconds, "Seconds of each step before measuring")
+      ->check(Undescribed(CLI::Range(0.0, 86400.0)))
+      ->capture_default_str()
+      ->type_name("SECONDS")
+      ->group(kLoadGroup);
+  CLI::Option* seconds =
+      app->add_option("--seconds", arguments->seconds, "Seconds of each step that are measured")
+          ->check(Undescribed(CLI::Range(0.1, 864000.0)))
+          ->capture_default_str()
+          ->type_name("SECONDS")
+          ->group(kLoadGroup);
+  app->add_option("--calls", arguments->calls, "Measure so many calls instead")
+      ->check(Undescribed(CLI::Range(int64_t{1}, int64_t{1000000000})))
+      ->excludes(seconds)
+      ->type_name("N")
+      ->group(kLoadGroup);
+  app->add_option("--connections", arguments->connections, "Connections that calls take in turn")
+      ->check(Undescribed(CLI::Range(1, 1000)))
+      ->capture_default_str()
+      ->type_name("N")
+      ->group(kLoadGroup);
+  app->add_option("--max-in-flight", arguments->max_in_flight,
+                  "Of a rate: calls under way, at most; more are sent late, and the report says so")
+      ->check(Undescribed(CLI::Range(1, 1000000)))
+      ->capture_default_str()
+      ->type_name("N")
+      ->group(kLoadGroup);
+  AddParsed<uint64_t>(
+      app, "--seed", "SEED", cli::ParseSeed, [arguments](uint64_t seed) { arguments->seed = seed; },
+      "Of arrivals and of who asks for what: the same seed gives the same load")
+      ->take_last()
+      ->default_str(absl::StrCat(arguments->seed))
+      ->group(kLoadGroup);
+}
+
+void AddBackground(CLI::App* app, LoadArguments* arguments) {
+  CLI::Option* callers = app->add_option("--background-callers", arguments->background_callers,
+                                         "Callers who ask all the time and are not measured")
+                             ->check(Undescribed(CLI::Range(0, 100000)))
+                             ->capture_default_str()
+                             ->type_name("N")
+                             ->group(kLoadGroup);
+  app->add_option("--background-frames", arguments->background_frames, "Frames of their leaders")
+      ->check(Undescribed(CLI::Range(1, 10000000)))
+      ->capture_default_str()
+      ->needs(callers)
+      ->type_name("FRAMES")
+      ->group(kLoadGroup);
+  AddParsed<ModelChoice>(
+      app, "--background-model", "NAME[@VERSION|:LABEL]", cli::ParseModelChoice,
+      [arguments](ModelChoice model) { arguments->background_model = std::move(model); },
+      "The model that they ask; the first of the measured ones without")
+      ->take_last()
+      ->needs(callers)
+      ->group(kLoadGroup);
+}
+
+void AddCalls(CLI::App* app, LoadArguments* arguments) {
+  AddParsed<std::vector<Weighted<int>>>(
+      app, "--frames", "FRAMES[=WEIGHT],...", ParseFrames,
+      [arguments](std::vector<Weighted<int>> frames) { arguments->mix.frames = std::move(frames); },
+      "Lengths of the leaders, drawn by their weights")
+      ->take_last()
+      ->default_str(absl::StrCat(arguments->mix.frames.front().value))
+      ->group(kCallGroup);
+  AddParsed<std::vector<Weighted<ModelChoice>>>(
+      app, "--model", "MODEL[=WEIGHT],...", ParseModels,
+      [arguments](std::vector<Weighted<ModelChoice>> models) {
+        arguments->mix.models = std::move(models);
+      },
+      "NAME, NAME@VERSION or NAME:LABEL, drawn by their weights; the server's default without")
+      ->take_last()
+      ->group(kCallGroup);
+  AddParsed<ClassWeight>(app, "--label", "CLASS=WEIGHT", cli::ParseClassWeight,
+                         cli::AppendTo(&arguments->mix.labels),
+                         "Repeatable; without, 1 for the model's first class")
+      ->group(kCallGroup);
+  AddChoice<Priority>(
+      app, "--priority", kPriorities,
+      [arguments](Priority priority) { arguments->mix.priority = priority; },
+      "Whether calls are urgent or may wait")
+      ->default_str(cli::NameOf(kPriorities, arguments->mix.priority))
+      ->group(kCallGroup);
+  app->add_option("--deadline", arguments->server.timeout_seconds, "Of each call")
+      ->check(Undescribed(CLI::Range(0.001, 86400.0)))
+      ->capture_default_str()
+      ->type_name("SECONDS")
+      ->group(kCallGroup);
+}
+
+void AddOutputs(CLI::App* app, LoadArguments* arguments) {
+  app->add_option("--html", arguments->html, "Write a page with tables and plots")
+      ->type_name("FILE")
+      ->group(kOutputGroup);
+  app->add_option("--csv", arguments->csv, "Write a row for each step")
+      ->type_name("FILE")
+      ->group(kOutputGroup);
+  app->add_option("--json", arguments->json, "Write everything; - for standard output")
+      ->type_name("FILE")
+      ->group(kOutputGroup);
+  app->add_option("--records", arguments->records, "Write a CSV row for each call")
+      ->type_name("FILE")
+      ->group(kOutputGroup);
+  app->add_option("--title", arguments->title, "Of the report")
+      ->type_name("TEXT")
+      ->group(kOutputGroup);
+  app->add_flag("--quiet", arguments->quiet, "Do not say which step runs")->group(kOutputGroup);
+}
+
+}  // namespace
+
+std::vector<Step> LoadArguments::Steps() const {
+  std::vector<Step> steps;
+  for (const double rate : rates) steps.push_back({0, rate});
+  for (const int count : callers) steps.push_back({count, 0});
+  if (steps.empty()) steps.push_back({1, 0});
+  return steps;
+}
+
+void AddLoadFlags(CLI::App* app, LoadArguments* arguments) {
+  app->footer(kFooter);
+  app->get_formatter()->column_width(34);
+  app->add_option("--server", arguments->server.address,
+                  "Or any gRPC target, such as unix:/run/duet.sock")
+      ->envname("DUET_SERVER")
+      ->capture_default_str()
+      ->type_name("HOST:PORT")
+      ->group(cli::kServerGroup);
+  cli::AddCredentialFlags(app, &arguments->server);
+  AddLoad(app, arguments);
+  AddBackground(app, arguments);
+  AddCalls(app, arguments);
+  AddOutputs(app, arguments);
+  app->add_flag("--man", arguments->manual_page, "Print the manual page");
+  app->add_option("--completion", arguments->completion,
+                  "Print what makes a shell complete this program")
+      ->check(Undescribed(CLI::IsMember(std::vector<std::string>{"bash", "zsh", "fish"})))
+      ->type_name("bash|zsh|fish");
+}
+
+std::vector<std::pair<std::string, std::string>> GivenFlags(const CLI::App& app) {
+  std::vector<std::pair<std::string, std::string>> given;
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->count() == 0 || option->get_lnames().empty()) continue;
+    given.emplace_back(option->get_lnames().front(), absl::StrJoin(option->results(), ","));
+  }
+  return given;
+}
+
+absl::StatusOr<std::vector<Weighted<int>>> ParseFrames(absl::string_view text) {
+  return ParseMix<int>(text, ParseFrameCount);
+}
+
+absl::StatusOr<std::vector<Weighted<ModelChoice>>> ParseModels(absl::string_view text) {
+  return ParseMix<ModelChoice>(text, cli::ParseModelChoice);
+}
+
+}  // namespace duet::client::load::program

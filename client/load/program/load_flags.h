@@ -1,0 +1,61 @@
+#ifndef DUET_CLIENT_LOAD_PROGRAM_LOAD_FLAGS_H_
+#define DUET_CLIENT_LOAD_PROGRAM_LOAD_FLAGS_H_
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "CLI/CLI.hpp"
+#include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+#include "client/cli/arguments.h"
+#include "client/load/arrivals.h"
+#include "client/load/call_kinds.h"
+#include "client/load/load_options.h"
+#include "client/load/measurement.h"
+
+namespace duet::client::load::program {
+
+// Everything that duet-load can be told.
+struct LoadArguments {
+  cli::ServerArguments server;
+  std::vector<int> callers;   // a step each; and
+  std::vector<double> rates;  // a step each; neither: one caller
+  ArrivalKind arrivals = ArrivalKind::kPoisson;
+  CallMix mix;
+  int connections = 1;
+  int max_in_flight = LoadOptions().max_in_flight;
+  double warm_up_seconds = 1;
+  double seconds = 10;
+  int64_t calls = 0;
+  uint64_t seed = 0;
+  int background_callers = 0;
+  int background_frames = 9000;
+  std::optional<ModelChoice> background_model;  // absent: as the measured calls
+  std::string title;
+  std::filesystem::path csv, json, html, records;
+  bool quiet = false;
+  bool manual_page = false;
+  std::string completion;  // a shell
+
+  std::vector<Step> Steps() const;
+};
+
+// duet-load's command line: what parsing, help, completion and the manual page come from.
+void AddLoadFlags(CLI::App* app, LoadArguments* arguments);
+
+// The flags that were given, with their values.
+std::vector<std::pair<std::string, std::string>> GivenFlags(const CLI::App& app);
+
+// "46=9,460": lengths with their weights, 1 where none is said. Errors: INVALID_ARGUMENT with what
+// came and what was wanted.
+absl::StatusOr<std::vector<Weighted<int>>> ParseFrames(absl::string_view text);
+// "sbu=3,k3hi@1": the same of models.
+absl::StatusOr<std::vector<Weighted<ModelChoice>>> ParseModels(absl::string_view text);
+
+}  // namespace duet::client::load::program
+
+#endif  // DUET_CLIENT_LOAD_PROGRAM_LOAD_FLAGS_H_

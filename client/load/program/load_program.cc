@@ -1,0 +1,192 @@
+#include "client/load/program/load_program.h"
+
+#include <algorithm>
+#include <fstream>
+#include <memory>
+#include <optional>
+#include <ostream>
+#include <utility>
+
+#include "absl/status/statusor.h"
+#include "absl/strings/str_cat.h"
+#include "absl/time/clock.h"
+#include "client/cli/completion.h"
+#include "client/cli/exit_code.h"
+#include "client/cli/man_page.h"
+#include "client/cli/server_options.h"
+#include "client/load/call_kinds.h"
+#include "client/load/generator.h"
+#include "client/load/grpc_target.h"
+#include "client/load/program/load_flags.h"
+#include "client/load/report.h"
+#include "model/base/file.h"
+
+namespace duet::client::load::program {
+namespace {
+
+constexpr char kStandardOutput[] = "-";
+constexpr double kMostIntervals = 300;  // of a timeline: as many as a plot can show
+
+// Asks for what the server serves, patiently; calls that are measured are tried once.
+absl::StatusOr<std::vector<CallKind>> FindAllKinds(const LoadArguments& arguments,
+                                                   const ClientOptions& options) {
+  const absl::StatusOr<Client> client = Client::Create(options);
+  if (!client.ok()) return client.status();
+  absl::StatusOr<std::vector<CallKind>> kinds = FindKinds(*client, arguments.mix);
+  if (!kinds.ok() || arguments.background_callers == 0) return kinds;
+  CallMix background = arguments.mix;
+  background.models = {{arguments.background_model.value_or(arguments.mix.models[0].value), 1}};
+  background.frames = {{arguments.background_frames, 1}};
+  const absl::StatusOr<std::vector<CallKind>> unmeasured = FindKinds(*client, background);
+  if (!unmeasured.ok()) return unmeasured.status();
+  kinds->push_back(unmeasured->front());
+  return kinds;
+}
+
+class LoadRun {
+ public:
+  LoadRun(const LoadArguments& arguments, const LoadEnvironment& environment)
+      : arguments_(arguments), environment_(environment) {}
+
+  absl::Status Run(std::vector<std::pair<std::string, std::string>> settings) {
+    absl::Status status = Prepare();
+    if (!status.ok()) return status;
+    report_.settings = std::move(settings);
+    for (const Step& step : arguments_.Steps()) {
+      if (environment_.stopped()) break;
+      if (!arguments_.quiet) *environment_.err << "duet-load: " << StepName(step) << std::endl;
+      report_.steps.push_back(RunOne(step));
+    }
+    return WriteReports();
+  }
+
+  bool HasAnswers() const {
+    const auto answered = [](const Measurement& step) { return step.answered() > 0; };
+    return std::any_of(report_.steps.begin(), report_.steps.end(), answered);
+  }
+
+ private:
+  absl::Status Prepare() {
+    const absl::StatusOr<ClientOptions> options = cli::ToClientOptions(arguments_.server);
+    if (!options.ok()) return options.status();
+    absl::StatusOr<std::vector<CallKind>> kinds = FindAllKinds(arguments_, *options);
+    if (!kinds.ok()) return kinds.status();
+    std::vector<std::string> requests;
+    for (const CallKind& kind : *kinds) requests.push_back(kind.request);
+    absl::StatusOr<std::unique_ptr<Target>> target =
+        ConnectTarget(*options, arguments_.connections, requests);
+    if (!target.ok()) return target.status();
+    target_ = *std::move(target);
+    if (arguments_.background_callers > 0) kinds->pop_back();
+    Describe(*kinds);
+    return OpenRecords();
+  }
+
+  void Describe(const std::vector<CallKind>& kinds) {
+    report_.title = arguments_.title.empty() ? absl::StrCat("Load on ", arguments_.server.address)
+                                             : arguments_.title;
+    report_.program = "duet-load " DUET_VERSION;
+    report_.time = absl::FormatTime("%Y-%m-%d %H:%M:%S UTC", absl::Now(), absl::UTCTimeZone());
+    report_.server = arguments_.server.address;
+    double sum = 0;
+    for (const CallKind& kind : kinds) sum += kind.weight;
+    weights_.clear();
+    for (const CallKind& kind : kinds) {
+      weights_.push_back(kind.weight);
+      report_.kinds.push_back({kind.model, kind.frames, kind.weight / sum});
+    }
+  }
+
+  absl::Status OpenRecords() {
+    if (arguments_.records.empty()) return absl::OkStatus();
+    // Says by itself what is wrong with the path.
+    absl::Status status = base::WriteFile(arguments_.records, RecordHeader());
+    if (status.ok()) records_.open(arguments_.records, std::ios::app);
+    return status;
+  }
+
+  Measurement RunOne(const Step& step) {
+    LoadOptions options;
+    options.kind_weights = weights_;
+    options.arrivals = arguments_.arrivals;
+    options.seed = arguments_.seed;
+    options.warm_up = Seconds(arguments_.warm_up_seconds);
+    options.measured = Seconds(arguments_.seconds);
+    options.calls = arguments_.calls;
+    options.max_in_flight = arguments_.max_in_flight;
+    options.background_callers = arguments_.background_callers;
+    options.background_kind = weights_.size();
+    options.interval = Seconds(std::max(1.0, arguments_.seconds / kMostIntervals));
+    options.stopped = environment_.stopped;
+    if (records_.is_open()) {
+      options.on_record = [this, step](const CallRecord& record) {
+        records_ << RecordLine(step, report_.kinds[record.kind], record);
+      };
+    }
+    const double now = absl::ToDoubleSeconds(absl::Now() - absl::UnixEpoch());
+    Measurement measurement = RunStep(step, options, *target_);
+    measurement.began_unix = now + arguments_.warm_up_seconds;
+    return measurement;
+  }
+
+  absl::Status WriteReports() {
+    if (arguments_.json == kStandardOutput) {
+      *environment_.out << ToJson(report_);
+    } else {
+      *environment_.out << ToText(report_);
+    }
+    const std::pair<std::filesystem::path, std::string (*)(const Report&)> files[] = {
+        {arguments_.json, ToJson}, {arguments_.csv, ToCsv}, {arguments_.html, ToPage}};
+    for (const auto& [path, write] : files) {
+      if (path.empty() || path == kStandardOutput) continue;
+      absl::Status status = base::WriteFile(path, write(report_));
+      if (!status.ok()) return status;
+    }
+    records_.flush();
+    if (records_.is_open() && !records_) {
+      return absl::InvalidArgumentError(
+          absl::StrCat(arguments_.records.string(), ": not all could be written"));
+    }
+    return absl::OkStatus();
+  }
+
+  const LoadArguments& arguments_;
+  const LoadEnvironment& environment_;
+  std::unique_ptr<Target> target_;
+  std::vector<double> weights_;
+  std::ofstream records_;
+  Report report_;
+};
+
+}  // namespace
+
+int RunLoadProgram(const std::vector<std::string>& arguments, const LoadEnvironment& environment) {
+  CLI::App app("Puts a load on a Duet server and measures how fast it answers.", "duet-load");
+  app.set_version_flag("--version", "duet-load " DUET_VERSION);
+  LoadArguments parsed;
+  AddLoadFlags(&app, &parsed);
+  try {
+    // CLI11 takes the arguments in reverse.
+    app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error, *environment.out, *environment.err) == 0 ? cli::kExitDone
+                                                                    : cli::kExitUsage;
+  }
+  if (parsed.manual_page || !parsed.completion.empty()) {
+    *environment.out << (parsed.manual_page ? cli::PrintManualPage(app, "").text
+                                            : cli::CompletionScript(app, parsed.completion));
+    return cli::kExitDone;
+  }
+  LoadRun run(parsed, environment);
+  const absl::Status status = run.Run(GivenFlags(app));
+  if (!status.ok()) {
+    *environment.err << "duet-load: " << status.message() << " ("
+                     << absl::StatusCodeToString(status.code()) << ")\n";
+    return cli::ExitCodeFor(status);
+  }
+  if (run.HasAnswers()) return cli::kExitDone;
+  *environment.err << "duet-load: no call was answered\n";
+  return cli::kExitRetry;
+}
+
+}  // namespace duet::client::load::program

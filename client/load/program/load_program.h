@@ -1,0 +1,23 @@
+#ifndef DUET_CLIENT_LOAD_PROGRAM_LOAD_PROGRAM_H_
+#define DUET_CLIENT_LOAD_PROGRAM_LOAD_PROGRAM_H_
+
+#include <functional>
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+namespace duet::client::load::program {
+
+struct LoadEnvironment {
+  std::ostream* out;
+  std::ostream* err;
+  std::function<bool()> stopped;  // whether the run shall come to an early end
+};
+
+// The whole `duet-load` program. Returns its exit code (client/cli/exit_code.h). `arguments` come
+// without the program's name.
+int RunLoadProgram(const std::vector<std::string>& arguments, const LoadEnvironment& environment);
+
+}  // namespace duet::client::load::program
+
+#endif  // DUET_CLIENT_LOAD_PROGRAM_LOAD_PROGRAM_H_

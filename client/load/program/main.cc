@@ -1,0 +1,19 @@
+// duet-load: puts a load on a Duet server and measures how fast it answers.
+#include <atomic>
+#include <cstdlib>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "client/cli/stop_signals.h"
+#include "client/load/program/load_program.h"
+
+int main(int argc, char** argv) {
+  // What goes wrong is in the statuses that are counted.
+  setenv("GRPC_VERBOSITY", "NONE", 0);
+  std::atomic<bool> stopped{false};
+  const duet::client::cli::StopSignals signals([&stopped] { stopped = true; });
+  const std::vector<std::string> arguments(argv + 1, argv + argc);
+  return duet::client::load::program::RunLoadProgram(
+      arguments, {&std::cout, &std::cerr, [&stopped] { return stopped.load(); }});
+}

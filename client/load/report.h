@@ -1,0 +1,55 @@
+#ifndef DUET_CLIENT_LOAD_REPORT_H_
+#define DUET_CLIENT_LOAD_REPORT_H_
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "client/load/measurement.h"
+
+namespace duet::client::load {
+
+// A kind of call, as reports name it.
+struct KindName {
+  std::string model;  // "sbu@2"
+  int frames = 0;
+  double share = 1;  // of all calls
+};
+
+// What was measured of a server, step by step.
+struct Report {
+  std::string title;
+  std::string program;  // "duet-load 1.0.0"
+  std::string time;     // when it began, in UTC
+  std::string server;
+  std::vector<std::pair<std::string, std::string>> settings;  // flags and their values
+  std::vector<KindName> kinds;
+  std::vector<Measurement> steps;
+};
+
+// "8 callers", "100 calls/s".
+std::string StepName(const Step& step);
+// "RESOURCE_EXHAUSTED"
+std::string CodeName(absl::StatusCode code);
+// Where the generator did not do what it was asked to, how; otherwise empty.
+std::string WhyNotKeptUp(const Measurement& measurement);
+// "sbu@2, 46 frames".
+std::string Describe(const KindName& kind);
+
+// A table for people.
+std::string ToText(const Report& report);
+// Everything. Times in milliseconds.
+std::string ToJson(const Report& report);
+// A row for each step, under a header. Times in milliseconds.
+std::string ToCsv(const Report& report);
+// A page without scripts or outside files: tables and plots.
+std::string ToPage(const Report& report);
+
+// Lines of a CSV file with every call.
+std::string RecordHeader();
+std::string RecordLine(const Step& step, const KindName& kind, const CallRecord& record);
+
+}  // namespace duet::client::load
+
+#endif  // DUET_CLIENT_LOAD_REPORT_H_

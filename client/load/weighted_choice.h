@@ -1,0 +1,31 @@
+#ifndef DUET_CLIENT_LOAD_WEIGHTED_CHOICE_H_
+#define DUET_CLIENT_LOAD_WEIGHTED_CHOICE_H_
+
+#include <cstddef>
+#include <vector>
+
+namespace duet::client::load {
+
+// Picks one of several by their weights.
+class WeightedChoice {
+ public:
+  // One weight or more, each above 0.
+  explicit WeightedChoice(const std::vector<double>& weights) {
+    double sum = 0;
+    for (const double weight : weights) ends_.push_back(sum += weight);
+  }
+
+  // Which one `uniform`, in [0, 1), stands for.
+  std::size_t Pick(double uniform) const {
+    std::size_t index = 0;
+    while (index + 1 < ends_.size() && uniform * ends_.back() >= ends_[index]) ++index;
+    return index;
+  }
+
+ private:
+  std::vector<double> ends_;  // of each one's share, summed up
+};
+
+}  // namespace duet::client::load
+
+#endif  // DUET_CLIENT_LOAD_WEIGHTED_CHOICE_H_

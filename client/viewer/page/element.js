@@ -1,0 +1,356 @@
+// <duet-motion>: one person or a leader and a follower in three dimensions, on any page. How it is
+// used stands in docs/viewer_element.md.
+const ELEMENT_STYLE = `
+  :host { display: block; position: relative; aspect-ratio: 16 / 10; min-height: 120px;
+    overflow: hidden; background: #24262b; color: #e9eaed; outline: none;
+    font: 13px/1.45 "Inter", "Segoe UI", Roboto, "DejaVu Sans", system-ui, sans-serif; }
+  :host([hidden]) { display: none; }
+  :host(:focus-visible) { box-shadow: 0 0 0 2px #e9eaed; }
+  canvas { position: absolute; inset: 0; width: 100%; height: 100%; display: block; outline: none; }
+  [hidden] { display: none !important; }
+  [part=controls] { position: absolute; left: 10px; right: 10px; bottom: 10px; display: flex;
+    gap: 10px; align-items: center; padding: 6px 12px 6px 8px; border-radius: 10px;
+    background: rgba(28, 30, 35, .78); }
+  button { flex: none; display: grid; place-items: center; width: 34px; height: 34px; padding: 0;
+    border: 0; border-radius: 50%; background: #e9eaed; cursor: pointer; }
+  button:focus-visible, input:focus-visible { outline: 2px solid #fff; outline-offset: 2px; }
+  svg { width: 18px; height: 18px; fill: #17181c; }
+  input { flex: 1; min-width: 40px; height: 28px; margin: 0; accent-color: #e9eaed; }
+  output { flex: none; font-variant-numeric: tabular-nums; white-space: nowrap; }
+  [part=message] { position: absolute; left: 10px; right: 10px; top: 40%; margin: 0;
+    text-align: center; color: #ffd9d4; }
+`;
+const ELEMENT_BODY = `
+  <canvas part="canvas" aria-hidden="true"></canvas>
+  <div part="controls" hidden>
+    <button part="play" aria-label="Play or pause"><svg viewBox="0 0 24 24" aria-hidden="true"><path/></svg></button>
+    <input part="time" type="range" min="0" max="0" step="1" value="0" aria-label="Frame">
+    <output></output>
+  </div>
+  <p part="message" role="alert" hidden></p>
+`;
+const PLAY_SHAPE = 'M8 5.2v13.6a.8.8 0 0 0 1.2.7l11-6.8a.8.8 0 0 0 0-1.4l-11-6.8A.8.8 0 0 0 8 5.2z';
+const PAUSE_SHAPE = 'M7 5h3.2v14H7zM13.8 5H17v14h-3.2z';
+const VIEWS = ['reset', 'front', 'side', 'top'];
+
+class DuetMotion extends HTMLElement {
+  static get observedAttributes() {
+    return ['src', 'controls', 'frame', 'paused', 'once', 'speed', 'view'];
+  }
+
+  constructor() {
+    super();
+    this.draws = 0;
+    this.view = 'reset';   // until the camera is moved by hand
+    this.stale = false;    // something changed since the last drawing
+    this.onScreen = true;
+    const root = this.attachShadow({mode: 'open'});
+    // Sheets that are made by a script need no leave of the page's policy for inline styles.
+    const sheet = new CSSStyleSheet();
+    sheet.replaceSync(ELEMENT_STYLE);
+    root.adoptedStyleSheets = [sheet];
+    root.innerHTML = ELEMENT_BODY;
+    this.canvas = root.querySelector('canvas');
+    this.parts = Object.fromEntries(['controls', 'play', 'time', 'message'].map(
+        (name) => [name, root.querySelector(`[part=${name}]`)]));
+    this.parts.output = root.querySelector('output');
+    this.connectControls();
+  }
+
+  connectedCallback() {
+    this.connected = true;
+    if (!this.hasAttribute('tabindex')) this.tabIndex = 0;
+    if (!this.hasAttribute('role')) this.setAttribute('role', 'group');
+    if (!this.hasAttribute('aria-label')) this.setAttribute('aria-label', 'Motion in three dimensions');
+    this.resizes = new ResizeObserver(() => this.resize());
+    this.resizes.observe(this);
+    this.shows = new IntersectionObserver((entries) => {
+      this.onScreen = entries[entries.length - 1].isIntersecting;
+    });
+    this.shows.observe(this);
+    let before = null;
+    const tick = (now) => {
+      if (!this.connected) return;
+      this.ticking = requestAnimationFrame(tick);
+      // A tab that slept does not leap ahead.
+      this.tick(before === null ? 0 : Math.min((now - before) / 1000, 0.1));
+      before = now;
+    };
+    this.ticking = requestAnimationFrame(tick);
+    if (this.data) {
+      this.motion = this.data;  // was taken out of the page, and is back
+    } else {
+      this.load();
+    }
+  }
+
+  disconnectedCallback() {
+    this.connected = false;
+    cancelAnimationFrame(this.ticking);
+    this.resizes.disconnect();
+    this.shows.disconnect();
+    this.leaveStage();
+  }
+
+  attributeChangedCallback(name, before, value) {
+    if (name === 'src' && this.connected) this.load();
+    if (name === 'controls') this.parts.controls.hidden = value === null;
+    if (this.player) this.follow(name, value);
+  }
+
+  // Takes what an attribute says.
+  follow(name, value) {
+    if (name === 'frame' && value !== null) this.seek(Number(value) || 0);
+    if (name === 'paused') this.player.playing = value === null;
+    if (name === 'once') this.player.looping = value === null;
+    if (name === 'speed') this.player.speed = Number(value) > 0 ? Number(value) : 1;
+    if (name === 'view' && VIEWS.includes(value)) this.look(value);
+    this.touch();
+  }
+
+  // From `src`, or from the JSON in a <script type="application/json"> inside the element.
+  async load() {
+    const source = this.getAttribute('src');
+    const inside = this.querySelector('script[type="application/json"]');
+    if (!source && !inside) {
+      // An element is told of before the page has read what is in it.
+      if (document.readyState === 'loading') {
+        document.addEventListener('DOMContentLoaded', () => this.load(), {once: true});
+      }
+      return;
+    }
+    this.asked = (this.asked || 0) + 1;
+    const asked = this.asked;
+    try {
+      const data = source ? await DuetMotion.fetched(source) : JSON.parse(inside.textContent);
+      if (asked === this.asked) this.motion = Motion.of(data);  // nothing newer was asked for
+    } catch (error) {
+      this.fail(`${source || 'the motion inside the element'}: ${error.message}`);
+    }
+  }
+
+  static async fetched(source) {
+    const response = await fetch(source);
+    if (!response.ok) throw new Error(`the server says ${response.status}`);
+    return response.json();
+  }
+
+  // What is shown: a Motion, or what makes one (Motion.of).
+  get motion() { return this.shown; }
+  set motion(data) {
+    this.data = data;
+    this.leaveStage();
+    this.parts.message.hidden = true;
+    try {
+      this.shown = Motion.of(data);
+      this.stand();
+    } catch (error) {
+      this.fail(error.message);
+    }
+  }
+
+  // Builds what the motion stands in; the clock starts anew.
+  stand() {
+    if (!drawsWebGl()) throw new Error(NO_WEBGL);
+    const player = this.player = new Player(this.shown);
+    player.playing = !matchMedia('(prefers-reduced-motion: reduce)').matches;
+    for (const name of ['paused', 'once', 'speed', 'frame', 'view']) {
+      if (this.hasAttribute(name)) this.follow(name, this.getAttribute(name));
+    }
+    this.said = player.playing;
+    this.parts.time.max = player.last;
+    this.build();
+    this.tell('ready', {frames: this.shown.frames, frameRate: this.shown.frameRate});
+  }
+
+  build() {
+    // A canvas keeps its renderer: a new one for each.
+    const canvas = this.canvas.cloneNode();
+    this.canvas.replaceWith(canvas);
+    this.canvas = canvas;
+    this.stage = new Stage(canvas, this.shown);
+    this.stage.controls.addEventListener('change', () => this.touch());
+    this.stage.controls.addEventListener('start', () => {
+      this.view = null;
+      this.tell('orbit');
+    });
+    this.zoomWhenWanted();
+    this.people = {};
+    for (const name of Object.keys(this.shown.people)) {
+      const figure = new Figure(this.shown, name, COLOURS[name]);
+      this.stage.scene.add(figure.group);
+      this.people[name] = {figure, path: this.stage.addPath(name, COLOURS[name])};
+    }
+    this.resize();
+    this.look(this.view || 'reset');
+  }
+
+  leaveStage() {
+    if (!this.stage) return;
+    this.stage.controls.dispose();
+    this.stage.renderer.forceContextLoss();
+    this.stage = this.people = null;
+  }
+
+  fail(message) {
+    this.parts.message.textContent = message;
+    this.parts.message.hidden = false;
+    this.tell('error', {message});
+  }
+
+  tell(name, detail = {}) {
+    this.dispatchEvent(new CustomEvent(name, {detail}));
+  }
+
+  // Something is to be drawn anew.
+  touch() { this.stale = true; }
+
+  get frames() { return this.shown ? this.shown.frames : 0; }
+  get duration() { return this.shown ? this.shown.duration : 0; }
+  get frame() { return this.player ? this.player.frame : 0; }
+  set frame(frame) { this.seek(frame); }
+  get playing() { return Boolean(this.player && this.player.playing); }
+
+  play() { if (!this.playing) this.toggle(); }
+  pause() { if (this.playing) this.toggle(); }
+  toggle() {
+    if (this.player) this.player.toggle();
+    this.touch();
+  }
+  seek(frame) {
+    if (this.player) this.player.seek(frame);
+    this.touch();
+  }
+
+  // Puts the camera where a view has it: reset, front, side or top.
+  look(view) {
+    this.view = view;
+    if (this.stage) this.stage.view(view);
+    this.touch();
+  }
+
+  show(person, visible) {
+    const {figure, path} = this.people[person];
+    figure.group.visible = path.visible = visible;
+    this.touch();
+  }
+
+  // Another follower, Float32Array [frames, joints, 3], while the leader plays on.
+  setFollower(positions) {
+    const isFirst = !this.shown.people.follower;
+    this.shown.people.follower = positions;
+    if (isFirst) {
+      // What stands around a motion has its size.
+      this.leaveStage();
+      this.build();
+      return;
+    }
+    const {follower} = this.people;
+    this.stage.scene.remove(follower.path);
+    follower.path = this.stage.addPath('follower', COLOURS.follower);
+    this.touch();
+  }
+
+  // Frames of the follower from `first` on, in place of what it had; nothing where there is none.
+  takeFrames(first, positions) {
+    const {follower} = this.shown.people;
+    if (!follower) return;
+    follower.set(positions, first * this.shown.joints.length * 3);
+    this.touch();
+  }
+
+  resize() {
+    if (!this.stage || !this.clientWidth) return;
+    this.stage.resize();
+    if (this.view) this.stage.view(this.view);
+    this.draw();  // a canvas that was resized is empty
+  }
+
+  tick(seconds) {
+    if (!this.stage || !this.onScreen) return;
+    const played = this.player.playing;
+    if (played) {
+      this.player.advance(seconds);
+      this.touch();
+    }
+    this.stage.controls.update();
+    if (this.stale) this.draw();
+  }
+
+  // Draws what is shown now. Listeners of "frame" may change the scene before.
+  draw() {
+    if (!this.stage) return;
+    this.stale = false;
+    for (const {figure} of Object.values(this.people)) figure.update(this.player.frame);
+    this.tell('frame', {frame: this.player.frame});
+    this.triangles = this.stage.draw();
+    this.draws += 1;
+    this.showControls();
+    this.tell('drawn', {frame: this.player.frame});
+    if (this.said !== this.player.playing) {
+      this.said = this.player.playing;
+      this.tell(this.said ? 'play' : 'pause');
+    }
+  }
+
+  showControls() {
+    const {play, time, output} = this.parts;
+    play.querySelector('path').setAttribute('d', this.player.playing ? PAUSE_SHAPE : PLAY_SHAPE);
+    time.value = Math.round(this.player.frame);
+    const seconds = (frames) => (frames / this.shown.frameRate).toFixed(2);
+    output.textContent = `${seconds(this.player.frame)} / ${seconds(this.player.last)} s`;
+  }
+
+  connectControls() {
+    this.parts.play.addEventListener('click', () => this.toggle());
+    this.parts.time.addEventListener('input', () => {
+      if (!this.player) return;
+      this.player.playing = false;
+      this.seek(Number(this.parts.time.value));
+    });
+    this.addEventListener('keydown', (event) => this.key(event));
+    for (const name of ['focusin', 'focusout']) {
+      this.addEventListener(name, () => this.zoomWhenWanted());
+    }
+    // Before the camera's own controls hear of it. A finger that only passes scrolls the page.
+    this.addEventListener('pointerdown', (event) => {
+      if (!this.stage) return;
+      this.stage.controls.enabled =
+          this.isWhole || this.isFocused || event.pointerType !== 'touch';
+    }, {capture: true});
+  }
+
+  // Whether the page around it has keys of its own and nothing to scroll.
+  get isWhole() { return this.hasAttribute('whole'); }
+  get isFocused() { return this.matches(':focus-within'); }
+
+  // The wheel scrolls the page, until somebody has chosen the element.
+  zoomWhenWanted() {
+    if (this.stage) this.stage.controls.enableZoom = this.isWhole || this.isFocused;
+  }
+
+  key(event) {
+    if (this.isWhole || !this.player || event.ctrlKey || event.metaKey || event.altKey) return;
+    const from = event.composedPath()[0];
+    if (from === this.parts.play && event.key === ' ') return;
+    if (from === this.parts.time && event.key !== ' ') return;
+    const player = this.player;
+    const keys = {
+      ' ': () => player.toggle(),
+      ArrowLeft: () => player.step(-1),
+      ArrowRight: () => player.step(1),
+      Home: () => { player.step(0); player.seek(0); },
+      End: () => { player.step(0); player.seek(player.last); },
+      0: () => this.look('reset'),
+      1: () => this.look('front'),
+      2: () => this.look('side'),
+      3: () => this.look('top'),
+    };
+    if (!keys[event.key]) return;
+    event.preventDefault();
+    keys[event.key]();
+    this.touch();
+  }
+}
+
+if (!customElements.get('duet-motion')) customElements.define('duet-motion', DuetMotion);

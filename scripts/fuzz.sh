@@ -1,0 +1,27 @@
+#!/usr/bin/env bash
+# Builds the fuzzers (Clang 14, libFuzzer, AddressSanitizer, UndefinedBehaviorSanitizer) and runs them
+# one after the other; fails when one finds something. docs/fuzzing.md says how to go on from there.
+#   scripts/fuzz.sh [--seconds N] [--report] [TARGET...]
+#       --seconds N   processor time for each target, 60 when absent
+#       --report      puts what came of it into the table of docs/fuzzing.md
+#       TARGET        folders of tests/fuzz/corpus, all of them when absent
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+options=() targets=()
+while [[ $# -gt 0 ]]; do
+  case "$1" in
+    --seconds) options+=("$1" "${2:?--seconds wants a number}") && shift 2 ;;
+    --report) options+=(--report docs/fuzzing.md) && shift ;;
+    -*) sed -n '2,7s/^# \{0,1\}//p' "$0" >&2 && exit 2 ;;
+    *) targets+=("$1") && shift ;;
+  esac
+done
+if [[ ${#targets[@]} -eq 0 ]]; then
+  mapfile -t targets < <(ls tests/fuzz/corpus)
+fi
+
+cmake --preset fuzz -DDUET_BUILD_TESTS=ON -DDUET_BUILD_BENCHMARKS=OFF >/dev/null
+cmake --build build/fuzz --parallel "${JOBS:-$(scripts/build_jobs.sh)}" \
+  --target "${targets[@]/#/fuzz_}"
+exec scripts/run_fuzzers.py "${options[@]}" build/fuzz "${targets[@]}"

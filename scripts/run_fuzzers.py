@@ -1,0 +1,181 @@
+#!/usr/bin/env python3
+"""Runs built fuzzers one after the other and tells what came of it; scripts/fuzz.sh calls it.
+
+    scripts/run_fuzzers.py [--seconds N] [--report FILE] BUILD_FOLDER TARGET...
+
+Each target gets N seconds of processor time, however long that takes on a busy machine. What it finds
+comes to BUILD_FOLDER/findings/TARGET/, what it learns stays in BUILD_FOLDER/corpus/TARGET/ for the next
+run. An input that takes more than a second of processor time is a finding as well. With --report the
+table between the two marks in FILE gets a row for each target, in place of the one that it had.
+"""
+
+import argparse
+import dataclasses
+import os
+import pathlib
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+FUZZ_FOLDER = pathlib.Path("tests/fuzz")
+MOST_FINDINGS = 3  # of one target in one run: more of them are mostly the same one
+SLOW_SECONDS = 1
+# libFuzzer measures by the clock on the wall: generous, for a machine that does something else too.
+HANG_SECONDS = 60
+LOOK_SECONDS = 0.05
+LONGEST_INPUT = 32768
+MEMORY_MIB = 2048
+# The largest single piece of memory that any of these inputs justifies.
+PIECE_MIB = 64
+PIECES_MIB = {"batch_journal": 600}  # an offset for each item up to the last one
+
+HEADER = ("| target | inputs run | edges covered | processor seconds | findings | revision |",
+          "|---|--:|--:|--:|--:|---|")
+BEGIN, END = "<!-- fuzzing: begin -->", "<!-- fuzzing: end -->"
+
+
+@dataclasses.dataclass
+class Outcome:
+    target: str
+    runs: int = 0
+    edges: int = 0
+    seconds: float = 0
+    findings: int = 0
+
+    def row(self, revision):
+        return (f"| `{self.target}` | {self.runs:,} | {self.edges:,} | {self.seconds:.0f} "
+                f"| {self.findings} | {revision} |")
+
+
+def read_output(text):
+    """How many inputs libFuzzer ran, and how many edges it covered, by its own words."""
+    runs = re.search(r"^stat::number_of_executed_units: (\d+)", text, re.MULTILINE)
+    counts = re.findall(r"^#(\d+)\s.* cov: (\d+) ", text, re.MULTILINE)
+    last = int(counts[-1][0]) if counts else 0
+    return int(runs[1]) if runs else last, int(counts[-1][1]) if counts else 0
+
+
+def merge_rows(document, rows):
+    """The document with these rows ({target: row}) in its table; targets by name."""
+    before, rest = document.split(BEGIN)
+    table, after = rest.split(END)
+    kept = {row.split("`")[1]: row for row in table.splitlines() if row.startswith("| `")}
+    kept.update(rows)
+    lines = [BEGIN, *HEADER, *(kept[target] for target in sorted(kept)), END]
+    return before + "\n".join(lines) + after
+
+
+def processor_seconds(pid):
+    """What a process that was not waited for has used so far."""
+    fields = pathlib.Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rsplit(")", 1)[1].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def run(command, environment, seconds=None):
+    """Runs a command, tells it to end after so much processor time (as libFuzzer wants to be told);
+    its exit status, what it wrote and what it used."""
+    with tempfile.TemporaryFile() as written:
+        process = subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL,
+                                   stderr=written)
+        told = False
+        while True:
+            pid, status, usage = os.wait4(process.pid, 0 if seconds is None else os.WNOHANG)
+            if pid:
+                break
+            if not told and processor_seconds(process.pid) >= seconds:
+                process.send_signal(signal.SIGUSR1)
+                told = True
+            time.sleep(LOOK_SECONDS)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        written.seek(0)
+        text = written.read().decode(errors="replace")
+    return process.returncode, text, usage.ru_utime + usage.ru_stime
+
+
+class Fuzzer:
+    def __init__(self, build, target):
+        self.target = target
+        self.program = str(build / "fuzz" / f"fuzz_{target}")
+        self.learnt = build / "corpus" / target
+        self.findings = build / "findings" / target
+        self.learnt.mkdir(parents=True, exist_ok=True)
+        self.findings.mkdir(parents=True, exist_ok=True)
+        # Protobuf, gRPC and abseil are built without sanitizers, so that what they put into a
+        # container is not marked.
+        self.environment = dict(os.environ, UBSAN_OPTIONS="print_stacktrace=1",
+                                ASAN_OPTIONS="detect_container_overflow=0")
+
+    def command(self):
+        folders = [self.learnt] + [FUZZ_FOLDER / kind / self.target
+                                   for kind in ("corpus", "regressions")]
+        dictionary = FUZZ_FOLDER / "dictionaries" / f"{self.target}.dict"
+        return [self.program, "-print_final_stats=1", f"-timeout={HANG_SECONDS}",
+                f"-report_slow_units={SLOW_SECONDS}", f"-rss_limit_mb={MEMORY_MIB}",
+                f"-malloc_limit_mb={PIECES_MIB.get(self.target, PIECE_MIB)}",
+                f"-max_len={LONGEST_INPUT}", f"-artifact_prefix={self.findings}/",
+                *([f"-dict={dictionary}"] if dictionary.exists() else []),
+                *(str(folder) for folder in folders if folder.is_dir())]
+
+    def fuzz(self, seconds):
+        outcome = Outcome(self.target)
+        before = set(self.findings.iterdir())
+        while outcome.seconds < seconds and outcome.findings < MOST_FINDINGS:
+            status, text, used = run(self.command(), self.environment, seconds - outcome.seconds)
+            runs, edges = read_output(text)
+            outcome.runs += runs
+            outcome.edges = max(outcome.edges, edges)
+            outcome.seconds += used
+            if status == 0:
+                break
+            outcome.findings += 1
+            print(text[-6000:])
+        slow = [path for path in set(self.findings.iterdir()) - before
+                if path.name.startswith("slow-unit-")]
+        outcome.findings += sum(self.is_slow(path) for path in slow)
+        return outcome
+
+    def is_slow(self, path):
+        """Whether an input takes its time by the processor's clock too; if not, it is forgotten."""
+        _, _, nothing = run([self.program, "-runs=0"], self.environment)
+        _, _, used = run([self.program, str(path)], self.environment)
+        if used - nothing > SLOW_SECONDS:
+            print(f"{path}: takes {used - nothing:.1f} s")
+            return True
+        path.unlink()
+        return False
+
+
+def revision():
+    """The commit that is run, with a plus sign where the tree differs from it."""
+    describe = ["git", "describe", "--always", "--exclude=*", "--dirty=+"]
+    return subprocess.run(describe, capture_output=True, text=True, check=False).stdout.strip()
+
+
+def main():
+    parser = argparse.ArgumentParser(description="Runs built fuzzers.")
+    parser.add_argument("--seconds", type=float, default=60)
+    parser.add_argument("--report", type=pathlib.Path)
+    parser.add_argument("build", type=pathlib.Path)
+    parser.add_argument("targets", nargs="+")
+    options = parser.parse_args()
+    built = revision()
+    findings = 0
+    for target in options.targets:
+        begin = time.monotonic()
+        outcome = Fuzzer(options.build, target).fuzz(options.seconds)
+        findings += outcome.findings
+        print(f"{target}: {outcome.runs} inputs, {outcome.edges} edges, "
+              f"{outcome.seconds:.0f} s of processor time in {time.monotonic() - begin:.0f} s, "
+              f"{outcome.findings} findings", flush=True)
+        if options.report:
+            document = options.report.read_text(encoding="utf-8")
+            options.report.write_text(merge_rows(document, {target: outcome.row(built)}),
+                                      encoding="utf-8")
+    return 1 if findings else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

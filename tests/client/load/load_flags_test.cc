@@ -1,0 +1,110 @@
+#include "client/load/program/load_flags.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "client/cli/exit_code.h"
+#include "client/load/program/load_program.h"
+
+namespace duet::client::load::program {
+namespace {
+
+using ::testing::HasSubstr;
+
+struct Ran {
+  int code;
+  std::string out;
+  std::string err;
+};
+
+Ran RunWith(const std::vector<std::string>& arguments) {
+  std::ostringstream out, err;
+  const int code = RunLoadProgram(arguments, {&out, &err, [] { return false; }});
+  return {code, out.str(), err.str()};
+}
+
+LoadArguments Parse(std::vector<std::string> arguments) {
+  CLI::App app;
+  LoadArguments parsed;
+  AddLoadFlags(&app, &parsed);
+  std::reverse(arguments.begin(), arguments.end());
+  app.parse(arguments);
+  return parsed;
+}
+
+TEST(LoadFlagsTest, EachValueIsAStep) {
+  const std::vector<Step> callers = Parse({"--callers", "1,8,64"}).Steps();
+  ASSERT_EQ(callers.size(), 3U);
+  EXPECT_EQ(callers[2].callers, 64);
+  const std::vector<Step> rates = Parse({"--rate", "0.5,100"}).Steps();
+  ASSERT_EQ(rates.size(), 2U);
+  EXPECT_EQ(rates[0].rate_hz, 0.5);
+  EXPECT_EQ(Parse({}).Steps().front().callers, 1);
+}
+
+TEST(LoadFlagsTest, ReadsWhatCallsAskFor) {
+  const LoadArguments parsed =
+      Parse({"--frames", "46=9,460", "--model", "sbu=0.5,k3hi@1=2", "--label", "kick=1",
+             "--priority", "bulk", "--deadline", "0.3", "--arrivals", "constant"});
+  ASSERT_EQ(parsed.mix.frames.size(), 2U);
+  EXPECT_EQ(parsed.mix.frames[0].value, 46);
+  EXPECT_EQ(parsed.mix.frames[0].weight, 9);
+  EXPECT_EQ(parsed.mix.frames[1].weight, 1);
+  EXPECT_EQ(parsed.mix.models[1].value.name, "k3hi");
+  EXPECT_EQ(parsed.mix.models[1].value.version, 1);
+  EXPECT_EQ(parsed.mix.models[0].weight, 0.5);
+  EXPECT_EQ(parsed.mix.labels[0].interaction_class, "kick");
+  EXPECT_EQ(parsed.mix.priority, Priority::kBulk);
+  EXPECT_EQ(parsed.server.timeout_seconds, 0.3);
+  EXPECT_EQ(parsed.arrivals, ArrivalKind::kConstant);
+}
+
+TEST(LoadFlagsTest, SaysWhatItWanted) {
+  EXPECT_THAT(std::string(ParseFrames("46=0").status().message()),
+              HasSubstr("\"46=0\", wanted a weight above 0"));
+  EXPECT_THAT(std::string(ParseFrames("46,x").status().message()),
+              HasSubstr("\"x\", wanted numbers of frames"));
+  for (const std::vector<std::string>& arguments :
+       std::vector<std::vector<std::string>>{{"--callers", "0"},
+                                             {"--rate", "1", "--callers", "1"},
+                                             {"--seconds", "5", "--calls", "7"},
+                                             {"--frames", "none"},
+                                             {"--arrivals", "never"},
+                                             {"--nonsense"}}) {
+    EXPECT_EQ(RunWith(arguments).code, cli::kExitUsage) << arguments[0];
+  }
+}
+
+TEST(LoadFlagsTest, TellsWhatWasGiven) {
+  CLI::App app;
+  LoadArguments parsed;
+  AddLoadFlags(&app, &parsed);
+  app.parse("--rate 5,6 --quiet");
+  EXPECT_THAT(GivenFlags(app), ::testing::ElementsAre(::testing::Pair("rate", "5,6"),
+                                                      ::testing::Pair("quiet", "true")));
+}
+
+TEST(LoadProgramTest, HasAManualPageAndCompletion) {
+  const Ran page = RunWith({"--man"});
+  EXPECT_EQ(page.code, cli::kExitDone);
+  EXPECT_THAT(page.out, HasSubstr(".TH DUET\\-LOAD 1"));
+  EXPECT_THAT(page.out, HasSubstr("\\fB\\-\\-callers\\fR \\fIN[,N...]\\fR"));
+  EXPECT_THAT(RunWith({"--completion", "bash"}).out, HasSubstr("complete -F _duet_load duet-load"));
+  EXPECT_THAT(RunWith({"--completion", "zsh"}).out, HasSubstr("#compdef duet-load"));
+  EXPECT_THAT(RunWith({"--completion", "fish"}).out, HasSubstr("complete -c duet-load"));
+}
+
+TEST(LoadProgramTest, SaysThatNobodyIsThere) {
+  const Ran ran = RunWith({"--server", "unix:/nowhere/duet.sock", "--deadline", "0.05"});
+  EXPECT_EQ(ran.code, cli::kExitRetry);
+  EXPECT_THAT(ran.err, HasSubstr("duet-load: "));
+}
+
+TEST(LoadProgramTest, ATokenFileThatIsNotThereIsBadInput) {
+  EXPECT_EQ(RunWith({"--token-file", "/nowhere/token"}).code, cli::kExitBadInput);
+}
+
+}  // namespace
+}  // namespace duet::client::load::program

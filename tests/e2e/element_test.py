@@ -1,0 +1,271 @@
+"""The viewer's element, <duet-motion>, on pages of others in a real browser.
+
+    element_test.py
+"""
+
+import functools
+import http.server
+import json
+import math
+import pathlib
+import sys
+import tempfile
+import threading
+import unittest
+
+import browser
+import tools
+
+sys.path.insert(0, str(tools.SOURCE / "client" / "viewer"))
+
+import element  # noqa: E402
+
+FRAMES = 60
+JOINTS = ("head", "neck", "torso", "left_shoulder", "left_elbow", "left_hand", "right_shoulder",
+          "right_elbow", "right_hand", "left_hip", "left_knee", "left_foot", "right_hip",
+          "right_knee", "right_foot")
+PLACES = ((0, 1.62, 0), (0, 1.45, 0), (0, 1.13, 0), (.18, 1.42, 0), (.28, 1.16, 0), (.3, .92, .06),
+          (-.18, 1.42, 0), (-.28, 1.16, 0), (-.3, .92, .06), (.1, .93, 0), (.11, .51, .02),
+          (.11, .08, 0), (-.1, .93, 0), (-.11, .51, .02), (-.11, .08, 0))
+BONES = ((2, 1), (1, 0), (1, 3), (3, 4), (4, 5), (1, 6), (6, 7), (7, 8), (2, 9), (9, 10), (10, 11),
+         (2, 12), (12, 13), (13, 14))
+
+
+def person(side):
+    """Sways at one side of the origin; side is 1 or -1."""
+    return [[[side * x, y, side * (z - 0.6) + 0.1 * math.sin(frame / 9)] for x, y, z in PLACES]
+            for frame in range(FRAMES)]
+
+
+MOTION = {"format": "duet-motion", "version": 1, "frame_rate_hz": 30, "unit": "metres",
+          "up_axis": "y-up", "joint_names": JOINTS, "bones": BONES,
+          "leader": person(1), "follower": person(-1)}
+PAGE = """<!doctype html><meta charset="utf-8"><meta name="viewport" content="width=device-width">
+<meta http-equiv="Content-Security-Policy" content="default-src 'none'; connect-src 'self';
+ script-src {scripts}; style-src 'self'">
+{body}
+<script src="events.js"></script><script src="duet-motion.js"></script>"""
+# Tells when every element is ready or has failed, and keeps what they say.
+EVENTS = """
+window.told = [];
+const elements = [...document.querySelectorAll('duet-motion')];
+let left = elements.length;
+for (const one of elements) {
+  for (const name of ['ready', 'play', 'pause', 'error', 'orbit', 'drawn']) {
+    one.addEventListener(name, ({type, detail}) => {
+      if (type !== 'drawn') window.told.push([elements.indexOf(one), type, detail]);
+      if ((type === 'drawn' || type === 'error') && !one.dataset.seen) {
+        one.dataset.seen = type;
+        if (--left === 0) document.documentElement.dataset.state = 'ready';
+      }
+    });
+  }
+}
+"""
+INLINE = f'<script type="application/json">{json.dumps(MOTION)}</script>'
+
+
+class ElementTest(unittest.TestCase):
+    pages = 0  # opened so far
+
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.folder = pathlib.Path(folder.name)
+        element.main([str(cls.folder / "duet-motion.js")])
+        (cls.folder / "events.js").write_text(EVENTS, encoding="utf-8")
+        (cls.folder / "pair.json").write_text(json.dumps(MOTION), encoding="utf-8")
+        alone = {name: value for name, value in MOTION.items() if name != "follower"}
+        (cls.folder / "alone.json").write_text(json.dumps(alone), encoding="utf-8")
+        (cls.folder / "sunk.json").write_text(json.dumps({**MOTION, "up_axis": "z-up"}))
+        (cls.folder / "broken.json").write_text("{", encoding="utf-8")
+        handler = functools.partial(Handler, directory=folder.name)
+        cls.server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler)
+        threading.Thread(target=cls.server.serve_forever, daemon=True).start()
+        cls.addClassCleanup(cls.server.server_close)
+        cls.addClassCleanup(cls.server.shutdown)
+        cls.browser = browser.Browser()
+        cls.addClassCleanup(cls.browser.close)
+
+    def open(self, body, over="http", **size):
+        # A page of a file has no origin that could be called its own.
+        scripts = "'self'" if over == "http" else "'unsafe-inline' file:"
+        ElementTest.pages += 1
+        file = self.folder / f"{ElementTest.pages}.html"
+        file.write_text(PAGE.format(body=body, scripts=scripts), encoding="utf-8")
+        url = file.as_uri() if over == "file" else \
+            f"http://127.0.0.1:{self.server.server_port}/{file.name}"
+        page = self.browser.open(url, **size)
+        self.addCleanup(page.close)
+        self.assertEqual(page.events("Runtime.exceptionThrown"), [])
+        return page
+
+    def told(self, page, *kinds):
+        return [what for what in page.evaluate("window.told") if what[1] in kinds]
+
+    def sees(self, page, leader=True, follower=True, **where):
+        picture = page.picture()
+        self.assertEqual(picture.count(tools.is_leader_orange, **where) > 100, leader)
+        self.assertEqual(picture.count(tools.is_follower_teal, **where) > 100, follower)
+
+    def frame(self, page):
+        return page.evaluate("document.querySelector('duet-motion').frame")
+
+    def test_two_on_one_page_of_a_file_with_the_data_inside(self):
+        page = self.open(f"<duet-motion paused>{INLINE}</duet-motion>" * 2, over="file",
+                         width=500, height=620)
+        self.sees(page, bottom=0.48)
+        self.sees(page, top=0.52)
+        urls = {event["request"]["url"].rsplit("/", 1)[-1]
+                for event in page.events("Network.requestWillBeSent")}
+        self.assertLessEqual(urls, {f"{self.pages}.html", "events.js", "duet-motion.js"})
+
+    def test_the_script_may_come_first(self):
+        page = self.open('<script src="duet-motion.js"></script>'
+                         f'<duet-motion paused>{INLINE}</duet-motion>', over="file")
+        self.sees(page)
+
+    def test_fetches_what_src_says_and_leaves_no_name_behind(self):
+        page = self.open('<duet-motion src="pair.json" paused></duet-motion>')
+        self.sees(page)
+        self.assertEqual(self.told(page, "ready"), [[0, "ready", {"frames": FRAMES, "frameRate": 30}]])
+        self.assertEqual(page.evaluate("[typeof THREE, typeof Motion, typeof Stage]"),
+                         ["undefined"] * 3)
+
+    def test_another_src_shows_another_motion(self):
+        page = self.open('<duet-motion src="pair.json" paused></duet-motion>')
+        page.evaluate("elements[0].setAttribute('src', 'alone.json')")
+        page.wait_until("window.told.filter(([, kind]) => kind === 'ready').length === 2")
+        page.next_frame()
+        self.sees(page, follower=False)
+
+    def test_one_that_was_taken_out_and_put_back_shows_again(self):
+        page = self.open('<duet-motion src="pair.json" paused frame="7"></duet-motion>')
+        page.evaluate("elements[0].remove()")
+        page.next_frame()
+        page.evaluate("document.body.append(elements[0])")
+        page.next_frame()
+        page.wait_until("elements[0].stage")
+        page.next_frame()
+        self.sees(page)
+        self.assertEqual(self.frame(page), 7)
+
+    def test_a_script_may_give_the_motion_and_hide_a_person(self):
+        page = self.open(f"<duet-motion paused>{INLINE}</duet-motion>", over="file")
+        page.evaluate("elements[0].show('leader', false)")
+        page.next_frame()
+        self.sees(page, leader=False)
+        page.evaluate("elements[0].motion = {...JSON.parse(elements[0].textContent), follower: null}")
+        page.next_frame()
+        self.sees(page, follower=False)
+
+    def test_attributes_say_when_and_from_where(self):
+        page = self.open('<duet-motion src="pair.json" paused frame="12" view="top" speed="2" once>'
+                         '</duet-motion>')
+        self.assertEqual(self.frame(page), 12)
+        self.assertEqual(page.evaluate("[elements[0].view, elements[0].player.speed,"
+                                       " elements[0].player.looping]"), ["top", 2, False])
+        page.evaluate("elements[0].setAttribute('frame', '30')")
+        self.assertEqual(self.frame(page), 30)
+        page.evaluate("elements[0].removeAttribute('paused')")
+        page.wait_until(f"elements[0].frame === {FRAMES - 1} && !elements[0].playing")
+        page.next_frame()
+        self.assertEqual([kind for _, kind, _ in self.told(page, "play", "pause")],
+                         ["play", "pause"])
+
+    def test_keys_are_for_the_one_that_has_the_focus(self):
+        page = self.open('<duet-motion src="pair.json" paused></duet-motion>' * 2)
+        page.press("ArrowRight")
+        self.assertEqual(self.frame(page), 0)
+        page.press("Tab")
+        for key, frame in (("ArrowRight", 1), ("End", FRAMES - 1), ("ArrowLeft", FRAMES - 2),
+                           ("Home", 0)):
+            page.press(key)
+            self.assertEqual(self.frame(page), frame, key)
+        page.press("3")
+        self.assertEqual(page.evaluate("elements.map((one) => one.view)"), ["top", "reset"])
+        page.press(" ")
+        self.assertEqual(page.evaluate("elements.map((one) => one.playing)"), [True, False])
+
+    def test_its_controls_play_and_seek(self):
+        page = self.open('<duet-motion src="pair.json" paused controls></duet-motion>')
+        inside = "elements[0].shadowRoot.querySelector('[part={}]')"
+        x, y = page.evaluate(f"(() => {{ const box = {inside.format('time')}.getBoundingClientRect();"
+                             " return [box.left + box.width / 2, box.top + box.height / 2]; })()")
+        page.mouse("mousePressed", x, y)
+        page.mouse("mouseReleased", x, y, buttons=0)
+        page.next_frame()
+        self.assertAlmostEqual(self.frame(page), FRAMES / 2, delta=2)
+        page.evaluate(f"{inside.format('play')}.click()")
+        self.assertTrue(page.evaluate("elements[0].playing"))
+        self.assertEqual(page.evaluate("elements[0].shadowRoot.querySelector('output').textContent")
+                         [-8:], "/ 1.97 s")
+
+    def test_draws_as_large_as_it_is(self):
+        page = self.open('<duet-motion src="pair.json" paused></duet-motion>')
+        page.evaluate("elements[0].style.width = '300px'")
+        page.wait_until("elements[0].canvas.width === 300")
+        page.next_frame()
+        self.sees(page, left=0, right=0.5, top=0)
+        self.assertEqual(page.evaluate("elements[0].canvas.height"), 188)
+
+    def test_shows_both_on_a_phone(self):
+        page = self.open('<duet-motion src="pair.json" paused controls></duet-motion>', width=360,
+                         height=640)
+        self.sees(page, left=0, right=1)
+        self.assertEqual(page.evaluate("document.documentElement.scrollWidth"), 360)
+
+    def test_the_wheel_scrolls_the_page_until_it_has_the_focus(self):
+        page = self.open('<duet-motion src="pair.json" paused></duet-motion><pre>' + "\n" * 200
+                         + "</pre>")
+        away = "elements[0].stage.camera.position.distanceTo(elements[0].stage.controls.target)"
+
+        def wheel():
+            page.call("Input.dispatchMouseEvent", type="mouseWheel", x=300, y=100, deltaX=0,
+                      deltaY=40)
+        before = page.evaluate(away)
+        wheel()
+        page.wait_until("window.scrollY > 0")
+        self.assertEqual(page.evaluate(away), before)
+        page.evaluate("window.scrollTo(0, 0); elements[0].focus()")
+        wheel()
+        page.wait_until(f"{away} > {before} + 0.01")
+
+    def test_does_not_draw_where_nobody_sees_it(self):
+        page = self.open('<duet-motion src="pair.json"></duet-motion><pre>' + "\n" * 200 + "</pre>")
+        page.evaluate("window.scrollTo(0, 100000)")
+        page.wait_until("!elements[0].onScreen")
+        drawn = page.evaluate("elements[0].draws")
+        page.next_frame()
+        page.next_frame()
+        self.assertEqual(page.evaluate("elements[0].draws"), drawn)
+
+    def test_says_what_it_cannot_show(self):
+        for source, why in (("nowhere.json", "404"), ("broken.json", "JSON"),
+                            ("sunk.json", "came metres, z-up, wanted metres, y-up")):
+            page = self.open(f'<duet-motion src="{source}"></duet-motion>')
+            ((_, _, detail),) = self.told(page, "error")
+            self.assertIn(source, detail["message"])
+            self.assertIn(why, detail["message"])
+            self.assertEqual(page.evaluate("elements[0].shadowRoot.querySelector('[role=alert]')"
+                                           ".textContent"), detail["message"])
+
+    def test_has_a_name_and_a_role_for_those_who_hear_it(self):
+        page = self.open('<duet-motion src="pair.json" paused></duet-motion>'
+                         '<duet-motion src="pair.json" paused aria-label="A hug"></duet-motion>')
+        self.assertEqual(page.evaluate(
+            "elements.map((one) => [one.getAttribute('role'), one.getAttribute('aria-label')])"),
+            [["group", "Motion in three dimensions"], ["group", "A hug"]])
+
+
+class Handler(http.server.SimpleHTTPRequestHandler):
+    def log_message(self, *values):
+        """Nobody reads it."""
+
+
+if __name__ == "__main__":
+    browser.find_chromium()
+    if not (element.THREE / "three.min.js").is_file():
+        tools.skip("no three.js; install the package libjs-three")
+    tools.main()

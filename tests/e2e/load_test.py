@@ -1,0 +1,166 @@
+"""duet-load against a real server: what it counts is what the server counts, and its files are read
+back by others than itself."""
+
+import csv
+import html.parser
+import json
+import pathlib
+import re
+import shutil
+import signal
+import subprocess
+import tempfile
+import unittest
+import urllib.request
+import xml.etree.ElementTree
+
+import tools
+
+LOAD = tools.PROGRAMS / "duet-load"
+
+
+class Balanced(html.parser.HTMLParser):
+    """Every element that is opened is closed, in order."""
+
+    VOID = {"meta", "br"}
+
+    def __init__(self, text):
+        super().__init__()
+        self.open, self.seen = [], set()
+        self.feed(text)
+        assert not self.open, self.open
+
+    def handle_starttag(self, tag, attrs):
+        self.seen.add(tag)
+        if tag not in self.VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag, attrs):
+        self.seen.add(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag, tag
+
+
+class LoadTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def serve(self, *flags):
+        server = tools.Server(*flags, metrics="127.0.0.1:0")
+        self.addCleanup(server.stop)
+        return server
+
+    def load(self, server, *flags, code=0):
+        result = tools.run(LOAD, "--server", server.address, "--json", self.folder / "load.json",
+                           "--warm-up", "0", *flags)
+        self.assertEqual(result.returncode, code, result.stderr)
+        if (self.folder / "load.json").exists():
+            return json.loads((self.folder / "load.json").read_text(encoding="utf-8"))
+        return result.stderr
+
+    def handled(self, server):
+        """Synthesize calls by status, as the server counts them."""
+        with urllib.request.urlopen(f"http://127.0.0.1:{server.metrics_port}/metrics") as page:
+            text = page.read().decode()
+        pattern = r'grpc_server_handled_total\{grpc_code="(\w+)",grpc_method="Synthesize".*?\} (\d+)'
+        return {code: int(count) for code, count in re.findall(pattern, text)}
+
+    def test_counts_what_the_server_counts(self):
+        server = self.serve()
+        report = self.load(server, "--callers", "1,4", "--calls", "24", "--frames", "46=3,92",
+                           "--connections", "2", "--records", self.folder / "calls.csv", "--csv",
+                           self.folder / "load.csv", "--html", self.folder / "load.html")
+        self.assertEqual([step["ended"] for step in report["steps"]], [{"OK": 24}] * 2)
+        # Each of the two kinds is tried once beforehand, and given up as soon as frames come.
+        tools.wait_until(lambda: sum(self.handled(server).values()) == 50, "the server's count")
+        self.assertIn(self.handled(server)["OK"], (48, 49, 50))
+        with (self.folder / "calls.csv").open(encoding="utf-8") as file:
+            calls = list(csv.DictReader(file))
+        self.assertEqual(len(calls), 48)
+        for call in calls:
+            self.assertEqual(call["frames_received"], call["frames"])
+            self.assertLessEqual(float(call["first_chunk_ms"]), float(call["whole_call_ms"]))
+        for kind in report["steps"][1]["kinds"]:
+            counted = sum(call["load"] == "4 callers" and int(call["frames"]) == kind["frames"]
+                          for call in calls)
+            self.assertEqual(kind["answers"]["whole_call_ms"]["count"], counted)
+        slowest = max(float(call["whole_call_ms"]) for call in calls if call["load"] == "1 caller")
+        self.assertAlmostEqual(report["steps"][0]["answers"]["whole_call_ms"]["max"], slowest,
+                               delta=0.001)
+        self.read_back(report)
+
+    def read_back(self, report):
+        with (self.folder / "load.csv").open(encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        for row, step in zip(rows, report["steps"], strict=True):
+            self.assertEqual(int(row["OK"]), step["ended"]["OK"])
+            self.assertAlmostEqual(float(row["whole_call_ms_p99"]),
+                                   step["answers"]["whole_call_ms"]["p99"], delta=0.001)
+        page = (self.folder / "load.html").read_text(encoding="utf-8")
+        self.assertLessEqual({"table", "svg", "style"}, Balanced(page).seen)
+        self.assertNotRegex(page, r"<script|https?://|\bsrc=")
+        charts = re.findall(r"<svg.*?</svg>", page, re.DOTALL)
+        self.assertGreaterEqual(len(charts), 4)
+        for chart in charts:
+            xml.etree.ElementTree.fromstring(chart)
+
+    def test_a_rate_is_sent_as_it_was_asked_for(self):
+        report = self.load(self.serve(), "--rate", "40", "--arrivals", "constant", "--calls", "30")
+        step = report["steps"][0]
+        self.assertEqual((step["due"], step["sent"], step["ended"]), (30, 30, {"OK": 30}))
+        # The last call is due 29/40 s after the first.
+        self.assertGreater(step["seconds"], 0.724)
+
+    def test_what_is_refused_is_counted_by_its_status(self):
+        server = self.serve("--max-calls", "2", "--client-share", "1")
+        report = self.load(server, "--callers", "8", "--calls", "40", "--frames", "460",
+                           "--connections", "8")
+        ended = report["steps"][0]["ended"]
+        self.assertEqual(sum(ended.values()), 40)
+        self.assertGreater(ended["OK"], 0)
+        self.assertGreater(ended["RESOURCE_EXHAUSTED"], 0)
+        tools.wait_until(lambda: self.handled(server).get("ResourceExhausted")
+                         == ended["RESOURCE_EXHAUSTED"], "the server's count")
+
+    def test_what_no_server_would_answer_is_said_beforehand(self):
+        server = self.serve()
+        self.assertIn("levitate", self.load(server, "--label", "levitate=1", code=42))
+        self.assertIn("nobody", self.load(server, "--model", "nobody", code=42))
+
+    def test_a_signal_ends_it_with_a_report(self):
+        server = self.serve()
+        process = subprocess.Popen(
+            [LOAD, "--server", server.address, "--seconds", "3600", "--warm-up", "0", "--json", "-",
+             "--records", self.folder / "calls.csv"], stdout=subprocess.PIPE, text=True)
+        # A block of lines is there once some hundred calls are over.
+        tools.wait_until(lambda: (self.folder / "calls.csv").exists()
+                         and (self.folder / "calls.csv").stat().st_size > 1000, "calls")
+        process.send_signal(signal.SIGINT)
+        out, _ = process.communicate(timeout=tools.RUN_SECONDS)
+        self.assertEqual(process.returncode, 0)
+        step = json.loads(out)["steps"][0]
+        self.assertEqual(step["ended"], {"OK": step["due"]})
+
+    def test_manual_page_and_completion(self):
+        page = self.folder / "duet-load.1"
+        page.write_text(tools.run(LOAD, "--man").stdout, encoding="utf-8")
+        if shutil.which("mandoc"):
+            result = tools.run("mandoc", "-T", "lint", "-W", "warning", page)
+            self.assertEqual([line for line in result.stdout.splitlines()
+                              if "missing date" not in line], [])
+        script = self.folder / "duet-load.bash"
+        script.write_text(tools.run(LOAD, "--completion", "bash").stdout, encoding="utf-8")
+        for words, offers in ((("--arr",), {"--arrivals"}),
+                              (("--arrivals", ""), {"poisson", "constant"})):
+            result = tools.run("bash", "--norc", "-c",
+                               'source "$1"; shift; COMP_WORDS=("$@") COMP_CWORD=$(($# - 1)); '
+                               '_duet_load; printf "%s\\n" "${COMPREPLY[@]}"',
+                               "bash", script, "duet-load", *words)
+            self.assertEqual((set(result.stdout.split()), result.stderr), (offers, ""))
+
+
+if __name__ == "__main__":
+    tools.main()

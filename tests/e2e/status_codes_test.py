@@ -1,0 +1,177 @@
+"""Every status code that a caller may see, over the wire from a server process to a client that shares no
+code with ours; and an engine that is slow, throws or answers nonsense, which fails no neighbour."""
+
+import contextlib
+import hashlib
+import http.client
+import pathlib
+import re
+import tempfile
+import threading
+import unittest
+
+import tools
+
+try:
+    import grpc
+except ImportError as error:
+    tools.skip(f"{error}; install the package python3-grpcio")
+
+PROTOS = ("duet/v1/model.proto", "duet/v1/motion.proto", "duet/v1/synthesis.proto")
+FAKE_SERVER = tools.PROGRAMS.parent / "tests" / "duet-fake-server"
+JOINTS = ("head neck torso left_shoulder left_elbow left_hand right_shoulder right_elbow right_hand "
+          "left_hip left_knee left_foot right_hip right_knee right_foot").split()
+FRAMES = 20  # less than a window
+
+
+def figure(server, pattern):
+    """A number of the metrics port; 0 while it is not there."""
+    connection = http.client.HTTPConnection("127.0.0.1", server.metrics_port,
+                                            timeout=tools.RUN_SECONDS)
+    with contextlib.closing(connection):
+        connection.request("GET", "/metrics")
+        found = re.search(rf"^{pattern} (\d+)", connection.getresponse().read().decode(),
+                          re.MULTILINE)
+    return int(found[1]) if found else 0
+
+
+class StatusCodesTest(unittest.TestCase):
+    def serve(self, *flags):
+        server = tools.Server(*flags, metrics="127.0.0.1:0", program=FAKE_SERVER)
+        self.addCleanup(server.stop)
+        channel = grpc.insecure_channel(server.address)
+        self.addCleanup(channel.close)
+        self.stub = synthesis_pb2_grpc.MotionSynthesisStub(channel)
+        self.channel = channel
+        return server
+
+    def request(self, interaction_class="punch", weight=1):
+        """A leader who stands still; a weight of -1 is what the fake engine fails at."""
+        leader = motion_pb2.Motion(
+            joint_names=JOINTS, frame_rate_hz=15, unit=motion_pb2.LENGTH_UNIT_METRES,
+            up_axis=motion_pb2.UP_AXIS_Y_UP, frame_count=FRAMES,
+            positions=[0.1 * (i % 45) for i in range(FRAMES * 45)])
+        request = synthesis_pb2.SynthesizeRequest(leader=leader)
+        request.label_vector.weights.add(interaction_class=interaction_class, weight=weight)
+        return request
+
+    def code_of(self, call):
+        """How a call ends."""
+        try:
+            list(call)
+        except grpc.RpcError as error:
+            return error.code().name
+        return "OK"
+
+    def synthesize(self, request, **options):
+        return self.stub.Synthesize(request, timeout=tools.RUN_SECONDS, **options)
+
+    def slow_call(self, server):
+        """A call that the engine has begun with, and goes on with until somebody ends it."""
+        before = figure(server, r'duet_calls_in_flight\{method="Synthesize"\}')
+        call = self.synthesize(self.request("shake_hands", -1))
+        next(call)  # the header; the window is in line or with the engine
+        tools.wait_until(lambda: figure(server, r'duet_calls_in_flight\{method="Synthesize"\}')
+                         == before + 1 and figure(server, "duet_queued_windows") == 0,
+                         "the engine has the window")
+        self.addCleanup(call.cancel)
+        return call
+
+    def ended(self, server, count):
+        """The codes of the calls that are over, once there are so many."""
+        tools.wait_until(lambda: len(server.events("call")) >= count, f"{count} calls are logged")
+        return [entry["code"] for entry in server.events("call")]
+
+    def test_ok(self):
+        self.serve()
+        self.assertEqual(self.code_of(self.synthesize(self.request())), "OK")
+
+    def test_invalid_argument(self):
+        self.serve()
+        request = self.request()
+        request.leader.frame_rate_hz = -1
+        self.assertEqual(self.code_of(self.synthesize(request)), "INVALID_ARGUMENT")
+
+    def test_failed_precondition(self):
+        self.serve()
+        request = self.request()
+        request.leader.joint_names[0] = "tail"
+        self.assertEqual(self.code_of(self.synthesize(request)), "FAILED_PRECONDITION")
+
+    def test_not_found(self):
+        self.serve()
+        request = self.request()
+        request.model.name = "nobody"
+        self.assertEqual(self.code_of(self.synthesize(request)), "NOT_FOUND")
+
+    def test_unimplemented(self):
+        self.serve()
+        dance = self.channel.unary_unary("/duet.v1.MotionSynthesis/Dance")
+        with self.assertRaises(grpc.RpcError) as caught:
+            dance(b"", timeout=tools.RUN_SECONDS)
+        self.assertEqual(caught.exception.code(), grpc.StatusCode.UNIMPLEMENTED)
+
+    def test_unauthenticated_and_permission_denied(self):
+        with tempfile.TemporaryDirectory() as folder:
+            access = pathlib.Path(folder) / "access"
+            digest = hashlib.sha256(b"secret").hexdigest()
+            access.write_text(f"ops admin sha256:{digest}\n", encoding="utf-8")
+            self.serve("--access-file", access)
+            self.assertEqual(self.code_of(self.synthesize(self.request())), "UNAUTHENTICATED")
+            token = (("authorization", "Bearer secret"),)
+            self.assertEqual(self.code_of(self.synthesize(self.request(), metadata=token)),
+                             "PERMISSION_DENIED")
+
+    def test_resource_exhausted(self):
+        server = self.serve("--max-calls", "1")
+        self.slow_call(server)
+        self.assertEqual(self.code_of(self.synthesize(self.request())), "RESOURCE_EXHAUSTED")
+
+    def test_deadline_exceeded(self):
+        # The server's own, so that nobody but the server says so.
+        server = self.serve("--max-call-seconds", "1")
+        call = self.synthesize(self.request("shake_hands", -1))
+        self.assertEqual(self.code_of(call), "DEADLINE_EXCEEDED")
+        self.assertEqual(self.ended(server, 1), ["DEADLINE_EXCEEDED"])
+
+    def test_cancelled(self):
+        server = self.serve()
+        call = self.slow_call(server)
+        call.cancel()
+        self.assertEqual(self.code_of(call), "CANCELLED")
+        self.assertEqual(self.ended(server, 1), ["CANCELLED"])
+
+    def test_unavailable(self):
+        server = self.serve("--grace-seconds", str(tools.RUN_SECONDS))
+        call = self.slow_call(server)
+        stopping = threading.Thread(target=server.stop)
+        stopping.start()
+        self.addCleanup(stopping.join)
+        tools.wait_until(lambda: server.events("draining"), "it drains")
+        self.assertEqual(self.code_of(self.synthesize(self.request())), "UNAVAILABLE")
+        call.cancel()  # whoever is being answered keeps the server
+
+    def test_an_engine_that_fails_fails_that_call_alone(self):
+        """One batch of a good window, three that fail in their ways, and a good one."""
+        server = self.serve("--workers", "1", "--max-batch-windows", "8")
+        slow = self.slow_call(server)
+        calls = [self.synthesize(self.request(interaction_class, weight))
+                 for interaction_class, weight in (("punch", 1), ("kick", -1), ("push", -1),
+                                                   ("hug", -1), ("punch", 0.5))]
+        tools.wait_until(lambda: figure(server, "duet_queued_windows") == len(calls),
+                         "all wait for the one worker")
+        slow.cancel()
+        self.assertEqual([self.code_of(call) for call in calls],
+                         ["OK", "INTERNAL", "INTERNAL", "INTERNAL", "OK"])
+        # The slow one and theirs.
+        self.assertEqual(figure(server, "duet_batch_size_count"), 2)
+        self.assertEqual(figure(server, "duet_batch_size_sum"), 1 + len(calls))
+
+
+if __name__ == "__main__":
+    if not FAKE_SERVER.exists():
+        tools.skip("duet-fake-server is not built")
+    with tempfile.TemporaryDirectory() as stubs:
+        tools.generate_stubs(stubs, *PROTOS)
+        from duet.v1 import motion_pb2, synthesis_pb2, synthesis_pb2_grpc
+        tools.main()

@@ -1,0 +1,113 @@
+#include "model/formats/usd/usda_export.h"
+
+#include <string>
+#include <vector>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "model/formats/usd/usda_writer.h"
+#include "tests/support/status_matchers.h"
+#include "tests/support/test_motion.h"
+
+// What a file says is checked here; whether a reader finds every joint where it was, in
+// tests/e2e/usd_test.py.
+
+namespace duet::formats::usd {
+namespace {
+
+using test::IsOk;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+std::string Export(const std::vector<motion::Clip>& people,
+                   const motion::Provenance* provenance = nullptr) {
+  const absl::StatusOr<std::string> text = FormatUsda(people, motion::SbuSkeleton(), provenance);
+  EXPECT_THAT(text.status(), IsOk());
+  return text.value_or("");
+}
+
+motion::Clip Person() {
+  test::PersonOptions options;
+  options.frames = 12;
+  return test::MakePerson(options);
+}
+
+TEST(UsdaWriter, NamesOfPrimsAreIdentifiers) {
+  EXPECT_EQ(PrimName("left_elbow"), "left_elbow");
+  EXPECT_EQ(PrimName("mixamorig:Left Arm"), "mixamorig_Left_Arm");
+  EXPECT_EQ(PrimName("3rd"), "_3rd");
+  EXPECT_EQ(PrimName(""), "_");
+}
+
+TEST(UsdaWriter, TextIsQuotedWhateverItHolds) {
+  EXPECT_EQ(UsdString("a \"b\" \\c\n"), "\"a \\\"b\\\" \\\\c\\x0a\"");
+}
+
+TEST(UsdaWriter, NumbersReadBackAsTheyWere) {
+  EXPECT_EQ(UsdNumber(0.1), "0.1");
+  EXPECT_EQ(UsdNumber(-0.0), "0");
+  EXPECT_EQ(UsdTurn({1, 0, 0.5, 0}), "(1, 0, 0.5, 0)");
+}
+
+TEST(FormatUsda, SaysUnitAxisAndTimesOfTheClip) {
+  const std::string text = Export({Person(), Person()});
+  EXPECT_THAT(text, HasSubstr("#usda 1.0\n(\n"));
+  for (const char* line :
+       {"metersPerUnit = 1", "upAxis = \"Y\"", "startTimeCode = 0", "endTimeCode = 11",
+        "timeCodesPerSecond = 30", "framesPerSecond = 30", "defaultPrim = \"pair\""}) {
+    EXPECT_THAT(text, HasSubstr(std::string("    ") + line + "\n"));
+  }
+}
+
+TEST(FormatUsda, BothPeopleHaveSkeletonAnimationAndSkinOfTheirOwn) {
+  const std::string text = Export({Person(), Person()});
+  for (const char* person : {"leader", "follower"}) {
+    const std::string path = std::string("/pair/") + person;
+    EXPECT_THAT(text, HasSubstr("def SkelRoot \"" + std::string(person) + "\""));
+    EXPECT_THAT(text, HasSubstr("rel skel:animationSource = <" + path + "/skeleton/animation>"));
+    EXPECT_THAT(text, HasSubstr("rel skel:skeleton = <" + path + "/skeleton>"));
+    EXPECT_THAT(text, HasSubstr("rel material:binding = </pair/materials/" + std::string(person)));
+  }
+  EXPECT_THAT(text, HasSubstr("\"torso/torso_to_neck/neck\""));
+}
+
+TEST(FormatUsda, ProvenanceIsCustomData) {
+  motion::Provenance provenance;
+  provenance.model = "na\"me";
+  provenance.model_version = 3;
+  provenance.labels = {{0, {{"kick", 1.0f}}}, {30, {{"hug", -0.5f}}}};
+  provenance.seed = 18446744073709551615u;
+  provenance.variety = 0.5f;
+  provenance.cleaned_up = true;
+  const std::string text = Export({Person(), Person()}, &provenance);
+  for (const char* line :
+       {"string model = \"na\\\"me@3\"", "int[] frames = [0, 30]", "double[] \"kick\" = [1, 0]",
+        "double[] \"hug\" = [0, -0.5]", "uint64 seed = 18446744073709551615",
+        "double variety = 0.5", "bool cleaned_up = true"}) {
+    EXPECT_THAT(text, HasSubstr(line));
+  }
+  EXPECT_THAT(Export({Person(), Person()}), Not(HasSubstr("customData")));
+}
+
+TEST(FormatUsda, OnePersonIsAlone) {
+  const std::string text = Export({Person()});
+  EXPECT_THAT(text, HasSubstr("defaultPrim = \"person_alone\""));
+  EXPECT_THAT(text, HasSubstr("def SkelRoot \"person\""));
+  EXPECT_THAT(text, Not(HasSubstr("follower")));
+}
+
+TEST(FormatUsda, RefusesPeopleWhoAreNotTwoOfTheSkeletons) {
+  const auto error = [](const std::vector<motion::Clip>& people) {
+    return std::string(FormatUsda(people, motion::SbuSkeleton(), nullptr).status().message());
+  };
+  EXPECT_THAT(error({}), HasSubstr("people: came 0, wanted one or two"));
+  motion::Clip other = Person();
+  other.joint_names[0] = "skull";
+  EXPECT_THAT(error({other}), HasSubstr("wanted the skeleton's 15 in its order"));
+  motion::Clip longer = Person();
+  longer.Append(std::vector<motion::Vec3>(15));
+  EXPECT_THAT(error({Person(), longer}), HasSubstr("wanted the same joints, frames and rate"));
+}
+
+}  // namespace
+}  // namespace duet::formats::usd
