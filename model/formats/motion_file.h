@@ -89,8 +89,8 @@ struct WriteOptions {
 };
 inline constexpr int kMostBvhKeysPerFrame = 16;
 
-// Writes a pair: .glb, .gltf, .usda, .csv, .npy, .json and .txt (in SBU's own unit) as one file; .bvh
-// as <stem>.leader.bvh and <stem>.follower.bvh in one shared world. Returns the files written.
+// Writes a pair: .glb, .gltf, .usda, .csv, .npy, .json and .txt (in SBU's own unit) as one file;
+// .bvh as <stem>.leader.bvh and <stem>.follower.bvh in one shared world. Returns the files written.
 //
 // Errors: INVALID_ARGUMENT for an unknown extension, joints other than the skeleton's, people of
 //         different length, positions that are not finite; PERMISSION_DENIED.

@@ -12,8 +12,8 @@ namespace {
 using test::IsOk;
 using test::RandomClassifier;
 using test::StatusIs;
-using ::testing::HasSubstr;
 using ::testing::_;
+using ::testing::HasSubstr;
 
 TEST(ClassifierFiles, WhatIsWrittenIsReadBack) {
   const test::TemporaryFolder folder;

@@ -30,9 +30,9 @@ motion::ClipPair Pair(int frames) {
 
 motion::ClipPair Part(const motion::ClipPair& pair, int first, int frames) {
   motion::ClipPair part = pair;
-  for (auto& [clip, from] : {std::pair<motion::Clip*, const motion::Clip*>{&part.leader,
-                                                                            &pair.leader},
-                             {&part.follower, &pair.follower}}) {
+  for (auto& [clip, from] :
+       {std::pair<motion::Clip*, const motion::Clip*>{&part.leader, &pair.leader},
+        {&part.follower, &pair.follower}}) {
     clip->poses = motion::Poses(0, from->joint_count());
     clip->poses.Append(from->poses.frames(first, frames));
   }
@@ -82,8 +82,8 @@ TEST(Classifier, NamesWhatDoesNotFit) {
                        HasSubstr("0.layer1_weight_ih: came 2 x 16 x 136, wanted 2 x 16 x 135")));
   parts = RandomClassifier();
   parts.tensors.pop_back();
-  EXPECT_THAT(Classifier::Create(parts), StatusIs(absl::StatusCode::kInvalidArgument,
-                                                  HasSubstr("1.output.bias: came none")));
+  EXPECT_THAT(Classifier::Create(parts),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("1.output.bias: came none")));
   parts = RandomClassifier();
   parts.tensors.push_back({"more", {1}, {0}});
   EXPECT_THAT(Classifier::Create(parts),

@@ -26,8 +26,8 @@ classifier::ClassifierParts RandomClassifier() {
     parts.tensors.push_back(std::move(tensor));
   };
   const int64_t hidden = parts.hidden;
-  const int64_t inputs = 3 * classifier::InputParts(classifier::Sees::kFollower) *
-                         parts.skeleton.joint_count();
+  const int64_t inputs =
+      3 * classifier::InputParts(classifier::Sees::kFollower) * parts.skeleton.joint_count();
   for (const std::string network : {"0.", "1."}) {
     for (const auto& [layer, count] : {std::pair<std::string, int64_t>{"layer1_", inputs},
                                        std::pair<std::string, int64_t>{"layer2_", 2 * hidden}}) {

@@ -1,8 +1,7 @@
+#include <map>
 #include <string>
 
 #include "client/batch/recipe_file.h"
-#include <map>
-
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "model/classifier/classifier_files.h"
@@ -144,9 +143,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadRecipe{"filter { max_lean_degrees: -1 }", "filter.max_lean_degrees: came -1"},
         BadRecipe{"filter { retries_per_item: 101 }", "retries_per_item: came 101"},
         BadRecipe{"filter { classifier { min_probability: 0.5 } }", "classifier.model: came none"},
-        BadRecipe{"filter { classifier { model: 'none' min_probability: 2 } }",
-                  "none/judge.json: no such file"},
         BadRecipe{"input { format: 'fbx' }", "input.format: came \"fbx\", wanted amc, bvh"},
+        BadRecipe{"input { format: 'usda' }", "input.format: came \"usda\", wanted amc, bvh"},
         BadRecipe{"input { unit: 'feet' }", "input.unit: came \"feet\""},
         BadRecipe{"input { frame_rate_hz: 0 }", "input.frame_rate_hz: came 0"},
         BadRecipe{"output { formats: FORMAT_NPY shard_bytes: 0 }", "shard_bytes: came 0"},
@@ -183,11 +181,30 @@ TEST(ReadRecipe, AClassifierIsWhatItHoldsNotWhereItLies) {
   EXPECT_EQ(recipes["c"]->filter.min_class_probability, 0.5);
 }
 
+TEST(ReadRecipe, AClassifierThatIsNotThereOrAsksForMoreThanAllIsRefused) {
+  const test::TemporaryFolder folder;
+  ASSERT_THAT(WriteClassifier(folder / "judge", test::RandomClassifier()), IsOk());
+  const auto read = [&folder](const std::string& filter) {
+    return ParseRecipe("filter { classifier { " + filter + " } } output { formats: FORMAT_NPY }",
+                       false, folder.path())
+        .status();
+  };
+  EXPECT_THAT(read("model: 'judge' min_probability: 1"), IsOk());
+  EXPECT_THAT(read("model: 'none' min_probability: 0.5"),
+              StatusIs(absl::StatusCode::kNotFound, HasSubstr("none/judge.json: no such file")));
+  for (const char* probability : {"2", "0", "-1"}) {
+    EXPECT_THAT(read(std::string("model: 'judge' min_probability: ") + probability),
+                StatusIs(absl::StatusCode::kInvalidArgument,
+                         HasSubstr(std::string("filter.classifier.min_probability: came ") +
+                                   probability + ", wanted above 0, at most 1")));
+  }
+}
+
 TEST(ReadRecipe, TheFlagForTheFormatWins) {
   RecipeOverrides overrides;
   overrides.input_format = "sbu";
-  const auto recipe = ParseRecipe("input { format: 'bvh' } output { formats: FORMAT_NPY }", false,
-                                  {}, overrides);
+  const auto recipe =
+      ParseRecipe("input { format: 'bvh' } output { formats: FORMAT_NPY }", false, {}, overrides);
   ASSERT_THAT(recipe, IsOk());
   EXPECT_EQ(recipe->input.format, formats::Format::kSbuText);
 }

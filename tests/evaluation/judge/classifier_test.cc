@@ -51,8 +51,7 @@ TEST(MotionClassifier, GivesTheSameWithoutLibTorch) {
   std::vector<int> all;
   for (size_t i = 0; i < dataset.sequences.size(); ++i) {
     dataset::Sequence& sequence = dataset.sequences[i];
-    sequence.partner_direction =
-        classifier::DirectionToFollower(dataset.skeleton, sequence.pair);
+    sequence.partner_direction = classifier::DirectionToFollower(dataset.skeleton, sequence.pair);
     all.push_back(static_cast<int>(i));
   }
   for (const int epochs : {0, 3}) {
