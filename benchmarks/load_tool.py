@@ -13,6 +13,8 @@ def run_load(build, address, *flags):
                              stdout=subprocess.PIPE, text=True, check=False).stdout
     step = json.loads(printed)["steps"][0]
     times = step["answers"]["whole_call_ms"]
+    first = step["answers"]["first_chunk_ms"]
     return {"clips_per_second": step["answered_per_second"], "p50_ms": times.get("p50", 0),
+            "first_chunk_p50_ms": first.get("p50", 0),
             "p99_ms": times.get("p99", 0),
             "failed": {code: count for code, count in step["ended"].items() if code != "OK"}}

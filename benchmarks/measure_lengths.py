@@ -1,0 +1,91 @@
+#!/usr/bin/env python3
+"""What a clip costs by its length: time, time to its first chunk, the server's processor time and
+memory; and what a call adds to the engine's own time.
+
+    benchmarks/measure_lengths.py BUILD [--model sbu@2] [--rounds 3]
+
+Each length has a server of its own, so that the peak of its memory is that length's alone; it is
+asked by one caller. The engine alone is BUILD/benchmarks/synthesis_benchmark with clips of the same
+length in the same rounds. Prints the middle of the rounds; ratios are to the length before.
+"""
+
+import argparse
+import json
+import math
+import os
+import pathlib
+import re
+import statistics
+import subprocess
+import tempfile
+
+from load_tool import run_load
+from measure_batching import start_server
+
+CALLS = {46: 200, 460: 40, 4600: 8, 9000: 4}  # by frames, up to the ten minutes that a server takes
+TICK_SECONDS = 1 / os.sysconf("SC_CLK_TCK")
+
+
+def processor_seconds(pid):
+    fields = pathlib.Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) * TICK_SECONDS
+
+
+def megabytes(pid, field):
+    status = pathlib.Path(f"/proc/{pid}/status").read_text(encoding="utf-8")
+    return int(re.search(rf"{field}:\s+(\d+)", status)[1]) / 1024
+
+
+def measure(build, model, frames):
+    with tempfile.TemporaryDirectory() as folder:
+        server, address = start_server(build / "bin/duet-server", pathlib.Path(folder) / "log", 16)
+        try:
+            before = processor_seconds(server.pid), megabytes(server.pid, "VmRSS")
+            found = run_load(build, address, "--frames", frames, "--model", model, "--warm-up", 0,
+                             "--calls", CALLS[frames])
+            if found["failed"]:
+                raise SystemExit(f"{frames} frames: {found['failed']}")
+            seconds = processor_seconds(server.pid) - before[0]
+            return {"whole": found["p50_ms"], "first": found["first_chunk_p50_ms"],
+                    "microseconds": seconds * 1e6 / CALLS[frames] / frames,
+                    "megabytes": megabytes(server.pid, "VmHWM") - before[1]}
+        finally:
+            server.terminate()
+            server.wait()
+
+
+def alone(build, model, frames):
+    """Milliseconds of the engine for one clip, in the precision that this processor's server has."""
+    name, _, version = model.partition("@")
+    printed = subprocess.run(
+        [build / "benchmarks/synthesis_benchmark", "--benchmark_format=json",
+         f"--benchmark_filter=clip/{name}@{version}/(f32|bf16)/{frames}$"],
+        env={**os.environ, "OMP_NUM_THREADS": "1"}, stdout=subprocess.PIPE, check=True).stdout or '{"benchmarks": []}'
+    times = [run["real_time"] for run in json.loads(printed)["benchmarks"]]
+    return min(times, default=math.nan)  # it has no clips of ten minutes
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
+    parser.add_argument("build", type=pathlib.Path)
+    parser.add_argument("--model", default="sbu@2")
+    parser.add_argument("--rounds", type=int, default=3)
+    chosen = parser.parse_args()
+    print("| frames | first chunk, ms | whole call, ms | engine alone, ms | server's time, us a frame "
+          "| ratio | memory above idle, MB |\n" + "|---" * 7 + "|")
+    last = None
+    for frames in CALLS:
+        rounds = [(measure(chosen.build, chosen.model, frames), alone(chosen.build, chosen.model, frames))
+                  for _ in range(chosen.rounds)]
+        middle = {key: statistics.median(call[key] for call, _ in rounds) for key in rounds[0][0]}
+        engine = statistics.median(engine for _, engine in rounds)
+        engine = "" if math.isnan(engine) else f"{engine:.2f}"
+        cost = middle["microseconds"]
+        print(f"| {frames} | {middle['first']:.2f} | {middle['whole']:.2f} | {engine} | "
+              f"{cost:.1f} | {f'{cost / last:.2f}' if last else ''} | "
+              f"{middle['megabytes']:.1f} |", flush=True)
+        last = cost
+
+
+if __name__ == "__main__":
+    main()
