@@ -181,8 +181,9 @@ absl::StatusOr<std::unique_ptr<LeaderSource>> ListLeaders(
     if (!status.ok()) return status;
   }
   if (list->empty()) {
-    return absl::InvalidArgumentError(absl::StrCat(
+    const absl::Status none = absl::InvalidArgumentError(absl::StrCat(
         "leaders: came no motion file, wanted one or more: ", formats::kReadableExtensions));
+    return format.has_value() ? none : MendedBy(none, motion::ReadingSetting::kFormat);
   }
   return std::unique_ptr<LeaderSource>(std::move(list));
 }

@@ -62,9 +62,9 @@ absl::Status Run(const Arguments& arguments) {
   std::cout << absl::StrFormat("trained on %d followers of %d classes\n", split.train.size(),
                                dataset->class_count());
   if (!split.test.empty()) {
-    std::cout << absl::StrFormat("of %d followers without %s: %.1f %% in their class\n",
-                                 split.test.size(), arguments.hold_out,
-                                 100 * Accuracy(*judge, *dataset, split.test));
+    std::cout << absl::StrFormat(
+        "of %d followers in clips of %s, which it did not see: %.1f %% in their class\n",
+        split.test.size(), arguments.hold_out, 100 * Accuracy(*judge, *dataset, split.test));
   }
   absl::Status status = classifier::WriteClassifier(arguments.out, judge->Parts(*dataset));
   if (status.ok()) std::cout << "wrote " << arguments.out << "\n";

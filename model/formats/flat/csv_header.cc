@@ -193,8 +193,7 @@ class HeaderReader {
       people += column.kind == CsvColumn::Kind::kPerson ? 1 : 0;
       frames += column.kind == CsvColumn::Kind::kFrame || column.kind == CsvColumn::Kind::kTime;
     }
-    if (axes[0] == 1 && axes[1] == 1 && axes[2] == 1 && joints == 1 && people <= 1 &&
-        frames > 0) {
+    if (axes[0] == 1 && axes[1] == 1 && axes[2] == 1 && joints == 1 && people <= 1 && frames > 0) {
       return absl::OkStatus();
     }
     return absl::InvalidArgumentError(

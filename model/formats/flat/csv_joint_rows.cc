@@ -48,7 +48,8 @@ absl::StatusOr<std::size_t> CsvJointRows::FindJoint(std::size_t person, absl::st
       known_joints_.emplace(std::make_pair(person, std::string(name)), joints_.size());
   if (!is_new) return known->second;
   if (joints_.size() == motion::kMaxFileJoints) {
-    return absl::InvalidArgumentError(absl::StrCat("more than ", motion::kMaxFileJoints, " joints"));
+    return absl::InvalidArgumentError(
+        absl::StrCat("more than ", motion::kMaxFileJoints, " joints"));
   }
   joints_.push_back({person, static_cast<int>(joint_names_[person].size())});
   joint_names_[person].emplace_back(name);
@@ -79,10 +80,9 @@ absl::StatusOr<std::vector<motion::Clip>> CsvJointRows::Collect() const {
     const Joint& joint = joints_[cell.joint];
     motion::Clip& person = people[joint.person];
     if (given[place]) {
-      return absl::InvalidArgumentError(
-          absl::StrCat(base::Quoted(person.joint_names[static_cast<std::size_t>(joint.place)]),
-                       " comes twice in the frame that is number ", cell.frame + 1,
-                       " of the file", Hint()));
+      return absl::InvalidArgumentError(absl::StrCat(
+          base::Quoted(person.joint_names[static_cast<std::size_t>(joint.place)]),
+          " comes twice in the frame that is number ", cell.frame + 1, " of the file", Hint()));
     }
     given[place] = true;
     person.at(cell.frame, joint.place) = cell.position;

@@ -7,6 +7,7 @@
 #include "client/batch/manifest.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "model/motion/reading_setting.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
@@ -161,9 +162,14 @@ TEST_F(ListLeadersTest, AFormatThatIsSaidMakesNamesFree) {
   auto source = ListLeaders({folder_.path().string()}, formats::Format::kBvh);
   ASSERT_THAT(source, IsOk());
   // notes.md might be one; a.csv, c.npy and d.usda say that they are none.
-  EXPECT_THAT(Keys(*ReadAll(**source)), ElementsAre("walks/a", "walks/b", "walks/notes",
-                                                    "walks/take1", "walks/take2"));
+  EXPECT_THAT(Keys(*ReadAll(**source)),
+              ElementsAre("walks/a", "walks/b", "walks/notes", "walks/take1", "walks/take2"));
   EXPECT_THAT(List({"walks/take2.mocap"}), StatusIs(absl::StatusCode::kInvalidArgument, _));
+  std::filesystem::create_directories(folder_ / "unnamed");
+  test::WriteTestFile(folder_ / "unnamed/take3", "");
+  const absl::Status none = List({"unnamed"}).status();
+  EXPECT_THAT(none, StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("no motion file")));
+  EXPECT_EQ(motion::MendingSetting(none), motion::ReadingSetting::kFormat);
   source = ListLeaders({(folder_ / "walks/take2.mocap").string()}, formats::Format::kBvh);
   EXPECT_THAT(source, IsOk());
 }

@@ -58,8 +58,7 @@ TEST(Help, TellsWhichFormatsAreReadAndWritten) {
        {".gltf", ".glb", ".usda", ".bvh", ".amc", ".csv", ".json", ".npy", ".txt"}) {
     ASSERT_TRUE(told.count(extension)) << extension;
     const std::string file = absl::StrCat("a", extension);
-    EXPECT_EQ(told[extension].first, formats::IsReadable(std::filesystem::path(file)))
-        << extension;
+    EXPECT_EQ(told[extension].first, formats::IsReadable(std::filesystem::path(file))) << extension;
     EXPECT_EQ(told[extension].second, formats::IsWritable(std::filesystem::path(file)))
         << extension;
   }
