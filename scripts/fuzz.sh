@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# Builds the fuzzers (Clang 14, libFuzzer, AddressSanitizer, UndefinedBehaviorSanitizer) and runs them
-# one after the other; fails when one finds something. docs/fuzzing.md says how to go on from there.
-#   scripts/fuzz.sh [--seconds N] [--report] [TARGET...]
+# Builds the fuzzers (Clang 14, libFuzzer, AddressSanitizer, UndefinedBehaviorSanitizer) and runs them;
+# fails when one finds something. docs/fuzzing.md says how to go on from there.
+#   scripts/fuzz.sh [--seconds N] [--jobs N] [--report] [TARGET...]
 #       --seconds N   processor time for each target, 60 when absent
+#       --jobs N      targets at a time, 1 when absent
 #       --report      puts what came of it into the table of docs/fuzzing.md
 #       TARGET        folders of tests/fuzz/corpus, all of them when absent
 set -euo pipefail
@@ -11,9 +12,9 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 options=() targets=()
 while [[ $# -gt 0 ]]; do
   case "$1" in
-    --seconds) options+=("$1" "${2:?--seconds wants a number}") && shift 2 ;;
+    --seconds | --jobs) options+=("$1" "${2:?$1 wants a number}") && shift 2 ;;
     --report) options+=(--report docs/fuzzing.md) && shift ;;
-    -*) sed -n '2,7s/^# \{0,1\}//p' "$0" >&2 && exit 2 ;;
+    -*) sed -n '2,8s/^# \{0,1\}//p' scripts/fuzz.sh >&2 && exit 2 ;;
     *) targets+=("$1") && shift ;;
   esac
 done

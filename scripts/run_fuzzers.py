@@ -1,15 +1,17 @@
 #!/usr/bin/env python3
-"""Runs built fuzzers one after the other and tells what came of it; scripts/fuzz.sh calls it.
+"""Runs built fuzzers and tells what came of it; scripts/fuzz.sh calls it.
 
-    scripts/run_fuzzers.py [--seconds N] [--report FILE] BUILD_FOLDER TARGET...
+    scripts/run_fuzzers.py [--seconds N] [--jobs N] [--report FILE] BUILD_FOLDER TARGET...
 
 Each target gets N seconds of processor time, however long that takes on a busy machine. What it finds
 comes to BUILD_FOLDER/findings/TARGET/, what it learns stays in BUILD_FOLDER/corpus/TARGET/ for the next
 run. An input that takes more than a second of processor time is a finding as well. With --report the
-table between the two marks in FILE gets a row for each target, in place of the one that it had.
+table between the two marks in FILE gets a row for each target; one of the same revision is added to,
+so that a long run may be made in pieces, any other is replaced.
 """
 
 import argparse
+import concurrent.futures
 import dataclasses
 import os
 import pathlib
@@ -18,6 +20,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 
 FUZZ_FOLDER = pathlib.Path("tests/fuzz")
@@ -32,8 +35,9 @@ MEMORY_MIB = 2048
 PIECE_MIB = 64
 PIECES_MIB = {"batch_journal": 600}  # an offset for each item up to the last one
 
-HEADER = ("| target | inputs run | edges covered | processor seconds | findings | revision |",
-          "|---|--:|--:|--:|--:|---|")
+HEADER = ("| target | inputs run | a second | edges covered | processor seconds | findings "
+          "| revision |",
+          "|---|--:|--:|--:|--:|--:|---|")
 BEGIN, END = "<!-- fuzzing: begin -->", "<!-- fuzzing: end -->"
 
 
@@ -46,8 +50,18 @@ class Outcome:
     findings: int = 0
 
     def row(self, revision):
-        return (f"| `{self.target}` | {self.runs:,} | {self.edges:,} | {self.seconds:.0f} "
-                f"| {self.findings} | {revision} |")
+        rate = self.runs / self.seconds if self.seconds else 0
+        return (f"| `{self.target}` | {self.runs:,} | {rate:,.0f} | {self.edges:,} "
+                f"| {self.seconds:.0f} | {self.findings} | {revision} |")
+
+    def added_to(self, row, revision):
+        """This run and those that a row of the table tells of, where they are of one revision."""
+        cells = [cell.strip() for cell in row.split("|")]
+        if cells[7] != revision or revision.endswith("+"):
+            return self
+        runs, _, edges, seconds, findings = (int(cell.replace(",", "")) for cell in cells[2:7])
+        return Outcome(self.target, self.runs + runs, max(self.edges, edges),
+                       self.seconds + seconds, self.findings + findings)
 
 
 def read_output(text):
@@ -58,12 +72,14 @@ def read_output(text):
     return int(runs[1]) if runs else last, int(counts[-1][1]) if counts else 0
 
 
-def merge_rows(document, rows):
-    """The document with these rows ({target: row}) in its table; targets by name."""
+def merge_outcome(document, outcome, revision):
+    """The document with this outcome in its table; targets by name."""
     before, rest = document.split(BEGIN)
     table, after = rest.split(END)
     kept = {row.split("`")[1]: row for row in table.splitlines() if row.startswith("| `")}
-    kept.update(rows)
+    if outcome.target in kept:
+        outcome = outcome.added_to(kept[outcome.target], revision)
+    kept[outcome.target] = outcome.row(revision)
     lines = [BEGIN, *HEADER, *(kept[target] for target in sorted(kept)), END]
     return before + "\n".join(lines) + after
 
@@ -157,24 +173,29 @@ def revision():
 def main():
     parser = argparse.ArgumentParser(description="Runs built fuzzers.")
     parser.add_argument("--seconds", type=float, default=60)
+    parser.add_argument("--jobs", type=int, default=1, help="targets at a time")
     parser.add_argument("--report", type=pathlib.Path)
     parser.add_argument("build", type=pathlib.Path)
     parser.add_argument("targets", nargs="+")
     options = parser.parse_args()
     built = revision()
-    findings = 0
-    for target in options.targets:
+    one_tells = threading.Lock()
+
+    def fuzz(target):
         begin = time.monotonic()
         outcome = Fuzzer(options.build, target).fuzz(options.seconds)
-        findings += outcome.findings
-        print(f"{target}: {outcome.runs} inputs, {outcome.edges} edges, "
-              f"{outcome.seconds:.0f} s of processor time in {time.monotonic() - begin:.0f} s, "
-              f"{outcome.findings} findings", flush=True)
-        if options.report:
-            document = options.report.read_text(encoding="utf-8")
-            options.report.write_text(merge_rows(document, {target: outcome.row(built)}),
-                                      encoding="utf-8")
-    return 1 if findings else 0
+        with one_tells:
+            print(f"{target}: {outcome.runs} inputs, {outcome.edges} edges, "
+                  f"{outcome.seconds:.0f} s of processor time in {time.monotonic() - begin:.0f} s, "
+                  f"{outcome.findings} findings", flush=True)
+            if options.report:
+                document = options.report.read_text(encoding="utf-8")
+                options.report.write_text(merge_outcome(document, outcome, built),
+                                          encoding="utf-8")
+        return outcome.findings
+
+    with concurrent.futures.ThreadPoolExecutor(options.jobs) as jobs:
+        return 1 if sum(jobs.map(fuzz, options.targets)) else 0
 
 
 if __name__ == "__main__":

@@ -28,15 +28,32 @@ class ReadOutputTest(unittest.TestCase):
         self.assertEqual(run_fuzzers.read_output("no such program"), (0, 0))
 
 
-class MergeRowsTest(unittest.TestCase):
-    def test_rows_are_sorted_and_replaced(self):
-        rows = {name: run_fuzzers.Outcome(name, 1234, 56, 7.6, 0).row("abc") for name in "ba"}
-        once = run_fuzzers.merge_rows(DOCUMENT, rows)
-        self.assertIn("| `a` | 1,234 | 56 | 8 | 0 | abc |\n| `b` |", once)
-        again = run_fuzzers.merge_rows(
-            once, {"a": run_fuzzers.Outcome("a", 1, 2, 3, 4).row("def")})
-        self.assertIn("| `a` | 1 | 2 | 3 | 4 | def |\n| `b` | 1,234 |", again)
-        self.assertTrue(again.startswith("Before.\n") and again.endswith("\nAfter.\n"))
+class MergeOutcomeTest(unittest.TestCase):
+    def setUp(self):
+        self.document = DOCUMENT
+        for name in "ba":
+            self.merge(run_fuzzers.Outcome(name, 1234, 56, 7.6, 0), "abc")
+
+    def merge(self, outcome, revision):
+        self.document = run_fuzzers.merge_outcome(self.document, outcome, revision)
+
+    def test_rows_are_sorted(self):
+        self.assertIn("| `a` | 1,234 | 162 | 56 | 8 | 0 | abc |\n| `b` |", self.document)
+        self.assertTrue(self.document.startswith("Before.\n"))
+        self.assertTrue(self.document.endswith("\nAfter.\n"))
+
+    def test_another_revision_takes_a_rows_place(self):
+        self.merge(run_fuzzers.Outcome("a", 1, 2, 4, 4), "def")
+        self.assertIn("| `a` | 1 | 0 | 2 | 4 | 4 | def |\n| `b` | 1,234 |", self.document)
+
+    def test_the_same_revision_adds_up(self):
+        self.merge(run_fuzzers.Outcome("a", 66, 50, 2, 1), "abc")
+        self.assertIn("| `a` | 1,300 | 130 | 56 | 10 | 1 | abc |\n", self.document)
+
+    def test_changes_that_nobody_committed_may_be_others(self):
+        for runs in (1, 2):
+            self.merge(run_fuzzers.Outcome("a", runs, 2, 2, 0), "abc+")
+        self.assertIn("| `a` | 2 | 1 | 2 | 2 | 0 | abc+ |\n", self.document)
 
 
 class FuzzerTest(unittest.TestCase):

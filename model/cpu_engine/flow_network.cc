@@ -62,13 +62,16 @@ FlowNetwork::FlowNetwork(const checkpoint::Checkpoint& checkpoint, Precision pre
   norm_ = {weights.Values("norm.weight"), weights.Values("norm.bias"), width_, 1};
   output_ = exact("output");
   for (int i = 0; i < manifest_.flow->blocks; ++i) {
-    const auto packed = [&](const char* name) {
-      return weights.FindLayer(absl::StrCat("block", i, ".", name)).Pack(precision);
+    const auto packed = [&](const char* name, Precision as) {
+      return weights.FindLayer(absl::StrCat("block", i, ".", name)).Pack(as);
     };
     blocks_.push_back({exact(absl::StrCat("block", i, ".modulation")),
                        exact(absl::StrCat("block", i, ".attention")),
-                       exact(absl::StrCat("block", i, ".attended")), packed("expand"),
-                       packed("contract"), weights.Values(absl::StrCat("block", i, ".distance"))});
+                       exact(absl::StrCat("block", i, ".attended")), packed("expand", precision),
+                       // What is rounded first goes through all that follows: exact, it halves what
+                       // rounding moves.
+                       packed("contract", i == 0 ? Precision::kFloat32 : precision),
+                       weights.Values(absl::StrCat("block", i, ".distance"))});
   }
 }
 

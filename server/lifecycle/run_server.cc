@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdint>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -124,6 +125,8 @@ int RunServer(int argc, const char* const* argv, const EngineOpener& open_engine
     return CheckConfig(*options, *source, std::cout) ? kExitStopped : kExitFailed;
   }
   RaiseDescriptorLimit();
+  // Whoever reads the log may go away: its lines are lost then, and no call.
+  std::signal(SIGPIPE, SIG_IGN);
   metrics::QueuedLogSink::Options log;
   log.drop_notice = [](std::uint64_t dropped) { return metrics::DroppedLinesNotice(dropped); };
   if (options->logging.format == config::LoggingOptions::Format::kText) {

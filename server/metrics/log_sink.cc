@@ -1,13 +1,29 @@
 #include "server/metrics/log_sink.h"
 
+#include <cstddef>
+#include <string>
+
 namespace duet::server::metrics {
 
-void StreamLogSink::Write(std::string_view line) {
-  std::string whole(line);
+StreamLogSink::StreamLogSink(std::FILE* stream) : stream_(stream) {
+  // What a buffer held back on a full disk would come out later, in the middle of other lines.
+  std::setvbuf(stream_, nullptr, _IONBF, 0);
+}
+
+bool StreamLogSink::Write(std::string_view line) {
+  common::MutexLock lock(mutex_);
+  std::string whole = torn_ ? "\n" : "";
+  whole += line;
   whole += '\n';
-  // One fwrite holds the stream's lock throughout, so lines of different threads do not mix.
-  std::fwrite(whole.data(), 1, whole.size(), stream_);
-  std::fflush(stream_);
+  const std::size_t written = std::fwrite(whole.data(), 1, whole.size(), stream_);
+  if (written == whole.size()) {
+    torn_ = false;
+    return true;
+  }
+  // With nothing written what was torn is torn still; with the newline alone the stream is whole.
+  if (written > 0) torn_ = whole[written - 1] != '\n';
+  ++dropped_;
+  return false;
 }
 
 }  // namespace duet::server::metrics

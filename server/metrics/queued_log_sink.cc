@@ -13,16 +13,17 @@ class QueuedLogSink::Queue {
   Queue(std::shared_ptr<LogSink> sink, Options options)
       : sink_(std::move(sink)), options_(std::move(options)) {}
 
-  void Push(std::string_view line) {
+  bool Push(std::string_view line) {
     {
       common::MutexLock lock(mutex_);
       if (lines_.size() >= options_.capacity) {
         ++dropped_;
-        return;
+        return false;
       }
       lines_.emplace_back(line);
     }
     changed_.NotifyAll();
+    return true;
   }
 
   std::uint64_t dropped() const {
@@ -33,10 +34,15 @@ class QueuedLogSink::Queue {
   // The writing thread: writes until closed and empty.
   void Run() {
     Batch batch;
+    std::uint64_t told = 0;  // lost lines that a notice told of
     while (Next(&batch)) {
-      for (const std::string& line : batch.lines) sink_->Write(line);
+      std::uint64_t lost = 0;
+      for (const std::string& line : batch.lines) lost += sink_->Write(line) ? 0 : 1;
+      CountLost(lost);
       // Lines are dropped only while the queue is full, so they came after those of the batch.
-      if (batch.dropped > 0) sink_->Write(options_.drop_notice(batch.dropped));
+      // While nothing can be written the notice is lost as well, and the next one tells of all.
+      const std::uint64_t untold = batch.dropped + lost - told;
+      if (untold > 0 && sink_->Write(options_.drop_notice(untold))) told += untold;
     }
     common::MutexLock lock(mutex_);
     finished_ = true;
@@ -57,7 +63,7 @@ class QueuedLogSink::Queue {
  private:
   struct Batch {
     std::vector<std::string> lines;
-    std::uint64_t dropped = 0;
+    std::uint64_t dropped = 0;  // lines lost before it was taken, since the beginning
   };
 
   // Waits for lines and takes all there are; false when there will be none.
@@ -65,8 +71,13 @@ class QueuedLogSink::Queue {
     common::MutexLock lock(mutex_);
     while (lines_.empty() && !closed_) changed_.Wait(mutex_);
     batch->lines = std::exchange(lines_, {});
-    batch->dropped = dropped_ - std::exchange(reported_, dropped_);
+    batch->dropped = dropped_;
     return !batch->lines.empty();
+  }
+
+  void CountLost(std::uint64_t lines) {
+    common::MutexLock lock(mutex_);
+    dropped_ += lines;
   }
 
   const std::shared_ptr<LogSink> sink_;
@@ -75,7 +86,6 @@ class QueuedLogSink::Queue {
   common::CondVar changed_;
   std::vector<std::string> lines_ DUET_GUARDED_BY(mutex_);
   std::uint64_t dropped_ DUET_GUARDED_BY(mutex_) = 0;
-  std::uint64_t reported_ DUET_GUARDED_BY(mutex_) = 0;  // dropped lines that a batch has reported
   bool closed_ DUET_GUARDED_BY(mutex_) = false;
   bool finished_ DUET_GUARDED_BY(mutex_) = false;
 };
@@ -93,7 +103,7 @@ QueuedLogSink::~QueuedLogSink() {
   }
 }
 
-void QueuedLogSink::Write(std::string_view line) { queue_->Push(line); }
+bool QueuedLogSink::Write(std::string_view line) { return queue_->Push(line); }
 
 std::uint64_t QueuedLogSink::dropped_lines() const { return queue_->dropped(); }
 

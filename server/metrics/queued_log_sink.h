@@ -16,7 +16,8 @@ namespace duet::server::metrics {
 
 // Puts a bounded queue and a thread of its own before a sink that may be slow or stuck, such as a
 // pipe that nobody reads: Write never waits. Lines that find the queue full are dropped and
-// counted; a line that says how many follows as soon as the sink takes lines again.
+// counted, as are those that the sink loses; a line that says how many follows as soon as the sink
+// takes lines again.
 //
 //   QueuedLogSink log(std::make_shared<StreamLogSink>(stderr), options);
 //   ... log.Write(line) from any thread ...
@@ -29,7 +30,7 @@ class QueuedLogSink final : public LogSink {
     std::size_t capacity = 4096;  // waiting lines, 1 or more
     // How long the destructor waits for a sink that is stuck before it gives up the lines left.
     std::chrono::milliseconds patience = std::chrono::seconds(5);
-    // The line that reports dropped lines. Required; called on the writing thread.
+    // The line that reports lost lines. Required; called on the writing thread.
     std::function<std::string(std::uint64_t dropped)> drop_notice;
   };
 
@@ -40,7 +41,7 @@ class QueuedLogSink final : public LogSink {
   QueuedLogSink(const QueuedLogSink&) = delete;
   QueuedLogSink& operator=(const QueuedLogSink&) = delete;
 
-  void Write(std::string_view line) override;
+  bool Write(std::string_view line) override;
   std::uint64_t dropped_lines() const override;
 
  private:

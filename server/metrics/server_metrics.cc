@@ -141,7 +141,7 @@ ServerMetrics::ServerMetrics()
       log_lines_dropped_(
           BuildCounter()
               .Name("duet_log_lines_dropped_total")
-              .Help("Log lines dropped because whoever reads the log did not keep up.")
+              .Help("Log lines lost: their reader did not keep up, or they could not be written.")
               .Register(registry_)
               .Add({})),
       refusals_(BuildCounter()

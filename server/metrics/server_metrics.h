@@ -74,7 +74,7 @@ struct ServedVersion {
 // Of tracing, where it is on:
 //   duet_spans_sent_total, duet_spans_dropped_total    spans taken by the collector, and lost
 // Of the log:
-//   duet_log_lines_dropped_total                       lines lost to a slow reader of the log
+//   duet_log_lines_dropped_total                       lines lost to a slow reader, a full disk
 //
 // Threads: safe to call concurrently.
 class ServerMetrics final : public CallObserver, public batching::WindowObserver {

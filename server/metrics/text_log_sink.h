@@ -23,7 +23,7 @@ std::string ToText(std::string_view json_line);
 class TextLogSink final : public LogSink {
  public:
   explicit TextLogSink(std::shared_ptr<LogSink> sink) : sink_(std::move(sink)) {}
-  void Write(std::string_view line) override { sink_->Write(ToText(line)); }
+  bool Write(std::string_view line) override { return sink_->Write(ToText(line)); }
   std::uint64_t dropped_lines() const override { return sink_->dropped_lines(); }
 
  private:

@@ -12,7 +12,6 @@ import json
 import os
 import pathlib
 import shutil
-import socket
 import subprocess
 import tempfile
 import unittest
@@ -86,11 +85,7 @@ class ApiServer:
     """etcd and an API server on the loopback, in a folder of their own."""
 
     def __init__(self, folder, stack):
-        with contextlib.ExitStack() as ports:
-            sockets = [ports.enter_context(socket.socket()) for _ in range(3)]
-            for one in sockets:
-                one.bind(("127.0.0.1", 0))
-            clients, peers, port = (one.getsockname()[1] for one in sockets)
+        clients, peers, port = tools.free_ports(3)
         self._log = stack.enter_context(open(folder / "log", "w", encoding="utf-8"))
         self._stack = stack
         self._start("etcd", "--data-dir", folder / "etcd",

@@ -211,8 +211,8 @@ class BatchTest(unittest.TestCase):
 
     def test_a_server_that_goes_and_comes_back_costs_nothing(self):
         recipe, out = self.recipe(), self.out()
-        server = tools.Server()
-        port = server.port
+        port = tools.free_port()
+        server = tools.Server(port=port)
         client = subprocess.Popen(
             self.command(out, recipe, "--patience", "60", server=server.address),
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
@@ -230,8 +230,8 @@ class BatchTest(unittest.TestCase):
     def test_a_server_that_comes_late_is_waited_for(self):
         # gRPC's own look at a lost connection every five seconds is left out: the client looks.
         environment = dict(os.environ, GRPC_CLIENT_CHANNEL_BACKUP_POLL_INTERVAL_MS="0")
-        with socket.create_server(("127.0.0.1", 0)) as listener:
-            port = listener.getsockname()[1]
+        port = tools.free_port()
+        with socket.create_server(("127.0.0.1", port)) as listener:
             client = subprocess.Popen(
                 self.command(self.out(), self.recipe(), "--limit", "2", "--quiet",
                              server=f"127.0.0.1:{port}"), env=environment)

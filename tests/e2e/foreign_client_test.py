@@ -27,7 +27,7 @@ class ForeignClientTest(unittest.TestCase):
 
     def request(self):
         """A standing leader who raises a hand; metres, z up, as Blender would send it."""
-        model = self.stub.GetModel(synthesis_pb2.GetModelRequest(), timeout=60).model
+        model = self.stub.GetModel(synthesis_pb2.GetModelRequest(), timeout=tools.RUN_SECONDS).model
         leader = motion_pb2.Motion(joint_names=model.joint_names, frame_rate_hz=24,
                                    unit=motion_pb2.LENGTH_UNIT_METRES,
                                    up_axis=motion_pb2.UP_AXIS_Z_UP, frame_count=FRAMES)
@@ -39,7 +39,8 @@ class ForeignClientTest(unittest.TestCase):
         return request
 
     def test_lists_models(self):
-        models = self.stub.ListModels(synthesis_pb2.ListModelsRequest(), timeout=60).models
+        models = self.stub.ListModels(synthesis_pb2.ListModelsRequest(),
+                                      timeout=tools.RUN_SECONDS).models
         self.assertEqual([(model.name, model.is_default) for model in models],
                          [("k3hi", False), ("sbu", True), ("sbu", False)])
         self.assertEqual(set(models[1].interaction_classes), set(tools.CLASSES))
@@ -49,7 +50,7 @@ class ForeignClientTest(unittest.TestCase):
     def test_synthesizes(self):
         request = self.request()
         request.chunk_frames = 8
-        responses = list(self.stub.Synthesize(request, timeout=60))
+        responses = list(self.stub.Synthesize(request, timeout=tools.RUN_SECONDS))
         kinds = [response.WhichOneof("payload") for response in responses]
         self.assertEqual(kinds[0], "header")
         self.assertEqual(kinds[-1], "summary")
@@ -80,7 +81,7 @@ class ForeignClientTest(unittest.TestCase):
     def test_a_subset_of_joints(self):
         request = self.request()
         request.reply_joint_names.extend(["right_hand", "head"])
-        responses = list(self.stub.Synthesize(request, timeout=60))
+        responses = list(self.stub.Synthesize(request, timeout=tools.RUN_SECONDS))
         self.assertEqual(list(responses[0].header.joint_names), ["right_hand", "head"])
         values = sum(len(response.chunk.positions) for response in responses)
         self.assertEqual(values, FRAMES * 2 * 3)
@@ -91,7 +92,7 @@ class ForeignClientTest(unittest.TestCase):
         request.leader.positions[5] = math.nan
         request.label_vector.weights.add(interaction_class="dance", weight=1)
         with self.assertRaises(grpc.RpcError) as caught:
-            list(self.stub.Synthesize(request, timeout=60))
+            list(self.stub.Synthesize(request, timeout=tools.RUN_SECONDS))
         self.assertEqual(caught.exception.code(), grpc.StatusCode.INVALID_ARGUMENT)
         trailers = dict(caught.exception.trailing_metadata())
         status = status_pb2.Status.FromString(trailers["grpc-status-details-bin"])
@@ -111,7 +112,7 @@ class ForeignClientTest(unittest.TestCase):
         request = synthesis_pb2.GetModelRequest()
         request.model.name = "nobody"
         with self.assertRaises(grpc.RpcError) as caught:
-            self.stub.GetModel(request, timeout=60)
+            self.stub.GetModel(request, timeout=tools.RUN_SECONDS)
         self.assertEqual(caught.exception.code(), grpc.StatusCode.NOT_FOUND)
 
 

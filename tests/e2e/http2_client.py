@@ -8,6 +8,7 @@ DATA, HEADERS, RST_STREAM, SETTINGS, PING, GOAWAY, WINDOW_UPDATE = 0, 1, 3, 4, 6
 END_STREAM, ACK, END_HEADERS = 1, 1, 4
 PREFACE = b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n"
 SETTING_INITIAL_WINDOW = 4
+SILENCE_SECONDS = 120  # a server that says nothing for so long, on a busy machine, has hung up
 
 
 def frame(kind, flags, stream, payload=b""):
@@ -39,7 +40,7 @@ class Connection:
     """One connection, blocking. With `window` the server may send so many bytes of each stream."""
 
     def __init__(self, port, source="127.0.0.1", window=None, host="127.0.0.1"):
-        self.socket = socket.create_connection((host, port), 30, source_address=(source, 0))
+        self.socket = socket.create_connection((host, port), SILENCE_SECONDS, source_address=(source, 0))
         settings = b"" if window is None else struct.pack(">HI", SETTING_INITIAL_WINDOW, window)
         self.socket.sendall(PREFACE + frame(SETTINGS, 0, 0, settings))
         self.next_stream = 1

@@ -6,7 +6,6 @@ import json
 import pathlib
 import re
 import shutil
-import socket
 import struct
 import subprocess
 import tempfile
@@ -27,14 +26,9 @@ TRACE, PARENT = "4bf92f3577b34da6a3ce929d0e0e4736", "00f067aa0ba902b7"  # the W3
 
 
 def get(port, path):
-    with urllib.request.urlopen(f"http://127.0.0.1:{port}{path}", timeout=60) as answer:
+    with urllib.request.urlopen(f"http://127.0.0.1:{port}{path}",
+                                timeout=tools.RUN_SECONDS) as answer:
         return answer.read().decode()
-
-
-def free_port():
-    with socket.socket() as listener:
-        listener.bind(("127.0.0.1", 0))
-        return listener.getsockname()[1]
 
 
 def needs(program, package="prometheus"):
@@ -106,7 +100,7 @@ class MetricsTest(unittest.TestCase):
             "rule_files": ["rules.yml"],
             "scrape_configs": [{"job_name": "duet", "static_configs": [
                 {"targets": [f"127.0.0.1:{self.server.metrics_port}"]}]}]}))
-        port = free_port()
+        port = tools.free_port()
         prometheus = subprocess.Popen(
             ["prometheus", f"--config.file={folder / 'prometheus.yml'}",
              f"--storage.tsdb.path={folder / 'data'}", f"--web.listen-address=127.0.0.1:{port}"],
@@ -233,8 +227,8 @@ class TraceTest(unittest.TestCase):
     def returned(stub, traceparent=None):
         """The traceparent that comes back with a reply."""
         metadata = (("traceparent", traceparent),) if traceparent else None
-        _, call = stub.ListModels.with_call(synthesis_pb2.ListModelsRequest(), timeout=60,
-                                            metadata=metadata)
+        _, call = stub.ListModels.with_call(synthesis_pb2.ListModelsRequest(),
+                                            timeout=tools.RUN_SECONDS, metadata=metadata)
         return dict(call.trailing_metadata()).get("traceparent")
 
     def test_a_trace_goes_through_the_server(self):
@@ -330,7 +324,7 @@ class LogTest(unittest.TestCase):
         begin = time.monotonic()
         for _ in range(300):
             with self.assertRaises(grpc.RpcError):
-                stub.GetModel(request, timeout=60)
+                stub.GetModel(request, timeout=tools.RUN_SECONDS)
         seconds = time.monotonic() - begin
 
         def counted():
@@ -345,7 +339,7 @@ class LogTest(unittest.TestCase):
     def test_a_part_of_the_successes_is_written(self):
         server, stub = self.start("--log-success-ratio", "0.1")
         for _ in range(40):
-            stub.ListModels(synthesis_pb2.ListModelsRequest(), timeout=60)
+            stub.ListModels(synthesis_pb2.ListModelsRequest(), timeout=tools.RUN_SECONDS)
         server.stop()
         self.assertEqual(len(server.events("call")), 4)
         self.assertEqual(server.events("call")[0]["sampled_ratio"], 0.1)

@@ -6,7 +6,6 @@ import os
 import pathlib
 import re
 import shutil
-import socket
 import subprocess
 import tempfile
 import unittest
@@ -19,12 +18,6 @@ PROXY = tools.SOURCE / "deploy/proxy"
 FLOOD = 60_000
 # Of a flood without a proxy every call reaches the server.
 REACH_THE_SERVER = FLOOD // 100
-
-
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
 
 
 def certificate(folder):
@@ -73,7 +66,7 @@ class Proxy:
 
 
 def haproxy(folder, server, metrics_port):
-    port = free_port()
+    port = tools.free_port()
     return Proxy(folder, port, "haproxy", "-f", PROXY / "haproxy.cfg",
                  DUET_PROXY_BIND=f"127.0.0.1:{port}",
                  DUET_PROXY_METRICS_BIND=f"127.0.0.1:{metrics_port}",
@@ -83,7 +76,7 @@ def haproxy(folder, server, metrics_port):
 
 
 def nginx(folder, server):
-    port = free_port()
+    port = tools.free_port()
     text = (PROXY / "nginx.conf").read_text(encoding="utf-8")
     for old, new in (("/run/nginx", str(folder)), ("8443", f"127.0.0.1:{port}"),
                      ("server:50051", server.address), ("/etc/duet/tls", str(folder))):
@@ -135,7 +128,7 @@ class ProxyTest(unittest.TestCase):
 
     @unittest.skipUnless(shutil.which("haproxy"), "needs haproxy")
     def test_haproxy(self):
-        proxy = self.stack.enter_context(haproxy(self.folder, self.server, free_port()))
+        proxy = self.stack.enter_context(haproxy(self.folder, self.server, tools.free_port()))
         proxy.wait_until_it_serves()
         self.check_calls(proxy)
         self.check_flood(proxy)

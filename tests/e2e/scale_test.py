@@ -63,10 +63,10 @@ class ScaleTest(unittest.TestCase):
                  for number, server in enumerate(self.servers)]
         config = self.folder / "haproxy.cfg"
         config.write_text(text.replace(template, "\n".join(lines)), encoding="utf-8")
-        port = proxy_test.free_port()
+        port = tools.free_port()
         proxy = self.stack.enter_context(proxy_test.Proxy(
             self.folder, port, "haproxy", "-f", config, DUET_PROXY_BIND=f"127.0.0.1:{port}",
-            DUET_PROXY_METRICS_BIND=f"127.0.0.1:{proxy_test.free_port()}",
+            DUET_PROXY_METRICS_BIND=f"127.0.0.1:{tools.free_port()}",
             DUET_PROXY_CERTIFICATE=str(self.folder / "proxy.pem")))
         proxy.wait_until_it_serves()
 

@@ -92,7 +92,8 @@ class SecurityTest(unittest.TestCase):
         """The code of a call, and the reason in its details."""
         stub = synthesis_pb2_grpc.MotionSynthesisStub(channel)
         try:
-            stub.ListModels(synthesis_pb2.ListModelsRequest(), timeout=60, metadata=metadata)
+            stub.ListModels(synthesis_pb2.ListModelsRequest(), timeout=tools.RUN_SECONDS,
+                            metadata=metadata)
         except grpc.RpcError as error:
             trailers = dict(error.trailing_metadata() or ())
             status = status_pb2.Status.FromString(trailers.get("grpc-status-details-bin", b""))

@@ -34,14 +34,6 @@ TRAINING = [word for setting in (
 LONGEST_RUN = 600  # seconds, on a busy machine
 
 
-def free_ports(count):
-    with contextlib.ExitStack() as stack:
-        sockets = [stack.enter_context(socket.socket()) for _ in range(count)]
-        for one in sockets:
-            one.bind(("127.0.0.1", 0))
-        return [one.getsockname()[1] for one in sockets]
-
-
 def wait_for(what, condition):
     """Looks ten times a second until the condition is true; returns its value."""
     end = time.monotonic() + LONGEST_RUN
@@ -62,7 +54,7 @@ class Cluster:
         self._folder = folder
         self._stack = stack
         self._nodes = {}
-        controller, *nodes = free_ports(3)
+        controller, *nodes = tools.free_ports(3)
         (folder / "state").mkdir()
         key = folder / "munge.key"
         key.write_bytes(os.urandom(128))

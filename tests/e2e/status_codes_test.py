@@ -22,16 +22,22 @@ FAKE_SERVER = tools.PROGRAMS.parent / "tests" / "duet-fake-server"
 JOINTS = ("head neck torso left_shoulder left_elbow left_hand right_shoulder right_elbow right_hand "
           "left_hip left_knee left_foot right_hip right_knee right_foot").split()
 FRAMES = 20  # less than a window
+DRAINING = "the server is shutting down"
+
+
+def page(server, path):
+    """A page of the metrics port: status and text."""
+    connection = http.client.HTTPConnection("127.0.0.1", server.metrics_port,
+                                            timeout=tools.RUN_SECONDS)
+    with contextlib.closing(connection):
+        connection.request("GET", path)
+        response = connection.getresponse()
+        return response.status, response.read().decode()
 
 
 def figure(server, pattern):
     """A number of the metrics port; 0 while it is not there."""
-    connection = http.client.HTTPConnection("127.0.0.1", server.metrics_port,
-                                            timeout=tools.RUN_SECONDS)
-    with contextlib.closing(connection):
-        connection.request("GET", "/metrics")
-        found = re.search(rf"^{pattern} (\d+)", connection.getresponse().read().decode(),
-                          re.MULTILINE)
+    found = re.search(rf"^{pattern} (\d+)", page(server, "/metrics")[1], re.MULTILINE)
     return int(found[1]) if found else 0
 
 
@@ -55,13 +61,16 @@ class StatusCodesTest(unittest.TestCase):
         request.label_vector.weights.add(interaction_class=interaction_class, weight=weight)
         return request
 
-    def code_of(self, call):
-        """How a call ends."""
+    def end_of(self, call):
+        """How a call ends: its code and its message."""
         try:
             list(call)
         except grpc.RpcError as error:
-            return error.code().name
-        return "OK"
+            return error.code().name, error.details()
+        return "OK", ""
+
+    def code_of(self, call):
+        return self.end_of(call)[0]
 
     def synthesize(self, request, **options):
         return self.stub.Synthesize(request, timeout=tools.RUN_SECONDS, **options)
@@ -90,7 +99,9 @@ class StatusCodesTest(unittest.TestCase):
         self.serve()
         request = self.request()
         request.leader.frame_rate_hz = -1
-        self.assertEqual(self.code_of(self.synthesize(request)), "INVALID_ARGUMENT")
+        code, message = self.end_of(self.synthesize(request))
+        self.assertEqual(code, "INVALID_ARGUMENT")
+        self.assertIn("leader.frame_rate_hz: is -1", message)
 
     def test_failed_precondition(self):
         self.serve()
@@ -127,11 +138,26 @@ class StatusCodesTest(unittest.TestCase):
         self.slow_call(server)
         self.assertEqual(self.code_of(self.synthesize(self.request())), "RESOURCE_EXHAUSTED")
 
+    def test_probes_do_not_wait_for_the_queue(self):
+        server = self.serve("--workers", "1")
+        self.slow_call(server)
+        calls = [self.synthesize(self.request()) for _ in range(5)]
+        tools.wait_until(lambda: figure(server, "duet_queued_windows") == len(calls),
+                         "the one worker is busy and all others wait")
+        for path in ("/healthz", "/readyz"):
+            self.assertEqual(page(server, path)[0], 200)
+        health = self.channel.unary_unary("/grpc.health.v1.Health/Check")
+        self.assertEqual(health(b"", timeout=tools.RUN_SECONDS), b"\x08\x01")  # SERVING
+        self.assertEqual(figure(server, "duet_queued_windows"), len(calls))
+        for call in calls:
+            call.cancel()
+
     def test_deadline_exceeded(self):
-        # The server's own, so that nobody but the server says so.
+        # The server's own, so that nobody but the server says so, and in its words.
         server = self.serve("--max-call-seconds", "1")
-        call = self.synthesize(self.request("shake_hands", -1))
-        self.assertEqual(self.code_of(call), "DEADLINE_EXCEEDED")
+        code, message = self.end_of(self.synthesize(self.request("shake_hands", -1)))
+        self.assertEqual(code, "DEADLINE_EXCEEDED")
+        self.assertIn("longer than the server answers any call", message)
         self.assertEqual(self.ended(server, 1), ["DEADLINE_EXCEEDED"])
 
     def test_cancelled(self):
@@ -147,8 +173,10 @@ class StatusCodesTest(unittest.TestCase):
         stopping = threading.Thread(target=server.stop)
         stopping.start()
         self.addCleanup(stopping.join)
+        # It says that it drains a moment before it does.
         tools.wait_until(lambda: server.events("draining"), "it drains")
-        self.assertEqual(self.code_of(self.synthesize(self.request())), "UNAVAILABLE")
+        tools.wait_until(lambda: self.end_of(self.synthesize(self.request()))
+                         == ("UNAVAILABLE", DRAINING), "new calls are refused")
         call.cancel()  # whoever is being answered keeps the server
 
     def test_an_engine_that_fails_fails_that_call_alone(self):

@@ -376,9 +376,19 @@ TEST_F(ModelLifecycleTest, EachAdminCallLeavesALine) {
   ASSERT_THAT(server().Serve(), IsOk());
   ASSERT_TRUE(SetLabel("fake", "stable", 1).ok());
   ASSERT_FALSE(UnloadModel("fake", 1).ok());
+  ASSERT_TRUE(LoadModel("fake", 1).ok());
+  admin::ReloadResponse reloaded;
+  ASSERT_TRUE(Reload(&reloaded).ok());
+  ASSERT_FALSE(ListModels().empty());
+  ASSERT_TRUE(DeleteLabel("fake", "stable").ok());
+  ASSERT_FALSE(LoadModel("", 0).ok()) << "malformed";
   const std::vector<json> lines = server_->log.Events("admin_action");
-  ASSERT_EQ(lines.size(), 2u);
-  EXPECT_EQ(lines[0]["action"], "SetLabel");
+  std::vector<std::string> actions;
+  for (const json& line : lines) actions.push_back(line["action"]);
+  EXPECT_THAT(actions, ElementsAre("SetLabel", "UnloadModel", "LoadModel", "Reload", "ListModels",
+                                   "DeleteLabel", "LoadModel"));
+  ASSERT_EQ(lines.size(), 7u);
+  EXPECT_EQ(lines[6]["code"], "INVALID_ARGUMENT");
   EXPECT_EQ(lines[0]["arguments"], json({{"name", "fake"}, {"label", "stable"}, {"version", "1"}}));
   EXPECT_EQ(lines[0]["code"], "OK");
   EXPECT_THAT(lines[0]["peer"].get<std::string>(), HasSubstr("127.0.0.1"));

@@ -35,9 +35,10 @@ inline server::config::ServerOptions TestOptions() {
 // Threads: safe to call concurrently.
 class EventSink final : public server::metrics::LogSink {
  public:
-  void Write(std::string_view line) override {
+  bool Write(std::string_view line) override {
     server::common::MutexLock lock(mutex_);
     lines_.push_back(nlohmann::json::parse(line));
+    return true;
   }
   // The lines of one event, in order.
   std::vector<nlohmann::json> Events(const std::string& event) const {

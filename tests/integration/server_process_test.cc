@@ -20,9 +20,13 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "model/base/sha256.h"
+#include "tests/server/support/http_get.h"
 #include "tests/server/support/refusal.h"
 #include "tests/server/support/running_service.h"
 #include "tests/server/support/sample_request.h"
@@ -63,7 +67,7 @@ class Process {
       kill(pid_, SIGKILL);
       Wait();
     }
-    std::fclose(output_);
+    if (output_ != nullptr) std::fclose(output_);
   }
 
   // Reads on until an event was logged; null when the process ended without it.
@@ -83,6 +87,8 @@ class Process {
   }
   // From now on the process waits once it is a page ahead of the test's reading.
   void ShrinkPipe() { EXPECT_GE(fcntl(fileno(output_), F_SETPIPE_SZ, 4096), 0); }
+  // What the process writes from now on has no reader.
+  void StopReading() { std::fclose(std::exchange(output_, nullptr)); }
   pid_t pid() const { return pid_; }
   // Among those that WaitForEvent read.
   int lines_without_json() const { return lines_without_json_; }
@@ -293,6 +299,36 @@ TEST(ServerProcessTest, SighupReadsLabelsFromTheConfigurationFile) {
   EXPECT_THAT(ListModels(*stub), ElementsAre("sbu/2+stable", "sbu/1")) << "as it was";
 }
 
+TEST(ServerProcessTest, SighupReadsTokensAgain) {
+  TemporaryFolder folder;
+  const auto let_in = [&folder](const std::string& token) {
+    WriteTestFile(folder / "next",
+                  absl::StrCat("studio synthesise sha256:", base::Sha256Hex(token), "\n"));
+    fs::rename(folder / "next", folder / "access");
+  };
+  let_in("first");
+  Process server(Flags({"--access-file", (folder / "access").string()}));
+  const auto stub = Connect(server.WaitForEvent("serving"));
+  const auto code = [&stub](const std::string& token) {
+    TimedContext context;
+    context.AddMetadata("authorization", "Bearer " + token);
+    return Call(*stub, SampleRequest(), context).status.error_code();
+  };
+  EXPECT_EQ(code("first"), grpc::StatusCode::OK);
+  // Several, for the server looks by itself as well, every second.
+  for (const char* token : {"second", "third", "fourth", "fifth"}) {
+    let_in(token);
+    server.Signal(SIGHUP);
+    EXPECT_FALSE(server.WaitForEvent("reloaded").is_null());
+    EXPECT_EQ(code(token), grpc::StatusCode::OK) << token;
+    EXPECT_EQ(code("first"), grpc::StatusCode::UNAUTHENTICATED);
+  }
+  WriteTestFile(folder / "access", "studio");
+  server.Signal(SIGHUP);
+  EXPECT_EQ(server.WaitForEvent("secrets_refused").value("kind", ""), "access");
+  EXPECT_EQ(code("fifth"), grpc::StatusCode::OK) << "as it was";
+}
+
 TEST(ServerProcessTest, SigtermDuringAReloadStopsAfterTheCheckpointUnderWay) {
   TemporaryFolder folder;
   WriteCheckpoint(folder, "a/1");
@@ -480,6 +516,19 @@ TEST(ServerProcessTest, ALogThatNobodyReadsHoldsUpNoCall) {
   // The lines that waited all come, the last one too.
   for (int i = 0; i < kCalls; ++i) ASSERT_FALSE(server.WaitForEvent("call").is_null()) << i;
   EXPECT_FALSE(server.WaitForEvent("stopped").is_null());
+  EXPECT_EQ(server.Wait(), 0);
+}
+
+TEST(ServerProcessTest, ALogWhoseReaderIsGoneHoldsUpNoCall) {
+  Process server({"--listen", "127.0.0.1:0", "--metrics-listen", "127.0.0.1:0"});
+  const json serving = server.WaitForEvent("serving");
+  server.StopReading();
+  const auto stub = Connect(serving);
+  const std::string nothing_lost = "duet_log_lines_dropped_total 0\n";
+  do {
+    ASSERT_TRUE(Call(*stub, SampleRequest()).status.ok());
+  } while (absl::StrContains(HttpGet(serving["metrics_port"], "/metrics"), nothing_lost));
+  server.Signal(SIGTERM);
   EXPECT_EQ(server.Wait(), 0);
 }
 

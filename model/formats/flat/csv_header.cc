@@ -119,7 +119,7 @@ bool NamesAxes(const CsvRow& row) {
 std::vector<std::string> JoinLevels(const std::vector<CsvRow>& rows) {
   std::vector<std::string> names(rows.back().begin(), rows.back().end());
   if (rows.size() == 1) return names;
-  CsvRow current(rows.size());
+  CsvRow current(rows.size(), "");  // StrJoin copies from each, whatever its length
   for (std::size_t column = 0; column < names.size(); ++column) {
     for (std::size_t level = 0; level + 1 < rows.size(); ++level) {
       if (!rows[level][column].empty()) current[level] = rows[level][column];

@@ -15,9 +15,6 @@ namespace {
 using retargeting::Quaternion;
 using retargeting::Vec3d;
 
-// Cosine of half the angle above which an arc is as good as a line.
-constexpr double kNearlyEqual = 0.9995;
-
 Quaternion Scaled(Quaternion q, double factor) {
   return {q.w * factor, q.x * factor, q.y * factor, q.z * factor};
 }

@@ -25,13 +25,14 @@ using ::testing::IsEmpty;
 // Threads: safe to call concurrently.
 class GatedSink final : public LogSink {
  public:
-  void Write(std::string_view line) override {
+  bool Write(std::string_view line) override {
     common::MutexLock lock(mutex_);
     ++begun_;
     changed_.NotifyAll();
     while (!open_) changed_.Wait(mutex_);
     lines_.emplace_back(line);
     changed_.NotifyAll();
+    return true;
   }
   void Open() {
     common::MutexLock lock(mutex_);
@@ -115,6 +116,59 @@ TEST(QueuedLogSinkTest, ASingleLostLineIsSaidAsWell) {
     sink->Open();
   }
   EXPECT_THAT(sink->lines(), ElementsAre("stuck", "a", "b", "1 dropped"));
+}
+
+// A disk that is full until it is told otherwise.
+//
+// Threads: safe to call concurrently.
+class FullSink final : public LogSink {
+ public:
+  bool Write(std::string_view line) override {
+    common::MutexLock lock(mutex_);
+    ++tried_;
+    if (!full_) lines_.emplace_back(line);
+    changed_.NotifyAll();
+    return !full_;
+  }
+  void MakeSpace() {
+    common::MutexLock lock(mutex_);
+    full_ = false;
+  }
+  void WaitUntilTried(int writes) {
+    common::MutexLock lock(mutex_);
+    while (tried_ < writes) changed_.Wait(mutex_);
+  }
+  std::vector<std::string> lines() const {
+    common::MutexLock lock(mutex_);
+    return lines_;
+  }
+
+ private:
+  mutable common::Mutex mutex_;
+  common::CondVar changed_;
+  bool full_ DUET_GUARDED_BY(mutex_) = true;
+  int tried_ DUET_GUARDED_BY(mutex_) = 0;
+  std::vector<std::string> lines_ DUET_GUARDED_BY(mutex_);
+};
+
+TEST(QueuedLogSinkTest, CountsLinesThatTheSinkLosesAndTellsOfThemOnce) {
+  const auto sink = std::make_shared<FullSink>();
+  std::uint64_t dropped = 0;
+  {
+    QueuedLogSink log(sink, Options(8));
+    log.Write("lost");
+    sink->WaitUntilTried(2);  // the line and its notice
+    log.Write("lost too");
+    sink->WaitUntilTried(4);
+    EXPECT_EQ(log.dropped_lines(), 2u) << "a notice is no line";
+    sink->MakeSpace();
+    log.Write("a");
+    sink->WaitUntilTried(6);  // the notice comes with "a", not with "b"
+    log.Write("b");
+    dropped = log.dropped_lines();
+  }
+  EXPECT_THAT(sink->lines(), ElementsAre("a", "2 dropped", "b"));
+  EXPECT_EQ(dropped, 2u);
 }
 
 TEST(QueuedLogSinkTest, WritesTheLinesLeftBeforeItGoes) {

@@ -29,13 +29,17 @@ TEST(TextLogSinkTest, LeavesOtherLinesAlone) {
 TEST(TextLogSinkTest, HandsOn) {
   class Sink final : public LogSink {
    public:
-    void Write(std::string_view line) override { lines.emplace_back(line); }
+    bool Write(std::string_view line) override {
+      lines.emplace_back(line);
+      return lines.size() == 1;
+    }
     std::uint64_t dropped_lines() const override { return 3; }
     std::vector<std::string> lines;
   };
   const auto inner = std::make_shared<Sink>();
   TextLogSink sink(inner);
-  sink.Write(R"({"time":"t","severity":"ERROR","event":"e"})");
+  EXPECT_TRUE(sink.Write(R"({"time":"t","severity":"ERROR","event":"e"})"));
+  EXPECT_FALSE(sink.Write("lost"));
   EXPECT_EQ(inner->lines.at(0), "t ERROR   e");
   EXPECT_EQ(sink.dropped_lines(), 3u);
 }

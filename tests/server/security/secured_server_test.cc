@@ -7,6 +7,7 @@
 
 #include <atomic>
 #include <filesystem>
+#include <future>
 #include <memory>
 #include <string>
 #include <thread>
@@ -56,9 +57,10 @@ constexpr int kFrames = 40;  // of a sample request
 
 class LineSink final : public metrics::LogSink {
  public:
-  void Write(std::string_view line) override {
+  bool Write(std::string_view line) override {
     common::MutexLock lock(mutex_);
     text_ += std::string(line) + "\n";
+    return true;
   }
   std::string text() const {
     common::MutexLock lock(mutex_);
@@ -378,6 +380,23 @@ TEST_F(SecuredServerTest, CertificatesRotateWhileCallsCome) {
     EXPECT_THAT(metrics, Not(HasSubstr(counter + " 0\n")));
   }
   EXPECT_THAT(metrics, HasSubstr("duet_tls_certificate_expiry_timestamp_seconds "));
+}
+
+TEST_F(SecuredServerTest, AReloadReadsCertificates) {
+  UseTls();
+  Start();
+  const auto reload = [this] {
+    std::promise<absl::Status> done;
+    server_->control().Reload([&](const auto& report) { done.set_value(report.status()); });
+    return done.get_future().get();
+  };
+  // Several, for the server looks by itself as well, every second.
+  for (const char* name : {"first.test", "second.test", "third.test", "fourth.test"}) {
+    const TestCertificate next = MakeTestCertificate(name);
+    ShowCertificate(MakeTestCertificate("duet.test", {&next}));
+    EXPECT_THAT(reload(), IsOk());
+    EXPECT_TRUE(List(Connect(grpc::SslCredentials({next.certificate, "", ""}))).ok()) << name;
+  }
 }
 
 TEST_F(SecuredServerTest, ClientAuthoritiesRotate) {
