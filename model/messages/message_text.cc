@@ -130,12 +130,18 @@ class JsonFields {
       } else if (!seen.insert(field).second) {
         problems_.Add(element.place, absl::StrCat(field->name(), ": is repeated"));
       } else {
-        ReadField(*field, object.at(element.key), element);
+        ReadField(*field, object.at(element.key), LastOf(element.key, found));
       }
     }
   }
 
  private:
+  // The place of the value that the object has.
+  static const JsonPlaces::Element& LastOf(const std::string& key, const JsonPlaces& found) {
+    return *std::find_if(found.keys.rbegin(), found.keys.rend(),
+                         [&key](const JsonPlaces::Element& element) { return element.key == key; });
+  }
+
   // As the schema spells it, or as protobuf spells it in JSON.
   const FieldDescriptor* Find(const std::string& key) const {
     for (int i = 0; i < descriptor_.field_count(); ++i) {

@@ -81,7 +81,7 @@ class ElementTest(unittest.TestCase):
         (cls.folder / "sunk.json").write_text(json.dumps({**MOTION, "up_axis": "z-up"}))
         (cls.folder / "broken.json").write_text("{", encoding="utf-8")
         handler = functools.partial(Handler, directory=folder.name)
-        cls.server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler)
+        cls.server = Server(("127.0.0.1", 0), handler)
         threading.Thread(target=cls.server.serve_forever, daemon=True).start()
         cls.addClassCleanup(cls.server.server_close)
         cls.addClassCleanup(cls.server.shutdown)
@@ -262,6 +262,10 @@ class ElementTest(unittest.TestCase):
 class Handler(http.server.SimpleHTTPRequestHandler):
     def log_message(self, *values):
         """Nobody reads it."""
+
+
+class Server(http.server.ThreadingHTTPServer):
+    request_queue_size = 128  # the browser opens many connections at once
 
 
 if __name__ == "__main__":

@@ -25,14 +25,19 @@ FRAMES = 20  # less than a window
 DRAINING = "the server is shutting down"
 
 
-def figure(server, pattern):
-    """A number of the metrics port; 0 while it is not there."""
+def page(server, path):
+    """A page of the metrics port: status and text."""
     connection = http.client.HTTPConnection("127.0.0.1", server.metrics_port,
                                             timeout=tools.RUN_SECONDS)
     with contextlib.closing(connection):
-        connection.request("GET", "/metrics")
-        found = re.search(rf"^{pattern} (\d+)", connection.getresponse().read().decode(),
-                          re.MULTILINE)
+        connection.request("GET", path)
+        response = connection.getresponse()
+        return response.status, response.read().decode()
+
+
+def figure(server, pattern):
+    """A number of the metrics port; 0 while it is not there."""
+    found = re.search(rf"^{pattern} (\d+)", page(server, "/metrics")[1], re.MULTILINE)
     return int(found[1]) if found else 0
 
 
@@ -132,6 +137,20 @@ class StatusCodesTest(unittest.TestCase):
         server = self.serve("--max-calls", "1")
         self.slow_call(server)
         self.assertEqual(self.code_of(self.synthesize(self.request())), "RESOURCE_EXHAUSTED")
+
+    def test_probes_do_not_wait_for_the_queue(self):
+        server = self.serve("--workers", "1")
+        self.slow_call(server)
+        calls = [self.synthesize(self.request()) for _ in range(5)]
+        tools.wait_until(lambda: figure(server, "duet_queued_windows") == len(calls),
+                         "the one worker is busy and all others wait")
+        for path in ("/healthz", "/readyz"):
+            self.assertEqual(page(server, path)[0], 200)
+        health = self.channel.unary_unary("/grpc.health.v1.Health/Check")
+        self.assertEqual(health(b"", timeout=tools.RUN_SECONDS), b"\x08\x01")  # SERVING
+        self.assertEqual(figure(server, "duet_queued_windows"), len(calls))
+        for call in calls:
+            call.cancel()
 
     def test_deadline_exceeded(self):
         # The server's own, so that nobody but the server says so, and in its words.

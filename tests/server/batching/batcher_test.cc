@@ -341,6 +341,32 @@ TEST(BatcherTest, NeverStartsAWindowThatCannotBeDoneInTime) {
   EXPECT_THAT(sound.outcome.get().result, IsOk());
 }
 
+TEST(BatcherTest, RefusesACallWhoseTurnWouldComeTooLate) {
+  FakeClock clock;
+  const auto slow = std::make_shared<FakeSynthesizer>();
+  slow->on_batch = [&](absl::Span<const engine::SynthesisWindow* const>) {
+    clock.Advance(milliseconds(250));
+  };
+  const auto batcher = MakeBatcher({1, 8, {4}}, clock);
+  Ticket teaches, waits, too_late, in_time, goes_on;
+  ASSERT_THAT(batcher->Submit(teaches.Job(slow)), IsOk());
+  ASSERT_THAT(teaches.outcome.get().result, IsOk());
+  HeldWorker held(*batcher);
+  ASSERT_THAT(batcher->Submit(waits.Job(slow)), IsOk());
+  const auto due = [&](const Ticket& ticket, milliseconds left) {
+    WindowJob job = ticket.Job(slow);
+    job.deadline = clock.Now() + left;
+    return job;
+  };
+  // A quarter of a second for the one that waits, and one for its own.
+  EXPECT_THAT(batcher->Submit(due(too_late, milliseconds(490))),
+              StatusIs(kResourceExhausted, HasSubstr("the queue is too long")));
+  EXPECT_THAT(batcher->Submit(due(in_time, milliseconds(510))), IsOk());
+  WindowJob next = due(goes_on, milliseconds(490));
+  next.continues_call = true;
+  EXPECT_THAT(batcher->Submit(std::move(next)), IsOk()) << "a call that has begun is not refused";
+}
+
 // Delays: an hour is longer than any test; what waits for it in vain runs into the time limit.
 
 TEST(BatcherTest, ABatchWaitsForCompanyWhileAnotherWorkerIsBusy) {
