@@ -53,6 +53,7 @@ LAYERS = (
     Layer("engine", "model/engine", sees=("base", "motion", "cleanup")),
     Layer("checkpoint", "model/checkpoint", sees=("base", "motion", "engine")),
     Layer("embedded checkpoints", "model/checkpoints", sees=()),
+    Layer("classifier", "model/classifier", sees=("base", "motion", "checkpoint")),
     Layer("cpu kernels", "model/cpu_engine/kernels", sees=(), libraries=("highway",)),
     Layer("cpu engine", "model/cpu_engine",
           sees=("base", "motion", "engine", "checkpoint", "embedded checkpoints", "cpu kernels")),
@@ -71,8 +72,8 @@ LAYERS = (
     Layer("baselines", "model/evaluation/baselines",
           sees=("base", "motion", "dataset", "metrics", "protocol")),
     Layer("judge", "model/evaluation/judge",
-          sees=("base", "motion", "dataset", "engine", "checkpoint", "network", "training",
-                "metrics", "protocol"),
+          sees=("base", "motion", "dataset", "engine", "checkpoint", "classifier", "network",
+                "training", "metrics", "protocol"),
           source_libraries=("torch",)),
     Layer("experiments", "model/evaluation/experiments",
           sees=MOTION_FILES + MODELS + ("dataset", "metrics", "protocol", "baselines", "judge"),
@@ -80,7 +81,7 @@ LAYERS = (
     Layer("report", "model/evaluation/report",
           sees=("base", "motion", "dataset", "cleanup") + MEASURING),
     Layer("evaluation program", "model/evaluation/program",
-          sees=MOTION_FILES + ("dataset", "engine", "checkpoint", "torch engine", "report")
+          sees=MOTION_FILES + ("dataset", "engine", "checkpoint", "classifier", "torch engine", "report")
           + MEASURING),
     # The server, innermost first.
     Layer("server common", "server/common", sees=("base",), libraries=("rpc",)),
@@ -112,7 +113,8 @@ LAYERS = (
     Layer("analysis", "client/analysis", sees=("base", "motion", "cleanup", "metrics")),
     Layer("batch flow", "client/batch/flow", sees=()),
     Layer("batch", "client/batch",
-          sees=MOTION_FILES + ("messages", "dataset", "cleanup", "metrics", "batch flow", "client"),
+          sees=MOTION_FILES + ("messages", "dataset", "cleanup", "classifier", "metrics", "batch flow",
+                                "client"),
           libraries=("rpc",)),
     Layer("client program", "client/cli",
           sees=MOTION_FILES + ("analysis", "viewer", "batch flow", "batch", "client")),

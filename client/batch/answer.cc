@@ -67,8 +67,9 @@ SynthesisRequest ToRequest(const Item& item, const Recipe& recipe, const ModelIn
   return request;
 }
 
-RecordedAnswer ToRecorded(const Item& item, const SynthesisResult& result,
-                          const LoadedLeader& leader, const motion::Skeleton& skeleton, int retry) {
+RecordedAnswer ToRecorded(const Item& item, const QualityFilter& filter,
+                          const SynthesisResult& result, const LoadedLeader& leader,
+                          const motion::Skeleton& skeleton, int retry) {
   RecordedAnswer answer;
   answer.leader_sha256 = leader.sha256;
   answer.model = absl::StrCat(result.model_name, "@", result.model_version);
@@ -79,6 +80,9 @@ RecordedAnswer ToRecorded(const Item& item, const SynthesisResult& result,
   answer.frames = result.pair.follower.frame_count();
   answer.frame_rate_hz = result.pair.follower.frame_rate_hz;
   answer.quality = Measure(result.pair, skeleton);
+  if (filter.classifier != nullptr) {
+    Recognise(*filter.classifier, LargestClass(item), result.pair, &answer.quality);
+  }
   answer.unfamiliarity = result.unfamiliarity;
   answer.answers = retry + 1;
   return answer;

@@ -32,8 +32,9 @@ SynthesisRequest ToRequest(const Item& item, const Recipe& recipe, const ModelIn
 std::string RequestId(const Item& item, int retry);
 
 // What the index tells of an answer.
-RecordedAnswer ToRecorded(const Item& item, const SynthesisResult& result,
-                          const LoadedLeader& leader, const motion::Skeleton& skeleton, int retry);
+RecordedAnswer ToRecorded(const Item& item, const QualityFilter& filter,
+                          const SynthesisResult& result, const LoadedLeader& leader,
+                          const motion::Skeleton& skeleton, int retry);
 
 }  // namespace duet::client::batch
 

@@ -45,6 +45,7 @@ path.leader { stroke: var(--leader); }
 path.follower { stroke: var(--follower); }
 figcaption { display: flex; flex-wrap: wrap; gap: 0 14px; overflow-wrap: anywhere; }
 figcaption a { color: inherit; }
+.figures { flex-basis: 100%; }
 .unread { margin: 18px 0; color: #ffb4ab; overflow-wrap: anywhere; }
 )";
 

@@ -25,8 +25,9 @@ constexpr const char* kFields[] = {
     "item",   "id",    "name", "leader",  "leader_sha256", "side",   "reaction",
     "labels", "model", "seed", "variety", "request_id",    "frames", "frame_rate_hz"};
 constexpr const char* kFigures[] = {
-    "lean_degrees",    "foot_above_floor_metres", "foot_below_floor_metres",
-    "distance_metres", "penetration_metres",      "range_of_motion_metres"};
+    "lean_degrees",     "foot_above_floor_metres", "foot_below_floor_metres",
+    "distance_metres",  "penetration_metres",      "range_of_motion_metres",
+    "recognised_class", "class_probability"};
 
 // A cell holds no tab and no line end; what is not there is empty.
 std::string Cell(const ordered_json& object, const char* name) {

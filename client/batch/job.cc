@@ -182,8 +182,9 @@ void Job::Judge(Work work, const SynthesisResult& result) {
   const auto model = static_cast<size_t>(work.item.model);
   const motion::Skeleton& skeleton = parts_.skeletons[model];
   const QualityFilter& filter = parts_.recipe.filter;
-  const RecordedAnswer answer = ToRecorded(
-      work.item, result, *work.leader->Get(parts_.recipe.input, skeleton), skeleton, work.retry);
+  const RecordedAnswer answer =
+      ToRecorded(work.item, filter, result, *work.leader->Get(parts_.recipe.input, skeleton),
+                 skeleton, work.retry);
   const std::vector<std::string> reasons =
       WhyRejected(filter, answer.quality, answer.unfamiliarity);
   if (reasons.empty()) {

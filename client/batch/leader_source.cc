@@ -12,6 +12,7 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "model/formats/motion_file.h"
+#include "model/motion/reading_setting.h"
 
 namespace duet::client::batch {
 namespace {
@@ -74,13 +75,20 @@ bool LooksLikeMotion(const fs::path& file) {
          row.find_first_not_of("0123456789+-.eE, \t\r") == absl::string_view::npos;
 }
 
-absl::Status AddFolder(const fs::path& folder, LeaderList* list,
-                       std::vector<std::string>* passed_over) {
+// Whether a file of a folder or a pattern may be a leader: as its name says, or, where it is said
+// what leaders are, unless its name says otherwise.
+bool MayLead(const fs::path& file, const std::optional<formats::Format>& format) {
+  if (!format.has_value()) return formats::IsReadable(file);
+  return formats::FormatOf(file).value_or(*format) == *format;
+}
+
+absl::Status AddFolder(const fs::path& folder, const std::optional<formats::Format>& format,
+                       LeaderList* list, std::vector<std::string>* passed_over) {
   std::vector<fs::path> files;
   std::error_code error;
   for (fs::recursive_directory_iterator it(folder, error), end; !error && it != end;
        it.increment(error)) {
-    if (it->is_regular_file() && formats::IsReadable(it->path())) files.push_back(it->path());
+    if (it->is_regular_file() && MayLead(it->path(), format)) files.push_back(it->path());
   }
   if (error) {
     return absl::PermissionDeniedError(absl::StrCat(folder.string(), ": ", error.message()));
@@ -134,12 +142,13 @@ fs::path FixedPart(const fs::path& pattern) {
   return fixed;
 }
 
-absl::Status AddPattern(const fs::path& pattern, LeaderList* list) {
+absl::Status AddPattern(const fs::path& pattern, const std::optional<formats::Format>& format,
+                        LeaderList* list) {
   bool any = false;
   const fs::path fixed = FixedPart(pattern);
   for (const fs::path& file : Expand(pattern)) {
     std::error_code error;
-    if (!fs::is_regular_file(file, error) || !formats::IsReadable(file)) continue;
+    if (!fs::is_regular_file(file, error) || !MayLead(file, format)) continue;
     any = true;
     absl::Status status = list->Add(file, fixed.empty() ? file : file.lexically_relative(fixed));
     if (!status.ok()) return status;
@@ -148,30 +157,33 @@ absl::Status AddPattern(const fs::path& pattern, LeaderList* list) {
   return absl::NotFoundError(absl::StrCat(pattern.string(), ": no motion file is named so"));
 }
 
-absl::Status AddInput(const fs::path& path, LeaderList* list,
-                      std::vector<std::string>* passed_over) {
+absl::Status AddInput(const fs::path& path, const std::optional<formats::Format>& format,
+                      LeaderList* list, std::vector<std::string>* passed_over) {
   std::error_code error;
-  if (fs::is_directory(path, error)) return AddFolder(path, list, passed_over);
+  if (fs::is_directory(path, error)) return AddFolder(path, format, list, passed_over);
   if (fs::exists(path, error)) {
-    if (formats::IsReadable(path)) return list->Add(path, path.filename());
-    return formats::UnknownExtension(path, formats::kReadableExtensions);
+    if (format.has_value() || formats::IsReadable(path)) return list->Add(path, path.filename());
+    return MendedBy(formats::UnknownExtension(path, formats::kReadableExtensions),
+                    motion::ReadingSetting::kFormat);
   }
-  if (IsPattern(path)) return AddPattern(path, list);
+  if (IsPattern(path)) return AddPattern(path, format, list);
   return absl::NotFoundError(absl::StrCat(path.string(), ": no such file or folder"));
 }
 
 }  // namespace
 
-absl::StatusOr<std::unique_ptr<LeaderSource>> ListLeaders(const std::vector<std::string>& inputs,
-                                                          std::vector<std::string>* passed_over) {
+absl::StatusOr<std::unique_ptr<LeaderSource>> ListLeaders(
+    const std::vector<std::string>& inputs, const std::optional<formats::Format>& format,
+    std::vector<std::string>* passed_over) {
   auto list = std::make_unique<LeaderList>();
   for (const std::string& input : inputs) {
-    absl::Status status = AddInput(input, list.get(), passed_over);
+    absl::Status status = AddInput(input, format, list.get(), passed_over);
     if (!status.ok()) return status;
   }
   if (list->empty()) {
-    return absl::InvalidArgumentError(absl::StrCat(
+    const absl::Status none = absl::InvalidArgumentError(absl::StrCat(
         "leaders: came no motion file, wanted one or more: ", formats::kReadableExtensions));
+    return format.has_value() ? none : MendedBy(none, motion::ReadingSetting::kFormat);
   }
   return std::unique_ptr<LeaderSource>(std::move(list));
 }

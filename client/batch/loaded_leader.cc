@@ -16,6 +16,7 @@ namespace {
 
 formats::ReadOptions ToReadOptions(const LeaderInput& input, const motion::Skeleton& skeleton) {
   formats::ReadOptions options;
+  options.format = input.format;
   options.skeleton = skeleton;
   options.frame_rate_hz = input.frame_rate_hz;
   options.metres_per_unit = input.metres_per_unit;
@@ -43,6 +44,8 @@ absl::Status SetStart(const LeaderEntry& entry, formats::Side side, const Leader
   std::error_code error;
   // Of the leader's own file, the follower is the other person.
   const bool own = start.empty() || std::filesystem::equivalent(file, entry.file, error);
+  // What was said is of leaders; another file may be of another format.
+  if (!own && formats::IsReadable(file)) options.format.reset();
   options.side = entry.follower_start_side.value_or(own ? OtherSide(side) : formats::Side::kLeft);
   absl::StatusOr<FollowerStart> pose = ReadStart(file, options);
   if (!pose.ok()) return pose.status();

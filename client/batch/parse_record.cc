@@ -31,6 +31,14 @@ bool Has(const ordered_json& object, const char* name, IsOfType is_type) {
   const auto found = object.find(name);
   return found != object.end() && is_type(*found);
 }
+// Figures, and the class that a classifier saw.
+bool IsQuality(const ordered_json& value) {
+  if (!value.is_object()) return false;
+  for (const auto& [name, figure] : value.items()) {
+    if (name == "recognised_class" ? !IsText(figure) : !IsNumber(figure)) return false;
+  }
+  return true;
+}
 bool IsKeyframes(const ordered_json& value) {
   return value.is_array() && std::all_of(value.begin(), value.end(), [](const ordered_json& one) {
            return one.is_object() && Has(one, "labels", IsNumbers);
@@ -55,7 +63,7 @@ constexpr Field kOfAnAnswer[] = {{"id", IsText, "a text"},
                                  {"model", IsText, "a text"},
                                  {"frames", IsCount, "a number of frames"},
                                  {"frame_rate_hz", IsNumber, "a number"},
-                                 {"quality", IsNumbers, "an object of numbers"}};
+                                 {"quality", IsQuality, "an object of figures"}};
 constexpr Field kOfDone[] = {{"files", IsFiles, "an array of files"}};
 constexpr Field kOfRejected[] = {{"reasons", IsTexts, "an array of texts"}};
 constexpr Field kWhereGiven[] = {{"labels", IsNumbers, "an object of numbers"},

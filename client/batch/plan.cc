@@ -56,19 +56,6 @@ std::string Asked(const Item& item, const Recipe& recipe, const ModelInfo& model
   return text;
 }
 
-// The class that is wanted most.
-std::string LargestClass(const Item& item) {
-  ClassWeight largest{"none", 0};
-  const auto look = [&largest](const Labels& labels) {
-    for (const ClassWeight& label : labels) {
-      if (label.weight > largest.weight) largest = label;
-    }
-  };
-  look(item.labels);
-  for (const Schedule::Keyframe& keyframe : item.keyframes) look(keyframe.labels);
-  return largest.interaction_class;
-}
-
 // Every combination of a grid's weights, the last axis the fastest.
 std::vector<Labels> Combinations(const Grid& grid) {
   std::vector<Labels> all = {{}};
@@ -94,6 +81,18 @@ bool Means(const ModelChoice& choice, const ModelInfo& model) {
 }
 
 }  // namespace
+
+std::string LargestClass(const Item& item) {
+  ClassWeight largest{"none", 0};
+  const auto look = [&largest](const Labels& labels) {
+    for (const ClassWeight& label : labels) {
+      if (label.weight > largest.weight) largest = label;
+    }
+  };
+  look(item.labels);
+  for (const Schedule::Keyframe& keyframe : item.keyframes) look(keyframe.labels);
+  return largest.interaction_class;
+}
 
 std::string NameOfLabels(const Labels& labels) {
   std::string name;
@@ -128,6 +127,7 @@ absl::StatusOr<Plan> Plan::Create(Recipe recipe, std::vector<ModelInfo> models,
   for (const ModelInfo& model : plan.models_) {
     const dataset::DatasetLayout* const captures = CapturesOf(plan.recipe_.output.layout);
     if (captures != nullptr) status.Update(CheckJoints(*captures, model));
+    status.Update(plan.CheckClassifier(model));
     if (!status.ok()) return status;
     if (plan.recipe_.samples > 1 && !model.samples) {
       return absl::InvalidArgumentError(absl::StrCat("samples: came ", plan.recipe_.samples,
@@ -217,6 +217,18 @@ absl::Status Plan::CheckClasses() const {
                                                      ", wanted one of ", model.name, "@",
                                                      model.version, "'s"));
     }
+  }
+  return absl::OkStatus();
+}
+
+absl::Status Plan::CheckClassifier(const ModelInfo& model) const {
+  if (recipe_.filter.classifier == nullptr) return absl::OkStatus();
+  for (const std::string& joint : recipe_.filter.classifier->parts().skeleton.joint_names) {
+    const auto& known = model.joint_names;
+    if (std::find(known.begin(), known.end(), joint) != known.end()) continue;
+    return absl::InvalidArgumentError(absl::StrCat("filter.classifier: wants joint ",
+                                                   base::Quoted(joint), ", which ", model.name, "@",
+                                                   model.version, " does not have"));
   }
   return absl::OkStatus();
 }

@@ -60,6 +60,7 @@ class Plan {
   absl::Status AddDrawn(const Reaction& reaction);
   absl::Status AddNamed(const Reaction& reaction, LabelledReaction labelled);
   absl::Status CheckClasses() const;
+  absl::Status CheckClassifier(const ModelInfo& model) const;
   std::vector<std::string> ClassesOr(const std::vector<std::string>& classes) const;
   void DrawFor(const LeaderEntry& leader);
   absl::Status BeginLeader(LeaderEntry leader);
@@ -83,6 +84,9 @@ class Plan {
   int64_t number_ = 0;
   std::map<std::string, int> clips_;  // of a layout of captures, so far by folder
 };
+
+// The class that is wanted most, of keyframes over all of them; "none" where none is.
+std::string LargestClass(const Item& item);
 
 // "kick", "kick0p5+hug1": classes and weights as a name; a lone weight of 1 goes without saying.
 std::string NameOfLabels(const Labels& labels);

@@ -1,5 +1,6 @@
 #include "client/batch/quality.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "absl/strings/str_format.h"
@@ -16,6 +17,24 @@ namespace metrics = evaluation::metrics;
 
 std::optional<double> Known(double figure) {
   return std::isnan(figure) ? std::nullopt : std::optional<double>(figure);
+}
+
+// The clip with these of its joints, in this order.
+motion::Clip InJoints(const motion::Clip& clip, const std::vector<std::string>& joints) {
+  if (clip.joint_names == joints) return clip;
+  std::vector<int> from;
+  for (const std::string& joint : joints) {
+    const auto found = std::find(clip.joint_names.begin(), clip.joint_names.end(), joint);
+    from.push_back(static_cast<int>(found - clip.joint_names.begin()));
+  }
+  motion::Clip out;
+  out.joint_names = joints;
+  out.frame_rate_hz = clip.frame_rate_hz;
+  out.poses = motion::Poses(clip.frame_count(), static_cast<int>(joints.size()));
+  for (int t = 0; t < clip.frame_count(); ++t) {
+    for (size_t j = 0; j < from.size(); ++j) out.at(t, static_cast<int>(j)) = clip.at(t, from[j]);
+  }
+  return out;
 }
 
 }  // namespace
@@ -42,6 +61,19 @@ Quality Measure(const motion::ClipPair& pair, const motion::Skeleton& skeleton) 
   return quality;
 }
 
+void Recognise(const classifier::Classifier& classifier, const std::string& wanted,
+               const motion::ClipPair& pair, Quality* quality) {
+  const classifier::ClassifierParts& parts = classifier.parts();
+  const auto known = std::find(parts.classes.begin(), parts.classes.end(), wanted);
+  if (known == parts.classes.end()) return;
+  const std::vector<std::string>& joints = parts.skeleton.joint_names;
+  const std::vector<float> probabilities =
+      classifier.Probabilities({InJoints(pair.leader, joints), InJoints(pair.follower, joints)});
+  const auto best = std::max_element(probabilities.begin(), probabilities.end());
+  quality->recognised_class = parts.classes[static_cast<size_t>(best - probabilities.begin())];
+  quality->class_probability = probabilities[static_cast<size_t>(known - parts.classes.begin())];
+}
+
 std::vector<std::string> WhyRejected(const QualityFilter& filter, const Quality& quality,
                                      const std::optional<double>& unfamiliarity) {
   std::vector<std::string> reasons;
@@ -65,6 +97,9 @@ std::vector<std::string> WhyRejected(const QualityFilter& filter, const Quality&
   at_most("penetration_metres", quality.penetration_metres, filter.max_penetration_metres);
   at_least("range_of_motion_metres", quality.range_of_motion_metres,
            filter.min_range_of_motion_metres);
+  if (quality.class_probability) {
+    at_least("class_probability", *quality.class_probability, filter.min_class_probability);
+  }
   at_most("unfamiliarity", unfamiliarity, filter.max_unfamiliarity);
   return reasons;
 }

@@ -2,12 +2,14 @@
 #define DUET_CLIENT_BATCH_RECIPE_H_
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "client/request.h"
+#include "model/classifier/classifier.h"
 #include "model/formats/motion_file.h"
 #include "model/motion/coordinates.h"
 
@@ -66,6 +68,7 @@ struct LeaderInput {
   std::optional<motion::LengthUnit> unit;
   std::optional<motion::UpAxis> up_axis;
   retargeting::JointOverrides joint_map;
+  std::optional<formats::Format> format;
 };
 
 struct QualityFilter {
@@ -77,6 +80,8 @@ struct QualityFilter {
   std::optional<double> max_penetration_metres;
   std::optional<double> min_range_of_motion_metres;
   std::optional<double> max_unfamiliarity;
+  std::shared_ptr<const classifier::Classifier> classifier;  // null: none looks
+  std::optional<double> min_class_probability;
   int retries_per_item = 0;
 };
 

@@ -197,6 +197,11 @@ LeaderInput ReadInput(const v1::LeaderInput& proto, Checker* check) {
     check->Want(input.up_axis.has_value(), "input.up_axis", base::Quoted(proto.up_axis()),
                 motion::kUpAxisNames);
   }
+  if (proto.has_format()) {
+    input.format = formats::ParseFormat(proto.format());
+    check->Want(input.format.has_value() && formats::IsReadable(*input.format), "input.format",
+                base::Quoted(proto.format()), formats::kReadableFormatNames);
+  }
   input.joint_map.insert(proto.joint_map().begin(), proto.joint_map().end());
   return input;
 }
@@ -225,6 +230,14 @@ QualityFilter ReadFilter(const v1::QualityFilter& proto, Checker* check) {
        proto.min_range_of_motion_metres(), &filter.min_range_of_motion_metres);
   read("max_unfamiliarity", proto.has_max_unfamiliarity(), proto.max_unfamiliarity(),
        &filter.max_unfamiliarity);
+  if (proto.has_classifier()) {
+    const double probability = proto.classifier().min_probability();
+    check->Want(probability > 0 && probability <= 1, "filter.classifier.min_probability",
+                absl::StrCat(probability), "above 0, at most 1");
+    check->Want(!proto.classifier().model().empty(), "filter.classifier.model", "none",
+                "the folder of a judge (duet-eval judge)");
+    filter.min_class_probability = probability;
+  }
   check->Count("filter.retries_per_item", proto.retries_per_item(), 0, kMaxRetries);
   filter.retries_per_item = static_cast<int>(proto.retries_per_item());
   return filter;

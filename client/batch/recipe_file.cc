@@ -4,12 +4,15 @@
 #include <google/protobuf/io/zero_copy_stream_impl_lite.h>
 
 #include <cstddef>
+#include <memory>
 #include <string>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "client/batch/recipe_conversion.h"
 #include "model/base/file.h"
 #include "model/base/sha256.h"
+#include "model/classifier/classifier_files.h"
 #include "model/messages/message_text.h"
 #include "model/retargeting/joint_table.h"
 
@@ -49,6 +52,9 @@ void Apply(const RecipeOverrides& overrides, v1::Recipe* recipe) {
     recipe->mutable_filter()->set_retries_per_item(
         static_cast<uint32_t>(*overrides.retries_per_item));
   }
+  if (!overrides.input_format.empty()) {
+    recipe->mutable_input()->set_format(overrides.input_format);
+  }
 }
 
 // Puts the joints of the table that the recipe names into it.
@@ -66,6 +72,17 @@ absl::Status TakeJointTable(const std::filesystem::path& folder, v1::LeaderInput
   return absl::OkStatus();
 }
 
+// Reads the classifier that the recipe names, and names it by what it is.
+absl::StatusOr<std::shared_ptr<const classifier::Classifier>> TakeClassifier(
+    const std::filesystem::path& folder, v1::ClassifierFilter* filter) {
+  if (filter->model().empty()) return nullptr;
+  absl::StatusOr<classifier::StoredClassifier> stored =
+      classifier::ReadClassifier(folder / filter->model());
+  if (!stored.ok()) return stored.status();
+  filter->set_model(stored->sha256);
+  return std::make_shared<const classifier::Classifier>(std::move(stored->classifier));
+}
+
 }  // namespace
 
 absl::StatusOr<Recipe> ParseRecipe(absl::string_view text, bool json,
@@ -75,10 +92,17 @@ absl::StatusOr<Recipe> ParseRecipe(absl::string_view text, bool json,
   absl::Status status = messages::ParseMessage(
       text, json ? messages::MessageSyntax::kJson : messages::MessageSyntax::kTextFormat, &parsed);
   if (status.ok() && parsed.has_input()) status = TakeJointTable(folder, parsed.mutable_input());
+  absl::StatusOr<std::shared_ptr<const classifier::Classifier>> classifier = nullptr;
+  if (status.ok() && parsed.filter().has_classifier()) {
+    classifier = TakeClassifier(folder, parsed.mutable_filter()->mutable_classifier());
+    status = classifier.status();
+  }
   if (!status.ok()) return status;
   Apply(overrides, &parsed);
   absl::StatusOr<Recipe> recipe = FromProto(parsed);
-  if (recipe.ok()) recipe->digest = Digest(parsed);
+  if (!recipe.ok()) return recipe;
+  recipe->digest = Digest(parsed);
+  recipe->filter.classifier = *std::move(classifier);
   return recipe;
 }
 

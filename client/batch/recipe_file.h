@@ -14,6 +14,7 @@ namespace duet::client::batch {
 struct RecipeOverrides {
   std::optional<Packing> packing;
   std::optional<int> retries_per_item;
+  std::string input_format;  // empty: the recipe's
 };
 
 // Parses a recipe: JSON or text format. Unknown fields are refused. `folder` is where the files

@@ -41,6 +41,8 @@ ordered_json QualityJson(const Quality& quality) {
   object["distance_metres"] = Rounded(quality.distance_metres);
   object["penetration_metres"] = Rounded(quality.penetration_metres);
   object["range_of_motion_metres"] = Rounded(quality.range_of_motion_metres);
+  if (!quality.recognised_class.empty()) object["recognised_class"] = quality.recognised_class;
+  AddIf("class_probability", quality.class_probability, &object);
   return object;
 }
 

@@ -129,17 +129,21 @@ std::string FindUnknownCommand(const CLI::App& app, const Strings& arguments) {
                       base::DidYouMean(arguments[0], CommandNames(app)));
 }
 
-// The flag that was most likely meant by one that the command does not have.
-std::string SuggestFlag(const CLI::App& app, const Strings& arguments) {
+// The first flag that the command does not have; empty where there is none.
+std::string FindUnknownFlag(const CLI::App& app, const Strings& arguments) {
   const CLI::App* command = arguments.empty() ? nullptr : FindCommand(app, arguments[0]);
   if (command == nullptr) return "";
-  const Strings known = FlagNames(*command);
+  Strings known = FlagNames(*command);
+  for (const CLI::App* subcommand : command->get_subcommands({})) {
+    const Strings further = FlagNames(*subcommand);
+    known.insert(known.end(), further.begin(), further.end());
+  }
   for (const std::string& argument : arguments) {
+    if (argument == "--") break;
     if (!absl::StartsWith(argument, "--")) continue;
     const std::string flag = FlagOf(argument);
     if (std::find(known.begin(), known.end(), flag) != known.end()) continue;
-    const std::optional<std::string> nearest = base::Nearest(flag, known);
-    if (nearest.has_value()) return absl::StrCat("Did you mean ", *nearest, "?\n");
+    return absl::StrCat(arguments[0], " has no flag ", flag, base::DidYouMean(flag, known));
   }
   return "";
 }
@@ -194,9 +198,11 @@ ParsedCommandLine ParseCommandLine(const std::vector<std::string>& arguments,
     std::ostringstream out;
     const int code = line.app.exit(error, out, out);
     if (code == 0) return Text(out.str());
+    // What else is wrong may follow from it: the flag's value counts as one argument more.
+    const std::string unknown = FindUnknownFlag(line.app, arguments);
+    if (!unknown.empty()) return UsageError(unknown);
     ParsedCommandLine parsed;
-    parsed.text =
-        absl::StrCat(settled.SourceOf(error.what()), SuggestFlag(line.app, arguments), out.str());
+    parsed.text = absl::StrCat(settled.SourceOf(error.what()), out.str());
     parsed.exit_code = kExitUsage;
     return parsed;
   }

@@ -41,6 +41,12 @@ void AddInputFlags(CLI::App* app, BatchArguments* arguments) {
                   "What is asked for each leader: text format, or JSON in a .json file")
       ->type_name("FILE")
       ->group(kGroup);
+  app->add_option("--input-format", arguments->overrides.input_format,
+                  "What every leader is, whatever its name; instead of the recipe's")
+      ->check(Undescribed(CLI::IsMember(
+          std::vector<std::string>{"amc", "bvh", "csv", "glb", "gltf", "json", "npy", "sbu"})))
+      ->type_name("amc|bvh|csv|glb|gltf|json|npy|sbu")
+      ->group(kGroup);
   app->add_option("--limit", arguments->limit, "Only the first items of the plan")
       ->check(Undescribed(CLI::Range(int64_t{0}, std::numeric_limits<int64_t>::max())))
       ->type_name("COUNT")

@@ -28,8 +28,11 @@ class OpenManifest final : public batch::LeaderSource {
 };
 
 absl::StatusOr<std::unique_ptr<batch::LeaderSource>> OpenLeaders(
-    const BatchArguments& arguments, std::istream* in, std::vector<std::string>* passed_over) {
-  if (arguments.manifest.empty()) return batch::ListLeaders(arguments.leaders, passed_over);
+    const BatchArguments& arguments, const batch::Recipe& recipe, std::istream* in,
+    std::vector<std::string>* passed_over) {
+  if (arguments.manifest.empty()) {
+    return batch::ListLeaders(arguments.leaders, recipe.input.format, passed_over);
+  }
   if (arguments.manifest == "-") {
     if (in == nullptr) return absl::NotFoundError("--manifest -: there is no standard input");
     return batch::ReadManifest(*in, "", "-");
@@ -47,7 +50,7 @@ absl::StatusOr<batch::Plan> MakePlan(const BatchArguments& arguments, const batc
                                      const std::vector<ModelInfo>& models, std::istream* in,
                                      std::vector<std::string>* passed_over) {
   absl::StatusOr<std::unique_ptr<batch::LeaderSource>> leaders =
-      OpenLeaders(arguments, in, passed_over);
+      OpenLeaders(arguments, recipe, in, passed_over);
   if (!leaders.ok()) return leaders.status();
   return batch::Plan::Create(recipe, models, *std::move(leaders));
 }

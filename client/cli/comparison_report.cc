@@ -162,8 +162,10 @@ absl::StatusOr<std::string> RenderComparison(const ComparedTakes& compared,
       absl::StrFormat("compared over %d frames at %g Hz", compared.comparison.frame_count,
                       compared.comparison.frame_rate_hz);
   content.value_titles = {compared.a.name, compared.b.name};
+  const std::string displacement =
+      absl::StrCat("displacement of ", compared.b.name, " from ", compared.a.name);
   for (const Line& line : DisplacementLines(compared.comparison)) {
-    content.figures.push_back({"displacement", line.title, {line.value}});
+    content.figures.push_back({displacement, line.title, {line.value}});
   }
   for (const Figure& figure : compared.comparison.figures) {
     if (!IsKnown(figure)) continue;

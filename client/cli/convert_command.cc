@@ -29,6 +29,7 @@ using Paths = std::vector<std::filesystem::path>;
 
 // Below this, positions differ by rounding alone.
 constexpr double kExactMetres = 2e-5;
+constexpr double kSbuFrameRateHz = 15;  // what SBU text counts as where nothing else is said
 
 // A motion that is to be written.
 struct Conversion {
@@ -113,7 +114,8 @@ absl::StatusOr<double> ErrorOf(const std::string& content, Format format, const 
   options.format = format;
   options.skeleton = conversion.skeleton;
   options.frame_rate_hz = people[0].frame_rate_hz;
-  options.coordinates = motion::Coordinates{};
+  // SBU text has its own, which it always means.
+  if (format != Format::kSbuText) options.coordinates = motion::Coordinates{};
   options.metres_per_unit = format == Format::kBvh ? conversion.writing.bvh_metres_per_unit : 1;
   const int keys = format == Format::kBvh ? conversion.writing.bvh_keys_per_frame : 1;
   double largest = 0;
@@ -132,7 +134,8 @@ absl::StatusOr<double> ErrorOf(const std::string& content, Format format, const 
 }
 
 std::vector<std::string> MissingIn(Format format, double rate_hz) {
-  if (format != Format::kNpy) return {};
+  if (format == Format::kSbuText && rate_hz == kSbuFrameRateHz) return {"joint names"};
+  if (format != Format::kNpy && format != Format::kSbuText) return {};
   return {"joint names", absl::StrFormat("the frame rate: read it with --frame-rate %g", rate_hz)};
 }
 

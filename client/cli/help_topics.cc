@@ -24,13 +24,14 @@ const std::map<std::string, std::string>& Topics() {
       {"formats", R"(Which motion files are read and written.
 
   extension    read                  written              holds
+  .gltf .glb   yes                   yes                  animated skeletons
+  .usda        no                    yes                  animated skeletons
   .bvh         yes                   a file a person      joint angles, one length a bone
-  .gltf .glb   yes                   no                   animated skeletons
   .amc         with its .asf beside  no                   joint angles
   .csv         yes                   yes                  positions of one or two people
   .json        yes                   yes                  positions of one or two people
   .npy         with --frame-rate     yes                  positions of one or two people
-  .txt         yes                   no                   SBU text: two people
+  .txt         yes                   of two people        SBU text: positions of two people
 
 The extension decides; --input-format says it where there is none, as for standard input (-).
 Unit, up axis and joints are found by themselves; duet inspect FILE shows what was found and why.

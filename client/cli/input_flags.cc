@@ -18,9 +18,9 @@ const std::map<std::string, Format> kInputFormats = {
     {"npy", Format::kNpy}, {"sbu", Format::kSbuText}};
 
 const std::map<std::string, OutputFormat> kOutputFormats = {
-    {"bvh", {Format::kBvh}},   {"csv", {Format::kCsv}},  {"glb", {Format::kGlb}},
-    {"gltf", {Format::kGltf}}, {"html", {std::nullopt}}, {"json", {Format::kJson}},
-    {"npy", {Format::kNpy}},   {"usda", {Format::kUsda}}};
+    {"bvh", {Format::kBvh}},   {"csv", {Format::kCsv}},     {"glb", {Format::kGlb}},
+    {"gltf", {Format::kGltf}}, {"html", {std::nullopt}},    {"json", {Format::kJson}},
+    {"npy", {Format::kNpy}},   {"sbu", {Format::kSbuText}}, {"usda", {Format::kUsda}}};
 
 const std::map<std::string, double> kBvhUnits = {{"centimetres", formats::kCentimetre},
                                                  {"metres", 1}};

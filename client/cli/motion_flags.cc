@@ -105,10 +105,10 @@ CLI::App* AddConvertCommand(CLI::App* app, ConvertArguments* arguments) {
       ->group(kInputGroup);
   AddInputFlags(command, &arguments->input);
   command
-      ->add_option(
-          "--out", arguments->outputs,
-          "File to write: .glb, .gltf, .usda, .bvh (a file for each person), .csv, .npy or .json; "
-          "repeatable; - for standard output")
+      ->add_option("--out", arguments->outputs,
+                   "File to write: .glb, .gltf, .usda, .bvh (a file for each person), .csv, .npy, "
+                   ".json or .txt "
+                   "(SBU text); repeatable; - for standard output")
       ->required()
       ->allow_extra_args(false)
       ->type_name("FILE")

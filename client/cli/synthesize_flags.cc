@@ -128,8 +128,8 @@ void AddOutputFlags(CLI::App* app, SynthesizeArguments* arguments) {
   app->add_option(
          "--out", arguments->outputs,
          "File to write: .html (a page to watch), .glb, .gltf or .usda (both people, for Blender "
-         "and engines), .bvh (two files), .csv, .npy or .json; repeatable; - for standard "
-         "output")
+         "and engines), .bvh (two files), .csv, .npy, .json or .txt (SBU text); repeatable; - for "
+         "standard output")
       ->required()
       ->allow_extra_args(false)
       ->type_name("FILE")

@@ -2,7 +2,7 @@
 # Builds kube-apiserver from Debian 12's source package of Kubernetes, the only API server that Debian's or
 # npm's packages have: 1.20, for tests/e2e/api_server_test.py. Takes a quarter of an hour of two cores.
 #   deploy/kubernetes/make_api_server.sh FOLDER      FOLDER/kube-apiserver
-# Needs the packages golang-go, dpkg-dev and, for the test, etcd-server; deb-src in apt's sources.
+# Needs the packages golang-go and, for the test, etcd-server. DEBIAN_MIRROR names another mirror of Debian.
 set -euo pipefail
 
 mkdir -p "${1:?make_api_server.sh: wanted a folder}"
@@ -12,7 +12,15 @@ work="$(mktemp -d)"
 readonly work
 trap 'rm -rf "${work}"' EXIT
 
-(cd "${work}" && apt-get source --download-only kubernetes/bookworm)
+# With sources and lists of its own: this machine's may be another release's, or have none of sources.
+chmod 755 "${work}"
+mkdir -p "${work}/lists/partial"
+printf 'deb-src [signed-by=%s] %s bookworm main\n' /usr/share/keyrings/debian-archive-keyring.gpg \
+  "${DEBIAN_MIRROR:-http://deb.debian.org/debian}" >"${work}/sources.list"
+apt=(apt-get -o "Dir::Etc::SourceList=${work}/sources.list" -o Dir::Etc::SourceParts=-
+  -o "Dir::State::Lists=${work}/lists" -o "Dir::Cache=${work}/apt-cache")
+"${apt[@]}" update
+(cd "${work}" && "${apt[@]}" source --download-only kubernetes)
 # Before modules: the source lies where its import path says.
 readonly source="${work}/go/src/k8s.io/kubernetes"
 mkdir -p "${source}"

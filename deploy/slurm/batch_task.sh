@@ -9,6 +9,9 @@
 #
 # Exit codes of `duet batch`: 0, the shard is settled; 1, worth running again, which this task asks for;
 # 2 and 42, it is not. A task that is killed, or whose node is lost, goes on from the shard's journal.
+#
+# Slurm copies this file alone to the node, so that what it has in common with train_task.sh (waiting behind a
+# signal, asking to be run again) stands in both.
 set -uo pipefail
 
 readonly most_restarts=20

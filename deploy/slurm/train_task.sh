@@ -10,6 +10,9 @@
 #
 # A training that a signal ended (killed for memory, the time limit) is worth running again and goes on
 # with the epoch after the last finished one; one that ended by itself, of its data or its words, is not.
+#
+# Slurm copies this file alone to the node, so that what it has in common with batch_task.sh (waiting behind a
+# signal, asking to be run again) stands in both.
 set -uo pipefail
 
 readonly most_restarts=20

@@ -298,6 +298,11 @@ absl::StatusOr<std::string> FormatChecked(Format format, const std::vector<motio
            : format == Format::kNpy ? flat::FormatNpy(people[0])
                                     : flat::FormatJsonMotion(people[0], skeleton);
   }
+  if (format == Format::kSbuText) {
+    flat::SbuOptions sbu;
+    sbu.joint_names = skeleton.joint_names;
+    return flat::FormatSbu({people[0], people[1]}, sbu);
+  }
   const motion::ClipPair pair{people[0], people[1]};
   if (format == Format::kCsv) return flat::FormatCsv(pair);
   if (format == Format::kNpy) return flat::FormatNpy(pair);
@@ -354,7 +359,7 @@ bool IsReadable(const fs::path& path) {
   return format.has_value() && IsReadable(*format);
 }
 
-bool IsWritable(Format format) { return format != Format::kSbuText && format != Format::kAmc; }
+bool IsWritable(Format format) { return format != Format::kAmc; }
 
 bool IsWritable(const fs::path& path) {
   const std::optional<Format> format = FormatOf(path);
@@ -421,6 +426,9 @@ absl::StatusOr<std::string> FormatPeople(Format format, const std::vector<motion
   }
   if (format == Format::kBvh && people.size() > 1) {
     return absl::InvalidArgumentError("people: came 2, wanted one: BVH has a file for each");
+  }
+  if (format == Format::kSbuText && people.size() != 2) {
+    return absl::InvalidArgumentError("people: came 1, wanted 2: SBU text has always two");
   }
   return FormatChecked(format, people, skeleton, options);
 }

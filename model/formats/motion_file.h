@@ -89,8 +89,8 @@ struct WriteOptions {
 };
 inline constexpr int kMostBvhKeysPerFrame = 16;
 
-// Writes a pair: .glb, .gltf, .usda, .csv, .npy, .json as one file; .bvh as <stem>.leader.bvh and
-// <stem>.follower.bvh in one shared world. Returns the files written.
+// Writes a pair: .glb, .gltf, .usda, .csv, .npy, .json and .txt (in SBU's own unit) as one file;
+// .bvh as <stem>.leader.bvh and <stem>.follower.bvh in one shared world. Returns the files written.
 //
 // Errors: INVALID_ARGUMENT for an unknown extension, joints other than the skeleton's, people of
 //         different length, positions that are not finite; PERMISSION_DENIED.
@@ -104,7 +104,7 @@ absl::StatusOr<std::vector<std::filesystem::path>> WritePair(const std::filesyst
 absl::StatusOr<std::vector<std::filesystem::path>> WritePeople(
     const std::filesystem::path& path, Format format, const std::vector<motion::Clip>& people,
     const motion::Skeleton& skeleton, const WriteOptions& options = {});
-// What WritePeople writes where it writes one file: .bvh holds one person.
+// What WritePeople writes where it writes one file: .bvh holds one person, SBU text two.
 absl::StatusOr<std::string> FormatPeople(Format format, const std::vector<motion::Clip>& people,
                                          const motion::Skeleton& skeleton,
                                          const WriteOptions& options = {});
@@ -113,6 +113,8 @@ absl::StatusOr<std::string> FormatPeople(Format format, const std::vector<motion
 std::optional<Format> FormatOf(const std::filesystem::path& path);
 // By name: "bvh", "gltf", "glb", "usda", "amc", "csv", "json", "npy" or "sbu".
 std::optional<Format> ParseFormat(absl::string_view name);
+// The names of those that are read.
+inline constexpr char kReadableFormatNames[] = "amc, bvh, csv, glb, gltf, json, npy or sbu";
 bool IsWritable(Format format);
 bool IsReadable(Format format);
 
@@ -120,7 +122,8 @@ bool IsReadable(Format format);
 bool IsWritable(const std::filesystem::path& path);
 bool IsReadable(const std::filesystem::path& path);
 // Which those are, for UnknownExtension and for callers that know more.
-inline constexpr char kWritableExtensions[] = ".glb, .gltf, .usda, .bvh, .csv, .npy or .json";
+inline constexpr char kWritableExtensions[] =
+    ".glb, .gltf, .usda, .bvh, .csv, .npy, .json or .txt (SBU text)";
 inline constexpr char kReadableExtensions[] =
     ".txt (SBU text), .bvh, .gltf, .glb, .amc (beside its .asf), .csv, .npy or .json";
 // INVALID_ARGUMENT "path: extension: came ..., wanted <known>".

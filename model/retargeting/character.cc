@@ -115,7 +115,7 @@ class ClipMaker {
           absl::StrCat("foot to ", root, " came as ", length, " units, which is no size"));
     }
     const std::string why =
-        absl::StrCat("foot to ", root, " is ", Rounded(length, 0.01),
+        absl::StrCat("foot to ", root, " is ", length,
                      " units, no person's in any usual unit, and was taken as ", kTypicalLeg,
                      " m; say how many metres a unit has where the size matters");
     Note(absl::StrCat("warning: unit: a guess: ", why));

@@ -5,8 +5,10 @@ killed, packed shards that Python reads, shards of a job, refusals, and Ctrl-C.
 """
 
 import collections
+import csv
 import hashlib
 import json
+import math
 import os
 import pathlib
 import random
@@ -54,6 +56,21 @@ def digests(folder):
 def entries(folder):
     lines = (folder / "index.jsonl").read_text(encoding="utf-8").splitlines()
     return [json.loads(line) for line in lines]
+
+
+def read_k3hi(folder):
+    """As a loader of K3HI reads it, class folder by class folder: path to frames of the points of two
+    people, in metres, y up."""
+    found = {}
+    for path in sorted(folder.glob("*ing/[0-9][0-9][0-9].txt")):
+        frames = []
+        for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), start=1):
+            values = [float(value) for value in line.split(",")]
+            assert values[0] == number and len(values) == 1 + 2 * 3 * 15, path
+            frames.append([(1.28 - 2.56 * x, 0.96 - 1.92 * y, 1.28 * z) for x, y, z in
+                           zip(values[1::3], values[2::3], values[3::3])])
+        found[path.relative_to(folder).as_posix()] = frames
+    return found
 
 
 class BatchTest(unittest.TestCase):
@@ -369,6 +386,34 @@ class BatchTest(unittest.TestCase):
             name = next(name for name in arrays.files if name != "records.jsonl")
             self.assertEqual(arrays[name].shape[0::2], (2, 15))
             self.assertTrue(numpy.isfinite(arrays[name]).all())
+
+    def test_the_layout_of_k3hi_is_read_by_others(self):
+        out, single = self.out(), self.folder / "single.json"
+        self.batch(out, self.recipe(text='models: "k3hi" reactions { each_class {} } '
+                                         'output { layout: LAYOUT_K3HI %s }'))
+        index, found = {e["files"][0]["path"]: e for e in entries(out)}, read_k3hi(out)
+        self.assertEqual(set(found), set(index))
+        folders = {path.partition("/")[0]: entry["reaction"] for path, entry in index.items()}
+        self.assertEqual(folders, {
+            "approaching": "approach", "departing": "depart", "exchanging": "exchange_object",
+            "kicking": "kick", "pointing": "point", "punching": "punch", "pushing": "push",
+            "shaking": "shake_hands"})
+        self.assertEqual(len(found), 3 * len(folders))  # of each leader one
+        with (out / "index.tsv").open(encoding="utf-8", newline="") as table:
+            sides = {row["path"]: row["leader_side"] for row in csv.DictReader(table, delimiter="\t")}
+        self.assertEqual(sides, dict.fromkeys(found, "left"))
+        # One of them against what the server says when asked for it alone; both have 30 Hz.
+        entry, frames = index["punching/002.txt"], found["punching/002.txt"]
+        result = tools.duet("synthesize", "--server", self.server.address, "--model", "k3hi",
+                            "--leader", entry["leader"], "--label", "punch=1", "--seed",
+                            entry["seed"], "--out", single)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        asked = json.loads(single.read_text())
+        self.assertEqual(asked["frame_rate_hz"], 30)
+        self.assertEqual(len(frames), len(asked["leader"]))
+        for points, leader, follower in zip(frames, asked["leader"], asked["follower"]):
+            for came, wanted in zip(points, leader + follower):
+                self.assertLess(math.dist(came, wanted), 1e-4)
 
     def test_a_manifest_from_a_pipe(self):
         out = self.out()

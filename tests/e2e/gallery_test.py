@@ -99,11 +99,21 @@ class GalleryTest(unittest.TestCase):
         rows = page.evaluate("[...document.querySelectorAll('#figures tr')]"
                              ".map((row) => [...row.cells].map((cell) => cell.textContent))")
         self.assertEqual(rows[0], ["", "first", "second"])
-        self.assertIn(["displacement"], rows)
+        self.assertIn(["displacement of second from first"], rows)
         self.assertIn(["joints, on average", "0.000 m"], rows)
         lean = next(row for row in rows if row[0].startswith("lean from the hips"))
         self.assertEqual(lean[1], lean[2])
         self.assertEqual(page.text(".chart b"), "Speed of the follower")
+
+    def test_a_phone_shows_the_curves_whole(self):
+        page = self.open("#paused", self.compared, width=390, height=844)
+        for part in (".chart", ".chart header > span", "#scrub", "#speeds", "#figures"):
+            left, right = page.evaluate(
+                f"(({{left, right}}) => [left, right])"
+                f"(document.querySelector({part!r}).getBoundingClientRect())")
+            self.assertLess(left, right, part)
+            self.assertGreaterEqual(left, 0, part)
+            self.assertLessEqual(right, 390, part)
 
 
 if __name__ == "__main__":

@@ -1,11 +1,15 @@
 """What kustomize makes of deploy/kubernetes, checked for what no schema says: numbers that must fit one
-another, selectors that must find their pods. With DUET_NODE_MODULES, a folder that has what
-deploy/kubernetes/validate.mjs names, also against the published schemas."""
+another, selectors that must find their pods; and the two scripts there, the check of hashes and the batch.
+With DUET_NODE_MODULES, a folder that has what deploy/kubernetes/validate.mjs names, also against the
+published schemas."""
 
+import hashlib
 import json
 import os
+import pathlib
 import re
 import shutil
+import tempfile
 import unittest
 
 import tools
@@ -38,6 +42,16 @@ def pods_of(objects):
 
 def selected(selector, labels):
     return all(labels.get(key) == value for key, value in selector.items())
+
+# A kubectl that writes down what it is asked for. The wait for one of a job's two ends returns at once, that
+# for the other one never.
+KUBECTL = """#!/bin/sh
+case "$*" in
+  *wait*--for=condition=$END_OF_JOBS*) ;;
+  *wait*) echo $$ >>"$FOLDER/waiting" && exec sleep infinity ;;
+  *) echo "$*" >>"$FOLDER/asked" ;;
+esac
+"""
 
 
 class KubernetesTest(unittest.TestCase):
@@ -111,6 +125,66 @@ class KubernetesTest(unittest.TestCase):
                        for one in job["template"]["spec"]["containers"][0]["env"]}
         self.assertEqual(environment["JOB_COMPLETIONS"], str(job["completions"]))
         self.assertEqual(job["template"]["metadata"]["labels"]["duet.dev/client"], "true")
+
+    def verify_models(self, folder):
+        """What the init container says to a volume that is at `folder`/models."""
+        deployment = of_kind(objects_of("overlays/production"), "Deployment")[0]
+        shell, flags, script = deployment["spec"]["template"]["spec"]["initContainers"][0]["command"]
+        script = re.sub(r"(?<![\w.])/(?=(models|hashes|tmp)\b)", f"{folder}/", script)
+        return tools.run(shell, flags, script)
+
+    def test_models_are_served_only_as_their_hashes_say(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            for path in ("models/sbu/1", "hashes", "tmp"):
+                (folder / path).mkdir(parents=True)
+            weights = folder / "models/sbu/1/weights.safetensors"
+            weights.write_bytes(b"weights")
+            (folder / "hashes/models.sha256").write_text(
+                f"{hashlib.sha256(b'weights').hexdigest()}  ./sbu/1/weights.safetensors\n")
+            self.assertEqual(self.verify_models(folder).returncode, 0)
+
+            weights.write_bytes(b"weightz")
+            changed = self.verify_models(folder)
+            self.assertNotEqual(changed.returncode, 0)
+            self.assertIn("./sbu/1/weights.safetensors: FAILED", changed.stdout)
+
+            weights.write_bytes(b"weights")
+            (folder / "models/sbu/1/more").touch()
+            added = self.verify_models(folder)
+            self.assertNotEqual(added.returncode, 0)
+            self.assertIn("./sbu/1/more", added.stdout)
+
+            (folder / "models/sbu/1/more").unlink()
+            weights.unlink()
+            self.assertNotEqual(self.verify_models(folder).returncode, 0)
+
+    def run_batch(self, end_of_jobs):
+        """Runs the batch where jobs end in this way; its result, and what it asked of kubectl."""
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            kubectl = folder / "kubectl"
+            kubectl.write_text(KUBECTL)
+            kubectl.chmod(0o755)
+            result = tools.run(KUBERNETES / "batch/run.sh", "there", env={
+                **os.environ, "PATH": f"{folder}:{os.environ['PATH']}", "FOLDER": name,
+                "END_OF_JOBS": end_of_jobs})
+            waiting = folder / "waiting"
+            for process in waiting.read_text().split() if waiting.exists() else ():
+                self.assertFalse(pathlib.Path(f"/proc/{process}").exists(), "a wait goes on")
+            return result, (folder / "asked").read_text().splitlines()
+
+    def test_a_batch_is_merged_once_its_shards_are_done(self):
+        result, asked = self.run_batch("complete")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(asked, ["apply -k .", "apply -k merge",
+                                 "--namespace there logs job/duet-batch-merge"])
+
+    def test_a_batch_whose_shards_failed_is_not_merged(self):
+        result, asked = self.run_batch("failed")
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("job/duet-batch failed", result.stderr)
+        self.assertEqual(asked, ["apply -k ."])
 
     @unittest.skipUnless("DUET_NODE_MODULES" in os.environ, "needs DUET_NODE_MODULES")
     def test_the_published_schemas_agree(self):

@@ -334,10 +334,10 @@ TEST_F(MotionFile, TakesTheFirstFrameAsAFollowersStart) {
 TEST_F(MotionFile, NamesExtensionsItKnows) {
   EXPECT_THAT(std::string(ReadLeader("a.fbx").status().message()),
               HasSubstr("extension: came \".fbx\", wanted .txt (SBU text), .bvh"));
-  EXPECT_THAT(std::string(WritePair("a.txt", pair_, motion::SbuSkeleton()).status().message()),
-              HasSubstr("extension: came \".txt\", wanted .glb, .gltf, .usda, .bvh, .csv"));
+  EXPECT_THAT(std::string(WritePair("a.amc", pair_, motion::SbuSkeleton()).status().message()),
+              HasSubstr("extension: came \".amc\", wanted .glb, .gltf, .usda, .bvh, .csv"));
   EXPECT_TRUE(IsWritable("a.json"));
-  EXPECT_FALSE(IsWritable("a.txt"));
+  EXPECT_TRUE(IsWritable("a.txt"));
   EXPECT_FALSE(IsWritable("a"));
   EXPECT_FALSE(IsReadable("a.fbx"));
   EXPECT_TRUE(IsReadable("a.BVH"));

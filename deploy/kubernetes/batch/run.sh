@@ -10,16 +10,19 @@ readonly limit=168h
 
 # Waits until a job is done; fails as soon as it has failed.
 wait_for() {
-  local job="job/$1" waits=()
-  kubectl --namespace "${namespace}" wait --for=condition=complete --timeout="${limit}" "${job}" &
-  waits+=("$!")
-  (kubectl --namespace "${namespace}" wait --for=condition=failed --timeout="${limit}" "${job}" &&
-    exit 1) &
-  waits+=("$!")
-  local status=0
-  wait -n "${waits[@]}" || status=$?
+  local job="job/$1" condition waits=() first="" status=0
+  for condition in complete failed; do
+    kubectl --namespace "${namespace}" wait "--for=condition=${condition}" --timeout="${limit}" "${job}" &
+    waits+=("$!")
+  done
+  wait -n -p first "${waits[@]}" || status=$?
+  # The other one would wait for a week.
   kill "${waits[@]}" 2>/dev/null || true
-  ((status == 0)) || { echo "run.sh: ${job} failed; kubectl describe ${job} says which shards" >&2 && exit 1; }
+  wait "${waits[@]}" 2>/dev/null || true
+  if [[ "${status}" -ne 0 || "${first}" != "${waits[0]}" ]]; then
+    echo "run.sh: ${job} failed; kubectl describe ${job} says which shards" >&2
+    exit 1
+  fi
 }
 
 kubectl apply -k .

@@ -17,6 +17,7 @@ namespace duet::evaluation::judge {
 struct MotionClassifier::Model {
   std::vector<network::Discriminator> members;
   std::string hash;
+  int64_t hidden = 0;  // units of each direction
   JudgeSees sees = JudgeSees::kFollower;
 };
 
@@ -204,6 +205,7 @@ absl::StatusOr<MotionClassifier> MotionClassifier::Train(
   }
   auto model = std::make_shared<Model>();
   model->sees = options.sees;
+  model->hidden = options.hidden;
   for (int64_t m = 0; m < options.members; ++m) {
     ClassifierOptions member = options;
     member.seed = options.seed * static_cast<uint64_t>(options.members) + static_cast<uint64_t>(m);
@@ -239,6 +241,25 @@ metrics::FeatureSet MotionClassifier::Features(
     AppendRows(torch::cat(features, 1), &rows);
   }
   return rows;
+}
+
+classifier::ClassifierParts MotionClassifier::Parts(const dataset::Dataset& dataset) const {
+  classifier::ClassifierParts parts;
+  parts.classes = dataset.classes;
+  parts.skeleton = dataset.skeleton;
+  parts.frame_rate_hz = dataset.frame_rate_hz;
+  parts.window_frames = dataset.LongestFrameCount();
+  parts.hidden = static_cast<int>(model_->hidden);
+  parts.networks = static_cast<int>(model_->members.size());
+  for (size_t n = 0; n < model_->members.size(); ++n) {
+    for (const auto& named : model_->members[n]->named_parameters()) {
+      const torch::Tensor values = named.value().detach().contiguous();
+      checkpoint::Tensor tensor{absl::StrCat(n, ".", named.key()), values.sizes().vec(), {}};
+      tensor.values.assign(values.data_ptr<float>(), values.data_ptr<float>() + values.numel());
+      parts.tensors.push_back(std::move(tensor));
+    }
+  }
+  return parts;
 }
 
 const std::string& MotionClassifier::hash() const { return model_->hash; }

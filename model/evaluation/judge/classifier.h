@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "model/classifier/classifier.h"
 #include "model/dataset/dataset.h"
 #include "model/evaluation/judge/judge_input.h"
 #include "model/evaluation/metrics/features.h"
@@ -52,6 +53,10 @@ class MotionClassifier {
   // [motions][members * 2 hidden].
   metrics::FeatureSet Features(const dataset::Dataset& dataset,
                                const std::vector<metrics::ScoredMotion>& motions) const;
+
+  // What model/classifier runs without LibTorch, of a judge that sees the follower alone. The data
+  // set is that of Train.
+  classifier::ClassifierParts Parts(const dataset::Dataset& dataset) const;
 
   // SHA-256 of all weights, in hexadecimal: which extractor a figure was measured with.
   const std::string& hash() const;

@@ -24,6 +24,7 @@ void AddCurvesCommand(CLI::App* app, ChosenCommand* chosen);        // training 
 void AddValidationCommand(CLI::App* app, ChosenCommand* chosen);    // settings on held-back data
 void AddDataCommand(CLI::App* app, ChosenCommand* chosen);          // tilt, noise and leaders
 void AddDirectionCommand(CLI::App* app, ChosenCommand* chosen);     // where the partner is
+void AddJudgeCommand(CLI::App* app, ChosenCommand* chosen);         // for duet batch's filter
 void AddReportCommand(CLI::App* app, ChosenCommand* chosen);        // one page of all sections
 
 }  // namespace duet::evaluation::program

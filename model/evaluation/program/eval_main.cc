@@ -21,6 +21,7 @@ int main(int argc, char** argv) {
   duet::evaluation::program::AddCurvesCommand(&app, &chosen);
   duet::evaluation::program::AddValidationCommand(&app, &chosen);
   duet::evaluation::program::AddDataCommand(&app, &chosen);
+  duet::evaluation::program::AddJudgeCommand(&app, &chosen);
   duet::evaluation::program::AddDirectionCommand(&app, &chosen);
   duet::evaluation::program::AddReportCommand(&app, &chosen);
   const duet::base::KebabCaseCommandLine line(argc, argv);

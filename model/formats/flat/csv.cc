@@ -1,20 +1,19 @@
 #include "model/formats/flat/csv.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
-#include <map>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "absl/strings/ascii.h"
-#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "model/base/text.h"
 #include "model/formats/flat/csv_header.h"
+#include "model/formats/flat/csv_joint_rows.h"
+#include "model/formats/flat/csv_times.h"
 #include "model/motion/motion_limits.h"
 
 namespace duet::formats::flat {
@@ -24,63 +23,10 @@ constexpr absl::string_view kPrefixes[] = {"leader.", "follower."};
 constexpr const char* kSuffixes[] = {"_x", "_y", "_z"};
 constexpr std::size_t kMaxColumns = std::size_t{motion::kMaxFileJoints} * 6 + 2;
 constexpr std::size_t kMostHeaderRows = 3;
-// A time column that gives less is no column of seconds.
-constexpr double kSlowestTimedRateHz = 1;
-constexpr double kUsualRatesHz[] = {15, 24, 25, 30, 50, 60, 90, 100, 120, 240};
-constexpr std::size_t kMostDecimals = 9;  // of times; further ones are a computer's own rounding
 
 float* AxisOf(motion::Vec3* position, int axis) {
   return axis == 0 ? &position->x : axis == 1 ? &position->y : &position->z;
 }
-
-// The rate of the times that frames were taken at, as a time column has them.
-class TimeColumn {
- public:
-  void Add(absl::string_view text) {
-    double seconds = 0;
-    readable_ = readable_ && base::ParseNumber(text, &seconds);
-    if (!readable_) return;
-    const std::size_t point = text.find('.');
-    const std::size_t decimals = point == absl::string_view::npos ? 0 : text.size() - point - 1;
-    decimals_ = std::max(decimals_, absl::StrContains(text, 'e') ? kMostDecimals : decimals);
-    seconds_.push_back(seconds);
-  }
-
-  // 0 where the times are no even steps in seconds. The nearest usual rate, or else a whole one,
-  // counts as such within the times' own rounding.
-  double FrameRate() const {
-    if (!readable_ || seconds_.size() < 2) return 0;
-    const double steps = static_cast<double>(seconds_.size() - 1);
-    const double rate = steps / (seconds_.back() - seconds_.front());
-    if (!(rate >= kSlowestTimedRateHz && rate <= motion::kMaxFrameRateHz)) return 0;
-    for (std::size_t i = 0; i < seconds_.size(); ++i) {
-      const double step = (seconds_[i] - seconds_.front()) * rate;
-      if (std::abs(step - static_cast<double>(i)) > 0.5) return 0;
-    }
-    return Meant(rate);
-  }
-
- private:
-  double Meant(double rate) const {
-    const double rounding = std::pow(10, -static_cast<double>(std::min(decimals_, kMostDecimals)));
-    const double steps = static_cast<double>(seconds_.size() - 1);
-    const auto fits = [&](double candidate) {
-      return std::abs(steps / candidate - steps / rate) <= rounding;
-    };
-    double best = fits(std::round(rate)) ? std::round(rate) : rate;
-    double nearest = motion::kMaxFrameRateHz;
-    for (double usual : kUsualRatesHz) {
-      if (!fits(usual) || std::abs(usual - rate) >= nearest) continue;
-      best = usual;
-      nearest = std::abs(usual - rate);
-    }
-    return best;
-  }
-
-  std::vector<double> seconds_;
-  std::size_t decimals_ = 0;
-  bool readable_ = true;
-};
 
 class CsvParser {
  public:
@@ -103,12 +49,6 @@ class CsvParser {
   }
 
  private:
-  // One joint in one frame, of a file with a row for each joint.
-  struct Cell {
-    int frame = 0, joint = 0;
-    motion::Vec3 position;
-  };
-
   absl::Status Error(absl::string_view message) const {
     return base::ErrorAt(source_, std::max(lines_.number(), 1), message);
   }
@@ -234,25 +174,34 @@ class CsvParser {
 
   absl::Status ParsePosition(const CsvRow& row, std::size_t column, float* value) const {
     if (motion::ParseCoordinate(row[column], value)) return absl::OkStatus();
+    if (motion::ParseCoordinate(WithPoint(row[column]), value)) return absl::OkStatus();
     return ErrorInColumn(
         column + 1, absl::StrCat("came ", base::Quoted(row[column]), ", wanted a finite number"));
   }
 
-  absl::Status TooManyFrames() const {
-    return Error(absl::StrCat("more than ", motion::kMaxMotionFrames, " frames"));
+  // "0,05", as half of Europe's spreadsheets write it, where no comma separates columns.
+  std::string WithPoint(absl::string_view field) const {
+    std::string text(field);
+    if (delimiter_ != ',' && std::count(text.begin(), text.end(), ',') == 1) {
+      std::replace(text.begin(), text.end(), ',', '.');
+    }
+    return text;
   }
+  void AddTime(absl::string_view time) { times_.Add(WithPoint(time)); }
 
   absl::Status ParseFrameRow(const CsvRow& row) {
     absl::Status status = CheckRow(row);
     if (!status.ok()) return status;
     const int frame = motion_.people[0].frame_count();
-    if (frame >= motion::kMaxMotionFrames) return TooManyFrames();
+    if (frame >= motion::kMaxMotionFrames) {
+      return Error(absl::StrCat("more than ", motion::kMaxMotionFrames, " frames"));
+    }
     for (motion::Clip& person : motion_.people) {
       person.Append(std::vector<motion::Vec3>(person.joint_names.size()));
     }
     for (std::size_t i = 0; i < row.size() && status.ok(); ++i) {
       const CsvColumn& column = header_.columns[i];
-      if (column.kind == CsvColumn::Kind::kTime) times_.Add(row[i]);
+      if (column.kind == CsvColumn::Kind::kTime) AddTime(row[i]);
       if (column.kind != CsvColumn::Kind::kPosition) continue;
       motion::Vec3& at = motion_.people[static_cast<size_t>(column.person)].at(frame, column.joint);
       status = ParsePosition(row, i, AxisOf(&at, column.axis));
@@ -262,59 +211,31 @@ class CsvParser {
 
   absl::Status ParseJointRow(const CsvRow& row) {
     absl::Status status = CheckRow(row);
-    absl::string_view frame, time, joint;
-    Cell cell;
+    CsvJointRows::Row parsed;
+    absl::string_view time;
     for (std::size_t i = 0; i < row.size() && status.ok(); ++i) {
       const CsvColumn& column = header_.columns[i];
       if (column.kind == CsvColumn::Kind::kPosition) {
-        status = ParsePosition(row, i, AxisOf(&cell.position, column.axis));
+        status = ParsePosition(row, i, AxisOf(&parsed.position, column.axis));
       }
-      if (column.kind == CsvColumn::Kind::kFrame) frame = row[i];
+      if (column.kind == CsvColumn::Kind::kFrame) parsed.frame = row[i];
       if (column.kind == CsvColumn::Kind::kTime) time = row[i];
-      if (column.kind == CsvColumn::Kind::kJoint) joint = row[i];
+      if (column.kind == CsvColumn::Kind::kJoint) parsed.joint = row[i];
+      if (column.kind == CsvColumn::Kind::kPerson) parsed.person = row[i];
     }
     if (!status.ok()) return status;
-    if (joint.empty()) return Error("a joint without a name");
     // Of both, a frame's number tells frames apart that a rounded time does not.
-    const auto [known_frame, new_frame] = frames_.emplace(std::string(frame.empty() ? time : frame),
-                                                          static_cast<int>(frames_.size()));
-    const auto [known_joint, new_joint] =
-        joints_.emplace(std::string(joint), static_cast<int>(joints_.size()));
-    if (frames_.size() > motion::kMaxMotionFrames) return TooManyFrames();
-    if (joints_.size() > motion::kMaxFileJoints) {
-      return Error(absl::StrCat("more than ", motion::kMaxFileJoints, " joints"));
-    }
-    if (new_frame && !time.empty()) times_.Add(time);
-    if (new_joint) motion_.people[0].joint_names.emplace_back(joint);
-    cell.frame = known_frame->second;
-    cell.joint = known_joint->second;
-    cells_.push_back(cell);
+    if (parsed.frame.empty()) parsed.frame = time;
+    const absl::StatusOr<bool> new_frame = joint_rows_.Add(parsed);
+    if (!new_frame.ok()) return Error(new_frame.status().message());
+    if (*new_frame && !time.empty()) AddTime(time);
     return absl::OkStatus();
   }
 
-  // Every joint once in every frame.
   absl::Status CollectFrames() {
-    if (cells_.empty()) return absl::OkStatus();
-    const std::size_t wanted = frames_.size() * joints_.size();
-    if (cells_.size() != wanted) {
-      return Error(absl::StrCat("came ", cells_.size(), " rows, wanted ", wanted,
-                                ": one for each of ", joints_.size(), " joints in each of ",
-                                frames_.size(), " frames"));
-    }
-    motion::Clip& person = motion_.people[0];
-    person.poses = motion::Poses(static_cast<int>(frames_.size()), person.joint_count());
-    std::vector<bool> given(wanted);
-    for (const Cell& cell : cells_) {
-      const std::size_t place =
-          static_cast<size_t>(cell.frame) * joints_.size() + static_cast<size_t>(cell.joint);
-      if (given[place]) {
-        return Error(absl::StrCat(base::Quoted(person.joint_names[static_cast<size_t>(cell.joint)]),
-                                  " comes twice in the frame that is number ", cell.frame + 1,
-                                  " of the file"));
-      }
-      given[place] = true;
-      person.at(cell.frame, cell.joint) = cell.position;
-    }
+    absl::StatusOr<std::vector<motion::Clip>> people = joint_rows_.Collect();
+    if (!people.ok()) return Error(people.status().message());
+    motion_.people = *std::move(people);
     return absl::OkStatus();
   }
 
@@ -326,10 +247,8 @@ class CsvParser {
   std::size_t next_waiting_ = 0;
   motion::RecordedMotion motion_;
   double frame_rate_hz_ = 0;  // as a comment says
-  TimeColumn times_;
-  // With a row for each joint.
-  std::map<std::string, int> frames_, joints_;  // by what the rows call them
-  std::vector<Cell> cells_;
+  CsvTimes times_;
+  CsvJointRows joint_rows_;
 };
 
 void AppendHeader(absl::string_view prefix, const motion::Clip& clip, std::string* out) {

@@ -34,7 +34,12 @@ bool IsIndex(absl::string_view name) {
   return IsOneOf(name, {"", "frame", "index", "frame_number", "unnamed: 0"});
 }
 bool IsJointColumn(absl::string_view name) {
-  return IsOneOf(name, {"joint", "bone", "joint_name", "bone_name", "name", "marker"});
+  return IsOneOf(name, {"joint", "bone", "joint_name", "bone_name", "joint name", "bone name",
+                        "name", "marker"});
+}
+// Whose a row is, in a file with a row for each joint.
+bool IsPersonColumn(absl::string_view name) {
+  return IsOneOf(name, {"person", "character", "armature", "rig", "object", "actor", "subject"});
 }
 
 int AxisNumber(absl::string_view text) {
@@ -73,11 +78,12 @@ void DropPositionWord(absl::string_view* name) {
   }
 }
 
-// The axis of a column of positions in a file with a row for each joint: x, loc_x, location.x.
+// The axis of a column of positions in a file with a row for each joint: x, loc_x, location.x, and
+// head_x, where Blender has a bone's joint (its tail is where the next one's is).
 int PlainAxis(absl::string_view name) {
   if (const int axis = AxisNumber(name); axis >= 0) return axis;
   const int axis = TakeAxis(&name);
-  return IsOneOf(name, {"location", "loc", "position", "pos"}) ? axis : -1;
+  return IsOneOf(name, {"location", "loc", "position", "pos", "head"}) ? axis : -1;
 }
 
 // pandas writes columns of several levels that were made one as "('head', 'x')".
@@ -168,6 +174,8 @@ class HeaderReader {
       column.axis = axis;
     } else if (IsJointColumn(name)) {
       column.kind = CsvColumn::Kind::kJoint;
+    } else if (IsPersonColumn(name)) {
+      column.kind = CsvColumn::Kind::kPerson;
     } else if (IsTime(name)) {
       column.kind = CsvColumn::Kind::kTime;
     } else if (IsOneOf(name, {"frame", "frame_number"})) {
@@ -178,18 +186,19 @@ class HeaderReader {
   }
 
   absl::Status CheckPlainColumns() const {
-    int axes[3] = {}, joints = 0, frames = 0;
+    int axes[3] = {}, joints = 0, people = 0, frames = 0;
     for (const CsvColumn& column : header_.columns) {
       if (column.kind == CsvColumn::Kind::kPosition) ++axes[column.axis];
       joints += column.kind == CsvColumn::Kind::kJoint ? 1 : 0;
+      people += column.kind == CsvColumn::Kind::kPerson ? 1 : 0;
       frames += column.kind == CsvColumn::Kind::kFrame || column.kind == CsvColumn::Kind::kTime;
     }
-    if (axes[0] == 1 && axes[1] == 1 && axes[2] == 1 && joints == 1 && frames > 0) {
+    if (axes[0] == 1 && axes[1] == 1 && axes[2] == 1 && joints == 1 && people <= 1 && frames > 0) {
       return absl::OkStatus();
     }
     return absl::InvalidArgumentError(
         "came a row for each joint, wanted one column of each of joint, x, y and z, and frame or "
-        "time");
+        "time, at most one of person");
   }
 
   absl::Status AddColumn(std::size_t number, absl::string_view name) {

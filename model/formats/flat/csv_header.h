@@ -18,7 +18,8 @@ struct CsvColumn {
     kPosition,    // one axis of a joint's position
     kTime,        // seconds
     kFrame,       // which frame a row belongs to   } of a file
-    kJoint,       // which joint a row belongs to   } with a row for each joint
+    kPerson,      // whose joint a row belongs to   } with a row for each joint
+    kJoint,       // which joint a row belongs to   }
   };
   Kind kind = Kind::kPassedOver;
   int person = 0;  // kPosition

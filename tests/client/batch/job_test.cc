@@ -20,9 +20,12 @@
 #include "duet/batch/v1/batch.pb.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "model/classifier/classifier_files.h"
 #include "model/dataset/dataset.h"
 #include "model/formats/motion_file.h"
 #include "model/motion/resample.h"
+#include "nlohmann/json.hpp"
+#include "tests/classifier/random_classifier.h"
 #include "tests/support/sample_motion.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
@@ -93,7 +96,7 @@ class JobTest : public ::testing::Test {
   // A run into <folder>/<out> with a connection of its own for each server.
   absl::StatusOr<JobReport> Run(const std::string& out, const JobOptions& options = {},
                                 const std::string& manifest = "leader\na.csv\nb.csv\n") {
-    absl::StatusOr<Recipe> recipe = ParseRecipe(recipe_, false);
+    absl::StatusOr<Recipe> recipe = ParseRecipe(recipe_, false, folder_.path());
     EXPECT_THAT(recipe, IsOk());
     ModelInfo model;
     model.name = "fake";
@@ -280,6 +283,26 @@ TEST_F(JobTest, RejectedAnswersAreAskedForWithOtherSeedsAndListed) {
     rejected += line.find("\"rejected\"") != std::string::npos ? 1 : 0;
   }
   EXPECT_EQ(rejected, kItems);
+}
+
+TEST_F(JobTest, AClassifierThatSeesAnotherClassRejects) {
+  ASSERT_THAT(classifier::WriteClassifier(folder_ / "judge", test::RandomClassifier()), IsOk());
+  recipe_.insert(recipe_.find("retries_per_item"),
+                 "classifier { model: 'judge' min_probability: 0.5 } ");
+  const auto report = Run("set");
+  ASSERT_THAT(report, IsOk());
+  // Of two classes one is above a half: the other's items are rejected, whichever it is.
+  EXPECT_EQ(report->set.done, kItems / 2);
+  EXPECT_EQ(report->set.rejected, kItems / 2);
+  const auto rejected = Lines("set/rejected.tsv");
+  ASSERT_THAT(rejected, SizeIs(kItems / 2 + 1));
+  EXPECT_THAT(rejected[0], HasSubstr("recognised_class\tclass_probability\t"));
+  EXPECT_THAT(rejected[1], HasSubstr("class_probability 0."));
+  for (const std::string& line : Lines("set/index.jsonl")) {
+    const auto entry = nlohmann::json::parse(line);
+    EXPECT_GE(entry["quality"]["class_probability"], 0.5);
+    EXPECT_TRUE(entry["labels"].contains(entry["quality"]["recognised_class"])) << line;
+  }
 }
 
 TEST_F(JobTest, StopsBetweenItems) {

@@ -7,6 +7,7 @@
 #include "client/batch/manifest.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "model/motion/reading_setting.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
@@ -15,6 +16,7 @@ namespace {
 
 using test::IsOk;
 using test::StatusIs;
+using ::testing::_;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Pair;
@@ -105,7 +107,7 @@ class ListLeadersTest : public ::testing::Test {
  protected:
   ListLeadersTest() {
     for (const char* name :
-         {"walks/b.bvh", "walks/a.csv", "walks/a.bvh", "walks/notes.md", "c.npy"}) {
+         {"walks/b.bvh", "walks/a.csv", "walks/a.bvh", "walks/d.usda", "walks/notes.md", "c.npy"}) {
       std::filesystem::create_directories((folder_ / name).parent_path());
       test::WriteTestFile(folder_ / name, "");
     }
@@ -125,7 +127,7 @@ class ListLeadersTest : public ::testing::Test {
 TEST_F(ListLeadersTest, FoldersAreMirroredByName) {
   const auto keys = List({"."});
   ASSERT_THAT(keys, IsOk());
-  // Two formats of one name: the second has its ending as well.
+  // Two formats of one name: the second has its ending as well. d.usda is written, never read.
   EXPECT_THAT(*keys, ElementsAre("c", "walks/a", "walks/a_csv", "walks/b"));
 }
 
@@ -140,7 +142,7 @@ TEST_F(ListLeadersTest, WhatHoldsNoMotionIsPassedOver) {
   test::WriteTestFile(folder / "empty.json", "");
   test::WriteTestFile(folder / "walk.bvh", "# looked at when its turn comes");
   std::vector<std::string> passed_over;
-  auto source = ListLeaders({folder.path().string()}, &passed_over);
+  auto source = ListLeaders({folder.path().string()}, std::nullopt, &passed_over);
   ASSERT_THAT(source, IsOk());
   EXPECT_THAT(Keys(*ReadAll(**source)), ElementsAre("motion", "plain", "walk", "walk_txt"));
   std::vector<std::string> wanted;
@@ -149,8 +151,27 @@ TEST_F(ListLeadersTest, WhatHoldsNoMotionIsPassedOver) {
   }
   EXPECT_EQ(passed_over, wanted);
   // Somebody who names a file means it.
-  source = ListLeaders({(folder / "keys.txt").string()}, &passed_over);
+  source = ListLeaders({(folder / "keys.txt").string()}, std::nullopt, &passed_over);
   EXPECT_THAT(Keys(*ReadAll(**source)), ElementsAre("keys"));
+}
+
+TEST_F(ListLeadersTest, AFormatThatIsSaidMakesNamesFree) {
+  test::WriteTestFile(folder_ / "walks/take1", "");
+  test::WriteTestFile(folder_ / "walks/take2.mocap", "");
+  std::vector<std::string> keys;
+  auto source = ListLeaders({folder_.path().string()}, formats::Format::kBvh);
+  ASSERT_THAT(source, IsOk());
+  // notes.md might be one; a.csv, c.npy and d.usda say that they are none.
+  EXPECT_THAT(Keys(*ReadAll(**source)),
+              ElementsAre("walks/a", "walks/b", "walks/notes", "walks/take1", "walks/take2"));
+  EXPECT_THAT(List({"walks/take2.mocap"}), StatusIs(absl::StatusCode::kInvalidArgument, _));
+  std::filesystem::create_directories(folder_ / "unnamed");
+  test::WriteTestFile(folder_ / "unnamed/take3", "");
+  const absl::Status none = List({"unnamed"}).status();
+  EXPECT_THAT(none, StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("no motion file")));
+  EXPECT_EQ(motion::MendingSetting(none), motion::ReadingSetting::kFormat);
+  source = ListLeaders({(folder_ / "walks/take2.mocap").string()}, formats::Format::kBvh);
+  EXPECT_THAT(source, IsOk());
 }
 
 TEST_F(ListLeadersTest, PatternsAndFiles) {

@@ -25,7 +25,8 @@ constexpr auto kDataLoss = absl::StatusCode::kDataLoss;
 ordered_json Done() {
   return ordered_json::parse(R"({
     "item": 0, "id": "01", "state": "done", "name": "kick/a", "side": "left", "model": "sbu@2",
-    "labels": {"kick": 1}, "frames": 2, "frame_rate_hz": 15, "quality": {"distance_metres": 1},
+    "labels": {"kick": 1}, "frames": 2, "frame_rate_hz": 15,
+    "quality": {"distance_metres": 1, "recognised_class": "kick", "class_probability": 0.5},
     "files": [{"path": "kick/a.npy", "bytes": 12, "sha256": "ab"}], "extra": {"note": "x"}})");
 }
 
@@ -60,6 +61,12 @@ TEST(ParseRecord, NamesTheFieldThatIsGoneOrOfAnotherType) {
     EXPECT_THAT(ParseRecord(Line(record)), StatusIs(kDataLoss, HasSubstr(field)));
   }
   ordered_json record = Done();
+  record["quality"]["distance_metres"] = "far";
+  EXPECT_THAT(ParseRecord(Line(record)), StatusIs(kDataLoss, HasSubstr("quality")));
+  record = Done();
+  record["quality"]["recognised_class"] = 1;
+  EXPECT_THAT(ParseRecord(Line(record)), StatusIs(kDataLoss, HasSubstr("quality")));
+  record = Done();
   record["files"][0]["bytes"] = -1;
   EXPECT_THAT(ParseRecord(Line(record)), StatusIs(kDataLoss, HasSubstr("files")));
   record["files"] = ordered_json::array();

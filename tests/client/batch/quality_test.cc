@@ -1,7 +1,10 @@
 #include "client/batch/quality.h"
 
+#include <algorithm>
+
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "tests/classifier/random_classifier.h"
 #include "tests/support/sample_motion.h"
 
 namespace duet::client::batch {
@@ -42,6 +45,42 @@ TEST(Measure, TellsWhereTheFollowerIs) {
   EXPECT_GT(floating.penetration_metres, 0);
   const Quality sunk = Measure(Pair({3, -0.5f, 0}), WithLandmarks());
   EXPECT_GT(*sunk.foot_below_floor_metres, 0.4);
+}
+
+TEST(Recognise, ThatTheClassIsWantedCountsAndNotTheOrderOfTheJoints) {
+  const auto classifier = classifier::Classifier::Create(test::RandomClassifier());
+  ASSERT_TRUE(classifier.ok());
+  const motion::ClipPair pair = Pair({1, 0, 0});
+  Quality kick, hug, none, turned;
+  Recognise(*classifier, "kick", pair, &kick);
+  Recognise(*classifier, "hug", pair, &hug);
+  Recognise(*classifier, "none", pair, &none);
+  EXPECT_NEAR(*kick.class_probability + *hug.class_probability, 1, 1e-5);
+  EXPECT_EQ(kick.recognised_class, *kick.class_probability > 0.5 ? "kick" : "hug");
+  EXPECT_EQ(kick.recognised_class, hug.recognised_class);
+  EXPECT_EQ(none.recognised_class, "");
+  EXPECT_FALSE(none.class_probability);
+  motion::ClipPair reversed = pair;
+  for (motion::Clip* clip : {&reversed.leader, &reversed.follower}) {
+    std::reverse(clip->joint_names.begin(), clip->joint_names.end());
+    for (int t = 0; t < kFrames; ++t) {
+      std::reverse(clip->poses[t].begin(), clip->poses[t].end());
+    }
+  }
+  Recognise(*classifier, "kick", reversed, &turned);
+  EXPECT_NEAR(*turned.class_probability, *kick.class_probability, 1e-6);
+}
+
+TEST(WhyRejected, GoesByTheProbabilityOfTheClass) {
+  QualityFilter filter;
+  filter.min_class_probability = 0.5;
+  Quality quality;
+  EXPECT_THAT(WhyRejected(filter, quality, std::nullopt), IsEmpty());  // not looked at
+  quality.class_probability = 0.5;
+  EXPECT_THAT(WhyRejected(filter, quality, std::nullopt), IsEmpty());
+  quality.class_probability = 0.25;
+  EXPECT_THAT(WhyRejected(filter, quality, std::nullopt),
+              ElementsAre("class_probability 0.25, wanted at least 0.5"));
 }
 
 TEST(Measure, LeavesOutWhatASkeletonDoesNotTell) {

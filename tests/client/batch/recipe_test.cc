@@ -1,8 +1,11 @@
+#include <map>
 #include <string>
 
 #include "client/batch/recipe_file.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "model/classifier/classifier_files.h"
+#include "tests/classifier/random_classifier.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
@@ -139,6 +142,9 @@ INSTANTIATE_TEST_SUITE_P(
         BadRecipe{"models: 'a' models: 'a'", "models: came a twice"},
         BadRecipe{"filter { max_lean_degrees: -1 }", "filter.max_lean_degrees: came -1"},
         BadRecipe{"filter { retries_per_item: 101 }", "retries_per_item: came 101"},
+        BadRecipe{"filter { classifier { min_probability: 0.5 } }", "classifier.model: came none"},
+        BadRecipe{"input { format: 'fbx' }", "input.format: came \"fbx\", wanted amc, bvh"},
+        BadRecipe{"input { format: 'usda' }", "input.format: came \"usda\", wanted amc, bvh"},
         BadRecipe{"input { unit: 'feet' }", "input.unit: came \"feet\""},
         BadRecipe{"input { frame_rate_hz: 0 }", "input.frame_rate_hz: came 0"},
         BadRecipe{"output { formats: FORMAT_NPY shard_bytes: 0 }", "shard_bytes: came 0"},
@@ -152,6 +158,55 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(Recipe, AFormatIsWanted) {
   EXPECT_THAT(ParseRecipe("", false),
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("output.formats: came none")));
+}
+
+TEST(ReadRecipe, AClassifierIsWhatItHoldsNotWhereItLies) {
+  const test::TemporaryFolder folder;
+  ASSERT_THAT(WriteClassifier(folder / "a", test::RandomClassifier()), IsOk());
+  ASSERT_THAT(WriteClassifier(folder / "b", test::RandomClassifier()), IsOk());
+  classifier::ClassifierParts other = test::RandomClassifier();
+  other.classes = {"push", "hug"};
+  ASSERT_THAT(WriteClassifier(folder / "c", other), IsOk());
+  std::map<std::string, absl::StatusOr<Recipe>> recipes;
+  for (const std::string name : {"a", "b", "c"}) {
+    test::WriteTestFile(folder / "r", "filter { classifier { model: '" + name +
+                                          "' min_probability: 0.5 } } "
+                                          "output { formats: FORMAT_NPY }");
+    recipes[name] = ReadRecipe(folder / "r");
+    ASSERT_THAT(recipes[name], IsOk());
+  }
+  EXPECT_EQ(recipes["a"]->digest, recipes["b"]->digest);
+  EXPECT_NE(recipes["a"]->digest, recipes["c"]->digest);
+  EXPECT_EQ(recipes["c"]->filter.classifier->parts().classes[0], "push");
+  EXPECT_EQ(recipes["c"]->filter.min_class_probability, 0.5);
+}
+
+TEST(ReadRecipe, AClassifierThatIsNotThereOrAsksForMoreThanAllIsRefused) {
+  const test::TemporaryFolder folder;
+  ASSERT_THAT(WriteClassifier(folder / "judge", test::RandomClassifier()), IsOk());
+  const auto read = [&folder](const std::string& filter) {
+    return ParseRecipe("filter { classifier { " + filter + " } } output { formats: FORMAT_NPY }",
+                       false, folder.path())
+        .status();
+  };
+  EXPECT_THAT(read("model: 'judge' min_probability: 1"), IsOk());
+  EXPECT_THAT(read("model: 'none' min_probability: 0.5"),
+              StatusIs(absl::StatusCode::kNotFound, HasSubstr("none/judge.json: no such file")));
+  for (const char* probability : {"2", "0", "-1"}) {
+    EXPECT_THAT(read(std::string("model: 'judge' min_probability: ") + probability),
+                StatusIs(absl::StatusCode::kInvalidArgument,
+                         HasSubstr(std::string("filter.classifier.min_probability: came ") +
+                                   probability + ", wanted above 0, at most 1")));
+  }
+}
+
+TEST(ReadRecipe, TheFlagForTheFormatWins) {
+  RecipeOverrides overrides;
+  overrides.input_format = "sbu";
+  const auto recipe =
+      ParseRecipe("input { format: 'bvh' } output { formats: FORMAT_NPY }", false, {}, overrides);
+  ASSERT_THAT(recipe, IsOk());
+  EXPECT_EQ(recipe->input.format, formats::Format::kSbuText);
 }
 
 TEST(ReadRecipe, NamesTheFileAndGoesByItsEnding) {

@@ -230,7 +230,7 @@ TEST_F(ArgumentsTest, ARigIsOneOfTheOutputsFormat) {
 
 TEST_F(ArgumentsTest, OutputsThatCannotBeWrittenAreRefusedBeforeAnyWork) {
   ExpectRefused({"--label", "kick=1", "--out", Out("pair.fbx")},
-                "\".fbx\", wanted .html, .glb, .gltf, .usda, .bvh, .csv, .npy or .json");
+                "\".fbx\", wanted .html, .glb, .gltf, .usda, .bvh, .csv, .npy, .json or .txt");
   ExpectRefused({"--label", "kick=1", "--out", Out("no/pair.csv")}, "there is no folder");
   const std::string leader = Out("leader.csv");
   WriteTestFile(leader, "");

@@ -1,7 +1,13 @@
 // Everything that the program tells of itself.
+#include <filesystem>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
 #include "client/cli/arguments.h"
 #include "client/cli/command_line.h"
 #include "client/cli/command_table.h"
@@ -9,6 +15,7 @@
 #include "client/cli/program.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "model/formats/motion_file.h"
 #include "tests/support/temporary_folder.h"
 
 namespace duet::client::cli {
@@ -36,6 +43,28 @@ TEST(Help, ExplainsCommandsAndTopics) {
   EXPECT_THAT(ParseCommandLine({"help", "settings"}).text, HasSubstr("DUET_SERVER"));
 }
 
+TEST(Help, TellsWhichFormatsAreReadAndWritten) {
+  std::map<std::string, std::pair<bool, bool>> told;  // by extension
+  for (absl::string_view line : absl::StrSplit(TopicText("formats"), '\n')) {
+    if (!absl::StartsWith(line, "  .")) continue;
+    // Columns begin where the table's head has them.
+    const bool read = !absl::StartsWith(line.substr(15), "no ");
+    const bool written = !absl::StartsWith(line.substr(37), "no ");
+    for (absl::string_view extension : absl::StrSplit(line.substr(2, 12), ' ')) {
+      if (!extension.empty()) told[std::string(extension)] = {read, written};
+    }
+  }
+  for (const char* extension :
+       {".gltf", ".glb", ".usda", ".bvh", ".amc", ".csv", ".json", ".npy", ".txt"}) {
+    ASSERT_TRUE(told.count(extension)) << extension;
+    const std::string file = absl::StrCat("a", extension);
+    EXPECT_EQ(told[extension].first, formats::IsReadable(std::filesystem::path(file))) << extension;
+    EXPECT_EQ(told[extension].second, formats::IsWritable(std::filesystem::path(file)))
+        << extension;
+  }
+  EXPECT_EQ(told.size(), 9u);
+}
+
 TEST(Help, SuggestsWhatWasMeant) {
   const auto expect = [](const std::vector<std::string>& arguments, const char* text) {
     const ParsedCommandLine parsed = ParseCommandLine(arguments);
@@ -46,9 +75,13 @@ TEST(Help, SuggestsWhatWasMeant) {
   expect({"help", "lables"}, "did you mean labels?");
   expect({"help", "konvert"}, "did you mean convert?");
   expect({"man", "modls"}, "did you mean models?");
-  expect({"models", "--sever", "x"}, "Did you mean --server?");
-  expect({"models", "--sever=x"}, "Did you mean --server?");
-  EXPECT_THAT(ParseCommandLine({"models", "--xyzzy"}).text, Not(HasSubstr("Did you mean")));
+  expect({"models", "--sever", "x"}, "models has no flag --sever; did you mean --server?");
+  expect({"models", "--sever=x"}, "models has no flag --sever; did you mean --server?");
+  EXPECT_THAT(ParseCommandLine({"models", "--xyzzy"}).text, Not(HasSubstr("did you mean")));
+  // Whose value would be a third file.
+  expect({"compare", "a", "b", "--out", "c"}, "compare has no flag --out\n");
+  expect({"convert", "a", "--ou", "b"}, "convert has no flag --ou; did you mean --out?");
+  expect({"batch", "merge", "--jsn"}, "batch has no flag --jsn; did you mean --json?");
 }
 
 TEST(Help, WorksWhateverTheSettingsAre) {

@@ -11,6 +11,7 @@
 #include "model/formats/motion_file.h"
 #include "model/motion/skeleton.h"
 #include "nlohmann/json.hpp"
+#include "tests/formats/asf/asf_fixture.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/test_motion.h"
@@ -230,6 +231,48 @@ TEST_F(MotionCommandsTest, ConvertSaysHowFarAFormatIsOff) {
   EXPECT_THAT(out_.str(), HasSubstr(" mm off: a bone has one length there"));
 }
 
+// What docs/formats.md's table says.
+TEST_F(MotionCommandsTest, EveryFormatThatIsReadBecomesEveryFormatThatIsWritten) {
+  const Strings read = {"csv", "json", "npy", "bvh", "glb", "gltf", "txt", "amc"};
+  const Strings written = {"csv", "json", "npy", "bvh", "glb", "gltf", "txt", "usda"};
+  const auto people = [](const std::string& from) {
+    return from == "bvh" || from == "amc" ? 1 : 2;
+  };
+  for (const std::string& from : read) {
+    if (from == "amc") {
+      const test::AsfFiles files = test::MakeAsfFiles(leader_);
+      WriteTestFile(folder_ / "from.asf", files.asf);
+      WriteTestFile(folder_ / "from.amc", files.amc);
+    } else {
+      const std::string source = people(from) == 1 ? "one.csv" : "pair.csv";
+      ASSERT_EQ(Run({"convert", Path(source), "--out", Path("from." + from)}), 0) << err_.str();
+    }
+    for (const std::string& to : written) {
+      const std::string name = from + "_to." + to;
+      const Strings command = {"convert", Path("from." + from), "--frame-rate", "30", "--out",
+                               Path(name)};
+      if (to == "txt" && people(from) == 1) {
+        EXPECT_EQ(Run(command), 42);
+        EXPECT_THAT(err_.str(), HasSubstr("SBU text has always two"));
+        continue;
+      }
+      ASSERT_EQ(Run(command), 0) << name << err_.str();
+      if (to == "usda") continue;  // is not read; tests/formats/usd tells what is in it
+      const bool apart = to == "bvh" && people(from) == 2;
+      formats::ReadOptions options;
+      options.frame_rate_hz = 30;
+      EXPECT_LT(LargestDistance(Read(apart ? from + "_to.leader.bvh" : name, options), leader_),
+                0.005f)
+          << name;
+      if (people(from) == 1) continue;
+      options.side = formats::Side::kRight;
+      EXPECT_LT(LargestDistance(Read(apart ? from + "_to.follower.bvh" : name, options), follower_),
+                0.005f)
+          << name;
+    }
+  }
+}
+
 TEST_F(MotionCommandsTest, ConvertTakesOnePersonOrBoth) {
   ASSERT_EQ(Run({"convert", Path("pair.csv"), "--side", "right", "--out", Path("r.bvh")}), 0);
   EXPECT_LT(LargestDistance(Read("r.bvh"), follower_), 1e-4f);
@@ -304,7 +347,7 @@ TEST_F(MotionCommandsTest, ConvertNeverReplacesWhatItReads) {
   EXPECT_EQ(Run({"convert", Path("one.csv"), "--out", Path("one.csv")}), 2);
   EXPECT_THAT(err_.str(), HasSubstr("would replace the file that is read"));
   EXPECT_EQ(Run({"convert", Path("one.csv"), "--out", Path("one.html")}), 2);
-  EXPECT_THAT(err_.str(), HasSubstr("wanted .glb, .gltf, .usda, .bvh, .csv, .npy or .json"));
+  EXPECT_THAT(err_.str(), HasSubstr("wanted .glb, .gltf, .usda, .bvh, .csv, .npy, .json or .txt"));
 }
 
 TEST_F(MotionCommandsTest, ViewShowsMotionsSideBySide) {

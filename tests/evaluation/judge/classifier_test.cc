@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "model/classifier/classifier_input.h"
 #include "model/motion/vec3.h"
 #include "tests/evaluation/support/made_up_pairs.h"
 
@@ -13,7 +14,9 @@ namespace {
 
 using test::MadeUpPairs;
 
+using ::testing::FloatNear;
 using ::testing::HasSubstr;
+using ::testing::Pointwise;
 using ::testing::SizeIs;
 
 constexpr int kPairsAClass = 12;
@@ -41,6 +44,31 @@ MotionClassifier Trained(const dataset::Dataset& dataset, const ClassifierOption
       MotionClassifier::Train(dataset, Followers(dataset, false), options);
   EXPECT_TRUE(judge.ok()) << judge.status();
   return *std::move(judge);
+}
+
+TEST(MotionClassifier, GivesTheSameWithoutLibTorch) {
+  dataset::Dataset dataset = MadeUpPairs(kPairsAClass);
+  std::vector<int> all;
+  for (size_t i = 0; i < dataset.sequences.size(); ++i) {
+    dataset::Sequence& sequence = dataset.sequences[i];
+    sequence.partner_direction = classifier::DirectionToFollower(dataset.skeleton, sequence.pair);
+    all.push_back(static_cast<int>(i));
+  }
+  for (const int epochs : {0, 3}) {
+    ClassifierOptions options = Small();
+    options.epochs = epochs;  // 0: random weights
+    options.members = 2;
+    const MotionClassifier judge = Trained(dataset, options);
+    const absl::StatusOr<classifier::Classifier> same =
+        classifier::Classifier::Create(judge.Parts(dataset));
+    ASSERT_TRUE(same.ok()) << same.status();
+    const std::vector<std::vector<float>> wanted =
+        judge.Probabilities(dataset, metrics::CapturedMotions(dataset, all));
+    for (size_t i = 0; i < all.size(); ++i) {
+      const std::vector<float> came = same->Probabilities(dataset.sequences[i].pair);
+      EXPECT_THAT(came, Pointwise(FloatNear(1e-4f), wanted[i])) << epochs << " " << i;
+    }
+  }
 }
 
 TEST(MotionClassifier, TellsTheClassesOfAnotherSubjectApart) {

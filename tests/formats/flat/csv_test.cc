@@ -12,6 +12,7 @@
 namespace duet::formats::flat {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 constexpr char kOnePerson[] =
@@ -31,7 +32,7 @@ TEST(Csv, ReadsColumnsInAnyOrder) {
   ASSERT_TRUE(motion.ok()) << motion.status();
   ASSERT_EQ(motion->people.size(), 1u);
   const motion::Clip& clip = motion->people[0];
-  EXPECT_THAT(clip.joint_names, ::testing::ElementsAre("neck", "head"));
+  EXPECT_THAT(clip.joint_names, ElementsAre("neck", "head"));
   EXPECT_EQ(clip.frame_rate_hz, 25);
   ASSERT_EQ(clip.frame_count(), 2);
   EXPECT_EQ(clip.at(0, 0), (motion::Vec3{1, 6, 5}));
@@ -44,7 +45,7 @@ TEST(Csv, ReadsQuotedFieldsAndAByteOrderMark) {
   const absl::StatusOr<motion::RecordedMotion> motion =
       ParseCsv("\xEF\xBB\xBF\"frame\",\"a_x\", \"a_y\" ,a_z\n\"0\",\"1\", \"-2.5\" ,3\n", "a.csv");
   ASSERT_TRUE(motion.ok()) << motion.status();
-  EXPECT_THAT(motion->people[0].joint_names, ::testing::ElementsAre("a"));
+  EXPECT_THAT(motion->people[0].joint_names, ElementsAre("a"));
   EXPECT_EQ(motion->people[0].at(0, 0), (motion::Vec3{1, -2.5f, 3}));
 }
 
@@ -71,7 +72,7 @@ void ExpectHeadAndNeck(const std::string& text, double frame_rate_hz = 0) {
   ASSERT_TRUE(motion.ok()) << motion.status() << "\n" << text;
   ASSERT_EQ(motion->people.size(), 1u) << text;
   const motion::Clip& clip = motion->people[0];
-  EXPECT_THAT(clip.joint_names, ::testing::ElementsAre("head", "neck")) << text;
+  EXPECT_THAT(clip.joint_names, ElementsAre("head", "neck")) << text;
   ASSERT_EQ(clip.frame_count(), 2) << text;
   EXPECT_EQ(clip.at(0, 0), (motion::Vec3{1, 2, 3})) << text;
   EXPECT_EQ(clip.at(0, 1), (motion::Vec3{4, 5, 6})) << text;
@@ -130,6 +131,41 @@ TEST(Csv, ReadsARowForEachJoint) {
       "time,name,x,y,z\n0.000,head,1,2,3\n0.000,neck,4,5,6\n0.100,head,7,8,9\n0.100,neck,-4,-5,-"
       "6\n",
       10);
+}
+
+TEST(Csv, ReadsTheHeadsOfBlendersBones) {
+  ExpectHeadAndNeck(
+      "Frame,Bone Name,head_x,head_y,head_z,tail_x,tail_y,tail_z\n1,head,1,2,3,0,0,0\n"
+      "1,neck,4,5,6,0,0,0\n2,head,7,8,9,0,0,0\n2,neck,-4,-5,-6,0,0,0\n");
+}
+
+TEST(Csv, ReadsARowForEachJointOfTwoPeople) {
+  for (const char* column : {"person", "Armature", "object"}) {
+    const absl::StatusOr<motion::RecordedMotion> motion =
+        ParseCsv(absl::StrCat("frame,", column,
+                              ",bone,x,y,z\n1,Ann,head,1,2,3\n1,Bob,head,4,5,6\n1,Bob,neck,7,8,9\n"
+                              "2,Bob,neck,-7,-8,-9\n2,Bob,head,-4,-5,-6\n2,Ann,head,-1,-2,-3\n"),
+                 "a.csv");
+    ASSERT_TRUE(motion.ok()) << motion.status();
+    ASSERT_EQ(motion->people.size(), 2u);
+    EXPECT_THAT(motion->people[0].joint_names, ElementsAre("head"));
+    EXPECT_THAT(motion->people[1].joint_names, ElementsAre("head", "neck"));
+    EXPECT_EQ(motion->people[0].at(1, 0), (motion::Vec3{-1, -2, -3}));
+    EXPECT_EQ(motion->people[1].at(0, 1), (motion::Vec3{7, 8, 9}));
+  }
+  EXPECT_THAT(ParseError("frame,person,bone,x,y,z\n1,A,a,1,2,3\n1,B,a,1,2,3\n1,C,a,1,2,3\n"),
+              HasSubstr("a.csv:4: people: came a third, \"C\", wanted at most 2"));
+  EXPECT_THAT(ParseError("frame,bone,x,y,z\n1,a,1,2,3\n1,a,1,2,3\n"),
+              HasSubstr("of two people a column named person tells whose a row is"));
+}
+
+TEST(Csv, ReadsDecimalCommasWhereCommasDoNotSeparate) {
+  const absl::StatusOr<motion::RecordedMotion> motion =
+      ParseCsv("time;a_x;a_y;a_z\n0,00;1,5;-2,25;3e-1\n0,04;1;2;3\n", "a.csv");
+  ASSERT_TRUE(motion.ok()) << motion.status();
+  EXPECT_EQ(motion->people[0].at(0, 0), (motion::Vec3{1.5f, -2.25f, 0.3f}));
+  EXPECT_EQ(motion->people[0].frame_rate_hz, 25);
+  EXPECT_THAT(ParseError("a_x;a_y;a_z\n1,500,000;2;3\n"), HasSubstr("came \"1,500,000\""));
 }
 
 TEST(Csv, WantsEveryJointOnceInEveryFrameWithARowForEach) {

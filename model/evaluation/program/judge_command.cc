@@ -1,0 +1,97 @@
+#include <algorithm>
+#include <iostream>
+#include <memory>
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_format.h"
+#include "model/classifier/classifier_files.h"
+#include "model/classifier/classifier_input.h"
+#include "model/dataset/dataset.h"
+#include "model/evaluation/judge/classifier.h"
+#include "model/evaluation/program/commands.h"
+
+namespace duet::evaluation::program {
+namespace {
+
+struct Arguments {
+  std::string data;
+  std::string out;
+  std::string hold_out;
+  judge::ClassifierOptions options;
+};
+
+// What a program that is handed a pair knows of where the two stand; not what a capture's setup
+// tells.
+void FaceFollowers(dataset::Dataset* dataset) {
+  for (dataset::Sequence& sequence : dataset->sequences) {
+    sequence.partner_direction = classifier::DirectionToFollower(dataset->skeleton, sequence.pair);
+  }
+}
+
+double Accuracy(const judge::MotionClassifier& judge, const dataset::Dataset& dataset,
+                const std::vector<int>& sequences) {
+  const std::vector<metrics::ScoredMotion> motions = metrics::CapturedMotions(dataset, sequences);
+  const std::vector<std::vector<float>> rows = judge.Probabilities(dataset, motions);
+  int right = 0;
+  for (size_t i = 0; i < rows.size(); ++i) {
+    const auto best = std::max_element(rows[i].begin(), rows[i].end()) - rows[i].begin();
+    const auto sequence = static_cast<size_t>(motions[i].sequence);
+    right += best == dataset.sequences[sequence].interaction_class ? 1 : 0;
+  }
+  return static_cast<double>(right) / static_cast<double>(std::max<size_t>(rows.size(), 1));
+}
+
+absl::Status Run(const Arguments& arguments) {
+  absl::StatusOr<dataset::Dataset> dataset = dataset::ReadDataset(arguments.data);
+  if (!dataset.ok()) return dataset.status();
+  FaceFollowers(&*dataset);
+  dataset::Split split;
+  split.train.resize(dataset->sequences.size());
+  std::iota(split.train.begin(), split.train.end(), 0);
+  if (!arguments.hold_out.empty()) {
+    absl::StatusOr<dataset::Split> without = LeaveSubjectOut(*dataset, arguments.hold_out);
+    if (!without.ok()) return without.status();
+    split = *std::move(without);
+  }
+  const absl::StatusOr<judge::MotionClassifier> judge = judge::MotionClassifier::Train(
+      *dataset, metrics::CapturedMotions(*dataset, split.train), arguments.options);
+  if (!judge.ok()) return judge.status();
+  std::cout << absl::StrFormat("trained on %d followers of %d classes\n", split.train.size(),
+                               dataset->class_count());
+  if (!split.test.empty()) {
+    std::cout << absl::StrFormat(
+        "of %d followers in clips of %s, which it did not see: %.1f %% in their class\n",
+        split.test.size(), arguments.hold_out, 100 * Accuracy(*judge, *dataset, split.test));
+  }
+  absl::Status status = classifier::WriteClassifier(arguments.out, judge->Parts(*dataset));
+  if (status.ok()) std::cout << "wrote " << arguments.out << "\n";
+  return status;
+}
+
+}  // namespace
+
+void AddJudgeCommand(CLI::App* app, ChosenCommand* chosen) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command =
+      app->add_subcommand("judge", "Train a classifier of followers, for the filter of duet batch");
+  command->add_option("--data", arguments->data, "data set to learn from (docs/datasets.md)")
+      ->required();
+  command->add_option("--out", arguments->out, "folder to write it to")->required();
+  command->add_option("--hold-out", arguments->hold_out,
+                      "a subject that it does not see, and is tried on");
+  command
+      ->add_option("--networks", arguments->options.members,
+                   "how many, each from a seed of its own; their probabilities are averaged")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  command->add_option("--epochs", arguments->options.epochs, "times that each clip is seen")
+      ->check(CLI::Range(0, 10000))
+      ->capture_default_str();
+  command->add_option("--seed", arguments->options.seed)->capture_default_str();
+  command->callback([arguments, chosen] { *chosen = [arguments] { return Run(*arguments); }; });
+}
+
+}  // namespace duet::evaluation::program

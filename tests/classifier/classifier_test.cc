@@ -1,0 +1,98 @@
+// What it computes is compared with LibTorch's in tests/evaluation/judge/classifier_test.cc.
+#include "model/classifier/classifier.h"
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/classifier/random_classifier.h"
+#include "tests/support/sample_motion.h"
+#include "tests/support/status_matchers.h"
+
+namespace duet::classifier {
+namespace {
+
+using test::IsOk;
+using test::RandomClassifier;
+using test::StatusIs;
+using ::testing::FloatNear;
+using ::testing::HasSubstr;
+using ::testing::Pointwise;
+using ::testing::SizeIs;
+
+motion::ClipPair Pair(int frames) {
+  motion::ClipPair pair;
+  pair.leader.joint_names = motion::SbuSkeleton().joint_names;
+  pair.leader.frame_rate_hz = 15;
+  pair.leader.poses = test::SwayingMotion(frames, 15);
+  pair.follower = pair.leader;
+  for (motion::Vec3& position : pair.follower.poses.all()) position.x += 1;
+  return pair;
+}
+
+motion::ClipPair Part(const motion::ClipPair& pair, int first, int frames) {
+  motion::ClipPair part = pair;
+  for (auto& [clip, from] :
+       {std::pair<motion::Clip*, const motion::Clip*>{&part.leader, &pair.leader},
+        {&part.follower, &pair.follower}}) {
+    clip->poses = motion::Poses(0, from->joint_count());
+    clip->poses.Append(from->poses.frames(first, frames));
+  }
+  return part;
+}
+
+TEST(Classifier, ALongClipIsTheMeanOfItsWindowsTheLastAtItsEnd) {
+  const absl::StatusOr<Classifier> classifier = Classifier::Create(RandomClassifier());
+  ASSERT_THAT(classifier, IsOk());
+  const motion::ClipPair pair = Pair(50);
+  std::vector<float> mean(2);
+  for (const int first : {0, 20, 30}) {
+    const std::vector<float> one = classifier->Probabilities(Part(pair, first, 20));
+    ASSERT_THAT(one, SizeIs(2));
+    EXPECT_NEAR(one[0] + one[1], 1, 1e-5);
+    for (size_t c = 0; c < 2; ++c) mean[c] += one[c] / 3;
+  }
+  EXPECT_THAT(classifier->Probabilities(pair), Pointwise(FloatNear(1e-5f), mean));
+}
+
+TEST(Classifier, NeitherThePlaceNorTheFacingOfTheTwoCounts) {
+  const absl::StatusOr<Classifier> classifier = Classifier::Create(RandomClassifier());
+  ASSERT_THAT(classifier, IsOk());
+  const motion::ClipPair pair = Pair(20);
+  motion::ClipPair turned = pair;
+  for (motion::Clip* clip : {&turned.leader, &turned.follower}) {
+    for (motion::Vec3& p : clip->poses.all()) p = {p.z + 5, p.y, -p.x - 3};
+  }
+  EXPECT_THAT(classifier->Probabilities(turned),
+              Pointwise(FloatNear(1e-4f), classifier->Probabilities(pair)));
+}
+
+TEST(Classifier, OneFrameAndAnotherRateWillDo) {
+  const absl::StatusOr<Classifier> classifier = Classifier::Create(RandomClassifier());
+  ASSERT_THAT(classifier, IsOk());
+  EXPECT_THAT(classifier->Probabilities(Pair(1)), SizeIs(2));
+  motion::ClipPair fast = Pair(40);
+  fast.leader.frame_rate_hz = fast.follower.frame_rate_hz = 30;
+  EXPECT_THAT(classifier->Probabilities(fast), SizeIs(2));
+}
+
+TEST(Classifier, NamesWhatDoesNotFit) {
+  ClassifierParts parts = RandomClassifier();
+  parts.tensors[0].shape[2] += 1;
+  EXPECT_THAT(Classifier::Create(parts),
+              StatusIs(absl::StatusCode::kInvalidArgument,
+                       HasSubstr("0.layer1_weight_ih: came 2 x 16 x 136, wanted 2 x 16 x 135")));
+  parts = RandomClassifier();
+  parts.tensors.pop_back();
+  EXPECT_THAT(Classifier::Create(parts),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("1.output.bias: came none")));
+  parts = RandomClassifier();
+  parts.tensors.push_back({"more", {1}, {0}});
+  EXPECT_THAT(Classifier::Create(parts),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("came 17, wanted 16")));
+  parts = RandomClassifier();
+  parts.classes = {"kick"};
+  EXPECT_THAT(Classifier::Create(parts),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("classes: came 1")));
+}
+
+}  // namespace
+}  // namespace duet::classifier

@@ -1,0 +1,14 @@
+#ifndef DUET_TESTS_CLASSIFIER_RANDOM_CLASSIFIER_H_
+#define DUET_TESTS_CLASSIFIER_RANDOM_CLASSIFIER_H_
+
+#include "model/classifier/classifier.h"
+
+namespace duet::test {
+
+// A small one of SBU's skeleton at 15 Hz, with two random networks and a window of 20 frames, that
+// knows "kick" and "hug".
+classifier::ClassifierParts RandomClassifier();
+
+}  // namespace duet::test
+
+#endif  // DUET_TESTS_CLASSIFIER_RANDOM_CLASSIFIER_H_
