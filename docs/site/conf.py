@@ -60,8 +60,7 @@ TITLED = re.compile(r"^.*<|>$")
 TOCTREE = re.compile(r"^```\{toctree\}\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 # Pages below a page, in the sidebar. "*" alone: every document that no other list has.
 BELOW = {
-    "docs/results/README": ["The paper's generator <report>",
-                            "The generator that samples <sampling/report>"],
+    "docs/results/README": ["Every table and figure <report>", "Before levelling <unlevelled>"],
     "docs/decisions/README": ["0*"],
     "docs/README": ["*"],
 }
