@@ -135,6 +135,8 @@ class LoadTest(unittest.TestCase):
         process = subprocess.Popen(
             [LOAD, "--server", server.address, "--seconds", "3600", "--warm-up", "0", "--json", "-",
              "--records", self.folder / "calls.csv"], stdout=subprocess.PIPE, text=True)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
         # A block of lines is there once some hundred calls are over.
         tools.wait_until(lambda: (self.folder / "calls.csv").exists()
                          and (self.folder / "calls.csv").stat().st_size > 1000, "calls")
