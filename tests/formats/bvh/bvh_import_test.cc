@@ -108,6 +108,9 @@ TEST(BvhImport, GuessesTheUnitOfASizeThatIsNoPersonsAndWarns) {
   motion::Clip smaller = clip;
   for (motion::Vec3& p : smaller.poses.all()) p = p * static_cast<float>(1 / leg);
   EXPECT_LT(LargestDistance(*guessed, smaller), kOneMillimetre);
+  notes.clear();
+  ASSERT_TRUE(FromBvh(Scaled(Export(clip), 4e-5 / leg), "a.bvh", options).ok());
+  EXPECT_THAT(notes, Contains(HasSubstr("foot to torso is 0.004 units")));
   options.metres_per_unit = 0.01 * leg / 2.24;
   notes.clear();
   const absl::StatusOr<motion::Clip> told = FromBvh(odd, "a.bvh", options);
