@@ -17,6 +17,9 @@ namespace {
 
 using checkpoint::Tensor;
 
+// Far beyond what training gives, and far from sums that no float holds.
+constexpr float kLargestWeight = 1e6f;
+
 // Gives out tensors by name, once they have the shape that is wanted.
 class TensorTable {
  public:
@@ -124,6 +127,13 @@ absl::Status CheckSizes(const ClassifierParts& parts) {
   if (parts.window_frames < 1) return refuse("window_frames", parts.window_frames, "1 or more");
   if (parts.hidden < 1) return refuse("hidden", parts.hidden, "1 or more");
   if (parts.networks < 1) return refuse("networks", parts.networks, "1 or more");
+  for (const Tensor& tensor : parts.tensors) {
+    for (const float weight : tensor.values) {
+      if (!(std::abs(weight) <= kLargestWeight)) {
+        return refuse(tensor.name.c_str(), weight, "-1e6 to 1e6");
+      }
+    }
+  }
   return absl::OkStatus();
 }
 

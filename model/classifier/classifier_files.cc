@@ -33,8 +33,8 @@ std::vector<motion::BodyPart> WholeBody(const motion::Skeleton& skeleton) {
   return {body};
 }
 
-absl::Status InFile(const fs::path& file, const absl::Status& status) {
-  return absl::Status(status.code(), absl::StrCat(file.string(), ": ", status.message()));
+absl::Status InFile(const char* file, const absl::Status& status) {
+  return absl::Status(status.code(), absl::StrCat(file, ": ", status.message()));
 }
 
 struct Described {
@@ -66,25 +66,33 @@ absl::StatusOr<Described> Parse(const std::string& text) {
 
 }  // namespace
 
-absl::StatusOr<StoredClassifier> ReadClassifier(const fs::path& folder) {
-  const fs::path json_file = folder / kJsonFile, weights_file = folder / kWeightsFile;
-  const absl::StatusOr<std::string> text = base::ReadFile(json_file, kMaxJsonBytes, "a judge");
-  if (!text.ok()) return text.status();
-  absl::StatusOr<Described> described = Parse(*text);
-  if (!described.ok()) return InFile(json_file, described.status());
-  const absl::StatusOr<std::string> bytes =
-      base::ReadFile(weights_file, kMaxWeightBytes, "a judge's weights");
-  if (!bytes.ok()) return bytes.status();
-  if (base::Sha256Hex(*bytes) != described->weights_sha256) {
+absl::StatusOr<StoredClassifier> ParseClassifier(const std::string& json,
+                                                 const std::string& weights) {
+  absl::StatusOr<Described> described = Parse(json);
+  if (!described.ok()) return InFile(kJsonFile, described.status());
+  if (base::Sha256Hex(weights) != described->weights_sha256) {
     return absl::DataLossError(
-        absl::StrCat(weights_file.string(), ": is not what ", kJsonFile, " was written with"));
+        absl::StrCat(kWeightsFile, ": is not what ", kJsonFile, " was written with"));
   }
-  absl::StatusOr<std::vector<checkpoint::Tensor>> tensors = checkpoint::ParseSafetensors(*bytes);
-  if (!tensors.ok()) return InFile(weights_file, tensors.status());
+  absl::StatusOr<std::vector<checkpoint::Tensor>> tensors = checkpoint::ParseSafetensors(weights);
+  if (!tensors.ok()) return InFile(kWeightsFile, tensors.status());
   described->parts.tensors = *std::move(tensors);
   absl::StatusOr<Classifier> classifier = Classifier::Create(std::move(described->parts));
-  if (!classifier.ok()) return InFile(folder, classifier.status());
-  return StoredClassifier{*std::move(classifier), base::Sha256Hex(*text)};
+  if (!classifier.ok()) return InFile(kWeightsFile, classifier.status());
+  return StoredClassifier{*std::move(classifier), base::Sha256Hex(json)};
+}
+
+absl::StatusOr<StoredClassifier> ReadClassifier(const fs::path& folder) {
+  const absl::StatusOr<std::string> json =
+      base::ReadFile(folder / kJsonFile, kMaxJsonBytes, "a judge");
+  if (!json.ok()) return json.status();
+  const absl::StatusOr<std::string> weights =
+      base::ReadFile(folder / kWeightsFile, kMaxWeightBytes, "a judge's weights");
+  if (!weights.ok()) return weights.status();
+  absl::StatusOr<StoredClassifier> stored = ParseClassifier(*json, *weights);
+  if (stored.ok()) return stored;
+  return absl::Status(stored.status().code(),
+                      absl::StrCat(folder.string(), "/", stored.status().message()));
 }
 
 absl::Status WriteClassifier(const fs::path& folder, const ClassifierParts& parts) {

@@ -24,6 +24,10 @@ struct StoredClassifier {
 };
 absl::StatusOr<StoredClassifier> ReadClassifier(const std::filesystem::path& folder);
 
+// From the two files' contents.
+absl::StatusOr<StoredClassifier> ParseClassifier(const std::string& json,
+                                                 const std::string& weights);
+
 // Makes the folder.
 absl::Status WriteClassifier(const std::filesystem::path& folder, const ClassifierParts& parts);
 

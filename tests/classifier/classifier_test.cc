@@ -1,6 +1,9 @@
 // What it computes is compared with LibTorch's in tests/evaluation/judge/classifier_test.cc.
 #include "model/classifier/classifier.h"
 
+#include <cmath>
+
+#include "absl/strings/str_cat.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/classifier/random_classifier.h"
@@ -88,6 +91,14 @@ TEST(Classifier, NamesWhatDoesNotFit) {
   parts.tensors.push_back({"more", {1}, {0}});
   EXPECT_THAT(Classifier::Create(parts),
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("came 17, wanted 16")));
+  for (const float weight : {std::nanf(""), -2e6f}) {
+    parts = RandomClassifier();
+    parts.tensors[1].values[3] = weight;
+    EXPECT_THAT(Classifier::Create(parts),
+                StatusIs(absl::StatusCode::kInvalidArgument,
+                         HasSubstr(absl::StrCat("0.layer1_weight_hh: came ", weight,
+                                                ", wanted -1e6 to 1e6"))));
+  }
   parts = RandomClassifier();
   parts.classes = {"kick"};
   EXPECT_THAT(Classifier::Create(parts),

@@ -7,14 +7,14 @@
 
 namespace duet::test {
 
-classifier::ClassifierParts RandomClassifier() {
+classifier::ClassifierParts RandomClassifier(int networks, int hidden) {
   classifier::ClassifierParts parts;
   parts.classes = {"kick", "hug"};
   parts.skeleton = motion::SbuSkeleton();
   parts.frame_rate_hz = 15;
   parts.window_frames = 20;
-  parts.hidden = 4;
-  parts.networks = 2;
+  parts.hidden = hidden;
+  parts.networks = networks;
   base::Random random(7);
   const auto add = [&](const std::string& name, std::vector<int64_t> shape) {
     int64_t count = 1;
@@ -25,10 +25,10 @@ classifier::ClassifierParts RandomClassifier() {
     }
     parts.tensors.push_back(std::move(tensor));
   };
-  const int64_t hidden = parts.hidden;
   const int64_t inputs =
       3 * classifier::InputParts(classifier::Sees::kFollower) * parts.skeleton.joint_count();
-  for (const std::string network : {"0.", "1."}) {
+  for (int n = 0; n < networks; ++n) {
+    const std::string network = std::to_string(n) + ".";
     for (const auto& [layer, count] : {std::pair<std::string, int64_t>{"layer1_", inputs},
                                        std::pair<std::string, int64_t>{"layer2_", 2 * hidden}}) {
       add(network + layer + "weight_ih", {2, 4 * hidden, count});

@@ -5,9 +5,9 @@
 
 namespace duet::test {
 
-// A small one of SBU's skeleton at 15 Hz, with two random networks and a window of 20 frames, that
+// A small one of SBU's skeleton at 15 Hz, with random networks and a window of 20 frames, that
 // knows "kick" and "hug".
-classifier::ClassifierParts RandomClassifier();
+classifier::ClassifierParts RandomClassifier(int networks = 2, int hidden = 4);
 
 }  // namespace duet::test
 

@@ -59,6 +59,7 @@ constexpr Target kTargets[] = {
     {"http_request", HttpRequest},
     {"joint_map", JointMap},
     {"json_motion", JsonMotion},
+    {"judge", Judge},
     {"keyframes", Keyframes},
     {"npy", Npy},
     {"recipe_json", RecipeJson},
