@@ -91,6 +91,7 @@ sampled() {
 
 measure() {
   local config half named=("full=${runs}/ablation/default") compared=() sets=()
+  "${bin}/duet-eval" data --data "${data}" --out "${results}"
   "${bin}/duet-eval" folds --data "${data}" --out "${results}" --id 10_methods \
     --title "Methods: leave one subject out" --baselines "${methods}" --printed afd,fid \
     --runs "ours=${runs}/default" --runs "mshl22=${runs}/mshl22" \
