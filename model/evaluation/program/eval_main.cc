@@ -4,6 +4,7 @@
 
 #include "model/base/flag_names.h"
 #include "model/evaluation/program/commands.h"
+#include "model/network/exceptions.h"
 #include "model/torch_engine/torch_synthesizer.h"
 
 int main(int argc, char** argv) {
@@ -26,8 +27,10 @@ int main(int argc, char** argv) {
   duet::evaluation::program::AddReportCommand(&app, &chosen);
   const duet::base::KebabCaseCommandLine line(argc, argv);
   CLI11_PARSE(app, line.argc(), line.argv());
-  duet::torch_engine::SetTorchThreads(1);
-  const absl::Status status = chosen();
+  const absl::Status status = duet::network::CatchExceptions([&chosen] {
+    absl::Status prepared = duet::torch_engine::SetTorchThreads(1);
+    return prepared.ok() ? chosen() : prepared;
+  });
   if (status.ok()) return 0;
   std::cerr << "duet-eval: " << status.message() << "\n";
   return 1;
