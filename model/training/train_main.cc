@@ -175,6 +175,7 @@ void Declare(Arguments* arguments, CLI::App* app) {
 int main(int argc, char** argv) {
   Arguments arguments;
   CLI::App app("Trains a generator on a folder of captures and writes a checkpoint.");
+  app.set_version_flag("--version", "duet-train " DUET_VERSION);
   Declare(&arguments, &app);
   const duet::base::KebabCaseCommandLine line(argc, argv);
   CLI11_PARSE(app, line.argc(), line.argv());

@@ -9,6 +9,7 @@
 
 int main(int argc, char** argv) {
   CLI::App app("Measures trained models and baselines on captures.");
+  app.set_version_flag("--version", "duet-eval " DUET_VERSION);
   app.require_subcommand(1);
   duet::evaluation::program::ChosenCommand chosen;
   duet::evaluation::program::AddFoldsCommand(&app, &chosen);
