@@ -7,6 +7,7 @@
 #include "model/base/random.h"
 #include "model/cpu_engine/kernels/additive_attention.h"
 #include "model/cpu_engine/kernels/gemm_bf16.h"
+#include "model/cpu_engine/kernels/gemm_bf16_amx.h"
 #include "model/cpu_engine/kernels/lstm_cell.h"
 #include "model/cpu_engine/kernels/packed_matrix.h"
 #include "model/cpu_engine/kernels/rowwise.h"
@@ -29,11 +30,16 @@ void PerSecond(benchmark::State& state, const char* what, double count) {
 }
 
 // Arguments: rows, inputs, outputs.
-void Product(benchmark::State& state, Precision precision) {
+void Product(benchmark::State& state, Precision precision, Bf16Product product) {
   if (precision == Precision::kBfloat16 && !HasBf16()) {
     state.SkipWithError("this processor does not multiply bfloat16");
     return;
   }
+  if (product == Bf16Product::kAmx && !HasAmx()) {
+    state.SkipWithError("this processor does not multiply tiles (AMX)");
+    return;
+  }
+  ChooseBf16Product(product);
   const int rows = static_cast<int>(state.range(0)), inputs = static_cast<int>(state.range(1)),
             outputs = static_cast<int>(state.range(2));
   const PackedMatrix matrix(Values(std::ptrdiff_t{outputs} * inputs), {}, outputs, inputs,
@@ -44,6 +50,7 @@ void Product(benchmark::State& state, Precision precision) {
     matrix.Multiply(rows, x.data(), y.data());
     benchmark::ClobberMemory();
   }
+  ChooseBf16Product(Bf16Product::kBest);
   PerSecond(state, "FLOP/s", 2.0 * rows * inputs * outputs);
 }
 void Sizes(benchmark::internal::Benchmark* bench) {
@@ -53,8 +60,9 @@ void Sizes(benchmark::internal::Benchmark* bench) {
   bench->Args({720, 480, 960});                                          // the decoder's values
   bench->Args({45, 160, 480})->Args({720, 160, 480})->Args({720, 480, 160});  // the transformer's
 }
-BENCHMARK_CAPTURE(Product, f32, Precision::kFloat32)->Apply(Sizes);
-BENCHMARK_CAPTURE(Product, bf16, Precision::kBfloat16)->Apply(Sizes);
+BENCHMARK_CAPTURE(Product, f32, Precision::kFloat32, Bf16Product::kBest)->Apply(Sizes);
+BENCHMARK_CAPTURE(Product, bf16, Precision::kBfloat16, Bf16Product::kAvx512)->Apply(Sizes);
+BENCHMARK_CAPTURE(Product, bf16_amx, Precision::kBfloat16, Bf16Product::kAmx)->Apply(Sizes);
 
 // One decoder state over a window of 45 frames.
 constexpr int kFrames = 45, kAttention = 128, kGates = 960;

@@ -12,6 +12,7 @@
 #include "absl/strings/str_cat.h"
 #include "model/cpu_engine/cpu_synthesizer.h"
 #include "model/cpu_engine/kernels/gemm_bf16.h"
+#include "model/cpu_engine/kernels/gemm_bf16_amx.h"
 #include "model/torch_plugin/torch_plugin.h"
 #include "server/lifecycle/heap_trimmer.h"
 #include "server/lifecycle/run_server.h"
@@ -50,8 +51,9 @@ absl::StatusOr<ModelSource> OpenCpuEngine(const EngineOptions& options) {
     }
     engine.precision = Precision::kBfloat16;
   }
+  const char* const bf16 = duet::cpu_engine::kernels::HasAmx() ? "cpu, bf16 (AMX)" : "cpu, bf16";
   return ModelSource{
-      engine.precision == Precision::kBfloat16 ? "cpu, bf16" : "cpu, f32",
+      engine.precision == Precision::kBfloat16 ? bf16 : "cpu, f32",
       [engine](const std::filesystem::path& folder) {
         return Shared(duet::cpu_engine::LoadCpuSynthesizer(folder, engine));
       },

@@ -7,6 +7,7 @@
 #include "model/checkpoints/embedded.h"
 #include "model/cpu_engine/cpu_network.h"
 #include "model/torch_engine/torch_network.h"
+#include "tests/cpu_engine/kernels/amx_test_fixture.h"
 #include "tests/cpu_engine/random_checkpoint.h"
 #include "tests/support/sample_motion.h"
 #include "tests/support/status_matchers.h"
@@ -123,8 +124,8 @@ float FromTorch(const Checkpoint& checkpoint, Precision precision) {
 }
 
 // A person who sways, about the origin; each class once.
-std::vector<NetworkInput> HumanInputs(const Manifest& manifest) {
-  const int frames = manifest.model.window_frames, classes = manifest.model.class_count();
+std::vector<NetworkInput> HumanInputs(const Manifest& manifest, int frames) {
+  const int classes = manifest.model.class_count();
   std::vector<NetworkInput> inputs;
   for (int own = 0; own < classes; ++own) {
     NetworkInput input;
@@ -212,7 +213,8 @@ TEST(ParityTest, AWideGeneratorAnswersAsInLibTorch) {
 TEST(ParityTest, RoundedWeightsMoveNoJointByTwoMillimetres) {
   for (const Checkpoint& checkpoint : Embedded()) {
     const float farthest =
-        FromTorch(checkpoint, Precision::kBfloat16, HumanInputs(checkpoint.manifest));
+        FromTorch(checkpoint, Precision::kBfloat16,
+                  HumanInputs(checkpoint.manifest, checkpoint.manifest.model.window_frames));
     EXPECT_LT(farthest, 2e-3f) << checkpoint.manifest.model.name << " "
                                << checkpoint.manifest.model.version;
     EXPECT_GT(farthest, 1e-6f);  // it is another precision
@@ -231,6 +233,21 @@ TEST(ParityTest, AnAnswerIsTheSameToTheBitWhateverElseIsInTheBatch) {
       }
     }
   }
+}
+
+using AmxParityTest = kernels::AmxTest;
+
+TEST_F(AmxParityTest, RoundedWeightsInTilesMoveNoJointByTwoMillimetres) {
+  for (const Checkpoint& checkpoint : Embedded()) {
+    // Few frames: a product of one row takes as many instructions, each emulated.
+    std::vector<NetworkInput> inputs = HumanInputs(checkpoint.manifest, 4);
+    inputs.resize(2);
+    EXPECT_LT(FromTorch(checkpoint, Precision::kBfloat16, inputs), 2e-3f)
+        << checkpoint.manifest.model.name << " " << checkpoint.manifest.model.version;
+    const auto network = MakeCpuNetwork(checkpoint, Precision::kBfloat16);
+    EXPECT_EQ(Answers(*network, {&inputs[1], 1}).front(), Answers(*network, inputs)[1]);
+  }
+  EXPECT_TRUE(UsedTiles());
 }
 
 }  // namespace

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cstring>
 
+#include "model/cpu_engine/kernels/gemm_bf16_amx.h"
 #include "model/cpu_engine/kernels/gemm_bf16_portable.h"
 
 #if defined(__x86_64__)
-#include <immintrin.h>
+#include "model/cpu_engine/kernels/bf16_rows-inl.h"
 #endif
 
 namespace duet::cpu_engine::kernels {
@@ -19,12 +20,8 @@ uint16_t ToBf16(float value) {
 
 #if defined(__x86_64__)
 
-// Highway 1.0.3 has no such product: the instruction by its name.
-#define DUET_BF16 __attribute__((target("avx512f,avx512bw,avx512vl,avx512dq,avx512bf16")))
-
 namespace {
 
-constexpr int kLanes = 16;
 // Sums that fit the registers beside what is being multiplied, and rows of two vectors of them.
 constexpr int kSums = 24, kRows = kSums / 2;
 // Pairs of inputs that are multiplied before the sums go back to memory: a tile's rows, rounded,
@@ -41,11 +38,6 @@ struct Block {
   bool adds;          // to what earlier blocks left in y
   Output y;           // from the tile's first row on
 };
-
-DUET_BF16 inline __mmask16 FirstOf(int valid) {
-  const int clamped = std::clamp(valid, 0, kLanes);
-  return static_cast<__mmask16>((1u << clamped) - 1);
-}
 
 // kCount rows by kPanels panels from column `column` on, kept in registers over the block.
 template <int kCount, int kPanels>
@@ -108,21 +100,6 @@ DUET_BF16 void StripOf(int count, const Block& block) {
   }
 }
 
-// Rounds `inputs` values of each of `count` rows from `first` on, a zero after an odd number.
-DUET_BF16 void Round(const Rows& x, int row, int count, int first, int inputs, uint16_t* out) {
-  for (int r = 0; r < count; ++r) {
-    const float* from = x.values + (row + r) * x.stride + first;
-    uint16_t* to = out + r * 2 * kPairsAtOnce;
-    int k = 0;
-    for (; k + kLanes <= inputs; k += kLanes) {
-      _mm256_storeu_si256(reinterpret_cast<__m256i*>(to + k),
-                          reinterpret_cast<__m256i>(_mm512_cvtneps_pbh(_mm512_loadu_ps(from + k))));
-    }
-    for (; k < inputs; ++k) to[k] = ToBf16(from[k]);
-    if (inputs % 2 != 0) to[inputs] = 0;
-  }
-}
-
 DUET_BF16 void Gemm(const Rows& x, const uint16_t* panels, const float* bias, bool adds,
                     const Output& y) {
   alignas(64) uint16_t rounded[kRows * 2 * kPairsAtOnce];
@@ -131,7 +108,9 @@ DUET_BF16 void Gemm(const Rows& x, const uint16_t* panels, const float* bias, bo
     const int count = NextTile(x.count - row, kRows);
     for (int first = 0; first < pairs; first += kPairsAtOnce) {
       const int size = std::min(kPairsAtOnce, pairs - first);
-      Round(x, row, count, 2 * first, std::min(2 * size, x.width - 2 * first), rounded);
+      RoundRows<2 * kPairsAtOnce>({x.values + row * x.stride + 2 * first, x.stride, count,
+                                   std::min(2 * size, x.width - 2 * first)},
+                                  rounded);
       const Output rows{y.values + row * y.stride, y.stride, y.width};
       StripOf<kRows>(count,
                      {rounded, panels + std::ptrdiff_t{first} * 2 * kPanel,
@@ -195,14 +174,40 @@ bool HasBf16() { return false; }
 
 #endif
 
+namespace {
+
+using Product = void (*)(const Rows& x, const uint16_t* panels, const float* bias, bool adds,
+                         const Output& y);
+
+Product ProductOf(Bf16Product product) {
+  switch (product) {
+    case Bf16Product::kPortable:
+      return GemmBf16Portable;
+    case Bf16Product::kAvx512:
+      return Gemm;
+    case Bf16Product::kAmx:
+      return GemmBf16Amx;
+    case Bf16Product::kBest:
+      break;
+  }
+  return HasAmx() ? GemmBf16Amx : HasBf16() ? Gemm : GemmBf16Portable;
+}
+
+Product& ChosenProduct() {
+  static Product product = ProductOf(Bf16Product::kBest);
+  return product;
+}
+
+}  // namespace
+
+void ChooseBf16Product(Bf16Product product) { ChosenProduct() = ProductOf(product); }
+
 void GemmBf16(const Rows& x, const uint16_t* panels, const float* bias, const Output& y) {
-  static const bool has = HasBf16();
-  (has ? Gemm : GemmBf16Portable)(x, panels, bias, false, y);
+  ChosenProduct()(x, panels, bias, false, y);
 }
 
 void AddGemmBf16(const Rows& x, const uint16_t* panels, const Output& y) {
-  static const bool has = HasBf16();
-  (has ? Gemm : GemmBf16Portable)(x, panels, nullptr, true, y);
+  ChosenProduct()(x, panels, nullptr, true, y);
 }
 
 void PackRowsBf16(const Rows& inputs, uint16_t* panels) {

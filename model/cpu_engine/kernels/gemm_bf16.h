@@ -11,6 +11,13 @@ namespace duet::cpu_engine::kernels {
 // are slower than those of float32.
 bool HasBf16();
 
+// What products in bfloat16 are made by: in plain C++, by AVX-512 BF16, in tiles (AMX). The best is
+// the last of these that there is here: HasBf16(), HasAmx().
+enum class Bf16Product { kBest, kPortable, kAvx512, kAmx };
+// From here on, for tests and benchmarks. Not while another thread multiplies; not what is not
+// here.
+void ChooseBf16Product(Bf16Product product);
+
 // `value` rounded to the nearest bfloat16, ties to even. Finite values only.
 uint16_t ToBf16(float value);
 

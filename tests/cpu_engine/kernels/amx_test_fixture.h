@@ -1,0 +1,36 @@
+#ifndef DUET_TESTS_CPU_ENGINE_KERNELS_AMX_TEST_FIXTURE_H_
+#define DUET_TESTS_CPU_ENGINE_KERNELS_AMX_TEST_FIXTURE_H_
+
+#include <gtest/gtest.h>
+
+#include <optional>
+
+#include "model/cpu_engine/kernels/gemm_bf16.h"
+#include "model/cpu_engine/kernels/gemm_bf16_amx.h"
+#include "tests/cpu_engine/kernels/amx_emulator.h"
+
+namespace duet::cpu_engine::kernels {
+
+// Products in bfloat16 are made in tiles: by the processor where it has them, else emulated.
+class AmxTest : public ::testing::Test {
+ public:
+  ~AmxTest() override { ChooseBf16Product(Bf16Product::kBest); }
+
+ protected:
+  void SetUp() override {
+    if (!HasBf16()) GTEST_SKIP() << "this processor does not multiply bfloat16 (AVX-512 BF16)";
+    if (!HasAmx()) emulator_.emplace();
+    ChooseBf16Product(Bf16Product::kAmx);
+  }
+
+  // Whether products went through tiles, and whether these are free again; as far as one can tell.
+  bool UsedTiles() const { return !emulator_ || emulator_->instructions() > 0; }
+  bool ReleasedTiles() const { return !emulator_ || !emulator_->in_use(); }
+
+ private:
+  std::optional<AmxEmulator> emulator_;
+};
+
+}  // namespace duet::cpu_engine::kernels
+
+#endif  // DUET_TESTS_CPU_ENGINE_KERNELS_AMX_TEST_FIXTURE_H_
