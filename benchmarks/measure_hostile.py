@@ -29,6 +29,7 @@ import grpc
 SOURCE = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(SOURCE / "tests/e2e"))
 import http2_client as http2  # pylint: disable=wrong-import-position
+from free_ports import free_port  # pylint: disable=wrong-import-position
 from load_tool import run_load  # pylint: disable=wrong-import-position
 
 HOSTILE = "127.0.0.2"
@@ -310,9 +311,7 @@ def long_clips(args, protos):
 
 
 def restarts(args, protos):
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
+    port = free_port()
     leader = SOURCE / "samples/punch.bvh"
     over, failed, runs = threading.Event(), [], [0]
 

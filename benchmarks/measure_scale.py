@@ -41,12 +41,6 @@ output { formats: FORMAT_NPY }
 KILLED_AFTER = 20  # calls
 
 
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
-
-
 class Share:
     """A control group with a quota, gone with the `with`."""
 
@@ -114,15 +108,18 @@ def start_proxy(folder, servers, stack):
     text = text.replace(template, "\n".join(lines))
     text = re.sub(r'(bind "\$\{DUET_PROXY_BIND\}").*', r"\1 proto h2", text)
     (folder / "haproxy.cfg").write_text(text, encoding="utf-8")
-    port = free_port()
-    proxy = subprocess.Popen(
-        ["haproxy", "-f", folder / "haproxy.cfg"], stderr=subprocess.DEVNULL,
-        env={**os.environ, "DUET_PROXY_BIND": f"127.0.0.1:{port}",
-             "DUET_PROXY_METRICS_BIND": f"127.0.0.1:{free_port()}",
-             "DUET_PROXY_CONNECTIONS": "512"})
-    stack.callback(proxy.wait)
-    stack.callback(proxy.terminate)
-    return f"127.0.0.1:{port}"
+    # It inherits sockets that listen already: it could not tell which ports it took.
+    with socket.create_server(("127.0.0.1", 0)) as calls, \
+            socket.create_server(("127.0.0.1", 0)) as metrics:
+        proxy = subprocess.Popen(
+            ["haproxy", "-f", folder / "haproxy.cfg"], stderr=subprocess.DEVNULL,
+            pass_fds=(calls.fileno(), metrics.fileno()),
+            env={**os.environ, "DUET_PROXY_BIND": f"fd@{calls.fileno()}",
+                 "DUET_PROXY_METRICS_BIND": f"fd@{metrics.fileno()}",
+                 "DUET_PROXY_CONNECTIONS": "512"})
+        stack.callback(proxy.wait)
+        stack.callback(proxy.terminate)
+        return "127.0.0.1:%d" % calls.getsockname()[1]
 
 
 def load(chosen, address, servers):

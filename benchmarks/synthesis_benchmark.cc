@@ -106,7 +106,10 @@ void Register(const std::string& engine, const Models& models) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  duet::torch_engine::SetTorchThreads(1);
+  if (const absl::Status status = duet::torch_engine::SetTorchThreads(1); !status.ok()) {
+    std::cerr << status.message() << "\n";
+    return 1;
+  }
   const Models torch = Loaded(duet::torch_engine::LoadEmbeddedSynthesizers());
   const Models f32 = Loaded(duet::cpu_engine::LoadEmbeddedSynthesizers({{}, Precision::kFloat32}));
   Register("torch", torch);

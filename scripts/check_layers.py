@@ -81,8 +81,8 @@ LAYERS = (
     Layer("report", "model/evaluation/report",
           sees=("base", "motion", "dataset", "cleanup") + MEASURING),
     Layer("evaluation program", "model/evaluation/program",
-          sees=MOTION_FILES + ("dataset", "engine", "checkpoint", "classifier", "torch engine", "report")
-          + MEASURING),
+          sees=MOTION_FILES + ("dataset", "engine", "checkpoint", "classifier", "network",
+                                "torch engine", "report") + MEASURING),
     # The server, innermost first.
     Layer("server common", "server/common", sees=("base",), libraries=("rpc",)),
     Layer("batching", "server/batching", sees=("base", "motion", "engine", "server common")),

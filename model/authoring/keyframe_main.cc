@@ -35,6 +35,7 @@ absl::Status Convert(const std::string& keyframes, const std::string& out) {
 
 int main(int argc, char** argv) {
   CLI::App app("Makes a BVH clip from a hand-written key-frame file.", "duet-keyframe");
+  app.set_version_flag("--version", "duet-keyframe " DUET_VERSION);
   std::string keyframes, out;
   app.add_option("keyframes", keyframes, "Key-frame text (docs/formats.md)")->required();
   app.add_option("--out", out, "The BVH file to write")->required();

@@ -120,6 +120,7 @@ int main(int argc, char** argv) {
   duet::importing::Words words;
   CLI::App app("Turns a folder of motion files of two people into a data set to train on.",
                "duet-import");
+  app.set_version_flag("--version", "duet-import " DUET_VERSION);
   Declare(&options, &words, &app);
   const duet::base::KebabCaseCommandLine line(argc, argv);
   CLI11_PARSE(app, line.argc(), line.argv());

@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "model/checkpoints/embedded.h"
+#include "model/network/exceptions.h"
+#include "model/network/threads.h"
 #include "model/torch_engine/torch_network.h"
 
 namespace duet::torch_engine {
@@ -39,10 +41,14 @@ absl::StatusOr<std::vector<std::unique_ptr<engine::Synthesizer>>> LoadEmbeddedSy
   return synthesizers;
 }
 
-void SetTorchThreads(int threads) {
-  torch::set_num_threads(threads);
-  // LibTorch lets this one be set only once.
-  if (torch::get_num_interop_threads() != 1) torch::set_num_interop_threads(1);
+absl::Status SetTorchThreads(int threads) {
+  absl::Status status = network::SetThreads(threads);
+  if (!status.ok()) return status;
+  return network::CatchExceptions([] {
+    // LibTorch lets this one be set only once.
+    if (torch::get_num_interop_threads() != 1) torch::set_num_interop_threads(1);
+    return absl::OkStatus();
+  });
 }
 
 }  // namespace duet::torch_engine

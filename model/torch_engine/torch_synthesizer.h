@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "model/checkpoint/checkpoint.h"
 #include "model/engine/network_synthesizer.h"
@@ -27,8 +28,9 @@ absl::StatusOr<std::vector<std::unique_ptr<engine::Synthesizer>>> LoadEmbeddedSy
 
 // LibTorch's and OpenBLAS's threads for one call of Synthesize. Once, at start, before any other
 // use. Workers times this should not exceed the cores: on the network's small steps two threads
-// that contend are several times slower than one.
-void SetTorchThreads(int threads);
+// that contend are several times slower than one. INTERNAL where LibTorch cannot find out about the
+// processor.
+absl::Status SetTorchThreads(int threads);
 
 }  // namespace duet::torch_engine
 

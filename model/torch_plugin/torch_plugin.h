@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "model/engine/synthesizer.h"
 
@@ -13,7 +14,7 @@ namespace duet::torch_plugin {
 // The functions of model/torch_engine/torch_synthesizer.h, from a library that is loaded when it is
 // asked for: LibTorch takes 0.4 s and 160 MB, and most servers do without it.
 struct TorchEngine {
-  void (*set_threads)(int threads);
+  absl::Status (*set_threads)(int threads);
   absl::StatusOr<std::unique_ptr<engine::Synthesizer>> (*load_folder)(
       const std::filesystem::path& folder);
   absl::StatusOr<std::vector<std::unique_ptr<engine::Synthesizer>>> (*load_embedded)();

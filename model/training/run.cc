@@ -12,6 +12,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "model/engine/leader_statistics.h"
+#include "model/network/threads.h"
 #include "model/training/direction_fit.h"
 #include "model/training/flow_trainer.h"
 #include "model/training/revision.h"
@@ -127,12 +128,12 @@ void Show(const RunPlan& plan, const EpochReport& report, bool terminal, std::os
 
 }  // namespace
 
-void SetTrainingThreads(int threads) {
-  torch::set_num_threads(threads);
+absl::Status SetTrainingThreads(int threads) {
   // Every step frees what the next takes again: keep it, rather than hand pages back and fault them
   // in anew.
   mallopt(M_MMAP_THRESHOLD, 1 << 30);
   mallopt(M_TRIM_THRESHOLD, 1 << 30);
+  return network::SetThreads(threads);
 }
 
 fs::path CheckpointFolder(const RunPlan& plan) {

@@ -32,8 +32,8 @@ absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& dataset, b
                          std::ostream* progress);
 
 // Prepares the whole process for training: LibTorch's threads, and memory kept between steps.
-// Results repeat bit for bit with one.
-void SetTrainingThreads(int threads);
+// Results repeat bit for bit with one. INTERNAL where LibTorch cannot find out about the processor.
+absl::Status SetTrainingThreads(int threads);
 
 // Where a finished run's checkpoint is.
 std::filesystem::path CheckpointFolder(const RunPlan& plan);

@@ -10,6 +10,7 @@
 #include "absl/strings/str_join.h"
 #include "model/base/flag_names.h"
 #include "model/checkpoint/manifest.h"
+#include "model/network/exceptions.h"
 #include "model/training/named_configs.h"
 #include "model/training/run.h"
 
@@ -124,6 +125,9 @@ absl::StatusOr<std::vector<duet::training::RunPlan>> Plans(
 }
 
 absl::Status Train(const Arguments& arguments) {
+  if (absl::Status status = duet::training::SetTrainingThreads(arguments.threads); !status.ok()) {
+    return status;
+  }
   absl::StatusOr<duet::training::TrainingOptions> options = ReadOptions(arguments);
   if (!options.ok()) return options.status();
   absl::StatusOr<duet::dataset::Dataset> dataset = duet::dataset::ReadDataset(arguments.data);
@@ -171,11 +175,12 @@ void Declare(Arguments* arguments, CLI::App* app) {
 int main(int argc, char** argv) {
   Arguments arguments;
   CLI::App app("Trains a generator on a folder of captures and writes a checkpoint.");
+  app.set_version_flag("--version", "duet-train " DUET_VERSION);
   Declare(&arguments, &app);
   const duet::base::KebabCaseCommandLine line(argc, argv);
   CLI11_PARSE(app, line.argc(), line.argv());
-  duet::training::SetTrainingThreads(arguments.threads);
-  const absl::Status status = Train(arguments);
+  const absl::Status status =
+      duet::network::CatchExceptions([&arguments] { return Train(arguments); });
   if (status.ok()) return 0;
   std::cerr << "duet-train: " << status.message() << "\n";
   return 1;

@@ -7,7 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "absl/strings/str_cat.h"
 #include "model/cpu_engine/cpu_synthesizer.h"
 #include "model/cpu_engine/kernels/gemm_bf16.h"
 #include "model/cpu_engine/kernels/gemm_bf16_amx.h"
@@ -61,11 +63,13 @@ absl::StatusOr<ModelSource> OpenCpuEngine(const EngineOptions& options) {
 absl::StatusOr<ModelSource> OpenTorchEngine(const EngineOptions& options) {
   const absl::StatusOr<duet::torch_plugin::TorchEngine> torch = duet::torch_plugin::Open();
   if (!torch.ok()) {
-    return absl::InvalidArgumentError(
-        std::string("engine: is ENGINE_TORCH, which cannot be opened here: ") +
-        std::string(torch.status().message()));
+    return absl::InvalidArgumentError(absl::StrCat(
+        "engine: is ENGINE_TORCH, which cannot be opened here: ", torch.status().message()));
   }
-  torch->set_threads(options.threads);
+  if (const absl::Status status = torch->set_threads(options.threads); !status.ok()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("engine: is ENGINE_TORCH, which cannot be used here: ", status.message()));
+  }
   return ModelSource{"torch",
                      [load = torch->load_folder](const std::filesystem::path& folder) {
                        return Shared(load(folder));

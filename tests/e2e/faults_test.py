@@ -210,5 +210,36 @@ class FaultsTest(unittest.TestCase):
         self.assertLessEqual(set(handled(server)), {"Canceled", "ResourceExhausted", "OK"})
 
 
+class NoProcTest(unittest.TestCase):
+    """LibTorch reads the processor from /proc, which a container may lack."""
+
+    ENGINE = tools.PROGRAMS.parent / "lib/duet/libduet_torch_engine.so"
+    WITHOUT_PROC = ("unshare", "--map-root-user", "--mount", "sh", "-c",
+                    'mount -t tmpfs none /proc && exec "$0" "$@"')
+
+    def setUp(self):
+        result = tools.run(*self.WITHOUT_PROC, "true")
+        if result.returncode != 0:
+            self.skipTest(f"cannot hide /proc here: {result.stderr}")
+
+    def check(self, *command):
+        """A command ends with an error in words, not with an exception."""
+        result = tools.run(*self.WITHOUT_PROC, tools.PROGRAMS / command[0], *command[1:],
+                           env={**os.environ, "DUET_TORCH_ENGINE": str(self.ENGINE)})
+        self.assertIn(f"\n{command[0]}: ", f"\n{result.stderr}")
+        self.assertIn("LibTorch reads /proc/cpuinfo: is it there?", result.stderr)
+        self.assertNotIn("frame #", result.stderr)
+        return result.returncode
+
+    def test_training_and_evaluation_say_what_is_missing(self):
+        with tempfile.TemporaryDirectory() as folder:
+            self.assertEqual(self.check("duet-train", "--data", folder, "--out", folder), 1)
+            self.assertEqual(self.check("duet-eval", "data", "--data", folder), 1)
+
+    def test_the_server_says_that_it_cannot_use_that_engine(self):
+        self.assertNotIn(self.check("duet-server", "--engine", "torch", "--listen", "127.0.0.1:0",
+                                    "--metrics-listen", ""), (0, -signal.SIGABRT))
+
+
 if __name__ == "__main__":
     tools.main()

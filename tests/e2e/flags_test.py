@@ -6,6 +6,7 @@ import unittest
 import tools
 
 PROGRAMS = ("duet", "duet-eval", "duet-import", "duet-keyframe", "duet-train")
+PROGRAMS_OF_SERVING = ("duet-load", "duet-server")
 
 
 def help_of(*command):
@@ -35,6 +36,14 @@ class FlagsTest(unittest.TestCase):
             self.assertEqual([flag for flag in seen[command] if "_" in flag], [], command)
         self.assertIn("--version-number", seen["duet-train",])
         self.assertIn("--as-served", seen["duet-eval", "folds"])
+
+    def test_every_program_tells_its_version(self):
+        text = (tools.SOURCE / "CMakeLists.txt").read_text(encoding="utf-8")
+        version = re.search(r"project\(duet VERSION ([\d.]+)", text)[1]
+        for program in PROGRAMS + PROGRAMS_OF_SERVING:
+            result = tools.run(tools.PROGRAMS / program, "--version")
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertEqual(result.stdout, f"{program} {version}\n")
 
     def test_flags_of_the_client_are_documented(self):
         client = ("synthesize", "models", "inspect", "convert", "view", "compare", "man")

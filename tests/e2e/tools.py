@@ -5,9 +5,7 @@ import json
 import os
 import pathlib
 import queue
-import random
 import shutil
-import socket
 import struct
 import subprocess
 import sys
@@ -15,6 +13,8 @@ import threading
 import time
 import unittest
 import zlib
+
+from free_ports import free_port, free_ports  # noqa: F401
 
 SOURCE = pathlib.Path(os.environ["DUET_SOURCE_DIR"])
 PROGRAMS = pathlib.Path(os.environ["DUET_BIN_DIR"])
@@ -125,23 +125,6 @@ def wait_until(happened, what):
         if time.monotonic() > end:
             raise AssertionError(f"waited in vain: {what}")
         time.sleep(0.05)
-
-
-def free_ports(count):
-    """Ports that nobody listens on, for programs that cannot say which one they took. The system
-    gives none of these to those who leave the choice to it, so that they stay free for a while."""
-    first = int(pathlib.Path("/proc/sys/net/ipv4/ip_local_port_range").read_text().split()[0])
-    ports = []
-    while len(ports) < count:
-        port = random.randrange(10000, max(first, 20000))
-        with contextlib.suppress(OSError), socket.socket() as probe:
-            probe.bind(("127.0.0.1", port))
-            ports.append(port)
-    return ports
-
-
-def free_port():
-    return free_ports(1)[0]
 
 
 def generate_stubs(folder, *protos):

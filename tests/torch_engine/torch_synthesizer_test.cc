@@ -22,7 +22,7 @@ using ::testing::HasSubstr;
 constexpr int kPaper = 1, kSampling = 2;  // versions of sbu
 
 std::shared_ptr<const engine::Synthesizer> Embedded(int version = kPaper) {
-  SetTorchThreads(1);
+  EXPECT_THAT(SetTorchThreads(1), IsOk());
   auto all = LoadEmbeddedSynthesizers();
   EXPECT_THAT(all, IsOk());
   if (!all.ok()) return nullptr;

@@ -22,7 +22,7 @@ TEST(TorchPluginTest, OpensTheLibraryAndLoadsModels) {
   setenv("DUET_TORCH_ENGINE", DUET_TORCH_ENGINE_PATH, 1);
   const auto torch = Open();
   ASSERT_THAT(torch, IsOk());
-  torch->set_threads(1);
+  ASSERT_THAT(torch->set_threads(1), IsOk());
   const auto models = torch->load_embedded();
   ASSERT_THAT(models, IsOk());
   ASSERT_FALSE(models->empty());

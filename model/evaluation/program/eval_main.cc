@@ -4,10 +4,12 @@
 
 #include "model/base/flag_names.h"
 #include "model/evaluation/program/commands.h"
+#include "model/network/exceptions.h"
 #include "model/torch_engine/torch_synthesizer.h"
 
 int main(int argc, char** argv) {
   CLI::App app("Measures trained models and baselines on captures.");
+  app.set_version_flag("--version", "duet-eval " DUET_VERSION);
   app.require_subcommand(1);
   duet::evaluation::program::ChosenCommand chosen;
   duet::evaluation::program::AddFoldsCommand(&app, &chosen);
@@ -26,8 +28,10 @@ int main(int argc, char** argv) {
   duet::evaluation::program::AddReportCommand(&app, &chosen);
   const duet::base::KebabCaseCommandLine line(argc, argv);
   CLI11_PARSE(app, line.argc(), line.argv());
-  duet::torch_engine::SetTorchThreads(1);
-  const absl::Status status = chosen();
+  const absl::Status status = duet::network::CatchExceptions([&chosen] {
+    absl::Status prepared = duet::torch_engine::SetTorchThreads(1);
+    return prepared.ok() ? chosen() : prepared;
+  });
   if (status.ok()) return 0;
   std::cerr << "duet-eval: " << status.message() << "\n";
   return 1;

@@ -20,16 +20,18 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-// A sink that takes no line until the test opens it.
+// A sink that the test stops and fills: it takes no line until it is opened, and loses those that
+// come while it is full.
 //
 // Threads: safe to call concurrently.
-class GatedSink final : public LogSink {
+class PuppetSink final : public LogSink {
  public:
   bool Write(std::string_view line) override {
     common::MutexLock lock(mutex_);
     ++begun_;
     changed_.NotifyAll();
     while (!open_) changed_.Wait(mutex_);
+    if (full_) return false;
     lines_.emplace_back(line);
     changed_.NotifyAll();
     return true;
@@ -38,6 +40,10 @@ class GatedSink final : public LogSink {
     common::MutexLock lock(mutex_);
     open_ = true;
     changed_.NotifyAll();
+  }
+  void SetFull(bool full) {
+    common::MutexLock lock(mutex_);
+    full_ = full;
   }
   void WaitUntilBegun(int writes) {
     common::MutexLock lock(mutex_);
@@ -57,6 +63,7 @@ class GatedSink final : public LogSink {
   mutable common::Mutex mutex_;
   common::CondVar changed_;
   bool open_ DUET_GUARDED_BY(mutex_) = false;
+  bool full_ DUET_GUARDED_BY(mutex_) = false;
   int begun_ DUET_GUARDED_BY(mutex_) = 0;
   std::vector<std::string> lines_ DUET_GUARDED_BY(mutex_);
 };
@@ -70,7 +77,7 @@ QueuedLogSink::Options Options(std::size_t capacity) {
 }
 
 TEST(QueuedLogSinkTest, PassesOnLinesInOrder) {
-  const auto sink = std::make_shared<GatedSink>();
+  const auto sink = std::make_shared<PuppetSink>();
   sink->Open();
   {
     QueuedLogSink log(sink, Options(8));
@@ -81,7 +88,7 @@ TEST(QueuedLogSinkTest, PassesOnLinesInOrder) {
 }
 
 TEST(QueuedLogSinkTest, NeverWaitsForAStuckSink) {
-  const auto sink = std::make_shared<GatedSink>();
+  const auto sink = std::make_shared<PuppetSink>();
   QueuedLogSink log(sink, Options(2));
   log.Write("stuck");
   sink->WaitUntilBegun(1);
@@ -92,7 +99,7 @@ TEST(QueuedLogSinkTest, NeverWaitsForAStuckSink) {
 }
 
 TEST(QueuedLogSinkTest, SaysHowManyLinesWereDroppedWhenTheSinkRecovers) {
-  const auto sink = std::make_shared<GatedSink>();
+  const auto sink = std::make_shared<PuppetSink>();
   {
     QueuedLogSink log(sink, Options(2));
     log.Write("stuck");
@@ -107,7 +114,7 @@ TEST(QueuedLogSinkTest, SaysHowManyLinesWereDroppedWhenTheSinkRecovers) {
 }
 
 TEST(QueuedLogSinkTest, ASingleLostLineIsSaidAsWell) {
-  const auto sink = std::make_shared<GatedSink>();
+  const auto sink = std::make_shared<PuppetSink>();
   {
     QueuedLogSink log(sink, Options(2));
     log.Write("stuck");
@@ -118,52 +125,21 @@ TEST(QueuedLogSinkTest, ASingleLostLineIsSaidAsWell) {
   EXPECT_THAT(sink->lines(), ElementsAre("stuck", "a", "b", "1 dropped"));
 }
 
-// A disk that is full until it is told otherwise.
-//
-// Threads: safe to call concurrently.
-class FullSink final : public LogSink {
- public:
-  bool Write(std::string_view line) override {
-    common::MutexLock lock(mutex_);
-    ++tried_;
-    if (!full_) lines_.emplace_back(line);
-    changed_.NotifyAll();
-    return !full_;
-  }
-  void MakeSpace() {
-    common::MutexLock lock(mutex_);
-    full_ = false;
-  }
-  void WaitUntilTried(int writes) {
-    common::MutexLock lock(mutex_);
-    while (tried_ < writes) changed_.Wait(mutex_);
-  }
-  std::vector<std::string> lines() const {
-    common::MutexLock lock(mutex_);
-    return lines_;
-  }
-
- private:
-  mutable common::Mutex mutex_;
-  common::CondVar changed_;
-  bool full_ DUET_GUARDED_BY(mutex_) = true;
-  int tried_ DUET_GUARDED_BY(mutex_) = 0;
-  std::vector<std::string> lines_ DUET_GUARDED_BY(mutex_);
-};
-
 TEST(QueuedLogSinkTest, CountsLinesThatTheSinkLosesAndTellsOfThemOnce) {
-  const auto sink = std::make_shared<FullSink>();
+  const auto sink = std::make_shared<PuppetSink>();
+  sink->Open();
+  sink->SetFull(true);
   std::uint64_t dropped = 0;
   {
     QueuedLogSink log(sink, Options(8));
     log.Write("lost");
-    sink->WaitUntilTried(2);  // the line and its notice
+    sink->WaitUntilBegun(2);  // the line and its notice
     log.Write("lost too");
-    sink->WaitUntilTried(4);
+    sink->WaitUntilBegun(4);
     EXPECT_EQ(log.dropped_lines(), 2u) << "a notice is no line";
-    sink->MakeSpace();
+    sink->SetFull(false);
     log.Write("a");
-    sink->WaitUntilTried(6);  // the notice comes with "a", not with "b"
+    sink->WaitUntilBegun(6);  // the notice comes with "a", not with "b"
     log.Write("b");
     dropped = log.dropped_lines();
   }
@@ -172,7 +148,7 @@ TEST(QueuedLogSinkTest, CountsLinesThatTheSinkLosesAndTellsOfThemOnce) {
 }
 
 TEST(QueuedLogSinkTest, WritesTheLinesLeftBeforeItGoes) {
-  const auto sink = std::make_shared<GatedSink>();
+  const auto sink = std::make_shared<PuppetSink>();
   std::thread opener;
   {
     QueuedLogSink log(sink, Options(8));
@@ -185,7 +161,7 @@ TEST(QueuedLogSinkTest, WritesTheLinesLeftBeforeItGoes) {
 }
 
 TEST(QueuedLogSinkTest, GivesUpOnASinkThatStaysStuck) {
-  const auto sink = std::make_shared<GatedSink>();
+  const auto sink = std::make_shared<PuppetSink>();
   {
     QueuedLogSink::Options options = Options(8);
     options.patience = std::chrono::milliseconds(0);
@@ -200,7 +176,7 @@ TEST(QueuedLogSinkTest, GivesUpOnASinkThatStaysStuck) {
 }
 
 TEST(QueuedLogSinkTest, KeepsEveryLineOfManyThreads) {
-  const auto sink = std::make_shared<GatedSink>();
+  const auto sink = std::make_shared<PuppetSink>();
   sink->Open();
   std::uint64_t dropped = 0;
   {

@@ -328,7 +328,9 @@ TEST_F(SecuredServerTest, TokensRotateWhileCallsCome) {
   std::atomic<int> failed{0};
   std::thread load([&] {
     const auto channel = PlainText();
-    while (!stop) failed += List(channel, "Bearer s").ok() ? 0 : 1;
+    do {
+      failed += List(channel, "Bearer s").ok() ? 0 : 1;
+    } while (!stop);
   });
   for (int i = 0; i < 20; ++i) {
     // In one step: the server looks by itself as well.
@@ -347,11 +349,14 @@ TEST_F(SecuredServerTest, TokensRotateWhileCallsCome) {
 TEST_F(SecuredServerTest, CertificatesRotateWhileCallsCome) {
   UseTls();
   Start();
+  const auto channel = Tls();
+  ASSERT_TRUE(List(channel).ok());  // connected before anything changes
   std::atomic<bool> stop{false};
   std::atomic<int> failed{0};
   std::thread load([&] {
-    const auto channel = Tls();
-    while (!stop) failed += List(channel).ok() ? 0 : 1;
+    do {
+      failed += List(channel).ok() ? 0 : 1;
+    } while (!stop);
   });
   // A new authority: only who trusts it gets in, and only with the new certificate.
   const TestCertificate next = MakeTestCertificate("next.test");

@@ -1,0 +1,41 @@
+#include "model/network/exceptions.h"
+
+#include <c10/util/Exception.h>
+#include <gmock/gmock.h>
+
+#include <new>
+#include <stdexcept>
+
+#include "tests/support/status_matchers.h"
+
+namespace duet::network {
+namespace {
+
+using test::IsOk;
+using test::StatusIs;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+TEST(CatchExceptionsTest, GivesWhatTheWorkGives) {
+  EXPECT_THAT(CatchExceptions([] { return absl::OkStatus(); }), IsOk());
+  EXPECT_THAT(CatchExceptions([] { return absl::NotFoundError("no data"); }),
+              StatusIs(absl::StatusCode::kNotFound, "no data"));
+}
+
+TEST(CatchExceptionsTest, TellsWhatLibTorchSaysInPlainWords) {
+  const auto throws = []() -> absl::Status { TORCH_CHECK(false, "no such shape"); };
+  EXPECT_THAT(CatchExceptions(throws), StatusIs(absl::StatusCode::kInternal,
+                                                AllOf(HasSubstr("LibTorch failed: no such shape"),
+                                                      Not(HasSubstr("frame #")))));
+}
+
+TEST(CatchExceptionsTest, TellsOfOtherExceptionsAsWell) {
+  EXPECT_THAT(CatchExceptions([]() -> absl::Status { throw std::runtime_error("broken"); }),
+              StatusIs(absl::StatusCode::kInternal, "broken"));
+  EXPECT_THAT(CatchExceptions([]() -> absl::Status { throw std::bad_alloc(); }),
+              StatusIs(absl::StatusCode::kResourceExhausted, "out of memory"));
+}
+
+}  // namespace
+}  // namespace duet::network
