@@ -5,7 +5,8 @@ memory; and what a call adds to the engine's own time.
     benchmarks/measure_lengths.py BUILD [--model sbu@2] [--rounds 3] [--frames 46] [--awake]
 
 Each length has a server of its own, so that the peak of its memory is that length's alone; it is
-asked by one caller. The engine alone is BUILD/benchmarks/synthesis_benchmark with clips of the same
+asked by one caller, and so is one whose engine answers at once (tests/duet-fake-server): what a call
+takes without any. The engine alone is BUILD/benchmarks/synthesis_benchmark with clips of the same
 length in the same rounds. Prints the middle of the rounds; ratios are to the length before.
 
 --awake keeps every core from resting by a process that runs where nothing else wants to: what a
@@ -41,13 +42,13 @@ def megabytes(pid, field):
     return int(re.search(rf"{field}:\s+(\d+)", status)[1]) / 1024
 
 
-def measure(build, model, frames):
+def measure(build, program, frames, *flags):
     with tempfile.TemporaryDirectory() as folder:
-        server, address = start_server(build / "bin/duet-server", pathlib.Path(folder) / "log", 16)
+        server, address = start_server(build / program, pathlib.Path(folder) / "log", 16)
         try:
             before = processor_seconds(server.pid), megabytes(server.pid, "VmRSS")
-            found = run_load(build, address, "--frames", frames, "--model", model, "--warm-up", 0,
-                             "--calls", CALLS[frames])
+            found = run_load(build, address, "--frames", frames, "--warm-up", 0, "--calls",
+                             CALLS[frames], *flags)
             if found["failed"]:
                 raise SystemExit(f"{frames} frames: {found['failed']}")
             seconds = processor_seconds(server.pid) - before[0]
@@ -93,18 +94,22 @@ def main():
     chosen = parser.parse_args()
     if chosen.awake:
         keep_awake()
-    print("| frames | first chunk, ms | whole call, ms | engine alone, ms | server's time, us a frame "
-          "| ratio | memory above idle, MB |\n" + "|---" * 7 + "|")
+    print("| frames | first chunk, ms | whole call, ms | engine alone, ms | call without engine, ms "
+          "| server's time, us a frame | ratio | memory above idle, MB |\n" + "|---" * 8 + "|")
     last = None
     for frames in [chosen.frames] if chosen.frames else CALLS:
-        rounds = [(measure(chosen.build, chosen.model, frames),
-                   alone(chosen.build, chosen.model, frames)) for _ in range(chosen.rounds)]
-        middle = {key: statistics.median(call[key] for call, _ in rounds) for key in rounds[0][0]}
-        engine = statistics.median(engine for _, engine in rounds)
+        rounds = [(measure(chosen.build, "bin/duet-server", frames, "--model", chosen.model),
+                   alone(chosen.build, chosen.model, frames),
+                   measure(chosen.build, "tests/duet-fake-server", frames)["whole"])
+                  for _ in range(chosen.rounds)]
+        middle = {key: statistics.median(call[key] for call, _, _ in rounds)
+                  for key in rounds[0][0]}
+        engine = statistics.median(engine for _, engine, _ in rounds)
+        without = statistics.median(without for _, _, without in rounds)
         engine = "" if math.isnan(engine) else f"{engine:.2f}"
         cost = middle["microseconds"]
         print(f"| {frames} | {middle['first']:.2f} | {middle['whole']:.2f} | {engine} | "
-              f"{cost:.1f} | {f'{cost / last:.2f}' if last else ''} | "
+              f"{without:.2f} | {cost:.1f} | {f'{cost / last:.2f}' if last else ''} | "
               f"{middle['megabytes']:.1f} |", flush=True)
         last = cost
 
