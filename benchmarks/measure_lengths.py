@@ -2,16 +2,21 @@
 """What a clip costs by its length: time, time to its first chunk, the server's processor time and
 memory; and what a call adds to the engine's own time.
 
-    benchmarks/measure_lengths.py BUILD [--model sbu@2] [--rounds 3]
+    benchmarks/measure_lengths.py BUILD [--model sbu@2] [--rounds 3] [--frames 46] [--awake]
 
 Each length has a server of its own, so that the peak of its memory is that length's alone; it is
-asked by one caller. The engine alone is BUILD/benchmarks/synthesis_benchmark with clips of the same
+asked by one caller, and so is one whose engine answers at once (tests/duet-fake-server): what a call
+takes without any. The engine alone is BUILD/benchmarks/synthesis_benchmark with clips of the same
 length in the same rounds. Prints the middle of the rounds; ratios are to the length before.
+
+--awake keeps every core from resting by a process that runs where nothing else wants to: what a
+call takes less then is the machine's own waking up.
 """
 
 import argparse
 import json
 import math
+import multiprocessing
 import os
 import pathlib
 import re
@@ -37,13 +42,13 @@ def megabytes(pid, field):
     return int(re.search(rf"{field}:\s+(\d+)", status)[1]) / 1024
 
 
-def measure(build, model, frames):
+def measure(build, program, frames, *flags):
     with tempfile.TemporaryDirectory() as folder:
-        server, address = start_server(build / "bin/duet-server", pathlib.Path(folder) / "log", 16)
+        server, address = start_server(build / program, pathlib.Path(folder) / "log", 16)
         try:
             before = processor_seconds(server.pid), megabytes(server.pid, "VmRSS")
-            found = run_load(build, address, "--frames", frames, "--model", model, "--warm-up", 0,
-                             "--calls", CALLS[frames])
+            found = run_load(build, address, "--frames", frames, "--warm-up", 0, "--calls",
+                             CALLS[frames], *flags)
             if found["failed"]:
                 raise SystemExit(f"{frames} frames: {found['failed']}")
             seconds = processor_seconds(server.pid) - before[0]
@@ -68,24 +73,43 @@ def alone(build, model, frames):
     return min(run["real_time"] for run in json.loads(printed)["benchmarks"])
 
 
+def spin():
+    os.sched_setscheduler(0, os.SCHED_IDLE, os.sched_param(0))
+    while True:
+        pass
+
+
+def keep_awake():
+    for _ in os.sched_getaffinity(0):
+        multiprocessing.Process(target=spin, daemon=True).start()
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
     parser.add_argument("build", type=pathlib.Path)
     parser.add_argument("--model", default="sbu@2")
     parser.add_argument("--rounds", type=int, default=3)
+    parser.add_argument("--frames", type=int, choices=CALLS, help="of one length alone")
+    parser.add_argument("--awake", action="store_true")
     chosen = parser.parse_args()
-    print("| frames | first chunk, ms | whole call, ms | engine alone, ms | server's time, us a frame "
-          "| ratio | memory above idle, MB |\n" + "|---" * 7 + "|")
+    if chosen.awake:
+        keep_awake()
+    print("| frames | first chunk, ms | whole call, ms | engine alone, ms | call without engine, ms "
+          "| server's time, us a frame | ratio | memory above idle, MB |\n" + "|---" * 8 + "|")
     last = None
-    for frames in CALLS:
-        rounds = [(measure(chosen.build, chosen.model, frames),
-                   alone(chosen.build, chosen.model, frames)) for _ in range(chosen.rounds)]
-        middle = {key: statistics.median(call[key] for call, _ in rounds) for key in rounds[0][0]}
-        engine = statistics.median(engine for _, engine in rounds)
+    for frames in [chosen.frames] if chosen.frames else CALLS:
+        rounds = [(measure(chosen.build, "bin/duet-server", frames, "--model", chosen.model),
+                   alone(chosen.build, chosen.model, frames),
+                   measure(chosen.build, "tests/duet-fake-server", frames)["whole"])
+                  for _ in range(chosen.rounds)]
+        middle = {key: statistics.median(call[key] for call, _, _ in rounds)
+                  for key in rounds[0][0]}
+        engine = statistics.median(engine for _, engine, _ in rounds)
+        without = statistics.median(without for _, _, without in rounds)
         engine = "" if math.isnan(engine) else f"{engine:.2f}"
         cost = middle["microseconds"]
         print(f"| {frames} | {middle['first']:.2f} | {middle['whole']:.2f} | {engine} | "
-              f"{cost:.1f} | {f'{cost / last:.2f}' if last else ''} | "
+              f"{without:.2f} | {cost:.1f} | {f'{cost / last:.2f}' if last else ''} | "
               f"{middle['megabytes']:.1f} |", flush=True)
         last = cost
 

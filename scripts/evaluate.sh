@@ -51,11 +51,15 @@ make_set() { # HALF
 }
 
 train() {
-  local config folds half
+  local config folds half seed
   read -ra folds <<<"${FOLDS:-}"
   for config in default flow mshl22; do
     "${bin}/duet-train" --data "${data}" --out "${runs}/${config}" --config "${config}" \
       --protocol loso
+  done
+  for seed in 1 2; do # beside 0: what training from other weights changes
+    "${bin}/duet-train" --data "${data}" --out "${runs}/flow-${seed}" --config flow \
+      --set "seed=${seed}" --protocol loso
   done
   for config in default "${ablations[@]}"; do ablate "${config}" "${folds[@]}"; done
   "${bin}/duet-train" --data "${data}" --out "${runs}/half" --protocol half --seeds 1,2,3,4,5
@@ -69,7 +73,8 @@ train() {
 sampled() {
   local start models=(--runs "flow=${runs}/flow" --runs "ours=${runs}/default")
   "${bin}/duet-eval" direction --data "${data}" --out "${results}" --runs "flow=${runs}/flow"
-  "${bin}/duet-eval" samples --data "${data}" --out "${results}" "${models[@]}" --id 14_samples
+  "${bin}/duet-eval" samples --data "${data}" --out "${results}" "${models[@]}" \
+    --runs "flow=${runs}/flow-1" --runs "flow=${runs}/flow-2" --id 14_samples
   "${bin}/duet-eval" samples --data "${data}" --out "${results}" "${models[@]}" --starts none \
     --untold-direction --id 14_samples_untold \
     --title "Many answers to one leader, where the partner's direction is not told"

@@ -21,11 +21,11 @@ using ::testing::HasSubstr;
 using ::testing::Pointwise;
 using ::testing::SizeIs;
 
-motion::ClipPair Pair(int frames) {
+motion::ClipPair Pair(int frames, double frame_rate_hz = 15) {
   motion::ClipPair pair;
   pair.leader.joint_names = motion::SbuSkeleton().joint_names;
-  pair.leader.frame_rate_hz = 15;
-  pair.leader.poses = test::SwayingMotion(frames, 15);
+  pair.leader.frame_rate_hz = frame_rate_hz;
+  pair.leader.poses = test::SwayingMotion(frames, frame_rate_hz);
   pair.follower = pair.leader;
   for (motion::Vec3& position : pair.follower.poses.all()) position.x += 1;
   return pair;
@@ -68,13 +68,21 @@ TEST(Classifier, NeitherThePlaceNorTheFacingOfTheTwoCounts) {
               Pointwise(FloatNear(1e-4f), classifier->Probabilities(pair)));
 }
 
-TEST(Classifier, OneFrameAndAnotherRateWillDo) {
+TEST(Classifier, OneFrameWillDo) {
   const absl::StatusOr<Classifier> classifier = Classifier::Create(RandomClassifier());
   ASSERT_THAT(classifier, IsOk());
-  EXPECT_THAT(classifier->Probabilities(Pair(1)), SizeIs(2));
-  motion::ClipPair fast = Pair(40);
-  fast.leader.frame_rate_hz = fast.follower.frame_rate_hz = 30;
-  EXPECT_THAT(classifier->Probabilities(fast), SizeIs(2));
+  for (const double rate_hz : {15, 30}) {
+    const std::vector<float> one = classifier->Probabilities(Pair(1, rate_hz));
+    ASSERT_THAT(one, SizeIs(2));
+    EXPECT_NEAR(one[0] + one[1], 1, 1e-5);
+  }
+}
+
+TEST(Classifier, TheSameMotionAtTwiceTheRateIsTheSame) {
+  const absl::StatusOr<Classifier> classifier = Classifier::Create(RandomClassifier());
+  ASSERT_THAT(classifier, IsOk());
+  EXPECT_THAT(classifier->Probabilities(Pair(39, 30)),
+              Pointwise(FloatNear(1e-3f), classifier->Probabilities(Pair(20))));
 }
 
 TEST(Classifier, NamesWhatDoesNotFit) {
