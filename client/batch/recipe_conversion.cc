@@ -11,6 +11,7 @@
 #include "absl/strings/str_cat.h"
 #include "client/batch/capture_layout.h"
 #include "client/batch/text_values.h"
+#include "model/base/printable.h"
 #include "model/base/text.h"
 
 namespace duet::client::batch {
@@ -22,12 +23,17 @@ constexpr uint32_t kMaxMixes = 10'000;
 constexpr uint32_t kMaxRetries = 100;
 constexpr size_t kMaxGrid = 100'000;
 
+// Of names that came, in a message.
+constexpr size_t kLongestField = 200, kLongestValue = 200;
+
 // Remembers the first thing that is wrong.
 class Checker {
  public:
   void Want(bool good, const std::string& field, const std::string& came, const char* wanted) {
     if (good || !status_.ok()) return;
-    status_ = absl::InvalidArgumentError(absl::StrCat(field, ": came ", came, ", wanted ", wanted));
+    status_ = absl::InvalidArgumentError(
+        absl::StrCat(base::Printable(field, kLongestField), ": came ",
+                     base::Printable(came, kLongestValue), ", wanted ", wanted));
   }
   void Weight(const std::string& field, float weight) {
     Want(std::abs(weight) <= kMaxAbsWeight, field, absl::StrCat(weight), "a number from -2 to 2");

@@ -272,8 +272,17 @@ class BatchTest(unittest.TestCase):
 
     def test_an_interrupt_drains(self):
         recipe, out = self.recipe("formats: FORMAT_BVH"), self.out()
-        client = subprocess.Popen(self.command(out, recipe, "--max-in-flight", "1"),
-                                  stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        # Five calls a second: what is left once files appear takes seconds, not a moment.
+        token, access = self.out("token"), self.out("access")
+        token.write_text("secret", encoding="utf-8")
+        access.write_text(f"batch synthesise sha256:{hashlib.sha256(b'secret').hexdigest()} "
+                          "calls_per_second=5\n", encoding="utf-8")
+        server = tools.Server("--access-file", access)
+        self.addCleanup(server.stop)
+        client = subprocess.Popen(
+            self.command(out, recipe, "--max-in-flight", "1", "--token-file", token,
+                         server=server.address),
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         while not list(out.glob("*.bvh")) and client.poll() is None:
             time.sleep(0.005)
         client.send_signal(signal.SIGINT)

@@ -121,6 +121,11 @@ INSTANTIATE_TEST_SUITE_P(
         BadRecipe{"reactions { labels {} }", "reactions[0].labels.weights: came none"},
         BadRecipe{"reactions { labels { weights { key: 'a' value: 3 } } }",
                   "weights[a]: came 3, wanted a number from -2 to 2"},
+        // Names may be anything: one short line says what came.
+        BadRecipe{"reactions { labels { weights { key: 'a\\000\\n' value: 3 } } }",
+                  "weights[a\\x00\\n]: came 3, wanted a number"},
+        BadRecipe{"models: 'a' reactions { each_class { classes: '\\033' classes: '\\033' } }",
+                  "each_class.classes: came \\x1b twice"},
         BadRecipe{"reactions { grid {} }", "grid.axes: came none"},
         BadRecipe{"reactions { grid { axes { interaction_class: 'a' weights: 1 weights: 1 } } }",
                   "axes[0].weights: came 1 twice"},
