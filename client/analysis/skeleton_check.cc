@@ -23,6 +23,8 @@ using motion::Vec3;
 constexpr double kShortestLeg = 0.7, kLongestLeg = 1.4;
 // Standard deviation of a bone's length over its mean: Kinect's bones reach a tenth.
 constexpr double kMostDrift = 0.1;
+// Rounding, in whatever unit.
+constexpr double kLeastLength = 1e-6;
 // A left bone's length over the right one's, or the other way round.
 constexpr double kMostAsymmetry = 1.15;
 constexpr double kMostBelowFloor = 0.1, kHighAboveFloor = 0.15, kMostTimeInTheAir = 0.25;
@@ -120,6 +122,14 @@ class Checker {
     return std::sqrt(std::max(0.0, squares / clip_.frame_count() - mean * mean)) / mean;
   }
 
+  // The first whose joints are always in one place; empty where there is none.
+  std::string BoneWithoutLength() const {
+    for (std::size_t bone = 0; bone < skeleton_.bones.size(); ++bone) {
+      if (MedianLength(skeleton_.bones[bone]) < kLeastLength) return BoneName(skeleton_, bone);
+    }
+    return "";
+  }
+
   void CheckLimbLengths() {
     double mean = 0, most = 0;
     std::size_t worst = 0;
@@ -133,7 +143,10 @@ class Checker {
     std::string text = absl::StrCat("change by ", Percent(mean));
     if (most > 0)
       absl::StrAppend(&text, ", most ", BoneName(skeleton_, worst), ", ", Percent(most));
-    Add("limb lengths", most <= kMostDrift, text, {{"mean_change", mean}, {"most_change", most}});
+    const std::string none = BoneWithoutLength();
+    if (!none.empty()) absl::StrAppend(&text, "; ", none, " has no length");
+    Add("limb lengths", most <= kMostDrift && none.empty(), text,
+        {{"mean_change", mean}, {"most_change", most}});
   }
 
   // Limbs come as left and right, or the other way round.

@@ -1,5 +1,6 @@
 #include "client/batch/manifest.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <istream>
 #include <map>
@@ -104,7 +105,11 @@ class Manifest final : public LeaderSource {
   absl::StatusOr<std::optional<LeaderEntry>> Next() override {
     for (std::string line; ReadLine(&line);) {
       if (line.empty()) continue;
-      if (kind_ == Kind::kUnknown && !Begin(line)) continue;
+      if (kind_ == Kind::kUnknown) {
+        const absl::StatusOr<bool> is_entry = Begin(line);
+        if (!is_entry.ok()) return At(is_entry.status());
+        if (!*is_entry) continue;
+      }
       absl::StatusOr<LeaderEntry> entry = ParseLine(line);
       if (!entry.ok()) return At(entry.status());
       return std::optional<LeaderEntry>(*std::move(entry));
@@ -124,10 +129,13 @@ class Manifest final : public LeaderSource {
   }
 
   // What the first line says of the others; whether it is one of them.
-  bool Begin(const std::string& line) {
+  absl::StatusOr<bool> Begin(const std::string& line) {
     kind_ = line[0] == '{' ? Kind::kJson : Kind::kTsv;
-    if (kind_ == Kind::kTsv) header_ = absl::StrSplit(line, '\t');
-    return kind_ == Kind::kJson;
+    if (kind_ == Kind::kJson) return true;
+    header_ = absl::StrSplit(line, '\t');
+    if (std::find(header_.begin(), header_.end(), "leader") != header_.end()) return false;
+    return absl::InvalidArgumentError(
+        absl::StrCat("columns: came ", base::Quoted(line), ", wanted leader among them"));
   }
 
   absl::StatusOr<Columns> ParseRow(const std::string& line) const {

@@ -10,8 +10,10 @@
 
 #include "CLI/CLI.hpp"
 #include "absl/status/statusor.h"
+#include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/string_view.h"
+#include "model/base/text.h"
 
 // Kinds of flag that this program has and CLI11 does not.
 
@@ -21,6 +23,16 @@ namespace duet::client::cli {
 inline CLI::Validator Undescribed(CLI::Validator validator) {
   validator.description("");
   return validator;
+}
+
+// Any finite number above 0. (CLI11's own spells out the largest double.)
+inline CLI::Validator AboveZero() {
+  const auto check = [](const std::string& text) {
+    double value = 0;
+    if (base::ParseNumber(text, &value) && value > 0) return std::string();
+    return absl::StrCat(base::Quoted(text), ", wanted a number above 0");
+  };
+  return CLI::Validator(check, "");
 }
 
 // A flag whose value `parse` reads; help shows the value as `form`. One value after each flag, so

@@ -36,7 +36,7 @@ void AddInputFlags(CLI::App* app, InputArguments* input) {
       "What is read, where no name tells it (-); replaces the extension")
       ->group(kInputGroup);
   app->add_option("--frame-rate", input->frame_rate_hz, "Replaces what the file says")
-      ->check(Undescribed(CLI::PositiveNumber))
+      ->check(AboveZero())
       ->type_name("HZ")
       ->group(kInputGroup);
   AddParsed<motion::LengthUnit>(
@@ -53,7 +53,7 @@ void AddInputFlags(CLI::App* app, InputArguments* input) {
       ->group(kInputGroup);
   app->add_option("--metres-per-unit", input->metres_per_unit,
                   "BVH, glTF, ASF: metres in one unit of the file (0.01 for centimetres)")
-      ->check(Undescribed(CLI::PositiveNumber))
+      ->check(AboveZero())
       ->type_name("METRES")
       ->group(kInputGroup);
   AddParsed<std::pair<std::string, std::string>>(

@@ -107,6 +107,17 @@ std::string DescribeLength(const motion::Clip& clip) {
   return text;
 }
 
+// Nothing where the second person of a file is as long as the first.
+std::string DescribeUnlikeLength(const motion::Clip& first, const motion::Clip& second,
+                                 const Style& style) {
+  if (second.frame_count() == 0 || (second.frame_count() == first.frame_count() &&
+                                    second.frame_rate_hz == first.frame_rate_hz)) {
+    return "";
+  }
+  return absl::StrCat("  length      ", DescribeLength(second), "  ",
+                      style.Warning("unlike the other: each can be read alone, not both"), "\n");
+}
+
 std::string DescribePeople(int people) {
   return absl::StrCat(people, people == 1 ? " person" : " people",
                       people > 2 ? " (the first two are read)" : "");
@@ -171,7 +182,8 @@ std::string DescribeInspection(const Inspection& inspection, const Style& style)
   for (std::size_t i = 0; i < inspection.people.size(); ++i) {
     const InspectedPerson& person = inspection.people[i];
     if (inspection.people.size() > 1) {
-      absl::StrAppend(&text, style.Heading(i == 0 ? "  left person" : "  right person"), "\n");
+      absl::StrAppend(&text, style.Heading(i == 0 ? "  left person" : "  right person"), "\n",
+                      i == 0 ? "" : DescribeUnlikeLength(clip, person.clip, style));
     }
     const std::string reading = DescribeReading(person.report, style);
     const bool repeated = i > 0 && reading == DescribeReading(first, style);

@@ -117,7 +117,7 @@ CLI::App* AddConvertCommand(CLI::App* app, ConvertArguments* arguments) {
       ->add_option("--resample", arguments->resample_hz,
                    "Frames a second of what is written; the motion keeps its pace (--frame-rate "
                    "says what the file has)")
-      ->check(Undescribed(CLI::PositiveNumber))
+      ->check(AboveZero())
       ->type_name("HZ")
       ->group(kOutputGroup);
   AddOutputFormatFlag(command, &arguments->output_format);

@@ -1,6 +1,7 @@
 #include "client/cli/motion_input.h"
 
 #include <cstddef>
+#include <filesystem>
 #include <system_error>
 #include <utility>
 
@@ -116,6 +117,10 @@ absl::Status CheckInput(const std::filesystem::path& path,
                     motion::ReadingSetting::kFormat);
   }
   absl::Status status = CheckExists(path);
+  if (std::error_code error; std::filesystem::is_directory(path, error)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(path.string(), ": is a folder, wanted a motion file"));
+  }
   if (!status.ok() || format.has_value() || formats::IsReadable(path)) return status;
   return MendedBy(formats::UnknownExtension(path, formats::kReadableExtensions),
                   motion::ReadingSetting::kFormat);

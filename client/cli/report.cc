@@ -102,7 +102,8 @@ std::string Advice(const absl::Status& status, const std::string& server_address
   if (ExitCodeFor(status) != kExitRetry) return "";
   // A reason would mean that a Duet server answered.
   if (absl::IsUnavailable(status) && ErrorReason(status).empty()) {
-    return absl::StrCat("Does a duet-server listen at ", server_address, "? (--server)\n");
+    return absl::StrCat("Does a duet-server listen at ", server_address,
+                        "? (--server; where it encrypts, --tls or --tls-ca FILE)\n");
   }
   return "Trying again later may help.\n";
 }

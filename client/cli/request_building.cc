@@ -4,6 +4,8 @@
 #include <system_error>
 #include <utility>
 
+#include "absl/status/status.h"
+#include "absl/strings/str_cat.h"
 #include "client/cli/motion_input.h"
 #include "client/cli/value_syntax.h"
 #include "model/formats/motion_file.h"
@@ -56,7 +58,10 @@ absl::Status CheckInputs(const SynthesizeArguments& arguments) {
   }
   const std::string& start = arguments.follower_start;
   if (!status.ok() || start.empty() || ParsePoint(start).has_value()) return status;
-  return CheckInput(start, std::nullopt);
+  status = CheckInput(start, std::nullopt);
+  if (!absl::IsNotFound(status)) return status;
+  return absl::NotFoundError(
+      absl::StrCat("--follower-start: ", status.message(), "; wanted a motion file or X,Y,Z"));
 }
 
 absl::StatusOr<SynthesisRequest> BuildRequest(const SynthesizeArguments& arguments,

@@ -7,6 +7,7 @@
 #include "absl/strings/ascii.h"
 #include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_replace.h"
 #include "absl/strings/strip.h"
 #include "model/base/printable.h"
 
@@ -65,8 +66,9 @@ void AppendFixed(std::string* out, double value, int decimals) {
 
 std::string Quoted(absl::string_view text) {
   const bool shortened = text.size() > kLongestQuote;
-  return absl::StrCat("\"", absl::CHexEscape(text.substr(0, kLongestQuote)),
-                      shortened ? "...\"" : "\"");
+  std::string escaped = absl::CHexEscape(text.substr(0, kLongestQuote));
+  absl::StrReplaceAll({{R"(\')", "'"}}, &escaped);  // needs no escape between double quotes
+  return absl::StrCat("\"", escaped, shortened ? "...\"" : "\"");
 }
 
 absl::Status ErrorAt(absl::string_view source, int line, absl::string_view message) {

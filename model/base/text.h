@@ -25,8 +25,8 @@ void AppendNumber(std::string* out, double value);
 void AppendFixed(std::string* out, double value, int decimals);
 
 // `text` in double quotes, for a message: every byte that is not printable ASCII as an escape, as
-// are quotes and backslashes, and after the first kLongestQuote bytes "...". Whatever came stands
-// in one short line.
+// are double quotes and backslashes, and after the first kLongestQuote bytes "...". Whatever came
+// stands in one short line.
 inline constexpr std::size_t kLongestQuote = 64;
 std::string Quoted(absl::string_view text);
 

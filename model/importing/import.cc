@@ -122,7 +122,11 @@ class Importer {
     const absl::StatusOr<Listing> listing = ListMotions(options_.from);
     if (!listing.ok()) return listing.status();
     for (const auto& [extension, count] : listing->others) {
-      Assume("passed by", absl::StrCat(count, " files ", extension, ", which are no motion"), "");
+      Assume("passed by",
+             absl::StrCat(count, count == 1 ? " file " : " files ",
+                          extension.empty() ? "without an extension" : extension,
+                          count == 1 ? ", which is" : ", which are", " no motion"),
+             "");
     }
     fs::path table = options_.table;
     std::error_code error;
@@ -386,7 +390,9 @@ class Importer {
              "--effectors CLASS=JOINT,...");
     }
     if (!close.empty()) {
-      Assume("leader", absl::StrCat(close.size(), " close calls: ", ListSome(close)),
+      Assume("leader",
+             absl::StrCat(close.size(),
+                          close.size() == 1 ? " close call: " : " close calls: ", ListSome(close)),
              "--table FILE");
     }
   }

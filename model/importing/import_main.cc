@@ -51,12 +51,12 @@ void Declare(ImportOptions* options, Words* words, CLI::App* app) {
       ->type_name("HZ");
   app->add_option("--metres-per-unit", options->metres_per_unit,
                   "Metres in one unit of the files (0.01 for centimetres)")
-      ->check(CLI::PositiveNumber)
+      ->check(CLI::Range(1e-6, 1e6))
       ->type_name("METRES");
   app->add_option("--up-axis", words->up_axis, "Of the files (default: along which people stand)")
       ->type_name("y-up|z-up|y-down");
   app->add_option("--longest", options->longest_seconds, "Seconds; longer pairs are cut")
-      ->check(CLI::PositiveNumber)
+      ->check(CLI::Range(0.1, 86400.0))
       ->capture_default_str()
       ->type_name("SECONDS");
   app->add_option("--symmetric", options->symmetric, "Classes in which either person may lead")

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "absl/strings/match.h"
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
@@ -21,6 +22,7 @@
 #include "model/base/file.h"
 #include "model/base/flag_names.h"
 #include "model/base/nearest.h"
+#include "model/base/text.h"
 #include "model/messages/message_text.h"
 #include "server/config/server_options.h"
 
@@ -355,7 +357,7 @@ void AddFlags(CLI::App& app, Flags& flags) {
       ->option_text("FILE");
   app.add_flag_callback(
       "--check-config", [&flags] { flags.task = CommandLine::Task::kCheckConfig; },
-      "check the settings, load every model, say all that is wrong, and leave");
+      "check settings and secrets, load every model, say all that is wrong, and leave");
   app.add_flag_callback(
       "--print-config", [&flags] { flags.task = CommandLine::Task::kPrintConfig; },
       "print every setting and where it comes from, and leave");
@@ -390,6 +392,8 @@ class FlagParser {
       std::ostringstream text;
       app_.exit(wanted, text, text);
       *print = text.str();
+    } catch (const CLI::ExtrasError&) {
+      return Unexpected(app_.remaining());
     } catch (const CLI::ParseError& error) {
       return absl::InvalidArgumentError(error.what());
     }
@@ -419,6 +423,22 @@ class FlagParser {
   }
 
  private:
+  // What is left of a command line. A flag's value may be among it, so the flag counts.
+  absl::Status Unexpected(const std::vector<std::string>& words) const {
+    std::vector<std::string> known;
+    for (const CLI::Option* option : app_.get_options()) {
+      for (const std::string& flag : option->get_lnames()) known.push_back("--" + flag);
+    }
+    for (const std::string& word : words) {
+      if (!absl::StartsWith(word, "-")) continue;
+      const std::string flag = word.substr(0, word.find('='));
+      return absl::InvalidArgumentError(
+          absl::StrCat(flag, ": there is no such flag", base::DidYouMean(flag, known)));
+    }
+    return absl::InvalidArgumentError(
+        absl::StrCat("came ", base::Quoted(words[0]), ", wanted flags alone"));
+  }
+
   absl::Status UnknownVariable(const std::string& name) const {
     std::vector<std::string> known;
     for (const CLI::Option* option : app_.get_options()) {

@@ -5,9 +5,11 @@
 
 #include "absl/strings/str_split.h"
 #include "server/lifecycle/load_models.h"
+#include "server/lifecycle/secret_options.h"
 #include "server/registry/model_manager.h"
 #include "server/registry/model_registry.h"
 #include "server/registry/model_status.h"
+#include "server/security/secret_files.h"
 
 namespace duet::server::lifecycle {
 namespace {
@@ -49,11 +51,24 @@ class Findings final : public registry::ModelObserver {
   bool all_right_ = true;
 };
 
+// Certificates and the access file, each by itself: all that is wrong counts.
+void CheckSecrets(const config::SecurityOptions& options, Findings& findings) {
+  security::SecretFiles::Options access = SecretsOf(options);
+  access.tls = {};
+  security::SecretFiles::Options tls = SecretsOf(options);
+  tls.access.clear();
+  for (const security::SecretFiles::Options& part : {tls, access}) {
+    const absl::Status status = security::SecretFiles::Open(part).status();
+    if (!status.ok()) findings.Problem(std::string(status.message()));
+  }
+}
+
 }  // namespace
 
 bool CheckConfig(const config::ServerOptions& options, const registry::ModelSource& source,
                  std::ostream& out) {
   Findings findings(out);
+  CheckSecrets(options.security, findings);
   registry::ModelRegistry registry;
   registry::ModelManager manager(registry, findings);
   ConfigureModels(options, manager);

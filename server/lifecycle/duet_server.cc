@@ -12,6 +12,7 @@
 #include "absl/time/time.h"
 #include "server/batching/batcher.h"
 #include "server/lifecycle/load_models.h"
+#include "server/lifecycle/secret_options.h"
 #include "server/security/server_credentials.h"
 #include "server/service/refusals.h"
 
@@ -58,13 +59,6 @@ service::AdmissionLimits AdmissionOf(const config::ServerOptions& options) {
   return limits;
 }
 
-security::SecretFiles::Options Secrets(const config::SecurityOptions& options) {
-  security::SecretFiles::Options secrets;
-  secrets.tls = {options.tls_certificate_file, options.tls_key_file, options.tls_client_ca_file};
-  secrets.access = options.access_file;
-  return secrets;
-}
-
 std::vector<metrics::ServedVersion> Served(const registry::ModelRegistry& registry) {
   std::vector<metrics::ServedVersion> served;
   for (const registry::ServedModel& model : registry.List()) {
@@ -90,7 +84,7 @@ metrics::LogOptions LogOptionsOf(const config::LoggingOptions& options) {
 absl::StatusOr<std::unique_ptr<DuetServer>> DuetServer::Start(const config::ServerOptions& options,
                                                               metrics::LogSink& sink) {
   absl::StatusOr<std::unique_ptr<security::SecretFiles>> secrets =
-      security::SecretFiles::Open(Secrets(options.security));
+      security::SecretFiles::Open(SecretsOf(options.security));
   if (!secrets.ok()) return secrets.status();
   std::unique_ptr<tracing::CallTracer> tracer;
   if (!options.tracing.otlp_endpoint.empty()) {

@@ -64,7 +64,7 @@ absl::Status Refusal(absl::StatusCode code, absl::string_view message, absl::str
 
 absl::Status RoleRefusal(Role role) {
   return Refusal(absl::StatusCode::kPermissionDenied,
-                 absl::StrCat("the caller has not the role ", RoleName(role)),
+                 absl::StrCat("the caller does not have the role ", RoleName(role)),
                  common::kReasonRoleMissing, {{"role", RoleName(role)}});
 }
 
@@ -83,10 +83,11 @@ absl::Status ToStatus(const AccessControl::Decision& decision, Role role) {
     case AccessControl::Answer::kAllowed:
       break;
     case AccessControl::Answer::kNoCredentials:
-      return Refusal(absl::StatusCode::kUnauthenticated,
-                     "the call says not who makes it, wanted \"authorization: Bearer TOKEN\" in "
-                     "its metadata, or a client certificate where the server asks for one",
-                     common::kReasonCredentialsMissing);
+      return Refusal(
+          absl::StatusCode::kUnauthenticated,
+          "the call does not say who makes it, wanted \"authorization: Bearer TOKEN\" in "
+          "its metadata, or a client certificate where the server asks for one",
+          common::kReasonCredentialsMissing);
     case AccessControl::Answer::kWrongToken:
       return Refusal(absl::StatusCode::kUnauthenticated,
                      "the call's authorization is not \"Bearer TOKEN\" with a token known here",

@@ -68,6 +68,11 @@ TEST(Quoted, EscapesWhatIsNoPrintableAscii) {
   EXPECT_EQ(Quoted("a\nb\"c\\d\xff"), R"("a\nb\"c\\d\xff")");
 }
 
+TEST(Quoted, LeavesSingleQuotes) {
+  EXPECT_EQ(Quoted("'>f4'"), "\"'>f4'\"");
+  EXPECT_EQ(Quoted(R"(a\'b)"), R"("a\\'b")");
+}
+
 TEST(Quoted, ShowsOnlyTheBeginningOfALongText) {
   EXPECT_EQ(Quoted(std::string(64, 'x')), "\"" + std::string(64, 'x') + "\"");
   EXPECT_EQ(Quoted(std::string(65, 'x')), "\"" + std::string(64, 'x') + "...\"");

@@ -95,7 +95,7 @@ TEST_F(ImportTest, SaysWhatItAssumedAndTheFlagThatChangesIt) {
   WriteBvhPairs(options_.from, 2);
   WriteTestFile(options_.from / "notes.md", "taken on Monday");
   ASSERT_THAT(Go(), IsOk());
-  EXPECT_EQ(Assumed("passed by"), "1 files .md, which are no motion");
+  EXPECT_EQ(Assumed("passed by"), "1 file .md, which is no motion");
   EXPECT_EQ(Assumed("pairs"), "4 by their names");
   EXPECT_EQ(Assumed("skeleton"), "20 joints, of kick_01_a.bvh");
   EXPECT_EQ(Assumed("root"), "hips");

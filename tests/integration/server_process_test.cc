@@ -414,6 +414,17 @@ TEST(ServerProcessTest, CheckConfigLoadsEverythingAndLeaves) {
   EXPECT_EQ(server.Wait(), 1);
 }
 
+TEST(ServerProcessTest, CheckConfigReadsCertificatesAndTheAccessFile) {
+  TemporaryFolder folder;
+  WriteTestFile(folder / "access", "studio dance\n");
+  const std::string missing = (folder / "server.pem").string();
+  Process server(Flags({"--check-config", "--tls-certificate-file", missing, "--tls-key-file",
+                        missing, "--access-file", (folder / "access").string()}));
+  EXPECT_THAT(server.Rest(), AllOf(HasSubstr("wrong: tls_certificate_file: " + missing),
+                                   HasSubstr("wrong: access_file: ")));
+  EXPECT_EQ(server.Wait(), 1);
+}
+
 TEST(ServerProcessTest, PrintConfigTellsWhereEachSettingComesFrom) {
   setenv("DUET_SERVER_MAX_CALLS", "64", 1);
   Process server({"--print-config", "--listen", "127.0.0.1:7"});

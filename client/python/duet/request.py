@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
+import numbers
+import reprlib
 from typing import Mapping, Optional
 
 import numpy as np
@@ -54,15 +56,22 @@ class SynthesisRequest:
     """Names the call in the server's log. Empty: the server makes one."""
 
     def __post_init__(self) -> None:
+        if not isinstance(self.leader, Motion):
+            raise ValueError(f"leader: {_short(self.leader)}, wanted a duet.Motion")
+        _check_labels("labels", self.labels or {})
+        if not isinstance(self.keyframes or {}, Mapping):
+            raise ValueError(f"keyframes: {_short(self.keyframes)}, wanted labels by frame, such as "
+                             "{0: {'hug': 1}}")
         if self.priority not in PRIORITIES:
             raise ValueError(f"priority: {self.priority!r}, wanted one of {', '.join(PRIORITIES)}")
         if self.chunk_frames is not None and self.chunk_frames < 1:
             raise ValueError(f"chunk_frames: {self.chunk_frames}, wanted 1 or more")
         if not 0 <= self.seed < 2**64:
             raise ValueError(f"seed: {self.seed}, wanted 0 to 2^64 - 1")
-        for frame in self.keyframes or ():
-            if frame < 0:
-                raise ValueError(f"keyframes: frame {frame}, wanted 0 or more")
+        for frame, labels in (self.keyframes or {}).items():
+            if not isinstance(frame, numbers.Integral) or frame < 0:
+                raise ValueError(f"keyframes: frame {_short(frame)}, wanted 0 or more")
+            _check_labels(f"keyframes[{frame}]", labels)
         to_selector(self.model)
         _check_shape("follower_start", self.follower_start, ((3,), (self.leader.joint_count, 3)))
         _check_shape("partner_direction", self.partner_direction, ((3,),))
@@ -126,6 +135,22 @@ def _fill_start(start: npt.ArrayLike, out: motion_pb2.FollowerStart) -> None:
 def _floats(values: npt.ArrayLike) -> list[float]:
     flat: list[float] = np.asarray(values, dtype=np.float32).ravel().tolist()
     return flat
+
+
+def _check_labels(name: str, labels: Labels) -> None:
+    if not isinstance(labels, Mapping):
+        raise ValueError(f"{name}: {_short(labels)}, wanted weights by class, such as "
+                         "{'hug': 1}")
+    for interaction_class, weight in labels.items():
+        if not isinstance(interaction_class, str):
+            raise ValueError(f"{name}: class {_short(interaction_class)}, wanted a str")
+        if not isinstance(weight, numbers.Real):
+            raise ValueError(f"{name}[{interaction_class!r}]: {_short(weight)}, wanted a number")
+
+
+def _short(value: object) -> str:
+    """What came, in one short line."""
+    return reprlib.repr(value)
 
 
 def _check_shape(name: str, values: Optional[npt.ArrayLike],

@@ -14,7 +14,10 @@ class Gallery {
     this.mount = new THREE.Group();  // the shared space as it lies in a cell
     this.eye = this.camera.clone();  // the camera there
     this.mount.add(this.eye);
-    this.controls = makeControls(this.camera, canvas, this.box.getSize(new THREE.Vector3()).length());
+    // One camera, as far away as the farthest motion needs: nearer ones are not in the fog there.
+    const reach = this.box.getSize(new THREE.Vector3()).length();
+    for (const cell of this.cells) cell.scenery.addFog(reach);
+    this.controls = makeControls(this.camera, canvas, reach);
     this.labels = this.cells.map((cell) => this.addLabel(cell));
   }
 

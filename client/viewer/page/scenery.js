@@ -82,9 +82,14 @@ class Scenery {
     this.scene = new THREE.Scene();
     this.scene.background = new THREE.Color(BACKGROUND);
     this.reach = this.box.getSize(new THREE.Vector3()).length();
-    this.scene.fog = new THREE.Fog(BACKGROUND, 5 + 2 * this.reach, 13 + 4 * this.reach);
+    this.addFog(this.reach);
     this.addLights(shadowPixels);
     this.addFloor();
+  }
+
+  // Hides the floor's end from a camera that has all within `reach` metres in view.
+  addFog(reach) {
+    this.scene.fog = new THREE.Fog(BACKGROUND, 5 + 2 * reach, 13 + 4 * reach);
   }
 
   addLights(shadowPixels) {

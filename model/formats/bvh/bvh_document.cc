@@ -79,7 +79,8 @@ class Cursor {
 
 class BvhParser {
  public:
-  BvhParser(absl::string_view text, absl::string_view source) : cursor_(text), source_(source) {}
+  BvhParser(absl::string_view text, absl::string_view source)
+      : cursor_(base::SkipByteOrderMark(text)), source_(source) {}
 
   absl::StatusOr<BvhDocument> Parse() {
     absl::Status status = ParseHierarchy();

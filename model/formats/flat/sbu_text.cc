@@ -129,7 +129,7 @@ absl::StatusOr<SbuRecording> ParseSbu(absl::string_view text, absl::string_view 
   if (!status.ok()) return status;
   SbuRecording recording = EmptyRecording(options);
   FrameNumbers frame_numbers;
-  base::LineReader lines(text);
+  base::LineReader lines(base::SkipByteOrderMark(text));
   for (absl::string_view content; lines.Next(&content);) {
     if (absl::StripAsciiWhitespace(content).empty()) continue;
     if (recording.left.frame_count() >= motion::kMaxMotionFrames) {

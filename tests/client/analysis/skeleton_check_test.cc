@@ -88,6 +88,16 @@ TEST(CheckSkeleton, ALimbThatGrowsIsNamed) {
   EXPECT_THAT(check.text, HasSubstr("most left_elbow to left_hand"));
 }
 
+TEST(CheckSkeleton, ABoneWithoutLengthIsNamed) {
+  const Check check = Spoilt("limb lengths", [](motion::Clip* clip) {
+    const int shoulder = Sbu().Find("left_shoulder"), elbow = Sbu().Find("left_elbow");
+    for (int frame = 0; frame < clip->frame_count(); ++frame) {
+      clip->at(frame, elbow) = clip->at(frame, shoulder);
+    }
+  });
+  EXPECT_THAT(check.text, HasSubstr("left_shoulder to left_elbow has no length"));
+}
+
 TEST(CheckSkeleton, AShortArmIsNamed) {
   const Check check = Spoilt("symmetry", [](motion::Clip* clip) {
     const int elbow = Sbu().Find("left_elbow"), hand = Sbu().Find("left_hand");

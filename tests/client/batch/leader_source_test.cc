@@ -93,7 +93,9 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         BadManifest{"leader\tside\na.bvh\n", "m:2: came 1 columns, wanted 2"},
         BadManifest{"leader\tside\na.bvh\tup\n", "m:2: side: came \"up\", wanted left or right"},
-        BadManifest{"side\nleft\n", "m:2: leader: came none"},
+        BadManifest{"side\nleft\n", "m:1: columns: came \"side\", wanted leader among them"},
+        BadManifest{"leader\tside\n\tleft\n", "m:2: leader: came none"},
+        BadManifest{"leder\tid\n", "m:1: columns: came \"leder\\tid\", wanted leader"},
         BadManifest{"leader\tseed\na.bvh\t-1\n", "m:2: seed: came \"-1\""},
         BadManifest{"leader\tlabels\na.bvh\tkick\n", "m:2: labels: came \"kick\""},
         BadManifest{"leader\tlabels\na.bvh\tkick=1,kick=0\n", "each class once"},

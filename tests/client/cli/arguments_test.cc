@@ -202,7 +202,10 @@ TEST_F(ArgumentsTest, WhatMakesNoSenseIsNamed) {
   ExpectRefused({"--label", "kick=1", "--keyframe", "0:kick=1"}, "excludes");
   ExpectRefused({"--label", "kick=1", "--leader-side", "up"}, "--leader-side: up");
   ExpectRefused({"--label", "kick=1", "--unit", "1"}, "--unit: \"1\", wanted metres");
-  ExpectRefused({"--label", "kick=1", "--frame-rate", "-15"}, "--frame-rate");
+  ExpectRefused({"--label", "kick=1", "--frame-rate", "-15"},
+                "--frame-rate: \"-15\", wanted a number above 0");
+  ExpectRefused({"--label", "kick=1", "--metres-per-unit", "inf"},
+                "--metres-per-unit: \"inf\", wanted a number above 0");
   ExpectRefused({"--label", "kick=1", "--timeout", "0"}, "--timeout");
   ExpectRefused({"--label", "kick=1", "--tls-key", "key.pem"}, "--tls-key");
   ExpectRefused({"--label", "kick=1", "--model", "sbu@x"}, "--model: \"sbu@x\"");

@@ -171,6 +171,23 @@ TEST_F(MotionCommandsTest, InspectGoesOnAfterAFileThatCannotBeRead) {
                                 HasSubstr("no.csv: no such file"), HasSubstr("CSV, 1 person")));
 }
 
+TEST_F(MotionCommandsTest, InspectTellsAFolderFromAFile) {
+  EXPECT_EQ(Run({"inspect", folder_.path().string()}), 42);
+  EXPECT_THAT(out_.str(), HasSubstr(": is a folder, wanted a motion file"));
+}
+
+TEST_F(MotionCommandsTest, InspectTellsPeopleOfDifferentLengths) {
+  Write("pair.json", Format::kJson, {leader_, follower_});
+  json pair = json::parse(ReadTestFile(folder_ / "pair.json"));
+  pair["follower"].erase(pair["follower"].begin() + 5, pair["follower"].end());
+  WriteTestFile(folder_ / "uneven.json", pair.dump());
+  ASSERT_EQ(Run({"inspect", Path("uneven.json")}), 0);
+  EXPECT_THAT(out_.str(),
+              AllOf(HasSubstr("2 people, 60 frames"), HasSubstr("  length      5 frames")));
+  ASSERT_EQ(Run({"inspect", Path("pair.json")}), 0);
+  EXPECT_THAT(out_.str(), Not(HasSubstr("  length  ")));
+}
+
 TEST_F(MotionCommandsTest, InspectTellsWhatLooksWrong) {
   motion::Clip odd = leader_;
   for (motion::Vec3& at : odd.poses.all()) at = at * 3;

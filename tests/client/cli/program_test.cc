@@ -481,6 +481,9 @@ TEST_F(ProgramTest, AMissingFollowerStartNeverReachesTheServer) {
   EXPECT_CALL(*connection_, GetModel).Times(0);
   EXPECT_EQ(Synthesize("pair.html", {"--follower-start", Path("no.bvh")}), 42);
   EXPECT_THAT(err_.str(), HasSubstr("no.bvh: no such file"));
+  EXPECT_EQ(Synthesize("pair.html", {"--follower-start", "0,1"}), 42);
+  EXPECT_THAT(err_.str(), HasSubstr("--follower-start: 0,1: no such file; wanted a motion file or "
+                                    "X,Y,Z"));
 }
 
 TEST_F(ProgramTest, AMalformedLeaderIsBadInput) {
@@ -561,7 +564,8 @@ TEST_F(ProgramTest, AnAbsentServerIsWorthRetryingAndNamed) {
   EXPECT_CALL(*connection_, GetModel).WillOnce(Return(absl::UnavailableError("refused")));
   EXPECT_EQ(Synthesize("pair.html", {"--server", "duet:1"}), 1);
   EXPECT_EQ(err_.str(),
-            "duet: refused (UNAVAILABLE)\nDoes a duet-server listen at duet:1? (--server)\n");
+            "duet: refused (UNAVAILABLE)\nDoes a duet-server listen at duet:1? (--server; where it "
+            "encrypts, --tls or --tls-ca FILE)\n");
 }
 
 TEST_F(ProgramTest, ADrainingServerIsWorthRetrying) {

@@ -69,6 +69,21 @@ class RequestTest(unittest.TestCase):
             with self.subTest(fields=fields), self.assertRaisesRegex(ValueError, message):
                 self.request(**fields)
 
+    def test_refuses_what_is_of_another_type_by_field(self):
+        for arguments, message in (
+                ((None,), "leader: None, wanted a duet.Motion"),
+                ((support.leader(), ["hug"]), r"labels: \['hug'\], wanted weights by class"),
+                ((support.leader(), {"hug": "1"}), r"labels\['hug'\]: '1', wanted a number"),
+                ((support.leader(), {1: 1}), "labels: class 1, wanted a str"),
+                ((support.leader(), None, [{"hug": 1}]), "keyframes: .*, wanted labels by frame"),
+                ((support.leader(), None, {"0": {}}), "keyframes: frame '0', wanted 0 or more"),
+                ((support.leader(), None, {4: "hug"}), r"keyframes\[4\]: 'hug', wanted weights")):
+            with self.subTest(message=message), self.assertRaisesRegex(ValueError, message):
+                duet.SynthesisRequest(*arguments)
+        weights = {"hug": np.float32(1), "push": np.int64(0)}
+        self.assertEqual(len(to_proto(duet.SynthesisRequest(
+            support.leader(), keyframes={np.int64(3): weights})).label_keyframes), 1)
+
     def test_chooses_models_as_the_program_does(self):
         self.assertEqual(to_selector("sbu:stable").version_label, "stable")
         self.assertEqual(to_selector("").WhichOneof("version_choice"), None)

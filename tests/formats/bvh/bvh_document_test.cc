@@ -202,6 +202,13 @@ TEST(BvhDocument, WritesWhatItReads) {
   EXPECT_EQ(again->joints[1].name, "Fore Arm");
 }
 
+TEST(BvhDocument, PassesOverAByteOrderMark) {
+  const absl::StatusOr<BvhDocument> document =
+      ParseBvh(absl::StrCat("\xEF\xBB\xBF", kArm), "a.bvh");
+  ASSERT_TRUE(document.ok()) << document.status();
+  EXPECT_EQ(document->values, ParseBvh(kArm, "a.bvh")->values);
+}
+
 TEST(BvhDocument, NamesThePlaceOfAnError) {
   EXPECT_THAT(ErrorWith("HIERARCHY", "hello"),
               HasSubstr("a.bvh:1: came \"hello\", wanted HIERARCHY"));

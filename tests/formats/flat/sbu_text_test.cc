@@ -43,6 +43,13 @@ TEST(SbuText, ReadsBothPeople) {
   EXPECT_EQ(recording->right.at(1, 1), (motion::Vec3{1, 1.5f, -0.2f}));
 }
 
+TEST(SbuText, PassesOverAByteOrderMark) {
+  const absl::StatusOr<SbuRecording> recording =
+      ParseSbu(absl::StrCat("\xEF\xBB\xBF", kTwoFrames), "a.txt", TwoJoints());
+  ASSERT_TRUE(recording.ok()) << recording.status();
+  EXPECT_EQ(recording->left.frame_count(), 2);
+}
+
 TEST(SbuText, DefaultsToSbuJointsUnitAndRate) {
   std::string line = "180";
   for (int value = 0; value < 90; ++value) absl::StrAppend(&line, ",", value < 45 ? "0.5" : "0.25");

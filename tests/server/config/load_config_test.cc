@@ -204,6 +204,11 @@ TEST(ParseCommandLineTest, OldNamesOfFlagsStillWorkButDoNotShow) {
   EXPECT_EQ(line->config.model_repository(), "/my_models/--max_calls");
   EXPECT_THAT(Parse({"--no_such_flag", "4"}),
               StatusIs(kInvalidArgument, HasSubstr("--no-such-flag")));
+  EXPECT_THAT(Parse({"4", "--max_cals", "4"}),
+              StatusIs(kInvalidArgument,
+                       "--max-cals: there is no such flag; did you mean "
+                       "--max-calls?"));
+  EXPECT_THAT(Parse({"serve"}), StatusIs(kInvalidArgument, "came \"serve\", wanted flags alone"));
   EXPECT_THAT(*Parse({"--help"})->print, Not(ContainsRegex("--[a-z]+_")));
 }
 
