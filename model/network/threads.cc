@@ -8,7 +8,7 @@
 namespace duet::network {
 
 absl::Status SetThreads(int threads) {
-  const absl::Status status = CatchExceptions([threads] {
+  absl::Status status = CatchExceptions([threads] {
     at::set_num_threads(threads);
     return absl::OkStatus();
   });
