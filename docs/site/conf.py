@@ -60,7 +60,7 @@ TITLED = re.compile(r"^.*<|>$")
 TOCTREE = re.compile(r"^```\{toctree\}\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 # Pages below a page, in the sidebar. "*" alone: every document that no other list has.
 BELOW = {
-    "docs/results/README": ["Every table and figure <report>", "Before levelling <unlevelled>"],
+    "docs/results/README": ["Every table and figure <report>"],
     "docs/decisions/README": ["0*"],
     "docs/README": ["*"],
 }
