@@ -39,7 +39,9 @@ def start_server(program, log, batch):
     with log.open("w", encoding="utf-8") as file:
         server = subprocess.Popen(
             [program, "--listen", "127.0.0.1:0", "--metrics-listen", "off",
-             "--max-batch-windows", str(batch)], stdout=file, stderr=file)
+             "--max-batch-windows", str(batch),
+             # Of one client: nobody is refused, whose asking again would cost the others.
+             "--max-queued-windows", "256"], stdout=file, stderr=file)
     while server.poll() is None:
         if found := re.search(r'"event":"serving".*?"port":(\d+)', log.read_text(encoding="utf-8")):
             return server, f"127.0.0.1:{found[1]}"
