@@ -11,14 +11,16 @@
 
 namespace duet::cpu_engine::kernels {
 
-// Products in bfloat16 are made in tiles: by the processor where it has them, else emulated.
+// Products in bfloat16 are made in tiles: by the processor where it has them, else emulated. What
+// stands between the tiles' instructions is AVX-512 BF16, which every processor with tiles has:
+// without it HasAmx() is false, and nothing of this is ever run.
 class AmxTest : public ::testing::Test {
  public:
   ~AmxTest() override { ChooseBf16Product(Bf16Product::kBest); }
 
  protected:
   void SetUp() override {
-    if (!HasBf16()) GTEST_SKIP() << "this processor does not multiply bfloat16 (AVX-512 BF16)";
+    if (!HasBf16()) GTEST_SKIP() << kNeverHere;
     if (!HasAmx()) emulator_.emplace();
     ChooseBf16Product(Bf16Product::kAmx);
   }
@@ -28,6 +30,10 @@ class AmxTest : public ::testing::Test {
   bool ReleasedTiles() const { return !emulator_ || !emulator_->in_use(); }
 
  private:
+  static constexpr char kNeverHere[] =
+      "products in tiles are never made on this processor: it lacks AVX-512 BF16, which they use "
+      "besides tiles; its own products are tested by the other tests";
+
   std::optional<AmxEmulator> emulator_;
 };
 
