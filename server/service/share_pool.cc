@@ -1,5 +1,7 @@
 #include "server/service/share_pool.h"
 
+#include <cstdlib>
+
 namespace duet::server::service {
 
 ShareLease::~ShareLease() {
@@ -9,6 +11,8 @@ ShareLease::~ShareLease() {
 std::optional<ShareLease> SharePool::Take(const std::string& client, std::size_t amount) {
   common::MutexLock lock(mutex_);
   if (!MayTake(client, amount)) return std::nullopt;
+  // An entry of zero would be erased by the first of several leases and looked up by the others.
+  if (amount == 0) return ShareLease();
   taken_ += amount;
   held_[client] += amount;
   return ShareLease(this, client, amount);
@@ -31,8 +35,9 @@ std::size_t SharePool::taken() const {
 
 void SharePool::GiveBack(const std::string& client, std::size_t amount) {
   common::MutexLock lock(mutex_);
-  taken_ -= amount;
   const auto found = held_.find(client);
+  if (found == held_.end() || found->second < amount) std::abort();  // a lease given back twice
+  taken_ -= amount;
   found->second -= amount;
   if (found->second == 0) held_.erase(found);
 }

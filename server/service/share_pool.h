@@ -56,8 +56,8 @@ class SharePool {
   SharePool(std::size_t amount, double client_share)
       : amount_(amount), client_share_(client_share) {}
 
-  // Nothing when not so much is free, or the client has its share. The lease must not outlive the
-  // pool.
+  // Returns nothing if `amount` is not free, or if the client already holds its share. A lease of 0
+  // holds nothing and converts to false. The lease must not outlive the pool.
   std::optional<ShareLease> Take(const std::string& client, std::size_t amount = 1);
 
   std::size_t amount() const { return amount_; }
@@ -72,7 +72,7 @@ class SharePool {
   const double client_share_;
   mutable common::Mutex mutex_;
   std::size_t taken_ DUET_GUARDED_BY(mutex_) = 0;
-  std::map<std::string, std::size_t> held_ DUET_GUARDED_BY(mutex_);  // by those who hold any
+  std::map<std::string, std::size_t> held_ DUET_GUARDED_BY(mutex_);  // never an entry of 0
 };
 
 }  // namespace duet::server::service

@@ -83,5 +83,22 @@ TEST(SharePoolTest, AmountsCount) {
   EXPECT_TRUE(pool.Take("b", 40).has_value());
 }
 
+// An empty message holds zero bytes. Two of them at a time once left the map with an erased entry,
+// whose second erasure corrupted it under the lock.
+TEST(SharePoolTest, LeasesOfZeroLeaveNothingBehind) {
+  SharePool pool(8, 0.5);
+  {
+    const std::optional<ShareLease> first = pool.Take("a", 0);
+    const std::optional<ShareLease> second = pool.Take("a", 0);
+    const std::optional<ShareLease> some = pool.Take("a", 3);
+    ASSERT_TRUE(first.has_value());
+    ASSERT_TRUE(second.has_value());
+    ASSERT_TRUE(some.has_value());
+    EXPECT_EQ(pool.taken(), 3u);
+  }
+  EXPECT_EQ(pool.taken(), 0u);
+  EXPECT_TRUE(pool.Take("a", 8).has_value()) << "the client's account was not cleared";
+}
+
 }  // namespace
 }  // namespace duet::server::service
