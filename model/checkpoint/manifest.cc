@@ -278,7 +278,7 @@ std::string ToPlainName(std::string_view text) {
   for (char& c : name) {
     if (!IsPlain(c)) c = '_';
   }
-  if (name.empty() || name.front() == '.') name.insert(0, "_");
+  if (name.empty() || name.front() == '.') name.insert(name.begin(), '_');
   return name.substr(0, kMaxNameBytes);
 }
 
