@@ -1,11 +1,16 @@
 #include "model/base/file.h"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <cerrno>
 #include <fstream>
 #include <ios>
 #include <system_error>
 
 #include "absl/strings/str_cat.h"
+#include "model/base/descriptor.h"
 
 namespace duet::base {
 namespace {
@@ -20,36 +25,45 @@ std::string SizeText(std::size_t bytes) {
   return absl::StrCat(bytes / kMebibyte, " MiB");
 }
 
-absl::Status CheckReadable(const fs::path& path) {
-  std::error_code error;
-  const fs::file_status status = fs::status(path, error);
-  if (status.type() == fs::file_type::not_found) {
-    return absl::NotFoundError(absl::StrCat(path.string(), ": no such file"));
-  }
-  if (status.type() == fs::file_type::directory) {
-    return absl::InvalidArgumentError(absl::StrCat(path.string(), ": is a folder, wanted a file"));
-  }
-  return absl::OkStatus();
+// INVALID_ARGUMENT unless the open descriptor is a regular file's.
+absl::Status CheckRegular(int descriptor, const fs::path& path) {
+  struct stat info;
+  if (fstat(descriptor, &info) != 0) return absl::ErrnoToStatus(errno, path.string());
+  if (S_ISREG(info.st_mode)) return absl::OkStatus();
+  const char* kind = S_ISDIR(info.st_mode)    ? "a folder"
+                     : S_ISFIFO(info.st_mode) ? "a named pipe"
+                                              : "a device or socket";
+  return absl::InvalidArgumentError(
+      absl::StrCat(path.string(), ": expected a file, got ", kind,
+                   S_ISDIR(info.st_mode) ? "" : "; copy it to a file first"));
 }
 
 }  // namespace
 
 absl::StatusOr<std::string> ReadFile(const fs::path& path, std::size_t max_bytes,
                                      absl::string_view wanted) {
-  if (absl::Status status = CheckReadable(path); !status.ok()) return status;
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return absl::PermissionDeniedError(absl::StrCat(path.string(), ": cannot be opened"));
+  // O_NONBLOCK: opening a named pipe would wait for its writer.
+  const Descriptor file(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
+  if (!file.ok() && (errno == ENOENT || errno == ENOTDIR)) {
+    return absl::NotFoundError(absl::StrCat(path.string(), ": no such file"));
+  }
+  if (!file.ok()) {
+    return absl::PermissionDeniedError(absl::StrCat(path.string(), ": cannot be opened"));
+  }
+  if (absl::Status status = CheckRegular(file.get(), path); !status.ok()) return status;
   std::string content;
   std::string block(kReadBlock, '\0');
-  while (file.read(block.data(), static_cast<std::streamsize>(block.size())) || file.gcount() > 0) {
-    content.append(block, 0, static_cast<std::size_t>(file.gcount()));
+  while (true) {
+    const ssize_t got = read(file.get(), block.data(), block.size());
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) return absl::DataLossError(absl::StrCat(path.string(), ": cannot be read"));
+    if (got == 0) return content;
+    content.append(block, 0, static_cast<std::size_t>(got));
     if (content.size() > max_bytes) {
       return absl::InvalidArgumentError(
           absl::StrCat(path.string(), ": larger than ", SizeText(max_bytes), ", wanted ", wanted));
     }
   }
-  if (file.bad()) return absl::DataLossError(absl::StrCat(path.string(), ": cannot be read"));
-  return content;
 }
 
 absl::Status WriteFile(const fs::path& path, absl::string_view content) {

@@ -14,7 +14,8 @@ namespace duet::base {
 // The whole of a file. `wanted` says what the caller is after, with its article, for the message
 // about a file that is too large: "key.pem: larger than 1 MiB, wanted a PEM file".
 //
-// Errors: NOT_FOUND, PERMISSION_DENIED or INVALID_ARGUMENT (a folder, too large), naming the path.
+// Errors: NOT_FOUND, PERMISSION_DENIED or INVALID_ARGUMENT (too large, or anything but a regular
+//         file: a named pipe is refused without waiting for its writer), naming the path.
 absl::StatusOr<std::string> ReadFile(const std::filesystem::path& path, std::size_t max_bytes,
                                      absl::string_view wanted);
 

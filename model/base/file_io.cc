@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "absl/strings/str_cat.h"
+#include "model/base/descriptor.h"
 
 namespace duet::base {
 namespace {
@@ -29,22 +30,6 @@ absl::Status OpenError(int code, const fs::path& path, const char* wanted) {
   return absl::InvalidArgumentError(
       absl::StrCat(path.string(), ": wanted ", wanted, ", not a symbolic link"));
 }
-
-// A descriptor that closes itself.
-class Descriptor {
- public:
-  explicit Descriptor(int value) : value_(value) {}
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor() {
-    if (value_ >= 0) close(value_);
-  }
-  int get() const { return value_; }
-  bool ok() const { return value_ >= 0; }
-
- private:
-  int value_;
-};
 
 // Without a final separator, which would make open() follow a symbolic link.
 fs::path Plain(const fs::path& path) {

@@ -1,5 +1,6 @@
 #include "model/base/strict_json.h"
 
+#include <limits>
 #include <utility>
 
 #include "absl/strings/ascii.h"
@@ -21,23 +22,28 @@ constexpr std::size_t kMostShownItems = 8;
 // equal keys, and a reader that keeps the first would see another file.
 class StrictnessChecker : public nlohmann::json_sax<json> {
  public:
-  explicit StrictnessChecker(int max_depth) : max_depth_(max_depth) {}
+  StrictnessChecker(int max_depth, std::size_t max_values)
+      : max_depth_(max_depth), max_values_(max_values) {}
 
   const std::string& problem() const { return problem_; }
 
-  bool null() override { return true; }
-  bool boolean(bool) override { return true; }
-  bool number_integer(number_integer_t) override { return true; }
-  bool number_unsigned(number_unsigned_t) override { return true; }
-  bool number_float(number_float_t, const string_t&) override { return true; }
-  bool string(string_t&) override { return true; }
-  bool binary(binary_t&) override { return true; }
+  bool null() override { return Count(); }
+  bool boolean(bool) override { return Count(); }
+  bool number_integer(number_integer_t) override { return Count(); }
+  bool number_unsigned(number_unsigned_t) override { return Count(); }
+  bool number_float(number_float_t, const string_t&) override { return Count(); }
+  bool string(string_t&) override { return Count(); }
+  bool binary(binary_t&) override { return Count(); }
   bool start_object(std::size_t) override { return Open(); }
   bool start_array(std::size_t) override { return Open(); }
   bool end_object() override { return Close(); }
   bool end_array() override { return Close(); }
 
   bool key(string_t& name) override {
+    if (++key_count_ > kMaxJsonValues) {
+      problem_ = absl::StrCat("fields: expected at most ", kMaxJsonValues, " in one document");
+      return false;
+    }
     if (keys_.back().insert(name).second) return true;
     problem_ = absl::StrCat("the field ", Quoted(name), " is repeated");
     return false;
@@ -49,7 +55,13 @@ class StrictnessChecker : public nlohmann::json_sax<json> {
   }
 
  private:
+  bool Count() {
+    if (++values_ <= max_values_) return true;
+    problem_ = absl::StrCat("values: expected at most ", max_values_, " in one document");
+    return false;
+  }
   bool Open() {
+    if (!Count()) return false;
     keys_.emplace_back();
     if (static_cast<int>(keys_.size()) <= max_depth_) return true;
     problem_ = absl::StrCat("nested deeper than ", max_depth_, " levels");
@@ -61,6 +73,8 @@ class StrictnessChecker : public nlohmann::json_sax<json> {
   }
 
   int max_depth_;
+  std::size_t max_values_;
+  std::size_t values_ = 0, key_count_ = 0;
   std::vector<std::set<std::string>> keys_;  // of every object that is open
   std::string problem_;
 };
@@ -77,7 +91,9 @@ std::string Shown(const json& value) {
   return text;
 }
 
-absl::StatusOr<json> ParseStrictJson(std::string_view text, int max_depth) {
+namespace {
+
+absl::Status CheckStrict(std::string_view text, int max_depth, std::size_t max_values) {
   if (text.empty() || text.front() != '{') {
     return absl::InvalidArgumentError("not a JSON object: wanted '{' as the first byte");
   }
@@ -85,16 +101,37 @@ absl::StatusOr<json> ParseStrictJson(std::string_view text, int max_depth) {
   if (const std::size_t at = text.find('\0'); at != std::string_view::npos) {
     return absl::InvalidArgumentError(absl::StrCat("not JSON: a NUL at byte ", at));
   }
-  StrictnessChecker checker(max_depth);
+  StrictnessChecker checker(max_depth, max_values);
   if (!json::sax_parse(text.begin(), text.end(), &checker)) {
     return absl::InvalidArgumentError(checker.problem());
   }
+  return absl::OkStatus();
+}
+
+std::string_view SkipPrelude(absl::string_view text) {
+  text = absl::StripLeadingAsciiWhitespace(SkipByteOrderMark(text));
+  return {text.data(), text.size()};
+}
+
+}  // namespace
+
+absl::StatusOr<json> ParseStrictJson(std::string_view text, int max_depth) {
+  const absl::Status strict = CheckStrict(text, max_depth, kMaxJsonValues);
+  if (!strict.ok()) return strict;
   return json::parse(text.begin(), text.end(), nullptr, /*allow_exceptions=*/false);
 }
 
 absl::StatusOr<json> ParseHandwrittenJson(absl::string_view text, int max_depth) {
-  text = absl::StripLeadingAsciiWhitespace(SkipByteOrderMark(text));
-  return ParseStrictJson({text.data(), text.size()}, max_depth);
+  return ParseStrictJson(SkipPrelude(text), max_depth);
+}
+
+absl::StatusOr<json> ParseHandwrittenJson(absl::string_view text, int max_depth,
+                                          const json::parser_callback_t& keep) {
+  const std::string_view document = SkipPrelude(text);
+  const absl::Status strict =
+      CheckStrict(document, max_depth, std::numeric_limits<std::size_t>::max());
+  if (!strict.ok()) return strict;
+  return json::parse(document.begin(), document.end(), keep, /*allow_exceptions=*/false);
 }
 
 ObjectReader::ObjectReader(const json& object, std::string path)

@@ -16,13 +16,22 @@
 
 namespace duet::base {
 
-// Parses JSON text that may come from anywhere. On top of the JSON grammar: the root is an object
-// and the very first byte its brace, no object repeats a key, nothing is nested deeper than
-// `max_depth`, and there is no NUL byte. Never throws.
+// The most values (objects, arrays, strings, numbers, ...) of a document that is held whole: "[]," is
+// 3 bytes of text and about 50 in memory.
+inline constexpr std::size_t kMaxJsonValues = 2'000'000;
+
+// Parses untrusted JSON text. On top of the JSON grammar: the root is an object and the very first
+// byte its brace, no object repeats a key, nothing is nested deeper than `max_depth`, there are at
+// most kMaxJsonValues values, and there is no NUL byte. Never throws.
 absl::StatusOr<nlohmann::json> ParseStrictJson(std::string_view text, int max_depth);
 
 // The same for a document that people write: it may begin with a byte order mark and blanks.
 absl::StatusOr<nlohmann::json> ParseHandwrittenJson(absl::string_view text, int max_depth);
+
+// The same for a document of any number of values, of which only those that `keep` accepts are held
+// in memory (nlohmann::json::parser_callback_t has its arguments).
+absl::StatusOr<nlohmann::json> ParseHandwrittenJson(absl::string_view text, int max_depth,
+                                                    const nlohmann::json::parser_callback_t& keep);
 
 // A value as a message shows it: a string as Quoted has it, other short values as they are written,
 // a long array or object by its size.

@@ -1,5 +1,7 @@
 #include "model/base/file.h"
 
+#include <sys/stat.h>
+
 #include <filesystem>
 #include <string>
 
@@ -49,7 +51,17 @@ TEST_F(FileTest, NamesWhatCannotBeRead) {
               StatusIs(absl::StatusCode::kNotFound, HasSubstr(Path("none").string())));
   fs::create_directory(Path("folder"));
   EXPECT_THAT(ReadFile(Path("folder"), 9, "a test"),
-              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("is a folder")));
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("got a folder")));
+}
+
+// Opening a named pipe waits for its writer: a leader that is one once hung the program.
+TEST_F(FileTest, RefusesANamedPipeWithoutWaitingForAWriter) {
+  ASSERT_EQ(mkfifo(Path("pipe").c_str(), 0600), 0);
+  EXPECT_THAT(ReadFile(Path("pipe"), 9, "a test"),
+              StatusIs(absl::StatusCode::kInvalidArgument,
+                       HasSubstr("expected a file, got a named pipe")));
+  EXPECT_THAT(ReadFile("/dev/zero", 9, "a test"),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("got a device")));
 }
 
 TEST_F(FileTest, NamesWhatCannotBeWritten) {

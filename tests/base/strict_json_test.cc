@@ -79,6 +79,27 @@ class ObjectReaderTest : public ::testing::Test {
   ObjectReader reader_{object_, "part"};
 };
 
+std::string ArrayOf(std::size_t values, const char* value) {
+  std::string text = "{\"a\":[";
+  for (std::size_t i = 0; i < values; ++i) absl::StrAppend(&text, i == 0 ? "" : ",", value);
+  return text + "]}";
+}
+
+// Empty arrays take 3 bytes of text each and twenty times that once parsed.
+TEST(ParseStrictJson, LimitsTheNumberOfValues) {
+  EXPECT_THAT(ParseStrictJson(ArrayOf(kMaxJsonValues - 2, "0"), 3), IsOk());
+  EXPECT_THAT(ParseStrictJson(ArrayOf(kMaxJsonValues, "[]"), 3),
+              Refused("values: expected at most 2000000"));
+}
+
+TEST(ParseHandwrittenJson, KeepsWhatTheFilterAccepts) {
+  const auto keep = [](int depth, json::parse_event_t, const json&) { return depth < 2; };
+  const absl::StatusOr<json> parsed =
+      ParseHandwrittenJson(ArrayOf(kMaxJsonValues + 1, "[]"), 3, keep);
+  ASSERT_THAT(parsed, IsOk());
+  EXPECT_EQ(*parsed, json({{"a", json::array()}}));
+}
+
 TEST_F(ObjectReaderTest, ReadsEveryType) {
   EXPECT_EQ(reader_.String("s", 4), "text");
   EXPECT_TRUE(reader_.Bool("b"));

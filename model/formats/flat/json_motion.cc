@@ -1,6 +1,8 @@
 #include "model/formats/flat/json_motion.h"
 
 #include <cmath>
+#include <cstddef>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -84,12 +86,93 @@ bool ReadFrame(const Json& frame, const std::string& field, base::ObjectReader* 
   return true;
 }
 
-void ReadPerson(const char* field, base::ObjectReader* reader, motion::Clip* clip) {
-  const Json& frames = reader->Array(field, motion::kMaxMotionFrames);
-  if (frames.empty()) reader->Fail(field, "no frames, wanted at least 1");
-  for (std::size_t frame = 0; frame < frames.size(); ++frame) {
-    if (!ReadFrame(frames[frame], absl::StrCat(field, "[", frame, "]"), reader, clip)) return;
+// Where parsing is within a document: the depths of nlohmann::json's parser callback.
+constexpr int kFieldDepth = 1, kFrameDepth = 2, kPositionDepth = 3, kNumberDepth = 4;
+// More elements than any frame or position may have are dropped, all but the one that makes the
+// frame or position invalid.
+constexpr std::size_t kMostInPosition = 4, kMostInFrame = motion::kMaxFileJoints + 1;
+
+// Which of kPeople a field is; -1 for any other.
+int PersonIndex(const Json& key) {
+  for (std::size_t i = 0; i < std::size(kPeople); ++i) {
+    if (key == kPeople[i]) return static_cast<int>(i);
   }
+  return -1;
+}
+
+// Keeps everything but the frames of people.
+class SettingsFilter {
+ public:
+  bool operator()(int depth, Json::parse_event_t event, const Json& parsed) {
+    if (depth == kFieldDepth && event == Json::parse_event_t::key) person_ = PersonIndex(parsed);
+    return person_ < 0 || depth < kFrameDepth;
+  }
+
+ private:
+  int person_ = -1;
+};
+
+// Takes frames out of the document one at a time while it is parsed, so that memory grows with the
+// positions read and not with the text: "[]," is 3 bytes, and 50 once parsed.
+class FrameReader {
+ public:
+  // `people` has the joint names. All outlive the reader.
+  FrameReader(base::ObjectReader* reader, std::vector<motion::Clip>* people)
+      : reader_(*reader), people_(*people) {}
+
+  bool operator()(int depth, Json::parse_event_t event, const Json& parsed) {
+    using Event = Json::parse_event_t;
+    if (depth == kFieldDepth && event == Event::key) {
+      person_ = PersonIndex(parsed);
+      frame_ = 0;
+    }
+    if (depth < kFrameDepth) return true;
+    if (person_ < 0 || person_ >= static_cast<int>(people_.size()) || !reader_.ok()) return false;
+    const bool begins = event == Event::array_start || event == Event::object_start;
+    const bool ends = event == Event::array_end || event == Event::object_end;
+    if (depth > kNumberDepth) return false;
+    if (event == Event::key) return true;
+    if (depth == kNumberDepth) return ends || ++in_position_ <= kMostInPosition;
+    if (depth == kPositionDepth) {
+      if (begins) in_position_ = 0;
+      return ends || ++in_frame_ <= kMostInFrame;
+    }
+    if (begins) {
+      in_frame_ = 0;
+      return true;
+    }
+    Take(parsed);
+    return false;
+  }
+
+ private:
+  void Take(const Json& frame) {
+    const char* field = kPeople[person_];
+    if (frame_ == motion::kMaxMotionFrames) {
+      reader_.Fail(field, absl::StrCat("expected at most ", frame_, " frames, got more"));
+      return;
+    }
+    ReadFrame(frame, absl::StrCat(field, "[", frame_, "]"), &reader_,
+              &people_[static_cast<std::size_t>(person_)]);
+    ++frame_;
+  }
+
+  base::ObjectReader& reader_;
+  std::vector<motion::Clip>& people_;
+  int person_ = -1;
+  int frame_ = 0;
+  std::size_t in_frame_ = 0, in_position_ = 0;
+};
+
+// The fields that are lists of frames; their frames come later.
+int CountPeople(base::ObjectReader* reader) {
+  int people = 0;
+  for (const char* person : kPeople) {
+    if (people > 0 && !reader->Has(person)) break;
+    reader->Array(person, motion::kMaxMotionFrames);
+    ++people;
+  }
+  return people;
 }
 
 void AppendPerson(const char* field, const motion::Clip& clip, std::string* out) {
@@ -133,15 +216,22 @@ absl::StatusOr<motion::RecordedMotion> ParseJsonMotion(absl::string_view text,
   const auto in_file = [source](const absl::Status& status) {
     return absl::InvalidArgumentError(absl::StrCat(source, ": ", status.message()));
   };
-  const absl::StatusOr<Json> document = base::ParseHandwrittenJson(text, kMaxDepth);
+  const absl::StatusOr<Json> document =
+      base::ParseHandwrittenJson(text, kMaxDepth, SettingsFilter());
   if (!document.ok()) return in_file(document.status());
   base::ObjectReader reader(*document, "");
   motion::Clip empty;
   motion::RecordedMotion motion = ReadSettings(&reader, &empty);
-  for (const char* person : kPeople) {
-    if (!reader.ok() || (person != kPeople[0] && !reader.Has(person))) break;
-    motion.people.push_back(empty);
-    ReadPerson(person, &reader, &motion.people.back());
+  if (reader.ok()) {
+    motion.people.assign(static_cast<std::size_t>(CountPeople(&reader)), empty);
+    const Json rest =
+        Json::parse(text.begin(), text.end(), FrameReader(&reader, &motion.people), false);
+    if (rest.is_discarded()) return in_file(absl::InvalidArgumentError("not JSON"));
+  }
+  for (std::size_t i = 0; i < motion.people.size(); ++i) {
+    if (motion.people[i].frame_count() == 0) {
+      reader.Fail(kPeople[i], "expected at least 1 frame, got none");
+    }
   }
   // Not Finish: other programs may add fields of their own.
   if (!reader.ok()) return in_file(reader.status());

@@ -1,5 +1,9 @@
 #include "model/formats/flat/json_motion.h"
 
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <cstddef>
 #include <string>
 
 #include "absl/strings/str_cat.h"
@@ -102,7 +106,7 @@ TEST(JsonMotion, NamesTheFieldThatIsWrong) {
   EXPECT_THAT(ErrorWith("/version", 2), HasSubstr("version: 2, wanted a whole number from 1 to 1"));
   EXPECT_THAT(ErrorWith("/joint_names", Json::array()), HasSubstr("joint_names: empty"));
   EXPECT_THAT(ErrorWith("/joint_names/1", 7), HasSubstr("joint_names: 7, wanted"));
-  EXPECT_THAT(ErrorWith("/leader", Json::array()), HasSubstr("leader: no frames"));
+  EXPECT_THAT(ErrorWith("/leader", Json::array()), HasSubstr("leader: expected at least 1 frame, got none"));
   EXPECT_THAT(ErrorWith("/leader", 1), HasSubstr("leader: 1, wanted an array"));
   EXPECT_THAT(ErrorWith("/leader/1", {{1, 2, 3}}),
               HasSubstr("leader[1]: [[1,2,3]], wanted a list of 2"));
@@ -119,6 +123,46 @@ TEST(JsonMotion, RefusesWhatIsNoDocument) {
   EXPECT_THAT(ParseError("{}"), HasSubstr("joint_names: missing"));
   EXPECT_THAT(ParseError("{\"joint_names\": [\"a\"]}"), HasSubstr("leader: missing"));
   EXPECT_THAT(ParseError("{\"unit\": \"\xff\xfe\"}"), HasSubstr("a.json"));
+}
+
+// A list of `count` values where frames belong.
+std::string WithFrames(std::size_t count, const char* frame) {
+  std::string text = "{\"joint_names\": [\"a\"], \"frame_rate_hz\": 30, \"leader\": [";
+  for (std::size_t i = 0; i < count; ++i) absl::StrAppend(&text, i == 0 ? "" : ",", frame);
+  return text + "]}";
+}
+
+#if !defined(__SANITIZE_ADDRESS__)
+// Ends the process: 0 where the text was refused within 400 MB of address space.
+[[noreturn]] void ParseInLittleMemory(const std::string& text) {
+  const rlimit limit = {rlim_t{400} << 20, rlim_t{400} << 20};
+  setrlimit(RLIMIT_AS, &limit);
+  _exit(ParseJsonMotion(text, "a.json").ok() ? 1 : 0);
+}
+
+// Parsed as a whole, 24 MB of "[]," take more than 500 MB.
+TEST(JsonMotion, RefusesFramesWithoutPositionsInLittleMemory) {
+  const std::string text = WithFrames(8'000'000, "[]");
+  EXPECT_EXIT(ParseInLittleMemory(text), ::testing::ExitedWithCode(0), "");
+}
+#endif
+
+TEST(JsonMotion, LimitsFramesJointsAndCoordinates) {
+  EXPECT_THAT(ParseJsonMotion(WithFrames(200'001, "[[0,0,0]]"), "a.json").status().message(),
+              HasSubstr("leader: expected at most 200000 frames, got more"));
+  for (const char* frame : {"[[0,0,0],[0,0,0]]", "[[0,0,0,0]]", "[[0,0,0,0,0,0]]", "[[0,0,[0]]]",
+                            "[[0,0,{\"x\":0}]]", "{\"a\":[0,0,0]}", "[]", "[[]]", "0", "[0]"}) {
+    EXPECT_THAT(ParseJsonMotion(WithFrames(2, frame), "a.json").status().message(),
+                HasSubstr("leader[0]"))
+        << frame;
+  }
+}
+
+TEST(JsonMotion, ReadsJointNamesThatFollowTheFrames) {
+  const auto motion = ParseJsonMotion(
+      "{\"leader\": [[[1,2,3]]], \"frame_rate_hz\": 30, \"joint_names\": [\"a\"]}", "a.json");
+  ASSERT_TRUE(motion.ok()) << motion.status();
+  EXPECT_EQ(motion->people[0].at(0, 0).z, 3);
 }
 
 TEST(JsonMotion, RefusesDeepNestingBeforeItCostsMemory) {
