@@ -11,6 +11,7 @@
 #include "absl/types/span.h"
 #include "model/cleanup/floor.h"
 #include "model/cleanup/limbs.h"
+#include "model/dataset/posture.h"
 #include "model/motion/feet.h"
 #include "model/motion/limb_lengths.h"
 
@@ -37,6 +38,12 @@ constexpr float kLeastSwap = 0.15f;
 constexpr float kLeastBend = 0.04f;
 constexpr double kMostBentWrongly = 0.8;
 
+// How far the mean standing direction may lean, degrees: the tilt of a camera adds to every frame.
+constexpr double kMostLean = 7;
+// Shoulders against hips, degrees about the trunk: people reach 50, for a moment more.
+constexpr double kMostTwist = 60, kMostTimeTwisted = 0.02;
+constexpr double kDegrees = 57.29577951308232;
+
 std::size_t Index(int i) { return static_cast<std::size_t>(i); }
 
 std::string Percent(double share) { return absl::StrFormat("%.1f %%", 100 * share); }
@@ -60,6 +67,8 @@ class Checker {
     CheckFloor();
     CheckJumps();
     CheckSides();
+    CheckUpright();
+    CheckWaist();
     return std::move(checks_);
   }
 
@@ -292,16 +301,13 @@ class Checker {
 
   // Whether the shoulders are turned round against the hips, on average.
   bool ShouldersOppose() const {
-    if (body_.arms.size() != 2) return false;
-    const bool first_is_left =
-        skeleton_.joint_names[Index(body_.arms[0].upper)].find("left") != std::string::npos;
-    const int left = body_.arms[first_is_left ? 0 : 1].upper;
-    const int right = body_.arms[first_is_left ? 1 : 0].upper;
+    const std::optional<motion::JointPair> pair = Shoulders();
+    if (!pair) return false;
     double sum = 0;
     for (int frame = 0; frame < clip_.frame_count(); ++frame) {
       const Vec3 hips =
           clip_.at(frame, skeleton_.hips->right) - clip_.at(frame, skeleton_.hips->left);
-      const Vec3 shoulders = clip_.at(frame, right) - clip_.at(frame, left);
+      const Vec3 shoulders = clip_.at(frame, pair->right) - clip_.at(frame, pair->left);
       sum += static_cast<double>(Dot(hips, shoulders));
     }
     return sum < 0;
@@ -328,6 +334,72 @@ class Checker {
     std::map<std::string, double> figures = {{"swaps", swaps}, {"shoulders_oppose_hips", oppose}};
     if (bent_wrongly.has_value()) figures["bent_wrongly"] = *bent_wrongly;
     Add("sides", wrong.empty(), text, std::move(figures));
+  }
+
+  // A tilted camera turns every pose by the same angle, while a person's own lean comes and goes
+  // and turns with the person.
+  void CheckUpright() {
+    if (!skeleton_.feet) return;
+    const std::vector<Vec3> directions = dataset::StandingDirections(skeleton_, clip_.poses);
+    if (directions.empty()) return;
+    const dataset::Lean lean = dataset::LeanOf(dataset::RobustMean(directions));
+    const double all = std::hypot(lean.x, lean.z);
+    std::string text = absl::StrFormat(
+        "leans %.1f degrees on average (%.1f towards x, %.1f towards z)", all, lean.x, lean.z);
+    if (all > kMostLean) {
+      text += ": a tilted camera or rotated axes, unless the person leans all the time";
+    }
+    Add("upright", all <= kMostLean, text,
+        {{"lean_degrees", all}, {"lean_x_degrees", lean.x}, {"lean_z_degrees", lean.z}});
+  }
+
+  // The left and the right shoulder.
+  std::optional<motion::JointPair> Shoulders() const {
+    if (body_.arms.size() != 2) return std::nullopt;
+    const bool first_is_left =
+        skeleton_.joint_names[Index(body_.arms[0].upper)].find("left") != std::string::npos;
+    return motion::JointPair{body_.arms[first_is_left ? 0 : 1].upper,
+                             body_.arms[first_is_left ? 1 : 0].upper};
+  }
+
+  // From the hips to the shoulders about the trunk, 0 to 180 degrees. 0 where any has no length.
+  double Twist(const motion::JointPair& shoulders, int frame) const {
+    const auto at = [this, frame](int joint) { return clip_.at(frame, joint); };
+    const Vec3 trunk = at(shoulders.left) + at(shoulders.right) - at(skeleton_.hips->left) -
+                       at(skeleton_.hips->right);
+    const float length = Dot(trunk, trunk);
+    if (!(length > 0)) return 0;
+    const auto across = [&](const motion::JointPair& pair) {
+      const Vec3 way = at(pair.right) - at(pair.left);
+      return way - trunk * (Dot(way, trunk) / length);
+    };
+    const Vec3 hips = across(*skeleton_.hips), upper = across(shoulders);
+    const double norms = static_cast<double>(Norm(hips)) * static_cast<double>(Norm(upper));
+    if (!(norms > 0)) return 0;
+    return std::acos(std::clamp(static_cast<double>(Dot(hips, upper)) / norms, -1.0, 1.0)) *
+           kDegrees;
+  }
+
+  void CheckWaist() {
+    const std::optional<motion::JointPair> shoulders = Shoulders();
+    if (!skeleton_.hips || !shoulders) return;
+    double most = 0;
+    int twisted = 0, worst = 0;
+    for (int frame = 0; frame < clip_.frame_count(); ++frame) {
+      const double twist = Twist(*shoulders, frame);
+      twisted += twist > kMostTwist ? 1 : 0;
+      if (twist > most) worst = frame;
+      most = std::max(most, twist);
+    }
+    const double share = static_cast<double>(twisted) / clip_.frame_count();
+    std::string text = absl::StrFormat(
+        "shoulders turn at most %.0f degrees against the hips (frame %d)", most, worst);
+    if (twisted > 0) {
+      absl::StrAppendFormat(&text, ", more than %.0f for %s of the time", kMostTwist,
+                            Percent(share));
+    }
+    Add("waist", share <= kMostTimeTwisted, text,
+        {{"most_twist_degrees", most}, {"share_twisted", share}});
   }
 
   const motion::Clip& clip_;

@@ -189,7 +189,7 @@ struct ViewArguments {
 // duet compare
 struct CompareArguments {
   TakeArguments takes;  // two
-  std::filesystem::path html;
+  std::filesystem::path out;
   bool json = false;
 };
 

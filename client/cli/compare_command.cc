@@ -45,16 +45,16 @@ absl::Status RunCompare(const CompareArguments& arguments, const ProgramEnvironm
   const absl::StatusOr<ComparedTakes> compared =
       CompareTakes(arguments.takes, skeleton, environment.in);
   if (!compared.ok()) return compared.status();
-  if (!arguments.html.empty()) {
+  if (!arguments.out.empty()) {
     const absl::StatusOr<std::string> page = RenderComparison(*compared, skeleton);
     if (!page.ok()) return page.status();
-    const absl::Status status = NotWritten(base::WriteFile(arguments.html, *page));
+    const absl::Status status = NotWritten(base::WriteFile(arguments.out, *page));
     if (!status.ok()) return status;
   }
   *environment.out << (arguments.json ? Print(ComparisonJson(*compared, skeleton))
                                       : DescribeComparison(*compared, environment.OutStyle()));
-  if (!arguments.html.empty() && !arguments.json) {
-    *environment.out << "\nwrote     " << arguments.html.string() << "\n";
+  if (!arguments.out.empty() && !arguments.json) {
+    *environment.out << "\nwrote     " << arguments.out.string() << "\n";
   }
   return absl::OkStatus();
 }

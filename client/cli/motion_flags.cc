@@ -162,16 +162,18 @@ CLI::App* AddCompareCommand(CLI::App* app, CompareArguments* arguments) {
       ->type_name("[NAME=]FILE");
   AddTakeFlags(command, &arguments->takes);
   command->add_flag("--json", arguments->json, "Print JSON")->group(kOutputGroup);
-  command->add_option("--html", arguments->html, "Page to write with both motions and all figures")
+  command
+      ->add_option("--out", arguments->out,
+                   "Page to write with both motions and all figures, .html")
       ->type_name("FILE")
       ->group(kOutputGroup);
   command->footer(kTakesFooter);
   command->callback([arguments] {
     CheckTakes(arguments->takes);
-    if (arguments->html == kStandardStream) {
-      throw CLI::ValidationError("--html", "is a file, not standard output");
+    if (arguments->out == kStandardStream) {
+      throw CLI::ValidationError("--out", "expected a file, got standard output");
     }
-    if (!arguments->html.empty()) CheckPage("--html", arguments->html);
+    if (!arguments->out.empty()) CheckPage("--out", arguments->out);
   });
   return command;
 }

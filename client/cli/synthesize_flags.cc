@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
 #include "client/cli/flags.h"
 #include "client/cli/input_flags.h"
 #include "client/cli/output.h"
@@ -67,11 +68,11 @@ void AddSamplingFlags(CLI::App* app, SynthesizeArguments* arguments) {
 
 void AddReactionFlags(CLI::App* app, SynthesizeArguments* arguments) {
   constexpr char kGroup[] = "Reaction";
-  CLI::Option* label = AddParsed<ClassWeight>(app, "--label", "CLASS=WEIGHT", ParseClassWeight,
+  CLI::Option* label = AddParsed<ClassWeight>(app, "--label", "CLASS[=WEIGHT]", ParseClassWeight,
                                               AppendTo(&arguments->weights),
                                               "Such as kick=1 or hug=-0.5; repeatable")
                            ->group(kGroup);
-  AddParsed<WeightKeyframe>(app, "--keyframe", "FRAME:CLASS=WEIGHT,...", ParseKeyframe,
+  AddParsed<WeightKeyframe>(app, "--keyframe", "FRAME:CLASS[=WEIGHT],...", ParseKeyframe,
                             AppendTo(&arguments->keyframes),
                             "For weights that change over time; repeatable")
       ->excludes(label)
@@ -136,10 +137,10 @@ void AddOutputFlags(CLI::App* app, SynthesizeArguments* arguments) {
       ->group(kOutputGroup);
   AddOutputFormatFlag(app, &arguments->output_format);
   AddBvhFlags(app, &arguments->bvh);
-  app->add_option("--follower-rig", arguments->follower_rig,
-                  "Rig of the follower: the leader's, or that of another file; of a .bvh for --out "
-                  "FILE.bvh, of a .glb or .gltf for --out FILE.glb or FILE.gltf (default: Duet's "
-                  "own)")
+  app->add_option(
+         "--follower-rig", arguments->follower_rig,
+         "Rig of the follower in --out FILE.bvh, FILE.glb and FILE.gltf: the leader's, or that "
+         "of another .bvh, .amc, .glb or .gltf (default: Duet's own)")
       ->type_name("leader|FILE")
       ->group(kOutputGroup);
   AddParsed<std::pair<std::string, std::string>>(
@@ -179,9 +180,13 @@ void CheckFollowerRig(const SynthesizeArguments& arguments) {
                                        });
   if (fits) return;
   throw CLI::ValidationError(
-      "--follower-rig", absl::StrCat(file.string(),
-                                     ": wanted a .bvh and --out FILE.bvh, or a .glb or .gltf and "
-                                     "--out FILE.glb or FILE.gltf"));
+      "--follower-rig",
+      absl::StrCat("expected ", formats::kRigExtensions, " and --out FILE with ",
+                   formats::kRigOutputExtensions, ", got ", file.string(), " and --out ",
+                   absl::StrJoin(arguments.outputs, " --out ",
+                                 [](std::string* out, const std::filesystem::path& path) {
+                                   out->append(path.string());
+                                 })));
 }
 
 // What no single flag can tell.

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "absl/strings/match.h"
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
@@ -18,9 +19,11 @@ absl::Status Wanted(absl::string_view text, absl::string_view wanted) {
 
 absl::StatusOr<ClassWeight> ParseClassWeight(absl::string_view text) {
   const std::pair<std::string, std::string> parts = absl::StrSplit(text, absl::MaxSplits('=', 1));
-  ClassWeight weight{parts.first, 0};
-  if (weight.interaction_class.empty() || !absl::SimpleAtof(parts.second, &weight.weight)) {
-    return Wanted(text, "CLASS=WEIGHT such as kick=1");
+  ClassWeight weight{parts.first, 1};
+  const bool has_weight = absl::StrContains(text, '=');
+  if (weight.interaction_class.empty() ||
+      (has_weight && !absl::SimpleAtof(parts.second, &weight.weight))) {
+    return Wanted(text, "CLASS or CLASS=WEIGHT such as kick or kick=0.5");
   }
   return weight;
 }

@@ -21,7 +21,7 @@ using batch::ParseModelChoice;
 using batch::ParsePoint;
 using batch::ParseSeed;
 
-// "kick=1"
+// "kick=0.5", or "kick" for a weight of 1
 absl::StatusOr<ClassWeight> ParseClassWeight(absl::string_view text);
 
 // "30:kick=1,hug=0": weights at a frame

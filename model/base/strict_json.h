@@ -16,8 +16,8 @@
 
 namespace duet::base {
 
-// The most values (objects, arrays, strings, numbers, ...) of a document that is held whole: "[]," is
-// 3 bytes of text and about 50 in memory.
+// The most values (objects, arrays, strings, numbers, ...) of a document that is held whole: "[],"
+// is 3 bytes of text and about 50 in memory.
 inline constexpr std::size_t kMaxJsonValues = 2'000'000;
 
 // Parses untrusted JSON text. On top of the JSON grammar: the root is an object and the very first

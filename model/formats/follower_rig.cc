@@ -1,13 +1,18 @@
 #include "model/formats/follower_rig.h"
 
 #include <optional>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "model/base/file.h"
+#include "model/formats/asf/amc_import.h"
+#include "model/formats/bvh/bvh_character.h"
 #include "model/formats/bvh/bvh_document.h"
 #include "model/formats/bvh/bvh_rig.h"
+#include "model/formats/gltf/gltf_character.h"
 #include "model/formats/gltf/gltf_rig.h"
 #include "model/motion/motion_limits.h"
+#include "model/retargeting/rig_transfer.h"
 
 namespace duet::formats {
 namespace {
@@ -25,49 +30,110 @@ retargeting::CharacterOptions CharacterOptionsOf(const ReadOptions& reading) {
 
 int PersonOf(const ReadOptions& reading) { return reading.side == Side::kLeft ? 0 : 1; }
 
+bvh::BvhImportOptions BvhOptionsOf(const FollowerRig& rig) {
+  return {CharacterOptionsOf(rig.reading), PersonOf(rig.reading)};
+}
+
+gltf::GltfImportOptions GltfOptionsOf(const FollowerRig& rig) {
+  gltf::GltfImportOptions options;
+  static_cast<retargeting::CharacterOptions&>(options) = CharacterOptionsOf(rig.reading);
+  options.person = PersonOf(rig.reading);
+  return options;
+}
+
+gltf::GltfFileReader FilesBeside(const FollowerRig& rig) {
+  return [folder = rig.file.parent_path()](const std::string& name) {
+    return base::ReadFile(folder / name, motion::kMaxMotionFileBytes, "a buffer");
+  };
+}
+
+gltf::GltfContainer ContainerOf(Format format) {
+  return format == Format::kGlb ? gltf::GltfContainer::kBinary : gltf::GltfContainer::kText;
+}
+
+bvh::BvhKeys KeysOf(const WriteOptions& writing) {
+  return {writing.bvh_keys_per_frame, writing.notes};
+}
+
+// A rig in its own format keeps all that the file says of it.
 absl::StatusOr<std::string> OntoBvh(const motion::Clip& follower, const std::string& text,
                                     const FollowerRig& rig, const WriteOptions& writing) {
   const std::string source = rig.file.string();
   const absl::StatusOr<bvh::BvhDocument> document = bvh::ParseBvh(text, source);
   if (!document.ok()) return document.status();
-  const bvh::BvhImportOptions options{CharacterOptionsOf(rig.reading), PersonOf(rig.reading)};
   const absl::StatusOr<bvh::BvhDocument> written =
-      OntoBvhRig(follower, *document, source, options, {writing.bvh_keys_per_frame, writing.notes});
+      OntoBvhRig(follower, *document, source, BvhOptionsOf(rig), KeysOf(writing));
   if (!written.ok()) return written.status();
   return FormatBvh(*written);
 }
 
-absl::StatusOr<std::string> OntoGltf(const motion::Clip& follower, const std::string& content,
-                                     const FollowerRig& rig, Format format) {
-  gltf::GltfImportOptions options;
-  static_cast<retargeting::CharacterOptions&>(options) = CharacterOptionsOf(rig.reading);
-  options.person = PersonOf(rig.reading);
-  const auto read_beside = [&rig](const std::string& name) {
-    return base::ReadFile(rig.file.parent_path() / name, motion::kMaxMotionFileBytes, "a buffer");
-  };
-  return gltf::OntoGltfRig(
-      follower, content, rig.file.string(), read_beside, options,
-      format == Format::kGlb ? gltf::GltfContainer::kBinary : gltf::GltfContainer::kText);
+absl::StatusOr<retargeting::CharacterRig> ReadBvhRig(const std::string& text,
+                                                     const FollowerRig& rig) {
+  const absl::StatusOr<bvh::BvhDocument> document = bvh::ParseBvh(text, rig.file.string());
+  if (!document.ok()) return document.status();
+  return BvhRig(*document, rig.file.string(), BvhOptionsOf(rig));
+}
+
+absl::StatusOr<retargeting::CharacterRig> ReadAmcRig(const std::string& text,
+                                                     const FollowerRig& rig) {
+  const absl::StatusOr<asf::AsfSkeleton> skeleton = asf::ReadSkeletonBeside(rig.file);
+  if (!skeleton.ok()) return skeleton.status();
+  const std::string source = rig.file.string();
+  const absl::StatusOr<asf::AmcMotion> motion = asf::ParseAmc(text, source, *skeleton);
+  if (!motion.ok()) return motion.status();
+  return AmcRig(*skeleton, *motion, source, {CharacterOptionsOf(rig.reading), std::nullopt});
+}
+
+// A rig of another format: its joints and bones, without what only its own format holds.
+absl::StatusOr<std::string> OntoRig(const motion::Clip& follower,
+                                    const retargeting::CharacterRig& rig, const std::string& source,
+                                    Format format, const WriteOptions& writing) {
+  const absl::StatusOr<std::vector<retargeting::CharacterPose>> poses =
+      TransferToRig(follower, rig, source);
+  if (!poses.ok()) return poses.status();
+  if (format == Format::kBvh) {
+    return FormatBvh(bvh::ToBvh(rig, *poses, follower.frame_rate_hz, writing.bvh_metres_per_unit,
+                                KeysOf(writing)));
+  }
+  return gltf::FormatCharacter(rig, *poses, follower.frame_rate_hz, writing.provenance,
+                               ContainerOf(format));
+}
+
+absl::StatusOr<retargeting::CharacterRig> ReadRig(Format format, const std::string& content,
+                                                  const FollowerRig& rig) {
+  if (format == Format::kBvh) return ReadBvhRig(content, rig);
+  if (format == Format::kAmc) return ReadAmcRig(content, rig);
+  return gltf::ReadGltfRig(content, rig.file.string(), FilesBeside(rig), GltfOptionsOf(rig));
 }
 
 }  // namespace
 
 bool FitsRig(Format written, Format rig) {
-  return (written == Format::kBvh && rig == Format::kBvh) || (IsGltf(written) && IsGltf(rig));
+  const bool is_rig = rig == Format::kBvh || rig == Format::kAmc || IsGltf(rig);
+  return is_rig && (written == Format::kBvh || IsGltf(written));
 }
 
 absl::StatusOr<std::string> FormatOntoRig(const motion::Clip& follower, const FollowerRig& rig,
                                           Format format, const WriteOptions& options) {
+  const std::string source = rig.file.string();
   const std::optional<Format> rigs = FormatOf(rig.file);
   if (!rigs.has_value() || !FitsRig(format, *rigs)) {
-    return absl::InvalidArgumentError(absl::StrCat(
-        rig.file.string(), ": rig: wanted a .bvh for a .bvh, a .glb or .gltf for either of these"));
+    return absl::InvalidArgumentError(absl::StrCat(source, ": rig: expected ", kRigExtensions,
+                                                   "; it is written as ", kRigOutputExtensions));
   }
   const absl::StatusOr<std::string> content =
       base::ReadFile(rig.file, motion::kMaxMotionFileBytes, "a rig");
   if (!content.ok()) return content.status();
-  return format == Format::kBvh ? OntoBvh(follower, *content, rig, options)
-                                : OntoGltf(follower, *content, rig, format);
+  if (format == Format::kBvh && *rigs == Format::kBvh) {
+    return OntoBvh(follower, *content, rig, options);
+  }
+  if (IsGltf(format) && IsGltf(*rigs)) {
+    return gltf::OntoGltfRig(follower, *content, source, FilesBeside(rig), GltfOptionsOf(rig),
+                             ContainerOf(format));
+  }
+  const absl::StatusOr<retargeting::CharacterRig> read = ReadRig(*rigs, *content, rig);
+  if (!read.ok()) return read.status();
+  return OntoRig(follower, *read, source, format, options);
 }
 
 }  // namespace duet::formats

@@ -10,21 +10,26 @@
 
 namespace duet::formats {
 
-// A BVH or glTF whose rig a follower is written onto, and how that file is read.
+// A BVH, AMC (beside its .asf) or glTF whose rig a follower is written onto, and how that file is
+// read.
 struct FollowerRig {
   std::filesystem::path file;
   ReadOptions reading;
 };
 
-// Whether a rig of one format may be written in another: as BVH on a BVH's, as glTF of either kind
-// on a glTF's.
+// What has a rig, and what a follower on a rig is written as.
+inline constexpr char kRigExtensions[] = "a .bvh, .amc, .glb or .gltf";
+inline constexpr char kRigOutputExtensions[] = ".bvh, .glb or .gltf";
+
+// Whether a follower on a rig of the format `rig` can be written in the format `written`.
 bool FitsRig(Format written, Format rig);
 
-// The follower on that rig (bvh::OntoBvhRig, gltf::OntoGltfRig); of `options`, how keys are written
-// counts.
-// Errors: those of reading the rig; INVALID_ARGUMENT for a rig that cannot be the follower's, or
-// one
-//         that `format` does not fit.
+// The follower on that rig. In its own format the rig keeps all of its file but the motion
+// (bvh::OntoBvhRig, gltf::OntoGltfRig); in another one it keeps names, hierarchy and bone lengths
+// (bvh::ToBvh, gltf::FormatCharacter).
+//
+// Errors: those of reading the rig; INVALID_ARGUMENT for a rig that cannot be the follower's, or a
+//         format that FitsRig does not accept.
 absl::StatusOr<std::string> FormatOntoRig(const motion::Clip& follower, const FollowerRig& rig,
                                           Format format, const WriteOptions& options = {});
 

@@ -6,7 +6,6 @@
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_join.h"
 #include "absl/types/span.h"
 #include "model/base/file.h"
 #include "model/base/text.h"
@@ -179,20 +178,9 @@ absl::StatusOr<motion::Clip> ReadGltfPerson(const std::string& content, const So
 
 // The skeleton of a motion lies beside it.
 absl::StatusOr<asf::AsfSkeleton> ReadAsfBeside(const Source& source) {
-  if (!source.folder.has_value()) {
-    return absl::InvalidArgumentError(absl::StrCat(
-        source.name, ": came as AMC without its skeleton; wanted both as files in one folder"));
-  }
-  const fs::path motion(source.name);
-  const std::vector<std::string> names = asf::SkeletonNames(motion.filename().string());
-  for (const std::string& name : names) {
-    const absl::StatusOr<std::string> text = source.ReadBeside(name, "a skeleton");
-    if (absl::IsNotFound(text.status())) continue;
-    if (!text.ok()) return text.status();
-    return asf::ParseAsf(*text, (*source.folder / name).string());
-  }
-  return absl::NotFoundError(absl::StrCat(source.name, ": skeleton: wanted ",
-                                          absl::StrJoin(names, " or "), " in the same folder"));
+  if (source.folder.has_value()) return asf::ReadSkeletonBeside(source.name);
+  return absl::InvalidArgumentError(absl::StrCat(
+      source.name, ": came as AMC without its skeleton; wanted both as files in one folder"));
 }
 
 absl::StatusOr<motion::Clip> ReadAmcPerson(const std::string& text, const Source& source,

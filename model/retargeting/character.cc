@@ -13,6 +13,8 @@ namespace {
 // From the foot up to the root (torso or pelvis) along the bones, metres.
 constexpr double kShortestLeg = 0.7, kLongestLeg = 1.4, kTypicalLeg = 1;
 constexpr double kLargestUnit = 1000;
+// From the feet to the head of a character pulled straight, metres: beyond these, a warning.
+constexpr double kShortestPerson = 1.3, kTallestPerson = 2.1;
 // In units: what is smaller is a figure without size rather than one in a unit of its own.
 constexpr double kSmallestLeg = 1e-3;
 
@@ -44,6 +46,7 @@ class ClipMaker {
     for (std::string& note : map->notes) Note(std::move(note));
     const absl::StatusOr<double> scale = MetresPerUnit(map->straight);
     if (!scale.ok()) return scale.status();
+    if (!options_.metres_per_unit.has_value()) CheckStature(*scale, map->straight);
     motion::Clip clip;
     clip.joint_names = options_.skeleton.joint_names;
     clip.frame_rate_hz = character_.frame_rate_hz;
@@ -78,6 +81,37 @@ class ClipMaker {
     return length;
   }
 
+  static bool IsLeg(double metres) { return metres >= kShortestLeg && metres <= kLongestLeg; }
+
+  // From the middle of the feet up to the head; absent for a skeleton that lacks either.
+  std::optional<double> Stature(const std::vector<motion::Vec3>& straight) const {
+    const int head = options_.skeleton.Find("head");
+    if (!options_.skeleton.feet || head < 0) return std::nullopt;
+    const auto at = [&straight](int joint) { return straight[static_cast<size_t>(joint)]; };
+    const motion::Vec3 feet =
+        (at(options_.skeleton.feet->left) + at(options_.skeleton.feet->right)) / 2;
+    return static_cast<double>(at(head).y - feet.y);
+  }
+
+  // A leg's length alone lets a small adult in an unusual unit pass for a child in inches.
+  void CheckStature(double metres_per_unit, const std::vector<motion::Vec3>& straight) {
+    const std::optional<double> stature = Stature(straight);
+    if (!stature.has_value()) return;
+    const double metres = *stature * metres_per_unit;
+    if (metres >= kShortestPerson && metres <= kTallestPerson) return;
+    Warn(absl::StrCat("size: ", Rounded(metres, 0.01), " m from the feet to the head, expected ",
+                      kShortestPerson, " to ", kTallestPerson,
+                      " for an adult; say how many metres a unit has if the unit is another"));
+  }
+
+  // A note that `inspect` shows as well.
+  void Warn(const std::string& what) {
+    Note(absl::StrCat("warning: ", what));
+    if (options_.report != nullptr) {
+      options_.report->remarks.push_back(absl::StrCat("warning: ", what));
+    }
+  }
+
   static absl::StatusOr<double> CheckUnit(double metres) {
     if (metres > 0 && metres <= kLargestUnit) return metres;
     return absl::InvalidArgumentError(absl::StrCat(
@@ -101,9 +135,19 @@ class ClipMaker {
     const double length = LegLength(straight);
     const std::string& root =
         options_.skeleton.joint_names[static_cast<size_t>(options_.skeleton.root)];
+    if (character_.stated_metres_per_unit.has_value()) {
+      const double unit = *character_.stated_metres_per_unit;
+      if (IsLeg(length * unit)) {
+        Note(absl::StrCat("unit: ", unit, " m (", character_.stated_by, ")"));
+        ReportUnit({absl::StrCat(unit, " m"), Origin::kFile, character_.stated_by});
+        return unit;
+      }
+      Warn(absl::StrCat("unit: ", character_.stated_by, " would make the way from foot to ", root,
+                        " ", Rounded(length * unit, 0.01), " m, and was passed over"));
+    }
     for (const Unit& unit : kUnits) {
       const double metres = length * unit.metres;
-      if (metres < kShortestLeg || metres > kLongestLeg) continue;
+      if (!IsLeg(metres)) continue;
       const std::string why =
           absl::StrCat("foot to ", root, " is then ", Rounded(metres, 0.01), " m");
       Note(absl::StrCat("unit: ", unit.name, " (", why, ")"));

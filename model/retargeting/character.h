@@ -24,6 +24,9 @@ struct Character {
   double frame_rate_hz = 0;
   // Where the joints are in one frame. [tree.names]
   std::function<std::vector<motion::Vec3>(int frame)> pose;
+  // Metres in one unit as the file states it, and where it does. Absent for most files.
+  std::optional<double> stated_metres_per_unit;
+  std::string stated_by;
 };
 
 // How a character was understood.
@@ -37,9 +40,10 @@ struct CharacterFit {
 struct CharacterOptions {
   motion::Skeleton skeleton = motion::SbuSkeleton();
   JointOverrides joint_overrides;
-  // Absent: centimetres, metres, millimetres, inches, CMU's unit or decimetres, whichever gives the
-  // way from foot to hip to root the length of a person's (0.7 to 1.4 m). Where none does, that way
-  // is taken as 1 m, with a warning among the notes.
+  // Absent: the unit that the file states, centimetres, metres, millimetres, inches, CMU's unit or
+  // decimetres, whichever is the first to give the way from foot to hip to root the length of a
+  // person's (0.7 to 1.4 m). Where none does, that way is taken as 1 m. A warning among the notes
+  // says so, and also where the person is then smaller or taller than people are.
   std::optional<double> metres_per_unit;
   // Absent: the axis along which the root stands above the feet.
   std::optional<motion::UpAxis> up_axis;

@@ -57,9 +57,9 @@ TEST_F(FileTest, NamesWhatCannotBeRead) {
 // Opening a named pipe waits for its writer: a leader that is one once hung the program.
 TEST_F(FileTest, RefusesANamedPipeWithoutWaitingForAWriter) {
   ASSERT_EQ(mkfifo(Path("pipe").c_str(), 0600), 0);
-  EXPECT_THAT(ReadFile(Path("pipe"), 9, "a test"),
-              StatusIs(absl::StatusCode::kInvalidArgument,
-                       HasSubstr("expected a file, got a named pipe")));
+  EXPECT_THAT(
+      ReadFile(Path("pipe"), 9, "a test"),
+      StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("expected a file, got a named pipe")));
   EXPECT_THAT(ReadFile("/dev/zero", 9, "a test"),
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("got a device")));
 }

@@ -18,7 +18,7 @@ class GalleryTest(unittest.TestCase):
         cls.compared = cls.folder / "compare.html"
         pair = f"{tools.sample('kick')},{tools.sample('punch')}"
         for command in (("view", f"pair={pair}", tools.sample("hug"), "--out", cls.file),
-                        ("compare", f"first={pair}", f"second={pair}", "--html", cls.compared)):
+                        ("compare", f"first={pair}", f"second={pair}", "--out", cls.compared)):
             result = tools.duet(*command)
             assert result.returncode == 0, result.stderr
         cls.browser = browser.Browser()

@@ -369,7 +369,7 @@ TEST_F(MotionFile, NamesAFileThatCannotBeReadOrWritten) {
   EXPECT_EQ(ReadLeader(folder_ / "none.csv").status().code(), absl::StatusCode::kNotFound);
   fs::create_directories(folder_ / "folder.csv");
   EXPECT_THAT(std::string(ReadLeader(folder_ / "folder.csv").status().message()),
-              HasSubstr("is a folder"));
+              HasSubstr("got a folder"));
   EXPECT_THAT(
       std::string(
           WritePair(folder_ / "folder.csv", pair_, motion::SbuSkeleton()).status().message()),

@@ -164,7 +164,7 @@ void AddCalls(CLI::App* app, LoadArguments* arguments) {
       "NAME, NAME@VERSION or NAME:LABEL, drawn by their weights; the server's default without")
       ->take_last()
       ->group(kCallGroup);
-  AddParsed<ClassWeight>(app, "--label", "CLASS=WEIGHT", cli::ParseClassWeight,
+  AddParsed<ClassWeight>(app, "--label", "CLASS[=WEIGHT]", cli::ParseClassWeight,
                          cli::AppendTo(&arguments->mix.labels),
                          "Repeatable; without, 1 for the model's first class")
       ->group(kCallGroup);

@@ -3,11 +3,16 @@
 #include <cstddef>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "model/base/file.h"
+#include "model/motion/motion_limits.h"
+#include "model/retargeting/rest_rig.h"
 
 namespace duet::formats::asf {
 namespace {
 
 constexpr double kCmuFrameRateHz = 120;
+constexpr double kInch = 0.0254;  // metres
 
 retargeting::JointTree TreeOf(const AsfSkeleton& skeleton, const std::vector<int>& ends) {
   retargeting::JointTree tree;
@@ -36,6 +41,10 @@ absl::StatusOr<motion::Clip> FromAmc(const AsfSkeleton& skeleton, const AmcMotio
   character.tree = TreeOf(skeleton, kinematics.ends());
   character.frame_count = motion.frame_count;
   character.frame_rate_hz = options.frame_rate_hz.value_or(kCmuFrameRateHz);
+  if (skeleton.units_per_inch.has_value()) {
+    character.stated_metres_per_unit = kInch / *skeleton.units_per_inch;
+    character.stated_by = absl::StrCat(":units length ", *skeleton.units_per_inch);
+  }
   character.pose = [&kinematics](int frame) {
     std::vector<motion::Vec3> pose;
     for (const retargeting::Vec3d& at : kinematics.Positions(frame)) pose.push_back(ToFloat(at));
@@ -52,6 +61,33 @@ absl::StatusOr<motion::Clip> FromAmc(const AsfSkeleton& skeleton, const AmcMotio
         absl::StrCat("frame rate: ", kCmuFrameRateHz, " Hz, as CMU's captures have"));
   }
   return ToClip(character, source, options);
+}
+
+absl::StatusOr<retargeting::CharacterRig> AmcRig(const AsfSkeleton& skeleton,
+                                                 const AmcMotion& motion, absl::string_view source,
+                                                 const AmcImportOptions& options) {
+  retargeting::CharacterFit fit;
+  AmcImportOptions reading = options;
+  reading.fit = &fit;
+  reading.notes = nullptr;
+  reading.report = nullptr;
+  const absl::StatusOr<motion::Clip> read = FromAmc(skeleton, motion, source, reading);
+  if (!read.ok()) return read.status();
+  return RestRig(TreeOf(skeleton, AsfKinematics(skeleton, motion).ends()), fit);
+}
+
+absl::StatusOr<AsfSkeleton> ReadSkeletonBeside(const std::filesystem::path& motion_file) {
+  const std::vector<std::string> names = SkeletonNames(motion_file.filename().string());
+  for (const std::string& name : names) {
+    const std::filesystem::path path = motion_file.parent_path() / name;
+    const absl::StatusOr<std::string> text =
+        base::ReadFile(path, motion::kMaxMotionFileBytes, "a skeleton");
+    if (absl::IsNotFound(text.status())) continue;
+    if (!text.ok()) return text.status();
+    return ParseAsf(*text, path.string());
+  }
+  return absl::NotFoundError(absl::StrCat(motion_file.string(), ": skeleton: wanted ",
+                                          absl::StrJoin(names, " or "), " in the same folder"));
 }
 
 std::vector<std::string> SkeletonNames(absl::string_view motion_name) {

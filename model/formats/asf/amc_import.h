@@ -1,6 +1,7 @@
 #ifndef DUET_MODEL_FORMATS_ASF_AMC_IMPORT_H_
 #define DUET_MODEL_FORMATS_ASF_AMC_IMPORT_H_
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "model/formats/asf/asf_skeleton.h"
 #include "model/motion/clip.h"
 #include "model/retargeting/character.h"
+#include "model/retargeting/character_rig.h"
 
 namespace duet::formats::asf {
 
@@ -26,6 +28,16 @@ struct AmcImportOptions : retargeting::CharacterOptions {
 absl::StatusOr<motion::Clip> FromAmc(const AsfSkeleton& skeleton, const AmcMotion& motion,
                                      absl::string_view source,
                                      const AmcImportOptions& options = {});
+
+// The rig of an .asf file as ToClip understands it with this motion, for writing in another format.
+// Errors: those of FromAmc.
+absl::StatusOr<retargeting::CharacterRig> AmcRig(const AsfSkeleton& skeleton,
+                                                 const AmcMotion& motion, absl::string_view source,
+                                                 const AmcImportOptions& options = {});
+
+// The skeleton that lies beside a motion, under one of SkeletonNames.
+// Errors: NOT_FOUND naming them; those of reading the file.
+absl::StatusOr<AsfSkeleton> ReadSkeletonBeside(const std::filesystem::path& motion_file);
 
 // Names under which the skeleton of a motion may lie beside it, the best first: 01_02.amc has
 // 01_02.asf or 01.asf.

@@ -83,8 +83,18 @@ class AsfParser {
   }
 
   absl::Status ParseUnit(const Words& words) {
-    if (words[0] != "angle") return absl::OkStatus();
-    return ParseAngleUnit(words);
+    if (words[0] == "length") return ParseLengthUnit(words);
+    if (words[0] == "angle") return ParseAngleUnit(words);
+    return absl::OkStatus();
+  }
+
+  absl::Status ParseLengthUnit(const Words& words) {
+    float units = 0;
+    if (words.size() != 2 || !motion::ParseCoordinate(words[1], &units) || !(units > 0)) {
+      return Unexpected("length", words, "a number over 0");
+    }
+    skeleton_.units_per_inch = static_cast<double>(units);
+    return absl::OkStatus();
   }
 
   absl::Status ParseAngleUnit(const Words& words) {

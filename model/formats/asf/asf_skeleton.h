@@ -1,6 +1,7 @@
 #ifndef DUET_MODEL_FORMATS_ASF_ASF_SKELETON_H_
 #define DUET_MODEL_FORMATS_ASF_ASF_SKELETON_H_
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,10 +24,13 @@ struct AsfBone {
 };
 
 // A skeleton of an .asf file. Lengths in the file's unit, angles of motions as `radians` says.
+//
+// `units_per_inch` is what ":units length" states: CMU's 0.45 is 0.45 units to the inch.
 struct AsfSkeleton {
   std::vector<AsfBone> bones;   // parents first
   retargeting::Vec3d position;  // of the root at rest
   bool radians = false;
+  std::optional<double> units_per_inch;
 
   int Find(absl::string_view name) const;  // -1 where there is none
 };

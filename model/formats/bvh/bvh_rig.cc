@@ -10,6 +10,7 @@
 #include "absl/strings/str_cat.h"
 #include "model/base/text.h"
 #include "model/motion/coordinates.h"
+#include "model/retargeting/rest_rig.h"
 #include "model/retargeting/rig_transfer.h"
 
 namespace duet::formats::bvh {
@@ -22,15 +23,6 @@ using retargeting::Vec3d;
 constexpr double kNoTurn = 1e-4;  // radians
 
 std::size_t Index(int joint) { return static_cast<std::size_t>(joint); }
-
-// From the file's axes to the world's.
-Quaternion ToWorldAxes(motion::UpAxis up_axis) {
-  const motion::Coordinates file{motion::LengthUnit::kMetres, up_axis};
-  const auto in_world = [&file](motion::Vec3 axis) {
-    return retargeting::ToDouble(ToWorld(file, axis));
-  };
-  return retargeting::FromAxes(in_world({1, 0, 0}), in_world({0, 1, 0}), in_world({0, 0, 1}));
-}
 
 // One person's joints, without the motion.
 BvhDocument PersonOf(const BvhDocument& document, int person) {
@@ -49,6 +41,29 @@ BvhDocument PersonOf(const BvhDocument& document, int person) {
   return alone;
 }
 
+retargeting::JointTree TreeOf(const BvhDocument& person) {
+  retargeting::JointTree tree;
+  for (const BvhJoint& joint : person.joints) {
+    tree.names.push_back(joint.name);
+    tree.parents.push_back(joint.parent);
+    tree.offsets.push_back(joint.offset);
+  }
+  return tree;
+}
+
+absl::StatusOr<retargeting::CharacterFit> FitOf(const BvhDocument& document,
+                                                absl::string_view source,
+                                                const BvhImportOptions& options) {
+  retargeting::CharacterFit fit;
+  BvhImportOptions reading = options;
+  reading.fit = &fit;
+  reading.notes = nullptr;
+  reading.report = nullptr;
+  const absl::StatusOr<motion::Clip> read = FromBvh(document, source, reading);
+  if (!read.ok()) return read.status();
+  return fit;
+}
+
 class RigWriter {
  public:
   RigWriter(BvhDocument rig, absl::string_view source, const retargeting::CharacterFit& fit,
@@ -57,7 +72,7 @@ class RigWriter {
         source_(source),
         fit_(fit),
         adds_to_offset_(positions == PositionChannels::kAddToOffset),
-        to_world_(ToWorldAxes(fit.up_axis)) {}
+        to_world_(retargeting::ToWorldAxes(fit.up_axis)) {}
 
   absl::StatusOr<BvhDocument> Write(const motion::Clip& clip, const BvhKeys& keys) {
     const absl::StatusOr<std::vector<CharacterPose>> poses = TransferToRig(clip, Rig(), source_);
@@ -73,21 +88,15 @@ class RigWriter {
   }
 
  private:
-  Vec3d ToWorld(Vec3d in_file) const { return Rotate(to_world_, in_file) * fit_.metres_per_unit; }
   Vec3d ToFile(Vec3d in_world) const {
     return Rotate(Inverse(to_world_), in_world) * (1 / fit_.metres_per_unit);
   }
 
-  // At rest no joint of a BVH is turned.
+  // Joints below the root may have position channels as well.
   retargeting::CharacterRig Rig() const {
-    retargeting::CharacterRig rig;
-    rig.joints = fit_.joints;
-    for (const BvhJoint& joint : document_.joints) {
-      rig.names.push_back(joint.name);
-      rig.parents.push_back(joint.parent);
-      rig.positions.push_back(
-          joint.parent < 0 ? Vec3d{} : rig.positions[Index(joint.parent)] + ToWorld(joint.offset));
-      rig.moves.push_back(joint.channels.size() == 6);
+    retargeting::CharacterRig rig = RestRig(TreeOf(document_), fit_);
+    for (std::size_t j = 0; j < document_.joints.size(); ++j) {
+      rig.moves[j] = document_.joints[j].channels.size() == 6;
     }
     return rig;
   }
@@ -131,15 +140,18 @@ class RigWriter {
 absl::StatusOr<BvhDocument> OntoBvhRig(const motion::Clip& clip, const BvhDocument& rig,
                                        absl::string_view source, const BvhImportOptions& options,
                                        const BvhKeys& keys) {
-  retargeting::CharacterFit fit;
-  BvhImportOptions reading = options;
-  reading.fit = &fit;
-  reading.notes = nullptr;
-  reading.report = nullptr;
-  const absl::StatusOr<motion::Clip> read = FromBvh(rig, source, reading);
-  if (!read.ok()) return read.status();
-  return RigWriter(PersonOf(rig, options.person), source, fit, FindPositionChannels(rig))
+  const absl::StatusOr<retargeting::CharacterFit> fit = FitOf(rig, source, options);
+  if (!fit.ok()) return fit.status();
+  return RigWriter(PersonOf(rig, options.person), source, *fit, FindPositionChannels(rig))
       .Write(clip, keys);
+}
+
+absl::StatusOr<retargeting::CharacterRig> BvhRig(const BvhDocument& document,
+                                                 absl::string_view source,
+                                                 const BvhImportOptions& options) {
+  const absl::StatusOr<retargeting::CharacterFit> fit = FitOf(document, source, options);
+  if (!fit.ok()) return fit.status();
+  return RestRig(TreeOf(PersonOf(document, options.person)), *fit);
 }
 
 }  // namespace duet::formats::bvh

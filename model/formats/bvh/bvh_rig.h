@@ -7,6 +7,7 @@
 #include "model/formats/bvh/bvh_import.h"
 #include "model/formats/bvh/bvh_motion.h"
 #include "model/motion/clip.h"
+#include "model/retargeting/character_rig.h"
 
 namespace duet::formats::bvh {
 
@@ -21,6 +22,11 @@ namespace duet::formats::bvh {
 absl::StatusOr<BvhDocument> OntoBvhRig(const motion::Clip& clip, const BvhDocument& rig,
                                        absl::string_view source, const BvhImportOptions& options,
                                        const BvhKeys& keys = {});
+
+// The rig of a person of a BVH, for writing in another format. Errors: those of FromBvh.
+absl::StatusOr<retargeting::CharacterRig> BvhRig(const BvhDocument& document,
+                                                 absl::string_view source,
+                                                 const BvhImportOptions& options);
 
 }  // namespace duet::formats::bvh
 

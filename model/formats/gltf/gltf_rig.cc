@@ -9,9 +9,12 @@
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "model/formats/gltf/gltf_compaction.h"
 #include "model/formats/gltf/gltf_document.h"
+#include "model/formats/gltf/gltf_parts.h"
 #include "model/formats/gltf/gltf_writer.h"
 #include "model/motion/coordinates.h"
+#include "model/retargeting/rest_rig.h"
 #include "model/retargeting/rig_transfer.h"
 
 namespace duet::formats::gltf {
@@ -66,15 +69,6 @@ Place LocalPlace(const GltfNode& node) {
           (Norm(x) + Norm(y) + Norm(z)) / 3};
 }
 
-// From the file's axes to the world's.
-Quaternion ToWorldAxes(motion::UpAxis up_axis) {
-  const motion::Coordinates file{motion::LengthUnit::kMetres, up_axis};
-  const auto in_world = [&file](motion::Vec3 axis) {
-    return retargeting::ToDouble(ToWorld(file, axis));
-  };
-  return retargeting::FromAxes(in_world({1, 0, 0}), in_world({0, 1, 0}), in_world({0, 0, 1}));
-}
-
 class RigAnimator {
  public:
   RigAnimator(const GltfDocument& document, std::vector<int> nodes,
@@ -82,7 +76,7 @@ class RigAnimator {
       : document_(document),
         nodes_(std::move(nodes)),
         fit_(fit),
-        to_world_(ToWorldAxes(fit.up_axis)) {
+        to_world_(retargeting::ToWorldAxes(fit.up_axis)) {
     std::vector<int> place_of(document.nodes.size(), -1);
     for (std::size_t j = 0; j < nodes_.size(); ++j)
       place_of[Index(nodes_[j])] = static_cast<int>(j);
@@ -108,16 +102,9 @@ class RigAnimator {
 
   // Adds the animation, and makes room for it in the nodes that it moves.
   void Write(const std::vector<CharacterPose>& poses, double frame_rate_hz, GltfWriter* writer) {
-    animation_ = {
-        {"name", "duet"}, {"channels", ordered_json::array()}, {"samplers", ordered_json::array()}};
-    std::vector<float> seconds;
-    for (std::size_t frame = 0; frame < poses.size(); ++frame) {
-      seconds.push_back(static_cast<float>(static_cast<double>(frame) / frame_rate_hz));
-    }
-    writer->BeginView(GltfWriter::Use::kOther);
-    times_ = writer->AddTimes(seconds);
-    for (std::size_t j = 0; j < nodes_.size(); ++j) AddJoint(j, poses, writer);
-    writer->json()["animations"] = ordered_json::array({std::move(animation_)});
+    AnimationWriter animation(poses.size(), frame_rate_hz, writer);
+    for (std::size_t j = 0; j < nodes_.size(); ++j) AddJoint(j, poses, writer, &animation);
+    writer->json()["animations"] = ordered_json::array({animation.Take()});
   }
 
  private:
@@ -139,7 +126,8 @@ class RigAnimator {
     return RestAbove(document_.nodes[Index(nodes_[j])].parent);
   }
 
-  void AddJoint(std::size_t j, const std::vector<CharacterPose>& poses, GltfWriter* writer) {
+  void AddJoint(std::size_t j, const std::vector<CharacterPose>& poses, GltfWriter* writer,
+                AnimationWriter* animation) const {
     const Place rest = LocalPlace(document_.nodes[Index(nodes_[j])]);
     std::vector<Quaternion> turns;
     std::vector<Vec3d> places;
@@ -156,8 +144,8 @@ class RigAnimator {
     }
     if (!turned && !moved) return;
     MakeMovable(nodes_[j], rest, writer);
-    if (moved) AddTrack(nodes_[j], "translation", writer->AddVectors(places));
-    if (turned) AddTrack(nodes_[j], "rotation", writer->AddRotations(turns));
+    if (moved) animation->Translate(nodes_[j], places);
+    if (turned) animation->Rotate(nodes_[j], turns);
   }
 
   // A node that is animated may not have a matrix.
@@ -170,24 +158,15 @@ class RigAnimator {
     written["scale"] = {rest.scale, rest.scale, rest.scale};
   }
 
-  void AddTrack(int node, const char* path, int values) {
-    animation_["channels"].push_back(
-        {{"sampler", animation_["samplers"].size()}, {"target", {{"node", node}, {"path", path}}}});
-    animation_["samplers"].push_back(
-        {{"input", times_}, {"interpolation", "LINEAR"}, {"output", values}});
-  }
-
   const GltfDocument& document_;
   std::vector<int> nodes_;    // [joints]
   std::vector<int> parents_;  // [joints]
   std::vector<Place> rest_;   // [joints], in the file's world
   retargeting::CharacterFit fit_;
   Quaternion to_world_;
-  ordered_json animation_;
-  int times_ = 0;  // accessor
 };
 
-// The document with all of its buffers as one.
+// The document without its animations, with all of its buffers as one.
 absl::StatusOr<GltfWriter> Gather(absl::string_view content, const GltfDocument& document,
                                   GltfBuffers* buffers) {
   ordered_json json = ordered_json::parse(JsonOf(content), nullptr, false);
@@ -205,31 +184,59 @@ absl::StatusOr<GltfWriter> Gather(absl::string_view content, const GltfDocument&
     view["byteOffset"] = document.views[i].offset + begins[Index(document.views[i].buffer)];
     view["buffer"] = 0;
   }
+  DropAnimations(&json, &all);
   return GltfWriter(std::move(json), std::move(all));
 }
 
 }  // namespace
 
+namespace {
+
+// A character of a file, understood.
+struct RigFile {
+  GltfDocument document;
+  std::vector<int> nodes;
+  retargeting::CharacterFit fit;
+};
+
+absl::StatusOr<RigFile> ReadRigFile(absl::string_view content, absl::string_view source,
+                                    const GltfFileReader& read_file,
+                                    const GltfImportOptions& options) {
+  absl::StatusOr<GltfDocument> document = ParseGltf(content, source);
+  if (!document.ok()) return document.status();
+  RigFile file{*std::move(document), {}, {}};
+  GltfImportOptions reading = options;
+  reading.fit = &file.fit;
+  reading.nodes = &file.nodes;
+  reading.notes = nullptr;
+  reading.report = nullptr;
+  const absl::StatusOr<motion::Clip> read = FromGltf(file.document, source, read_file, reading);
+  if (!read.ok()) return read.status();
+  return file;
+}
+
+}  // namespace
+
+absl::StatusOr<retargeting::CharacterRig> ReadGltfRig(absl::string_view content,
+                                                      absl::string_view source,
+                                                      const GltfFileReader& read_file,
+                                                      const GltfImportOptions& options) {
+  const absl::StatusOr<RigFile> file = ReadRigFile(content, source, read_file, options);
+  if (!file.ok()) return file.status();
+  return RigAnimator(file->document, file->nodes, file->fit).Rig();
+}
+
 absl::StatusOr<std::string> OntoGltfRig(const motion::Clip& clip, absl::string_view content,
                                         absl::string_view source, const GltfFileReader& read_file,
                                         const GltfImportOptions& options, GltfContainer container) {
-  const absl::StatusOr<GltfDocument> document = ParseGltf(content, source);
-  if (!document.ok()) return document.status();
-  retargeting::CharacterFit fit;
-  std::vector<int> nodes;
-  GltfImportOptions reading = options;
-  reading.fit = &fit;
-  reading.nodes = &nodes;
-  reading.notes = nullptr;
-  reading.report = nullptr;
-  const absl::StatusOr<motion::Clip> read = FromGltf(*document, source, read_file, reading);
-  if (!read.ok()) return read.status();
-  RigAnimator animator(*document, nodes, fit);
+  const absl::StatusOr<RigFile> file = ReadRigFile(content, source, read_file, options);
+  if (!file.ok()) return file.status();
+  RigAnimator animator(file->document, file->nodes, file->fit);
   const absl::StatusOr<std::vector<CharacterPose>> poses =
       TransferToRig(clip, animator.Rig(), source);
   if (!poses.ok()) return poses.status();
-  GltfBuffers buffers(*document, read_file);
-  absl::StatusOr<GltfWriter> writer = Gather(content, *document, &buffers);
+  GltfBuffers buffers(file->document, read_file);
+  absl::StatusOr<GltfWriter> writer = Gather(content, file->document, &buffers);
   if (!writer.ok()) return writer.status();
   animator.Write(*poses, clip.frame_rate_hz, &*writer);
   return container == GltfContainer::kBinary ? writer->Binary() : writer->Text();

@@ -9,13 +9,14 @@
 #include "model/formats/gltf/gltf_export.h"
 #include "model/formats/gltf/gltf_import.h"
 #include "model/motion/clip.h"
+#include "model/retargeting/character_rig.h"
 
 namespace duet::formats::gltf {
 
 // A clip of motion::SbuSkeleton's joints on a character of a glTF file: all of the file stays
-// (nodes, rest pose, skins, meshes, materials) but its animations, in whose place one moves the
-// character (retargeting::TransferToRig). Buffers of files beside it are taken in; pictures beside
-// it are not.
+// (nodes, rest pose, skins, meshes, materials) but its animations and their data, in whose place
+// one moves the character (retargeting::TransferToRig). Buffers of files beside it are taken in;
+// pictures beside it are not.
 //
 // `content` is the file, .gltf or .glb; `options` say how it is read and which character is taken.
 // Errors: INVALID_ARGUMENT naming `source` for a file that FromGltf does not read or a rig that
@@ -23,6 +24,12 @@ namespace duet::formats::gltf {
 absl::StatusOr<std::string> OntoGltfRig(const motion::Clip& clip, absl::string_view content,
                                         absl::string_view source, const GltfFileReader& read_file,
                                         const GltfImportOptions& options, GltfContainer container);
+
+// The rig of a character of a glTF file, for writing in another format. Errors as of OntoGltfRig.
+absl::StatusOr<retargeting::CharacterRig> ReadGltfRig(absl::string_view content,
+                                                      absl::string_view source,
+                                                      const GltfFileReader& read_file,
+                                                      const GltfImportOptions& options);
 
 }  // namespace duet::formats::gltf
 

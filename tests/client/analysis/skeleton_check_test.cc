@@ -1,6 +1,7 @@
 #include "client/analysis/skeleton_check.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string>
 
@@ -56,7 +57,7 @@ TEST(CheckSkeleton, APersonIsGoodInEveryWay) {
     EXPECT_TRUE(check.good) << check.name << ": " << check.text;
   }
   EXPECT_THAT(names, ::testing::ElementsAre("finite", "size", "limb lengths", "symmetry", "floor",
-                                            "jumps", "sides"));
+                                            "jumps", "sides", "upright", "waist"));
 }
 
 TEST(CheckSkeleton, AfterAPositionThatIsNotFiniteThereIsNothingMoreToSay) {
@@ -122,6 +123,38 @@ TEST(CheckSkeleton, AFootBelowTheFloorIsSeen) {
   const Check check =
       Spoilt("floor", [](motion::Clip* clip) { clip->at(30, Sbu().feet->left).y -= 0.5f; });
   EXPECT_THAT(check.text, HasSubstr("a foot gets"));
+}
+
+// Turns every position about the x axis, as a tilted camera does.
+motion::Clip Tilted(double degrees) {
+  motion::Clip clip = MakePerson();
+  const auto angle = static_cast<float>(degrees * 3.14159265358979 / 180);
+  for (motion::Vec3& at : clip.poses.all()) {
+    at = {at.x, at.y * std::cos(angle) - at.z * std::sin(angle),
+          at.y * std::sin(angle) + at.z * std::cos(angle)};
+  }
+  return clip;
+}
+
+TEST(CheckSkeleton, ATiltedCameraIsSeen) {
+  const double own =
+      Find(CheckSkeleton(MakePerson(), Sbu()), "upright").figures.at("lean_z_degrees");
+  for (double degrees : {-12.0, 12.0}) {
+    const Check check = Find(CheckSkeleton(Tilted(degrees), Sbu()), "upright");
+    EXPECT_FALSE(check.good) << check.text;
+    EXPECT_NEAR(check.figures.at("lean_z_degrees"), own + degrees, 1);
+    EXPECT_THAT(check.text, HasSubstr("a tilted camera"));
+  }
+}
+
+TEST(CheckSkeleton, ATwistedWaistIsSeen) {
+  const Check check = Spoilt("waist", [](motion::Clip* clip) {
+    const int left = Sbu().Find("left_shoulder"), right = Sbu().Find("right_shoulder");
+    for (int frame = 0; frame < 6; ++frame)
+      std::swap(clip->at(frame, left), clip->at(frame, right));
+  });
+  EXPECT_GT(check.figures.at("most_twist_degrees"), 120);
+  EXPECT_NEAR(check.figures.at("share_twisted"), 0.1, 1e-6);
 }
 
 TEST(CheckSkeleton, AJumpIsCountedAndPlaced) {

@@ -385,7 +385,7 @@ TEST_F(MotionCommandsTest, CompareTellsHowFollowersDiffer) {
   motion::Clip moved = follower_;
   for (motion::Vec3& at : moved.poses.all()) at.x += 0.25f;
   Write("moved.csv", Format::kCsv, {leader_, moved});
-  ASSERT_EQ(Run({"compare", Path("pair.csv"), Path("moved.csv"), "--html", Path("c.html")}), 0)
+  ASSERT_EQ(Run({"compare", Path("pair.csv"), Path("moved.csv"), "--out", Path("c.html")}), 0)
       << err_.str();
   EXPECT_THAT(out_.str(), AllOf(HasSubstr("A         pair: 60 frames at 30 Hz, its follower\n"),
                                 HasSubstr("joints, on average                           0.250 m"),

@@ -25,8 +25,9 @@ TEST(ParseClassWeightTest, ReadsNameAndWeight) {
 
 TEST(ParseClassWeightTest, RefusesEverythingElse) {
   for (const char* text : {"", "kick", "kick=", "=1", "kick=hard", "kick=1x", "kick=1=2"}) {
-    EXPECT_THAT(ParseClassWeight(text),
-                StatusIs(kInvalid, AllOf(HasSubstr(text), HasSubstr("wanted CLASS=WEIGHT"))));
+    EXPECT_THAT(
+        ParseClassWeight(text),
+        StatusIs(kInvalid, AllOf(HasSubstr(text), HasSubstr("wanted CLASS or CLASS=WEIGHT"))));
   }
 }
 

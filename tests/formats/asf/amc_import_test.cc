@@ -37,8 +37,22 @@ TEST(AmcImport, ReadsAPerson) {
   ASSERT_TRUE(read.ok()) << read.status();
   EXPECT_EQ(read->frame_rate_hz, 120);
   EXPECT_LT(LargestDistance(*read, clip), 0.001f);
-  EXPECT_THAT(notes, Contains(HasSubstr("unit: CMU's unit")));
+  EXPECT_THAT(notes, Contains(HasSubstr("unit: 0.0564444 m (:units length 0.45)")));
   EXPECT_THAT(notes, Contains(HasSubstr("frame rate: 120 Hz, as CMU's captures have")));
+}
+
+// The same person in metres that claims to be in another unit.
+TEST(AmcImport, AStatedUnitThatNoPersonFitsIsPassedOver) {
+  AsfFiles files = MakeAsfFiles(MakePerson({2}));
+  const std::string stated = "length 0.45";
+  ASSERT_NE(files.asf.find(stated), std::string::npos);
+  files.asf.replace(files.asf.find(stated), stated.size(), "length 45");
+  std::vector<std::string> notes;
+  AmcImportOptions options;
+  options.notes = &notes;
+  ASSERT_TRUE(Read(files, options).ok());
+  EXPECT_THAT(notes, Contains(HasSubstr("warning: unit: :units length 45 would make")));
+  EXPECT_THAT(notes, Contains(HasSubstr("unit: CMU's unit")));
 }
 
 TEST(AmcImport, TakesTheRateThatIsGiven) {

@@ -106,7 +106,8 @@ TEST(JsonMotion, NamesTheFieldThatIsWrong) {
   EXPECT_THAT(ErrorWith("/version", 2), HasSubstr("version: 2, wanted a whole number from 1 to 1"));
   EXPECT_THAT(ErrorWith("/joint_names", Json::array()), HasSubstr("joint_names: empty"));
   EXPECT_THAT(ErrorWith("/joint_names/1", 7), HasSubstr("joint_names: 7, wanted"));
-  EXPECT_THAT(ErrorWith("/leader", Json::array()), HasSubstr("leader: expected at least 1 frame, got none"));
+  EXPECT_THAT(ErrorWith("/leader", Json::array()),
+              HasSubstr("leader: expected at least 1 frame, got none"));
   EXPECT_THAT(ErrorWith("/leader", 1), HasSubstr("leader: 1, wanted an array"));
   EXPECT_THAT(ErrorWith("/leader/1", {{1, 2, 3}}),
               HasSubstr("leader[1]: [[1,2,3]], wanted a list of 2"));

@@ -5,6 +5,7 @@
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "model/formats/gltf/gltf_buffers.h"
 #include "model/formats/gltf/gltf_document.h"
 #include "nlohmann/json.hpp"
 #include "tests/formats/gltf/gltf_fixture.h"
@@ -88,6 +89,50 @@ TEST(OntoGltfRig, AllOfTheFileStaysButItsAnimations) {
   ASSERT_EQ(after["animations"].size(), 1u);
   EXPECT_EQ(after["animations"][0]["name"], "duet");
   EXPECT_EQ(after["buffers"].size(), 1u);
+}
+
+// A character with a mesh of 4 vertices, and an animation of `frames` frames.
+test::GltfBuilder CharacterWithMesh(int frames) {
+  test::GltfBuilder builder;
+  test::PersonOptions person;
+  person.frames = frames;
+  test::AddPerson(test::MakePerson(person), {}, &builder);
+  const int positions = builder.AddAccessor({0, 0, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9}, "VEC3");
+  builder.json()["meshes"] = {{{"primitives", {{{"attributes", {{"POSITION", positions}}}}}}}};
+  return builder;
+}
+
+TEST(OntoGltfRig, TheOldAnimationsDataIsDropped) {
+  // Whatever the rig's own animation is, the file is as large.
+  EXPECT_EQ(OntoRig(CharacterWithMesh(10).Binary()).size(),
+            OntoRig(CharacterWithMesh(2000).Binary()).size());
+}
+
+TEST(OntoGltfRig, WhatMeshesAndSkinsReferToStays) {
+  test::GltfBuilder builder = CharacterWithMesh(30);
+  const std::string before = builder.buffer();
+  const std::string text = OntoRig(builder.Binary(), GltfContainer::kText);
+  const nlohmann::json after = nlohmann::json::parse(text);
+  const nlohmann::json& accessor =
+      after["accessors"]
+           [after["meshes"][0]["primitives"][0]["attributes"]["POSITION"].get<std::size_t>()];
+  EXPECT_EQ(accessor["count"], 4);
+  const nlohmann::json& view = after["bufferViews"][accessor["bufferView"].get<std::size_t>()];
+  const absl::StatusOr<GltfDocument> document = ParseGltf(text, "written");
+  ASSERT_THAT(document.status(), IsOk());
+  GltfBuffers buffers(*document, NoFile);
+  const absl::StatusOr<const std::string*> bytes = buffers.Whole(0);
+  ASSERT_THAT(bytes.status(), IsOk());
+  const std::size_t begin =
+      view["byteOffset"].get<std::size_t>() + accessor.value("byteOffset", 0u);
+  EXPECT_EQ((*bytes)->substr(begin, 48), before.substr(before.size() - 48));
+}
+
+TEST(OntoGltfRig, AnUnknownExtensionKeepsAllData) {
+  test::GltfBuilder plain = CharacterWithMesh(500), extended = CharacterWithMesh(500);
+  extended.json()["extensionsUsed"] = {"ACME_points_into_accessors"};
+  EXPECT_GT(OntoRig(extended.Binary()).size(),
+            OntoRig(plain.Binary()).size() + plain.buffer().size() / 2);
 }
 
 TEST(OntoGltfRig, ACharacterThatNothingMovesWillDo) {
