@@ -40,8 +40,8 @@ absl::StatusOr<FollowerStart> ReadStart(const SynthesizeArguments& arguments,
 }
 
 // Whether somebody else's rig can be understood: before anything is asked of the server.
-absl::Status CheckRig(const formats::FollowerRig& rig) {
-  absl::Status status = ReadLeader(rig.file, rig.reading).status();
+absl::Status CheckFollowerRig(const formats::FollowerRig& rig) {
+  absl::Status status = formats::CheckRig(rig);
   if (motion::MendingSetting(status) != motion::ReadingSetting::kJointMap) return status;
   return MendedBy(std::move(status), motion::ReadingSetting::kRigJointMap);
 }
@@ -106,7 +106,7 @@ absl::StatusOr<formats::FollowerRig> BuildFollowerRig(const SynthesizeArguments&
         ReadJoints(arguments.rig_joints, arguments.rig_joint_table);
     if (!joints.ok()) return joints.status();
     rig.reading.joint_overrides = *std::move(joints);
-    absl::Status status = CheckRig(rig);
+    absl::Status status = CheckFollowerRig(rig);
     if (!status.ok()) return status;
     return rig;
   }

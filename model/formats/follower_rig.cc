@@ -113,6 +113,18 @@ bool FitsRig(Format written, Format rig) {
   return is_rig && (written == Format::kBvh || IsGltf(written));
 }
 
+absl::Status CheckRig(const FollowerRig& rig) {
+  const std::optional<Format> format = FormatOf(rig.file);
+  if (!format.has_value() || !FitsRig(Format::kBvh, *format)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(rig.file.string(), ": rig: expected ", kRigExtensions));
+  }
+  const absl::StatusOr<std::string> content =
+      base::ReadFile(rig.file, motion::kMaxMotionFileBytes, "a rig");
+  if (!content.ok()) return content.status();
+  return ReadRig(*format, *content, rig).status();
+}
+
 absl::StatusOr<std::string> FormatOntoRig(const motion::Clip& follower, const FollowerRig& rig,
                                           Format format, const WriteOptions& options) {
   const std::string source = rig.file.string();

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 
+#include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "model/formats/motion_file.h"
 #include "model/motion/clip.h"
@@ -23,6 +24,9 @@ inline constexpr char kRigOutputExtensions[] = ".bvh, .glb or .gltf";
 
 // Whether a follower on a rig of the format `rig` can be written in the format `written`.
 bool FitsRig(Format written, Format rig);
+
+// Whether the rig can be read; it need not be animated. Errors: those of reading it.
+absl::Status CheckRig(const FollowerRig& rig);
 
 // The follower on that rig. In its own format the rig keeps all of its file but the motion
 // (bvh::OntoBvhRig, gltf::OntoGltfRig); in another one it keeps names, hierarchy and bone lengths

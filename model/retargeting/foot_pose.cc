@@ -19,6 +19,8 @@ double SmoothStep(double from, double to, double at) {
   return t * t * (3 - 2 * t);
 }
 
+constexpr double kLowestAnkle = 0.01, kHighestAnkle = 0.25;  // above a floor, metres
+
 }  // namespace
 
 double AnkleHeightOnFloor(const motion::Skeleton& skeleton, const motion::Clip& clip) {
@@ -32,6 +34,12 @@ double AnkleHeightOnFloor(const motion::Skeleton& skeleton, const motion::Clip& 
                    static_cast<std::ptrdiff_t>(kFloorShare * static_cast<double>(lowest.size()));
   std::nth_element(lowest.begin(), low, lowest.end());
   return *low;
+}
+
+double SoleDepth(double ankle_height_on_floor) {
+  const bool on_floor =
+      ankle_height_on_floor >= kLowestAnkle && ankle_height_on_floor <= kHighestAnkle;
+  return on_floor ? ankle_height_on_floor : kUsualAnkleHeight;
 }
 
 Quaternion FootRotation(Quaternion shin, Vec3d ankle, double ankle_height_on_floor) {

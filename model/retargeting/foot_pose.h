@@ -13,6 +13,14 @@ namespace duet::retargeting {
 // clip, so that one that never comes down does not count. Without feet 0.
 double AnkleHeightOnFloor(const motion::Skeleton& skeleton, const motion::Clip& clip);
 
+// The usual height of an ankle above the sole, metres.
+inline constexpr double kUsualAnkleHeight = 0.06;
+
+// How far below the ankles the soles are if whoever stands so stands on the floor, y = 0:
+// `ankle_height_on_floor` itself, or kUsualAnkleHeight where that is no ankle's height, as in
+// captures without a floor of their own. Unit: metres.
+double SoleDepth(double ankle_height_on_floor);
+
 // The foot's rotation in the world, which at rest points along +z with y up. `shin` is the shin's,
 // which at rest hangs down and faces +z. The foot is at a right angle to the shin in the air and
 // level where it stands.

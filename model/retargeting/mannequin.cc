@@ -16,6 +16,8 @@ namespace {
 constexpr double kSlenderRadius = 0.035;
 // Of a stick figure's bones: radius over length, and the least radius in metres.
 constexpr double kStickShare = 0.12, kThinnestStick = 0.004;
+// Half the height of a foot, metres.
+constexpr double kThinnestSole = 0.015, kThickestSole = 0.05;
 // Bones are a little thinner than the balls that they go into.
 constexpr double kBoneShare = 0.94;
 constexpr Fineness kBall = {10, 6}, kPart = {18, 12};
@@ -38,8 +40,9 @@ double Radius(absl::string_view name) {
 
 class MannequinMaker {
  public:
-  MannequinMaker(const motion::Skeleton& skeleton, const Rig& rig, const std::vector<Vec3d>& rest)
-      : skeleton_(skeleton), rig_(rig), rest_(rest) {}
+  MannequinMaker(const motion::Skeleton& skeleton, const Rig& rig, const std::vector<Vec3d>& rest,
+                 double sole_depth)
+      : skeleton_(skeleton), rig_(rig), rest_(rest), sole_depth_(sole_depth) {}
 
   Mannequin Make() {
     for (std::size_t j = 0; j < rig_.joints.size(); ++j) AddBoneAndBall(static_cast<int>(j));
@@ -78,12 +81,19 @@ class MannequinMaker {
   void AddBoneAndBall(int j) {
     MeshBuilder body(&mannequin_.body);
     const RigJoint& joint = rig_.joints[static_cast<std::size_t>(j)];
-    const double radius = Radius(NameOf(j));
+    const double radius = RadiusOf(j);
     // A helper's joint has its ball already.
     if (joint.name == NameOf(j)) body.AddEllipsoid(At(j), {radius, radius, radius}, j, kBall);
     if (joint.kind != RigJoint::Kind::kAim) return;
     const int child = JointOf(joint.aim);
     body.AddLimb(At(j), At(child), radius * kBoneShare, Radius(NameOf(child)) * kBoneShare, j);
+  }
+
+  // An ankle's ball does not reach through the floor.
+  double RadiusOf(int j) const {
+    const double radius = Radius(NameOf(j));
+    const bool foot = absl::EndsWith(NameOf(j), "_foot");
+    return foot ? std::min(radius, std::max(sole_depth_, kThinnestSole)) : radius;
   }
 
   // Ellipsoids around the trunk, whose joints tell where it is broad.
@@ -130,20 +140,23 @@ class MannequinMaker {
     const int foot = Find(name);
     if (foot < 0) return;
     MeshBuilder body(&mannequin_.body);
-    body.AddEllipsoid(At(foot) + Vec3d{0, -0.024, 0.07}, {0.046, 0.032, 0.13}, foot, kPart);
+    const double half = std::clamp(sole_depth_ / 2, kThinnestSole, kThickestSole);
+    body.AddEllipsoid(At(foot) + Vec3d{0, half - sole_depth_, 0.07}, {0.046, half, 0.13}, foot,
+                      kPart);
   }
 
   const motion::Skeleton& skeleton_;
   const Rig& rig_;
   const std::vector<Vec3d>& rest_;
+  double sole_depth_;
   Mannequin mannequin_;
 };
 
 }  // namespace
 
 Mannequin MakeMannequin(const motion::Skeleton& skeleton, const Rig& rig,
-                        const std::vector<Vec3d>& rest_positions) {
-  return MannequinMaker(skeleton, rig, rest_positions).Make();
+                        const std::vector<Vec3d>& rest_positions, double sole_depth) {
+  return MannequinMaker(skeleton, rig, rest_positions, sole_depth).Make();
 }
 
 SkinnedMesh MakeStickFigure(const CharacterRig& rig) {

@@ -5,6 +5,7 @@
 
 #include "model/motion/skeleton.h"
 #include "model/retargeting/character_rig.h"
+#include "model/retargeting/foot_pose.h"
 #include "model/retargeting/mesh_builder.h"
 #include "model/retargeting/rig.h"
 
@@ -17,9 +18,11 @@ struct Mannequin {
   SkinnedMesh visor;  // where the face is, in a dark colour; empty without a head
 };
 
-// `rest_positions` as of RestPositions(rig).
+// `rest_positions` as of RestPositions(rig). The soles are `sole_depth` metres below the ankles, so
+// that who stands in the motion stands on the floor.
 Mannequin MakeMannequin(const motion::Skeleton& skeleton, const Rig& rig,
-                        const std::vector<Vec3d>& rest_positions);
+                        const std::vector<Vec3d>& rest_positions,
+                        double sole_depth = kUsualAnkleHeight);
 
 // A slender body of the bones of somebody else's rig, whatever its joints are called.
 SkinnedMesh MakeStickFigure(const CharacterRig& rig);

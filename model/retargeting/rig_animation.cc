@@ -80,6 +80,7 @@ RigAnimation AnimateRig(const motion::Skeleton& skeleton, const motion::Clip& cl
   animation.rest_positions = RestPositions(animation.rig);
   animation.frame_rate_hz = clip.frame_rate_hz;
   const double ankle_height = AnkleHeightOnFloor(skeleton, clip);
+  animation.sole_depth = SoleDepth(ankle_height);
   PoseFitter fitter(animation.rig, BoneLengths::kCaptured);
   for (int frame = 0; frame < clip.frame_count(); ++frame) {
     RigPose pose = fitter.Fit(clip.poses[frame]);

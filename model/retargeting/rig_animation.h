@@ -5,6 +5,7 @@
 
 #include "model/motion/clip.h"
 #include "model/motion/skeleton.h"
+#include "model/retargeting/foot_pose.h"
 #include "model/retargeting/pose_fitting.h"
 #include "model/retargeting/rig.h"
 
@@ -17,6 +18,7 @@ struct RigAnimation {
   // In the rest pose, which stands on the floor at the origin. [rig joints]
   std::vector<Vec3d> rest_positions;
   double frame_rate_hz = 0;
+  double sole_depth = kUsualAnkleHeight;  // below the ankles, metres
   std::vector<RigPose> frames;  // rotations of neighbouring frames are on the same side (q, not -q)
 
   // Where a joint is from its parent at rest; the root's is its position.

@@ -108,6 +108,16 @@ TEST_F(FollowerRigTest, AnotherFormatKeepsNamesAndHierarchy) {
   EXPECT_EQ(document["skins"][0]["joints"].size(), rig.joints.size());
 }
 
+TEST_F(FollowerRigTest, ARigNeedNotBeAnimated) {
+  test::GltfBuilder gltf;
+  test::AddPerson(test::MakePerson(), {}, &gltf);
+  gltf.json().erase("animations");
+  test::WriteTestFile(folder_ / "still.glb", gltf.Binary());
+  EXPECT_THAT(CheckRig({folder_ / "still.glb", {}}), IsOk());
+  EXPECT_THAT(CheckRig({folder_ / "none.glb", {}}), StatusIs(absl::StatusCode::kNotFound));
+  EXPECT_THAT(CheckRig({"rig.csv", {}}), StatusIs(absl::StatusCode::kInvalidArgument));
+}
+
 TEST_F(FollowerRigTest, NamesWhatARigMayBe) {
   EXPECT_THAT(FormatOntoRig(Follower(), {"rig.csv", {}}, Format::kGlb).status(),
               StatusIs(absl::StatusCode::kInvalidArgument,

@@ -52,6 +52,25 @@ TEST_F(MannequinTest, FeetPointAheadAndHandsReachBeyondTheirJoints) {
   EXPECT_GT(finger, 0.1);
 }
 
+// Ankles are 2 to 12 cm above the floor, as captures have them.
+TEST_F(MannequinTest, SolesAreAsFarBelowTheAnkleAsTheFloorIs) {
+  for (double ankle : {0.02, 0.06, 0.12}) {
+    const Mannequin mannequin = MakeMannequin(skeleton_, rig_, rest_, ankle);
+    double lowest = 1;
+    for (std::size_t v = 0; v < mannequin.body.positions.size(); ++v) {
+      const std::size_t joint = static_cast<std::size_t>(mannequin.body.joints[v]);
+      if (rig_.joints[joint].name != "left_foot") continue;
+      lowest = std::min(lowest, mannequin.body.positions[v].y - rest_[joint].y);
+    }
+    EXPECT_NEAR(lowest, -ankle, 0.011) << ankle;
+  }
+}
+
+TEST(SoleDepth, IsTheHeightOfAnAnkleThatStandsOnTheFloor) {
+  EXPECT_EQ(SoleDepth(0.1), 0.1);
+  for (double no_ankle : {-1.0, 0.0, 0.6}) EXPECT_EQ(SoleDepth(no_ankle), kUsualAnkleHeight);
+}
+
 // Any skeleton has limbs and balls; only one with a head has a face.
 TEST(Mannequin, ASkeletonOfOtherNamesHasABodyWithoutAFace) {
   motion::Skeleton arm;

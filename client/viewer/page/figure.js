@@ -1,3 +1,6 @@
+// Half the height of a foot, metres.
+const THINNEST_SOLE = 0.015, THICKEST_SOLE = 0.05;
+
 // One character's body: a tapered capsule on every bone, a ball on every joint, and where the joint
 // names allow it a chest, a pelvis and a head that show which way the character faces.
 class Figure {
@@ -9,7 +12,8 @@ class Figure {
     this.skin = new THREE.MeshStandardMaterial({color: linear(colour), roughness: 0.62, metalness: 0});
     this.jointSkin = this.skin.clone();
     this.jointSkin.color.multiplyScalar(0.72);
-    this.radii = motion.joints.map(Figure.radius);
+    this.soleDepth = motion.soleDepth(person);
+    this.radii = motion.joints.map((name) => this.radius(name));
     this.bones = motion.bones.map(([parent, child]) => this.addBone(parent, child));
     this.balls = motion.joints.map((name, joint) => this.addBall(joint));
     this.addTrunk();
@@ -31,6 +35,13 @@ class Figure {
     ];
     const row = table.find(([pattern]) => pattern.test(name.toLowerCase()));
     return row ? row[1] : 0.035;
+  }
+
+  // An ankle's ball does not reach through the floor.
+  radius(name) {
+    const radius = Figure.radius(name);
+    return /foot|ankle/.test(name.toLowerCase())
+        ? Math.min(radius, Math.max(this.soleDepth, THINNEST_SOLE)) : radius;
   }
 
   addMesh(geometry, material) {
@@ -148,6 +159,7 @@ class Figure {
     const [knee, foot] = [`${side}_knee`, `${side}_foot`];
     if (!this.has(knee, foot, 'left_hip', 'right_hip')) return;
     const floor = this.motion.standingHeight(this.person);
+    const half = Math.min(Math.max(this.soleDepth / 2, THINNEST_SOLE), THICKEST_SOLE);
     this.addEllipsoid(this.skin, () => {
       const ankle = this.joint(foot);
       const shin = this.joint(knee).clone().sub(ankle).normalize();
@@ -156,8 +168,8 @@ class Figure {
       const up = new THREE.Vector3(0, 1, 0).lerp(shin, 1 - (1 - raised) * upright).normalize();
       const right = this.joint('right_hip').clone().sub(this.joint('left_hip'));
       const ahead = up.clone().cross(right).normalize();
-      return {centre: ankle.clone().addScaledVector(ahead, 0.07).addScaledVector(up, -0.024),
-              right: ahead.clone().cross(up), up, size: [0.046, 0.032, 0.13]};
+      return {centre: ankle.clone().addScaledVector(ahead, 0.07).addScaledVector(up, half - this.soleDepth),
+              right: ahead.clone().cross(up), up, size: [0.046, half, 0.13]};
     });
   }
 

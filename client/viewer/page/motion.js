@@ -1,3 +1,6 @@
+// As kUsualAnkleHeight in model/retargeting/foot_pose.h, metres.
+const USUAL_ANKLE_HEIGHT = 0.06;
+
 // The motion of one character or two, as the page carries it: positions [frames, joints, 3] in metres,
 // y up, as base64 of little-endian float32.
 class Motion {
@@ -102,18 +105,28 @@ class Motion {
   floor() {
     const stands = this.standingHeight('leader');
     const ofWorld = Math.abs(stands) < 0.6;
-    return {height: ofWorld ? 0 : stands - 0.043, ofWorld};
+    return {height: ofWorld ? 0 : stands - USUAL_ANKLE_HEIGHT, ofWorld};
+  }
+
+  // How far below the ankles a person's soles are, metres: whoever stands, stands on the floor.
+  soleDepth(person) {
+    const feet = [this.find('left_foot'), this.find('right_foot')].filter((joint) => joint >= 0);
+    const depth = this.lowOf(person, feet) - this.floor().height;
+    return depth >= 0.01 && depth <= 0.25 ? depth : USUAL_ANKLE_HEIGHT;
   }
 
   // The lowest joint of nearly every frame. Captures jitter, and one bad frame says nothing.
   standingHeight(person) {
+    return this.lowOf(person, this.joints.map((name, joint) => joint));
+  }
+
+  // The height that the lowest of some joints is below in 2 % of the frames.
+  lowOf(person, joints) {
     const positions = this.people[person];
     const stride = this.joints.length * 3;
     const lowest = [];
     for (let start = 0; start < positions.length; start += stride) {
-      let low = Infinity;
-      for (let i = start + 1; i < start + stride; i += 3) low = Math.min(low, positions[i]);
-      lowest.push(low);
+      lowest.push(Math.min(...joints.map((joint) => positions[start + joint * 3 + 1])));
     }
     lowest.sort((a, b) => a - b);
     return lowest[Math.floor(lowest.length * 0.02)];
