@@ -36,9 +36,30 @@ class BlenderTest(unittest.TestCase):
     def test_what_cannot_be_done_is_said(self):
         self.assertTrue(self.state["refused_without_leader"])
         self.assertEqual([self.state["still"], self.state["missing"]], [["CANCELLED"]] * 2)
-        zero, program = self.state["failures"]
+        zero, program, joints = self.state["failures"]
+        self.assertIn("nothing stands for left_hand, right_hand", joints)
+        self.assertIn("Choose the bones in the panel", joints)
         self.assertIn("Every label is 0", zero)
         self.assertIn("no-such-program", program)
+
+    def test_react_replaces_its_last_answer(self):
+        self.assertEqual(self.state["again"], ["FINISHED"])
+        self.assertEqual(self.state["after_two"], ["Duet follower", "Rig"])
+
+    def test_a_kept_answer_stays_as_a_take(self):
+        self.assertEqual(self.state["after_take"], ["Duet follower", "Duet take 1 (seed 0)", "Rig"])
+
+    def test_bones_can_be_mapped_and_the_leaders_rig_taken(self):
+        self.assertEqual(self.state["unmapped"], ["CANCELLED"])
+        self.assertEqual(self.state["own_rig"], ["FINISHED"])
+        self.assertEqual(self.state["own_bones"], self.state["leaders_bones"])
+        x, y, z = self.state["own_torso"]
+        self.assertAlmostEqual(x / UNITS_PER_METRE, 1.2, delta=0.3)
+        self.assertAlmostEqual(z / UNITS_PER_METRE, 1.1, delta=0.3)
+
+    def test_bones_without_children_end_in_a_joint(self):
+        self.assertEqual(len(self.state["joints"]), 15)
+        self.assertTrue(self.state["tails"])
 
     def test_a_follower_comes_with_body_and_action(self):
         self.assertEqual(self.state["finished"], ["FINISHED"])

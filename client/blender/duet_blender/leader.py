@@ -1,30 +1,36 @@
 """The armature that leads, as Duet reads motion: where its bones are in every frame."""
 
-import json
-
 from .program import DuetError
 
 # A line between two key frames may be off by so much before a further one is set.
 LABEL_TOLERANCE = 0.01
+HEAD_TOP = "HeadTop_End"
 
 
 class Recording:
-    """Positions and label weights, frame by frame, in metres with z up."""
+    """Positions and label weights, frame by frame, in metres with y up.
+
+    A joint is the head of a bone; a bone without children adds its tail, which is where hands, feet and
+    the top of the head are on rigs that end there.
+    """
 
     def __init__(self, scene, armature):
         self.scene = scene
         self.armature = armature
-        self.metres = scene.unit_settings.scale_length
-        self.bones = [bone.name for bone in armature.pose.bones]
-        self.head = self._head()
-        self.frames = []
+        self.metres = metres_per_unit(scene)
+        self.joints = []  # (name, index of the parent or -1, bone, whether its tail)
+        for bone in armature.pose.bones:
+            self._add(bone)
+        self.frames = []  # [frames][joints][3]
         self.weights = []  # [frames][labels]
 
-    def _head(self):
-        """A head's bone ends at the top of the head, which its name does not say."""
-        named = [bone for bone in self.armature.pose.bones
-                 if "head" in bone.name.lower() and not bone.children]
-        return named[0].name if named else None
+    def _add(self, bone):
+        parents = {name: index for index, (name, _, _, tail) in enumerate(self.joints) if not tail}
+        parent = parents.get(bone.parent.name, -1) if bone.parent else -1
+        self.joints.append((bone.name, parent, bone.name, False))
+        if not bone.children:
+            name = HEAD_TOP if "head" in bone.name.lower() else f"{bone.name}.end"
+            self.joints.append((name, len(self.joints) - 1, bone.name, True))
 
     def take(self):
         """A generator that goes through the scene's frames, one at each step, and back again."""
@@ -40,18 +46,48 @@ class Recording:
 
     def _take_frame(self):
         world, pose = self.armature.matrix_world, self.armature.pose.bones
-        places = [world @ pose[name].head for name in self.bones]
-        if self.head:
-            places.append(world @ pose[self.head].tail)
-        self.frames.append([[self.metres * value for value in place] for place in places])
+        frame = []
+        for _, _, bone, tail in self.joints:
+            x, y, z = world @ (pose[bone].tail if tail else pose[bone].head)
+            frame.append([self.metres * x, self.metres * z, -self.metres * y])
+        self.frames.append(frame)
         self.weights.append([label.weight for label in self.scene.duet.labels])
 
     def write(self, path):
-        names = self.bones + (["HeadTop_End"] if self.head else [])
-        motion = {"format": "duet-motion", "version": 1, "frame_rate_hz": frame_rate(self.scene),
-                  "unit": "metres", "up_axis": "z-up", "joint_names": names, "leader": self.frames}
+        """As BVH: it carries the hierarchy, by which joints are found as in every other file."""
+        lines = ["HIERARCHY"]
+        order = []
+        roots = [index for index, joint in enumerate(self.joints) if joint[1] < 0]
+        for root in roots:
+            self._write_joint(root, 0, lines, order)
+        lines += ["MOTION", f"Frames: {len(self.frames)}", f"Frame Time: {1 / frame_rate(self.scene):.9f}"]
+        for frame in self.frames:
+            lines.append(" ".join(f"{value:.6f}" for joint in order
+                                  for value in self._from_parent(frame, joint)))
         with open(path, "w", encoding="utf-8") as file:
-            json.dump(motion, file)
+            file.write("\n".join(lines) + "\n")
+
+    def _from_parent(self, frame, joint):
+        parent = self.joints[joint][1]
+        if parent < 0:
+            return frame[joint]
+        return [a - b for a, b in zip(frame[joint], frame[parent])]
+
+    def _write_joint(self, joint, depth, lines, order):
+        pad = "  " * depth
+        order.append(joint)
+        offset = [0, 0, 0] if depth == 0 else self._from_parent(self.frames[0], joint)
+        lines += [f"{pad}{'JOINT' if depth else 'ROOT'} {self.joints[joint][0]}", f"{pad}{{",
+                  f"{pad}  OFFSET {' '.join(f'{value:.6f}' for value in offset)}",
+                  f"{pad}  CHANNELS 3 Xposition Yposition Zposition"]
+        for child, (_, parent, _, _) in enumerate(self.joints):
+            if parent == joint:
+                self._write_joint(child, depth + 1, lines, order)
+        lines.append(f"{pad}}}")
+
+    def reading_flags(self):
+        """How the file is to be read: its unit, and the bones that the user chose for joints."""
+        return ["--metres-per-unit", "1", *joint_flags(self.scene.duet, "--joint-map")]
 
     def label_flags(self):
         """--label for weights that stay, --keyframe for weights that change."""
@@ -75,9 +111,21 @@ class Recording:
         if empty is None:
             return []
         x, y, z = (self.metres * value for value in empty.matrix_world.translation)
-        heights = [place[2] for place in self.frames[0]]
+        heights = [place[1] for place, (_, _, _, tail) in zip(self.frames[0], self.joints) if not tail]
         middle = min(heights) + 0.62 * (max(heights) - min(heights))
         return ["--follower-start", f"{x:.4f},{max(z, middle):.4f},{-y:.4f}"]
+
+
+def joint_flags(settings, flag):
+    """A flag for every joint whose bone the user chose."""
+    return [word for joint in settings.joints if joint.bone
+            for word in (flag, f"{joint.name}={joint.bone}")]
+
+
+def metres_per_unit(scene):
+    """What the user chose, or the scene's unit."""
+    chosen = {"METRES": 1, "CENTIMETRES": 0.01, "MILLIMETRES": 0.001, "INCHES": 0.0254}
+    return chosen.get(scene.duet.unit, scene.unit_settings.scale_length)
 
 
 def frame_rate(scene):

@@ -77,20 +77,17 @@ class DUET_OT_ask_for_classes(_Working):
     """Makes the sliders those of the server's model"""
 
     bl_idname = "duet.ask_for_classes"
-    bl_label = "Ask for classes"
+    bl_label = "Ask the server for classes"
 
     def work(self, context):
         duet = context.scene.duet
-        if not duet.labels:
-            settings.set_classes(duet, settings.CLASSES)
-            return
         duet.state = "Asking the server"
         settings.set_classes(duet, (yield from program.classes(duet)))
         duet.state = ""
 
 
 class DUET_OT_react(_Working):
-    """Synthesises a partner who reacts to the leader; Esc stops"""
+    """Synthesises a partner who reacts to the leader, in place of the last one; Esc stops"""
 
     bl_idname = "duet.react"
     bl_label = "React"
@@ -106,24 +103,53 @@ class DUET_OT_react(_Working):
             duet.state = "Reading the leader"
             recording = leader.Recording(scene, duet.leader)
             yield from recording.take()
-            motion = os.path.join(folder, "leader.json")
-            pair = os.path.join(folder, "pair.json")
-            follower = os.path.join(folder, "follower.glb")
+            motion = os.path.join(folder, "leader.bvh")
             recording.write(motion)
             duet.state = "Waiting for the server"
-            yield from program.run(
-                duet, "synthesize", "--server", duet.server, "--leader", motion,
-                *recording.label_flags(), *recording.place_flags(), "--seed", duet.seed,
-                "--variety", f"{duet.variety:.4g}", "--out", pair, "--quiet")
-            yield from program.run(duet, "convert", pair, "--side", "right", "--out", follower,
-                                   "--quiet")
-            partner.add(scene, follower)
+            follower = yield from self._ask(context, recording, motion, folder)
+            partner.remove_last(scene)
+            partner.add(scene, follower,
+                        scene.unit_settings.scale_length / leader.metres_per_unit(scene))
         duet.state = f"{partner.NAME}: seed {duet.seed}"
         if not bpy.app.background:
             bpy.ops.ed.undo_push(message="React")
 
+    def _ask(self, context, recording, motion, folder):
+        """A generator that returns the file of the follower."""
+        scene, duet = context.scene, context.scene.duet
+        ask = ["synthesize", "--server", duet.server, "--leader", motion, *recording.reading_flags(),
+               *recording.label_flags(), *recording.place_flags(), "--seed", duet.seed,
+               "--variety", f"{duet.variety:.4g}", "--quiet"]
+        if duet.body == "LEADER":
+            rig, pair = os.path.join(folder, "rig.glb"), os.path.join(folder, "pair.glb")
+            partner.export_rig(scene, duet.leader, rig)
+            yield from program.run(duet, *ask, "--out", pair, "--follower-rig", rig,
+                                   *leader.joint_flags(duet, "--follower-rig-joint-map"))
+            return os.path.join(folder, "pair.follower.glb")
+        pair, follower = os.path.join(folder, "pair.json"), os.path.join(folder, "follower.glb")
+        yield from program.run(duet, *ask, "--out", pair)
+        yield from program.run(duet, "convert", pair, "--side", "right", "--out", follower, "--quiet")
+        return follower
 
-_CLASSES = (DUET_OT_ask_for_classes, DUET_OT_react)
+
+class DUET_OT_keep(bpy.types.Operator):
+    """Keeps the last answer as a take; the next React then adds another"""
+
+    bl_idname = "duet.keep"
+    bl_label = "Keep as take"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context):
+        return partner.last(context.scene) is not None
+
+    def execute(self, context):
+        duet = context.scene.duet
+        duet.state = partner.keep(context.scene, f"seed {duet.seed}")
+        return {"FINISHED"}
+
+
+_CLASSES = (DUET_OT_ask_for_classes, DUET_OT_react, DUET_OT_keep)
 
 
 def register():

@@ -5,6 +5,8 @@ import bpy
 from .program import DuetError
 
 NAME = "Duet follower"
+TAKE = "Duet take"
+_MARK = "duet_answer"  # on every object of the last answer
 COLOUR = (0.0782, 0.4508, 0.5210, 1)  # linear: the follower's of pages and files
 
 
@@ -16,8 +18,64 @@ def _let_importer_run():
         numpy.bool = bool
 
 
-def add(scene, path):
-    """Imports one person, in the unit of the scene; their armature. The scene keeps rate, range and
+def remove_last(scene):
+    """Removes the last answer and what only it uses."""
+    for thing in [thing for thing in scene.objects if _MARK in thing]:
+        data, action = thing.data, thing.animation_data and thing.animation_data.action
+        kind = thing.type
+        bpy.data.objects.remove(thing)
+        if action and not action.users:
+            bpy.data.actions.remove(action)
+        if data and not data.users:
+            (bpy.data.armatures if kind == "ARMATURE" else bpy.data.meshes).remove(data)
+
+
+def last(scene):
+    """The armature of the last answer; None where there is none."""
+    return next((thing for thing in scene.objects if _MARK in thing and thing.type == "ARMATURE"), None)
+
+
+def keep(scene, title):
+    """Makes the last answer a take, which the next one leaves alone; its name."""
+    armature = last(scene)
+    number = 1 + sum(1 for thing in scene.objects
+                     if thing.type == "ARMATURE" and thing.name.startswith(TAKE))
+    name = f"{TAKE} {number} ({title})"
+    for thing in [thing for thing in scene.objects if _MARK in thing]:
+        del thing[_MARK]
+        thing.name = name if thing is armature else f"{name} body"
+    if armature.animation_data and armature.animation_data.action:
+        armature.animation_data.action.name = name
+    return name
+
+
+def export_rig(scene, armature, path):
+    """The armature at rest with its meshes, as glTF, in metres of the scene."""
+    if "gltf" not in dir(bpy.ops.export_scene):
+        raise DuetError("Switch on the add-on glTF 2.0, which writes the leader's rig")
+    _let_importer_run()
+    selected, active = list(bpy.context.selected_objects), bpy.context.view_layer.objects.active
+    wanted = [armature] + [thing for thing in scene.objects if thing.type == "MESH" and (
+        thing.parent is armature or any(modifier.type == "ARMATURE" and modifier.object is armature
+                                        for modifier in thing.modifiers))]
+    try:
+        for thing in selected:
+            thing.select_set(False)
+        for thing in wanted:
+            thing.select_set(True)
+        bpy.context.view_layer.objects.active = armature
+        bpy.ops.export_scene.gltf(filepath=str(path), export_format="GLB", use_selection=True,
+                                  export_animations=False, export_def_bones=False)
+    finally:
+        for thing in wanted:
+            thing.select_set(thing in selected)
+        bpy.context.view_layer.objects.active = active
+
+
+def add(scene, path, scale=1):
+    """Imports one person, whose file is in metres, and marks them as the last answer; their armature.
+
+    `scale`: units of the leader's armature in a unit of the scene. The scene keeps rate, range and
     current frame."""
     if "gltf" not in dir(bpy.ops.import_scene):
         raise DuetError("Switch on the add-on glTF 2.0, which reads the partner")
@@ -34,6 +92,10 @@ def add(scene, path):
     armature = armatures[0]
     armature.name = NAME
     for thing in new:
+        thing[_MARK] = True
+        if thing.parent is None and scale != 1:
+            thing.location *= scale
+            thing.scale *= scale
         if thing.type == "MESH" and thing.parent is armature:
             thing.name = f"{NAME} body"
             _colour(thing.data.materials)

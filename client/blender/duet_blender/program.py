@@ -37,8 +37,17 @@ def run(settings, *arguments):
             process.kill()
             process.communicate()
     if process.returncode != 0:
-        raise DuetError(errors.strip() or f"duet ended with status {process.returncode}")
+        raise DuetError(_in_the_panel(errors.strip())
+                        or f"duet ended with status {process.returncode}")
     return output
+
+
+def _in_the_panel(message):
+    """An error with the panel's names for what the program's flags are."""
+    lines = message.splitlines()
+    hints = [line for line in lines if "joint-map" in line and line.startswith("Say it with")]
+    kept = [line for line in lines if line not in hints]
+    return "\n".join(kept + ["Choose the bones in the panel, under Reading the leader."] * bool(hints))
 
 
 def classes(settings):

@@ -36,7 +36,6 @@ leader.name = "Rig"
 
 duet_blender.register()
 settings = scene.duet
-assert bpy.ops.duet.ask_for_classes() == {"FINISHED"}  # those that are known without a server
 known = [label.name for label in settings.labels]
 settings.server, settings.program = server, duet
 assert bpy.ops.duet.ask_for_classes() == {"FINISHED"}
@@ -77,6 +76,31 @@ settings.program = "no-such-program"
 missing = react()
 settings.program = duet
 finished = react()
+again = react()  # in place of the last one
+after_two = sorted(thing.name for thing in bpy.data.objects if thing.type == "ARMATURE")
+assert bpy.ops.duet.keep() == {"FINISHED"}
+settings.seed = 4
+react()
+after_take = sorted(thing.name for thing in bpy.data.objects if thing.type == "ARMATURE")
+
+# The leader's own rig, its bones renamed so that only the map tells which is which.
+names = {"left_hand": "Paw.001", "right_hand": "Paw.002"}
+for joint, bone in names.items():
+    leader.data.bones[joint].name = bone
+unmapped = react()
+for joint in settings.joints:
+    joint.bone = names.get(joint.name, "")
+settings.body = "LEADER"
+own_rig = react()
+own = bpy.data.objects.get("Duet follower")
+own_bones = sorted(bone.name for bone in own.data.bones) if own else []
+leaders_bones = sorted(bone.name for bone in leader.data.bones)
+scene.frame_set(FIRST_FRAME)
+own_torso = list(own.matrix_world @ own.pose.bones["torso"].head) if own else []
+scene.frame_set(20)
+settings.body = "MANNEQUIN"
+settings.seed = 0
+react()
 
 recording = duet_blender.leader.Recording(scene, leader)
 for _ in recording.take():
@@ -86,7 +110,11 @@ follower = bpy.data.objects.get("Duet follower")
 body = bpy.data.objects.get("Duet follower body")
 state = {
     "known": known, "asked": asked, "refused_without_leader": refused, "still": still,
-    "missing": missing, "finished": finished, "failures": failures,
+    "missing": missing, "finished": finished, "failures": failures, "again": again,
+    "after_two": after_two, "after_take": after_take, "unmapped": unmapped, "own_rig": own_rig,
+    "own_bones": own_bones, "leaders_bones": leaders_bones, "own_torso": own_torso,
+    "joints": [joint.name for joint in settings.joints],
+    "tails": [name for name, _, _, tail in recording.joints if tail],
     "flags": recording.label_flags(), "place": recording.place_flags(),
     "frame": scene.frame_current, "fps": scene.render.fps,
     "range": [scene.frame_start, scene.frame_end],
