@@ -320,7 +320,7 @@ def restarts(args, protos):
             while not over.is_set():
                 done = subprocess.run(
                     [args.client, "synthesize", "--leader", leader, "--label", "punch=1", "--out",
-                     f"{folder}/{i}-{runs[0]}.bvh", "--server", f"127.0.0.1:{port}", "--timeout",
+                     f"{folder}/{i}-{runs[0]}.bvh", "--server", f"127.0.0.1:{port}", "--wait",
                      "120"], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                     check=False, text=True)
                 runs[0] += 1

@@ -166,7 +166,7 @@ def measure(chosen, count):
             servers.append(Server(chosen.build, folder / f"server-{number}.log", share))
             stack.callback(servers[-1].stop)
         proxy = start_proxy(folder, servers, stack)
-        subprocess.run([chosen.build / "bin/duet", "models", "--server", proxy, "--timeout", "60"],
+        subprocess.run([chosen.build / "bin/duet", "models", "--server", proxy, "--wait", "60"],
                        check=True, capture_output=True)
         behind, behind_spread = load(chosen, proxy, servers)
         addresses = ",".join(f"127.0.0.1:{server.port}" for server in servers)

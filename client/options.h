@@ -25,9 +25,9 @@ struct TlsOptions {
 // How often and how patiently a call is attempted.
 //
 // The wait before attempt n + 1 is drawn from [0.5, 1] x min(max_backoff, initial_backoff x
-// 2^(n-1)) and is never shorter than the RetryInfo that the server sent. Unless there is a limit to
-// their number, the deadline alone ends the attempts: a server that restarts, or is moved, is away
-// for seconds.
+// 2^(n-1)) and is never shorter than the RetryInfo that the server sent. Without a limit to their
+// number, attempts end at the deadline, or when a server that cannot be reached has been away for
+// ClientOptions::wait.
 struct RetryOptions {
   int max_attempts = std::numeric_limits<int>::max();  // 1: never retry
   absl::Duration initial_backoff = absl::Milliseconds(100);
@@ -43,6 +43,10 @@ struct ClientOptions {
   std::string server_address = "localhost:50051";
   // For a whole call, all its attempts included.
   absl::Duration deadline = absl::Minutes(2);
+  // How long a call retries a server that cannot be reached (refused connections, unknown host
+  // names) before it fails; never past the deadline. 0: fail at once. A server that answers, even
+  // to say that it is loading or draining, is retried until the deadline.
+  absl::Duration wait = absl::Seconds(5);
   // Absent: plain text.
   std::optional<TlsOptions> tls;
   // Says who calls, as `authorization: Bearer TOKEN` of every call. Empty: nobody. Without `tls` it

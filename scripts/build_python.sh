@@ -22,4 +22,4 @@ export SOURCE_DATE_EPOCH=315532800
   exit 1
 }
 rm "${copy}.log"
-ls "${out}"/duet-*
+ls "${out}"/duet[-_]motion-*

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Makes the Python package's stubs from the proto files, for whoever changes a proto file.
-#   scripts/python_stubs.sh           rewrites client/python/duet/{v1,rpc/v1}
+#   scripts/python_stubs.sh           rewrites client/python/duet_motion/{v1,rpc/v1}
 #   scripts/python_stubs.sh FOLDER    writes them below FOLDER instead
 # By protoc with gRPC's own plugin: Debian 12's grpc_tools is of 2018 and does not know `optional`.
 set -euo pipefail
@@ -12,7 +12,16 @@ plugin="$(command -v grpc_python_plugin)" || {
   exit 1
 }
 
+made="$(mktemp -d)"
+trap 'rm -rf "${made}"' EXIT
 messages=(duet/v1/motion.proto duet/v1/model.proto duet/v1/synthesis.proto duet/rpc/v1/status.proto)
-protoc -Iproto --python_out="${out}" --pyi_out="${out}" "${messages[@]}"
-protoc -Iproto --grpc_python_out="${out}" --plugin=protoc-gen-grpc_python="${plugin}" \
+protoc -Iproto --python_out="${made}" --pyi_out="${made}" "${messages[@]}"
+protoc -Iproto --grpc_python_out="${made}" --plugin=protoc-gen-grpc_python="${plugin}" \
   duet/v1/synthesis.proto
+
+# protoc derives Python's module names from the protos' folder, and `duet` is another library's.
+for stub in "${made}"/duet/*v1/*_pb2* "${made}"/duet/rpc/v1/*_pb2*; do
+  target="${out}/duet_motion/${stub#"${made}/duet/"}"
+  mkdir -p "$(dirname "${target}")"
+  sed -E 's/^from duet\.(v1|rpc\.v1) import/from duet_motion.\1 import/' "${stub}" >"${target}"
+done

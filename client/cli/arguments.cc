@@ -159,6 +159,7 @@ ParsedCommandLine Collect(CommandLine* line) {
     if (line->man.folder.empty()) return PrintManualPage(line->app, line->manual_page);
     parsed.man = std::move(line->man);
   }
+  parsed.stdio = is_parsed("stdio");
   if (is_parsed("models")) parsed.models = std::move(line->models);
   if (is_parsed("admin")) parsed.admin = std::move(line->admin);
   if (is_parsed("synthesize")) parsed.synthesize = std::move(line->synthesize);

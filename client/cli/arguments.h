@@ -24,6 +24,7 @@ namespace duet::client::cli {
 struct ServerArguments {
   std::string address = ClientOptions().server_address;
   double timeout_seconds = absl::ToDoubleSeconds(ClientOptions().deadline);
+  double wait_seconds = absl::ToDoubleSeconds(ClientOptions().wait);
   bool tls = false;  // implied by any of the files
   std::string tls_ca_file;
   std::string tls_certificate_file;
@@ -210,6 +211,7 @@ struct ParsedCommandLine {
   std::optional<ViewArguments> view;
   std::optional<CompareArguments> compare;
   std::optional<ManArguments> man;
+  bool stdio = false;
   std::string text;
   int exit_code = 0;
 };

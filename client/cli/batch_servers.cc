@@ -48,7 +48,7 @@ absl::StatusOr<std::vector<ModelInfo>> AskModels(const BatchArguments& arguments
     if (!options.ok()) return options.status();
     options->deadline =
         absl::Seconds(std::max(0.1, std::min(arguments.patience_seconds, kFirstAnswerSeconds)));
-    options->retry.max_attempts = 1000;
+    options->wait = options->deadline;
     const absl::StatusOr<Client> client = environment.connect(*options);
     if (!client.ok()) return client.status();
     absl::StatusOr<std::vector<ModelInfo>> models = ResolveModels(*client, recipe, begun);

@@ -28,6 +28,17 @@ void AddModelsCommand(CLI::App* app, ModelsArguments* arguments) {
   command->add_flag("--json", arguments->json, "Print JSON");
 }
 
+void AddStdioCommand(CLI::App* app) {
+  app->add_subcommand("stdio", "Run commands read from standard input, for other programs")
+      ->footer(R"(
+Each line of standard input is a JSON array with the words of a command. Each is answered with a
+line of JSON and as many bytes as it says of the command's standard output and standard error.
+
+Example:
+  echo '["convert", "walk.bvh", "--out", "-", "--output-format", "json"]' | duet stdio
+)");
+}
+
 // What tells of the program itself.
 void AddHelpCommands(CommandLine* line) {
   CLI::App* help = line->app.add_subcommand("help", "Explain a command or a topic");
@@ -62,6 +73,7 @@ CommandLine::CommandLine()
   AddViewCommand(&app, &view);
   AddCompareCommand(&app, &compare);
   AddAdminCommand(&app, &admin);
+  AddStdioCommand(&app);
   AddHelpCommands(this);
 }
 

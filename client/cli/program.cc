@@ -16,6 +16,7 @@
 #include "client/cli/man_page.h"
 #include "client/cli/models_command.h"
 #include "client/cli/report.h"
+#include "client/cli/stdio_command.h"
 #include "client/cli/synthesize_command.h"
 #include "client/cli/view_command.h"
 
@@ -56,6 +57,7 @@ absl::StatusOr<ExitCode> RunCommand(const ParsedCommandLine& parsed,
   if (parsed.convert.has_value()) return Done(RunConvert(*parsed.convert, environment));
   if (parsed.view.has_value()) return Done(RunView(*parsed.view, environment));
   if (parsed.compare.has_value()) return Done(RunCompare(*parsed.compare, environment));
+  if (parsed.stdio) return RunStdio(environment);
   if (parsed.man.has_value()) return Done(WriteManualPages(CommandLine().app, parsed.man->folder));
   (parsed.exit_code == kExitDone ? *environment.out : *environment.err) << parsed.text;
   return static_cast<ExitCode>(parsed.exit_code);

@@ -103,7 +103,8 @@ std::string Advice(const absl::Status& status, const std::string& server_address
   // A reason would mean that a Duet server answered.
   if (absl::IsUnavailable(status) && ErrorReason(status).empty()) {
     return absl::StrCat("Does a duet-server listen at ", server_address,
-                        "? (--server; where it encrypts, --tls or --tls-ca FILE)\n");
+                        "? (--server; to wait for one, --wait SECONDS; where it encrypts, --tls or "
+                        "--tls-ca FILE)\n");
   }
   return "Trying again later may help.\n";
 }

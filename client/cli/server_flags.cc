@@ -9,6 +9,12 @@ void AddServerFlags(CLI::App* app, ServerArguments* server) {
       ->capture_default_str()
       ->type_name("HOST:PORT")
       ->group(kServerGroup);
+  app->add_option("--wait", server->wait_seconds,
+                  "Seconds to retry a server that cannot be reached, within --timeout")
+      ->check(Undescribed(CLI::Range(0.0, 86400.0)))
+      ->capture_default_str()
+      ->type_name("SECONDS")
+      ->group(kServerGroup);
   AddConnectionFlags(app, server);
 }
 

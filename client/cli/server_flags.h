@@ -8,7 +8,7 @@ namespace duet::client::cli {
 
 // --server and how to speak to it.
 void AddServerFlags(CLI::App* app, ServerArguments* server);
-// All but --server itself.
+// All but --server itself and --wait.
 void AddConnectionFlags(CLI::App* app, ServerArguments* server);
 // The same without --timeout.
 void AddCredentialFlags(CLI::App* app, ServerArguments* server);

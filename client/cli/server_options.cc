@@ -43,6 +43,7 @@ absl::StatusOr<ClientOptions> ToClientOptions(const ServerArguments& arguments) 
   ClientOptions options;
   options.server_address = arguments.address;
   options.deadline = absl::Seconds(arguments.timeout_seconds);
+  options.wait = absl::Seconds(arguments.wait_seconds);
   options.authority = arguments.authority;
   absl::Status status = ReadToken(arguments.token_file, &options.token);
   if (!status.ok()) return status;
@@ -61,12 +62,11 @@ absl::StatusOr<ClientOptions> ToClientOptions(const ServerArguments& arguments) 
 }
 
 void SayWhenWaiting(const ServerArguments& arguments, std::ostream& err, ClientOptions* options) {
-  options->retry.on_wait = [&err, address = arguments.address, seconds = arguments.timeout_seconds,
+  options->retry.on_wait = [&err, address = arguments.address,
                             waits = std::make_shared<std::atomic<int>>(0)](const absl::Status& why,
                                                                            absl::Duration) {
     if (++*waits != 2) return;
-    err << "duet: " << address << " does not answer: " << why.message()
-        << "; asked again until --timeout " << seconds << " s is over\n";
+    err << "duet: " << address << " does not answer: " << why.message() << "; retrying\n";
   };
 }
 

@@ -12,8 +12,8 @@ namespace duet::client::cli {
 // The flags as a client's options; reads the certificates that they name.
 absl::StatusOr<ClientOptions> ToClientOptions(const ServerArguments& arguments);
 
-// Has a client say on `err`, once, that a server does not answer and is asked again until the time
-// is over: after two attempts, as most outages are shorter. `err` outlives the client.
+// Has a client report on `err`, once, that a server does not answer and that it is retried: after
+// two attempts, since most outages are shorter. `err` outlives the client.
 void SayWhenWaiting(const ServerArguments& arguments, std::ostream& err, ClientOptions* options);
 
 }  // namespace duet::client::cli

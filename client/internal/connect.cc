@@ -27,6 +27,9 @@ constexpr char kServiceConfig[] = R"({
 })";
 
 constexpr absl::Duration kLongestReconnectWait = absl::Seconds(1);
+// The longest that one attempt to connect may take, handshake included: gRPC's own 20 s are long
+// where a firewall drops packets.
+constexpr absl::Duration kConnectTimeout = absl::Seconds(5);
 
 bool IsToken(absl::string_view text) {
   return std::all_of(text.begin(), text.end(),
@@ -60,6 +63,10 @@ absl::Status Check(const ClientOptions& options) {
   if (options.deadline <= absl::ZeroDuration()) {
     return absl::InvalidArgumentError(
         absl::StrCat("deadline: ", absl::FormatDuration(options.deadline), ", wanted more than 0"));
+  }
+  if (options.wait < absl::ZeroDuration()) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "wait: expected 0 or more, got ", absl::FormatDuration(options.wait)));
   }
   const RetryOptions& retry = options.retry;
   if (retry.max_attempts < 1) {
@@ -110,6 +117,9 @@ grpc::ChannelArguments Arguments(const ClientOptions& options) {
                    static_cast<int>(absl::ToInt64Milliseconds(
                        std::max(options.retry.initial_backoff,
                                 std::min(options.retry.max_backoff, kLongestReconnectWait)))));
+  // gRPC's name for it is another, but this is the least time that it gives an attempt to connect.
+  arguments.SetInt(GRPC_ARG_MIN_RECONNECT_BACKOFF_MS,
+                   static_cast<int>(absl::ToInt64Milliseconds(kConnectTimeout)));
   // Plain text to this machine must not take the way of the environment's proxy.
   if (!options.token.empty() && !options.tls.has_value()) {
     arguments.SetInt(GRPC_ARG_ENABLE_HTTP_PROXY, 0);

@@ -71,13 +71,19 @@ ConnectionImpl::ConnectionImpl(std::shared_ptr<Stub> stub, const ClientOptions& 
                                RetryEnvironment environment)
     : stub_(std::move(stub)),
       deadline_(options.deadline),
+      wait_(options.wait),
+      server_address_(options.server_address),
       retry_(options.retry),
       environment_(std::move(environment)) {}
+
+RetryLimits ConnectionImpl::Limits(const CallContext& call) const {
+  return {call.deadline, wait_, server_address_};
+}
 
 absl::StatusOr<std::vector<ModelInfo>> ConnectionImpl::ListModels() {
   const CallContext call{Deadline(), ""};
   absl::StatusOr<v1::ListModelsResponse> response;
-  absl::Status status = Retry(retry_, environment_, Priority::kInteractive, call.deadline, [&] {
+  absl::Status status = Retry(retry_, environment_, Priority::kInteractive, Limits(call), [&] {
     response = stub_->ListModels(call, {});
     return response.status();
   });
@@ -98,7 +104,7 @@ absl::StatusOr<ModelDetails> ConnectionImpl::GetModel(const ModelChoice& choice)
   *request.mutable_model() = *std::move(selector);
   const CallContext call{Deadline(), ""};
   absl::StatusOr<v1::GetModelResponse> response;
-  absl::Status status = Retry(retry_, environment_, Priority::kInteractive, call.deadline, [&] {
+  absl::Status status = Retry(retry_, environment_, Priority::kInteractive, Limits(call), [&] {
     response = stub_->GetModel(call, request);
     return response.status();
   });
@@ -117,7 +123,7 @@ absl::StatusOr<SynthesisResult> ConnectionImpl::Synthesize(const SynthesisReques
   ReplyAssembler reply(request.leader, on_chunk);
   absl::Time first_chunk = absl::InfiniteFuture();
   int attempts = 0;
-  absl::Status status = Retry(retry_, environment_, request.priority, call.deadline, [&] {
+  absl::Status status = Retry(retry_, environment_, request.priority, Limits(call), [&]() -> AttemptEnd {
     ++attempts;
     const bool resumes = reply.handed_out() > 0;
     if (resumes && reply.header().has_value()) PinModel(*reply.header(), wire->mutable_model());
@@ -125,7 +131,8 @@ absl::StatusOr<SynthesisResult> ConnectionImpl::Synthesize(const SynthesisReques
     absl::Status ended = RunStream(call, *wire, &reply, &first_chunk);
     if (resumes && absl::IsNotFound(ended)) return ModelIsGone(ended, wire->model(), handed_out);
     // A callback that ends the call is obeyed: its status is never a reason for another attempt.
-    return reply.callback_status().ok() ? ended : absl::OkStatus();
+    if (!reply.callback_status().ok()) return absl::OkStatus();
+    return {std::move(ended), reply.header().has_value()};
   });
   if (!reply.callback_status().ok()) return reply.callback_status();
   if (!status.ok()) return status;

@@ -2,6 +2,7 @@
 #define DUET_CLIENT_INTERNAL_CONNECTION_IMPL_H_
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "client/connection.h"
@@ -26,12 +27,14 @@ class ConnectionImpl final : public Connection {
   void SynthesizeAsync(SynthesisRequest request, const SynthesisCallback& done) override;
 
  private:
+  RetryLimits Limits(const CallContext& call) const;
   absl::Status RunStream(const CallContext& call, const v1::SynthesizeRequest& request,
                          ReplyAssembler* reply, absl::Time* first_chunk);
   absl::Time Deadline() const { return environment_.now() + deadline_; }
 
   std::shared_ptr<Stub> stub_;
-  absl::Duration deadline_;
+  absl::Duration deadline_, wait_;
+  std::string server_address_;
   RetryOptions retry_;
   RetryEnvironment environment_;
 };

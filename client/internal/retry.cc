@@ -6,6 +6,7 @@
 
 #include "absl/random/random.h"
 #include "absl/strings/cord.h"
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/synchronization/mutex.h"
 #include "absl/time/clock.h"
@@ -15,11 +16,24 @@
 namespace duet::client::internal {
 namespace {
 
+std::string Attempts(int count) {
+  return absl::StrCat(count, count == 1 ? " attempt" : " attempts");
+}
+
 absl::Status AfterAttempts(const absl::Status& status, int attempts, std::string_view reason) {
   if (attempts == 1 && reason.empty()) return status;
   return AppendMessage(status,
-                       absl::StrCat(" (after ", attempts, attempts == 1 ? " attempt" : " attempts",
-                                    std::string(reason), ")"));
+                       absl::StrCat(" (after ", Attempts(attempts), std::string(reason), ")"));
+}
+
+absl::Status NoServer(const absl::Status& status, int attempts, const RetryLimits& limits,
+                      absl::Duration spent) {
+  return absl::Status(
+      status.code(),
+      absl::StrCat("server_address: expected a Duet server at ", limits.server_address, ", got \"",
+                   status.message(), "\" (", Attempts(attempts), " in ",
+                   absl::ToInt64Milliseconds(spent) / 1000.0,
+                   " s)"));
 }
 
 bool HasDetails(const absl::Status& status) {
@@ -69,19 +83,37 @@ absl::Duration RetryWait(const RetryOptions& options, int attempt, const absl::S
   return *pushback + ceiling * 0.5 * uniform;
 }
 
+bool IsUnreachable(const AttemptEnd& end) {
+  // "backend unhealthy" is how gRPC reports NOT_SERVING.
+  return end.status.code() == absl::StatusCode::kUnavailable && !end.answered &&
+         !HasDetails(end.status) && !absl::StrContains(end.status.message(), "unhealthy");
+}
+
 absl::Status Retry(const RetryOptions& options, const RetryEnvironment& environment,
-                   Priority priority, absl::Time deadline,
-                   absl::FunctionRef<absl::Status()> attempt) {
+                   Priority priority, const RetryLimits& limits,
+                   absl::FunctionRef<AttemptEnd()> attempt) {
+  const absl::Time begin = environment.now();
+  // The end of the first of the latest attempts in a row that reached no server.
+  absl::Time away_since = absl::InfiniteFuture();
   for (int made = 1;; ++made) {
-    absl::Status status = attempt();
+    const AttemptEnd end = attempt();
+    const absl::Status& status = end.status;
     if (status.ok()) return status;
     if (!IsRetryable(status, priority) || made >= options.max_attempts) {
       return AfterAttempts(status, made, "");
     }
-    const absl::Duration wait = RetryWait(options, made, status, environment.uniform());
-    if (environment.now() + wait >= deadline) {
-      return AfterAttempts(status, made, ", the deadline leaves no time for another");
+    const absl::Time now = environment.now();
+    const bool unreachable = IsUnreachable(end);
+    away_since = unreachable ? std::min(away_since, now) : absl::InfiniteFuture();
+    const absl::Duration left = away_since + limits.wait - now;
+    // The last attempt is made when the wait is over, not a whole backoff before that.
+    const absl::Duration wait =
+        std::min(left, RetryWait(options, made, status, environment.uniform()));
+    const bool too_late = now + wait >= limits.deadline;
+    if (unreachable && (too_late || left <= absl::ZeroDuration())) {
+      return NoServer(status, made, limits, now - begin);
     }
+    if (too_late) return AfterAttempts(status, made, ", the deadline leaves no time for another");
     if (options.on_wait) options.on_wait(status, wait);
     environment.sleep(wait);
   }

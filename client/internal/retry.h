@@ -2,6 +2,8 @@
 #define DUET_CLIENT_INTERNAL_RETRY_H_
 
 #include <functional>
+#include <string>
+#include <utility>
 
 #include "absl/functional/function_ref.h"
 #include "absl/status/status.h"
@@ -34,12 +36,33 @@ bool IsRetryable(const absl::Status& status, Priority priority);
 absl::Duration RetryWait(const RetryOptions& options, int attempt, const absl::Status& status,
                          double uniform);
 
+// What bounds the attempts at one call, besides their number.
+struct RetryLimits {
+  absl::Time deadline;
+  absl::Duration wait;  // as ClientOptions::wait
+  std::string server_address;
+};
+
+// How an attempt ended.
+struct AttemptEnd {
+  // NOLINTNEXTLINE(google-explicit-constructor): most attempts have nothing else to report.
+  AttemptEnd(absl::Status ended, bool server_answered = false)
+      : status(std::move(ended)), answered(server_answered) {}
+
+  absl::Status status;
+  bool answered;  // the server sent part of a reply before the attempt ended
+};
+
+// Whether no server was reached: UNAVAILABLE that comes from gRPC itself. Duet servers send details
+// with theirs; a server whose health service says NOT_SERVING is reachable.
+bool IsUnreachable(const AttemptEnd& end);
+
 // Calls `attempt` until it succeeds, fails with a status that is not retryable, or no attempt or no
-// time is left. Returns the last attempt's status; the message says how many there were, if
-// several.
+// time is left. Returns the last attempt's status. The message says how many attempts there were,
+// if several, and names the server if it could not be reached for `limits.wait`.
 absl::Status Retry(const RetryOptions& options, const RetryEnvironment& environment,
-                   Priority priority, absl::Time deadline,
-                   absl::FunctionRef<absl::Status()> attempt);
+                   Priority priority, const RetryLimits& limits,
+                   absl::FunctionRef<AttemptEnd()> attempt);
 
 }  // namespace duet::client::internal
 

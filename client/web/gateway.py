@@ -22,7 +22,7 @@ import zipfile
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE.parent / "python"), str(HERE.parent / "viewer")]
 
-import duet  # noqa: E402
+import duet_motion as duet  # noqa: E402
 import element  # noqa: E402
 import grpc_web  # noqa: E402
 

@@ -5,7 +5,8 @@ import base64
 import re
 import urllib.parse
 
-import duet._channel
+import duet_motion as duet
+import duet_motion._channel
 import grpc
 
 METHODS = tuple(f"/duet.v1.MotionSynthesis/{name}"

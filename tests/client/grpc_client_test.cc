@@ -152,6 +152,21 @@ TEST_F(GrpcClientTest, AServerThatSaysNotServingGetsNoCalls) {
               StatusIs(absl::StatusCode::kUnavailable, HasSubstr("after 4 attempts")));
 }
 
+TEST_F(GrpcClientTest, AServerThatSaysNotServingIsNotUnreachable) {
+  server_.SetServing(false);
+  options_.retry.max_attempts = 4;
+  options_.wait = absl::ZeroDuration();
+  EXPECT_THAT(Synthesize(),
+              StatusIs(absl::StatusCode::kUnavailable, HasSubstr("after 4 attempts")));
+}
+
+TEST_F(GrpcClientTest, AServerThatIsNotThereIsReportedWithItsAddressOnceTheWaitIsOver) {
+  options_.server_address = "127.0.0.1:1";
+  options_.wait = absl::Milliseconds(50);
+  EXPECT_THAT(Synthesize(), StatusIs(absl::StatusCode::kUnavailable,
+                                     HasSubstr("expected a Duet server at 127.0.0.1:1, got")));
+}
+
 TEST_F(GrpcClientTest, AServerThatIsNotThereIsUnavailableAfterEveryAttempt) {
   // Port 1 of this machine: nothing listens there.
   options_.server_address = "127.0.0.1:1";
@@ -241,6 +256,8 @@ TEST(ClientCreateTest, SenselessOptionsAreRefused) {
               StatusIs(kInvalid, HasSubstr("server_address: empty")));
   EXPECT_THAT(refused([](ClientOptions* o) { o->deadline = absl::ZeroDuration(); }),
               StatusIs(kInvalid, HasSubstr("deadline: 0")));
+  EXPECT_THAT(refused([](ClientOptions* o) { o->wait = -absl::Seconds(1); }),
+              StatusIs(kInvalid, HasSubstr("wait: expected 0 or more, got -1s")));
   EXPECT_THAT(refused([](ClientOptions* o) { o->retry.max_attempts = 0; }),
               StatusIs(kInvalid, HasSubstr("retry.max_attempts: 0")));
   EXPECT_THAT(refused([](ClientOptions* o) { o->retry.max_backoff = absl::Milliseconds(1); }),

@@ -24,11 +24,15 @@ constexpr absl::Duration kMillisecond = absl::Milliseconds(1);
 
 absl::Status Unavailable() { return ServiceError(absl::StatusCode::kUnavailable, "away"); }
 
+// What gRPC says of a server that it cannot reach.
+absl::Status Refused() { return absl::UnavailableError("Connection refused"); }
+
 // Runs Retry over scripted outcomes and counts the attempts.
 class RetryTest : public ::testing::Test {
  protected:
   absl::Status Run(std::vector<absl::Status> outcomes, Priority priority = Priority::kInteractive) {
-    return Retry(options_, time_.Environment(), priority, time_.now + deadline_, [&] {
+    const RetryLimits limits = {time_.now + deadline_, wait_, "lab:50051"};
+    return Retry(options_, time_.Environment(), priority, limits, [&]() -> AttemptEnd {
       const auto attempt = static_cast<size_t>(attempts_++);
       if (attempt < outcomes.size()) return outcomes[attempt];
       ADD_FAILURE() << "attempt " << attempts_ << " was not expected";
@@ -39,6 +43,7 @@ class RetryTest : public ::testing::Test {
   RetryOptions options_;
   FakeTime time_;
   absl::Duration deadline_ = absl::Minutes(1);
+  absl::Duration wait_ = absl::Seconds(5);
   int attempts_ = 0;
 };
 
@@ -78,6 +83,49 @@ TEST_F(RetryTest, TheDeadlineAloneEndsTheAttempts) {
               StatusIs(absl::StatusCode::kUnavailable,
                        HasSubstr("the deadline leaves no time for another")));
   EXPECT_GT(time_.now - begin, deadline_ - options_.max_backoff);
+}
+
+TEST_F(RetryTest, AServerThatCannotBeReachedIsRetriedForTheWaitAndThenNamed) {
+  const absl::Time begin = time_.now;
+  const absl::Status status = Run(std::vector<absl::Status>(100, Refused()));
+  EXPECT_THAT(status, StatusIs(absl::StatusCode::kUnavailable,
+                               HasSubstr("server_address: expected a Duet server at lab:50051, got "
+                                         "\"Connection refused\" (8 attempts in 5 s)")));
+  EXPECT_EQ(time_.now - begin, wait_);
+}
+
+TEST_F(RetryTest, WithoutAWaitAServerThatCannotBeReachedIsTriedOnce) {
+  wait_ = absl::ZeroDuration();
+  EXPECT_THAT(Run({Refused()}),
+              StatusIs(absl::StatusCode::kUnavailable, HasSubstr("(1 attempt in 0 s)")));
+  EXPECT_THAT(time_.sleeps, IsEmpty());
+}
+
+TEST_F(RetryTest, TheWaitEndsAtTheDeadline) {
+  wait_ = absl::Hours(1);
+  deadline_ = absl::Seconds(2);
+  EXPECT_THAT(Run(std::vector<absl::Status>(100, Refused())),
+              StatusIs(absl::StatusCode::kUnavailable,
+                       HasSubstr("expected a Duet server at lab:50051")));
+}
+
+TEST_F(RetryTest, AnAnswerOfAnyKindStartsTheWaitAnew) {
+  wait_ = absl::Milliseconds(100);
+  const RetryLimits limits = {time_.now + deadline_, wait_, "lab:50051"};
+  const std::vector<AttemptEnd> ends = {Refused(), {Refused(), true}, Refused(), Unavailable(),
+                                        Refused(), absl::OkStatus()};
+  EXPECT_THAT(Retry(options_, time_.Environment(), Priority::kInteractive, limits,
+                    [&] { return ends[static_cast<size_t>(attempts_++)]; }),
+              IsOk());
+  EXPECT_EQ(attempts_, 6);
+}
+
+TEST(IsUnreachableTest, ServersSendDetailsAndUnhealthyOnesAreThere) {
+  EXPECT_TRUE(IsUnreachable(Refused()));
+  EXPECT_FALSE(IsUnreachable({Refused(), /*server_answered=*/true}));
+  EXPECT_FALSE(IsUnreachable(Unavailable()));
+  EXPECT_FALSE(IsUnreachable(absl::UnavailableError("last error: backend unhealthy")));
+  EXPECT_FALSE(IsUnreachable(absl::InternalError("")));
 }
 
 TEST_F(RetryTest, ACallThatAServerDroppedWithoutAWordIsMadeAgain) {

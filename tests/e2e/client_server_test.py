@@ -243,10 +243,11 @@ class ClientServerTest(unittest.TestCase):
             for arguments in (("models",),
                               ("synthesize", "--leader", tools.sample("kick"), "--label", "kick=1",
                                "--out", self.out("html"))):
-                result = tools.duet(*arguments, "--server", address, "--timeout", "2")
+                result = tools.duet(*arguments, "--server", address, "--wait", "1")
                 self.assertEqual(result.returncode, 1, result.stderr)
                 self.assertIn("UNAVAILABLE", result.stderr)
-                self.assertIn("asked again until --timeout 2 s is over", result.stderr)
+                self.assertIn(f"duet: {address} does not answer", result.stderr)
+                self.assertIn(f"expected a Duet server at {address}, got", result.stderr)
                 self.assertIn(f"Does a duet-server listen at {address}?", result.stderr)
 
     def test_a_deadline_that_passes_is_1(self):

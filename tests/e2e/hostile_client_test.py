@@ -190,7 +190,7 @@ class RestartTest(unittest.TestCase):
             call = subprocess.Popen(
                 [str(tools.PROGRAMS / "duet"), "synthesize", "--leader", tools.sample("punch"),
                  "--label", "punch=1", "--out", f"{folder}/pair.html", "--server",
-                 server.address, "--timeout", str(tools.RUN_SECONDS)],
+                 server.address, "--wait", str(tools.RUN_SECONDS)],
                 stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
             with call:
                 self.assertIn("does not answer", call.stderr.readline())

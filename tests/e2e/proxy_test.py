@@ -54,7 +54,7 @@ class Proxy:
     def duet(self, *arguments):
         # A client looks for a server that is not there yet; a proxy takes a moment to begin.
         return tools.duet(*arguments, "--server", f"127.0.0.1:{self.port}",
-                          "--tls-ca", self._folder / "cert.pem", "--timeout", 60)
+                          "--tls-ca", self._folder / "cert.pem", "--wait", 60)
 
     def wait_until_it_serves(self):
         for _ in range(20):

@@ -17,10 +17,11 @@ for module, package in (("grpc", "python3-grpcio"), ("numpy", "python3-numpy"),
         tools.skip(f"no Python module {module}; install the package {package}")
 
 USE = """
-import duet, pathlib, sys
-client = duet.Client(sys.argv[1])
-leader = duet.read_motion(sys.argv[2])
-print(pathlib.Path(duet.__file__).parent, client.synthesize(leader, {"hug": 1}).follower)
+import duet_motion as duet, importlib.metadata, pathlib, sys
+leader = duet.read_motion(sys.argv[1])
+with duet.Client() as client:
+    print(pathlib.Path(duet.__file__).parent, client.synthesize(leader, {"hug": 1}).follower)
+assert duet.__version__ == importlib.metadata.version("duet-motion")
 """
 
 
@@ -41,27 +42,30 @@ class PythonPackageTest(unittest.TestCase):
     def test_its_version_is_the_projects(self):
         cmake = (tools.SOURCE / "CMakeLists.txt").read_text(encoding="utf-8")
         version = re.search(r"project\(duet VERSION ([\d.]+)", cmake)[1]
-        self.assertEqual(self.archive(".whl").name, f"duet-{version}-py3-none-any.whl")
-        self.assertEqual(self.archive(".tar.gz").name, f"duet-{version}.tar.gz")
+        self.assertEqual(self.archive(".whl").name, f"duet_motion-{version}-py3-none-any.whl")
+        self.assertEqual(self.archive(".tar.gz").name, f"duet-motion-{version}.tar.gz")
 
     def test_the_sdist_has_what_a_package_needs(self):
         with tarfile.open(self.archive(".tar.gz")) as archive:
             names = {name.partition("/")[2] for name in archive.getnames()}
-        self.assertLessEqual({"pyproject.toml", "README.md", "LICENSE", "duet/py.typed",
-                              "duet/v1/synthesis_pb2.pyi"}, names)
+        self.assertLessEqual({"pyproject.toml", "README.md", "LICENSE", "duet_motion/py.typed",
+                              "duet_motion/v1/synthesis_pb2.pyi"}, names)
 
     def test_the_wheel_is_installed_and_answers(self):
         installed = self.folder / "installed"
         tools.run(sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--no-index",
                   "--target", installed, self.archive(".whl")).check_returncode()
-        environment = {**os.environ, "PYTHONPATH": str(installed),
+        self.assertEqual([path.name for path in installed.iterdir() if path.suffix == ""],
+                         ["duet_motion"])
+        environment = {**os.environ, "PYTHONPATH": str(installed), "DUET_CONFIG": "",
                        "DUET_PROGRAM": str(tools.PROGRAMS / "duet")}
         with tools.running_server() as server:
-            used = tools.run(sys.executable, "-c", USE, server.address, tools.sample("hug"),
-                             cwd=self.folder, env=environment)
+            environment["DUET_SERVER"] = server.address
+            used = tools.run(sys.executable, "-c", USE, tools.sample("hug"), cwd=self.folder,
+                             env=environment)
         self.assertEqual(used.returncode, 0, used.stderr)
         self.assertEqual(used.stdout.strip(),
-                         f"{installed / 'duet'} Motion(91 frames at 30 Hz, 15 joints, metres, y-up)")
+                         f"{installed / 'duet_motion'} Motion(91 frames at 30 Hz, 15 joints, metres, y-up)")
 
 
 if __name__ == "__main__":

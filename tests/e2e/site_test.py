@@ -75,8 +75,10 @@ class SiteTest(unittest.TestCase):
 
     def test_the_python_reference_has_its_words(self):
         text = (self.site / "docs/site/python.html").read_text(encoding="utf-8")
-        for name in ("duet.Client.synthesize", "duet.Motion", "duet.errors.InvalidRequestError",
-                     "duet.files.read_motion", "duet.aio.Client", "duet.SynthesisRequest.seed"):
+        for name in ("duet_motion.Client.synthesize", "duet_motion.Motion",
+                     "duet_motion.errors.InvalidRequestError", "duet_motion.sets.read_set",
+                     "duet_motion.files.read_motion", "duet_motion.aio.Client",
+                     "duet_motion.SynthesisRequest.seed"):
             self.assertIn(f'id="{name}"', text)
 
 

@@ -21,9 +21,9 @@ for module, package in (("grpc", "python3-grpcio"), ("numpy", "python3-numpy")):
 sys.path.insert(0, str(tools.SOURCE / "client" / "python"))
 os.environ["DUET_PROGRAM"] = str(tools.PROGRAMS / "duet")
 
-import duet  # noqa: E402
+import duet_motion as duet  # noqa: E402
 import numpy as np  # noqa: E402
-from duet.v1 import synthesis_pb2  # noqa: E402
+from duet_motion.v1 import synthesis_pb2  # noqa: E402
 
 # Drops a file on the page as a visitor would, with the text that `fetched` gives.
 DROP = """(async () => {{

@@ -10,7 +10,7 @@ filters and a journal there is `duet batch`.
 import argparse
 import itertools
 
-import duet
+import duet_motion as duet
 import numpy as np
 
 
@@ -20,7 +20,7 @@ def main():
     parser.add_argument("leaders", nargs="+")
     parser.add_argument("--seeds", type=int, default=4)
     parser.add_argument("--concurrency", type=int, default=4)
-    parser.add_argument("--server", default="localhost:50051")
+    parser.add_argument("--server", help="host:port; otherwise DUET_SERVER, or localhost:50051")
     options = parser.parse_args()
 
     leaders = [duet.read_motion(path) for path in options.leaders]

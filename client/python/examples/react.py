@@ -6,7 +6,7 @@
 import argparse
 import sys
 
-import duet
+import duet_motion as duet
 
 
 def main():
@@ -14,7 +14,7 @@ def main():
     parser.add_argument("leader", help="a motion file: .bvh, .glb, .csv, ...")
     parser.add_argument("labels", nargs="+", help="CLASS=WEIGHT: 1 wanted, -1 avoided")
     parser.add_argument("--out", action="append", required=True, help="a file to write; repeatable")
-    parser.add_argument("--server", default="localhost:50051")
+    parser.add_argument("--server", help="host:port; otherwise DUET_SERVER, or localhost:50051")
     parser.add_argument("--seed", type=int, default=0, help="which of many answers")
     options = parser.parse_args()
 

@@ -6,8 +6,8 @@
 import argparse
 import asyncio
 
-import duet
-import duet.aio
+import duet_motion as duet
+import duet_motion.aio
 import numpy as np
 
 
@@ -27,7 +27,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("leader")
     parser.add_argument("interaction_class")
-    parser.add_argument("--server", default="localhost:50051")
+    parser.add_argument("--server", help="host:port; otherwise DUET_SERVER, or localhost:50051")
     options = parser.parse_args()
     leader = duet.read_motion(options.leader)
     asyncio.run(follow(options.server, leader, options.interaction_class))

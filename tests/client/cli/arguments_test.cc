@@ -70,7 +70,7 @@ TEST_F(ArgumentsTest, VersionAndHelpSucceed) {
 TEST_F(ArgumentsTest, HelpShowsDefaults) {
   const std::string help = ParseCommandLine({"synthesize", "--help"}).text;
   for (const char* shown :
-       {"--server HOST:PORT=localhost:50051", "--timeout SECONDS=120",
+       {"--server HOST:PORT=localhost:50051", "--timeout SECONDS=120", "--wait SECONDS=5",
         "--leader-side left|right=left", "--priority bulk|interactive=interactive", "else left)",
         "--clean-up auto|off|on=auto", "--seed SEED=0", "--variety VARIETY=1",
         "--samples COUNT=1"}) {

@@ -113,7 +113,7 @@ TEST(CommandTable, HoldsEveryCommandAndFlag) {
   EXPECT_THAT(names, ElementsAre("", "models", "synthesize", "batch", "batch merge", "batch verify",
                                  "inspect", "convert", "view", "compare", "admin", "admin models",
                                  "admin reload", "admin load", "admin unload", "admin label",
-                                 "help", "completion", "man"));
+                                 "stdio", "help", "completion", "man"));
   EXPECT_THAT(FlagOf(commands[2], "--leader-side").choices, ElementsAre("left", "right"));
   EXPECT_EQ(FlagOf(commands[2], "--leader-side").default_value, "left");
   EXPECT_TRUE(FlagOf(commands[2], "--leader").takes_file);

@@ -130,7 +130,7 @@ class ProgramTest : public ::testing::Test {
 
 TEST_F(ProgramTest, ListsModelsForPeople) {
   EXPECT_CALL(*connection_, ListModels).WillOnce(Return(std::vector{SbuModel().model}));
-  EXPECT_EQ(Run({"models", "--server", "duet:1", "--timeout", "3"}), 0);
+  EXPECT_EQ(Run({"models", "--server", "duet:1", "--timeout", "3", "--wait", "0.5"}), 0);
   EXPECT_EQ(out_.str(),
             "sbu@1 (stable), default\n"
             "  classes   kick, hug\n"
@@ -141,6 +141,7 @@ TEST_F(ProgramTest, ListsModelsForPeople) {
             "  about     A test's model.\n");
   EXPECT_EQ(options_.server_address, "duet:1");
   EXPECT_EQ(options_.deadline, absl::Seconds(3));
+  EXPECT_EQ(options_.wait, absl::Milliseconds(500));
   EXPECT_FALSE(options_.tls.has_value());
 }
 
@@ -564,8 +565,8 @@ TEST_F(ProgramTest, AnAbsentServerIsWorthRetryingAndNamed) {
   EXPECT_CALL(*connection_, GetModel).WillOnce(Return(absl::UnavailableError("refused")));
   EXPECT_EQ(Synthesize("pair.html", {"--server", "duet:1"}), 1);
   EXPECT_EQ(err_.str(),
-            "duet: refused (UNAVAILABLE)\nDoes a duet-server listen at duet:1? (--server; where it "
-            "encrypts, --tls or --tls-ca FILE)\n");
+            "duet: refused (UNAVAILABLE)\nDoes a duet-server listen at duet:1? (--server; to wait for "
+            "one, --wait SECONDS; where it encrypts, --tls or --tls-ca FILE)\n");
 }
 
 TEST_F(ProgramTest, ADrainingServerIsWorthRetrying) {

@@ -1,16 +1,18 @@
 """Both clients, waiting and asynchronous, against a server that answers as a test says."""
 
 import asyncio
+import concurrent.futures
+import socket
 import threading
 import unittest
 
 import support
-import duet
-import duet.aio
+import duet_motion as duet
+import duet_motion.aio
 import grpc
 import numpy as np
 from support import Failure, Script
-from duet.v1 import synthesis_pb2
+from duet_motion.v1 import synthesis_pb2
 
 UNAVAILABLE = grpc.StatusCode.UNAVAILABLE
 
@@ -52,7 +54,8 @@ class Calls:
         self.leader = support.leader()
 
     def calls(self, script, calls, **options):
-        options = {"retry": support.QUICK, "timeout": support.LONGEST_CALL, **options}
+        options = {"retry": support.QUICK, "timeout": support.LONGEST_CALL,
+                   "wait": support.LONGEST_CALL, **options}
         with support.serving(script) as address:
             return self.run_calls(address, calls, **options)
 
@@ -108,6 +111,33 @@ class Calls:
             self.synthesize([*reply[:3], Failure(UNAVAILABLE)],
                             [Failure(grpc.StatusCode.NOT_FOUND)])
 
+    def test_a_server_that_is_not_there_is_reported_soon_with_its_address(self):
+        with socket.socket() as unused:  # bound, but nobody listens
+            unused.bind(("127.0.0.1", 0))
+            address = "127.0.0.1:%d" % unused.getsockname()[1]
+            for call in (lambda client: client.list_models(), lambda client: client.get_model(),
+                         lambda client: client.synthesize(self.leader, {"hug": 1})):
+                with self.assertRaisesRegex(
+                        duet.UnavailableError,
+                        f"expected a Duet server at {address}, got .*(Connection refused|connect)"):
+                    self.run_calls(address, lambda client, get, _: get(call(client)), wait=0.05,
+                                   timeout=support.LONGEST_CALL)
+
+    def test_a_refusal_names_frame_and_joint(self):
+        bad = support.bad_request(("leader.positions[14]", "is inf, wanted a finite number"),
+                                  ("follower_start.pose.positions[4]", "is too far"))
+        refusal = Failure(grpc.StatusCode.INVALID_ARGUMENT,
+                          "leader.positions[14]: is inf, wanted a finite number", bad)
+        with self.assertRaises(duet.InvalidRequestError) as caught:
+            self.synthesize([refusal])
+        self.assertEqual(
+            [(violation.field, violation.description) for violation in caught.exception.violations],
+            [("leader.positions[1, 1, 2]",
+              "frame 1, joint 'left', z: is inf, wanted a finite number"),
+             ("follower_start[1, 1]", "frame 0, joint 'left', y: is too far")])
+        self.assertIn("leader.positions[1, 1, 2] (frame 1, joint 'left', z): is inf",
+                      str(caught.exception))
+
     def test_attempts_are_counted_and_end(self):
         away = [Failure(UNAVAILABLE, "away")]
         with self.assertRaisesRegex(duet.UnavailableError, r"away \(after 4 attempts\)"):
@@ -115,13 +145,25 @@ class Calls:
         result, _ = self.synthesize(away, away, support.good_reply(self.leader))
         self.assertEqual(result.attempt_count, 3)
 
-    def test_bulk_work_waits_for_a_full_server(self):
+    def test_a_full_server_is_asked_again_when_it_says_so(self):
         full = [Failure(grpc.StatusCode.RESOURCE_EXHAUSTED, "full", support.retry_info(0.001))]
+        for priority in ("interactive", "bulk"):
+            result, _ = self.synthesize(full, support.good_reply(self.leader),
+                                        request={"priority": priority})
+            self.assertEqual(result.attempt_count, 2)
         with self.assertRaisesRegex(duet.ServerBusyError, "full$"):
-            self.synthesize(full, support.good_reply(self.leader))
-        result, _ = self.synthesize(full, support.good_reply(self.leader),
-                                    request={"priority": "bulk"})
-        self.assertEqual(result.attempt_count, 2)
+            self.synthesize(full, retry=duet.RetryOptions(max_attempts=1))
+
+    def test_a_call_has_a_timeout_of_its_own(self):
+        go_on = threading.Event()
+        with self.assertRaises(duet.DeadlineError):
+            self.synthesize(support.held_reply(self.leader, go_on, go_on), request={"timeout": 0.1})
+        for name in ("list_models", "get_model"):
+            with self.assertRaises(duet.DeadlineError):
+                self.calls(support.Holding(), lambda client, get, _: get(
+                    getattr(client, name)(timeout=0.1)))
+            with self.assertRaisesRegex(ValueError, "timeout: expected a finite number above 0"):
+                self.calls(Script(), lambda client, get, _: get(getattr(client, name)(timeout=0)))
 
     def test_a_call_ends_at_its_deadline(self):
         go_on = threading.Event()
@@ -168,14 +210,16 @@ class Calls:
         self.assertEqual(asked, [b"duet.test"])
 
     def test_options_that_make_no_sense_are_refused(self):
-        for options, message in (({"address": ""}, "address: empty"),
-                                 ({"timeout": 0}, "timeout: 0, wanted more than 0"),
-                                 ({"address": "far:1", "token": "x"}, "plain text to far:1, wanted tls"),
+        for options, message in (({"address": ""}, "address: expected host:port, got an empty"),
+                                 ({"timeout": 0}, "timeout: expected a finite number above 0, got 0"),
+                                 ({"address": "far:1", "token": "x"}, "expected tls, got plain text to far:1"),
                                  ({"address": "127.evil.test:1", "token": "x"}, "plain text to 127"),
                                  ({"address": "localhost.test:1", "token": "x"}, "plain text to"),
                                  ({"address": "ipv4:127.0.0.1:1,8.8.8.8:1", "token": "x"}, "plain"),
-                                 ({"token": "a b"}, "^token: has a blank"),
-                                 ({"token": "a\n"}, "^token: has a blank")):
+                                 ({"token": "a b"}, "^token: expected printable ASCII"),
+                                 ({"wait": -1}, "wait: expected a number of seconds, 0 or more, got -1"),
+                                 ({"max_concurrent_calls": 0}, "max_concurrent_calls: expected 1 or"),
+                                 ({"token": "a\n"}, "^token: expected printable ASCII")):
             with self.subTest(options=options), self.assertRaisesRegex(ValueError, message):
                 duet.Client(**options)
         for address in ("localhost:1", "127.0.0.1:1", "[::1]:1", "dns:///localhost:1", "unix:/x",
@@ -199,11 +243,40 @@ class Calls:
             outcomes[3].unwrap()
 
     def test_concurrency_is_at_least_one(self):
-        with self.assertRaisesRegex(ValueError, "concurrency: 0, wanted 1 or more"):
+        with self.assertRaisesRegex(ValueError, "concurrency: expected 1 or more, got 0"):
             self.calls(Script(), lambda client, get, _: client.synthesize_many([], concurrency=0))
 
 
 class WaitingTest(Calls, Waiting, unittest.TestCase):
+    def test_calls_of_many_threads_wait_for_their_turn(self):
+        together = support.Together(4)
+
+        def calls(client, *_):
+            with concurrent.futures.ThreadPoolExecutor(20) as pool:
+                return list(pool.map(
+                    lambda seed: client.synthesize(support.leader(), {"hug": 1}, seed=seed).seed,
+                    range(10, 40)))
+        self.assertEqual(self.calls(together, calls, max_concurrent_calls=4), list(range(10, 40)))
+        self.assertEqual(together.most, 4)
+
+    def test_a_call_whose_turn_does_not_come_in_time_fails(self):
+        begun, go_on = threading.Event(), threading.Event()
+        held = [lambda _: begun.set(), *support.held_reply(self.leader, threading.Event(), go_on)[:3],
+                lambda _: go_on.wait(support.LONGEST_CALL)]
+        script = Script(held, support.good_reply(self.leader))
+
+        def calls(client, *_):
+            first = threading.Thread(target=lambda: self.assertRaises(
+                duet.UnavailableError, client.synthesize, self.leader, {"hug": 1}))
+            first.start()
+            self.assertTrue(begun.wait(support.LONGEST_CALL))
+            with self.assertRaisesRegex(duet.DeadlineError, "max_concurrent_calls=1 calls"):
+                client.synthesize(self.leader, {"hug": 1}, timeout=0.05)
+            go_on.set()
+            first.join()
+            client.synthesize(self.leader, {"hug": 1})
+        self.calls(script, calls, max_concurrent_calls=1, retry=duet.RetryOptions(max_attempts=1))
+
     def test_a_stream_is_cancelled_by_leaving_it(self):
         ended, go_on = threading.Event(), threading.Event()
         script = Script(support.held_reply(self.leader, ended, go_on))
@@ -252,6 +325,84 @@ class WaitingTest(Calls, Waiting, unittest.TestCase):
 
 
 class AwaitingTest(Calls, Awaiting, unittest.TestCase):
+    def test_gathered_calls_wait_for_their_turn(self):
+        together = support.Together(4)
+
+        async def ask(client):
+            return await asyncio.gather(*(client.synthesize(support.leader(), {"hug": 1}, seed=seed)
+                                          for seed in range(10, 40)))
+        results = self.calls(together, lambda client, get, _: get(ask(client)),
+                             max_concurrent_calls=4)
+        self.assertEqual([result.seed for result in results], list(range(10, 40)))
+        self.assertEqual(together.most, 4)
+
+    def test_a_call_whose_turn_does_not_come_in_time_fails(self):
+        go_on = threading.Event()
+        script = Script(support.held_reply(self.leader, go_on, go_on),
+                        support.good_reply(self.leader))
+
+        async def ask(client):
+            first = asyncio.ensure_future(client.synthesize(self.leader, {"hug": 1}))
+            await asyncio.sleep(0)
+            with self.assertRaisesRegex(duet.DeadlineError, "max_concurrent_calls=1 calls"):
+                await client.synthesize(self.leader, {"hug": 1}, timeout=0.05)
+            waiting = asyncio.ensure_future(client.synthesize(self.leader, {"hug": 1}))
+            await asyncio.sleep(0)
+            waiting.cancel()
+            first.cancel()
+            await asyncio.wait({first, waiting})
+            go_on.set()
+            # Neither took its turn along.
+            return await client.synthesize(self.leader, {"hug": 1})
+        self.assertEqual(self.calls(script, lambda client, get, _: get(ask(client)),
+                                    max_concurrent_calls=1).attempt_count, 1)
+
+    def test_a_stream_is_cancelled_by_another_task(self):
+        ended, go_on = threading.Event(), threading.Event()
+        script = Script(support.held_reply(self.leader, ended, go_on))
+
+        async def call(client):
+            stream = client.stream(self.leader, {"hug": 1})
+            await stream.__anext__()
+            task = asyncio.ensure_future(stream.result())
+            await asyncio.sleep(0)
+            stream.cancel()
+            # Sooner than the held reply ends by itself.
+            done, _ = await asyncio.wait({task}, timeout=support.LONGEST_CALL / 2)
+            self.assertTrue(done)
+            with self.assertRaisesRegex(duet.CancelledError, "the call was cancelled"):
+                await task
+            self.assertTrue(await self.loop.run_in_executor(None, ended.wait,
+                                                            support.LONGEST_CALL))
+            go_on.set()
+        self.calls(script, lambda client, get, _: get(call(client)))
+        self.assertEqual(len(script.requests), 1)
+
+    def test_a_stream_is_cancelled_while_it_waits_for_its_next_attempt(self):
+        told = []
+        retry = duet.RetryOptions(initial_backoff=1000, max_backoff=1000,
+                                  on_wait=lambda *_: told.append(stream.cancel()))
+        stream = None
+
+        async def call(client):
+            nonlocal stream
+            stream = client.stream(self.leader, {"hug": 1})
+            with self.assertRaisesRegex(duet.CancelledError, "the call was cancelled"):
+                await stream.result()
+        self.calls(Script([Failure(UNAVAILABLE)]), lambda client, get, _: get(call(client)),
+                   retry=retry, timeout=10_000, wait=10_000)
+        self.assertEqual(told, [None])
+
+    def test_a_stream_that_was_cancelled_before_it_began_asks_for_nothing(self):
+        async def call(client):
+            stream = client.stream(self.leader, {"hug": 1})
+            stream.cancel()
+            with self.assertRaisesRegex(duet.CancelledError, "the call was cancelled"):
+                await stream.result()
+        script = Script()
+        self.calls(script, lambda client, get, _: get(call(client)))
+        self.assertEqual(script.requests, [])
+
     def test_a_closed_client_answers_no_more(self):
         def calls(client, get, gather):
             get(client.close())

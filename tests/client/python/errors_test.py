@@ -3,10 +3,10 @@
 import unittest
 
 import support
-import duet
+import duet_motion as duet
 import grpc
-from duet.errors import from_rpc_error, make_error
-from duet.rpc.v1 import status_pb2
+from duet_motion.errors import from_rpc_error, make_error
+from duet_motion.rpc.v1 import status_pb2
 
 
 class Refusal(grpc.RpcError):
@@ -17,18 +17,11 @@ class Refusal(grpc.RpcError):
         self.trailing_metadata = lambda: metadata
 
 
-def bad_request(*violations):
-    message = status_pb2.BadRequest()
-    for field, description in violations:
-        message.field_violations.add(field=field, description=description)
-    return message
-
-
 class ErrorsTest(unittest.TestCase):
     def test_every_violated_field_is_there(self):
         error = from_rpc_error(Refusal(
             grpc.StatusCode.INVALID_ARGUMENT, "two fields",
-            support.details(bad_request(("leader.unit", "0, wanted 1"), ("", "and more")),
+            support.details(support.bad_request(("leader.unit", "0, wanted 1"), ("", "and more")),
                             status_pb2.ErrorInfo(reason="INVALID_REQUEST"))))
         self.assertIsInstance(error, duet.InvalidRequestError)
         self.assertIsInstance(error, ValueError)
@@ -41,7 +34,7 @@ class ErrorsTest(unittest.TestCase):
 
     def test_what_the_message_names_is_not_told_twice(self):
         error = from_rpc_error(Refusal(grpc.StatusCode.INVALID_ARGUMENT, "seed: 1, wanted 2",
-                                       support.details(bad_request(("seed", "1, wanted 2")))))
+                                       support.details(support.bad_request(("seed", "1, wanted 2")))))
         self.assertEqual(error.message, "seed: 1, wanted 2")
 
     def test_when_to_come_back(self):

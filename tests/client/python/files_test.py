@@ -7,7 +7,7 @@ import unittest
 from unittest import mock
 
 import support
-import duet
+import duet_motion as duet
 import numpy as np
 
 PROGRAM = pathlib.Path(os.environ.get("DUET_BIN_DIR", support.SOURCE / "build/release/bin")) / "duet"
@@ -74,12 +74,12 @@ class FilesTest(unittest.TestCase):
         with self.assertRaisesRegex(duet.MotionFileError, f"^{self.folder}/absent.bvh"):
             duet.read_motion(self.folder / "absent.bvh")
         duet.write_motion(self.folder / "one.json", self.hug)
-        with self.assertRaisesRegex(duet.MotionFileError, "one person, wanted two"):
+        with self.assertRaisesRegex(duet.MotionFileError, "expected two people, got one"):
             duet.read_pair(self.folder / "one.json")
-        with self.assertRaisesRegex(ValueError, "follower.frame_count: 90, wanted the leader's 91"):
+        with self.assertRaisesRegex(ValueError, "follower.frame_count: expected the leader's 91, got 90"):
             duet.write_motion(self.folder / "x.json", self.hug, self.other.frames(1))
         with mock.patch.dict(os.environ, {"DUET_PROGRAM": "no-such-duet"}):
-            with self.assertRaisesRegex(FileNotFoundError, "no program 'no-such-duet'.*DUET_PROG"):
+            with self.assertRaisesRegex(FileNotFoundError, "program 'no-such-duet'.*DUET_PROG"):
                 duet.read_motion(HUG)
 
     def test_the_settings_of_a_user_do_not_count(self):

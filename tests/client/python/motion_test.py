@@ -4,7 +4,7 @@ import pickle
 import unittest
 
 import support
-import duet
+import duet_motion as duet
 import numpy as np
 
 
@@ -28,7 +28,7 @@ class MotionTest(unittest.TestCase):
     def test_finds_joints_by_name(self):
         motion = support.leader()
         np.testing.assert_array_equal(motion.joint("left"), motion.positions[:, 1])
-        with self.assertRaisesRegex(KeyError, "knee.*wanted one of root, left, right"):
+        with self.assertRaisesRegex(KeyError, "expected one of root, left, right, got 'knee'"):
             motion.joint("knee")
 
     def test_selects_and_reorders_joints(self):
@@ -45,15 +45,65 @@ class MotionTest(unittest.TestCase):
 
     def test_refuses_what_makes_no_sense_by_field(self):
         for changes, message in (
-                ({"positions": np.zeros((6, 9))}, r"positions: shape \(6, 9\), wanted \(frames"),
-                ({"positions": np.zeros((6, 3, 2))}, r"positions: shape \(6, 3, 2\)"),
-                ({"positions": np.zeros((6, 4, 3))}, "positions: 4 joints, wanted the 3"),
-                ({"joint_names": ("a", "b", "a")}, "joint_names: a more than once"),
-                ({"joint_names": "abc"}, "joint_names: 'abc', wanted a sequence"),
-                ({"unit": "feet"}, "unit: 'feet', wanted one of metres, millimetres"),
-                ({"up_axis": "up"}, "up_axis: 'up', wanted one of y-up, z-up, y-down")):
+                ({"positions": np.zeros((6, 9))}, r"positions: expected the shape \(frames.*\(6, 9\)"),
+                ({"positions": np.zeros((6, 3, 2))}, r"positions: .* got \(6, 3, 2\)"),
+                ({"positions": []}, r"positions: expected the shape .* got \(0,\)"),
+                ({"positions": np.zeros((6, 0, 3)), "joint_names": ()}, "positions: expected the shape"),
+                ({"positions": np.zeros((6, 4, 3))}, "positions: expected the 3 joints .* got 4"),
+                ({"positions": [[[1, 2, 3]] * 3, [[1, 2]] * 3]}, "positions: expected an array of num"),
+                ({"positions": np.full((6, 3, 3), "a")}, "positions: expected real numbers, got .*U1"),
+                ({"positions": np.zeros((6, 3, 3), complex)}, "positions: .*, got .*complex128"),
+                ({"positions": np.zeros((6, 3, 3), bool)}, "positions: .*, got .*bool"),
+                ({"positions": np.full((6, 3, 3), None)}, "positions: .*, got .*object"),
+                ({"joint_names": ("a", "b", "a")}, "joint_names: expected each name once, got a more"),
+                ({"joint_names": "abc"}, "joint_names: expected a sequence of names, got 'abc'"),
+                ({"joint_names": None}, "joint_names: expected a sequence of names, got None"),
+                ({"joint_names": ("a", "", "c")}, "joint_names: expected a name for each joint"),
+                ({"joint_names": ("a", 2, "c")}, "joint_names: expected a name for each joint, got 2"),
+                ({"frame_rate_hz": 0}, "frame_rate_hz: expected a finite number above 0, got 0"),
+                ({"frame_rate_hz": -30}, "frame_rate_hz: .* got -30"),
+                ({"frame_rate_hz": np.nan}, "frame_rate_hz: .* got nan"),
+                ({"frame_rate_hz": np.inf}, "frame_rate_hz: .* got inf"),
+                ({"frame_rate_hz": 10**400}, "frame_rate_hz: expected a finite"),
+                ({"frame_rate_hz": "30"}, "frame_rate_hz: .* got '30'"),
+                ({"frame_rate_hz": True}, "frame_rate_hz: .* got True"),
+                ({"unit": "feet"}, "unit: expected one of metres, millimetres, .* got 'feet'"),
+                ({"unit": ["metres"]}, "unit: expected one of metres"),
+                ({"up_axis": "up"}, "up_axis: expected one of y-up, z-up, y-down, got 'up'")):
             with self.subTest(changes=list(changes)), self.assertRaisesRegex(ValueError, message):
                 support.leader(**changes)
+
+    def test_names_frame_joint_and_axis_of_a_value_that_is_not_finite(self):
+        for value, told in ((np.nan, "nan"), (-np.inf, "-inf"), (1e300, r"1e\+300")):
+            positions = np.zeros((6, 3, 3))
+            positions[4, 1, 2] = value
+            with self.subTest(value=value), self.assertRaisesRegex(
+                    ValueError, rf"positions\[4, 1, 2\]: expected a finite float32, got {told} at "
+                                "frame 4, joint 'left', z$"):
+                support.leader(positions=positions)
+
+    def test_a_masked_value_counts_as_missing(self):
+        positions = np.ma.masked_equal(np.arange(54).reshape(6, 3, 3), 9 * 4 + 2)
+        with self.assertRaisesRegex(ValueError, "nan at frame 4, joint 'root', z"):
+            support.leader(positions=positions)
+
+    def test_what_grows_out_of_float32_is_refused(self):
+        large = support.leader(positions=np.full((2, 3, 3), 1e36))
+        with self.assertRaisesRegex(ValueError, "expected a finite float32, got .* joint 'root', x"):
+            large.converted("millimetres")
+
+    def test_resamples_as_the_program_does(self):
+        # The rule of ResampledFrameCount (tests/motion/resample_test.cc): the end is never cut off.
+        motion = support.leader(7)
+        for rate, frames in ((30, 7), (15, 4), (20, 5), (60, 13), (7, 3), (0.1, 2)):
+            self.assertEqual(motion.resampled(rate).frame_count, frames, rate)
+        half = motion.resampled(60)
+        np.testing.assert_allclose(half.positions[1], motion.positions[:2].mean(axis=0))
+        np.testing.assert_array_equal(half.positions[::2], motion.positions)
+        self.assertEqual(half.frame_rate_hz, 60)
+        np.testing.assert_array_equal(motion.resampled(20).positions[-1], motion.positions[-1])
+        with self.assertRaisesRegex(ValueError, "frame_rate_hz: .* got -1"):
+            motion.resampled(-1)
 
     def test_converts_units_and_axes_as_the_contract_has_them(self):
         # One metre right, two up, three towards the viewer.

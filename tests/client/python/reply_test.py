@@ -3,12 +3,12 @@
 import unittest
 
 import support
-import duet
+import duet_motion as duet
 import grpc
 import numpy as np
-from duet._reply import ReplyAssembler
-from duet.errors import make_error
-from duet.v1 import synthesis_pb2
+from duet_motion._reply import ReplyAssembler
+from duet_motion.errors import make_error
+from duet_motion.v1 import synthesis_pb2
 
 
 class ReplyTest(unittest.TestCase):

@@ -3,10 +3,10 @@
 import unittest
 
 import support
-import duet
+import duet_motion as duet
 import numpy as np
-from duet.request import to_proto, to_selector
-from duet.v1 import motion_pb2, synthesis_pb2
+from duet_motion.request import to_proto, to_selector
+from duet_motion.v1 import motion_pb2, synthesis_pb2
 
 
 class RequestTest(unittest.TestCase):
@@ -55,29 +55,48 @@ class RequestTest(unittest.TestCase):
         self.assertEqual(list(pose.pose.positions), [1] * 9)
 
     def test_refuses_what_makes_no_sense_by_field(self):
+        pose = np.ones((3, 3))
+        pose[1, 2] = np.nan
         for fields, message in (
-                ({"priority": "high"}, "priority: 'high', wanted one of interactive, bulk"),
-                ({"chunk_frames": 0}, "chunk_frames: 0, wanted 1 or more"),
-                ({"seed": -1}, "seed: -1, wanted 0 to"),
-                ({"seed": 2**64}, "seed: 18446744073709551616, wanted 0 to"),
-                ({"keyframes": {-1: {}}}, "keyframes: frame -1, wanted 0 or more"),
-                ({"model": "sbu@0"}, "model: 'sbu@0', wanted a version of 1 or more"),
-                ({"model": "sbu@x"}, "model: 'sbu@x', wanted a version"),
-                ({"model": "sbu:"}, "model: 'sbu:', wanted a label"),
-                ({"follower_start": (1, 2)}, r"follower_start: shape \(2,\), wanted \(3,\) or"),
-                ({"partner_direction": 1}, r"partner_direction: shape \(\), wanted \(3,\)")):
+                ({"priority": "high"}, "priority: expected one of interactive, bulk, got 'high'"),
+                ({"chunk_frames": 0}, "chunk_frames: expected an integer from 1 to .*, got 0"),
+                ({"chunk_frames": 1.5}, "chunk_frames: expected an integer"),
+                ({"seed": -1}, "seed: expected an integer from 0 to .*, got -1"),
+                ({"seed": 2**64}, "seed: .* got 18446744073709551616"),
+                ({"seed": 1.5}, "seed: expected an integer from 0 to .*, got 1.5"),
+                ({"seed": True}, "seed: .* got True"),
+                ({"variety": float("nan")}, "variety: expected a number, got nan"),
+                ({"clean_up": "auto"}, "clean_up: expected True, False or None, got 'auto'"),
+                ({"request_id": 7}, "request_id: expected a str, got 7"),
+                ({"timeout": 0}, "timeout: expected a finite number above 0, got 0"),
+                ({"timeout": float("inf")}, "timeout: expected a finite number above 0, got inf"),
+                ({"keyframes": {-1: {}}}, "keyframes: frame: expected an integer .* got -1"),
+                ({"model": 2}, "model: expected a str, got 2"),
+                ({"model": "sbu@0"}, "model: expected a version of 1 or more .*, got 'sbu@0'"),
+                ({"model": "sbu@x"}, "model: expected a version .*, got 'sbu@x'"),
+                ({"model": "sbu:"}, "model: expected a label .*, got 'sbu:'"),
+                ({"follower_start": (1, 2)},
+                 r"follower_start: expected the shape \(3,\) or \(3, 3\), got \(2,\)"),
+                ({"follower_start": pose},
+                 r"follower_start\[1, 2\]: expected a finite float32, got nan at joint 'left'"),
+                ({"follower_start": (0, 1e300, 0)}, r"follower_start\[1\]: .* got 1e\+300$"),
+                ({"partner_direction": ("a", "b", "c")}, "partner_direction: expected real numbers"),
+                ({"partner_direction": 1},
+                 r"partner_direction: expected the shape \(3,\), got \(\)")):
             with self.subTest(fields=fields), self.assertRaisesRegex(ValueError, message):
                 self.request(**fields)
 
     def test_refuses_what_is_of_another_type_by_field(self):
         for arguments, message in (
-                ((None,), "leader: None, wanted a duet.Motion"),
-                ((support.leader(), ["hug"]), r"labels: \['hug'\], wanted weights by class"),
-                ((support.leader(), {"hug": "1"}), r"labels\['hug'\]: '1', wanted a number"),
-                ((support.leader(), {1: 1}), "labels: class 1, wanted a str"),
-                ((support.leader(), None, [{"hug": 1}]), "keyframes: .*, wanted labels by frame"),
-                ((support.leader(), None, {"0": {}}), "keyframes: frame '0', wanted 0 or more"),
-                ((support.leader(), None, {4: "hug"}), r"keyframes\[4\]: 'hug', wanted weights")):
+                ((None,), "leader: expected a duet_motion.Motion, got None"),
+                ((support.leader(), ["hug"]), r"labels: expected weights by class, .* got \['hug'\]"),
+                ((support.leader(), {"hug": "1"}), r"labels\['hug'\]: expected a finite number, got '1'"),
+                ((support.leader(), {"hug": np.inf}), r"labels\['hug'\]: .* got inf"),
+                ((support.leader(), {"hug": 10**400}), r"labels\['hug'\]: expected a finite"),
+                ((support.leader(), {1: 1}), "labels: expected classes of type str, got 1"),
+                ((support.leader(), None, [{"hug": 1}]), "keyframes: expected labels by frame"),
+                ((support.leader(), None, {"0": {}}), "keyframes: frame: expected an integer .* got '0'"),
+                ((support.leader(), None, {4: "hug"}), r"keyframes\[4\]: expected weights by class, .*'hug'")):
             with self.subTest(message=message), self.assertRaisesRegex(ValueError, message):
                 duet.SynthesisRequest(*arguments)
         weights = {"hug": np.float32(1), "push": np.int64(0)}

@@ -4,27 +4,33 @@ import dataclasses
 import unittest
 
 import support
-import duet
+import duet_motion as duet
 import grpc
-from duet._call import Attempts, CallSettings, Environment
-from duet.errors import make_error
-from duet.retry import is_retryable, retry_wait
+from duet_motion._call import Attempts, CallSettings, Environment
+from duet_motion.errors import make_error
+from duet_motion.retry import is_retryable, is_unreachable, retry_wait
 
 UNAVAILABLE, FULL = grpc.StatusCode.UNAVAILABLE, grpc.StatusCode.RESOURCE_EXHAUSTED
 
 
 class RetryTest(unittest.TestCase):
-    def test_the_unavailable_is_tried_again_and_the_full_by_bulk_work_alone(self):
-        self.assertTrue(is_retryable(make_error(UNAVAILABLE, ""), "interactive"))
-        self.assertTrue(is_retryable(make_error(FULL, "", retry_delay=1.0), "bulk"))
-        self.assertFalse(is_retryable(make_error(FULL, "", retry_delay=1.0), "interactive"))
-        self.assertFalse(is_retryable(make_error(FULL, ""), "bulk"))
-        self.assertFalse(is_retryable(make_error(grpc.StatusCode.INTERNAL, ""), "bulk"))
+    def test_the_unavailable_and_the_full_are_tried_again(self):
+        self.assertTrue(is_retryable(make_error(UNAVAILABLE, "")))
+        self.assertTrue(is_retryable(make_error(FULL, "", retry_delay=1.0)))
+        self.assertFalse(is_retryable(make_error(FULL, "")))
+        self.assertFalse(is_retryable(make_error(grpc.StatusCode.INTERNAL, "")))
 
     def test_what_a_server_dropped_as_it_shut_down_is_tried_again(self):
         cancelled = grpc.StatusCode.CANCELLED
-        self.assertTrue(is_retryable(make_error(cancelled, ""), "interactive"))
-        self.assertFalse(is_retryable(make_error(cancelled, "", reason="CALL_ENDED"), "bulk"))
+        self.assertTrue(is_retryable(make_error(cancelled, "")))
+        self.assertFalse(is_retryable(make_error(cancelled, "", reason="CALL_ENDED")))
+
+    def test_a_server_that_says_a_word_is_reachable(self):
+        self.assertTrue(is_unreachable(make_error(UNAVAILABLE, "Connection refused")))
+        self.assertFalse(is_unreachable(make_error(UNAVAILABLE, "", reason="DRAINING")))
+        self.assertFalse(is_unreachable(make_error(UNAVAILABLE, "", retry_delay=1.0)))
+        self.assertFalse(is_unreachable(make_error(UNAVAILABLE, "backend unhealthy")))
+        self.assertFalse(is_unreachable(make_error(FULL, "")))
 
     def test_waits_double_up_to_the_longest(self):
         error, options = make_error(UNAVAILABLE, ""), duet.RetryOptions(max_backoff=1)
@@ -55,7 +61,8 @@ class AttemptsTest(unittest.TestCase):
         self.waits = []
         self.retry = duet.RetryOptions(
             max_attempts=4, on_wait=lambda error, wait: self.waits.append((error.message, wait)))
-        self.settings = CallSettings(10.0, self.retry, environment=environment)
+        self.settings = CallSettings(10.0, self.retry, environment=environment, wait=60.0,
+                                     address="lab:50051")
         self.attempts = Attempts(self.settings)
 
     def test_each_attempt_has_what_is_left_of_the_time(self):
@@ -73,15 +80,47 @@ class AttemptsTest(unittest.TestCase):
             self.attempts.wait_after(make_error(UNAVAILABLE, "away"))
         self.assertEqual(self.waits, [("away", 0.1), ("away", 0.2), ("away", 0.4)])
 
-    def test_the_deadline_alone_ends_attempts_without_a_limit(self):
-        endless = dataclasses.replace(self.settings, retry=duet.RetryOptions())
-        attempts = Attempts(endless)
-        with self.assertRaisesRegex(duet.UnavailableError, "the deadline leaves no time"):
-            while True:
-                attempts.begin()
-                self.now += attempts.wait_after(make_error(UNAVAILABLE, "away"))
+    def fail(self, error, **settings):
+        """Makes attempts that all fail with the error, until they end."""
+        self.attempts = Attempts(dataclasses.replace(
+            self.settings, retry=duet.RetryOptions(), **settings))
+        while True:
+            self.attempts.begin()
+            self.now += self.attempts.wait_after(error)
+
+    def test_the_deadline_ends_attempts_at_a_server_that_answers(self):
+        with self.assertRaisesRegex(duet.UnavailableError, "loading .*the deadline leaves no time"):
+            self.fail(make_error(UNAVAILABLE, "loading", reason="LOADING"), wait=1.0)
         # 0.1 + 0.2 + ... + 3.2 s, and 5 s more would be too long.
-        self.assertEqual(attempts.made, 7)
+        self.assertEqual(self.attempts.made, 7)
+
+    def test_a_server_that_cannot_be_reached_is_waited_for_as_long_as_is_asked(self):
+        start = self.now
+        with self.assertRaisesRegex(
+                duet.UnavailableError,
+                r"address: expected a Duet server at lab:50051, got 'refused' \(7 attempts in 5.0 s\); "
+                r"start .*DUET_SERVER.*wait=SECONDS"):
+            self.fail(make_error(UNAVAILABLE, "refused"), wait=5.0)
+        self.assertAlmostEqual(self.now - start, 5)
+        with self.assertRaisesRegex(duet.UnavailableError, r"\(1 attempt in 0.0 s\)"):
+            self.fail(make_error(UNAVAILABLE, "refused"), wait=0.0)
+        with self.assertRaisesRegex(duet.UnavailableError, "at lab:50051, got 'refused' .7 attempts"):
+            self.fail(make_error(UNAVAILABLE, "refused"), wait=60.0)  # the deadline is nearer
+
+    def test_a_part_of_a_reply_is_a_sign_of_life(self):
+        attempts = Attempts(dataclasses.replace(self.settings, retry=duet.RetryOptions(), wait=1.0))
+        for answered in (False, True, False):
+            attempts.begin()
+            self.now += 0.9 + attempts.wait_after(make_error(UNAVAILABLE, "away"), answered)
+        attempts.begin()
+        with self.assertRaisesRegex(duet.UnavailableError, "expected a Duet server"):
+            attempts.wait_after(make_error(UNAVAILABLE, "away"))
+
+    def test_a_call_may_have_a_timeout_of_its_own(self):
+        attempts = Attempts(self.settings, 2.5)
+        self.assertAlmostEqual(attempts.begin(), 2.5)
+        with self.assertRaisesRegex(ValueError, "timeout: expected a finite number above 0, got -1"):
+            Attempts(self.settings, -1)
 
     def test_a_first_refusal_is_told_as_it_came(self):
         self.attempts.begin()
@@ -92,7 +131,7 @@ class AttemptsTest(unittest.TestCase):
         self.attempts.begin()
         self.now += 9.95
         with self.assertRaisesRegex(duet.UnavailableError, "1 attempt, the deadline leaves no time"):
-            self.attempts.wait_after(make_error(UNAVAILABLE, "away"))
+            self.attempts.wait_after(make_error(UNAVAILABLE, "away", reason="DRAINING"))
 
 
 if __name__ == "__main__":

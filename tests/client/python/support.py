@@ -13,6 +13,9 @@ PACKAGE = SOURCE / "client" / "python"
 sys.path.insert(0, str(PACKAGE))
 # These servers have no health service, of which gRPC would complain at every connection.
 os.environ.setdefault("GRPC_VERBOSITY", "NONE")
+# Nor have they settings of whoever runs them.
+os.environ["DUET_CONFIG"] = ""
+os.environ.pop("DUET_SERVER", None)
 
 try:
     import grpc
@@ -21,9 +24,9 @@ except ImportError as error:
     print(f"skipped: {error}; install the packages python3-grpcio and python3-numpy")
     sys.exit(77)  # tells CTest that a test was skipped
 
-import duet  # noqa: E402
-from duet.rpc.v1 import status_pb2  # noqa: E402
-from duet.v1 import synthesis_pb2, synthesis_pb2_grpc  # noqa: E402
+import duet_motion as duet  # noqa: E402
+from duet_motion.rpc.v1 import status_pb2  # noqa: E402
+from duet_motion.v1 import synthesis_pb2, synthesis_pb2_grpc  # noqa: E402
 
 JOINTS = ("root", "left", "right")
 # Waits that no test notices; the longest that one waits for what ought to come at once.
@@ -89,6 +92,13 @@ def retry_info(seconds):
     return info
 
 
+def bad_request(*violations):
+    refusal = status_pb2.BadRequest()
+    for field, description in violations:
+        refusal.field_violations.add(field=field, description=description)
+    return refusal
+
+
 class Failure(Exception):
     """What a scripted stream or call ends with."""
 
@@ -130,6 +140,17 @@ class Script(synthesis_pb2_grpc.MotionSynthesisServicer):
                 item(context)
             else:
                 yield item
+
+
+class Holding(synthesis_pb2_grpc.MotionSynthesisServicer):
+    """Holds calls until their deadlines."""
+
+    def _hold(self, _, context):
+        ended = threading.Event()
+        if context.add_callback(ended.set):
+            ended.wait(LONGEST_CALL)
+
+    ListModels = GetModel = _hold
 
 
 def held_reply(motion, ended, go_on):

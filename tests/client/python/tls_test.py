@@ -7,9 +7,9 @@ import tempfile
 import unittest
 
 import support
-import duet
+import duet_motion as duet
 import grpc
-from duet.v1 import synthesis_pb2
+from duet_motion.v1 import synthesis_pb2
 
 LISTING = synthesis_pb2.ListModelsResponse(models=[{"name": "m"}])
 
@@ -58,7 +58,7 @@ class TlsTest(unittest.TestCase):
             self.list_models(self.options(ca="server.crt"), asks_for_certificates=True)
 
     def test_a_certificate_wants_its_key(self):
-        with self.assertRaisesRegex(ValueError, "wanted both or neither"):
+        with self.assertRaisesRegex(ValueError, "tls.private_key: expected one beside certificate_chain"):
             self.options(ca="server.crt", cert="client.crt")
 
 

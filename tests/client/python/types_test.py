@@ -9,7 +9,7 @@ import unittest
 import support
 
 CALLER = """\
-import duet
+import duet_motion as duet
 
 leader = duet.Motion([[[0.0, 0.0, 0.0]]], ["root"], 30)
 client = duet.Client()
@@ -26,7 +26,7 @@ class TypesTest(unittest.TestCase):
             caller = pathlib.Path(folder) / "caller.py"
             caller.write_text(CALLER, encoding="utf-8")
             found = subprocess.run(
-                ["mypy", "--cache-dir", folder, "--no-error-summary", "duet", caller],
+                ["mypy", "--cache-dir", folder, "--no-error-summary", "duet_motion", caller],
                 cwd=support.PACKAGE, capture_output=True, text=True, check=False).stdout
         lines = found.splitlines()
         self.assertEqual(len(lines), 2, found)

@@ -1,4 +1,4 @@
-"""The client whose calls wait for their answers. :mod:`duet.aio` has its asynchronous twin."""
+"""The client whose calls wait for their answers. :mod:`duet_motion.aio` has its asynchronous twin."""
 
 from __future__ import annotations
 
@@ -8,42 +8,57 @@ from typing import Any, Callable, Generator, Iterable, Iterator, List, Optional,
 
 import grpc
 
-from duet import _channel, batch
-from duet._call import Attempts, SynthesisCall
-from duet._signature import spelled_out
-from duet.errors import CancelledError, DuetError, from_rpc_error
-from duet.request import SynthesisRequest, to_selector
-from duet.result import (FollowerChunk, ModelDetails, ModelInfo, SynthesisResult,
+from duet_motion import _channel, batch
+from duet_motion._call import Attempts, SynthesisCall
+from duet_motion._signature import spelled_out
+from duet_motion.errors import CancelledError, DuetError, from_rpc_error
+from duet_motion.request import SynthesisRequest, to_selector
+from duet_motion.result import (FollowerChunk, ModelDetails, ModelInfo, SynthesisResult,
                          details_from_proto, model_from_proto)
-from duet.v1 import synthesis_pb2, synthesis_pb2_grpc
+from duet_motion.v1 import synthesis_pb2, synthesis_pb2_grpc
 
 _Answer = TypeVar("_Answer")
 
 
 class Client(_channel.Connected):
-    """Asks a Duet server to answer one character's motion with another's.
+    """Asks a Duet server to answer one person's motion with another's.
 
-    >>> client = duet.Client("localhost:50051")
-    >>> result = client.synthesize(leader, labels={"hug": 1, "push": 0.5}, seed=3)
+    >>> with duet.Client() as client:
+    ...     result = client.synthesize(leader, labels={"hug": 1, "push": 0.5}, seed=3)
     >>> result.follower.positions                     # [frames, joints, 3]
 
-    Calls may come from several threads. A client is closed by :meth:`close` or by ``with``.
+    Calls may come from several threads. Connects with the first call. :meth:`close` or ``with``
+    closes a client.
+
+    Arguments that are left out come from the environment and the configuration file, as those of
+    the program `duet` do: ``DUET_SERVER`` is the address, and the file that ``DUET_CONFIG`` names
+    (or ``~/.config/duet/config``) has lines such as ``server = lab:50051``, ``timeout = 300``,
+    ``wait = 30``, ``tls-ca = ca.pem`` or ``token-file = token``.
 
     Args:
         address: ``host:port``, or any gRPC target (``unix:/run/duet.sock``). A name that stands for
-            several servers is balanced over all of them.
-        timeout: seconds for a whole call, all its attempts included.
-        tls: encrypts; None: plain text.
+            several servers is balanced over all of them. Default: ``localhost:50051``.
+        timeout: seconds for a whole call, all its attempts included. Default: 120.
+        wait: seconds for which a call tries a server again that cannot be reached (refused
+            connections, unknown host names) before it fails, at most ``timeout``. Default: 5. A
+            server that answers, even to say that it is loading, is tried until ``timeout``.
+        tls: how to encrypt; True: with the system's authorities; False: plain text. Default: plain
+            text.
         token: says who calls, as ``authorization: Bearer TOKEN``. Without ``tls`` it goes to this
-            machine alone.
-        authority: what calls name as the server they are for, where it is not the address.
-        retry: how often and how patiently a call is attempted.
+            machine only. Default: none.
+        authority: what calls name as the server they are for, if that is not the address.
+        retry: how often a call is attempted, and how long it backs off.
+        max_concurrent_calls: how many calls of ``synthesize`` are under way at once, at least 1.
+            Further ones wait for their turn in this process, within their timeouts: a server
+            refuses more calls than it has room for. Default: 16.
 
     Raises:
-        ValueError: an argument makes no sense.
+        ValueError: an argument or a setting makes no sense.
+        OSError: a file that a setting names cannot be read.
     """
 
     _grpc = grpc
+    _semaphore = threading.Semaphore
 
     def close(self) -> None:
         """Ends the connection, and every call that is still being answered."""
@@ -57,41 +72,84 @@ class Client(_channel.Connected):
                  traceback: Optional[TracebackType]) -> None:
         self.close()
 
-    def list_models(self) -> List[ModelInfo]:
-        """Every model version being served, by name, newest version first."""
-        response = self._unary(self._stub.ListModels, synthesis_pb2.ListModelsRequest())
+    def list_models(self, *, timeout: Optional[float] = None) -> List[ModelInfo]:
+        """Every model version being served, by name, newest version first.
+
+        Args:
+            timeout: seconds for the whole call. None: the client's.
+
+        Raises:
+            DuetError: the call failed.
+        """
+        response = self._unary(self._stub.ListModels, synthesis_pb2.ListModelsRequest(), timeout)
         return [model_from_proto(model) for model in response.models]
 
-    def get_model(self, model: str = "") -> ModelDetails:
-        """One model version (as :attr:`duet.SynthesisRequest.model` names it) and its limits."""
+    def get_model(self, model: str = "", *, timeout: Optional[float] = None) -> ModelDetails:
+        """One model version, and the limits that a request to it must keep.
+
+        Args:
+            model: ``"sbu"``, ``"sbu@2"`` for a version, ``"sbu:stable"`` for a version label;
+                empty: the server's default.
+            timeout: seconds for the whole call. None: the client's.
+
+        Raises:
+            DuetError: the call failed; ModelNotFoundError where there is no such model.
+        """
         request = synthesis_pb2.GetModelRequest(model=to_selector(model))
-        return details_from_proto(self._unary(self._stub.GetModel, request))
+        return details_from_proto(self._unary(self._stub.GetModel, request, timeout))
 
     def synthesize_request(self, request: SynthesisRequest) -> SynthesisResult:
-        """Waits for the whole follower."""
-        return self.stream_request(request).result()
+        """Waits for the whole follower.
+
+        Args:
+            request: what is asked.
+
+        Raises:
+            DuetError: the call failed.
+        """
+        call = SynthesisCall(request, self._settings)
+        if not self._turns.acquire(timeout=call.attempts.seconds_left()):
+            raise call.no_turn(self._max_concurrent_calls)
+        try:
+            return self._stream(call).result()
+        finally:
+            self._turns.release()
 
     def stream_request(self, request: SynthesisRequest) -> SynthesisStream:
-        """The follower's frames as they arrive."""
-        return SynthesisStream(self._stub, self._channel, self._closed,
-                               SynthesisCall(request, self._settings))
+        """The follower's frames as they arrive.
+
+        Args:
+            request: what is asked.
+        """
+        return self._stream(SynthesisCall(request, self._settings))
 
     synthesize = spelled_out(synthesize_request, SynthesisRequest, "synthesize")
     stream = spelled_out(stream_request, SynthesisRequest, "stream")
 
     def synthesize_many(self, requests: Iterable[SynthesisRequest], *,
                         concurrency: int = 4) -> Iterator[batch.Outcome]:
-        """Answers many requests, at most ``concurrency`` of them at a time.
+        """Answers many requests, several at a time.
 
         Outcomes come in the order of the requests, each with a result or with what that call failed
-        with: one refusal does not end the others. Requests are taken from the iterable as they are
-        needed, so that it may be long or made on the way. Give them ``priority="bulk"``: then they
-        yield to interactive calls and wait while the server is full.
-        """
-        return batch.run(self.synthesize_request, requests, concurrency)
+        with: one refusal does not end the others. Give requests ``priority="bulk"``: then they
+        yield to interactive calls.
 
-    def _unary(self, method: Any, request: Any) -> Any:
-        attempts = Attempts(self._settings)
+        Args:
+            requests: taken from the iterable as they are needed, so that it may be long, or made on
+                the way.
+            concurrency: the most calls at a time, at least 1.
+
+        Raises:
+            ValueError: ``concurrency`` makes no sense.
+        """
+        return batch.run(lambda request: self.stream_request(request).result(), requests,
+                         concurrency)
+
+    def _stream(self, call: SynthesisCall) -> SynthesisStream:
+        return SynthesisStream(self._stub, self._channel, self._closed, call)
+
+    def _unary(self, method: Any, request: Any, timeout: Optional[float]) -> Any:
+        attempts = Attempts(self._settings, timeout)
         while True:
             _channel.check_open(self._closed)
             try:
@@ -110,7 +168,7 @@ class SynthesisStream(Iterator[FollowerChunk]):
     ...         show(chunk.first_frame, chunk.positions)
     >>> stream.result().unfamiliarity
 
-    Iterating raises :class:`duet.DuetError` where the call fails. Leaving ``with`` early, or
+    Iterating raises :class:`duet_motion.DuetError` where the call fails. Leaving ``with`` early, or
     :meth:`cancel` (from any thread), ends the call.
     """
 
@@ -136,12 +194,17 @@ class SynthesisStream(Iterator[FollowerChunk]):
         self.cancel()
 
     def cancel(self) -> None:
-        """Ends the call. A result that is whole already stays."""
+        """Ends the call, from any thread; whoever waits for its chunks or its result gets a
+        CancelledError. A result that is whole already stays."""
         self._cancelled.set()
         self._cancel_stream()
 
     def result(self) -> SynthesisResult:
-        """The whole follower: waits for the chunks that nobody has taken yet."""
+        """The whole follower: waits for the chunks that nobody has taken yet.
+
+        Raises:
+            DuetError: the call failed.
+        """
         for _ in self._frames:
             pass
         if self._result is None:

@@ -8,9 +8,10 @@ import dataclasses
 import itertools
 from typing import Callable, Deque, Iterable, Iterator, Optional, Tuple
 
-from duet.errors import DuetError
-from duet.request import SynthesisRequest
-from duet.result import SynthesisResult
+from duet_motion._channel import check_concurrency
+from duet_motion.errors import DuetError
+from duet_motion.request import SynthesisRequest
+from duet_motion.result import SynthesisResult
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -29,11 +30,6 @@ class Outcome:
         return self.result
 
 
-def check_concurrency(concurrency: int) -> None:
-    if concurrency < 1:
-        raise ValueError(f"concurrency: {concurrency}, wanted 1 or more")
-
-
 def ahead(concurrency: int) -> int:
     """How many requests may be under way: one slow call leaves the others something to do."""
     return 2 * concurrency
@@ -43,7 +39,7 @@ def run(answer: Callable[[SynthesisRequest], SynthesisResult],
         requests: Iterable[SynthesisRequest], concurrency: int) -> Iterator[Outcome]:
     """Answers requests in threads; their outcomes in order. At most ``concurrency`` calls are made at
     a time, and at most :func:`ahead` requests are taken and not yet given back."""
-    check_concurrency(concurrency)
+    check_concurrency("concurrency", concurrency)
     return _run(answer, requests, concurrency)
 
 

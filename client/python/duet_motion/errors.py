@@ -12,7 +12,7 @@ from typing import Any, Callable, Dict, Tuple, Type, TypeVar
 import grpc
 from google.protobuf.message import DecodeError
 
-from duet.rpc.v1 import status_pb2
+from duet_motion.rpc.v1 import status_pb2
 
 _DETAILS = "grpc-status-details-bin"
 _Detail = TypeVar("_Detail")

@@ -7,9 +7,9 @@ from typing import Optional, Tuple
 
 import grpc
 
-from duet.errors import MalformedReplyError
-from duet.motion import Motion, Positions
-from duet.v1 import model_pb2, synthesis_pb2
+from duet_motion.errors import MalformedReplyError
+from duet_motion.motion import Motion, Positions
+from duet_motion.v1 import model_pb2, synthesis_pb2
 
 
 @dataclasses.dataclass(frozen=True)

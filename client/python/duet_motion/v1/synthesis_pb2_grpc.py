@@ -2,7 +2,7 @@
 """Client and server classes corresponding to protobuf-defined services."""
 import grpc
 
-from duet.v1 import synthesis_pb2 as duet_dot_v1_dot_synthesis__pb2
+from duet_motion.v1 import synthesis_pb2 as duet_dot_v1_dot_synthesis__pb2
 
 
 class MotionSynthesisStub(object):

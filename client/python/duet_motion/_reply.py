@@ -12,11 +12,11 @@ from typing import List, Optional
 import grpc
 import numpy as np
 
-from duet._wire import UNITS, UP_AXES
-from duet.errors import DuetError, MalformedReplyError, make_error
-from duet.motion import Motion, Positions
-from duet.result import FollowerChunk, SynthesisResult, Timings
-from duet.v1 import synthesis_pb2
+from duet_motion._wire import UNITS, UP_AXES
+from duet_motion.errors import DuetError, MalformedReplyError, make_error
+from duet_motion.motion import Motion, Positions
+from duet_motion.result import FollowerChunk, SynthesisResult, Timings
+from duet_motion.v1 import synthesis_pb2
 
 # What a proxy or a dying server resets streams under. What the service itself says under these
 # codes always carries a reason.

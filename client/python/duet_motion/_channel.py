@@ -5,15 +5,19 @@ from __future__ import annotations
 import json
 import re
 import threading
-from typing import Any, ClassVar, List, Optional, Tuple
+from typing import Any, ClassVar, List, Optional, Tuple, TypeVar, Union
 
 import grpc
 
-from duet._call import CallSettings, Metadata
-from duet.errors import CancelledError
-from duet.options import TlsOptions
-from duet.retry import RetryOptions
-from duet.v1 import synthesis_pb2_grpc
+from duet_motion._call import CallSettings, Metadata
+from duet_motion.errors import CancelledError
+from duet_motion._settings import Settings
+from duet_motion.motion import checked_number
+from duet_motion.options import TlsOptions
+from duet_motion.retry import RetryOptions
+from duet_motion.v1 import synthesis_pb2_grpc
+
+_Value = TypeVar("_Value")
 
 _SCHEMES = ("dns:", "ipv4:", "ipv6:", "unix:", "unix-abstract:", "xds:")
 # What a token may be sent to in plain text: it leaves this machine by no network. A host name other
@@ -21,6 +25,13 @@ _SCHEMES = ("dns:", "ipv4:", "ipv6:", "unix:", "unix-abstract:", "xds:")
 _THIS_MACHINE = re.compile(
     r"(unix:|unix-abstract:).*|((dns:///|dns:|ipv4:)?(localhost|127\.[\d.]+)|(ipv6:)?\[::1\])(:\d+)?")
 _LONGEST_RECONNECT_SECONDS = 1.0
+_CONNECT_TIMEOUT_SECONDS = 5.0
+
+DEFAULT_ADDRESS = "localhost:50051"
+DEFAULT_TIMEOUT = 120.0
+DEFAULT_WAIT = 5.0
+# Few enough that a server with default limits takes all of them, enough to keep it busy.
+DEFAULT_CONCURRENT_CALLS = 16
 
 # Calls take turns over all servers behind the name whose health service says that they serve, so
 # that a draining server gets no new work. The empty service name asks for the server as a whole.
@@ -35,19 +46,52 @@ class Connected:
 
     _grpc: ClassVar[Any]
     """The module whose channels carry the calls: ``grpc`` or ``grpc.aio``."""
+    _semaphore: ClassVar[Any]
+    """Bounds the calls under way: of ``threading`` or ``asyncio``."""
 
-    def __init__(self, address: str = "localhost:50051", *, timeout: float = 120.0,
-                 tls: Optional[TlsOptions] = None, token: str = "",
-                 authority: str = "", retry: RetryOptions = RetryOptions()) -> None:
-        self._settings = check_settings(address, timeout, retry, tls, token)
-        arguments = channel_arguments(retry, tls, token, authority)
-        if tls is None:
+    def __init__(self, address: Optional[str] = None, *, timeout: Optional[float] = None,
+                 wait: Optional[float] = None, tls: Union[TlsOptions, bool, None] = None,
+                 token: Optional[str] = None, authority: Optional[str] = None,
+                 retry: RetryOptions = RetryOptions(),
+                 max_concurrent_calls: int = DEFAULT_CONCURRENT_CALLS) -> None:
+        settings = Settings()
+        address = _first(address, settings.text("server"), DEFAULT_ADDRESS)
+        token = _first(token, settings.token(), "")
+        authority = _first(authority, settings.text("authority"), "")
+        options = settings.tls() if tls is None else tls_options(tls)
+        self._settings = check_settings(
+            address, _first(timeout, settings.seconds("timeout"), DEFAULT_TIMEOUT),
+            _first(wait, settings.seconds("wait"), DEFAULT_WAIT), retry, options, token)
+        check_concurrency("max_concurrent_calls", max_concurrent_calls)
+        self._max_concurrent_calls = max_concurrent_calls
+        self._turns = self._semaphore(max_concurrent_calls)
+        arguments = channel_arguments(retry, options, token, authority)
+        if options is None:
             self._channel = self._grpc.insecure_channel(target(address), arguments)
         else:
-            self._channel = self._grpc.secure_channel(target(address), credentials(tls), arguments)
+            self._channel = self._grpc.secure_channel(target(address), credentials(options),
+                                                      arguments)
         self._closed = threading.Event()
         self._stub = synthesis_pb2_grpc.MotionSynthesisStub(  # type: ignore[no-untyped-call]
             self._channel)
+
+
+def _first(argument: Optional[_Value], setting: Optional[_Value], default: _Value) -> _Value:
+    if argument is not None:
+        return argument
+    return default if setting is None else setting
+
+
+def tls_options(tls: Union[TlsOptions, bool]) -> Optional[TlsOptions]:
+    """The options that ``tls`` stands for; None: plain text."""
+    if isinstance(tls, bool):
+        return TlsOptions() if tls else None
+    return tls
+
+
+def check_concurrency(name: str, value: int) -> None:
+    if value < 1:
+        raise ValueError(f"{name}: expected 1 or more, got {value}")
 
 
 def check_open(closed: threading.Event) -> None:
@@ -70,6 +114,9 @@ def channel_arguments(retry: RetryOptions, tls: Optional[TlsOptions], token: str
         ("grpc.initial_reconnect_backoff_ms", _milliseconds(retry.initial_backoff)),
         ("grpc.max_reconnect_backoff_ms", _milliseconds(max(
             retry.initial_backoff, min(retry.max_backoff, _LONGEST_RECONNECT_SECONDS)))),
+        # The least time that gRPC gives an attempt to connect, in spite of the option's name. Its own
+        # 20 s are long where a firewall drops packets.
+        ("grpc.min_reconnect_backoff_ms", _milliseconds(_CONNECT_TIMEOUT_SECONDS)),
         # gRPC's own retries would come on top of ours.
         ("grpc.enable_retries", 0),
     ]
@@ -93,14 +140,16 @@ def credentials(tls: TlsOptions) -> grpc.ChannelCredentials:
                                         certificate_chain=tls.certificate_chain or None)
 
 
-def check_settings(address: str, timeout: float, retry: RetryOptions, tls: Optional[TlsOptions],
-                   token: str) -> CallSettings:
+def check_settings(address: str, timeout: float, wait: float, retry: RetryOptions,
+                   tls: Optional[TlsOptions], token: str) -> CallSettings:
     """What every call has in common. Raises ValueError naming what makes no sense."""
     if not address:
-        raise ValueError("address: empty, wanted host:port")
-    if not timeout > 0:
-        raise ValueError(f"timeout: {timeout}, wanted more than 0")
-    return CallSettings(timeout, retry, _authorization(address, tls, token))
+        raise ValueError("address: expected host:port, got an empty string")
+    checked_number("timeout", timeout, above=0)
+    if not 0 <= wait < float("inf"):
+        raise ValueError(f"wait: expected a number of seconds, 0 or more, got {wait}")
+    return CallSettings(timeout, retry, _authorization(address, tls, token), wait=wait,
+                        address=address)
 
 
 def _authorization(address: str, tls: Optional[TlsOptions], token: str) -> Metadata:
@@ -108,8 +157,7 @@ def _authorization(address: str, tls: Optional[TlsOptions], token: str) -> Metad
         return ()
     if not all("!" <= character <= "~" for character in token):
         # Not repeated: messages go to logs.
-        raise ValueError("token: has a blank or a character that is not printable ASCII, wanted "
-                         "none")
+        raise ValueError("token: expected printable ASCII without blanks, got other characters")
     if tls is None and not _THIS_MACHINE.fullmatch(address):
-        raise ValueError(f"token: would travel in plain text to {address}, wanted tls")
+        raise ValueError(f"token: expected tls, got plain text to {address}")
     return (("authorization", f"Bearer {token}"),)

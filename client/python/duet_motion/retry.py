@@ -7,7 +7,7 @@ from typing import Callable, Optional
 
 import grpc
 
-from duet.errors import DuetError
+from duet_motion.errors import DuetError
 
 
 @dataclasses.dataclass(frozen=True)
@@ -15,41 +15,56 @@ class RetryOptions:
     """How often and how patiently a call is attempted.
 
     The wait before attempt n + 1 is drawn from [0.5, 1] x min(max_backoff, initial_backoff x
-    2^(n-1)) and is never shorter than what the server asked for. Unless there is a limit to their
-    number, the deadline alone ends the attempts: a server that restarts is away for seconds.
-    UNAVAILABLE and replies that break off are tried again; a full server only for bulk work.
+    2^(n-1)) and is never shorter than what the server asks for. UNAVAILABLE, replies that break off,
+    and refusals by a full server that says when to come back are tried again: until the call's
+    timeout, or, where no server can be reached, for the client's ``wait``.
+
+    Args:
+        max_attempts: how often a call is made; 1: never again. None: no limit.
+        initial_backoff: seconds before the second attempt.
+        max_backoff: the longest wait in seconds, unless the server asks for more.
+        on_wait: called before each wait with the error and the seconds of the wait.
 
     Raises:
         ValueError: a field makes no sense.
     """
 
     max_attempts: Optional[int] = None
-    """1: never again. None: until the deadline."""
     initial_backoff: float = 0.1
-    """Seconds."""
     max_backoff: float = 5.0
-    """Seconds."""
     on_wait: Optional[Callable[[DuetError, float], None]] = None
-    """Told before each wait: why, and for how many seconds."""
 
     def __post_init__(self) -> None:
         if self.max_attempts is not None and self.max_attempts < 1:
-            raise ValueError(f"retry.max_attempts: {self.max_attempts}, wanted 1 or more")
+            raise ValueError(f"retry.max_attempts: expected 1 or more, got {self.max_attempts}")
         if not 0 < self.initial_backoff <= self.max_backoff:
-            raise ValueError(f"retry: initial_backoff {self.initial_backoff}, max_backoff "
-                             f"{self.max_backoff}, wanted 0 < initial <= max")
+            raise ValueError("retry: expected 0 < initial_backoff <= max_backoff, got "
+                             f"{self.initial_backoff} and {self.max_backoff}")
 
 
-def is_retryable(error: DuetError, priority: str) -> bool:
+def is_retryable(error: DuetError) -> bool:
     """Whether another attempt may succeed where this one failed."""
     if error.code is grpc.StatusCode.UNAVAILABLE:
         return True
     if error.code is grpc.StatusCode.CANCELLED:
         # A server that shuts down ends so what it has not begun to look at. (Whoever cancels a call
         # here is not asked.)
-        return not (error.reason or error.violations or error.retry_delay is not None)
-    return (error.code is grpc.StatusCode.RESOURCE_EXHAUSTED and priority == "bulk"
+        return not _has_details(error)
+    # Without a delay the code means a message that is too large. The C++ client tries only bulk
+    # work again; here many calls at a time are an everyday idiom, and each has its own timeout.
+    return (error.code is grpc.StatusCode.RESOURCE_EXHAUSTED
             and error.retry_delay is not None)
+
+
+def is_unreachable(error: DuetError) -> bool:
+    """Whether gRPC itself says UNAVAILABLE: Duet servers send details with theirs, and one whose
+    health service says NOT_SERVING ("backend unhealthy") is reachable."""
+    return (error.code is grpc.StatusCode.UNAVAILABLE and not _has_details(error)
+            and "unhealthy" not in error.message)
+
+
+def _has_details(error: DuetError) -> bool:
+    return bool(error.reason or error.violations or error.retry_delay is not None)
 
 
 def retry_wait(options: RetryOptions, attempt: int, error: DuetError, uniform: float) -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from duet.v1 import motion_pb2, synthesis_pb2
+from duet_motion.v1 import motion_pb2, synthesis_pb2
 
 UNITS = {
     "metres": motion_pb2.LENGTH_UNIT_METRES,

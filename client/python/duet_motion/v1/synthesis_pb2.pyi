@@ -1,5 +1,5 @@
-from duet.v1 import model_pb2 as _model_pb2
-from duet.v1 import motion_pb2 as _motion_pb2
+from duet_motion.v1 import model_pb2 as _model_pb2
+from duet_motion.v1 import motion_pb2 as _motion_pb2
 from google.protobuf.internal import containers as _containers
 from google.protobuf.internal import enum_type_wrapper as _enum_type_wrapper
 from google.protobuf import descriptor as _descriptor

@@ -1,8 +1,8 @@
 """Motion files, read and written by the program `duet`.
 
-What a file's unit is, which way is up in it and which of its joints is the left knee: `duet convert`
-finds out (docs/formats.md), and this module speaks with it in JSON. It is the program beside the
-server; ``$DUET_PROGRAM`` says where, where it is not on the PATH. No server is asked.
+`duet convert` finds out what a file's unit is, which way is up and which of its joints is the left
+knee (docs/formats.md), and this module exchanges motions with it as JSON. No server is asked. The
+program is not part of the wheel; ``DUET_PROGRAM`` names it if it is not on the PATH.
 """
 
 from __future__ import annotations
@@ -10,21 +10,20 @@ from __future__ import annotations
 import json
 import os
 import pathlib
-import shutil
-import subprocess
 import tempfile
 from typing import Any, Dict, List, Mapping, Optional, Tuple, Union
 
-from duet.motion import Motion
-from duet.result import SynthesisResult
+from duet_motion import _program
+from duet_motion.motion import Motion
+from duet_motion.result import SynthesisResult
 
 Path = Union[str, "os.PathLike[str]"]
 Shown = Union[Motion, Tuple[Motion, Motion], SynthesisResult]
 
 
 class MotionFileError(ValueError):
-    """A motion file that cannot be read or written: the program's own words, which name the file,
-    the line, what came and what was wanted."""
+    """A motion file that cannot be read or written: what the program prints, which names the file,
+    the line, what it expected and what it got."""
 
 
 def read_motion(path: Path, *, side: str = "left", frame_rate_hz: Optional[float] = None,
@@ -35,16 +34,17 @@ def read_motion(path: Path, *, side: str = "left", frame_rate_hz: Optional[float
 
     Args:
         path: .bvh, .gltf, .glb, .amc, .csv, .npy, .json or SBU .txt.
-        side: ``"left"`` or ``"right"``, who is read of a file with two people.
-        frame_rate_hz: replaces what the file says.
-        unit, up_axis: replace what the file says.
-        metres_per_unit: for BVH, glTF and ASF.
-        joint_map: joints of the file by joints of Duet, where names alone do not tell.
-        resample_hz: frames a second of what is returned; the motion keeps its pace.
+        side: ``"left"`` or ``"right"``: which person of a file with two.
+        frame_rate_hz: frames per second; replaces what the file says.
+        unit: ``"metres"``, ``"millimetres"`` or ``"sbu-normalised"``; replaces what the file says.
+        up_axis: ``"y-up"``, ``"z-up"`` or ``"y-down"``; replaces what the file says.
+        metres_per_unit: metres in one unit of the file, for BVH, glTF and ASF.
+        joint_map: joints of the file by joints of Duet, where names do not tell which is which.
+        resample_hz: frames per second of what is returned; the motion keeps its pace.
 
     Raises:
         MotionFileError: the file cannot be read.
-        FileNotFoundError: there is no program `duet`.
+        FileNotFoundError: there is no program `duet`; the message says how to get it.
     """
     motions = _read(path, ["--side", side], frame_rate_hz, unit, up_axis, metres_per_unit,
                     joint_map, resample_hz)
@@ -55,21 +55,36 @@ def read_pair(path: Path, *, frame_rate_hz: Optional[float] = None, unit: str = 
               up_axis: str = "", metres_per_unit: Optional[float] = None,
               joint_map: Optional[Mapping[str, str]] = None,
               resample_hz: Optional[float] = None) -> Tuple[Motion, Motion]:
-    """The motions of both people of a file, as :func:`read_motion` reads one.
+    """The motions of both people of a file, leader first, as :func:`read_motion` reads one.
+
+    Args:
+        path: .bvh, .gltf, .glb, .csv, .npy, .json or SBU .txt, of two people.
+        frame_rate_hz: frames per second; replaces what the file says.
+        unit: of length; replaces what the file says.
+        up_axis: replaces what the file says.
+        metres_per_unit: metres in one unit of the file, for BVH, glTF and ASF.
+        joint_map: joints of the file by joints of Duet.
+        resample_hz: frames per second of what is returned; the motion keeps its pace.
 
     Raises:
         MotionFileError: the file cannot be read, or has one person.
+        FileNotFoundError: there is no program `duet`.
     """
     motions = _read(path, [], frame_rate_hz, unit, up_axis, metres_per_unit, joint_map, resample_hz)
     if len(motions) != 2:
-        raise MotionFileError(f"{os.fspath(path)}: one person, wanted two")
+        raise MotionFileError(f"{os.fspath(path)}: expected two people, got one")
     return motions[0], motions[1]
 
 
 def write_motion(path: Path, leader: Motion, follower: Optional[Motion] = None) -> None:
-    """Writes one person or two; the extension says how: whatever `duet convert` writes.
+    """Writes one person or two. Two people as .bvh are two files, ``NAME.leader.bvh`` and
+    ``NAME.follower.bvh``.
 
-    Two people as .bvh are two files, ``NAME.leader.bvh`` and ``NAME.follower.bvh``.
+    Args:
+        path: its extension decides the format: whatever `duet convert` writes.
+        leader: the first person, or the only one.
+        follower: the second person, with the leader's joints, rate, number of frames, unit and
+            axis.
 
     Raises:
         ValueError: the two differ in joints, rate or number of frames, unit or axis.
@@ -87,10 +102,11 @@ def write_page(path: Path, motions: Mapping[str, Shown], title: str = "") -> Non
     Args:
         path: ``.html``.
         motions: up to twelve: a motion, a pair of leader and follower, or a synthesis result.
-        title: of the page.
+        title: the page's title; empty: the names.
 
     Raises:
         MotionFileError: the page cannot be written.
+        FileNotFoundError: there is no program `duet`.
     """
     with tempfile.TemporaryDirectory() as folder:
         arguments = [f"{name}={_write_json(pathlib.Path(folder) / f'{index}.json', shown)}"
@@ -129,8 +145,8 @@ def _write_json(path: pathlib.Path, shown: Shown) -> pathlib.Path:
     for other in people[1:]:
         for field in ("joint_names", "frame_rate_hz", "unit", "up_axis", "frame_count"):
             if getattr(other, field) != getattr(first, field):
-                raise ValueError(f"follower.{field}: {getattr(other, field)}, wanted the leader's "
-                                 f"{getattr(first, field)}")
+                raise ValueError(f"follower.{field}: expected the leader's {getattr(first, field)}, "
+                                 f"got {getattr(other, field)}")
     document: Dict[str, Any] = {
         "format": "duet-motion", "version": 1, "frame_rate_hz": first.frame_rate_hz,
         "unit": first.unit, "up_axis": first.up_axis, "joint_names": first.joint_names}
@@ -140,19 +156,8 @@ def _write_json(path: pathlib.Path, shown: Shown) -> pathlib.Path:
     return path
 
 
-def _program() -> str:
-    name = os.environ.get("DUET_PROGRAM", "duet")
-    found = shutil.which(name)
-    if found is None:
-        raise FileNotFoundError(f"no program {name!r}, which reads and writes motion files; put "
-                                "Duet's duet on the PATH, or say where it is in DUET_PROGRAM")
-    return found
-
-
 def _run(*arguments: str) -> str:
-    """What the program prints; the settings of its user's configuration do not count."""
-    done = subprocess.run([_program(), *arguments], capture_output=True, check=False,
-                          env={**os.environ, "DUET_CONFIG": "", "NO_COLOR": "1"})
-    if done.returncode != 0:
-        raise MotionFileError(done.stderr.decode(errors="replace").strip().removeprefix("duet: "))
-    return done.stdout.decode()
+    try:
+        return _program.run(*arguments)
+    except _program.CommandFailed as error:
+        raise MotionFileError(str(error)) from None

@@ -22,10 +22,17 @@ def spelled_out(method: Callable[[Self, Request], Answer], make: Callable[Fields
 
     spelled.__name__ = name
     spelled.__qualname__ = method.__qualname__.rpartition(".")[0] + f".{name}"
-    spelled.__doc__ = (f"{method.__doc__}\n\n        The arguments are the fields of "
-                       ":class:`duet.SynthesisRequest`.")
+    spelled.__doc__ = _document(method, make)
     fields = inspect.signature(make).parameters.values()
     myself = inspect.Parameter("self", inspect.Parameter.POSITIONAL_ONLY)
     spelled.__signature__ = inspect.signature(method).replace(  # type: ignore[attr-defined]
         parameters=[myself, *fields])
     return spelled
+
+
+def _document(method: Callable[..., object], make: Callable[..., object]) -> str:
+    """The method's first paragraph, then what `make` says of its arguments."""
+    summary = (inspect.getdoc(method) or "").partition("\n\n")[0]
+    arguments = (inspect.getdoc(make) or "").partition("\nArgs:\n")[2]
+    return (f"{summary}\n\nArgs:\n{arguments.rstrip()}\n"
+            "    DuetError: the call failed, here or while the result is awaited.\n")

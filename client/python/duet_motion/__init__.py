@@ -1,0 +1,38 @@
+"""Duet: one person moves, another answers. The client for Python.
+
+>>> import duet_motion as duet
+>>> leader = duet.read_motion("samples/hug.bvh")
+>>> with duet.Client() as client:                     # DUET_SERVER, or localhost:50051
+...     result = client.synthesize(leader, labels={"hug": 1}, seed=3)
+>>> result.follower.positions.shape
+(91, 15, 3)
+"""
+
+from duet_motion import aio
+from duet_motion._shards import DataSetError
+from duet_motion.batch import Outcome
+from duet_motion.client import Client, SynthesisStream
+from duet_motion.errors import (CancelledError, DeadlineError, DuetError, FieldViolation,
+                                InvalidRequestError, MalformedReplyError, ModelNotFoundError,
+                                NotPermittedError, RequestMismatchError, ServerBusyError,
+                                UnavailableError)
+from duet_motion.files import MotionFileError, read_motion, read_pair, write_motion, write_page
+from duet_motion.motion import Motion
+from duet_motion.options import TlsOptions
+from duet_motion.request import SynthesisRequest
+from duet_motion.result import (FollowerChunk, ModelDetails, ModelInfo, RequestLimits,
+                                SynthesisResult, Timings)
+from duet_motion.retry import RetryOptions
+from duet_motion.sets import MotionSet, PaddedBatch, SetItem, pad, read_set
+
+__version__ = "0.1.0"
+
+__all__ = [
+    "CancelledError", "Client", "DataSetError", "DeadlineError", "DuetError", "FieldViolation",
+    "FollowerChunk", "InvalidRequestError", "MalformedReplyError", "ModelDetails", "ModelInfo",
+    "ModelNotFoundError", "Motion", "MotionFileError", "MotionSet", "NotPermittedError", "Outcome",
+    "PaddedBatch", "RequestLimits", "RequestMismatchError", "RetryOptions", "ServerBusyError",
+    "SetItem", "SynthesisRequest", "SynthesisResult", "SynthesisStream", "Timings", "TlsOptions",
+    "UnavailableError", "__version__", "aio", "pad", "read_motion", "read_pair", "read_set",
+    "write_motion", "write_page",
+]

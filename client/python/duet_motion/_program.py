@@ -1,0 +1,194 @@
+"""The program `duet`, which reads and writes motion files for this package.
+
+A process that has answered is kept for the next command (``duet stdio``): starting one costs more
+than reading a short file. It ends with this process, and its end, for whatever reason, is never an
+error: another is started.
+"""
+
+from __future__ import annotations
+
+import atexit
+import contextlib
+import json
+import os
+import shutil
+import subprocess
+import threading
+from typing import Dict, List, Optional, Sequence, Tuple
+
+# Idle processes that are kept: as many threads read files side by side without a new one.
+_MOST_IDLE = 4
+_STOP_SECONDS = 5
+
+
+class CommandFailed(Exception):
+    """A command that ended with an exit code other than 0; the message is what it printed."""
+
+
+class _Ended(Exception):
+    """The process ended, or is of a version without ``duet stdio``."""
+
+
+def find() -> str:
+    """The path of the program. Raises FileNotFoundError, which says how to get it."""
+    name = os.environ.get("DUET_PROGRAM", "duet")
+    found = shutil.which(name)
+    if found is None:
+        raise FileNotFoundError(
+            f"program {name!r}: expected Duet's command-line client, which reads and writes motion "
+            "files, got no such program; pip does not bring it: install the Debian package "
+            "duet-client, or build it (cmake --install build/release --component client), and put "
+            "it on the PATH or name it in DUET_PROGRAM")
+    return found
+
+
+def run(*arguments: str) -> str:
+    """What the command prints. Settings of the user's configuration do not count.
+
+    Raises:
+        CommandFailed: its exit code is not 0.
+        FileNotFoundError: there is no program.
+    """
+    code, out, err = _run(find(), arguments)
+    if code != 0:
+        raise CommandFailed(err.decode(errors="replace").strip().removeprefix("duet: "))
+    return out.decode()
+
+
+def _run(program: str, arguments: Sequence[str]) -> Tuple[int, bytes, bytes]:
+    try:
+        line = json.dumps(arguments, ensure_ascii=False).encode() + b"\n"
+    except UnicodeEncodeError:  # a file name that is not UTF-8, which JSON cannot carry
+        return _run_once(program, arguments)
+    key = (program, os.getcwd())
+    helper = _idle.take(key)
+    while True:
+        fresh = helper is None
+        helper = helper or _Helper(program)
+        try:
+            answer = helper.ask(line)
+        except _Ended:
+            if fresh:  # whatever it died of, the command itself will tell
+                return _run_once(program, arguments)
+            helper = None
+            continue
+        _idle.put(key, helper)
+        return answer
+
+
+def _run_once(program: str, arguments: Sequence[str]) -> Tuple[int, bytes, bytes]:
+    done = subprocess.run([program, *arguments], capture_output=True, check=False,
+                          env=_environment())
+    if done.returncode < 0:
+        return done.returncode, b"", (done.stderr + b"the program was ended by signal "
+                                      + str(-done.returncode).encode())
+    return done.returncode, done.stdout, done.stderr
+
+
+def _environment() -> Dict[str, str]:
+    return {**os.environ, "DUET_CONFIG": "", "NO_COLOR": "1"}
+
+
+class _Helper:
+    """A process that runs one command after another, for one thread at a time."""
+
+    def __init__(self, program: str) -> None:
+        # In a session of its own: a Ctrl-C at the terminal is this process's business.
+        self._process = subprocess.Popen(
+            [program, "stdio"], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL, start_new_session=True, env=_environment())
+
+    def ask(self, line: bytes) -> Tuple[int, bytes, bytes]:
+        try:
+            return self._ask(line)
+        except (OSError, ValueError, KeyError) as error:
+            self._kill()
+            raise _Ended from error
+        except BaseException:  # such as Ctrl-C: an answer is still to come, for nobody
+            self._kill()
+            raise
+
+    def _ask(self, line: bytes) -> Tuple[int, bytes, bytes]:
+        assert self._process.stdin is not None
+        self._process.stdin.write(line)
+        self._process.stdin.flush()
+        assert self._process.stdout is not None
+        answer = json.loads(self._process.stdout.readline())
+        return answer["exit_code"], self._read(answer["out_bytes"]), self._read(answer["err_bytes"])
+
+    def _read(self, count: int) -> bytes:
+        assert self._process.stdout is not None
+        data = self._process.stdout.read(count)
+        if len(data) != count:
+            raise OSError("the program ended in the middle of its answer")
+        return data
+
+    def _kill(self) -> None:
+        self._process.kill()
+        self.close()
+
+    def abandon(self) -> None:
+        """Of a process that is another's child: closes what was inherited, and waits for nobody."""
+        self._process.returncode = 0
+        self._close_pipes()
+
+    def close(self) -> None:
+        """The process ends at the end of its input."""
+        self._close_pipes()
+        try:
+            self._process.wait(_STOP_SECONDS)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()
+
+    def _close_pipes(self) -> None:
+        for pipe in (self._process.stdin, self._process.stdout):
+            if pipe is not None:
+                with contextlib.suppress(OSError):  # what was to be flushed has no reader
+                    pipe.close()
+
+
+class _Idle:
+    """Processes that wait for a command, by program and working directory."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._key: Optional[Tuple[str, str]] = None
+        self._helpers: List[_Helper] = []
+
+    def take(self, key: Tuple[str, str]) -> Optional[_Helper]:
+        with self._lock:
+            stale = [] if key == self._key else self._helpers
+            if key != self._key:
+                self._key, self._helpers = key, []
+            found = self._helpers.pop() if self._helpers else None
+        for helper in stale:
+            helper.close()
+        return found
+
+    def put(self, key: Tuple[str, str], helper: _Helper) -> None:
+        with self._lock:
+            kept = key == self._key and len(self._helpers) < _MOST_IDLE
+            if kept:
+                self._helpers.append(helper)
+        if not kept:
+            helper.close()
+
+    def close(self) -> None:
+        with self._lock:
+            helpers, self._helpers = self._helpers, []
+        for helper in helpers:
+            helper.close()
+
+    def forget(self) -> None:
+        """After a fork, in the child: the processes are the parent's."""
+        self._lock = threading.Lock()  # whoever held it is not in the child
+        for helper in self._helpers:
+            helper.abandon()
+        self._helpers = []
+
+
+_idle = _Idle()
+atexit.register(_idle.close)
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_idle.forget)

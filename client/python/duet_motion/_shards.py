@@ -1,0 +1,121 @@
+"""Where the arrays of a data set lie: in files of their own, in zip shards or in tar shards.
+
+Positions in a shard are looked up once; an array is then read through a file that is opened for it,
+so that threads and forked processes share nothing.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import pathlib
+import struct
+import tarfile
+import zipfile
+from typing import Any, Dict, Iterator, List, Mapping, Sequence, Tuple, overload
+
+import numpy as np
+import numpy.typing as npt
+
+# Of a zip member: 30 bytes, of which the last four are the lengths of what follows.
+_ZIP_HEADER = struct.Struct("<26xHH")
+
+
+class DataSetError(ValueError):
+    """A data set that cannot be read: names the file, what was expected and what was found."""
+
+
+class Records(Sequence[Mapping[str, Any]]):
+    """The lines of ``index.jsonl``, parsed when they are asked for: a set may have a million."""
+
+    def __init__(self, path: pathlib.Path) -> None:
+        self._path = path
+        begins: List[int] = []
+        at = 0
+        with path.open("rb") as file:
+            for line in file:
+                if line.strip():
+                    begins.append(at)
+                at += len(line)
+        self._begins = np.array(begins, dtype=np.int64)
+
+    def __len__(self) -> int:
+        return len(self._begins)
+
+    @overload
+    def __getitem__(self, index: int) -> Mapping[str, Any]: ...
+    @overload
+    def __getitem__(self, index: slice) -> List[Mapping[str, Any]]: ...
+
+    def __getitem__(self, index: Any) -> Any:
+        if isinstance(index, slice):
+            return [self[at] for at in range(*index.indices(len(self)))]
+        begin = int(self._begins[index])
+        with self._path.open("rb") as file:
+            file.seek(begin)
+            record: Mapping[str, Any] = self._parse(file.readline(), begin)
+        return record
+
+    def __iter__(self) -> Iterator[Mapping[str, Any]]:
+        with self._path.open("rb") as file:
+            for line in file:
+                if line.strip():
+                    yield self._parse(line, file.tell() - len(line))
+
+    def _parse(self, line: bytes, begin: int) -> Any:
+        try:
+            return json.loads(line)
+        except ValueError as error:
+            raise DataSetError(f"{self._path}: byte {begin}: expected a record in JSON, got {error}; "
+                               "duet batch verify says what else is damaged") from error
+
+
+class Shards:
+    """Arrays of the shards in a folder."""
+
+    def __init__(self, folder: pathlib.Path) -> None:
+        self._folder = folder
+        self._members: Dict[str, Dict[str, Tuple[int, int]]] = {}
+
+    def read(self, shard: str, member: str) -> npt.NDArray[np.float32]:
+        """Raises FileNotFoundError, KeyError or ValueError."""
+        path = self._folder / shard
+        if shard not in self._members:
+            self._members[shard] = _members_of(path)
+        offset, size = self._members[shard][member]
+        with path.open("rb") as file:
+            file.seek(offset)
+            return parse_array(file.read(size))
+
+
+def parse_array(data: bytes) -> npt.NDArray[np.float32]:
+    """The array of a .npy file. Raises ValueError."""
+    array: npt.NDArray[np.float32] = np.load(io.BytesIO(data), allow_pickle=False)
+    return array
+
+
+def _members_of(path: pathlib.Path) -> Dict[str, Tuple[int, int]]:
+    """Where each member begins, and its bytes."""
+    try:
+        return _tar_members(path) if path.suffix == ".tar" else _zip_members(path)
+    except (tarfile.TarError, zipfile.BadZipFile) as error:
+        raise ValueError(str(error)) from error
+
+
+def _tar_members(path: pathlib.Path) -> Dict[str, Tuple[int, int]]:
+    with tarfile.open(path, "r:") as archive:
+        return {member.name: (member.offset_data, member.size) for member in archive}
+
+
+def _zip_members(path: pathlib.Path) -> Dict[str, Tuple[int, int]]:
+    members = {}
+    with zipfile.ZipFile(path) as archive, path.open("rb") as file:
+        for member in archive.infolist():
+            if member.compress_type != zipfile.ZIP_STORED:
+                raise ValueError(f"member {member.filename}: expected one that is stored, got one "
+                                 "that is compressed")
+            file.seek(member.header_offset)
+            name, extra = _ZIP_HEADER.unpack(file.read(_ZIP_HEADER.size))
+            begin = member.header_offset + _ZIP_HEADER.size + name + extra
+            members[member.filename] = (begin, member.file_size)
+    return members

@@ -1,0 +1,287 @@
+"""The asynchronous twin of :mod:`duet_motion.client`: the same methods, awaited.
+
+>>> async with duet.aio.Client("localhost:50051") as client:
+...     result = await client.synthesize(leader, labels={"hug": 1})
+"""
+
+from __future__ import annotations
+
+import asyncio
+import collections
+import contextlib
+import threading
+from types import TracebackType
+from typing import (Any, AsyncGenerator, AsyncIterator, Callable, Coroutine, Deque, Iterable, Iterator,
+                    List, Optional, Type)
+
+import grpc
+import grpc.aio
+
+from duet_motion import _channel, batch
+from duet_motion._call import Attempts, SynthesisCall
+from duet_motion._signature import spelled_out
+from duet_motion.errors import CancelledError, DuetError, from_rpc_error
+from duet_motion.request import SynthesisRequest, to_selector
+from duet_motion.result import (FollowerChunk, ModelDetails, ModelInfo, SynthesisResult,
+                         details_from_proto, model_from_proto)
+from duet_motion.v1 import synthesis_pb2, synthesis_pb2_grpc
+
+
+class Client(_channel.Connected):
+    """Asks a Duet server, without blocking: the asynchronous twin of :class:`duet_motion.Client`.
+
+    Made and used within one event loop. Cancelling a task that awaits a call ends the call.
+    ``asyncio.gather`` over any number of calls is fine: ``max_concurrent_calls`` of them are under
+    way at once, and the others wait for their turn within their timeouts.
+
+    Args:
+        address: as of :class:`duet_motion.Client`, which describes all of these.
+        timeout: seconds for a whole call.
+        wait: seconds for which a server that cannot be reached is tried again.
+        tls: how to encrypt.
+        token: says who calls.
+        authority: what calls name as the server they are for.
+        retry: how often a call is attempted.
+        max_concurrent_calls: how many calls of ``synthesize`` are under way at once.
+
+    Raises:
+        ValueError: an argument or a setting makes no sense.
+        OSError: a file that a setting names cannot be read.
+    """
+
+    _grpc = grpc.aio
+    _semaphore = asyncio.Semaphore
+
+    async def close(self) -> None:
+        """Ends the connection, and every call that is still being answered."""
+        self._closed.set()
+        await self._channel.close()
+
+    async def __aenter__(self) -> Client:
+        return self
+
+    async def __aexit__(self, kind: Optional[Type[BaseException]], error: Optional[BaseException],
+                        traceback: Optional[TracebackType]) -> None:
+        await self.close()
+
+    async def list_models(self, *, timeout: Optional[float] = None) -> List[ModelInfo]:
+        """Every model version being served, by name, newest version first.
+
+        Args:
+            timeout: seconds for the whole call. None: the client's.
+
+        Raises:
+            DuetError: the call failed.
+        """
+        response = await self._unary(self._stub.ListModels, synthesis_pb2.ListModelsRequest(),
+                                     timeout)
+        return [model_from_proto(model) for model in response.models]
+
+    async def get_model(self, model: str = "", *, timeout: Optional[float] = None) -> ModelDetails:
+        """One model version, and the limits that a request to it must keep.
+
+        Args:
+            model: ``"sbu"``, ``"sbu@2"`` for a version, ``"sbu:stable"`` for a version label;
+                empty: the server's default.
+            timeout: seconds for the whole call. None: the client's.
+
+        Raises:
+            DuetError: the call failed; ModelNotFoundError where there is no such model.
+        """
+        request = synthesis_pb2.GetModelRequest(model=to_selector(model))
+        return details_from_proto(await self._unary(self._stub.GetModel, request, timeout))
+
+    def synthesize_request(
+            self, request: SynthesisRequest) -> Coroutine[Any, Any, SynthesisResult]:
+        """Awaits the whole follower.
+
+        Args:
+            request: what is asked.
+
+        Raises:
+            DuetError: the call failed.
+        """
+        return self._synthesize(SynthesisCall(request, self._settings))
+
+    def stream_request(self, request: SynthesisRequest) -> SynthesisStream:
+        """The follower's frames as they arrive.
+
+        Args:
+            request: what is asked.
+        """
+        return self._stream(SynthesisCall(request, self._settings))
+
+    synthesize = spelled_out(synthesize_request, SynthesisRequest, "synthesize")
+    stream = spelled_out(stream_request, SynthesisRequest, "stream")
+
+    def synthesize_many(self, requests: Iterable[SynthesisRequest], *,
+                        concurrency: int = 4) -> AsyncIterator[batch.Outcome]:
+        """Answers many requests, several at a time, as
+        :meth:`duet_motion.Client.synthesize_many` does.
+
+        Args:
+            requests: taken from the iterable as they are needed.
+            concurrency: the most calls at a time, at least 1.
+
+        Raises:
+            ValueError: ``concurrency`` makes no sense.
+        """
+        _channel.check_concurrency("concurrency", concurrency)
+        return self._many(iter(requests), concurrency)
+
+    def _stream(self, call: SynthesisCall) -> SynthesisStream:
+        return SynthesisStream(self._stub, self._channel, self._closed, call)
+
+    async def _synthesize(self, call: SynthesisCall) -> SynthesisResult:
+        turn = asyncio.ensure_future(self._turns.acquire())
+        try:
+            done, _ = await asyncio.wait({turn}, timeout=call.attempts.seconds_left())
+            if not done:
+                raise call.no_turn(self._max_concurrent_calls)
+            return await self._stream(call).result()
+        finally:
+            if turn.done() and not turn.cancelled():
+                self._turns.release()
+            else:
+                turn.cancel()
+
+    async def _many(self, requests: Iterator[SynthesisRequest],
+                    concurrency: int) -> AsyncGenerator[batch.Outcome, None]:
+        free = asyncio.Semaphore(concurrency)
+
+        async def outcome(request: SynthesisRequest) -> batch.Outcome:
+            async with free:
+                try:
+                    return batch.Outcome(request, result=await self.stream_request(request).result())
+                except DuetError as error:
+                    return batch.Outcome(request, error=error)
+
+        waiting: Deque[asyncio.Task[batch.Outcome]] = collections.deque()
+
+        def take(count: int) -> None:
+            for _, request in zip(range(count), requests):
+                waiting.append(asyncio.ensure_future(outcome(request)))
+
+        try:
+            take(batch.ahead(concurrency))
+            while waiting:
+                done = await waiting[0]
+                waiting.popleft()
+                take(1)
+                yield done
+        finally:
+            for task in waiting:
+                task.cancel()
+
+    async def _unary(self, method: Any, request: Any, timeout: Optional[float]) -> Any:
+        attempts = Attempts(self._settings, timeout)
+        while True:
+            _channel.check_open(self._closed)
+            try:
+                return await method(request, timeout=attempts.begin(), metadata=attempts.metadata)
+            except grpc.RpcError as error:
+                wait = attempts.wait_after(from_rpc_error(error))
+            await _wait(self._channel, wait)
+
+
+class SynthesisStream(AsyncIterator[FollowerChunk]):
+    """The follower's frames as they arrive, in order and each once, also where a call is retried.
+
+    >>> async with client.stream(leader, {"kick": 1}) as stream:
+    ...     async for chunk in stream:
+    ...         show(chunk.first_frame, chunk.positions)
+    >>> (await stream.result()).unfamiliarity
+
+    Iterating raises :class:`duet_motion.DuetError` where the call fails. Leaving ``async with``
+    early, or :meth:`cancel`, ends the call.
+    """
+
+    def __init__(self, stub: synthesis_pb2_grpc.MotionSynthesisStub, channel: grpc.aio.Channel,
+                 closed: threading.Event, call: SynthesisCall) -> None:
+        self._stub, self._channel, self._closed, self._call = stub, channel, closed, call
+        self._cancelled = asyncio.Event()
+        self._cancel_stream: Callable[[], Any] = lambda: None
+        self._result: Optional[SynthesisResult] = None
+        self._frames = self._receive()
+
+    def __aiter__(self) -> SynthesisStream:
+        return self
+
+    async def __anext__(self) -> FollowerChunk:
+        return await self._frames.__anext__()
+
+    async def __aenter__(self) -> SynthesisStream:
+        return self
+
+    async def __aexit__(self, kind: Optional[Type[BaseException]], error: Optional[BaseException],
+                        traceback: Optional[TracebackType]) -> None:
+        self.cancel()
+        with contextlib.suppress(RuntimeError):  # another task iterates, and is told
+            await self._frames.aclose()
+
+    def cancel(self) -> None:
+        """Ends the call; whoever awaits its chunks or its result gets a CancelledError. A result
+        that is whole already stays. To be called in the client's event loop, from any task."""
+        self._cancelled.set()
+        self._cancel_stream()
+
+    async def result(self) -> SynthesisResult:
+        """The whole follower: awaits the chunks that nobody has taken yet.
+
+        Raises:
+            DuetError: the call failed.
+        """
+        async for _ in self._frames:
+            pass
+        if self._result is None:
+            raise CancelledError(grpc.StatusCode.CANCELLED, "the stream ended before its result")
+        return self._result
+
+    async def _receive(self) -> AsyncGenerator[FollowerChunk, None]:
+        wait: Optional[float] = 0.0
+        while wait is not None:
+            await _wait(self._channel, wait, self._cancelled)
+            self._check_wanted()
+            request, seconds = self._call.begin()
+            responses = self._stub.Synthesize(request, timeout=seconds,
+                                              metadata=self._call.attempts.metadata)
+            self._cancel_stream = responses.cancel
+            error: Optional[DuetError] = None
+            try:
+                async for response in responses:
+                    chunk = self._call.accept(response)
+                    if chunk is not None:
+                        yield chunk
+            except grpc.RpcError as broken:
+                error = from_rpc_error(broken)
+            except asyncio.CancelledError:
+                # gRPC raises it for a call that was cancelled, and asyncio for a task.
+                self._check_wanted()
+                raise
+            finally:
+                responses.cancel()  # of no effect where the stream is at its end
+            if error is not None:
+                self._check_wanted()
+            wait = self._call.wait_after(error)
+        self._result = self._call.result()
+
+    def _check_wanted(self) -> None:
+        _channel.check_open(self._closed)
+        if self._cancelled.is_set():
+            raise CancelledError(grpc.StatusCode.CANCELLED, "the call was cancelled")
+
+
+async def _wait(channel: grpc.aio.Channel, seconds: float,
+                cancelled: Optional[asyncio.Event] = None) -> None:
+    """Waits, unless it is cancelled meanwhile, and has a lost connection tried again."""
+    if seconds <= 0:
+        return
+    channel.get_state(try_to_connect=True)
+    if cancelled is None:
+        await asyncio.sleep(seconds)
+        return
+    waiting = asyncio.ensure_future(cancelled.wait())
+    try:
+        await asyncio.wait({waiting}, timeout=seconds)
+    finally:
+        waiting.cancel()

@@ -1,0 +1,269 @@
+"""One character's motion as an array of joint positions."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import numbers
+import reprlib
+from typing import Any, Iterable, Optional, Sequence, Tuple
+
+import numpy as np
+import numpy.typing as npt
+
+from duet_motion._wire import UNITS, UP_AXES
+
+Positions = npt.NDArray[np.float32]
+_AXES = "xyz"
+
+# Metres in one unit of length.
+_METRES = {"metres": 1.0, "millimetres": 0.001}
+# What turns a row vector of each axis convention to y up: rotations about x, so that handedness is
+# kept. The wire's own definition (docs/decisions/0006).
+_TO_Y_UP = {
+    "y-up": np.diag([1.0, 1.0, 1.0]),
+    "z-up": np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]),
+    "y-down": np.diag([1.0, -1.0, -1.0]),
+}
+
+
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+class Motion:
+    """Joint positions of one person over time, in a right-handed world.
+
+    Args:
+        positions: ``[frames, joints, 3]``, x, y and z in ``unit``: anything that NumPy turns into
+            such an array of real numbers, all of them finite. Kept as a ``float32`` copy that
+            cannot be written to; :meth:`with_positions` makes a changed motion.
+        joint_names: the name of each joint, in the order of the array, without duplicates.
+        frame_rate_hz: frames per second, finite and above 0.
+        unit: ``"metres"``, ``"millimetres"`` or ``"sbu-normalised"``.
+        up_axis: ``"y-up"``, ``"z-up"`` or ``"y-down"``.
+
+    Raises:
+        ValueError: an argument is malformed. The message has the form ``field: expected ..., got
+            ...``; for a value in ``positions`` it names the frame, the joint and the axis.
+    """
+
+    positions: Positions
+    joint_names: Tuple[str, ...]
+    frame_rate_hz: float
+    unit: str = "metres"
+    up_axis: str = "y-up"
+
+    def __init__(self, positions: npt.ArrayLike, joint_names: Sequence[str], frame_rate_hz: float,
+                 unit: str = "metres", up_axis: str = "y-up") -> None:
+        names = _checked_names(joint_names)
+        values = {"positions": _checked_positions(positions, names), "joint_names": names,
+                  "frame_rate_hz": checked_number("frame_rate_hz", frame_rate_hz, above=0),
+                  "unit": _checked_choice("unit", unit, UNITS),
+                  "up_axis": _checked_choice("up_axis", up_axis, UP_AXES)}
+        for name, value in values.items():
+            object.__setattr__(self, name, value)
+
+    @property
+    def frame_count(self) -> int:
+        return int(self.positions.shape[0])
+
+    @property
+    def joint_count(self) -> int:
+        return int(self.positions.shape[1])
+
+    @property
+    def duration_seconds(self) -> float:
+        """From the first frame to the last."""
+        return max(self.frame_count - 1, 0) / self.frame_rate_hz
+
+    @property
+    def times(self) -> npt.NDArray[np.float64]:
+        """The time of every frame in seconds, ``[frames]``."""
+        return np.arange(self.frame_count) / self.frame_rate_hz
+
+    def joint(self, name: str) -> Positions:
+        """The positions of one joint, ``[frames, 3]`` in ``unit``.
+
+        Args:
+            name: one of ``joint_names``.
+
+        Raises:
+            KeyError: there is no such joint.
+        """
+        if name not in self.joint_names:
+            raise KeyError(f"joint: expected one of {', '.join(self.joint_names)}, got {name!r}")
+        return self.positions[:, self.joint_names.index(name)]
+
+    def select(self, joint_names: Sequence[str]) -> Motion:
+        """Some of the joints, or all in another order.
+
+        Args:
+            joint_names: names out of ``joint_names``, in the order that the result should have.
+
+        Raises:
+            KeyError: there is no such joint.
+        """
+        chosen = [self.joint(name) for name in joint_names]
+        return dataclasses.replace(self, positions=np.stack(chosen, axis=1),
+                                   joint_names=tuple(joint_names))
+
+    def with_positions(self, positions: npt.ArrayLike) -> Motion:
+        """A motion with other positions and the same joints, rate, unit and axis.
+
+        Args:
+            positions: ``[frames, joints, 3]`` in ``unit``, with any number of frames.
+
+        Raises:
+            ValueError: as the constructor.
+        """
+        return dataclasses.replace(self, positions=positions)
+
+    def frames(self, start: int, stop: int | None = None) -> Motion:
+        """The frames from ``start`` to before ``stop``.
+
+        Args:
+            start: the first frame; negative numbers count from the end, as in slices.
+            stop: the frame after the last one; None: all that follow.
+        """
+        return self.with_positions(self.positions[start:stop])
+
+    def resampled(self, frame_rate_hz: float) -> Motion:
+        """The same motion at another rate: linear between frames, at the same pace.
+
+        The last frame is never earlier than the motion's end, so the result lasts up to one frame
+        longer. A motion of fewer than two frames keeps its frames.
+
+        Args:
+            frame_rate_hz: frames per second of the result, finite and above 0.
+
+        Raises:
+            ValueError: the rate is malformed.
+        """
+        to_hz = checked_number("frame_rate_hz", frame_rate_hz, above=0)
+        if to_hz == self.frame_rate_hz or self.frame_count < 2:
+            return dataclasses.replace(self, frame_rate_hz=to_hz)
+        return dataclasses.replace(self, frame_rate_hz=to_hz, positions=resample(
+            self.positions, self.frame_rate_hz, to_hz))
+
+    def converted(self, unit: str = "metres", up_axis: str = "y-up") -> Motion:
+        """The same motion in another unit or with another axis up.
+
+        Args:
+            unit: ``"metres"`` or ``"millimetres"``.
+            up_axis: ``"y-up"``, ``"z-up"`` or ``"y-down"``.
+
+        Raises:
+            ValueError: the unit of this motion or of the result is SBU's normalised one, from which
+                :func:`duet_motion.read_motion` converts.
+        """
+        for name in (self.unit, unit):
+            _checked_choice("unit", name, _METRES)
+        _checked_choice("up_axis", up_axis, UP_AXES)
+        turn = _TO_Y_UP[self.up_axis] @ _TO_Y_UP[up_axis].T
+        scale = _METRES[self.unit] / _METRES[unit]
+        return dataclasses.replace(self, positions=self.positions @ turn * scale, unit=unit,
+                                   up_axis=up_axis)
+
+    def __getstate__(self) -> dict[str, Any]:
+        return dict(self.__dict__)
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__init__(**state)  # type: ignore[misc]
+
+    def __repr__(self) -> str:
+        return (f"Motion({self.frame_count} frames at {self.frame_rate_hz:g} Hz, "
+                f"{self.joint_count} joints, {self.unit}, {self.up_axis})")
+
+
+def place(frame: int, joint: str, axis: int) -> str:
+    """A value of a motion as people find it."""
+    return f"frame {frame}, joint {joint!r}, {_AXES[axis]}"
+
+
+def checked_array(field: str, values: npt.ArrayLike) -> npt.NDArray[Any]:
+    """``values`` as an array of real numbers; masked ones are NaN."""
+    if isinstance(values, np.ma.MaskedArray):
+        values = np.ma.filled(values.astype(np.float64), np.nan)  # type: ignore[no-untyped-call]
+    try:
+        array = np.asarray(values)
+    except ValueError as error:  # such as rows of different lengths
+        raise ValueError(f"{field}: expected an array of numbers, got {error}") from error
+    if array.dtype.kind not in "fiu":
+        raise ValueError(f"{field}: expected real numbers, got values of type {array.dtype}")
+    return array
+
+
+def checked_number(field: str, value: object, *, above: float) -> float:
+    """``value`` as a finite float above a bound."""
+    number = finite_number(value)
+    if number is None or number <= above:
+        raise ValueError(f"{field}: expected a finite number above {above:g}, got "
+                         f"{reprlib.repr(value)}")
+    return number
+
+
+def finite_number(value: object) -> Optional[float]:
+    """``value`` as a float; None for what is no number, or not a finite one."""
+    if not isinstance(value, numbers.Real) or isinstance(value, bool):
+        return None
+    try:
+        number = float(value)
+    except OverflowError:
+        return None
+    return number if math.isfinite(number) else None
+
+
+def first_not_finite(array: npt.NDArray[Any]) -> Optional[Tuple[int, ...]]:
+    """The index of the first value that float32 cannot hold; None where there is none."""
+    with np.errstate(over="ignore"):
+        finite = np.isfinite(array.astype(np.float32))
+    if finite.all():
+        return None
+    return tuple(int(at) for at in np.argwhere(~finite)[0])
+
+
+def resample(positions: Positions, from_hz: float, to_hz: float) -> Positions:
+    """``[frames, ...]`` at another rate, as ``duet convert --resample`` has it: linear between
+    frames, up to one frame longer, at least two frames."""
+    last = (len(positions) - 1) * to_hz / from_hz
+    count = max(2, math.ceil(last - 1e-6) + 1)  # a whole number of frames is not rounded up
+    at = np.clip(np.arange(count) * from_hz / to_hz, 0, len(positions) - 1)
+    before = at.astype(np.int64)
+    after = np.minimum(before + 1, len(positions) - 1)
+    share = (at - before).astype(np.float32).reshape(-1, *[1] * (positions.ndim - 1))
+    moved: Positions = positions[before] + (positions[after] - positions[before]) * share
+    return moved
+
+
+def _checked_names(names: Sequence[str]) -> Tuple[str, ...]:
+    if isinstance(names, str) or not isinstance(names, Iterable):
+        raise ValueError(f"joint_names: expected a sequence of names, got {reprlib.repr(names)}")
+    kept = tuple(names)
+    for name in kept:
+        if not isinstance(name, str) or not name:
+            raise ValueError(f"joint_names: expected a name for each joint, got {name!r}")
+    twice = sorted({name for name in kept if kept.count(name) > 1})
+    if twice:
+        raise ValueError(f"joint_names: expected each name once, got {', '.join(twice)} more often")
+    return tuple(str(name) for name in kept)
+
+
+def _checked_positions(given: npt.ArrayLike, names: Tuple[str, ...]) -> Positions:
+    array = checked_array("positions", given)
+    if array.ndim != 3 or array.shape[2] != 3 or not array.shape[1]:
+        raise ValueError(f"positions: expected the shape (frames, joints, 3), got {array.shape}")
+    if array.shape[1] != len(names):
+        raise ValueError(f"positions: expected the {len(names)} joints of joint_names, got "
+                         f"{array.shape[1]}")
+    found = first_not_finite(array)
+    if found is not None:
+        frame, joint, axis = found
+        raise ValueError(f"positions[{frame}, {joint}, {axis}]: expected a finite float32, got "
+                         f"{array[found]} at {place(frame, names[joint], axis)}")
+    kept = array.astype(np.float32)
+    kept.setflags(write=False)
+    return kept
+
+
+def _checked_choice(field: str, value: object, choices: Iterable[str]) -> str:
+    if isinstance(value, str) and value in choices:
+        return value
+    raise ValueError(f"{field}: expected one of {', '.join(choices)}, got {reprlib.repr(value)}")

@@ -1,0 +1,205 @@
+"""What is asked of a server."""
+
+from __future__ import annotations
+
+import dataclasses
+import numbers
+import reprlib
+from typing import Mapping, Optional
+
+import numpy as np
+import numpy.typing as npt
+
+from duet_motion._wire import CLEAN_UP, PRIORITIES, UNITS, UP_AXES
+from duet_motion.motion import (Motion, checked_array, checked_number, finite_number,
+                               first_not_finite)
+from duet_motion.v1 import model_pb2, motion_pb2, synthesis_pb2
+
+Labels = Mapping[str, float]
+"""Weights by interaction class: 1 wanted, 0 neutral, -1 avoided, within -2 to 2."""
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class SynthesisRequest:
+    """A follower to synthesise.
+
+    Args:
+        leader: the motion to answer: positions ``[frames, joints, 3]`` with their joint names,
+            rate, unit and axis. Its joints are those of the model
+            (:meth:`duet_motion.Client.get_model`), in any order.
+        labels: weights by interaction class for the whole clip, such as ``{"hug": 1, "push":
+            0.5}``: 1 wanted, 0 neutral, -1 avoided, within -2 to 2.
+        keyframes: instead of ``labels``, weights by frame number: linear in between, constant
+            before the first and after the last.
+        seed: which answer of a model that samples, 0 to 2^64 - 1. The same request with the same
+            seed has the same answer on the same server.
+        variety: how varied such answers are over the seeds, 0 to 2: 0 the typical answer, 1 as
+            varied as people.
+        model: ``"sbu"``, ``"sbu@2"`` for a version, ``"sbu:stable"`` for a version label; empty:
+            the server's default.
+        clean_up: whether the server corrects the follower so that it stands, keeps its feet still
+            and keeps out of the leader. None: the server decides.
+        follower_start: where the follower is in the first frame, in the leader's world and unit:
+            its root joint ``[3]``, or every joint ``[joints, 3]`` in the leader's order.
+        partner_direction: the horizontal direction from the leader to the follower, ``[3]`` in the
+            leader's world, of any length.
+        priority: ``"interactive"``, or ``"bulk"``, which yields to interactive calls.
+        chunk_frames: frames in one chunk of the reply. None: the server decides.
+        request_id: names the call in the server's log. Empty: the server makes one.
+        timeout: seconds for the whole call, all its attempts included. None: the client's.
+
+    Raises:
+        ValueError: an argument is malformed in a way that can be seen without a server; the message
+            has the form ``field: expected ..., got ...``.
+    """
+
+    leader: Motion
+    labels: Optional[Labels] = None
+    keyframes: Optional[Mapping[int, Labels]] = None
+    seed: int = 0
+    variety: float = 1.0
+    model: str = ""
+    clean_up: Optional[bool] = None
+    follower_start: Optional[npt.ArrayLike] = None
+    partner_direction: Optional[npt.ArrayLike] = None
+    priority: str = "interactive"
+    chunk_frames: Optional[int] = None
+    request_id: str = ""
+    timeout: Optional[float] = None
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.leader, Motion):
+            raise ValueError(f"leader: expected a duet_motion.Motion, got {_short(self.leader)}")
+        self._check_labels()
+        _check_integer("seed", self.seed, 0, 2**64 - 1)
+        if finite_number(self.variety) is None:
+            raise ValueError(f"variety: expected a number, got {_short(self.variety)}")
+        to_selector(self.model)
+        if self.clean_up is not None and not isinstance(self.clean_up, (bool, np.bool_)):
+            raise ValueError(f"clean_up: expected True, False or None, got {_short(self.clean_up)}")
+        joints = self.leader.joint_count
+        _check_points("follower_start", self.follower_start, ((3,), (joints, 3)),
+                      self.leader.joint_names)
+        _check_points("partner_direction", self.partner_direction, ((3,),))
+        if self.priority not in PRIORITIES:
+            raise ValueError(f"priority: expected one of {', '.join(PRIORITIES)}, got "
+                             f"{_short(self.priority)}")
+        if self.chunk_frames is not None:
+            _check_integer("chunk_frames", self.chunk_frames, 1, 2**32 - 1)
+        if not isinstance(self.request_id, str):
+            raise ValueError(f"request_id: expected a str, got {_short(self.request_id)}")
+        if self.timeout is not None:
+            checked_number("timeout", self.timeout, above=0)
+
+    def _check_labels(self) -> None:
+        _check_labels("labels", {} if self.labels is None else self.labels)
+        keyframes = {} if self.keyframes is None else self.keyframes
+        if not isinstance(keyframes, Mapping):
+            raise ValueError("keyframes: expected labels by frame, such as {0: {'hug': 1}}, got "
+                             f"{_short(keyframes)}")
+        for frame, labels in keyframes.items():
+            _check_integer("keyframes: frame", frame, 0, 2**32 - 1)
+            _check_labels(f"keyframes[{frame}]", labels)
+
+
+def to_selector(model: str) -> model_pb2.ModelSelector:
+    """The model that ``NAME``, ``NAME@VERSION`` or ``NAME:LABEL`` chooses."""
+    if not isinstance(model, str):
+        raise ValueError(f"model: expected a str, got {_short(model)}")
+    selector = model_pb2.ModelSelector()
+    if "@" in model:
+        selector.name, _, version = model.partition("@")
+        if not version.isdecimal() or not 1 <= int(version) < 2**32:
+            raise ValueError(f"model: expected a version of 1 or more after the @, got {model!r}")
+        selector.version = int(version)
+    elif ":" in model:
+        selector.name, _, selector.version_label = model.partition(":")
+        if not selector.version_label:
+            raise ValueError(f"model: expected a label after the colon, got {model!r}")
+    else:
+        selector.name = model
+    return selector
+
+
+def to_proto(request: SynthesisRequest) -> synthesis_pb2.SynthesizeRequest:
+    """The request as it goes over the wire."""
+    out = synthesis_pb2.SynthesizeRequest(
+        model=to_selector(request.model), leader=_leader(request.leader),
+        seed=int(request.seed), variety=float(request.variety),
+        clean_up=CLEAN_UP[None if request.clean_up is None else bool(request.clean_up)],
+        priority=PRIORITIES[request.priority],
+        chunk_frames=None if request.chunk_frames is None else int(request.chunk_frames))
+    _fill(request.labels or {}, out.label_vector)
+    for frame, labels in sorted((request.keyframes or {}).items()):
+        _fill(labels, out.label_keyframes.add(frame=int(frame)).label_vector)
+    if request.follower_start is not None:
+        _fill_start(request.follower_start, out.follower_start)
+    if request.partner_direction is not None:
+        x, y, z = _floats(request.partner_direction)
+        out.partner_direction.CopyFrom(motion_pb2.Direction(x=x, y=y, z=z))
+    return out
+
+
+def _leader(leader: Motion) -> motion_pb2.Motion:
+    return motion_pb2.Motion(
+        joint_names=leader.joint_names, frame_rate_hz=leader.frame_rate_hz,
+        unit=UNITS[leader.unit], up_axis=UP_AXES[leader.up_axis], frame_count=leader.frame_count,
+        positions=_floats(leader.positions))
+
+
+def _fill(labels: Labels, vector: synthesis_pb2.LabelVector) -> None:
+    """Leaves the vector absent where there are no labels: the server says what is missing."""
+    for interaction_class, weight in labels.items():
+        vector.weights.add(interaction_class=interaction_class, weight=float(weight))
+
+
+def _fill_start(start: npt.ArrayLike, out: motion_pb2.FollowerStart) -> None:
+    values = _floats(start)
+    if np.ndim(start) == 1:
+        out.root_position.CopyFrom(motion_pb2.Point(x=values[0], y=values[1], z=values[2]))
+    else:
+        out.pose.positions.extend(values)
+
+
+def _floats(values: npt.ArrayLike) -> list[float]:
+    flat: list[float] = np.asarray(values, dtype=np.float32).ravel().tolist()
+    return flat
+
+
+def _check_labels(name: str, labels: Labels) -> None:
+    if not isinstance(labels, Mapping):
+        raise ValueError(f"{name}: expected weights by class, such as {{'hug': 1}}, got "
+                         f"{_short(labels)}")
+    for interaction_class, weight in labels.items():
+        if not isinstance(interaction_class, str):
+            raise ValueError(f"{name}: expected classes of type str, got "
+                             f"{_short(interaction_class)}")
+        if finite_number(weight) is None:
+            raise ValueError(f"{name}[{interaction_class!r}]: expected a finite number, got "
+                             f"{_short(weight)}")
+
+
+def _check_integer(name: str, value: object, least: int, most: int) -> None:
+    if (not isinstance(value, numbers.Integral) or isinstance(value, bool)
+            or not least <= int(value) <= most):
+        raise ValueError(f"{name}: expected an integer from {least} to {most}, got {_short(value)}")
+
+
+def _short(value: object) -> str:
+    """What came, in one short line."""
+    return reprlib.repr(value)
+
+
+def _check_points(name: str, values: Optional[npt.ArrayLike], shapes: tuple[tuple[int, ...], ...],
+                  joint_names: tuple[str, ...] = ()) -> None:
+    if values is None:
+        return
+    array = checked_array(name, values)
+    if array.shape not in shapes:
+        raise ValueError(f"{name}: expected the shape {' or '.join(map(str, shapes))}, got "
+                         f"{array.shape}")
+    found = first_not_finite(array)
+    if found is not None:
+        at = f" at joint {joint_names[found[0]]!r}" if array.ndim == 2 else ""
+        raise ValueError(f"{name}[{', '.join(map(str, found))}]: expected a finite float32, got "
+                         f"{array[found]}{at}")

@@ -1,0 +1,298 @@
+"""Data sets of `duet batch`, for training.
+
+>>> reactions = duet.read_set("set", frame_rate_hz=30)
+>>> item = reactions[0]
+>>> item.leader.positions, item.follower.positions    # [frames, joints, 3], metres
+>>> item.weights                                      # [frames, classes]
+>>> batch = duet.pad([reactions[index] for index in range(8)])
+>>> batch.pairs, batch.mask                           # [8, 2, frames, joints, 3], [8, frames]
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import os
+import pathlib
+from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple, Union, overload
+
+import numpy as np
+import numpy.typing as npt
+
+from duet_motion._shards import DataSetError, Records, Shards, parse_array
+from duet_motion.files import read_pair
+from duet_motion.motion import Motion, Positions, checked_number, resample
+
+Path = Union[str, "os.PathLike[str]"]
+Weights = npt.NDArray[np.float32]
+
+_NEWEST_FORMAT = 1
+# Of files with two people that `duet` reads, those that hold every position.
+_READ_BY_PROGRAM = (".json", ".csv", ".txt")
+_CAPTURES = ("LAYOUT_SBU", "LAYOUT_K3HI")
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class SetItem:
+    """One item of a data set: a leader, the follower that answered it, and what was asked."""
+
+    record: Mapping[str, Any]
+    """Its line of ``index.jsonl``: seed, model, quality figures, digests (docs/batch.md)."""
+    pair: Positions
+    """``[2, frames, joints, 3]``: leader first, in ``leader.unit``."""
+    leader: Motion
+    follower: Motion
+    interaction_classes: Tuple[str, ...]
+    """The classes that ``weights`` has columns for."""
+    weights: Weights
+    """``[frames, classes]``: the label vector of each frame; the same in all frames unless the item
+    was made with keyframes."""
+
+    @property
+    def name(self) -> str:
+        """The name of its files, without their endings."""
+        return str(self.record["name"])
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class PaddedBatch:
+    """Items of different lengths in arrays of one shape."""
+
+    pairs: Positions
+    """``[items, 2, frames, joints, 3]``, leader first. Beyond an item's end its last frame."""
+    weights: Weights
+    """``[items, frames, classes]``. Beyond an item's end its last frame's."""
+    mask: npt.NDArray[np.bool_]
+    """``[items, frames]``: True where a frame is the item's own."""
+    records: Tuple[Mapping[str, Any], ...]
+
+
+class MotionSet(Sequence[SetItem]):
+    """A data set that `duet batch` wrote. :func:`read_set` makes one.
+
+    Items are read when they are asked for, so a set may be larger than memory. It may be pickled and
+    shared by threads and processes: PyTorch's ``DataLoader`` takes it as it is.
+    """
+
+    def __init__(self, path: Path, frame_rate_hz: Optional[float] = None) -> None:
+        self.path = pathlib.Path(path)
+        """The set's folder."""
+        self.frame_rate_hz = (None if frame_rate_hz is None else
+                              checked_number("frame_rate_hz", frame_rate_hz, above=0))
+        """Frames per second that every item is resampled to; None: each has its own."""
+        index = self.path / "index.jsonl"
+        if not index.is_file():
+            raise DataSetError(f"{self.path}: expected a data set of duet batch, got no "
+                               "index.jsonl in it")
+        self.records: Sequence[Mapping[str, Any]] = Records(index)
+        """What is known of each item, in their order."""
+        self.description: Mapping[str, Any] = _read_description(self.path)
+        """``dataset.json``: counts, models and their terms, skeletons (docs/batch.md). Empty for
+        sets that have none."""
+        self._skeletons = _skeletons(self.path, self.description)
+        self.interaction_classes = self._classes()
+        """Every class that items have weights for, in the order of the label vector."""
+        self._shards = Shards(self.path)
+
+    def __len__(self) -> int:
+        return len(self.records)
+
+    @overload
+    def __getitem__(self, index: int) -> SetItem: ...
+    @overload
+    def __getitem__(self, index: slice) -> List[SetItem]: ...
+
+    def __getitem__(self, index: Any) -> Any:
+        if isinstance(index, slice):
+            return [self[at] for at in range(*index.indices(len(self)))]
+        return self._item(self.records[index])
+
+    def __iter__(self) -> Iterator[SetItem]:
+        return map(self._item, self.records)
+
+    def __repr__(self) -> str:
+        return (f"MotionSet({str(self.path)!r}: {len(self)} items of "
+                f"{', '.join(self.interaction_classes)})")
+
+    @property
+    def joint_names(self) -> Tuple[str, ...]:
+        """The joints of every item, in the order of the arrays.
+
+        Raises:
+            DataSetError: the set has several skeletons, or does not say.
+        """
+        return tuple(self._only_skeleton()["joint_names"])
+
+    @property
+    def parents(self) -> Tuple[int, ...]:
+        """For each joint the index of its parent, -1 for none.
+
+        Raises:
+            DataSetError: the set has several skeletons, or does not say.
+        """
+        skeleton = self._only_skeleton()
+        if "parents" not in skeleton:
+            raise DataSetError(f"{self.path}: expected parents of joints in dataset.json, got none")
+        return tuple(skeleton["parents"])
+
+    def _only_skeleton(self) -> Mapping[str, Any]:
+        if len(self._skeletons) != 1:
+            raise DataSetError(f"{self.path}: expected one skeleton, got {len(self._skeletons)}; "
+                               "item.leader.joint_names are an item's own")
+        return self._skeletons[0]
+
+    def _classes(self) -> Tuple[str, ...]:
+        classes = self.description.get("interaction_classes")
+        if classes is None:
+            classes = sorted({name for record in self.records for _, labels in _keyframes(record)
+                              for name in labels})
+        return tuple(classes)
+
+    def _item(self, record: Mapping[str, Any]) -> SetItem:
+        pair = self._read(record)
+        rate = float(record["frame_rate_hz"])
+        weights = self._weights(record, pair.shape[1])
+        if self.frame_rate_hz is not None and rate != self.frame_rate_hz and pair.shape[1] > 1:
+            pair = np.stack([resample(person, rate, self.frame_rate_hz) for person in pair])
+            weights = resample(weights, rate, self.frame_rate_hz)
+            rate = self.frame_rate_hz
+        names = self._joint_names(record, pair.shape[2])
+        try:
+            leader, follower = (Motion(person, names, rate) for person in pair)
+        except ValueError as error:
+            raise DataSetError(f"{self.path}: {record['name']}: {error}") from error
+        return SetItem(record, pair, leader, follower, self.interaction_classes, weights)
+
+    def _read(self, record: Mapping[str, Any]) -> Positions:
+        """``[2, frames, joints, 3]``, leader first."""
+        name = record["name"]
+        try:
+            if "shard" in record:
+                pair = self._shards.read(record["shard"], f"{name}.npy")
+            else:
+                pair = self._read_file(record)
+        except FileNotFoundError as error:
+            raise DataSetError(f"{self.path}: {name}: expected the file {error.filename}, got none; "
+                               "a set is packed when duet batch has come to its end, and duet batch "
+                               "verify finds what is missing") from error
+        except KeyError as error:
+            raise DataSetError(f"{self.path / str(record['shard'])}: expected the array {error}, got "
+                               "none") from error
+        except ValueError as error:
+            raise DataSetError(f"{self.path}: {name}: {error}") from error
+        if pair.ndim != 4 or pair.shape[0] != 2 or pair.shape[3] != 3:
+            raise DataSetError(f"{self.path}: {name}: expected the shape (2, frames, joints, 3), got "
+                               f"{pair.shape}")
+        return pair.astype(np.float32, copy=False)
+
+    def _read_file(self, record: Mapping[str, Any]) -> Positions:
+        files = {pathlib.PurePosixPath(file["path"]).suffix: self.path / file["path"]
+                 for file in record["files"]}
+        if ".npy" in files:
+            return parse_array(files[".npy"].read_bytes())
+        for ending in _READ_BY_PROGRAM:
+            if ending in files:
+                people = read_pair(files[ending])
+                if self._is_capture(files[ending]) and record.get("side") == "right":
+                    people = (people[1], people[0])
+                return np.stack([person.positions for person in people])
+        raise ValueError(f"expected .npy, {' or '.join(_READ_BY_PROGRAM)}, got "
+                         f"{', '.join(files)}; add FORMAT_NPY to the recipe's output formats")
+
+    def _is_capture(self, path: pathlib.Path) -> bool:
+        return self.description.get("layout") in _CAPTURES or path.suffix == ".txt"
+
+    def _joint_names(self, record: Mapping[str, Any], joints: int) -> Sequence[str]:
+        of_model = next((model.get("skeleton", 0) for model in self.description.get("models", ())
+                         if model["name"] == record.get("model")), 0)
+        skeleton = int(record.get("skeleton", of_model))
+        if skeleton >= len(self._skeletons):
+            return [f"joint_{joint}" for joint in range(joints)]
+        names: Sequence[str] = self._skeletons[skeleton]["joint_names"]
+        return names
+
+    def _weights(self, record: Mapping[str, Any], frames: int) -> Weights:
+        """Linear between keyframes, constant before the first and after the last."""
+        keyframes = _keyframes(record)
+        at = [frame for frame, _ in keyframes]
+        columns = [np.interp(np.arange(frames), at, [labels.get(name, 0.0) for _, labels in keyframes])
+                   for name in self.interaction_classes]
+        if not columns:
+            return np.zeros((frames, 0), np.float32)
+        return np.stack(columns, axis=1).astype(np.float32)
+
+
+def read_set(path: Path, *, frame_rate_hz: Optional[float] = None) -> MotionSet:
+    """A data set of `duet batch`: loose files, or npz or tar shards.
+
+    Args:
+        path: the set's folder, which holds ``index.jsonl``.
+        frame_rate_hz: frames per second that every item is resampled to, linearly and at the same
+            pace. None: each item keeps its own rate.
+
+    Raises:
+        DataSetError: the folder holds no data set, or one of a later format.
+        ValueError: the rate is malformed.
+    """
+    return MotionSet(path, frame_rate_hz)
+
+
+def pad(items: Sequence[SetItem], frames: Optional[int] = None) -> PaddedBatch:
+    """Items of different lengths in arrays of one shape: shorter ones repeat their last frame,
+    longer ones are cut. PyTorch's ``DataLoader`` takes it as ``collate_fn``.
+
+    Args:
+        items: at least one, all with the same joints.
+        frames: of the result, at least 1. None: those of the longest item.
+
+    Raises:
+        ValueError: there is no item, their joints differ, or ``frames`` is below 1.
+    """
+    if not items:
+        raise ValueError("items: expected at least one, got none")
+    longest = max(item.pair.shape[1] for item in items) if frames is None else frames
+    if longest < 1:
+        raise ValueError(f"frames: expected 1 or more, got {longest}")
+    for item in items:
+        if item.leader.joint_names != items[0].leader.joint_names:
+            raise ValueError(f"items: expected the joints of {items[0].name} in all of them, got "
+                             f"others in {item.name}")
+    at = [np.minimum(np.arange(longest), item.pair.shape[1] - 1) for item in items]
+    return PaddedBatch(
+        np.stack([item.pair[:, frames_of] for item, frames_of in zip(items, at)]),
+        np.stack([item.weights[frames_of] for item, frames_of in zip(items, at)]),
+        np.stack([np.arange(longest) < item.pair.shape[1] for item in items]),
+        tuple(item.record for item in items))
+
+
+def _keyframes(record: Mapping[str, Any]) -> List[Tuple[int, Mapping[str, float]]]:
+    if "keyframes" in record:
+        return [(key["frame"], key["labels"]) for key in record["keyframes"]]
+    return [(0, record.get("labels", {}))]
+
+
+def _read_description(path: pathlib.Path) -> Mapping[str, Any]:
+    file = path / "dataset.json"
+    if not file.is_file():
+        return {}
+    try:
+        description: Dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
+        version = description["format_version"]
+    except (ValueError, KeyError, TypeError) as error:
+        raise DataSetError(f"{file}: expected a JSON object with format_version, got {error!r}"
+                           ) from error
+    if version > _NEWEST_FORMAT:
+        raise DataSetError(f"{file}: format_version: expected at most {_NEWEST_FORMAT}, got "
+                           f"{version}; a newer duet-motion reads it")
+    return description
+
+
+def _skeletons(path: pathlib.Path, description: Mapping[str, Any]) -> List[Mapping[str, Any]]:
+    if "skeletons" in description:
+        return list(description["skeletons"])
+    # Sets from before dataset.json have them in the folder that lets a run go on, where that is
+    # still there.
+    job = path / ".duet-batch" / "job.json"
+    if not job.is_file():
+        return []
+    return list(json.loads(job.read_text(encoding="utf-8")).get("skeletons", []))

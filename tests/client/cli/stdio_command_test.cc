@@ -1,0 +1,98 @@
+#include "client/cli/stdio_command.h"
+
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "nlohmann/json.hpp"
+#include "tests/support/temporary_folder.h"
+
+namespace duet::client::cli {
+namespace {
+
+using test::TemporaryFolder;
+using test::WriteTestFile;
+
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+using ::testing::StartsWith;
+
+struct Answer {
+  int exit_code = 0;
+  std::string out, err;
+};
+
+// What `duet stdio` answers to each line.
+std::vector<Answer> Run(const std::string& lines) {
+  std::istringstream in(lines);
+  std::ostringstream out, err;
+  EXPECT_EQ(RunProgram({"stdio"}, {nullptr, &out, &err, &in}), 0);
+  EXPECT_EQ(err.str(), "");
+  std::vector<Answer> answers;
+  std::istringstream answered(out.str());
+  for (std::string line; std::getline(answered, line);) {
+    const auto header = nlohmann::json::parse(line);
+    Answer answer;
+    answer.exit_code = header["exit_code"];
+    answer.out.resize(header["out_bytes"]);
+    answer.err.resize(header["err_bytes"]);
+    answered.read(answer.out.data(), static_cast<std::streamsize>(answer.out.size()));
+    answered.read(answer.err.data(), static_cast<std::streamsize>(answer.err.size()));
+    answers.push_back(std::move(answer));
+  }
+  return answers;
+}
+
+TEST(StdioCommandTest, AnswersEachLineInTurn) {
+  const std::vector<Answer> answers =
+      Run("[\"--version\"]\n[\"convert\", \"/no/such.bvh\", \"--out\", \"-\"]\n[\"--version\"]\n");
+  ASSERT_THAT(answers, SizeIs(3));
+  EXPECT_EQ(answers[0].exit_code, 0);
+  EXPECT_THAT(answers[0].out, StartsWith("duet "));
+  EXPECT_NE(answers[1].exit_code, 0);
+  EXPECT_EQ(answers[1].out, "");
+  EXPECT_NE(answers[1].err, "");
+  EXPECT_EQ(answers[2].out, answers[0].out);
+}
+
+TEST(StdioCommandTest, WritesWhatACommandWritesToStandardOutput) {
+  TemporaryFolder folder;
+  const std::string file = (folder / "points.json").string();
+  WriteTestFile(file, R"({"format": "duet-motion", "version": 1, "frame_rate_hz": 30,
+      "unit": "metres", "up_axis": "y-up", "joint_names": ["torso"],
+      "leader": [[[0, 1, 2]], [[0, 1, 3]]]})");
+  const std::string words =
+      nlohmann::json({"convert", file, "--out", "-", "--output-format", "npy"}).dump();
+  const std::vector<Answer> answers = Run(words + "\n" + words + "\n");
+  ASSERT_THAT(answers, SizeIs(2));
+  EXPECT_EQ(answers[0].exit_code, 0) << answers[0].err;
+  EXPECT_THAT(answers[0].out, StartsWith("\x93NUMPY"));
+  EXPECT_EQ(answers[1].out, answers[0].out);
+}
+
+TEST(StdioCommandTest, ACommandHasNoStandardInput) {
+  const std::vector<Answer> answers =
+      Run("[\"convert\", \"-\", \"--input-format\", \"bvh\", \"--out\", \"-\", "
+          "\"--output-format\", \"csv\"]\n[\"--version\"]\n");
+  ASSERT_THAT(answers, SizeIs(2));
+  EXPECT_NE(answers[0].exit_code, 0);
+  EXPECT_EQ(answers[1].exit_code, 0);
+}
+
+TEST(StdioCommandTest, ALineThatIsNoCommandIsAUsageError) {
+  for (const char* line : {"", "convert", "{", "[]", "{\"a\": 1}", "[1]", "[[\"models\"]]",
+                           "[\"stdio\"]", "[\"\xff\"]"}) {
+    const std::vector<Answer> answers = Run(std::string(line) + "\n[\"--version\"]\n");
+    ASSERT_THAT(answers, SizeIs(2)) << line;
+    EXPECT_EQ(answers[0].exit_code, 2) << line;
+    EXPECT_THAT(answers[0].err, HasSubstr("expected a JSON array with the words of a command"));
+    EXPECT_EQ(answers[1].exit_code, 0) << line;
+  }
+}
+
+TEST(StdioCommandTest, WithoutInputThereIsNothingToDo) { EXPECT_THAT(Run(""), SizeIs(0)); }
+
+}  // namespace
+}  // namespace duet::client::cli

@@ -1,0 +1,151 @@
+"""The process that reads files: kept, shared by nobody, and never in the way when it ends."""
+
+import concurrent.futures
+import multiprocessing
+import os
+import pathlib
+import shutil
+import stat
+import sys
+import tempfile
+import threading
+import unittest
+from unittest import mock
+
+import support
+from duet_motion import _program
+
+PROGRAM = pathlib.Path(os.environ.get("DUET_BIN_DIR", support.SOURCE / "build/release/bin")) / "duet"
+
+# Answers as `duet stdio` does, with its process id; "end" ends it in the middle of an answer.
+KEPT = f"#!{sys.executable}" + """
+import json, os, sys
+if sys.argv[1:] != ["stdio"]:
+    print("once", end="")
+    sys.exit(sys.argv[1] == "fail" and 42)
+for line in sys.stdin:
+    words = json.loads(line)
+    out = str(os.getpid())
+    if words[0] == "end":
+        print('{"exit_code": 0, "out_bytes": 5, "err_bytes": 0}', end="\\n1", flush=True)
+        break
+    print(json.dumps({"exit_code": 42 * (words[0] == "fail"), "out_bytes": len(out),
+                      "err_bytes": 3}))
+    print(out + "no!", end="", flush=True)
+    if words[0] == "last":
+        break
+"""
+# A program from before `duet stdio`.
+OLD = """#!/bin/sh
+if [ "$1" = stdio ]; then echo 'There is no command "stdio"' >&2; exit 2; fi
+printf old
+"""
+
+
+def read_in_child(pipe):
+    pipe.send(_program.run("read"))
+
+
+class ProgramTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.addCleanup(_program._idle.close)
+        self.use(KEPT)
+
+    def use(self, script):
+        program = self.folder / "duet"
+        program.write_text(script, encoding="utf-8")
+        program.chmod(program.stat().st_mode | stat.S_IXUSR)
+        _program._idle.close()
+        self.enterContext(mock.patch.dict(os.environ, {"DUET_PROGRAM": str(program)}))
+
+    def test_one_process_runs_many_commands(self):
+        self.assertEqual(len({_program.run("read", str(number)) for number in range(10)}), 1)
+
+    def test_a_command_that_fails_says_why_and_the_process_stays(self):
+        kept = _program.run("read")
+        with self.assertRaisesRegex(_program.CommandFailed, "^no!$"):
+            _program.run("fail")
+        self.assertEqual(_program.run("read"), kept)
+
+    def test_a_process_that_ended_while_it_was_idle_is_replaced(self):
+        gone = _program.run("last")
+        other = _program.run("read")
+        self.assertNotIn(other, (gone, "once"))
+        self.assertEqual(_program.run("read"), other)
+
+    def test_a_process_that_ends_in_the_middle_of_an_answer_leaves_the_command_to_tell(self):
+        _program.run("read")
+        helper, = _program._idle._helpers
+        self.assertEqual(_program.run("end"), "once")
+        self.assertIsNotNone(helper._process.returncode)
+        self.assertNotEqual(_program.run("read"), "once")
+
+    def test_a_program_without_stdio_runs_each_command(self):
+        self.use(OLD)
+        self.assertEqual([_program.run("read"), _program.run("read")], ["old", "old"])
+
+    def test_a_file_name_that_is_not_utf_8_runs_a_command_of_its_own(self):
+        self.assertEqual(_program.run("read", "\udcff"), "once")
+
+    def test_threads_have_a_process_each_and_few_are_kept(self):
+        together = threading.Barrier(6)
+
+        def read(_):
+            together.wait(support.LONGEST_CALL)
+            return _program.run("read")
+        with concurrent.futures.ThreadPoolExecutor(6) as pool:
+            self.assertLessEqual(len(set(pool.map(read, range(6)))), 6)
+        self.assertLessEqual(len(_program._idle._helpers), 4)
+
+    def test_another_working_directory_or_program_has_a_process_of_its_own(self):
+        kept = _program.run("read")
+        here = os.getcwd()
+        self.addCleanup(os.chdir, here)
+        os.chdir(self.folder)
+        self.assertNotEqual(_program.run("read"), kept)
+
+    def test_a_forked_process_has_one_of_its_own(self):
+        kept = _program.run("read")
+        context = multiprocessing.get_context("fork")
+        receiver, sender = context.Pipe(duplex=False)
+        child = context.Process(target=read_in_child, args=(sender,))
+        child.start()
+        self.assertTrue(receiver.poll(support.LONGEST_CALL))
+        self.assertNotEqual(receiver.recv(), kept)
+        child.join(support.LONGEST_CALL)
+        self.assertEqual(child.exitcode, 0)
+        self.assertEqual(_program.run("read"), kept)
+
+    def test_an_interrupted_command_takes_its_process_along(self):
+        kept = _program.run("read")
+        helper, = _program._idle._helpers
+        with mock.patch.object(_program._Helper, "_ask", side_effect=KeyboardInterrupt):
+            with self.assertRaises(KeyboardInterrupt):
+                _program.run("read")
+        self.assertIsNotNone(helper._process.returncode)
+        self.assertNotEqual(_program.run("read"), kept)
+
+    def test_a_program_that_is_not_there_says_how_to_get_it(self):
+        with mock.patch.dict(os.environ, {"DUET_PROGRAM": "no-such-duet"}):
+            with self.assertRaisesRegex(FileNotFoundError,
+                                        "program 'no-such-duet': expected .*duet-client.*DUET_PROG"):
+                _program.run("read")
+
+    @unittest.skipUnless(PROGRAM.exists(), f"no program at {PROGRAM}; build it, or set DUET_BIN_DIR")
+    def test_the_real_program_is_kept(self):
+        with mock.patch.dict(os.environ, {"DUET_PROGRAM": str(PROGRAM)}):
+            shutil.copy(support.SOURCE / "samples" / "hug.bvh", self.folder)
+            with mock.patch.object(_program, "_run_once", side_effect=AssertionError("not kept")):
+                for _ in range(3):
+                    printed = _program.run("convert", str(self.folder / "hug.bvh"), "--out", "-",
+                                           "--output-format", "json", "--quiet")
+                    self.assertIn('"leader"', printed)
+                with self.assertRaisesRegex(_program.CommandFailed, "absent.bvh"):
+                    _program.run("convert", "absent.bvh", "--out", "-", "--output-format", "json")
+
+
+if __name__ == "__main__":
+    unittest.main()

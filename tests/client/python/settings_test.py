@@ -1,0 +1,91 @@
+"""The environment and the configuration file: the rule of the program (tests/client/cli/settings_test.cc)."""
+
+import os
+import pathlib
+import tempfile
+import unittest
+from unittest import mock
+
+import support
+import duet_motion as duet
+from duet_motion._settings import Settings
+from duet_motion.v1 import synthesis_pb2
+
+LISTING = synthesis_pb2.ListModelsResponse(models=[{"name": "m"}])
+
+
+class SettingsTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def write(self, text, path="config"):
+        file = self.folder / path
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text, encoding="utf-8")
+        return str(file)
+
+    def settings(self, text):
+        return Settings({"DUET_CONFIG": self.write(text)})
+
+    def test_the_environment_wins_over_the_file(self):
+        config = self.write("# the lab's server\nserver = lab:50051\n\n timeout=300 \n")
+        settings = Settings({"DUET_SERVER": "other:1", "DUET_CONFIG": config})
+        self.assertEqual((settings.text("server"), settings.seconds("timeout")), ("other:1", 300))
+        for variables in ({"DUET_CONFIG": config}, {"DUET_CONFIG": config, "DUET_SERVER": ""}):
+            self.assertEqual(Settings(variables).text("server"), "lab:50051")
+
+    def test_the_file_is_where_the_program_looks_for_it(self):
+        self.write("server = xdg:1\n", "x/duet/config")
+        self.write("server = home:1\n", "h/.config/duet/config")
+        home, xdg = str(self.folder / "h"), str(self.folder / "x")
+        for variables, server in (({"HOME": home}, "home:1"),
+                                  ({"HOME": home, "XDG_CONFIG_HOME": xdg}, "xdg:1"),
+                                  ({"HOME": home, "XDG_CONFIG_HOME": ""}, "home:1"),
+                                  ({"HOME": home, "DUET_CONFIG": ""}, None),
+                                  ({"HOME": str(self.folder / "none")}, None), ({}, None)):
+            with self.subTest(variables=variables):
+                self.assertEqual(Settings(variables).text("server"), server)
+        with self.assertRaises(FileNotFoundError):
+            Settings({"DUET_CONFIG": str(self.folder / "none")})
+
+    def test_a_malformed_file_is_refused_by_line(self):
+        for text, message in (("server\n", r"config:1: expected a flag .* got 'server'"),
+                              ("\n--server = x\n", r"config:2: expected a flag"),
+                              ("timeout = soon\n", r"config:1: timeout: expected a number of sec"),
+                              ("tls = perhaps\n", "config:1: tls: expected true or false, got 'per"),
+                              ("token-file = /dev/null\n", "config:1: token-file: expected a file")):
+            with self.subTest(text=text), self.assertRaisesRegex(ValueError, message):
+                settings = self.settings(text)
+                settings.seconds("timeout"), settings.tls(), settings.token()
+
+    def test_credentials_are_files_as_of_the_program(self):
+        ca = self.write("CA", "ca.pem")
+        token = self.write(" secret\n", "token")
+        settings = self.settings(f"tls-ca = {ca}\ntls-server-name = x\ntoken-file = {token}\nout = y")
+        self.assertEqual(settings.tls(), duet.TlsOptions(b"CA", server_name="x"))
+        self.assertEqual(settings.token(), "secret")
+        self.assertEqual(self.settings("tls = true").tls(), duet.TlsOptions())
+        self.assertIsNone(self.settings("tls = false").tls())
+
+    def test_a_client_without_an_address_asks_the_servers_of_its_environment(self):
+        config = self.write("wait = 0\ntimeout = 50\n")
+        with support.serving(support.Script(LISTING)) as address, mock.patch.dict(
+                os.environ, {"DUET_SERVER": address, "DUET_CONFIG": config}):
+            with duet.Client() as client:
+                self.assertEqual(client.list_models()[0].name, "m")
+                self.assertEqual((client._settings.timeout, client._settings.wait), (50, 0))
+            with duet.Client(timeout=7, wait=3) as client:
+                self.assertEqual((client._settings.timeout, client._settings.wait), (7, 3))
+
+    def test_an_argument_wins_over_the_environment(self):
+        with support.serving(support.Script(LISTING)) as address, mock.patch.dict(
+                os.environ, {"DUET_SERVER": "nobody:1",
+                             "DUET_CONFIG": self.write("tls = true\nauthority = x\n")}):
+            with duet.Client(address, tls=False, authority="") as client:
+                self.assertEqual(client.list_models()[0].name, "m")
+
+
+if __name__ == "__main__":
+    unittest.main()
