@@ -1,75 +1,116 @@
 """gRPC-web (binary, over HTTP/1.1) to gRPC. Messages pass through as they are: both ways they are
 length-prefixed alike; only the trailers travel as a last frame of the body."""
 
+import asyncio
 import base64
+import os
 import re
 import urllib.parse
 
 import duet_motion as duet
 import duet_motion._channel
 import grpc
+import grpc.aio
+from aiohttp import web
+from serving import HEADERS, Rejected, shown
 
 METHODS = tuple(f"/duet.v1.MotionSynthesis/{name}"
                 for name in ("Synthesize", "ListModels", "GetModel"))
 CONTENT_TYPES = ("application/grpc-web", "application/grpc-web+proto")
+FRAME_BYTES = 5  # before each message: a flag, and its length
 TRAILERS = 0x80  # in the first byte of a frame
 PASSED_ON = ("authorization", "x-request-id")
-TIMEOUT = re.compile(r"(\d{1,8})([HMSmun])")
+PRINTABLE = re.compile(r"[ -~]*")
+TIMEOUT = re.compile(r"([0-9]{1,8})([HMSmun])")
 SECONDS = {"H": 3600, "M": 60, "S": 1, "m": 1e-3, "u": 1e-6, "n": 1e-9}
-LONGEST_SECONDS = 600  # of a call whose caller names no deadline
+LONGEST_SECONDS = 600  # of a call
 
 
 def connect(server, tls):
+    """A channel to the server; made within the event loop that uses it."""
     target = duet._channel.target(server)
     arguments = duet._channel.channel_arguments(duet.RetryOptions(), tls)
     if tls is None:
-        return grpc.insecure_channel(target, arguments)
-    return grpc.secure_channel(target, duet._channel.credentials(tls), arguments)
+        return grpc.aio.insecure_channel(target, arguments)
+    return grpc.aio.secure_channel(target, duet._channel.credentials(tls), arguments)
 
 
-def forward(handler, channel, path, body):
+async def forward(request, channel, uploads):
     """Answers a browser's call with the server's answer, message by message."""
-    kind = handler.headers.get_content_type()
-    if kind not in CONTENT_TYPES:
-        start(handler, 415, "text/plain")
-        write(handler, f"Content-Type: {kind}, wanted {CONTENT_TYPES[1]}".encode())
-        end(handler)
-        return
-    start(handler, 200, CONTENT_TYPES[1])
+    if request.content_type not in CONTENT_TYPES:
+        raise Rejected(415, f"Content-Type: expected {CONTENT_TYPES[1]}, got "
+                            f"{shown(request.content_type)}")
+    metadata, seconds = metadata_of(request.headers), timeout_of(request.headers)
+    response = web.StreamResponse(headers={
+        **HEADERS, "Content-Type": CONTENT_TYPES[1],
+        "X-Accel-Buffering": "no"})  # a proxy in between passes frames on at once
+    call = None
     try:
-        # A call of one answer is a stream of one.
-        call = channel.unary_stream(path)(message_of(body), timeout=timeout_of(handler.headers),
-                                          metadata=metadata_of(handler.headers))
-    except ValueError as error:
-        write(handler, trailers(grpc.StatusCode.INVALID_ARGUMENT, str(error), ()))
-        end(handler)
-        return
-    try:
-        try:
-            for message in call:
-                write(handler, frame(0, message))
-        except grpc.RpcError:
-            pass  # the call itself says how it ended
-        write(handler, trailers(call.code(), call.details() or "", call.trailing_metadata() or ()))
-        end(handler)
+        async with uploads.message(request) as body:
+            refused = why_refused(body.read(FRAME_BYTES), body)
+            if refused is None:
+                # As a stream of one, which is the same on the wire: the message is let go of as soon
+                # as it has been sent, not with the call.
+                call = channel.stream_stream(request.path)(timeout=seconds, metadata=metadata)
+                await send(call, body.read())
+        await response.prepare(request)
+        if refused is not None:
+            await response.write(trailers(grpc.StatusCode.INVALID_ARGUMENT, refused, ()))
+            return response
+        while (message := await next_message(call)) is not None:
+            await response.write(frame(0, message))
+        await response.write(trailers(await call.code(), await call.details() or "",
+                                      await call.trailing_metadata() or ()))
+        return response
     finally:
-        call.cancel()  # where the browser went away; otherwise of no effect
+        if call is not None:
+            call.cancel()  # where the browser went away; otherwise of no effect
 
 
-def message_of(body):
-    """The one message of a request's body; ValueError where it is none."""
-    if len(body) < 5 or body[0] != 0 or int.from_bytes(body[1:5], "big") != len(body) - 5:
-        raise ValueError("body: wanted one frame of gRPC-web, not compressed")
-    return body[5:]
+async def send(call, message):
+    """Sends the only message of a call. Where that fails, the call itself says why."""
+    try:
+        await call.write(message)
+        await call.done_writing()
+    except (grpc.RpcError, asyncio.InvalidStateError):
+        pass
+
+
+async def next_message(call):
+    """The next message of a call; None at its end, of which the call itself says how it came."""
+    try:
+        message = await call.read()
+    except grpc.RpcError:
+        return None
+    return None if message is grpc.aio.EOF else message
+
+
+def why_refused(head, body):
+    """What is wrong with a request's body, which must be one frame: `head` has been read of it."""
+    here = body.tell()
+    size = body.seek(0, os.SEEK_END) - here
+    body.seek(here)
+    if len(head) < FRAME_BYTES:
+        return f"body: expected a frame of gRPC-web, got {len(head)} bytes"
+    if head[0] != 0:
+        return "body: expected a message that is not compressed, got another frame"
+    if int.from_bytes(head[1:], "big") != size:
+        return (f"body: expected one frame of {int.from_bytes(head[1:], 'big')} bytes, got "
+                f"{size} bytes")
+    return None
 
 
 def timeout_of(headers):
     found = TIMEOUT.fullmatch(headers.get("grpc-timeout", ""))
-    return int(found[1]) * SECONDS[found[2]] if found else LONGEST_SECONDS
+    return min(int(found[1]) * SECONDS[found[2]] if found else LONGEST_SECONDS, LONGEST_SECONDS)
 
 
 def metadata_of(headers):
-    return tuple((name, headers[name]) for name in PASSED_ON if headers.get(name))
+    metadata = tuple((name, headers[name]) for name in PASSED_ON if headers.get(name))
+    for name, value in metadata:
+        if not PRINTABLE.fullmatch(value):
+            raise Rejected(400, f"{name}: expected printable ASCII, got something else")
+    return metadata
 
 
 def frame(kind, data):
@@ -84,20 +125,3 @@ def trailers(code, message, metadata):
             value = base64.b64encode(value).decode()
         lines.append(f"{key}: {value}")
     return frame(TRAILERS, "".join(f"{line}\r\n" for line in lines).encode())
-
-
-def start(handler, status, kind):
-    handler.send_response(status)
-    handler.send_header("Content-Type", kind)
-    handler.send_header("Transfer-Encoding", "chunked")
-    handler.send_header("X-Accel-Buffering", "no")  # a proxy in between passes frames on at once
-    handler.end_headers()
-
-
-def write(handler, data):
-    """One chunk of HTTP/1.1's own, at once."""
-    handler.wfile.write(f"{len(data):x}\r\n".encode() + data + b"\r\n")
-
-
-def end(handler):
-    handler.wfile.write(b"0\r\n\r\n")

@@ -1,28 +1,22 @@
 """The page of client/web in a real browser, through the gateway, against a real server."""
 
-import importlib.util
 import json
 import os
-import signal
-import socket
-import subprocess
+import re
 import sys
 import unittest
-import urllib.error
-import urllib.request
 
+import gateways
 import tools
 from browser import Browser
 
-for module, package in (("grpc", "python3-grpcio"), ("numpy", "python3-numpy")):
-    if importlib.util.find_spec(module) is None:
-        tools.skip(f"no Python module {module}; install the package {package}")
-
+gateways.skip_without_modules()
 sys.path.insert(0, str(tools.SOURCE / "client" / "python"))
 os.environ["DUET_PROGRAM"] = str(tools.PROGRAMS / "duet")
 
 import duet_motion as duet  # noqa: E402
 import numpy as np  # noqa: E402
+from duet_motion.rpc.v1 import status_pb2  # noqa: E402
 from duet_motion.v1 import synthesis_pb2  # noqa: E402
 
 # Drops a file on the page as a visitor would, with the text that `fetched` gives.
@@ -32,28 +26,23 @@ DROP = """(async () => {{
   transfer.items.add(new File([text], {name}));
   window.dispatchEvent(new DragEvent('drop', {{dataTransfer: transfer, cancelable: true}}));
 }})()"""
-SLIDE = """(() => {{
-  const slider = document.querySelector('#labels input[name={name}]');
-  slider.value = {value};
-  slider.dispatchEvent(new Event('input', {{bubbles: true}}));
+# Sets a field as a visitor would, by its selector.
+SET = """(() => {{
+  const field = document.querySelector({selector});
+  field.value = {value};
+  field.dispatchEvent(new Event('input', {{bubbles: true}}));
 }})()"""
-FOLLOWER = "Array.from(state.follower)"
-
-
-class Gateway:
-    def __init__(self, server):
-        self._process = subprocess.Popen(
-            [sys.executable, "-B", tools.SOURCE / "client" / "web" / "gateway.py", "--server",
-             server, "--listen", "127.0.0.1:0"], stdout=subprocess.PIPE, text=True)
-        self.url = self._process.stdout.readline().strip()
-
-    def send(self, number):
-        self._process.send_signal(number)
-
-    def stop(self):
-        self._process.terminate()
-        self._process.wait(tools.STOP_SECONDS)
-        self._process.stdout.close()
+FOLLOWER = "Array.from(state.takes[state.chosen].positions)"
+# Everything that a finger or a key is meant for, as [what, width, height], without what is hidden.
+TARGETS = """[...document.querySelectorAll(
+        'button, select, input:not([type=file]), summary, .button')]
+    .filter((item) => item.offsetParent !== null)
+    .map((item) => [item.id || item.name || item.textContent.trim(),
+                    item.getBoundingClientRect().width, item.getBoundingClientRect().height])"""
+# Fields without a name that is read out.
+NAMELESS = """[...document.querySelectorAll('input, select, textarea, button')].filter((item) =>
+    !(item.labels?.length || item.getAttribute('aria-label') || item.textContent.trim()))
+    .map((item) => item.outerHTML)"""
 
 
 class WebTest(unittest.TestCase):
@@ -61,66 +50,193 @@ class WebTest(unittest.TestCase):
     def setUpClass(cls):
         cls.server = tools.Server()
         cls.addClassCleanup(cls.server.stop)
-        cls.gateway = Gateway(cls.server.address)
+        cls.gateway = gateways.Gateway(cls.server.address)
         cls.addClassCleanup(cls.gateway.stop)
-        cls.browser = Browser()
-        cls.addClassCleanup(cls.browser.close)
 
-    def open(self, **size):
-        page = self.browser.open(self.gateway.url, **size)
-        self.addCleanup(page.close)
+    def setUp(self):
+        # A browser of its own: what one test keeps in it is no other's.
+        self.browser = Browser()
+        self.addCleanup(self.browser.close)
+
+    def open(self, address="", **size):
+        page = self.browser.open(f"{self.gateway.url}/{address}", **size)
         self.assertEqual(page.state()["state"], "ready", page.text("#status"))
         return page
 
-    def open_still(self, **size):
+    def open_still(self, address="", **size):
         """The page of a visitor who wants nothing to move: it draws when something changed."""
-        page = self.open(**size)
+        page = self.open(address, **size)
         page.call("Emulation.setEmulatedMedia",
                   features=[{"name": "prefers-reduced-motion", "value": "reduce"}])
         return page
 
     def drop(self, page, name="visitor's hug.bvh", fetched="/samples/hug.bvh"):
         page.evaluate(DROP.format(name=json.dumps(name), fetched=json.dumps(fetched)))
+        page.wait_until("state.leader || document.documentElement.dataset.failed === 'true'")
 
-    def answers(self, page, count):
-        page.wait_until(f"document.documentElement.dataset.answers === '{count}' || "
+    def set(self, page, selector, value):
+        page.evaluate(SET.format(selector=json.dumps(selector), value=json.dumps(str(value))))
+
+    def label(self, page, name, weight):
+        self.set(page, f"#labels input[name={name}]", weight)
+
+    def press(self, page, button):
+        """Presses a button; returns when the answers are there."""
+        before = int(page.state().get("answers", 0))
+        page.evaluate(f"element({json.dumps(button)}).click()")
+        page.wait_until(f"Number(document.documentElement.dataset.answers) > {before} || "
                         "document.documentElement.dataset.failed === 'true'")
         self.assertEqual(page.state()["failed"], "false", page.text("#status"))
 
-    def test_a_dropped_file_is_answered_as_the_sliders_stand(self):
+    def react(self, page):
+        self.press(page, "react")
+
+    def shown(self, page, frames=91):
+        return np.reshape(page.evaluate(FOLLOWER), (frames, 15, 3))
+
+    def expected(self, labels=None, **settings):
+        with duet.Client(self.server.address) as client:
+            if labels is not None:
+                classes = client.get_model().model.interaction_classes
+                settings["labels"] = {name: labels.get(name, 0) for name in classes}
+            return client.synthesize(duet.read_motion(tools.sample("hug")),
+                                     **settings).follower.positions
+
+    def test_a_dropped_file_is_answered_only_when_react_is_pressed(self):
         page = self.open_still()
         self.drop(page)
-        self.answers(page, 1)
         self.assertIn("91 frames at 30 Hz", page.text("#leader-name"))
-        page.evaluate(SLIDE.format(name="hug", value=1))
-        self.answers(page, 2)
-        page.evaluate(SLIDE.format(name="push", value=0.5))
-        self.answers(page, 3)
-        page.evaluate("element('another').click()")
-        self.answers(page, 4)
-        # Sliders at rest have weight 0, which is the same as none.
-        with duet.Client(self.server.address) as client:
-            wanted = client.synthesize(duet.read_motion(tools.sample("hug")),
-                                       {name: {"hug": 1, "push": 0.5}.get(name, 0)
-                                        for name in client.get_model().model.interaction_classes},
-                                       seed=1)
-        np.testing.assert_allclose(np.reshape(page.evaluate(FOLLOWER), (91, 15, 3)),
-                                   wanted.follower.positions, atol=1e-5)
+        self.assertIn("Set at least one reaction", page.text("#status"))
+        self.assertTrue(page.evaluate("element('react').disabled"))
+        self.label(page, "hug", 1)
+        self.label(page, "push", 0.5)
+        self.assertEqual(page.text("#status"), "Press React.")
+        self.assertEqual(page.evaluate("[state.takes.length, theatre.motion.people.follower]"),
+                         [0, None])
+        self.react(page)
+        np.testing.assert_allclose(self.shown(page), self.expected({"hug": 1, "push": 0.5}),
+                                   atol=1e-5)
+        # What changes afterwards is asked for by React alone.
+        self.label(page, "push", 0)
+        self.assertIn("press React", page.text("#status"))
+        self.assertEqual(page.state()["answers"], "1")
+        self.press(page, "another")
+        np.testing.assert_allclose(self.shown(page), self.expected({"hug": 1}, seed=1), atol=1e-5)
+
+    def test_four_answers_are_side_by_side_and_one_is_kept(self):
+        page = self.open_still(width=1000, height=700)
+        self.drop(page)
+        self.label(page, "hug", 1)
+        self.press(page, "try-four")
+        self.assertEqual(page.evaluate(
+            "[...document.querySelectorAll('#four figcaption button')].map((b) => b.textContent)"),
+            [f"Keep seed {seed}" for seed in range(4)])
+        page.evaluate("seekAll(45)")
+        page.wait_until("fourStages().every((stage) => stage.frame === 45)")
+        picture = page.picture()
+        for left in (0, 0.32):
+            for top in (0, 0.45):
+                corner = {"left": left, "right": left + 0.3, "top": top, "bottom": top + 0.4}
+                self.assertGreater(picture.count(tools.is_leader_orange, **corner), 60)
+                self.assertGreater(picture.count(tools.is_follower_teal, **corner), 60)
+        page.evaluate("document.querySelectorAll('#four figcaption button')[2].click()")
+        page.wait_until("element('four').hidden")
+        self.assertIn("seed=2", page.evaluate("location.hash"))
+        np.testing.assert_allclose(self.shown(page), self.expected({"hug": 1}, seed=2), atol=1e-5)
+        page.click("#back-to-four")
+        self.assertFalse(page.evaluate("element('four').hidden"))
+
+    def test_a_link_and_a_reload_bring_everything_back(self):
+        page = self.open_still()
+        self.drop(page)
+        self.label(page, "hug", 1)
+        self.set(page, "[name=seed]", 5)
+        self.set(page, "[name=variety]", 0.5)
+        self.set(page, "[name=start]", "0, 0.9, 1.2")
+        self.press(page, "try-four")
+        page.evaluate("document.querySelectorAll('#four figcaption button')[1].click()")
+        page.wait_until("element('four').hidden && document.documentElement.dataset.kept >= 3")
+        before, link = self.shown(page), page.evaluate("location.hash")
+        for part in ("labels=hug:1", "seed=6", "variety=0.5", "start=0, 0.9, 1.2", "model=sbu@"):
+            self.assertIn(part, link.replace("%20", " "))
+        again = self.open_still(link)  # the same browser
+        self.assertEqual(again.evaluate("state.takes.length"), 4)
+        np.testing.assert_array_equal(self.shown(again), before)
+        self.assertEqual(again.evaluate("document.querySelector('[name=start]').value"),
+                         "0, 0.9, 1.2")
+        self.assertEqual(again.evaluate("document.querySelector('#labels [name=hug]').value"), "1")
+        self.browser.close()
+        self.browser = Browser()
+        self.addCleanup(self.browser.close)
+        stranger = self.open_still(link)  # another one: it has the settings and not the file
+        self.assertIn("visitor's hug.bvh", stranger.text("#empty"))
+        self.drop(stranger)
+        self.react(stranger)
+        np.testing.assert_allclose(self.shown(stranger), before, atol=1e-6)
+
+    def test_a_link_to_a_sample_opens_it_and_odd_links_do_no_harm(self):
+        page = self.open_still("#leader=hug.bvh&labels=hug:1,push:-0.25&seed=3")
+        self.react(page)
+        wanted = self.expected({"hug": 1, "push": -0.25}, seed=3)
+        np.testing.assert_allclose(self.shown(page), wanted, atol=1e-5)
+        for odd in ("#labels=hug:1e9,<b>:1&seed=-4&variety=9&side=up&model=nobody@7",
+                    "#key=x;hug:1&key=-1&key=3&leader=%E0%A4%A&__proto__=1&takes=1", "#=&&==&%%%"):
+            with self.subTest(odd):
+                page = self.open_still(odd)
+                self.assertEqual(page.evaluate("settings.seed"), 0)
+                self.assertLessEqual(page.evaluate("settings.variety"), 2)
+                self.assertRegex(page.evaluate("settings.model"), "^sbu@")
+
+    def test_labels_that_change_over_time_and_directions_reach_the_server(self):
+        page = self.open_still()
+        self.drop(page)
+        for frame, weights in ((0, {"push": 1}), (60, {"push": 0, "hug": 1})):
+            page.evaluate(f"seekAll({frame})")
+            for name, weight in weights.items():
+                self.label(page, name, weight)
+            page.evaluate("element('add-key').click()")
+        self.set(page, "[name=direction]", "0,0,1")
+        self.set(page, "[name=clean_up]", "off")
+        self.assertEqual(page.evaluate("[...document.querySelectorAll('#keyframes li')].length"), 2)
+        self.react(page)
+        classes = page.evaluate("state.model.interaction_classes")
+        frames = {frame: {name: weights.get(name, 0) for name in classes}
+                  for frame, weights in ((0, {"push": 1}), (60, {"hug": 1}))}
+        wanted = self.expected(keyframes=frames, partner_direction=(0, 0, 1), clean_up=False)
+        np.testing.assert_allclose(self.shown(page), wanted, atol=1e-5)
 
     def test_both_are_seen(self):
-        for width, height in ((1000, 700), (400, 800)):
+        for width, height in ((1000, 700), (375, 720)):
             with self.subTest(width=width):
-                page = self.open_still(width=width, height=height)
-                page.evaluate("document.querySelector('#samples button').click()")
-                self.answers(page, 1)
+                page = self.open_still("#leader=hug.bvh&labels=hug:1", width=width, height=height)
+                self.react(page)
                 drawn = page.state()["draws"]
-                page.evaluate("theatre.player.seek(45); theatre.touch()")
+                page.evaluate("seekAll(45)")
                 page.wait_until(f"document.documentElement.dataset.draws !== '{drawn}'")
                 picture = page.picture()
-                stage = {"left": 0, "right": 0.6 if width > 760 else 1, "top": 0, "bottom": 0.5}
+                stage = {"left": 0, "right": 0.6 if width > 760 else 1, "top": 0,
+                         "bottom": 0.5 if width > 760 else 0.4}
                 self.assertGreater(picture.count(tools.is_leader_orange, **stage), 300)
                 self.assertGreater(picture.count(tools.is_follower_teal, **stage), 300)
-                self.assertEqual(page.evaluate("getComputedStyle(element('empty')).display"), "none")
+                self.assertTrue(page.evaluate("element('empty').hidden"))
+
+    def test_a_phone_and_a_keyboard_reach_everything(self):
+        page = self.open_still("#leader=hug.bvh&labels=hug:1", width=375, height=720)
+        page.evaluate("for (const part of document.querySelectorAll('details')) part.open = true")
+        self.press(page, "try-four")
+        self.assertLessEqual(page.evaluate("document.documentElement.scrollWidth"), 375)
+        for what, width, height in page.evaluate(TARGETS):
+            self.assertGreaterEqual(height, 40, what)
+            self.assertGreaterEqual(width, 40, what)
+        self.assertEqual(page.evaluate(NAMELESS), [])
+        reached = set()
+        for _ in range(120):
+            page.call("Input.dispatchKeyEvent", type="keyDown", key="Tab", windowsVirtualKeyCode=9)
+            page.call("Input.dispatchKeyEvent", type="keyUp", key="Tab", windowsVirtualKeyCode=9)
+            reached.add(page.evaluate(
+                "document.activeElement.id || document.activeElement.textContent"))
+        self.assertLessEqual({"file", "react", "try-four", "play", "scrub", "Keep seed 3", "share",
+                              "rig-download"} - reached, set())
 
     def test_it_plays_unless_told_not_to(self):
         page = self.open(width=500, height=500)
@@ -129,114 +245,81 @@ class WebTest(unittest.TestCase):
         page.click("#play")
         self.assertEqual(page.text("#play"), "Play")
 
-    def test_what_is_downloaded_is_what_was_seen(self):
-        page = self.open_still()
-        self.drop(page)
-        self.answers(page, 1)
-        body = page.evaluate("""(async () => {
-          const kept = {};
+    def test_what_is_downloaded_is_what_was_seen_under_a_name_that_tells(self):
+        page = self.open_still("#leader=hug.bvh&labels=hug:1,push:0.5&seed=3&model=sbu@2")
+        self.react(page)
+        page.evaluate("""window.bodies = [];
           const fetched = window.fetch;
           window.fetch = async (...all) => {
             const response = await fetched(...all);
-            kept.text = await response.clone().text();
+            window.bodies.push(await response.clone().text());
             return response;
-          };
-          await download('json');
-          return kept.text;
-        })()""")
-        self.assertEqual(page.state()["downloaded"], "reaction.json")
-        pair = json.loads(body)
+          }; undefined""")
+        page.evaluate("download('json')")
+        name = "hug_sbu@2_hug1_push0.5_seed3"
+        self.assertEqual(page.state()["downloaded"], f"{name}.json")
+        pair = json.loads(page.evaluate("window.bodies.pop()"))
         np.testing.assert_allclose(np.ravel(pair["follower"]), page.evaluate(FOLLOWER), atol=1e-6)
         page.evaluate("download('bvh')")
-        page.wait_until("document.documentElement.dataset.downloaded === 'reaction.zip'")
+        self.assertEqual(page.state()["downloaded"], f"{name}.zip")
+        self.set(page, "[name=resample]", 60)
+        page.evaluate("download('json')")
+        self.assertEqual(json.loads(page.evaluate("window.bodies.pop()"))["frame_rate_hz"], 60)
+        page.evaluate("downloadOnRig()")
+        self.assertEqual(page.state()["downloaded"], f"{name}.follower.bvh")
+        rig = page.evaluate("window.bodies.pop()")
+        self.assertEqual(re.findall(r"(?:ROOT|JOINT) \S+", rig), re.findall(
+            r"(?:ROOT|JOINT) \S+", tools.sample("hug").read_text(encoding="utf-8")))
+        # With what comes after it set but not asked for, the name is still the answer's.
+        self.label(page, "hug", -1)
+        self.assertEqual(page.evaluate("downloadName(state.takes[0])"), name)
 
-    def test_refusals_are_told_in_the_words_of_who_refuses(self):
+    def test_refusals_are_shown_in_the_words_of_who_refuses(self):
         page = self.open_still()
         self.drop(page, name="junk.bvh", fetched="/page.css")
-        page.wait_until("document.documentElement.dataset.failed === 'true'")
         self.assertRegex(page.text("#status"), r"^junk\.bvh:1: ")
         self.drop(page)
-        self.answers(page, 1)
-        page.evaluate("state.leader.frame_rate_hz = 1000; react()")
+        page.wait_until("document.documentElement.dataset.failed === 'false'")
+        self.label(page, "hug", 1)
+        page.evaluate("state.leader.motion.frame_rate_hz = 1000; react(1)")
         page.wait_until("document.documentElement.dataset.failed === 'true'")
-        self.assertRegex(page.text("#status"), "leader.frame_rate_hz: is 1000")
+        self.assertRegex(page.text("#problems"), "leader.frame_rate_hz: ")
+        self.set(page, "[name=start]", "somewhere")
+        page.evaluate("react(1)")
+        page.wait_until("element('status').textContent.startsWith('Follower starts at: ')")
+
+    def test_how_a_file_is_read_can_be_set(self):
+        page = self.open_still()
+        self.drop(page)
+        height = "Math.max(...state.leader.motion.positions)"
+        before = page.evaluate(height)
+        self.set(page, "[name=metres_per_unit]", 0.005)
+        page.evaluate("state.leader.old = true; element('reread').click()")
+        page.wait_until("!state.leader.old || document.documentElement.dataset.failed === 'true'")
+        self.assertAlmostEqual(page.evaluate(height), before / 2, places=2)
+        self.assertIn("metres_per_unit=0.005", page.evaluate("location.hash"))
+        self.set(page, "[name=joint_map]", "torso=Nobody")
+        page.evaluate("element('reread').click()")
+        page.wait_until("document.documentElement.dataset.failed === 'true'")
+        self.assertIn("Nobody", page.text("#status"))
 
     def test_the_pages_messages_are_those_of_the_contract(self):
         page = self.open()
         messages = page.evaluate("MESSAGES")
         self.assertIn("SynthesizeRequest", messages)
-        files = (synthesis_pb2.DESCRIPTOR, *synthesis_pb2.DESCRIPTOR.dependencies)
-        kinds = {1: "double", 2: "float", 4: "uint64", 8: "bool", 9: "string", 13: "uint32",
-                 14: "enum"}
+        files = (synthesis_pb2.DESCRIPTOR, *synthesis_pb2.DESCRIPTOR.dependencies,
+                 status_pb2.DESCRIPTOR, *status_pb2.DESCRIPTOR.dependencies)
+        known = {name: descriptor for file in files
+                 for name, descriptor in file.message_types_by_name.items()}
+        known.update(known["BadRequest"].nested_types_by_name)
+        kinds = {1: "double", 2: "float", 4: "uint64", 8: "bool", 9: "string", 12: "bytes",
+                 13: "uint32", 14: "enum"}
         for name, fields in messages.items():
-            descriptor = next(file.message_types_by_name[name] for file in files
-                              if name in file.message_types_by_name)
             for field, (number, kind) in fields.items():
-                wanted = descriptor.fields_by_name[field]
+                wanted = known[name].fields_by_name[field]
                 of = kinds.get(wanted.type) or wanted.message_type.name
                 repeated = "[]" if wanted.label == wanted.LABEL_REPEATED else ""
                 self.assertEqual((number, kind), (wanted.number, of + repeated), f"{name}.{field}")
-
-    def ask(self, path, data=None, **headers):
-        request = urllib.request.Request(self.gateway.url + path, data, headers)
-        try:
-            with urllib.request.urlopen(request, timeout=tools.RUN_SECONDS) as response:
-                return response.status, response.read(), response.headers
-        except urllib.error.HTTPError as error:
-            with error:
-                return error.code, error.read(), error.headers
-
-    def test_the_gateway_gives_out_its_own_files_alone(self):
-        status, _, headers = self.ask("/")
-        self.assertEqual(status, 200)
-        self.assertIn("default-src 'self'", headers["Content-Security-Policy"])
-        for path in ("/gateway.py", "/../gateway.py", "/page/../gateway.py", "/viewer/../page.cc",
-                     "/%2e%2e/gateway.py", "//etc/passwd", "/samples/", "/three/nothing.js"):
-            self.assertEqual(self.ask(path)[0], 404, path)
-
-    def test_the_gateway_refuses_what_makes_no_sense(self):
-        grpc_web = {"Content-Type": "application/grpc-web+proto"}
-        for path, data, headers, status in (
-                ("/read?name=../x.bvh", b"x", {}, 400), ("/read?name=.bvh", b"x", {}, 400),
-                ("/write?format=exe", b"{}", {}, 400), ("/write?format=csv", b"{}", {}, 400),
-                ("/write?format=csv", b"[1]", {}, 400), ("/nothing", b"", {}, 404),
-                ("/duet.v1.MotionSynthesis/Nothing", b"", grpc_web, 404),
-                ("/grpc.health.v1.Health/Check", b"", grpc_web, 404),
-                ("/duet.v1.MotionSynthesis/ListModels", b"", {"Content-Type": "text/plain"}, 415),
-                ("/read?name=x.bvh", b"x", {"Origin": "http://elsewhere.test"}, 403)):
-            with self.subTest(path=path, headers=headers):
-                self.assertEqual(self.ask(path, data, **headers)[0], status)
-        status, body, _ = self.ask("/duet.v1.MotionSynthesis/ListModels", b"\0\0\0\0\5",
-                                   **grpc_web)
-        self.assertIn(b"grpc-status: 3\r\n", body)
-
-    def test_the_gateway_passes_refusals_on_with_their_details(self):
-        message = synthesis_pb2.GetModelRequest()
-        message.model.name = "nobody"
-        data = message.SerializeToString()
-        _, body, _ = self.ask("/duet.v1.MotionSynthesis/GetModel",
-                              b"\0" + len(data).to_bytes(4, "big") + data,
-                              **{"Content-Type": "application/grpc-web+proto"})
-        self.assertEqual(body[0], 0x80)
-        self.assertIn(b"grpc-status: 5\r\n", body)
-        self.assertIn(b"grpc-status-details-bin: ", body)
-
-    def test_many_visitors_at_once_are_all_answered(self):
-        host, _, port = self.gateway.url.removeprefix("http://").partition(":")
-        self.gateway.send(signal.SIGSTOP)  # so that all of them wait to be accepted
-        try:
-            visitors = [socket.create_connection((host, int(port)), tools.RUN_SECONDS)
-                        for _ in range(64)]
-        finally:
-            self.gateway.send(signal.SIGCONT)
-        request = (f"POST /duet.v1.MotionSynthesis/ListModels HTTP/1.0\r\nHost: {host}:{port}\r\n"
-                   "Content-Type: application/grpc-web+proto\r\nContent-Length: 5\r\n\r\n")
-        for visitor in visitors:
-            self.addCleanup(visitor.close)
-            visitor.sendall(request.encode() + b"\0" * 5)
-        for visitor in visitors:
-            with visitor.makefile("rb") as answer:
-                self.assertIn(b"grpc-status: 0\r\n", answer.read())
 
 
 if __name__ == "__main__":

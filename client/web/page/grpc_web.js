@@ -1,8 +1,13 @@
 'use strict';
 // One call over gRPC-web: a frame out; frames of messages in, and a last one with the trailers.
 
-// What a call failed with: the server's own words, which name every refused field.
-class CallError extends Error {}
+// What a call failed with: the server's own words, and of each refused field a problem.
+class CallError extends Error {
+  constructor(message, problems = []) {
+    super(message);
+    this.problems = problems;
+  }
+}
 
 class FrameReader {
   constructor(stream) {
@@ -42,6 +47,16 @@ function readTrailers(data) {
   }));
 }
 
+// What is wrong with each field, in a status' details (google.rpc.BadRequest).
+function problemsIn(details) {
+  if (!details) return [];
+  const bytes = Uint8Array.from(atob(details.replace(/=+$/, '')), (letter) => letter.charCodeAt(0));
+  return decode('Status', bytes).details
+      .filter((detail) => detail.type_url.endsWith('/google.rpc.BadRequest'))
+      .flatMap((detail) => decode('BadRequest', detail.value).field_violations)
+      .map(({field, description}) => `${field}: ${description}`);
+}
+
 // Yields the messages of type `answer` with which the server answers.
 async function* callServer(method, request, message, answer, signal) {
   const body = encode(request, message);
@@ -51,7 +66,7 @@ async function* callServer(method, request, message, answer, signal) {
   const response = await fetch(`/duet.v1.MotionSynthesis/${method}`, {
     method: 'POST', body: frame, signal, headers: {'Content-Type': 'application/grpc-web+proto'},
   });
-  if (!response.ok) throw new CallError(await response.text());
+  if (!response.ok) throw new CallError(await messageIn(response));
   const frames = new FrameReader(response.body);
   for (let next = await frames.next(); next; next = await frames.next()) {
     if (!next.isTrailer) {
@@ -60,7 +75,8 @@ async function* callServer(method, request, message, answer, signal) {
     }
     const trailers = readTrailers(next.data);
     if (trailers['grpc-status'] === '0') return;
-    throw new CallError(decodeURIComponent(trailers['grpc-message'] || 'the call failed'));
+    throw new CallError(decodeURIComponent(trailers['grpc-message'] || 'The call failed.'),
+                        problemsIn(trailers['grpc-status-details-bin']));
   }
-  throw new CallError('the answer broke off');
+  throw new CallError('The answer broke off. Press React again.');
 }

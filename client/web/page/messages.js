@@ -2,34 +2,40 @@
 // The messages that the page sends and reads, as far as it needs them: fields by name, with number
 // and type. A test compares them with the proto files. `[]`: repeated; numbers are packed.
 const MESSAGES = {
-  ModelSelector: {name: [1, 'string']},
+  ModelSelector: {name: [1, 'string'], version: [2, 'uint32']},
   Bone: {parent_joint: [1, 'uint32'], child_joint: [2, 'uint32']},
   Model: {
-    name: [1, 'string'], version: [2, 'uint32'], interaction_classes: [5, 'string[]'],
-    joint_names: [6, 'string[]'], bones: [7, 'Bone[]'], samples: [13, 'bool'],
+    name: [1, 'string'], version: [2, 'uint32'], is_default: [4, 'bool'],
+    interaction_classes: [5, 'string[]'], joint_names: [6, 'string[]'], bones: [7, 'Bone[]'],
+    accepts_follower_start: [11, 'bool'], samples: [13, 'bool'],
   },
-  GetModelRequest: {model: [1, 'ModelSelector']},
-  GetModelResponse: {model: [1, 'Model']},
+  ListModelsRequest: {},
+  ListModelsResponse: {models: [1, 'Model[]']},
   Motion: {
     joint_names: [1, 'string[]'], frame_rate_hz: [2, 'double'], unit: [3, 'enum'],
     up_axis: [4, 'enum'], frame_count: [5, 'uint32'], positions: [6, 'float[]'],
   },
   ClassWeight: {interaction_class: [1, 'string'], weight: [2, 'float']},
   LabelVector: {weights: [1, 'ClassWeight[]']},
+  LabelKeyframe: {frame: [1, 'uint32'], label_vector: [2, 'LabelVector']},
+  Point: {x: [1, 'float'], y: [2, 'float'], z: [3, 'float']},
+  Direction: {x: [1, 'float'], y: [2, 'float'], z: [3, 'float']},
+  FollowerStart: {root_position: [1, 'Point']},
   SynthesizeRequest: {
-    leader: [2, 'Motion'], label_vector: [3, 'LabelVector'], seed: [10, 'uint64'],
-    variety: [11, 'float'],
-  },
-  SynthesisHeader: {
-    model_name: [1, 'string'], model_version: [2, 'uint32'], frame_count: [7, 'uint32'],
+    model: [1, 'ModelSelector'], leader: [2, 'Motion'], label_vector: [3, 'LabelVector'],
+    label_keyframes: [4, 'LabelKeyframe[]'], follower_start: [5, 'FollowerStart'],
+    partner_direction: [9, 'Direction'], seed: [10, 'uint64'], variety: [11, 'float'],
+    clean_up: [12, 'enum'],
   },
   MotionChunk: {
     first_frame: [1, 'uint32'], frame_count: [2, 'uint32'], positions: [3, 'float[]'],
   },
   SynthesisSummary: {frame_count: [1, 'uint32'], unfamiliarity: [6, 'double']},
-  SynthesizeResponse: {
-    header: [1, 'SynthesisHeader'], chunk: [2, 'MotionChunk'], summary: [3, 'SynthesisSummary'],
-  },
+  SynthesizeResponse: {chunk: [2, 'MotionChunk'], summary: [3, 'SynthesisSummary']},
+  Status: {details: [3, 'Any[]']},
+  Any: {type_url: [1, 'string'], value: [2, 'bytes']},
+  FieldViolation: {field: [1, 'string'], description: [2, 'string']},
+  BadRequest: {field_violations: [1, 'FieldViolation[]']},
 };
 
 const WIRE = {float: 5, double: 1, uint32: 0, uint64: 0, enum: 0, bool: 0};  // else 2
@@ -147,6 +153,7 @@ function decode(name, bytes) {
     }
     const value = type in WIRE ? reader.number(type)
         : type === 'string' ? new TextDecoder().decode(reader.delimited())
+        : type === 'bytes' ? reader.delimited()
         : decode(type, reader.delimited());
     if (kind.endsWith('[]')) message[field].push(value);
     else message[field] = value;

@@ -1,170 +1,214 @@
 'use strict';
-// Puts the page together: files in, label sliders, one call at a time to the server, files out.
+// Puts the page together: a leader in, settings, answers by React, files out.
 const root = document.documentElement;
 const element = (id) => document.getElementById(id);
-const METRES = 1;
-const Y_UP = 1;
-const SETTLE_MILLISECONDS = 120;  // a slider that moves asks when it has come to rest
+const SIDE_BY_SIDE = 4;
+const UNFAMILIAR = 1.5;  // of SynthesisSummary.unfamiliarity: look before you use it
 
 const state = {
-  model: null,     // as GetModel describes it
-  leader: null,    // {joint_names, frame_rate_hz, positions: Float32Array}
-  follower: null,  // Float32Array, once an answer is whole
-  seed: 0,
-  call: null,      // of the call in progress: its AbortController
+  models: [],      // as ListModels describes them
+  model: null,     // the one of the settings
+  samples: [],
+  leader: null,    // readLeader's
+  awaited: '',     // the name of the file that a link was made with
+  takes: [],       // answers: {seed, positions, model, version, samples, unfamiliarity, ...}
+  chosen: 0,       // the take that is downloaded
+  asked: '',       // askedFor() of the takes
+  call: null,      // of the calls in progress: their AbortController
   answers: 0,
 };
 
-const theatre = element('stage');
-theatre.addEventListener('drawn', () => {
-  const {motion, player} = theatre;
-  element('scrub').value = Math.round(player.frame);
-  element('time').value = `${(player.frame / motion.frameRate).toFixed(2)} of ` +
-                          `${motion.duration.toFixed(2)} s`;
-  element('play').textContent = player.playing ? 'Pause' : 'Play';
-  root.dataset.draws = theatre.draws;
-});
-theatre.addEventListener('error', ({detail}) => tell(detail.message, true));
-
-function tell(text, failed = false) {
+function tell(text, failed = false, problems = []) {
   element('status').textContent = text;
   element('status').classList.toggle('failed', failed);
+  element('problems').replaceChildren(...problems.map(
+      (problem) => Object.assign(document.createElement('li'), {textContent: problem})));
   root.dataset.failed = failed;
 }
 
-function addSlider(name, value) {
-  const label = document.createElement('label');
-  label.className = 'slider';
-  const input = Object.assign(document.createElement('input'),
-                              {type: 'range', min: -1, max: 1, step: 0.05, value, name});
-  const shown = Object.assign(document.createElement('output'), {value});
-  label.append(Object.assign(document.createElement('span'),
-                             {textContent: name.replaceAll('_', ' ')}), input, shown);
-  element('labels').append(label);
+// An error in the words of whoever refused: every field that the server names, one a line.
+function tellError(error) {
+  const problems = error.problems ?? [];
+  tell(problems.length ? 'The server refused the request:' : error.message, true, problems);
 }
 
 function addButton(parent, text, act) {
-  const button = Object.assign(document.createElement('button'), {textContent: text});
+  const button = Object.assign(document.createElement('button'),
+                               {type: 'button', textContent: text});
   button.addEventListener('click', () => act(button));
   parent.append(button);
   return button;
 }
 
-const sliders = () => [...element('labels').querySelectorAll('input')];
-
-// Sets the class of a sample's name, where there is one: what a visitor would try first.
-function suggest(name) {
-  if (!sliders().some((slider) => slider.name === name)) return;
-  for (const slider of sliders()) {
-    slider.value = slider.name === name ? 1 : 0;
-    slider.parentElement.querySelector('output').value = slider.value;
+// Runs what a visitor began; its failure is shown.
+const attempt = (act) => async (...all) => {
+  try {
+    await act(...all);
+  } catch (error) {
+    tellError(error);
   }
+};
+
+const nameOf = (model) => `${model.name}@${model.version}`;
+const modelNamed = (name) => state.models.find((model) => nameOf(model) === name);
+
+const seedsOf = (takes) => takes.map((take) => take.seed);
+
+// Brings address and buttons in line with the settings.
+function changed() {
+  history.replaceState(null, '', addressOf(settings));
+  const ready = Boolean(state.leader) && isAnyWeight();
+  for (const id of ['react', 'try-four', 'another']) element(id).disabled = !ready;
+  element('add-key').disabled = element('reread').disabled = !state.leader;
+  const answered = state.takes.length > 0;
+  const isOther = state.model.samples && !seedsOf(state.takes).includes(settings.seed);
+  const stale = answered && (state.asked !== askedFor() || isOther);
+  for (const button of element('downloads').children) button.disabled = !answered;
+  const rigName = element('rig-choice').value === 'file' ? element('rig-file').files[0]?.name
+                                                         : state.leader?.name;
+  const isRig = /\.(bvh|glb|gltf)$/i.test(rigName ?? '');
+  element('rig-download').disabled = !answered || stale || !isRig;
+  element('react').classList.toggle('primary', !answered || stale);
+  element('back-to-four').hidden = state.takes.length < 2 || !element('four').hidden;
+  root.dataset.stale = stale;
+  if (state.call) return;
+  if (state.leader && !isAnyWeight()) tell('Set at least one reaction, then press React.');
+  else if (state.leader && !answered) tell('Press React.');
+  else if (stale) tell('The settings have changed: press React.');
 }
 
-async function readLeader(name, body) {
-  tell(`Reading ${name} …`);
-  const safe = name.replace(/[^\w.-]/g, '_').replace(/^\.+/, '');
-  const response = await fetch(`/read?name=${encodeURIComponent(safe)}`, {method: 'POST', body});
-  if (!response.ok) {
-    tell(await response.text(), true);
-    return;
+function showFields() {
+  for (const field of document.querySelectorAll('aside [name]')) {
+    if (field.closest('#labels')) continue;
+    if (field.name in settings && field.type !== 'file') field.value = settings[field.name];
   }
-  const motion = await response.json();
-  const positions = Float32Array.from(motion.leader.flat(2));
-  state.leader = {...motion, positions};
-  state.follower = null;
-  const index = (joint) => motion.joint_names.indexOf(state.model.joint_names[joint]);
-  theatre.motion = {
-    joints: motion.joint_names, frameRate: motion.frame_rate_hz, frames: motion.leader.length,
-    leader: positions,
-    bones: state.model.bones.map((bone) => [index(bone.parent_joint ?? 0),
-                                            index(bone.child_joint ?? 0)]),
-  };
-  element('scrub').max = theatre.motion.frames - 1;
+  setSlider(document.querySelector('[name=variety]').parentElement, settings.variety);
+}
+
+function showModel() {
+  state.model = modelNamed(settings.model);
+  showSliders(state.model.interaction_classes, changed);
+  for (const part of document.querySelectorAll('.sampling')) part.hidden = !state.model.samples;
+  element('start-field').hidden = !state.model.accepts_follower_start;
+}
+
+function showLeader() {
+  const {name, notes, motion} = state.leader;
+  showOne(state.leader, state.takes[state.chosen]?.positions);
+  element('scrub').max = motion.frames - 1;
   element('empty').hidden = true;
   element('transport').hidden = false;
-  element('leader-name').textContent = `${name}: ${theatre.motion.frames} frames at ` +
+  element('leader-name').textContent = `${name}: ${motion.frames} frames at ` +
                                        `${Math.round(motion.frame_rate_hz * 100) / 100} Hz`;
-  root.dataset.frames = theatre.motion.frames;
-  await react();
+  element('notes').replaceChildren(...notes.map(
+      (note) => Object.assign(document.createElement('li'), {textContent: note})));
+  root.dataset.frames = motion.frames;
 }
 
-function requestOf(leader) {
-  return {
-    leader: {joint_names: leader.joint_names, frame_rate_hz: leader.frame_rate_hz, unit: METRES,
-             up_axis: Y_UP, frame_count: leader.positions.length / leader.joint_names.length / 3,
-             positions: leader.positions},
-    label_vector: {weights: sliders().map((slider) => ({interaction_class: slider.name,
-                                                        weight: Number(slider.value)}))},
-    seed: state.seed,
-    variety: Number(element('variety').value),
+// Takes a leader, and asks nothing of the server: that is React's.
+async function takeLeader(name, bytes) {
+  tell(`Reading ${name} …`);
+  stopCalls();
+  const {leader: last} = state;
+  if (last && (last.name !== name || last.file !== fingerprint(bytes))) {
+    // How the last file was read says nothing about this one.
+    for (const setting of READING) settings[setting] = DEFAULTS[setting];
+    settings.keyframes = [];
+    showFields();
+    showKeyframes(changed);
+  }
+  const leader = await readLeader(name, bytes);
+  Object.assign(state, {leader, takes: [], chosen: 0, asked: '', awaited: ''});
+  Object.assign(settings, {leader: name, file: leader.file});
+  showLeader();
+  changed();
+  await keepWork();
+}
+
+function stopCalls() {
+  state.call?.abort();
+  state.call = null;
+}
+
+// One answer, frame by frame: `show` is called with each chunk.
+async function ask(leader, seed, signal, show) {
+  const {motion} = leader;
+  const positions = new Float32Array(motion.positions.length);
+  const take = {
+    seed, positions, leader: leader.name, settings: JSON.stringify(settings),
+    model: state.model.name, version: state.model.version, samples: Boolean(state.model.samples),
   };
+  let summary = null;
+  for await (const answer of callServer('Synthesize', 'SynthesizeRequest', requestOf(motion, seed),
+                                        'SynthesizeResponse', signal)) {
+    if (answer.chunk) {
+      const first = answer.chunk.first_frame ?? 0;
+      positions.set(answer.chunk.positions, first * motion.joint_names.length * 3);
+      show?.(first, answer.chunk.positions);
+    }
+    summary = summary || answer.summary;
+  }
+  if (!summary) throw new CallError('The answer ended before its end. Press React again.');
+  return {...take, unfamiliarity: summary.unfamiliarity ?? 0};
 }
 
-// Asks for the follower as everything stands now; a call that is still being answered is dropped.
-async function react() {
-  if (!state.leader) return;
-  if (state.call) state.call.abort();
+// Asks for `count` answers, from the seed of the settings on, as everything stands now. Calls that
+// are still being answered are dropped.
+async function react(count) {
+  stopCalls();
   const call = state.call = new AbortController();
+  const {leader} = state;
+  const asked = askedFor();
   const begun = performance.now();
-  tell('Asking …');
+  const seeds = Array.from({length: count}, (_, index) => settings.seed + index);
+  tell(count === 1 ? 'Asking …' : `Asking for seeds ${seeds[0]} to ${seeds[count - 1]} …`);
   try {
-    const leader = state.leader;
-    const follower = new Float32Array(leader.positions.length);
-    let summary = null;
-    for await (const {chunk, summary: last} of callServer(
-        'Synthesize', 'SynthesizeRequest', requestOf(leader), 'SynthesizeResponse', call.signal)) {
-      if (chunk) {
-        const first = chunk.first_frame ?? 0;
-        follower.set(chunk.positions, first * leader.joint_names.length * 3);
-        theatre.takeFrames(first, chunk.positions);
-      }
-      summary = summary || last;
-    }
-    if (!summary) throw new CallError('the answer ended before its end');
-    theatre.setFollower(follower);
-    finish(follower, summary, begun);
+    const show = count === 1 ? (first, positions) => theatre.takeFrames(first, positions) : null;
+    const takes = await Promise.all(seeds.map((seed) => ask(leader, seed, call.signal, show)));
+    if (call.signal.aborted) return;
+    state.call = null;
+    Object.assign(state, {takes, chosen: 0, asked});
+    await finish((performance.now() - begun) / 1000);
   } catch (error) {
-    if (!call.signal.aborted) tell(error.message, true);
+    if (call.signal.aborted) return;
+    call.abort();
+    state.call = null;
+    tellError(error);
   }
 }
 
-function finish(follower, summary, begun) {
-  state.follower = follower;
+async function finish(seconds) {
+  const {takes, leader} = state;
+  if (takes.length === 1) showOne(leader, takes[0].positions);
+  else showFour(leader, takes, keep);
+  changed();
+  const far = takes.some((take) => take.unfamiliarity > UNFAMILIAR)
+      ? ' This leader is unlike those that the model learned from: look before you use it.' : '';
+  const seeds = seedsOf(takes);
+  const what = !takes[0].samples ? 'one answer' : takes.length === 1 ? `seed ${seeds[0]}`
+      : `seeds ${seeds[0]} to ${seeds[seeds.length - 1]}: keep one`;
+  tell(`Answered in ${seconds.toFixed(2)} s, ${what}.${far}`);
   state.answers += 1;
   root.dataset.answers = state.answers;
-  for (const button of element('downloads').children) button.disabled = false;
-  const far = summary.unfamiliarity > 1.5 ? ' This leader is unlike those that the model learned ' +
-      'from: look before you use it.' : '';
-  tell(`Answered in ${((performance.now() - begun) / 1000).toFixed(2)} s, seed ${state.seed}.${far}`);
+  await keepWork();
 }
 
-async function download(kind) {
-  const {joint_names, frame_rate_hz, positions} = state.leader;
-  const frames = (values) => Array.from(
-      {length: values.length / joint_names.length / 3}, (_, frame) => Array.from(
-          joint_names, (name, joint) => Array.from(values.subarray(
-              (frame * joint_names.length + joint) * 3, (frame * joint_names.length + joint) * 3 + 3))));
-  const response = await fetch(`/write?format=${kind}`, {
-    method: 'POST', body: JSON.stringify({joint_names, frame_rate_hz, leader: frames(positions),
-                                          follower: frames(state.follower)}),
-  });
-  if (!response.ok) {
-    tell(await response.text(), true);
-    return;
-  }
-  const name = /filename="([^"]+)"/.exec(response.headers.get('Content-Disposition'))[1];
-  const link = Object.assign(document.createElement('a'),
-                             {href: URL.createObjectURL(await response.blob()), download: name});
-  link.click();
-  URL.revokeObjectURL(link.href);
-  root.dataset.downloaded = name;
+// Chooses one of several answers.
+async function keep(index) {
+  state.chosen = index;
+  settings.seed = state.takes[index].seed;
+  showOne(state.leader, state.takes[index].positions);
+  showFields();
+  changed();
+  tell(`Kept seed ${settings.seed}.`);
+  element('back-to-four').focus();
+  await keepWork();
 }
 
 function connectFiles() {
-  const take = async (file) => {
-    if (file) await readLeader(file.name, file);
-  };
+  const take = attempt(async (file) => {
+    if (file) await takeLeader(file.name, await file.arrayBuffer());
+  });
   element('file').addEventListener('change', () => take(element('file').files[0]));
   window.addEventListener('dragover', (event) => {
     event.preventDefault();
@@ -176,49 +220,126 @@ function connectFiles() {
     document.body.classList.remove('dragging');
     take(event.dataTransfer.files[0]);
   });
+  element('reread').addEventListener('click', attempt(
+      () => takeLeader(state.leader.name, state.leader.bytes)));
+  element('rig-choice').addEventListener('change', () => {
+    element('rig-other').hidden = element('rig-choice').value !== 'file';
+    changed();
+  });
+  element('rig-file').addEventListener('change', () => {
+    element('rig-name').textContent = element('rig-file').files[0]?.name ?? '';
+    changed();
+  });
+  element('rig-download').addEventListener('click', attempt(downloadOnRig));
 }
 
-function connectControls() {
-  let settling = 0;
-  document.querySelector('aside').addEventListener('input', (event) => {
-    const output = event.target.parentElement.querySelector('output');
-    if (!output) return;
-    output.value = event.target.value;
-    clearTimeout(settling);
-    settling = setTimeout(react, SETTLE_MILLISECONDS);
+function connectSettings() {
+  document.querySelector('aside').addEventListener('input', ({target}) => {
+    if (!(target.name in settings)) return;
+    if (target.type === 'number' && !target.checkValidity()) return;
+    settings[target.name] = typeof DEFAULTS[target.name] === 'number' ? Number(target.value)
+                                                                      : target.value;
+    if (target.name === 'model') showModel();
+    changed();
   });
+  joinSlider(document.querySelector('[name=variety]').parentElement, (variety) => {
+    settings.variety = variety;
+    changed();
+  });
+  element('react').addEventListener('click', () => react(1));
+  element('try-four').addEventListener('click', () => react(SIDE_BY_SIDE));
   element('another').addEventListener('click', () => {
-    state.seed += 1;
-    react();
+    settings.seed += Math.max(1, element('four').hidden ? 1 : state.takes.length);
+    showFields();
+    react(element('four').hidden ? 1 : SIDE_BY_SIDE);
   });
-  element('play').addEventListener('click', () => {
-    theatre.toggle();
+  element('back-to-four').addEventListener('click', () => {
+    showFour(state.leader, state.takes, keep);
+    changed();
+    tell('Keep one of the four.');
+    element('four').querySelectorAll('figcaption button')[state.chosen].focus();
   });
-  element('scrub').addEventListener('input', () => {
-    theatre.player.playing = false;
-    theatre.seek(Number(element('scrub').value));
-  });
+  element('share').addEventListener('click', attempt(async () => {
+    changed();
+    if (!navigator.clipboard) {
+      throw new Error('This browser copies nothing here; the address above is the link.');
+    }
+    await navigator.clipboard.writeText(location.href);
+    tell('The link is copied. It holds the settings, and the name of the file but not the file.');
+  }));
+  connectKeyframes(changed);
+}
+
+async function takeSample(name) {
+  const response = await fetch(`/samples/${name}.bvh`);
+  if (!response.ok) throw new CallError(await messageIn(response));
+  // What a visitor would try first.
+  if (!isAnyWeight() && state.model.interaction_classes.includes(name)) setLabels({[name]: 1});
+  await takeLeader(`${name}.bvh`, await response.arrayBuffer());
+}
+
+// The leader and the answers that the address speaks of, from the browser or from the samples.
+async function restore() {
+  const {leader: name, file} = settings;
+  if (!name) return;
+  const kept = await keptWork();
+  if (kept?.leader && kept.leader.name === name && kept.leader.file === file) {
+    if (kept.leader.reading !== readingOf(settings)) {
+      await takeLeader(name, kept.leader.bytes);
+      return;
+    }
+    Object.assign(state, kept.asked === askedFor() ? kept : {leader: kept.leader});
+    showLeader();
+    return;
+  }
+  if (state.samples.includes(stemOf(name))) {
+    await takeSample(stemOf(name));
+    return;
+  }
+  state.awaited = name;
+  element('empty').textContent = `This link was made with ${name}. Drop that file here.`;
+}
+
+async function takeLink() {
+  takeAddress(location.hash);
+  const standard = state.models.find((model) => model.is_default) ?? state.models[0];
+  const wanted = settings.model;
+  if (!modelNamed(wanted)) settings.model = nameOf(standard);
+  showFields();
+  showModel();
+  showKeyframes(changed);
+  await restore();
+  changed();
+  if (wanted && wanted !== settings.model) {
+    tell(`The server has no model ${wanted}; ${settings.model} is chosen instead.`, true);
+  }
 }
 
 async function start() {
-  const about = await (await fetch('/about.json')).json();
-  for await (const answer of callServer('GetModel', 'GetModelRequest', {}, 'GetModelResponse')) {
-    state.model = answer.model;
-  }
-  for (const name of state.model.interaction_classes) addSlider(name, 0);
-  element('sampling').hidden = !state.model.samples;
+  const response = await fetch('/about.json');
+  if (!response.ok) throw new CallError(await messageIn(response));
+  const about = await response.json();
+  const answers = callServer('ListModels', 'ListModelsRequest', {}, 'ListModelsResponse');
+  for await (const answer of answers) state.models = answer.models;
+  state.samples = about.samples;
+  const optionOf = (model) => new Option(nameOf(model) + (model.is_default ? ' (default)' : ''),
+                                         nameOf(model));
+  document.querySelector('[name=model]').replaceChildren(...state.models.map(optionOf));
   for (const name of about.samples) {
-    addButton(element('samples'), name.replaceAll('_', ' '), async () => {
-      const response = await fetch(`/samples/${name}.bvh`);
-      suggest(name);
-      await readLeader(`${name}.bvh`, await response.arrayBuffer());
-    });
+    addButton(element('samples'), name.replaceAll('_', ' '), attempt(() => takeSample(name)));
   }
   for (const kind of about.formats) {
-    addButton(element('downloads'), kind.toUpperCase(), () => download(kind)).disabled = true;
+    addButton(element('downloads'), kind.toUpperCase(), attempt(() => download(kind)));
   }
+  connectStages();
   connectFiles();
-  connectControls();
+  connectSettings();
+  await takeLink();
+  window.addEventListener('hashchange', attempt(async () => {
+    stopCalls();
+    Object.assign(state, {takes: [], chosen: 0, asked: ''});
+    await takeLink();
+  }));
   root.dataset.state = 'ready';
 }
 

@@ -1,0 +1,79 @@
+'use strict';
+// Files in and out, through the gateway.
+
+// The message of a response that is an error: the gateway's JSON, or what a proxy says.
+async function messageIn(response) {
+  const text = await response.text();
+  try {
+    return JSON.parse(text).error.message;
+  } catch {
+    return `${response.status} ${response.statusText}`;
+  }
+}
+
+// Reads a leader by the settings. Returns {name, file, bytes, motion, notes, reading}.
+async function readLeader(name, bytes) {
+  const query = new URLSearchParams({name: safeName(name)});
+  for (const setting of READING) {
+    const values = setting === 'joint_map' ? lines(settings.joint_map) : [settings[setting]];
+    for (const value of values.filter(Boolean)) query.append(setting, value);
+  }
+  const response = await fetch(`/read?${query}`, {method: 'POST', body: bytes});
+  if (!response.ok) throw new CallError(await messageIn(response));
+  const {notes, motion} = await response.json();
+  return {
+    name, bytes, notes, file: fingerprint(bytes),
+    reading: readingOf(settings),
+    motion: {joint_names: motion.joint_names, frame_rate_hz: motion.frame_rate_hz,
+             frames: motion.leader.length, positions: Float32Array.from(motion.leader.flat(2))},
+  };
+}
+
+// [frames][joints][3]
+function nested({joint_names}, values) {
+  const joints = joint_names.length;
+  return Array.from({length: values.length / joints / 3}, (_, frame) => Array.from(
+      joint_names, (name, joint) => Array.from(values.subarray(
+          (frame * joints + joint) * 3, (frame * joints + joint) * 3 + 3))));
+}
+
+async function download(kind) {
+  const take = state.takes[state.chosen];
+  const {motion} = state.leader;
+  const query = new URLSearchParams({format: kind, name: downloadName(take)});
+  if (settings.resample !== '') query.set('resample', settings.resample);
+  await save(await fetch(`/write?${query}`, {
+    method: 'POST', body: JSON.stringify({
+      format: 'duet-motion', version: 1, unit: 'metres', up_axis: 'y-up',
+      joint_names: motion.joint_names, frame_rate_hz: motion.frame_rate_hz,
+      leader: nested(motion, motion.positions), follower: nested(motion, take.positions)}),
+  }));
+}
+
+// The follower of the answer on a rig: asked for again, as `duet synthesize --follower-rig` does.
+async function downloadOnRig() {
+  const take = state.takes[state.chosen];
+  const other = element('rig-choice').value === 'file' ? element('rig-file').files[0] : null;
+  const rigName = other ? other.name : state.leader.name;
+  const kind = /\.bvh$/i.test(rigName) ? 'bvh' : 'glb';
+  const files = [{name: safeName(state.leader.name), bytes: state.leader.bytes.byteLength}];
+  if (other) files.push({name: safeName(other.name), bytes: other.size});
+  const head = {...flagsOf(take), format: kind, name: downloadName(take), files};
+  if (other) head.rig_joint_map = lines(settings.rig_joint_map);
+  tell('Writing the follower on the rig …');
+  await save(await fetch('/write_on_rig', {
+    method: 'POST',
+    body: new Blob([JSON.stringify(head), '\n', state.leader.bytes, ...(other ? [other] : [])]),
+  }));
+}
+
+async function save(response) {
+  if (!response.ok) throw new CallError(await messageIn(response));
+  const name = /filename="([^"]+)"/.exec(response.headers.get('Content-Disposition'))[1];
+  const link = Object.assign(document.createElement('a'),
+                             {href: URL.createObjectURL(await response.blob()), download: name});
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 60000);
+  root.dataset.downloaded = name;
+  tell(`Saved as ${name}`);
+}

@@ -1,0 +1,413 @@
+"""The gateway of client/web as hostile and unlucky visitors meet it, against a real server."""
+
+import contextlib
+import glob
+import json
+import os
+import pathlib
+import re
+import signal
+import socket
+import sys
+import tempfile
+import unittest
+
+import gateways
+import tools
+from gateways import GRPC_WEB, Gateway, ask_raw, connect, framed, message_of, post
+
+gateways.skip_without_modules()
+sys.path.insert(0, str(tools.SOURCE / "client" / "python"))
+
+from duet_motion.v1 import synthesis_pb2  # noqa: E402
+
+CALLS = "/duet.v1.MotionSynthesis"
+MEBIBYTE = 2**20
+LARGEST = 32 * MEBIBYTE
+HEAD = b"POST /read?name=a.bvh HTTP/1.1\r\nHost: localhost\r\n"
+HIDDEN = b"GET /about.json HTTP/1.1\r\nHost: localhost\r\n\r\n"
+CHUNKED = HEAD + b"Transfer-Encoding: chunked\r\n"
+EMPTY = b"Content-Length: 0\r\n\r\n"
+GET = b"GET / HTTP/1.1\r\nHost: localhost\r\n"
+# Requests in which one reader may see the hidden one, and another not.
+AMBIGUOUS = {
+    "two lengths": HEAD + b"Content-Length: 0\r\nContent-Length: %d\r\n\r\n" % len(HIDDEN),
+    "two equal lengths": HEAD + b"Content-Length: 0\r\nContent-Length: 0\r\n\r\n",
+    "a list of lengths": HEAD + b"Content-Length: 0, 0\r\n\r\n",
+    "length and coding": CHUNKED + b"Content-Length: 5\r\n\r\n0\r\n\r\n",
+    "coding": CHUNKED + b"\r\n0\r\n\r\n",
+    "unknown coding": HEAD + b"Transfer-Encoding: xchunked\r\n\r\n0\r\n\r\n",
+    "two codings": CHUNKED + b"Transfer-Encoding: identity\r\n\r\n0\r\n\r\n",
+    "folded coding": HEAD + b"Transfer-Encoding:\r\n chunked\r\n\r\n0\r\n\r\n",
+    "coding with a blank": HEAD + b"Transfer-Encoding : chunked\r\nContent-Length: 0\r\n\r\n",
+    "coding with a tab": HEAD + b"Transfer-Encoding: \x0bchunked\r\nContent-Length: 0\r\n\r\n",
+    "coding behind a bare CR": HEAD + b"X: y\rTransfer-Encoding: chunked\r\n" + EMPTY,
+    "coding behind a bare LF": HEAD + b"X: y\nTransfer-Encoding: chunked\r\n" + EMPTY,
+    "negative chunk": CHUNKED + b"\r\n-3\r\nabc\r\n0\r\n\r\n",
+    "length with a sign": HEAD + b"Content-Length: +0\r\n\r\n",
+    "length with a line": HEAD + b"Content-Length: 0_0\r\n\r\n",
+    "negative length": HEAD + b"Content-Length: -1\r\n\r\n",
+    "no length": HEAD + b"\r\n",
+    "a name with a blank": HEAD + b"X y: z\r\nContent-Length: 0\r\n\r\n",
+    "body of a GET": GET + b"Content-Length: %d\r\n\r\n" % len(HIDDEN),
+    "coding of a GET": GET + b"Transfer-Encoding: chunked\r\n\r\n",
+    "upgrade": GET + b"Connection: Upgrade\r\nUpgrade: h2c\r\n\r\n",
+    "another place": b"GET http://elsewhere.test/ HTTP/1.1\r\nHost: localhost\r\n\r\n",
+    "no place": b"GET http://[ HTTP/1.1\r\nHost: localhost\r\n\r\n",
+    "two hosts": GET + b"Host: elsewhere.test\r\n\r\n",
+    "no host": b"GET / HTTP/1.1\r\n\r\n",
+}
+
+
+class GatewayTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.server = tools.Server()
+        cls.addClassCleanup(cls.server.stop)
+        cls.gateway = Gateway(cls.server.address)
+        cls.addClassCleanup(cls.gateway.stop)
+
+    def started(self, *flags, bounds=""):
+        gateway = Gateway(self.server.address, *flags, bounds=bounds)
+        self.addCleanup(gateway.stop)
+        return gateway
+
+    def ask(self, path, body=b"", gateway=None, **headers):
+        """Status, headers and body of the only answer to a POST."""
+        [answer] = ask_raw((gateway or self.gateway).port, post(path, body, **headers))
+        return answer
+
+    def get(self, path, gateway=None, host="localhost"):
+        request = f"GET {path} HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n"
+        [answer] = ask_raw((gateway or self.gateway).port, request.encode())
+        return answer
+
+    def read(self, gateway=None):
+        status, _, body = self.ask("/read?name=hug.bvh", tools.sample("hug").read_bytes(), gateway)
+        self.assertEqual(status, 200, body)
+        return json.loads(body)["motion"]
+
+    def test_only_the_pages_files_are_served(self):
+        status, headers, _ = self.get("/")
+        self.assertEqual(status, 200)
+        self.assertIn("default-src 'self'", headers["content-security-policy"])
+        for path in ("/gateway.py", "/../gateway.py", "/page/../gateway.py", "/%2e%2e/gateway.py",
+                     "//etc/passwd", "/samples/", "/page/", "/samples/keyframes/hug.txt"):
+            self.assertEqual(self.get(path)[0], 404, path)
+
+    def test_ambiguous_requests_have_one_answer_and_end_their_connection(self):
+        for name, data in AMBIGUOUS.items():
+            with self.subTest(name):
+                [(status, _, body)] = ask_raw(self.gateway.port, data + HIDDEN)
+                self.assertIn(status, (400, 411, 413))
+                self.assertRegex(message_of(body), r"^[\w-]+: ")
+
+    def test_a_body_that_is_not_used_is_not_taken_for_a_request(self):
+        for head, expected in ((b"POST /nowhere", 404), (b"POST /", 405), (b"PUT /read", 400),
+                               (b"POST /write?format=exe", 400)):
+            with self.subTest(head=head):
+                found = ask_raw(self.gateway.port, head + b" HTTP/1.1\r\nHost: localhost\r\n"
+                                b"Content-Length: %d\r\n\r\n" % len(HIDDEN) + HIDDEN + post("/"))
+                self.assertEqual(found[0][0], expected)
+                self.assertNotIn(b"samples", b"".join(body for _, _, body in found))
+
+    def test_every_refusal_is_json_that_names_what_is_wrong(self):
+        call = f"{CALLS}/ListModels"
+        deep = b"[" * MEBIBYTE
+        for data, status, words in (
+                (post("/nothing"), 404, 'path: expected one of the gateway\'s, got "/nothing"'),
+                (post(f"{CALLS}/Nothing", Content_Type=GRPC_WEB), 404, "path: "),
+                (post("/grpc.health.v1.Health/Check", Content_Type=GRPC_WEB), 404, "path: "),
+                (post("/about.json"), 405, "method: expected GET, got POST"),
+                (post(call, Content_Type="text/plain"), 415, "Content-Type: expected "),
+                (post(call, Content_Type=GRPC_WEB, x_request_id="\xff"), 400, "x-request-id: "),
+                (post("/read"), 400, "name: expected "),
+                (post("/read?name=../x.bvh"), 400, "name: expected "),
+                (post("/read?name=.bvh"), 400, "name: expected "),
+                (post("/read?name=-x.bvh"), 400, "name: expected "),
+                (post(f"/read?name={'x' * 5000}.bvh"), 400, "name: expected "),
+                (post(f"/read?name={'x' * 9000}.bvh"), 431, "header: expected "),
+                (post("/read?name=x.bvh&out=y"), 400, "settings: expected "),
+                (post("/read?name=x.bvh&unit=miles", b"x"), 422, "--unit"),
+                (post("/write?format=exe"), 400, "format: expected "),
+                (post("/write?format=glb&name=../x"), 400, "name: expected "),
+                (post("/write?format=csv", b"[1]"), 422, "pair.json"),
+                (post("/write?format=csv", deep), 422, "pair.json"),
+                (post("/write_on_rig", b"{}"), 400, "body: expected "),
+                (post("/write_on_rig", deep), 400, "body: expected "),
+                (post("/write_on_rig", b'{"files": [{"name": "a.bvh", "bytes": 9}]}\n'), 400,
+                 "files[0].bytes: expected "),
+                (post("/read?name=x.bvh", Content_Length=LARGEST + 1), 413, "body: expected "),
+                (post("/read?name=x.bvh", Content_Length="9" * 6000), 400, "request: "),
+                (post("/read?name=x.bvh", Content_Length="0" * 6000 + "9" * 15), 413, "body: "),
+                (post("/read?name=x.bvh", Expect="a miracle"), 417, "Expect: expected "),
+                (post("/read?name=x.bvh", Origin="http://elsewhere.test"), 403, "Origin: "),
+                (post("/read?name=x.bvh", Origin="null"), 403, "Origin: "),
+                (post("/read?name=x.bvh", Host="elsewhere.test"), 421, "Host: expected "),
+                (b"\x16\x03\x01\x02\x00\x01\x00\r\n\r\n", 400, "request: "),
+                (b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n", 400, "request: "),
+                (b"GET / HTTP/1.1\r\nHost: localhost\r\n" + b"X: y\r\n" * 6000 + b"\r\n", 400,
+                 "request: ")):
+            with self.subTest(data=data[:80]):
+                [(found, _, body)] = ask_raw(self.gateway.port, data)
+                self.assertEqual(found, status, body[:200])
+                self.assertTrue(message_of(body).startswith(words), body[:200])
+
+    def test_an_empty_message_to_each_path_is_answered(self):
+        for path in ("/", "/about.json", "/read", "/read?name=a.bvh", "/write", "/write?format=glb",
+                     "/write_on_rig"):
+            with self.subTest(path):
+                status, _, body = self.ask(path)
+                self.assertIn(status, (400, 405, 422))
+                self.assertTrue(message_of(body))
+        for method in ("Synthesize", "ListModels", "GetModel"):
+            for body in (b"", b"\0" * 4, framed(b""), framed(b"\xff"), b"\1" + framed(b"")[1:]):
+                with self.subTest(method=method, body=body):
+                    found = ask_raw(self.gateway.port, post(
+                        f"{CALLS}/{method}", body, Content_Type=GRPC_WEB))
+                    self.assertEqual(len(found), 1)
+                    self.assertEqual(found[0][0], 200)
+        self.assertGreater(len(self.read()["leader"]), 0)
+
+    def test_refusals_of_the_server_keep_their_details(self):
+        message = synthesis_pb2.GetModelRequest()
+        message.model.name = "nobody"
+        body = self.call("GetModel", message.SerializeToString())
+        self.assertEqual(body[0], 0x80)
+        self.assertIn(b"grpc-status: 5\r\n", body)
+        self.assertIn(b"grpc-status-details-bin: ", body)
+
+    def call(self, method, message, gateway=None):
+        """What a call is answered with, all of it."""
+        return self.ask(f"{CALLS}/{method}", framed(message), gateway, Content_Type=GRPC_WEB)[2]
+
+    def test_a_page_of_another_name_is_refused_unless_it_is_allowed(self):
+        for host in ("elsewhere.test", "localhost.elsewhere.test", "127.0.0.1.nip.test", "[::2]",
+                     "169.254.169.254", ""):
+            self.assertEqual(self.get("/", host=host)[0], 421, host)
+        for host in ("localhost", f"127.0.0.1:{self.gateway.port}", "LOCALHOST:1", "[::1]:8080"):
+            self.assertEqual(self.get("/", host=host)[0], 200, host)
+        studio = self.started("--host", "studio.example")
+        self.assertEqual(self.get("/", studio, "studio.example")[0], 200)
+        self.assertEqual(self.get("/", studio, "other.example")[0], 421)
+        for origin, expected in (("https://studio.example", 422), ("http://studio.example", 422),
+                                 ("https://studio.example.test", 403), ("http://localhost", 403)):
+            self.assertEqual(self.ask("/read?name=x.bvh", b"x", studio, Host="studio.example",
+                                      Origin=origin)[0], expected, origin)
+
+    def test_slow_bodies_stop_nobody(self):
+        with contextlib.ExitStack() as stack:
+            for path in ("/read?name=a.bvh", "/write?format=glb", "/write_on_rig",
+                         f"{CALLS}/Synthesize") * 10:
+                slow = stack.enter_context(connect(self.gateway.port))
+                slow.sendall(post(path, b"x" * 1000, Content_Type=GRPC_WEB)[:-1])
+            self.read()
+            self.assertIn(b"grpc-status: 0\r\n", self.call("ListModels", b""))
+
+    def test_large_bodies_take_little_memory(self):
+        before = self.gateway.peak_mebibytes()
+        for path in ("/read?name=a.csv", "/write?format=glb", f"{CALLS}/Synthesize"):
+            with self.subTest(path), contextlib.ExitStack() as stack:
+                request = post(path, framed(b"\0" * (LARGEST - 5)), Content_Type=GRPC_WEB)
+                slow = []
+                for _ in range(20):
+                    slow.append(stack.enter_context(connect(self.gateway.port)))
+                    slow[-1].sendall(request[:-1])
+                self.read()
+                for connection in slow:
+                    connection.sendall(request[-1:])
+                for connection in slow:
+                    with connection.makefile("rb") as reply:
+                        self.assertIn(reply.readline().split(b" ")[1], (b"200", b"422", b"503"))
+                self.assertLess(self.gateway.peak_mebibytes() - before, 250)
+
+    def test_bodies_on_disk_are_bounded_and_removed(self):
+        with tempfile.TemporaryDirectory() as folder:
+            gateway = self.started(bounds=f"import tempfile; tempfile.tempdir = {folder!r}\n"
+                                          "uploads.MAX_SPOOLED_BYTES = 3 * 2**20")
+            request = post("/read?name=a.csv", b"0" * (2 * MEBIBYTE))
+            with connect(gateway.port) as slow:
+                slow.sendall(request[:-1])
+                tools.wait_until(lambda: sum(
+                    os.path.getsize(file) for file in glob.glob(f"{folder}/*/*")) >= MEBIBYTE,
+                    "the slow body on disk")
+                status, headers, body = self.ask("/read?name=b.csv", b"0" * (3 * MEBIBYTE), gateway)
+                self.assertEqual(status, 503)
+                self.assertIn("retry-after", headers)
+                self.assertRegex(message_of(body), "^body: ")
+            tools.wait_until(lambda: not os.listdir(folder), "an abandoned body to be removed")
+            self.read(gateway)
+            self.assertEqual(os.listdir(folder), [])
+
+    def test_what_comes_too_slowly_is_ended(self):
+        gateway = self.started(bounds="serving.HEADER_SECONDS = 0.3; uploads.BODY_SECONDS = 0.3; "
+                                      "serving.IDLE_SECONDS = 0.3")
+        for data in (b"", b"GET / HTT", b"GET / HTTP/1.1\r\nHost: localhost\r\nX: y"):
+            with self.subTest(data=data):
+                self.assertEqual(ask_raw(gateway.port, data), [])
+        [(status, headers, body)] = ask_raw(gateway.port, post("/read?name=a.bvh", b"xyz")[:-1])
+        self.assertEqual((status, headers["connection"]), (408, "close"))
+        self.assertIn("body: expected all of it within 0.3 s, got 2 bytes", message_of(body))
+        # A connection that is kept open is ended as well, also with half a header on it.
+        for rest in (b"", b"GET / HTT"):
+            [(status, _, _)] = ask_raw(
+                gateway.port, b"GET /page.css HTTP/1.1\r\nHost: localhost\r\n\r\n" + rest)
+            self.assertEqual(status, 200)
+
+    def test_a_reader_that_stands_still_is_cut_off(self):
+        gateway = self.started(bounds="serving.REQUEST_SECONDS = 0.5")
+        with socket.socket() as reader:
+            reader.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+            reader.connect(("127.0.0.1", gateway.port))
+            for _ in range(20):
+                reader.sendall(b"GET /duet-motion.js HTTP/1.1\r\nHost: localhost\r\n\r\n")
+            tools.wait_until(lambda: not sockets_with(gateway.pid, reader.getsockname()[1]),
+                             "the connection of a reader that stands still to be cut off")
+        self.assertEqual(self.get("/", gateway)[0], 200)
+
+    def test_idle_connections_make_room_for_others(self):
+        gateway = self.started(bounds="serving.MAX_CONNECTIONS = 8")
+        with contextlib.ExitStack() as stack:
+            for _ in range(40):
+                stack.enter_context(connect(gateway.port))
+            self.read(gateway)
+
+    def test_a_program_that_takes_too_much_is_ended(self):
+        for bound in ("conversions.PROGRAM_SECONDS = 0", "conversions.PROGRAM_BYTES = 2**16"):
+            with self.subTest(bound):
+                gateway = self.started(bounds=bound)
+                status, _, body = self.ask("/read?name=hug.bvh", tools.sample("hug").read_bytes(),
+                                           gateway)
+                self.assertEqual(status, 422)
+                self.assertRegex(message_of(body), "^file: expected one that ")
+
+    def test_files_are_read_and_written_as_the_program_does(self):
+        motion = self.read()
+        pair = json.dumps({**motion, "follower": motion["leader"]}).encode()
+        for kind in ("glb", "csv", "json", "usda", "html"):
+            name = "hug_sbu@2_hug1_seed3"
+            status, headers, body = self.ask(f"/write?format={kind}&name={name}", pair)
+            self.assertEqual(status, 200, body)
+            self.assertEqual(headers["content-disposition"],
+                             f'attachment; filename="{name}.{kind}"')
+        status, headers, body = self.ask("/write?format=bvh&name=x", pair)
+        self.assertEqual((status, body[:2]), (200, b"PK"))
+        _, _, body = self.ask("/write?format=json&name=x&resample=60", pair)
+        self.assertEqual(json.loads(body)["frame_rate_hz"], 60)
+        self.assertEqual(len(json.loads(body)["leader"]), 2 * len(motion["leader"]) - 1)
+
+    def test_a_follower_is_written_on_the_leaders_rig(self):
+        leader = tools.sample("hug").read_bytes()
+        for others in ([], [("rig.bvh", leader)]):
+            head = {"name": "hug_seed1", "format": "bvh", "seed": "1", "label": ["hug=1"],
+                    "files": [{"name": name, "bytes": len(data)}
+                              for name, data in (("hug.bvh", leader), *others)]}
+            body = b"\n".join([json.dumps(head).encode(),
+                               b"".join([leader, *(data for _, data in others)])])
+            status, headers, body = self.ask("/write_on_rig", body)
+            self.assertEqual(status, 200, body)
+            self.assertEqual(headers["content-disposition"],
+                             'attachment; filename="hug_seed1.follower.bvh"')
+            self.assertEqual(joints_of(body), joints_of(leader))
+
+    def test_settings_name_no_file_of_this_machine(self):
+        leader = tools.sample("hug").read_bytes()
+        for start in ("/etc/passwd", "0/leader.bvh", "1,2,/etc/passwd"):
+            head = {"name": "x", "format": "bvh", "label": ["hug=1"], "follower_start": start,
+                    "files": [{"name": "hug.bvh", "bytes": len(leader)}]}
+            status, _, body = self.ask("/write_on_rig", json.dumps(head).encode() + b"\n" + leader)
+            self.assertEqual(status, 400)
+            self.assertIn("follower_start: expected X,Y,Z", message_of(body))
+
+    def test_no_message_shows_where_the_gateway_works(self):
+        for path, body in (("/read?name=junk.bvh", b"junk"), ("/write?format=glb", b"{}"),
+                           ("/write?format=html", b"{}"), ("/write_on_rig", json.dumps(
+                               {"label": ["hug=1"], "format": "bvh",
+                                "files": [{"name": "a.bvh", "bytes": 1}]}).encode() + b"\nx")):
+            status, _, body = self.ask(path, body)
+            self.assertEqual(status, 422)
+            self.assertNotIn(tempfile.gettempdir(), message_of(body))
+            self.assertNotIn("duet-gateway", message_of(body))
+
+    def test_a_server_that_is_killed_ends_its_calls_with_a_status(self):
+        port = tools.free_port()
+        server = tools.Server(port=port)
+        gateway = Gateway(server.address)
+        self.addCleanup(gateway.stop)
+        try:
+            with connect(gateway.port) as connection:
+                connection.sendall(post(f"{CALLS}/Synthesize", framed(long_request()),
+                                        Content_Type=GRPC_WEB))
+                received = connection.recv(1000)
+                while len(received) < 1000:  # some frames of the follower
+                    received += connection.recv(1000)
+                server.kill()
+                self.assertRegex(gateways.read_all(connection), rb"grpc-status: 14\r\n")
+            self.assertEqual(self.get("/", gateway)[0], 200)
+            self.assertIn(b"grpc-status: 14\r\n", self.call("ListModels", b"", gateway))
+        finally:
+            server.stop()
+        server = tools.Server(port=port)
+        self.addCleanup(server.stop)
+        tools.wait_until(lambda: b"grpc-status: 0\r\n" in self.call("ListModels", b"", gateway),
+                         "calls to be answered again")
+
+    def test_many_visitors_at_once_are_all_answered(self):
+        self.gateway.send(signal.SIGSTOP)  # so that all of them wait to be accepted
+        try:
+            visitors = [connect(self.gateway.port) for _ in range(64)]
+        finally:
+            self.gateway.send(signal.SIGCONT)
+        for visitor in visitors:
+            self.addCleanup(visitor.close)
+            visitor.sendall(post(f"{CALLS}/ListModels", framed(b""), Content_Type=GRPC_WEB))
+        for visitor in visitors:
+            with visitor.makefile("rb") as answer:
+                self.assertIn(b"grpc-status: 0\r\n", answer.read())
+
+    def test_it_stops_at_a_signal_and_says_what_is_wrong_at_start(self):
+        gateway = Gateway(self.server.address)
+        with connect(gateway.port) as idle:
+            self.assertEqual(gateway.stop(), 0)
+            self.assertEqual(idle.recv(1), b"")
+        result = tools.run(sys.executable, "-B", gateways.WEB / "gateway.py", "--listen", "nowhere",
+                           env={**os.environ, "DUET_PROGRAM": str(tools.PROGRAMS / "duet")})
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("--listen: expected HOST:PORT", result.stderr)
+        result = tools.run(sys.executable, "-B", gateways.WEB / "gateway.py",
+                           env={**os.environ, "DUET_PROGRAM": "/nowhere/duet"})
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("DUET_PROGRAM: expected the program duet", result.stderr)
+
+
+def joints_of(bvh):
+    """The names of a BVH's joints."""
+    return re.findall(rb"(?:ROOT|JOINT) (\S+)", bvh)
+
+
+def sockets_with(pid, peer_port):
+    """A process' connections from a port of this machine."""
+    own = {os.readlink(link) for link in glob.glob(f"/proc/{pid}/fd/*") if os.path.islink(link)}
+    lines = pathlib.Path("/proc/net/tcp").read_text(encoding="ascii").splitlines()[1:]
+    return [line for line in lines if int(line.split()[2].split(":")[1], 16) == peer_port
+            and f"socket:[{line.split()[9]}]" in own]
+
+
+def long_request():
+    """Ten minutes of a leader that stands, as bytes."""
+    import duet_motion as duet
+    os.environ["DUET_PROGRAM"] = str(tools.PROGRAMS / "duet")
+    motion = duet.read_motion(tools.sample("hug"))
+    request = synthesis_pb2.SynthesizeRequest(chunk_frames=1)
+    request.leader.joint_names.extend(motion.joint_names)
+    request.leader.frame_rate_hz = 30
+    request.leader.unit = 1
+    request.leader.up_axis = 1
+    request.leader.frame_count = 18000
+    request.leader.positions.extend(list(motion.positions[0].ravel()) * 18000)
+    request.label_vector.weights.add(interaction_class="hug", weight=1)
+    return request.SerializeToString()
+
+
+if __name__ == "__main__":
+    tools.main()
