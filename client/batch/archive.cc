@@ -48,16 +48,18 @@ class TarHeader {
   std::array<char, kBlock> bytes_;
 };
 
+// The motion name.json, beside the record of that name.
+std::string NameInTar(const std::string& path) {
+  absl::string_view stem = path;
+  return absl::ConsumeSuffix(&stem, ".json") ? absl::StrCat(stem, ".motion.json") : path;
+}
+
 class TarArchive final : public Archive {
  public:
   explicit TarArchive(DurableFile* file) : file_(file) {}
 
   absl::Status Add(const std::string& path, absl::string_view content) override {
-    absl::string_view stem = path;
-    if (absl::ConsumeSuffix(&stem, ".json")) {
-      return AddMember(absl::StrCat(stem, ".motion.json"), content);
-    }
-    return AddMember(path, content);
+    return AddMember(NameInTar(path), content);
   }
   absl::Status AddRecord(const std::string& name, absl::string_view record) override {
     return AddMember(name + ".json", record);
@@ -197,11 +199,29 @@ bool ArchiveReader::Read(size_t bytes, std::string* out) {
   return static_cast<bool>(file_.read(out->data(), static_cast<std::streamsize>(bytes)));
 }
 
-absl::StatusOr<std::optional<ArchiveMember>> ArchiveReader::Next() {
-  return path_.extension() == ".tar" ? NextOfTar() : NextOfZip();
+bool ArchiveReader::Skip(size_t bytes) {
+  std::error_code error;
+  if (bytes > std::filesystem::file_size(path_, error) || error) return false;
+  return static_cast<bool>(file_.seekg(static_cast<std::streamoff>(bytes), std::ios::cur));
 }
 
-absl::StatusOr<std::optional<ArchiveMember>> ArchiveReader::NextOfTar() {
+bool ArchiveReader::IsTar() const { return path_.extension() == ".tar"; }
+
+absl::StatusOr<std::optional<ArchiveMember>> ArchiveReader::NextOf(const std::string& wanted) {
+  return IsTar() ? NextOfTar(wanted) : NextOfZip(wanted);
+}
+
+absl::StatusOr<std::optional<ArchiveMember>> ArchiveReader::Next() { return NextOf(""); }
+
+absl::StatusOr<std::optional<ArchiveMember>> ArchiveReader::Find(const std::string& path) {
+  const std::string wanted = IsTar() ? NameInTar(path) : path;
+  while (true) {
+    absl::StatusOr<std::optional<ArchiveMember>> member = NextOf(wanted);
+    if (!member.ok() || !member->has_value() || (*member)->path == wanted) return member;
+  }
+}
+
+absl::StatusOr<std::optional<ArchiveMember>> ArchiveReader::NextOfTar(const std::string& wanted) {
   ArchiveMember member;
   for (std::string header, padding; Read(kBlock, &header);) {
     if (header[0] == '\0') return std::optional<ArchiveMember>();
@@ -210,29 +230,35 @@ absl::StatusOr<std::optional<ArchiveMember>> ArchiveReader::NextOfTar() {
       size = size * 8 + static_cast<uint64_t>(digit - '0');
     }
     const size_t beyond = (kBlock - size % kBlock) % kBlock;
-    if (!Read(size, &member.content) || !Read(beyond, &padding)) return Damaged();
     const bool is_pax = header[156] == 'x';
+    if (!is_pax && member.path.empty()) {
+      member.path = std::string(header.substr(0, kUstarName).c_str());
+    }
+    if (!is_pax && !wanted.empty() && member.path != wanted) {
+      if (!Skip(size + beyond)) return Damaged();
+      return std::optional<ArchiveMember>(std::move(member));
+    }
+    if (!Read(size, &member.content) || !Read(beyond, &padding)) return Damaged();
     if (is_pax) {
       const size_t name = member.content.find('=') + 1;
       member.path = member.content.substr(name, member.content.size() - name - 1);
       continue;
     }
-    if (member.path.empty()) member.path = std::string(header.substr(0, kUstarName).c_str());
     return std::optional<ArchiveMember>(std::move(member));
   }
   return Damaged();
 }
 
-absl::StatusOr<std::optional<ArchiveMember>> ArchiveReader::NextOfZip() {
+absl::StatusOr<std::optional<ArchiveMember>> ArchiveReader::NextOfZip(const std::string& wanted) {
   std::string header;
   if (!Read(4, &header)) return Damaged();
   if (FromLittle(header, 0, 4) != kZipMember) return std::optional<ArchiveMember>();
   if (!Read(26, &header)) return Damaged();
   ArchiveMember member;
-  if (!Read(FromLittle(header, 22, 2), &member.path) ||
-      !Read(FromLittle(header, 14, 4), &member.content)) {
-    return Damaged();
-  }
+  const uint64_t bytes = FromLittle(header, 14, 4);
+  if (!Read(FromLittle(header, 22, 2), &member.path)) return Damaged();
+  const bool skipped = !wanted.empty() && member.path != wanted;
+  if (skipped ? !Skip(bytes) : !Read(bytes, &member.content)) return Damaged();
   return std::optional<ArchiveMember>(std::move(member));
 }
 

@@ -47,11 +47,18 @@ class ArchiveReader {
   explicit ArchiveReader(const std::filesystem::path& path);
   // The next member; nothing at the end. DATA_LOSS for what MakeArchive did not write.
   absl::StatusOr<std::optional<ArchiveMember>> Next();
+  // The next member that was added as `path`, without reading those before it; nothing where there
+  // is none.
+  absl::StatusOr<std::optional<ArchiveMember>> Find(const std::string& path);
 
  private:
-  absl::StatusOr<std::optional<ArchiveMember>> NextOfTar();
-  absl::StatusOr<std::optional<ArchiveMember>> NextOfZip();
+  bool IsTar() const;
+  // Of members of another name than `wanted`, unless that is empty, the content stays empty.
+  absl::StatusOr<std::optional<ArchiveMember>> NextOf(const std::string& wanted);
+  absl::StatusOr<std::optional<ArchiveMember>> NextOfTar(const std::string& wanted);
+  absl::StatusOr<std::optional<ArchiveMember>> NextOfZip(const std::string& wanted);
   bool Read(size_t bytes, std::string* out);
+  bool Skip(size_t bytes);
   absl::Status Damaged() const;
 
   std::filesystem::path path_;

@@ -1,6 +1,5 @@
 #include "client/batch/index.h"
 
-#include <string>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
@@ -8,7 +7,6 @@
 #include "absl/strings/str_replace.h"
 #include "client/batch/capture_layout.h"
 #include "client/batch/durable_file.h"
-#include "client/batch/packing.h"
 #include "client/batch/parse_record.h"
 #include "client/batch/record.h"
 #include "client/batch/text_values.h"
@@ -82,10 +80,11 @@ uint64_t BytesOf(const ordered_json& record) {
 // The files that grow with the items.
 class IndexWriter {
  public:
-  IndexWriter(const JobIdentity& identity, const std::filesystem::path& temporary)
+  IndexWriter(const JobIdentity& identity, const ShardList& shards,
+              const std::filesystem::path& temporary)
       : captures_(CapturesOf(identity.layout) != nullptr),
-        shards_(identity.packing, identity.shard_bytes),
-        packed_(identity.packing != Packing::kNone),
+        packing_(identity.packing),
+        shards_(shards),
         json_(temporary / "index.jsonl"),
         tsv_(temporary / "index.tsv"),
         rejected_(temporary / "rejected.tsv") {}
@@ -99,7 +98,7 @@ class IndexWriter {
     std::vector<std::string> rejected = header;
     rejected.insert(rejected.end(), {"answers", "reasons", "extra"});
     status.Update(rejected_.Append(Row(rejected)));
-    if (packed_) header.emplace_back("shard");
+    if (packing_ != Packing::kNone) header.emplace_back("shard");
     // What readers of captures look for.
     if (captures_) header.insert(header.end(), {"path", "leader_side"});
     header.insert(header.end(), {"files", "sha256", "extra"});
@@ -107,15 +106,15 @@ class IndexWriter {
     return status;
   }
 
-  absl::Status Add(const std::string& text) {
-    absl::StatusOr<ordered_json> parsed = ParseRecord(text);
+  absl::Status Add(const JournalEntry& entry) {
+    absl::StatusOr<ordered_json> parsed = ParseRecord(entry.record);
     if (!parsed.ok()) return parsed.status();
     ordered_json& record = *parsed;
     if (record["state"] == kFailed) {
       ++counts_.failed;
       return absl::OkStatus();
     }
-    return record["state"] == kDone ? AddDone(&record) : AddRejected(record);
+    return record["state"] == kDone ? AddDone(entry.item, &record) : AddRejected(record);
   }
 
   absl::Status Finish(const std::filesystem::path& out) {
@@ -128,14 +127,12 @@ class IndexWriter {
   const SetCounts& counts() const { return counts_; }
 
  private:
-  absl::Status AddDone(ordered_json* record) {
+  absl::Status AddDone(int64_t item, ordered_json* record) {
     ++counts_.done;
     counts_.bytes += BytesOf(*record);
+    const std::string line = IndexLine(item, packing_, shards_, record);
     std::vector<std::string> cells = CommonCells(*record);
-    if (packed_) {
-      (*record)["shard"] = shards_.Next(BytesOf(*record));
-      cells.push_back(Cell(*record, "shard"));
-    }
+    if (packing_ != Packing::kNone) cells.push_back(Cell(*record, "shard"));
     if (captures_) {
       cells.push_back(FileCells(*record, "path").front());
       cells.push_back(Cell(*record, "side"));
@@ -143,7 +140,7 @@ class IndexWriter {
     cells.push_back(absl::StrJoin(FileCells(*record, "path"), ","));
     cells.push_back(absl::StrJoin(FileCells(*record, "sha256"), ","));
     cells.push_back(Cell(*record, "extra"));
-    absl::Status status = json_.Append(Line(*record) + "\n");
+    absl::Status status = json_.Append(line + "\n");
     status.Update(tsv_.Append(Row(cells)));
     return status;
   }
@@ -160,8 +157,8 @@ class IndexWriter {
   }
 
   bool captures_;  // in a layout of captures
-  ShardNames shards_;
-  bool packed_;
+  Packing packing_;
+  const ShardList& shards_;
   DurableFile json_, tsv_, rejected_;
   SetCounts counts_;
 };
@@ -188,15 +185,21 @@ std::string SummaryJson(const JobIdentity& identity, const SetCounts& counts,
 
 }  // namespace
 
+std::string IndexLine(int64_t item, Packing packing, const ShardList& shards,
+                      ordered_json* record) {
+  const size_t shard = shards.ShardOf(item);
+  if (shard != ShardList::kNone) (*record)["shard"] = ShardName(packing, shard);
+  return Line(*record);
+}
+
 absl::StatusOr<SetCounts> WriteIndex(const JournalReader& journal, const JobIdentity& identity,
-                                     const PlannedItems& planned,
+                                     const ShardList& shards, const PlannedItems& planned,
                                      const std::filesystem::path& temporary,
                                      const std::filesystem::path& out) {
-  IndexWriter writer(identity, temporary);
+  IndexWriter writer(identity, shards, temporary);
   absl::Status status = writer.Open();
   if (!status.ok()) return status;
-  status =
-      journal.ForEach([&writer](const JournalEntry& entry) { return writer.Add(entry.record); });
+  status = journal.ForEach([&writer](const JournalEntry& entry) { return writer.Add(entry); });
   if (status.ok()) status = writer.Finish(out);
   if (!status.ok()) return status;
   status = ReplaceDurably(out / "summary.json", SummaryJson(identity, writer.counts(), planned));

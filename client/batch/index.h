@@ -3,10 +3,13 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
 
 #include "absl/status/statusor.h"
 #include "client/batch/job_folder.h"
 #include "client/batch/journal.h"
+#include "client/batch/shard_list.h"
 
 namespace duet::client::batch {
 
@@ -27,11 +30,16 @@ struct PlannedItems {
 
 // Writes index.jsonl and index.tsv (items that are done), rejected.tsv (those that the filter did
 // not let pass) and summary.json into `out`, in the order of the items and without times: the same
-// for the same journal records, in whatever order these were written.
+// for the same journal records, in whatever order these were written. `shards` is empty of a set
+// that is not packed.
 absl::StatusOr<SetCounts> WriteIndex(const JournalReader& journal, const JobIdentity& identity,
-                                     const PlannedItems& planned,
+                                     const ShardList& shards, const PlannedItems& planned,
                                      const std::filesystem::path& temporary,
                                      const std::filesystem::path& out);
+
+// A done item's line of index.jsonl, without its end. `record` receives its shard.
+std::string IndexLine(int64_t item, Packing packing, const ShardList& shards,
+                      nlohmann::ordered_json* record);
 
 // What summary.json says of the plan. NOT_FOUND without one, DATA_LOSS for one that cannot be read.
 absl::StatusOr<PlannedItems> ReadPlanned(const std::filesystem::path& out);

@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "absl/strings/str_cat.h"
+#include "client/batch/archive.h"
 #include "client/batch/durable_file.h"
 #include "model/base/file.h"
 #include "model/base/sha256.h"
@@ -114,8 +115,35 @@ absl::StatusOr<std::string> ItemReader::ReadSpool(uint64_t offset, uint64_t byte
   return content;
 }
 
+void ItemReader::LookInShards(fs::path out, Packing packing, const ShardList* shards) {
+  out_ = std::move(out);
+  packing_ = packing;
+  shards_ = shards;
+}
+
 absl::StatusOr<std::string> ItemReader::Read(const ordered_json& record, const SpoolPlace& place,
                                              size_t file) const {
+  absl::StatusOr<std::string> content = ReadOutside(record, place, file);
+  if (content.ok() || shards_ == nullptr) return content;
+  return ReadShard(record, file);
+}
+
+absl::StatusOr<std::string> ItemReader::ReadShard(const ordered_json& record, size_t file) const {
+  const ordered_json& recorded = record["files"][file];
+  const std::string path = recorded["path"];
+  const size_t shard = shards_->ShardOf(record["item"].get<int64_t>());
+  if (shard == ShardList::kNone) return absl::NotFoundError(path + ": is in no shard");
+  const fs::path archive = out_ / ShardName(packing_, shard);
+  absl::StatusOr<std::optional<ArchiveMember>> member = ArchiveReader(archive).Find(path);
+  if (!member.ok()) return member.status();
+  if (member->has_value() && base::Sha256Hex((*member)->content) == recorded["sha256"]) {
+    return std::move((*member)->content);
+  }
+  return absl::DataLossError(absl::StrCat(archive.string(), ": ", path, ": was changed"));
+}
+
+absl::StatusOr<std::string> ItemReader::ReadOutside(const ordered_json& record,
+                                                    const SpoolPlace& place, size_t file) const {
   const ordered_json& recorded = record["files"][file];
   const std::string path = recorded["path"];
   absl::StatusOr<std::string> content;
@@ -139,6 +167,11 @@ void ItemReader::Forget(const ordered_json& record, const SpoolPlace& place) {
     if (!place.has_value()) forgotten_.push_back(items_ / file["path"].get<std::string>());
   }
   if (place.has_value()) ranges_.emplace_back(*place, bytes);
+}
+
+void ItemReader::Keep() {
+  forgotten_.clear();
+  ranges_.clear();
 }
 
 void ItemReader::Release() {

@@ -13,6 +13,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "client/batch/job_folder.h"
+#include "client/batch/shard_list.h"
 
 namespace duet::client::batch {
 
@@ -53,6 +54,9 @@ class ItemReader {
   ItemReader& operator=(const ItemReader&) = delete;
   ~ItemReader();
 
+  // Has Read look in the shards too, for what is nowhere else. `shards` outlives the reader.
+  void LookInShards(std::filesystem::path out, Packing packing, const ShardList* shards);
+
   // The content of the record's file of this number. DATA_LOSS where it is not what the record
   // says.
   absl::StatusOr<std::string> Read(const nlohmann::ordered_json& record, const SpoolPlace& place,
@@ -62,10 +66,18 @@ class ItemReader {
   void Forget(const nlohmann::ordered_json& record, const SpoolPlace& place);
   // Gives their room back to the disk, where the file system can.
   void Release();
+  // They will be read again after all.
+  void Keep();
 
  private:
   absl::StatusOr<std::string> ReadSpool(uint64_t offset, uint64_t bytes) const;
+  absl::StatusOr<std::string> ReadOutside(const nlohmann::ordered_json& record,
+                                          const SpoolPlace& place, size_t file) const;
+  absl::StatusOr<std::string> ReadShard(const nlohmann::ordered_json& record, size_t file) const;
 
+  std::filesystem::path out_;  // where the shards lie
+  Packing packing_ = Packing::kNone;
+  const ShardList* shards_ = nullptr;
   std::filesystem::path items_, spool_;
   int descriptor_ = -1;  // of the spool
   std::vector<std::filesystem::path> forgotten_;

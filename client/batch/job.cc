@@ -30,12 +30,6 @@ std::optional<flow::Duration> DelayOf(const absl::Status& status) {
   return absl::ToChronoNanoseconds(*delay);
 }
 
-// Whether an item is in a share of the plan: a hash of its id that no shard's hash looks at.
-bool InShare(const Item& item, double share) {
-  if (share >= 1) return true;
-  return std::stoul(item.id.substr(8, 8), nullptr, 16) < share * 4294967296.0;
-}
-
 // Askers, and keepers: as many as can work at once, of whom the first two overlap reading and
 // waiting.
 int ThreadsOfAKind() {
@@ -76,50 +70,28 @@ Progress Job::progress() const {
   return {planned_, resumed_, done_, rejected_, failed_, unfinished_, bytes_, gate_.state()};
 }
 
-absl::StatusOr<bool> Job::IsSettled(const Item& item, const JournalReader& journal) const {
-  if (!journal.Has(item.number)) return false;
-  const absl::StatusOr<JournalEntry> entry = journal.Read(item.number);
-  if (!entry.ok()) return entry.status();
-  const auto record = nlohmann::json::parse(entry->record, nullptr, false);
-  const std::string id = record.is_object() ? record.value("id", "") : "";
-  if (id != item.id) {
-    return absl::FailedPreconditionError(absl::StrCat(
-        parts_.folder->out().string(), ": item ", item.number, " was ",
-        record.is_object() ? record.value("name", "") : "", " and is ", item.name,
-        " now; wanted the same leaders in the same order, new ones at the end, or another --out"));
-  }
-  return !options_.retry_failed || record.value("state", "") != kFailed;
-}
-
 // False when the run is being stopped.
 bool Job::Put(Item item) {
   std::shared_ptr<SharedLeader> leader = leaders_.Get(item.leader, item.side, item.model);
   return queue_.Put({std::move(item), std::move(leader)});
 }
 
-absl::Status Job::Feed(const JournalReader& journal) {
-  for (int64_t number = 0; number < options_.limit; ++number) {
+absl::Status Job::Feed() {
+  while (planned_ < parts_.survey->planned) {
     absl::StatusOr<std::optional<Item>> item = plan_.Next();
     if (!item.ok()) return item.status();
-    if (!item->has_value()) {
-      whole_plan_ = options_.share >= 1;
-      return absl::OkStatus();
+    if (!item->has_value() || (*item)->number >= options_.limit) {
+      return absl::AbortedError("the list of leaders was changed during the run");
     }
-    if (!parts_.identity.shard.Has((*item)->id) || !InShare(**item, options_.share)) continue;
-    const absl::StatusOr<bool> settled = IsSettled(**item, journal);
-    if (!settled.ok()) return settled.status();
+    if (!parts_.identity.shard.Has((*item)->id) || !InShare((*item)->id, options_.share)) continue;
     ++planned_;
-    if (!*settled && packed_) {
-      return absl::FailedPreconditionError(
-          absl::StrCat(parts_.folder->out().string(), ": is packed and takes no more items, but ",
-                       (*item)->name, " came; wanted another --out"));
-    }
-    if (*settled) {
+    if (parts_.survey->IsSettled((*item)->number)) {
       ++resumed_;
     } else if (!Put(**std::move(item))) {
       return absl::OkStatus();
     }
   }
+  fed_ = true;
   return absl::OkStatus();
 }
 
@@ -133,6 +105,11 @@ void Job::Ask(Work work) {
       work.leader->Get(parts_.recipe.input, parts_.skeletons[model]);
   if (!leader.ok()) {
     Fail(work.item, leader.status());
+    return queue_.Done();
+  }
+  const absl::Status unchanged = parts_.survey->leaders->Check(*work.item.leader, leader->sha256);
+  if (!unchanged.ok()) {
+    StopWith(unchanged);
     return queue_.Done();
   }
   SynthesisRequest request =
@@ -276,6 +253,7 @@ absl::Status Job::Write(const std::vector<Settled>& all, ItemWriter* items,
 }
 
 void Job::Count(const Settled& settled) {
+  damage_.items.erase(settled.item.number);
   for (const ItemFile& file : settled.files) bytes_ += file.content.size();
   if (settled.state == kFailed) {
     ++failed_;
@@ -285,14 +263,14 @@ void Job::Count(const Settled& settled) {
   RemoveError(settled.item);
 }
 
-absl::Status Job::RunThreads(const JournalReader& journal, JournalWriter* writer) {
+absl::Status Job::RunThreads(JournalWriter* writer) {
   std::thread on_disk([this, writer] { WriteUntilClosed(writer); });
   std::vector<std::thread> askers, keepers;
   for (int i = 0; i < ThreadsOfAKind(); ++i) {
     askers.emplace_back([this] { AskUntilDone(); });
     keepers.emplace_back([this] { KeepUntilClosed(); });
   }
-  const absl::Status fed = Feed(journal);
+  const absl::Status fed = Feed();
   queue_.Close();
   if (!fed.ok()) Stop();
   for (std::thread& asker : askers) asker.join();
@@ -304,6 +282,38 @@ absl::Status Job::RunThreads(const JournalReader& journal, JournalWriter* writer
   return fed;
 }
 
+// Whether every item there is was settled, by this run or an earlier one.
+bool Job::IsComplete() const {
+  return fed_ && parts_.survey->whole_plan &&
+         resumed_ + done_ + rejected_ + failed_ == parts_.survey->planned;
+}
+
+// What is left of the damage once this run has written everything that it could.
+absl::Status Job::PackOrRepaired(const JournalReader& journal) {
+  const JobFolder& folder = *parts_.folder;
+  if (parts_.identity.packing == Packing::kNone) return WriteDamage(damage_, folder.damage());
+  // A shard of a set that is made in several is packed when they are merged.
+  if (parts_.identity.shard.count > 1) return WriteDamage(damage_, folder.damage());
+  if (!IsComplete() || journal.count() != planned_) return absl::OkStatus();
+  absl::Status status = Pack(journal, parts_.identity, folder);
+  return status.ok() ? WriteDamage({}, folder.damage()) : status;
+}
+
+// Before anything is packed, and again when more was done since: what a shard holds is read slowly.
+absl::Status Job::DrawContactSheet(const JournalReader& journal) const {
+  const JobFolder& folder = *parts_.folder;
+  const JobIdentity& identity = parts_.identity;
+  const ShardList& shards = parts_.survey->shards;
+  std::error_code error;
+  if (!shards.empty() && parts_.survey->all_packed && done_ + rejected_ + failed_ == 0 &&
+      std::filesystem::exists(folder.out() / "contact_sheet.html", error)) {
+    return absl::OkStatus();
+  }
+  ItemReader items(folder.items(identity.packing), folder.spool());
+  items.LookInShards(folder.out(), identity.packing, &shards);
+  return WriteContactSheet(journal, identity, items, folder.out());
+}
+
 absl::StatusOr<JobReport> Job::Finish() {
   const JobFolder& folder = *parts_.folder;
   const JobIdentity& identity = parts_.identity;
@@ -312,36 +322,29 @@ absl::StatusOr<JobReport> Job::Finish() {
   JobReport report;
   report.planned = std::max<int64_t>(planned_, journal->count());
   report.unfinished = unfinished_;
-  // A shard of a set that is made in several is packed when they are merged.
-  const bool packs = whole_plan_ && journal->count() == planned_ && identity.shard.count == 1;
-  absl::Status status;
-  // What is in shards by now was drawn when it was not.
-  if (!packed_) {
-    const ItemReader items(folder.items(identity.packing), folder.spool());
-    status = WriteContactSheet(*journal, identity, items, folder.out());
-  }
-  if (status.ok() && packs && identity.packing != Packing::kNone) {
-    status = Pack(*journal, identity.packing, identity.shard_bytes, folder);
-  }
+  absl::Status status = DrawContactSheet(*journal);
+  if (status.ok()) status = PackOrRepaired(*journal);
   if (!status.ok()) return status;
-  absl::StatusOr<SetCounts> counts = WriteIndex(*journal, identity, {report.planned, whole_plan_},
-                                                folder.temporary(), folder.out());
+  const absl::StatusOr<ShardList> shards = OpenShards(*journal, identity, folder);
+  if (!shards.ok()) return shards.status();
+  report.packed = !shards->empty();
+  const PlannedItems planned{report.planned, fed_ && parts_.survey->whole_plan};
+  absl::StatusOr<SetCounts> counts =
+      WriteIndex(*journal, identity, *shards, planned, folder.temporary(), folder.out());
   if (!counts.ok()) return counts.status();
   report.set = *counts;
   return report;
 }
 
 absl::StatusOr<JobReport> Job::Run() {
-  const absl::StatusOr<JournalReader> journal = JournalReader::Open(parts_.folder->journal());
-  if (!journal.ok()) return journal.status();
+  const JobFolder& folder = *parts_.folder;
   JournalWriter writer;
-  absl::Status status = writer.Open(parts_.folder->journal(), journal->size());
+  absl::Status status = writer.Open(folder.journal(), parts_.survey->journal.size());
   if (!status.ok()) return status;
   std::error_code error;
-  errors_exist_ = std::filesystem::exists(parts_.folder->errors(), error);
-  const JobIdentity& identity = parts_.identity;
-  packed_ = IsPacked(identity.packing, identity.shard_bytes, parts_.folder->out());
-  status = RunThreads(*journal, &writer);
+  errors_exist_ = std::filesystem::exists(folder.errors(), error);
+  damage_ = ReadDamage(folder.damage());
+  status = RunThreads(&writer);
   if (!status.ok()) return status;
   absl::StatusOr<JobReport> report = Finish();
   if (!report.ok()) return stopped_with_.ok() ? report : stopped_with_;

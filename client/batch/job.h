@@ -13,6 +13,7 @@
 #include "absl/status/status.h"
 #include "absl/strings/string_view.h"
 #include "client/batch/answer.h"
+#include "client/batch/damage.h"
 #include "client/batch/flow/bounded_queue.h"
 #include "client/batch/flow/call_gate.h"
 #include "client/batch/flow/work_queue.h"
@@ -22,6 +23,7 @@
 #include "client/batch/journal.h"
 #include "client/batch/loaded_leader.h"
 #include "client/batch/plan.h"
+#include "client/batch/survey.h"
 #include "client/client.h"
 
 namespace duet::client::batch {
@@ -54,6 +56,7 @@ struct JobReport {
   SetCounts set;        // what is in the data set now
   int64_t planned = 0;  // items that should be in it
   int64_t unfinished = 0;
+  bool packed = false;  // in shards, which leave out what failed
   // Why the run ended before all items were settled; OK when it was not, or when it was asked to.
   absl::Status stopped;
   bool complete() const { return set.done + set.rejected + set.failed >= planned; }
@@ -70,7 +73,8 @@ struct JobReport {
 class Job {
  public:
   // `servers`: for each the clients that take turns, each with one attempt and bulk priority of its
-  // own accord. `models` and `skeletons` are the plan's. `folder` is open and begun as `identity`.
+  // own accord. `models` and `skeletons` are the plan's. `folder` is open and begun as `identity`;
+  // `survey` is of the plan's part and of this folder.
   struct Parts {
     Recipe recipe;
     JobIdentity identity;
@@ -78,7 +82,9 @@ class Job {
     std::vector<motion::Skeleton> skeletons;
     std::vector<std::vector<Client>> servers;
     const JobFolder* folder = nullptr;
+    const Survey* survey = nullptr;
   };
+  // The plan begins with its first item.
   Job(Parts parts, Plan plan, const JobOptions& options);
 
   // Once. An error is of the input or of the disk, before which everything settled is kept.
@@ -107,8 +113,7 @@ class Job {
     std::vector<ItemFile> files;
   };
 
-  absl::Status Feed(const JournalReader& journal);
-  absl::StatusOr<bool> IsSettled(const Item& item, const JournalReader& journal) const;
+  absl::Status Feed();
   bool Put(Item item);
   void AskUntilDone();
   void Ask(Work work);
@@ -125,7 +130,10 @@ class Job {
   void WriteError(const Item& item, const absl::Status& error);
   void RemoveError(const Item& item);
   std::filesystem::path ErrorFile(const Item& item) const;
-  absl::Status RunThreads(const JournalReader& journal, JournalWriter* writer);
+  absl::Status RunThreads(JournalWriter* writer);
+  bool IsComplete() const;
+  absl::Status DrawContactSheet(const JournalReader& journal) const;
+  absl::Status PackOrRepaired(const JournalReader& journal);
   absl::StatusOr<JobReport> Finish();
   void StopWith(const absl::Status& status);
   Client& NextClient(int server);
@@ -144,8 +152,8 @@ class Job {
   std::atomic<int64_t> unfinished_{0};
   std::atomic<uint64_t> bytes_{0}, turns_{0};
   std::atomic<bool> errors_exist_{false};
-  bool packed_ = false;      // the set is in shards already
-  bool whole_plan_ = false;  // Feed came to the plan's end
+  bool fed_ = false;  // Feed came to the part's end
+  Damage damage_;     // that was found before, less what was settled; the writer's alone
   std::mutex stop_mutex_;
   absl::Status stopped_with_;
 };

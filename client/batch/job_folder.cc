@@ -5,6 +5,10 @@
 
 #include "absl/status/statusor.h"
 #include "absl/strings/str_cat.h"
+#include "client/batch/journal.h"
+#include "client/batch/parse_record.h"
+#include "client/batch/recipe_difference.h"
+#include "client/batch/record.h"
 #include "client/batch/text_values.h"
 #include "model/base/file.h"
 #include "model/base/strict_json.h"
@@ -81,13 +85,17 @@ absl::StatusOr<JobIdentity> FromJson(const std::string& text) {
 }
 
 fs::path IdentityFile(const fs::path& out) { return out / ".duet-batch" / "job.json"; }
+fs::path RecipeFile(const fs::path& out) { return out / ".duet-batch" / "recipe.json"; }
 
 absl::Status CheckSame(const fs::path& out, const JobIdentity& begun, const JobIdentity& wanted) {
   const auto refuse = [&out](const std::string& what) {
-    return absl::FailedPreconditionError(absl::StrCat(out.string(), ": was begun with ", what,
-                                                      "; wanted the same, or another --out"));
+    return absl::FailedPreconditionError(
+        absl::StrCat(out.string(), ": was begun with ", what, ". Use the same, or another --out"));
   };
-  if (begun.recipe_digest != wanted.recipe_digest) return refuse("another recipe");
+  if (begun.recipe_digest != wanted.recipe_digest) {
+    const std::string difference = DescribeDifference(begun.recipe_json, wanted.recipe_json);
+    return refuse(difference.empty() ? "another recipe" : "another recipe: " + difference);
+  }
   if (begun.shard.index != wanted.shard.index || begun.shard.count != wanted.shard.count) {
     return refuse("--shard " + ShardText(begun.shard));
   }
@@ -101,12 +109,16 @@ absl::StatusOr<JobIdentity> ReadJobIdentity(const fs::path& out) {
   const absl::StatusOr<std::string> text = base::ReadFile(file, kMaxIdentityBytes, "a job");
   if (!text.ok()) return text.status();
   absl::StatusOr<JobIdentity> identity = FromJson(*text);
-  if (identity.ok()) return identity;
+  if (identity.ok()) {
+    identity->recipe_json =
+        base::ReadFile(RecipeFile(out), kMaxIdentityBytes, "a recipe").value_or("");
+    return identity;
+  }
   return absl::FailedPreconditionError(
       absl::StrCat(file.string(), ": ", identity.status().message()));
 }
 
-absl::Status JobFolder::Open(const JobIdentity& wanted, JobIdentity* begun) {
+absl::Status JobFolder::Take() {
   std::error_code error;
   fs::create_directories(state(), error);
   if (error) return CannotWrite(state(), error.value());
@@ -114,16 +126,55 @@ absl::Status JobFolder::Open(const JobIdentity& wanted, JobIdentity* begun) {
   if (!status.ok()) return status;
   fs::remove_all(temporary(), error);
   fs::create_directory(temporary(), error);
-  if (error) return CannotWrite(temporary(), error.value());
-  if (!fs::exists(IdentityFile(out_), error)) return absl::OkStatus();
+  return error ? CannotWrite(temporary(), error.value()) : absl::OkStatus();
+}
+
+absl::Status JobFolder::Open(const JobIdentity& wanted, JobIdentity* begun) {
+  absl::Status status = Take();
+  std::error_code error;
+  if (!status.ok() || !fs::exists(IdentityFile(out_), error)) return status;
   absl::StatusOr<JobIdentity> identity = ReadJobIdentity(out_);
   if (!identity.ok()) return identity.status();
   *begun = *std::move(identity);
   return CheckSame(out_, *begun, wanted);
 }
 
+absl::Status JobFolder::OpenForRun(const JobIdentity& wanted, JobIdentity* begun) {
+  absl::Status status = Open(wanted, begun);
+  if (!absl::IsFailedPrecondition(status) || HasAnswers()) return status;
+  *begun = {};
+  return Discard();
+}
+
+// What cannot be read counts as answers: nothing that may be of use is removed.
+bool JobFolder::HasAnswers() const {
+  std::error_code error;
+  const fs::path index = out_ / "index.jsonl";
+  if (fs::exists(index, error) && fs::file_size(index, error) > 0) return true;
+  const absl::StatusOr<JournalReader> records = JournalReader::Open(journal());
+  if (!records.ok() || records->damaged_lines() > 0) return true;
+  const absl::Status all_failed = records->ForEach([](const JournalEntry& entry) {
+    const absl::StatusOr<nlohmann::ordered_json> record = ParseRecord(entry.record);
+    const bool failed = record.ok() && (*record)["state"] == kFailed;
+    return failed ? absl::OkStatus() : absl::AlreadyExistsError("answered");
+  });
+  return !all_failed.ok();
+}
+
+// The job itself last: stopped before, the next run comes here again.
+absl::Status JobFolder::Discard() const {
+  for (const fs::path& path :
+       {journal(), spool(), shards(), damage(), errors(), RecipeFile(out_), IdentityFile(out_)}) {
+    std::error_code error;
+    fs::remove_all(path, error);
+    if (error) return CannotWrite(path, error.value());
+  }
+  return SyncFolder(state());
+}
+
 absl::Status JobFolder::Begin(const JobIdentity& identity) const {
-  return ReplaceDurably(IdentityFile(out_), ToJson(identity));
+  absl::Status status = ReplaceDurably(RecipeFile(out_), identity.recipe_json);
+  return status.ok() ? ReplaceDurably(IdentityFile(out_), ToJson(identity)) : status;
 }
 
 }  // namespace duet::client::batch

@@ -17,6 +17,7 @@ namespace duet::client::batch {
 // What a data set was begun with; every run that adds to it must have the same.
 struct JobIdentity {
   std::string recipe_digest;
+  std::string recipe_json;  // Recipe::json; empty of a set begun before it was kept
   Shard shard;
   Layout layout = Layout::kMirror;
   Packing packing = Packing::kNone;
@@ -28,16 +29,23 @@ struct JobIdentity {
 // A data set's folder, held by one process.
 //
 //   <out>/                     the data set: files, index.tsv, index.jsonl, rejected.tsv,
-//   summary.json <out>/errors/              a file for each item that failed <out>/.duet-batch/
-//   job.json, journal, lock; temporary files; items that wait to be packed
+//                              summary.json
+//   <out>/errors/              a file for each item that failed
+//   <out>/.duet-batch/         job.json, recipe.json, command.json, journal, shards, damage, lock;
+//                              temporary files; items that wait to be packed
 class JobFolder {
  public:
   explicit JobFolder(std::filesystem::path out) : out_(std::move(out)) {}
 
-  // Makes and locks the folder, removes temporary files, and reads what the job was begun with into
-  // `begun`; its models are empty where there is none. FAILED_PRECONDITION where that is not what
-  // is `wanted` now, ABORTED where the folder is locked or cannot be written.
+  // Makes and locks the folder and removes temporary files. ABORTED where the folder is locked or
+  // cannot be written.
+  absl::Status Take();
+  // The same, and reads what the job was begun with into `begun`; its models are empty where there
+  // is none. Also FAILED_PRECONDITION, naming what differs, where that is not what is `wanted` now.
   absl::Status Open(const JobIdentity& wanted, JobIdentity* begun);
+  // The same for a run that may add items: a job of another recipe of which no item was answered is
+  // removed, as if it had never begun.
+  absl::Status OpenForRun(const JobIdentity& wanted, JobIdentity* begun);
   // Settles what a new job is begun with.
   absl::Status Begin(const JobIdentity& identity) const;
 
@@ -45,6 +53,12 @@ class JobFolder {
   std::filesystem::path journal() const { return state() / "journal"; }
   // Where they lie in a single file until then; see item_files.h.
   std::filesystem::path spool() const { return state() / "spool"; }
+  // Which items each shard holds; see shard_list.h.
+  std::filesystem::path shards() const { return state() / "shards"; }
+  // What was found damaged and is still to be repaired; see damage.h.
+  std::filesystem::path damage() const { return state() / "damage"; }
+  // The command that the last run was started with; see client/cli/batch_repair.h.
+  std::filesystem::path command() const { return state() / "command.json"; }
   std::filesystem::path temporary() const { return state() / "tmp"; }
   std::filesystem::path errors() const { return out_ / "errors"; }
   // Where items' files lie until they are packed, or for good.
@@ -54,6 +68,8 @@ class JobFolder {
 
  private:
   std::filesystem::path state() const { return out_ / ".duet-batch"; }
+  bool HasAnswers() const;
+  absl::Status Discard() const;
 
   std::filesystem::path out_;
   FolderLock lock_;

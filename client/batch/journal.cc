@@ -68,6 +68,7 @@ JournalReader::JournalReader(JournalReader&& other) noexcept
       descriptor_(std::exchange(other.descriptor_, -1)),
       offsets_(std::move(other.offsets_)),
       count_(other.count_),
+      damaged_lines_(other.damaged_lines_),
       size_(other.size_) {}
 
 JournalReader::~JournalReader() {
@@ -76,26 +77,32 @@ JournalReader::~JournalReader() {
 
 absl::Status JournalReader::Load() {
   std::ifstream file(path_, std::ios::binary);
-  bool torn = false;
+  int64_t damaged_since = 0;  // after the last whole line
+  uint64_t position = 0;
   for (std::string line; std::getline(file, line);) {
+    const uint64_t offset = position;
+    position += line.size() + 1;
     ParsedLine parsed;
     // A line without its end meets the end of the file.
-    if (torn)
-      return absl::DataLossError(absl::StrCat(path_.string(), ": byte ", size_, ": damaged"));
-    torn = file.eof() || !ParseLine(line, &parsed);
-    if (torn) continue;
+    if (file.eof() || !ParseLine(line, &parsed)) {
+      ++damaged_since;
+      continue;
+    }
     if (parsed.item >= kMaxItems) {
-      return absl::DataLossError(absl::StrCat(path_.string(), ": byte ", size_, ": item ",
+      return absl::DataLossError(absl::StrCat(path_.string(), ": byte ", offset, ": item ",
                                               parsed.item, ", wanted one below ", kMaxItems));
     }
     if (parsed.item >= end()) offsets_.resize(static_cast<size_t>(parsed.item) + 1);
-    uint64_t& offset = offsets_[static_cast<size_t>(parsed.item)];
-    count_ += offset == 0 ? 1 : 0;
-    offset = size_ + 1;
-    size_ += line.size() + 1;
+    uint64_t& known = offsets_[static_cast<size_t>(parsed.item)];
+    count_ += known == 0 ? 1 : 0;
+    known = offset + 1;
+    size_ = position;
+    damaged_lines_ += std::exchange(damaged_since, 0);
   }
-  return file.bad() ? absl::DataLossError(absl::StrCat(path_.string(), ": cannot be read"))
-                    : absl::OkStatus();
+  if (file.bad()) return absl::DataLossError(absl::StrCat(path_.string(), ": cannot be read"));
+  // The very last one may be what a process was writing when it stopped.
+  damaged_lines_ += std::max<int64_t>(0, damaged_since - 1);
+  return absl::OkStatus();
 }
 
 bool JournalReader::Has(int64_t item) const {
@@ -142,6 +149,21 @@ absl::Status JournalReader::ForEach(
     if (!status.ok()) return status;
   }
   return absl::OkStatus();
+}
+
+absl::Status RepairJournal(const std::filesystem::path& path,
+                           const std::filesystem::path& temporary) {
+  const absl::StatusOr<JournalReader> journal = JournalReader::Open(path);
+  if (!journal.ok() || journal->damaged_lines() == 0) return journal.status();
+  std::ifstream file(path, std::ios::binary);
+  DurableFile whole(temporary);
+  absl::Status status = whole.Open();
+  for (std::string line; status.ok() && std::getline(file, line);) {
+    ParsedLine parsed;
+    if (!file.eof() && ParseLine(line, &parsed)) status = whole.Append(line + "\n");
+  }
+  if (file.bad()) return absl::DataLossError(absl::StrCat(path.string(), ": cannot be read"));
+  return status.ok() ? whole.Finish(path) : status;
 }
 
 JournalWriter::~JournalWriter() {

@@ -21,8 +21,8 @@ namespace duet::client::batch {
 //
 // The place is that of the item's files in the spool (item_files.h), where they are there.
 //
-// What a process was writing when it stopped is a last line that is cut off or does not fit its
-// digest; it counts as not written.
+// A line that is cut off or does not fit its digest counts as not written, wherever it stands: the
+// last one is what a process was writing when it stopped, one before it was damaged later.
 
 struct JournalEntry {
   int64_t item = 0;
@@ -35,7 +35,8 @@ struct JournalEntry {
 // Threads: const methods are safe to call concurrently.
 class JournalReader {
  public:
-  // A journal that is not there is empty. DATA_LOSS for a bad line that is not the last.
+  // A journal that is not there is empty. Damaged lines are skipped: their items have the record
+  // before, or none. DATA_LOSS for an item that no plan has.
   static absl::StatusOr<JournalReader> Open(const std::filesystem::path& path);
   JournalReader(JournalReader&& other) noexcept;
   JournalReader& operator=(JournalReader&&) = delete;
@@ -50,6 +51,8 @@ class JournalReader {
   // One beyond the last item of which there is a record, and how many records there are.
   int64_t end() const { return static_cast<int64_t>(offsets_.size()); }
   int64_t count() const { return count_; }
+  // Damaged lines, without one that was cut off at the end.
+  int64_t damaged_lines() const { return damaged_lines_; }
   // Bytes up to the end of the last whole line.
   uint64_t size() const { return size_; }
 
@@ -62,8 +65,14 @@ class JournalReader {
   int descriptor_ = -1;
   std::vector<uint64_t> offsets_;  // of items' lines, plus 1; 0: none
   int64_t count_ = 0;
+  int64_t damaged_lines_ = 0;
   uint64_t size_ = 0;
 };
+
+// Removes the damaged lines of a journal that has any: `temporary` receives the others and replaces
+// it. Nobody else may have it open. ABORTED as of durable_file.h.
+absl::Status RepairJournal(const std::filesystem::path& path,
+                           const std::filesystem::path& temporary);
 
 // Adds to a journal.
 class JournalWriter {

@@ -29,8 +29,8 @@ struct LeaderEntry {
   std::vector<std::pair<std::string, std::string>> extra;  // columns that are passed on, by name
 };
 
-// A path as a key: every part without dots and without what file systems and archives take amiss,
-// "walks/Kick 1.v2" as "walks/Kick_1_v2". Parts that lead upwards are left out.
+// A path as a key: every part in UTF-8, without dots and without characters that file systems and
+// archives reject, "walks/Kick 1.v2" as "walks/Kick_1_v2". Parts that lead upwards are left out.
 std::string KeyOf(const std::filesystem::path& path);
 
 }  // namespace duet::client::batch

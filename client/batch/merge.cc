@@ -15,6 +15,7 @@
 #include "client/batch/item_files.h"
 #include "client/batch/job_folder.h"
 #include "client/batch/journal.h"
+#include "client/batch/leader_digests.h"
 #include "client/batch/packing.h"
 #include "client/batch/parse_record.h"
 #include "client/batch/record.h"
@@ -134,9 +135,11 @@ class Merger {
 
   // Goes on where a run before this one was stopped: what the merged journal has is moved.
   absl::Status MoveAll() {
+    absl::Status status = RepairJournal(folder_.journal(), folder_.temporary() / "journal");
+    if (!status.ok()) return status;
     const absl::StatusOr<JournalReader> merged = JournalReader::Open(folder_.journal());
     if (!merged.ok()) return merged.status();
-    absl::Status status = journal_.Open(folder_.journal(), merged->size());
+    status = journal_.Open(folder_.journal(), merged->size());
     writer_ = MakeItemWriter(folder_, identity_.packing);
     int64_t end = 0;
     for (const Part& part : parts_) end = std::max(end, part.journal->end());
@@ -151,18 +154,21 @@ class Merger {
   absl::StatusOr<MergeReport> Finish() {
     const absl::StatusOr<JournalReader> journal = JournalReader::Open(folder_.journal());
     if (!journal.ok()) return journal.status();
-    absl::Status status;
-    if (!IsPacked(identity_.packing, identity_.shard_bytes, folder_.out())) {
+    absl::StatusOr<ShardList> shards = OpenShards(*journal, identity_, folder_);
+    absl::Status status = shards.status();
+    if (status.ok() && shards->empty()) {
       status = WriteContactSheet(*journal, identity_,
                                  ItemReader(folder_.items(identity_.packing), folder_.spool()),
                                  folder_.out());
     }
     if (status.ok() && identity_.packing != Packing::kNone && journal->count() == planned_) {
-      status = Pack(*journal, identity_.packing, identity_.shard_bytes, folder_);
+      status = Pack(*journal, identity_, folder_);
+      if (status.ok()) shards = OpenShards(*journal, identity_, folder_);
     }
     if (!status.ok()) return status;
-    absl::StatusOr<SetCounts> counts =
-        WriteIndex(*journal, identity_, {planned_, true}, folder_.temporary(), folder_.out());
+    if (!shards.ok()) return shards.status();
+    absl::StatusOr<SetCounts> counts = WriteIndex(*journal, identity_, *shards, {planned_, true},
+                                                  folder_.temporary(), folder_.out());
     if (!counts.ok()) return counts.status();
     report_.set = *counts;
     report_.planned = planned_;
@@ -184,13 +190,15 @@ class Merger {
     }
     const absl::StatusOr<JournalEntry> entry = part->journal->Read(item);
     if (!entry.ok()) return entry.status();
+    const absl::StatusOr<ordered_json> parsed = ParseRecord(entry->record);
+    if (!parsed.ok()) return parsed.status();
+    const ordered_json& record = *parsed;
+    absl::Status status = leaders_.CheckRecord(record);
+    if (!status.ok()) return status;
     if (merged.Has(item)) {
       const absl::StatusOr<JournalEntry> moved = merged.Read(item);
       if (moved.ok() && moved->record == entry->record) return absl::OkStatus();
     }
-    const absl::StatusOr<ordered_json> parsed = ParseRecord(entry->record);
-    if (!parsed.ok()) return parsed.status();
-    const ordered_json& record = *parsed;
     if (record["state"] == kDone && identity_.packing != Packing::kNone) {
       return CopyToSpool(*part, *entry, record);
     }
@@ -249,6 +257,7 @@ class Merger {
   std::vector<Part> parts_;
   JournalWriter journal_;
   std::unique_ptr<ItemWriter> writer_;
+  LeaderDigests leaders_;
   std::set<fs::path> folders_;
   uint64_t uncommitted_ = 0;  // bytes
   int64_t planned_ = 0;

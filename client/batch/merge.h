@@ -23,7 +23,8 @@ struct MergeReport {
 //
 // Errors: NOT_FOUND without shards, ABORTED where one is absent, at work, or was not run to its
 // end,
-//         FAILED_PRECONDITION where they are not of one job, DATA_LOSS for a file that was changed.
+//         FAILED_PRECONDITION where they are not of one job or a leader was changed between them,
+//         DATA_LOSS for a file that was changed.
 absl::StatusOr<MergeReport> Merge(const std::filesystem::path& out);
 
 }  // namespace duet::client::batch

@@ -1,40 +1,41 @@
 #ifndef DUET_CLIENT_BATCH_PACKING_H_
 #define DUET_CLIENT_BATCH_PACKING_H_
 
-#include <cstdint>
+#include <cstddef>
 #include <filesystem>
-#include <string>
+#include <set>
 
 #include "absl/status/status.h"
+#include "absl/status/statusor.h"
 #include "client/batch/job_folder.h"
 #include "client/batch/journal.h"
 #include "client/batch/recipe.h"
+#include "client/batch/shard_list.h"
 
 namespace duet::client::batch {
 
-// Which shard each item falls to: items in their order, a new shard where the next would pass the
-// size.
-class ShardNames {
- public:
-  ShardNames(Packing packing, uint64_t shard_bytes) : packing_(packing), room_(shard_bytes) {}
-  // The shard of the next item: "set-000000.tar". Empty without packing.
-  std::string Next(uint64_t item_bytes);
+// The shards of a set, as its list says. A set that was packed before there were lists has one all
+// the same: of all items that are done, in their order. Errors: the list's and the journal's.
+absl::StatusOr<ShardList> OpenShards(const JournalReader& journal, const JobIdentity& identity,
+                                     const JobFolder& folder);
 
- private:
-  Packing packing_;
-  uint64_t room_;
-  uint64_t used_ = 0;
-  int number_ = 0;
-};
+// Whether a shard's file is there and of its size, as far as a look without reading it tells.
+bool LooksWhole(const PackedShard& shard, const std::filesystem::path& file);
 
-// Whether a set has shards already, and so takes no more items.
-bool IsPacked(Packing packing, uint64_t shard_bytes, const std::filesystem::path& out);
+// The items of a shard whose files are not in it as the journal says, read member after member;
+// all of them where it cannot be read.
+absl::StatusOr<std::set<int64_t>> FindBadItems(const JournalReader& journal,
+                                               const PackedShard& shard,
+                                               const std::filesystem::path& file);
 
-// Puts the files of every item that is done into shards in `folder`, each written under another
-// name first, and removes them once their shard is on the disk. Goes on where it was stopped.
+// Puts the files of every item that is done and in no shard into further shards, and writes again
+// the shards that are missing or damaged, with the items that they had: each under another name
+// first. Items' files are removed once their shard is on the disk. What was repaired is damage no
+// longer. Goes on where it was stopped.
 //
-// Errors: ABORTED, DATA_LOSS where an item's file is not what the journal says.
-absl::Status Pack(const JournalReader& journal, Packing packing, uint64_t shard_bytes,
+// Errors: ABORTED; also where an item's file is not what the journal says, which becomes damage
+// that the next run repairs.
+absl::Status Pack(const JournalReader& journal, const JobIdentity& identity,
                   const JobFolder& folder);
 
 }  // namespace duet::client::batch

@@ -9,6 +9,7 @@
 #include "absl/strings/str_replace.h"
 #include "client/batch/capture_layout.h"
 #include "client/batch/drawn_labels.h"
+#include "client/batch/file_name.h"
 #include "client/batch/item_limit.h"
 #include "client/batch/text_values.h"
 #include "model/base/random.h"
@@ -308,7 +309,8 @@ absl::StatusOr<Item> Plan::MakeItem() {
   item.sample = sample_;
   absl::StatusOr<std::string> name = NameOf(item);
   if (!name.ok()) return name.status();
-  item.name = *std::move(name);
+  item.name = FitFileName(*name);
+  if (item.name != *name) item.full_name = *std::move(name);
   const ModelInfo& model = models_[static_cast<size_t>(item.model)];
   item.id = base::Sha256Hex(Asked(item, recipe_, model)).substr(0, kIdDigits);
   return item;

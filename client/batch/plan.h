@@ -18,9 +18,10 @@ namespace duet::client::batch {
 
 // One follower to make.
 struct Item {
-  int64_t number = 0;  // from 0, in the order of the leaders
-  std::string id;      // 32 hex digits: the digest of all that is asked
-  std::string name;    // its files without their endings; no other item has it
+  int64_t number = 0;     // from 0, in the order of the leaders
+  std::string id;         // 32 hex digits: the digest of all that is asked
+  std::string name;       // its files without their endings; no other item has it
+  std::string full_name;  // what `name` was shortened from; empty unless it was
   std::shared_ptr<const LeaderEntry> leader;
   formats::Side side = formats::Side::kLeft;
   std::string reaction;

@@ -107,6 +107,9 @@ struct Recipe {
   Output output;
   // Of everything above, in hex: two recipes with one digest ask for the same.
   std::string digest;
+  // Everything above as one JSON object, what files the recipe names by what they say; with the
+  // names of the proto's fields.
+  std::string json;
 };
 
 }  // namespace duet::client::batch

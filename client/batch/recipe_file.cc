@@ -2,6 +2,7 @@
 
 #include <google/protobuf/io/coded_stream.h>
 #include <google/protobuf/io/zero_copy_stream_impl_lite.h>
+#include <google/protobuf/util/json_util.h>
 
 #include <cstddef>
 #include <memory>
@@ -32,6 +33,15 @@ std::string Digest(const v1::Recipe& recipe) {
     recipe.SerializeToCodedStream(&coded);
   }
   return base::Sha256Hex(bytes);
+}
+
+std::string ToJson(const v1::Recipe& recipe) {
+  std::string json;
+  google::protobuf::util::JsonPrintOptions options;
+  options.preserve_proto_field_names = true;
+  // Fails for no message without Any.
+  (void)google::protobuf::util::MessageToJsonString(recipe, &json, options);
+  return json;
 }
 
 v1::Packing ToProto(Packing packing) {
@@ -102,6 +112,7 @@ absl::StatusOr<Recipe> ParseRecipe(absl::string_view text, bool json,
   absl::StatusOr<Recipe> recipe = FromProto(parsed);
   if (!recipe.ok()) return recipe;
   recipe->digest = Digest(parsed);
+  recipe->json = ToJson(parsed);
   recipe->filter.classifier = *std::move(classifier);
   return recipe;
 }

@@ -47,14 +47,14 @@ ordered_json QualityJson(const Quality& quality) {
 }
 
 ordered_json Begin(const Item& item, const char* state) {
-  return {{"item", item.number},
-          {"id", item.id},
-          {"state", state},
-          {"name", item.name},
-          {"leader", item.leader->given},
-          {"leader_sha256", ""},
-          {"side", std::string(SideName(item.side))},
-          {"reaction", item.reaction}};
+  ordered_json record = {
+      {"item", item.number}, {"id", item.id}, {"state", state}, {"name", item.name}};
+  if (!item.full_name.empty()) record["full_name"] = item.full_name;
+  record["leader"] = item.leader->given;
+  record["leader_sha256"] = "";
+  record["side"] = std::string(SideName(item.side));
+  record["reaction"] = item.reaction;
+  return record;
 }
 
 void AddExtra(const Item& item, ordered_json* record) {

@@ -20,6 +20,7 @@ absl::StatusOr<std::vector<ModelInfo>> ResolveModels(const Client& client, const
 JobIdentity IdentityOf(const Recipe& recipe, const Shard& shard) {
   JobIdentity identity;
   identity.recipe_digest = recipe.digest;
+  identity.recipe_json = recipe.json;
   identity.shard = shard;
   identity.layout = recipe.output.layout;
   identity.packing = recipe.output.packing;

@@ -25,6 +25,14 @@ constexpr Convention kConventions[] = {
     {"AWS_BATCH_JOB_ARRAY_INDEX", "AWS_BATCH_JOB_ARRAY_SIZE", nullptr},
 };
 
+uint32_t HexNumber(absl::string_view digits) {
+  uint32_t number = 0;
+  for (const char c : digits) {
+    number = number * 16 + static_cast<uint32_t>(c <= '9' ? c - '0' : c - 'a' + 10);
+  }
+  return number;
+}
+
 absl::StatusOr<int> ReadNumber(const ReadVariable& read, const char* name) {
   const std::optional<std::string> text = read(name);
   int value = 0;
@@ -54,12 +62,12 @@ absl::StatusOr<Shard> ReadConvention(const Convention& convention, const ReadVar
 }  // namespace
 
 bool Shard::Has(absl::string_view item_id) const {
-  // The id is a digest: its first 8 hex digits are as good as random.
-  uint32_t number = 0;
-  for (const char c : item_id.substr(0, 8)) {
-    number = number * 16 + static_cast<uint32_t>(c <= '9' ? c - '0' : c - 'a' + 10);
-  }
-  return static_cast<int>(number % static_cast<uint32_t>(count)) == index;
+  // The id is a digest: any of its hex digits are as good as random.
+  return static_cast<int>(HexNumber(item_id.substr(0, 8)) % static_cast<uint32_t>(count)) == index;
+}
+
+bool InShare(absl::string_view item_id, double share) {
+  return share >= 1 || HexNumber(item_id.substr(8, 8)) < share * 4294967296.0;
 }
 
 absl::StatusOr<Shard> ParseShard(absl::string_view text) {

@@ -20,6 +20,9 @@ struct Shard {
   bool Has(absl::string_view item_id) const;
 };
 
+// Whether an item is in a share of a plan, 0 to 1: a hash of its id that no shard's hash looks at.
+bool InShare(absl::string_view item_id, double share);
+
 // "2/8": the third of eight. INVALID_ARGUMENT.
 absl::StatusOr<Shard> ParseShard(absl::string_view text);
 

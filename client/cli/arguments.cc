@@ -207,7 +207,9 @@ ParsedCommandLine ParseCommandLine(const std::vector<std::string>& arguments,
     parsed.exit_code = kExitUsage;
     return parsed;
   }
-  return Collect(&line);
+  ParsedCommandLine parsed = Collect(&line);
+  if (parsed.batch.has_value()) parsed.batch->words = settled.arguments();
+  return parsed;
 }
 
 }  // namespace duet::client::cli

@@ -129,8 +129,12 @@ std::vector<std::filesystem::path> SampleOutputs(const SynthesizeArguments& argu
 struct BatchArguments {
   enum class Action { kRun, kMerge, kVerify };
   Action action = Action::kRun;
-  std::vector<std::string> leaders;  // files, folders, patterns
-  std::string manifest;              // a file, "-" or empty
+  std::vector<std::string> words;       // the whole command line, with the settings that count
+  bool repair = false;                  // of kVerify, as is
+  std::vector<std::string> repairers;   // servers instead of the last run's; may be empty
+  std::vector<std::string> leaders;     // files, folders, patterns
+  std::string manifest;                 // a file, "-" or empty
+  std::filesystem::path manifest_copy;  // of what "-" brought, once it is read
   std::filesystem::path recipe;
   std::filesystem::path out;
   std::vector<std::string> servers = {ClientOptions().server_address};

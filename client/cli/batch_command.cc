@@ -11,9 +11,11 @@
 #include "client/batch/job.h"
 #include "client/batch/merge.h"
 #include "client/batch/setup.h"
+#include "client/batch/survey.h"
 #include "client/batch/verify.h"
 #include "client/cli/batch_plan.h"
 #include "client/cli/batch_progress.h"
+#include "client/cli/batch_repair.h"
 #include "client/cli/batch_report.h"
 #include "client/cli/batch_servers.h"
 #include "client/cli/stop_signals.h"
@@ -139,6 +141,20 @@ absl::StatusOr<ExitCode> RunDry(const BatchArguments& arguments,
   return estimate->unreadable > 0 ? kExitBadInput : kExitDone;
 }
 
+// What earlier runs left of the plan, before anything is asked for.
+absl::StatusOr<batch::Survey> Survey(const BatchArguments& arguments,
+                                     const ProgramEnvironment& environment,
+                                     const Prepared& prepared, const batch::JobIdentity& identity,
+                                     const batch::JobFolder& folder) {
+  std::vector<std::string> passed_over;
+  absl::StatusOr<batch::Plan> plan =
+      MakePlan(arguments, prepared.recipe, prepared.models, nullptr, &passed_over);
+  if (!plan.ok()) return plan.status();
+  ReportPassedOver(arguments, passed_over, environment);
+  const batch::SurveyedPart part{arguments.limit, arguments.share, arguments.retry_failed};
+  return TakeSurvey(folder, identity, part, &*plan);
+}
+
 absl::StatusOr<ExitCode> RunWhole(const BatchArguments& arguments,
                                   const ProgramEnvironment& environment, Prepared prepared) {
   RunningJob running;
@@ -146,29 +162,29 @@ absl::StatusOr<ExitCode> RunWhole(const BatchArguments& arguments,
   batch::JobFolder folder(ShardFolder(arguments.out, prepared.shard));
   const batch::JobIdentity wanted = IdentityOf(prepared.recipe, prepared.shard);
   batch::JobIdentity begun;
-  absl::Status status = folder.Open(wanted, &begun);
+  absl::Status status = folder.OpenForRun(wanted, &begun);
   if (status.ok()) status = Prepare(arguments, environment, begun.models, &prepared);
   if (!status.ok()) return status;
-  std::vector<std::string> passed_over;
-  absl::StatusOr<batch::Plan> plan =
-      MakePlan(arguments, prepared.recipe, prepared.models, environment.in, &passed_over);
-  if (!plan.ok()) return plan.status();
-  ReportPassedOver(arguments, passed_over, environment);
-  const batch::JobIdentity identity = WithModels(wanted, prepared.models, prepared.skeletons);
-  if (begun.models.empty()) status = folder.Begin(identity);
+  BatchArguments repeatable = arguments;
+  status = CopyManifest(folder.temporary(), environment.in, &repeatable);
   if (!status.ok()) return status;
-  // What a pipe brings can be read only once.
-  const bool countable = arguments.manifest != "-" && arguments.share >= 1;
-  const Counting counting(
-      countable ? MakePlan(arguments, prepared.recipe, prepared.models, nullptr, nullptr)
-                : absl::StatusOr<batch::Plan>(absl::UnavailableError("unknown")),
-      prepared.shard, arguments.limit);
+  const batch::JobIdentity identity = WithModels(wanted, prepared.models, prepared.skeletons);
+  const absl::StatusOr<batch::Survey> survey =
+      Survey(repeatable, environment, prepared, identity, folder);
+  if (!survey.ok()) return survey.status();
+  absl::StatusOr<batch::Plan> plan =
+      MakePlan(repeatable, prepared.recipe, prepared.models, nullptr, nullptr);
+  if (!plan.ok()) return plan.status();
+  // Nothing before this keeps another recipe from the folder.
+  if (begun.models.empty() || begun.recipe_json.empty()) status = folder.Begin(identity);
+  if (status.ok()) status = KeepCommand(arguments, prepared.shard, folder);
+  if (!status.ok()) return status;
+  const std::atomic<int64_t> total{survey->planned};
   batch::Job job({std::move(prepared.recipe), identity, std::move(prepared.models),
-                  std::move(prepared.skeletons), std::move(prepared.servers), &folder},
+                  std::move(prepared.skeletons), std::move(prepared.servers), &folder, &*survey},
                  *std::move(plan), ToJobOptions(arguments));
   running.Set(&job);
-  absl::StatusOr<ExitCode> code =
-      RunJob(arguments, job, folder.out(), counting.total(), environment, running);
+  absl::StatusOr<ExitCode> code = RunJob(arguments, job, folder.out(), total, environment, running);
   running.Set(nullptr);
   return code;
 }
@@ -194,13 +210,39 @@ absl::StatusOr<ExitCode> RunMerge(const BatchArguments& arguments,
   return report->missing.empty() ? kExitDone : kExitRetry;
 }
 
+// Looks at a data set, says what was found, and leaves it to the next run.
+absl::StatusOr<batch::VerifyReport> VerifyAndRecord(const BatchArguments& arguments,
+                                                    const ProgramEnvironment& environment) {
+  absl::StatusOr<batch::VerifyReport> report = batch::Verify(arguments.out);
+  if (!report.ok()) return report;
+  Report(arguments, *report, environment);
+  const absl::Status recorded = batch::RecordDamage(report->damage, arguments.out);
+  if (!recorded.ok() && report->problem_count > 0 && !arguments.json) {
+    *environment.err << "duet: the next run does not know of it: " << recorded.message() << "\n";
+  }
+  return report;
+}
+
 absl::StatusOr<ExitCode> RunVerify(const BatchArguments& arguments,
                                    const ProgramEnvironment& environment) {
-  const absl::StatusOr<batch::VerifyReport> report = batch::Verify(arguments.out);
+  absl::StatusOr<batch::VerifyReport> report = VerifyAndRecord(arguments, environment);
   if (!report.ok()) return report.status();
-  Report(arguments, *report, environment);
+  ExitCode code = kExitDone;
+  if (arguments.repair && (report->problem_count > 0 || report->missing > 0)) {
+    absl::StatusOr<BatchArguments> command = CommandOf(arguments);
+    if (!command.ok()) return command.status();
+    BatchArguments there = arguments;
+    there.out = std::filesystem::absolute(arguments.out);
+    absl::Status status = EnterFolderOf(arguments.out);
+    if (!status.ok()) return status;
+    const absl::StatusOr<ExitCode> repaired = Run(*command, environment);
+    if (!repaired.ok()) return repaired.status();
+    code = *repaired;
+    report = VerifyAndRecord(there, environment);
+    if (!report.ok()) return report.status();
+  }
   if (report->problem_count > 0) return kExitBadInput;
-  return report->missing > 0 ? kExitRetry : kExitDone;
+  return report->missing > 0 ? kExitRetry : code;
 }
 
 }  // namespace

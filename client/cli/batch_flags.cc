@@ -24,6 +24,16 @@ Example:
   duet batch walks/ --recipe mixes.textproto --out set
 )";
 
+constexpr char kVerifyFooter[] = R"(
+What is found is left to the next run: the same duet batch command asks again for it, and so does
+--repair, which gives the command of the last run again from the folder where that was started.
+
+Exit codes:
+  0   everything is there as it was written
+  1   worth running again: items are missing, or the repair was stopped
+  42  files are missing or were changed, or the repair is refused
+)";
+
 const std::map<std::string, batch::Packing> kPackings = {
     {"none", batch::Packing::kNone}, {"npz", batch::Packing::kNpz}, {"tar", batch::Packing::kTar}};
 
@@ -80,7 +90,7 @@ void AddOutputFlags(CLI::App* app, BatchArguments* arguments) {
       ->type_name("COUNT")
       ->group(kGroup);
   app->add_flag("--retry-failed", arguments->retry_failed,
-                "Ask again for items that failed for good")
+                "Ask again for items that failed for good; of a packed set into further shards")
       ->group(kGroup);
   app->add_flag("--dry-run", arguments->dry_run,
                 "Count, read every leader, ask for one answer, estimate time and disk")
@@ -126,6 +136,20 @@ CLI::App* AddFolderCommand(CLI::App* app, const char* name, const char* help, Ac
   return command;
 }
 
+void AddVerifyCommand(CLI::App* app, BatchArguments* arguments) {
+  CLI::App* command = AddFolderCommand(
+      app, "verify", "Read every file of a data set and compare it with what was written",
+      Action::kVerify, arguments);
+  command->add_flag("--repair", arguments->repair,
+                    "Ask again for what is missing or was changed, as the last run did");
+  command
+      ->add_option("--server", arguments->repairers,
+                   "With --repair: instead of the last run's servers; repeatable")
+      ->allow_extra_args(false)
+      ->type_name("HOST:PORT");
+  command->footer(kVerifyFooter);
+}
+
 // What no single flag can tell.
 void CheckTogether(const BatchArguments& arguments) {
   if (arguments.leaders.empty() && arguments.manifest.empty()) {
@@ -146,8 +170,7 @@ CLI::App* AddBatchCommand(CLI::App* app, BatchArguments* arguments) {
   command->footer(kBatchFooter);
   AddFolderCommand(command, "merge", "Join the shards below a folder into one data set",
                    Action::kMerge, arguments);
-  AddFolderCommand(command, "verify", "Check a data set against its index", Action::kVerify,
-                   arguments);
+  AddVerifyCommand(command, arguments);
   command->callback([command, arguments] {
     if (command->get_subcommands().empty()) CheckTogether(*arguments);
   });

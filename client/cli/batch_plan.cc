@@ -1,5 +1,6 @@
 #include "client/cli/batch_plan.h"
 
+#include <cerrno>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -7,6 +8,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "client/batch/durable_file.h"
 #include "client/batch/leader_source.h"
 #include "client/batch/manifest.h"
 
@@ -16,9 +18,10 @@ namespace {
 // A manifest's file, open as long as it is read.
 class OpenManifest final : public batch::LeaderSource {
  public:
-  explicit OpenManifest(const std::string& path)
-      : file_(path),
-        source_(batch::ReadManifest(file_, std::filesystem::path(path).parent_path(), path)) {}
+  // `folder` is where relative paths begin, `name` is how errors call the manifest.
+  OpenManifest(const std::filesystem::path& path, const std::filesystem::path& folder,
+               const std::string& name)
+      : file_(path), source_(batch::ReadManifest(file_, folder, name)) {}
   bool ok() const { return file_.is_open(); }
   absl::StatusOr<std::optional<batch::LeaderEntry>> Next() override { return source_->Next(); }
 
@@ -33,11 +36,15 @@ absl::StatusOr<std::unique_ptr<batch::LeaderSource>> OpenLeaders(
   if (arguments.manifest.empty()) {
     return batch::ListLeaders(arguments.leaders, recipe.input.format, passed_over);
   }
-  if (arguments.manifest == "-") {
+  const bool copied = !arguments.manifest_copy.empty();
+  if (arguments.manifest == "-" && !copied) {
     if (in == nullptr) return absl::NotFoundError("--manifest -: there is no standard input");
     return batch::ReadManifest(*in, "", "-");
   }
-  auto manifest = std::make_unique<OpenManifest>(arguments.manifest);
+  const std::filesystem::path given(arguments.manifest);
+  auto manifest =
+      copied ? std::make_unique<OpenManifest>(arguments.manifest_copy, "", arguments.manifest)
+             : std::make_unique<OpenManifest>(given, given.parent_path(), arguments.manifest);
   if (!manifest->ok()) {
     return absl::NotFoundError(absl::StrCat(arguments.manifest, ": cannot be opened"));
   }
@@ -55,23 +62,15 @@ absl::StatusOr<batch::Plan> MakePlan(const BatchArguments& arguments, const batc
   return batch::Plan::Create(recipe, models, *std::move(leaders));
 }
 
-Counting::Counting(absl::StatusOr<batch::Plan> plan, const batch::Shard& shard, int64_t limit) {
-  if (!plan.ok()) return;
-  thread_ = std::thread([this, shard, limit, plan = *std::move(plan)]() mutable {
-    int64_t count = 0;
-    for (int64_t i = 0; i < limit && !ended_; ++i) {
-      const absl::StatusOr<std::optional<batch::Item>> item = plan.Next();
-      if (!item.ok() || ended_) return;
-      if (!item->has_value()) break;
-      if (shard.Has((*item)->id)) ++count;
-    }
-    if (!ended_) total_ = count;
-  });
-}
-
-Counting::~Counting() {
-  ended_ = true;
-  if (thread_.joinable()) thread_.join();
+absl::Status CopyManifest(const std::filesystem::path& folder, std::istream* in,
+                          BatchArguments* arguments) {
+  if (arguments->manifest != "-" || in == nullptr) return absl::OkStatus();
+  arguments->manifest_copy = folder / "manifest";
+  std::ofstream copy(arguments->manifest_copy, std::ios::binary);
+  // An empty stream would make the operator fail.
+  if (in->peek() != std::istream::traits_type::eof()) copy << in->rdbuf();
+  copy.close();
+  return copy ? absl::OkStatus() : batch::CannotWrite(arguments->manifest_copy, errno);
 }
 
 }  // namespace duet::client::cli

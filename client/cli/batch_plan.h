@@ -1,16 +1,14 @@
 #ifndef DUET_CLIENT_CLI_BATCH_PLAN_H_
 #define DUET_CLIENT_CLI_BATCH_PLAN_H_
 
-#include <atomic>
-#include <cstdint>
+#include <filesystem>
 #include <istream>
 #include <string>
-#include <thread>
 #include <vector>
 
+#include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "client/batch/plan.h"
-#include "client/batch/shard.h"
 #include "client/cli/arguments.h"
 #include "client/result.h"
 
@@ -22,22 +20,10 @@ absl::StatusOr<batch::Plan> MakePlan(const BatchArguments& arguments, const batc
                                      const std::vector<ModelInfo>& models, std::istream* in,
                                      std::vector<std::string>* passed_over);
 
-// Counts the items of a plan in a thread of its own, so that the time left can be told. A plan that
-// is not OK is not counted.
-class Counting {
- public:
-  Counting(absl::StatusOr<batch::Plan> plan, const batch::Shard& shard, int64_t limit);
-  Counting(const Counting&) = delete;
-  Counting& operator=(const Counting&) = delete;
-  ~Counting();
-  // -1 while it is not known.
-  const std::atomic<int64_t>& total() const { return total_; }
-
- private:
-  std::atomic<bool> ended_{false};
-  std::atomic<int64_t> total_{-1};
-  std::thread thread_;
-};
+// A run reads its leaders twice: to check all of them, and to ask. Copies a manifest named "-" to
+// `folder`, for MakePlan to read from there. ABORTED if it cannot be written.
+absl::Status CopyManifest(const std::filesystem::path& folder, std::istream* in,
+                          BatchArguments* arguments);
 
 }  // namespace duet::client::cli
 

@@ -20,6 +20,7 @@ void Report(const BatchArguments& arguments, const std::filesystem::path& folder
                                           {"failed", report.set.failed},
                                           {"missing", report.planned - settled},
                                           {"bytes", report.set.bytes},
+                                          {"packed", report.packed},
                                           {"stopped", std::string(report.stopped.message())}};
     *environment.out << event.dump() << "\n";
   } else if (!arguments.quiet) {
@@ -27,6 +28,9 @@ void Report(const BatchArguments& arguments, const std::filesystem::path& folder
                      << report.set.rejected << " rejected, " << report.set.failed << " failed, "
                      << report.planned - settled << " missing\n";
   }
+  if (arguments.json || !report.packed || report.set.failed == 0) return;
+  *environment.err << "duet: the shards leave out the " << report.set.failed
+                   << " that failed; --retry-failed asks for them again, and adds a shard\n";
 }
 
 void Report(const BatchArguments& arguments, const batch::Estimate& estimate,
@@ -77,6 +81,9 @@ void Report(const BatchArguments& arguments, const batch::VerifyReport& report,
                    << " files, " << report.problem_count << " problems, " << report.missing
                    << " items missing\n";
   for (const std::string& problem : report.problems) *environment.err << problem << "\n";
+  if (report.problem_count == 0 || arguments.repair) return;
+  *environment.err << "duet: duet batch verify --repair asks again for what is missing or was "
+                      "changed, and so does the command that made it\n";
 }
 
 void ReportPassedOver(const BatchArguments& arguments, const std::vector<std::string>& files,

@@ -12,10 +12,12 @@
 #include <utility>
 #include <vector>
 
+#include "absl/strings/str_format.h"
 #include "client/batch/job_folder.h"
 #include "client/batch/manifest.h"
 #include "client/batch/recipe_file.h"
 #include "client/batch/setup.h"
+#include "client/batch/survey.h"
 #include "client/batch/verify.h"
 #include "duet/batch/v1/batch.pb.h"
 #include "gmock/gmock.h"
@@ -106,18 +108,22 @@ class JobTest : public ::testing::Test {
     model.samples = true;
     JobFolder folder(folder_ / out);
     JobIdentity begun;
-    absl::Status status = folder.Open(IdentityOf(*recipe, {}), &begun);
+    absl::Status status = folder.OpenForRun(IdentityOf(*recipe, {}), &begun);
     if (!status.ok()) return status;
     const JobIdentity identity =
         WithModels(IdentityOf(*recipe, {}), {model}, {motion::SbuSkeleton()});
-    EXPECT_THAT(folder.Begin(identity), IsOk());
-    std::istringstream in(manifest);
+    std::istringstream surveyed(manifest), in(manifest);
     absl::StatusOr<Plan> plan =
-        Plan::Create(*recipe, {model}, ReadManifest(in, folder_.path(), "m"));
+        Plan::Create(*recipe, {model}, ReadManifest(surveyed, folder_.path(), "m"));
     EXPECT_THAT(plan, IsOk());
+    const absl::StatusOr<Survey> survey =
+        TakeSurvey(folder, identity, {options.limit, options.share, options.retry_failed}, &*plan);
+    if (!survey.ok()) return survey.status();
+    plan = Plan::Create(*recipe, {model}, ReadManifest(in, folder_.path(), "m"));
+    EXPECT_THAT(folder.Begin(identity), IsOk());
     std::vector<std::vector<Client>> servers;
     for (const auto& connection : connections_) servers.push_back({Client(connection)});
-    Job job({*recipe, identity, {model}, {motion::SbuSkeleton()}, servers, &folder},
+    Job job({*recipe, identity, {model}, {motion::SbuSkeleton()}, servers, &folder, &*survey},
             *std::move(plan), WithFewThreads(options));
     job_ = &job;
     absl::StatusOr<JobReport> report = job.Run();
@@ -322,8 +328,11 @@ TEST_F(JobTest, StopsBetweenItems) {
 
 TEST_F(JobTest, LeadersInAnotherOrderAreRefused) {
   ASSERT_THAT(Run("set"), IsOk());
-  EXPECT_THAT(Run("set", {}, "leader\nb.csv\na.csv\n"),
-              StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("item 0 was a-2-kick-s0")));
+  EXPECT_THAT(
+      Run("set", {}, "leader\nb.csv\na.csv\n"),
+      StatusIs(
+          absl::StatusCode::kFailedPrecondition,
+          HasSubstr("item 0 (b-2-kick-s0): leader: expected \"a.csv\", got \"b.csv\"; name: ")));
   EXPECT_THAT(Run("set", {}, "leader\na.csv\nb.csv\na.csv\n"), IsOk());
   EXPECT_EQ(connection().calls, kItems + kItems / 2);
 }
@@ -364,23 +373,12 @@ TEST_F(JobTest, ALeaderThatLacksSomethingSaysWhereToTellIt) {
               HasSubstr("say it in the recipe: input { frame_rate_hz }"));
 }
 
-TEST_F(JobTest, APackedSetTakesNoMoreItems) {
-  recipe_ = std::string(kRecipe);
-  recipe_.insert(recipe_.rfind('}'), "packing: PACKING_TAR ");
-  ASSERT_THAT(Run("set"), IsOk());
-  const std::string shard = Read("set/set-000000.tar");
-  EXPECT_THAT(Run("set", {}, "leader\na.csv\nb.csv\na.csv\n"),
-              StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("is packed")));
-  ASSERT_THAT(Run("set"), IsOk());
-  EXPECT_EQ(Read("set/set-000000.tar"), shard);
-  EXPECT_EQ(Verify(folder_ / "set")->problem_count, 0);
-}
-
 TEST_F(JobTest, AnotherRecipeIsRefused) {
   ASSERT_THAT(Run("set"), IsOk());
   recipe_ += "seed: 9";
   EXPECT_THAT(Run("set"), StatusIs(absl::StatusCode::kFailedPrecondition,
-                                   HasSubstr("was begun with another recipe")));
+                                   HasSubstr("was begun with another recipe: "
+                                             "seed: expected none, got \"9\". Use the same")));
 }
 
 TEST(LastLeaders, AreSharedByWhateverReadsTheSameMotion) {
@@ -410,6 +408,266 @@ TEST(LastLeaders, AreSharedByWhateverReadsTheSameMotion) {
   const auto with_side = leaders.Get(std::make_shared<const LeaderEntry>(sided), left, 0);
   EXPECT_NE(with_side, leaders.Get(entry("a", "0,0,1"), left, 0));
   EXPECT_NE(leaders.Get(entry("b"), left, 0), with_side);
+}
+
+TEST_F(JobTest, AFirstRunThatWasRefusedDoesNotPinTheRecipe) {
+  connection().answer = [](const SynthesisRequest&, int) {
+    return absl::InvalidArgumentError("no such class");
+  };
+  EXPECT_EQ(Run("set")->set.failed, kItems);
+  recipe_ += "seed: 9";
+  connection().answer = nullptr;
+  const auto report = Run("set");
+  ASSERT_THAT(report, IsOk());
+  EXPECT_EQ(report->set.done, kItems);
+  EXPECT_EQ(report->set.failed, 0);
+  ExpectSameAsUndisturbed("set");
+}
+
+TEST_F(JobTest, LinesThatAskForSomethingElseAreRefusedByTheirField) {
+  const std::string before = "id\tleader\tlabels\tseed\nx\ta.csv\tkick=1\t1\n";
+  ASSERT_THAT(Run("set", {}, before), IsOk());
+  const auto refused = [](const char* message) {
+    return StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr(message));
+  };
+  EXPECT_THAT(Run("set", {}, "id\tleader\tlabels\tseed\nx\ta.csv\tkick=0.5\t1\n"),
+              refused("labels: expected {\"kick\":1}, got {\"kick\":0.5}"));
+  EXPECT_THAT(Run("set", {}, "id\tleader\tlabels\tseed\nx\ta.csv\tkick=1\t2\n"),
+              refused("got another seed, follower_start"));
+  EXPECT_THAT(Run("set", {}, before), IsOk());
+}
+
+TEST_F(JobTest, IdsOfAnyLengthAreKept) {
+  const std::string long_id(5000, 'x'), deep = std::string(2000, 'a') + "/b";
+  const std::string manifest =
+      "id\tleader\n" + long_id + "\ta.csv\n" + long_id + "y\ta.csv\n" + deep + "\tb.csv\n";
+  const auto report = Run("set", {}, manifest);
+  ASSERT_THAT(report, IsOk());
+  EXPECT_EQ(report->set.done, 18);
+  EXPECT_EQ(Verify(folder_ / "set")->problem_count, 0);
+  const auto first = nlohmann::json::parse(Lines("set/index.jsonl")[0]);
+  EXPECT_EQ(first["full_name"], long_id + "-kick-s0");
+  EXPECT_EQ(first["name"].get<std::string>().size(), 120u + 1 + 16);
+  const std::string index = Read("set/index.jsonl");
+  ASSERT_THAT(Run("set", {}, manifest), IsOk());
+  EXPECT_EQ(Read("set/index.jsonl"), index);
+  EXPECT_EQ(connection().calls, 18);
+}
+
+TEST_F(JobTest, MissingAndCutFilesAreAskedForAgain) {
+  ASSERT_THAT(Run("set"), IsOk());
+  std::filesystem::remove(folder_ / "set/a-2-kick-s0.npy");
+  std::filesystem::resize_file(folder_ / "set/b-3-hug0p5-s1.npy", 100);
+  const auto report = Run("set");
+  ASSERT_THAT(report, IsOk());
+  EXPECT_TRUE(report->complete());
+  EXPECT_EQ(connection().calls, kItems + 2);
+  ExpectSameAsUndisturbed("set");
+}
+
+// The same size and another byte.
+void Change(const std::filesystem::path& file, size_t at) {
+  std::string content = ReadTestFile(file);
+  content[at] = static_cast<char>(content[at] ^ 1);
+  test::WriteTestFile(file, content);
+}
+
+TEST_F(JobTest, ChangedFilesAreAskedForAgainOnceTheyAreFound) {
+  ASSERT_THAT(Run("set"), IsOk());
+  Change(folder_ / "set/a-2-kick-s0.npy", 500);
+  ASSERT_THAT(Run("set"), IsOk());
+  EXPECT_EQ(connection().calls, kItems);  // a look without reading does not find it
+  const auto found = Verify(folder_ / "set");
+  ASSERT_THAT(found, IsOk());
+  EXPECT_EQ(found->problem_count, 1);
+  ASSERT_THAT(RecordDamage(found->damage, folder_ / "set"), IsOk());
+  // A part that does not have it leaves it to the next run.
+  JobOptions none;
+  none.limit = 0;
+  ASSERT_THAT(Run("set", none), IsOk());
+  ASSERT_THAT(Run("set"), IsOk());
+  EXPECT_EQ(connection().calls, kItems + 1);
+  ExpectSameAsUndisturbed("set");
+  const int calls = connection().calls;
+  ASSERT_THAT(Run("set"), IsOk());
+  EXPECT_EQ(connection().calls, calls);
+}
+
+TEST_F(JobTest, ADamagedJournalCostsItsItemsOnly) {
+  ASSERT_THAT(Run("set"), IsOk());
+  const std::filesystem::path journal = folder_ / "set/.duet-batch/journal";
+  const std::string lines = ReadTestFile(journal);
+  Change(journal, lines.find('\n', lines.size() / 2) - 5);
+  const auto found = Verify(folder_ / "set");
+  ASSERT_THAT(found, IsOk());
+  EXPECT_THAT(found->problems, ::testing::Contains(HasSubstr("journal: 1 damaged lines")));
+  EXPECT_EQ(found->missing, 1);
+  ASSERT_THAT(Run("set"), IsOk());
+  EXPECT_EQ(connection().calls, kItems + 1);
+  ExpectSameAsUndisturbed("set");
+}
+
+TEST_F(JobTest, AChangedIndexIsWrittenAgain) {
+  ASSERT_THAT(Run("set"), IsOk());
+  Change(folder_ / "set/index.jsonl", 1000);
+  const auto found = Verify(folder_ / "set");
+  ASSERT_THAT(found, IsOk());
+  EXPECT_THAT(found->problems, ::testing::ElementsAre(HasSubstr("is not what the journal says")));
+  ASSERT_THAT(Run("set"), IsOk());
+  ExpectSameAsUndisturbed("set");
+}
+
+TEST_F(JobTest, ALeaderThatWasChangedIsAnotherJob) {
+  JobOptions first;
+  first.limit = 2;
+  ASSERT_THAT(Run("set", first), IsOk());
+  const std::string before = Read("a.csv");
+  test::WriteTestFile(folder_ / "a.csv", before + "\n");
+  EXPECT_THAT(Run("set"),
+              StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("leader a.csv: expected")));
+  EXPECT_EQ(connection().calls, 2);
+  // One that nothing was made of yet may be mended.
+  test::WriteTestFile(folder_ / "a.csv", before);
+  ASSERT_THAT(Run("set"), IsOk());
+  ExpectSameAsUndisturbed("set");
+}
+
+TEST_F(JobTest, ALeaderThatChangesDuringTheRunEndsIt) {
+  const std::string before = Read("a.csv");
+  connection().answer = [this, &before](const SynthesisRequest&, int call) {
+    if (call == 0) test::WriteTestFile(folder_ / "a.csv", before + "\n");
+    return absl::OkStatus();
+  };
+  JobOptions options;
+  options.calls.max_in_flight = 1;
+  // The last line comes when the first one's leader is long forgotten.
+  const auto report = Run("set", options, "leader\na.csv\nb.csv\nb.csv\na.csv\n");
+  ASSERT_THAT(report, IsOk());
+  EXPECT_THAT(report->stopped,
+              StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("leader a.csv: expected")));
+  EXPECT_EQ(Verify(folder_ / "set")->problem_count, 0);
+}
+
+// Packed runs, by the packing. Two or three items go into a shard.
+class PackedJobTest : public JobTest, public ::testing::WithParamInterface<const char*> {
+ protected:
+  PackedJobTest() {
+    recipe_.insert(recipe_.rfind('}'),
+                   std::string("packing: PACKING_") + GetParam() + " shard_bytes: 6000 ");
+  }
+  std::string Shard(int number) const {
+    return absl::StrFormat("set-%06d.%s", number, GetParam() == std::string("TAR") ? "tar" : "npz");
+  }
+  // Every shard, in order.
+  std::vector<std::string> Shards(const std::string& out) {
+    std::vector<std::string> shards;
+    while (std::filesystem::exists(folder_ / out / Shard(static_cast<int>(shards.size())))) {
+      shards.push_back(Read(out + "/" + Shard(static_cast<int>(shards.size()))));
+    }
+    return shards;
+  }
+  void ExpectSamePacked(const std::string& out) {
+    ExpectSameAsUndisturbed(out);
+    EXPECT_GT(Shards(out).size(), 3u);
+    EXPECT_EQ(Shards(out), Shards("undisturbed"));
+    EXPECT_FALSE(std::filesystem::exists(JobFolder(folder_ / out).spool()));
+  }
+  std::filesystem::path ShardFile(int number) const { return folder_ / "set" / Shard(number); }
+};
+INSTANTIATE_TEST_SUITE_P(, PackedJobTest, ::testing::Values("TAR", "NPZ"),
+                         [](const auto& packing) { return std::string(packing.param); });
+
+TEST_P(PackedJobTest, AShardThatIsMissingOrCutIsWrittenAgain) {
+  ASSERT_THAT(Run("set"), IsOk());
+  std::filesystem::remove(ShardFile(1));
+  std::filesystem::resize_file(ShardFile(2), 3000);
+  EXPECT_GT(Verify(folder_ / "set")->problem_count, 1);
+  const auto report = Run("set");
+  ASSERT_THAT(report, IsOk());
+  EXPECT_TRUE(report->complete());
+  EXPECT_LT(connection().calls, 2 * kItems);
+  ExpectSamePacked("set");
+}
+
+TEST_P(PackedJobTest, AnyChangedByteOfAShardIsFoundAndRepaired) {
+  ASSERT_THAT(Run("set"), IsOk());
+  const size_t size = std::filesystem::file_size(ShardFile(1));
+  for (const size_t at : {size_t{10}, size / 3, size / 2, size - 10}) {
+    Change(ShardFile(1), at);
+    const auto found = Verify(folder_ / "set");
+    ASSERT_THAT(found, IsOk());
+    EXPECT_GE(found->problem_count, 1) << at;
+    ASSERT_THAT(RecordDamage(found->damage, folder_ / "set"), IsOk());
+    ASSERT_THAT(Run("set"), IsOk());
+    ExpectSamePacked("set");
+  }
+}
+
+TEST_P(PackedJobTest, AListOfShardsThatIsLostOrDamagedIsFoundAgain) {
+  ASSERT_THAT(Run("set"), IsOk());
+  const std::filesystem::path list = JobFolder(folder_ / "set").shards();
+  const std::string whole = ReadTestFile(list);
+  // Stopped after the first shard was written, before the list said so.
+  for (const std::string& text :
+       {std::string(), whole.substr(0, whole.size() / 2), whole.substr(0, whole.size() / 4)}) {
+    test::WriteTestFile(list, text);
+    ASSERT_THAT(Run("set"), IsOk());
+    EXPECT_EQ(ReadTestFile(list).empty(), false);
+    ExpectSamePacked("set");
+  }
+}
+
+TEST_P(PackedJobTest, WhatFailedGoesToFurtherShards) {
+  connection().answer = [](const SynthesisRequest& request, int) {
+    return request.weights[0].interaction_class == "hug" ? absl::InvalidArgumentError("no hugs")
+                                                         : absl::OkStatus();
+  };
+  auto report = Run("set");
+  ASSERT_THAT(report, IsOk());
+  EXPECT_TRUE(report->packed);
+  EXPECT_EQ(report->set.failed, kItems / 2);
+  EXPECT_EQ(Verify(folder_ / "set")->problem_count, 0);
+  const std::vector<std::string> before = Shards("set");
+  connection().answer = nullptr;
+  JobOptions options;
+  options.retry_failed = true;
+  report = Run("set", options);
+  ASSERT_THAT(report, IsOk());
+  EXPECT_EQ(report->set.done, kItems);
+  const std::vector<std::string> after = Shards("set");
+  ASSERT_GT(after.size(), before.size());
+  EXPECT_EQ(std::vector<std::string>(after.begin(), after.begin() + before.size()), before);
+  const auto found = Verify(folder_ / "set");
+  EXPECT_EQ(found->problem_count, 0);
+  EXPECT_EQ(found->files, kItems);
+  // What was added is repaired like the rest.
+  std::filesystem::remove(ShardFile(static_cast<int>(before.size())));
+  ASSERT_THAT(Run("set"), IsOk());
+  EXPECT_EQ(Shards("set"), after);
+}
+
+TEST_P(PackedJobTest, FurtherLeadersGoToFurtherShards) {
+  ASSERT_THAT(Run("set"), IsOk());
+  const std::vector<std::string> before = Shards("set");
+  const auto report = Run("set", {}, "leader\na.csv\nb.csv\na.csv\n");
+  ASSERT_THAT(report, IsOk());
+  EXPECT_EQ(report->set.done, kItems + kItems / 2);
+  const std::vector<std::string> after = Shards("set");
+  ASSERT_GT(after.size(), before.size());
+  EXPECT_EQ(std::vector<std::string>(after.begin(), after.begin() + before.size()), before);
+  EXPECT_EQ(Verify(folder_ / "set")->problem_count, 0);
+}
+
+TEST_P(PackedJobTest, ADamagedSpoolIsAskedForAgain) {
+  JobOptions part;
+  part.limit = 7;
+  ASSERT_THAT(Run("set", part), IsOk());
+  Change(JobFolder(folder_ / "set").spool(), 500);
+  // Found when it is packed, or before by verify.
+  EXPECT_THAT(Run("set"), StatusIs(absl::StatusCode::kAborted, HasSubstr("1 items that wait")));
+  ASSERT_THAT(Run("set"), IsOk());
+  EXPECT_EQ(connection().calls, kItems + 1);
+  ExpectSamePacked("set");
 }
 
 // What duet-train would read of a run's data set.

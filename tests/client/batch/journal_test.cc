@@ -116,13 +116,31 @@ TEST_F(JournalTest, AnyTornEndCountsAsNotWrittenAndIsWrittenOver) {
   EXPECT_THAT(Records(), ElementsAre("0zero", "2two"));
 }
 
-TEST_F(JournalTest, DamageBeforeTheEndIsAnError) {
-  Append({{0, "zero"}, {1, "one"}});
+TEST_F(JournalTest, ADamagedLineCostsItsItemOnlyAndIsRepaired) {
+  Append({{0, "zero"}, {1, "one"}, {2, "two"}});
+  const std::string whole = ReadTestFile(path_);
+  const size_t first = whole.find('\n') + 1;
+  // Any byte of the line in the middle; its end takes the next line with it.
+  for (size_t at = first; at < whole.find('\n', first); ++at) {
+    std::string damaged = whole;
+    damaged[at] = static_cast<char>(damaged[at] ^ 4);
+    WriteTestFile(path_, damaged);
+    EXPECT_THAT(Records(), ElementsAre("0zero", "2two")) << at;
+    EXPECT_GE(JournalReader::Open(path_)->damaged_lines(), 1);
+    ASSERT_THAT(RepairJournal(path_, folder_ / "temporary"), IsOk());
+    EXPECT_EQ(JournalReader::Open(path_)->damaged_lines(), 0);
+    EXPECT_THAT(Records(), ElementsAre("0zero", "2two")) << at;
+    Append({{1, "one"}});
+    EXPECT_THAT(Records(), ElementsAre("0zero", "1one", "2two")) << at;
+  }
+}
+
+TEST_F(JournalTest, TwoLinesRunTogetherCostBothItems) {
+  Append({{0, "zero"}, {1, "one"}, {2, "two"}});
   std::string damaged = ReadTestFile(path_);
-  damaged[12] ^= 1;
+  damaged[damaged.find('\n')] = ' ';
   WriteTestFile(path_, damaged);
-  EXPECT_THAT(JournalReader::Open(path_),
-              StatusIs(absl::StatusCode::kDataLoss, HasSubstr("byte 0: damaged")));
+  EXPECT_THAT(Records(), ElementsAre("2two"));
 }
 
 TEST_F(JournalTest, AnItemBeyondAllPlansIsAnErrorAndTakesNoMemory) {

@@ -1,0 +1,58 @@
+#include "client/batch/leader_digests.h"
+
+#include "absl/hash/hash.h"
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_cat.h"
+#include "model/base/file.h"
+#include "model/base/sha256.h"
+#include "model/motion/motion_limits.h"
+
+namespace duet::client::batch {
+namespace {
+
+constexpr size_t kDigits = 16;
+
+uint64_t KeyOfFile(const LeaderEntry& leader) {
+  return absl::Hash<std::string>()(leader.file.lexically_normal().string());
+}
+
+}  // namespace
+
+bool LeaderDigests::Knows(const LeaderEntry& leader) const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return digests_.contains(KeyOfFile(leader));
+}
+
+absl::Status LeaderDigests::Check(const LeaderEntry& leader, const std::string& sha256) {
+  uint64_t digest = 0;
+  (void)absl::SimpleHexAtoi(sha256.substr(0, kDigits), &digest);
+  uint64_t known = 0;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    known = digests_.try_emplace(KeyOfFile(leader), digest).first->second;
+  }
+  if (known == digest) return absl::OkStatus();
+  return absl::FailedPreconditionError(absl::StrCat(
+      "leader ", leader.given, ": expected the file that earlier answers were made of (sha256 ",
+      absl::Hex(known, absl::kZeroPad16), "...), got a changed one (sha256 ",
+      sha256.substr(0, kDigits),
+      "...). Restore the file, or make another data set with another "
+      "--out"));
+}
+
+absl::Status LeaderDigests::CheckRecord(const nlohmann::ordered_json& record) {
+  LeaderEntry leader;
+  leader.given = record.value("leader", "");
+  leader.file = leader.given;
+  const std::string sha256 = record.value("leader_sha256", "");
+  return sha256.empty() ? absl::OkStatus() : Check(leader, sha256);
+}
+
+absl::StatusOr<std::string> DigestOfLeader(const LeaderEntry& leader) {
+  const absl::StatusOr<std::string> content =
+      base::ReadFile(leader.file, motion::kMaxMotionFileBytes, "a motion");
+  if (!content.ok()) return content.status();
+  return base::Sha256Hex(*content);
+}
+
+}  // namespace duet::client::batch
