@@ -1,39 +1,54 @@
 #!/usr/bin/env python3
-"""What `duet batch` costs its own machine: processor time and memory of the client alone, against a
-server whose engine answers at once (tests/duet-fake-server).
+"""Measures `duet batch` and prints a table for docs/batch.md: items a second, and the processor time
+and memory of the client.
 
-    benchmarks/measure_batch.py BUILD [--items 20000] [--lines 1000000] [--before DUET]
+    benchmarks/measure_batch.py BUILD [--items 20000] [--lines 1000000] [--leaders 50] [--before DUET]
 
-Four runs: --items items end to end, each of a leader of its own, which is read for it; the same
-with 20 items a leader; that into packed shards; and a manifest of --lines lines of which one in a
-thousand is asked for, which shows the memory that a long list takes. Before them what bare gRPC
-takes for as many calls (BUILD/benchmarks/call_cost). With --before each run is made by another
-`duet` as well, in turn, so that both meet the same machine.
+Four runs against a server whose engine answers at once (tests/duet-fake-server), so that the client
+is the limit: --items items into a file each, each of a leader of its own; the same with 20 items a
+leader; the same into packed shards; and a manifest of --lines lines of which one in a thousand is
+asked for, which shows the memory of a long list. Before each, bare gRPC makes as many calls
+(BUILD/benchmarks/call_cost): on a machine with other work, only the figures beside each other
+compare. Last, a real server: --leaders leaders with recipes/mixes.textproto, 26 items each.
+
+With --before, another `duet` makes each run as well, in turn.
 """
 
 import argparse
+import contextlib
 import json
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import tempfile
 import time
 
+SOURCE = pathlib.Path(__file__).resolve().parent.parent
 RECIPE = """
 reactions { labels { weights { key: "kick" value: 1 } } }
 output { formats: FORMAT_NPY %s }
 """
+COLUMNS = ("run", "items", "items a second", "bare gRPC, calls a second", "client, us an item",
+           "in the kernel", "server, us an item", "client's memory, MiB")
+JOINTS = ("head", "neck", "torso", "left_shoulder", "left_elbow", "left_hand", "right_shoulder",
+          "right_elbow", "right_hand", "left_hip", "left_knee", "left_foot", "right_hip",
+          "right_knee", "right_foot")
+
+
+def machine():
+    for line in pathlib.Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():
+        if line.startswith("model name"):
+            return f"{line.split(':', 1)[1].strip()}, {os.cpu_count()} processors"
+    return f"{os.cpu_count()} processors"
 
 
 def write_leader(path, frames=30):
     """A person of SBU's 15 joints who moves a little."""
-    joints = ["head", "neck", "torso", "left_shoulder", "left_elbow", "left_hand",
-              "right_shoulder", "right_elbow", "right_hand", "left_hip", "left_knee", "left_foot",
-              "right_hip", "right_knee", "right_foot"]
-    motion = [[[0.1 * j + 0.01 * t, 1.7 - 0.1 * j, 0.02 * j] for j in range(len(joints))]
+    motion = [[[0.1 * j + 0.01 * t, 1.7 - 0.1 * j, 0.02 * j] for j in range(len(JOINTS))]
               for t in range(frames)]
-    path.write_text(json.dumps({"frame_rate_hz": 15, "joint_names": joints, "leader": motion}),
+    path.write_text(json.dumps({"frame_rate_hz": 15, "joint_names": JOINTS, "leader": motion}),
                     encoding="utf-8")
 
 
@@ -45,17 +60,25 @@ def write_manifest(path, lines, leaders=1):
             file.write(f"leader{line * leaders // lines}.json\n")
 
 
-def start_server(build, log):
-    """The server and its address; its log goes to a file, which no reader holds up."""
+@contextlib.contextmanager
+def serving(program, folder):
+    """A server and its address; its log goes to a file, which no reader holds up."""
+    log = folder / f"{program.name}.log"
     with log.open("w", encoding="utf-8") as file:
         server = subprocess.Popen(
-            [build / "tests" / "duet-fake-server", "--listen", "127.0.0.1:0", "--metrics-listen", ""],
-            stdout=file, stderr=file)
-    while server.poll() is None:
-        if found := re.search(r'"event":"serving".*?"port":(\d+)', log.read_text(encoding="utf-8")):
-            return server, f"127.0.0.1:{found[1]}"
-        time.sleep(0.05)
-    raise SystemExit("the server did not start")
+            [program, "--listen", "127.0.0.1:0", "--metrics-listen", "off"], stdout=file, stderr=file)
+    try:
+        while server.poll() is None:
+            found = re.search(r'"event":"serving".*?"port":(\d+)', log.read_text(encoding="utf-8"))
+            if found:
+                break
+            time.sleep(0.05)
+        else:
+            raise SystemExit(f"{program} did not start: {log.read_text(encoding='utf-8')}")
+        yield server, f"127.0.0.1:{found[1]}"
+    finally:
+        server.kill()
+        server.wait()
 
 
 def processor_seconds(pid):
@@ -63,24 +86,73 @@ def processor_seconds(pid):
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
-def measure(name, program, server, address, folder, manifest, *flags, recipe="recipe"):
+def measure(name, program, server, address, folder, recipe, *leaders):
+    """One run; its row of the table, without the figure of bare gRPC."""
     served = processor_seconds(server.pid)
     start = time.monotonic()
     client = subprocess.Popen(
-        [program, "batch", "--manifest", manifest, "--recipe", folder / recipe,
-         "--out", tempfile.mkdtemp(dir=folder), "--server", address, "--json", *flags],
-        stdout=subprocess.PIPE, text=True)
+        [program, "batch", *leaders, "--recipe", recipe, "--out", tempfile.mkdtemp(dir=folder),
+         "--server", address, "--json"], stdout=subprocess.PIPE, text=True)
     events = [json.loads(line) for line in client.stdout]
     _, status, usage = os.wait4(client.pid, 0)
     seconds = time.monotonic() - start
-    own = usage.ru_utime + usage.ru_stime
-    done = events[-1]["done"]
+    if os.waitstatus_to_exitcode(status) != 0:
+        raise SystemExit(f"{name}: exit {os.waitstatus_to_exitcode(status)}, {events[-1:]}")
+    settled = events[-1]["done"] + events[-1]["rejected"]
     served = processor_seconds(server.pid) - served
-    print(f"{name}: exit {os.waitstatus_to_exitcode(status)}, {done} items in {seconds:.1f} s, "
-          f"{done / seconds:.0f} a second; client {1e6 * own / max(done, 1):.0f} us of processor time an item, "
-          f"{1e6 * usage.ru_stime / max(done, 1):.0f} of them in the kernel ({own / seconds:.2f} cores), "
-          f"server {1e6 * served / max(done, 1):.0f} us; client's memory at most "
-          f"{usage.ru_maxrss / 1024:.0f} MiB", flush=True)
+    return {"run": name, "items": f"{settled:,}", "items a second": f"{settled / seconds:,.0f}",
+            "client, us an item": f"{1e6 * (usage.ru_utime + usage.ru_stime) / settled:,.0f}",
+            "in the kernel": f"{1e6 * usage.ru_stime / settled:,.0f}",
+            "server, us an item": f"{1e6 * served / settled:,.0f}",
+            "client's memory, MiB": f"{usage.ru_maxrss / 1024:.0f}"}
+
+
+def bare_calls(build, address, calls):
+    printed = subprocess.run([build / "benchmarks" / "call_cost", address, "--calls", str(calls)],
+                             stdout=subprocess.PIPE, text=True, check=True).stdout
+    return f"{json.loads(printed)['calls_per_second']:,.0f}"
+
+
+def fake_runs(folder, arguments):
+    """The runs that the client limits: name, recipe and leaders."""
+    write_leader(folder / "leader0.json")
+    for number in range(1, arguments.items):
+        os.link(folder / "leader0.json", folder / f"leader{number}.json")
+    (folder / "files").write_text(RECIPE % "", encoding="utf-8")
+    (folder / "packed").write_text(RECIPE % "packing: PACKING_NPZ", encoding="utf-8")
+    write_manifest(folder / "leaders.tsv", arguments.items, arguments.items)
+    write_manifest(folder / "items.tsv", arguments.items, max(1, arguments.items // 20))
+    write_manifest(folder / "lines.tsv", arguments.lines)
+    yield "a leader an item", "files", ("--manifest", folder / "leaders.tsv")
+    yield "20 items a leader", "files", ("--manifest", folder / "items.tsv")
+    yield "the same, npz shards", "packed", ("--manifest", folder / "items.tsv")
+    yield (f"1 in 1,000 of {arguments.lines:,} lines", "files",
+           ("--manifest", folder / "lines.tsv", "--shard", "0/1000"))
+
+
+def write_samples(folder, count):
+    folder.mkdir()
+    samples = sorted((SOURCE / "samples").glob("*.bvh"))
+    for number in range(count):
+        sample = samples[number % len(samples)]
+        shutil.copy(sample, folder / f"{sample.stem}{number}.bvh")
+
+
+def rows(folder, arguments):
+    duet = arguments.build / "bin" / "duet"
+    programs = {", before": arguments.before, ", after": duet} if arguments.before else {"": duet}
+    with serving(arguments.build / "tests" / "duet-fake-server", folder) as (server, address):
+        for name, recipe, leaders in fake_runs(folder, arguments):
+            calls = bare_calls(arguments.build, address, min(arguments.items, 5000))
+            for which, program in programs.items():
+                yield {**measure(name + which, program, server, address, folder, folder / recipe,
+                                 *leaders), "bare gRPC, calls a second": calls}
+    write_samples(folder / "samples", arguments.leaders)
+    with serving(arguments.build / "bin" / "duet-server", folder) as (server, address):
+        for which, program in programs.items():
+            yield measure(f"a real server, `recipes/mixes.textproto`, npz shards{which}", program,
+                          server, address, folder, SOURCE / "recipes" / "mixes.textproto",
+                          folder / "samples", "--pack", "npz")
 
 
 def main():
@@ -88,35 +160,16 @@ def main():
     parser.add_argument("build", type=pathlib.Path)
     parser.add_argument("--items", type=int, default=20000)
     parser.add_argument("--lines", type=int, default=1000000)
+    parser.add_argument("--leaders", type=int, default=50)
     parser.add_argument("--before", type=pathlib.Path, help="another duet to measure beside")
     arguments = parser.parse_args()
+    load = os.getloadavg()[0]
     with tempfile.TemporaryDirectory() as temporary:
-        folder = pathlib.Path(temporary)
-        write_leader(folder / "leader0.json")
-        for number in range(1, arguments.items):
-            os.link(folder / "leader0.json", folder / f"leader{number}.json")
-        (folder / "recipe").write_text(RECIPE % "", encoding="utf-8")
-        (folder / "packed").write_text(RECIPE % "packing: PACKING_NPZ", encoding="utf-8")
-        write_manifest(folder / "leaders.tsv", arguments.items, arguments.items)
-        write_manifest(folder / "items.tsv", arguments.items, max(1, arguments.items // 20))
-        write_manifest(folder / "lines.tsv", arguments.lines)
-        server, address = start_server(arguments.build, folder / "log")
-        try:
-            calls = subprocess.run(
-                [arguments.build / "benchmarks" / "call_cost", address, "--calls",
-                 str(arguments.items)], stdout=subprocess.PIPE, text=True, check=True)
-            print("bare gRPC:", calls.stdout.strip(), flush=True)
-            programs = {"": arguments.build / "bin" / "duet"}
-            if arguments.before:
-                programs = {" before": arguments.before, " after": programs[""]}
-            for runs in (("leaders", "leaders.tsv"), ("items", "items.tsv"),
-                         ("packed", "items.tsv"), ("lines", "lines.tsv", "--shard", "0/1000")):
-                name, manifest, *flags = runs
-                for which, program in programs.items():
-                    measure(name + which, program, server, address, folder, folder / manifest,
-                            *flags, recipe="packed" if name == "packed" else "recipe")
-        finally:
-            server.kill()
+        print("| " + " | ".join(COLUMNS) + " |\n|" + "---|" * len(COLUMNS), flush=True)
+        for row in rows(pathlib.Path(temporary), arguments):
+            print("| " + " | ".join(row.get(column, "") for column in COLUMNS) + " |", flush=True)
+    print(f"\n{machine()}; other programs wanted {load:.1f} processors before the first run"
+          + (": shared, so that only figures of one row compare." if load > 0.5 else "."))
 
 
 if __name__ == "__main__":

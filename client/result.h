@@ -30,6 +30,8 @@ struct ModelInfo {
   bool accepts_follower_start = false;
   bool samples = false;  // answers depend on the request's seed and variety
   std::string description;
+  std::string terms;           // of using the weights; empty: not stated
+  std::string weights_sha256;  // of the weights file, lower-case hex; empty: not known
 };
 
 // What a request must keep to.

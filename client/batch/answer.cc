@@ -76,7 +76,7 @@ RecordedAnswer ToRecorded(const Item& item, const QualityFilter& filter,
   answer.seed = result.seed;
   answer.variety = result.variety;
   answer.request_id = result.request_id;
-  answer.keyframes = ToFrames(item.keyframes, leader.clip.frame_count());
+  answer.keyframes = ToFrames(item.keyframes, result.pair.leader.frame_count());
   answer.frames = result.pair.follower.frame_count();
   answer.frame_rate_hz = result.pair.follower.frame_rate_hz;
   answer.quality = Measure(result.pair, skeleton);

@@ -31,7 +31,7 @@ SynthesisRequest ToRequest(const Item& item, const Recipe& recipe, const ModelIn
 // The call's name in the server's log: the same whenever the item is asked for.
 std::string RequestId(const Item& item, int retry);
 
-// What the index tells of an answer.
+// The index entry of an answer, whose pair is at the output's rate.
 RecordedAnswer ToRecorded(const Item& item, const QualityFilter& filter,
                           const SynthesisResult& result, const LoadedLeader& leader,
                           const motion::Skeleton& skeleton, int retry);

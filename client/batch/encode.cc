@@ -89,11 +89,15 @@ motion::Clip AtRate(motion::Clip clip, double rate_hz) {
 
 }  // namespace
 
-motion::ClipPair AtOutputRate(motion::ClipPair pair, const Output& output) {
+std::optional<double> RateOf(const Output& output) {
   const dataset::DatasetLayout* const captures = CapturesOf(output.layout);
-  if (captures == nullptr) return pair;
-  return {AtRate(std::move(pair.leader), captures->frame_rate_hz),
-          AtRate(std::move(pair.follower), captures->frame_rate_hz)};
+  return captures == nullptr ? output.frame_rate_hz : captures->frame_rate_hz;
+}
+
+motion::ClipPair AtOutputRate(motion::ClipPair pair, const Output& output) {
+  const std::optional<double> rate_hz = RateOf(output);
+  if (!rate_hz.has_value()) return pair;
+  return {AtRate(std::move(pair.leader), *rate_hz), AtRate(std::move(pair.follower), *rate_hz)};
 }
 
 absl::StatusOr<std::vector<EncodedFile>> Encode(const Output& output, formats::Side leader_side,

@@ -1,6 +1,7 @@
 #ifndef DUET_CLIENT_BATCH_ENCODE_H_
 #define DUET_CLIENT_BATCH_ENCODE_H_
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,7 +18,11 @@ struct EncodedFile {
   std::string content;
 };
 
-// A pair at the frame rate of the output's layout, where that has one of its own.
+// The frame rate of every item in Hz: that of the layout, or what the recipe asks for. Absent: each
+// item has its leader's.
+std::optional<double> RateOf(const Output& output);
+
+// The pair at that rate. Both people have the same number of frames before and after.
 motion::ClipPair AtOutputRate(motion::ClipPair pair, const Output& output);
 
 // The files that such a pair has: two of BVH, one of any other format; of a layout of captures one,

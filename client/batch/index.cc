@@ -6,6 +6,7 @@
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_replace.h"
 #include "client/batch/capture_layout.h"
+#include "client/batch/dataset_json.h"
 #include "client/batch/durable_file.h"
 #include "client/batch/parse_record.h"
 #include "client/batch/record.h"
@@ -17,6 +18,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
+constexpr size_t kCausesKept = 20;
 constexpr size_t kMaxSummaryBytes = size_t{1} << 20;
 
 constexpr const char* kFields[] = {
@@ -87,13 +89,15 @@ class IndexWriter {
         shards_(shards),
         json_(temporary / "index.jsonl"),
         tsv_(temporary / "index.tsv"),
-        rejected_(temporary / "rejected.tsv") {}
+        rejected_(temporary / "rejected.tsv"),
+        failed_(temporary) {}
 
   absl::Status Open() {
     std::vector<std::string> header = CommonHeader();
     absl::Status status = json_.Open();
     status.Update(tsv_.Open());
     status.Update(rejected_.Open());
+    status.Update(failed_.Open());
     if (!status.ok()) return status;
     std::vector<std::string> rejected = header;
     rejected.insert(rejected.end(), {"answers", "reasons", "extra"});
@@ -112,19 +116,22 @@ class IndexWriter {
     ordered_json& record = *parsed;
     if (record["state"] == kFailed) {
       ++counts_.failed;
-      return absl::OkStatus();
+      return failed_.Add(record);
     }
     return record["state"] == kDone ? AddDone(entry.item, &record) : AddRejected(record);
   }
 
   absl::Status Finish(const std::filesystem::path& out) {
     absl::Status status = rejected_.Finish(out / "rejected.tsv");
+    status.Update(failed_.Finish(out));
+    counts_.failures = failed_.causes().Largest(kCausesKept);
     status.Update(tsv_.Finish(out / "index.tsv"));
     status.Update(json_.Finish(out / "index.jsonl"));
     return status;
   }
 
   const SetCounts& counts() const { return counts_; }
+  const DoneItems& done() const { return done_; }
 
  private:
   absl::Status AddDone(int64_t item, ordered_json* record) {
@@ -133,6 +140,7 @@ class IndexWriter {
     const std::string line = IndexLine(item, packing_, shards_, record);
     std::vector<std::string> cells = CommonCells(*record);
     if (packing_ != Packing::kNone) cells.push_back(Cell(*record, "shard"));
+    done_.Add(*record);
     if (captures_) {
       cells.push_back(FileCells(*record, "path").front());
       cells.push_back(Cell(*record, "side"));
@@ -160,7 +168,9 @@ class IndexWriter {
   Packing packing_;
   const ShardList& shards_;
   DurableFile json_, tsv_, rejected_;
+  FailureTable failed_;
   SetCounts counts_;
+  DoneItems done_;
 };
 
 std::string SummaryJson(const JobIdentity& identity, const SetCounts& counts,
@@ -169,7 +179,7 @@ std::string SummaryJson(const JobIdentity& identity, const SetCounts& counts,
   for (const ModelChoice& model : identity.models) {
     models.push_back(ModelText(model));
   }
-  const ordered_json summary = {
+  ordered_json summary = {
       {"planned", planned.count},
       {"whole_plan", planned.whole},
       {"done", counts.done},
@@ -180,7 +190,8 @@ std::string SummaryJson(const JobIdentity& identity, const SetCounts& counts,
       {"models", models},
       {"recipe_sha256", identity.recipe_digest},
       {"shard", absl::StrCat(identity.shard.index, "/", identity.shard.count)}};
-  return summary.dump(2) + "\n";
+  if (!counts.failures.empty()) summary["failures"] = ToJson(counts.failures);
+  return summary.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace
@@ -201,6 +212,10 @@ absl::StatusOr<SetCounts> WriteIndex(const JournalReader& journal, const JobIden
   if (!status.ok()) return status;
   status = journal.ForEach([&writer](const JournalEntry& entry) { return writer.Add(entry); });
   if (status.ok()) status = writer.Finish(out);
+  if (!status.ok()) return status;
+  status = ReplaceDurably(out / "dataset.json",
+                          DatasetJson(identity, writer.counts(), planned.count, writer.done(),
+                                      !shards.empty()));
   if (!status.ok()) return status;
   status = ReplaceDurably(out / "summary.json", SummaryJson(identity, writer.counts(), planned));
   if (!status.ok()) return status;

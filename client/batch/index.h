@@ -9,17 +9,10 @@
 #include "absl/status/statusor.h"
 #include "client/batch/job_folder.h"
 #include "client/batch/journal.h"
+#include "client/batch/set_counts.h"
 #include "client/batch/shard_list.h"
 
 namespace duet::client::batch {
-
-// What is in a data set.
-struct SetCounts {
-  int64_t done = 0;
-  int64_t rejected = 0;
-  int64_t failed = 0;
-  uint64_t bytes = 0;
-};
 
 // How many items there should be.
 struct PlannedItems {
@@ -29,9 +22,9 @@ struct PlannedItems {
 };
 
 // Writes index.jsonl and index.tsv (items that are done), rejected.tsv (those that the filter did
-// not let pass) and summary.json into `out`, in the order of the items and without times: the same
-// for the same journal records, in whatever order these were written. `shards` is empty of a set
-// that is not packed.
+// not let pass), failed.tsv (failures.h), dataset.json and summary.json into `out`, in the order of
+// the items and without times: the same for the same journal records, in whatever order these were
+// written. `shards` is empty of a set that is not packed.
 absl::StatusOr<SetCounts> WriteIndex(const JournalReader& journal, const JobIdentity& identity,
                                      const ShardList& shards, const PlannedItems& planned,
                                      const std::filesystem::path& temporary,

@@ -1,12 +1,12 @@
 #include "client/batch/job.h"
 
 #include <algorithm>
-#include <system_error>
 #include <thread>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "client/batch/contact_sheet.h"
+#include "client/batch/dataset_json.h"
 #include "client/batch/encode.h"
 #include "client/batch/packing.h"
 #include "client/error_details.h"
@@ -19,6 +19,7 @@ namespace {
 constexpr int kAttempts = 3;  // at a call that fails for a passing reason
 constexpr size_t kQueuedItems = 64;
 constexpr size_t kQueuedAnswers = 64;
+constexpr size_t kCausesReported = 20;
 constexpr size_t kUnwrittenBytes = size_t{64} << 20;
 // How long items gather before they are brought to the disk together: a look at the disk costs as
 // much as several items, and one that is not written yet is only asked for again.
@@ -46,7 +47,8 @@ Job::Job(Parts parts, Plan plan, const JobOptions& options)
       queue_(kQueuedItems),
       answers_(kQueuedAnswers),
       settled_(kUnwrittenBytes),
-      leaders_(parts_.models.size()) {}
+      leaders_(parts_.models.size()),
+      skeleton_indices_(SkeletonIndices(parts_.skeletons)) {}
 
 Client& Job::NextClient(int server) {
   std::vector<Client>& clients = parts_.servers[static_cast<size_t>(server)];
@@ -102,7 +104,7 @@ void Job::AskUntilDone() {
 void Job::Ask(Work work) {
   const auto model = static_cast<size_t>(work.item.model);
   const absl::StatusOr<LoadedLeader>& leader =
-      work.leader->Get(parts_.recipe.input, parts_.skeletons[model]);
+      work.leader->Get(parts_.recipe.input, parts_.skeletons[model], parts_.limits);
   if (!leader.ok()) {
     Fail(work.item, leader.status());
     return queue_.Done();
@@ -159,9 +161,10 @@ void Job::Judge(Work work, const SynthesisResult& result) {
   const auto model = static_cast<size_t>(work.item.model);
   const motion::Skeleton& skeleton = parts_.skeletons[model];
   const QualityFilter& filter = parts_.recipe.filter;
-  const RecordedAnswer answer =
-      ToRecorded(work.item, filter, result, *work.leader->Get(parts_.recipe.input, skeleton),
-                 skeleton, work.retry);
+  const absl::StatusOr<LoadedLeader>& leader =
+      work.leader->Get(parts_.recipe.input, skeleton, parts_.limits);
+  RecordedAnswer answer = ToRecorded(work.item, filter, result, *leader, skeleton, work.retry);
+  answer.skeleton = skeleton_indices_[model];
   const std::vector<std::string> reasons =
       WhyRejected(filter, answer.quality, answer.unfamiliarity);
   if (reasons.empty()) {
@@ -191,29 +194,15 @@ void Job::Keep(const Item& item, const RecordedAnswer& answer, const motion::Cli
 }
 
 void Job::Fail(const Item& item, const absl::Status& error) {
-  WriteError(item, error);
   Settle({item, kFailed, Line(FailedRecord(item, error)), {}});
 }
 
+// The journal does not keep it: the next run asks again.
 void Job::FailForNow(const Item& item, const absl::Status& error) {
-  WriteError(item, error);
   ++unfinished_;
-}
-
-std::filesystem::path Job::ErrorFile(const Item& item) const {
-  return parts_.folder->errors() / (item.name + ".json");
-}
-
-// For people; where it cannot be written, the journal tells the same.
-void Job::WriteError(const Item& item, const absl::Status& error) {
-  errors_exist_ = true;
-  (void)WriteDurably(parts_.folder->temporary() / absl::StrCat(item.number, ".error"),
-                     ErrorFile(item), Line(FailedRecord(item, error)) + "\n");
-}
-
-void Job::RemoveError(const Item& item) {
-  std::error_code error;
-  if (errors_exist_) std::filesystem::remove(ErrorFile(item), error);
+  const std::lock_guard<std::mutex> lock(unfinished_mutex_);
+  unfinished_causes_.Add(item.leader->given, absl::StatusCodeToString(error.code()),
+                         error.message(), 1, 0);
 }
 
 void Job::Settle(Settled settled) {
@@ -260,7 +249,6 @@ void Job::Count(const Settled& settled) {
     return;
   }
   ++(settled.state == kDone ? done_ : rejected_);
-  RemoveError(settled.item);
 }
 
 absl::Status Job::RunThreads(JournalWriter* writer) {
@@ -322,6 +310,7 @@ absl::StatusOr<JobReport> Job::Finish() {
   JobReport report;
   report.planned = std::max<int64_t>(planned_, journal->count());
   report.unfinished = unfinished_;
+  report.unfinished_causes = unfinished_causes_.Largest(kCausesReported);
   absl::Status status = DrawContactSheet(*journal);
   if (status.ok()) status = PackOrRepaired(*journal);
   if (!status.ok()) return status;
@@ -341,8 +330,6 @@ absl::StatusOr<JobReport> Job::Run() {
   JournalWriter writer;
   absl::Status status = writer.Open(folder.journal(), parts_.survey->journal.size());
   if (!status.ok()) return status;
-  std::error_code error;
-  errors_exist_ = std::filesystem::exists(folder.errors(), error);
   damage_ = ReadDamage(folder.damage());
   status = RunThreads(&writer);
   if (!status.ok()) return status;

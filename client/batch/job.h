@@ -14,6 +14,7 @@
 #include "absl/strings/string_view.h"
 #include "client/batch/answer.h"
 #include "client/batch/damage.h"
+#include "client/batch/failures.h"
 #include "client/batch/flow/bounded_queue.h"
 #include "client/batch/flow/call_gate.h"
 #include "client/batch/flow/work_queue.h"
@@ -57,6 +58,7 @@ struct JobReport {
   int64_t planned = 0;  // items that should be in it
   int64_t unfinished = 0;
   bool packed = false;  // in shards, which leave out what failed
+  std::vector<FailureCause> unfinished_causes;  // the largest; without numbers of leaders
   // Why the run ended before all items were settled; OK when it was not, or when it was asked to.
   absl::Status stopped;
   bool complete() const { return set.done + set.rejected + set.failed >= planned; }
@@ -80,6 +82,7 @@ class Job {
     JobIdentity identity;
     std::vector<ModelInfo> models;
     std::vector<motion::Skeleton> skeletons;
+    RequestLimits limits;  // of the servers, where they are known
     std::vector<std::vector<Client>> servers;
     const JobFolder* folder = nullptr;
     const Survey* survey = nullptr;
@@ -127,9 +130,6 @@ class Job {
   void WriteUntilClosed(JournalWriter* journal);
   absl::Status Write(const std::vector<Settled>& all, ItemWriter* items, JournalWriter* journal);
   void Count(const Settled& settled);
-  void WriteError(const Item& item, const absl::Status& error);
-  void RemoveError(const Item& item);
-  std::filesystem::path ErrorFile(const Item& item) const;
   absl::Status RunThreads(JournalWriter* writer);
   bool IsComplete() const;
   absl::Status DrawContactSheet(const JournalReader& journal) const;
@@ -146,12 +146,14 @@ class Job {
   flow::BoundedQueue<Answered> answers_;
   flow::BoundedQueue<Settled> settled_;  // by bytes
 
-  LastLeaders leaders_;  // Feed's alone
+  LastLeaders leaders_;                      // Feed's alone
+  const std::vector<int> skeleton_indices_;  // of dataset.json, by model
 
   std::atomic<int64_t> planned_{0}, resumed_{0}, done_{0}, rejected_{0}, failed_{0};
   std::atomic<int64_t> unfinished_{0};
   std::atomic<uint64_t> bytes_{0}, turns_{0};
-  std::atomic<bool> errors_exist_{false};
+  std::mutex unfinished_mutex_;
+  FailureCauses unfinished_causes_;
   bool fed_ = false;  // Feed came to the part's end
   Damage damage_;     // that was found before, less what was settled; the writer's alone
   std::mutex stop_mutex_;

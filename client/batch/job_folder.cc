@@ -49,7 +49,8 @@ std::string ToJson(const JobIdentity& identity) {
                                          {"shard", ShardText(identity.shard)},
                                          {"layout", static_cast<int>(identity.layout)},
                                          {"packing", static_cast<int>(identity.packing)},
-                                         {"shard_bytes", identity.shard_bytes}};
+                                         {"shard_bytes", identity.shard_bytes},
+                                         {"description", ToJson(identity.description)}};
   return object.dump(2) + "\n";
 }
 
@@ -79,6 +80,13 @@ absl::StatusOr<JobIdentity> FromJson(const std::string& text) {
   identity.layout = static_cast<Layout>(reader.Int("layout", 0, 3));
   identity.packing = static_cast<Packing>(reader.Int("packing", 0, 2));
   identity.shard_bytes = static_cast<uint64_t>(reader.Int("shard_bytes", 0, int64_t{1} << 40));
+  // Sets begun by earlier versions have none.
+  if (reader.Has("description")) {
+    absl::StatusOr<SetDescription> description =
+        SetDescriptionFromJson(reader.Object("description"));
+    reader.Update(description.status());
+    if (description.ok()) identity.description = *std::move(description);
+  }
   absl::Status status = reader.Finish();
   if (!status.ok()) return status;
   return identity;

@@ -9,6 +9,7 @@
 #include "absl/status/status.h"
 #include "client/batch/durable_file.h"
 #include "client/batch/recipe.h"
+#include "client/batch/set_description.h"
 #include "client/batch/shard.h"
 #include "model/motion/skeleton.h"
 
@@ -24,13 +25,13 @@ struct JobIdentity {
   uint64_t shard_bytes = 0;
   std::vector<ModelChoice> models;          // names and versions; empty before a job has begun
   std::vector<motion::Skeleton> skeletons;  // theirs
+  SetDescription description;
 };
 
 // A data set's folder, held by one process.
 //
-//   <out>/                     the data set: files, index.tsv, index.jsonl, rejected.tsv,
-//                              summary.json
-//   <out>/errors/              a file for each item that failed
+//   <out>/                     the data set: files, dataset.json, index.tsv, index.jsonl,
+//                              rejected.tsv, failed.tsv, summary.json
 //   <out>/.duet-batch/         job.json, recipe.json, command.json, journal, shards, damage, lock;
 //                              temporary files; items that wait to be packed
 class JobFolder {
@@ -60,7 +61,6 @@ class JobFolder {
   // The command that the last run was started with; see client/cli/batch_repair.h.
   std::filesystem::path command() const { return state() / "command.json"; }
   std::filesystem::path temporary() const { return state() / "tmp"; }
-  std::filesystem::path errors() const { return out_ / "errors"; }
   // Where items' files lie until they are packed, or for good.
   std::filesystem::path items(Packing packing) const {
     return packing == Packing::kNone ? out_ : state() / "items";

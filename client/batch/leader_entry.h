@@ -18,6 +18,7 @@ struct LeaderEntry {
   // Names its outputs: a path below the data set without an ending; no other entry has it.
   std::string key;
   std::string given;  // as it was listed
+  std::string line;   // "MANIFEST:NUMBER", of a manifest; else empty
   std::filesystem::path file;
   std::optional<formats::Side> side;
   Labels labels;               // instead of the recipe's reactions where not empty

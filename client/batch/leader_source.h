@@ -16,7 +16,9 @@ namespace duet::client::batch {
 class LeaderSource {
  public:
   virtual ~LeaderSource() = default;
-  // The next one; nothing at the end. A status that is not OK ends the list.
+  // The next one; nothing at the end. INVALID_ARGUMENT is of one line: the call after it goes on
+  // with the next line, so that all bad lines can be reported together. Any other error ends the
+  // list.
   virtual absl::StatusOr<std::optional<LeaderEntry>> Next() = 0;
 };
 

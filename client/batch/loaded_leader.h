@@ -12,6 +12,7 @@
 #include "client/batch/leader_entry.h"
 #include "client/batch/recipe.h"
 #include "client/request.h"
+#include "client/result.h"
 #include "model/motion/skeleton.h"
 
 namespace duet::client::batch {
@@ -23,9 +24,11 @@ struct LoadedLeader {
   std::optional<FollowerStart> follower_start;
 };
 
-// Reads the leader's file, and that of the follower's start. Errors name the file.
+// Reads the leader's file, and that of the follower's start, and checks length and rate against the
+// server's limits; a limit of 0 is not known. Errors name the file.
 absl::StatusOr<LoadedLeader> LoadLeader(const LeaderEntry& entry, formats::Side side,
-                                        const LeaderInput& input, const motion::Skeleton& skeleton);
+                                        const LeaderInput& input, const motion::Skeleton& skeleton,
+                                        const RequestLimits& limits);
 
 // A leader that several items share: read by the first that needs it, forgotten with the last.
 //
@@ -36,8 +39,9 @@ class SharedLeader {
       : entry_(std::move(entry)), side_(side) {}
 
   const absl::StatusOr<LoadedLeader>& Get(const LeaderInput& input,
-                                          const motion::Skeleton& skeleton) {
-    std::call_once(once_, [&] { loaded_ = LoadLeader(*entry_, side_, input, skeleton); });
+                                          const motion::Skeleton& skeleton,
+                                          const RequestLimits& limits) {
+    std::call_once(once_, [&] { loaded_ = LoadLeader(*entry_, side_, input, skeleton, limits); });
     return loaded_;
   }
 

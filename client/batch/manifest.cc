@@ -38,7 +38,10 @@ std::string CellText(const nlohmann::json& value) {
 
 absl::StatusOr<Columns> ParseJsonLine(const std::string& line) {
   const absl::StatusOr<nlohmann::json> object = base::ParseStrictJson(line, kJsonDepth);
-  if (!object.ok()) return object.status();
+  if (!object.ok()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("line: expected a JSON object, got ", object.status().message()));
+  }
   Columns columns;
   for (const auto& [name, value] : object->items()) {
     if (!value.is_null()) columns[name] = CellText(value);
@@ -46,10 +49,20 @@ absl::StatusOr<Columns> ParseJsonLine(const std::string& line) {
   return columns;
 }
 
-absl::Status Named(absl::string_view column, const absl::Status& status) {
-  if (status.ok()) return status;
-  return absl::Status(status.code(), absl::StrCat(column, ": came ", status.message()));
-}
+// What is wrong with the columns of a line, all of it.
+class LineProblems {
+ public:
+  void Add(absl::string_view column, absl::string_view problem) {
+    problems_.push_back(absl::StrCat(column, ": ", problem));
+  }
+  absl::Status ToStatus() const {
+    if (problems_.empty()) return absl::OkStatus();
+    return absl::InvalidArgumentError(absl::StrJoin(problems_, "; "));
+  }
+
+ private:
+  std::vector<std::string> problems_;
+};
 
 // Takes a column out of those that are left.
 std::string Take(const char* name, Columns* columns) {
@@ -61,21 +74,21 @@ std::string Take(const char* name, Columns* columns) {
 }
 
 template <typename Value>
-absl::Status TakeParsed(const char* name, absl::StatusOr<Value> (*parse)(absl::string_view),
-                        Columns* columns, std::optional<Value>* value) {
+void TakeParsed(const char* name, absl::StatusOr<Value> (*parse)(absl::string_view),
+                Columns* columns, std::optional<Value>* value, LineProblems* problems) {
   const std::string text = Take(name, columns);
-  if (text.empty()) return absl::OkStatus();
+  if (text.empty()) return;
   absl::StatusOr<Value> parsed = parse(text);
-  if (!parsed.ok()) return Named(name, parsed.status());
+  if (!parsed.ok()) return problems->Add(name, parsed.status().message());
   *value = *std::move(parsed);
-  return absl::OkStatus();
 }
 
 // All but the key.
 absl::StatusOr<LeaderEntry> ToEntry(const std::filesystem::path& folder, Columns columns) {
   LeaderEntry entry;
+  LineProblems problems;
   entry.given = Take("leader", &columns);
-  if (entry.given.empty()) return absl::InvalidArgumentError("leader: came none, wanted a file");
+  if (entry.given.empty()) problems.Add("leader", "expected a motion file, got nothing");
   const std::filesystem::path path(entry.given);
   entry.file = path.is_absolute() ? path : folder / path;
   entry.model = Take("model", &columns);
@@ -85,12 +98,12 @@ absl::StatusOr<LeaderEntry> ToEntry(const std::filesystem::path& folder, Columns
     entry.follower_start = (folder / entry.follower_start).string();
   }
   std::optional<Labels> labels;
-  absl::Status status = TakeParsed("labels", ParseLabels, &columns, &labels);
-  status.Update(TakeParsed("side", ParseSide, &columns, &entry.side));
-  status.Update(TakeParsed("follower_start_side", ParseSide, &columns, &entry.follower_start_side));
-  status.Update(
-      TakeParsed("partner_direction", ParseDirection, &columns, &entry.partner_direction));
-  status.Update(TakeParsed("seed", ParseSeed, &columns, &entry.seed));
+  TakeParsed("labels", ParseLabels, &columns, &labels, &problems);
+  TakeParsed("side", ParseSide, &columns, &entry.side, &problems);
+  TakeParsed("follower_start_side", ParseSide, &columns, &entry.follower_start_side, &problems);
+  TakeParsed("partner_direction", ParseDirection, &columns, &entry.partner_direction, &problems);
+  TakeParsed("seed", ParseSeed, &columns, &entry.seed, &problems);
+  absl::Status status = problems.ToStatus();
   if (!status.ok()) return status;
   entry.labels = std::move(labels).value_or(Labels());
   entry.extra.assign(columns.begin(), columns.end());
@@ -103,11 +116,12 @@ class Manifest final : public LeaderSource {
       : in_(in), folder_(std::move(folder)), name_(std::move(name)) {}
 
   absl::StatusOr<std::optional<LeaderEntry>> Next() override {
-    for (std::string line; ReadLine(&line);) {
+    for (std::string line; !ended_ && ReadLine(&line);) {
       if (line.empty()) continue;
       if (kind_ == Kind::kUnknown) {
         const absl::StatusOr<bool> is_entry = Begin(line);
-        if (!is_entry.ok()) return At(is_entry.status());
+        ended_ = !is_entry.ok();
+        if (ended_) return At(is_entry.status());
         if (!*is_entry) continue;
       }
       absl::StatusOr<LeaderEntry> entry = ParseLine(line);
@@ -134,15 +148,15 @@ class Manifest final : public LeaderSource {
     if (kind_ == Kind::kJson) return true;
     header_ = absl::StrSplit(line, '\t');
     if (std::find(header_.begin(), header_.end(), "leader") != header_.end()) return false;
-    return absl::InvalidArgumentError(
-        absl::StrCat("columns: came ", base::Quoted(line), ", wanted leader among them"));
+    return absl::InvalidArgumentError(absl::StrCat(
+        "columns: expected leader among the names of the first line, got ", base::Quoted(line)));
   }
 
   absl::StatusOr<Columns> ParseRow(const std::string& line) const {
     const std::vector<std::string> cells = absl::StrSplit(line, '\t');
     if (cells.size() != header_.size()) {
-      return absl::InvalidArgumentError(absl::StrCat("came ", cells.size(), " columns, wanted ",
-                                                     header_.size(), " as the first line names"));
+      return absl::InvalidArgumentError(absl::StrCat(
+          "columns: expected ", header_.size(), " as the first line names, got ", cells.size()));
     }
     Columns columns;
     for (size_t i = 0; i < cells.size(); ++i) {
@@ -152,7 +166,10 @@ class Manifest final : public LeaderSource {
   }
 
   absl::StatusOr<LeaderEntry> ParseLine(const std::string& line) {
-    if (line.size() > kMaxLineBytes) return absl::InvalidArgumentError("longer than 1 MiB");
+    if (line.size() > kMaxLineBytes) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("line: expected at most 1 MiB, got ", line.size(), " bytes"));
+    }
     absl::StatusOr<Columns> columns = kind_ == Kind::kJson ? ParseJsonLine(line) : ParseRow(line);
     if (!columns.ok()) return columns.status();
     const std::string id = Take("id", &*columns);
@@ -160,6 +177,7 @@ class Manifest final : public LeaderSource {
     if (!entry.ok()) return entry;
     absl::Status status = SetKey(id, &*entry);
     if (!status.ok()) return status;
+    entry->line = absl::StrCat(name_, ":", line_);
     return entry;
   }
 
@@ -168,7 +186,9 @@ class Manifest final : public LeaderSource {
   absl::Status SetKey(const std::string& id, LeaderEntry* entry) {
     if (!has_ids_.has_value()) has_ids_ = !id.empty();
     if (*has_ids_ != !id.empty()) {
-      return absl::InvalidArgumentError("id: wanted on every line or on none");
+      return absl::InvalidArgumentError(
+          *has_ids_ ? "id: expected one, as on the lines before, got nothing"
+                    : "id: expected none, as on the lines before, got one");
     }
     if (id.empty()) {
       const std::filesystem::path leader(entry->given);
@@ -181,7 +201,7 @@ class Manifest final : public LeaderSource {
       return absl::OkStatus();
     }
     return absl::InvalidArgumentError(
-        absl::StrCat("id: came ", base::Quoted(id), ", wanted one that no other line has"));
+        absl::StrCat("id: expected one that no other line has, got ", base::Quoted(id)));
   }
 
   absl::Status At(const absl::Status& status) const {
@@ -193,6 +213,7 @@ class Manifest final : public LeaderSource {
   std::string name_;
   int64_t line_ = 0;
   Kind kind_ = Kind::kUnknown;
+  bool ended_ = false;  // without a header no line means anything
   std::vector<std::string> header_;
   std::optional<bool> has_ids_;
   absl::flat_hash_set<size_t> ids_;

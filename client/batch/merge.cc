@@ -53,6 +53,7 @@ absl::StatusOr<JobIdentity> FindIdentity(const fs::path& out) {
 }
 
 bool SameModels(const JobIdentity& a, const JobIdentity& b) {
+  if (!GoOn(a, b).ok()) return false;  // other weights
   return std::equal(a.models.begin(), a.models.end(), b.models.begin(), b.models.end(),
                     [](const ModelChoice& one, const ModelChoice& other) {
                       return one.name == other.name && one.version == other.version;
@@ -203,11 +204,6 @@ class Merger {
       return CopyToSpool(*part, *entry, record);
     }
     journal_.Add(item, entry->record);
-    if (record["state"] == kFailed) {
-      return WriteDurably(folder_.temporary() / "error",
-                          folder_.errors() / (record["name"].get<std::string>() + ".json"),
-                          entry->record + "\n");
-    }
     return record["state"] == kDone ? MoveFiles(*part, record) : absl::OkStatus();
   }
 

@@ -66,7 +66,8 @@ constexpr Field kOfAnAnswer[] = {{"id", IsText, "a text"},
                                  {"quality", IsQuality, "an object of figures"}};
 constexpr Field kOfDone[] = {{"files", IsFiles, "an array of files"}};
 constexpr Field kOfRejected[] = {{"reasons", IsTexts, "an array of texts"}};
-constexpr Field kWhereGiven[] = {{"labels", IsNumbers, "an object of numbers"},
+constexpr Field kWhereGiven[] = {{"skeleton", IsCount, "an index"},
+                                 {"labels", IsNumbers, "an object of numbers"},
                                  {"keyframes", IsKeyframes, "an array of labels"},
                                  {"shard", IsText, "a text"}};
 

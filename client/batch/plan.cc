@@ -6,6 +6,7 @@
 
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
 #include "absl/strings/str_replace.h"
 #include "client/batch/capture_layout.h"
 #include "client/batch/drawn_labels.h"
@@ -72,6 +73,11 @@ std::vector<Labels> Combinations(const Grid& grid) {
   }
   for (Labels& labels : all) SortByClass(&labels);
   return all;
+}
+
+// What an error of a leader begins with: its line of the manifest, or the leader as it was listed.
+const std::string& PlaceOf(const LeaderEntry& leader) {
+  return leader.line.empty() ? leader.given : leader.line;
 }
 
 bool Means(const ModelChoice& choice, const ModelInfo& model) {
@@ -243,6 +249,26 @@ void Plan::DrawFor(const LeaderEntry& leader) {
   }
 }
 
+std::string Plan::ModelNames() const {
+  return absl::StrJoin(models_, ", ", [](std::string* out, const ModelInfo& model) {
+    absl::StrAppend(out, model.name, "@", model.version);
+  });
+}
+
+absl::Status Plan::CheckLabels(const LeaderEntry& leader) const {
+  for (const int index : leader_models_) {
+    const ModelInfo& model = models_[static_cast<size_t>(index)];
+    const auto& known = model.interaction_classes;
+    for (const ClassWeight& label : leader.labels) {
+      if (std::count(known.begin(), known.end(), label.interaction_class) > 0) continue;
+      return absl::InvalidArgumentError(absl::StrCat(
+          PlaceOf(leader), ": labels: expected classes of ", model.name, "@", model.version, " (",
+          absl::StrJoin(known, ", "), "), got ", base::Quoted(label.interaction_class)));
+    }
+  }
+  return absl::OkStatus();
+}
+
 absl::Status Plan::BeginLeader(LeaderEntry leader) {
   reactions_ =
       leader.labels.empty()
@@ -251,7 +277,7 @@ absl::Status Plan::BeginLeader(LeaderEntry leader) {
   if (leader.labels.empty()) DrawFor(leader);
   if (reactions_.empty()) {
     return absl::InvalidArgumentError(absl::StrCat(
-        leader.given, ": wanted labels in the manifest, since the recipe has no reactions"));
+        PlaceOf(leader), ": labels: expected some, since the recipe has no reactions, got none"));
   }
   sides_ = {recipe_.input.side == Sides::kRight ? formats::Side::kRight : formats::Side::kLeft};
   if (recipe_.input.side == Sides::kBoth) sides_ = {formats::Side::kLeft, formats::Side::kRight};
@@ -265,10 +291,12 @@ absl::Status Plan::BeginLeader(LeaderEntry leader) {
     }
   }
   if (leader_models_.empty()) {
-    return absl::InvalidArgumentError(absl::StrCat(leader.given, ": model: came ",
-                                                   base::Quoted(leader.model),
-                                                   ", wanted one of the recipe's"));
+    return absl::InvalidArgumentError(
+        absl::StrCat(PlaceOf(leader), ": model: expected one of the recipe's (", ModelNames(),
+                     "), got ", base::Quoted(leader.model)));
   }
+  absl::Status status = CheckLabels(leader);
+  if (!status.ok()) return status;
   leader_ = std::make_shared<const LeaderEntry>(std::move(leader));
   side_ = reaction_ = model_ = 0;
   sample_ = 0;
@@ -281,8 +309,8 @@ absl::StatusOr<std::string> Plan::NameOf(const Item& item) {
     const absl::StatusOr<std::string> folder =
         CaptureFolder(layout, LargestClass(item), item.leader->given);
     if (folder.ok()) return CaptureName(layout, *folder, ++clips_[*folder]);
-    return absl::InvalidArgumentError(absl::StrCat(item.leader->given, ": reaction ", item.reaction,
-                                                   ": ", folder.status().message()));
+    return absl::InvalidArgumentError(absl::StrCat(PlaceOf(*item.leader), ": reaction ",
+                                                   item.reaction, ": ", folder.status().message()));
   }
   std::string name = item.leader->key;
   if (recipe_.input.side == Sides::kBoth) absl::StrAppend(&name, "-", SideName(item.side));
@@ -336,11 +364,14 @@ absl::StatusOr<std::optional<Item>> Plan::Next() {
     if (!status.ok()) return status;
   }
   if (number_ == kMaxItems) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("plan: came more than ", kMaxItems, " items, wanted several data sets"));
+    return absl::FailedPreconditionError(
+        absl::StrCat("plan: expected at most ", kMaxItems, " items, got more. Make several sets."));
   }
   absl::StatusOr<Item> item = MakeItem();
-  if (!item.ok()) return item.status();
+  if (!item.ok()) {
+    leader_ = nullptr;
+    return item.status();
+  }
   ++number_;
   if (!Advance()) leader_ = nullptr;
   return std::optional<Item>(*std::move(item));

@@ -45,8 +45,9 @@ class Plan {
   static absl::StatusOr<Plan> Create(Recipe recipe, std::vector<ModelInfo> models,
                                      std::unique_ptr<LeaderSource> leaders);
 
-  // The next item; nothing at the end. INVALID_ARGUMENT also for a class that the layout has no
-  // folder for.
+  // The next item; nothing at the end. INVALID_ARGUMENT is of one leader or one line of a manifest,
+  // such as a class that the model or the layout does not have: the call after it goes on with the
+  // next leader. Any other error ends the plan.
   absl::StatusOr<std::optional<Item>> Next();
 
  private:
@@ -62,6 +63,8 @@ class Plan {
   absl::Status AddNamed(const Reaction& reaction, LabelledReaction labelled);
   absl::Status CheckClasses() const;
   absl::Status CheckClassifier(const ModelInfo& model) const;
+  std::string ModelNames() const;
+  absl::Status CheckLabels(const LeaderEntry& leader) const;
   std::vector<std::string> ClassesOr(const std::vector<std::string>& classes) const;
   void DrawFor(const LeaderEntry& leader);
   absl::Status BeginLeader(LeaderEntry leader);

@@ -94,6 +94,7 @@ struct Output {
   Layout layout = Layout::kMirror;
   Packing packing = Packing::kNone;
   uint64_t shard_bytes = uint64_t{256} << 20;
+  std::optional<double> frame_rate_hz;  // of every item; absent: each item's leader's own
 };
 
 struct Recipe {

@@ -13,6 +13,7 @@
 #include "client/batch/text_values.h"
 #include "model/base/printable.h"
 #include "model/base/text.h"
+#include "model/motion/motion_limits.h"
 
 namespace duet::client::batch {
 namespace {
@@ -289,6 +290,12 @@ Output ReadOutput(const v1::Output& proto, Checker* check) {
               "output.shard_bytes", absl::StrCat(output.shard_bytes), "1 to 2147483648");
   check->Want(!own_format || output.packing == Packing::kNone, "output.packing", "one",
               "none: the layout is of folders");
+  if (proto.has_frame_rate_hz()) output.frame_rate_hz = proto.frame_rate_hz();
+  check->Want(!own_format || !output.frame_rate_hz, "output.frame_rate_hz", "one",
+              "none: the layout has a rate of its own");
+  check->Want(output.frame_rate_hz.value_or(1) > 0 &&
+                  output.frame_rate_hz.value_or(1) <= motion::kMaxFrameRateHz,
+              "output.frame_rate_hz", absl::StrCat(proto.frame_rate_hz()), "above 0, at most 1000");
   const bool npy = std::count(output.formats.begin(), output.formats.end(), Format::kNpy) > 0;
   check->Want(output.packing != Packing::kNpz || (npy && output.formats.size() == 1),
               "output.formats", "others", "FORMAT_NPY alone with PACKING_NPZ");

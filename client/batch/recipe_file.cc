@@ -65,6 +65,9 @@ void Apply(const RecipeOverrides& overrides, v1::Recipe* recipe) {
   if (!overrides.input_format.empty()) {
     recipe->mutable_input()->set_format(overrides.input_format);
   }
+  if (overrides.frame_rate_hz) {
+    recipe->mutable_output()->set_frame_rate_hz(*overrides.frame_rate_hz);
+  }
 }
 
 // Puts the joints of the table that the recipe names into it.

@@ -15,6 +15,7 @@ struct RecipeOverrides {
   std::optional<Packing> packing;
   std::optional<int> retries_per_item;
   std::string input_format;  // empty: the recipe's
+  std::optional<double> frame_rate_hz;
 };
 
 // Parses a recipe: JSON or text format. Unknown fields are refused. `folder` is where the files

@@ -82,6 +82,7 @@ ordered_json WithAnswer(const Item& item, const char* state, const RecordedAnswe
   record["request_id"] = answer.request_id;
   record["frames"] = answer.frames;
   record["frame_rate_hz"] = answer.frame_rate_hz;
+  record["skeleton"] = answer.skeleton;
   record["quality"] = QualityJson(answer.quality);
   AddIf("unfamiliarity", answer.unfamiliarity, &record);
   record["answers"] = answer.answers;

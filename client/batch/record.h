@@ -36,6 +36,7 @@ struct RecordedAnswer {
   std::vector<WeightKeyframe> keyframes;
   int frames = 0;
   double frame_rate_hz = 0;
+  int skeleton = 0;  // index into dataset.json's
   Quality quality;
   std::optional<double> unfamiliarity;
   int answers = 1;

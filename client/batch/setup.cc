@@ -1,20 +1,24 @@
 #include "client/batch/setup.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "client/batch/encode.h"
+#include "client/batch/text_values.h"
 
 namespace duet::client::batch {
 
-absl::StatusOr<std::vector<ModelInfo>> ResolveModels(const Client& client, const Recipe& recipe,
-                                                     const std::vector<ModelChoice>& begun) {
-  std::vector<ModelInfo> models;
+absl::StatusOr<ResolvedModels> ResolveModels(const Client& client, const Recipe& recipe,
+                                             const std::vector<ModelChoice>& begun) {
+  ResolvedModels resolved;
   for (const ModelChoice& choice : begun.empty() ? recipe.models : begun) {
     absl::StatusOr<ModelDetails> details = client.GetModel(choice);
     if (!details.ok()) return details.status();
-    models.push_back(std::move(details->model));
+    resolved.models.push_back(std::move(details->model));
+    resolved.limits = details->limits;  // a server has the same for every model
   }
-  return models;
+  return resolved;
 }
 
 JobIdentity IdentityOf(const Recipe& recipe, const Shard& shard) {
@@ -25,6 +29,8 @@ JobIdentity IdentityOf(const Recipe& recipe, const Shard& shard) {
   identity.layout = recipe.output.layout;
   identity.packing = recipe.output.packing;
   identity.shard_bytes = recipe.output.shard_bytes;
+  identity.description.formats = recipe.output.formats;
+  identity.description.frame_rate_hz = RateOf(recipe.output);
   return identity;
 }
 
@@ -32,12 +38,32 @@ JobIdentity WithModels(JobIdentity identity, const std::vector<ModelInfo>& model
                        const std::vector<motion::Skeleton>& skeletons) {
   identity.skeletons = skeletons;
   identity.models.clear();
+  identity.description.models.clear();
   for (const ModelInfo& model : models) {
     ModelChoice choice;
     choice.name = model.name;
     choice.version = model.version;
     identity.models.push_back(std::move(choice));
+    identity.description.models.push_back(Describe(model));
   }
+  return identity;
+}
+
+absl::StatusOr<JobIdentity> GoOn(const JobIdentity& begun, JobIdentity identity) {
+  const std::vector<DescribedModel>& before = begun.description.models;
+  const std::vector<DescribedModel>& now = identity.description.models;
+  for (size_t i = 0; i < std::min(before.size(), now.size()); ++i) {
+    // A server that does not report digests proves nothing.
+    if (before[i].weights_sha256 == now[i].weights_sha256 || before[i].weights_sha256.empty() ||
+        now[i].weights_sha256.empty()) {
+      continue;
+    }
+    return absl::FailedPreconditionError(absl::StrCat(
+        "model ", ModelText(identity.models[i]), ": expected the weights that the set was begun ",
+        "with (SHA-256 ", before[i].weights_sha256, "), got ", now[i].weights_sha256,
+        ". Serve those weights again, or choose another --out."));
+  }
+  if (!before.empty()) identity.description = begun.description;
   return identity;
 }
 

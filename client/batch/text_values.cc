@@ -14,8 +14,8 @@ namespace {
 
 constexpr float kMaxAbsWeight = 2;
 
-absl::Status Wanted(absl::string_view text, absl::string_view wanted) {
-  return absl::InvalidArgumentError(absl::StrCat(base::Quoted(text), ", wanted ", wanted));
+absl::Status Expected(absl::string_view what, absl::string_view text) {
+  return absl::InvalidArgumentError(absl::StrCat("expected ", what, ", got ", base::Quoted(text)));
 }
 
 }  // namespace
@@ -25,15 +25,15 @@ absl::StatusOr<ModelChoice> ParseModelChoice(absl::string_view text) {
   const size_t mark = text.find_first_of("@:");
   ModelChoice choice;
   choice.name = std::string(text.substr(0, mark));
-  if (choice.name.empty()) return Wanted(text, kForm);
+  if (choice.name.empty()) return Expected(kForm, text);
   if (mark == absl::string_view::npos) return choice;
   const absl::string_view rest = text.substr(mark + 1);
   if (text[mark] == ':') {
     choice.version_label = std::string(rest);
-    return rest.empty() ? absl::StatusOr<ModelChoice>(Wanted(text, kForm)) : choice;
+    return rest.empty() ? absl::StatusOr<ModelChoice>(Expected(kForm, text)) : choice;
   }
   if (!absl::SimpleAtoi(rest, &choice.version.emplace()) || *choice.version < 1) {
-    return Wanted(text, absl::StrCat(kForm, ", a version being a number from 1"));
+    return Expected(absl::StrCat(kForm, ", a version being a number from 1"), text);
   }
   return choice;
 }
@@ -50,14 +50,14 @@ absl::StatusOr<std::vector<ClassWeight>> ParseLabels(absl::string_view text) {
     float weight = 0;
     if (parts.first.empty() || !absl::SimpleAtof(parts.second, &weight) ||
         !(std::abs(weight) <= kMaxAbsWeight)) {
-      return Wanted(text, kForm);
+      return Expected(kForm, text);
     }
     labels.push_back({parts.first, weight});
   }
   SortByClass(&labels);
   for (size_t i = 1; i < labels.size(); ++i) {
     if (labels[i].interaction_class == labels[i - 1].interaction_class) {
-      return Wanted(text, "each class once");
+      return Expected("each class once", text);
     }
   }
   return labels;
@@ -66,7 +66,7 @@ absl::StatusOr<std::vector<ClassWeight>> ParseLabels(absl::string_view text) {
 absl::StatusOr<formats::Side> ParseSide(absl::string_view text) {
   if (text == "left") return formats::Side::kLeft;
   if (text == "right") return formats::Side::kRight;
-  return Wanted(text, "left or right");
+  return Expected("left or right", text);
 }
 
 absl::string_view SideName(formats::Side side) {
@@ -76,7 +76,7 @@ absl::string_view SideName(formats::Side side) {
 absl::StatusOr<uint64_t> ParseSeed(absl::string_view text) {
   uint64_t seed = 0;
   if (absl::SimpleAtoi(text, &seed)) return seed;
-  return Wanted(text, "a whole number from 0 to 18446744073709551615");
+  return Expected("a whole number from 0 to 18446744073709551615", text);
 }
 
 std::optional<motion::Vec3> ParsePoint(absl::string_view text) {
@@ -92,7 +92,7 @@ std::optional<motion::Vec3> ParsePoint(absl::string_view text) {
 absl::StatusOr<motion::Vec3> ParseDirection(absl::string_view text) {
   const std::optional<motion::Vec3> direction = ParsePoint(text);
   if (direction.has_value()) return *direction;
-  return Wanted(text, "X,Y,Z such as 1,0,0");
+  return Expected("X,Y,Z such as 1,0,0", text);
 }
 
 void SortByClass(std::vector<ClassWeight>* labels) {

@@ -14,8 +14,8 @@
 
 namespace duet::client::batch {
 
-// How values are written in recipes, manifests and flags. Errors: INVALID_ARGUMENT '"text", wanted
-// ...'.
+// How values are written in recipes, manifests and flags. Errors: INVALID_ARGUMENT 'expected
+// ..., got "text"'.
 
 // "NAME", "NAME@VERSION" or "NAME:LABEL"
 absl::StatusOr<ModelChoice> ParseModelChoice(absl::string_view text);

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cstdlib>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -9,7 +10,9 @@
 
 #include "client/batch/estimate.h"
 #include "client/batch/job.h"
+#include "client/batch/journal.h"
 #include "client/batch/merge.h"
+#include "client/batch/plan_check.h"
 #include "client/batch/setup.h"
 #include "client/batch/survey.h"
 #include "client/batch/verify.h"
@@ -80,8 +83,7 @@ ExitCode CodeOf(const batch::JobReport& report, bool stopped) {
 }
 
 absl::StatusOr<ExitCode> RunJob(const BatchArguments& arguments, batch::Job& job,
-                                const std::filesystem::path& folder,
-                                const std::atomic<int64_t>& total,
+                                const std::filesystem::path& folder, int64_t total,
                                 const ProgramEnvironment& environment, const RunningJob& running) {
   absl::StatusOr<batch::JobReport> report;
   {
@@ -100,25 +102,42 @@ struct Prepared {
   batch::Recipe recipe;
   batch::Shard shard;
   std::vector<ModelInfo> models;
+  RequestLimits limits;
   std::vector<motion::Skeleton> skeletons;
   std::vector<std::vector<Client>> servers;
 };
 
 absl::Status Prepare(const BatchArguments& arguments, const ProgramEnvironment& environment,
                      const std::vector<ModelChoice>& begun, Prepared* prepared) {
-  absl::StatusOr<std::vector<ModelInfo>> models =
+  absl::StatusOr<batch::ResolvedModels> resolved =
       AskModels(arguments, environment, prepared->recipe, begun);
-  if (!models.ok()) return models.status();
-  for (const ModelInfo& model : *models) {
+  if (!resolved.ok()) return resolved.status();
+  for (const ModelInfo& model : resolved->models) {
     absl::StatusOr<motion::Skeleton> skeleton = ToSkeleton(model);
     if (!skeleton.ok()) return skeleton.status();
     prepared->skeletons.push_back(*std::move(skeleton));
   }
-  prepared->models = *std::move(models);
+  prepared->models = std::move(resolved->models);
+  prepared->limits = resolved->limits;
   absl::StatusOr<std::vector<std::vector<Client>>> servers = Connect(arguments, environment);
   if (!servers.ok()) return servers.status();
   prepared->servers = *std::move(servers);
   return absl::OkStatus();
+}
+
+// Every line of the manifest and every leader of the run's items, before anything is asked for.
+absl::StatusOr<batch::PlanCheck> Check(const BatchArguments& arguments,
+                                       const ProgramEnvironment& environment,
+                                       const Prepared& prepared,
+                                       const batch::JournalReader* settled,
+                                       const std::function<bool()>& stopped) {
+  std::vector<std::string> passed_over;
+  absl::StatusOr<batch::Plan> plan =
+      MakePlan(arguments, prepared.recipe, prepared.models, environment.in, &passed_over);
+  if (!plan.ok()) return plan.status();
+  ReportPassedOver(arguments, passed_over, environment);
+  const batch::PlanPart part{prepared.shard, arguments.limit, arguments.share, settled};
+  return CheckPlan(prepared.recipe, prepared.skeletons, prepared.limits, part, &*plan, stopped);
 }
 
 absl::StatusOr<ExitCode> RunDry(const BatchArguments& arguments,
@@ -128,29 +147,48 @@ absl::StatusOr<ExitCode> RunDry(const BatchArguments& arguments,
   absl::Status status = Prepare(arguments, environment,
                                 begun.ok() ? begun->models : std::vector<ModelChoice>(), &prepared);
   if (!status.ok()) return status;
-  std::vector<std::string> passed_over;
-  absl::StatusOr<batch::Plan> plan =
-      MakePlan(arguments, prepared.recipe, prepared.models, environment.in, &passed_over);
-  if (!plan.ok()) return plan.status();
-  ReportPassedOver(arguments, passed_over, environment);
-  const absl::StatusOr<batch::Estimate> estimate =
-      EstimateJob(prepared.recipe, prepared.models, prepared.skeletons, prepared.shard,
-                  arguments.limit, prepared.servers.front().front(), &*plan);
-  if (!estimate.ok()) return estimate.status();
-  Report(arguments, *estimate, environment);
-  return estimate->unreadable > 0 ? kExitBadInput : kExitDone;
+  const absl::StatusOr<batch::PlanCheck> check =
+      Check(arguments, environment, prepared, nullptr, [] { return false; });
+  if (!check.ok()) return check.status();
+  const bool good = check->bad_line_count == 0 && check->bad_leader_count == 0;
+  absl::StatusOr<batch::Estimate> estimate = batch::Estimate();
+  if (check->bad_line_count == 0) {
+    estimate = EstimateJob(prepared.recipe, prepared.models, prepared.skeletons, prepared.limits,
+                           *check, prepared.servers.front().front());
+    if (!estimate.ok()) {
+      ReportBadLeaders(arguments, *check, environment);
+      return estimate.status();
+    }
+  }
+  Report(arguments, *check, *estimate, environment);
+  return good ? kExitDone : kExitBadInput;
+}
+
+// The same before a run, which bad lines stop. What the journal has settled is not looked at again.
+absl::StatusOr<batch::PlanCheck> CheckForRun(const BatchArguments& arguments,
+                                             const ProgramEnvironment& environment,
+                                             const Prepared& prepared,
+                                             const batch::JobFolder& folder,
+                                             const RunningJob& running) {
+  const absl::StatusOr<batch::JournalReader> journal = batch::JournalReader::Open(folder.journal());
+  // A journal that cannot be read is the job's to report.
+  const bool has_settled = journal.ok() && !arguments.retry_failed;
+  absl::StatusOr<batch::PlanCheck> check =
+      Check(arguments, environment, prepared, has_settled ? &*journal : nullptr,
+            [&running] { return running.stopped(); });
+  if (!check.ok()) return check;
+  ReportBadLeaders(arguments, *check, environment);
+  absl::Status status = BadLinesError(*check);
+  if (!status.ok()) return status;
+  return check;
 }
 
 // What earlier runs left of the plan, before anything is asked for.
-absl::StatusOr<batch::Survey> Survey(const BatchArguments& arguments,
-                                     const ProgramEnvironment& environment,
-                                     const Prepared& prepared, const batch::JobIdentity& identity,
+absl::StatusOr<batch::Survey> Survey(const BatchArguments& arguments, const Prepared& prepared, const batch::JobIdentity& identity,
                                      const batch::JobFolder& folder) {
-  std::vector<std::string> passed_over;
   absl::StatusOr<batch::Plan> plan =
-      MakePlan(arguments, prepared.recipe, prepared.models, nullptr, &passed_over);
+      MakePlan(arguments, prepared.recipe, prepared.models, nullptr, nullptr);
   if (!plan.ok()) return plan.status();
-  ReportPassedOver(arguments, passed_over, environment);
   const batch::SurveyedPart part{arguments.limit, arguments.share, arguments.retry_failed};
   return TakeSurvey(folder, identity, part, &*plan);
 }
@@ -168,23 +206,31 @@ absl::StatusOr<ExitCode> RunWhole(const BatchArguments& arguments,
   BatchArguments repeatable = arguments;
   status = CopyManifest(folder.temporary(), environment.in, &repeatable);
   if (!status.ok()) return status;
-  const batch::JobIdentity identity = WithModels(wanted, prepared.models, prepared.skeletons);
-  const absl::StatusOr<batch::Survey> survey =
-      Survey(repeatable, environment, prepared, identity, folder);
+  const absl::StatusOr<batch::PlanCheck> check =
+      CheckForRun(repeatable, environment, prepared, folder, running);
+  if (!check.ok()) return check.status();
+  if (running.stopped()) return kExitRetry;
+  const absl::StatusOr<batch::JobIdentity> identity =
+      GoOn(begun, WithModels(wanted, prepared.models, prepared.skeletons));
+  if (!identity.ok()) return identity.status();
+  const absl::StatusOr<batch::Survey> survey = Survey(repeatable, prepared, *identity, folder);
   if (!survey.ok()) return survey.status();
   absl::StatusOr<batch::Plan> plan =
       MakePlan(repeatable, prepared.recipe, prepared.models, nullptr, nullptr);
   if (!plan.ok()) return plan.status();
   // Nothing before this keeps another recipe from the folder.
-  if (begun.models.empty() || begun.recipe_json.empty()) status = folder.Begin(identity);
+  if (begun.description.models.empty() || begun.recipe_json.empty()) {
+    status = folder.Begin(*identity);
+  }
   if (status.ok()) status = KeepCommand(arguments, prepared.shard, folder);
   if (!status.ok()) return status;
-  const std::atomic<int64_t> total{survey->planned};
-  batch::Job job({std::move(prepared.recipe), identity, std::move(prepared.models),
-                  std::move(prepared.skeletons), std::move(prepared.servers), &folder, &*survey},
+  batch::Job job({std::move(prepared.recipe), *identity, std::move(prepared.models),
+                  std::move(prepared.skeletons), prepared.limits, std::move(prepared.servers),
+                  &folder, &*survey},
                  *std::move(plan), ToJobOptions(arguments));
   running.Set(&job);
-  absl::StatusOr<ExitCode> code = RunJob(arguments, job, folder.out(), total, environment, running);
+  absl::StatusOr<ExitCode> code =
+      RunJob(arguments, job, folder.out(), survey->planned, environment, running);
   running.Set(nullptr);
   return code;
 }

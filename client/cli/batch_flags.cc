@@ -18,7 +18,7 @@ Exit codes:
   0   every item is settled: done, or rejected by the recipe's filter
   1   worth running again: stopped, a server away, a full disk, items that failed for now
   2   the command line makes no sense
-  42  items failed for good (errors/), or the recipe, the input or the models are refused
+  42  items failed for good (failed.tsv), or the recipe, the input or the models are refused
 
 Example:
   duet batch walks/ --recipe mixes.textproto --out set
@@ -84,6 +84,12 @@ void AddOutputFlags(CLI::App* app, BatchArguments* arguments) {
       [arguments](batch::Packing packing) { arguments->overrides.packing = packing; },
       "Files in folders, WebDataset tar shards or npz shards; instead of the recipe's")
       ->group(kGroup);
+  app->add_option(
+         "--rate", arguments->overrides.frame_rate_hz,
+         "Resample leader and follower of every item to this rate; instead of the recipe's")
+      ->check(AboveZero())
+      ->type_name("HZ")
+      ->group(kGroup);
   app->add_option("--retries-per-item", arguments->overrides.retries_per_item,
                   "Other seeds to try while the filter rejects; instead of the recipe's")
       ->check(Undescribed(CLI::Range(0, 100)))
@@ -93,7 +99,7 @@ void AddOutputFlags(CLI::App* app, BatchArguments* arguments) {
                 "Ask again for items that failed for good; of a packed set into further shards")
       ->group(kGroup);
   app->add_flag("--dry-run", arguments->dry_run,
-                "Count, read every leader, ask for one answer, estimate time and disk")
+                "Check every line and leader, ask for one answer, estimate time and disk")
       ->group(kGroup);
   app->add_flag("--json", arguments->json, "Print events and the summary as JSON lines")
       ->group(kGroup);

@@ -18,11 +18,10 @@ double Rate(const batch::Progress& progress, double seconds) {
   return seconds > 0 ? static_cast<double>(ItemsOfRun(progress)) / seconds : 0;
 }
 
-std::optional<double> SecondsLeft(const batch::Progress& progress, std::optional<int64_t> total,
-                                  double seconds) {
+std::optional<double> SecondsLeft(const batch::Progress& progress, int64_t total, double seconds) {
   const double rate = Rate(progress, seconds);
-  if (!total.has_value() || rate <= 0) return std::nullopt;
-  const int64_t left = *total - progress.resumed - ItemsOfRun(progress);
+  if (rate <= 0) return std::nullopt;
+  const int64_t left = total - progress.resumed - ItemsOfRun(progress);
   return static_cast<double>(std::max<int64_t>(left, 0)) / rate;
 }
 
@@ -38,10 +37,8 @@ void AddCount(const char* what, int64_t count, std::string* line) {
 
 }  // namespace
 
-std::string ProgressLine(const batch::Progress& progress, std::optional<int64_t> total,
-                         double seconds) {
-  std::string line = absl::StrCat(progress.resumed + ItemsOfRun(progress));
-  if (total.has_value()) absl::StrAppend(&line, " of ", *total);
+std::string ProgressLine(const batch::Progress& progress, int64_t total, double seconds) {
+  std::string line = absl::StrCat(progress.resumed + ItemsOfRun(progress), " of ", total);
   absl::StrAppendFormat(&line, " items, %.1f a second", Rate(progress, seconds));
   if (const auto left = SecondsLeft(progress, total, seconds); left.has_value()) {
     absl::StrAppend(&line, ", ", Clock(*left), " left");
@@ -55,8 +52,7 @@ std::string ProgressLine(const batch::Progress& progress, std::optional<int64_t>
   return line;
 }
 
-std::string ProgressEvent(const batch::Progress& progress, std::optional<int64_t> total,
-                          double seconds) {
+std::string ProgressEvent(const batch::Progress& progress, int64_t total, double seconds) {
   nlohmann::ordered_json event = {{"event", "progress"},
                                   {"seconds", seconds},
                                   {"resumed", progress.resumed},
@@ -67,16 +63,15 @@ std::string ProgressEvent(const batch::Progress& progress, std::optional<int64_t
                                   {"bytes", progress.bytes},
                                   {"in_flight", progress.calls.in_flight},
                                   {"window", progress.calls.limit},
-                                  {"refusals", progress.calls.refusals}};
-  if (total.has_value()) event["total"] = *total;
+                                  {"refusals", progress.calls.refusals},
+                                  {"total", total}};
   if (const auto left = SecondsLeft(progress, total, seconds); left.has_value()) {
     event["seconds_left"] = *left;
   }
   return event.dump() + "\n";
 }
 
-ProgressDisplay::ProgressDisplay(Kind kind, const batch::Job& job,
-                                 const std::atomic<int64_t>& total, std::ostream& out)
+ProgressDisplay::ProgressDisplay(Kind kind, const batch::Job& job, int64_t total, std::ostream& out)
     : kind_(kind), job_(job), total_(total), out_(out) {
   if (kind != Kind::kNone) shower_ = std::thread([this] { ShowUntilEnd(); });
 }
@@ -96,16 +91,14 @@ ProgressDisplay::~ProgressDisplay() {
 void ProgressDisplay::Show() {
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  const int64_t known = total_;
-  const std::optional<int64_t> total = known < 0 ? std::nullopt : std::optional<int64_t>(known);
   const batch::Progress progress = job_.progress();
   if (kind_ == Kind::kEvents) {
-    out_ << ProgressEvent(progress, total, seconds) << std::flush;
+    out_ << ProgressEvent(progress, total_, seconds) << std::flush;
   } else if (kind_ == Kind::kTerminal) {
     // Back to the start of the line, and what is left of the last one removed.
-    out_ << "\r" << ProgressLine(progress, total, seconds) << "\x1b[K" << std::flush;
+    out_ << "\r" << ProgressLine(progress, total_, seconds) << "\x1b[K" << std::flush;
   } else {
-    out_ << ProgressLine(progress, total, seconds) << "\n" << std::flush;
+    out_ << ProgressLine(progress, total_, seconds) << "\n" << std::flush;
   }
 }
 

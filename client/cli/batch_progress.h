@@ -1,7 +1,6 @@
 #ifndef DUET_CLIENT_CLI_BATCH_PROGRESS_H_
 #define DUET_CLIENT_CLI_BATCH_PROGRESS_H_
 
-#include <atomic>
 #include <condition_variable>
 #include <cstdint>
 #include <functional>
@@ -15,22 +14,18 @@
 
 namespace duet::client::cli {
 
-// One line about how far a run is: items, rate, time left where the total is known, refusals and
-// failures.
-std::string ProgressLine(const batch::Progress& progress, std::optional<int64_t> total,
-                         double seconds);
+// One line about how far a run is: items, rate, time left, refusals and failures.
+std::string ProgressLine(const batch::Progress& progress, int64_t total, double seconds);
 // The same as a JSON line {"event": "progress", ...}.
-std::string ProgressEvent(const batch::Progress& progress, std::optional<int64_t> total,
-                          double seconds);
+std::string ProgressEvent(const batch::Progress& progress, int64_t total, double seconds);
 
 // Shows the progress of a run while it lives: in place on a terminal, else a line every ten
 // seconds, as an event every second.
 class ProgressDisplay {
  public:
   enum class Kind { kNone, kTerminal, kLines, kEvents };
-  // `total` may come to be known later; below 0 until then. All outlive the display.
-  ProgressDisplay(Kind kind, const batch::Job& job, const std::atomic<int64_t>& total,
-                  std::ostream& out);
+  // `total`: items that the run makes or has. Job and stream outlive the display.
+  ProgressDisplay(Kind kind, const batch::Job& job, int64_t total, std::ostream& out);
   ProgressDisplay(const ProgressDisplay&) = delete;
   ProgressDisplay& operator=(const ProgressDisplay&) = delete;
   ~ProgressDisplay();
@@ -41,7 +36,7 @@ class ProgressDisplay {
 
   Kind kind_;
   const batch::Job& job_;
-  const std::atomic<int64_t>& total_;
+  const int64_t total_;
   std::ostream& out_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   std::mutex mutex_;

@@ -1,12 +1,59 @@
 #include "client/cli/batch_report.h"
 
+#include <algorithm>
 #include <ostream>
 
+#include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "nlohmann/json.hpp"
 
 namespace duet::client::cli {
+namespace {
+
+// Causes that are named in the summary; failed.tsv has all.
+constexpr size_t kCausesShown = 5;
+
+std::string Counted(int64_t count, const char* what) {
+  return absl::StrCat(count, " ", what, count == 1 ? "" : "s");
+}
+
+std::string Line(const nlohmann::ordered_json& event) {
+  return event.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+void WriteMore(int64_t all, size_t shown, const ProgramEnvironment& environment) {
+  const int64_t more = all - static_cast<int64_t>(shown);
+  if (more > 0) *environment.err << "  and " << more << " more\n";
+}
+
+void WriteBadLeaders(const batch::PlanCheck& check, const ProgramEnvironment& environment) {
+  if (check.bad_leader_count == 0) return;
+  *environment.err << Counted(check.bad_leader_count, "leader") << " cannot be used, of "
+                   << Counted(check.items_of_bad_leaders, "item") << ":\n";
+  for (const batch::BadLeader& leader : check.bad_leaders) {
+    *environment.err << "  " << leader.message << " (" << Counted(leader.items, "item") << ")\n";
+  }
+  WriteMore(check.bad_leader_count, check.bad_leaders.size(), environment);
+}
+
+std::vector<std::string> Problems(const batch::PlanCheck& check) {
+  std::vector<std::string> problems = check.bad_lines;
+  for (const batch::BadLeader& leader : check.bad_leaders) problems.push_back(leader.message);
+  return problems;
+}
+
+// "  26 items of 1 leader: NOT_FOUND: no such file"
+void WriteCauses(const std::vector<batch::FailureCause>& causes, std::ostream& out) {
+  for (size_t i = 0; i < std::min(causes.size(), kCausesShown); ++i) {
+    const batch::FailureCause& cause = causes[i];
+    out << "  " << Counted(cause.items, "item");
+    if (cause.leaders > 0) out << " of " << Counted(cause.leaders, "leader");
+    out << ": " << cause.code << (cause.code.empty() ? "" : ": ") << cause.message << "\n";
+  }
+}
+
+}  // namespace
 
 void Report(const BatchArguments& arguments, const std::filesystem::path& folder,
             const batch::JobReport& report, const ProgramEnvironment& environment) {
@@ -21,35 +68,73 @@ void Report(const BatchArguments& arguments, const std::filesystem::path& folder
                                           {"missing", report.planned - settled},
                                           {"bytes", report.set.bytes},
                                           {"packed", report.packed},
+                                          {"failures", ToJson(report.set.failures)},
+                                          {"unfinished", ToJson(report.unfinished_causes)},
                                           {"stopped", std::string(report.stopped.message())}};
-    *environment.out << event.dump() << "\n";
+    *environment.out << Line(event) << "\n";
   } else if (!arguments.quiet) {
     *environment.out << folder.string() << ": " << report.set.done << " done, "
                      << report.set.rejected << " rejected, " << report.set.failed << " failed, "
                      << report.planned - settled << " missing\n";
   }
-  if (arguments.json || !report.packed || report.set.failed == 0) return;
+  if (arguments.json) return;
+  if (!report.set.failures.empty()) {
+    *environment.err << "failed for good, each leader in " << (folder / "failed.tsv").string()
+                     << ":\n";
+    WriteCauses(report.set.failures, *environment.err);
+  }
+  if (!report.unfinished_causes.empty()) {
+    *environment.err << "failed for now, run again:\n";
+    WriteCauses(report.unfinished_causes, *environment.err);
+  }
+  if (!report.packed || report.set.failed == 0) return;
   *environment.err << "duet: the shards leave out the " << report.set.failed
                    << " that failed; --retry-failed asks for them again, and adds a shard\n";
 }
 
-void Report(const BatchArguments& arguments, const batch::Estimate& estimate,
-            const ProgramEnvironment& environment) {
+void Report(const BatchArguments& arguments, const batch::PlanCheck& check,
+            const batch::Estimate& estimate, const ProgramEnvironment& environment) {
   if (arguments.json) {
-    const nlohmann::ordered_json event = {
-        {"event", "estimate"},         {"items", estimate.items},
-        {"leaders", estimate.leaders}, {"unreadable", estimate.unreadable},
-        {"frames", estimate.frames},   {"seconds", estimate.seconds},
-        {"bytes", estimate.bytes},     {"problems", estimate.problems}};
-    *environment.out << event.dump() << "\n";
+    const nlohmann::ordered_json event = {{"event", "estimate"},
+                                          {"items", check.items},
+                                          {"leaders", check.leaders},
+                                          {"frames", check.frames},
+                                          {"seconds", estimate.seconds},
+                                          {"bytes", estimate.bytes},
+                                          {"bad_lines", check.bad_line_count},
+                                          {"bad_leaders", check.bad_leader_count},
+                                          {"items_of_bad_leaders", check.items_of_bad_leaders},
+                                          {"problems", Problems(check)}};
+    *environment.out << Line(event) << "\n";
     return;
   }
-  *environment.out << absl::StrFormat(
-      "%d items of %d leaders, %d frames: about %.0f s of calls one after the other, %.1f MB\n",
-      estimate.items, estimate.leaders, estimate.frames, estimate.seconds, estimate.bytes / 1e6);
-  if (estimate.unreadable == 0) return;
-  *environment.err << estimate.unreadable << " leaders cannot be read:\n";
-  for (const std::string& problem : estimate.problems) *environment.err << "  " << problem << "\n";
+  *environment.out << absl::StrFormat("%d items of %d leaders, %d frames", check.items,
+                                      check.leaders, check.frames);
+  if (estimate.bytes > 0) {
+    *environment.out << absl::StrFormat(": about %.0f s of calls one after the other, %.1f MB",
+                                        estimate.seconds, estimate.bytes / 1e6);
+  }
+  *environment.out << "\n";
+  if (check.bad_line_count > 0) {
+    *environment.err << Counted(check.bad_line_count, "bad line") << ":\n";
+    for (const std::string& line : check.bad_lines) *environment.err << "  " << line << "\n";
+    WriteMore(check.bad_line_count, check.bad_lines.size(), environment);
+  }
+  WriteBadLeaders(check, environment);
+}
+
+void ReportBadLeaders(const BatchArguments& arguments, const batch::PlanCheck& check,
+                      const ProgramEnvironment& environment) {
+  if (check.bad_leader_count == 0) return;
+  if (arguments.json) {
+    const nlohmann::ordered_json event = {{"event", "bad_leaders"},
+                                          {"bad_leaders", check.bad_leader_count},
+                                          {"items_of_bad_leaders", check.items_of_bad_leaders},
+                                          {"problems", Problems(check)}};
+    *environment.out << Line(event) << "\n";
+  } else {
+    WriteBadLeaders(check, environment);
+  }
 }
 
 void Report(const BatchArguments& arguments, const batch::MergeReport& report,

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "absl/time/time.h"
-#include "client/batch/setup.h"
 #include "client/cli/server_options.h"
 
 namespace duet::client::cli {
@@ -36,10 +35,10 @@ absl::StatusOr<std::vector<std::vector<Client>>> Connect(const BatchArguments& a
   return servers;
 }
 
-absl::StatusOr<std::vector<ModelInfo>> AskModels(const BatchArguments& arguments,
-                                                 const ProgramEnvironment& environment,
-                                                 const batch::Recipe& recipe,
-                                                 const std::vector<ModelChoice>& begun) {
+absl::StatusOr<batch::ResolvedModels> AskModels(const BatchArguments& arguments,
+                                                const ProgramEnvironment& environment,
+                                                const batch::Recipe& recipe,
+                                                const std::vector<ModelChoice>& begun) {
   absl::Status status;
   for (const std::string& address : arguments.servers) {
     ServerArguments server = arguments.connection;
@@ -51,7 +50,7 @@ absl::StatusOr<std::vector<ModelInfo>> AskModels(const BatchArguments& arguments
     options->wait = options->deadline;
     const absl::StatusOr<Client> client = environment.connect(*options);
     if (!client.ok()) return client.status();
-    absl::StatusOr<std::vector<ModelInfo>> models = ResolveModels(*client, recipe, begun);
+    absl::StatusOr<batch::ResolvedModels> models = ResolveModels(*client, recipe, begun);
     if (models.ok()) return models;
     status = models.status();
     if (!absl::IsUnavailable(status) && !absl::IsDeadlineExceeded(status)) break;

@@ -5,6 +5,7 @@
 
 #include "absl/status/statusor.h"
 #include "client/batch/recipe.h"
+#include "client/batch/setup.h"
 #include "client/cli/arguments.h"
 #include "client/cli/program.h"
 #include "client/client.h"
@@ -17,10 +18,10 @@ absl::StatusOr<std::vector<std::vector<Client>>> Connect(const BatchArguments& a
 
 // The models, from the first server that answers: those that a set was begun with, or else the
 // recipe's.
-absl::StatusOr<std::vector<ModelInfo>> AskModels(const BatchArguments& arguments,
-                                                 const ProgramEnvironment& environment,
-                                                 const batch::Recipe& recipe,
-                                                 const std::vector<ModelChoice>& begun);
+absl::StatusOr<batch::ResolvedModels> AskModels(const BatchArguments& arguments,
+                                                const ProgramEnvironment& environment,
+                                                const batch::Recipe& recipe,
+                                                const std::vector<ModelChoice>& begun);
 
 }  // namespace duet::client::cli
 

@@ -58,6 +58,7 @@ std::string DescribeModel(const ModelInfo& model) {
   absl::StrAppend(&text, "\n  answers   ",
                   model.samples ? "vary with --seed and --variety" : "one, whatever the seed");
   if (!model.description.empty()) absl::StrAppend(&text, "\n  about     ", model.description);
+  if (!model.terms.empty()) absl::StrAppend(&text, "\n  terms     ", model.terms);
   return text + "\n";
 }
 
@@ -76,7 +77,9 @@ json ModelJson(const ModelInfo& model) {
           {"window_frames", model.window_frames},
           {"accepts_follower_start", model.accepts_follower_start},
           {"samples", model.samples},
-          {"description", model.description}};
+          {"description", model.description},
+          {"terms", model.terms},
+          {"weights_sha256", model.weights_sha256}};
 }
 
 // How the user of this program says what a motion file does not.

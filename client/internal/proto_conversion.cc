@@ -175,6 +175,8 @@ absl::StatusOr<ModelInfo> FromProto(const v1::Model& model) {
   info.accepts_follower_start = model.accepts_follower_start();
   info.samples = model.samples();
   info.description = model.description();
+  info.terms = model.terms();
+  info.weights_sha256 = model.weights_sha256();
   return info;
 }
 

@@ -34,6 +34,7 @@ constexpr std::size_t kMaxTextBytes = 4096;
 constexpr int kMaxDepth = 6;
 constexpr std::size_t kSha256HexBytes = 64;
 constexpr char kTouchingClasses[] = "touching_classes";
+constexpr char kTerms[] = "terms";
 
 // Names that serve as a file, a folder, a tensor or a metric name as they are.
 bool IsPlain(char c) {
@@ -199,6 +200,7 @@ void ReadModel(base::ObjectReader* reader, engine::ModelDescription* model) {
   model->name = ReadName(reader, "name");
   model->version = static_cast<int>(reader->Int("version", 1, std::numeric_limits<int>::max()));
   model->description = reader->String("description", kMaxTextBytes);
+  if (reader->Has(kTerms)) model->terms = reader->String(kTerms, kMaxTextBytes);
   model->frame_rate_hz = reader->Number("frame_rate_hz", 1, motion::kMaxServedFrameRateHz);
   model->window_frames = static_cast<int>(reader->Int("window_frames", 2, kMaxWindowFrames));
   model->classes = ReadUniqueNames(reader, "classes", kMaxClasses);
@@ -236,6 +238,7 @@ absl::StatusOr<Manifest> ReadManifest(const json& root) {
   manifest.standardisation = ReadNamed(&reader, "standardisation", kStandardisationNames);
   const json& weights = reader.Object("weights");
   if (reader.ok()) Take(ReadWeightsFile(weights), &reader, &manifest.weights);
+  manifest.model.weights_sha256 = manifest.weights.sha256;
   manifest.git_revision = reader.String("git_revision", kMaxTextBytes);
   manifest.created = ReadTime(&reader, "created");
   ReadTraining(&reader, &manifest);
@@ -317,6 +320,7 @@ std::string SerializeManifest(const Manifest& manifest) {
       {"training", manifest.training},
       {"metrics", manifest.metrics}};
   if (manifest.format_version > 1) root[kTouchingClasses] = model.touching_classes;
+  if (!model.terms.empty()) root[kTerms] = model.terms;
   if (model.leader_statistics) {
     root[kLeaderStatistics] = LeaderStatisticsToJson(*model.leader_statistics);
   }

@@ -80,8 +80,8 @@ std::string ToPlainName(std::string_view text);
 // Reads and writes manifest.json. Strict: unknown, missing, repeated or mistyped fields, sizes out
 // of range and inconsistent skeletons are INVALID_ARGUMENT, naming the field, what came and what
 // was wanted. `text` may come from anywhere. model.accepts_follower_start is taken from
-// generator.follower_start; a sampling generator always accepts one. Fields:
-// docs/checkpoint_format.md.
+// generator.follower_start; a sampling generator always accepts one. model.weights_sha256 is taken
+// from weights. Fields: docs/checkpoint_format.md.
 absl::StatusOr<Manifest> ParseManifest(std::string_view text);
 // Requires a skeleton and parts that Validate accepts.
 std::string SerializeManifest(const Manifest& manifest);

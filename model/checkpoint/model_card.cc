@@ -102,6 +102,15 @@ std::string Figures(const Manifest& manifest) {
   return text;
 }
 
+std::string Terms(const Manifest& manifest) {
+  if (!manifest.model.terms.empty()) return manifest.model.terms;
+  const std::string data = Note(manifest, "data");
+  return absl::StrCat("Terms: as those of the data set ",
+                      data.empty() ? "that it was trained on" : data,
+                      " (complete this sentence before passing the model on, and add it to "
+                      "manifest.json as \"terms\").");
+}
+
 std::string Settings(const Manifest& manifest) {
   std::string text = "| setting | value |\n|---|---|\n";
   for (const auto& [key, value] : manifest.training) {
@@ -126,10 +135,7 @@ std::string ModelCard(const Manifest& manifest) {
       "It knows what its data shows: those classes, clips of those lengths, bodies like those\n"
       "captured. For a leader unlike these it answers all the same; the reply's summary says how\n"
       "unfamiliar the leader is. Faces, fingers and objects are not part of it.\n",
-      "\n## Terms\n\n", "Terms: as those of the data set ",
-      Note(manifest, "data").empty() ? "that it was trained on" : Note(manifest, "data"),
-      " (complete this sentence before passing the model on).\n", "\n## Settings\n\n",
-      Settings(manifest));
+      "\n## Terms\n\n", Terms(manifest), "\n", "\n## Settings\n\n", Settings(manifest));
 }
 
 }  // namespace duet::checkpoint

@@ -52,6 +52,10 @@ DatasetLayout K3hiLayout();
 // the field, what came and what was wanted. `text` may come from anywhere.
 absl::StatusOr<DatasetLayout> ParseDatasetLayout(std::string_view text);
 
+// Whether `text` is the dataset.json of a set that `duet batch` made (dataset.proto): no layout;
+// its files are told apart as those of SBU and K3HI.
+bool DescribesBatch(std::string_view text);
+
 }  // namespace duet::dataset
 
 #endif  // DUET_MODEL_DATASET_LAYOUT_H_

@@ -137,4 +137,10 @@ absl::StatusOr<DatasetLayout> ParseDatasetLayout(std::string_view text) {
   return layout;
 }
 
+bool DescribesBatch(std::string_view text) {
+  const absl::StatusOr<Json> json =
+      base::ParseHandwrittenJson({text.data(), text.size()}, kMaxDepth);
+  return json.ok() && json->value("format", Json()) == "duet-batch";
+}
+
 }  // namespace duet::dataset

@@ -221,11 +221,8 @@ absl::StatusOr<Dataset> ReadFiles(const fs::path& folder, const DatasetLayout& l
   return dataset;
 }
 
-absl::StatusOr<Dataset> ReadOwnData(const fs::path& folder) {
-  absl::StatusOr<std::string> text =
-      base::ReadFile(folder / "dataset.json", kMaxLayoutBytes, "a data set's layout");
-  if (!text.ok()) return text.status();
-  absl::StatusOr<DatasetLayout> layout = ParseDatasetLayout(*text);
+absl::StatusOr<Dataset> ReadOwnData(const fs::path& folder, const std::string& text) {
+  absl::StatusOr<DatasetLayout> layout = ParseDatasetLayout(text);
   if (!layout.ok()) {
     return absl::InvalidArgumentError(
         absl::StrCat((folder / "").string(), layout.status().message()));
@@ -240,7 +237,12 @@ absl::StatusOr<Dataset> ReadOwnData(const fs::path& folder) {
 absl::StatusOr<Dataset> ReadDataset(const fs::path& folder) {
   absl::StatusOr<std::vector<std::string>> names = ListFolder(folder);
   if (!names.ok()) return names.status();
-  if (std::count(names->begin(), names->end(), "dataset.json") > 0) return ReadOwnData(folder);
+  if (std::count(names->begin(), names->end(), "dataset.json") > 0) {
+    const absl::StatusOr<std::string> text =
+        base::ReadFile(folder / "dataset.json", kMaxLayoutBytes, "a data set's layout");
+    if (!text.ok()) return text.status();
+    if (!DescribesBatch(*text)) return ReadOwnData(folder, *text);
+  }
   if (std::any_of(names->begin(), names->end(), IsSbuSet)) {
     const DatasetLayout layout = SbuLayout();
     absl::StatusOr<std::vector<FoundFile>> files = FindSbuFiles(folder, layout, *names);

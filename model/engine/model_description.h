@@ -16,6 +16,8 @@ struct ModelDescription {
   std::string name;
   int version = 0;  // 1 or more
   std::string description;
+  std::string terms;           // of use; empty: the checkpoint does not state them
+  std::string weights_sha256;  // of the weights file, lower-case hex; empty: not from a checkpoint
   motion::Skeleton skeleton;
   std::vector<std::string> classes;  // interaction classes, in the order of the label vector
   // Those of the classes in which bodies touch as they like.

@@ -32,6 +32,8 @@ v1::Model ToMessage(const registry::ServedModel& served) {
   message.set_accepts_follower_start(model.accepts_follower_start);
   message.set_samples(model.samples);
   message.set_description(model.description);
+  message.set_terms(model.terms);
+  message.set_weights_sha256(model.weights_sha256);
   return message;
 }
 

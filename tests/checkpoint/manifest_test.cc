@@ -131,6 +131,18 @@ TEST(Manifest, KeepsAnyText) {
   EXPECT_EQ(read->model.description, manifest.model.description);
 }
 
+TEST(Manifest, TermsAndDigestReachTheDescription) {
+  Manifest manifest = CompleteManifest();
+  manifest.model.terms = "For research only.";
+  const absl::StatusOr<Manifest> read = ParseManifest(SerializeManifest(manifest));
+  ASSERT_THAT(read, IsOk());
+  EXPECT_EQ(read->model.terms, "For research only.");
+  EXPECT_EQ(read->model.weights_sha256, manifest.weights.sha256);
+  const absl::StatusOr<Manifest> silent = ParseManifest(SerializeManifest(CompleteManifest()));
+  ASSERT_THAT(silent, IsOk());
+  EXPECT_EQ(silent->model.terms, "");
+}
+
 TEST(Manifest, TruncatedAtAnyLengthIsRefused) {
   const std::string text = SerializeManifest(CompleteManifest());
   const std::size_t last_brace = text.rfind('}');

@@ -48,6 +48,13 @@ TEST(ModelCardTest, TellsWhatTheManifestKnows) {
                           Not(HasSubstr("Nothing was held back"))));
 }
 
+TEST(ModelCardTest, QuotesTheTermsOfTheManifest) {
+  Manifest manifest = Trained();
+  manifest.model.terms = "For members of the studio.";
+  EXPECT_THAT(ModelCard(manifest), AllOf(HasSubstr("## Terms\n\nFor members of the studio.\n"),
+                                         Not(HasSubstr("complete this sentence"))));
+}
+
 TEST(ModelCardTest, SaysWhatIsNotKnown) {
   Manifest manifest = Trained();
   manifest.training.erase("people");

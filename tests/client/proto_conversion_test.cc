@@ -156,6 +156,8 @@ v1::Model GoodModel() {
   model.set_accepts_follower_start(true);
   model.set_samples(true);
   model.set_description("A model.");
+  model.set_terms("For research only.");
+  model.set_weights_sha256("ab12");
   return model;
 }
 
@@ -175,6 +177,8 @@ TEST(ModelTest, EveryFieldIsRead) {
   EXPECT_TRUE(info->accepts_follower_start);
   EXPECT_TRUE(info->samples);
   EXPECT_EQ(info->description, "A model.");
+  EXPECT_EQ(info->terms, "For research only.");
+  EXPECT_EQ(info->weights_sha256, "ab12");
 }
 
 TEST(ModelTest, ABoneWithoutAJointIsTheServersFault) {

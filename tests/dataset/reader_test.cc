@@ -146,6 +146,17 @@ TEST(ReadDatasetTest, ReadsOwnDataWithAnySkeleton) {
   EXPECT_FALSE(sequence.partner_direction.has_value());
 }
 
+TEST(ReadDatasetTest, SetsOfDuetBatchAreReadAsTheirLayout) {
+  CaptureFolder folder;
+  folder.Write("dataset.json", R"({"format": "duet-batch", "format_version": 1})");
+  folder.Write("kicking/001.txt", StillCapture(3));
+  folder.Write("index.tsv", "path\tleader_side\nkicking/001.txt\tleft\n");
+  const absl::StatusOr<Dataset> dataset = ReadDataset(folder.path());
+  ASSERT_TRUE(dataset.ok()) << dataset.status();
+  EXPECT_EQ(dataset->name, K3hiLayout().name);
+  EXPECT_EQ(dataset->sequences.size(), 1u);
+}
+
 TEST(ReadDatasetTest, OwnDataWithoutEffectorsNeedsTheIndex) {
   CaptureFolder folder;
   folder.Write("dataset.json", kOwnLayout);

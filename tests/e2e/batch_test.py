@@ -301,11 +301,103 @@ class BatchTest(unittest.TestCase):
         result = self.batch(out, self.recipe(), "--dry-run")
         self.assertIn("48 items of 3 leaders", result.stdout)
         self.assertFalse(out.exists())
-        (self.folder / "broken").mkdir(exist_ok=True)
-        (self.folder / "broken" / "a.bvh").write_text("HIERARCHY", encoding="utf-8")
-        result = self.batch(out, self.recipe(), "--dry-run", code=42,
-                            leaders=self.folder / "broken")
-        self.assertIn("1 leaders cannot be read", result.stderr)
+        broken = self.out("broken")
+        broken.mkdir()
+        (broken / "a.bvh").write_text("HIERARCHY", encoding="utf-8")
+        kick = (self.leaders / "kick.bvh").read_text(encoding="utf-8")
+        lines = kick.splitlines(keepends=True)
+        frames = next(i for i, line in enumerate(lines) if line.startswith("Frames:"))
+        (broken / "still.bvh").write_text(
+            "".join(lines[:frames] + ["Frames: 1\n"] + lines[frames + 1:frames + 3]),
+            encoding="utf-8")
+        result = self.batch(out, self.recipe(), "--dry-run", code=42, leaders=broken)
+        self.assertIn("2 leaders cannot be used, of 32 items", result.stderr)
+        self.assertIn("still.bvh: frames: expected at least 2, got 1 (16 items)", result.stderr)
+        self.assertFalse(out.exists())
+
+    def test_bad_lines_stop_a_run_before_it_begins(self):
+        out, manifest = self.out(), self.out("manifest.tsv")
+        rows = ["leader\tlabels\tside", f"{self.leaders}/kick.bvh\tkick=1\t",
+                f"{self.leaders}/hug.bvh\tkik=1\t", f"{self.leaders}/hug.bvh\thug=1\tlft",
+                f"{self.leaders}/hug.bvh"]
+        manifest.write_text("\n".join(rows) + "\n", encoding="utf-8")
+        command = [tools.PROGRAMS / "duet", "batch", "--manifest", manifest, "--recipe",
+                   self.recipe(), "--out", out, "--server", self.server.address]
+        for flags in ([], ["--dry-run"]):
+            result = tools.run(*command, *flags)
+            self.assertEqual(result.returncode, 42, result.stderr)
+            self.assertIn("3 bad lines", result.stderr)
+            self.assertIn(f'{manifest}:3: labels: expected classes of sbu@2', result.stderr)
+            self.assertIn(f'{manifest}:4: side: expected left or right, got "lft"', result.stderr)
+            self.assertIn(f"{manifest}:5: columns: expected 3", result.stderr)
+        self.assertFalse((out / "index.jsonl").exists())
+        self.assertFalse((out / ".duet-batch" / "job.json").exists())
+        manifest.write_text("\n".join(rows[:2]) + "\n", encoding="utf-8")
+        corrected = tools.run(*command, "--limit", "1")  # the same --out
+        self.assertEqual(corrected.returncode, 0, corrected.stderr)
+
+    def test_a_bad_leader_costs_its_own_items(self):
+        leaders, out = self.out("leaders"), self.out()
+        leaders.mkdir()
+        shutil.copy(tools.sample("kick"), leaders)
+        whole = tools.sample("hug").read_text(encoding="utf-8")
+        (leaders / "cut.bvh").write_text(whole[:len(whole) // 2], encoding="utf-8")
+        result = self.batch(out, self.recipe(), code=42, leaders=leaders)
+        self.assertIn("1 leader cannot be used, of 16 items", result.stderr)
+        self.assertIn("16 items of 1 leader: INVALID_ARGUMENT: ", result.stderr)
+        self.assertEqual(len(entries(out)), 16)
+        rows = (out / "failed.tsv").read_text(encoding="utf-8").splitlines()
+        self.assertEqual(len(rows), 2)
+        self.assertEqual(rows[1].split("\t")[:2], [str(leaders / "cut.bvh"), "16"])
+        summary = json.loads((out / "summary.json").read_text(encoding="utf-8"))
+        self.assertEqual([cause["items"] for cause in summary["failures"]], [16])
+
+    def test_every_set_describes_itself(self):
+        shards = self.out("shards")
+        self.batch(shards, self.recipe("packing: PACKING_NPZ"), "--limit", "20")
+        for out, packing in ((self.whole, "PACKING_NONE"), (shards, "PACKING_NPZ")):
+            dataset = json.loads((out / "dataset.json").read_text(encoding="utf-8"))
+            index = entries(out)
+            self.assertEqual(dataset["format"], "duet-batch")
+            self.assertEqual(dataset["packing"], packing)
+            self.assertEqual(dataset["items"]["done"], len(index))
+            self.assertEqual(dataset["frames"], sum(entry["frames"] for entry in index))
+            (skeleton,), (model,) = dataset["skeletons"], dataset["models"]
+            self.assertEqual(len(skeleton["joint_names"]), len(skeleton["parents"]))
+            self.assertEqual([skeleton["joint_names"][joint] for joint, parent
+                              in enumerate(skeleton["parents"]) if parent < 0], ["torso"])
+            self.assertEqual({entry["model"] for entry in index}, {model["name"]})
+            self.assertEqual({entry["skeleton"] for entry in index}, {model["skeleton"]})
+            self.assertIn("research", model["terms"])
+            weights = tools.SOURCE / "model" / "checkpoints" / "sbu" / "2" / "weights.safetensors"
+            self.assertEqual(model["weights_sha256"],
+                             hashlib.sha256(weights.read_bytes()).hexdigest())
+            self.assertEqual(dataset["files"][0]["unit"], "metres")
+
+    def test_one_rate_for_all_items(self):
+        leaders, out = self.out("leaders"), self.out()
+        leaders.mkdir()
+        for name, rate in (("kick", 30), ("hug", 120)):
+            made = tools.duet("convert", tools.sample(name), "--resample", rate, "--out",
+                              leaders / f"{name}.bvh")
+            self.assertEqual(made.returncode, 0, made.stderr)
+        mixed = self.out("mixed")
+        self.batch(mixed, self.recipe(), leaders=leaders)
+        described = json.loads((mixed / "dataset.json").read_text(encoding="utf-8"))
+        self.assertNotIn("frame_rate_hz", described)
+        self.assertEqual([rate["frame_rate_hz"] for rate in described["frame_rates"]], [30, 120])
+        self.batch(out, self.recipe(), "--rate", "25", leaders=leaders)
+        dataset = json.loads((out / "dataset.json").read_text(encoding="utf-8"))
+        self.assertEqual(dataset["frame_rate_hz"], 25)
+        for entry, before in zip(entries(out), entries(mixed)):
+            self.assertEqual((entry["frame_rate_hz"], entry["seed"]), (25, before["seed"]))
+            self.assertAlmostEqual(entry["frames"] / 25, before["frames"] / before["frame_rate_hz"],
+                                   delta=0.1)
+            if numpy is not None:
+                pair = numpy.load(out / entry["files"][0]["path"])
+                self.assertEqual(pair.shape, (2, entry["frames"], 15, 3))
+        another = self.batch(out, self.recipe(), "--rate", "50", code=42, leaders=leaders)
+        self.assertIn("was begun with another recipe", another.stderr)
 
     def test_what_makes_no_sense_is_refused(self):
         for words, said in ((("--out", "x", "--recipe", "r"), "leaders or --manifest"),
@@ -437,8 +529,9 @@ class BatchTest(unittest.TestCase):
         self.assertIn("1 done, 0 rejected, 1 failed", result.stdout)
         (entry,) = entries(out)
         self.assertEqual((entry["seed"], entry["extra"]), (5, {"take": "seven"}))
-        (failed,) = out.glob("errors/**/*.json")
-        self.assertIn("no such file", json.loads(failed.read_text())["error"]["message"])
+        _, failed = (out / "failed.tsv").read_text(encoding="utf-8").splitlines()
+        self.assertIn("none.bvh: no such file", failed)
+        self.assertIn("1 item of 1 leader: NOT_FOUND: no such file", result.stderr)
 
     def test_what_the_filter_rejects_is_listed(self):
         out = self.out()

@@ -1,10 +1,11 @@
-"""The tour and the cookbook do what they say: their commands and their Python run as they are
-printed, against a real server that they find by DUET_SERVER, as both say."""
+"""The tour, the cookbook and the guide to batches do what they say: their commands and their Python
+run as they are printed, against a real server that they find by DUET_SERVER, as they say."""
 
 import importlib.util
 import os
 import pathlib
 import re
+import shutil
 import sys
 import tempfile
 import unittest
@@ -19,12 +20,17 @@ BLOCK = re.compile(r"^```(sh|python)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
 class DocumentsTest(unittest.TestCase):
-    def run_blocks(self, name):
-        text = (tools.SOURCE / "docs" / "guides" / name).read_text(encoding="utf-8")
+    def run_blocks(self, name, leaders=()):
+        """Runs a document's blocks one after the other, in a folder with the sample leaders of these
+        names in `walks`."""
+        text = (tools.SOURCE / "docs" / name).read_text(encoding="utf-8")
         blocks = BLOCK.findall(text)
         with tempfile.TemporaryDirectory() as folder, tools.running_server() as server:
             for shared in ("samples", "recipes"):
                 pathlib.Path(folder, shared).symlink_to(tools.SOURCE / shared)
+            pathlib.Path(folder, "walks").mkdir()
+            for leader in leaders:
+                shutil.copy(tools.sample(leader), pathlib.Path(folder, "walks"))
             environment = {
                 **os.environ, "DUET_SERVER": server.address, "DUET_CONFIG": "",
                 "PATH": f"{tools.PROGRAMS}:{os.environ['PATH']}",
@@ -41,10 +47,13 @@ class DocumentsTest(unittest.TestCase):
         return tools.run(sys.executable, "-B", "-c", block, **options)
 
     def test_the_tour(self):
-        self.assertGreaterEqual(self.run_blocks("tour.md"), 7)
+        self.assertGreaterEqual(self.run_blocks("guides/tour.md"), 7)
 
     def test_the_cookbook(self):
-        self.assertGreaterEqual(self.run_blocks("cookbook.md"), 17)
+        self.assertGreaterEqual(self.run_blocks("guides/cookbook.md"), 17)
+
+    def test_from_leaders_to_a_training_set(self):
+        self.assertGreaterEqual(self.run_blocks("batch.md", leaders=("hug", "kick", "push")), 3)
 
 
 if __name__ == "__main__":

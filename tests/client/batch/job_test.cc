@@ -38,6 +38,7 @@ namespace {
 using test::IsOk;
 using test::ReadTestFile;
 using test::StatusIs;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
@@ -123,7 +124,7 @@ class JobTest : public ::testing::Test {
     EXPECT_THAT(folder.Begin(identity), IsOk());
     std::vector<std::vector<Client>> servers;
     for (const auto& connection : connections_) servers.push_back({Client(connection)});
-    Job job({*recipe, identity, {model}, {motion::SbuSkeleton()}, servers, &folder, &*survey},
+    Job job({*recipe, identity, {model}, {motion::SbuSkeleton()}, {}, servers, &folder, &*survey},
             *std::move(plan), WithFewThreads(options));
     job_ = &job;
     absl::StatusOr<JobReport> report = job.Run();
@@ -141,8 +142,8 @@ class JobTest : public ::testing::Test {
   void ExpectSameAsUndisturbed(const std::string& out) {
     connections_ = {std::make_shared<FakeConnection>()};
     ASSERT_THAT(Run("undisturbed"), IsOk());
-    for (const char* file :
-         {"contact_sheet.html", "index.jsonl", "index.tsv", "rejected.tsv", "summary.json"}) {
+    for (const char* file : {"contact_sheet.html", "dataset.json", "failed.tsv", "index.jsonl",
+                             "index.tsv", "rejected.tsv", "summary.json"}) {
       EXPECT_EQ(Read(out + "/" + file), Read(std::string("undisturbed/") + file)) << file;
     }
     EXPECT_EQ(Verify(folder_ / out)->problem_count, 0);
@@ -171,6 +172,47 @@ TEST_F(JobTest, KeepsEveryAnswerAndListsIt) {
     EXPECT_EQ(entry.request_id(), "batch-" + entry.id());
     EXPECT_THAT(entry.leader_sha256(), SizeIs(64));
   }
+}
+
+TEST_F(JobTest, DescribesTheSetAlsoWhereItIsNotFinished) {
+  JobOptions options;
+  options.limit = 5;
+  ASSERT_THAT(Run("set", options), IsOk());
+  const auto dataset = nlohmann::json::parse(Read("set/dataset.json"));
+  EXPECT_EQ(dataset["items"]["done"], 5);
+  EXPECT_EQ(dataset["frames"], 25);
+  EXPECT_EQ(dataset["frame_rate_hz"], 15);
+  EXPECT_EQ(dataset["models"][0]["name"], "fake@3");
+  EXPECT_EQ(dataset["skeletons"][0]["joint_names"][14], "right_foot");
+  EXPECT_EQ(nlohmann::json::parse(Lines("set/index.jsonl")[4])["skeleton"], 0);
+}
+
+TEST_F(JobTest, ARateOfTheRecipeIsThatOfEveryArray) {
+  recipe_.insert(recipe_.rfind('}'), "frame_rate_hz: 60 ");
+  recipe_ =
+      "reactions { schedule { keyframes { at: 1 labels { weights { key: 'hug' value: 1 } } } } }" +
+      recipe_;
+  const auto report = Run("set");
+  ASSERT_THAT(report, IsOk());
+  for (const std::string& line : Lines("set/index.jsonl")) {
+    const auto record = nlohmann::json::parse(line);
+    EXPECT_EQ(record["frame_rate_hz"], 60);
+    EXPECT_EQ(record["frames"], 17);  // 4/15 s
+    if (record.contains("keyframes")) {
+      EXPECT_EQ(record["keyframes"][0]["frame"], 16);
+    }
+    formats::ReadOptions options;
+    options.skeleton = motion::SbuSkeleton();
+    options.frame_rate_hz = 60;
+    for (const formats::Side side : {formats::Side::kLeft, formats::Side::kRight}) {
+      options.side = side;
+      const auto clip = formats::ReadLeader(
+          folder_ / "set" / record["files"][0]["path"].get<std::string>(), options);
+      ASSERT_THAT(clip, IsOk());
+      EXPECT_EQ(clip->frame_count(), 17);
+    }
+  }
+  EXPECT_EQ(nlohmann::json::parse(Read("set/dataset.json"))["frame_rate_hz"], 60);
 }
 
 TEST_F(JobTest, ASecondRunAsksForNothing) {
@@ -238,10 +280,12 @@ TEST_F(JobTest, PassingFailuresAreTriedAgainInTheRunAndInTheNext) {
   EXPECT_EQ(report->unfinished, kItems / 2);
   EXPECT_FALSE(report->complete());
   EXPECT_EQ(connection().calls, kItems / 2 + 3 * kItems / 2);
-  EXPECT_THAT(Read("set/errors/a-2-hug0p5-s0.json"), HasSubstr("hiccup"));
+  ASSERT_THAT(report->unfinished_causes, SizeIs(1));
+  EXPECT_EQ(report->unfinished_causes[0].code, "INTERNAL");
+  EXPECT_EQ(report->unfinished_causes[0].message, "hiccup");
+  EXPECT_EQ(report->unfinished_causes[0].items, kItems / 2);
   connection().answer = nullptr;
   ASSERT_THAT(Run("set"), IsOk());
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "set/errors/a-2-hug0p5-s0.json"));
   ExpectSameAsUndisturbed("set");
 }
 
@@ -357,7 +401,16 @@ TEST_F(JobTest, ALeaderThatCannotBeReadFailsAlone) {
   ASSERT_THAT(report, IsOk());
   EXPECT_EQ(report->set.done, kItems / 2);
   EXPECT_EQ(report->set.failed, kItems / 2);
-  EXPECT_THAT(Read("set/errors/none-3-kick-s0.json"), HasSubstr("no such file"));
+  const auto failed = Lines("set/failed.tsv");
+  ASSERT_THAT(failed, SizeIs(2));  // the leader's six items have one row
+  EXPECT_THAT(failed[1], AllOf(HasSubstr("none.csv\t6\tNOT_FOUND\t"),
+                               HasSubstr("no such file\tnone-3-kick-s0,none-3-kick-s1")));
+  ASSERT_THAT(report->set.failures, SizeIs(1));
+  EXPECT_EQ(report->set.failures[0].message, "no such file");
+  EXPECT_EQ(report->set.failures[0].items, kItems / 2);
+  EXPECT_EQ(report->set.failures[0].leaders, 1);
+  EXPECT_EQ(nlohmann::json::parse(Read("set/summary.json"))["failures"][0]["message"],
+            "no such file");
 }
 
 TEST_F(JobTest, ALeaderThatLacksSomethingSaysWhereToTellIt) {
@@ -369,8 +422,7 @@ TEST_F(JobTest, ALeaderThatLacksSomethingSaysWhereToTellIt) {
                                    motion::SbuSkeleton()),
               IsOk());
   ASSERT_THAT(Run("set", {}, "leader\nwalk.npy\n"), IsOk());
-  EXPECT_THAT(Read("set/errors/walk-2-kick-s0.json"),
-              HasSubstr("say it in the recipe: input { frame_rate_hz }"));
+  EXPECT_THAT(Read("set/failed.tsv"), HasSubstr("say it in the recipe: input { frame_rate_hz }"));
 }
 
 TEST_F(JobTest, AnotherRecipeIsRefused) {

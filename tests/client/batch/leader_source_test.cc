@@ -91,19 +91,33 @@ TEST_P(BadManifests, AreRefusedByLine) {
 INSTANTIATE_TEST_SUITE_P(
     All, BadManifests,
     ::testing::Values(
-        BadManifest{"leader\tside\na.bvh\n", "m:2: came 1 columns, wanted 2"},
-        BadManifest{"leader\tside\na.bvh\tup\n", "m:2: side: came \"up\", wanted left or right"},
-        BadManifest{"side\nleft\n", "m:1: columns: came \"side\", wanted leader among them"},
-        BadManifest{"leader\tside\n\tleft\n", "m:2: leader: came none"},
-        BadManifest{"leder\tid\n", "m:1: columns: came \"leder\\tid\", wanted leader"},
-        BadManifest{"leader\tseed\na.bvh\t-1\n", "m:2: seed: came \"-1\""},
-        BadManifest{"leader\tlabels\na.bvh\tkick\n", "m:2: labels: came \"kick\""},
+        BadManifest{"leader\tside\na.bvh\n",
+                    "m:2: columns: expected 2 as the first line names, got 1"},
+        BadManifest{"leader\tside\na.bvh\tup\n", "m:2: side: expected left or right, got \"up\""},
+        BadManifest{"side\nleft\n", "m:1: columns: expected leader among the names"},
+        BadManifest{"leader\tside\n\tleft\n", "m:2: leader: expected a motion file, got nothing"},
+        BadManifest{"leder\tid\n", "of the first line, got \"leder\\tid\""},
+        BadManifest{"leader\tseed\na.bvh\t-1\n", "from 0 to 18446744073709551615, got \"-1\""},
+        BadManifest{"leader\tlabels\na.bvh\tkick\n", "m:2: labels: expected CLASS=WEIGHT"},
         BadManifest{"leader\tlabels\na.bvh\tkick=1,kick=0\n", "each class once"},
-        BadManifest{"leader\tlabels\na.bvh\tkick=2.5\n", "labels: came \"kick=2.5\""},
-        BadManifest{"leader\tpartner_direction\na.bvh\t1\n", "partner_direction: came \"1\""},
-        BadManifest{"leader\tid\na.bvh\tx\nb.bvh\tx\n", "m:3: id: came \"x\", wanted one that no"},
-        BadManifest{"leader\tid\na.bvh\tx\nb.bvh\t\n", "m:3: id: wanted on every line or on none"},
-        BadManifest{"{\"leader\": \"a.bvh\"}\nnot json\n", "m:2: "}));
+        BadManifest{"leader\tlabels\na.bvh\tkick=2.5\n", "from -2 to 2, got \"kick=2.5\""},
+        BadManifest{"leader\tpartner_direction\na.bvh\t1\n", "partner_direction: expected X,Y,Z"},
+        BadManifest{"leader\tid\na.bvh\tx\nb.bvh\tx\n",
+                    "m:3: id: expected one that no other line has, got \"x\""},
+        BadManifest{"leader\tid\na.bvh\tx\nb.bvh\t\n",
+                    "m:3: id: expected one, as on the lines before, got nothing"},
+        BadManifest{"{\"leader\": \"a.bvh\"}\nnot json\n",
+                    "m:2: line: expected a JSON object, got "}));
+
+TEST(ManifestTest, GoesOnAfterABadLine) {
+  std::istringstream in("leader\tseed\na.bvh\tx\nb.bvh\t2\n");
+  const auto manifest = ReadManifest(in, "/data", "m");
+  EXPECT_THAT(manifest->Next(), StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("m:2: ")));
+  const auto next = manifest->Next();
+  ASSERT_THAT(next, IsOk());
+  EXPECT_EQ((*next)->given, "b.bvh");
+  EXPECT_EQ((*next)->line, "m:3");
+}
 
 class ListLeadersTest : public ::testing::Test {
  protected:

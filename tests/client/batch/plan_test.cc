@@ -220,7 +220,7 @@ TEST(Plan, WhatCapturesCannotHoldIsRefused) {
     return StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(message));
   };
   EXPECT_THAT(CapturesPlan("LAYOUT_K3HI", "leader\tlabels\na.bvh\thug=1\n"),
-              refused("a.bvh: reaction hug: came \"hug\" as the class of the largest weight, "
+              refused("m:2: reaction hug: came \"hug\" as the class of the largest weight, "
                       "wanted one that the layout has a folder for: approach,"));
   EXPECT_THAT(CapturesPlan("LAYOUT_SBU", "leader\tlabels\na.bvh\tkick=-1\n"),
               refused("came \"none\" as the class"));
@@ -271,8 +271,9 @@ TEST(Plan, WhatMakesNoSenseIsRefused) {
               refused("at most the 3"));
   EXPECT_THAT(PlanOf(std::string(kKick) + "samples: 2", "leader\na.bvh\n", {Model("sbu", false)}),
               refused("has one answer"));
-  EXPECT_THAT(PlanOf(""), refused("a.bvh: wanted labels in the manifest"));
-  EXPECT_THAT(PlanOf(kKick, "leader\tmodel\na.bvh\tother\n"), refused("model: came \"other\""));
+  EXPECT_THAT(PlanOf(""), refused("m:2: labels: expected some, since the recipe has no reactions"));
+  EXPECT_THAT(PlanOf(kKick, "leader\tmodel\na.bvh\tother\n"),
+              refused("m:2: model: expected one of the recipe's (sbu@2), got \"other\""));
 }
 
 TEST(ToRequest, KeyframesFallOnFrames) {

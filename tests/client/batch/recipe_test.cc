@@ -74,6 +74,17 @@ TEST(Recipe, WhatAsksForOtherFilesHasAnotherDigest) {
             ParseRecipe("output { formats: FORMAT_NPY packing: PACKING_TAR }", false)->digest);
 }
 
+TEST(Recipe, ARateOfTheCommandLineIsPartOfTheDigest) {
+  RecipeOverrides overrides;
+  overrides.frame_rate_hz = 30;
+  const auto at_30_hz = ParseRecipe(kOutput, false, "", overrides);
+  ASSERT_THAT(at_30_hz, IsOk());
+  EXPECT_EQ(at_30_hz->output.frame_rate_hz, 30);
+  EXPECT_NE(at_30_hz->digest, ParseRecipe(kOutput, false)->digest);
+  EXPECT_EQ(at_30_hz->digest,
+            ParseRecipe("output { formats: FORMAT_NPY frame_rate_hz: 30 }", false)->digest);
+}
+
 TEST(ReadRecipe, TakesATableOfJoints) {
   const test::TemporaryFolder folder;
   const std::string output = "output { formats: FORMAT_NPY } ";
@@ -152,12 +163,20 @@ INSTANTIATE_TEST_SUITE_P(
         BadRecipe{"input { format: 'usda' }", "input.format: came \"usda\", wanted amc, bvh"},
         BadRecipe{"input { unit: 'feet' }", "input.unit: came \"feet\""},
         BadRecipe{"input { frame_rate_hz: 0 }", "input.frame_rate_hz: came 0"},
+        BadRecipe{"output { formats: FORMAT_NPY frame_rate_hz: 0 }",
+                  "output.frame_rate_hz: came 0"},
+        BadRecipe{"output { formats: FORMAT_NPY frame_rate_hz: 1001 }",
+                  "output.frame_rate_hz: came 1001"},
+        BadRecipe{"output { formats: FORMAT_NPY frame_rate_hz: nan }",
+                  "output.frame_rate_hz: came nan"},
         BadRecipe{"output { formats: FORMAT_NPY shard_bytes: 0 }", "shard_bytes: came 0"},
         BadRecipe{"output { formats: FORMAT_CSV packing: PACKING_NPZ }", "FORMAT_NPY alone"},
         BadRecipe{"output { formats: FORMAT_NPY layout: LAYOUT_SBU }",
                   "output.formats: came some, wanted none"},
         BadRecipe{"output { layout: LAYOUT_K3HI packing: PACKING_TAR }",
                   "output.packing: came one, wanted none"},
+        BadRecipe{"output { layout: LAYOUT_K3HI frame_rate_hz: 30 }",
+                  "output.frame_rate_hz: came one, wanted none"},
         BadRecipe{"output { formats: FORMAT_NPY formats: FORMAT_NPY }", "formats: came 3 twice"}));
 
 TEST(Recipe, AFormatIsWanted) {

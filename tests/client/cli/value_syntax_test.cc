@@ -67,7 +67,7 @@ TEST(ParseModelChoiceTest, ReadsNameVersionAndLabel) {
 
 TEST(ParseModelChoiceTest, RefusesEverythingElse) {
   for (const char* text : {"", "@1", ":stable", "sbu@", "sbu@0", "sbu@-1", "sbu@one", "sbu:"}) {
-    EXPECT_THAT(ParseModelChoice(text), StatusIs(kInvalid, HasSubstr("wanted NAME")));
+    EXPECT_THAT(ParseModelChoice(text), StatusIs(kInvalid, HasSubstr("expected NAME")));
   }
 }
 
@@ -88,7 +88,8 @@ TEST(ParseSeedTest, ReadsEverySeedAndNothingElse) {
   EXPECT_EQ(*ParseSeed("0"), 0u);
   EXPECT_EQ(*ParseSeed("18446744073709551615"), 18446744073709551615u);
   for (const char* text : {"", "-1", "1.5", "18446744073709551616", "random"}) {
-    EXPECT_THAT(ParseSeed(text), StatusIs(kInvalid, HasSubstr("wanted a whole number from 0 to")));
+    EXPECT_THAT(ParseSeed(text),
+                StatusIs(kInvalid, HasSubstr("expected a whole number from 0 to")));
   }
 }
 
@@ -110,7 +111,7 @@ TEST(ParsePointTest, ReadsThreeNumbersAndNothingElse) {
 
 TEST(ParseDirectionTest, SaysWhatWasWanted) {
   EXPECT_EQ(*ParseDirection("0,0,-3"), (motion::Vec3{0, 0, -3}));
-  EXPECT_THAT(ParseDirection("north").status().message(), ::testing::HasSubstr("wanted X,Y,Z"));
+  EXPECT_THAT(ParseDirection("north").status().message(), ::testing::HasSubstr("expected X,Y,Z"));
 }
 
 TEST(ParseUnitTest, ReadsNamesAndShortForms) {

@@ -1,0 +1,187 @@
+#include "client/batch/dataset_json.h"
+
+#include <algorithm>
+
+#include "client/batch/capture_layout.h"
+#include "client/batch/text_values.h"
+#include "duet/batch/v1/batch.pb.h"
+#include "model/motion/coordinates.h"
+
+namespace duet::client::batch {
+namespace {
+
+using nlohmann::ordered_json;
+namespace v1 = ::duet::batch::v1;
+
+constexpr char kFormat[] = "duet-batch";
+constexpr int kFormatVersion = 1;
+
+// The enums count up in the same order as the proto's, which begin with one more.
+std::string LayoutName(Layout layout) {
+  return v1::Layout_Name(static_cast<v1::Layout>(static_cast<int>(layout) + 1));
+}
+
+// In the order of the proto, whose numbers differ from the enum's.
+std::string PackingName(Packing packing) {
+  if (packing == Packing::kTar) return v1::Packing_Name(v1::PACKING_TAR);
+  return v1::Packing_Name(packing == Packing::kNpz ? v1::PACKING_NPZ : v1::PACKING_NONE);
+}
+
+bool Same(const motion::Skeleton& a, const motion::Skeleton& b) {
+  return a.joint_names == b.joint_names && a.Parents() == b.Parents() && a.root == b.root;
+}
+
+ordered_json SkeletonJson(const motion::Skeleton& skeleton) {
+  return {{"joint_names", skeleton.joint_names},
+          {"parents", skeleton.Parents()},
+          {"root_joint", skeleton.joint_names[static_cast<size_t>(skeleton.root)]}};
+}
+
+// Each skeleton once, at the index that SkeletonIndices gives.
+ordered_json SkeletonsJson(const std::vector<motion::Skeleton>& skeletons) {
+  ordered_json array = ordered_json::array();
+  const std::vector<int> indices = SkeletonIndices(skeletons);
+  for (size_t model = 0; model < skeletons.size(); ++model) {
+    if (indices[model] == static_cast<int>(array.size())) {
+      array.push_back(SkeletonJson(skeletons[model]));
+    }
+  }
+  return array;
+}
+
+void AddText(const char* name, const std::string& text, ordered_json* object) {
+  if (!text.empty()) (*object)[name] = text;
+}
+
+ordered_json ModelsJson(const JobIdentity& identity) {
+  const std::vector<int> skeletons = SkeletonIndices(identity.skeletons);
+  const std::vector<DescribedModel>& described = identity.description.models;
+  ordered_json array = ordered_json::array();
+  for (size_t i = 0; i < identity.models.size(); ++i) {
+    ordered_json model = {{"name", ModelText(identity.models[i])}};
+    // A set that an earlier version began has no descriptions.
+    const DescribedModel about = i < described.size() ? described[i] : DescribedModel();
+    AddText("weights_sha256", about.weights_sha256, &model);
+    AddText("terms", about.terms, &model);
+    AddText("description", about.description, &model);
+    model["interaction_classes"] = about.interaction_classes;
+    model["skeleton"] = skeletons[i];
+    if (about.frame_rate_hz > 0) model["frame_rate_hz"] = about.frame_rate_hz;
+    model["samples"] = about.samples;
+    array.push_back(std::move(model));
+  }
+  return array;
+}
+
+std::vector<std::string> AllClasses(const SetDescription& description) {
+  std::vector<std::string> all;
+  for (const DescribedModel& model : description.models) {
+    for (const std::string& name : model.interaction_classes) {
+      if (std::find(all.begin(), all.end(), name) == all.end()) all.push_back(name);
+    }
+  }
+  return all;
+}
+
+std::vector<std::string> EndingsOf(Format format) {
+  switch (format) {
+    case Format::kBvh:
+      return {".leader.bvh", ".follower.bvh"};
+    case Format::kCsv:
+      return {".csv"};
+    case Format::kNpy:
+      return {".npy"};
+    case Format::kJson:
+      return {".json"};
+    case Format::kGlb:
+      return {".glb"};
+    case Format::kUsda:
+      break;
+  }
+  return {".usda"};
+}
+
+ordered_json FilesJson(Format format) {
+  ordered_json files = {{"format", FormatName(format)},
+                        {"endings", EndingsOf(format)},
+                        {"unit", format == Format::kBvh ? "centimetres" : "metres"},
+                        {"up_axis", motion::UpAxisName(motion::UpAxis::kYUp)}};
+  if (format == Format::kNpy) {
+    files["dtype"] = "float32";
+    files["shape"] = {"people", "frames", "joints", "coordinates"};
+  }
+  return files;
+}
+
+ordered_json AllFilesJson(const JobIdentity& identity) {
+  ordered_json array = ordered_json::array();
+  if (const dataset::DatasetLayout* const captures = CapturesOf(identity.layout)) {
+    array.push_back({{"endings", {".txt"}},
+                     {"unit", motion::LengthUnitName(captures->coordinates.unit)},
+                     {"up_axis", motion::UpAxisName(captures->coordinates.up_axis)}});
+  }
+  for (const Format format : identity.description.formats) array.push_back(FilesJson(format));
+  return array;
+}
+
+ordered_json RatesJson(const std::map<double, int64_t>& items_by_rate) {
+  ordered_json array = ordered_json::array();
+  for (const auto& [rate_hz, items] : items_by_rate) {
+    array.push_back({{"frame_rate_hz", rate_hz}, {"items", items}});
+  }
+  return array;
+}
+
+std::optional<double> CommonRate(const SetDescription& description, const DoneItems& done) {
+  if (description.frame_rate_hz) return description.frame_rate_hz;
+  if (done.items_by_rate().size() != 1) return std::nullopt;
+  return done.items_by_rate().begin()->first;
+}
+
+}  // namespace
+
+void DoneItems::Add(const ordered_json& record) {
+  frames_ += record["frames"].get<uint64_t>();
+  ++items_by_rate_[record["frame_rate_hz"].get<double>()];
+  const auto shard = record.find("shard");
+  if (shard == record.end()) return;
+  if (shards_.empty() || shards_.back() != *shard) shards_.push_back(*shard);
+}
+
+std::vector<int> SkeletonIndices(const std::vector<motion::Skeleton>& skeletons) {
+  std::vector<int> indices;
+  int count = 0;
+  for (size_t i = 0; i < skeletons.size(); ++i) {
+    size_t first = 0;
+    while (!Same(skeletons[first], skeletons[i])) ++first;
+    indices.push_back(first < i ? indices[first] : count++);
+  }
+  return indices;
+}
+
+std::string DatasetJson(const JobIdentity& identity, const SetCounts& counts, int64_t planned,
+                        const DoneItems& done, bool packed) {
+  ordered_json dataset = {{"format", kFormat},
+                          {"format_version", kFormatVersion},
+                          {"recipe_sha256", identity.recipe_digest},
+                          {"items",
+                           {{"done", counts.done},
+                            {"rejected", counts.rejected},
+                            {"failed", counts.failed},
+                            {"missing", planned - counts.done - counts.rejected - counts.failed}}},
+                          {"frames", done.frames()}};
+  if (const std::optional<double> rate_hz = CommonRate(identity.description, done)) {
+    dataset["frame_rate_hz"] = *rate_hz;
+  }
+  dataset["frame_rates"] = RatesJson(done.items_by_rate());
+  dataset["skeletons"] = SkeletonsJson(identity.skeletons);
+  dataset["models"] = ModelsJson(identity);
+  dataset["interaction_classes"] = AllClasses(identity.description);
+  dataset["files"] = AllFilesJson(identity);
+  dataset["layout"] = LayoutName(identity.layout);
+  dataset["packing"] = PackingName(identity.packing);
+  if (packed) dataset["shards"] = done.shards();
+  return dataset.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace duet::client::batch

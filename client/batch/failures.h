@@ -1,0 +1,66 @@
+#ifndef DUET_CLIENT_BATCH_FAILURES_H_
+#define DUET_CLIENT_BATCH_FAILURES_H_
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/strings/string_view.h"
+#include "client/batch/durable_file.h"
+
+namespace duet::client::batch {
+
+// Why items failed, without the names of files: one for many leaders.
+struct FailureCause {
+  std::string code;     // of a gRPC status, such as "INVALID_ARGUMENT"
+  std::string message;  // such as "no such file"
+  int64_t items = 0;
+  int64_t leaders = 0;
+};
+
+// [{"code", "message", "items", "leaders"}]
+nlohmann::ordered_json ToJson(const std::vector<FailureCause>& causes);
+
+// Counts failures by cause. Different causes beyond a thousand are counted as one.
+class FailureCauses {
+ public:
+  // `leader`: as it was listed; where `message` begins with its file, that is left out.
+  void Add(absl::string_view leader, absl::string_view code, absl::string_view message,
+           int64_t items, int64_t leaders);
+  // Those of the most items first, at most `count`.
+  std::vector<FailureCause> Largest(size_t count) const;
+
+ private:
+  std::map<std::pair<std::string, std::string>, std::pair<int64_t, int64_t>> counts_;
+};
+
+// Writes failed.tsv: a row for each leader and cause, with the names of the items that it keeps
+// from being made. Records come leader by leader.
+class FailureTable {
+ public:
+  explicit FailureTable(const std::filesystem::path& temporary) : file_(temporary / "failed.tsv") {}
+
+  absl::Status Open();
+  // `record`: of an item that failed.
+  absl::Status Add(const nlohmann::ordered_json& record);
+  absl::Status Finish(const std::filesystem::path& out);
+  const FailureCauses& causes() const { return causes_; }
+
+ private:
+  absl::Status WriteLeader();
+
+  DurableFile file_;
+  FailureCauses causes_;
+  // Of the leader at hand: code and message to the items' names.
+  std::string leader_;
+  std::map<std::pair<std::string, std::string>, std::vector<std::string>> names_;
+};
+
+}  // namespace duet::client::batch
+
+#endif  // DUET_CLIENT_BATCH_FAILURES_H_

@@ -1,0 +1,72 @@
+#ifndef DUET_CLIENT_BATCH_PLAN_CHECK_H_
+#define DUET_CLIENT_BATCH_PLAN_CHECK_H_
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "client/batch/journal.h"
+#include "client/batch/plan.h"
+#include "client/batch/shard.h"
+#include "client/result.h"
+#include "model/motion/skeleton.h"
+
+namespace duet::client::batch {
+
+// Which items of a plan a run makes.
+struct PlanPart {
+  Shard shard;
+  int64_t limit = std::numeric_limits<int64_t>::max();  // only the first items of the plan
+  double share = 1;
+  // Items that it has are not made again, and their leaders are not read. May be null.
+  const JournalReader* settled = nullptr;
+  bool Has(const Item& item) const;
+};
+
+// A leader that no item can be made of, however often it is listed.
+struct BadLeader {
+  std::string message;  // names the file
+  int64_t items = 0;    // of the part that it keeps from being made
+};
+
+// What is known of a plan before the first call.
+struct PlanCheck {
+  int64_t items = 0;    // of the part, settled ones included
+  int64_t leaders = 0;  // people who lead, as often as they are listed
+  int64_t frames = 0;   // of all followers, as they will be written
+  double seconds = 0;   // the same as a duration
+
+  // Lines of a manifest that make no sense, and leaders that cannot be used; in the order of the
+  // list. Of either at most kListed are kept.
+  static constexpr size_t kListed = 1000;
+  int64_t bad_line_count = 0;
+  std::vector<std::string> bad_lines;  // "FILE:LINE: FIELD: expected ..., got ..."
+  int64_t bad_leader_count = 0;
+  std::vector<BadLeader> bad_leaders;
+  int64_t items_of_bad_leaders = 0;
+
+  // The first item whose leader can be used.
+  std::optional<Item> first_item;
+};
+
+// Reads the plan to its end, every line of its manifest, and the leaders of the part. `skeletons`
+// are the models'. `stopped` is asked between items; after true, the check ends with what it has.
+// Errors: those that end the plan.
+//
+// Threads: reads leaders in threads of its own.
+absl::StatusOr<PlanCheck> CheckPlan(
+    const Recipe& recipe, const std::vector<motion::Skeleton>& skeletons,
+    const RequestLimits& limits, const PlanPart& part, Plan* plan,
+    const std::function<bool()>& stopped = [] { return false; });
+
+// INVALID_ARGUMENT for a plan with bad lines, which must not begin: lists them, one below the
+// other.
+absl::Status BadLinesError(const PlanCheck& check);
+
+}  // namespace duet::client::batch
+
+#endif  // DUET_CLIENT_BATCH_PLAN_CHECK_H_

@@ -1,0 +1,22 @@
+#ifndef DUET_CLIENT_BATCH_SET_COUNTS_H_
+#define DUET_CLIENT_BATCH_SET_COUNTS_H_
+
+#include <cstdint>
+#include <vector>
+
+#include "client/batch/failures.h"
+
+namespace duet::client::batch {
+
+// What is in a data set.
+struct SetCounts {
+  int64_t done = 0;
+  int64_t rejected = 0;
+  int64_t failed = 0;
+  uint64_t bytes = 0;
+  std::vector<FailureCause> failures;  // the causes of most items
+};
+
+}  // namespace duet::client::batch
+
+#endif  // DUET_CLIENT_BATCH_SET_COUNTS_H_
