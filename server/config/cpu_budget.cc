@@ -4,59 +4,24 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <fstream>
 #include <sstream>
 #include <thread>
+
+#include "server/config/cgroups.h"
 
 namespace duet::server::config {
 namespace {
 
 namespace fs = std::filesystem;
 
-std::string ReadLineOf(const fs::path& path) {
-  std::ifstream file(path);
-  std::string line;
-  std::getline(file, line);
-  return line;
-}
-
-// A line of /proc/self/cgroup, "<number>:<controllers>:/<path>", as far as it matters here.
-struct CgroupLine {
-  bool version_2 = false;  // no controllers: the one hierarchy of version 2
-  bool has_cpu = false;    // version 1's hierarchy of the controller "cpu"
-  fs::path path;           // without the leading "/"
-};
-
-CgroupLine ParseCgroupLine(const std::string& line) {
-  const std::size_t first = line.find(':');
-  const std::size_t second = first == std::string::npos ? first : line.find(':', first + 1);
-  if (second == std::string::npos || line.compare(second, 2, ":/") != 0) return {};
-  const std::string controllers = line.substr(first + 1, second - first - 1);
-  // Enclosed in commas, so that "cpuacct" and "cpuset" are other names.
-  const bool has_cpu = ("," + controllers + ",").find(",cpu,") != std::string::npos;
-  return {controllers.empty(), has_cpu, line.substr(second + 2)};
-}
-
 std::optional<double> LimitOfVersion2(const fs::path& cgroup) {
-  return ParseCpuMax(ReadLineOf(cgroup / "cpu.max"));
+  return ParseCpuMax(FirstLine(cgroup / "cpu.max"));
 }
 
 // A quota of -1, no number above 0, is none.
 std::optional<double> LimitOfVersion1(const fs::path& cgroup) {
-  return ParseCpuMax(ReadLineOf(cgroup / "cpu.cfs_quota_us") + " " +
-                     ReadLineOf(cgroup / "cpu.cfs_period_us"));
-}
-
-// The tightest limit of a cgroup below `top` and its ancestors, which limit as well. Inside a
-// container its own cgroup appears as the top, and the path that the kernel tells may not exist.
-template <typename LimitOf>
-double TightestLimit(double cores, const fs::path& top, fs::path cgroup, LimitOf limit_of) {
-  while (true) {
-    cores = std::min(cores, limit_of(top / cgroup).value_or(cores));
-    if (cgroup.empty()) return cores;
-    cgroup = cgroup.parent_path();
-  }
+  return ParseCpuMax(FirstLine(cgroup / "cpu.cfs_quota_us") + " " +
+                     FirstLine(cgroup / "cpu.cfs_period_us"));
 }
 
 // The processors that the scheduler may put this thread on: those of `taskset` and of a cpuset.
@@ -81,16 +46,13 @@ std::optional<double> ParseCpuMax(const std::string& text) {
 
 int AvailableCores(const fs::path& system_root) {
   double cores = AffinityCores();
-  const fs::path top = system_root / "sys/fs/cgroup";
-  fs::path version_1, version_2;
-  std::ifstream file(system_root / "proc/self/cgroup");
-  for (std::string line; std::getline(file, line);) {
-    const CgroupLine cgroup = ParseCgroupLine(line);
-    if (cgroup.version_2) version_2 = cgroup.path;
-    if (cgroup.has_cpu) version_1 = cgroup.path;
+  const CgroupFolders cgroups = FindCgroups(system_root, "cpu");
+  for (const fs::path& cgroup : cgroups.version_2) {
+    cores = std::min(cores, LimitOfVersion2(cgroup).value_or(cores));
   }
-  cores = TightestLimit(cores, top, version_2, LimitOfVersion2);
-  cores = TightestLimit(cores, top / "cpu", version_1, LimitOfVersion1);
+  for (const fs::path& cgroup : cgroups.version_1) {
+    cores = std::min(cores, LimitOfVersion1(cgroup).value_or(cores));
+  }
   return std::max(1, static_cast<int>(std::floor(cores)));
 }
 

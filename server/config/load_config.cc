@@ -193,7 +193,8 @@ void AddCapacityFlags(CLI::App& app, v1::ServerConfig& config) {
       ->option_text("N");
   app.add_option_function<uint32_t>(
          "--max-calls", [&](uint32_t value) { config.set_max_calls(value); },
-         Defaulting("Synthesize calls answered at the same time", defaults.max_calls))
+         Defaulting("Synthesize calls answered at the same time; fewer where memory is short",
+                    defaults.max_calls))
       ->option_text("N");
   app.add_option_function<uint32_t>(
          "--max-queued-windows", [&](uint32_t value) { config.set_max_queued_windows(value); },
@@ -211,13 +212,19 @@ void AddCapacityFlags(CLI::App& app, v1::ServerConfig& config) {
                     defaults.max_batch_delay_seconds))
       ->option_text("S");
   app.add_option_function<uint64_t>(
+         "--memory-limit-bytes", [&](uint64_t value) { config.set_memory_limit_bytes(value); },
+         "memory that the server plans with (default: the limit of its control group, or the "
+         "machine's memory)")
+      ->option_text("BYTES");
+  app.add_option_function<uint64_t>(
          "--max-request-bytes", [&](uint64_t value) { config.set_max_request_bytes(value); },
-         Defaulting("size of a request", defaults.max_request_bytes))
+         Defaulting("size of a request; less where memory is short", defaults.max_request_bytes))
       ->option_text("BYTES");
   app.add_option_function<uint64_t>(
          "--max-transport-bytes", [&](uint64_t value) { config.set_max_transport_bytes(value); },
-         absl::StrCat("memory of requests being received (default ", kTransportPerRequest,
-                      " x max-request-bytes)"))
+         absl::StrCat("memory of requests being received (default: what memory-limit-bytes allows, "
+                      "at most ",
+                      kTransportPerRequest, " x max-request-bytes)"))
       ->option_text("BYTES");
   app.add_option_function<uint32_t>(
          "--buffered-frames", [&](uint32_t value) { config.set_buffered_frames(value); },
@@ -247,7 +254,8 @@ void AddSharingFlags(CLI::App& app, v1::ServerConfig& config) {
       ->option_text("KEY");
   app.add_option_function<uint64_t>(
          "--max-held-bytes", [&](uint64_t value) { config.set_max_held_bytes(value); },
-         absl::StrCat("bytes of the requests of calls being answered (default ",
+         absl::StrCat("bytes of the requests of calls being answered (default: what "
+                      "memory-limit-bytes allows, at most ",
                       kTransportPerRequest, " x max-request-bytes)"))
       ->option_text("BYTES");
   app.add_option_function<double>(
@@ -555,9 +563,10 @@ CommandLine ParseCommandLine(int argc, const char* const* argv, const Environmen
   return command_line;
 }
 
-absl::StatusOr<ServerOptions> ToOptions(const CommandLine& command_line, int cores) {
+absl::StatusOr<ServerOptions> ToOptions(const CommandLine& command_line, int cores,
+                                        std::uint64_t memory_bytes) {
   absl::StatusOr<ServerOptions> options =
-      ToOptions(command_line.config, cores, command_line.sources);
+      ToOptions(command_line.config, cores, command_line.sources, memory_bytes);
   if (command_line.errors.empty()) return options;
   std::vector<std::string> errors = command_line.errors;
   if (!options.ok()) errors.emplace_back(options.status().message());

@@ -1,6 +1,7 @@
 #ifndef DUET_SERVER_CONFIG_LOAD_CONFIG_H_
 #define DUET_SERVER_CONFIG_LOAD_CONFIG_H_
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -52,9 +53,10 @@ struct CommandLine {
 CommandLine ParseCommandLine(int argc, const char* const* argv,
                              const Environment& environment = {});
 
-// The settings, checked. `cores` is what the container may use.
+// The settings, checked. `cores` and `memory_bytes` are what the container may use.
 // Fails with INVALID_ARGUMENT, one line for each thing that is wrong anywhere.
-absl::StatusOr<ServerOptions> ToOptions(const CommandLine& command_line, int cores);
+absl::StatusOr<ServerOptions> ToOptions(const CommandLine& command_line, int cores,
+                                        std::uint64_t memory_bytes = kUnlimitedMemory);
 
 }  // namespace duet::server::config
 

@@ -12,6 +12,7 @@
 #include "absl/strings/string_view.h"
 #include "absl/strings/strip.h"
 #include "model/base/printable.h"
+#include "server/config/memory_plan.h"
 
 namespace duet::server::config {
 namespace {
@@ -156,11 +157,6 @@ void ReadLimits(const v1::ServerConfig& config, Reader& reader, ServerOptions& o
     options.max_request_bytes = static_cast<std::size_t>(reader.InRange(
         "max_request_bytes", config.max_request_bytes(), uint64_t{1024}, uint64_t{1} << 29));
   }
-  options.max_transport_bytes = static_cast<std::size_t>(
-      config.has_max_transport_bytes()
-          ? reader.InRange("max_transport_bytes", config.max_transport_bytes(),
-                           uint64_t{2} * options.max_request_bytes, uint64_t{1} << 40)
-          : uint64_t{kTransportPerRequest} * options.max_request_bytes);
   if (config.has_buffered_frames()) {
     options.buffered_frames = static_cast<int>(
         reader.InRange("buffered_frames", config.buffered_frames(), kOne, 1000000U));
@@ -173,18 +169,13 @@ void ReadLimits(const v1::ServerConfig& config, Reader& reader, ServerOptions& o
   }
 }
 
-// After ReadLimits: some defaults follow from the sizes there.
+// After ReadMemory: some defaults follow from the sizes there.
 void ReadSharing(const v1::ServerConfig& config, Reader& reader, ServerOptions& options) {
   constexpr double kHour = 3600;
   if (config.has_client_share()) {
     options.client_share = reader.InRange("client_share", config.client_share(), 0.01, 1.0);
   }
   options.client_key = config.client_key();
-  options.max_held_bytes = static_cast<std::size_t>(
-      config.has_max_held_bytes()
-          ? reader.InRange("max_held_bytes", config.max_held_bytes(),
-                           uint64_t{options.max_request_bytes}, uint64_t{1} << 40)
-          : uint64_t{kTransportPerRequest} * options.max_request_bytes);
   options.max_slow_requests =
       config.has_max_slow_requests()
           ? static_cast<int>(reader.InRange("max_slow_requests", config.max_slow_requests(),
@@ -207,6 +198,27 @@ void ReadSharing(const v1::ServerConfig& config, Reader& reader, ServerOptions& 
     options.self_check_seconds =
         reader.InRange("self_check_seconds", config.self_check_seconds(), 0.0, kHour);
   }
+}
+
+// After ReadThreads and ReadLimits.
+void ReadMemory(const v1::ServerConfig& config, std::uint64_t memory_bytes, Reader& reader,
+                ServerOptions& options) {
+  constexpr uint64_t kMost = uint64_t{1} << 40;
+  options.memory_limit_bytes =
+      config.has_memory_limit_bytes()
+          ? reader.InRange("memory_limit_bytes", config.memory_limit_bytes(), uint64_t{64} << 20,
+                           kUnlimitedMemory)
+          : memory_bytes;
+  FitCallsToMemory(config, &options);
+  if (config.has_max_transport_bytes()) {
+    options.max_transport_bytes = reader.InRange(
+        "max_transport_bytes", config.max_transport_bytes(), 2 * options.max_request_bytes, kMost);
+  }
+  if (config.has_max_held_bytes()) {
+    options.max_held_bytes = reader.InRange("max_held_bytes", config.max_held_bytes(),
+                                            uint64_t{options.max_request_bytes}, kMost);
+  }
+  FitBytesToMemory(config, &options);
 }
 
 void ReadBatching(const v1::ServerConfig& config, Reader& reader, ServerOptions& options) {
@@ -326,7 +338,7 @@ void ReadPolicies(const v1::ServerConfig& config, Reader& reader, ServerOptions&
 }  // namespace
 
 absl::StatusOr<ServerOptions> ToOptions(const v1::ServerConfig& config, int cores,
-                                        const SettingSources& sources) {
+                                        const SettingSources& sources, std::uint64_t memory_bytes) {
   Reader reader(sources);
   ServerOptions options;
   if (config.has_listen()) options.listen = reader.Address("listen", config.listen());
@@ -346,6 +358,7 @@ absl::StatusOr<ServerOptions> ToOptions(const v1::ServerConfig& config, int core
   ReadEngine(config, reader, options.engine);
   ReadThreads(config, cores, reader, options);
   ReadLimits(config, reader, options);
+  ReadMemory(config, memory_bytes, reader, options);
   ReadSharing(config, reader, options);
   ReadBatching(config, reader, options);
   if (!reader.ok()) return reader.status();

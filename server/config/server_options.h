@@ -10,6 +10,7 @@
 
 #include "absl/status/statusor.h"
 #include "duet/v1/server_config.pb.h"
+#include "server/config/memory_limit.h"
 #include "server/config/setting_sources.h"
 
 namespace duet::server::config {
@@ -65,7 +66,7 @@ struct TracingOptions {
   double ratio = 1;           // of calls that come without a trace
 };
 
-// Unless the operator says otherwise, memory for as many of the largest requests at a time.
+// Where memory is not short, enough of it for as many of the largest requests at a time.
 inline constexpr std::size_t kTransportPerRequest = 16;
 
 // Everything that an operator decides, checked. server_config.proto says what each means; the
@@ -85,6 +86,8 @@ struct ServerOptions {
   LoggingOptions logging;
   TracingOptions tracing;
   int workers = 1;  // ToOptions: as many as the cores allow
+  // What the limits below that an operator leaves open follow from; see memory_plan.h.
+  std::uint64_t memory_limit_bytes = kUnlimitedMemory;
   int max_calls = 128;
   int max_queued_windows = 64;
   int max_batch_windows = 16;
@@ -104,11 +107,13 @@ struct ServerOptions {
   double grace_seconds = 30;
 };
 
-// Fills in defaults and checks every field. `cores` is what the container may use.
+// Fills in defaults and checks every field. `cores` and `memory_bytes` are what the container may
+// use.
 // Fails with INVALID_ARGUMENT, one line for each field that is wrong: its name, what came, what was
 // wanted, and where it came from if `sources` know.
 absl::StatusOr<ServerOptions> ToOptions(const v1::ServerConfig& config, int cores,
-                                        const SettingSources& sources = {});
+                                        const SettingSources& sources = {},
+                                        std::uint64_t memory_bytes = kUnlimitedMemory);
 
 // The other way round: every setting, those with their defaults too, but for names and files that
 // are absent.

@@ -75,6 +75,7 @@ void WriteLimits(const ServerOptions& options, v1::ServerConfig* config) {
   config->set_max_queued_windows(static_cast<uint32_t>(options.max_queued_windows));
   config->set_max_batch_windows(static_cast<uint32_t>(options.max_batch_windows));
   config->set_max_batch_delay_seconds(options.max_batch_delay_seconds);
+  config->set_memory_limit_bytes(options.memory_limit_bytes);
   config->set_max_request_bytes(options.max_request_bytes);
   config->set_max_transport_bytes(options.max_transport_bytes);
   config->set_buffered_frames(static_cast<uint32_t>(options.buffered_frames));

@@ -4,8 +4,11 @@
 #include <vector>
 
 #include "absl/strings/str_split.h"
+#include "server/config/memory_limit.h"
+#include "server/config/memory_plan.h"
 #include "server/lifecycle/load_models.h"
 #include "server/lifecycle/secret_options.h"
+#include "server/metrics/process_metrics.h"
 #include "server/registry/model_manager.h"
 #include "server/registry/model_registry.h"
 #include "server/registry/model_status.h"
@@ -76,6 +79,10 @@ bool CheckConfig(const config::ServerOptions& options, const registry::ModelSour
       options, source, [] { return false; }, manager, registry);
   findings.Problems(loaded);
   if (loaded.ok()) findings.Problems(SettleModels(options, manager, registry));
+  for (const std::string& warning :
+       config::MemoryWarnings(options, config::AvailableMemory(), metrics::ResidentBytes())) {
+    out << "warning: " << warning << "\n";
+  }
   return findings.all_right();
 }
 

@@ -11,7 +11,8 @@ namespace duet::server::lifecycle {
 // Loads everything that the options name without listening anywhere, and writes a line for each
 // model and for each thing that is not as it should be: certificates and access files that a server
 // would not start with, checkpoints that do not load, folders that are none, labels that point
-// nowhere. True when there is no such thing.
+// nowhere. True when there is no such thing. A line for settings that do not fit the memory is a
+// warning, which does not count.
 bool CheckConfig(const config::ServerOptions& options, const registry::ModelSource& source,
                  std::ostream& out);
 

@@ -19,13 +19,16 @@
 namespace duet::server::lifecycle {
 namespace {
 
+// How long the readers of calls that were ended may take for the message under way, which is sent
+// before the status.
+constexpr double kLastMessageSeconds = 3;
 // How long gRPC may take to hand out the statuses of calls that were ended.
 constexpr std::chrono::seconds kFlush(1);
 // How soon a file that changed is noticed, and how often calls without a line are told of.
 constexpr double kHousekeepingSeconds = 1;
 // How often a drain looks whether the last call has finished or a second signal has come, and the
 // service at the time that its calls take.
-constexpr double kLookSeconds = 0.05;
+constexpr double kLookSeconds = 0.02;
 // How long the server may take to answer itself.
 constexpr double kSelfCheckTimeoutSeconds = 5;
 // How often memory of large requests is given back.
@@ -109,6 +112,7 @@ DuetServer::DuetServer(const config::ServerOptions& options, metrics::LogSink& s
       events_(log_, metrics_, [this] { UpdateHealth(); }),
       manager_(registry_, events_),
       admission_(AdmissionOf(options)),
+      transport_(options.max_transport_bytes),
       scheduler_(batching::MakeBatcher(Batching(options), common::Clock::Real(), &metrics_)),
       service_(Parts()),
       control_(manager_, registry_, events_),
@@ -146,6 +150,7 @@ service::ServiceParts DuetServer::Parts() {
   parts.registry = &registry_;
   parts.scheduler = scheduler_.get();
   parts.admission = &admission_;
+  parts.transport = &transport_;
   parts.observers = {&metrics_, &log_};
   if (tracer_ != nullptr) {
     parts.observers.push_back(tracer_.get());
@@ -188,10 +193,11 @@ absl::Status DuetServer::ListenForAdmin() {
 }
 
 absl::Status DuetServer::Listen() {
-  absl::StatusOr<GrpcServer> grpc = StartGrpcServer(
-      {options_.listen, options_.reflection, options_.max_request_bytes,
-       options_.max_transport_bytes, options_.max_calls, options_.max_call_seconds, Credentials()},
-      service_);
+  absl::StatusOr<GrpcServer> grpc =
+      StartGrpcServer({options_.listen, options_.reflection, options_.max_request_bytes,
+                       options_.max_transport_bytes, options_.max_calls, options_.max_call_seconds,
+                       Credentials(), &transport_.quota()},
+                      service_);
   if (!grpc.ok()) return grpc.status();
   grpc_ = *std::move(grpc);
   SetHealth(false);
@@ -333,6 +339,8 @@ void DuetServer::Drain(const std::function<bool(double seconds)>& wait) {
 void DuetServer::Close() {
   admission_.SetState(service::Admission::State::kDraining);
   service_.AbortAll(service::DrainingRefusal());
+  // Shutdown's deadline would end the rest as CANCELLED, without a word.
+  service_.FinishAborted(kLastMessageSeconds);
   grpc_.server->Shutdown(std::chrono::system_clock::now() + kFlush);
 }
 

@@ -117,6 +117,7 @@ class DuetServer {
   registry::ModelRegistry registry_;
   registry::ModelManager manager_;
   service::Admission admission_;
+  service::TransportQuota transport_;
   const std::unique_ptr<batching::WindowScheduler> scheduler_;
   service::MotionSynthesisService service_;
   GrpcServer grpc_;

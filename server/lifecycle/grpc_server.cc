@@ -58,7 +58,9 @@ void SetMessageLimits(grpc::ServerBuilder& builder, const GrpcServerOptions& opt
   builder.SetCompressionAlgorithmSupportStatus(GRPC_COMPRESS_DEFLATE, false);
   builder.SetCompressionAlgorithmSupportStatus(GRPC_COMPRESS_GZIP, false);
   // gRPC receives a message whole before it looks at its size.
-  builder.SetResourceQuota(grpc::ResourceQuota("duet").Resize(options.max_transport_bytes));
+  builder.SetResourceQuota(options.quota != nullptr
+                               ? *options.quota
+                               : grpc::ResourceQuota("duet").Resize(options.max_transport_bytes));
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #ifndef DUET_SERVER_LIFECYCLE_GRPC_SERVER_H_
 #define DUET_SERVER_LIFECYCLE_GRPC_SERVER_H_
 
+#include <grpcpp/resource_quota.h>
 #include <grpcpp/security/server_credentials.h>
 #include <grpcpp/server.h>
 
@@ -21,6 +22,8 @@ struct GrpcServerOptions {
   int max_calls = 0;
   double max_call_seconds = 660;
   std::shared_ptr<grpc::ServerCredentials> credentials = nullptr;  // null: plain text
+  // Outlives the server. Null: one of max_transport_bytes that nobody else has.
+  const grpc::ResourceQuota* quota = nullptr;
 };
 
 struct GrpcServer {

@@ -16,11 +16,14 @@
 #include "absl/time/clock.h"
 #include "server/config/cpu_budget.h"
 #include "server/config/load_config.h"
+#include "server/config/memory_limit.h"
+#include "server/config/memory_plan.h"
 #include "server/config/print_config.h"
 #include "server/lifecycle/check_config.h"
 #include "server/lifecycle/duet_server.h"
 #include "server/lifecycle/library_logs.h"
 #include "server/lifecycle/service_manager.h"
+#include "server/metrics/process_metrics.h"
 #include "server/metrics/queued_log_sink.h"
 #include "server/metrics/text_log_sink.h"
 
@@ -60,6 +63,14 @@ void ServeUntilStopped(DuetServer& server, StopSignal& stop, const ServiceManage
   server.Drain([&stop](double seconds) { return !stop.WaitFor(seconds); });
 }
 
+// After the models were loaded, because their size is known only then.
+void WarnOfMemory(const config::ServerOptions& options, metrics::JsonLog& log) {
+  for (const std::string& warning :
+       config::MemoryWarnings(options, config::AvailableMemory(), metrics::ResidentBytes())) {
+    log.Warning("settings_do_not_fit", {{"message", warning}});
+  }
+}
+
 // Serves until told to stop; what it cannot serve for is in the log as well.
 absl::Status Serve(const config::ServerOptions& options, const ModelSource& source,
                    const ReadSettings& read_settings, StopSignal& stop, metrics::LogSink& sink) {
@@ -76,6 +87,7 @@ absl::Status Serve(const config::ServerOptions& options, const ModelSource& sour
     log.Error("cannot_serve", {{"message", std::string(status.message())}});
     return status;
   }
+  WarnOfMemory(options, log);
   DuetServer& serving = **server;
   const auto configure = [&serving, &read_settings] {
     const absl::StatusOr<config::ServerOptions> settings = read_settings();
@@ -107,7 +119,9 @@ int RunServer(int argc, const char* const* argv, const EngineOpener& open_engine
     return kExitStopped;
   }
   const int cores = config::AvailableCores();
-  const absl::StatusOr<config::ServerOptions> options = config::ToOptions(command_line, cores);
+  const std::uint64_t memory = config::AvailableMemory();
+  const absl::StatusOr<config::ServerOptions> options =
+      config::ToOptions(command_line, cores, memory);
   if (!options.ok()) {
     Complain(options.status());
     return kExitUsage;
@@ -134,7 +148,7 @@ int RunServer(int argc, const char* const* argv, const EngineOpener& open_engine
   }
   // Outlives everything that logs, and writes its last lines before the process ends.
   metrics::QueuedLogSink queued_sink(std::move(sink), log);
-  const auto read_settings = [&] { return config::ToOptions(read(), cores); };
+  const auto read_settings = [&] { return config::ToOptions(read(), cores, memory); };
   return Serve(*options, *source, read_settings, stop, queued_sink).ok() ? kExitStopped
                                                                          : kExitFailed;
 }

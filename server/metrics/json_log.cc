@@ -138,6 +138,10 @@ void JsonLog::Library(std::string_view library, Severity severity, const std::st
 
 void JsonLog::Info(std::string_view event, Json fields) { Write(Severity::kInfo, event, fields); }
 
+void JsonLog::Warning(std::string_view event, Json fields) {
+  Write(Severity::kWarning, event, fields);
+}
+
 void JsonLog::Error(std::string_view event, Json fields) { Write(Severity::kError, event, fields); }
 
 void JsonLog::Write(Severity severity, std::string_view event, const Json& fields) {

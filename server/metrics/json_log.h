@@ -66,6 +66,7 @@ class JsonLog final : public CallObserver {
 
   // An event of the server's life: `event` is a stable snake_case name, `fields` an object.
   void Info(std::string_view event, nlohmann::ordered_json fields);
+  void Warning(std::string_view event, nlohmann::ordered_json fields);
   void Error(std::string_view event, nlohmann::ordered_json fields);
 
  private:

@@ -81,6 +81,13 @@ void AddDescriptors(Families& families) {
 
 }  // namespace
 
+std::uint64_t ResidentBytes() {
+  std::ifstream file("/proc/self/statm");
+  std::uint64_t pages = 0, resident = 0;
+  if (!(file >> pages >> resident)) return 0;
+  return resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+}
+
 prometheus::MetricFamily Gauge(const std::string& name, const std::string& help, double value) {
   prometheus::ClientMetric metric;
   metric.gauge.value = value;

@@ -3,6 +3,7 @@
 
 #include <prometheus/metric_family.h>
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,9 @@ namespace duet::server::metrics {
 //   process_resident_memory_bytes, process_virtual_memory_bytes, process_open_fds, process_max_fds
 // What cannot be read is left out.
 std::vector<prometheus::MetricFamily> ReadProcessMetrics();
+
+// The memory of this process that is resident; 0 if it cannot be read.
+std::uint64_t ResidentBytes();
 
 // A gauge and a counter without labels.
 prometheus::MetricFamily Gauge(const std::string& name, const std::string& help, double value);

@@ -1,7 +1,10 @@
 #include "server/service/call_reactor.h"
 
+#include <grpc/grpc.h>
+
 #include <utility>
 
+#include "server/common/grpc_status.h"
 #include "server/service/call_deadline.h"
 #include "server/service/call_pipeline.h"
 #include "server/service/wire.h"
@@ -56,6 +59,15 @@ void CallReactor::Write(const v1::SynthesizeResponse& reply) {
 void CallReactor::Finish(CallScope& scope, const absl::Status& status) {
   GrpcReactor& reactor = *this;
   CallPipeline::Close(scope, status, context_, reactor);
+}
+
+// What ServerContext::TryCancel does, with a status of the server's instead of CANCELLED. gRPC
+// writes it past the messages that wait for the reader.
+void CallReactor::BreakOff(const absl::Status& reason) {
+  const grpc::Status status = common::ToGrpcStatus(reason);
+  grpc_call_cancel_with_status(context_.c_call(),
+                               static_cast<grpc_status_code>(status.error_code()),
+                               status.error_message().c_str(), nullptr);
 }
 
 void CallReactor::OnCancel() {

@@ -9,6 +9,7 @@
 
 #include "absl/status/status.h"
 #include "duet/v1/synthesis.pb.h"
+#include "server/service/open_calls.h"
 #include "server/service/reception.h"
 #include "server/service/synthesis_call.h"
 
@@ -26,7 +27,9 @@ class CallReactor final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc:
   using Handler =
       std::function<void(CallReactor&, const std::shared_ptr<Reception>&, grpc::ByteBuffer)>;
 
-  explicit CallReactor(grpc::CallbackServerContext& context) : context_(context) {}
+  // `open_calls` outlives the reactor.
+  CallReactor(grpc::CallbackServerContext& context, OpenCalls& open_calls)
+      : context_(context), open_(open_calls) {}
 
   // Reads the message of an admitted call. A refused one needs Finish alone.
   void Receive(std::shared_ptr<Reception> reception, Handler handle);
@@ -37,7 +40,7 @@ class CallReactor final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc:
 
   void Write(const v1::SynthesizeResponse& reply) override;
   void Finish(CallScope& scope, const absl::Status& status) override;
-  void BreakOff() override { context_.TryCancel(); }
+  void BreakOff(const absl::Status& reason) override;
 
   void OnReadDone(bool ok) override;
   void OnWriteDone(bool ok) override { call_->OnWritten(ok); }
@@ -48,6 +51,7 @@ class CallReactor final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc:
 
  private:
   grpc::CallbackServerContext& context_;
+  const OpenCalls::Ticket open_;
   Handler handle_;
   std::shared_ptr<Reception> reception_;  // null: refused at the headers
   std::shared_ptr<SynthesisCall> call_;

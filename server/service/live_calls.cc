@@ -15,21 +15,49 @@ void RemoveDead(std::vector<std::weak_ptr<LiveCall>>& calls) {
 }  // namespace
 
 void LiveCalls::Add(const std::shared_ptr<LiveCall>& call) {
-  common::MutexLock lock(mutex_);
-  if (calls_.size() >= look_at_) {
-    RemoveDead(calls_);
-    // Seldom enough to cost each call little, however many are alive.
-    look_at_ = std::max(kFewest, 2 * calls_.size());
+  std::optional<absl::Status> ended;
+  {
+    common::MutexLock lock(mutex_);
+    if (calls_.size() >= look_at_) {
+      RemoveDead(calls_);
+      // Seldom enough to cost each call little, however many are alive.
+      look_at_ = std::max(kFewest, 2 * calls_.size());
+    }
+    calls_.push_back(call);
+    ended = ended_;
   }
-  calls_.push_back(call);
+  if (ended) call->Abort(*ended);
 }
 
 void LiveCalls::AbortAll(const absl::Status& reason) {
+  {
+    // A call that was admitted before the server stopped admitting calls may be added after this.
+    common::MutexLock lock(mutex_);
+    ended_ = reason;
+  }
   for (const std::shared_ptr<LiveCall>& call : All()) call->Abort(reason);
 }
 
 void LiveCalls::CheckTime(common::TimePoint now) {
   for (const std::shared_ptr<LiveCall>& call : All()) call->CheckTime(now);
+}
+
+std::optional<std::size_t> LiveCalls::GiveUpSlowestReader(const std::optional<std::string>& client,
+                                                          common::TimePoint now, double seconds) {
+  using Waiting = std::pair<common::TimePoint, std::shared_ptr<LiveCall>>;
+  std::vector<Waiting> waiting;
+  for (std::shared_ptr<LiveCall>& call : All()) {
+    if (client.has_value() && call->client() != *client) continue;
+    const std::optional<common::TimePoint> since = call->waiting_since();
+    if (since.has_value()) waiting.emplace_back(*since, std::move(call));
+  }
+  std::sort(waiting.begin(), waiting.end(),
+            [](const Waiting& a, const Waiting& b) { return a.first < b.first; });
+  for (const Waiting& each : waiting) {
+    const std::optional<std::size_t> held = each.second->GiveUpReader(now, seconds);
+    if (held.has_value()) return held;
+  }
+  return std::nullopt;
 }
 
 std::vector<std::shared_ptr<LiveCall>> LiveCalls::All() {

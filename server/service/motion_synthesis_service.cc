@@ -28,6 +28,10 @@ constexpr metrics::MethodInfo kGetModel = Method("GetModel", "unary");
 // check (eight milliseconds a mebibyte) that they have a thread of their own.
 constexpr std::size_t kLargeRequestBytes = std::size_t{1} << 20;
 
+// A reader that has taken nothing for so long has stalled: longer than a network or a busy machine
+// holds up a good reader, and soon enough for a refused caller that comes back every second.
+constexpr double kStalledSeconds = 5;
+
 // A call's deadline on the scheduler's clock: the caller's, or the server's own where that is
 // nearer.
 common::TimePoint DeadlineOf(const grpc::ServerContextBase& context, const common::Clock& clock,
@@ -60,9 +64,9 @@ MotionSynthesisService::MotionSynthesisService(ServiceParts parts)
 
 RawService::Reactor* MotionSynthesisService::Synthesize(Context* context) {
   OpenedCall opened = pipeline_.Open(*context, kSynthesize);
-  auto* reactor = new CallReactor(*context);
-  absl::StatusOr<ShareLease> place = opened.status.ok() ? parts_.admission->Admit(opened.client)
-                                                        : absl::StatusOr<ShareLease>(opened.status);
+  auto* reactor = new CallReactor(*context, open_calls_);
+  absl::StatusOr<ShareLease> place =
+      opened.status.ok() ? Admit(opened.client) : absl::StatusOr<ShareLease>(opened.status);
   absl::Status admitted = place.status();
   // Whether there is a place, and room in the queue, takes no look at the request. A bulk call's
   // smaller share of both does: that comes when it has been read.
@@ -81,6 +85,42 @@ RawService::Reactor* MotionSynthesisService::Synthesize(Context* context) {
       [this](CallReactor& received_by, const std::shared_ptr<Reception>& reception,
              grpc::ByteBuffer bytes) { Handle(received_by, reception, std::move(bytes)); });
   return reactor;
+}
+
+void MotionSynthesisService::FinishAborted(double seconds) {
+  open_calls_.WaitForNone(seconds);
+  while (calls_.GiveUpSlowestReader(std::nullopt, parts_.clock->Now(), 0).has_value()) {
+  }
+}
+
+absl::StatusOr<ShareLease> MotionSynthesisService::Admit(const std::string& client) {
+  absl::StatusOr<ShareLease> place = parts_.admission->Admit(client);
+  while (absl::IsResourceExhausted(place.status())) {
+    // The client's own first: a client that has its share has no claim to the others' places.
+    const bool full = parts_.admission->calls() >= parts_.admission->max_calls();
+    const common::TimePoint now = parts_.clock->Now();
+    if (!calls_.GiveUpSlowestReader(client, now, kStalledSeconds).has_value() &&
+        !(full && calls_.GiveUpSlowestReader(std::nullopt, now, kStalledSeconds).has_value())) {
+      break;
+    }
+    place = parts_.admission->Admit(client);
+  }
+  return place;
+}
+
+absl::StatusOr<ShareLease> MotionSynthesisService::Hold(const std::string& client,
+                                                        const grpc::ByteBuffer& bytes) {
+  absl::StatusOr<ShareLease> held = parts_.admission->Hold(client, bytes.Length());
+  if (held.ok()) return held;
+  // What these held is free a little later, so this attempt is refused nonetheless.
+  std::size_t freed = 0;
+  while (freed < bytes.Length()) {
+    const std::optional<std::size_t> more =
+        calls_.GiveUpSlowestReader(client, parts_.clock->Now(), kStalledSeconds);
+    if (!more.has_value()) break;
+    freed += *more;
+  }
+  return held;
 }
 
 std::shared_ptr<Reception> MotionSynthesisService::Receive(OpenedCall opened, ShareLease place,
@@ -108,14 +148,13 @@ void MotionSynthesisService::Handle(CallReactor& reactor,
   CountIfLarge(bytes);
   const absl::Status fits = pipeline_.CheckSize(bytes);
   absl::StatusOr<ShareLease> held =
-      fits.ok() ? parts_.admission->Hold(reception->client(), bytes.Length())
-                : absl::StatusOr<ShareLease>(fits);
+      fits.ok() ? Hold(reception->client(), bytes) : absl::StatusOr<ShareLease>(fits);
   if (!held.ok()) {
     reception->Refuse(held.status());
   } else if (bytes.Length() >= kLargeRequestBytes) {
     HandleElsewhere(reactor, reception, std::move(bytes), *std::move(held));
   } else {
-    Begin(reactor, reception, std::move(bytes), *std::move(held));
+    Begin(reactor, reception, std::move(bytes), *std::move(held), nullptr);
   }
 }
 
@@ -124,22 +163,42 @@ void MotionSynthesisService::HandleElsewhere(CallReactor& reactor,
                                              const std::shared_ptr<Reception>& reception,
                                              grpc::ByteBuffer bytes, ShareLease held) {
   auto lease = std::make_shared<ShareLease>(std::move(held));
-  large_requests_.Post([this, &reactor, reception, bytes = std::move(bytes), lease](bool run) {
+  std::shared_ptr<TransportQuota::Received> received;
+  if (parts_.transport != nullptr) {
+    received = std::make_shared<TransportQuota::Received>(*parts_.transport, bytes.Length());
+  }
+  large_requests_.Post([this, &reactor, reception, bytes = std::move(bytes), lease,
+                        received = std::move(received)](bool run) mutable {
     const std::optional<absl::Status> ended = reception->ended_meanwhile();
     if (ended.has_value() || !run) {
       *lease = ShareLease();  // free before the caller knows
       reception->Refuse(ended.value_or(DrainingRefusal()));
     } else {
-      Begin(reactor, reception, bytes, std::move(*lease));
+      // Not a copy, which would keep the bytes while the parsed message is checked.
+      Begin(reactor, reception, std::move(bytes), std::move(*lease), std::move(received));
     }
   });
 }
 
 void MotionSynthesisService::Begin(CallReactor& reactor,
                                    const std::shared_ptr<Reception>& reception,
-                                   grpc::ByteBuffer bytes, ShareLease held) {
+                                   grpc::ByteBuffer bytes, ShareLease held,
+                                   std::shared_ptr<TransportQuota::Received> received) {
+  v1::SynthesizeRequest request;
+  // Most of a large request is positions. Without this the array would grow by doubling, and would
+  // exist twice each time.
+  if (received != nullptr) {
+    const std::size_t positions = bytes.Length() / sizeof(float);
+    request.mutable_leader()->mutable_positions()->Reserve(static_cast<int>(positions));
+  }
+  const absl::Status read = pipeline_.Read(std::move(bytes), request);
+  received = nullptr;
+  if (!read.ok()) {
+    reception->Refuse(read);
+    return;
+  }
   absl::StatusOr<SynthesisCall::Parts> prepared =
-      Prepare(reactor.context(), *reception, std::move(bytes), std::move(held));
+      Prepare(reactor.context(), *reception, request, std::move(held));
   if (!prepared.ok()) {
     reception->Refuse(prepared.status());
     return;
@@ -147,13 +206,9 @@ void MotionSynthesisService::Begin(CallReactor& reactor,
   reactor.Run(SynthesisCall::Create(*std::move(prepared), *parts_.scheduler, reactor));
 }
 
-absl::StatusOr<SynthesisCall::Parts> MotionSynthesisService::Prepare(const Context& context,
-                                                                     Reception& reception,
-                                                                     grpc::ByteBuffer bytes,
-                                                                     ShareLease held) {
-  v1::SynthesizeRequest request;
-  const absl::Status read = pipeline_.Read(std::move(bytes), request);
-  if (!read.ok()) return read;
+absl::StatusOr<SynthesisCall::Parts> MotionSynthesisService::Prepare(
+    const Context& context, Reception& reception, const v1::SynthesizeRequest& request,
+    ShareLease held) {
   // An unknown priority is refused by the validator, together with all else that is wrong.
   const batching::Priority priority =
       PriorityOf(request).value_or(batching::Priority::kInteractive);
@@ -193,6 +248,10 @@ void MotionSynthesisService::ServeUnary(const char* path, const metrics::MethodI
                                      const std::shared_ptr<Reception>& reception,
                                      grpc::ByteBuffer bytes) {
     CountIfLarge(bytes);
+    absl::StatusOr<ShareLease> held = ShareLease();
+    // A full server still answers requests of an ordinary size.
+    if (bytes.Length() >= kLargeRequestBytes) held = Hold(reception->client(), bytes);
+    if (!held.ok()) return reception->Refuse(held.status());
     Request request;
     const absl::Status read = pipeline_.Read(std::move(bytes), request);
     if (!read.ok()) return reception->Refuse(read);
@@ -203,7 +262,7 @@ void MotionSynthesisService::ServeUnary(const char* path, const metrics::MethodI
   };
   Serve(path, [this, method, handle](Context* context) -> Reactor* {
     OpenedCall opened = pipeline_.Open(*context, method);
-    auto* reactor = new CallReactor(*context);
+    auto* reactor = new CallReactor(*context, open_calls_);
     const absl::Status serving =
         opened.status.ok() ? parts_.admission->CheckServing() : opened.status;
     if (serving.ok()) {

@@ -23,10 +23,12 @@
 #include "server/service/call_pipeline.h"
 #include "server/service/call_reactor.h"
 #include "server/service/live_calls.h"
+#include "server/service/open_calls.h"
 #include "server/service/raw_service.h"
 #include "server/service/reception.h"
 #include "server/service/request_limits.h"
 #include "server/service/synthesis_call.h"
+#include "server/service/transport_quota.h"
 
 namespace duet::server::service {
 
@@ -35,6 +37,7 @@ struct ServiceParts {
   registry::ModelRegistry* registry = nullptr;
   batching::WindowScheduler* scheduler = nullptr;
   Admission* admission = nullptr;
+  TransportQuota* transport = nullptr;  // null: not told of requests that have come
   std::vector<metrics::CallObserver*> observers;
   const common::Clock* clock = &common::Clock::Real();
   RequestLimits limits;
@@ -68,6 +71,10 @@ class MotionSynthesisService final : public RawService {
   // Ends every call that is still being answered.
   void AbortAll(const absl::Status& reason) { calls_.AbortAll(reason); }
 
+  // To be called after AbortAll: waits until every call has its status, at most this long, and then
+  // gives up the readers that still have not taken what was being written.
+  void FinishAborted(double seconds);
+
   // Ends the calls that have taken longer than they may: to arrive, to be answered, to be read. To
   // be called every few hundredths of a second.
   void CheckTime() { calls_.CheckTime(parts_.clock->Now()); }
@@ -86,22 +93,30 @@ class MotionSynthesisService final : public RawService {
               grpc::ByteBuffer bytes);
   void HandleElsewhere(CallReactor& reactor, const std::shared_ptr<Reception>& reception,
                        grpc::ByteBuffer bytes, ShareLease held);
-  // Parses the message and begins to answer; `held` are its bytes.
+  // Parses the message and begins to answer; `held` are its bytes. `received` goes with the bytes.
   void Begin(CallReactor& reactor, const std::shared_ptr<Reception>& reception,
-             grpc::ByteBuffer bytes, ShareLease held);
+             grpc::ByteBuffer bytes, ShareLease held,
+             std::shared_ptr<TransportQuota::Received> received);
   // Finds the model and checks the request. Takes place and scope of a call that goes on; those of
   // a refused one stay.
   absl::StatusOr<SynthesisCall::Parts> Prepare(const Context& context, Reception& reception,
-                                               grpc::ByteBuffer bytes, ShareLease held);
+                                               const v1::SynthesizeRequest& request,
+                                               ShareLease held);
   v1::ListModelsResponse List() const;
   absl::StatusOr<v1::GetModelResponse> Get(const v1::GetModelRequest& request) const;
   // A method with one answer: `answer` is a StatusOr<Response> from (const Request&).
   template <typename Request, typename Answer>
   void ServeUnary(const char* path, const metrics::MethodInfo& method, Answer answer);
+  // A place for a call. Readers that have stalled lose theirs to those who come.
+  absl::StatusOr<ShareLease> Admit(const std::string& client);
+  // Room for a request that has come. Where there is none, readers of this client that have stalled
+  // make room for its next attempt.
+  absl::StatusOr<ShareLease> Hold(const std::string& client, const grpc::ByteBuffer& bytes);
   std::shared_ptr<Reception> Receive(OpenedCall opened, ShareLease place, CallReactor& reactor);
 
   const ServiceParts parts_;
   const CallPipeline pipeline_;
+  OpenCalls open_calls_;
   LiveCalls calls_;
   std::atomic<std::uint64_t> large_request_bytes_{0};
   common::BackgroundThread large_requests_{common::BackgroundThread::Share::kOrdinary};

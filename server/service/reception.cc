@@ -92,6 +92,21 @@ void Reception::CheckTime(common::TimePoint now) {
   if (call != nullptr) call->CheckTime(now);
 }
 
+std::shared_ptr<SynthesisCall> Reception::call() const {
+  common::MutexLock lock(mutex_);
+  return call_;
+}
+
+std::optional<common::TimePoint> Reception::waiting_since() const {
+  const std::shared_ptr<SynthesisCall> answering = call();
+  return answering == nullptr ? std::nullopt : answering->waiting_since();
+}
+
+std::optional<std::size_t> Reception::GiveUpReader(common::TimePoint now, double seconds) {
+  const std::shared_ptr<SynthesisCall> answering = call();
+  return answering == nullptr ? std::nullopt : answering->GiveUpReader(now, seconds);
+}
+
 absl::Status Reception::LeaveToArrive(double waited) {
   if (waited >= parts_.limits.timeout_seconds) {
     return ReceiveTimeoutRefusal(parts_.limits.timeout_seconds);

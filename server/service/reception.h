@@ -1,6 +1,7 @@
 #ifndef DUET_SERVER_SERVICE_RECEPTION_H_
 #define DUET_SERVER_SERVICE_RECEPTION_H_
 
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <string>
@@ -65,13 +66,18 @@ class Reception final : public LiveCall {
   // Starts the call. Reasons to end it go there from now on.
   void GoOn(std::shared_ptr<SynthesisCall> call);
 
-  const std::string& client() const { return parts_.client; }
+  const std::string& client() const override { return parts_.client; }
 
   void Abort(const absl::Status& reason) override;
   void CheckTime(common::TimePoint now) override;
+  std::optional<common::TimePoint> waiting_since() const override;
+  std::optional<std::size_t> GiveUpReader(common::TimePoint now, double seconds) override;
 
  private:
   enum class State { kReceiving, kHandling, kAnswering, kEnded };
+
+  // The call that is being answered; null before.
+  std::shared_ptr<SynthesisCall> call() const;
   // Ends the call with its scope taken out, if it is in this state.
   bool EndFrom(State state, const absl::Status& reason);
   absl::Status LeaveToArrive(double waited) DUET_REQUIRES(mutex_);

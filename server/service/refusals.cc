@@ -69,6 +69,13 @@ absl::Status WriteTimeoutRefusal(double seconds) {
   return status;
 }
 
+absl::Status StalledReaderRefusal(double seconds) {
+  return Retryable(absl::ResourceExhaustedError(
+                       absl::StrCat("the caller took nothing of the answer for ", seconds,
+                                    " s while other calls waited for a place or for memory")),
+                   common::kReasonWriteTimeout);
+}
+
 absl::Status NoMessageRefusal() {
   absl::Status status = absl::InvalidArgumentError(
       "no request came: the call ended without one, or with one of more than twice "

@@ -27,6 +27,8 @@ absl::Status TooManySlowRequestsRefusal(std::size_t limit);
 // DEADLINE_EXCEEDED: the request, or its answer's reader, took longer than the server waits.
 absl::Status ReceiveTimeoutRefusal(double seconds);
 absl::Status WriteTimeoutRefusal(double seconds);
+// RESOURCE_EXHAUSTED: others waited for the place of a call whose reader took nothing for so long.
+absl::Status StalledReaderRefusal(double seconds);
 // INVALID_ARGUMENT: the call ended without a message.
 absl::Status NoMessageRefusal();
 // RESOURCE_EXHAUSTED: the scheduler's refusal with RetryInfo. Other codes: DrainingRefusal, the

@@ -30,6 +30,8 @@ class ShareLease {
   ~ShareLease();
 
   explicit operator bool() const { return pool_ != nullptr; }
+  // What the lease holds; 0 if it holds nothing.
+  std::size_t amount() const { return pool_ != nullptr ? amount_ : 0; }
 
  private:
   friend class SharePool;

@@ -82,17 +82,49 @@ void SynthesisCall::Abort(const absl::Status& reason) {
 }
 
 void SynthesisCall::CheckTime(common::TimePoint now) {
-  bool break_off = false;
+  std::optional<absl::Status> break_off;
   {
     common::MutexLock lock(mutex_);
     if (state_ == State::kFinished || breaking_off_) return;
-    break_off = EndLate(now);
+    breaking_off_ = EndLate(now);
     if (!end_.has_value()) return;
-    breaking_off_ = break_off;
+    if (breaking_off_) break_off = end_;
   }
+  if (break_off.has_value()) return BreakOff(*break_off);
   stream_->Cancel();
-  if (break_off) {
-    writer_.BreakOff();
+  Advance();
+}
+
+std::optional<common::TimePoint> SynthesisCall::waiting_since() const {
+  common::MutexLock lock(mutex_);
+  if (state_ != State::kWriting || given_up_) return std::nullopt;
+  return write_began_;
+}
+
+std::optional<std::size_t> SynthesisCall::GiveUpReader(common::TimePoint now, double seconds) {
+  ShareLease place;
+  absl::Status reason;
+  std::size_t bytes = 0;
+  {
+    common::MutexLock lock(mutex_);
+    if (state_ != State::kWriting || breaking_off_ || given_up_) return std::nullopt;
+    if (common::SecondsBetween(write_began_, now) < seconds) return std::nullopt;
+    if (!end_.has_value()) end_ = StalledReaderRefusal(seconds);
+    reason = *end_;
+    breaking_off_ = true;
+    given_up_ = true;
+    // Somebody else waits for the place. The bytes are held until the call has let go of them.
+    place = std::move(place_);
+    bytes = held_bytes_.amount();
+  }
+  BreakOff(reason);
+  return bytes;
+}
+
+void SynthesisCall::BreakOff(const absl::Status& reason) {
+  stream_->Cancel();
+  writer_.BreakOff(reason);
+  {
     common::MutexLock lock(mutex_);
     breaking_off_ = false;
   }

@@ -1,6 +1,7 @@
 #ifndef DUET_SERVER_SERVICE_SYNTHESIS_CALL_H_
 #define DUET_SERVER_SERVICE_SYNTHESIS_CALL_H_
 
+#include <cstddef>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -28,8 +29,9 @@ class ReplyWriter {
   // Ends the call: reports it through its scope, then tells the caller. Nothing is called on the
   // writer afterwards.
   virtual void Finish(CallScope& scope, const absl::Status& status) = 0;
-  // Gives up the write under way, so that OnWritten follows soon. The caller gets no status then.
-  virtual void BreakOff() = 0;
+  // Gives up the write under way, so that OnWritten follows soon. The caller gets the code and the
+  // message of `reason`, without details: trailers cannot overtake a message.
+  virtual void BreakOff(const absl::Status& reason) = 0;
 };
 
 // One admitted Synthesize call: pulls finished frames from its clip as fast as its reader takes
@@ -75,6 +77,10 @@ class SynthesisCall : public std::enable_shared_from_this<SynthesisCall> {
   // under way is broken off.
   void CheckTime(common::TimePoint now);
 
+  // As LiveCall has them.
+  std::optional<common::TimePoint> waiting_since() const;
+  std::optional<std::size_t> GiveUpReader(common::TimePoint now, double seconds);
+
  private:
   enum class State { kIdle, kWriting, kFinished };
   enum class Next { kHeader, kFrames, kEnd };
@@ -84,6 +90,8 @@ class SynthesisCall : public std::enable_shared_from_this<SynthesisCall> {
   void Advance();
   // Sets end_ where the call has taken too long; true when the write under way is to be broken off.
   bool EndLate(common::TimePoint now) DUET_REQUIRES(mutex_);
+  // Ends the call with `reason` although a write is under way. breaking_off_ is set.
+  void BreakOff(const absl::Status& reason) DUET_EXCLUDES(mutex_);
   // Prepares the next reply, if any: true when reply_ is to be written. May set end_ instead.
   bool PrepareReply() DUET_REQUIRES(mutex_);
   bool PrepareFrames() DUET_REQUIRES(mutex_);
@@ -101,7 +109,7 @@ class SynthesisCall : public std::enable_shared_from_this<SynthesisCall> {
   ReplyWriter& writer_;
   std::shared_ptr<ClipStream> stream_;
 
-  common::Mutex mutex_;
+  mutable common::Mutex mutex_;
   State state_ DUET_GUARDED_BY(mutex_) = State::kIdle;
   Next next_ DUET_GUARDED_BY(mutex_) = Next::kHeader;
   std::optional<absl::Status> end_ DUET_GUARDED_BY(mutex_);  // how the call is to finish
@@ -109,6 +117,7 @@ class SynthesisCall : public std::enable_shared_from_this<SynthesisCall> {
   common::TimePoint write_began_ DUET_GUARDED_BY(mutex_);
   // While it is, the call is not finished: the writer must stay.
   bool breaking_off_ DUET_GUARDED_BY(mutex_) = false;
+  bool given_up_ DUET_GUARDED_BY(mutex_) = false;  // GiveUpReader has ended the call
   ShareLease place_ DUET_GUARDED_BY(mutex_);
   ShareLease held_bytes_ DUET_GUARDED_BY(mutex_);
   std::unique_ptr<CallScope> scope_ DUET_GUARDED_BY(mutex_);  // null once finished

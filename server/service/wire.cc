@@ -16,7 +16,11 @@ absl::Status ParseMessage(grpc::ByteBuffer bytes, google::protobuf::Message& mes
     if (!bounded.ok()) return bounded;
   }
   grpc::ProtoBufferReader reader(&bytes);
-  if (reader.status().ok() && message.ParseFromZeroCopyStream(&reader)) return absl::OkStatus();
+  // Parsing proper would clear the message first, and with it what was reserved.
+  const int size = static_cast<int>(bytes.Length());
+  if (reader.status().ok() && message.MergeFromBoundedZeroCopyStream(&reader, size)) {
+    return absl::OkStatus();
+  }
   Violations violations;
   violations.Malformed(
       message.GetDescriptor()->full_name(),

@@ -12,6 +12,7 @@ namespace duet::server::service {
 // refuse malformed ones as UNIMPLEMENTED, and parses a request only once it is known that it will
 // be small enough when parsed (wire_survey.h).
 
+// Parses into `message`, which is empty except for memory that was reserved in it.
 // Fails with INVALID_ARGUMENT, saying which message was wanted, when the bytes are no such message,
 // or naming the field that comes too often. The bytes are let go of in either case.
 absl::Status ParseMessage(grpc::ByteBuffer bytes, google::protobuf::Message& message);

@@ -53,16 +53,17 @@ def duet(*arguments):
 
 class Server:
     """A duet-server on a free port, and everything that it logged. `metrics_port` is that of its
-    figures where `metrics` names an address."""
+    figures where `metrics` names an address, `within` a memory_mixes.Cgroup that it runs in."""
 
     def __init__(self, *flags, port=0, metrics="", descriptors=None,
-                 program=PROGRAMS / "duet-server"):
+                 program=PROGRAMS / "duet-server", within=None):
         self.log = []
         self.metrics_port = None
         limit = [] if descriptors is None else ["prlimit", f"--nofile={descriptors}"]
+        command = [*limit, program, "--listen", f"127.0.0.1:{port}", "--metrics-listen", metrics,
+                   *flags]
         self._process = subprocess.Popen(
-            [*limit, program, "--listen", f"127.0.0.1:{port}", "--metrics-listen", metrics,
-             *flags],
+            command if within is None else within.command(command),
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         serving = queue.Queue()
         # Reads to the end: a server whose log nobody reads stands still.
@@ -97,6 +98,9 @@ class Server:
                 serving.put(entry["port"])
         serving.put(None)
 
+    def is_alive(self):
+        return self._process.poll() is None
+
     def events(self, name):
         """The lines of one event, in order."""
         return [entry for entry in list(self.log) if entry.get("event") == name]
@@ -125,6 +129,20 @@ def wait_until(happened, what):
         if time.monotonic() > end:
             raise AssertionError(f"waited in vain: {what}")
         time.sleep(0.05)
+
+
+def together(jobs):
+    """Runs functions at the same time; what they returned, in order."""
+    results = [None] * len(jobs)
+
+    def run(i):
+        results[i] = jobs[i]()
+    threads = [threading.Thread(target=run, args=(i,)) for i in range(len(jobs))]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    return results
 
 
 def generate_stubs(folder, *protos):

@@ -122,7 +122,8 @@ TEST(ParseCommandLineTest, ReadsEveryFlag) {
       "--model-repository /models --default-model sbu "
       "--version-label sbu:stable=3 --version-label sbu:canary=4 --no-reflection --workers 2 "
       "--threads-per-worker 3 --max-calls 4 --max-queued-windows 5 --max-request-bytes 6000 "
-      "--max-transport-bytes 20000 --buffered-frames 7 --drain-seconds 8 --grace-seconds 9 "
+      "--max-transport-bytes 20000 --memory-limit-bytes 400000000 --buffered-frames 7 "
+      "--drain-seconds 8 --grace-seconds 9 "
       "--clean-up off --engine torch --precision f32 --max-batch-windows 10 "
       "--version-policy sbu=latest:2 --version-policy *=1,3 "
       "--version-policy k3hi=all --admin-listen b:2 "
@@ -136,7 +137,8 @@ TEST(ParseCommandLineTest, ReadsEveryFlag) {
          version_labels { model: "sbu" label: "stable" version: 3 }
          version_labels { model: "sbu" label: "canary" version: 4 }
          reflection: false workers: 2 threads_per_worker: 3 max_calls: 4 max_queued_windows: 5
-         max_request_bytes: 6000 max_transport_bytes: 20000 buffered_frames: 7 drain_seconds: 8 grace_seconds: 9
+         max_request_bytes: 6000 max_transport_bytes: 20000
+         memory_limit_bytes: 400000000 buffered_frames: 7 drain_seconds: 8 grace_seconds: 9
          clean_up: CLEAN_UP_POLICY_OFF engine: ENGINE_TORCH precision: PRECISION_F32
          max_batch_windows: 10 max_batch_delay_seconds: 0.5
          version_policies { model: "sbu" latest: 2 }

@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "server/service/refusals.h"
 #include "tests/server/support/fake_clock.h"
 #include "tests/server/support/puppet_scheduler.h"
 #include "tests/server/support/raw_call.h"
@@ -283,6 +284,112 @@ TEST(HostileClientTest, AReaderThatNeverReadsIsGivenUp) {
   grpc::ClientContext other;  // no deadline: the batcher's clock is not the test's
   EXPECT_TRUE(Call(running.stub(), SampleRequest(), other).status.ok()) << "others are answered";
   EXPECT_FALSE(ReadAll(*reader).status.ok());
+}
+
+// A call whose answer is not read until told to: far more than the transport takes from a server
+// whose client does not read.
+class IdleReader {
+ public:
+  explicit IdleReader(const RunningService& running) {
+    // A window that grows where it is measured would take the whole answer.
+    grpc::ChannelArguments arguments;
+    arguments.SetInt(GRPC_ARG_HTTP2_BDP_PROBE, 0);
+    arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);
+    stub_ = v1::MotionSynthesis::NewStub(grpc::CreateCustomChannel(
+        running.address(), grpc::InsecureChannelCredentials(), arguments));
+    v1::SynthesizeRequest request = SampleRequest(9000);
+    request.set_chunk_frames(240);
+    reader_ = stub_->Synthesize(&context_, request);
+  }
+  ~IdleReader() { context_.TryCancel(); }
+
+  grpc::Status ReadToTheEnd() { return ReadAll(*reader_).status; }
+
+ private:
+  grpc::ClientContext context_;
+  std::unique_ptr<v1::MotionSynthesis::Stub> stub_;
+  std::unique_ptr<grpc::ClientReader<v1::SynthesizeResponse>> reader_;
+};
+
+// A clock that does not run, with no other time limit than that of a stalled reader.
+RunningService::Setup StandingClock(const FakeClock& clock) {
+  RunningService::Setup setup;
+  setup.clock = &clock;
+  setup.reception.timeout_seconds = std::numeric_limits<double>::infinity();
+  setup.reception.slow_seconds = std::numeric_limits<double>::infinity();
+  return setup;
+}
+
+TEST(HostileClientTest, AStalledReaderLosesItsPlaceToAnotherCallOfItsClient) {
+  FakeClock clock;
+  RunningService::Setup setup = StandingClock(clock);
+  setup.admission.max_calls = 4;
+  setup.admission.client_share = 0.75;
+  RunningService running(setup);
+  IdleReader first(running), second(running), third(running);
+  while (running.admission().calls() < 3) std::this_thread::yield();
+  const auto call = [&running] {
+    grpc::ClientContext context;
+    return Call(running.stub(), SampleRequest(), context).status;
+  };
+  EXPECT_EQ(Decode(call()).reason, "TOO_MANY_CALLS") << "they have not stalled for long enough";
+  // When the server has filled their windows is the transport's to say.
+  grpc::Status answered;
+  do {
+    clock.Advance(std::chrono::seconds(5));
+    answered = call();
+  } while (Decode(answered).reason == "TOO_MANY_CALLS");
+  EXPECT_TRUE(answered.ok()) << answered.error_message();
+  const metrics::CallRecord record = [&running] {
+    for (const metrics::CallRecord& each : running.calls().records()) {
+      if (each.frames > 0 && !each.status.ok()) return each;
+    }
+    return metrics::CallRecord();
+  }();
+  EXPECT_THAT(std::string(record.status.message()), HasSubstr("while other calls waited"));
+}
+
+TEST(HostileClientTest, StalledReadersMakeRoomForTheBytesOfAnotherCall) {
+  FakeClock clock;
+  RunningService::Setup setup = StandingClock(clock);
+  const std::size_t bytes = SampleRequest(9000).ByteSizeLong() + 100;
+  setup.admission.max_held_bytes = 2 * bytes;
+  RunningService running(setup);
+  IdleReader first(running), second(running);
+  while (running.admission().held_bytes() < bytes) std::this_thread::yield();
+  grpc::Status answered;
+  do {
+    clock.Advance(std::chrono::seconds(5));
+    grpc::ClientContext context;
+    answered = Call(running.stub(), SampleRequest(9000), context).status;
+  } while (Decode(answered).reason == "TOO_MANY_BYTES");
+  EXPECT_TRUE(answered.ok()) << answered.error_message();
+}
+
+TEST(HostileClientTest, AReaderThatHasStalledAtTheEndOfADrainIsToldWhy) {
+  RunningService running;
+  IdleReader reader(running);
+  while (running.admission().calls() < 1) std::this_thread::yield();
+  running.service().AbortAll(DrainingRefusal());
+  running.service().FinishAborted(0);
+  const grpc::Status status = reader.ReadToTheEnd();
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::UNAVAILABLE);
+  EXPECT_EQ(status.error_message(), "the server is shutting down");
+}
+
+TEST(HostileClientTest, AReaderThatIsSlowAtTheEndOfADrainGetsItsDetails) {
+  RunningService running;
+  IdleReader reader(running);
+  while (running.admission().calls() < 1) std::this_thread::yield();
+  running.service().AbortAll(DrainingRefusal());
+  grpc::Status status;
+  std::thread reading([&] { status = reader.ReadToTheEnd(); });
+  running.service().FinishAborted(std::numeric_limits<int>::max());
+  reading.join();
+  const Refusal refusal = Decode(status);
+  EXPECT_EQ(refusal.code, StatusCode::kUnavailable);
+  EXPECT_EQ(refusal.reason, "SERVER_DRAINING");
+  EXPECT_EQ(refusal.retry_seconds, 1);
 }
 
 TEST(HostileClientTest, NoCallLastsLongerThanTheServerAllows) {

@@ -30,7 +30,7 @@ using std::chrono::milliseconds;
 class FakeWriter final : public ReplyWriter {
  public:
   void Write(const v1::SynthesizeResponse&) override { ADD_FAILURE() << "nothing to write"; }
-  void BreakOff() override { ADD_FAILURE() << "nothing to break off"; }
+  void BreakOff(const absl::Status&) override { ADD_FAILURE() << "nothing to break off"; }
   void Finish(CallScope& scope, const absl::Status& status) override {
     EXPECT_FALSE(finished.has_value()) << "two ends";
     scope.Finish(status);

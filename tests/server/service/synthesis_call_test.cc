@@ -29,6 +29,7 @@ using test::RecordingObserver;
 using test::SampleRequest;
 using test::StatusIs;
 
+using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
@@ -50,13 +51,15 @@ class FakeWriter final : public ReplyWriter {
     finished = status;
   }
 
-  void BreakOff() override {
+  void BreakOff(const absl::Status& reason) override {
     ++broken_off;
+    broken_off_with = reason;
     if (on_break_off) on_break_off();
   }
 
   bool writing = false;
   int broken_off = 0;
+  absl::Status broken_off_with;
   std::function<void()> on_break_off;
   std::vector<v1::SynthesizeResponse> replies;
   std::optional<absl::Status> finished;
@@ -340,6 +343,59 @@ TEST_F(SynthesisCallTest, ACallThatSendsNoChunkHasNoFirst) {
   call_->Abort(absl::CancelledError("gone"));
   Written(/*ok=*/false);
   EXPECT_LT(observer_.WaitFor(1).first_chunk_seconds, 0);
+}
+
+TEST_F(SynthesisCallTest, GivingUpAStalledReaderFreesThePlaceAtOnce) {
+  Create(46);
+  call_->Start();
+  EXPECT_EQ(call_->waiting_since(), clock_.Now());
+  clock_.Advance(std::chrono::seconds(2));
+  EXPECT_TRUE(call_->GiveUpReader(clock_.Now(), 2).has_value());
+  EXPECT_EQ(admission_.calls(), 0u) << "although the write is still under way";
+  EXPECT_EQ(writer_.broken_off, 1);
+  EXPECT_THAT(writer_.broken_off_with,
+              StatusIs(StatusCode::kResourceExhausted, HasSubstr("while other calls")));
+  EXPECT_FALSE(writer_.finished.has_value());
+  Written(/*ok=*/false);
+  ASSERT_TRUE(writer_.finished.has_value());
+  EXPECT_THAT(*writer_.finished,
+              StatusIs(StatusCode::kResourceExhausted, HasSubstr("while other calls")));
+}
+
+TEST_F(SynthesisCallTest, AReaderIsGivenUpOnlyOnce) {
+  Create(46);
+  call_->Start();
+  EXPECT_TRUE(call_->GiveUpReader(clock_.Now(), 0).has_value());
+  EXPECT_FALSE(call_->GiveUpReader(clock_.Now(), 0).has_value());
+  EXPECT_EQ(call_->waiting_since(), std::nullopt);
+  EXPECT_EQ(writer_.broken_off, 1);
+  Written(/*ok=*/false);
+}
+
+TEST_F(SynthesisCallTest, AReaderThatTakesItsMessagesIsNotGivenUp) {
+  Create(46);
+  call_->Start();
+  clock_.Advance(std::chrono::seconds(1));
+  EXPECT_FALSE(call_->GiveUpReader(clock_.Now(), 2).has_value()) << "it has not waited long enough";
+  Written();
+  clock_.Advance(std::chrono::seconds(10));
+  EXPECT_EQ(call_->waiting_since(), std::nullopt);
+  EXPECT_FALSE(call_->GiveUpReader(clock_.Now(), 2).has_value()) << "it waits for the model";
+  EXPECT_EQ(writer_.broken_off, 0);
+  EXPECT_EQ(admission_.calls(), 1u);
+  call_->Abort(absl::CancelledError("the test is over"));
+}
+
+TEST_F(SynthesisCallTest, ACallThatWasEndedKeepsItsReasonWhenItsReaderIsGivenUp) {
+  Create(46);
+  call_->Start();
+  call_->Abort(absl::UnavailableError("the server is shutting down"));
+  EXPECT_FALSE(writer_.finished.has_value()) << "the header is still under way";
+  EXPECT_TRUE(call_->GiveUpReader(clock_.Now(), 0).has_value());
+  EXPECT_THAT(writer_.broken_off_with,
+              StatusIs(StatusCode::kUnavailable, HasSubstr("shutting down")));
+  Written(/*ok=*/false);
+  EXPECT_THAT(*writer_.finished, StatusIs(StatusCode::kUnavailable, HasSubstr("shutting down")));
 }
 
 }  // namespace

@@ -1,0 +1,91 @@
+#include "server/service/live_calls.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace duet::server::service {
+namespace {
+
+using std::chrono::seconds;
+
+constexpr common::TimePoint kBegin{};
+
+// A call whose reader has kept a message waiting since then, or takes everything.
+class FakeCall final : public LiveCall {
+ public:
+  FakeCall(std::string client, std::optional<common::TimePoint> since)
+      : client_(std::move(client)), since_(since) {}
+
+  void Abort(const absl::Status& reason) override { aborted = reason; }
+  void CheckTime(common::TimePoint) override {}
+  const std::string& client() const override { return client_; }
+  std::optional<common::TimePoint> waiting_since() const override { return since_; }
+  std::optional<std::size_t> GiveUpReader(common::TimePoint now, double least) override {
+    if (!since_.has_value() || common::SecondsBetween(*since_, now) < least) return std::nullopt;
+    since_ = std::nullopt;
+    given_up = true;
+    return 7;
+  }
+
+  std::optional<absl::Status> aborted;
+  bool given_up = false;
+
+ private:
+  const std::string client_;
+  std::optional<common::TimePoint> since_;
+};
+
+std::shared_ptr<FakeCall> AddCall(LiveCalls& calls, std::string client,
+                                  std::optional<common::TimePoint> since) {
+  auto call = std::make_shared<FakeCall>(std::move(client), since);
+  calls.Add(call);
+  return call;
+}
+
+TEST(LiveCallsTest, ACallThatComesAfterTheEndEndsAtOnce) {
+  LiveCalls calls;
+  const auto before = AddCall(calls, "a", std::nullopt);
+  calls.AbortAll(absl::UnavailableError("over"));
+  const auto after = AddCall(calls, "a", std::nullopt);
+  EXPECT_EQ(before->aborted, absl::UnavailableError("over"));
+  EXPECT_EQ(after->aborted, absl::UnavailableError("over"));
+}
+
+TEST(LiveCallsTest, GivesUpTheReaderThatHasStalledForLongest) {
+  LiveCalls calls;
+  const auto late = AddCall(calls, "a", kBegin + seconds(2));
+  const auto early = AddCall(calls, "a", kBegin + seconds(1));
+  const auto reads = AddCall(calls, "a", std::nullopt);
+  EXPECT_EQ(calls.GiveUpSlowestReader("a", kBegin + seconds(5), 2), 7u);
+  EXPECT_TRUE(early->given_up);
+  EXPECT_FALSE(late->given_up);
+  EXPECT_EQ(calls.GiveUpSlowestReader("a", kBegin + seconds(5), 2), 7u);
+  EXPECT_TRUE(late->given_up);
+  EXPECT_EQ(calls.GiveUpSlowestReader("a", kBegin + seconds(5), 2), std::nullopt);
+  EXPECT_FALSE(reads->given_up);
+}
+
+TEST(LiveCallsTest, LeavesReadersOfOtherClientsAlone) {
+  LiveCalls calls;
+  const auto other = AddCall(calls, "b", kBegin);
+  EXPECT_EQ(calls.GiveUpSlowestReader("a", kBegin + seconds(9), 2), std::nullopt);
+  EXPECT_FALSE(other->given_up);
+  EXPECT_EQ(calls.GiveUpSlowestReader(std::nullopt, kBegin + seconds(9), 2), 7u);
+  EXPECT_TRUE(other->given_up);
+}
+
+TEST(LiveCallsTest, LeavesAReaderAloneThatHasWaitedForLess) {
+  LiveCalls calls;
+  const auto call = AddCall(calls, "a", kBegin);
+  EXPECT_EQ(calls.GiveUpSlowestReader("a", kBegin + seconds(1), 2), std::nullopt);
+  EXPECT_FALSE(call->given_up);
+}
+
+}  // namespace
+}  // namespace duet::server::service
