@@ -47,12 +47,13 @@ mutate: ## Break the code in small ways, count what the tests notice: docs/mutat
 	@JOBS=$(JOBS) scripts/mutate.py --report docs/mutation.md
 
 .PHONY: bench
-bench: ## Time the engine and its kernels beside the figures that were committed last
+bench: ## Time the engine and its kernels beside the figures that were committed last, and what hardening costs
 	@scripts/install_packages.sh build test
 	@cmake --preset release -DDUET_BUILD_BENCHMARKS=ON >/dev/null
 	@JOBS=$(JOBS) scripts/build.sh $(BUILD) roofline_benchmark kernel_benchmark clean_up_benchmark \
-	  synthesis_benchmark
+	  synthesis_benchmark duet-server duet-load
 	@benchmarks/bench.py $(BUILD)
+	@JOBS=$(JOBS) benchmarks/measure_hardening.py $(BUILD)
 
 .PHONY: docs
 docs: ## Make the API reference from headers and proto files: build/docs/html/index.html

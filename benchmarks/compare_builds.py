@@ -26,17 +26,12 @@ def run(program, pattern):
             for row in json.loads(printed)["benchmarks"]}
 
 
-def main():
-    arguments = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
-    arguments.add_argument("before")
-    arguments.add_argument("after")
-    arguments.add_argument("--rounds", type=int, default=5)
-    arguments.add_argument("--filter", default=".")
-    chosen = arguments.parse_args()
+def compare(before_program, after_program, rounds, pattern="."):
+    """Runs both `rounds` times and prints the table."""
     times = collections.defaultdict(lambda: ([], []))
-    for _ in range(chosen.rounds):
-        for side, program in enumerate((chosen.before, chosen.after)):
-            for name, milliseconds in run(program, chosen.filter).items():
+    for _ in range(rounds):
+        for side, program in enumerate((before_program, after_program)):
+            for name, milliseconds in run(program, pattern).items():
                 times[name][side].append(milliseconds)
     print(f"{'benchmark':<34} {'before ms':>10} {'after ms':>10} {'ratio':>6}  rounds' ratios")
     for name, (before, after) in times.items():
@@ -46,6 +41,16 @@ def main():
         ratios = [b / a for a, b in zip(before, after)]
         print(f"{name:<34} {statistics.median(before):>10.3f} {statistics.median(after):>10.3f} "
               f"{statistics.median(ratios):>6.2f}  {min(ratios):.2f} to {max(ratios):.2f}")
+
+
+def main():
+    arguments = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
+    arguments.add_argument("before")
+    arguments.add_argument("after")
+    arguments.add_argument("--rounds", type=int, default=5)
+    arguments.add_argument("--filter", default=".")
+    chosen = arguments.parse_args()
+    compare(chosen.before, chosen.after, chosen.rounds, chosen.filter)
 
 
 if __name__ == "__main__":

@@ -19,6 +19,7 @@ readonly checks=(
   "tidy scripts/lint.sh"
   "tsan scripts/check_tsan.sh"
   "asan scripts/check_asan.sh"
+  "wire scripts/fuzz_wire.sh"
 )
 
 # Whether a check is one of those that were asked for.

@@ -1,11 +1,14 @@
 #!/usr/bin/env bash
-# Builds the test programs that need no LibTorch under a sanitizer, and runs them.
-#   scripts/sanitize.sh PRESET [LABEL]     PRESET: asan or tsan; LABEL: only tests with this label
+# Builds the test programs that need no LibTorch under a sanitizer, and runs them. Without a LABEL also the
+# programs that serve and ask, and every script that starts a server (CTest's label "server").
+#   scripts/sanitize.sh PRESET [LABEL]     PRESET: asan or tsan; LABEL: only test programs with this label
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 readonly preset="$1" label="${2:-}"
 readonly build_dir="build/${preset}"
+# What the scripts start. A script that needs more, and LibTorch for it, has the label "libtorch".
+readonly programs=(duet duet-load duet-server duet-fake-server)
 
 cmake --preset "${preset}" -DDUET_BUILD_TESTS=ON -DDUET_BUILD_BENCHMARKS=OFF >/dev/null
 mapfile -t tests < <(scripts/torch_free_tests.py "${build_dir}" ${label:+"${label}"})
@@ -13,10 +16,19 @@ if [[ ${#tests[@]} -eq 0 ]]; then
   echo "${preset}: no test program to run${label:+ with the label ${label}}" >&2
   exit 1
 fi
-cmake --build "${build_dir}" --parallel "${JOBS:-$(scripts/build_jobs.sh)}" --target "${tests[@]}"
+targets=("${tests[@]}")
+[[ -z "${label}" ]] && targets+=("${programs[@]}")
+cmake --build "${build_dir}" --parallel "${JOBS:-$(scripts/build_jobs.sh)}" --target "${targets[@]}"
 
+# shellcheck source=scripts/sanitizer_options.sh
+source scripts/sanitizer_options.sh "${build_dir}"
+failed=0
 # One alternative for each program, matched as a whole.
 pattern="$(IFS='|' && echo "^(${tests[*]})\$")"
-export UBSAN_OPTIONS="print_stacktrace=1"
-export TSAN_OPTIONS="suppressions=${PWD}/scripts/tsan_suppressions.txt"
-ctest --test-dir "${build_dir}" --output-on-failure --tests-regex "${pattern}"
+ctest --test-dir "${build_dir}" --output-on-failure --tests-regex "${pattern}" || failed=1
+if [[ -z "${label}" ]]; then
+  ctest --test-dir "${build_dir}" --output-on-failure -L '^server$' -LE '^libtorch$' || failed=1
+fi
+# A program that a test kills, or whose exit status it does not look at, reports here.
+no_sanitizer_reports || failed=1
+exit "${failed}"

@@ -34,6 +34,7 @@ step "Build" cmake --build "${build_dir}" --parallel "${jobs}"
 step "Headers" scripts/check_headers.py --torch-free
 step "Thread safety" scripts/check_thread_safety.py
 step "Thread sanitizer" scripts/check_tsan.sh
+step "Hardening" scripts/check_hardening.sh "${build_dir}/bin"
 step "Runtime packages" scripts/check_runtime_packages.sh "${build_dir}/bin"
 
 echo "== Built and checked in ${SECONDS} s; the tests' own total closes the run."

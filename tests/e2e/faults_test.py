@@ -210,6 +210,7 @@ class FaultsTest(unittest.TestCase):
         self.assertLessEqual(set(handled(server)), {"Canceled", "ResourceExhausted", "OK"})
 
 
+@unittest.skipUnless((tools.PROGRAMS / "duet-train").exists(), "programs with LibTorch are not built")
 class NoProcTest(unittest.TestCase):
     """LibTorch reads the processor from /proc, which a container may lack."""
 

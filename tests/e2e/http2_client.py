@@ -37,12 +37,17 @@ def message(payload):
 
 
 class Connection:
-    """One connection, blocking. With `window` the server may send so many bytes of each stream."""
+    """One connection, blocking. With `window` the server may send so many bytes of each stream;
+    `greeting` replaces the preface and the settings that a client must begin with."""
 
-    def __init__(self, port, source="127.0.0.1", window=None, host="127.0.0.1"):
-        self.socket = socket.create_connection((host, port), SILENCE_SECONDS, source_address=(source, 0))
+    def __init__(self, port, source="127.0.0.1", window=None, host="127.0.0.1", greeting=None,
+                 patience=SILENCE_SECONDS):
+        self.socket = socket.create_connection((host, port), patience, source_address=(source, 0))
         settings = b"" if window is None else struct.pack(">HI", SETTING_INITIAL_WINDOW, window)
-        self.socket.sendall(PREFACE + frame(SETTINGS, 0, 0, settings))
+        if greeting is None:
+            greeting = PREFACE + frame(SETTINGS, 0, 0, settings)
+        self.socket.sendall(greeting)
+        self.silent = False  # whether frames() ended because nothing came for `patience` seconds
         self.next_stream = 1
         self.credit = 65535  # bytes of all streams that the server takes now
 
@@ -90,6 +95,9 @@ class Connection:
         while len(data) < count:
             try:
                 piece = self.socket.recv(count - len(data))
+            except TimeoutError:
+                self.silent = True
+                return None
             except OSError:
                 return None
             if not piece:

@@ -1,5 +1,6 @@
 """What the end-to-end tests share: programs, a running server, pictures."""
 
+import collections
 import contextlib
 import json
 import os
@@ -23,6 +24,8 @@ SKIPPED = 77  # tells CTest that a test was skipped
 # than in a test that hangs.
 RUN_SECONDS = 120
 STOP_SECONDS = 60
+# What a program built with a sanitizer may take of memory (scripts/sanitizer_options.sh).
+MEMORY_FACTOR = 4 if os.environ.get("DUET_SANITIZER") else 1
 
 CLASSES = ("kick", "push", "shake_hands", "hug", "exchange_object", "punch")
 
@@ -52,12 +55,13 @@ def duet(*arguments):
 
 
 class Server:
-    """A duet-server on a free port, and everything that it logged. `metrics_port` is that of its
-    figures where `metrics` names an address, `within` a memory_mixes.Cgroup that it runs in."""
+    """A duet-server on a free port, and everything that it logged, or the last `kept_lines` of it.
+    `metrics_port` is that of its figures where `metrics` names an address, `within` a
+    memory_mixes.Cgroup that it runs in."""
 
-    def __init__(self, *flags, port=0, metrics="", descriptors=None,
+    def __init__(self, *flags, port=0, metrics="", descriptors=None, kept_lines=None,
                  program=PROGRAMS / "duet-server", within=None):
-        self.log = []
+        self.log = [] if kept_lines is None else collections.deque(maxlen=kept_lines)
         self.metrics_port = None
         limit = [] if descriptors is None else ["prlimit", f"--nofile={descriptors}"]
         command = [*limit, program, "--listen", f"127.0.0.1:{port}", "--metrics-listen", metrics,
@@ -104,6 +108,13 @@ class Server:
     def events(self, name):
         """The lines of one event, in order."""
         return [entry for entry in list(self.log) if entry.get("event") == name]
+
+    def exit_code(self, wait_seconds=0):
+        """The exit code, or minus the signal that ended it; None if it still runs after that time."""
+        try:
+            return self._process.wait(timeout=wait_seconds)
+        except subprocess.TimeoutExpired:
+            return None
 
     def kill(self):
         """Ends the server without warning."""

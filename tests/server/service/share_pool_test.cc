@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
 #include <optional>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -98,6 +100,26 @@ TEST(SharePoolTest, LeasesOfZeroLeaveNothingBehind) {
   }
   EXPECT_EQ(pool.taken(), 0u);
   EXPECT_TRUE(pool.Take("a", 8).has_value()) << "the client's account was not cleared";
+}
+
+// Under ThreadSanitizer (label "threads") this also shows that the pool is locked throughout.
+TEST(SharePoolTest, ManyThreadsLeaveNothingBehind) {
+  constexpr int kThreads = 4, kRounds = 2000;
+  SharePool pool(1000, 1);
+  std::vector<std::thread> threads;
+  for (int i = 0; i < kThreads; ++i) {
+    threads.emplace_back([&pool, i] {
+      for (int round = 0; round < kRounds; ++round) {
+        const std::string client = round % 2 == 0 ? "shared" : std::to_string(i);
+        const std::optional<ShareLease> nothing = pool.Take(client, 0);
+        const std::optional<ShareLease> some = pool.Take(client, static_cast<std::size_t>(i));
+        EXPECT_TRUE(nothing.has_value());
+        EXPECT_TRUE(some.has_value());
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(pool.taken(), 0u);
 }
 
 }  // namespace

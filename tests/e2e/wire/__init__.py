@@ -1,0 +1,1 @@
+"""The parts of wire_fuzzer.py: what it sends, how, and how it judges the server."""

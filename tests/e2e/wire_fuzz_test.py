@@ -1,0 +1,173 @@
+"""The wire fuzzer (wire_fuzzer.py): that it finds what it is for, can be repeated, and finds nothing in the
+server.
+
+    wire_fuzz_test.py BUILD     $DUET_WIRE_SECONDS of fuzzing, 30 if absent"""
+
+import contextlib
+import io
+import json
+import os
+import pathlib
+import signal
+import sys
+import tempfile
+import unittest
+import unittest.mock
+
+import tools
+import wire_fuzzer
+from wire import calls, corpus, judge, mutation, player, protobuf, rounds, saved, target
+
+BUILD = sys.argv[1]
+SECONDS = os.environ.get("DUET_WIRE_SECONDS", "30")
+del sys.argv[1]
+METHODS = [(rounds.ADMIN if method.startswith(corpus.ADMIN) else rounds.SERVICE, method, requests)
+           for method, requests in corpus.requests_of_methods(tools.SOURCE).items()]
+REQUEST = corpus.requests_of_methods(tools.SOURCE)[corpus.SYNTHESIZE][1]
+
+
+def fuzz(*words):
+    """Exit status and what was printed."""
+    with contextlib.redirect_stdout(io.StringIO()) as printed:
+        status = wire_fuzzer.main([BUILD, *words])
+    return status, printed.getvalue()
+
+
+class InputsTest(unittest.TestCase):
+    def test_a_message_is_taken_apart_and_put_together(self):
+        fields = protobuf.parse(REQUEST)
+        self.assertEqual([field.number for field in fields], [2, 3, 5, 6, 8, 9, 10, 11])
+        self.assertEqual(protobuf.encode(fields), REQUEST)
+        self.assertIsNone(protobuf.parse(REQUEST[:-1]))
+        self.assertEqual(protobuf.varint(300), b"\xac\x02")
+
+    def test_simple_changes_hold_each_field_alone_and_every_other_kind(self):
+        changes = set(mutation.systematic(REQUEST))
+        for field in protobuf.parse(REQUEST):
+            self.assertIn(field.encoded(), changes)
+            self.assertIn(field.encoded() * 2, changes)
+        leader = protobuf.values(REQUEST, 2)[0]
+        for number in range(1, 7):  # every field of Motion, alone in a leader alone
+            alone = next(field for field in protobuf.parse(leader) if field.number == number)
+            self.assertIn(protobuf.message(f2=alone.encoded()), changes)
+        for change in (b"", b"\x00", REQUEST * 2, REQUEST):
+            self.assertIn(change, changes)
+        self.assertTrue(any(0 < len(change) < len(REQUEST) and REQUEST.startswith(change)
+                            for change in changes))
+
+    def test_two_clients_begin_with_empty_messages_of_synthesize(self):
+        empty = next(calls.plain(1, corpus.SYNTHESIZE, b""))
+        first = rounds.Rounds(1, METHODS)[0]
+        self.assertEqual(len(first), 2)
+        for connection in first:
+            self.assertIn(empty, connection["steps"])
+
+    def test_a_round_is_a_function_of_its_seed_and_number(self):
+        one, same, other = (rounds.Rounds(seed, METHODS) for seed in (1, 1, 2))
+        begin = one.systematic_count
+        for number in (0, begin - 1, *range(begin, begin + 50)):
+            self.assertEqual(one[number], same[number], number)
+        self.assertNotEqual([one[begin + i] for i in range(5)], [other[begin + i] for i in range(5)])
+
+    def test_rounds_are_kept_in_a_file(self):
+        some = rounds.Rounds(3, METHODS)
+        wanted = [some[some.systematic_count + i] for i in range(20)]
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "rounds.json"
+            saved.write(path, {"seed": 3}, wanted)
+            self.assertEqual(saved.read(path), wanted)
+            self.assertEqual(json.loads(path.read_text())["seed"], 3)
+
+
+class FindingsTest(unittest.TestCase):
+    """That each judge finds what it looks for: a server is made to fail, or its answer to differ."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+        self.patch(wire_fuzzer, "REPORT_SECONDS", 1)
+
+    def find(self, *words, patience="60"):
+        status, printed = fuzz("--out", self.folder, "--from", "1", "--rounds", "3", "--patience",
+                               patience, *words)
+        self.assertEqual(status, 1, printed)
+        return printed
+
+    def during_the_second_round(self, action):
+        """Has something happen to the server before the second round."""
+        real, played = player.Player.play, []
+
+        def play(one, connections):
+            played.append(connections)
+            if len(played) == 2:
+                action(self.targets[0].server)
+            real(one, connections)
+        self.patch(player.Player, "play", play)
+        self.targets = []
+        real_target = target.Target
+
+        def start(*arguments):
+            self.targets.append(real_target(*arguments))
+            return self.targets[0]
+        self.patch(target, "Target", start)
+
+    def patch(self, *arguments):
+        patched = unittest.mock.patch.object(*arguments)
+        patched.start()
+        self.addCleanup(patched.stop)
+
+    def test_a_server_that_dies(self):
+        self.during_the_second_round(lambda server: os.kill(server.pid, signal.SIGABRT))
+        printed = self.find("--seed", "5")
+        self.assertIn("ended with -6", printed)
+        self.assertIn("--seed 5 --from 1 --rounds 2", printed)
+        kept = json.loads((pathlib.Path(self.folder) / "rounds.json").read_text())
+        self.assertEqual((kept["seed"], kept["numbers"]), (5, [1, 2]))
+
+    def test_a_server_that_hangs(self):
+        self.during_the_second_round(lambda server: os.kill(server.pid, signal.SIGSTOP))
+        self.assertIn("hangs", self.find(patience="1"))
+
+    def test_too_much_memory(self):
+        self.assertIn("memory: ", self.find("--memory", "1"))
+
+    def test_another_answer(self):
+        real, seen = judge.call, []
+
+        def call(port, method, request, patience):
+            status, messages = real(port, method, request, patience)
+            if method == corpus.SYNTHESIZE:
+                seen.append(method)
+                if len(seen) == 5:
+                    messages[1] = messages[1][:-1] + bytes((messages[1][-1] ^ 1,))
+            return status, messages
+        self.patch(judge, "call", call)
+        self.assertIn("Synthesize: a good call was answered differently", self.find())
+
+    def test_an_exit_status_other_than_0(self):
+        real = tools.Server.stop
+        self.patch(tools.Server, "stop", lambda server: real(server) or 23)
+        self.assertIn("ended with 23, not 0", self.find())
+
+    def test_a_sanitizers_report(self):
+        report = "==1==ERROR: AddressSanitizer: heap-use-after-free\n"
+        self.during_the_second_round(lambda server: server.log.append({"text": report}))
+        self.assertIn(report, self.find())
+
+    def test_a_method_without_requests(self):
+        known = corpus.requests_of_methods(tools.SOURCE)
+        del known[corpus.SYNTHESIZE]
+        self.patch(corpus, "requests_of_methods", lambda _: known)
+        self.assertIn(f"{corpus.SYNTHESIZE}: give it real requests", self.find())
+
+
+class ServerTest(unittest.TestCase):
+    def test_the_server_stands_it(self):
+        status = wire_fuzzer.main([BUILD, "--seconds", SECONDS, "--memory",
+                                   str(600 * tools.MEMORY_FACTOR), "--out", f"{BUILD}/wire"])
+        self.assertEqual(status, 0)
+
+
+if __name__ == "__main__":
+    tools.main()
