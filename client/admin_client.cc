@@ -38,8 +38,10 @@ ServedModels FromMessage(const v1::ListModelsResponse& response) {
                              model.error(),
                              {model.version_labels().begin(), model.version_labels().end()},
                              model.is_default(),
-                             model.load_seconds()});
+                             model.load_seconds(),
+                             model.outdated()});
   }
+  models.problems.assign(response.problems().begin(), response.problems().end());
   for (const v1::SkippedFolder& folder : response.skipped_folders()) {
     models.skipped_folders.push_back({folder.folder(), folder.reason()});
   }

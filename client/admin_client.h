@@ -18,10 +18,11 @@ struct ServedVersion {
   std::string name;
   uint32_t version = 0;
   State state = State::kUnknown;
-  std::string error;  // why it did not load when that was tried last
+  std::string error;  // why its last load failed; empty if it succeeded
   std::vector<std::string> version_labels;
   bool is_default = false;
   double load_seconds = 0;
+  bool outdated = false;  // served from an earlier load, because the last one failed
 };
 
 // A folder in the server's model repository that is no checkpoint.
@@ -33,6 +34,8 @@ struct SkippedFolder {
 struct ServedModels {
   std::vector<ServedVersion> models;  // by name, newest version first
   std::vector<SkippedFolder> skipped_folders;
+  // Certificates and access files that the server refused; those before them are still in use.
+  std::vector<std::string> problems;
 };
 
 // What a reload did; versions as "name/version".

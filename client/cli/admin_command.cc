@@ -37,6 +37,7 @@ std::string Describe(const ServedModels& models) {
   std::string text;
   for (const ServedVersion& model : models.models) {
     absl::StrAppend(&text, model.name, "/", model.version, "  ", StateName(model.state));
+    if (model.outdated) absl::StrAppend(&text, " (outdated: the files on disk were refused)");
     if (model.is_default) absl::StrAppend(&text, ", default");
     if (!model.version_labels.empty()) {
       absl::StrAppend(&text, ", labels: ", absl::StrJoin(model.version_labels, ", "));
@@ -46,6 +47,9 @@ std::string Describe(const ServedModels& models) {
   }
   for (const SkippedFolder& folder : models.skipped_folders) {
     absl::StrAppend(&text, folder.folder, "  skipped: ", folder.reason, "\n");
+  }
+  for (const std::string& problem : models.problems) {
+    absl::StrAppend(&text, "problem: ", problem, "\n");
   }
   return text;
 }
@@ -59,13 +63,14 @@ json ToJson(const ServedModels& models) {
                     {"error", model.error},
                     {"version_labels", model.version_labels},
                     {"is_default", model.is_default},
-                    {"load_seconds", model.load_seconds}});
+                    {"load_seconds", model.load_seconds},
+                    {"outdated", model.outdated}});
   }
   json skipped = json::array();
   for (const SkippedFolder& folder : models.skipped_folders) {
     skipped.push_back({{"folder", folder.folder}, {"reason", folder.reason}});
   }
-  return {{"models", list}, {"skipped_folders", skipped}};
+  return {{"models", list}, {"skipped_folders", skipped}, {"problems", models.problems}};
 }
 
 std::string Describe(const ReloadResult& result) {

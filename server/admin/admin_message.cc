@@ -70,7 +70,8 @@ v1::ModelState ToMessage(registry::ModelState state) {
 }  // namespace
 
 v1::ListModelsResponse ToMessage(const std::vector<registry::ModelStatus>& models,
-                                 const std::vector<registry::SkippedFolder>& skipped) {
+                                 const std::vector<registry::SkippedFolder>& skipped,
+                                 const std::vector<std::string>& problems) {
   v1::ListModelsResponse response;
   for (const registry::ModelStatus& model : models) {
     v1::ModelVersion* message = response.add_models();
@@ -81,12 +82,14 @@ v1::ListModelsResponse ToMessage(const std::vector<registry::ModelStatus>& model
     for (const std::string& label : model.version_labels) message->add_version_labels(label);
     message->set_is_default(model.is_default);
     message->set_load_seconds(model.load_seconds);
+    message->set_outdated(model.outdated);
   }
   for (const registry::SkippedFolder& folder : skipped) {
     v1::SkippedFolder* message = response.add_skipped_folders();
     message->set_folder(folder.folder);
     message->set_reason(folder.reason);
   }
+  for (const std::string& problem : problems) response.add_problems(problem);
   return response;
 }
 

@@ -1,6 +1,7 @@
 #ifndef DUET_SERVER_ADMIN_ADMIN_MESSAGE_H_
 #define DUET_SERVER_ADMIN_ADMIN_MESSAGE_H_
 
+#include <string>
 #include <vector>
 
 #include "absl/status/status.h"
@@ -14,7 +15,8 @@ namespace v1 = ::duet::admin::v1;
 
 // Between the registry's types and the contract's messages.
 v1::ListModelsResponse ToMessage(const std::vector<registry::ModelStatus>& models,
-                                 const std::vector<registry::SkippedFolder>& skipped);
+                                 const std::vector<registry::SkippedFolder>& skipped,
+                                 const std::vector<std::string>& problems);
 v1::ReloadResponse ToMessage(const registry::ReloadReport& report);
 
 // INVALID_ARGUMENT naming every field that is missing, or is no label: 1 to 63 letters, digits,

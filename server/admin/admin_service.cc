@@ -103,7 +103,8 @@ grpc::ServerUnaryReactor* AdminService::ListModels(grpc::CallbackServerContext* 
                                                    const v1::ListModelsRequest* request,
                                                    v1::ListModelsResponse* response) {
   return Open(*context, kListModels, *request, [&](const auto& call) {
-    *response = ToMessage(parts_.control->List(), parts_.control->skipped());
+    *response =
+        ToMessage(parts_.control->List(), parts_.control->skipped(), parts_.control->problems());
     call->Finish(absl::OkStatus());
   });
 }

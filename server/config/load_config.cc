@@ -4,6 +4,7 @@
 #include <google/protobuf/message.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -11,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
@@ -31,6 +33,12 @@ namespace {
 
 constexpr std::size_t kMaxConfigBytes = std::size_t{1} << 20;
 
+CLI::ValidationError Unexpected(const char* flag, absl::string_view expected,
+                                absl::string_view got) {
+  return CLI::ValidationError(flag,
+                              absl::StrCat("expected ", expected, ", got ", base::Quoted(got)));
+}
+
 // "model:label=version"
 v1::VersionLabel ParseVersionLabel(const std::string& text) {
   const std::vector<std::string> model = absl::StrSplit(text, absl::MaxSplits(':', 1));
@@ -38,9 +46,7 @@ v1::VersionLabel ParseVersionLabel(const std::string& text) {
   v1::VersionLabel parsed;
   uint32_t version = 0;
   if (model.size() != 2 || label.size() != 2 || !absl::SimpleAtoi(label[1], &version)) {
-    throw CLI::ValidationError("--version-label", "is " + text +
-                                                      ", wanted model:label=version, such as "
-                                                      "duet:stable=3");
+    throw Unexpected("--version-label", "model:label=version, such as duet:stable=3", text);
   }
   parsed.set_model(model[0]);
   parsed.set_label(label[0]);
@@ -51,9 +57,9 @@ v1::VersionLabel ParseVersionLabel(const std::string& text) {
 // "model=all", "model=latest:2" or "model=1,3"
 v1::VersionPolicy ParseVersionPolicy(const std::string& text) {
   const auto malformed = [&text] {
-    return CLI::ValidationError("--version-policy", "is " + text +
-                                                        ", wanted model=all, model=latest:2 or "
-                                                        "model=1,3; the model * is every other");
+    return Unexpected("--version-policy",
+                      "model=all, model=latest:2 or model=1,3, where the model * is every other",
+                      text);
   };
   const std::vector<std::string> parts = absl::StrSplit(text, absl::MaxSplits('=', 1));
   if (parts.size() != 2) throw malformed();
@@ -95,10 +101,10 @@ const std::map<std::string, v1::LogLevel> kLogLevels = {{"info", v1::LOG_LEVEL_I
 
 template <typename Value>
 Value Named(const std::map<std::string, Value>& names, const char* flag, const std::string& text,
-            const char* wanted) {
+            const char* expected) {
   const auto named = names.find(text);
   if (named != names.end()) return named->second;
-  throw CLI::ValidationError(flag, "is " + text + ", wanted " + wanted);
+  throw Unexpected(flag, expected, text);
 }
 
 // A flag's help with the default that holds without it.
@@ -391,7 +397,8 @@ class FlagParser {
   FlagParser(const FlagParser&) = delete;
   FlagParser& operator=(const FlagParser&) = delete;
 
-  // Fails with INVALID_ARGUMENT. `print` receives what --help and --version print.
+  // Fails with INVALID_ARGUMENT and the first mistake. `print` receives what --help and --version
+  // print.
   absl::StatusOr<Flags> Parse(int argc, const char* const* argv,
                               std::optional<std::string>* print) {
     try {
@@ -401,9 +408,26 @@ class FlagParser {
       app_.exit(wanted, text, text);
       *print = text.str();
     } catch (const CLI::ExtrasError&) {
-      return Unexpected(app_.remaining());
+      return NotAFlag(app_.remaining());
     } catch (const CLI::ParseError& error) {
       return absl::InvalidArgumentError(error.what());
+    }
+    return flags_;
+  }
+
+  // One flag of a command line with the words that follow it.
+  absl::StatusOr<Flags> ParseOne(std::vector<std::string> words) {
+    const std::vector<std::string> parts = absl::StrSplit(words[0], absl::MaxSplits('=', 1));
+    const std::string value = parts.size() > 1 ? parts[1] : words.back();
+    std::reverse(words.begin(), words.end());  // as CLI11 takes them
+    try {
+      app_.parse(std::move(words));
+    } catch (const CLI::Success&) {
+    } catch (const CLI::ExtrasError&) {
+      return NotAFlag(app_.remaining());
+    } catch (const CLI::ParseError& error) {
+      return absl::InvalidArgumentError(
+          absl::StrCat(parts[0], ": ", Mistake(parts[0], value, error)));
     }
     return flags_;
   }
@@ -425,14 +449,34 @@ class FlagParser {
     try {
       app_.parse(std::move(words));
     } catch (const CLI::ParseError& error) {
-      return absl::InvalidArgumentError(absl::StrCat(name, ": ", error.what()));
+      return absl::InvalidArgumentError(absl::StrCat(name, ": ", Mistake(flag, value, error)));
     }
     return flags_;
   }
 
  private:
+  // "expected ..., got ..." of a flag's value.
+  std::string Mistake(const std::string& flag, const std::string& value,
+                      const CLI::ParseError& error) const {
+    const CLI::Option* option = app_.get_option_no_throw(flag);
+    if (option != nullptr && dynamic_cast<const CLI::ConversionError*>(&error) != nullptr) {
+      const std::string type = option->get_type_name();
+      return absl::StrCat("expected ",
+                          type == "UINT"    ? "a whole number of 0 or more"
+                          : type == "FLOAT" ? "a number"
+                                            : "true or false",
+                          ", got ", base::Quoted(value));
+    }
+    if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
+      return "expected a value, got none";
+    }
+    absl::string_view text = error.what();
+    absl::ConsumePrefix(&text, absl::StrCat(flag, ": "));
+    return std::string(text);
+  }
+
   // What is left of a command line. A flag's value may be among it, so the flag counts.
-  absl::Status Unexpected(const std::vector<std::string>& words) const {
+  absl::Status NotAFlag(const std::vector<std::string>& words) const {
     std::vector<std::string> known;
     for (const CLI::Option* option : app_.get_options()) {
       for (const std::string& flag : option->get_lnames()) known.push_back("--" + flag);
@@ -444,7 +488,7 @@ class FlagParser {
           absl::StrCat(flag, ": there is no such flag", base::DidYouMean(flag, known)));
     }
     return absl::InvalidArgumentError(
-        absl::StrCat("came ", base::Quoted(words[0]), ", wanted flags alone"));
+        absl::StrCat("expected flags only, got ", base::Quoted(words[0])));
   }
 
   absl::Status UnknownVariable(const std::string& name) const {
@@ -462,6 +506,19 @@ class FlagParser {
   Flags flags_;
   CLI::App app_;
 };
+
+// The words of a command line, each flag with those that follow it. A negative number is no flag.
+std::vector<std::vector<std::string>> SplitFlags(int argc, const char* const* argv) {
+  std::vector<std::vector<std::string>> flags;
+  for (int i = 1; i < argc; ++i) {
+    const absl::string_view word = argv[i];
+    const bool is_flag = absl::StartsWith(word, "--") ||
+                         (word.size() > 1 && word[0] == '-' && absl::ascii_isalpha(word[1]));
+    if (is_flag || flags.empty()) flags.emplace_back();
+    flags.back().emplace_back(word);
+  }
+  return flags;
+}
 
 // Puts settings over those that are there. `source` tells of a field where it comes from, by the
 // name that it has in its own message.
@@ -489,6 +546,24 @@ void AddErrors(const absl::Status& status, CommandLine* command_line) {
   for (absl::string_view line : absl::StrSplit(status.message(), '\n', absl::SkipEmpty())) {
     command_line->errors.emplace_back(line);
   }
+}
+
+// The flags of a command line with mistakes in it: each by itself, so that all mistakes are found
+// and the other flags count. `first` is what is wrong with the command line as a whole.
+Flags ParseEach(int argc, const char* const* argv, const absl::Status& first,
+                CommandLine* command_line) {
+  Flags all;
+  for (std::vector<std::string>& words : SplitFlags(argc, argv)) {
+    const absl::StatusOr<Flags> one = FlagParser().ParseOne(std::move(words));
+    AddErrors(one.status(), command_line);
+    if (!one.ok()) continue;
+    all.config.MergeFrom(one->config);
+    if (!one->config_path.empty()) all.config_path = one->config_path;
+    if (one->task != CommandLine::Task::kServe) all.task = one->task;
+  }
+  // Such as a flag that is repeated.
+  if (command_line->errors.empty()) AddErrors(first, command_line);
+  return all;
 }
 
 void ReadFile(const std::string& path, CommandLine* command_line) {
@@ -538,7 +613,7 @@ CommandLine ParseCommandLine(int argc, const char* const* argv, const Environmen
   const base::KebabCaseCommandLine line(argc, argv);
   absl::StatusOr<Flags> flags = FlagParser().Parse(line.argc(), line.argv(), &command_line.print);
   if (command_line.print.has_value()) return command_line;
-  AddErrors(flags.status(), &command_line);
+  if (!flags.ok()) flags = ParseEach(line.argc(), line.argv(), flags.status(), &command_line);
   std::map<std::string, Flags> variables;
   std::string config_path;
   for (const auto& [name, value] : environment) {
@@ -548,29 +623,32 @@ CommandLine ParseCommandLine(int argc, const char* const* argv, const Environmen
     if (!variable->config_path.empty()) config_path = variable->config_path;
     variables[name] = *std::move(variable);
   }
-  if (flags.ok() && !flags->config_path.empty()) config_path = flags->config_path;
+  if (!flags->config_path.empty()) config_path = flags->config_path;
   if (!config_path.empty()) ReadFile(config_path, &command_line);
   for (const auto& [name, variable] : variables) {
     const std::string source = absl::StrCat("environment ", name);
     Override(
         variable.config, [&source](const std::string&) { return source; }, &command_line);
   }
-  if (flags.ok()) {
-    command_line.task = flags->task;
-    Override(
-        flags->config, [](const std::string&) { return "command line"; }, &command_line);
-  }
+  command_line.task = flags->task;
+  Override(
+      flags->config, [](const std::string&) { return "command line"; }, &command_line);
   return command_line;
+}
+
+Settings ReadSettings(const CommandLine& command_line, int cores, std::uint64_t memory_bytes) {
+  Settings settings =
+      ReadSettings(command_line.config, cores, command_line.sources, memory_bytes);
+  settings.mistakes.insert(settings.mistakes.begin(), command_line.errors.begin(),
+                           command_line.errors.end());
+  return settings;
 }
 
 absl::StatusOr<ServerOptions> ToOptions(const CommandLine& command_line, int cores,
                                         std::uint64_t memory_bytes) {
-  absl::StatusOr<ServerOptions> options =
-      ToOptions(command_line.config, cores, command_line.sources, memory_bytes);
-  if (command_line.errors.empty()) return options;
-  std::vector<std::string> errors = command_line.errors;
-  if (!options.ok()) errors.emplace_back(options.status().message());
-  return absl::InvalidArgumentError(absl::StrJoin(errors, "\n"));
+  Settings settings = ReadSettings(command_line, cores, memory_bytes);
+  if (settings.mistakes.empty()) return std::move(settings.options);
+  return absl::InvalidArgumentError(absl::StrJoin(settings.mistakes, "\n"));
 }
 
 }  // namespace duet::server::config

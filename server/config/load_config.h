@@ -53,8 +53,12 @@ struct CommandLine {
 CommandLine ParseCommandLine(int argc, const char* const* argv,
                              const Environment& environment = {});
 
-// The settings, checked. `cores` and `memory_bytes` are what the container may use.
-// Fails with INVALID_ARGUMENT, one line for each thing that is wrong anywhere.
+// The settings, checked, with everything that is wrong with flags, variables, the file and the
+// values they set. `cores` and `memory_bytes` are what the container may use.
+Settings ReadSettings(const CommandLine& command_line, int cores,
+                      std::uint64_t memory_bytes = kUnlimitedMemory);
+
+// The same, failing with INVALID_ARGUMENT and all mistakes.
 absl::StatusOr<ServerOptions> ToOptions(const CommandLine& command_line, int cores,
                                         std::uint64_t memory_bytes = kUnlimitedMemory);
 

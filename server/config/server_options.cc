@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
@@ -12,6 +13,7 @@
 #include "absl/strings/string_view.h"
 #include "absl/strings/strip.h"
 #include "model/base/printable.h"
+#include "server/common/http_origin.h"
 #include "server/config/memory_plan.h"
 
 namespace duet::server::config {
@@ -29,7 +31,7 @@ class Reader {
   T InRange(absl::string_view field, T value, Limit min, Limit max) {
     // Written so that NaN is out of range.
     if (value >= min && value <= max) return value;
-    Fail(absl::StrCat(field, ": is ", value, ", wanted ", min, " to ", max));
+    Fail(field, absl::StrCat(min, " to ", max), absl::StrCat(value));
     return static_cast<T>(min);
   }
 
@@ -40,18 +42,22 @@ class Reader {
     return {};
   }
 
+  // "field: expected ..., got ... (source); hint"; `got` may quote what came as it is.
+  void Fail(absl::string_view field, absl::string_view expected, absl::string_view got,
+            absl::string_view hint = "") {
+    Fail(absl::StrCat(field, ": expected ", expected, ", got ", got), hint);
+  }
+
   // `message` begins with the field and a colon; it may quote what came as it is.
-  void Fail(const std::string& message) {
+  void Fail(const std::string& message, absl::string_view hint = "") {
     const auto source = sources_.find(message.substr(0, message.find(':')));
     std::string failure = base::Printable(message, kLongestFailure);
     if (source != sources_.end()) absl::StrAppend(&failure, " (", source->second, ")");
+    if (!hint.empty()) absl::StrAppend(&failure, "; ", hint);
     failures_.push_back(std::move(failure));
   }
 
-  bool ok() const { return failures_.empty(); }
-  absl::Status status() const {
-    return ok() ? absl::OkStatus() : absl::InvalidArgumentError(absl::StrJoin(failures_, "\n"));
-  }
+  std::vector<std::string> Take() { return std::move(failures_); }
 
  private:
   const SettingSources& sources_;
@@ -70,8 +76,7 @@ void ReadEngine(const v1::ServerConfig& config, Reader& reader, EngineOptions& o
   using Precision = EngineOptions::Precision;
   if (config.has_engine()) {
     if (config.engine() != v1::ENGINE_CPU && config.engine() != v1::ENGINE_TORCH) {
-      reader.Fail(
-          absl::StrCat("engine: is ", config.engine(), ", wanted ENGINE_CPU or ENGINE_TORCH"));
+      reader.Fail("engine", "ENGINE_CPU or ENGINE_TORCH", absl::StrCat(config.engine()));
     }
     options.engine = config.engine() == v1::ENGINE_TORCH ? Engine::kTorch : Engine::kCpu;
   }
@@ -86,11 +91,11 @@ void ReadEngine(const v1::ServerConfig& config, Reader& reader, EngineOptions& o
       options.precision = Precision::kBfloat16;
       break;
     default:
-      reader.Fail(absl::StrCat("precision: is ", config.precision(),
-                               ", wanted PRECISION_AUTO, PRECISION_F32 or PRECISION_BF16"));
+      reader.Fail("precision", "PRECISION_AUTO, PRECISION_F32 or PRECISION_BF16",
+                  absl::StrCat(config.precision()));
   }
   if (options.engine == Engine::kTorch && options.precision == Precision::kBfloat16) {
-    reader.Fail("precision: is PRECISION_BF16, wanted PRECISION_F32 with ENGINE_TORCH");
+    reader.Fail("precision", "PRECISION_F32 with ENGINE_TORCH", "PRECISION_BF16");
   }
 }
 
@@ -104,13 +109,15 @@ void CheckThreads(int cores, bool workers_given, Reader& reader, const ServerOpt
   if (options.workers * options.engine.threads <= most) return;
   const bool workers_alone = options.engine.threads == 1;
   if (workers_given && workers_alone) {
-    reader.Fail(absl::StrCat("workers: is ", options.workers, ", wanted 1 to ", most, " on ", cores,
-                             " cores"));
+    reader.Fail("workers", absl::StrCat("1 to ", most, " on ", cores, " cores"),
+                absl::StrCat(options.workers));
     return;
   }
-  reader.Fail(absl::StrCat("threads_per_worker: is ", options.engine.threads, ", wanted 1 to ",
-                           std::max(1, most / options.workers), " with ", options.workers,
-                           " workers: together at most ", most, " threads on ", cores, " cores"));
+  reader.Fail("threads_per_worker",
+              absl::StrCat("1 to ", std::max(1, most / options.workers), " with ", options.workers,
+                           " workers"),
+              absl::StrCat(options.engine.threads),
+              absl::StrCat("together they may have ", most, " threads on ", cores, " cores"));
 }
 
 // With nothing else said, one-thread workers on every core: evaluations of one window gain less
@@ -129,9 +136,8 @@ void ReadThreads(const v1::ServerConfig& config, int cores, Reader& reader,
     threads = static_cast<int>(
         reader.InRange("threads_per_worker", config.threads_per_worker(), uint32_t{1}, kMax));
     if (one_thread && threads > 1) {
-      reader.Fail(absl::StrCat("threads_per_worker: is ", threads,
-                               ", wanted 1 with ENGINE_CPU, whose evaluations have one thread "
-                               "each; more workers use more cores"));
+      reader.Fail("threads_per_worker", "1 with ENGINE_CPU", absl::StrCat(threads),
+                  "its evaluations have one thread each: more workers use more cores");
       threads = 1;
     }
   }
@@ -169,6 +175,13 @@ void ReadLimits(const v1::ServerConfig& config, Reader& reader, ServerOptions& o
   }
 }
 
+// Whether a call's metadata may hold text under this key.
+bool IsMetadataKey(absl::string_view key) {
+  return !absl::EndsWith(key, "-bin") && std::all_of(key.begin(), key.end(), [](unsigned char c) {
+    return absl::ascii_islower(c) || absl::ascii_isdigit(c) || c == '-' || c == '_' || c == '.';
+  });
+}
+
 // After ReadMemory: some defaults follow from the sizes there.
 void ReadSharing(const v1::ServerConfig& config, Reader& reader, ServerOptions& options) {
   constexpr double kHour = 3600;
@@ -176,6 +189,10 @@ void ReadSharing(const v1::ServerConfig& config, Reader& reader, ServerOptions& 
     options.client_share = reader.InRange("client_share", config.client_share(), 0.01, 1.0);
   }
   options.client_key = config.client_key();
+  if (!options.client_key.empty() && !IsMetadataKey(options.client_key)) {
+    reader.Fail("client_key", "lower-case letters, digits, '-', '_' and '.', not ending in -bin",
+                absl::StrCat("\"", options.client_key, "\""));
+  }
   options.max_slow_requests =
       config.has_max_slow_requests()
           ? static_cast<int>(reader.InRange("max_slow_requests", config.max_slow_requests(),
@@ -244,9 +261,8 @@ void ReadCleanUp(const v1::ServerConfig& config, Reader& reader, ServerOptions& 
       options.clean_up = false;
       break;
     default:
-      reader.Fail(absl::StrCat("clean_up: is ", config.clean_up(),
-                               ", wanted CLEAN_UP_POLICY_AUTO, CLEAN_UP_POLICY_ON or "
-                               "CLEAN_UP_POLICY_OFF"));
+      reader.Fail("clean_up", "CLEAN_UP_POLICY_AUTO, CLEAN_UP_POLICY_ON or CLEAN_UP_POLICY_OFF",
+                  absl::StrCat(config.clean_up()));
   }
 }
 
@@ -256,28 +272,30 @@ void ReadSecurity(const v1::ServerConfig& config, Reader& reader, SecurityOption
   options.tls_client_ca_file = config.tls_client_ca_file();
   options.access_file = config.access_file();
   if (options.tls_certificate_file.empty() != options.tls_key_file.empty()) {
-    reader.Fail(
-        absl::StrCat(options.tls_key_file.empty() ? "tls_key_file" : "tls_certificate_file",
-                     ": is empty, wanted tls_certificate_file and tls_key_file or neither"));
+    const bool no_key = options.tls_key_file.empty();
+    reader.Fail(no_key ? "tls_key_file" : "tls_certificate_file",
+                absl::StrCat("a file beside ", no_key ? "tls_certificate_file" : "tls_key_file"),
+                "none", "encryption takes both, plain text neither");
   }
   if (!options.tls_client_ca_file.empty() && options.tls_certificate_file.empty()) {
-    reader.Fail("tls_client_ca_file: needs tls_certificate_file and tls_key_file");
+    reader.Fail("tls_client_ca_file", "tls_certificate_file and tls_key_file beside it", "neither",
+                "only an encrypted connection can ask clients for certificates");
   }
 }
 
 void ReadLogging(const v1::ServerConfig& config, Reader& reader, LoggingOptions& options) {
   if (config.has_log_format()) {
     if (config.log_format() != v1::LOG_FORMAT_JSON && config.log_format() != v1::LOG_FORMAT_TEXT) {
-      reader.Fail(absl::StrCat("log_format: is ", config.log_format(),
-                               ", wanted LOG_FORMAT_JSON or LOG_FORMAT_TEXT"));
+      reader.Fail("log_format", "LOG_FORMAT_JSON or LOG_FORMAT_TEXT",
+                  absl::StrCat(config.log_format()));
     }
     options.format = config.log_format() == v1::LOG_FORMAT_TEXT ? LoggingOptions::Format::kText
                                                                 : LoggingOptions::Format::kJson;
   }
   if (config.has_log_level()) {
     if (config.log_level() < v1::LOG_LEVEL_INFO || config.log_level() > v1::LOG_LEVEL_ERROR) {
-      reader.Fail(absl::StrCat("log_level: is ", config.log_level(),
-                               ", wanted LOG_LEVEL_INFO, LOG_LEVEL_WARNING or LOG_LEVEL_ERROR"));
+      reader.Fail("log_level", "LOG_LEVEL_INFO, LOG_LEVEL_WARNING or LOG_LEVEL_ERROR",
+                  absl::StrCat(config.log_level()));
     }
     options.level = config.log_level() == v1::LOG_LEVEL_ERROR     ? LoggingOptions::Level::kError
                     : config.log_level() == v1::LOG_LEVEL_WARNING ? LoggingOptions::Level::kWarning
@@ -294,6 +312,10 @@ void ReadLogging(const v1::ServerConfig& config, Reader& reader, LoggingOptions&
 
 void ReadTracing(const v1::ServerConfig& config, Reader& reader, TracingOptions& options) {
   options.otlp_endpoint = config.otlp_endpoint();
+  if (!options.otlp_endpoint.empty()) {
+    const absl::Status status = common::ParseHttpOrigin(options.otlp_endpoint).status();
+    if (!status.ok()) reader.Fail(absl::StrCat("otlp_endpoint: ", status.message()));
+  }
   if (config.has_trace_ratio()) {
     options.ratio = reader.InRange("trace_ratio", config.trace_ratio(), 0, 1);
   }
@@ -303,9 +325,10 @@ void ReadLabels(const v1::ServerConfig& config, Reader& reader, ServerOptions& o
   for (int i = 0; i < config.version_labels_size(); ++i) {
     const v1::VersionLabel& label = config.version_labels(i);
     if (label.model().empty() || label.label().empty() || label.version() == 0) {
-      reader.Fail(absl::StrCat("version_labels[", i, "]: is model \"", label.model(),
-                               "\", label \"", label.label(), "\", version ", label.version(),
-                               ", wanted a model, a label and a version of 1 or more"));
+      reader.Fail(absl::StrCat("version_labels[", i, "]"),
+                  "a model, a label and a version of 1 or more",
+                  absl::StrCat("model \"", label.model(), "\", label \"", label.label(),
+                               "\", version ", label.version()));
     }
     options.version_labels.push_back({label.model(), label.label(), label.version()});
   }
@@ -322,23 +345,53 @@ void ReadPolicies(const v1::ServerConfig& config, Reader& reader, ServerOptions&
     policy.versions.assign(message.versions().begin(), message.versions().end());
     const bool has_zero = std::count(policy.versions.begin(), policy.versions.end(), 0u) > 0;
     if (message.model().empty()) {
-      reader.Fail(absl::StrCat(field, ": has no model, wanted a name, or \"*\" for every other"));
+      reader.Fail(field, "a model's name, or \"*\" for every other", "none");
     } else if (!models.insert(policy.model).second) {
-      reader.Fail(absl::StrCat(field, ": is the second of model \"", message.model(),
-                               "\", wanted one for each"));
+      reader.Fail(field, "one policy for each model",
+                  absl::StrCat("a second of model \"", message.model(), "\""));
     } else if (policy.latest.has_value() && !policy.versions.empty()) {
-      reader.Fail(absl::StrCat(field, ": has both latest and versions, wanted one of them"));
+      reader.Fail(field, "either latest or versions", "both");
     } else if (policy.latest == 0u || has_zero) {
-      reader.Fail(absl::StrCat(field, ": has a 0, wanted 1 or more"));
+      reader.Fail(field, "numbers of 1 or more", "0");
     }
     options.version_policies.push_back(std::move(policy));
   }
 }
 
+bool IsAnyHost(const std::string& host) { return host == "0.0.0.0" || host == "::"; }
+
+bool IsLoopback(const std::string& host) { return host == "127.0.0.1" || host == "::1"; }
+
+// Whether two listeners would be in each other's way.
+bool Clash(const ListenAddress& a, const ListenAddress& b) {
+  if (a.port != b.port || a.port == 0) return false;
+  const bool local = (a.host == "localhost" && IsLoopback(b.host)) ||
+                     (b.host == "localhost" && IsLoopback(a.host));
+  return a.host == b.host || IsAnyHost(a.host) || IsAnyHost(b.host) || local;
+}
+
+// Each listener has a port of its own.
+void CheckListeners(const ServerOptions& options, Reader& reader) {
+  const std::vector<std::pair<absl::string_view, std::optional<ListenAddress>>> listeners = {
+      {"listen", options.listen},
+      {"metrics_listen", options.metrics_listen},
+      {"admin_listen", options.admin_listen}};
+  for (std::size_t i = 0; i < listeners.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const auto& [field, address] = listeners[i];
+      const auto& [other_field, other] = listeners[j];
+      if (!address.has_value() || !other.has_value() || !Clash(*address, *other)) continue;
+      reader.Fail(field, absl::StrCat("another port than ", other_field), ToString(*address),
+                  absl::StrCat(other_field, " is ", ToString(*other),
+                               "; port 0 is any free one, \"off\" none"));
+    }
+  }
+}
+
 }  // namespace
 
-absl::StatusOr<ServerOptions> ToOptions(const v1::ServerConfig& config, int cores,
-                                        const SettingSources& sources, std::uint64_t memory_bytes) {
+Settings ReadSettings(const v1::ServerConfig& config, int cores, const SettingSources& sources,
+                      std::uint64_t memory_bytes) {
   Reader reader(sources);
   ServerOptions options;
   if (config.has_listen()) options.listen = reader.Address("listen", config.listen());
@@ -361,13 +414,21 @@ absl::StatusOr<ServerOptions> ToOptions(const v1::ServerConfig& config, int core
   ReadMemory(config, memory_bytes, reader, options);
   ReadSharing(config, reader, options);
   ReadBatching(config, reader, options);
-  if (!reader.ok()) return reader.status();
-  return options;
+  CheckListeners(options, reader);
+  return {std::move(options), reader.Take()};
+}
+
+absl::StatusOr<ServerOptions> ToOptions(const v1::ServerConfig& config, int cores,
+                                        const SettingSources& sources,
+                                        std::uint64_t memory_bytes) {
+  Settings settings = ReadSettings(config, cores, sources, memory_bytes);
+  if (settings.mistakes.empty()) return std::move(settings.options);
+  return absl::InvalidArgumentError(absl::StrJoin(settings.mistakes, "\n"));
 }
 
 absl::StatusOr<ListenAddress> ParseListenAddress(const std::string& text) {
   const absl::Status malformed = absl::InvalidArgumentError(absl::StrCat(
-      "is \"", text, "\", wanted host:port, such as 0.0.0.0:50051, with a port of 0 to 65535"));
+      "expected host:port, such as 0.0.0.0:50051, with a port of 0 to 65535, got \"", text, "\""));
   const std::size_t colon = text.rfind(':');
   if (colon == std::string::npos) return malformed;
   ListenAddress address;

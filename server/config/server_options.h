@@ -107,10 +107,19 @@ struct ServerOptions {
   double grace_seconds = 30;
 };
 
-// Fills in defaults and checks every field. `cores` and `memory_bytes` are what the container may
-// use.
-// Fails with INVALID_ARGUMENT, one line for each field that is wrong: its name, what came, what was
-// wanted, and where it came from if `sources` know.
+// The options of a configuration, and everything that is wrong with it.
+struct Settings {
+  ServerOptions options;  // of fields that are wrong, some other value
+  // A line for each: "field: expected ..., got ... (where it comes from, if known); hint".
+  std::vector<std::string> mistakes;
+};
+
+// Fills in defaults and checks every field, by itself and against the others, without looking at
+// files or the network. `cores` and `memory_bytes` are what the container may use.
+Settings ReadSettings(const v1::ServerConfig& config, int cores, const SettingSources& sources = {},
+                      std::uint64_t memory_bytes = kUnlimitedMemory);
+
+// The same, failing with INVALID_ARGUMENT and all mistakes.
 absl::StatusOr<ServerOptions> ToOptions(const v1::ServerConfig& config, int cores,
                                         const SettingSources& sources = {},
                                         std::uint64_t memory_bytes = kUnlimitedMemory);

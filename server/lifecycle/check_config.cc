@@ -7,12 +7,11 @@
 #include "server/config/memory_limit.h"
 #include "server/config/memory_plan.h"
 #include "server/lifecycle/load_models.h"
-#include "server/lifecycle/secret_options.h"
+#include "server/lifecycle/run_server.h"
 #include "server/metrics/process_metrics.h"
 #include "server/registry/model_manager.h"
 #include "server/registry/model_registry.h"
 #include "server/registry/model_status.h"
-#include "server/security/secret_files.h"
 
 namespace duet::server::lifecycle {
 namespace {
@@ -43,9 +42,12 @@ class Findings final : public registry::ModelObserver {
     for (absl::string_view line : absl::StrSplit(problem, '\n')) out_ << "wrong: " << line << "\n";
     all_right_ = false;
   }
+  void Problems(const std::vector<std::string>& problems) {
+    for (const std::string& problem : problems) Problem(problem);
+  }
   void Problems(const absl::StatusOr<std::vector<std::string>>& problems) {
     if (!problems.ok()) return Problem(std::string(problems.status().message()));
-    for (const std::string& problem : *problems) Problem(problem);
+    Problems(*problems);
   }
   bool all_right() const { return all_right_; }
 
@@ -54,24 +56,8 @@ class Findings final : public registry::ModelObserver {
   bool all_right_ = true;
 };
 
-// Certificates and the access file, each by itself: all that is wrong counts.
-void CheckSecrets(const config::SecurityOptions& options, Findings& findings) {
-  security::SecretFiles::Options access = SecretsOf(options);
-  access.tls = {};
-  security::SecretFiles::Options tls = SecretsOf(options);
-  tls.access.clear();
-  for (const security::SecretFiles::Options& part : {tls, access}) {
-    const absl::Status status = security::SecretFiles::Open(part).status();
-    if (!status.ok()) findings.Problem(std::string(status.message()));
-  }
-}
-
-}  // namespace
-
-bool CheckConfig(const config::ServerOptions& options, const registry::ModelSource& source,
-                 std::ostream& out) {
-  Findings findings(out);
-  CheckSecrets(options.security, findings);
+void CheckModels(const config::ServerOptions& options, const registry::ModelSource& source,
+                 Findings& findings, std::ostream& out) {
   registry::ModelRegistry registry;
   registry::ModelManager manager(registry, findings);
   ConfigureModels(options, manager);
@@ -83,7 +69,17 @@ bool CheckConfig(const config::ServerOptions& options, const registry::ModelSour
        config::MemoryWarnings(options, config::AvailableMemory(), metrics::ResidentBytes())) {
     out << "warning: " << warning << "\n";
   }
-  return findings.all_right();
+}
+
+}  // namespace
+
+int CheckConfig(const ValidatedSettings& settings, std::ostream& out) {
+  Findings findings(out);
+  findings.Problems(settings.setting_mistakes);
+  findings.Problems(settings.resource_mistakes);
+  if (settings.source.ok()) CheckModels(settings.options, *settings.source, findings, out);
+  if (!settings.setting_mistakes.empty()) return kExitUsage;
+  return findings.all_right() ? kExitStopped : kExitFailed;
 }
 
 }  // namespace duet::server::lifecycle

@@ -3,18 +3,17 @@
 
 #include <ostream>
 
-#include "server/config/server_options.h"
-#include "server/registry/model_source.h"
+#include "server/lifecycle/validate_settings.h"
 
 namespace duet::server::lifecycle {
 
-// Loads everything that the options name without listening anywhere, and writes a line for each
-// model and for each thing that is not as it should be: certificates and access files that a server
-// would not start with, checkpoints that do not load, folders that are none, labels that point
-// nowhere. True when there is no such thing. A line for settings that do not fit the memory is a
-// warning, which does not count.
-bool CheckConfig(const config::ServerOptions& options, const registry::ModelSource& source,
-                 std::ostream& out);
+// Loads the models that the settings name, by the code that a server loads them with, and writes a
+// line for each model and for each mistake: those of the settings, checkpoints that do not load,
+// folders that are none, labels that point nowhere. Listens nowhere. A line for settings that do not
+// fit the memory is a warning, which does not count.
+//
+// Returns the exit code: kExitUsage for mistakes in settings, kExitFailed for any others.
+int CheckConfig(const ValidatedSettings& settings, std::ostream& out);
 
 }  // namespace duet::server::lifecycle
 

@@ -62,6 +62,10 @@ service::AdmissionLimits AdmissionOf(const config::ServerOptions& options) {
   return limits;
 }
 
+absl::Status OfSetting(absl::string_view setting, const absl::Status& status) {
+  return absl::Status(status.code(), absl::StrCat(setting, ": ", status.message()));
+}
+
 std::vector<metrics::ServedVersion> Served(const registry::ModelRegistry& registry) {
   std::vector<metrics::ServedVersion> served;
   for (const registry::ServedModel& model : registry.List()) {
@@ -118,7 +122,8 @@ DuetServer::DuetServer(const config::ServerOptions& options, metrics::LogSink& s
       control_(manager_, registry_, events_),
       admin_(AdminParts()) {
   Configure(options);
-  control_.AddReloadable({"certificates and access file", [this] { return ReloadSecrets(); }});
+  control_.AddReloadable({"certificates and access file", [this] { return ReloadSecrets(); },
+                          [this] { return secrets_->state(); }});
   metrics_.SetQueueLength([this] { return static_cast<double>(scheduler_->queued_windows()); });
   metrics_.SetCapacity({options_.max_calls, options_.max_queued_windows, options_.workers});
   metrics_.SetBuild(DUET_VERSION);
@@ -187,7 +192,7 @@ absl::Status DuetServer::ListenForAdmin() {
   options.max_calls = kAdminCalls;
   options.credentials = Credentials();
   absl::StatusOr<GrpcServer> started = StartGrpcServer(options, admin_);
-  if (!started.ok()) return started.status();
+  if (!started.ok()) return OfSetting("admin_listen", started.status());
   admin_grpc_ = *std::move(started);
   return absl::OkStatus();
 }
@@ -198,7 +203,7 @@ absl::Status DuetServer::Listen() {
                        options_.max_transport_bytes, options_.max_calls, options_.max_call_seconds,
                        Credentials(), &transport_.quota()},
                       service_);
-  if (!grpc.ok()) return grpc.status();
+  if (!grpc.ok()) return OfSetting("listen", grpc.status());
   grpc_ = *std::move(grpc);
   SetHealth(false);
   if (absl::Status admin = ListenForAdmin(); !admin.ok()) return admin;
@@ -213,7 +218,7 @@ absl::Status DuetServer::Listen() {
   endpoint.describe = [this] { return Describe(); };
   absl::StatusOr<std::unique_ptr<metrics::MetricsEndpoint>> started =
       metrics::MetricsEndpoint::Start(std::move(endpoint));
-  if (!started.ok()) return started.status();
+  if (!started.ok()) return OfSetting("metrics_listen", started.status());
   endpoint_ = *std::move(started);
   return absl::OkStatus();
 }
@@ -236,11 +241,8 @@ void DuetServer::Tell(const std::vector<security::Reload>& reloads) {
 }
 
 absl::Status DuetServer::ReloadSecrets() {
-  const std::vector<security::Reload> reloads = secrets_->Refresh();
-  Tell(reloads);
-  absl::Status status;
-  for (const security::Reload& reload : reloads) status.Update(reload.status);
-  return status;
+  Tell(secrets_->Refresh());
+  return secrets_->state();
 }
 
 void DuetServer::Watch() {
@@ -277,10 +279,14 @@ std::string DuetServer::Describe() const {
                     model.state == registry::ModelState::kServed    ? "served"
                     : model.state == registry::ModelState::kLoading ? "loading"
                                                                     : "failed",
-                    model.error.empty() ? "" : ": ", model.error, "\n");
+                    model.outdated ? ", outdated" : "", model.error.empty() ? "" : ": ",
+                    model.error, "\n");
   }
   for (const registry::SkippedFolder& folder : manager_.skipped()) {
     absl::StrAppend(&text, "skipped ", folder.folder, ": ", folder.reason, "\n");
+  }
+  for (const std::string& problem : control_.problems()) {
+    absl::StrAppend(&text, "problem ", problem, "\n");
   }
   return text;
 }

@@ -47,8 +47,9 @@ metrics::LogOptions LogOptionsOf(const config::LoggingOptions& options);
 // Threads: one thread at a time, but for control().
 class DuetServer {
  public:
-  // `sink` outlives the server. Fails with UNAVAILABLE when an address cannot be listened on; as
-  // SecretFiles::Open and CallTracer::Open when what they are given makes no sense.
+  // `sink` outlives the server. Fails with UNAVAILABLE, the setting and the reason when an address
+  // cannot be listened on; as SecretFiles::Open and CallTracer::Open when what they are given makes
+  // no sense (ValidateSettings finds that before).
   static absl::StatusOr<std::unique_ptr<DuetServer>> Start(const config::ServerOptions& options,
                                                            metrics::LogSink& sink);
   ~DuetServer();
@@ -93,7 +94,7 @@ class DuetServer {
   // log's counts, its own port.
   void Watch();
   void Tell(const std::vector<security::Reload>& reloads);
-  // The same as RefreshSecrets; fails as the first of what was read again does.
+  // The same as RefreshSecrets; fails while what is on disk is refused, also if nothing changed.
   absl::Status ReloadSecrets();
   // Null: plain text.
   std::shared_ptr<grpc::ServerCredentials> Credentials() const;

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "server/common/bindable.h"
 
 namespace duet::server::lifecycle {
 namespace {
@@ -80,8 +81,7 @@ absl::StatusOr<GrpcServer> StartGrpcServer(const GrpcServerOptions& options,
   SetMessageLimits(builder, options);
   started.server = builder.BuildAndStart();
   if (started.server == nullptr) {
-    return absl::UnavailableError(
-        absl::StrCat("cannot listen on ", ToString(options.listen), " for gRPC; is it in use?"));
+    return common::ListenFailure(options.listen.host, options.listen.port);
   }
   return started;
 }

@@ -34,7 +34,7 @@ struct GrpcServer {
 
 // Starts gRPC with the service, Google's health service (everything SERVING at first) and, where
 // asked for, reflection. `service` outlives the server.
-// Fails with UNAVAILABLE naming the address when it cannot be listened on.
+// Fails with UNAVAILABLE and the reason when the address cannot be listened on.
 absl::StatusOr<GrpcServer> StartGrpcServer(const GrpcServerOptions& options,
                                            grpc::Service& service);
 

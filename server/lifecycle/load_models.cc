@@ -1,13 +1,10 @@
 #include "server/lifecycle/load_models.h"
 
 #include <memory>
-#include <set>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
-#include "model/base/nearest.h"
-#include "model/base/text.h"
 #include "server/common/clock.h"
 #include "server/registry/golden_check.h"
 
@@ -35,29 +32,6 @@ absl::Status LoadEmbedded(const registry::ModelSource& source, registry::ModelMa
   }
   if (registry.List().empty()) return absl::OkStatus();
   return registry.SetDefault(models->front()->description().name);
-}
-
-// "version_labels: names model ..." for each that there is not.
-absl::Status CheckNames(const config::ServerOptions& options,
-                        const registry::ModelManager& manager) {
-  std::set<std::string> known;
-  for (const registry::ModelStatus& model : manager.List()) known.insert(model.name);
-  const std::vector<std::string> names(known.begin(), known.end());
-  std::vector<std::string> unknown;
-  const auto check = [&](absl::string_view field, std::size_t index, const std::string& model) {
-    if (model.empty() || known.count(model) > 0) return;
-    unknown.push_back(absl::StrCat(field, "[", index, "]: names model ", base::Quoted(model),
-                                   ", wanted one of: ", absl::StrJoin(names, ", "),
-                                   base::DidYouMean(model, names)));
-  };
-  for (std::size_t i = 0; i < options.version_labels.size(); ++i) {
-    check("version_labels", i, options.version_labels[i].model);
-  }
-  for (std::size_t i = 0; i < options.version_policies.size(); ++i) {
-    check("version_policies", i, options.version_policies[i].model);
-  }
-  if (unknown.empty()) return absl::OkStatus();
-  return absl::InvalidArgumentError(absl::StrJoin(unknown, "\n"));
 }
 
 }  // namespace
@@ -95,7 +69,9 @@ absl::StatusOr<std::vector<std::string>> SettleModels(const config::ServerOption
                                                       registry::ModelManager& manager,
                                                       registry::ModelRegistry& registry) {
   if (registry.List().empty()) return absl::FailedPreconditionError("no model could be loaded");
-  if (absl::Status known = CheckNames(options, manager); !known.ok()) return known;
+  if (const std::vector<std::string> unknown = manager.UnknownNames(); !unknown.empty()) {
+    return absl::InvalidArgumentError(absl::StrJoin(unknown, "\n"));
+  }
   // Set even where the operator names none: a model that comes later must not become the default.
   const absl::Status set = registry.SetDefault(
       options.default_model.empty() ? registry.default_model() : options.default_model);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdint>
+#include <functional>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -12,7 +13,6 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_split.h"
 #include "absl/time/clock.h"
 #include "server/config/cpu_budget.h"
 #include "server/config/load_config.h"
@@ -23,6 +23,7 @@
 #include "server/lifecycle/duet_server.h"
 #include "server/lifecycle/library_logs.h"
 #include "server/lifecycle/service_manager.h"
+#include "server/lifecycle/validate_settings.h"
 #include "server/metrics/process_metrics.h"
 #include "server/metrics/queued_log_sink.h"
 #include "server/metrics/text_log_sink.h"
@@ -47,7 +48,10 @@ std::string ServedText(DuetServer& server) {
   const auto served = std::count_if(models.begin(), models.end(), [](const auto& model) {
     return model.state == registry::ModelState::kServed;
   });
-  return absl::StrCat("serving ", served, " models");
+  const auto outdated =
+      std::count_if(models.begin(), models.end(), [](const auto& model) { return model.outdated; });
+  return absl::StrCat("serving ", served, " models",
+                      outdated == 0 ? "" : absl::StrCat(", ", outdated, " of them outdated"));
 }
 
 // Serves until told to stop, and reloads when told to.
@@ -72,10 +76,18 @@ void WarnOfMemory(const config::ServerOptions& options, metrics::JsonLog& log) {
 }
 
 // Serves until told to stop; what it cannot serve for is in the log as well.
-absl::Status Serve(const config::ServerOptions& options, const ModelSource& source,
-                   const ReadSettings& read_settings, StopSignal& stop, metrics::LogSink& sink) {
+absl::Status Serve(const ValidatedSettings& settings, const ReadSettings& read_settings,
+                   StopSignal& stop, metrics::LogSink& sink) {
+  const config::ServerOptions& options = settings.options;
+  const ModelSource& source = *settings.source;
   metrics::JsonLog log(sink, absl::Now, LogOptionsOf(options.logging));
   const LibraryLogs library_logs(log);
+  for (const std::string& mistake : settings.resource_mistakes) {
+    log.Error("cannot_serve", {{"message", mistake}});
+  }
+  if (!settings.resource_mistakes.empty()) {
+    return absl::FailedPreconditionError(settings.resource_mistakes.front());
+  }
   const ServiceManager manager = ServiceManager::OfProcess();
   log.Info("engine_opened", {{"engine", source.engine}});
   absl::StatusOr<std::unique_ptr<DuetServer>> server = DuetServer::Start(options, sink);
@@ -90,20 +102,17 @@ absl::Status Serve(const config::ServerOptions& options, const ModelSource& sour
   WarnOfMemory(options, log);
   DuetServer& serving = **server;
   const auto configure = [&serving, &read_settings] {
-    const absl::StatusOr<config::ServerOptions> settings = read_settings();
-    if (settings.ok()) serving.Configure(*settings);
-    return settings.status();
+    const absl::StatusOr<config::ServerOptions> current = read_settings();
+    if (current.ok()) serving.Configure(*current);
+    return current.status();
   };
   serving.control().AddReloadable({"configuration", configure});
   ServeUntilStopped(serving, stop, manager);
   return absl::OkStatus();
 }
 
-// Writes one line for each thing that is wrong.
-void Complain(const absl::Status& status) {
-  for (absl::string_view line : absl::StrSplit(status.message(), '\n')) {
-    std::cerr << "duet-server: " << line << "\n";
-  }
+void Complain(const std::vector<std::string>& mistakes) {
+  for (const std::string& mistake : mistakes) std::cerr << "duet-server: " << mistake << "\n";
 }
 
 }  // namespace
@@ -120,37 +129,34 @@ int RunServer(int argc, const char* const* argv, const EngineOpener& open_engine
   }
   const int cores = config::AvailableCores();
   const std::uint64_t memory = config::AvailableMemory();
-  const absl::StatusOr<config::ServerOptions> options =
-      config::ToOptions(command_line, cores, memory);
-  if (!options.ok()) {
-    Complain(options.status());
-    return kExitUsage;
-  }
   if (command_line.task == config::CommandLine::Task::kPrintConfig) {
-    std::cout << config::PrintConfig(*options, command_line.sources);
+    const config::Settings settings = config::ReadSettings(command_line, cores, memory);
+    Complain(settings.mistakes);
+    if (!settings.mistakes.empty()) return kExitUsage;
+    std::cout << config::PrintConfig(settings.options, command_line.sources);
     return kExitStopped;
   }
-  const absl::StatusOr<ModelSource> source = open_engine(options->engine);
-  if (!source.ok()) {
-    Complain(source.status());
+  const bool check = command_line.task == config::CommandLine::Task::kCheckConfig;
+  const ValidatedSettings settings =
+      ValidateSettings(command_line, cores, memory, open_engine, check ? Ports::kMayBeInUse : Ports::kFree);
+  if (check) return CheckConfig(settings, std::cout);
+  if (!settings.setting_mistakes.empty()) {
+    Complain(settings.setting_mistakes);
+    Complain(settings.resource_mistakes);
     return kExitUsage;
-  }
-  if (command_line.task == config::CommandLine::Task::kCheckConfig) {
-    return CheckConfig(*options, *source, std::cout) ? kExitStopped : kExitFailed;
   }
   RaiseDescriptorLimit();
   // Whoever reads the log may go away: its lines are lost then, and no call.
   std::signal(SIGPIPE, SIG_IGN);
   metrics::QueuedLogSink::Options log;
   log.drop_notice = [](std::uint64_t dropped) { return metrics::DroppedLinesNotice(dropped); };
-  if (options->logging.format == config::LoggingOptions::Format::kText) {
+  if (settings.options.logging.format == config::LoggingOptions::Format::kText) {
     sink = std::make_shared<metrics::TextLogSink>(std::move(sink));
   }
   // Outlives everything that logs, and writes its last lines before the process ends.
   metrics::QueuedLogSink queued_sink(std::move(sink), log);
   const auto read_settings = [&] { return config::ToOptions(read(), cores, memory); };
-  return Serve(*options, *source, read_settings, stop, queued_sink).ok() ? kExitStopped
-                                                                         : kExitFailed;
+  return Serve(settings, read_settings, stop, queued_sink).ok() ? kExitStopped : kExitFailed;
 }
 
 }  // namespace duet::server::lifecycle

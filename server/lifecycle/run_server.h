@@ -1,12 +1,10 @@
 #ifndef DUET_SERVER_LIFECYCLE_RUN_SERVER_H_
 #define DUET_SERVER_LIFECYCLE_RUN_SERVER_H_
 
-#include <functional>
 #include <memory>
 
-#include "absl/status/statusor.h"
-#include "server/config/server_options.h"
 #include "server/lifecycle/stop_signal.h"
+#include "server/lifecycle/validate_settings.h"
 #include "server/metrics/log_sink.h"
 #include "server/registry/model_source.h"
 
@@ -14,14 +12,10 @@ namespace duet::server::lifecycle {
 
 using registry::ModelSource;
 
-// Opens the engine that the options ask for. Only the main program knows which ones there are.
-// Fails when it is not to be had here, naming the option, what came and what was wanted.
-using EngineOpener = std::function<absl::StatusOr<ModelSource>(const config::EngineOptions&)>;
-
 // Exit codes of duet-server.
 inline constexpr int kExitStopped =
     0;                                 // drained after SIGTERM or SIGINT, or nothing to complain of
-inline constexpr int kExitFailed = 1;  // cannot listen, or not everything can be served
+inline constexpr int kExitFailed = 1;  // a file, an address or a model that settings name is wrong
 inline constexpr int kExitUsage = 2;   // a flag or the configuration file is wrong
 
 // Everything that duet-server does, from the command line to the exit code: listen, load, serve,

@@ -21,6 +21,7 @@
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
+#include "server/common/bindable.h"
 #include "server/metrics/http_reply.h"
 
 namespace duet::server::metrics {
@@ -144,10 +145,7 @@ class PollingEndpoint final : public MetricsEndpoint {
 
   absl::Status Start() {
     listener_ = ListenOn(options_.host, options_.port);
-    if (!listener_) {
-      return absl::UnavailableError(absl::StrCat("cannot listen on ", options_.host, ":",
-                                                 options_.port, " for metrics; is it in use?"));
-    }
+    if (!listener_) return common::ListenFailure(options_.host, options_.port);
     port_ = PortOf(listener_);
     thread_ = std::thread([this] { Run(); });
     return absl::OkStatus();

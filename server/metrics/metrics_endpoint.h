@@ -31,7 +31,7 @@ struct MetricsEndpointOptions {
 // callbacks run on that thread, and must be quick.
 class MetricsEndpoint {
  public:
-  // Fails with UNAVAILABLE naming the address when it cannot be listened on.
+  // Fails with UNAVAILABLE and the reason when the address cannot be listened on.
   static absl::StatusOr<std::unique_ptr<MetricsEndpoint>> Start(MetricsEndpointOptions options);
 
   virtual ~MetricsEndpoint() = default;

@@ -125,6 +125,12 @@ ServerMetrics::ServerMetrics()
                        .Name("duet_model_state")
                        .Help("1 when a checkpoint is served, 0 when it was refused.")
                        .Register(registry_)),
+      model_last_load_(
+          BuildGauge()
+              .Name("duet_model_last_load_successful")
+              .Help("1 when the last load of a checkpoint succeeded, 0 when what is on "
+                    "disk was refused, whether or not an older load is served.")
+              .Register(registry_)),
       model_loads_(BuildCounter()
                        .Name("duet_model_loads_total")
                        .Help("Checkpoints that were loaded, or refused.")
@@ -156,9 +162,16 @@ ServerMetrics::ServerMetrics()
           BuildCounter()
               .Name("duet_secrets_reloads_total")
               .Help("Times that certificates or the access file were read again after a change.")
+              .Register(registry_)),
+      secrets_last_reload_(
+          BuildGauge()
+              .Name("duet_secrets_last_reload_successful")
+              .Help("1 when the certificates or access file on disk are in use, 0 when they were "
+                    "refused and the ones before them are.")
               .Register(registry_)) {
   // From 0 on, or the first refusal would be no increase.
   for (const char* kind : {"access", "tls"}) {
+    secrets_last_reload_.Add({{"kind", kind}}).Set(1);
     for (const char* outcome : {"taken", "refused"}) {
       secrets_reloads_.Add({{"kind", kind}, {"outcome", outcome}});
     }
@@ -210,6 +223,7 @@ void ServerMetrics::ModelLoaded(const std::string& checkpoint, double seconds, b
   const Labels labels = {{"checkpoint", checkpoint}};
   load_seconds_.Add(labels).Set(seconds);
   model_state_.Add(labels).Set(served ? 1 : 0);
+  model_last_load_.Add(labels).Set(loaded ? 1 : 0);
   model_loads_.Add({{"result", loaded ? "ok" : "refused"}}).Increment();
 }
 
@@ -217,6 +231,7 @@ void ServerMetrics::ModelUnloaded(const std::string& checkpoint) {
   // An alert on 0 is for what should be served.
   const Labels labels = {{"checkpoint", checkpoint}};
   model_state_.Remove(&model_state_.Add(labels));
+  model_last_load_.Remove(&model_last_load_.Add(labels));
   load_seconds_.Remove(&load_seconds_.Add(labels));
 }
 
@@ -265,6 +280,7 @@ void ServerMetrics::SetBuild(const std::string& version) {
 
 void ServerMetrics::SecretsReloaded(const std::string& kind, bool taken) {
   secrets_reloads_.Add({{"kind", kind}, {"outcome", taken ? "taken" : "refused"}}).Increment();
+  secrets_last_reload_.Add({{"kind", kind}}).Set(taken ? 1 : 0);
 }
 
 std::string ServerMetrics::Render() {

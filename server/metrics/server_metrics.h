@@ -63,12 +63,16 @@ struct ServedVersion {
 // Of models:
 //   duet_model_load_seconds{checkpoint}                time that loading took
 //   duet_model_state{checkpoint}                       1 served, 0 refused; not of unloaded ones
+//   duet_model_last_load_successful{checkpoint}        0: what is on disk was refused, and what was
+//                                                      loaded before is served, if anything
 //   duet_model_info{model, version, default}           1 for each version served now
 //   duet_model_loads_total{result}                     checkpoints loaded: ok or refused
 //   duet_model_folders_skipped                         in the repository, but no checkpoints
 //   duet_reloads_total{result}                         reloads asked for: ok or failed
 // Of certificates and the access file:
 //   duet_secrets_reloads_total{kind, outcome}          times they were read again
+//   duet_secrets_last_reload_successful{kind}          0: what is on disk was refused, and what was
+//                                                      read before is used
 //   duet_tls_certificate_expiry_timestamp_seconds      end of the server's certificate
 // Of the program: duet_build_info{version}, and the usual process_* (process_metrics.h).
 // Of tracing, where it is on:
@@ -127,6 +131,7 @@ class ServerMetrics final : public CallObserver, public batching::WindowObserver
   prometheus::Gauge& queued_windows_;
   prometheus::Family<prometheus::Gauge>& load_seconds_;
   prometheus::Family<prometheus::Gauge>& model_state_;
+  prometheus::Family<prometheus::Gauge>& model_last_load_;
   prometheus::Family<prometheus::Counter>& model_loads_;
   prometheus::Gauge& folders_skipped_;
   prometheus::Family<prometheus::Counter>& reloads_;
@@ -134,6 +139,7 @@ class ServerMetrics final : public CallObserver, public batching::WindowObserver
   prometheus::Family<prometheus::Counter>& refusals_;
   prometheus::Family<prometheus::Counter>& caller_calls_;
   prometheus::Family<prometheus::Counter>& secrets_reloads_;
+  prometheus::Family<prometheus::Gauge>& secrets_last_reload_;
   std::function<std::vector<ServedVersion>()> models_;
   std::function<double()> certificate_end_;
   std::function<SpanCounts()> spans_;

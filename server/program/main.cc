@@ -46,7 +46,7 @@ absl::StatusOr<ModelSource> OpenCpuEngine(const EngineOptions& options) {
   } else if (options.precision == EngineOptions::Precision::kBfloat16) {
     if (!duet::cpu_engine::kernels::HasBf16()) {
       return absl::InvalidArgumentError(
-          "precision: is PRECISION_BF16, wanted PRECISION_F32: this processor does not multiply "
+          "precision: expected PRECISION_F32, got PRECISION_BF16; this processor does not multiply "
           "bfloat16 (AVX-512 BF16)");
     }
     engine.precision = Precision::kBfloat16;
@@ -63,12 +63,14 @@ absl::StatusOr<ModelSource> OpenCpuEngine(const EngineOptions& options) {
 absl::StatusOr<ModelSource> OpenTorchEngine(const EngineOptions& options) {
   const absl::StatusOr<duet::torch_plugin::TorchEngine> torch = duet::torch_plugin::Open();
   if (!torch.ok()) {
-    return absl::InvalidArgumentError(absl::StrCat(
-        "engine: is ENGINE_TORCH, which cannot be opened here: ", torch.status().message()));
+    return absl::InvalidArgumentError(
+        absl::StrCat("engine: expected ENGINE_CPU, got ENGINE_TORCH, which cannot be opened here: ",
+                     torch.status().message()));
   }
   if (const absl::Status status = torch->set_threads(options.threads); !status.ok()) {
     return absl::InvalidArgumentError(
-        absl::StrCat("engine: is ENGINE_TORCH, which cannot be used here: ", status.message()));
+        absl::StrCat("engine: expected ENGINE_CPU, got ENGINE_TORCH, which cannot be used here: ",
+                     status.message()));
   }
   return ModelSource{"torch",
                      [load = torch->load_folder](const std::filesystem::path& folder) {

@@ -1,5 +1,6 @@
 #include "server/registry/model_control.h"
 
+#include <cstddef>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -11,17 +12,50 @@ absl::Status Stopping() { return absl::CancelledError("the server is stopping");
 
 }  // namespace
 
-absl::StatusOr<ReloadReport> ModelControl::ReloadNow() {
+void ModelControl::AddReloadable(Reloadable reloadable) {
+  common::MutexLock lock(mutex_);
+  entries_.push_back({std::move(reloadable), absl::OkStatus()});
+}
+
+std::vector<ModelControl::Entry> ModelControl::entries() const {
+  common::MutexLock lock(mutex_);
+  return entries_;
+}
+
+std::vector<std::string> ModelControl::problems() const {
   std::vector<std::string> problems;
-  for (const Reloadable& reloadable : reloadables_) {
-    const absl::Status reloaded = reloadable.reload();
-    if (!reloaded.ok()) {
-      problems.push_back(absl::StrCat(reloadable.name, ": ", reloaded.message()));
-    }
+  for (const Entry& entry : entries()) {
+    const absl::Status state =
+        entry.reloadable.state == nullptr ? entry.last : entry.reloadable.state();
+    if (!state.ok()) problems.push_back(absl::StrCat(entry.reloadable.name, ": ", state.message()));
   }
+  common::MutexLock lock(mutex_);
+  if (!repository_.ok()) {
+    problems.push_back(absl::StrCat("model repository: ", repository_.message()));
+  }
+  return problems;
+}
+
+void ModelControl::ReloadOthers() {
+  // What is reloaded is not called under the lock.
+  const std::vector<Entry> reloaded = entries();
+  std::vector<absl::Status> outcomes;
+  for (const Entry& entry : reloaded) outcomes.push_back(entry.reloadable.reload());
+  common::MutexLock lock(mutex_);
+  for (std::size_t i = 0; i < outcomes.size(); ++i) entries_[i].last = outcomes[i];
+}
+
+absl::StatusOr<ReloadReport> ModelControl::ReloadNow() {
+  ReloadOthers();
   absl::StatusOr<ReloadReport> report = manager_.Reload([this] { return thread_.stopping(); });
+  {
+    common::MutexLock lock(mutex_);
+    repository_ = report.status();
+  }
   if (report.ok()) {
-    report->problems.insert(report->problems.begin(), problems.begin(), problems.end());
+    std::vector<std::string> all = problems();
+    for (std::string& unknown : manager_.UnknownNames()) all.push_back(std::move(unknown));
+    report->problems.insert(report->problems.begin(), all.begin(), all.end());
   }
   observer_.Changed();
   observer_.Reloaded(report);

@@ -9,6 +9,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "server/common/background_thread.h"
+#include "server/common/mutex.h"
 #include "server/registry/model_manager.h"
 
 namespace duet::server::registry {
@@ -17,6 +18,9 @@ namespace duet::server::registry {
 struct Reloadable {
   std::string name;                      // for the log: "certificates"
   std::function<absl::Status()> reload;  // on failure what was there before stays
+  // OK, or why what is on disk is not in use; quick, safe to call concurrently. Null: as the last
+  // reload left it.
+  std::function<absl::Status()> state = nullptr;
 };
 
 // What an operator may do to models while calls are answered, by signal or admin call. Whatever
@@ -33,8 +37,8 @@ class ModelControl {
   ModelControl(ModelManager& manager, ModelRegistry& registry, ModelObserver& observer)
       : manager_(manager), registry_(registry), observer_(observer) {}
 
-  // Call before the first Reload.
-  void AddReloadable(Reloadable reloadable) { reloadables_.push_back(std::move(reloadable)); }
+  // From the next Reload on.
+  void AddReloadable(Reloadable reloadable);
 
   // As ModelManager's; before it everything that is reloadable is read again. Each calls `done`
   // once: on the thread that loads, or with CANCELLED when the server stops first.
@@ -47,19 +51,32 @@ class ModelControl {
   absl::Status DeleteLabel(const std::string& name, const std::string& label);
   std::vector<ModelStatus> List() const { return manager_.List(); }
   std::vector<SkippedFolder> skipped() const { return manager_.skipped(); }
+  // "name: why" for everything reloadable whose content on disk was refused, and for the repository
+  // if the last reload could not read it; what was read before is still in use.
+  std::vector<std::string> problems() const;
 
   // Begins nothing further that loads.
   void Stop() { thread_.Stop(); }
 
  private:
+  struct Entry {
+    Reloadable reloadable;
+    absl::Status last;  // of its last reload
+  };
+
   absl::StatusOr<ReloadReport> ReloadNow();
+  // Reads everything but models again.
+  void ReloadOthers();
+  std::vector<Entry> entries() const;
   // Calls `work` on the thread that loads, and `done` with what it gives.
   void Post(std::function<absl::Status()> work, Done done);
 
   ModelManager& manager_;
   ModelRegistry& registry_;
   ModelObserver& observer_;
-  std::vector<Reloadable> reloadables_;
+  mutable common::Mutex mutex_;
+  std::vector<Entry> entries_ DUET_GUARDED_BY(mutex_);
+  absl::Status repository_ DUET_GUARDED_BY(mutex_);  // of the last reload
   common::BackgroundThread thread_{common::BackgroundThread::Share::kSmall};
 };
 

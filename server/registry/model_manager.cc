@@ -1,11 +1,14 @@
 #include "server/registry/model_manager.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <limits>
 #include <utility>
 
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "model/base/nearest.h"
 #include "model/base/text.h"
 
 namespace duet::server::registry {
@@ -78,7 +81,7 @@ void ModelManager::Add(const LoadReport& report) {
     return;
   }
   const engine::ModelDescription& model = (*report.model)->description();
-  Take(model.name, static_cast<uint32_t>(model.version), report, "");
+  Take(model.name, static_cast<uint32_t>(model.version), report, {});
 }
 
 absl::StatusOr<ModelManager::Folders> ModelManager::Scan() {
@@ -207,10 +210,15 @@ bool ModelManager::IsWanted(const std::string& name, uint32_t version, const Ver
 
 ModelManager::Wish ModelManager::WishFor(const std::string& name, uint32_t version) const {
   common::MutexLock lock(mutex_);
+  const Version* known = Find(name, version);
+  return known == nullptr ? Wish::kAsThePolicySays : known->wish;
+}
+
+const ModelManager::Version* ModelManager::Find(const std::string& name, uint32_t version) const {
   const auto model = models_.find(name);
-  if (model == models_.end()) return Wish::kAsThePolicySays;
+  if (model == models_.end()) return nullptr;
   const auto known = model->second.find(version);
-  return known == model->second.end() ? Wish::kAsThePolicySays : known->second.wish;
+  return known == model->second.end() ? nullptr : &known->second;
 }
 
 bool ModelManager::IsLabelled(const std::string& name, uint32_t version) const {
@@ -226,15 +234,19 @@ bool ModelManager::WillBeLabelled(const std::string& name, uint32_t version) con
   });
 }
 
-bool ModelManager::IsUnchanged(const std::string& name, uint32_t version,
-                               const fs::path& folder) const {
-  const std::string fingerprint = CheckpointFingerprint(folder);
+bool ModelManager::IsUnchanged(const std::string& name, uint32_t version, const fs::path& folder) {
+  CheckpointFingerprint fingerprint;
+  {
+    common::MutexLock lock(mutex_);
+    const Version* known = Find(name, version);
+    if (known == nullptr || !known->served || !known->error.empty()) return false;
+    fingerprint = known->fingerprint;
+  }
+  // Not under the lock: it may read the weights.
+  if (!fingerprint.Matches(folder)) return false;
   common::MutexLock lock(mutex_);
-  const auto model = models_.find(name);
-  if (model == models_.end()) return false;
-  const auto known = model->second.find(version);
-  return known != model->second.end() && known->second.served && !fingerprint.empty() &&
-         known->second.fingerprint == fingerprint;
+  models_[name][version].fingerprint = std::move(fingerprint);
+  return true;
 }
 
 absl::Status ModelManager::LoadFolder(const std::string& name, uint32_t version,
@@ -245,15 +257,17 @@ absl::Status ModelManager::LoadFolder(const std::string& name, uint32_t version,
     models_[name][version].loading = true;
     loader = loader_;
   }
-  // Taken before: if the files change meanwhile, the next reload sees that they did.
-  const std::string fingerprint = CheckpointFingerprint(folder);
+  CheckpointFingerprint fingerprint = CheckpointFingerprint::Of(folder);
   const LoadReport report = LoadCheckpoint(folder, loader);
-  Take(name, version, report, fingerprint);
+  // If the files changed meanwhile, nobody knows which of them were loaded: the next reload loads
+  // them again.
+  if (!fingerprint.IsUntouched(folder)) fingerprint = {};
+  Take(name, version, report, std::move(fingerprint));
   return report.model.status();
 }
 
 void ModelManager::Take(const std::string& name, uint32_t version, const LoadReport& report,
-                        const std::string& fingerprint) {
+                        CheckpointFingerprint fingerprint) {
   if (report.model.ok()) registry_.Serve(*report.model);
   bool served = false;
   {
@@ -263,7 +277,7 @@ void ModelManager::Take(const std::string& name, uint32_t version, const LoadRep
     known.error = std::string(report.model.status().message());
     if (report.model.ok()) {
       known.served = true;
-      known.fingerprint = fingerprint;
+      known.fingerprint = std::move(fingerprint);
       known.load_seconds = report.load_seconds;
     }
     served = known.served;
@@ -279,7 +293,9 @@ void ModelManager::Retire(const std::string& name, uint32_t version, ReloadRepor
   }
   {
     common::MutexLock lock(mutex_);
-    models_[name][version].served = false;
+    Version& known = models_[name][version];
+    known.served = false;
+    known.error.clear();
   }
   observer_.Unloaded(SourceOf(name, version));
   report.unloaded.push_back(SourceOf(name, version));
@@ -313,6 +329,7 @@ absl::Status ModelManager::Unload(absl::string_view name, uint32_t version) {
     common::MutexLock lock(mutex_);
     Version& known = models_[std::string(name)][version];
     known.served = false;
+    known.error.clear();
     known.wish = Wish::kUnloaded;
   }
   observer_.Unloaded(SourceOf(name, version));
@@ -356,6 +373,7 @@ std::vector<ModelStatus> ModelManager::List() const {
                      : !known.error.empty() ? ModelState::kFailed
                                             : ModelState::kUnloaded;
       status.error = known.error;
+      status.outdated = known.served && !known.error.empty();
       status.load_seconds = known.load_seconds;
       if (const auto found = served.find({name, version}); found != served.end()) {
         status.version_labels = found->second.version_labels;
@@ -370,6 +388,24 @@ std::vector<ModelStatus> ModelManager::List() const {
 std::vector<SkippedFolder> ModelManager::skipped() const {
   common::MutexLock lock(mutex_);
   return skipped_;
+}
+
+std::vector<std::string> ModelManager::UnknownNames() const {
+  common::MutexLock lock(mutex_);
+  std::vector<std::string> names;
+  for (const auto& [name, versions] : models_) names.push_back(name);
+  std::vector<std::string> unknown;
+  const auto check = [&](absl::string_view field, std::size_t index, const std::string& model) {
+    if (model.empty() || models_.count(model) > 0) return;
+    unknown.push_back(absl::StrCat(field, "[", index,
+                                   "].model: expected one of: ", absl::StrJoin(names, ", "),
+                                   "; got ", base::Quoted(model), base::DidYouMean(model, names)));
+  };
+  for (std::size_t i = 0; i < labels_.size(); ++i) check("version_labels", i, labels_[i].model);
+  for (std::size_t i = 0; i < policies_.size(); ++i) {
+    check("version_policies", i, policies_[i].model);
+  }
+  return unknown;
 }
 
 bool ModelManager::Knows(absl::string_view name) const {

@@ -12,6 +12,7 @@
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
 #include "server/common/mutex.h"
+#include "server/registry/checkpoint_fingerprint.h"
 #include "server/registry/model_registry.h"
 #include "server/registry/model_repository.h"
 #include "server/registry/model_status.h"
@@ -67,6 +68,10 @@ class ModelManager {
   // versions are not served. They are tried again next time.
   std::vector<std::string> ApplyLabels();
 
+  // One line for each label and policy of the configuration that names a model that is neither in
+  // the repository nor served: the field, the names there are, and the name that came.
+  std::vector<std::string> UnknownNames() const;
+
   // Every version that was ever looked at and is still there, by name, newest first.
   std::vector<ModelStatus> List() const;
   // Of the repository, when it was looked through last.
@@ -81,8 +86,8 @@ class ModelManager {
     bool served = false;
     bool loading = false;
     Wish wish = Wish::kAsThePolicySays;
-    std::string error;
-    std::string fingerprint;  // of what is served
+    std::string error;                  // of its last load; empty after a success
+    CheckpointFingerprint fingerprint;  // of what is served
     double load_seconds = 0;
   };
   using Versions = std::map<uint32_t, Version, std::greater<>>;
@@ -103,16 +108,19 @@ class ModelManager {
   void PassOver(const std::string& name, uint32_t version);
   // Forgets every version of a model that has neither a folder nor is served.
   void ForgetWithout(const Folders::mapped_type& folders, const std::string& name);
+  // Null if the version was never looked at.
+  const Version* Find(const std::string& name, uint32_t version) const DUET_REQUIRES(mutex_);
   Wish WishFor(const std::string& name, uint32_t version) const;
   // Whether a label points at a version, or is to as the configuration has it.
   bool IsLabelled(const std::string& name, uint32_t version) const;
   bool WillBeLabelled(const std::string& name, uint32_t version) const;
-  bool IsUnchanged(const std::string& name, uint32_t version,
-                   const std::filesystem::path& folder) const;
+  // Whether what is served is what lies in `folder`. A version whose last load failed is not, even
+  // if its old files are back: only a load that succeeds settles that.
+  bool IsUnchanged(const std::string& name, uint32_t version, const std::filesystem::path& folder);
   absl::Status LoadFolder(const std::string& name, uint32_t version,
                           const std::filesystem::path& folder);
   void Take(const std::string& name, uint32_t version, const LoadReport& report,
-            const std::string& fingerprint);
+            CheckpointFingerprint fingerprint);
   void Retire(const std::string& name, uint32_t version, ReloadReport& report);
   std::vector<uint32_t> ServedVersions(const std::string& name) const;
   absl::Status CheckRepository() const;

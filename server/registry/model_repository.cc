@@ -1,7 +1,5 @@
 #include "server/registry/model_repository.h"
 
-#include <sys/stat.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <system_error>
@@ -10,7 +8,6 @@
 #include "absl/strings/match.h"
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_join.h"
 #include "server/common/clock.h"
 #include "server/registry/golden_check.h"
 
@@ -106,17 +103,6 @@ fs::path ResolveCheckpoint(const fs::path& folder) {
   fs::path resolved = fs::canonical(folder / kVolumeData, error);
   if (error) resolved = fs::canonical(folder, error);
   return error ? folder : resolved;
-}
-
-std::string CheckpointFingerprint(const fs::path& folder) {
-  struct stat file = {};
-  if (stat((ResolveCheckpoint(folder) / kManifest).c_str(), &file) != 0) return "";
-  return absl::StrJoin(
-      {static_cast<int64_t>(file.st_dev), static_cast<int64_t>(file.st_ino),
-       static_cast<int64_t>(file.st_size), static_cast<int64_t>(file.st_mtim.tv_sec),
-       static_cast<int64_t>(file.st_mtim.tv_nsec), static_cast<int64_t>(file.st_ctim.tv_sec),
-       static_cast<int64_t>(file.st_ctim.tv_nsec)},
-      ":");
 }
 
 LoadReport LoadCheckpoint(const fs::path& folder, const ModelLoader& loader) {

@@ -52,10 +52,6 @@ absl::StatusOr<RepositoryListing> ListCheckpoints(const std::filesystem::path& r
 // read from there are of one kind, even if the links change meanwhile.
 std::filesystem::path ResolveCheckpoint(const std::filesystem::path& folder);
 
-// Changes whenever a checkpoint's manifest is written or another takes its place; empty when there
-// is none.
-std::string CheckpointFingerprint(const std::filesystem::path& folder);
-
 // Loads one checkpoint folder and checks its answers (golden_check.h). A checkpoint whose manifest
 // does not say the name and version that its folder says is refused: one of the two is wrong.
 LoadReport LoadCheckpoint(const std::filesystem::path& folder, const ModelLoader& loader);

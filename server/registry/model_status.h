@@ -24,9 +24,10 @@ struct ModelStatus {
   ModelState state = ModelState::kUnloaded;
   bool is_default = false;
   std::vector<std::string> version_labels;  // sorted
-  // Why it could not be loaded when that was tried last; empty after a success. What is served
-  // despite of it is what was loaded before.
+  // Why its last load failed; empty if it succeeded. If the version is served nevertheless, what
+  // answers calls was loaded before, and `outdated` is true.
   std::string error;
+  bool outdated = false;
   double load_seconds = 0;  // of what is served
 };
 

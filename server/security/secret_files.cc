@@ -4,6 +4,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "model/base/file.h"
+#include "server/common/join_status.h"
 #include "server/security/access_list.h"
 
 namespace duet::server::security {
@@ -18,9 +19,9 @@ absl::StatusOr<std::unique_ptr<SecretFiles>> SecretFiles::Open(Options options) 
   if (!files->options_.access.empty()) {
     files->access_ = std::make_unique<AccessControl>(*files->options_.clock);
   }
-  for (const Reload& read : files->Refresh()) {
-    if (!read.status.ok()) return read.status;
-  }
+  files->Refresh();
+  const absl::Status state = files->state();
+  if (!state.ok()) return state;
   return files;
 }
 
@@ -33,11 +34,17 @@ std::vector<Reload> SecretFiles::Read(bool settled) {
   common::MutexLock lock(mutex_);
   if (!options_.access.empty()) {
     const absl::StatusOr<std::string> text = ReadAccess();
-    if (seen_access_.Changed(text, settled)) changes.push_back({"access", TakeAccess(text)});
+    if (seen_access_.Changed(text, settled)) {
+      access_state_ = TakeAccess(text);
+      changes.push_back({"access", access_state_});
+    }
   }
   if (!options_.tls.certificate.empty()) {
     const absl::StatusOr<TlsMaterial> material = ReadTlsMaterial(options_.tls);
-    if (seen_tls_.Changed(material, settled)) changes.push_back({"tls", TakeTls(material)});
+    if (seen_tls_.Changed(material, settled)) {
+      tls_state_ = TakeTls(material);
+      changes.push_back({"tls", tls_state_});
+    }
   }
   return changes;
 }
@@ -52,7 +59,8 @@ absl::StatusOr<std::string> SecretFiles::ReadAccess() const {
 absl::Status SecretFiles::TakeAccess(const absl::StatusOr<std::string>& text) {
   if (!text.ok()) return text.status();
   absl::StatusOr<std::vector<Caller>> callers =
-      ParseAccessList(*text, absl::StrCat("access_file: ", options_.access.string()));
+      ParseAccessList(*text, absl::StrCat("access_file: ", options_.access.string()),
+                      {/*certificates=*/!options_.tls.client_ca.empty()});
   if (!callers.ok()) return callers.status();
   access_->Replace(*std::move(callers));
   return absl::OkStatus();
@@ -69,6 +77,11 @@ absl::Status SecretFiles::TakeTls(const absl::StatusOr<TlsMaterial>& material) {
     certificates_->Replace(*material);
   }
   return absl::OkStatus();
+}
+
+absl::Status SecretFiles::state() const {
+  common::MutexLock lock(mutex_);
+  return common::Join({tls_state_, access_state_});
 }
 
 absl::Time SecretFiles::certificate_end() const {

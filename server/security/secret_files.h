@@ -43,8 +43,8 @@ class SecretFiles {
     std::function<absl::Time()> now = absl::Now;          // of certificates
   };
 
-  // Reads the files. Fails with INVALID_ARGUMENT, NOT_FOUND or PERMISSION_DENIED naming the
-  // setting, the file, and in an access file the line.
+  // Reads the files. Fails with INVALID_ARGUMENT, NOT_FOUND or PERMISSION_DENIED, one line for each
+  // mistake in any of them: the setting, the file, and in an access file the line.
   static absl::StatusOr<std::unique_ptr<SecretFiles>> Open(Options options);
 
   // Reads them again and takes over what changed; says what that was. For when somebody says that
@@ -54,6 +54,10 @@ class SecretFiles {
   // The same for what has settled: contents that the last look found as well, so that a file that
   // is being written is left alone. Call about once a second.
   std::vector<Reload> Look();
+
+  // OK, or why the files on disk are not in use: one line for each mistake in those that were
+  // refused last and have not been mended since.
+  absl::Status state() const;
 
   // Null without a certificate.
   const TlsCertificates* certificates() const { return certificates_.get(); }
@@ -97,6 +101,8 @@ class SecretFiles {
   mutable common::Mutex mutex_;
   Seen<std::string> seen_access_ DUET_GUARDED_BY(mutex_);
   Seen<TlsMaterial> seen_tls_ DUET_GUARDED_BY(mutex_);
+  absl::Status access_state_ DUET_GUARDED_BY(mutex_);  // of what was read last
+  absl::Status tls_state_ DUET_GUARDED_BY(mutex_);
   absl::Time certificate_end_ DUET_GUARDED_BY(mutex_) = absl::InfiniteFuture();
 };
 

@@ -13,6 +13,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/string_view.h"
 #include "model/base/file.h"
+#include "server/common/join_status.h"
 
 namespace duet::server::security {
 namespace {
@@ -64,52 +65,64 @@ absl::Status ReadPem(absl::string_view setting, const std::filesystem::path& pat
   return absl::OkStatus();
 }
 
+absl::Status CheckChain(const std::vector<Certificate>& chain, absl::Time now) {
+  if (chain.empty()) {
+    return absl::InvalidArgumentError(
+        "tls_certificate_file: expected PEM, the server's own certificate first, got none");
+  }
+  const absl::Time from = ToTime(X509_get0_notBefore(chain.front().get()));
+  const absl::Time until = ToTime(X509_get0_notAfter(chain.front().get()));
+  if (from <= now && now <= until) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      absl::StrCat("tls_certificate_file: expected a certificate that is valid now, got one valid "
+                   "from ",
+                   absl::FormatTime(from), " to ", absl::FormatTime(until)));
+}
+
+absl::Status CheckKey(const std::vector<Certificate>& chain, const Key& key) {
+  if (key == nullptr) {
+    return absl::InvalidArgumentError(
+        "tls_key_file: expected a private key in PEM without a password, got none");
+  }
+  if (chain.empty() || X509_check_private_key(chain.front().get(), key.get()) == 1) {
+    return absl::OkStatus();
+  }
+  ERR_clear_error();
+  return absl::InvalidArgumentError(
+      "tls_key_file: expected the key of the first certificate in tls_certificate_file, got "
+      "another certificate's key");
+}
+
+absl::Status CheckAuthorities(const std::string& pem) {
+  if (pem.empty() || !ReadCertificates(pem).empty()) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      "tls_client_ca_file: expected PEM certificates of those who sign clients', got none");
+}
+
 }  // namespace
 
 absl::StatusOr<TlsMaterial> ReadTlsMaterial(const TlsFiles& files) {
   TlsMaterial material;
-  absl::Status status =
-      ReadPem("tls_certificate_file", files.certificate, &material.certificate_chain);
-  status.Update(ReadPem("tls_key_file", files.key, &material.private_key));
-  status.Update(ReadPem("tls_client_ca_file", files.client_ca, &material.client_authorities));
+  const absl::Status status =
+      common::Join({ReadPem("tls_certificate_file", files.certificate, &material.certificate_chain),
+                    ReadPem("tls_key_file", files.key, &material.private_key),
+                    ReadPem("tls_client_ca_file", files.client_ca, &material.client_authorities)});
   if (!status.ok()) return status;
   if (!files.client_ca.empty() && material.client_authorities.empty()) {
     // Empty would mean that nobody is asked for a certificate.
-    return absl::InvalidArgumentError("tls_client_ca_file: is empty, wanted PEM certificates");
+    return absl::InvalidArgumentError(
+        "tls_client_ca_file: expected PEM certificates, got an empty file");
   }
   return material;
 }
 
 absl::StatusOr<absl::Time> CheckTlsMaterial(const TlsMaterial& material, absl::Time now) {
   const std::vector<Certificate> chain = ReadCertificates(material.certificate_chain);
-  if (chain.empty()) {
-    return absl::InvalidArgumentError(
-        "tls_certificate_file: holds no certificate, wanted PEM, the server's own first");
-  }
   const Key key = ReadKey(material.private_key);
-  if (key == nullptr) {
-    return absl::InvalidArgumentError(
-        "tls_key_file: holds no private key, wanted PEM without a password");
-  }
-  if (X509_check_private_key(chain.front().get(), key.get()) != 1) {
-    ERR_clear_error();
-    return absl::InvalidArgumentError(
-        "tls_key_file: is another certificate's key, wanted that of the first certificate in "
-        "tls_certificate_file");
-  }
-  const absl::Time from = ToTime(X509_get0_notBefore(chain.front().get()));
-  const absl::Time until = ToTime(X509_get0_notAfter(chain.front().get()));
-  if (now < from || now > until) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("tls_certificate_file: is valid from ", absl::FormatTime(from), " to ",
-                     absl::FormatTime(until), ", wanted a certificate that is valid now"));
-  }
-  if (!material.client_authorities.empty() &&
-      ReadCertificates(material.client_authorities).empty()) {
-    return absl::InvalidArgumentError(
-        "tls_client_ca_file: holds no certificate, wanted PEM of those who sign clients'");
-  }
-  return until;
+  const absl::Status status = common::Join({CheckChain(chain, now), CheckKey(chain, key),
+                                            CheckAuthorities(material.client_authorities)});
+  if (!status.ok()) return status;
+  return ToTime(X509_get0_notAfter(chain.front().get()));
 }
 
 }  // namespace duet::server::security

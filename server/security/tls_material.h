@@ -29,12 +29,14 @@ struct TlsFiles {
   std::filesystem::path client_ca;  // empty: clients need no certificate
 };
 
-// Reads the files as they are. Fails naming the setting and the file.
+// Reads the files as they are. Fails with one line for each that cannot be read: the setting and
+// the file.
 absl::StatusOr<TlsMaterial> ReadTlsMaterial(const TlsFiles& files);
 
 // Whether a handshake could succeed with it: certificates and key are PEM, the key is the first
 // certificate's, which is valid at `now`. Returns until when that certificate is.
-// Fails with INVALID_ARGUMENT naming the setting; never with anything of the key.
+// Fails with INVALID_ARGUMENT, one line for each setting that is wrong; never with anything of the
+// key.
 absl::StatusOr<absl::Time> CheckTlsMaterial(const TlsMaterial& material, absl::Time now);
 
 }  // namespace duet::server::security

@@ -14,11 +14,9 @@
 #include <variant>
 
 #include "absl/strings/escaping.h"
-#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
-#include "absl/strings/string_view.h"
-#include "absl/strings/strip.h"
 #include "duet/otlp/v1/trace.pb.h"
+#include "server/common/http_origin.h"
 
 namespace duet::server::tracing {
 namespace {
@@ -92,19 +90,15 @@ class GrpcOtlpClient final : public OtlpClient {
 
 absl::StatusOr<std::unique_ptr<OtlpClient>> OtlpClient::Create(const std::string& endpoint,
                                                                const std::string& program_version) {
-  absl::string_view address = endpoint;
-  const bool plain = absl::ConsumePrefix(&address, "http://");
-  if ((!plain && !absl::ConsumePrefix(&address, "https://")) || address.empty() ||
-      absl::StrContains(address, "/")) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("otlp_endpoint: is \"", endpoint,
-                     "\", wanted http://HOST:PORT or https://HOST:PORT, such as "
-                     "http://localhost:4317"));
+  const absl::StatusOr<common::HttpOrigin> origin = common::ParseHttpOrigin(endpoint);
+  if (!origin.ok()) {
+    return absl::InvalidArgumentError(absl::StrCat("otlp_endpoint: ", origin.status().message()));
   }
-  const auto credentials = plain ? grpc::InsecureChannelCredentials()
-                                 : grpc::SslCredentials(grpc::SslCredentialsOptions());
+  const auto credentials = origin->encrypted ? grpc::SslCredentials(grpc::SslCredentialsOptions())
+                                             : grpc::InsecureChannelCredentials();
   return std::make_unique<GrpcOtlpClient>(
-      grpc::CreateChannel(absl::StrCat("dns:///", address), credentials), program_version);
+      grpc::CreateChannel(absl::StrCat("dns:///", origin->authority), credentials),
+      program_version);
 }
 
 }  // namespace duet::server::tracing

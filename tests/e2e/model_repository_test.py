@@ -89,6 +89,35 @@ class ModelRepositoryTest(unittest.TestCase):
         self.assertRegex(models["sbu/3 failed"], r"weights: \d+ bytes, wanted \d+")
         self.assertEqual(self.synthesize(server).returncode, 0)
 
+    def test_weights_that_change_under_their_manifest_are_refused_until_they_are_mended(self):
+        folder = self.repository / "sbu" / "1"
+        write_checkpoint(folder, 1)
+        server = self.serve()
+
+        def check_config():
+            return tools.run(tools.PROGRAMS / "duet-server", "--check-config",
+                             "--model-repository", self.repository)
+
+        def outdated():
+            model = json.loads(self.admin("models", "--json").stdout)["models"][0]
+            return model["outdated"], model["error"]
+
+        weights = next(folder.glob("*.safetensors"))
+        whole = weights.read_bytes()
+        weights.write_bytes(whole[:-1] + bytes([whole[-1] ^ 1]))
+        self.assertEqual(check_config().returncode, 1)
+        for _ in range(2):
+            result = self.admin("reload")
+            self.assertEqual(result.returncode, 1, result.stderr)
+            self.assertIn("refused: sbu/1", result.stdout)
+        self.assertTrue(outdated()[0])
+        self.assertIn("weights: SHA-256", outdated()[1])
+        self.assertEqual(self.synthesize(server).returncode, 0)
+        weights.write_bytes(whole)
+        self.assertEqual(check_config().returncode, 0)
+        self.assertEqual(self.admin("reload").returncode, 0)
+        self.assertEqual(outdated(), (False, ""))
+
     def test_a_server_refuses_absurd_weights_at_the_start(self):
         write_checkpoint(self.repository / "sbu" / "1", 1, make_huge)
         result = tools.run(tools.PROGRAMS / "duet-server", "--check-config", "--model-repository",

@@ -306,7 +306,7 @@ class TraceTest(unittest.TestCase):
         wrong = tools.run(tools.PROGRAMS / "duet-server", "--listen", "127.0.0.1:0",
                           "--metrics-listen", "off", "--otlp-endpoint", "collector:4317")
         self.assertNotEqual(wrong.returncode, 0)
-        self.assertIn("otlp_endpoint: is", wrong.stderr)
+        self.assertIn("otlp_endpoint: expected", wrong.stderr)
 
 
 class LogTest(unittest.TestCase):

@@ -91,6 +91,9 @@ class ModelLifecycleTest : public ::testing::Test {
     std::string word;
     std::ifstream(folder / "manifest.json") >> word;
     if (word == "bad") return absl::DataLossError("weights: 7 bytes, wanted 9");
+    std::string weights;
+    std::ifstream(folder / "weights.safetensors") >> weights;
+    if (weights == "torn") return absl::DataLossError("weights: 4 bytes, wanted 9");
     if (word == "gated") gate_.Pass();
     engine::ModelDescription description = FakeDescription();
     description.name = folder.parent_path().filename().string();
@@ -161,9 +164,9 @@ class ModelLifecycleTest : public ::testing::Test {
     EXPECT_TRUE(stub_->ListModels(&context, admin::ListModelsRequest(), &response).ok());
     std::vector<std::string> models;
     for (const admin::ModelVersion& model : response.models()) {
-      models.push_back(absl::StrCat(model.name(), "/", model.version(), " ",
-                                    admin::ModelState_Name(model.state()).substr(12),
-                                    model.error().empty() ? "" : ": ", model.error()));
+      models.push_back(absl::StrCat(
+          model.name(), "/", model.version(), " ", admin::ModelState_Name(model.state()).substr(12),
+          model.error().empty() ? "" : ": ", model.error(), model.outdated() ? " (outdated)" : ""));
       for (const std::string& label : model.version_labels()) models.back() += "+" + label;
     }
     return models;
@@ -193,7 +196,7 @@ TEST_F(ModelLifecycleTest, ABadModelIsRefusedAndWhatIsServedStays) {
   ASSERT_TRUE(Reload(&reloaded).ok());
   EXPECT_THAT(reloaded.refused(), ElementsAre("fake/2", "fake/1"));
   EXPECT_THAT(ListModels(), ElementsAre("fake/2 FAILED: weights: 7 bytes, wanted 9",
-                                        "fake/1 SERVED: weights: 7 bytes, wanted 9"));
+                                        "fake/1 SERVED: weights: 7 bytes, wanted 9 (outdated)"));
   EXPECT_TRUE(Call(synthesis(), SampleRequest(40)).status.ok());
   EXPECT_THAT(Metrics(), AllOf(HasSubstr(R"(duet_model_state{checkpoint="fake/1"} 1)"),
                                HasSubstr(R"(duet_model_state{checkpoint="fake/2"} 0)"),
@@ -202,6 +205,31 @@ TEST_F(ModelLifecycleTest, ABadModelIsRefusedAndWhatIsServedStays) {
   EXPECT_THAT(
       HttpGet(server().metrics_port(), "/readyz"),
       AllOf(HasSubstr("HTTP/1.1 200"), HasSubstr("model fake/2: failed: weights: 7 bytes")));
+}
+
+TEST_F(ModelLifecycleTest, WeightsThatAreTornAndMendedShowEverywhere) {
+  ASSERT_THAT(server().Serve(), IsOk());
+  const std::string one = R"(duet_model_last_load_successful{checkpoint="fake/1"} 1)";
+  const std::string zero = R"(duet_model_last_load_successful{checkpoint="fake/1"} 0)";
+  EXPECT_THAT(Metrics(), HasSubstr(one));
+  WriteTestFile(folder_ / "fake/1/weights.safetensors", "torn");
+  admin::ReloadResponse reloaded;
+  ASSERT_TRUE(Reload(&reloaded).ok());
+  EXPECT_THAT(reloaded.refused(), ElementsAre("fake/1"));
+  EXPECT_THAT(ListModels(), ElementsAre("fake/1 SERVED: weights: 4 bytes, wanted 9 (outdated)"));
+  EXPECT_THAT(Metrics(),
+              AllOf(HasSubstr(zero), HasSubstr(R"(duet_model_state{checkpoint="fake/1"} 1)")));
+  EXPECT_THAT(HttpGet(server().metrics_port(), "/readyz"),
+              AllOf(HasSubstr("HTTP/1.1 200"),
+                    HasSubstr("model fake/1: served, outdated: weights: 4 bytes, wanted 9\n")));
+  const std::vector<json> refused = server_->log.Events("model_refused");
+  ASSERT_EQ(refused.size(), 1u);
+  EXPECT_EQ(refused[0]["still_served"], true);
+  fs::remove(folder_ / "fake/1/weights.safetensors");
+  ASSERT_TRUE(Reload(&reloaded).ok());
+  EXPECT_THAT(ListModels(), ElementsAre("fake/1 SERVED"));
+  EXPECT_THAT(Metrics(), HasSubstr(one));
+  EXPECT_THAT(HttpGet(server().metrics_port(), "/readyz"), HasSubstr("model fake/1: served\n"));
 }
 
 TEST_F(ModelLifecycleTest, AFolderThatIsNoCheckpointShowsEverywhere) {

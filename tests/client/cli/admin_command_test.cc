@@ -74,8 +74,23 @@ TEST_F(AdminCommandTest, ListsModelsAsJson) {
   const auto json = nlohmann::json::parse(out_.str());
   EXPECT_EQ(json["models"][0]["state"], "served");
   EXPECT_EQ(json["models"][1]["error"], "weights: 7 bytes, wanted 9");
+  EXPECT_EQ(json["models"][0]["outdated"], false);
+  EXPECT_TRUE(json["problems"].empty());
   EXPECT_EQ(json["skipped_folders"][0]["folder"], "sbu/01");
   EXPECT_EQ(options_.server_address, "lab:7");
+}
+
+TEST_F(AdminCommandTest, ShowsWhatIsOutdatedAndWhatWasRefused) {
+  ServedModels models;
+  models.models.push_back(
+      {"sbu", 3, ServedVersion::State::kServed, "weights: 7 bytes, wanted 9", {}, true, 0.5, true});
+  models.problems = {"access file: empty"};
+  EXPECT_CALL(*client_, ListModels).WillOnce(Return(models));
+  EXPECT_EQ(Run({"models"}), kExitDone);
+  EXPECT_EQ(out_.str(),
+            "sbu/3  served (outdated: the files on disk were refused), default\n"
+            "    weights: 7 bytes, wanted 9\n"
+            "problem: access file: empty\n");
 }
 
 TEST_F(AdminCommandTest, LoadsAndShowsWhatCameOfIt) {

@@ -25,6 +25,7 @@ using test::WriteTestFile;
 
 using ::testing::AllOf;
 using ::testing::ContainsRegex;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::Pair;
@@ -166,7 +167,7 @@ TEST(ParseCommandLineTest, CleanUpIsOneOfThreeNames) {
   EXPECT_EQ(Parse({"--clean-up", "on"})->config.clean_up(), v1::CLEAN_UP_POLICY_ON);
   EXPECT_THAT(
       Parse({"--clean-up", "maybe"}),
-      StatusIs(kInvalidArgument, HasSubstr("--clean-up: is maybe, wanted auto, on or off")));
+      StatusIs(kInvalidArgument, HasSubstr("--clean-up: expected auto, on or off, got \"maybe\"")));
 }
 
 TEST(ParseCommandLineTest, HelpNamesEveryFieldOfTheSchema) {
@@ -206,11 +207,11 @@ TEST(ParseCommandLineTest, OldNamesOfFlagsStillWorkButDoNotShow) {
   EXPECT_EQ(line->config.model_repository(), "/my_models/--max_calls");
   EXPECT_THAT(Parse({"--no_such_flag", "4"}),
               StatusIs(kInvalidArgument, HasSubstr("--no-such-flag")));
-  EXPECT_THAT(Parse({"4", "--max_cals", "4"}),
+  EXPECT_THAT(Parse({"--max_cals", "4"}),
               StatusIs(kInvalidArgument,
                        "--max-cals: there is no such flag; did you mean "
                        "--max-calls?"));
-  EXPECT_THAT(Parse({"serve"}), StatusIs(kInvalidArgument, "came \"serve\", wanted flags alone"));
+  EXPECT_THAT(Parse({"serve"}), StatusIs(kInvalidArgument, "expected flags only, got \"serve\""));
   EXPECT_THAT(*Parse({"--help"})->print, Not(ContainsRegex("--[a-z]+_")));
 }
 
@@ -254,6 +255,36 @@ TEST(ParseCommandLineTest, NamesAFlagThatIsWrong) {
                 StatusIs(kInvalidArgument, HasSubstr("model=latest:2")))
         << policy;
   }
+}
+
+TEST(ParseCommandLineTest, EveryFlagThatIsWrongIsReportedAndTheOthersCount) {
+  const std::vector<const char*> argv = {
+      "duet-server",     "stray", "--workers",       "two", "--max-calls=x",
+      "--grace-seconds", "soon",  "--prot",          "7",   "--no-reflection",
+      "--clean-up",      "maybe", "--drain-seconds", "-2",  "--listen"};
+  const CommandLine line =
+      ParseCommandLine(static_cast<int>(argv.size()), argv.data(),
+                       {{"DUET_SERVER_WORKERS", "1.5"}, {"DUET_SERVER_ENGINE", "gpu"}});
+  EXPECT_THAT(
+      line.errors,
+      ElementsAre("expected flags only, got \"stray\"",
+                  "--workers: expected a whole number of 0 or more, got \"two\"",
+                  "--max-calls: expected a whole number of 0 or more, got \"x\"",
+                  "--grace-seconds: expected a number, got \"soon\"",
+                  StartsWith("--prot: there is no such flag"),
+                  "--clean-up: expected auto, on or off, got \"maybe\"",
+                  "--listen: expected a value, got none",
+                  "DUET_SERVER_ENGINE: expected cpu or torch, got \"gpu\"",
+                  "DUET_SERVER_WORKERS: expected a whole number of 0 or more, got \"1.5\""));
+  EXPECT_EQ(line.config.drain_seconds(), -2);
+  EXPECT_FALSE(line.config.reflection());
+  EXPECT_THAT(ReadSettings(line, 4).mistakes,
+              testing::Contains("drain_seconds: expected 0 to 3600, got -2 (command line)"));
+}
+
+TEST(ParseCommandLineTest, AFlagThatIsRepeatedIsReported) {
+  EXPECT_THAT(Parse({"--workers", "1", "--workers", "2"}),
+              StatusIs(kInvalidArgument, HasSubstr("--workers")));
 }
 
 TEST(ParseCommandLineTest, VariablesCountWhereNoFlagDoesAndBeforeTheFile) {
@@ -327,9 +358,9 @@ TEST(ToOptionsTest, TellsAllThatIsWrongAnywhereAndWhereItComesFrom) {
       StatusIs(kInvalidArgument,
                AllOf(HasSubstr("DUET_SERVER_DRAIN_SECONDS: "),
                      HasSubstr("a.json: line 2:3: there is no field \"prot\""),
-                     HasSubstr("\nmax_calls: is 0, wanted 1 to 100000 (file " + file + ":3:3)"),
-                     HasSubstr("\nworkers: is 0, wanted 1 to 1024 (command line)"),
-                     HasSubstr("\ngrace_seconds: is -1, wanted 0 to 3600 (environment "
+                     HasSubstr("\nmax_calls: expected 1 to 100000, got 0 (file " + file + ":3:3)"),
+                     HasSubstr("\nworkers: expected 1 to 1024, got 0 (command line)"),
+                     HasSubstr("\ngrace_seconds: expected 0 to 3600, got -1 (environment "
                                "DUET_SERVER_GRACE_SECONDS)"))));
 }
 

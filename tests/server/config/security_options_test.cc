@@ -77,23 +77,26 @@ TEST_P(BadSecurityTest, IsRefusedByName) {
 INSTANTIATE_TEST_SUITE_P(
     Every, BadSecurityTest,
     ::testing::Values(
-        BadConfig{"tls_key_file: is empty, wanted",
+        BadConfig{"tls_key_file: expected a file beside tls_certificate_file, got none",
                   [](v1::ServerConfig& c) { c.set_tls_certificate_file("/c"); }},
-        BadConfig{"tls_certificate_file: is empty, wanted",
+        BadConfig{"tls_certificate_file: expected a file beside tls_key_file, got none",
                   [](v1::ServerConfig& c) { c.set_tls_key_file("/k"); }},
-        BadConfig{"tls_client_ca_file: needs tls_certificate_file",
+        BadConfig{"tls_client_ca_file: expected tls_certificate_file",
                   [](v1::ServerConfig& c) { c.set_tls_client_ca_file("/a"); }},
-        BadConfig{"log_format: is 0, wanted LOG_FORMAT_JSON",
+        BadConfig{"log_format: expected LOG_FORMAT_JSON or LOG_FORMAT_TEXT, got 0",
                   [](v1::ServerConfig& c) { c.set_log_format(v1::LOG_FORMAT_UNSPECIFIED); }},
-        BadConfig{"log_level: is 0, wanted LOG_LEVEL_INFO",
+        BadConfig{"log_level: expected LOG_LEVEL_INFO, LOG_LEVEL_WARNING or LOG_LEVEL_ERROR, got 0",
                   [](v1::ServerConfig& c) { c.set_log_level(v1::LOG_LEVEL_UNSPECIFIED); }},
-        BadConfig{"log_level: is 9, wanted LOG_LEVEL_INFO",
+        BadConfig{"log_level: expected LOG_LEVEL_INFO, LOG_LEVEL_WARNING or LOG_LEVEL_ERROR, got 9",
                   [](v1::ServerConfig& c) { c.set_log_level(static_cast<v1::LogLevel>(9)); }},
-        BadConfig{"log_success_ratio: is 1.5, wanted 0 to 1",
+        BadConfig{"log_success_ratio: expected 0 to 1, got 1.5",
                   [](v1::ServerConfig& c) { c.set_log_success_ratio(1.5); }},
-        BadConfig{"log_refusals_per_second: is 1000001, wanted 0 to 1000000",
+        BadConfig{"log_refusals_per_second: expected 0 to 1000000, got 1000001",
                   [](v1::ServerConfig& c) { c.set_log_refusals_per_second(1000001); }},
-        BadConfig{"trace_ratio: is nan, wanted 0 to 1", [](v1::ServerConfig& c) {
+        BadConfig{"otlp_endpoint: expected http://HOST:PORT or https://HOST:PORT, got "
+                  "\"ftp://x\"",
+                  [](v1::ServerConfig& c) { c.set_otlp_endpoint("ftp://x"); }},
+        BadConfig{"trace_ratio: expected 0 to 1, got nan", [](v1::ServerConfig& c) {
                     c.set_trace_ratio(std::numeric_limits<double>::quiet_NaN());
                   }}));
 

@@ -153,115 +153,80 @@ TEST_P(BadConfigTest, IsRefusedByName) {
   EXPECT_THAT(ToOptions(config, 4), StatusIs(kInvalidArgument, HasSubstr(GetParam().message)));
 }
 
-INSTANTIATE_TEST_SUITE_P(Every, BadConfigTest,
-                         ::testing::
-                             Values(BadConfig{"listen: is \"50051\", wanted host:port",
-                                              [](v1::ServerConfig& c) { c.set_listen("50051"); }},
-                                    BadConfig{
-                                        "metrics_listen: is \"a:b\", wanted host:port",
-                                        [](v1::ServerConfig& c) { c.set_metrics_listen("a:b"); }},
-                                    BadConfig{"workers: is 0, wanted 1 to 1024",
-                                              [](v1::ServerConfig& c) { c.set_workers(0); }},
-                                    BadConfig{"threads_per_worker: is 5000, wanted 1 to 1024",
-                                              [](v1::ServerConfig& c) {
-                                                c.set_threads_per_worker(5000);
-                                              }},
-                                    BadConfig{
-                                        "threads_per_worker: is 3, wanted 1 with ENGINE_CPU",
-                                        [](v1::ServerConfig& c) { c.set_threads_per_worker(3); }},
-                                    BadConfig{"engine: is 0, wanted ENGINE_CPU or ENGINE_TORCH",
-                                              [](v1::ServerConfig& c) {
-                                                c.set_engine(v1::ENGINE_UNSPECIFIED);
-                                              }},
-                                    BadConfig{"precision: is 9, wanted PRECISION_AUTO, "
-                                              "PRECISION_F32 or PRECISION_BF16",
-                                              [](v1::ServerConfig& c) {
-                                                c.set_precision(static_cast<v1::Precision>(9));
-                                              }},
-                                    BadConfig{"precision: is PRECISION_BF16, wanted PRECISION_F32 "
-                                              "with ENGINE_TORCH",
-                                              [](v1::ServerConfig& c) {
-                                                c.set_engine(v1::ENGINE_TORCH);
-                                                c.set_precision(v1::PRECISION_BF16);
-                                              }},
-                                    BadConfig{"max_calls: is 0, wanted 1",
-                                              [](v1::ServerConfig& c) { c.set_max_calls(0); }},
-                                    BadConfig{
-                                        "max_queued_windows: is 0, wanted 1",
-                                        [](v1::ServerConfig& c) { c.set_max_queued_windows(0); }},
-                                    BadConfig{
-                                        "max_batch_windows: is 0, wanted 1 to 1024",
-                                        [](v1::ServerConfig& c) { c.set_max_batch_windows(0); }},
-                                    BadConfig{
-                                        "max_batch_windows: is 1025, wanted 1 to 1024",
-                                        [](v1::ServerConfig& c) { c.set_max_batch_windows(1025); }},
-                                    BadConfig{"max_batch_delay_seconds: is -0.5, wanted 0 to 1",
-                                              [](v1::ServerConfig& c) {
-                                                c.set_max_batch_delay_seconds(-0.5);
-                                              }},
-                                    BadConfig{"max_batch_delay_seconds: is 1.5, wanted 0 to 1",
-                                              [](v1::ServerConfig& c) {
-                                                c.set_max_batch_delay_seconds(1.5);
-                                              }},
-                                    BadConfig{
-                                        "max_request_bytes: is 10, wanted 1024",
-                                        [](v1::ServerConfig& c) { c.set_max_request_bytes(10); }},
-                                    BadConfig{"max_request_bytes: is 4294967296, wanted 1024",
-                                              [](v1::ServerConfig& c) {
-                                                c.set_max_request_bytes(uint64_t{1} << 32);
-                                              }},
-                                    BadConfig{
-                                        "max_request_bytes: is 536870913, wanted 1024 to 536870912",
-                                        [](v1::ServerConfig& c) {
-                                          c.set_max_request_bytes((uint64_t{1} << 29) + 1);
-                                        }},
-                                    BadConfig{
-                                        "max_transport_bytes: is 67108863, wanted 67108864 to",
-                                        [](v1::ServerConfig& c) {
-                                          c.set_max_transport_bytes((64 << 20) - 1);
-                                        }},
-                                    BadConfig{
-                                        "buffered_frames: is 0, wanted 1",
-                                        [](v1::ServerConfig& c) { c.set_buffered_frames(0); }},
-                                    BadConfig{"drain_seconds: is -1, wanted 0 to 3600",
-                                              [](v1::ServerConfig& c) { c.set_drain_seconds(-1); }},
-                                    BadConfig{"grace_seconds: is nan, wanted 0 to 3600",
-                                              [](v1::ServerConfig& c) {
-                                                c.set_grace_seconds(
-                                                    std::numeric_limits<double>::quiet_NaN());
-                                              }},
-                                    BadConfig{"clean_up: is 0, wanted CLEAN_UP_POLICY_AUTO",
-                                              [](v1::ServerConfig& c) {
-                                                c.set_clean_up(v1::CLEAN_UP_POLICY_UNSPECIFIED);
-                                              }},
-                                    BadConfig{"clean_up: is 9, wanted CLEAN_UP_POLICY_AUTO",
-                                              [](v1::ServerConfig& c) {
-                                                c.set_clean_up(static_cast<v1::CleanUpPolicy>(9));
-                                              }},
-                                    BadConfig{"admin_listen: is \"b\", wanted host:port",
-                                              [](v1::ServerConfig& c) { c.set_admin_listen("b"); }},
-                                    BadConfig{
-                                        "version_policies[0]: has no model",
-                                        [](v1::ServerConfig& c) { c.add_version_policies(); }},
-                                    BadConfig{"version_policies[1]: is the second of model \"a\"",
-                                              [](v1::ServerConfig& c) {
-                                                c.add_version_policies()->set_model("a");
-                                                c.add_version_policies()->set_model("a");
-                                              }},
-                                    BadConfig{"version_policies[0]: has both latest and versions",
-                                              [](v1::ServerConfig& c) {
-                                                c.add_version_policies()->set_model("a");
-                                                c.mutable_version_policies(0)->set_latest(1);
-                                                c.mutable_version_policies(0)->add_versions(1);
-                                              }},
-                                    BadConfig{"version_policies[0]: has a 0",
-                                              [](v1::ServerConfig& c) {
-                                                c.add_version_policies()->set_model("*");
-                                                c.mutable_version_policies(0)->set_latest(0);
-                                              }},
-                                    BadConfig{
-                                        "version_labels[0]: is model \"\"",
-                                        [](v1::ServerConfig& c) { c.add_version_labels(); }}));
+INSTANTIATE_TEST_SUITE_P(
+    Every, BadConfigTest,
+    ::testing::Values(
+        BadConfig{"listen: expected host:port", [](v1::ServerConfig& c) { c.set_listen("50051"); }},
+        BadConfig{"metrics_listen: expected host:port",
+                  [](v1::ServerConfig& c) { c.set_metrics_listen("a:b"); }},
+        BadConfig{"workers: expected 1 to 1024, got 0",
+                  [](v1::ServerConfig& c) { c.set_workers(0); }},
+        BadConfig{"threads_per_worker: expected 1 to 1024, got 5000",
+                  [](v1::ServerConfig& c) { c.set_threads_per_worker(5000); }},
+        BadConfig{"threads_per_worker: expected 1 with ENGINE_CPU, got 3; its",
+                  [](v1::ServerConfig& c) { c.set_threads_per_worker(3); }},
+        BadConfig{"engine: expected ENGINE_CPU or ENGINE_TORCH, got 0",
+                  [](v1::ServerConfig& c) { c.set_engine(v1::ENGINE_UNSPECIFIED); }},
+        BadConfig{"precision: expected PRECISION_AUTO, PRECISION_F32 or PRECISION_BF16, got 9",
+                  [](v1::ServerConfig& c) { c.set_precision(static_cast<v1::Precision>(9)); }},
+        BadConfig{"precision: expected PRECISION_F32 with ENGINE_TORCH, got PRECISION_BF16",
+                  [](v1::ServerConfig& c) {
+                    c.set_engine(v1::ENGINE_TORCH);
+                    c.set_precision(v1::PRECISION_BF16);
+                  }},
+        BadConfig{"max_calls: expected 1 to 100000, got 0",
+                  [](v1::ServerConfig& c) { c.set_max_calls(0); }},
+        BadConfig{"max_queued_windows: expected 1 to 100000, got 0",
+                  [](v1::ServerConfig& c) { c.set_max_queued_windows(0); }},
+        BadConfig{"max_batch_windows: expected 1 to 1024, got 0",
+                  [](v1::ServerConfig& c) { c.set_max_batch_windows(0); }},
+        BadConfig{"max_batch_windows: expected 1 to 1024, got 1025",
+                  [](v1::ServerConfig& c) { c.set_max_batch_windows(1025); }},
+        BadConfig{"max_batch_delay_seconds: expected 0 to 1, got -0.5",
+                  [](v1::ServerConfig& c) { c.set_max_batch_delay_seconds(-0.5); }},
+        BadConfig{"max_batch_delay_seconds: expected 0 to 1, got 1.5",
+                  [](v1::ServerConfig& c) { c.set_max_batch_delay_seconds(1.5); }},
+        BadConfig{"max_request_bytes: expected 1024 to 536870912, got 10",
+                  [](v1::ServerConfig& c) { c.set_max_request_bytes(10); }},
+        BadConfig{"max_request_bytes: expected 1024 to 536870912, got 4294967296",
+                  [](v1::ServerConfig& c) { c.set_max_request_bytes(uint64_t{1} << 32); }},
+        BadConfig{"max_request_bytes: expected 1024 to 536870912, got 536870913",
+                  [](v1::ServerConfig& c) { c.set_max_request_bytes((uint64_t{1} << 29) + 1); }},
+        BadConfig{"max_transport_bytes: expected 67108864 to 1099511627776, got 67108863",
+                  [](v1::ServerConfig& c) { c.set_max_transport_bytes((64 << 20) - 1); }},
+        BadConfig{"buffered_frames: expected 1 to 1000000, got 0",
+                  [](v1::ServerConfig& c) { c.set_buffered_frames(0); }},
+        BadConfig{"drain_seconds: expected 0 to 3600, got -1",
+                  [](v1::ServerConfig& c) { c.set_drain_seconds(-1); }},
+        BadConfig{"grace_seconds: expected 0 to 3600, got nan",
+                  [](v1::ServerConfig&
+                         c) { c.set_grace_seconds(std::numeric_limits<double>::quiet_NaN()); }},
+        BadConfig{"clean_up: expected CLEAN_UP_POLICY_AUTO",
+                  [](v1::ServerConfig& c) { c.set_clean_up(v1::CLEAN_UP_POLICY_UNSPECIFIED); }},
+        BadConfig{"clean_up: expected CLEAN_UP_POLICY_AUTO",
+                  [](v1::ServerConfig& c) { c.set_clean_up(static_cast<v1::CleanUpPolicy>(9)); }},
+        BadConfig{"admin_listen: expected host:port",
+                  [](v1::ServerConfig& c) { c.set_admin_listen("b"); }},
+        BadConfig{"version_policies[0]: expected a model's name",
+                  [](v1::ServerConfig& c) { c.add_version_policies(); }},
+        BadConfig{"version_policies[1]: expected one policy for each model",
+                  [](v1::ServerConfig& c) {
+                    c.add_version_policies()->set_model("a");
+                    c.add_version_policies()->set_model("a");
+                  }},
+        BadConfig{"version_policies[0]: expected either latest or versions, got both",
+                  [](v1::ServerConfig& c) {
+                    c.add_version_policies()->set_model("a");
+                    c.mutable_version_policies(0)->set_latest(1);
+                    c.mutable_version_policies(0)->add_versions(1);
+                  }},
+        BadConfig{"version_policies[0]: expected numbers of 1 or more, got 0",
+                  [](v1::ServerConfig& c) {
+                    c.add_version_policies()->set_model("*");
+                    c.mutable_version_policies(0)->set_latest(0);
+                  }},
+        BadConfig{"version_labels[0]: expected a model, a label",
+                  [](v1::ServerConfig& c) { c.add_version_labels(); }}));
 
 TEST(ServerOptionsTest, TellsEveryFieldThatIsWrong) {
   v1::ServerConfig config;
@@ -271,23 +236,76 @@ TEST(ServerOptionsTest, TellsEveryFieldThatIsWrong) {
   EXPECT_THAT(ToOptions(config, 4, {{"max_calls", "file a:1:2"}}),
               StatusIs(kInvalidArgument,
                        AllOf(HasSubstr("listen: "),
-                             HasSubstr("\nmax_calls: is 0, wanted 1 to 100000 (file a:1:2)\n"),
-                             HasSubstr("\ndrain_seconds: is -1"))));
+                             HasSubstr("\nmax_calls: expected 1 to 100000, got 0 (file a:1:2)\n"),
+                             HasSubstr("\ndrain_seconds: expected 0 to 3600, got -1"))));
+}
+
+v1::ServerConfig Listeners(const std::string& grpc, const std::string& metrics,
+                           const std::string& admin) {
+  v1::ServerConfig config;
+  config.set_listen(grpc);
+  config.set_metrics_listen(metrics);
+  config.set_admin_listen(admin);
+  return config;
+}
+
+TEST(ServerOptionsTest, ListenersHaveDifferentPorts) {
+  for (const auto& good :
+       {Listeners(":1", ":2", ":3"), Listeners(":0", ":0", ":0"),
+        Listeners("127.0.0.1:1", "127.0.0.2:1", "[::1]:1"), Listeners(":1", "off", ""),
+        Listeners("localhost:1", "127.0.0.2:1", "")}) {
+    EXPECT_THAT(ToOptions(good, 4), IsOk()) << good.ShortDebugString();
+  }
+  for (const auto& bad :
+       {Listeners(":1", ":1", ""), Listeners(":1", "127.0.0.1:1", ""),
+        Listeners("127.0.0.1:1", ":1", ""), Listeners("[::]:1", "10.0.0.1:1", ""),
+        Listeners("localhost:1", "127.0.0.1:1", ""), Listeners("[::1]:1", "localhost:1", "")}) {
+    EXPECT_THAT(ToOptions(bad, 4),
+                StatusIs(kInvalidArgument,
+                         AllOf(HasSubstr("metrics_listen: expected another port than listen, got "),
+                               HasSubstr("; listen is "))))
+        << bad.ShortDebugString();
+  }
+  EXPECT_THAT(ToOptions(Listeners(":9464", "", ":9464"), 4, {{"admin_listen", "command line"}}),
+              StatusIs(kInvalidArgument,
+                       "admin_listen: expected another port than listen, got 0.0.0.0:9464 (command "
+                       "line); listen is 0.0.0.0:9464; port 0 is any free one, \"off\" none"));
+  EXPECT_THAT(
+      ToOptions(Listeners(":7", ":7", ":7"), 4),
+      StatusIs(kInvalidArgument,
+               AllOf(HasSubstr("metrics_listen: expected another port than listen"),
+                     HasSubstr("\nadmin_listen: expected another port than listen"),
+                     HasSubstr("\nadmin_listen: expected another port than metrics_listen"))));
+  v1::ServerConfig only_grpc;
+  only_grpc.set_listen("0.0.0.0:9464");
+  EXPECT_THAT(ToOptions(only_grpc, 4), StatusIs(kInvalidArgument, HasSubstr("metrics_listen: ")))
+      << "the default";
+}
+
+TEST(ServerOptionsTest, AClientKeyIsAKeyOfMetadata) {
+  v1::ServerConfig config;
+  config.set_client_key("x-client_1.a");
+  EXPECT_THAT(ToOptions(config, 4), IsOk());
+  for (const char* bad : {"X-Client", "x client", "x:client", "client-bin"}) {
+    config.set_client_key(bad);
+    EXPECT_THAT(ToOptions(config, 4),
+                StatusIs(kInvalidArgument, HasSubstr("client_key: expected")));
+  }
 }
 
 TEST(ServerOptionsTest, RefusesMoreThreadsThanCoresCanMakeUseOf) {
   v1::ServerConfig config;
   config.set_workers(33);
   EXPECT_THAT(ToOptions(config, 2),
-              StatusIs(kInvalidArgument, "workers: is 33, wanted 1 to 32 on 2 cores"));
+              StatusIs(kInvalidArgument, "workers: expected 1 to 32 on 2 cores, got 33"));
   EXPECT_THAT(ToOptions(config, 9), IsOk());
   config.set_engine(v1::ENGINE_TORCH);
   config.set_workers(2);
   config.set_threads_per_worker(1024);
   EXPECT_THAT(ToOptions(config, 2),
               StatusIs(kInvalidArgument,
-                       "threads_per_worker: is 1024, wanted 1 to 16 with 2 workers: together at "
-                       "most 32 threads on 2 cores"));
+                       "threads_per_worker: expected 1 to 16 with 2 workers, got 1024; together "
+                       "they may have 32 threads on 2 cores"));
   config.set_threads_per_worker(16);
   EXPECT_THAT(ToOptions(config, 2), IsOk());
 }

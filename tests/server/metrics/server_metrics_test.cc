@@ -212,6 +212,8 @@ TEST(ServerMetricsTest, TellsOfCertificatesAndSpansWhereThereAreAny) {
   EXPECT_THAT(text, HasSubstr("duet_spans_dropped_total 2\n"));
   EXPECT_THAT(text, HasSubstr(R"(duet_secrets_reloads_total{kind="access",outcome="taken"} 1)"));
   EXPECT_THAT(text, HasSubstr(R"(duet_secrets_reloads_total{kind="tls",outcome="refused"} 1)"));
+  EXPECT_THAT(text, HasSubstr(R"(duet_secrets_last_reload_successful{kind="access"} 1)"));
+  EXPECT_THAT(text, HasSubstr(R"(duet_secrets_last_reload_successful{kind="tls"} 0)"));
 }
 
 // The value of a metric without labels.
@@ -253,6 +255,13 @@ TEST(ServerMetricsTest, TellsWhichCheckpointsAreServed) {
   EXPECT_THAT(text, HasSubstr(R"(duet_model_load_seconds{checkpoint="sbu/3"} 1.5)"));
   EXPECT_THAT(text, HasSubstr(R"(duet_model_loads_total{result="ok"} 1)"));
   EXPECT_THAT(text, HasSubstr(R"(duet_model_loads_total{result="refused"} 1)"));
+  metrics.ModelLoaded("sbu/3", 0.1, false, true);
+  EXPECT_THAT(metrics.Render(), HasSubstr(R"(duet_model_state{checkpoint="sbu/3"} 1)"));
+  EXPECT_THAT(metrics.Render(),
+              HasSubstr(R"(duet_model_last_load_successful{checkpoint="sbu/3"} 0)"));
+  metrics.ModelLoaded("sbu/3", 1.5, true, true);
+  EXPECT_THAT(metrics.Render(),
+              HasSubstr(R"(duet_model_last_load_successful{checkpoint="sbu/3"} 1)"));
   metrics.ModelUnloaded("sbu/4");
   metrics.FoldersSkipped(2);
   metrics.Reloaded(false);

@@ -26,6 +26,7 @@ namespace fs = std::filesystem;
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 
 class Events final : public ModelObserver {
  public:
@@ -130,6 +131,61 @@ TEST_F(ModelControlTest, ReadsEverythingElseThatIsReloadableFirst) {
   EXPECT_THAT(order, ElementsAre("tokens", "certificates"));
   EXPECT_THAT(report->problems, ElementsAre("tokens: line 3"));
   EXPECT_THAT(report->loaded, ElementsAre("fake/1")) << "what failed holds up nothing";
+}
+
+TEST_F(ModelControlTest, WhatWasRefusedIsAProblemUntilItIsMended) {
+  Write("1");
+  gate_.Set();
+  ModelControl control(manager_, registry_, events_);
+  absl::Status tokens = absl::InvalidArgumentError("line 3");
+  absl::Status certificates;
+  control.AddReloadable({"tokens", [&] { return tokens; }});
+  control.AddReloadable(
+      {"certificates", [] { return absl::OkStatus(); }, [&] { return certificates; }});
+  EXPECT_THAT(control.problems(), IsEmpty()) << "not reloaded yet";
+  const auto reload = [&control] {
+    std::promise<absl::StatusOr<ReloadReport>> reloaded;
+    control.Reload([&](const auto& report) { reloaded.set_value(report); });
+    return reloaded.get_future().get()->problems;
+  };
+  EXPECT_THAT(reload(), ElementsAre("tokens: line 3"));
+  EXPECT_THAT(control.problems(), ElementsAre("tokens: line 3"));
+  certificates = absl::InvalidArgumentError("expired");
+  EXPECT_THAT(control.problems(), ElementsAre("tokens: line 3", "certificates: expired"));
+  tokens = absl::OkStatus();
+  EXPECT_THAT(reload(), ElementsAre("certificates: expired")) << "though reading it again succeeds";
+  EXPECT_THAT(control.problems(), ElementsAre("certificates: expired"));
+}
+
+TEST_F(ModelControlTest, ARepositoryThatCannotBeReadIsAProblemUntilItCan) {
+  Write("1");
+  gate_.Set();
+  ModelControl control(manager_, registry_, events_);
+  const auto reload = [&control] {
+    std::promise<absl::Status> reloaded;
+    control.Reload([&](const auto& report) { reloaded.set_value(report.status()); });
+    return reloaded.get_future().get();
+  };
+  EXPECT_THAT(reload(), IsOk());
+  fs::rename(folder_ / "fake", folder_ / ".fake");
+  EXPECT_FALSE(reload().ok());
+  EXPECT_THAT(control.problems(), ElementsAre(HasSubstr("model repository: no model")));
+  EXPECT_EQ(registry_.List().size(), 1u);
+  fs::rename(folder_ / ".fake", folder_ / "fake");
+  EXPECT_THAT(reload(), IsOk());
+  EXPECT_THAT(control.problems(), IsEmpty());
+}
+
+TEST_F(ModelControlTest, AReloadReportsNamesThatNoModelHas) {
+  Write("1");
+  gate_.Set();
+  manager_.SetPolicies({{"fak", 1, {}}});
+  ModelControl control(manager_, registry_, events_);
+  std::promise<absl::StatusOr<ReloadReport>> reloaded;
+  control.Reload([&](const auto& report) { reloaded.set_value(report); });
+  EXPECT_THAT(
+      reloaded.get_future().get()->problems,
+      ElementsAre(HasSubstr("version_policies[0].model: expected one of: fake; got \"fak\"")));
 }
 
 TEST_F(ModelControlTest, LoadsAndUnloadsOneAfterTheOther) {

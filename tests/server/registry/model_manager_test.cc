@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -44,11 +45,13 @@ absl::StatusOr<std::shared_ptr<const engine::Synthesizer>> LoadTestModel(const f
   std::string name, description;
   int version = 0;
   std::ifstream(folder / "manifest.json") >> name >> version >> description;
-  if (name == "bad") return absl::DataLossError("weights: 7 bytes, wanted 9");
+  std::string weights;
+  std::ifstream(folder / "weights.safetensors") >> weights;
+  if (name == "bad" || weights == "torn") return absl::DataLossError("weights: 7 bytes, wanted 9");
   engine::ModelDescription model = test::FakeDescription();
   model.name = name;
   model.version = version;
-  model.description = description;
+  model.description = description + weights;
   return std::make_shared<FakeSynthesizer>(model);
 }
 
@@ -80,6 +83,13 @@ class ModelManagerTest : public ::testing::Test {
     WriteTestFile(folder_ / "next", manifest);
     fs::rename(folder_ / "next", place / "manifest.json");
   }
+  // Writes its weights; "torn" ones do not load. The manifest stays. Each time is another one,
+  // however fast the test writes.
+  void WriteWeights(const std::string& place, const std::string& text) {
+    WriteTestFile(folder_ / place / "weights.safetensors", text);
+    written_ += std::chrono::seconds(1);
+    fs::last_write_time(folder_ / place / "weights.safetensors", written_);
+  }
   void Delete(const std::string& place) { fs::remove_all(folder_ / place); }
 
   ReloadReport Reload() {
@@ -110,6 +120,7 @@ class ModelManagerTest : public ::testing::Test {
     return {};
   }
 
+  fs::file_time_type written_ = fs::file_time_type::clock::now() - std::chrono::hours(1);
   TemporaryFolder folder_;
   ModelRegistry registry_;
   Events events_;
@@ -162,6 +173,109 @@ TEST_F(ModelManagerTest, ABrokenCheckpointNeverReplacesAGoodOne) {
   Reload();
   EXPECT_EQ(Answer({}), "a/1 mended");
   EXPECT_EQ(StatusOf("a", 1).error, "");
+}
+
+TEST_F(ModelManagerTest, ReplacesAVersionWhoseWeightsAloneHaveChanged) {
+  Write("a", 1);
+  WriteWeights("a/1", "+old");
+  Reload();
+  WriteWeights("a/1", "+new");
+  EXPECT_THAT(Reload().loaded, ElementsAre("a/1"));
+  EXPECT_EQ(Answer({}), "a/1 first+new");
+}
+
+TEST_F(ModelManagerTest, ACopyOfTheSameFilesIsNotLoadedAgain) {
+  Write("a", 1);
+  WriteWeights("a/1", "+old");
+  Reload();
+  events_.Take();
+  Write("a", 1);
+  WriteWeights("a/1", "+old");
+  EXPECT_EQ(Reload().unchanged, 1);
+  EXPECT_THAT(events_.Take(), IsEmpty());
+}
+
+TEST_F(ModelManagerTest, TornWeightsMakeAServedVersionOutdatedUntilTheyAreMended) {
+  Write("a", 1);
+  WriteWeights("a/1", "+old");
+  Reload();
+  events_.Take();
+  WriteWeights("a/1", "torn");
+  EXPECT_THAT(Reload().refused, ElementsAre("a/1"));
+  EXPECT_EQ(Answer({}), "a/1 first+old");
+  EXPECT_TRUE(StatusOf("a", 1).outdated);
+  EXPECT_EQ(StatusOf("a", 1).error, "weights: 7 bytes, wanted 9");
+  WriteWeights("a/1", "+old");
+  EXPECT_THAT(Reload().loaded, ElementsAre("a/1")) << "loaded again, though they are the old ones";
+  EXPECT_FALSE(StatusOf("a", 1).outdated);
+  EXPECT_EQ(StatusOf("a", 1).error, "");
+  EXPECT_THAT(events_.Take(), ElementsAre("refused a/1, served on", "loaded a/1"));
+}
+
+TEST_F(ModelManagerTest, TheErrorOfARefusedLoadGoesWithTheNextGoodOne) {
+  Write("a", 1);
+  Reload();
+  WriteWeights("a/1", "torn");
+  EXPECT_FALSE(manager_.Load("a", 1).ok());
+  EXPECT_TRUE(StatusOf("a", 1).outdated);
+  Delete("a/1/weights.safetensors");
+  Reload();
+  EXPECT_EQ(StatusOf("a", 1).error, "");
+  EXPECT_FALSE(StatusOf("a", 1).outdated);
+}
+
+TEST_F(ModelManagerTest, AnOutdatedVersionThatGoesIsUnloadedAndNotFailed) {
+  Write("a", 1);
+  Write("a", 2);
+  Reload();
+  WriteWeights("a/1", "torn");
+  Reload();
+  EXPECT_THAT(manager_.Unload("a", 1), IsOk());
+  EXPECT_EQ(StatusOf("a", 1).state, ModelState::kUnloaded);
+  EXPECT_EQ(StatusOf("a", 1).error, "");
+  EXPECT_FALSE(StatusOf("a", 1).outdated);
+  WriteWeights("a/2", "torn");
+  manager_.SetPolicies({{"a", {}, {1}}});
+  EXPECT_FALSE(manager_.Load("a", 2).ok());
+  WriteWeights("a/1", "+whole");
+  EXPECT_THAT(manager_.Load("a", 1), IsOk());
+  Reload();
+  EXPECT_EQ(StatusOf("a", 2).state, ModelState::kUnloaded);
+  EXPECT_EQ(StatusOf("a", 2).error, "");
+}
+
+// Files that change while they are read: nobody knows which content was loaded.
+TEST_F(ModelManagerTest, FilesThatChangeDuringALoadAreLoadedAgain) {
+  Write("a", 1);
+  WriteWeights("a/1", "+old");
+  bool first = true;
+  manager_.UseRepository(folder_.path(), [&](const fs::path& place) {
+    if (std::exchange(first, false)) {
+      WriteWeights("a/1", "+new");
+      auto loaded = LoadTestModel(place);
+      WriteWeights("a/1", "+old");
+      return loaded;
+    }
+    return LoadTestModel(place);
+  });
+  Reload();
+  EXPECT_EQ(Answer({}), "a/1 first+new");
+  EXPECT_THAT(Reload().loaded, ElementsAre("a/1"));
+  EXPECT_EQ(Answer({}), "a/1 first+old");
+}
+
+TEST_F(ModelManagerTest, NamesOfTheConfigurationThatNoModelHasAreReported) {
+  Write("first", 1);
+  Write("second", 1);
+  manager_.SetLabels({{"first", "stable", 1}, {"firs", "canary", 1}});
+  manager_.SetPolicies({{"", 1, {}}, {"third", 1, {}}});
+  Reload();
+  EXPECT_THAT(
+      manager_.UnknownNames(),
+      ElementsAre("version_labels[1].model: expected one of: first, second; got \"firs\"; did you "
+                  "mean first?",
+                  testing::StartsWith("version_policies[1].model: expected one of: first, second; "
+                                      "got \"third\"")));
 }
 
 TEST_F(ModelManagerTest, TriesAgainWhatDidNotLoad) {

@@ -17,6 +17,7 @@ using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
+using ::testing::StartsWith;
 
 constexpr auto kInvalid = absl::StatusCode::kInvalidArgument;
 const std::string kDigestA(64, 'a');
@@ -52,7 +53,36 @@ TEST(AccessListTest, ADigestMayBeInCapitals) {
   EXPECT_THAT(callers->front().token_digests, ElementsAre(std::string(64, 'f')));
 }
 
-TEST(AccessListTest, NobodyIsAListAsWell) { EXPECT_THAT(Parse("# closed\n"), IsOk()); }
+TEST(AccessListTest, AListOfNobodyIsAMistake) {
+  for (const char* text : {"", "\n", "# closed\n"}) {
+    EXPECT_THAT(Parse(text), StatusIs(kInvalid, StartsWith("access: expected at least one caller, "
+                                                           "got none; ")))
+        << text;
+  }
+}
+
+TEST(AccessListTest, EveryLineThatIsWrongIsReported) {
+  const std::string good = absl::StrCat(" synthesise sha256:", kDigestA, "\n");
+  EXPECT_THAT(Parse(absl::StrCat("a\nb dance cert:b\n", "c", good, "c", good)),
+              StatusIs(kInvalid, AllOf(StartsWith("access:1: expected a name"),
+                                       HasSubstr("\naccess:2: expected the role synthesise"),
+                                       HasSubstr("\naccess:4: expected each name once, got \"c\""),
+                                       Not(HasSubstr("access:3:")))));
+  std::string many;
+  for (int i = 0; i < 100; ++i) many += "nonsense\n";
+  EXPECT_THAT(Parse(many), StatusIs(kInvalid, AllOf(HasSubstr("\naccess:20: "),
+                                                    Not(HasSubstr("\naccess:21: ")))));
+}
+
+TEST(AccessListTest, CertificateNamesNeedAnAuthorityOfClients) {
+  const std::string text =
+      absl::StrCat("a synthesise sha256:", kDigestA, "\n", "b synthesise cert:b.example\n");
+  EXPECT_THAT(ParseAccessList(text, "access", {/*certificates=*/true}), IsOk());
+  EXPECT_THAT(ParseAccessList(text, "access", {/*certificates=*/false}),
+              StatusIs(kInvalid,
+                       "access:2: expected no cert: without tls_client_ca_file, got "
+                       "\"cert:b.example\"; set tls_client_ca_file, or give b a token"));
+}
 
 TEST(AccessListTest, EveryMistakeNamesItsLine) {
   const std::string good = absl::StrCat(" synthesise sha256:", kDigestA);
@@ -61,26 +91,28 @@ TEST(AccessListTest, EveryMistakeNamesItsLine) {
                 StatusIs(kInvalid, AllOf(HasSubstr("access:2: "), HasSubstr(why))))
         << line;
   };
-  refused("a", "has 1 words");
-  refused("a synthesise", "has 2 words");
-  refused("a/b" + good, "the name is \"a/b\"");
+  refused("a", "got 1 word");
+  refused("a synthesise", "got 2 words");
+  refused("a/b" + good, "got \"a/b\"");
   refused(std::string(65, 'a') + good, "1 to 64");
-  refused(absl::StrCat("a reader sha256:", kDigestA), "a role is \"reader\"");
-  refused(absl::StrCat("a synthesise, sha256:", kDigestA), "a role is \"\"");
-  refused("a synthesise calls_per_second=3", "known by nothing");
-  refused("a synthesise cert:", "none of");
-  refused("a" + good + " quota=3", "none of");
+  refused(absl::StrCat("a reader sha256:", kDigestA),
+          "expected the role synthesise, admin or both with a comma between them, got \"reader\"");
+  refused(absl::StrCat("a synthesise, sha256:", kDigestA), "got \"\"");
+  refused("a synthesise calls_per_second=3",
+          "expected sha256:DIGEST or cert:NAME for a, got neither");
+  refused("a synthesise cert:", "another word");
+  refused("a" + good + " quota=3", "another word");
   for (const char* rate : {"0", "-1", "nan", "inf", "many", "", "1000001"}) {
-    refused(absl::StrCat("a", good, " calls_per_second=", rate), "calls_per_second is");
+    refused(absl::StrCat("a", good, " calls_per_second=", rate), "expected calls_per_second as");
   }
   for (const char* frames : {"0", "-1", "1.5", "", "9999999999"}) {
-    refused(absl::StrCat("a", good, " frames_in_flight=", frames), "frames_in_flight is");
+    refused(absl::StrCat("a", good, " frames_in_flight=", frames), "expected frames_in_flight as");
   }
 }
 
 TEST(AccessListTest, ATokenTakenForItsDigestIsNotRepeated) {
   EXPECT_THAT(Parse("a synthesise sha256:hunter2"),
-              StatusIs(kInvalid, AllOf(HasSubstr("has 7 characters"), Not(HasSubstr("hunter2")))));
+              StatusIs(kInvalid, AllOf(HasSubstr("got 7 characters"), Not(HasSubstr("hunter2")))));
   EXPECT_THAT(Parse("a synthesise hunter2"), StatusIs(kInvalid, Not(HasSubstr("hunter2"))));
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "model/base/sha256.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/test_certificate.h"
@@ -28,7 +29,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 std::string Line(const std::string& name) {
-  return absl::StrCat(name, " synthesise cert:", name, ".example\n");
+  return absl::StrCat(name, " synthesise sha256:", base::Sha256Hex(name), "\n");
 }
 
 class SecretFilesTest : public ::testing::Test {
@@ -51,7 +52,7 @@ class SecretFilesTest : public ::testing::Test {
     WritePair(first_);
   }
   bool Knows(const std::string& name) const {
-    return files_->access()->Decide({false, "", {name + ".example"}}, Role::kSynthesise).answer ==
+    return files_->access()->Decide({true, base::Sha256Hex(name), {}}, Role::kSynthesise).answer ==
            AccessControl::Answer::kAllowed;
   }
   std::string Shown() const {
@@ -76,12 +77,54 @@ TEST_F(SecretFilesTest, WhatMakesNoSenseIsRefusedAtTheStart) {
   UseAccess("nonsense");
   EXPECT_THAT(Open(), StatusIs(absl::StatusCode::kInvalidArgument,
                                AllOf(HasSubstr("access_file: "), HasSubstr("access:1: "))));
-  UseAccess("");
-  UseTls();
-  WriteTestFile(folder_ / "key.pem", second_.private_key);
-  EXPECT_THAT(Open(), StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("tls_key_file: ")));
   options_.access = folder_ / "none";
   EXPECT_THAT(Open(), StatusIs(absl::StatusCode::kNotFound, HasSubstr("access_file: ")));
+}
+
+TEST_F(SecretFilesTest, EveryMistakeIsReportedAtTheStart) {
+  UseAccess("# nobody\n");
+  UseTls();
+  WriteTestFile(folder_ / "key.pem", second_.private_key);
+  options_.tls.client_ca = folder_ / "ca.pem";
+  WriteTestFile(options_.tls.client_ca, "nonsense");
+  EXPECT_THAT(Open(),
+              StatusIs(absl::StatusCode::kInvalidArgument,
+                       AllOf(HasSubstr("tls_key_file: "), HasSubstr("\ntls_client_ca_file: "),
+                             HasSubstr("\naccess_file: "),
+                             HasSubstr("expected at least one caller, got none"))));
+  options_.tls = {folder_ / "no.pem", folder_ / "no.key", folder_ / "no.ca"};
+  EXPECT_THAT(Open(), StatusIs(absl::StatusCode::kNotFound,
+                               AllOf(HasSubstr("tls_certificate_file: "), HasSubstr("no.key"),
+                                     HasSubstr("no.ca"))));
+}
+
+TEST_F(SecretFilesTest, AListThatIsEmptiedLeavesTheOldOne) {
+  UseAccess(Line("a"));
+  ASSERT_THAT(Open(), IsOk());
+  EXPECT_THAT(files_->state(), IsOk());
+  WriteTestFile(options_.access, "");
+  EXPECT_THAT(files_->Look(), IsEmpty()) << "it may be being written";
+  const std::vector<Reload> changes = files_->Look();
+  ASSERT_EQ(changes.size(), 1u);
+  EXPECT_THAT(changes[0].status, StatusIs(absl::StatusCode::kInvalidArgument,
+                                          HasSubstr("expected at least one caller, got none")));
+  EXPECT_TRUE(Knows("a"));
+  EXPECT_THAT(files_->Refresh(), IsEmpty()) << "reported once";
+  EXPECT_EQ(files_->state(), changes[0].status) << "but it stays refused";
+  WriteTestFile(options_.access, Line("a"));
+  ASSERT_EQ(files_->Refresh().size(), 1u);
+  EXPECT_THAT(files_->state(), IsOk());
+}
+
+TEST_F(SecretFilesTest, CertificateNamesNeedAnAuthorityOfClients) {
+  UseAccess("a synthesise cert:a.example\n");
+  EXPECT_THAT(Open(),
+              StatusIs(absl::StatusCode::kInvalidArgument,
+                       HasSubstr("access:1: expected no cert: without tls_client_ca_file")));
+  UseTls();
+  options_.tls.client_ca = folder_ / "ca.pem";
+  WriteTestFile(options_.tls.client_ca, first_.certificate);
+  EXPECT_THAT(Open(), IsOk());
 }
 
 TEST_F(SecretFilesTest, AListThatIsRewrittenCounts) {

@@ -41,7 +41,7 @@ TEST_F(TlsMaterialTest, AChainsFirstCertificateCounts) {
   material_.certificate_chain += authority_.certificate;
   EXPECT_THAT(Check(), IsOk());
   material_.certificate_chain = authority_.certificate + server_.certificate;
-  EXPECT_THAT(Check(), StatusIs(kInvalid, HasSubstr("tls_key_file: is another certificate's key")));
+  EXPECT_THAT(Check(), StatusIs(kInvalid, HasSubstr("got another certificate's key")));
 }
 
 TEST_F(TlsMaterialTest, WhatIsNoPemIsNamed) {
@@ -49,14 +49,14 @@ TEST_F(TlsMaterialTest, WhatIsNoPemIsNamed) {
     TlsMaterial material = material_;
     material.certificate_chain = nonsense;
     EXPECT_THAT(CheckTlsMaterial(material, absl::Now()),
-                StatusIs(kInvalid, HasSubstr("tls_certificate_file: holds no certificate")));
+                StatusIs(kInvalid, HasSubstr("tls_certificate_file: expected PEM")));
     material = material_;
     material.private_key = nonsense;
     EXPECT_THAT(CheckTlsMaterial(material, absl::Now()),
-                StatusIs(kInvalid, HasSubstr("tls_key_file: holds no private key")));
+                StatusIs(kInvalid, HasSubstr("tls_key_file: expected a private key in PEM")));
   }
   material_.client_authorities = "nonsense";
-  EXPECT_THAT(Check(), StatusIs(kInvalid, HasSubstr("tls_client_ca_file: holds no certificate")));
+  EXPECT_THAT(Check(), StatusIs(kInvalid, HasSubstr("tls_client_ca_file: expected PEM")));
 }
 
 TEST_F(TlsMaterialTest, ACertificateOfAnotherTimeIsRefused) {
@@ -65,7 +65,7 @@ TEST_F(TlsMaterialTest, ACertificateOfAnotherTimeIsRefused) {
     const TestCertificate other = MakeTestCertificate("duet.test", time);
     material_.certificate_chain = other.certificate;
     material_.private_key = other.private_key;
-    EXPECT_THAT(Check(), StatusIs(kInvalid, HasSubstr("wanted a certificate that is valid now")));
+    EXPECT_THAT(Check(), StatusIs(kInvalid, HasSubstr("expected a certificate that is valid now")));
   }
 }
 
@@ -86,8 +86,10 @@ TEST_F(TlsMaterialTest, AnEmptyFileOfAuthoritiesDoesNotOpenTheDoor) {
   const TemporaryFolder folder;
   for (const char* name : {"cert.pem", "key.pem"}) WriteTestFile(folder / name, "x");
   WriteTestFile(folder / "ca.pem", "");
-  EXPECT_THAT(ReadTlsMaterial({folder / "cert.pem", folder / "key.pem", folder / "ca.pem"}),
-              StatusIs(kInvalid, HasSubstr("tls_client_ca_file: is empty")));
+  EXPECT_THAT(
+      ReadTlsMaterial({folder / "cert.pem", folder / "key.pem", folder / "ca.pem"}),
+      StatusIs(kInvalid,
+               HasSubstr("tls_client_ca_file: expected PEM certificates, got an empty file")));
 }
 
 }  // namespace

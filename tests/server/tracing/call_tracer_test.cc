@@ -91,7 +91,7 @@ TEST(CallTracerTest, AnEndpointIsAUrlOfAHostAndAPort) {
   }
   for (const char* bad : {"localhost:4317", "grpc://localhost:4317", "http://", "http://a:1/v1"}) {
     EXPECT_THAT(CallTracer::Open(bad, "1"),
-                StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("otlp_endpoint: is ")))
+                StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("otlp_endpoint: expected ")))
         << bad;
   }
 }
