@@ -30,7 +30,7 @@ MOTION_FILES = ("base", "motion", "retargeting", "flat formats", "bvh format",
 MODELS = ("engine", "checkpoint", "embedded checkpoints", "network", "torch engine", "training")
 MEASURING = ("metrics", "protocol", "baselines", "judge", "experiments")
 SERVER = ("server common", "batching", "registry", "server metrics", "security", "tracing",
-          "server config", "service", "admin", "lifecycle")
+          "server config", "service", "admin", "watchdog", "lifecycle")
 
 LAYERS = (
     # The method, innermost first.
@@ -102,6 +102,7 @@ LAYERS = (
           sees=("base", "engine", "server common", "batching", "registry", "server metrics",
                 "security", "service"),
           libraries=("rpc", "prometheus")),
+    Layer("watchdog", "server/watchdog", sees=("server common",)),
     Layer("lifecycle", "server/lifecycle", sees=("base", "motion", "engine") + SERVER,
           libraries=("rpc", "prometheus")),
     Layer("server program", "server/program",

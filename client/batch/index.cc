@@ -213,9 +213,9 @@ absl::StatusOr<SetCounts> WriteIndex(const JournalReader& journal, const JobIden
   status = journal.ForEach([&writer](const JournalEntry& entry) { return writer.Add(entry); });
   if (status.ok()) status = writer.Finish(out);
   if (!status.ok()) return status;
-  status = ReplaceDurably(out / "dataset.json",
-                          DatasetJson(identity, writer.counts(), planned.count, writer.done(),
-                                      !shards.empty()));
+  status = ReplaceDurably(
+      out / "dataset.json",
+      DatasetJson(identity, writer.counts(), planned.count, writer.done(), !shards.empty()));
   if (!status.ok()) return status;
   status = ReplaceDurably(out / "summary.json", SummaryJson(identity, writer.counts(), planned));
   if (!status.ok()) return status;

@@ -57,7 +57,7 @@ struct JobReport {
   SetCounts set;        // what is in the data set now
   int64_t planned = 0;  // items that should be in it
   int64_t unfinished = 0;
-  bool packed = false;  // in shards, which leave out what failed
+  bool packed = false;                          // in shards, which leave out what failed
   std::vector<FailureCause> unfinished_causes;  // the largest; without numbers of leaders
   // Why the run ended before all items were settled; OK when it was not, or when it was asked to.
   absl::Status stopped;

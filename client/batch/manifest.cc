@@ -21,6 +21,7 @@ namespace {
 
 constexpr int kJsonDepth = 8;
 constexpr size_t kMaxLineBytes = size_t{1} << 20;
+constexpr size_t kShownBytes = 60;  // of a line, in a message
 
 // A line's columns by name, in either of the two forms; empty ones are left out.
 using Columns = std::map<std::string, std::string>;
@@ -38,9 +39,12 @@ std::string CellText(const nlohmann::json& value) {
 
 absl::StatusOr<Columns> ParseJsonLine(const std::string& line) {
   const absl::StatusOr<nlohmann::json> object = base::ParseStrictJson(line, kJsonDepth);
+  if (!object.ok() && line[0] != '{') {
+    return absl::InvalidArgumentError(absl::StrCat("line: expected a JSON object, got ",
+                                                   base::Quoted(line.substr(0, kShownBytes))));
+  }
   if (!object.ok()) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("line: expected a JSON object, got ", object.status().message()));
+    return absl::InvalidArgumentError(absl::StrCat("line: ", object.status().message()));
   }
   Columns columns;
   for (const auto& [name, value] : object->items()) {
@@ -174,16 +178,22 @@ class Manifest final : public LeaderSource {
     if (!columns.ok()) return columns.status();
     const std::string id = Take("id", &*columns);
     absl::StatusOr<LeaderEntry> entry = ToEntry(folder_, *std::move(columns));
+    // Of a bad line as well, so that another line of the same id is reported with it.
+    absl::StatusOr<std::string> key = KeyFor(id, entry.ok() ? entry->given : "");
+    if (!entry.ok() && !key.ok()) {
+      return absl::InvalidArgumentError(
+          absl::StrCat(entry.status().message(), "; ", key.status().message()));
+    }
     if (!entry.ok()) return entry;
-    absl::Status status = SetKey(id, &*entry);
-    if (!status.ok()) return status;
+    if (!key.ok()) return key.status();
+    entry->key = *std::move(key);
     entry->line = absl::StrCat(name_, ":", line_);
     return entry;
   }
 
   // An id's own key, which must differ from all others; the leader's path and the number of the
   // line otherwise, which differs of itself.
-  absl::Status SetKey(const std::string& id, LeaderEntry* entry) {
+  absl::StatusOr<std::string> KeyFor(const std::string& id, const std::filesystem::path& leader) {
     if (!has_ids_.has_value()) has_ids_ = !id.empty();
     if (*has_ids_ != !id.empty()) {
       return absl::InvalidArgumentError(
@@ -191,15 +201,10 @@ class Manifest final : public LeaderSource {
                     : "id: expected none, as on the lines before, got one");
     }
     if (id.empty()) {
-      const std::filesystem::path leader(entry->given);
-      entry->key =
-          absl::StrCat(KeyOf(std::filesystem::path(leader).replace_extension()), "-", line_);
-      return absl::OkStatus();
+      return absl::StrCat(KeyOf(std::filesystem::path(leader).replace_extension()), "-", line_);
     }
-    entry->key = KeyOf(id);
-    if (!entry->key.empty() && ids_.insert(absl::Hash<std::string>()(entry->key)).second) {
-      return absl::OkStatus();
-    }
+    std::string key = KeyOf(id);
+    if (!key.empty() && ids_.insert(absl::Hash<std::string>()(key)).second) return key;
     return absl::InvalidArgumentError(
         absl::StrCat("id: expected one that no other line has, got ", base::Quoted(id)));
   }

@@ -184,7 +184,8 @@ absl::StatusOr<batch::PlanCheck> CheckForRun(const BatchArguments& arguments,
 }
 
 // What earlier runs left of the plan, before anything is asked for.
-absl::StatusOr<batch::Survey> Survey(const BatchArguments& arguments, const Prepared& prepared, const batch::JobIdentity& identity,
+absl::StatusOr<batch::Survey> Survey(const BatchArguments& arguments, const Prepared& prepared,
+                                     const batch::JobIdentity& identity,
                                      const batch::JobFolder& folder) {
   absl::StatusOr<batch::Plan> plan =
       MakePlan(arguments, prepared.recipe, prepared.models, nullptr, nullptr);

@@ -41,9 +41,8 @@ ExitCode RunStdio(const ProgramEnvironment& environment) {
     inner.out_is_terminal = inner.err_is_terminal = false;
     const int exit_code = RunLine(line, inner);
     const std::string printed = out.str(), errors = err.str();
-    const json answer = {{"exit_code", exit_code},
-                         {"out_bytes", printed.size()},
-                         {"err_bytes", errors.size()}};
+    const json answer = {
+        {"exit_code", exit_code}, {"out_bytes", printed.size()}, {"err_bytes", errors.size()}};
     *environment.out << answer.dump() << "\n" << printed << errors << std::flush;
   }
   return kExitDone;

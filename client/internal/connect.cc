@@ -65,8 +65,8 @@ absl::Status Check(const ClientOptions& options) {
         absl::StrCat("deadline: ", absl::FormatDuration(options.deadline), ", wanted more than 0"));
   }
   if (options.wait < absl::ZeroDuration()) {
-    return absl::InvalidArgumentError(absl::StrCat(
-        "wait: expected 0 or more, got ", absl::FormatDuration(options.wait)));
+    return absl::InvalidArgumentError(
+        absl::StrCat("wait: expected 0 or more, got ", absl::FormatDuration(options.wait)));
   }
   const RetryOptions& retry = options.retry;
   if (retry.max_attempts < 1) {

@@ -123,17 +123,20 @@ absl::StatusOr<SynthesisResult> ConnectionImpl::Synthesize(const SynthesisReques
   ReplyAssembler reply(request.leader, on_chunk);
   absl::Time first_chunk = absl::InfiniteFuture();
   int attempts = 0;
-  absl::Status status = Retry(retry_, environment_, request.priority, Limits(call), [&]() -> AttemptEnd {
-    ++attempts;
-    const bool resumes = reply.handed_out() > 0;
-    if (resumes && reply.header().has_value()) PinModel(*reply.header(), wire->mutable_model());
-    const int handed_out = reply.handed_out();
-    absl::Status ended = RunStream(call, *wire, &reply, &first_chunk);
-    if (resumes && absl::IsNotFound(ended)) return ModelIsGone(ended, wire->model(), handed_out);
-    // A callback that ends the call is obeyed: its status is never a reason for another attempt.
-    if (!reply.callback_status().ok()) return absl::OkStatus();
-    return {std::move(ended), reply.header().has_value()};
-  });
+  absl::Status status =
+      Retry(retry_, environment_, request.priority, Limits(call), [&]() -> AttemptEnd {
+        ++attempts;
+        const bool resumes = reply.handed_out() > 0;
+        if (resumes && reply.header().has_value()) PinModel(*reply.header(), wire->mutable_model());
+        const int handed_out = reply.handed_out();
+        absl::Status ended = RunStream(call, *wire, &reply, &first_chunk);
+        if (resumes && absl::IsNotFound(ended))
+          return ModelIsGone(ended, wire->model(), handed_out);
+        // A callback that ends the call is obeyed: its status is never a reason for another
+        // attempt.
+        if (!reply.callback_status().ok()) return absl::OkStatus();
+        return {std::move(ended), reply.header().has_value()};
+      });
   if (!reply.callback_status().ok()) return reply.callback_status();
   if (!status.ok()) return status;
   SynthesisResult result = std::move(reply).TakeResult();

@@ -32,8 +32,7 @@ absl::Status NoServer(const absl::Status& status, int attempts, const RetryLimit
       status.code(),
       absl::StrCat("server_address: expected a Duet server at ", limits.server_address, ", got \"",
                    status.message(), "\" (", Attempts(attempts), " in ",
-                   absl::ToInt64Milliseconds(spent) / 1000.0,
-                   " s)"));
+                   absl::ToInt64Milliseconds(spent) / 1000.0, " s)"));
 }
 
 bool HasDetails(const absl::Status& status) {

@@ -12,6 +12,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/admin/admin_message.h"
+#include "server/common/activity.h"
 #include "server/service/refusals.h"
 
 namespace duet::server::admin {
@@ -26,6 +27,8 @@ constexpr metrics::MethodInfo kUnloadModel = Method("UnloadModel");
 constexpr metrics::MethodInfo kReload = Method("Reload");
 constexpr metrics::MethodInfo kSetLabel = Method("SetLabel");
 constexpr metrics::MethodInfo kDeleteLabel = Method("DeleteLabel");
+
+constexpr common::StepKind kHandling{"gRPC callback", "handling an admin call"};
 
 // gRPC reads the messages, whose size the listener limits.
 constexpr std::size_t kNoRawRequests = 0;
@@ -89,6 +92,7 @@ template <typename Request, typename Answer>
 grpc::ServerUnaryReactor* AdminService::Open(grpc::CallbackServerContext& context,
                                              const metrics::MethodInfo& method,
                                              const Request& request, const Answer& answer) {
+  const common::Step step(kHandling);
   const auto call = std::make_shared<Call>(context, method, request, *this);
   const absl::Status admitted = call->status().ok() ? Validate(request) : call->status();
   if (admitted.ok()) {

@@ -1,7 +1,9 @@
 #include "server/batching/batcher.h"
 
+#include <atomic>
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <exception>
 #include <optional>
 #include <string>
@@ -12,10 +14,15 @@
 #include "absl/status/statusor.h"
 #include "absl/types/span.h"
 #include "server/batching/window_queue.h"
+#include "server/common/activity.h"
 #include "server/common/mutex.h"
 
 namespace duet::server::batching {
 namespace {
+
+constexpr common::StepKind kTaking{"worker", "taking windows from the queue"};
+constexpr common::StepKind kEvaluating{"worker", "evaluating a batch"};
+constexpr common::StepKind kAnswering{"worker", "handing an answer on"};
 
 absl::Status ShuttingDown() { return absl::UnavailableError("the server is shutting down"); }
 
@@ -85,6 +92,8 @@ class Batcher final : public WindowScheduler {
   // Waits until there is something to do; nothing when there will be no more.
   std::optional<Turn> Next();
   void WaitUntil(common::TimePoint time) DUET_REQUIRES(mutex_);
+  // To be called after every change of the queue.
+  void CountQueue() DUET_REQUIRES(mutex_);
   void Run(Batch batch);
   void Answer(QueuedWindow window, engine::WindowResult result, WindowTimings timings) const;
 
@@ -93,6 +102,7 @@ class Batcher final : public WindowScheduler {
   mutable common::Mutex mutex_;
   common::CondVar changed_;
   WindowQueue queue_ DUET_GUARDED_BY(mutex_);
+  std::atomic<std::size_t> queued_{0};  // of queue_, for those who must not wait
   bool stopping_ DUET_GUARDED_BY(mutex_) = false;
   std::vector<std::thread> workers_;
 };
@@ -121,6 +131,7 @@ absl::Status Batcher::Submit(WindowJob job) {
     if (!queue_.HasRoomFor(job, now)) return QueueFull(queue_.capacity());
     if (!job.continues_call && !queue_.ComesInTime(job, now)) return QueueTooLong(job, now);
     queue_.Push(std::move(job), now);
+    CountQueue();
   }
   changed_.NotifyOne();
   return absl::OkStatus();
@@ -133,9 +144,12 @@ absl::Status Batcher::CheckRoom(Priority priority, const std::string& client) co
                                                            : QueueFull(queue_.capacity());
 }
 
-std::size_t Batcher::queued_windows() const {
-  common::MutexLock lock(mutex_);
-  return queue_.size();
+std::size_t Batcher::queued_windows() const { return queued_; }
+
+void Batcher::CountQueue() {
+  const std::size_t before = queued_.exchange(queue_.size());
+  common::ProcessVitals().queued_windows +=
+      static_cast<std::int64_t>(queue_.size()) - static_cast<std::int64_t>(before);
 }
 
 void Batcher::Work() {
@@ -150,15 +164,18 @@ void Batcher::Work() {
 }
 
 std::optional<Turn> Batcher::Next() {
+  const common::Step step(kTaking);
   common::MutexLock lock(mutex_);
   while (true) {
     Turn turn;
     if (stopping_) {
       turn.dropped = queue_.DropAll(ShuttingDown(), clock_.Now());
+      CountQueue();
       if (turn.dropped.empty()) return std::nullopt;
       return turn;
     }
     turn = queue_.Next(clock_.Now());
+    CountQueue();
     if (!turn.dropped.empty() || !turn.batch.windows.empty()) {
       // What this worker leaves may be for another that is free.
       if (queue_.size() > 0) changed_.NotifyOne();
@@ -169,6 +186,7 @@ std::optional<Turn> Batcher::Next() {
 }
 
 void Batcher::WaitUntil(common::TimePoint time) {
+  const common::Idle idle;
   if (time == common::TimePoint::max()) {
     changed_.Wait(mutex_);
   } else {
@@ -179,7 +197,11 @@ void Batcher::WaitUntil(common::TimePoint time) {
 // By value, so that the model is let go of as soon as its windows are done.
 // NOLINTNEXTLINE(performance-unnecessary-value-param)
 void Batcher::Run(Batch batch) {
-  std::vector<engine::WindowResult> results = Evaluate(batch);
+  std::vector<engine::WindowResult> results;
+  {
+    const common::Step step(kEvaluating);
+    results = Evaluate(batch);
+  }
   const common::TimePoint end = clock_.Now();
   {
     common::MutexLock lock(mutex_);
@@ -200,6 +222,7 @@ void Batcher::Run(Batch batch) {
 // NOLINTNEXTLINE(performance-unnecessary-value-param)
 void Batcher::Answer(QueuedWindow window, engine::WindowResult result,
                      WindowTimings timings) const {
+  const common::Step step(kAnswering);
   if (observer_ != nullptr) observer_->WindowFinished(window.job.priority, timings);
   window.job.done({std::move(result), timings});
 }

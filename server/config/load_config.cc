@@ -285,8 +285,15 @@ void AddSharingFlags(CLI::App& app, v1::ServerConfig& config) {
       ->option_text("S");
   app.add_option_function<double>(
          "--self-check-seconds", [&](double value) { config.set_self_check_seconds(value); },
-         Defaulting("how often the server connects to its own port, for /healthz; 0: never",
-                    defaults.self_check_seconds))
+         Defaulting(
+             "how often the server connects to its own port, for /readyz and /healthz; 0: never",
+             defaults.self_check_seconds))
+      ->option_text("S");
+  app.add_option_function<double>(
+         "--watchdog-seconds", [&](double value) { config.set_watchdog_seconds(value); },
+         "how long a thread may take for one step of its work before the process exits with code "
+         "3; "
+         "0: for ever (default: max-call-seconds, at least 60)")
       ->option_text("S");
 }
 
@@ -637,8 +644,7 @@ CommandLine ParseCommandLine(int argc, const char* const* argv, const Environmen
 }
 
 Settings ReadSettings(const CommandLine& command_line, int cores, std::uint64_t memory_bytes) {
-  Settings settings =
-      ReadSettings(command_line.config, cores, command_line.sources, memory_bytes);
+  Settings settings = ReadSettings(command_line.config, cores, command_line.sources, memory_bytes);
   settings.mistakes.insert(settings.mistakes.begin(), command_line.errors.begin(),
                            command_line.errors.end());
   return settings;

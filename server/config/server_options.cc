@@ -185,6 +185,9 @@ bool IsMetadataKey(absl::string_view key) {
 // After ReadMemory: some defaults follow from the sizes there.
 void ReadSharing(const v1::ServerConfig& config, Reader& reader, ServerOptions& options) {
   constexpr double kHour = 3600;
+  // A step takes milliseconds, parsing the largest request half a second.
+  constexpr double kShortestWatch = 1;
+  constexpr double kShortestDefaultWatch = 60;
   if (config.has_client_share()) {
     options.client_share = reader.InRange("client_share", config.client_share(), 0.01, 1.0);
   }
@@ -214,6 +217,13 @@ void ReadSharing(const v1::ServerConfig& config, Reader& reader, ServerOptions& 
   if (config.has_self_check_seconds()) {
     options.self_check_seconds =
         reader.InRange("self_check_seconds", config.self_check_seconds(), 0.0, kHour);
+  }
+  options.watchdog_seconds = std::max(options.max_call_seconds, kShortestDefaultWatch);
+  if (config.has_watchdog_seconds()) {
+    options.watchdog_seconds = config.watchdog_seconds() == 0
+                                   ? 0
+                                   : reader.InRange("watchdog_seconds", config.watchdog_seconds(),
+                                                    kShortestWatch, 24 * kHour);
   }
 }
 
@@ -419,8 +429,7 @@ Settings ReadSettings(const v1::ServerConfig& config, int cores, const SettingSo
 }
 
 absl::StatusOr<ServerOptions> ToOptions(const v1::ServerConfig& config, int cores,
-                                        const SettingSources& sources,
-                                        std::uint64_t memory_bytes) {
+                                        const SettingSources& sources, std::uint64_t memory_bytes) {
   Settings settings = ReadSettings(config, cores, sources, memory_bytes);
   if (settings.mistakes.empty()) return std::move(settings.options);
   return absl::InvalidArgumentError(absl::StrJoin(settings.mistakes, "\n"));

@@ -102,6 +102,7 @@ struct ServerOptions {
   double write_timeout_seconds = 30;
   double max_call_seconds = 660;  // ten minutes of motion, watched as it comes, and a little more
   double self_check_seconds = 10;
+  double watchdog_seconds = max_call_seconds;  // 0: off
   int buffered_frames = 240;
   double drain_seconds = 0;
   double grace_seconds = 30;

@@ -67,6 +67,7 @@ void WriteSharing(const ServerOptions& options, v1::ServerConfig* config) {
   config->set_write_timeout_seconds(options.write_timeout_seconds);
   config->set_max_call_seconds(options.max_call_seconds);
   config->set_self_check_seconds(options.self_check_seconds);
+  config->set_watchdog_seconds(options.watchdog_seconds);
 }
 
 void WriteLimits(const ServerOptions& options, v1::ServerConfig* config) {

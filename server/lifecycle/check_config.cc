@@ -7,11 +7,11 @@
 #include "server/config/memory_limit.h"
 #include "server/config/memory_plan.h"
 #include "server/lifecycle/load_models.h"
-#include "server/lifecycle/run_server.h"
 #include "server/metrics/process_metrics.h"
 #include "server/registry/model_manager.h"
 #include "server/registry/model_registry.h"
 #include "server/registry/model_status.h"
+#include "server/watchdog/exit_codes.h"
 
 namespace duet::server::lifecycle {
 namespace {
@@ -74,6 +74,9 @@ void CheckModels(const config::ServerOptions& options, const registry::ModelSour
 }  // namespace
 
 int CheckConfig(const ValidatedSettings& settings, std::ostream& out) {
+  using watchdog::kExitFailed;
+  using watchdog::kExitStopped;
+  using watchdog::kExitUsage;
   Findings findings(out);
   findings.Problems(settings.setting_mistakes);
   findings.Problems(settings.resource_mistakes);

@@ -26,13 +26,20 @@ constexpr double kLastMessageSeconds = 3;
 constexpr std::chrono::seconds kFlush(1);
 // How soon a file that changed is noticed, and how often calls without a line are told of.
 constexpr double kHousekeepingSeconds = 1;
-// How often a drain looks whether the last call has finished or a second signal has come, and the
-// service at the time that its calls take.
-constexpr double kLookSeconds = 0.02;
+// How often a drain looks whether the last call has finished or a second signal has come.
+constexpr double kLookSeconds = 0.05;
+// How often the service looks at the time that its calls take: a request that is arriving slowly
+// must not bring much before it is noticed.
+constexpr double kCheckTimeSeconds = 0.02;
 // How long the server may take to answer itself.
 constexpr double kSelfCheckTimeoutSeconds = 5;
 // How often memory of large requests is given back.
 constexpr double kTrimSeconds = 1;
+
+constexpr common::StepKind kLookingAtTime{"time limits", "ending calls that take too long"};
+constexpr common::StepKind kTrimming{"memory", "giving memory back"};
+constexpr common::StepKind kHousekeeping{"housekeeping",
+                                         "reading certificates, counting unlogged calls"};
 
 // Far more than an operator needs.
 constexpr std::size_t kAdminRequestBytes = std::size_t{64} << 10;
@@ -88,8 +95,9 @@ metrics::LogOptions LogOptionsOf(const config::LoggingOptions& options) {
   return log;
 }
 
-absl::StatusOr<std::unique_ptr<DuetServer>> DuetServer::Start(const config::ServerOptions& options,
-                                                              metrics::LogSink& sink) {
+absl::StatusOr<std::unique_ptr<DuetServer>> DuetServer::Start(
+    const config::ServerOptions& options, metrics::LogSink& sink,
+    std::function<absl::Status()> self_check) {
   absl::StatusOr<std::unique_ptr<security::SecretFiles>> secrets =
       security::SecretFiles::Open(SecretsOf(options.security));
   if (!secrets.ok()) return secrets.status();
@@ -101,7 +109,7 @@ absl::StatusOr<std::unique_ptr<DuetServer>> DuetServer::Start(const config::Serv
   }
   std::unique_ptr<DuetServer> server(
       new DuetServer(options, sink, *std::move(secrets), std::move(tracer)));
-  const absl::Status listening = server->Listen();
+  const absl::Status listening = server->Listen(std::move(self_check));
   if (!listening.ok()) return listening;
   return server;
 }
@@ -135,6 +143,8 @@ DuetServer::DuetServer(const config::ServerOptions& options, metrics::LogSink& s
   if (tracer_ != nullptr) {
     metrics_.SetSpans([this] { return metrics::SpanCounts{tracer_->sent(), tracer_->dropped()}; });
   }
+  metrics_.SetReady([this] { return Ready(); });
+  metrics_.SetLongestStep([] { return common::ProcessVitals().longest_step_seconds.load(); });
   metrics_.SetDroppedLogLines([&sink] { return static_cast<double>(sink.dropped_lines()); });
 }
 
@@ -197,7 +207,7 @@ absl::Status DuetServer::ListenForAdmin() {
   return absl::OkStatus();
 }
 
-absl::Status DuetServer::Listen() {
+absl::Status DuetServer::Listen(std::function<absl::Status()> self_check) {
   absl::StatusOr<GrpcServer> grpc =
       StartGrpcServer({options_.listen, options_.reflection, options_.max_request_bytes,
                        options_.max_transport_bytes, options_.max_calls, options_.max_call_seconds,
@@ -207,7 +217,7 @@ absl::Status DuetServer::Listen() {
   grpc_ = *std::move(grpc);
   SetHealth(false);
   if (absl::Status admin = ListenForAdmin(); !admin.ok()) return admin;
-  Watch();
+  Watch(std::move(self_check));
   if (!options_.metrics_listen.has_value()) return absl::OkStatus();
   metrics::MetricsEndpointOptions endpoint;
   endpoint.host = options_.metrics_listen->host;
@@ -245,34 +255,47 @@ absl::Status DuetServer::ReloadSecrets() {
   return secrets_->state();
 }
 
-void DuetServer::Watch() {
-  watch_.push_back(std::make_unique<RepeatedTask>(kLookSeconds, [this] { service_.CheckTime(); }));
-  watch_.push_back(std::make_unique<RepeatedTask>(kTrimSeconds, [this] {
+void DuetServer::Watch(std::function<absl::Status()> self_check) {
+  watch_.push_back(std::make_unique<RepeatedTask>(kLookingAtTime, kCheckTimeSeconds,
+                                                  [this] { service_.CheckTime(); }));
+  watch_.push_back(std::make_unique<RepeatedTask>(kTrimming, kTrimSeconds, [this] {
     heap_trimmer_.Look(service_.large_request_bytes(), admission_.held_bytes());
   }));
-  watch_.push_back(std::make_unique<RepeatedTask>(kHousekeepingSeconds, [this] {
+  watch_.push_back(std::make_unique<RepeatedTask>(kHousekeeping, kHousekeepingSeconds, [this] {
     Tell(secrets_->Look());
     log_.TellUnlogged();
   }));
   if (options_.self_check_seconds <= 0) return;
   SelfCheckOptions check;
   check.interval_seconds = options_.self_check_seconds;
-  check.check = [this] {
-    return CheckListener(options_.listen.host, grpc_.port, kSelfCheckTimeoutSeconds);
-  };
+  check.check = std::move(self_check);
+  if (check.check == nullptr) {
+    check.check = [this] { return CheckItself(); };
+  }
   check.failed = [this](const absl::Status& status) {
+    metrics_.SelfCheckFailed();
     log_.Error("self_check_failed", {{"message", std::string(status.message())}});
   };
+  check.changed = [this](bool passes) { SetReachable(passes); };
   self_check_ = std::make_unique<SelfCheck>(std::move(check));
 }
 
+absl::Status DuetServer::CheckItself() const {
+  double timeout = kSelfCheckTimeoutSeconds;
+  // A check that takes its time is not stuck.
+  if (options_.watchdog_seconds > 0) timeout = std::min(timeout, options_.watchdog_seconds / 4);
+  const absl::Status listens = CheckListener(options_.listen.host, grpc_.port, timeout);
+  return listens.ok() ? CheckAnswers(*grpc_.server, timeout) : listens;
+}
+
 bool DuetServer::Ready() const {
-  return !draining_ && admission_.state() == service::Admission::State::kServing;
+  return !draining_ && reachable_ && admission_.state() == service::Admission::State::kServing;
 }
 
 std::string DuetServer::Describe() const {
   std::string text;
   if (draining_) text = "draining\n";
+  if (!reachable_) absl::StrAppend(&text, "self-check: failed, see the log\n");
   for (const registry::ModelStatus& model : manager_.List()) {
     if (model.state == registry::ModelState::kUnloaded) continue;
     absl::StrAppend(&text, "model ", model.name, "/", model.version, ": ",
@@ -356,6 +379,12 @@ void DuetServer::SetHealth(bool serving) {
   UpdateHealthLocked();
 }
 
+void DuetServer::SetReachable(bool reachable) {
+  reachable_ = reachable;
+  if (reachable) log_.Info("self_check_recovered", {});
+  UpdateHealth();
+}
+
 void DuetServer::UpdateHealth() {
   common::MutexLock lock(health_mutex_);
   UpdateHealthLocked();
@@ -364,15 +393,16 @@ void DuetServer::UpdateHealth() {
 void DuetServer::UpdateHealthLocked() {
   grpc::HealthCheckServiceInterface* health = grpc_.server->GetHealthCheckService();
   const std::string service = service::MotionSynthesisService::kServiceName;
-  health->SetServingStatus("", healthy_);
-  health->SetServingStatus(service, healthy_);
+  const bool healthy = healthy_ && reachable_;
+  health->SetServingStatus("", healthy);
+  health->SetServingStatus(service, healthy);
   std::set<std::string> served;
   for (const registry::ServedModel& model : registry_.List()) {
     served.insert(model.model->description().name);
   }
   health_models_.insert(served.begin(), served.end());
   for (const std::string& model : health_models_) {
-    const bool serving = healthy_ && served.count(model) > 0;
+    const bool serving = healthy && served.count(model) > 0;
     health->SetServingStatus(absl::StrCat(service, "/", model), serving);
     // The name that the first version gave it.
     health->SetServingStatus(absl::StrCat("model:", model), serving);

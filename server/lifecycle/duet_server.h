@@ -47,11 +47,13 @@ metrics::LogOptions LogOptionsOf(const config::LoggingOptions& options);
 // Threads: one thread at a time, but for control().
 class DuetServer {
  public:
-  // `sink` outlives the server. Fails with UNAVAILABLE, the setting and the reason when an address
-  // cannot be listened on; as SecretFiles::Open and CallTracer::Open when what they are given makes
-  // no sense (ValidateSettings finds that before).
-  static absl::StatusOr<std::unique_ptr<DuetServer>> Start(const config::ServerOptions& options,
-                                                           metrics::LogSink& sink);
+  // `sink` outlives the server; `self_check` takes the place of connecting to the server's own
+  // port. Fails with UNAVAILABLE, the setting and the reason when an address cannot be listened on;
+  // as SecretFiles::Open and CallTracer::Open when what they are given makes no sense
+  // (ValidateSettings finds that before).
+  static absl::StatusOr<std::unique_ptr<DuetServer>> Start(
+      const config::ServerOptions& options, metrics::LogSink& sink,
+      std::function<absl::Status()> self_check = nullptr);
   ~DuetServer();
 
   // Loads the models that the options name; each is logged and counted, served or refused. Fails
@@ -88,21 +90,26 @@ class DuetServer {
   DuetServer(const config::ServerOptions& options, metrics::LogSink& sink,
              std::unique_ptr<security::SecretFiles> secrets,
              std::unique_ptr<tracing::CallTracer> tracer);
-  absl::Status Listen();
+  absl::Status Listen(std::function<absl::Status()> self_check);
   absl::Status ListenForAdmin();
+  // Whether connections are taken and calls answered.
+  absl::Status CheckItself() const;
   // Starts what looks after the server while it runs: time limits, memory, secrets, the
   // log's counts, its own port.
-  void Watch();
+  void Watch(std::function<absl::Status()> self_check);
   void Tell(const std::vector<security::Reload>& reloads);
   // The same as RefreshSecrets; fails while what is on disk is refused, also if nothing changed.
   absl::Status ReloadSecrets();
   // Null: plain text.
   std::shared_ptr<grpc::ServerCredentials> Credentials() const;
+  // Takes no lock: one that is held for ever must not hide that the server is not ready.
   bool Ready() const;
   // How it stands with each model, for people: a line each.
   std::string Describe() const;
   // Tells gRPC's health service how it stands with the whole and with each model.
   void SetHealth(bool serving);
+  // As the last self-check has it.
+  void SetReachable(bool reachable);
   void UpdateHealth();
   void UpdateHealthLocked() DUET_REQUIRES(health_mutex_);
   void Close();
@@ -123,6 +130,7 @@ class DuetServer {
   service::MotionSynthesisService service_;
   GrpcServer grpc_;
   std::atomic<bool> draining_{false};
+  std::atomic<bool> reachable_{true};  // by the last self-check
   common::Mutex health_mutex_;
   bool healthy_ DUET_GUARDED_BY(health_mutex_) = false;
   std::set<std::string> health_models_ DUET_GUARDED_BY(health_mutex_);  // ever told of

@@ -2,6 +2,7 @@
 
 #include <grpc/impl/codegen/compression_types.h>
 #include <grpcpp/ext/proto_server_reflection_plugin.h>
+#include <grpcpp/generic/generic_stub.h>
 #include <grpcpp/health_check_service_interface.h>
 #include <grpcpp/impl/server_builder_option.h>
 #include <grpcpp/resource_quota.h>
@@ -9,6 +10,7 @@
 #include <grpcpp/server_builder.h>
 
 #include <algorithm>
+#include <chrono>
 #include <utility>
 #include <vector>
 
@@ -84,6 +86,28 @@ absl::StatusOr<GrpcServer> StartGrpcServer(const GrpcServerOptions& options,
     return common::ListenFailure(options.listen.host, options.listen.port);
   }
   return started;
+}
+
+absl::Status CheckAnswers(grpc::Server& server, double timeout_seconds) {
+  grpc::GenericStub stub(server.InProcessChannel(grpc::ChannelArguments()));
+  grpc::ClientContext context;
+  context.set_deadline(std::chrono::system_clock::now() +
+                       std::chrono::duration_cast<std::chrono::system_clock::duration>(
+                           std::chrono::duration<double>(timeout_seconds)));
+  grpc::CompletionQueue queue;
+  const grpc::Slice no_fields;
+  const auto call = stub.PrepareUnaryCall(&context, "/grpc.health.v1.Health/Check",
+                                          grpc::ByteBuffer(&no_fields, 1), &queue);
+  call->StartCall();
+  grpc::ByteBuffer response;
+  grpc::Status status;
+  call->Finish(&response, &status, nullptr);
+  void* tag = nullptr;
+  bool ok = false;
+  queue.Next(&tag, &ok);  // at the deadline at the latest
+  if (status.ok()) return absl::OkStatus();
+  return absl::UnavailableError(
+      absl::StrCat("the server does not answer its own call: ", status.error_message()));
 }
 
 }  // namespace duet::server::lifecycle

@@ -38,6 +38,12 @@ struct GrpcServer {
 absl::StatusOr<GrpcServer> StartGrpcServer(const GrpcServerOptions& options,
                                            grpc::Service& service);
 
+// Whether the server still answers calls: asks its health service, without a connection, so that
+// neither certificates nor tokens matter. Like every call it is answered on gRPC's callback
+// threads: where all of those hang, the kernel and gRPC go on taking connections, and no call is
+// answered. Fails with UNAVAILABLE.
+absl::Status CheckAnswers(grpc::Server& server, double timeout_seconds);
+
 }  // namespace duet::server::lifecycle
 
 #endif  // DUET_SERVER_LIFECYCLE_GRPC_SERVER_H_

@@ -4,6 +4,7 @@
 #include <functional>
 #include <thread>
 
+#include "server/common/activity.h"
 #include "server/common/mutex.h"
 
 namespace duet::server::lifecycle {
@@ -11,12 +12,13 @@ namespace duet::server::lifecycle {
 // Runs a task on a thread of its own, again and again with a pause between, until destroyed.
 class RepeatedTask {
  public:
-  RepeatedTask(double pause_seconds, std::function<void()> task);
+  // `kind`: what the watchdog calls it.
+  RepeatedTask(const common::StepKind& kind, double pause_seconds, std::function<void()> task);
   // Waits for a task that runs.
   ~RepeatedTask();
 
  private:
-  void Run(double pause_seconds, const std::function<void()>& task);
+  void Run(const common::StepKind& kind, double pause_seconds, const std::function<void()>& task);
 
   common::Mutex mutex_;
   common::CondVar changed_;

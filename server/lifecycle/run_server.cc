@@ -14,6 +14,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
+#include "server/common/activity.h"
 #include "server/config/cpu_budget.h"
 #include "server/config/load_config.h"
 #include "server/config/memory_limit.h"
@@ -27,9 +28,18 @@
 #include "server/metrics/process_metrics.h"
 #include "server/metrics/queued_log_sink.h"
 #include "server/metrics/text_log_sink.h"
+#include "server/watchdog/watchdog.h"
 
 namespace duet::server::lifecycle {
+
+using watchdog::kExitFailed;
+using watchdog::kExitStopped;
+using watchdog::kExitUsage;
+
 namespace {
+
+using watchdog::Watchdog;
+using watchdog::WatchdogOptions;
 
 // Each connection is a descriptor, and gRPC's listener does not come back from running out.
 void RaiseDescriptorLimit() {
@@ -41,6 +51,22 @@ void RaiseDescriptorLimit() {
 
 // The settings as they are now: flags and variables stay, the file may have changed.
 using ReadSettings = std::function<absl::StatusOr<config::ServerOptions>()>;
+
+constexpr common::StepKind kStarting{"main", "starting and loading models", /*is_bounded=*/false};
+constexpr common::StepKind kDraining{"main", "draining", /*is_bounded=*/false};
+constexpr common::StepKind kEnding{"main", "ending threads", /*is_bounded=*/false};
+
+// How long ending takes once no call is waited for: gRPC hands out statuses for a second, a
+// self-check under way takes five at most, and so does a log that is stuck.
+constexpr double kEndSeconds = 10;
+
+WatchdogOptions WatchdogOf(const config::ServerOptions& options) {
+  WatchdogOptions wanted;
+  wanted.step_seconds = options.watchdog_seconds;
+  wanted.hurry_seconds = kEndSeconds;
+  wanted.text_log = options.logging.format == config::LoggingOptions::Format::kText;
+  return wanted;
+}
 
 // How many models are served, for the service manager's status line.
 std::string ServedText(DuetServer& server) {
@@ -54,16 +80,35 @@ std::string ServedText(DuetServer& server) {
                       outdated == 0 ? "" : absl::StrCat(", ", outdated, " of them outdated"));
 }
 
-// Serves until told to stop, and reloads when told to.
+StopSignal::Kind WaitForSignal(StopSignal& stop) {
+  const common::Idle idle;
+  return stop.Wait();
+}
+
+// Listens, loads and begins to serve; CANCELLED when a signal to stop came before.
+absl::StatusOr<std::unique_ptr<DuetServer>> StartServing(const config::ServerOptions& options,
+                                                         const ModelSource& source,
+                                                         StopSignal& stop, metrics::LogSink& sink) {
+  const common::Step step(kStarting);
+  absl::StatusOr<std::unique_ptr<DuetServer>> server = DuetServer::Start(options, sink);
+  if (!server.ok()) return server;
+  absl::Status status = (*server)->Load(source, [&stop] { return stop.WaitFor(0); });
+  if (status.ok()) status = (*server)->Serve();
+  if (!status.ok()) return status;
+  return server;
+}
+
+// Serves until a signal to stop comes, and reloads when one to reload does.
 void ServeUntilStopped(DuetServer& server, StopSignal& stop, const ServiceManager& manager) {
   manager.Ready(ServedText(server));
-  while (stop.Wait() == StopSignal::Kind::kReload) {
+  while (WaitForSignal(stop) == StopSignal::Kind::kReload) {
     manager.Reloading();
     server.control().Reload([&server, &manager](const auto& report) {
       if (!absl::IsCancelled(report.status())) manager.Ready(ServedText(server));
     });
   }
   manager.Stopping();
+  const common::Step step(kDraining);
   server.Drain([&stop](double seconds) { return !stop.WaitFor(seconds); });
 }
 
@@ -75,11 +120,14 @@ void WarnOfMemory(const config::ServerOptions& options, metrics::JsonLog& log) {
   }
 }
 
-// Serves until told to stop; what it cannot serve for is in the log as well.
+// Serves until a signal to stop comes; why it cannot serve is in the log as well.
 absl::Status Serve(const ValidatedSettings& settings, const ReadSettings& read_settings,
                    StopSignal& stop, metrics::LogSink& sink) {
   const config::ServerOptions& options = settings.options;
   const ModelSource& source = *settings.source;
+  // Never destroyed: it watches until the process is gone.
+  auto* const last_resort = new Watchdog(WatchdogOf(options), stop);
+  const common::Step step(kEnding);  // of what follows the steps below
   metrics::JsonLog log(sink, absl::Now, LogOptionsOf(options.logging));
   const LibraryLogs library_logs(log);
   for (const std::string& mistake : settings.resource_mistakes) {
@@ -90,16 +138,14 @@ absl::Status Serve(const ValidatedSettings& settings, const ReadSettings& read_s
   }
   const ServiceManager manager = ServiceManager::OfProcess();
   log.Info("engine_opened", {{"engine", source.engine}});
-  absl::StatusOr<std::unique_ptr<DuetServer>> server = DuetServer::Start(options, sink);
-  absl::Status status = server.status();
-  if (status.ok()) status = (*server)->Load(source, [&stop] { return stop.WaitFor(0); });
-  if (absl::IsCancelled(status)) return absl::OkStatus();
-  if (status.ok()) status = (*server)->Serve();
-  if (!status.ok()) {
-    log.Error("cannot_serve", {{"message", std::string(status.message())}});
-    return status;
+  const auto server = StartServing(options, source, stop, sink);
+  if (absl::IsCancelled(server.status())) return absl::OkStatus();
+  if (!server.ok()) {
+    log.Error("cannot_serve", {{"message", std::string(server.status().message())}});
+    return server.status();
   }
   WarnOfMemory(options, log);
+  last_resort->AllowToStop(options.drain_seconds + options.grace_seconds + kEndSeconds);
   DuetServer& serving = **server;
   const auto configure = [&serving, &read_settings] {
     const absl::StatusOr<config::ServerOptions> current = read_settings();
@@ -137,9 +183,12 @@ int RunServer(int argc, const char* const* argv, const EngineOpener& open_engine
     return kExitStopped;
   }
   const bool check = command_line.task == config::CommandLine::Task::kCheckConfig;
-  const ValidatedSettings settings =
-      ValidateSettings(command_line, cores, memory, open_engine, check ? Ports::kMayBeInUse : Ports::kFree);
-  if (check) return CheckConfig(settings, std::cout);
+  const ValidatedSettings settings = ValidateSettings(command_line, cores, memory, open_engine,
+                                                      check ? Ports::kMayBeInUse : Ports::kFree);
+  if (check) {
+    stop.Unblock();
+    return CheckConfig(settings, std::cout);
+  }
   if (!settings.setting_mistakes.empty()) {
     Complain(settings.setting_mistakes);
     Complain(settings.resource_mistakes);

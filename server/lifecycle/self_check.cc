@@ -20,6 +20,8 @@ namespace {
 
 using std::chrono::steady_clock;
 
+constexpr common::StepKind kChecking{"self-check", "calling the server itself"};
+
 class Descriptor {
  public:
   explicit Descriptor(int number) : number_(number) {}
@@ -95,16 +97,19 @@ absl::Status CheckListener(const std::string& host, int port, double timeout_sec
 }
 
 SelfCheck::SelfCheck(SelfCheckOptions options)
-    : options_(std::move(options)), task_(options_.interval_seconds, [this] { Check(); }) {}
+    : options_(std::move(options)),
+      task_(kChecking, options_.interval_seconds, [this] { Check(); }) {}
 
 void SelfCheck::Check() {
   const absl::Status status = options_.check();
+  const bool passed = passes();
   if (status.ok()) {
     failures_ = 0;
   } else {
     ++failures_;
     options_.failed(status);
   }
+  if (passed != passes()) options_.changed(passes());
 }
 
 }  // namespace duet::server::lifecycle

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "absl/status/status.h"
+#include "server/common/activity.h"
 #include "server/lifecycle/repeated_task.h"
 
 namespace duet::server::lifecycle {
@@ -24,7 +25,9 @@ absl::Status CheckListener(const std::string& host, int port, double timeout_sec
 struct SelfCheckOptions {
   double interval_seconds = 10;
   std::function<absl::Status()> check;              // such as CheckListener
-  std::function<void(const absl::Status&)> failed;  // told of each failure
+  std::function<void(const absl::Status&)> failed;  // called for each failure
+  // Called when a check fails after one that did not, and when one succeeds again.
+  std::function<void(bool passes)> changed;
 };
 
 // Checks again and again, on a thread of its own.
@@ -32,7 +35,9 @@ class SelfCheck {
  public:
   explicit SelfCheck(SelfCheckOptions options);
 
-  // False once three checks in a row have failed, until one succeeds.
+  // False once a check has failed, until one succeeds: no new calls should come.
+  bool passes() const { return failures_ == 0; }
+  // False once three checks in a row have failed, until one succeeds: a restart would help.
   bool healthy() const { return failures_ < kFailures; }
 
  private:

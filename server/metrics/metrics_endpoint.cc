@@ -21,6 +21,7 @@
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
+#include "server/common/activity.h"
 #include "server/common/bindable.h"
 #include "server/metrics/http_reply.h"
 
@@ -28,6 +29,8 @@ namespace duet::server::metrics {
 namespace {
 
 using std::chrono::steady_clock;
+
+constexpr common::StepKind kAnswering{"metrics endpoint", "answering a scrape or a probe"};
 
 constexpr int kBacklog = 128;
 // How long the listener rests when a connection cannot be taken (no descriptors): the kernel keeps
@@ -180,6 +183,7 @@ class PollingEndpoint final : public MetricsEndpoint {
       for (const Connection& connection : connections_) wanted.push_back(connection.Wanted());
       if (poll(wanted.data(), wanted.size(), Timeout(now)) < 0 && errno != EINTR) return;
       if (wanted[0].revents != 0) return;
+      const common::Step step(kAnswering);
       Serve(wanted);
       if ((wanted[1].revents & POLLIN) != 0) Accept();
     }

@@ -150,6 +150,12 @@ ServerMetrics::ServerMetrics()
               .Help("Log lines lost: their reader did not keep up, or they could not be written.")
               .Register(registry_)
               .Add({})),
+      self_check_failures_(
+          BuildCounter()
+              .Name("duet_self_check_failures_total")
+              .Help("Times that the server did not answer when it connected to its own port.")
+              .Register(registry_)
+              .Add({})),
       refusals_(BuildCounter()
                     .Name("duet_refusals_total")
                     .Help("RPCs that were refused, by the reason in their error details.")
@@ -249,6 +255,12 @@ void ServerMetrics::SetDroppedLogLines(std::function<double()> dropped_log_lines
   dropped_log_lines_ = std::move(dropped_log_lines);
 }
 
+void ServerMetrics::SetReady(std::function<bool()> ready) { ready_ = std::move(ready); }
+
+void ServerMetrics::SetLongestStep(std::function<double()> seconds) {
+  longest_step_ = std::move(seconds);
+}
+
 void ServerMetrics::SetModels(std::function<std::vector<ServedVersion>()> models) {
   models_ = std::move(models);
 }
@@ -291,6 +303,15 @@ std::string ServerMetrics::Render() {
   }
   std::vector<prometheus::MetricFamily> families = registry_.Collect();
   if (models_) families.push_back(ModelInfo(models_()));
+  if (ready_) {
+    families.push_back(
+        Gauge("duet_ready", "1 while calls are served and new ones may come.", ready_() ? 1 : 0));
+  }
+  if (longest_step_) {
+    families.push_back(Gauge("duet_longest_step_seconds",
+                             "Time that the slowest thread has taken for its step so far.",
+                             longest_step_()));
+  }
   if (certificate_end_) {
     families.push_back(Gauge("duet_tls_certificate_expiry_timestamp_seconds",
                              "When the server's certificate ceases to be valid.",

@@ -60,6 +60,11 @@ struct ServedVersion {
 //   duet_compute_seconds                               one batch in the network
 //   duet_batch_size                                    windows of one batch
 //   duet_workers                                       batches that may be evaluated at a time
+// Of the server as a whole:
+//   duet_ready                                         1 while /readyz says so, else 0
+//   duet_self_check_failures_total                     times it did not answer on its own port
+//   duet_longest_step_seconds                          time that the slowest thread has taken so
+//   far
 // Of models:
 //   duet_model_load_seconds{checkpoint}                time that loading took
 //   duet_model_state{checkpoint}                       1 served, 0 refused; not of unloaded ones
@@ -98,10 +103,13 @@ class ServerMetrics final : public CallObserver, public batching::WindowObserver
   void ModelUnloaded(const std::string& checkpoint);
   void FoldersSkipped(int folders);
   void Reloaded(bool ok);
+  void SelfCheckFailed() { self_check_failures_.Increment(); }
 
   // What is asked for at every scrape. Call before the first Render.
   void SetQueueLength(std::function<double()> queued_windows);
   void SetDroppedLogLines(std::function<double()> dropped_log_lines);
+  void SetReady(std::function<bool()> ready);
+  void SetLongestStep(std::function<double()> seconds);
   void SetModels(std::function<std::vector<ServedVersion>()> models);
   void SetSpans(std::function<SpanCounts()> spans);
   // Seconds since 1970.
@@ -136,6 +144,7 @@ class ServerMetrics final : public CallObserver, public batching::WindowObserver
   prometheus::Gauge& folders_skipped_;
   prometheus::Family<prometheus::Counter>& reloads_;
   prometheus::Counter& log_lines_dropped_;
+  prometheus::Counter& self_check_failures_;
   prometheus::Family<prometheus::Counter>& refusals_;
   prometheus::Family<prometheus::Counter>& caller_calls_;
   prometheus::Family<prometheus::Counter>& secrets_reloads_;
@@ -145,6 +154,8 @@ class ServerMetrics final : public CallObserver, public batching::WindowObserver
   std::function<SpanCounts()> spans_;
   std::function<double()> queue_length_;
   std::function<double()> dropped_log_lines_;
+  std::function<bool()> ready_;
+  std::function<double()> longest_step_;
   common::Mutex render_mutex_;  // one scrape brings the numbers that are asked for up to date
 };
 

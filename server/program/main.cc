@@ -88,7 +88,8 @@ absl::StatusOr<ModelSource> OpenEngine(const EngineOptions& options) {
 
 int main(int argc, char** argv) {
   duet::server::lifecycle::LimitFreeMemory();
-  duet::server::lifecycle::StopSignal stop;
+  auto* const stop = new duet::server::watchdog::StopSignal;  // see RunServer
   return duet::server::lifecycle::RunServer(
-      argc, argv, OpenEngine, stop, std::make_shared<duet::server::metrics::StreamLogSink>(stderr));
+      argc, argv, OpenEngine, *stop,
+      std::make_shared<duet::server::metrics::StreamLogSink>(stderr));
 }

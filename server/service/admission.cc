@@ -32,10 +32,7 @@ void Admission::SetState(State state) {
   state_ = state;
 }
 
-Admission::State Admission::state() const {
-  common::MutexLock lock(mutex_);
-  return state_;
-}
+Admission::State Admission::state() const { return state_; }
 
 absl::Status Admission::CheckServing() const { return Refusal(state()); }
 
@@ -43,7 +40,7 @@ absl::StatusOr<ShareLease> Admission::Admit(const std::string& client) {
   common::MutexLock lock(mutex_);
   // The place is taken under the lock that guards the state: once SetState(kDraining) has returned,
   // no further call is admitted, and calls() counts every call that was.
-  const absl::Status serving = Refusal(state_);
+  const absl::Status serving = Refusal(state_.load());
   if (!serving.ok()) return serving;
   std::optional<ShareLease> place = places_.Take(client);
   if (!place) return TooManyCallsRefusal(places_.taken(), places_.amount());

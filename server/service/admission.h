@@ -1,6 +1,7 @@
 #ifndef DUET_SERVER_SERVICE_ADMISSION_H_
 #define DUET_SERVER_SERVICE_ADMISSION_H_
 
+#include <atomic>
 #include <cstddef>
 #include <string>
 
@@ -56,8 +57,9 @@ class Admission {
   std::size_t held_bytes() const { return bytes_.taken(); }
 
  private:
-  mutable common::Mutex mutex_;
-  State state_ DUET_GUARDED_BY(mutex_) = State::kLoading;
+  // Held while a call is admitted and while state_ changes. Probes read the state without it.
+  common::Mutex mutex_;
+  std::atomic<State> state_{State::kLoading};
   SharePool places_;
   SharePool bytes_;
   SharePool slow_requests_;

@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "server/common/activity.h"
 #include "server/common/grpc_status.h"
 #include "server/service/call_deadline.h"
 #include "server/service/call_pipeline.h"
@@ -16,6 +17,10 @@ namespace {
 // passes here, where it began later by the request's way.
 constexpr double kDeadlineSlackSeconds = 0.1;
 
+constexpr common::StepKind kReceived{"gRPC callback", "handling a request"};
+constexpr common::StepKind kWritten{"gRPC callback", "writing an answer"};
+constexpr common::StepKind kCancelled{"gRPC callback", "ending a cancelled call"};
+
 using GrpcReactor = grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>;
 
 }  // namespace
@@ -27,6 +32,7 @@ void CallReactor::Receive(std::shared_ptr<Reception> reception, Handler handle) 
 }
 
 void CallReactor::OnReadDone(bool ok) {
+  const common::Step step(kReceived);
   // The answer may come, and this reactor go, while it is being handled.
   const std::shared_ptr<Reception> reception = reception_;
   if (!ok) {
@@ -70,7 +76,13 @@ void CallReactor::BreakOff(const absl::Status& reason) {
                                status.error_message().c_str(), nullptr);
 }
 
+void CallReactor::OnWriteDone(bool ok) {
+  const common::Step step(kWritten);
+  call_->OnWritten(ok);
+}
+
 void CallReactor::OnCancel() {
+  const common::Step step(kCancelled);
   if (reception_ == nullptr) return;
   const bool expired = SecondsLeft(context_) <= kDeadlineSlackSeconds;
   reception_->Abort(expired ? absl::DeadlineExceededError("the call's deadline passed")

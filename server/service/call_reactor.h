@@ -43,7 +43,7 @@ class CallReactor final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc:
   void BreakOff(const absl::Status& reason) override;
 
   void OnReadDone(bool ok) override;
-  void OnWriteDone(bool ok) override { call_->OnWritten(ok); }
+  void OnWriteDone(bool ok) override;
   void OnCancel() override;
   void OnDone() override { delete this; }
 

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "server/common/activity.h"
+
 namespace duet::server::service {
 
 CallScope::CallScope(const metrics::MethodInfo& method, CallIdentity identity,
@@ -12,6 +14,7 @@ CallScope::CallScope(const metrics::MethodInfo& method, CallIdentity identity,
   record_.request_id = std::move(identity.request_id);
   record_.traceparent = std::move(identity.traceparent);
   record_.peer = std::move(identity.peer);
+  ++common::ProcessVitals().calls;
   for (metrics::CallObserver* observer : observers_) observer->CallStarted(method);
 }
 
@@ -28,6 +31,7 @@ void CallScope::Finish(const absl::Status& status) {
   record_.status = status;
   record_.total_seconds = ElapsedSeconds();
   for (metrics::CallObserver* observer : observers_) observer->CallFinished(record_);
+  --common::ProcessVitals().calls;
 }
 
 }  // namespace duet::server::service

@@ -7,6 +7,7 @@
 #include <utility>
 #include <variant>
 
+#include "server/common/activity.h"
 #include "server/service/call_deadline.h"
 #include "server/service/model_message.h"
 #include "server/service/priority_message.h"
@@ -23,6 +24,8 @@ constexpr metrics::MethodInfo Method(std::string_view name, std::string_view typ
 constexpr metrics::MethodInfo kSynthesize = Method("Synthesize", "server_stream");
 constexpr metrics::MethodInfo kListModels = Method("ListModels", "unary");
 constexpr metrics::MethodInfo kGetModel = Method("GetModel", "unary");
+
+constexpr common::StepKind kHandlingLarge{"large requests", "handling a large request"};
 
 // Requests whose memory is worth giving back to the system, and that take so long to parse and
 // check (eight milliseconds a mebibyte) that they have a thread of their own.
@@ -169,6 +172,7 @@ void MotionSynthesisService::HandleElsewhere(CallReactor& reactor,
   }
   large_requests_.Post([this, &reactor, reception, bytes = std::move(bytes), lease,
                         received = std::move(received)](bool run) mutable {
+    const common::Step step(kHandlingLarge);
     const std::optional<absl::Status> ended = reception->ended_meanwhile();
     if (ended.has_value() || !run) {
       *lease = ShareLease();  // free before the caller knows

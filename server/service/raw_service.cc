@@ -6,7 +6,14 @@
 
 #include <utility>
 
+#include "server/common/activity.h"
+
 namespace duet::server::service {
+namespace {
+
+constexpr common::StepKind kOpening{"gRPC callback", "beginning a call"};
+
+}  // namespace
 
 // What generated code does in its constructors; gRPC serves single messages as streams itself
 // (grpc::Service::MarkMethodStreamed).
@@ -16,8 +23,12 @@ void RawService::Serve(const char* method,
   using grpc::internal::RpcMethod;
   using grpc::internal::RpcServiceMethod;
   AddMethod(new RpcServiceMethod(method, RpcMethod::BIDI_STREAMING, nullptr));
-  MarkMethodRawCallback(
-      methods_++, new CallbackBidiHandler<grpc::ByteBuffer, grpc::ByteBuffer>(std::move(open)));
+  MarkMethodRawCallback(methods_++,
+                        new CallbackBidiHandler<grpc::ByteBuffer, grpc::ByteBuffer>(
+                            [open = std::move(open)](grpc::CallbackServerContext* context) {
+                              const common::Step step(kOpening);
+                              return open(context);
+                            }));
 }
 
 }  // namespace duet::server::service

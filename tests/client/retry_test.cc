@@ -104,16 +104,16 @@ TEST_F(RetryTest, WithoutAWaitAServerThatCannotBeReachedIsTriedOnce) {
 TEST_F(RetryTest, TheWaitEndsAtTheDeadline) {
   wait_ = absl::Hours(1);
   deadline_ = absl::Seconds(2);
-  EXPECT_THAT(Run(std::vector<absl::Status>(100, Refused())),
-              StatusIs(absl::StatusCode::kUnavailable,
-                       HasSubstr("expected a Duet server at lab:50051")));
+  EXPECT_THAT(
+      Run(std::vector<absl::Status>(100, Refused())),
+      StatusIs(absl::StatusCode::kUnavailable, HasSubstr("expected a Duet server at lab:50051")));
 }
 
 TEST_F(RetryTest, AnAnswerOfAnyKindStartsTheWaitAnew) {
   wait_ = absl::Milliseconds(100);
   const RetryLimits limits = {time_.now + deadline_, wait_, "lab:50051"};
-  const std::vector<AttemptEnd> ends = {Refused(), {Refused(), true}, Refused(), Unavailable(),
-                                        Refused(), absl::OkStatus()};
+  const std::vector<AttemptEnd> ends = {Refused(),     {Refused(), true}, Refused(),
+                                        Unavailable(), Refused(),         absl::OkStatus()};
   EXPECT_THAT(Retry(options_, time_.Environment(), Priority::kInteractive, limits,
                     [&] { return ends[static_cast<size_t>(attempts_++)]; }),
               IsOk());

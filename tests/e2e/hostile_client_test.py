@@ -157,6 +157,7 @@ class HostileClientTest(unittest.TestCase):
                                for entry in list(server.log)), "its check fails")
         for each in held:
             each.close()
+        tools.wait_until(lambda: get(server, "/readyz")[0] == 503, "it takes no new calls")
         tools.wait_until(lambda: get(server, "/healthz")[0] == 503, "it says so")
 
     def test_a_deadline_beyond_all_time_is_one(self):

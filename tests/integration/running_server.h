@@ -5,6 +5,7 @@
 #include <grpcpp/security/credentials.h>
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -58,9 +59,10 @@ class EventSink final : public server::metrics::LogSink {
 // A server, a channel to it and its log.
 class Running {
  public:
-  explicit Running(const server::config::ServerOptions& options = TestOptions()) {
+  explicit Running(const server::config::ServerOptions& options = TestOptions(),
+                   std::function<absl::Status()> self_check = nullptr) {
     absl::StatusOr<std::unique_ptr<server::lifecycle::DuetServer>> server =
-        server::lifecycle::DuetServer::Start(options, log);
+        server::lifecycle::DuetServer::Start(options, log, std::move(self_check));
     EXPECT_THAT(server, IsOk());
     server_ = *std::move(server);
     channel = grpc::CreateChannel(absl::StrCat("127.0.0.1:", server_->port()),

@@ -5,6 +5,7 @@
 #include <grpcpp/security/credentials.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -16,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "server/lifecycle/duet_server.h"
 #include "tests/integration/running_server.h"
@@ -36,6 +38,7 @@ using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::StartsWith;
 
 using absl::StatusCode;
@@ -131,6 +134,65 @@ TEST(ReadinessTest, TellsHowItStandsWithEachModel) {
   ASSERT_THAT(server->Serve(), IsOk());
   EXPECT_THAT(HttpGet(server->metrics_port(), "/readyz"),
               HasSubstr("ready\nmodel fake/1: served\n"));
+}
+
+// What a server says of itself while its self-check fails, and when it succeeds again.
+TEST(ReadinessTest, AFailedSelfCheckTurnsReadinessAndHealthUntilOneSucceeds) {
+  std::atomic<bool> well{true};
+  server::config::ServerOptions options = TestOptions();
+  options.self_check_seconds = 0.001;
+  Running server(options, [&well] {
+    return well ? absl::OkStatus() : absl::UnavailableError("nobody answers");
+  });
+  server.Load();
+  ASSERT_THAT(server->Serve(), IsOk());
+  const std::vector<std::string> names = {"", "duet.v1.MotionSynthesis", "model:fake",
+                                          "duet.v1.MotionSynthesis/fake"};
+  const auto wait_for_health = [&](const std::string& wanted) {
+    for (const std::string& name : names) {
+      while (Health(server.channel, name) != wanted) std::this_thread::yield();
+    }
+  };
+  const auto page = [&server](const char* path) { return HttpGet(server->metrics_port(), path); };
+  wait_for_health("SERVING");
+  well = false;
+  wait_for_health("NOT_SERVING");
+  EXPECT_THAT(page("/readyz"), AllOf(StartsWith("HTTP/1.1 503"), HasSubstr("self-check: failed")));
+  EXPECT_THAT(page("/metrics"), AllOf(HasSubstr("duet_ready 0\n"),
+                                      Not(HasSubstr("duet_self_check_failures_total 0\n"))));
+  EXPECT_THAT(server.log.Events("self_check_failed")[0]["message"].get<std::string>(),
+              HasSubstr("nobody answers"));
+  EXPECT_TRUE(Call(*server.stub, SampleRequest()).status.ok())
+      << "who still gets through is served";
+  while (!absl::StartsWith(page("/healthz"), "HTTP/1.1 503")) std::this_thread::yield();
+  well = true;
+  wait_for_health("SERVING");
+  EXPECT_THAT(page("/readyz"), AllOf(StartsWith("HTTP/1.1 200"), Not(HasSubstr("self-check"))));
+  EXPECT_THAT(page("/healthz"), StartsWith("HTTP/1.1 200"));
+  EXPECT_THAT(page("/metrics"), HasSubstr("duet_ready 1\n"));
+  EXPECT_EQ(server.log.Events("self_check_recovered").size(), 1u);
+}
+
+TEST(ReadinessTest, ASelfCheckThatSucceedsDoesNotEndADrain) {
+  std::atomic<int> checks{0};
+  std::atomic<bool> well{false};
+  server::config::ServerOptions options = TestOptions();
+  options.self_check_seconds = 0.001;
+  options.drain_seconds = 7;
+  Running server(options, [&] {
+    ++checks;
+    return well ? absl::OkStatus() : absl::UnavailableError("nobody answers");
+  });
+  server.Load();
+  ASSERT_THAT(server->Serve(), IsOk());
+  server->Drain([&](double) {
+    well = true;
+    const int before = checks;
+    while (checks < before + 3) std::this_thread::yield();
+    EXPECT_EQ(Health(server.channel, ""), "NOT_SERVING");
+    EXPECT_THAT(HttpGet(server->metrics_port(), "/readyz"), StartsWith("HTTP/1.1 503"));
+    return true;
+  });
 }
 
 TEST(ListenTest, ASecondServerOnAPortFailsAndSaysWhere) {

@@ -1,23 +1,27 @@
-#include "server/lifecycle/stop_signal.h"
+#include "server/watchdog/stop_signal.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <csignal>
 
+#include "server/watchdog/watchdog.h"
+
 namespace duet::test {
 namespace {
 
-// No other thread may run in this program: it would take the signals.
+using server::watchdog::StopSignal;
+using server::watchdog::Watchdog;
 
 TEST(StopSignalTest, SeesNothingBeforeASignal) {
-  server::lifecycle::StopSignal stop;
+  StopSignal stop;
   EXPECT_FALSE(stop.WaitFor(0));
   EXPECT_FALSE(stop.WaitFor(0.001));
 }
 
 TEST(StopSignalTest, SeesSignalsThatCameWhileNobodyWaited) {
-  server::lifecycle::StopSignal stop;
+  StopSignal stop;
+  const Watchdog watchdog({}, stop);
   for (const int signal : {SIGTERM, SIGINT}) {
     kill(getpid(), signal);
     EXPECT_TRUE(stop.WaitFor(60));
@@ -25,23 +29,34 @@ TEST(StopSignalTest, SeesSignalsThatCameWhileNobodyWaited) {
   }
 }
 
-TEST(StopSignalTest, WaitEndsWithASignal) {
-  server::lifecycle::StopSignal stop;
+TEST(StopSignalTest, SeesSignalsFromBeforeTheWatchdog) {
+  StopSignal stop;
   kill(getpid(), SIGTERM);
-  stop.Wait();
+  const Watchdog watchdog({}, stop);
+  EXPECT_TRUE(stop.WaitFor(60));
+}
+
+TEST(StopSignalTest, WaitEndsWithASignal) {
+  StopSignal stop;
+  const Watchdog watchdog({}, stop);
+  kill(getpid(), SIGTERM);
+  EXPECT_EQ(stop.Wait(), StopSignal::Kind::kStop);
   EXPECT_FALSE(stop.WaitFor(0));
+  kill(getpid(), SIGHUP);
+  EXPECT_EQ(stop.Wait(), StopSignal::Kind::kReload);
 }
 
 TEST(StopSignalTest, TellsReloadsFromStops) {
-  using server::lifecycle::StopSignal;
   StopSignal stop;
-  kill(getpid(), SIGHUP);
+  stop.Note(StopSignal::Kind::kReload);
   EXPECT_FALSE(stop.WaitFor(0)) << "a reload stops nothing";
   EXPECT_EQ(stop.Wait(), StopSignal::Kind::kReload);
-  kill(getpid(), SIGHUP);
-  kill(getpid(), SIGTERM);
+  stop.Note(StopSignal::Kind::kReload);
+  stop.Note(StopSignal::Kind::kReload);
+  stop.Note(StopSignal::Kind::kStop);
   EXPECT_EQ(stop.Wait(), StopSignal::Kind::kStop) << "before the reload that came first";
   EXPECT_EQ(stop.Wait(), StopSignal::Kind::kReload);
+  EXPECT_FALSE(stop.WaitFor(0));
 }
 
 }  // namespace

@@ -81,8 +81,7 @@ class GltfExporter {
 
   int AddMesh(const std::string& name, const RigAnimation& animation, const Look& look) {
     const retargeting::Mannequin mannequin =
-        MakeMannequin(
-        skeleton_, animation.rig, animation.rest_positions, animation.sole_depth);
+        MakeMannequin(skeleton_, animation.rig, animation.rest_positions, animation.sole_depth);
     const std::size_t joints = animation.rig.joints.size();
     ordered_json primitives = ordered_json::array();
     primitives.push_back(

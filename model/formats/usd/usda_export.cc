@@ -142,8 +142,7 @@ class UsdaExporter {
     out_.Line(absl::StrCat("float3[] extent = ", Box(everywhere, kAroundJoints)));
     WriteSkeleton(path, animation);
     const retargeting::Mannequin mannequin =
-        MakeMannequin(
-            skeleton_, animation.rig, animation.rest_positions, animation.sole_depth);
+        MakeMannequin(skeleton_, animation.rig, animation.rest_positions, animation.sole_depth);
     WriteMesh("mannequin", path, name, mannequin.body);
     if (!mannequin.visor.indices.empty()) WriteMesh("visor", path, "visor", mannequin.visor);
     out_.Close();

@@ -107,7 +107,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadManifest{"leader\tid\na.bvh\tx\nb.bvh\t\n",
                     "m:3: id: expected one, as on the lines before, got nothing"},
         BadManifest{"{\"leader\": \"a.bvh\"}\nnot json\n",
-                    "m:2: line: expected a JSON object, got "}));
+                    "m:2: line: expected a JSON object, got \"not json\""},
+        BadManifest{"{\"leader\": \"a.bvh\"}\n{\"leader\"\n", "m:2: line: not JSON"}));
 
 TEST(ManifestTest, GoesOnAfterABadLine) {
   std::istringstream in("leader\tseed\na.bvh\tx\nb.bvh\t2\n");

@@ -130,6 +130,14 @@ TEST_F(PlanCheckTest, EveryBadLineIsNamedWithAllItsFields) {
                              HasSubstr("\n  m:5: columns"))));
 }
 
+TEST_F(PlanCheckTest, AnIdOfABadLineIsTakenAllTheSame) {
+  const auto check = Check("leader\tid\tseed\na.csv\tx\t-1\nb.csv\tx\t1\n");
+  ASSERT_THAT(check, IsOk());
+  EXPECT_THAT(check->bad_lines,
+              ElementsAre(HasSubstr("m:2: seed"),
+                          "m:3: id: expected one that no other line has, got \"x\""));
+}
+
 TEST_F(PlanCheckTest, AManifestWithoutAHeaderIsOneProblem) {
   const auto check = Check("a.csv\nb.csv\n");
   ASSERT_THAT(check, IsOk());

@@ -564,9 +564,10 @@ TEST_F(ProgramTest, ARefusalListsEveryField) {
 TEST_F(ProgramTest, AnAbsentServerIsWorthRetryingAndNamed) {
   EXPECT_CALL(*connection_, GetModel).WillOnce(Return(absl::UnavailableError("refused")));
   EXPECT_EQ(Synthesize("pair.html", {"--server", "duet:1"}), 1);
-  EXPECT_EQ(err_.str(),
-            "duet: refused (UNAVAILABLE)\nDoes a duet-server listen at duet:1? (--server; to wait for "
-            "one, --wait SECONDS; where it encrypts, --tls or --tls-ca FILE)\n");
+  EXPECT_EQ(
+      err_.str(),
+      "duet: refused (UNAVAILABLE)\nDoes a duet-server listen at duet:1? (--server; to wait for "
+      "one, --wait SECONDS; where it encrypts, --tls or --tls-ca FILE)\n");
 }
 
 TEST_F(ProgramTest, ADrainingServerIsWorthRetrying) {

@@ -130,7 +130,7 @@ TEST(ParseCommandLineTest, ReadsEveryFlag) {
       "--version-policy k3hi=all --admin-listen b:2 "
       "--max-batch-delay-seconds 0.5 --client-share 0.5 --client-key x-client "
       "--max-held-bytes 30000 --receive-timeout-seconds 11 --write-timeout-seconds 12 "
-      "--max-call-seconds 13 --self-check-seconds 14 --max-slow-requests 15",
+      "--max-call-seconds 13 --self-check-seconds 14 --watchdog-seconds 16 --max-slow-requests 15",
       ' '));
   ASSERT_THAT(line, IsOk());
   const absl::StatusOr<v1::ServerConfig> expected = ParseConfigText(
@@ -150,7 +150,7 @@ TEST(ParseCommandLineTest, ReadsEveryFlag) {
          log_level: LOG_LEVEL_WARNING log_success_ratio: 0.5 log_refusals_per_second: 3
          client_share: 0.5 client_key: "x-client" max_held_bytes: 30000
          receive_timeout_seconds: 11 write_timeout_seconds: 12 max_call_seconds: 13
-         self_check_seconds: 14 max_slow_requests: 15)",
+         self_check_seconds: 14 max_slow_requests: 15 watchdog_seconds: 16)",
       false);
   ASSERT_THAT(expected, IsOk());
   EXPECT_TRUE(google::protobuf::util::MessageDifferencer::Equals(line->config, *expected))

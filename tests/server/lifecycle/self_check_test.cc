@@ -89,11 +89,20 @@ TEST(SelfCheckTest, IsUnhealthyAfterThreeFailuresAndWellAgainAfterASuccess) {
     EXPECT_THAT(status, StatusIs(StatusCode::kUnavailable, "no answer"));
     ++failures;
   };
+  std::atomic<int> turns{0};
+  options.changed = [&](bool passes) {
+    EXPECT_EQ(passes, turns % 2 == 1) << "it tells each turn once";
+    ++turns;
+  };
   const SelfCheck check(options);
   while (failures < 3) std::this_thread::yield();
   EXPECT_FALSE(check.healthy());
+  EXPECT_FALSE(check.passes());
+  EXPECT_EQ(turns, 1);
   well = true;
-  while (!check.healthy()) std::this_thread::yield();
+  while (turns < 2) std::this_thread::yield();
+  EXPECT_TRUE(check.healthy());
+  EXPECT_TRUE(check.passes());
 }
 
 TEST(SelfCheckTest, TwoFailuresInARowAreNoReason) {
@@ -105,6 +114,7 @@ TEST(SelfCheckTest, TwoFailuresInARowAreNoReason) {
     return ++checks % 3 == 0 ? absl::OkStatus() : absl::UnavailableError("no answer");
   };
   options.failed = [](const absl::Status&) {};
+  options.changed = [](bool) {};
   const SelfCheck check(options);
   while (checks < 30) unhealthy += check.healthy() ? 0 : 1;
   EXPECT_EQ(unhealthy, 0);

@@ -1,0 +1,53 @@
+#ifndef DUET_SERVER_WATCHDOG_STEP_WATCH_H_
+#define DUET_SERVER_WATCHDOG_STEP_WATCH_H_
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "server/common/activity.h"
+
+namespace duet::server::watchdog {
+
+// A thread that is not idle, and for how long it has been at its step.
+struct BusyThread {
+  pid_t thread_id = 0;
+  const common::StepKind* step = nullptr;
+  double seconds = 0;
+};
+
+// Measures for how long each thread has been at its step. Counts only the time that it is told of,
+// so that a process that is paused as a whole (SIGSTOP, a frozen container) has no stuck threads.
+//
+// Threads: not safe to call concurrently. Takes no memory after construction.
+class StepWatch {
+ public:
+  // `elapsed`: seconds since the last look. A step that began since then has taken 0 seconds.
+  void Look(const common::ThreadStates& threads, double elapsed);
+
+  // The thread that has been at a bounded step for longest, or an idle one (no step).
+  BusyThread longest() const;
+
+  // Calls `visit(const BusyThread&)` for each thread that has been at its step for `seconds` or
+  // more. Unless `every`, only those at bounded steps.
+  template <typename Visit>
+  void ForEach(double seconds, bool every, const Visit& visit) const {
+    for (const Watched& thread : watched_) {
+      const BusyThread& busy = thread.busy;
+      if (busy.step == nullptr || busy.seconds < seconds) continue;
+      if (every || busy.step->is_bounded) visit(busy);
+    }
+  }
+
+ private:
+  struct Watched {
+    BusyThread busy;
+    std::uint64_t beat = 0;
+  };
+
+  std::array<Watched, common::kMaxThreads> watched_;
+};
+
+}  // namespace duet::server::watchdog
+
+#endif  // DUET_SERVER_WATCHDOG_STEP_WATCH_H_

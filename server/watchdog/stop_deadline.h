@@ -1,0 +1,34 @@
+#ifndef DUET_SERVER_WATCHDOG_STOP_DEADLINE_H_
+#define DUET_SERVER_WATCHDOG_STOP_DEADLINE_H_
+
+namespace duet::server::watchdog {
+
+// Whether a process that was asked to stop should have ended by now.
+//
+// Threads: not safe to call concurrently.
+class StopDeadline {
+ public:
+  // A signal to stop came.
+  void Asked() { ++signals_; }
+  void Pass(double seconds) {
+    if (signals_ >= 1) since_first_ += seconds;
+    if (signals_ >= 2) since_second_ += seconds;
+  }
+
+  bool asked() const { return signals_ > 0; }
+  // The process has `stop_seconds` from the first signal on, and no more than `hurry_seconds` from
+  // the second on.
+  bool IsOver(double stop_seconds, double hurry_seconds) const {
+    return (signals_ >= 1 && since_first_ >= stop_seconds) ||
+           (signals_ >= 2 && since_second_ >= hurry_seconds);
+  }
+
+ private:
+  int signals_ = 0;
+  double since_first_ = 0;
+  double since_second_ = 0;
+};
+
+}  // namespace duet::server::watchdog
+
+#endif  // DUET_SERVER_WATCHDOG_STOP_DEADLINE_H_

@@ -1,0 +1,58 @@
+#include "server/watchdog/stop_deadline.h"
+
+#include <gtest/gtest.h>
+
+namespace duet::server::watchdog {
+namespace {
+
+constexpr double kStop = 40;
+constexpr double kHurry = 10;
+
+TEST(StopDeadlineTest, IsNeverOverUnlessAsked) {
+  StopDeadline deadline;
+  deadline.Pass(1e9);
+  EXPECT_FALSE(deadline.asked());
+  EXPECT_FALSE(deadline.IsOver(0, 0));
+}
+
+TEST(StopDeadlineTest, TheFirstSignalAllowsDrainAndGrace) {
+  StopDeadline deadline;
+  deadline.Pass(1000);
+  deadline.Asked();
+  deadline.Pass(39);
+  EXPECT_FALSE(deadline.IsOver(kStop, kHurry));
+  deadline.Pass(1);
+  EXPECT_TRUE(deadline.IsOver(kStop, kHurry));
+}
+
+TEST(StopDeadlineTest, TheSecondSignalCutsThemShort) {
+  StopDeadline deadline;
+  deadline.Asked();
+  deadline.Pass(5);
+  deadline.Asked();
+  deadline.Pass(9);
+  EXPECT_FALSE(deadline.IsOver(kStop, kHurry));
+  deadline.Pass(1);
+  EXPECT_TRUE(deadline.IsOver(kStop, kHurry));
+}
+
+TEST(StopDeadlineTest, FurtherSignalsProlongNothing) {
+  StopDeadline deadline;
+  for (int i = 0; i < 11; ++i) {
+    deadline.Asked();
+    deadline.Pass(1);
+  }
+  EXPECT_TRUE(deadline.IsOver(kStop, kHurry)) << "ten seconds since the second";
+}
+
+TEST(StopDeadlineTest, ASecondSignalDoesNotProlongTheFirst) {
+  StopDeadline deadline;
+  deadline.Asked();
+  deadline.Pass(39);
+  deadline.Asked();
+  deadline.Pass(1);
+  EXPECT_TRUE(deadline.IsOver(kStop, kHurry));
+}
+
+}  // namespace
+}  // namespace duet::server::watchdog

@@ -1,0 +1,153 @@
+#include "server/watchdog/watchdog.h"
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <string>
+#include <thread>
+
+#include "server/common/mutex.h"
+#include "server/watchdog/exit_codes.h"
+
+namespace duet::server::watchdog {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ContainsRegex;
+using ::testing::ExitedWithCode;
+using ::testing::HasSubstr;
+
+constexpr common::StepKind kWorking{"tester", "working for ever"};
+constexpr common::StepKind kLoading{"loader", "reading for ever", /*is_bounded=*/false};
+
+constexpr double kSoon = 0.05;
+constexpr double kNever = 1e6;
+
+[[noreturn]] void WaitForEver() {
+  while (true) pause();
+}
+
+// Begins a thread that holds a lock and never returns.
+void BlockIn(const common::StepKind& kind) {
+  std::thread([&kind] {
+    const common::MutexLock lock(*new common::Mutex);
+    const common::Step step(kind);
+    WaitForEver();
+  }).detach();
+}
+
+// Each test ends a process of its own, in which no other thread has begun.
+class WatchdogDeathTest : public ::testing::Test {
+ protected:
+  void SetUp() override { GTEST_FLAG_SET(death_test_style, "threadsafe"); }
+
+  // The process under test, but for what ends it. Nothing is destroyed.
+  static Watchdog& Begin(const WatchdogOptions& options) {
+    stop = new StopSignal;
+    return *new Watchdog(options, *stop);
+  }
+  static WatchdogOptions Options(double step_seconds, double hurry_seconds, bool text = false) {
+    WatchdogOptions options;
+    options.step_seconds = step_seconds;
+    options.hurry_seconds = hurry_seconds;
+    options.text_log = text;
+    return options;
+  }
+
+  static inline StopSignal* stop = nullptr;
+};
+
+TEST_F(WatchdogDeathTest, AThreadThatIsStuckEndsTheProcess) {
+  const auto process = [] {
+    Begin(Options(kSoon, kNever));
+    common::ProcessVitals().calls = 3;
+    BlockIn(kWorking);
+    WaitForEver();
+  };
+  EXPECT_EXIT(process(), ExitedWithCode(kExitStuck),
+              AllOf(HasSubstr(R"("severity":"ERROR","event":"thread_stuck","thread":"tester")"),
+                    HasSubstr(R"("doing":"working for ever","seconds":0.)"),
+                    HasSubstr(R"("event":"stuck",)"), HasSubstr(R"("calls":3,)"),
+                    HasSubstr("\"exit_code\":3}\n")));
+}
+
+TEST_F(WatchdogDeathTest, LinesForPeopleHaveNoBraces) {
+  const auto process = [] {
+    Begin(Options(kSoon, kNever, /*text=*/true));
+    BlockIn(kWorking);
+    WaitForEver();
+  };
+  EXPECT_EXIT(process(), ExitedWithCode(kExitStuck),
+              AllOf(ContainsRegex("Z ERROR   thread_stuck thread=tester thread_id=[0-9]+ "
+                                  "doing=\"working for ever\" seconds=0"),
+                    HasSubstr(" exit_code=3\n")));
+}
+
+TEST_F(WatchdogDeathTest, ALogThatNobodyReadsDoesNotMatter) {
+  const auto process = [] {
+    int ends[2];
+    if (pipe(ends) != 0 || dup2(ends[1], STDERR_FILENO) < 0) std::abort();
+    fcntl(STDERR_FILENO, F_SETFL, O_NONBLOCK);
+    const std::string page(4096, ' ');
+    while (write(STDERR_FILENO, page.data(), page.size()) > 0) {
+    }
+    fcntl(STDERR_FILENO, F_SETFL, 0);
+    Begin(Options(kSoon, kNever));
+    BlockIn(kWorking);
+    WaitForEver();
+  };
+  EXPECT_EXIT(process(), ExitedWithCode(kExitStuck), "");
+}
+
+TEST_F(WatchdogDeathTest, AProcessThatDoesNotStopInTimeEnds) {
+  const auto process = [] {
+    Begin(Options(/*step_seconds=*/0, kSoon));
+    BlockIn(kLoading);
+    kill(getpid(), SIGTERM);
+    WaitForEver();
+  };
+  EXPECT_EXIT(process(), ExitedWithCode(kExitLate),
+              AllOf(HasSubstr(R"("event":"thread_at_work","thread":"loader")"),
+                    HasSubstr(R"("event":"stopped_late")"), HasSubstr("\"exit_code\":4}\n")));
+}
+
+TEST_F(WatchdogDeathTest, ASecondSignalCutsTheTimeToStopShort) {
+  const auto process = [] {
+    Begin(Options(/*step_seconds=*/0, kSoon)).AllowToStop(kNever);
+    for (int i = 0; i < 2; ++i) {
+      kill(getpid(), SIGTERM);
+      if (!stop->WaitFor(60)) std::abort();
+    }
+    WaitForEver();
+  };
+  EXPECT_EXIT(process(), ExitedWithCode(kExitLate), HasSubstr("stopped_late"));
+}
+
+TEST_F(WatchdogDeathTest, StepsWithoutABoundMayLastForEver) {
+  const auto process = [] {
+    Begin(Options(kSoon, kNever));
+    BlockIn(kLoading);
+    std::thread([] {
+      const common::Step step(kWorking);
+      const common::Idle idle;
+      WaitForEver();
+    }).detach();
+    BlockIn(kWorking);  // ends it
+    WaitForEver();
+  };
+  EXPECT_EXIT(process(), ExitedWithCode(kExitStuck),
+              AllOf(HasSubstr(R"("thread":"tester")"), HasSubstr(R"("threads":1,)"),
+                    ::testing::Not(HasSubstr("loader"))));
+}
+
+TEST(WatchdogTest, ADestroyedWatchdogEndsNothing) {
+  StopSignal stop;
+  const Watchdog watchdog({}, stop);
+}
+
+}  // namespace
+}  // namespace duet::server::watchdog
