@@ -30,8 +30,8 @@ RECIPE = """
 reactions { labels { weights { key: "kick" value: 1 } } }
 output { formats: FORMAT_NPY %s }
 """
-COLUMNS = ("run", "items", "items a second", "bare gRPC, calls a second", "client, us an item",
-           "in the kernel", "server, us an item", "client's memory, MiB")
+COLUMNS = ("run", "items", "items a second", "bare gRPC, calls a second", "ratio",
+           "client, us an item", "in the kernel", "server, us an item", "client's memory, MiB")
 JOINTS = ("head", "neck", "torso", "left_shoulder", "left_elbow", "left_hand", "right_shoulder",
           "right_elbow", "right_hand", "left_hip", "left_knee", "left_foot", "right_hip",
           "right_knee", "right_foot")
@@ -86,8 +86,8 @@ def processor_seconds(pid):
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
-def measure(name, program, server, address, folder, recipe, *leaders):
-    """One run; its row of the table, without the figure of bare gRPC."""
+def measure(name, program, server, address, folder, recipe, *leaders, bare=None):
+    """One run; its row of the table. `bare`: calls a second of bare gRPC at the same server."""
     served = processor_seconds(server.pid)
     start = time.monotonic()
     client = subprocess.Popen(
@@ -100,7 +100,9 @@ def measure(name, program, server, address, folder, recipe, *leaders):
         raise SystemExit(f"{name}: exit {os.waitstatus_to_exitcode(status)}, {events[-1:]}")
     settled = events[-1]["done"] + events[-1]["rejected"]
     served = processor_seconds(server.pid) - served
-    return {"run": name, "items": f"{settled:,}", "items a second": f"{settled / seconds:,.0f}",
+    beside = {"bare gRPC, calls a second": f"{bare:,.0f}",
+              "ratio": f"{settled / seconds / bare:.2f}"} if bare else {}
+    return {"run": name, **beside, "items": f"{settled:,}", "items a second": f"{settled / seconds:,.0f}",
             "client, us an item": f"{1e6 * (usage.ru_utime + usage.ru_stime) / settled:,.0f}",
             "in the kernel": f"{1e6 * usage.ru_stime / settled:,.0f}",
             "server, us an item": f"{1e6 * served / settled:,.0f}",
@@ -110,7 +112,7 @@ def measure(name, program, server, address, folder, recipe, *leaders):
 def bare_calls(build, address, calls):
     printed = subprocess.run([build / "benchmarks" / "call_cost", address, "--calls", str(calls)],
                              stdout=subprocess.PIPE, text=True, check=True).stdout
-    return f"{json.loads(printed)['calls_per_second']:,.0f}"
+    return json.loads(printed)["calls_per_second"]
 
 
 def fake_runs(folder, arguments):
@@ -145,8 +147,8 @@ def rows(folder, arguments):
         for name, recipe, leaders in fake_runs(folder, arguments):
             calls = bare_calls(arguments.build, address, min(arguments.items, 5000))
             for which, program in programs.items():
-                yield {**measure(name + which, program, server, address, folder, folder / recipe,
-                                 *leaders), "bare gRPC, calls a second": calls}
+                yield measure(name + which, program, server, address, folder, folder / recipe,
+                              *leaders, bare=calls)
     write_samples(folder / "samples", arguments.leaders)
     with serving(arguments.build / "bin" / "duet-server", folder) as (server, address):
         for which, program in programs.items():

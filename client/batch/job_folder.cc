@@ -133,6 +133,10 @@ absl::Status JobFolder::Take() {
   absl::Status status = lock_.Take(state() / "lock");
   if (!status.ok()) return status;
   fs::remove_all(temporary(), error);
+  // What a process that was killed had not yet renamed.
+  for (const char* name : {"contact_sheet.html", "dataset.json", "summary.json"}) {
+    fs::remove(out_ / absl::StrCat(name, ".partial"), error);
+  }
   fs::create_directory(temporary(), error);
   return error ? CannotWrite(temporary(), error.value()) : absl::OkStatus();
 }
@@ -172,7 +176,7 @@ bool JobFolder::HasAnswers() const {
 // The job itself last: stopped before, the next run comes here again.
 absl::Status JobFolder::Discard() const {
   for (const fs::path& path :
-       {journal(), spool(), shards(), damage(), errors(), RecipeFile(out_), IdentityFile(out_)}) {
+       {journal(), spool(), shards(), damage(), RecipeFile(out_), IdentityFile(out_)}) {
     std::error_code error;
     fs::remove_all(path, error);
     if (error) return CannotWrite(path, error.value());

@@ -38,8 +38,8 @@ class JobFolder {
  public:
   explicit JobFolder(std::filesystem::path out) : out_(std::move(out)) {}
 
-  // Makes and locks the folder and removes temporary files. ABORTED where the folder is locked or
-  // cannot be written.
+  // Makes and locks the folder and removes temporary files of runs that were killed. ABORTED where
+  // the folder is locked or cannot be written.
   absl::Status Take();
   // The same, and reads what the job was begun with into `begun`; its models are empty where there
   // is none. Also FAILED_PRECONDITION, naming what differs, where that is not what is `wanted` now.

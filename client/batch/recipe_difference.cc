@@ -29,7 +29,7 @@ void Flatten(const json& value, const std::string& path, Fields* fields) {
     for (size_t i = 0; i < value.size(); ++i) {
       Flatten(value[i], absl::StrCat(path, "[", i, "]"), fields);
     }
-  } else {
+  } else if (!path.empty()) {
     (*fields)[path] = value;
   }
 }

@@ -50,7 +50,8 @@ absl::StatusOr<ExitCode> RunCommand(const ParsedCommandLine& parsed,
     return Done(RunSynthesize(*parsed.synthesize, environment));
   }
   if (parsed.batch.has_value()) {
-    *server = absl::StrJoin(parsed.batch->servers, ", ");
+    const BatchArguments& batch = *parsed.batch;
+    *server = absl::StrJoin(batch.repairers.empty() ? batch.servers : batch.repairers, ", ");
     return RunBatch(*parsed.batch, environment);
   }
   if (parsed.inspect.has_value()) return RunInspect(*parsed.inspect, environment);

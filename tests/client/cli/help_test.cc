@@ -79,7 +79,7 @@ TEST(Help, SuggestsWhatWasMeant) {
   expect({"models", "--sever=x"}, "models has no flag --sever; did you mean --server?");
   EXPECT_THAT(ParseCommandLine({"models", "--xyzzy"}).text, Not(HasSubstr("did you mean")));
   // Whose value would be a third file.
-  expect({"compare", "a", "b", "--out", "c"}, "compare has no flag --out\n");
+  expect({"compare", "a", "b", "--page", "c"}, "compare has no flag --page\n");
   expect({"convert", "a", "--ou", "b"}, "convert has no flag --ou; did you mean --out?");
   expect({"batch", "merge", "--jsn"}, "batch has no flag --jsn; did you mean --json?");
 }
@@ -154,7 +154,7 @@ TEST(ManualPage, AllAreWrittenIntoAFolder) {
   }
   EXPECT_THAT(
       names, AllOf(Contains("duet.1"), Contains("duet-inspect.1"), Contains("duet-batch-merge.1")));
-  EXPECT_EQ(names.size(), 19u);
+  EXPECT_EQ(names.size(), 20u);
 }
 
 }  // namespace

@@ -6,14 +6,19 @@
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "model/formats/motion_file.h"
+#include "model/motion/skeleton.h"
 #include "nlohmann/json.hpp"
+#include "tests/support/sample_motion.h"
+#include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace duet::client::cli {
 namespace {
 
+using test::IsOk;
+using test::SwayingMotion;
 using test::TemporaryFolder;
-using test::WriteTestFile;
 
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
@@ -25,7 +30,7 @@ struct Answer {
 };
 
 // What `duet stdio` answers to each line.
-std::vector<Answer> Run(const std::string& lines) {
+std::vector<Answer> Ask(const std::string& lines) {
   std::istringstream in(lines);
   std::ostringstream out, err;
   EXPECT_EQ(RunProgram({"stdio"}, {nullptr, &out, &err, &in}), 0);
@@ -47,7 +52,7 @@ std::vector<Answer> Run(const std::string& lines) {
 
 TEST(StdioCommandTest, AnswersEachLineInTurn) {
   const std::vector<Answer> answers =
-      Run("[\"--version\"]\n[\"convert\", \"/no/such.bvh\", \"--out\", \"-\"]\n[\"--version\"]\n");
+      Ask("[\"--version\"]\n[\"convert\", \"/no/such.bvh\", \"--out\", \"-\"]\n[\"--version\"]\n");
   ASSERT_THAT(answers, SizeIs(3));
   EXPECT_EQ(answers[0].exit_code, 0);
   EXPECT_THAT(answers[0].out, StartsWith("duet "));
@@ -59,13 +64,15 @@ TEST(StdioCommandTest, AnswersEachLineInTurn) {
 
 TEST(StdioCommandTest, WritesWhatACommandWritesToStandardOutput) {
   TemporaryFolder folder;
-  const std::string file = (folder / "points.json").string();
-  WriteTestFile(file, R"({"format": "duet-motion", "version": 1, "frame_rate_hz": 30,
-      "unit": "metres", "up_axis": "y-up", "joint_names": ["torso"],
-      "leader": [[[0, 1, 2]], [[0, 1, 3]]]})");
+  const std::string file = (folder / "leader.csv").string();
+  motion::Clip leader;
+  leader.joint_names = motion::SbuSkeleton().joint_names;
+  leader.frame_rate_hz = 15;
+  leader.poses = SwayingMotion(20, 15);
+  ASSERT_THAT(formats::WritePair(file, {leader, leader}, motion::SbuSkeleton()), IsOk());
   const std::string words =
       nlohmann::json({"convert", file, "--out", "-", "--output-format", "npy"}).dump();
-  const std::vector<Answer> answers = Run(words + "\n" + words + "\n");
+  const std::vector<Answer> answers = Ask(words + "\n" + words + "\n");
   ASSERT_THAT(answers, SizeIs(2));
   EXPECT_EQ(answers[0].exit_code, 0) << answers[0].err;
   EXPECT_THAT(answers[0].out, StartsWith("\x93NUMPY"));
@@ -74,7 +81,7 @@ TEST(StdioCommandTest, WritesWhatACommandWritesToStandardOutput) {
 
 TEST(StdioCommandTest, ACommandHasNoStandardInput) {
   const std::vector<Answer> answers =
-      Run("[\"convert\", \"-\", \"--input-format\", \"bvh\", \"--out\", \"-\", "
+      Ask("[\"convert\", \"-\", \"--input-format\", \"bvh\", \"--out\", \"-\", "
           "\"--output-format\", \"csv\"]\n[\"--version\"]\n");
   ASSERT_THAT(answers, SizeIs(2));
   EXPECT_NE(answers[0].exit_code, 0);
@@ -84,7 +91,7 @@ TEST(StdioCommandTest, ACommandHasNoStandardInput) {
 TEST(StdioCommandTest, ALineThatIsNoCommandIsAUsageError) {
   for (const char* line : {"", "convert", "{", "[]", "{\"a\": 1}", "[1]", "[[\"models\"]]",
                            "[\"stdio\"]", "[\"\xff\"]"}) {
-    const std::vector<Answer> answers = Run(std::string(line) + "\n[\"--version\"]\n");
+    const std::vector<Answer> answers = Ask(std::string(line) + "\n[\"--version\"]\n");
     ASSERT_THAT(answers, SizeIs(2)) << line;
     EXPECT_EQ(answers[0].exit_code, 2) << line;
     EXPECT_THAT(answers[0].err, HasSubstr("expected a JSON array with the words of a command"));
@@ -92,7 +99,7 @@ TEST(StdioCommandTest, ALineThatIsNoCommandIsAUsageError) {
   }
 }
 
-TEST(StdioCommandTest, WithoutInputThereIsNothingToDo) { EXPECT_THAT(Run(""), SizeIs(0)); }
+TEST(StdioCommandTest, WithoutInputThereIsNothingToDo) { EXPECT_THAT(Ask(""), SizeIs(0)); }
 
 }  // namespace
 }  // namespace duet::client::cli

@@ -23,8 +23,15 @@ TEST(ParseClassWeightTest, ReadsNameAndWeight) {
   EXPECT_EQ(weight->weight, -0.5f);
 }
 
+TEST(ParseClassWeightTest, ANameAloneWeighsOne) {
+  const absl::StatusOr<ClassWeight> weight = ParseClassWeight("kick");
+  ASSERT_THAT(weight, IsOk());
+  EXPECT_EQ(weight->interaction_class, "kick");
+  EXPECT_EQ(weight->weight, 1);
+}
+
 TEST(ParseClassWeightTest, RefusesEverythingElse) {
-  for (const char* text : {"", "kick", "kick=", "=1", "kick=hard", "kick=1x", "kick=1=2"}) {
+  for (const char* text : {"", "kick=", "=1", "kick=hard", "kick=1x", "kick=1=2"}) {
     EXPECT_THAT(
         ParseClassWeight(text),
         StatusIs(kInvalid, AllOf(HasSubstr(text), HasSubstr("wanted CLASS or CLASS=WEIGHT"))));
@@ -41,8 +48,8 @@ TEST(ParseKeyframeTest, ReadsFrameAndWeights) {
 }
 
 TEST(ParseKeyframeTest, RefusesEverythingElse) {
-  for (const char* text : {"", "30", "30:", "kick=1", "-1:kick=1", "x:kick=1", "30:kick",
-                           "30:kick=1,", "30:,kick=1"}) {
+  for (const char* text : {"", "30", "30:", "kick=1", "-1:kick=1", "x:kick=1",
+                           "30:kick=", "30:kick=1,", "30:,kick=1"}) {
     EXPECT_THAT(ParseKeyframe(text), StatusIs(kInvalid, HasSubstr("wanted FRAME:CLASS=WEIGHT")));
   }
 }
