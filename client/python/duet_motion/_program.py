@@ -37,8 +37,8 @@ def find() -> str:
         raise FileNotFoundError(
             f"program {name!r}: expected Duet's command-line client, which reads and writes motion "
             "files, got no such program; pip does not bring it: install the Debian package "
-            "duet-client, or build it (cmake --install build/release --component client), and put "
-            "it on the PATH or name it in DUET_PROGRAM")
+            "duet (deploy/README.md) or build the program, and put it on the PATH or name it in "
+            "DUET_PROGRAM")
     return found
 
 

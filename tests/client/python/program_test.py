@@ -131,7 +131,7 @@ class ProgramTest(unittest.TestCase):
     def test_a_program_that_is_not_there_says_how_to_get_it(self):
         with mock.patch.dict(os.environ, {"DUET_PROGRAM": "no-such-duet"}):
             with self.assertRaisesRegex(FileNotFoundError,
-                                        "program 'no-such-duet': expected .*duet-client.*DUET_PROG"):
+                                        "program 'no-such-duet': expected .*Debian package duet.*DUET_PROG"):
                 _program.run("read")
 
     @unittest.skipUnless(PROGRAM.exists(), f"no program at {PROGRAM}; build it, or set DUET_BIN_DIR")
