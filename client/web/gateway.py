@@ -126,15 +126,17 @@ async def run(options):
     flags = [f"--server={options.server}"]
     if options.tls_ca:
         flags.append(f"--tls-ca={pathlib.Path(options.tls_ca).resolve()}")
-    channel = grpc_web.connect(options.server, tls)
-    gateway = Gateway(conversions.Duet(flags), channel)
-    server = serving.Server(gateway.routes(), serving.allowed_hosts(options.listen, options.host))
+    program = conversions.Duet(flags)
 
     def started(address):
         host = f"[{address[0]}]" if ":" in address[0] else address[0]
         print(f"http://{host}:{address[1]}", flush=True)
 
+    # A channel that is not closed may keep the process from ending.
+    channel = grpc_web.connect(options.server, tls)
     try:
+        server = serving.Server(Gateway(program, channel).routes(),
+                                serving.allowed_hosts(options.listen, options.host))
         await serving.serve(server, options.listen, started)
     finally:
         await channel.close()

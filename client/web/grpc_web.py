@@ -49,8 +49,8 @@ async def forward(request, channel, uploads):
         async with uploads.message(request) as body:
             refused = why_refused(body.read(FRAME_BYTES), body)
             if refused is None:
-                # As a stream of one, which is the same on the wire: the message is let go of as soon
-                # as it has been sent, not with the call.
+                # As a stream of one, which is the same on the wire: the message's memory is free as
+                # soon as it has been sent, not at the call's end.
                 call = channel.stream_stream(request.path)(timeout=seconds, metadata=metadata)
                 await send(call, body.read())
         await response.prepare(request)
