@@ -13,7 +13,9 @@ cmake --build "${build_dir}" --parallel "${JOBS:-$(scripts/build_jobs.sh)}" --ta
 # shellcheck source=scripts/sanitizer_options.sh
 source scripts/sanitizer_options.sh "${build_dir}"
 status=0
-# AddressSanitizer keeps what was freed for a while, to see that nobody uses it.
-tests/e2e/wire_fuzzer.py "${build_dir}" --seconds "${seconds}" --memory 2000 "$@" || status=$?
+# AddressSanitizer keeps what was freed for a while, to see that nobody uses it. Models load at low priority,
+# many times slower than in a release build.
+tests/e2e/wire_fuzzer.py "${build_dir}" --seconds "${seconds}" --memory 2000 --patience 300 "$@" ||
+  status=$?
 no_sanitizer_reports || status=1
 exit "${status}"

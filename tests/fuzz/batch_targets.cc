@@ -94,7 +94,7 @@ Broken BatchJournal(absl::string_view input) {
   if (!each.ok() || visited != journal->count()) return "a journal's records are not all there";
   client::batch::JobIdentity identity;
   const absl::StatusOr<client::batch::SetCounts> counts =
-      WriteIndex(*journal, identity, {}, Folder().path(), Folder().path());
+      WriteIndex(*journal, identity, {}, {}, Folder().path(), Folder().path());
   if (!counts.ok()) return CheckRefusal(counts.status(), {kDataLoss});
   return counts->done + counts->rejected + counts->failed == visited ? "" : "records are lost";
 }
