@@ -21,9 +21,10 @@ struct Check {
 // Whether a motion is that of a person, in this order: finite (no position is infinite or no
 // number), size (from foot to root as a person's), limb lengths (hardly change over time), symmetry
 // (left limbs as long as right ones), floor (feet stay on it), jumps (no joint is faster than
-// people are), sides (left and right are not swapped), upright (the mean standing direction does
-// not lean), waist (shoulders hardly turn against the hips). A check that needs joints the skeleton
-// lacks is left out; after a position that is not finite only the first is there.
+// people are), sides (left and right are not swapped), upright (the mean standing direction leans
+// no more than people do), waist (shoulders hardly turn against the hips). A check that needs
+// joints the skeleton lacks is left out; after a position that is not finite only the first is
+// there.
 //
 // What is not good is worth a look, and may be right: Kinect's bones grow and shrink, acrobats
 // leave the floor.

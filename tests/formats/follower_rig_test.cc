@@ -114,8 +114,10 @@ TEST_F(FollowerRigTest, ARigNeedNotBeAnimated) {
   gltf.json().erase("animations");
   test::WriteTestFile(folder_ / "still.glb", gltf.Binary());
   EXPECT_THAT(CheckRig({folder_ / "still.glb", {}}), IsOk());
-  EXPECT_THAT(CheckRig({folder_ / "none.glb", {}}), StatusIs(absl::StatusCode::kNotFound));
-  EXPECT_THAT(CheckRig({"rig.csv", {}}), StatusIs(absl::StatusCode::kInvalidArgument));
+  EXPECT_THAT(CheckRig({folder_ / "none.glb", {}}),
+              StatusIs(absl::StatusCode::kNotFound, HasSubstr("none.glb")));
+  EXPECT_THAT(CheckRig({"rig.csv", {}}),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("rig.csv")));
 }
 
 TEST_F(FollowerRigTest, NamesWhatARigMayBe) {
