@@ -1,5 +1,6 @@
 #include "server/service/wire.h"
 
+#include <google/protobuf/io/coded_stream.h>
 #include <grpcpp/support/proto_buffer_reader.h>
 #include <grpcpp/support/proto_buffer_writer.h>
 
@@ -16,10 +17,14 @@ absl::Status ParseMessage(grpc::ByteBuffer bytes, google::protobuf::Message& mes
     if (!bounded.ok()) return bounded;
   }
   grpc::ProtoBufferReader reader(&bytes);
-  // Parsing proper would clear the message first, and with it what was reserved.
-  const int size = static_cast<int>(bytes.Length());
-  if (reader.status().ok() && message.MergeFromBoundedZeroCopyStream(&reader, size)) {
-    return absl::OkStatus();
+  if (reader.status().ok()) {
+    // Not ParseFromZeroCopyStream, which clears the message first, and with it what was reserved;
+    // nor MergeFromBoundedZeroCopyStream, which ends the process on an empty message, because
+    // gRPC's reader cannot back up before its first slice.
+    google::protobuf::io::CodedInputStream stream(&reader);
+    if (message.MergeFromCodedStream(&stream) && stream.ConsumedEntireMessage()) {
+      return absl::OkStatus();
+    }
   }
   Violations violations;
   violations.Malformed(
