@@ -23,7 +23,8 @@ def run(program, pattern):
         [program, "--benchmark_format=json", f"--benchmark_filter={pattern}"],
         capture_output=True, check=True, text=True).stdout
     return {row["name"]: row["cpu_time"] * scale[row["time_unit"]]
-            for row in json.loads(printed)["benchmarks"]}
+            for row in json.loads(printed)["benchmarks"]
+            if row["run_type"] == "iteration" and "error_occurred" not in row}
 
 
 def compare(before_program, after_program, rounds, pattern="."):

@@ -37,7 +37,7 @@ void KeepBusy(absl::Span<const duet::engine::SynthesisWindow* const> windows) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  duet::server::lifecycle::StopSignal stop;
+  auto* const stop = new duet::server::watchdog::StopSignal;  // see RunServer
   using duet::server::lifecycle::ModelSource;
   const ModelSource source{
       "timed",
@@ -50,6 +50,6 @@ int main(int argc, char** argv) {
         return std::vector<std::shared_ptr<const Synthesizer>>{std::move(model)};
       }};
   return duet::server::lifecycle::RunServer(
-      argc, argv, [&](const auto&) -> absl::StatusOr<ModelSource> { return source; }, stop,
+      argc, argv, [&](const auto&) -> absl::StatusOr<ModelSource> { return source; }, *stop,
       std::make_shared<duet::server::metrics::StreamLogSink>(stderr));
 }

@@ -185,9 +185,6 @@ bool IsMetadataKey(absl::string_view key) {
 // After ReadMemory: some defaults follow from the sizes there.
 void ReadSharing(const v1::ServerConfig& config, Reader& reader, ServerOptions& options) {
   constexpr double kHour = 3600;
-  // A step takes milliseconds, parsing the largest request half a second.
-  constexpr double kShortestWatch = 1;
-  constexpr double kShortestDefaultWatch = 60;
   if (config.has_client_share()) {
     options.client_share = reader.InRange("client_share", config.client_share(), 0.01, 1.0);
   }
@@ -218,12 +215,23 @@ void ReadSharing(const v1::ServerConfig& config, Reader& reader, ServerOptions& 
     options.self_check_seconds =
         reader.InRange("self_check_seconds", config.self_check_seconds(), 0.0, kHour);
   }
-  options.watchdog_seconds = std::max(options.max_call_seconds, kShortestDefaultWatch);
-  if (config.has_watchdog_seconds()) {
-    options.watchdog_seconds = config.watchdog_seconds() == 0
-                                   ? 0
-                                   : reader.InRange("watchdog_seconds", config.watchdog_seconds(),
-                                                    kShortestWatch, 24 * kHour);
+}
+
+// After ReadSharing: the default follows from max_call_seconds.
+void ReadWatchdog(const v1::ServerConfig& config, Reader& reader, ServerOptions& options) {
+  // A step takes milliseconds, parsing the largest request half a second.
+  constexpr double kShortest = 1;
+  constexpr double kShortestDefault = 60;
+  constexpr double kLongest = 24 * 3600;
+  const double seconds = config.has_watchdog_seconds()
+                             ? config.watchdog_seconds()
+                             : std::max(options.max_call_seconds, kShortestDefault);
+  // Written so that NaN is out of range.
+  if (seconds == 0 || (seconds >= kShortest && seconds <= kLongest)) {
+    options.watchdog_seconds = seconds;
+  } else {
+    reader.Fail("watchdog_seconds", absl::StrCat("0, or ", kShortest, " to ", kLongest),
+                absl::StrCat(seconds));
   }
 }
 
@@ -423,6 +431,7 @@ Settings ReadSettings(const v1::ServerConfig& config, int cores, const SettingSo
   ReadLimits(config, reader, options);
   ReadMemory(config, memory_bytes, reader, options);
   ReadSharing(config, reader, options);
+  ReadWatchdog(config, reader, options);
   ReadBatching(config, reader, options);
   CheckListeners(options, reader);
   return {std::move(options), reader.Take()};

@@ -18,9 +18,7 @@ namespace duet::server::service {
 // Threads: safe to call concurrently.
 class TransportQuota {
  public:
-  explicit TransportQuota(std::size_t bytes) : bytes_(bytes), quota_("duet") {
-    quota_.Resize(bytes);
-  }
+  explicit TransportQuota(std::size_t bytes);
 
   // For a server's builder.
   const grpc::ResourceQuota& quota() const { return quota_; }
@@ -41,11 +39,7 @@ class TransportQuota {
   };
 
  private:
-  void Add(std::ptrdiff_t bytes) {
-    common::MutexLock lock(mutex_);
-    received_ += bytes;
-    quota_.Resize(bytes_ + static_cast<std::size_t>(received_));
-  }
+  void Add(std::ptrdiff_t bytes);
 
   const std::size_t bytes_;
   common::Mutex mutex_;

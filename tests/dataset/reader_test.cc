@@ -3,6 +3,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "model/dataset/dataset.h"
+#include "model/dataset/layout.h"
 #include "tests/dataset/capture_folder.h"
 #include "tests/support/temporary_folder.h"
 

@@ -113,6 +113,20 @@ class SimulatedLimitTest(Mixes, unittest.TestCase):
         return server
 
 
+    def test_settings_that_do_not_fit_are_warned_of(self):
+        flags = ["--max-held-bytes", str(512 * mixes.MIB)]
+        server = self.serve(*flags)
+        tools.wait_until(lambda: server.events("settings_do_not_fit"), "the server warns")
+        warning = server.events("settings_do_not_fit")[0]
+        self.assertEqual(warning["severity"], "WARNING")
+        for words in ("the limit is 419 MB", "536 MB for max_held_bytes"):
+            self.assertIn(words, warning["message"])
+        checked = tools.run(tools.PROGRAMS / "duet-server", "--memory-limit-bytes", LIMIT, *flags,
+                            "--check-config")
+        self.assertEqual(checked.returncode, 0, checked.stderr)
+        self.assertIn("warning: memory: the settings let in", checked.stdout)
+
+
 class ControlGroupTest(Mixes, unittest.TestCase):
     def setUp(self):
         self.group, why = mixes.Cgroup.create(LIMIT)

@@ -13,6 +13,7 @@
 #include <thread>
 #include <vector>
 
+#include "server/common/activity.h"
 #include "tests/server/support/fake_clock.h"
 #include "tests/server/support/gated_model.h"
 #include "tests/support/fake_synthesizer.h"
@@ -83,6 +84,29 @@ TEST(BatcherTest, EvaluatesAsManyBatchesAtOnceAsThereAreWorkers) {
   model.Open();
   EXPECT_THAT(first.outcome.get().result, IsOk());
   EXPECT_THAT(second.outcome.get().result, IsOk());
+}
+
+// The threads of a batcher that the watchdog sees, and what it sees of them. No other is alive.
+std::vector<std::string> SeeWorkers() {
+  const auto threads = std::make_unique<common::ThreadStates>();
+  common::ReadThreads(threads.get());
+  std::vector<std::string> seen;
+  for (const common::ThreadState& thread : *threads) {
+    if (thread.thread_id != 0) seen.emplace_back(thread.step == nullptr ? "" : thread.step->doing);
+  }
+  return seen;
+}
+
+TEST(BatcherTest, TheWatchdogSeesWorkersAtWorkAndIdleOnes) {
+  GatedModel model;
+  const auto batcher = MakeBatcher({1, 4, {4}}, common::Clock::Real());
+  Ticket ticket;
+  ASSERT_THAT(batcher->Submit(ticket.Job(model.get())), IsOk());
+  model.WaitUntilStarted(1);
+  EXPECT_THAT(SeeWorkers(), ::testing::Contains("evaluating a batch"));
+  model.Open();
+  EXPECT_THAT(ticket.outcome.get().result, IsOk());
+  while (!::testing::Value(SeeWorkers(), ::testing::Each(""))) std::this_thread::yield();
 }
 
 TEST(BatcherTest, RefusesANewCallWhenTheQueueIsFull) {

@@ -91,7 +91,8 @@ TEST(ReadConfigFileTest, NamesTheFile) {
   EXPECT_THAT(Read(folder / "absent.txtpb"),
               StatusIs(absl::StatusCode::kNotFound, HasSubstr("absent.txtpb")));
   EXPECT_THAT(Read(folder.path()),
-              StatusIs(kInvalidArgument, HasSubstr(folder.path().string() + ": is a folder")));
+              StatusIs(kInvalidArgument,
+                       HasSubstr(folder.path().string() + ": expected a file, got a folder")));
   WriteTestFile(folder / "bad.json", "{");
   EXPECT_THAT(Read(folder / "bad.json"), StatusIs(kInvalidArgument, HasSubstr("bad.json")));
 }

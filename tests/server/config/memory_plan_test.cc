@@ -136,8 +136,11 @@ TEST(MemoryPlanTest, ModelsThatAreLargerThanPlannedAreWarnedOf) {
 TEST(MemoryPlanTest, RefusesALimitThatNoServerFitsInto) {
   v1::ServerConfig config;
   config.set_memory_limit_bytes(1000);
-  EXPECT_THAT(ToOptions(config, 2), StatusIs(absl::StatusCode::kInvalidArgument,
-                                             HasSubstr("memory_limit_bytes: is 1000")));
+  EXPECT_THAT(
+      ToOptions(config, 2),
+      StatusIs(
+          absl::StatusCode::kInvalidArgument,
+          HasSubstr("memory_limit_bytes: expected 67108864 to 18446744073709551615, got 1000")));
 }
 
 }  // namespace

@@ -42,6 +42,22 @@ TEST(ServerOptionsTest, DefaultsServeTheEmbeddedCheckpointOnTheWellKnownPorts) {
   EXPECT_EQ(options->max_batch_delay_seconds, 0);
 }
 
+TEST(ServerOptionsTest, TheWatchdogWaitsAsLongAsTheLongestCallUnlessSet) {
+  const auto seconds = [](const v1::ServerConfig& config) {
+    return ToOptions(config, 4)->watchdog_seconds;
+  };
+  v1::ServerConfig config;
+  EXPECT_EQ(seconds(config), 660);
+  config.set_max_call_seconds(900);
+  EXPECT_EQ(seconds(config), 900);
+  config.set_max_call_seconds(2);
+  EXPECT_EQ(seconds(config), 60) << "a step on a busy machine is no hang";
+  config.set_watchdog_seconds(7);
+  EXPECT_EQ(seconds(config), 7);
+  config.set_watchdog_seconds(0);
+  EXPECT_EQ(seconds(config), 0) << "off";
+}
+
 TEST(ServerOptionsTest, TakesOverEveryField) {
   v1::ServerConfig config;
   config.set_listen("[::1]:1");
@@ -174,6 +190,10 @@ INSTANTIATE_TEST_SUITE_P(
                     c.set_engine(v1::ENGINE_TORCH);
                     c.set_precision(v1::PRECISION_BF16);
                   }},
+        BadConfig{"watchdog_seconds: expected 0, or 1 to 86400, got 0.5",
+                  [](v1::ServerConfig& c) { c.set_watchdog_seconds(0.5); }},
+        BadConfig{"watchdog_seconds: expected 0, or 1 to 86400, got -1",
+                  [](v1::ServerConfig& c) { c.set_watchdog_seconds(-1); }},
         BadConfig{"max_calls: expected 1 to 100000, got 0",
                   [](v1::ServerConfig& c) { c.set_max_calls(0); }},
         BadConfig{"max_queued_windows: expected 1 to 100000, got 0",
