@@ -396,7 +396,7 @@ std::vector<std::string> ModelManager::UnknownNames() const {
   for (const auto& [name, versions] : models_) names.push_back(name);
   std::vector<std::string> unknown;
   const auto check = [&](absl::string_view field, std::size_t index, const std::string& model) {
-    if (model.empty() || models_.count(model) > 0) return;
+    if (model.empty() || std::find(names.begin(), names.end(), model) != names.end()) return;
     unknown.push_back(absl::StrCat(field, "[", index,
                                    "].model: expected one of: ", absl::StrJoin(names, ", "),
                                    "; got ", base::Quoted(model), base::DidYouMean(model, names)));

@@ -34,7 +34,8 @@ constexpr double kNever = 1e6;
 // Begins a thread that holds a lock and never returns.
 void BlockIn(const common::StepKind& kind) {
   std::thread([&kind] {
-    const common::MutexLock lock(*new common::Mutex);
+    static common::Mutex mutex;
+    const common::MutexLock lock(mutex);
     const common::Step step(kind);
     WaitForEver();
   }).detach();
