@@ -213,7 +213,7 @@ class ClientServerTest(unittest.TestCase):
     def test_usage_errors_are_2(self):
         out = self.out("html")
         kick = tools.sample("kick")
-        self.refused(2, ["--label"], kick, "kick", out=out)
+        self.refused(2, ["--label"], kick, "kick=", out=out)
         self.refused(2, [".fbx"], kick, "kick=1", out=self.out("fbx"))
         self.refused(2, ["--frobnicate"], kick, "kick=1", out=out, more=("--frobnicate",))
         self.refused(2, ["--label or --keyframe"], kick, out=out)

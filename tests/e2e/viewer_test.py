@@ -148,7 +148,7 @@ class ViewerTest(unittest.TestCase):
         floating, sunk = page.evaluate(heights)
         self.assertEqual(floating, {"height": 0, "ofWorld": True})
         self.assertFalse(sunk["ofWorld"])
-        self.assertAlmostEqual(sunk["height"], 0.3 - 2 - 0.043, delta=0.01)
+        self.assertAlmostEqual(sunk["height"], 0.3 - 2 - 0.06, delta=0.01)
 
     def test_draws_only_what_changes(self):
         page = self.open_good("#paused")

@@ -1,7 +1,11 @@
 """The partner: what Duet wrote as glTF, in the scene."""
 
+import json
+import pathlib
+
 import bpy
 
+from .leader import metres_per_unit
 from .program import DuetError
 
 NAME = "Duet follower"
@@ -50,7 +54,7 @@ def keep(scene, title):
 
 
 def export_rig(scene, armature, path):
-    """The armature at rest with its meshes, as glTF, in metres of the scene."""
+    """The armature at rest with its meshes, as binary glTF in metres."""
     if "gltf" not in dir(bpy.ops.export_scene):
         raise DuetError("Switch on the add-on glTF 2.0, which writes the leader's rig")
     _let_importer_run()
@@ -70,6 +74,23 @@ def export_rig(scene, armature, path):
         for thing in wanted:
             thing.select_set(thing in selected)
         bpy.context.view_layer.objects.active = active
+    _in_metres(path, metres_per_unit(scene))
+
+
+def _in_metres(path, metres):
+    """Puts a node that scales to metres above all others: the exporter writes Blender's units."""
+    content = pathlib.Path(path).read_bytes()
+    length = int.from_bytes(content[12:16], "little")  # of the first chunk, after the file's header
+    document = json.loads(content[20:20 + length])
+    for scene in document["scenes"]:
+        document["nodes"].append({"name": "metres", "scale": [metres] * 3,
+                                  "children": scene["nodes"]})
+        scene["nodes"] = [len(document["nodes"]) - 1]
+    text = json.dumps(document).encode()
+    text += b" " * (-len(text) % 4)
+    rest = content[20 + length:]
+    header = content[:8] + (20 + len(text) + len(rest)).to_bytes(4, "little")
+    pathlib.Path(path).write_bytes(header + len(text).to_bytes(4, "little") + b"JSON" + text + rest)
 
 
 def add(scene, path, scale=1):

@@ -14,7 +14,7 @@ class Bone(_message.Message):
     def __init__(self, parent_joint: _Optional[int] = ..., child_joint: _Optional[int] = ...) -> None: ...
 
 class Model(_message.Message):
-    __slots__ = ["accepts_follower_start", "bones", "description", "frame_rate_hz", "interaction_classes", "is_default", "joint_names", "name", "root_joint", "samples", "version", "version_labels", "window_frames"]
+    __slots__ = ["accepts_follower_start", "bones", "description", "frame_rate_hz", "interaction_classes", "is_default", "joint_names", "name", "root_joint", "samples", "terms", "version", "version_labels", "weights_sha256", "window_frames"]
     ACCEPTS_FOLLOWER_START_FIELD_NUMBER: _ClassVar[int]
     BONES_FIELD_NUMBER: _ClassVar[int]
     DESCRIPTION_FIELD_NUMBER: _ClassVar[int]
@@ -25,8 +25,10 @@ class Model(_message.Message):
     NAME_FIELD_NUMBER: _ClassVar[int]
     ROOT_JOINT_FIELD_NUMBER: _ClassVar[int]
     SAMPLES_FIELD_NUMBER: _ClassVar[int]
+    TERMS_FIELD_NUMBER: _ClassVar[int]
     VERSION_FIELD_NUMBER: _ClassVar[int]
     VERSION_LABELS_FIELD_NUMBER: _ClassVar[int]
+    WEIGHTS_SHA256_FIELD_NUMBER: _ClassVar[int]
     WINDOW_FRAMES_FIELD_NUMBER: _ClassVar[int]
     accepts_follower_start: bool
     bones: _containers.RepeatedCompositeFieldContainer[Bone]
@@ -38,10 +40,12 @@ class Model(_message.Message):
     name: str
     root_joint: str
     samples: bool
+    terms: str
     version: int
     version_labels: _containers.RepeatedScalarFieldContainer[str]
+    weights_sha256: str
     window_frames: int
-    def __init__(self, name: _Optional[str] = ..., version: _Optional[int] = ..., version_labels: _Optional[_Iterable[str]] = ..., is_default: bool = ..., interaction_classes: _Optional[_Iterable[str]] = ..., joint_names: _Optional[_Iterable[str]] = ..., bones: _Optional[_Iterable[_Union[Bone, _Mapping]]] = ..., root_joint: _Optional[str] = ..., frame_rate_hz: _Optional[float] = ..., window_frames: _Optional[int] = ..., accepts_follower_start: bool = ..., description: _Optional[str] = ..., samples: bool = ...) -> None: ...
+    def __init__(self, name: _Optional[str] = ..., version: _Optional[int] = ..., version_labels: _Optional[_Iterable[str]] = ..., is_default: bool = ..., interaction_classes: _Optional[_Iterable[str]] = ..., joint_names: _Optional[_Iterable[str]] = ..., bones: _Optional[_Iterable[_Union[Bone, _Mapping]]] = ..., root_joint: _Optional[str] = ..., frame_rate_hz: _Optional[float] = ..., window_frames: _Optional[int] = ..., accepts_follower_start: bool = ..., description: _Optional[str] = ..., samples: bool = ..., terms: _Optional[str] = ..., weights_sha256: _Optional[str] = ...) -> None: ...
 
 class ModelSelector(_message.Message):
     __slots__ = ["name", "version", "version_label"]
