@@ -147,8 +147,11 @@ class PythonClientTest(unittest.TestCase):
     def test_a_call_whose_server_is_killed_fails_soon_and_names_it(self):
         server = tools.Server()
         self.addCleanup(server.stop)
+        # Minutes long, so that most of it has not been sent when the first frame comes.
+        leader = duet.Motion(np.tile(self.hug.positions, (150, 1, 1)), self.hug.joint_names,
+                             frame_rate_hz=self.hug.frame_rate_hz)
         with duet.Client(server.address, wait=0.2, timeout=tools.RUN_SECONDS) as client:
-            with client.stream(self.hug, {"hug": 1}, chunk_frames=1) as stream:
+            with client.stream(leader, {"hug": 1}, chunk_frames=1) as stream:
                 next(stream)
                 server.kill()
                 with self.assertRaisesRegex(duet.UnavailableError,

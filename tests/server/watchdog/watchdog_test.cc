@@ -34,7 +34,7 @@ constexpr double kNever = 1e6;
 // Begins a thread that holds a lock and never returns.
 void BlockIn(const common::StepKind& kind) {
   std::thread([&kind] {
-    static common::Mutex mutex;
+    common::Mutex& mutex = *new common::Mutex;
     const common::MutexLock lock(mutex);
     const common::Step step(kind);
     WaitForEver();
