@@ -279,7 +279,7 @@ class WebTest(unittest.TestCase):
         self.drop(page, name="junk.bvh", fetched="/page.css")
         self.assertRegex(page.text("#status"), r"^junk\.bvh:1: ")
         self.drop(page)
-        page.wait_until("document.documentElement.dataset.failed === 'false'")
+        page.wait_until("state.leader && document.documentElement.dataset.failed === 'false'")
         self.label(page, "hug", 1)
         page.evaluate("state.leader.motion.frame_rate_hz = 1000; react(1)")
         page.wait_until("document.documentElement.dataset.failed === 'true'")
