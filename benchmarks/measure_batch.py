@@ -170,8 +170,9 @@ def main():
         print("| " + " | ".join(COLUMNS) + " |\n|" + "---|" * len(COLUMNS), flush=True)
         for row in rows(pathlib.Path(temporary), arguments):
             print("| " + " | ".join(row.get(column, "") for column in COLUMNS) + " |", flush=True)
-    print(f"\n{machine()}; other programs wanted {load:.1f} processors before the first run"
-          + (": shared, so that only figures of one row compare." if load > 0.5 else "."))
+    print(f"\n{machine()}; load average before the first run {load:.1f}"
+          + (": other programs were running, so compare only figures in the same row."
+             if load > 0.5 else "."))
 
 
 if __name__ == "__main__":
