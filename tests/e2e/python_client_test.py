@@ -45,6 +45,9 @@ class PythonClientTest(unittest.TestCase):
         self.assertEqual(set(details.model.interaction_classes), set(tools.CLASSES))
         self.assertEqual(details.limits.max_abs_weight, 2)
         self.assertEqual(self.client.get_model("sbu@1").model.version, 1)
+        for model in models:
+            self.assertIn("research", model.terms)
+            self.assertRegex(model.weights_sha256, r"^[0-9a-f]{64}$")
 
     def test_arrays_go_in_and_come_out(self):
         result = self.client.synthesize(self.hug, labels={"hug": 1}, seed=3)

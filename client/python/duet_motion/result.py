@@ -84,6 +84,10 @@ class ModelInfo:
     samples: bool
     """Answers depend on the request's seed and variety."""
     description: str
+    terms: str = ""
+    """Terms of using the weights, and so of what they make; empty if the server states none."""
+    weights_sha256: str = ""
+    """Of the file of weights, lower-case hexadecimal; empty if the server does not say."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -125,7 +129,7 @@ def model_from_proto(model: model_pb2.Model) -> ModelInfo:
         joint_names=tuple(model.joint_names), bones=bones, root_joint=model.root_joint,
         frame_rate_hz=model.frame_rate_hz, window_frames=model.window_frames,
         accepts_follower_start=model.accepts_follower_start, samples=model.samples,
-        description=model.description)
+        description=model.description, terms=model.terms, weights_sha256=model.weights_sha256)
 
 
 def details_from_proto(response: synthesis_pb2.GetModelResponse) -> ModelDetails:
