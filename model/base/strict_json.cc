@@ -79,6 +79,70 @@ class StrictnessChecker : public nlohmann::json_sax<json> {
   std::string problem_;
 };
 
+// Builds the document meanwhile, but for what lies within some fields of the root.
+class SkippingBuilder : public StrictnessChecker {
+ public:
+  SkippingBuilder(int max_depth, const std::set<std::string>& skipped)
+      : StrictnessChecker(max_depth, std::numeric_limits<std::size_t>::max()), skipped_(skipped) {}
+
+  json Take() { return std::move(root_); }
+
+  bool null() override { return Add(nullptr); }
+  bool boolean(bool value) override { return Add(value); }
+  bool number_integer(number_integer_t value) override { return Add(value); }
+  bool number_unsigned(number_unsigned_t value) override { return Add(value); }
+  bool number_float(number_float_t value, const string_t&) override { return Add(value); }
+  bool string(string_t& value) override { return Add(value); }
+  bool start_object(std::size_t size) override {
+    return StrictnessChecker::start_object(size) && Open(json::object());
+  }
+  bool start_array(std::size_t size) override {
+    return StrictnessChecker::start_array(size) && Open(json::array());
+  }
+  bool end_object() override { return StrictnessChecker::end_object() && Close(); }
+  bool end_array() override { return StrictnessChecker::end_array() && Close(); }
+  bool key(string_t& name) override {
+    if (!StrictnessChecker::key(name)) return false;
+    key_ = name;
+    return true;
+  }
+
+ private:
+  // Where a value goes; null within a field that is skipped.
+  json* Place() {
+    if (open_.empty()) return &root_;
+    json* const parent = open_.back();
+    if (parent == nullptr) return nullptr;
+    if (parent->is_object()) return &(*parent)[key_];
+    parent->push_back(nullptr);
+    return &parent->back();
+  }
+
+  template <typename Value>
+  bool Add(Value&& value) {
+    if (json* const place = Place(); place != nullptr) *place = std::forward<Value>(value);
+    return true;
+  }
+
+  bool Open(json empty) {
+    json* const place = Place();
+    if (place != nullptr) *place = std::move(empty);
+    const bool skips = open_.size() == 1 && skipped_.count(key_) > 0;
+    open_.push_back(skips ? nullptr : place);
+    return true;
+  }
+
+  bool Close() {
+    open_.pop_back();
+    return true;
+  }
+
+  const std::set<std::string>& skipped_;
+  json root_;
+  std::vector<json*> open_;  // a container does not move while one within it is open
+  std::string key_;
+};
+
 }  // namespace
 
 std::string Shown(const json& value) {
@@ -93,7 +157,7 @@ std::string Shown(const json& value) {
 
 namespace {
 
-absl::Status CheckStrict(std::string_view text, int max_depth, std::size_t max_values) {
+absl::Status CheckStrict(std::string_view text, StrictnessChecker* checker) {
   if (text.empty() || text.front() != '{') {
     return absl::InvalidArgumentError("not a JSON object: wanted '{' as the first byte");
   }
@@ -101,9 +165,8 @@ absl::Status CheckStrict(std::string_view text, int max_depth, std::size_t max_v
   if (const std::size_t at = text.find('\0'); at != std::string_view::npos) {
     return absl::InvalidArgumentError(absl::StrCat("not JSON: a NUL at byte ", at));
   }
-  StrictnessChecker checker(max_depth, max_values);
-  if (!json::sax_parse(text.begin(), text.end(), &checker)) {
-    return absl::InvalidArgumentError(checker.problem());
+  if (!json::sax_parse(text.begin(), text.end(), checker)) {
+    return absl::InvalidArgumentError(checker->problem());
   }
   return absl::OkStatus();
 }
@@ -116,7 +179,8 @@ std::string_view SkipPrelude(absl::string_view text) {
 }  // namespace
 
 absl::StatusOr<json> ParseStrictJson(std::string_view text, int max_depth) {
-  const absl::Status strict = CheckStrict(text, max_depth, kMaxJsonValues);
+  StrictnessChecker checker(max_depth, kMaxJsonValues);
+  const absl::Status strict = CheckStrict(text, &checker);
   if (!strict.ok()) return strict;
   return json::parse(text.begin(), text.end(), nullptr, /*allow_exceptions=*/false);
 }
@@ -126,12 +190,12 @@ absl::StatusOr<json> ParseHandwrittenJson(absl::string_view text, int max_depth)
 }
 
 absl::StatusOr<json> ParseHandwrittenJson(absl::string_view text, int max_depth,
-                                          const json::parser_callback_t& keep) {
+                                          const std::set<std::string>& skipped) {
   const std::string_view document = SkipPrelude(text);
-  const absl::Status strict =
-      CheckStrict(document, max_depth, std::numeric_limits<std::size_t>::max());
+  SkippingBuilder builder(max_depth, skipped);
+  const absl::Status strict = CheckStrict(document, &builder);
   if (!strict.ok()) return strict;
-  return json::parse(document.begin(), document.end(), keep, /*allow_exceptions=*/false);
+  return builder.Take();
 }
 
 ObjectReader::ObjectReader(const json& object, std::string path)

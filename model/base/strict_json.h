@@ -28,10 +28,10 @@ absl::StatusOr<nlohmann::json> ParseStrictJson(std::string_view text, int max_de
 // The same for a document that people write: it may begin with a byte order mark and blanks.
 absl::StatusOr<nlohmann::json> ParseHandwrittenJson(absl::string_view text, int max_depth);
 
-// The same for a document of any number of values, of which only those that `keep` accepts are held
-// in memory (nlohmann::json::parser_callback_t has its arguments).
+// The same for a document of any number of values, of which nothing is held in memory that lies
+// within the root's fields `skipped`: of these, arrays and objects come back empty.
 absl::StatusOr<nlohmann::json> ParseHandwrittenJson(absl::string_view text, int max_depth,
-                                                    const nlohmann::json::parser_callback_t& keep);
+                                                    const std::set<std::string>& skipped);
 
 // A value as a message shows it: a string as Quoted has it, other short values as they are written,
 // a long array or object by its size.

@@ -92,12 +92,22 @@ TEST(ParseStrictJson, LimitsTheNumberOfValues) {
               Refused("values: expected at most 2000000"));
 }
 
-TEST(ParseHandwrittenJson, KeepsWhatTheFilterAccepts) {
-  const auto keep = [](int depth, json::parse_event_t, const json&) { return depth < 2; };
+TEST(ParseHandwrittenJson, HoldsNothingOfSkippedFields) {
   const absl::StatusOr<json> parsed =
-      ParseHandwrittenJson(ArrayOf(kMaxJsonValues + 1, "[]"), 3, keep);
+      ParseHandwrittenJson(ArrayOf(kMaxJsonValues + 1, "[]"), 3, {"a"});
   ASSERT_THAT(parsed, IsOk());
   EXPECT_EQ(*parsed, json({{"a", json::array()}}));
+}
+
+TEST(ParseHandwrittenJson, BuildsTheOtherFieldsAsTheyAre) {
+  const std::string text =
+      R"({"a":[1,-2,0.5,"x",true,null,[],{}],"b":{"c":{"a":[7]},"d":[[1],[2,[3]]]},"s":{"x":1},"z":9})";
+  json wanted = json::parse(text);
+  EXPECT_EQ(*ParseHandwrittenJson(text, 9, {}), wanted);
+  // The name counts in the root only.
+  wanted["a"] = json::array();
+  wanted["s"] = json::object();
+  EXPECT_EQ(*ParseHandwrittenJson(text, 9, {"a", "s", "z"}), wanted);
 }
 
 TEST_F(ObjectReaderTest, ReadsEveryType) {

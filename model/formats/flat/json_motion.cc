@@ -93,27 +93,96 @@ constexpr int kFieldDepth = 1, kFrameDepth = 2, kPositionDepth = 3, kNumberDepth
 constexpr std::size_t kMostInPosition = 4, kMostInFrame = motion::kMaxFileJoints + 1;
 
 // Which of kPeople a field is; -1 for any other.
-int PersonIndex(const Json& key) {
+int PersonIndex(const std::string& key) {
   for (std::size_t i = 0; i < std::size(kPeople); ++i) {
     if (key == kPeople[i]) return static_cast<int>(i);
   }
   return -1;
 }
 
-// Keeps everything but the frames of people.
-class SettingsFilter {
+// Reads the positions of a document whose frames are as they should be, without building anything.
+// Stops at whatever is not.
+class PositionReader : public nlohmann::json_sax<Json> {
  public:
-  bool operator()(int depth, Json::parse_event_t event, const Json& parsed) {
-    if (depth == kFieldDepth && event == Json::parse_event_t::key) person_ = PersonIndex(parsed);
-    return person_ < 0 || depth < kFrameDepth;
+  // `people` has the joint names, and outlives the reader.
+  explicit PositionReader(std::vector<motion::Clip>* people) : people_(*people) {
+    pose_.reserve(people_[0].joint_names.size());
+  }
+
+  bool null() override { return Outside(); }
+  bool boolean(bool) override { return Outside(); }
+  bool string(string_t&) override { return Outside(); }
+  bool binary(binary_t&) override { return Outside(); }
+  bool number_integer(number_integer_t value) override { return Add(static_cast<double>(value)); }
+  bool number_unsigned(number_unsigned_t value) override { return Add(static_cast<double>(value)); }
+  bool number_float(number_float_t value, const string_t&) override { return Add(value); }
+  bool start_object(std::size_t) override { return Open(Outside()); }
+  bool end_object() override { return Close(); }
+
+  bool key(string_t& name) override {
+    if (depth_ != kFieldDepth) return true;
+    const int person = PersonIndex(name);
+    clip_ = person >= 0 && person < static_cast<int>(people_.size())
+                ? &people_[static_cast<std::size_t>(person)]
+                : nullptr;
+    return true;
+  }
+
+  bool start_array(std::size_t) override {
+    if (clip_ == nullptr) return Open(true);
+    if (depth_ == kFrameDepth) pose_.clear();
+    numbers_ = 0;
+    return Open(depth_ < kNumberDepth);
+  }
+
+  bool end_array() override {
+    Close();
+    if (clip_ == nullptr || depth_ == kFieldDepth) return true;
+    if (depth_ == kPositionDepth) {
+      pose_.push_back({numbers_at_[0], numbers_at_[1], numbers_at_[2]});
+      return numbers_ == 3 && pose_.size() <= clip_->joint_names.size();
+    }
+    if (pose_.size() != clip_->joint_names.size()) return false;
+    clip_->Append(pose_);
+    return clip_->frame_count() <= motion::kMaxMotionFrames;
+  }
+
+  bool parse_error(std::size_t, const std::string&, const Json::exception&) override {
+    return false;
   }
 
  private:
-  int person_ = -1;
+  bool Open(bool good) {
+    ++depth_;
+    return good;
+  }
+  bool Close() {
+    --depth_;
+    return true;
+  }
+  // Whether anything may stand here that is neither a number nor an array.
+  bool Outside() const { return clip_ == nullptr || depth_ == 0; }
+
+  bool Add(double value) {
+    if (clip_ == nullptr) return true;
+    if (depth_ != kNumberDepth || numbers_ == 3 || !(std::abs(value) <= motion::kMaxCoordinate)) {
+      return false;
+    }
+    numbers_at_[numbers_++] = static_cast<float>(value);
+    return true;
+  }
+
+  std::vector<motion::Clip>& people_;
+  motion::Clip* clip_ = nullptr;  // of the field that is read; null for other fields
+  int depth_ = 0;
+  std::vector<motion::Vec3> pose_;
+  float numbers_at_[3] = {};
+  std::size_t numbers_ = 0;
 };
 
-// Takes frames out of the document one at a time while it is parsed, so that memory grows with the
-// positions read and not with the text: "[]," is 3 bytes, and 50 once parsed.
+// Finds what is wrong with the frames of a document that PositionReader stopped at. Takes them out
+// of it one at a time while it is parsed, so that memory does not grow with the text: "[]," is
+// 3 bytes, and 50 once parsed.
 class FrameReader {
  public:
   // `people` has the joint names. All outlive the reader.
@@ -123,7 +192,7 @@ class FrameReader {
   bool operator()(int depth, Json::parse_event_t event, const Json& parsed) {
     using Event = Json::parse_event_t;
     if (depth == kFieldDepth && event == Event::key) {
-      person_ = PersonIndex(parsed);
+      person_ = PersonIndex(parsed.get_ref<const std::string&>());
       frame_ = 0;
     }
     if (depth < kFrameDepth) return true;
@@ -209,6 +278,17 @@ std::string FormatSettings(const motion::Clip& clip, const motion::Skeleton& ske
   return text;
 }
 
+// Requires a text that ParseHandwrittenJson accepts.
+void ReadPeople(absl::string_view text, base::ObjectReader* reader,
+                std::vector<motion::Clip>* people) {
+  const std::vector<motion::Clip> empty = *people;
+  PositionReader positions(people);
+  if (!reader->ok() || Json::sax_parse(text.begin(), text.end(), &positions)) return;
+  *people = empty;
+  const Json rest = Json::parse(text.begin(), text.end(), FrameReader(reader, people), false);
+  if (rest.is_discarded()) reader->Fail("frames", "expected JSON");
+}
+
 }  // namespace
 
 absl::StatusOr<motion::RecordedMotion> ParseJsonMotion(absl::string_view text,
@@ -217,16 +297,14 @@ absl::StatusOr<motion::RecordedMotion> ParseJsonMotion(absl::string_view text,
     return absl::InvalidArgumentError(absl::StrCat(source, ": ", status.message()));
   };
   const absl::StatusOr<Json> document =
-      base::ParseHandwrittenJson(text, kMaxDepth, SettingsFilter());
+      base::ParseHandwrittenJson(text, kMaxDepth, {std::begin(kPeople), std::end(kPeople)});
   if (!document.ok()) return in_file(document.status());
   base::ObjectReader reader(*document, "");
   motion::Clip empty;
   motion::RecordedMotion motion = ReadSettings(&reader, &empty);
   if (reader.ok()) {
     motion.people.assign(static_cast<std::size_t>(CountPeople(&reader)), empty);
-    const Json rest =
-        Json::parse(text.begin(), text.end(), FrameReader(&reader, &motion.people), false);
-    if (rest.is_discarded()) return in_file(absl::InvalidArgumentError("not JSON"));
+    ReadPeople(text, &reader, &motion.people);
   }
   for (std::size_t i = 0; i < motion.people.size(); ++i) {
     if (motion.people[i].frame_count() == 0) {
