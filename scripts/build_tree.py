@@ -11,6 +11,7 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 TORCH_TARGET = "duet_torch"
+TORCH_LABEL = "libtorch"  # a test that loads LibTorch without linking it
 
 
 @dataclasses.dataclass(frozen=True)
@@ -69,10 +70,11 @@ def read_tests(build_dir):
 
 
 def torch_free_tests(build_dir, label=None):
-    """The test programs that never link LibTorch, those with `label` where one is given."""
+    """The test programs that neither link nor load LibTorch; with `label`, only those that have it."""
     targets = read_targets(build_dir)
     return sorted(name for name, (_, _, labels) in read_tests(build_dir).items()
                   if name in targets and is_torch_free(targets, name)
+                  and TORCH_LABEL not in labels
                   and (label is None or label in labels))
 
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Prints the test programs that never link LibTorch, one a line: a sanitizer builds them quickly.
+"""Prints the test programs that neither link nor load LibTorch, one a line: a sanitizer builds them quickly.
 
     scripts/torch_free_tests.py BUILD_FOLDER [LABEL]     LABEL: only those with this CTest label
 """
