@@ -85,14 +85,15 @@ class Browser:
         message, self._buffer = self._buffer.split(b"\0", 1)
         return json.loads(message)
 
-    def open(self, url, width=640, height=420):
-        return Page(self, url, width, height)
+    def open(self, url, width=640, height=420, still=False):
+        """Opens a tab. `still`: of a visitor who prefers reduced motion, from the first frame on."""
+        return Page(self, url, width, height, still)
 
 
 class Page:
     """A tab that has opened a URL, drawn it once or failed to."""
 
-    def __init__(self, browser, url, width, height):
+    def __init__(self, browser, url, width, height, still):
         self._browser = browser
         target = browser.call("Target.createTarget", url="about:blank")["targetId"]
         self._session = browser.call("Target.attachToTarget", targetId=target,
@@ -101,6 +102,9 @@ class Page:
                   deviceScaleFactor=1, mobile=False)
         for domain in ("Page", "Runtime", "Network"):
             self.call(f"{domain}.enable")
+        if still:
+            self.call("Emulation.setEmulatedMedia",
+                      features=[{"name": "prefers-reduced-motion", "value": "reduce"}])
         self.call("Page.navigate", url=url)
         # Until then a command may still meet the blank page that the tab began with.
         deadline = time.monotonic() + WAIT_SECONDS

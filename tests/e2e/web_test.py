@@ -64,11 +64,8 @@ class WebTest(unittest.TestCase):
         return page
 
     def open_still(self, address="", **size):
-        """The page of a visitor who wants nothing to move: it draws when something changed."""
-        page = self.open(address, **size)
-        page.call("Emulation.setEmulatedMedia",
-                  features=[{"name": "prefers-reduced-motion", "value": "reduce"}])
-        return page
+        """Opens the page without animation: it draws only when something changed."""
+        return self.open(address, still=True, **size)
 
     def drop(self, page, name="visitor's hug.bvh", fetched="/samples/hug.bvh"):
         page.evaluate(DROP.format(name=json.dumps(name), fetched=json.dumps(fetched)))
