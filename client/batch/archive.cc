@@ -132,7 +132,7 @@ class ZipArchive final : public Archive {
       AppendLittle(&directory, 0x02014b50, 4);
       AppendLittle(&directory, kVersion, 2);
       AppendFields(member, &directory);
-      AppendLittle(&directory, 0, 2 + 2 + 2 + 4);  // comment, disk, attributes of both kinds
+      directory.append(2 + 2 + 2 + 4, '\0');  // comment, disk, attributes of both kinds
       AppendLittle(&directory, member.offset, 4);
       directory += member.path;
     }
