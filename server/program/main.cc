@@ -88,7 +88,8 @@ absl::StatusOr<ModelSource> OpenEngine(const EngineOptions& options) {
 
 int main(int argc, char** argv) {
   duet::server::lifecycle::LimitFreeMemory();
-  auto* const stop = new duet::server::watchdog::StopSignal;  // see RunServer
+  // Never deleted (see RunServer); static, so that LeakSanitizer still finds it when the process ends.
+  static auto* const stop = new duet::server::watchdog::StopSignal;
   return duet::server::lifecycle::RunServer(
       argc, argv, OpenEngine, *stop,
       std::make_shared<duet::server::metrics::StreamLogSink>(stderr));
