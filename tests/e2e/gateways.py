@@ -24,13 +24,18 @@ def skip_without_modules():
             tools.skip(f"no Python module {module}; install the package {package}")
 
 
+# AddressSanitizer reserves address space for every byte that there could be.
+SANITIZED_BOUNDS = "conversions.PROGRAM_BYTES = 2**47" if tools.SANITIZED else ""
+
+
 class Gateway:
     """gateway.py on a free port. `bounds` are assignments to its modules, such as
     "serving.HEADER_SECONDS = 0.2"."""
 
     def __init__(self, server, *flags, bounds=""):
         program = (f"import sys; sys.path.insert(0, {str(WEB)!r})\n"
-                   f"import gateway, serving, uploads, conversions\n{bounds}\n"
+                   f"import gateway, serving, uploads, conversions\n"
+                   f"{SANITIZED_BOUNDS}\n{bounds}\n"
                    "sys.exit(gateway.main(sys.argv[1:]))")
         self.log = []
         self._process = subprocess.Popen(

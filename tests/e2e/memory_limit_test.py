@@ -18,6 +18,8 @@ try:
     import memory_mixes as mixes
 except ImportError as error:
     tools.skip(f"{error}; install the package python3-grpcio")
+if tools.SANITIZED:
+    tools.skip("a sanitizer takes several times the memory that the server plans with")
 
 # gRPC's, where more arrived within a tenth of a second than it has memory for, and of calls that were
 # ended while a message was under way: neither can have details.

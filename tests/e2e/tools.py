@@ -25,7 +25,8 @@ SKIPPED = 77  # tells CTest that a test was skipped
 RUN_SECONDS = 120
 STOP_SECONDS = 60
 # What a program built with a sanitizer may take of memory (scripts/sanitizer_options.sh).
-MEMORY_FACTOR = 4 if os.environ.get("DUET_SANITIZER") else 1
+SANITIZED = bool(os.environ.get("DUET_SANITIZER"))
+MEMORY_FACTOR = 4 if SANITIZED else 1
 
 CLASSES = ("kick", "push", "shake_hands", "hug", "exchange_object", "punch")
 
