@@ -576,20 +576,20 @@ def describe(args, figures, callers, steady, operator, sampler, settled):
         f"| seconds under load | {args.seconds:g}, in {args.rounds} rounds |",
         f"| calls | {figures['calls']} |",
         f"| **lost calls** | **{figures['lost']}** |",
-        f"| calls that ended otherwise than they may | {figures['unexpected']} |",
-        f"| begun and not finished, by the server's count | {figures['unfinished']} |",
-        f"| changes by the operator, failed | {sum(operator.done.values())}, "
+        f"| calls with an unexpected status | {figures['unexpected']} |",
+        f"| started but not finished, by the server's count | {figures['unfinished']} |",
+        f"| operator changes, of these failed | {sum(operator.done.values())}, "
         f"{len(operator.failed)} |",
-        f"| resident memory, settled, after the warm-up: first, last | {rest[0][1] / 1e6:.1f} MB, "
+        f"| settled resident memory after the warm-up: first, last | {rest[0][1] / 1e6:.1f} MB, "
         f"{rest[-1][1] / 1e6:.1f} MB |",
         f"| **growth after the warm-up** | **{100 * figures['growth']:.2f} %** |",
-        f"| most resident memory under load | {max(s[1] for s in sampler.samples) / 1e6:.0f} MB |",
+        f"| maximum resident memory under load | {max(s[1] for s in sampler.samples) / 1e6:.0f} MB |",
         f"| descriptors, settled; under load | {spread([s[2] for s in settled])}; "
         f"{spread([s[2] for s in sampler.samples])} |",
         f"| threads, settled; under load | {spread([s[3] for s in settled])}; "
         f"{spread([s[3] for s in sampler.samples])} |",
         f"| exit code after SIGTERM | {figures['exit_code']} |",
-        "", "![Resident memory over time](images/soak.svg)", "", "How calls ended:", "",
+        "", "![Resident memory over time](images/soak.svg)", "", "Status codes by kind of call:", "",
         "| kind | " + " | ".join(codes := sorted({code for _, code in callers.ended} |
                                                   set(steady))) + " |",
         "|---|" + "---|" * len(codes)]
@@ -598,7 +598,7 @@ def describe(args, figures, callers, steady, operator, sampler, settled):
     for kind, counts in rows:
         lines.append(f"| {kind} | " + " | ".join(str(counts.get(code) or "") for code in codes) +
                      " |")
-    lines += ["", "What the operator did:", "", "| change | times |", "|---|---|"]
+    lines += ["", "Operator changes:", "", "| change | times |", "|---|---|"]
     lines += [f"| {name} | {count} |" for name, count in sorted(operator.done.items())]
     return "\n".join(lines) + "\n"
 
