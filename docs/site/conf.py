@@ -1,5 +1,5 @@
-"""How Sphinx makes the site: scripts/build_site.sh. The source folder is the repository's root, so
-that every document is read where it stands and its links are checked as they are."""
+"""Sphinx configuration of the site that scripts/build_site.sh builds. The source folder is the
+repository's root, so that Sphinx reads every document in place and checks its links unchanged."""
 
 import fnmatch
 import pathlib
@@ -26,7 +26,7 @@ include_patterns = ["*.md", "client/**.ipynb", "docs/**.md", "client/**.md", "de
                     "benchmarks/**.md", "tests/**.md", "samples/**.md", "recipes/**.md"]
 exclude_patterns = ["**/node_modules/**"]
 
-# A heading of any document may be linked to, as on a page of the repository.
+# Links may point to any heading, as on GitHub.
 myst_heading_anchors = 4
 suppress_warnings = ["myst.header"]  # documents may begin below the first level
 nitpicky = False
@@ -47,7 +47,7 @@ html_extra_path = ["extra"]
 html_copy_source = False
 html_show_sourcelink = False
 html_show_sphinx = False
-# Pages load nothing from elsewhere.
+# No fonts or scripts from other hosts.
 html_theme_options = {
     "light_css_variables": {"color-brand-primary": "#0b6e6e", "color-brand-content": "#0b6e6e"},
     "dark_css_variables": {"color-brand-primary": "#4cc4c4", "color-brand-content": "#4cc4c4"},
@@ -58,7 +58,7 @@ ANCHOR = re.compile(r'^<a id="([^"]+)"></a>$', re.MULTILINE)
 ANCHOR_LINK = re.compile(r"\[([^\]]*)\]\(#([^)]+)\)")
 TITLED = re.compile(r"^.*<|>$")
 TOCTREE = re.compile(r"^```\{toctree\}\n(.*?)^```$", re.MULTILINE | re.DOTALL)
-# Pages below a page, in the sidebar. "*" alone: every document that no other list has.
+# Pages below a page in the sidebar. "*" stands for every document that is in no other list.
 BELOW = {
     "docs/results/README": ["Every table and figure <report>"],
     "docs/decisions/README": ["0*"],
@@ -67,7 +67,7 @@ BELOW = {
 
 
 def adapt_source(app, docname, source):
-    """What a page of the repository may do and MyST reads otherwise; pages below it."""
+    """Adapts a document to MyST, which does not resolve links to <a id>, and adds its toctree."""
     anchors = set(ANCHOR.findall(source[0]))
     source[0] = ANCHOR_LINK.sub(
         lambda link: f'<a href="#{link[2]}">{link[1]}</a>' if link[2] in anchors else link[0],
@@ -78,7 +78,7 @@ def adapt_source(app, docname, source):
 
 
 def the_rest(documents):
-    """Absolute paths of the documents that neither the index nor another list has."""
+    """Absolute paths of the documents that are in neither the index nor another list."""
     index = (ROOT / f"{root_doc}.md").read_text(encoding="utf-8")
     lists = [(root_doc, [line for block in TOCTREE.findall(index) for line in block.splitlines()]),
              *BELOW.items()]
@@ -90,7 +90,7 @@ def the_rest(documents):
 
 
 def add_element(app, failure):
-    """The script of <duet-motion>, for the pages that show motion."""
+    """Writes the script of <duet-motion> for the pages that show motion."""
     if failure is None:
         element.main([str(pathlib.Path(app.outdir) / "_static" / "duet-motion.js")])
 

@@ -1,5 +1,4 @@
-"""Reads a Jupyter notebook as a page: its text as Markdown, its code and what that printed as
-blocks, its pictures as they are."""
+"""Reads a Jupyter notebook as a page: text as Markdown, code and output as blocks, and images."""
 
 import json
 
