@@ -1,4 +1,4 @@
-"""The Python package against a real server: what a user's script does, and the examples."""
+"""The Python package and its examples against a real server."""
 
 import asyncio
 import dataclasses
@@ -49,7 +49,7 @@ class PythonClientTest(unittest.TestCase):
             self.assertIn("research", model.terms)
             self.assertRegex(model.weights_sha256, r"^[0-9a-f]{64}$")
 
-    def test_arrays_go_in_and_come_out(self):
+    def test_synthesize_takes_and_returns_arrays(self):
         result = self.client.synthesize(self.hug, labels={"hug": 1}, seed=3)
         self.assertEqual(result.follower.positions.shape, (91, 15, 3))
         self.assertEqual(result.follower.joint_names, self.hug.joint_names)
@@ -58,13 +58,13 @@ class PythonClientTest(unittest.TestCase):
         self.assertGreater(height.mean(), 1)
         self.assertGreater(result.unfamiliarity, 0)
 
-    def test_the_same_request_has_the_same_answer_and_another_seed_another(self):
+    def test_seed_determines_the_answer(self):
         answers = [self.client.synthesize(self.hug, {"hug": 1}, seed=seed).follower.positions
                    for seed in (5, 5, 6)]
         np.testing.assert_array_equal(answers[0], answers[1])
         self.assertGreater(np.abs(answers[0] - answers[2]).max(), 0.01)
 
-    def test_the_program_has_the_same_answer(self):
+    def test_program_gives_the_same_answer(self):
         with tempfile.TemporaryDirectory() as folder:
             out = pathlib.Path(folder) / "pair.json"
             tools.duet("synthesize", "--server", self.server.address, "--leader",
@@ -74,27 +74,27 @@ class PythonClientTest(unittest.TestCase):
         result = self.client.synthesize(self.hug, {"hug": 1}, seed=3)
         np.testing.assert_array_equal(result.follower.positions, follower.positions)
 
-    def test_the_reply_is_in_the_leaders_unit_and_world(self):
+    def test_follower_has_the_leaders_unit_and_world(self):
         metres = self.client.synthesize(self.hug, {"hug": 1})
         other = self.client.synthesize(self.hug.converted("millimetres", "z-up"), {"hug": 1})
         self.assertEqual((other.follower.unit, other.follower.up_axis), ("millimetres", "z-up"))
         np.testing.assert_allclose(other.follower.converted().positions,
                                    metres.follower.positions, atol=0.02)
 
-    def test_weights_change_over_time(self):
+    def test_keyframes_change_the_answer(self):
         result = self.client.synthesize(self.hug, keyframes={0: {"hug": 1}, 60: {"push": 1}})
         plain = self.client.synthesize(self.hug, {"hug": 1})
         self.assertGreater(
             np.abs(result.follower.positions - plain.follower.positions)[-20:].max(), 0.05)
 
-    def test_a_follower_starts_where_it_is_told(self):
+    def test_follower_starts_at_follower_start(self):
         result = self.client.synthesize(self.hug, {"hug": 1}, follower_start=(0, 1.1, 1.5),
                                         clean_up=False)
         self.assertFalse(result.cleaned_up)
         start = result.follower.joint("torso")[0]
         self.assertLess(np.linalg.norm(start[[0, 2]] - [0, 1.5]), 0.3)
 
-    def test_frames_come_before_the_end(self):
+    def test_stream_yields_chunks(self):
         with self.client.stream(self.hug, {"hug": 1}, chunk_frames=10) as stream:
             firsts = [chunk.first_frame for chunk in stream]
             result = stream.result()
@@ -102,7 +102,7 @@ class PythonClientTest(unittest.TestCase):
         self.assertGreaterEqual(len(firsts), 10)
         self.assertLessEqual(result.timings.first_chunk, result.timings.total)
 
-    def test_a_refusal_names_every_field(self):
+    def test_error_lists_every_violation(self):
         with self.assertRaises(duet.InvalidRequestError) as caught:
             self.client.synthesize(dataclasses.replace(self.hug, frame_rate_hz=500),
                                    {"hug": 1, "dance": 1}, variety=3)
@@ -116,7 +116,7 @@ class PythonClientTest(unittest.TestCase):
         with self.assertRaises(duet.RequestMismatchError):
             self.client.synthesize(self.hug.select(["head", "neck"]), {"hug": 1})
 
-    def test_a_value_that_the_server_refuses_is_named_by_frame_and_joint(self):
+    def test_violations_name_frame_and_joint(self):
         positions = self.hug.positions.copy()
         positions[7, 4, 1] = np.nan
         unchecked = object.__new__(duet.Motion)
@@ -129,7 +129,7 @@ class PythonClientTest(unittest.TestCase):
                          ["leader.positions[7, 4, 1]"])
         self.assertIn(f"frame 7, joint {self.hug.joint_names[4]!r}, y", str(caught.exception))
 
-    def test_hundreds_of_gathered_calls_are_all_answered(self):
+    def test_300_gathered_calls_succeed(self):
         async def ask():
             async with duet.aio.Client(self.server.address) as client:
                 return await asyncio.gather(*(
@@ -140,14 +140,14 @@ class PythonClientTest(unittest.TestCase):
             results[3].follower.positions,
             self.client.synthesize(self.hug, {"hug": 1}, seed=3).follower.positions)
 
-    def test_the_environment_names_the_server(self):
+    def test_environment_sets_the_server(self):
         ran = tools.run(
             sys.executable, "-B", "-c",
             "import duet_motion as duet\nprint(len(duet.Client().list_models()))",
             env={**os.environ, "PYTHONPATH": str(PACKAGE), "DUET_SERVER": self.server.address})
         self.assertEqual((ran.returncode, ran.stdout), (0, "3\n"), ran.stderr)
 
-    def test_a_call_whose_server_is_killed_fails_soon_and_names_it(self):
+    def test_killed_server_is_reported_with_its_address(self):
         server = tools.Server()
         self.addCleanup(server.stop)
         # Minutes long, so that most of it has not been sent when the first frame comes.
@@ -161,7 +161,7 @@ class PythonClientTest(unittest.TestCase):
                                             f"expected a Duet server at {server.address}"):
                     stream.result()
 
-    def test_a_data_set_is_read_however_it_is_packed(self):
+    def test_every_packing_of_a_data_set_is_read_alike(self):
         with tempfile.TemporaryDirectory() as folder:
             sets = {}
             for packing in ("none", "npz", "tar"):
@@ -181,7 +181,7 @@ class PythonClientTest(unittest.TestCase):
 
     @unittest.skipIf(importlib.util.find_spec("torch") is None,
                      "no Python module torch; install the package python3-torch")
-    def test_pytorch_learns_from_a_data_set(self):
+    def test_pytorch_example_reduces_its_error(self):
         with tempfile.TemporaryDirectory() as folder:
             out = pathlib.Path(folder) / "set"
             tools.duet("batch", tools.SOURCE / "samples", "--recipe",
@@ -194,7 +194,7 @@ class PythonClientTest(unittest.TestCase):
         errors = [float(error) for error in re.findall(r": ([\d.]+) m", ran.stdout)]
         self.assertLess(errors[-1], 0.8 * errors[0])
 
-    def test_many_requests_are_answered_alike(self):
+    def test_synthesize_many_gives_the_same_answers(self):
         requests = [duet.SynthesisRequest(self.hug, {name: 1}, priority="bulk")
                     for name in tools.CLASSES]
         outcomes = list(self.client.synthesize_many(requests, concurrency=3))
@@ -203,7 +203,7 @@ class PythonClientTest(unittest.TestCase):
         together = outcomes[tools.CLASSES.index("hug")].unwrap()
         np.testing.assert_array_equal(together.follower.positions, alone.follower.positions)
 
-    def test_the_asynchronous_client_has_the_same_answers(self):
+    def test_asyncio_client_gives_the_same_answers(self):
         async def ask():
             async with duet.aio.Client(self.server.address) as client:
                 models = await client.list_models()
@@ -216,7 +216,7 @@ class PythonClientTest(unittest.TestCase):
         np.testing.assert_array_equal(hug.follower.positions, waited.follower.positions)
         self.assertGreater(np.abs(kick.follower.positions - hug.follower.positions).max(), 0.05)
 
-    def test_a_server_that_comes_back_is_reached(self):
+    def test_call_survives_a_server_restart(self):
         server = tools.Server()
         patient = duet.RetryOptions(max_attempts=10_000, initial_backoff=0.05, max_backoff=0.1)
         with duet.Client(server.address, retry=patient, timeout=tools.RUN_SECONDS,

@@ -1,4 +1,4 @@
-"""The Python package as it is given out: wheel and sdist are made, the wheel is installed and used."""
+"""Builds wheel and sdist of the Python package, installs the wheel and uses it."""
 
 import importlib.util
 import os
@@ -39,19 +39,19 @@ class PythonPackageTest(unittest.TestCase):
         self.assertEqual(len(found), 1, found)
         return found[0]
 
-    def test_its_version_is_the_projects(self):
+    def test_version_is_the_projects(self):
         cmake = (tools.SOURCE / "CMakeLists.txt").read_text(encoding="utf-8")
         version = re.search(r"project\(duet VERSION ([\d.]+)", cmake)[1]
         self.assertEqual(self.archive(".whl").name, f"duet_motion-{version}-py3-none-any.whl")
         self.assertEqual(self.archive(".tar.gz").name, f"duet-motion-{version}.tar.gz")
 
-    def test_the_sdist_has_what_a_package_needs(self):
+    def test_sdist_is_complete(self):
         with tarfile.open(self.archive(".tar.gz")) as archive:
             names = {name.partition("/")[2] for name in archive.getnames()}
         self.assertLessEqual({"pyproject.toml", "README.md", "LICENSE", "duet_motion/py.typed",
                               "duet_motion/v1/synthesis_pb2.pyi"}, names)
 
-    def test_the_wheel_is_installed_and_answers(self):
+    def test_installed_wheel_makes_a_call(self):
         installed = self.folder / "installed"
         tools.run(sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--no-index",
                   "--target", installed, self.archive(".whl")).check_returncode()

@@ -1,4 +1,4 @@
-"""Duet: one person moves, another answers. The client for Python.
+"""Duet synthesises the second person of a two-person interaction. This is its Python client.
 
 >>> import duet_motion as duet
 >>> leader = duet.read_motion("samples/hug.bvh")

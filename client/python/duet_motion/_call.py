@@ -1,4 +1,4 @@
-"""A call, whoever carries its messages: attempts, deadline, pinned model, the reply so far."""
+"""A call, independent of its transport: attempts, deadline, pinned model, the reply so far."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ Metadata = Tuple[Tuple[str, str], ...]
 
 @dataclasses.dataclass(frozen=True)
 class Environment:
-    """Time and chance, replaced in tests."""
+    """The clock and the random source; tests replace them."""
 
     now: Callable[[], float] = time.monotonic
     """Seconds."""
@@ -33,21 +33,21 @@ class Environment:
 
 @dataclasses.dataclass(frozen=True)
 class CallSettings:
-    """What every call of a client has in common."""
+    """Settings of every call of a client."""
 
     timeout: float
-    """Seconds for a whole call, all its attempts included."""
+    """Seconds for a whole call, including all its attempts."""
     retry: RetryOptions
     metadata: Metadata = ()
     environment: Environment = Environment()
     wait: float = 5.0
-    """Seconds for which a server that cannot be reached is tried again."""
+    """Seconds to retry a server that cannot be reached."""
     address: str = ""
-    """Of the server, for errors."""
+    """The server's address, for error messages."""
 
 
 class Attempts:
-    """How often a call was made, and whether it is made again."""
+    """Counts the attempts of a call and decides whether to make another one."""
 
     def __init__(self, settings: CallSettings, timeout: Optional[float] = None,
                  request_id: str = "") -> None:
@@ -59,20 +59,20 @@ class Attempts:
         if request_id:
             self.metadata += (("x-request-id", request_id),)
         self.made = 0
-        # The end of the first of the latest attempts in a row that reached no server.
+        # When the first of the latest consecutive attempts without a server ended.
         self._away_since: Optional[float] = None
 
     def seconds_left(self) -> float:
-        """At least a moment."""
+        """Until the deadline; at least 0.001."""
         return max(self.start + self.timeout - self._settings.environment.now(), 0.001)
 
     def begin(self) -> float:
-        """Counts an attempt; the seconds that it has."""
+        """Counts an attempt and returns its timeout in seconds."""
         self.made += 1
         return self.seconds_left()
 
     def wait_after(self, error: DuetError, answered: bool = False) -> float:
-        """Seconds until the next attempt; raises the error where there is none.
+        """Returns the seconds until the next attempt, or raises the error if there is none.
 
         ``answered``: the server sent part of a reply before the attempt failed.
         """
@@ -87,7 +87,7 @@ class Attempts:
         else:
             self._away_since = now if self._away_since is None else self._away_since
             left = self._away_since + self._settings.wait - now
-            # The last attempt is made when the wait is over, not a whole backoff before that.
+            # The last attempt starts when the wait ends, not up to a backoff earlier.
             wait = min(wait, left)
             if left <= 0 or now + wait >= self.start + self.timeout:
                 raise self._no_server(error)
@@ -103,7 +103,7 @@ class Attempts:
     def _no_server(self, error: DuetError) -> DuetError:
         return error.with_message(
             f"address: expected a Duet server at {self._settings.address}, got {error.message!r} "
-            f"({self._count()} in {self.elapsed():.1f} s); start duet-server there, name another "
+            f"({self._count()} in {self.elapsed():.1f} s); start duet-server there, set another "
             "address (DUET_SERVER), or wait longer (duet_motion.Client(wait=SECONDS))")
 
     def _after_attempts(self, error: DuetError, reason: str) -> DuetError:
@@ -116,7 +116,7 @@ class Attempts:
 
 
 class SynthesisCall:
-    """One Synthesize call: what goes out, what is made of what comes back."""
+    """One Synthesize call: its request and the reply so far."""
 
     def __init__(self, request: SynthesisRequest, settings: CallSettings) -> None:
         self.attempts = Attempts(settings, request.timeout, request.request_id)
@@ -127,26 +127,26 @@ class SynthesisCall:
         self._resumed_after = 0
 
     def begin(self) -> Tuple[synthesis_pb2.SynthesizeRequest, float]:
-        """The request of the next attempt, and the seconds that it has."""
+        """Starts an attempt; returns its request and its timeout in seconds."""
         seconds = self.attempts.begin()
         self._resumed_after = self._reply.handed_out
         if self._resumed_after and self._reply.header is not None:
-            # A follower must not be half one version's and half another's.
+            # One follower must not mix the answers of two versions.
             self._wire.model.name = self._reply.header.model_name
             self._wire.model.version = self._reply.header.model_version
         self._reply.start_stream()
         return self._wire, seconds
 
     def accept(self, response: synthesis_pb2.SynthesizeResponse) -> Optional[FollowerChunk]:
-        """Takes a message; frames that the caller does not have yet, where there are any."""
+        """Accepts a message and returns its frames that the caller does not have yet, if any."""
         chunk = self._reply.accept(response)
         if self._reply.received and not self._first_chunk:
             self._first_chunk.append(self.attempts.elapsed())
         return chunk
 
     def wait_after(self, error: Optional[DuetError]) -> Optional[float]:
-        """After a stream ended with ``error`` or well: None where the reply is whole, else the
-        seconds until the next attempt. Raises what the call fails with."""
+        """Handles the end of a stream, with ``error`` or without one. Returns None if the reply is
+        complete, else the seconds until the next attempt. Raises the error of a failed call."""
         answered = self._reply.header is not None
         ended = self._reply.end_stream(error)
         if ended is None:
@@ -156,11 +156,11 @@ class SynthesisCall:
         return self.attempts.wait_after(with_joint_names(ended, self._leader), answered)
 
     def no_turn(self, calls: int) -> DuetError:
-        """What a call fails with whose time is over before its client may begin it."""
+        """The error of a call whose timeout expires before its client may start it."""
         return make_error(
             grpc.StatusCode.DEADLINE_EXCEEDED,
             f"timeout: expected a turn among max_concurrent_calls={calls} calls of this client, got "
-            f"none in {self.attempts.timeout:g} s; give calls more time, or allow more at once")
+            f"none in {self.attempts.timeout:g} s; raise the timeout or max_concurrent_calls")
 
     def result(self) -> SynthesisResult:
         return self._reply.result(self.attempts.made, self._first_chunk[0],

@@ -1,4 +1,4 @@
-"""How a client reaches its server, whether its calls wait or are awaited."""
+"""The connection to a server, shared by the blocking and the asynchronous client."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ from duet_motion.v1 import synthesis_pb2_grpc
 _Value = TypeVar("_Value")
 
 _SCHEMES = ("dns:", "ipv4:", "ipv6:", "unix:", "unix-abstract:", "xds:")
-# What a token may be sent to in plain text: it leaves this machine by no network. A host name other
-# than localhost may be anybody's, and of several addresses each would have to be looked at.
+# Addresses that a token may be sent to in plain text, because it does not leave this machine. Other
+# host names may resolve to any machine.
 _THIS_MACHINE = re.compile(
     r"(unix:|unix-abstract:).*|((dns:///|dns:|ipv4:)?(localhost|127\.[\d.]+)|(ipv6:)?\[::1\])(:\d+)?")
 _LONGEST_RECONNECT_SECONDS = 1.0
@@ -33,8 +33,8 @@ DEFAULT_WAIT = 5.0
 # Few enough that a server with default limits takes all of them, enough to keep it busy.
 DEFAULT_CONCURRENT_CALLS = 16
 
-# Calls take turns over all servers behind the name whose health service says that they serve, so
-# that a draining server gets no new work. The empty service name asks for the server as a whole.
+# Round robin over all servers of the name whose health service reports SERVING, so that a draining
+# server gets no new calls. The empty service name stands for the whole server.
 _SERVICE_CONFIG = json.dumps({
     "loadBalancingConfig": [{"round_robin": {}}],
     "healthCheckConfig": {"serviceName": ""},
@@ -42,12 +42,12 @@ _SERVICE_CONFIG = json.dumps({
 
 
 class Connected:
-    """What both clients are made of: settings, a channel, and the stub that speaks over it."""
+    """Base of both clients: settings, a channel and its stub."""
 
     _grpc: ClassVar[Any]
-    """The module whose channels carry the calls: ``grpc`` or ``grpc.aio``."""
+    """The module that creates channels: ``grpc`` or ``grpc.aio``."""
     _semaphore: ClassVar[Any]
-    """Bounds the calls under way: of ``threading`` or ``asyncio``."""
+    """Limits concurrent calls: ``threading.Semaphore`` or ``asyncio.Semaphore``."""
 
     def __init__(self, address: Optional[str] = None, *, timeout: Optional[float] = None,
                  wait: Optional[float] = None, tls: Union[TlsOptions, bool, None] = None,
@@ -83,7 +83,7 @@ def _first(argument: Optional[_Value], setting: Optional[_Value], default: _Valu
 
 
 def tls_options(tls: Union[TlsOptions, bool]) -> Optional[TlsOptions]:
-    """The options that ``tls`` stands for; None: plain text."""
+    """The TLS options for ``tls``; None for plain text."""
     if isinstance(tls, bool):
         return TlsOptions() if tls else None
     return tls
@@ -109,21 +109,21 @@ def channel_arguments(retry: RetryOptions, tls: Optional[TlsOptions], token: str
     arguments: List[Tuple[str, Any]] = [
         ("grpc.lb_policy_name", "round_robin"),
         ("grpc.service_config", _SERVICE_CONFIG),
-        # A lost connection is tried again as soon as a call is, and often: gRPC's own waits grow to
-        # two minutes, while the server has long been back.
+        # Reconnect as often as calls are retried. gRPC's own backoff grows to two minutes, so it
+        # would notice a restarted server late.
         ("grpc.initial_reconnect_backoff_ms", _milliseconds(retry.initial_backoff)),
         ("grpc.max_reconnect_backoff_ms", _milliseconds(max(
             retry.initial_backoff, min(retry.max_backoff, _LONGEST_RECONNECT_SECONDS)))),
-        # The least time that gRPC gives an attempt to connect, in spite of the option's name. Its own
-        # 20 s are long where a firewall drops packets.
+        # In spite of its name, this option is the minimum timeout of a connection attempt. The
+        # default of 20 s is too long if a firewall drops packets.
         ("grpc.min_reconnect_backoff_ms", _milliseconds(_CONNECT_TIMEOUT_SECONDS)),
-        # gRPC's own retries would come on top of ours.
+        # Retries are made by duet_motion.retry.
         ("grpc.enable_retries", 0),
     ]
     if tls is not None and tls.server_name:
         arguments.append(("grpc.ssl_target_name_override", tls.server_name))
     if token and tls is None:
-        # Plain text to this machine must not take the way of the environment's proxy.
+        # A token in plain text must not pass through the environment's proxy.
         arguments.append(("grpc.enable_http_proxy", 0))
     if authority:
         arguments.append(("grpc.default_authority", authority))
@@ -142,7 +142,7 @@ def credentials(tls: TlsOptions) -> grpc.ChannelCredentials:
 
 def check_settings(address: str, timeout: float, wait: float, retry: RetryOptions,
                    tls: Optional[TlsOptions], token: str) -> CallSettings:
-    """What every call has in common. Raises ValueError naming what makes no sense."""
+    """Settings of every call. Raises ValueError for an invalid value."""
     if not address:
         raise ValueError("address: expected host:port, got an empty string")
     checked_number("timeout", timeout, above=0)
@@ -156,7 +156,7 @@ def _authorization(address: str, tls: Optional[TlsOptions], token: str) -> Metad
     if not token:
         return ()
     if not all("!" <= character <= "~" for character in token):
-        # Not repeated: messages go to logs.
+        # The message does not repeat the token, because messages are logged.
         raise ValueError("token: expected printable ASCII without blanks, got other characters")
     if tls is None and not _THIS_MACHINE.fullmatch(address):
         raise ValueError(f"token: expected tls, got plain text to {address}")

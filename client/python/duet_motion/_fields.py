@@ -1,7 +1,7 @@
-"""Fields of a refused request as callers know them.
+"""Translates field names in errors from the wire to arrays.
 
-On the wire a motion is one flat list of numbers, and a server refuses ``leader.positions[147]``.
-Callers have arrays: the same value is ``leader.positions[3, 4, 0]``, the x of a joint with a name.
+On the wire a motion is one flat list of numbers, so a server rejects ``leader.positions[147]``.
+Callers use arrays, where the same value is ``leader.positions[3, 4, 0]``, the x of a named joint.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ _FLAT = re.compile(r"\b(leader|follower_start\.pose)\.positions\[(\d+)\]")
 
 
 def with_joint_names(error: DuetError, leader: Motion) -> DuetError:
-    """The same error, whose fields and messages index arrays and name joints."""
+    """The same error with array indices and joint names in its fields and messages."""
     def index(match: Match[str]) -> str:
         frame, joint, axis = _place(leader, match)
         if match[1] == "leader":
@@ -44,6 +44,6 @@ def with_joint_names(error: DuetError, leader: Motion) -> DuetError:
 
 
 def _place(leader: Motion, match: Match[str]) -> tuple[int, int, int]:
-    """Frame, joint and axis of a flat index."""
+    """The frame, joint and axis of a flat index."""
     value = int(match[2])
     return (value // (3 * leader.joint_count), value // 3 % leader.joint_count, value % 3)

@@ -1,8 +1,8 @@
 """The program `duet`, which reads and writes motion files for this package.
 
-A process that has answered is kept for the next command (``duet stdio``): starting one costs more
-than reading a short file. It ends with this process, and its end, for whatever reason, is never an
-error: another is started.
+Starting a process takes longer than reading a short file, so a process is kept for the next command
+(``duet stdio``). It ends with this Python process. If it ends earlier, for any reason, another one
+is started.
 """
 
 from __future__ import annotations
@@ -16,34 +16,34 @@ import subprocess
 import threading
 from typing import Dict, List, Optional, Sequence, Tuple
 
-# Idle processes that are kept: as many threads read files side by side without a new one.
+# Maximum number of idle processes to keep: so many threads can read files without starting one.
 _MOST_IDLE = 4
 _STOP_SECONDS = 5
 
 
 class CommandFailed(Exception):
-    """A command that ended with an exit code other than 0; the message is what it printed."""
+    """A command exited with a code other than 0. The message is its standard error."""
 
 
 class _Ended(Exception):
-    """The process ended, or is of a version without ``duet stdio``."""
+    """The process ended, or its version has no ``duet stdio``."""
 
 
 def find() -> str:
-    """The path of the program. Raises FileNotFoundError, which says how to get it."""
+    """The path of the program. Raises FileNotFoundError with instructions to install it."""
     name = os.environ.get("DUET_PROGRAM", "duet")
     found = shutil.which(name)
     if found is None:
         raise FileNotFoundError(
             f"program {name!r}: expected Duet's command-line client, which reads and writes motion "
-            "files, got no such program; pip does not bring it: install the Debian package "
-            "duet (deploy/README.md) or build the program, and put it on the PATH or name it in "
+            "files, got no such program; pip does not install it: install the Debian package "
+            "duet (deploy/README.md) or build the program, and put it on the PATH or set "
             "DUET_PROGRAM")
     return found
 
 
 def run(*arguments: str) -> str:
-    """What the command prints. Settings of the user's configuration do not count.
+    """Runs a command and returns its output. The user's configuration file is ignored.
 
     Raises:
         CommandFailed: its exit code is not 0.
@@ -68,7 +68,7 @@ def _run(program: str, arguments: Sequence[str]) -> Tuple[int, bytes, bytes]:
         try:
             answer = helper.ask(line)
         except _Ended:
-            if fresh:  # whatever it died of, the command itself will tell
+            if fresh:  # the command itself reports the cause
                 return _run_once(program, arguments)
             helper = None
             continue
@@ -93,7 +93,7 @@ class _Helper:
     """A process that runs one command after another, for one thread at a time."""
 
     def __init__(self, program: str) -> None:
-        # In a session of its own: a Ctrl-C at the terminal is this process's business.
+        # A separate session, so that Ctrl-C at the terminal reaches only this process.
         self._process = subprocess.Popen(
             [program, "stdio"], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL, start_new_session=True, env=_environment())
@@ -104,7 +104,7 @@ class _Helper:
         except (OSError, ValueError, KeyError) as error:
             self._kill()
             raise _Ended from error
-        except BaseException:  # such as Ctrl-C: an answer is still to come, for nobody
+        except BaseException:  # such as Ctrl-C: the answer would be read by the next command
             self._kill()
             raise
 
@@ -128,12 +128,12 @@ class _Helper:
         self.close()
 
     def abandon(self) -> None:
-        """Of a process that is another's child: closes what was inherited, and waits for nobody."""
+        """Closes the inherited pipes of a parent's child process without waiting for it."""
         self._process.returncode = 0
         self._close_pipes()
 
     def close(self) -> None:
-        """The process ends at the end of its input."""
+        """Closes the input, which ends the process, and waits for it."""
         self._close_pipes()
         try:
             self._process.wait(_STOP_SECONDS)
@@ -144,12 +144,12 @@ class _Helper:
     def _close_pipes(self) -> None:
         for pipe in (self._process.stdin, self._process.stdout):
             if pipe is not None:
-                with contextlib.suppress(OSError):  # what was to be flushed has no reader
+                with contextlib.suppress(OSError):  # the buffered data has no reader
                     pipe.close()
 
 
 class _Idle:
-    """Processes that wait for a command, by program and working directory."""
+    """Idle processes of one program and working directory."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
@@ -181,8 +181,8 @@ class _Idle:
             helper.close()
 
     def forget(self) -> None:
-        """After a fork, in the child: the processes are the parent's."""
-        self._lock = threading.Lock()  # whoever held it is not in the child
+        """Called in the child after a fork, because the processes belong to the parent."""
+        self._lock = threading.Lock()  # the thread that held it does not exist in the child
         for helper in self._helpers:
             helper.abandon()
         self._helpers = []

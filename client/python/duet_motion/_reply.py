@@ -1,8 +1,8 @@
-"""Checks a response stream message by message and gathers the follower.
+"""Checks a response stream message by message and collects the follower.
 
-A call whose stream broke is run again from its first frame: ``start_stream`` begins each stream,
-and frames that an earlier one handed out are not handed out twice. The counterpart of the C++
-client's ReplyAssembler (client/internal/reply_assembler.h).
+A call whose stream broke is repeated from its first frame. ``start_stream`` starts each stream, and
+frames that the caller already has are not returned again. The counterpart of the C++ client's
+ReplyAssembler (client/internal/reply_assembler.h).
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ from duet_motion.motion import Motion, Positions
 from duet_motion.result import FollowerChunk, SynthesisResult, Timings
 from duet_motion.v1 import synthesis_pb2
 
-# What a proxy or a dying server resets streams under. What the service itself says under these
-# codes always carries a reason.
+# Codes with which a proxy or a stopping server resets streams. The service always adds a reason to
+# these codes.
 _RESETS = (grpc.StatusCode.INTERNAL, grpc.StatusCode.UNKNOWN, grpc.StatusCode.CANCELLED)
 
 
@@ -35,12 +35,12 @@ def _malformed(what: str) -> MalformedReplyError:
 
 
 class ReplyAssembler:
-    """One call's reply, over all its streams."""
+    """The reply of one call, over all its streams."""
 
     def __init__(self, leader: Motion) -> None:
         self._leader = leader
         self.handed_out = 0
-        """Frames that the caller has, over all streams."""
+        """Number of frames that the caller has, over all streams."""
         self.start_stream()
 
     def start_stream(self) -> None:
@@ -50,9 +50,9 @@ class ReplyAssembler:
         self.received = 0
 
     def accept(self, response: synthesis_pb2.SynthesizeResponse) -> Optional[FollowerChunk]:
-        """Takes a message; frames that the caller does not have yet, where there are any.
+        """Accepts a message and returns its frames that the caller does not have yet, if any.
 
-        Raises MalformedReplyError when the message breaks the contract.
+        Raises MalformedReplyError if the message violates the API.
         """
         if self._summary is not None:
             raise _malformed("a message after the summary")
@@ -72,16 +72,16 @@ class ReplyAssembler:
         if self.header is not None:
             raise _malformed("a second header")
         if tuple(header.joint_names) != leader.joint_names:
-            raise _malformed("header.joint_names differ from the leader's")
+            raise _malformed("header.joint_names: expected the leader's, got others")
         if header.frame_rate_hz != leader.frame_rate_hz:
-            raise _malformed(f"header.frame_rate_hz: {header.frame_rate_hz}, wanted the leader's "
-                             f"{leader.frame_rate_hz}")
+            raise _malformed("header.frame_rate_hz: expected the leader's "
+                             f"{leader.frame_rate_hz}, got {header.frame_rate_hz}")
         if (header.unit, header.up_axis) != (UNITS[leader.unit], UP_AXES[leader.up_axis]):
-            raise _malformed(f"header.unit and up_axis: {header.unit}, {header.up_axis}, wanted "
-                             f"{leader.unit}, {leader.up_axis}")
+            raise _malformed(f"header.unit and up_axis: expected {leader.unit} and "
+                             f"{leader.up_axis}, got {header.unit} and {header.up_axis}")
         if header.frame_count != leader.frame_count:
-            raise _malformed(f"header.frame_count: {header.frame_count}, wanted the leader's "
-                             f"{leader.frame_count}")
+            raise _malformed(f"header.frame_count: expected the leader's {leader.frame_count}, got "
+                             f"{header.frame_count}")
         self.header = header
 
     def _accept_chunk(self, chunk: synthesis_pb2.MotionChunk) -> Optional[FollowerChunk]:
@@ -99,19 +99,21 @@ class ReplyAssembler:
         if self.header is None:
             raise _malformed("a chunk before the header")
         if chunk.first_frame != self.received:
-            raise _malformed(f"chunk.first_frame: {chunk.first_frame}, wanted {self.received}")
+            raise _malformed(f"chunk.first_frame: expected {self.received}, got "
+                             f"{chunk.first_frame}")
         left = self._leader.frame_count - self.received
         if not 1 <= chunk.frame_count <= left:
-            raise _malformed(f"chunk.frame_count: {chunk.frame_count}, wanted 1 to {left}")
+            raise _malformed(f"chunk.frame_count: expected 1 to {left}, got {chunk.frame_count}")
         shape = (chunk.frame_count, self._leader.joint_count, 3)
         if len(chunk.positions) != np.prod(shape):
-            raise _malformed(f"chunk.positions: {len(chunk.positions)} values, wanted "
-                             f"{np.prod(shape)} for {chunk.frame_count} frames")
+            raise _malformed(f"chunk.positions: expected {np.prod(shape)} values for "
+                             f"{chunk.frame_count} frames, got {len(chunk.positions)}")
         positions = np.array(chunk.positions, dtype=np.float32).reshape(shape)
         finite = np.isfinite(positions.ravel())
         if not finite.all():
-            raise _malformed(f"chunk.positions[{int(np.argmin(finite))}] is not finite, in the "
-                             f"chunk of frame {chunk.first_frame}")
+            bad = int(np.argmin(finite))
+            raise _malformed(f"chunk.positions[{bad}]: expected a finite value, got "
+                             f"{chunk.positions[bad]} in the chunk of frame {chunk.first_frame}")
         return positions
 
     def _accept_summary(self, summary: synthesis_pb2.SynthesisSummary) -> None:
@@ -121,22 +123,23 @@ class ReplyAssembler:
             raise _malformed(f"a summary after {self.received} of {self._leader.frame_count} "
                              "frames")
         if summary.frame_count != self.received:
-            raise _malformed(f"summary.frame_count: {summary.frame_count}, wanted {self.received}")
+            raise _malformed(f"summary.frame_count: expected {self.received}, got "
+                             f"{summary.frame_count}")
         if summary.chunk_count != len(self._chunks):
-            raise _malformed(f"summary.chunk_count: {summary.chunk_count}, but "
-                             f"{len(self._chunks)} chunks came")
+            raise _malformed(f"summary.chunk_count: expected {len(self._chunks)}, got "
+                             f"{summary.chunk_count}")
         if summary.HasField("unfamiliarity") and not (
                 np.isfinite(summary.unfamiliarity) and summary.unfamiliarity >= 0):
-            raise _malformed(f"summary.unfamiliarity: {summary.unfamiliarity}, wanted a finite "
-                             "value of 0 or more")
+            raise _malformed("summary.unfamiliarity: expected a finite value of at least 0, got "
+                             f"{summary.unfamiliarity}")
         self._summary = summary
 
     def end_stream(self, error: Optional[DuetError]) -> Optional[DuetError]:
-        """None where the reply is whole, after the stream ended with ``error`` or well."""
+        """Handles the end of a stream; returns None if the reply is complete, else its error."""
         if error is not None and not _is_broken_connection(error):
             return error
         if self._summary is not None:
-            return None  # the reply was whole before anything broke
+            return None  # the reply was complete before the stream broke
         if error is not None and self.header is None:
             return error
         message = (f"the reply ended without a summary, after {self.received} of "
@@ -147,7 +150,7 @@ class ReplyAssembler:
                           retry_delay=error.retry_delay if error else None)
 
     def result(self, attempts: int, first_chunk: float, total: float) -> SynthesisResult:
-        """The gathered reply, after end_stream returned None."""
+        """The complete reply. Requires that end_stream returned None."""
         assert self.header is not None and self._summary is not None
         header, summary = self.header, self._summary
         return SynthesisResult(

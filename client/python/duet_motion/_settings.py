@@ -1,9 +1,9 @@
-"""The environment and the configuration file of the program `duet`, for this package.
+"""Reads the environment and the configuration file of the program `duet` for this package.
 
-The same names and the same precedence as in client/cli/settings.h: an argument wins over
-``DUET_SERVER``, that over the configuration file, and the file over the default. The file is the one
-that ``DUET_CONFIG`` names (empty: none), or else ``duet/config`` below ``XDG_CONFIG_HOME`` or
-``~/.config``, which need not exist.
+Names and precedence are those of client/cli/settings.h: an argument overrides ``DUET_SERVER``,
+which overrides the configuration file, which overrides the default. ``DUET_CONFIG`` names the file
+(empty: no file). Without it, the file is ``duet/config`` below ``XDG_CONFIG_HOME`` or
+``~/.config``, and may be missing.
 """
 
 from __future__ import annotations
@@ -27,15 +27,15 @@ _SWITCH = {"true": True, "on": True, "yes": True, "1": True,
 class _Setting:
     value: str
     source: str
-    """For errors: ``DUET_SERVER``, or the file and the line."""
+    """For error messages: ``DUET_SERVER``, or the file and the line."""
 
 
 class Settings:
-    """What applies where an argument is left out; ``None`` where nothing is set.
+    """Values for omitted arguments; ``None`` for settings that are not set.
 
     Raises:
-        ValueError: the configuration file is malformed, or a value makes no sense; names the file
-            and the line.
+        ValueError: the configuration file is malformed or a value is invalid. The message names the
+            file and the line.
         OSError: the file that ``DUET_CONFIG`` names cannot be read.
     """
 
@@ -64,7 +64,8 @@ class Settings:
             return None
         token = pathlib.Path(path).read_text(encoding="utf-8").strip()
         if not 0 < len(token) <= _LONGEST_TOKEN:
-            raise self._refuse("token-file", "a file with a token in it")
+            raise self._refuse("token-file", f"a file with a token of at most {_LONGEST_TOKEN} "
+                               "characters")
         return token
 
     def tls(self) -> Optional[TlsOptions]:
@@ -110,7 +111,7 @@ def _default_file(variables: Mapping[str, str]) -> str:
 
 
 def _parse(text: str, path: str) -> Dict[str, _Setting]:
-    """The last value of each flag. Flags of other commands are none of this package's business."""
+    """The last value of each flag. Flags that this package does not use are kept unread."""
     settings = {}
     for number, line in enumerate(text.splitlines(), 1):
         line = line.strip()

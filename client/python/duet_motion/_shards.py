@@ -1,7 +1,7 @@
-"""Where the arrays of a data set lie: in files of their own, in zip shards or in tar shards.
+"""Reads the arrays of a data set from single files, zip shards or tar shards.
 
-Positions in a shard are looked up once; an array is then read through a file that is opened for it,
-so that threads and forked processes share nothing.
+The offsets in a shard are read once. Each array is then read through a newly opened file, so that
+threads and forked processes share no file position.
 """
 
 from __future__ import annotations
@@ -17,16 +17,17 @@ from typing import Any, Dict, Iterator, List, Mapping, Sequence, Tuple, overload
 import numpy as np
 import numpy.typing as npt
 
-# Of a zip member: 30 bytes, of which the last four are the lengths of what follows.
+# Header of a zip member: 30 bytes that end with the lengths of the name and the extra field.
 _ZIP_HEADER = struct.Struct("<26xHH")
 
 
 class DataSetError(ValueError):
-    """A data set that cannot be read: names the file, what was expected and what was found."""
+    """A data set cannot be read. The message names the file, what was expected and what was
+    found."""
 
 
 class Records(Sequence[Mapping[str, Any]]):
-    """The lines of ``index.jsonl``, parsed when they are asked for: a set may have a million."""
+    """The lines of ``index.jsonl``, parsed on access because a set can have millions."""
 
     def __init__(self, path: pathlib.Path) -> None:
         self._path = path
@@ -67,11 +68,11 @@ class Records(Sequence[Mapping[str, Any]]):
             return json.loads(line)
         except ValueError as error:
             raise DataSetError(f"{self._path}: byte {begin}: expected a record in JSON, got {error}; "
-                               "duet batch verify says what else is damaged") from error
+                               "run duet batch verify to find all damage") from error
 
 
 class Shards:
-    """Arrays of the shards in a folder."""
+    """The arrays in the shards of a folder."""
 
     def __init__(self, folder: pathlib.Path) -> None:
         self._folder = folder
@@ -95,7 +96,7 @@ def parse_array(data: bytes) -> npt.NDArray[np.float32]:
 
 
 def _members_of(path: pathlib.Path) -> Dict[str, Tuple[int, int]]:
-    """Where each member begins, and its bytes."""
+    """The offset and the size in bytes of each member."""
     try:
         return _tar_members(path) if path.suffix == ".tar" else _zip_members(path)
     except (tarfile.TarError, zipfile.BadZipFile) as error:
@@ -112,8 +113,8 @@ def _zip_members(path: pathlib.Path) -> Dict[str, Tuple[int, int]]:
     with zipfile.ZipFile(path) as archive, path.open("rb") as file:
         for member in archive.infolist():
             if member.compress_type != zipfile.ZIP_STORED:
-                raise ValueError(f"member {member.filename}: expected one that is stored, got one "
-                                 "that is compressed")
+                raise ValueError(f"member {member.filename}: expected a stored member, got a "
+                                 "compressed one")
             file.seek(member.header_offset)
             name, extra = _ZIP_HEADER.unpack(file.read(_ZIP_HEADER.size))
             begin = member.header_offset + _ZIP_HEADER.size + name + extra

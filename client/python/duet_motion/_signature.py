@@ -1,4 +1,4 @@
-"""Methods that take a request, and the same methods taking what a request is made of."""
+"""Derives methods that take a request's fields from methods that take a request."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Fields = ParamSpec("Fields")
 
 def spelled_out(method: Callable[[Self, Request], Answer], make: Callable[Fields, Request],
                 name: str) -> Callable[Concatenate[Self, Fields], Answer]:
-    """``method``, called with the arguments of ``make`` instead of what ``make`` returns."""
+    """``method`` with the arguments of ``make`` in place of the object that ``make`` returns."""
 
     @functools.wraps(method)
     def spelled(self: Self, /, *args: Fields.args, **kwargs: Fields.kwargs) -> Answer:
@@ -31,8 +31,8 @@ def spelled_out(method: Callable[[Self, Request], Answer], make: Callable[Fields
 
 
 def _document(method: Callable[..., object], make: Callable[..., object]) -> str:
-    """The method's first paragraph, then what `make` says of its arguments."""
+    """The method's first paragraph, followed by the arguments' documentation from `make`."""
     summary = (inspect.getdoc(method) or "").partition("\n\n")[0]
     arguments = (inspect.getdoc(make) or "").partition("\nArgs:\n")[2]
     return (f"{summary}\n\nArgs:\n{arguments.rstrip()}\n"
-            "    DuetError: the call failed, here or while the result is awaited.\n")
+            "    DuetError: the call failed, now or while the result is awaited.\n")

@@ -1,4 +1,4 @@
-"""How values are spelled, here and on the wire."""
+"""Maps the names of enum values in Python to those on the wire."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The asynchronous twin of :mod:`duet_motion.client`: the same methods, awaited.
+"""The asyncio version of :mod:`duet_motion.client`, with the same methods.
 
 >>> async with duet.aio.Client("localhost:50051") as client:
 ...     result = await client.synthesize(leader, labels={"hug": 1})
@@ -11,8 +11,8 @@ import collections
 import contextlib
 import threading
 from types import TracebackType
-from typing import (Any, AsyncGenerator, AsyncIterator, Callable, Coroutine, Deque, Iterable, Iterator,
-                    List, Optional, Type)
+from typing import (Any, AsyncGenerator, AsyncIterator, Callable, Coroutine, Deque, Iterable,
+                    Iterator, List, Optional, Type)
 
 import grpc
 import grpc.aio
@@ -28,24 +28,24 @@ from duet_motion.v1 import synthesis_pb2, synthesis_pb2_grpc
 
 
 class Client(_channel.Connected):
-    """Asks a Duet server, without blocking: the asynchronous twin of :class:`duet_motion.Client`.
+    """Calls a Duet server without blocking: the asyncio version of :class:`duet_motion.Client`.
 
-    Made and used within one event loop. Cancelling a task that awaits a call ends the call.
-    ``asyncio.gather`` over any number of calls is fine: ``max_concurrent_calls`` of them are under
-    way at once, and the others wait for their turn within their timeouts.
+    Create and use a client in one event loop. Cancelling a task that awaits a call ends the call.
+    ``asyncio.gather`` over any number of calls is fine: ``max_concurrent_calls`` of them run at a
+    time, and the others wait for their turn within their timeouts.
 
     Args:
-        address: as of :class:`duet_motion.Client`, which describes all of these.
+        address: the server. :class:`duet_motion.Client` describes all arguments in full.
         timeout: seconds for a whole call.
-        wait: seconds for which a server that cannot be reached is tried again.
-        tls: how to encrypt.
-        token: says who calls.
-        authority: what calls name as the server they are for.
-        retry: how often a call is attempted.
-        max_concurrent_calls: how many calls of ``synthesize`` are under way at once.
+        wait: seconds to retry a server that cannot be reached.
+        tls: encryption.
+        token: identifies the caller.
+        authority: the server name in calls, if it differs from the address.
+        retry: number of attempts and backoff.
+        max_concurrent_calls: maximum concurrent calls of ``synthesize``.
 
     Raises:
-        ValueError: an argument or a setting makes no sense.
+        ValueError: an argument or a setting is invalid.
         OSError: a file that a setting names cannot be read.
     """
 
@@ -53,7 +53,7 @@ class Client(_channel.Connected):
     _semaphore = asyncio.Semaphore
 
     async def close(self) -> None:
-        """Ends the connection, and every call that is still being answered."""
+        """Closes the connection and ends every running call."""
         self._closed.set()
         await self._channel.close()
 
@@ -65,7 +65,7 @@ class Client(_channel.Connected):
         await self.close()
 
     async def list_models(self, *, timeout: Optional[float] = None) -> List[ModelInfo]:
-        """Every model version being served, by name, newest version first.
+        """Lists every model version being served, by name, newest version first.
 
         Args:
             timeout: seconds for the whole call. None: the client's.
@@ -78,7 +78,7 @@ class Client(_channel.Connected):
         return [model_from_proto(model) for model in response.models]
 
     async def get_model(self, model: str = "", *, timeout: Optional[float] = None) -> ModelDetails:
-        """One model version, and the limits that a request to it must keep.
+        """Returns one model version and its request limits.
 
         Args:
             model: ``"sbu"``, ``"sbu@2"`` for a version, ``"sbu:stable"`` for a version label;
@@ -86,17 +86,17 @@ class Client(_channel.Connected):
             timeout: seconds for the whole call. None: the client's.
 
         Raises:
-            DuetError: the call failed; ModelNotFoundError where there is no such model.
+            DuetError: the call failed; ModelNotFoundError if there is no such model.
         """
         request = synthesis_pb2.GetModelRequest(model=to_selector(model))
         return details_from_proto(await self._unary(self._stub.GetModel, request, timeout))
 
     def synthesize_request(
             self, request: SynthesisRequest) -> Coroutine[Any, Any, SynthesisResult]:
-        """Awaits the whole follower.
+        """Returns the whole follower.
 
         Args:
-            request: what is asked.
+            request: the request.
 
         Raises:
             DuetError: the call failed.
@@ -104,10 +104,10 @@ class Client(_channel.Connected):
         return self._synthesize(SynthesisCall(request, self._settings))
 
     def stream_request(self, request: SynthesisRequest) -> SynthesisStream:
-        """The follower's frames as they arrive.
+        """Streams the follower's frames as they arrive.
 
         Args:
-            request: what is asked.
+            request: the request.
         """
         return self._stream(SynthesisCall(request, self._settings))
 
@@ -116,15 +116,15 @@ class Client(_channel.Connected):
 
     def synthesize_many(self, requests: Iterable[SynthesisRequest], *,
                         concurrency: int = 4) -> AsyncIterator[batch.Outcome]:
-        """Answers many requests, several at a time, as
-        :meth:`duet_motion.Client.synthesize_many` does.
+        """Runs many requests, several at a time, like
+        :meth:`duet_motion.Client.synthesize_many`.
 
         Args:
             requests: taken from the iterable as they are needed.
-            concurrency: the most calls at a time, at least 1.
+            concurrency: maximum number of calls at a time, at least 1.
 
         Raises:
-            ValueError: ``concurrency`` makes no sense.
+            ValueError: ``concurrency`` is below 1.
         """
         _channel.check_concurrency("concurrency", concurrency)
         return self._many(iter(requests), concurrency)
@@ -185,15 +185,15 @@ class Client(_channel.Connected):
 
 
 class SynthesisStream(AsyncIterator[FollowerChunk]):
-    """The follower's frames as they arrive, in order and each once, also where a call is retried.
+    """The follower's frames as they arrive, in order and each once, also if the call is retried.
 
     >>> async with client.stream(leader, {"kick": 1}) as stream:
     ...     async for chunk in stream:
     ...         show(chunk.first_frame, chunk.positions)
     >>> (await stream.result()).unfamiliarity
 
-    Iterating raises :class:`duet_motion.DuetError` where the call fails. Leaving ``async with``
-    early, or :meth:`cancel`, ends the call.
+    Iterating raises :class:`duet_motion.DuetError` if the call fails. Leaving ``async with`` early,
+    or :meth:`cancel`, ends the call.
     """
 
     def __init__(self, stub: synthesis_pb2_grpc.MotionSynthesisStub, channel: grpc.aio.Channel,
@@ -216,17 +216,17 @@ class SynthesisStream(AsyncIterator[FollowerChunk]):
     async def __aexit__(self, kind: Optional[Type[BaseException]], error: Optional[BaseException],
                         traceback: Optional[TracebackType]) -> None:
         self.cancel()
-        with contextlib.suppress(RuntimeError):  # another task iterates, and is told
+        with contextlib.suppress(RuntimeError):  # another task iterates and gets the error
             await self._frames.aclose()
 
     def cancel(self) -> None:
-        """Ends the call; whoever awaits its chunks or its result gets a CancelledError. A result
-        that is whole already stays. To be called in the client's event loop, from any task."""
+        """Ends the call. A task that awaits its chunks or its result gets a CancelledError; a
+        complete result stays available. Call it in the client's event loop, from any task."""
         self._cancelled.set()
         self._cancel_stream()
 
     async def result(self) -> SynthesisResult:
-        """The whole follower: awaits the chunks that nobody has taken yet.
+        """Returns the whole follower, after awaiting the chunks that have not been taken yet.
 
         Raises:
             DuetError: the call failed.
@@ -259,7 +259,7 @@ class SynthesisStream(AsyncIterator[FollowerChunk]):
                 self._check_wanted()
                 raise
             finally:
-                responses.cancel()  # of no effect where the stream is at its end
+                responses.cancel()  # no effect if the stream has ended
             if error is not None:
                 self._check_wanted()
             wait = self._call.wait_after(error)
@@ -273,7 +273,7 @@ class SynthesisStream(AsyncIterator[FollowerChunk]):
 
 async def _wait(channel: grpc.aio.Channel, seconds: float,
                 cancelled: Optional[asyncio.Event] = None) -> None:
-    """Waits, unless it is cancelled meanwhile, and has a lost connection tried again."""
+    """Waits, unless it is cancelled meanwhile, and reconnects a lost connection."""
     if seconds <= 0:
         return
     channel.get_state(try_to_connect=True)

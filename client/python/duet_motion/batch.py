@@ -1,4 +1,4 @@
-"""Many requests, so many at a time."""
+"""Runs many requests with a limited number at a time."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from duet_motion.result import SynthesisResult
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Outcome:
-    """What came of one request of several: a result, or what it failed with."""
+    """The outcome of one of many requests: a result or an error."""
 
     request: SynthesisRequest
     result: Optional[SynthesisResult] = None
     error: Optional[DuetError] = None
 
     def unwrap(self) -> SynthesisResult:
-        """The result; raises the error where there is one."""
+        """Returns the result, or raises the error."""
         if self.result is None:
             assert self.error is not None
             raise self.error
@@ -31,14 +31,14 @@ class Outcome:
 
 
 def ahead(concurrency: int) -> int:
-    """How many requests may be under way: one slow call leaves the others something to do."""
+    """Maximum number of unfinished requests. The surplus keeps threads busy beside a slow call."""
     return 2 * concurrency
 
 
 def run(answer: Callable[[SynthesisRequest], SynthesisResult],
         requests: Iterable[SynthesisRequest], concurrency: int) -> Iterator[Outcome]:
-    """Answers requests in threads; their outcomes in order. At most ``concurrency`` calls are made at
-    a time, and at most :func:`ahead` requests are taken and not yet given back."""
+    """Runs requests in threads and yields their outcomes in order. At most ``concurrency`` calls
+    run at a time, and at most :func:`ahead` requests are taken but not yet yielded."""
     check_concurrency("concurrency", concurrency)
     return _run(answer, requests, concurrency)
 

@@ -1,4 +1,4 @@
-"""The client whose calls wait for their answers. :mod:`duet_motion.aio` has its asynchronous twin."""
+"""The blocking client. :mod:`duet_motion.aio` has the asyncio version."""
 
 from __future__ import annotations
 
@@ -21,39 +21,39 @@ _Answer = TypeVar("_Answer")
 
 
 class Client(_channel.Connected):
-    """Asks a Duet server to answer one person's motion with another's.
+    """Calls a Duet server to synthesise the second person of an interaction.
 
     >>> with duet.Client() as client:
     ...     result = client.synthesize(leader, labels={"hug": 1, "push": 0.5}, seed=3)
     >>> result.follower.positions                     # [frames, joints, 3]
 
-    Calls may come from several threads. Connects with the first call. :meth:`close` or ``with``
-    closes a client.
+    Safe to share between threads. The first call connects. :meth:`close` or ``with`` closes a
+    client.
 
-    Arguments that are left out come from the environment and the configuration file, as those of
-    the program `duet` do: ``DUET_SERVER`` is the address, and the file that ``DUET_CONFIG`` names
-    (or ``~/.config/duet/config``) has lines such as ``server = lab:50051``, ``timeout = 300``,
+    Omitted arguments are read from the environment and the configuration file of the program
+    `duet`: ``DUET_SERVER`` is the address, and the file ``DUET_CONFIG`` (default
+    ``~/.config/duet/config``) has lines such as ``server = lab:50051``, ``timeout = 300``,
     ``wait = 30``, ``tls-ca = ca.pem`` or ``token-file = token``.
 
     Args:
-        address: ``host:port``, or any gRPC target (``unix:/run/duet.sock``). A name that stands for
-            several servers is balanced over all of them. Default: ``localhost:50051``.
-        timeout: seconds for a whole call, all its attempts included. Default: 120.
-        wait: seconds for which a call tries a server again that cannot be reached (refused
-            connections, unknown host names) before it fails, at most ``timeout``. Default: 5. A
-            server that answers, even to say that it is loading, is tried until ``timeout``.
-        tls: how to encrypt; True: with the system's authorities; False: plain text. Default: plain
+        address: ``host:port``, or any gRPC target (``unix:/run/duet.sock``). Calls are
+            balanced over all servers that the name resolves to. Default: ``localhost:50051``.
+        timeout: seconds for a whole call, including all its attempts. Default: 120.
+        wait: seconds to retry a server that cannot be reached (refused connections, unknown host
+            names), at most ``timeout``. Default: 5. A server that responds, for example that it is
+            loading, is retried until ``timeout``.
+        tls: encryption; True: TLS with the system's authorities; False: plain text. Default: plain
             text.
-        token: says who calls, as ``authorization: Bearer TOKEN``. Without ``tls`` it goes to this
-            machine only. Default: none.
-        authority: what calls name as the server they are for, if that is not the address.
-        retry: how often a call is attempted, and how long it backs off.
-        max_concurrent_calls: how many calls of ``synthesize`` are under way at once, at least 1.
-            Further ones wait for their turn in this process, within their timeouts: a server
-            refuses more calls than it has room for. Default: 16.
+        token: identifies the caller, sent as ``authorization: Bearer TOKEN``. Without ``tls`` it is
+            sent only to this machine. Default: none.
+        authority: the server name in calls, if it differs from the address.
+        retry: number of attempts and backoff.
+        max_concurrent_calls: maximum concurrent calls of ``synthesize``, at least 1. Further ones
+            wait for their turn in this process, within their timeouts, because a server rejects
+            calls above its capacity. Default: 16.
 
     Raises:
-        ValueError: an argument or a setting makes no sense.
+        ValueError: an argument or a setting is invalid.
         OSError: a file that a setting names cannot be read.
     """
 
@@ -61,7 +61,7 @@ class Client(_channel.Connected):
     _semaphore = threading.Semaphore
 
     def close(self) -> None:
-        """Ends the connection, and every call that is still being answered."""
+        """Closes the connection and ends every running call."""
         self._closed.set()
         self._channel.close()
 
@@ -73,7 +73,7 @@ class Client(_channel.Connected):
         self.close()
 
     def list_models(self, *, timeout: Optional[float] = None) -> List[ModelInfo]:
-        """Every model version being served, by name, newest version first.
+        """Lists every model version being served, by name, newest version first.
 
         Args:
             timeout: seconds for the whole call. None: the client's.
@@ -85,7 +85,7 @@ class Client(_channel.Connected):
         return [model_from_proto(model) for model in response.models]
 
     def get_model(self, model: str = "", *, timeout: Optional[float] = None) -> ModelDetails:
-        """One model version, and the limits that a request to it must keep.
+        """Returns one model version and its request limits.
 
         Args:
             model: ``"sbu"``, ``"sbu@2"`` for a version, ``"sbu:stable"`` for a version label;
@@ -93,16 +93,16 @@ class Client(_channel.Connected):
             timeout: seconds for the whole call. None: the client's.
 
         Raises:
-            DuetError: the call failed; ModelNotFoundError where there is no such model.
+            DuetError: the call failed; ModelNotFoundError if there is no such model.
         """
         request = synthesis_pb2.GetModelRequest(model=to_selector(model))
         return details_from_proto(self._unary(self._stub.GetModel, request, timeout))
 
     def synthesize_request(self, request: SynthesisRequest) -> SynthesisResult:
-        """Waits for the whole follower.
+        """Returns the whole follower.
 
         Args:
-            request: what is asked.
+            request: the request.
 
         Raises:
             DuetError: the call failed.
@@ -116,10 +116,10 @@ class Client(_channel.Connected):
             self._turns.release()
 
     def stream_request(self, request: SynthesisRequest) -> SynthesisStream:
-        """The follower's frames as they arrive.
+        """Streams the follower's frames as they arrive.
 
         Args:
-            request: what is asked.
+            request: the request.
         """
         return self._stream(SynthesisCall(request, self._settings))
 
@@ -128,19 +128,17 @@ class Client(_channel.Connected):
 
     def synthesize_many(self, requests: Iterable[SynthesisRequest], *,
                         concurrency: int = 4) -> Iterator[batch.Outcome]:
-        """Answers many requests, several at a time.
+        """Runs many requests, several at a time.
 
-        Outcomes come in the order of the requests, each with a result or with what that call failed
-        with: one refusal does not end the others. Give requests ``priority="bulk"``: then they
-        yield to interactive calls.
+        Outcomes are in the order of the requests. Each has a result or an error, so one failed call
+        does not end the others. Set ``priority="bulk"`` in requests to yield to interactive calls.
 
         Args:
-            requests: taken from the iterable as they are needed, so that it may be long, or made on
-                the way.
-            concurrency: the most calls at a time, at least 1.
+            requests: taken from the iterable as they are needed, so it may be a long generator.
+            concurrency: maximum number of calls at a time, at least 1.
 
         Raises:
-            ValueError: ``concurrency`` makes no sense.
+            ValueError: ``concurrency`` is below 1.
         """
         return batch.run(lambda request: self.stream_request(request).result(), requests,
                          concurrency)
@@ -161,14 +159,14 @@ class Client(_channel.Connected):
 
 
 class SynthesisStream(Iterator[FollowerChunk]):
-    """The follower's frames as they arrive, in order and each once, also where a call is retried.
+    """The follower's frames as they arrive, in order and each once, also if the call is retried.
 
     >>> with client.stream(leader, {"kick": 1}) as stream:
     ...     for chunk in stream:
     ...         show(chunk.first_frame, chunk.positions)
     >>> stream.result().unfamiliarity
 
-    Iterating raises :class:`duet_motion.DuetError` where the call fails. Leaving ``with`` early, or
+    Iterating raises :class:`duet_motion.DuetError` if the call fails. Leaving ``with`` early, or
     :meth:`cancel` (from any thread), ends the call.
     """
 
@@ -194,13 +192,13 @@ class SynthesisStream(Iterator[FollowerChunk]):
         self.cancel()
 
     def cancel(self) -> None:
-        """Ends the call, from any thread; whoever waits for its chunks or its result gets a
-        CancelledError. A result that is whole already stays."""
+        """Ends the call, from any thread. A thread that waits for its chunks or its result gets a
+        CancelledError; a complete result stays available."""
         self._cancelled.set()
         self._cancel_stream()
 
     def result(self) -> SynthesisResult:
-        """The whole follower: waits for the chunks that nobody has taken yet.
+        """Returns the whole follower, after waiting for the chunks that have not been taken yet.
 
         Raises:
             DuetError: the call failed.
@@ -225,7 +223,7 @@ class SynthesisStream(Iterator[FollowerChunk]):
         self._result = self._call.result()
 
     def _attempt(self) -> Generator[FollowerChunk, None, Optional[DuetError]]:
-        """One stream from its first message to its end; what it ended with."""
+        """Receives one stream to its end and returns its error, if any."""
         request, seconds = self._call.begin()
         responses = self._stub.Synthesize(request, timeout=seconds,
                                           metadata=self._call.attempts.metadata)
@@ -240,7 +238,7 @@ class SynthesisStream(Iterator[FollowerChunk]):
         except grpc.RpcError as error:
             return from_rpc_error(error)
         finally:
-            responses.cancel()  # of no effect where the stream is at its end
+            responses.cancel()  # no effect if the stream has ended
         return None
 
     def _sleep(self, seconds: float) -> None:
@@ -249,12 +247,12 @@ class SynthesisStream(Iterator[FollowerChunk]):
 
 
 def _wait(channel: grpc.Channel, seconds: float, ended: threading.Event) -> None:
-    """Waits, and looks after a lost connection meanwhile: between calls nobody else does. A question
-    about the server's health waits for the connection; what it is answered is of no interest."""
+    """Waits, and reconnects a lost connection meanwhile, which gRPC does only during a call. A
+    health check waits for the connection; its result is ignored."""
     try:
         probe = channel.unary_unary("/grpc.health.v1.Health/Check").future(
             b"", timeout=seconds, wait_for_ready=True)
-    except ValueError:  # the channel was closed meanwhile, which the caller looks at
+    except ValueError:  # the channel was closed meanwhile; the caller checks this
         return
     ended.wait(seconds)
     probe.cancel()

@@ -1,7 +1,7 @@
-"""What a call may fail with.
+"""Errors of calls.
 
-Every refusal of a server is a :class:`DuetError`, of the subclass that its status code has. What is
-wrong before a server is asked (an array of the wrong shape) is Python's own ``ValueError``.
+Every error from a server is a :class:`DuetError`; its status code selects the subclass. An error
+that is found without a server, such as an array of the wrong shape, is a ``ValueError``.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ _Detail = TypeVar("_Detail")
 
 @dataclasses.dataclass(frozen=True)
 class FieldViolation:
-    """A field of a request that the server refused."""
+    """A field of a request that the server rejected."""
 
     field: str
-    """Such as ``leader.positions[17]``."""
+    """The field, such as ``leader.positions[17]``."""
     description: str
-    """What came and what was wanted."""
+    """What was expected and what the server got."""
 
 
 class DuetError(Exception):
@@ -38,32 +38,33 @@ class DuetError(Exception):
         self.code = code
         """The gRPC status code."""
         self.message = message
-        """For people; names each refused field."""
+        """A readable message that names each rejected field."""
         self.violations = violations
-        """Every field that was refused, in the server's order; none where it is another refusal."""
+        """Every rejected field, in the server's order; empty for errors that are not about
+        fields."""
         self.reason = reason
-        """Stable and machine-readable, such as ``"QUEUE_FULL"``; empty where no Duet server said
-        it."""
+        """Stable and machine-readable, such as ``"QUEUE_FULL"``; empty if the error is not from a
+        Duet server."""
         self.retry_delay = retry_delay
-        """After how many seconds the server wants to be asked again; None where it did not say."""
+        """Seconds to wait before a retry, as requested by the server; None without a request."""
 
     def __str__(self) -> str:
         return f"{self.code.name}: {self.message}"
 
     @property
     def is_permanent(self) -> bool:
-        """Whether the same call will fail again however often it is made."""
+        """Whether the same call can never succeed."""
         if self.code is grpc.StatusCode.RESOURCE_EXHAUSTED:
             return self.retry_delay is None
         return self.code in _PERMANENT
 
     def with_message(self, message: str) -> DuetError:
-        """The same refusal in other words."""
+        """The same error with another message."""
         return type(self)(self.code, message, self.violations, self.reason, self.retry_delay)
 
 
 class InvalidRequestError(DuetError, ValueError):
-    """INVALID_ARGUMENT: fields are malformed; ``violations`` has each."""
+    """INVALID_ARGUMENT: fields are invalid; ``violations`` lists them."""
 
 
 class RequestMismatchError(DuetError):
@@ -79,23 +80,23 @@ class ServerBusyError(DuetError):
 
 
 class UnavailableError(DuetError, ConnectionError):
-    """UNAVAILABLE: the server is away, loading or draining, or a reply broke off."""
+    """UNAVAILABLE: the server cannot be reached, loads or drains, or a reply broke off."""
 
 
 class DeadlineError(DuetError, TimeoutError):
-    """DEADLINE_EXCEEDED: the time for the call is over, or too short for it."""
+    """DEADLINE_EXCEEDED: the call's timeout expired, or is shorter than the expected wait."""
 
 
 class CancelledError(DuetError):
-    """CANCELLED: the call was ended by its caller."""
+    """CANCELLED: the caller ended the call."""
 
 
 class NotPermittedError(DuetError, PermissionError):
-    """UNAUTHENTICATED or PERMISSION_DENIED: the credentials are refused."""
+    """UNAUTHENTICATED or PERMISSION_DENIED: the server rejected the credentials."""
 
 
 class MalformedReplyError(DuetError):
-    """The server's reply breaks the contract."""
+    """The server's reply violates the API."""
 
 
 _CLASSES: Dict[grpc.StatusCode, Type[DuetError]] = {
@@ -118,12 +119,12 @@ _PERMANENT = frozenset({
 
 
 def make_error(code: grpc.StatusCode, message: str, **details: Any) -> DuetError:
-    """An error of the class that the code has."""
+    """Creates an error of the class for ``code``."""
     return _CLASSES.get(code, DuetError)(code, message, **details)
 
 
 def from_rpc_error(error: Any) -> DuetError:
-    """What a ``grpc.RpcError`` says, with the google.rpc details that came with it."""
+    """Converts a ``grpc.RpcError`` with its google.rpc details."""
     details = _read_details(error.trailing_metadata() or ())
     bad_request = _read(details, "BadRequest", status_pb2.BadRequest.FromString)
     info = _read(details, "ErrorInfo", status_pb2.ErrorInfo.FromString)
@@ -131,13 +132,13 @@ def from_rpc_error(error: Any) -> DuetError:
     violations = tuple(FieldViolation(violation.field, violation.description)
                        for violation in (bad_request.field_violations if bad_request else ()))
     delay = retry and retry.retry_delay.seconds + retry.retry_delay.nanos / 1e9
-    return make_error(error.code(), _tell(error.details() or "", violations),
+    return make_error(error.code(), _with_violations(error.details() or "", violations),
                       violations=violations, reason=info.reason if info else "",
                       retry_delay=None if delay is None else max(delay, 0.0))
 
 
 def _read_details(metadata: Any) -> Dict[str, bytes]:
-    """The google.rpc details by their names; none where they cannot be read."""
+    """The google.rpc details by name; empty if they are malformed."""
     for key, value in metadata:
         if key == _DETAILS:
             try:
@@ -157,9 +158,9 @@ def _read(details: Dict[str, bytes], name: str,
         return None
 
 
-def _tell(message: str, violations: Tuple[FieldViolation, ...]) -> str:
-    """The message, with those violations that it does not name itself."""
-    untold = [f"{violation.field}: {violation.description}" if violation.field
+def _with_violations(message: str, violations: Tuple[FieldViolation, ...]) -> str:
+    """The message, extended by the violations that it does not already name."""
+    missing = [f"{violation.field}: {violation.description}" if violation.field
               else violation.description for violation in violations
               if violation.field not in message or violation.description not in message]
-    return ": ".join(part for part in (message, "; ".join(untold)) if part)
+    return ": ".join(part for part in (message, "; ".join(missing)) if part)

@@ -1,8 +1,8 @@
 """Motion files, read and written by the program `duet`.
 
-`duet convert` finds out what a file's unit is, which way is up and which of its joints is the left
-knee (docs/formats.md), and this module exchanges motions with it as JSON. No server is asked. The
-program is not part of the wheel; ``DUET_PROGRAM`` names it if it is not on the PATH.
+`duet convert` detects a file's unit, up axis and joints (docs/formats.md), and exchanges motions
+with this module as JSON. No server is involved. The program is not part of the wheel;
+``DUET_PROGRAM`` names it if it is not on the PATH.
 """
 
 from __future__ import annotations
@@ -22,29 +22,30 @@ Shown = Union[Motion, Tuple[Motion, Motion], SynthesisResult]
 
 
 class MotionFileError(ValueError):
-    """A motion file that cannot be read or written: what the program prints, which names the file,
-    the line, what it expected and what it got."""
+    """A motion file cannot be read or written. The message is from the program and names the file,
+    the line, what was expected and what was found."""
 
 
 def read_motion(path: Path, *, side: str = "left", frame_rate_hz: Optional[float] = None,
                 unit: str = "", up_axis: str = "", metres_per_unit: Optional[float] = None,
                 joint_map: Optional[Mapping[str, str]] = None,
                 resample_hz: Optional[float] = None) -> Motion:
-    """The motion of one person of a file, in metres, y up, in the joints of Duet's skeleton.
+    """Reads the motion of one person from a file, in metres, y up, in the joints of Duet's
+    skeleton.
 
     Args:
         path: .bvh, .gltf, .glb, .amc, .csv, .npy, .json or SBU .txt.
-        side: ``"left"`` or ``"right"``: which person of a file with two.
-        frame_rate_hz: frames per second; replaces what the file says.
-        unit: ``"metres"``, ``"millimetres"`` or ``"sbu-normalised"``; replaces what the file says.
-        up_axis: ``"y-up"``, ``"z-up"`` or ``"y-down"``; replaces what the file says.
+        side: ``"left"`` or ``"right"``: the person in a file with two.
+        frame_rate_hz: frames per second; overrides the file's.
+        unit: ``"metres"``, ``"millimetres"`` or ``"sbu-normalised"``; overrides the file's.
+        up_axis: ``"y-up"``, ``"z-up"`` or ``"y-down"``; overrides the file's.
         metres_per_unit: metres in one unit of the file, for BVH, glTF and ASF.
-        joint_map: joints of the file by joints of Duet, where names do not tell which is which.
-        resample_hz: frames per second of what is returned; the motion keeps its pace.
+        joint_map: from joints of Duet to joints of the file, for names that are not recognised.
+        resample_hz: frames per second of the result; the motion keeps its speed.
 
     Raises:
         MotionFileError: the file cannot be read.
-        FileNotFoundError: there is no program `duet`; the message says how to get it.
+        FileNotFoundError: the program `duet` is missing; the message explains how to install it.
     """
     motions = _read(path, ["--side", side], frame_rate_hz, unit, up_axis, metres_per_unit,
                     joint_map, resample_hz)
@@ -55,20 +56,20 @@ def read_pair(path: Path, *, frame_rate_hz: Optional[float] = None, unit: str = 
               up_axis: str = "", metres_per_unit: Optional[float] = None,
               joint_map: Optional[Mapping[str, str]] = None,
               resample_hz: Optional[float] = None) -> Tuple[Motion, Motion]:
-    """The motions of both people of a file, leader first, as :func:`read_motion` reads one.
+    """Reads both people from a file, leader first, like :func:`read_motion`.
 
     Args:
-        path: .bvh, .gltf, .glb, .csv, .npy, .json or SBU .txt, of two people.
-        frame_rate_hz: frames per second; replaces what the file says.
-        unit: of length; replaces what the file says.
-        up_axis: replaces what the file says.
+        path: a .bvh, .gltf, .glb, .csv, .npy, .json or SBU .txt file with two people.
+        frame_rate_hz: frames per second; overrides the file's.
+        unit: of length; overrides the file's.
+        up_axis: overrides the file's.
         metres_per_unit: metres in one unit of the file, for BVH, glTF and ASF.
-        joint_map: joints of the file by joints of Duet.
-        resample_hz: frames per second of what is returned; the motion keeps its pace.
+        joint_map: from joints of Duet to joints of the file.
+        resample_hz: frames per second of the result; the motion keeps its speed.
 
     Raises:
         MotionFileError: the file cannot be read, or has one person.
-        FileNotFoundError: there is no program `duet`.
+        FileNotFoundError: the program `duet` is missing.
     """
     motions = _read(path, [], frame_rate_hz, unit, up_axis, metres_per_unit, joint_map, resample_hz)
     if len(motions) != 2:
@@ -77,11 +78,11 @@ def read_pair(path: Path, *, frame_rate_hz: Optional[float] = None, unit: str = 
 
 
 def write_motion(path: Path, leader: Motion, follower: Optional[Motion] = None) -> None:
-    """Writes one person or two. Two people as .bvh are two files, ``NAME.leader.bvh`` and
+    """Writes one person or two. Two people as .bvh are written to ``NAME.leader.bvh`` and
     ``NAME.follower.bvh``.
 
     Args:
-        path: its extension decides the format: whatever `duet convert` writes.
+        path: its extension selects one of the formats that `duet convert` writes.
         leader: the first person, or the only one.
         follower: the second person, with the leader's joints, rate, number of frames, unit and
             axis.
@@ -97,7 +98,7 @@ def write_motion(path: Path, leader: Motion, follower: Optional[Motion] = None) 
 
 
 def write_page(path: Path, motions: Mapping[str, Shown], title: str = "") -> None:
-    """One self-contained HTML page that plays motions side by side, by their names.
+    """Writes a self-contained HTML page that plays named motions side by side.
 
     Args:
         path: ``.html``.
@@ -106,7 +107,7 @@ def write_page(path: Path, motions: Mapping[str, Shown], title: str = "") -> Non
 
     Raises:
         MotionFileError: the page cannot be written.
-        FileNotFoundError: there is no program `duet`.
+        FileNotFoundError: the program `duet` is missing.
     """
     with tempfile.TemporaryDirectory() as folder:
         arguments = [f"{name}={_write_json(pathlib.Path(folder) / f'{index}.json', shown)}"
@@ -137,7 +138,7 @@ def _from_json(answer: Dict[str, Any], role: str) -> Motion:
 
 
 def _write_json(path: pathlib.Path, shown: Shown) -> pathlib.Path:
-    """The "duet-motion" file of one person or two (docs/formats.md)."""
+    """Writes one person or two as a "duet-motion" file (docs/formats.md)."""
     if isinstance(shown, SynthesisResult):
         shown = (shown.leader, shown.follower)
     people = (shown,) if isinstance(shown, Motion) else shown

@@ -18,8 +18,8 @@ _AXES = "xyz"
 
 # Metres in one unit of length.
 _METRES = {"metres": 1.0, "millimetres": 0.001}
-# What turns a row vector of each axis convention to y up: rotations about x, so that handedness is
-# kept. The wire's own definition (docs/decisions/0006).
+# Rotate a row vector of each axis convention to y up, about x, which preserves handedness. The API
+# defines these rotations (docs/decisions/0006).
 _TO_Y_UP = {
     "y-up": np.diag([1.0, 1.0, 1.0]),
     "z-up": np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]),
@@ -32,9 +32,9 @@ class Motion:
     """Joint positions of one person over time, in a right-handed world.
 
     Args:
-        positions: ``[frames, joints, 3]``, x, y and z in ``unit``: anything that NumPy turns into
-            such an array of real numbers, all of them finite. Kept as a ``float32`` copy that
-            cannot be written to; :meth:`with_positions` makes a changed motion.
+        positions: ``[frames, joints, 3]``, x, y and z in ``unit``: anything that NumPy converts to
+            such an array of finite real numbers. Stored as a read-only ``float32`` copy; use
+            :meth:`with_positions` to create a changed motion.
         joint_names: the name of each joint, in the order of the array, without duplicates.
         frame_rate_hz: frames per second, finite and above 0.
         unit: ``"metres"``, ``"millimetres"`` or ``"sbu-normalised"``.
@@ -71,7 +71,7 @@ class Motion:
 
     @property
     def duration_seconds(self) -> float:
-        """From the first frame to the last."""
+        """The time from the first frame to the last."""
         return max(self.frame_count - 1, 0) / self.frame_rate_hz
 
     @property
@@ -80,7 +80,7 @@ class Motion:
         return np.arange(self.frame_count) / self.frame_rate_hz
 
     def joint(self, name: str) -> Positions:
-        """The positions of one joint, ``[frames, 3]`` in ``unit``.
+        """Returns the positions of one joint, ``[frames, 3]`` in ``unit``.
 
         Args:
             name: one of ``joint_names``.
@@ -93,10 +93,10 @@ class Motion:
         return self.positions[:, self.joint_names.index(name)]
 
     def select(self, joint_names: Sequence[str]) -> Motion:
-        """Some of the joints, or all in another order.
+        """Returns a motion with some of the joints, or all in another order.
 
         Args:
-            joint_names: names out of ``joint_names``, in the order that the result should have.
+            joint_names: names from ``joint_names``, in the order of the result.
 
         Raises:
             KeyError: there is no such joint.
@@ -106,36 +106,36 @@ class Motion:
                                    joint_names=tuple(joint_names))
 
     def with_positions(self, positions: npt.ArrayLike) -> Motion:
-        """A motion with other positions and the same joints, rate, unit and axis.
+        """Returns a motion with other positions and the same joints, rate, unit and axis.
 
         Args:
             positions: ``[frames, joints, 3]`` in ``unit``, with any number of frames.
 
         Raises:
-            ValueError: as the constructor.
+            ValueError: see the constructor.
         """
         return dataclasses.replace(self, positions=positions)
 
     def frames(self, start: int, stop: int | None = None) -> Motion:
-        """The frames from ``start`` to before ``stop``.
+        """Returns the frames from ``start`` to before ``stop``.
 
         Args:
             start: the first frame; negative numbers count from the end, as in slices.
-            stop: the frame after the last one; None: all that follow.
+            stop: the frame after the last one; None: until the end.
         """
         return self.with_positions(self.positions[start:stop])
 
     def resampled(self, frame_rate_hz: float) -> Motion:
-        """The same motion at another rate: linear between frames, at the same pace.
+        """Resamples the motion linearly to another rate at the same speed.
 
-        The last frame is never earlier than the motion's end, so the result lasts up to one frame
+        The last frame is never earlier than the motion's end, so the result is up to one frame
         longer. A motion of fewer than two frames keeps its frames.
 
         Args:
             frame_rate_hz: frames per second of the result, finite and above 0.
 
         Raises:
-            ValueError: the rate is malformed.
+            ValueError: the rate is invalid.
         """
         to_hz = checked_number("frame_rate_hz", frame_rate_hz, above=0)
         if to_hz == self.frame_rate_hz or self.frame_count < 2:
@@ -144,15 +144,15 @@ class Motion:
             self.positions, self.frame_rate_hz, to_hz))
 
     def converted(self, unit: str = "metres", up_axis: str = "y-up") -> Motion:
-        """The same motion in another unit or with another axis up.
+        """Converts the motion to another unit or up axis.
 
         Args:
             unit: ``"metres"`` or ``"millimetres"``.
             up_axis: ``"y-up"``, ``"z-up"`` or ``"y-down"``.
 
         Raises:
-            ValueError: the unit of this motion or of the result is SBU's normalised one, from which
-                :func:`duet_motion.read_motion` converts.
+            ValueError: the unit of this motion or of the result is ``"sbu-normalised"``; only
+                :func:`duet_motion.read_motion` converts from it.
         """
         for name in (self.unit, unit):
             _checked_choice("unit", name, _METRES)
@@ -174,12 +174,12 @@ class Motion:
 
 
 def place(frame: int, joint: str, axis: int) -> str:
-    """A value of a motion as people find it."""
+    """Describes the place of a value in a motion."""
     return f"frame {frame}, joint {joint!r}, {_AXES[axis]}"
 
 
 def checked_array(field: str, values: npt.ArrayLike) -> npt.NDArray[Any]:
-    """``values`` as an array of real numbers; masked ones are NaN."""
+    """Converts ``values`` to an array of real numbers; masked values become NaN."""
     if isinstance(values, np.ma.MaskedArray):
         values = np.ma.filled(values.astype(np.float64), np.nan)  # type: ignore[no-untyped-call]
     try:
@@ -192,7 +192,7 @@ def checked_array(field: str, values: npt.ArrayLike) -> npt.NDArray[Any]:
 
 
 def checked_number(field: str, value: object, *, above: float) -> float:
-    """``value`` as a finite float above a bound."""
+    """Returns ``value`` as a finite float above a bound, or raises ValueError."""
     number = finite_number(value)
     if number is None or number <= above:
         raise ValueError(f"{field}: expected a finite number above {above:g}, got "
@@ -201,7 +201,7 @@ def checked_number(field: str, value: object, *, above: float) -> float:
 
 
 def finite_number(value: object) -> Optional[float]:
-    """``value`` as a float; None for what is no number, or not a finite one."""
+    """Returns ``value`` as a float; None if it is not a finite number."""
     if not isinstance(value, numbers.Real) or isinstance(value, bool):
         return None
     try:
@@ -212,7 +212,7 @@ def finite_number(value: object) -> Optional[float]:
 
 
 def first_not_finite(array: npt.NDArray[Any]) -> Optional[Tuple[int, ...]]:
-    """The index of the first value that float32 cannot hold; None where there is none."""
+    """The index of the first value that is not finite as float32; None if all are."""
     with np.errstate(over="ignore"):
         finite = np.isfinite(array.astype(np.float32))
     if finite.all():
@@ -221,10 +221,10 @@ def first_not_finite(array: npt.NDArray[Any]) -> Optional[Tuple[int, ...]]:
 
 
 def resample(positions: Positions, from_hz: float, to_hz: float) -> Positions:
-    """``[frames, ...]`` at another rate, as ``duet convert --resample`` has it: linear between
-    frames, up to one frame longer, at least two frames."""
+    """Resamples ``[frames, ...]`` like ``duet convert --resample``: linearly, up to one frame
+    longer, at least two frames."""
     last = (len(positions) - 1) * to_hz / from_hz
-    count = max(2, math.ceil(last - 1e-6) + 1)  # a whole number of frames is not rounded up
+    count = max(2, math.ceil(last - 1e-6) + 1)  # tolerance: do not round up a whole number
     at = np.clip(np.arange(count) * from_hz / to_hz, 0, len(positions) - 1)
     before = at.astype(np.int64)
     after = np.minimum(before + 1, len(positions) - 1)
@@ -242,7 +242,8 @@ def _checked_names(names: Sequence[str]) -> Tuple[str, ...]:
             raise ValueError(f"joint_names: expected a name for each joint, got {name!r}")
     twice = sorted({name for name in kept if kept.count(name) > 1})
     if twice:
-        raise ValueError(f"joint_names: expected each name once, got {', '.join(twice)} more often")
+        raise ValueError("joint_names: expected each name once, got duplicates of "
+                         f"{', '.join(twice)}")
     return tuple(str(name) for name in kept)
 
 

@@ -1,4 +1,4 @@
-"""How a client reaches its server."""
+"""Options of the connection to a server."""
 
 from __future__ import annotations
 
@@ -11,17 +11,18 @@ Path = Union[str, pathlib.Path]
 
 @dataclasses.dataclass(frozen=True)
 class TlsOptions:
-    """An encrypted connection. Certificates and keys are PEM, not paths (:meth:`from_files`).
+    """Options of a TLS connection. Certificates and keys are PEM data; :meth:`from_files` takes
+    paths.
 
     Args:
         root_certificates: the authorities that may sign the server's certificate. Empty: gRPC's
-            own.
-        certificate_chain: this client's own certificate, for servers that ask for one.
-        private_key: the key of that certificate; both or neither.
-        server_name: the name that the server's certificate must carry, if that is not the address.
+            default.
+        certificate_chain: this client's certificate, for servers that require one.
+        private_key: the key of that certificate; set both or neither.
+        server_name: the name in the server's certificate, if it differs from the address.
 
     Raises:
-        ValueError: a certificate without its key, or the other way round.
+        ValueError: there is a certificate without a key, or a key without a certificate.
     """
 
     root_certificates: bytes = b""
@@ -38,13 +39,13 @@ class TlsOptions:
     @classmethod
     def from_files(cls, ca: Path = "", cert: Path = "", key: Path = "",
                    server_name: str = "") -> TlsOptions:
-        """Reads the PEM files that `duet` takes as --tls-ca, --tls-cert and --tls-key.
+        """Reads the PEM files of the flags --tls-ca, --tls-cert and --tls-key of `duet`.
 
         Args:
-            ca: the file with the authorities' certificates. Empty: gRPC's own.
+            ca: the file with the authorities' certificates. Empty: gRPC's default.
             cert: the file with this client's certificate.
             key: the file with that certificate's key.
-            server_name: as of the constructor.
+            server_name: see the constructor.
 
         Raises:
             OSError: a file cannot be read.

@@ -1,4 +1,4 @@
-"""What is asked of a server."""
+"""Requests to a server."""
 
 from __future__ import annotations
 
@@ -16,41 +16,41 @@ from duet_motion.motion import (Motion, checked_array, checked_number, finite_nu
 from duet_motion.v1 import model_pb2, motion_pb2, synthesis_pb2
 
 Labels = Mapping[str, float]
-"""Weights by interaction class: 1 wanted, 0 neutral, -1 avoided, within -2 to 2."""
+"""Weights by interaction class, from -2 to 2: 1 requests a class, 0 is neutral, -1 avoids it."""
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class SynthesisRequest:
-    """A follower to synthesise.
+    """A request for a follower.
 
     Args:
-        leader: the motion to answer: positions ``[frames, joints, 3]`` with their joint names,
-            rate, unit and axis. Its joints are those of the model
+        leader: the leader's motion: positions ``[frames, joints, 3]`` with joint names, rate, unit
+            and axis. Its joints must be those of the model
             (:meth:`duet_motion.Client.get_model`), in any order.
-        labels: weights by interaction class for the whole clip, such as ``{"hug": 1, "push":
-            0.5}``: 1 wanted, 0 neutral, -1 avoided, within -2 to 2.
-        keyframes: instead of ``labels``, weights by frame number: linear in between, constant
+        labels: weights by interaction class for the whole clip, from -2 to 2, such as
+            ``{"hug": 1, "push": 0.5}``: 1 requests a class, 0 is neutral, -1 avoids it.
+        keyframes: instead of ``labels``, weights by frame number: interpolated linearly, constant
             before the first and after the last.
-        seed: which answer of a model that samples, 0 to 2^64 - 1. The same request with the same
-            seed has the same answer on the same server.
-        variety: how varied such answers are over the seeds, 0 to 2: 0 the typical answer, 1 as
-            varied as people.
+        seed: selects an answer of a model that samples, 0 to 2^64 - 1. The same request with the
+            same seed gets the same answer from the same server.
+        variety: how much answers differ between seeds, 0 to 2: 0 gives the typical answer, 1 as
+            much variety as people have.
         model: ``"sbu"``, ``"sbu@2"`` for a version, ``"sbu:stable"`` for a version label; empty:
             the server's default.
-        clean_up: whether the server corrects the follower so that it stands, keeps its feet still
-            and keeps out of the leader. None: the server decides.
-        follower_start: where the follower is in the first frame, in the leader's world and unit:
+        clean_up: whether the server corrects the follower: upright, without foot sliding, without
+            overlap with the leader. None: the server's default.
+        follower_start: the follower's position in the first frame, in the leader's world and unit:
             its root joint ``[3]``, or every joint ``[joints, 3]`` in the leader's order.
         partner_direction: the horizontal direction from the leader to the follower, ``[3]`` in the
             leader's world, of any length.
         priority: ``"interactive"``, or ``"bulk"``, which yields to interactive calls.
-        chunk_frames: frames in one chunk of the reply. None: the server decides.
-        request_id: names the call in the server's log. Empty: the server makes one.
-        timeout: seconds for the whole call, all its attempts included. None: the client's.
+        chunk_frames: frames per chunk of the reply. None: the server's default.
+        request_id: identifies the call in the server's log. Empty: the server creates one.
+        timeout: seconds for the whole call, including all its attempts. None: the client's.
 
     Raises:
-        ValueError: an argument is malformed in a way that can be seen without a server; the message
-            has the form ``field: expected ..., got ...``.
+        ValueError: an argument is invalid for every server. The message has the form
+            ``field: expected ..., got ...``.
     """
 
     leader: Motion
@@ -103,7 +103,7 @@ class SynthesisRequest:
 
 
 def to_selector(model: str) -> model_pb2.ModelSelector:
-    """The model that ``NAME``, ``NAME@VERSION`` or ``NAME:LABEL`` chooses."""
+    """Parses ``NAME``, ``NAME@VERSION`` or ``NAME:LABEL``."""
     if not isinstance(model, str):
         raise ValueError(f"model: expected a str, got {_short(model)}")
     selector = model_pb2.ModelSelector()
@@ -122,7 +122,7 @@ def to_selector(model: str) -> model_pb2.ModelSelector:
 
 
 def to_proto(request: SynthesisRequest) -> synthesis_pb2.SynthesizeRequest:
-    """The request as it goes over the wire."""
+    """Converts a request to its wire format."""
     out = synthesis_pb2.SynthesizeRequest(
         model=to_selector(request.model), leader=_leader(request.leader),
         seed=int(request.seed), variety=float(request.variety),
@@ -148,7 +148,7 @@ def _leader(leader: Motion) -> motion_pb2.Motion:
 
 
 def _fill(labels: Labels, vector: synthesis_pb2.LabelVector) -> None:
-    """Leaves the vector absent where there are no labels: the server says what is missing."""
+    """Leaves the vector absent if there are no labels, so that the server reports them missing."""
     for interaction_class, weight in labels.items():
         vector.weights.add(interaction_class=interaction_class, weight=float(weight))
 
@@ -186,7 +186,7 @@ def _check_integer(name: str, value: object, least: int, most: int) -> None:
 
 
 def _short(value: object) -> str:
-    """What came, in one short line."""
+    """The value, shortened to one line."""
     return reprlib.repr(value)
 
 

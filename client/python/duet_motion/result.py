@@ -1,4 +1,4 @@
-"""What a server answers."""
+"""Results from a server."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ from duet_motion.v1 import model_pb2, synthesis_pb2
 
 @dataclasses.dataclass(frozen=True)
 class Timings:
-    """Where the time of a call went, in seconds."""
+    """Durations of a call in seconds."""
 
     first_chunk: float
-    """From the call to its first frames, retries included."""
+    """Time from the call to its first frames, including retries."""
     total: float
-    """From the call to its last frame, retries included."""
+    """Time from the call to its last frame, including retries."""
     queue: float
-    """Waiting in the server, over all windows."""
+    """Time in the server's queue, over all windows."""
     compute: float
-    """In the network, over all windows."""
+    """Time in the network, over all windows."""
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class FollowerChunk:
-    """Consecutive frames of the follower, as they arrive."""
+    """Consecutive frames of the follower."""
 
     first_frame: int
     positions: Positions
@@ -37,36 +37,36 @@ class FollowerChunk:
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class SynthesisResult:
-    """A follower, and who made it."""
+    """A follower, with the model and settings that produced it."""
 
     leader: Motion
-    """The request's."""
+    """The leader of the request."""
     follower: Motion
-    """In the leader's joints, rate, unit and world, with as many frames."""
+    """In the leader's joints, rate, unit and world, with the same number of frames."""
     model_name: str
     model_version: int
     interaction_classes: Tuple[str, ...]
     """Every class of the model."""
     request_id: str
-    """As in the server's log."""
+    """Identifies the call in the server's log."""
     seed: int
-    """That the server used."""
+    """The seed that the server used."""
     variety: float
-    """That the server used."""
+    """The variety that the server used."""
     cleaned_up: bool
-    """Whether the server corrected the follower, asked to or not."""
+    """Whether the server corrected the follower, by request or by default."""
     unfamiliarity: Optional[float]
-    """How far the request is from what the model was trained on: 1 as far as the farthest tenth of
-    the training leaders. None when the model does not know."""
+    """Distance of the leader from the training leaders; 1 is their 90th percentile. None if the
+    model cannot measure it."""
     window_count: int
-    """Network windows that were evaluated."""
+    """Number of windows that the network computed."""
     attempt_count: int
     timings: Timings
 
 
 @dataclasses.dataclass(frozen=True)
 class ModelInfo:
-    """A model version that a server answers with."""
+    """A model version that a server serves."""
 
     name: str
     version: int
@@ -78,21 +78,22 @@ class ModelInfo:
     """Parent and child, as indices into ``joint_names``."""
     root_joint: str
     frame_rate_hz: float
-    """The network's own; any other is resampled."""
+    """The network's rate; the server resamples other rates."""
     window_frames: int
     accepts_follower_start: bool
     samples: bool
     """Answers depend on the request's seed and variety."""
     description: str
     terms: str = ""
-    """Terms of using the weights, and so of what they make; empty if the server states none."""
+    """Terms of use of the weights and of their output; empty if the server states none."""
     weights_sha256: str = ""
-    """Of the file of weights, lower-case hexadecimal; empty if the server does not say."""
+    """SHA-256 of the weights file, lower-case hexadecimal; empty if the server does not report
+    it."""
 
 
 @dataclasses.dataclass(frozen=True)
 class RequestLimits:
-    """What a request must keep to."""
+    """Limits of a request."""
 
     min_frame_rate_hz: float
     max_frame_rate_hz: float
@@ -107,22 +108,22 @@ class RequestLimits:
 
 @dataclasses.dataclass(frozen=True)
 class ModelDetails:
-    """One model version, and the limits that a request to it must keep."""
+    """One model version and its request limits."""
 
     model: ModelInfo
     limits: RequestLimits
 
 
 def model_from_proto(model: model_pb2.Model) -> ModelInfo:
-    """Raises MalformedReplyError where a bone has no joint."""
+    """Raises MalformedReplyError if a bone names a joint that does not exist."""
     bones = tuple((bone.parent_joint, bone.child_joint) for bone in model.bones)
     joints = len(model.joint_names)
     for bone in bones:
         if max(bone) >= joints:
             raise MalformedReplyError(
                 grpc.StatusCode.INTERNAL,
-                f"the server's model {model.name}@{model.version} has a bone from joint {bone[0]} "
-                f"to {bone[1]}, wanted 0 to {joints - 1}")
+                f"the server's reply is malformed: bones of {model.name}@{model.version}: expected "
+                f"joints 0 to {joints - 1}, got {bone[0]} and {bone[1]}")
     return ModelInfo(
         name=model.name, version=model.version, version_labels=tuple(model.version_labels),
         is_default=model.is_default, interaction_classes=tuple(model.interaction_classes),

@@ -1,4 +1,4 @@
-"""When a failed call is made again, as the C++ client decides it (client/internal/retry.h)."""
+"""Decides whether to retry a failed call, like the C++ client (client/internal/retry.h)."""
 
 from __future__ import annotations
 
@@ -12,21 +12,21 @@ from duet_motion.errors import DuetError
 
 @dataclasses.dataclass(frozen=True)
 class RetryOptions:
-    """How often and how patiently a call is attempted.
+    """Number of attempts and backoff of calls.
 
     The wait before attempt n + 1 is drawn from [0.5, 1] x min(max_backoff, initial_backoff x
-    2^(n-1)) and is never shorter than what the server asks for. UNAVAILABLE, replies that break off,
-    and refusals by a full server that says when to come back are tried again: until the call's
-    timeout, or, where no server can be reached, for the client's ``wait``.
+    2^(n-1)) and is never shorter than the delay that the server requests. UNAVAILABLE, replies that
+    break off, and errors of a full server that requests a delay are retried until the call's
+    timeout. If no server can be reached, they are retried for the client's ``wait``.
 
     Args:
-        max_attempts: how often a call is made; 1: never again. None: no limit.
+        max_attempts: maximum number of attempts; 1: no retry. None: no limit.
         initial_backoff: seconds before the second attempt.
-        max_backoff: the longest wait in seconds, unless the server asks for more.
+        max_backoff: the longest wait in seconds, unless the server requests more.
         on_wait: called before each wait with the error and the seconds of the wait.
 
     Raises:
-        ValueError: a field makes no sense.
+        ValueError: a field is invalid.
     """
 
     max_attempts: Optional[int] = None
@@ -43,22 +43,22 @@ class RetryOptions:
 
 
 def is_retryable(error: DuetError) -> bool:
-    """Whether another attempt may succeed where this one failed."""
+    """Whether another attempt may succeed."""
     if error.code is grpc.StatusCode.UNAVAILABLE:
         return True
     if error.code is grpc.StatusCode.CANCELLED:
-        # A server that shuts down ends so what it has not begun to look at. (Whoever cancels a call
-        # here is not asked.)
+        # A server that shuts down cancels calls that it has not started. (Calls that this process
+        # cancels never get here.)
         return not _has_details(error)
-    # Without a delay the code means a message that is too large. The C++ client tries only bulk
-    # work again; here many calls at a time are an everyday idiom, and each has its own timeout.
+    # Without a delay, the code means that the message is too large. The C++ client retries only
+    # bulk calls; in Python, many concurrent calls are common, and each has its own timeout.
     return (error.code is grpc.StatusCode.RESOURCE_EXHAUSTED
             and error.retry_delay is not None)
 
 
 def is_unreachable(error: DuetError) -> bool:
-    """Whether gRPC itself says UNAVAILABLE: Duet servers send details with theirs, and one whose
-    health service says NOT_SERVING ("backend unhealthy") is reachable."""
+    """Whether UNAVAILABLE comes from gRPC itself. Duet servers add details to theirs, and a server
+    whose health service reports NOT_SERVING ("backend unhealthy") is reachable."""
     return (error.code is grpc.StatusCode.UNAVAILABLE and not _has_details(error)
             and "unhealthy" not in error.message)
 
@@ -70,8 +70,8 @@ def _has_details(error: DuetError) -> bool:
 def retry_wait(options: RetryOptions, attempt: int, error: DuetError, uniform: float) -> float:
     """Seconds to wait after the ``attempt``-th attempt (from 1) failed.
 
-    ``uniform``, in [0, 1), spreads the waits, also those that the server asks for, so that clients
-    sent away together do not return together.
+    ``uniform``, in [0, 1), spreads the waits, including those that the server requests, so that
+    clients rejected at the same time do not retry at the same time.
     """
     ceiling = min(options.initial_backoff * 2.0**min(attempt - 1, 60), options.max_backoff)
     backoff = ceiling * (0.5 + 0.5 * uniform)

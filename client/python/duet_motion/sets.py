@@ -1,4 +1,4 @@
-"""Data sets of `duet batch`, for training.
+"""Reads data sets of `duet batch` for training.
 
 >>> reactions = duet.read_set("set", frame_rate_hz=30)
 >>> item = reactions[0]
@@ -27,30 +27,30 @@ Path = Union[str, "os.PathLike[str]"]
 Weights = npt.NDArray[np.float32]
 
 _NEWEST_FORMAT = 1
-# Of files with two people that `duet` reads, those that hold every position.
+# The file types with two people that `duet` reads and that contain every position.
 _READ_BY_PROGRAM = (".json", ".csv", ".txt")
 _CAPTURES = ("LAYOUT_SBU", "LAYOUT_K3HI")
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class SetItem:
-    """One item of a data set: a leader, the follower that answered it, and what was asked."""
+    """One item of a data set: leader, follower and labels."""
 
     record: Mapping[str, Any]
-    """Its line of ``index.jsonl``: seed, model, quality figures, digests (docs/batch.md)."""
+    """The item's line of ``index.jsonl``: seed, model, quality, digests (docs/batch.md)."""
     pair: Positions
     """``[2, frames, joints, 3]``: leader first, in ``leader.unit``."""
     leader: Motion
     follower: Motion
     interaction_classes: Tuple[str, ...]
-    """The classes that ``weights`` has columns for."""
+    """The class of each column of ``weights``."""
     weights: Weights
-    """``[frames, classes]``: the label vector of each frame; the same in all frames unless the item
-    was made with keyframes."""
+    """``[frames, classes]``: the label vector of each frame; constant unless the item has
+    keyframes."""
 
     @property
     def name(self) -> str:
-        """The name of its files, without their endings."""
+        """The name of the item's files, without extension."""
         return str(self.record["name"])
 
 
@@ -59,19 +59,20 @@ class PaddedBatch:
     """Items of different lengths in arrays of one shape."""
 
     pairs: Positions
-    """``[items, 2, frames, joints, 3]``, leader first. Beyond an item's end its last frame."""
+    """``[items, 2, frames, joints, 3]``, leader first. An item's last frame is repeated to the
+    end."""
     weights: Weights
-    """``[items, frames, classes]``. Beyond an item's end its last frame's."""
+    """``[items, frames, classes]``. An item's last weights are repeated to the end."""
     mask: npt.NDArray[np.bool_]
-    """``[items, frames]``: True where a frame is the item's own."""
+    """``[items, frames]``: True for an item's frames, False for padding."""
     records: Tuple[Mapping[str, Any], ...]
 
 
 class MotionSet(Sequence[SetItem]):
-    """A data set that `duet batch` wrote. :func:`read_set` makes one.
+    """A data set that `duet batch` wrote. Create one with :func:`read_set`.
 
-    Items are read when they are asked for, so a set may be larger than memory. It may be pickled and
-    shared by threads and processes: PyTorch's ``DataLoader`` takes it as it is.
+    Items are read on access, so a set may be larger than memory. It may be pickled and shared by
+    threads and processes, so PyTorch's ``DataLoader`` accepts it directly.
     """
 
     def __init__(self, path: Path, frame_rate_hz: Optional[float] = None) -> None:
@@ -79,19 +80,19 @@ class MotionSet(Sequence[SetItem]):
         """The set's folder."""
         self.frame_rate_hz = (None if frame_rate_hz is None else
                               checked_number("frame_rate_hz", frame_rate_hz, above=0))
-        """Frames per second that every item is resampled to; None: each has its own."""
+        """Frames per second of every item after resampling; None: each item keeps its rate."""
         index = self.path / "index.jsonl"
         if not index.is_file():
             raise DataSetError(f"{self.path}: expected a data set of duet batch, got no "
                                "index.jsonl in it")
         self.records: Sequence[Mapping[str, Any]] = Records(index)
-        """What is known of each item, in their order."""
+        """The record of each item, in order."""
         self.description: Mapping[str, Any] = _read_description(self.path)
-        """``dataset.json``: counts, models and their terms, skeletons (docs/batch.md). Empty for
-        sets that have none."""
+        """``dataset.json``: counts, models and their terms, skeletons (docs/batch.md). Empty if the
+        set has no such file."""
         self._skeletons = _skeletons(self.path, self.description)
         self.interaction_classes = self._classes()
-        """Every class that items have weights for, in the order of the label vector."""
+        """Every class with weights in any item, in the order of the label vector."""
         self._shards = Shards(self.path)
 
     def __len__(self) -> int:
@@ -119,7 +120,7 @@ class MotionSet(Sequence[SetItem]):
         """The joints of every item, in the order of the arrays.
 
         Raises:
-            DataSetError: the set has several skeletons, or does not say.
+            DataSetError: the set has several skeletons, or none.
         """
         return tuple(self._only_skeleton()["joint_names"])
 
@@ -128,7 +129,7 @@ class MotionSet(Sequence[SetItem]):
         """For each joint the index of its parent, -1 for none.
 
         Raises:
-            DataSetError: the set has several skeletons, or does not say.
+            DataSetError: the set has several skeletons, or none.
         """
         skeleton = self._only_skeleton()
         if "parents" not in skeleton:
@@ -138,7 +139,7 @@ class MotionSet(Sequence[SetItem]):
     def _only_skeleton(self) -> Mapping[str, Any]:
         if len(self._skeletons) != 1:
             raise DataSetError(f"{self.path}: expected one skeleton, got {len(self._skeletons)}; "
-                               "item.leader.joint_names are an item's own")
+                               "use item.leader.joint_names")
         return self._skeletons[0]
 
     def _classes(self) -> Tuple[str, ...]:
@@ -173,8 +174,8 @@ class MotionSet(Sequence[SetItem]):
                 pair = self._read_file(record)
         except FileNotFoundError as error:
             raise DataSetError(f"{self.path}: {name}: expected the file {error.filename}, got none; "
-                               "a set is packed when duet batch has come to its end, and duet batch "
-                               "verify finds what is missing") from error
+                               "duet batch packs a set when it finishes, and duet batch verify lists "
+                               "what is missing") from error
         except KeyError as error:
             raise DataSetError(f"{self.path / str(record['shard'])}: expected the array {error}, got "
                                "none") from error
@@ -223,30 +224,30 @@ class MotionSet(Sequence[SetItem]):
 
 
 def read_set(path: Path, *, frame_rate_hz: Optional[float] = None) -> MotionSet:
-    """A data set of `duet batch`: loose files, or npz or tar shards.
+    """Opens a data set of `duet batch`: loose files, or npz or tar shards.
 
     Args:
-        path: the set's folder, which holds ``index.jsonl``.
-        frame_rate_hz: frames per second that every item is resampled to, linearly and at the same
-            pace. None: each item keeps its own rate.
+        path: the set's folder, which contains ``index.jsonl``.
+        frame_rate_hz: frames per second of every item after linear resampling at the same speed.
+            None: each item keeps its rate.
 
     Raises:
-        DataSetError: the folder holds no data set, or one of a later format.
-        ValueError: the rate is malformed.
+        DataSetError: the folder contains no data set, or one of a later format.
+        ValueError: the rate is invalid.
     """
     return MotionSet(path, frame_rate_hz)
 
 
 def pad(items: Sequence[SetItem], frames: Optional[int] = None) -> PaddedBatch:
-    """Items of different lengths in arrays of one shape: shorter ones repeat their last frame,
-    longer ones are cut. PyTorch's ``DataLoader`` takes it as ``collate_fn``.
+    """Combines items of different lengths in arrays of one shape. Shorter items repeat their last
+    frame, longer ones are truncated. Use it as ``collate_fn`` of PyTorch's ``DataLoader``.
 
     Args:
         items: at least one, all with the same joints.
-        frames: of the result, at least 1. None: those of the longest item.
+        frames: number of frames in the result, at least 1. None: the longest item's.
 
     Raises:
-        ValueError: there is no item, their joints differ, or ``frames`` is below 1.
+        ValueError: there are no items, their joints differ, or ``frames`` is below 1.
     """
     if not items:
         raise ValueError("items: expected at least one, got none")
@@ -283,15 +284,14 @@ def _read_description(path: pathlib.Path) -> Mapping[str, Any]:
                            ) from error
     if version > _NEWEST_FORMAT:
         raise DataSetError(f"{file}: format_version: expected at most {_NEWEST_FORMAT}, got "
-                           f"{version}; a newer duet-motion reads it")
+                           f"{version}; upgrade duet-motion")
     return description
 
 
 def _skeletons(path: pathlib.Path, description: Mapping[str, Any]) -> List[Mapping[str, Any]]:
     if "skeletons" in description:
         return list(description["skeletons"])
-    # Sets from before dataset.json have them in the folder that lets a run go on, where that is
-    # still there.
+    # Sets without skeletons in dataset.json may have them in the folder of the job.
     job = path / ".duet-batch" / "job.json"
     if not job.is_file():
         return []

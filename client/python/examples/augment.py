@@ -1,10 +1,11 @@
-"""Every reaction that a class has to every leader, as one NumPy file: augment.py OUT LEADER...
+"""Synthesises reactions of every class to every leader, into one NumPy file: augment.py OUT
+LEADER...
 
     python3 examples/augment.py reactions.npz samples/*.bvh --seeds 8 --concurrency 4
 
-The file holds for each (leader, class, seed) a row of `leader`, `interaction_class` and `seed`, and
-under `follower_ROW` the positions [frames, joints, 3] in metres, y up. For data sets with a recipe,
-filters and a journal there is `duet batch`.
+For each (leader, class, seed) the file has a row in `leader`, `interaction_class` and `seed`, and
+the positions [frames, joints, 3] in metres, y up, as `follower_ROW`. For data sets with a recipe,
+filters and a journal, use `duet batch`.
 """
 
 import argparse
@@ -20,7 +21,7 @@ def main():
     parser.add_argument("leaders", nargs="+")
     parser.add_argument("--seeds", type=int, default=4)
     parser.add_argument("--concurrency", type=int, default=4)
-    parser.add_argument("--server", help="host:port; otherwise DUET_SERVER, or localhost:50051")
+    parser.add_argument("--server", help="host:port (default: DUET_SERVER, or localhost:50051)")
     options = parser.parse_args()
 
     leaders = [duet.read_motion(path) for path in options.leaders]

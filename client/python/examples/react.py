@@ -1,4 +1,4 @@
-"""A reaction to a motion file, as files: react.py LEADER CLASS=WEIGHT... --out REACTION
+"""Synthesises a reaction to a motion file: react.py LEADER CLASS=WEIGHT... --out REACTION
 
     python3 examples/react.py samples/hug.bvh hug=1 push=0.5 --out mix.bvh --out mix.csv
 """
@@ -12,10 +12,10 @@ import duet_motion as duet
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("leader", help="a motion file: .bvh, .glb, .csv, ...")
-    parser.add_argument("labels", nargs="+", help="CLASS=WEIGHT: 1 wanted, -1 avoided")
+    parser.add_argument("labels", nargs="+", help="CLASS=WEIGHT: 1 requests a class, -1 avoids it")
     parser.add_argument("--out", action="append", required=True, help="a file to write; repeatable")
-    parser.add_argument("--server", help="host:port; otherwise DUET_SERVER, or localhost:50051")
-    parser.add_argument("--seed", type=int, default=0, help="which of many answers")
+    parser.add_argument("--server", help="host:port (default: DUET_SERVER, or localhost:50051)")
+    parser.add_argument("--seed", type=int, default=0, help="selects one of many answers")
     options = parser.parse_args()
 
     labels = {name: float(weight) for name, _, weight in

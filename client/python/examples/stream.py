@@ -1,4 +1,4 @@
-"""Follows a reaction as it arrives, without waiting for its end: stream.py LEADER CLASS
+"""Processes a reaction as it arrives: stream.py LEADER CLASS
 
     python3 examples/stream.py samples/kick.bvh kick
 """
@@ -18,8 +18,8 @@ async def follow(server, leader, interaction_class):
                 last = chunk.first_frame + len(chunk.positions) - 1
                 gap = np.linalg.norm(chunk.positions - leader.positions[chunk.first_frame:last + 1],
                                      axis=-1).min()
-                print(f"frames {chunk.first_frame} to {last}: like joints come within "
-                      f"{gap:.2f} m of each other")
+                print(f"frames {chunk.first_frame} to {last}: the smallest distance between "
+                      f"equal joints is {gap:.2f} m")
         print(f"done after {(await stream.result()).timings.total:.2f} s")
 
 
@@ -27,7 +27,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("leader")
     parser.add_argument("interaction_class")
-    parser.add_argument("--server", help="host:port; otherwise DUET_SERVER, or localhost:50051")
+    parser.add_argument("--server", help="host:port (default: DUET_SERVER, or localhost:50051)")
     options = parser.parse_args()
     leader = duet.read_motion(options.leader)
     asyncio.run(follow(options.server, leader, options.interaction_class))

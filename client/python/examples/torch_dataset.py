@@ -1,10 +1,10 @@
-"""A data set of `duet batch` in PyTorch: torch_dataset.py SET
+"""Trains on a data set of `duet batch` with PyTorch: torch_dataset.py SET
 
     duet batch samples --recipe recipes/mixes.textproto --pack npz --out set
     python3 examples/torch_dataset.py set --steps 200
 
 Trains a small network to predict the follower's pose from the leader's pose and the label vector of
-the same frame: a baseline to put your own model in the place of.
+the same frame. Replace it with your own model.
 """
 
 import argparse
@@ -15,8 +15,8 @@ from torch.utils.data import DataLoader, Dataset
 
 
 class Reactions(Dataset):
-    """Leader, label vectors and follower of each item, in metres around the leader's root in the
-    first frame, and a mask of the frames that are the item's own."""
+    """Leader, label vectors and follower of each item, in metres relative to the leader's root in
+    the first frame, and a mask that excludes padding."""
 
     def __init__(self, path, frame_rate_hz, frames):
         self._set = duet.read_set(path, frame_rate_hz=frame_rate_hz)
@@ -38,9 +38,10 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("set", help="a folder that duet batch wrote")
     parser.add_argument("--frame-rate", type=float, default=15)
-    parser.add_argument("--frames", type=int, default=64, help="of each item; shorter ones are padded")
+    parser.add_argument("--frames", type=int, default=64,
+                        help="frames per item; shorter items are padded")
     parser.add_argument("--steps", type=int, default=200)
-    parser.add_argument("--workers", type=int, default=0, help="processes that read")
+    parser.add_argument("--workers", type=int, default=0, help="processes that read items")
     options = parser.parse_args()
 
     torch.manual_seed(0)

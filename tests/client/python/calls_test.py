@@ -1,4 +1,4 @@
-"""Both clients, waiting and asynchronous, against a server that answers as a test says."""
+"""Calls of the blocking and the asyncio client against a scripted server."""
 
 import asyncio
 import concurrent.futures
@@ -18,7 +18,7 @@ UNAVAILABLE = grpc.StatusCode.UNAVAILABLE
 
 
 class Waiting:
-    """Calls of duet.Client."""
+    """Runs calls on duet.Client."""
 
     def run_calls(self, address, calls, **options):
         with duet.Client(address, **options) as client:
@@ -26,9 +26,9 @@ class Waiting:
 
 
 class Awaiting:
-    """The same calls of duet.aio.Client."""
+    """Runs the same calls on duet.aio.Client."""
 
-    # One for all tests, and never closed: gRPC's poller may have a last word for it.
+    # One loop for all tests, never closed, because gRPC's poller may still use it.
     loop = asyncio.new_event_loop()
 
     def run_calls(self, address, calls, **options):
@@ -66,7 +66,7 @@ class Calls:
             client.synthesize(self.leader, {"hug": 1}, **fields)), **options)
         return result, script
 
-    def test_a_follower_comes_whole(self):
+    def test_synthesize_returns_the_whole_follower(self):
         result, script = self.synthesize(support.good_reply(self.leader),
                                          request={"seed": 3, "request_id": "mine"})
         np.testing.assert_array_equal(result.follower.positions, support.follower_of(self.leader))
@@ -77,7 +77,7 @@ class Calls:
         self.assertEqual(script.requests[0].seed, 3)
         self.assertEqual(script.metadata[0]["x-request-id"], "mine")
 
-    def test_chunks_come_as_they_arrive(self):
+    def test_stream_yields_chunks_as_they_arrive(self):
         arrived = []
 
         def calls(client, get, gather):
@@ -89,7 +89,7 @@ class Calls:
         np.testing.assert_array_equal(np.concatenate([c.positions for c in arrived]),
                                       result.follower.positions)
 
-    def test_a_broken_stream_is_run_again_on_the_same_version(self):
+    def test_broken_stream_is_retried_on_the_same_version(self):
         reply = support.good_reply(self.leader, model_version=7)
         arrived = []
 
@@ -105,13 +105,13 @@ class Calls:
         self.assertEqual((script.requests[1].model.name, script.requests[1].model.version),
                          ("m", 7))
 
-    def test_a_version_that_is_gone_ends_a_resumed_call(self):
+    def test_retry_fails_if_the_version_is_gone(self):
         reply = support.good_reply(self.leader)
         with self.assertRaisesRegex(duet.DuetError, "after 4 frames and cannot be resumed: m@1"):
             self.synthesize([*reply[:3], Failure(UNAVAILABLE)],
                             [Failure(grpc.StatusCode.NOT_FOUND)])
 
-    def test_a_server_that_is_not_there_is_reported_soon_with_its_address(self):
+    def test_unreachable_server_is_reported_with_its_address(self):
         with socket.socket() as unused:  # bound, but nobody listens
             unused.bind(("127.0.0.1", 0))
             address = "127.0.0.1:%d" % unused.getsockname()[1]
@@ -123,7 +123,7 @@ class Calls:
                     self.run_calls(address, lambda client, get, _: get(call(client)), wait=0.05,
                                    timeout=support.LONGEST_CALL)
 
-    def test_a_refusal_names_frame_and_joint(self):
+    def test_violations_name_frame_and_joint(self):
         bad = support.bad_request(("leader.positions[14]", "is inf, wanted a finite number"),
                                   ("follower_start.pose.positions[4]", "is too far"))
         refusal = Failure(grpc.StatusCode.INVALID_ARGUMENT,
@@ -138,14 +138,14 @@ class Calls:
         self.assertIn("leader.positions[1, 1, 2] (frame 1, joint 'left', z): is inf",
                       str(caught.exception))
 
-    def test_attempts_are_counted_and_end(self):
+    def test_attempts_are_counted_and_limited(self):
         away = [Failure(UNAVAILABLE, "away")]
         with self.assertRaisesRegex(duet.UnavailableError, r"away \(after 4 attempts\)"):
             self.synthesize(*[away] * 5)
         result, _ = self.synthesize(away, away, support.good_reply(self.leader))
         self.assertEqual(result.attempt_count, 3)
 
-    def test_a_full_server_is_asked_again_when_it_says_so(self):
+    def test_full_server_is_retried_after_its_delay(self):
         full = [Failure(grpc.StatusCode.RESOURCE_EXHAUSTED, "full", support.retry_info(0.001))]
         for priority in ("interactive", "bulk"):
             result, _ = self.synthesize(full, support.good_reply(self.leader),
@@ -154,7 +154,7 @@ class Calls:
         with self.assertRaisesRegex(duet.ServerBusyError, "full$"):
             self.synthesize(full, retry=duet.RetryOptions(max_attempts=1))
 
-    def test_a_call_has_a_timeout_of_its_own(self):
+    def test_timeout_of_a_call_overrides_the_clients(self):
         go_on = threading.Event()
         with self.assertRaises(duet.DeadlineError):
             self.synthesize(support.held_reply(self.leader, go_on, go_on), request={"timeout": 0.1})
@@ -172,7 +172,7 @@ class Calls:
             self.synthesize(held, timeout=0.1)
         self.assertIsInstance(caught.exception, TimeoutError)
 
-    def test_a_malformed_reply_is_not_asked_for_again(self):
+    def test_malformed_reply_is_not_retried(self):
         with self.assertRaisesRegex(duet.MalformedReplyError, "without a payload"):
             self.synthesize([synthesis_pb2.SynthesizeResponse()])
 
@@ -190,26 +190,26 @@ class Calls:
         self.assertEqual(details.limits.max_keyframes, 5)
         self.assertEqual(script.requests[2].model.version, 2)
 
-    def test_a_bone_without_its_joint_is_refused(self):
+    def test_bone_of_an_unknown_joint_is_rejected(self):
         model = {"name": "m", "bones": [{"parent_joint": 0, "child_joint": 1}]}
-        with self.assertRaisesRegex(duet.MalformedReplyError, "a bone from joint 0 to 1"):
+        with self.assertRaisesRegex(duet.MalformedReplyError, "bones of m@0: .* got 0 and 1"):
             self.calls(Script(synthesis_pb2.ListModelsResponse(models=[model])),
                        lambda client, get, _: get(client.list_models()))
 
-    def test_the_token_goes_along(self):
+    def test_token_is_sent(self):
         _, script = self.synthesize(support.good_reply(self.leader), token="secret")
         self.assertEqual(script.metadata[0]["authorization"], "Bearer secret")
 
-    def test_the_authority_is_what_calls_are_for(self):
+    def test_authority_is_sent(self):
         asked = []
-        # gRPC for Python tells it nowhere else.
+        # gRPC for Python exposes the authority only here.
         script = Script([lambda context: asked.append(context._rpc_event.call_details.host),
                          *support.good_reply(self.leader)])
         self.calls(script, lambda client, get, _: get(client.synthesize(self.leader, {"hug": 1})),
                    authority="duet.test")
         self.assertEqual(asked, [b"duet.test"])
 
-    def test_options_that_make_no_sense_are_refused(self):
+    def test_invalid_options_are_rejected(self):
         for options, message in (({"address": ""}, "address: expected host:port, got an empty"),
                                  ({"timeout": 0}, "timeout: expected a finite number above 0, got 0"),
                                  ({"address": "far:1", "token": "x"}, "expected tls, got plain text to far:1"),
@@ -226,7 +226,7 @@ class Calls:
                         "ipv4:127.0.0.1:1"):
             duet.Client(address, token="x").close()
 
-    def test_many_requests_have_their_outcomes_in_order(self):
+    def test_synthesize_many_keeps_the_order(self):
         together = support.Together(4)
         requests = [duet.SynthesisRequest(support.leader(), {"hug": 1}, seed=seed)
                     for seed in range(9)]
@@ -248,7 +248,7 @@ class Calls:
 
 
 class WaitingTest(Calls, Waiting, unittest.TestCase):
-    def test_calls_of_many_threads_wait_for_their_turn(self):
+    def test_threads_wait_for_their_turn(self):
         together = support.Together(4)
 
         def calls(client, *_):
@@ -259,7 +259,7 @@ class WaitingTest(Calls, Waiting, unittest.TestCase):
         self.assertEqual(self.calls(together, calls, max_concurrent_calls=4), list(range(10, 40)))
         self.assertEqual(together.most, 4)
 
-    def test_a_call_whose_turn_does_not_come_in_time_fails(self):
+    def test_call_without_a_turn_times_out(self):
         begun, go_on = threading.Event(), threading.Event()
         held = [lambda _: begun.set(), *support.held_reply(self.leader, threading.Event(), go_on)[:3],
                 lambda _: go_on.wait(support.LONGEST_CALL)]
@@ -277,7 +277,7 @@ class WaitingTest(Calls, Waiting, unittest.TestCase):
             client.synthesize(self.leader, {"hug": 1})
         self.calls(script, calls, max_concurrent_calls=1, retry=duet.RetryOptions(max_attempts=1))
 
-    def test_a_stream_is_cancelled_by_leaving_it(self):
+    def test_leaving_the_stream_cancels_it(self):
         ended, go_on = threading.Event(), threading.Event()
         script = Script(support.held_reply(self.leader, ended, go_on))
 
@@ -291,7 +291,7 @@ class WaitingTest(Calls, Waiting, unittest.TestCase):
         self.calls(script, calls)
         self.assertEqual(len(script.requests), 1)
 
-    def test_a_stream_is_cancelled_by_another_thread(self):
+    def test_another_thread_cancels_a_stream(self):
         go_on = threading.Event()
         script = Script(support.held_reply(self.leader, threading.Event(), go_on))
 
@@ -336,7 +336,7 @@ class AwaitingTest(Calls, Awaiting, unittest.TestCase):
         self.assertEqual([result.seed for result in results], list(range(10, 40)))
         self.assertEqual(together.most, 4)
 
-    def test_a_call_whose_turn_does_not_come_in_time_fails(self):
+    def test_call_without_a_turn_times_out(self):
         go_on = threading.Event()
         script = Script(support.held_reply(self.leader, go_on, go_on),
                         support.good_reply(self.leader))
@@ -352,12 +352,12 @@ class AwaitingTest(Calls, Awaiting, unittest.TestCase):
             first.cancel()
             await asyncio.wait({first, waiting})
             go_on.set()
-            # Neither took its turn along.
+            # Both returned their turn.
             return await client.synthesize(self.leader, {"hug": 1})
         self.assertEqual(self.calls(script, lambda client, get, _: get(ask(client)),
                                     max_concurrent_calls=1).attempt_count, 1)
 
-    def test_a_stream_is_cancelled_by_another_task(self):
+    def test_another_task_cancels_a_stream(self):
         ended, go_on = threading.Event(), threading.Event()
         script = Script(support.held_reply(self.leader, ended, go_on))
 
@@ -367,7 +367,7 @@ class AwaitingTest(Calls, Awaiting, unittest.TestCase):
             task = asyncio.ensure_future(stream.result())
             await asyncio.sleep(0)
             stream.cancel()
-            # Sooner than the held reply ends by itself.
+            # Before the held reply ends by itself.
             done, _ = await asyncio.wait({task}, timeout=support.LONGEST_CALL / 2)
             self.assertTrue(done)
             with self.assertRaisesRegex(duet.CancelledError, "the call was cancelled"):
@@ -378,7 +378,7 @@ class AwaitingTest(Calls, Awaiting, unittest.TestCase):
         self.calls(script, lambda client, get, _: get(call(client)))
         self.assertEqual(len(script.requests), 1)
 
-    def test_a_stream_is_cancelled_while_it_waits_for_its_next_attempt(self):
+    def test_stream_is_cancelled_during_its_backoff(self):
         told = []
         retry = duet.RetryOptions(initial_backoff=1000, max_backoff=1000,
                                   on_wait=lambda *_: told.append(stream.cancel()))
@@ -393,7 +393,7 @@ class AwaitingTest(Calls, Awaiting, unittest.TestCase):
                    retry=retry, timeout=10_000, wait=10_000)
         self.assertEqual(told, [None])
 
-    def test_a_stream_that_was_cancelled_before_it_began_asks_for_nothing(self):
+    def test_stream_cancelled_before_its_start_makes_no_call(self):
         async def call(client):
             stream = client.stream(self.leader, {"hug": 1})
             stream.cancel()
@@ -403,7 +403,7 @@ class AwaitingTest(Calls, Awaiting, unittest.TestCase):
         self.calls(script, lambda client, get, _: get(call(client)))
         self.assertEqual(script.requests, [])
 
-    def test_a_closed_client_answers_no_more(self):
+    def test_calls_on_a_closed_client_are_cancelled(self):
         def calls(client, get, gather):
             get(client.close())
             with self.assertRaisesRegex(duet.CancelledError, "the client was closed"):

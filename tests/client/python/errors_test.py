@@ -1,4 +1,4 @@
-"""What is read of a refusal."""
+"""Conversion of gRPC errors."""
 
 import unittest
 
@@ -18,7 +18,7 @@ class Refusal(grpc.RpcError):
 
 
 class ErrorsTest(unittest.TestCase):
-    def test_every_violated_field_is_there(self):
+    def test_error_has_every_violation(self):
         error = from_rpc_error(Refusal(
             grpc.StatusCode.INVALID_ARGUMENT, "two fields",
             support.details(support.bad_request(("leader.unit", "0, wanted 1"), ("", "and more")),
@@ -32,12 +32,12 @@ class ErrorsTest(unittest.TestCase):
                          "INVALID_ARGUMENT: two fields: leader.unit: 0, wanted 1; and more")
         self.assertTrue(error.is_permanent)
 
-    def test_what_the_message_names_is_not_told_twice(self):
+    def test_message_names_each_violation_once(self):
         error = from_rpc_error(Refusal(grpc.StatusCode.INVALID_ARGUMENT, "seed: 1, wanted 2",
                                        support.details(support.bad_request(("seed", "1, wanted 2")))))
         self.assertEqual(error.message, "seed: 1, wanted 2")
 
-    def test_when_to_come_back(self):
+    def test_retry_delay_is_read(self):
         code = grpc.StatusCode.RESOURCE_EXHAUSTED
         full = from_rpc_error(Refusal(code, "full", support.details(support.retry_info(1.5))))
         self.assertIsInstance(full, duet.ServerBusyError)
@@ -49,7 +49,7 @@ class ErrorsTest(unittest.TestCase):
         past = from_rpc_error(Refusal(code, "full", support.details(support.retry_info(-1))))
         self.assertEqual(past.retry_delay, 0)
 
-    def test_details_that_cannot_be_read_count_as_none(self):
+    def test_malformed_details_are_ignored(self):
         for metadata in (None, (("grpc-status-details-bin", b"\xff"),), (("x", "y"),)):
             error = from_rpc_error(Refusal(grpc.StatusCode.UNAVAILABLE, "away", metadata))
             self.assertEqual((error.violations, error.reason, error.retry_delay), ((), "", None))
@@ -59,7 +59,7 @@ class ErrorsTest(unittest.TestCase):
             ("grpc-status-details-bin", broken.SerializeToString()),)))
         self.assertEqual(error.violations, ())
 
-    def test_codes_have_classes(self):
+    def test_status_code_selects_the_class(self):
         for code, kind in ((grpc.StatusCode.NOT_FOUND, duet.ModelNotFoundError),
                            (grpc.StatusCode.FAILED_PRECONDITION, duet.RequestMismatchError),
                            (grpc.StatusCode.UNAVAILABLE, duet.UnavailableError),

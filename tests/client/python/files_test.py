@@ -1,4 +1,4 @@
-"""Motion files, through the program `duet`."""
+"""Reading and writing motion files through the program `duet`."""
 
 import os
 import pathlib
@@ -24,7 +24,7 @@ class FilesTest(unittest.TestCase):
         self.hug = duet.read_motion(HUG)
         self.other = self.hug.with_positions(self.hug.positions + np.float32([0, 0, 1]))
 
-    def test_reads_any_file_in_metres_y_up(self):
+    def test_reads_metres_y_up(self):
         self.assertEqual((self.hug.frame_count, self.hug.joint_count), (91, 15))
         self.assertEqual((self.hug.frame_rate_hz, self.hug.unit, self.hug.up_axis),
                          (30, "metres", "y-up"))
@@ -32,7 +32,7 @@ class FilesTest(unittest.TestCase):
         self.assertGreater(head[1] - foot[1], 1.3)
         self.assertLess(head[1] - foot[1], 1.7)
 
-    def test_says_how_a_file_is_meant(self):
+    def test_arguments_override_the_file(self):
         half = duet.read_motion(HUG, metres_per_unit=0.005, frame_rate_hz=60)
         np.testing.assert_allclose(half.positions, self.hug.positions / 2, atol=1e-5)
         self.assertEqual(half.frame_rate_hz, 60)
@@ -40,7 +40,7 @@ class FilesTest(unittest.TestCase):
         swapped = duet.read_motion(HUG, joint_map={"left_hand": "right_hand"})
         np.testing.assert_array_equal(swapped.joint("left_hand"), self.hug.joint("right_hand"))
 
-    def test_what_is_written_is_read_again_to_the_bit(self):
+    def test_json_and_csv_round_trip_is_exact(self):
         for name in ("pair.json", "pair.csv"):
             duet.write_motion(self.folder / name, self.hug, self.other)
             for read, written in zip(duet.read_pair(self.folder / name), (self.hug, self.other)):
@@ -48,7 +48,7 @@ class FilesTest(unittest.TestCase):
         right = duet.read_motion(self.folder / "pair.csv", side="right")
         np.testing.assert_array_equal(right.positions, self.other.positions)
 
-    def test_units_and_axes_of_any_kind_are_written(self):
+    def test_other_units_and_axes_round_trip(self):
         duet.write_motion(self.folder / "one.json", self.hug.converted("millimetres", "z-up"))
         read = duet.read_motion(self.folder / "one.json")
         np.testing.assert_allclose(read.positions, self.hug.positions, atol=1e-6)
@@ -70,7 +70,7 @@ class FilesTest(unittest.TestCase):
         for words in ("Two of them", "with a friend"):
             self.assertIn(words, page)
 
-    def test_errors_are_the_programs_own_words(self):
+    def test_errors_have_the_programs_message(self):
         with self.assertRaisesRegex(duet.MotionFileError, f"^{self.folder}/absent.bvh"):
             duet.read_motion(self.folder / "absent.bvh")
         duet.write_motion(self.folder / "one.json", self.hug)
@@ -82,7 +82,7 @@ class FilesTest(unittest.TestCase):
             with self.assertRaisesRegex(FileNotFoundError, "program 'no-such-duet'.*DUET_PROG"):
                 duet.read_motion(HUG)
 
-    def test_the_settings_of_a_user_do_not_count(self):
+    def test_configuration_file_is_ignored(self):
         settings = self.folder / "config"
         settings.write_text("resample = 10\n", encoding="utf-8")
         with mock.patch.dict(os.environ, {"DUET_CONFIG": str(settings)}):

@@ -1,4 +1,4 @@
-"""What help() says: every argument of everything public."""
+"""help() describes every argument of the public API."""
 
 import inspect
 import pydoc
@@ -7,7 +7,7 @@ import unittest
 import support  # noqa: F401
 import duet_motion as duet
 
-# Made by the package, not by its callers.
+# Created by the package, not by its callers.
 RESULTS = {"FieldViolation", "FollowerChunk", "ModelDetails", "ModelInfo", "MotionSet", "Outcome",
            "PaddedBatch", "RequestLimits", "SetItem", "SynthesisResult", "SynthesisStream", "Timings"}
 
@@ -41,12 +41,13 @@ class HelpTest(unittest.TestCase):
 
     def test_help_of_synthesize_has_shapes_units_and_errors(self):
         text = pydoc.render_doc(duet.Client.synthesize, renderer=pydoc.plaintext)
-        for words in ("leader: the motion to answer", "[frames, joints, 3]", "labels: weights by interaction class",
-                      "follower_start: where the follower is", "[joints, 3]", "timeout: seconds",
+        for words in ("leader: the leader's motion", "[frames, joints, 3]",
+                      "labels: weights by interaction class",
+                      "follower_start: the follower's position", "[joints, 3]", "timeout: seconds",
                       "DuetError: the call failed", "ValueError:"):
             self.assertIn(words, text)
 
-    def test_the_version_is_a_number(self):
+    def test_version_has_three_numbers(self):
         self.assertRegex(duet.__version__, r"^\d+\.\d+\.\d+$")
 
 

@@ -9,14 +9,14 @@ import numpy as np
 
 
 class MotionTest(unittest.TestCase):
-    def test_tells_its_shape(self):
+    def test_has_shape_and_duration(self):
         motion = support.leader(7)
         self.assertEqual((motion.frame_count, motion.joint_count), (7, 3))
         self.assertAlmostEqual(motion.duration_seconds, 0.2)
         np.testing.assert_allclose(motion.times, np.arange(7) / 30)
         self.assertEqual(repr(motion), "Motion(7 frames at 30 Hz, 3 joints, metres, y-up)")
 
-    def test_keeps_a_copy_that_nobody_writes_to(self):
+    def test_keeps_a_read_only_copy(self):
         positions = np.zeros((2, 3, 3))
         motion = support.leader(positions=positions)
         positions[:] = 1
@@ -38,12 +38,12 @@ class MotionTest(unittest.TestCase):
         np.testing.assert_array_equal(chosen.positions, motion.positions[:, [2, 0]])
         self.assertEqual(chosen.frame_rate_hz, 30)
 
-    def test_cuts_frames(self):
+    def test_selects_frames(self):
         motion = support.leader()
         np.testing.assert_array_equal(motion.frames(2, 4).positions, motion.positions[2:4])
         np.testing.assert_array_equal(motion.frames(-2).positions, motion.positions[-2:])
 
-    def test_refuses_what_makes_no_sense_by_field(self):
+    def test_invalid_arguments_name_their_field(self):
         for changes, message in (
                 ({"positions": np.zeros((6, 9))}, r"positions: expected the shape \(frames.*\(6, 9\)"),
                 ({"positions": np.zeros((6, 3, 2))}, r"positions: .* got \(6, 3, 2\)"),
@@ -55,7 +55,7 @@ class MotionTest(unittest.TestCase):
                 ({"positions": np.zeros((6, 3, 3), complex)}, "positions: .*, got .*complex128"),
                 ({"positions": np.zeros((6, 3, 3), bool)}, "positions: .*, got .*bool"),
                 ({"positions": np.full((6, 3, 3), None)}, "positions: .*, got .*object"),
-                ({"joint_names": ("a", "b", "a")}, "joint_names: expected each name once, got a more"),
+                ({"joint_names": ("a", "b", "a")}, "joint_names: .*, got duplicates of a"),
                 ({"joint_names": "abc"}, "joint_names: expected a sequence of names, got 'abc'"),
                 ({"joint_names": None}, "joint_names: expected a sequence of names, got None"),
                 ({"joint_names": ("a", "", "c")}, "joint_names: expected a name for each joint"),
@@ -73,7 +73,7 @@ class MotionTest(unittest.TestCase):
             with self.subTest(changes=list(changes)), self.assertRaisesRegex(ValueError, message):
                 support.leader(**changes)
 
-    def test_names_frame_joint_and_axis_of_a_value_that_is_not_finite(self):
+    def test_value_that_is_not_finite_names_frame_joint_and_axis(self):
         for value, told in ((np.nan, "nan"), (-np.inf, "-inf"), (1e300, r"1e\+300")):
             positions = np.zeros((6, 3, 3))
             positions[4, 1, 2] = value
@@ -87,7 +87,7 @@ class MotionTest(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "nan at frame 4, joint 'root', z"):
             support.leader(positions=positions)
 
-    def test_what_grows_out_of_float32_is_refused(self):
+    def test_float32_overflow_is_rejected(self):
         large = support.leader(positions=np.full((2, 3, 3), 1e36))
         with self.assertRaisesRegex(ValueError, "expected a finite float32, got .* joint 'root', x"):
             large.converted("millimetres")
@@ -105,7 +105,7 @@ class MotionTest(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "frame_rate_hz: .* got -1"):
             motion.resampled(-1)
 
-    def test_converts_units_and_axes_as_the_contract_has_them(self):
+    def test_converts_units_and_axes_as_the_api_defines(self):
         # One metre right, two up, three towards the viewer.
         inner = support.leader(positions=np.tile(np.float32([1, 2, 3]), (2, 3, 1)))
         for unit, up_axis, wanted in (("metres", "y-up", [1, 2, 3]),
@@ -120,7 +120,7 @@ class MotionTest(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "sbu-normalised"):
             inner.converted("sbu-normalised")
 
-    def test_can_be_pickled_for_other_processes(self):
+    def test_can_be_pickled(self):
         motion = support.leader(unit="millimetres")
         copy = pickle.loads(pickle.dumps(motion))
         np.testing.assert_array_equal(copy.positions, motion.positions)

@@ -1,4 +1,4 @@
-"""The process that reads files: kept, shared by nobody, and never in the way when it ends."""
+"""The process behind motion files: kept for the next command, never shared, replaced if it ends."""
 
 import concurrent.futures
 import multiprocessing
@@ -64,33 +64,33 @@ class ProgramTest(unittest.TestCase):
     def test_one_process_runs_many_commands(self):
         self.assertEqual(len({_program.run("read", str(number)) for number in range(10)}), 1)
 
-    def test_a_command_that_fails_says_why_and_the_process_stays(self):
+    def test_failed_command_reports_its_error_and_keeps_the_process(self):
         kept = _program.run("read")
         with self.assertRaisesRegex(_program.CommandFailed, "^no!$"):
             _program.run("fail")
         self.assertEqual(_program.run("read"), kept)
 
-    def test_a_process_that_ended_while_it_was_idle_is_replaced(self):
+    def test_idle_process_that_ended_is_replaced(self):
         gone = _program.run("last")
         other = _program.run("read")
         self.assertNotIn(other, (gone, "once"))
         self.assertEqual(_program.run("read"), other)
 
-    def test_a_process_that_ends_in_the_middle_of_an_answer_leaves_the_command_to_tell(self):
+    def test_process_that_ends_during_an_answer_is_replaced_by_a_single_command(self):
         _program.run("read")
         helper, = _program._idle._helpers
         self.assertEqual(_program.run("end"), "once")
         self.assertIsNotNone(helper._process.returncode)
         self.assertNotEqual(_program.run("read"), "once")
 
-    def test_a_program_without_stdio_runs_each_command(self):
+    def test_program_without_stdio_starts_a_process_per_command(self):
         self.use(OLD)
         self.assertEqual([_program.run("read"), _program.run("read")], ["old", "old"])
 
-    def test_a_file_name_that_is_not_utf_8_runs_a_command_of_its_own(self):
+    def test_file_name_that_is_not_utf_8_starts_a_process(self):
         self.assertEqual(_program.run("read", "\udcff"), "once")
 
-    def test_threads_have_a_process_each_and_few_are_kept(self):
+    def test_each_thread_has_a_process_and_at_most_four_are_kept(self):
         together = threading.Barrier(6)
 
         def read(_):
@@ -100,14 +100,14 @@ class ProgramTest(unittest.TestCase):
             self.assertLessEqual(len(set(pool.map(read, range(6)))), 6)
         self.assertLessEqual(len(_program._idle._helpers), 4)
 
-    def test_another_working_directory_or_program_has_a_process_of_its_own(self):
+    def test_another_working_directory_starts_a_process(self):
         kept = _program.run("read")
         here = os.getcwd()
         self.addCleanup(os.chdir, here)
         os.chdir(self.folder)
         self.assertNotEqual(_program.run("read"), kept)
 
-    def test_a_forked_process_has_one_of_its_own(self):
+    def test_forked_child_starts_its_own_process(self):
         kept = _program.run("read")
         context = multiprocessing.get_context("fork")
         receiver, sender = context.Pipe(duplex=False)
@@ -119,7 +119,7 @@ class ProgramTest(unittest.TestCase):
         self.assertEqual(child.exitcode, 0)
         self.assertEqual(_program.run("read"), kept)
 
-    def test_an_interrupted_command_takes_its_process_along(self):
+    def test_interrupted_command_ends_its_process(self):
         kept = _program.run("read")
         helper, = _program._idle._helpers
         with mock.patch.object(_program._Helper, "_ask", side_effect=KeyboardInterrupt):
@@ -128,14 +128,14 @@ class ProgramTest(unittest.TestCase):
         self.assertIsNotNone(helper._process.returncode)
         self.assertNotEqual(_program.run("read"), kept)
 
-    def test_a_program_that_is_not_there_says_how_to_get_it(self):
+    def test_missing_program_explains_how_to_install_it(self):
         with mock.patch.dict(os.environ, {"DUET_PROGRAM": "no-such-duet"}):
             with self.assertRaisesRegex(FileNotFoundError,
                                         "program 'no-such-duet': expected .*Debian package duet.*DUET_PROG"):
                 _program.run("read")
 
     @unittest.skipUnless(PROGRAM.exists(), f"no program at {PROGRAM}; build it, or set DUET_BIN_DIR")
-    def test_the_real_program_is_kept(self):
+    def test_real_program_is_kept(self):
         with mock.patch.dict(os.environ, {"DUET_PROGRAM": str(PROGRAM)}):
             shutil.copy(support.SOURCE / "samples" / "hug.bvh", self.folder)
             with mock.patch.object(_program, "_run_once", side_effect=AssertionError("not kept")):

@@ -1,4 +1,4 @@
-"""duet.SynthesisRequest, and how it goes over the wire."""
+"""duet.SynthesisRequest and its wire format."""
 
 import unittest
 
@@ -13,7 +13,7 @@ class RequestTest(unittest.TestCase):
     def request(self, **fields):
         return duet.SynthesisRequest(support.leader(), {"hug": 1, "push": 0.5}, **fields)
 
-    def test_carries_the_leader_as_it_is(self):
+    def test_leader_is_sent_unchanged(self):
         leader = support.leader(unit="millimetres", up_axis="z-up", frame_rate_hz=24)
         wire = to_proto(duet.SynthesisRequest(leader, {"hug": 1})).leader
         self.assertEqual(list(wire.joint_names), ["root", "left", "right"])
@@ -22,7 +22,7 @@ class RequestTest(unittest.TestCase):
                          (motion_pb2.LENGTH_UNIT_MILLIMETRES, motion_pb2.UP_AXIS_Z_UP))
         np.testing.assert_array_equal(np.reshape(wire.positions, (6, 3, 3)), leader.positions)
 
-    def test_carries_every_field(self):
+    def test_every_field_is_sent(self):
         wire = to_proto(self.request(
             seed=2**64 - 1, variety=0.5, model="sbu@2", clean_up=False, priority="bulk",
             chunk_frames=8, partner_direction=(0, 0, 1)))
@@ -35,26 +35,26 @@ class RequestTest(unittest.TestCase):
         self.assertEqual(wire.partner_direction.z, 1)
         self.assertFalse(wire.HasField("follower_start"))
 
-    def test_what_is_absent_stays_absent(self):
+    def test_unset_fields_stay_absent(self):
         wire = to_proto(duet.SynthesisRequest(support.leader()))
         for field in ("label_vector", "follower_start", "partner_direction", "chunk_frames"):
             self.assertFalse(wire.HasField(field), field)
         self.assertEqual(wire.clean_up, synthesis_pb2.CLEAN_UP_UNSPECIFIED)
 
-    def test_keyframes_go_in_the_order_of_their_frames(self):
+    def test_keyframes_are_sorted_by_frame(self):
         wire = to_proto(duet.SynthesisRequest(
             support.leader(), keyframes={4: {"push": 1}, 0: {"hug": 1}}))
         self.assertEqual([(k.frame, k.label_vector.weights[0].interaction_class)
                           for k in wire.label_keyframes], [(0, "hug"), (4, "push")])
         self.assertFalse(wire.HasField("label_vector"))
 
-    def test_a_follower_starts_at_a_point_or_in_a_pose(self):
+    def test_follower_start_is_a_point_or_a_pose(self):
         point = to_proto(self.request(follower_start=(1, 2, 3))).follower_start
         self.assertEqual((point.root_position.x, point.root_position.z), (1, 3))
         pose = to_proto(self.request(follower_start=np.ones((3, 3)))).follower_start
         self.assertEqual(list(pose.pose.positions), [1] * 9)
 
-    def test_refuses_what_makes_no_sense_by_field(self):
+    def test_invalid_values_name_their_field(self):
         pose = np.ones((3, 3))
         pose[1, 2] = np.nan
         for fields, message in (
@@ -86,7 +86,7 @@ class RequestTest(unittest.TestCase):
             with self.subTest(fields=fields), self.assertRaisesRegex(ValueError, message):
                 self.request(**fields)
 
-    def test_refuses_what_is_of_another_type_by_field(self):
+    def test_wrong_types_name_their_field(self):
         for arguments, message in (
                 ((None,), "leader: expected a duet_motion.Motion, got None"),
                 ((support.leader(), ["hug"]), r"labels: expected weights by class, .* got \['hug'\]"),
@@ -103,7 +103,7 @@ class RequestTest(unittest.TestCase):
         self.assertEqual(len(to_proto(duet.SynthesisRequest(
             support.leader(), keyframes={np.int64(3): weights})).label_keyframes), 1)
 
-    def test_chooses_models_as_the_program_does(self):
+    def test_model_names_are_parsed_like_the_programs(self):
         self.assertEqual(to_selector("sbu:stable").version_label, "stable")
         self.assertEqual(to_selector("").WhichOneof("version_choice"), None)
 

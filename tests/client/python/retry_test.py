@@ -1,4 +1,4 @@
-"""When a call is made again: the rule of the C++ client (tests/client/retry_test.cc)."""
+"""Retries, by the rules of the C++ client (tests/client/retry_test.cc)."""
 
 import dataclasses
 import unittest
@@ -14,25 +14,25 @@ UNAVAILABLE, FULL = grpc.StatusCode.UNAVAILABLE, grpc.StatusCode.RESOURCE_EXHAUS
 
 
 class RetryTest(unittest.TestCase):
-    def test_the_unavailable_and_the_full_are_tried_again(self):
+    def test_unavailable_and_full_servers_are_retried(self):
         self.assertTrue(is_retryable(make_error(UNAVAILABLE, "")))
         self.assertTrue(is_retryable(make_error(FULL, "", retry_delay=1.0)))
         self.assertFalse(is_retryable(make_error(FULL, "")))
         self.assertFalse(is_retryable(make_error(grpc.StatusCode.INTERNAL, "")))
 
-    def test_what_a_server_dropped_as_it_shut_down_is_tried_again(self):
+    def test_calls_dropped_at_shutdown_are_retried(self):
         cancelled = grpc.StatusCode.CANCELLED
         self.assertTrue(is_retryable(make_error(cancelled, "")))
         self.assertFalse(is_retryable(make_error(cancelled, "", reason="CALL_ENDED")))
 
-    def test_a_server_that_says_a_word_is_reachable(self):
+    def test_server_that_sends_details_is_reachable(self):
         self.assertTrue(is_unreachable(make_error(UNAVAILABLE, "Connection refused")))
         self.assertFalse(is_unreachable(make_error(UNAVAILABLE, "", reason="DRAINING")))
         self.assertFalse(is_unreachable(make_error(UNAVAILABLE, "", retry_delay=1.0)))
         self.assertFalse(is_unreachable(make_error(UNAVAILABLE, "backend unhealthy")))
         self.assertFalse(is_unreachable(make_error(FULL, "")))
 
-    def test_waits_double_up_to_the_longest(self):
+    def test_backoff_doubles_up_to_its_maximum(self):
         error, options = make_error(UNAVAILABLE, ""), duet.RetryOptions(max_backoff=1)
         waits = [retry_wait(options, attempt, error, 1.0) for attempt in range(1, 7)]
         for wait, wanted in zip(waits, (0.1, 0.2, 0.4, 0.8, 1.0, 1.0)):
@@ -65,13 +65,13 @@ class AttemptsTest(unittest.TestCase):
                                      address="lab:50051")
         self.attempts = Attempts(self.settings)
 
-    def test_each_attempt_has_what_is_left_of_the_time(self):
+    def test_each_attempt_gets_the_remaining_time(self):
         self.assertAlmostEqual(self.attempts.begin(), 10)
         self.now += 4
         self.assertAlmostEqual(self.attempts.begin(), 6)
         self.assertEqual(self.attempts.made, 2)
 
-    def test_the_last_attempts_error_tells_how_many_there_were(self):
+    def test_last_error_has_the_number_of_attempts(self):
         for wait in (0.1, 0.2, 0.4):
             self.attempts.begin()
             self.assertAlmostEqual(self.attempts.wait_after(make_error(UNAVAILABLE, "away")), wait)
@@ -81,20 +81,20 @@ class AttemptsTest(unittest.TestCase):
         self.assertEqual(self.waits, [("away", 0.1), ("away", 0.2), ("away", 0.4)])
 
     def fail(self, error, **settings):
-        """Makes attempts that all fail with the error, until they end."""
+        """Makes attempts that fail with the error until there is no further one."""
         self.attempts = Attempts(dataclasses.replace(
             self.settings, retry=duet.RetryOptions(), **settings))
         while True:
             self.attempts.begin()
             self.now += self.attempts.wait_after(error)
 
-    def test_the_deadline_ends_attempts_at_a_server_that_answers(self):
+    def test_responding_server_is_retried_until_the_deadline(self):
         with self.assertRaisesRegex(duet.UnavailableError, "loading .*the deadline leaves no time"):
             self.fail(make_error(UNAVAILABLE, "loading", reason="LOADING"), wait=1.0)
         # 0.1 + 0.2 + ... + 3.2 s, and 5 s more would be too long.
         self.assertEqual(self.attempts.made, 7)
 
-    def test_a_server_that_cannot_be_reached_is_waited_for_as_long_as_is_asked(self):
+    def test_unreachable_server_is_retried_for_wait_seconds(self):
         start = self.now
         with self.assertRaisesRegex(
                 duet.UnavailableError,
@@ -105,9 +105,9 @@ class AttemptsTest(unittest.TestCase):
         with self.assertRaisesRegex(duet.UnavailableError, r"\(1 attempt in 0.0 s\)"):
             self.fail(make_error(UNAVAILABLE, "refused"), wait=0.0)
         with self.assertRaisesRegex(duet.UnavailableError, "at lab:50051, got 'refused' .7 attempts"):
-            self.fail(make_error(UNAVAILABLE, "refused"), wait=60.0)  # the deadline is nearer
+            self.fail(make_error(UNAVAILABLE, "refused"), wait=60.0)  # the deadline comes first
 
-    def test_a_part_of_a_reply_is_a_sign_of_life(self):
+    def test_partial_reply_restarts_the_wait(self):
         attempts = Attempts(dataclasses.replace(self.settings, retry=duet.RetryOptions(), wait=1.0))
         for answered in (False, True, False):
             attempts.begin()
@@ -116,18 +116,18 @@ class AttemptsTest(unittest.TestCase):
         with self.assertRaisesRegex(duet.UnavailableError, "expected a Duet server"):
             attempts.wait_after(make_error(UNAVAILABLE, "away"))
 
-    def test_a_call_may_have_a_timeout_of_its_own(self):
+    def test_timeout_of_a_call_overrides_the_clients(self):
         attempts = Attempts(self.settings, 2.5)
         self.assertAlmostEqual(attempts.begin(), 2.5)
         with self.assertRaisesRegex(ValueError, "timeout: expected a finite number above 0, got -1"):
             Attempts(self.settings, -1)
 
-    def test_a_first_refusal_is_told_as_it_came(self):
+    def test_first_permanent_error_is_raised_unchanged(self):
         self.attempts.begin()
         with self.assertRaisesRegex(duet.InvalidRequestError, "^INVALID_ARGUMENT: no$"):
             self.attempts.wait_after(make_error(grpc.StatusCode.INVALID_ARGUMENT, "no"))
 
-    def test_nobody_waits_past_the_deadline(self):
+    def test_wait_never_passes_the_deadline(self):
         self.attempts.begin()
         self.now += 9.95
         with self.assertRaisesRegex(duet.UnavailableError, "1 attempt, the deadline leaves no time"):

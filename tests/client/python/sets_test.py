@@ -1,4 +1,4 @@
-"""duet_motion.read_set: sets as docs/batch.md describes them, written here by hand."""
+"""duet_motion.read_set on data sets that the tests write in the form of docs/batch.md."""
 
 import io
 import json
@@ -23,7 +23,7 @@ DESCRIPTION = {
 
 
 def pair_of(number, frames):
-    """Every position of every item is different."""
+    """Positions that are distinct over all items."""
     return np.arange(2 * frames * 9, dtype=np.float32).reshape(2, frames, 3, 3) + 1000 * number
 
 
@@ -82,7 +82,7 @@ class SetsTest(unittest.TestCase):
                     member.size = len(data)
                     archive.addfile(member, io.BytesIO(data))
 
-    def test_a_set_is_read_however_it_is_packed(self):
+    def test_every_packing_is_read_alike(self):
         for packing in ("none", "npz", "tar"):
             with self.subTest(packing=packing):
                 reactions = duet.read_set(self.write(packing))
@@ -119,7 +119,7 @@ class SetsTest(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "frame_rate_hz: expected a finite number above 0"):
             duet.read_set(self.folder, frame_rate_hz=0)
 
-    def test_padding_repeats_the_last_frame_and_says_so(self):
+    def test_padding_repeats_the_last_frame_and_masks_it(self):
         items = duet.read_set(self.write())[:2]
         batch = duet.pad(items)
         self.assertEqual((batch.pairs.shape, batch.pairs.dtype), ((2, 2, 7, 3, 3), np.float32))
@@ -136,7 +136,7 @@ class SetsTest(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "frames: expected 1 or more, got 0"):
             duet.pad(items, frames=0)
 
-    def test_a_set_may_be_pickled_for_other_processes(self):
+    def test_set_can_be_pickled(self):
         reactions = duet.read_set(self.write("tar"))
         reactions[0]
         copy = pickle.loads(pickle.dumps(reactions))
@@ -164,7 +164,7 @@ class SetsTest(unittest.TestCase):
         of_item = duet.read_set(self.write(items=ITEMS[:1], description=several, skeleton=1))
         self.assertEqual(of_item[0].leader.joint_names, ("a", "b", "c"))
 
-    def test_what_is_no_set_or_a_damaged_one_is_refused_by_name(self):
+    def test_missing_and_damaged_sets_are_rejected(self):
         with self.assertRaisesRegex(duet.DataSetError, "set: expected a data set of duet batch, got"):
             duet.read_set(self.folder)
         self.write("npz")
@@ -206,11 +206,11 @@ class SetsTest(unittest.TestCase):
         with self.assertRaisesRegex(duet.DataSetError, "0-hug: .*got nan at frame 2, joint 'left', x"):
             duet.read_set(self.folder)[0]
 
-    def test_a_shard_that_was_packed_again_is_refused_if_it_is_compressed(self):
+    def test_compressed_shard_is_rejected(self):
         self.write("npz")
         with zipfile.ZipFile(self.folder / "set-000000.npz", "w", zipfile.ZIP_DEFLATED) as archive:
             archive.writestr(f"{ITEMS[0].name}.npy", npy(ITEMS[0].pair))
-        with self.assertRaisesRegex(duet.DataSetError, "expected one that is stored, got one that is"):
+        with self.assertRaisesRegex(duet.DataSetError, "expected a stored member, got a comp"):
             duet.read_set(self.folder)[0]
 
 

@@ -1,4 +1,4 @@
-"""The environment and the configuration file: the rule of the program (tests/client/cli/settings_test.cc)."""
+"""Environment and configuration file, as for the program (tests/client/cli/settings_test.cc)."""
 
 import os
 import pathlib
@@ -29,14 +29,14 @@ class SettingsTest(unittest.TestCase):
     def settings(self, text):
         return Settings({"DUET_CONFIG": self.write(text)})
 
-    def test_the_environment_wins_over_the_file(self):
+    def test_environment_overrides_the_file(self):
         config = self.write("# the lab's server\nserver = lab:50051\n\n timeout=300 \n")
         settings = Settings({"DUET_SERVER": "other:1", "DUET_CONFIG": config})
         self.assertEqual((settings.text("server"), settings.seconds("timeout")), ("other:1", 300))
         for variables in ({"DUET_CONFIG": config}, {"DUET_CONFIG": config, "DUET_SERVER": ""}):
             self.assertEqual(Settings(variables).text("server"), "lab:50051")
 
-    def test_the_file_is_where_the_program_looks_for_it(self):
+    def test_file_is_found_where_the_program_finds_it(self):
         self.write("server = xdg:1\n", "x/duet/config")
         self.write("server = home:1\n", "h/.config/duet/config")
         home, xdg = str(self.folder / "h"), str(self.folder / "x")
@@ -50,7 +50,7 @@ class SettingsTest(unittest.TestCase):
         with self.assertRaises(FileNotFoundError):
             Settings({"DUET_CONFIG": str(self.folder / "none")})
 
-    def test_a_malformed_file_is_refused_by_line(self):
+    def test_malformed_file_is_rejected_with_its_line(self):
         for text, message in (("server\n", r"config:1: expected a flag .* got 'server'"),
                               ("\n--server = x\n", r"config:2: expected a flag"),
                               ("timeout = soon\n", r"config:1: timeout: expected a number of sec"),
@@ -60,7 +60,7 @@ class SettingsTest(unittest.TestCase):
                 settings = self.settings(text)
                 settings.seconds("timeout"), settings.tls(), settings.token()
 
-    def test_credentials_are_files_as_of_the_program(self):
+    def test_credentials_are_read_from_files(self):
         ca = self.write("CA", "ca.pem")
         token = self.write(" secret\n", "token")
         settings = self.settings(f"tls-ca = {ca}\ntls-server-name = x\ntoken-file = {token}\nout = y")
@@ -69,7 +69,7 @@ class SettingsTest(unittest.TestCase):
         self.assertEqual(self.settings("tls = true").tls(), duet.TlsOptions())
         self.assertIsNone(self.settings("tls = false").tls())
 
-    def test_a_client_without_an_address_asks_the_servers_of_its_environment(self):
+    def test_client_without_arguments_uses_the_settings(self):
         config = self.write("wait = 0\ntimeout = 50\n")
         with support.serving(support.Script(LISTING)) as address, mock.patch.dict(
                 os.environ, {"DUET_SERVER": address, "DUET_CONFIG": config}):
@@ -79,7 +79,7 @@ class SettingsTest(unittest.TestCase):
             with duet.Client(timeout=7, wait=3) as client:
                 self.assertEqual((client._settings.timeout, client._settings.wait), (7, 3))
 
-    def test_an_argument_wins_over_the_environment(self):
+    def test_argument_overrides_the_environment(self):
         with support.serving(support.Script(LISTING)) as address, mock.patch.dict(
                 os.environ, {"DUET_SERVER": "nobody:1",
                              "DUET_CONFIG": self.write("tls = true\nauthority = x\n")}):

@@ -1,4 +1,4 @@
-"""The stubs in the package are those of the proto files."""
+"""The generated stubs match the proto files."""
 
 import pathlib
 import shutil
@@ -19,7 +19,7 @@ def stubs_below(folder):
 class StubsTest(unittest.TestCase):
     @unittest.skipIf(shutil.which("grpc_python_plugin") is None,
                      "no grpc_python_plugin; install the package protobuf-compiler-grpc")
-    def test_they_are_fresh(self):
+    def test_stubs_match_the_proto_files(self):
         with tempfile.TemporaryDirectory() as folder:
             subprocess.run([SCRIPT, folder], check=True)
             fresh = stubs_below(folder)

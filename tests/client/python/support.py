@@ -1,5 +1,4 @@
-"""What the tests of the Python package share: a leader, good replies, a server that answers as a
-test says."""
+"""Helpers of the Python package's tests: a leader, valid replies, a scripted server."""
 
 import concurrent.futures
 import contextlib
@@ -11,9 +10,9 @@ import threading
 SOURCE = pathlib.Path(__file__).parents[3]
 PACKAGE = SOURCE / "client" / "python"
 sys.path.insert(0, str(PACKAGE))
-# These servers have no health service, of which gRPC would complain at every connection.
+# These servers have no health service; gRPC would log this at every connection.
 os.environ.setdefault("GRPC_VERBOSITY", "NONE")
-# Nor have they settings of whoever runs them.
+# Ignore the settings of the person who runs the tests.
 os.environ["DUET_CONFIG"] = ""
 os.environ.pop("DUET_SERVER", None)
 
@@ -22,20 +21,20 @@ try:
     import numpy as np
 except ImportError as error:
     print(f"skipped: {error}; install the packages python3-grpcio and python3-numpy")
-    sys.exit(77)  # tells CTest that a test was skipped
+    sys.exit(77)  # CTest: the test was skipped
 
 import duet_motion as duet  # noqa: E402
 from duet_motion.rpc.v1 import status_pb2  # noqa: E402
 from duet_motion.v1 import synthesis_pb2, synthesis_pb2_grpc  # noqa: E402
 
 JOINTS = ("root", "left", "right")
-# Waits that no test notices; the longest that one waits for what ought to come at once.
+# Backoff too short to matter, and an upper bound for calls that should finish immediately.
 QUICK = duet.RetryOptions(max_attempts=4, initial_backoff=0.001, max_backoff=0.001)
 LONGEST_CALL = 60
 
 
 def leader(frames=6, **changes):
-    """Every position is different."""
+    """A leader whose positions are all distinct."""
     positions = np.arange(frames * 9, dtype=np.float32).reshape(frames, 3, 3)
     return duet.Motion(**{"positions": positions, "joint_names": JOINTS, "frame_rate_hz": 30,
                           **changes})
@@ -51,7 +50,7 @@ def header(motion, **changes):
 
 
 def follower_of(motion):
-    """Of a good reply: the leader moved by a metre."""
+    """The follower in a valid reply: the leader moved by a metre."""
     return motion.positions + np.float32([1, 0, 0])
 
 
@@ -100,7 +99,7 @@ def bad_request(*violations):
 
 
 class Failure(Exception):
-    """What a scripted stream or call ends with."""
+    """The error that ends a scripted call."""
 
     def __init__(self, code, message="", *messages):
         super().__init__(code, message)
@@ -108,9 +107,9 @@ class Failure(Exception):
 
 
 class Script(synthesis_pb2_grpc.MotionSynthesisServicer):
-    """Answers as scripted, an entry for each attempt, and remembers what it was asked. An entry is
-    a message, a Failure, or a list of messages that may end in a Failure or hold a callable to
-    call with the context."""
+    """Answers from a script with one entry per attempt, and records requests and metadata. An entry
+    is a message, a Failure, or a list of messages that may contain callables, which are called with
+    the context, and end with a Failure."""
 
     def __init__(self, *answers):
         self.answers, self.requests, self.metadata = list(answers), [], []
@@ -154,17 +153,17 @@ class Holding(synthesis_pb2_grpc.MotionSynthesisServicer):
 
 
 def held_reply(motion, ended, go_on):
-    """A stream that stands still after its first chunk until `go_on`, and sets `ended` when the
-    call is over."""
+    """A stream that stops after its first chunk until `go_on`, and sets `ended` when the call
+    ends."""
     head, first = good_reply(motion)[:2]
-    # Who has the chunk knows that the end will be told.
+    # The callback is added before the chunk, so the test that has the chunk gets `ended`.
     return [head, lambda context: context.add_callback(ended.set) or ended.set(), first,
             lambda context: go_on.wait(LONGEST_CALL)]
 
 
 @contextlib.contextmanager
 def serving(servicer, credentials=None, threads=8):
-    """The address of a server with this servicer."""
+    """Runs a server with this servicer and yields its address."""
     server = grpc.server(concurrent.futures.ThreadPoolExecutor(threads))
     synthesis_pb2_grpc.add_MotionSynthesisServicer_to_server(servicer, server)
     if credentials is None:
@@ -179,11 +178,11 @@ def serving(servicer, credentials=None, threads=8):
 
 
 class Together(synthesis_pb2_grpc.MotionSynthesisServicer):
-    """Answers calls of as many at a time as it is told, and refuses seed 3.
+    """Measures how many calls a client makes at a time, and rejects seed 3.
 
-    The first `wanted` calls wait for each other, so that a client which makes fewer at a time does
-    not come to its end, and then a moment for one more, which must not come; `most` is how many
-    there were at once.
+    The first `wanted` calls wait for each other, so a client that makes fewer at a time blocks.
+    They then wait a moment for one more, which must not come. `most` is the maximum number of
+    concurrent calls.
     """
 
     def __init__(self, wanted):

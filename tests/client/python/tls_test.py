@@ -1,4 +1,4 @@
-"""The client over TLS: what must connect, and what must not."""
+"""The client over TLS: valid and invalid certificates."""
 
 import pathlib
 import shutil
@@ -42,22 +42,22 @@ class TlsTest(unittest.TestCase):
         paths = {flag: self.folder / name for flag, name in files.items()}
         return duet.TlsOptions.from_files(**paths, server_name="server.test")
 
-    def test_a_server_with_a_trusted_certificate_is_reached(self):
+    def test_trusted_certificate_is_accepted(self):
         self.assertEqual(self.list_models(self.options(ca="server.crt")), ["m"])
 
-    def test_another_name_or_authority_is_not(self):
+    def test_wrong_name_or_authority_is_rejected(self):
         stranger = duet.TlsOptions.from_files(ca=self.folder / "server.crt", server_name="x.test")
         for tls in (stranger, self.options(ca="client.crt"), None):
             with self.subTest(tls=tls), self.assertRaises(duet.UnavailableError):
                 self.list_models(tls)
 
-    def test_a_client_shows_its_certificate(self):
+    def test_client_certificate_is_sent(self):
         mine = self.options(ca="server.crt", cert="client.crt", key="client.key")
         self.assertEqual(self.list_models(mine, asks_for_certificates=True), ["m"])
         with self.assertRaises(duet.UnavailableError):
             self.list_models(self.options(ca="server.crt"), asks_for_certificates=True)
 
-    def test_a_certificate_wants_its_key(self):
+    def test_certificate_without_key_is_rejected(self):
         with self.assertRaisesRegex(ValueError, "tls.private_key: expected one beside certificate_chain"):
             self.options(ca="server.crt", cert="client.crt")
 

@@ -1,4 +1,4 @@
-"""The package's types hold (mypy, strict), and hold its callers to them."""
+"""mypy (strict) accepts the package and reports wrong types in its callers."""
 
 import pathlib
 import shutil
@@ -21,7 +21,7 @@ client.synthesize(leader, sead=3)
 
 @unittest.skipIf(shutil.which("mypy") is None, "no mypy; install the package mypy")
 class TypesTest(unittest.TestCase):
-    def test_the_package_has_no_error_and_a_careless_caller_two(self):
+    def test_mypy_accepts_the_package_and_reports_a_wrong_caller(self):
         with tempfile.TemporaryDirectory() as folder:
             caller = pathlib.Path(folder) / "caller.py"
             caller.write_text(CALLER, encoding="utf-8")
