@@ -1,6 +1,6 @@
-"""Motion files, read and written by the program `duet`: a few at a time, with bounds on the time
-and the memory of each. It runs in a folder of its own and gets names within it, so that no message
-shows where that lies."""
+"""Reads and writes motion files with the program `duet`: a few at a time, with limits on time and
+memory of each. It runs in a temporary folder and gets relative names, so that no message reveals
+the folder's path."""
 
 import asyncio
 import contextlib
@@ -16,11 +16,11 @@ from aiohttp import web
 from serving import HEADERS, Refused, shown
 
 PROGRAMS_AT_A_TIME = 4
-PROGRAM_SECONDS = 60         # of the processor, and of a conversion
+PROGRAM_SECONDS = 60         # processor time, and time of a conversion
 PROGRAM_BYTES = 2**30
-SYNTHESIS_SECONDS = 150      # of a call to the server, and what is written of it
+SYNTHESIS_SECONDS = 150      # time of a call to the server and of writing its result
 CHUNK_BYTES = 2**18
-MAX_NAME_BYTES = 150         # an ending is added to it, and a file system takes 255
+MAX_NAME_BYTES = 150         # without the extension; file systems allow 255
 MAX_SETTINGS_BYTES = 2**16
 FILE_NAME = re.compile(r"[A-Za-z0-9_][\w@.+-]*", re.ASCII)
 VALUE = re.compile(r"[^\0-\x1f\x7f]{1,200}")
@@ -28,10 +28,10 @@ POINT = re.compile(r"[-+0-9.eE]+(,[-+0-9.eE]+){2}")
 FORMATS = {"glb": "model/gltf-binary", "gltf": "model/gltf+json", "usda": "text/plain",
            "bvh": "text/plain", "html": "text/html", "csv": "text/csv",
            "json": "application/json"}
-# How a file is read: settings of the page as flags of `duet`.
+# The page's settings for reading a file, as flags of `duet`.
 READING = {"unit": "--unit", "up_axis": "--up-axis", "metres_per_unit": "--metres-per-unit",
            "frame_rate": "--frame-rate", "joint_map": "--joint-map"}
-# What is asked of the server for a file.
+# The page's settings for a request, as flags of `duet`.
 ASKING = {"side": "--leader-side", **READING, "label": "--label", "keyframe": "--keyframe",
           "model": "--model", "seed": "--seed", "variety": "--variety",
           "follower_start": "--follower-start", "partner_direction": "--partner-direction",
@@ -39,23 +39,23 @@ ASKING = {"side": "--leader-side", **READING, "label": "--label", "keyframe": "-
 
 
 class Duet:
-    """The program `duet`. `server` are its flags that say which server it asks."""
+    """Runs the program `duet`. `server` has its flags for the server."""
 
     def __init__(self, server=()):
         name = os.environ.get("DUET_PROGRAM", "duet")
         self._program = shutil.which(name)
         if self._program is None:
             raise FileNotFoundError(f"DUET_PROGRAM: expected the program duet, got {name!r}, which "
-                                    "is not there; put duet on the PATH, or name its place")
+                                    "does not exist; put duet on the PATH, or set its path")
         self._program = os.path.abspath(self._program)
         self._server = server
         self._free = asyncio.Semaphore(PROGRAMS_AT_A_TIME)
 
     async def run(self, folder, *arguments, seconds=PROGRAM_SECONDS):
-        """What the program prints, run in a folder.
+        """Runs the program in a folder and returns its output.
 
         Raises:
-            Refused: it failed, in its own words, or went beyond its bounds.
+            Refused: the program failed (with its message) or exceeded a limit.
         """
         async with self._free:
             process = await asyncio.create_subprocess_exec(
@@ -81,15 +81,15 @@ class Duet:
         return out.decode()
 
     async def read(self, folder, name, settings):
-        """Reads one person of the file `name`. Returns where it is as "duet-motion" JSON, and the
-        program's notes on it."""
+        """Reads one person from the file `name`. Returns the path of its "duet-motion" JSON and the
+        program's notes."""
         flags = flags_of({"side": "left", **settings}, {"side": "--side", **READING})
         told = await self.run(folder, "convert", name, *flags, "--out", "leader.duet.json",
                               "--json")
         return folder / "leader.duet.json", json.loads(told).get("notes", [])
 
     async def write(self, folder, pair, kind, stem, resample):
-        """Writes a pair of "duet-motion" JSON in another format. Returns the file."""
+        """Converts a pair in "duet-motion" JSON to another format. Returns the file."""
         out = folder / "out"
         out.mkdir()
         if resample:
@@ -105,8 +105,7 @@ class Duet:
         return files[0] if len(files) == 1 else await asyncio.to_thread(packed, files, stem)
 
     async def write_on_rig(self, folder, leader, rig, kind, stem, settings, authorization):
-        """Asks the server for a follower and writes it on a rig: `rig` is "leader" or a file.
-        Returns the file."""
+        """Synthesises a follower on a rig: `rig` is "leader" or a file. Returns the file."""
         out = folder / "out"
         out.mkdir()
         token = []
@@ -122,13 +121,13 @@ class Duet:
 
 @contextlib.contextmanager
 def workplace():
-    """A folder for one request, removed with what is in it."""
+    """Yields a temporary folder for one request."""
     with tempfile.TemporaryDirectory(prefix="duet-gateway-") as folder:
         yield pathlib.Path(folder)
 
 
 def file_name(name):
-    """The name of a visitor's file, where it can be that of a file here."""
+    """Returns the name of a visitor's file if it is a safe file name, else raises Refused."""
     if not isinstance(name, str) or len(name) > MAX_NAME_BYTES or not FILE_NAME.fullmatch(name):
         raise Refused(400, f"name: expected at most {MAX_NAME_BYTES} letters, digits and -._@+, a "
                            f"letter or digit first, got {shown(str(name))}")
@@ -142,7 +141,8 @@ def format_of(name):
 
 
 def flags_of(settings, table):
-    """Settings, {name: value or list of values}, as flags. The program checks what they say."""
+    """Converts settings, {name: value or list of values}, to flags. The program checks the
+    values."""
     flags = []
     for name, values in settings.items():
         if name not in table:
@@ -151,7 +151,7 @@ def flags_of(settings, table):
             if not isinstance(value, str) or not VALUE.fullmatch(value):
                 raise Refused(400, f"{name}: expected at most 200 printable characters, got "
                                    f"{shown(str(value))}")
-            # The program would take anything else for the name of a file on this machine.
+            # The program would read any other value as the name of a file on this machine.
             if name == "follower_start" and not POINT.fullmatch(value):
                 raise Refused(400, f"follower_start: expected X,Y,Z in metres, got {shown(value)}")
             flags.append(f"{table[name]}={value}")
@@ -159,7 +159,7 @@ def flags_of(settings, table):
 
 
 def packed(files, stem):
-    """Several files as one."""
+    """Packs several files into a zip file."""
     archive = files[0].parent / f"{stem}.zip"
     with zipfile.ZipFile(archive, "w", zipfile.ZIP_DEFLATED) as out:
         for file in files:
@@ -168,9 +168,10 @@ def packed(files, stem):
 
 
 def take_apart(body, folder):
-    """The settings in the first line of a body, and the files that follow it, which the settings
-    name with their sizes: {"files": [{"name": NAME, "bytes": COUNT}, ...]}. Each file is put into a
-    folder of its own. Returns the settings and the files' paths, relative to `folder`."""
+    """Splits a body into the settings in its first line and the files that follow. The settings
+    have the names and sizes of the files: {"files": [{"name": NAME, "bytes": COUNT}, ...]}. Writes
+    each file to a separate folder. Returns the settings and the files' paths, relative to
+    `folder`."""
     with open(body, "rb") as source:
         try:
             settings = json.loads(source.readline(MAX_SETTINGS_BYTES))
@@ -185,13 +186,14 @@ def take_apart(body, folder):
             with open(path, "wb") as out:
                 out.write(source.read(max(size, 0)))
             if path.stat().st_size != size:
-                raise Refused(400, f"files[{index}].bytes: expected what follows, got {size}")
+                raise Refused(400, f"files[{index}].bytes: expected at most the bytes that follow, "
+                                   f"got {size}")
             paths.append(str(path.relative_to(folder)))
     return settings, paths
 
 
 async def send_file(request, path, kind, before=b"", after=b"", headers=()):
-    """Answers with a file's contents, read as they are sent."""
+    """Answers with a file, which is read while it is sent."""
     size = len(before) + path.stat().st_size + len(after)
     response = web.StreamResponse(headers={**HEADERS, "Content-Type": kind,
                                            "Content-Length": str(size), **dict(headers)})

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""A page in the browser that talks with a Duet server, and what stands between the two.
+"""The gateway between the studio, a browser page, and a Duet server.
 
     client/web/gateway.py --server localhost:50051 --listen 127.0.0.1:8080
 
-Browsers speak gRPC-web, which gRPC's own servers do not. This translates the calls of
-duet.v1.MotionSynthesis, reads and writes motion files by the program `duet`, and serves the page.
-It has one user's rights and no passwords: other machines reach it through a proxy that has.
+Browsers use gRPC-web, which gRPC servers do not support. The gateway translates the calls of
+duet.v1.MotionSynthesis, reads and writes motion files with the program `duet`, and serves the page.
+It has no user accounts and no passwords: give other machines access only through a proxy that has.
 """
 
 import argparse
@@ -33,7 +33,7 @@ TYPES = {".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".b
 
 
 class Gateway:
-    """What the gateway answers with."""
+    """The handlers of the gateway."""
 
     def __init__(self, program, channel):
         self._program = program
@@ -41,7 +41,7 @@ class Gateway:
         self._uploads = uploads.Uploads()
 
     def routes(self):
-        """{path: {method: handler}}. The page's files are read once, here, and no others ever."""
+        """Returns {path: {method: handler}}. Only this method reads the page's files, once."""
         about = {"formats": list(conversions.FORMATS),
                  "samples": sorted(file.stem for file in SAMPLES.glob("*.bvh"))}
         files = {"/about.json": ("application/json", json.dumps(about)),
@@ -65,8 +65,8 @@ class Gateway:
         return await grpc_web.forward(request, self._channel, self._uploads)
 
     async def read(self, request):
-        """A motion file in, {"notes": [...], "motion": its leader as "duet-motion" JSON} out. The
-        query names the file and how it is read."""
+        """Converts a motion file to {"notes": [...], "motion": its leader as "duet-motion" JSON}.
+        The query has the file's name and the settings for reading it."""
         settings = {name: request.query.getall(name) for name in request.query}
         name = conversions.file_name(settings.pop("name", [""])[0])
         async with self._received(request, name) as folder:
@@ -76,7 +76,8 @@ class Gateway:
                 f'{{"notes": {json.dumps(notes)}, "motion": '.encode(), b"}")
 
     async def write(self, request):
-        """A pair as "duet-motion" JSON in, a file out. The query has its name, format and rate."""
+        """Converts a pair in "duet-motion" JSON to a file. The query has its name, format and
+        rate."""
         query = request.query
         stem = conversions.file_name(query.get("name", "reaction"))
         kind = conversions.format_of(query.get("format", ""))
@@ -86,8 +87,8 @@ class Gateway:
             return await send_download(request, file)
 
     async def write_on_rig(self, request):
-        """Settings in a line of JSON, the leader's file and perhaps a rig's in; the follower on
-        that rig out (conversions.take_apart)."""
+        """Synthesises the follower on a rig. The body is a line of JSON with settings, the leader's
+        file and optionally a rig's (conversions.take_apart)."""
         async with self._received(request, "body") as folder:
             settings, paths = await asyncio.to_thread(conversions.take_apart, folder / "body",
                                                       folder)
@@ -103,7 +104,8 @@ class Gateway:
 
     @contextlib.asynccontextmanager
     async def _received(self, request, name):
-        """A folder with the request's body in a file of that name; removed afterwards."""
+        """Yields a folder with the request's body in a file of that name, and removes it
+        afterwards."""
         with conversions.workplace() as folder:
             with open(folder / name, "wb") as file:
                 async with self._uploads.body(request, file):
@@ -132,7 +134,7 @@ async def run(options):
         host = f"[{address[0]}]" if ":" in address[0] else address[0]
         print(f"http://{host}:{address[1]}", flush=True)
 
-    # A channel that is not closed may keep the process from ending.
+    # An open channel can prevent the process from ending.
     channel = grpc_web.connect(options.server, tls)
     try:
         server = serving.Server(Gateway(program, channel).routes(),
@@ -144,13 +146,15 @@ async def run(options):
 
 def main(arguments):
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--server", default="localhost:50051", help="the Duet server, HOST:PORT")
-    parser.add_argument("--listen", default="127.0.0.1:8080", help="for browsers, HOST:PORT")
+    parser.add_argument("--server", default="localhost:50051",
+                        help="address of the Duet server, HOST:PORT (default: %(default)s)")
+    parser.add_argument("--listen", default="127.0.0.1:8080",
+                        help="address to listen on, HOST:PORT (default: %(default)s)")
     parser.add_argument("--host", action="append", default=[], metavar="NAME",
-                        help="a name that browsers may call the gateway by, beside this machine's "
-                             "own (localhost, 127.0.0.1, [::1] and that of --listen); repeatable")
+                        help="additional host name of the gateway in URLs, beside localhost, "
+                             "127.0.0.1, [::1] and the host of --listen; repeatable")
     parser.add_argument("--tls-ca",
-                        help="encrypt to the server; trust the authorities in this file")
+                        help="use TLS to the server and trust the authorities in this file")
     options = parser.parse_args(arguments)
     logging.basicConfig(format="%(name)s: %(message)s", level=logging.WARNING)
     try:

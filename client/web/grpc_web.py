@@ -1,5 +1,5 @@
-"""gRPC-web (binary, over HTTP/1.1) to gRPC. Messages pass through as they are: both ways they are
-length-prefixed alike; only the trailers travel as a last frame of the body."""
+"""Translates gRPC-web (binary, over HTTP/1.1) to gRPC. Both prefix messages with their length, so
+messages pass through unchanged; gRPC-web sends the trailers as the last frame of the body."""
 
 import asyncio
 import base64
@@ -17,7 +17,7 @@ from serving import HEADERS, Rejected, shown
 METHODS = tuple(f"/duet.v1.MotionSynthesis/{name}"
                 for name in ("Synthesize", "ListModels", "GetModel"))
 CONTENT_TYPES = ("application/grpc-web", "application/grpc-web+proto")
-FRAME_BYTES = 5  # before each message: a flag, and its length
+FRAME_BYTES = 5  # before each message: a flag and the length
 TRAILERS = 0x80  # in the first byte of a frame
 PASSED_ON = ("authorization", "x-request-id")
 PRINTABLE = re.compile(r"[ -~]*")
@@ -27,7 +27,7 @@ LONGEST_SECONDS = 600  # of a call
 
 
 def connect(server, tls):
-    """A channel to the server; made within the event loop that uses it."""
+    """Creates a channel to the server. Call it in the event loop that uses the channel."""
     target = duet._channel.target(server)
     arguments = duet._channel.channel_arguments(duet.RetryOptions(), tls)
     if tls is None:
@@ -36,21 +36,21 @@ def connect(server, tls):
 
 
 async def forward(request, channel, uploads):
-    """Answers a browser's call with the server's answer, message by message."""
+    """Forwards a browser's call to the server and its reply to the browser, message by message."""
     if request.content_type not in CONTENT_TYPES:
         raise Rejected(415, f"Content-Type: expected {CONTENT_TYPES[1]}, got "
                             f"{shown(request.content_type)}")
     metadata, seconds = metadata_of(request.headers), timeout_of(request.headers)
     response = web.StreamResponse(headers={
         **HEADERS, "Content-Type": CONTENT_TYPES[1],
-        "X-Accel-Buffering": "no"})  # a proxy in between passes frames on at once
+        "X-Accel-Buffering": "no"})  # a proxy must pass frames on immediately
     call = None
     try:
         async with uploads.message(request) as body:
             refused = why_refused(body.read(FRAME_BYTES), body)
             if refused is None:
-                # As a stream of one, which is the same on the wire: the message's memory is free as
-                # soon as it has been sent, not at the call's end.
+                # A stream of one message is the same on the wire as a unary request, but its memory
+                # is freed once it has been sent instead of at the call's end.
                 call = channel.stream_stream(request.path)(timeout=seconds, metadata=metadata)
                 await send(call, body.read())
         await response.prepare(request)
@@ -64,11 +64,11 @@ async def forward(request, channel, uploads):
         return response
     finally:
         if call is not None:
-            call.cancel()  # where the browser went away; otherwise of no effect
+            call.cancel()  # if the browser disconnected; otherwise no effect
 
 
 async def send(call, message):
-    """Sends the only message of a call. Where that fails, the call itself says why."""
+    """Sends the only message of a call. If this fails, the call's status has the reason."""
     try:
         await call.write(message)
         await call.done_writing()
@@ -77,7 +77,7 @@ async def send(call, message):
 
 
 async def next_message(call):
-    """The next message of a call; None at its end, of which the call itself says how it came."""
+    """Returns the next message of a call; None at its end. The call's status has the reason."""
     try:
         message = await call.read()
     except grpc.RpcError:
@@ -86,14 +86,15 @@ async def next_message(call):
 
 
 def why_refused(head, body):
-    """What is wrong with a request's body, which must be one frame: `head` has been read of it."""
+    """Returns the error in a request's body, which must be one frame, or None. `head` has already
+    been read from it."""
     here = body.tell()
     size = body.seek(0, os.SEEK_END) - here
     body.seek(here)
     if len(head) < FRAME_BYTES:
-        return f"body: expected a frame of gRPC-web, got {len(head)} bytes"
+        return f"body: expected a gRPC-web frame, got {len(head)} bytes"
     if head[0] != 0:
-        return "body: expected a message that is not compressed, got another frame"
+        return "body: expected an uncompressed message, got another frame"
     if int.from_bytes(head[1:], "big") != size:
         return (f"body: expected one frame of {int.from_bytes(head[1:], 'big')} bytes, got "
                 f"{size} bytes")

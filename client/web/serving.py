@@ -1,5 +1,5 @@
-"""What every request to the gateway must keep to, whatever it asks for: whose page sent it, how
-long it may take, how it is refused. HTTP itself is aiohttp's."""
+"""Rules for every request to the gateway: permitted hosts and origins, framing, timeouts, and
+errors as JSON. aiohttp implements HTTP."""
 
 import asyncio
 import json
@@ -9,13 +9,13 @@ import signal
 from aiohttp import http_exceptions, web
 
 MAX_CONNECTIONS = 512
-# Bounds in seconds. A whole request includes its answer: the longest call of gRPC and its reader.
+# Timeouts in seconds. A whole request includes its answer: the longest gRPC call and its reader.
 HEADER_SECONDS = 10
 IDLE_SECONDS = 30
 REQUEST_SECONDS = 660
 SHUTDOWN_SECONDS = 5
 HEADERS = {
-    # Nothing from elsewhere, and no page of others around this one.
+    # No content from other origins, and no framing by other pages.
     "Content-Security-Policy": "default-src 'self'; img-src 'self' data: blob:; "
                                "frame-ancestors 'none'; base-uri 'none'; form-action 'none'",
     "X-Content-Type-Options": "nosniff",
@@ -29,7 +29,7 @@ LOG = logging.getLogger("duet.gateway")
 
 
 class Refused(Exception):
-    """A request that is not answered: its HTTP status, and a message for whoever sent it."""
+    """A request fails with an HTTP status and a message for its sender."""
 
     def __init__(self, status, message, **headers):
         super().__init__(message)
@@ -37,11 +37,11 @@ class Refused(Exception):
 
 
 class Rejected(Refused):
-    """Refused with its body unread or its framing in doubt: the connection is closed."""
+    """As Refused, with an unread body or doubtful framing, so the connection is closed."""
 
 
 def refusal(status, message, headers=()):
-    """A refusal as JSON."""
+    """Creates an error response as JSON."""
     response = web.json_response({"error": {"status": status, "message": message}}, status=status,
                                  headers={**HEADERS, **dict(headers)})
     if status == 503:
@@ -50,8 +50,8 @@ def refusal(status, message, headers=()):
 
 
 class Connection(web.RequestHandler):
-    """One connection: closed unless a request's header has come in time, and its request is
-    cancelled when it is lost."""
+    """A connection. It is closed if no request's header arrives in time, and its request is
+    cancelled when the connection is lost."""
 
     def __init__(self, *arguments, **options):
         super().__init__(*arguments, **options)
@@ -60,7 +60,7 @@ class Connection(web.RequestHandler):
 
     def connection_made(self, transport):
         super().connection_made(transport)
-        # Later headers on this connection must come within aiohttp's own bound for idle ones.
+        # aiohttp's timeout for idle connections applies to later headers.
         self._waiting_for_header = self._loop.call_later(HEADER_SECONDS,
                                                          self._close_unless_answering)
         self._manager.make_room()
@@ -75,7 +75,7 @@ class Connection(web.RequestHandler):
         try:
             super().data_received(data)
         except ValueError:
-            # Not caught by aiohttp: a target that is no URL. Its parser refuses whatever follows.
+            # aiohttp does not catch a target that is not a URL. Its parser rejects this byte.
             super().data_received(b"\0")
 
     def begin(self):
@@ -90,25 +90,25 @@ class Connection(web.RequestHandler):
             self.force_close()
 
     def handle_error(self, request, status=500, exc=None, message=None):
-        """Answers what aiohttp could not read, and what nothing else has caught."""
+        """Answers requests that aiohttp cannot read, and unexpected exceptions."""
         if isinstance(exc, ConnectionError):
             raise exc
         if isinstance(exc, http_exceptions.LineTooLong):
-            response = refusal(431, "header: expected lines of at most 8190 bytes, got longer ones")
+            response = refusal(431, "header: expected lines of at most 8190 bytes, got more")
         elif isinstance(exc, http_exceptions.HttpProcessingError):
-            response = refusal(400, f"request: expected HTTP/1.1, got a malformed one: {message}")
+            response = refusal(400, f"request: expected valid HTTP/1.1, got an error: {message}")
         else:
             LOG.error("%s %s failed", request.method, request.path, exc_info=exc)
             if request.writer.output_size > 0:
-                raise ConnectionError("the answer has begun")
-            response = refusal(500, "the gateway failed; its log says how")
+                raise ConnectionError("the response has already started")
+            response = refusal(500, "the gateway failed; see its log")
         response.force_close()
         return response
 
 
 class Server(web.Server):
-    """Answers requests by `routes`, {path: {method: handler}}. `hosts` are the names that a request
-    may be addressed to."""
+    """Answers requests with `routes`, {path: {method: handler}}. `hosts` are the permitted names in
+    the Host header."""
 
     def __init__(self, routes, hosts):
         super().__init__(self._handle, keepalive_timeout=IDLE_SECONDS, access_log=None,
@@ -120,7 +120,7 @@ class Server(web.Server):
         return Connection(self, loop=self._loop, **self._kwargs)
 
     def make_room(self):
-        """Closes the connection that has waited longest for a request, where there are too many."""
+        """Closes the connection that has been idle longest if there are too many."""
         if len(self._connections) <= MAX_CONNECTIONS:
             return
         idle = (connection for connection in self._connections if not connection.answering)
@@ -133,7 +133,7 @@ class Server(web.Server):
                 return await self._answer(request)
         except TimeoutError:
             if request.transport:
-                request.transport.abort()  # what is left to send is not waited for
+                request.transport.abort()  # drop unsent data
             raise ConnectionError("the request took too long") from None
         finally:
             request.protocol.end()
@@ -146,7 +146,7 @@ class Server(web.Server):
             response = refusal(refused.status, refused.message, refused.headers)
             if isinstance(refused, Rejected):
                 response.force_close()
-        # Here, so that a reader that stands still counts towards the request's time.
+        # Sent here, so that a stalled reader counts towards the request's timeout.
         await response.prepare(request)
         await response.write_eof()
         return response
@@ -165,10 +165,10 @@ class Server(web.Server):
         check_framing(request)
         host = request.headers["Host"]
         if host_name(host) not in self._hosts:
-            # A name that somebody made point here: its page would pass for this one's own.
+            # DNS rebinding: a page of that name would have the gateway's origin.
             raise Rejected(421, f"Host: expected one of {', '.join(sorted(self._hosts))}, got "
                                 f"{shown(host)}; start the gateway with --host NAME to allow it")
-        # A page of another origin may not post anything here in its visitor's name.
+        # A page of another origin must not post on behalf of its visitor.
         origin = request.headers.get("Origin")
         if origin is not None and origin.lower() not in (f"http://{host}".lower(),
                                                          f"https://{host}".lower()):
@@ -187,9 +187,9 @@ def check_framing(request):
                             f"{len(request.headers.getall('Host', ()))}")
     for name, _ in request.raw_headers:
         if not all(0x21 <= byte <= 0x7e for byte in name):
-            raise Rejected(400, "header: expected names without blanks, got one with them")
+            raise Rejected(400, "header: expected names without blanks, got one with a blank")
     if "Transfer-Encoding" in request.headers:
-        raise Rejected(411, "Transfer-Encoding: expected none but a Content-Length, got one")
+        raise Rejected(411, "Transfer-Encoding: expected none, got one; send a Content-Length")
     if request.method != "POST" and request.headers.get("Content-Length", "0").strip("0"):
         raise Rejected(400, f"body: expected none with {request.method}, got one")
     if "Upgrade" in request.headers:
@@ -203,20 +203,20 @@ def host_name(host):
 
 
 def shown(text):
-    """Text of a request as a message repeats it."""
+    """Quotes text from a request for a message."""
     return json.dumps(text if len(text) <= 80 else f"{text[:77]}...")
 
 
 def allowed_hosts(listen, names):
-    """The names that requests may be addressed to: this machine's own, the one that is listened on,
-    and those that the operator adds."""
+    """The permitted names in the Host header: this machine's, the host of --listen, and the
+    operator's."""
     name = listen.rpartition(":")[0]
     own = [name] if name and name not in ("0.0.0.0", "[::]") else []
     return [*THIS_MACHINE, *own, *names]
 
 
 async def serve(server, listen, started):
-    """Serves until SIGINT or SIGTERM; calls `started` with the address when it listens."""
+    """Serves until SIGINT or SIGTERM. Calls `started` with the address once it listens."""
     host, _, port = listen.rpartition(":")
     if not port.isdecimal():
         raise ValueError(f"--listen: expected HOST:PORT, got {listen!r}")

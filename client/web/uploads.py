@@ -1,4 +1,4 @@
-"""Bodies of requests, received with bounds: on each, on all of them together, and in time."""
+"""Receives request bodies with limits on each body, on their sum, and on time."""
 
 import asyncio
 import contextlib
@@ -8,14 +8,14 @@ from serving import Rejected, Refused
 
 MAX_BODY_BYTES = 32 * 2**20  # a request's limit at the server
 BODY_SECONDS = 120
-MAX_SPOOLED_BYTES = 2**30    # on disk, of all bodies that are being received or used
-IN_MEMORY_BYTES = 2**16      # of each body whose message is sent on; the rest of it is on disk
-MAX_HELD_BYTES = 64 * 2**20  # in memory, of all messages that are being sent on
-HELD_SECONDS = 30            # that a message waits for its place in memory
+MAX_SPOOLED_BYTES = 2**30    # on disk, all bodies that are being received or used
+IN_MEMORY_BYTES = 2**16      # per body of a forwarded message; larger bodies are on disk
+MAX_HELD_BYTES = 64 * 2**20  # in memory, all messages that are being forwarded
+HELD_SECONDS = 30            # timeout of a message that waits for memory
 
 
 class Uploads:
-    """All bodies that are being received or used."""
+    """The bodies that are being received or used."""
 
     def __init__(self):
         self._spooled = 0
@@ -24,10 +24,11 @@ class Uploads:
 
     @contextlib.asynccontextmanager
     async def body(self, request, file):
-        """Receives a request's body into `file`, which counts towards the disk's bound inside.
+        """Receives a request's body into `file`, which counts towards the limit on disk inside.
 
         Raises:
-            Rejected: the body has no length, is too long or too slow, or there are too many bodies.
+            Rejected: the body has no length, is too long or too slow, or all bodies exceed the
+            limit.
         """
         await check_length(request)
         received = 0
@@ -36,8 +37,8 @@ class Uploads:
                 async with asyncio.timeout(BODY_SECONDS):
                     async for data in request.content.iter_any():
                         if self._spooled + len(data) > MAX_SPOOLED_BYTES:
-                            raise Rejected(503, "body: too many are being received; try again "
-                                                "later")
+                            raise Rejected(503, "body: too many bodies are being received; "
+                                                "try again later")
                         received += len(data)
                         self._spooled += len(data)
                         file.write(data)
@@ -51,12 +52,12 @@ class Uploads:
 
     @contextlib.asynccontextmanager
     async def message(self, request):
-        """A request's body as a file, to be read into memory inside. Messages together stay within
-        a bound: one waits until its bytes fit.
+        """Yields a request's body as a file, to be read into memory inside. Waits until the sum of
+        all messages in memory is below its limit.
 
         Raises:
-            Rejected: as body() does.
-            Refused: the messages before this one stayed too long.
+            Rejected: see body().
+            Refused: the wait for memory timed out.
         """
         with tempfile.SpooledTemporaryFile(IN_MEMORY_BYTES, prefix="duet-gateway-") as file:
             async with self.body(request, file):
@@ -76,16 +77,16 @@ class Uploads:
                 await self._released.wait_for(lambda: self._held + size <= MAX_HELD_BYTES)
                 self._held += size
         except TimeoutError:
-            raise Refused(503, "body: too many large ones are being sent on; try again "
-                               "later") from None
+            raise Refused(503, "body: too many large messages are being forwarded; try "
+                               "again later") from None
 
 
 async def check_length(request):
-    """Refuses a body before it is read, by its length."""
+    """Rejects a body by its length before it is read."""
     length = request.headers.get("Content-Length")
     if length is None:
         raise Rejected(411, "Content-Length: expected the body's, got none")
-    # Digits are counted first: Python refuses to read thousands of them.
+    # Count the digits first: Python does not convert thousands of digits.
     digits = length.lstrip("0")
     if len(digits) > 12 or int(digits or "0") > MAX_BODY_BYTES:
         raise Rejected(413, f"body: expected at most {MAX_BODY_BYTES} bytes, got "

@@ -1,4 +1,4 @@
-"""Duet in Blender: an answer to the armature that leads, as a second armature beside it."""
+"""The Blender add-on: synthesises a partner for an animated armature."""
 
 bl_info = {
     "name": "Duet",

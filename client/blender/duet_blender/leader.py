@@ -1,24 +1,24 @@
-"""The armature that leads, as Duet reads motion: where its bones are in every frame."""
+"""Records the leader's armature as a motion file."""
 
 from .program import DuetError
 
-# A line between two key frames may be off by so much before a further one is set.
+# Maximum error of linear interpolation between label keyframes.
 LABEL_TOLERANCE = 0.01
 HEAD_TOP = "HeadTop_End"
 
 
 class Recording:
-    """Positions and label weights, frame by frame, in metres with y up.
+    """Positions and label weights of each frame, in metres with y up.
 
-    A joint is the head of a bone; a bone without children adds its tail, which is where hands, feet and
-    the top of the head are on rigs that end there.
+    The head of each bone is a joint. A bone without children adds its tail, where rigs that end
+    there have hands, feet and the top of the head.
     """
 
     def __init__(self, scene, armature):
         self.scene = scene
         self.armature = armature
         self.metres = metres_per_unit(scene)
-        self.joints = []  # (name, index of the parent or -1, bone, whether its tail)
+        self.joints = []  # (name, index of the parent or -1, bone, is the bone's tail)
         for bone in armature.pose.bones:
             self._add(bone)
         self.frames = []  # [frames][joints][3]
@@ -33,7 +33,7 @@ class Recording:
             self.joints.append((name, len(self.joints) - 1, bone.name, True))
 
     def take(self):
-        """A generator that goes through the scene's frames, one at each step, and back again."""
+        """A generator that records one frame of the scene per step and then restores the frame."""
         scene = self.scene
         before, subframe = scene.frame_current, scene.frame_subframe
         try:
@@ -54,7 +54,7 @@ class Recording:
         self.weights.append([label.weight for label in self.scene.duet.labels])
 
     def write(self, path):
-        """As BVH: it carries the hierarchy, by which joints are found as in every other file."""
+        """Writes BVH, because its hierarchy helps `duet` to recognise the joints."""
         lines = ["HIERARCHY"]
         order = []
         roots = [index for index, joint in enumerate(self.joints) if joint[1] < 0]
@@ -86,14 +86,14 @@ class Recording:
         lines.append(f"{pad}}}")
 
     def reading_flags(self):
-        """How the file is to be read: its unit, and the bones that the user chose for joints."""
+        """Flags for reading the file: its unit and the user's choice of bones for joints."""
         return ["--metres-per-unit", "1", *joint_flags(self.scene.duet, "--joint-map")]
 
     def label_flags(self):
-        """--label for weights that stay, --keyframe for weights that change."""
+        """--label for constant weights, --keyframe for weights that change."""
         names = [label.name for label in self.scene.duet.labels]
         if not any(any(weights) for weights in self.weights):
-            raise DuetError("Every label is 0: move a slider")
+            raise DuetError("Every label is 0. Move a slider.")
         keys = simplified(self.weights)
         if len(keys) == 1:
             return [word for name, weight in zip(names, self.weights[0]) if weight
@@ -106,7 +106,8 @@ class Recording:
         return flags
 
     def place_flags(self):
-        """--follower-start where the empty is, as high as the leader's middle if it is lower."""
+        """--follower-start at the empty, raised to the height of the leader's middle if it is
+        lower."""
         empty = self.scene.duet.place
         if empty is None:
             return []
@@ -123,7 +124,7 @@ def joint_flags(settings, flag):
 
 
 def metres_per_unit(scene):
-    """What the user chose, or the scene's unit."""
+    """The user's choice, or the scene's unit."""
     chosen = {"METRES": 1, "CENTIMETRES": 0.01, "MILLIMETRES": 0.001, "INCHES": 0.0254}
     return chosen.get(scene.duet.unit, scene.unit_settings.scale_length)
 
@@ -133,7 +134,8 @@ def frame_rate(scene):
 
 
 def simplified(rows):
-    """Indices of rows between which the others lie on straight lines; only 0 where all are alike."""
+    """Indices of rows that reproduce the others by linear interpolation; only 0 if all are
+    equal."""
     last = len(rows) - 1
 
     def off(start, end, row):

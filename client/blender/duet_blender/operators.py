@@ -1,5 +1,5 @@
-"""What the panel's buttons do. Work goes on in small steps between Blender's own, so that it never
-stands still; without a window (blender --background) the steps follow one another."""
+"""The operators behind the panel's buttons. They work in small steps on a timer, so that Blender
+stays responsive; without a window (blender --background) the steps run one after another."""
 
 import os
 import tempfile
@@ -9,13 +9,13 @@ import bpy
 
 from . import leader, partner, program, settings
 
-STEP_SECONDS = 0.02  # of Blender's time at each tick
+STEP_SECONDS = 0.02  # maximum work per tick
 TICK_SECONDS = 0.05
 
 
 class _Working(bpy.types.Operator):
-    """An operator whose work is the generator work(context) of the class that inherits this; each
-    yield lets Blender go on."""
+    """Base of operators that implement the generator work(context); each yield returns control to
+    Blender."""
 
     bl_options = {"REGISTER"}
     _timer = None
@@ -74,7 +74,7 @@ class _Working(bpy.types.Operator):
 
 
 class DUET_OT_ask_for_classes(_Working):
-    """Makes the sliders those of the server's model"""
+    """Shows a slider for each class of the server's model"""
 
     bl_idname = "duet.ask_for_classes"
     bl_label = "Ask the server for classes"
@@ -87,7 +87,7 @@ class DUET_OT_ask_for_classes(_Working):
 
 
 class DUET_OT_react(_Working):
-    """Synthesises a partner who reacts to the leader, in place of the last one; Esc stops"""
+    """Synthesises a partner who reacts to the leader and replaces the last partner. Esc cancels"""
 
     bl_idname = "duet.react"
     bl_label = "React"
@@ -115,7 +115,7 @@ class DUET_OT_react(_Working):
             bpy.ops.ed.undo_push(message="React")
 
     def _ask(self, context, recording, motion, folder):
-        """A generator that returns the file of the follower."""
+        """A generator that requests the follower and returns its file."""
         scene, duet = context.scene, context.scene.duet
         ask = ["synthesize", "--server", duet.server, "--leader", motion, *recording.reading_flags(),
                *recording.label_flags(), *recording.place_flags(), "--seed", duet.seed,
@@ -133,7 +133,7 @@ class DUET_OT_react(_Working):
 
 
 class DUET_OT_keep(bpy.types.Operator):
-    """Keeps the last answer as a take; the next React then adds another"""
+    """Keeps the last partner as a take, so that the next React adds another one"""
 
     bl_idname = "duet.keep"
     bl_label = "Keep as take"

@@ -39,7 +39,7 @@ class VIEW3D_PT_duet_reading(bpy.types.Panel):
         layout, duet = self.layout, context.scene.duet
         layout.use_property_split = True
         layout.prop(duet, "unit")
-        layout.label(text="Bones that their names do not tell:")
+        layout.label(text="Bones whose names are not recognised:")
         for joint in duet.joints:
             title = joint.name.replace("_", " ").capitalize()
             if duet.leader:

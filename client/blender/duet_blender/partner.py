@@ -1,4 +1,4 @@
-"""The partner: what Duet wrote as glTF, in the scene."""
+"""Imports the partner, which Duet writes as glTF, into the scene."""
 
 import json
 import pathlib
@@ -15,7 +15,7 @@ COLOUR = (0.0782, 0.4508, 0.5210, 1)  # linear: the follower's of pages and file
 
 
 def _let_importer_run():
-    """Debian 12's glTF importer asks numpy for a name that its numpy has no more."""
+    """Defines numpy.bool, which Debian 12's glTF importer uses and its numpy no longer has."""
     import numpy
 
     if "bool" not in numpy.__dict__:
@@ -23,7 +23,7 @@ def _let_importer_run():
 
 
 def remove_last(scene):
-    """Removes the last answer and what only it uses."""
+    """Removes the last answer, and its data that nothing else uses."""
     for thing in [thing for thing in scene.objects if _MARK in thing]:
         data, action = thing.data, thing.animation_data and thing.animation_data.action
         kind = thing.type
@@ -35,12 +35,13 @@ def remove_last(scene):
 
 
 def last(scene):
-    """The armature of the last answer; None where there is none."""
+    """The armature of the last answer, or None."""
     return next((thing for thing in scene.objects if _MARK in thing and thing.type == "ARMATURE"), None)
 
 
 def keep(scene, title):
-    """Makes the last answer a take, which the next one leaves alone; its name."""
+    """Turns the last answer into a take, which the next answer does not replace. Returns its
+    name."""
     armature = last(scene)
     number = 1 + sum(1 for thing in scene.objects
                      if thing.type == "ARMATURE" and thing.name.startswith(TAKE))
@@ -54,9 +55,9 @@ def keep(scene, title):
 
 
 def export_rig(scene, armature, path):
-    """The armature at rest with its meshes, as binary glTF in metres."""
+    """Writes the armature in its rest pose with its meshes, as binary glTF in metres."""
     if "gltf" not in dir(bpy.ops.export_scene):
-        raise DuetError("Switch on the add-on glTF 2.0, which writes the leader's rig")
+        raise DuetError("Enable the add-on glTF 2.0, which writes the leader's rig.")
     _let_importer_run()
     selected, active = list(bpy.context.selected_objects), bpy.context.view_layer.objects.active
     wanted = [armature] + [thing for thing in scene.objects if thing.type == "MESH" and (
@@ -94,7 +95,8 @@ def _in_metres(path, metres):
 
 
 def add(scene, path, scale=1):
-    """Imports one person, whose file is in metres, and marks them as the last answer; their armature.
+    """Imports one person, whose file is in metres, and marks them as the last answer; their
+    armature.
 
     `scale`: units of the leader's armature in a unit of the scene. The scene keeps rate, range and
     current frame."""
@@ -109,7 +111,7 @@ def add(scene, path, scale=1):
     new = [thing for thing in bpy.data.objects if thing not in things]
     armatures = [thing for thing in new if thing.type == "ARMATURE"]
     if not armatures:
-        raise DuetError("The partner came without an armature")
+        raise DuetError("The partner's file has no armature.")
     armature = armatures[0]
     armature.name = NAME
     for thing in new:
@@ -126,7 +128,7 @@ def add(scene, path, scale=1):
 
 
 def _colour(materials):
-    """Somebody who came alone has the leader's colour."""
+    """Sets the follower's colour, because a single person is written in the leader's colour."""
     for material in materials:
         if not material.name.startswith("person"):
             continue
@@ -138,7 +140,7 @@ def _colour(materials):
 
 
 def _curves(action):
-    """All curves of an action; since Blender 4.4 they lie in layers."""
+    """All curves of an action. Since Blender 4.4 they are in layers."""
     if hasattr(action, "fcurves"):
         return list(action.fcurves)
     return [curve for layer in action.layers for strip in layer.strips
@@ -146,7 +148,7 @@ def _curves(action):
 
 
 def _place_in_time(scene, actions):
-    """The importer begins at frame 0, the leader's motion at the scene's first frame."""
+    """Moves actions from frame 0, where the importer puts them, to the scene's first frame."""
     for action in actions:
         action.name = NAME
         for curve in _curves(action):

@@ -1,4 +1,4 @@
-"""Runs the program `duet` beside Blender, and says what it says when it fails."""
+"""Runs the program `duet` without blocking Blender, and reports its errors."""
 
 import json
 import os
@@ -9,19 +9,19 @@ import bpy
 
 
 class DuetError(Exception):
-    """Something that the user can read and mend."""
+    """An error that the user can correct."""
 
 
 def find(program):
     path = bpy.path.abspath(program)
     found = path if os.path.isfile(path) else shutil.which(program)
     if not found:
-        raise DuetError(f"There is no program {program!r}: say in the panel, under Server, where it is")
+        raise DuetError(f"There is no program {program!r}. Set its path under Server.")
     return found
 
 
 def run(settings, *arguments):
-    """A generator that yields until the program has ended; returns what it printed."""
+    """A generator that yields until the program has ended, and returns its output."""
     process = subprocess.Popen([find(settings.program), *map(str, arguments)],
                                stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                                stderr=subprocess.PIPE, text=True)
@@ -38,12 +38,12 @@ def run(settings, *arguments):
             process.communicate()
     if process.returncode != 0:
         raise DuetError(_in_the_panel(errors.strip())
-                        or f"duet ended with status {process.returncode}")
+                        or f"duet exited with code {process.returncode}")
     return output
 
 
 def _in_the_panel(message):
-    """An error with the panel's names for what the program's flags are."""
+    """Replaces hints about the program's flags by hints about the panel."""
     lines = message.splitlines()
     hints = [line for line in lines if "joint-map" in line and line.startswith("Say it with")]
     kept = [line for line in lines if line not in hints]
@@ -51,9 +51,9 @@ def _in_the_panel(message):
 
 
 def classes(settings):
-    """The interaction classes of the server's default model (a generator, as run)."""
+    """The interaction classes of the server's default model. A generator like run()."""
     models = json.loads((yield from run(settings, "models", "--server", settings.server, "--json")))
     chosen = [model for model in models["models"] if model["is_default"]] or models["models"]
     if not chosen:
-        raise DuetError("The server serves no model")
+        raise DuetError("The server serves no model.")
     return chosen[0]["interaction_classes"]

@@ -1,10 +1,10 @@
-"""What the panel holds: one group of properties on every scene."""
+"""The settings in the panel: a property group of every scene."""
 
 import bpy
 
-# Of the server's own model, until the server has been asked for others.
+# The classes of the embedded default model, used until the user asks the server.
 CLASSES = ("kick", "push", "shake_hands", "hug", "exchange_object", "punch")
-# Joints of the models, in the order in which they are shown.
+# The joints of the embedded models, in the order of the panel.
 JOINTS = ("head", "neck", "torso", "left_shoulder", "left_elbow", "left_hand", "right_shoulder",
           "right_elbow", "right_hand", "left_hip", "left_knee", "left_foot", "right_hip", "right_knee",
           "right_foot")
@@ -14,15 +14,17 @@ class DuetLabel(bpy.types.PropertyGroup):
     """One interaction class; `name` is the class."""
 
     weight: bpy.props.FloatProperty(
-        name="Weight", description="1 wanted, 0 neutral, -1 avoided; may have key frames",
+        name="Weight",
+        description="1 requests this class, 0 is neutral, -1 avoids it. Can be animated",
         default=0, min=-2, max=2, soft_min=-1, soft_max=1, options={"ANIMATABLE"})
 
 
 class DuetJoint(bpy.types.PropertyGroup):
-    """A joint of the model, `name`, and the bone whose head it is."""
+    """The joint `name` of the model, and the bone whose head it is."""
 
     bone: bpy.props.StringProperty(
-        name="Bone", description="The bone whose head this joint is; empty: found by the bones' names")
+        name="Bone",
+        description="The bone whose head is this joint. Empty: recognised by the bones' names")
 
 
 def _is_armature(_, thing):
@@ -39,7 +41,7 @@ class DuetSettings(bpy.types.PropertyGroup):
         description="The armature that the partner reacts to, over the scene's frames")
     place: bpy.props.PointerProperty(
         name="Place", type=bpy.types.Object, poll=_is_empty,
-        description="An empty where the partner begins; without one the model chooses")
+        description="An empty at the partner's start. Without one, the model chooses")
     labels: bpy.props.CollectionProperty(type=DuetLabel)
     joints: bpy.props.CollectionProperty(type=DuetJoint)
     unit: bpy.props.EnumProperty(
@@ -48,21 +50,21 @@ class DuetSettings(bpy.types.PropertyGroup):
                ("CENTIMETRES", "Centimetres", ""), ("MILLIMETRES", "Millimetres", ""),
                ("INCHES", "Inches", "")))
     body: bpy.props.EnumProperty(
-        name="Body", description="What the partner is shown as",
-        items=(("MANNEQUIN", "Mannequin", "Duet's own"),
+        name="Body", description="The partner's body",
+        items=(("MANNEQUIN", "Mannequin", "Duet's mannequin"),
                ("LEADER", "Leader's rig", "A copy of the leader's armature and meshes")))
     seed: bpy.props.IntProperty(name="Seed", min=0, default=0,
-                                description="Which answer of a model that samples")
+                                description="Selects an answer of a model that samples")
     variety: bpy.props.FloatProperty(name="Variety", min=0, max=2, default=1,
-                                     description="0 the typical answer, 1 as varied as people")
+                                     description="0: the typical answer; 1: as varied as people")
     server: bpy.props.StringProperty(name="Server", default="localhost:50051")
     program: bpy.props.StringProperty(name="Program", default="duet", subtype="FILE_PATH",
-                                      description="Where the program `duet` is")
+                                      description="Path of the program `duet`")
     state: bpy.props.StringProperty(name="State", options={"SKIP_SAVE"})
 
 
 def set_classes(settings, classes):
-    """Makes the sliders those of these classes; weights of the same names stay."""
+    """Sets the sliders to these classes. Weights of classes in both stay."""
     if [label.name for label in settings.labels] == list(classes):
         return
     weights = {label.name: label.weight for label in settings.labels}
@@ -74,7 +76,7 @@ def set_classes(settings, classes):
 
 
 def fill(scene):
-    """Gives a scene that has none its sliders and its joints."""
+    """Adds the sliders and joints to a scene that has none."""
     if not scene.duet.labels:
         set_classes(scene.duet, CLASSES)
     if not scene.duet.joints:
@@ -96,7 +98,7 @@ def register():
     bpy.app.handlers.load_post.append(_fill_all)
     if hasattr(bpy.data, "scenes"):
         _fill_all()
-    else:  # while Blender switches an add-on on, scenes are out of reach
+    else:  # scenes cannot be accessed while Blender enables an add-on
         bpy.app.timers.register(_fill_all, first_interval=0)
 
 

@@ -1,7 +1,7 @@
 'use strict';
-// Files in and out, through the gateway.
+// Uploads and downloads through the gateway.
 
-// The message of a response that is an error: the gateway's JSON, or what a proxy says.
+// The message of an error response: the gateway's JSON, or a proxy's status.
 async function messageIn(response) {
   const text = await response.text();
   try {
@@ -11,7 +11,7 @@ async function messageIn(response) {
   }
 }
 
-// Reads a leader by the settings. Returns {name, file, bytes, motion, notes, reading}.
+// Reads a leader with the current settings. Returns {name, file, bytes, motion, notes, reading}.
 async function readLeader(name, bytes) {
   const query = new URLSearchParams({name: safeName(name)});
   for (const setting of READING) {
@@ -50,7 +50,7 @@ async function download(kind) {
   }));
 }
 
-// The follower of the answer on a rig: asked for again, as `duet synthesize --follower-rig` does.
+// The follower of the answer on a rig. The gateway synthesises it again with --follower-rig.
 async function downloadOnRig() {
   const take = state.takes[state.chosen];
   const other = element('rig-choice').value === 'file' ? element('rig-file').files[0] : null;

@@ -1,7 +1,8 @@
 'use strict';
-// One call over gRPC-web: a frame out; frames of messages in, and a last one with the trailers.
+// One call over gRPC-web: sends one frame; receives frames with messages and a last one with
+// trailers.
 
-// What a call failed with: the server's own words, and of each refused field a problem.
+// A failed call: the server's message, and one problem for each invalid field.
 class CallError extends Error {
   constructor(message, problems = []) {
     super(message);
@@ -15,7 +16,7 @@ class FrameReader {
     this.buffer = new Uint8Array(0);
   }
 
-  // So many bytes, or null at the stream's end.
+  // Returns `count` bytes, or null at the stream's end.
   async take(count) {
     while (this.buffer.length < count) {
       const {done, value} = await this.reader.read();
@@ -47,7 +48,7 @@ function readTrailers(data) {
   }));
 }
 
-// What is wrong with each field, in a status' details (google.rpc.BadRequest).
+// The problem of each field in a status' details (google.rpc.BadRequest).
 function problemsIn(details) {
   if (!details) return [];
   const bytes = Uint8Array.from(atob(details.replace(/=+$/, '')), (letter) => letter.charCodeAt(0));
@@ -57,7 +58,7 @@ function problemsIn(details) {
       .map(({field, description}) => `${field}: ${description}`);
 }
 
-// Yields the messages of type `answer` with which the server answers.
+// Calls a method and yields the reply's messages, of type `answer`.
 async function* callServer(method, request, message, answer, signal) {
   const body = encode(request, message);
   const frame = new Uint8Array(5 + body.length);
@@ -78,5 +79,5 @@ async function* callServer(method, request, message, answer, signal) {
     throw new CallError(decodeURIComponent(trailers['grpc-message'] || 'The call failed.'),
                         problemsIn(trailers['grpc-status-details-bin']));
   }
-  throw new CallError('The answer broke off. Press React again.');
+  throw new CallError('The reply broke off. Press React again.');
 }

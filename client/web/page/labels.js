@@ -1,7 +1,7 @@
 'use strict';
-// The sliders of the interaction classes, and the key frames that are made of them.
+// The sliders of the interaction classes, and the key frames made from them.
 
-// A slider and a field for the same number.
+// A slider and a number field for the same value.
 function makeSlider(name, least, most) {
   const label = document.createElement('label');
   label.className = 'slider';
@@ -15,7 +15,7 @@ function makeSlider(name, least, most) {
   return label;
 }
 
-// Keeps slider and field at one value; `set` hears of a visitor's.
+// Keeps slider and field equal; calls `set` with the visitor's values.
 function joinSlider(label, set) {
   const [range, field] = label.querySelectorAll('input');
   for (const input of [range, field]) {

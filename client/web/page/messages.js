@@ -1,6 +1,6 @@
 'use strict';
-// The messages that the page sends and reads, as far as it needs them: fields by name, with number
-// and type. A test compares them with the proto files. `[]`: repeated; numbers are packed.
+// The fields that the page uses of each message, by name, with number and type. A test compares
+// them with the proto files. `[]` means repeated; repeated numbers are packed.
 const MESSAGES = {
   ModelSelector: {name: [1, 'string'], version: [2, 'uint32']},
   Bone: {parent_joint: [1, 'uint32'], child_joint: [2, 'uint32']},
@@ -115,12 +115,12 @@ class Reader {
 
   delimited() {
     const length = this.varint();
-    if (this.at + length > this.bytes.length) throw new Error('a message that is cut short');
+    if (this.at + length > this.bytes.length) throw new Error('the message is truncated');
     this.at += length;
     return this.bytes.subarray(this.at - length, this.at);
   }
 
-  // Passes over a field that the page does not need.
+  // Skips a field that the page does not use.
   skip(wire) {
     if (wire === 0) this.varint();
     else if (wire === 2) this.delimited();

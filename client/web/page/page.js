@@ -1,20 +1,20 @@
 'use strict';
-// Puts the page together: a leader in, settings, answers by React, files out.
+// Connects the page's parts: leader, settings, answers, downloads.
 const root = document.documentElement;
 const element = (id) => document.getElementById(id);
 const SIDE_BY_SIDE = 4;
-const UNFAMILIAR = 1.5;  // of SynthesisSummary.unfamiliarity: look before you use it
+const UNFAMILIAR = 1.5;  // SynthesisSummary.unfamiliarity above this gets a warning
 
 const state = {
   models: [],      // as ListModels describes them
-  model: null,     // the one of the settings
+  model: null,     // the model of the settings
   samples: [],
-  leader: null,    // readLeader's
-  awaited: '',     // the name of the file that a link was made with
+  leader: null,    // the result of readLeader
+  awaited: '',     // the name of the file that a link refers to
   takes: [],       // answers: {seed, positions, model, version, samples, unfamiliarity, ...}
   chosen: 0,       // the take that is downloaded
   asked: '',       // askedFor() of the takes
-  call: null,      // of the calls in progress: their AbortController
+  call: null,      // the AbortController of the running calls
   answers: 0,
 };
 
@@ -26,10 +26,10 @@ function tell(text, failed = false, problems = []) {
   root.dataset.failed = failed;
 }
 
-// An error in the words of whoever refused: every field that the server names, one a line.
+// Shows an error; if the server names invalid fields, one line for each.
 function tellError(error) {
   const problems = error.problems ?? [];
-  tell(problems.length ? 'The server refused the request:' : error.message, true, problems);
+  tell(problems.length ? 'The server rejected the request:' : error.message, true, problems);
 }
 
 function addButton(parent, text, act) {
@@ -40,7 +40,7 @@ function addButton(parent, text, act) {
   return button;
 }
 
-// Runs what a visitor began; its failure is shown.
+// Wraps an action of the visitor; shows its error.
 const attempt = (act) => async (...all) => {
   try {
     await act(...all);
@@ -54,7 +54,7 @@ const modelNamed = (name) => state.models.find((model) => nameOf(model) === name
 
 const seedsOf = (takes) => takes.map((take) => take.seed);
 
-// Brings address and buttons in line with the settings.
+// Updates address and buttons after a change of the settings.
 function changed() {
   history.replaceState(null, '', addressOf(settings));
   const ready = Boolean(state.leader) && isAnyWeight();
@@ -105,13 +105,13 @@ function showLeader() {
   root.dataset.frames = motion.frames;
 }
 
-// Takes a leader, and asks nothing of the server: that is React's.
+// Loads a leader. It makes no call to the server; React does.
 async function takeLeader(name, bytes) {
   tell(`Reading ${name} …`);
   stopCalls();
   const {leader: last} = state;
   if (last && (last.name !== name || last.file !== fingerprint(bytes))) {
-    // How the last file was read says nothing about this one.
+    // The settings for reading the previous file do not apply to this one.
     for (const setting of READING) settings[setting] = DEFAULTS[setting];
     settings.keyframes = [];
     showFields();
@@ -130,7 +130,7 @@ function stopCalls() {
   state.call = null;
 }
 
-// One answer, frame by frame: `show` is called with each chunk.
+// Requests one answer. Calls `show` with each chunk.
 async function ask(leader, seed, signal, show) {
   const {motion} = leader;
   const positions = new Float32Array(motion.positions.length);
@@ -148,12 +148,11 @@ async function ask(leader, seed, signal, show) {
     }
     summary = summary || answer.summary;
   }
-  if (!summary) throw new CallError('The answer ended before its end. Press React again.');
+  if (!summary) throw new CallError('The reply is incomplete. Press React again.');
   return {...take, unfamiliarity: summary.unfamiliarity ?? 0};
 }
 
-// Asks for `count` answers, from the seed of the settings on, as everything stands now. Calls that
-// are still being answered are dropped.
+// Requests `count` answers with the current settings and consecutive seeds. Cancels running calls.
 async function react(count) {
   stopCalls();
   const call = state.call = new AbortController();
@@ -161,7 +160,8 @@ async function react(count) {
   const asked = askedFor();
   const begun = performance.now();
   const seeds = Array.from({length: count}, (_, index) => settings.seed + index);
-  tell(count === 1 ? 'Asking …' : `Asking for seeds ${seeds[0]} to ${seeds[count - 1]} …`);
+  tell(count === 1 ? 'Waiting for the server …'
+                   : `Waiting for seeds ${seeds[0]} to ${seeds[count - 1]} …`);
   try {
     const show = count === 1 ? (first, positions) => theatre.takeFrames(first, positions) : null;
     const takes = await Promise.all(seeds.map((seed) => ask(leader, seed, call.signal, show)));
@@ -183,7 +183,7 @@ async function finish(seconds) {
   else showFour(leader, takes, keep);
   changed();
   const far = takes.some((take) => take.unfamiliarity > UNFAMILIAR)
-      ? ' This leader is unlike those that the model learned from: look before you use it.' : '';
+      ? ' This leader is unlike the training data. Check the answer before you use it.' : '';
   const seeds = seedsOf(takes);
   const what = !takes[0].samples ? 'one answer' : takes.length === 1 ? `seed ${seeds[0]}`
       : `seeds ${seeds[0]} to ${seeds[seeds.length - 1]}: keep one`;
@@ -193,7 +193,7 @@ async function finish(seconds) {
   await keepWork();
 }
 
-// Chooses one of several answers.
+// Keeps one of several answers.
 async function keep(index) {
   state.chosen = index;
   settings.seed = state.takes[index].seed;
@@ -262,10 +262,10 @@ function connectSettings() {
   element('share').addEventListener('click', attempt(async () => {
     changed();
     if (!navigator.clipboard) {
-      throw new Error('This browser copies nothing here; the address above is the link.');
+      throw new Error('The browser does not allow copying. Copy the address of this page.');
     }
     await navigator.clipboard.writeText(location.href);
-    tell('The link is copied. It holds the settings, and the name of the file but not the file.');
+    tell('The link is copied. It contains the settings and the file\'s name, but not the file.');
   }));
   connectKeyframes(changed);
 }
@@ -273,12 +273,12 @@ function connectSettings() {
 async function takeSample(name) {
   const response = await fetch(`/samples/${name}.bvh`);
   if (!response.ok) throw new CallError(await messageIn(response));
-  // What a visitor would try first.
+  // The sample's own class is a useful first setting.
   if (!isAnyWeight() && state.model.interaction_classes.includes(name)) setLabels({[name]: 1});
   await takeLeader(`${name}.bvh`, await response.arrayBuffer());
 }
 
-// The leader and the answers that the address speaks of, from the browser or from the samples.
+// Restores the leader and the answers of the address, from the browser or from the samples.
 async function restore() {
   const {leader: name, file} = settings;
   if (!name) return;
@@ -297,7 +297,7 @@ async function restore() {
     return;
   }
   state.awaited = name;
-  element('empty').textContent = `This link was made with ${name}. Drop that file here.`;
+  element('empty').textContent = `This link needs the file ${name}. Drop it here.`;
 }
 
 async function takeLink() {
@@ -311,7 +311,7 @@ async function takeLink() {
   await restore();
   changed();
   if (wanted && wanted !== settings.model) {
-    tell(`The server has no model ${wanted}; ${settings.model} is chosen instead.`, true);
+    tell(`The server has no model ${wanted}; using ${settings.model} instead.`, true);
   }
 }
 
@@ -344,6 +344,6 @@ async function start() {
 }
 
 start().catch((error) => {
-  tell(`The server does not answer: ${error.message}`, true);
+  tell(`The server does not respond: ${error.message}`, true);
   root.dataset.state = 'failed';
 });

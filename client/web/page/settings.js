@@ -1,20 +1,20 @@
 'use strict';
-// What a visitor has set, apart from the leader's file: kept in the page's address, so that a link
-// and a reload bring it back. A link is anybody's: what it says is checked here.
+// The visitor's settings, without the leader's file. They are stored in the page's address, so that
+// a link or a reload restores them. Links are untrusted, so their values are checked here.
 const METRES = 1;
 const Y_UP = 1;
 const CLEAN_UP = {auto: 0, on: 1, off: 2};
 const MAX_WEIGHT = 2;
-const MAX_NAME = 120;  // characters; the gateway takes a little more
+const MAX_NAME = 120;  // characters; the gateway allows a few more
 
 const settings = {
   leader: '', file: '',  // the name and the fingerprint of the leader's file
-  // How the file is read.
+  // Reading the file.
   side: 'left', unit: '', metres_per_unit: '', up_axis: '', frame_rate: '', joint_map: '',
-  // What is asked of the server. `labels` are the sliders', `keyframes` [{frame, weights}].
+  // The request. `labels` are the sliders' weights, `keyframes` is [{frame, weights}].
   model: '', labels: {}, keyframes: [], seed: 0, variety: 1, start: '', direction: '',
   clean_up: 'auto',
-  // How it is downloaded.
+  // Downloading.
   resample: '', rig_joint_map: '',
 };
 const DEFAULTS = structuredClone(settings);
@@ -63,7 +63,7 @@ function readNumber(text, least, most, otherwise) {
   return text !== '' && value >= least && value <= most ? value : otherwise;
 }
 
-// Takes an address' settings in place of all there were.
+// Replaces all settings by those of an address.
 function takeAddress(hash) {
   Object.assign(settings, structuredClone(DEFAULTS));
   for (const part of hash.replace(/^#/, '').split('&')) {
@@ -74,7 +74,7 @@ function takeAddress(hash) {
     try {
       text = decodeURIComponent(part.slice(equals + 1));
     } catch {
-      continue;  // a link that was cut short
+      continue;  // a truncated link
     }
     takeSetting(name, text);
   }
@@ -95,10 +95,10 @@ function takeSetting(name, text) {
   }
 }
 
-// How the file is read, to be compared.
+// The settings for reading the file, for comparison.
 const readingOf = (all) => JSON.stringify(READING.map((name) => all[name]));
 
-// Sets the weights at a frame, in place of those that it had.
+// Sets or replaces the weights at a frame.
 function addKeyframe(frame, weights) {
   if (!Number.isInteger(frame) || frame < 0) return;
   const others = settings.keyframes.filter((key) => key.frame !== frame);
@@ -108,7 +108,7 @@ function addKeyframe(frame, weights) {
 const isAnyWeight = () => settings.keyframes.length > 0 ||
     Object.values(settings.labels).some((weight) => weight !== 0);
 
-// What an answer depends on, to be compared: whether the answer shown is of the settings shown.
+// The settings that an answer depends on, to detect whether the displayed answer is current.
 function askedFor() {
   const {model, labels, keyframes, variety, start, direction, clean_up} = settings;
   return JSON.stringify([model, keyframes.length ? '' : writeWeights(labels),
@@ -121,7 +121,7 @@ function numbers(text) {
   return values.length === 3 && values.every(Number.isFinite) ? values : null;
 }
 
-// Three numbers of a field, as a message; an Error that names the field.
+// Parses three numbers of a field as a message, or throws an Error that names the field.
 function pointOf(name, text) {
   const values = numbers(text);
   if (!values) throw new Error(`${name}: expected three numbers such as 0, 0.9, 1, got "${text}"`);
@@ -160,13 +160,13 @@ function requestOf(leader, seed) {
   return request;
 }
 
-// A weight for every class of the model: a label vector needs at least one.
+// A weight for every class of the model, because a label vector needs at least one.
 function fullWeights(weights) {
   return Object.fromEntries(state.model.interaction_classes.map(
       (name) => [name, weights[name] ?? 0]));
 }
 
-// The same settings as `duet synthesize` spells them (gateway.py passes them on).
+// The settings as flags of `duet synthesize`, which the gateway runs.
 function flagsOf(take) {
   const weightsOf = (weights) => Object.entries(weights).filter(([, weight]) => weight !== 0)
       .map(([name, weight]) => `${name}=${weight}`);
@@ -189,14 +189,14 @@ const lines = (text) => text.split('\n').map((line) => line.trim()).filter(Boole
 
 const stemOf = (name) => name.replace(/(?<=.)\.[^.]*$/, '');
 
-// A file's name as the gateway takes it.
+// A file's name in the form that the gateway accepts.
 function safeName(name) {
   const safe = (text) => text.replace(/[^\w@.+-]/g, '_');
   const stem = safe(stemOf(name)).replace(/^[^A-Za-z0-9_]+/, '').slice(0, MAX_NAME);
   return (stem || 'leader') + safe(name.slice(stemOf(name).length).slice(0, 12));
 }
 
-// What a download is called, without its ending: leader, model, labels and seed of the answer.
+// The name of a download without extension: leader, model, labels and seed of the answer.
 function downloadName(take) {
   const weights = (set) => Object.entries(set).filter(([, weight]) => weight !== 0)
       .map(([name, weight]) => `${name}${weight}`);

@@ -1,5 +1,5 @@
 'use strict';
-// What is seen: one answer, or four side by side of which the first keeps the time.
+// The 3D views: one answer, or four side by side that follow the time of the first.
 const theatre = document.getElementById('stage');
 
 const bonesOf = (leader) => {
@@ -12,14 +12,14 @@ function motionOf({motion}, follower) {
   return {
     joints: motion.joint_names, frameRate: motion.frame_rate_hz, frames: motion.frames,
     leader: motion.positions, bones: bonesOf(motion),
-    ...(follower && {follower: follower.slice()}),  // chunks of the next answer are drawn into it
+    ...(follower && {follower: follower.slice()}),  // the next answer's chunks are written into it
   };
 }
 
 const fourStages = () => [...element('four').querySelectorAll('duet-motion')];
 const stages = () => (element('four').hidden ? [theatre] : fourStages());
 
-// Shows the leader, alone or with a follower, from the frame and in the pace of what was shown.
+// Shows the leader with or without a follower, and keeps the frame and the state of playback.
 function showOne(leader, follower) {
   const before = stages()[0].player;
   const [frame, playing] = before ? [before.frame, before.playing] : [0, null];
@@ -38,7 +38,7 @@ function showOne(leader, follower) {
   theatre.seek(frame);
 }
 
-// Shows several answers; `keep` is called with the index of the one that a visitor chooses.
+// Shows several answers. Calls `keep` with the index of the answer that the visitor chooses.
 function showFour(leader, takes, keep) {
   const before = stages()[0].player;
   const cells = takes.map((take, index) => {
@@ -82,7 +82,7 @@ function showTime(stage) {
   root.dataset.draws = stage.draws;
 }
 
-// Stops at a frame.
+// Pauses at a frame.
 function seekAll(frame) {
   const [first] = stages();
   if (!first.player) return;

@@ -1,6 +1,6 @@
 'use strict';
-// The visitor's leader and the answers to it, in the browser (IndexedDB): a reload loses nothing,
-// and no file is kept at the gateway.
+// Stores the visitor's leader and the answers in the browser (IndexedDB), so that a reload loses
+// nothing. The gateway stores no files.
 const STORE = 'work';
 
 function openStore() {
@@ -26,15 +26,15 @@ async function inStore(mode, act) {
   }
 }
 
-// Keeps the leader, {name, file, bytes, motion, notes, reading}, and the answers. Where a browser
-// keeps nothing (a private window, a full disk) the page works all the same.
+// Stores the leader, {name, file, bytes, motion, notes, reading}, and the answers. The page also
+// works if the browser stores nothing (a private window, a full disk).
 async function keepWork() {
   const {leader, takes, chosen, asked} = state;
   try {
     await inStore('readwrite', (store) => store.put({leader, takes, chosen, asked}, 'current'));
     root.dataset.kept = Number(root.dataset.kept ?? 0) + 1;
   } catch (error) {
-    console.warn(`The browser does not keep this page's work: ${error}`);
+    console.warn(`The browser cannot store this page's work: ${error}`);
   }
 }
 
@@ -46,7 +46,7 @@ async function keptWork() {
   }
 }
 
-// Of a file's bytes: tells files of one name apart.
+// A hash of a file's bytes, to distinguish files of the same name.
 function fingerprint(bytes) {
   let hash = 0x811c9dc5;  // FNV-1a
   for (const byte of new Uint8Array(bytes)) hash = Math.imul(hash ^ byte, 0x01000193);
