@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Makes the viewer's element, <duet-motion>, as one script that needs no other (docs/viewer_element.md).
+"""Builds the viewer element, <duet-motion>, as one self-contained script (docs/viewer_element.md).
 
     client/viewer/element.py duet-motion.js
 
-three.js is Debian's (libjs-three).
+It contains three.js from Debian's libjs-three.
 """
 
 import pathlib
@@ -12,8 +12,8 @@ import sys
 PAGE = pathlib.Path(__file__).resolve().parent / "page"
 THREE = pathlib.Path("/usr/share/javascript/three")
 PARTS = ("motion.js", "scenery.js", "figure.js", "stage.js", "player.js", "element.js")
-# three.js and its controls are given modules of their own, so that they leave no name behind and
-# meet no other three.js of the page.
+# three.js and its controls get their own modules, so that they define no global names and do not
+# affect another three.js on the page.
 WRAPPED = """{licence}
 (() => {{
 const THREE = {{}};

@@ -22,16 +22,17 @@ absl::Status CheckPerson(const std::string& name, const motion::Clip& clip,
                          const motion::Clip& first) {
   if (clip.frame_count() < 1 || !(clip.frame_rate_hz > 0)) {
     return absl::InvalidArgumentError(
-        absl::StrCat(name, ": ", clip.frame_count(), " frames at ", clip.frame_rate_hz,
-                     " Hz, wanted at least one frame and a rate above 0"));
+        absl::StrCat(name, ": expected at least one frame and a rate above 0, got ",
+                     clip.frame_count(), " frames at ", clip.frame_rate_hz, " Hz"));
   }
   if (clip.joint_names != first.joint_names || clip.poses.joint_count() != clip.joint_count()) {
     return absl::InvalidArgumentError(
-        absl::StrCat(name, ": joints other than those of the first motion"));
+        absl::StrCat(name, ": expected the joints of the first motion, got others"));
   }
   for (const motion::Vec3& position : clip.poses.all()) {
     if (IsFinite(position)) continue;
-    return absl::InvalidArgumentError(absl::StrCat(name, ": a position is not finite"));
+    return absl::InvalidArgumentError(
+        absl::StrCat(name, ": expected finite positions, got one that is not"));
   }
   return absl::OkStatus();
 }
@@ -46,13 +47,13 @@ absl::Status CheckMotion(const GalleryMotion& motion, const motion::Clip& first)
     return status;
   }
   return absl::InvalidArgumentError(
-      absl::StrCat(motion.name, ": leader and follower differ in frames or frame rate"));
+      absl::StrCat(motion.name, ": expected equal frames and rates of leader and follower"));
 }
 
 absl::Status Check(const GalleryContent& content) {
   if (content.motions.empty() || content.motions.size() > kMostMotions) {
     return absl::InvalidArgumentError(
-        absl::StrCat("motions: came ", content.motions.size(), ", wanted 1 to ", kMostMotions));
+        absl::StrCat("motions: expected 1 to ", kMostMotions, ", got ", content.motions.size()));
   }
   const motion::Clip& first = content.motions[0].leader;
   for (const GalleryMotion& motion : content.motions) {
@@ -63,7 +64,7 @@ absl::Status Check(const GalleryContent& content) {
     for (int joint : {bone.parent, bone.child}) {
       if (joint >= 0 && joint < first.joint_count()) continue;
       return absl::InvalidArgumentError(
-          absl::StrCat("bones: joint ", joint, ", wanted 0 to ", first.joint_count() - 1));
+          absl::StrCat("bones: expected joints 0 to ", first.joint_count() - 1, ", got ", joint));
     }
   }
   return absl::OkStatus();

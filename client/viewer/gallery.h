@@ -18,28 +18,29 @@ struct GalleryMotion {
   std::optional<motion::Clip> follower;  // the leader's joints, frames and rate
 };
 
-// A line of figures beside the motions; texts as they are shown.
+// A row of values beside the motions, as display text.
 struct GalleryFigure {
   std::string group;
   std::string title;
-  std::vector<std::string> values;  // one for each of the value_titles, or one of all together
+  std::vector<std::string> values;  // one for each of the value_titles, or one for all
 };
 
 struct GalleryContent {
-  std::vector<GalleryMotion> motions;  // joints alike; rates and lengths may differ
+  std::vector<GalleryMotion> motions;  // the same joints; rates and lengths may differ
   std::vector<motion::Bone> bones;
   std::string title;
   std::string subtitle;
-  std::vector<std::string> value_titles;  // heads of the figures' columns; may be empty
+  std::vector<std::string> value_titles;  // column titles of the figures; may be empty
   std::vector<GalleryFigure> figures;     // may be empty
 };
 
-// A self-contained HTML page that plays motions side by side, all at the same moment and seen from
-// the same place, with curves of speed and distance below the time line.
+// Returns a self-contained HTML page that plays motions side by side, synchronised and from the
+// same camera, with curves of speed and distance below the timeline.
 //
-// Errors: INVALID_ARGUMENT naming the motion: none at all, more than kMostMotions, joints other
-//         than the first one's, no frame, a rate that is none, two people who do not fit together,
-//         a position that is not finite; a bone without such a joint.
+// Errors: INVALID_ARGUMENT that names the motion if there are no motions or more than kMostMotions,
+//         joints differ from the first motion's, a motion has no frame or no valid rate, leader and
+//         follower differ in frames or rate, a position is not finite, or a bone names an unknown
+//         joint.
 inline constexpr int kMostMotions = 12;
 absl::StatusOr<std::string> RenderGallery(const GalleryContent& content);
 

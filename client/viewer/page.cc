@@ -4,7 +4,7 @@
 #include "client/viewer/page_data.h"
 #include "client/viewer/page_parts.h"
 
-// The page's parts, linked in by duet_embed_file.
+// Embedded by duet_embed_file.
 extern "C" {
 extern const char duet_page_index[], duet_page_index_end[];
 extern const char duet_page_stage[], duet_page_stage_end[];
@@ -24,8 +24,8 @@ absl::Status Check(const PageContent& content) {
   const motion::Clip& follower = content.pair.follower;
   if (leader.frame_count() < 1 || leader.frame_rate_hz <= 0) {
     return absl::InvalidArgumentError(
-        absl::StrCat("pair.leader: ", leader.frame_count(), " frames at ", leader.frame_rate_hz,
-                     " Hz, wanted at least one frame and a rate above 0"));
+        absl::StrCat("pair.leader: expected at least one frame and a rate above 0, got ",
+                     leader.frame_count(), " frames at ", leader.frame_rate_hz, " Hz"));
   }
   if (leader.joint_names != follower.joint_names ||
       leader.poses.joint_count() != leader.joint_count() ||
@@ -33,18 +33,19 @@ absl::Status Check(const PageContent& content) {
       leader.poses.all().size() != follower.poses.all().size() ||
       leader.frame_rate_hz != follower.frame_rate_hz) {
     return absl::InvalidArgumentError(
-        "pair: leader and follower differ in joints, frames or frame rate");
+        "pair: expected equal joints, frames and rates of leader and follower");
   }
   for (const motion::Clip* clip : {&leader, &follower}) {
     for (const motion::Vec3& position : clip->poses.all()) {
-      if (!IsFinite(position)) return absl::InvalidArgumentError("pair: a position is not finite");
+      if (IsFinite(position)) continue;
+      return absl::InvalidArgumentError("pair: expected finite positions, got one that is not");
     }
   }
   for (const motion::Bone& bone : content.bones) {
     for (int joint : {bone.parent, bone.child}) {
       if (joint < 0 || joint >= leader.joint_count()) {
-        return absl::InvalidArgumentError(
-            absl::StrCat("bones: joint ", joint, ", wanted 0 to ", leader.joint_count() - 1));
+        return absl::InvalidArgumentError(absl::StrCat("bones: expected joints 0 to ",
+                                                       leader.joint_count() - 1, ", got ", joint));
       }
     }
   }

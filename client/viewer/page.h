@@ -11,23 +11,23 @@
 
 namespace duet::client::viewer {
 
-// What a page shows.
+// The content of a page.
 struct PageContent {
   motion::ClipPair pair;  // same joints, rate and frames; metres, y up
   std::vector<motion::Bone> bones;
   std::string title;
   std::string subtitle;
-  // Class weights over time; one keyframe for weights that never change, none to show no weights.
+  // Class weights over time; one keyframe for constant weights, none to hide the weights.
   std::vector<WeightKeyframe> weights;
-  // The same as a binary glTF file, for the page to hand out; empty for none.
+  // The pair as a binary glTF file that the page offers for download; empty for none.
   std::string glb;
 };
 
-// A self-contained HTML page that plays both characters in three dimensions: nothing is fetched,
-// and it works from a file. About 0.9 MB, of which three.js is most, and `glb` as text.
+// Returns a self-contained HTML page that plays both characters in 3D. It fetches nothing and works
+// from a file. Its size is about 0.9 MB, mostly three.js, plus `glb` as base64.
 //
-// Errors: INVALID_ARGUMENT when the two characters do not fit together, a bone has no such joint,
-//         there is no frame, or a position is not finite.
+// Errors: INVALID_ARGUMENT if leader and follower differ in joints, frames or rate, a bone names an
+//         unknown joint, there is no frame, or a position is not finite.
 absl::StatusOr<std::string> RenderPage(const PageContent& content);
 
 }  // namespace duet::client::viewer

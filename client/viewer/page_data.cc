@@ -9,7 +9,7 @@
 namespace duet::client::viewer {
 namespace {
 
-// Every class that any keyframe names, in the order of first mention.
+// All classes in the keyframes, in the order of their first occurrence.
 std::vector<std::string> Classes(const std::vector<WeightKeyframe>& keyframes) {
   std::vector<std::string> classes;
   for (const WeightKeyframe& keyframe : keyframes) {
@@ -22,7 +22,7 @@ std::vector<std::string> Classes(const std::vector<WeightKeyframe>& keyframes) {
   return classes;
 }
 
-// One weight for each class; a class that a keyframe leaves out weighs 0, as on the server.
+// One weight per class. A class that a keyframe omits has weight 0, as on the server.
 nlohmann::json WeightsJson(const WeightKeyframe& keyframe,
                            const std::vector<std::string>& classes) {
   std::vector<float> values(classes.size(), 0.0f);

@@ -7,7 +7,7 @@
 
 namespace duet::client::viewer {
 
-// The page's data as JSON that is safe inside <script>, whatever the names in it hold:
+// Returns the page's data as JSON that is safe inside <script> for any names:
 //   {title, subtitle, joints [J], bones [[parent, child]], frameRate, frames, classes [C],
 //    keyframes [{frame, weights [C]}], leader, follower}
 // with positions [frames, J, 3] as base64 of little-endian float32.

@@ -8,7 +8,7 @@
 #include "absl/strings/str_replace.h"
 #include "nlohmann/json.hpp"
 
-// Linked in by duet_embed_file.
+// Embedded by duet_embed_file.
 extern "C" {
 extern const char duet_page_style[], duet_page_style_end[];
 extern const char duet_page_three[], duet_page_three_end[];
@@ -40,8 +40,7 @@ void AppendLittleEndian(float value, std::string* bytes) {
 }  // namespace
 
 std::string FillPage(const PageParts& parts) {
-  // In one pass: text that was put in is not searched again, so that a title with "{{DATA}}" in it
-  // stays a title.
+  // One pass: inserted text is not searched again, so a title that contains "{{DATA}}" is harmless.
   return absl::StrReplaceAll(
       parts.index, {{"{{TITLE}}", EscapeHtml(parts.title)},
                     {"{{STYLE}}", parts.style},
@@ -53,8 +52,8 @@ std::string FillPage(const PageParts& parts) {
 }
 
 std::string SafeJson(const nlohmann::json& data) {
-  // "</script>" inside a string would end the script. In JSON "<" stands inside strings alone,
-  // where it may be written as an escape.
+  // "</script>" inside a string would end the script. In JSON, "<" occurs only inside strings,
+  // where it can be escaped.
   return absl::StrReplaceAll(data.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace),
                              {{"<", "\\u003c"}});
 }

@@ -7,11 +7,11 @@
 #include "model/motion/clip.h"
 #include "nlohmann/json_fwd.hpp"
 
-// What both pages are put together from.
+// The parts that both pages share.
 
 namespace duet::client::viewer {
 
-// "{{TITLE}}", "{{STYLE}}", "{{DATA}}", "{{SCRIPT}}" of a page and three.js filled in.
+// Values of the placeholders "{{TITLE}}", "{{STYLE}}", "{{DATA}}" and "{{SCRIPT}}" of a page.
 struct PageParts {
   absl::string_view index;
   std::string title;
@@ -21,18 +21,18 @@ struct PageParts {
 };
 std::string FillPage(const PageParts& parts);
 
-// The text of embedded files.
+// Returns the text of an embedded file.
 inline absl::string_view Embedded(const char* begin, const char* end) {
   return {begin, static_cast<size_t>(end - begin)};
 }
 
-// JSON that is safe inside <script>, whatever the names in it hold.
+// Serialises `data` as JSON that is safe inside <script> for any names.
 std::string SafeJson(const nlohmann::json& data);
 
-// Positions [frames, joints, 3] as base64 of little-endian float32.
+// Encodes positions [frames, joints, 3] as base64 of little-endian float32.
 std::string EncodePositions(const motion::Clip& clip);
 
-// Scripts that both pages share: what moves, how it looks, what time it is.
+// Scripts that both pages share: motion, scenery, bodies, playback, input.
 std::string SharedScript();
 absl::string_view SharedStyle();
 

@@ -1,4 +1,4 @@
-"""Blender's add-on on a scene of its own: rate, unit, first frame and axes unlike Duet's."""
+"""The Blender add-on on a scene whose rate, unit, first frame and axes differ from Duet's."""
 
 import json
 import pathlib
@@ -29,11 +29,11 @@ class BlenderTest(unittest.TestCase):
         assert done.returncode == 0, done.stdout + done.stderr
         cls.state = json.loads((cls.folder / "state.json").read_text(encoding="utf-8"))
 
-    def test_sliders_are_those_of_the_server(self):
+    def test_sliders_match_the_servers_classes(self):
         self.assertEqual(sorted(self.state["known"]), sorted(tools.CLASSES))
         self.assertEqual(sorted(self.state["asked"]), sorted(tools.CLASSES))
 
-    def test_what_cannot_be_done_is_said(self):
+    def test_errors_are_reported(self):
         self.assertTrue(self.state["refused_without_leader"])
         self.assertEqual([self.state["still"], self.state["missing"]], [["CANCELLED"]] * 2)
         zero, program, joints = self.state["failures"]
@@ -46,10 +46,10 @@ class BlenderTest(unittest.TestCase):
         self.assertEqual(self.state["again"], ["FINISHED"])
         self.assertEqual(self.state["after_two"], ["Duet follower", "Rig"])
 
-    def test_a_kept_answer_stays_as_a_take(self):
+    def test_kept_answer_becomes_a_take(self):
         self.assertEqual(self.state["after_take"], ["Duet follower", "Duet take 1 (seed 0)", "Rig"])
 
-    def test_bones_can_be_mapped_and_the_leaders_rig_taken(self):
+    def test_mapped_bones_and_the_leaders_rig_are_used(self):
         self.assertEqual(self.state["unmapped"], ["CANCELLED"])
         self.assertEqual(self.state["own_rig"], ["FINISHED"])
         self.assertEqual(self.state["own_bones"], self.state["leaders_bones"])
@@ -61,13 +61,13 @@ class BlenderTest(unittest.TestCase):
         self.assertEqual(len(self.state["joints"]), 15)
         self.assertTrue(self.state["tails"])
 
-    def test_a_follower_comes_with_body_and_action(self):
+    def test_follower_has_body_and_action(self):
         self.assertEqual(self.state["finished"], ["FINISHED"])
         self.assertEqual(self.state["bones"], 21)
         self.assertGreater(self.state["vertices"], 1000)
         self.assertIn("Duet follower", self.state["materials"])  # in a colour of their own
 
-    def test_labels_with_key_frames_are_sent_as_they_change(self):
+    def test_animated_labels_are_sent_as_keyframes(self):
         flags = self.state["flags"]
         self.assertEqual(set(flags[::2]), {"--keyframe"})
         keys = [flag.split(":") for flag in flags[1::2]]
@@ -84,17 +84,17 @@ class BlenderTest(unittest.TestCase):
         self.assertAlmostEqual(y, 1.1, delta=0.15)
         self.assertAlmostEqual(z, 0, delta=1e-3)
 
-    def test_the_scene_stays_as_it_was(self):
+    def test_scene_settings_do_not_change(self):
         self.assertEqual(self.state["frame"], 20)
         self.assertEqual(self.state["fps"], 24)
         self.assertEqual(self.state["range"], [11, 50])
 
-    def test_the_action_lies_where_the_leaders_frames_do(self):
+    def test_action_covers_the_leaders_frames(self):
         first, last = self.state["keys"]
         self.assertAlmostEqual(first, 11, delta=0.01)
         self.assertAlmostEqual(last, 50, delta=0.01)
 
-    def test_the_follower_stands_in_the_scenes_unit_where_the_empty_is(self):
+    def test_follower_starts_at_the_empty_in_the_scenes_unit(self):
         x, y, z = self.state["torso"][0]
         self.assertAlmostEqual(x / UNITS_PER_METRE, 1.2, delta=0.3)
         self.assertAlmostEqual(y / UNITS_PER_METRE, 0, delta=0.3)

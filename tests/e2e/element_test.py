@@ -112,7 +112,7 @@ class ElementTest(unittest.TestCase):
     def frame(self, page):
         return page.evaluate("document.querySelector('duet-motion').frame")
 
-    def test_two_on_one_page_of_a_file_with_the_data_inside(self):
+    def test_two_elements_with_inline_data_work_from_a_file(self):
         page = self.open(f"<duet-motion paused>{INLINE}</duet-motion>" * 2, over="file",
                          width=500, height=620)
         self.sees(page, bottom=0.48)
@@ -121,26 +121,26 @@ class ElementTest(unittest.TestCase):
                 for event in page.events("Network.requestWillBeSent")}
         self.assertLessEqual(urls, {f"{self.pages}.html", "events.js", "duet-motion.js"})
 
-    def test_the_script_may_come_first(self):
+    def test_script_may_precede_the_element(self):
         page = self.open('<script src="duet-motion.js"></script>'
                          f'<duet-motion paused>{INLINE}</duet-motion>', over="file")
         self.sees(page)
 
-    def test_fetches_what_src_says_and_leaves_no_name_behind(self):
+    def test_fetches_only_src_and_defines_no_global_names(self):
         page = self.open('<duet-motion src="pair.json" paused></duet-motion>')
         self.sees(page)
         self.assertEqual(self.told(page, "ready"), [[0, "ready", {"frames": FRAMES, "frameRate": 30}]])
         self.assertEqual(page.evaluate("[typeof THREE, typeof Motion, typeof Stage]"),
                          ["undefined"] * 3)
 
-    def test_another_src_shows_another_motion(self):
+    def test_changing_src_replaces_the_motion(self):
         page = self.open('<duet-motion src="pair.json" paused></duet-motion>')
         page.evaluate("elements[0].setAttribute('src', 'alone.json')")
         page.wait_until("window.told.filter(([, kind]) => kind === 'ready').length === 2")
         page.next_frame()
         self.sees(page, follower=False)
 
-    def test_one_that_was_taken_out_and_put_back_shows_again(self):
+    def test_element_shows_again_after_reinsertion(self):
         page = self.open('<duet-motion src="pair.json" paused frame="7"></duet-motion>')
         page.evaluate("elements[0].remove()")
         page.next_frame()
@@ -151,7 +151,7 @@ class ElementTest(unittest.TestCase):
         self.sees(page)
         self.assertEqual(self.frame(page), 7)
 
-    def test_a_script_may_give_the_motion_and_hide_a_person(self):
+    def test_script_sets_the_motion_and_hides_a_person(self):
         page = self.open(f"<duet-motion paused>{INLINE}</duet-motion>", over="file")
         page.evaluate("elements[0].show('leader', false)")
         page.next_frame()
@@ -160,7 +160,7 @@ class ElementTest(unittest.TestCase):
         page.next_frame()
         self.sees(page, follower=False)
 
-    def test_attributes_say_when_and_from_where(self):
+    def test_attributes_set_frame_speed_and_view(self):
         page = self.open('<duet-motion src="pair.json" paused frame="12" view="top" speed="2" once>'
                          '</duet-motion>')
         self.assertEqual(self.frame(page), 12)
@@ -174,7 +174,7 @@ class ElementTest(unittest.TestCase):
         self.assertEqual([kind for _, kind, _ in self.told(page, "play", "pause")],
                          ["play", "pause"])
 
-    def test_keys_are_for_the_one_that_has_the_focus(self):
+    def test_keys_control_only_the_focused_element(self):
         page = self.open('<duet-motion src="pair.json" paused></duet-motion>' * 2)
         page.press("ArrowRight")
         self.assertEqual(self.frame(page), 0)
@@ -188,7 +188,7 @@ class ElementTest(unittest.TestCase):
         page.press(" ")
         self.assertEqual(page.evaluate("elements.map((one) => one.playing)"), [True, False])
 
-    def test_its_controls_play_and_seek(self):
+    def test_controls_play_and_seek(self):
         page = self.open('<duet-motion src="pair.json" paused controls></duet-motion>')
         inside = "elements[0].shadowRoot.querySelector('[part={}]')"
         x, y = page.evaluate(f"(() => {{ const box = {inside.format('time')}.getBoundingClientRect();"
@@ -202,7 +202,7 @@ class ElementTest(unittest.TestCase):
         self.assertEqual(page.evaluate("elements[0].shadowRoot.querySelector('output').textContent")
                          [-8:], "/ 1.97 s")
 
-    def test_draws_as_large_as_it_is(self):
+    def test_canvas_has_the_elements_size(self):
         page = self.open('<duet-motion src="pair.json" paused></duet-motion>')
         page.evaluate("elements[0].style.width = '300px'")
         page.wait_until("elements[0].canvas.width === 300")
@@ -232,7 +232,7 @@ class ElementTest(unittest.TestCase):
         wheel()
         page.wait_until(f"{away} > {before} + 0.01")
 
-    def test_does_not_draw_where_nobody_sees_it(self):
+    def test_does_not_draw_while_invisible(self):
         page = self.open('<duet-motion src="pair.json"></duet-motion><pre>' + "\n" * 200 + "</pre>")
         page.evaluate("window.scrollTo(0, 100000)")
         page.wait_until("!elements[0].onScreen")
@@ -241,9 +241,9 @@ class ElementTest(unittest.TestCase):
         page.next_frame()
         self.assertEqual(page.evaluate("elements[0].draws"), drawn)
 
-    def test_says_what_it_cannot_show(self):
+    def test_load_errors_are_reported(self):
         for source, why in (("nowhere.json", "404"), ("broken.json", "JSON"),
-                            ("sunk.json", "came metres, z-up, wanted metres, y-up")):
+                            ("sunk.json", "expected metres, y-up, got metres, z-up")):
             page = self.open(f'<duet-motion src="{source}"></duet-motion>')
             ((_, _, detail),) = self.told(page, "error")
             self.assertIn(source, detail["message"])
@@ -251,7 +251,7 @@ class ElementTest(unittest.TestCase):
             self.assertEqual(page.evaluate("elements[0].shadowRoot.querySelector('[role=alert]')"
                                            ".textContent"), detail["message"])
 
-    def test_has_a_name_and_a_role_for_those_who_hear_it(self):
+    def test_has_an_accessible_name_and_role(self):
         page = self.open('<duet-motion src="pair.json" paused></duet-motion>'
                          '<duet-motion src="pair.json" paused aria-label="A hug"></duet-motion>')
         self.assertEqual(page.evaluate(

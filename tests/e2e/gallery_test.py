@@ -57,7 +57,7 @@ class GalleryTest(unittest.TestCase):
         picture = self.open("#frame=20&paused", width=400, height=760).picture()
         self.assertGreater(picture.count(tools.is_leader_orange, left=0, right=1), 200)
 
-    def test_curves_go_with_the_time_line(self):
+    def test_curves_follow_the_timeline(self):
         page = self.open("#frame=30&paused", width=1000, height=640)
         titles = page.evaluate(
             "[...document.querySelectorAll('.chart b')].map((title) => title.textContent)")
@@ -73,20 +73,20 @@ class GalleryTest(unittest.TestCase):
         })()""")
         self.assertAlmostEqual(line, thumb, delta=1.5)
 
-    def test_a_click_into_the_curves_goes_there(self):
+    def test_click_in_the_curves_seeks(self):
         page = self.open("", width=1000, height=640)
         page.click("#charts")
         last = int(page.evaluate("document.getElementById('scrub').max"))
         self.assertFalse(page.evaluate("Boolean(document.querySelector('#play.playing'))"))
         self.assertAlmostEqual(int(page.text("#frame")), last / 2, delta=2)
 
-    def test_keys_move_through_time(self):
+    def test_keys_step_through_frames(self):
         page = self.open("#paused")
         for key, frame in (("ArrowRight", "1"), ("Home", "0")):
             page.press(key)
             self.assertEqual(page.text("#frame"), frame)
 
-    def test_people_can_be_hidden_everywhere(self):
+    def test_hiding_a_person_applies_to_every_cell(self):
         page = self.open("#frame=20&paused", width=1000, height=640)
         page.click("[data-person=leader]")
         picture = page.picture()
@@ -94,7 +94,7 @@ class GalleryTest(unittest.TestCase):
         self.assertEqual(picture.count(tools.is_leader_orange, **everywhere), 0)
         self.assertGreater(picture.count(tools.is_follower_teal, **everywhere), 300)
 
-    def test_a_comparison_has_its_figures_beside_it(self):
+    def test_comparison_shows_its_values(self):
         page = self.open("#paused", self.compared, width=1200, height=800)
         rows = page.evaluate("[...document.querySelectorAll('#figures tr')]"
                              ".map((row) => [...row.cells].map((cell) => cell.textContent))")
@@ -105,7 +105,7 @@ class GalleryTest(unittest.TestCase):
         self.assertEqual(lean[1], lean[2])
         self.assertEqual(page.text(".chart b"), "Speed of the follower")
 
-    def test_a_phone_shows_the_curves_whole(self):
+    def test_curves_fit_on_a_phone(self):
         page = self.open("#paused", self.compared, width=390, height=844)
         for part in (".chart", ".chart header > span", "#scrub", "#speeds", "#figures"):
             left, right = page.evaluate(
@@ -115,7 +115,7 @@ class GalleryTest(unittest.TestCase):
             self.assertGreaterEqual(left, 0, part)
             self.assertLessEqual(right, 390, part)
 
-    def test_a_phone_has_every_control_large_enough_for_a_finger(self):
+    def test_controls_on_a_phone_are_large_enough(self):
         for file in (self.file, self.compared):
             page = self.open("#paused", file, width=390, height=844)
             sizes = page.evaluate("""Object.fromEntries(
@@ -130,7 +130,7 @@ class GalleryTest(unittest.TestCase):
                 self.assertGreaterEqual(min(width, height), 44, name)
                 self.assertLessEqual(right, 390, name)
 
-    def test_soles_are_on_the_floor_however_high_the_ankles_are(self):
+    def test_soles_touch_the_floor_for_any_ankle_height(self):
         page = self.open("#paused")
         for ankle in (0.02, 0.06, 0.12):
             lowest = page.evaluate(f"""(() => {{

@@ -95,14 +95,14 @@ class GatewayTest(unittest.TestCase):
                      "//etc/passwd", "/samples/", "/page/", "/samples/keyframes/hug.txt"):
             self.assertEqual(self.get(path)[0], 404, path)
 
-    def test_ambiguous_requests_have_one_answer_and_end_their_connection(self):
+    def test_ambiguous_requests_close_the_connection(self):
         for name, data in AMBIGUOUS.items():
             with self.subTest(name):
                 [(status, _, body)] = ask_raw(self.gateway.port, data + HIDDEN)
                 self.assertIn(status, (400, 411, 413))
                 self.assertRegex(message_of(body), r"^[\w-]+: ")
 
-    def test_a_body_that_is_not_used_is_not_taken_for_a_request(self):
+    def test_unused_body_is_not_parsed_as_a_request(self):
         for head, expected in ((b"POST /nowhere", 404), (b"POST /", 405), (b"PUT /read", 400),
                                (b"POST /write?format=exe", 400)):
             with self.subTest(head=head):
@@ -111,7 +111,7 @@ class GatewayTest(unittest.TestCase):
                 self.assertEqual(found[0][0], expected)
                 self.assertNotIn(b"samples", b"".join(body for _, _, body in found))
 
-    def test_every_refusal_is_json_that_names_what_is_wrong(self):
+    def test_errors_are_json_with_the_field(self):
         call = f"{CALLS}/ListModels"
         deep = b"[" * MEBIBYTE
         for data, status, words in (
@@ -169,7 +169,7 @@ class GatewayTest(unittest.TestCase):
                     self.assertEqual(found[0][0], 200)
         self.assertGreater(len(self.read()["leader"]), 0)
 
-    def test_refusals_of_the_server_keep_their_details(self):
+    def test_server_errors_keep_their_details(self):
         message = synthesis_pb2.GetModelRequest()
         message.model.name = "nobody"
         body = self.call("GetModel", message.SerializeToString())
@@ -181,7 +181,7 @@ class GatewayTest(unittest.TestCase):
         """What a call is answered with, all of it."""
         return self.ask(f"{CALLS}/{method}", framed(message), gateway, Content_Type=GRPC_WEB)[2]
 
-    def test_a_page_of_another_name_is_refused_unless_it_is_allowed(self):
+    def test_unknown_hosts_and_origins_are_rejected(self):
         for host in ("elsewhere.test", "localhost.elsewhere.test", "127.0.0.1.nip.test", "[::2]",
                      "169.254.169.254", ""):
             self.assertEqual(self.get("/", host=host)[0], 421, host)
@@ -195,7 +195,7 @@ class GatewayTest(unittest.TestCase):
             self.assertEqual(self.ask("/read?name=x.bvh", b"x", studio, Host="studio.example",
                                       Origin=origin)[0], expected, origin)
 
-    def test_slow_bodies_stop_nobody(self):
+    def test_slow_bodies_do_not_block_others(self):
         with contextlib.ExitStack() as stack:
             for path in ("/read?name=a.bvh", "/write?format=glb", "/write_on_rig",
                          f"{CALLS}/Synthesize") * 10:
@@ -239,7 +239,7 @@ class GatewayTest(unittest.TestCase):
             self.read(gateway)
             self.assertEqual(os.listdir(folder), [])
 
-    def test_what_comes_too_slowly_is_ended(self):
+    def test_slow_requests_time_out(self):
         gateway = self.started(bounds="serving.HEADER_SECONDS = 0.3; uploads.BODY_SECONDS = 0.3; "
                                       "serving.IDLE_SECONDS = 0.3")
         for data in (b"", b"GET / HTT", b"GET / HTTP/1.1\r\nHost: localhost\r\nX: y"):
@@ -254,7 +254,7 @@ class GatewayTest(unittest.TestCase):
                 gateway.port, b"GET /page.css HTTP/1.1\r\nHost: localhost\r\n\r\n" + rest)
             self.assertEqual(status, 200)
 
-    def test_a_reader_that_stands_still_is_cut_off(self):
+    def test_stalled_reader_is_disconnected(self):
         gateway = self.started(bounds="serving.REQUEST_SECONDS = 0.5")
         with socket.socket() as reader:
             reader.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
@@ -265,14 +265,14 @@ class GatewayTest(unittest.TestCase):
                              "the connection of a reader that stands still to be cut off")
         self.assertEqual(self.get("/", gateway)[0], 200)
 
-    def test_idle_connections_make_room_for_others(self):
+    def test_idle_connections_are_closed_for_new_ones(self):
         gateway = self.started(bounds="serving.MAX_CONNECTIONS = 8")
         with contextlib.ExitStack() as stack:
             for _ in range(40):
                 stack.enter_context(connect(gateway.port))
             self.read(gateway)
 
-    def test_a_program_that_takes_too_much_is_ended(self):
+    def test_program_is_limited_in_time_and_memory(self):
         bounds = ["conversions.PROGRAM_SECONDS = 0"]
         if not tools.SANITIZED:  # a program with AddressSanitizer does not even start
             bounds.append("conversions.PROGRAM_BYTES = 2**16")
@@ -284,7 +284,7 @@ class GatewayTest(unittest.TestCase):
                 self.assertEqual(status, 422)
                 self.assertRegex(message_of(body), "^file: expected one that ")
 
-    def test_files_are_read_and_written_as_the_program_does(self):
+    def test_files_are_converted_like_the_programs(self):
         motion = self.read()
         pair = json.dumps({**motion, "follower": motion["leader"]}).encode()
         for kind in ("glb", "csv", "json", "usda", "html"):
@@ -313,7 +313,7 @@ class GatewayTest(unittest.TestCase):
                              'attachment; filename="hug_seed1.follower.bvh"')
             self.assertEqual(joints_of(body), joints_of(leader))
 
-    def test_settings_name_no_file_of_this_machine(self):
+    def test_settings_cannot_name_local_files(self):
         leader = tools.sample("hug").read_bytes()
         for start in ("/etc/passwd", "0/leader.bvh", "1,2,/etc/passwd"):
             head = {"name": "x", "format": "bvh", "label": ["hug=1"], "follower_start": start,
@@ -322,7 +322,7 @@ class GatewayTest(unittest.TestCase):
             self.assertEqual(status, 400)
             self.assertIn("follower_start: expected X,Y,Z", message_of(body))
 
-    def test_no_message_shows_where_the_gateway_works(self):
+    def test_messages_do_not_reveal_paths(self):
         for path, body in (("/read?name=junk.bvh", b"junk"), ("/write?format=glb", b"{}"),
                            ("/write?format=html", b"{}"), ("/write_on_rig", json.dumps(
                                {"label": ["hug=1"], "format": "bvh",
@@ -332,7 +332,7 @@ class GatewayTest(unittest.TestCase):
             self.assertNotIn(tempfile.gettempdir(), message_of(body))
             self.assertNotIn("duet-gateway", message_of(body))
 
-    def test_a_server_that_is_killed_ends_its_calls_with_a_status(self):
+    def test_killed_server_ends_calls_with_a_status(self):
         port = tools.free_port()
         server = tools.Server(port=port)
         gateway = Gateway(server.address)
@@ -368,7 +368,7 @@ class GatewayTest(unittest.TestCase):
             with visitor.makefile("rb") as answer:
                 self.assertIn(b"grpc-status: 0\r\n", answer.read())
 
-    def test_it_stops_at_a_signal_and_says_what_is_wrong_at_start(self):
+    def test_stops_at_a_signal_and_reports_invalid_options(self):
         gateway = Gateway(self.server.address)
         with connect(gateway.port) as idle:
             self.assertEqual(gateway.stop(), 0)

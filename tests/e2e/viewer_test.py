@@ -45,7 +45,7 @@ class ViewerTest(unittest.TestCase):
         copy.write_text(html.replace(old, new), encoding="utf-8")
         return copy
 
-    def test_plays_when_opened(self):
+    def test_page_plays_when_opened(self):
         page = self.open_good()
         self.assertEqual(page.state()["frames"], str(FRAMES))
         self.assertGreater(int(page.state()["triangles"]), 10_000)
@@ -58,7 +58,7 @@ class ViewerTest(unittest.TestCase):
         urls = [event["request"]["url"] for event in page.events("Network.requestWillBeSent")]
         self.assertEqual(urls, [self.file.as_uri()])
 
-    def test_a_page_that_would_fetch_is_stopped(self):
+    def test_policy_blocks_a_page_that_fetches(self):
         page = self.open("#paused", self.spoilt("\nstart();\n", """
             document.addEventListener('securitypolicyviolation', (event) => {
               document.documentElement.dataset.violation = event.effectiveDirective;
@@ -68,7 +68,7 @@ class ViewerTest(unittest.TestCase):
             """))
         page.wait_until("document.documentElement.dataset.violation === 'img-src'")
 
-    def test_opens_at_a_frame(self):
+    def test_address_selects_the_first_frame(self):
         for suffix in ("#frame=7&paused", "?frame=7&paused"):
             page = self.open_good(suffix)
             self.assertEqual(page.state()["frame"], "7")
@@ -76,7 +76,7 @@ class ViewerTest(unittest.TestCase):
         self.assertEqual(self.open_good("#frame=1000&paused").state()["frame"], str(FRAMES - 1))
         self.assertEqual(self.open_good("#frame=x&paused").state()["frame"], "0")
 
-    def test_measures_when_asked(self):
+    def test_measure_button_shows_contact_and_distance(self):
         page = self.open_good("#paused")
         self.assertEqual(page.text("#measures"), "")
         page.press("m")
@@ -85,7 +85,7 @@ class ViewerTest(unittest.TestCase):
         page.click("#measure")
         self.assertTrue(page.evaluate("document.getElementById('measures').hidden"))
 
-    def test_hands_out_a_picture_and_the_motion(self):
+    def test_saves_png_and_glb(self):
         page = self.open_good("#paused")
         page.click("#save-picture")
         page.wait_until("(document.documentElement.dataset.saved || '').includes('.png')")
@@ -93,7 +93,7 @@ class ViewerTest(unittest.TestCase):
         page.click("#save-motion")
         self.assertRegex(page.state()["saved"], r"\.glb 12$")
 
-    def test_records_a_film_of_one_run(self):
+    def test_saves_a_film_of_one_run(self):
         page = self.open_good("#frame=5&paused", width=320, height=240)
         page.evaluate("document.querySelector('[data-speed=\"2\"]').click()")
         page.evaluate("document.getElementById('save-film').click()")
@@ -101,7 +101,7 @@ class ViewerTest(unittest.TestCase):
         page.wait_until("(document.documentElement.dataset.saved || '').includes('.webm')")
         self.assertEqual(page.state()["frame"], str(FRAMES - 1))
 
-    def test_makes_an_animated_picture_of_one_run(self):
+    def test_saves_a_gif_of_one_run(self):
         page = self.open_good("#frame=5&paused&view=front", width=600, height=400)
         # A run of a third of a second, which is soon drawn.
         page.evaluate("document.getElementById('stage').player.speed = 9")
@@ -137,7 +137,7 @@ class ViewerTest(unittest.TestCase):
         self.assertLess(sum(off) / len(off), 5)
         self.assertLess(sum(value > 40 for value in off), len(off) / 200)
 
-    def test_the_floor_is_the_worlds_even_where_everybody_floats(self):
+    def test_floor_is_the_worlds_for_floating_characters(self):
         page = self.open_good("#paused")
         heights = "(() => { const motion = new Motion(JSON.parse(document.getElementById('data')" \
                   ".textContent)); const rise = (by) => { for (const positions of" \
@@ -150,7 +150,7 @@ class ViewerTest(unittest.TestCase):
         self.assertFalse(sunk["ofWorld"])
         self.assertAlmostEqual(sunk["height"], 0.3 - 2 - 0.06, delta=0.01)
 
-    def test_draws_only_what_changes(self):
+    def test_draws_only_after_a_change(self):
         page = self.open_good("#paused")
         drawn = page.state()["draws"]
         page.next_frame()
@@ -170,7 +170,7 @@ class ViewerTest(unittest.TestCase):
         self.assertGreater(picture.count(tools.is_leader_orange, left=0, right=1), 300)
         self.assertGreater(picture.count(tools.is_follower_teal, left=0, right=1), 300)
 
-    def test_keys_move_through_time(self):
+    def test_keys_step_through_frames(self):
         page = self.open_good("#paused")
         for key, frame in (("ArrowRight", 1), ("ArrowRight", 2), ("ArrowLeft", 1),
                            ("End", FRAMES - 1), ("ArrowRight", FRAMES - 1), ("Home", 0)):
@@ -191,7 +191,7 @@ class ViewerTest(unittest.TestCase):
         page.wait_until("!document.querySelector('#play.playing')")
         self.assertEqual(page.text("#frame"), str(FRAMES - 1))
 
-    def test_scrubbing_stops_and_shows_the_frame(self):
+    def test_scrubbing_pauses_at_the_frame(self):
         page = self.open_good()
         page.click("#scrub")
         self.assertFalse(page.evaluate("Boolean(document.querySelector('#play.playing'))"))
@@ -206,7 +206,7 @@ class ViewerTest(unittest.TestCase):
         self.assertEqual(page.text(".weight .value"), "−2.00")
         self.assertEqual(page.evaluate("document.querySelectorAll('#marks i').length"), 2)
 
-    def test_names_are_text(self):
+    def test_names_are_escaped(self):
         page = self.open_good("#paused")
         self.assertEqual(page.text("#title"), 'two "people" & a <test>')
 
@@ -219,7 +219,7 @@ class ViewerTest(unittest.TestCase):
         page.click("[data-person=leader]")
         self.assertGreater(page.picture().count(tools.is_leader_orange), 300)
 
-    def test_the_camera_orbits_and_comes_back(self):
+    def test_camera_orbits_and_resets(self):
         page = self.open_good("#frame=10&paused", width=900)
         def orange():
             return page.picture().count(tools.is_leader_orange)
@@ -233,17 +233,17 @@ class ViewerTest(unittest.TestCase):
         # What is left of the orbit's momentum may still turn the camera a little.
         self.assertAlmostEqual(orange(), before, delta=before / 4)
 
-    def test_an_error_is_said(self):
+    def test_script_error_is_displayed(self):
         page = self.open(file=self.spoilt("\nstart();\n", "\nthrow new Error('boom');\n"))
         self.assertEqual(page.state()["state"], "failed")
         self.assertIn("boom", page.text("#failure"))
 
-    def test_data_that_does_not_fit_is_an_error(self):
+    def test_wrong_number_of_values_is_an_error(self):
         page = self.open(file=self.spoilt('"frames":90', '"frames":91'))
         self.assertEqual(page.state()["state"], "failed")
-        self.assertIn("the leader has 4050 values, wanted 91", page.text("#failure"))
+        self.assertIn("leader: expected 91", page.text("#failure"))
 
-    def test_a_browser_without_webgl_is_told(self):
+    def test_missing_webgl_is_reported(self):
         page = self.open(file=self.spoilt(
             "\nstart();\n", "\nHTMLCanvasElement.prototype.getContext = () => null;\nstart();\n"))
         self.assertEqual(page.state()["state"], "failed")

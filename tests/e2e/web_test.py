@@ -99,7 +99,7 @@ class WebTest(unittest.TestCase):
             return client.synthesize(duet.read_motion(tools.sample("hug")),
                                      **settings).follower.positions
 
-    def test_a_dropped_file_is_answered_only_when_react_is_pressed(self):
+    def test_dropped_file_is_answered_only_after_react(self):
         page = self.open_still()
         self.drop(page)
         self.assertIn("91 frames at 30 Hz", page.text("#leader-name"))
@@ -120,7 +120,7 @@ class WebTest(unittest.TestCase):
         self.press(page, "another")
         np.testing.assert_allclose(self.shown(page), self.expected({"hug": 1}, seed=1), atol=1e-5)
 
-    def test_four_answers_are_side_by_side_and_one_is_kept(self):
+    def test_show_four_and_keep_one(self):
         page = self.open_still(width=1000, height=700)
         self.drop(page)
         self.label(page, "hug", 1)
@@ -143,7 +143,7 @@ class WebTest(unittest.TestCase):
         page.click("#back-to-four")
         self.assertFalse(page.evaluate("element('four').hidden"))
 
-    def test_a_link_and_a_reload_bring_everything_back(self):
+    def test_link_and_reload_restore_everything(self):
         page = self.open_still()
         self.drop(page)
         self.label(page, "hug", 1)
@@ -171,7 +171,7 @@ class WebTest(unittest.TestCase):
         self.react(stranger)
         np.testing.assert_allclose(self.shown(stranger), before, atol=1e-6)
 
-    def test_a_link_to_a_sample_opens_it_and_odd_links_do_no_harm(self):
+    def test_link_opens_a_sample_and_invalid_links_are_harmless(self):
         page = self.open_still("#leader=hug.bvh&labels=hug:1,push:-0.25&seed=3")
         self.react(page)
         wanted = self.expected({"hug": 1, "push": -0.25}, seed=3)
@@ -184,7 +184,7 @@ class WebTest(unittest.TestCase):
                 self.assertLessEqual(page.evaluate("settings.variety"), 2)
                 self.assertRegex(page.evaluate("settings.model"), "^sbu@")
 
-    def test_labels_that_change_over_time_and_directions_reach_the_server(self):
+    def test_keyframes_and_direction_are_sent(self):
         page = self.open_still()
         self.drop(page)
         for frame, weights in ((0, {"push": 1}), (60, {"push": 0, "hug": 1})):
@@ -202,7 +202,7 @@ class WebTest(unittest.TestCase):
         wanted = self.expected(keyframes=frames, partner_direction=(0, 0, 1), clean_up=False)
         np.testing.assert_allclose(self.shown(page), wanted, atol=1e-5)
 
-    def test_both_are_seen(self):
+    def test_both_people_are_visible(self):
         for width, height in ((1000, 700), (375, 720)):
             with self.subTest(width=width):
                 page = self.open_still("#leader=hug.bvh&labels=hug:1", width=width, height=height)
@@ -217,7 +217,7 @@ class WebTest(unittest.TestCase):
                 self.assertGreater(picture.count(tools.is_follower_teal, **stage), 300)
                 self.assertTrue(page.evaluate("element('empty').hidden"))
 
-    def test_a_phone_and_a_keyboard_reach_everything(self):
+    def test_every_control_works_on_a_phone_and_by_keyboard(self):
         page = self.open_still("#leader=hug.bvh&labels=hug:1", width=375, height=720)
         page.evaluate("for (const part of document.querySelectorAll('details')) part.open = true")
         self.press(page, "try-four")
@@ -235,14 +235,14 @@ class WebTest(unittest.TestCase):
         self.assertLessEqual({"file", "react", "try-four", "play", "scrub", "Keep seed 3", "share",
                               "rig-download"} - reached, set())
 
-    def test_it_plays_unless_told_not_to(self):
+    def test_plays_until_paused(self):
         page = self.open(width=500, height=500)
         self.drop(page)
         page.wait_until("theatre.player && theatre.player.frame > 0")
         page.click("#play")
         self.assertEqual(page.text("#play"), "Play")
 
-    def test_what_is_downloaded_is_what_was_seen_under_a_name_that_tells(self):
+    def test_downloads_match_the_view_and_are_named_after_the_settings(self):
         page = self.open_still("#leader=hug.bvh&labels=hug:1,push:0.5&seed=3&model=sbu@2")
         self.react(page)
         page.evaluate("""window.bodies = [];
@@ -271,7 +271,7 @@ class WebTest(unittest.TestCase):
         self.label(page, "hug", -1)
         self.assertEqual(page.evaluate("downloadName(state.takes[0])"), name)
 
-    def test_refusals_are_shown_in_the_words_of_who_refuses(self):
+    def test_errors_of_gateway_and_server_are_displayed(self):
         page = self.open_still()
         self.drop(page, name="junk.bvh", fetched="/page.css")
         self.assertRegex(page.text("#status"), r"^junk\.bvh:1: ")
@@ -285,7 +285,7 @@ class WebTest(unittest.TestCase):
         page.evaluate("react(1)")
         page.wait_until("element('status').textContent.startsWith('Follower starts at: ')")
 
-    def test_how_a_file_is_read_can_be_set(self):
+    def test_reading_settings_change_the_leader(self):
         page = self.open_still()
         self.drop(page)
         height = "Math.max(...state.leader.motion.positions)"
@@ -300,7 +300,7 @@ class WebTest(unittest.TestCase):
         page.wait_until("document.documentElement.dataset.failed === 'true'")
         self.assertIn("Nobody", page.text("#status"))
 
-    def test_the_pages_messages_are_those_of_the_contract(self):
+    def test_message_fields_match_the_proto_files(self):
         page = self.open()
         messages = page.evaluate("MESSAGES")
         self.assertIn("SynthesizeRequest", messages)

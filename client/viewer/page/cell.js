@@ -1,5 +1,5 @@
-// One motion of a gallery in its own scenery, and where that lies in the space that all cells
-// share: there the leader starts at the origin, and the follower is along +z.
+// One motion of a gallery in its own scenery, with its transform to the space that all cells share.
+// In that space the leader starts at the origin and the follower is along +z.
 class Cell {
   constructor(data, index, renderer) {
     this.name = data.name;
@@ -23,7 +23,7 @@ class Cell {
     return new THREE.Vector3().fromArray(this.motion.people.leader, at);
   }
 
-  // Answers to one leader, and takes of one place, keep their places to each other.
+  // Answers to one leader, and takes of one place, keep their relative positions.
   shareWorld(other) {
     const turned = Math.abs(Math.atan2(Math.sin(this.yaw - other.yaw), Math.cos(this.yaw - other.yaw)));
     const [mine, its] = [this.motion.facing(), other.motion.facing()];
@@ -45,7 +45,7 @@ class Cell {
     return box;
   }
 
-  // The pose at a moment; held after the end.
+  // Shows the pose at a time; holds the last one after the end.
   update(seconds) {
     const frame = Math.min(seconds * this.motion.frameRate, this.motion.frames - 1);
     for (const {figure} of Object.values(this.people)) figure.update(frame);

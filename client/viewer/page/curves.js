@@ -2,8 +2,8 @@ const CURVE_COLOURS = ['#e9eaed', '#e8795f', '#7fb069', '#b58bd6', '#e6c229', '#
                        '#8fd3c8', '#c49a6c', '#a3a9b5', '#d4e157', '#ff8a50'];
 const NOISE_FILTER_SECONDS = 0.1;
 
-// The mean speed of the answering person's joints in each frame, m/s, after a Gaussian filter as
-// duet compare has it: a capture's noise counts as movement otherwise.
+// The mean speed of the follower's joints in each frame, m/s, after the Gaussian filter of
+// duet compare. Without it, noise of a capture would count as movement.
 function speedCurve(motion) {
   const positions = motion.people.follower || motion.people.leader;
   const stride = motion.joints.length * 3;
@@ -21,7 +21,7 @@ function speedCurve(motion) {
   return speeds.length > 0 ? [speeds[0], ...speeds] : [0];
 }
 
-// How far apart the two roots are along the floor in each frame, metres; null for one person.
+// The horizontal distance of the two roots in each frame, metres; null for one person.
 function distanceCurve(motion) {
   const {leader, follower} = motion.people;
   if (!follower) return null;
@@ -53,7 +53,7 @@ function gaussianFilter(values, stride, frames, sigma) {
   return smooth;
 }
 
-// One chart of curves over the time line, one curve for each cell that has it.
+// A chart over the timeline, with one curve for each cell that has values.
 class Chart {
   constructor(parent, title, unit, curves, duration) {
     this.curves = curves;
@@ -74,7 +74,7 @@ class Chart {
     this.draw(box.querySelector('svg'));
   }
 
-  // The next of 1, 1.5, 2, 3, 4, 5, 6, 8 times a power of ten.
+  // Rounds up to 1, 1.5, 2, 3, 4, 5, 6 or 8 times a power of ten.
   static above(value) {
     const power = 10 ** Math.floor(Math.log10(value));
     const step = [1, 1.5, 2, 3, 4, 5, 6, 8, 10].find((factor) => factor * power >= value * 0.999);

@@ -1,5 +1,5 @@
-// <duet-motion>: one person or a leader and a follower in three dimensions, on any page. How it is
-// used stands in docs/viewer_element.md.
+// <duet-motion>: shows one person, or a leader and a follower, in 3D on any page. See
+// docs/viewer_element.md.
 const ELEMENT_STYLE = `
   :host { display: block; position: relative; aspect-ratio: 16 / 10; min-height: 120px;
     overflow: hidden; background: #24262b; color: #e9eaed; outline: none;
@@ -41,11 +41,11 @@ class DuetMotion extends HTMLElement {
   constructor() {
     super();
     this.draws = 0;
-    this.view = 'reset';   // until the camera is moved by hand
-    this.stale = false;    // something changed since the last drawing
+    this.view = 'reset';   // until the visitor moves the camera
+    this.stale = false;    // something has changed since the last draw
     this.onScreen = true;
     const root = this.attachShadow({mode: 'open'});
-    // Sheets that are made by a script need no leave of the page's policy for inline styles.
+    // Constructed style sheets do not count as inline styles in the page's policy.
     const sheet = new CSSStyleSheet();
     sheet.replaceSync(ELEMENT_STYLE);
     root.adoptedStyleSheets = [sheet];
@@ -72,13 +72,13 @@ class DuetMotion extends HTMLElement {
     const tick = (now) => {
       if (!this.connected) return;
       this.ticking = requestAnimationFrame(tick);
-      // A tab that slept does not leap ahead.
+      // Do not skip time that a background tab slept.
       this.tick(before === null ? 0 : Math.min((now - before) / 1000, 0.1));
       before = now;
     };
     this.ticking = requestAnimationFrame(tick);
     if (this.data) {
-      this.motion = this.data;  // was taken out of the page, and is back
+      this.motion = this.data;  // the element was removed from the page and inserted again
     } else {
       this.load();
     }
@@ -98,7 +98,7 @@ class DuetMotion extends HTMLElement {
     if (this.player) this.follow(name, value);
   }
 
-  // Takes what an attribute says.
+  // Applies an attribute.
   follow(name, value) {
     if (name === 'frame' && value !== null) this.seek(Number(value) || 0);
     if (name === 'paused') this.player.playing = value === null;
@@ -108,12 +108,12 @@ class DuetMotion extends HTMLElement {
     this.touch();
   }
 
-  // From `src`, or from the JSON in a <script type="application/json"> inside the element.
+  // Loads `src`, or the JSON in a <script type="application/json"> inside the element.
   async load() {
     const source = this.getAttribute('src');
     const inside = this.querySelector('script[type="application/json"]');
     if (!source && !inside) {
-      // An element is told of before the page has read what is in it.
+      // The element is connected before the parser has read its content.
       if (document.readyState === 'loading') {
         document.addEventListener('DOMContentLoaded', () => this.load(), {once: true});
       }
@@ -123,7 +123,7 @@ class DuetMotion extends HTMLElement {
     const asked = this.asked;
     try {
       const data = source ? await DuetMotion.fetched(source) : JSON.parse(inside.textContent);
-      if (asked === this.asked) this.motion = Motion.of(data);  // nothing newer was asked for
+      if (asked === this.asked) this.motion = Motion.of(data);  // no newer request
     } catch (error) {
       this.fail(`${source || 'the motion inside the element'}: ${error.message}`);
     }
@@ -131,11 +131,11 @@ class DuetMotion extends HTMLElement {
 
   static async fetched(source) {
     const response = await fetch(source);
-    if (!response.ok) throw new Error(`the server says ${response.status}`);
+    if (!response.ok) throw new Error(`the server returned ${response.status}`);
     return response.json();
   }
 
-  // What is shown: a Motion, or what makes one (Motion.of).
+  // The motion on display. Set it to any argument of Motion.of.
   get motion() { return this.shown; }
   set motion(data) {
     this.data = data;
@@ -149,7 +149,7 @@ class DuetMotion extends HTMLElement {
     }
   }
 
-  // Builds what the motion stands in; the clock starts anew.
+  // Builds the scenery of the motion and restarts playback.
   stand() {
     if (!drawsWebGl()) throw new Error(NO_WEBGL);
     const player = this.player = new Player(this.shown);
@@ -164,7 +164,7 @@ class DuetMotion extends HTMLElement {
   }
 
   build() {
-    // A canvas keeps its renderer: a new one for each.
+    // A canvas keeps its renderer, so each motion gets a new canvas.
     const canvas = this.canvas.cloneNode();
     this.canvas.replaceWith(canvas);
     this.canvas = canvas;
@@ -202,7 +202,7 @@ class DuetMotion extends HTMLElement {
     this.dispatchEvent(new CustomEvent(name, {detail}));
   }
 
-  // Something is to be drawn anew.
+  // Requests a redraw.
   touch() { this.stale = true; }
 
   get frames() { return this.shown ? this.shown.frames : 0; }
@@ -222,7 +222,7 @@ class DuetMotion extends HTMLElement {
     this.touch();
   }
 
-  // Puts the camera where a view has it: reset, front, side or top.
+  // Moves the camera to a view: reset, front, side or top.
   look(view) {
     this.view = view;
     if (this.stage) this.stage.view(view);
@@ -235,12 +235,12 @@ class DuetMotion extends HTMLElement {
     this.touch();
   }
 
-  // Another follower, Float32Array [frames, joints, 3], while the leader plays on.
+  // Replaces the follower, Float32Array [frames, joints, 3], while the leader continues to play.
   setFollower(positions) {
     const isFirst = !this.shown.people.follower;
     this.shown.people.follower = positions;
     if (isFirst) {
-      // What stands around a motion has its size.
+      // The scenery depends on the size of the motion.
       this.leaveStage();
       this.build();
       return;
@@ -251,7 +251,7 @@ class DuetMotion extends HTMLElement {
     this.touch();
   }
 
-  // Frames of the follower from `first` on, in place of what it had; nothing where there is none.
+  // Replaces the follower's frames from `first` on; no effect without a follower.
   takeFrames(first, positions) {
     const {follower} = this.shown.people;
     if (!follower) return;
@@ -263,7 +263,7 @@ class DuetMotion extends HTMLElement {
     if (!this.stage || !this.clientWidth) return;
     this.stage.resize();
     if (this.view) this.stage.view(this.view);
-    this.draw();  // a canvas that was resized is empty
+    this.draw();  // resizing clears the canvas
   }
 
   tick(seconds) {
@@ -277,7 +277,7 @@ class DuetMotion extends HTMLElement {
     if (this.stale) this.draw();
   }
 
-  // Draws what is shown now. Listeners of "frame" may change the scene before.
+  // Draws the current frame. Listeners of "frame" may change the scene first.
   draw() {
     if (!this.stage) return;
     this.stale = false;
@@ -312,7 +312,7 @@ class DuetMotion extends HTMLElement {
     for (const name of ['focusin', 'focusout']) {
       this.addEventListener(name, () => this.zoomWhenWanted());
     }
-    // Before the camera's own controls hear of it. A finger that only passes scrolls the page.
+    // Runs before the camera's controls. Without focus, one finger scrolls the page.
     this.addEventListener('pointerdown', (event) => {
       if (!this.stage) return;
       this.stage.controls.enabled =
@@ -320,11 +320,11 @@ class DuetMotion extends HTMLElement {
     }, {capture: true});
   }
 
-  // Whether the page around it has keys of its own and nothing to scroll.
+  // Whether the page has its own keys and does not scroll.
   get isWhole() { return this.hasAttribute('whole'); }
   get isFocused() { return this.matches(':focus-within'); }
 
-  // The wheel scrolls the page, until somebody has chosen the element.
+  // The wheel scrolls the page until the element has the focus.
   zoomWhenWanted() {
     if (this.stage) this.stage.controls.enableZoom = this.isWhole || this.isFocused;
   }

@@ -1,4 +1,4 @@
-// Files out of the page: a picture, a film of one run, the same as GIF, and the motion itself.
+// Saves files: a picture, a film of one run, a GIF of one run, and the motion.
 function save(blob, name) {
   const link = document.createElement('a');
   link.href = URL.createObjectURL(blob);
@@ -8,13 +8,13 @@ function save(blob, name) {
   root.dataset.saved = `${name} ${blob.size}`;
 }
 
-// A canvas forgets what is drawn once the browser has it.
+// The canvas is cleared after the browser has displayed it, so draw and read it in one task.
 function savePicture(element, name) {
   element.draw();
   element.canvas.toBlob((blob) => save(blob, `${name}.png`), 'image/png');
 }
 
-// Records the motion once, from its first frame to its last, at the speed that is chosen.
+// Records the motion once, from its first frame to its last, at the selected speed.
 class Film {
   constructor(element, name) {
     this.element = element;
@@ -54,10 +54,10 @@ class Film {
   }
 }
 
-// One run as GIF, drawn frame after frame as fast as that goes.
+// Saves one run as GIF, drawn as fast as possible.
 class Gif {
-  static get PIXELS() { return 480; }         // of the longer side
-  static get MOST_RATE() { return 100 / 6; }  // browsers show faster ones slower
+  static get PIXELS() { return 480; }         // the longer side
+  static get MOST_RATE() { return 100 / 6; }  // browsers slow down faster ones
   static get MOST_FRAMES() { return 300; }
 
   constructor(element, name) {
@@ -65,7 +65,7 @@ class Gif {
     this.name = name;
   }
 
-  // Frames of the motion, and hundredths of a second that each is shown.
+  // The frames to draw, and the duration of each in hundredths of a second.
   plan() {
     const {player, motion} = this.element;
     const perSecond = motion.frameRate * player.speed;
@@ -104,7 +104,7 @@ class Gif {
     const writer = new GifWriter(paint.canvas.width, paint.canvas.height, palette.colours);
     for (const frame of frames) {
       writer.add(palette.indices(this.picture(frame, paint)), hundredths);
-      await new Promise((resolve) => setTimeout(resolve));  // the page stays awake
+      await new Promise((resolve) => setTimeout(resolve));  // keeps the page responsive
     }
     Object.assign(player, before);
     this.element.draw();

@@ -1,8 +1,8 @@
 // Half the height of a foot, metres.
 const THINNEST_SOLE = 0.015, THICKEST_SOLE = 0.05;
 
-// One character's body: a tapered capsule on every bone, a ball on every joint, and where the joint
-// names allow it a chest, a pelvis and a head that show which way the character faces.
+// A character's body: a tapered capsule for each bone and a ball for each joint. If the joint names
+// are known, also a chest, a pelvis and a head that show which way the character faces.
 class Figure {
   constructor(motion, person, colour) {
     this.motion = motion;
@@ -22,11 +22,11 @@ class Figure {
       this.addHand(side);
       this.addFoot(side);
     }
-    // A character moves out of any box computed once.
+    // The bounding box changes with the pose.
     this.group.traverse((object) => { object.frustumCulled = false; });
   }
 
-  // Metres, by what a joint is called; skeletons that name them otherwise get slender limbs.
+  // Radii in metres by joint name; joints with unknown names get slender limbs.
   static radius(name) {
     const table = [
       [/head/, 0.05], [/neck/, 0.047], [/shoulder|clavicle/, 0.052], [/elbow/, 0.041],
@@ -37,7 +37,7 @@ class Figure {
     return row ? row[1] : 0.035;
   }
 
-  // An ankle's ball does not reach through the floor.
+  // Keeps the ankle's ball above the floor.
   radius(name) {
     const radius = Figure.radius(name);
     return /foot|ankle/.test(name.toLowerCase())
@@ -143,7 +143,7 @@ class Figure {
     });
   }
 
-  // Goes on from the forearm.
+  // Continues the forearm.
   addHand(side) {
     const [elbow, hand] = [`${side}_elbow`, `${side}_hand`];
     if (!this.has(elbow, hand)) return;
@@ -154,7 +154,7 @@ class Figure {
     });
   }
 
-  // Ahead of the ankle: at a right angle to the shin in the air, level where it stands.
+  // In front of the ankle: at a right angle to the shin in the air, level on the floor.
   addFoot(side) {
     const [knee, foot] = [`${side}_knee`, `${side}_foot`];
     if (!this.has(knee, foot, 'left_hip', 'right_hip')) return;
@@ -173,13 +173,13 @@ class Figure {
     });
   }
 
-  // Any direction across another.
+  // Any direction perpendicular to another.
   static across(along) {
     const axis = Math.abs(along.y) < 0.8 ? new THREE.Vector3(0, 1, 0) : new THREE.Vector3(1, 0, 0);
     return axis.cross(along).normalize();
   }
 
-  // Takes the pose of a fractional frame.
+  // Sets the pose of a fractional frame.
   update(frame) {
     this.motion.pose(this.person, frame, this.pose);
     const up = new THREE.Vector3(0, 1, 0);

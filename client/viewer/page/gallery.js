@@ -1,4 +1,4 @@
-// All cells on one canvas, seen from the same place in the space that they share.
+// All cells on one canvas, seen by one camera in the space that they share.
 class Gallery {
   constructor(canvas, data) {
     this.canvas = canvas;
@@ -11,10 +11,11 @@ class Gallery {
     this.box = new THREE.Box3();
     for (const cell of this.cells) this.box.union(cell.sharedBox());
     this.camera = new THREE.PerspectiveCamera(32, 1, 0.05, 400);
-    this.mount = new THREE.Group();  // the shared space as it lies in a cell
+    this.mount = new THREE.Group();  // the shared space within a cell
     this.eye = this.camera.clone();  // the camera there
     this.mount.add(this.eye);
-    // One camera, as far away as the farthest motion needs: nearer ones are not in the fog there.
+    // One camera at the distance of the largest motion; the fog is scaled so that smaller ones stay
+    // clear.
     const reach = this.box.getSize(new THREE.Vector3()).length();
     for (const cell of this.cells) cell.scenery.addFog(reach);
     this.controls = makeControls(this.camera, canvas, reach);
@@ -39,10 +40,10 @@ class Gallery {
     return label;
   }
 
-  // The number of columns with which the cells are nearest to the shape that shows most.
+  // The number of columns that brings the cells closest to the best aspect ratio.
   columns(width, height) {
     const count = this.cells.length;
-    const wanted = 0.9;  // two people who stand face to face
+    const wanted = 0.9;  // fits two people who stand face to face
     let best = 1;
     let least = Infinity;
     for (let columns = 1; columns <= count; ++columns) {
@@ -83,7 +84,7 @@ class Gallery {
     this.controls.update();
   }
 
-  // Returns the triangles drawn.
+  // Returns the number of triangles drawn.
   draw(seconds) {
     this.renderer.info.reset();
     this.eye.position.copy(this.camera.position);

@@ -1,4 +1,4 @@
-// Puts a gallery together.
+// Connects the parts of a gallery.
 function showFigures(data) {
   if (data.figures.length === 0) return;
   const table = document.getElementById('figures');
@@ -16,7 +16,7 @@ function showFigures(data) {
       addRow('group', [group]).cells[0].colSpan = data.valueTitles.length + 1;
     }
     const row = addRow('', [figure.title, ...figure.values]);
-    // A figure of all together.
+    // One value for all motions.
     if (figure.values.length === 1) row.cells[1].colSpan = data.valueTitles.length;
   }
   document.body.classList.add('with-figures');
@@ -35,7 +35,7 @@ function start() {
   const gallery = new Gallery(element('stage'), data);
   const {duration} = gallery;
 
-  // Time runs in the frames of the fastest motion.
+  // Time is counted in frames of the motion with the highest rate.
   const frameRate = Math.max(...gallery.cells.map((cell) => cell.motion.frameRate));
   const timeline = {frameRate, frames: Math.round(duration * frameRate) + 1};
   const player = new Player(timeline);
@@ -54,8 +54,8 @@ function start() {
     element('people').hidden = true;
   }
 
-  let view = 'reset';  // until the camera is moved by hand
-  let stale = true;    // something changed since the last drawing
+  let view = 'reset';  // until the visitor moves the camera
+  let stale = true;    // something has changed since the last draw
   let draws = 0;
   const touch = () => { stale = true; };
   const chooseView = (name) => {
@@ -104,7 +104,7 @@ function start() {
 
   let before = null;
   function tick(now) {
-    // A tab that slept does not leap ahead.
+    // Do not skip time that a background tab slept.
     const seconds = before === null ? 0 : Math.min((now - before) / 1000, 0.1);
     before = now;
     if (player.playing) {

@@ -1,6 +1,6 @@
-// GIF 89a in the making: a palette for all frames, frames that say what changed, LZW.
+// A GIF 89a encoder: one palette for all frames, frames with only the changed pixels, LZW.
 class GifWriter {
-  // `palette`: at most 255 colours [red, green, blue]; one more stands for "as before".
+  // `palette`: at most 255 colours [red, green, blue]; one more index means "unchanged".
   constructor(width, height, palette) {
     this.width = width;
     this.height = height;
@@ -13,7 +13,7 @@ class GifWriter {
     for (let i = 0; i < 256; ++i) this.bytes.push(...(palette[i] || [0, 0, 0]));
     this.bytes.push(0x21, 0xff, 11);
     this.text('NETSCAPE2.0');
-    this.bytes.push(3, 1, 0, 0, 0);  // again and again
+    this.bytes.push(3, 1, 0, 0, 0);  // repeat forever
   }
 
   static get AS_BEFORE() { return 255; }
@@ -26,7 +26,7 @@ class GifWriter {
     this.bytes.push(value & 255, value >> 8);
   }
 
-  // `indices`: of the palette, [height, width]; shown for hundredths of a second.
+  // `indices`: palette indices [height, width]; the duration is in hundredths of a second.
   add(indices, hundredths) {
     const changes = new Uint8Array(indices.length);
     for (let i = 0; i < indices.length; ++i) {
@@ -34,7 +34,7 @@ class GifWriter {
       changes[i] = same ? GifWriter.AS_BEFORE : indices[i];
     }
     this.before = indices;
-    this.bytes.push(0x21, 0xf9, 4, 0x05);  // stays as it is; has "as before"
+    this.bytes.push(0x21, 0xf9, 4, 0x05);  // do not dispose; has a transparent index
     this.short(hundredths);
     this.bytes.push(GifWriter.AS_BEFORE, 0);
     this.bytes.push(0x2c, 0, 0, 0, 0);
@@ -90,11 +90,11 @@ class GifWriter {
   }
 }
 
-// The colours that stand best for those of some pictures, by median cut; and the nearest of them.
+// A palette for some pictures by median cut, and the lookup of the nearest colour.
 class Palette {
-  // `pictures`: RGBA, as ImageData has it.
+  // `pictures`: RGBA, as in ImageData.
   constructor(pictures, count) {
-    const counts = new Map();  // of colours of 5 bits a channel
+    const counts = new Map();  // of colours with 5 bits per channel
     for (const pixels of pictures) {
       for (let i = 0; i < pixels.length; i += 4) {
         const key = Palette.key(pixels[i], pixels[i + 1], pixels[i + 2]);
@@ -123,7 +123,7 @@ class Palette {
     return {span, channel: spans.indexOf(span)};
   }
 
-  // Which box is cut next: wide ones, and those of many pixels; few pixels of a bright colour count.
+  // Selects the next box to cut, by width and number of pixels; a few bright pixels count too.
   static weight(box) {
     const pixels = box.reduce((sum, colour) => sum + colour.pixels, 0);
     return box.length < 2 ? 0 : Palette.span(box).span * Math.sqrt(pixels);

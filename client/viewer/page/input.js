@@ -1,12 +1,12 @@
-// Mouse, touch and keys of everything but the camera, which orbits by itself.
+// Handles mouse, touch and keys, except for the camera, which has its own controls.
 // `showPerson(name, visible)` shows or hides the leader or the follower.
-// `more`: actions by the id of their button, with the key that does the same.
+// `more`: actions by the id of their button, with their key.
 function connectInput({player, showPerson, chooseView, touch, more = []}) {
   const element = (id) => document.getElementById(id);
   const onClick = (target, action) => target.addEventListener('click', (event) => {
     action();
     touch();
-    // After a mouse click the space bar means play again, not this button.
+    // After a mouse click, the space bar plays and pauses instead of pressing this button again.
     if (event.detail > 0) target.blur();
   });
 

@@ -1,4 +1,4 @@
-// Puts the page together: the motion's element, and around it what is known of the motion.
+// Connects the page's parts: the motion element and the panels around it.
 function start() {
   const data = JSON.parse(document.getElementById('data').textContent);
   const element = (id) => document.getElementById(id);

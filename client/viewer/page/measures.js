@@ -1,5 +1,5 @@
-// What is between the characters and under their feet, shown when asked for: a line where they are
-// nearest, a ring under every foot that stands, and the figures in words.
+// Optional measures: a line where the characters are nearest, a ring under every standing foot, and
+// the values as text.
 class Measures {
   constructor(stage, motion, output) {
     this.motion = motion;
@@ -20,10 +20,10 @@ class Measures {
         .map((joint) => this.addRing(person, motion.find(joint))));
   }
 
-  // Metres: nearer counts as touch, joint to joint; and how far off the floor an ankle stands.
+  // Metres: the largest distance of joints in contact, and the largest height of a standing ankle.
   static get TOUCH() { return 0.15; }
   static get STANDS() { return 0.13; }
-  // Metres a second: faster feet do not stand.
+  // Metres per second: the largest speed of a standing foot.
   static get SLOW() { return 0.5; }
 
   addRing(person, joint) {
@@ -48,7 +48,7 @@ class Measures {
     return pose;
   }
 
-  // The two joints that are nearest.
+  // The nearest two joints.
   static nearest(a, b) {
     let best = {distance: Infinity};
     a.forEach((p, i) => b.forEach((q, j) => {
@@ -89,7 +89,7 @@ class Measures {
     return `${touch ? 'touch' : 'nearest'}: ${name(i)} to ${name(j)}, ${distance.toFixed(2)} m`;
   }
 
-  // A foot stands where it is low and slow. Returns how many of each person do.
+  // A foot stands if it is low and slow. Returns the number of standing feet of each person.
   updateRings(poses, frame) {
     const before = {};
     for (const person of Object.keys(poses)) before[person] = this.at(person, frame - 1);

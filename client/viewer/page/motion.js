@@ -1,8 +1,8 @@
 // As kUsualAnkleHeight in model/retargeting/foot_pose.h, metres.
 const USUAL_ANKLE_HEIGHT = 0.06;
 
-// The motion of one character or two, as the page carries it: positions [frames, joints, 3] in metres,
-// y up, as base64 of little-endian float32.
+// The motion of one character or two. Pages contain positions [frames, joints, 3] in metres, y up,
+// as base64 of little-endian float32.
 class Motion {
   constructor(data) {
     this.joints = data.joints;
@@ -17,22 +17,22 @@ class Motion {
     }
     for (const [name, positions] of Object.entries(this.people)) {
       if (positions.length !== this.frames * this.joints.length * 3) {
-        throw new Error(`the ${name} has ${positions.length} values, ` +
-                        `wanted ${this.frames} × ${this.joints.length} × 3`);
+        throw new Error(`${name}: expected ${this.frames} × ${this.joints.length} × 3 values, ` +
+                        `got ${positions.length}`);
       }
     }
   }
 
-  // A Motion as it is, what the constructor takes, or the content of a "duet-motion" JSON file
-  // (docs/formats.md) in metres, y up.
+  // Makes a Motion from a Motion, from the constructor's argument, or from the content of a
+  // "duet-motion" JSON file (docs/formats.md) in metres, y up.
   static of(data) {
     if (data instanceof Motion) return data;
     if (!data || data.format !== 'duet-motion') return new Motion(data);
     if ((data.unit || 'metres') !== 'metres' || (data.up_axis || 'y-up') !== 'y-up') {
-      throw new Error(`came ${data.unit}, ${data.up_axis}, wanted metres, y-up`);
+      throw new Error(`expected metres, y-up, got ${data.unit}, ${data.up_axis}`);
     }
     if (!data.leader || !data.joint_names || !(data.frame_rate_hz > 0)) {
-      throw new Error('wanted joint_names, frame_rate_hz and a leader');
+      throw new Error('expected joint_names, frame_rate_hz and leader, got an object without them');
     }
     const flat = (frames) => frames && Float32Array.from(frames.flat(2));
     return new Motion({joints: data.joint_names, bones: data.bones || [],
@@ -76,7 +76,8 @@ class Motion {
     }
   }
 
-  // Class weights at a frame: linear between keyframes, held before the first and after the last.
+  // Class weights at a frame: linear between keyframes, constant before the first and after the
+  // last.
   weights(frame) {
     const keys = this.keyframes;
     if (keys.length === 0) return [];
@@ -100,27 +101,28 @@ class Motion {
     return box;
   }
 
-  // The floor is the world's, y = 0, so that somebody who floats is seen to float. Captures without a
-  // floor of their own have it far away: there it is under the leader's feet, and `ofWorld` is false.
+  // The floor is the world's, y = 0, so that a floating character is visible. If that is far away,
+  // the capture has no floor: the floor is then under the leader's feet, and `ofWorld` is false.
   floor() {
     const stands = this.standingHeight('leader');
     const ofWorld = Math.abs(stands) < 0.6;
     return {height: ofWorld ? 0 : stands - USUAL_ANKLE_HEIGHT, ofWorld};
   }
 
-  // How far below the ankles a person's soles are, metres: whoever stands, stands on the floor.
+  // The height of a person's ankles above the soles, metres, so that a standing person touches the
+  // floor.
   soleDepth(person) {
     const feet = [this.find('left_foot'), this.find('right_foot')].filter((joint) => joint >= 0);
     const depth = this.lowOf(person, feet) - this.floor().height;
     return depth >= 0.01 && depth <= 0.25 ? depth : USUAL_ANKLE_HEIGHT;
   }
 
-  // The lowest joint of nearly every frame. Captures jitter, and one bad frame says nothing.
+  // The lowest joint of nearly every frame; robust against single bad frames.
   standingHeight(person) {
     return this.lowOf(person, this.joints.map((name, joint) => joint));
   }
 
-  // The height that the lowest of some joints is below in 2 % of the frames.
+  // The 2nd percentile of the height of the lowest of some joints.
   lowOf(person, joints) {
     const positions = this.people[person];
     const stride = this.joints.length * 3;
@@ -132,7 +134,7 @@ class Motion {
     return lowest[Math.floor(lowest.length * 0.02)];
   }
 
-  // Where a person is, on average, over the clip.
+  // A person's mean position over the clip.
   centre(person) {
     const positions = this.people[person];
     const sum = new THREE.Vector3();
@@ -141,8 +143,8 @@ class Motion {
     return sum.multiplyScalar(3 / positions.length);
   }
 
-  // Horizontal direction from the leader to the follower, or of one alone where the hips face; +z
-  // where there is none.
+  // Horizontal direction from the leader to the follower; for one person, the direction of the
+  // hips; +z if there is none.
   axis() {
     const axis = this.people.follower ? this.centre('follower').sub(this.centre('leader'))
                                       : this.facing();
@@ -150,7 +152,7 @@ class Motion {
     return axis.length() < 0.05 ? new THREE.Vector3(0, 0, 1) : axis.normalize();
   }
 
-  // Where the leader's hips face in the first frame; nowhere without hips.
+  // The direction of the leader's hips in the first frame; zero without hips.
   facing() {
     const [left, right] = [this.find('left_hip'), this.find('right_hip')];
     if (left < 0 || right < 0) return new THREE.Vector3();

@@ -1,5 +1,5 @@
-// How a page begins, and how it fails. `document.documentElement.dataset` tells programs how it
-// stands: state (loading, ready, failed), frames, frame, draws, triangles, error.
+// Start and failure of a page. `document.documentElement.dataset` reports its state to programs:
+// state (loading, ready, failed), frames, frame, draws, triangles, error.
 const root = document.documentElement;
 
 function fail(message) {

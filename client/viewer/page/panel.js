@@ -1,4 +1,4 @@
-// Everything around the stage: what it is, the class weights, the transport.
+// The panels around the stage: title, class weights, playback.
 class Panel {
   constructor(data, motion, player) {
     this.motion = motion;
@@ -35,7 +35,7 @@ class Panel {
     for (const {frame} of this.motion.keyframes) {
       if (frame > this.player.last) continue;
       const mark = document.createElement('i');
-      // The thumb's centre travels 7 px inside both ends.
+      // The thumb's centre moves between 7 px inside of both ends.
       const share = frame / Math.max(1, this.player.last);
       mark.style.left = `calc(7px + (100% - 14px) * ${share})`;
       this.element('marks').append(mark);

@@ -1,4 +1,4 @@
-// Time: which frame is shown, and whether it runs.
+// Playback: the current frame, and whether it advances.
 class Player {
   constructor(motion) {
     this.motion = motion;
@@ -16,7 +16,7 @@ class Player {
     this.frame = Math.min(Math.max(frame, 0), this.last);
   }
 
-  // Whole frames, and stops.
+  // Steps by whole frames and pauses.
   step(by) {
     this.playing = false;
     this.seek(Math.round(this.frame) + by);
@@ -27,7 +27,7 @@ class Player {
     if (this.playing && !this.looping && this.frame >= this.last) this.frame = 0;
   }
 
-  // Moves on by real seconds.
+  // Advances by real seconds.
   advance(seconds) {
     if (!this.playing) return;
     this.frame += seconds * this.speed * this.motion.frameRate;

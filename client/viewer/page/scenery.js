@@ -1,8 +1,8 @@
 const BACKGROUND = 0x24262b;
 const COLOURS = {leader: 0xf0a04b, follower: 0x4fb3bf};
 
-// Materials are lit in linear light; colours are chosen as they should look. (Background and fog
-// are drawn as they are.)
+// Materials are lit in linear light, so display colours are converted. (Background and fog are
+// drawn unconverted.)
 function linear(hex) {
   return new THREE.Color(hex).convertSRGBToLinear();
 }
@@ -10,7 +10,7 @@ function linear(hex) {
 const NO_WEBGL =
     'This browser shows no WebGL: switch on hardware acceleration, or try another browser.';
 
-// Whether anything can be drawn.
+// Whether the browser supports WebGL.
 function drawsWebGl() {
   const canvas = document.createElement('canvas');
   return Boolean(canvas.getContext('webgl') || canvas.getContext('experimental-webgl'));
@@ -26,7 +26,7 @@ function makeRenderer(canvas) {
   return renderer;
 }
 
-// `reach`: how large what is shown is, metres.
+// `reach`: the size of the scene, metres.
 function makeControls(camera, canvas, reach) {
   const controls = new THREE.OrbitControls(camera, canvas);
   controls.enableDamping = true;
@@ -39,7 +39,8 @@ function makeControls(camera, canvas, reach) {
   return controls;
 }
 
-// Where a view looks from, of length 1. `axis`: horizontal, from the leader to the follower.
+// The unit vector towards the camera of a view. `axis`: horizontal, from the leader to the
+// follower.
 function viewDirection(name, axis) {
   const across = axis.clone().cross(new THREE.Vector3(0, 1, 0));  // leader left, follower right
   const up = (height) => new THREE.Vector3(0, height, 0);
@@ -52,12 +53,12 @@ function viewDirection(name, axis) {
   return directions[name].normalize();
 }
 
-// How far back the box's corners fit into the frame, looking along -direction.
+// The distance at which the box's corners fit into the frame, looking along -direction.
 function fittingDistance(box, direction, camera) {
   const centre = box.getCenter(new THREE.Vector3());
   const side = new THREE.Vector3(0, 1, 0).cross(direction).normalize();
   const top = direction.clone().cross(side);
-  const margin = 0.22;  // the body around the joints, and room for the panels
+  const margin = 0.22;  // for the body around the joints and for the panels
   const tanV = Math.tan(THREE.Math.degToRad(camera.fov / 2));
   const tanH = tanV * camera.aspect;
   let distance = 1.5;
@@ -72,7 +73,7 @@ function fittingDistance(box, direction, camera) {
   return distance;
 }
 
-// What a motion stands in: floor and lights. Positions are the motion's own.
+// The scenery of a motion: floor and lights, in the motion's coordinates.
 class Scenery {
   constructor(motion, renderer, shadowPixels) {
     this.motion = motion;
@@ -87,7 +88,7 @@ class Scenery {
     this.addFloor();
   }
 
-  // Hides the floor's end from a camera that has all within `reach` metres in view.
+  // Fog that hides the floor's edge from a camera that shows everything within `reach` metres.
   addFog(reach) {
     this.scene.fog = new THREE.Fog(BACKGROUND, 5 + 2 * reach, 13 + 4 * reach);
   }
@@ -121,14 +122,14 @@ class Scenery {
         new THREE.PlaneBufferGeometry(size, size),
         new THREE.MeshStandardMaterial({map: grid, roughness: 1, metalness: 0}));
     ground.rotation.x = -Math.PI / 2;
-    // On a whole metre, so that the grid is the world's.
+    // On a whole metre, so that the grid matches the world's.
     ground.position.set(Math.round(centre.x), this.floor, Math.round(centre.z));
     ground.receiveShadow = true;
     this.scene.add(ground);
   }
 
-  // One square metre: its edges, and fainter the half metres. A texture, unlike lines, stays smooth
-  // into the distance.
+  // One square metre with its edges and fainter half metres. A texture stays smooth in the
+  // distance, unlike lines.
   gridTexture() {
     const pixels = 512;
     const canvas = document.createElement('canvas');
@@ -149,7 +150,7 @@ class Scenery {
     return texture;
   }
 
-  // A faint line on the floor where a person's root went.
+  // A faint line on the floor along the path of a person's root.
   addPath(person, colour) {
     const motion = this.motion;
     const root = Math.max(0, motion.find('torso'));

@@ -1,4 +1,4 @@
-// Scenery and camera of one motion. Draws only when asked to.
+// Scenery and camera of one motion. Draws only on request.
 class Stage {
   constructor(canvas, motion) {
     this.canvas = canvas;
@@ -17,7 +17,7 @@ class Stage {
     return this.scenery.addPath(person, colour);
   }
 
-  // Puts the camera where the whole motion is in view.
+  // Moves the camera so that the whole motion is in view.
   view(name) {
     const direction = viewDirection(name, this.motion.axis());
     this.controls.target.copy(this.scenery.box.getCenter(new THREE.Vector3()));
@@ -33,7 +33,7 @@ class Stage {
     this.camera.updateProjectionMatrix();
   }
 
-  // Returns the triangles drawn.
+  // Returns the number of triangles drawn.
   draw() {
     this.renderer.render(this.scene, this.camera);
     return this.renderer.info.render.triangles;

@@ -1,4 +1,4 @@
-// The time line's account of where the player is.
+// Displays the player's position.
 function showTime({player, frameRate}) {
   const element = (id) => document.getElementById(id);
   const shown = Math.round(player.frame);

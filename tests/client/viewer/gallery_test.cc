@@ -63,7 +63,7 @@ TEST(RenderGalleryTest, IsOneSelfContainedFile) {
   }
 }
 
-TEST(RenderGalleryTest, HoldsTheMotionsAndFigures) {
+TEST(RenderGalleryTest, ContainsMotionsAndFigures) {
   const nlohmann::json data = Data(SmallContent());
   EXPECT_EQ(data["title"], "<two>");
   ASSERT_EQ(data["motions"].size(), 2u);
@@ -75,32 +75,32 @@ TEST(RenderGalleryTest, HoldsTheMotionsAndFigures) {
   EXPECT_EQ(data["figures"][0]["values"], nlohmann::json({"1 m/s", "2 m/s"}));
 }
 
-TEST(RenderGalleryTest, WhatCannotBeShownIsRefused) {
+TEST(RenderGalleryTest, InvalidContentIsRejected) {
   const auto refused = [](void (*spoil)(GalleryContent*)) {
     GalleryContent content = SmallContent();
     spoil(&content);
     return RenderGallery(content).status();
   };
   EXPECT_THAT(refused([](GalleryContent* c) { c->motions.clear(); }),
-              StatusIs(kInvalid, HasSubstr("came 0, wanted 1 to 12")));
+              StatusIs(kInvalid, HasSubstr("expected 1 to 12, got 0")));
   EXPECT_THAT(refused([](GalleryContent* c) { c->motions.resize(13, c->motions[0]); }),
-              StatusIs(kInvalid, HasSubstr("came 13")));
+              StatusIs(kInvalid, HasSubstr("got 13")));
   EXPECT_THAT(refused([](GalleryContent* c) { c->motions[1].leader.poses = {}; }),
-              StatusIs(kInvalid, HasSubstr("alone: 0 frames")));
+              StatusIs(kInvalid, HasSubstr("alone: expected at least one frame")));
   EXPECT_THAT(refused([](GalleryContent* c) { c->motions[1].leader.frame_rate_hz = 0; }),
               StatusIs(kInvalid, HasSubstr("at 0 Hz")));
   EXPECT_THAT(refused([](GalleryContent* c) { c->motions[1].leader.joint_names[0] = "x"; }),
-              StatusIs(kInvalid, HasSubstr("alone: joints other than")));
+              StatusIs(kInvalid, HasSubstr("alone: expected the joints")));
   EXPECT_THAT(refused([](GalleryContent* c) { c->motions[0].follower = SmallClip(15, 2); }),
-              StatusIs(kInvalid, HasSubstr("captured: leader and follower differ")));
+              StatusIs(kInvalid, HasSubstr("captured: expected equal frames")));
   EXPECT_THAT(refused([](GalleryContent* c) {
                 c->motions[0].follower->at(1, 1).x = std::numeric_limits<float>::quiet_NaN();
               }),
-              StatusIs(kInvalid, HasSubstr("not finite")));
+              StatusIs(kInvalid, HasSubstr("expected finite positions")));
   EXPECT_THAT(refused([](GalleryContent* c) {
                 c->bones = {{0, 2}};
               }),
-              StatusIs(kInvalid, HasSubstr("joint 2, wanted 0 to 1")));
+              StatusIs(kInvalid, HasSubstr("expected joints 0 to 1, got 2")));
 }
 
 }  // namespace

@@ -51,7 +51,7 @@ float LittleEndian(const std::string& bytes, size_t index) {
   return value;
 }
 
-TEST(PageDataTest, TakesAFrameASecondAndAnyLanguage) {
+TEST(PageDataTest, AcceptsOneFramePerSecondAndNonAsciiNames) {
   PageContent content = SmallContent();
   content.pair.leader.frame_rate_hz = content.pair.follower.frame_rate_hz = 1;
   content.title = "\u00dcbergabe";
@@ -59,7 +59,7 @@ TEST(PageDataTest, TakesAFrameASecondAndAnyLanguage) {
   EXPECT_NE(PageDataJson(content).find("\u00dcbergabe"), std::string::npos);
 }
 
-TEST(PageDataTest, HoldsTheMotion) {
+TEST(PageDataTest, ContainsTheMotion) {
   const nlohmann::json data = Data(SmallContent());
   EXPECT_EQ(data["title"], "kick");
   EXPECT_EQ(data["subtitle"], "sbu@1");
@@ -75,7 +75,7 @@ TEST(PageDataTest, HoldsTheMotion) {
   EXPECT_EQ(LittleEndian(bytes, 11), 0.25f);
 }
 
-TEST(PageDataTest, HoldsAFileToHandOutWhereThereIsOne) {
+TEST(PageDataTest, ContainsTheGlbIfThereIsOne) {
   PageContent content = SmallContent();
   EXPECT_FALSE(Data(content).contains("glb"));
   content.glb = std::string("glTF\0\x01", 6);
@@ -84,7 +84,7 @@ TEST(PageDataTest, HoldsAFileToHandOutWhereThereIsOne) {
   EXPECT_EQ(bytes, content.glb);
 }
 
-TEST(PageDataTest, EveryKeyframeWeighsEveryClass) {
+TEST(PageDataTest, EveryKeyframeHasAWeightForEveryClass) {
   const nlohmann::json data = Data(SmallContent());
   EXPECT_EQ(data["classes"], nlohmann::json({"kick", "hug", "push"}));
   EXPECT_EQ(data["keyframes"], nlohmann::json::parse(R"([{"frame": 0, "weights": [1, 0.5, 0]},
@@ -98,7 +98,7 @@ TEST(PageDataTest, NamesCannotEndTheScript) {
   EXPECT_EQ(Data(content)["title"], content.title);
 }
 
-TEST(PageDataTest, NamesThatAreNotTextAreMadeSo) {
+TEST(PageDataTest, InvalidUtf8InNamesIsReplaced) {
   PageContent content = SmallContent();
   content.title = "\xff";
   EXPECT_EQ(Data(content)["title"], "\xEF\xBF\xBD");  // the replacement character
@@ -116,7 +116,7 @@ TEST(RenderPageTest, IsOneSelfContainedFile) {
   }
 }
 
-TEST(RenderPageTest, TitlesAreTextAndNothingElse) {
+TEST(RenderPageTest, TitlesAreEscaped) {
   PageContent content = SmallContent();
   content.title = "<b>&{{SCRIPT}}";
   const absl::StatusOr<std::string> page = RenderPage(content);
@@ -124,30 +124,30 @@ TEST(RenderPageTest, TitlesAreTextAndNothingElse) {
   EXPECT_THAT(*page, HasSubstr("<title>&lt;b&gt;&amp;{{SCRIPT}}</title>"));
 }
 
-TEST(RenderPageTest, WhatCannotBeShownIsRefused) {
+TEST(RenderPageTest, InvalidContentIsRejected) {
   const auto refused = [](void (*spoil)(PageContent*)) {
     PageContent content = SmallContent();
     spoil(&content);
     return RenderPage(content).status();
   };
   EXPECT_THAT(refused([](PageContent* c) { c->pair.leader.poses = {}; }),
-              StatusIs(kInvalid, HasSubstr("0 frames")));
+              StatusIs(kInvalid, HasSubstr("got 0 frames")));
   EXPECT_THAT(refused([](PageContent* c) {
                 c->pair.leader.frame_rate_hz = c->pair.follower.frame_rate_hz = 0;
               }),
               StatusIs(kInvalid, HasSubstr("at 0 Hz")));
   EXPECT_THAT(refused([](PageContent* c) { c->pair.follower.poses.Resize(1); }),
-              StatusIs(kInvalid, HasSubstr("differ")));
+              StatusIs(kInvalid, HasSubstr("expected equal joints")));
   EXPECT_THAT(refused([](PageContent* c) { c->pair.follower.joint_names[0] = "other"; }),
-              StatusIs(kInvalid, HasSubstr("differ")));
+              StatusIs(kInvalid, HasSubstr("expected equal joints")));
   EXPECT_THAT(refused([](PageContent* c) {
                 c->pair.follower.poses.all()[1].y = std::numeric_limits<float>::quiet_NaN();
               }),
-              StatusIs(kInvalid, HasSubstr("not finite")));
+              StatusIs(kInvalid, HasSubstr("expected finite positions")));
   EXPECT_THAT(refused([](PageContent* c) {
                 c->bones = {{0, 2}};
               }),
-              StatusIs(kInvalid, HasSubstr("joint 2, wanted 0 to 1")));
+              StatusIs(kInvalid, HasSubstr("expected joints 0 to 1, got 2")));
 }
 
 }  // namespace
