@@ -37,9 +37,9 @@ lint: ## Run clang-tidy over what differs from main (LINT=all: over everything)
 	@JOBS=$(JOBS) scripts/lint.sh $(LINT)
 
 .PHONY: check
-check: ## Run every check, the slow ones too (CHECK="links tidy": only these)
+check: ## Run every check, the slow ones too (CHECK="links tidy" runs only these)
 	@scripts/install_packages.sh build test develop
-	@JOBS=$(JOBS) scripts/check.sh $(CHECK)
+	@JOBS=$(JOBS) scripts/check.py $(CHECK)
 
 .PHONY: mutate
 mutate: ## Break the code in small ways, count what the tests notice: docs/mutation.md

@@ -116,7 +116,7 @@ def build_generated_sources(build_dir, jobs):
 def require_configured(build_dir):
     if not (pathlib.Path(build_dir) / "targets.json").is_file():
         sys.exit(f"{build_dir} is not configured: run cmake --preset release first "
-                 "(scripts/check.sh does)")
+                 "(scripts/check.py does)")
 
 
 def run_all(commands, jobs):
