@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# Reads every shell script of the project with shellcheck.
+# Runs shellcheck over every shell script of the project.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-mapfile -t scripts < <(find .ci scripts benchmarks deploy tests -name '*.sh' -o -path .ci/run | sort)
+mapfile -t scripts < <(find .ci scripts benchmarks deploy tests \
+  -name '*.sh' -o -path .ci/run -o -path 'scripts/hooks/*' | sort)
 shellcheck "${scripts[@]}"
 echo "Shell: shellcheck finds nothing in ${#scripts[@]} scripts."
