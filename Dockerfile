@@ -1,29 +1,29 @@
-# Two images. `server` (the last stage, what a plain build makes) holds duet-server, duet and the
-# libraries that they load, and nothing else: no shell, no package manager, no LibTorch. `training` is
-# Debian with LibTorch and every program.
+# Two images. `server` (the last stage, which a plain build makes) holds only duet-server, duet and the
+# libraries that they load: no shell, no package manager, no LibTorch. `training` is Debian with LibTorch and
+# every program.
 #
 #   docker build -t duet .
 #   docker build -t duet-training --target training .
 #   deploy/image/build.sh              the same with podman, with labels filled in
 #
-# The server's container runs as an unprivileged user and writes nothing; deploy/README.md has the line
+# The server's container runs as an unprivileged user and writes nothing; deploy/README.md has the command
 # that runs it.
 
 ARG BASE=debian:bookworm-slim
 
-# Compiler and libraries: made again when a package list changes, never for a change to the sources.
+# Compiler and libraries: rebuilt when a package list changes, never for a change to the sources.
 FROM ${BASE} AS tools
 WORKDIR /src
 COPY packages/build.txt packages/image.txt packages/
 COPY scripts/install_packages.sh scripts/
 RUN scripts/install_packages.sh build image && rm -rf /var/lib/apt/lists/*
 
-# What was compiled before comes from the compiler's cache: a change costs what it touches.
+# The compiler cache provides unchanged objects.
 FROM tools AS build
 ARG CCACHE_DIR=/var/cache/ccache
-# Further settings of CMake.
+# Additional CMake arguments.
 ARG CMAKE_FLAGS=
-# The compiler is told by its content: files of an image have no times of their own.
+# Identifies the compiler by content: all files of an image have the same time.
 ENV LANG=C.UTF-8 CCACHE_DIR=$CCACHE_DIR CCACHE_BASEDIR=/src CCACHE_NOHASHDIR=1 \
     CCACHE_COMPILERCHECK=content
 COPY . .
@@ -43,7 +43,7 @@ RUN --mount=type=cache,id=duet-ccache,target=/var/cache/ccache \
     && cmake --install build/release --prefix /out/usr/local --strip --component training \
     && cmake --install build/release --prefix /out/usr/local --strip --component torch
 
-# The server image's root, of the packages' files alone, with the list of what is in it.
+# The server image's root, with only the packages' files, and its bill of materials.
 FROM ${BASE} AS root
 ARG VERSION=0.1.0
 ARG SBOM_TIME=1970-01-01T00:00:00Z
@@ -60,7 +60,7 @@ RUN deploy/image/make_root.sh /root-of-image packages/runtime.txt \
        >/duet.spdx.json \
     && mv /duet.spdx.json /root-of-image/usr/share/doc/duet/
 
-# The training image's packages, and the list of them.
+# The training image's packages, and its bill of materials.
 FROM ${BASE} AS training-packages
 COPY packages/runtime.txt packages/training.txt /tmp/install/packages/
 COPY scripts/install_packages.sh /tmp/install/scripts/
@@ -78,7 +78,7 @@ RUN deploy/image/write_sbom.py --version "$VERSION" --created "$SBOM_TIME" /reco
 FROM training-packages AS training
 COPY --from=training-records /duet.spdx.json /usr/share/doc/duet/
 COPY LICENSE /usr/share/doc/duet/copyright
-# Nobody becomes root here.
+# No setuid files.
 RUN find / -xdev -type f -perm /6000 -exec chmod a-s {} +
 COPY --from=build-training /out /
 ARG VERSION=0.1.0
@@ -111,12 +111,12 @@ LABEL org.opencontainers.image.title="Duet" \
       org.opencontainers.image.created="$CREATED" \
       org.opencontainers.image.licenses="Apache-2.0"
 ENV PATH=/usr/local/bin:/usr/bin
-# By number: a cluster can then see that it is not root.
+# A number, so that a cluster can verify that it is not root.
 USER 65532:65532
 # gRPC; Prometheus metrics.
 EXPOSE 50051 9464
 STOPSIGNAL SIGTERM
-# Every check opens a connection of its own: a listener that lost its descriptors fails it.
+# Each check opens a new connection, which fails if the listener has no descriptors left.
 HEALTHCHECK --interval=10s --timeout=5s --start-period=30s --retries=3 \
     CMD ["duet", "models", "--server", "127.0.0.1:50051"]
 ENTRYPOINT ["duet-server"]

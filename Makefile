@@ -1,5 +1,5 @@
-# The two commands of the README, and the chores around them. Each installs what is missing, builds
-# and runs; the build itself is CMake's (CMakePresets.json).
+# The two commands of the README, and commands for development. Each installs missing packages, builds and
+# runs; CMake does the build (CMakePresets.json).
 SHELL := /bin/bash
 .DEFAULT_GOAL := help
 
@@ -7,11 +7,11 @@ JOBS ?= $(shell scripts/build_jobs.sh)
 BUILD := build/release
 
 .PHONY: help
-help: ## Say what there is
+help: ## List the commands
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /  make \1\t/' | expand -t 18
 
 .PHONY: demo
-demo: ## Build, start the server, synthesise some reactions, leave pages to open in out/demo
+demo: ## Build, start the server, synthesise some reactions, write pages to out/demo
 	@scripts/install_packages.sh build
 	@JOBS=$(JOBS) scripts/build.sh $(BUILD) duet-server duet
 	@scripts/demo.sh $(BUILD)/bin
@@ -27,27 +27,27 @@ build: ## Build every program and library (release)
 	@JOBS=$(JOBS) scripts/build.sh $(BUILD)
 
 .PHONY: format
-format: ## Lay out the sources with clang-format
+format: ## Format the sources with clang-format
 	@scripts/install_packages.sh test
 	@scripts/format.sh
 
 .PHONY: lint
-lint: ## Run clang-tidy over what differs from main (LINT=all: over everything)
+lint: ## Run clang-tidy on files that differ from main (LINT=all: on all files)
 	@scripts/install_packages.sh build test develop
 	@JOBS=$(JOBS) scripts/lint.sh $(LINT)
 
 .PHONY: check
-check: ## Run every check, the slow ones too (CHECK="links tidy" runs only these)
+check: ## Run every check, including slow ones (CHECK="links tidy" runs only these)
 	@scripts/install_packages.sh build test develop
 	@JOBS=$(JOBS) scripts/check.py $(CHECK)
 
 .PHONY: mutate
-mutate: ## Break the code in small ways, count what the tests notice: docs/mutation.md
+mutate: ## Measure how often the tests notice broken code: docs/mutation.md
 	@scripts/install_packages.sh build test
 	@JOBS=$(JOBS) scripts/mutate.py --report docs/mutation.md
 
 .PHONY: bench
-bench: ## Time the engine and its kernels beside the figures that were committed last, and what hardening costs
+bench: ## Time the engine and its kernels beside the committed figures, and the cost of hardening
 	@scripts/install_packages.sh build test
 	@cmake --preset release -DDUET_BUILD_BENCHMARKS=ON >/dev/null
 	@JOBS=$(JOBS) scripts/build.sh $(BUILD) roofline_benchmark kernel_benchmark clean_up_benchmark \
@@ -56,21 +56,21 @@ bench: ## Time the engine and its kernels beside the figures that were committed
 	@JOBS=$(JOBS) benchmarks/measure_hardening.py $(BUILD)
 
 .PHONY: docs
-docs: ## Make the API reference from headers and proto files: build/docs/html/index.html
+docs: ## Build the API reference from headers and proto files: build/docs/html/index.html
 	@scripts/install_packages.sh develop
 	@mkdir -p build/docs
 	doxygen docs/Doxyfile
 
 .PHONY: python
-python: ## Make the Python package: wheel and sdist in build/python
+python: ## Build the Python package: wheel and sdist in build/python
 	@scripts/install_packages.sh test
 	@scripts/build_python.sh
 
 .PHONY: site
-site: ## Make the site of all documents, with the Python, C++ and wire references: build/site/index.html
+site: ## Build the site of all documents with the API references: build/site/index.html
 	@scripts/install_packages.sh test develop
 	@scripts/build_site.sh
 
 .PHONY: clean
-clean: ## Remove everything that was built or made
+clean: ## Remove build/ and out/
 	rm -rf build out

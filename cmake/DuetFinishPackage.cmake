@@ -1,11 +1,11 @@
-# Run by CPack on the folder of files to be packed, a folder for each component group below it: adds
-# changelog, copyright and lintian's exceptions, the server's README and configuration, and compresses as Debian wants it.
+# CPack runs this on the folder of files to pack, with one folder for each component group below it. Adds
+# changelog, copyright, lintian's exceptions, and the server's README and configuration, and compresses as Debian requires.
 set(names_client duet)
 set(names_development libduet-dev)
 set(names_server duet-server)
 set(names_training duet-training)
 
-# Compressed without name and time, so that the same files give the same package.
+# Compresses without name and time, so that the same files give the same package.
 function(compress file)
   execute_process(COMMAND gzip -9 --no-name --force ${file} COMMAND_ERROR_IS_FATAL ANY)
 endfunction()

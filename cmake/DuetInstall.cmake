@@ -1,12 +1,12 @@
-# What is installed beyond the libraries and programs that their own folders name, and the Debian
-# packages made of it: `cpack -G DEB` in a build folder. A component is a package.
+# Installs the files that no source folder installs, and defines the Debian packages: `cpack -G DEB` in a
+# build folder. A component is a package.
 #
 #   client              duet             the client, its manual pages and completions
 #   client-development  libduet-dev      headers and libraries of the client
 #   server              duet-server      the server, its unit, its configuration
-#   training, torch     duet-training    what trains and measures; LibTorch for `--engine torch`
+#   training, torch     duet-training    training and evaluation; LibTorch for `--engine torch`
 
-# Relative to the prefix, which packages set to /usr; the two of systemd lie where Debian has them.
+# Relative to the prefix, which is /usr in packages. Debian's locations for systemd's files.
 set(DUET_SYSTEMD_UNIT_DIR lib/systemd/system CACHE STRING "Folder of the service's unit")
 set(DUET_SYSUSERS_DIR lib/sysusers.d CACHE STRING "Folder of the user that the service runs as")
 mark_as_advanced(DUET_SYSTEMD_UNIT_DIR DUET_SYSUSERS_DIR)
@@ -33,7 +33,7 @@ set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_PACKAGE_DIRECTORY ${PROJECT_BINARY_DIR}/packages)
 set(CPACK_STRIP_FILES ON)
-# What is packed is built beforehand, so that one package does not build all others.
+# Packing does not build, so that one package does not build all others.
 set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)
 
 set(CPACK_COMPONENTS_ALL client client-development server training torch)
@@ -53,16 +53,16 @@ set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_DEBIAN_CLIENT_PACKAGE_NAME duet)
 set(CPACK_DEBIAN_CLIENT_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_CLIENT_DESCRIPTION "client of the Duet motion synthesis server
-Asks a duet-server for the motion that answers another: one clip, or a whole
-data set of them. Reads BVH, glTF, ASF/AMC, CSV, JSON and NPY, writes several
-of these and pages to look at.")
+Requests the motion that reacts to another from a duet-server: one clip, or a
+whole data set. Reads BVH, glTF, ASF/AMC, CSV, JSON and NPY, and writes several
+of these and HTML pages with a viewer.")
 
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libduet-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libgrpc++-dev, libprotobuf-dev, libabsl-dev")
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "client library of the Duet motion synthesis server
 Headers, static libraries and a CMake package (find_package(duet)) for C++
-programs that ask a duet-server for motion.")
+programs that request motion from a duet-server.")
 
 set(CPACK_DEBIAN_SERVER_PACKAGE_NAME duet-server)
 set(CPACK_DEBIAN_SERVER_PACKAGE_SECTION net)
@@ -73,9 +73,9 @@ set(CPACK_DEBIAN_SERVER_PACKAGE_CONTROL_EXTRA
   ${deploy}/debian/conffiles ${deploy}/debian/postinst ${deploy}/debian/prerm
   ${deploy}/debian/postrm)
 set(CPACK_DEBIAN_SERVER_DESCRIPTION "motion synthesis server, over gRPC
-Answers one character's motion with another's, steered by weights for kinds of
-interaction. Brings its models with it, or serves a folder of them; runs as a
-service that systemd starts, watches and drains.")
+Synthesises the motion with which one character reacts to another, controlled by
+weights for classes of interaction. Serves its embedded models or a folder of
+models, as a service that systemd starts, watches and drains.")
 
 set(CPACK_DEBIAN_TRAINING_PACKAGE_NAME duet-training)
 set(CPACK_DEBIAN_TRAINING_PACKAGE_SECTION science)
@@ -83,9 +83,9 @@ set(CPACK_DEBIAN_TRAINING_PACKAGE_DEPENDS "libopenblas0-openmp")
 set(CPACK_DEBIAN_TRAINING_PACKAGE_RECOMMENDS "librsvg2-bin, fonts-dejavu-core")
 set(CPACK_DEBIAN_TRAINING_DESCRIPTION "training and evaluation of Duet's networks
 Imports pairs of motions, trains the networks that duet-server serves, and
-measures them; with the library by which the server computes in LibTorch.")
+evaluates them. Includes the LibTorch engine of the server.")
 
-# Finishes each package's folder: documents that Debian asks for, pages compressed.
+# Finishes each package's folder: Debian's documents, compressed pages.
 set(CPACK_PRE_BUILD_SCRIPTS ${CMAKE_CURRENT_LIST_DIR}/DuetFinishPackage.cmake)
 set(CPACK_DUET_DEPLOY ${deploy})
 include(CPack)

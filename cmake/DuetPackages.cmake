@@ -1,6 +1,6 @@
-# Everything Duet takes from the distribution, found in one place.
+# Finds all packages of the distribution that Duet uses.
 
-# Debian ships no ProtobufConfig.cmake: module mode, and before gRPC, which would look for it.
+# Debian ships no ProtobufConfig.cmake, so this uses module mode, before gRPC looks for the package.
 find_package(Protobuf REQUIRED)
 find_package(Threads REQUIRED)
 find_package(absl CONFIG REQUIRED)
@@ -13,12 +13,12 @@ if(NOT DUET_CLIENT_ONLY)
   find_package(HWY CONFIG REQUIRED)
   find_package(prometheus-cpp CONFIG REQUIRED)
   find_package(Torch CONFIG REQUIRED)
-  # LibTorch runs on whatever libblas is installed; the reference one is 30 to 60 times slower, so
+  # LibTorch uses any installed libblas. The reference implementation is 30 to 60 times slower, so
   # OpenBLAS is linked by name.
   find_library(DUET_OPENBLAS openblas PATH_SUFFIXES openblas-openmp REQUIRED)
   find_path(DUET_CBLAS_INCLUDE_DIR cblas.h PATH_SUFFIXES openblas-openmp REQUIRED)
 
-  # LibTorch's headers, seen by the few targets that need them.
+  # LibTorch's headers, only for the few targets that need them.
   add_library(duet_torch INTERFACE)
   add_library(duet::torch ALIAS duet_torch)
   target_link_libraries(duet_torch INTERFACE ${DUET_OPENBLAS} ${TORCH_LIBRARIES})

@@ -1,6 +1,6 @@
 # duet_proto_library(NAME proto IMPORT_DIR dir PROTOS a/b.proto ... [GRPC c/d.proto ...])
 # Generates C++ for every proto, and gRPC stubs (with mocks) for those in GRPC. The target
-# duet_generated makes them all: checks that only read the sources need no more.
+# duet_generated makes all of them, which is enough for checks that only read the sources.
 function(duet_proto_library)
   cmake_parse_arguments(A "" "NAME;IMPORT_DIR" "PROTOS;GRPC" ${ARGN})
   set(out ${CMAKE_CURRENT_BINARY_DIR}/gen)

@@ -1,6 +1,6 @@
-# Writes <build>/targets.json once everything is configured: each target of the project with its
-# sources, what it links and which programs of the project it runs. The scripts in scripts/ read it, so
-# that none keeps a list of its own.
+# After configuration, writes <build>/targets.json: each target of the project with its sources, its links
+# and the programs of the project that it runs. The scripts in scripts/ read it and keep no lists of
+# their own.
 #   [{"name": "duet_motion", "type": "STATIC_LIBRARY", "sources": ["model/motion/resample.cc", ...],
 #     "public": ["absl::status", ...], "private": [], "runs": []}, ...]
 # Sources are relative to the top folder; duet:: aliases are resolved.
@@ -38,7 +38,7 @@ function(duet_sources_of target out)
   set(${out} ${paths} PARENT_SCOPE)
 endfunction()
 
-# Sets OUT to what PROPERTY of TARGET names, without what only the linker gets.
+# Sets OUT to the links in PROPERTY of TARGET, without those that only the linker gets.
 function(duet_links_of target property out)
   get_target_property(items ${target} ${property})
   set(links "")
@@ -56,7 +56,7 @@ function(duet_links_of target property out)
   set(${out} ${links} PARENT_SCOPE)
 endfunction()
 
-# Sets OUT to the programs of the project that TARGET waits for without linking them: it runs them.
+# Sets OUT to the programs of the project that TARGET depends on and runs.
 function(duet_runs_of target out)
   get_target_property(items ${target} MANUALLY_ADDED_DEPENDENCIES)
   set(runs "")

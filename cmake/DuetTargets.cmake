@@ -1,4 +1,4 @@
-# How every target of the project is made: explicit sources, aliases, no global flags.
+# Functions for every target of the project: explicit sources, aliases, no global flags.
 include(DuetWarnings)
 include(DuetTools)
 
@@ -27,7 +27,7 @@ function(duet_program)
 endfunction()
 
 # duet_test(NAME motion_test SOURCES a_test.cc DEPS ... [LABELS ...] [ENVIRONMENT ...] [TIMEOUT s])
-# One CTest entry a test program; GoogleTest's main and mocks are linked.
+# One CTest entry for each test program, linked with GoogleTest's main and mocks.
 function(duet_test)
   cmake_parse_arguments(A "" "NAME;TIMEOUT" "SOURCES;DEPS;LABELS;ENVIRONMENT" ${ARGN})
   add_executable(${A_NAME} ${A_SOURCES})

@@ -1,5 +1,4 @@
-# Tools around the build: a table of the targets for the scripts, and what makes building quicker, used
-# where it is installed.
+# Tools for the build: a table of the targets for the scripts; ccache and mold if they are installed.
 include(DuetTargetTable)
 
 find_program(DUET_CCACHE ccache)

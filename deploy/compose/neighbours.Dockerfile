@@ -1,5 +1,5 @@
-# HAProxy and Prometheus from Debian's packages, as the compose file runs them: not as root, on a
-# read-only root.
+# HAProxy and Prometheus from Debian's packages for the compose file: not as root, with a read-only root
+# file system.
 ARG BASE=debian:bookworm-slim
 
 FROM ${BASE} AS proxy
@@ -7,7 +7,7 @@ RUN apt-get update && apt-get install -y --no-install-recommends haproxy \
     && rm -rf /var/lib/apt/lists/*
 USER haproxy
 EXPOSE 8443 8404
-# Lets calls end, then does.
+# Exits after calls have ended.
 STOPSIGNAL SIGUSR1
 ENTRYPOINT ["haproxy", "-W", "-f", "/etc/haproxy/haproxy.cfg"]
 

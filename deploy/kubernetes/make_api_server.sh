@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Builds kube-apiserver from Debian 12's source package of Kubernetes, the only API server that Debian's or
-# npm's packages have: 1.20, for tests/e2e/api_server_test.py. Takes a quarter of an hour of two cores.
+# Builds kube-apiserver 1.20 from Debian 12's source package of Kubernetes, for tests/e2e/api_server_test.py.
+# Neither Debian nor npm has another API server. Takes a quarter of an hour on two cores.
 #   deploy/kubernetes/make_api_server.sh FOLDER      FOLDER/kube-apiserver
 # Needs the packages golang-go and, for the test, etcd-server. DEBIAN_MIRROR names another mirror of Debian.
 set -euo pipefail
@@ -12,7 +12,7 @@ work="$(mktemp -d)"
 readonly work
 trap 'rm -rf "${work}"' EXIT
 
-# With sources and lists of its own: this machine's may be another release's, or have none of sources.
+# Uses its own sources.list: this machine's may be of another release, or have no source packages.
 chmod 755 "${work}"
 mkdir -p "${work}/lists/partial"
 printf 'deb-src [signed-by=%s] %s bookworm main\n' /usr/share/keyrings/debian-archive-keyring.gpg \
@@ -21,7 +21,7 @@ apt=(apt-get -o "Dir::Etc::SourceList=${work}/sources.list" -o Dir::Etc::SourceP
   -o "Dir::State::Lists=${work}/lists" -o "Dir::Cache=${work}/apt-cache")
 "${apt[@]}" update
 (cd "${work}" && "${apt[@]}" source --download-only kubernetes)
-# Before modules: the source lies where its import path says.
+# The source is older than Go modules, so it must be in the folder of its import path.
 readonly source="${work}/go/src/k8s.io/kubernetes"
 mkdir -p "${source}"
 tar --extract --file "$(compgen -G "${work}/kubernetes_*.orig.tar.gz")" --directory "${source}" \
@@ -32,7 +32,7 @@ version="$(sed -n 's/^kubernetes-\([0-9.]*\)\/$/\1/p' \
 cd "${source}"
 export GO111MODULE=off GOPATH="${work}/go" GOCACHE="${work}/cache" CGO_ENABLED=0
 
-# The one generated file that the sources lack: descriptions of all types that ask for one.
+# The one generated file that the sources lack: descriptions of all types that request one.
 mapfile -t described < <(grep -rl --include='*.go' '+k8s:openapi-gen=true' pkg \
   staging/src/k8s.io/{api,apimachinery,apiserver,apiextensions-apiserver,client-go} \
   staging/src/k8s.io/{kube-aggregator,metrics,cloud-provider,controller-manager} \
@@ -44,7 +44,7 @@ go build -o "${work}/openapi-gen" ./vendor/k8s.io/kube-openapi/cmd/openapi-gen
   -p k8s.io/kubernetes/pkg/generated/openapi -r "${work}/violations" \
   -h hack/boilerplate/boilerplate.generatego.txt
 
-# Without the clouds, which would be half of the work.
+# Without the cloud providers, which would take half of the time.
 readonly component=k8s.io/kubernetes/vendor/k8s.io/component-base/version
 go build -tags providerless \
   -ldflags "-s -w -X ${component}.gitVersion=v${version} -X ${component}.gitMajor=1 \

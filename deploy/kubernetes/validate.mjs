@@ -1,7 +1,6 @@
-// Checks manifests against the schemas that Kubernetes, KEDA and the Prometheus operator publish, as npm's
-// kubernetes-models packages carry them: values and required fields by the schemas, names that no
-// schema has by the types that are made of them. Reads JSON, an array of objects, on standard input;
-// exits 1 where one is wrong.
+// Checks manifests against the schemas that Kubernetes, KEDA and the Prometheus operator publish, from npm's
+// kubernetes-models packages: values and required fields by the schemas, unknown names by the types
+// generated from them. Reads a JSON array of objects from standard input; exits with 1 if one is invalid.
 //   npm install --ignore-scripts kubernetes-models @kubernetes-models/keda \
 //       @kubernetes-models/prometheus-operator typescript@5
 //   ... | node deploy/kubernetes/validate.mjs NODE_MODULES
@@ -25,7 +24,7 @@ function fileOf({apiVersion, kind}) {
 
 const nameOf = ({apiVersion, kind, metadata}) => `${apiVersion} ${kind} ${metadata.name}`;
 
-// What the schema has against an object's values, or undefined.
+// The schema's error for an object's values, or undefined.
 async function wrongValue(object) {
   const found = await import(pathToFileURL(fileOf(object)));
   const Model = found[object.kind] ?? found.default[object.kind];
@@ -36,8 +35,8 @@ async function wrongValue(object) {
   }
 }
 
-// What the types have against the names in each object, as [name of the object, message]. An object's
-// fields are told apart from unknown ones only where it stands as it is, so a source is written.
+// The type errors in each object, as [name of the object, message]. TypeScript reports unknown fields only of
+// object literals, so this writes a source file.
 async function wrongNames(objects) {
   const {default: ts} = await import(pathToFileURL(path.join(modules, 'typescript/lib/typescript.js')));
   const folder = mkdtempSync(path.join(tmpdir(), 'manifests-'));

@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
-# Runs a batch in the cluster to its end: the shards, then, once every one of them is done, the merge.
+# Runs a batch in the cluster: the shards and then, when all of them are done, the merge.
 #   deploy/kubernetes/batch/run.sh [NAMESPACE]
-# Interrupted, the same command goes on: what is applied stays, what is done is found done.
+# After an interruption, the same command continues: it keeps applied objects and finished jobs.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
 readonly namespace="${1:-duet}"
 readonly limit=168h
 
-# Waits until a job is done; fails as soon as it has failed.
+# Waits until a job is done; fails as soon as the job fails.
 wait_for() {
   local job="job/$1" condition waits=() first="" status=0
   for condition in complete failed; do
@@ -16,7 +16,7 @@ wait_for() {
     waits+=("$!")
   done
   wait -n -p first "${waits[@]}" || status=$?
-  # The other one would wait for a week.
+  # Otherwise this would wait for a week.
   kill "${waits[@]}" 2>/dev/null || true
   wait "${waits[@]}" 2>/dev/null || true
   if [[ "${status}" -ne 0 || "${first}" != "${waits[0]}" ]]; then
