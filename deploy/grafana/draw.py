@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Draws the panels of the dashboard from a running Prometheus, as a picture: the same queries, without
-Grafana. Fails where Prometheus refuses a query.
+"""Draws the panels of the dashboard as a picture from a running Prometheus, with the same queries but
+without Grafana. Fails if Prometheus rejects a query.
 
     deploy/grafana/draw.py http://localhost:9090 MINUTES dashboard.png
 """
@@ -29,7 +29,7 @@ def filled(expression):
 
 
 def series(address, expression, minutes, end):
-    """What Prometheus answers, as (labels, times, values)."""
+    """Prometheus's result as (labels, times, values)."""
     query = urllib.parse.urlencode({"query": filled(expression), "start": end - 60 * minutes,
                                     "end": end, "step": STEP})
     with urllib.request.urlopen(f"{address}/api/v1/query_range?{query}") as reply:

@@ -1,6 +1,6 @@
-// Checks the dashboard against the types that Grafana publishes, npm's @grafana/schema: the dashboard as a
-// whole, and of each panel what its kind adds (options, and how a field is drawn), which the whole leaves
-// open. Names that no type has are wrong as well. Exits 1 where something is.
+// Checks the dashboard against Grafana's published types (npm's @grafana/schema): the whole dashboard, and the
+// parts that depend on the kind of panel (options and field drawing), which the dashboard's type leaves open.
+// Unknown names are errors too. Exits with 1 if there is an error.
 //   npm install --ignore-scripts @grafana/schema typescript@5
 //   node deploy/grafana/validate.mjs NODE_MODULES [DASHBOARD]
 import {mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync} from 'node:fs';
@@ -14,7 +14,7 @@ const dashboard = JSON.parse(readFileSync(file, 'utf8'));
 const types = path.join(modules, '@grafana/schema/dist/types');
 const {default: ts} = await import(pathToFileURL(path.join(modules, 'typescript/lib/typescript.js')));
 
-// The declarations of a kind of panel.
+// The type declarations of a kind of panel.
 function kindOf({type}) {
   const folder = path.join(types, `raw/composable/${type}/panelcfg/x`);
   return path.join(folder, readdirSync(folder).find((name) => name.endsWith('.d.ts')).replace('.d.ts', ''));
@@ -22,10 +22,10 @@ function kindOf({type}) {
 
 const imported = (file, name) => `import(${JSON.stringify(file)}).${name}`;
 
-// A type as JSON writes it: an enumeration of texts is one of these texts.
+// A type in its JSON form: an enumeration of strings is one of these strings.
 const json = 'type Json<T> = T extends string ? `${T}` : T extends object ? {[K in keyof T]: Json<T[K]>} : T;';
 
-// A literal for each part: only a literal is held to the names that its type has.
+// A literal for each part: TypeScript rejects unknown names only in literals.
 const parts = [['dashboard', imported(path.join(types, 'index'), 'Dashboard'), dashboard]];
 for (const panel of dashboard.panels) {
   const kind = kindOf(panel);
@@ -37,7 +37,7 @@ for (const panel of dashboard.panels) {
 const folder = mkdtempSync(path.join(tmpdir(), 'dashboard-'));
 try {
   const source = path.join(folder, 'dashboard.ts');
-  // A line for each, so that a line's number says which part is wrong.
+  // One line for each part, so that the line number identifies the part.
   writeFileSync(source, parts.map(([, type, value], index) =>
     `export const part${index}: ${type} = ${JSON.stringify(value)};\n`).join('') + json);
   const program = ts.createProgram([source], {

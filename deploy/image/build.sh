@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# Builds the images with podman, labels filled in from the working tree, and checks the server's size.
+# Builds an image with podman, fills in its labels from the working tree, and checks the server image's size.
 #   deploy/image/build.sh                 localhost/duet:VERSION
 #   deploy/image/build.sh training        localhost/duet-training:VERSION
-# BASE names another base; without it `localhost/debian:bookworm-slim` is used where make_base.sh made
-# it. DUET_CCACHE_DIR, a folder of this machine, serves as the compiler's cache. Flags of `podman build`
-# may follow the target's name.
-# The same sources and packages give the same layers: all files have one time, SOURCE_DATE_EPOCH's, 1970
-# by default, so that layers which a change does not touch stay in the cache. The label `created` has the
-# last commit's time.
+# BASE names another base; the default is `localhost/debian:bookworm-slim` if make_base.sh made it.
+# DUET_CCACHE_DIR, a folder of this machine, is the compiler cache. Flags of `podman build` may follow the
+# target's name.
+# The same sources and packages give the same layers: all files have the time SOURCE_DATE_EPOCH (default
+# 1970), so layers that a change does not affect stay in the cache. The label `created` has the time of the last
+# commit.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
@@ -18,7 +18,7 @@ shift || true
 case "${target}" in
   server) name=localhost/duet ;;
   training) name=localhost/duet-training ;;
-  *) echo "build.sh: target '${target}', wanted server or training" >&2 && exit 2 ;;
+  *) echo "build.sh: target: expected server or training, got ${target}" >&2 && exit 2 ;;
 esac
 
 version="$(sed -n 's/^project(duet VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)"
@@ -35,7 +35,7 @@ if [[ -z "${BASE:-}" ]] && podman image exists "${local_base}"; then BASE="${loc
 [[ -z "${DUET_CCACHE_DIR:-}" ]] || flags+=(
   --volume "${DUET_CCACHE_DIR}:/var/cache/host-ccache" --build-arg CCACHE_DIR=/var/cache/host-ccache)
 
-# Podman's own format has no HEALTHCHECK.
+# Podman's default format has no HEALTHCHECK.
 podman build --format docker --timestamp "${epoch}" --target "${target}" \
   --build-arg "VERSION=${version}" --build-arg "REVISION=${revision}" \
   --build-arg "SOURCE=${source_url}" --build-arg "CREATED=${created}" \
@@ -45,6 +45,6 @@ podman build --format docker --timestamp "${epoch}" --target "${target}" \
 bytes="$(podman image inspect --format '{{.Size}}' "${name}:${version}")"
 echo "${name}:${version}: $((bytes / 1000000)) MB"
 if [[ "${target}" == server ]] && ((bytes > limit_mb * 1000000)); then
-  echo "build.sh: the server's image is above ${limit_mb} MB" >&2
+  echo "build.sh: the server's image exceeds ${limit_mb} MB" >&2
   exit 1
 fi

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Compiles and builds the server's image a second time and compares it with the one that is there: every
-# layer must have the digest that it had. Nothing that the first build compiled is used.
+# Compiles and builds the server's image a second time, without anything that the first build compiled, and
+# compares it with the existing one: every layer must have the same digest.
 #   deploy/image/build.sh && deploy/image/check_reproducible.sh
-# Flags of `podman build` may follow, those that the first build had; with --no-cache the packages are
-# installed a second time as well, which gives the same as long as Debian's have not been renewed.
-# DUET_SECOND_CCACHE_DIR, a folder of this machine that no build but this one uses, keeps what is compiled
-# here: a check that was interrupted goes on, and the next one compiles only what has changed since. Both
-# builds then still have compiled each file by themselves.
+# Flags of `podman build` may follow: those of the first build. With --no-cache the packages are installed a
+# second time as well, with the same result unless Debian has updated them.
+# DUET_SECOND_CCACHE_DIR, a folder of this machine that no other build uses, keeps the objects of this check: an
+# interrupted check continues, and the next one compiles only what has changed. Each of the two builds has still
+# compiled each file itself.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
@@ -16,13 +16,13 @@ layers() {
   podman image inspect --format '{{range .RootFS.Layers}}{{println .}}{{end}}' "${image}"
 }
 
-# Another folder than any before: with no volume behind it, it is empty.
+# A new folder, which is empty without a volume.
 cache="/var/cache/second-ccache-$(date +%s)"
 flags=(--build-arg "CCACHE_DIR=${cache}")
 if [[ -n "${DUET_SECOND_CCACHE_DIR:-}" ]]; then
   mkdir -p "${DUET_SECOND_CCACHE_DIR}"
   if [[ "${DUET_SECOND_CCACHE_DIR}" -ef "${DUET_CCACHE_DIR:-}" ]]; then
-    echo "check_reproducible: DUET_SECOND_CCACHE_DIR is the first build's cache, wanted another" >&2
+    echo "check_reproducible: DUET_SECOND_CCACHE_DIR: expected another folder, got the first build's cache" >&2
     exit 2
   fi
   flags+=(--volume "$(realpath "${DUET_SECOND_CCACHE_DIR}"):${cache}")

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # Makes the image `localhost/debian:bookworm-slim` from Debian's packages, for machines that reach a
-# Debian mirror but no image registry. As root; needs mmdebstrap and podman or buildah.
+# Debian mirror but no image registry. Run it as root; it needs mmdebstrap and podman.
 #   deploy/image/make_base.sh
-# The Dockerfile then builds on it with --build-arg BASE=localhost/debian:bookworm-slim, which is what
-# deploy/image/build.sh does where the image is there.
+# deploy/image/build.sh uses the image if it exists; for other builds, pass
+# --build-arg BASE=localhost/debian:bookworm-slim.
 set -euo pipefail
 
 readonly name=localhost/debian:bookworm-slim
@@ -20,14 +20,14 @@ work="$(mktemp -d)"
 readonly work
 trap 'rm -rf "${work}"' EXIT
 
-# What Debian's own slim image leaves out; copyright files stay.
+# Paths that Debian's slim image omits; copyright files stay.
 readonly excluded=(/usr/share/man /usr/share/info /usr/share/locale /usr/share/doc /usr/share/groff
   /usr/share/lintian /usr/share/linda)
 options=()
 for folder in "${excluded[@]}"; do options+=(--dpkgopt="path-exclude=${folder}/*"); done
 options+=(--dpkgopt='path-include=/usr/share/doc/*/copyright')
 
-# No archive is named: mmdebstrap's own choice is bookworm with its updates and security fixes.
+# Names no archive: mmdebstrap's default is bookworm with its updates and security fixes.
 mmdebstrap --mode=root --variant=minbase --include=ca-certificates "${options[@]}" \
   bookworm "${work}/base.tar"
 podman import --change 'CMD ["bash"]' "${work}/base.tar" "${name}"

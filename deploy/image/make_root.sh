@@ -1,18 +1,18 @@
 #!/usr/bin/env bash
-# Copies what the listed packages and their dependencies installed into a folder that becomes an
-# image's root: libraries, licences and dpkg's record of them, without shell, package manager or any
-# program that may become root. Runs in a stage of the Dockerfile, where the packages are installed.
+# Copies the installed files of the listed packages and their dependencies to a folder that becomes an
+# image's root: libraries, licences and dpkg's records, without shell, package manager or setuid programs.
+# Runs in a stage of the Dockerfile in which the packages are installed.
 #   deploy/image/make_root.sh ROOT LIST...      LIST: packages/runtime.txt
 set -euo pipefail
 
 readonly root="$1"
 shift
 
-# Dependencies of maintainer scripts alone, which have run already.
+# Dependencies only of maintainer scripts, which have already run.
 readonly not_copied=" debconf debconf-2.0 dpkg "
 
-# Prints the installed package behind each dependency of a package: of alternatives the first that
-# is there.
+# Prints the installed package for each dependency of a package: of alternatives, the first that is
+# installed.
 dependencies_of() {
   local clause name
   dpkg-query -W -f '${Pre-Depends},${Depends}' "$1" | tr ',' '\n' | while read -r clause; do
@@ -25,7 +25,7 @@ dependencies_of() {
   done
 }
 
-# Adds a package and all that it needs to `packages`.
+# Adds a package and its dependencies to `packages`.
 declare -A packages=()
 add() {
   local package="$1" dependency
@@ -34,7 +34,7 @@ add() {
   for dependency in $(dependencies_of "${package}"); do add "${dependency}"; done
 }
 
-# The files of a package that the image has use for, one a line.
+# Prints the files of a package that the image needs, one in each line.
 files_of() {
   local file
   dpkg-query -L "$1" | while read -r file; do
@@ -47,7 +47,7 @@ files_of() {
   done
 }
 
-# What scanners read in images without dpkg: a record for each package.
+# Scanners read these records in images without dpkg, one for each package.
 record() {
   dpkg-query -s "$1" >"${root}/var/lib/dpkg/status.d/$1"
 }
@@ -73,14 +73,14 @@ main() {
     record "${package}"
   done
 
-  # Names for the two users that there are; where names are looked up; whom TLS clients believe; the
-  # release, which scanners ask for.
+  # The names of the two users; the order of name lookup; the trusted certificate authorities; the release,
+  # which scanners need.
   printf 'root:x:0:0:root:/:/nologin\nduet:x:65532:65532:Duet:/:/nologin\n' >"${root}/etc/passwd"
   printf 'root:x:0:\nduet:x:65532:\n' >"${root}/etc/group"
   printf 'hosts: files dns\n' >"${root}/etc/nsswitch.conf"
   cp /etc/ssl/certs/ca-certificates.crt "${root}/etc/ssl/certs/"
   cp -L /etc/os-release "${root}/etc/os-release"
-  # The loader's cache for what lies here.
+  # The loader's cache for these libraries.
   ldconfig -r "${root}"
   rm -rf "${root}/var/cache"
   echo "make_root: ${#names[@]} packages: ${names[*]}"

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Writes the bill of materials of an image, SPDX 2.3 in JSON: Duet itself and every Debian package that
-dpkg's records name, with version, source package and the licences its copyright file declares.
+"""Writes the bill of materials of an image, SPDX 2.3 in JSON: Duet and every Debian package in dpkg's
+records, with version, source package and the licences that its copyright file declares.
 
     write_sbom.py --version 0.1.0 --created 2026-01-01T00:00:00Z ROOT >duet.spdx.json
 
@@ -17,7 +17,7 @@ import sys
 
 
 def records(root):
-    """dpkg's records of the packages that are installed, as {field: value}, by name."""
+    """dpkg's records of the installed packages as {field: value}, sorted by name."""
     folder = root / "var/lib/dpkg/status.d"
     files = sorted(folder.iterdir()) if folder.is_dir() else [root / "var/lib/dpkg/status"]
     found = []
@@ -39,7 +39,7 @@ def licences(root, package):
 
 
 def source_of(fields):
-    """The source package and its version: what security notices name."""
+    """The source package and its version, which security notices name."""
     name, version = fields.get("Source", fields["Package"]), fields["Version"]
     with_version = re.fullmatch(r"(\S+) \((\S+)\)", name)
     return with_version.groups() if with_version else (name, version)

@@ -1,17 +1,17 @@
 #!/usr/bin/env bash
-# One shard of a `duet batch`, as a task of a job array: starts a server on the task's own cores, has it
-# answer the shard's items, drains it. submit_batch.sh submits it with the words of `duet batch`.
+# One shard of a `duet batch`, as a task of a job array: starts a server on the task's own cores, runs the
+# shard's items on it, and drains it. submit_batch.sh submits it with the arguments of `duet batch`.
 #SBATCH --job-name=duet-batch
 #SBATCH --requeue
 #SBATCH --open-mode=append
-# Before the time limit the client is told to stop, so that its calls end and the task can go on later.
+# Stops the client before the time limit, so that its calls end and the task can continue later.
 #SBATCH --signal=B:TERM@60
 #
-# Exit codes of `duet batch`: 0, the shard is settled; 1, worth running again, which this task asks for;
-# 2 and 42, it is not. A task that is killed, or whose node is lost, goes on from the shard's journal.
+# Exit codes of `duet batch`: 0, the shard is settled; 1, the task requeues itself; 2 and 42, it fails for good.
+# A task that is killed, or whose node is lost, continues from the shard's journal.
 #
-# Slurm copies this file alone to the node, so that what it has in common with train_task.sh (waiting behind a
-# signal, asking to be run again) stands in both.
+# Slurm copies only this file to the node, so it repeats code of train_task.sh (waiting for a process despite
+# signals, requeueing).
 set -uo pipefail
 
 readonly most_restarts=20
@@ -22,7 +22,7 @@ say() {
   printf '%s %s: %s\n' "$(date --utc +%FT%TZ)" "task ${SLURM_ARRAY_TASK_ID}" "$*" >&2
 }
 
-# SIGTERM drains a server: calls end, then it does.
+# SIGTERM drains the server: it exits after its calls have ended.
 stop_server() {
   [[ -n "${server_pid}" ]] || return 0
   kill -TERM "${server_pid}" 2>/dev/null
@@ -36,7 +36,7 @@ clean_up() {
   rm -rf "${scratch}"
 }
 
-# Prints the port of the server once it serves; fails where it ended before.
+# Prints the port of the server when it serves; fails if the server exits before.
 port_of_server() {
   local log="$1" port=""
   while kill -0 "${server_pid}" 2>/dev/null; do
@@ -47,7 +47,7 @@ port_of_server() {
   return 1
 }
 
-# Runs the task again, from its journal, unless it has been so often already that something is wrong.
+# Runs the task again, from its journal, unless it has already run too often.
 requeue_or_fail() {
   local status="$1"
   if ((${SLURM_RESTART_COUNT:-0} >= most_restarts)); then
@@ -56,7 +56,7 @@ requeue_or_fail() {
   fi
   say "ended with ${status}: asks to be run again"
   clean_up
-  # Slurm ends this script as it requeues the task.
+  # Slurm ends this script when it requeues the task.
   scontrol requeue "${SLURM_ARRAY_JOB_ID}_${SLURM_ARRAY_TASK_ID}"
   sleep 60
   exit "${status}"
@@ -67,8 +67,8 @@ main() {
   trap clean_up EXIT
   trap '[[ -z "${client_pid}" ]] || kill -TERM "${client_pid}" 2>/dev/null' TERM
 
-  # Any free port: tasks share nodes. The loopback alone: nobody else is meant. As many workers as the
-  # task has cores, whether Slurm binds tasks to cores or not.
+  # Any free port, because tasks share nodes; only the loopback, because nobody else calls. As many workers as
+  # the task has cores, even if Slurm does not bind tasks to cores.
   : >"${scratch}/server.log"
   duet-server --listen 127.0.0.1:0 --metrics-listen off --workers "${SLURM_CPUS_PER_TASK:-1}" \
     2>>"${scratch}/server.log" &
@@ -77,12 +77,12 @@ main() {
   port="$(port_of_server "${scratch}/server.log")" ||
     { tail -n 5 "${scratch}/server.log" >&2 && requeue_or_fail 1; }
 
-  # The shard is told by the array's index and count (SLURM_ARRAY_TASK_ID, SLURM_ARRAY_TASK_COUNT).
+  # The array's index and count select the shard (SLURM_ARRAY_TASK_ID, SLURM_ARRAY_TASK_COUNT).
   duet batch "$@" --server "127.0.0.1:${port}" --patience 10 &
   client_pid=$!
   wait "${client_pid}"
   status=$?
-  # A wait that a signal ended is no end of the client.
+  # A signal can end the wait before the client ends.
   while kill -0 "${client_pid}" 2>/dev/null; do
     wait "${client_pid}"
     status=$?

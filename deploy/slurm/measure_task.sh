@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Measures the folds once all are trained; submit_training.sh submits it.
+# Evaluates the folds when all are trained; submit_training.sh submits it.
 #   measure_task.sh DATA RUNS FOLDS
 #SBATCH --job-name=duet-folds
 #SBATCH --requeue

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Joins the shards of a batch once all of them are settled; submit_batch.sh submits it.
+# Merges the shards of a batch when all of them are settled; submit_batch.sh submits it.
 #SBATCH --job-name=duet-merge
 #SBATCH --requeue
 #SBATCH --open-mode=append

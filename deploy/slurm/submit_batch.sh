@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Submits a `duet batch` as a job array, a shard each, and the job that merges the shards when all of
-# them are done.
-#   deploy/slurm/submit_batch.sh SHARDS OUT [words of sbatch...] -- [words of duet batch...]
+# Submits a `duet batch` as a job array with one shard in each task, and the job that merges the shards when
+# all of them are done.
+#   deploy/slurm/submit_batch.sh SHARDS OUT [arguments of sbatch...] -- [arguments of duet batch...]
 #   deploy/slurm/submit_batch.sh 100 set --cpus-per-task=8 --time=4:00:00 -- leaders --recipe mixes.textproto
-# OUT and the leaders lie on storage that all nodes see; duet and duet-server are in the PATH there.
-# Prints the numbers of the two jobs. The same words again go on where a batch stopped.
+# OUT and the leaders must be on storage that all nodes see, and duet and duet-server in their PATH.
+# Prints the numbers of the two jobs. The same command again continues a batch that stopped.
 set -euo pipefail
 
 folder="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
@@ -27,7 +27,7 @@ shift
 mkdir -p "${out}/logs"
 array="$(sbatch --parsable --array="0-$((shards - 1))" --output="${out}/logs/shard-%a.log" \
   "${sbatch_words[@]}" "${folder}/batch_task.sh" "$@" --out "${out}")"
-# Once every shard is settled; not at all where one failed for good.
+# Runs when every shard is settled, and not at all if one failed for good.
 merge="$(sbatch --parsable --dependency="afterok:${array}" --kill-on-invalid-dep=yes \
   --output="${out}/logs/merge.log" "${folder}/merge_task.sh" "${out}")"
 echo "shards ${array}, merge ${merge}"

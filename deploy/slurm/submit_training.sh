@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Submits a training that leaves one subject out as a job array, a fold each, and the job that measures
-# them when all are trained.
-#   deploy/slurm/submit_training.sh DATA RUNS "SUBJECT..." [words of sbatch...] -- [words of duet-train...]
+# Submits leave-one-subject-out training as a job array with one fold in each task, and the job that evaluates
+# the folds when all are trained.
+#   deploy/slurm/submit_training.sh DATA RUNS "SUBJECT..." [arguments of sbatch...] -- [arguments of duet-train...]
 #   deploy/slurm/submit_training.sh sbu runs "s01 s02 s03" --cpus-per-task=4 -- --config flow
-# DATA and RUNS lie on storage that all nodes see; duet-train and duet-eval are in the PATH there.
+# DATA and RUNS must be on storage that all nodes see, and duet-train and duet-eval in their PATH.
 set -euo pipefail
 
 folder="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"

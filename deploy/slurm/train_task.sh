@@ -1,18 +1,17 @@
 #!/usr/bin/env bash
-# One fold of a training that leaves one subject out, as a task of a job array: trains without one
-# subject. submit_training.sh submits it:
-#   train_task.sh FOLDS [words of duet-train...]
+# One fold of leave-one-subject-out training, as a task of a job array. submit_training.sh submits it:
+#   train_task.sh FOLDS [arguments of duet-train...]
 #SBATCH --job-name=duet-train
 #SBATCH --requeue
 #SBATCH --open-mode=append
-# Before the time limit training is ended, so that the task asks to be run again.
+# Stops the training before the time limit, so that the task can requeue itself.
 #SBATCH --signal=B:TERM@60
 #
-# A training that a signal ended (killed for memory, the time limit) is worth running again and goes on
-# with the epoch after the last finished one; one that ended by itself, of its data or its words, is not.
+# After a signal (killed for memory, the time limit) the task runs again and continues with the epoch after the
+# last finished one. A training that fails because of its data or arguments does not run again.
 #
-# Slurm copies this file alone to the node, so that what it has in common with batch_task.sh (waiting behind a
-# signal, asking to be run again) stands in both.
+# Slurm copies only this file to the node, so it repeats code of batch_task.sh (waiting for a process despite
+# signals, requeueing).
 set -uo pipefail
 
 readonly most_restarts=20
@@ -30,13 +29,13 @@ main() {
   fold="${folds[${SLURM_ARRAY_TASK_ID}]}"
   trap '[[ -z "${trainer_pid}" ]] || kill -TERM "${trainer_pid}" 2>/dev/null' TERM
 
-  # BLAS has the task's cores; more threads than those only wait for one another.
+  # BLAS gets as many threads as the task has cores; more would only wait for each other.
   OMP_NUM_THREADS="${SLURM_CPUS_PER_TASK:-1}" duet-train --protocol loso --fold "${fold}" \
     --threads "${SLURM_CPUS_PER_TASK:-1}" "$@" &
   trainer_pid=$!
   wait "${trainer_pid}"
   status=$?
-  # A wait that a signal ended is no end of the training.
+  # A signal can end the wait before the training ends.
   while kill -0 "${trainer_pid}" 2>/dev/null; do
     wait "${trainer_pid}"
     status=$?
@@ -48,7 +47,7 @@ main() {
   ((${SLURM_RESTART_COUNT:-0} < most_restarts)) ||
     { say "restarted ${SLURM_RESTART_COUNT} times: given up" && exit "${status}"; }
   say "ended with ${status}: asks to be run again"
-  # Slurm ends this script as it requeues the task.
+  # Slurm ends this script when it requeues the task.
   scontrol requeue "${SLURM_ARRAY_JOB_ID}_${SLURM_ARRAY_TASK_ID}"
   sleep 60
   exit "${status}"
