@@ -2,8 +2,6 @@
 
 import math
 import os
-import pathlib
-import re
 import resource
 import shutil
 import signal
@@ -16,79 +14,36 @@ import build_tree
 LEFT_OUT = {".git", "build", "out", "__pycache__"}
 CONFIGURE = ("-G", "Ninja", "-DCMAKE_BUILD_TYPE=Debug", "-DDUET_BUILD_TESTS=ON",
              "-DDUET_BUILD_BENCHMARKS=OFF",
-             # Quick to compile; an index past a vector's end is caught where it happens.
+             # Compiles quickly, and catches an index past a vector's end where it happens.
              "-DCMAKE_CXX_FLAGS_DEBUG=-O0 -D_GLIBCXX_ASSERTIONS")
-BUILD_LIMIT_S = 900
-BASELINE_LIMIT_S = 3600  # a loaded machine may take long; nothing is judged by it
-MEMORY_LIMIT = 4 << 30  # bytes of address space: a mutation may allocate without end
-# A mutation that computes without end is stopped by processor time, which does not depend on what
-# else the machine does; one that waits without end by the clock, set so wide that load alone
-# does not reach it.
-CPU_ALLOWANCE_S, WALL_ALLOWANCE_S, TIMES_LONGER = 10, 60, 5
-SUITE = re.compile(r"^(?:TYPED_)?TEST(?:_F|_P)?\((\w+)", re.MULTILINE)
-
-
-class TestRun(typing.NamedTuple):
-    """A test program, or those of its suites that `filter` (GoogleTest's) lets through."""
-    program: str
-    filter: str = "*"
-
-
-def tests_for(targets, library, file, root=build_tree.ROOT):
-    """What judges a file: the tests of its own folder in tests/, then all the others of programs
-    that link its library, or that start a program which links it."""
-    reach = {name: (name, *target.runs) for name, target in targets.items()
-             if not target.is_library and "GTest::gtest_main" in target.links}
-    users = [name for name, linked in reach.items()
-             if all(build_tree.is_torch_free(targets, item) for item in linked)
-             and any(library in build_tree.closure(targets, item) for item in linked)]
-    own = own_tests(targets, users, file, root)
-    whole = {run.program for run in own if run == TestRun(run.program)}
-    parts = {run.program for run in own} - whole
-    others = [name for name in users if name in parts or name not in whole
-              and any(library in targets[item].links for item in reach[name])]
-    return own, [TestRun(name) for name in sorted(others)]
-
-
-def own_tests(targets, users, file, root):
-    """Of the programs `users`, the suites whose sources are in the folder of tests/ that mirrors
-    the file's, or the nearest above it that has any."""
-    room = pathlib.PurePosixPath(file).parent
-    mirror = room.relative_to("model") if room.parts[0] == "model" else room
-    for folder in (mirror, *mirror.parents):
-        found = [TestRun(name, suites_in(targets[name].sources, "tests" / folder, root))
-                 for name in users
-                 if any(pathlib.PurePosixPath(source).parent == "tests" / folder
-                        for source in targets[name].sources)]
-        if found and folder.parts:
-            return sorted(found)
-    return []
-
-
-def suites_in(sources, folder, root):
-    """A filter for the suites of the sources in a folder; "*" where the program has no others."""
-    inside = [source for source in sources if pathlib.PurePosixPath(source).parent == folder]
-    if len(inside) == len(sources):
-        return "*"
-    suites = {suite for source in inside
-              for suite in SUITE.findall((root / source).read_text(encoding="utf-8"))}
-    # Suites with parameters or types have a name in front or behind.
-    return ":".join(f"{suite}.*:*/{suite}.*:{suite}/*" for suite in sorted(suites))
 
 
 class Limits(typing.NamedTuple):
-    """What a command may take: seconds by the clock, seconds of processor time, bytes of memory.
-    The last two are for each process that it starts."""
+    """Limits of a command: seconds of wall time and, for each process, of CPU time; bytes of address space."""
     wall_s: float
     cpu_s: typing.Optional[float] = None
     memory: typing.Optional[int] = None
 
 
+BUILD_LIMITS = Limits(900)
+BASELINE_LIMITS = Limits(3600, memory=4 << 30)  # a loaded machine may take long
+# Endless computation hits the CPU limit, which other load does not move. Endless waiting hits the wall limit,
+# which is too wide for load to reach.
+CPU_ALLOWANCE_S, WALL_ALLOWANCE_S, TIMES_LONGER = 10, 60, 5
+
+
+class TestRun(typing.NamedTuple):
+    """A test program, or those of its suites that GoogleTest's `filter` selects."""
+    program: str
+    filter: str = "*"
+
+
 class Workshop:
     def __init__(self, folder, origin):
-        self.origin = origin
-        self.source_dir, self.build_dir = folder / "source", folder / "build"
-        self.tests, self.limits = {}, {}
+        self.origin, self.source_dir, self.build_dir = origin, folder / "source", folder / "build"
+        self.tests, self.limits, self.mutated = {}, {}, None
+        # Workshops share compiled objects, and a file that is restored compiles from the cache.
+        self.environment = {**os.environ, "CCACHE_BASEDIR": str(folder), "CCACHE_NOHASHDIR": "1"}
 
     def prepare(self):
         """Brings the copy up to date, and configures it."""
@@ -97,44 +52,35 @@ class Workshop:
                        check=True, stdout=subprocess.DEVNULL)
 
     def build_and_time(self, runs):
-        """Builds the tests as they are. They must pass; how long they take sets their limits."""
-        programs = sorted({run.program for run in runs})
-        environment = {**os.environ, "CCACHE_BASEDIR": str(self.source_dir.parent),
-                       "CCACHE_NOHASHDIR": "1"}
-        subprocess.run(["ninja", "-C", self.build_dir, *programs], check=True, env=environment,
-                       stdout=subprocess.DEVNULL)
+        """Builds the tests as they are. They must pass; their times set the limits."""
+        subprocess.run(self.ninja(runs), check=True, env=self.environment, stdout=subprocess.DEVNULL)
         self.tests = build_tree.read_tests(self.build_dir)
         for run in runs:
             start, cpu_start = time.monotonic(), children_cpu_s()
-            if self.run(run, Limits(BASELINE_LIMIT_S, memory=MEMORY_LIMIT)) != "passed":
-                raise SystemExit(f"{run.program} fails as it is: mend it first")
+            if self.run(run, BASELINE_LIMITS) != "passed":
+                raise SystemExit(f"{run.program}: expected the unchanged tests to pass, got a failure")
             self.limits[run] = Limits(
                 WALL_ALLOWANCE_S + TIMES_LONGER * (time.monotonic() - start),
-                CPU_ALLOWANCE_S + TIMES_LONGER * (children_cpu_s() - cpu_start), MEMORY_LIMIT)
+                CPU_ALLOWANCE_S + TIMES_LONGER * (children_cpu_s() - cpu_start), BASELINE_LIMITS.memory)
 
-    def attempt(self, file, text, own, others):
-        """Puts a mutated file in place, builds, tests: the outcome, and who noticed."""
-        self.write(file, text)
-        for runs in filter(None, (own, others)):
-            if not self.build(sorted({run.program for run in runs})):
+    def attempt(self, file, text, tiers):
+        """Builds and tests with a mutated file: the outcome, and the program that noticed."""
+        if self.mutated not in (None, file):
+            shutil.copyfile(self.origin / self.mutated, self.source_dir / self.mutated)
+        self.mutated = file
+        (self.source_dir / file).write_text(text, encoding="utf-8")
+        for tier in filter(None, tiers):
+            if limited(self.ninja(tier), BUILD_LIMITS, self.environment) != "passed":
                 return {"outcome": "invalid"}
-            for run in runs:
+            for run in tier:
                 result = self.run(run, self.limits[run])
                 if result != "passed":
                     return {"outcome": "caught" if result == "failed" else "timeout",
-                            "by": run.program, "own": run in own}
+                            "by": run.program, "own": tier is tiers[0]}
         return {"outcome": "survived"}
 
-    def restore(self, file, text):
-        self.write(file, text)
-
-    def write(self, file, text):
-        (self.source_dir / file).write_text(text, encoding="utf-8")
-
-    def build(self, programs):
-        # A mutation is compiled once: a compiler cache would only fill up.
-        return limited(["ninja", "-C", self.build_dir, *programs], Limits(BUILD_LIMIT_S),
-                       {**os.environ, "CCACHE_DISABLE": "1"}) == "passed"
+    def ninja(self, runs):
+        return ["ninja", "-C", self.build_dir, *sorted({run.program for run in runs})]
 
     def run(self, run, limits):
         command, environment, _ = self.tests[run.program]
@@ -143,36 +89,24 @@ class Workshop:
 
 
 def children_cpu_s():
-    """Processor time of all processes that have ended, those that they started included."""
+    """CPU time of all processes that have ended, including those that they started."""
     usage = resource.getrusage(resource.RUSAGE_CHILDREN)
     return usage.ru_utime + usage.ru_stime
 
 
 def limited(command, limits, environment):
     """Runs a command with all that it starts: "passed", "failed" or "timeout"."""
-    def limit():
-        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-        if limits.memory:
-            resource.setrlimit(resource.RLIMIT_AS, (limits.memory, limits.memory))
-        if limits.cpu_s:
-            seconds = math.ceil(limits.cpu_s)  # SIGXCPU at the first, SIGKILL at the second
-            resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 5))
-    process = subprocess.Popen(list(map(str, command)), env=environment, stdin=subprocess.DEVNULL,
-                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-                               start_new_session=True, preexec_fn=limit)
-    try:
-        code = process.wait(limits.wall_s)
-        return {0: "passed", -signal.SIGXCPU: "timeout"}.get(code, "failed")
-    except subprocess.TimeoutExpired:
-        return "timeout"
-    finally:
-        if process.poll() is None:
-            os.killpg(process.pid, signal.SIGKILL)
-            process.wait()
+    bounds = ["prlimit", "--core=0", *([f"--as={limits.memory}"] if limits.memory else []),
+              # SIGXCPU at the first, SIGKILL at the second
+              *([f"--cpu={math.ceil(limits.cpu_s)}:{math.ceil(limits.cpu_s) + 5}"] if limits.cpu_s else [])]
+    code = subprocess.run(["timeout", "--signal=KILL", str(limits.wall_s), *bounds, *map(str, command)],
+                          env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                          stderr=subprocess.DEVNULL, check=False).returncode
+    return {0: "passed", -signal.SIGXCPU: "timeout", -signal.SIGKILL: "timeout"}.get(code, "failed")
 
 
 def copy_tree(origin, copy):
-    """Makes `copy` equal to `origin`, touching only files that differ: the rest is not rebuilt."""
+    """Makes `copy` equal to `origin`. Equal files stay untouched, so that they are not rebuilt."""
     copy.mkdir(parents=True, exist_ok=True)
     names = {entry.name for entry in os.scandir(origin)} - LEFT_OUT
     for entry in list(os.scandir(copy)):
