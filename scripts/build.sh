@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Configures the release preset where that was not done yet, and builds.
+# Configures the release preset if necessary, and builds.
 #   scripts/build.sh build/release [target...]
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -7,8 +7,8 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 build_dir="$1"
 shift
 
-# Without the test libraries: `make test` adds them, and turns the tests on. What was configured
-# before stays as it is.
+# Tests are off because their libraries may be missing; `make test` installs these and turns tests on. An
+# existing configuration stays.
 if [[ ! -f "${build_dir}/build.ninja" ]]; then
   cmake --preset release -DDUET_BUILD_TESTS=OFF -DDUET_BUILD_BENCHMARKS=OFF
 fi

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Prints how many compilations to run at once: one a core, fewer where memory would not last. A file
-# that includes LibTorch's headers takes 1.2 GB.
-#   scripts/build_jobs.sh [SYSTEM_ROOT]      SYSTEM_ROOT: / but in tests
+# Prints how many compilations to run in parallel: one for each core, fewer if memory is short. A file that
+# includes LibTorch's headers takes 1.2 GB.
+#   scripts/build_jobs.sh [SYSTEM_ROOT]      SYSTEM_ROOT: / except in tests
 set -euo pipefail
 
 readonly job_kib=$((1200 * 1024))
@@ -9,8 +9,8 @@ readonly root="${1:-}"
 
 cores="$(nproc)"
 available_kib="$(awk '/^MemAvailable:/ {print $2}' "${root}/proc/meminfo")"
-# A container may hold less than the machine: version 2's limit, then version 1's. "max" is none, and
-# so is version 1's largest number.
+# A container's limit may be below the machine's memory: control groups version 2, then version 1. "max" means
+# no limit, and so does version 1's largest number.
 for file in memory.max memory/memory.limit_in_bytes; do
   if limit="$(cat "${root}/sys/fs/cgroup/${file}" 2>/dev/null)" && [[ "${limit}" =~ ^[0-9]+$ ]]; then
     limit_kib=$((limit / 1024))

@@ -1,22 +1,22 @@
 #!/usr/bin/env bash
-# Makes the site: every document, the Python API and the wire contract, as static pages. Fails where
-# a link leads nowhere.
+# Builds the site: every document, the Python API and the wire contract, as static pages. Fails on a broken
+# link.
 #   scripts/build_site.sh [folder]            (build/site; open its index.html)
-#   scripts/build_site.sh folder --no-cpp     without the C++ reference, which wants Doxygen
+#   scripts/build_site.sh folder --no-cpp     without the C++ reference, which needs Doxygen
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 out="${1:-build/site}"
 for module in sphinx myst_parser furo; do
   /usr/bin/python3 -c "import ${module}" 2>/dev/null || {
-    echo "build_site.sh: no Python module ${module}; install the packages of packages/test.txt" >&2
+    echo "build_site.sh: expected the Python module ${module}, got none; install the packages of packages/test.txt" >&2
     exit 1
   }
 done
 
 tags=()
 if [[ "${2:-}" != --no-cpp ]]; then
-  command -v doxygen >/dev/null || { echo "build_site.sh: no doxygen; install it, or say --no-cpp" >&2 && exit 1; }
+  command -v doxygen >/dev/null || { echo "build_site.sh: expected doxygen, got none; install it or use --no-cpp" >&2 && exit 1; }
   mkdir -p build/docs
   doxygen docs/Doxyfile >/dev/null
   tags=(-t cpp)

@@ -1,4 +1,4 @@
-"""What a configured build folder knows: targets with their links, tests, compile commands."""
+"""Reads a configured build folder: targets with their links, tests, compile commands."""
 
 import concurrent.futures
 import dataclasses
@@ -19,7 +19,7 @@ class Target:
     name: str
     type: str  # CMake's: STATIC_LIBRARY, EXECUTABLE, ...
     sources: tuple  # relative to the top folder
-    public: tuple  # what it links; its users link them as well
+    public: tuple  # links that its users inherit
     private: tuple
     runs: tuple = ()  # programs of the project that it starts
 
@@ -70,7 +70,7 @@ def read_tests(build_dir):
 
 
 def torch_free_tests(build_dir, label=None):
-    """The test programs that neither link nor load LibTorch; with `label`, only those that have it."""
+    """The test programs that neither link nor load LibTorch; with `label`, only those with this label."""
     targets = read_targets(build_dir)
     return sorted(name for name, (_, _, labels) in read_tests(build_dir).items()
                   if name in targets and is_torch_free(targets, name)
@@ -79,7 +79,7 @@ def torch_free_tests(build_dir, label=None):
 
 
 def compile_commands(build_dir):
-    """The project's source files -> their compile commands as words. Run from `build_dir`."""
+    """The project's source files -> their compile commands as words, relative to `build_dir`."""
     database = pathlib.Path(build_dir) / "compile_commands.json"
     commands = {}
     for entry in json.loads(database.read_text(encoding="utf-8")):
@@ -90,7 +90,7 @@ def compile_commands(build_dir):
 
 
 def compile_flags(build_dir):
-    """Source file -> what any compiler needs to read it (see portable_flags)."""
+    """Source file -> the flags that any compiler needs (see portable_flags)."""
     return {file: portable_flags(words) for file, words in compile_commands(build_dir).items()}
 
 
@@ -106,7 +106,7 @@ def portable_flags(command):
 
 
 def build_generated_sources(build_dir, jobs):
-    """Makes the headers that protoc writes; without them nothing that speaks the wire parses."""
+    """Generates protoc's headers, which sources that use the protocol include."""
     if any(source.endswith(".pb.h") for target in read_targets(build_dir).values()
            for source in target.sources):
         subprocess.run(["cmake", "--build", str(build_dir), "--parallel", str(jobs), "--target",
@@ -115,14 +115,14 @@ def build_generated_sources(build_dir, jobs):
 
 def require_configured(build_dir):
     if not (pathlib.Path(build_dir) / "targets.json").is_file():
-        sys.exit(f"{build_dir} is not configured: run cmake --preset release first "
+        sys.exit(f"{build_dir}: expected a configured build folder; run cmake --preset release first "
                  "(scripts/check.py does)")
 
 
 def run_all(commands, jobs):
     """Runs (name, command, folder) triples, `jobs` at a time.
 
-    Returns what the failed ones printed, by name."""
+    Returns the output of the failed ones by name."""
     def run(item):
         name, command, folder = item
         done = subprocess.run(command, capture_output=True, check=False, text=True, cwd=folder)

@@ -1,4 +1,4 @@
 #!/usr/bin/env bash
-# AddressSanitizer and UndefinedBehaviorSanitizer over every test program that needs no LibTorch, and
-# over every script that starts a server.
+# Runs every test program that needs no LibTorch, and every script that starts a server, under
+# AddressSanitizer and UndefinedBehaviorSanitizer.
 exec "$(dirname "${BASH_SOURCE[0]}")/sanitize.sh" asan

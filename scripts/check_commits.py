@@ -90,13 +90,13 @@ def main(arguments):
     else:
         base = next((name for name in BASES if git("rev-parse", "--verify", "--quiet", name)), None)
         if base is None or git("merge-base", base, "HEAD") is None:
-            print("Commits: SKIPPED, the history of main is not here.")
+            print("Commits: SKIPPED, expected the history of main, got none.")
             return 0
         found = check_history(base)
     for problem in found:
         print(problem, file=sys.stderr)
     if not found and not arguments:
-        print(f"Commits: every message since {base} has the form.")
+        print(f"Commits: every message since {base} has the expected form.")
     return 1 if found else 0
 
 

@@ -1,10 +1,9 @@
 #!/usr/bin/env python3
-"""Checks that the documents point at what is there: fails, naming file and line, when a relative
-link, or a path in `backquotes` that begins with a folder of the repository, leads nowhere.
+"""Checks that relative links, and paths in `backquotes` that begin with a folder of the repository, exist.
 
-A path may hold wildcards (`without_*`), stand for a header and its source (`clip.{h,cc}`), or leave
-out its ending (`model/motion/clip`). CHANGELOG.md and docs/decisions tell of the past: only their
-links are checked. What a build or a run makes (build/, out/, results/) is not.
+A path may contain wildcards (`without_*`), name a header and its source (`clip.{h,cc}`), or omit its
+extension (`model/motion/clip`). CHANGELOG.md and docs/decisions describe the past, so only their links are
+checked. Files that a build or a run makes (build/, out/, results/) are not checked.
 
     scripts/check_docs.py [source folder]
 """
@@ -20,7 +19,7 @@ MADE = ("build", "out", "results")  # top folders
 
 
 def expand(path):
-    """Every path that one with {a,b} stands for."""
+    """Every path that a path with {a,b} names."""
     braces = re.search(r"\{([^{}]*)\}", path)
     if not braces:
         return [path]
@@ -40,14 +39,14 @@ def documents_of(root):
 
 
 def problems(root, document):
-    """What is wrong with a document, as (line, message)."""
+    """The problems of a document as (line, message)."""
     file = root / document
     folders = {entry.name for entry in root.iterdir()
                if entry.is_dir() and entry.name not in MADE}
     for number, line in enumerate(file.read_text(encoding="utf-8").splitlines(), start=1):
         for target in LINK.findall(line):
             if ":" not in target and not (file.parent / target).exists():
-                yield number, f"links to {target}, which is not there"
+                yield number, f"links to {target}, which does not exist"
         if document.startswith(OF_THE_PAST):
             continue
         for path in PATH.findall(line):
@@ -55,7 +54,7 @@ def problems(root, document):
                 continue
             for one in expand(path):
                 if not exists(root, one):
-                    yield number, f"names {one}, which is not there"
+                    yield number, f"names {one}, which does not exist"
 
 
 def main(arguments):
@@ -67,7 +66,7 @@ def main(arguments):
         print(problem, file=sys.stderr)
     if found:
         return 1
-    print(f"{len(documents)} documents point at what is there.")
+    print(f"{len(documents)} documents: all links and paths exist.")
     return 0
 
 

@@ -24,15 +24,15 @@ class CheckDocsTest(test_project.ProjectTestCase):
 
     def test_a_link_to_nothing_is_found_with_its_line(self):
         self.assertEqual(self.problems("docs/a.md", "\n[g](gone.md)\n"),
-                         [(2, "links to gone.md, which is not there")])
+                         [(2, "links to gone.md, which does not exist")])
 
     def test_a_path_to_nothing_is_found(self):
         self.assertEqual(self.problems("README.md", "`model/motion/clip.{h,cc}`\n"),
-                         [(1, "names model/motion/clip.cc, which is not there")])
+                         [(1, "names model/motion/clip.cc, which does not exist")])
 
     def test_the_past_may_name_what_is_gone_but_not_link_to_it(self):
         self.assertEqual(self.problems("docs/decisions/0001.md", "`model/gone.h` [g](gone.md)\n"),
-                         [(1, "links to gone.md, which is not there")])
+                         [(1, "links to gone.md, which does not exist")])
 
     def test_what_is_made_is_no_document(self):
         self.write("build/a.md")

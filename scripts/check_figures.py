@@ -165,7 +165,7 @@ def main(arguments, root=pathlib.Path(__file__).resolve().parent.parent):
         print(problem, file=sys.stderr)
     if found:
         return 1
-    print(f"The figures of {tables} tables are those of their files.")
+    print(f"Figures: tables that agree with their files: {tables}.")
     return 0
 
 

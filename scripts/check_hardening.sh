@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Checks that the programs have the protections of cmake/DuetHardening.cmake: position-independent code,
-# relocations that are read-only before main() begins, a stack that is not executable, stack protectors,
+# relocations that are read-only before main() starts, a non-executable stack, stack protectors,
 # fortified functions and the C++ library's assertions.
 #   scripts/check_hardening.sh build/release/bin [PROGRAM...]     PROGRAM: duet* if absent
 set -euo pipefail
@@ -13,7 +13,7 @@ if [[ $# -eq 0 ]]; then
 fi
 
 failed=0
-# Reports a program unless its text matches an expression.
+# Reports a program if its text does not match an expression.
 expect() {
   local program="$1" what="$2" text="$3" pattern="$4"
   grep -qE "${pattern}" <<<"${text}" && return

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Checks that every header of the project compiles alone, whoever includes it first.
+"""Checks that every header of the project compiles by itself.
 
-The build proves it of a header that some source file includes before anything else, unless that
-file is compiled with a precompiled header. Every other header is compiled here, with the flags of a
-source file near it. A compiler cache makes the second run quick.
+The build proves that for a header that some source file includes first, unless that file is compiled with
+a precompiled header. This check compiles every other header with the flags of a nearby source file. A
+compiler cache makes the second run fast.
 
     scripts/check_headers.py [--torch-free] [build folder]     build/release, configured
-    --torch-free  leaves out headers that include LibTorch: twelve seconds each
+    --torch-free  skips headers that include LibTorch, which take twelve seconds each
 """
 
 import argparse
@@ -20,13 +20,13 @@ import source_tree
 
 
 def proven_by_the_build(tree, commands):
-    """The headers that a source file includes first, with nothing included before by a flag."""
+    """The headers that a source file includes first, without an include by a flag before."""
     return {tree.includes(file)[0] for file, words in commands.items()
             if tree.includes(file) and "-include" not in words}
 
 
 def nearest_source(header, sources):
-    """The source file of the same name, else one of the same folder, else of the nearest folder."""
+    """The source file of the same name, else of the same folder, else of the nearest folder."""
     def distance(source):
         ours, theirs = pathlib.PurePosixPath(header), pathlib.PurePosixPath(source)
         shared = len(os.path.commonprefix([ours.parent.parts, theirs.parent.parts]))
@@ -36,7 +36,7 @@ def nearest_source(header, sources):
 
 
 def write_source(header, folder):
-    """A source file that is nothing but the header, twice: its guard is checked as well."""
+    """Writes a source file that includes only the header, twice, to check its guard as well."""
     source = folder / (header + ".cc")
     text = f'#include "{header}"\n#include "{header}"\n'
     source.parent.mkdir(parents=True, exist_ok=True)
@@ -76,7 +76,7 @@ def main(arguments):
         print(output, file=sys.stderr)
     print(f"{len(headers)} {'torch-free ' if options.torch_free else ''}headers: "
           f"{len(headers) - len(alone)} come first in a source file, {len(alone) - len(failures)} "
-          f"of the other {len(alone)} compile alone.")
+          f"of the other {len(alone)} compile by themselves.")
     return 1 if failures else 0
 
 

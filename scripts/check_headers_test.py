@@ -28,7 +28,7 @@ class CheckHeadersTest(test_project.ProjectTestCase):
         self.write("model/pair.h", "model/clip.h", text="#pragma once\nstruct Pair { Clip a; };\n")
         status, output = self.run_check()
         self.assertEqual(status, 0, output)
-        self.assertIn("1 come first in a source file, 1 of the other 1 compile alone", output)
+        self.assertIn("1 come first in a source file, 1 of the other 1 compile by themselves", output)
 
     def test_header_that_leans_on_another_fails_by_name(self):
         self.write("model/pair.h", text="#pragma once\nstruct Pair { Clip a; };\n")

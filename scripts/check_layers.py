@@ -1,11 +1,10 @@
 #!/usr/bin/env python3
-"""Checks who includes whom: fails, naming file and line, when an include crosses a layer.
+"""Checks that includes follow the layers; reports file and line of each include that does not.
 
-LAYERS is the whole rule book; ARCHITECTURE.md explains it. A file belongs to the first layer whose
-folder holds it. It may include its own layer, the layers in `sees`, and of the guarded libraries
-only those in `libraries` (in `source_libraries`: from .cc files alone), directly or through any
-header of the project. Its namespace is its folder's path. Tests and benchmarks may include
-everything.
+LAYERS has all rules; ARCHITECTURE.md explains them. A file belongs to the first layer whose folder
+contains it. It may include its own layer, the layers in `sees`, and, of the guarded libraries, only those
+in `libraries` (in `source_libraries`: only from .cc files), directly or through any header of the
+project. Its namespace is its folder's path. Tests and benchmarks may include everything.
 
     scripts/check_layers.py [source folder]
 """
@@ -19,7 +18,7 @@ import sys
 @dataclasses.dataclass(frozen=True)
 class Layer:
     name: str
-    folder: str  # with all below it that is not an earlier layer's
+    folder: str  # with its subfolders, except those of earlier layers
     sees: tuple  # other layers that it may include
     libraries: tuple = ()  # guarded libraries that it may include
     source_libraries: tuple = ()  # the same, but not from its headers
@@ -66,7 +65,7 @@ LAYERS = (
     Layer("training", "model/training",
           sees=("base", "motion", "retargeting", "dataset", "engine", "checkpoint", "network"),
           libraries=("torch",)),
-    # How good it is.
+    # Evaluation.
     Layer("metrics", "model/evaluation/metrics", sees=("base", "motion", "dataset")),
     Layer("protocol", "model/evaluation/protocol", sees=("base", "motion", "dataset", "metrics")),
     Layer("baselines", "model/evaluation/baselines",
@@ -124,7 +123,7 @@ LAYERS = (
     Layer("client", "client", sees=("base", "motion"), libraries=("rpc",)),
 )
 
-# Libraries that only some layers may know, by the start of the include path.
+# Libraries that only some layers may use, by the start of the include path.
 GUARDED_LIBRARIES = {
     "torch": ("torch/", "ATen/", "c10/", "caffe2/"),
     "highway": ("hwy/",),
@@ -181,7 +180,7 @@ def way_to_library(include, library, includes, seen):
 
 
 def check_include(layer, path, include, includes):
-    """What is wrong with the file at `path`, of `layer`, including `include`, as messages."""
+    """The messages about an include of the file at `path` in `layer`."""
     if include.startswith(tuple(f"{folder}/" for folder in SOURCE_FOLDERS)):
         target = layer_of(include)
         if target and target is not layer and target.name not in layer.sees:
@@ -197,19 +196,19 @@ def check_include(layer, path, include, includes):
 
 
 def namespace_of(path):
-    """The namespace that a file's folder stands for: duet::formats::bvh for model/formats/bvh."""
+    """The namespace of a file's folder: duet::formats::bvh for model/formats/bvh."""
     folders = pathlib.PurePosixPath(path).parent.parts
     return "::".join(("duet",) + (folders[1:] if folders[0] == "model" else folders))
 
 
 def check_namespaces(root, path):
-    """The namespaces that a file opens other than its folder's, as (line, message)."""
+    """The namespaces in a file other than its folder's, as (line, message)."""
     wanted = NAMESPACES.get(str(pathlib.PurePosixPath(path).parent)) or namespace_of(path)
     for number, line in enumerate((root / path).read_text(encoding="utf-8").splitlines(), start=1):
         opened = NAMESPACE.match(line)
-        # Highway's macro names what is compiled once for each instruction set.
+        # Highway's macro is a namespace for each instruction set.
         if opened and opened[1].removesuffix("::HWY_NAMESPACE") != wanted:
-            yield number, f"opens namespace {opened[1]}, wanted {wanted}"
+            yield number, f"namespace: expected {wanted}, got {opened[1]}"
 
 
 def check(root):
@@ -218,7 +217,7 @@ def check(root):
     for path, lines in includes.items():
         layer = layer_of(path)
         if layer is None:
-            yield f"{path}:1: belongs to no layer; add its folder to LAYERS in check_layers.py"
+            yield f"{path}:1: expected a folder of a layer; add it to LAYERS in check_layers.py"
             continue
         for line, include in lines:
             for message in check_include(layer, path, include, includes):

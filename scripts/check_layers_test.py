@@ -93,7 +93,7 @@ class CheckLayersTest(unittest.TestCase):
 
     def test_unknown_folder_is_refused(self):
         self.write("model/new_idea/idea.h")
-        self.assert_violation("model/new_idea/idea.h:1:", "belongs to no layer")
+        self.assert_violation("model/new_idea/idea.h:1:", "expected a folder of a layer")
 
     def test_generated_header_has_its_folder_s_layer(self):
         self.write("client/client.cc", "model/engine/made_while_building.h")
@@ -116,7 +116,7 @@ class CheckLayersTest(unittest.TestCase):
         clip.write_text("namespace duet::motion::HWY_NAMESPACE {\n}\n", encoding="utf-8")
         self.assertEqual(self.violations(), [])
         clip.write_text("#include <cmath>\nnamespace duet {\n}\n", encoding="utf-8")
-        self.assert_violation("model/motion/clip.h:2:", "opens namespace duet", "duet::motion")
+        self.assert_violation("model/motion/clip.h:2:", "namespace: expected duet::motion, got duet")
 
     def test_a_room_inside_a_room_is_a_layer_of_its_own(self):
         self.write("model/formats/flat/csv.h", "model/formats/bvh/bvh_document.h")

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 """Checks that each target links what its files include, and nothing else.
 
-Read from a configured build folder (cmake/DuetTargetTable.cmake writes the table). For each
-library, program and test:
-  - what a header of the target includes must be linked PUBLIC (DEPS), what only its .cc files and
-    the headers of a folder named internal include PRIVATE (PRIVATE_DEPS);
-  - programs, tests and benchmarks have no headers that others see: they link all PRIVATE;
-  - what is linked must be included somewhere; ALLOWED has the exceptions, each with its reason.
-A header belongs to the library with the source file of its name, else to the library of its folder.
+Reads a configured build folder (cmake/DuetTargetTable.cmake writes the table). For each library,
+program and test:
+  - libraries that a header of the target includes are linked PUBLIC (DEPS); libraries that only its .cc
+    files and the headers of a folder named internal include are linked PRIVATE (PRIVATE_DEPS);
+  - programs, tests and benchmarks have no public headers, so they link everything PRIVATE;
+  - each linked library is included somewhere; ALLOWED lists exceptions with their reasons.
+A header belongs to the library that has the source file of its name, else to the library of its folder.
 
     scripts/check_links.py [--build-dir build/release] [--suggest [target...]]
 """
@@ -20,8 +20,8 @@ import sys
 import build_tree
 import source_tree
 
-# Which library has an include of others, by how it starts; the first that matches counts. Several
-# names: any of them will do.
+# The library of an external include, by the start of its path; the first match counts. If there are several
+# names, any of them is accepted.
 LIBRARIES = (
     ("absl/strings/str_format.h", "absl::str_format"),
     ("absl/strings/cord.h", "absl::cord"),
@@ -45,17 +45,17 @@ LIBRARIES = (
     ("benchmark/", "benchmark::benchmark_main", "benchmark::benchmark"),
     *((start, build_tree.TORCH_TARGET) for start in source_tree.TORCH),
     ("grpcpp/ext/proto_server_reflection_plugin.h", "gRPC::grpc++_reflection"),
-    # Whoever speaks the wire links the generated code, which brings both.
+    # Code that uses the protocol links the generated code, which links both.
     ("grpc", "gRPC::grpc++", "duet_proto", "duet_server_proto"),
     ("google/protobuf/", "protobuf::libprotobuf", "duet_proto", "duet_server_proto",
      "duet_batch_proto"),
 )
 
-# The C++ library's headers that come with a target of their own. Linked without need they are told
-# of; missing they are not, for the C library has them as well.
+# Headers of the C++ library with their own target. An unused link is reported, but not a missing one, because
+# the C library provides them as well.
 OPTIONAL = {"Threads::Threads": ("thread", "mutex", "condition_variable", "future")}
 
-# Links that no include shows, and includes that need no link: (target or *, library) -> why.
+# Links without an include, and includes without a link: (target or *, library) -> reason.
 ALLOWED = {
     ("*", "GTest::gtest_main"): "the main() of every test",
     ("*", "GTest::gmock"): "linked to every test by duet_test",
@@ -65,7 +65,7 @@ ALLOWED = {
 
 
 def libraries_of(include):
-    """The names of the foreign library that an include belongs to; none: the language's own."""
+    """The names of the external library of an include; empty for the standard library."""
     for start, *names in LIBRARIES:
         if include.startswith(start):
             return frozenset(names)
@@ -74,13 +74,13 @@ def libraries_of(include):
 
 
 def link_name(link):
-    """A library that is linked by its file is known by the file's name."""
+    """The name of a library that is linked by its file."""
     match = re.search(r"/lib(\w+)\.(so|a)$", link)
     return match[1] if match else link
 
 
 class Owners:
-    """Which library a file of the project belongs to."""
+    """Finds the library of a file of the project."""
 
     def __init__(self, targets):
         self.targets = targets
@@ -94,7 +94,7 @@ class Owners:
                     self.generated[source.partition("/gen/")[2]] = name
 
     def of(self, include):
-        """The libraries that may have the header, by name; none: not the project's."""
+        """The names of the libraries that may contain the header; empty if it is not the project's."""
         if include in self.generated:
             return frozenset({self.generated[include]})
         if not include.startswith(tuple(f"{f}/" for f in source_tree.SOURCE_FOLDERS)):
@@ -109,7 +109,7 @@ class Owners:
         return frozenset()
 
     def innermost(self, names):
-        """Of one folder's libraries the one that all others link; all, where there is none."""
+        """The library of a folder that all others there link; all of them if there is none."""
         for name in names:
             if all(name in build_tree.closure(self.targets, other) for other in names):
                 return frozenset({name})
@@ -125,7 +125,7 @@ class LinkCheck:
                 self.headers.setdefault(owner, []).append(header)
 
     def needs(self, target, files):
-        """What the files include of other libraries: names that will do -> an example."""
+        """The other libraries that the files include: accepted names -> an example."""
         needs = {}
         for file in files:
             for include in self.tree.includes(file):
@@ -135,7 +135,7 @@ class LinkCheck:
         return needs
 
     def needs_of(self, target):
-        """What headers for others need, what all files need, and those files."""
+        """The needs of public headers, the needs of all files, and those files."""
         headers = self.headers.get(target.name, []) if target.is_library else []
         files = headers + [source for source in target.sources if source.endswith(".cc")
                            and self.tree.exists(source) and not source.startswith("build/")]
@@ -148,7 +148,7 @@ class LinkCheck:
         return {name for name, headers in OPTIONAL.items() if included.intersection(headers)}
 
     def check(self, target):
-        """What is wrong with a target, as messages."""
+        """The problems of a target as messages."""
         public, every, files = self.needs_of(target)
         # Of a library that is linked by its file CMake does not tell whether the link is private.
         linked = {link_name(link): link in target.public and "/" not in link
@@ -160,14 +160,14 @@ class LinkCheck:
             if not present and not libraries & excused:
                 yield f"does not link {' or '.join(sorted(libraries))} ({kind}): {example}"
             elif present and kind == "PUBLIC" and not any(linked[name] for name in present):
-                yield f"links {min(present)} PRIVATE, wanted PUBLIC: {example}"
+                yield f"links {min(present)}: expected PUBLIC, got PRIVATE: {example}"
         unseen = self.optional(files) | excused
         for link, is_public in linked.items():
             if not any(link in libraries for libraries in every):
                 if link not in unseen:
-                    yield f"links {link}, but includes nothing of it"
+                    yield f"links {link} but does not include it"
             elif is_public and not any(link in libraries for libraries in public):
-                yield f"links {link} PUBLIC, wanted PRIVATE: none of its headers includes that"
+                yield f"links {link}: expected PRIVATE, got PUBLIC: no header includes it"
 
     def violations(self):
         """Every violation, as "target: message"."""
@@ -176,7 +176,7 @@ class LinkCheck:
                 yield from (f"{name}: {message}" for message in self.check(target))
 
     def wanted(self, target):
-        """What a target should link: (public, private), by name."""
+        """The expected links of a target: (public, private), by name."""
         public, every, files = self.needs_of(target)
         linked = {link_name(link): link for link in target.links}
         excused = {name for about, name in ALLOWED if about in ("*", target.name)}
@@ -201,7 +201,7 @@ def as_written(links):
 
 
 def suggest(checker, names):
-    """Prints what each target should link, as its CMakeLists.txt would say it."""
+    """Prints the expected links of each target in the form of its CMakeLists.txt."""
     for name in names or [name for name, target in checker.targets.items() if is_ours(target)]:
         target = checker.targets[name]
         public, private = checker.wanted(target)
@@ -216,7 +216,7 @@ def main(arguments):
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--build-dir", default=str(build_tree.ROOT / "build/release"))
     parser.add_argument("--suggest", nargs="*", metavar="TARGET",
-                        help="print what these targets (default: all) should link, and end")
+                        help="print the expected links of these targets (default: all) and exit")
     options = parser.parse_args(arguments)
     build_tree.require_configured(options.build_dir)
     targets = build_tree.read_targets(options.build_dir)
@@ -228,10 +228,10 @@ def main(arguments):
     for violation in violations:
         print(violation, file=sys.stderr)
     if violations:
-        print(f"{len(violations)} links differ from what is included "
+        print(f"{len(violations)} links differ from the includes "
               "(check_links.py --suggest TARGET says what a target should link).", file=sys.stderr)
         return 1
-    print(f"{sum(map(is_ours, targets.values()))} targets link what they include.")
+    print(f"{sum(map(is_ours, targets.values()))} targets link exactly the libraries that they include.")
     return 0
 
 

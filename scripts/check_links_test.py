@@ -51,15 +51,15 @@ class CheckLinksTest(test_project.ProjectTestCase):
 
     def test_unused_link_is_reported(self):
         self.motion["private"].append("absl::time")
-        self.assert_violation("duet_motion: links absl::time, but includes nothing of it")
+        self.assert_violation("duet_motion: links absl::time but does not include it")
 
     def test_private_link_that_a_header_shows_is_reported(self):
         self.write("model/motion/clip.h", "absl/strings/string_view.h")
-        self.assert_violation("duet_motion: links absl::strings PRIVATE, wanted PUBLIC")
+        self.assert_violation("duet_motion: links absl::strings: expected PUBLIC, got PRIVATE")
 
     def test_public_link_that_no_header_shows_is_reported(self):
         self.motion["public"] = self.motion.pop("private")
-        self.assert_violation("duet_motion: links absl::strings PUBLIC, wanted PRIVATE")
+        self.assert_violation("duet_motion: links absl::strings: expected PRIVATE, got PUBLIC")
 
     def test_internal_headers_count_as_private(self):
         self.write("model/motion/internal/text.h", "absl/strings/string_view.h")
@@ -90,7 +90,7 @@ class CheckLinksTest(test_project.ProjectTestCase):
 
     def test_threads_are_optional(self):
         self.motion["private"].append("Threads::Threads")
-        self.assert_violation("links Threads::Threads, but includes nothing of it")
+        self.assert_violation("links Threads::Threads but does not include it")
         self.write("model/motion/resample.h", "model/motion/clip.h", "mutex")
         self.assertEqual(list(self.checker().violations()), [])
 

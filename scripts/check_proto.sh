@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Lints the wire contract with buf (proto/buf.yaml). Debian has no buf: it comes from npm, once, into
-# build/tools. Without npm or network the check is skipped, and says so.
+# Lints the wire contract with buf (proto/buf.yaml). Debian has no buf, so npm installs it once in
+# build/tools. Without npm or network, the check is skipped with a message.
 #   scripts/check_proto.sh
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -9,7 +9,7 @@ readonly version=1.75.0 tools=build/tools
 readonly buf="${tools}/node_modules/.bin/buf"
 
 skip() {
-  echo "Proto: SKIPPED, $1; wanted npm and its package @bufbuild/buf ${version}."
+  echo "Proto: SKIPPED, $1; expected npm and its package @bufbuild/buf ${version}."
   exit 0
 }
 

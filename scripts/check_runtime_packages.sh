@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Checks that packages/runtime.txt holds exactly the packages whose libraries the programs load by
-# name, that none of them is LibTorch, and that packages/training.txt has what training loads beyond.
+# Checks that packages/runtime.txt lists exactly the packages whose libraries the programs load by name, that
+# LibTorch is not among them, and that packages/training.txt lists the other packages of training.
 #   scripts/check_runtime_packages.sh build/release/bin
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-# The list names the packages of the release that the image is made from.
+# The list is for the Debian release of the image.
 if ! grep -qx 'VERSION_CODENAME=bookworm' /etc/os-release; then
   echo "Not Debian 12: packages/runtime.txt is not checked."
   exit 0
@@ -15,26 +15,26 @@ readonly bin_dir="$1"
 readonly programs=(duet-server duet)
 readonly training_programs=(duet-train duet-eval duet-import duet-keyframe)
 
-# Prints the files of the libraries that a program names.
+# Prints the library files that a program loads by name.
 libraries_of() {
   local program="$1" needed
   needed="$(readelf -d "${program}" | sed -n 's/.*(NEEDED).*\[\(.*\)\]/\1/p')"
   ldd "${program}" | awk '$2 == "=>" {print $1, $3} $1 ~ /^\// {print $1, $1}' |
     while read -r name file; do
-      # The loader is named by its path.
+      # The loader has a path instead of a name.
       if grep -qxF "$(basename "${name}")" <<<"${needed}"; then readlink -f "${file}"; fi
     done
 }
 
-# Prints the package that a library file came with.
+# Prints the package of a library file.
 package_of() {
   local file="$1"
-  # /lib is a link to /usr/lib; packages name their files by either.
+  # /lib is a link to /usr/lib; packages use either path.
   { dpkg-query -S "${file}" || dpkg-query -S "${file#/usr}" || echo "${file}: of no package"; } \
     2>/dev/null | sed -n '1s/:.*//p'
 }
 
-# Prints the packages of the libraries that programs load.
+# Prints the packages of the libraries that programs load by name.
 packages_of() {
   local program
   for program in "$@"; do
@@ -42,7 +42,7 @@ packages_of() {
   done | sort -u
 }
 
-# Prints the names of lists of packages.
+# Prints the packages of lists.
 listed_in() {
   sed -e 's/#.*//' -e '/^\s*$/d' "$@" | sort -u
 }

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Has Clang prove that what a mutex guards is touched only under it (-Wthread-safety, as errors).
+"""Checks with Clang that data guarded by a mutex is used only under it (-Wthread-safety as errors).
 
-Every file that sees the annotated mutex is checked: which header that is, its attribute
-`capability("mutex")` tells. Nothing is built but the generated protocol headers.
+Checks every file that includes the annotated mutex, which is the header with the attribute
+`capability("mutex")`. Builds only the generated protocol headers.
 
     scripts/check_thread_safety.py [build folder]     build/release, configured
 """
@@ -37,7 +37,7 @@ def main(arguments):
     build_tree.require_configured(build_dir)
     compiler = next(filter(None, map(shutil.which, COMPILERS)), None)
     if compiler is None:
-        sys.exit("no clang++: install the packages of packages/develop.txt")
+        sys.exit("expected clang++, got none; install the packages of packages/develop.txt")
     jobs = build_tree.default_jobs()
     build_tree.build_generated_sources(build_dir, jobs)
     flags = build_tree.compile_flags(build_dir)
@@ -50,7 +50,7 @@ def main(arguments):
     for output in failures.values():
         print(output, file=sys.stderr)
     kept = len(files) - len(failures)
-    print(f"Thread safety: {kept} of {len(files)} files keep to their mutexes.")
+    print(f"Thread safety: {kept} of {len(files)} files use their mutexes correctly.")
     return 1 if failures else 0
 
 

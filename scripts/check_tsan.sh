@@ -1,4 +1,4 @@
 #!/usr/bin/env bash
-# ThreadSanitizer over the tests labelled "threads": those that use neither gRPC nor abseil's
-# synchronisation, which a distribution builds without it.
+# Runs the tests with the label "threads" under ThreadSanitizer. They use neither gRPC nor abseil's
+# synchronisation, which the distribution builds without it.
 exec "$(dirname "${BASH_SOURCE[0]}")/sanitize.sh" tsan threads

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The whole path once: starts the server with its built-in model, synthesises reactions to the
-# sample leaders, leaves what it made in out/demo, and shuts the server down whatever happens.
+# Starts the server with its embedded models, synthesises reactions to the sample leaders, writes the results
+# to out/demo, and always stops the server.
 #   scripts/demo.sh build/release/bin
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -52,7 +52,7 @@ free_port() {
 }
 
 start_server() {
-  # With the default ports free, the server needs no flag at all.
+  # If the default ports are free, the server needs no flags.
   local flags=() port metrics_port
   port="$(free_port 50051)"
   metrics_port="$(free_port 9464)"
@@ -68,7 +68,7 @@ start_server() {
 wait_until_healthy() {
   local deadline=$((SECONDS + start_limit_s))
   until timeout 5 "${bin_dir}/duet" models --server "${address}" >/dev/null 2>&1; do
-    kill -0 "${server_pid}" 2>/dev/null || fail "the server ended before it was healthy"
+    kill -0 "${server_pid}" 2>/dev/null || fail "the server exited before it was healthy"
     ((SECONDS < deadline)) || fail "the server was not healthy after ${start_limit_s} s"
     sleep 0.1
   done
@@ -80,7 +80,7 @@ duet() {
   "${bin_dir}/duet" "$@" || fail "'duet $*' failed with status $?"
 }
 
-# synthesize <name> <leader> <label>...: a page to look at, and the pair as glTF.
+# synthesize <name> <leader> <label>...: writes a page with a viewer, and the pair as glTF.
 synthesize() {
   local name="$1" leader="$2" labels=() label
   shift 2
@@ -105,14 +105,14 @@ main() {
   synthesize hug samples/hug.bvh hug=1
   synthesize half_hug_half_push samples/hug.bvh hug=0.5 push=0.5
   stop_server
-  ((server_status == 0)) || fail "the server ended with status ${server_status} on SIGTERM"
+  ((server_status == 0)) || fail "the server exited with status ${server_status} on SIGTERM"
 
-  echo "Made in ${SECONDS} s:"
+  echo "Done in ${SECONDS} s:"
   find "${out_dir}" -name '*.html' -o -name '*.glb' | sort | xargs du -h | sed 's/^/  /'
   echo
   echo "Open a page in any browser (drag to orbit, space to play):"
   find "$(pwd)/${out_dir}" -name '*.html' | sort | sed 's,^,  file://,'
-  echo "Blender, three.js and game engines open the .glb (docs/formats.md says how)."
+  echo "Blender, three.js and game engines open the .glb (see docs/formats.md)."
 }
 
 address=""

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Shows the project's sources to Doxygen: turns plain comments into Doxygen's, and proto into C++.
+"""Prepares the project's sources for Doxygen: converts plain comments to Doxygen's, and proto to C++.
 
 Doxygen calls it for each header and each .proto file (docs/Doxyfile) and reads what it prints.
 Text that is laid out in columns stays as it is laid out.
@@ -15,20 +15,20 @@ COLUMNS = re.compile(r"^\s{2,}|^[A-Z][\w ]*: {2,}|\S {3,}\S")
 
 
 def paragraph(lines):
-    """A paragraph of a comment; with columns it keeps its layout."""
+    """A paragraph of a comment; a paragraph with columns keeps its layout."""
     if any(map(COLUMNS.search, lines)):
         return ["<pre>", *(entities(line) for line in lines), "</pre>"]
     return [entities(line) for line in lines]
 
 
 def entities(text):
-    """Text in which Doxygen finds no command and no markup but `code`."""
+    """Text in which Doxygen finds no command, and no markup except `code`."""
     text = "".join(f"&#{ord(c)};" if c in "&<>\\@#%\"" else c for c in text)
     return re.sub(r"`([^`]+)`", r"<tt>\1</tt>", text)
 
 
 def comment_block(lines, is_file):
-    """A comment that stands alone, as Doxygen's; `is_file`: about the file, not what follows."""
+    """A separate comment in Doxygen's form; `is_file`: it describes the file, not the next declaration."""
     paragraphs, current = [], []
     for line in [*lines, ""]:
         if line.strip():

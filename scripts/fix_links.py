@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Rewrites DEPS and PRIVATE_DEPS of the CMakeLists.txt files to what check_links.py wants.
+"""Rewrites DEPS and PRIVATE_DEPS of the CMakeLists.txt files as check_links.py expects.
 
 Every duet_library, duet_program and duet_test whose links differ is laid out anew; what else the
 call says stays as it is. Targets made by other means are left alone: check_links.py names them.
@@ -22,7 +22,7 @@ WIDTH = 100
 
 
 def section(name, links):
-    """One list of a call, the project's own libraries first; nothing where there are none."""
+    """One list of a call, the project's own libraries first; empty if there are none."""
     if not links:
         return []
     return [textwrap.fill(" ".join([name, *check_links.as_written(links)]), WIDTH,
@@ -41,13 +41,13 @@ def rewritten(kind, name, body, public, private):
 
 
 def fix(text, checker):
-    """A CMakeLists.txt with the links of its targets mended."""
+    """A CMakeLists.txt with corrected links."""
     def replace(call):
         kind, name, body = call.groups()
         target = checker.targets.get(f"duet_{name}" if kind == "library" else name)
         if target is None or not any(checker.check(target)):
             return call[0]
-        # Libraries that are linked by their file are no business of these lists.
+        # These lists do not contain libraries that are linked by their file.
         public, private = ([link for link in links if "/" not in link]
                            for links in checker.wanted(target))
         if kind != "library":
@@ -69,7 +69,7 @@ def main(arguments):
             fixed = fix(text, checker)
             if fixed != text:
                 file.write_text(fixed, encoding="utf-8")
-                print(f"{file.relative_to(build_tree.ROOT)}: links mended")
+                print(f"{file.relative_to(build_tree.ROOT)}: links corrected")
 
 
 if __name__ == "__main__":

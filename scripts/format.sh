@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Lays out every C++ file with clang-format 14 (the version matters: others lay out differently).
+# Formats every C++ file with clang-format 14 (other versions format differently).
 #   scripts/format.sh          rewrites the files
-#   scripts/format.sh --check  fails, naming them, when any would change
+#   scripts/format.sh --check  fails and names the files that would change
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 

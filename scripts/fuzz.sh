@@ -1,18 +1,18 @@
 #!/usr/bin/env bash
-# Builds the fuzzers (Clang 14, libFuzzer, AddressSanitizer, UndefinedBehaviorSanitizer) and runs them;
-# fails when one finds something. docs/fuzzing.md says how to go on from there.
+# Builds the fuzzers (Clang 14, libFuzzer, AddressSanitizer, UndefinedBehaviorSanitizer) and runs them. Fails on
+# a finding; docs/fuzzing.md describes the next steps.
 #   scripts/fuzz.sh [--seconds N] [--jobs N] [--report] [TARGET...]
-#       --seconds N   processor time for each target, 60 when absent
-#       --jobs N      targets at a time, 1 when absent
-#       --report      puts what came of it into the table of docs/fuzzing.md
-#       TARGET        folders of tests/fuzz/corpus, all of them when absent
+#       --seconds N   CPU time for each target (60)
+#       --jobs N      targets in parallel (1)
+#       --report      writes the results to the table of docs/fuzzing.md
+#       TARGET        folders of tests/fuzz/corpus (all)
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 options=() targets=()
 while [[ $# -gt 0 ]]; do
   case "$1" in
-    --seconds | --jobs) options+=("$1" "${2:?$1 wants a number}") && shift 2 ;;
+    --seconds | --jobs) options+=("$1" "${2:?$1: expected a number, got nothing}") && shift 2 ;;
     --report) options+=(--report docs/fuzzing.md) && shift ;;
     -*) sed -n '2,8s/^# \{0,1\}//p' scripts/fuzz.sh >&2 && exit 2 ;;
     *) targets+=("$1") && shift ;;

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Builds duet-server with AddressSanitizer and UndefinedBehaviorSanitizer and fuzzes it over the wire
 # (tests/e2e/wire_fuzzer.py; docs/fuzzing.md).
-#   scripts/fuzz_wire.sh [SECONDS [OPTION...]]     600 seconds if absent; OPTIONs of wire_fuzzer.py
+#   scripts/fuzz_wire.sh [SECONDS [OPTION...]]     default 600 seconds; OPTIONs of wire_fuzzer.py
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -13,8 +13,8 @@ cmake --build "${build_dir}" --parallel "${JOBS:-$(scripts/build_jobs.sh)}" --ta
 # shellcheck source=scripts/sanitizer_options.sh
 source scripts/sanitizer_options.sh "${build_dir}"
 status=0
-# AddressSanitizer keeps what was freed for a while, to see that nobody uses it. Models load at low priority,
-# many times slower than in a release build.
+# AddressSanitizer keeps freed memory for a while to detect its use. Models load at low priority, many times
+# slower than in a release build.
 tests/e2e/wire_fuzzer.py "${build_dir}" --seconds "${seconds}" --memory 2000 --patience 300 "$@" ||
   status=$?
 no_sanitizer_reports || status=1

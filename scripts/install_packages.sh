@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Installs the Debian packages of one or more lists (packages/<list>.txt), what is missing only.
+# Installs the missing Debian packages of one or more lists (packages/<list>.txt).
 #   scripts/install_packages.sh build test
-# Does nothing, quickly, when everything is there.
+# Returns quickly if none is missing.
 set -euo pipefail
 
 package_dir="$(cd "$(dirname "${BASH_SOURCE[0]}")/../packages" && pwd)"
@@ -17,7 +17,7 @@ read_list() {
   sed -e 's/#.*//' -e 's/[[:space:]]//g' -e '/^$/d' "${package_dir}/$1.txt"
 }
 
-# Prints those of its arguments that are not installed.
+# Prints the arguments that are not installed.
 missing_of() {
   local installed
   installed="$(dpkg-query -W -f '${db:Status-Status} ${Package}\n' "$@" 2>/dev/null |
@@ -57,15 +57,15 @@ main() {
   done
 
   if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
-    fail "install_packages: this is not a Debian system. Duet is built from Debian 12 packages;" \
+    fail "install_packages: expected a Debian system. Duet is built from Debian 12 packages;" \
       "install the counterparts of these, or use the Dockerfile:" "  ${wanted[*]}"
   fi
 
   mapfile -t missing < <(missing_of "${wanted[@]}")
   [[ ${#missing[@]} -gt 0 ]] || return 0
 
-  echo "Installing Debian packages: ${missing[*]} (with what they need; a minute or two)"
-  # The package index is fetched only where it is absent or too old to serve.
+  echo "Installing Debian packages: ${missing[*]} (with their dependencies; a minute or two)"
+  # Fetches the package index only if it is missing or too old.
   if ! compgen -G '/var/lib/apt/lists/*_Packages*' >/dev/null || ! install_missing; then
     apt update
     install_missing || fail "install_packages: apt-get could not install: ${missing[*]}" \

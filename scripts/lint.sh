@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Runs clang-tidy 14 (.clang-tidy) over the C++ files that differ from the main branch; with "all",
-# over every one.
+# Runs clang-tidy 14 (.clang-tidy) on the C++ files that differ from the main branch; with "all", on
+# every C++ file.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -15,7 +15,7 @@ changed_files() {
   fi
 }
 
-# The generated protocol headers must exist before anything that includes them can be read.
+# clang-tidy needs the generated protocol headers.
 cmake --preset release -DDUET_BUILD_TESTS=ON -DDUET_BUILD_BENCHMARKS=ON >/dev/null
 cmake --build "${build_dir}" --parallel "${JOBS:-1}" --target duet_generated
 

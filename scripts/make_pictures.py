@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""The pictures under docs/images that show what a server answers: docs/images/reactions.png, and a
-short film of each class in docs/images/reactions/. Leaders are samples/; needs chromium.
+"""Makes the pictures of a server's answers: docs/images/reactions.png, and a short animation of each class in
+docs/images/reactions/. The leaders are samples/; needs chromium.
 
     scripts/make_pictures.py build/release
 """
@@ -32,7 +32,7 @@ SAVED = ("new Promise((resolve) => { const reader = new FileReader();"
 
 
 def page_of(server, leader, labels, folder):
-    """A viewer's page of a sample and its answer."""
+    """The viewer's page for a sample and its answer."""
     file = folder / f"{leader}-{len(labels)}.html"
     flags = [f"--label={name}={weight}" for name, weight in labels.items()]
     tools.duet("synthesize", "--server", server.address, "--leader", tools.sample(leader), *flags,
@@ -50,7 +50,7 @@ def save_film(chromium, url, file):
 
 
 def take_still(chromium, url, frame):
-    """A frame as a data URL, without the page's controls."""
+    """A frame as a data URL without the page's controls."""
     page = chromium.open(f"{url}#frame={frame}&paused", **STILL)
     picture = page.evaluate("(() => { const stage = document.getElementById('stage'); stage.draw();"
                             " return stage.canvas.toDataURL(); })()")

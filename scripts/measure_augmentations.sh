@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# What each augmentation is worth: trains with the default configuration, without one augmentation
-# at a time, and with each that it leaves off. Compared on validation subjects: a run leaves out one
-# subject altogether and validates on another; the left-out one is never looked at.
+# Measures the effect of each augmentation: trains with the default configuration, without one of its
+# augmentations at a time, and with each that it does not use. Compares on validation subjects: a run leaves
+# out one subject completely and validates on another.
 #   scripts/measure_augmentations.sh BIN DATA OUT     BIN: build/release/bin; DATA: the SBU folder
-# Without the discriminator and with fewer epochs, which makes it five times as fast: for
-# comparison with one another alone. Killed, it goes on where it was.
+# Trains without the discriminator and for fewer epochs, which is five times as fast: compare the results only
+# with one another. A killed run continues with the same command.
 set -euo pipefail
 
 readonly bin_dir="$1" data="$2" out="$3"

@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
-# Makes the Python package's stubs from the proto files, for whoever changes a proto file.
+# Generates the Python package's stubs from the proto files. Run it after a change to a proto file.
 #   scripts/python_stubs.sh           rewrites client/python/duet_motion/{v1,rpc/v1}
 #   scripts/python_stubs.sh FOLDER    writes them below FOLDER instead
-# By protoc with gRPC's own plugin: Debian 12's grpc_tools is of 2018 and does not know `optional`.
+# Uses protoc with gRPC's plugin: Debian 12's grpc_tools is from 2018 and does not support `optional`.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 out="${1:-client/python}"
 plugin="$(command -v grpc_python_plugin)" || {
-  echo "python_stubs.sh: no grpc_python_plugin; install the package protobuf-compiler-grpc" >&2
+  echo "python_stubs.sh: expected grpc_python_plugin, got none; install the package protobuf-compiler-grpc" >&2
   exit 1
 }
 
@@ -19,7 +19,7 @@ protoc -Iproto --python_out="${made}" --pyi_out="${made}" "${messages[@]}"
 protoc -Iproto --grpc_python_out="${made}" --plugin=protoc-gen-grpc_python="${plugin}" \
   duet/v1/synthesis.proto
 
-# protoc derives Python's module names from the protos' folder, and `duet` is another library's.
+# protoc derives Python's module names from the protos' folder, but another library is named `duet`.
 for stub in "${made}"/duet/*v1/*_pb2* "${made}"/duet/rpc/v1/*_pb2*; do
   target="${out}/duet_motion/${stub#"${made}/duet/"}"
   mkdir -p "$(dirname "${target}")"

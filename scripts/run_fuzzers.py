@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Runs built fuzzers and tells what came of it; scripts/fuzz.sh calls it.
+"""Runs built fuzzers and reports their results; scripts/fuzz.sh calls it.
 
     scripts/run_fuzzers.py [--seconds N] [--jobs N] [--report FILE] BUILD_FOLDER TARGET...
 
-Each target gets N seconds of processor time, however long that takes on a busy machine. What it finds
-comes to BUILD_FOLDER/findings/TARGET/, what it learns stays in BUILD_FOLDER/corpus/TARGET/ for the next
-run. An input that takes more than a second of processor time is a finding as well. With --report the
-table between the two marks in FILE gets a row for each target; one of the same revision is added to,
-so that a long run may be made in pieces, any other is replaced.
+Each target gets N seconds of CPU time, even on a busy machine. Findings are written to
+BUILD_FOLDER/findings/TARGET/, and inputs that reach new code to BUILD_FOLDER/corpus/TARGET/ for the next run. An
+input that takes more than a second of CPU time is a finding too. With --report, the table between the two marks
+in FILE gets a row for each target. A row of the same revision adds up the runs, so a long run may be split; a
+row of another revision is replaced.
 """
 
 import argparse
@@ -24,14 +24,14 @@ import threading
 import time
 
 FUZZ_FOLDER = pathlib.Path("tests/fuzz")
-MOST_FINDINGS = 3  # of one target in one run: more of them are mostly the same one
+MOST_FINDINGS = 3  # for each target and run: more are usually the same finding
 SLOW_SECONDS = 1
-# libFuzzer measures by the clock on the wall: generous, for a machine that does something else too.
+# libFuzzer measures wall time, so this is generous for a busy machine.
 HANG_SECONDS = 60
 LOOK_SECONDS = 0.05
 LONGEST_INPUT = 32768
 MEMORY_MIB = 2048
-# The largest single piece of memory that any of these inputs justifies.
+# The largest allocation that any of these inputs justifies.
 PIECE_MIB = 64
 PIECES_MIB = {"batch_journal": 600}  # an offset for each item up to the last one
 
@@ -55,7 +55,7 @@ class Outcome:
                 f"| {self.seconds:.0f} | {self.findings} | {revision} |")
 
     def added_to(self, row, revision):
-        """This run and those that a row of the table tells of, where they are of one revision."""
+        """This run added to a row of the table, if both are of one revision."""
         cells = [cell.strip() for cell in row.split("|")]
         if cells[7] != revision or revision.endswith("+"):
             return self
@@ -65,7 +65,7 @@ class Outcome:
 
 
 def read_output(text):
-    """How many inputs libFuzzer ran, and how many edges it covered, by its own words."""
+    """The number of inputs and of covered edges in libFuzzer's output."""
     runs = re.search(r"^stat::number_of_executed_units: (\d+)", text, re.MULTILINE)
     counts = re.findall(r"^#(\d+)\s.* cov: (\d+) ", text, re.MULTILINE)
     last = int(counts[-1][0]) if counts else 0
@@ -73,7 +73,7 @@ def read_output(text):
 
 
 def merge_outcome(document, outcome, revision):
-    """The document with this outcome in its table; targets by name."""
+    """The document with this outcome in its table, sorted by target."""
     before, rest = document.split(BEGIN)
     table, after = rest.split(END)
     kept = {row.split("`")[1]: row for row in table.splitlines() if row.startswith("| `")}
@@ -85,14 +85,14 @@ def merge_outcome(document, outcome, revision):
 
 
 def processor_seconds(pid):
-    """What a process that was not waited for has used so far."""
+    """The CPU seconds of a running process."""
     fields = pathlib.Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rsplit(")", 1)[1].split()
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
 def run(command, environment, seconds=None):
-    """Runs a command, tells it to end after so much processor time (as libFuzzer wants to be told);
-    its exit status, what it wrote and what it used."""
+    """Runs a command and stops it after `seconds` of CPU time with libFuzzer's signal. Returns its exit
+    status, its standard error and its CPU seconds."""
     with tempfile.TemporaryFile() as written:
         process = subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL,
                                    stderr=written)
@@ -119,8 +119,8 @@ class Fuzzer:
         self.findings = build / "findings" / target
         self.learnt.mkdir(parents=True, exist_ok=True)
         self.findings.mkdir(parents=True, exist_ok=True)
-        # Protobuf, gRPC and abseil are built without sanitizers, so that what they put into a
-        # container is not marked.
+        # Protobuf, gRPC and abseil are built without sanitizers and do not mark what they put into
+        # containers.
         self.environment = dict(os.environ, UBSAN_OPTIONS="print_stacktrace=1",
                                 ASAN_OPTIONS="detect_container_overflow=0")
 
@@ -154,7 +154,7 @@ class Fuzzer:
         return outcome
 
     def is_slow(self, path):
-        """Whether an input takes its time by the processor's clock too; if not, it is forgotten."""
+        """Whether an input is slow in CPU time too; if not, its file is removed."""
         _, _, nothing = run([self.program, "-runs=0"], self.environment)
         _, _, used = run([self.program, str(path)], self.environment)
         if used - nothing > SLOW_SECONDS:
@@ -165,7 +165,7 @@ class Fuzzer:
 
 
 def revision():
-    """The commit that is run, with a plus sign where the tree differs from it."""
+    """The commit of the tree, with a plus sign if the tree differs from it."""
     describe = ["git", "describe", "--always", "--exclude=*", "--dirty=+"]
     return subprocess.run(describe, capture_output=True, text=True, check=False).stdout.strip()
 
@@ -173,7 +173,7 @@ def revision():
 def main():
     parser = argparse.ArgumentParser(description="Runs built fuzzers.")
     parser.add_argument("--seconds", type=float, default=60)
-    parser.add_argument("--jobs", type=int, default=1, help="targets at a time")
+    parser.add_argument("--jobs", type=int, default=1, help="targets in parallel")
     parser.add_argument("--report", type=pathlib.Path)
     parser.add_argument("build", type=pathlib.Path)
     parser.add_argument("targets", nargs="+")
@@ -186,7 +186,7 @@ def main():
         outcome = Fuzzer(options.build, target).fuzz(options.seconds)
         with one_tells:
             print(f"{target}: {outcome.runs} inputs, {outcome.edges} edges, "
-                  f"{outcome.seconds:.0f} s of processor time in {time.monotonic() - begin:.0f} s, "
+                  f"{outcome.seconds:.0f} s of CPU time in {time.monotonic() - begin:.0f} s, "
                   f"{outcome.findings} findings", flush=True)
             if options.report:
                 document = options.report.read_text(encoding="utf-8")

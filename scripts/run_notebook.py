@@ -1,12 +1,11 @@
 #!/usr/bin/env python3
-"""Runs a notebook's cells from top to bottom, in one process and without Jupyter; fails, naming the
-cell, where one fails.
+"""Runs a notebook's cells from top to bottom in one process without Jupyter; names the cell that fails.
 
     scripts/run_notebook.py NOTEBOOK.ipynb            runs it
-    scripts/run_notebook.py NOTEBOOK.ipynb --write    and keeps what it printed and drew inside it
+    scripts/run_notebook.py NOTEBOOK.ipynb --write    also stores its output and pictures in the notebook
 
-A cell shows what it prints, its last expression (unless a semicolon ends it) and its matplotlib
-figures, as Jupyter would.
+A cell's outputs are its printed text, its last expression (unless it ends with a semicolon) and its matplotlib
+figures, as in Jupyter.
 """
 
 import argparse
@@ -21,7 +20,7 @@ import sys
 
 
 def outputs_of(source, name, variables):
-    """Runs a cell; its outputs as a notebook holds them."""
+    """Runs a cell and returns its outputs in the notebook's form."""
     from matplotlib import pyplot
     tree = ast.parse(source, name)
     last = tree.body.pop() if tree.body and isinstance(tree.body[-1], ast.Expr) else None

@@ -1,4 +1,4 @@
-"""The project's C++ files and who includes whom, as the checks see them."""
+"""The project's C++ files and their includes."""
 
 import functools
 import pathlib
@@ -25,7 +25,7 @@ class SourceTree:
 
     @functools.lru_cache(maxsize=None)
     def includes(self, path):
-        """What a file includes, in order: the project's files by path, others as written."""
+        """The includes of a file in order: the project's files by path, others as written."""
         if not self.exists(path):
             return ()
         lines = (self.root / path).read_text(encoding="utf-8").splitlines()
@@ -37,7 +37,7 @@ class SourceTree:
 
     @functools.lru_cache(maxsize=None)
     def reach(self, path):
-        """Everything that a file includes, directly or through the project's headers."""
+        """All includes of a file, directly or through the project's headers."""
         found, waiting = set(), [path]
         while waiting:
             for include in self.includes(waiting.pop()):

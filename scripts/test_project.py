@@ -1,4 +1,4 @@
-"""A made-up project in a temporary folder, for the self-tests of the checks."""
+"""A small project in a temporary folder for the self-tests of the checks."""
 
 import json
 import os

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Prints the test programs that neither link nor load LibTorch, one a line: a sanitizer builds them quickly.
+"""Prints the test programs that neither link nor load LibTorch, one in each line.
 
-    scripts/torch_free_tests.py BUILD_FOLDER [LABEL]     LABEL: only those with this CTest label
+    scripts/torch_free_tests.py BUILD_FOLDER [LABEL]     LABEL: only programs with this CTest label
 """
 
 import sys

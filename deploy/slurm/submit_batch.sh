@@ -21,7 +21,7 @@ while (($#)) && [[ "$1" != -- ]]; do
   sbatch_words+=("$1")
   shift
 done
-[[ "${1:-}" == -- ]] || { echo "submit_batch.sh: wanted -- before the words of duet batch" >&2 && exit 2; }
+[[ "${1:-}" == -- ]] || { echo "submit_batch.sh: expected -- before the arguments of duet batch" >&2 && exit 2; }
 shift
 
 mkdir -p "${out}/logs"

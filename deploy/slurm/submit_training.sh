@@ -20,7 +20,7 @@ while (($#)) && [[ "$1" != -- ]]; do
   sbatch_words+=("$1")
   shift
 done
-[[ "${1:-}" == -- ]] || { echo "submit_training.sh: wanted -- before the words of duet-train" >&2 && exit 2; }
+[[ "${1:-}" == -- ]] || { echo "submit_training.sh: expected -- before the arguments of duet-train" >&2 && exit 2; }
 shift
 
 count="$(wc -w <<<"${subjects}")"
