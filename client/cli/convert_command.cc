@@ -18,6 +18,7 @@
 #include "client/cli/report.h"
 #include "model/motion/motion_limits.h"
 #include "model/motion/resample.h"
+#include "model/motion/sbu.h"
 #include "nlohmann/json.hpp"
 
 namespace duet::client::cli {
@@ -29,7 +30,6 @@ using Paths = std::vector<std::filesystem::path>;
 
 // Below this, positions differ by rounding alone.
 constexpr double kExactMetres = 2e-5;
-constexpr double kSbuFrameRateHz = 15;  // what SBU text counts as where nothing else is said
 
 // A motion that is to be written.
 struct Conversion {
@@ -134,7 +134,7 @@ absl::StatusOr<double> ErrorOf(const std::string& content, Format format, const 
 }
 
 std::vector<std::string> MissingIn(Format format, double rate_hz) {
-  if (format == Format::kSbuText && rate_hz == kSbuFrameRateHz) return {"joint names"};
+  if (format == Format::kSbuText && rate_hz == motion::kSbuFrameRateHz) return {"joint names"};
   if (format != Format::kNpy && format != Format::kSbuText) return {};
   return {"joint names", absl::StrFormat("the frame rate: read it with --frame-rate %g", rate_hz)};
 }

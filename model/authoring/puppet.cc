@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/base/angle.h"
+
 namespace duet::authoring {
 namespace {
-
-constexpr double kRadians = 3.14159265358979323846 / 180;
 
 // Metres. Hips from the torso, shoulders and head from the neck; x is the left side's.
 constexpr retargeting::Vec3d kHip = {0.1, -0.215, 0};
@@ -28,9 +28,9 @@ retargeting::Vec3d OnSide(retargeting::Vec3d left, Side side) {
 }
 
 retargeting::Quaternion Turn(Lean lean) {
-  return retargeting::AxisAngle({0, 1, 0}, lean.yaw * kRadians) *
-         retargeting::AxisAngle({1, 0, 0}, lean.pitch * kRadians) *
-         retargeting::AxisAngle({0, 0, 1}, -lean.roll * kRadians);
+  return retargeting::AxisAngle({0, 1, 0}, lean.yaw * base::kRadiansPerDegree) *
+         retargeting::AxisAngle({1, 0, 0}, lean.pitch * base::kRadiansPerDegree) *
+         retargeting::AxisAngle({0, 0, 1}, -lean.roll * base::kRadiansPerDegree);
 }
 
 struct Bones {
@@ -64,8 +64,8 @@ LimbPoints PoseLimb(retargeting::Vec3d start, retargeting::Vec3d target, Bones b
   const retargeting::Vec3d direction = Unit(target - start, down);
   const retargeting::Vec3d hinge = Cross(hanging_pole, -kUp);
   const retargeting::Quaternion swing = ShortestArc(down, direction, Rotate(body, hinge));
-  const retargeting::Vec3d pole =
-      Rotate(AxisAngle(direction, swivel * kRadians), Rotate(swing, Rotate(body, hanging_pole)));
+  const retargeting::Vec3d pole = Rotate(AxisAngle(direction, swivel * base::kRadiansPerDegree),
+                                         Rotate(swing, Rotate(body, hanging_pole)));
   return Reach(start, target, bones, direction, pole);
 }
 

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/base/angle.h"
+
 namespace duet::base {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr int kSpareBits = 64 - 53;  // a double has 53 significant ones
 constexpr double kStep = 0x1.0p-53;
 

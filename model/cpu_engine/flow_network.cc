@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "absl/strings/str_cat.h"
+#include "model/base/angle.h"
 #include "model/checkpoint/flow_tensor_table.h"
 #include "model/cpu_engine/kernels/rowwise.h"
 #include "model/cpu_engine/kernels/self_attention.h"
@@ -14,7 +15,7 @@ namespace {
 
 using kernels::Precision;
 
-constexpr double kPi = 3.14159265358979323846;
+using base::kPi;
 constexpr double kHighestFrequency = 200;  // of the time's sines
 
 // [kTimeFeatures] sines, then cosines.

@@ -1,9 +1,10 @@
 #include "model/dataset/layout.h"
 
+#include "model/motion/sbu.h"
+
 namespace duet::dataset {
 namespace {
 
-constexpr double kSbuFrameRateHz = 15;
 constexpr double kK3hiFrameRateHz = 30;
 
 struct ClassRow {
@@ -39,7 +40,7 @@ DatasetLayout KinectLayout(const std::string& name, double frame_rate_hz,
 }  // namespace
 
 DatasetLayout SbuLayout() {
-  return KinectLayout("sbu", kSbuFrameRateHz,
+  return KinectLayout("sbu", motion::kSbuFrameRateHz,
                       {{"kick", "03", false, false, false},
                        {"push", "04", false, false, false},
                        {"shake_hands", "05", true, true, false},

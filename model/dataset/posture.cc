@@ -4,10 +4,12 @@
 #include <cmath>
 #include <cstddef>
 
+#include "model/base/angle.h"
+#include "model/base/median.h"
+
 namespace duet::dataset {
 namespace {
 
-constexpr double kDegrees = 180 / M_PI;
 // What counts in full, times the median distance: Huber's 1.345 standard deviations for a plane.
 constexpr double kPlaneReach = 2;
 constexpr double kMeanReach = 2;
@@ -60,10 +62,7 @@ Plane FitPlane(const std::vector<motion::Vec3>& points, const std::vector<double
 
 // 1 for residuals up to `reach` times the median one, falling in proportion beyond.
 std::vector<double> HuberWeights(std::vector<double> residuals, double reach) {
-  std::vector<double> sorted = residuals;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  const double full = std::max(reach * *middle, kSmallestReach);
+  const double full = std::max(reach * base::Median(residuals), kSmallestReach);
   for (double& residual : residuals) residual = residual > full ? full / residual : 1;
   return residuals;
 }
@@ -110,7 +109,8 @@ motion::Vec3 RobustMean(const std::vector<motion::Vec3>& points) {
 }
 
 Lean LeanOf(motion::Vec3 up) {
-  return {std::atan2(up.x, up.y) * kDegrees, std::atan2(up.z, up.y) * kDegrees};
+  return {std::atan2(up.x, up.y) * base::kDegreesPerRadian,
+          std::atan2(up.z, up.y) * base::kDegreesPerRadian};
 }
 
 Lean MeanLean(const std::vector<motion::Vec3>& directions) {
@@ -129,7 +129,8 @@ Lean FloorLean(const std::vector<motion::Vec3>& points) {
     }
     weights = HuberWeights(weights, kPlaneReach);
   }
-  return {-std::atan(plane.slope_x) * kDegrees, -std::atan(plane.slope_z) * kDegrees};
+  return {-std::atan(plane.slope_x) * base::kDegreesPerRadian,
+          -std::atan(plane.slope_z) * base::kDegreesPerRadian};
 }
 
 float HeightQuantile(const std::vector<motion::Vec3>& points, double share) {

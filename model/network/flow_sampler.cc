@@ -2,12 +2,13 @@
 
 #include <cmath>
 
+#include "model/base/angle.h"
 #include "model/network/flow_noise.h"
 
 namespace duet::network {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+using base::kPi;
 
 // Terms being collected.
 struct Terms {

@@ -4,10 +4,12 @@
 #include <cmath>
 #include <cstddef>
 
+#include "model/base/angle.h"
+
 namespace duet::retargeting {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+using base::kPi;
 // Cosine of the middle angle below which only the sum of the others is defined.
 constexpr double kGimbalLock = 1e-5;
 

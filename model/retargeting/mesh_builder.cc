@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/base/angle.h"
+
 namespace duet::retargeting {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+using base::kPi;
 constexpr int kAroundLimb = 12;
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "model/base/median.h"
 
 namespace duet::retargeting {
 namespace {
@@ -80,9 +81,7 @@ class RigBuilder {
     for (int frame = 0; frame < clip_.frame_count(); ++frame) {
       lengths.push_back(Norm(ToDouble(clip_.at(frame, to)) - ToDouble(clip_.at(frame, from))));
     }
-    const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
-    std::nth_element(lengths.begin(), middle, lengths.end());
-    return *middle;
+    return base::Median(std::move(lengths));
   }
 
   // Where `to` is from `from` along the trunk's axes, on average.

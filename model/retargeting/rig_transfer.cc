@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "model/base/median.h"
 #include "model/motion/recorded_motion.h"
 #include "model/retargeting/foot_pose.h"
 #include "model/retargeting/limb_reach.h"
@@ -194,9 +195,8 @@ class Transfer {
       lengths.push_back(Norm(ToDouble(clip.at(frame, leg.clip_start)) - knee) +
                         Norm(ToDouble(clip.at(frame, leg.clip_end)) - knee));
     }
-    const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
-    std::nth_element(lengths.begin(), middle, lengths.end());
-    return *middle > kNoLength ? (leg.upper_length + leg.lower_length) / *middle : 1;
+    const double length = base::Median(std::move(lengths));
+    return length > kNoLength ? (leg.upper_length + leg.lower_length) / length : 1;
   }
 
   Vec3d At(const motion::Clip& clip, int frame, absl::string_view joint) const {

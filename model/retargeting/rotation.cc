@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 
+#include "model/base/angle.h"
+
 namespace duet::retargeting {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+using base::kPi;
 constexpr double kTiny = 1e-12;
 constexpr double kNearlyEqual = 1e-4;  // radians
 constexpr int kMaxSweeps = 32;

@@ -4,12 +4,14 @@
 #include <cmath>
 #include <vector>
 
+#include "model/base/angle.h"
+
 namespace duet::training {
 namespace {
 
 using motion::Vec3;
 
-constexpr double kPi = 3.14159265358979323846;
+using base::kPi;
 
 Vec3 Horizontal(double angle) {
   return {static_cast<float>(std::cos(angle)), 0, static_cast<float>(std::sin(angle))};

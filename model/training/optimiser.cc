@@ -2,10 +2,12 @@
 
 #include <cmath>
 
+#include "model/base/angle.h"
+
 namespace duet::training {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+using base::kPi;
 constexpr double kWarmUpShare = 0.2;
 constexpr double kFirstFactor = 1.0 / 25;
 constexpr double kLastFactor = 1e-5;

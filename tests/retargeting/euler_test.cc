@@ -6,11 +6,12 @@
 #include <vector>
 
 #include "gtest/gtest.h"
+#include "model/base/angle.h"
 
 namespace duet::retargeting {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+using base::kPi;
 const std::vector<EulerOrder> kOrders = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2},
                                          {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
 

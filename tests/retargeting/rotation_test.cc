@@ -4,11 +4,12 @@
 #include <vector>
 
 #include "gtest/gtest.h"
+#include "model/base/angle.h"
 
 namespace duet::retargeting {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+using base::kPi;
 
 void ExpectNear(Vec3d a, Vec3d b, double tolerance = 1e-9) {
   EXPECT_NEAR(a.x, b.x, tolerance);

@@ -11,6 +11,7 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
+#include "model/base/angle.h"
 #include "model/base/text.h"
 #include "model/motion/motion_limits.h"
 
@@ -20,8 +21,6 @@ namespace {
 using retargeting::Quaternion;
 using retargeting::Vec3d;
 using Words = std::vector<absl::string_view>;
-
-constexpr float kRadiansPerDegree = 3.14159265358979323846f / 180;
 
 class AmcParser {
  public:
@@ -117,7 +116,8 @@ class AmcParser {
         return Error(absl::StrCat(base::Quoted(name), ": came ", base::Quoted(words[i + 1]),
                                   ", wanted a finite number"));
       }
-      if (freedoms[i] >= AsfFreedom::kRx && !radians_) values[i] *= kRadiansPerDegree;
+      if (freedoms[i] >= AsfFreedom::kRx && !radians_)
+        values[i] *= static_cast<float>(base::kRadiansPerDegree);
     }
     return absl::OkStatus();
   }

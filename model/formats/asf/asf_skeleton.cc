@@ -11,6 +11,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
+#include "model/base/angle.h"
 #include "model/base/text.h"
 #include "model/motion/motion_limits.h"
 
@@ -21,7 +22,6 @@ using retargeting::Quaternion;
 using retargeting::Vec3d;
 using Words = std::vector<absl::string_view>;
 
-constexpr double kRadiansPerDegree = 3.14159265358979323846 / 180;
 constexpr char kRoot[] = "root";
 
 std::optional<AsfFreedom> ParseFreedom(absl::string_view word) {
@@ -133,7 +133,7 @@ class AsfParser {
   }
 
   Quaternion Axes(const std::vector<AsfFreedom>& order, Vec3d angles) const {
-    const double unit = skeleton_.radians ? 1 : kRadiansPerDegree;
+    const double unit = skeleton_.radians ? 1 : base::kRadiansPerDegree;
     std::vector<double> in_order;
     for (AsfFreedom axis : order) {
       in_order.push_back(unit * (axis == AsfFreedom::kRx   ? angles.x

@@ -7,13 +7,13 @@
 #include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "model/base/angle.h"
 #include "model/base/text.h"
 #include "model/motion/motion_limits.h"
 
 namespace duet::formats::bvh {
 namespace {
 
-constexpr double kRadiansPerDegree = 3.14159265358979323846 / 180;
 constexpr int kMaxChannels = 6;
 constexpr int kOffsetDecimals = 6;
 constexpr int kValueDecimals = 5;
@@ -326,7 +326,7 @@ class BvhFormatter {
 };
 
 retargeting::Quaternion ChannelRotation(BvhChannel channel, double degrees) {
-  const double radians = degrees * kRadiansPerDegree;
+  const double radians = degrees * base::kRadiansPerDegree;
   switch (channel) {
     case BvhChannel::kXRotation:
       return retargeting::AxisAngle({1, 0, 0}, radians);

@@ -5,6 +5,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "model/base/angle.h"
 #include "model/base/text.h"
 
 namespace duet::formats::bvh {
@@ -16,9 +17,8 @@ using retargeting::InBetween;
 using retargeting::Quaternion;
 using retargeting::Vec3d;
 
-constexpr double kDegreesPerRadian = 180 / 3.14159265358979323846;
 // One centimetre at the end of an arm.
-constexpr double kWorthTelling = 1 / kDegreesPerRadian;
+constexpr double kWorthTelling = 1 / base::kDegreesPerRadian;
 
 bool IsRotation(BvhChannel channel) { return channel >= BvhChannel::kXRotation; }
 
@@ -67,9 +67,9 @@ class BetweenFrames {
     notes->push_back(absl::StrFormat(
         "%s comes near gimbal lock: between frames, lines drawn from angle to angle are up to %.1f "
         "degrees off (frame %d); %d keys per frame bring that below %.0f",
-        base::Quoted(joint_), largest_.radians * kDegreesPerRadian,
+        base::Quoted(joint_), largest_.radians * base::kDegreesPerRadian,
         static_cast<int>(largest_.frame) / keys_per_frame_, enough_,
-        kWorthTelling * kDegreesPerRadian));
+        kWorthTelling * base::kDegreesPerRadian));
   }
 
  private:
@@ -127,7 +127,7 @@ void WriteMotion(const std::vector<BvhTrack>& tracks, double frame_rate_hz, cons
       std::size_t turn = 0;
       for (BvhChannel channel : document->joints[j].channels) {
         const bool turns = IsRotation(channel) && !joints[j].angles.empty();
-        const double value = turns ? joints[j].angles[key][turn++] * kDegreesPerRadian
+        const double value = turns ? joints[j].angles[key][turn++] * base::kDegreesPerRadian
                              : IsRotation(channel)
                                  ? 0
                                  : Component(joints[j].places[key], AxisOf(channel));

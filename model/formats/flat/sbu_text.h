@@ -10,6 +10,7 @@
 #include "absl/strings/string_view.h"
 #include "model/motion/clip.h"
 #include "model/motion/coordinates.h"
+#include "model/motion/sbu.h"
 #include "model/motion/skeleton.h"
 
 namespace duet::formats::flat {
@@ -18,7 +19,7 @@ namespace duet::formats::flat {
 // in its frame rate (30) alone.
 struct SbuOptions {
   std::vector<std::string> joint_names = motion::SbuSkeleton().joint_names;
-  double frame_rate_hz = 15;
+  double frame_rate_hz = motion::kSbuFrameRateHz;
   motion::Coordinates coordinates = {motion::LengthUnit::kSbuNormalised, motion::UpAxis::kYDown};
 };
 

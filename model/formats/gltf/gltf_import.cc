@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "model/base/median.h"
 #include "model/base/text.h"
 #include "model/formats/gltf/gltf_animation.h"
 #include "model/formats/gltf/gltf_writer.h"
@@ -257,9 +258,7 @@ double RateOfKeys(const std::vector<float>& times) {
   for (std::size_t i = 1; i < times.size(); ++i) {
     steps.push_back(static_cast<double>(times[i]) - static_cast<double>(times[i - 1]));
   }
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  const double rate = 1 / *middle, whole = std::round(rate);
+  const double rate = 1 / base::Median(std::move(steps)), whole = std::round(rate);
   return std::abs(rate - whole) < kRateTolerance * whole ? whole : rate;
 }
 

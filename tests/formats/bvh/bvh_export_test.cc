@@ -9,6 +9,7 @@
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "model/base/angle.h"
 #include "model/formats/bvh/bvh_document.h"
 #include "tests/support/test_motion.h"
 
@@ -24,7 +25,7 @@ using test::MakePerson;
 using test::PersonOptions;
 using ::testing::HasSubstr;
 
-constexpr double kPi = 3.14159265358979323846;
+using base::kPi;
 constexpr float kOneMillimetre = 0.001f;
 
 // The clip's joints again, in metres, from the document's text through forward kinematics.

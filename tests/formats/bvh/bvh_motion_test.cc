@@ -7,6 +7,7 @@
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "model/base/angle.h"
 
 namespace duet::formats::bvh {
 namespace {
@@ -16,8 +17,7 @@ using retargeting::EulerOrder;
 using retargeting::Quaternion;
 using ::testing::HasSubstr;
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kDegree = kPi / 180;
+constexpr double kDegree = base::kRadiansPerDegree;
 constexpr double kRateHz = 30;
 constexpr int kFrames = 15;  // after the first
 

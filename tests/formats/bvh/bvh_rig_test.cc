@@ -7,6 +7,7 @@
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "model/base/angle.h"
 #include "model/retargeting/euler.h"
 #include "tests/formats/bvh/rig_families.h"
 #include "tests/support/status_matchers.h"
@@ -19,8 +20,6 @@ using retargeting::Quaternion;
 using test::IsOk;
 using test::RigFamily;
 using ::testing::HasSubstr;
-
-constexpr double kDegrees = 180 / 3.14159265358979323846;
 
 // Walks on the spot in a turn, arms and legs swinging; ankles as high as the rigs' are.
 motion::Clip Follower() {
@@ -50,7 +49,7 @@ struct Figures {
 
 double Angle(motion::Vec3 a, motion::Vec3 b) {
   const double cosine = static_cast<double>(Dot(a, b) / (Norm(a) * Norm(b)));
-  return kDegrees * std::acos(std::clamp(cosine, -1.0, 1.0));
+  return base::kDegreesPerRadian * std::acos(std::clamp(cosine, -1.0, 1.0));
 }
 
 // Of every joint with three rotation channels, from one frame to the next.
@@ -70,19 +69,22 @@ void MeasureSteps(const BvhDocument& document, Figures* figures) {
     std::vector<Quaternion> rotations;
     for (int frame = 0; frame < document.frame_count; ++frame) {
       const float* values = &document.values[static_cast<std::size_t>(frame) * channels + turns];
-      angles.push_back({values[0] / kDegrees, values[1] / kDegrees, values[2] / kDegrees});
+      angles.push_back({values[0] / base::kDegreesPerRadian, values[1] / base::kDegreesPerRadian,
+                        values[2] / base::kDegreesPerRadian});
       rotations.push_back(retargeting::FromEuler(angles.back(), order));
     }
     for (std::size_t frame = 1; frame < angles.size(); ++frame) {
       figures->true_step =
-          std::max(figures->true_step, Angle(rotations[frame], rotations[frame - 1]) * kDegrees);
+          std::max(figures->true_step,
+                   Angle(rotations[frame], rotations[frame - 1]) * base::kDegreesPerRadian);
       for (std::size_t i = 0; i < 3; ++i) {
         const double step = std::abs(angles[frame][i] - angles[frame - 1][i]);
-        figures->euler_step = std::max(figures->euler_step, step * kDegrees);
+        figures->euler_step = std::max(figures->euler_step, step * base::kDegreesPerRadian);
       }
     }
     figures->between =
-        std::max(figures->between, LargestInBetween(rotations, angles, order).radians * kDegrees);
+        std::max(figures->between,
+                 LargestInBetween(rotations, angles, order).radians * base::kDegreesPerRadian);
   }
 }
 

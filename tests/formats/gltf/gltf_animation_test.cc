@@ -6,6 +6,7 @@
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "model/base/angle.h"
 #include "tests/formats/gltf/gltf_fixture.h"
 
 namespace duet::formats::gltf {
@@ -15,7 +16,7 @@ using retargeting::Quaternion;
 using retargeting::Vec3d;
 using ::testing::HasSubstr;
 
-constexpr double kPi = 3.14159265358979323846;
+using base::kPi;
 
 absl::StatusOr<std::string> NoFiles(const std::string&) { return absl::NotFoundError(""); }
 
