@@ -9,19 +9,19 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/types/span.h"
+#include "model/base/angle.h"
+#include "model/base/median.h"
 #include "model/cleanup/floor.h"
 #include "model/cleanup/limbs.h"
 #include "model/dataset/posture.h"
 #include "model/motion/feet.h"
-#include "model/motion/limb_lengths.h"
+#include "model/motion/inferred_coordinates.h"
 
 namespace duet::client::analysis {
 namespace {
 
 using motion::Vec3;
 
-// From the foot along the bones to the root.
-constexpr double kShortestLeg = 0.7, kLongestLeg = 1.4;
 // Standard deviation of a bone's length over its mean: Kinect's bones reach a tenth.
 constexpr double kMostDrift = 0.1;
 // Rounding, in whatever unit.
@@ -43,7 +43,6 @@ constexpr double kMostBentWrongly = 0.8;
 constexpr double kMostForwardLean = 12, kMostOtherLean = 5;
 // Shoulders against hips, degrees about the trunk: people reach 50, for a moment more.
 constexpr double kMostTwist = 60, kMostTimeTwisted = 0.02;
-constexpr double kDegrees = 57.29577951308232;
 
 std::size_t Index(int i) { return static_cast<std::size_t>(i); }
 
@@ -92,30 +91,15 @@ class Checker {
         {{"bad_frames", bad}});
   }
 
-  // Along the bones' medians from a foot to the root.
-  double LegLength(int foot) const {
-    const std::vector<float> lengths = MedianBoneLengths(skeleton_, clip_.poses);
-    double length = 0;
-    for (int joint = foot; joint != skeleton_.root;) {
-      for (std::size_t bone = 0; bone < skeleton_.bones.size(); ++bone) {
-        if (skeleton_.bones[bone].child != joint) continue;
-        length += static_cast<double>(lengths[bone]);
-        joint = skeleton_.bones[bone].parent;
-        break;
-      }
-    }
-    return length;
-  }
-
   void CheckSize() {
     if (!skeleton_.feet) return;
-    const double leg = LegLength(skeleton_.feet->left);
-    const bool good = leg >= kShortestLeg && leg <= kLongestLeg;
+    const double leg = motion::LegLength(skeleton_, clip_.poses);
+    const bool good = motion::IsLegLength(leg);
     Add("size", good,
         absl::StrFormat("foot to %s %.2f m%s", skeleton_.joint_names[Index(skeleton_.root)], leg,
                         good ? ""
                              : absl::StrFormat(", people have %.1f to %.1f m: is the unit right?",
-                                               kShortestLeg, kLongestLeg)),
+                                               motion::kShortestLeg, motion::kLongestLeg)),
         {{"foot_to_root_metres", leg}});
   }
 
@@ -182,9 +166,7 @@ class Checker {
     for (int frame = 0; frame < clip_.frame_count(); ++frame) {
       lengths.push_back(Distance(clip_.at(frame, bone.parent), clip_.at(frame, bone.child)));
     }
-    const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
-    std::nth_element(lengths.begin(), middle, lengths.end());
-    return static_cast<double>(*middle);
+    return static_cast<double>(base::Median(std::move(lengths)));
   }
 
   void Compare(const motion::Bone& a, const motion::Bone& b, double* most,
@@ -342,7 +324,8 @@ class Checker {
   std::pair<double, double> LeanFromOwnView(const std::vector<Vec3>& directions) const {
     double forwards = 0, sideways = 0;
     const auto angle = [](Vec3 up, Vec3 way) {
-      return kDegrees * std::asin(std::clamp(static_cast<double>(Dot(up, way)), -1.0, 1.0));
+      return base::kDegreesPerRadian *
+             std::asin(std::clamp(static_cast<double>(Dot(up, way)), -1.0, 1.0));
     };
     for (int frame = 0; frame < clip_.frame_count(); ++frame) {
       const Vec3 facing = cleanup::Facing(*skeleton_.hips, clip_.poses[frame]);
@@ -397,7 +380,7 @@ class Checker {
     const double norms = static_cast<double>(Norm(hips)) * static_cast<double>(Norm(upper));
     if (!(norms > 0)) return 0;
     return std::acos(std::clamp(static_cast<double>(Dot(hips, upper)) / norms, -1.0, 1.0)) *
-           kDegrees;
+           base::kDegreesPerRadian;
   }
 
   void CheckWaist() {

@@ -21,9 +21,11 @@
 #include "model/formats/gltf/gltf_export.h"
 #include "model/formats/gltf/gltf_import.h"
 #include "model/formats/usd/usda_export.h"
+#include "model/motion/inferred_coordinates.h"
 #include "model/motion/motion_limits.h"
 #include "model/motion/reading_setting.h"
 #include "model/motion/recorded_motion.h"
+#include "model/motion/sbu.h"
 #include "model/retargeting/character.h"
 
 namespace duet::formats {
@@ -32,8 +34,6 @@ namespace {
 namespace fs = std::filesystem;
 
 static_assert(kMostBvhKeysPerFrame == bvh::kMostKeysPerFrame);
-
-constexpr double kSbuFrameRateHz = 15;
 
 using retargeting::Origin;
 using retargeting::Setting;
@@ -56,11 +56,13 @@ struct Source {
 
 // Positions alone do not say which axis is up where nobody does: Blender's is z.
 void WarnOfUpAxis(const motion::Clip& clip, const ReadOptions& options) {
-  const std::optional<motion::UpAxis> up = retargeting::FindUpAxis(clip, options.skeleton);
-  if (!up.has_value() || *up == motion::UpAxis::kYUp) return;
+  if (!options.skeleton.feet) return;
+  const std::optional<motion::UpAxis> up = motion::InferUpAxis(options.skeleton, {&clip.poses});
+  if (up == motion::UpAxis::kYUp) return;
   const std::string warning = absl::StrCat(
       "warning: up axis: as the file was read, the feet are not below the root along y; ",
-      motion::UpAxisName(*up), " would fit; say which axis is up");
+      up.has_value() ? absl::StrCat(motion::UpAxisName(*up), " would fit; ") : "",
+      "specify the up axis");
   if (options.notes != nullptr) options.notes->push_back(warning);
   if (options.report != nullptr) options.report->remarks.push_back(warning);
 }
@@ -134,7 +136,7 @@ absl::StatusOr<motion::Clip> ReadSbuPerson(const std::string& text, const std::s
                                            const ReadOptions& options) {
   flat::SbuOptions sbu;
   sbu.joint_names = options.skeleton.joint_names;
-  sbu.frame_rate_hz = options.frame_rate_hz.value_or(kSbuFrameRateHz);
+  sbu.frame_rate_hz = options.frame_rate_hz.value_or(motion::kSbuFrameRateHz);
   sbu.coordinates = options.coordinates.value_or(sbu.coordinates);
   ReportSbu(sbu, options);
   absl::StatusOr<flat::SbuRecording> recording = ParseSbu(text, source, sbu);
@@ -389,7 +391,7 @@ absl::StatusOr<std::vector<motion::Vec3>> ReadFollowerStart(const fs::path& path
                                                             const ReadOptions& options) {
   ReadOptions any_rate = options;
   // A single pose has no rate; a file without one will do.
-  if (!any_rate.frame_rate_hz.has_value()) any_rate.frame_rate_hz = kSbuFrameRateHz;
+  if (!any_rate.frame_rate_hz.has_value()) any_rate.frame_rate_hz = motion::kSbuFrameRateHz;
   absl::StatusOr<motion::Clip> clip = ReadLeader(path, any_rate);
   if (!clip.ok()) return clip.status();
   const absl::Span<const motion::Vec3> start = clip->poses[0];

@@ -5,11 +5,11 @@
 #include <cstddef>
 #include <utility>
 
-#include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "model/base/median.h"
 #include "model/formats/motion_file.h"
-#include "model/importing/scale.h"
+#include "model/motion/inferred_coordinates.h"
 #include "model/motion/resample.h"
 
 namespace duet::importing {
@@ -20,8 +20,14 @@ namespace fs = std::filesystem;
 constexpr int kFewestFrames = 2;
 // Median distance of the roots, metres.
 constexpr double kNearest = 0.05, kFarthest = 10;
-// How far legs may be from those that the unit was told by, as a factor.
+// One person's legs may be this factor shorter or longer than the range that InferUnit accepts for
+// the median of all people.
 constexpr double kLegTolerance = 1.5;
+
+bool HasHierarchy(formats::Format format) {
+  return format == formats::Format::kBvh || format == formats::Format::kGltf ||
+         format == formats::Format::kGlb || format == formats::Format::kAmc;
+}
 
 absl::StatusOr<motion::Clip> ReadPerson(const fs::path& path, formats::Side side,
                                         const CaptureOptions& options) {
@@ -31,18 +37,19 @@ absl::StatusOr<motion::Clip> ReadPerson(const fs::path& path, formats::Side side
   read.joint_overrides = options.joint_overrides;
   read.frame_rate_hz = options.frame_rate_hz;
   read.notes = options.notes;
-  const std::string extension = absl::AsciiStrToLower(path.extension().string());
-  if (extension == ".bvh") {
-    read.metres_per_unit = 1;
+  const std::optional<formats::Format> format = formats::FormatOf(path);
+  if (format.has_value() && HasHierarchy(*format)) {
+    // ASF is the only one that may state its unit.
+    if (options.unit_is_given || format != formats::Format::kAmc) read.metres_per_unit = 1;
     read.coordinates = motion::Coordinates{};
   }
   absl::StatusOr<motion::Clip> person = formats::ReadLeader(path, read);
-  if (person.ok() || extension != ".npy") return person;
+  if (person.ok() || format != formats::Format::kNpy) return person;
   return absl::Status(
       person.status().code(),
       absl::StrCat(person.status().message(),
-                   "; NPY says neither rate nor joints: say them with --frame-rate, "
-                   "and with --skeleton if they are not the 15 of SBU"));
+                   "; NPY states neither frame rate nor joints: specify --frame-rate, and "
+                   "--skeleton unless they are the 15 joints of SBU"));
 }
 
 // The whole duration, as the engine resamples its leaders.
@@ -58,9 +65,7 @@ double MedianRootDistance(const Capture& capture, int root) {
   for (int t = 0; t < capture.first.frame_count(); ++t) {
     distances.push_back(Distance(capture.first.at(t, root), capture.second.at(t, root)));
   }
-  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-  std::nth_element(distances.begin(), middle, distances.end());
-  return *middle;
+  return base::Median(std::move(distances));
 }
 
 motion::Clip Piece(const motion::Clip& whole, int first, int frames) {
@@ -108,17 +113,20 @@ double Align(double rate_hz, Capture* capture) {
 
 absl::Status CheckPlausible(const Capture& capture, const motion::Skeleton& skeleton) {
   for (const motion::Clip* person : {&capture.first, &capture.second}) {
-    const double leg = LegLength(skeleton, person->poses);
-    if (leg > kShortestLeg / kLegTolerance && leg < kLongestLeg * kLegTolerance) continue;
+    const double leg = motion::LegLength(skeleton, person->poses);
+    const double shortest = motion::kShortestLeg / kLegTolerance;
+    const double longest = motion::kLongestLeg * kLegTolerance;
+    if (leg > shortest && leg < longest) continue;
     return absl::InvalidArgumentError(absl::StrFormat(
-        "%s has legs of %.3g m in the unit that fits most of the files, wanted a person's",
-        person == &capture.first ? capture.files.first : capture.files.second, leg));
+        "%s: legs: expected %.2g to %.2g m in the unit of the other files, got %.3g m",
+        person == &capture.first ? capture.files.first : capture.files.second, shortest, longest,
+        leg));
   }
   const double apart = MedianRootDistance(capture, skeleton.root);
   if (apart >= kNearest && apart <= kFarthest) return absl::OkStatus();
   return absl::InvalidArgumentError(absl::StrFormat(
-      "its people are %.3g m apart, wanted two people in one world, %g to %g m apart", apart,
-      kNearest, kFarthest));
+      "distance of the two people: expected %g to %g m, got %.3g m; both must be in one world",
+      kNearest, kFarthest, apart));
 }
 
 std::vector<Capture> Cut(const Capture& capture, int longest) {

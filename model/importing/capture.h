@@ -25,15 +25,17 @@ struct Capture {
 struct CaptureOptions {
   motion::Skeleton skeleton;
   retargeting::JointOverrides joint_overrides;
-  std::optional<double> frame_rate_hz;  // replaces what the files say
-  // Receives what was decided where names leave a choice of joints. May be null.
+  std::optional<double> frame_rate_hz;  // overrides the files' own
+  bool unit_is_given = false;           // ignore the unit that a file states
+  // Receives one note for each choice between several joints. May be null.
   std::vector<std::string>* notes = nullptr;
 };
 
-// Reads both people: BVH in the file's own unit and axes, everything else in the metres, y up, that
-// the file states or that go without saying.
-// Errors: INVALID_ARGUMENT naming the file and what is wrong with it, one that holds a single
-// person among it.
+// Reads both people. Formats with a hierarchy (BVH, glTF, ASF) keep the file's unit and axes,
+// except that a unit which an ASF file states is converted to metres. Every other format is read
+// in the coordinates that the file states; the default is metres, y up.
+//
+// Errors: INVALID_ARGUMENT naming the file, also if a file that must hold two people holds one.
 absl::StatusOr<Capture> ReadCapture(const std::filesystem::path& folder, const PairFiles& files,
                                     const CaptureOptions& options);
 

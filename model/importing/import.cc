@@ -17,7 +17,7 @@
 #include "model/formats/motion_file.h"
 #include "model/importing/capture.h"
 #include "model/importing/dataset_folder.h"
-#include "model/importing/scale.h"
+#include "model/motion/inferred_coordinates.h"
 
 namespace duet::importing {
 namespace {
@@ -174,7 +174,8 @@ class Importer {
   absl::Status ReadPairs() {
     std::vector<std::string> notes;
     const CaptureOptions options = {skeleton_.skeleton, options_.joint_overrides,
-                                    options_.frame_rate_hz, &notes};
+                                    options_.frame_rate_hz, options_.metres_per_unit.has_value(),
+                                    &notes};
     for (const PairFiles& files : pairs_) {
       absl::StatusOr<Capture> capture = ReadCapture(options_.from, files, options);
       if (capture.ok()) {
@@ -209,21 +210,23 @@ class Importer {
   absl::Status FindCoordinates() {
     std::vector<double> legs;
     for (const motion::Poses* poses : People()) {
-      legs.push_back(LegLength(skeleton_.skeleton, *poses));
+      legs.push_back(motion::LegLength(skeleton_.skeleton, *poses));
     }
-    const std::optional<Unit> unit =
-        options_.metres_per_unit ? Unit{*options_.metres_per_unit, "as said"} : FindUnit(legs);
+    const std::optional<motion::InferredUnit> unit =
+        options_.metres_per_unit ? motion::InferredUnit{"as specified", *options_.metres_per_unit}
+                                 : motion::InferUnit(legs);
     if (!unit) {
       return absl::InvalidArgumentError(absl::StrFormat(
-          "unit: legs are %.4g units long, which is no person's %g to %g m in metres, "
-          "centimetres, millimetres, inches or CMU's; say it with --metres-per-unit",
-          legs.front(), kShortestLeg, kLongestLeg));
+          "unit: expected legs of %g to %g m in a usual unit, got legs of %.4g units; "
+          "specify --metres-per-unit",
+          motion::kShortestLeg, motion::kLongestLeg, legs.front()));
     }
     const std::optional<motion::UpAxis> axis =
-        options_.up_axis ? options_.up_axis : FindUpAxis(skeleton_.skeleton, People());
+        options_.up_axis ? options_.up_axis : motion::InferUpAxis(skeleton_.skeleton, People());
     if (!axis) {
       return absl::InvalidArgumentError(
-          "up axis: most people stand along x or -z; say it with --up-axis, or turn the files");
+          "up axis: expected people who stand along y, z or -y, got another axis; specify "
+          "--up-axis, or rotate the files");
     }
     const motion::Coordinates coordinates{motion::LengthUnit::kMetres, *axis};
     for (Capture& capture : captures_) {

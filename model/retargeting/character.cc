@@ -5,30 +5,20 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "model/motion/inferred_coordinates.h"
+#include "model/motion/poses.h"
 #include "model/motion/reading_setting.h"
 
 namespace duet::retargeting {
 namespace {
 
-// From the foot up to the root (torso or pelvis) along the bones, metres.
-constexpr double kShortestLeg = 0.7, kLongestLeg = 1.4, kTypicalLeg = 1;
+// What a leg of no person's length in any known unit is taken for, metres.
+constexpr double kTypicalLeg = 1;
 constexpr double kLargestUnit = 1000;
 // From the feet to the head of a character pulled straight, metres: beyond these, a warning.
 constexpr double kShortestPerson = 1.3, kTallestPerson = 2.1;
 // In units: what is smaller is a figure without size rather than one in a unit of its own.
 constexpr double kSmallestLeg = 1e-3;
-
-struct Unit {
-  const char* name;
-  double metres;
-};
-// The first one that fits counts: a leg of 13 units is a child's in CMU's unit.
-constexpr Unit kUnits[] = {{"centimetres", 0.01},
-                           {"metres", 1},
-                           {"millimetres", 0.001},
-                           {"inches", 0.0254},
-                           {"CMU's unit (0.45 to the inch)", 0.0254 / 0.45},
-                           {"decimetres", 0.1}};
 
 double Rounded(double value, double step) { return std::round(value / step) * step; }
 
@@ -67,21 +57,6 @@ class ClipMaker {
   void Note(std::string note) {
     if (options_.notes != nullptr) options_.notes->push_back(std::move(note));
   }
-
-  // Along the bones from the left foot to the root, in the file's unit. Requires feet.
-  double LegLength(const std::vector<motion::Vec3>& straight) const {
-    const std::vector<int> parents = options_.skeleton.Parents();
-    double length = 0;
-    for (int joint = options_.skeleton.feet->left; joint != options_.skeleton.root;) {
-      const int parent = parents[static_cast<size_t>(joint)];
-      length += static_cast<double>(
-          Distance(straight[static_cast<size_t>(joint)], straight[static_cast<size_t>(parent)]));
-      joint = parent;
-    }
-    return length;
-  }
-
-  static bool IsLeg(double metres) { return metres >= kShortestLeg && metres <= kLongestLeg; }
 
   // From the middle of the feet up to the head; absent for a skeleton that lacks either.
   std::optional<double> Stature(const std::vector<motion::Vec3>& straight) const {
@@ -132,12 +107,13 @@ class ClipMaker {
     if (!options_.skeleton.feet) {
       return UnitNeeded("the skeleton has no feet to tell it by");
     }
-    const double length = LegLength(straight);
+    const double length =
+        LegLength(options_.skeleton, motion::Poses(options_.skeleton.joint_count(), straight));
     const std::string& root =
         options_.skeleton.joint_names[static_cast<size_t>(options_.skeleton.root)];
     if (character_.stated_metres_per_unit.has_value()) {
       const double unit = *character_.stated_metres_per_unit;
-      if (IsLeg(length * unit)) {
+      if (motion::IsLegLength(length * unit)) {
         Note(absl::StrCat("unit: ", unit, " m (", character_.stated_by, ")"));
         ReportUnit({absl::StrCat(unit, " m"), Origin::kFile, character_.stated_by});
         return unit;
@@ -145,14 +121,12 @@ class ClipMaker {
       Warn(absl::StrCat("unit: ", character_.stated_by, " would make the way from foot to ", root,
                         " ", Rounded(length * unit, 0.01), " m, and was passed over"));
     }
-    for (const Unit& unit : kUnits) {
-      const double metres = length * unit.metres;
-      if (!IsLeg(metres)) continue;
+    if (const std::optional<motion::InferredUnit> unit = motion::InferUnit({length})) {
       const std::string why =
-          absl::StrCat("foot to ", root, " is then ", Rounded(metres, 0.01), " m");
-      Note(absl::StrCat("unit: ", unit.name, " (", why, ")"));
-      ReportUnit({unit.name, Origin::kGuessed, why});
-      return unit.metres;
+          absl::StrCat("foot to ", root, " is then ", Rounded(length * unit->metres, 0.01), " m");
+      Note(absl::StrCat("unit: ", unit->name, " (", why, ")"));
+      ReportUnit({unit->name, Origin::kGuessed, why});
+      return unit->metres;
     }
     if (!(length >= kSmallestLeg)) {
       return UnitNeeded(
@@ -182,10 +156,16 @@ class ClipMaker {
       ReportUpAxis(*options_.up_axis, Origin::kGiven, "");
       return *options_.up_axis;
     }
-    const std::optional<motion::UpAxis> found = FindUpAxis(clip, options_.skeleton);
+    const std::optional<motion::UpAxis> found =
+        motion::InferUpAxis(options_.skeleton, {&clip.poses});
     const motion::UpAxis up = found.value_or(motion::UpAxis::kYUp);
     ReportUpAxis(up, found.has_value() ? Origin::kGuessed : Origin::kDefault,
                  found.has_value() ? "the feet are below the root along it" : "");
+    if (!found.has_value() && options_.skeleton.feet) {
+      Warn(
+          "up axis: expected a person who stands along y, z or -y, got none; y is taken as up; "
+          "specify the up axis if another is");
+    }
     if (up == motion::UpAxis::kZUp) Note("up axis: z (the feet are below the root along it)");
     if (up == motion::UpAxis::kYDown) {
       Note("up axis: y pointing down (the feet are above the root along it)");
@@ -199,21 +179,6 @@ class ClipMaker {
 };
 
 }  // namespace
-
-std::optional<motion::UpAxis> FindUpAxis(const motion::Clip& clip,
-                                         const motion::Skeleton& skeleton) {
-  if (!skeleton.feet) return std::nullopt;
-  motion::Vec3 up;
-  for (int frame = 0; frame < clip.frame_count(); ++frame) {
-    const motion::Vec3 feet =
-        (clip.at(frame, skeleton.feet->left) + clip.at(frame, skeleton.feet->right)) / 2;
-    const motion::Vec3 body = clip.at(frame, skeleton.root) - feet;
-    if (Norm(body) > 0) up += body / Norm(body);
-  }
-  if (up.z > std::abs(up.y)) return motion::UpAxis::kZUp;
-  if (-up.y > std::abs(up.z)) return motion::UpAxis::kYDown;
-  return motion::UpAxis::kYUp;
-}
 
 absl::StatusOr<motion::Clip> ToClip(const Character& character, absl::string_view source,
                                     const CharacterOptions& options) {

@@ -52,11 +52,6 @@ struct CharacterOptions {
   CharacterFit* fit = nullptr;                // receives the same as values; may be null
 };
 
-// The axis along which the root stands above the feet, over the whole motion: y where none does
-// clearly. Absent for a skeleton without feet.
-std::optional<motion::UpAxis> FindUpAxis(const motion::Clip& clip,
-                                         const motion::Skeleton& skeleton);
-
 // A character's motion as the skeleton's joints in metres, y up.
 //
 // Errors: INVALID_ARGUMENT naming `source`: joints that cannot be mapped, a character of no size.

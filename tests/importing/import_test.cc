@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <fstream>
 
 #include "absl/strings/str_cat.h"
@@ -11,6 +12,9 @@
 #include "model/dataset/dataset.h"
 #include "model/formats/flat/csv.h"
 #include "model/formats/motion_file.h"
+#include "model/motion/coordinates.h"
+#include "model/retargeting/reading_report.h"
+#include "tests/formats/asf/asf_fixture.h"
 #include "tests/importing/bvh_people.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/test_motion.h"
@@ -31,6 +35,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 using ::testing::SizeIs;
+using ::testing::StartsWith;
 
 class ImportTest : public ::testing::Test {
  protected:
@@ -212,6 +217,122 @@ TEST_F(ImportTest, PositionsAloneTellSkeletonUnitAndAxis) {
   EXPECT_EQ(parent("right_arm"), "neck");  // 0.7 cm nearer than the chest
 }
 
+fs::path SamplesFolder() {
+  const char* source = std::getenv("DUET_SOURCE_DIR");
+  return fs::path(source != nullptr ? source : ".") / "samples";
+}
+
+// Coordinates that people may be captured in.
+struct CapturedIn {
+  double units_per_centimetre;
+  const char* unit;
+  motion::UpAxis up_axis;
+};
+
+// The same motion in other coordinates, as BVH.
+std::string BvhIn(const CapturedIn& coordinates, const motion::Clip& person) {
+  motion::Clip clip = person;
+  for (motion::Vec3& p : clip.poses.all()) {
+    p = FromWorld({motion::LengthUnit::kMetres, coordinates.up_axis}, p);
+  }
+  formats::WriteOptions options;
+  options.bvh_metres_per_unit = 0.01 / coordinates.units_per_centimetre;
+  const absl::StatusOr<std::string> text =
+      formats::FormatPeople(formats::Format::kBvh, {clip}, motion::SbuSkeleton(), options);
+  EXPECT_THAT(text, IsOk());
+  return text.value_or("");
+}
+
+// How a reader of a single file understands it, as `duet inspect` and `duet synthesize` do.
+retargeting::ReadingReport ReadAlone(const fs::path& file) {
+  retargeting::ReadingReport report;
+  formats::ReadOptions options;
+  options.report = &report;
+  EXPECT_THAT(formats::ReadLeader(file, options), IsOk());
+  return report;
+}
+
+TEST_F(ImportTest, InfersTheSameUnitAndAxisAsAReaderOfOneFile) {
+  const motion::Clip a = test::MakePerson(), b = test::MakePerson({60, 3, 0, {0, 1.1f, 1.2f}, 30});
+  const std::pair<double, const char*> units[] = {{1, "centimetres"},          {0.01, "metres"},
+                                                  {10, "millimetres"},         {1 / 2.54, "inches"},
+                                                  {0.45 / 2.54, "CMU's unit"}, {0.1, "decimetres"}};
+  options_.overwrite = true;
+  options_.skeleton.skeleton = "sbu";
+  fs::create_directories(options_.from);
+  for (const auto& [factor, unit] : units) {
+    for (const auto axis : {motion::UpAxis::kYUp, motion::UpAxis::kZUp, motion::UpAxis::kYDown}) {
+      const CapturedIn coordinates = {factor, unit, axis};
+      WriteTestFile(options_.from / "hug_a.bvh", BvhIn(coordinates, a));
+      WriteTestFile(options_.from / "hug_b.bvh", BvhIn(coordinates, b));
+      ASSERT_THAT(Go(), IsOk()) << unit;
+      const retargeting::ReadingReport report = ReadAlone(options_.from / "hug_a.bvh");
+      EXPECT_THAT(report.unit->value, HasSubstr(unit));
+      EXPECT_THAT(Assumed("unit"), StartsWith(report.unit->value + ":"));
+      EXPECT_EQ(report.up_axis->value, UpAxisName(axis));
+      EXPECT_EQ(Assumed("up axis"), report.up_axis->value);
+    }
+  }
+}
+
+TEST_F(ImportTest, InfersTheSameUnitAndAxisOfTheSamplesAsAReaderOfOneFile) {
+  options_.overwrite = true;
+  options_.skeleton.skeleton = "sbu";
+  fs::create_directories(options_.from);
+  for (const fs::directory_entry& sample : fs::directory_iterator(SamplesFolder())) {
+    if (sample.path().extension() != ".bvh") continue;
+    fs::copy_file(sample, options_.from / "one_a.bvh", fs::copy_options::overwrite_existing);
+    WriteTestFile(
+        options_.from / "one_b.bvh",
+        BvhIn({1, "", motion::UpAxis::kYUp}, test::MakePerson({60, 3, 0, {0, 1.1f, 1.2f}, 30})));
+    ASSERT_THAT(Go(), IsOk()) << sample;
+    const retargeting::ReadingReport report = ReadAlone(sample);
+    EXPECT_THAT(Assumed("unit"), StartsWith(report.unit->value + ":")) << sample;
+    EXPECT_EQ(Assumed("up axis"), report.up_axis->value) << sample;
+  }
+}
+
+TEST_F(ImportTest, RefusesLegsOfNoPersonInAnyUsualUnit) {
+  BvhPerson giant;
+  giant.scale = 3;
+  WriteBvhPairs(options_.from, 1, giant);
+  EXPECT_THAT(Go(), StatusIs(absl::StatusCode::kInvalidArgument,
+                             AllOf(HasSubstr("unit: expected legs of 0.7 to 1.4 m"),
+                                   HasSubstr("specify --metres-per-unit"))));
+}
+
+TEST_F(ImportTest, RefusesPeopleWhoStandAlongX) {
+  fs::create_directories(options_.from);
+  options_.skeleton.skeleton = "sbu";
+  for (const float z : {0.0f, 1.2f}) {
+    motion::Clip clip = test::MakePerson({60, 0, 0, {0, 1.1f, z}, 30});
+    for (motion::Vec3& p : clip.poses.all()) p = {p.y, -p.x, p.z};
+    WriteTestFile(options_.from / (z == 0 ? "hug_a.bvh" : "hug_b.bvh"),
+                  BvhIn({1, "", motion::UpAxis::kYUp}, clip));
+  }
+  EXPECT_THAT(Go(), StatusIs(absl::StatusCode::kInvalidArgument,
+                             HasSubstr("up axis: expected people who stand along y, z or -y")));
+}
+
+// The unit of an ASF file is read from it; a unit that is specified replaces that one.
+TEST_F(ImportTest, TheSpecifiedUnitReplacesTheOneThatAFileStates) {
+  fs::create_directories(options_.from);
+  options_.skeleton.skeleton = "sbu";
+  for (const double z : {0.0, 1.2}) {
+    const test::AsfFiles files =
+        test::MakeAsfFiles(test::MakePerson({60, z, 0, {0, 1.1f, static_cast<float>(z)}, 30}));
+    const std::string stem = z == 0 ? "hug_a" : "hug_b";
+    WriteTestFile(options_.from / (stem + ".asf"), files.asf);
+    WriteTestFile(options_.from / (stem + ".amc"), files.amc);
+  }
+  ASSERT_THAT(Go(), IsOk());
+  const float height = Read().sequences[0].pair.leader.at(0, 0).y;
+  options_.overwrite = true;
+  options_.metres_per_unit = 0.9 * 0.0254 / 0.45;
+  ASSERT_THAT(Go(), IsOk());
+  EXPECT_NEAR(Read().sequences[0].pair.leader.at(0, 0).y, 0.9f * height, 1e-3);
+}
+
 // Two files of one person as one file of two ROOTs.
 std::string Joined(const std::string& a, const std::string& b) {
   const std::vector<std::string> first = absl::StrSplit(a, "MOTION\n");
@@ -313,7 +434,8 @@ TEST_F(ImportTest, PeopleInWorldsOfTheirOwnAreRefused) {
   WriteTestFile(options_.from / "kick_01_b.bvh", BvhText(also_leads));
   EXPECT_THAT(Go(), Not(IsOk()));
   ASSERT_THAT(report_.refused, SizeIs(1));
-  EXPECT_THAT(report_.refused[0].reason, HasSubstr("wanted two people in one world"));
+  EXPECT_THAT(report_.refused[0].reason,
+              HasSubstr("distance of the two people: expected 0.05 to 10 m, got 0 m"));
 }
 
 TEST_F(ImportTest, LongPairsAreCutAndUnequalOnesTrimmed) {

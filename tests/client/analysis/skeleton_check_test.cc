@@ -4,9 +4,11 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "model/motion/inferred_coordinates.h"
 #include "tests/support/test_motion.h"
 
 namespace duet::client::analysis {
@@ -76,6 +78,19 @@ TEST(CheckSkeleton, AGiantIsInTheWrongUnit) {
     for (motion::Vec3& at : clip->poses.all()) at = at * 100;
   });
   EXPECT_GT(check.figures.at("foot_to_root_metres"), 70);
+}
+
+TEST(CheckSkeleton, SizeAcceptsLegsOfSevenTenthsToOnePointFourMetres) {
+  const double leg = motion::LegLength(Sbu(), MakePerson().poses);
+  const std::pair<double, bool> lengths[] = {
+      {0.69, false}, {0.71, true}, {1.39, true}, {1.41, false}};
+  for (const auto& [metres, good] : lengths) {
+    motion::Clip clip = MakePerson();
+    for (motion::Vec3& at : clip.poses.all()) at = at * static_cast<float>(metres / leg);
+    const Check check = Find(CheckSkeleton(clip, Sbu()), "size");
+    EXPECT_EQ(check.good, good) << check.text;
+    EXPECT_NEAR(check.figures.at("foot_to_root_metres"), metres, 1e-4);
+  }
 }
 
 TEST(CheckSkeleton, ALimbThatGrowsIsNamed) {

@@ -168,7 +168,24 @@ TEST(BvhImport, FindsTheUpAxis) {
   EXPECT_LT(LargestDistance(*read, z_up), kOneMillimetre);
 }
 
-// Somebody who lies down, bends or falls does not tip the world over.
+TEST(BvhImport, WarnsAndTakesYAsUpWhereThePersonStandsAlongX) {
+  motion::Clip x_up = MakePerson();
+  for (motion::Vec3& p : x_up.poses.all()) p = {p.y, -p.x, p.z};
+  std::vector<std::string> notes;
+  retargeting::ReadingReport report;
+  BvhImportOptions options;
+  options.notes = &notes;
+  options.report = &report;
+  const absl::StatusOr<motion::Clip> read = FromBvh(Export(x_up), "a.bvh", options);
+  ASSERT_TRUE(read.ok()) << read.status();
+  EXPECT_LT(LargestDistance(*read, x_up), kOneMillimetre);
+  EXPECT_THAT(notes, Contains(HasSubstr("warning: up axis: expected a person who stands along")));
+  EXPECT_THAT(report.remarks, Contains(HasSubstr("warning: up axis")));
+  EXPECT_EQ(report.up_axis->value, "y-up");
+  EXPECT_EQ(report.up_axis->origin, retargeting::Origin::kDefault);
+}
+
+// A person who lies down, bends or falls in some frames does not change the up axis.
 TEST(BvhImport, FindsTheUpAxisFromTheWholeMotion) {
   motion::Clip clip = MakePerson();
   for (int joint = 0; joint < clip.joint_count(); ++joint) {
