@@ -5,10 +5,10 @@
 
 namespace duet::base {
 
-// A file descriptor that closes itself.
+// Owns a file descriptor and closes it.
 class Descriptor {
  public:
-  // `value` as open() returns it: negative where there is none.
+  // `value` is what open() returned; negative means that there is no descriptor.
   explicit Descriptor(int value) : value_(value) {}
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;

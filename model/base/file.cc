@@ -25,7 +25,7 @@ std::string SizeText(std::size_t bytes) {
   return absl::StrCat(bytes / kMebibyte, " MiB");
 }
 
-// INVALID_ARGUMENT unless the open descriptor is a regular file's.
+// INVALID_ARGUMENT unless the descriptor is open on a regular file.
 absl::Status CheckRegular(int descriptor, const fs::path& path) {
   struct stat info;
   if (fstat(descriptor, &info) != 0) return absl::ErrnoToStatus(errno, path.string());
@@ -42,7 +42,7 @@ absl::Status CheckRegular(int descriptor, const fs::path& path) {
 
 absl::StatusOr<std::string> ReadFile(const fs::path& path, std::size_t max_bytes,
                                      absl::string_view wanted) {
-  // O_NONBLOCK: opening a named pipe would wait for its writer.
+  // O_NONBLOCK: otherwise, opening a named pipe waits for its writer.
   const Descriptor file(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
   if (!file.ok() && (errno == ENOENT || errno == ENOTDIR)) {
     return absl::NotFoundError(absl::StrCat(path.string(), ": no such file"));
@@ -71,7 +71,7 @@ absl::Status WriteFile(const fs::path& path, absl::string_view content) {
   if (fs::is_directory(path, error)) {
     return absl::InvalidArgumentError(absl::StrCat(path.string(), ": is a folder, wanted a file"));
   }
-  // A pipe or a device cannot be replaced, only written to.
+  // A pipe or a device can be written to, but not replaced.
   const bool special = fs::exists(path, error) && !fs::is_regular_file(path, error);
   const fs::path target = special ? path : fs::path(path.string() + ".partial");
   errno = 0;

@@ -11,16 +11,17 @@
 
 namespace duet::base {
 
-// The whole of a file. `wanted` says what the caller is after, with its article, for the message
-// about a file that is too large: "key.pem: larger than 1 MiB, wanted a PEM file".
+// Returns the content of a file. `wanted` names the expected kind of file, with its article, for
+// the message about a file that is too large: "key.pem: larger than 1 MiB, wanted a PEM file".
 //
-// Errors: NOT_FOUND, PERMISSION_DENIED or INVALID_ARGUMENT (too large, or anything but a regular
-//         file: a named pipe is refused without waiting for its writer), naming the path.
+// Errors: NOT_FOUND, PERMISSION_DENIED or INVALID_ARGUMENT (too large, or not a regular file),
+// naming
+//         the path. A named pipe is rejected without waiting for its writer.
 absl::StatusOr<std::string> ReadFile(const std::filesystem::path& path, std::size_t max_bytes,
                                      absl::string_view wanted);
 
-// Replaces the file as a whole; a failed write leaves no partial file. A pipe or a device is
-// written to. Errors: PERMISSION_DENIED or INVALID_ARGUMENT (a folder), naming the path.
+// Replaces a file atomically: a failed write leaves no partial file. A pipe or a device is written
+// to directly. Errors: PERMISSION_DENIED or INVALID_ARGUMENT (a folder), naming the path.
 absl::Status WriteFile(const std::filesystem::path& path, absl::string_view content);
 
 }  // namespace duet::base

@@ -24,14 +24,14 @@ absl::Status Error(int code, const fs::path& path) {
   return absl::ErrnoToStatus(code, path.string());
 }
 
-// What open() says about a symbolic link (ELOOP, ENOTDIR) tells a person little.
+// Replaces the codes that open() sets for a symbolic link (ELOOP, ENOTDIR), which explain little.
 absl::Status OpenError(int code, const fs::path& path, const char* wanted) {
   if (code != ELOOP && code != ENOTDIR) return Error(code, path);
   return absl::InvalidArgumentError(
       absl::StrCat(path.string(), ": wanted ", wanted, ", not a symbolic link"));
 }
 
-// Without a final separator, which would make open() follow a symbolic link.
+// Removes a final separator, with which open() would follow a symbolic link.
 fs::path Plain(const fs::path& path) {
   const fs::path normal = path.lexically_normal();
   return normal.has_filename() ? normal : normal.parent_path();
@@ -49,7 +49,7 @@ absl::Status CreateFile(const fs::path& path, const std::string& content) {
   return fsync(file.get()) == 0 ? absl::OkStatus() : Error(errno, path);
 }
 
-// Makes the entries of a folder durable.
+// Writes the entries of a folder to the disk.
 absl::Status SyncFolder(const fs::path& path) {
   const Descriptor folder(open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (!folder.ok() || fsync(folder.get()) != 0) return Error(errno, path);
@@ -66,7 +66,7 @@ absl::Status Fill(const fs::path& folder, const std::vector<NamedContent>& files
 
 absl::Status Publish(const fs::path& from, const fs::path& to) {
   int failed = renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE);
-  // Some network file systems know only the plain call, which replaces an empty folder at most.
+  // Some network file systems support only rename(), which replaces at most an empty folder.
   if (failed != 0 && errno == EINVAL) failed = rename(from.c_str(), to.c_str());
   if (failed == 0) return SyncFolder(to.parent_path());
   if (errno == EEXIST || errno == ENOTEMPTY) {
@@ -95,7 +95,7 @@ absl::StatusOr<Folder> Folder::Open(const fs::path& path) {
 
 absl::StatusOr<std::string> Folder::Read(const std::string& name, std::size_t max_bytes) const {
   const fs::path path = path_ / name;
-  // O_NONBLOCK: opening a named pipe would wait for its writer.
+  // O_NONBLOCK: otherwise, opening a named pipe waits for its writer.
   const Descriptor file(
       openat(descriptor_, name.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
   if (!file.ok()) return OpenError(errno, path, "a regular file");

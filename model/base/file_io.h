@@ -12,22 +12,23 @@
 
 namespace duet::base {
 
-// Folders as a whole; single files are file.h's.
+// Reads and writes whole folders. For single files, see file.h.
 
 // A file's name and content.
 using NamedContent = std::pair<std::string, std::string>;
 
-// A folder held open, so that all its files come from one place even if it is renamed meanwhile.
+// A folder that is held open: all files come from the same folder, even if it is renamed meanwhile.
 class Folder {
  public:
-  // NOT_FOUND when absent; INVALID_ARGUMENT when it is a symbolic link or no folder.
+  // NOT_FOUND if there is no such folder; INVALID_ARGUMENT if it is a symbolic link or not a
+  // folder.
   static absl::StatusOr<Folder> Open(const std::filesystem::path& path);
   Folder(Folder&& other) noexcept;
   Folder& operator=(Folder&& other) = delete;
   ~Folder();
 
-  // A regular file of at most `max_bytes`. Symbolic links and anything but a regular file are
-  // refused without waiting for a writer.
+  // Reads a regular file of at most `max_bytes`. Rejects symbolic links and anything that is not a
+  // regular file, without waiting for a pipe's writer.
   absl::StatusOr<std::string> Read(const std::string& name, std::size_t max_bytes) const;
 
  private:
@@ -37,8 +38,8 @@ class Folder {
   std::filesystem::path path_;
 };
 
-// Creates a folder with these files, on the disk when it returns, whole or not at all: a reader
-// sees no folder or all of it. ALREADY_EXISTS when there is something at `path`.
+// Creates a folder with these files atomically: a reader sees either no folder or all of it. All
+// files are on the disk when this returns. ALREADY_EXISTS if something exists at `path`.
 absl::Status WriteFolder(const std::filesystem::path& path, const std::vector<NamedContent>& files);
 
 }  // namespace duet::base

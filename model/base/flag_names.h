@@ -6,11 +6,11 @@
 
 namespace duet::base {
 
-// A command line whose flags are spelt in kebab-case: what main() was given, with "--some_flag" and
-// "--some_flag=x_y" as "--some-flag" and "--some-flag=x_y". A program that declares its flags in
-// kebab-case so takes their older names in snake_case too, without showing them in its help.
+// The command line with its flags in kebab-case: "--some_flag" and "--some_flag=x_y" become
+// "--some-flag" and "--some-flag=x_y". A program that declares its flags in kebab-case thereby also
+// accepts snake_case, without listing it in its help.
 //
-// Left as they are: the program's name, words that do not begin with "--", what follows a "=", and
+// Unchanged: the program's name, arguments that do not begin with "--", the value after "=", and
 // everything after a bare "--".
 //
 //   const base::KebabCaseCommandLine line(argc, argv);
@@ -22,7 +22,7 @@ class KebabCaseCommandLine {
   KebabCaseCommandLine& operator=(const KebabCaseCommandLine&) = delete;
 
   int argc() const { return static_cast<int>(words_.size()); }
-  // argc() words and a null pointer, as main() has them; valid while this object lives.
+  // argc() strings and a null pointer, as for main(). Valid while this object lives.
   const char* const* argv() const { return pointers_.data(); }
 
  private:

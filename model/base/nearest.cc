@@ -9,7 +9,7 @@
 namespace duet::base {
 namespace {
 
-// Longer texts are no slip of the pen, and would take long to compare.
+// Longer texts are no misspelt names, and comparing them takes long.
 constexpr std::size_t kLongestName = 64;
 
 // Edit distance with swaps of neighbours (optimal string alignment).

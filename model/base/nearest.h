@@ -9,13 +9,12 @@
 
 namespace duet::base {
 
-// The known name that somebody who wrote `text` most likely meant: the one that the fewest slips
-// turn it into (a letter added, left out, changed, or two that are swapped; case does not count),
-// the first of several. Nothing where all are farther than a third of the longer name's letters,
-// or `text` is one of them.
+// The known name at the smallest edit distance from `text`, ignoring case; the first if several are
+// equally near. An edit inserts, deletes or changes a letter or swaps two neighbours. Absent if the
+// distance exceeds a third of the longer name's length, or if `text` is a known name.
 std::optional<std::string> Nearest(absl::string_view text, const std::vector<std::string>& known);
 
-// "; did you mean kick?", or nothing: for the end of a message about an unknown name.
+// "; did you mean kick?", or an empty string. Append it to a message about an unknown name.
 std::string DidYouMean(absl::string_view text, const std::vector<std::string>& known);
 
 }  // namespace duet::base

@@ -8,9 +8,9 @@
 
 namespace duet::base {
 
-// `text`, of whatever origin, as part of a line that people read: every byte that is not printable
-// ASCII as an escape, and after the first `longest` bytes "...". Quotes stay as they are; a name
-// that stands for itself reads better as Quoted (text.h).
+// Makes untrusted `text` safe to print within a line: escapes every byte that is not printable
+// ASCII, and replaces everything after the first `longest` bytes by "...". Quotes are not escaped.
+// For a name, prefer Quoted (text.h).
 std::string Printable(absl::string_view text, std::size_t longest);
 
 }  // namespace duet::base

@@ -8,17 +8,17 @@
 namespace duet::base {
 namespace {
 
-constexpr int kSpareBits = 64 - 53;  // a double has 53 significant ones
+constexpr int kSpareBits = 64 - 53;  // a double has 53 significant bits
 constexpr double kStep = 0x1.0p-53;
 
-// std::seed_seq of four numbers, which would allocate them.
+// Equals std::seed_seq of four numbers, but does not allocate.
 // Source: ISO C++17, [rand.util.seedseq].
 struct SeedSequence {
   using result_type = uint32_t;
   static constexpr uint32_t kCount = 4;
   uint32_t numbers[kCount];
 
-  // Asked for at least kCount numbers, and for several hundred by every engine of the standard.
+  // Requires at least kCount numbers. Every engine of the standard asks for several hundred.
   template <typename Iterator>
   void generate(Iterator begin, Iterator end) const {
     const auto n = static_cast<uint32_t>(end - begin);

@@ -9,35 +9,35 @@
 
 namespace duet::base {
 
-// Random numbers that are the same with every compiler and standard library: published results hang
-// on them. The bits are std::mt19937_64's, which the standard fixes; the distributions are our own,
-// since the standard library's differ. Changing what a function draws, or how many bits it takes,
-// changes the results of every experiment.
+// Random numbers that are the same with every compiler and standard library, because published
+// results depend on them. The bits come from std::mt19937_64, which the standard specifies. The
+// distributions are defined here, because those of standard libraries differ. To change what a
+// function draws, or how many bits it takes, changes the results of every experiment.
 class Random {
  public:
   explicit Random(uint64_t seed) : bits_(seed) {}
-  // A stream of its own for each part of a run, such as an epoch: depends on these two numbers
-  // alone, so that a resumed run draws what an uninterrupted one would.
+  // An independent stream for each part of a run, such as an epoch. It depends only on these two
+  // numbers, so that a resumed run draws the same numbers as an uninterrupted one.
   Random(uint64_t seed, int64_t part);
 
   // In [0, 1), a multiple of 2^-53.
   double Uniform();
   // In [low, high).
   double Uniform(double low, double high) { return low + (high - low) * Uniform(); }
-  // An integer in [0, end). `end` is 1 or more; far below 2^64, all are equally likely.
+  // An integer in [0, end). Requires end >= 1. Uniform if `end` is far below 2^64.
   int64_t Below(int64_t end);
   bool Chance(double probability) { return Uniform() < probability; }
 
-  // A normal number of mean 0. Source: Box, Muller 1958.
+  // Normally distributed with mean 0. Source: Box, Muller 1958.
   double Normal(double deviation);
-  // The same with a deviation of 1, from other uniform numbers: the middles of the 2^53 steps of
-  // (0, 1). Not Normal(1) in the last digits; the published t-SNE maps start from these.
+  // Normally distributed with mean 0 and deviation 1, from OpenUniform. Differs from Normal(1) in
+  // the last digits. The published t-SNE maps start from these numbers.
   double StandardNormal();
 
-  // In (0, 1): the middle of a step of 2^-53. StandardNormal takes two: radius, then angle.
+  // In (0, 1): the middle of one of 2^53 equal steps. StandardNormal draws two: radius, then angle.
   double OpenUniform();
 
-  // Puts the values in a random order. Source: Fisher, Yates; Durstenfeld 1964.
+  // Shuffles the values. Source: Fisher, Yates; Durstenfeld 1964.
   template <typename T>
   void Shuffle(std::vector<T>* values) {
     for (std::size_t i = values->size(); i > 1; --i) {

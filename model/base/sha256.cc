@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kReadBlock = std::size_t{1} << 18;
 
-// Fails only when libcrypto itself is broken; an empty digest would let a wrong file pass.
+// A call fails only if libcrypto is broken. To continue would let a wrong file pass as verified.
 void Require(int result) {
   if (result != 1) std::abort();
 }

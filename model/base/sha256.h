@@ -12,9 +12,9 @@ namespace duet::base {
 // The SHA-256 digest of `bytes` in lower-case hex (64 characters).
 std::string Sha256Hex(std::string_view bytes);
 
-// The same of a file's content, read in blocks: the memory it takes does not depend on the size.
-// Fails with PERMISSION_DENIED when the file cannot be opened (an absent one too), DATA_LOSS when
-// it cannot be read to its end; both name the path.
+// The same for a file's content, which is read in blocks of constant size. Fails with
+// PERMISSION_DENIED if the file does not exist or cannot be opened, and with DATA_LOSS if it cannot
+// be read to its end. Both messages name the path.
 absl::StatusOr<std::string> Sha256HexOfFile(const std::filesystem::path& path);
 
 }  // namespace duet::base

@@ -15,11 +15,11 @@ constexpr std::size_t kLongestProblem = 1000;
 
 using nlohmann::json;
 
-// Arrays and objects with more than this are not spelt out.
+// Arrays and objects with more items are shown by their size.
 constexpr std::size_t kMostShownItems = 8;
 
-// Walks the text without building anything: the parser's own tree silently keeps the last of two
-// equal keys, and a reader that keeps the first would see another file.
+// Checks the text without building a document. The parser's own tree silently keeps the last of two
+// equal keys; another reader that keeps the first would read a different document.
 class StrictnessChecker : public nlohmann::json_sax<json> {
  public:
   StrictnessChecker(int max_depth, std::size_t max_values)
@@ -75,11 +75,11 @@ class StrictnessChecker : public nlohmann::json_sax<json> {
   int max_depth_;
   std::size_t max_values_;
   std::size_t values_ = 0, key_count_ = 0;
-  std::vector<std::set<std::string>> keys_;  // of every object that is open
+  std::vector<std::set<std::string>> keys_;  // of every open object
   std::string problem_;
 };
 
-// Builds the document meanwhile, but for what lies within some fields of the root.
+// Also builds the document, without the content of the skipped fields of the root.
 class SkippingBuilder : public StrictnessChecker {
  public:
   SkippingBuilder(int max_depth, const std::set<std::string>& skipped)
@@ -108,7 +108,7 @@ class SkippingBuilder : public StrictnessChecker {
   }
 
  private:
-  // Where a value goes; null within a field that is skipped.
+  // Where to store the next value; null within a skipped field.
   json* Place() {
     if (open_.empty()) return &root_;
     json* const parent = open_.back();
@@ -139,7 +139,8 @@ class SkippingBuilder : public StrictnessChecker {
 
   const std::set<std::string>& skipped_;
   json root_;
-  std::vector<json*> open_;  // a container does not move while one within it is open
+  std::vector<json*>
+      open_;  // pointers stay valid: a container is not changed while an inner one is open
   std::string key_;
 };
 
@@ -161,7 +162,7 @@ absl::Status CheckStrict(std::string_view text, StrictnessChecker* checker) {
   if (text.empty() || text.front() != '{') {
     return absl::InvalidArgumentError("not a JSON object: wanted '{' as the first byte");
   }
-  // The parser takes a NUL for the end of the text and would ignore whatever follows it.
+  // The parser treats a NUL as the end of the text and would ignore the rest.
   if (const std::size_t at = text.find('\0'); at != std::string_view::npos) {
     return absl::InvalidArgumentError(absl::StrCat("not JSON: a NUL at byte ", at));
   }
@@ -211,7 +212,7 @@ std::string ObjectReader::PathOf(const std::string& key) const {
 }
 
 void ObjectReader::Fail(const std::string& key, const std::string& problem) {
-  // A key may be the file's own, and a problem may quote what came.
+  // The key and the problem may quote the file.
   Update(absl::InvalidArgumentError(
       Printable(absl::StrCat(PathOf(key), ": ", problem), kLongestProblem)));
 }
@@ -304,7 +305,7 @@ absl::Status ObjectReader::Finish() {
   if (!status_.ok() || !object_.is_object()) return status_;
   for (const auto& [key, value] : object_.items()) {
     if (asked_.count(key) == 0) {
-      // Quoted: a hostile key should not write control bytes into somebody's log.
+      // Quoted, because a hostile key must not write control bytes into a log.
       Update(absl::InvalidArgumentError(
           absl::StrCat(path_.empty() ? "" : path_ + ": ", "unknown field ", Quoted(key))));
     }

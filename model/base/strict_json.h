@@ -16,36 +16,36 @@
 
 namespace duet::base {
 
-// The most values (objects, arrays, strings, numbers, ...) of a document that is held whole: "[],"
-// is 3 bytes of text and about 50 in memory.
+// Maximum number of values (objects, arrays, strings, numbers, ...) of a document in memory: "[],"
+// is 3 bytes of text and about 50 bytes in memory.
 inline constexpr std::size_t kMaxJsonValues = 2'000'000;
 
-// Parses untrusted JSON text. On top of the JSON grammar: the root is an object and the very first
-// byte its brace, no object repeats a key, nothing is nested deeper than `max_depth`, there are at
-// most kMaxJsonValues values, and there is no NUL byte. Never throws.
+// Parses untrusted JSON text. In addition to the JSON grammar: the root is an object and its brace
+// is the first byte, no object repeats a key, the nesting depth is at most `max_depth`, there are
+// at most kMaxJsonValues values, and there is no NUL byte. Never throws.
 absl::StatusOr<nlohmann::json> ParseStrictJson(std::string_view text, int max_depth);
 
-// The same for a document that people write: it may begin with a byte order mark and blanks.
+// The same for handwritten documents, which may begin with a byte order mark and white space.
 absl::StatusOr<nlohmann::json> ParseHandwrittenJson(absl::string_view text, int max_depth);
 
-// The same for a document of any number of values, of which nothing is held in memory that lies
-// within the root's fields `skipped`: of these, arrays and objects come back empty.
+// The same for a document with any number of values. The content of the root's fields `skipped` is
+// checked but not stored: their arrays and objects are empty in the result.
 absl::StatusOr<nlohmann::json> ParseHandwrittenJson(absl::string_view text, int max_depth,
                                                     const std::set<std::string>& skipped);
 
-// A value as a message shows it: a string as Quoted has it, other short values as they are written,
-// a long array or object by its size.
+// A value for a message: a string as by Quoted, a long array or object by its size, other values as
+// JSON.
 std::string Shown(const nlohmann::json& value);
 
-// Reads an object field by field and remembers the first thing that was wrong, so that reading code
-// is a plain list of fields:
+// Reads an object field by field and keeps the first error, so that reading code is a plain list of
+// fields:
 //
 //   ObjectReader reader(json, "generator");
 //   generator.attention = reader.Int("attention", 1, 4096);
 //   ...
-//   return reader.Finish();        // also refuses fields that nobody asked for
+//   return reader.Finish();        // also rejects fields that were not read
 //
-// A getter whose field is missing, mistyped or out of range returns an empty value.
+// A getter returns an empty value if its field is missing, has another type or is out of range.
 class ObjectReader {
  public:
   // `path` names the object in messages; empty for the root. `object` must outlive the reader.
@@ -55,8 +55,7 @@ class ObjectReader {
   bool Bool(const std::string& key);
   int64_t Int(const std::string& key, int64_t min, int64_t max);
   double Number(const std::string& key, double min, double max);
-  // A string that `parse` knows; `wanted` tells people which. The first value of the type
-  // otherwise.
+  // A string that `parse` accepts; `wanted` lists these for messages. Returns Value{} otherwise.
   template <typename Value>
   Value Choice(const std::string& key, std::optional<Value> (*parse)(absl::string_view),
                absl::string_view wanted) {
@@ -77,17 +76,17 @@ class ObjectReader {
   bool Has(const std::string& key) const { return object_.contains(key); }
   // "generator.attention", for messages.
   std::string PathOf(const std::string& key) const;
-  // Records a failure found outside the reader, if it is the first.
+  // Records an error found by the caller, unless there is one already.
   void Fail(const std::string& key, const std::string& problem);
   void Update(const absl::Status& status);
 
   bool ok() const { return status_.ok(); }
-  // The first problem so far. Enough by itself where fields that nobody asked for are no problem.
+  // The first error so far. Use it instead of Finish() if unknown fields are allowed.
   const absl::Status& status() const { return status_; }
   absl::Status Finish();
 
  private:
-  // The field's value, or null after recording that it is missing.
+  // The field's value. Records an error and returns null if it is missing.
   const nlohmann::json* Get(const std::string& key);
   void FailType(const std::string& key, const nlohmann::json& value, absl::string_view wanted);
 

@@ -16,10 +16,10 @@ namespace {
 
 constexpr int kMaxInteger = 999'999'999;  // differences of two still fit
 
-// Readers put names of the file into their messages: a message stays a printable line all the same.
+// Messages may contain names from the file. They must still be one printable line.
 constexpr std::size_t kLongestError = 1000;
 
-// from_chars takes no '+'; files by hand have it.
+// Handwritten files may have a '+', which from_chars rejects.
 absl::string_view StripPlus(absl::string_view text) {
   text = absl::StripAsciiWhitespace(text);
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);

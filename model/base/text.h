@@ -7,26 +7,26 @@
 #include "absl/status/status.h"
 #include "absl/strings/string_view.h"
 
-// Text that people and other programs wrote: strict numbers that do not depend on the locale,
-// lines, quotes, and errors that point at a place in a file.
+// Helpers to read text from people and other programs: strict numbers independent of the locale,
+// lines, quotes, and errors that name a place in a file.
 
 namespace duet::base {
 
-// The whole of `text` as one finite number; false otherwise. A leading '+' and surrounding blanks
-// are allowed.
+// Parses all of `text` as one finite number; returns false otherwise. Allows a leading '+' and
+// surrounding white space.
 bool ParseNumber(absl::string_view text, double* value);
-// The whole of `text` as a whole number of at most nine digits.
+// Parses all of `text` as an integer of at most nine digits.
 bool ParseInteger(absl::string_view text, int* value);
 
-// The shortest text that reads back as the same number.
+// Appends the shortest text that parses to the same number.
 void AppendNumber(std::string* out, float value);
 void AppendNumber(std::string* out, double value);
-// Fixed notation; never "-0.000".
+// Appends fixed notation; never "-0.000".
 void AppendFixed(std::string* out, double value, int decimals);
 
-// `text` in double quotes, for a message: every byte that is not printable ASCII as an escape, as
-// are double quotes and backslashes, and after the first kLongestQuote bytes "...". Whatever came
-// stands in one short line.
+// Quotes untrusted `text` for a message: adds double quotes, escapes double quotes, backslashes and
+// every byte that is not printable ASCII, and replaces everything after the first kLongestQuote
+// bytes by "...". The result is one short line.
 inline constexpr std::size_t kLongestQuote = 64;
 std::string Quoted(absl::string_view text);
 
@@ -46,7 +46,7 @@ class LineReader {
   explicit LineReader(absl::string_view text) : rest_(text) {}
   // False at the end of the text.
   bool Next(absl::string_view* line);
-  // The number of the line that Next gave, from 1.
+  // The number of the line that Next returned last, from 1.
   int number() const { return number_; }
 
  private:

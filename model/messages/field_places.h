@@ -6,7 +6,7 @@
 
 namespace duet::messages {
 
-// A place in a text, both from 1.
+// A place in a text; line and column count from 1.
 struct Place {
   int line = 1;
   int column = 1;
@@ -15,8 +15,8 @@ struct Place {
   }
 };
 
-// Where a text sets a message's fields, by the names that the schema has: "max_calls", and of each
-// element of a repeated field "version_labels[0]".
+// Where a text sets a message's fields, by their names in the schema: "max_calls", and
+// "version_labels[0]" for each element of a repeated field.
 using FieldPlaces = std::map<std::string, Place>;
 
 }  // namespace duet::messages

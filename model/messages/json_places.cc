@@ -15,7 +15,7 @@ using nlohmann::json;
 
 constexpr int kMaxDepth = 100;
 
-// Where in a text an offset is.
+// Converts offsets in a text to places.
 class Lines {
  public:
   explicit Lines(absl::string_view text) : text_(text) {}
@@ -26,7 +26,7 @@ class Lines {
     return {1 + static_cast<int>(std::count(before.begin(), before.end(), '\n')),
             1 + static_cast<int>(before.size() - line_begin)};
   }
-  // Of the string that ends before `end`: in a string, quotes stand after a backslash.
+  // The place of the string that ends before `end`. Within a string, quotes follow a backslash.
   Place OfString(std::size_t end) const {
     std::size_t begin = end - 1;
     do {
@@ -45,7 +45,8 @@ class Lines {
   const absl::string_view text_;
 };
 
-// Hands out a text's bytes and tells how many the parser has taken: its events do not.
+// Iterates over a text's bytes and records how many the parser has consumed, because its events do
+// not report their positions.
 class Cursor {
  public:
   using iterator_category = std::input_iterator_tag;
@@ -73,7 +74,7 @@ class Cursor {
   const char** latest_;
 };
 
-// What the parser says after its own name and the place, which it counts another way.
+// The parser's message without its own name and place, which it counts differently.
 std::string Reason(const json::exception& exception) {
   const std::string text = exception.what();
   constexpr absl::string_view kAfter = ": ";
@@ -113,7 +114,7 @@ class PlaceFinder : public nlohmann::json_sax<json> {
   }
 
  private:
-  // Bytes that the parser has taken: at a string's or a bracket's event up to its last one.
+  // The number of bytes consumed. At the event of a string or bracket, this includes its last byte.
   std::size_t Offset() const { return static_cast<std::size_t>(*latest_ - begin_); }
 
   bool Word() {

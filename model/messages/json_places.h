@@ -9,21 +9,22 @@
 
 namespace duet::messages {
 
-// What a JSON text is made of, as far as its outermost object goes.
+// The places of the fields of a JSON text's root object.
 struct JsonPlaces {
   struct Element {
     std::string key;
-    Place place;                  // of the key
-    std::vector<Place> elements;  // of a value that is an array: where its items begin; of numbers
-                                  // and words: where the key is
+    Place place;  // of the key
+    // If the value is an array, the place of each item: where an object or array begins, and the
+    // key's place for every other item.
+    std::vector<Place> elements;
   };
-  std::vector<Element> keys;  // in the order of the text; a repeated key each time
-  // What is no JSON, and where; empty where all is.
+  std::vector<Element> keys;  // in the order of the text, repeated keys included
+  // The first syntax error and its place; empty if there is none.
   std::string error;
   Place error_place;
 };
 
-// Walks a text without keeping it. Nesting beyond a hundred levels is an error.
+// Scans a text without building a document. More than a hundred levels of nesting are an error.
 JsonPlaces FindJsonPlaces(absl::string_view text);
 
 }  // namespace duet::messages

@@ -31,10 +31,10 @@ using nlohmann::json;
 
 constexpr std::size_t kLongestProblem = 500;
 
-// Everything that is wrong with a text, and where.
+// The errors of a text and their places.
 class Problems {
  public:
-  // The parsers quote what they found as it is.
+  // Escapes the problem, because the parsers quote the text verbatim.
   void Add(Place place, absl::string_view problem) {
     problems_.emplace_back(place, base::Printable(problem, kLongestProblem));
   }
@@ -58,10 +58,10 @@ std::string ElementName(const FieldDescriptor& field, int index) {
   return absl::StrCat(field.name(), "[", index, "]");
 }
 
-// The parser counts from 0; -1 is the file as a whole.
+// The parser counts from 0; -1 means the whole file.
 Place FromZero(int line, int column) { return {line + 1, column + 1}; }
 
-// Unknown fields come as warnings, after which the parser goes on.
+// The parser reports unknown fields as warnings and continues after them.
 class ProblemCollector final : public google::protobuf::io::ErrorCollector {
  public:
   explicit ProblemCollector(Problems* problems) : problems_(problems) {}
@@ -78,7 +78,7 @@ class ProblemCollector final : public google::protobuf::io::ErrorCollector {
   Problems* const problems_;
 };
 
-// Where the text format's parser found a message's fields.
+// The places at which the text format's parser found a message's fields.
 FieldPlaces ToPlaces(const google::protobuf::TextFormat::ParseInfoTree& tree,
                      const Message& message) {
   FieldPlaces places;
@@ -110,7 +110,7 @@ void ParseTextFormat(absl::string_view text, Message* message, FieldPlaces* plac
   *places = ToPlaces(tree, *message);
 }
 
-// Takes a JSON object field by field, so that each error has its place.
+// Reads a JSON object field by field, so that each error has its place.
 class JsonFields {
  public:
   JsonFields(Message* message, FieldPlaces* places, Problems* problems)
@@ -119,7 +119,7 @@ class JsonFields {
         places_(*places),
         problems_(*problems) {}
 
-  // `object` has the keys of `found`, of a repeated one the last value.
+  // Requires that `object` has the keys of `found`, and the last value of a repeated key.
   void Read(const json& object, const JsonPlaces& found) {
     std::set<const FieldDescriptor*> seen;
     for (const JsonPlaces::Element& element : found.keys) {
@@ -136,13 +136,13 @@ class JsonFields {
   }
 
  private:
-  // The place of the value that the object has.
+  // The last occurrence of a key: the object has its value.
   static const JsonPlaces::Element& LastOf(const std::string& key, const JsonPlaces& found) {
     return *std::find_if(found.keys.rbegin(), found.keys.rend(),
                          [&key](const JsonPlaces::Element& element) { return element.key == key; });
   }
 
-  // As the schema spells it, or as protobuf spells it in JSON.
+  // By its name in the schema, or by protobuf's name for it in JSON.
   const FieldDescriptor* Find(const std::string& key) const {
     for (int i = 0; i < descriptor_.field_count(); ++i) {
       const FieldDescriptor* field = descriptor_.field(i);
@@ -181,7 +181,7 @@ class JsonFields {
       message_.MergeFrom(*part);
       return;
     }
-    // Its own count is that of the part, which has one element.
+    // The parser counts the elements of `part`, which has one.
     problems_.Add(place, absl::StrReplaceAll(std::string(status.message()),
                                              {{ElementName(field, 0), ElementName(field, index)}}));
   }
@@ -195,7 +195,7 @@ class JsonFields {
 void ParseJson(absl::string_view text, Message* message, FieldPlaces* places, Problems* problems) {
   const auto whole = google::protobuf::util::JsonStringToMessage(std::string(text), message);
   const JsonPlaces found = FindJsonPlaces(text);
-  // Protobuf's parser takes a little more than JSON.
+  // Protobuf's parser accepts slightly more than JSON.
   if (whole.ok() && !found.error.empty()) return;
   if (!found.error.empty()) {
     problems->Add(found.error_place, found.error);
@@ -205,7 +205,8 @@ void ParseJson(absl::string_view text, Message* message, FieldPlaces* places, Pr
   if (object.is_object()) {
     const std::unique_ptr<Message> read(message->New());
     JsonFields(read.get(), places, problems).Read(object, found);
-    // What the parts do not show, such as two of which only one may be set, the whole does.
+    // The parts are read one by one. Only reading the whole finds errors between fields, such as
+    // two members of a oneof.
     if (!whole.ok()) message->CopyFrom(*read);
   }
   if (!whole.ok() && problems->empty()) problems->Add({}, std::string(whole.message()));

@@ -9,15 +9,17 @@
 
 namespace duet::messages {
 
-// How people write a protobuf message in a file.
+// The syntax of a protobuf message in a file.
 enum class MessageSyntax { kTextFormat, kJson };
 
-// Replaces `message` by what `text` says, where it fails by what could be read of it. Strict:
-// unknown and repeated fields are refused. Errors: INVALID_ARGUMENT, one line for each thing that
-// is wrong, in the order of the file: "line 3:5: ...". Of the text format that is every unknown
-// field and the first of all other errors; of JSON every field, or the first error of its syntax.
+// Replaces `message` by the content of `text`; on an error, by the part that could be read. Rejects
+// unknown and repeated fields.
 //
-// `places`, where given, receives where the text has each field that it sets.
+// Errors: INVALID_ARGUMENT with one line per error, in the order of the file: "line 3:5: ...". The
+// text format reports every unknown field and the first other error. JSON reports every wrong
+// field, or the first syntax error.
+//
+// If `places` is not null, it receives the place of each field that the text sets.
 absl::Status ParseMessage(absl::string_view text, MessageSyntax syntax,
                           google::protobuf::Message* message, FieldPlaces* places = nullptr);
 

@@ -9,7 +9,7 @@
 
 namespace duet::motion {
 
-// A group of joints that belong together, such as an arm: what a network encodes as one.
+// A group of joints that a network encodes together, such as an arm.
 struct BodyPart {
   std::string name;
   std::vector<int> joints;  // indices into a skeleton's joint_names
@@ -18,8 +18,8 @@ struct BodyPart {
   }
 };
 
-// Fails with INVALID_ARGUMENT naming the part when there are none, one is empty, or a joint is not
-// one of the skeleton's. Parts may share joints and leave some out.
+// Fails with INVALID_ARGUMENT naming the part if there are no parts, a part is empty, or a joint is
+// not one of the skeleton's. Parts may share joints, and need not cover all of them.
 absl::Status Validate(const std::vector<BodyPart>& parts, const Skeleton& skeleton);
 
 // The parts of SbuSkeleton: left and right arm and leg, and the trunk, of three joints each.

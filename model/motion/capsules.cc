@@ -21,7 +21,7 @@ double RadiusOf(const Skeleton& skeleton, const std::vector<BodyPart>& parts, co
     if (std::find(part.joints.begin(), part.joints.end(), bone.child) == part.joints.end()) {
       continue;
     }
-    // The bones that join a limb to the trunk (neck to shoulder, torso to hip) are trunk.
+    // Bones that join a limb to the trunk (neck to shoulder, torso to hip) belong to the trunk.
     if (std::find(part.joints.begin(), part.joints.end(), bone.parent) == part.joints.end()) {
       return kTrunkRadius;
     }
@@ -34,8 +34,8 @@ double RadiusOf(const Skeleton& skeleton, const std::vector<BodyPart>& parts, co
 }  // namespace
 
 ClosestPoints FindClosestPoints(Vec3 a0, Vec3 a1, Vec3 b0, Vec3 b1) {
-  // Minimises |a0 + s u - b0 - t v| over the unit square: the free optimum in s, clamped; the best
-  // t for it; if that had to be clamped, the best s for it.
+  // Minimises |a0 + s u - b0 - t v| over the unit square: takes the unconstrained optimum of s and
+  // clamps it, takes the best t for that s and clamps it, and then the best s for that t.
   const Vec3 u = a1 - a0, v = b1 - b0, w = a0 - b0;
   const double uu = Dot(u, u), vv = Dot(v, v), uv = Dot(u, v), uw = Dot(u, w), vw = Dot(v, w);
   double s = 0, t = 0;

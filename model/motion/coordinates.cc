@@ -11,7 +11,7 @@ struct Spelling {
   Value value;
 };
 
-// The first spelling of a value is the one written.
+// The first spelling of a value is its name.
 constexpr Spelling<LengthUnit> kUnitSpellings[] = {
     {"metres", LengthUnit::kMetres},
     {"millimetres", LengthUnit::kMillimetres},
@@ -43,13 +43,13 @@ std::optional<Value> ValueOf(const Spelling<Value> (&spellings)[size], absl::str
   return std::nullopt;
 }
 
-// The data set's own conversion to millimetres, in metres.
+// The data set's documented conversion to millimetres, here in metres.
 constexpr float kSbuOffsetX = 1.28f, kSbuScaleX = -2.56f;
 constexpr float kSbuOffsetY = 0.96f, kSbuScaleY = -1.92f;
 constexpr float kSbuScaleZ = 1.28f;
 constexpr float kMillimetre = 0.001f;
 
-// Rotations about x: handedness is kept.
+// Rotations about x, which keep the handedness.
 Vec3 ToYUp(UpAxis up_axis, Vec3 p) {
   switch (up_axis) {
     case UpAxis::kYUp:

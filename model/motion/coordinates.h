@@ -11,7 +11,7 @@ namespace duet::motion {
 enum class LengthUnit { kMetres, kMillimetres, kSbuNormalised };
 enum class UpAxis { kYUp, kZUp, kYDown };
 
-// How a file or a caller writes positions. Every combination is right-handed.
+// The coordinates of a file or a caller. Every combination is right-handed.
 //
 // kSbuNormalised is the anisotropic unit of the SBU Kinect Interaction data set
 // (X = 1.28 - 2.56 x, Y = 0.96 - 1.92 y, Z = 1.28 z metres); it implies kYDown.
@@ -20,22 +20,22 @@ struct Coordinates {
   UpAxis up_axis = UpAxis::kYUp;
 };
 
-// What is said of a file beside it: nothing where neither is; the unit metres, the axis what the
-// unit implies.
+// The coordinates that a caller specifies for a file; absent if it specifies neither. The default
+// unit is metres; the default axis is the one that the unit implies.
 std::optional<Coordinates> StatedCoordinates(const std::optional<LengthUnit>& unit,
                                              const std::optional<UpAxis>& up_axis);
 
-// From the caller's coordinates to metres, y up; and back. Exact inverses up to rounding.
+// Converts to and from metres, y up. The two are exact inverses up to rounding.
 Vec3 ToWorld(const Coordinates& coordinates, Vec3 position);
 Vec3 FromWorld(const Coordinates& coordinates, Vec3 position);
 
-// The one spelling of units and axes, in flags and files alike.
+// The names of units and axes in flags and files.
 absl::string_view LengthUnitName(LengthUnit unit);
 absl::string_view UpAxisName(UpAxis axis);
 inline constexpr char kLengthUnitNames[] = "metres, millimetres or sbu-normalised";
 inline constexpr char kUpAxisNames[] = "y-up, z-up or y-down";
 
-// Nothing for an unknown name. What earlier versions wrote stays readable: "m", "mm", "sbu",
+// Absent for an unknown name. Besides the names above, these are accepted: "m", "mm", "sbu",
 // "sbu_normalised"; "y", "z", "-y", "y_up", "z_up", "y_down".
 std::optional<LengthUnit> ParseLengthUnit(absl::string_view name);
 std::optional<UpAxis> ParseUpAxis(absl::string_view name);

@@ -8,10 +8,10 @@
 
 namespace duet::motion {
 
-// How high the lower foot is in every frame. Shapes: returns [frames].
+// The height of the lower foot in every frame. Shapes: returns [frames].
 std::vector<float> LowerFoot(const JointPair& feet, const Poses& poses);
 
-// The lowest that either foot gets; infinity without frames.
+// The lowest height of either foot; infinity if there are no frames.
 float LowestFoot(const JointPair& feet, const Poses& poses);
 
 }  // namespace duet::motion

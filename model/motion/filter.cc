@@ -11,9 +11,9 @@ namespace {
 
 constexpr double kKernelSigmas = 3;
 
-constexpr int kJumpReach = 2;            // frames to either side that a joint is judged by
-constexpr float kJumpSpreads = 6;        // times the window's own spread
-constexpr float kJumpLeastMetres = 0.1;  // below it a jump is no jump, however still the rest
+constexpr int kJumpReach = 2;            // frames on each side that a joint is compared with
+constexpr float kJumpSpreads = 6;        // times the spread within the window
+constexpr float kJumpLeastMetres = 0.1;  // smallest jump, even if the rest does not move
 
 // Weights of the frames from -radius to radius; they add up to 1.
 std::vector<double> GaussianKernel(double sigma, int radius) {
@@ -27,8 +27,8 @@ std::vector<double> GaussianKernel(double sigma, int radius) {
   return kernel;
 }
 
-// Any frame of the motion as it goes on beyond its ends: reflected about its end point, again and
-// again where the clip is short. Requires two frames.
+// A frame of the motion continued beyond its ends by reflection about its end points, repeatedly if
+// the clip is short. Requires two frames.
 Vec3 Reflected(const Poses& poses, int frame, int joint) {
   const int last = poses.frame_count() - 1;
   if (frame < 0) return 2 * poses.at(0, joint) - Reflected(poses, -frame, joint);

@@ -3,24 +3,24 @@
 
 #include "model/motion/poses.h"
 
-// Taking measuring noise out of captured motion.
+// Filters that remove measurement noise from captured motion.
 
 namespace duet::motion {
 
-// Smooths every joint over time with a Gaussian, cut off at three standard deviations. Beyond both
-// ends the motion goes on reflected about its end point, so that a steady motion keeps its speed
-// and its ends. `sigma_frames` of 0 or less returns the poses as they are.
-// Shapes: returns as many frames and joints as came.
+// Smooths every joint over time with a Gaussian, truncated at three standard deviations. Beyond
+// each end the motion is continued by its reflection about the end point, so that a steady motion
+// keeps its speed and its end points. If `sigma_frames` is 0 or less, the poses are returned
+// unchanged. Shapes: returns the same frames and joints.
 Poses GaussianFilter(const Poses& poses, double sigma_frames);
 
-// Puts a joint that jumps away and back at once where its neighbouring frames have it: a tracker
-// that loses a hand for a frame. Returns how many joints of frames were repaired.
+// Repairs single frames in which a joint jumps away and back, as when a tracker loses a hand: the
+// joint gets the median position of its neighbouring frames. Returns the number of repaired
+// positions.
 //
-// A joint is repaired (Hampel's rule) where it is farther from the median of its five frames around
-// than 6 times the median of those five distances, the spread of the motion itself, and farther
-// than 10 cm. The extreme frame of a fast punch stays: its neighbours are on their way.
-// A motion of fewer than three frames stays as it is.
-// Units: metres.
+// A position is repaired (Hampel's rule) if its distance from the median of the five frames around
+// it exceeds both 10 cm and 6 times the median of those five distances. The extreme frame of a fast
+// punch is kept, because its neighbours move as well. A motion of fewer than three frames is
+// unchanged. Units: metres.
 int RepairJumps(Poses* poses);
 
 }  // namespace duet::motion

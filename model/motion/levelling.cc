@@ -14,7 +14,7 @@ Vec3 FromDoubles(double x, double y, double z) {
 Levelling::Levelling(Vec3 up, float floor_height) : floor_height_(floor_height) {
   const double length = std::sqrt(double{up.x} * up.x + double{up.y} * up.y + double{up.z} * up.z);
   const double x = up.x / length, y = up.y / length, z = up.z / length;
-  // The shortest turn from (x, y, z) to +y, written out.
+  // The shortest rotation from (x, y, z) to +y, in closed form.
   row_x_ = FromDoubles(1 - x * x / (1 + y), -x, -x * z / (1 + y));
   up_ = FromDoubles(x, y, z);
   row_z_ = FromDoubles(-x * z / (1 + y), -z, 1 - z * z / (1 + y));

@@ -6,19 +6,19 @@
 
 namespace duet::motion {
 
-// From the world as a tilted camera captured it to a level one: the vertical becomes +y by the
-// shortest turn, which is about a horizontal axis, and the floor comes to y = 0. A default one
-// changes nothing, not even a last digit.
+// Transforms the world as a tilted camera captured it to a level one: the shortest rotation, which
+// is about a horizontal axis, takes the vertical to +y, and the floor moves to y = 0. A
+// default-constructed Levelling is the exact identity.
 //
 // Units: metres, y up.
 class Levelling {
  public:
   Levelling() = default;
-  // `up` is the vertical as captured, of any length, less than 90 degrees from +y; `floor_height`
-  // is where the floor is after the turn.
+  // `up` is the captured vertical, of any length, less than 90 degrees from +y. `floor_height` is
+  // the height of the floor after the rotation.
   Levelling(Vec3 up, float floor_height);
 
-  // Captured to level; and back, the exact inverse up to rounding.
+  // Apply converts captured to level; Invert is its inverse, exact up to rounding.
   Vec3 Apply(Vec3 captured) const;
   Vec3 Invert(Vec3 level) const;
   Poses Apply(Poses captured) const;
@@ -28,7 +28,7 @@ class Levelling {
   float floor_height() const { return floor_height_; }
 
  private:
-  // The rows of the turn.
+  // The rows of the rotation; up_ is the second.
   Vec3 row_x_ = {1, 0, 0};
   Vec3 up_ = {0, 1, 0};
   Vec3 row_z_ = {0, 0, 1};

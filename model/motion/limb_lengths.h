@@ -12,8 +12,8 @@ namespace duet::motion {
 // Shapes: returns [bones]. Units: those of poses.
 std::vector<float> MedianBoneLengths(const Skeleton& skeleton, const Poses& poses);
 
-// Gives every bone its length in every frame and keeps its direction; the root stays where it is.
-// A bone without a direction (its joints coincide) is left as it is.
+// Sets the length of every bone in every frame and keeps its direction; the root does not move. A
+// bone without a direction (its joints coincide) is unchanged.
 // Shapes: lengths [bones].
 void SetBoneLengths(const Skeleton& skeleton, const std::vector<float>& lengths, Poses* poses);
 

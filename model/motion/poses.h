@@ -10,10 +10,10 @@
 
 namespace duet::motion {
 
-// Where one character's joints are, frame after frame.
+// The positions of one character's joints in every frame.
 //
 // Shapes: [frames, joints], row-major (all joints of frame 0 first).
-// Units:  metres, right-handed, y up, unless the owner says otherwise.
+// Units:  metres, right-handed, y up, unless the owner specifies otherwise.
 //
 //   Poses poses(frames, joints);
 //   poses.at(0, root) = {0, 1, 0};
@@ -22,11 +22,11 @@ namespace duet::motion {
 class Poses {
  public:
   Poses() = default;
-  // All at the origin.
+  // All joints at the origin.
   Poses(int frame_count, int joint_count)
       : joint_count_(joint_count),
         positions_(static_cast<std::size_t>(frame_count) * static_cast<std::size_t>(joint_count)) {}
-  // `positions` holds whole frames.
+  // Requires that `positions` holds whole frames.
   Poses(int joint_count, std::vector<Vec3> positions)
       : joint_count_(joint_count), positions_(std::move(positions)) {}
 
@@ -36,7 +36,7 @@ class Poses {
   }
   bool empty() const { return positions_.empty(); }
 
-  // One frame's joints.
+  // The joints of one frame.
   absl::Span<Vec3> operator[](int frame) { return {positions_.data() + Row(frame), Width()}; }
   absl::Span<const Vec3> operator[](int frame) const {
     return {positions_.data() + Row(frame), Width()};
@@ -46,18 +46,18 @@ class Poses {
     return (*this)[frame][static_cast<std::size_t>(joint)];
   }
 
-  // Every position, and those of `count` frames from `first` on, frame after frame.
+  // All positions, and those of `count` frames from frame `first`, in row-major order.
   absl::Span<Vec3> all() { return absl::MakeSpan(positions_); }
   absl::Span<const Vec3> all() const { return positions_; }
   absl::Span<const Vec3> frames(int first, int count) const {
     return {positions_.data() + Row(first), static_cast<std::size_t>(count) * Width()};
   }
 
-  // Adds whole frames of this many joints at the end.
+  // Appends whole frames of joint_count() joints.
   void Append(absl::Span<const Vec3> frames) {
     positions_.insert(positions_.end(), frames.begin(), frames.end());
   }
-  // Keeps the first `count` frames, or adds frames with all joints at the origin.
+  // Truncates to `count` frames, or appends frames with all joints at the origin.
   void Resize(int count) { positions_.resize(Row(count)); }
   // Removes the first `count` frames.
   void DropFront(int count) {

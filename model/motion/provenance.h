@@ -8,10 +8,10 @@
 
 namespace duet::motion {
 
-// Who made a follower, and what was asked for: what a file has to say beside the motion, where its
-// format has a place for it.
+// The model that synthesised a follower, and the request. Files hold it next to the motion if their
+// format can.
 struct Provenance {
-  // The label vector at a frame; one keyframe where it does not change.
+  // The label vector at a frame. A constant label vector has one entry.
   struct Labels {
     int frame = 0;
     std::vector<std::pair<std::string, float>> weights;  // by class

@@ -7,15 +7,15 @@
 
 namespace duet::motion {
 
-// What a reader of motion files can be told beside the file. kRigJointMap is the joint map of a
-// file that is read for its rig alone.
+// The settings of a reader of motion files. kRigJointMap is the joint map of a file of which only
+// the rig is used.
 enum class ReadingSetting { kFormat, kFrameRate, kMetresPerUnit, kJointMap, kRigJointMap };
 
-// `status`, an error, with the setting that would mend it as a detail, for a program that knows how
-// its user says that setting.
+// Attaches to an error the setting that would fix it. A program can then name its own flag or field
+// for that setting.
 absl::Status MendedBy(absl::Status status, ReadingSetting setting);
 
-// The setting of MendedBy; absent where nothing that can be told would help.
+// The setting that MendedBy attached; absent if no setting would help.
 std::optional<ReadingSetting> MendingSetting(const absl::Status& status);
 
 }  // namespace duet::motion

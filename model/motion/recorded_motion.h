@@ -11,21 +11,21 @@
 
 namespace duet::motion {
 
-// Positions as a file has them: the file's joints in its order, in its own unit and axes.
+// Positions as stored in a file: its joints in its order, in its own unit and axes.
 struct RecordedMotion {
-  std::vector<Clip> people;  // one or two, the same joints and frames; frame rate 0 when unknown
+  std::vector<Clip> people;  // one or two, with the same joints and frames; frame rate 0 if unknown
   Coordinates coordinates;
-  // What the file says itself; the rest are defaults.
-  bool says_unit = false, says_up_axis = false;
-  bool rate_from_times = false;  // the frame rate is that of a column of times
+  bool says_unit = false, says_up_axis = false;  // false: the value in `coordinates` is a default
+  bool rate_from_times = false;                  // the frame rate comes from a column of times
 };
 
-// Refuses what no writer can express: no frame, a rate that is no rate, a position that is not
-// finite or beyond kMaxCoordinate. `name` is how the error calls the clip.
+// INVALID_ARGUMENT for clips that no writer can express: no frames, a frame rate out of range, or a
+// position that is not finite or beyond kMaxCoordinate. `name` denotes the clip in the message.
 absl::Status CheckClip(absl::string_view name, const Clip& clip);
-// The same for both people, who share joints, frames and rate.
+// The same for two people, who must have the same joints, frames and frame rate.
 absl::Status CheckPair(const ClipPair& pair);
-// The same for one person or a leader and a follower, of the skeleton's joints in its order.
+// The same for one person or a leader and a follower, who must have the skeleton's joints in its
+// order.
 absl::Status CheckPeople(const std::vector<Clip>& people, const Skeleton& skeleton);
 
 }  // namespace duet::motion

@@ -7,7 +7,7 @@
 namespace duet::motion {
 namespace {
 
-// Keeps a time that is a whole number of frames from being rounded up to one more.
+// Prevents rounding a duration that is a whole number of frames up to one more frame.
 constexpr double kFrameTolerance = 1e-6;
 
 struct Position {

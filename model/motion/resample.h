@@ -7,19 +7,20 @@
 
 namespace duet::motion {
 
-// Frames that a motion of `frames` at `from_hz` has at `to_hz`: enough to cover its whole duration,
-// so the last one may lie past the end. At least 2. Positive rates, frames >= 2.
+// The number of frames at `to_hz` of a motion of `frames` frames at `from_hz`, at least 2. They
+// cover the whole duration: the last one may be past the end. Requires positive rates and frames
+// >= 2.
 int ResampledFrameCount(int frames, double from_hz, double to_hz);
 
-// Writes the pose at a fractional frame, linearly between neighbours and held at both ends.
+// Writes the pose at a fractional frame: linear interpolation, constant beyond both ends.
 // Requires at least one frame. Shapes: out [joints].
 void SampleLinear(const Poses& poses, double frame, absl::Span<Vec3> out);
 
-// The same through a Catmull-Rom spline: continuous velocity, so that a reply at a higher rate than
-// the network's shows no kinks.
+// The same by a Catmull-Rom spline. Its velocity is continuous, so that a reply at a higher rate
+// than the network's has no kinks.
 void SampleCubic(const Poses& poses, double frame, absl::Span<Vec3> out);
 
-// A whole motion at another rate (linear), ResampledFrameCount frames.
+// A whole motion at another rate, interpolated linearly, with ResampledFrameCount frames.
 Poses Resample(const Poses& poses, double from_hz, double to_hz);
 
 }  // namespace duet::motion

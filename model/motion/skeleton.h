@@ -35,8 +35,8 @@ struct Skeleton {
   int root = 0;  // the joint that standardisation subtracts (torso on SBU)
 
   // Landmarks; a character may lack them.
-  std::optional<JointPair> hips;  // left to right gives the facing direction
-  std::optional<JointPair> feet;  // what stands on the floor
+  std::optional<JointPair> hips;  // the line from left to right defines the facing direction
+  std::optional<JointPair> feet;  // the joints that stand on the floor
 
   int joint_count() const { return static_cast<int>(joint_names.size()); }
   // The index of a joint, or -1.
@@ -45,15 +45,15 @@ struct Skeleton {
   std::vector<int> Parents() const;
 };
 
-// Fails with INVALID_ARGUMENT naming the field when an index is out of range, a name is empty or
+// Fails with INVALID_ARGUMENT naming the field if an index is out of range, a name is empty or
 // repeated, or the bones are not a tree over all joints rooted at `root`.
 absl::Status Validate(const Skeleton& skeleton);
 
-// INVALID_ARGUMENT naming `field` when `joint` is not the index of a joint.
+// INVALID_ARGUMENT naming `field` unless `joint` is the index of a joint.
 absl::Status CheckJoint(std::string_view field, int joint, const Skeleton& skeleton);
 
-// Indices into skeleton.bones from the root outwards: every bone comes after the one that ends
-// where it begins. Requires a skeleton that Validate accepts.
+// Indices into skeleton.bones in topological order: each bone comes after the bone that ends at its
+// parent joint. Requires a skeleton that Validate accepts.
 std::vector<int> BonesFromRoot(const Skeleton& skeleton);
 
 // The 15 joints of SBU Kinect Interaction (and K3HI): head, neck, torso, left_shoulder, left_elbow,

@@ -14,14 +14,14 @@ namespace {
 using nlohmann::json;
 using nlohmann::ordered_json;
 
-// Far above any character, far below what would let a small file ask for a huge network.
+// Far above any character, and small enough that a small file cannot demand a huge network.
 constexpr std::size_t kMaxJoints = 256;
 constexpr std::size_t kMaxParts = 64;
 constexpr std::size_t kMaxNameBytes = 64;
 constexpr std::size_t kMaxTextBytes = 4096;
-constexpr char kWholeBody[] = "whole_body";  // the slice that the generator adds
+constexpr char kWholeBody[] = "whole_body";  // reserved for the slice that the generator adds
 
-// Parts name tensors.
+// The names of parts occur in the names of tensors.
 bool IsPlainName(const std::string& name) {
   if (name.empty() || name.size() > kMaxNameBytes || name.front() == '.') return false;
   for (const char c : name) {
@@ -32,7 +32,7 @@ bool IsPlainName(const std::string& name) {
   return true;
 }
 
-// A joint that the skeleton knows, given by name.
+// The index of a joint of the skeleton. Fails `reader` and returns -1 if there is none.
 int FindJoint(base::ObjectReader* reader, const std::string& key, const Skeleton& skeleton,
               const std::string& name) {
   const int joint = skeleton.Find(name);

@@ -11,20 +11,20 @@
 
 namespace duet::motion {
 
-// What a "skeleton" object holds: a character and the parts that a network encodes it by.
+// The content of a "skeleton" object: a character and the parts that a network encodes.
 struct SkeletonDocument {
   Skeleton skeleton;
   std::vector<BodyPart> parts;
 };
 
-// The "skeleton" object of manifest.json and dataset.json, joints by name:
+// The "skeleton" object of manifest.json and dataset.json, which denotes joints by name:
 //   {"joint_names": [...], "bones": [[parent, child], ...], "parts": [{"name", "joints"}, ...],
 //    "root": ..., "left_hip": ..., "right_hip": ..., "left_foot": ..., "right_foot": ...}
-// Hips and feet may be absent, both sides together.
+// Hips and feet are optional, but each needs both sides.
 //
-// Reading is strict: unknown, missing, repeated or mistyped fields, unknown joints, names too long
-// and what Validate refuses are INVALID_ARGUMENT, naming the field below `path`, what came and what
-// was wanted. `value` may come from anywhere.
+// `value` is untrusted. Unknown, missing, repeated or mistyped fields, unknown joints, names that
+// are too long and skeletons that Validate rejects are INVALID_ARGUMENT. The message names the
+// field below `path`, the expected value and the actual one.
 absl::StatusOr<SkeletonDocument> ReadSkeleton(const nlohmann::json& value, const std::string& path);
 
 // Requires a skeleton and parts that Validate accepts.

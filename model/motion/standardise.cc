@@ -5,12 +5,12 @@
 namespace duet::motion {
 namespace {
 
-// The yaw to turn by, given the leader's left-to-right hip direction in the first frame.
+// The yaw for the leader's left-to-right hip direction in the first frame.
 double HipYaw(Vec3 across, YawDirection direction) {
-  // Hips that coincide (a degenerate leader) have no direction: leave the clip unturned.
+  // Hips that coincide (a degenerate leader) have no direction: do not rotate the clip.
   if (across.x == 0 && across.z == 0) return 0;
-  // The published code takes the arc tangent of the quotient, which does not tell a direction from
-  // its opposite, and turns by it the wrong way round.
+  // The published code takes the arc tangent of the quotient, which is equal for opposite
+  // directions, and rotates in the wrong direction.
   if (direction == YawDirection::kAsReleasedCode) return -std::atan(across.z / across.x);
   return std::atan2(across.z, across.x);
 }

@@ -9,49 +9,53 @@
 
 namespace duet::motion {
 
-// Which way the yaw of the first frame is taken out.
+// The direction in which the yaw of the first frame is removed.
 enum class YawDirection {
-  kRemove,         // the hips of frame 0 end on the +x axis
-  kAsReleasedCode  // the published preprocessing turns the wrong way; for exact comparison only
+  kRemove,         // the hips of frame 0 end along the +x axis
+  kAsReleasedCode  // as in the published preprocessing, which rotates in the wrong direction; only
+                   // for exact comparison
 };
 
-// Whose place is the origin.
+// The position that becomes the origin.
 enum class StandardOrigin {
-  kEveryFrame,  // the leader's root in that same frame (the paper): its path is taken out
-  kFirstFrame   // the leader's root in the first frame: what stands still in the world stands still
+  kEveryFrame,  // the leader's root in the same frame (the paper): this removes its path
+  kFirstFrame   // the leader's root in the first frame: what does not move in the world does not
+                // move
 };
 
-// The yaw that turns a horizontal direction to -z, where a standardised leader faces.
+// The yaw that rotates a horizontal direction to -z, the direction that a standardised leader
+// faces.
 double FacingYaw(Vec3 direction);
 
-// The coordinates in which the network sees a clip: the leader's root at the origin, in every frame
-// or in the first one, and one constant yaw, such that the leader's left-to-right hip direction in
-// frame 0 lies along +x, so that the leader starts facing -z. A skeleton without hips is not turned
-// unless the caller says how.
+// The coordinates of a clip in the network: the leader's root is the origin, in every frame or in
+// the first one, and a constant yaw takes the leader's left-to-right hip direction in frame 0 to
+// +x. The leader then faces -z in frame 0. A skeleton without hips is not rotated unless the caller
+// specifies the yaw.
 //
-// Source: paper section 4 / released preprocessing. Invertible: the root track and yaw are kept.
+// Source: paper section 4 / released preprocessing. Keeps the root track and the yaw to be
+// invertible.
 class Standardisation {
  public:
-  // Fits to the leader. `leader` holds at least one frame.
+  // Derives the yaw from the leader. Requires at least one frame.
   Standardisation(const Skeleton& skeleton, const Poses& leader,
                   YawDirection direction = YawDirection::kRemove,
                   StandardOrigin origin = StandardOrigin::kEveryFrame);
-  // Takes out a yaw of the caller's choice: the angle about +y, in radians, that Apply turns by.
+  // Uses the caller's yaw: the angle about +y, in radians, by which Apply rotates.
   Standardisation(const Skeleton& skeleton, const Poses& leader, double yaw,
                   StandardOrigin origin = StandardOrigin::kEveryFrame);
 
-  // World to standard; a follower goes through the same transform as its leader. `first_frame`
-  // places a shorter run of frames within the leader's.
+  // Converts world to standard coordinates. Use the same object for a leader and its follower.
+  // `first_frame` is the leader's frame that corresponds to the first of `world`.
   Poses Apply(const Poses& world, int first_frame = 0) const;
-  // One point of the first frame.
+  // Converts one point of the first frame.
   Vec3 Apply(Vec3 world) const;
-  // Standard to world: the exact inverse of Apply.
+  // Converts standard to world coordinates: the exact inverse of Apply.
   Poses Invert(const Poses& standard, int first_frame = 0) const;
 
   double yaw() const { return yaw_; }
 
  private:
-  double yaw_;               // radians that Apply turns by, about +y
+  double yaw_;               // radians about +y by which Apply rotates
   std::vector<Vec3> roots_;  // [frames] the origin in the world
 };
 

@@ -5,7 +5,7 @@
 
 namespace duet::motion {
 
-// A point or direction. Metres in a right-handed, y-up world unless the owner says otherwise.
+// A point or direction. Metres in a right-handed, y-up world unless the owner specifies otherwise.
 struct Vec3 {
   float x = 0;
   float y = 0;
@@ -34,14 +34,14 @@ inline Vec3 Lerp(Vec3 a, Vec3 b, float t) { return a + (b - a) * t; }
 inline bool IsFinite(Vec3 a) {
   return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
 }
-// Turns `a` by `radians` about +y, counter-clockwise seen from above (+z goes to +x).
+// Rotates `a` by `radians` about +y, counter-clockwise seen from above (+z goes to +x).
 inline Vec3 RotateY(Vec3 a, double radians) {
   const float c = static_cast<float>(std::cos(radians));
   const float s = static_cast<float>(std::sin(radians));
   return {c * a.x + s * a.z, a.y, -s * a.x + c * a.z};
 }
 
-// Turns `a` by `radians` about an axis of length 1, counter-clockwise seen from its tip
+// Rotates `a` by `radians` about an axis of length 1, counter-clockwise seen from its tip
 // (Rodrigues).
 inline Vec3 RotateAbout(Vec3 a, Vec3 axis, double radians) {
   const float c = static_cast<float>(std::cos(radians));
@@ -49,7 +49,7 @@ inline Vec3 RotateAbout(Vec3 a, Vec3 axis, double radians) {
   return a * c + Cross(axis, a) * s + axis * (Dot(axis, a) * (1 - c));
 }
 
-// Positions are read and written as flat runs of x, y, z.
+// Positions are read and written as flat lists of x, y, z.
 static_assert(sizeof(Vec3) == 3 * sizeof(float), "Vec3 must be three packed floats");
 
 }  // namespace duet::motion
