@@ -12,12 +12,12 @@
 namespace duet::retargeting {
 namespace {
 
-// What a leg of no person's length in any known unit is taken for, metres.
+// The assumed leg length if it fits a person in no known unit, metres.
 constexpr double kTypicalLeg = 1;
 constexpr double kLargestUnit = 1000;
-// From the feet to the head of a character pulled straight, metres: beyond these, a warning.
+// Range without a warning of the height from feet to head of a straightened character, metres.
 constexpr double kShortestPerson = 1.3, kTallestPerson = 2.1;
-// In units: what is smaller is a figure without size rather than one in a unit of its own.
+// In units of the file. A smaller figure is treated as having no size.
 constexpr double kSmallestLeg = 1e-3;
 
 double Rounded(double value, double step) { return std::round(value / step) * step; }
@@ -58,7 +58,7 @@ class ClipMaker {
     if (options_.notes != nullptr) options_.notes->push_back(std::move(note));
   }
 
-  // From the middle of the feet up to the head; absent for a skeleton that lacks either.
+  // The height from the middle of the feet to the head; absent if the skeleton lacks either.
   std::optional<double> Stature(const std::vector<motion::Vec3>& straight) const {
     const int head = options_.skeleton.Find("head");
     if (!options_.skeleton.feet || head < 0) return std::nullopt;
@@ -68,7 +68,7 @@ class ClipMaker {
     return static_cast<double>(at(head).y - feet.y);
   }
 
-  // A leg's length alone lets a small adult in an unusual unit pass for a child in inches.
+  // Leg length does not distinguish a small adult in an unusual unit from a child in inches.
   void CheckStature(double metres_per_unit, const std::vector<motion::Vec3>& straight) {
     const std::optional<double> stature = Stature(straight);
     if (!stature.has_value()) return;
@@ -79,7 +79,7 @@ class ClipMaker {
                       " for an adult; say how many metres a unit has if the unit is another"));
   }
 
-  // A note that `inspect` shows as well.
+  // Adds a note and a remark, which `duet inspect` prints.
   void Warn(const std::string& what) {
     Note(absl::StrCat("warning: ", what));
     if (options_.report != nullptr) {

@@ -17,44 +17,43 @@
 
 namespace duet::retargeting {
 
-// A character of a file with a hierarchy, and how it moves, in the file's own unit and axes.
+// A character of a file with a hierarchy and its motion, in the file's own unit and axes.
 struct Character {
   JointTree tree;
   int frame_count = 0;  // at least one
   double frame_rate_hz = 0;
-  // Where the joints are in one frame. [tree.names]
+  // The positions of the joints in one frame. [tree.names]
   std::function<std::vector<motion::Vec3>(int frame)> pose;
-  // Metres in one unit as the file states it, and where it does. Absent for most files.
+  // Metres in one unit as the file states it; absent for most files. stated_by names the statement.
   std::optional<double> stated_metres_per_unit;
   std::string stated_by;
 };
 
-// How a character was understood.
+// The unit, axis and joints that were used to read a character.
 struct CharacterFit {
   double metres_per_unit = 1;
   motion::UpAxis up_axis = motion::UpAxis::kYUp;
   JointMap joints;  // on the character's tree
 };
 
-// What the reader of a file with a hierarchy is told beside it.
+// Options for reading a file with a hierarchy.
 struct CharacterOptions {
   motion::Skeleton skeleton = motion::SbuSkeleton();
   JointOverrides joint_overrides;
-  // Absent: the unit that the file states, centimetres, metres, millimetres, inches, CMU's unit or
-  // decimetres, whichever is the first to give the way from foot to hip to root the length of a
-  // person's (0.7 to 1.4 m). Where none does, that way is taken as 1 m. A warning among the notes
-  // says so, and also where the person is then smaller or taller than people are.
+  // If absent, the unit that the file states, provided that it gives legs of a person's length;
+  // otherwise the one that motion::InferUnit returns. If there is none, legs are taken as 1 m long,
+  // with a warning. A further warning reports a person who is smaller or taller than adults.
   std::optional<double> metres_per_unit;
-  // Absent: the axis along which the root stands above the feet.
+  // If absent, the axis that motion::InferUpAxis returns; if there is none, y, with a warning.
   std::optional<motion::UpAxis> up_axis;
-  std::vector<std::string>* notes = nullptr;  // receives what was decided; may be null
-  ReadingReport* report = nullptr;            // the same with all its details; may be null
-  CharacterFit* fit = nullptr;                // receives the same as values; may be null
+  std::vector<std::string>* notes = nullptr;  // receives the decisions as text; may be null
+  ReadingReport* report = nullptr;            // receives them with all details; may be null
+  CharacterFit* fit = nullptr;                // receives them as values; may be null
 };
 
-// A character's motion as the skeleton's joints in metres, y up.
+// Converts a character's motion to the skeleton's joints in metres, y up.
 //
-// Errors: INVALID_ARGUMENT naming `source`: joints that cannot be mapped, a character of no size.
+// Errors: INVALID_ARGUMENT naming `source` if joints cannot be mapped or the character has no size.
 absl::StatusOr<motion::Clip> ToClip(const Character& character, absl::string_view source,
                                     const CharacterOptions& options);
 

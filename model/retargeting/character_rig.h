@@ -10,21 +10,21 @@
 
 namespace duet::retargeting {
 
-// Somebody else's rig at rest, as a file has it: what a motion is to be written onto.
+// The user's rig in its rest pose, as read from a file: the target of a motion transfer.
 //
 // Units: metres, y up, in the world.
 struct CharacterRig {
   std::vector<std::string> names;
   std::vector<int> parents;      // [names], an earlier joint; -1 for the root
   std::vector<Vec3d> positions;  // [names]
-  // Joints whose place a file of the rig may say in every frame: the root's, if nothing else.
+  // Joints that a file of the rig may translate in every frame, at least the root.
   std::vector<bool> moves;  // [names]
-  // How the skeleton's joints are found on it.
+  // Maps the rig's joints to the skeleton's.
   JointMap joints;
 };
 
-// One frame on a rig: how far every joint is turned from rest, in the world and the world's axes
-// (an undriven joint is turned as its parent), and where it stands.
+// One frame on a rig: the rotation of every joint from the rest pose, in world axes (an undriven
+// joint has its parent's rotation), and its position.
 struct CharacterPose {
   std::vector<Quaternion> turns;  // [names]
   std::vector<Vec3d> positions;   // [names]

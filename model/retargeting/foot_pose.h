@@ -5,25 +5,25 @@
 #include "model/motion/skeleton.h"
 #include "model/retargeting/rotation.h"
 
-// Which way feet point, where nothing but the ankle is known.
+// The rotation of feet if only the position of the ankle is known.
 
 namespace duet::retargeting {
 
-// How high ankles are when they stand: lower than in nearly every frame. Of both feet over the
-// clip, so that one that never comes down does not count. Without feet 0.
+// The height of a standing ankle: a low quantile over both feet and all frames, so that a foot that
+// never comes down does not matter. 0 without feet.
 double AnkleHeightOnFloor(const motion::Skeleton& skeleton, const motion::Clip& clip);
 
 // The usual height of an ankle above the sole, metres.
 inline constexpr double kUsualAnkleHeight = 0.06;
 
-// How far below the ankles the soles are if whoever stands so stands on the floor, y = 0:
-// `ankle_height_on_floor` itself, or kUsualAnkleHeight where that is no ankle's height, as in
-// captures without a floor of their own. Unit: metres.
+// The distance from ankles to soles for a person who stands on the floor, y = 0:
+// `ankle_height_on_floor`, or kUsualAnkleHeight if that is no plausible ankle height, as in
+// captures without a calibrated floor. Unit: metres.
 double SoleDepth(double ankle_height_on_floor);
 
-// The foot's rotation in the world, which at rest points along +z with y up. `shin` is the shin's,
-// which at rest hangs down and faces +z. The foot is at a right angle to the shin in the air and
-// level where it stands.
+// The foot's rotation in the world; at rest the foot points along +z with y up. `shin` is the
+// shin's rotation; at rest the shin hangs down and faces +z. In the air the foot is at a right
+// angle to the shin; on the floor it is level.
 Quaternion FootRotation(Quaternion shin, Vec3d ankle, double ankle_height_on_floor);
 
 }  // namespace duet::retargeting

@@ -16,7 +16,7 @@
 
 namespace duet::retargeting {
 
-// Joints that the user names: skeleton joint -> joint of the file. They win over every rule.
+// Joints that the user specifies: skeleton joint -> joint of the file. They override every rule.
 using JointOverrides = std::map<std::string, std::string>;
 
 // One joint of a skeleton as a weighted mean of joints of a file.
@@ -28,37 +28,38 @@ struct JointSource {
   std::vector<Term> terms;
 };
 
-// How every joint of a skeleton is found in a file.
+// The source in a file of each of a skeleton's joints.
 struct JointMap {
   std::vector<JointSource> sources;  // [skeleton joints]
-  // The character pulled straight (PullStraight), where the file has a hierarchy.
+  // The straightened character (PullStraight), if the file has a hierarchy.
   std::vector<motion::Vec3> straight;  // [skeleton joints]
-  // What was decided where the names leave a choice, for people to read:
+  // The choices between several joints, for people to read:
   // "torso: mixamorig:Spine1 (the spine joint nearest to half way from hips to neck)".
   std::vector<std::string> notes;
 };
 
-// Finds a skeleton's joints in a file by name (docs/formats.md has the table). A file with all of
-// the skeleton's names as they are is taken as it is. Otherwise a name counts without its prefix
-// (`mixamorig:`, `Bip01`), case, separators and wherever it says the side (`LeftArm`, `arm.L`,
-// `lArm`). Neck and torso go by where they are along the trunk: the neck joint nearest to half way
-// between the shoulders, the spine joint nearest to half way from hips to neck. A head's joint at
-// the base of the skull is raised to the head's middle.
+// Finds a skeleton's joints in a file by name (docs/formats.md has the table). If the file has all
+// of the skeleton's names, they are used unchanged. Otherwise names are compared without prefix
+// (`mixamorig:`, `Bip01`), case, separators and side (`LeftArm`, `arm.L`, `lArm`). Neck and torso
+// are chosen by position along the trunk: the neck joint nearest to half way between the shoulders,
+// and the spine joint nearest to half way from hips to neck. A head joint at the base of the skull
+// is raised to the middle of the head.
 //
-// The hierarchy alone decides, so that all clips of one rig map alike. In one without a head the
-// end of the neck stands for it.
+// Only the hierarchy decides, so that all clips of one rig map alike. In a hierarchy without a
+// head, the end of the neck is used as the head.
 //
 // Errors: INVALID_ARGUMENT naming `source`, the skeleton's joints without a source, the names that
 //         the file has, or an override that names no joint of the skeleton or of the file.
 //
-// `readings`, where it is not null, receives what became of every joint of the skeleton, also where
-// some are missing.
+// If `readings` is not null, it receives the source of every joint of the skeleton, even if some
+// are missing.
 absl::StatusOr<JointMap> MapJoints(absl::string_view source, const JointTree& tree,
                                    const motion::Skeleton& skeleton,
                                    const JointOverrides& overrides = {},
                                    std::vector<JointReading>* readings = nullptr);
 
-// The same in a file without a hierarchy: neck and torso go by mean distances over the motion.
+// The same for a file without a hierarchy: neck and torso are chosen by mean distances over the
+// motion.
 //
 // Shapes: poses [frames >= 1, names], in any unit.
 absl::StatusOr<JointMap> MapJoints(absl::string_view source, const std::vector<std::string>& names,
@@ -66,7 +67,7 @@ absl::StatusOr<JointMap> MapJoints(absl::string_view source, const std::vector<s
                                    const JointOverrides& overrides = {},
                                    std::vector<JointReading>* readings = nullptr);
 
-// One frame of the file's joints as one of the skeleton's. [names] -> [skeleton joints]
+// Converts one frame of the file's joints to the skeleton's. [names] -> [skeleton joints]
 std::vector<motion::Vec3> ApplyJointMap(const JointMap& map, absl::Span<const motion::Vec3> pose);
 
 }  // namespace duet::retargeting

@@ -10,7 +10,7 @@ namespace duet::retargeting {
 
 enum class BodySide { kMiddle, kLeft, kRight };
 
-// What a joint's name says, without prefix, case, separators and side:
+// A joint's name split into its side and its base, which has no prefix, case or separators:
 //   mixamorig:LeftUpLeg   left  upleg        Bip01 L Thigh   left  thigh
 //   upper_arm.R           right upperarm     rShldr          right shldr
 struct ParsedJointName {
@@ -23,10 +23,10 @@ struct ParsedJointName {
 };
 ParsedJointName ParseJointName(absl::string_view name);
 
-// Bases under which files have the joint that a skeleton calls `base`, the best first.
+// The bases that files use for the joint that a skeleton calls `base`, in order of preference.
 std::vector<std::string> JointAliases(const std::string& base);
 
-// Whether a joint may be one of the spine between hips and neck, or one of the neck.
+// Whether the name is that of a joint of the spine between hips and neck, or of the neck.
 bool IsSpine(const ParsedJointName& name);
 bool IsNeck(const ParsedJointName& name);
 

@@ -7,16 +7,15 @@
 
 namespace duet::retargeting {
 
-// A user's own table of joints, one a line:
+// Parses a user's table of joints, one per line:
 //
 //   # model joint = joint of the file
 //   left_hand = LeftWrist
 //   torso = Chest 3
 //
-// '#' starts a comment at the beginning of a line; blanks around names do not count.
+// '#' at the beginning of a line starts a comment; white space around names is ignored.
 //
-// Errors: INVALID_ARGUMENT "source:line: ..." for a line of another kind or a joint that is given
-//         twice.
+// Errors: INVALID_ARGUMENT "source:line: ..." for any other line or a repeated joint.
 absl::StatusOr<JointOverrides> ParseJointTable(absl::string_view text, absl::string_view source);
 
 }  // namespace duet::retargeting

@@ -5,23 +5,23 @@
 
 namespace duet::retargeting {
 
-// How a limb of two bones stands so that its end is at a target.
+// The pose of a limb of two bones whose end is at a target.
 struct LimbPose {
-  Vec3d upper, lower;  // the way that either bone goes, of length 1
-  // About which the joint between them bends, of length 1: across both bones, so that the lower one
-  // comes from the upper one by a turn about it.
+  Vec3d upper, lower;  // the directions of the bones, of length 1
+  // The axis of the joint between them, of length 1 and perpendicular to both bones: a rotation
+  // about it takes the upper bone's direction to the lower one's.
   Vec3d hinge;
 };
 
-// From `start` to `target`, or as near as the bones reach. `pole`, of length 1, is the side to
-// which elbow or knee go out.
+// Reaches from `start` to `target`, or as near as the bones allow. `pole`, of length 1, is the
+// direction in which the elbow or knee points.
 LimbPose ReachFor(Vec3d start, Vec3d target, double upper_length, double lower_length, Vec3d pole);
 
-// Follows on which side elbow or knee of a captured limb are. A limb that is nearly straight does
-// not say: there the side stays as it was on the limb.
+// Tracks the direction in which the elbow or knee of a captured limb points. A nearly straight limb
+// does not define it: the direction then stays fixed relative to the limb.
 class PoleTracker {
  public:
-  // `otherwise`: the side while nothing has been said, of length 1.
+  // `otherwise`, of length 1, is the direction until a bent limb has defined one.
   Vec3d Follow(Vec3d start, Vec3d middle, Vec3d end, Vec3d otherwise);
 
  private:

@@ -11,20 +11,20 @@
 
 namespace duet::retargeting {
 
-// A body around a rig in its rest pose: a tapered limb on every bone, a ball on every joint, and,
-// where joints have the names of motion::SbuSkeleton, chest, pelvis and a head, hands and feet.
+// A body around a rig in its rest pose: a tapered limb on every bone and a ball on every joint.
+// Joints with the names of motion::SbuSkeleton also get a chest, pelvis, head, hands and feet.
 struct Mannequin {
   SkinnedMesh body;
-  SkinnedMesh visor;  // where the face is, in a dark colour; empty without a head
+  SkinnedMesh visor;  // marks the face in a dark colour; empty without a head
 };
 
-// `rest_positions` as of RestPositions(rig). The soles are `sole_depth` metres below the ankles, so
-// that who stands in the motion stands on the floor.
+// `rest_positions` is RestPositions(rig). The soles are `sole_depth` metres below the ankles, so
+// that a person who stands in the motion stands on the floor.
 Mannequin MakeMannequin(const motion::Skeleton& skeleton, const Rig& rig,
                         const std::vector<Vec3d>& rest_positions,
                         double sole_depth = kUsualAnkleHeight);
 
-// A slender body of the bones of somebody else's rig, whatever its joints are called.
+// A slender body around the bones of a user's rig, independent of its joint names.
 SkinnedMesh MakeStickFigure(const CharacterRig& rig);
 
 }  // namespace duet::retargeting

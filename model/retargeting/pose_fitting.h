@@ -14,25 +14,25 @@ namespace duet::retargeting {
 struct RigPose {
   Vec3d root_position;
   std::vector<Quaternion> rotations;  // [rig joints]
-  // Where each joint is from its parent, in its parent's axes; the root's is its position.
+  // Each joint's offset from its parent, in the parent's axes; for the root, its position.
   std::vector<Vec3d> translations;  // [rig joints]
 };
 
-// Captured bones change their lengths.
+// The treatment of captured bones, which change their lengths.
 enum class BoneLengths {
   kRigs,     // every bone as long as the rig's: joints may be off
-  kCaptured  // joints stand where they were captured: translations differ from the rig's offsets
+  kCaptured  // joints keep their captured positions: translations differ from the rig's offsets
 };
 
-// From joint positions to joint angles, frame after frame; what a frame leaves open (the twist of a
-// straight arm) stays as it was.
+// Converts joint positions to joint angles, frame by frame. Angles that a frame does not define
+// (the twist of a straight arm) keep their previous value.
 //
-// Branching joints turn by Kabsch's fit over their neighbours. Every other joint points at its
-// child from where it came to stand itself, so that bone lengths which vary in a capture do not add
-// up along a limb; the plane of elbow or knee fixes the twist of the upper limb.
+// Branching joints are rotated by Kabsch's fit over their neighbours. Every other joint is placed
+// first and then points at its child, so that varying bone lengths of a capture do not accumulate
+// along a limb. The plane of the elbow or knee defines the twist of the upper limb.
 class PoseFitter {
  public:
-  // `rig` outlives the fitter.
+  // `rig` must outlive the fitter.
   explicit PoseFitter(const Rig& rig, BoneLengths lengths = BoneLengths::kRigs);
   // positions: [skeleton joints], metres.
   const RigPose& Fit(absl::Span<const motion::Vec3> positions);

@@ -9,7 +9,7 @@
 
 namespace duet::retargeting {
 
-// Who decided something about a motion file.
+// The origin of a setting of a motion file.
 enum class Origin {
   kGiven,    // whoever reads it, beside the file
   kFile,     // the file says it
@@ -25,26 +25,26 @@ struct Setting {
   std::string why;  // may be empty
 };
 
-// Where a joint of the skeleton is found in the file.
+// The source of a joint of the skeleton in the file.
 struct JointReading {
   struct Part {
     std::string name;  // of the file
     float weight = 1;
   };
   std::string joint;        // of the skeleton
-  std::vector<Part> parts;  // the joint is their weighted mean; none where it is missing
+  std::vector<Part> parts;  // the joint is their weighted mean; empty if it is missing
   Origin origin = Origin::kFile;
-  std::string why;  // empty where the name alone says it
+  std::string why;  // empty if the joint was found by its name
 };
 
-// How a motion file was understood. Filled in as far as reading came, also where it failed.
+// How a motion file was read. If reading failed, it holds everything up to the failure.
 struct ReadingReport {
   std::string format;  // "BVH"
   int people = 0;      // in the file
   std::vector<std::string> file_joints;
-  std::optional<Setting> frame_rate, unit, up_axis;  // absent: nothing says
+  std::optional<Setting> frame_rate, unit, up_axis;  // absent: unknown
   std::vector<JointReading> joints;                  // [skeleton joints]
-  std::vector<std::string> remarks;                  // what else was decided, and warnings
+  std::vector<std::string> remarks;                  // other decisions, and warnings
 };
 
 }  // namespace duet::retargeting

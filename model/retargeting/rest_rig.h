@@ -11,24 +11,23 @@
 
 namespace duet::retargeting {
 
-// The turn from a file's axes to the world's.
+// The rotation from a file's axes to the world's.
 Quaternion ToWorldAxes(motion::UpAxis up_axis);
 
-// The rig of a file whose joints are not turned at rest (BVH, ASF): joints stand where the tree's
-// offsets put them, the roots at the origin. Only roots move.
+// The rig of a file whose joints have no rotation at rest (BVH, ASF): the tree's offsets define the
+// rest positions, with roots at the origin. Only roots are translated.
 //
-// `fit` is how ToClip understood the same tree.
+// `fit` is the result of ToClip for the same tree.
 CharacterRig RestRig(const JointTree& tree, const CharacterFit& fit);
 
-// One frame of such a rig from joint to joint. [rig joints]
+// One frame of such a rig, relative to parents. [rig joints]
 struct LocalPose {
   std::vector<Quaternion> turns;  // in the parent's axes
-  std::vector<Vec3d> places;      // from the parent and in its axes, metres; a root's in the world
+  std::vector<Vec3d> places;      // from the parent in its axes, metres; for a root, in the world
 };
 LocalPose ToLocal(const CharacterRig& rig, const CharacterPose& pose);
 
-// The rig's joints with every parent directly before its first child, roots in their order: the
-// order in which BVH lists joints.
+// The rig's joints in depth-first order, which is the order of BVH; roots keep their order.
 std::vector<int> DepthFirst(const std::vector<int>& parents);
 
 }  // namespace duet::retargeting

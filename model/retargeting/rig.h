@@ -10,8 +10,9 @@
 
 namespace duet::retargeting {
 
-// A joint of a rig: a skeleton's joint, or a helper that stands on a joint with several children
-// and points at one of them, so that hips, shoulders and neck may move against each other.
+// A joint of a rig: a skeleton's joint, or a helper at the position of a joint with several
+// children. A helper points at one child, so that hips, shoulders and neck can move relative to
+// each other.
 struct RigJoint {
   enum class Kind {
     kBranch,  // several children: turns with all its neighbours
@@ -21,33 +22,33 @@ struct RigJoint {
   std::string name;  // the skeleton's, or "torso_to_neck" for a helper
   Kind kind = Kind::kLeaf;
   int parent = -1;  // an earlier rig joint
-  int joint = 0;    // the skeleton's joint that stands here
+  int joint = 0;    // the skeleton's joint at this position
   Vec3d offset;     // from the parent in the rest pose, metres
 
-  // kAim: the skeleton's joint pointed at, where that is in the rest pose, and the joint after it,
-  // whose plane fixes the twist (-1 when there is none).
+  // kAim: the skeleton's joint that it points at, that joint's position in the rest pose, and the
+  // next joint, whose plane defines the twist (-1 if there is none).
   int aim = -1;
   Vec3d rest_direction = {0, 1, 0};
   int bend = -1;
 
-  // kBranch: neighbours on the skeleton and where they are in the rest pose, from here.
+  // kBranch: neighbours on the skeleton, and their rest positions relative to this joint.
   std::vector<int> neighbours;
   std::vector<Vec3d> rest_shape;
 
-  // kLeaf: where the End Site is.
+  // kLeaf: the offset of the End Site.
   Vec3d end_offset;
 };
 
-// What joint angles turn: the rest pose of a person.
+// The rest pose of a person, to which joint angles apply.
 //
-// It faces +z with y up. Limbs below the hips hang, limbs that start sideways reach out (a T pose),
-// the head stands upright; bones that leave a branching joint keep their mean direction in the
-// clip. Every bone has its median length in the clip.
+// It faces +z with y up, in a T pose: legs hang, limbs that start sideways are stretched out, the
+// head is upright. Bones from a branching joint keep their mean direction in the clip. Every bone
+// has its median length in the clip.
 struct Rig {
   std::vector<RigJoint> joints;  // depth first, the skeleton's root first
 };
 
-// `clip` has the skeleton's joints, at least one frame and finite positions.
+// Requires a clip with the skeleton's joints, at least one frame and finite positions.
 Rig MakeRig(const motion::Skeleton& skeleton, const motion::Clip& clip);
 
 }  // namespace duet::retargeting

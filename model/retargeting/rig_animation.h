@@ -11,8 +11,8 @@
 
 namespace duet::retargeting {
 
-// A person as formats with an animated hierarchy have it: a rig at rest, and how its joints turn
-// and move. Every joint of the skeleton stands exactly where the clip has it.
+// A person for formats with an animated hierarchy: a rig at rest, and rotations and translations of
+// its joints. Every joint of the skeleton is exactly at its position in the clip.
 struct RigAnimation {
   Rig rig;
   // In the rest pose, which stands on the floor at the origin. [rig joints]
@@ -21,22 +21,23 @@ struct RigAnimation {
   double sole_depth = kUsualAnkleHeight;  // below the ankles, metres
   std::vector<RigPose> frames;  // rotations of neighbouring frames are on the same side (q, not -q)
 
-  // Where a joint is from its parent at rest; the root's is its position.
+  // A joint's offset from its parent at rest; for the root, its position.
   Vec3d RestTranslation(std::size_t joint) const;
-  // Whether a joint keeps its place in its parent's axes in all frames, but for rounding: bones of
+  // Whether a joint keeps its offset from its parent in all frames, up to rounding. Bones of
   // constant length need no translations.
   bool KeepsItsPlace(std::size_t joint) const;
-  // Whether a joint never turns in its parent's axes.
+  // Whether a joint never rotates relative to its parent.
   bool NeverTurns(std::size_t joint) const;
 };
 
-// Feet, which a skeleton without toes leaves open, follow the shin, and are level where they stand.
+// A skeleton without toes does not define the rotation of feet: they follow the shin, and are level
+// when they stand.
 //
-// Requires a clip of the skeleton's joints with one frame at least and finite positions. Units:
+// Requires a clip with the skeleton's joints, at least one frame and finite positions. Units:
 // metres, y up.
 RigAnimation AnimateRig(const motion::Skeleton& skeleton, const motion::Clip& clip);
 
-// Where every joint of a rig stands at rest, the lowest at y = 0 and the root above the origin.
+// The rest positions of a rig's joints, with the lowest at y = 0 and the root above the origin.
 // [rig joints]
 std::vector<Vec3d> RestPositions(const Rig& rig);
 

@@ -11,23 +11,25 @@
 
 namespace duet::retargeting {
 
-// A clip of the skeleton's joints on somebody else's rig, whatever its rest pose, names and extra
-// joints: the rig's bones keep their lengths.
+// Transfers a clip of the skeleton's joints to a user's rig with any rest pose, names and extra
+// joints. The rig's bones keep their lengths.
 //
-// - Pelvis and chest turn by Kabsch's fit over hips, shoulders and trunk; the spine's joints share
-//   the turn between the two, and neck and head the head's.
-// - Feet and hands stand where the clip has ankles and wrists, where the limbs reach so far: by
-//   two-bone inverse kinematics with elbows and knees on the clip's side. The pelvis comes down
-//   where a leg would not reach, and goes up or down with the length of the rig's legs.
-// - The plane of elbow or knee twists both bones of a limb; hands keep their turn on the forearm;
-// feet
-//   are level where they stand. Collar bones, fingers, toes and all else stay at rest on their
-//   parents.
+// - Kabsch's fit over hips, shoulders and trunk rotates pelvis and chest. The spine's joints share
+// the
+//   rotation between the two; neck and head share that of the head.
+// - Two-bone inverse kinematics places feet and hands at the clip's ankles and wrists, as far as
+// the
+//   limbs reach, with elbows and knees on the clip's side. The pelvis height follows from the
+//   length of the rig's legs; the pelvis is lowered if a leg would not reach.
+// - The plane of the elbow or knee twists both bones of a limb. Hands keep their rotation relative
+// to
+//   the forearm. Standing feet are level. Collar bones, fingers, toes and all other joints keep
+//   their rest pose relative to their parents.
 //
 // Requires motion::SbuSkeleton's joints. Shapes: returns [frames].
-// Errors: INVALID_ARGUMENT naming `source` for a rig without hips, knees, feet, shoulders, elbows
-// or
-//         hands of its own, or one whose limbs have no length.
+// Errors: INVALID_ARGUMENT naming `source` for a rig that lacks its own hips, knees, feet,
+// shoulders,
+//         elbows or hands, or whose limbs have no length.
 absl::StatusOr<std::vector<CharacterPose>> TransferToRig(const motion::Clip& clip,
                                                          const CharacterRig& rig,
                                                          absl::string_view source);

@@ -29,14 +29,14 @@ inline Vec3d Cross(Vec3d a, Vec3d b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 inline double Norm(Vec3d a) { return std::sqrt(Dot(a, a)); }
-// `a` at length 1, or `fallback` when it is too short to have a direction.
+// `a` scaled to length 1, or `fallback` if it is too short to have a direction.
 Vec3d Unit(Vec3d a, Vec3d fallback);
 
 // A unit quaternion; q and -q are the same rotation.
 struct Quaternion {
   double w = 1, x = 0, y = 0, z = 0;
 
-  friend Quaternion operator*(Quaternion a, Quaternion b);  // b first, then a
+  friend Quaternion operator*(Quaternion a, Quaternion b);  // applies b first, then a
 };
 
 double Dot(Quaternion a, Quaternion b);
@@ -45,21 +45,21 @@ Vec3d Rotate(Quaternion q, Vec3d a);
 // The angle between two rotations, 0 to pi.
 double Angle(Quaternion a, Quaternion b);
 Quaternion AxisAngle(Vec3d unit_axis, double radians);
-// The rotation that takes the right-handed orthonormal axes x, y, z to these.
+// The rotation that takes the world axes to the right-handed orthonormal axes x, y, z.
 Quaternion FromAxes(Vec3d x, Vec3d y, Vec3d z);
-// a (share 0) to b (share 1) along the shorter arc, at a constant pace.
+// Interpolates from a (share 0) to b (share 1) along the shorter arc at constant speed.
 Quaternion Slerp(Quaternion a, Quaternion b, double share);
-// The smallest rotation between two unit directions; opposite ones turn about `axis_if_opposite`, a
-// unit vector across `from`.
+// The smallest rotation between two unit directions. Opposite directions rotate about
+// `axis_if_opposite`, a unit vector perpendicular to `from`.
 Quaternion ShortestArc(Vec3d from, Vec3d to, Vec3d axis_if_opposite);
 
-// A direction or point `from` that a rotation should take to `to`.
+// A direction or point `from` that a rotation is fitted to take to `to`.
 struct Correspondence {
   Vec3d from;
   Vec3d to;
   double weight = 1;
 };
-// A rotation that the answer should be near to; it decides what the correspondences leave open.
+// A rotation near the expected result; it decides what the correspondences do not determine.
 struct RotationPrior {
   Quaternion rotation;
   double weight = 0;
