@@ -11,14 +11,14 @@
 
 namespace duet::formats {
 
-// A BVH, AMC (beside its .asf) or glTF whose rig a follower is written onto, and how that file is
-// read.
+// A BVH, AMC (with its .asf) or glTF whose rig the follower is written onto, and the options to
+// read it.
 struct FollowerRig {
   std::filesystem::path file;
   ReadOptions reading;
 };
 
-// What has a rig, and what a follower on a rig is written as.
+// The formats that have a rig, and those of a follower on a rig.
 inline constexpr char kRigExtensions[] = "a .bvh, .amc, .glb or .gltf";
 inline constexpr char kRigOutputExtensions[] = ".bvh, .glb or .gltf";
 
@@ -28,12 +28,13 @@ bool FitsRig(Format written, Format rig);
 // Whether the rig can be read; it need not be animated. Errors: those of reading it.
 absl::Status CheckRig(const FollowerRig& rig);
 
-// The follower on that rig. In its own format the rig keeps all of its file but the motion
-// (bvh::OntoBvhRig, gltf::OntoGltfRig); in another one it keeps names, hierarchy and bone lengths
-// (bvh::ToBvh, gltf::FormatCharacter).
+// Formats the follower on the rig. In the rig's own format, everything in its file except the
+// motion is kept (bvh::OntoBvhRig, gltf::OntoGltfRig). In another format, names, hierarchy and bone
+// lengths are kept (bvh::ToBvh, gltf::FormatCharacter).
 //
-// Errors: those of reading the rig; INVALID_ARGUMENT for a rig that cannot be the follower's, or a
-//         format that FitsRig does not accept.
+// Errors: those of reading the rig; INVALID_ARGUMENT for an unsuitable rig, or a format that
+// FitsRig
+//         does not accept.
 absl::StatusOr<std::string> FormatOntoRig(const motion::Clip& follower, const FollowerRig& rig,
                                           Format format, const WriteOptions& options = {});
 

@@ -38,12 +38,12 @@ static_assert(kMostBvhKeysPerFrame == bvh::kMostKeysPerFrame);
 using retargeting::Origin;
 using retargeting::Setting;
 
-// What a motion is read from besides its own bytes.
+// A motion's name and folder, from which further files are read.
 struct Source {
   std::string name;                // for errors
-  std::optional<fs::path> folder;  // where files beside it lie; a pipe has none
+  std::optional<fs::path> folder;  // of further files; absent for a pipe
 
-  // `what` says what the file is, with its article.
+  // `what` names the kind of file, with its article.
   absl::StatusOr<std::string> ReadBeside(const std::string& file, const char* what) const {
     if (folder.has_value()) {
       return base::ReadFile(*folder / file, motion::kMaxMotionFileBytes, what);
@@ -54,7 +54,7 @@ struct Source {
   }
 };
 
-// Positions alone do not say which axis is up where nobody does: Blender's is z.
+// A file of positions may not state its up axis, which is z for Blender.
 void WarnOfUpAxis(const motion::Clip& clip, const ReadOptions& options) {
   if (!options.skeleton.feet) return;
   const std::optional<motion::UpAxis> up = motion::InferUpAxis(options.skeleton, {&clip.poses});
@@ -73,7 +73,7 @@ void ReportCoordinates(const motion::Coordinates& coordinates, Origin unit, Orig
   report->up_axis = Setting{std::string(UpAxisName(coordinates.up_axis)), up_axis, ""};
 }
 
-// What a file with positions says itself. SBU text says nothing.
+// Reports what a file of positions states. SBU text states nothing.
 void Report(const motion::RecordedMotion& motion, const motion::Clip& person,
             const ReadOptions& options) {
   retargeting::ReadingReport* report = options.report;
@@ -106,7 +106,7 @@ void ReportSbu(const flat::SbuOptions& sbu, const ReadOptions& options) {
   }
 }
 
-// The joints of a file with positions as the skeleton's, in metres, y up.
+// Converts a file of positions to the skeleton's joints in metres, y up.
 absl::StatusOr<motion::Clip> ToSkeleton(const motion::RecordedMotion& motion,
                                         const std::string& source, const ReadOptions& options) {
   const bool second = options.side == Side::kRight && motion.people.size() > 1;
@@ -178,7 +178,7 @@ absl::StatusOr<motion::Clip> ReadGltfPerson(const std::string& content, const So
   return FromGltf(*document, source.name, read_beside, gltf);
 }
 
-// The skeleton of a motion lies beside it.
+// The skeleton is a file in the motion's folder.
 absl::StatusOr<asf::AsfSkeleton> ReadAsfBeside(const Source& source) {
   if (source.folder.has_value()) return asf::ReadSkeletonBeside(source.name);
   return absl::InvalidArgumentError(absl::StrCat(
@@ -235,7 +235,7 @@ absl::StatusOr<motion::Clip> ReadPerson(Format format, const std::string& conten
   return ToSkeleton(*motion, source.name, options);
 }
 
-// The person at the rate that was given or the file's.
+// The person at the specified rate, or at the file's.
 absl::StatusOr<motion::Clip> ReadAtRate(Format format, const std::string& content,
                                         const Source& source, const ReadOptions& options) {
   absl::StatusOr<motion::Clip> clip = ReadPerson(format, content, source, options);
@@ -248,7 +248,7 @@ absl::StatusOr<motion::Clip> ReadAtRate(Format format, const std::string& conten
     }
   }
   if (clip->frame_rate_hz > 0) {
-    // In metres a position may be beyond what it was within in the file's unit.
+    // A position within the limit in the file's unit may exceed it in metres.
     const absl::Status valid = CheckClip(source.name, *clip);
     if (!valid.ok()) return valid;
     return clip;
@@ -390,7 +390,7 @@ absl::StatusOr<motion::Clip> ParseLeader(const std::string& content, const std::
 absl::StatusOr<std::vector<motion::Vec3>> ReadFollowerStart(const fs::path& path,
                                                             const ReadOptions& options) {
   ReadOptions any_rate = options;
-  // A single pose has no rate; a file without one will do.
+  // A single pose needs no frame rate.
   if (!any_rate.frame_rate_hz.has_value()) any_rate.frame_rate_hz = motion::kSbuFrameRateHz;
   absl::StatusOr<motion::Clip> clip = ReadLeader(path, any_rate);
   if (!clip.ok()) return clip.status();

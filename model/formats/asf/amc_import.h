@@ -17,30 +17,30 @@
 namespace duet::formats::asf {
 
 struct AmcImportOptions : retargeting::CharacterOptions {
-  // Absent: 120, as CMU's captures have, with a note; the files do not say.
+  // The files do not state it. If absent, 120 Hz, the rate of CMU's captures, with a note.
   std::optional<double> frame_rate_hz;
 };
 
-// Joint angles through forward kinematics to the skeleton's joint positions. A bone's name stands
-// for the joint where it starts (lfemur: the hip); the last of a limb has an end, "head.end".
+// Converts joint angles to the skeleton's joint positions by forward kinematics. A bone's name
+// denotes the joint at its start (lfemur: the hip). The last bone of a limb has an end, "head.end".
 //
-// Errors: INVALID_ARGUMENT naming `source`: what retargeting::ToClip refuses.
+// Errors: those of retargeting::ToClip, naming `source`.
 absl::StatusOr<motion::Clip> FromAmc(const AsfSkeleton& skeleton, const AmcMotion& motion,
                                      absl::string_view source,
                                      const AmcImportOptions& options = {});
 
-// The rig of an .asf file as ToClip understands it with this motion, for writing in another format.
+// The rig of an .asf file, read by ToClip with this motion, to be written in another format.
 // Errors: those of FromAmc.
 absl::StatusOr<retargeting::CharacterRig> AmcRig(const AsfSkeleton& skeleton,
                                                  const AmcMotion& motion, absl::string_view source,
                                                  const AmcImportOptions& options = {});
 
-// The skeleton that lies beside a motion, under one of SkeletonNames.
+// Reads the skeleton in a motion's folder that has one of SkeletonNames.
 // Errors: NOT_FOUND naming them; those of reading the file.
 absl::StatusOr<AsfSkeleton> ReadSkeletonBeside(const std::filesystem::path& motion_file);
 
-// Names under which the skeleton of a motion may lie beside it, the best first: 01_02.amc has
-// 01_02.asf or 01.asf.
+// The possible file names of a motion's skeleton, in order of preference: 01_02.asf, then 01.asf
+// for 01_02.amc.
 std::vector<std::string> SkeletonNames(absl::string_view motion_name);
 
 }  // namespace duet::formats::asf

@@ -10,28 +10,27 @@
 
 namespace duet::formats::asf {
 
-// The motion of a skeleton as an .amc file has it.
+// The motion of a skeleton as stored in an .amc file.
 struct AmcMotion {
   int frame_count = 0;
   // Lengths in the file's unit, angles in radians. [frames, freedoms of all bones in their order]
   std::vector<float> values;
 };
 
-// Reads the motion of `skeleton`: every bone that can move, once in every frame.
+// Parses the motion of `skeleton`. Every frame must have every bone that can move exactly once.
 //
 // Errors: INVALID_ARGUMENT "source:line: ... came ..., wanted ..."
 absl::StatusOr<AmcMotion> ParseAmc(absl::string_view text, absl::string_view source,
                                    const AsfSkeleton& skeleton);
 
-// Where each bone starts, and for a bone without another below it where it ends, through forward
-// kinematics.
+// Computes by forward kinematics where each bone starts, and where each bone without children ends.
 class AsfKinematics {
  public:
-  // Both outlive the kinematics.
+  // Both arguments must outlive the kinematics.
   AsfKinematics(const AsfSkeleton& skeleton, const AmcMotion& motion);
   // [bones, then the ends of `ends`]
   std::vector<retargeting::Vec3d> Positions(int frame) const;
-  // Bones without another below, in order.
+  // Bones without children, in order.
   const std::vector<int>& ends() const { return ends_; }
 
  private:

@@ -11,7 +11,7 @@
 
 namespace duet::formats::asf {
 
-// What one number of a bone's motion moves.
+// The translation or rotation that one number of a bone's motion sets.
 enum class AsfFreedom { kTx, kTy, kTz, kRx, kRy, kRz };
 
 // A bone, from the joint where it starts to the one where it ends.
@@ -19,27 +19,27 @@ struct AsfBone {
   std::string name;
   int parent = -1;                   // an earlier bone; -1 for the root, which is the first
   retargeting::Vec3d extent;         // from start to end at rest, in the world's axes
-  retargeting::Quaternion axes;      // of its rotations, in the world's
+  retargeting::Quaternion axes;      // of its rotations, in world axes
   std::vector<AsfFreedom> freedoms;  // in the order of the motion's values; bones turn only
 };
 
-// A skeleton of an .asf file. Lengths in the file's unit, angles of motions as `radians` says.
+// The skeleton of an .asf file. Lengths are in the file's unit; `radians` is the unit of motions.
 //
-// `units_per_inch` is what ":units length" states: CMU's 0.45 is 0.45 units to the inch.
+// `units_per_inch` is the value of ":units length": CMU's 0.45 means 0.45 units per inch.
 struct AsfSkeleton {
   std::vector<AsfBone> bones;   // parents first
   retargeting::Vec3d position;  // of the root at rest
   bool radians = false;
   std::optional<double> units_per_inch;
 
-  int Find(absl::string_view name) const;  // -1 where there is none
+  int Find(absl::string_view name) const;  // -1 if there is none
 };
 
 // Errors: INVALID_ARGUMENT "source:line: ... came ..., wanted ..."; bones that are no tree below
 //         the root.
 absl::StatusOr<AsfSkeleton> ParseAsf(absl::string_view text, absl::string_view source);
 
-// The rotation whose turns about these axes apply one after the other, the first one first.
+// The product of rotations about these axes, of which the first applies first.
 //
 // angles: [axes], radians
 retargeting::Quaternion TurnInOrder(const std::vector<AsfFreedom>& axes,

@@ -9,8 +9,9 @@
 
 namespace duet::formats::bvh {
 
-// A rig of another format's file as a BVH: its names, hierarchy and bone lengths, y up, in units of
-// `metres_per_unit`. Joints have the channels Zrotation, Xrotation and Yrotation; roots also move.
+// Converts the rig of another format to BVH: keeps its names, hierarchy and bone lengths, y up, in
+// units of `metres_per_unit`. Joints have the channels Zrotation, Xrotation and Yrotation; roots
+// also have position channels.
 //
 // Shapes: poses [frames >= 1], of the rig's joints.
 BvhDocument ToBvh(const retargeting::CharacterRig& rig,

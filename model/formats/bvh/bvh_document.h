@@ -30,7 +30,7 @@ struct BvhJoint {
   bool end_site = false;
 };
 
-// A BVH file as it stands: the hierarchy in the file's order and every channel of every frame.
+// The content of a BVH file: the hierarchy in the file's order and every channel of every frame.
 //
 // Units: lengths in the file's own unit, angles in degrees.
 struct BvhDocument {
@@ -42,35 +42,35 @@ struct BvhDocument {
   int ChannelCount() const;
 };
 
-// Reads any hierarchy with any channels in any order; several ROOTs are allowed.
+// Parses any hierarchy with any channels in any order. Several ROOTs are allowed.
 // Errors: INVALID_ARGUMENT "source:line: ... came ..., wanted ...".
 absl::StatusOr<BvhDocument> ParseBvh(absl::string_view text, absl::string_view source);
 
-// Writes what ParseBvh reads. The document's joints come depth first, as ParseBvh gives them.
+// The inverse of ParseBvh. Requires joints in depth-first order, as ParseBvh returns them.
 std::string FormatBvh(const BvhDocument& document);
 
-// What the position channels of joints below the root say. Both kinds are written, and a file is of
-// one kind throughout.
+// The meaning of position channels of joints below the root. Programs write both kinds; a file uses
+// only one.
 enum class PositionChannels {
-  kReplaceOffset,  // the joint's place from its parent
-  kAddToOffset,    // how far from OFFSET it is
+  kReplaceOffset,  // the joint's offset from its parent
+  kAddToOffset,    // its difference from OFFSET
 };
 
-// How one file's position channels are to be read, from all of its joints and frames: bones hardly
-// change their length, so values that stay at OFFSET replace it and values that stay at zero add to
-// it. Each joint has one vote, from -1 to 1; a pelvis below a root that stands still moves freely
-// and says little. kReplaceOffset where nothing speaks for either. Absent where both come to the
-// same: no joint below a root has position channels and an OFFSET.
+// Infers the meaning of a file's position channels from all joints and frames: bones hardly change
+// their length, so values near OFFSET replace it and values near zero add to it. Each joint has one
+// vote from -1 to 1. A pelvis that moves freely below a fixed root has a vote near 0. Returns
+// kReplaceOffset if the votes are even. Absent if both mean the same: no joint below a root has
+// position channels and an OFFSET.
 std::optional<PositionChannels> FindPositionChannels(const BvhDocument& document);
 
-// Joint positions of one frame through forward kinematics, in the file's unit. [joints]
+// Computes the joint positions of a frame by forward kinematics, in the file's unit. [joints]
 //
-// The rotations of a joint apply in the order in which its channels are written, the first one
-// outermost. A root's position channels stand in place of OFFSET, those of the other joints as
-// FindPositionChannels has it.
+// The rotations of a joint apply in the order of its channels, with the first one outermost. A
+// root's position channels replace OFFSET; FindPositionChannels determines the meaning of the
+// others.
 class BvhKinematics {
  public:
-  // `document` outlives the kinematics.
+  // `document` must outlive the kinematics.
   explicit BvhKinematics(const BvhDocument& document);
   std::vector<retargeting::Vec3d> Positions(int frame) const;
 

@@ -9,14 +9,15 @@
 
 namespace duet::formats::bvh {
 
-// One person as joint angles: units of `metres_per_unit` (0.01: centimetres, as animation tools
-// take BVH to be), y up, in the clip's world, the rest pose of MakeRig. The root has six channels,
-// every other joint three; rotations apply as Rz Rx Ry; angles are continuous from frame to frame.
-// Positions are kept exactly where bone lengths are constant; elsewhere a joint is off by as much
-// as the bones on its way from the root differ from their medians.
+// Converts one person to joint angles in units of `metres_per_unit` (0.01: centimetres, which
+// animation tools assume), y up, in the clip's world, with the rest pose of MakeRig. The root has
+// six channels, every other joint three. Rotations apply as Rz Rx Ry. Angles are continuous from
+// frame to frame. If bone lengths are constant, positions are exact; otherwise a joint is off by
+// the sum of the differences between the bones from the root to the joint and their medians.
 //
-// Errors: INVALID_ARGUMENT when the clip's joints are not the skeleton's, it has no frame, its rate
-//         is no rate or a position is not finite.
+// Errors: INVALID_ARGUMENT if the clip's joints are not the skeleton's, it has no frame, its frame
+// rate
+//         is out of range or a position is not finite.
 absl::StatusOr<BvhDocument> ToBvh(const motion::Clip& clip, const motion::Skeleton& skeleton,
                                   double metres_per_unit = 0.01, const BvhKeys& keys = {});
 

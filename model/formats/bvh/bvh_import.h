@@ -10,15 +10,14 @@
 namespace duet::formats::bvh {
 
 struct BvhImportOptions : retargeting::CharacterOptions {
-  // Which ROOT, in a file with several.
+  // The index of the ROOT, in a file with several.
   int person = 0;
 };
 
-// Joint angles through forward kinematics to the skeleton's joint positions. A frame time that is a
-// whole rate but for its rounding (0.0333333) counts as that rate.
+// Converts joint angles to the skeleton's joint positions by forward kinematics. A frame time that
+// is a rounded reciprocal of an integer rate (0.0333333) is read as that rate.
 //
-// Errors: INVALID_ARGUMENT naming `source`: joints that cannot be mapped, a person of no possible
-//         size.
+// Errors: INVALID_ARGUMENT naming `source` if joints cannot be mapped or the person has no size.
 absl::StatusOr<motion::Clip> FromBvh(const BvhDocument& document, absl::string_view source,
                                      const BvhImportOptions& options = {});
 

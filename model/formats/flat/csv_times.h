@@ -8,14 +8,14 @@
 
 namespace duet::formats::flat {
 
-// The rate of the times that frames were taken at, as a column of seconds has them.
+// Infers the frame rate from a column of times in seconds.
 class CsvTimes {
  public:
-  // Of the next frame.
+  // Adds the time of the next frame.
   void Add(absl::string_view text);
 
-  // Hz; 0 where the times are no even steps in seconds. The nearest usual rate, or else a whole
-  // one, counts as such within the times' own rounding.
+  // The rate in Hz; 0 if the times are not even steps. Within the rounding of the times, the rate
+  // snaps to the nearest usual one, or else to an integer.
   double FrameRate() const;
 
  private:

@@ -18,15 +18,16 @@ namespace duet::formats::flat {
 //    "joint_names": ["head", ...], "bones": [[1, 0], ...],
 //    "leader": [[[x, y, z], ... joints], ... frames], "follower": [...]}
 //
-// Reading: joint_names and leader are required, follower is optional, the rest as in CSV; unknown
-// fields are passed over. bones (parent, child as indices into joint_names) are for other programs.
+// To read it, joint_names and leader are required and follower is optional. The other fields have
+// the same defaults as in CSV. Unknown fields are ignored. bones (parent and child as indices into
+// joint_names) are for other programs.
 //
-// Errors: INVALID_ARGUMENT naming `source`, the field, what came and what was wanted.
+// Errors: INVALID_ARGUMENT naming `source`, the field, the expected value and the actual one.
 absl::StatusOr<motion::RecordedMotion> ParseJsonMotion(absl::string_view text,
                                                        absl::string_view source);
 
-// Metres, y up. The pair is as CheckPair wants it, one person (without a follower) as CheckClip
-// does, with the skeleton's joints.
+// Writes metres, y up. Requires a pair that CheckPair accepts, or one person that CheckClip
+// accepts, with the skeleton's joints.
 std::string FormatJsonMotion(const motion::ClipPair& pair, const motion::Skeleton& skeleton);
 std::string FormatJsonMotion(const motion::Clip& person, const motion::Skeleton& skeleton);
 

@@ -11,17 +11,17 @@
 
 namespace duet::formats::flat {
 
-// NumPy's array file: float32 or float64, little-endian, C order, [frames, joints, 3] or
-// [people, frames, joints, 3] with one or two people. It names no joints and no frame rate: the
-// joints are `joint_names` in their order, the rate comes out as 0.
+// Parses NumPy's array file: float32 or float64, little-endian, C order, [frames, joints, 3] or
+// [people, frames, joints, 3] with one or two people. The file holds neither joint names nor a
+// frame rate: the joints are `joint_names` in their order, and the returned rate is 0.
 //
 // Source: the .npy format, versions 1.0 to 3.0 (numpy.lib.format).
-// Errors: INVALID_ARGUMENT naming `source`, what came and what was wanted.
+// Errors: INVALID_ARGUMENT naming `source`, the expected value and the actual one.
 absl::StatusOr<motion::RecordedMotion> ParseNpy(absl::string_view bytes, absl::string_view source,
                                                 const std::vector<std::string>& joint_names);
 
-// float32 [2, frames, joints, 3], leader first; of one person [frames, joints, 3]. The pair is as
-// CheckPair wants it, one person as CheckClip does.
+// Writes float32 [2, frames, joints, 3], leader first, or [frames, joints, 3] for one person.
+// Requires a pair that CheckPair accepts, or one person that CheckClip accepts.
 std::string FormatNpy(const motion::ClipPair& pair);
 std::string FormatNpy(const motion::Clip& person);
 

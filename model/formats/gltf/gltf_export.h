@@ -16,13 +16,13 @@ enum class GltfContainer {
   kText     // .gltf, with its buffer as base64 inside
 };
 
-// One person or a leader and a follower as skinned mannequins with a skeleton each and one
-// animation of all: metres, y up, in the clips' world, everybody at rest in the T pose of MakeRig
-// with the feet on the floor at the origin. Joints are nodes of the skeleton's names. Every joint
-// stands exactly where its clip has it: bones turn, and those whose length changes also move. What
-// `provenance` says is in the scene's extras; it may be null.
+// Writes one person, or a leader and a follower, as skinned mannequins. Each has a skeleton; all
+// share one animation. Units are metres, y up, in the clips' world. The rest pose is the T pose of
+// MakeRig with the feet on the floor at the origin. Joints are nodes with the skeleton's names.
+// Every joint is exactly at its position in the clip: bones rotate, and those whose length changes
+// are also translated. The scene's extras hold `provenance`, which may be null.
 //
-// Errors: INVALID_ARGUMENT when there are not one or two people, their joints are not the
+// Errors: INVALID_ARGUMENT if there are not one or two people, their joints are not the
 //         skeleton's, they differ in frames or rate, or a position is not finite.
 absl::StatusOr<std::string> FormatGltf(const std::vector<motion::Clip>& people,
                                        const motion::Skeleton& skeleton,

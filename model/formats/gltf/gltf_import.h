@@ -14,21 +14,23 @@
 namespace duet::formats::gltf {
 
 struct GltfImportOptions : retargeting::CharacterOptions {
-  // Which character, in a file with several: skins that share joints are one. Where there are no
-  // skins, each tree of animated nodes is one.
+  // The index of the character, in a file with several. Skins that share joints are one character.
+  // Without skins, each tree of animated nodes is one.
   int person = 0;
-  // Absent: as close as the keys are, 30 where they are farther apart than at 15.
+  // If absent, the rate of the keys, or 30 Hz if they are farther apart than at 15 Hz.
   std::optional<double> frame_rate_hz;
-  // Receives the nodes that the character's joints are, in the order of its tree; may be null. Who
-  // asks for them is after the rig: a character that nothing moves will do, and stands at rest.
+  // Receives the nodes of the character's joints, in the order of its tree; may be null. If it is
+  // set, only the rig is needed, and a character without an animation is accepted in its rest pose.
   std::vector<int>* nodes = nullptr;
 };
 
-// An animated skeleton through forward kinematics to the skeleton's joint positions: the first
-// animation that moves the character, sampled at an even rate from its first key to its last.
+// Converts an animated skeleton to the skeleton's joint positions by forward kinematics. Uses the
+// first animation that moves the character, sampled at a constant rate from its first key to its
+// last.
 //
-// Errors: INVALID_ARGUMENT naming `source`: no skeleton, nothing that moves it, values out of
-//         place, more frames than a motion may have, and what retargeting::ToClip refuses.
+// Errors: INVALID_ARGUMENT naming `source` if there is no skeleton or no animation of it, for
+// invalid
+//         values and too many frames; those of retargeting::ToClip.
 absl::StatusOr<motion::Clip> FromGltf(const GltfDocument& document, absl::string_view source,
                                       const GltfFileReader& read_file,
                                       const GltfImportOptions& options = {});

@@ -13,14 +13,15 @@
 
 namespace duet::formats::gltf {
 
-// A clip of motion::SbuSkeleton's joints on a character of a glTF file: all of the file stays
-// (nodes, rest pose, skins, meshes, materials) but its animations and their data, in whose place
-// one moves the character (retargeting::TransferToRig). Buffers of files beside it are taken in;
-// pictures beside it are not.
+// Writes a clip of motion::SbuSkeleton's joints onto a character of a glTF file. The nodes, rest
+// pose, skins, meshes and materials of the file are kept. One new animation of the character
+// (retargeting::TransferToRig) replaces its animations and their data. Buffers in other files are
+// embedded; images in other files are not.
 //
-// `content` is the file, .gltf or .glb; `options` say how it is read and which character is taken.
-// Errors: INVALID_ARGUMENT naming `source` for a file that FromGltf does not read or a rig that
-//         TransferToRig refuses; what `read_file` says.
+// `content` is the file, .gltf or .glb; `options` select the character and how to read it.
+// Errors: INVALID_ARGUMENT naming `source` for a file that FromGltf rejects or a rig that
+// TransferToRig
+//         rejects; those of `read_file`.
 absl::StatusOr<std::string> OntoGltfRig(const motion::Clip& clip, absl::string_view content,
                                         absl::string_view source, const GltfFileReader& read_file,
                                         const GltfImportOptions& options, GltfContainer container);

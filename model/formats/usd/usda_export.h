@@ -11,11 +11,11 @@
 
 namespace duet::formats::usd {
 
-// One person or a leader and a follower as text USD: skinned mannequins with a UsdSkel skeleton
-// each, metres, y up, in the clips' world, everybody at rest in the T pose of MakeRig with the feet
-// on the floor at the origin. A time code is a frame; its rate is the clip's. Every joint stands
-// exactly where its clip has it. What `provenance` says is in the customData of the prim above
-// both; it may be null.
+// Writes one person, or a leader and a follower, as text USD: skinned mannequins, each with a
+// UsdSkel skeleton, in metres, y up, in the clips' world. The rest pose is the T pose of MakeRig
+// with the feet on the floor at the origin. A time code is a frame, and its rate is the clip's.
+// Every joint is exactly at its position in the clip. The customData of the prim above both holds
+// `provenance`, which may be null.
 //
 //   /pair                        default prim; of one person /person_alone
 //     leader, follower           SkelRoot; of one person: person
@@ -24,7 +24,7 @@ namespace duet::formats::usd {
 //       mannequin, visor         meshes, every vertex with one joint
 //     materials                  UsdPreviewSurface
 //
-// Errors: INVALID_ARGUMENT when there are not one or two people, their joints are not the
+// Errors: INVALID_ARGUMENT if there are not one or two people, their joints are not the
 //         skeleton's, they differ in frames or rate, or a position is not finite.
 absl::StatusOr<std::string> FormatUsda(const std::vector<motion::Clip>& people,
                                        const motion::Skeleton& skeleton,
