@@ -7,10 +7,10 @@
 
 namespace duet::authoring {
 
-// A motion of one person written by hand as key poses, for samples and tests:
+// Parses a motion of one person from handwritten key poses, for samples and tests:
 //
-//   frame_rate 30           # optional, 30 when absent
-//   at 0                    # seconds; times rise, the last one ends the motion
+//   frame_rate 30           # optional; the default is 30
+//   at 0                    # seconds, increasing; the last time ends the motion
 //     torso 0 1.1 0         # metres: x to the left, y up, z forwards, floor at 0
 //     chest 0 5 0           # degrees: yaw left, pitch forwards, roll left
 //     left_foot 0.12 0.08 0 # the ankle
@@ -19,9 +19,8 @@ namespace duet::authoring {
 //     right_elbow 20             # degrees outwards from its natural place
 //
 // Tracks: torso, pelvis, chest, head, left_foot, right_foot, left_hand, right_hand (three values),
-// left_elbow, right_elbow, left_knee, right_knee (one). A track goes smoothly through its own keys
-// (MonotoneCubic) and needs none: without a key it stays as in a relaxed stand. '#' starts a
-// comment.
+// left_elbow, right_elbow, left_knee, right_knee (one). A track passes smoothly through its keys
+// (MonotoneCubic). A track without keys keeps the value of a relaxed stand. '#' starts a comment.
 //
 // Returns the joints of SbuSkeleton, facing +z. At most a minute.
 // Errors: INVALID_ARGUMENT "source:line: ... came ..., wanted ...".

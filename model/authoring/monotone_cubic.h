@@ -5,9 +5,9 @@
 
 namespace duet::authoring {
 
-// A value over time through keys: eases in and out of the first and last one, never leaves the
-// range of the two keys around it (a planted foot stays planted, a reach does not overshoot),
-// continuous velocity. Held before the first key and after the last.
+// Interpolates a value over time through keys. It starts and ends at rest, has a continuous
+// velocity, and never leaves the range of the two neighbouring keys (a planted foot stays planted,
+// a reach does not overshoot). It is constant before the first key and after the last.
 //
 // Source: Fritsch and Carlson 1980, with the harmonic mean of the neighbouring slopes.
 class MonotoneCubic {
@@ -16,7 +16,7 @@ class MonotoneCubic {
     double time = 0;
     double value = 0;
   };
-  // `keys`: at least one, times rising strictly.
+  // Requires at least one key, with strictly increasing times.
   explicit MonotoneCubic(std::vector<Key> keys);
   double At(double time) const;
 

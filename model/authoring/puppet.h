@@ -13,21 +13,20 @@ struct Lean {
   double yaw = 0, pitch = 0, roll = 0;
 };
 
-// One pose of a puppet as a hand would set it. Axes: x to its left, y up, z forwards; metres, the
+// One pose of a puppet, as set by hand. Axes: x to its left, y up, z forwards; metres, with the
 // floor at y = 0.
 struct PuppetPose {
   retargeting::Vec3d torso;
   Lean pelvis, chest, head;  // each from upright, facing +z
   struct Limb {
     retargeting::Vec3d target;  // feet: the ankle; hands: the wrist, from the neck
-    double swivel = 0;          // degrees that elbow or knee turns outwards from its natural place
+    double swivel = 0;          // outward rotation of elbow or knee from its natural place, degrees
   };
   Limb left_foot, right_foot, left_hand, right_hand;
 };
 
-// The joints of SbuSkeleton for a pose. Bones have the lengths of a grown person, always the same:
-// a target out of reach is approached as far as limbs go. Knees bend forwards, elbows backwards and
-// down. [15]
+// The joints of SbuSkeleton for a pose. Bones have the constant lengths of an adult. A limb
+// stretches towards a target out of reach. Knees bend forwards, elbows backwards and down. [15]
 std::vector<motion::Vec3> PosePuppet(const PuppetPose& pose);
 
 }  // namespace duet::authoring

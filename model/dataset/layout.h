@@ -13,17 +13,19 @@
 
 namespace duet::dataset {
 
-// An interaction class of a data set and how its files are told apart.
+// An interaction class of a data set, and the folder of its files.
 struct ClassLayout {
   std::string name;
   std::string folder;
-  bool symmetric = false;      // either person may lead
-  bool handed = false;         // done with one hand by custom: its mirror image does not happen
-  bool touches = false;        // bodies touch as they like
-  std::vector<int> effectors;  // joints whose motion tells the leader; empty: the index must
+  bool symmetric = false;  // either person may lead
+  bool handed = false;     // done with one hand by custom: its mirror image does not occur
+  bool touches = false;    // bodies may touch
+  std::vector<int>
+      effectors;  // joints of the motion rule; if empty, the index must name the leader
 };
 
-// What a data set's folder does not say itself: one value for each layout that ReadDataset knows.
+// The properties that a data set's files do not state. There is one value for each layout that
+// ReadDataset supports.
 struct DatasetLayout {
   std::string name;
   double frame_rate_hz = 0;
@@ -31,10 +33,10 @@ struct DatasetLayout {
   motion::Skeleton skeleton;
   std::vector<motion::BodyPart> parts;
   std::vector<ClassLayout> classes;
-  // The horizontal world axis that the setup stands its people along, in either order.
+  // The horizontal world axis along which people stand in this setup, in either order.
   std::optional<motion::Vec3> people_axis;
-  bool level = false;  // captured by a tilted camera: to be levelled
-  // What was found rather than said, for people to read.
+  bool level = false;  // captured by a tilted camera: ReadDataset levels it
+  // The inferred values, for people to read.
   std::vector<std::string> notes;
 };
 
@@ -47,13 +49,13 @@ bool IsSbuSet(std::string_view name);
 // K3HI in SBU's line layout. Rate and units are inferred, not documented by its authors.
 DatasetLayout K3hiLayout();
 
-// Parses the dataset.json of a data set of one's own (docs/datasets.md). Strict: unknown, missing
-// and mistyped fields, unknown joints and a skeleton that is no tree are INVALID_ARGUMENT, naming
-// the field, what came and what was wanted. `text` may come from anywhere.
+// Parses the dataset.json of your own data set (docs/datasets.md). `text` is untrusted. Unknown,
+// missing and mistyped fields, unknown joints and a skeleton that is not a tree are
+// INVALID_ARGUMENT, naming the field, the expected value and the actual one.
 absl::StatusOr<DatasetLayout> ParseDatasetLayout(std::string_view text);
 
-// Whether `text` is the dataset.json of a set that `duet batch` made (dataset.proto): no layout;
-// its files are told apart as those of SBU and K3HI.
+// Whether `text` is the dataset.json of a set that `duet batch` made (dataset.proto). That is not a
+// layout: the folders of such a set are recognised like those of SBU and K3HI.
 bool DescribesBatch(std::string_view text);
 
 }  // namespace duet::dataset

@@ -5,8 +5,8 @@
 
 namespace duet::dataset {
 
-// The horizontal direction from leader to follower, of any length: what the capture's setup tells,
-// or else from root to root in the first frame.
+// The horizontal direction from leader to follower, of any length: that of the capture's setup if
+// it defines one, otherwise from root to root in the first frame.
 motion::Vec3 PartnerDirection(const motion::Skeleton& skeleton, const Sequence& sequence);
 
 }  // namespace duet::dataset

@@ -7,39 +7,40 @@
 #include "model/motion/skeleton.h"
 #include "model/motion/vec3.h"
 
-// How people stand: which way is up for them, and where their feet are. Both tell a tilted camera.
+// Measures how people stand: their upward direction and the height of their feet. Both reveal a
+// tilted camera.
 //
 // Units: world metres, y up.
 
 namespace duet::dataset {
 
-// From the middle of the feet to the neck, of length 1, in every frame; to the root where the
-// skeleton has no joint "neck". Frames without such a direction (both in one place) are left out.
-// None for a skeleton without feet.
+// The direction of length 1 from the middle of the feet to the neck, in every frame; to the root if
+// the skeleton has no joint "neck". Omits frames in which the two coincide. Empty for a skeleton
+// without feet.
 std::vector<motion::Vec3> StandingDirections(const motion::Skeleton& skeleton,
                                              const motion::Poses& poses);
 
-// The lower foot of every frame; none for a skeleton without feet.
+// The lower foot of every frame; empty for a skeleton without feet.
 std::vector<motion::Vec3> LowerFeet(const motion::Skeleton& skeleton, const motion::Poses& poses);
 
-// A mean that far points hardly move: those farther from it than twice the median distance count
-// in proportion less (Huber's weights). The origin for none.
+// A mean that is robust to outliers: points farther from it than twice the median distance have
+// proportionally smaller weights (Huber). The origin if there are no points.
 motion::Vec3 RobustMean(const std::vector<motion::Vec3>& points);
 
-// How far a direction leans from +y towards +x and towards +z. Unit: degrees.
+// The lean of a direction from +y towards +x and towards +z. Unit: degrees.
 struct Lean {
   double x = 0;
   double z = 0;
 };
 Lean LeanOf(motion::Vec3 up);
-// Of the mean of directions.
+// The lean of the mean of directions.
 Lean MeanLean(const std::vector<motion::Vec3>& directions);
 
-// The slopes of the plane y = a x + b z + c through points, by least squares with Huber's weights.
-// As a lean of the plane's normal, in degrees. {0, 0} where the points do not tell a plane.
+// Fits the plane y = a x + b z + c to points by least squares with Huber's weights, and returns the
+// lean of its normal in degrees. {0, 0} if the points do not define a plane.
 Lean FloorLean(const std::vector<motion::Vec3>& points);
 
-// The height that a share (0 to 1) of the points is below. Requires a point.
+// The quantile `share` (0 to 1) of the points' heights. Requires at least one point.
 float HeightQuantile(const std::vector<motion::Vec3>& points, double share);
 
 }  // namespace duet::dataset

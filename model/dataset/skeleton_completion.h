@@ -9,12 +9,12 @@
 
 namespace duet::dataset {
 
-// A "skeleton" object whose author left out `parts`: with the parts, and whichever of root, hips
-// and feet are left out as well, found from its bones and its joints' names
-// (retargeting/anatomy.h). The root is the joint that no bone leads to. What was assumed goes to
-// `notes`, a line each. An object with `parts` comes back as it is; one whose joints and bones
-// cannot be read does so with no parts, for motion::ReadSkeleton to say what is wrong with it.
-// Errors: INVALID_ARGUMENT naming what could not be found, and the fields that say it.
+// Completes a "skeleton" object without `parts`: adds the parts, and the root, hips and feet that
+// are missing, from its bones and joint names (retargeting/anatomy.h). The root is the joint to
+// which no bone leads. `notes` receives one line for each assumption. An object with `parts` is
+// returned unchanged. If joints or bones cannot be read, the result has no parts, and
+// motion::ReadSkeleton reports the error. Errors: INVALID_ARGUMENT naming the missing item and the
+// fields that specify it.
 absl::StatusOr<nlohmann::json> CompleteSkeleton(nlohmann::json skeleton,
                                                 std::vector<std::string>* notes);
 

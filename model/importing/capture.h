@@ -15,7 +15,7 @@
 
 namespace duet::importing {
 
-// A pair as it was read.
+// A pair that has been read.
 struct Capture {
   PairFiles files;
   motion::Clip first;  // of the data set's joints
@@ -39,12 +39,12 @@ struct CaptureOptions {
 absl::StatusOr<Capture> ReadCapture(const std::filesystem::path& folder, const PairFiles& files,
                                     const CaptureOptions& options);
 
-// Brings both people to one rate, and the longer one to the other's length. Returns by how many
-// seconds they differed.
+// Resamples both people to one rate and truncates the longer one. Returns their difference in
+// length, seconds.
 double Align(double rate_hz, Capture* capture);
 
-// Whether they are two people in one place, in metres, y up: legs of a person's length, people
-// apart but not out of each other's reach.
+// INVALID_ARGUMENT unless these can be two people in one place, in metres, y up: with legs of a
+// person's length, and at a plausible distance from each other.
 absl::Status CheckPlausible(const Capture& capture, const motion::Skeleton& skeleton);
 
 // Cuts a capture into equal pieces of at most `longest` frames.

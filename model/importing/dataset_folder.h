@@ -12,20 +12,20 @@
 
 namespace duet::importing {
 
-// A sequence as it goes into a data set.
+// A sequence to be written to a data set.
 struct ImportedSequence {
   Capture capture;  // metres, y up
   dataset::LeaderSide leader_side = dataset::LeaderSide::kUnknown;
   std::string leader_source;
 };
 
-// Whether WriteDataset would find `out` free: nothing there, an empty folder, or a data set where
-// it may overwrite. ALREADY_EXISTS otherwise.
+// Checks that WriteDataset may write `out`: it does not exist, is an empty folder, or is a data set
+// and `overwrite` is set. ALREADY_EXISTS otherwise.
 absl::Status CheckOut(const std::filesystem::path& out, bool overwrite);
 
-// Writes a data set as ParseDatasetLayout and ParseIndex read it, whole or not at all: beside its
-// place, read back, then moved there. `layout` has metres, y up. Whatever CheckOut lets pass is
-// replaced.
+// Writes a data set that ParseDatasetLayout and ParseIndex read. The write is atomic: the data set
+// is written next to `out`, read back, and then moved there. Replaces anything that CheckOut
+// accepts. Requires a layout in metres, y up.
 absl::Status WriteDataset(const std::filesystem::path& out, const dataset::DatasetLayout& layout,
                           const std::vector<ImportedSequence>& sequences);
 

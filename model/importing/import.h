@@ -15,28 +15,28 @@
 
 namespace duet::importing {
 
-// Where a data set comes from and what its maker knows better than its files.
+// The source of a data set, and settings that override its files.
 struct ImportOptions {
   std::filesystem::path from;   // a folder of motion files
   std::filesystem::path out;    // the data set
-  std::string name;             // of the data set; empty: the folder's
-  std::filesystem::path table;  // who is paired with whom; empty: pairs.tsv in `from`, or names
+  std::string name;             // of the data set; if empty, the folder's
+  std::filesystem::path table;  // of pairs; if empty, pairs.tsv in `from`, or file names
   SkeletonOptions skeleton;
   retargeting::JointOverrides joint_overrides;
-  std::optional<double> frame_rate_hz;  // replaces what the files say
-  std::optional<double> to_rate_hz;     // of the data set; absent: as found, 30 at most
+  std::optional<double> frame_rate_hz;  // overrides the files' own
+  std::optional<double> to_rate_hz;     // of the data set; if absent, the files', at most 30
   std::optional<double> metres_per_unit;
   std::optional<motion::UpAxis> up_axis;
   double longest_seconds = 10;  // longer pairs are cut into equal pieces
   // Properties of classes, by label.
   std::vector<std::string> symmetric, handed, touches;
   std::map<std::string, std::vector<std::string>> effectors;  // joints of the data set
-  std::optional<bool> level;                                  // absent: where people lean or float
-  bool skip_refused = false;  // go on without pairs that cannot be used
-  bool overwrite = false;     // replace a data set that is at `out`
+  std::optional<bool> level;                                  // if absent, if people lean or float
+  bool skip_refused = false;                                  // continue without unusable pairs
+  bool overwrite = false;                                     // replace a data set at `out`
 };
 
-// Something that the files left open, what was made of it, and the flag that changes it.
+// A value that the files do not state, the inferred value, and the flag that overrides it.
 struct Assumption {
   std::string what;
   std::string value;
@@ -47,17 +47,17 @@ struct ImportReport {
   std::vector<Assumption> assumptions;
   std::vector<Refusal> refused;
   int pairs = 0;      // used
-  int sequences = 0;  // written; more than the pairs where some were cut
+  int sequences = 0;  // written; more than the pairs if some were cut
 };
 
-// Turns a folder of motion files of two people into a data set (docs/datasets.md): dataset.json,
-// <class>/<name>.txt, index.tsv. It is written beside its place and moved there once it reads back;
-// what was there is kept until then.
+// Converts a folder of motion files of two people to a data set (docs/datasets.md): dataset.json,
+// <class>/<name>.txt, index.tsv. The data set is written next to `out`, read back, and then moved
+// there. An existing one is kept until then.
 //
-// `report` is filled as far as things went, also on failure.
-// Errors: INVALID_ARGUMENT for pairs that are refused (unless skip_refused) and for anything that
-// cannot be found in the files, naming the flag that says it; ALREADY_EXISTS when `out` holds
-// something and overwrite is off, or something that is no data set.
+// `report` holds everything up to a failure.
+// Errors: INVALID_ARGUMENT for rejected pairs (unless skip_refused) and for values that cannot be
+// inferred, naming the flag that specifies them; ALREADY_EXISTS if `out` is not empty and overwrite
+// is off, or if it is not a data set.
 absl::Status Import(const ImportOptions& options, ImportReport* report);
 
 }  // namespace duet::importing

@@ -9,18 +9,18 @@
 
 namespace duet::importing {
 
-// Two people's motion, found but not read.
+// The files of two people, not yet read.
 struct PairFiles {
   std::string label;   // the interaction class: lower case, words joined by '_'
   std::string name;    // of the sequence within its class
   std::string first;   // the file of one person, below the folder of captures
   std::string second;  // of the other; the same file where one holds both
-  // "name" or "table" where that says that `first` leads; empty where nothing does.
+  // "name" or "table", whichever states that `first` leads; empty if neither does.
   std::string leader_source;
-  std::vector<std::string> subjects;  // leader's first, where the table says
+  std::vector<std::string> subjects;  // the leader's first, if the table has them
 };
 
-// A pair that is left out, and why.
+// A rejected pair, and the reason.
 struct Refusal {
   std::string name;
   std::string reason;
@@ -33,25 +33,26 @@ struct Pairing {
 
 // Pairs files (paths below one folder, with '/') by their names:
 //
-//   kick_01_a.bvh, kick_01_b.bvh            the last word tells whose it is
+//   kick_01_a.bvh, kick_01_b.bvh            the last word denotes the person
 //   kick/01.leader.csv, kick/01.follower.csv
 //   kick/01/leader.bvh, kick/01/follower.bvh
 //   kick/01.npy                             no such word: both people in one file
 //
-// Words, in either case and after '_', '-', '.' or a blank: leader and follower, which tell who
-// leads; a and b, p1 and p2, person1 and person2, actor1 and actor2, first and second, left and
-// right, which do not. The label is the first folder's name, or that of a file which lies in none,
-// without the number at its end.
+// These words, in either case and after '_', '-', '.' or a space, denote a person: leader and
+// follower, which state who leads; a and b, p1 and p2, person1 and person2, actor1 and actor2,
+// first and second, left and right, which do not. The label is the name of the first folder, or of
+// a file in no folder, without the number at its end.
 Pairing PairByName(const std::vector<std::string>& files);
 
-// The same by a table: a header, then a pair a line, separated by tabs. Columns `leader`,
-// `follower` (empty: the leader's file holds both) and `label`; `subjects` (names separated by
-// commas) may be there, others are left alone. A file that `files` does not have is refused.
+// Pairs files by a tab-separated table: a header, then one pair per line. The columns `leader`,
+// `follower` (empty if the leader's file holds both) and `label` are required, `subjects` (names
+// separated by commas) is optional, and others are ignored. A pair with a file not in `files` is
+// rejected.
 // Errors: INVALID_ARGUMENT "source:line: ... came ..., wanted ...".
 absl::StatusOr<Pairing> PairByTable(absl::string_view table, absl::string_view source,
                                     const std::vector<std::string>& files);
 
-// A class's name: lower case, everything but letters and digits as one '_'.
+// A class's name: in lower case, with '_' for each run of other characters than letters and digits.
 std::string ToLabel(absl::string_view text);
 
 }  // namespace duet::importing

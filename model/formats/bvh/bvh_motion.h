@@ -9,11 +9,11 @@
 #include "model/retargeting/euler.h"
 #include "model/retargeting/rotation.h"
 
-// Turns and places of joints as the channels of a BVH have them.
+// Converts rotations and positions of joints to the channels of a BVH.
 
 namespace duet::formats::bvh {
 
-// How a joint moves: what its rotation and position channels say. Empty where it has none of them.
+// The motion of a joint: the values of its rotation and position channels; empty if it has none.
 struct BvhTrack {
   std::vector<retargeting::Quaternion> turns;  // [frames], in the parent's axes
   std::vector<retargeting::Vec3d> places;      // [frames], in the file's unit
@@ -22,22 +22,22 @@ struct BvhTrack {
 inline constexpr int kMostKeysPerFrame = 16;
 
 struct BvhKeys {
-  // Keys written for each frame of the motion, 1 to kMostKeysPerFrame: the file's rate is that many
-  // times the motion's. Between frames joints turn evenly, the shortest way.
+  // Keys per frame of the motion, 1 to kMostKeysPerFrame. The file's rate is this multiple of the
+  // motion's. Between frames joints rotate at constant speed along the shortest arc.
   int per_frame = 1;
-  // Receives what is worth telling: a joint near gimbal lock that programs which draw straight
-  // lines between angles show elsewhere, and how many keys a frame would do. May be null.
+  // Receives a note if linear interpolation of angles is visibly wrong for a joint near gimbal
+  // lock, with the number of keys per frame that prevents it. May be null.
   std::vector<std::string>* notes = nullptr;
 };
 
-// The order of a joint's three rotation channels; absent where they are not three about three axes.
+// The order of a joint's rotation channels; absent unless there are three, about three axes.
 std::optional<retargeting::EulerOrder> RotationOrder(const BvhJoint& joint);
 
-// Writes the motion into `document`: its frames, frame time and values. Angles are continuous (of
-// those that mean the same, each frame has the nearest to the last one's).
+// Writes the motion into `document`: its frames, frame time and values. Angles are continuous: of
+// all equivalent angles, each frame has those nearest to the previous frame's.
 //
-// Shapes: tracks [document->joints], alike in frames, one at least. Joints without a RotationOrder
-// stay at zero.
+// Shapes: tracks [document->joints], with the same number of frames, at least one. Joints without a
+// RotationOrder stay at zero.
 void WriteMotion(const std::vector<BvhTrack>& tracks, double frame_rate_hz, const BvhKeys& keys,
                  BvhDocument* document);
 

@@ -11,19 +11,19 @@
 
 namespace duet::formats::bvh {
 
-// A clip of motion::SbuSkeleton's joints on the rig of a BVH: its names, hierarchy, offsets,
-// channels with their orders, unit and up axis (retargeting::TransferToRig). Angles are continuous:
-// of the angles that mean the same, each frame has those nearest to the last one's.
+// Writes a clip of motion::SbuSkeleton's joints onto the rig of a BVH (retargeting::TransferToRig).
+// Its names, hierarchy, offsets, channels and their order, unit and up axis are kept. Angles are
+// continuous: of all equivalent angles, each frame has those nearest to the previous frame's.
 //
-// `options` say how the rig's file is read and whose rig is taken; `source` is how errors call it.
-// Errors: INVALID_ARGUMENT for a rig that FromBvh does not read or TransferToRig refuses, or a
-// joint that
-//         has to turn and has not three rotation channels.
+// `options` select the rig and how to read its file; `source` denotes it in messages.
+// Errors: INVALID_ARGUMENT for a rig that FromBvh or TransferToRig rejects, or a joint that must
+// rotate
+//         but has not three rotation channels.
 absl::StatusOr<BvhDocument> OntoBvhRig(const motion::Clip& clip, const BvhDocument& rig,
                                        absl::string_view source, const BvhImportOptions& options,
                                        const BvhKeys& keys = {});
 
-// The rig of a person of a BVH, for writing in another format. Errors: those of FromBvh.
+// The rig of a person of a BVH, to be written in another format. Errors: those of FromBvh.
 absl::StatusOr<retargeting::CharacterRig> BvhRig(const BvhDocument& document,
                                                  absl::string_view source,
                                                  const BvhImportOptions& options);

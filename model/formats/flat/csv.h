@@ -10,23 +10,22 @@
 
 namespace duet::formats::flat {
 
-// Positions by column, one row a frame, for scripts and spreadsheets:
+// Positions by column, one row per frame, for scripts and spreadsheets:
 //
 //   # duet motion: frame_rate_hz=30 unit=metres up_axis=y-up
 //   frame,leader.head_x,leader.head_y,leader.head_z,...,follower.head_x,...
 //   0,0.01,1.62,-0.3,...
 //
-// A file of one person has columns without `leader.` and `follower.`. Reading: comment lines start
-// with '#'; frame_rate_hz (or fps), unit and up_axis (motion/coordinates.h) count, other
-// words do not; columns may come in any order, an index is passed over. Read besides
-// (docs/formats.md has examples): columns of several levels as pandas writes them, a row for each
-// joint, semicolons or tabs. A column of even times in seconds gives the rate where no comment
-// does.
+// A file of one person has columns without `leader.` and `follower.`. Comment lines start with '#';
+// of their words, only frame_rate_hz (or fps), unit and up_axis (motion/coordinates.h) are read.
+// Columns may be in any order; an index column is ignored. The reader also accepts (docs/formats.md
+// has examples) columns of several levels as pandas writes them, a row for each joint, and
+// semicolons or tabs. A column of even times in seconds gives the rate if no comment does.
 //
 // Errors: INVALID_ARGUMENT "source:line:column: ... came ..., wanted ...".
 absl::StatusOr<motion::RecordedMotion> ParseCsv(absl::string_view text, absl::string_view source);
 
-// Metres, y up. The pair is as CheckPair wants it, one person as CheckClip does.
+// Writes metres, y up. Requires a pair that CheckPair accepts, or a person that CheckClip accepts.
 std::string FormatCsv(const motion::ClipPair& pair);
 std::string FormatCsv(const motion::Clip& person);
 

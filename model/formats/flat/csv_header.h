@@ -11,15 +11,15 @@
 
 namespace duet::formats::flat {
 
-// What stands in a column.
+// The content of a column.
 struct CsvColumn {
   enum class Kind {
     kPassedOver,  // a frame number, an index
     kPosition,    // one axis of a joint's position
     kTime,        // seconds
-    kFrame,       // which frame a row belongs to   } of a file
-    kPerson,      // whose joint a row belongs to   } with a row for each joint
-    kJoint,       // which joint a row belongs to   }
+    kFrame,       // the row's frame    } of a file
+    kPerson,      // the row's person   } with a row for each joint
+    kJoint,       // the row's joint    }
   };
   Kind kind = Kind::kPassedOver;
   int person = 0;  // kPosition
@@ -34,23 +34,24 @@ struct CsvHeader {
   bool row_for_each_joint = false;
 };
 
-// The fields of a row, without blanks and quotes around them; they last as long as the line. A
-// quoted field may hold delimiters.
+// The fields of a row, without surrounding white space and quotes. They point into the line. A
+// quoted field may contain delimiters.
 using CsvRow = std::vector<absl::string_view>;
 CsvRow SplitRow(absl::string_view line, char delimiter);
 
-// The first of comma, semicolon and tab that a header line has; a comma where it has none.
+// The first of comma, semicolon and tab in a header line; a comma if it has none.
 char FindDelimiter(absl::string_view line);
 
-// How many of the first rows name the columns: 1 (`head_x`); with columns of several levels 2
-// (`head` over `x`) or 3 (`leader` over `head` over `x`). `rows` holds at most the first three.
+// The number of header rows: 1 (`head_x`), or with columns of several levels 2 (`head` over `x`) or
+// 3
+// (`leader` over `head` over `x`). `rows` holds at most the first three.
 std::size_t CountHeaderRows(const std::vector<CsvRow>& rows);
 
-// What a row below several header rows says of the first column, where it is the name of that
-// index (`frame`, `time`) and nothing else.
+// The kind of the first column, if the row below several header rows holds only its name (`frame`,
+// `time`).
 std::optional<CsvColumn::Kind> ReadIndexName(const CsvRow& row);
 
-// `rows`: the header's, each of as many fields.
+// Requires header rows with the same number of fields.
 // Errors: INVALID_ARGUMENT "column 4: came ..., wanted ..." or what is missing.
 absl::StatusOr<CsvHeader> ReadHeader(const std::vector<CsvRow>& rows);
 

@@ -15,23 +15,23 @@
 
 namespace duet::formats::flat {
 
-// Makes motions of rows in any order, each of one joint in one frame.
+// Builds motions from rows in any order, each of one joint in one frame.
 //
-// Errors: INVALID_ARGUMENT, what came and what was wanted.
+// Errors: INVALID_ARGUMENT with the expected value and the actual one.
 class CsvJointRows {
  public:
   struct Row {
-    absl::string_view frame;   // by what the file calls it
-    absl::string_view person;  // empty: the file has one
+    absl::string_view frame;   // its name in the file
+    absl::string_view person;  // empty if the file has one person
     absl::string_view joint;
     motion::Vec3 position;
   };
 
-  // Whether the row's frame is a new one.
+  // Returns whether the row's frame is new.
   absl::StatusOr<bool> Add(const Row& row);
 
-  // One person or two, the one that came first the leader; no rate yet. Wants every joint of either
-  // once in every frame.
+  // One or two people, without a frame rate. The person of the first row is the leader. Fails
+  // unless each joint of each person occurs once in every frame.
   absl::StatusOr<std::vector<motion::Clip>> Collect() const;
 
  private:
