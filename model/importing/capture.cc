@@ -92,12 +92,12 @@ absl::StatusOr<Capture> ReadCapture(const fs::path& folder, const PairFiles& fil
     return absl::InvalidArgumentError(
         one_file ? "holds one person, wanted both in it, or a file for each whose names end in _a "
                    "and _b (or _leader and _follower)"
-                 : "both files hold the same motion, wanted one for each person");
+                 : "expected one motion for each person, got the same one in both files");
   }
   const int frames = std::min(first->frame_count(), second->frame_count());
   if (frames < kFewestFrames) {
     return absl::InvalidArgumentError(
-        absl::StrCat("came ", frames, " frame, wanted at least ", kFewestFrames));
+        absl::StrCat("frames: expected at least ", kFewestFrames, ", got ", frames));
   }
   return Capture{files, *std::move(first), *std::move(second)};
 }

@@ -109,7 +109,7 @@ absl::StatusOr<int> FindRoot(const std::vector<std::string>& names, const std::s
   }
   return absl::InvalidArgumentError(
       absl::StrCat(source, ": no joint is called hips, pelvis, torso or spine; the file has ",
-                   absl::StrJoin(names, ", "), "; say which is the root with --root NAME"));
+                   absl::StrJoin(names, ", "), "; specify the root with --root NAME"));
 }
 
 absl::StatusOr<motion::Skeleton> NamedSkeleton(const motion::RecordedMotion& motion,
@@ -141,8 +141,8 @@ absl::StatusOr<motion::Skeleton> ReadCaptured(const fs::path& file, const std::s
   if (!text.ok()) return text.status();
   if (extension == ".bvh") return BvhSkeleton(*text, file.string());
   if (extension != ".csv" && extension != ".json") {
-    return absl::InvalidArgumentError(absl::StrCat(
-        file.string(), ": its kind of file tells no skeleton; say it with --skeleton"));
+    return absl::InvalidArgumentError(
+        absl::StrCat(file.string(), ": this format has no skeleton; specify --skeleton"));
   }
   const absl::StatusOr<motion::RecordedMotion> motion =
       extension == ".csv" ? formats::flat::ParseCsv(*text, file.string())
@@ -155,9 +155,9 @@ absl::StatusOr<motion::Skeleton> ReadCaptured(const fs::path& file, const std::s
 absl::Status MoveRoot(const std::string& name, motion::Skeleton* skeleton) {
   const int root = skeleton->Find(name);
   if (root < 0) {
-    return absl::InvalidArgumentError(absl::StrCat("--root: came ", base::Quoted(name),
-                                                   ", wanted one of ",
-                                                   absl::StrJoin(skeleton->joint_names, ", ")));
+    return absl::InvalidArgumentError(absl::StrCat("--root: expected one of ",
+                                                   absl::StrJoin(skeleton->joint_names, ", "),
+                                                   ", got ", base::Quoted(name)));
   }
   const std::vector<int> parents = skeleton->Parents();
   for (int at = root; parents[static_cast<std::size_t>(at)] >= 0;
@@ -222,7 +222,7 @@ absl::StatusOr<CaptureSkeleton> Complete(motion::Skeleton skeleton, const std::s
                                          bool all_joints) {
   const auto in_file = [&](const absl::Status& status) {
     return absl::InvalidArgumentError(
-        absl::StrCat(source, ": ", status.message(), "; say the skeleton with --skeleton"));
+        absl::StrCat(source, ": ", status.message(), "; specify --skeleton"));
   };
   if (const absl::Status valid = Validate(skeleton); !valid.ok()) return in_file(valid);
   absl::StatusOr<retargeting::Anatomy> anatomy = retargeting::FindAnatomy(skeleton);

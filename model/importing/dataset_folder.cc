@@ -116,12 +116,12 @@ absl::Status CheckOut(const fs::path& out, bool overwrite) {
   std::error_code error;
   if (!fs::exists(out, error)) return absl::OkStatus();
   if (!fs::is_directory(out, error)) {
-    return absl::AlreadyExistsError(absl::StrCat(out.string(), ": is a file, wanted a folder"));
+    return absl::AlreadyExistsError(absl::StrCat(out.string(), ": expected a folder, got a file"));
   }
   if (fs::is_empty(out, error)) return absl::OkStatus();
   if (!fs::exists(out / "dataset.json", error)) {
-    return absl::AlreadyExistsError(
-        absl::StrCat(out.string(), ": holds files but no data set, wanted a new folder"));
+    return absl::AlreadyExistsError(absl::StrCat(
+        out.string(), ": expected a new folder or a data set, got a folder with other files"));
   }
   if (overwrite) return absl::OkStatus();
   return absl::AlreadyExistsError(

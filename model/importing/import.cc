@@ -113,7 +113,7 @@ class Importer {
     const std::string way = out.lexically_relative(from).generic_string();
     if (way != ".." && !absl::StartsWith(way, "../")) {
       return absl::InvalidArgumentError(
-          absl::StrCat("--out: ", options_.out.string(), " lies in --from, wanted another place"));
+          absl::StrCat("--out: expected a folder outside --from, got ", options_.out.string()));
     }
     return CheckOut(options_.out, options_.overwrite);
   }
@@ -292,7 +292,7 @@ class Importer {
     if (report_.refused.empty() || options_.skip_refused) return absl::OkStatus();
     return absl::InvalidArgumentError(
         absl::StrCat(report_.refused.size(), " refused and ", captures_.size(),
-                     " usable; nothing was written. Mend them, or go on without them with "
+                     " usable; nothing was written. Fix them, or omit them with "
                      "--skip-refused"));
   }
 
@@ -340,7 +340,7 @@ class Importer {
       labels.push_back(one.name);
     }
     return absl::InvalidArgumentError(absl::StrCat(
-        flag, ": came ", base::Quoted(label), ", wanted one of ", absl::StrJoin(labels, ", ")));
+        flag, ": expected one of ", absl::StrJoin(labels, ", "), ", got ", base::Quoted(label)));
   }
 
   template <typename Set>
@@ -362,9 +362,9 @@ class Importer {
       for (const std::string& joint : joints) {
         (*one)->effectors.push_back(skeleton_.skeleton.Find(joint));
         if ((*one)->effectors.back() >= 0) continue;
-        return absl::InvalidArgumentError(
-            absl::StrCat("--effectors: came joint ", base::Quoted(joint), ", wanted one of ",
-                         absl::StrJoin(skeleton_.skeleton.joint_names, ", ")));
+        return absl::InvalidArgumentError(absl::StrCat(
+            "--effectors: expected one of ", absl::StrJoin(skeleton_.skeleton.joint_names, ", "),
+            ", got ", base::Quoted(joint)));
       }
     }
     return absl::OkStatus();

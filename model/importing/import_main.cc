@@ -79,7 +79,7 @@ void Declare(ImportOptions* options, Words* words, CLI::App* app) {
 }
 
 absl::Status Wrong(const std::string& flag, const std::string& came, const std::string& wanted) {
-  return absl::InvalidArgumentError(absl::StrCat(flag, ": came ", came, ", wanted ", wanted));
+  return absl::InvalidArgumentError(absl::StrCat(flag, ": expected ", wanted, ", got ", came));
 }
 
 absl::Status Parse(const Words& words, ImportOptions* options) {

@@ -205,7 +205,7 @@ absl::StatusOr<Pairing> PairByTable(absl::string_view table, absl::string_view s
     if (cells.size() != columns.size()) {
       return base::ErrorAt(
           source, lines.number(),
-          absl::StrCat("came ", cells.size(), " columns, wanted ", columns.size()));
+          absl::StrCat("columns: expected ", columns.size(), ", got ", cells.size()));
     }
     PairFiles pair;
     pair.first = cells[columns["leader"]];
@@ -215,7 +215,7 @@ absl::StatusOr<Pairing> PairByTable(absl::string_view table, absl::string_view s
     NamePair(ParseName(pair.first), &pair);
     pair.label = ToLabel(cells[columns["label"]]);
     if (pair.label.empty()) {
-      return base::ErrorAt(source, lines.number(), "label: came none, wanted a class's name");
+      return base::ErrorAt(source, lines.number(), "label: expected the name of a class, got none");
     }
     if (columns.count("subjects") > 0) {
       for (absl::string_view subject : absl::StrSplit(cells[columns["subjects"]], ',')) {

@@ -102,9 +102,10 @@ TEST(PairByTableTest, NamesLineAndColumn) {
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("no column label")));
   EXPECT_THAT(
       refusal("leader\tfollower\tlabel\nx\tx\n"),
-      StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("t:2: came 2 columns, wanted 3")));
+      StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("t:2: columns: expected 3, got 2")));
   EXPECT_THAT(refusal("leader\tfollower\tlabel\nx\tx\t--\n"),
-              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("t:2: label: came none")));
+              StatusIs(absl::StatusCode::kInvalidArgument,
+                       HasSubstr("t:2: label: expected the name of a class, got none")));
 }
 
 }  // namespace
