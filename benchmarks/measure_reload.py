@@ -19,7 +19,7 @@ import tempfile
 import time
 
 SOURCE = pathlib.Path(__file__).resolve().parent.parent
-CHECKPOINTS = SOURCE / "model/checkpoints"
+CHECKPOINTS = SOURCE / "model/embedded"
 
 
 def publish(repository, name, change=0):

@@ -44,7 +44,7 @@ import grpc
 
 import measure_hostile as hostile
 
-CHECKPOINT = hostile.SOURCE / "model/checkpoints/sbu/1"
+CHECKPOINT = hostile.SOURCE / "model/embedded/sbu/1"
 LONG_DEADLINE = 600.0  # whoever waits so long was forgotten, however busy the machine is
 
 

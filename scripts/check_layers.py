@@ -51,7 +51,7 @@ LAYERS = (
     Layer("cleanup", "model/cleanup", sees=("base", "motion")),
     Layer("engine", "model/engine", sees=("base", "motion", "cleanup")),
     Layer("checkpoint", "model/checkpoint", sees=("base", "motion", "engine")),
-    Layer("embedded checkpoints", "model/checkpoints", sees=()),
+    Layer("embedded checkpoints", "model/embedded", sees=()),
     Layer("classifier", "model/classifier", sees=("base", "motion", "checkpoint")),
     Layer("cpu kernels", "model/cpu_engine/kernels", sees=(), libraries=("highway",)),
     Layer("cpu engine", "model/cpu_engine",
@@ -134,7 +134,7 @@ GUARDED_LIBRARIES = {
 
 SOURCE_FOLDERS = ("model", "server", "client")
 # Folders whose namespace is not their path.
-NAMESPACES = {"model/checkpoints": "duet::embedded", "client/mocks": "duet::client"}
+NAMESPACES = {"client/mocks": "duet::client"}
 NAMESPACE = re.compile(r"^namespace (duet[\w:]*) \{")
 INCLUDE = re.compile(r'^\s*#\s*include\s*["<]([^">]+)[">]')
 

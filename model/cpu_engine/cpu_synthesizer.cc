@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "model/checkpoints/embedded.h"
+#include "model/embedded/embedded.h"
 
 namespace duet::cpu_engine {
 

@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "model/checkpoints/embedded.h"
+#include "model/embedded/embedded.h"
 #include "model/network/exceptions.h"
 #include "model/network/threads.h"
 #include "model/torch_engine/torch_network.h"

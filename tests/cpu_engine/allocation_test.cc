@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <new>
 
-#include "model/checkpoints/embedded.h"
+#include "model/embedded/embedded.h"
 #include "model/cpu_engine/cpu_network.h"
 
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <atomic>
 
-#include "model/checkpoints/embedded.h"
+#include "model/embedded/embedded.h"
 #include "model/cpu_engine/cpu_network.h"
 
 namespace duet::cpu_engine {

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "model/base/random.h"
-#include "model/checkpoints/embedded.h"
+#include "model/embedded/embedded.h"
 #include "model/cpu_engine/cpu_network.h"
 #include "model/torch_engine/torch_network.h"
 #include "tests/cpu_engine/kernels/amx_test_fixture.h"

@@ -38,7 +38,7 @@ class Reloads:
 
     def __init__(self, folder):
         self.folder = pathlib.Path(folder) / "models"
-        shutil.copytree(tools.SOURCE / "model/checkpoints", self.folder,
+        shutil.copytree(tools.SOURCE / "model/embedded", self.folder,
                         ignore=shutil.ignore_patterns("*.txt", "*.md", "*.cc", "*.h", "*.in"))
         self.aside = pathlib.Path(folder) / "aside"
         self._over = threading.Event()

@@ -76,7 +76,7 @@ class Target:
 
 def copy_model(name, folder, new_name):
     """A built-in checkpoint under another name."""
-    shutil.copytree(tools.SOURCE / "model/checkpoints" / name, folder)
+    shutil.copytree(tools.SOURCE / "model/embedded" / name, folder)
     manifest = json.loads((folder / "manifest.json").read_text(encoding="utf-8"))
     manifest["name"] = new_name
     (folder / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")

@@ -1,7 +1,7 @@
-#include "model/checkpoints/embedded.h"
+#include "model/embedded/embedded.h"
 
 #include <cstddef>
 
 #define DUET_BYTES(symbol) \
   { symbol, static_cast<std::size_t>(symbol##_end - symbol) }
-#include "model/checkpoints/embedded.inc"
+#include "model/embedded/embedded.inc"

@@ -1,5 +1,5 @@
-#ifndef DUET_MODEL_CHECKPOINTS_EMBEDDED_H_
-#define DUET_MODEL_CHECKPOINTS_EMBEDDED_H_
+#ifndef DUET_MODEL_EMBEDDED_EMBEDDED_H_
+#define DUET_MODEL_EMBEDDED_EMBEDDED_H_
 
 #include <string_view>
 #include <vector>
@@ -12,9 +12,9 @@ struct EmbeddedCheckpoint {
   std::string_view weights;   // weights.safetensors
 };
 
-// Every checkpoint of model/checkpoints, the default model first.
+// Every checkpoint of model/embedded, the default model first.
 std::vector<EmbeddedCheckpoint> EmbeddedCheckpoints();
 
 }  // namespace duet::embedded
 
-#endif  // DUET_MODEL_CHECKPOINTS_EMBEDDED_H_
+#endif  // DUET_MODEL_EMBEDDED_EMBEDDED_H_
