@@ -10,18 +10,18 @@
 
 namespace duet::cpu_engine {
 
-// bfloat16 where the processor multiplies it, else float32.
+// bfloat16 if the processor has instructions that multiply it, else float32.
 kernels::Precision BestPrecision();
 
-// A checkpoint's generator, the paper's or the sampling one, in this project's own kernels.
+// Runs a checkpoint's generator, of any architecture, in this project's own kernels.
 //
-// A window's answer is the same to the bit whatever else is in the batch. Batches of many frames
-// are taken in parts, so that what a thread needs is bounded; it keeps that for the next batch
+// A window's answer is bit-identical whatever else is in the batch. Large batches are evaluated in
+// parts, which bounds the memory of a thread; the thread keeps it for the next batch
 // (ThreadScratchBytes). bfloat16 is slow without kernels::HasBf16().
 std::unique_ptr<const engine::Network> MakeCpuNetwork(const checkpoint::Checkpoint& checkpoint,
                                                       kernels::Precision precision);
 
-// Memory that this thread keeps for evaluations.
+// Memory that the calling thread keeps for evaluations, bytes.
 std::size_t ThreadScratchBytes();
 
 }  // namespace duet::cpu_engine

@@ -20,11 +20,11 @@ struct CpuEngineOptions {
 std::unique_ptr<engine::Synthesizer> MakeCpuSynthesizer(const checkpoint::Checkpoint& checkpoint,
                                                         const CpuEngineOptions& options = {});
 
-// Reads a checkpoint folder. Fails as ReadCheckpoint does.
+// Reads a checkpoint folder. Errors: those of ReadCheckpoint.
 absl::StatusOr<std::unique_ptr<engine::Synthesizer>> LoadCpuSynthesizer(
     const std::filesystem::path& folder, const CpuEngineOptions& options = {});
 
-// The checkpoints that ship inside the programs, the default first.
+// Synthesizers of the embedded checkpoints, the default model first.
 absl::StatusOr<std::vector<std::unique_ptr<engine::Synthesizer>>> LoadEmbeddedSynthesizers(
     const CpuEngineOptions& options = {});
 

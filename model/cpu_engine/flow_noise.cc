@@ -11,7 +11,7 @@
 namespace duet::cpu_engine {
 namespace {
 
-// On the kernel's diagonal: rounding must not make it indefinite.
+// Added to the kernel's diagonal, so that rounding does not make it indefinite.
 constexpr double kRidge = 1e-4;
 
 std::size_t At(int row, int columns, int column) {
@@ -72,7 +72,7 @@ void FlowNoise::Fill(uint64_t seed, float variety, int known_frames, int frames,
     std::fill_n(out, count, 0.0f);
     return;
   }
-  // First what becomes smooth in time, then what stays as it is.
+  // First the part that becomes smooth in time, then the white part.
   float* const drawn = scratch->Take<float>(2 * count);
   double* const uniform = scratch->Take<double>(4 * count);
   base::Random random(seed, 0);

@@ -10,30 +10,30 @@
 
 namespace duet::cpu_engine {
 
-// What sampling starts from: offsets smooth in time that covary over the joints as the training
-// followers' do; model/network/flow_noise.h has the same in LibTorch.
+// The source of sampling: offsets that are smooth in time and have the joint covariance of the
+// training followers. The LibTorch version is in model/network/flow_noise.h.
 //
-// Threads: Fill is safe to call concurrently, with a scratch each.
+// Threads: Fill is safe to call concurrently, with one scratch per call.
 class FlowNoise {
  public:
-  // Shapes: roots [2, width, width] (no start told, start told). `frames`: of the longest window
-  // that is common; longer ones take longer.
+  // Shapes: roots [2, width, width] (without a start, with a start). `frames` is the length up to
+  // which the factors are precomputed; longer windows are slower.
   FlowNoise(const checkpoint::FlowArchitecture::Noise& options, const std::vector<float>& roots,
             int width, int frames);
 
-  // Writes one window's, [frames, width], drawn from `seed` alone, times `variety`. A frame does
-  // not depend on how many follow.
+  // Writes the noise of one window, [frames, width]: it depends only on `seed`, and is multiplied
+  // by `variety`. A frame does not depend on the number of frames after it.
   void Fill(uint64_t seed, float variety, int known_frames, int frames, Scratch::Use* scratch,
             float* out) const;
 
  private:
-  // Where frames are known, or not.
+  // For windows with, or without, known frames.
   struct State {
     std::vector<float> over_frames;     // [frames, frames] lower-triangular
     kernels::PackedMatrix over_joints;  // [width, width]
   };
 
-  // How far frame `frame` deviates, as a share of the full deviation.
+  // The deviation of frame `frame`, as a fraction of the full deviation.
   float Ramp(int frame, int known_frames) const;
 
   checkpoint::FlowArchitecture::Noise options_;

@@ -9,11 +9,11 @@
 
 namespace duet::cpu_engine {
 
-// What the sampling generator is told of one window, in the standard coordinates;
-// model/network/flow_input.h has the same in LibTorch and explains it.
+// The conditions of the sampling generator for one window, in the standard coordinates.
+// model/network/flow_input.h explains them; it is the LibTorch version.
 struct FlowWindow {
   int frames;        // T
-  int known_frames;  // the first so many of the follower's frames are known
+  int known_frames;  // number of known frames at the start of the follower
   float* features;   // [T, 2 x 3 J + 4 + 3 J + 1] leader, velocity, positions, known, whether known
   float* start;      // [StartFeatureCount]
   float* base;       // [3 J] metres
@@ -22,20 +22,20 @@ struct FlowWindow {
   }
 };
 
-// Shapes: base_poses [C, 3 J] metres, the mean pose of each class; features, start and base are
-// where the window's are written.
+// Writes to the window's features, start and base. Shapes: base_poses [C, 3 J] metres, the mean
+// pose of each class.
 void FillFlowWindow(const checkpoint::Manifest& manifest, const std::vector<float>& base_poses,
                     const engine::NetworkInput& input, FlowWindow* window);
 
-// One answer that is asked of the network: that for a class, or for none.
+// One evaluation of the network: for a class, or for no class.
 struct FlowTerm {
   int window;
   int label;      // a class, or kNoClass
-  float* factor;  // [T] what the answer counts for, frame by frame
+  float* factor;  // [T] factor of the answer in the sum, for each frame
 };
 inline constexpr int kNoClass = -1;
 
-// Adds a window's terms to `terms`, at most C + 1; returns how many. See
+// Writes a window's terms to `terms`, at most C + 1, and returns their number. The formula is in
 // model/network/flow_sampler.h.
 int AddFlowTerms(const engine::NetworkInput& input, int window, int classes, double guidance,
                  Scratch::Use* scratch, FlowTerm* terms);

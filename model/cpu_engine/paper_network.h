@@ -15,15 +15,15 @@
 
 namespace duet::cpu_engine {
 
-// The paper's hierarchical generator, to be read from top to bottom of Run: the slices' features
-// and encoders, the attentive decoder in both directions, the output, the base pose.
+// The paper's hierarchical generator. Read it from Run downwards: the slices' features and
+// encoders, the attentive decoder in both directions, the output, the base pose.
 //
-// Source:  paper sections 3.1 and 3.2; model/network/generator.h has the same in LibTorch, and says
-//          where it deviates.
-// Shapes:  T frames of a window, R of all windows, J joints, C classes, S slices, E encoder units
-// of
-//          a slice and direction, H = S E decoder units of a direction, A rows of the attention.
-// Threads: Run is safe to call concurrently, with a scratch each.
+// Source:  paper sections 3.1 and 3.2. The LibTorch version, model/network/generator.h, lists the
+//          deviations.
+// Shapes:  T frames of a window, R frames of all windows, J joints, C classes, S slices, E encoder
+//          units of a slice and direction, H = S E decoder units of a direction, A rows of the
+//          attention.
+// Threads: Run is safe to call concurrently, with one scratch per call.
 class PaperNetwork {
  public:
   PaperNetwork(const checkpoint::Checkpoint& checkpoint, kernels::Precision precision);
@@ -33,7 +33,7 @@ class PaperNetwork {
            absl::Span<motion::Poses> followers) const;
 
  private:
-  // What a part of the body, or the whole, is read with.
+  // The encoder of one slice: a body part, or the whole body.
   struct Slice {
     std::vector<int> columns;     // of a row of the input
     kernels::PackedMatrix input;  // fully connected layer and W_ih as one: [2 x 4 E, columns]
@@ -46,25 +46,26 @@ class PaperNetwork {
     kernels::PackedMatrix state;    // W_hh above V, [4 H + A, H]
     std::vector<float> score;       // [A]
   };
-  // What passes between the steps of Run.
+  // The values that the steps of Run share.
   struct Work {
     absl::Span<const engine::NetworkInput> inputs;
     WindowBatch batch;
     const float* input;  // [R, inputs_]
     float* encoded;      // [R, 2 H]: every slice forward, then every slice backward
-    float* hidden[2];    // [windows, H] of each direction: the encoders' last, then the decoder's
+    float* hidden[2];    // [windows, H] of each direction: final state of the encoders, then the
+                         // decoder's
     float* cell[2];
     float* states;  // [R, 2 H] of the decoder, forward and backward
   };
 
-  // What a direction of the decoder needs for some windows.
+  // The values of one direction of the decoder for some windows.
   struct DecoderWork {
     float* encoded;                // [rows, A] U h
     float* values;                 // [rows, 4 H]
     uint16_t* packed;              // the values for products in bfloat16; null in float32
     std::ptrdiff_t packed_window;  // values from one window to the next
-    float* gates;                  // [windows, 4 H + A], the query behind the gates
-    float* weights;                // [T] of the window at hand
+    float* gates;                  // [windows, 4 H + A], gates, then the query
+    float* weights;                // [T] of the current window
     float** outputs;               // [windows]
   };
 

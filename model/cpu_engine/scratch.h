@@ -8,16 +8,17 @@
 
 namespace duet::cpu_engine {
 
-// Memory for what an evaluation needs while it runs, kept for the next one: once an evaluation of
-// its size has run, another allocates nothing.
+// Temporary memory of evaluations, kept between them. After one evaluation, another of at most the
+// same size allocates nothing.
 //
 //   Scratch::Use use(&scratch);
-//   float* gates = use.Take<float>(rows * 160);   // not initialised; gone with `use`
+//   float* gates = use.Take<float>(rows * 160);   // not initialised; valid until `use` is
+//   destroyed
 //
-// Threads: not safe to call concurrently: one for each thread.
+// Threads: not safe to call concurrently. Use one per thread.
 class Scratch {
  public:
-  // One evaluation. One at a time.
+  // The memory of one evaluation. At most one exists at a time.
   class Use {
    public:
     explicit Use(Scratch* scratch) : scratch_(scratch) {}
@@ -25,7 +26,7 @@ class Scratch {
     Use(const Use&) = delete;
     Use& operator=(const Use&) = delete;
 
-    // `count` values on a cache line of their own.
+    // Returns `count` values that begin on their own cache line.
     template <typename T>
     T* Take(std::ptrdiff_t count) {
       static_assert(std::is_trivially_destructible_v<T> && alignof(T) <= kAlignment);
@@ -36,7 +37,7 @@ class Scratch {
     Scratch* scratch_;
   };
 
-  // What is held between evaluations.
+  // Bytes held between evaluations.
   std::size_t bytes() const;
 
  private:
@@ -50,8 +51,8 @@ class Scratch {
   };
 
   void* Bytes(std::size_t size);
-  // Makes one block of several, as large as what was taken of them: the next evaluation finds all
-  // its memory in one piece.
+  // Replaces several blocks by one of the size that was taken from them, so that the next
+  // evaluation uses one block.
   void Reset();
   void Add(std::size_t size);
 

@@ -10,7 +10,7 @@
 
 namespace duet::cpu_engine {
 
-// A linear layer as a checkpoint has it.
+// A linear layer in the layout of a checkpoint.
 struct Layer {
   std::vector<float> weight;  // [outputs, inputs]
   std::vector<float> bias;    // [outputs]; empty for none
@@ -21,22 +21,22 @@ struct Layer {
   }
 };
 
-// The layer that does what `first` and then `second` do: nothing lies between them.
+// The composition of two layers without an activation between them: `first`, then `second`.
 Layer Chained(const Layer& first, const Layer& second);
-// The layer whose outputs are those of `above`, then those of `below`. Both have a bias, or none.
+// The layer with the outputs of `above`, then those of `below`. Requires a bias in both or neither.
 Layer Stacked(const Layer& above, const Layer& below);
 
-// A checkpoint's tensors by name. The checkpoint outlives it, and has every tensor that is asked
-// for (ParseCheckpoint saw to that).
+// A checkpoint's tensors by name. The checkpoint must outlive it and contain every requested
+// tensor, which ParseCheckpoint guarantees.
 class Weights {
  public:
   explicit Weights(const checkpoint::Checkpoint& checkpoint);
 
   const std::vector<float>& Values(const std::string& name) const;
   bool Has(const std::string& name) const { return tensors_.count(name) > 0; }
-  // A matrix by its whole name, and a bias by its own or none.
+  // The layer of two tensors. An empty `bias` means none.
   Layer FindLayer(const std::string& weight, const std::string& bias) const;
-  // `name`.weight with `name`.bias.
+  // The layer of `name`.weight and `name`.bias.
   Layer FindLayer(const std::string& name) const;
 
  private:

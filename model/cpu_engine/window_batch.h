@@ -7,16 +7,16 @@
 
 namespace duet::cpu_engine {
 
-// Which values of which window are where: the frames of all windows, longest window first, each
-// window's one after the other, are the rows of one matrix. No frame is padding.
+// The layout of a batch: the rows of one matrix are the frames of all windows, window by window,
+// the longest window first. There is no padding.
 struct WindowBatch {
   int count;             // windows
   int rows;              // frames of all of them
-  const int* input;      // [count] which of the inputs it is
-  const int* length;     // [count] frames, falling
+  const int* input;      // [count] index of the input
+  const int* length;     // [count] frames, in descending order
   const int* first_row;  // [count]
 
-  // `most` of the windows from `begin` on, or as many as there are. Their rows stay where they are.
+  // At most `most` windows from `begin` on. Their rows keep their indices.
   WindowBatch Some(int begin, int most) const {
     const int size = begin + most < count ? most : count - begin;
     const int last = begin + size - 1;
@@ -24,8 +24,8 @@ struct WindowBatch {
             first_row + begin};
   }
 
-  // Windows that have a frame `step`: the first so many. `before` is the answer for an earlier
-  // step.
+  // Number of windows that have a frame `step`; they are the first ones. `before` is the result for
+  // an earlier step.
   int LongerThan(int step, int before) const {
     while (before > 0 && length[before - 1] <= step) --before;
     return before;

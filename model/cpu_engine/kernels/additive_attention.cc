@@ -30,7 +30,7 @@ void Weigh(const AdditiveAttention& in) {
   Softmax(in.frames, in.weights);
 }
 
-// kVectors vectors of the weighted sum from column `first` on, kept in registers over all rows.
+// Computes kVectors vectors of the weighted sum from column `first` on, in registers over all rows.
 template <int kVectors>
 HWY_INLINE void AddColumns(const Rows& values, const float* weights, int first, float* sums) {
   const Tag d;

@@ -5,7 +5,7 @@
 
 namespace duet::cpu_engine::kernels {
 
-// What one decoder state looks at.
+// The attention of one decoder state over the frames of its window.
 struct AdditiveAttention {
   int frames;            // 1 or more
   int attention;         // A

@@ -1,7 +1,7 @@
 #ifndef DUET_MODEL_CPU_ENGINE_KERNELS_BF16_ROWS_INL_H_
 #define DUET_MODEL_CPU_ENGINE_KERNELS_BF16_ROWS_INL_H_
 
-// What products of bfloat16 share, by AVX-512 BF16. For x86-64 alone.
+// Shared by the products of bfloat16 with AVX-512 BF16. Only for x86-64.
 
 #include <immintrin.h>
 
@@ -12,7 +12,7 @@
 #include "model/cpu_engine/kernels/gemm_bf16.h"
 #include "model/cpu_engine/kernels/matrix.h"
 
-// Highway 1.0.3 has no such product: the instruction by its name.
+// Highway 1.0.3 has no such product, so this uses the intrinsic.
 #define DUET_BF16 __attribute__((target("avx512f,avx512bw,avx512vl,avx512dq,avx512bf16")))
 
 namespace duet::cpu_engine::kernels {
@@ -24,7 +24,7 @@ DUET_BF16 inline __mmask16 FirstOf(int valid) {
   return static_cast<__mmask16>((1u << clamped) - 1);
 }
 
-// Rounds the rows to `out`, kStride values apart, a zero after an odd number.
+// Rounds the rows to `out`, kStride values apart, with a zero after an odd number of values.
 template <int kStride>
 DUET_BF16 inline void RoundRows(const Rows& x, uint16_t* out) {
   for (int r = 0; r < x.count; ++r) {

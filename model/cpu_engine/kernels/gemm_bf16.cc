@@ -22,24 +22,24 @@ uint16_t ToBf16(float value) {
 
 namespace {
 
-// Sums that fit the registers beside what is being multiplied, and rows of two vectors of them.
+// Vectors of sums that fit the registers besides the factors, and rows of two such vectors.
 constexpr int kSums = 24, kRows = kSums / 2;
-// Pairs of inputs that are multiplied before the sums go back to memory: a tile's rows, rounded,
-// stay in the first-level cache.
+// Pairs of inputs that are multiplied before the sums are stored: the rounded rows of a tile stay
+// in the first-level cache.
 constexpr int kPairsAtOnce = 256;
 
-// A block of inputs of a product: its tiles are computed.
+// A block of inputs of a product, computed tile by tile.
 struct Block {
   const uint16_t* x;       // [kRows, 2 kPairsAtOnce], rounded
   const uint16_t* panels;  // from the block's first pair on
   std::ptrdiff_t panel;    // values from one panel to the next
   int pairs;
   const float* bias;  // null without
-  bool adds;          // to what earlier blocks left in y
+  bool adds;          // to the sums of earlier blocks in y
   Output y;           // from the tile's first row on
 };
 
-// kCount rows by kPanels panels from column `column` on, kept in registers over the block.
+// Computes kCount rows by kPanels panels from column `column` on, in registers over the block.
 template <int kCount, int kPanels>
 DUET_BF16 inline void Tile(const Block& block, int column) {
   const uint16_t* weights = block.panels + column / kPanel * block.panel;
@@ -80,7 +80,7 @@ DUET_BF16 inline void Tile(const Block& block, int column) {
   }
 }
 
-// All columns of kCount rows, as many at once as the registers hold.
+// Computes all columns of kCount rows, as many at once as the registers hold.
 template <int kCount>
 DUET_BF16 inline void Strip(const Block& block) {
   constexpr int kPanels = kRows / kCount < 4 ? kRows / kCount : 4;
@@ -120,7 +120,7 @@ DUET_BF16 void Gemm(const Rows& x, const uint16_t* panels, const float* bias, bo
   }
 }
 
-constexpr __mmask16 kAll = 0xffff;  // GCC 12 takes the forms without a mask as uninitialised
+constexpr __mmask16 kAll = 0xffff;  // GCC 12 reports the forms without a mask as uninitialised
 
 // Rounded values in the lower halves of 32 bits.
 DUET_BF16 inline __m512i RoundedWide(const float* from, __mmask16 valid) {

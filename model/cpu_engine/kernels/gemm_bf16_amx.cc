@@ -20,16 +20,16 @@ namespace duet::cpu_engine::kernels {
 namespace {
 
 constexpr int kTileRows = 16, kTilePairs = 16;
-// A strip: two tiles of rows by the two of a panel, four tiles of sums.
+// A strip: two tiles of rows by the two tiles of a panel, with four tiles of sums.
 constexpr int kStripRows = 2 * kTileRows;
-// Pairs of inputs that are rounded at once: a strip's stay in half the first-level cache.
+// Pairs of inputs that are rounded at once: those of a strip fit in half the first-level cache.
 constexpr int kPairsAtOnce = 128;
 constexpr int kPanelBytes = kPanel * 2 * static_cast<int>(sizeof(uint16_t));
 constexpr int kSumsBytes = kPanel * static_cast<int>(sizeof(float));
 constexpr int kRoundedBytes = 2 * kPairsAtOnce * static_cast<int>(sizeof(uint16_t));
 
-// The tiles by what they hold: sums of the upper and the lower rows, left and right half of a
-// panel; rows; weights. Numbers, since the instructions have them built in.
+// The numbers of the tiles, by content: sums of the upper and the lower rows, for the left and the
+// right half of a panel; rows; weights. The instructions require constants.
 #define DUET_UPPER_LEFT 0
 #define DUET_UPPER_RIGHT 1
 #define DUET_LOWER_LEFT 2
@@ -39,17 +39,18 @@ constexpr int kRoundedBytes = 2 * kPairsAtOnce * static_cast<int>(sizeof(uint16_
 #define DUET_LEFT_WEIGHTS 6
 #define DUET_RIGHT_WEIGHTS 7
 
-// As LDTILECFG reads it.
+// The layout of LDTILECFG.
 struct alignas(64) TileShapes {
   uint8_t palette = 1, start_row = 0, reserved[14] = {};
   uint16_t row_bytes[16] = {};
   uint8_t rows[16] = {};
 };
 
-// GCC 12 does not know that the instructions of tiles read memory: what was written is to be there.
+// GCC 12 does not know that tile instructions read memory. This forces earlier writes to memory.
 inline void WriteBack() { std::atomic_signal_fence(std::memory_order_seq_cst); }
 
-// Tiles for a strip of `rows` rows and steps of `pairs` pairs of inputs. All of them are zero then.
+// Configures tiles for a strip of `rows` rows and steps of `pairs` pairs of inputs, and zeroes
+// them.
 DUET_AMX void Shape(int rows, int pairs) {
   TileShapes shapes;
   const auto set = [&shapes](int tile, int tile_rows, int bytes) {
@@ -70,14 +71,14 @@ DUET_AMX void Shape(int rows, int pairs) {
   _tile_loadconfig(&shapes);
 }
 
-// What a strip's rows are multiplied by in one go.
+// One block of a strip's product.
 struct Block {
   const uint16_t* x;        // [kStripRows, 2 kPairsAtOnce], rounded
   const uint16_t* weights;  // of one panel, from the block's first pair on
-  int pairs, pairs_a_step;  // pairs: a whole number of steps
+  int pairs, pairs_a_step;  // pairs is a multiple of pairs_a_step
 };
 
-// Sums of a strip over one panel: [kStripRows, kPanel], of which the strip's rows are written.
+// Sums of a strip over one panel: [kStripRows, kPanel]. Only the strip's rows are written.
 template <bool kTwoTiles>
 DUET_AMX void SumPanel(const Block& block, float* sums) {
   _tile_zero(DUET_UPPER_LEFT);
@@ -109,7 +110,7 @@ DUET_AMX void SumPanel(const Block& block, float* sums) {
   }
 }
 
-// A strip's part of y from `column` on: what it begins from, and the sums.
+// A strip's part of y from `column` on: its initial values and its sums.
 DUET_AMX void Add(const float* sums, int rows, int column, const float* bias, bool adds,
                   const Output& y) {
   for (int half = 0; half < kPanel; half += kLanes) {
@@ -125,7 +126,7 @@ DUET_AMX void Add(const float* sums, int rows, int column, const float* bias, bo
   }
 }
 
-// A strip's product: of the matrices, its rows.
+// The product of one strip: its rows of the matrices.
 struct Strip {
   Rows x;
   const uint16_t* panels;
@@ -151,7 +152,7 @@ DUET_AMX void AddPairs(const Strip& strip, int first, int pairs, bool adds) {
   }
 }
 
-// Without tiles in use a thread's state is smaller to switch, and its core may rest deeper.
+// Releases the tiles, which makes context switches cheaper and allows deeper idle states.
 DUET_AMX void Release() { _tile_release(); }
 
 bool ProcessorHasAmx() {
@@ -161,8 +162,8 @@ bool ProcessorHasAmx() {
          (edx & kTileBit) != 0;
 }
 
-// Linux 5.16 and later keep tiles for the threads of a process that asked for it (xstate.rst of its
-// documentation); a kernel that knows nothing of tiles refuses.
+// Linux 5.16 and later save tiles for the threads of a process that requested it (xstate.rst in its
+// documentation). Older kernels reject the request.
 bool KernelKeepsTiles() {
   constexpr int kRequestPermission = 0x1023, kTileData = 18;
   return syscall(SYS_arch_prctl, kRequestPermission, kTileData) == 0;

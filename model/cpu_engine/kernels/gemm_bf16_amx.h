@@ -7,15 +7,14 @@
 
 namespace duet::cpu_engine::kernels {
 
-// Whether this process may multiply bfloat16 in tiles (AMX-BF16): the processor does, and the
-// kernel, which is asked for it the first time, keeps the tiles of every thread.
+// Whether this process may multiply bfloat16 in tiles (AMX-BF16): the processor supports it, and
+// the operating system saves the tiles of every thread. The first call requests that.
 bool HasAmx();
 
-// What gemm_bf16.h promises of GemmBf16 and AddGemmBf16, in tiles of 16 rows by 16 columns. Only
-// where HasAmx().
+// GemmBf16 and AddGemmBf16 of gemm_bf16.h in tiles of 16 rows by 16 columns. Require HasAmx().
 //
-// A row's result does not depend on the other rows: a tile sums each of its rows for itself, in the
-// same order however many there are.
+// A row's result does not depend on the other rows: a tile sums each row separately, in an order
+// that does not depend on the number of rows.
 void GemmBf16Amx(const Rows& x, const uint16_t* panels, const float* bias, bool adds,
                  const Output& y);
 

@@ -15,7 +15,7 @@ float FromBf16(uint16_t value) {
   return whole;
 }
 
-// Where the weight of an output and an input stands among the panels.
+// Index in the panels of the weight of an output and an input.
 std::ptrdiff_t At(int output, int input, int pairs) {
   return ((std::ptrdiff_t{output / kPanel} * pairs + input / 2) * kPanel + output % kPanel) * 2 +
          input % 2;

@@ -7,8 +7,8 @@
 
 namespace duet::cpu_engine::kernels {
 
-// What gemm_bf16.h promises, in plain C++: for processors that do not multiply bfloat16. Slow, of
-// the same rounding.
+// The functions of gemm_bf16.h in plain C++, for processors that do not multiply bfloat16. Slow,
+// with the same rounding.
 void GemmBf16Portable(const Rows& x, const uint16_t* panels, const float* bias, bool adds,
                       const Output& y);
 void PackRowsBf16Portable(const Rows& inputs, uint16_t* panels);

@@ -9,12 +9,12 @@
 HWY_BEFORE_NAMESPACE();
 namespace duet::cpu_engine::kernels::HWY_NAMESPACE {
 
-// Sums that fit the registers beside what is being multiplied.
+// Vectors of sums that fit the registers besides the factors.
 constexpr int kSums = HWY_TARGET <= HWY_AVX3 ? 24 : 12;
-// Rows that a tile may have: two vectors of sums each.
+// Maximum rows of a tile, with two vectors of sums each.
 constexpr int kRows = kSums / 2;
 
-// A product whose tiles are computed.
+// A product, computed tile by tile.
 struct Product {
   Rows x;
   const float* panels;
@@ -22,8 +22,8 @@ struct Product {
   Output y;
 };
 
-// kCount rows by kPairs times two vectors of columns from `column` on, kept in registers over all
-// inputs.
+// Computes kCount rows by kPairs times two vectors of columns from `column` on, in registers over
+// all inputs.
 template <int kCount, int kPairs>
 HWY_INLINE void Tile(const Product& product, int row, int column) {
   const Tag d;
@@ -62,7 +62,7 @@ HWY_INLINE void Tile(const Product& product, int row, int column) {
   }
 }
 
-// All columns of `count` rows, as many at once as the registers hold; the last ones as they come.
+// Computes all columns of `count` rows, as many at once as the registers hold.
 template <int kCount>
 HWY_INLINE void Strip(const Product& product, int row, int column, int end) {
   constexpr int kPairs = kRows / kCount < 4 ? kRows / kCount : 4;
@@ -82,10 +82,10 @@ void StripOf(int count, const Product& product, int row, int column, int end) {
   }
 }
 
-// Columns that are multiplied with all rows of a block before the next: their weights stay in the
-// first-level cache.
+// Columns that are multiplied by all rows of a block before the next columns: their weights stay in
+// the first-level cache.
 constexpr int kColumnsAtOnce = 4 * kPanel;
-// Rows whose values stay in the second-level cache meanwhile.
+// Rows of a block: their values stay in the second-level cache.
 constexpr int kRowsAtOnce = 96;
 
 void Gemm(const Rows& x, const float* panels, const float* bias, const Output& y) {

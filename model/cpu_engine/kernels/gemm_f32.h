@@ -5,11 +5,11 @@
 
 namespace duet::cpu_engine::kernels {
 
-// y = x W^T + bias in float32, or without one where it is null. `panels` are W's rows as PackPanels
-// lays them out, the bias is padded to whole panels.
+// y = x W^T + bias in float32. A null bias means none. `panels` are W's rows in the layout of
+// PackPanels; the bias is padded to whole panels.
 //
-// A row's sums are added up in the order of its inputs, however many rows there are: its result
-// does not depend on the others.
+// A row's sums are added in the order of its inputs whatever the number of rows, so its result does
+// not depend on the other rows.
 void GemmF32(const Rows& x, const float* panels, const float* bias, const Output& y);
 
 }  // namespace duet::cpu_engine::kernels

@@ -9,7 +9,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace duet::cpu_engine::kernels::HWY_NAMESPACE {
 
-// The gates of one row, either part of which may be missing.
+// The gates of one row; either part may be absent.
 struct Gates {
   const float* recurrent;
   const float* input;

@@ -15,10 +15,10 @@ struct LstmStep {
   float* state;                 // [count, hidden] h, rows state_stride apart; written
   float* cell;                  // [count, hidden] c, rows state_stride apart; read and written
   std::ptrdiff_t state_stride;  // values
-  float* const* outputs;        // [count] rows of [hidden]: where h goes as well
+  float* const* outputs;        // [count] rows of [hidden]: copies of h, written
 };
 
-// Source: Hochreiter, Schmidhuber 1997, with forget gates; as LibTorch's LSTM.
+// Source: Hochreiter, Schmidhuber 1997, with forget gates, like LibTorch's LSTM.
 void LstmCells(const LstmStep& step);
 
 }  // namespace duet::cpu_engine::kernels

@@ -18,15 +18,15 @@ struct Rows {
   int width;
 };
 
-// Where the rows of a product go: `width` values each, `stride` values apart.
+// The destination of a product's rows: `width` values each, `stride` values apart.
 struct Output {
   float* values;
   std::ptrdiff_t stride;
   int width;
 };
 
-// Rows of the next tile of `left` rows, at most `most`: tiles as even as can be, since a small one
-// costs as much as a large one.
+// Number of rows of the next tile, of `left` remaining rows and at most `most`. Keeps tiles as even
+// as possible, because a small tile costs as much as a large one.
 inline constexpr int NextTile(int left, int most) {
   const int tiles = (left + most - 1) / most;
   return (left + tiles - 1) / tiles;

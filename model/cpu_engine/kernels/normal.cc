@@ -3,9 +3,9 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "model/cpu_engine/kernels/normal.cc"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
-// After it.
+// Must follow foreach_target.h.
 #include <hwy/highway.h>
-// clang-format off: alphabetical order would put it first.
+// clang-format off: alphabetical order would put this first.
 #include <hwy/contrib/math/math-inl.h>
 // clang-format on
 

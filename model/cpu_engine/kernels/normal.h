@@ -5,9 +5,9 @@
 
 namespace duet::cpu_engine::kernels {
 
-// Standard normal numbers from pairs of uniform ones in (0, 1): what base::Random::StandardNormal
-// makes of the same, to the last digit of a float or two. Shapes: uniform [count, 2], out [count].
-// Source: Box, Muller 1958.
+// Computes standard normal numbers from pairs of uniform ones in (0, 1). They equal those of
+// base::Random::StandardNormal to one or two units in the last place. Shapes: uniform [count, 2],
+// out [count]. Source: Box, Muller 1958.
 void StandardNormals(std::ptrdiff_t count, const double* uniform, float* out);
 
 }  // namespace duet::cpu_engine::kernels

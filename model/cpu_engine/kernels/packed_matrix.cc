@@ -10,7 +10,7 @@ namespace {
 
 std::size_t Size(std::ptrdiff_t count) { return static_cast<std::size_t>(count); }
 
-// Panels in pairs of inputs, rounded: [panels, Bf16Pairs(inputs), kPanel, 2].
+// Packs rounded panels in pairs of inputs: [panels, Bf16Pairs(inputs), kPanel, 2].
 std::vector<uint16_t> RoundedPanels(const std::vector<float>& panels, int outputs, int inputs) {
   const int pairs = Bf16Pairs(inputs);
   std::vector<uint16_t> rounded(Size(std::ptrdiff_t{PanelCount(outputs)} * pairs * kPanel * 2));

@@ -9,19 +9,19 @@
 
 namespace duet::cpu_engine::kernels {
 
-// How factors of products are held; sums are float32.
+// The type of the factors of products. Sums are float32.
 enum class Precision {
   kFloat32,
-  kBfloat16  // half the memory and, where the processor has it, twice the speed: HasBf16()
+  kBfloat16  // half the memory and, with HasBf16(), twice the speed
 };
 
-// The values of a matrix [outputs, inputs] where the value of output n, input k is at
-// from[n output_stride + k input_stride], in the order that a product reads them:
-// [PanelCount(outputs), inputs, kPanel], zeros after the last output.
+// Packs a matrix [outputs, inputs], whose value of output n and input k is
+// from[n output_stride + k input_stride], in the order in which a product reads it:
+// [PanelCount(outputs), inputs, kPanel], with zeros after the last output.
 void PackPanels(const float* from, std::ptrdiff_t output_stride, std::ptrdiff_t input_stride,
                 int outputs, int inputs, float* panels);
 
-// A layer's weights and bias, laid out for products once.
+// A layer's weights and bias in the layout of products.
 //
 // Threads: const methods are safe to call concurrently.
 class PackedMatrix {

@@ -12,7 +12,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace duet::cpu_engine::kernels::HWY_NAMESPACE {
 
-// What is left of `count` values after `at`, as much as a vector may hold.
+// The number of values after `at` of `count`, at most one vector.
 HWY_INLINE ptrdiff_t Left(ptrdiff_t count, ptrdiff_t at) { return HWY_MIN(count - at, Lanes()); }
 
 void GeluInPlace(ptrdiff_t count, float* HWY_RESTRICT values) {

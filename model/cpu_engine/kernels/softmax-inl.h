@@ -1,4 +1,4 @@
-// Included once for each instruction set, by way of foreach_target.h.
+// Included once per instruction set, through foreach_target.h.
 #if defined(DUET_MODEL_CPU_ENGINE_KERNELS_SOFTMAX_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef DUET_MODEL_CPU_ENGINE_KERNELS_SOFTMAX_INL_H_
 #undef DUET_MODEL_CPU_ENGINE_KERNELS_SOFTMAX_INL_H_
@@ -11,7 +11,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace duet::cpu_engine::kernels::HWY_NAMESPACE {
 
-// Turns `count` values, 1 or more, into weights that add up to 1.
+// Turns `count` values, at least 1, into weights with the sum 1.
 HWY_INLINE void Softmax(int count, float* HWY_RESTRICT values) {
   const Tag d;
   const Vector lowest = hn::Set(d, -3e38f);

@@ -1,4 +1,4 @@
-// Included once for each instruction set, by way of foreach_target.h.
+// Included once per instruction set, through foreach_target.h.
 #if defined(DUET_MODEL_CPU_ENGINE_KERNELS_VECTOR_MATH_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef DUET_MODEL_CPU_ENGINE_KERNELS_VECTOR_MATH_INL_H_
 #undef DUET_MODEL_CPU_ENGINE_KERNELS_VECTOR_MATH_INL_H_
@@ -17,11 +17,11 @@ using Vector = hn::Vec<Tag>;
 
 inline ptrdiff_t Lanes() { return static_cast<ptrdiff_t>(hn::Lanes(Tag())); }
 
-// Whether a masked load or store touches nothing but what the mask names: before AVX2 Highway's
-// reads a whole vector, and wants it aligned.
+// Whether a masked load or store only accesses the masked values. Before AVX2, Highway's versions
+// access a whole vector and require it to be aligned.
 constexpr bool kMasksMemory = HWY_TARGET <= HWY_AVX2;
 
-// The first `valid` values, zeros after them; all of a vector when there are as many.
+// Loads the first `valid` values, then zeros; at most a whole vector.
 HWY_INLINE Vector LoadFirst(ptrdiff_t valid, const float* from) {
   const Tag d;
   if (valid >= Lanes()) return hn::LoadU(d, from);
@@ -46,19 +46,19 @@ HWY_INLINE void StoreFirst(ptrdiff_t valid, Vector v, float* to) {
   }
 }
 
-// 1 / x, to the last digit or two. x is finite and neither 0 nor very small.
+// 1 / x, to one or two units in the last place. Requires a finite x that is neither 0 nor tiny.
 HWY_INLINE Vector Reciprocal(Vector x) {
   const Tag d;
   const Vector guess = hn::ApproximateReciprocal(x);
   const Vector two = hn::Set(d, 2.0f);
   const Vector better = guess * hn::NegMulAdd(guess, x, two);
-  // Eleven bits at first where vectors are narrow: once more.
+  // Narrow vectors start with eleven bits only: one more iteration.
   return HWY_TARGET <= HWY_AVX3 ? better : better * hn::NegMulAdd(better, x, two);
 }
 
 // 2^x, relative error below 2e-7; x is within [-126, 127].
-// Source: Moshier's Cephes library (exp2f): a polynomial for the part below one half, the rest goes
-// to the exponent.
+// Source: Moshier's Cephes library (exp2f): a polynomial for the fraction, within one half, and the
+// exponent for the rest.
 HWY_INLINE Vector Exp2(Vector x) {
   const Tag d;
   const hn::RebindToSigned<Tag> di;
@@ -80,7 +80,7 @@ HWY_INLINE Vector Within(float low, Vector x, float high) {
   return hn::Min(hn::Max(x, hn::Set(Tag(), low)), hn::Set(Tag(), high));
 }
 
-// e^x, relative error below 2e-7 near 0 and 1e-5 at the ends; x is taken as within [-87, 88].
+// e^x, relative error below 2e-7 near 0 and 1e-5 at the ends; x is clamped to [-87, 88].
 HWY_INLINE Vector Exp(Vector x) { return Exp2(hn::Set(Tag(), kLog2E) * Within(-87, x, 88)); }
 
 HWY_INLINE Vector Sigmoid(Vector x) {
@@ -92,7 +92,7 @@ HWY_INLINE Vector Sigmoid(Vector x) {
 HWY_INLINE Vector Tanh(Vector x) {
   const Tag d;
   const Vector one = hn::Set(d, 1.0f);
-  // Beyond 10 it is 1 in float; the reciprocal's argument stays small.
+  // Beyond 10 the result is 1 in float; clamping keeps the reciprocal's argument small.
   const Vector squared = Exp2(hn::Set(d, 2 * kLog2E) * Within(-10, x, 10));
   return hn::NegMulAdd(hn::Set(d, 2.0f), Reciprocal(squared + one), one);
 }
