@@ -12,7 +12,7 @@
 #else
 #define DUET_CPU_CLONES
 #endif
-// A body shared by the clones must be inlined into each, to be compiled for its level.
+// A function that the clones share must be inlined into each clone to be compiled for its level.
 #define DUET_INLINE inline __attribute__((always_inline))
 
 namespace duet::network {

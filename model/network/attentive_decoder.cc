@@ -17,17 +17,17 @@ struct Sizes {
   int64_t weights() const { return int64_t{1} * rows() * frames; }
 };
 
-// Raw views of the tensors that both passes read.
+// Raw pointers to the inputs of both passes.
 template <typename S>
 struct Inputs {
   const S *encoded, *values, *weight_hh, *state, *score, *hidden0, *cell0;
   const int64_t* lengths;
 };
 
-// What the forward pass leaves behind, one block a step.
+// Intermediate values of the forward pass, one block per step.
 template <typename S>
 struct Trace {
-  S* tanh_values;  // [T, G, N, T, A], or one row's [T, A] when no gradient is wanted
+  S* tanh_values;  // [T, G, N, T, A], or one row's [T, A] without a gradient
   S* weights;      // [T, G, N, T]
   S* gates;        // [T, G, N, 4 H] activations
   S* hidden;       // [T, G, N, H]
@@ -73,7 +73,7 @@ struct Gradients {
   const S* d_out;  // [T, G, N, H] in
   S* d_encoded;    // [G, N, T, A] accumulated
   S* d_score;      // [G, A] accumulated
-  S* d_hidden;     // [G, N, H] running, in the end of the initial state
+  S* d_hidden;     // [G, N, H] running; finally that of the initial state
   S* d_cell;       // [G, N, H] likewise
   S* d_gates;      // [T, G, N, 4 H]
   S* d_query;      // [T, G, N, A]
@@ -188,7 +188,7 @@ class DecoderFunction : public torch::autograd::Function<DecoderFunction> {
            d_hidden.data_ptr<scalar_t>(), d_cell.data_ptr<scalar_t>(), d_gates.data_ptr<scalar_t>(),
            d_query.data_ptr<scalar_t>()});
     });
-    // What only accumulates over the steps is one product over all of them.
+    // Sums over the steps are one product over all steps.
     const at::Tensor before = ByGroup(at::cat({hidden0.unsqueeze(0), hidden.slice(0, 0, -1)}, 0));
     const at::Tensor d_weight_hh = at::bmm(ByGroup(d_gates).transpose(1, 2), before);
     const at::Tensor d_state = at::bmm(ByGroup(d_query).transpose(1, 2), before);
@@ -205,7 +205,7 @@ class DecoderFunction : public torch::autograd::Function<DecoderFunction> {
 }  // namespace
 
 at::Tensor AttentiveDecoder(const DecoderInputs& in) {
-  // Inference needs no trace of the attention's activations, the largest of them all.
+  // Inference does not store the activations of the attention, the largest of all.
   const bool keep_tanh = at::GradMode::is_enabled();
   return DecoderFunction::apply(in.encoded, in.values, in.weight_hh, in.state, in.score, in.hidden,
                                 in.cell, in.lengths, keep_tanh);

@@ -5,7 +5,7 @@
 
 namespace duet::network {
 
-// What the two directions of the attentive decoder read, stacked along G = 2.
+// The inputs of both directions of the attentive decoder, stacked along G = 2.
 struct DecoderInputs {
   at::Tensor encoded;    // [G, N, T, A]    U h_j of every frame
   at::Tensor values;     // [G, N, T, 4 H]  W_ih h_j + b of every frame
@@ -20,12 +20,12 @@ struct DecoderInputs {
 // Runs the attentive LSTM for T steps, differentiably; returns the hidden state after each,
 // [T, G, N, H].
 //
-// At its step t, with the state s before it: e_j = w1 . tanh(U h_j + V s), phi = softmax over the
+// At step t, with s the state before it: e_j = w1 . tanh(U h_j + V s), phi = softmax over the
 // valid frames, c_t = sum_j phi_j h_j, then an LSTM cell on c_t.
 //
 // Source: paper section 3.2, Eq. 2 and 3. Deviation: padding is masked. W_ih c_t + b is computed as
-// sum_j phi_j (W_ih h_j + b), which is the same (the weights sum to 1) and takes the product with
-// W_ih out of the loop over time.
+// sum_j phi_j (W_ih h_j + b), which is equal because the weights sum to 1. The product with W_ih
+// is then computed once, outside the loop over time.
 // Threads: safe to call concurrently.
 at::Tensor AttentiveDecoder(const DecoderInputs& inputs);
 

@@ -9,11 +9,13 @@
 
 namespace duet::network {
 
-// Pads inputs of different lengths into one batch. Shapes: T is the longest one's frames.
+// Pads inputs of different lengths into one batch. Shapes: T is the number of frames of the
+// longest.
 GeneratorInput MakeInput(const checkpoint::Manifest& manifest,
                          absl::Span<const engine::NetworkInput> inputs);
 
-// Poses of like joints, padded with zeros to `frames`: [N, frames, 3 J]. At least one.
+// Pads poses with the same joints with zeros to `frames`: returns [N, frames, 3 J]. Requires at
+// least one clip.
 torch::Tensor PadPoses(const std::vector<const motion::Poses*>& clips, int64_t frames);
 
 // The first `frames` frames of one clip of a batch [N, T, 3 J].

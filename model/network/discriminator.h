@@ -14,9 +14,9 @@ struct DiscriminatorOptions {
   int64_t outputs = 7;   // interaction classes, and one more for "synthesised"
 };
 
-// The class-aware discriminator: two bidirectional LSTM layers over the follower's motion, every
-// time step's output flattened into one fully connected layer. With as many outputs as classes it
-// is also the classifier of the paper's Table 6 and of the FID's features.
+// The class-aware discriminator: two bidirectional LSTM layers over the follower's motion, then a
+// fully connected layer on the outputs of all time steps. With one output per class it is also the
+// classifier of the paper's Table 6 and of the FID's features.
 //
 // Source:  paper section 3.3 and MSHL22 (without the binary one).
 // Shapes:  motion [N, T, input], T <= window_frames; lengths [N] int64;

@@ -7,9 +7,9 @@
 
 namespace duet::network {
 
-// Does `work`, which uses LibTorch: LibTorch reports by exception, and this is where a program
-// stops them. Gives what `work` gives. Errors: an exception becomes INTERNAL with its message,
-// LibTorch's without the stack trace; too little memory RESOURCE_EXHAUSTED.
+// Runs `work`, which may throw LibTorch's exceptions, and returns its status. An exception becomes
+// INTERNAL with its message (LibTorch's without the stack trace), and std::bad_alloc
+// RESOURCE_EXHAUSTED.
 absl::Status CatchExceptions(const std::function<absl::Status()>& work);
 
 }  // namespace duet::network

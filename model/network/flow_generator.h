@@ -12,45 +12,46 @@
 
 namespace duet::network {
 
-// What the sampling generator is told, in its own terms: the same in every step.
+// The encoded conditions of the sampling generator. They are the same in every step.
 struct FlowContext {
   torch::Tensor frames;     // [N, T, W]
   torch::Tensor condition;  // [N, W] of the start
   torch::Tensor padding;    // [N, 1, 1, T] 0, or far below where a frame is padding
 };
 
-// The rows of a context, by number: a window may stand in several.
+// Selects rows of a context by index; the indices may repeat.
 FlowContext Rows(const FlowContext& context, const torch::Tensor& rows);
 
-// The sampling generator: told a leader, a start and a class, it takes a mixture
-// (1 - t) noise + t motion and answers with the motion (x1-prediction). A transformer over the
-// window's frames with adaptive layer norms and a learned bias by distance.
+// The sampling generator. Conditioned on a leader, a start and a class, it predicts the motion from
+// a mixture (1 - t) noise + t motion (x1-prediction). It is a transformer over the window's frames
+// with adaptive layer norms and a learned attention bias by distance.
 //
 // Source:  Lipman et al. 2023 (flow matching), Peebles, Xie 2023 (adaptive norms).
 // Units:   offsets from FlowInput::base, in offset_scale metres.
 // Threads: safe to call concurrently in evaluation mode.
 class FlowGeneratorImpl : public torch::nn::Module {
  public:
-  // Randomly initialised, or filled from a checkpoint with LoadParameters. Requires manifest.flow.
+  // Initialises randomly; LoadParameters fills it from a checkpoint. Requires a manifest with a
+  // FlowArchitecture.
   explicit FlowGeneratorImpl(const checkpoint::Manifest& manifest);
 
   FlowContext Prepare(const FlowInput& input) const;
 
-  // Shapes: labels [N, C], all zeros for "of any class"; sample [N, T, 3 J] at times [N] in [0, 1);
-  // returns [N, T, 3 J], meaningless past a window's length.
+  // Shapes: labels [N, C], all zeros for no class; sample [N, T, 3 J] at times [N] in [0, 1);
+  // returns [N, T, 3 J], undefined past a window's length.
   torch::Tensor forward(const FlowContext& context, const torch::Tensor& labels,
                         const torch::Tensor& sample, const torch::Tensor& times) const;
 
-  // The share dropped in training mode.
+  // Dropout probability in training mode.
   void set_dropout(double share) { dropout_ = share; }
 
-  // What is measured on the training data instead of learnt: mean followers [C, 3 J] and roots of
-  // the offsets' covariances [2, 3 J, 3 J].
+  // Sets the tensors that are measured on the training data instead of learnt: mean followers
+  // [C, 3 J] and roots of the offsets' covariances [2, 3 J, 3 J].
   void SetMeasured(const torch::Tensor& base_poses, const torch::Tensor& noise_roots);
   const torch::Tensor& base_poses() const { return base_poses_; }
   const torch::Tensor& noise_roots() const { return noise_roots_; }
 
-  // All of them by the names of ExpectedTensors: views to read and to fill in, without gradient.
+  // All tensors by their names in ExpectedTensors: views without gradient, to read or to fill.
   std::map<std::string, torch::Tensor> tensors() const;
 
  private:

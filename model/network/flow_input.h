@@ -9,12 +9,12 @@
 
 namespace duet::network {
 
-// What the sampling generator is told of a batch of windows, in the standard coordinates.
+// The conditions of the sampling generator for a batch of windows, in the standard coordinates.
 //
-// A follower's frames may be known: the pose it starts with, or several frames that are settled
-// already. Its base is the last of them; without any, the mean pose of its classes by their weights
-// over the window, moved to the root where that is told. The network speaks of offsets from the
-// base, in units of FlowArchitecture::offset_scale.
+// Frames of a follower may be known: its start pose, or several settled frames. The base is the
+// last known frame. Without known frames it is the mean pose of the classes, weighted by their mean
+// label weights over the window, and moved to the start root if that is given. The network predicts
+// offsets from the base, in units of FlowArchitecture::offset_scale.
 struct FlowInput {
   torch::Tensor leader;    // [N, T, 3 J] metres, zero-padded
   torch::Tensor labels;    // [N, T, C] zero-padded
@@ -26,7 +26,7 @@ struct FlowInput {
   torch::Tensor known_count;  // [N] int64
 };
 
-// Shapes: base_poses [C, 3 J] metres, the mean pose of each class. Requires manifest.flow.
+// Shapes: base_poses [C, 3 J] metres, the mean pose of each class. Requires a FlowArchitecture.
 FlowInput MakeFlowInput(const checkpoint::Manifest& manifest, const torch::Tensor& base_poses,
                         absl::Span<const engine::NetworkInput> inputs);
 

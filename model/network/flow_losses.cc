@@ -11,13 +11,13 @@ constexpr double kSmallest = 1e-12;  // under a root, whose gradient at 0 is inf
 constexpr double kSmallestSquare = 1e-6;
 constexpr int64_t kBlockStride = 2;
 
-// Mean over the valid frames of one value each, [N, T].
+// Mean over the valid frames of values [N, T].
 torch::Tensor MeanOverFrames(const torch::Tensor& values, const torch::Tensor& lengths) {
   const torch::Tensor valid = FrameMask(lengths, values.size(1)).transpose(0, 1).to(values.dtype());
   return (values * valid).sum(1) / lengths.clamp_min(1);
 }
 
-// Along the frames, the last dimension but one.
+// Differences along the frames, the second-to-last dimension.
 torch::Tensor Differences(const torch::Tensor& motion) {
   return motion.slice(-2, 1) - motion.slice(-2, 0, -1);
 }

@@ -7,15 +7,15 @@
 
 #include "model/motion/skeleton.h"
 
-// The sampling generator's losses, each one number a window: [N]. Motions are [N, T, 3 J], lengths
-// [N] int64; padded frames count for nothing.
+// The sampling generator's losses, one value per window: [N]. Motions are [N, T, 3 J], lengths [N]
+// int64. Padded frames are ignored.
 namespace duet::network {
 
 // Mean over the valid frames and coordinates of (x^ - x)^2.
 torch::Tensor SquaredErrors(const torch::Tensor& predicted, const torch::Tensor& real,
                             const torch::Tensor& lengths);
 
-// The same of what moves from frame to frame.
+// The same for differences of successive frames.
 torch::Tensor SquaredDifferenceErrors(const torch::Tensor& predicted, const torch::Tensor& real,
                                       const torch::Tensor& lengths);
 
@@ -24,29 +24,31 @@ torch::Tensor SquaredBoneErrors(const torch::Tensor& predicted, const torch::Ten
                                 const torch::Tensor& lengths,
                                 const std::vector<motion::Bone>& bones);
 
-// Mean over the valid frames and feet of the squared distance that a foot moves from the frame
-// before where the real one stands: moves less than `still`. Units: as `still`, squared.
+// Mean over the valid frames and feet of the squared distance that a foot moves between successive
+// frames, counted only where the captured foot stands (moves less than `still`). Units: those of
+// `still`, squared.
 torch::Tensor SquaredSlides(const torch::Tensor& predicted, const torch::Tensor& real,
                             const torch::Tensor& lengths, const motion::JointPair& feet,
                             double still);
 
-// How far several answers to one clip are from being draws out of the distribution that the real
-// motion is one of. Mean over the valid frames of
+// Energy score: compares the distribution of several answers to one clip with the real motion, one
+// draw of the wanted distribution. Mean over the valid frames of
 //
 //   mean_a |x_a - x| - 1/2 mean_{a != b} |x_a - x_b|,   norms over all coordinates of a frame.
 //
-// Its expectation is smallest for answers that are distributed as the real motion is: too alike and
-// too far apart both cost. Shapes: answers [A, N, T, V] with A of 2 or more, real [N, T, V].
-// Source: energy score, Gneiting, Raftery 2007; as a loss of samplers, Shen, Meinshausen 2024.
+// Its expectation is smallest if the answers have the distribution of the real motion: too little
+// and too much variety both raise it. Shapes: answers [A, N, T, V] with A of 2 or more, real [N, T,
+// V]. Source: Gneiting, Raftery 2007; as a loss for samplers, Shen, Meinshausen 2024.
 torch::Tensor EnergyScores(const torch::Tensor& answers, const torch::Tensor& real,
                            const torch::Tensor& lengths);
 
-// The same of what moves from frame to frame.
+// The same for differences of successive frames.
 torch::Tensor VelocityEnergyScores(const torch::Tensor& answers, const torch::Tensor& real,
                                    const torch::Tensor& lengths);
 
-// The same of `frames` successive velocities as one vector, divided by the root of `frames`: what
-// belongs together over time. Blocks begin at every other frame; a clip too short for one scores 0.
+// The same for blocks of `frames` successive velocities, each as one vector divided by the square
+// root of `frames`: it also scores dependence over time. A block begins at every other frame. A
+// clip shorter than a block scores 0.
 torch::Tensor BlockEnergyScores(const torch::Tensor& answers, const torch::Tensor& real,
                                 const torch::Tensor& lengths, int64_t frames);
 

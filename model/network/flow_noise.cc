@@ -7,7 +7,7 @@
 namespace duet::network {
 namespace {
 
-// On the kernel's diagonal: rounding must not make it indefinite.
+// Added to the kernel's diagonal, so that rounding does not make it indefinite.
 constexpr double kRidge = 1e-4;
 
 void Fill(int64_t count, base::Random* random, float* out) {
@@ -23,7 +23,7 @@ torch::Tensor FrameRoot(int64_t frames, double length, double constant) {
   return torch::linalg_cholesky(kernel).to(torch::kFloat32);
 }
 
-// [N, T, 1] share of the full deviation: grows from the last known frame on.
+// [N, T, 1] fraction of the full deviation: it grows from the last known frame.
 torch::Tensor Ramp(const torch::Tensor& known_count, int64_t frames, int ramp_frames) {
   const torch::Tensor frame = torch::arange(frames).unsqueeze(0);
   const torch::Tensor since = frame - known_count.unsqueeze(1) + 2;

@@ -15,14 +15,14 @@ struct NoiseNumbers {
   torch::Tensor white;   // stays as it is
 };
 
-// Drawn for each window from its sampling's seed alone, the same with every compiler.
+// Draws each window's numbers only from its Sampling::seed, with the same result on every compiler.
 NoiseNumbers DrawNoise(absl::Span<const engine::NetworkInput> inputs);
 
-// What sampling starts from: offsets smooth in time that covary over the joints as the training
-// followers' do. Where frames are known, their deviation grows with the distance from the last of
-// them; else a part of each is the same in all frames.
-// Shapes: roots [2, 3 J, 3 J] (no start told, start told), known_count [N] int64; returns
-// [N, T, 3 J]. A window's frames do not depend on how many follow.
+// The source of sampling: offsets that are smooth in time and have the joint covariance of the
+// training followers. After known frames their deviation grows with the distance from the last one;
+// without known frames, a part of the offset is constant over the window.
+// Shapes: roots [2, 3 J, 3 J] (without a start, with a start), known_count [N] int64; returns
+// [N, T, 3 J]. A frame does not depend on the number of frames after it.
 torch::Tensor SourceNoise(const checkpoint::FlowArchitecture::Noise& options,
                           const torch::Tensor& roots, const torch::Tensor& known_count,
                           const NoiseNumbers& numbers);

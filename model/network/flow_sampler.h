@@ -11,12 +11,13 @@
 
 namespace duet::network {
 
-// How label weights become answers. With u the answer for no class and x_k the one for class k:
+// Classifier-free guidance by label weights. With u the answer for no class and x_k that for class
+// k:
 //
 //   x^ = u + sum_k w_k (x_k - u) = (1 - sum_k w_k) u + sum_k w_k x_k
 //
-// w_k is the window's weight of the class, times `guidance` where it is above 0; it may differ from
-// frame to frame. Terms whose factor is 0 in every frame are left out.
+// w_k is the window's weight of the class, multiplied by `guidance` if it is above 0. It may differ
+// from frame to frame. Terms whose factor is 0 in every frame are omitted.
 // Source: Ho, Salimans 2022 (classifier-free guidance); several labels as Liu et al. 2022.
 struct GuidanceTerms {
   torch::Tensor windows;  // [R] int64, the window of each term
@@ -27,21 +28,22 @@ struct GuidanceTerms {
 GuidanceTerms MakeGuidanceTerms(const torch::Tensor& labels, const torch::Tensor& lengths,
                                 double guidance);
 
-// Several answers to each window without guidance, in units of offset_scale, the known frames as
-// the network has them: what training compares with the captured motion. Shapes: labels [N, C],
-// source [A, N, T, 3 J]; returns [A, N, T, 3 J].
+// Samples several answers to each window without guidance, for training: in units of offset_scale,
+// with the network's own output in the known frames. Shapes: labels [N, C], source [A, N, T, 3 J];
+// returns [A, N, T, 3 J].
 torch::Tensor PlainAnswers(const FlowGenerator& generator,
                            const checkpoint::FlowArchitecture& architecture, const FlowInput& input,
                            const torch::Tensor& labels, const torch::Tensor& source);
 
-// Goes from noise to motion in a few Euler steps; known frames are put in place in every step.
-// Shapes: source [N, T, 3 J] in units of offset_scale. Returns followers [N, T, 3 J] in metres
-// whose known frames are exact; the frames after them are drawn to where the last of them lies.
+// Integrates from noise to motion in a few Euler steps; every step moves the known frames towards
+// their known values. Shapes: source [N, T, 3 J] in units of offset_scale. Returns followers
+// [N, T, 3 J] in metres. Their known frames are exact; the frames after them are shifted to
+// continue from the last known frame, by an amount that fades out.
 torch::Tensor SampleFlow(const FlowGenerator& generator,
                          const checkpoint::FlowArchitecture& architecture, const FlowInput& input,
                          const torch::Tensor& source);
 
-// Answers windows of any lengths as their Sampling says: [N, T, 3 J] metres.
+// Answers windows of any lengths with the seed and variety of each: [N, T, 3 J] metres.
 torch::Tensor AnswerWindows(const FlowGenerator& generator, const checkpoint::Manifest& manifest,
                             absl::Span<const engine::NetworkInput> inputs);
 

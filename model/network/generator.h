@@ -12,26 +12,27 @@
 
 namespace duet::network {
 
-// What the generator sees of a batch of clips, in the standard coordinates
+// The generator's input for a batch of clips, in the standard coordinates
 // (model/motion/standardise.h).
 struct GeneratorInput {
   torch::Tensor leader;   // [N, T, 3 J] metres, zero-padded
   torch::Tensor labels;   // [N, T, C]
-  torch::Tensor start;    // [N, StartFeatureCount]; read when the architecture has a follower start
+  torch::Tensor start;    // [N, StartFeatureCount]; used only with follower_start
   torch::Tensor lengths;  // [N] int64, valid frames of each clip, 1 to T
 };
 
-// The hierarchical generator: a fully connected layer and a bidirectional LSTM for each body-part
-// slice, attentive bidirectional decoder, linear output.
+// The paper's hierarchical generator: a fully connected layer and a bidirectional LSTM for each
+// body-part slice, an attentive bidirectional decoder, and a linear output.
 //
 // Source:  paper sections 3.1 and 3.2. Deviations: attention over padding is masked; no softmax on
 //          the output; the whole-body slice may also read the follower's start.
-// Shapes:  forward returns the follower [N, T, 3 J]; frames past a clip's length are meaningless.
+// Shapes:  forward returns the follower [N, T, 3 J]; frames past a clip's length are undefined.
 // Units:   metres.
 // Threads: forward is safe to call concurrently in evaluation mode.
 class GeneratorImpl : public torch::nn::Module {
  public:
-  // Randomly initialised, or filled from a checkpoint with LoadParameters.
+  // Initialises randomly; LoadParameters fills it from a checkpoint. Requires a manifest with a
+  // PaperArchitecture.
   explicit GeneratorImpl(const checkpoint::Manifest& manifest);
 
   torch::Tensor forward(const GeneratorInput& input);
@@ -39,18 +40,18 @@ class GeneratorImpl : public torch::nn::Module {
   // The concatenated encoder output h_t, [T, N, S 2 E]: the paper's latent space (Figures 6, 7).
   torch::Tensor Encode(const GeneratorInput& input);
 
-  // Shares dropped in training mode: of the slices' features, and of the encoders' output h_t and
-  // the decoder's states.
+  // Dropout probabilities in training mode: of the slices' features, and of the encoders' output
+  // h_t and the decoder's states.
   void set_dropout(double slices, double encoded) {
     slice_dropout_ = slices;
     encoded_dropout_ = encoded;
   }
 
-  // Sets the mean pose of every class that the output adds to. Shapes: means [C, 3 J]. Requires an
-  // architecture with base_pose.
+  // Sets the mean pose of each class, to which the output adds. Shapes: means [C, 3 J]. Requires
+  // base_pose.
   void SetBasePoses(const torch::Tensor& means);
 
-  // The parameters by the names of ExpectedTensors: views to read and to fill in, without gradient.
+  // All tensors by their names in ExpectedTensors: views without gradient, to read or to fill.
   std::map<std::string, torch::Tensor> tensors() const {
     return ViewsByName(parameters_, slice_shapes_);
   }

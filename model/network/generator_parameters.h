@@ -12,11 +12,12 @@
 
 namespace duet::network {
 
-// The generator's parameters in the form that it computes with: both directions, forward first, and
-// where it pays all slices, in one tensor. Sizes as in ExpectedTensors: E encoder units, S slices,
-// A attention rows, H = S E decoder units, J joints, C classes.
+// The parameters of the paper's generator in their computing layout: both directions in one tensor,
+// forward first, and all slices in one tensor where that is faster. Sizes: E encoder units, S
+// slices, A attention rows, H = S E decoder units, J joints, C classes.
 //
-// Biases and other vectors are flat, [2 x], so that an optimiser tells them from matrices.
+// Biases and other vectors are flat, [2 x], so that an optimiser can distinguish them from
+// matrices.
 struct GeneratorParameters {
   struct Slice {
     torch::Tensor fc_weight;  // [features, input]; undefined without the layer, as fc_bias
@@ -42,15 +43,15 @@ struct GeneratorParameters {
   torch::Tensor base_bias;      // [3 J]; undefined without base pose
 };
 
-// Randomly initialised, from LibTorch's generator of random numbers.
+// Initialises randomly, with LibTorch's random number generator.
 GeneratorParameters MakeParameters(const checkpoint::Manifest& manifest);
 
-// Every tensor of ExpectedTensors by its name there: views into the parameters, without gradient.
+// All tensors by their names in ExpectedTensors: views into the parameters, without gradient.
 std::map<std::string, torch::Tensor> ViewsByName(const GeneratorParameters& parameters,
                                                  const std::vector<checkpoint::SliceShape>& slices);
 
-// The defined ones as a module registers them, with a name each and to be replaced by what it
-// registers.
+// The defined tensors with the names that a module registers them by. The module replaces each by
+// the registered tensor.
 std::vector<std::pair<std::string, torch::Tensor*>> Registered(GeneratorParameters* parameters);
 
 }  // namespace duet::network

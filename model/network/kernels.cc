@@ -67,8 +67,8 @@ DUET_INLINE void Attend(int frames, int valid, int attention, const S* encoded, 
   for (int j = 0; j < valid; ++j) {
     const S* __restrict in = encoded + static_cast<ptrdiff_t>(j) * attention;
     S* __restrict out = tanh_out + static_cast<ptrdiff_t>(j) * attention;
-    // A fixed number of partial sums: the order of additions, and so the result, does not depend
-    // on the compiler's choice of vector width.
+    // A fixed number of partial sums, so that the order of additions, and the result, does not
+    // depend on the compiler's vector width.
     constexpr int kLanes = 16;
     S sums[kLanes] = {};
     int a = 0;

@@ -1,8 +1,8 @@
 #ifndef DUET_MODEL_NETWORK_KERNELS_H_
 #define DUET_MODEL_NETWORK_KERNELS_H_
 
-// The inner loops of the recurrent layers, free of LibTorch. Every kernel exists for float (what
-// runs) and double (what gradient checks use).
+// The inner loops of the recurrent layers, free of LibTorch. Every kernel exists for float (used in
+// production) and double (used by gradient checks).
 
 namespace duet::network {
 

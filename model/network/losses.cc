@@ -41,7 +41,7 @@ torch::Tensor BoneLengths(const torch::Tensor& motion, const std::vector<motion:
                 joints.index_select(2, torch::tensor(parents)));
 }
 
-// [N, T - gap]: how far the joints move in `gap` frames, summed.
+// [N, T - gap]: the sum of the distances that the joints move in `gap` frames.
 torch::Tensor Moved(const torch::Tensor& motion, int64_t gap) {
   const torch::Tensor joints = Joints(motion);
   const int64_t frames = motion.size(1) - gap;
@@ -67,7 +67,7 @@ torch::Tensor NormLoss(const torch::Tensor& predicted, const torch::Tensor& real
 
 torch::Tensor BoneLoss(const torch::Tensor& predicted, const torch::Tensor& real,
                        const torch::Tensor& lengths, const std::vector<motion::Bone>& bones) {
-  // Padding has bones of length 0: divide by 1 there instead.
+  // Bones of padding have length 0: divide by 1 instead.
   const torch::Tensor mask = Mask(real, lengths);
   const torch::Tensor wanted = BoneLengths(real, bones);
   const torch::Tensor divisor =

@@ -8,7 +8,7 @@
 #include "model/motion/skeleton.h"
 
 // One equation, one function. Motions are [N, T, 3 J] in the standard coordinates, lengths [N]
-// int64; padded frames count for nothing. Every loss is a scalar.
+// int64. Padded frames are ignored. Every loss is a scalar.
 namespace duet::network {
 
 // Mean over the valid frames of sum over the coordinates of |x^ - x|.

@@ -101,7 +101,7 @@ class LstmFunction : public torch::autograd::Function<LstmFunction> {
                          d_hidden.data_ptr<scalar_t>(), d_cell.data_ptr<scalar_t>(),
                          d_gates.data_ptr<scalar_t>());
     });
-    // All steps at once: one product instead of one a step.
+    // One product over all steps instead of one per step.
     const at::Tensor before =
         at::cat({hidden0.unsqueeze(0), hidden.narrow(0, 0, sizes.steps - 1)}, 0);
     const at::Tensor d_weight = at::bmm(ByGroup(d_gates).transpose(1, 2), ByGroup(before));

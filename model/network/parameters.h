@@ -12,8 +12,8 @@
 
 namespace duet::network {
 
-// Copies a checkpoint's tensors into those of a generator made from the same manifest, which
-// `tensors` views. INVALID_ARGUMENT names a tensor that is missing or of another shape.
+// Copies a checkpoint's tensors into `tensors`, views of those of a generator with the same
+// manifest. INVALID_ARGUMENT names a tensor that is missing or has another shape.
 absl::Status LoadTensors(const checkpoint::Checkpoint& checkpoint,
                          std::map<std::string, torch::Tensor> tensors);
 
@@ -21,7 +21,7 @@ absl::Status LoadTensors(const checkpoint::Checkpoint& checkpoint,
 std::vector<checkpoint::Tensor> StoreTensors(const checkpoint::Manifest& manifest,
                                              const std::map<std::string, torch::Tensor>& tensors);
 
-// The same for a generator: the paper's (Generator) or the sampling one (FlowGenerator).
+// The same for a generator module of any architecture.
 template <typename AnyGenerator>
 absl::Status LoadParameters(const checkpoint::Checkpoint& checkpoint, AnyGenerator& generator) {
   return LoadTensors(checkpoint, generator->tensors());

@@ -5,8 +5,9 @@
 
 namespace duet::network {
 
-// How many threads LibTorch runs one operation on. Once, at start, before any other use.
-// Errors: INTERNAL where LibTorch cannot find out about the processor: it reads /proc/cpuinfo.
+// Sets the number of threads on which LibTorch runs one operation. Call it once, before any other
+// use of LibTorch. Errors: INTERNAL if LibTorch cannot identify the processor (it reads
+// /proc/cpuinfo).
 absl::Status SetThreads(int threads);
 
 }  // namespace duet::network

@@ -9,8 +9,9 @@
 
 namespace duet::torch_engine {
 
-// The generator of a checkpoint, run with LibTorch on the CPU. INVALID_ARGUMENT names a tensor that
-// is missing or of another shape. LibTorch's exceptions stop in here.
+// Runs the generator of a checkpoint, of any architecture, with LibTorch on the CPU.
+// INVALID_ARGUMENT names a tensor that is missing or has another shape. LibTorch's exceptions
+// become INTERNAL.
 absl::StatusOr<std::unique_ptr<const engine::Network>> MakeTorchNetwork(
     const checkpoint::Checkpoint& checkpoint);
 

@@ -45,7 +45,7 @@ absl::Status SetTorchThreads(int threads) {
   absl::Status status = network::SetThreads(threads);
   if (!status.ok()) return status;
   return network::CatchExceptions([] {
-    // LibTorch lets this one be set only once.
+    // LibTorch allows setting this only once.
     if (torch::get_num_interop_threads() != 1) torch::set_num_interop_threads(1);
     return absl::OkStatus();
   });

@@ -22,14 +22,14 @@ absl::StatusOr<std::unique_ptr<engine::Synthesizer>> MakeTorchSynthesizer(
 absl::StatusOr<std::unique_ptr<engine::Synthesizer>> LoadTorchSynthesizer(
     const std::filesystem::path& folder, const engine::PipelineOptions& options = {});
 
-// The checkpoints linked into the program, the default model first.
+// Synthesizers of the embedded checkpoints, the default model first.
 absl::StatusOr<std::vector<std::unique_ptr<engine::Synthesizer>>> LoadEmbeddedSynthesizers(
     const engine::PipelineOptions& options = {});
 
-// LibTorch's and OpenBLAS's threads for one call of Synthesize. Once, at start, before any other
-// use. Workers times this should not exceed the cores: on the network's small steps two threads
-// that contend are several times slower than one. INTERNAL where LibTorch cannot find out about the
-// processor.
+// Sets the threads of LibTorch and OpenBLAS for one call of Synthesize. Call it once, before any
+// other use of LibTorch. The number of workers times `threads` should not exceed the cores: with
+// the small steps of these networks, two contending threads are several times slower than one.
+// INTERNAL if LibTorch cannot identify the processor.
 absl::Status SetTorchThreads(int threads);
 
 }  // namespace duet::torch_engine

@@ -3,7 +3,7 @@
 
 namespace duet::torch_plugin {
 
-// Compilers and settings that lay classes out differently give different ids; so do versions.
+// Identifies the build: versions, compilers and settings that can change the layout of classes.
 inline constexpr char kBuildId[] = DUET_VERSION ", " __VERSION__
 #ifdef NDEBUG
                                                 ", release";

@@ -1,4 +1,4 @@
-// What libduet_torch_engine.so exports.
+// The symbol that libduet_torch_engine.so exports.
 #include "model/torch_engine/torch_synthesizer.h"
 #include "model/torch_plugin/build_id.h"
 #include "model/torch_plugin/torch_plugin.h"

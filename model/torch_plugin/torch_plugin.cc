@@ -12,7 +12,7 @@ namespace duet::torch_plugin {
 namespace {
 
 std::filesystem::path LibraryPath() {
-  // Read once, at start-up, before there are other threads.
+  // Read once at start, before other threads exist.
   if (const char* path = std::getenv("DUET_TORCH_ENGINE"); path != nullptr) return path;  // NOLINT
   std::error_code failed;
   const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", failed);

@@ -11,8 +11,8 @@
 
 namespace duet::torch_plugin {
 
-// The functions of model/torch_engine/torch_synthesizer.h, from a library that is loaded when it is
-// asked for: LibTorch takes 0.4 s and 160 MB, and most servers do without it.
+// The functions of model/torch_engine/torch_synthesizer.h, from a library that is loaded on demand:
+// loading LibTorch takes 0.4 s and 160 MB, and most servers do not use it.
 struct TorchEngine {
   absl::Status (*set_threads)(int threads);
   absl::StatusOr<std::unique_ptr<engine::Synthesizer>> (*load_folder)(
@@ -20,12 +20,13 @@ struct TorchEngine {
   absl::StatusOr<std::vector<std::unique_ptr<engine::Synthesizer>>> (*load_embedded)();
 };
 
-// Loads libduet_torch_engine.so, for good: from $DUET_TORCH_ENGINE, else from ../lib/duet beside
-// the program. NOT_FOUND says what the loader said, FAILED_PRECONDITION that it is another build's.
+// Loads libduet_torch_engine.so and never unloads it: from $DUET_TORCH_ENGINE, else from
+// ../lib/duet beside the program. NOT_FOUND with the loader's message; FAILED_PRECONDITION if it is
+// of another build.
 absl::StatusOr<TorchEngine> Open();
 
-// What the library exports by the name of kSymbol. `build` tells whether both sides are of one
-// build: classes pass between them.
+// The library exports this under the name kSymbol. `build` identifies its build: both sides must
+// have the same one, because they exchange C++ classes.
 inline constexpr char kSymbol[] = "duet_torch_engine";
 struct Exported {
   const char* build;
