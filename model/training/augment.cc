@@ -9,10 +9,10 @@
 namespace duet::training {
 namespace {
 
-constexpr int kMinCropFrames = 10;  // of the shortest captures
+constexpr int kMinCropFrames = 10;  // the length of the shortest captures
 
-// Scales both people about the leader's root, each by a factor of its own, so that the distance
-// between them scales with the follower.
+// Scales both people about the leader's root, each by its own factor. The distance between them
+// therefore scales with the follower.
 void ScaleBodies(int root, double leader_scale, double follower_scale, motion::ClipPair* pair) {
   const int joints = pair->leader.joint_count();
   for (int t = 0; t < pair->leader.frame_count(); ++t) {
@@ -35,14 +35,14 @@ void Turn(double radians, motion::ClipPair* pair) {
   for (motion::Vec3& point : pair->follower.poses.all()) point = RotateY(point, radians);
 }
 
-// About the vertical through the root's place in the first frame: captured hips face up to 30
-// degrees off the partner, those of a clean leader do not.
+// Turns about the vertical through the root's position in the first frame. Captured hips face up to
+// 30 degrees away from the partner; those of a clean leader do not.
 void TurnLeader(int root, double radians, motion::Clip* leader) {
   const motion::Vec3 centre = leader->at(0, root);
   for (motion::Vec3& point : leader->poses.all()) point = centre + RotateY(point - centre, radians);
 }
 
-// A body of slightly other build: the network cannot tell a clip by its leader's.
+// Changes the build slightly, so that the network cannot recognise a clip by its leader's.
 void AddBodyNoise(double deviation, base::Random* random, motion::Clip* clip) {
   std::vector<motion::Vec3> offsets(static_cast<size_t>(clip->joint_count()));
   for (motion::Vec3& offset : offsets) {
@@ -147,7 +147,8 @@ dataset::Sequence Augment(const dataset::Dataset& dataset, const dataset::Sequen
                       static_cast<float>(random->Normal(options.root_distance)),
                   pair);
   }
-  if (options.yaw > 0) Turn(random->Normal(options.yaw), pair);  // the partner's direction stays
+  if (options.yaw > 0)
+    Turn(random->Normal(options.yaw), pair);  // partner_direction does not change
   if (options.leader_yaw > 0) {
     TurnLeader(dataset.skeleton.root, random->Normal(options.leader_yaw), &pair->leader);
   }

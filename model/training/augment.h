@@ -9,7 +9,7 @@
 
 namespace duet::training {
 
-// The joint that takes each joint's place in a mirror: left and right exchanged by name.
+// For each joint, its counterpart in a mirror: left and right exchanged by name.
 std::vector<int> MirroredJoints(const motion::Skeleton& skeleton);
 
 // Reflects both people in the plane x = 0 and exchanges their left and right joints.

@@ -12,12 +12,12 @@
 namespace duet::training {
 namespace {
 
-// Of the squared factors, beside the mean squared error.
+// Penalty on the squared coefficients, relative to the mean squared error.
 constexpr double kPenalty = 0.03;
-// What hardly varies in training says nothing: metres.
+// Minimum deviation, metres: a feature that hardly varies in training has no influence.
 constexpr double kSmallestDeviation = 1e-3;
 
-// One leader: what is seen of the motion, and where the partner is from where the hips face.
+// One leader: the features of the motion, and the partner's direction relative to the hips'.
 struct Sample {
   std::vector<double> features;
   double cosine = 0, sine = 0;
@@ -71,7 +71,7 @@ void MeasureScale(const std::vector<Sample>& samples, engine::DirectionRegressio
   const torch::Tensor features = Rows(rows);
   regression->mean = ToVector(features.mean(0));
   regression->deviation = ToVector(features.std(0, false).clamp_min(kSmallestDeviation));
-  regression->mean.back() = 0;  // the feature that is always 1 stays what it is
+  regression->mean.back() = 0;  // keeps the constant feature 1
   regression->deviation.back() = 1;
 }
 

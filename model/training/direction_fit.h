@@ -9,11 +9,11 @@
 
 namespace duet::training {
 
-// Learns from the training sequences where a leader's partner is: each leader as captured and
-// mirrored, in symmetric classes the follower as another leader. Nothing where no leader's hips
-// have a direction.
+// Fits a regression of the partner's direction on the leader's motion. The training set is each
+// leader as captured and mirrored; in symmetric classes the follower is another leader. Returns
+// nothing if no leader's hips have a direction.
 //
-// Source: ridge regression in closed form; the penalty was chosen on SBU, people left out.
+// Source: ridge regression in closed form; the penalty was chosen on SBU with held-out people.
 std::optional<engine::DirectionRegression> FitPartnerDirection(const dataset::Dataset& dataset,
                                                                const std::vector<int>& train);
 

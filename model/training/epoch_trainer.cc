@@ -9,7 +9,7 @@
 namespace duet::training {
 namespace {
 
-// Of the state file. 2: the generator's parameters stacked.
+// Version of the state file. 2: the generator's parameters are stacked.
 constexpr int64_t kStateVersion = 2;
 
 std::vector<torch::Tensor> Copies(const std::vector<torch::Tensor>& tensors) {
@@ -64,7 +64,7 @@ EpochReport EpochTrainer::RunEpoch() {
   EpochReport report;
   report.epoch = epoch_ + 1;
   report.epochs = options_.epochs;
-  // Dropout draws from LibTorch's generator: seeded by epoch, so that a resumed run draws the same.
+  // Dropout uses LibTorch's random numbers. Seeding by epoch makes a resumed run draw the same.
   torch::manual_seed(options_.seed * 1000003 + static_cast<uint64_t>(epoch_));
   generator_->train();
   TrainEpoch(epoch_ * steps_per_epoch(), &report);
@@ -103,7 +103,7 @@ void EpochTrainer::CopyBest(torch::nn::Module* generator) const {
   generator->eval();
 }
 
-// What a saved state must agree with.
+// A saved state is only valid for a run with the same identity.
 std::string EpochTrainer::Identity() const {
   return absl::StrCat(SerializeManifest(manifest_),
                       absl::StrJoin(Describe(options_), "\n", absl::PairFormatter("=")), "\n",

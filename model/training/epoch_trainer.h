@@ -16,24 +16,24 @@
 
 namespace duet::training {
 
-// The mean of every loss over an epoch, unweighted; validation figures are NaN when there is none.
+// The mean of each loss over an epoch, unweighted. Without validation its figures are NaN.
 struct EpochReport {
   int64_t epoch = 0;  // from 1
   int64_t epochs = 0;
   double generator = 0;  // the weighted sum
   double reconstruction = 0;
   double bone = 0;
-  double continuity = 0;  // of a sampling generator: the error of what moves from frame to frame
+  double continuity = 0;  // sampling generator: error of differences of successive frames
   double adversarial = 0;
   double discriminator = 0;
   double validation_afd = 0;       // metres, without a follower start
-  double validation_afd_pose = 0;  // told the follower's first pose; NaN where a model takes none
+  double validation_afd_pose = 0;  // with the follower's first pose; NaN if the model accepts none
   double seconds = 0;
 };
 
-// Trains a generator, epoch by epoch. Every epoch is a function of the state before it, the options
-// and the data alone: a run that was stopped and resumed equals one that was not, bit for bit on
-// one thread. What is trained, and how, is the derived class's.
+// Trains a generator, epoch by epoch. Every epoch depends only on the state before it, the options
+// and the data: on one thread, a run that was stopped and resumed is bit-identical to one that was
+// not. The derived class defines the generator and its losses.
 //
 // Threads: not safe to call concurrently.
 class EpochTrainer {
@@ -46,7 +46,7 @@ class EpochTrainer {
   EpochTrainer(const EpochTrainer&) = delete;
   EpochTrainer& operator=(const EpochTrainer&) = delete;
 
-  // Epochs done so far.
+  // Number of completed epochs.
   int64_t epoch() const { return epoch_; }
   // True when all epochs are done or validation has stopped improving.
   bool Finished() const;
@@ -54,31 +54,32 @@ class EpochTrainer {
   EpochReport RunEpoch();
 
   // Saves and restores everything that the next epoch depends on. A state of other options, data
-  // or version is FAILED_PRECONDITION. The file is this machine's own, never a checkpoint to pass
-  // around.
+  // or version is FAILED_PRECONDITION. The file is trusted: load only files of your own runs.
   absl::Status SaveState(const std::filesystem::path& file);
   absl::Status LoadState(const std::filesystem::path& file);
 
-  // The generator to keep, in the order of ExpectedTensors: of the best validated epoch, or the
-  // last; averaged when so configured.
+  // The resulting generator, in the order of ExpectedTensors: that of the epoch with the best
+  // validation error, or without validation of the last epoch; averaged if so configured.
   virtual std::vector<checkpoint::Tensor> BestTensors() = 0;
 
  protected:
-  // Takes the generator to train, initialised; called once, by the derived class's constructor.
+  // Sets the generator to train, already initialised. The derived class's constructor calls it
+  // once.
   void Begin(torch::nn::Module* generator);
 
-  // One epoch's steps, from step number `first_step` on. Calls UpdateAverage after each.
+  // Runs the steps of one epoch, from step number `first_step` on, and calls UpdateAverage after
+  // each.
   virtual void TrainEpoch(int64_t first_step, EpochReport* report) = 0;
   virtual int64_t steps_per_epoch() const = 0;
-  // The error of the generator's answer to a captured example, AFD in metres.
+  // The error of the generator's answer to a captured example: AFD, metres.
   virtual double ValidationError(const Example& example) = 0;
-  // What is saved and restored beside the generator, its average and the best one.
+  // State to save and restore in addition to the generator, its average and the best one.
   virtual std::vector<std::pair<std::string, torch::Tensor>> MoreTensors() { return {}; }
   virtual std::vector<std::pair<std::string, torch::optim::Optimizer*>> StateOptimisers() = 0;
 
-  // Moves the average towards the parameters: it keeps the share `decay`.
+  // Moves the average towards the parameters: it keeps the fraction `decay`.
   void UpdateAverage(double decay);
-  // Writes the parameters to keep into a generator of the same manifest.
+  // Copies the resulting parameters into a generator of the same manifest.
   void CopyBest(torch::nn::Module* generator) const;
 
   const TrainingOptions& options_;

@@ -8,19 +8,19 @@
 
 namespace duet::training {
 
-// What of the follower's first frame a clip is told.
+// The known part of the follower's first frame.
 enum class StartKnowledge { kNone, kRoot, kPose };
 
-// One training clip: a sequence, what is asked for and what should be answered.
+// One training clip: a sequence, the conditions and the target.
 struct Example {
   dataset::Sequence sequence;
   StartKnowledge start = StartKnowledge::kNone;
   std::vector<float> weights;  // [classes], the label vector
   motion::Poses target;        // [frames, joints], world metres
-  bool single = true;          // the label vector is the sequence's class alone
+  bool single = true;          // the only label is the sequence's class
 };
 
-// A sequence asked for what was captured.
+// A sequence with its own class as label and its captured follower as target.
 Example CapturedExample(const dataset::Dataset& dataset, dataset::Sequence sequence,
                         StartKnowledge start);
 

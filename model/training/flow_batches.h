@@ -10,10 +10,10 @@
 
 namespace duet::training {
 
-// One step's clips for the sampling generator.
+// The clips of one training step of the sampling generator.
 struct FlowBatch {
   network::FlowInput input;
-  torch::Tensor labels;  // [N, C] the class, or zeros where it is withheld
+  torch::Tensor labels;  // [N, C] the class, or zeros if it is withheld
   torch::Tensor target;  // [N, T, 3 J] offsets from input.base, in offset_scale metres
 };
 
@@ -25,9 +25,9 @@ struct FlowExample {
 FlowExample MakeFlowExample(const checkpoint::Manifest& manifest, const dataset::Dataset& dataset,
                             const Example& example, double smoothing);
 
-// The batches of one epoch: every training sequence once in every pass, augmented, told nothing,
-// the root, the first pose or several frames. Depends on options, data and epoch alone.
-// Shapes: base_poses [C, 3 J]. Requires options.flow.
+// The batches of one epoch: every training sequence once in every pass, augmented, with no start,
+// the root, the first pose or several known frames. Depends only on options, data and epoch.
+// Shapes: base_poses [C, 3 J]. Requires a FlowTraining.
 std::vector<FlowBatch> SampleFlowEpoch(const checkpoint::Manifest& manifest,
                                        const dataset::Dataset& dataset,
                                        const torch::Tensor& base_poses,

@@ -10,15 +10,16 @@
 
 namespace duet::training {
 
-// What the sampling generator takes from the training followers as it is, each of them counted as
-// captured and mirrored.
+// The tensors of the sampling generator that are measured on the training followers, each of them
+// counted as captured and mirrored.
 struct FlowStatistics {
-  torch::Tensor base_poses;   // [C, 3 J] mean pose of each class, metres
-  torch::Tensor noise_roots;  // [2, 3 J, 3 J] symmetric roots of the mean square of the offsets, in
-                              // offset_scale metres, from the class's mean pose and from the first
+  torch::Tensor base_poses;  // [C, 3 J] mean pose of each class, metres
+  torch::Tensor
+      noise_roots;  // [2, 3 J, 3 J] symmetric roots of the mean square of the offsets, in
+                    // offset_scale metres: from the class's mean pose, from the first pose
 };
 
-// Requires manifest.flow. `smoothing` as TrainingOptions::Flow::target_smoothing.
+// Requires a FlowArchitecture. `smoothing`: see FlowTraining::target_smoothing.
 FlowStatistics MeasureFollowers(const checkpoint::Manifest& manifest,
                                 const dataset::Dataset& dataset, const std::vector<int>& train,
                                 double smoothing);

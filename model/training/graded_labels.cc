@@ -9,10 +9,10 @@ namespace duet::training {
 namespace {
 
 constexpr double kGraded = 0.30, kNegative = 0.15, kOtherAvoided = 0.10;  // the rest is mixed
-constexpr double kMixWithoutOwn = 0.3;  // of the mixed: the other class alone
+constexpr double kMixWithoutOwn = 0.3;  // of the mixed: only the other class
 constexpr double kLargestOwn = 1.5, kLargestOther = 1.2;
 
-// A bound on tries instead of a list of candidates: no class is rare.
+// Rejection sampling with a limit on tries is enough, because no class is rare.
 constexpr int kTries = 64;
 
 const dataset::Sequence* DrawOther(const std::vector<dataset::Sequence>& pool,
@@ -25,7 +25,7 @@ const dataset::Sequence* DrawOther(const std::vector<dataset::Sequence>& pool,
   return nullptr;
 }
 
-// Where a sequence happens: the leader's first root and the yaw of its frame.
+// The place of a sequence: the leader's first root and the yaw of its frame.
 struct Place {
   motion::Vec3 origin;
   double yaw;
@@ -39,14 +39,14 @@ Place PlaceOf(const dataset::Dataset& dataset, const dataset::Sequence& sequence
           WindowStandardisation(dataset.skeleton, window).yaw()};
 }
 
-// The first pose, held.
+// The first pose in all frames.
 motion::Poses Still(const motion::Poses& follower) {
   motion::Poses still(0, follower.joint_count());
   for (int t = 0; t < follower.frame_count(); ++t) still.Append(follower[0]);
   return still;
 }
 
-// The follower of `other` played in the length and place of `sequence`.
+// The follower of `other`, resampled to the length and moved to the place of `sequence`.
 motion::Poses Borrow(const dataset::Dataset& dataset, const dataset::Sequence& other,
                      const dataset::Sequence& sequence, bool begin_at_pose) {
   const int joints = dataset.skeleton.joint_count();

@@ -17,7 +17,7 @@ using Replacements = std::vector<std::pair<std::string, std::string>>;
 constexpr int kMaxDepth = 4;
 constexpr size_t kMaxName = 64;
 
-// A base and what to change in it.
+// Parses a base and the changes to it.
 absl::StatusOr<TrainingOptions> ParseDerived(const json& value, const Replacements& replacements) {
   base::ObjectReader reader(value, "");
   const std::string name = reader.String("base", kMaxName);

@@ -19,12 +19,12 @@ struct NamedConfig {
 
 const std::vector<NamedConfig>& NamedConfigs();
 
-// The named configuration, or null.
+// The configuration of this name, or null.
 const NamedConfig* FindConfig(std::string_view name);
 
-// Parses a configuration in either form: every setting (ParseTrainingOptions), or what differs from
-// a named one: {"base": "default", "set": {"losses.bone": 0}}. `replacements` come last. Errors:
-// INVALID_ARGUMENT naming the field.
+// Parses a configuration in either form: all settings (ParseTrainingOptions), or the differences
+// from a named one: {"base": "default", "set": {"losses.bone": 0}}. `replacements` are applied
+// last. Errors: INVALID_ARGUMENT naming the field.
 absl::StatusOr<TrainingOptions> ParseConfig(
     std::string_view json,
     const std::vector<std::pair<std::string, std::string>>& replacements = {});

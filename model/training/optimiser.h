@@ -10,9 +10,9 @@
 
 namespace duet::training {
 
-// The learning rate at a step as a share of the largest one. "one_cycle" rises over the first fifth
-// of the run from 1/25 and falls to almost nothing, both along a half cosine (Smith, Topin 2018).
-// "cosine" rises linearly over the warm-up steps and falls along a half cosine to the last share.
+// The learning rate at a step as a fraction of the maximum. "one_cycle" rises over the first fifth
+// of the run from 1/25 and falls to almost 0, both along a half cosine (Smith, Topin 2018).
+// "cosine" rises linearly over the warm-up steps and falls along a half cosine to last_share.
 double ScheduleFactor(const TrainingOptions::Optimiser& options, int64_t step, int64_t steps);
 
 // Adam with decoupled weight decay of matrices, or RMSprop, on a schedule; clips gradients.

@@ -13,9 +13,9 @@
 namespace duet::training {
 
 // One training run and its folder:
-//   state         everything to go on from after the last finished epoch
-//   log.csv       one row an epoch
-//   checkpoint/   the result, <name>/<version>/, once the run has finished
+//   state         the state after the last completed epoch, to resume from
+//   log.csv       one row per epoch
+//   checkpoint/   the result, <name>/<version>/, after the run has finished
 struct RunPlan {
   TrainingOptions options;
   std::string model_name;
@@ -26,16 +26,17 @@ struct RunPlan {
   std::vector<int> train;  // sequences of the data set
 };
 
-// Runs to the end, or goes on where a killed run left off; returns at once when the run has already
-// finished. Progress goes to `progress`: a line rewritten in place on a terminal.
+// Runs to the end, resuming a run that was killed. Returns immediately if the run has already
+// finished. Writes progress to `progress`; on a terminal, it rewrites one line.
 absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& dataset, bool terminal,
                          std::ostream* progress);
 
-// Prepares the whole process for training: LibTorch's threads, and memory kept between steps.
-// Results repeat bit for bit with one. INTERNAL where LibTorch cannot find out about the processor.
+// Prepares the whole process for training: sets LibTorch's threads, and keeps memory between steps.
+// Results are bit-identical between runs only with one thread. INTERNAL if LibTorch cannot identify
+// the processor.
 absl::Status SetTrainingThreads(int threads);
 
-// Where a finished run's checkpoint is.
+// The folder of a finished run's checkpoint.
 std::filesystem::path CheckpointFolder(const RunPlan& plan);
 
 }  // namespace duet::training

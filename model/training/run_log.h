@@ -11,7 +11,8 @@
 namespace duet::training {
 
 // Appends one row for each epoch to a CSV file; a new file starts with the column names. Rows of
-// epochs after `epoch` (left by a run that was killed before it saved its state) are dropped.
+// epochs after `epoch`, which a run wrote before it was killed without saving its state, are
+// dropped.
 class RunLog {
  public:
   explicit RunLog(std::filesystem::path file) : file_(std::move(file)) {}

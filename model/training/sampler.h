@@ -13,19 +13,19 @@
 
 namespace duet::training {
 
-// One step's clips.
+// The clips of one training step of the paper's generator.
 struct TrainingBatch {
   network::GeneratorInput input;
-  torch::Tensor target;    // [N, T, 3 J] wanted of the generator; standard coordinates, zero-padded
-  torch::Tensor follower;  // [N, T, 3 J] captured: the same but for graded labels
-  torch::Tensor classes;   // [N] int64
-  torch::Tensor single_rows;  // [M] int64, the clips whose label is their class alone
+  torch::Tensor target;       // [N, T, 3 J] the wanted answer; standard coordinates, zero-padded
+  torch::Tensor follower;     // [N, T, 3 J] captured; equals target without graded labels
+  torch::Tensor classes;      // [N] int64
+  torch::Tensor single_rows;  // [M] int64, the clips whose only label is their class
 };
 
-// A sequence as the network is given it: the window that a server would make of it.
+// The window that a server would make of an example.
 engine::SynthesisWindow MakeWindow(const dataset::Dataset& dataset, const Example& example);
 
-// What a clip's start tells, by the shares of `start`.
+// Draws the follower start of a clip by the probabilities of `start`.
 StartKnowledge DrawStart(const TrainingOptions::Start& start, base::Random* random);
 
 // Every training sequence, augmented.
@@ -33,8 +33,8 @@ std::vector<dataset::Sequence> AugmentAll(const dataset::Dataset& dataset,
                                           const std::vector<int>& train,
                                           const TrainingOptions& options, base::Random* random);
 
-// Indices of sequences by batch, in random order: sequences of like length together, batches that
-// differ by at most one in size.
+// Batches of indices of sequences, in random order. Sequences of similar length are in one batch,
+// and the sizes of batches differ by at most one.
 std::vector<std::vector<int>> BatchesByLength(const std::vector<dataset::Sequence>& sequences,
                                               int64_t batch, base::Random* random);
 
@@ -42,8 +42,8 @@ std::vector<std::vector<int>> BatchesByLength(const std::vector<dataset::Sequenc
 TrainingBatch MakeBatch(const checkpoint::Manifest& manifest, const dataset::Dataset& dataset,
                         const std::vector<Example>& examples);
 
-// The batches of one epoch: every training sequence once, augmented, clips of like length together.
-// Depends on options, data and epoch alone.
+// The batches of one epoch: every training sequence once, augmented, clips of similar length
+// together. Depends only on options, data and epoch. Requires a PaperTraining.
 std::vector<TrainingBatch> SampleEpoch(const checkpoint::Manifest& manifest,
                                        const dataset::Dataset& dataset,
                                        const std::vector<int>& train,
