@@ -12,7 +12,7 @@
 
 namespace duet::checkpoint {
 
-// A generator at rest: data only, never code.
+// A generator as a file holds it: data only, no code.
 struct Checkpoint {
   Manifest manifest;
   std::vector<Tensor> tensors;  // in the order of ExpectedTensors(manifest)
@@ -23,17 +23,17 @@ struct Checkpoint {
 absl::StatusOr<Checkpoint> ParseCheckpoint(std::string_view manifest_json,
                                            std::string_view weights);
 
-// Reads <folder>/manifest.json and the weights beside it. Refuses symbolic links, names that leave
-// the folder, files over the size cap. NOT_FOUND when a file is absent.
+// Reads <folder>/manifest.json and the weights beside it. Rejects symbolic links, names outside the
+// folder and files over the maximum size. NOT_FOUND if a file is absent.
 absl::StatusOr<Checkpoint> ReadCheckpoint(const std::filesystem::path& folder);
 
-// Whether WriteCheckpoint would take a manifest, its weights and time aside: to know before a long
-// training rather than after it.
+// Returns the error that WriteCheckpoint would return for this manifest, ignoring its weights and
+// time. Lets a long training run fail before it starts.
 absl::Status CheckManifest(Manifest manifest);
 
-// Writes a checkpoint folder, model card included, whole or not at all (a temporary folder, then a
-// rename); fills in manifest.weights and an empty manifest.created. Refuses what ReadCheckpoint
-// would refuse, with its message. ALREADY_EXISTS when the folder exists.
+// Writes a checkpoint folder with its model card atomically (a temporary folder, then a rename).
+// Sets manifest.weights, and manifest.created if it is empty. Returns the errors that
+// ReadCheckpoint would return for the result. ALREADY_EXISTS if the folder exists.
 absl::Status WriteCheckpoint(const std::filesystem::path& folder, Checkpoint checkpoint);
 
 }  // namespace duet::checkpoint

@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-// Far above any fit; what is read must not overflow when it is multiplied and added.
+// Far above any fit, and low enough that products and sums cannot overflow.
 constexpr double kLargest = 1e6;
 constexpr double kSmallestDeviation = 1e-6;
 

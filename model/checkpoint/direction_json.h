@@ -8,14 +8,14 @@
 #include "model/engine/direction_estimate.h"
 #include "model/motion/skeleton.h"
 
-// How a leader's motion tells where the partner is, as manifests write it.
+// The regression of the partner's direction on the leader's motion, as manifests store it.
 namespace duet::checkpoint {
 
-// The manifest's field. It may be absent.
+// The field of the manifest, which may be absent.
 inline constexpr char kPartnerDirection[] = "partner_direction";
 
-// Reads the field from the manifest's own reader, which is told what is wrong: lists that are not
-// as long as the skeleton's features, deviations that are not above 0, a skeleton without hips.
+// Reads the field from the reader of the manifest. Records errors in it: lists of another length
+// than the skeleton's features, deviations that are not above 0, a skeleton without hips.
 std::optional<engine::DirectionRegression> ReadDirectionRegression(const motion::Skeleton& skeleton,
                                                                    base::ObjectReader* manifest);
 

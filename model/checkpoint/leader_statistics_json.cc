@@ -15,7 +15,7 @@ using nlohmann::json;
 using nlohmann::ordered_json;
 using Feature = engine::LeaderStatistics::Feature;
 
-// Far beyond any person, well within what squares and sums can hold.
+// Far above any person, and low enough that squares and sums cannot overflow.
 constexpr double kMost = 1e6;
 constexpr double kLeast = 1e-6;
 constexpr std::size_t kMaxNameBytes = 64;

@@ -10,9 +10,9 @@
 
 namespace duet::checkpoint {
 
-// A manifest's field of training leaders:
+// The statistics of the training leaders, as manifests store them:
 //   {"features": [{"name", "mean", "deviation"}, ...], "scale": 1.3}
-// Every feature must be one that the skeleton gives; some may be left out.
+// Every feature must be one of the skeleton; features may be absent.
 inline constexpr char kLeaderStatistics[] = "leader_statistics";
 
 absl::StatusOr<engine::LeaderStatistics> ReadLeaderStatistics(const nlohmann::json& value,

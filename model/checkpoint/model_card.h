@@ -7,12 +7,12 @@
 
 namespace duet::checkpoint {
 
-// The file beside the manifest that tells people what the model is. No program reads it.
+// A description of the model for people, beside the manifest. No program reads it.
 inline constexpr char kModelCardFile[] = "MODEL_CARD.md";
 
-// A model card in Markdown: what the manifest says in the words of a reader, what the model is
-// meant for, its limits, and the terms of its data as a sentence to complete.
-// Requires a manifest that ParseManifest accepts.
+// A model card in Markdown: the content of the manifest, the intended use, the limits, and the
+// terms of the training data as a sentence to complete. Requires a manifest that ParseManifest
+// accepts.
 std::string ModelCard(const Manifest& manifest);
 
 }  // namespace duet::checkpoint

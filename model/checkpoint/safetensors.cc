@@ -1,11 +1,11 @@
-// The published format, less its freedoms:
+// The subset of the published format that this reader accepts:
 //   bytes 0 to 7   header length, unsigned, little-endian; here at most 1 MiB
 //   header         JSON: {"name": {"dtype": "F32", "shape": [..], "data_offsets": [begin, end]},
 //   ..}
 //                  and optionally "__metadata__": {string: string}; padded with spaces
 //   data           the tensors' values, row-major, little-endian; offsets count from here
-// Here every tensor is F32 with no dimension of size 0, the ranges cover the data from first to
-// last byte without a gap or an overlap, and every value is finite.
+// Every tensor is F32 and has no dimension of size 0. The ranges cover the data from the first to
+// the last byte without a gap or an overlap. Every value is finite.
 
 #include "model/checkpoint/safetensors.h"
 
@@ -73,7 +73,7 @@ bool ByteCount(const std::vector<int64_t>& shape, uint64_t* bytes) {
   return true;
 }
 
-// A JSON array of whole numbers, each from `min` up.
+// Reads a JSON array of whole numbers of at least `min`.
 std::vector<int64_t> ReadInts(base::ObjectReader* reader, const std::string& key, int64_t max_count,
                               int64_t min) {
   std::vector<int64_t> numbers;
@@ -143,7 +143,7 @@ absl::StatusOr<std::vector<Entry>> ReadHeader(std::string_view header) {
   return entries;
 }
 
-// Contiguous from the first byte of the data to the last: no byte is unused or used twice.
+// Checks that the ranges are contiguous: no byte of the data is unused or used twice.
 absl::Status CheckRanges(const std::vector<Entry>& entries, uint64_t data_bytes) {
   uint64_t at = 0;
   for (const Entry& entry : entries) {

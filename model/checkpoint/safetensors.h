@@ -20,8 +20,8 @@ struct Tensor {
 };
 
 // Reads and writes the published safetensors format (data only: an 8-byte little-endian header
-// length, a JSON header, the tensors' bytes). Strict where the format is lax: see safetensors.cc.
-// Fails with INVALID_ARGUMENT (DATA_LOSS for truncation), naming the tensor and what was wanted.
+// length, a JSON header, the tensors' bytes). Accepts a strict subset of it: see safetensors.cc.
+// Errors: INVALID_ARGUMENT naming the tensor and what was expected; DATA_LOSS for truncation.
 absl::StatusOr<std::vector<Tensor>> ParseSafetensors(std::string_view bytes);
 std::string SerializeSafetensors(absl::Span<const Tensor> tensors,
                                  const std::map<std::string, std::string>& metadata = {});

@@ -11,12 +11,12 @@
 
 namespace duet::classifier {
 
-// All that a classifier is. Networks of one shape, each trained from a seed of its own; their
+// The content of a classifier: networks of one shape, each trained from its own seed. Their
 // probabilities are averaged.
 //
-// Shapes: F window_frames, H hidden, I = InputParts(kFollower) x 3 joints, C classes; of network n
+// Shapes: F window_frames, H hidden, I = InputParts(kFollower) x 3 joints, C classes. Network n has
 //         the tensors "n.layer1_weight_ih" [2, 4 H, I], "n.layer1_weight_hh" [2, 4 H, H],
-//         "n.layer1_bias" [2, 4 H], the same of layer2 with 2 H in place of I, "n.output.weight"
+//         "n.layer1_bias" [2, 4 H], the same for layer2 with 2 H instead of I, "n.output.weight"
 //         [C, F x 2 H], "n.output.bias" [C]. Both directions, forward first; gates i f g o.
 struct ClassifierParts {
   std::vector<std::string> classes;
@@ -28,25 +28,25 @@ struct ClassifierParts {
   std::vector<checkpoint::Tensor> tensors;
 };
 
-// Tells the class of a follower's motion: the judge of model/evaluation/judge without LibTorch, for
+// Classifies a follower's motion: runs the judge of model/evaluation/judge without LibTorch, for
 // programs that do not link it.
 //
 // Source:  paper sections 3.3 and 4; model/network/discriminator.h has the network in LibTorch.
 // Threads: const methods are safe to call concurrently.
 class Classifier {
  public:
-  // INVALID_ARGUMENT naming the tensor or the field, what came and what was wanted.
+  // Errors: INVALID_ARGUMENT naming the tensor or the field, its value and what was expected.
   static absl::StatusOr<Classifier> Create(ClassifierParts parts);
 
   const ClassifierParts& parts() const { return parts_; }
 
-  // Of a clip longer than the window the mean over its windows, the last one at its end. The pair
-  // may have any rate, and its joints are the skeleton's in its order; one frame at least.
-  // Shapes: returns [classes]; the sum is 1.
+  // The probabilities of the classes. For a clip longer than the window, the mean over its windows;
+  // the last window ends at the clip's end. The pair may have any rate. Requires at least one
+  // frame, and the skeleton's joints in its order. Shapes: returns [classes], with the sum 1.
   std::vector<float> Probabilities(const motion::ClipPair& pair) const;
 
  private:
-  // Of one direction of a layer, inputs outermost.
+  // The weights of one direction of a layer, inputs outermost.
   struct Direction {
     std::vector<float> input;      // [I, 4 H]
     std::vector<float> recurrent;  // [H, 4 H]

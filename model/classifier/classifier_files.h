@@ -10,25 +10,26 @@
 
 namespace duet::classifier {
 
-// A classifier at rest, data alone: a folder of
+// A classifier in a folder, data only:
 //   judge.json           {"format": 1, "classes", "skeleton", "frame_rate_hz", "window_frames",
 //                         "hidden", "networks", "weights_sha256"}
 //   weights.safetensors  the tensors
 //
-// Errors: NOT_FOUND; INVALID_ARGUMENT and DATA_LOSS naming the file, the field, what came and what
-//         was wanted. The files may come from anywhere.
+// Errors: NOT_FOUND; INVALID_ARGUMENT and DATA_LOSS naming the file, the field, its value and what
+// was
+//         expected. The files may be untrusted.
 
 struct StoredClassifier {
   Classifier classifier;
-  std::string sha256;  // of judge.json, which holds that of the weights
+  std::string sha256;  // of judge.json, which contains that of the weights
 };
 absl::StatusOr<StoredClassifier> ReadClassifier(const std::filesystem::path& folder);
 
-// From the two files' contents.
+// Parses the contents of the two files.
 absl::StatusOr<StoredClassifier> ParseClassifier(const std::string& json,
                                                  const std::string& weights);
 
-// Makes the folder.
+// Creates the folder.
 absl::Status WriteClassifier(const std::filesystem::path& folder, const ClassifierParts& parts);
 
 }  // namespace duet::classifier

@@ -10,7 +10,7 @@ namespace {
 
 using motion::StandardOrigin;
 
-// Closer than this the direction from root to root says little: people in a hug.
+// At smaller distances, as in a hug, the direction from root to root is unreliable.
 constexpr float kMinDistanceMetres = 0.3f;
 
 motion::Standardisation Standard(const motion::Skeleton& skeleton, const motion::Poses& leader,
@@ -20,7 +20,7 @@ motion::Standardisation Standard(const motion::Skeleton& skeleton, const motion:
   return {skeleton, leader, motion::YawDirection::kRemove, origin};
 }
 
-// Writes where each joint is, seen from the root, from column `first` on.
+// Writes the positions relative to the root, from column `first` on.
 void PutAboutRoot(const motion::Poses& poses, int root, int first, motion::Poses* input) {
   for (int t = 0; t < poses.frame_count(); ++t) {
     for (int j = 0; j < poses.joint_count(); ++j) {

@@ -6,13 +6,13 @@
 
 namespace duet::embedded {
 
-// A checkpoint linked into the program: what ReadCheckpoint would read from its folder.
+// A checkpoint linked into the program: the content of its files.
 struct EmbeddedCheckpoint {
   std::string_view manifest;  // manifest.json
   std::string_view weights;   // weights.safetensors
 };
 
-// Every checkpoint of model/embedded, the default model first.
+// All checkpoints of model/embedded, the default model first.
 std::vector<EmbeddedCheckpoint> EmbeddedCheckpoints();
 
 }  // namespace duet::embedded
