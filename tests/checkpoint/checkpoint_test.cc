@@ -44,7 +44,7 @@ void ExpectTiny(const Checkpoint& got) {
   EXPECT_EQ(SerializeManifest(manifest), SerializeManifest(wanted.manifest));
 }
 
-// Both files of a checkpoint of these tensors, hash and size right whatever they are.
+// Both files of a checkpoint with these tensors, valid or not, with the correct hash and size.
 absl::StatusOr<Checkpoint> ParseWith(const std::vector<Tensor>& tensors) {
   const std::string weights = SerializeSafetensors(tensors);
   Manifest manifest = TinyManifest();
@@ -68,7 +68,7 @@ TEST_F(CheckpointFolder, RoundTrip) {
   EXPECT_EQ(read->manifest.weights.bytes, fs::file_size(at_ / "weights.safetensors"));
 }
 
-TEST_F(CheckpointFolder, HoldsThreeFilesAndLeavesNothingBeside) {
+TEST_F(CheckpointFolder, WritesThreeFilesAndNoTemporaryOnes) {
   Write();
   EXPECT_EQ(std::distance(fs::directory_iterator(at_), {}), 3);
   EXPECT_EQ(std::distance(fs::directory_iterator(at_.parent_path()), {}), 1);
@@ -99,7 +99,7 @@ TEST_F(CheckpointFolder, WritesNothingThatCannotBeRead) {
   EXPECT_FALSE(fs::exists(at_));
 }
 
-TEST_F(CheckpointFolder, FillsInTheTimeWhenThereIsNone) {
+TEST_F(CheckpointFolder, SetsTheTimeIfItIsEmpty) {
   Checkpoint checkpoint = TinyCheckpoint();
   checkpoint.manifest.created.clear();
   ASSERT_THAT(WriteCheckpoint(at_, checkpoint), IsOk());
@@ -120,7 +120,7 @@ TEST_F(CheckpointFolder, AbsentFilesAreNotFound) {
   EXPECT_THAT(ReadCheckpoint(at_), not_found("manifest.json"));
 }
 
-TEST_F(CheckpointFolder, RefusesSymbolicLinks) {
+TEST_F(CheckpointFolder, RejectsSymbolicLinks) {
   Write();
   fs::create_directory_symlink(at_, folder_ / "link");
   EXPECT_THAT(ReadCheckpoint(folder_ / "link"), Refused("not a symbolic link"));
@@ -135,7 +135,7 @@ TEST_F(CheckpointFolder, RefusesSymbolicLinks) {
   EXPECT_THAT(ReadCheckpoint(at_ / ""), IsOk());
 }
 
-TEST_F(CheckpointFolder, RefusesNamesThatLeaveIt) {
+TEST_F(CheckpointFolder, RejectsNamesOutsideTheFolder) {
   Write();
   std::string text = ReadTestFile(at_ / "manifest.json");
   fs::copy(at_ / "weights.safetensors", at_.parent_path() / "weights.safetensors");
@@ -144,7 +144,7 @@ TEST_F(CheckpointFolder, RefusesNamesThatLeaveIt) {
   EXPECT_THAT(ReadCheckpoint(at_), Refused("weights.file: \"../weights.safetensors\""));
 }
 
-TEST_F(CheckpointFolder, RefusesOversizeFilesUnread) {
+TEST_F(CheckpointFolder, RejectsOversizeFilesWithoutReadingThem) {
   Write();
   fs::resize_file(at_ / "weights.safetensors", kMaxWeightsBytes + 1);
   EXPECT_THAT(ReadCheckpoint(at_), Refused("536870913 bytes, wanted at most 536870912"));
@@ -152,7 +152,7 @@ TEST_F(CheckpointFolder, RefusesOversizeFilesUnread) {
   EXPECT_THAT(ReadCheckpoint(at_), Refused("1048577 bytes, wanted at most 1048576"));
 }
 
-TEST(ParseCheckpoint, ReturnsTensorsInTheTablesOrder) {
+TEST(ParseCheckpoint, ReturnsTensorsInTheOrderOfExpectedTensors) {
   std::vector<Tensor> tensors = TinyCheckpoint().tensors;
   std::reverse(tensors.begin(), tensors.end());
   const absl::StatusOr<Checkpoint> read = ParseWith(tensors);
@@ -160,7 +160,7 @@ TEST(ParseCheckpoint, ReturnsTensorsInTheTablesOrder) {
   ExpectTiny(*read);
 }
 
-TEST(ParseCheckpoint, RefusesAnotherFile) {
+TEST(ParseCheckpoint, RejectsWeightsOfAnotherManifest) {
   const std::string weights = SerializeSafetensors(TinyCheckpoint().tensors);
   Manifest manifest = TinyManifest();
   manifest.weights = {"weights.safetensors", weights.size(), std::string(64, '0')};
@@ -174,27 +174,27 @@ TEST(ParseCheckpoint, RefusesAnotherFile) {
   EXPECT_THAT(ParseCheckpoint(SerializeManifest(manifest), weights), Refused("weights.bytes"));
 }
 
-TEST(ParseCheckpoint, RefusesAMissingTensor) {
+TEST(ParseCheckpoint, RejectsAMissingTensor) {
   std::vector<Tensor> tensors = TinyCheckpoint().tensors;
   tensors.erase(tensors.begin() + 3);
   EXPECT_THAT(ParseWith(tensors),
               Refused("\"encoder.trunk.forward.weight_hh\" is missing, wanted shape [8, 2]"));
 }
 
-TEST(ParseCheckpoint, RefusesAnUnknownTensor) {
+TEST(ParseCheckpoint, RejectsAnUnknownTensor) {
   std::vector<Tensor> tensors = TinyCheckpoint().tensors;
   tensors.push_back({"output.extra", {1}, {0}});
   EXPECT_THAT(ParseWith(tensors), Refused("unknown tensor \"output.extra\""));
 }
 
-TEST(ParseCheckpoint, RefusesAMisshapenTensor) {
+TEST(ParseCheckpoint, RejectsAMisshapenTensor) {
   std::vector<Tensor> tensors = TinyCheckpoint().tensors;
   std::swap(tensors[3].shape[0], tensors[3].shape[1]);
   EXPECT_THAT(ParseWith(tensors), Refused("\"encoder.trunk.forward.weight_hh\" has shape [2, 8], "
                                           "wanted [8, 2]"));
 }
 
-TEST(ParseCheckpoint, RefusesNonFiniteWeights) {
+TEST(ParseCheckpoint, RejectsNonFiniteWeights) {
   std::vector<Tensor> tensors = TinyCheckpoint().tensors;
   tensors.back().values[1] = std::numeric_limits<float>::quiet_NaN();
   EXPECT_THAT(ParseWith(tensors), Refused("\"base.bias\": value 1 is nan"));
@@ -219,7 +219,7 @@ TEST_F(CheckpointFixture, VersionOne) {
   ExpectTiny(*read);
 }
 
-// Not a test: writes the fixture of a new format version, and never over an old one.
+// Not a test: writes the fixture of a new format version. Never overwrites an old one.
 TEST_F(CheckpointFixture, DISABLED_Write) {
   const fs::path folder = fixtures_ / absl::StrCat("v", kCheckpointFormatVersion);
   EXPECT_THAT(WriteCheckpoint(folder, TinyCheckpoint()), IsOk());

@@ -53,7 +53,7 @@ TEST(DirectionManifest, MayBeAbsent) {
   EXPECT_EQ(SerializeManifest(*read), text);
 }
 
-TEST(DirectionManifest, RefusesByName) {
+TEST(DirectionManifest, RejectsByName) {
   const auto refusal = [](const std::string& pointer, const json& value) {
     json root = json::parse(SerializeManifest(DirectedManifest()));
     root[json::json_pointer(pointer)] = value;

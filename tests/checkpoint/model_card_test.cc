@@ -34,7 +34,7 @@ Manifest Trained() {
   return manifest;
 }
 
-TEST(ModelCardTest, TellsWhatTheManifestKnows) {
+TEST(ModelCardTest, ShowsTheContentOfTheManifest) {
   const std::string card = ModelCard(Trained());
   EXPECT_THAT(card, AllOf(HasSubstr("# studio, version 3\n"),
                           HasSubstr("| classes | kick, hug; bodies may touch in hug |"),
@@ -55,7 +55,7 @@ TEST(ModelCardTest, QuotesTheTermsOfTheManifest) {
                                          Not(HasSubstr("complete this sentence"))));
 }
 
-TEST(ModelCardTest, SaysWhatIsNotKnown) {
+TEST(ModelCardTest, StatesWhatIsUnknown) {
   Manifest manifest = Trained();
   manifest.training.erase("people");
   manifest.metrics.clear();
@@ -65,7 +65,7 @@ TEST(ModelCardTest, SaysWhatIsNotKnown) {
                     HasSubstr("Nothing was held back from training")));
 }
 
-TEST(ModelCardTest, LiesBesideTheManifest) {
+TEST(ModelCardTest, IsWrittenBesideTheManifest) {
   const TemporaryFolder folder;
   ASSERT_THAT(WriteCheckpoint(folder / "1", TinyCheckpoint()), IsOk());
   const absl::StatusOr<Checkpoint> read = ReadCheckpoint(folder / "1");
@@ -73,7 +73,7 @@ TEST(ModelCardTest, LiesBesideTheManifest) {
   EXPECT_EQ(ReadTestFile(folder / "1" / kModelCardFile), ModelCard(read->manifest));
 }
 
-TEST(CheckManifestTest, KnowsBeforehandWhatCannotBeWritten) {
+TEST(CheckManifestTest, ReportsWhatWriteCheckpointWouldReject) {
   Manifest manifest = Trained();
   manifest.created.clear();
   EXPECT_THAT(CheckManifest(manifest), IsOk());
@@ -82,7 +82,7 @@ TEST(CheckManifestTest, KnowsBeforehandWhatCannotBeWritten) {
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("repeated")));
 }
 
-TEST(ToPlainNameTest, MakesAnyTextAName) {
+TEST(ToPlainNameTest, TurnsAnyTextIntoAName) {
   EXPECT_EQ(ToPlainName("studio-2.b_c"), "studio-2.b_c");
   EXPECT_EQ(ToPlainName("My studio/2"), "My_studio_2");
   EXPECT_EQ(ToPlainName(".hidden"), "_.hidden");

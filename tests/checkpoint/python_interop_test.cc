@@ -25,7 +25,7 @@ using test::WriteTestFile;
 
 constexpr char kPython[] = "/usr/bin/python3";
 
-// Values that only an exact copy survives: no short decimal form, denormal, negative zero.
+// Values that only an exact copy preserves: no short decimal form, denormal, negative zero.
 std::vector<Tensor> AwkwardTensors() {
   std::vector<Tensor> tensors = TinyCheckpoint().tensors;
   tensors.push_back(
@@ -98,14 +98,14 @@ class PythonInterop : public ::testing::Test {
   std::filesystem::path output_ = folder_ / "output";
 };
 
-TEST_F(PythonInterop, PythonReadsOurFile) {
+TEST_F(PythonInterop, PythonReadsFilesOfTheWriter) {
   WriteTestFile(file_, SerializeSafetensors(AwkwardTensors(), {{"a", "b"}}));
   WriteTestFile(input_, "");
   RunScript("read");
   ExpectSame(FromText(ReadTestFile(output_)), AwkwardTensors());
 }
 
-TEST_F(PythonInterop, WeReadPythonsFile) {
+TEST_F(PythonInterop, ReaderReadsFilesOfPython) {
   WriteTestFile(input_, ToText(AwkwardTensors()));
   RunScript("write");
   const absl::StatusOr<std::vector<Tensor>> tensors = ParseSafetensors(ReadTestFile(file_));

@@ -20,7 +20,7 @@ std::vector<Tensor> TwoTensors() {
   return {{"b", {2, 2}, {1, 2, 3, 4}}, {"a", {3}, {-1, 0.5f, 1e-30f}}};
 }
 
-// A file with this header and as many bytes of zeros as data.
+// A file with this header and this many zero bytes of data.
 std::string File(const std::string& header, std::size_t data_bytes) {
   const uint64_t length = header.size();
   std::string file(8, '\0');
@@ -78,7 +78,7 @@ TEST(Safetensors, TruncatedAtAnyLengthIsDataLoss) {
   }
 }
 
-TEST(Safetensors, RefusesABadHeaderLength) {
+TEST(Safetensors, RejectsABadHeaderLength) {
   std::string file = SerializeSafetensors(TwoTensors());
   file.resize((1 << 20) + 100);
   const uint64_t too_long = (1 << 20) + 1;
@@ -90,7 +90,7 @@ TEST(Safetensors, RefusesABadHeaderLength) {
   EXPECT_THAT(ParseSafetensors(file), Refused("not a JSON object"));
 }
 
-TEST(Safetensors, RefusesNonFiniteValues) {
+TEST(Safetensors, RejectsNonFiniteValues) {
   for (float bad : {std::numeric_limits<float>::quiet_NaN(), HUGE_VALF, -HUGE_VALF}) {
     std::vector<Tensor> tensors = TwoTensors();
     tensors[1].values[2] = bad;
@@ -98,7 +98,7 @@ TEST(Safetensors, RefusesNonFiniteValues) {
   }
 }
 
-TEST(Safetensors, RefusesBytesBehindTheLastTensor) {
+TEST(Safetensors, RejectsBytesAfterTheLastTensor) {
   EXPECT_THAT(ParseSafetensors(SerializeSafetensors(TwoTensors()) + "x"),
               Refused("1 bytes after the last tensor"));
 }
@@ -111,7 +111,7 @@ struct BadHeader {
 
 class SafetensorsHeader : public ::testing::TestWithParam<BadHeader> {};
 
-TEST_P(SafetensorsHeader, IsRefusedByName) {
+TEST_P(SafetensorsHeader, IsRejectedByName) {
   EXPECT_THAT(ParseSafetensors(File(GetParam().header, 8)), Refused(GetParam().why));
 }
 
@@ -180,7 +180,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadHeader{"metadata_not_strings", R"({"__metadata__":{"x":1}})", "__metadata__.x: 1"}),
     [](const ::testing::TestParamInfo<BadHeader>& bad) { return bad.param.what; });
 
-TEST(Safetensors, DeclaringMoreThanIsThereIsDataLoss) {
+TEST(Safetensors, DeclaringMoreBytesThanPresentIsDataLoss) {
   const std::string file = File(R"({"a":{"dtype":"F32","shape":[2305843009213693951],)"
                                 R"("data_offsets":[0,9223372036854775804]}})",
                                 8);

@@ -19,7 +19,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-// Of a model of the classes kick and hug.
+// The manifest of a model with the classes kick and hug.
 Manifest Written() {
   Manifest manifest = TinyManifest();
   manifest.weights.bytes = 1234;
@@ -35,7 +35,7 @@ TEST(TouchingClassesInManifest, RoundTrip) {
   EXPECT_THAT(read->model.touching_classes, ElementsAre("kick"));
 }
 
-TEST(TouchingClassesInManifest, NoneIsNotTheSameAsNotSaid) {
+TEST(TouchingClassesInManifest, EmptyListDiffersFromAnAbsentField) {
   const std::string text = SerializeManifest(Written());
   const absl::StatusOr<Manifest> none = ParseManifest(text);
   ASSERT_THAT(none, IsOk());

@@ -15,7 +15,7 @@ using test::StatusIs;
 using ::testing::_;
 using ::testing::HasSubstr;
 
-TEST(ClassifierFiles, WhatIsWrittenIsReadBack) {
+TEST(ClassifierFiles, RoundTrip) {
   const test::TemporaryFolder folder;
   const ClassifierParts parts = RandomClassifier();
   ASSERT_THAT(WriteClassifier(folder / "judge", parts), IsOk());
@@ -37,7 +37,7 @@ TEST(ClassifierFiles, WhatIsWrittenIsReadBack) {
   }
 }
 
-TEST(ClassifierFiles, WhatIsNoneIsRefused) {
+TEST(ClassifierFiles, RejectsFilesThatAreNoClassifier) {
   const test::TemporaryFolder folder;
   EXPECT_THAT(ReadClassifier(folder / "none"), StatusIs(absl::StatusCode::kNotFound, _));
   ASSERT_THAT(WriteClassifier(folder.path(), RandomClassifier()), IsOk());

@@ -5,8 +5,8 @@
 
 namespace duet::test {
 
-// A small one of SBU's skeleton at 15 Hz, with random networks and a window of 20 frames, that
-// knows "kick" and "hug".
+// A small classifier of "kick" and "hug" for SBU's skeleton at 15 Hz, with random networks and a
+// window of 20 frames.
 classifier::ClassifierParts RandomClassifier(int networks = 2, int hidden = 4);
 
 }  // namespace duet::test

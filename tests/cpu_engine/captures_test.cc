@@ -1,5 +1,5 @@
-// Rounded weights on real leaders: what they change of the answers, and of how far these are from
-// the captured followers.
+// The effect of rounded weights with real leaders: on the answers, and on their distance from the
+// captured followers.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ using engine::Synthesizer;
 using kernels::Precision;
 using test::IsOk;
 
-// The beginning of a capture, as much as the network takes at once.
+// The first window of a capture.
 SynthesisWindow WindowOf(const dataset::Sequence& sequence, const engine::ModelDescription& model,
                          bool tell_pose) {
   const motion::Poses &leader = sequence.pair.leader.poses,
@@ -41,9 +41,9 @@ SynthesisWindow WindowOf(const dataset::Sequence& sequence, const engine::ModelD
   return window;
 }
 
-// Of all answers of a model.
+// The differences in all answers of a model.
 struct Change {
-  float farthest = 0;                 // that a joint moved, metres
+  float farthest = 0;                 // maximum difference of a joint, metres
   double error = 0, exact_error = 0;  // mean distance from the captured follower, metres
 
   double RelativeError() const { return std::abs(error / exact_error - 1); }
@@ -73,7 +73,7 @@ Change ChangeByRounding(const Synthesizer& exact, const Synthesizer& rounded,
 
 void ExpectLittleChange(const char* folder, const std::string& name, bool clean_up) {
   const auto path = test::FindData(folder);
-  // Captures of people may not be given out: parity_test.cc asks the same of a made-up person.
+  // Captures must not be distributed. parity_test.cc tests the same with a synthetic person.
   if (!path) GTEST_SKIP() << test::kNoData;
   const auto data = dataset::ReadDataset(*path);
   ASSERT_THAT(data, IsOk());
@@ -89,19 +89,21 @@ void ExpectLittleChange(const char* folder, const std::string& name, bool clean_
     SCOPED_TRACE(absl::StrCat(model.name, " ", model.version));
     const Change change = ChangeByRounding(*(*exact)[i], *(*rounded)[i], *data);
     EXPECT_LT(change.RelativeError(), 5e-3);
-    // The clean-up decides: whether a foot stands, which way a body gives. A decision that falls
-    // differently moves a joint by centimetres.
+    // The clean-up makes decisions: whether a foot stands, to which side a body moves. A different
+    // decision moves a joint by centimetres.
     if (!clean_up) {
       EXPECT_LT(change.farthest, 2e-3f);
     }
   }
 }
 
-TEST(CapturesTest, RoundingHardlyMovesTheAnswersToSbu) { ExpectLittleChange("sbu", "sbu", false); }
-TEST(CapturesTest, RoundingHardlyMovesTheAnswersToK3hi) {
+TEST(CapturesTest, RoundingChangesAnswersToSbuLittle) { ExpectLittleChange("sbu", "sbu", false); }
+TEST(CapturesTest, RoundingChangesAnswersToK3hiLittle) {
   ExpectLittleChange("k3hi", "k3hi", false);
 }
-TEST(CapturesTest, RoundedAnswersAreAsGoodCleanedUp) { ExpectLittleChange("sbu", "sbu", true); }
+TEST(CapturesTest, RoundingChangesCleanedUpAnswersLittle) {
+  ExpectLittleChange("sbu", "sbu", true);
+}
 
 }  // namespace
 }  // namespace duet::cpu_engine

@@ -10,8 +10,8 @@
 
 namespace duet::cpu_engine {
 
-// A network as training would begin it: weights within +-1/sqrt(inputs), so that nothing saturates
-// however wide it is.
+// A checkpoint with random weights within +-1/sqrt(inputs), as training starts with, so that a
+// network of any width does not saturate.
 inline checkpoint::Checkpoint RandomCheckpoint(checkpoint::Manifest manifest, uint64_t seed) {
   checkpoint::Checkpoint checkpoint{std::move(manifest), {}};
   base::Random random(seed);

@@ -26,7 +26,7 @@ TEST(ScratchTest, PiecesDoNotOverlapAndBeginOnACacheLine) {
   }
 }
 
-TEST(ScratchTest, KeepsWhatTheLargestUseNeededAndNoMore) {
+TEST(ScratchTest, KeepsTheMemoryOfTheLargestUse) {
   Scratch scratch;
   const auto use_of = [&](int pieces) {
     Scratch::Use use(&scratch);

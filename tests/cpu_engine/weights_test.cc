@@ -14,15 +14,15 @@ std::vector<float> Applied(const Layer& layer, const std::vector<float>& x) {
 const Layer kFirst = {{1, 2, 3, 4, 5, 6}, {0.5f, -1, 2}, 3, 2};
 const Layer kSecond = {{1, 0, -1, 2, 1, 0.5f}, {10, 20}, 2, 3};
 
-TEST(WeightsTest, ChainedLayersDoWhatBothDoOneAfterTheOther) {
+TEST(WeightsTest, ChainedLayerEqualsBothLayersInSequence) {
   const std::vector<float> x = {3, -2};
   EXPECT_EQ(Applied(Chained(kFirst, kSecond), x), Applied(kSecond, Applied(kFirst, x)));
-  // Without a bias of its own the second one keeps the first one's.
+  // If the second layer has no bias, the result has that of the first.
   const Layer no_bias = {kSecond.weight, {}, 2, 3};
   EXPECT_EQ(Applied(Chained(kFirst, no_bias), x), Applied(no_bias, Applied(kFirst, x)));
 }
 
-TEST(WeightsTest, StackedLayersAnswerOneBelowTheOther) {
+TEST(WeightsTest, StackedLayerHasTheOutputsOfBoth) {
   const Layer other = {{7, 8}, {9}, 1, 2};
   const std::vector<float> x = {3, -2};
   std::vector<float> expected = Applied(kFirst, x);

@@ -9,7 +9,7 @@ using ::testing::ElementsAre;
 
 std::vector<int> List(const int* values, int count) { return {values, values + count}; }
 
-TEST(WindowBatchTest, LongestFirstEachWindowsFramesOneAfterTheOther) {
+TEST(WindowBatchTest, OrdersWindowsByLengthAndKeepsTheirFramesTogether) {
   std::vector<engine::NetworkInput> inputs(4);
   const int frames[] = {3, 7, 2, 7};
   for (std::size_t i = 0; i < inputs.size(); ++i) inputs[i].leader = motion::Poses(frames[i], 1);

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int64_t kGroups = 2, kBatch = 3, kFrames = 6, kAttention = 19, kHidden = 4, kEncoded = 5;
 
-// The decoder as Eq. 2 and 3 write it.
+// The decoder as in Eq. 2 and 3.
 struct Problem {
   torch::Tensor encoded;  // h [N, T, E]
   torch::Tensor u, v, w1, weight_ih, weight_hh, bias, hidden, cell;

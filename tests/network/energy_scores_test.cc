@@ -7,7 +7,7 @@ namespace {
 
 torch::Tensor Lengths(std::vector<int64_t> lengths) { return torch::tensor(lengths); }
 
-TEST(EnergyScore, IsErrorLessHalfTheSpread) {
+TEST(EnergyScore, IsTheErrorMinusHalfTheSpread) {
   // One clip of two frames; the answers are 3 and 1 to the right of it, 2 apart.
   const torch::Tensor real = torch::zeros({1, 2, 3});
   torch::Tensor answers = torch::zeros({2, 1, 2, 3});
@@ -16,7 +16,7 @@ TEST(EnergyScore, IsErrorLessHalfTheSpread) {
   EXPECT_NEAR(EnergyScores(answers, real, Lengths({2}))[0].item<float>(), 2 - 0.5 * 2, 1e-3);
 }
 
-TEST(EnergyScore, PaddingCountsForNothing) {
+TEST(EnergyScore, IgnoresPadding) {
   const torch::Tensor real = torch::randn({2, 9, 3});
   torch::Tensor answers = torch::randn({2, 2, 9, 3});
   const torch::Tensor lengths = Lengths({9, 8});
@@ -30,7 +30,7 @@ TEST(EnergyScore, PaddingCountsForNothing) {
   EXPECT_TRUE(torch::equal(before, after));
 }
 
-TEST(EnergyScore, IsLeastForAnswersThatSpreadAsTheRealMotionDoes) {
+TEST(EnergyScore, IsSmallestForTheSpreadOfTheRealMotion) {
   torch::manual_seed(3);
   constexpr int64_t kClips = 4000;
   const torch::Tensor real = torch::randn({kClips, 1, 2});
@@ -44,15 +44,15 @@ TEST(EnergyScore, IsLeastForAnswersThatSpreadAsTheRealMotionDoes) {
   EXPECT_LT(score(1), score(2));
 }
 
-TEST(EnergyScore, VelocitiesDoNotSeeWhereAnAnswerIs) {
+TEST(EnergyScore, VelocityScoreIgnoresThePosition) {
   const torch::Tensor real = torch::randn({1, 6, 3});
   const torch::Tensor answers = torch::stack({real + 5, real - 7});
   EXPECT_NEAR(VelocityEnergyScores(answers, real, Lengths({6}))[0].item<float>(), 0, 2e-3);
 }
 
-TEST(EnergyScore, BlocksSeeWhatBelongsTogether) {
-  // Motions that go on as they began, forth or back, and answers that change their mind at every
-  // frame: alike frame by frame, but not together.
+TEST(EnergyScore, BlockScoreMeasuresDependenceOverTime) {
+  // Motions that keep one direction, and answers that change direction at random in every frame:
+  // they are equal frame by frame, but not over time.
   torch::manual_seed(4);
   constexpr int64_t kClips = 2000, kFrames = 7;
   const auto lasting = [&] {
@@ -69,7 +69,7 @@ TEST(EnergyScore, BlocksSeeWhatBelongsTogether) {
             BlockEnergyScores(other, real, lengths, 4).mean().item<float>() - 0.1);
 }
 
-TEST(EnergyScore, AClipTooShortForABlockScoresNothing) {
+TEST(EnergyScore, ClipShorterThanABlockScoresZero) {
   const torch::Tensor real = torch::randn({2, 4, 3}), answers = torch::randn({2, 2, 4, 3});
   EXPECT_EQ(BlockEnergyScores(answers, real, Lengths({4, 3}), 6).abs().sum().item<float>(), 0);
   EXPECT_EQ(BlockEnergyScores(answers, real, Lengths({4, 3}), 3)[1].item<float>(), 0);

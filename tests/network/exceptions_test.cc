@@ -17,20 +17,20 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-TEST(CatchExceptionsTest, GivesWhatTheWorkGives) {
+TEST(CatchExceptionsTest, ReturnsTheStatusOfTheWork) {
   EXPECT_THAT(CatchExceptions([] { return absl::OkStatus(); }), IsOk());
   EXPECT_THAT(CatchExceptions([] { return absl::NotFoundError("no data"); }),
               StatusIs(absl::StatusCode::kNotFound, "no data"));
 }
 
-TEST(CatchExceptionsTest, TellsWhatLibTorchSaysInPlainWords) {
+TEST(CatchExceptionsTest, ReturnsLibTorchsMessageWithoutItsStackTrace) {
   const auto throws = []() -> absl::Status { TORCH_CHECK(false, "no such shape"); };
   EXPECT_THAT(CatchExceptions(throws), StatusIs(absl::StatusCode::kInternal,
                                                 AllOf(HasSubstr("LibTorch failed: no such shape"),
                                                       Not(HasSubstr("frame #")))));
 }
 
-TEST(CatchExceptionsTest, TellsOfOtherExceptionsAsWell) {
+TEST(CatchExceptionsTest, ReturnsOtherExceptions) {
   EXPECT_THAT(CatchExceptions([]() -> absl::Status { throw std::runtime_error("broken"); }),
               StatusIs(absl::StatusCode::kInternal, "broken"));
   EXPECT_THAT(CatchExceptions([]() -> absl::Status { throw std::bad_alloc(); }),

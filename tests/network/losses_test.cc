@@ -9,7 +9,7 @@
 namespace duet::network {
 namespace {
 
-// Two joints, two clips; the second has one frame and padding that must not count.
+// Two joints, two clips; the second has one frame, then padding.
 const torch::Tensor kLengths = torch::tensor({3, 1}, torch::kInt64);
 
 torch::Tensor Zeros() { return torch::zeros({2, 3, 6}); }

@@ -81,7 +81,7 @@ TEST(TorchSynthesizerTest, EmbeddedModelIsTheSixClassesOfSbu) {
   }
 }
 
-TEST(TorchSynthesizerTest, TheDefaultSamplesAndKnowsItsLeaders) {
+TEST(TorchSynthesizerTest, DefaultModelSamplesAndHasLeaderStatistics) {
   const auto all = LoadEmbeddedSynthesizers();
   ASSERT_THAT(all, IsOk());
   const engine::ModelDescription& model = all->front()->description();
@@ -91,7 +91,7 @@ TEST(TorchSynthesizerTest, TheDefaultSamplesAndKnowsItsLeaders) {
   EXPECT_TRUE(model.partner_direction.has_value());
 }
 
-TEST(TorchSynthesizerTest, SeedsNameAnswersAndVarietyZeroHasOne) {
+TEST(TorchSynthesizerTest, AnswerDependsOnTheSeedUnlessVarietyIsZero) {
   const auto model = Embedded(kSampling);
   const auto answer = [&](uint64_t seed, float variety) {
     engine::SynthesisWindow window = MakeWindow(*model, 20);
@@ -103,7 +103,7 @@ TEST(TorchSynthesizerTest, SeedsNameAnswersAndVarietyZeroHasOne) {
   EXPECT_EQ(answer(7, 0), answer(8, 0));
 }
 
-TEST(TorchSynthesizerTest, K3hiIsEmbeddedBesideIt) {
+TEST(TorchSynthesizerTest, K3hiIsEmbedded) {
   const auto all = LoadEmbeddedSynthesizers();
   ASSERT_THAT(all, IsOk());
   ASSERT_EQ(all->size(), 3u);
@@ -143,7 +143,7 @@ TEST(TorchSynthesizerTest, MovesAndTurnsWithTheLeader) {
   EXPECT_LT(LargestDistance(RunOne(*model, window), expected), 1e-4f);
 }
 
-TEST(TorchSynthesizerTest, FollowerStandsWhereItsStartSays) {
+TEST(TorchSynthesizerTest, FollowerStartsAtItsGivenStart) {
   const auto model = Embedded();
   engine::SynthesisWindow window = MakeWindow(*model, 30);
   const int root = model->description().skeleton.root;
@@ -173,10 +173,10 @@ TEST(TorchSynthesizerTest, LabelsChangeTheAnswer) {
   EXPECT_GT(LargestDistance(kick, hug), 0.2f);
 }
 
-TEST(TorchSynthesizerTest, ResultThatIsNotFiniteFailsAlone) {
+TEST(TorchSynthesizerTest, NonFiniteResultFailsOnlyItsWindow) {
   checkpoint::Checkpoint checkpoint = TinyCheckpoint();
   for (checkpoint::Tensor& tensor : checkpoint.tensors) {
-    for (float& value : tensor.values) value = 3e38f;  // finite, but not what comes of it
+    for (float& value : tensor.values) value = 3e38f;  // finite, but the result is not
   }
   const auto model = MakeTorchSynthesizer(checkpoint);
   ASSERT_THAT(model, IsOk());
@@ -195,14 +195,14 @@ TEST(TorchSynthesizerTest, ResultThatIsNotFiniteFailsAlone) {
 TEST(TorchNetworkTest, ExceptionsBecomeAStatus) {
   const auto network = MakeTorchNetwork(TinyCheckpoint());
   ASSERT_THAT(network, IsOk());
-  // A leader of one joint, where the parts want three: LibTorch throws.
+  // A leader of one joint, although the parts need three: LibTorch throws.
   engine::NetworkInput input;
   input.leader = motion::Poses(2, 1);
   EXPECT_THAT((*network)->Run({input}),
               StatusIs(absl::StatusCode::kInternal, HasSubstr("the network failed: ")));
 }
 
-TEST(TorchSynthesizerTest, CheckpointOfOtherShapesIsRefused) {
+TEST(TorchSynthesizerTest, CheckpointOfOtherShapesIsRejected) {
   checkpoint::Checkpoint checkpoint = TinyCheckpoint();
   checkpoint.tensors[0].shape[0] += 1;
   EXPECT_THAT(MakeTorchSynthesizer(checkpoint),

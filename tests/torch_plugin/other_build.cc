@@ -1,4 +1,4 @@
-// A library that says it is of another build.
+// A library with the id of another build.
 #include "model/torch_plugin/torch_plugin.h"
 
 extern "C" {

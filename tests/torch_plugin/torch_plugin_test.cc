@@ -17,7 +17,7 @@ using ::testing::HasSubstr;
 using test::IsOk;
 using test::StatusIs;
 
-// The library as it was built, by the path that the build gives this test.
+// The path of the library, which the build passes to this test.
 TEST(TorchPluginTest, OpensTheLibraryAndLoadsModels) {
   setenv("DUET_TORCH_ENGINE", DUET_TORCH_ENGINE_PATH, 1);
   const auto torch = Open();
@@ -36,12 +36,12 @@ TEST(TorchPluginTest, OpensTheLibraryAndLoadsModels) {
               StatusIs(absl::StatusCode::kNotFound, HasSubstr("no/such")));
 }
 
-TEST(TorchPluginTest, AMissingLibraryIsNamed) {
+TEST(TorchPluginTest, MissingLibraryIsNamed) {
   setenv("DUET_TORCH_ENGINE", "/no/such/library.so", 1);
   EXPECT_THAT(Open(), StatusIs(absl::StatusCode::kNotFound, HasSubstr("/no/such/library.so")));
 }
 
-TEST(TorchPluginTest, AFileThatIsNoLibraryIsNamed) {
+TEST(TorchPluginTest, InvalidLibraryIsNamed) {
   const test::TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "engine.so";
   std::ofstream(file) << "not a library";
@@ -49,7 +49,7 @@ TEST(TorchPluginTest, AFileThatIsNoLibraryIsNamed) {
   EXPECT_THAT(Open(), StatusIs(absl::StatusCode::kNotFound, HasSubstr(file.string())));
 }
 
-TEST(TorchPluginTest, AnotherBuildsLibraryIsRefused) {
+TEST(TorchPluginTest, LibraryOfAnotherBuildIsRejected) {
   setenv("DUET_TORCH_ENGINE", DUET_OTHER_BUILD_PATH, 1);
   EXPECT_THAT(Open(), StatusIs(absl::StatusCode::kFailedPrecondition,
                                HasSubstr("is of build another, wanted this program's")));

@@ -26,7 +26,7 @@ TEST(MirrorTest, ExchangesSidesAndIsItsOwnInverse) {
   EXPECT_EQ(mirrored.pair.follower.poses, dataset.sequences[0].pair.follower.poses);
 }
 
-TEST(SwapRolesTest, TurnsTheDirectionRound) {
+TEST(SwapRolesTest, ReversesThePartnerDirection) {
   const dataset::Dataset dataset = MadeUpDataset();
   dataset::Sequence swapped = dataset.sequences[1];
   SwapRoles(&swapped);
@@ -40,13 +40,13 @@ dataset::Sequence AugmentedBy(const TrainingOptions::Augmentation& options, int 
   return Augment(dataset, dataset.sequences[static_cast<size_t>(index)], options, &random);
 }
 
-TEST(AugmentTest, NothingOnChangesNothing) {
+TEST(AugmentTest, NoAugmentationChangesNothing) {
   const dataset::Sequence before = MadeUpDataset().sequences[2], after = AugmentedBy({}, 2);
   EXPECT_EQ(after.pair.leader.poses, before.pair.leader.poses);
   EXPECT_EQ(after.pair.follower.poses, before.pair.follower.poses);
 }
 
-TEST(AugmentTest, RolesSwapInSymmetricClassesAlone) {
+TEST(AugmentTest, SwapsRolesOnlyInSymmetricClasses) {
   TrainingOptions::Augmentation options;
   options.swap_roles = 1;
   const dataset::Dataset dataset = MadeUpDataset();
@@ -54,7 +54,7 @@ TEST(AugmentTest, RolesSwapInSymmetricClassesAlone) {
   EXPECT_EQ(AugmentedBy(options, 0).pair.leader.poses, dataset.sequences[0].pair.leader.poses);
 }
 
-TEST(AugmentTest, MirrorsHandedClassesByAProbabilityOfTheirOwn) {
+TEST(AugmentTest, MirrorsHandedClassesWithTheirOwnProbability) {
   const dataset::Dataset dataset = MadeUpDataset();
   ASSERT_EQ(dataset.handed, (std::vector<bool>{false, true, true}));
   const auto is_mirrored = [&](const TrainingOptions::Augmentation& options, int index) {
@@ -87,7 +87,7 @@ TEST(AugmentTest, BodyScaleKeepsProportionsOfEachPerson) {
   }
 }
 
-TEST(AugmentTest, CropKeepsAPieceOfBoth) {
+TEST(AugmentTest, CropKeepsTheSamePartOfBothPeople) {
   TrainingOptions::Augmentation options;
   options.crop = 1;
   const dataset::Sequence before = MadeUpDataset().sequences[6], after = AugmentedBy(options, 6);
@@ -100,7 +100,7 @@ TEST(AugmentTest, CropKeepsAPieceOfBoth) {
   EXPECT_EQ(after.pair.follower.at(0, 4), before.pair.follower.at(first, 4));
 }
 
-TEST(AugmentTest, ClipsTooShortToCropStayWhole) {
+TEST(AugmentTest, DoesNotCropShortClips) {
   TrainingOptions::Augmentation options;
   options.crop = 1;
   dataset::Dataset dataset = MadeUpDataset();
@@ -128,7 +128,7 @@ TEST(AugmentTest, TimeWarpKeepsBothEnds) {
             1e-5);
 }
 
-TEST(AugmentTest, LeaderYawLeavesTheFollowerAlone) {
+TEST(AugmentTest, LeaderYawDoesNotChangeTheFollower) {
   TrainingOptions::Augmentation options;
   options.leader_yaw = 0.5;
   const dataset::Sequence before = MadeUpDataset().sequences[0], after = AugmentedBy(options, 0);

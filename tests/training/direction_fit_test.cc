@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kDegrees = M_PI / 180;
 
-// A person at `root` whose hips face `yaw` off -z and whose right hand reaches half a metre
-// `reach` off -z, more and more.
+// A person at `root` whose hips face `yaw` from -z, and whose right hand gradually reaches half a
+// metre in the direction `reach` from -z.
 motion::Clip Reaching(motion::Vec3 root, double yaw, double reach) {
   const motion::Skeleton skeleton = motion::SbuSkeleton();
   motion::Clip clip;
@@ -32,7 +32,8 @@ motion::Clip Reaching(motion::Vec3 root, double yaw, double reach) {
   return clip;
 }
 
-// A leader who reaches for the follower, hips off by `off` degrees, all turned by `turn`.
+// A leader that reaches for the follower. The hips are `off` degrees off; both are turned by
+// `turn`.
 dataset::Sequence Pair(double off, double turn) {
   const motion::Vec3 root = {1, 1, -2};
   const motion::Vec3 toward = motion::RotateY({0, 0, -1}, turn);
@@ -56,13 +57,13 @@ double DegreesOff(const engine::DirectionRegression& regression, const motion::C
   return std::acos(std::min(1.0f, Dot(*direction, toward))) / kDegrees;
 }
 
-TEST(FitPartnerDirection, LearnsWhereLeadersReach) {
+TEST(FitPartnerDirection, LearnsTheDirectionOfReaching) {
   const dataset::Dataset dataset = Reachers();
   const auto regression = FitPartnerDirection(dataset, AllOf(dataset));
   ASSERT_TRUE(regression.has_value());
   for (const double off : {-50.0, -21.0, 0.0, 33.0, 55.0}) {
     for (const double turn : {0.0, 1.0, 2.5}) {
-      // Lines in features follow an angle only so far, and the penalty draws towards the hips.
+      // A linear model approximates an angle, and the penalty biases it towards the hips.
       EXPECT_LT(
           DegreesOff(*regression, Pair(off, turn).pair.leader, motion::RotateY({0, 0, -1}, turn)),
           8 + std::abs(off) / 4)
@@ -71,20 +72,20 @@ TEST(FitPartnerDirection, LearnsWhereLeadersReach) {
   }
 }
 
-TEST(FitPartnerDirection, WhatTheSetupTellsGoesBeforeTheRoots) {
+TEST(FitPartnerDirection, DirectionOfTheSetupOverridesTheRoots) {
   dataset::Dataset dataset = Reachers();
   const motion::Vec3 aside = motion::RotateY({0, 0, -1}, 40 * kDegrees);
   for (dataset::Sequence& sequence : dataset.sequences) {
     sequence = Pair(0, 0);
     sequence.partner_direction = aside;
   }
-  // Mirrored leaders see it on the other side, where another hand reaches.
+  // Mirrored leaders reach to the other side with the other hand.
   const auto regression = FitPartnerDirection(dataset, AllOf(dataset));
   ASSERT_TRUE(regression.has_value());
   EXPECT_LT(DegreesOff(*regression, Pair(0, 0).pair.leader, aside), 10);
 }
 
-// Only right hands reach in training: mirrored copies teach the same of left hands.
+// In training only right hands reach; mirrored copies add left hands.
 TEST(FitPartnerDirection, AMirroredLeaderHasTheMirroredDirection) {
   const dataset::Dataset dataset = Reachers();
   const auto regression = FitPartnerDirection(dataset, AllOf(dataset));
@@ -104,11 +105,11 @@ TEST(FitPartnerDirection, EitherPersonLeadsInASymmetricClass) {
     const auto regression = FitPartnerDirection(dataset, AllOf(dataset));
     return DegreesOff(*regression, Pair(50, 0).pair.leader, {0, 0, -1});
   };
-  EXPECT_GT(learn(0), 45);  // whoever led faced the partner
+  EXPECT_GT(learn(0), 45);  // the other leader faces the partner
   EXPECT_LT(learn(1), 30);
 }
 
-TEST(FitPartnerDirection, NothingWithoutHips) {
+TEST(FitPartnerDirection, ReturnsNothingWithoutHips) {
   dataset::Dataset dataset = Reachers();
   EXPECT_FALSE(FitPartnerDirection(dataset, {}).has_value());
   dataset.skeleton.hips.reset();

@@ -38,7 +38,7 @@ std::string KindOf(const Example& example) {
   return own > 0 ? "mixed" : "other alone";
 }
 
-TEST(GradedLabelsTest, EveryKindComesUpWithinTheContract) {
+TEST(GradedLabelsTest, DrawsEveryKindOfLabelVector) {
   const dataset::Dataset dataset = MadeUpDataset();
   std::set<std::string> kinds;
   for (const Example& example : Draw(dataset, StartKnowledge::kNone)) {
@@ -77,7 +77,7 @@ TEST(GradedLabelsTest, AvoidingAnotherClassLeavesTheCapturedReaction) {
   EXPECT_GT(checked, 5);
 }
 
-TEST(GradedLabelsTest, EveryAnswerBeginsAtAGivenPose) {
+TEST(GradedLabelsTest, EveryTargetBeginsAtAGivenStartPose) {
   const dataset::Dataset dataset = MadeUpDataset();
   const motion::Clip& follower = dataset.sequences[0].pair.follower;
   const std::vector<motion::Vec3> first(follower.poses[0].begin(), follower.poses[0].end());
@@ -86,9 +86,9 @@ TEST(GradedLabelsTest, EveryAnswerBeginsAtAGivenPose) {
   }
 }
 
-TEST(GradedLabelsTest, OtherReactionsHappenWhereThisOneDoes) {
+TEST(GradedLabelsTest, OtherReactionsAreMovedToThePlaceOfThisOne) {
   dataset::Dataset dataset = MadeUpDataset();
-  // The same scene, moved and turned: what is borrowed from it must come back to this place.
+  // The same scene, moved and turned: its follower must be moved back to this place.
   dataset::Sequence& moved = dataset.sequences[1];
   moved = dataset.sequences[0];
   moved.interaction_class = 1;
@@ -106,7 +106,7 @@ TEST(GradedLabelsTest, OtherReactionsHappenWhereThisOneDoes) {
   EXPECT_GT(checked, 2);
 }
 
-TEST(GradedLabelsTest, OneClassAloneStaysSingle) {
+TEST(GradedLabelsTest, SingleClassDoesNotChange) {
   dataset::Dataset dataset = MadeUpDataset(1);
   base::Random random(1, 1);
   Example example = CapturedExample(dataset, dataset.sequences[0], StartKnowledge::kNone);

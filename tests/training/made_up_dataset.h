@@ -12,9 +12,9 @@ namespace duet::training {
 using test::SwayingMotion;
 using test::SwayingPose;
 
-// Sequences of two made-up people in three classes, the second of them symmetric and of touching
-// bodies, all but the first handed: the follower
-// stands 1 m along +z of the leader and sways later and, by class, higher.
+// Sequences of two synthetic people in three classes. The second class is symmetric, with touching
+// bodies; all except the first are handed. The follower stands 1 m along +z of the leader and sways
+// later and, depending on the class, higher.
 inline dataset::Dataset MadeUpDataset(int sequences = 7) {
   dataset::Dataset dataset;
   dataset.name = "made_up";

@@ -1,4 +1,4 @@
-// A data set of one's own, from files to a follower: imported, trained, loaded, asked.
+// Your own data set, from files to a follower: imports, trains, loads and synthesises.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -46,7 +46,7 @@ class OwnDataTest : public ::testing::Test {
     dataset_ = *std::move(dataset);
   }
 
-  // Trains a named configuration, made small, and asks the model for each sequence's follower.
+  // Trains a small version of a named configuration and synthesises each sequence's follower.
   void TrainAndAsk(const std::string& config, const Replacements& smaller) {
     const absl::StatusOr<TrainingOptions> options = ParseConfig(FindConfig(config)->json, smaller);
     ASSERT_THAT(options, IsOk());
@@ -82,7 +82,7 @@ class OwnDataTest : public ::testing::Test {
     ASSERT_THAT(results[0], IsOk());
     EXPECT_EQ(results[0]->frame_count(), frames);
     EXPECT_EQ(results[0]->joint_count(), 20);
-    // Somebody of the leader's size on the leader's floor.
+    // A person of the leader's size on the leader's floor.
     const int head = dataset_.skeleton.Find("head");
     EXPECT_GT(results[0]->at(frames - 1, head).y, 1);
     EXPECT_LT(results[0]->at(frames - 1, head).y, 2);
@@ -92,7 +92,7 @@ class OwnDataTest : public ::testing::Test {
   dataset::Dataset dataset_;
 };
 
-TEST_F(OwnDataTest, TheDefaultConfigurationTrainsIt) {
+TEST_F(OwnDataTest, DefaultConfigurationTrainsOnOwnData) {
   TrainAndAsk("default", {{"epochs", "2"},
                           {"generator.slice_features", "4"},
                           {"generator.encoder_hidden", "4"},
@@ -100,7 +100,7 @@ TEST_F(OwnDataTest, TheDefaultConfigurationTrainsIt) {
                           {"discriminator.hidden", "4"}});
 }
 
-TEST_F(OwnDataTest, TheSamplingConfigurationTrainsIt) {
+TEST_F(OwnDataTest, SamplingConfigurationTrainsOnOwnData) {
   TrainAndAsk("flow", {{"epochs", "2"},
                        {"flow.passes", "1"},
                        {"generator.width", "8"},

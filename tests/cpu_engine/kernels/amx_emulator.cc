@@ -30,7 +30,7 @@ Tiles state;
 int64_t done = 0;
 struct sigaction before;
 
-// A VEX-encoded instruction of three bytes of prefix, as all of AMX are.
+// A VEX-encoded instruction with a prefix of three bytes, as all of AMX have.
 struct Instruction {
   int map, prefix, opcode;               // prefix: 0 none, 1 66, 2 F3, 3 F2
   int mode, reg, rm;                     // of ModRM; reg and rm with VEX's bits
@@ -52,7 +52,7 @@ T Read(const uint8_t* from) {
   return value;
 }
 
-// The address bytes after ModRM. False: relative to the next instruction, which is not needed here.
+// Decodes the address bytes after ModRM. False if relative to the next instruction: unsupported.
 bool DecodeAddress(const uint8_t* bytes, int extra_base, int extra_index, Instruction& decoded) {
   const uint8_t* at = bytes + decoded.length;
   const int low = decoded.rm & 7;
@@ -124,7 +124,7 @@ Tile* ShapedTile(int number) {
 
 void Zero(Tile& tile) { std::memset(tile.values, 0, sizeof(tile.values)); }
 
-// Denormal numbers are zero, going in and coming out.
+// Denormal inputs and outputs become zero.
 float Flushed(float value) {
   const bool denormal = value != 0 && std::abs(value) < std::numeric_limits<float>::min();
   return denormal ? std::copysign(0.0f, value) : value;
@@ -137,7 +137,7 @@ float Bf16(const uint8_t* from) {
   return Flushed(value);
 }
 
-// One row of TDPBF16PS: the even and the odd halves of pairs are summed apart, then added.
+// One row of TDPBF16PS: sums the even and the odd halves of pairs separately, then adds them.
 void AddRow(const uint8_t* x, int pairs, const Tile& weights, uint8_t* sums, int columns) {
   std::array<float, 2 * kRowBytes / 4> halves{};
   for (int k = 0; k < pairs; ++k) {
@@ -216,7 +216,7 @@ void OnIllegalInstruction(int, siginfo_t*, void* raw) {
   greg_t& next = context.uc_mcontext.gregs[REG_RIP];
   Instruction decoded;
   if (!Decode(reinterpret_cast<const uint8_t*>(next), decoded) || !Do(decoded, context)) {
-    sigaction(SIGILL, &before, nullptr);  // comes again, and ends the process
+    sigaction(SIGILL, &before, nullptr);  // the signal repeats and ends the process
     return;
   }
   ++done;

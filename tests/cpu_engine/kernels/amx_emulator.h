@@ -5,12 +5,12 @@
 
 namespace duet::cpu_engine::kernels {
 
-// While one lives, the instructions of AMX-BF16 do on this processor what its manual says they do
-// (Intel SDM 2, LDTILECFG to TDPBF16PS), if it has none of its own: each is an illegal instruction
-// that a signal's handler reads and does. An instruction that a processor with AMX would refuse, an
-// unshaped tile or shapes that do not fit each other, ends the process as it would there.
+// Emulates the instructions of AMX-BF16 during its lifetime, on a processor without them (Intel SDM
+// 2, LDTILECFG to TDPBF16PS): each is an illegal instruction, and a signal handler decodes and
+// executes it. An instruction that a processor with AMX would reject, with an unconfigured tile or
+// with shapes that do not match, ends the process, as on that processor.
 //
-// One at a time, on one thread. x86-64 alone.
+// At most one exists at a time, on one thread. x86-64 only.
 class AmxEmulator {
  public:
   AmxEmulator();
@@ -18,9 +18,9 @@ class AmxEmulator {
   AmxEmulator(const AmxEmulator&) = delete;
   AmxEmulator& operator=(const AmxEmulator&) = delete;
 
-  // Instructions done here so far; 0 where the processor does them itself.
+  // Number of emulated instructions so far; 0 if the processor has the instructions.
   int64_t instructions() const;
-  // Whether tiles are in use: shaped, and not released since.
+  // Whether tiles are configured and not released.
   bool in_use() const;
 };
 

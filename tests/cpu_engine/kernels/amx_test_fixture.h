@@ -11,9 +11,9 @@
 
 namespace duet::cpu_engine::kernels {
 
-// Products in bfloat16 are made in tiles: by the processor where it has them, else emulated. What
-// stands between the tiles' instructions is AVX-512 BF16, which every processor with tiles has:
-// without it HasAmx() is false, and nothing of this is ever run.
+// Runs products in bfloat16 in tiles: with the processor's instructions if it has them, else
+// emulated. The code between tile instructions requires AVX-512 BF16, which every processor with
+// tiles has. Without it HasAmx() is false and the tests are skipped.
 class AmxTest : public ::testing::Test {
  public:
   ~AmxTest() override { ChooseBf16Product(Bf16Product::kBest); }
@@ -25,7 +25,7 @@ class AmxTest : public ::testing::Test {
     ChooseBf16Product(Bf16Product::kAmx);
   }
 
-  // Whether products went through tiles, and whether these are free again; as far as one can tell.
+  // Whether products used tiles and released them, as far as this can be observed.
   bool UsedTiles() const { return !emulator_ || emulator_->instructions() > 0; }
   bool ReleasedTiles() const { return !emulator_ || !emulator_->in_use(); }
 

@@ -11,7 +11,7 @@
 
 namespace duet::cpu_engine::kernels {
 
-// Runs its tests once with each instruction set that this processor has, the plainest included.
+// Runs its tests with every instruction set of this processor, including the baseline.
 class EveryTarget : public ::testing::TestWithParam<int64_t> {
  public:
   EveryTarget();
@@ -25,7 +25,7 @@ class EveryTarget : public ::testing::TestWithParam<int64_t> {
   base::Random random_{7};
 };
 
-// What the kernels are compiled for and this processor has: AVX-512, AVX2, SSE4, none.
+// The instruction sets that the kernels are compiled for and this processor has.
 std::vector<int64_t> CompiledTargets();
 std::string TargetName(const ::testing::TestParamInfo<int64_t>& target);
 

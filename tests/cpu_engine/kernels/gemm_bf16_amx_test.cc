@@ -1,5 +1,5 @@
-// Products in tiles, on any processor with AVX-512 BF16: what it has no instruction for is
-// emulated.
+// Products in tiles, on any processor with AVX-512 BF16. Instructions that the processor does not
+// have are emulated.
 #include "model/cpu_engine/kernels/gemm_bf16_amx.h"
 
 #include <gtest/gtest.h>
@@ -21,8 +21,8 @@ std::vector<float> Values(int count, uint64_t seed) {
   return values;
 }
 
-// A product's operands. Panels end where their memory does: a read past them is seen by
-// AddressSanitizer.
+// A product's operands. Panels end where their memory ends, so that AddressSanitizer detects a read
+// past them.
 struct Operands {
   Operands(int row_count, int input_count, int output_count)
       : rows(row_count),
@@ -49,7 +49,8 @@ struct Operands {
 
 class GemmBf16AmxTest : public AmxTest {
  protected:
-  // Both products from the same beginning, and that nothing is written past a row.
+  // Compares both products from the same initial values, and checks that nothing is written past a
+  // row.
   void ExpectSame(const Operands& with, const float* bias, bool adds) {
     std::vector<float> y = with.before, wanted = with.before;
     GemmBf16Amx(with.x_rows(), with.panels.data(), bias, adds, with.y(y));
@@ -62,9 +63,9 @@ class GemmBf16AmxTest : public AmxTest {
   }
 };
 
-// Rows on either side of one tile and of two, inputs of whole steps, of part of one and of more
-// than are rounded at once, outputs on either side of whole tiles and panels.
-TEST_F(GemmBf16AmxTest, MultipliesAsThePlainProduct) {
+// Rows below and above one and two tiles; inputs of whole steps, of a part of one, and of more than
+// are rounded at once; outputs below and above whole tiles and panels.
+TEST_F(GemmBf16AmxTest, EqualsThePortableProduct) {
   for (const int rows : {1, 15, 16, 17, 31, 32, 33, 49, 65}) {
     for (const int inputs : {1, 2, 7, 31, 32, 33, 64, 90, 257, 300}) {
       const Operands with(rows, inputs, 45);
@@ -79,7 +80,7 @@ TEST_F(GemmBf16AmxTest, MultipliesAsThePlainProduct) {
   EXPECT_TRUE(ReleasedTiles());
 }
 
-TEST_F(GemmBf16AmxTest, BeginsFromZeroTheBiasOrWhatWasThere) {
+TEST_F(GemmBf16AmxTest, StartsFromZeroTheBiasOrEarlierSums) {
   for (const int inputs : {9, 64, 301}) {
     const Operands with(19, inputs, 50);
     ExpectSame(with, nullptr, false);
@@ -100,13 +101,13 @@ TEST_F(GemmBf16AmxTest, ARowDoesNotDependOnTheOthers) {
   EXPECT_EQ(alone, together);
 }
 
-TEST_F(GemmBf16AmxTest, NoRowsAreNoProduct) {
+TEST_F(GemmBf16AmxTest, AcceptsNoRows) {
   const Operands with(0, 8, 8);
   std::vector<float> y;
   GemmBf16Amx(with.x_rows(), with.panels.data(), nullptr, false, with.y(y));
 }
 
-// A layer whose products are to be in tiles has the same bits as the product itself.
+// A layer that uses tiles has a result bit-identical to the product.
 TEST_F(GemmBf16AmxTest, LayersUseIt) {
   constexpr int kRows = 5, kInputs = 40, kOutputs = 70;
   const std::vector<float> weights = Values(kInputs * kOutputs, 5), x = Values(kRows * kInputs, 6);

@@ -18,8 +18,8 @@ DUET_FOR_EVERY_TARGET(PackedMatrixTest);
 struct Case {
   int rows, inputs, outputs;
 };
-// Every number of rows that a tile may have and more, odd numbers of inputs, more than are rounded
-// at once, outputs on either side of whole panels and vectors.
+// Every number of rows of a tile and more; odd numbers of inputs and more than are rounded at once;
+// outputs below and above whole panels and vectors.
 std::vector<Case> Cases() {
   std::vector<Case> cases;
   for (int rows = 1; rows <= 26; ++rows) cases.push_back({rows, 7, 45});
@@ -40,12 +40,12 @@ float Rounded(float value) {
   return rounded;
 }
 
-TEST_P(PackedMatrixTest, MultipliesAsTheSumsSay) {
+TEST_P(PackedMatrixTest, EqualsTheDefinition) {
   for (const Precision precision : {Precision::kFloat32, Precision::kBfloat16}) {
     const bool rounds = precision == Precision::kBfloat16;
     for (const Case& c : Cases()) {
       const std::vector<float> weights = Values(c.outputs * c.inputs), bias = Values(c.outputs);
-      // Rows lie further apart than they are long.
+      // The stride of rows exceeds their length.
       const int x_stride = c.inputs + 3, y_stride = c.outputs + 2;
       const std::vector<float> x = Values(c.rows * x_stride);
       std::vector<float> y(static_cast<std::size_t>(c.rows * y_stride), -99);
@@ -84,7 +84,7 @@ TEST_P(PackedMatrixTest, ARowDoesNotDependOnTheOthers) {
   }
 }
 
-TEST_P(PackedMatrixTest, RowsPackedOnTheFlyAddTheirWeightedSum) {
+TEST_P(PackedMatrixTest, AddsTheWeightedSumOfRowsPackedOnTheFly) {
   for (const int inputs : {1, 2, 7, 46}) {
     for (const int width : {5, 32, 100}) {
       const std::vector<float> rows = Values(inputs * width), weights = Values(inputs),
@@ -106,8 +106,8 @@ TEST_P(PackedMatrixTest, RowsPackedOnTheFlyAddTheirWeightedSum) {
   }
 }
 
-// Where the processor multiplies bfloat16, that its products and the plain ones are the same.
-TEST_P(PackedMatrixTest, PortableProductsRoundAsTheProcessors) {
+// On processors that multiply bfloat16: their products equal the portable ones.
+TEST_P(PackedMatrixTest, PortableProductsRoundLikeTheProcessor) {
   constexpr int kRows = 3, kInputs = 45, kOutputs = 70;
   const std::vector<float> weights = Values(kInputs * kOutputs), x = Values(kRows * kInputs),
                            before = Values(kRows * kOutputs);
@@ -129,7 +129,7 @@ TEST_P(PackedMatrixTest, PortableProductsRoundAsTheProcessors) {
   for (std::size_t i = 0; i < y.size(); ++i) EXPECT_NEAR(y[i], same[i], 1e-5);
 }
 
-TEST(PackPanelsTest, LaysColumnsOutWithZerosBehindTheLast) {
+TEST(PackPanelsTest, PadsTheLastPanelWithZeros) {
   constexpr int kOutputs = 34, kInputs = 2;
   std::vector<float> by_output, by_input(kOutputs * kInputs);
   for (int n = 0; n < kOutputs; ++n) {
@@ -145,7 +145,7 @@ TEST(PackPanelsTest, LaysColumnsOutWithZerosBehindTheLast) {
   EXPECT_EQ(panels[0], 1);
   EXPECT_EQ(panels[kPanel], 101);               // the second input
   EXPECT_EQ(panels[kInputs * kPanel + 1], 34);  // the last output
-  EXPECT_EQ(panels[kInputs * kPanel + 2], 0);   // behind it
+  EXPECT_EQ(panels[kInputs * kPanel + 2], 0);   // after it
   EXPECT_EQ(panels[(kInputs + 1) * kPanel + 31], 0);
 }
 

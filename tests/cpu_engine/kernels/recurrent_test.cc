@@ -20,11 +20,11 @@ double Sigmoid(double x) { return 1 / (1 + std::exp(-x)); }
 class LstmCellsTest : public EveryTarget {};
 DUET_FOR_EVERY_TARGET(LstmCellsTest);
 
-TEST_P(LstmCellsTest, StepsAsTheDefinition) {
+TEST_P(LstmCellsTest, EqualsTheDefinition) {
   constexpr int kRows = 3;
   for (const int hidden : {1, 7, 16, 40}) {
     const int gates = 4 * hidden, stride = hidden + 5;
-    // Up to where the functions saturate.
+    // Up to values at which the functions saturate.
     const std::vector<float> recurrent = Values(kRows * gates, 20),
                              input = Values(kRows * gates, 3);
     const std::vector<float> before = Values(kRows * stride, 2);
@@ -56,7 +56,7 @@ TEST_P(LstmCellsTest, StepsAsTheDefinition) {
   }
 }
 
-TEST_P(LstmCellsTest, EitherPartOfTheGatesMayBeMissing) {
+TEST_P(LstmCellsTest, AcceptsEitherPartOfTheGatesMissing) {
   constexpr int kHidden = 9;
   const std::vector<float> gates = Values(4 * kHidden);
   const float* inputs[] = {gates.data()};
@@ -76,7 +76,7 @@ TEST_P(LstmCellsTest, EitherPartOfTheGatesMayBeMissing) {
 class AdditiveAttentionTest : public EveryTarget {};
 DUET_FOR_EVERY_TARGET(AdditiveAttentionTest);
 
-TEST_P(AdditiveAttentionTest, WeighsFramesAsTheDefinition) {
+TEST_P(AdditiveAttentionTest, EqualsTheDefinition) {
   for (const int frames : {1, 2, 16, 45}) {
     for (const int attention : {1, 19, 128}) {
       const int width = 3 * attention + 5;

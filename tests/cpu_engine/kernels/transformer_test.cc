@@ -15,7 +15,7 @@ namespace {
 class RowwiseTest : public EveryTarget {};
 DUET_FOR_EVERY_TARGET(RowwiseTest);
 
-TEST_P(RowwiseTest, GeluAndSiluAreTheirDefinitions) {
+TEST_P(RowwiseTest, GeluAndSiluEqualTheirDefinitions) {
   for (const int count : {1, 15, 33, 200}) {
     const std::vector<float> x = Values(count, 6);
     std::vector<float> gelu = x, silu = x;
@@ -28,7 +28,7 @@ TEST_P(RowwiseTest, GeluAndSiluAreTheirDefinitions) {
   }
 }
 
-TEST_P(RowwiseTest, FarOutTheyAreTheirLimits) {
+TEST_P(RowwiseTest, GeluAndSiluReachTheirLimits) {
   std::vector<float> gelu = {-40, 40, -1e6f, 1e6f}, silu = gelu;
   Gelu(4, gelu.data());
   Silu(4, silu.data());
@@ -40,7 +40,7 @@ TEST_P(RowwiseTest, FarOutTheyAreTheirLimits) {
   }
 }
 
-TEST_P(RowwiseTest, LayerNormIsItsDefinition) {
+TEST_P(RowwiseTest, LayerNormEqualsItsDefinition) {
   for (const int width : {2, 16, 19, 160}) {
     const std::vector<float> x = Values(width, 5), scale = Values(width), shift = Values(width);
     std::vector<float> out(x.size());
@@ -55,7 +55,7 @@ TEST_P(RowwiseTest, LayerNormIsItsDefinition) {
   }
 }
 
-TEST_P(RowwiseTest, SoftmaxAddsUpToOneHoweverLargeTheValues) {
+TEST_P(RowwiseTest, SoftmaxSumsToOneForLargeValues) {
   for (const int count : {1, 16, 17, 45}) {
     std::vector<float> values = Values(count, 200);
     const std::vector<float> before = values, bias = Values(count);
@@ -77,7 +77,7 @@ TEST_P(RowwiseTest, SoftmaxAddsUpToOneHoweverLargeTheValues) {
 class StandardNormalsTest : public EveryTarget {};
 DUET_FOR_EVERY_TARGET(StandardNormalsTest);
 
-TEST_P(StandardNormalsTest, AreWhatRandomDraws) {
+TEST_P(StandardNormalsTest, EqualThoseOfRandom) {
   for (const int count : {1, 7, 8, 1001}) {
     base::Random uniform(5, 0), normal(5, 0);
     std::vector<double> pairs;
@@ -88,7 +88,7 @@ TEST_P(StandardNormalsTest, AreWhatRandomDraws) {
   }
 }
 
-TEST_P(StandardNormalsTest, TheEndsOfTheUniformNumbersAreFine) {
+TEST_P(StandardNormalsTest, AreFiniteAtTheEndsOfTheUniformRange) {
   const double step = 0x1p-54;
   const std::vector<double> pairs = {step, 1 - 2 * step, 1 - 2 * step, step};
   float out[2];
@@ -100,7 +100,7 @@ TEST_P(StandardNormalsTest, TheEndsOfTheUniformNumbersAreFine) {
 class SelfAttentionTest : public EveryTarget {};
 DUET_FOR_EVERY_TARGET(SelfAttentionTest);
 
-TEST_P(SelfAttentionTest, IsItsDefinition) {
+TEST_P(SelfAttentionTest, EqualsItsDefinition) {
   for (const int frames : {1, 5, 33, 45}) {
     for (const int size : {3, 40}) {
       const int stride = 3 * size + 2, out_stride = size + 1;
