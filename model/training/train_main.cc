@@ -20,7 +20,7 @@ struct Arguments {
   std::string data;
   std::string config = "default";
   std::string out;
-  std::string name;  // empty: the data set's
+  std::string name;  // empty: the name of the data set
   int version = 1;
   std::string description;
   std::string protocol = "all";
@@ -53,14 +53,14 @@ absl::StatusOr<duet::training::TrainingOptions> ReadOptions(const Arguments& arg
     const size_t equals = setting.find('=');
     if (equals == std::string::npos) {
       return absl::InvalidArgumentError(
-          absl::StrCat("--set ", setting, ": wanted section.field=value"));
+          absl::StrCat("--set ", setting, ": expected section.field=value"));
     }
     replacements.emplace_back(setting.substr(0, equals), setting.substr(equals + 1));
   }
   return duet::training::ParseConfig(*json, replacements);
 }
 
-// A run before it is said what to train on and where to.
+// The part of a run's plan that does not depend on the protocol.
 duet::training::RunPlan CommonPlan(const Arguments& arguments,
                                    const duet::training::TrainingOptions& options,
                                    const duet::dataset::Dataset& dataset) {
@@ -147,25 +147,27 @@ absl::Status Train(const Arguments& arguments) {
 
 void Declare(Arguments* arguments, CLI::App* app) {
   app->add_option("--data", arguments->data, "folder of captures (docs/datasets.md)")->required();
-  app->add_option("--out", arguments->out, "folder of the run; a killed run goes on from it")
+  app->add_option("--out", arguments->out,
+                  "folder of the run; a run that was killed resumes from it")
       ->required();
-  app->add_option("--config", arguments->config, "a named configuration or a JSON file")
+  app->add_option("--config", arguments->config, "named configuration, or JSON file")
       ->capture_default_str();
-  app->add_option("--set", arguments->settings, "replace a setting: section.field=value");
-  app->add_option("--name", arguments->name, "the model's name (default: the data set's)");
-  app->add_option("--version-number", arguments->version, "the model's version")
+  app->add_option("--set", arguments->settings, "override a setting: section.field=value");
+  app->add_option("--name", arguments->name, "name of the model (default: that of the data set)");
+  app->add_option("--version-number", arguments->version, "version of the model")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
-  app->add_option("--description", arguments->description, "a sentence for the model's users");
+  app->add_option("--description", arguments->description,
+                  "description of the model, one sentence");
   app->add_option("--protocol", arguments->protocol,
-                  "all: on everything; loso: one subject out; half: half of each class")
+                  "all: every sequence; loso: leave one subject out; half: half of each class")
       ->check(CLI::IsMember({"all", "loso", "half"}))
       ->capture_default_str();
-  app->add_option("--fold", arguments->fold, "with loso: this subject alone");
-  app->add_option("--seeds", arguments->seeds, "with half: a run, half-<seed>, for each")
+  app->add_option("--fold", arguments->fold, "with loso: only this held-out subject");
+  app->add_option("--seeds", arguments->seeds, "with half: one run, half-<seed>, per seed")
       ->delimiter(',')
       ->capture_default_str();
-  app->add_option("--threads", arguments->threads, "LibTorch threads")
+  app->add_option("--threads", arguments->threads, "number of LibTorch threads")
       ->check(CLI::Range(1, 256))
       ->capture_default_str();
 }
