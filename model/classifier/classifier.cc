@@ -17,10 +17,10 @@ namespace {
 
 using checkpoint::Tensor;
 
-// Far beyond what training gives, and far from sums that no float holds.
+// Far above the result of any training, and low enough that sums cannot overflow.
 constexpr float kLargestWeight = 1e6f;
 
-// Gives out tensors by name, once they have the shape that is wanted.
+// Finds tensors by name and checks their shapes.
 class TensorTable {
  public:
   explicit TensorTable(const std::vector<Tensor>& tensors) {
@@ -33,19 +33,18 @@ class TensorTable {
     ++found_;
     if (found != table_.end() && found->second->shape == shape) return found->second->values;
     if (status_.ok()) {
-      status_ = absl::InvalidArgumentError(
-          absl::StrCat("tensors: ", name, ": came ",
-                       found == table_.end() ? "none" : absl::StrJoin(found->second->shape, " x "),
-                       ", wanted ", absl::StrJoin(shape, " x ")));
+      status_ = absl::InvalidArgumentError(absl::StrCat(
+          "tensors: ", name, ": expected shape ", absl::StrJoin(shape, " x "), ", got ",
+          found == table_.end() ? "none" : absl::StrJoin(found->second->shape, " x ")));
     }
     return none;
   }
 
-  // Whether all were found, and there are no others.
+  // An error if a tensor was not found or others remain.
   absl::Status status() const {
     if (!status_.ok() || found_ == table_.size()) return status_;
     return absl::InvalidArgumentError(
-        absl::StrCat("tensors: came ", table_.size(), ", wanted ", found_));
+        absl::StrCat("tensors: expected ", found_, ", got ", table_.size()));
   }
 
  private:
@@ -54,7 +53,7 @@ class TensorTable {
   absl::Status status_;
 };
 
-// One of the two matrices [rows, columns] of a tensor, as [columns, rows].
+// Transposes one of the two matrices [rows, columns] of a tensor.
 std::vector<float> Transposed(const std::vector<float>& values, int which, int rows, int columns) {
   std::vector<float> out;
   if (values.empty()) return out;
@@ -68,7 +67,8 @@ std::vector<float> Transposed(const std::vector<float>& values, int which, int r
   return out;
 }
 
-// out += in x matrix, of [inputs, outputs]. Rows outermost, so that the sums run side by side.
+// out += in x matrix [inputs, outputs]. With rows outermost, the sums are independent of each
+// other.
 void AddProduct(const float* in, int inputs, const std::vector<float>& matrix, int outputs,
                 float* out) {
   const float* row = matrix.data();
@@ -116,8 +116,8 @@ motion::Clip Part(const motion::Clip& clip, int first, int frames) {
 }
 
 absl::Status CheckSizes(const ClassifierParts& parts) {
-  const auto refuse = [](const char* field, double came, const char* wanted) {
-    return absl::InvalidArgumentError(absl::StrCat(field, ": came ", came, ", wanted ", wanted));
+  const auto refuse = [](const char* field, double got, const char* expected) {
+    return absl::InvalidArgumentError(absl::StrCat(field, ": expected ", expected, ", got ", got));
   };
   if (parts.classes.size() < 2) {
     return refuse("classes", static_cast<double>(parts.classes.size()), "2 or more");
@@ -206,7 +206,7 @@ std::vector<float> Classifier::RunNetwork(const Network& network,
     values.insert(values.end(), {vector.x, vector.y, vector.z});
   }
   for (const auto& layer : network.layers) values = RunLayer(layer, values, frames);
-  // What lies beyond the clip's end counts as zero.
+  // Frames after the clip's end count as zero.
   const std::size_t columns =
       network.output_weight.size() / std::max<std::size_t>(network.output_bias.size(), 1);
   std::vector<float> probabilities = network.output_bias;

@@ -26,7 +26,7 @@ constexpr int kMaxDepth = 6;
 constexpr char kJsonFile[] = "judge.json";
 constexpr char kWeightsFile[] = "weights.safetensors";
 
-// The file's skeleton has parts, which nobody asks for here.
+// The file's skeleton requires parts; the classifier does not use them.
 std::vector<motion::BodyPart> WholeBody(const motion::Skeleton& skeleton) {
   motion::BodyPart body{"body", {}};
   for (int joint = 0; joint < skeleton.joint_count(); ++joint) body.joints.push_back(joint);
@@ -72,7 +72,7 @@ absl::StatusOr<StoredClassifier> ParseClassifier(const std::string& json,
   if (!described.ok()) return InFile(kJsonFile, described.status());
   if (base::Sha256Hex(weights) != described->weights_sha256) {
     return absl::DataLossError(
-        absl::StrCat(kWeightsFile, ": is not what ", kJsonFile, " was written with"));
+        absl::StrCat(kWeightsFile, ": its SHA-256 is not the one in ", kJsonFile));
   }
   absl::StatusOr<std::vector<checkpoint::Tensor>> tensors = checkpoint::ParseSafetensors(weights);
   if (!tensors.ok()) return InFile(kWeightsFile, tensors.status());

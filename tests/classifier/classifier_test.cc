@@ -1,4 +1,4 @@
-// What it computes is compared with LibTorch's in tests/evaluation/judge/classifier_test.cc.
+// tests/evaluation/judge/classifier_test.cc compares the results with LibTorch's.
 #include "model/classifier/classifier.h"
 
 #include <cmath>
@@ -42,7 +42,7 @@ motion::ClipPair Part(const motion::ClipPair& pair, int first, int frames) {
   return part;
 }
 
-TEST(Classifier, ALongClipIsTheMeanOfItsWindowsTheLastAtItsEnd) {
+TEST(Classifier, LongClipIsTheMeanOfItsWindowsAndTheLastEndsAtItsEnd) {
   const absl::StatusOr<Classifier> classifier = Classifier::Create(RandomClassifier());
   ASSERT_THAT(classifier, IsOk());
   const motion::ClipPair pair = Pair(50);
@@ -56,7 +56,7 @@ TEST(Classifier, ALongClipIsTheMeanOfItsWindowsTheLastAtItsEnd) {
   EXPECT_THAT(classifier->Probabilities(pair), Pointwise(FloatNear(1e-5f), mean));
 }
 
-TEST(Classifier, NeitherThePlaceNorTheFacingOfTheTwoCounts) {
+TEST(Classifier, IgnoresThePlaceAndFacingOfThePair) {
   const absl::StatusOr<Classifier> classifier = Classifier::Create(RandomClassifier());
   ASSERT_THAT(classifier, IsOk());
   const motion::ClipPair pair = Pair(20);
@@ -68,7 +68,7 @@ TEST(Classifier, NeitherThePlaceNorTheFacingOfTheTwoCounts) {
               Pointwise(FloatNear(1e-4f), classifier->Probabilities(pair)));
 }
 
-TEST(Classifier, OneFrameWillDo) {
+TEST(Classifier, AcceptsOneFrame) {
   const absl::StatusOr<Classifier> classifier = Classifier::Create(RandomClassifier());
   ASSERT_THAT(classifier, IsOk());
   for (const double rate_hz : {15, 30}) {
@@ -78,39 +78,41 @@ TEST(Classifier, OneFrameWillDo) {
   }
 }
 
-TEST(Classifier, TheSameMotionAtTwiceTheRateIsTheSame) {
+TEST(Classifier, IgnoresTheFrameRateOfTheSameMotion) {
   const absl::StatusOr<Classifier> classifier = Classifier::Create(RandomClassifier());
   ASSERT_THAT(classifier, IsOk());
   EXPECT_THAT(classifier->Probabilities(Pair(39, 30)),
               Pointwise(FloatNear(1e-3f), classifier->Probabilities(Pair(20))));
 }
 
-TEST(Classifier, NamesWhatDoesNotFit) {
+TEST(Classifier, RejectsWrongPartsByName) {
   ClassifierParts parts = RandomClassifier();
   parts.tensors[0].shape[2] += 1;
-  EXPECT_THAT(Classifier::Create(parts),
-              StatusIs(absl::StatusCode::kInvalidArgument,
-                       HasSubstr("0.layer1_weight_ih: came 2 x 16 x 136, wanted 2 x 16 x 135")));
+  EXPECT_THAT(
+      Classifier::Create(parts),
+      StatusIs(absl::StatusCode::kInvalidArgument,
+               HasSubstr("0.layer1_weight_ih: expected shape 2 x 16 x 135, got 2 x 16 x 136")));
   parts = RandomClassifier();
   parts.tensors.pop_back();
   EXPECT_THAT(Classifier::Create(parts),
-              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("1.output.bias: came none")));
+              StatusIs(absl::StatusCode::kInvalidArgument,
+                       HasSubstr("1.output.bias: expected shape 2, got none")));
   parts = RandomClassifier();
   parts.tensors.push_back({"more", {1}, {0}});
   EXPECT_THAT(Classifier::Create(parts),
-              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("came 17, wanted 16")));
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("expected 16, got 17")));
   for (const float weight : {std::nanf(""), -2e6f}) {
     parts = RandomClassifier();
     parts.tensors[1].values[3] = weight;
     EXPECT_THAT(Classifier::Create(parts),
                 StatusIs(absl::StatusCode::kInvalidArgument,
-                         HasSubstr(absl::StrCat("0.layer1_weight_hh: came ", weight,
-                                                ", wanted -1e6 to 1e6"))));
+                         HasSubstr(absl::StrCat("0.layer1_weight_hh: expected -1e6 to 1e6, got ",
+                                                weight))));
   }
   parts = RandomClassifier();
   parts.classes = {"kick"};
-  EXPECT_THAT(Classifier::Create(parts),
-              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("classes: came 1")));
+  EXPECT_THAT(Classifier::Create(parts), StatusIs(absl::StatusCode::kInvalidArgument,
+                                                  HasSubstr("classes: expected 2 or more, got 1")));
 }
 
 }  // namespace
