@@ -16,7 +16,11 @@ duet::checkpoint::Manifest PaperManifest() {
   manifest.model.name = "benchmark";
   manifest.model.version = 1;
   manifest.model.skeleton = duet::motion::SbuSkeleton();
-  manifest.generator.parts = duet::motion::SbuParts();
+  manifest.parts = duet::motion::SbuParts();
+  auto& paper = manifest.architecture.emplace<duet::checkpoint::PaperArchitecture>();
+  paper.slice_features = 50;
+  paper.encoder_hidden = 40;
+  paper.attention = 128;
   manifest.model.classes = {"kick", "push", "shake_hands", "hug", "exchange_object", "punch"};
   manifest.model.frame_rate_hz = 15;
   manifest.model.window_frames = static_cast<int>(kFrames);

@@ -40,7 +40,8 @@ std::string ShapeText(const std::vector<int64_t>& shape) {
   return absl::StrCat("[", absl::StrJoin(shape, ", "), "]");
 }
 
-// The tensors of `specs`, in their order: all of them, no others, of their shapes.
+// Returns the tensors in the order of `specs`. Rejects missing and unknown tensors and wrong
+// shapes.
 absl::StatusOr<std::vector<Tensor>> Arrange(std::vector<Tensor> tensors,
                                             const std::vector<TensorSpec>& specs) {
   std::map<std::string, Tensor> by_name;
@@ -96,7 +97,7 @@ absl::StatusOr<Checkpoint> ReadCheckpoint(const std::filesystem::path& folder) {
 
 absl::Status CheckManifest(Manifest manifest) {
   absl::Status valid = Validate(manifest.model.skeleton);
-  if (valid.ok()) valid = Validate(manifest.generator.parts, manifest.model.skeleton);
+  if (valid.ok()) valid = Validate(manifest.parts, manifest.model.skeleton);
   if (!valid.ok()) return valid;
   manifest.weights.bytes = 1;
   manifest.weights.sha256 = base::Sha256Hex("");
@@ -107,7 +108,7 @@ absl::Status CheckManifest(Manifest manifest) {
 absl::Status WriteCheckpoint(const std::filesystem::path& folder, Checkpoint checkpoint) {
   const motion::Skeleton& skeleton = checkpoint.manifest.model.skeleton;
   absl::Status valid = Validate(skeleton);
-  if (valid.ok()) valid = Validate(checkpoint.manifest.generator.parts, skeleton);
+  if (valid.ok()) valid = Validate(checkpoint.manifest.parts, skeleton);
   if (!valid.ok()) return valid;
   const std::string weights = SerializeSafetensors(checkpoint.tensors, {{"format", "pt"}});
   Manifest& manifest = checkpoint.manifest;
@@ -117,7 +118,7 @@ absl::Status WriteCheckpoint(const std::filesystem::path& folder, Checkpoint che
     manifest.created = FormatNow();
   }
   const std::string text = SerializeManifest(manifest);
-  // What could not be read back must not replace a good run's result.
+  // Content that cannot be read back must not be written.
   if (absl::Status status = ParseCheckpoint(text, weights).status(); !status.ok()) return status;
   return base::WriteFolder(folder, {{manifest.weights.file, weights},
                                     {kManifestFile, text},

@@ -11,8 +11,8 @@
 #include "absl/strings/str_cat.h"
 #include "absl/time/time.h"
 #include "model/base/strict_json.h"
+#include "model/checkpoint/architecture_json.h"
 #include "model/checkpoint/direction_json.h"
-#include "model/checkpoint/flow_json.h"
 #include "model/checkpoint/leader_statistics_json.h"
 #include "model/checkpoint/names.h"
 #include "model/motion/motion_limits.h"
@@ -24,9 +24,8 @@ namespace {
 using nlohmann::json;
 using nlohmann::ordered_json;
 
-// Far above any use, far below what would let a small file ask for a huge network.
+// Far above any use, and low enough that a small file cannot ask for a huge network.
 constexpr int kMaxClasses = 256;
-constexpr int kMaxUnits = 4096;  // of a layer
 constexpr int kMaxWindowFrames = 4096;
 constexpr int kMaxMapEntries = 1024;
 constexpr std::size_t kMaxNameBytes = 64;
@@ -36,7 +35,7 @@ constexpr std::size_t kSha256HexBytes = 64;
 constexpr char kTouchingClasses[] = "touching_classes";
 constexpr char kTerms[] = "terms";
 
-// Names that serve as a file, a folder, a tensor or a metric name as they are.
+// Characters that are safe in names of files, folders, tensors and metrics.
 bool IsPlain(char c) {
   return absl::ascii_isalnum(static_cast<unsigned char>(c)) || c == '.' || c == '_' || c == '-';
 }
@@ -72,58 +71,11 @@ std::vector<std::string> ReadUniqueNames(base::ObjectReader* reader, const std::
   return names;
 }
 
-// A name of a table (names.h).
-template <typename T, std::size_t n>
-T ReadNamed(base::ObjectReader* reader, const std::string& key, const Named<T> (&table)[n]) {
-  const std::string name = reader->String(key, kMaxTextBytes);
-  const std::optional<T> value = ValueOf(table, name);
-  if (value) return *value;
-  std::string wanted;
-  for (std::size_t i = 0; i < n; ++i) {
-    absl::StrAppend(&wanted,
-                    i == 0      ? ""
-                    : i + 1 < n ? ", "
-                                : " or ",
-                    "\"", std::string(table[i].name), "\"");
-  }
-  reader->Fail(key, absl::StrCat(json(name).dump(), ", wanted ", wanted));
-  return table[0].value;
-}
-
-GeneratorArchitecture ReadPaperGenerator(base::ObjectReader* reader) {
-  GeneratorArchitecture generator;
-  generator.variant = ReadNamed(reader, "variant", kVariantNames);
-  generator.follower_start = reader->Bool("follower_start");
-  generator.slice_features = static_cast<int>(reader->Int("slice_features", 0, kMaxUnits));
-  generator.encoder_hidden = static_cast<int>(reader->Int("encoder_hidden", 1, kMaxUnits));
-  generator.attention = static_cast<int>(reader->Int("attention", 1, kMaxUnits));
-  generator.base_pose = reader->Bool("base_pose");
-  return generator;
-}
-
-// Version 1 knew the paper's generator alone.
-std::string ReadKind(int format_version, base::ObjectReader* reader) {
-  if (format_version == 1) return kPaperKind;
-  std::string kind = reader->String(kGeneratorKind, kMaxNameBytes);
-  if (reader->ok() && kind != kPaperKind && kind != kFlowKind) {
-    reader->Fail(kGeneratorKind, absl::StrCat(json(kind).dump(), ", wanted \"", kPaperKind,
-                                              "\" or \"", kFlowKind, "\""));
-  }
-  return kind;
-}
-
 void ReadGenerator(const json& value, base::ObjectReader* root, Manifest* manifest) {
   base::ObjectReader reader(value, "generator");
-  const std::string kind = ReadKind(manifest->format_version, &reader);
-  if (kind == kFlowKind) {
-    manifest->flow = ReadFlowArchitecture(&reader);
-  } else if (reader.ok()) {
-    manifest->generator = ReadPaperGenerator(&reader);
-  }
+  const bool has_kind = manifest->format_version > 1;
+  SetArchitecture(ReadArchitecture(has_kind, &reader), manifest);
   root->Update(reader.Finish());
-  manifest->model.samples = manifest->flow.has_value();
-  manifest->model.accepts_follower_start =
-      manifest->flow.has_value() || manifest->generator.follower_start;
 }
 
 absl::StatusOr<WeightsFile> ReadWeightsFile(const json& value) {
@@ -172,14 +124,15 @@ std::string ReadTime(base::ObjectReader* reader, const std::string& key) {
   return text;
 }
 
-// Takes a section's value, or notes why there is none.
+// Moves a section's value to `out`, or records its error.
 template <typename T>
 void Take(absl::StatusOr<T> section, base::ObjectReader* reader, T* out) {
   reader->Update(section.status());
   if (section.ok()) *out = *std::move(section);
 }
 
-// Checkpoints of before say nothing: their data's class of touching bodies was the hug.
+// Older checkpoints have no such field; the only class of their data in which bodies touch is
+// "hug".
 void ReadTouchingClasses(base::ObjectReader* reader, engine::ModelDescription* model) {
   const std::vector<std::string>& classes = model->classes;
   const auto is_class = [&](const std::string& name) {
@@ -210,7 +163,7 @@ void ReadModel(base::ObjectReader* reader, engine::ModelDescription* model) {
   ReadTouchingClasses(reader, model);
 }
 
-// Checkpoints of before have none; version 1 knew of none.
+// Older checkpoints have none, and version 1 does not allow them.
 void ReadLeaders(base::ObjectReader* reader, Manifest* manifest) {
   if (manifest->format_version == 1 || !reader->Has(kLeaderStatistics)) return;
   const json& leaders = reader->Object(kLeaderStatistics);
@@ -222,7 +175,7 @@ void ReadLeaders(base::ObjectReader* reader, Manifest* manifest) {
 absl::StatusOr<Manifest> ReadManifest(const json& root) {
   base::ObjectReader reader(root, "");
   Manifest manifest;
-  // First, since the first problem is the one that is told: a newer format may differ in any field.
+  // First, because only the first problem is reported and a newer format may differ in any field.
   manifest.format_version =
       static_cast<int>(reader.Int("format_version", 1, kCheckpointFormatVersion));
   ReadModel(&reader, &manifest.model);
@@ -234,7 +187,7 @@ absl::StatusOr<Manifest> ReadManifest(const json& root) {
   manifest.model.partner_direction = ReadDirectionRegression(manifest.model.skeleton, &reader);
   const json& generator = reader.Object("generator");
   if (reader.ok()) ReadGenerator(generator, &reader, &manifest);
-  manifest.generator.parts = std::move(skeleton.parts);
+  manifest.parts = std::move(skeleton.parts);
   manifest.standardisation = ReadNamed(&reader, "standardisation", kStandardisationNames);
   const json& weights = reader.Object("weights");
   if (reader.ok()) Take(ReadWeightsFile(weights), &reader, &manifest.weights);
@@ -247,7 +200,7 @@ absl::StatusOr<Manifest> ReadManifest(const json& root) {
   return manifest;
 }
 
-// The network that the sizes add up to must fit the cap: each size alone may be in range.
+// Limits the whole network: each size can be in range while their product is not.
 absl::Status CheckTotalSize(const Manifest& manifest) {
   double bytes = 0;
   for (const TensorSpec& spec : ExpectedTensors(manifest)) {
@@ -262,15 +215,8 @@ absl::Status CheckTotalSize(const Manifest& manifest) {
 }
 
 ordered_json GeneratorToJson(const Manifest& manifest) {
-  if (manifest.flow) return FlowArchitectureToJson(*manifest.flow);
-  const GeneratorArchitecture& generator = manifest.generator;
-  ordered_json object = {{"variant", std::string(NameOf(kVariantNames, generator.variant))},
-                         {"follower_start", generator.follower_start},
-                         {"slice_features", generator.slice_features},
-                         {"encoder_hidden", generator.encoder_hidden},
-                         {"attention", generator.attention},
-                         {"base_pose", generator.base_pose}};
-  if (manifest.format_version > 1) object[kGeneratorKind] = kPaperKind;
+  ordered_json object = ToJson(manifest.architecture);
+  if (manifest.format_version == 1) object.erase(kArchitectureKind);
   return object;
 }
 
@@ -311,7 +257,7 @@ std::string SerializeManifest(const Manifest& manifest) {
       {"window_frames", model.window_frames},
       {"classes", model.classes},
       {"standardisation", std::string(NameOf(kStandardisationNames, manifest.standardisation))},
-      {"skeleton", motion::SkeletonToJson(model.skeleton, manifest.generator.parts)},
+      {"skeleton", motion::SkeletonToJson(model.skeleton, manifest.parts)},
       {"generator", GeneratorToJson(manifest)},
       {"weights",
        {{"file", manifest.weights.file},

@@ -11,7 +11,7 @@
 namespace duet::checkpoint {
 namespace {
 
-// What the run noted of its data stands apart from its settings.
+// Entries of Manifest::training that describe the data. They are not listed with the settings.
 constexpr const char* kDataNotes[] = {"data", "sequences", "seconds", "people", "levelled"};
 
 bool IsDataNote(const std::string& key) {
@@ -50,26 +50,25 @@ std::string Classes(const engine::ModelDescription& model) {
 
 std::string SkeletonText(const Manifest& manifest) {
   const motion::Skeleton& skeleton = manifest.model.skeleton;
-  return absl::StrCat(skeleton.joint_count(), " joints about ",
-                      skeleton.joint_names[static_cast<std::size_t>(skeleton.root)], ", in ",
-                      manifest.generator.parts.size(), " parts: ",
-                      absl::StrJoin(manifest.generator.parts, ", ",
-                                    [](std::string* out, const motion::BodyPart& part) {
-                                      out->append(part.name);
-                                    }));
+  return absl::StrCat(
+      skeleton.joint_count(), " joints about ",
+      skeleton.joint_names[static_cast<std::size_t>(skeleton.root)], ", in ", manifest.parts.size(),
+      " parts: ",
+      absl::StrJoin(manifest.parts, ", ", [](std::string* out, const motion::BodyPart& part) {
+        out->append(part.name);
+      }));
 }
 
 std::string Kind(const Manifest& manifest) {
-  return absl::StrCat(manifest.flow ? "sampling (flow matching): answers depend on a seed"
-                                    : "one answer for each request (the paper's)",
-                      "; ", ParameterCount(manifest), " parameters");
+  return absl::StrCat(std::string(Summary(manifest.architecture)), "; ", ParameterCount(manifest),
+                      " parameters");
 }
 
 std::string Data(const Manifest& manifest) {
   std::string text = absl::StrCat(Note(manifest, "data"), ": ", Note(manifest, "sequences"),
                                   " sequences of two people");
   if (const std::string seconds = Note(manifest, "seconds"); !seconds.empty()) {
-    absl::StrAppend(&text, ", ", seconds, " s in all");
+    absl::StrAppend(&text, ", ", seconds, " s in total");
   }
   const std::string people = Note(manifest, "people");
   absl::StrAppend(&text, "; people: ", people.empty() ? "not named" : people);
@@ -97,7 +96,7 @@ std::string Figures(const Manifest& manifest) {
   if (!text.empty()) text = absl::StrCat("| figure | value |\n|---|---|\n", text);
   if (manifest.metrics.count("validation.afd") == 0) {
     absl::StrAppend(&text, text.empty() ? "" : "\n",
-                    "Nothing was held back from training to judge the model by.\n");
+                    "No sequences were held out from training to validate the model.\n");
   }
   return text;
 }
@@ -105,9 +104,9 @@ std::string Figures(const Manifest& manifest) {
 std::string Terms(const Manifest& manifest) {
   if (!manifest.model.terms.empty()) return manifest.model.terms;
   const std::string data = Note(manifest, "data");
-  return absl::StrCat("Terms: as those of the data set ",
+  return absl::StrCat("Terms: those of the data set ",
                       data.empty() ? "that it was trained on" : data,
-                      " (complete this sentence before passing the model on, and add it to "
+                      " (complete this sentence before you distribute the model, and add it to "
                       "manifest.json as \"terms\").");
 }
 
@@ -125,16 +124,16 @@ std::string ModelCard(const Manifest& manifest) {
   const engine::ModelDescription& model = manifest.model;
   return absl::StrCat(
       "# ", model.name, ", version ", model.version, "\n\n",
-      model.description.empty() ? "Answers a leader's motion with a follower's."
+      model.description.empty() ? "Synthesises a follower's motion from a leader's."
                                 : model.description,
-      "\n\n", Facts(manifest), "\n## Figures\n\n", Figures(manifest), "\n## Meant for\n\n",
+      "\n\n", Facts(manifest), "\n## Figures\n\n", Figures(manifest), "\n## Intended use\n\n",
       "Animation and research: synthesising the second character of an interaction of the classes\n"
-      "above from the first one's motion. Not for telling who people are or what they intend, and\n"
-      "not for steering machines near people.\n",
+      "above from the motion of the first. Not intended for identifying people or their\n"
+      "intentions, or for controlling machines near people.\n",
       "\n## Limits\n\n",
-      "It knows what its data shows: those classes, clips of those lengths, bodies like those\n"
-      "captured. For a leader unlike these it answers all the same; the reply's summary says how\n"
-      "unfamiliar the leader is. Faces, fingers and objects are not part of it.\n",
+      "The model covers what its data contains: those classes, clips of those lengths, and bodies\n"
+      "like those captured. It also answers leaders unlike these; the summary of the reply\n"
+      "reports how unfamiliar the leader is. It has no faces, fingers or objects.\n",
       "\n## Terms\n\n", Terms(manifest), "\n", "\n## Settings\n\n", Settings(manifest));
 }
 

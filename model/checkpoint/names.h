@@ -2,13 +2,18 @@
 #define DUET_MODEL_CHECKPOINT_NAMES_H_
 
 #include <cstddef>
-#include <optional>
+#include <iterator>
+#include <string>
 #include <string_view>
 
-#include "model/checkpoint/manifest.h"
+#include "absl/strings/str_cat.h"
+#include "model/base/strict_json.h"
+#include "model/base/text.h"
+#include "model/checkpoint/paper_architecture.h"
+#include "model/motion/standardise.h"
 
-// What manifests and training configurations call the choices that they make. Only the code that
-// reads and writes those files needs it.
+// The names of choices in manifests and training configurations. Only code that reads or writes
+// those files needs them.
 namespace duet::checkpoint {
 
 template <typename T>
@@ -35,12 +40,24 @@ std::string_view NameOf(const Named<T> (&table)[n], T value) {
   return {};
 }
 
-template <typename T, std::size_t n>
-std::optional<T> ValueOf(const Named<T> (&table)[n], std::string_view name) {
-  for (const Named<T>& row : table) {
+// The value whose name the field contains. For any other text, records the names of the table as an
+// error and returns the first value.
+template <typename Table>
+auto ReadNamed(base::ObjectReader* reader, const std::string& key, const Table& table) {
+  constexpr std::size_t kMaxBytes = 4096;
+  const std::string name = reader->String(key, kMaxBytes);
+  std::string wanted;
+  std::size_t left = std::size(table);
+  for (const auto& row : table) {
     if (row.name == name) return row.value;
+    --left;
+    absl::StrAppend(&wanted, "\"", std::string(row.name), "\"",
+                    left > 1    ? ", "
+                    : left == 1 ? " or "
+                                : "");
   }
-  return std::nullopt;
+  reader->Fail(key, absl::StrCat(base::Quoted(name), ", wanted ", wanted));
+  return std::begin(table)->value;
 }
 
 }  // namespace duet::checkpoint

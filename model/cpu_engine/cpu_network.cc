@@ -1,6 +1,8 @@
 #include "model/cpu_engine/cpu_network.h"
 
 #include <algorithm>
+#include <type_traits>
+#include <variant>
 
 #include "model/cpu_engine/flow_network.h"
 #include "model/cpu_engine/kernels/gemm_bf16.h"
@@ -10,8 +12,8 @@
 namespace duet::cpu_engine {
 namespace {
 
-// Frames that are evaluated together: 16 windows of 45. More gain nothing, and what they need
-// leaves the caches.
+// Frames that are evaluated together: 16 windows of 45. More are no faster, because their values no
+// longer fit in the caches.
 constexpr int kFramesAtOnce = 720;
 
 Scratch& ThreadScratch() {
@@ -19,7 +21,7 @@ Scratch& ThreadScratch() {
   return scratch;
 }
 
-// How many of the inputs are evaluated together: one at least.
+// Number of inputs that are evaluated together, at least one.
 std::size_t TakeTogether(absl::Span<const engine::NetworkInput> inputs) {
   int frames = 0;
   std::size_t count = 0;
@@ -30,7 +32,19 @@ std::size_t TakeTogether(absl::Span<const engine::NetworkInput> inputs) {
   return count;
 }
 
-// Either generator.
+// The class that runs each architecture: its registration in this engine. Without a line here, an
+// architecture does not compile.
+template <typename Architecture>
+struct GeneratorOf;
+template <>
+struct GeneratorOf<checkpoint::PaperArchitecture> {
+  using Type = PaperNetwork;
+};
+template <>
+struct GeneratorOf<checkpoint::FlowArchitecture> {
+  using Type = FlowNetwork;
+};
+
 template <typename Generator>
 class CpuNetwork : public engine::Network {
  public:
@@ -66,10 +80,12 @@ kernels::Precision BestPrecision() {
 
 std::unique_ptr<const engine::Network> MakeCpuNetwork(const checkpoint::Checkpoint& checkpoint,
                                                       kernels::Precision precision) {
-  if (checkpoint.manifest.flow) {
-    return std::make_unique<const CpuNetwork<FlowNetwork>>(checkpoint, precision);
-  }
-  return std::make_unique<const CpuNetwork<PaperNetwork>>(checkpoint, precision);
+  return std::visit(
+      [&](const auto& architecture) -> std::unique_ptr<const engine::Network> {
+        using Generator = typename GeneratorOf<std::decay_t<decltype(architecture)>>::Type;
+        return std::make_unique<const CpuNetwork<Generator>>(checkpoint, precision);
+      },
+      checkpoint.manifest.architecture);
 }
 
 std::size_t ThreadScratchBytes() { return ThreadScratch().bytes(); }

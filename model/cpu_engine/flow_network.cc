@@ -6,7 +6,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "model/base/angle.h"
-#include "model/checkpoint/flow_tensor_table.h"
+#include "model/checkpoint/flow_architecture.h"
 #include "model/cpu_engine/kernels/rowwise.h"
 #include "model/cpu_engine/kernels/self_attention.h"
 
@@ -16,7 +16,7 @@ namespace {
 using kernels::Precision;
 
 using base::kPi;
-constexpr double kHighestFrequency = 200;  // of the time's sines
+constexpr double kHighestFrequency = 200;  // of the sines of the time
 
 // [kTimeFeatures] sines, then cosines.
 void WriteTimeFeatures(double time, float* out) {
@@ -32,7 +32,7 @@ void Add(std::ptrdiff_t count, const float* from, float* to) {
   for (std::ptrdiff_t i = 0; i < count; ++i) to[i] += from[i];
 }
 
-// 1 in the last known frame, falling to 0 along half a cosine; 0 where nothing is known.
+// 1 in the last known frame, falling to 0 along half a cosine; 0 without known frames.
 float Fade(int frame, int known_frames, int fade_frames) {
   if (known_frames == 0) return 0;
   const int since = std::clamp(frame - known_frames + 1, 0, fade_frames + 1);
@@ -43,11 +43,12 @@ float Fade(int frame, int known_frames, int fade_frames) {
 
 FlowNetwork::FlowNetwork(const checkpoint::Checkpoint& checkpoint, Precision precision)
     : manifest_(checkpoint.manifest),
-      width_(manifest_.flow->width),
+      flow_(std::get<checkpoint::FlowArchitecture>(manifest_.architecture)),
+      width_(flow_.width),
       pose_(3 * manifest_.model.skeleton.joint_count()),
-      heads_(manifest_.flow->heads),
+      heads_(flow_.heads),
       base_poses_(Weights(checkpoint).Values("base.poses")),
-      noise_(manifest_.flow->noise, Weights(checkpoint).Values("noise.roots"), pose_,
+      noise_(flow_.noise, Weights(checkpoint).Values("noise.roots"), pose_,
              manifest_.model.window_frames) {
   const Weights weights(checkpoint);
   const auto exact = [&](const std::string& name) {
@@ -62,15 +63,15 @@ FlowNetwork::FlowNetwork(const checkpoint::Checkpoint& checkpoint, Precision pre
   condition_ = exact("condition");
   norm_ = {weights.Values("norm.weight"), weights.Values("norm.bias"), width_, 1};
   output_ = exact("output");
-  for (int i = 0; i < manifest_.flow->blocks; ++i) {
+  for (int i = 0; i < flow_.blocks; ++i) {
     const auto packed = [&](const char* name, Precision as) {
       return weights.FindLayer(absl::StrCat("block", i, ".", name)).Pack(as);
     };
     blocks_.push_back({exact(absl::StrCat("block", i, ".modulation")),
                        exact(absl::StrCat("block", i, ".attention")),
                        exact(absl::StrCat("block", i, ".attended")), packed("expand", precision),
-                       // What is rounded first goes through all that follows: exact, it halves what
-                       // rounding moves.
+                       // The rounding error of the first block passes through all others: float32
+                       // here halves the error of the answer.
                        packed("contract", i == 0 ? Precision::kFloat32 : precision),
                        weights.Values(absl::StrCat("block", i, ".distance"))});
   }
@@ -79,10 +80,10 @@ FlowNetwork::FlowNetwork(const checkpoint::Checkpoint& checkpoint, Precision pre
 void FlowNetwork::Run(absl::Span<const engine::NetworkInput> inputs, Scratch::Use* scratch,
                       absl::Span<motion::Poses> followers) const {
   const Work work = Prepare(inputs, scratch);
-  const int steps = manifest_.flow->steps;
+  const int steps = flow_.steps;
   for (int step = 0; step < steps; ++step) {
     if (!Answer(work, inputs, static_cast<double>(step) / steps)) return;
-    // The last step would end on the answer itself.
+    // The last step ends exactly at the answer.
     if (step + 1 < steps) Step(work, steps - step);
   }
   Join(work, followers);
@@ -106,8 +107,8 @@ FlowNetwork::Work FlowNetwork::Prepare(absl::Span<const engine::NetworkInput> in
   work.modulation = scratch->Take<float>(terms * 4 * width_);
   work.frames = scratch->Take<float>(term_rows * width_);
   work.normal = scratch->Take<float>(term_rows * width_);
-  work.branch = scratch->Take<float>(
-      term_rows * std::max<std::ptrdiff_t>(3 * width_, manifest_.flow->feed_forward));
+  work.branch =
+      scratch->Take<float>(term_rows * std::max<std::ptrdiff_t>(3 * width_, flow_.feed_forward));
   work.distance = scratch->Take<float>(std::ptrdiff_t{heads_} * (2 * work.longest - 1));
   work.attention =
       scratch->Take<float>(kernels::SelfAttentionScratch(work.longest, width_ / heads_));
@@ -143,8 +144,8 @@ void FlowNetwork::ReadTerms(absl::Span<const engine::NetworkInput> inputs, Scrat
   const int classes = manifest_.model.class_count();
   work->term = scratch->Take<FlowTerm>(std::ptrdiff_t{work->windows} * (classes + 1));
   for (int n = 0; n < work->windows; ++n) {
-    work->terms += AddFlowTerms(inputs[static_cast<std::size_t>(n)], n, classes,
-                                manifest_.flow->guidance, scratch, work->term + work->terms);
+    work->terms += AddFlowTerms(inputs[static_cast<std::size_t>(n)], n, classes, flow_.guidance,
+                                scratch, work->term + work->terms);
   }
   work->term_row = scratch->Take<int>(work->terms);
   work->told = scratch->Take<float>(std::ptrdiff_t{work->terms} * width_);
@@ -161,8 +162,8 @@ void FlowNetwork::ReadTerms(absl::Span<const engine::NetworkInput> inputs, Scrat
   }
 }
 
-// The guided answer to the sample at a time, into work.answer. False where all were cancelled
-// before it was complete.
+// Writes the guided answer to the sample at a time to work.answer. Returns false if all windows
+// were cancelled before it was complete.
 bool FlowNetwork::Answer(const Work& work, absl::Span<const engine::NetworkInput> inputs,
                          double time) const {
   Condition(work, time);
@@ -216,7 +217,7 @@ void FlowNetwork::Apply(const Block& block, const Work& work) const {
   Add(values, work.branch, work.frames);
   Normalise(work, 2);
   block.expand.Multiply(work.term_rows, work.normal, work.branch);
-  kernels::Gelu(std::ptrdiff_t{work.term_rows} * manifest_.flow->feed_forward, work.branch);
+  kernels::Gelu(std::ptrdiff_t{work.term_rows} * flow_.feed_forward, work.branch);
   block.contract.Multiply(work.term_rows, work.branch, work.normal);
   Add(values, work.normal, work.frames);
 }
@@ -233,9 +234,9 @@ void FlowNetwork::Normalise(const Work& work, int scale) const {
   }
 }
 
-// From work.branch, queries, keys and values of every frame, to work.normal.
+// Attention from work.branch (queries, keys and values of every frame) to work.normal.
 void FlowNetwork::Attend(const Block& block, const Work& work) const {
-  const int size = width_ / heads_, reach = manifest_.flow->reach, longest = work.longest;
+  const int size = width_ / heads_, reach = flow_.reach, longest = work.longest;
   for (int h = 0; h < heads_; ++h) {
     for (int d = 1 - longest; d < longest; ++d) {
       work.distance[h * (2 * longest - 1) + d + longest - 1] =
@@ -273,7 +274,7 @@ void FlowNetwork::Output(const Work& work) const {
   }
 }
 
-// An Euler step: 1 / left of the way to the answer; known frames are put in place.
+// An Euler step: 1 / left of the way to the answer, or to the known value in known frames.
 void FlowNetwork::Step(const Work& work, int left) const {
   for (int n = 0; n < work.windows; ++n) {
     const FlowWindow& window = work.window[n];
@@ -287,17 +288,17 @@ void FlowNetwork::Step(const Work& work, int left) const {
   }
 }
 
-// The answer in metres. Known frames are exact; those after them are moved to where the last of
-// them lies, which is offset 0 from the base.
+// Writes the answer in metres. Known frames are exact. The frames after them are shifted to
+// continue from the last known frame, which has offset 0 from the base.
 void FlowNetwork::Join(const Work& work, absl::Span<motion::Poses> followers) const {
-  const float scale = static_cast<float>(manifest_.flow->offset_scale);
+  const float scale = static_cast<float>(flow_.offset_scale);
   for (int n = 0; n < work.windows; ++n) {
     const FlowWindow& window = work.window[n];
     const float* const answer = work.answer + std::ptrdiff_t{work.window_row[n]} * pose_;
     const float* const last = answer + std::ptrdiff_t{std::max(window.known_frames - 1, 0)} * pose_;
     float* out = &followers[static_cast<std::size_t>(n)].all().front().x;
     for (int t = 0; t < window.frames; ++t) {
-      const float fade = Fade(t, window.known_frames, manifest_.flow->fade_frames);
+      const float fade = Fade(t, window.known_frames, flow_.fade_frames);
       const bool known = t < window.known_frames;
       for (int i = 0; i < pose_; ++i) {
         const float offset = known ? window.known(t, pose_)[i]

@@ -14,12 +14,13 @@
 
 namespace duet::cpu_engine {
 
-// The sampling generator, to be read from top to bottom of Run: what it is told, the noise, the
-// steps from noise to motion with the transformer in each, the joint with the known frames.
+// The sampling generator. Read it from Run downwards: the conditions, the noise, the steps from
+// noise to motion with the transformer in each, and the continuation of the known frames.
 //
-// Source:  model/network/flow_generator.h and flow_sampler.h have the same in LibTorch.
-// Shapes:  T frames of a window, R of all windows, Q of all terms, J joints, W width, F
-// feed-forward. Threads: Run is safe to call concurrently, with a scratch each.
+// Source:  the LibTorch version is in model/network/flow_generator.h and flow_sampler.h.
+// Shapes:  T frames of a window, R frames of all windows, Q frames of all terms, J joints, W width,
+//          F feed_forward.
+// Threads: Run is safe to call concurrently, with one scratch per call.
 class FlowNetwork {
  public:
   FlowNetwork(const checkpoint::Checkpoint& checkpoint, kernels::Precision precision);
@@ -33,22 +34,22 @@ class FlowNetwork {
     kernels::PackedMatrix modulation, attention, attended, expand, contract;
     std::vector<float> distance;  // [heads, 2 reach + 1]
   };
-  // What passes between the steps of Run. The rows are the frames of the windows one after the
-  // other, or those of the terms.
+  // The values that the steps of Run share. Rows are the frames of all windows in order, or those
+  // of all terms.
   struct Work {
     int windows, terms, rows, term_rows, longest;
     FlowWindow* window;  // [windows]
     FlowTerm* term;      // [terms], in the order of their windows
     int* window_row;     // [windows] first row
     int* term_row;       // [terms] first row
-    float* context;      // [R, W] what the frames say
-    float* told;         // [terms, W] what start and label say
+    float* context;      // [R, W] encoded frames
+    float* told;         // [terms, W] encoded start and label
     float* sample;       // [R, 3 J] from noise to motion, in units of offset_scale
     float* answer;       // [R, 3 J]
     float* condition;    // [terms, W]
     float* time;         // [W]
     float* modulation;   // [terms, 4 W]
-    float* frames;       // [Q, W] the transformer's
+    float* frames;       // [Q, W] of the transformer
     float* normal;       // [Q, W]
     float* branch;       // [Q, max(3 W, F)]
     float* distance;     // [heads, 2 longest - 1]
@@ -71,6 +72,7 @@ class FlowNetwork {
   void Join(const Work& work, absl::Span<motion::Poses> followers) const;
 
   checkpoint::Manifest manifest_;
+  checkpoint::FlowArchitecture flow_;
   int width_, pose_, heads_;
   std::vector<float> base_poses_;
   FlowNoise noise_;

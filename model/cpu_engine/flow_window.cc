@@ -6,12 +6,12 @@
 namespace duet::cpu_engine {
 namespace {
 
-constexpr float kVelocityScale = 4;    // metres a frame are small numbers
+constexpr float kVelocityScale = 4;    // metres per frame are small numbers
 constexpr float kPositionFrames = 20;  // one unit of a frame's distance from the window's ends
 
 using Frame = absl::Span<const motion::Vec3>;
 
-// The follower's known frames, perhaps none.
+// Number of known frames of the follower.
 int KnownFrames(const engine::NetworkInput& input) {
   if (!input.settled.empty()) return input.settled.frame_count();
   return input.start && !input.start->pose.empty() ? 1 : 0;
@@ -28,7 +28,7 @@ float* Write(const motion::Vec3& point, float* out) {
   return out;
 }
 
-// Root, pose relative to the root, and two flags: what is known.
+// Writes the root, the pose relative to the root, and two flags (root known, pose known).
 void WriteStart(const engine::NetworkInput& input, int root, int count, float* out) {
   std::fill_n(out, count, 0.0f);
   const int known = KnownFrames(input);
@@ -45,7 +45,7 @@ void WriteStart(const engine::NetworkInput& input, int root, int count, float* o
   for (const motion::Vec3& joint : pose) out = Write(joint - place, out);
 }
 
-// The mean pose of the window's classes by their weights, moved to the root where that is told.
+// The mean pose of the classes by their mean label weights, moved to the start root if given.
 void WriteMeanPose(const checkpoint::Manifest& manifest, const std::vector<float>& base_poses,
                    const engine::NetworkInput& input, float* base) {
   const std::ptrdiff_t classes = manifest.model.class_count();
@@ -75,7 +75,7 @@ void WriteMeanPose(const checkpoint::Manifest& manifest, const std::vector<float
   for (std::ptrdiff_t i = 0; i < width; ++i) base[i] += by[i % 3];
 }
 
-// Leader, velocity, positions, known, whether known.
+// Writes leader, velocity, positions, known offsets, and the known flag.
 void WriteFeatures(const engine::NetworkInput& input, int frame, int told, float scale,
                    const float* base, float* out) {
   const Frame leader = input.leader[frame];
@@ -108,6 +108,7 @@ void WriteFeatures(const engine::NetworkInput& input, int frame, int told, float
 void FillFlowWindow(const checkpoint::Manifest& manifest, const std::vector<float>& base_poses,
                     const engine::NetworkInput& input, FlowWindow* window) {
   const motion::Skeleton& skeleton = manifest.model.skeleton;
+  const auto& flow = std::get<checkpoint::FlowArchitecture>(manifest.architecture);
   const int width = 3 * skeleton.joint_count(), known = KnownFrames(input);
   window->frames = input.leader.frame_count();
   window->known_frames = std::min(known, window->frames);
@@ -119,7 +120,7 @@ void FillFlowWindow(const checkpoint::Manifest& manifest, const std::vector<floa
     for (const motion::Vec3& joint : KnownFrame(input, known - 1)) out = Write(joint, out);
   }
   for (int t = 0; t < window->frames; ++t) {
-    WriteFeatures(input, t, window->known_frames, static_cast<float>(manifest.flow->offset_scale),
+    WriteFeatures(input, t, window->known_frames, static_cast<float>(flow.offset_scale),
                   window->base, window->features + std::ptrdiff_t{t} * (3 * width + 5));
   }
 }

@@ -13,17 +13,23 @@ namespace duet::cpu_engine {
 namespace {
 
 using checkpoint::GeneratorVariant;
+using checkpoint::PaperArchitecture;
 using kernels::Precision;
 
 constexpr const char* kDirections[] = {"forward", "backward"};
 
-// Windows that are decoded together: as many as make a full tile of a product. More would push
-// their values out of the second-level cache, where every step reads them again.
+// Windows that are decoded together: the number that fills a tile of a product. The values of more
+// windows would not stay in the second-level cache, and every step reads them again.
 constexpr int kDecodedTogether = 4;
+
+const PaperArchitecture& PaperOf(const checkpoint::Checkpoint& checkpoint) {
+  return std::get<PaperArchitecture>(checkpoint.manifest.architecture);
+}
 
 // Columns of a row of the input that a slice reads.
 std::vector<int> ColumnsOf(const checkpoint::Manifest& manifest, int slice) {
-  const auto& parts = manifest.generator.parts;
+  const auto& paper = std::get<PaperArchitecture>(manifest.architecture);
+  const auto& parts = manifest.parts;
   std::vector<int> columns;
   const auto add = [&](int first, int count) {
     for (int i = 0; i < count; ++i) columns.push_back(first + i);
@@ -34,9 +40,9 @@ std::vector<int> ColumnsOf(const checkpoint::Manifest& manifest, int slice) {
   }
   const motion::Skeleton& skeleton = manifest.model.skeleton;
   const int leader = 3 * skeleton.joint_count(), classes = manifest.model.class_count();
-  if (manifest.generator.variant != GeneratorVariant::kReleased) add(0, leader);
-  if (manifest.generator.variant != GeneratorVariant::kUnlabelled) add(leader, classes);
-  if (manifest.generator.follower_start) {
+  if (paper.variant != GeneratorVariant::kReleased) add(0, leader);
+  if (paper.variant != GeneratorVariant::kUnlabelled) add(leader, classes);
+  if (paper.follower_start) {
     add(leader + classes, checkpoint::StartFeatureCount(skeleton));
   }
   return columns;
@@ -47,7 +53,7 @@ float* Copied(absl::Span<const motion::Vec3> points, float* out) {
   return std::copy_n(&points.front().x, 3 * points.size(), out);
 }
 
-// Root, pose relative to the root, and two flags: what is known.
+// Writes the root, the pose relative to the root, and two flags (root known, pose known).
 void WriteStart(const std::optional<engine::FollowerStart>& start, int count, float* out) {
   std::fill_n(out, count, 0.0f);
   if (!start) return;
@@ -60,13 +66,13 @@ void WriteStart(const std::optional<engine::FollowerStart>& start, int count, fl
   }
 }
 
-// Whether nobody wants the answer to any of these windows.
+// Whether the calls of all these windows are cancelled.
 bool AllCancelled(const WindowBatch& batch, absl::Span<const engine::NetworkInput> inputs) {
   return std::all_of(batch.input, batch.input + batch.count,
                      [&](int n) { return IsCancelled(inputs[static_cast<std::size_t>(n)]); });
 }
 
-// The frame that a direction of a window of `length` frames is at after `step` steps.
+// The frame that a direction reads in step `step` of a window of `length` frames.
 int FrameAt(int direction, int length, int step) {
   return direction == 0 ? step : length - 1 - step;
 }
@@ -77,10 +83,10 @@ PaperNetwork::PaperNetwork(const checkpoint::Checkpoint& checkpoint, Precision p
     : joints_(checkpoint.manifest.model.skeleton.joint_count()),
       classes_(checkpoint.manifest.model.class_count()),
       root_(checkpoint.manifest.model.skeleton.root),
-      encoder_(checkpoint.manifest.generator.encoder_hidden),
-      attention_(checkpoint.manifest.generator.attention),
-      has_start_(checkpoint.manifest.generator.follower_start),
-      has_base_(checkpoint.manifest.generator.base_pose),
+      encoder_(PaperOf(checkpoint).encoder_hidden),
+      attention_(PaperOf(checkpoint).attention),
+      has_start_(PaperOf(checkpoint).follower_start),
+      has_base_(PaperOf(checkpoint).base_pose),
       precision_(precision) {
   const checkpoint::Manifest& manifest = checkpoint.manifest;
   const Weights weights(checkpoint);
@@ -191,7 +197,7 @@ void PaperNetwork::Encode(const Work& work, Scratch::Use* scratch) const {
   }
 }
 
-// `gates`: what the input gives to the gates, [R, 2 x 4 E].
+// `gates`: the input's part of the gates, [R, 2 x 4 E].
 void PaperNetwork::EncodeSlice(const Work& work, int slice, int direction, const float* gates,
                                Scratch::Use* scratch) const {
   const WindowBatch& batch = work.batch;
@@ -243,8 +249,8 @@ PaperNetwork::DecoderWork PaperNetwork::PrepareDecoder(const WindowBatch& batch,
   return work;
 }
 
-// Attention, then the cells, frame by frame in the direction's order. `batch` are some windows of
-// work.batch; once all of them are cancelled, the rest of their states is left as it was.
+// Attention, then the cells, frame by frame in the direction's order. `batch` is a part of
+// work.batch. If all its windows are cancelled, the remaining states keep their old values.
 void PaperNetwork::Decode(const Work& work, const WindowBatch& batch, int direction,
                           std::ptrdiff_t hidden, const DecoderWork& decoder) const {
   if (AllCancelled(batch, work.inputs)) return;
@@ -281,7 +287,7 @@ void PaperNetwork::Decode(const Work& work, const WindowBatch& batch, int direct
   }
 }
 
-// Adds what window n's decoder sees of its frames to its gates; the query stands behind these.
+// Adds the attended values of window n to its gates. The query follows the gates.
 void PaperNetwork::LookAt(const WindowBatch& batch, int n, int direction,
                           const DecoderWork& decoder, float* gates) const {
   const std::ptrdiff_t row = batch.first_row[n] - batch.first_row[0];
@@ -297,8 +303,8 @@ void PaperNetwork::LookAt(const WindowBatch& batch, int n, int direction,
   }
 }
 
-// Adds the pose that the output layer adds to: root and pose relative to it, each from the
-// follower's start where that gives it, else from the label vector's mean pose.
+// Adds the base pose: the root and the pose relative to it, each from the follower's start if that
+// contains it, else from the mean pose of the label vector.
 void PaperNetwork::AddBase(const Work& work, float* followers) const {
   const int width = 3 * joints_;
   for (std::ptrdiff_t row = 0; row < work.batch.rows; ++row) {

@@ -5,7 +5,7 @@
 namespace duet::network {
 namespace {
 
-// Root, pose relative to the root, and two flags: what is known.
+// Writes the root, the pose relative to the root, and two flags (root known, pose known).
 void WriteStart(const engine::FollowerStart& start, float* out) {
   motion::Vec3* points = reinterpret_cast<motion::Vec3*>(out);
   *points++ = start.root;
@@ -71,7 +71,8 @@ GeneratorInput MakeInput(const checkpoint::Manifest& manifest,
   GeneratorInput batch;
   batch.leader = PadPoses(leaders, frames);
   batch.labels = Labels(inputs, frames, manifest.model.class_count());
-  if (manifest.generator.follower_start && !manifest.flow) batch.start = Starts(manifest, inputs);
+  const auto* const paper = std::get_if<checkpoint::PaperArchitecture>(&manifest.architecture);
+  if (paper != nullptr && paper->follower_start) batch.start = Starts(manifest, inputs);
   batch.lengths = torch::tensor(lengths);
   return batch;
 }

@@ -9,15 +9,19 @@
 namespace duet::network {
 namespace {
 
-constexpr double kFarBelow = -1e4;         // leaves nothing of a frame after the softmax
-constexpr double kVelocityScale = 4;       // metres a frame are small numbers
+constexpr double kFarBelow = -1e4;         // makes the weight of a frame 0 after the softmax
+constexpr double kVelocityScale = 4;       // metres per frame are small numbers
 constexpr double kPositionFrames = 20;     // one unit of a frame's distance from the window's ends
-constexpr double kHighestFrequency = 200;  // of the time's sines
+constexpr double kHighestFrequency = 200;  // of the sines of the time
 constexpr int64_t kTimeFrequencies = 16;
 
 bool IsMeasured(const std::string& name) { return name == "base.poses" || name == "noise.roots"; }
 
-// What begins at 0: every block as the identity but for its branches, an answer that is the base.
+const checkpoint::FlowArchitecture& FlowOf(const checkpoint::Manifest& manifest) {
+  return std::get<checkpoint::FlowArchitecture>(manifest.architecture);
+}
+
+// Tensors initialised with 0: blocks then start as the identity, and the answer as the base pose.
 bool BeginsAtZero(const std::string& name) {
   return absl::EndsWith(name, ".bias") || absl::StrContains(name, ".modulation.") ||
          absl::EndsWith(name, ".distance") || absl::StartsWith(name, "output.") || IsMeasured(name);
@@ -30,7 +34,7 @@ torch::Tensor InitialValue(const std::string& name, const std::vector<int64_t>& 
   return torch::empty(shape).uniform_(-bound, bound);
 }
 
-// [N, T, 4] where each frame is in its window.
+// [N, T, 4] position of each frame in its window.
 torch::Tensor Positions(const torch::Tensor& lengths, int64_t frames) {
   const torch::Tensor length = lengths.to(torch::kFloat32).unsqueeze(1);
   const torch::Tensor frame =
@@ -40,7 +44,7 @@ torch::Tensor Positions(const torch::Tensor& lengths, int64_t frames) {
                       2);
 }
 
-// [N, T, 3 J] metres a frame; none in the first.
+// [N, T, 3 J] metres per frame; 0 in the first.
 torch::Tensor Velocity(const torch::Tensor& motion) {
   const torch::Tensor moved = motion.slice(1, 1) - motion.slice(1, 0, -1);
   return torch::cat({torch::zeros_like(motion.narrow(1, 0, 1)), moved}, 1);
@@ -58,7 +62,7 @@ torch::Tensor Padding(const torch::Tensor& lengths, int64_t frames) {
   return (is_padding.to(torch::kFloat32) * kFarBelow).view({-1, 1, 1, frames});
 }
 
-// Adaptive: shift and scale come from the condition, [N, W] each.
+// Adaptive layer norm: scale and shift, [N, W] each, depend on the condition.
 torch::Tensor Normalised(const torch::Tensor& frames, const torch::Tensor& scale,
                          const torch::Tensor& shift) {
   return torch::layer_norm(frames, {frames.size(2)}) * (1 + scale.unsqueeze(1)) +
@@ -73,7 +77,7 @@ FlowContext Rows(const FlowContext& context, const torch::Tensor& rows) {
 }
 
 FlowGeneratorImpl::FlowGeneratorImpl(const checkpoint::Manifest& manifest)
-    : heads_(manifest.flow->heads), reach_(manifest.flow->reach) {
+    : heads_(FlowOf(manifest).heads), reach_(FlowOf(manifest).reach) {
   for (const checkpoint::TensorSpec& spec : ExpectedTensors(manifest)) {
     by_name_[spec.name] = Add(spec.name, spec.shape);
   }
@@ -86,7 +90,7 @@ FlowGeneratorImpl::FlowGeneratorImpl(const checkpoint::Manifest& manifest)
   condition_ = FindLinear("condition");
   norm_ = FindLinear("norm");
   output_ = FindLinear("output");
-  for (int i = 0; i < manifest.flow->blocks; ++i) {
+  for (int i = 0; i < FlowOf(manifest).blocks; ++i) {
     blocks_.push_back(FindBlock(absl::StrCat("block", i)));
   }
   base_poses_ = by_name_.at("base.poses");
@@ -95,7 +99,8 @@ FlowGeneratorImpl::FlowGeneratorImpl(const checkpoint::Manifest& manifest)
 
 torch::Tensor FlowGeneratorImpl::Add(const std::string& name, const std::vector<int64_t>& shape) {
   const torch::Tensor value = InitialValue(name, shape);
-  const std::string plain = absl::StrReplaceAll(name, {{".", "/"}});  // LibTorch allows no dots
+  const std::string plain =
+      absl::StrReplaceAll(name, {{".", "/"}});  // LibTorch does not allow dots
   return IsMeasured(name) ? register_buffer(plain, value) : register_parameter(plain, value);
 }
 

@@ -8,14 +8,14 @@
 namespace duet::network {
 namespace {
 
-// The follower's known frames of a window, perhaps none; fewer than the leader's.
+// The known frames of the follower in a window: none, or fewer than the leader's.
 motion::Poses KnownFrames(const engine::NetworkInput& input) {
   if (!input.settled.empty()) return input.settled;
   if (!input.start || input.start->pose.empty()) return {};
   return {static_cast<int>(input.start->pose.size()), input.start->pose};
 }
 
-// Root, pose relative to the root, and two flags: what is known.
+// Writes the root, the pose relative to the root, and two flags (root known, pose known).
 void WriteStart(const motion::Poses& known, const engine::NetworkInput& input, int root,
                 torch::Tensor features) {
   float* out = features.data_ptr<float>();
@@ -59,6 +59,7 @@ FlowInput MakeFlowInput(const checkpoint::Manifest& manifest, const torch::Tenso
   const int64_t count = clips.leader.size(0), frames = clips.leader.size(1),
                 width = clips.leader.size(2);
   const int root = manifest.model.skeleton.root;
+  const double scale = std::get<checkpoint::FlowArchitecture>(manifest.architecture).offset_scale;
   FlowInput batch{clips.leader,
                   clips.labels,
                   clips.lengths,
@@ -81,8 +82,7 @@ FlowInput MakeFlowInput(const checkpoint::Manifest& manifest, const torch::Tenso
     const int64_t told = std::min<int64_t>(known.frame_count(), input.leader.frame_count());
     batch.base[n] = Flat(known[known.frame_count() - 1]);
     batch.known[n].narrow(0, 0, told) =
-        (Flat(known.frames(0, static_cast<int>(told))).view({told, width}) - batch.base[n]) /
-        manifest.flow->offset_scale;
+        (Flat(known.frames(0, static_cast<int>(told))).view({told, width}) - batch.base[n]) / scale;
     batch.is_known[n].narrow(0, 0, told) = 1;
     batch.known_count[n] = told;
   }

@@ -10,7 +10,7 @@ namespace {
 
 using base::kPi;
 
-// Terms being collected.
+// The terms collected so far.
 struct Terms {
   std::vector<int64_t> windows;
   std::vector<torch::Tensor> labels, factors;
@@ -23,7 +23,7 @@ struct Terms {
   }
 };
 
-// The answer to every window, guided: [N, T, 3 J].
+// The guided answer to every window: [N, T, 3 J].
 torch::Tensor Guided(const FlowGenerator& generator, const FlowContext& rows,
                      const GuidanceTerms& terms, const torch::Tensor& sample, double time) {
   const torch::Tensor times = torch::full({terms.windows.size(0)}, time);
@@ -36,7 +36,7 @@ torch::Tensor WithKnown(const torch::Tensor& answer, const FlowInput& input) {
   return answer * (1 - input.is_known) + input.known;
 }
 
-// The last of the answers that `answer(sample, time)` gives on the way from noise to motion.
+// Takes Euler steps from noise to motion; returns the last result of `answer(sample, time)`.
 template <typename Answer>
 torch::Tensor TakeSteps(int steps, const FlowInput& input, const torch::Tensor& source,
                         const Answer& answer) {
@@ -48,7 +48,7 @@ torch::Tensor TakeSteps(int steps, const FlowInput& input, const torch::Tensor& 
   return last;
 }
 
-// [N, T, 1] 1 in the last known frame, falling to 0 along half a cosine; 0 where nothing is known.
+// [N, T, 1] 1 in the last known frame, falling to 0 along half a cosine; 0 without known frames.
 torch::Tensor Fade(const FlowInput& input, int fade_frames) {
   const torch::Tensor frame = torch::arange(input.leader.size(1)).unsqueeze(0);
   const torch::Tensor since =
@@ -58,7 +58,7 @@ torch::Tensor Fade(const FlowInput& input, int fade_frames) {
   return (fade * (input.known_count > 0).unsqueeze(1)).unsqueeze(2);
 }
 
-// The frames after the known ones moved to where the last of them lies: offset 0 from the base.
+// Shifts the frames after the known ones to continue from the last known frame, at offset 0.
 torch::Tensor Joined(const torch::Tensor& answer, const FlowInput& input, int fade_frames) {
   const int64_t count = answer.size(0), width = answer.size(2);
   const torch::Tensor last =
@@ -120,7 +120,7 @@ torch::Tensor SampleFlow(const FlowGenerator& generator,
       TakeSteps(architecture.steps, input, source, [&](const torch::Tensor& sample, double time) {
         return Guided(generator, rows, terms, sample, time);
       });
-  // The last step ends on the answer itself.
+  // The last step ends exactly at the answer.
   return Joined(answer, input, architecture.fade_frames) * architecture.offset_scale +
          input.base.unsqueeze(1);
 }
@@ -128,9 +128,10 @@ torch::Tensor SampleFlow(const FlowGenerator& generator,
 torch::Tensor AnswerWindows(const FlowGenerator& generator, const checkpoint::Manifest& manifest,
                             absl::Span<const engine::NetworkInput> inputs) {
   const FlowInput input = MakeFlowInput(manifest, generator->base_poses(), inputs);
-  const torch::Tensor source = SourceNoise(manifest.flow->noise, generator->noise_roots(),
+  const auto& architecture = std::get<checkpoint::FlowArchitecture>(manifest.architecture);
+  const torch::Tensor source = SourceNoise(architecture.noise, generator->noise_roots(),
                                            input.known_count, DrawNoise(inputs));
-  return SampleFlow(generator, *manifest.flow, input, Varieties(inputs) * source);
+  return SampleFlow(generator, architecture, input, Varieties(inputs) * source);
 }
 
 }  // namespace duet::network

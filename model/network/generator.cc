@@ -7,6 +7,10 @@
 namespace duet::network {
 namespace {
 
+const checkpoint::PaperArchitecture& PaperOf(const checkpoint::Manifest& manifest) {
+  return std::get<checkpoint::PaperArchitecture>(manifest.architecture);
+}
+
 torch::Tensor PartColumns(const motion::BodyPart& part) {
   std::vector<int64_t> columns;
   for (int joint : part.joints) {
@@ -20,14 +24,14 @@ torch::Tensor PartColumns(const motion::BodyPart& part) {
 GeneratorImpl::GeneratorImpl(const checkpoint::Manifest& manifest)
     : slice_shapes_(SliceShapes(manifest)),
       parameters_(MakeParameters(manifest)),
-      whole_body_reads_leader_(manifest.generator.variant !=
+      whole_body_reads_leader_(PaperOf(manifest).variant !=
                                checkpoint::GeneratorVariant::kReleased),
-      reads_labels_(manifest.generator.variant != checkpoint::GeneratorVariant::kUnlabelled),
-      has_start_(manifest.generator.follower_start),
-      has_base_(manifest.generator.base_pose),
+      reads_labels_(PaperOf(manifest).variant != checkpoint::GeneratorVariant::kUnlabelled),
+      has_start_(PaperOf(manifest).follower_start),
+      has_base_(PaperOf(manifest).base_pose),
       root_column_(3 * int64_t{manifest.model.skeleton.root}),
-      encoder_hidden_(manifest.generator.encoder_hidden) {
-  for (const motion::BodyPart& part : manifest.generator.parts) {
+      encoder_hidden_(PaperOf(manifest).encoder_hidden) {
+  for (const motion::BodyPart& part : manifest.parts) {
     columns_.push_back(PartColumns(part));
   }
   for (const auto& [name, tensor] : Registered(&parameters_)) {
@@ -54,7 +58,7 @@ torch::Tensor GeneratorImpl::Features(const GeneratorInput& input, size_t slice)
   return torch::dropout(features, slice_dropout_, is_training());
 }
 
-// The input's part of a slice's LSTM gates, both directions, the backward one turned around:
+// The input's part of a slice's LSTM gates in both directions, the backward one reversed:
 // [T, 2, N, 4 E].
 torch::Tensor GeneratorImpl::SliceGates(const GeneratorInput& input, size_t slice,
                                         const torch::Tensor& reversed) const {
@@ -133,7 +137,7 @@ torch::Tensor GeneratorImpl::Decode(const Encoded& encoded, const GeneratorInput
 }
 
 // The pose that the output layer adds to, [N, T, 3 J]: root and pose relative to it, each from the
-// follower's start where that gives it, else from the label vector's mean pose.
+// follower's start if that contains it, else from the label vector's mean pose.
 torch::Tensor GeneratorImpl::Base(const GeneratorInput& input) const {
   const torch::Tensor& bias = parameters_.base_bias;
   const torch::Tensor mean =

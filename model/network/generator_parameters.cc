@@ -13,14 +13,14 @@ constexpr const char* kDirections[] = {"forward", "backward"};
 
 GeneratorParameters Allocate(const checkpoint::Manifest& manifest) {
   const std::vector<checkpoint::SliceShape> slices = SliceShapes(manifest);
-  const int64_t encoder = manifest.generator.encoder_hidden;
-  const int64_t attention = manifest.generator.attention;
+  const auto& paper = std::get<checkpoint::PaperArchitecture>(manifest.architecture);
+  const int64_t encoder = paper.encoder_hidden, attention = paper.attention;
   const int64_t count = static_cast<int64_t>(slices.size()), state = count * encoder;
   const int64_t outputs = 3 * int64_t{manifest.model.skeleton.joint_count()};
   GeneratorParameters parameters;
   for (const checkpoint::SliceShape& shape : slices) {
     GeneratorParameters::Slice& slice = parameters.slices.emplace_back();
-    if (manifest.generator.slice_features > 0) {
+    if (paper.slice_features > 0) {
       slice.fc_weight = torch::empty({shape.features, shape.input});
       slice.fc_bias = torch::empty({shape.features});
     }
@@ -34,16 +34,16 @@ GeneratorParameters Allocate(const checkpoint::Manifest& manifest) {
       torch::empty({2, 4 * state, state}),     torch::empty({2 * 4 * state})};
   parameters.output_weight = torch::empty({outputs, 2 * state});
   parameters.output_bias = torch::empty({outputs});
-  if (!manifest.generator.base_pose) return parameters;
-  if (manifest.generator.variant != checkpoint::GeneratorVariant::kUnlabelled) {
+  if (!paper.base_pose) return parameters;
+  if (paper.variant != checkpoint::GeneratorVariant::kUnlabelled) {
     parameters.base_weight = torch::empty({outputs, manifest.model.class_count()});
   }
   parameters.base_bias = torch::empty({outputs});
   return parameters;
 }
 
-// Uniform in +-1/sqrt(fan in), as LibTorch initialises its own layers; an LSTM's forget gate starts
-// open (bias 1), so that early gradients reach across a clip.
+// Uniform in +-1/sqrt(fan in), like LibTorch's own layers. The bias of an LSTM's forget gate is 1
+// (open), so that early gradients reach across a clip.
 torch::Tensor InitialValue(const checkpoint::TensorSpec& spec) {
   torch::Tensor value = torch::empty(spec.shape);
   const int64_t fan_in = spec.shape.back();
@@ -56,7 +56,7 @@ torch::Tensor InitialValue(const checkpoint::TensorSpec& spec) {
   return value;
 }
 
-// Half of a flat pair of vectors.
+// One half of a flat pair of vectors.
 torch::Tensor Half(const torch::Tensor& pair, int64_t direction) {
   return pair.chunk(2, 0)[static_cast<std::size_t>(direction)];
 }
@@ -96,7 +96,7 @@ GeneratorParameters MakeParameters(const checkpoint::Manifest& manifest) {
   torch::NoGradGuard no_grad;
   GeneratorParameters parameters = Allocate(manifest);
   Views views = ViewsByName(parameters, SliceShapes(manifest));
-  // In the table's order: a seed gives the same network however the tensors are laid out.
+  // In the order of ExpectedTensors, so that the network of a seed does not depend on the layout.
   for (const checkpoint::TensorSpec& spec : ExpectedTensors(manifest)) {
     views.at(spec.name).copy_(InitialValue(spec));
   }

@@ -5,7 +5,9 @@
 #include <cstddef>
 #include <exception>
 #include <functional>
+#include <type_traits>
 #include <utility>
+#include <variant>
 
 #include "absl/strings/str_cat.h"
 #include "model/network/batch.h"
@@ -15,7 +17,7 @@
 namespace duet::torch_engine {
 namespace {
 
-// LibTorch reports by exception: this is where they stop.
+// Turns LibTorch's exceptions into a status.
 absl::StatusOr<std::vector<motion::Poses>> Guarded(
     const std::function<std::vector<motion::Poses>()>& run) {
   try {
@@ -47,7 +49,20 @@ torch::Tensor Answer(const checkpoint::Manifest& manifest, const network::FlowGe
   return network::AnswerWindows(generator, manifest, inputs);
 }
 
-// Either generator, filled from a checkpoint.
+// The module that runs each architecture: its registration in this engine, together with its
+// Answer above. Without a line here, an architecture does not compile.
+template <typename Architecture>
+struct GeneratorOf;
+template <>
+struct GeneratorOf<checkpoint::PaperArchitecture> {
+  using Type = network::Generator;
+};
+template <>
+struct GeneratorOf<checkpoint::FlowArchitecture> {
+  using Type = network::FlowGenerator;
+};
+
+// A generator of any architecture, filled from a checkpoint.
 template <typename AnyGenerator>
 class TorchNetwork : public engine::Network {
  public:
@@ -79,10 +94,13 @@ absl::StatusOr<std::unique_ptr<const engine::Network>> Make(
 
 absl::StatusOr<std::unique_ptr<const engine::Network>> MakeTorchNetwork(
     const checkpoint::Checkpoint& checkpoint) {
-  // LibTorch reports by exception: here they stop while loading, in Run while answering.
+  // LibTorch throws both here and in Run.
   try {
-    return checkpoint.manifest.flow ? Make<network::FlowGenerator>(checkpoint)
-                                    : Make<network::Generator>(checkpoint);
+    return std::visit(
+        [&checkpoint](const auto& architecture) {
+          return Make<typename GeneratorOf<std::decay_t<decltype(architecture)>>::Type>(checkpoint);
+        },
+        checkpoint.manifest.architecture);
   } catch (const std::exception& error) {
     return absl::InternalError(absl::StrCat("the network cannot be made: ", error.what()));
   }

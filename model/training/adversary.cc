@@ -8,11 +8,11 @@ namespace {
 
 TrainingOptions::Optimiser OptimiserOptions(const TrainingOptions& options) {
   TrainingOptions::Optimiser optimiser = options.optimiser;
-  optimiser.learning_rate = options.discriminator.learning_rate;
+  optimiser.learning_rate = std::get<PaperTraining>(options.method).discriminator.learning_rate;
   return optimiser;
 }
 
-// Turns gradients of a module's parameters off while it lives.
+// Disables the gradients of a module's parameters during its lifetime.
 class Frozen {
  public:
   explicit Frozen(torch::nn::Module& module) : module_(module) { Set(false); }
@@ -31,9 +31,9 @@ class Frozen {
 
 Adversary::Adversary(const TrainingOptions& options, const checkpoint::Manifest& manifest,
                      int64_t steps)
-    : options_(options) {
+    : options_(options), settings_(std::get<PaperTraining>(options.method).discriminator) {
   Add("discriminator", true, manifest, steps);
-  if (options.discriminator.binary) Add("binary_discriminator", false, manifest, steps);
+  if (settings_.binary) Add("binary_discriminator", false, manifest, steps);
 }
 
 void Adversary::Add(const std::string& name, bool class_aware, const checkpoint::Manifest& manifest,
@@ -41,10 +41,10 @@ void Adversary::Add(const std::string& name, bool class_aware, const checkpoint:
   network::DiscriminatorOptions sizes;
   sizes.input = 3 * manifest.model.skeleton.joint_count();
   sizes.window_frames = manifest.model.window_frames;
-  sizes.hidden = options_.discriminator.hidden;
+  sizes.hidden = settings_.hidden;
   sizes.outputs = class_aware ? manifest.model.class_count() + 1 : 2;
   network::Discriminator network(sizes);
-  network->set_dropout(options_.discriminator.dropout);
+  network->set_dropout(settings_.dropout);
   auto optimiser =
       std::make_unique<Optimiser>(OptimiserOptions(options_), network->parameters(), steps);
   critics_.push_back({name, class_aware, network, std::move(optimiser)});
@@ -62,7 +62,7 @@ double Adversary::Train(const TrainingBatch& batch, const torch::Tensor& synthes
                                    critic.network->forward(synthesised, lengths), classes);
     loss.backward();
     critic.optimiser->Step(step);
-    if (options_.discriminator.unit_norm_kernels) critic.network->NormaliseKernels();
+    if (settings_.unit_norm_kernels) critic.network->NormaliseKernels();
     sum += loss.item<double>();
   }
   return sum;

@@ -16,25 +16,27 @@
 
 namespace duet::training {
 
-// What the generator is trained against: the class-aware discriminator and, where the options ask
-// for it, a binary one beside it that tells real from synthesised alone (MSHL22).
+// The discriminators that the paper's generator is trained against: the class-aware one and, if the
+// options ask for it, a binary one that only separates real from synthesised motion (MSHL22).
 //
 // Source:  paper section 3.3 and Eq. 4; MSHL22.
 // Threads: not safe to call concurrently.
 class Adversary {
  public:
-  // Requires losses.adversarial above 0. `steps` of the whole run, for the schedule.
+  // Requires a PaperTraining with losses.adversarial above 0. `steps` is the number of steps of the
+  // whole run, for the schedule.
   Adversary(const TrainingOptions& options, const checkpoint::Manifest& manifest, int64_t steps);
 
   // One step of every discriminator on captured and synthesised followers [N, T, 3 J]. Returns the
   // sum of their losses.
   double Train(const TrainingBatch& batch, const torch::Tensor& synthesised, int64_t step);
 
-  // The generator's loss, summed over the discriminators, which get no gradient: a scalar. Mixed
-  // answers have no one class to be taken for: only clips of a single class count; 0 without any.
+  // The generator's loss, a scalar: the sum over the discriminators, which get no gradient. Only
+  // clips with a single class count, because a mixed answer has no one target class; 0 without such
+  // clips.
   torch::Tensor GeneratorLoss(const TrainingBatch& batch, const torch::Tensor& synthesised);
 
-  // What a resumed run restores: parameters by name, and the optimisers.
+  // The state that a resumed run restores: parameters by name, and the optimisers.
   std::vector<std::pair<std::string, torch::Tensor>> Tensors();
   std::vector<std::pair<std::string, torch::optim::Optimizer*>> Optimisers();
 
@@ -50,6 +52,7 @@ class Adversary {
            int64_t steps);
 
   const TrainingOptions& options_;
+  const PaperTraining::DiscriminatorSettings& settings_;
   std::vector<Critic> critics_;
 };
 

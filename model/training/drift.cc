@@ -36,11 +36,10 @@ std::vector<bool> BelowHips(const motion::Skeleton& skeleton) {
   return below;
 }
 
-// One way to be off, applied in full or in part.
+// One random error, applied in full or in part.
 class Error {
  public:
-  Error(const motion::Skeleton& skeleton, const TrainingOptions::Flow::Drift& options,
-        base::Random* random)
+  Error(const motion::Skeleton& skeleton, const FlowTraining::Drift& options, base::Random* random)
       : skeleton_(skeleton),
         below_hips_(BelowHips(skeleton)),
         tilt_axis_(Horizontal(random->Uniform(0, 2 * kPi))),
@@ -56,7 +55,7 @@ class Error {
     }
   }
 
-  // `share` 1: in full. Shapes: pose [joints].
+  // `share` 1 applies it in full. Shapes: pose [joints].
   void Apply(double share, absl::Span<Vec3> pose) const {
     if (skeleton_.hips) Bend(share, pose);
     Vec3 pivot = pose[static_cast<size_t>(skeleton_.root)];
@@ -88,7 +87,7 @@ class Error {
 
 }  // namespace
 
-void AddDrift(const motion::Skeleton& skeleton, const TrainingOptions::Flow::Drift& options,
+void AddDrift(const motion::Skeleton& skeleton, const FlowTraining::Drift& options,
               base::Random* random, engine::NetworkInput* input, motion::Poses* target) {
   const Error error(skeleton, options, random);
   error.Apply(1, absl::MakeSpan(input->start->pose));

@@ -5,16 +5,16 @@
 #include "model/engine/network.h"
 #include "model/motion/poses.h"
 #include "model/motion/skeleton.h"
-#include "model/training/options.h"
+#include "model/training/flow_training.h"
 
 namespace duet::training {
 
-// Moves what a follower is told of its first frames off what was captured: tilted, bent, turned and
-// displaced, as a follower is that has gone on from its own answers for a while. The target leaves
-// from there and is the captured motion again `options.frames` frames after the last told one.
-// Requires a told pose. Shapes: target [frames, joints], as the input's leader.
-// Source: like training on roll-outs (Ross et al. 2011), with the errors made up.
-void AddDrift(const motion::Skeleton& skeleton, const TrainingOptions::Flow::Drift& options,
+// Adds an error to the known first frames of a follower: tilts, bends, turns and displaces them,
+// like a follower that has continued from its own answers for a while. The target starts with the
+// same error and reaches the captured motion `options.frames` frames after the last known one.
+// Requires a start pose. Shapes: target [frames, joints], as the input's leader. Source: like
+// training on roll-outs (Ross et al. 2011), with invented errors.
+void AddDrift(const motion::Skeleton& skeleton, const FlowTraining::Drift& options,
               base::Random* random, engine::NetworkInput* input, motion::Poses* target);
 
 }  // namespace duet::training

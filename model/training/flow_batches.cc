@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kFewestSeveral = 2;
 
-// Makes of "the first pose is known" that several frames are: up to half of the clip.
+// Replaces a known first pose by several known frames, up to half of the clip.
 void TellSeveral(const motion::Poses& target, base::Random* random, engine::NetworkInput* input) {
   const int most = target.frame_count() / 2;
   if (most < kFewestSeveral) return;
@@ -22,7 +22,7 @@ void TellSeveral(const motion::Poses& target, base::Random* random, engine::Netw
   input->settled.Resize(count);
 }
 
-// What is told is never quite what was: each joint off by the same in all told frames.
+// Adds an error to the known frames: a constant offset for each joint.
 void Disturb(double deviation, base::Random* random, engine::NetworkInput* input) {
   if (!input->start) return;
   std::vector<motion::Vec3>& pose = input->start->pose;
@@ -39,7 +39,7 @@ void Scale(float scale, absl::Span<motion::Vec3> points) {
   for (motion::Vec3& point : points) point = point * scale;
 }
 
-// Both people larger or smaller about the leader's first root.
+// Scales both people by one factor about the leader's first root.
 void ScalePair(float scale, FlowExample* example) {
   Scale(scale, example->target.all());
   Scale(scale, example->input.leader.all());
@@ -52,7 +52,7 @@ void ScalePair(float scale, FlowExample* example) {
 FlowExample DrawExample(const checkpoint::Manifest& manifest, const dataset::Dataset& dataset,
                         const dataset::Sequence& sequence, const TrainingOptions& options,
                         base::Random* random) {
-  const TrainingOptions::Flow& flow = *options.flow;
+  const auto& flow = std::get<FlowTraining>(options.method);
   const StartKnowledge start = DrawStart(options.start, random);
   FlowExample example = MakeFlowExample(
       manifest, dataset, CapturedExample(dataset, sequence, start), flow.target_smoothing);
@@ -80,7 +80,7 @@ FlowBatch MakeFlowBatch(const checkpoint::Manifest& manifest, const torch::Tenso
   batch.labels = batch.input.labels.select(1, 0).clone();
   batch.target =
       (network::PadPoses(targets, batch.input.leader.size(1)) - batch.input.base.unsqueeze(1)) /
-      manifest.flow->offset_scale;
+      std::get<checkpoint::FlowArchitecture>(manifest.architecture).offset_scale;
   return batch;
 }
 
@@ -100,9 +100,10 @@ std::vector<FlowBatch> SampleFlowEpoch(const checkpoint::Manifest& manifest,
                                        const torch::Tensor& base_poses,
                                        const std::vector<int>& train,
                                        const TrainingOptions& options, int64_t epoch) {
+  const auto& flow = std::get<FlowTraining>(options.method);
   base::Random random(options.seed, epoch);
   std::vector<FlowBatch> batches;
-  for (int64_t pass = 0; pass < options.flow->passes; ++pass) {
+  for (int64_t pass = 0; pass < flow.passes; ++pass) {
     const std::vector<dataset::Sequence> sequences = AugmentAll(dataset, train, options, &random);
     for (const std::vector<int>& piece : BatchesByLength(sequences, options.batch, &random)) {
       std::vector<FlowExample> examples;
@@ -112,7 +113,7 @@ std::vector<FlowBatch> SampleFlowEpoch(const checkpoint::Manifest& manifest,
       }
       batches.push_back(MakeFlowBatch(manifest, base_poses, examples));
       for (int64_t n = 0; n < batches.back().labels.size(0); ++n) {
-        if (random.Chance(options.flow->unlabelled)) batches.back().labels[n].zero_();
+        if (random.Chance(flow.unlabelled)) batches.back().labels[n].zero_();
       }
     }
   }

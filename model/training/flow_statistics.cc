@@ -55,13 +55,14 @@ torch::Tensor SymmetricRoot(const torch::Tensor& covariance) {
 FlowStatistics MeasureFollowers(const checkpoint::Manifest& manifest,
                                 const dataset::Dataset& dataset, const std::vector<int>& train,
                                 double smoothing) {
+  const double scale = std::get<checkpoint::FlowArchitecture>(manifest.architecture).offset_scale;
   const std::vector<Follower> followers = Followers(manifest, dataset, train, smoothing);
   FlowStatistics statistics;
   statistics.base_poses = ClassMeans(followers, manifest.model.class_count());
   const int64_t width = statistics.base_poses.size(1);
   torch::Tensor from_mean = torch::zeros({width, width}), from_first = torch::zeros({width, width});
   const auto add = [&](const Follower& follower, const torch::Tensor& base, torch::Tensor* sum) {
-    const torch::Tensor offsets = (follower.motion - base) / manifest.flow->offset_scale;
+    const torch::Tensor offsets = (follower.motion - base) / scale;
     *sum += torch::matmul(offsets.t(), offsets) / offsets.size(0);
   };
   for (const Follower& follower : followers) {

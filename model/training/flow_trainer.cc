@@ -15,21 +15,22 @@ namespace {
 
 int64_t StepsPerEpoch(size_t count, const TrainingOptions& options) {
   const int64_t batches = (static_cast<int64_t>(count) + options.batch - 1) / options.batch;
-  return batches * options.flow->passes;
+  return batches * std::get<FlowTraining>(options.method).passes;
 }
 
 network::FlowGenerator MakeGenerator(const TrainingOptions& options,
                                      const checkpoint::Manifest& manifest) {
   torch::manual_seed(options.seed);
   network::FlowGenerator generator(manifest);
-  generator->set_dropout(options.flow->dropout);
+  generator->set_dropout(std::get<FlowTraining>(options.method).dropout);
   return generator;
 }
 
-// Velocities count about as much as positions do: they are an eighth as large.
+// Velocities are about an eighth as large as positions; this gives both about the same weight.
 constexpr double kVelocityScale = 8;
 
-// The share that an average keeps after a step: less at first, when all that it holds is early.
+// The fraction that the average keeps after a step: smaller at first, because the average then
+// consists of early weights.
 double AverageDecay(double decay, int64_t step) {
   const double steps = static_cast<double>(step + 1);
   return std::min(decay, (1 + steps) / (10 + steps));
@@ -41,27 +42,29 @@ FlowTrainer::FlowTrainer(const TrainingOptions& options, const checkpoint::Manif
                          const dataset::Dataset& dataset, std::vector<int> train,
                          std::vector<int> validation)
     : EpochTrainer(options, manifest, dataset, std::move(train), std::move(validation)),
+      flow_(std::get<FlowTraining>(options.method)),
+      architecture_(std::get<checkpoint::FlowArchitecture>(manifest.architecture)),
       steps_per_epoch_(StepsPerEpoch(train_.size(), options)),
       generator_(MakeGenerator(options, manifest)),
       optimiser_(options.optimiser, generator_->parameters(), steps_per_epoch_ * options.epochs) {
   const FlowStatistics statistics =
-      MeasureFollowers(manifest, dataset, train_, options.flow->target_smoothing);
+      MeasureFollowers(manifest, dataset, train_, flow_.target_smoothing);
   generator_->SetMeasured(statistics.base_poses, statistics.noise_roots);
   Begin(generator_.get());
 }
 
 torch::Tensor FlowTrainer::DrawSource(const FlowBatch& batch) const {
-  return network::SourceNoise(manifest_.flow->noise, generator_->noise_roots(),
+  return network::SourceNoise(architecture_.noise, generator_->noise_roots(),
                               batch.input.known_count,
                               {torch::randn_like(batch.target), torch::randn_like(batch.target)});
 }
 
 torch::Tensor FlowTrainer::EnergyLoss(const FlowBatch& batch, EpochReport* report) {
-  const TrainingOptions::Flow::Energy& energy = options_.flow->energy;
+  const FlowTraining::Energy& energy = flow_.energy;
   const torch::Tensor& lengths = batch.input.lengths;
   std::vector<torch::Tensor> sources;
   for (int64_t a = 0; a < energy.answers; ++a) sources.push_back(DrawSource(batch));
-  const torch::Tensor answers = network::PlainAnswers(generator_, *manifest_.flow, batch.input,
+  const torch::Tensor answers = network::PlainAnswers(generator_, architecture_, batch.input,
                                                       batch.labels, torch::stack(sources));
   torch::Tensor total = torch::zeros({});
   const auto add = [&](double weight, const torch::Tensor& scores, double* mean) {
@@ -82,7 +85,6 @@ torch::Tensor FlowTrainer::EnergyLoss(const FlowBatch& batch, EpochReport* repor
 }
 
 torch::Tensor FlowTrainer::MatchingLoss(const FlowBatch& batch, EpochReport* report) {
-  const TrainingOptions::Flow& flow = *options_.flow;
   const torch::Tensor& lengths = batch.input.lengths;
   const torch::Tensor noise = DrawSource(batch);
   const torch::Tensor times = torch::rand({batch.target.size(0)});
@@ -95,31 +97,31 @@ torch::Tensor FlowTrainer::MatchingLoss(const FlowBatch& batch, EpochReport* rep
     *mean += loss.mean().item<double>() / static_cast<double>(steps_per_epoch_);
   };
   add(1, network::SquaredErrors(predicted, batch.target, lengths), &report->reconstruction);
-  add(flow.difference_weight, network::SquaredDifferenceErrors(predicted, batch.target, lengths),
+  add(flow_.difference_weight, network::SquaredDifferenceErrors(predicted, batch.target, lengths),
       &report->continuity);
-  const torch::Tensor base = batch.input.base.unsqueeze(1) / manifest_.flow->offset_scale;
-  if (flow.bone_weight > 0) {
-    add(flow.bone_weight,
+  const torch::Tensor base = batch.input.base.unsqueeze(1) / architecture_.offset_scale;
+  if (flow_.bone_weight > 0) {
+    add(flow_.bone_weight,
         network::SquaredBoneErrors(predicted + base, batch.target + base, lengths,
                                    manifest_.model.skeleton.bones),
         &report->bone);
   }
-  if (flow.slide_weight > 0 && manifest_.model.skeleton.feet) {
+  if (flow_.slide_weight > 0 && manifest_.model.skeleton.feet) {
     const double still =
-        flow.slide_speed / manifest_.model.frame_rate_hz / manifest_.flow->offset_scale;
+        flow_.slide_speed / manifest_.model.frame_rate_hz / architecture_.offset_scale;
     losses =
-        losses + flow.slide_weight * network::SquaredSlides(predicted, batch.target, lengths,
-                                                            *manifest_.model.skeleton.feet, still);
+        losses + flow_.slide_weight * network::SquaredSlides(predicted, batch.target, lengths,
+                                                             *manifest_.model.skeleton.feet, still);
   }
-  const torch::Tensor total = (losses / (1 - times).clamp_min(flow.least_remaining)).mean();
+  const torch::Tensor total = (losses / (1 - times).clamp_min(flow_.least_remaining)).mean();
   report->generator += total.item<double>() / static_cast<double>(steps_per_epoch_);
   return total;
 }
 
 void FlowTrainer::TrainEpoch(int64_t first_step, EpochReport* report) {
-  const bool is_energy = static_cast<double>(epoch()) >=
-                         options_.flow->energy.from * static_cast<double>(options_.epochs);
-  generator_->set_dropout(is_energy ? options_.flow->energy.dropout : options_.flow->dropout);
+  const bool is_energy =
+      static_cast<double>(epoch()) >= flow_.energy.from * static_cast<double>(options_.epochs);
+  generator_->set_dropout(is_energy ? flow_.energy.dropout : flow_.dropout);
   int64_t step = first_step;
   for (const FlowBatch& batch :
        SampleFlowEpoch(manifest_, dataset_, generator_->base_poses(), train_, options_, epoch())) {

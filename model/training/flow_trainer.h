@@ -12,14 +12,15 @@
 
 namespace duet::training {
 
-// Trains the sampling generator, first by conditional flow matching: told (1 - t) noise + t motion
-// for a random t, it learns to answer with the motion. Then by the energy score of whole answers,
-// which makes as many steps as are sampled in enough.
+// Trains the sampling generator, first by conditional flow matching: from (1 - t) noise + t motion
+// for a random t, it learns to predict the motion. Then by the energy score of whole answers, after
+// which few sampling steps are enough.
 //
 // Source:  Lipman et al. 2023; docs/decisions/0018-flow-matching.md.
 class FlowTrainer : public EpochTrainer {
  public:
-  // `manifest` describes the model to be; its flow must be options.flow->generator.
+  // `manifest` describes the model to train. Its architecture must be that of options.method, a
+  // FlowTraining.
   FlowTrainer(const TrainingOptions& options, const checkpoint::Manifest& manifest,
               const dataset::Dataset& dataset, std::vector<int> train, std::vector<int> validation);
 
@@ -28,13 +29,15 @@ class FlowTrainer : public EpochTrainer {
  private:
   void TrainEpoch(int64_t first_step, EpochReport* report) override;
   int64_t steps_per_epoch() const override { return steps_per_epoch_; }
-  // Of the typical answer: variety 0.
+  // The error of the typical answer: variety 0.
   double ValidationError(const Example& example) override;
   std::vector<std::pair<std::string, torch::optim::Optimizer*>> StateOptimisers() override;
   torch::Tensor MatchingLoss(const FlowBatch& batch, EpochReport* report);
   torch::Tensor EnergyLoss(const FlowBatch& batch, EpochReport* report);
   torch::Tensor DrawSource(const FlowBatch& batch) const;
 
+  const FlowTraining& flow_;
+  const checkpoint::FlowArchitecture& architecture_;
   int64_t steps_per_epoch_;
   network::FlowGenerator generator_;
   Optimiser optimiser_;

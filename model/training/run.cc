@@ -8,16 +8,16 @@
 #include <memory>
 #include <set>
 #include <utility>
+#include <variant>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "model/engine/leader_statistics.h"
 #include "model/network/threads.h"
 #include "model/training/direction_fit.h"
-#include "model/training/flow_trainer.h"
 #include "model/training/revision.h"
 #include "model/training/run_log.h"
-#include "model/training/trainer.h"
+#include "model/training/trainers.h"
 
 namespace duet::training {
 namespace {
@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 
 constexpr size_t kMostPeopleBytes = 4096;  // of a manifest's text
 
-// What a model card tells of the sequences trained on.
+// Records properties of the training sequences for the model card.
 void NoteData(const dataset::Dataset& dataset, const std::vector<int>& train,
               std::map<std::string, std::string>* notes) {
   std::set<std::string> people;
@@ -53,12 +53,8 @@ checkpoint::Manifest MakeManifest(const RunPlan& plan, const dataset::Dataset& d
   manifest.model.touching_classes = dataset.TouchingClasses();
   manifest.model.frame_rate_hz = dataset.frame_rate_hz;
   manifest.model.window_frames = dataset.LongestFrameCount();
-  manifest.generator = plan.options.generator;
-  if (plan.options.flow) manifest.flow = plan.options.flow->generator;
-  manifest.model.samples = manifest.flow.has_value();
-  manifest.model.accepts_follower_start =
-      manifest.flow.has_value() || plan.options.generator.follower_start;
-  manifest.generator.parts = dataset.parts;
+  SetArchitecture(ArchitectureOf(plan.options), &manifest);
+  manifest.parts = dataset.parts;
   manifest.standardisation = plan.options.standardisation;
   manifest.training = Describe(plan.options);
   manifest.training["data"] = dataset.name;
@@ -76,7 +72,7 @@ engine::LeaderStatistics MeasureLeaders(const dataset::Dataset& dataset,
   return engine::FitLeaderStatistics(dataset.skeleton, leaders, dataset.frame_rate_hz);
 }
 
-// Moves the validation sequences out of `train`.
+// Moves the validation sequences from `train` to the result.
 std::vector<int> HoldBack(const TrainingOptions& options, const dataset::Dataset& dataset,
                           std::vector<int>* train) {
   std::vector<int> held, kept;
@@ -110,17 +106,6 @@ absl::Status Finish(const RunPlan& plan, checkpoint::Manifest manifest, const Ep
                                      {std::move(manifest), std::move(tensors)});
 }
 
-std::unique_ptr<EpochTrainer> MakeTrainer(const RunPlan& plan, const checkpoint::Manifest& manifest,
-                                          const dataset::Dataset& dataset, std::vector<int> train,
-                                          std::vector<int> validation) {
-  if (plan.options.flow) {
-    return std::make_unique<FlowTrainer>(plan.options, manifest, dataset, std::move(train),
-                                         std::move(validation));
-  }
-  return std::make_unique<Trainer>(plan.options, manifest, dataset, std::move(train),
-                                   std::move(validation));
-}
-
 void Show(const RunPlan& plan, const EpochReport& report, bool terminal, std::ostream* progress) {
   *progress << (terminal ? "\r" : "") << ProgressLine(plan.title, report)
             << (terminal && report.epoch < report.epochs ? "\033[K" : "\n") << std::flush;
@@ -129,8 +114,8 @@ void Show(const RunPlan& plan, const EpochReport& report, bool terminal, std::os
 }  // namespace
 
 absl::Status SetTrainingThreads(int threads) {
-  // Every step frees what the next takes again: keep it, rather than hand pages back and fault them
-  // in anew.
+  // Every step frees memory that the next allocates again. Keeping it avoids returning pages to the
+  // system and faulting them in again.
   mallopt(M_MMAP_THRESHOLD, 1 << 30);
   mallopt(M_TRIM_THRESHOLD, 1 << 30);
   return network::SetThreads(threads);
@@ -160,9 +145,11 @@ absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& dataset, b
         plan.title, ": validation holds back every sequence, wanted some to train on"));
   }
   manifest.model.leader_statistics = MeasureLeaders(dataset, train);
-  if (plan.options.flow) manifest.model.partner_direction = FitPartnerDirection(dataset, train);
+  const bool fits_direction = std::visit(
+      [](const auto& method) { return method.kFitsPartnerDirection; }, plan.options.method);
+  if (fits_direction) manifest.model.partner_direction = FitPartnerDirection(dataset, train);
   const std::unique_ptr<EpochTrainer> trainer =
-      MakeTrainer(plan, manifest, dataset, train, validation);
+      MakeTrainer(plan.options, manifest, dataset, train, validation);
   const fs::path state = plan.folder / "state";
   status = trainer->LoadState(state);
   if (!status.ok() && !absl::IsNotFound(status)) return status;
@@ -174,9 +161,10 @@ absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& dataset, b
     if (!std::isfinite(report.generator)) {
       return absl::InternalError(
           absl::StrCat(plan.title, ": the loss is no longer finite at epoch ", report.epoch,
-                       "; a lower optimiser.learning_rate or a gradient_clip may help"));
+                       "; lower optimiser.learning_rate or set optimiser.gradient_clip"));
     }
-    // In this order: resuming drops a row without its state, but could not make up a lost one.
+    // The log before the state: resuming drops a row without its state, but cannot restore a lost
+    // row.
     if (status = log.Append(report); !status.ok()) return status;
     if (status = trainer->SaveState(state); !status.ok()) return status;
     Show(plan, report, terminal, progress);

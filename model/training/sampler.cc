@@ -10,7 +10,7 @@
 namespace duet::training {
 namespace {
 
-// Frames by which the order by length is disturbed, so that batches differ from epoch to epoch.
+// Random perturbation of the order by length, frames, so that batches differ between epochs.
 constexpr double kLengthJitter = 2;
 
 std::vector<int> OrderByLength(const std::vector<dataset::Sequence>& sequences,
@@ -124,15 +124,16 @@ std::vector<TrainingBatch> SampleEpoch(const checkpoint::Manifest& manifest,
   base::Random random(options.seed, epoch);
   const std::vector<dataset::Sequence> sequences = AugmentAll(dataset, train, options, &random);
   const std::vector<std::vector<int>> pieces = BatchesByLength(sequences, options.batch, &random);
+  const double graded_labels = std::get<PaperTraining>(options.method).graded_labels;
   std::vector<TrainingBatch> batches;
   for (const std::vector<int>& piece : pieces) {
     std::vector<Example> examples;
     for (int index : piece) {
-      const StartKnowledge start = manifest.generator.follower_start
+      const StartKnowledge start = manifest.model.accepts_follower_start
                                        ? DrawStart(options.start, &random)
                                        : StartKnowledge::kNone;
       examples.push_back(CapturedExample(dataset, sequences[static_cast<size_t>(index)], start));
-      if (random.Chance(options.graded_labels)) {
+      if (random.Chance(graded_labels)) {
         GradeLabels(dataset, sequences, &random, &examples.back());
       }
     }

@@ -6,6 +6,7 @@
 #include "gtest/gtest.h"
 #include "model/base/sha256.h"
 #include "model/checkpoint/checkpoint.h"
+#include "tests/support/architectures.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tiny_checkpoint.h"
@@ -24,11 +25,11 @@ struct Files {
   std::string weights;
 };
 
-// As few weights as there can be: every byte costs a run of the whole reader.
+// The minimum number of weights: every byte costs a run of the whole reader.
 Manifest TiniestManifest() {
   Manifest manifest = TinyManifest();
-  manifest.generator.slice_features = 0;
-  manifest.generator.encoder_hidden = manifest.generator.attention = 1;
+  test::PaperOf(manifest).slice_features = 0;
+  test::PaperOf(manifest).encoder_hidden = test::PaperOf(manifest).attention = 1;
   return manifest;
 }
 
@@ -42,8 +43,8 @@ Files TiniestFiles() {
   return files;
 }
 
-// Calls `check(corrupt)` for every byte of `text`, once with one bit flipped (another one from byte
-// to byte) and once with all of them.
+// Calls `check(corrupt)` for every byte of `text`, once with one bit flipped (a different one in
+// each byte) and once with all bits flipped.
 template <typename Check>
 void FlipEveryByte(std::string text, const Check& check) {
   for (std::size_t at = 0; at < text.size(); ++at) {
@@ -57,7 +58,7 @@ void FlipEveryByte(std::string text, const Check& check) {
   }
 }
 
-// What the reader promises of anything that it accepts.
+// Checks what the reader guarantees for any input that it accepts.
 void ExpectSound(const Checkpoint& checkpoint) {
   const std::vector<TensorSpec> specs = ExpectedTensors(checkpoint.manifest);
   ASSERT_EQ(checkpoint.tensors.size(), specs.size());
@@ -72,7 +73,7 @@ void ExpectSound(const Checkpoint& checkpoint) {
   }
 }
 
-TEST(Corruption, AnyByteOfTheWeightsIsNoticed) {
+TEST(Corruption, DetectsAnyChangedByteOfTheWeights) {
   const Files files = TiniestFiles();
   ASSERT_THAT(ParseCheckpoint(files.manifest, files.weights), IsOk());
   FlipEveryByte(files.weights, [&](const std::string& corrupt) {
@@ -80,7 +81,7 @@ TEST(Corruption, AnyByteOfTheWeightsIsNoticed) {
   });
 }
 
-TEST(Corruption, WeightsWithAMatchingHashAreRefusedOrSound) {
+TEST(Corruption, ChangedWeightsWithAMatchingHashAreRejectedOrValid) {
   const Files files = TiniestFiles();
   Manifest manifest = TiniestManifest();
   FlipEveryByte(files.weights, [&](const std::string& corrupt) {
@@ -94,14 +95,14 @@ TEST(Corruption, WeightsWithAMatchingHashAreRefusedOrSound) {
   });
 }
 
-TEST(Corruption, AnyByteOfTheManifestIsRefusedOrSound) {
+TEST(Corruption, ChangedManifestIsRejectedOrValid) {
   const Files files = TiniestFiles();
   FlipEveryByte(files.manifest, [&](const std::string& corrupt) {
     const absl::StatusOr<Checkpoint> read = ParseCheckpoint(corrupt, files.weights);
     if (read.ok()) {
       ExpectSound(*read);
       EXPECT_THAT(Validate(read->manifest.model.skeleton), IsOk());
-      // Accepted text says the same when written and read again.
+      // Accepted text is equal after it is written and read again.
       EXPECT_EQ(SerializeManifest(*ParseManifest(SerializeManifest(read->manifest))),
                 SerializeManifest(read->manifest));
     } else {

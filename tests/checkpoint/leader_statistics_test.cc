@@ -4,6 +4,7 @@
 #include <string>
 
 #include "model/checkpoint/manifest.h"
+#include "tests/support/architectures.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/tiny_checkpoint.h"
 
@@ -52,15 +53,15 @@ TEST(LeaderStatisticsInManifest, MayBeAbsent) {
   EXPECT_FALSE(read->model.leader_statistics.has_value());
 }
 
-TEST(LeaderStatisticsInManifest, AreThoseOfASamplingGeneratorToo) {
+TEST(LeaderStatisticsInManifest, SamplingGeneratorHasThemToo) {
   Manifest manifest = ManifestWithLeaders();
-  manifest.flow = FlowArchitecture{};
+  manifest.architecture = test::SmallFlow();
   const absl::StatusOr<Manifest> read = ParseManifest(SerializeManifest(manifest));
   ASSERT_THAT(read, IsOk());
   EXPECT_TRUE(read->model.leader_statistics.has_value());
 }
 
-TEST(LeaderStatisticsInManifest, RefusesByName) {
+TEST(LeaderStatisticsInManifest, RejectsByName) {
   const auto refusal = [](const std::string& pointer, const json& value) {
     json root = json::parse(SerializeManifest(ManifestWithLeaders()));
     root[json::json_pointer(pointer)] = value;
@@ -87,8 +88,8 @@ TEST(LeaderStatisticsInManifest, RefusesByName) {
               names("leader_statistics.features[1].name: \"root_height\" is repeated"));
 }
 
-// Version 1 knew none: whoever reads that version alone would refuse them.
-TEST(LeaderStatisticsInManifest, AreRefusedInVersionOne) {
+// Version 1 had none: a reader of only that version would reject them.
+TEST(LeaderStatisticsInManifest, AreRejectedInVersionOne) {
   Manifest manifest = ManifestWithLeaders();
   manifest.format_version = 1;
   EXPECT_THAT(ParseManifest(SerializeManifest(manifest)),
@@ -96,7 +97,7 @@ TEST(LeaderStatisticsInManifest, AreRefusedInVersionOne) {
 }
 
 // The tiny skeleton has no hands.
-TEST(LeaderStatisticsInManifest, WantsFeaturesThatTheSkeletonGives) {
+TEST(LeaderStatisticsInManifest, RequiresFeaturesOfTheSkeleton) {
   json root = json::parse(SerializeManifest(ManifestWithLeaders()));
   root["leader_statistics"]["features"][0]["name"] = "hand_reach";
   EXPECT_THAT(ParseManifest(root.dump()),

@@ -6,6 +6,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "gtest/gtest.h"
+#include "tests/support/architectures.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/tiny_checkpoint.h"
 
@@ -20,7 +21,7 @@ using nlohmann::json;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-// A manifest that is complete, with the hash of nothing in particular.
+// A complete manifest with an arbitrary hash.
 Manifest CompleteManifest() {
   Manifest manifest = TinyManifest();
   manifest.weights.bytes = 1234;
@@ -46,12 +47,13 @@ TEST(Manifest, RoundTrip) {
   EXPECT_EQ(got->model.window_frames, wanted.model.window_frames);
   EXPECT_EQ(got->model.classes, wanted.model.classes);
   EXPECT_TRUE(got->model.accepts_follower_start);
-  EXPECT_EQ(got->generator.variant, GeneratorVariant::kPaper);
-  EXPECT_TRUE(got->generator.follower_start);
-  EXPECT_EQ(got->generator.slice_features, 1);
-  EXPECT_EQ(got->generator.encoder_hidden, 2);
-  EXPECT_EQ(got->generator.attention, 2);
-  EXPECT_TRUE(got->generator.base_pose);
+  const auto& paper = std::get<PaperArchitecture>(got->architecture);
+  EXPECT_EQ(paper.variant, GeneratorVariant::kPaper);
+  EXPECT_TRUE(paper.follower_start);
+  EXPECT_EQ(paper.slice_features, 1);
+  EXPECT_EQ(paper.encoder_hidden, 2);
+  EXPECT_EQ(paper.attention, 2);
+  EXPECT_TRUE(paper.base_pose);
   EXPECT_EQ(got->standardisation, motion::StandardOrigin::kEveryFrame);
   EXPECT_EQ(got->weights.file, wanted.weights.file);
   EXPECT_EQ(got->weights.bytes, wanted.weights.bytes);
@@ -65,19 +67,19 @@ TEST(Manifest, RoundTrip) {
 TEST(Manifest, SkeletonRoundTrip) {
   Manifest manifest = CompleteManifest();
   manifest.model.skeleton = motion::SbuSkeleton();
-  manifest.generator.parts = motion::SbuParts();
+  manifest.parts = motion::SbuParts();
   const absl::StatusOr<Manifest> read = ParseManifest(SerializeManifest(manifest));
   ASSERT_THAT(read, IsOk());
   const motion::Skeleton got = read->model.skeleton, wanted = motion::SbuSkeleton();
   EXPECT_EQ(got.joint_names, wanted.joint_names);
   EXPECT_EQ(got.bones, wanted.bones);
-  EXPECT_EQ(read->generator.parts, motion::SbuParts());
+  EXPECT_EQ(read->parts, motion::SbuParts());
   EXPECT_EQ(got.root, wanted.root);
   EXPECT_EQ(got.hips, wanted.hips);
   EXPECT_EQ(got.feet, wanted.feet);
 }
 
-TEST(Manifest, WritesItsChoicesByName) {
+TEST(Manifest, WritesChoicesByName) {
   Manifest manifest = CompleteManifest();
   const struct {
     GeneratorVariant variant;
@@ -86,10 +88,10 @@ TEST(Manifest, WritesItsChoicesByName) {
                   {GeneratorVariant::kReleased, "released"},
                   {GeneratorVariant::kUnlabelled, "unlabelled"}};
   for (const auto& one : variants) {
-    manifest.generator.variant = one.variant;
+    test::PaperOf(manifest).variant = one.variant;
     const std::string text = SerializeManifest(manifest);
     EXPECT_EQ(json::parse(text)["generator"]["variant"], one.name);
-    EXPECT_EQ(ParseManifest(text)->generator.variant, one.variant);
+    EXPECT_EQ(std::get<PaperArchitecture>(ParseManifest(text)->architecture).variant, one.variant);
   }
   const struct {
     motion::StandardOrigin origin;
@@ -104,9 +106,9 @@ TEST(Manifest, WritesItsChoicesByName) {
   }
 }
 
-TEST(Manifest, FollowerStartDecidesWhatTheModelAccepts) {
+TEST(Manifest, FollowerStartDeterminesWhatTheModelAccepts) {
   Manifest manifest = CompleteManifest();
-  manifest.generator.follower_start = false;
+  test::PaperOf(manifest).follower_start = false;
   const absl::StatusOr<Manifest> read = ParseManifest(SerializeManifest(manifest));
   ASSERT_THAT(read, IsOk());
   EXPECT_FALSE(read->model.accepts_follower_start);
@@ -143,7 +145,7 @@ TEST(Manifest, TermsAndDigestReachTheDescription) {
   EXPECT_EQ(silent->model.terms, "");
 }
 
-TEST(Manifest, TruncatedAtAnyLengthIsRefused) {
+TEST(Manifest, TruncatedAtAnyLengthIsRejected) {
   const std::string text = SerializeManifest(CompleteManifest());
   const std::size_t last_brace = text.rfind('}');
   for (std::size_t size = 0; size <= last_brace; ++size) {
@@ -151,14 +153,14 @@ TEST(Manifest, TruncatedAtAnyLengthIsRefused) {
   }
 }
 
-TEST(Manifest, RefusesAnOversizeText) {
+TEST(Manifest, RejectsAnOversizeText) {
   std::string text = SerializeManifest(CompleteManifest());
   text.resize(kMaxManifestBytes, ' ');
   EXPECT_THAT(ParseManifest(text), IsOk());
   EXPECT_THAT(ParseManifest(text + " "), Refused("1048577 bytes, wanted at most 1048576"));
 }
 
-TEST(Manifest, RefusesRepeatedFields) {
+TEST(Manifest, RejectsRepeatedFields) {
   std::string text = SerializeManifest(CompleteManifest());
   text.insert(text.rfind('}'), ",\"version\": 4");
   EXPECT_THAT(ParseManifest(text), Refused("\"version\" is repeated"));
@@ -175,9 +177,9 @@ void ForEachObject(json& value, const std::string& path,
 
 bool IsFreeMap(const std::string& path) { return path == "/training" || path == "/metrics"; }
 
-TEST(Manifest, RefusesEveryFieldThatIsMissing) {
+TEST(Manifest, RejectsEveryFieldThatIsMissing) {
   json root = CompleteJson();
-  root.erase("touching_classes");  // checkpoints of before have none
+  root.erase("touching_classes");  // older checkpoints have none
   int fields = 0;
   ForEachObject(root, "", [&](json& object, const std::string& path) {
     if (IsFreeMap(path)) return;
@@ -193,7 +195,7 @@ TEST(Manifest, RefusesEveryFieldThatIsMissing) {
   EXPECT_THAT(ParseManifest(root.dump()), IsOk());
 }
 
-TEST(Manifest, RefusesEveryUnknownField) {
+TEST(Manifest, RejectsEveryUnknownField) {
   json root = CompleteJson();
   ForEachObject(root, "", [&](json& object, const std::string& path) {
     if (IsFreeMap(path)) return;
@@ -203,9 +205,9 @@ TEST(Manifest, RefusesEveryUnknownField) {
   });
 }
 
-TEST(Manifest, RefusesEveryFieldOfAWrongType) {
+TEST(Manifest, RejectsEveryFieldOfAWrongType) {
   json root = CompleteJson();
-  // Of each field at least one of these is the wrong type; none is right where the others are not.
+  // For each field, at least one of these has the wrong type.
   const json values[] = {nullptr, json::object({{"x", json::array()}}), json::array({nullptr})};
   ForEachObject(root, "", [&](json& object, const std::string& path) {
     const json whole = object;
@@ -229,7 +231,7 @@ struct BadField {
 
 class ManifestField : public ::testing::TestWithParam<BadField> {};
 
-TEST_P(ManifestField, IsRefusedByName) {
+TEST_P(ManifestField, IsRejectedByName) {
   json root = CompleteJson();
   root[json::json_pointer(GetParam().pointer)] = json::parse(GetParam().value);
   EXPECT_THAT(ParseManifest(root.dump()), Refused(GetParam().why));

@@ -39,13 +39,13 @@ TEST(ModelCardTest, ShowsTheContentOfTheManifest) {
   EXPECT_THAT(card, AllOf(HasSubstr("# studio, version 3\n"),
                           HasSubstr("| classes | kick, hug; bodies may touch in hug |"),
                           HasSubstr("3 joints about torso, in 2 parts: trunk, legs"),
-                          HasSubstr("studio pairs: 20 sequences of two people, 61 s in all; "
+                          HasSubstr("studio pairs: 20 sequences of two people, 61 s in total; "
                                     "people: ann bo; levelled"),
                           HasSubstr("2026-01-02T03:04:05Z, by the code of revision abc1234")));
   EXPECT_THAT(card, AllOf(HasSubstr("| validation.afd | 0.5124 |"),
                           HasSubstr("| losses.bone | 0.01 |"), Not(HasSubstr("| sequences |")),
-                          HasSubstr("Terms: as those of the data set studio pairs"),
-                          Not(HasSubstr("Nothing was held back"))));
+                          HasSubstr("Terms: those of the data set studio pairs"),
+                          Not(HasSubstr("No sequences were held out"))));
 }
 
 TEST(ModelCardTest, QuotesTheTermsOfTheManifest) {
@@ -62,7 +62,7 @@ TEST(ModelCardTest, StatesWhatIsUnknown) {
   manifest.git_revision.clear();
   EXPECT_THAT(ModelCard(manifest),
               AllOf(HasSubstr("people: not named"), HasSubstr("revision unknown"),
-                    HasSubstr("Nothing was held back from training")));
+                    HasSubstr("No sequences were held out from training")));
 }
 
 TEST(ModelCardTest, IsWrittenBesideTheManifest) {

@@ -1,6 +1,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "model/checkpoint/manifest.h"
+#include "tests/support/architectures.h"
 #include "tests/support/tiny_checkpoint.h"
 
 namespace duet::checkpoint {
@@ -13,7 +14,8 @@ using ::testing::ElementsAre;
 Manifest SbuManifest() {
   Manifest manifest;
   manifest.model.skeleton = motion::SbuSkeleton();
-  manifest.generator.parts = motion::SbuParts();
+  manifest.architecture = test::PublishedPaper();
+  manifest.parts = motion::SbuParts();
   manifest.model.classes = {"kick", "push", "shake_hands", "hug", "exchange_object", "punch"};
   return manifest;
 }
@@ -35,24 +37,24 @@ TEST(TensorTable, PaperSlicesOfSbu) {
   EXPECT_EQ(slices[5].input, 45 + 6);
 }
 
-TEST(TensorTable, ReleasedVariantGetsTheLabelsAlone) {
+TEST(TensorTable, ReleasedVariantReadsOnlyTheLabels) {
   Manifest manifest = SbuManifest();
-  manifest.generator.variant = GeneratorVariant::kReleased;
+  test::PaperOf(manifest).variant = GeneratorVariant::kReleased;
   EXPECT_EQ(SliceShapes(manifest)[5].input, 6);
 }
 
-TEST(TensorTable, UnlabelledVariantGetsTheWholeBodyAlone) {
+TEST(TensorTable, UnlabelledVariantReadsOnlyTheWholeBody) {
   Manifest manifest = SbuManifest();
-  manifest.generator.variant = GeneratorVariant::kUnlabelled;
-  manifest.generator.base_pose = true;
+  test::PaperOf(manifest).variant = GeneratorVariant::kUnlabelled;
+  test::PaperOf(manifest).base_pose = true;
   EXPECT_EQ(SliceShapes(manifest)[5].input, 45);
   EXPECT_THAT(ShapeOf(manifest, "base.weight"), ElementsAre(-1));
   EXPECT_THAT(ShapeOf(manifest, "base.bias"), ElementsAre(45));
 }
 
-TEST(TensorTable, FollowerStartJoinsTheWholeBody) {
+TEST(TensorTable, WholeBodySliceReadsTheFollowerStart) {
   Manifest manifest = SbuManifest();
-  manifest.generator.follower_start = true;
+  test::PaperOf(manifest).follower_start = true;
   EXPECT_EQ(StartFeatureCount(motion::SbuSkeleton()), 3 + 45 + 2);
   EXPECT_EQ(SliceShapes(manifest)[5].input, 45 + 6 + 50);
 }
@@ -78,21 +80,21 @@ TEST(TensorTable, PaperSizesOfSbu) {
 
 TEST(TensorTable, NoFullyConnectedLayerWithoutFeatures) {
   Manifest manifest = SbuManifest();
-  manifest.generator.slice_features = 0;
+  test::PaperOf(manifest).slice_features = 0;
   EXPECT_THAT(ShapeOf(manifest, "encoder.trunk.fc.weight"), ElementsAre(-1));
   EXPECT_THAT(ShapeOf(manifest, "encoder.trunk.forward.weight_ih"), ElementsAre(160, 9));
   EXPECT_EQ(ExpectedTensors(manifest).size(), 6u * 6 + 12 + 2);
 }
 
-TEST(TensorTable, ABasePoseIsLinearInTheLabels) {
+TEST(TensorTable, BasePoseIsLinearInTheLabels) {
   Manifest manifest = SbuManifest();
   EXPECT_THAT(ShapeOf(manifest, "base.weight"), ElementsAre(-1));
-  manifest.generator.base_pose = true;
+  test::PaperOf(manifest).base_pose = true;
   EXPECT_THAT(ShapeOf(manifest, "base.weight"), ElementsAre(45, 6));
   EXPECT_THAT(ShapeOf(manifest, "base.bias"), ElementsAre(45));
 }
 
-TEST(TensorTable, AnotherSkeletonIsAConfiguration) {
+TEST(TensorTable, AcceptsAnotherSkeleton) {
   const Manifest tiny = TinyManifest();
   EXPECT_THAT(ShapeOf(tiny, "encoder.legs.fc.weight"), ElementsAre(7, 6));
   EXPECT_THAT(ShapeOf(tiny, "decoder.forward.weight_ih"), ElementsAre(24, 12));

@@ -1,12 +1,12 @@
-// What an evaluation allocates once one of its size has run: its answers.
+// After an evaluation of the same size, another one allocates only its answers.
 #include <gtest/gtest.h>
 
 #include <atomic>
 #include <cstdlib>
 #include <new>
 
-#include "model/embedded/embedded.h"
 #include "model/cpu_engine/cpu_network.h"
+#include "model/embedded/embedded.h"
 
 namespace {
 
@@ -14,7 +14,7 @@ std::atomic<int> allocations{0};
 
 }  // namespace
 
-// Every allocation of this program is counted. The array forms and the nothrow ones end here.
+// Counts every allocation of this program. The array and nothrow forms call this one.
 void* operator new(std::size_t size) {
   ++allocations;
   if (void* bytes = std::malloc(size)) return bytes;
@@ -40,7 +40,7 @@ int AllocationsOf(const engine::Network& network, absl::Span<const engine::Netwo
   return allocations - before;
 }
 
-TEST(AllocationTest, AnEvaluationAllocatesItsAnswersAlone) {
+TEST(AllocationTest, EvaluationAllocatesOnlyItsAnswers) {
   for (const embedded::EmbeddedCheckpoint& embedded : embedded::EmbeddedCheckpoints()) {
     const auto checkpoint = checkpoint::ParseCheckpoint(embedded.manifest, embedded.weights);
     ASSERT_TRUE(checkpoint.ok());
@@ -54,15 +54,15 @@ TEST(AllocationTest, AnEvaluationAllocatesItsAnswersAlone) {
     }
     for (const kernels::Precision precision : {kernels::Precision::kFloat32, BestPrecision()}) {
       const auto network = MakeCpuNetwork(*checkpoint, precision);
-      AllocationsOf(*network, inputs);  // the first one of this size
-      // The list of answers, and each of them.
+      AllocationsOf(*network, inputs);  // the first evaluation of this size
+      // The vector of answers, and each answer.
       EXPECT_EQ(AllocationsOf(*network, inputs), 1 + static_cast<int>(inputs.size()))
           << model.name << " " << model.version;
     }
   }
 }
 
-TEST(AllocationTest, WhatAThreadKeepsIsBoundedHoweverLargeTheBatch) {
+TEST(AllocationTest, MemoryOfAThreadIsBoundedForAnyBatchSize) {
   for (const embedded::EmbeddedCheckpoint& embedded : embedded::EmbeddedCheckpoints()) {
     const auto checkpoint = checkpoint::ParseCheckpoint(embedded.manifest, embedded.weights);
     ASSERT_TRUE(checkpoint.ok());

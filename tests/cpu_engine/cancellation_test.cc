@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <atomic>
 
-#include "model/embedded/embedded.h"
 #include "model/cpu_engine/cpu_network.h"
+#include "model/embedded/embedded.h"
 
 namespace duet::cpu_engine {
 namespace {
 
 constexpr std::atomic<bool> kCancelled{true}, kWanted{false};
 
-// Six windows: more than are decoded together.
+// Six windows, more than are decoded together.
 std::vector<engine::NetworkInput> Windows(const engine::ModelDescription& model) {
   std::vector<engine::NetworkInput> inputs(6);
   for (std::size_t n = 0; n < inputs.size(); ++n) {
@@ -40,7 +40,7 @@ class CancellationTest : public testing::TestWithParam<embedded::EmbeddedCheckpo
   std::vector<engine::NetworkInput> inputs_;
 };
 
-TEST_P(CancellationTest, WhatNobodyWantsIsNotComputed) {
+TEST_P(CancellationTest, CancelledWindowsAreNotComputed) {
   for (engine::NetworkInput& input : inputs_) input.cancelled = &kCancelled;
   const auto followers = network_->Run(inputs_);
   ASSERT_TRUE(followers.ok());
@@ -51,7 +51,7 @@ TEST_P(CancellationTest, WhatNobodyWantsIsNotComputed) {
   }
 }
 
-TEST_P(CancellationTest, TheOthersOfItsBatchDoNotNotice) {
+TEST_P(CancellationTest, OtherWindowsOfTheBatchDoNotChange) {
   const auto wanted = network_->Run(inputs_);
   ASSERT_TRUE(wanted.ok());
   for (const std::size_t n : {0, 1, 2, 3}) inputs_[n].cancelled = &kCancelled;

@@ -1,14 +1,15 @@
-// The same windows through this project's kernels and through LibTorch.
+// Compares the answers of this project's kernels and of LibTorch to the same windows.
 #include <gmock/gmock.h>
 
 #include <algorithm>
 
 #include "model/base/random.h"
-#include "model/embedded/embedded.h"
 #include "model/cpu_engine/cpu_network.h"
+#include "model/embedded/embedded.h"
 #include "model/torch_engine/torch_network.h"
 #include "tests/cpu_engine/kernels/amx_test_fixture.h"
 #include "tests/cpu_engine/random_checkpoint.h"
+#include "tests/support/architectures.h"
 #include "tests/support/sample_motion.h"
 #include "tests/support/status_matchers.h"
 
@@ -32,7 +33,7 @@ std::vector<Checkpoint> Embedded() {
   return checkpoints;
 }
 
-// A made-up person about the origin, of the model's joints.
+// A synthetic person near the origin, with the model's joints.
 motion::Poses Person(int frames, int joints, base::Random* random) {
   motion::Poses person(frames, joints);
   for (int j = 0; j < joints; ++j) {
@@ -77,7 +78,7 @@ NetworkInput Input(const Manifest& manifest, int frames, Told told, uint64_t see
   return input;
 }
 
-// Windows of many lengths, told different things.
+// Windows of several lengths and with every kind of start.
 std::vector<NetworkInput> Inputs(const Manifest& manifest) {
   const int longest = manifest.model.window_frames;
   std::vector<NetworkInput> inputs;
@@ -97,7 +98,7 @@ std::vector<motion::Poses> Answers(const engine::Network& network,
   return answers.ok() ? *std::move(answers) : std::vector<motion::Poses>();
 }
 
-// The farthest that any joint is from where the other engine has it, metres.
+// The maximum distance between the two answers of a joint, metres.
 float Farthest(const std::vector<motion::Poses>& a, const std::vector<motion::Poses>& b) {
   EXPECT_EQ(a.size(), b.size());
   float farthest = 0;
@@ -123,7 +124,7 @@ float FromTorch(const Checkpoint& checkpoint, Precision precision) {
   return FromTorch(checkpoint, precision, Inputs(checkpoint.manifest));
 }
 
-// A person who sways, about the origin; each class once.
+// A swaying person near the origin, once with each class.
 std::vector<NetworkInput> HumanInputs(const Manifest& manifest, int frames) {
   const int classes = manifest.model.class_count();
   std::vector<NetworkInput> inputs;
@@ -149,37 +150,36 @@ Manifest PaperManifest(GeneratorVariant variant, int slice_features, bool start,
   manifest.model.frame_rate_hz = 15;
   manifest.model.window_frames = 33;
   manifest.model.accepts_follower_start = start;
-  manifest.generator.parts = motion::SbuParts();
-  manifest.generator.variant = variant;
-  manifest.generator.follower_start = start;
-  manifest.generator.slice_features = slice_features;
-  manifest.generator.encoder_hidden = 7;
-  manifest.generator.attention = 19;
-  manifest.generator.base_pose = base;
+  manifest.parts = motion::SbuParts();
+  test::PaperOf(manifest).variant = variant;
+  test::PaperOf(manifest).follower_start = start;
+  test::PaperOf(manifest).slice_features = slice_features;
+  test::PaperOf(manifest).encoder_hidden = 7;
+  test::PaperOf(manifest).attention = 19;
+  test::PaperOf(manifest).base_pose = base;
   return manifest;
 }
 
 Manifest FlowManifest() {
   Manifest manifest = PaperManifest(GeneratorVariant::kPaper, 0, true, false);
-  manifest.model.samples = true;
-  manifest.flow = checkpoint::FlowArchitecture{};
-  manifest.flow->width = 36;
-  manifest.flow->heads = 3;
-  manifest.flow->feed_forward = 50;
-  manifest.flow->reach = 9;  // less than a window
-  manifest.flow->steps = 3;
-  manifest.flow->guidance = 1.7;
+  SetArchitecture(test::SmallFlow(), &manifest);
+  test::FlowOf(manifest).blocks = 4;
+  test::FlowOf(manifest).width = 36;
+  test::FlowOf(manifest).heads = 3;
+  test::FlowOf(manifest).feed_forward = 50;
+  test::FlowOf(manifest).reach = 9;  // less than a window
+  test::FlowOf(manifest).guidance = 1.7;
   return manifest;
 }
 
-TEST(ParityTest, EmbeddedCheckpointsAnswerAsInLibTorch) {
+TEST(ParityTest, EmbeddedCheckpointsEqualLibTorch) {
   for (const Checkpoint& checkpoint : Embedded()) {
     EXPECT_LT(FromTorch(checkpoint, Precision::kFloat32), 1e-5f)
         << checkpoint.manifest.model.name << " " << checkpoint.manifest.model.version;
   }
 }
 
-TEST(ParityTest, EveryVariantOfThePapersGeneratorAnswersAsInLibTorch) {
+TEST(ParityTest, EveryVariantOfThePaperGeneratorEqualsLibTorch) {
   uint64_t seed = 1;
   for (const GeneratorVariant variant :
        {GeneratorVariant::kPaper, GeneratorVariant::kReleased, GeneratorVariant::kUnlabelled}) {
@@ -195,14 +195,14 @@ TEST(ParityTest, EveryVariantOfThePapersGeneratorAnswersAsInLibTorch) {
   }
 }
 
-TEST(ParityTest, ASamplingGeneratorOfOtherSizesAnswersAsInLibTorch) {
+TEST(ParityTest, SamplingGeneratorOfOtherSizesEqualsLibTorch) {
   EXPECT_LT(FromTorch(RandomCheckpoint(FlowManifest(), 3), Precision::kFloat32), 1e-5f);
 }
 
-TEST(ParityTest, AWideGeneratorAnswersAsInLibTorch) {
+TEST(ParityTest, WideGeneratorEqualsLibTorch) {
   Manifest manifest = PaperManifest(GeneratorVariant::kPaper, 50, true, true);
   manifest.model.window_frames = 9;
-  manifest.generator.encoder_hidden = 200;  // a decoder of 1,200 units
+  test::PaperOf(manifest).encoder_hidden = 200;  // a decoder of 1,200 units
   const Checkpoint checkpoint = RandomCheckpoint(manifest, 5);
   std::vector<NetworkInput> inputs;
   for (const int frames : {9, 4, 9}) inputs.push_back(Input(manifest, frames, Told::kRoot, 3));
@@ -217,11 +217,11 @@ TEST(ParityTest, RoundedWeightsMoveNoJointByTwoMillimetres) {
                   HumanInputs(checkpoint.manifest, checkpoint.manifest.model.window_frames));
     EXPECT_LT(farthest, 2e-3f) << checkpoint.manifest.model.name << " "
                                << checkpoint.manifest.model.version;
-    EXPECT_GT(farthest, 1e-6f);  // it is another precision
+    EXPECT_GT(farthest, 1e-6f);  // the precision is different
   }
 }
 
-TEST(ParityTest, AnAnswerIsTheSameToTheBitWhateverElseIsInTheBatch) {
+TEST(ParityTest, AnswersAreBitIdenticalInAnyBatch) {
   for (const Checkpoint& checkpoint : Embedded()) {
     const std::vector<NetworkInput> inputs = Inputs(checkpoint.manifest);
     for (const Precision precision : {Precision::kFloat32, Precision::kBfloat16}) {
@@ -239,7 +239,7 @@ using AmxParityTest = kernels::AmxTest;
 
 TEST_F(AmxParityTest, RoundedWeightsInTilesMoveNoJointByTwoMillimetres) {
   for (const Checkpoint& checkpoint : Embedded()) {
-    // Few frames: a product of one row takes as many instructions, each emulated.
+    // Few frames, because every instruction is emulated.
     std::vector<NetworkInput> inputs = HumanInputs(checkpoint.manifest, 4);
     inputs.resize(2);
     EXPECT_LT(FromTorch(checkpoint, Precision::kBfloat16, inputs), 2e-3f)

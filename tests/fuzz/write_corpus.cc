@@ -19,6 +19,7 @@
 #include "tests/formats/asf/asf_fixture.h"
 #include "tests/formats/gltf/gltf_fixture.h"
 #include "tests/server/support/sample_request.h"
+#include "tests/support/architectures.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/test_motion.h"
 #include "tests/support/tiny_checkpoint.h"
@@ -76,7 +77,7 @@ class Corpus {
     tiny.manifest.weights.bytes = weights.size();
     tiny.manifest.weights.sha256 = std::string(64, '0');
     Write("checkpoint/tiny", SerializeManifest(tiny.manifest) + '\0' + weights);
-    tiny.manifest.flow.emplace().width = 12;
+    tiny.manifest.architecture = test::SmallFlow();
     Write("checkpoint/flow", SerializeManifest(tiny.manifest) + '\0' + weights.substr(0, 64));
     tiny.tensors.resize(3);
     Write("safetensors/three", SerializeSafetensors(tiny.tensors, {{"format", "pt"}}));

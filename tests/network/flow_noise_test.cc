@@ -24,18 +24,18 @@ torch::Tensor Deviation(const torch::Tensor& noise) {
 }
 
 TEST(SourceNoiseTest, HasTheTrainingOffsetsDeviationAndIsSmooth) {
-  const checkpoint::FlowArchitecture::Noise options;
+  const checkpoint::FlowArchitecture::Noise options = test::SmallFlow().noise;
   const torch::Tensor noise = SourceNoise(options, 2 * Roots(), Told(0), Numbers());
   EXPECT_NEAR(Deviation(noise).mean().item<float>(), 2, 0.1);
   const torch::Tensor moved = noise.slice(1, 1) - noise.slice(1, 0, -1);
   EXPECT_LT(Deviation(moved).mean().item<float>(), 0.5);
-  // The part that all frames share outlives the kernel's length.
+  // The constant part correlates frames beyond the kernel's length.
   const torch::Tensor ends = (noise.select(1, 0) * noise.select(1, kFrames - 1)).mean();
   EXPECT_NEAR(ends.item<float>(), 4 * options.constant_share, 0.5);
 }
 
 TEST(SourceNoiseTest, GrowsFromTheLastKnownFrame) {
-  checkpoint::FlowArchitecture::Noise options;
+  checkpoint::FlowArchitecture::Noise options = test::SmallFlow().noise;
   options.white = 0;
   const torch::Tensor deviation = Deviation(SourceNoise(options, Roots(), Told(4), Numbers()));
   EXPECT_NEAR(deviation[3].item<float>(), 1.0 / 8, 0.02);
@@ -43,17 +43,17 @@ TEST(SourceNoiseTest, GrowsFromTheLastKnownFrame) {
   EXPECT_NEAR(deviation[15].item<float>(), 1, 0.08);
 }
 
-TEST(SourceNoiseTest, FramesDoNotDependOnThoseThatFollow) {
+TEST(SourceNoiseTest, FramesDoNotDependOnLaterFrames) {
   const NoiseNumbers all = Numbers();
   const NoiseNumbers first = {all.smooth.narrow(1, 0, 7), all.white.narrow(1, 0, 7)};
-  const checkpoint::FlowArchitecture::Noise options;
+  const checkpoint::FlowArchitecture::Noise options = test::SmallFlow().noise;
   for (const int64_t told : {0, 2}) {
     EXPECT_TRUE(torch::allclose(SourceNoise(options, Roots(), Told(told), all).narrow(1, 0, 7),
                                 SourceNoise(options, Roots(), Told(told), first), 1e-4, 1e-5));
   }
 }
 
-TEST(DrawNoiseTest, DependsOnEachWindowsSeedAlone) {
+TEST(DrawNoiseTest, DependsOnlyOnTheSeedOfEachWindow) {
   const checkpoint::Manifest manifest = SmallFlowManifest();
   std::vector<engine::NetworkInput> inputs = {FlowWindow(manifest, 9), FlowWindow(manifest, 4)};
   inputs[0].sampling.seed = 11;

@@ -4,6 +4,7 @@
 
 #include "model/network/batch.h"
 #include "tests/network/flow_test_support.h"
+#include "tests/support/architectures.h"
 
 namespace duet::network {
 namespace {
@@ -20,7 +21,7 @@ class FlowSamplerTest : public ::testing::Test {
   }
   torch::Tensor Answer(const engine::NetworkInput& input) { return Answer(std::vector{input})[0]; }
 
-  // The largest difference, metres.
+  // The maximum difference, metres.
   static double Apart(const torch::Tensor& a, const torch::Tensor& b) {
     return (a - b).abs().max().item<double>();
   }
@@ -58,13 +59,13 @@ TEST_F(FlowSamplerTest, SameSeedSameAnswerOtherSeedOtherAnswer) {
   engine::NetworkInput input = FlowWindow(manifest_, 10);
   input.sampling.seed = 3;
   const torch::Tensor answer = Answer(input);
-  torch::rand({5});  // LibTorch's own numbers play no part
+  torch::rand({5});  // LibTorch's own random numbers have no effect
   EXPECT_TRUE(torch::equal(Answer(input), answer));
   input.sampling.seed = 4;
   EXPECT_GT(Apart(Answer(input), answer), 0.01);
 }
 
-TEST_F(FlowSamplerTest, VarietyScalesWhatTheSeedDecides) {
+TEST_F(FlowSamplerTest, VarietyScalesTheDifferencesBetweenSeeds) {
   const auto spread = [&](float variety) {
     engine::NetworkInput one = FlowWindow(manifest_, 10), other = one;
     one.sampling = {1, variety};
@@ -75,7 +76,7 @@ TEST_F(FlowSamplerTest, VarietyScalesWhatTheSeedDecides) {
   EXPECT_GT(spread(1), spread(0.1f));
 }
 
-TEST_F(FlowSamplerTest, KnownFramesComeOutAsTheyAreAndNothingJumpsAfterThem) {
+TEST_F(FlowSamplerTest, KnownFramesAreExactAndTheNextOnesContinueThem) {
   for (const int known : {1, 2, 5}) {
     engine::NetworkInput input = FlowWindow(manifest_, 12);
     input.settled = SettledFrames(manifest_, known);
@@ -84,17 +85,17 @@ TEST_F(FlowSamplerTest, KnownFramesComeOutAsTheyAreAndNothingJumpsAfterThem) {
     const torch::Tensor answer = Answer(input);
     const motion::Poses wanted = SettledFrames(manifest_, known);
     EXPECT_LT(Apart(answer.narrow(0, 0, known), PadPoses({&wanted}, known)[0]), kRounding);
-    const checkpoint::FlowArchitecture& flow = *manifest_.flow;
-    manifest_.flow->fade_frames = 0;
+    const checkpoint::FlowArchitecture& flow = test::FlowOf(manifest_);
+    test::FlowOf(manifest_).fade_frames = 0;
     const torch::Tensor unfaded = Answer(input);
-    manifest_.flow->fade_frames = 5;
+    test::FlowOf(manifest_).fade_frames = 5;
     EXPECT_LT(Apart(answer[known], answer[known - 1]), Apart(unfaded[known], unfaded[known - 1]));
     EXPECT_TRUE(torch::equal(answer.slice(0, known + flow.fade_frames),
                              unfaded.slice(0, known + flow.fade_frames)));
   }
 }
 
-TEST_F(FlowSamplerTest, AStartThatTellsTheRootAloneMovesTheAnswerThere) {
+TEST_F(FlowSamplerTest, StartWithOnlyTheRootMovesTheAnswerThere) {
   engine::NetworkInput near = FlowWindow(manifest_, 10), far = near;
   near.start = engine::FollowerStart{{0, 0, -1}, {}};
   far.start = engine::FollowerStart{{0, 0, -3}, {}};
@@ -108,7 +109,7 @@ TEST_F(FlowSamplerTest, AStartThatTellsTheRootAloneMovesTheAnswerThere) {
   EXPECT_GT(Apart(Answer(near), Answer(far)), 0.1);
 }
 
-TEST_F(FlowSamplerTest, BaseIsTheClassesMeanByTheirWeights) {
+TEST_F(FlowSamplerTest, BaseIsTheWeightedMeanPoseOfTheClasses) {
   const torch::Tensor& poses = generator_->base_poses();
   const torch::Tensor mean = poses.mean(0);
   const auto base = [&](const engine::NetworkInput& window) {
@@ -120,14 +121,14 @@ TEST_F(FlowSamplerTest, BaseIsTheClassesMeanByTheirWeights) {
             kRounding);
 }
 
-TEST_F(FlowSamplerTest, WithoutALabelGuidancePlaysNoPart) {
+TEST_F(FlowSamplerTest, GuidanceHasNoEffectWithoutALabel) {
   const engine::NetworkInput input = FlowWindow(manifest_, 8, 0, 0);
   const torch::Tensor answer = Answer(input);
-  manifest_.flow->guidance = 4;
+  test::FlowOf(manifest_).guidance = 4;
   EXPECT_TRUE(torch::equal(Answer(input), answer));
   const engine::NetworkInput labelled = FlowWindow(manifest_, 8, 0, 1);
   const torch::Tensor strong = Answer(labelled);
-  manifest_.flow->guidance = 1;
+  test::FlowOf(manifest_).guidance = 1;
   EXPECT_GT(Apart(Answer(labelled), strong), 0.01);
 }
 
@@ -157,7 +158,7 @@ TEST(GuidanceTermsTest, OneClassWithoutGuidanceNeedsOneTerm) {
   EXPECT_TRUE(torch::equal(terms.labels.argmax(1), torch::tensor({int64_t{1}, int64_t{2}})));
 }
 
-TEST(GuidanceTermsTest, NegativeWeightsAreNotStrengthened) {
+TEST(GuidanceTermsTest, GuidanceDoesNotScaleNegativeWeights) {
   const GuidanceTerms terms =
       MakeGuidanceTerms(torch::full({1, 2, 1}, -0.5), torch::tensor({2}), 3);
   EXPECT_EQ(terms.factors[0][0].item<float>(), 1.5f);

@@ -7,23 +7,18 @@
 
 #include "model/network/flow_generator.h"
 #include "tests/network/test_manifest.h"
+#include "tests/support/architectures.h"
 
 namespace duet::network {
 
 // A sampling generator small enough for a test.
 inline checkpoint::Manifest SmallFlowManifest() {
   checkpoint::Manifest manifest = SmallManifest();
-  manifest.flow.emplace();
-  manifest.flow->width = 8;
-  manifest.flow->blocks = 2;
-  manifest.flow->heads = 2;
-  manifest.flow->feed_forward = 12;
-  manifest.flow->reach = 4;
-  manifest.model.samples = true;
+  SetArchitecture(test::SmallFlow(), &manifest);
   return manifest;
 }
 
-// With weights that make every input count.
+// A generator with weights with which every input has an effect.
 inline FlowGenerator RandomFlowGenerator(const checkpoint::Manifest& manifest) {
   torch::manual_seed(1);
   FlowGenerator generator(manifest);
@@ -36,7 +31,7 @@ inline FlowGenerator RandomFlowGenerator(const checkpoint::Manifest& manifest) {
   return generator;
 }
 
-// A leader who sways, asked for one class all along.
+// A swaying leader with one class in all frames.
 inline engine::NetworkInput FlowWindow(const checkpoint::Manifest& manifest, int frames,
                                        int interaction_class = 0, float weight = 1) {
   const int joints = manifest.model.skeleton.joint_count();
@@ -56,7 +51,7 @@ inline engine::NetworkInput FlowWindow(const checkpoint::Manifest& manifest, int
   return input;
 }
 
-// `frames` of a follower who walks away from one metre before the leader.
+// `frames` frames of a follower that walks away, starting one metre in front of the leader.
 inline motion::Poses SettledFrames(const checkpoint::Manifest& manifest, int frames) {
   motion::Poses settled(frames, manifest.model.skeleton.joint_count());
   for (int t = 0; t < frames; ++t) {

@@ -6,6 +6,7 @@
 
 #include "model/network/parameters.h"
 #include "tests/network/test_manifest.h"
+#include "tests/support/architectures.h"
 
 namespace duet::network {
 namespace {
@@ -49,8 +50,8 @@ TEST(GeneratorTest, AnswersEveryFrame) {
 
 TEST(GeneratorTest, PaperSizesFollowFromTheManifest) {
   checkpoint::Manifest manifest = SmallManifest(false);
-  manifest.generator = {};
-  manifest.generator.parts = motion::SbuParts();
+  manifest.architecture = test::PublishedPaper();
+  manifest.parts = motion::SbuParts();
   Generator generator = MakeGenerator(manifest);
   EXPECT_EQ(generator->tensors().at("output.weight").sizes(), at::IntArrayRef({45, 480}));
   EXPECT_EQ(generator->tensors().at("decoder.forward.weight_hh").sizes(),
@@ -91,7 +92,7 @@ TEST(GeneratorTest, EveryParameterAndInputHasAGradient) {
   for (const auto& named : generator->named_parameters()) {
     const torch::Tensor gradient = named.value().grad();
     ASSERT_TRUE(gradient.defined()) << named.key();
-    // The halves are the two directions; of the encoders' recurrent weights, each slice is apart.
+    // The halves are the two directions; the encoders' recurrent weights also separate the slices.
     const int64_t pieces = named.key() == "encoder/weight_hh" ? gradient.size(0) : 2;
     for (const torch::Tensor& piece : gradient.chunk(pieces, 0)) {
       EXPECT_GT(piece.abs().max().item<float>(), 0) << named.key();
@@ -132,7 +133,7 @@ TEST(GeneratorTest, LabelAtOneFrameReachesTheResult) {
   EXPECT_FALSE(torch::allclose(generator->forward(input)[0], before[0]));
 }
 
-// A seed gives the same network however its parameters are laid out.
+// The network of a seed does not depend on the layout of the parameters.
 TEST(GeneratorTest, ParametersAreDrawnInTheOrderOfTheTable) {
   const checkpoint::Manifest manifest = SmallManifest();
   const std::map<std::string, torch::Tensor> drawn = MakeGenerator(manifest)->tensors();
@@ -140,7 +141,7 @@ TEST(GeneratorTest, ParametersAreDrawnInTheOrderOfTheTable) {
   for (const checkpoint::TensorSpec& spec : ExpectedTensors(manifest)) {
     const torch::Tensor& value = drawn.at(spec.name);
     ASSERT_EQ(value.sizes(), at::IntArrayRef(spec.shape)) << spec.name;
-    if (spec.name.find("bias") != std::string::npos) continue;  // drawn from nothing
+    if (spec.name.find("bias") != std::string::npos) continue;  // not random
     const double bound = 1 / std::sqrt(static_cast<double>(spec.shape.back()));
     const torch::Tensor wanted = torch::empty(spec.shape).uniform_(-1, 1) * bound;
     EXPECT_TRUE(torch::allclose(value, wanted, 1e-6, 1e-7)) << spec.name;
@@ -159,7 +160,7 @@ TEST(GeneratorTest, StoredParametersLoadBack) {
   EXPECT_TRUE(torch::equal(other->forward(input), generator->forward(input)));
 }
 
-TEST(GeneratorTest, ForeignParametersAreRefusedByName) {
+TEST(GeneratorTest, ForeignParametersAreRejectedByName) {
   const checkpoint::Manifest manifest = SmallManifest();
   Generator generator = MakeGenerator(manifest);
   checkpoint::Checkpoint checkpoint{manifest, StoreParameters(manifest, generator)};
@@ -171,9 +172,9 @@ TEST(GeneratorTest, ForeignParametersAreRefusedByName) {
             std::string::npos);
 }
 
-TEST(GeneratorTest, BasePoseComesFromTheStartWhereItIsKnown) {
+TEST(GeneratorTest, BasePoseIsTheKnownPartOfTheStart) {
   checkpoint::Manifest manifest = SmallManifest();
-  manifest.generator.base_pose = true;
+  test::PaperOf(manifest).base_pose = true;
   Generator generator = MakeGenerator(manifest);
   torch::NoGradGuard no_grad;
   generator->tensors().at("output.weight").zero_();
@@ -186,7 +187,7 @@ TEST(GeneratorTest, BasePoseComesFromTheStartWhereItIsKnown) {
   const int64_t width = input.start.size(1);
   const torch::Tensor start = torch::randn({width - 2});
   for (int64_t clip : {1, 2}) input.start[clip].narrow(0, 0, width - 2).copy_(start);
-  input.start[1][width - 2] = 1;  // the root alone
+  input.start[1][width - 2] = 1;  // only the root
   input.start[2][width - 2] = 1;  // root and pose
   input.start[2][width - 1] = 1;
   const torch::Tensor out = generator->forward(input).reshape({kBatch, kFrames, kJoints, 3});
@@ -198,9 +199,9 @@ TEST(GeneratorTest, BasePoseComesFromTheStartWhereItIsKnown) {
       torch::allclose(out[2][3], root + start.narrow(0, 3, 45).reshape({kJoints, 3}), 1e-5, 1e-5));
 }
 
-TEST(GeneratorTest, ReleasedVariantGivesTheWholeBodySliceTheLabelAlone) {
+TEST(GeneratorTest, ReleasedVariantReadsOnlyTheLabelInTheWholeBodySlice) {
   checkpoint::Manifest manifest = SmallManifest(false);
-  manifest.generator.variant = checkpoint::GeneratorVariant::kReleased;
+  test::PaperOf(manifest).variant = checkpoint::GeneratorVariant::kReleased;
   Generator generator = MakeGenerator(manifest);
   EXPECT_EQ(generator->tensors().at("encoder.whole_body.fc.weight").size(1), kClasses);
   EXPECT_EQ(generator->forward(MakeInput(manifest)).size(2), 3 * kJoints);
@@ -208,8 +209,8 @@ TEST(GeneratorTest, ReleasedVariantGivesTheWholeBodySliceTheLabelAlone) {
 
 TEST(GeneratorTest, UnlabelledVariantDoesNotReadTheLabel) {
   checkpoint::Manifest manifest = SmallManifest();
-  manifest.generator.variant = checkpoint::GeneratorVariant::kUnlabelled;
-  manifest.generator.base_pose = true;
+  test::PaperOf(manifest).variant = checkpoint::GeneratorVariant::kUnlabelled;
+  test::PaperOf(manifest).base_pose = true;
   Generator generator = MakeGenerator(manifest);
   generator->SetBasePoses(torch::randn({kClasses, 3 * kJoints}));
   GeneratorInput input = MakeInput(manifest);
@@ -220,7 +221,7 @@ TEST(GeneratorTest, UnlabelledVariantDoesNotReadTheLabel) {
   EXPECT_FALSE(torch::equal(generator->forward(input), before));
 }
 
-TEST(GeneratorTest, TwentyJointsAndTwoClassesAreAConfiguration) {
+TEST(GeneratorTest, AcceptsTwentyJointsAndTwoClasses) {
   checkpoint::Manifest manifest = SmallManifest(false);
   manifest.model.classes = {"kick", "punch"};
   manifest.model.skeleton.joint_names.clear();

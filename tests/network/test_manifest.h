@@ -4,6 +4,7 @@
 #include <string>
 
 #include "model/checkpoint/manifest.h"
+#include "tests/support/architectures.h"
 
 namespace duet::network {
 
@@ -17,11 +18,11 @@ inline checkpoint::Manifest SmallManifest(bool follower_start = true) {
   manifest.model.frame_rate_hz = 15;
   manifest.model.window_frames = 12;
   manifest.model.accepts_follower_start = follower_start;
-  manifest.generator.parts = motion::SbuParts();
-  manifest.generator.follower_start = follower_start;
-  manifest.generator.slice_features = 5;
-  manifest.generator.encoder_hidden = 4;
-  manifest.generator.attention = 6;
+  manifest.parts = motion::SbuParts();
+  test::PaperOf(manifest).follower_start = follower_start;
+  test::PaperOf(manifest).slice_features = 5;
+  test::PaperOf(manifest).encoder_hidden = 4;
+  test::PaperOf(manifest).attention = 6;
   return manifest;
 }
 

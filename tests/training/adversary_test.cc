@@ -13,7 +13,7 @@ class AdversaryTest : public ::testing::Test {
   AdversaryTest() {
     torch::set_num_threads(1);
     torch::manual_seed(3);
-    options_.graded_labels = 0;
+    PaperOf(&options_).graded_labels = 0;
     batch_ = SampleEpoch(manifest_, dataset_, AllOf(dataset_), options_, 0).front();
     synthesised_ = torch::randn_like(batch_.follower);
   }
@@ -27,7 +27,7 @@ class AdversaryTest : public ::testing::Test {
   torch::Tensor synthesised_;
 };
 
-TEST_F(AdversaryTest, GeneratorIsPulledTowardsItsClassAndTheJudgesGetNoGradient) {
+TEST_F(AdversaryTest, GeneratorLossGivesNoGradientToTheDiscriminators) {
   Adversary adversary = Make();
   synthesised_.set_requires_grad(true);
   adversary.GeneratorLoss(batch_, synthesised_).backward();
@@ -37,20 +37,20 @@ TEST_F(AdversaryTest, GeneratorIsPulledTowardsItsClassAndTheJudgesGetNoGradient)
   }
 }
 
-TEST_F(AdversaryTest, TrainingMakesTheFakeRecognised) {
+TEST_F(AdversaryTest, TrainingSeparatesSynthesisedFromCaptured) {
   options_.optimiser.schedule = "constant";
-  options_.discriminator.learning_rate = 0.02;
+  PaperOf(&options_).discriminator.learning_rate = 0.02;
   Adversary adversary = Make();
   const double before = adversary.GeneratorLoss(batch_, synthesised_).item<double>();
   for (int step = 0; step < 30; ++step) adversary.Train(batch_, synthesised_, step);
   EXPECT_GT(adversary.GeneratorLoss(batch_, synthesised_).item<double>(), before);
 }
 
-TEST_F(AdversaryTest, BinaryOneIsTrainedAndCountsBesideTheClassAwareOne) {
+TEST_F(AdversaryTest, BinaryDiscriminatorAddsItsLoss) {
   torch::manual_seed(4);
   Adversary alone = Make();
-  options_.discriminator.binary = true;
-  torch::manual_seed(4);  // the same class-aware one
+  PaperOf(&options_).discriminator.binary = true;
+  torch::manual_seed(4);  // the same class-aware discriminator
   Adversary both = Make();
   EXPECT_EQ(both.Tensors().size(), 2 * alone.Tensors().size());
   EXPECT_GT(both.GeneratorLoss(batch_, synthesised_).item<double>(),
@@ -60,7 +60,7 @@ TEST_F(AdversaryTest, BinaryOneIsTrainedAndCountsBesideTheClassAwareOne) {
   EXPECT_FALSE(torch::equal(binary, both.Tensors().back().second));
 }
 
-TEST_F(AdversaryTest, MixedAnswersDoNotCount) {
+TEST_F(AdversaryTest, IgnoresMixedAnswers) {
   Adversary adversary = Make();
   batch_.single_rows = torch::empty({0}, torch::kInt64);
   EXPECT_EQ(adversary.GeneratorLoss(batch_, synthesised_).item<double>(), 0);

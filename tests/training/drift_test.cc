@@ -10,7 +10,7 @@ namespace {
 using motion::Poses;
 using motion::Vec3;
 
-// A follower who stands still, told some of its first frames.
+// A follower that stands still, with some known first frames.
 struct Told {
   motion::Skeleton skeleton = motion::SbuSkeleton();
   Poses captured;
@@ -34,7 +34,7 @@ Told Standing(int settled) {
   return told;
 }
 
-void Drift(const TrainingOptions::Flow::Drift& options, Told* told) {
+void Drift(const FlowTraining::Drift& options, Told* told) {
   base::Random random(1, 0);
   AddDrift(told->skeleton, options, &random, &told->input, &told->target);
 }
@@ -47,8 +47,8 @@ float Off(const Poses& poses, const Poses& captured, int frame) {
   return most;
 }
 
-TEST(Drift, EachErrorIsToldAndFoundBackFrom) {
-  using Options = TrainingOptions::Flow::Drift;
+TEST(Drift, TargetReturnsFromEachErrorToTheCapturedMotion) {
+  using Options = FlowTraining::Drift;
   for (double Options::*error : {&Options::tilt, &Options::bend, &Options::turn, &Options::root,
                                  &Options::height, &Options::joints}) {
     Options options;
@@ -68,8 +68,8 @@ TEST(Drift, EachErrorIsToldAndFoundBackFrom) {
   }
 }
 
-TEST(Drift, StartIsWhatIsTold) {
-  TrainingOptions::Flow::Drift options;
+TEST(Drift, StartHasTheError) {
+  FlowTraining::Drift options;
   options.root = options.joints = 0.3;
   Told told = Standing(0);
   Drift(options, &told);
@@ -78,8 +78,8 @@ TEST(Drift, StartIsWhatIsTold) {
   EXPECT_GT(Distance(pose[0], told.captured.at(0, 0)), 0.01f);
 }
 
-TEST(Drift, ABendLeavesTheLegs) {
-  TrainingOptions::Flow::Drift options;
+TEST(Drift, BendDoesNotMoveTheLegs) {
+  FlowTraining::Drift options;
   options.bend = 0.5;
   Told told = Standing(2);
   Drift(options, &told);

@@ -1,6 +1,7 @@
 #ifndef DUET_TESTS_TRAINING_FLOW_TEST_OPTIONS_H_
 #define DUET_TESTS_TRAINING_FLOW_TEST_OPTIONS_H_
 
+#include "tests/support/architectures.h"
 #include "tests/training/test_options.h"
 
 namespace duet::training {
@@ -9,13 +10,13 @@ namespace duet::training {
 inline TrainingOptions SmallFlowOptions() {
   TrainingOptions options;
   options.standardisation = motion::StandardOrigin::kFirstFrame;
-  options.flow.emplace();
-  options.flow->generator.width = 16;
-  options.flow->generator.blocks = 1;
-  options.flow->generator.heads = 2;
-  options.flow->generator.feed_forward = 16;
-  options.flow->generator.reach = 8;
-  options.flow->passes = 2;
+  checkpoint::FlowArchitecture& architecture = options.method.emplace<FlowTraining>().architecture;
+  architecture = test::SmallFlow();
+  architecture.width = 16;
+  architecture.blocks = 1;
+  architecture.feed_forward = 16;
+  architecture.reach = 8;
+  FlowOf(&options).passes = 2;
   options.optimiser.schedule = "cosine";
   options.optimiser.second_moment = 0.99;
   options.optimiser.average_decay = 0.9;
@@ -27,14 +28,6 @@ inline TrainingOptions SmallFlowOptions() {
   options.augmentation.noise = 0.01;
   options.start = {0.1, 0.5};
   return options;
-}
-
-inline checkpoint::Manifest FlowManifestFor(const TrainingOptions& options,
-                                            const dataset::Dataset& dataset) {
-  checkpoint::Manifest manifest = ManifestFor(options, dataset);
-  manifest.flow = options.flow->generator;
-  manifest.model.accepts_follower_start = manifest.model.samples = true;
-  return manifest;
 }
 
 }  // namespace duet::training

@@ -31,7 +31,7 @@ class FlowTrainerTest : public ::testing::Test {
 
   dataset::Dataset dataset_ = MadeUpDataset();
   TrainingOptions options_ = SmallFlowOptions();
-  checkpoint::Manifest manifest_ = FlowManifestFor(options_, dataset_);
+  checkpoint::Manifest manifest_ = ManifestFor(options_, dataset_);
   torch::Tensor base_poses_ = torch::zeros({3, 45});
   TemporaryFolder folder_;
 };
@@ -62,10 +62,10 @@ TEST_F(FlowTrainerTest, ResumedRunEqualsAnUninterruptedOneBitForBit) {
   EXPECT_TRUE(resumed.Finished());
 }
 
-TEST_F(FlowTrainerTest, StateOfAnotherRunIsRefused) {
+TEST_F(FlowTrainerTest, StateOfAnotherRunIsRejected) {
   FlowTrainer trainer = Make();
   ASSERT_THAT(trainer.SaveState(folder_ / "state"), IsOk());
-  options_.flow->known_noise = 0.02;
+  FlowOf(&options_).known_noise = 0.02;
   EXPECT_THAT(Make().LoadState(folder_ / "state"),
               StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("other options or data")));
 }
@@ -73,10 +73,10 @@ TEST_F(FlowTrainerTest, StateOfAnotherRunIsRefused) {
 TEST_F(FlowTrainerTest, LearnsToAnswer) {
   options_.epochs = 12;
   options_.optimiser.warm_up_steps = 5;
-  options_.flow->passes = 10;
-  options_.flow->bone_weight = 1;
-  options_.flow->slide_weight = 1;
-  options_.flow->energy.from = 1;
+  FlowOf(&options_).passes = 10;
+  FlowOf(&options_).bone_weight = 1;
+  FlowOf(&options_).slide_weight = 1;
+  FlowOf(&options_).energy.from = 1;
   FlowTrainer trainer = Make({0});
   const EpochReport before = trainer.RunEpoch();
   EpochReport after;
@@ -87,12 +87,12 @@ TEST_F(FlowTrainerTest, LearnsToAnswer) {
   EXPECT_GT(before.continuity, 0);
 }
 
-TEST_F(FlowTrainerTest, TheEnergyScoreMakesAnswersDifferAsTheFollowersDo) {
-  // Nobody is told anything, so that what a leader leaves open is for the noise to decide.
+TEST_F(FlowTrainerTest, TrainingReducesTheEnergyScore) {
+  // Without a start, the noise determines everything that the leader does not.
   options_.start = {0, 0};
-  options_.flow->generator.steps = 1;
-  options_.flow->energy.from = 0.5;
-  options_.flow->passes = 10;
+  FlowOf(&options_).architecture.steps = 1;
+  FlowOf(&options_).energy.from = 0.5;
+  FlowOf(&options_).passes = 10;
   options_.epochs = 8;
   FlowTrainer trainer = Make();
   EpochReport report;
@@ -102,9 +102,9 @@ TEST_F(FlowTrainerTest, TheEnergyScoreMakesAnswersDifferAsTheFollowersDo) {
   EXPECT_LT(report.generator, first);
 }
 
-TEST_F(FlowTrainerTest, EnergyBeginsAtItsShareOfTheRun) {
+TEST_F(FlowTrainerTest, EnergyScoreStartsAtItsFractionOfTheRun) {
   const auto losses = [&](double from) {
-    options_.flow->energy.from = from;
+    FlowOf(&options_).energy.from = from;
     FlowTrainer trainer = Make();
     std::vector<double> epochs;
     for (int i = 0; i < 3; ++i) epochs.push_back(trainer.RunEpoch().generator);
@@ -116,39 +116,39 @@ TEST_F(FlowTrainerTest, EnergyBeginsAtItsShareOfTheRun) {
   EXPECT_NE(half[2], never[2]);
 }
 
-TEST_F(FlowTrainerTest, TheEnergyScoreHasADropoutOfItsOwn) {
+TEST_F(FlowTrainerTest, EnergyScoreHasItsOwnDropout) {
   const auto loss = [&](double flow, double energy) {
-    options_.flow->energy.from = 0;
-    options_.flow->dropout = flow;
-    options_.flow->energy.dropout = energy;
+    FlowOf(&options_).energy.from = 0;
+    FlowOf(&options_).dropout = flow;
+    FlowOf(&options_).energy.dropout = energy;
     return Make().RunEpoch().generator;
   };
   EXPECT_EQ(loss(0.1, 0), loss(0.5, 0));
   EXPECT_NE(loss(0.1, 0), loss(0.1, 0.5));
 }
 
-TEST_F(FlowTrainerTest, LossesWithoutWeightAreLeftOut) {
+TEST_F(FlowTrainerTest, LossesWithWeightZeroAreOmitted) {
   FlowTrainer plain = Make();
   const double without = plain.RunEpoch().generator;
-  options_.flow->slide_weight = 100;
+  FlowOf(&options_).slide_weight = 100;
   EXPECT_GT(Make().RunEpoch().generator, without);
-  options_.flow->slide_weight = 0;
-  options_.flow->bone_weight = 100;
+  FlowOf(&options_).slide_weight = 0;
+  FlowOf(&options_).bone_weight = 100;
   EXPECT_GT(Make().RunEpoch().generator, without);
 }
 
-TEST_F(FlowTrainerTest, EpochShowsEverySequenceInEveryPass) {
-  options_.flow->passes = 3;
+TEST_F(FlowTrainerTest, EpochUsesEverySequenceInEveryPass) {
+  FlowOf(&options_).passes = 3;
   int64_t clips = 0;
   for (const FlowBatch& batch : Sample(0)) clips += batch.target.size(0);
   EXPECT_EQ(clips, 3 * static_cast<int64_t>(dataset_.sequences.size()));
 }
 
-TEST_F(FlowTrainerTest, TellsNothingTheRootAPoseOrSeveralFramesInTheirShares) {
+TEST_F(FlowTrainerTest, DrawsEveryKindOfStartWithItsProbability) {
   options_.start = {0.25, 0.5};
-  options_.flow->several_known = 0.5;
-  options_.flow->unlabelled = 0.2;
-  options_.flow->passes = 40;
+  FlowOf(&options_).several_known = 0.5;
+  FlowOf(&options_).unlabelled = 0.2;
+  FlowOf(&options_).passes = 40;
   double clips = 0, roots = 0, poses = 0, several = 0, unlabelled = 0;
   for (const FlowBatch& batch : Sample(0)) {
     const int64_t width = batch.input.start.size(1);
@@ -168,28 +168,28 @@ TEST_F(FlowTrainerTest, TellsNothingTheRootAPoseOrSeveralFramesInTheirShares) {
 
 TEST_F(FlowTrainerTest, KnownFramesAreThoseOfTheTarget) {
   options_.start = {0, 1};
-  options_.flow->several_known = 1;
-  options_.flow->known_noise = 0;
+  FlowOf(&options_).several_known = 1;
+  FlowOf(&options_).known_noise = 0;
   for (const FlowBatch& batch : Sample(0)) {
     EXPECT_TRUE(torch::allclose(batch.input.known, batch.target * batch.input.is_known, 0, 1e-4));
   }
-  options_.flow->known_noise = 0.05;
+  FlowOf(&options_).known_noise = 0.05;
   double off = 0;
   for (const FlowBatch& batch : Sample(0)) {
     off += (batch.input.known - batch.target * batch.input.is_known).abs().max().item<double>();
   }
-  // The base moves with what is told: the same error in all frames leaves the offsets alone.
+  // The base has the same error as the known frames, so the offsets do not change.
   EXPECT_GT(off, 0);
 }
 
 TEST_F(FlowTrainerTest, MeasuresMeanPosesAndOffsetsOfTheFollowers) {
   const FlowStatistics statistics = MeasureFollowers(manifest_, dataset_, AllOf(dataset_), 0);
   const int64_t root = 3 * dataset_.skeleton.root;
-  // One metre before the leader, each class higher than the one before.
+  // One metre in front of the leader; each class is higher than the previous one.
   EXPECT_NEAR(statistics.base_poses[0][root + 2].item<float>(), -1, 0.3);
   EXPECT_NEAR((statistics.base_poses[2] - statistics.base_poses[0])[root + 1].item<float>(), 0.2,
               0.05);
-  // Counted as mirrored too: nobody stands to a side.
+  // With mirrored copies, the mean sideways position is 0.
   EXPECT_NEAR(statistics.base_poses[0][root].item<float>(), 0, 1e-4);
   for (const int64_t state : {0, 1}) {
     const torch::Tensor root_of = statistics.noise_roots[state];

@@ -31,18 +31,18 @@ TEST(TrainingOptionsTest, ReplacementsReachTheirField) {
   const auto options = ParseTrainingOptions(
       DefaultJson(), {{"losses.bone", "0.25"}, {"optimiser.name", "rmsprop"}, {"epochs", "7"}});
   ASSERT_THAT(options, IsOk());
-  EXPECT_EQ(options->losses.bone, 0.25);
+  EXPECT_EQ(std::get<PaperTraining>(options->method).losses.bone, 0.25);
   EXPECT_EQ(options->optimiser.name, "rmsprop");
   EXPECT_EQ(options->epochs, 7);
   EXPECT_EQ(Describe(*options).at("losses.bone"), "0.25");
 }
 
-// A state belongs to settings that are equal in every digit.
+// A state is only valid for exactly equal settings.
 TEST(TrainingOptionsTest, SettingsAreDescribedToTheLastDigit) {
   TrainingOptions options;
   options.optimiser.learning_rate = 0.0010000001;
   EXPECT_EQ(Describe(options).at("optimiser.learning_rate"), "0.0010000001");
-  options.losses.bone = 1.0 / 3;
+  std::get<PaperTraining>(options.method).losses.bone = 1.0 / 3;
   EXPECT_EQ(std::stod(Describe(options).at("losses.bone")), 1.0 / 3);
   EXPECT_EQ(Describe(options).at("losses.continuity_margin"), "0.1");
   EXPECT_EQ(Describe(options).at("losses.reconstruction_weight"), "1");
@@ -59,7 +59,7 @@ TEST(TrainingOptionsTest, EverySettingIsRequiredAndDescribed) {
 TEST(TrainingOptionsTest, EverySettingOfAFlowIsRequiredAndDescribed) {
   const auto options = ParseTrainingOptions(FlowJson());
   ASSERT_THAT(options, IsOk());
-  ASSERT_TRUE(options->flow.has_value());
+  ASSERT_TRUE(std::holds_alternative<FlowTraining>(options->method));
   const auto described = Describe(*options);
   EXPECT_EQ(described.at("flow.several_known"), "0.4");
   EXPECT_EQ(described.at("optimiser.warm_up_steps"), "100");
@@ -69,11 +69,13 @@ TEST(TrainingOptionsTest, EverySettingOfAFlowIsRequiredAndDescribed) {
   }
 }
 
-TEST(TrainingOptionsTest, FlowReadsItsOwnSectionsAlone) {
+TEST(TrainingOptionsTest, InvalidFlowSettingsAreRejectedByName) {
   const auto refusal = [](const std::string& path, const std::string& value) {
     return std::string(ParseTrainingOptions(FlowJson(), {{path, value}}).status().message());
   };
-  EXPECT_THAT(refusal("generator.kind", "paper"), HasSubstr("\"paper\", wanted one of flow"));
+  EXPECT_THAT(refusal("generator.kind", "wave"),
+              HasSubstr("generator.kind: \"wave\", wanted \"paper\" or \"flow\""));
+  EXPECT_THAT(refusal("generator.kind", "paper"), HasSubstr("generator.variant"));
   EXPECT_THAT(refusal("generator.heads", "7"), HasSubstr("generator.heads: 7, wanted a divisor"));
   EXPECT_THAT(refusal("generator.noise.white", "-1"), HasSubstr("generator.noise.white"));
   EXPECT_THAT(refusal("flow.unlabelled", "2"), HasSubstr("flow.unlabelled"));
@@ -81,7 +83,7 @@ TEST(TrainingOptionsTest, FlowReadsItsOwnSectionsAlone) {
               HasSubstr("optimiser: unknown field \"last_share\""));
   const auto tuned = ParseTrainingOptions(FlowJson(), {{"generator.steps", "5"}});
   ASSERT_THAT(tuned, IsOk());
-  EXPECT_EQ(tuned->flow->generator.steps, 5);
+  EXPECT_EQ(std::get<FlowTraining>(tuned->method).architecture.steps, 5);
 }
 
 TEST(TrainingOptionsTest, DerivedConfigurationChangesItsBase) {
@@ -106,7 +108,7 @@ TEST(TrainingOptionsTest, DerivedConfigurationIsCheckedByName) {
   EXPECT_THAT(refusal(R"({"base": "default", "set": {}, "more": 1})"), HasSubstr("more"));
 }
 
-TEST(TrainingOptionsTest, RefusesByName) {
+TEST(TrainingOptionsTest, RejectsByName) {
   const auto refusal = [](const std::string& path, const std::string& value) {
     return std::string(ParseTrainingOptions(DefaultJson(), {{path, value}}).status().message());
   };
@@ -119,7 +121,7 @@ TEST(TrainingOptionsTest, RefusesByName) {
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("generator")));
 }
 
-TEST(TrainingOptionsTest, SubjectsHeldBackMustExist) {
+TEST(TrainingOptionsTest, HeldOutSubjectsMustExist) {
   const dataset::Dataset dataset = MadeUpDataset();
   TrainingOptions options;
   options.validation.subjects = {"s02"};
@@ -131,7 +133,7 @@ TEST(TrainingOptionsTest, SubjectsHeldBackMustExist) {
                HasSubstr("validation.subjects: \"s09\", wanted subjects of the data: s01, s02")));
 }
 
-TEST(TrainingOptionsTest, OnlyJointsThatSayTheirSideAreMirrored) {
+TEST(TrainingOptionsTest, MirroringRequiresLeftAndRightInJointNames) {
   dataset::Dataset dataset = MadeUpDataset();
   for (std::string& name : dataset.skeleton.joint_names) {
     name = "joint" + std::to_string(&name - dataset.skeleton.joint_names.data());

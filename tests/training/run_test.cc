@@ -43,7 +43,7 @@ class RunTest : public ::testing::Test {
   std::ostringstream progress_;
 };
 
-TEST_F(RunTest, LeavesACheckpointThatServes) {
+TEST_F(RunTest, WritesACheckpointThatAnswers) {
   ASSERT_THAT(Go(), IsOk());
   const auto synthesizer = torch_engine::LoadTorchSynthesizer(CheckpointFolder(plan_));
   ASSERT_THAT(synthesizer, IsOk());
@@ -51,7 +51,7 @@ TEST_F(RunTest, LeavesACheckpointThatServes) {
   EXPECT_EQ(model.classes, dataset_.classes);
   EXPECT_EQ(model.window_frames, dataset_.LongestFrameCount());
   EXPECT_TRUE(model.accepts_follower_start);
-  EXPECT_FALSE(model.partner_direction.has_value());  // the paper's goes by the hips
+  EXPECT_FALSE(model.partner_direction.has_value());  // the paper's generator uses the hips
   EXPECT_THAT(progress_.str(), HasSubstr("epoch 4/4"));
   const auto checkpoint = checkpoint::ReadCheckpoint(CheckpointFolder(plan_));
   ASSERT_THAT(checkpoint, IsOk());
@@ -59,8 +59,8 @@ TEST_F(RunTest, LeavesACheckpointThatServes) {
   EXPECT_EQ(checkpoint->manifest.training.at("sequences"), "7");
 }
 
-TEST_F(RunTest, TheCheckpointKnowsTheLeadersThatItWasTrainedOn) {
-  // Whom the network never saw is no training leader.
+TEST_F(RunTest, CheckpointHasTheStatisticsOfItsTrainingLeaders) {
+  // Held-out people are not training leaders.
   for (motion::Vec3& joint : dataset_.sequences[1].pair.leader.poses.all()) joint = joint * 3;
   ASSERT_EQ(dataset_.sequences[1].subjects.front(), "s02");
   std::vector<const motion::Poses*> leaders;
@@ -73,7 +73,8 @@ TEST_F(RunTest, TheCheckpointKnowsTheLeadersThatItWasTrainedOn) {
     plan_.options = options;
     plan_.options.epochs = 1;
     plan_.options.validation.subjects = {"s02"};
-    plan_.folder = folder_.path() / (options.flow ? "flow" : "paper");
+    plan_.folder =
+        folder_.path() / (std::holds_alternative<FlowTraining>(options.method) ? "flow" : "paper");
     ASSERT_THAT(Go(), IsOk());
     const auto checkpoint = checkpoint::ReadCheckpoint(CheckpointFolder(plan_));
     ASSERT_THAT(checkpoint, IsOk());
@@ -89,7 +90,7 @@ TEST_F(RunTest, TheCheckpointKnowsTheLeadersThatItWasTrainedOn) {
   }
 }
 
-TEST_F(RunTest, SamplingGeneratorLeavesACheckpointThatServes) {
+TEST_F(RunTest, SamplingGeneratorWritesACheckpointThatAnswers) {
   plan_.options = SmallFlowOptions();
   ASSERT_THAT(Go(), IsOk());
   const auto synthesizer = torch_engine::LoadTorchSynthesizer(CheckpointFolder(plan_));
@@ -117,14 +118,14 @@ TEST_F(RunTest, FinishedRunIsNotRepeated) {
 }
 
 TEST_F(RunTest, DivergenceIsReportedNotSaved) {
-  plan_.options.losses.reconstruction = "l2";
-  dataset_.sequences[0].pair.follower.at(0, 0).x = 1e30f;  // its square is beyond a float
+  PaperOf(&plan_.options).losses.reconstruction = "l2";
+  dataset_.sequences[0].pair.follower.at(0, 0).x = 1e30f;  // its square overflows a float
   EXPECT_THAT(Go(), StatusIs(absl::StatusCode::kInternal, HasSubstr("no longer finite")));
   EXPECT_FALSE(std::filesystem::exists(CheckpointFolder(plan_)));
   EXPECT_FALSE(std::filesystem::exists(plan_.folder / "state"));
 }
 
-TEST_F(RunTest, HeldBackSubjectsJudgeTheRun) {
+TEST_F(RunTest, ValidatesOnHeldOutSubjects) {
   plan_.options.validation.subjects = {"s02"};
   ASSERT_THAT(Go(), IsOk());
   const auto checkpoint = checkpoint::ReadCheckpoint(CheckpointFolder(plan_));
@@ -135,19 +136,19 @@ TEST_F(RunTest, HeldBackSubjectsJudgeTheRun) {
   EXPECT_THAT(Go(), StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("every sequence")));
 }
 
-TEST_F(RunTest, UnknownSubjectIsRefusedBeforeAnythingIsWritten) {
+TEST_F(RunTest, UnknownSubjectIsRejectedBeforeAnythingIsWritten) {
   plan_.options.validation.subjects = {"s09"};
   EXPECT_THAT(Go(), StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("s09")));
   EXPECT_FALSE(std::filesystem::exists(plan_.folder));
 }
 
-TEST_F(RunTest, WhatCouldNotBeServedIsRefusedBeforeItIsTrained) {
+TEST_F(RunTest, InvalidManifestIsRejectedBeforeTraining) {
   plan_.model_name = "my studio";
   EXPECT_THAT(Go(), StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("\"my studio\"")));
   EXPECT_FALSE(std::filesystem::exists(plan_.folder));
 }
 
-TEST_F(RunTest, WorksForClassesThatNoConfigurationNames) {
+TEST_F(RunTest, TrainsOnClassesOfTheDataSet) {
   dataset_.classes = {"bow", "lift", "spin"};
   plan_.options = *ParseConfig(FindConfig("default")->json,
                                {{"epochs", "1"}, {"generator.encoder_hidden", "4"}});
@@ -172,7 +173,7 @@ TEST(RunLogTest, ResumingDropsRowsOfLostEpochs) {
   EXPECT_THAT(text, Not(HasSubstr("\n3,")));
 }
 
-TEST(ProgressLineTest, SaysHowFarAndHowLong) {
+TEST(ProgressLineTest, ShowsProgressAndRemainingTime) {
   EpochReport report;
   report.epoch = 5;
   report.epochs = 10;

@@ -70,7 +70,7 @@ absl::StatusOr<metrics::FeatureSet> LatentFeatures(const checkpoint::Checkpoint&
                                                    LatentLabels labels) {
   absl::Status status = CheckModelFits(checkpoint.manifest.model, dataset);
   if (!status.ok()) return status;
-  if (checkpoint.manifest.flow) {
+  if (!std::holds_alternative<checkpoint::PaperArchitecture>(checkpoint.manifest.architecture)) {
     return absl::InvalidArgumentError(
         absl::StrCat("model ", checkpoint.manifest.model.name,
                      ": samples, wanted a generator with encoders, whose latent space is shown"));

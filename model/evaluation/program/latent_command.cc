@@ -114,7 +114,9 @@ absl::Status AddModel(const dataset::Dataset& dataset, const NamedRuns& runs,
     absl::Status status =
         AddSpace(dataset, fold, experiments::LatentLabels::kOwnClass, arguments, section);
     if (!status.ok()) return status;
-    if (fold.checkpoint.manifest.generator.variant == checkpoint::GeneratorVariant::kUnlabelled) {
+    const auto& paper =
+        std::get<checkpoint::PaperArchitecture>(fold.checkpoint.manifest.architecture);
+    if (paper.variant == checkpoint::GeneratorVariant::kUnlabelled) {
       continue;
     }
     status = AddSpace(dataset, fold, experiments::LatentLabels::kNone, arguments, section);

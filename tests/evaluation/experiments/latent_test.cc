@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tests/evaluation/support/made_up_pairs.h"
+#include "tests/support/architectures.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/tiny_checkpoint.h"
 
@@ -28,9 +29,9 @@ checkpoint::Checkpoint Model(const dataset::Dataset& dataset,
   checkpoint::Manifest manifest = TinyManifest();
   manifest.model.skeleton = dataset.skeleton;
   manifest.model.classes = dataset.classes;
-  manifest.generator.parts = dataset.parts;
-  manifest.generator.variant = variant;
-  manifest.generator.encoder_hidden = kHidden;
+  manifest.parts = dataset.parts;
+  test::PaperOf(manifest).variant = variant;
+  test::PaperOf(manifest).encoder_hidden = kHidden;
   return FilledCheckpoint(manifest);
 }
 

@@ -53,7 +53,7 @@ void WriteRun(const std::filesystem::path& run, checkpoint::Manifest manifest) {
 checkpoint::Manifest SbuManifest() {
   checkpoint::Manifest manifest = TinyManifest();
   manifest.model.skeleton = motion::SbuSkeleton();
-  manifest.generator.parts = motion::SbuParts();
+  manifest.parts = motion::SbuParts();
   return manifest;
 }
 

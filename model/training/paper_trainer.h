@@ -1,5 +1,5 @@
-#ifndef DUET_MODEL_TRAINING_TRAINER_H_
-#define DUET_MODEL_TRAINING_TRAINER_H_
+#ifndef DUET_MODEL_TRAINING_PAPER_TRAINER_H_
+#define DUET_MODEL_TRAINING_PAPER_TRAINER_H_
 
 #include <torch/torch.h>
 
@@ -19,16 +19,19 @@
 
 namespace duet::training {
 
-// Trains the paper's generator, against its discriminator where the options ask for one.
+// Trains the paper's generator, with an adversarial loss against its discriminator if the options
+// ask for one.
 //
 // Source:  paper section 3.4 and 5. The discriminator is frozen in the generator's step.
-class Trainer : public EpochTrainer {
+class PaperTrainer : public EpochTrainer {
  public:
-  // `manifest` describes the model to be; its generator must be options.generator, with parts.
-  Trainer(const TrainingOptions& options, const checkpoint::Manifest& manifest,
-          const dataset::Dataset& dataset, std::vector<int> train, std::vector<int> validation);
+  // `manifest` describes the model to train. Its architecture must be that of options.method, a
+  // PaperTraining.
+  PaperTrainer(const TrainingOptions& options, const checkpoint::Manifest& manifest,
+               const dataset::Dataset& dataset, std::vector<int> train,
+               std::vector<int> validation);
 
-  // The generator to keep, as BestTensors has it.
+  // The generator whose tensors BestTensors returns.
   network::Generator Best();
   std::vector<checkpoint::Tensor> BestTensors() override;
 
@@ -41,6 +44,7 @@ class Trainer : public EpochTrainer {
   torch::Tensor GeneratorLoss(const TrainingBatch& batch, EpochReport* report);
   void TrainAdversary(const TrainingBatch& batch, int64_t step, EpochReport* report);
 
+  const PaperTraining::Losses& losses_;
   int64_t steps_per_epoch_;
   network::Generator generator_;
   Optimiser generator_optimiser_;
@@ -49,4 +53,4 @@ class Trainer : public EpochTrainer {
 
 }  // namespace duet::training
 
-#endif  // DUET_MODEL_TRAINING_TRAINER_H_
+#endif  // DUET_MODEL_TRAINING_PAPER_TRAINER_H_

@@ -1,4 +1,4 @@
-#include "model/training/trainer.h"
+#include "model/training/paper_trainer.h"
 
 #include <gmock/gmock.h>
 
@@ -21,11 +21,11 @@ using test::WriteTestFile;
 
 using ::testing::HasSubstr;
 
-class TrainerTest : public ::testing::Test {
+class PaperTrainerTest : public ::testing::Test {
  protected:
-  TrainerTest() { torch::set_num_threads(1); }
+  PaperTrainerTest() { torch::set_num_threads(1); }
 
-  Trainer Make() { return {options_, manifest_, dataset_, AllOf(dataset_), {}}; }
+  PaperTrainer Make() { return {options_, manifest_, dataset_, AllOf(dataset_), {}}; }
 
   dataset::Dataset dataset_ = MadeUpDataset();
   TrainingOptions options_ = SmallOptions();
@@ -33,7 +33,9 @@ class TrainerTest : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-std::vector<torch::Tensor> Parameters(Trainer& trainer) { return trainer.Best()->parameters(); }
+std::vector<torch::Tensor> Parameters(PaperTrainer& trainer) {
+  return trainer.Best()->parameters();
+}
 
 bool Equal(const std::vector<torch::Tensor>& a, const std::vector<torch::Tensor>& b) {
   for (size_t i = 0; i < a.size(); ++i) {
@@ -42,16 +44,16 @@ bool Equal(const std::vector<torch::Tensor>& a, const std::vector<torch::Tensor>
   return a.size() == b.size();
 }
 
-TEST_F(TrainerTest, ResumedRunEqualsAnUninterruptedOneBitForBit) {
-  Trainer straight = Make();
+TEST_F(PaperTrainerTest, ResumedRunEqualsAnUninterruptedOneBitForBit) {
+  PaperTrainer straight = Make();
   for (int i = 0; i < 4; ++i) straight.RunEpoch();
   {
-    Trainer first = Make();
+    PaperTrainer first = Make();
     first.RunEpoch();
     first.RunEpoch();
     ASSERT_THAT(first.SaveState(folder_ / "state"), IsOk());
   }
-  Trainer resumed = Make();
+  PaperTrainer resumed = Make();
   ASSERT_THAT(resumed.LoadState(folder_ / "state"), IsOk());
   EXPECT_EQ(resumed.epoch(), 2);
   resumed.RunEpoch();
@@ -61,29 +63,29 @@ TEST_F(TrainerTest, ResumedRunEqualsAnUninterruptedOneBitForBit) {
   EXPECT_TRUE(resumed.Finished());
 }
 
-TEST_F(TrainerTest, ResumesWithABinaryDiscriminatorToo) {
-  options_.discriminator.binary = true;
-  Trainer straight = Make();
+TEST_F(PaperTrainerTest, ResumesWithABinaryDiscriminatorToo) {
+  PaperOf(&options_).discriminator.binary = true;
+  PaperTrainer straight = Make();
   for (int i = 0; i < 2; ++i) straight.RunEpoch();
-  Trainer first = Make();
+  PaperTrainer first = Make();
   first.RunEpoch();
   ASSERT_THAT(first.SaveState(folder_ / "state"), IsOk());
-  Trainer resumed = Make();
+  PaperTrainer resumed = Make();
   ASSERT_THAT(resumed.LoadState(folder_ / "state"), IsOk());
   resumed.RunEpoch();
   EXPECT_TRUE(Equal(Parameters(resumed), Parameters(straight)));
 }
 
-TEST_F(TrainerTest, StateOfAnotherRunIsRefused) {
-  Trainer trainer = Make();
+TEST_F(PaperTrainerTest, StateOfAnotherRunIsRejected) {
+  PaperTrainer trainer = Make();
   ASSERT_THAT(trainer.SaveState(folder_ / "state"), IsOk());
-  options_.losses.bone = 0.5;
+  PaperOf(&options_).losses.bone = 0.5;
   EXPECT_THAT(Make().LoadState(folder_ / "state"),
               StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("other options or data")));
 }
 
-TEST_F(TrainerTest, StateOfAnotherVersionIsRefused) {
-  torch::serialize::OutputArchive archive;  // as it was before states had a version
+TEST_F(PaperTrainerTest, StateOfAnotherVersionIsRejected) {
+  torch::serialize::OutputArchive archive;  // a state without a version, as older trainers wrote
   archive.write("identity", c10::IValue(std::string("anything")));
   archive.save_to((folder_ / "state").string());
   EXPECT_THAT(Make().LoadState(folder_ / "state"),
@@ -91,18 +93,18 @@ TEST_F(TrainerTest, StateOfAnotherVersionIsRefused) {
                        HasSubstr("another version of the trainer, wanted state version 2")));
 }
 
-TEST_F(TrainerTest, StateOfASettingThatDiffersInItsLastDigitsIsRefused) {
-  Trainer trainer = Make();
+TEST_F(PaperTrainerTest, StateOfASlightlyDifferentSettingIsRejected) {
+  PaperTrainer trainer = Make();
   ASSERT_THAT(trainer.SaveState(folder_ / "state"), IsOk());
   options_.optimiser.learning_rate *= 1 + 1e-9;
   EXPECT_THAT(Make().LoadState(folder_ / "state"),
               StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("other options or data")));
 }
 
-TEST_F(TrainerTest, TornOrMissingStateIsAnError) {
+TEST_F(PaperTrainerTest, TornOrMissingStateIsAnError) {
   EXPECT_THAT(Make().LoadState(folder_ / "state"),
               StatusIs(absl::StatusCode::kNotFound, HasSubstr("state")));
-  Trainer trainer = Make();
+  PaperTrainer trainer = Make();
   ASSERT_THAT(trainer.SaveState(folder_ / "state"), IsOk());
   const std::string whole = ReadTestFile(folder_ / "state");
   WriteTestFile(folder_ / "state", whole.substr(0, whole.size() / 2));
@@ -110,34 +112,34 @@ TEST_F(TrainerTest, TornOrMissingStateIsAnError) {
               StatusIs(absl::StatusCode::kDataLoss, HasSubstr("state")));
 }
 
-TEST_F(TrainerTest, OverfitsOneClip) {
-  options_.dropout = {0, 0};
+TEST_F(PaperTrainerTest, OverfitsOneClip) {
+  PaperOf(&options_).dropout = {0, 0};
   options_.augmentation = {};
-  options_.graded_labels = 0;
-  options_.losses = {};
-  options_.generator.encoder_hidden = 12;
+  PaperOf(&options_).graded_labels = 0;
+  PaperOf(&options_).losses = {};
+  PaperOf(&options_).architecture.encoder_hidden = 12;
   options_.optimiser.learning_rate = 0.01;
   options_.epochs = 300;
   manifest_ = ManifestFor(options_, dataset_);
-  Trainer trainer(options_, manifest_, dataset_, {2}, {});
+  PaperTrainer trainer(options_, manifest_, dataset_, {2}, {});
   const double before = trainer.RunEpoch().reconstruction;
   double after = before;
   while (!trainer.Finished()) after = trainer.RunEpoch().reconstruction;
   EXPECT_LT(after, before / 5);
 }
 
-TEST_F(TrainerTest, DiscriminatorLearnsAndIsLeftOutWhenItsWeightIsZero) {
+TEST_F(PaperTrainerTest, DiscriminatorIsOmittedIfItsWeightIsZero) {
   EXPECT_GT(Make().RunEpoch().discriminator, 0);
-  options_.losses.adversarial = 0;
+  PaperOf(&options_).losses.adversarial = 0;
   EXPECT_EQ(Make().RunEpoch().discriminator, 0);
 }
 
-TEST_F(TrainerTest, StopsWhenValidationNoLongerImproves) {
-  options_.optimiser.learning_rate = 1e-9;  // nothing is learnt: the first epoch stays the best
+TEST_F(PaperTrainerTest, StopsWhenValidationNoLongerImproves) {
+  options_.optimiser.learning_rate = 1e-9;  // nothing is learnt, so the first epoch stays the best
   options_.optimiser.average_decay = 0;
   options_.epochs = 100;
   options_.validation.patience = 3;
-  Trainer trainer(options_, manifest_, dataset_, {0, 1, 2, 3}, {4, 5});
+  PaperTrainer trainer(options_, manifest_, dataset_, {0, 1, 2, 3}, {4, 5});
   while (!trainer.Finished()) {
     const EpochReport report = trainer.RunEpoch();
     EXPECT_GT(report.validation_afd_pose, 0);
@@ -146,7 +148,7 @@ TEST_F(TrainerTest, StopsWhenValidationNoLongerImproves) {
   EXPECT_LT(trainer.epoch(), 100);
 }
 
-TEST_F(TrainerTest, EpochShowsEverySequenceOnce) {
+TEST_F(PaperTrainerTest, EpochUsesEverySequenceOnce) {
   options_.augmentation = {};
   std::multiset<float> seen;
   for (const TrainingBatch& batch :
@@ -163,8 +165,8 @@ TEST_F(TrainerTest, EpochShowsEverySequenceOnce) {
   EXPECT_EQ(seen, wanted);
 }
 
-TEST_F(TrainerTest, StartsAreToldInTheirShares) {
-  // Every clip by one share or the other: none is left without a start.
+TEST_F(PaperTrainerTest, DrawsStartsWithTheirProbabilities) {
+  // The probabilities sum to 1: every clip has a start.
   options_.start = {0.75, 0.25};
   double clips = 0, roots = 0, poses = 0;
   for (int64_t epoch = 0; epoch < 40; ++epoch) {
@@ -180,7 +182,7 @@ TEST_F(TrainerTest, StartsAreToldInTheirShares) {
   EXPECT_NEAR(poses / clips, 0.25, 0.08);
 }
 
-TEST_F(TrainerTest, BatchIsInTheLeadersFrameWithItsLabelAndStart) {
+TEST_F(PaperTrainerTest, BatchIsInTheLeadersFrameWithItsLabelAndStart) {
   const TrainingBatch batch =
       MakeBatch(manifest_, dataset_,
                 {CapturedExample(dataset_, dataset_.sequences[4], StartKnowledge::kRoot)});

@@ -1,4 +1,4 @@
-#include "model/training/trainer.h"
+#include "model/training/paper_trainer.h"
 
 #include <utility>
 
@@ -16,7 +16,8 @@ network::Generator MakeGenerator(const TrainingOptions& options,
                                  const checkpoint::Manifest& manifest) {
   torch::manual_seed(options.seed);
   network::Generator generator(manifest);
-  generator->set_dropout(options.dropout.slices, options.dropout.encoded);
+  const PaperTraining::Dropout& dropout = std::get<PaperTraining>(options.method).dropout;
+  generator->set_dropout(dropout.slices, dropout.encoded);
   return generator;
 }
 
@@ -28,7 +29,7 @@ torch::Tensor Reconstruction(const std::string& form, const torch::Tensor& predi
   return network::L1Loss(predicted, batch.target, lengths);
 }
 
-network::ContinuityOptions Continuity(const TrainingOptions::Losses& losses) {
+network::ContinuityOptions Continuity(const PaperTraining::Losses& losses) {
   return {losses.continuity_form == "hinge" ? network::ContinuityForm::kHinge
                                             : network::ContinuityForm::kPathLength,
           losses.continuity_gap, losses.continuity_margin};
@@ -36,25 +37,25 @@ network::ContinuityOptions Continuity(const TrainingOptions::Losses& losses) {
 
 }  // namespace
 
-Trainer::Trainer(const TrainingOptions& options, const checkpoint::Manifest& manifest,
-                 const dataset::Dataset& dataset, std::vector<int> train,
-                 std::vector<int> validation)
+PaperTrainer::PaperTrainer(const TrainingOptions& options, const checkpoint::Manifest& manifest,
+                           const dataset::Dataset& dataset, std::vector<int> train,
+                           std::vector<int> validation)
     : EpochTrainer(options, manifest, dataset, std::move(train), std::move(validation)),
+      losses_(std::get<PaperTraining>(options.method).losses),
       steps_per_epoch_(Steps(train_.size(), options.batch)),
       generator_(MakeGenerator(options, manifest)),
       generator_optimiser_(options.optimiser, generator_->parameters(),
                            steps_per_epoch_ * options.epochs) {
-  if (options.losses.adversarial > 0) {
+  if (losses_.adversarial > 0) {
     adversary_ = std::make_unique<Adversary>(options, manifest, steps_per_epoch_ * options.epochs);
   }
-  if (manifest.generator.base_pose) {
+  if (std::get<checkpoint::PaperArchitecture>(manifest.architecture).base_pose) {
     generator_->SetBasePoses(ClassMeanPoses(manifest, dataset, train_));
   }
   Begin(generator_.get());
 }
 
-torch::Tensor Trainer::GeneratorLoss(const TrainingBatch& batch, EpochReport* report) {
-  const TrainingOptions::Losses& weights = options_.losses;
+torch::Tensor PaperTrainer::GeneratorLoss(const TrainingBatch& batch, EpochReport* report) {
   const torch::Tensor& lengths = batch.input.lengths;
   const torch::Tensor predicted = generator_->forward(batch.input);
   torch::Tensor total = torch::zeros({});
@@ -62,25 +63,25 @@ torch::Tensor Trainer::GeneratorLoss(const TrainingBatch& batch, EpochReport* re
     total = total + weight * loss;
     *mean += loss.item<double>() / static_cast<double>(steps_per_epoch_);
   };
-  add(weights.reconstruction_weight, Reconstruction(weights.reconstruction, predicted, batch),
+  add(losses_.reconstruction_weight, Reconstruction(losses_.reconstruction, predicted, batch),
       &report->reconstruction);
-  if (weights.bone > 0) {
-    add(weights.bone,
+  if (losses_.bone > 0) {
+    add(losses_.bone,
         network::BoneLoss(predicted, batch.follower, lengths, manifest_.model.skeleton.bones),
         &report->bone);
   }
-  if (weights.continuity > 0) {
-    add(weights.continuity, network::ContinuityLoss(predicted, lengths, Continuity(weights)),
+  if (losses_.continuity > 0) {
+    add(losses_.continuity, network::ContinuityLoss(predicted, lengths, Continuity(losses_)),
         &report->continuity);
   }
   if (adversary_ != nullptr) {
-    add(weights.adversarial, adversary_->GeneratorLoss(batch, predicted), &report->adversarial);
+    add(losses_.adversarial, adversary_->GeneratorLoss(batch, predicted), &report->adversarial);
   }
   report->generator += total.item<double>() / static_cast<double>(steps_per_epoch_);
   return total;
 }
 
-void Trainer::TrainAdversary(const TrainingBatch& batch, int64_t step, EpochReport* report) {
+void PaperTrainer::TrainAdversary(const TrainingBatch& batch, int64_t step, EpochReport* report) {
   torch::Tensor synthesised;
   {
     torch::NoGradGuard no_grad;
@@ -90,7 +91,7 @@ void Trainer::TrainAdversary(const TrainingBatch& batch, int64_t step, EpochRepo
       adversary_->Train(batch, synthesised, step) / static_cast<double>(steps_per_epoch_);
 }
 
-void Trainer::TrainEpoch(int64_t first_step, EpochReport* report) {
+void PaperTrainer::TrainEpoch(int64_t first_step, EpochReport* report) {
   int64_t step = first_step;
   for (const TrainingBatch& batch : SampleEpoch(manifest_, dataset_, train_, options_, epoch())) {
     if (adversary_ != nullptr) TrainAdversary(batch, step, report);
@@ -101,28 +102,28 @@ void Trainer::TrainEpoch(int64_t first_step, EpochReport* report) {
   }
 }
 
-double Trainer::ValidationError(const Example& example) {
+double PaperTrainer::ValidationError(const Example& example) {
   const TrainingBatch one = MakeBatch(manifest_, dataset_, {example});
   return network::NormLoss(generator_->forward(one.input), one.follower, one.input.lengths)
       .item<double>();
 }
 
-network::Generator Trainer::Best() {
+network::Generator PaperTrainer::Best() {
   network::Generator best(manifest_);
   CopyBest(best.get());
   return best;
 }
 
-std::vector<checkpoint::Tensor> Trainer::BestTensors() {
+std::vector<checkpoint::Tensor> PaperTrainer::BestTensors() {
   return network::StoreParameters(manifest_, Best());
 }
 
-std::vector<std::pair<std::string, torch::Tensor>> Trainer::MoreTensors() {
+std::vector<std::pair<std::string, torch::Tensor>> PaperTrainer::MoreTensors() {
   if (adversary_ == nullptr) return {};
   return adversary_->Tensors();
 }
 
-std::vector<std::pair<std::string, torch::optim::Optimizer*>> Trainer::StateOptimisers() {
+std::vector<std::pair<std::string, torch::optim::Optimizer*>> PaperTrainer::StateOptimisers() {
   std::vector<std::pair<std::string, torch::optim::Optimizer*>> optimisers;
   if (adversary_ != nullptr) optimisers = adversary_->Optimisers();
   optimisers.emplace_back("generator_optimiser", &generator_optimiser_.state());

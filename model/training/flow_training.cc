@@ -1,0 +1,84 @@
+#include "model/training/flow_training.h"
+
+#include "model/training/setting_fields.h"
+
+namespace duet::training {
+namespace {
+
+void Read(base::ObjectReader* reader, FlowTraining* out) {
+  out->dropout = reader->Number("dropout", 0, 0.95);
+  out->passes = reader->Int("passes", 1, kMaxEpochs);
+  out->target_smoothing = reader->Number("target_smoothing", 0, 100);
+  out->pair_scale = reader->Number("pair_scale", 0, 0.9);
+  out->unlabelled = Probability(reader, "unlabelled");
+  out->several_known = Probability(reader, "several_known");
+  out->known_noise = reader->Number("known_noise", 0, 10);
+  out->difference_weight = reader->Number("difference_weight", 0, 1e6);
+  out->bone_weight = reader->Number("bone_weight", 0, 1e6);
+  out->slide_weight = reader->Number("slide_weight", 0, 1e6);
+  out->slide_speed = reader->Number("slide_speed", 0, 100);
+  out->least_remaining = reader->Number("least_remaining", 1e-6, 1);
+}
+
+void Read(base::ObjectReader* reader, FlowTraining::Drift* out) {
+  out->share = Probability(reader, "share");
+  out->tilt = reader->Number("tilt", 0, 4);
+  out->bend = reader->Number("bend", 0, 4);
+  out->turn = reader->Number("turn", 0, 4);
+  out->root = reader->Number("root", 0, 10);
+  out->height = reader->Number("height", 0, 10);
+  out->joints = reader->Number("joints", 0, 10);
+  out->frames = reader->Int("frames", 1, 1000);
+}
+
+void Read(base::ObjectReader* reader, FlowTraining::Energy* out) {
+  out->from = Probability(reader, "from");
+  out->answers = reader->Int("answers", 2, 64);
+  out->dropout = reader->Number("dropout", 0, 0.95);
+  out->velocity_weight = reader->Number("velocity_weight", 0, 1e6);
+  out->block_weight = reader->Number("block_weight", 0, 1e6);
+  out->block_frames = reader->Int("block_frames", 2, 1000);
+}
+
+}  // namespace
+
+void ReadSections(base::ObjectReader* root, FlowTraining* out) {
+  const auto section = [root](const char* name, auto* settings) {
+    ReadSection(root, name, settings,
+                [](base::ObjectReader* reader, auto* fields) { Read(reader, fields); });
+  };
+  section("flow", out);
+  section("drift", &out->drift);
+  section("energy", &out->energy);
+}
+
+void Describe(const FlowTraining& f, Description* out) {
+  out->insert({{"flow.dropout", Text(f.dropout)},
+               {"flow.passes", Text(f.passes)},
+               {"flow.target_smoothing", Text(f.target_smoothing)},
+               {"flow.pair_scale", Text(f.pair_scale)},
+               {"flow.unlabelled", Text(f.unlabelled)},
+               {"flow.several_known", Text(f.several_known)},
+               {"flow.known_noise", Text(f.known_noise)},
+               {"flow.difference_weight", Text(f.difference_weight)},
+               {"flow.bone_weight", Text(f.bone_weight)},
+               {"flow.slide_weight", Text(f.slide_weight)},
+               {"flow.slide_speed", Text(f.slide_speed)},
+               {"flow.least_remaining", Text(f.least_remaining)},
+               {"drift.share", Text(f.drift.share)},
+               {"drift.tilt", Text(f.drift.tilt)},
+               {"drift.bend", Text(f.drift.bend)},
+               {"drift.turn", Text(f.drift.turn)},
+               {"drift.root", Text(f.drift.root)},
+               {"drift.height", Text(f.drift.height)},
+               {"drift.joints", Text(f.drift.joints)},
+               {"drift.frames", Text(f.drift.frames)},
+               {"energy.from", Text(f.energy.from)},
+               {"energy.answers", Text(f.energy.answers)},
+               {"energy.dropout", Text(f.energy.dropout)},
+               {"energy.velocity_weight", Text(f.energy.velocity_weight)},
+               {"energy.block_weight", Text(f.energy.block_weight)},
+               {"energy.block_frames", Text(f.energy.block_frames)}});
+}
+
+}  // namespace duet::training

@@ -1,0 +1,60 @@
+#ifndef DUET_MODEL_TRAINING_FLOW_TRAINING_H_
+#define DUET_MODEL_TRAINING_FLOW_TRAINING_H_
+
+#include <cstdint>
+
+#include "model/checkpoint/flow_architecture.h"
+
+namespace duet::training {
+
+// The settings of a run that trains the sampling generator (flow_trainer.h).
+struct FlowTraining {
+  using Architecture = checkpoint::FlowArchitecture;
+  static constexpr bool kFitsPartnerDirection = true;
+
+  Architecture architecture;
+
+  double dropout = 0.1;
+  int64_t passes = 10;            // over the data in an epoch
+  double target_smoothing = 1;    // frames, deviation of the Gaussian over captured followers
+  double pair_scale = 0.1;        // +- fraction, the same for both people
+  double unlabelled = 0.12;       // fraction of clips whose label is withheld
+  double several_known = 0.4;     // of the clips with a start pose: up to half of the frames known
+  double known_noise = 0.01;      // metres, deviation of each joint's error in known frames
+  double difference_weight = 8;   // of differences of successive frames
+  double bone_weight = 0;         // of limb lengths
+  double slide_weight = 0;        // of feet that move where the captured ones stand
+  double slide_speed = 0.3;       // metres per second; a captured foot below it stands
+  double least_remaining = 0.15;  // losses are divided by 1 - t, but at least by this
+
+  // A follower that continues from its own previous answer does not start where a captured one
+  // would. A fraction of the clips with a start pose therefore starts with an error and returns to
+  // the captured motion. Standard deviations; 0 disables an error.
+  struct Drift {
+    double share = 0;     // of the clips with a start pose
+    double tilt = 0;      // radians, of the whole body about a point on the floor
+    double bend = 0;      // radians, of everything except the legs about the hips
+    double turn = 0;      // radians, about the vertical
+    double root = 0;      // metres along the floor
+    double height = 0;    // metres
+    double joints = 0;    // metres, of each joint independently
+    int64_t frames = 20;  // from the last known frame until the captured motion is reached
+  } drift;
+
+  // The last part of a run trains whole answers, in the number of steps that sampling uses, by the
+  // energy score: near the captured motion, and as varied as captured motions are.
+  struct Energy {
+    double from = 0.5;    // fraction of the epochs before it starts; 1: never
+    int64_t answers = 2;  // drawn for each clip
+    // Replaces the dropout above. The spread that dropout adds to the answers in training is absent
+    // in use.
+    double dropout = 0;
+    double velocity_weight = 1;  // of the score of velocities, frame by frame
+    double block_weight = 1;     // of the score of velocities over several frames together
+    int64_t block_frames = 6;
+  } energy;
+};
+
+}  // namespace duet::training
+
+#endif  // DUET_MODEL_TRAINING_FLOW_TRAINING_H_
