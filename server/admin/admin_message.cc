@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kLongestLabel = 63;
 
-// Collects what is wrong with a request.
+// Collects the violations of a request.
 class Fields {
  public:
   Fields& Name(const std::string& name) {

@@ -13,15 +13,14 @@ namespace duet::server::admin {
 
 namespace v1 = ::duet::admin::v1;
 
-// Between the registry's types and the contract's messages.
+// Convert the registry's types to messages.
 v1::ListModelsResponse ToMessage(const std::vector<registry::ModelStatus>& models,
                                  const std::vector<registry::SkippedFolder>& skipped,
                                  const std::vector<std::string>& problems);
 v1::ReloadResponse ToMessage(const registry::ReloadReport& report);
 
-// INVALID_ARGUMENT naming every field that is missing, or is no label: 1 to 63 letters, digits,
-// '-',
-// '_' and '.'.
+// Fail with INVALID_ARGUMENT and every field that is missing or is not a valid label: 1 to 63
+// letters, digits, '-', '_' and '.'.
 absl::Status Validate(const v1::ListModelsRequest& request);
 absl::Status Validate(const v1::LoadModelRequest& request);
 absl::Status Validate(const v1::UnloadModelRequest& request);

@@ -30,10 +30,10 @@ constexpr metrics::MethodInfo kDeleteLabel = Method("DeleteLabel");
 
 constexpr common::StepKind kHandling{"gRPC callback", "handling an admin call"};
 
-// gRPC reads the messages, whose size the listener limits.
+// gRPC reads the messages; the listener limits their size.
 constexpr std::size_t kNoRawRequests = 0;
 
-// A request's fields, for the audit.
+// Returns the fields of a request, for the audit log.
 std::vector<std::pair<std::string, std::string>> ArgumentsOf(
     const google::protobuf::Message& request) {
   using google::protobuf::FieldDescriptor;
@@ -51,23 +51,23 @@ std::vector<std::pair<std::string, std::string>> ArgumentsOf(
 
 }  // namespace
 
-// Threads: one at a time; who ends it need not be who began it.
+// Threads: one at a time; another thread may end the call than began it.
 class AdminService::Call {
  public:
   Call(grpc::CallbackServerContext& context, const metrics::MethodInfo& method,
        const google::protobuf::Message& request, const AdminService& service)
       : context_(context),
-        reactor_(*context.DefaultReactor()),  // gRPC makes another at every call of this
+        reactor_(*context.DefaultReactor()),  // call it once: each call makes another reactor
         arguments_(ArgumentsOf(request)),
         log_(*service.parts_.log),
         opened_(service.pipeline_.Open(context, method)) {}
 
   grpc::ServerUnaryReactor* reactor() const { return &reactor_; }
-  // OK, or why its caller was turned away.
+  // OK, or the reason why the call is rejected.
   const absl::Status& status() const { return opened_.status; }
 
   void Finish(const absl::Status& status) {
-    // A server that stops gives up what it had not begun.
+    // A server that stops cancels what it has not begun.
     const absl::Status told = absl::IsCancelled(status) ? service::DrainingRefusal() : status;
     const metrics::CallRecord& record = opened_.scope->record();
     log_.Audit({record.caller, record.peer, record.request_id, std::string(record.method.name),
@@ -141,7 +141,7 @@ grpc::ServerUnaryReactor* AdminService::Reload(grpc::CallbackServerContext* cont
   return Open(*context, kReload, *request, [&](const auto& call) {
     const absl::Status serving = parts_.admission->CheckServing();
     if (!serving.ok()) return call->Finish(serving);
-    // The response lives until the call has ended.
+    // The response lives until the call ends.
     parts_.control->Reload([call, response](const absl::StatusOr<registry::ReloadReport>& report) {
       if (report.ok()) *response = ToMessage(*report);
       call->Finish(report.status());

@@ -18,19 +18,19 @@ namespace duet::server::admin {
 
 namespace v1 = ::duet::admin::v1;
 
-// What the service works with. Everything outlives the service and its calls.
+// The dependencies of the service. Everything outlives the service and its calls.
 struct AdminParts {
   registry::ModelControl* control = nullptr;
-  const service::Admission* admission = nullptr;  // says whether the server serves
+  const service::Admission* admission = nullptr;  // knows whether the server serves
   metrics::JsonLog* log = nullptr;
   std::vector<metrics::CallObserver*> observers;
-  security::CallGuard guard = security::CallGuard(nullptr);  // says who may administer
+  security::CallGuard guard = security::CallGuard(nullptr);  // decides who may administer
   const common::Clock* clock = &common::Clock::Real();
 };
 
-// duet.admin.v1.Admin: what an operator may do to models while calls are answered. No method
-// blocks: what loads ends its call from the thread that loads. Each call leaves a line in the log
-// (event "admin"): who asked for what, and how it ended.
+// duet.admin.v1.Admin: changes models while calls are answered. No method blocks: the thread that
+// loads ends calls that load. Each call writes a line to the log (event "admin_action") with the
+// caller, the request and the result.
 class AdminService final : public v1::Admin::CallbackService {
  public:
   static constexpr char kServiceName[] = "duet.admin.v1.Admin";
@@ -60,8 +60,8 @@ class AdminService final : public v1::Admin::CallbackService {
   // One call from its headers to its end.
   class Call;
 
-  // The one way in: counts and checks a call, and hands it to `answer`, which ends it now or later,
-  // unless it is refused.
+  // The common path of every call: counts and checks it. Passes it to `answer`, which ends it now
+  // or later, unless it is rejected.
   template <typename Request, typename Answer>
   grpc::ServerUnaryReactor* Open(grpc::CallbackServerContext& context,
                                  const metrics::MethodInfo& method, const Request& request,

@@ -11,9 +11,9 @@ struct alignas(64) Slot {
   std::atomic<std::uint64_t> beat{0};
 };
 
-// Trivially destroyed: threads may still use them while the process exits.
+// Trivially destructible, because threads may still use them while the process exits.
 std::array<Slot, kMaxThreads> slots;
-std::atomic<std::size_t> used_slots{0};  // slots from this index on were never taken
+std::atomic<std::size_t> used_slots{0};  // slots from this index on were never used
 Vitals vitals;
 
 void RaiseUsedSlots(std::size_t count) {
@@ -49,13 +49,14 @@ Slot* OwnSlot() {
   return holder.slot;
 }
 
-// Gives back what the thread did before.
+// Returns the previous step.
 const StepKind* Begin(const StepKind* kind) {
   Slot* const slot = OwnSlot();
   if (slot == nullptr) return nullptr;
   const StepKind* const before = slot->step.load(std::memory_order_relaxed);
   slot->step.store(kind, std::memory_order_relaxed);
-  // The beat is last: who reads an old beat with a new step sees a new beat the next time.
+  // The beat is stored last: a reader that sees an old beat with a new step sees a new beat next
+  // time.
   slot->beat.fetch_add(1, std::memory_order_release);
   return before;
 }

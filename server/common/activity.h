@@ -10,20 +10,20 @@
 
 namespace duet::server::common {
 
-// What the threads of this process are doing, for a watchdog: everything here is atomic, because a
-// thread that never returns may hold any lock.
+// What the threads of this process are doing, for a watchdog. Everything here is atomic, because a
+// stuck thread may hold any lock.
 
-// A kind of step. Lives as long as the process: define it as a constexpr at namespace scope.
+// A kind of step. It must live as long as the process: define it as a constexpr at namespace scope.
 struct StepKind {
   const char* thread;  // "worker"
   const char* doing;   // "evaluating a batch"
-  // Whether a thread that takes too long over it is stuck. False for work that waits for a file
-  // system or another machine and holds up no call.
+  // Whether a thread that takes too long for it is stuck. False for work that waits for a file
+  // system or another machine and delays no call.
   bool is_bounded = true;
 };
 
-// Marks a step of the calling thread's work, from construction to destruction. Within another step
-// it takes that one's place until it ends. Costs a few stores.
+// Marks a step of the calling thread's work, from construction to destruction. A nested step
+// replaces the outer one until it ends. Costs a few stores.
 //
 //   const Step step(kEvaluating);
 class Step {
@@ -40,8 +40,7 @@ class Step {
   const StepKind* const outer_;
 };
 
-// Marks that the calling thread waits for something to do, within a step: idle threads are not
-// stuck.
+// Marks, within a step, that the calling thread waits for work: an idle thread is not stuck.
 class Idle : private Step {
  public:
   Idle() : Step(nullptr) {}
@@ -54,19 +53,19 @@ struct ThreadState {
   std::uint64_t beat = 0;          // changes whenever a step begins or ends
 };
 
-// Threads that are seen at a time. Further ones work unseen.
+// Maximum number of threads that are tracked at a time. Further threads run untracked.
 inline constexpr std::size_t kMaxThreads = 2048;
 using ThreadStates = std::array<ThreadState, kMaxThreads>;
 
 // Copies the state of every thread that has begun a step and still runs. A thread keeps its index.
-// Takes no lock and no memory.
+// Takes no lock and allocates no memory.
 void ReadThreads(ThreadStates* states);
 
-// How the process stands.
+// Counters of the whole process.
 struct Vitals {
   std::atomic<std::int64_t> calls{0};  // between their headers and their status
   std::atomic<std::int64_t> queued_windows{0};
-  // For how long the slowest thread has been at a bounded step: kept by the watchdog.
+  // Duration of the longest bounded step in progress. Set by the watchdog.
   std::atomic<double> longest_step_seconds{0};
 };
 Vitals& ProcessVitals();

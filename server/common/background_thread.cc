@@ -7,7 +7,7 @@
 namespace duet::server::common {
 namespace {
 
-// The kernel gives a thread so nice a ninth of what it gives an ordinary one.
+// The kernel gives a thread of this niceness a ninth of the time of an ordinary one.
 constexpr int kNiceness = 10;
 
 }  // namespace
@@ -48,8 +48,8 @@ bool BackgroundThread::stopping() const {
 }
 
 void BackgroundThread::Work(Share share) {
-  // Of this thread alone: on Linux 0 is the caller, not its process. Where it may not, it works on
-  // as any other.
+  // Applies to this thread only: on Linux, 0 is the calling thread. If it is not permitted, the
+  // thread runs like any other.
   if (share == Share::kSmall) setpriority(PRIO_PROCESS, 0, kNiceness);
   while (true) {
     std::function<void(bool run)> job;

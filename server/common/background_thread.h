@@ -9,29 +9,29 @@
 
 namespace duet::server::common {
 
-// A thread that does one job after the other, so that whoever has the job need not.
+// Runs jobs one after the other on a thread of its own.
 //
 // Threads: safe to call concurrently.
 class BackgroundThread {
  public:
   enum class Share {
-    kSmall,     // of processors that are all busy answering calls, about a tenth of one
-    kOrdinary,  // as any other thread
+    kSmall,     // about a tenth of a core while all cores are busy with calls
+    kOrdinary,  // like any other thread
   };
 
   explicit BackgroundThread(Share share);
-  // Waits for the job under way; those that were not begun are told.
+  // Waits for the running job and calls the jobs that have not begun with false.
   ~BackgroundThread();
   BackgroundThread(const BackgroundThread&) = delete;
   BackgroundThread& operator=(const BackgroundThread&) = delete;
 
-  // Calls `job(true)` when its turn comes, or `job(false)` when it never will, on whatever thread:
-  // once.
+  // Calls the job once: `job(true)` on this thread at its turn, or `job(false)` on any thread if it
+  // will not run.
   void Post(std::function<void(bool run)> job);
 
-  // Begins no further job. Does not wait.
+  // Prevents further jobs from starting. Does not wait.
   void Stop();
-  // Whether Stop was called: for jobs that take long.
+  // Whether Stop was called. For long jobs.
   bool stopping() const;
 
  private:

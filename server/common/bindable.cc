@@ -15,12 +15,12 @@
 namespace duet::server::common {
 namespace {
 
-// Binds a socket to the address and closes it again. 0, or the error.
+// Binds a socket to the address and closes it. Returns 0 or the error.
 int TryBind(const addrinfo& at) {
   const int socket = ::socket(at.ai_family, SOCK_STREAM | SOCK_CLOEXEC, 0);
   if (socket < 0) return errno;
-  // With it, only a socket that listens is in the way, as for a server that starts; and this
-  // socket, which does not, is in nobody's.
+  // With SO_REUSEADDR only a listening socket conflicts, as for a server that starts, and this
+  // socket, which does not listen, blocks no other.
   const int yes = 1;
   setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
   const int error = bind(socket, at.ai_addr, at.ai_addrlen) == 0 ? 0 : errno;
@@ -28,8 +28,8 @@ int TryBind(const addrinfo& at) {
   return error;
 }
 
-// Of a name's several addresses one may be of a family that this machine lacks: the others'
-// errors say more.
+// One of a name's addresses may be of a family that this machine lacks; the errors of the others
+// are more useful then.
 bool IsOfAnotherMachine(int error) { return error == EADDRNOTAVAIL || error == EAFNOSUPPORT; }
 
 std::string AddressText(const std::string& host, int port) {

@@ -7,7 +7,7 @@ namespace duet::server::common {
 
 using TimePoint = std::chrono::steady_clock::time_point;
 
-// Monotonic time, injected so that tests decide what time it is.
+// Monotonic time. It is injected, so that tests control it.
 //
 // Threads: safe to call concurrently.
 class Clock {
@@ -15,7 +15,7 @@ class Clock {
   virtual ~Clock() = default;
   virtual TimePoint Now() const = 0;
 
-  // The machine's clock. Lives as long as the process.
+  // The system's clock. Lives as long as the process.
   static const Clock& Real();
 };
 

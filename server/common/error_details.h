@@ -11,10 +11,10 @@
 
 namespace duet::server::common {
 
-// A field of a request that was refused.
+// A field of a rejected request.
 struct FieldViolation {
   std::string field;        // path, such as "leader.positions[17]"
-  std::string description;  // what came and what was wanted
+  std::string description;  // what the field has and what was expected
 };
 
 // google.rpc error details, attached to a status as payloads under their type URLs.
@@ -47,7 +47,7 @@ void AddRetryInfo(absl::Status& status, absl::Duration delay);
 void AddErrorInfo(absl::Status& status, absl::string_view reason,
                   const std::map<std::string, std::string>& metadata = {});
 
-// The reason of a status's ErrorInfo; empty where it has none.
+// Returns the reason in a status's ErrorInfo, or an empty string if there is none.
 std::string ReasonOf(const absl::Status& status);
 
 }  // namespace duet::server::common

@@ -8,12 +8,12 @@
 
 namespace duet::server::common {
 
-// The one place where a status goes on the wire: code and message as they are, payloads as
-// google.rpc.Status in grpc-status-details-bin.
+// Converts a status for the wire; the only place that does. Code and message stay as they are,
+// payloads become google.rpc.Status in grpc-status-details-bin.
 grpc::Status ToGrpcStatus(const absl::Status& status);
 
-// Tells gRPC's own retry machinery what RetryInfo tells people: when to come back
-// (grpc-retry-pushback-ms). Nothing when the status carries no RetryInfo.
+// Sends the delay of the status's RetryInfo as grpc-retry-pushback-ms, which gRPC's built-in
+// retries follow. Does nothing if the status has no RetryInfo.
 void AddRetryPushback(const absl::Status& status, grpc::ServerContextBase& context);
 
 }  // namespace duet::server::common

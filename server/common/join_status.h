@@ -7,7 +7,7 @@
 
 namespace duet::server::common {
 
-// All failures as one status: the first one's code, and their messages line by line. OK when none
+// Returns all failures as one status: the code of the first, and one message per line. OK if none
 // failed.
 absl::Status Join(const std::vector<absl::Status>& statuses);
 

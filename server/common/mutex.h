@@ -54,7 +54,7 @@ class CondVar {
     condition_.wait(lock);
     lock.release();
   }
-  // False when `end` came first.
+  // Returns false if `end` was reached first.
   bool WaitUntil(Mutex& mutex, std::chrono::steady_clock::time_point end) DUET_REQUIRES(mutex) {
     std::unique_lock<std::mutex> lock(mutex.mutex_, std::adopt_lock);
     const std::cv_status status = condition_.wait_until(lock, end);

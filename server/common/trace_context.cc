@@ -30,7 +30,7 @@ std::uint64_t Random() {
     std::seed_seq seed{device(), device(), device(), device(), device(), device()};
     return std::mt19937_64(seed);
   }();
-  // Zero is no identifier.
+  // Zero is not a valid identifier.
   return std::max<std::uint64_t>(generator(), 1);
 }
 

@@ -7,23 +7,23 @@
 
 namespace duet::server::common {
 
-// A call's place in a trace, as the W3C's Trace Context has it. Identifiers are lower-case hex.
+// A call's place in a trace, as in W3C Trace Context. Identifiers are lower-case hex.
 struct TraceContext {
   std::string trace_id;        // 32 characters; empty: no trace
-  std::string span_id;         // 16 characters, of what goes on here
-  std::string parent_span_id;  // the caller's; empty for the first of a trace
+  std::string span_id;         // 16 characters; this call's
+  std::string parent_span_id;  // the caller's; empty for the first span of a trace
   bool sampled = false;        // whether spans of the trace are recorded
 };
 
-// Reads a `traceparent`: nothing unless it is version 00 and well formed, with identifiers that are
-// not all zeros. The caller's span is the parent; span_id is new.
+// Parses a `traceparent`. Returns nullopt unless it is well formed, of version 00, and its
+// identifiers are not all zeros. The caller's span is the parent; span_id is new.
 std::optional<TraceContext> ContinueTrace(std::string_view traceparent);
 
-// A trace of its own. `ratio`, 0 to 1, of all such traces are sampled: decided by the trace id, so
-// that servers with the same ratio agree.
+// Begins a new trace. A fraction `ratio`, 0 to 1, of all such traces is sampled. The trace id
+// decides, so that servers with the same ratio agree.
 TraceContext BeginTrace(double ratio);
 
-// The `traceparent` that names span_id; empty for no trace.
+// Returns the `traceparent` with span_id; empty if there is no trace.
 std::string Traceparent(const TraceContext& context);
 
 }  // namespace duet::server::common

@@ -18,18 +18,18 @@ std::optional<double> LimitOfVersion2(const fs::path& cgroup) {
   return ParseCpuMax(FirstLine(cgroup / "cpu.max"));
 }
 
-// A quota of -1, no number above 0, is none.
+// A quota of -1 means no limit.
 std::optional<double> LimitOfVersion1(const fs::path& cgroup) {
   return ParseCpuMax(FirstLine(cgroup / "cpu.cfs_quota_us") + " " +
                      FirstLine(cgroup / "cpu.cfs_period_us"));
 }
 
-// The processors that the scheduler may put this thread on: those of `taskset` and of a cpuset.
+// The processors that `taskset` and a cpuset allow this thread.
 double AffinityCores() {
   cpu_set_t set;
   CPU_ZERO(&set);
   if (sched_getaffinity(0, sizeof(set), &set) == 0) return CPU_COUNT(&set);
-  // More processors than the set has room for.
+  // The machine has more processors than the set can hold.
   return std::thread::hardware_concurrency();
 }
 
@@ -39,7 +39,7 @@ std::optional<double> ParseCpuMax(const std::string& text) {
   std::istringstream fields(text);
   double quota = 0;
   double period = 0;
-  // "max" is no number.
+  // "max" does not parse as a number.
   if (!(fields >> quota >> period) || !(quota > 0) || !(period > 0)) return std::nullopt;
   return quota / period;
 }

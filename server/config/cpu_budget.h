@@ -7,15 +7,16 @@
 
 namespace duet::server::config {
 
-// The cores that a cgroup's cpu.max ("<quota> <period>" microseconds, or "max <period>") grants;
-// nothing when it sets no limit or is malformed.
+// Returns the cores that a cgroup's cpu.max ("<quota> <period>" in microseconds, or "max <period>")
+// grants, or nullopt if it sets no limit or is malformed.
 std::optional<double> ParseCpuMax(const std::string& text);
 
-// The cores that this process may keep busy, 1 or more: the tightest of its cgroups' limits
-// (version 1 and 2) and of the processors that the calling thread may run on. More threads than
-// this throttle each other: a limit of 4 on 40 cores leaves 10 ms of every 100.
+// Returns the cores that this process may keep busy, at least 1: the tightest of its cgroups'
+// limits (version 1 and 2) and of the processors that the calling thread may run on. More threads
+// than this throttle each other: with a limit of 4 cores, 40 busy threads run for 10 ms of every
+// 100.
 //
-// `system_root` is "/" but in tests.
+// `system_root` is "/" except in tests.
 int AvailableCores(const std::filesystem::path& system_root = "/");
 
 }  // namespace duet::server::config

@@ -12,7 +12,7 @@
 namespace duet::server::config {
 namespace {
 
-// No setting's name begins like these.
+// No setting has such a name.
 bool IsServiceLink(absl::string_view name) {
   return name == "SERVICE_HOST" || absl::StartsWith(name, "SERVICE_PORT") || name == "PORT" ||
          absl::StartsWith(name, "PORT_");

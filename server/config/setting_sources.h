@@ -6,9 +6,9 @@
 
 namespace duet::server::config {
 
-// Where the value of a setting comes from, for people: "flag --max-calls", "environment
-// DUET_SERVER_MAX_CALLS", "file duet.textproto:4:1". By the field as errors name it: "max_calls",
-// or of a repeated one "version_labels[1]". What is absent has its default.
+// The source of each setting, for messages: "command line", "environment DUET_SERVER_MAX_CALLS" or
+// "file duet.textproto:4:1". The key is the field as errors name it: "max_calls", or
+// "version_labels[1]" for a value of a repeated field. Settings that are absent have their default.
 using SettingSources = std::map<std::string, std::string>;
 
 }  // namespace duet::server::config

@@ -7,12 +7,12 @@
 
 namespace duet::server::lifecycle {
 
-// Loads the models that the settings name, by the code that a server loads them with, and writes a
-// line for each model and for each mistake: those of the settings, checkpoints that do not load,
-// folders that are none, labels that point nowhere. Listens nowhere. A line for settings that do
-// not fit the memory is a warning, which does not count.
+// Loads the models that the settings name, with the code of a server start, and writes one line for
+// each model and for each mistake: mistakes in settings, checkpoints that do not load, folders that
+// are not checkpoints, labels that point nowhere. Does not listen. Settings that do not fit the
+// memory cause a warning, which is not a mistake.
 //
-// Returns the exit code: kExitUsage for mistakes in settings, kExitFailed for any others.
+// Returns the exit code: kExitUsage for mistakes in settings, kExitFailed for any other.
 int CheckConfig(const ValidatedSettings& settings, std::ostream& out);
 
 }  // namespace duet::server::lifecycle

@@ -23,7 +23,7 @@ namespace {
 constexpr int kSecond = 1000;  // in channel arguments
 constexpr int kMinute = 60 * kSecond;
 
-// Takes reflection out of one server. The library gives it to every server of a process that links
+// Removes reflection from one server. The library adds it to every server of a process that links
 // it, and has no other switch.
 class WithoutReflection final : public grpc::ServerBuilderOption {
  public:
@@ -43,7 +43,7 @@ void SetConnectionLimits(grpc::ServerBuilder& builder, const GrpcServerOptions& 
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 1);
   builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS, 30 * kSecond);
   builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_IDLE_MS, 5 * kMinute);
-  // Old connections go, so that clients come to know new replicas; the longest call may finish.
+  // Old connections are closed, so that clients discover new replicas; the longest call may finish.
   builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_AGE_MS, 30 * kMinute);
   builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_AGE_GRACE_MS,
                              static_cast<int>(options.max_call_seconds * kSecond));
@@ -54,13 +54,13 @@ void SetConnectionLimits(grpc::ServerBuilder& builder, const GrpcServerOptions& 
 }
 
 void SetMessageLimits(grpc::ServerBuilder& builder, const GrpcServerOptions& options) {
-  // Twice the limit, so that most of what is too large still meets our own refusal with details.
+  // Twice the limit, so that most requests that are too large get our own error with details.
   builder.SetMaxReceiveMessageSize(static_cast<int>(2 * options.max_request_bytes));
-  // A small compressed message may decompress to anything before its size is looked at, and
-  // positions hardly compress.
+  // A small compressed message may decompress to any size before the size is checked, and positions
+  // hardly compress.
   builder.SetCompressionAlgorithmSupportStatus(GRPC_COMPRESS_DEFLATE, false);
   builder.SetCompressionAlgorithmSupportStatus(GRPC_COMPRESS_GZIP, false);
-  // gRPC receives a message whole before it looks at its size.
+  // gRPC receives a whole message before it checks its size.
   builder.SetResourceQuota(options.quota != nullptr
                                ? *options.quota
                                : grpc::ResourceQuota("duet").Resize(options.max_transport_bytes));
@@ -104,7 +104,7 @@ absl::Status CheckAnswers(grpc::Server& server, double timeout_seconds) {
   call->Finish(&response, &status, nullptr);
   void* tag = nullptr;
   bool ok = false;
-  queue.Next(&tag, &ok);  // at the deadline at the latest
+  queue.Next(&tag, &ok);  // returns at the deadline at the latest
   if (status.ok()) return absl::OkStatus();
   return absl::UnavailableError(
       absl::StrCat("the server does not answer its own call: ", status.error_message()));

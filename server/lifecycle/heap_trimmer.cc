@@ -9,11 +9,11 @@
 namespace duet::server::lifecycle {
 namespace {
 
-// Less is not worth the walk through the heap.
+// Trimming walks the whole heap; less than this is not worth it.
 constexpr std::size_t kWorthIt = std::size_t{1} << 20;
 
-// Blocks from this size on are mapped by themselves, and no more than this stays free at the end of
-// a heap. Larger than what short clips take, so that they do not go to the system for memory.
+// Blocks of at least this size are mapped individually, and at most this much stays free at the end
+// of a heap. Short clips need less, so that they do not request memory from the system.
 constexpr int kKeptBytes = 1 << 20;
 
 }  // namespace
@@ -31,8 +31,7 @@ HeapTrimmer::HeapTrimmer(std::function<void()> trim) : trim_(std::move(trim)) {}
 void HeapTrimmer::Look(std::uint64_t received_bytes, std::size_t held_bytes) {
   const bool came = received_bytes != received_bytes_;
   const bool went = held_bytes + kWorthIt <= held_bytes_;
-  // Small requests alone leave this where it was, so that their coming and going adds up to
-  // nothing.
+  // Small requests do not change held_bytes_, so that they never add up to a trim.
   if (came || went || held_bytes > held_bytes_) held_bytes_ = held_bytes;
   received_bytes_ = received_bytes;
   if (came || went || once_more_) trim_();

@@ -7,29 +7,29 @@
 
 namespace duet::server::lifecycle {
 
-// Has the heap give back what is freed rather than keep it: to be called before there are threads.
+// Makes the heap return freed memory to the system. Call it before other threads start.
 //
-// Left to itself glibc raises the size above which a block is mapped by itself, and with it what
-// may stay free at the end of each thread's heap, up to 64 MiB, after the sizes that it has seen
-// freed; HeapTrimmer cannot reach that part. What a server holds would then depend on which thread
-// served which request. It would also have eight heaps a core for its threads, each with pages that
-// are used in part; there are two a core here.
+// By default glibc adapts its mmap threshold to the sizes that it has seen freed, and with it the
+// amount that may stay free at the end of each thread's heap, up to 64 MiB; HeapTrimmer cannot
+// release that part. The memory of a server would then depend on which thread served which request.
+// glibc also allows eight heaps for each core, each with partly used pages; this function allows
+// two.
 void LimitFreeMemory();
 
-// Gives memory of large requests back to the system. glibc keeps what is freed for later, pages
-// among blocks that are still used above all: after a burst of large requests that is hundreds of
-// megabytes, for good.
+// Returns the memory of large requests to the system. glibc keeps freed memory, above all free
+// pages between blocks that are still in use: after a burst of large requests it would keep
+// hundreds of megabytes forever.
 //
 // Threads: not safe to call concurrently.
 class HeapTrimmer {
  public:
   HeapTrimmer();
-  // `trim` in place of the system's.
+  // `trim` replaces malloc_trim, for tests.
   explicit HeapTrimmer(std::function<void()> trim);
 
-  // To be called about once a second, with the bytes of all large requests so far and those that
-  // calls hold now. Trims when large requests came or went, and once more after that: what the last
-  // of them held is freed a little later.
+  // Call it about once a second with the bytes of all large requests so far and the bytes that
+  // calls hold now. Trims if large requests arrived or finished, and once more at the next call,
+  // because the memory of the last request is freed a little later.
   void Look(std::uint64_t received_bytes, std::size_t held_bytes);
 
  private:

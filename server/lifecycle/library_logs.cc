@@ -9,7 +9,7 @@
 namespace duet::server::lifecycle {
 namespace {
 
-// The libraries take plain functions.
+// The libraries accept only plain functions.
 std::atomic<metrics::JsonLog*> current_log{nullptr};
 
 void Log(const char* library, bool error, const std::string& message) {

@@ -5,10 +5,10 @@
 
 namespace duet::server::lifecycle {
 
-// While it lives, what gRPC and Protobuf have to say goes to the log as JSON, so that every line of
-// the server's output parses.
+// Writes the messages of gRPC and Protobuf to the log as JSON while it exists, so that every line
+// of the server's output parses.
 //
-// Threads: construct it before gRPC starts, one at a time.
+// Threads: construct it before gRPC starts; at most one exists at a time.
 class LibraryLogs {
  public:
   // `log` outlives it.

@@ -13,19 +13,19 @@
 
 namespace duet::server::lifecycle {
 
-// What becomes of models, in log and metrics.
+// Reports loading and unloading of models to the log and the metrics.
 //
 // Threads: safe to call concurrently.
 class ModelEvents final : public registry::ModelObserver {
  public:
-  // Both outlive it. `changed` is called when what is served may be other than it was.
+  // Both outlive this object. `changed` is called when the served models may have changed.
   ModelEvents(metrics::JsonLog& log, metrics::ServerMetrics& metrics, std::function<void()> changed)
       : log_(log), metrics_(metrics), changed_(std::move(changed)) {}
 
   void Loaded(const registry::LoadReport& report, bool still_served) override;
   void Unloaded(const std::string& source) override;
   void Forgotten(const std::string& source) override;
-  // A folder that is skipped time and again has one line.
+  // Logs a folder that is skipped repeatedly only once.
   void Scanned(const std::vector<registry::SkippedFolder>& skipped) override;
   void Reloaded(const absl::StatusOr<registry::ReloadReport>& report) override;
   void Changed() override { changed_(); }

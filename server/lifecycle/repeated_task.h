@@ -9,12 +9,12 @@
 
 namespace duet::server::lifecycle {
 
-// Runs a task on a thread of its own, again and again with a pause between, until destroyed.
+// Runs a task repeatedly on a thread of its own, with a pause in between, until destroyed.
 class RepeatedTask {
  public:
-  // `kind`: what the watchdog calls it.
+  // `kind` describes the task to the watchdog.
   RepeatedTask(const common::StepKind& kind, double pause_seconds, std::function<void()> task);
-  // Waits for a task that runs.
+  // Waits for a task that is running.
   ~RepeatedTask();
 
  private:

@@ -14,12 +14,12 @@ namespace duet::server::lifecycle {
 using registry::ModelSource;
 using watchdog::StopSignal;
 
-// Everything that duet-server does, from the command line to the exit code: listen, load, serve,
-// reload on SIGHUP, drain. Where a thread never returns, the process ends with kExitStuck or
-// kExitLate and this function does not return.
+// Runs duet-server from the command line to the exit code: listen, load, serve, reload on SIGHUP,
+// drain. If a thread hangs, the process ends with kExitStuck or kExitLate and this function does
+// not return.
 //
-// `stop` was constructed before any thread and is never destroyed: a watchdog notes signals until
-// the process is gone. A `sink` that is slow or stuck holds up nothing but the log.
+// `stop` was constructed before any thread and is never destroyed: a watchdog records signals until
+// the process has exited. A slow or stuck `sink` delays only the log.
 int RunServer(int argc, const char* const* argv, const EngineOpener& open_engine, StopSignal& stop,
               std::shared_ptr<metrics::LogSink> sink);
 

@@ -47,7 +47,7 @@ std::string Reachable(const std::string& host) {
   return host == "::" ? "::1" : host;
 }
 
-// Whether the socket is ready before `end`; looks at least once.
+// Returns whether the socket is ready before `end`. Polls at least once.
 bool WaitFor(int socket, short events, steady_clock::time_point end) {
   while (true) {
     const auto left =
@@ -71,10 +71,10 @@ absl::Status Visit(const addrinfo& address, steady_clock::time_point end) {
   socklen_t size = sizeof(error);
   getsockopt(socket.get(), SOL_SOCKET, SO_ERROR, &error, &size);
   if (error != 0) return Failure("cannot connect", error);
-  // Nothing more to say: a greeting in plain text would be an error in the log of a server that
-  // wants TLS, and one in TLS needs certificates.
+  // Send nothing: plain text would be an error in the log of a server with TLS, and a TLS handshake
+  // needs certificates.
   if (shutdown(socket.get(), SHUT_WR) != 0) return Failure("cannot take leave", errno);
-  // A word, or the end of the connection: somebody took it.
+  // Data, or the end of the connection, shows that the server accepted it.
   if (!WaitFor(socket.get(), POLLIN, end)) return Failure("connected, but nobody answers", 0);
   return absl::OkStatus();
 }

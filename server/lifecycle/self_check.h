@@ -12,32 +12,32 @@
 
 namespace duet::server::lifecycle {
 
-// Whether a server still takes connections: connects, takes leave at once, and waits for any word,
-// or for the connection to be closed.
+// Checks whether a server still accepts connections: connects, closes its side at once, and waits
+// for data or for the end of the connection.
 //
-// A listening socket is not enough. gRPC 1.51 stops accepting for good once it has run out of
-// descriptors (CVE-2023-4785); the kernel goes on connecting clients that nobody serves.
+// A listening socket is not enough. gRPC 1.51 stops accepting permanently after it has run out of
+// descriptors (CVE-2023-4785), while the kernel continues to complete connections.
 //
-// `host`: an address to listen on; one for every interface stands for this machine.
-// Fails with UNAVAILABLE, saying which step failed.
+// `host` is an address that the server listens on; if it means every interface, this machine's
+// loopback address is used. Fails with UNAVAILABLE and the step that failed.
 absl::Status CheckListener(const std::string& host, int port, double timeout_seconds);
 
 struct SelfCheckOptions {
   double interval_seconds = 10;
   std::function<absl::Status()> check;              // such as CheckListener
-  std::function<void(const absl::Status&)> failed;  // called for each failure
-  // Called when a check fails after one that did not, and when one succeeds again.
+  std::function<void(const absl::Status&)> failed;  // called at each failure
+  // Called when the result of a check differs from the previous one.
   std::function<void(bool passes)> changed;
 };
 
-// Checks again and again, on a thread of its own.
+// Runs a check periodically on a thread of its own.
 class SelfCheck {
  public:
   explicit SelfCheck(SelfCheckOptions options);
 
-  // False once a check has failed, until one succeeds: no new calls should come.
+  // False after a failed check, until one succeeds: no new calls should arrive.
   bool passes() const { return failures_ == 0; }
-  // False once three checks in a row have failed, until one succeeds: a restart would help.
+  // False after three failed checks in a row, until one succeeds: a restart would help.
   bool healthy() const { return failures_ < kFailures; }
 
  private:

@@ -9,14 +9,14 @@
 
 namespace duet::server::metrics {
 
-// What somebody did, or tried to do, to the server: a line of the audit (JsonLog::Audit).
+// An action of an administrator, successful or not: one line of the audit log (JsonLog::Audit).
 struct AdminAction {
-  std::string caller;  // by token or certificate; empty for somebody unknown
+  std::string caller;  // known by token or certificate; empty for an unknown caller
   std::string peer;
   std::string request_id;
   std::string action;                                          // "LoadModel"
   std::vector<std::pair<std::string, std::string>> arguments;  // {"model", "sbu"}, ...
-  absl::Status status;                                         // what came of it
+  absl::Status status;                                         // the result
 };
 
 }  // namespace duet::server::metrics

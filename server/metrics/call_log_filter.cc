@@ -7,7 +7,7 @@ namespace duet::server::metrics {
 bool CallLogFilter::LogSuccess() {
   if (success_ratio_ <= 0) return false;
   common::MutexLock lock(mutex_);
-  // Before the first call there is one line to spend; each call earns its part of the next.
+  // The credit starts at one line; each call adds success_ratio_.
   const bool log = successes_ >= 1;
   successes_ += success_ratio_ - (log ? 1 : 0);
   return log;
@@ -16,7 +16,7 @@ bool CallLogFilter::LogSuccess() {
 bool CallLogFilter::LogRefusal(int code, double now) {
   common::MutexLock lock(mutex_);
   Second& second = seconds_.at(static_cast<std::size_t>(code));
-  // A clock that was set back begins another second as well.
+  // A clock that was set back begins a new second as well.
   if (now < second.begin || now >= second.begin + 1) {
     second.begin = now;
     second.logged = 0;

@@ -10,33 +10,35 @@
 
 namespace duet::server::metrics {
 
-// Which calls get a line in the log, so that neither a busy server nor a flood of refused calls
-// fills the disk: of successes a part, of refusals so many a second and status code; of the others
-// how many there were.
+// Decides which calls are logged, so that neither a busy server nor a flood of rejected calls fills
+// the disk: a fraction of the successful calls, and a number of rejected calls per second and
+// status code. It counts the rejected calls that are not logged.
 //
 // Threads: safe to call concurrently. Uses neither gRPC nor abseil.
 class CallLogFilter {
  public:
-  // Stands among the codes for what libraries have to say; a success is never refused.
+  // The code for messages of libraries: that of OK, which is never rejected.
   static constexpr int kLibraries = 0;
 
-  // Calls of one status code that got no line.
+  // Calls of one status code that were not logged.
   struct Unlogged {
     int code = 0;
     std::uint64_t calls = 0;
   };
 
-  // `success_ratio`: 0 to 1, of successful calls. `refusals_per_second`: 0 or more.
+  // `success_ratio`: fraction of successful calls, 0 to 1. `refusals_per_second`: at least 0.
   CallLogFilter(double success_ratio, int refusals_per_second)
       : success_ratio_(success_ratio), refusals_per_second_(refusals_per_second) {}
 
-  // Whether a successful call gets a line: evenly spread, the first one does unless none do.
+  // Whether to log a successful call. Logged calls are evenly spread and include the first, unless
+  // none are logged.
   bool LogSuccess();
-  // Whether a refused call does. `code`: a gRPC status code, 1 to 16, or kLibraries; `now`: in
+  // Whether to log a rejected call. `code`: a gRPC status code, 1 to 16, or kLibraries; `now`: in
   // seconds.
   bool LogRefusal(int code, double now);
 
-  // How many refused calls got no line since this was asked last, by code.
+  // Returns how many rejected calls were not logged since the previous call of this function, by
+  // code.
   std::vector<Unlogged> TakeUnlogged();
 
  private:
@@ -50,7 +52,7 @@ class CallLogFilter {
   const double success_ratio_;
   const int refusals_per_second_;
   common::Mutex mutex_;
-  double successes_ DUET_GUARDED_BY(mutex_) = 1;  // lines that successes have earned
+  double successes_ DUET_GUARDED_BY(mutex_) = 1;  // credit of successful calls, in lines
   std::array<Second, kCodes> seconds_ DUET_GUARDED_BY(mutex_);
 };
 

@@ -18,38 +18,38 @@ struct MethodInfo {
   std::string_view type;     // "unary" or "server_stream"
 };
 
-// Everything worth knowing of one call once it is over.
+// Describes a finished call.
 struct CallRecord {
   MethodInfo method;
   std::string request_id;
-  std::string traceparent;     // W3C trace context, empty when the caller sent none
-  common::TraceContext trace;  // of this call in it, or in a trace begun here
+  std::string traceparent;     // W3C trace context; empty if the caller sent none
+  common::TraceContext trace;  // this call's span in that trace, or in a new one
   std::string peer;
-  std::string caller;             // by its token or certificate; empty for somebody unknown
-  bool caller_is_listed = false;  // in the access file, so that such names are few
+  std::string caller;             // known by token or certificate; empty for an unknown caller
+  bool caller_is_listed = false;  // in the access file, which bounds the number of such names
 
-  std::string model;  // empty until a served model was found: bounded by what is served
+  std::string model;  // empty until a served model is found, which bounds the number of names
   int version = 0;
   std::string_view priority;  // "interactive", "bulk", or empty
   uint64_t seed = 0;
   float variety = 0;
   bool clean_up = false;
 
-  absl::Status status;  // what the caller was told
-  std::string cause;    // what the caller was not told: the model's own words
+  absl::Status status;  // as sent to the caller
+  std::string cause;    // the model's error message, which is not sent to the caller
 
   int frames = 0;  // sent
   int chunks = 0;
   int windows = 0;
   int peak_buffered_frames = 0;
-  std::optional<double> unfamiliarity;  // of the request to its model, where that knows
-  double first_chunk_seconds = -1;      // negative when no chunk was sent
+  std::optional<double> unfamiliarity;  // of the leader, if the model measures it
+  double first_chunk_seconds = -1;      // negative if no chunk was sent
   double queue_seconds = 0;
   double compute_seconds = 0;
   double total_seconds = 0;
 };
 
-// Told of every call. Metrics and the log are two of them.
+// Observes every call. Implemented by the metrics, the log and the tracer.
 //
 // Threads: called concurrently. Must neither block nor throw.
 class CallObserver {

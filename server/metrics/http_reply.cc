@@ -45,7 +45,7 @@ bool IsToken(std::string_view text) {
                                       [](unsigned char c) { return absl::ascii_isupper(c); });
 }
 
-// The three words of a request line; nothing when it has not exactly three.
+// The three words of a request line. Split returns nullopt for any other number of words.
 struct RequestLine {
   std::string_view method, target, version;
 };

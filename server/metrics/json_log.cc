@@ -7,7 +7,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// A server's own failures stand out from what callers did wrong.
+// Failures of the server are errors; mistakes of callers are not.
 Severity SeverityOf(absl::StatusCode code) {
   switch (code) {
     case absl::StatusCode::kInternal:
@@ -37,14 +37,13 @@ std::string_view Name(Severity severity) {
 
 double ToSeconds(absl::Time time) { return absl::ToDoubleSeconds(time - absl::UnixEpoch()); }
 
-// One line of the log: when, how grave, what, and its fields.
 std::string Line(absl::Time now, Severity severity, std::string_view event, const Json& fields) {
   Json line;
   line["time"] = absl::FormatTime("%Y-%m-%dT%H:%M:%E6SZ", now, absl::UTCTimeZone());
   line["severity"] = Name(severity);
   line["event"] = event;
   if (fields.is_object()) line.update(fields);
-  // Callers' bytes may be anything; a log line is always valid UTF-8.
+  // Callers can send any bytes; a log line is always valid UTF-8.
   return line.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 

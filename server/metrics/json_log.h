@@ -16,27 +16,26 @@
 
 namespace duet::server::metrics {
 
-// How grave a line is.
 enum class Severity { kInfo, kWarning, kError };
 
-// What is worth a line.
+// Selects the lines to log.
 struct LogOptions {
-  Severity level = Severity::kInfo;  // lines below it are left out
-  double success_ratio = 1;          // of successful calls, 0 to 1
-  int refusals_per_second = 10;      // of each status code; beyond, a line a second says how many
+  Severity level = Severity::kInfo;  // minimum severity
+  double success_ratio = 1;          // fraction of successful calls, 0 to 1
+  int refusals_per_second = 10;      // for each status code; the rest is counted
 };
 
-// The line that says how many log lines were given up (QueuedLogSink's drop_notice).
+// Returns the line that reports how many log lines were dropped (QueuedLogSink's drop_notice).
 std::string DroppedLinesNotice(std::uint64_t dropped, absl::Time now = absl::Now());
 
-// One line of JSON for each call and each event of the server's life.
+// Writes one line of JSON for each call and for each event of the server.
 //
 //   {"time":"2022-05-01T12:00:00.123Z","severity":"INFO","event":"call","method":"Synthesize",
 //    "request_id":"...","code":"OK","frames":300,...}
 //
-// A server's own failures always have a line; for other calls see LogOptions. Calls that got none
-// are told by "calls_not_logged" {code, calls}; libraries' lines by "library_lines_not_logged"
-// {lines}.
+// Failures of the server itself are always logged; for other calls see LogOptions. The event
+// "calls_not_logged" {code, calls} counts calls that were not logged, "library_lines_not_logged"
+// {lines} the messages of libraries.
 //
 // Threads: safe to call concurrently.
 class JsonLog final : public CallObserver {
@@ -48,23 +47,23 @@ class JsonLog final : public CallObserver {
         now_(std::move(now)),
         options_(options),
         filter_(options.success_ratio, options.refusals_per_second) {}
-  // Tells of the calls that were not logged yet.
+  // Reports the calls that were not logged.
   ~JsonLog() override;
 
   void CallStarted(const MethodInfo&) override {}
   void CallFinished(const CallRecord& record) override;
 
-  // Tells of calls that got no line since it was called last. Call about once a second.
+  // Reports the calls that were not logged since the previous call. Call it about once a second.
   void TellUnlogged();
 
-  // An administrator's doing, which has a line whatever the options say.
+  // Logs an action of an administrator, whatever the options are.
   void Audit(const AdminAction& action);
 
-  // What a library has to say, such as gRPC of a handshake that failed: a client can cause any
-  // number of those. As with refused calls, some a second have a line.
+  // Logs a message of a library, such as gRPC's about a failed handshake. Clients can cause any
+  // number of those, so they are limited per second like rejected calls.
   void Library(std::string_view library, Severity severity, const std::string& message);
 
-  // An event of the server's life: `event` is a stable snake_case name, `fields` an object.
+  // Logs an event of the server. `event` is a stable snake_case name, `fields` an object.
   void Info(std::string_view event, nlohmann::ordered_json fields);
   void Warning(std::string_view event, nlohmann::ordered_json fields);
   void Error(std::string_view event, nlohmann::ordered_json fields);

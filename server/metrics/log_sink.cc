@@ -6,7 +6,7 @@
 namespace duet::server::metrics {
 
 StreamLogSink::StreamLogSink(std::FILE* stream) : stream_(stream) {
-  // What a buffer held back on a full disk would come out later, in the middle of other lines.
+  // On a full disk, a buffer would write its rest later, in the middle of other lines.
   std::setvbuf(stream_, nullptr, _IONBF, 0);
 }
 
@@ -20,7 +20,7 @@ bool StreamLogSink::Write(std::string_view line) {
     torn_ = false;
     return true;
   }
-  // With nothing written what was torn is torn still; with the newline alone the stream is whole.
+  // If nothing was written, torn_ stays as it is; if only the newline was, the stream ends a line.
   if (written > 0) torn_ = whole[written - 1] != '\n';
   ++dropped_;
   return false;

@@ -10,25 +10,25 @@
 
 namespace duet::server::metrics {
 
-// Takes finished log lines.
+// Receives finished log lines.
 //
 // Threads: safe to call concurrently.
 class LogSink {
  public:
   virtual ~LogSink() = default;
-  // `line` ends without a newline. False when it is lost.
+  // `line` has no newline at its end. Returns false if the line is lost.
   virtual bool Write(std::string_view line) = 0;
-  // Lines that were lost so far.
+  // Number of lines lost so far.
   virtual std::uint64_t dropped_lines() const { return 0; }
 };
 
-// Writes each line to a C stream whole, in one write. Waits while the stream takes no more. A line
-// that the stream refuses, as on a full disk, is lost; after one that it took in part the next
-// begins on a line of its own.
+// Writes each line to a C stream in one write. Blocks while the stream accepts no data. A line that
+// the stream rejects, as on a full disk, is lost. After a partly written line, the next one starts
+// on a new line.
 class StreamLogSink final : public LogSink {
  public:
-  // `stream` outlives the sink, has not been used yet unless it is standard error, and gets no
-  // buffer.
+  // `stream` outlives the sink and has not been used yet, unless it is standard error. It becomes
+  // unbuffered.
   explicit StreamLogSink(std::FILE* stream);
   bool Write(std::string_view line) override;
   std::uint64_t dropped_lines() const override { return dropped_; }

@@ -33,11 +33,10 @@ using std::chrono::steady_clock;
 constexpr common::StepKind kAnswering{"metrics endpoint", "answering a scrape or a probe"};
 
 constexpr int kBacklog = 128;
-// How long the listener rests when a connection cannot be taken (no descriptors): the kernel keeps
-// it waiting, and asking again at once would keep a core busy.
+// Pause of the listener after accept has failed because no descriptors are left. The kernel keeps
+// the connection waiting, and an immediate retry would keep a core busy.
 constexpr std::chrono::milliseconds kRest(100);
 
-// Owns a descriptor.
 class Socket {
  public:
   Socket() = default;
@@ -57,8 +56,8 @@ class Socket {
   int number_ = -1;
 };
 
-// No SO_REUSEPORT: a second server on the port fails to start instead of taking half of the first
-// one's connections.
+// Without SO_REUSEPORT a second server on the port fails to start instead of taking half of the
+// connections.
 Socket ListenOn(const std::string& host, int port) {
   addrinfo hints = {};
   hints.ai_flags = AI_PASSIVE;
@@ -87,7 +86,7 @@ int PortOf(const Socket& socket) {
                    : reinterpret_cast<const sockaddr_in&>(address).sin_port);
 }
 
-// One client: what it has sent, what it is to get.
+// A client's connection: the bytes received and the reply.
 class Connection {
  public:
   Connection(Socket socket, steady_clock::time_point end) : socket_(std::move(socket)), end_(end) {}
@@ -97,7 +96,7 @@ class Connection {
   }
   steady_clock::time_point end() const { return end_; }
 
-  // Reads or writes as far as that goes at once. False when the connection is over.
+  // Reads or writes without blocking. Returns false when the connection is finished.
   bool Proceed(const HttpPages& pages) {
     if (!reply_ && !Receive(pages)) return false;
     return !reply_ || Send();
@@ -120,8 +119,7 @@ class Connection {
     if (sent < 0) return errno == EAGAIN || errno == EINTR;
     sent_ += static_cast<std::size_t>(sent);
     if (sent_ < reply_->size()) return true;
-    // What the client sent beyond its request's head would turn the close into a reset, which may
-    // overtake the reply.
+    // Unread bytes of the client would turn the close into a reset, which may overtake the reply.
     shutdown(socket_.get(), SHUT_WR);
     char bytes[2048];
     while (recv(socket_.get(), bytes, sizeof(bytes), 0) > 0) {
@@ -189,7 +187,7 @@ class PollingEndpoint final : public MetricsEndpoint {
     }
   }
 
-  // Milliseconds until something is to be done though nobody says a word.
+  // Milliseconds until the next timeout; -1 if none.
   int Timeout(steady_clock::time_point now) const {
     auto next = steady_clock::time_point::max();
     if (now < rests_until_) next = rests_until_;
@@ -199,8 +197,8 @@ class PollingEndpoint final : public MetricsEndpoint {
     return static_cast<int>(std::max<std::int64_t>(0, left) + 1);
   }
 
-  // Proceeds with those that are ready and ends those whose time is over. `wanted` holds two
-  // descriptors before the connections'.
+  // Proceeds with connections that are ready and ends those that have expired. In `wanted`, two
+  // other descriptors precede those of the connections.
   void Serve(const std::vector<pollfd>& wanted) {
     const auto now = steady_clock::now();
     std::deque<Connection> open;
@@ -214,13 +212,13 @@ class PollingEndpoint final : public MetricsEndpoint {
     connections_ = std::move(open);
   }
 
-  // One at a time: without descriptors accept fails before it looks whether anybody waits, and
-  // only of the first one did poll say so.
+  // Accepts one connection: poll has announced only one, and without descriptors accept fails even
+  // if none is waiting.
   void Accept() {
     Socket socket(accept4(listener_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
     if (!socket) {
       if (errno == EAGAIN || errno == EINTR || errno == ECONNABORTED) return;
-      // Out of descriptors: one of our own is worth more as the next client's.
+      // Out of descriptors: close the oldest connection for the next client.
       if (!connections_.empty()) connections_.pop_front();
       rests_until_ = steady_clock::now() + kRest;
       return;

@@ -13,25 +13,25 @@ struct MetricsEndpointOptions {
   std::string host;
   int port = 0;                         // 0: any free one
   std::function<std::string()> render;  // the Prometheus text
-  std::function<bool()> healthy;        // whether the server can still be reached
+  std::function<bool()> healthy;        // whether the server is still reachable
   std::function<bool()> ready;          // whether calls are being served
-  // How it stands in detail, for people: lines. May be empty.
+  // Describes the state in detail, in lines for people. May be null.
   std::function<std::string()> describe;
-  // How long a connection may last, from the first byte to the last, and how many there may be: the
-  // oldest makes room for the next.
+  // Maximum duration of a connection, from accept to close, and maximum number of connections. A
+  // new connection replaces the oldest.
   double connection_seconds = 5;
   std::size_t max_connections = 256;
 };
 
-// A small HTTP server beside gRPC: GET /metrics for Prometheus, /healthz (200 while the process
-// answers and is healthy, else 503) and /readyz (200 while calls are served, else 503; the text
-// says how it stands).
+// A small HTTP server beside gRPC: GET /metrics for Prometheus, /healthz (200 while the process is
+// healthy, otherwise 503) and /readyz (200 while calls are served, otherwise 503; the body
+// describes the state).
 //
-// One thread and no waiting: whoever sends or reads slowly, or says nothing, holds up nobody. The
-// callbacks run on that thread, and must be quick.
+// One thread serves all connections without blocking: a client that sends or reads slowly, or not
+// at all, delays no other client. The callbacks run on that thread and must be quick.
 class MetricsEndpoint {
  public:
-  // Fails with UNAVAILABLE and the reason when the address cannot be listened on.
+  // Fails with UNAVAILABLE and the reason if it cannot listen on the address.
   static absl::StatusOr<std::unique_ptr<MetricsEndpoint>> Start(MetricsEndpointOptions options);
 
   virtual ~MetricsEndpoint() = default;

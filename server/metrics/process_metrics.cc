@@ -17,8 +17,8 @@ namespace {
 
 using Families = std::vector<prometheus::MetricFamily>;
 
-// The fields of /proc/self/stat after the program's name, which may hold anything: state is the
-// first of them, and proc(5) numbers it 3.
+// Returns the fields of /proc/self/stat after the program's name, which may contain any character.
+// The first is the state, field 3 in proc(5).
 std::vector<std::string> StatFields() {
   std::ifstream file("/proc/self/stat");
   const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
@@ -28,7 +28,7 @@ std::vector<std::string> StatFields() {
   return {std::istream_iterator<std::string>(words), std::istream_iterator<std::string>()};
 }
 
-// When the machine started, in seconds since 1970.
+// The boot time in seconds since 1970.
 std::optional<double> BootTime() {
   std::ifstream file("/proc/stat");
   std::string line;
@@ -42,7 +42,7 @@ std::optional<double> BootTime() {
 }
 
 void AddStat(Families& families) {
-  // By proc(5)'s numbers, of which the fields here begin with 3.
+  // Field numbers of proc(5); `fields` begins with number 3.
   constexpr std::size_t kUserTime = 14, kSystemTime = 15, kThreads = 20, kStart = 22,
                         kVirtualMemory = 23, kResidentPages = 24;
   const std::vector<std::string> fields = StatFields();
@@ -68,7 +68,7 @@ void AddDescriptors(Families& families) {
   std::error_code error;
   const std::filesystem::directory_iterator open("/proc/self/fd", error);
   if (!error) {
-    // One of them is that of the folder being read.
+    // One of them belongs to this iterator.
     families.push_back(Gauge("process_open_fds", "Number of open file descriptors.",
                              static_cast<double>(std::distance(begin(open), end(open)) - 1)));
   }

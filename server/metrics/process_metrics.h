@@ -9,13 +9,13 @@
 
 namespace duet::server::metrics {
 
-// What Prometheus' own clients tell of every process, under the same names, read from /proc now:
+// Reads the standard process metrics of Prometheus clients from /proc:
 //   process_cpu_seconds_total, process_start_time_seconds, process_threads,
 //   process_resident_memory_bytes, process_virtual_memory_bytes, process_open_fds, process_max_fds
-// What cannot be read is left out.
+// Metrics that cannot be read are omitted.
 std::vector<prometheus::MetricFamily> ReadProcessMetrics();
 
-// The memory of this process that is resident; 0 if it cannot be read.
+// Returns the resident memory of this process; 0 if it cannot be read.
 std::uint64_t ResidentBytes();
 
 // A gauge and a counter without labels.

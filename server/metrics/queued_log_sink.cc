@@ -7,7 +7,7 @@
 
 namespace duet::server::metrics {
 
-// What the writing thread shares with those that log.
+// Shared by the writing thread and the threads that log.
 class QueuedLogSink::Queue {
  public:
   Queue(std::shared_ptr<LogSink> sink, Options options)
@@ -31,16 +31,16 @@ class QueuedLogSink::Queue {
     return dropped_;
   }
 
-  // The writing thread: writes until closed and empty.
+  // Runs on the writing thread until the queue is closed and empty.
   void Run() {
     Batch batch;
-    std::uint64_t told = 0;  // lost lines that a notice told of
+    std::uint64_t told = 0;  // lost lines that notices have reported
     while (Next(&batch)) {
       std::uint64_t lost = 0;
       for (const std::string& line : batch.lines) lost += sink_->Write(line) ? 0 : 1;
       CountLost(lost);
-      // Lines are dropped only while the queue is full, so they came after those of the batch.
-      // While nothing can be written the notice is lost as well, and the next one tells of all.
+      // Lines are dropped only while the queue is full, so they followed the lines of the batch. If
+      // the notice is lost as well, the next one reports all lines.
       const std::uint64_t untold = batch.dropped + lost - told;
       if (untold > 0 && sink_->Write(options_.drop_notice(untold))) told += untold;
     }
@@ -49,7 +49,7 @@ class QueuedLogSink::Queue {
     changed_.NotifyAll();
   }
 
-  // Lets Run end. False when it is still stuck in the sink after `patience`.
+  // Makes Run return. Returns false if it is still stuck in the sink after `patience`.
   bool Close(std::chrono::milliseconds patience) {
     const auto end = std::chrono::steady_clock::now() + patience;
     common::MutexLock lock(mutex_);
@@ -63,10 +63,10 @@ class QueuedLogSink::Queue {
  private:
   struct Batch {
     std::vector<std::string> lines;
-    std::uint64_t dropped = 0;  // lines lost before it was taken, since the beginning
+    std::uint64_t dropped = 0;  // lines lost since the start, when the batch was taken
   };
 
-  // Waits for lines and takes all there are; false when there will be none.
+  // Waits for lines and takes all of them. Returns false if the queue is closed and empty.
   bool Next(Batch* batch) {
     common::MutexLock lock(mutex_);
     while (lines_.empty() && !closed_) changed_.Wait(mutex_);

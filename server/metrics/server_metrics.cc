@@ -16,7 +16,7 @@ using prometheus::BuildGauge;
 using prometheus::BuildHistogram;
 using prometheus::Labels;
 
-// From a millisecond to a minute: a window takes tens of milliseconds, a long clip a minute.
+// One millisecond to one minute: a window takes tens of milliseconds, a long clip a minute.
 const prometheus::Histogram::BucketBoundaries& SecondsBuckets() {
   static const auto* const buckets = new prometheus::Histogram::BucketBoundaries{
       0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1, 2.5, 5, 10, 30, 60};
@@ -35,7 +35,7 @@ Labels MethodLabels(const MethodInfo& method) {
           {"grpc_method", std::string(method.name)}};
 }
 
-// The spelling of go-grpc-prometheus, which dashboards expect: "OK", "InvalidArgument".
+// Spelled as in go-grpc-prometheus, which dashboards expect: "OK", "InvalidArgument".
 std::string CodeLabel(absl::StatusCode code) {
   static constexpr const char* kNames[] = {
       "OK",       "Canceled",       "Unknown",          "InvalidArgument",   "DeadlineExceeded",
@@ -45,7 +45,7 @@ std::string CodeLabel(absl::StatusCode code) {
   return kNames[static_cast<int>(code)];
 }
 
-// Made anew for every scrape, so that a version that is no longer served goes.
+// Built for every scrape, so that versions that are no longer served disappear.
 prometheus::MetricFamily ModelInfo(const std::vector<ServedVersion>& models) {
   prometheus::MetricFamily family;
   family.name = "duet_model_info";
@@ -175,7 +175,7 @@ ServerMetrics::ServerMetrics()
               .Help("1 when the certificates or access file on disk are in use, 0 when they were "
                     "refused and the ones before them are.")
               .Register(registry_)) {
-  // From 0 on, or the first refusal would be no increase.
+  // Start at 0: Prometheus would not see the first rejection as an increase otherwise.
   for (const char* kind : {"access", "tls"}) {
     secrets_last_reload_.Add({{"kind", kind}}).Set(1);
     for (const char* outcome : {"taken", "refused"}) {
@@ -234,7 +234,7 @@ void ServerMetrics::ModelLoaded(const std::string& checkpoint, double seconds, b
 }
 
 void ServerMetrics::ModelUnloaded(const std::string& checkpoint) {
-  // An alert on 0 is for what should be served.
+  // An alert on 0 concerns only checkpoints that should be served.
   const Labels labels = {{"checkpoint", checkpoint}};
   model_state_.Remove(&model_state_.Add(labels));
   model_last_load_.Remove(&model_last_load_.Add(labels));

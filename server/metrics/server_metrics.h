@@ -18,7 +18,7 @@
 
 namespace duet::server::metrics {
 
-// How much the server takes at a time.
+// Limits of the server.
 struct Capacity {
   int calls = 0;
   int queued_windows = 0;
@@ -38,8 +38,8 @@ struct ServedVersion {
   bool is_default = false;
 };
 
-// Every number that the server gives to Prometheus. Durations are histograms in seconds; labels
-// take their values from what is served, never from a request.
+// Every metric of the server. Durations are histograms in seconds. Label values come from what is
+// served, never from a request.
 //
 // Of calls ("call labels" are grpc_type, grpc_service and grpc_method):
 //   grpc_server_started_total{call labels}             calls begun
@@ -53,7 +53,7 @@ struct ServedVersion {
 //   duet_max_calls                                     calls that may be answered at a time
 // Of windows:
 //   duet_queue_seconds{priority}                       one window's wait for a worker
-//   duet_windows_dropped_total{priority}               never started: cancelled, or too late
+//   duet_windows_dropped_total{priority}               never started: cancelled or too late
 //   duet_queued_windows                                waiting now
 //   duet_max_queued_windows                            first windows that may wait
 // Of batches:
@@ -61,29 +61,30 @@ struct ServedVersion {
 //   duet_batch_size                                    windows of one batch
 //   duet_workers                                       batches that may be evaluated at a time
 // Of the server as a whole:
-//   duet_ready                                         1 while /readyz says so, else 0
-//   duet_self_check_failures_total                     times it did not answer on its own port
-//   duet_longest_step_seconds                          time that the slowest thread has taken so
-//   far
+//   duet_ready                                         1 while /readyz returns 200, otherwise 0
+//   duet_self_check_failures_total                     failed connections to its own port
+//   duet_longest_step_seconds                          duration of the longest step in progress
 // Of models:
-//   duet_model_load_seconds{checkpoint}                time that loading took
-//   duet_model_state{checkpoint}                       1 served, 0 refused; not of unloaded ones
-//   duet_model_last_load_successful{checkpoint}        0: what is on disk was refused, and what was
-//                                                      loaded before is served, if anything
+//   duet_model_load_seconds{checkpoint}                duration of the last load
+//   duet_model_state{checkpoint}                       1 served, 0 rejected; absent if unloaded
+//   duet_model_last_load_successful{checkpoint}        0: the files on disk were rejected; an
+//   earlier
+//                                                      load is still served, if there is one
 //   duet_model_info{model, version, default}           1 for each version served now
 //   duet_model_loads_total{result}                     checkpoints loaded: ok or refused
-//   duet_model_folders_skipped                         in the repository, but no checkpoints
-//   duet_reloads_total{result}                         reloads asked for: ok or failed
+//   duet_model_folders_skipped                         folders that are not checkpoints
+//   duet_reloads_total{result}                         requested reloads: ok or failed
 // Of certificates and the access file:
 //   duet_secrets_reloads_total{kind, outcome}          times they were read again
-//   duet_secrets_last_reload_successful{kind}          0: what is on disk was refused, and what was
-//                                                      read before is used
+//   duet_secrets_last_reload_successful{kind}          0: the files on disk were rejected; the
+//   earlier
+//                                                      ones are still used
 //   duet_tls_certificate_expiry_timestamp_seconds      end of the server's certificate
-// Of the program: duet_build_info{version}, and the usual process_* (process_metrics.h).
-// Of tracing, where it is on:
-//   duet_spans_sent_total, duet_spans_dropped_total    spans taken by the collector, and lost
+// Of the program: duet_build_info{version}, and the standard process_* (process_metrics.h).
+// Of tracing, if it is enabled:
+//   duet_spans_sent_total, duet_spans_dropped_total    spans that the collector accepted, and lost
 // Of the log:
-//   duet_log_lines_dropped_total                       lines lost to a slow reader, a full disk
+//   duet_log_lines_dropped_total                       lines lost to a slow reader or a full disk
 //
 // Threads: safe to call concurrently.
 class ServerMetrics final : public CallObserver, public batching::WindowObserver {
@@ -96,16 +97,16 @@ class ServerMetrics final : public CallObserver, public batching::WindowObserver
   void BatchFinished(const batching::WindowTimings& timings) override;
   void WindowFinished(batching::Priority priority, const batching::WindowTimings& timings) override;
 
-  // A checkpoint was loaded, or was refused; `served` tells of a refused one whether what was
-  // loaded before in its place is served on.
+  // Records a checkpoint that was loaded or rejected. `served`: whether a version of it is served,
+  // which may be an earlier load.
   void ModelLoaded(const std::string& checkpoint, double seconds, bool loaded, bool served);
-  // A checkpoint is not served any more, nor is it to be.
+  // Records a checkpoint that is no longer served, nor should be.
   void ModelUnloaded(const std::string& checkpoint);
   void FoldersSkipped(int folders);
   void Reloaded(bool ok);
   void SelfCheckFailed() { self_check_failures_.Increment(); }
 
-  // What is asked for at every scrape. Call before the first Render.
+  // Set the sources of values that every scrape reads. Call before the first Render.
   void SetQueueLength(std::function<double()> queued_windows);
   void SetDroppedLogLines(std::function<double()> dropped_log_lines);
   void SetReady(std::function<bool()> ready);
@@ -118,10 +119,10 @@ class ServerMetrics final : public CallObserver, public batching::WindowObserver
   void SetCapacity(const Capacity& capacity);
   void SetBuild(const std::string& version);
 
-  // Files of one kind were read again, and taken over or refused.
+  // Records that the files of one kind were read again, and accepted or rejected.
   void SecretsReloaded(const std::string& kind, bool taken);
 
-  // The Prometheus text format.
+  // Returns all metrics in the Prometheus text format.
   std::string Render();
 
  private:
@@ -156,7 +157,7 @@ class ServerMetrics final : public CallObserver, public batching::WindowObserver
   std::function<double()> dropped_log_lines_;
   std::function<bool()> ready_;
   std::function<double()> longest_step_;
-  common::Mutex render_mutex_;  // one scrape brings the numbers that are asked for up to date
+  common::Mutex render_mutex_;  // one scrape at a time updates the values that it reads
 };
 
 }  // namespace duet::server::metrics

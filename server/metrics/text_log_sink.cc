@@ -9,7 +9,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Bare where that leaves no doubt where a value ends, else as JSON.
+// Unquoted if the end of the value is unambiguous, otherwise as JSON.
 std::string ValueText(const Json& value) {
   if (!value.is_string()) return value.dump();
   const std::string text = value.get<std::string>();

@@ -11,15 +11,15 @@
 
 namespace duet::server::metrics {
 
-// A line of the JSON log as people read it; a line of another kind as it is.
+// Formats a line of the JSON log for people. Returns any other line unchanged.
 //
 //   2022-05-01T12:00:00.123456Z INFO    call method=Synthesize code=OK frames=300
 std::string ToText(std::string_view json_line);
 
-// Hands on every line as text. Belongs before the sink that writes and behind the queue, so that
-// calls do not wait for it.
+// Passes every line on as text. Put it between the queue and the sink that writes, so that calls do
+// not wait for it.
 //
-// Threads: as the sink that it hands on to.
+// Threads: like the sink that it passes lines to.
 class TextLogSink final : public LogSink {
  public:
   explicit TextLogSink(std::shared_ptr<LogSink> sink) : sink_(std::move(sink)) {}

@@ -10,7 +10,8 @@ namespace {
 
 using Callers = std::vector<std::shared_ptr<const KnownCaller>>;
 
-// Looks at every digest of every caller, found or not: the time says nothing about the list.
+// Compares every digest of every caller, found or not, so that the time reveals nothing of the
+// list.
 std::shared_ptr<const KnownCaller> FindByToken(const Callers& callers, const std::string& digest) {
   std::shared_ptr<const KnownCaller> found;
   for (const auto& known : callers) {
@@ -21,7 +22,7 @@ std::shared_ptr<const KnownCaller> FindByToken(const Callers& callers, const std
   return found;
 }
 
-// Names in certificates are no secrets.
+// Names in certificates are not secret.
 std::shared_ptr<const KnownCaller> FindByCertificate(const Callers& callers,
                                                      const std::vector<std::string>& names) {
   for (const auto& known : callers) {

@@ -14,20 +14,20 @@
 
 namespace duet::server::security {
 
-// By what a call says who makes it.
+// The credentials that a call carries.
 struct Credentials {
-  bool has_token = false;    // whether it carries an authorization at all
+  bool has_token = false;    // whether there is any authorization
   std::string token_digest;  // SHA-256 of its token; empty for an authorization of another kind
   std::vector<std::string> certificate_names;  // of a certificate that TLS has verified
 };
 
-// A caller with what it uses, which outlives the list that it stands in.
+// A caller and its usage. The usage outlives the list that has the caller.
 struct KnownCaller {
   Caller caller;
   std::shared_ptr<CallerUsage> usage;
 };
 
-// Who may do what: a list that is replaced as a whole while calls go on.
+// Decides who may do what. The list of callers is replaced as a whole while calls continue.
 //
 // Threads: safe to call concurrently. Uses neither gRPC nor abseil.
 class AccessControl {
@@ -36,24 +36,24 @@ class AccessControl {
     kAllowed,
     kNoCredentials,
     kWrongToken,
-    kUnknownCertificate,  // verified, but nobody's on the list
+    kUnknownCertificate,  // verified, but of no listed caller
     kWrongRole,
     kTooManyCalls,
   };
   struct Decision {
     Answer answer = Answer::kNoCredentials;
-    std::shared_ptr<const KnownCaller> caller;  // null until it is known who calls
-    double retry_seconds = 0;                   // of kTooManyCalls
+    std::shared_ptr<const KnownCaller> caller;  // null if the caller is unknown
+    double retry_seconds = 0;                   // for kTooManyCalls
   };
 
   // `clock` outlives the control.
   explicit AccessControl(const common::Clock& clock) : clock_(clock) {}
 
-  // From now on these callers, and no others. Those that stay keep what they use.
+  // Replaces all callers. Callers that stay keep their usage.
   void Replace(std::vector<Caller> callers);
 
-  // Finds out who calls, and counts the call when it may go on. A token decides where there is one:
-  // a wrong one is refused whatever the certificate says.
+  // Identifies the caller, and counts the call if it is allowed. If there is a token, only the
+  // token counts: a wrong one is rejected whatever the certificate is.
   Decision Decide(const Credentials& credentials, Role role) const;
 
   std::size_t callers() const;

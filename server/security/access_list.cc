@@ -34,7 +34,7 @@ bool IsDigest(absl::string_view text) {
                      [](unsigned char c) { return absl::ascii_isxdigit(c); });
 }
 
-// What stands before and after the first `separator`; an empty second part where there is none.
+// Splits a word at the first `separator`. The second part is empty if there is none.
 std::pair<absl::string_view, absl::string_view> Split(absl::string_view word, char separator) {
   return absl::StrSplit(word, absl::MaxSplits(separator, 1));
 }
@@ -82,7 +82,7 @@ absl::Status ReadWord(absl::string_view word, Caller& caller) {
   }
   const auto [kind, value] = Split(word, ':');
   if (kind == "sha256") {
-    // Not quoted: whoever took a token for its digest must not find it in a log.
+    // Not quoted, because an operator may have entered the token instead of its digest.
     if (!IsDigest(value)) {
       return absl::InvalidArgumentError(absl::StrCat(
           "expected the 64 hexadecimal digits of a token's SHA-256 after sha256:, got ",
@@ -123,7 +123,7 @@ absl::StatusOr<Caller> ReadCaller(absl::string_view line) {
   return caller;
 }
 
-// What callers may not share: two callers of one token would be one by chance.
+// Names and credentials that callers may not share: a shared token would not identify a caller.
 class Taken {
  public:
   absl::Status Take(const Caller& caller) {
@@ -148,7 +148,7 @@ class Taken {
   std::set<std::string> certificates_;
 };
 
-// A certificate's name is good for nothing where no client is asked for a certificate.
+// A certificate's name identifies no caller if clients have no certificates.
 absl::Status CheckRules(const Caller& caller, const AccessListRules& rules) {
   if (rules.certificates || caller.certificate_names.empty()) return absl::OkStatus();
   return absl::InvalidArgumentError(
@@ -157,7 +157,7 @@ absl::Status CheckRules(const Caller& caller, const AccessListRules& rules) {
                    "; set tls_client_ca_file, or give ", caller.name, " a token"));
 }
 
-// The callers of a file, and what is wrong with it.
+// Collects the callers of a file and its mistakes.
 class Reader {
  public:
   Reader(absl::string_view source, const AccessListRules& rules) : source_(source), rules_(rules) {}

@@ -16,14 +16,14 @@
 namespace duet::server::security {
 namespace {
 
-// For frames to come free: about a long call's time between two windows.
+// Retry delay while frames are in flight: about the time between two windows of a long call.
 constexpr absl::Duration kFramesDelay = absl::Seconds(1);
 
 std::vector<std::string> CertificateNames(const grpc::ServerContextBase& context) {
   std::vector<std::string> names;
   const auto authenticated = context.auth_context();
   if (authenticated == nullptr || !authenticated->IsPeerAuthenticated()) return names;
-  // The subject's alternative names, or its common name where there are none.
+  // The subject's alternative names, or its common name if there are none.
   for (const grpc::string_ref& name : authenticated->GetPeerIdentity()) {
     names.emplace_back(name.data(), name.size());
   }
@@ -43,7 +43,7 @@ Credentials CredentialsOf(const grpc::ServerContextBase& context) {
   const auto [begin, end] = context.client_metadata().equal_range("authorization");
   if (begin == end) return credentials;
   credentials.has_token = true;
-  if (std::next(begin) != end) return credentials;  // which one counts is nobody's to guess
+  if (std::next(begin) != end) return credentials;  // several: ambiguous
   const absl::string_view token = BearerToken({begin->second.data(), begin->second.size()});
   if (!token.empty()) credentials.token_digest = base::Sha256Hex({token.data(), token.size()});
   return credentials;

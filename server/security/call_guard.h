@@ -14,26 +14,27 @@
 
 namespace duet::server::security {
 
-// A call at the door: whether it may go on, who makes it as far as that is known, and what it holds
-// of its caller's share.
+// The result of admitting a call: whether it is allowed, its caller if known, and the frames that
+// it holds of the caller's limit.
 //
 // Threads: not safe to call concurrently.
 class CallPass {
  public:
-  CallPass() = default;  // of a call that is limited by nothing
+  CallPass() = default;  // for a call without limits
   CallPass(absl::Status status, std::string name, std::shared_ptr<const KnownCaller> caller)
       : status_(std::move(status)), name_(std::move(name)), caller_(std::move(caller)) {}
 
-  // OK, or why it may not go on.
+  // OK, or the reason why the call is rejected.
   const absl::Status& status() const { return status_; }
-  // The caller's name in the access file, or else the first of its certificate; empty for somebody
-  // unknown. A refused caller has one too.
+  // The caller's name in the access file, otherwise the first name in its certificate; empty for an
+  // unknown caller. A rejected caller can have a name, too.
   const std::string& name() const { return name_; }
 
   bool is_listed() const { return caller_ != nullptr; }
 
-  // Takes frames of the caller's share, until Release or the end of the pass.
-  // RESOURCE_EXHAUSTED when it has not so many left, with RetryInfo unless it never will.
+  // Counts frames against the caller's limit, until Release or the end of the pass.
+  // Fails with RESOURCE_EXHAUSTED if that exceeds the limit, with RetryInfo unless the frames alone
+  // do.
   absl::Status HoldFrames(std::int64_t frames);
   void Release() { frames_ = FrameLease(); }
 
@@ -44,15 +45,14 @@ class CallPass {
   FrameLease frames_;
 };
 
-// The door: tells from a call's certificate and its `authorization: Bearer TOKEN` who makes it, and
-// whether they may.
+// Identifies the caller of a call by its certificate and its `authorization: Bearer TOKEN`, and
+// decides whether the call is allowed.
 //
-// Without an access list everybody may synthesise, and whoever calls from this machine may
-// administer.
+// Without an access list everybody may synthesise, and callers on this machine may administer.
 //
-// Errors: UNAUTHENTICATED (nobody, or a wrong token), PERMISSION_DENIED (a certificate of nobody on
-//         the list, a role that the caller has not), RESOURCE_EXHAUSTED with RetryInfo (more calls
-//         than it may make); each with an ErrorInfo, none telling what would have been right.
+// Errors: UNAUTHENTICATED (no credentials or a wrong token), PERMISSION_DENIED (a certificate of no
+//         listed caller, or a missing role), RESOURCE_EXHAUSTED with RetryInfo (too many calls);
+//         each with an ErrorInfo. No error reveals valid credentials.
 // Threads: safe to call concurrently.
 class CallGuard {
  public:

@@ -9,8 +9,8 @@
 
 namespace duet::server::security {
 
-// What a caller may do. Neither role includes the other: a token that was made to change models
-// cannot spend the server's time, and the other way round.
+// What a caller may do. Neither role includes the other: a token for changing models cannot
+// synthesise, and the other way round.
 enum class Role {
   kSynthesise,  // duet.v1.MotionSynthesis
   kAdmin,       // the admin service
@@ -19,13 +19,14 @@ enum class Role {
 // "synthesise" or "admin".
 inline const char* RoleName(Role role) { return role == Role::kAdmin ? "admin" : "synthesise"; }
 
-// What a caller may use at most; absent means no limit of its own.
+// Limits of a caller; an absent one means no limit of its own.
 struct CallerLimits {
-  std::optional<double> calls_per_second;        // more than 0; up to a second's worth at once
-  std::optional<std::int64_t> frames_in_flight;  // leader frames of calls being answered, 1 or more
+  std::optional<double> calls_per_second;  // above 0; bursts of up to one second's calls
+  std::optional<std::int64_t>
+      frames_in_flight;  // leader frames of calls being answered, at least 1
 };
 
-// Somebody who may call: by what they are known, what they may do, and how much of it.
+// A caller: its credentials, its roles and its limits.
 struct Caller {
   std::string name;  // for logs and metrics
   std::set<Role> roles;

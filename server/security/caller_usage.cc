@@ -7,7 +7,7 @@ namespace duet::server::security {
 std::optional<double> CallerUsage::TakeCall(double per_second, common::TimePoint now) {
   const double most = std::max(1.0, per_second);
   common::MutexLock lock(mutex_);
-  // Threads read the clock before they come here: one may be a little behind.
+  // Threads read the clock before they get the lock, so `now` may be a little old.
   const double passed =
       counted_.has_value() ? std::max(0.0, common::SecondsBetween(*counted_, now)) : 0;
   tokens_ = counted_.has_value() ? std::min(most, tokens_ + passed * per_second) : most;

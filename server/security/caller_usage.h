@@ -11,28 +11,29 @@
 
 namespace duet::server::security {
 
-// What one caller uses at the moment.
+// The current usage of one caller.
 //
 // Threads: safe to call concurrently. Uses neither gRPC nor abseil.
 class CallerUsage {
  public:
-  // Counts a call. Nothing when it may go on; otherwise the seconds after which one may. Calls come
-  // at `per_second` in the long run; after a pause, as many as come in a second may come at once.
+  // Counts a call and returns nullopt, or returns the seconds to wait if the rate is exceeded. The
+  // long-term rate is `per_second`; after a pause, the calls of one second may arrive at once.
   std::optional<double> TakeCall(double per_second, common::TimePoint now);
 
-  // Counts frames, unless they would be more than `limit` in all.
+  // Counts frames and returns true, unless the total would exceed `limit`.
   bool TakeFrames(std::int64_t frames, std::int64_t limit);
   void GiveFrames(std::int64_t frames);
   std::int64_t frames() const;
 
  private:
   mutable common::Mutex mutex_;
-  double tokens_ DUET_GUARDED_BY(mutex_) = 0;                         // calls that may come now
-  std::optional<common::TimePoint> counted_ DUET_GUARDED_BY(mutex_);  // when tokens_ was right
+  double tokens_ DUET_GUARDED_BY(mutex_) = 0;  // calls allowed now
+  std::optional<common::TimePoint> counted_
+      DUET_GUARDED_BY(mutex_);  // when tokens_ was last updated
   std::int64_t frames_ DUET_GUARDED_BY(mutex_) = 0;
 };
 
-// Frames that a call holds; its destructor gives them back.
+// Frames that a call holds. The destructor returns them.
 class FrameLease {
  public:
   FrameLease() = default;

@@ -6,8 +6,8 @@
 
 namespace duet::server::security {
 
-// Whether two texts are equal, in a time that depends on their lengths alone: a time that told how
-// many characters were right would let a secret be found one character after the other.
+// Compares two texts in a time that depends only on their lengths. A time that revealed the number
+// of correct characters would let an attacker find a secret character by character.
 inline bool EqualInConstantTime(std::string_view a, std::string_view b) {
   if (a.size() != b.size()) return false;
   volatile unsigned char difference = 0;

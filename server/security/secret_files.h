@@ -21,17 +21,18 @@
 
 namespace duet::server::security {
 
-// A file, or files that belong together, that changed and was read again.
+// A changed file, or changed files that belong together, that were read again.
 struct Reload {
   std::string_view kind;  // "access" or "tls"
-  absl::Status status;    // not OK: it was refused, and what was there before counts on
+  absl::Status status;    // not OK: rejected, and the previous content stays in use
 };
 
-// The files that say who may call and what the server shows them, kept as they are on disk.
+// Follows the access file and the certificate files on disk.
 //
-// What changed is known by the files' contents: rewritten in place, replaced, or behind a symbolic
-// link that moved, as Kubernetes does it. What makes no sense is refused, once for each change, and
-// what was there before counts on; so do certificate and key while only one of them is new.
+// A change is detected by content, so that files may be rewritten in place, replaced, or reached
+// through a symbolic link that moves, as in Kubernetes. Invalid content is rejected, once for each
+// change, and the previous content stays in use. The same holds while only one of certificate and
+// key is new.
 //
 // Threads: safe to call concurrently.
 class SecretFiles {
@@ -39,31 +40,30 @@ class SecretFiles {
   struct Options {
     TlsFiles tls;                                         // no certificate: plain text
     std::filesystem::path access;                         // empty: no access list
-    const common::Clock* clock = &common::Clock::Real();  // of the callers' limits
-    std::function<absl::Time()> now = absl::Now;          // of certificates
+    const common::Clock* clock = &common::Clock::Real();  // for callers' limits
+    std::function<absl::Time()> now = absl::Now;          // for the validity of certificates
   };
 
-  // Reads the files. Fails with INVALID_ARGUMENT, NOT_FOUND or PERMISSION_DENIED, one line for each
-  // mistake in any of them: the setting, the file, and in an access file the line.
+  // Reads the files. Fails with INVALID_ARGUMENT, NOT_FOUND or PERMISSION_DENIED and one line for
+  // each mistake in any of them: the setting, the file, and the line of an access file.
   static absl::StatusOr<std::unique_ptr<SecretFiles>> Open(Options options);
 
-  // Reads them again and takes over what changed; says what that was. For when somebody says that
-  // they are ready.
+  // Reads the files again, applies changes and returns them. For an operator's request.
   std::vector<Reload> Refresh();
 
-  // The same for what has settled: contents that the last look found as well, so that a file that
-  // is being written is left alone. Call about once a second.
+  // Does the same for files whose content equals that of the previous call, so that files that are
+  // being written are skipped. Call it about once a second.
   std::vector<Reload> Look();
 
-  // OK, or why the files on disk are not in use: one line for each mistake in those that were
-  // refused last and have not been mended since.
+  // OK, or why the files on disk are not in use: one line for each mistake in the files that were
+  // rejected and have not been corrected since.
   absl::Status state() const;
 
   // Null without a certificate.
   const TlsCertificates* certificates() const { return certificates_.get(); }
   // Null without an access file.
   const AccessControl* access() const { return access_.get(); }
-  // Until when the server's certificate is valid; the infinite future without one.
+  // The end of the certificate's validity; the infinite future without a certificate.
   absl::Time certificate_end() const;
 
  private:
@@ -73,12 +73,12 @@ class SecretFiles {
   absl::Status TakeAccess(const absl::StatusOr<std::string>& text);
   absl::Status TakeTls(const absl::StatusOr<TlsMaterial>& material) DUET_REQUIRES(mutex_);
 
-  // What a file held: its contents, or why it could not be read.
+  // The last content of a file, or the reason why it could not be read.
   template <typename Content>
   class Seen {
    public:
-    // Whether it is another one than was taken last, and has settled if it is to. A change is told
-    // once, whatever comes of it.
+    // Returns whether the content differs from the one applied last and, if `settled`, equals that
+    // of the previous call. Reports a change once, even if it is rejected.
     bool Changed(const absl::StatusOr<Content>& now, bool settled) {
       const bool is_settled = !settled || Same(found_, now);
       found_ = now;
@@ -91,7 +91,7 @@ class SecretFiles {
     static bool Same(const absl::StatusOr<Content>& a, const absl::StatusOr<Content>& b) {
       return a.ok() == b.ok() && (a.ok() ? *a == *b : a.status() == b.status());
     }
-    absl::StatusOr<Content> found_ = absl::UnknownError("not read yet");  // by the last look
+    absl::StatusOr<Content> found_ = absl::UnknownError("not read yet");  // by the previous call
     absl::StatusOr<Content> taken_ = absl::UnknownError("not read yet");
   };
 
@@ -101,7 +101,7 @@ class SecretFiles {
   mutable common::Mutex mutex_;
   Seen<std::string> seen_access_ DUET_GUARDED_BY(mutex_);
   Seen<TlsMaterial> seen_tls_ DUET_GUARDED_BY(mutex_);
-  absl::Status access_state_ DUET_GUARDED_BY(mutex_);  // of what was read last
+  absl::Status access_state_ DUET_GUARDED_BY(mutex_);  // result of the last change
   absl::Status tls_state_ DUET_GUARDED_BY(mutex_);
   absl::Time certificate_end_ DUET_GUARDED_BY(mutex_) = absl::InfiniteFuture();
 };

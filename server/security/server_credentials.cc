@@ -10,9 +10,9 @@
 namespace duet::server::security {
 namespace {
 
-// The C++ interface of gRPC 1.51 takes certificates once, or has gRPC watch their files, which
-// leaves a server without any while certificate and key do not belong together. The C interface
-// asks whenever a connection comes, and keeps the last ones that worked.
+// The C++ interface of gRPC 1.51 takes certificates once, or makes gRPC watch their files, which
+// leaves a server without a certificate while certificate and key do not match. The C interface
+// calls back at each connection and keeps the last certificates that worked.
 class RotatingCredentials final : public grpc::ServerCredentials {
  public:
   explicit RotatingCredentials(const TlsCertificates& certificates) : certificates_(certificates) {
@@ -45,8 +45,7 @@ class RotatingCredentials final : public grpc::ServerCredentials {
     const TlsMaterial& material = *current.material;
     const grpc_ssl_pem_key_cert_pair pair = {material.private_key.c_str(),
                                              material.certificate_chain.c_str()};
-    // The library insists on authorities even where no client is asked for a certificate; then any
-    // will do.
+    // The library requires authorities even if clients need no certificate; any PEM will do then.
     const std::string& authorities = material.client_authorities.empty()
                                          ? material.certificate_chain
                                          : material.client_authorities;
@@ -55,7 +54,7 @@ class RotatingCredentials final : public grpc::ServerCredentials {
   }
 
   const TlsCertificates& certificates_;
-  std::atomic<std::uint64_t> given_{0};  // the generation that gRPC has; it begins with 1
+  std::atomic<std::uint64_t> given_{0};  // the generation that gRPC has; the first is 1
   grpc_server_credentials* credentials_ = nullptr;
 };
 

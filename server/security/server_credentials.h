@@ -9,12 +9,13 @@
 
 namespace duet::server::security {
 
-// Credentials of one listening port that asks `certificates` at every handshake, so that a
-// replacement counts from the next connection on. TLS 1.2 and 1.3; a client's certificate is
-// required, and verified, where the material names authorities for it.
+// Makes credentials for one listening port. Every handshake reads `certificates`, so that a
+// replacement applies from the next connection. Supports TLS 1.2 and 1.3. A client certificate is
+// required and verified if the material has client authorities.
 //
-// `certificates` outlives the server. Call once for each port. Whether clients need a certificate
-// is settled here: later material may name other authorities, but not begin or cease to name any.
+// `certificates` outlives the server. Call it once for each port. Whether clients need a
+// certificate is fixed here: later material may have other client authorities, but must have some
+// if and only if this one has.
 std::shared_ptr<grpc::ServerCredentials> MakeServerCredentials(const TlsCertificates& certificates);
 
 }  // namespace duet::server::security

@@ -9,15 +9,15 @@
 
 namespace duet::server::security {
 
-// What the next handshake uses. Replaced while connections come; those that are open stay as they
-// are.
+// The certificates for the next handshake. They can be replaced at any time; open connections keep
+// theirs.
 //
 // Threads: safe to call concurrently. Uses neither gRPC nor abseil's synchronisation.
 class TlsCertificates {
  public:
   struct Current {
     std::shared_ptr<const TlsMaterial> material;
-    std::uint64_t generation = 0;  // another one after each Replace
+    std::uint64_t generation = 0;  // changes with each Replace
   };
 
   explicit TlsCertificates(TlsMaterial material);

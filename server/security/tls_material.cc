@@ -18,7 +18,7 @@
 namespace duet::server::security {
 namespace {
 
-// A bundle of all public authorities has some 200 kB; whatever is far larger is another file.
+// A bundle of all public authorities has about 200 kB; a far larger file is a mistake.
 constexpr std::size_t kMaxPemBytes = std::size_t{1} << 20;
 
 using Bio = std::unique_ptr<BIO, decltype(&BIO_free)>;
@@ -109,7 +109,7 @@ absl::StatusOr<TlsMaterial> ReadTlsMaterial(const TlsFiles& files) {
                     ReadPem("tls_client_ca_file", files.client_ca, &material.client_authorities)});
   if (!status.ok()) return status;
   if (!files.client_ca.empty() && material.client_authorities.empty()) {
-    // Empty would mean that nobody is asked for a certificate.
+    // Empty authorities would mean that clients need no certificate.
     return absl::InvalidArgumentError(
         "tls_client_ca_file: expected PEM certificates, got an empty file");
   }

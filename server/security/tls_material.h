@@ -10,11 +10,11 @@
 
 namespace duet::server::security {
 
-// What the server shows in a TLS handshake, and whom it believes. PEM text.
+// The server's certificate and key, and the authorities that it trusts. PEM text.
 struct TlsMaterial {
   std::string certificate_chain;  // the server's own certificate first
   std::string private_key;
-  std::string client_authorities;  // who may sign clients' certificates; empty: none are asked for
+  std::string client_authorities;  // sign client certificates; empty: clients need none
 
   bool operator==(const TlsMaterial& other) const {
     return certificate_chain == other.certificate_chain && private_key == other.private_key &&
@@ -22,21 +22,20 @@ struct TlsMaterial {
   }
 };
 
-// Where it is read from. No certificate file: no TLS.
+// The files of TlsMaterial. No certificate file: no TLS.
 struct TlsFiles {
   std::filesystem::path certificate;
   std::filesystem::path key;
   std::filesystem::path client_ca;  // empty: clients need no certificate
 };
 
-// Reads the files as they are. Fails with one line for each that cannot be read: the setting and
-// the file.
+// Reads the files without checking their content. Fails with one line for each file that cannot be
+// read: the setting and the file.
 absl::StatusOr<TlsMaterial> ReadTlsMaterial(const TlsFiles& files);
 
-// Whether a handshake could succeed with it: certificates and key are PEM, the key is the first
-// certificate's, which is valid at `now`. Returns until when that certificate is.
-// Fails with INVALID_ARGUMENT, one line for each setting that is wrong; never with anything of the
-// key.
+// Checks that a handshake can succeed: certificates and key are PEM, the key belongs to the first
+// certificate, and that certificate is valid at `now`. Returns the end of its validity.
+// Fails with INVALID_ARGUMENT and one line for each wrong setting; never with any part of the key.
 absl::StatusOr<absl::Time> CheckTlsMaterial(const TlsMaterial& material, absl::Time now);
 
 }  // namespace duet::server::security

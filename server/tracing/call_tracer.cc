@@ -11,7 +11,7 @@
 namespace duet::server::tracing {
 namespace {
 
-// What OpenTelemetry counts as an error of the server: the others are the caller's.
+// The codes that OpenTelemetry counts as errors of the server; the others are the caller's.
 bool IsServersFault(absl::StatusCode code) {
   switch (code) {
     case absl::StatusCode::kUnknown:

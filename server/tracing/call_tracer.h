@@ -16,16 +16,16 @@
 
 namespace duet::server::tracing {
 
-// A finished call as a span; attributes follow OpenTelemetry's conventions for RPCs, and "duet."
-// ones of our own.
+// Converts a finished call to a span. Attributes follow OpenTelemetry's conventions for RPCs;
+// further ones begin with "duet.".
 Span ToSpan(const metrics::CallRecord& record, absl::Time end);
 
-// Makes a span of every call whose trace is sampled, and sends it.
+// Sends a span for every call whose trace is sampled.
 //
 // Threads: safe to call concurrently.
 class CallTracer final : public metrics::CallObserver {
  public:
-  // Sends to an OpenTelemetry collector. Errors as OtlpClient::Create.
+  // Sends to an OpenTelemetry collector. Fails like OtlpClient::Create.
   static absl::StatusOr<std::unique_ptr<CallTracer>> Open(const std::string& endpoint,
                                                           const std::string& program_version);
 

@@ -16,13 +16,13 @@ namespace duet::server::tracing {
 // Threads: one thread at a time.
 class OtlpClient {
  public:
-  // `endpoint`: "http://HOST:PORT" in plain text, "https://HOST:PORT" encrypted, trusting the
-  // system's authorities. Does not connect yet. INVALID_ARGUMENT for anything else.
+  // `endpoint`: "http://HOST:PORT" for plain text, "https://HOST:PORT" for TLS with the system's
+  // authorities. Does not connect yet. Fails with INVALID_ARGUMENT for any other endpoint.
   static absl::StatusOr<std::unique_ptr<OtlpClient>> Create(const std::string& endpoint,
                                                             const std::string& program_version);
   virtual ~OtlpClient() = default;
 
-  // Waits for at most a few seconds. The collector's status.
+  // Waits at most a few seconds. Returns the collector's status.
   virtual absl::Status Send(const std::vector<Span>& spans) = 0;
 };
 

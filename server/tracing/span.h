@@ -13,7 +13,7 @@ namespace duet::server::tracing {
 
 using AttributeValue = std::variant<std::string, std::int64_t, double, bool>;
 
-// One call, once it is over. Times are nanoseconds since 1970.
+// A finished call. Times are nanoseconds since 1970.
 struct Span {
   common::TraceContext trace;
   std::string name;  // "duet.v1.MotionSynthesis/Synthesize"
@@ -21,8 +21,8 @@ struct Span {
   std::int64_t end = 0;
   std::vector<std::pair<std::string, AttributeValue>> attributes;
   std::vector<std::pair<std::int64_t, std::string>> events;  // time, name
-  bool failed = false;                                       // by the server's own fault
-  std::string message;                                       // of a failure
+  bool failed = false;                                       // by an error of the server
+  std::string message;                                       // the error, if failed
 };
 
 }  // namespace duet::server::tracing

@@ -61,7 +61,7 @@ void SpanQueue::Run() {
     const bool sent = options_.send(batch);
     common::MutexLock lock(mutex_);
     (sent ? sent_ : dropped_) += batch.size();
-    // A collector that is away must not hold up the server's end.
+    // An unreachable collector must not delay the exit of the server.
     if (!sent && closed_) {
       dropped_ += std::exchange(spans_, {}).size();
       return;

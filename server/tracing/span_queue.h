@@ -13,22 +13,22 @@
 
 namespace duet::server::tracing {
 
-// Hands spans on in batches, from a thread of its own: whoever adds one never waits. Spans that
-// find the queue full, or that cannot be sent, are dropped and counted.
+// Sends spans in batches from a thread of its own, so that Add never blocks. Spans are dropped and
+// counted if the queue is full or they cannot be sent.
 //
 // Threads: safe to call concurrently. Uses neither gRPC nor abseil.
 class SpanQueue {
  public:
   struct Options {
     std::size_t capacity = 2048;   // waiting spans
-    std::size_t batch_size = 512;  // at most, and what is sent at once
+    std::size_t batch_size = 512;  // maximum; a full batch is sent at once
     std::chrono::milliseconds interval = std::chrono::seconds(2);  // between smaller batches
-    // Sends a batch; false when it failed. May take seconds. Required.
+    // Sends a batch and returns whether that succeeded. May take seconds. Required.
     std::function<bool(const std::vector<Span>&)> send;
   };
 
   explicit SpanQueue(Options options);
-  // Sends what is left, once.
+  // Sends the remaining spans, once.
   ~SpanQueue();
   SpanQueue(const SpanQueue&) = delete;
   SpanQueue& operator=(const SpanQueue&) = delete;
@@ -40,7 +40,7 @@ class SpanQueue {
 
  private:
   void Run();
-  // Waits for a batch; an empty one ends the thread.
+  // Waits for a batch. An empty one ends the thread.
   std::vector<Span> Next();
 
   const Options options_;

@@ -6,24 +6,24 @@
 
 namespace duet::server::watchdog {
 
-// What a process does that cannot trust its heap, its locks or its log any more: write some lines
-// and end.
+// For a process that can no longer trust its heap, its locks or its log: it writes a few lines and
+// exits.
 
-// One line of the log (json_log.h, text_log_sink.h), made without taking memory.
+// One line of the log (json_log.h, text_log_sink.h), formatted without allocating memory.
 //
 //   LastLine line(/*text=*/false, "thread_stuck");
 //   line.Add("thread", "worker");
 //   line.Write(STDERR_FILENO);
 class LastLine {
  public:
-  // `event`, keys and texts are plain ASCII without quotes or backslashes. What does not fit is
-  // left out.
+  // `event`, keys and texts are plain ASCII without quotes or backslashes. Fields that do not fit
+  // are omitted.
   LastLine(bool text, const char* event);
   void Add(const char* key, const char* value);
   void Add(const char* key, std::int64_t value);
   void Add(const char* key, double seconds);
 
-  // Ends the line and writes it to a descriptor; waits for its reader. Call once.
+  // Ends the line and writes it to a descriptor. Blocks until the reader takes it. Call once.
   void Write(int descriptor);
 
   const char* c_str() const { return bytes_; }
@@ -34,12 +34,12 @@ class LastLine {
   const bool text_;
   std::size_t size_ = 0;
   bool is_full_ = false;
-  // What a pipe takes at once, so that no other line comes in between.
+  // The size that a pipe writes atomically, so that no other line is mixed in.
   char bytes_[4096];
 };
 
-// From now on the process ends with `exit_code` in `seconds`, even if the calling thread waits for
-// the reader of the log, or for a lock, for ever. Uses SIGALRM, which no thread may block for that.
+// Makes the process exit with `exit_code` after `seconds`, even if the calling thread blocks
+// forever on the log or on a lock. Uses SIGALRM, which no other use may block.
 void EndWithin(unsigned seconds, int exit_code);
 
 }  // namespace duet::server::watchdog

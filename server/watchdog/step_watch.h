@@ -9,27 +9,28 @@
 
 namespace duet::server::watchdog {
 
-// A thread that is not idle, and for how long it has been at its step.
+// A thread that is not idle, and how long its current step has taken.
 struct BusyThread {
   pid_t thread_id = 0;
   const common::StepKind* step = nullptr;
   double seconds = 0;
 };
 
-// Measures for how long each thread has been at its step. Counts only the time that it is told of,
-// so that a process that is paused as a whole (SIGSTOP, a frozen container) has no stuck threads.
+// Measures how long each thread has been at its current step. Counts only the time that its caller
+// passes in, so that a process that is paused as a whole (SIGSTOP, a frozen container) has no stuck
+// threads.
 //
-// Threads: not safe to call concurrently. Takes no memory after construction.
+// Threads: not safe to call concurrently. Allocates no memory after construction.
 class StepWatch {
  public:
-  // `elapsed`: seconds since the last look. A step that began since then has taken 0 seconds.
+  // `elapsed`: seconds since the previous call. A step that began since then counts 0 seconds.
   void Look(const common::ThreadStates& threads, double elapsed);
 
-  // The thread that has been at a bounded step for longest, or an idle one (no step).
+  // Returns the thread whose bounded step has taken longest, or an idle one (null step) if none.
   BusyThread longest() const;
 
-  // Calls `visit(const BusyThread&)` for each thread that has been at its step for `seconds` or
-  // more. Unless `every`, only those at bounded steps.
+  // Calls `visit(const BusyThread&)` for each thread whose step has taken at least `seconds`. Skips
+  // unbounded steps unless `every` is true.
   template <typename Visit>
   void ForEach(double seconds, bool every, const Visit& visit) const {
     for (const Watched& thread : watched_) {

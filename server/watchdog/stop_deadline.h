@@ -3,12 +3,12 @@
 
 namespace duet::server::watchdog {
 
-// Whether a process that was asked to stop should have ended by now.
+// Decides whether a process that was asked to stop should have exited by now.
 //
 // Threads: not safe to call concurrently.
 class StopDeadline {
  public:
-  // A signal to stop came.
+  // Records a signal to stop.
   void Asked() { ++signals_; }
   void Pass(double seconds) {
     if (signals_ >= 1) since_first_ += seconds;
@@ -16,8 +16,8 @@ class StopDeadline {
   }
 
   bool asked() const { return signals_ > 0; }
-  // The process has `stop_seconds` from the first signal on, and no more than `hurry_seconds` from
-  // the second on.
+  // The process has `stop_seconds` from the first signal, and at most `hurry_seconds` from the
+  // second.
   bool IsOver(double stop_seconds, double hurry_seconds) const {
     return (signals_ >= 1 && since_first_ >= stop_seconds) ||
            (signals_ >= 2 && since_second_ >= hurry_seconds);

@@ -5,12 +5,13 @@
 
 namespace duet::server::watchdog {
 
-// The signals that came and that the main thread has not heeded yet: SIGTERM and SIGINT, which
-// stop, and SIGHUP, which reloads.
+// Signals that arrived and that the main thread has not handled yet: SIGTERM and SIGINT stop the
+// server, SIGHUP reloads.
 //
-// Construct it before any other thread starts: threads inherit that the signals are blocked. The
-// watchdog's thread takes them and calls Note, so that a signal is noticed even if the main thread
-// never returns.
+// Construct it before any other thread starts, because threads inherit the blocked signals. The
+// watchdog's thread receives them and calls Note, so that a signal counts even if the main thread
+// hangs.
+//
 // Threads: safe to call concurrently; one thread waits.
 class StopSignal {
  public:
@@ -18,17 +19,16 @@ class StopSignal {
 
   StopSignal();
 
-  // Lets the signals end the process as they do by default: for a process that is not to drain.
+  // Restores the default action of the signals, for a process that does not drain.
   void Unblock();
 
-  // A signal came. Reloads that nobody has heeded yet count as one.
+  // Records a signal. Reloads that are not handled yet count as one.
   void Note(Kind kind);
 
-  // Waits until a signal came, and returns which. Of several that came before, one that stops is
-  // first.
+  // Waits for a signal and returns its kind. A stop is returned before a reload.
   Kind Wait();
-  // Waits for one that stops for at most `seconds`. True when it came; 0 just looks. A reload that
-  // is asked for meanwhile waits for Wait.
+  // Waits at most `seconds` for a stop and returns whether it arrived; 0 only checks. A reload that
+  // arrives meanwhile is left for Wait.
   bool WaitFor(double seconds);
 
  private:

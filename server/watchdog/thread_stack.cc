@@ -18,11 +18,11 @@ namespace {
 
 constexpr int kSignal = SIGUSR2;
 constexpr int kMaxFrames = 32;
-constexpr int kOwnFrames = 2;  // the handler and what called it
+constexpr int kOwnFrames = 2;  // the handler and its caller
 
 void* frames[kMaxFrames];
 std::atomic<int> frame_count{0};
-std::atomic<pid_t> asked{0};  // the thread that is to answer
+std::atomic<pid_t> asked{0};  // the thread whose stack is requested
 
 void Answer(int) {
   const int error = errno;
@@ -37,7 +37,7 @@ const char* FileName(const char* path) {
   return slash == nullptr ? path : slash + 1;
 }
 
-// The number of characters written.
+// Returns the number of characters written.
 std::size_t WriteFrame(void* address, char* text, std::size_t size) {
   Dl_info info = {};
   const bool known = dladdr(address, &info) != 0 && info.dli_fname != nullptr;

@@ -8,17 +8,16 @@
 
 namespace duet::server::watchdog {
 
-// Writes where a thread of this process is, innermost frame first, each as file+0xoffset, which
-// addr2line reads: "duet-server+0x1a2b libc.so.6+0x89e3". Empty where the thread does not answer in
-// time, as one that a debugger has stopped. Interrupts the thread by SIGUSR2: only for a process
-// that is about to end.
+// Writes the stack of a thread of this process, innermost frame first, each as file+0xoffset for
+// addr2line: "duet-server+0x1a2b libc.so.6+0x89e3". The text is empty if the thread does not
+// respond in time, for example because a debugger has stopped it. Interrupts the thread with
+// SIGUSR2: only for a process that is about to exit.
 //
-// Takes no memory once PrepareThreadStacks was called; naming the frames takes the dynamic linker's
-// lock.
+// Allocates no memory after PrepareThreadStacks; naming the frames takes the dynamic linker's lock.
 void WriteThreadStack(pid_t thread_id, std::chrono::milliseconds patience, char* text,
                       std::size_t size);
 
-// Loads what WriteThreadStack needs. Call while all is well.
+// Loads what WriteThreadStack needs. Call it while the process is healthy.
 void PrepareThreadStacks();
 
 }  // namespace duet::server::watchdog

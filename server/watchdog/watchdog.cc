@@ -16,17 +16,17 @@ namespace {
 
 using std::chrono::steady_clock;
 
-// How often it looks, at most and at least.
+// The pause between two checks lies between these.
 constexpr double kLongestPause = 1;
 constexpr double kShortestPause = 0.01;
-// Looks within the time that a step may take.
+// Checks within the maximum duration of a step.
 constexpr double kLooks = 8;
-// While the process is to end.
+// The pause while the process stops.
 constexpr double kPauseWhileStopping = 0.1;
-// How long its last lines may take altogether, and the stack of one thread.
+// Timeouts for writing all last lines, and for reading the stack of one thread.
 constexpr unsigned kLastSeconds = 3;
 constexpr std::chrono::milliseconds kStackPatience(100);
-// Threads that get a line.
+// Maximum number of threads that get a line.
 constexpr int kMaxLines = 16;
 
 sigset_t WatchedSignals() {
@@ -36,7 +36,7 @@ sigset_t WatchedSignals() {
   return signals;
 }
 
-// The signal that came within `seconds`; 0 for none.
+// Returns the signal that arrived within `seconds`, or 0.
 int WaitForSignal(double seconds) {
   const sigset_t signals = WatchedSignals();
   timespec timeout = {};
@@ -49,7 +49,7 @@ int WaitForSignal(double seconds) {
 
 Watchdog::Watchdog(const WatchdogOptions& options, StopSignal& stop)
     : options_(options), stop_(stop), stop_seconds_(options.hurry_seconds) {
-  // Whatever takes memory when it is first used is used now.
+  // Use now what allocates memory at its first use.
   PrepareThreadStacks();
   tzset();
   thread_ = std::thread([this] { Run(); });
@@ -70,7 +70,7 @@ void Watchdog::Run() {
     if (ended_) return;
     if (signal != 0) Take(signal);
     const steady_clock::time_point now = steady_clock::now();
-    // More than the pause means that this thread did not run, and so perhaps none did.
+    // A longer time means that this thread did not run, and perhaps no other thread did.
     Look(std::min(std::chrono::duration<double>(now - last).count(), 2 * pause));
     last = now;
   }

@@ -14,41 +14,42 @@
 namespace duet::server::watchdog {
 
 struct WatchdogOptions {
-  // How long a thread may take for one bounded step; 0: for ever.
+  // Maximum duration of one bounded step of a thread; 0: no limit.
   double step_seconds = 0;
-  // How long the process may take to end once it was asked to and has no calls to finish, or once
-  // it was asked a second time.
+  // Maximum time to exit after a signal to stop if there are no calls to finish, and after a second
+  // signal.
   double hurry_seconds = 10;
   bool text_log = false;  // lines for people instead of JSON
 };
 
-// The last resort when a thread never returns: a thread that takes the process's signals, watches
-// what the others do (activity.h) and, when nothing else helps, writes to standard error how things
-// stand and ends the process at once:
+// The last resort if a thread hangs: a thread that receives the process's signals and watches the
+// steps of the other threads (activity.h). It writes a report to standard error and ends the
+// process at once:
 //
-// - with kExitStuck when a thread takes longer than `step_seconds` for a step;
-// - with kExitLate when the process was asked to stop and has not ended in time.
+// - with kExitStuck if a step of a thread takes longer than `step_seconds`;
+// - with kExitLate if the process was asked to stop and has not exited in time.
 //
-// It takes no lock that others hold for longer than a few instructions and waits for nobody, not
-// even for the reader of standard error.
+// It takes no lock that others hold for longer than a few instructions, and it does not block, not
+// even on the reader of standard error.
+//
 // Threads: safe to call concurrently. Uses neither gRPC nor abseil.
 class Watchdog {
  public:
   // `stop` was constructed before any thread, and outlives the watchdog.
   Watchdog(const WatchdogOptions& options, StopSignal& stop);
-  // Takes no more signals. A server's watchdog is never destroyed: it watches until the process is
-  // gone.
+  // Stops receiving signals. A server's watchdog is never destroyed: it watches until the process
+  // has exited.
   ~Watchdog();
   Watchdog(const Watchdog&) = delete;
   Watchdog& operator=(const Watchdog&) = delete;
 
-  // How long the process may take to end from its first signal to stop on. Until this is called:
+  // Sets the maximum time from the first signal to stop until the process exits. The default is
   // hurry_seconds.
   void AllowToStop(double seconds) { stop_seconds_ = seconds; }
 
  private:
   void Run();
-  // Looks at everything, `elapsed` seconds after the last time.
+  // Checks every thread and the deadline, `elapsed` seconds after the previous call.
   void Look(double elapsed);
   double PauseSeconds() const;
   void Take(int signal);
@@ -61,7 +62,7 @@ class Watchdog {
   std::atomic<double> stop_seconds_;
   std::atomic<bool> ended_{false};
 
-  // Of the watchdog's own thread.
+  // Used only by the watchdog's thread.
   common::ThreadStates threads_;
   StepWatch watch_;
   StopDeadline deadline_;
