@@ -13,7 +13,7 @@ namespace {
 constexpr StepKind kOuter{"tester", "outer"};
 constexpr StepKind kInner{"tester", "inner"};
 
-// What the watchdog sees of a thread; nothing if it is not there.
+// The state of a thread as the watchdog reads it; nullopt if there is none.
 std::optional<ThreadState> See(pid_t thread_id) {
   const auto states = std::make_unique<ThreadStates>();
   ReadThreads(states.get());
@@ -23,7 +23,7 @@ std::optional<ThreadState> See(pid_t thread_id) {
   return std::nullopt;
 }
 
-TEST(ActivityTest, AStepIsSeenWhileItLasts) {
+TEST(ActivityTest, StepIsVisibleWhileItLasts) {
   {
     const Step step(kOuter);
     EXPECT_EQ(See(gettid())->step, &kOuter);
@@ -31,7 +31,7 @@ TEST(ActivityTest, AStepIsSeenWhileItLasts) {
   EXPECT_EQ(See(gettid())->step, nullptr);
 }
 
-TEST(ActivityTest, AnInnerStepTakesTheOutersPlaceUntilItEnds) {
+TEST(ActivityTest, NestedStepReplacesTheOuterOneUntilItEnds) {
   const Step outer(kOuter);
   {
     const Step inner(kInner);
@@ -42,7 +42,7 @@ TEST(ActivityTest, AnInnerStepTakesTheOutersPlaceUntilItEnds) {
   EXPECT_EQ(See(gettid())->step, &kOuter);
 }
 
-TEST(ActivityTest, TheBeatChangesWithEachBeginAndEnd) {
+TEST(ActivityTest, BeatChangesAtEachBeginAndEnd) {
   const Step outer(kOuter);
   const auto first = See(gettid())->beat;
   EXPECT_EQ(See(gettid())->beat, first) << "reading is no progress";
@@ -54,7 +54,7 @@ TEST(ActivityTest, TheBeatChangesWithEachBeginAndEnd) {
   EXPECT_NE(See(gettid())->beat, first);
 }
 
-TEST(ActivityTest, AThreadThatHasEndedIsNotSeen) {
+TEST(ActivityTest, EndedThreadIsNotVisible) {
   pid_t thread_id = 0;
   std::thread([&thread_id] {
     const Step step(kOuter);

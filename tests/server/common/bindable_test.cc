@@ -46,14 +46,14 @@ class BoundSocket {
   int port_ = 0;
 };
 
-TEST(BindableTest, AFreePortIs) {
+TEST(BindableTest, FreePortIsBindable) {
   EXPECT_THAT(CheckBindable("127.0.0.1", 0), IsOk());
   EXPECT_THAT(CheckBindable("0.0.0.0", 0), IsOk());
   EXPECT_THAT(CheckBindable("localhost", 0), IsOk());
   EXPECT_THAT(CheckBindable("::", 0), IsOk()) << "with and without IPv6";
 }
 
-TEST(BindableTest, APortThatSomebodyListensOnIsInUse) {
+TEST(BindableTest, PortWithAListenerIsReportedAsInUse) {
   BoundSocket other;
   EXPECT_THAT(CheckBindable("127.0.0.1", other.port()), IsOk()) << "nobody listens yet";
   other.Listen();
@@ -67,13 +67,13 @@ TEST(BindableTest, APortThatSomebodyListensOnIsInUse) {
               StatusIs(absl::StatusCode::kUnavailable, HasSubstr("which is in use")));
 }
 
-TEST(BindableTest, LooksWithoutBeingInTheWay) {
+TEST(BindableTest, CheckDoesNotBlockThePort) {
   BoundSocket server;
   ASSERT_THAT(CheckBindable("127.0.0.1", server.port()), IsOk());
   server.Listen();
 }
 
-TEST(BindableTest, ANameThatDoesNotResolveIsNamed) {
+TEST(BindableTest, ErrorNamesAHostThatDoesNotResolve) {
   // RFC 6761: never resolves.
   EXPECT_THAT(CheckBindable("nowhere.invalid", 1),
               StatusIs(absl::StatusCode::kNotFound,
@@ -81,7 +81,7 @@ TEST(BindableTest, ANameThatDoesNotResolveIsNamed) {
                                   "\"nowhere.invalid\" (")));
 }
 
-TEST(BindableTest, AnAddressOfAnotherMachineIsNamed) {
+TEST(BindableTest, ErrorNamesAnAddressOfAnotherMachine) {
   // RFC 5737: for documentation.
   EXPECT_THAT(CheckBindable("203.0.113.5", 50051),
               StatusIs(absl::StatusCode::kFailedPrecondition,
@@ -90,7 +90,8 @@ TEST(BindableTest, AnAddressOfAnotherMachineIsNamed) {
                              HasSubstr("0.0.0.0"))));
 }
 
-// Ends the process, as a user who may listen on no port below 1024: 0 if the refusal says why.
+// Exits the process as a user who may not listen on ports below 1024: 0 if the error has the
+// reason.
 [[noreturn]] void ListenOnPortOneWithoutRights() {
   constexpr uid_t kNobody = 65534;
   if (geteuid() == 0 && setresuid(kNobody, kNobody, kNobody) != 0) _exit(2);
@@ -104,7 +105,7 @@ TEST(BindableTest, AnAddressOfAnotherMachineIsNamed) {
   _exit(says_why ? 0 : 1);
 }
 
-TEST(BindableTest, APortThatNeedsRightsIsNamed) {
+TEST(BindableTest, ErrorNamesAPrivilegedPort) {
   int first_free_for_all = 0;
   std::ifstream("/proc/sys/net/ipv4/ip_unprivileged_port_start") >> first_free_for_all;
   if (first_free_for_all < 2) {
@@ -114,7 +115,7 @@ TEST(BindableTest, APortThatNeedsRightsIsNamed) {
   EXPECT_EXIT(ListenOnPortOneWithoutRights(), ::testing::ExitedWithCode(0), "");
 }
 
-TEST(BindableTest, AFailureWhoseReasonHasGoneSaysSo) {
+TEST(BindableTest, ReportsThatThePortHasBecomeFree) {
   EXPECT_THAT(ListenFailure("127.0.0.1", 0),
               StatusIs(absl::StatusCode::kUnavailable, HasSubstr("try again")));
 }

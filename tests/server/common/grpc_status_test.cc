@@ -17,7 +17,7 @@ namespace {
 using test::Decode;
 using test::Refusal;
 
-TEST(ToGrpcStatusTest, OkIsOk) { EXPECT_TRUE(ToGrpcStatus(absl::OkStatus()).ok()); }
+TEST(ToGrpcStatusTest, OkStaysOk) { EXPECT_TRUE(ToGrpcStatus(absl::OkStatus()).ok()); }
 
 TEST(ToGrpcStatusTest, KeepsEveryCode) {
   for (int code = 1; code <= 16; ++code) {
@@ -44,10 +44,10 @@ TEST(ToGrpcStatusTest, CarriesEveryDetail) {
   EXPECT_DOUBLE_EQ(refusal.retry_seconds, 1.5);
 }
 
-// Byte for byte what google.rpc's own protos would give, so that any client decodes it:
+// The same bytes as google.rpc's own protos, so that any client decodes them:
 // Status{code: 3, message: "m", details: [Any{type_url, BadRequest{[{field: "f",
 // description: "d"}]}}]}.
-TEST(ToGrpcStatusTest, HasTheWireFormOfGoogleRpc) {
+TEST(ToGrpcStatusTest, DetailsHaveTheWireFormatOfGoogleRpc) {
   absl::Status status = absl::InvalidArgumentError("m");
   AddBadRequest(status, {{"f", "d"}});
   const std::string url = "type.googleapis.com/google.rpc.BadRequest";
@@ -62,7 +62,7 @@ TEST(ToGrpcStatusTest, HasTheWireFormOfGoogleRpc) {
             "\x08\x03\x12\x01m\x1a" + std::string(1, static_cast<char>(any.size())) + any);
 }
 
-// The trailer that tells gRPC's own retries how long to wait.
+// The trailer with the delay for gRPC's built-in retries.
 std::string Pushback(absl::Duration delay) {
   absl::Status status = absl::UnavailableError("later");
   AddRetryInfo(status, delay);
@@ -73,13 +73,13 @@ std::string Pushback(absl::Duration delay) {
   return found == trailers.end() ? "" : found->second;
 }
 
-TEST(AddRetryPushbackTest, TellsTheDelayInMilliseconds) {
+TEST(AddRetryPushbackTest, SendsTheDelayInMilliseconds) {
   EXPECT_EQ(Pushback(absl::Seconds(3)), "3000");
   EXPECT_EQ(Pushback(absl::Milliseconds(250)), "250");
   EXPECT_EQ(Pushback(absl::Milliseconds(1500)), "1500");
 }
 
-TEST(AddRetryPushbackTest, SaysNothingWhereTheStatusHasNoDelay) {
+TEST(AddRetryPushbackTest, SendsNothingWithoutADelay) {
   grpc::ServerContext context;
   AddRetryPushback(absl::UnavailableError("later"), context);
   const grpc::testing::ServerContextTestSpouse seen(&context);

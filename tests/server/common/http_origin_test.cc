@@ -11,7 +11,7 @@ namespace {
 using test::IsOk;
 using test::StatusIs;
 
-TEST(HttpOriginTest, IsASchemeAHostAndAPort) {
+TEST(HttpOriginTest, ParsesSchemeHostAndPort) {
   for (const char* good : {"http://localhost:4317", "http://10.0.0.1:1", "http://my_collector:4317",
                            "http://[::1]:65535", "http://otel-collector.example:4317"}) {
     const absl::StatusOr<HttpOrigin> origin = ParseHttpOrigin(good);
@@ -25,7 +25,7 @@ TEST(HttpOriginTest, IsASchemeAHostAndAPort) {
   EXPECT_EQ(encrypted->authority, "a.example:4317");
 }
 
-TEST(HttpOriginTest, IsNothingElse) {
+TEST(HttpOriginTest, RejectsAnythingElse) {
   for (const char* bad : {"", "a:1", "ftp://a:1", "grpc://a:1", "http://", "http://a", "http://:1",
                           "http://a:", "http://a:0", "http://a:65536", "http://a:+1",
                           "http://a:1/v1/traces", "http://a:1?x", "http://user@a:1", "http://a b:1",

@@ -8,12 +8,12 @@
 namespace duet::server::common {
 namespace {
 
-// The W3C's own example.
+// The example in the W3C recommendation.
 const std::string kTrace = "4bf92f3577b34da6a3ce929d0e0e4736";
 const std::string kParent = "00f067aa0ba902b7";
 const std::string kTraceparent = "00-" + kTrace + "-" + kParent + "-01";
 
-TEST(TraceContextTest, ContinuesTheCallersTraceWithASpanOfItsOwn) {
+TEST(TraceContextTest, ContinuesTheCallersTraceWithANewSpan) {
   const auto context = ContinueTrace(kTraceparent);
   ASSERT_TRUE(context.has_value());
   EXPECT_EQ(context->trace_id, kTrace);
@@ -25,13 +25,13 @@ TEST(TraceContextTest, ContinuesTheCallersTraceWithASpanOfItsOwn) {
   EXPECT_EQ(Traceparent(*context), "00-" + kTrace + "-" + context->span_id + "-01");
 }
 
-TEST(TraceContextTest, TheCallerDecidesWhetherItIsSampled) {
+TEST(TraceContextTest, CallerDecidesOnSampling) {
   EXPECT_FALSE(ContinueTrace("00-" + kTrace + "-" + kParent + "-00")->sampled);
   EXPECT_FALSE(ContinueTrace("00-" + kTrace + "-" + kParent + "-02")->sampled);
   EXPECT_TRUE(ContinueTrace("00-" + kTrace + "-" + kParent + "-ff")->sampled);
 }
 
-TEST(TraceContextTest, WhatIsMalformedIsNoTrace) {
+TEST(TraceContextTest, IgnoresAMalformedTraceparent) {
   for (const std::string& malformed :
        {std::string(), kTraceparent + "0", kTraceparent.substr(1), "01" + kTraceparent.substr(2),
         "00-" + kTrace + "x" + kParent + "-01", "00-" + kTrace + "-" + kParent + "x01",
@@ -43,9 +43,9 @@ TEST(TraceContextTest, WhatIsMalformedIsNoTrace) {
   }
 }
 
-TEST(TraceContextTest, NoTraceHasNoTraceparent) { EXPECT_EQ(Traceparent({}), ""); }
+TEST(TraceContextTest, EmptyTraceHasNoTraceparent) { EXPECT_EQ(Traceparent({}), ""); }
 
-TEST(TraceContextTest, BeginsTracesThatDiffer) {
+TEST(TraceContextTest, NewTracesHaveDifferentIdentifiers) {
   std::set<std::string> ids;
   for (int i = 0; i < 100; ++i) {
     const TraceContext context = BeginTrace(1);
@@ -57,7 +57,7 @@ TEST(TraceContextTest, BeginsTracesThatDiffer) {
   EXPECT_EQ(ids.size(), 100u);
 }
 
-TEST(TraceContextTest, SamplesTheRatio) {
+TEST(TraceContextTest, SamplesTheGivenFraction) {
   int sampled = 0;
   for (int i = 0; i < 10000; ++i) {
     EXPECT_FALSE(BeginTrace(0).sampled);

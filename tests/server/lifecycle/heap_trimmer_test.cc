@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kMegabyte = std::size_t{1} << 20;
 
-// Whether a block of this size is mapped by itself, and so given back as soon as it is freed.
+// Whether a block of this size is mapped individually, so that freeing it returns it to the system.
 bool IsMappedByItself(std::size_t bytes) {
   const std::size_t before = mallinfo2().hblks;
   void* const block = std::malloc(bytes);
@@ -19,10 +19,10 @@ bool IsMappedByItself(std::size_t bytes) {
   return mapped;
 }
 
-TEST(LimitFreeMemoryTest, LargeBlocksAreNeverKept) {
+TEST(LimitFreeMemoryTest, LargeBlocksAreReturnedToTheSystem) {
   LimitFreeMemory();
   EXPECT_TRUE(IsMappedByItself(16 * kMegabyte));
-  // Left to itself the heap would keep blocks up to the largest that it has seen freed.
+  // By default the heap keeps blocks up to the largest size that it has seen freed.
   EXPECT_TRUE(IsMappedByItself(2 * kMegabyte));
   EXPECT_FALSE(IsMappedByItself(kMegabyte / 2));
 }
@@ -33,12 +33,12 @@ class HeapTrimmerTest : public ::testing::Test {
   HeapTrimmer trimmer_{[this] { ++trims_; }};
 };
 
-TEST_F(HeapTrimmerTest, LeavesAnIdleHeapAlone) {
+TEST_F(HeapTrimmerTest, DoesNotTrimAnIdleHeap) {
   for (int i = 0; i < 3; ++i) trimmer_.Look(0, 0);
   EXPECT_EQ(trims_, 0);
 }
 
-TEST_F(HeapTrimmerTest, TrimsWhenLargeRequestsCameAndOnceMore) {
+TEST_F(HeapTrimmerTest, TrimsAfterLargeRequestsAndOnceMore) {
   trimmer_.Look(64 * kMegabyte, 0);
   EXPECT_EQ(trims_, 1);
   trimmer_.Look(64 * kMegabyte, 0);
@@ -47,7 +47,7 @@ TEST_F(HeapTrimmerTest, TrimsWhenLargeRequestsCameAndOnceMore) {
   EXPECT_EQ(trims_, 2);
 }
 
-TEST_F(HeapTrimmerTest, TrimsWhenTheCallThatHeldOneIsOver) {
+TEST_F(HeapTrimmerTest, TrimsWhenACallReleasesALargeRequest) {
   trimmer_.Look(32 * kMegabyte, 32 * kMegabyte);
   trimmer_.Look(32 * kMegabyte, 32 * kMegabyte);
   trimmer_.Look(32 * kMegabyte, 32 * kMegabyte);
@@ -56,14 +56,14 @@ TEST_F(HeapTrimmerTest, TrimsWhenTheCallThatHeldOneIsOver) {
   EXPECT_EQ(trims_, 3);
 }
 
-TEST_F(HeapTrimmerTest, SmallRequestsAreNoReason) {
+TEST_F(HeapTrimmerTest, DoesNotTrimForSmallRequests) {
   trimmer_.Look(0, 9000);
   trimmer_.Look(0, 18000);
   trimmer_.Look(0, 0);
   EXPECT_EQ(trims_, 0);
 }
 
-TEST_F(HeapTrimmerTest, ManySmallOnesThatGoAre) {
+TEST_F(HeapTrimmerTest, TrimsWhenManySmallRequestsAreReleased) {
   for (std::size_t held = 0; held <= 2 * kMegabyte; held += 9000) trimmer_.Look(0, held);
   EXPECT_EQ(trims_, 0);
   trimmer_.Look(0, 0);

@@ -24,7 +24,7 @@ using ::testing::HasSubstr;
 
 using absl::StatusCode;
 
-// A socket that listens on this machine; whether anybody accepts is the test's affair.
+// A listening socket on this machine. The test decides whether to accept.
 class Listener {
  public:
   Listener() : socket_(socket(AF_INET, SOCK_STREAM, 0)) {
@@ -50,7 +50,7 @@ class Listener {
   int port_ = 0;
 };
 
-TEST(CheckListenerTest, AServerThatAnswersIsWell) {
+TEST(CheckListenerTest, AnsweringServerPasses) {
   test::RunningService running;
   const std::string address = running.address();
   const int port = std::stoi(address.substr(address.rfind(':') + 1));
@@ -58,28 +58,28 @@ TEST(CheckListenerTest, AServerThatAnswersIsWell) {
   EXPECT_THAT(CheckListener("0.0.0.0", port, 60), IsOk()) << "every interface, this machine's too";
 }
 
-// What is left of gRPC's listener once it has run out of descriptors.
-TEST(CheckListenerTest, AListenerThatNobodyAcceptsFromIsNot) {
+// Like gRPC's listener after it has run out of descriptors.
+TEST(CheckListenerTest, ListenerThatDoesNotAcceptFails) {
   const Listener listener;
   EXPECT_THAT(CheckListener("127.0.0.1", listener.port(), 0.05),
               StatusIs(StatusCode::kUnavailable, HasSubstr("connected, but nobody answers")));
 }
 
-TEST(CheckListenerTest, AServerThatHangsUpIsThere) {
+TEST(CheckListenerTest, ServerThatClosesTheConnectionPasses) {
   const Listener listener;
   std::thread server([&] { close(listener.Accept()); });
   EXPECT_THAT(CheckListener("127.0.0.1", listener.port(), 60), IsOk());
   server.join();
 }
 
-TEST(CheckListenerTest, APortThatNobodyListensOnIsSaidSo) {
+TEST(CheckListenerTest, ErrorNamesAPortWithoutAListener) {
   Listener listener;
   listener.Close();
   EXPECT_THAT(CheckListener("127.0.0.1", listener.port(), 60),
               StatusIs(StatusCode::kUnavailable, HasSubstr("cannot connect")));
 }
 
-TEST(SelfCheckTest, IsUnhealthyAfterThreeFailuresAndWellAgainAfterASuccess) {
+TEST(SelfCheckTest, UnhealthyAfterThreeFailuresUntilASuccess) {
   std::atomic<bool> well{false};
   std::atomic<int> failures{0};
   SelfCheckOptions options;
@@ -105,7 +105,7 @@ TEST(SelfCheckTest, IsUnhealthyAfterThreeFailuresAndWellAgainAfterASuccess) {
   EXPECT_TRUE(check.passes());
 }
 
-TEST(SelfCheckTest, TwoFailuresInARowAreNoReason) {
+TEST(SelfCheckTest, StaysHealthyAfterTwoFailures) {
   std::atomic<int> checks{0};
   std::atomic<int> unhealthy{0};
   SelfCheckOptions options;

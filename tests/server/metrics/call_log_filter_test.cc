@@ -13,7 +13,7 @@ namespace {
 constexpr int kFull = 8;  // RESOURCE_EXHAUSTED
 constexpr int kWho = 16;  // UNAUTHENTICATED
 
-// Which of so many successes get a line: "x..x..".
+// Which successful calls are logged: "x..x..".
 std::string Successes(double ratio, int calls) {
   CallLogFilter filter(ratio, 0);
   std::string pattern;
@@ -28,7 +28,7 @@ TEST(CallLogFilterTest, SpreadsSuccessesEvenly) {
   EXPECT_EQ(Successes(0, 4), "....");
 }
 
-TEST(CallLogFilterTest, LogsTheFirstRefusalsOfASecondAndCountsTheOthers) {
+TEST(CallLogFilterTest, LogsTheFirstRejectionsOfASecondAndCountsTheRest) {
   CallLogFilter filter(1, 2);
   EXPECT_TRUE(filter.LogRefusal(kFull, 100.0));
   EXPECT_TRUE(filter.LogRefusal(kFull, 100.5));
@@ -42,13 +42,13 @@ TEST(CallLogFilterTest, LogsTheFirstRefusalsOfASecondAndCountsTheOthers) {
   EXPECT_TRUE(filter.TakeUnlogged().empty());
 }
 
-TEST(CallLogFilterTest, AFloodOfOneCodeHidesNoOther) {
+TEST(CallLogFilterTest, LimitsEachCodeSeparately) {
   CallLogFilter filter(1, 1);
   for (int i = 0; i < 100; ++i) filter.LogRefusal(kFull, 5);
   EXPECT_TRUE(filter.LogRefusal(kWho, 5));
 }
 
-TEST(CallLogFilterTest, AClockThatIsSetBackSilencesNothing) {
+TEST(CallLogFilterTest, LogsAfterTheClockIsSetBack) {
   CallLogFilter filter(1, 1);
   EXPECT_TRUE(filter.LogRefusal(kFull, 5000));
   EXPECT_TRUE(filter.LogRefusal(kFull, 10));

@@ -32,21 +32,21 @@ TEST(HttpReplyTest, WaitsForTheEndOfTheHead) {
             "Connection: close\r\n\r\nhello\n");
 }
 
-TEST(HttpReplyTest, WaitsForNoBody) {
+TEST(HttpReplyTest, DoesNotWaitForABody) {
   EXPECT_THAT(Reply("GET /page HTTP/1.1\r\nContent-Length: 99\r\n\r\nab"), EndsWith("hello\n"));
 }
 
-TEST(HttpReplyTest, LeavesAQueryOut) {
+TEST(HttpReplyTest, IgnoresTheQuery) {
   EXPECT_THAT(Reply("GET /page?name[]=duet HTTP/1.0\r\n\r\n"), StartsWith("HTTP/1.1 200 OK"));
 }
 
-TEST(HttpReplyTest, AHeadHasNoBodyButItsLength) {
+TEST(HttpReplyTest, HeadReplyHasTheLengthWithoutTheBody) {
   const std::string reply = Reply("HEAD /page HTTP/1.1\r\n\r\n");
   EXPECT_THAT(reply, HasSubstr("Content-Length: 6\r\n"));
   EXPECT_THAT(reply, Not(HasSubstr("hello")));
 }
 
-TEST(HttpReplyTest, RefusesByTheCodeThatSaysWhy) {
+TEST(HttpReplyTest, RejectsInvalidRequestsWithTheMatchingCode) {
   EXPECT_THAT(Reply("GET /other HTTP/1.1\r\n\r\n"), StartsWith("HTTP/1.1 404 Not Found"));
   EXPECT_THAT(Reply("GET /pag HTTP/1.1\r\n\r\n"), StartsWith("HTTP/1.1 404 Not Found"));
   EXPECT_THAT(Reply("POST /page HTTP/1.1\r\n\r\n"), StartsWith("HTTP/1.1 405"));
@@ -57,7 +57,7 @@ TEST(HttpReplyTest, RefusesByTheCodeThatSaysWhy) {
   EXPECT_THAT(Reply("\r\n\r\n"), StartsWith("HTTP/1.1 400"));
 }
 
-TEST(HttpReplyTest, AHeadWithoutEndIsNotWaitedForForEver) {
+TEST(HttpReplyTest, RejectsAHeadThatIsTooLong) {
   EXPECT_FALSE(HttpReply(std::string(kMaxHttpHeadBytes, 'x'), Pages()).has_value());
   EXPECT_THAT(Reply(std::string(kMaxHttpHeadBytes + 1, 'x')), StartsWith("HTTP/1.1 431"));
 }

@@ -50,7 +50,7 @@ class JsonLogTest : public ::testing::Test {
   JsonLog log_{sink_, [] { return absl::FromUnixMicros(1650000000123456); }};
 };
 
-TEST_F(JsonLogTest, ACallIsOneLineOfJson) {
+TEST_F(JsonLogTest, WritesACallAsOneLineOfJson) {
   log_.CallFinished(Record());
   ASSERT_EQ(sink_.lines.size(), 1u);
   EXPECT_EQ(sink_.lines[0].find('\n'), std::string::npos);
@@ -78,7 +78,7 @@ TEST_F(JsonLogTest, ACallIsOneLineOfJson) {
   EXPECT_EQ(line["total_seconds"], 2);
 }
 
-TEST_F(JsonLogTest, LeavesOutWhatACallDoesNotHave) {
+TEST_F(JsonLogTest, OmitsFieldsThatACallDoesNotHave) {
   CallRecord record;
   record.method = {"duet.v1.MotionSynthesis", "ListModels", "unary"};
   log_.CallFinished(record);
@@ -90,7 +90,7 @@ TEST_F(JsonLogTest, LeavesOutWhatACallDoesNotHave) {
   }
 }
 
-TEST_F(JsonLogTest, ARefusalSaysWhy) {
+TEST_F(JsonLogTest, RejectedCallHasTheReason) {
   CallRecord record = Record();
   record.status = absl::InvalidArgumentError("chunk_frames: is 0");
   log_.CallFinished(record);
@@ -99,7 +99,7 @@ TEST_F(JsonLogTest, ARefusalSaysWhy) {
   EXPECT_EQ(sink_.Last()["message"], "chunk_frames: is 0");
 }
 
-TEST_F(JsonLogTest, AFailureStandsOutAndNamesItsCause) {
+TEST_F(JsonLogTest, ServerFailureIsAnErrorWithItsCause) {
   CallRecord record = Record();
   record.status = absl::InternalError("the model failed");
   record.cause = "INTERNAL: shapes differ";
@@ -115,7 +115,7 @@ TEST_F(JsonLogTest, OverloadIsAWarning) {
   EXPECT_EQ(sink_.Last()["severity"], "WARNING");
 }
 
-TEST_F(JsonLogTest, AnyBytesMakeAValidLine) {
+TEST_F(JsonLogTest, InvalidUtf8BecomesAValidLine) {
   CallRecord record = Record();
   record.status = absl::InvalidArgumentError("a\nb\"c\xff\xfe");
   log_.CallFinished(record);
@@ -130,7 +130,7 @@ TEST_F(JsonLogTest, EventsCarryTheirFields) {
   EXPECT_EQ(sink_.Last()["source"], "sbu/3");
 }
 
-TEST_F(JsonLogTest, ACallSaysWhoMadeItAndInWhichTrace) {
+TEST_F(JsonLogTest, CallHasItsCallerAndTrace) {
   CallRecord record = Record();
   record.caller = "studio";
   record.trace = {"4bf92f3577b34da6a3ce929d0e0e4736", "00f067aa0ba902b7", "", true};
@@ -140,7 +140,7 @@ TEST_F(JsonLogTest, ACallSaysWhoMadeItAndInWhichTrace) {
   EXPECT_EQ(sink_.Last()["span_id"], "00f067aa0ba902b7");
 }
 
-TEST_F(JsonLogTest, LinesBelowTheLevelAreLeftOut) {
+TEST_F(JsonLogTest, OmitsLinesBelowTheLevel) {
   JsonLog log(sink_, absl::Now, {Severity::kWarning, 1, 10});
   log.Info("serving", {});
   log.CallFinished(Record());
@@ -152,7 +152,7 @@ TEST_F(JsonLogTest, LinesBelowTheLevelAreLeftOut) {
   EXPECT_EQ(sink_.lines.size(), 2u);
 }
 
-TEST_F(JsonLogTest, APartOfTheSuccessesSaysWhichPart) {
+TEST_F(JsonLogTest, SampledSuccessesHaveTheRatio) {
   {
     JsonLog log(sink_, absl::Now, {Severity::kInfo, 0.5, 10});
     for (int i = 0; i < 6; ++i) log.CallFinished(Record());
@@ -161,7 +161,7 @@ TEST_F(JsonLogTest, APartOfTheSuccessesSaysWhichPart) {
   EXPECT_EQ(sink_.Last()["sampled_ratio"], 0.5);
 }
 
-TEST_F(JsonLogTest, AFloodOfRefusalsIsToldInOneLineMore) {
+TEST_F(JsonLogTest, ReportsUnloggedRejectionsInOneLine) {
   CallRecord refused = Record();
   refused.status = absl::ResourceExhaustedError("full");
   {
@@ -178,12 +178,12 @@ TEST_F(JsonLogTest, AFloodOfRefusalsIsToldInOneLineMore) {
     EXPECT_EQ(sink_.lines.size(), 3u);
     log.CallFinished(refused);
   }
-  // Its end tells the rest.
+  // The destructor reports the rest.
   ASSERT_EQ(sink_.lines.size(), 4u);
   EXPECT_EQ(sink_.Last()["calls"], 1);
 }
 
-TEST_F(JsonLogTest, AServersOwnFailuresAlwaysHaveALine) {
+TEST_F(JsonLogTest, AlwaysLogsFailuresOfTheServer) {
   JsonLog log(sink_, absl::Now, {Severity::kError, 0, 0});
   CallRecord failed = Record();
   failed.status = absl::InternalError("the model failed");
@@ -191,7 +191,7 @@ TEST_F(JsonLogTest, AServersOwnFailuresAlwaysHaveALine) {
   EXPECT_EQ(sink_.lines.size(), 20u);
 }
 
-TEST_F(JsonLogTest, WhatLibrariesSayCannotFillTheDisk) {
+TEST_F(JsonLogTest, LimitsMessagesOfLibraries) {
   {
     JsonLog log(sink_, [] { return absl::FromUnixSeconds(5); }, {Severity::kInfo, 1, 2});
     for (int i = 0; i < 50; ++i) log.Library("grpc", Severity::kError, "handshake failed");
@@ -206,7 +206,7 @@ TEST_F(JsonLogTest, WhatLibrariesSayCannotFillTheDisk) {
   EXPECT_EQ(sink_.Last()["lines"], 48);
 }
 
-TEST_F(JsonLogTest, AnAdministratorsDoingHasALineWhateverTheLevel) {
+TEST_F(JsonLogTest, AlwaysLogsActionsOfAdministrators) {
   JsonLog log(sink_, absl::Now, {Severity::kError, 0, 0});
   AdminAction action{"ops", "ipv4:10.0.0.1:4711", "id-1", "LoadModel", {{"model", "sbu"}}, {}};
   log.Audit(action);
@@ -224,7 +224,7 @@ TEST_F(JsonLogTest, AnAdministratorsDoingHasALineWhateverTheLevel) {
   EXPECT_EQ(sink_.Last()["message"], "no such model");
 }
 
-TEST(DroppedLinesNoticeTest, IsALineOfTheLog) {
+TEST(DroppedLinesNoticeTest, IsAValidLogLine) {
   const json line = json::parse(DroppedLinesNotice(7, absl::FromUnixMicros(1650000000123456)));
   EXPECT_EQ(line["time"], "2022-04-15T05:20:00.123456Z");
   EXPECT_EQ(line["severity"], "WARNING");

@@ -19,7 +19,7 @@ namespace {
 using test::ReadTestFile;
 using test::TemporaryFolder;
 
-// A disk with room for so many bytes.
+// A disk with room for a given number of bytes.
 class Disk {
  public:
   explicit Disk(std::size_t room) : room_(room) {
@@ -80,7 +80,7 @@ TEST(StreamLogSinkTest, LinesOfManyThreadsStayWhole) {
   }
 }
 
-TEST(StreamLogSinkTest, ALineThatDoesNotFitIsLostAndCounted) {
+TEST(StreamLogSinkTest, CountsALineThatDoesNotFit) {
   Disk disk(4);
   StreamLogSink sink(disk.stream());
   EXPECT_TRUE(sink.Write("one"));
@@ -93,7 +93,7 @@ TEST(StreamLogSinkTest, ALineThatDoesNotFitIsLostAndCounted) {
   EXPECT_EQ(sink.dropped_lines(), 2u);
 }
 
-TEST(StreamLogSinkTest, ALineAfterATornOneBeginsAnew) {
+TEST(StreamLogSinkTest, StartsANewLineAfterAPartlyWrittenOne) {
   Disk disk(6);
   StreamLogSink sink(disk.stream());
   EXPECT_TRUE(sink.Write("one"));
@@ -108,7 +108,7 @@ TEST(StreamLogSinkTest, ALineAfterATornOneBeginsAnew) {
   EXPECT_EQ(disk.text(), "one\ntw\nfive\nsix\n");
 }
 
-TEST(StreamLogSinkTest, AFullDeviceTakesNoLine) {
+TEST(StreamLogSinkTest, LosesEveryLineOnAFullDevice) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> full(std::fopen("/dev/full", "w"),
                                                              &std::fclose);
   ASSERT_NE(full, nullptr);

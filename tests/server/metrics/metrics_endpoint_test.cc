@@ -50,31 +50,31 @@ class MetricsEndpointTest : public ::testing::Test {
   std::unique_ptr<MetricsEndpoint> endpoint_;
 };
 
-TEST_F(MetricsEndpointTest, ServesMetricsAsPrometheusWantsThem) {
+TEST_F(MetricsEndpointTest, ServesMetricsInThePrometheusFormat) {
   const std::string response = Get("/metrics");
   EXPECT_THAT(response, StartsWith("HTTP/1.1 200 OK"));
   EXPECT_THAT(response, HasSubstr("Content-Type: text/plain; version=0.0.4"));
   EXPECT_THAT(response, HasSubstr("\r\n\r\nduet_frames_total 7\n"));
 }
 
-TEST_F(MetricsEndpointTest, IsHealthyUnlessToldOtherwise) {
+TEST_F(MetricsEndpointTest, HealthzReportsHealth) {
   EXPECT_THAT(Get("/healthz"), StartsWith("HTTP/1.1 200 OK"));
   healthy_ = false;
   EXPECT_THAT(Get("/healthz"), StartsWith("HTTP/1.1 503"));
 }
 
-TEST_F(MetricsEndpointTest, IsReadyWhileCallsAreServed) {
+TEST_F(MetricsEndpointTest, ReadyzReportsWhetherCallsAreServed) {
   EXPECT_THAT(Get("/readyz"), StartsWith("HTTP/1.1 503"));
   ready_ = true;
   EXPECT_THAT(Get("/readyz"), StartsWith("HTTP/1.1 200 OK"));
 }
 
-TEST_F(MetricsEndpointTest, HasNothingElse) {
+TEST_F(MetricsEndpointTest, OtherPathsAreNotFound) {
   EXPECT_THAT(Get("/"), StartsWith("HTTP/1.1 404"));
   EXPECT_THAT(Get("/../etc/passwd"), StartsWith("HTTP/1.1 404"));
 }
 
-TEST_F(MetricsEndpointTest, RefusesWhatIsNoRequest) {
+TEST_F(MetricsEndpointTest, RejectsMalformedRequests) {
   EXPECT_THAT(Exchange(endpoint_->port(), "\x16\x03\x01 nonsense\r\n\r\n"),
               StartsWith("HTTP/1.1 400"));
   EXPECT_THAT(Exchange(endpoint_->port(),
@@ -82,7 +82,7 @@ TEST_F(MetricsEndpointTest, RefusesWhatIsNoRequest) {
               StartsWith("HTTP/1.1 4"));
 }
 
-// A client that connects and sends no whole request.
+// A client that connects and sends an incomplete request.
 class Loiterer {
  public:
   Loiterer(int port, const std::string& words) : socket_(socket(AF_INET, SOCK_STREAM, 0)) {
@@ -98,7 +98,7 @@ class Loiterer {
   Loiterer(const Loiterer&) = delete;
   Loiterer& operator=(const Loiterer&) = delete;
 
-  // Whether the server has ended the connection; waits until it says anything at all.
+  // Waits for data or the end of the connection. Returns whether the connection has ended.
   bool IsSentAway() const {
     char byte = 0;
     return recv(socket_, &byte, 1, 0) <= 0;
@@ -108,7 +108,7 @@ class Loiterer {
   const int socket_;
 };
 
-TEST_F(MetricsEndpointTest, NobodyWaitsForWhoeverSaysNothingOrLittle) {
+TEST_F(MetricsEndpointTest, SlowClientsDoNotDelayOthers) {
   std::deque<Loiterer> loiterers;
   for (const char* words : {"", "G", "GET /metr", "GET /healthz HTTP/1.1\r\n", "", "G"}) {
     loiterers.emplace_back(endpoint_->port(), words);
@@ -118,14 +118,14 @@ TEST_F(MetricsEndpointTest, NobodyWaitsForWhoeverSaysNothingOrLittle) {
   }
 }
 
-TEST_F(MetricsEndpointTest, TheOldestMakesRoomForTheNext) {
+TEST_F(MetricsEndpointTest, NewConnectionReplacesTheOldest) {
   std::deque<Loiterer> loiterers;
   for (int i = 0; i < 9; ++i) loiterers.emplace_back(endpoint_->port(), "");
   EXPECT_TRUE(loiterers.front().IsSentAway());
   EXPECT_THAT(Get("/healthz"), StartsWith("HTTP/1.1 200 OK"));
 }
 
-TEST(MetricsEndpointTimeTest, AConnectionLastsOnlySoLong) {
+TEST(MetricsEndpointTimeTest, ConnectionEndsAtItsMaximumDuration) {
   MetricsEndpointOptions options;
   options.host = "127.0.0.1";
   options.connection_seconds = 0.01;
@@ -136,12 +136,12 @@ TEST(MetricsEndpointTimeTest, AConnectionLastsOnlySoLong) {
   EXPECT_TRUE(loiterer.IsSentAway());
 }
 
-TEST_F(MetricsEndpointTest, ALongAnswerArrivesWhole) {
+TEST_F(MetricsEndpointTest, LongReplyArrivesCompletely) {
   text_ = std::string(20'000'000, 'x');
   EXPECT_GT(Get("/metrics").size(), text_.size());
 }
 
-TEST_F(MetricsEndpointTest, ASecondOneOnThePortFailsAndSaysWhere) {
+TEST_F(MetricsEndpointTest, SecondEndpointOnThePortFailsWithTheAddress) {
   MetricsEndpointOptions options;
   options.host = "127.0.0.1";
   options.port = endpoint_->port();

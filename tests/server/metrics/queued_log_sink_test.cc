@@ -20,8 +20,8 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-// A sink that the test stops and fills: it takes no line until it is opened, and loses those that
-// come while it is full.
+// A sink that the test blocks and fills: it accepts no line until it is opened, and loses the lines
+// that arrive while it is full.
 //
 // Threads: safe to call concurrently.
 class PuppetSink final : public LogSink {
@@ -49,7 +49,7 @@ class PuppetSink final : public LogSink {
     common::MutexLock lock(mutex_);
     while (begun_ < writes) changed_.Wait(mutex_);
   }
-  // Waits until so many lines were taken.
+  // Waits until that many lines were accepted.
   void WaitFor(std::size_t lines) {
     common::MutexLock lock(mutex_);
     while (lines_.size() < lines) changed_.Wait(mutex_);
@@ -87,18 +87,18 @@ TEST(QueuedLogSinkTest, PassesOnLinesInOrder) {
   EXPECT_THAT(sink->lines(), ElementsAre("a", "b", "c"));
 }
 
-TEST(QueuedLogSinkTest, NeverWaitsForAStuckSink) {
+TEST(QueuedLogSinkTest, WriteDoesNotBlockOnAStuckSink) {
   const auto sink = std::make_shared<PuppetSink>();
   QueuedLogSink log(sink, Options(2));
   log.Write("stuck");
   sink->WaitUntilBegun(1);
-  for (const char* line : {"a", "b", "lost", "lost"}) log.Write(line);  // comes back each time
+  for (const char* line : {"a", "b", "lost", "lost"}) log.Write(line);  // returns each time
   EXPECT_EQ(log.dropped_lines(), 2u);
   EXPECT_THAT(sink->lines(), IsEmpty());
   sink->Open();
 }
 
-TEST(QueuedLogSinkTest, SaysHowManyLinesWereDroppedWhenTheSinkRecovers) {
+TEST(QueuedLogSinkTest, ReportsDroppedLinesWhenTheSinkRecovers) {
   const auto sink = std::make_shared<PuppetSink>();
   {
     QueuedLogSink log(sink, Options(2));
@@ -113,7 +113,7 @@ TEST(QueuedLogSinkTest, SaysHowManyLinesWereDroppedWhenTheSinkRecovers) {
   EXPECT_THAT(sink->lines(), ElementsAre("stuck", "a", "b", "2 dropped", "c"));
 }
 
-TEST(QueuedLogSinkTest, ASingleLostLineIsSaidAsWell) {
+TEST(QueuedLogSinkTest, ReportsASingleLostLine) {
   const auto sink = std::make_shared<PuppetSink>();
   {
     QueuedLogSink log(sink, Options(2));
@@ -125,7 +125,7 @@ TEST(QueuedLogSinkTest, ASingleLostLineIsSaidAsWell) {
   EXPECT_THAT(sink->lines(), ElementsAre("stuck", "a", "b", "1 dropped"));
 }
 
-TEST(QueuedLogSinkTest, CountsLinesThatTheSinkLosesAndTellsOfThemOnce) {
+TEST(QueuedLogSinkTest, ReportsLinesThatTheSinkLosesOnce) {
   const auto sink = std::make_shared<PuppetSink>();
   sink->Open();
   sink->SetFull(true);
@@ -147,7 +147,7 @@ TEST(QueuedLogSinkTest, CountsLinesThatTheSinkLosesAndTellsOfThemOnce) {
   EXPECT_EQ(dropped, 2u);
 }
 
-TEST(QueuedLogSinkTest, WritesTheLinesLeftBeforeItGoes) {
+TEST(QueuedLogSinkTest, DestructorWritesTheRemainingLines) {
   const auto sink = std::make_shared<PuppetSink>();
   std::thread opener;
   {
@@ -160,7 +160,7 @@ TEST(QueuedLogSinkTest, WritesTheLinesLeftBeforeItGoes) {
   opener.join();
 }
 
-TEST(QueuedLogSinkTest, GivesUpOnASinkThatStaysStuck) {
+TEST(QueuedLogSinkTest, DestructorGivesUpOnAStuckSink) {
   const auto sink = std::make_shared<PuppetSink>();
   {
     QueuedLogSink::Options options = Options(8);
@@ -170,7 +170,7 @@ TEST(QueuedLogSinkTest, GivesUpOnASinkThatStaysStuck) {
     sink->WaitUntilBegun(1);
   }
   EXPECT_THAT(sink->lines(), IsEmpty());
-  sink->Open();  // its thread is still there and ends now
+  sink->Open();  // its thread still exists and ends now
   sink->WaitFor(1);
   EXPECT_THAT(sink->lines(), ElementsAre("stuck"));
 }

@@ -57,7 +57,7 @@ TEST(ServerMetricsTest, SpellsCodesAsGrpcDashboardsExpect) {
   EXPECT_THAT(metrics.Render(), HasSubstr(R"(grpc_code="Unauthenticated")"));
 }
 
-TEST(ServerMetricsTest, MeasuresInSecondsWithHistograms) {
+TEST(ServerMetricsTest, DurationsAreHistogramsInSeconds) {
   ServerMetrics metrics;
   metrics.CallFinished(Record());
   const std::string text = metrics.Render();
@@ -69,7 +69,7 @@ TEST(ServerMetricsTest, MeasuresInSecondsWithHistograms) {
   EXPECT_THAT(text, HasSubstr(R"(duet_frames_total{model="sbu",version="3"} 300)"));
 }
 
-// The upper ends of a histogram's buckets, as Prometheus writes them.
+// The upper bounds of a histogram's buckets in the Prometheus format.
 std::vector<std::string> Buckets(const std::string& text, const std::string& histogram) {
   std::vector<std::string> ends;
   std::istringstream lines(text);
@@ -93,7 +93,7 @@ TEST(ServerMetricsTest, BucketsReachFromAMillisecondToAMinuteAndFromOneWindowToS
                           "1", "2.5", "5", "10", "30", "60", "+Inf"));
 }
 
-TEST(ServerMetricsTest, ARefusalHasNoFirstChunk) {
+TEST(ServerMetricsTest, RejectedCallHasNoFirstChunk) {
   ServerMetrics metrics;
   CallRecord record = Record();
   record.first_chunk_seconds = -1;
@@ -104,13 +104,13 @@ TEST(ServerMetricsTest, ARefusalHasNoFirstChunk) {
   EXPECT_THAT(metrics.Render(), Not(HasSubstr("duet_frames_total{")));
 }
 
-TEST(ServerMetricsTest, LabelsNeverHoldWhatACallerSent) {
+TEST(ServerMetricsTest, LabelsNeverContainTextOfACaller) {
   ServerMetrics metrics;
   metrics.CallFinished(Record());
   EXPECT_THAT(metrics.Render(), Not(HasSubstr("a-request-id")));
 }
 
-TEST(ServerMetricsTest, CountsWindowsAndThoseDropped) {
+TEST(ServerMetricsTest, CountsFinishedAndDroppedWindows) {
   ServerMetrics metrics;
   metrics.WindowFinished(batching::Priority::kBulk, {0.2, 0.04, 1});
   metrics.WindowFinished(batching::Priority::kBulk, {0.2, 0, 0});
@@ -119,7 +119,7 @@ TEST(ServerMetricsTest, CountsWindowsAndThoseDropped) {
   EXPECT_THAT(text, HasSubstr(R"(duet_windows_dropped_total{priority="bulk"} 1)"));
 }
 
-TEST(ServerMetricsTest, MeasuresABatchOnceHoweverManyWindowsItHolds) {
+TEST(ServerMetricsTest, MeasuresEachBatchOnce) {
   ServerMetrics metrics;
   metrics.BatchFinished({0, 0.04, 3});
   for (int i = 0; i < 3; ++i) metrics.WindowFinished(batching::Priority::kBulk, {0.2, 0.04, 3});
@@ -130,7 +130,7 @@ TEST(ServerMetricsTest, MeasuresABatchOnceHoweverManyWindowsItHolds) {
   EXPECT_THAT(text, HasSubstr("duet_batch_size_sum 3\n"));
 }
 
-TEST(ServerMetricsTest, AsksForTheQueueLengthAtEveryScrape) {
+TEST(ServerMetricsTest, ReadsTheQueueLengthAtEveryScrape) {
   ServerMetrics metrics;
   double length = 3;
   metrics.SetQueueLength([&] { return length; });
@@ -150,7 +150,7 @@ TEST(ServerMetricsTest, CountsDroppedLogLines) {
   EXPECT_THAT(metrics.Render(), HasSubstr("# TYPE duet_log_lines_dropped_total counter"));
 }
 
-TEST(ServerMetricsTest, CountsRefusalsByTheirReason) {
+TEST(ServerMetricsTest, CountsRejectionsByReason) {
   ServerMetrics metrics;
   CallRecord record = Record();
   record.status = absl::ResourceExhaustedError("full");
@@ -162,7 +162,7 @@ TEST(ServerMetricsTest, CountsRefusalsByTheirReason) {
   EXPECT_THAT(text, Not(HasSubstr(R"(duet_refusals_total{reason=""})")));
 }
 
-TEST(ServerMetricsTest, CountsCallsOfListedCallersAlone) {
+TEST(ServerMetricsTest, CountsOnlyCallsOfListedCallers) {
   ServerMetrics metrics;
   CallRecord record = Record();
   record.caller = "stranger-7";
@@ -175,7 +175,7 @@ TEST(ServerMetricsTest, CountsCallsOfListedCallersAlone) {
   EXPECT_THAT(text, Not(HasSubstr("stranger-7")));
 }
 
-TEST(ServerMetricsTest, TellsWhatTheServerTakesAndWhatItIs) {
+TEST(ServerMetricsTest, ReportsCapacityAndBuild) {
   ServerMetrics metrics;
   metrics.SetCapacity({128, 64, 2});
   metrics.SetBuild("1.2.3");
@@ -186,7 +186,7 @@ TEST(ServerMetricsTest, TellsWhatTheServerTakesAndWhatItIs) {
   EXPECT_THAT(text, HasSubstr(R"(duet_build_info{version="1.2.3"} 1)"));
 }
 
-TEST(ServerMetricsTest, AsksForModelsAtEveryScrape) {
+TEST(ServerMetricsTest, ReadsModelsAtEveryScrape) {
   ServerMetrics metrics;
   std::vector<ServedVersion> models = {{"sbu", 3, true}, {"k3hi", 1, false}};
   metrics.SetModels([&] { return models; });
@@ -198,7 +198,7 @@ TEST(ServerMetricsTest, AsksForModelsAtEveryScrape) {
   EXPECT_THAT(text, Not(HasSubstr(R"(duet_model_info{model="sbu")")));
 }
 
-TEST(ServerMetricsTest, TellsOfCertificatesAndSpansWhereThereAreAny) {
+TEST(ServerMetricsTest, ReportsCertificatesAndSpansIfConfigured) {
   ServerMetrics metrics;
   EXPECT_THAT(metrics.Render(), Not(HasSubstr("duet_tls_certificate_expiry")));
   EXPECT_THAT(metrics.Render(), Not(HasSubstr("duet_spans_")));
@@ -223,7 +223,7 @@ double Value(const std::string& text, const std::string& metric) {
   return at == std::string::npos ? -1 : std::stod(text.substr(at + metric.size() + 2));
 }
 
-TEST(ServerMetricsTest, TellsOfTheProcess) {
+TEST(ServerMetricsTest, ReportsTheProcess) {
   const std::string text = "\n" + ServerMetrics().Render();
   const double now = static_cast<double>(std::time(nullptr));
   EXPECT_GE(Value(text, "process_cpu_seconds_total"), 0);
@@ -245,7 +245,7 @@ TEST(ServerMetricsTest, CountsOpenDescriptorsExactly) {
   close(opened);
 }
 
-TEST(ServerMetricsTest, TellsWhichCheckpointsAreServed) {
+TEST(ServerMetricsTest, ReportsServedCheckpoints) {
   ServerMetrics metrics;
   metrics.ModelLoaded("sbu/3", 1.5, true, true);
   metrics.ModelLoaded("sbu/4", 0.1, false, false);

@@ -15,18 +15,18 @@ TEST(TextLogSinkTest, PutsTimeSeverityAndEventFirst) {
             "2022-05-01T12:00:00Z INFO    call method=Synthesize frames=300 clean_up=true");
 }
 
-TEST(TextLogSinkTest, QuotesWhatWouldBeTakenForAnotherValue) {
+TEST(TextLogSinkTest, QuotesAmbiguousValues) {
   EXPECT_EQ(ToText(R"({"time":"t","severity":"WARNING","event":"e","a":"two words","b":"x=y",)"
                    R"("c":"","d":"a\nb","e":"ü"})"),
             "t WARNING e a=\"two words\" b=\"x=y\" c=\"\" d=\"a\\nb\" e=\"ü\"");
 }
 
-TEST(TextLogSinkTest, LeavesOtherLinesAlone) {
+TEST(TextLogSinkTest, DoesNotChangeOtherLines) {
   EXPECT_EQ(ToText("not JSON at all"), "not JSON at all");
   EXPECT_EQ(ToText("[1, 2]"), "[1, 2]");
 }
 
-TEST(TextLogSinkTest, HandsOn) {
+TEST(TextLogSinkTest, PassesLinesToTheNextSink) {
   class Sink final : public LogSink {
    public:
     bool Write(std::string_view line) override {

@@ -34,7 +34,7 @@ class AccessControlTest : public ::testing::Test {
   AccessControl access_{clock_};
 };
 
-TEST_F(AccessControlTest, AnyOfACallersTokensIsItsOwn) {
+TEST_F(AccessControlTest, AcceptsEachTokenOfACaller) {
   for (const char* digest : {"digest-1", "digest-2"}) {
     const AccessControl::Decision decision = access_.Decide(Token(digest), Role::kSynthesise);
     EXPECT_EQ(decision.answer, Answer::kAllowed);
@@ -42,23 +42,23 @@ TEST_F(AccessControlTest, AnyOfACallersTokensIsItsOwn) {
   }
 }
 
-TEST_F(AccessControlTest, ACertificatesNameIsEnough) {
+TEST_F(AccessControlTest, AcceptsANameInACertificate) {
   EXPECT_EQ(Ask(Certificate("farm.example")), Answer::kAllowed);
   EXPECT_EQ(Ask({false, "", {"other.example", "farm.example"}}), Answer::kAllowed);
 }
 
-TEST_F(AccessControlTest, NobodyIsRefused) {
+TEST_F(AccessControlTest, RejectsACallWithoutCredentials) {
   EXPECT_EQ(Ask({}), Answer::kNoCredentials);
   EXPECT_EQ(Ask(Token("digest-3")), Answer::kWrongToken);
   EXPECT_EQ(Ask(Token("")), Answer::kWrongToken);
   EXPECT_EQ(Ask(Certificate("stranger.example")), Answer::kUnknownCertificate);
 }
 
-TEST_F(AccessControlTest, AWrongTokenIsRefusedWhateverTheCertificateSays) {
+TEST_F(AccessControlTest, RejectsAWrongTokenDespiteAValidCertificate) {
   EXPECT_EQ(Ask({true, "digest-3", {"farm.example"}}), Answer::kWrongToken);
 }
 
-TEST_F(AccessControlTest, ATokenDecidesWhereThereIsACertificateAsWell) {
+TEST_F(AccessControlTest, TokenOverridesTheCertificate) {
   const auto decision = access_.Decide({true, "digest-1", {"farm.example"}}, Role::kSynthesise);
   EXPECT_EQ(decision.caller->caller.name, "studio");
 }
@@ -69,7 +69,7 @@ TEST_F(AccessControlTest, NeitherRoleIncludesTheOther) {
   EXPECT_EQ(Ask(Token("digest-ops"), Role::kAdmin), Answer::kAllowed);
 }
 
-TEST_F(AccessControlTest, OneCallersCallsTakeNothingFromAnother) {
+TEST_F(AccessControlTest, CallersHaveSeparateLimits) {
   Caller limited = Studio();
   limited.limits.calls_per_second = 2;
   access_.Replace({limited, Farm()});
@@ -82,7 +82,7 @@ TEST_F(AccessControlTest, OneCallersCallsTakeNothingFromAnother) {
   EXPECT_EQ(Ask(Certificate("farm.example")), Answer::kAllowed);
 }
 
-TEST_F(AccessControlTest, AWrongRoleUsesUpNoCalls) {
+TEST_F(AccessControlTest, WrongRoleDoesNotCountAsACall) {
   Caller limited = Studio();
   limited.limits.calls_per_second = 1;
   access_.Replace({limited});
@@ -90,7 +90,7 @@ TEST_F(AccessControlTest, AWrongRoleUsesUpNoCalls) {
   EXPECT_EQ(Ask(Token("digest-1")), Answer::kAllowed);
 }
 
-TEST_F(AccessControlTest, ANewListCountsAtOnce) {
+TEST_F(AccessControlTest, NewListAppliesAtOnce) {
   Caller rotated = Studio();
   rotated.token_digests = {"digest-9"};
   access_.Replace({rotated});
@@ -99,7 +99,7 @@ TEST_F(AccessControlTest, ANewListCountsAtOnce) {
   EXPECT_EQ(Ask(Certificate("farm.example")), Answer::kUnknownCertificate);
 }
 
-TEST_F(AccessControlTest, ANewListForgetsNothingThatIsInUse) {
+TEST_F(AccessControlTest, NewListKeepsTheUsageOfCallers) {
   Caller limited = Studio();
   limited.limits.calls_per_second = 1;
   access_.Replace({limited});
@@ -110,7 +110,7 @@ TEST_F(AccessControlTest, ANewListForgetsNothingThatIsInUse) {
   EXPECT_EQ(access_.Decide(Token("digest-1"), Role::kAdmin).caller->usage->frames(), 50);
 }
 
-TEST_F(AccessControlTest, ListsChangeWhileCallsCome) {
+TEST_F(AccessControlTest, ListCanBeReplacedDuringCalls) {
   std::atomic<int> allowed{0};
   std::vector<std::thread> callers;
   for (int t = 0; t < 3; ++t) {
@@ -123,7 +123,7 @@ TEST_F(AccessControlTest, ListsChangeWhileCallsCome) {
   EXPECT_EQ(allowed.load(), 600);
 }
 
-TEST(ConstantTimeTest, TellsEqualFromDifferent) {
+TEST(ConstantTimeTest, DistinguishesEqualFromDifferentTexts) {
   EXPECT_TRUE(EqualInConstantTime("", ""));
   EXPECT_TRUE(EqualInConstantTime("abc", "abc"));
   EXPECT_FALSE(EqualInConstantTime("abc", "abd"));

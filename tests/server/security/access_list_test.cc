@@ -27,7 +27,7 @@ absl::StatusOr<std::vector<Caller>> Parse(const std::string& text) {
   return ParseAccessList(text, "access");
 }
 
-TEST(AccessListTest, ReadsCallersAndSkipsTheRest) {
+TEST(AccessListTest, ParsesCallersAndSkipsComments) {
   const auto callers =
       Parse(absl::StrCat("# who may call\n\n", "studio-a\tsynthesise  sha256:", kDigestA,
                          " sha256:", kDigestB, " calls_per_second=2.5 frames_in_flight=20000\r\n",
@@ -47,13 +47,13 @@ TEST(AccessListTest, ReadsCallersAndSkipsTheRest) {
   EXPECT_FALSE(ops.limits.frames_in_flight.has_value());
 }
 
-TEST(AccessListTest, ADigestMayBeInCapitals) {
+TEST(AccessListTest, AcceptsDigestsInUpperCase) {
   const auto callers = Parse(absl::StrCat("a synthesise sha256:", std::string(64, 'F')));
   ASSERT_THAT(callers, IsOk());
   EXPECT_THAT(callers->front().token_digests, ElementsAre(std::string(64, 'f')));
 }
 
-TEST(AccessListTest, AListOfNobodyIsAMistake) {
+TEST(AccessListTest, RejectsAListWithoutCallers) {
   for (const char* text : {"", "\n", "# closed\n"}) {
     EXPECT_THAT(Parse(text), StatusIs(kInvalid, StartsWith("access: expected at least one caller, "
                                                            "got none; ")))
@@ -61,7 +61,7 @@ TEST(AccessListTest, AListOfNobodyIsAMistake) {
   }
 }
 
-TEST(AccessListTest, EveryLineThatIsWrongIsReported) {
+TEST(AccessListTest, ReportsEveryWrongLine) {
   const std::string good = absl::StrCat(" synthesise sha256:", kDigestA, "\n");
   EXPECT_THAT(Parse(absl::StrCat("a\nb dance cert:b\n", "c", good, "c", good)),
               StatusIs(kInvalid, AllOf(StartsWith("access:1: expected a name"),
@@ -74,7 +74,7 @@ TEST(AccessListTest, EveryLineThatIsWrongIsReported) {
                                                     Not(HasSubstr("\naccess:21: ")))));
 }
 
-TEST(AccessListTest, CertificateNamesNeedAnAuthorityOfClients) {
+TEST(AccessListTest, RejectsCertificateNamesWithoutClientAuthorities) {
   const std::string text =
       absl::StrCat("a synthesise sha256:", kDigestA, "\n", "b synthesise cert:b.example\n");
   EXPECT_THAT(ParseAccessList(text, "access", {/*certificates=*/true}), IsOk());
@@ -84,7 +84,7 @@ TEST(AccessListTest, CertificateNamesNeedAnAuthorityOfClients) {
                        "\"cert:b.example\"; set tls_client_ca_file, or give b a token"));
 }
 
-TEST(AccessListTest, EveryMistakeNamesItsLine) {
+TEST(AccessListTest, ErrorNamesTheLine) {
   const std::string good = absl::StrCat(" synthesise sha256:", kDigestA);
   const auto refused = [](const std::string& line, const std::string& why) {
     EXPECT_THAT(Parse("#\n" + line),
@@ -110,13 +110,13 @@ TEST(AccessListTest, EveryMistakeNamesItsLine) {
   }
 }
 
-TEST(AccessListTest, ATokenTakenForItsDigestIsNotRepeated) {
+TEST(AccessListTest, ErrorDoesNotRepeatAToken) {
   EXPECT_THAT(Parse("a synthesise sha256:hunter2"),
               StatusIs(kInvalid, AllOf(HasSubstr("got 7 characters"), Not(HasSubstr("hunter2")))));
   EXPECT_THAT(Parse("a synthesise hunter2"), StatusIs(kInvalid, Not(HasSubstr("hunter2"))));
 }
 
-TEST(AccessListTest, NothingIsSharedByTwo) {
+TEST(AccessListTest, RejectsSharedNamesAndCredentials) {
   const std::string first = absl::StrCat("a synthesise cert:x sha256:", kDigestA, "\n");
   EXPECT_THAT(Parse(first + "a synthesise cert:y"), StatusIs(kInvalid, HasSubstr("second time")));
   EXPECT_THAT(Parse(first + "b synthesise cert:x"), StatusIs(kInvalid, HasSubstr("second time")));
@@ -124,7 +124,7 @@ TEST(AccessListTest, NothingIsSharedByTwo) {
               StatusIs(kInvalid, AllOf(HasSubstr("second time"), Not(HasSubstr(kDigestA)))));
 }
 
-TEST(AccessListTest, ThereMayBeAThousand) {
+TEST(AccessListTest, AcceptsAtMostAThousandCallers) {
   std::string text;
   for (int i = 0; i < 1000; ++i) absl::StrAppend(&text, "c", i, " synthesise cert:n", i, "\n");
   EXPECT_THAT(Parse(text), IsOk());

@@ -17,14 +17,14 @@ namespace {
 using std::chrono::milliseconds;
 using test::FakeClock;
 
-TEST(CallerUsageTest, ASecondsWorthOfCallsMayComeAtOnce) {
+TEST(CallerUsageTest, AllowsABurstOfOneSecondsCalls) {
   FakeClock clock;
   CallerUsage usage;
   for (int i = 0; i < 5; ++i) EXPECT_FALSE(usage.TakeCall(5, clock.Now()).has_value()) << i;
   EXPECT_TRUE(usage.TakeCall(5, clock.Now()).has_value());
 }
 
-TEST(CallerUsageTest, ARefusedCallIsToldWhenThereIsRoom) {
+TEST(CallerUsageTest, RejectedCallGetsARetryDelay) {
   FakeClock clock;
   CallerUsage usage;
   for (int i = 0; i < 4; ++i) usage.TakeCall(4, clock.Now());
@@ -36,7 +36,7 @@ TEST(CallerUsageTest, ARefusedCallIsToldWhenThereIsRoom) {
   EXPECT_TRUE(usage.TakeCall(4, clock.Now()).has_value());
 }
 
-TEST(CallerUsageTest, LessThanOneCallASecondIsPossible) {
+TEST(CallerUsageTest, SupportsRatesBelowOnePerSecond) {
   FakeClock clock;
   CallerUsage usage;
   EXPECT_FALSE(usage.TakeCall(0.1, clock.Now()).has_value());
@@ -45,7 +45,7 @@ TEST(CallerUsageTest, LessThanOneCallASecondIsPossible) {
   EXPECT_FALSE(usage.TakeCall(0.1, clock.Now()).has_value());
 }
 
-TEST(CallerUsageTest, ALongPauseSavesUpNoMoreThanASecond) {
+TEST(CallerUsageTest, PauseSavesAtMostOneSecondsCalls) {
   FakeClock clock;
   CallerUsage usage;
   usage.TakeCall(3, clock.Now());
@@ -55,7 +55,7 @@ TEST(CallerUsageTest, ALongPauseSavesUpNoMoreThanASecond) {
   EXPECT_EQ(taken, 3);
 }
 
-TEST(CallerUsageTest, AClockThatWasReadEarlierGivesNothingTwice) {
+TEST(CallerUsageTest, OlderTimeAddsNoCalls) {
   FakeClock clock;
   const common::TimePoint early = clock.Now();
   clock.Advance(milliseconds(1000));
@@ -65,7 +65,7 @@ TEST(CallerUsageTest, AClockThatWasReadEarlierGivesNothingTwice) {
   EXPECT_TRUE(usage.TakeCall(2, clock.Now()).has_value());
 }
 
-TEST(CallerUsageTest, FramesAreHeldUpToTheLimitAndGivenBack) {
+TEST(CallerUsageTest, HoldsFramesUpToTheLimit) {
   const auto usage = std::make_shared<CallerUsage>();
   ASSERT_TRUE(usage->TakeFrames(60, 100));
   FrameLease lease(usage, 60);
@@ -75,7 +75,7 @@ TEST(CallerUsageTest, FramesAreHeldUpToTheLimitAndGivenBack) {
   EXPECT_EQ(usage->frames(), 40);
 }
 
-TEST(CallerUsageTest, ALeaseThatMovesGivesBackOnce) {
+TEST(CallerUsageTest, MovedLeaseReturnsItsFramesOnce) {
   const auto usage = std::make_shared<CallerUsage>();
   ASSERT_TRUE(usage->TakeFrames(60, 100));
   {
@@ -86,7 +86,7 @@ TEST(CallerUsageTest, ALeaseThatMovesGivesBackOnce) {
   EXPECT_EQ(usage->frames(), 0);
 }
 
-TEST(CallerUsageTest, ManyThreadsTakeNoMoreThanThereIs) {
+TEST(CallerUsageTest, ConcurrentCallsDoNotExceedTheLimit) {
   FakeClock clock;
   const auto usage = std::make_shared<CallerUsage>();
   std::atomic<int> calls{0};

@@ -73,7 +73,7 @@ TEST_F(SecretFilesTest, WithoutFilesThereIsNeitherListNorCertificate) {
   EXPECT_THAT(files_->Refresh(), IsEmpty());
 }
 
-TEST_F(SecretFilesTest, WhatMakesNoSenseIsRefusedAtTheStart) {
+TEST_F(SecretFilesTest, RejectsInvalidFilesAtTheStart) {
   UseAccess("nonsense");
   EXPECT_THAT(Open(), StatusIs(absl::StatusCode::kInvalidArgument,
                                AllOf(HasSubstr("access_file: "), HasSubstr("access:1: "))));
@@ -81,7 +81,7 @@ TEST_F(SecretFilesTest, WhatMakesNoSenseIsRefusedAtTheStart) {
   EXPECT_THAT(Open(), StatusIs(absl::StatusCode::kNotFound, HasSubstr("access_file: ")));
 }
 
-TEST_F(SecretFilesTest, EveryMistakeIsReportedAtTheStart) {
+TEST_F(SecretFilesTest, ReportsEveryMistakeAtTheStart) {
   UseAccess("# nobody\n");
   UseTls();
   WriteTestFile(folder_ / "key.pem", second_.private_key);
@@ -98,7 +98,7 @@ TEST_F(SecretFilesTest, EveryMistakeIsReportedAtTheStart) {
                                      HasSubstr("no.ca"))));
 }
 
-TEST_F(SecretFilesTest, AListThatIsEmptiedLeavesTheOldOne) {
+TEST_F(SecretFilesTest, EmptiedListKeepsTheOldOne) {
   UseAccess(Line("a"));
   ASSERT_THAT(Open(), IsOk());
   EXPECT_THAT(files_->state(), IsOk());
@@ -116,7 +116,7 @@ TEST_F(SecretFilesTest, AListThatIsEmptiedLeavesTheOldOne) {
   EXPECT_THAT(files_->state(), IsOk());
 }
 
-TEST_F(SecretFilesTest, CertificateNamesNeedAnAuthorityOfClients) {
+TEST_F(SecretFilesTest, RejectsCertificateNamesWithoutClientAuthorities) {
   UseAccess("a synthesise cert:a.example\n");
   EXPECT_THAT(Open(),
               StatusIs(absl::StatusCode::kInvalidArgument,
@@ -127,7 +127,7 @@ TEST_F(SecretFilesTest, CertificateNamesNeedAnAuthorityOfClients) {
   EXPECT_THAT(Open(), IsOk());
 }
 
-TEST_F(SecretFilesTest, AListThatIsRewrittenCounts) {
+TEST_F(SecretFilesTest, AppliesARewrittenList) {
   UseAccess(Line("a"));
   ASSERT_THAT(Open(), IsOk());
   EXPECT_THAT(files_->Refresh(), IsEmpty());
@@ -141,7 +141,7 @@ TEST_F(SecretFilesTest, AListThatIsRewrittenCounts) {
   EXPECT_THAT(files_->Refresh(), IsEmpty());
 }
 
-TEST_F(SecretFilesTest, AListThatIsBeingWrittenIsLeftAloneUntilItHasSettled) {
+TEST_F(SecretFilesTest, WaitsUntilAListHasSettled) {
   UseAccess(Line("a"));
   UseTls();
   ASSERT_THAT(Open(), IsOk());
@@ -162,8 +162,8 @@ TEST_F(SecretFilesTest, AListThatIsBeingWrittenIsLeftAloneUntilItHasSettled) {
   EXPECT_THAT(files_->Look(), IsEmpty());
 }
 
-TEST_F(SecretFilesTest, AListBehindALinkThatMovesCounts) {
-  // As Kubernetes mounts a secret: file -> ..data/file, ..data -> a folder of the day.
+TEST_F(SecretFilesTest, AppliesAListBehindAMovedLink) {
+  // As Kubernetes mounts a secret: file -> ..data/file, ..data -> a dated folder.
   for (const char* day : {"monday", "tuesday"}) {
     fs::create_directory(folder_ / day);
     WriteTestFile(folder_ / day / "access", Line(day));
@@ -180,7 +180,7 @@ TEST_F(SecretFilesTest, AListBehindALinkThatMovesCounts) {
   EXPECT_FALSE(Knows("monday"));
 }
 
-TEST_F(SecretFilesTest, AListThatMakesNoSenseIsReportedOnceAndTheOldOneCountsOn) {
+TEST_F(SecretFilesTest, ReportsAnInvalidListOnceAndKeepsTheOldOne) {
   UseAccess(Line("a"));
   ASSERT_THAT(Open(), IsOk());
   WriteTestFile(options_.access, Line("b") + "nonsense\n");
@@ -202,7 +202,7 @@ TEST_F(SecretFilesTest, AListThatMakesNoSenseIsReportedOnceAndTheOldOneCountsOn)
   EXPECT_TRUE(Knows("b"));
 }
 
-TEST_F(SecretFilesTest, ACertificateCountsOnceItsKeyIsThereToo) {
+TEST_F(SecretFilesTest, AppliesACertificateOnlyWithItsKey) {
   UseTls();
   ASSERT_THAT(Open(), IsOk());
   EXPECT_EQ(Shown(), first_.certificate);
@@ -220,7 +220,7 @@ TEST_F(SecretFilesTest, ACertificateCountsOnceItsKeyIsThereToo) {
   EXPECT_EQ(Shown(), second_.certificate);
 }
 
-TEST_F(SecretFilesTest, ACertificateThatIsNoLongerValidReplacesNone) {
+TEST_F(SecretFilesTest, ExpiredCertificateIsNotApplied) {
   UseTls();
   ASSERT_THAT(Open(), IsOk());
   const absl::Time end = files_->certificate_end();

@@ -30,21 +30,21 @@ class TlsMaterialTest : public ::testing::Test {
   TlsMaterial material_{server_.certificate, server_.private_key, authority_.certificate};
 };
 
-TEST_F(TlsMaterialTest, SaysUntilWhenACertificateIsValid) {
+TEST_F(TlsMaterialTest, ReturnsTheEndOfTheValidity) {
   const absl::StatusOr<absl::Time> until = Check();
   ASSERT_THAT(until, IsOk());
   EXPECT_GT(*until, absl::Now() + absl::Minutes(20));
   EXPECT_LT(*until, absl::Now() + absl::Minutes(40));
 }
 
-TEST_F(TlsMaterialTest, AChainsFirstCertificateCounts) {
+TEST_F(TlsMaterialTest, ChecksTheFirstCertificateOfAChain) {
   material_.certificate_chain += authority_.certificate;
   EXPECT_THAT(Check(), IsOk());
   material_.certificate_chain = authority_.certificate + server_.certificate;
   EXPECT_THAT(Check(), StatusIs(kInvalid, HasSubstr("got another certificate's key")));
 }
 
-TEST_F(TlsMaterialTest, WhatIsNoPemIsNamed) {
+TEST_F(TlsMaterialTest, ErrorNamesTheFileThatIsNotPem) {
   for (const char* nonsense : {"", "nonsense", "-----BEGIN CERTIFICATE-----\nAAAA\n"}) {
     TlsMaterial material = material_;
     material.certificate_chain = nonsense;
@@ -59,7 +59,7 @@ TEST_F(TlsMaterialTest, WhatIsNoPemIsNamed) {
   EXPECT_THAT(Check(), StatusIs(kInvalid, HasSubstr("tls_client_ca_file: expected PEM")));
 }
 
-TEST_F(TlsMaterialTest, ACertificateOfAnotherTimeIsRefused) {
+TEST_F(TlsMaterialTest, RejectsACertificateThatIsNotValidNow) {
   for (const TestCertificateOptions& time : {TestCertificateOptions{&authority_, -7200, -3600},
                                              TestCertificateOptions{&authority_, 3600, 7200}}) {
     const TestCertificate other = MakeTestCertificate("duet.test", time);
@@ -69,7 +69,7 @@ TEST_F(TlsMaterialTest, ACertificateOfAnotherTimeIsRefused) {
   }
 }
 
-TEST_F(TlsMaterialTest, AFileThatIsNotThereIsNamedWithItsSetting) {
+TEST_F(TlsMaterialTest, ErrorNamesAMissingFileAndItsSetting) {
   const TemporaryFolder folder;
   WriteTestFile(folder / "cert.pem", "c");
   WriteTestFile(folder / "key.pem", "k");
@@ -82,7 +82,7 @@ TEST_F(TlsMaterialTest, AFileThatIsNotThereIsNamedWithItsSetting) {
               StatusIs(absl::StatusCode::kNotFound, HasSubstr("tls_key_file: ")));
 }
 
-TEST_F(TlsMaterialTest, AnEmptyFileOfAuthoritiesDoesNotOpenTheDoor) {
+TEST_F(TlsMaterialTest, RejectsAnEmptyFileOfAuthorities) {
   const TemporaryFolder folder;
   for (const char* name : {"cert.pem", "key.pem"}) WriteTestFile(folder / name, "x");
   WriteTestFile(folder / "ca.pem", "");

@@ -8,7 +8,7 @@
 
 namespace duet::test {
 
-// A clock that moves only when a test says so.
+// A clock that only the test advances.
 //
 // Threads: safe to call concurrently.
 class FakeClock final : public server::common::Clock {

@@ -27,7 +27,7 @@ class GatedModel {
     open_ = true;
     changed_.NotifyAll();
   }
-  // Evaluations that were begun.
+  // Number of evaluations that have begun.
   int started() {
     server::common::MutexLock lock(mutex_);
     return started_;

@@ -5,11 +5,11 @@
 
 namespace duet::test {
 
-// Sends bytes to a port of this machine and returns all that comes back until it closes. Shares no
-// code with the server's HTTP library.
+// Sends bytes to a port of this machine and returns everything received until the connection
+// closes. Shares no code with the server's HTTP.
 std::string Exchange(int port, const std::string& request);
 
-// A whole HTTP response to GET, headers and body.
+// Returns the whole HTTP response to a GET, headers and body.
 std::string HttpGet(int port, const std::string& path);
 
 }  // namespace duet::test

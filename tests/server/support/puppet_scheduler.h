@@ -12,7 +12,7 @@
 
 namespace duet::test {
 
-// A WindowScheduler by which a test decides when each window is evaluated, on the test's thread.
+// A WindowScheduler with which a test decides when each window is evaluated, on the test's thread.
 //
 // Threads: safe to call concurrently.
 class PuppetScheduler final : public server::batching::WindowScheduler {
@@ -22,18 +22,19 @@ class PuppetScheduler final : public server::batching::WindowScheduler {
   absl::Status CheckRoom(server::batching::Priority priority,
                          const std::string& client) const override;
 
-  // From now on Submit and CheckRoom refuse with this.
+  // Makes Submit and CheckRoom fail with this status.
   void Refuse(absl::Status status);
 
-  // Waits for a job and evaluates the oldest, or drops it as cancelled. True when it was evaluated.
+  // Waits for a job and evaluates the oldest, or drops it if cancelled. Returns whether it was
+  // evaluated.
   bool RunNext();
   // Waits for a job and ends the oldest with an error.
   void FailNext(absl::Status status);
-  // Waits until so many jobs are there. A test that waits in vain runs into its time limit.
+  // Waits until there are that many jobs. A test that waits in vain reaches its timeout.
   void WaitForJobs(std::size_t count);
 
   std::size_t queued_windows() const override;
-  // Looks at the oldest job's field. There is one.
+  // Reads a field of the oldest job. There must be one.
   server::batching::Priority NextPriority() const;
   server::common::TimePoint NextDeadline() const;
   int NextCallWindows() const;

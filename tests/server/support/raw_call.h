@@ -13,7 +13,7 @@
 
 namespace duet::test {
 
-// A call with hand-written messages, to services whose protos are not at hand. Ends after
+// A call with hand-written messages, for services whose protos are not available. Ends after
 // kCallLimit.
 class RawCall {
  public:
@@ -22,7 +22,7 @@ class RawCall {
           const std::string& message);
   ~RawCall();
 
-  // The next message; nothing at the end.
+  // Returns the next message, or nullopt at the end.
   std::optional<std::string> Read();
   // Ends the call early.
   void Cancel() { context_.TryCancel(); }
@@ -37,7 +37,8 @@ class RawCall {
   std::unique_ptr<grpc::GenericClientAsyncReaderWriter> call_;
 };
 
-// What Google's health service says of a service: "SERVING", "NOT_SERVING", or the call's error.
+// Returns the status of a service in gRPC's health service: "SERVING", "NOT_SERVING", or the call's
+// error.
 std::string Health(const std::shared_ptr<grpc::Channel>& channel, const std::string& service);
 
 }  // namespace duet::test

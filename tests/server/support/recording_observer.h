@@ -9,7 +9,7 @@
 
 namespace duet::test {
 
-// Remembers every finished call.
+// Records every finished call.
 //
 // Threads: safe to call concurrently.
 class RecordingObserver final : public server::metrics::CallObserver {
@@ -32,7 +32,7 @@ class RecordingObserver final : public server::metrics::CallObserver {
     server::common::MutexLock lock(mutex_);
     return records_;
   }
-  // Waits until so many calls are over; returns the last of them.
+  // Waits until that many calls have finished. Returns the last of them.
   server::metrics::CallRecord WaitFor(std::size_t count) {
     server::common::MutexLock lock(mutex_);
     while (records_.size() < count) changed_.Wait(mutex_);

@@ -12,7 +12,7 @@
 
 namespace duet::test {
 
-// A refusal as a client decodes it.
+// A rejection as a client decodes it.
 struct Refusal {
   absl::StatusCode code = absl::StatusCode::kOk;
   std::string message;
@@ -26,10 +26,10 @@ struct Refusal {
   std::vector<std::string> Fields() const;
 };
 
-// Reads google.rpc details from a status that came over the wire. A test failure when they are
-// malformed or contradict the status.
+// Decodes the google.rpc details of a status from the wire. Fails the test if they are malformed or
+// contradict the status.
 Refusal Decode(const grpc::Status& status);
-// The same for a status before it went onto the wire.
+// Does the same for a status that has not been sent.
 Refusal Decode(const absl::Status& status);
 
 }  // namespace duet::test

@@ -7,7 +7,8 @@
 
 namespace duet::test {
 
-// Far longer than any call of a test takes: what never ends fails its test instead of hanging it.
+// Far longer than any call of a test takes: a call that never ends fails its test instead of
+// hanging it.
 inline constexpr std::chrono::seconds kCallLimit(60);
 
 // Gives a call a deadline.
@@ -15,7 +16,7 @@ inline void LimitCall(grpc::ClientContext& context) {
   context.set_deadline(std::chrono::system_clock::now() + kCallLimit);
 }
 
-// A client's context with that deadline, unless the test sets one of its own.
+// A client's context with that deadline, unless the test sets another one.
 class TimedContext final : public grpc::ClientContext {
  public:
   TimedContext() { LimitCall(*this); }

@@ -38,7 +38,7 @@ Span Convert(const metrics::CallRecord& record) {
   return ToSpan(record, absl::FromUnixNanos(kEnd));
 }
 
-TEST(ToSpanTest, TellsWhenWhatAndWhere) {
+TEST(ToSpanTest, HasTimesAttributesAndTrace) {
   const Span span = Convert(Record());
   EXPECT_EQ(span.name, "duet.v1.MotionSynthesis/Synthesize");
   EXPECT_EQ(span.trace.span_id, "00f067aa0ba902b7");
@@ -59,7 +59,7 @@ TEST(ToSpanTest, TellsWhenWhatAndWhere) {
   EXPECT_EQ(attribute("duet.caller"), AttributeValue(std::string("absent")));
 }
 
-TEST(ToSpanTest, OnlyTheServersFaultsAreErrors) {
+TEST(ToSpanTest, OnlyErrorsOfTheServerAreFailures) {
   metrics::CallRecord record = Record();
   record.status = absl::InvalidArgumentError("chunk_frames: is 0");
   EXPECT_FALSE(Convert(record).failed);
@@ -68,7 +68,7 @@ TEST(ToSpanTest, OnlyTheServersFaultsAreErrors) {
   EXPECT_EQ(Convert(record).message, "the model failed");
 }
 
-TEST(CallTracerTest, SendsSpansOfSampledTracesAlone) {
+TEST(CallTracerTest, SendsOnlySpansOfSampledTraces) {
   std::vector<Span> sent;
   {
     SpanQueue::Options queue;
@@ -85,7 +85,7 @@ TEST(CallTracerTest, SendsSpansOfSampledTracesAlone) {
   EXPECT_EQ(sent.size(), 1u);
 }
 
-TEST(CallTracerTest, AnEndpointIsAUrlOfAHostAndAPort) {
+TEST(CallTracerTest, RejectsAnInvalidEndpoint) {
   for (const char* good : {"http://localhost:4317", "https://collector.example:4317"}) {
     EXPECT_THAT(CallTracer::Open(good, "1"), IsOk()) << good;
   }

@@ -11,10 +11,10 @@
 namespace duet::server::tracing {
 namespace {
 
-// Far longer than anything here takes: what never comes fails its test instead of hanging it.
+// Far longer than anything here takes: a missing event fails its test instead of hanging it.
 constexpr std::chrono::seconds kLongestWait(60);
 
-// A collector that waits at a gate, and takes what comes or refuses it.
+// A collector that blocks until the test opens it, and accepts or rejects spans.
 class Collector {
  public:
   explicit Collector(bool open = true, bool takes = true) : open_(open), takes_(takes) {}
@@ -86,7 +86,7 @@ SpanQueue::Options To(Collector& collector, std::size_t capacity, std::size_t ba
 constexpr std::chrono::hours kNever(24);
 constexpr std::chrono::milliseconds kSoon(1);
 
-TEST(SpanQueueTest, AFullBatchGoesAtOnce) {
+TEST(SpanQueueTest, SendsAFullBatchAtOnce) {
   Collector collector;
   SpanQueue queue(To(collector, 100, 2, kNever));
   queue.Add(Named("a"));
@@ -95,14 +95,14 @@ TEST(SpanQueueTest, AFullBatchGoesAtOnce) {
   EXPECT_EQ(collector.names(), (std::vector<std::string>{"a", "b"}));
 }
 
-TEST(SpanQueueTest, ASmallBatchGoesAfterAWhile) {
+TEST(SpanQueueTest, SendsASmallBatchAfterTheInterval) {
   Collector collector;
   SpanQueue queue(To(collector, 100, 50, kSoon));
   queue.Add(Named("a"));
   collector.WaitForSpans(1);
 }
 
-TEST(SpanQueueTest, TheEndSendsWhatIsLeftInBatches) {
+TEST(SpanQueueTest, DestructorSendsTheRemainingSpansInBatches) {
   Collector collector;
   {
     SpanQueue queue(To(collector, 100, 50, kNever));
@@ -111,7 +111,7 @@ TEST(SpanQueueTest, TheEndSendsWhatIsLeftInBatches) {
   EXPECT_EQ(collector.sizes(), (std::vector<std::size_t>{49}));
 }
 
-TEST(SpanQueueTest, WhatFindsTheQueueFullIsDroppedAndCountedWithoutWaiting) {
+TEST(SpanQueueTest, FullQueueDropsAndCountsSpansWithoutBlocking) {
   Collector collector(/*open=*/false);
   SpanQueue queue(To(collector, 3, 1, kNever));
   queue.Add(Named("first"));
@@ -122,7 +122,7 @@ TEST(SpanQueueTest, WhatFindsTheQueueFullIsDroppedAndCountedWithoutWaiting) {
   collector.WaitForSpans(4);
 }
 
-TEST(SpanQueueTest, ACollectorThatIsAwayHoldsUpNothing) {
+TEST(SpanQueueTest, UnreachableCollectorDoesNotDelayTheEnd) {
   Collector collector(/*open=*/true, /*takes=*/false);
   {
     SpanQueue queue(To(collector, 100, 1, kNever));
@@ -140,7 +140,7 @@ TEST(SpanQueueTest, ACollectorThatIsAwayHoldsUpNothing) {
   EXPECT_EQ(away.sizes().size(), 1u);
 }
 
-TEST(SpanQueueTest, ManyThreadsLoseNothing) {
+TEST(SpanQueueTest, ConcurrentSpansAreAllSent) {
   Collector collector;
   {
     SpanQueue queue(To(collector, 10000, 64, kSoon));

@@ -11,7 +11,7 @@ namespace {
 constexpr common::StepKind kEvaluating{"worker", "evaluating"};
 constexpr common::StepKind kLoading{"loader", "loading", /*is_bounded=*/false};
 
-// Threads as a test has them.
+// Threads that a test sets up.
 class StepWatchTest : public ::testing::Test {
  protected:
   void Look(double elapsed) { watch_->Look(*threads_, elapsed); }
@@ -26,7 +26,7 @@ class StepWatchTest : public ::testing::Test {
   const std::unique_ptr<StepWatch> watch_ = std::make_unique<StepWatch>();
 };
 
-TEST_F(StepWatchTest, CountsTheTimeOfAStepThatGoesOn) {
+TEST_F(StepWatchTest, MeasuresAStepInProgress) {
   (*threads_)[3] = {77, &kEvaluating, 1};
   Look(1);
   EXPECT_EQ(watch_->longest().seconds, 0) << "it may have begun just now";
@@ -37,11 +37,11 @@ TEST_F(StepWatchTest, CountsTheTimeOfAStepThatGoesOn) {
   EXPECT_EQ(watch_->longest().step, &kEvaluating);
 }
 
-TEST_F(StepWatchTest, ABeatBeginsAnew) {
+TEST_F(StepWatchTest, NewBeatRestartsTheTime) {
   (*threads_)[0] = {77, &kEvaluating, 1};
   Look(1);
   Look(2);
-  (*threads_)[0].beat = 2;  // the same kind of step, another one
+  (*threads_)[0].beat = 2;  // another step of the same kind
   Look(4);
   EXPECT_EQ(watch_->longest().seconds, 0);
   Look(1);
@@ -56,7 +56,7 @@ TEST_F(StepWatchTest, AnIdleThreadIsNeverStuck) {
   EXPECT_TRUE(Busy(0, /*every=*/true).empty());
 }
 
-TEST_F(StepWatchTest, AnotherThreadInTheSamePlaceBeginsAnew) {
+TEST_F(StepWatchTest, NewThreadInTheSameSlotRestartsTheTime) {
   (*threads_)[0] = {77, &kEvaluating, 1};
   Look(1);
   Look(9);
@@ -65,7 +65,7 @@ TEST_F(StepWatchTest, AnotherThreadInTheSamePlaceBeginsAnew) {
   EXPECT_EQ(watch_->longest().seconds, 0);
 }
 
-TEST_F(StepWatchTest, TheLongestIsOfABoundedStep) {
+TEST_F(StepWatchTest, LongestIgnoresUnboundedSteps) {
   (*threads_)[0] = {77, &kLoading, 1};
   (*threads_)[1] = {78, nullptr, 1};
   Look(1);

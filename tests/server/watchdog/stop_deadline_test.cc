@@ -8,14 +8,14 @@ namespace {
 constexpr double kStop = 40;
 constexpr double kHurry = 10;
 
-TEST(StopDeadlineTest, IsNeverOverUnlessAsked) {
+TEST(StopDeadlineTest, NeverExpiresWithoutASignal) {
   StopDeadline deadline;
   deadline.Pass(1e9);
   EXPECT_FALSE(deadline.asked());
   EXPECT_FALSE(deadline.IsOver(0, 0));
 }
 
-TEST(StopDeadlineTest, TheFirstSignalAllowsDrainAndGrace) {
+TEST(StopDeadlineTest, FirstSignalAllowsDrainAndGrace) {
   StopDeadline deadline;
   deadline.Pass(1000);
   deadline.Asked();
@@ -25,7 +25,7 @@ TEST(StopDeadlineTest, TheFirstSignalAllowsDrainAndGrace) {
   EXPECT_TRUE(deadline.IsOver(kStop, kHurry));
 }
 
-TEST(StopDeadlineTest, TheSecondSignalCutsThemShort) {
+TEST(StopDeadlineTest, SecondSignalShortensTheDeadline) {
   StopDeadline deadline;
   deadline.Asked();
   deadline.Pass(5);
@@ -36,7 +36,7 @@ TEST(StopDeadlineTest, TheSecondSignalCutsThemShort) {
   EXPECT_TRUE(deadline.IsOver(kStop, kHurry));
 }
 
-TEST(StopDeadlineTest, FurtherSignalsProlongNothing) {
+TEST(StopDeadlineTest, FurtherSignalsDoNotExtendTheDeadline) {
   StopDeadline deadline;
   for (int i = 0; i < 11; ++i) {
     deadline.Asked();
@@ -45,7 +45,7 @@ TEST(StopDeadlineTest, FurtherSignalsProlongNothing) {
   EXPECT_TRUE(deadline.IsOver(kStop, kHurry)) << "ten seconds since the second";
 }
 
-TEST(StopDeadlineTest, ASecondSignalDoesNotProlongTheFirst) {
+TEST(StopDeadlineTest, SecondSignalDoesNotExtendTheDeadline) {
   StopDeadline deadline;
   deadline.Asked();
   deadline.Pass(39);

@@ -31,7 +31,7 @@ constexpr double kNever = 1e6;
   while (true) pause();
 }
 
-// Begins a thread that holds a lock and never returns.
+// Starts a thread that holds a lock and never returns.
 void BlockIn(const common::StepKind& kind) {
   std::thread([&kind] {
     common::Mutex& mutex = *new common::Mutex;
@@ -41,12 +41,12 @@ void BlockIn(const common::StepKind& kind) {
   }).detach();
 }
 
-// Each test ends a process of its own, in which no other thread has begun.
+// Each test ends a process of its own, in which no other thread has started.
 class WatchdogDeathTest : public ::testing::Test {
  protected:
   void SetUp() override { GTEST_FLAG_SET(death_test_style, "threadsafe"); }
 
-  // The process under test, but for what ends it. Nothing is destroyed.
+  // The process under test, without the event that ends it. Nothing is destroyed.
   static Watchdog& Begin(const WatchdogOptions& options) {
     stop = new StopSignal;
     return *new Watchdog(options, *stop);
@@ -62,7 +62,7 @@ class WatchdogDeathTest : public ::testing::Test {
   static inline StopSignal* stop = nullptr;
 };
 
-TEST_F(WatchdogDeathTest, AThreadThatIsStuckEndsTheProcess) {
+TEST_F(WatchdogDeathTest, StuckThreadEndsTheProcess) {
   const auto process = [] {
     Begin(Options(kSoon, kNever));
     common::ProcessVitals().calls = 3;
@@ -76,7 +76,7 @@ TEST_F(WatchdogDeathTest, AThreadThatIsStuckEndsTheProcess) {
                     HasSubstr("\"exit_code\":3}\n")));
 }
 
-TEST_F(WatchdogDeathTest, LinesForPeopleHaveNoBraces) {
+TEST_F(WatchdogDeathTest, TextLogHasNoJson) {
   const auto process = [] {
     Begin(Options(kSoon, kNever, /*text=*/true));
     BlockIn(kWorking);
@@ -88,7 +88,7 @@ TEST_F(WatchdogDeathTest, LinesForPeopleHaveNoBraces) {
                     HasSubstr(" exit_code=3\n")));
 }
 
-TEST_F(WatchdogDeathTest, ALogThatNobodyReadsDoesNotMatter) {
+TEST_F(WatchdogDeathTest, EndsEvenIfNobodyReadsTheLog) {
   const auto process = [] {
     int ends[2];
     if (pipe(ends) != 0 || dup2(ends[1], STDERR_FILENO) < 0) std::abort();
@@ -104,7 +104,7 @@ TEST_F(WatchdogDeathTest, ALogThatNobodyReadsDoesNotMatter) {
   EXPECT_EXIT(process(), ExitedWithCode(kExitStuck), "");
 }
 
-TEST_F(WatchdogDeathTest, AProcessThatDoesNotStopInTimeEnds) {
+TEST_F(WatchdogDeathTest, EndsAProcessThatDoesNotStopInTime) {
   const auto process = [] {
     Begin(Options(/*step_seconds=*/0, kSoon));
     BlockIn(kLoading);
@@ -116,7 +116,7 @@ TEST_F(WatchdogDeathTest, AProcessThatDoesNotStopInTimeEnds) {
                     HasSubstr(R"("event":"stopped_late")"), HasSubstr("\"exit_code\":4}\n")));
 }
 
-TEST_F(WatchdogDeathTest, ASecondSignalCutsTheTimeToStopShort) {
+TEST_F(WatchdogDeathTest, SecondSignalShortensTheTimeToStop) {
   const auto process = [] {
     Begin(Options(/*step_seconds=*/0, kSoon)).AllowToStop(kNever);
     for (int i = 0; i < 2; ++i) {
@@ -128,7 +128,7 @@ TEST_F(WatchdogDeathTest, ASecondSignalCutsTheTimeToStopShort) {
   EXPECT_EXIT(process(), ExitedWithCode(kExitLate), HasSubstr("stopped_late"));
 }
 
-TEST_F(WatchdogDeathTest, StepsWithoutABoundMayLastForEver) {
+TEST_F(WatchdogDeathTest, UnboundedStepsAreNeverStuck) {
   const auto process = [] {
     Begin(Options(kSoon, kNever));
     BlockIn(kLoading);
@@ -145,7 +145,7 @@ TEST_F(WatchdogDeathTest, StepsWithoutABoundMayLastForEver) {
                     ::testing::Not(HasSubstr("loader"))));
 }
 
-TEST(WatchdogTest, ADestroyedWatchdogEndsNothing) {
+TEST(WatchdogTest, DestroyedWatchdogDoesNotEndTheProcess) {
   StopSignal stop;
   const Watchdog watchdog({}, stop);
 }
