@@ -13,54 +13,50 @@
 #include "duet/v1/server_config.pb.h"
 #include "model/messages/field_places.h"
 #include "server/config/environment.h"
-#include "server/config/server_options.h"
 #include "server/config/setting_sources.h"
+#include "server/config/settings.h"
+#include "server/config/task.h"
 
 namespace duet::server::config {
 
-// Parses a configuration file's text: JSON or text format. Unknown fields are refused.
-// Fails with INVALID_ARGUMENT saying where and why.
+// Parses the text of a configuration file: JSON or text format. Unknown fields are rejected.
+// Fails with INVALID_ARGUMENT, the place and the reason.
 absl::StatusOr<v1::ServerConfig> ParseConfigText(std::string_view text, bool json);
 
-// Replaces `config` by what a configuration file says, where it fails by what could be read of it;
-// ".json" is JSON, anything else text format. `places` receives where the file sets what.
-// Fails with NOT_FOUND, or INVALID_ARGUMENT with one line for each thing that is wrong; each line
-// names the file.
+// Replaces `config` by the content of a configuration file: JSON if its name ends in ".json",
+// otherwise text format. `places` receives the place of each field that the file sets. After a
+// failure `config` has the fields that could be read.
+// Fails with NOT_FOUND, or with INVALID_ARGUMENT and one line for each mistake; each line names the
+// file.
 absl::Status ReadConfigFile(const std::filesystem::path& path, v1::ServerConfig* config,
                             messages::FieldPlaces* places);
 
-// What a command line asks for, together with the environment and the configuration file.
+// What a command line requests, merged with the environment and the configuration file.
 struct CommandLine {
-  enum class Task {
-    kServe,
-    kCheckConfig,  // load everything, say what is wrong, and leave
-    kPrintConfig,  // print every setting with where it comes from, and leave
-  };
+  using Task = config::Task;
   Task task = Task::kServe;
-  // Of the file, overridden by the environment, overridden by the flags. Values of a repeated field
-  // come one after the other.
+  // The file, overridden by the environment, overridden by the flags. Values of a repeated field
+  // are concatenated in that order.
   v1::ServerConfig config;
   SettingSources sources;
-  // All that is wrong with flags, variables and the file, for people. What `config` lacks for it
-  // has its default.
+  // Every mistake in flags, variables and the file. A field with a mistake is absent from `config`.
   std::vector<std::string> errors;
-  std::optional<std::string> print;  // --help or --version
+  std::optional<std::string> print;  // the text of --help or --version
 };
 
-// Reads the flags, the variables (DUET_SERVER_MAX_CALLS for --max-calls; of a flag that may be
-// repeated the values with spaces between them) and, where --config or DUET_SERVER_CONFIG names
-// one, the file.
+// Reads the flags, the variables (DUET_SERVER_MAX_CALLS for --max-calls; the values of a flag that
+// may be repeated are separated by spaces) and the file that --config or DUET_SERVER_CONFIG names.
 CommandLine ParseCommandLine(int argc, const char* const* argv,
                              const Environment& environment = {});
 
-// The settings, checked, with everything that is wrong with flags, variables, the file and the
-// values they set. `cores` and `memory_bytes` are what the container may use.
+// Resolves the settings of a command line. The mistakes are those of flags, variables, the file and
+// the values. `cores` and `memory_bytes` are what the container may use.
 Settings ReadSettings(const CommandLine& command_line, int cores,
                       std::uint64_t memory_bytes = kUnlimitedMemory);
 
-// The same, failing with INVALID_ARGUMENT and all mistakes.
-absl::StatusOr<ServerOptions> ToOptions(const CommandLine& command_line, int cores,
-                                        std::uint64_t memory_bytes = kUnlimitedMemory);
+// Returns only the values. Fails with INVALID_ARGUMENT and every mistake.
+absl::StatusOr<v1::ServerConfig> ResolveSettings(const CommandLine& command_line, int cores,
+                                                 std::uint64_t memory_bytes = kUnlimitedMemory);
 
 }  // namespace duet::server::config
 

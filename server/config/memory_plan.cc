@@ -21,78 +21,80 @@ constexpr std::uint64_t kCallBytes = 640 << 10;
 constexpr std::uint64_t kParsing = 1;
 constexpr std::uint64_t kLeastTransport = 3;
 constexpr std::uint64_t kLeastHeld = 1;
+// If memory is not short, as many of the largest requests are received, and as many held, at a
+// time.
+constexpr std::uint64_t kMostRequests = 16;
 // No request of use is smaller.
 constexpr std::uint64_t kLeastRequestBytes = kMebibyte;
 constexpr std::uint64_t kLeastCalls = 4;
 
 std::uint64_t Left(std::uint64_t of, std::uint64_t taken) { return of > taken ? of - taken : 0; }
 
-std::uint64_t Program(const ServerOptions& options) {
-  return kProgramBytes + static_cast<std::uint64_t>(options.workers) * kWorkerBytes;
+std::uint64_t Program(const v1::ServerConfig& settings) {
+  return kProgramBytes + settings.workers() * kWorkerBytes;
 }
 
-std::uint64_t Calls(const ServerOptions& options) {
-  return static_cast<std::uint64_t>(options.max_calls) * kCallBytes;
-}
+std::uint64_t Calls(const v1::ServerConfig& settings) { return settings.max_calls() * kCallBytes; }
 
 std::string Megabytes(std::uint64_t bytes) { return absl::StrCat(bytes / 1000000, " MB"); }
 
 }  // namespace
 
-MemoryNeed NeedOf(const ServerOptions& options) {
-  return {Program(options), Calls(options), options.max_transport_bytes, options.max_held_bytes,
-          kParsing * options.max_request_bytes};
+MemoryNeed NeedOf(const v1::ServerConfig& settings) {
+  return {Program(settings), Calls(settings), settings.max_transport_bytes(),
+          settings.max_held_bytes(), kParsing * settings.max_request_bytes()};
 }
 
-void FitCallsToMemory(const v1::ServerConfig& config, ServerOptions* options) {
-  const std::uint64_t left = Left(options->memory_limit_bytes, Program(*options));
-  if (!config.has_max_calls()) {
+void FitCallsToMemory(const v1::ServerConfig& given, v1::ServerConfig* settings) {
+  const std::uint64_t left = Left(settings->memory_limit_bytes(), Program(*settings));
+  if (!given.has_max_calls()) {
     const std::uint64_t most = std::max(kLeastCalls, left / 3 / kCallBytes);
-    options->max_calls =
-        static_cast<int>(std::min(most, static_cast<std::uint64_t>(options->max_calls)));
+    settings->set_max_calls(
+        static_cast<uint32_t>(std::min<std::uint64_t>(most, settings->max_calls())));
   }
-  if (!config.has_max_request_bytes()) {
+  if (!given.has_max_request_bytes()) {
     const std::uint64_t most =
-        Left(left, Calls(*options)) / (kLeastTransport + kLeastHeld + kParsing);
-    options->max_request_bytes = std::clamp<std::size_t>(
-        most / kMebibyte * kMebibyte, kLeastRequestBytes, options->max_request_bytes);
+        Left(left, Calls(*settings)) / (kLeastTransport + kLeastHeld + kParsing);
+    settings->set_max_request_bytes(std::clamp<std::uint64_t>(
+        most / kMebibyte * kMebibyte, kLeastRequestBytes, settings->max_request_bytes()));
   }
 }
 
-void FitBytesToMemory(const v1::ServerConfig& config, ServerOptions* options) {
-  const std::uint64_t request = options->max_request_bytes;
-  const std::uint64_t most = kTransportPerRequest * request;
-  const std::uint64_t left =
-      Left(options->memory_limit_bytes, Program(*options) + Calls(*options) + kParsing * request);
-  if (!config.has_max_transport_bytes()) {
+void FitBytesToMemory(const v1::ServerConfig& given, v1::ServerConfig* settings) {
+  const std::uint64_t request = settings->max_request_bytes();
+  const std::uint64_t most = kMostRequests * request;
+  const std::uint64_t left = Left(settings->memory_limit_bytes(),
+                                  Program(*settings) + Calls(*settings) + kParsing * request);
+  if (!given.has_max_transport_bytes()) {
     const std::uint64_t share =
-        config.has_max_held_bytes() ? Left(left, config.max_held_bytes()) : left / 2;
-    options->max_transport_bytes = std::clamp(share, kLeastTransport * request, most);
+        given.has_max_held_bytes() ? Left(left, given.max_held_bytes()) : left / 2;
+    settings->set_max_transport_bytes(std::clamp(share, kLeastTransport * request, most));
   }
-  if (!config.has_max_held_bytes()) {
-    options->max_held_bytes =
-        std::clamp(Left(left, options->max_transport_bytes), kLeastHeld * request, most);
+  if (!given.has_max_held_bytes()) {
+    settings->set_max_held_bytes(
+        std::clamp(Left(left, settings->max_transport_bytes()), kLeastHeld * request, most));
   }
 }
 
-std::vector<std::string> MemoryWarnings(const ServerOptions& options, std::uint64_t available,
+std::vector<std::string> MemoryWarnings(const v1::ServerConfig& settings, std::uint64_t available,
                                         std::uint64_t resident) {
   std::vector<std::string> warnings;
-  if (options.memory_limit_bytes > available && options.memory_limit_bytes != kUnlimitedMemory) {
+  if (settings.memory_limit_bytes() > available &&
+      settings.memory_limit_bytes() != kUnlimitedMemory) {
     warnings.push_back(absl::StrCat(
-        "memory_limit_bytes: is ", options.memory_limit_bytes, ", expected at most ", available,
+        "memory_limit_bytes: is ", settings.memory_limit_bytes(), ", expected at most ", available,
         ", which this machine or its control group allows; above that the kernel ends the server"));
   }
-  const std::uint64_t limit = std::min(options.memory_limit_bytes, available);
-  MemoryNeed need = NeedOf(options);
+  const std::uint64_t limit = std::min(settings.memory_limit_bytes(), available);
+  MemoryNeed need = NeedOf(settings);
   need.program = std::max(need.program, resident);
   if (need.total() <= limit) return warnings;
   warnings.push_back(absl::StrCat(
-      "memory: the settings let in what needs ", Megabytes(need.total()), ", and the limit is ",
-      Megabytes(limit), ": ", Megabytes(need.program), " for the program and its models, ",
-      Megabytes(need.calls), " for max_calls = ", options.max_calls, ", ",
-      Megabytes(need.transport), " for max_transport_bytes, ", Megabytes(need.held),
-      " for max_held_bytes, ", Megabytes(need.parsing),
+      "memory: the settings admit requests that need ", Megabytes(need.total()),
+      ", and the limit is ", Megabytes(limit), ": ", Megabytes(need.program),
+      " for the program and its models, ", Megabytes(need.calls), " for max_calls = ",
+      settings.max_calls(), ", ", Megabytes(need.transport), " for max_transport_bytes, ",
+      Megabytes(need.held), " for max_held_bytes, ", Megabytes(need.parsing),
       " to parse a request of max_request_bytes; lower these settings or raise the limit, or the "
       "kernel may end the server"));
   return warnings;

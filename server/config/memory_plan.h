@@ -6,11 +6,10 @@
 #include <vector>
 
 #include "duet/v1/server_config.pb.h"
-#include "server/config/server_options.h"
 
 namespace duet::server::config {
 
-// The most memory, in bytes, that the server needs for what its settings let in.
+// The most memory, in bytes, that the server needs for what its settings admit.
 // docs/costs.md#memory derives every term from measurements.
 struct MemoryNeed {
   std::uint64_t program = 0;    // code, models, the workers, a reload of the models
@@ -22,20 +21,19 @@ struct MemoryNeed {
   std::uint64_t total() const { return program + calls + transport + held + parsing; }
 };
 
-MemoryNeed NeedOf(const ServerOptions& options);
+MemoryNeed NeedOf(const v1::ServerConfig& settings);
 
-// Sets the limits that `config` leaves open so that NeedOf(*options) fits into
-// options->memory_limit_bytes: max_calls and max_request_bytes, which shrink only where there is
-// little memory; max_transport_bytes and max_held_bytes, which get the rest. They are never below
-// what one call needs, even where that does not fit. Uses workers.
-void FitCallsToMemory(const v1::ServerConfig& config, ServerOptions* options);
-// The second half, once max_calls and max_request_bytes are settled.
-void FitBytesToMemory(const v1::ServerConfig& config, ServerOptions* options);
+// FitCallsToMemory sets max_calls and max_request_bytes, FitBytesToMemory then max_transport_bytes
+// and max_held_bytes, each unless `given` has it, so that NeedOf(*settings) fits into
+// settings->memory_limit_bytes(). The first two shrink only if memory is short; the other two get
+// the rest. None falls below what one call needs, even if that does not fit. Both use workers.
+void FitCallsToMemory(const v1::ServerConfig& given, v1::ServerConfig* settings);
+void FitBytesToMemory(const v1::ServerConfig& given, v1::ServerConfig* settings);
 
-// One line for each way in which the settings do not fit the memory, with the numbers. Empty if
-// they fit. `available` is AvailableMemory(); `resident` is what the server holds before it has
+// Returns one line, with the numbers, for each way in which the settings do not fit the memory.
+// `available` is AvailableMemory(); `resident` is the memory that the server uses before it has
 // answered a call, 0 if unknown.
-std::vector<std::string> MemoryWarnings(const ServerOptions& options, std::uint64_t available,
+std::vector<std::string> MemoryWarnings(const v1::ServerConfig& settings, std::uint64_t available,
                                         std::uint64_t resident = 0);
 
 }  // namespace duet::server::config

@@ -6,14 +6,13 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "duet/v1/server_config.pb.h"
+#include "server/config/setting.h"
 
 namespace duet::server::config {
 namespace {
 
 using google::protobuf::FieldDescriptor;
 
-// Prints one line after the other.
 class Printer {
  public:
   Printer(const v1::ServerConfig& config, const SettingSources& sources)
@@ -21,7 +20,7 @@ class Printer {
     printer_.SetSingleLineMode(true);
   }
 
-  // `index` is -1 of a field that is not repeated.
+  // `index` is -1 for a field that is not repeated.
   void Print(const FieldDescriptor& field, int index) {
     std::string value;
     printer_.PrintFieldValueToString(config_, &field, index, &value);
@@ -45,21 +44,29 @@ class Printer {
   std::string text_;
 };
 
+// An empty text counts as absent.
+bool IsAbsent(const v1::ServerConfig& settings, const FieldDescriptor& field) {
+  const google::protobuf::Reflection& reflection = *settings.GetReflection();
+  if (field.is_repeated() || !reflection.HasField(settings, &field)) return true;
+  return field.cpp_type() == FieldDescriptor::CPPTYPE_STRING &&
+         reflection.GetString(settings, &field).empty();
+}
+
 }  // namespace
 
-std::string PrintConfig(const ServerOptions& options, const SettingSources& sources) {
-  const v1::ServerConfig config = ToConfig(options);
-  const google::protobuf::Reflection& reflection = *config.GetReflection();
-  Printer printer(config, sources);
-  for (int i = 0; i < config.GetDescriptor()->field_count(); ++i) {
-    const FieldDescriptor& field = *config.GetDescriptor()->field(i);
-    const int count = field.is_repeated() ? reflection.FieldSize(config, &field) : 0;
-    if (!field.is_repeated() && reflection.HasField(config, &field)) {
-      printer.Print(field, -1);
-    } else if (count == 0) {
-      printer.PrintAbsent(field);
-    }
+std::string PrintConfig(const v1::ServerConfig& settings, const SettingSources& sources) {
+  const google::protobuf::Reflection& reflection = *settings.GetReflection();
+  Printer printer(settings, sources);
+  for (const Setting& setting : AllSettings()) {
+    const FieldDescriptor& field = setting.field();
+    const int count = field.is_repeated() ? reflection.FieldSize(settings, &field) : 0;
     for (int element = 0; element < count; ++element) printer.Print(field, element);
+    if (count > 0) continue;
+    if (IsAbsent(settings, field)) {
+      printer.PrintAbsent(field);
+    } else {
+      printer.Print(field, -1);
+    }
   }
   return printer.Take();
 }

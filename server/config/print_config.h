@@ -3,15 +3,15 @@
 
 #include <string>
 
-#include "server/config/server_options.h"
+#include "duet/v1/server_config.pb.h"
 #include "server/config/setting_sources.h"
 
 namespace duet::server::config {
 
-// Every setting with its value and where that comes from, as a configuration file in text format:
+// Formats every setting with its value and source as a configuration file in text format:
 //   max_calls: 64  # file duet.textproto:3:1
 //   drain_seconds: 0  # default
-std::string PrintConfig(const ServerOptions& options, const SettingSources& sources);
+std::string PrintConfig(const v1::ServerConfig& settings, const SettingSources& sources);
 
 }  // namespace duet::server::config
 

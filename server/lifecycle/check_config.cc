@@ -16,7 +16,7 @@
 namespace duet::server::lifecycle {
 namespace {
 
-// Writes what becomes of models.
+// Writes the result of loading each model.
 class Findings final : public registry::ModelObserver {
  public:
   explicit Findings(std::ostream& out) : out_(out) {}
@@ -56,17 +56,17 @@ class Findings final : public registry::ModelObserver {
   bool all_right_ = true;
 };
 
-void CheckModels(const config::ServerOptions& options, const registry::ModelSource& source,
+void CheckModels(const v1::ServerConfig& values, const registry::ModelSource& source,
                  Findings& findings, std::ostream& out) {
   registry::ModelRegistry registry;
   registry::ModelManager manager(registry, findings);
-  ConfigureModels(options, manager);
+  ConfigureModels(values, manager);
   const auto loaded = LoadModels(
-      options, source, [] { return false; }, manager, registry);
+      values, source, [] { return false; }, manager, registry);
   findings.Problems(loaded);
-  if (loaded.ok()) findings.Problems(SettleModels(options, manager, registry));
+  if (loaded.ok()) findings.Problems(SettleModels(values, manager, registry));
   for (const std::string& warning :
-       config::MemoryWarnings(options, config::AvailableMemory(), metrics::ResidentBytes())) {
+       config::MemoryWarnings(values, config::AvailableMemory(), metrics::ResidentBytes())) {
     out << "warning: " << warning << "\n";
   }
 }
@@ -80,7 +80,7 @@ int CheckConfig(const ValidatedSettings& settings, std::ostream& out) {
   Findings findings(out);
   findings.Problems(settings.setting_mistakes);
   findings.Problems(settings.resource_mistakes);
-  if (settings.source.ok()) CheckModels(settings.options, *settings.source, findings, out);
+  if (settings.source.ok()) CheckModels(settings.values, *settings.source, findings, out);
   if (!settings.setting_mistakes.empty()) return kExitUsage;
   return findings.all_right() ? kExitStopped : kExitFailed;
 }

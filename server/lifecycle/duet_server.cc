@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
 #include "absl/time/time.h"
 #include "server/batching/batcher.h"
+#include "server/config/listen_address.h"
 #include "server/lifecycle/load_models.h"
 #include "server/lifecycle/secret_options.h"
 #include "server/security/server_credentials.h"
@@ -46,27 +48,38 @@ constexpr std::size_t kAdminRequestBytes = std::size_t{64} << 10;
 constexpr std::size_t kAdminTransportBytes = std::size_t{16} << 20;
 constexpr int kAdminCalls = 32;
 
-service::RequestLimits Limits(const config::ServerOptions& options) {
+service::RequestLimits Limits(const v1::ServerConfig& settings) {
   service::RequestLimits limits;
-  limits.max_request_bytes = options.max_request_bytes;
+  limits.max_request_bytes = settings.max_request_bytes();
   return limits;
 }
 
-batching::BatcherOptions Batching(const config::ServerOptions& options) {
-  const std::chrono::duration<double> delay(options.max_batch_delay_seconds);
-  return {options.workers,
-          options.max_queued_windows,
-          {options.max_batch_windows, std::chrono::duration_cast<std::chrono::nanoseconds>(delay)},
-          options.client_share};
+batching::BatcherOptions Batching(const v1::ServerConfig& settings) {
+  const std::chrono::duration<double> delay(settings.max_batch_delay_seconds());
+  return {static_cast<int>(settings.workers()),
+          static_cast<int>(settings.max_queued_windows()),
+          {static_cast<int>(settings.max_batch_windows()),
+           std::chrono::duration_cast<std::chrono::nanoseconds>(delay)},
+          settings.client_share()};
 }
 
-service::AdmissionLimits AdmissionOf(const config::ServerOptions& options) {
+service::AdmissionLimits AdmissionOf(const v1::ServerConfig& settings) {
   service::AdmissionLimits limits;
-  limits.max_calls = static_cast<std::size_t>(options.max_calls);
-  limits.max_held_bytes = options.max_held_bytes;
-  limits.max_slow_requests = static_cast<std::size_t>(options.max_slow_requests);
-  limits.client_share = options.client_share;
+  limits.max_calls = settings.max_calls();
+  limits.max_held_bytes = settings.max_held_bytes();
+  limits.max_slow_requests = settings.max_slow_requests();
+  limits.client_share = settings.client_share();
   return limits;
+}
+
+// Nothing if the model decides.
+std::optional<bool> CleanUpOf(const v1::ServerConfig& settings) {
+  if (settings.clean_up() == v1::CLEAN_UP_POLICY_AUTO) return std::nullopt;
+  return settings.clean_up() == v1::CLEAN_UP_POLICY_ON;
+}
+
+config::ListenAddress ListenAddressOf(const v1::ServerConfig& settings) {
+  return config::AddressOf(settings.listen()).value_or(config::ListenAddress());
 }
 
 absl::Status OfSetting(absl::string_view setting, const absl::Status& status) {
@@ -84,56 +97,57 @@ std::vector<metrics::ServedVersion> Served(const registry::ModelRegistry& regist
 
 }  // namespace
 
-metrics::LogOptions LogOptionsOf(const config::LoggingOptions& options) {
-  using Level = config::LoggingOptions::Level;
+metrics::LogOptions LogOptionsOf(const v1::ServerConfig& settings) {
   metrics::LogOptions log;
-  log.level = options.level == Level::kError     ? metrics::Severity::kError
-              : options.level == Level::kWarning ? metrics::Severity::kWarning
-                                                 : metrics::Severity::kInfo;
-  log.success_ratio = options.success_ratio;
-  log.refusals_per_second = options.refusals_per_second;
+  log.level = settings.log_level() == v1::LOG_LEVEL_ERROR     ? metrics::Severity::kError
+              : settings.log_level() == v1::LOG_LEVEL_WARNING ? metrics::Severity::kWarning
+                                                              : metrics::Severity::kInfo;
+  log.success_ratio = settings.log_success_ratio();
+  log.refusals_per_second = static_cast<int>(settings.log_refusals_per_second());
   return log;
 }
 
 absl::StatusOr<std::unique_ptr<DuetServer>> DuetServer::Start(
-    const config::ServerOptions& options, metrics::LogSink& sink,
+    const v1::ServerConfig& settings, metrics::LogSink& sink,
     std::function<absl::Status()> self_check) {
   absl::StatusOr<std::unique_ptr<security::SecretFiles>> secrets =
-      security::SecretFiles::Open(SecretsOf(options.security));
+      security::SecretFiles::Open(SecretsOf(settings));
   if (!secrets.ok()) return secrets.status();
   std::unique_ptr<tracing::CallTracer> tracer;
-  if (!options.tracing.otlp_endpoint.empty()) {
-    auto opened = tracing::CallTracer::Open(options.tracing.otlp_endpoint, DUET_VERSION);
+  if (!settings.otlp_endpoint().empty()) {
+    auto opened = tracing::CallTracer::Open(settings.otlp_endpoint(), DUET_VERSION);
     if (!opened.ok()) return opened.status();
     tracer = *std::move(opened);
   }
   std::unique_ptr<DuetServer> server(
-      new DuetServer(options, sink, *std::move(secrets), std::move(tracer)));
+      new DuetServer(settings, sink, *std::move(secrets), std::move(tracer)));
   const absl::Status listening = server->Listen(std::move(self_check));
   if (!listening.ok()) return listening;
   return server;
 }
 
-DuetServer::DuetServer(const config::ServerOptions& options, metrics::LogSink& sink,
+DuetServer::DuetServer(const v1::ServerConfig& settings, metrics::LogSink& sink,
                        std::unique_ptr<security::SecretFiles> secrets,
                        std::unique_ptr<tracing::CallTracer> tracer)
-    : options_(options),
-      log_(sink, absl::Now, LogOptionsOf(options.logging)),
+    : settings_(settings),
+      log_(sink, absl::Now, LogOptionsOf(settings)),
       tracer_(std::move(tracer)),
       secrets_(std::move(secrets)),
       events_(log_, metrics_, [this] { UpdateHealth(); }),
       manager_(registry_, events_),
-      admission_(AdmissionOf(options)),
-      transport_(options.max_transport_bytes),
-      scheduler_(batching::MakeBatcher(Batching(options), common::Clock::Real(), &metrics_)),
+      admission_(AdmissionOf(settings)),
+      transport_(settings.max_transport_bytes()),
+      scheduler_(batching::MakeBatcher(Batching(settings), common::Clock::Real(), &metrics_)),
       service_(Parts()),
       control_(manager_, registry_, events_),
       admin_(AdminParts()) {
-  Configure(options);
+  Configure(settings);
   control_.AddReloadable({"certificates and access file", [this] { return ReloadSecrets(); },
                           [this] { return secrets_->state(); }});
   metrics_.SetQueueLength([this] { return static_cast<double>(scheduler_->queued_windows()); });
-  metrics_.SetCapacity({options_.max_calls, options_.max_queued_windows, options_.workers});
+  metrics_.SetCapacity({static_cast<int>(settings_.max_calls()),
+                        static_cast<int>(settings_.max_queued_windows()),
+                        static_cast<int>(settings_.workers())});
   metrics_.SetBuild(DUET_VERSION);
   metrics_.SetModels([this] { return Served(registry_); });
   if (secrets_->certificates() != nullptr) {
@@ -169,16 +183,16 @@ service::ServiceParts DuetServer::Parts() {
   parts.observers = {&metrics_, &log_};
   if (tracer_ != nullptr) {
     parts.observers.push_back(tracer_.get());
-    parts.trace_ratio = options_.tracing.ratio;
+    parts.trace_ratio = settings_.trace_ratio();
   }
   parts.guard = security::CallGuard(secrets_->access());
-  parts.limits = Limits(options_);
-  parts.reception.timeout_seconds = options_.receive_timeout_seconds;
-  parts.buffered_frames = options_.buffered_frames;
-  parts.write_timeout_seconds = options_.write_timeout_seconds;
-  parts.max_call_seconds = options_.max_call_seconds;
-  parts.client_key = options_.client_key;
-  parts.clean_up = options_.clean_up;
+  parts.limits = Limits(settings_);
+  parts.reception.timeout_seconds = settings_.receive_timeout_seconds();
+  parts.buffered_frames = static_cast<int>(settings_.buffered_frames());
+  parts.write_timeout_seconds = settings_.write_timeout_seconds();
+  parts.max_call_seconds = settings_.max_call_seconds();
+  parts.client_key = settings_.client_key();
+  parts.clean_up = CleanUpOf(settings_);
   return parts;
 }
 
@@ -193,10 +207,11 @@ admin::AdminParts DuetServer::AdminParts() {
 }
 
 absl::Status DuetServer::ListenForAdmin() {
-  if (!options_.admin_listen.has_value()) return absl::OkStatus();
+  const std::optional<config::ListenAddress> address = config::AddressOf(settings_.admin_listen());
+  if (!address.has_value()) return absl::OkStatus();
   GrpcServerOptions options;
-  options.listen = *options_.admin_listen;
-  options.reflection = options_.reflection;
+  options.listen = *address;
+  options.reflection = settings_.reflection();
   options.max_request_bytes = kAdminRequestBytes;
   options.max_transport_bytes = kAdminTransportBytes;
   options.max_calls = kAdminCalls;
@@ -208,20 +223,22 @@ absl::Status DuetServer::ListenForAdmin() {
 }
 
 absl::Status DuetServer::Listen(std::function<absl::Status()> self_check) {
-  absl::StatusOr<GrpcServer> grpc =
-      StartGrpcServer({options_.listen, options_.reflection, options_.max_request_bytes,
-                       options_.max_transport_bytes, options_.max_calls, options_.max_call_seconds,
-                       Credentials(), &transport_.quota()},
-                      service_);
+  absl::StatusOr<GrpcServer> grpc = StartGrpcServer(
+      {ListenAddressOf(settings_), settings_.reflection(), settings_.max_request_bytes(),
+       settings_.max_transport_bytes(), static_cast<int>(settings_.max_calls()),
+       settings_.max_call_seconds(), Credentials(), &transport_.quota()},
+      service_);
   if (!grpc.ok()) return OfSetting("listen", grpc.status());
   grpc_ = *std::move(grpc);
   SetHealth(false);
   if (absl::Status admin = ListenForAdmin(); !admin.ok()) return admin;
   Watch(std::move(self_check));
-  if (!options_.metrics_listen.has_value()) return absl::OkStatus();
+  const std::optional<config::ListenAddress> metrics =
+      config::AddressOf(settings_.metrics_listen());
+  if (!metrics.has_value()) return absl::OkStatus();
   metrics::MetricsEndpointOptions endpoint;
-  endpoint.host = options_.metrics_listen->host;
-  endpoint.port = options_.metrics_listen->port;
+  endpoint.host = metrics->host;
+  endpoint.port = metrics->port;
   endpoint.render = [this] { return metrics_.Render(); };
   endpoint.healthy = [this] { return self_check_ == nullptr || self_check_->healthy(); };
   endpoint.ready = [this] { return Ready(); };
@@ -265,9 +282,9 @@ void DuetServer::Watch(std::function<absl::Status()> self_check) {
     Tell(secrets_->Look());
     log_.TellUnlogged();
   }));
-  if (options_.self_check_seconds <= 0) return;
+  if (settings_.self_check_seconds() <= 0) return;
   SelfCheckOptions check;
-  check.interval_seconds = options_.self_check_seconds;
+  check.interval_seconds = settings_.self_check_seconds();
   check.check = std::move(self_check);
   if (check.check == nullptr) {
     check.check = [this] { return CheckItself(); };
@@ -283,8 +300,9 @@ void DuetServer::Watch(std::function<absl::Status()> self_check) {
 absl::Status DuetServer::CheckItself() const {
   double timeout = kSelfCheckTimeoutSeconds;
   // A check that takes its time is not stuck.
-  if (options_.watchdog_seconds > 0) timeout = std::min(timeout, options_.watchdog_seconds / 4);
-  const absl::Status listens = CheckListener(options_.listen.host, grpc_.port, timeout);
+  if (settings_.watchdog_seconds() > 0)
+    timeout = std::min(timeout, settings_.watchdog_seconds() / 4);
+  const absl::Status listens = CheckListener(ListenAddressOf(settings_).host, grpc_.port, timeout);
   return listens.ok() ? CheckAnswers(*grpc_.server, timeout) : listens;
 }
 
@@ -314,14 +332,14 @@ std::string DuetServer::Describe() const {
   return text;
 }
 
-void DuetServer::Configure(const config::ServerOptions& options) {
-  ConfigureModels(options, manager_);
+void DuetServer::Configure(const v1::ServerConfig& settings) {
+  ConfigureModels(settings, manager_);
 }
 
 absl::Status DuetServer::Load(const registry::ModelSource& source,
                               const std::function<bool()>& stop) {
   const absl::StatusOr<std::vector<std::string>> problems =
-      LoadModels(options_, source, stop, manager_, registry_);
+      LoadModels(settings_, source, stop, manager_, registry_);
   if (!problems.ok()) return problems.status();
   for (const std::string& problem : *problems) log_.Error("load_problem", {{"message", problem}});
   return absl::OkStatus();
@@ -329,7 +347,7 @@ absl::Status DuetServer::Load(const registry::ModelSource& source,
 
 absl::Status DuetServer::Serve() {
   const absl::StatusOr<std::vector<std::string>> refused_labels =
-      SettleModels(options_, manager_, registry_);
+      SettleModels(settings_, manager_, registry_);
   if (!refused_labels.ok()) return refused_labels.status();
   for (const std::string& label : *refused_labels) {
     log_.Error("version_label_refused", {{"message", label}});
@@ -339,9 +357,9 @@ absl::Status DuetServer::Serve() {
   log_.Info("serving", {{"port", port()},
                         {"metrics_port", metrics_port()},
                         {"admin_port", admin_port()},
-                        {"workers", options_.workers},
-                        {"threads_per_worker", options_.engine.threads},
-                        {"max_batch_windows", options_.max_batch_windows}});
+                        {"workers", settings_.workers()},
+                        {"threads_per_worker", settings_.threads_per_worker()},
+                        {"max_batch_windows", settings_.max_batch_windows()}});
   return absl::OkStatus();
 }
 
@@ -350,11 +368,11 @@ void DuetServer::Drain(const std::function<bool(double seconds)>& wait) {
   SetHealth(false);
   control_.Stop();
   log_.Info("draining", {{"calls", admission_.calls()}});
-  bool patient = options_.drain_seconds <= 0 || wait(options_.drain_seconds);
+  bool patient = settings_.drain_seconds() <= 0 || wait(settings_.drain_seconds());
   // From here on new calls are refused as UNAVAILABLE. gRPC's own Shutdown comes last: it would
   // wait for health watches as well, which never end by themselves.
   admission_.SetState(service::Admission::State::kDraining);
-  double left = options_.grace_seconds;
+  double left = settings_.grace_seconds();
   while (patient && left > 0 && admission_.calls() > 0) {
     const double step = std::min(left, kLookSeconds);
     patient = wait(step);

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "duet/v1/server_config.pb.h"
 #include "server/admin/admin_service.h"
 #include "server/batching/window_scheduler.h"
 #include "server/common/mutex.h"
-#include "server/config/server_options.h"
 #include "server/lifecycle/grpc_server.h"
 #include "server/lifecycle/heap_trimmer.h"
 #include "server/lifecycle/model_events.h"
@@ -32,13 +32,13 @@
 
 namespace duet::server::lifecycle {
 
-// The part of the options that the log keeps to.
-metrics::LogOptions LogOptionsOf(const config::LoggingOptions& options);
+// Returns the settings of the log.
+metrics::LogOptions LogOptionsOf(const v1::ServerConfig& settings);
 
 // The whole server in one object: listens from the start, refuses calls as UNAVAILABLE until
 // Serve(), answers them until Drain().
 //
-//   auto server = DuetServer::Start(options, sink);
+//   auto server = DuetServer::Start(settings, sink);
 //   (*server)->Load(source, stop);
 //   (*server)->Serve();
 //   ... control().Reload(done) when asked to; until asked to stop ...
@@ -47,12 +47,12 @@ metrics::LogOptions LogOptionsOf(const config::LoggingOptions& options);
 // Threads: one thread at a time, but for control().
 class DuetServer {
  public:
-  // `sink` outlives the server; `self_check` takes the place of connecting to the server's own
-  // port. Fails with UNAVAILABLE, the setting and the reason when an address cannot be listened on;
-  // as SecretFiles::Open and CallTracer::Open when what they are given makes no sense
-  // (ValidateSettings finds that before).
+  // `settings` are resolved (config::Settings). `sink` outlives the server; `self_check` takes the
+  // place of connecting to the server's own port. Fails with UNAVAILABLE, the setting and the
+  // reason when an address cannot be listened on; as SecretFiles::Open and CallTracer::Open when
+  // what they are given makes no sense (ValidateSettings finds that before).
   static absl::StatusOr<std::unique_ptr<DuetServer>> Start(
-      const config::ServerOptions& options, metrics::LogSink& sink,
+      const v1::ServerConfig& settings, metrics::LogSink& sink,
       std::function<absl::Status()> self_check = nullptr);
   ~DuetServer();
 
@@ -71,7 +71,7 @@ class DuetServer {
   registry::ModelControl& control() { return control_; }
   int admin_port() const { return admin_grpc_.port; }
   // Labels and policies as these options have them, from the next reload on.
-  void Configure(const config::ServerOptions& options);
+  void Configure(const v1::ServerConfig& settings);
 
   // Says NOT_SERVING, serves on for drain_seconds, then lets calls finish for grace_seconds, ends
   // the others as UNAVAILABLE and closes. `wait` sleeps for so many seconds; when it gives false,
@@ -87,7 +87,7 @@ class DuetServer {
   metrics::JsonLog& log() { return log_; }
 
  private:
-  DuetServer(const config::ServerOptions& options, metrics::LogSink& sink,
+  DuetServer(const v1::ServerConfig& settings, metrics::LogSink& sink,
              std::unique_ptr<security::SecretFiles> secrets,
              std::unique_ptr<tracing::CallTracer> tracer);
   absl::Status Listen(std::function<absl::Status()> self_check);
@@ -116,7 +116,7 @@ class DuetServer {
   service::ServiceParts Parts();
   admin::AdminParts AdminParts();
 
-  const config::ServerOptions options_;
+  const v1::ServerConfig settings_;
   metrics::JsonLog log_;
   const std::unique_ptr<tracing::CallTracer> tracer_;  // null: spans go nowhere
   metrics::ServerMetrics metrics_;

@@ -9,11 +9,11 @@
 #include <memory>
 
 #include "absl/status/statusor.h"
-#include "server/config/server_options.h"
+#include "server/config/listen_address.h"
 
 namespace duet::server::lifecycle {
 
-// The part of ServerOptions that gRPC itself enforces; the defaults are there.
+// The part of the settings that gRPC itself enforces.
 struct GrpcServerOptions {
   config::ListenAddress listen;
   bool reflection = false;

@@ -11,7 +11,7 @@
 namespace duet::server::lifecycle {
 namespace {
 
-// The checkpoints linked into the program; the first is the default unless the operator says so.
+// Loads the checkpoints inside the program. The first is the default unless the operator names one.
 absl::Status LoadEmbedded(const registry::ModelSource& source, registry::ModelManager& manager,
                           registry::ModelRegistry& registry) {
   const common::TimePoint begin = common::Clock::Real().Now();
@@ -36,45 +36,49 @@ absl::Status LoadEmbedded(const registry::ModelSource& source, registry::ModelMa
 
 }  // namespace
 
-void ConfigureModels(const config::ServerOptions& options, registry::ModelManager& manager) {
+void ConfigureModels(const v1::ServerConfig& settings, registry::ModelManager& manager) {
   std::vector<registry::VersionLabel> labels;
-  for (const config::VersionLabelOption& label : options.version_labels) {
-    labels.push_back({label.model, label.label, label.version});
+  for (const v1::VersionLabel& label : settings.version_labels()) {
+    labels.push_back({label.model(), label.label(), label.version()});
   }
   manager.SetLabels(std::move(labels));
   std::vector<registry::VersionPolicy> policies;
-  for (const config::VersionPolicyOption& policy : options.version_policies) {
-    policies.push_back({policy.model, policy.latest, policy.versions});
+  for (const v1::VersionPolicy& message : settings.version_policies()) {
+    registry::VersionPolicy policy;
+    if (message.model() != "*") policy.model = message.model();
+    if (message.has_latest()) policy.latest = message.latest();
+    policy.versions.assign(message.versions().begin(), message.versions().end());
+    policies.push_back(std::move(policy));
   }
   manager.SetPolicies(std::move(policies));
 }
 
-absl::StatusOr<std::vector<std::string>> LoadModels(const config::ServerOptions& options,
+absl::StatusOr<std::vector<std::string>> LoadModels(const v1::ServerConfig& settings,
                                                     const registry::ModelSource& source,
                                                     const std::function<bool()>& stop,
                                                     registry::ModelManager& manager,
                                                     registry::ModelRegistry& registry) {
-  if (options.model_repository.empty()) {
+  if (settings.model_repository().empty()) {
     const absl::Status loaded = LoadEmbedded(source, manager, registry);
     if (!loaded.ok()) return loaded;
     return std::vector<std::string>();
   }
-  manager.UseRepository(options.model_repository, source.load_folder);
+  manager.UseRepository(settings.model_repository(), source.load_folder);
   absl::StatusOr<registry::ReloadReport> report = manager.Reload(stop);
   if (!report.ok()) return report.status();
   return std::move(report->problems);
 }
 
-absl::StatusOr<std::vector<std::string>> SettleModels(const config::ServerOptions& options,
+absl::StatusOr<std::vector<std::string>> SettleModels(const v1::ServerConfig& settings,
                                                       registry::ModelManager& manager,
                                                       registry::ModelRegistry& registry) {
   if (registry.List().empty()) return absl::FailedPreconditionError("no model could be loaded");
   if (const std::vector<std::string> unknown = manager.UnknownNames(); !unknown.empty()) {
     return absl::InvalidArgumentError(absl::StrJoin(unknown, "\n"));
   }
-  // Set even where the operator names none: a model that comes later must not become the default.
+  // Set even if the operator names none: a model that is loaded later must not become the default.
   const absl::Status set = registry.SetDefault(
-      options.default_model.empty() ? registry.default_model() : options.default_model);
+      settings.default_model().empty() ? registry.default_model() : settings.default_model());
   if (!set.ok()) return set;
   return manager.ApplyLabels();
 }

@@ -7,30 +7,30 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "server/config/server_options.h"
+#include "duet/v1/server_config.pb.h"
 #include "server/registry/model_manager.h"
 #include "server/registry/model_registry.h"
 #include "server/registry/model_source.h"
 
 namespace duet::server::lifecycle {
 
-// Labels and policies as the options have them.
-void ConfigureModels(const config::ServerOptions& options, registry::ModelManager& manager);
+// Gives the manager the labels and policies of the settings.
+void ConfigureModels(const v1::ServerConfig& settings, registry::ModelManager& manager);
 
-// Loads what the options name, the repository's models or those inside the program, until `stop`
-// gives true. Returns what could not be done; a checkpoint that does not load is the observer's to
-// tell. Fails when the repository cannot be read or is empty, with CANCELLED when it was stopped.
-absl::StatusOr<std::vector<std::string>> LoadModels(const config::ServerOptions& options,
+// Loads the models of the repository, or the embedded ones without a repository, until `stop`
+// returns true. Returns one line for each problem; the observer reports checkpoints that do not
+// load. Fails if the repository cannot be read or is empty, and with CANCELLED if it was stopped.
+absl::StatusOr<std::vector<std::string>> LoadModels(const v1::ServerConfig& settings,
                                                     const registry::ModelSource& source,
                                                     const std::function<bool()>& stop,
                                                     registry::ModelManager& manager,
                                                     registry::ModelRegistry& registry);
 
-// Sets default model and labels once models are there. Returns the labels that cannot be set now
-// because their versions are not served.
-// Fails with FAILED_PRECONDITION when nothing is served, NOT_FOUND when the default model is not,
-// and INVALID_ARGUMENT when labels or policies name models that there are not.
-absl::StatusOr<std::vector<std::string>> SettleModels(const config::ServerOptions& options,
+// Sets the default model and the labels after models were loaded. Returns the labels that cannot be
+// set now because their versions are not served.
+// Fails with FAILED_PRECONDITION if no model is served, NOT_FOUND if the default model is not
+// served, and INVALID_ARGUMENT if labels or policies name models that do not exist.
+absl::StatusOr<std::vector<std::string>> SettleModels(const v1::ServerConfig& settings,
                                                       registry::ModelManager& manager,
                                                       registry::ModelRegistry& registry);
 

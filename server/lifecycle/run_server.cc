@@ -50,7 +50,7 @@ void RaiseDescriptorLimit() {
 }
 
 // The settings as they are now: flags and variables stay, the file may have changed.
-using ReadSettings = std::function<absl::StatusOr<config::ServerOptions>()>;
+using ReadSettings = std::function<absl::StatusOr<v1::ServerConfig>()>;
 
 constexpr common::StepKind kStarting{"main", "starting and loading models", /*is_bounded=*/false};
 constexpr common::StepKind kDraining{"main", "draining", /*is_bounded=*/false};
@@ -60,11 +60,11 @@ constexpr common::StepKind kEnding{"main", "ending threads", /*is_bounded=*/fals
 // self-check under way takes five at most, and so does a log that is stuck.
 constexpr double kEndSeconds = 10;
 
-WatchdogOptions WatchdogOf(const config::ServerOptions& options) {
+WatchdogOptions WatchdogOf(const v1::ServerConfig& values) {
   WatchdogOptions wanted;
-  wanted.step_seconds = options.watchdog_seconds;
+  wanted.step_seconds = values.watchdog_seconds();
   wanted.hurry_seconds = kEndSeconds;
-  wanted.text_log = options.logging.format == config::LoggingOptions::Format::kText;
+  wanted.text_log = values.log_format() == v1::LOG_FORMAT_TEXT;
   return wanted;
 }
 
@@ -86,11 +86,11 @@ StopSignal::Kind WaitForSignal(StopSignal& stop) {
 }
 
 // Listens, loads and begins to serve; CANCELLED when a signal to stop came before.
-absl::StatusOr<std::unique_ptr<DuetServer>> StartServing(const config::ServerOptions& options,
+absl::StatusOr<std::unique_ptr<DuetServer>> StartServing(const v1::ServerConfig& values,
                                                          const ModelSource& source,
                                                          StopSignal& stop, metrics::LogSink& sink) {
   const common::Step step(kStarting);
-  absl::StatusOr<std::unique_ptr<DuetServer>> server = DuetServer::Start(options, sink);
+  absl::StatusOr<std::unique_ptr<DuetServer>> server = DuetServer::Start(values, sink);
   if (!server.ok()) return server;
   absl::Status status = (*server)->Load(source, [&stop] { return stop.WaitFor(0); });
   if (status.ok()) status = (*server)->Serve();
@@ -113,9 +113,9 @@ void ServeUntilStopped(DuetServer& server, StopSignal& stop, const ServiceManage
 }
 
 // After the models were loaded, because their size is known only then.
-void WarnOfMemory(const config::ServerOptions& options, metrics::JsonLog& log) {
+void WarnOfMemory(const v1::ServerConfig& values, metrics::JsonLog& log) {
   for (const std::string& warning :
-       config::MemoryWarnings(options, config::AvailableMemory(), metrics::ResidentBytes())) {
+       config::MemoryWarnings(values, config::AvailableMemory(), metrics::ResidentBytes())) {
     log.Warning("settings_do_not_fit", {{"message", warning}});
   }
 }
@@ -123,12 +123,12 @@ void WarnOfMemory(const config::ServerOptions& options, metrics::JsonLog& log) {
 // Serves until a signal to stop comes; why it cannot serve is in the log as well.
 absl::Status Serve(const ValidatedSettings& settings, const ReadSettings& read_settings,
                    StopSignal& stop, metrics::LogSink& sink) {
-  const config::ServerOptions& options = settings.options;
+  const v1::ServerConfig& values = settings.values;
   const ModelSource& source = *settings.source;
   // Never destroyed: it watches until the process is gone.
-  auto* const last_resort = new Watchdog(WatchdogOf(options), stop);
+  auto* const last_resort = new Watchdog(WatchdogOf(values), stop);
   const common::Step step(kEnding);  // of what follows the steps below
-  metrics::JsonLog log(sink, absl::Now, LogOptionsOf(options.logging));
+  metrics::JsonLog log(sink, absl::Now, LogOptionsOf(values));
   const LibraryLogs library_logs(log);
   for (const std::string& mistake : settings.resource_mistakes) {
     log.Error("cannot_serve", {{"message", mistake}});
@@ -138,17 +138,17 @@ absl::Status Serve(const ValidatedSettings& settings, const ReadSettings& read_s
   }
   const ServiceManager manager = ServiceManager::OfProcess();
   log.Info("engine_opened", {{"engine", source.engine}});
-  const auto server = StartServing(options, source, stop, sink);
+  const auto server = StartServing(values, source, stop, sink);
   if (absl::IsCancelled(server.status())) return absl::OkStatus();
   if (!server.ok()) {
     log.Error("cannot_serve", {{"message", std::string(server.status().message())}});
     return server.status();
   }
-  WarnOfMemory(options, log);
-  last_resort->AllowToStop(options.drain_seconds + options.grace_seconds + kEndSeconds);
+  WarnOfMemory(values, log);
+  last_resort->AllowToStop(values.drain_seconds() + values.grace_seconds() + kEndSeconds);
   DuetServer& serving = **server;
   const auto configure = [&serving, &read_settings] {
-    const absl::StatusOr<config::ServerOptions> current = read_settings();
+    const absl::StatusOr<v1::ServerConfig> current = read_settings();
     if (current.ok()) serving.Configure(*current);
     return current.status();
   };
@@ -179,7 +179,7 @@ int RunServer(int argc, const char* const* argv, const EngineOpener& open_engine
     const config::Settings settings = config::ReadSettings(command_line, cores, memory);
     Complain(settings.mistakes);
     if (!settings.mistakes.empty()) return kExitUsage;
-    std::cout << config::PrintConfig(settings.options, command_line.sources);
+    std::cout << config::PrintConfig(settings.values, command_line.sources);
     return kExitStopped;
   }
   const bool check = command_line.task == config::CommandLine::Task::kCheckConfig;
@@ -199,12 +199,12 @@ int RunServer(int argc, const char* const* argv, const EngineOpener& open_engine
   std::signal(SIGPIPE, SIG_IGN);
   metrics::QueuedLogSink::Options log;
   log.drop_notice = [](std::uint64_t dropped) { return metrics::DroppedLinesNotice(dropped); };
-  if (settings.options.logging.format == config::LoggingOptions::Format::kText) {
+  if (settings.values.log_format() == v1::LOG_FORMAT_TEXT) {
     sink = std::make_shared<metrics::TextLogSink>(std::move(sink));
   }
   // Outlives everything that logs, and writes its last lines before the process ends.
   metrics::QueuedLogSink queued_sink(std::move(sink), log);
-  const auto read_settings = [&] { return config::ToOptions(read(), cores, memory); };
+  const auto read_settings = [&] { return config::ResolveSettings(read(), cores, memory); };
   return Serve(settings, read_settings, stop, queued_sink).ok() ? kExitStopped : kExitFailed;
 }
 

@@ -1,16 +1,17 @@
 #ifndef DUET_SERVER_LIFECYCLE_SECRET_OPTIONS_H_
 #define DUET_SERVER_LIFECYCLE_SECRET_OPTIONS_H_
 
-#include "server/config/server_options.h"
+#include "duet/v1/server_config.pb.h"
 #include "server/security/secret_files.h"
 
 namespace duet::server::lifecycle {
 
-// The files that `options` name, as what keeps them takes them.
-inline security::SecretFiles::Options SecretsOf(const config::SecurityOptions& options) {
+// Returns the files of secrets that the settings name.
+inline security::SecretFiles::Options SecretsOf(const v1::ServerConfig& settings) {
   security::SecretFiles::Options secrets;
-  secrets.tls = {options.tls_certificate_file, options.tls_key_file, options.tls_client_ca_file};
-  secrets.access = options.access_file;
+  secrets.tls = {settings.tls_certificate_file(), settings.tls_key_file(),
+                 settings.tls_client_ca_file()};
+  secrets.access = settings.access_file();
   return secrets;
 }
 

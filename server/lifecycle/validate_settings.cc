@@ -8,6 +8,7 @@
 #include "absl/strings/str_split.h"
 #include "absl/strings/string_view.h"
 #include "server/common/bindable.h"
+#include "server/config/listen_address.h"
 #include "server/lifecycle/secret_options.h"
 #include "server/security/secret_files.h"
 
@@ -20,17 +21,17 @@ void Add(const absl::Status& status, std::vector<std::string>* mistakes) {
   }
 }
 
-void CheckSecrets(const config::SecurityOptions& options, std::vector<std::string>* mistakes) {
-  security::SecretFiles::Options secrets = SecretsOf(options);
-  // One without the other is a mistake of the settings.
+void CheckSecrets(const v1::ServerConfig& settings, std::vector<std::string>* mistakes) {
+  security::SecretFiles::Options secrets = SecretsOf(settings);
+  // A certificate without a key is a mistake in the settings, and reported there.
   if (secrets.tls.key.empty()) secrets.tls.certificate.clear();
   Add(security::SecretFiles::Open(std::move(secrets)).status(), mistakes);
 }
 
-void CheckAddress(absl::string_view field, const std::optional<config::ListenAddress>& address,
-                  Ports ports, std::vector<std::string>* mistakes) {
-  // Without a host: a mistake of the settings.
-  if (!address.has_value() || address->host.empty()) return;
+void CheckAddress(absl::string_view field, const std::string& setting, Ports ports,
+                  std::vector<std::string>* mistakes) {
+  const std::optional<config::ListenAddress> address = config::AddressOf(setting);
+  if (!address.has_value()) return;
   const absl::Status bindable = common::CheckBindable(address->host, address->port);
   if (bindable.ok() || (absl::IsAlreadyExists(bindable) && ports == Ports::kMayBeInUse)) return;
   mistakes->push_back(absl::StrCat(field, ": ", bindable.message()));
@@ -42,17 +43,17 @@ ValidatedSettings ValidateSettings(const config::CommandLine& command_line, int 
                                    std::uint64_t memory_bytes, const EngineOpener& open_engine,
                                    Ports ports) {
   config::Settings settings = config::ReadSettings(command_line, cores, memory_bytes);
-  ValidatedSettings validated{std::move(settings.options),
+  ValidatedSettings validated{std::move(settings.values),
                               absl::UnknownError("not opened"),
                               std::move(settings.mistakes),
                               {}};
-  const config::ServerOptions& options = validated.options;
-  validated.source = open_engine(options.engine);
+  const v1::ServerConfig& values = validated.values;
+  validated.source = open_engine(values);
   Add(validated.source.status(), &validated.setting_mistakes);
-  CheckSecrets(options.security, &validated.resource_mistakes);
-  CheckAddress("listen", options.listen, ports, &validated.resource_mistakes);
-  CheckAddress("metrics_listen", options.metrics_listen, ports, &validated.resource_mistakes);
-  CheckAddress("admin_listen", options.admin_listen, ports, &validated.resource_mistakes);
+  CheckSecrets(values, &validated.resource_mistakes);
+  CheckAddress("listen", values.listen(), ports, &validated.resource_mistakes);
+  CheckAddress("metrics_listen", values.metrics_listen(), ports, &validated.resource_mistakes);
+  CheckAddress("admin_listen", values.admin_listen(), ports, &validated.resource_mistakes);
   return validated;
 }
 

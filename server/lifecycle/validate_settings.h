@@ -8,32 +8,31 @@
 
 #include "absl/status/statusor.h"
 #include "server/config/load_config.h"
-#include "server/config/server_options.h"
+#include "server/config/settings.h"
 #include "server/registry/model_source.h"
 
 namespace duet::server::lifecycle {
 
-// Opens the engine that the options ask for. Only the main program knows which ones there are.
-// Fails when it is not to be had here: "field: expected ..., got ...; hint".
-using EngineOpener =
-    std::function<absl::StatusOr<registry::ModelSource>(const config::EngineOptions&)>;
+// Opens the engine that the settings select. Only the main program knows the engines.
+// Fails if the engine is not available here: "field: expected ..., got ...; hint".
+using EngineOpener = std::function<absl::StatusOr<registry::ModelSource>(const v1::ServerConfig&)>;
 
-// What an operator has set, and every mistake in it: a line for each.
+// The resolved settings of an operator, and every mistake in them: one line each.
 struct ValidatedSettings {
-  config::ServerOptions options;                 // of fields that are wrong, some other value
-  absl::StatusOr<registry::ModelSource> source;  // fails if a mistake keeps it from being opened
-  // Of flags, variables, the configuration file, the values they set, and the engine.
+  v1::ServerConfig values;                       // a field with a mistake has some valid value
+  absl::StatusOr<registry::ModelSource> source;  // fails if a mistake prevents opening the engine
+  // In flags, variables, the configuration file, the values they set, and the engine.
   std::vector<std::string> setting_mistakes;
-  // Of what the settings name: certificates, the access file, addresses to listen on.
+  // In what the settings name: certificates, the access file, addresses to listen on.
   std::vector<std::string> resource_mistakes;
 };
 
-// Whether somebody may listen on the ports of the settings: the server that these settings are for,
-// when they are checked beside it.
+// Whether the ports of the settings may be in use. They are if the settings of a running server are
+// checked beside it.
 enum class Ports { kFree, kMayBeInUse };
 
-// The one check of settings, for a start and for --check-config. Models come after it. `cores` and
-// `memory_bytes` are what the container may use.
+// The one check of settings, for a start and for --check-config. Models are checked after it.
+// `cores` and `memory_bytes` are what the container may use.
 ValidatedSettings ValidateSettings(const config::CommandLine& command_line, int cores,
                                    std::uint64_t memory_bytes, const EngineOpener& open_engine,
                                    Ports ports);

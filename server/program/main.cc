@@ -1,4 +1,4 @@
-// duet-server: the only file of the server that knows which engines there are.
+// duet-server: the only file of the server that knows the engines.
 
 #include <cstdio>
 #include <filesystem>
@@ -10,6 +10,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "absl/strings/str_cat.h"
+#include "duet/v1/server_config.pb.h"
 #include "model/cpu_engine/cpu_synthesizer.h"
 #include "model/cpu_engine/kernels/gemm_bf16.h"
 #include "model/cpu_engine/kernels/gemm_bf16_amx.h"
@@ -22,8 +23,8 @@ namespace {
 using duet::cpu_engine::CpuEngineOptions;
 using duet::cpu_engine::kernels::Precision;
 using duet::engine::Synthesizer;
-using duet::server::config::EngineOptions;
 using duet::server::lifecycle::ModelSource;
+using duet::v1::ServerConfig;
 
 using Loaded = absl::StatusOr<std::unique_ptr<Synthesizer>>;
 using AllLoaded = absl::StatusOr<std::vector<std::unique_ptr<Synthesizer>>>;
@@ -39,11 +40,11 @@ absl::StatusOr<std::vector<std::shared_ptr<const Synthesizer>>> Shared(AllLoaded
                                                          std::make_move_iterator(models->end()));
 }
 
-absl::StatusOr<ModelSource> OpenCpuEngine(const EngineOptions& options) {
+absl::StatusOr<ModelSource> OpenCpuEngine(const ServerConfig& settings) {
   CpuEngineOptions engine;
-  if (options.precision == EngineOptions::Precision::kFloat32) {
+  if (settings.precision() == duet::v1::PRECISION_F32) {
     engine.precision = Precision::kFloat32;
-  } else if (options.precision == EngineOptions::Precision::kBfloat16) {
+  } else if (settings.precision() == duet::v1::PRECISION_BF16) {
     if (!duet::cpu_engine::kernels::HasBf16()) {
       return absl::InvalidArgumentError(
           "precision: expected PRECISION_F32, got PRECISION_BF16; this processor does not multiply "
@@ -60,14 +61,16 @@ absl::StatusOr<ModelSource> OpenCpuEngine(const EngineOptions& options) {
       [engine] { return Shared(duet::cpu_engine::LoadEmbeddedSynthesizers(engine)); }};
 }
 
-absl::StatusOr<ModelSource> OpenTorchEngine(const EngineOptions& options) {
+absl::StatusOr<ModelSource> OpenTorchEngine(const ServerConfig& settings) {
   const absl::StatusOr<duet::torch_plugin::TorchEngine> torch = duet::torch_plugin::Open();
   if (!torch.ok()) {
     return absl::InvalidArgumentError(
         absl::StrCat("engine: expected ENGINE_CPU, got ENGINE_TORCH, which cannot be opened here: ",
                      torch.status().message()));
   }
-  if (const absl::Status status = torch->set_threads(options.threads); !status.ok()) {
+  if (const absl::Status status =
+          torch->set_threads(static_cast<int>(settings.threads_per_worker()));
+      !status.ok()) {
     return absl::InvalidArgumentError(
         absl::StrCat("engine: expected ENGINE_CPU, got ENGINE_TORCH, which cannot be used here: ",
                      status.message()));
@@ -79,9 +82,9 @@ absl::StatusOr<ModelSource> OpenTorchEngine(const EngineOptions& options) {
                      [load = torch->load_embedded] { return Shared(load()); }};
 }
 
-absl::StatusOr<ModelSource> OpenEngine(const EngineOptions& options) {
-  return options.engine == EngineOptions::Engine::kTorch ? OpenTorchEngine(options)
-                                                         : OpenCpuEngine(options);
+absl::StatusOr<ModelSource> OpenEngine(const ServerConfig& settings) {
+  return settings.engine() == duet::v1::ENGINE_TORCH ? OpenTorchEngine(settings)
+                                                     : OpenCpuEngine(settings);
 }
 
 }  // namespace

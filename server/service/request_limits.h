@@ -20,7 +20,7 @@ struct RequestLimits {
   float max_variety = 2;
   // Larger than any room; also keeps float arithmetic on positions meaningful.
   float max_abs_coordinate_metres = 10000;
-  // The operator's to choose: ServerOptions has the default.
+  // Set by the operator: ServerConfig has the default.
   std::size_t max_request_bytes = 0;
 };
 

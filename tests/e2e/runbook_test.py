@@ -25,7 +25,7 @@ class RunbookTest(unittest.TestCase):
 
     def test_settings_figures_and_events_are_the_servers(self):
         known = set(POD_LABELS)
-        known.update(re.findall(r"(\w+) = \d+;", text_of("proto/duet/v1/server_config.proto")))
+        known.update(re.findall(r"(\w+) = \d+[;\s]", text_of("proto/duet/v1/server_config.proto")))
         known.update(re.findall(r"`(\w+)`", text_of("docs/metrics.md")))
         for file in (tools.SOURCE / "server").rglob("*.cc"):
             known.update(re.findall(r'"(\w+)"', file.read_text(encoding="utf-8")))

@@ -110,16 +110,18 @@ Broken ServerConfig(absl::string_view input, bool json) {
   if (!config.ok()) return CheckRefusal(config.status());
   server::config::CommandLine line;
   line.config = *std::move(config);
-  const absl::StatusOr<server::config::ServerOptions> options = ToOptions(line, kCores);
+  const absl::StatusOr<v1::ServerConfig> options = ResolveSettings(line, kCores);
   if (!options.ok()) return CheckRefusal(options.status());
   // What is printed is a configuration file that says the same.
-  const std::string printed = PrintConfig(*options, {});
+  const std::string printed = server::config::PrintConfig(*options, {});
   config = server::config::ParseConfigText(printed, /*json=*/false);
   if (!config.ok()) return absl::StrCat("a printed configuration is none: ", printed);
   line.config = *std::move(config);
-  const absl::StatusOr<server::config::ServerOptions> again = ToOptions(line, kCores);
+  const absl::StatusOr<v1::ServerConfig> again = ResolveSettings(line, kCores);
   if (!again.ok()) return absl::StrCat("a printed configuration is refused: ", printed);
-  return PrintConfig(*again, {}) == printed ? "" : "a printed configuration says something else";
+  return server::config::PrintConfig(*again, {}) == printed
+             ? ""
+             : "a printed configuration says something else";
 }
 
 }  // namespace

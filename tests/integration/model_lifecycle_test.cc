@@ -76,9 +76,9 @@ class ModelLifecycleTest : public ::testing::Test {
  protected:
   void SetUp() override {
     Write("fake/1", "good");
-    server::config::ServerOptions options = TestOptions();
-    options.model_repository = folder_.path();
-    options.admin_listen = server::config::ListenAddress{"127.0.0.1", 0};
+    v1::ServerConfig options = TestOptions();
+    options.set_model_repository(folder_.path().string());
+    options.set_admin_listen("127.0.0.1:0");
     server_.emplace(options);
     const server::registry::ModelSource source = {
         "fake", [this](const fs::path& folder) { return LoadTestModel(folder); }, {}};
@@ -441,15 +441,15 @@ TEST(AdminListenerTest, IsClosedUnlessItIsConfigured) {
 TEST(AdminListenerTest, APortInUseIsNamed) {
   Running first;
   EventSink log;
-  server::config::ServerOptions options = TestOptions();
-  options.admin_listen = server::config::ListenAddress{"127.0.0.1", first->port()};
+  v1::ServerConfig options = TestOptions();
+  options.set_admin_listen(absl::StrCat("127.0.0.1:", first->port()));
   EXPECT_THAT(server::lifecycle::DuetServer::Start(options, log),
-              StatusIs(absl::StatusCode::kUnavailable, HasSubstr(ToString(*options.admin_listen))));
+              StatusIs(absl::StatusCode::kUnavailable, HasSubstr(options.admin_listen())));
 }
 
 TEST(AdminOfEmbeddedModelsTest, HasLabelsAndNothingToLoad) {
-  server::config::ServerOptions options = TestOptions();
-  options.admin_listen = server::config::ListenAddress{"127.0.0.1", 0};
+  v1::ServerConfig options = TestOptions();
+  options.set_admin_listen("127.0.0.1:0");
   Running server(options);
   server.Load();
   ASSERT_THAT(server->Serve(), IsOk());

@@ -16,6 +16,7 @@
 #include "absl/strings/str_cat.h"
 #include "duet/v1/synthesis.grpc.pb.h"
 #include "server/common/mutex.h"
+#include "server/config/settings.h"
 #include "server/lifecycle/duet_server.h"
 #include "tests/server/support/timed_context.h"
 #include "tests/support/fake_synthesizer.h"
@@ -23,12 +24,20 @@
 
 namespace duet::test {
 
-// On free ports of this machine alone.
-inline server::config::ServerOptions TestOptions() {
-  server::config::ServerOptions options;
-  options.listen = {"127.0.0.1", 0};
-  options.metrics_listen = server::config::ListenAddress{"127.0.0.1", 0};
+// The defaults, on free ports that only this machine reaches.
+inline v1::ServerConfig TestOptions() {
+  v1::ServerConfig options = server::config::ReadSettings(v1::ServerConfig(), /*cores=*/1).values;
+  options.set_listen("127.0.0.1:0");
+  options.set_metrics_listen("127.0.0.1:0");
   return options;
+}
+
+inline void AddLabel(const std::string& model, const std::string& label, uint32_t version,
+                     v1::ServerConfig* options) {
+  v1::VersionLabel& added = *options->add_version_labels();
+  added.set_model(model);
+  added.set_label(label);
+  added.set_version(version);
 }
 
 // Keeps what is logged.
@@ -59,7 +68,7 @@ class EventSink final : public server::metrics::LogSink {
 // A server, a channel to it and its log.
 class Running {
  public:
-  explicit Running(const server::config::ServerOptions& options = TestOptions(),
+  explicit Running(const v1::ServerConfig& options = TestOptions(),
                    std::function<absl::Status()> self_check = nullptr) {
     absl::StatusOr<std::unique_ptr<server::lifecycle::DuetServer>> server =
         server::lifecycle::DuetServer::Start(options, log, std::move(self_check));

@@ -95,16 +95,17 @@ TEST(LoadingTest, RefusesToServeNothing) {
 }
 
 TEST(LoadingTest, RefusesADefaultModelThatIsNotServed) {
-  server::config::ServerOptions options = TestOptions();
-  options.default_model = "other";
+  v1::ServerConfig options = TestOptions();
+  options.set_default_model("other");
   Running server(options);
   server.Load();
   EXPECT_THAT(server->Serve(), StatusIs(StatusCode::kNotFound, HasSubstr("\"other\"")));
 }
 
 TEST(LoadingTest, SetsVersionLabelsAndReportsThoseThatPointNowhere) {
-  server::config::ServerOptions options = TestOptions();
-  options.version_labels = {{"fake", "stable", 1}, {"fake", "canary", 2}};
+  v1::ServerConfig options = TestOptions();
+  AddLabel("fake", "stable", 1, &options);
+  AddLabel("fake", "canary", 2, &options);
   Running server(options);
   server.Load();
   ASSERT_THAT(server->Serve(), IsOk());
@@ -117,8 +118,9 @@ TEST(LoadingTest, SetsVersionLabelsAndReportsThoseThatPointNowhere) {
 }
 
 TEST(LoadingTest, RefusesALabelOfAModelThatThereIsNot) {
-  server::config::ServerOptions options = TestOptions();
-  options.version_labels = {{"fake", "stable", 1}, {"fak", "canary", 1}};
+  v1::ServerConfig options = TestOptions();
+  AddLabel("fake", "stable", 1, &options);
+  AddLabel("fak", "canary", 1, &options);
   Running server(options);
   server.Load();
   EXPECT_THAT(server->Serve(),
@@ -139,8 +141,8 @@ TEST(ReadinessTest, TellsHowItStandsWithEachModel) {
 // What a server says of itself while its self-check fails, and when it succeeds again.
 TEST(ReadinessTest, AFailedSelfCheckTurnsReadinessAndHealthUntilOneSucceeds) {
   std::atomic<bool> well{true};
-  server::config::ServerOptions options = TestOptions();
-  options.self_check_seconds = 0.001;
+  v1::ServerConfig options = TestOptions();
+  options.set_self_check_seconds(0.001);
   Running server(options, [&well] {
     return well ? absl::OkStatus() : absl::UnavailableError("nobody answers");
   });
@@ -176,9 +178,9 @@ TEST(ReadinessTest, AFailedSelfCheckTurnsReadinessAndHealthUntilOneSucceeds) {
 TEST(ReadinessTest, ASelfCheckThatSucceedsDoesNotEndADrain) {
   std::atomic<int> checks{0};
   std::atomic<bool> well{false};
-  server::config::ServerOptions options = TestOptions();
-  options.self_check_seconds = 0.001;
-  options.drain_seconds = 7;
+  v1::ServerConfig options = TestOptions();
+  options.set_self_check_seconds(0.001);
+  options.set_drain_seconds(7);
   Running server(options, [&] {
     ++checks;
     return well ? absl::OkStatus() : absl::UnavailableError("nobody answers");
@@ -198,19 +200,19 @@ TEST(ReadinessTest, ASelfCheckThatSucceedsDoesNotEndADrain) {
 TEST(ListenTest, ASecondServerOnAPortFailsAndSaysWhere) {
   Running first;
   EventSink log;
-  server::config::ServerOptions options = TestOptions();
-  options.listen.port = first->port();
+  v1::ServerConfig options = TestOptions();
+  options.set_listen(absl::StrCat("127.0.0.1:", first->port()));
   EXPECT_THAT(server::lifecycle::DuetServer::Start(options, log),
-              StatusIs(StatusCode::kUnavailable, HasSubstr(ToString(options.listen))));
+              StatusIs(StatusCode::kUnavailable, HasSubstr(options.listen())));
   options = TestOptions();
-  options.metrics_listen->port = first->metrics_port();
+  options.set_metrics_listen(absl::StrCat("127.0.0.1:", first->metrics_port()));
   EXPECT_THAT(server::lifecycle::DuetServer::Start(options, log),
-              StatusIs(StatusCode::kUnavailable, HasSubstr(ToString(*options.metrics_listen))));
+              StatusIs(StatusCode::kUnavailable, HasSubstr(options.metrics_listen())));
 }
 
 TEST(ListenTest, MetricsMayBeOff) {
-  server::config::ServerOptions options = TestOptions();
-  options.metrics_listen.reset();
+  v1::ServerConfig options = TestOptions();
+  options.set_metrics_listen("off");
   Running server(options);
   EXPECT_EQ(server->metrics_port(), 0);
 }
@@ -239,8 +241,8 @@ std::optional<std::uint32_t> Http2Setting(int port, int wanted) {
 
 // Calls beyond max_calls reach our own refusal, which has details.
 TEST(ListenTest, AConnectionMayHaveTwiceAsManyStreamsAsThereMayBeCalls) {
-  server::config::ServerOptions options = TestOptions();
-  options.max_calls = 21;
+  v1::ServerConfig options = TestOptions();
+  options.set_max_calls(21);
   Running server(options);
   constexpr int kMaxConcurrentStreams = 3;
   EXPECT_EQ(Http2Setting(server->port(), kMaxConcurrentStreams), 42u);
@@ -259,8 +261,8 @@ TEST(ReflectionTest, NamesTheServices) {
 }
 
 TEST(ReflectionTest, MayBeOff) {
-  server::config::ServerOptions options = TestOptions();
-  options.reflection = false;
+  v1::ServerConfig options = TestOptions();
+  options.set_reflection(false);
   Running server(options);
   RawCall call(server.channel, kReflection, kListServices);
   EXPECT_FALSE(call.Read().has_value());
@@ -268,8 +270,8 @@ TEST(ReflectionTest, MayBeOff) {
 }
 
 TEST(LimitsTest, TheOptionsSayHowLongARequestMayBe) {
-  server::config::ServerOptions options = TestOptions();
-  options.max_request_bytes = 8192;  // 40 frames are 7 kB
+  v1::ServerConfig options = TestOptions();
+  options.set_max_request_bytes(8192);  // 40 frames are 7 kB
   Running server(options);
   server.Load();
   ASSERT_THAT(server->Serve(), IsOk());
@@ -310,8 +312,8 @@ TEST(DrainTest, AnIdleServerStopsWithoutWaiting) {
 }
 
 TEST(DrainTest, ServesOnForDrainSecondsWhileHealthSaysNo) {
-  server::config::ServerOptions options = TestOptions();
-  options.drain_seconds = 7;
+  v1::ServerConfig options = TestOptions();
+  options.set_drain_seconds(7);
   Running server(options);
   server.Load();
   ASSERT_THAT(server->Serve(), IsOk());
@@ -377,9 +379,9 @@ HeldUpCall DrainWithACallHeldUp(double drain_seconds, double grace_seconds,
                                 const std::function<bool(std::size_t waits)>& wait) {
   HeldUpCall call;
   GatedModel model;
-  server::config::ServerOptions options = TestOptions();
-  options.drain_seconds = drain_seconds;
-  options.grace_seconds = grace_seconds;
+  v1::ServerConfig options = TestOptions();
+  options.set_drain_seconds(drain_seconds);
+  options.set_grace_seconds(grace_seconds);
   Running server(options);
   server.Load(model.get());
   if (!server->Serve().ok()) {

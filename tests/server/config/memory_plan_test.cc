@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "server/config/memory_limit.h"
+#include "server/config/settings.h"
 #include "tests/support/status_matchers.h"
 
 namespace duet::server::config {
@@ -21,16 +22,17 @@ using ::testing::IsEmpty;
 
 constexpr std::uint64_t kMebibyte = std::uint64_t{1} << 20;
 
-ServerOptions OptionsFor(std::uint64_t memory, const v1::ServerConfig& config = {}, int cores = 2) {
-  const absl::StatusOr<ServerOptions> options = ToOptions(config, cores, {}, memory);
+v1::ServerConfig OptionsFor(std::uint64_t memory, const v1::ServerConfig& config = {},
+                            int cores = 2) {
+  const absl::StatusOr<v1::ServerConfig> options = ResolveSettings(config, cores, {}, memory);
   EXPECT_THAT(options, IsOk());
-  return options.ok() ? *options : ServerOptions();
+  return options.ok() ? *options : v1::ServerConfig();
 }
 
 TEST(MemoryPlanTest, DefaultsFitEveryMemoryThatASmallContainerHas) {
   for (std::uint64_t memory = 160; memory < 5000; memory += memory < 500 ? 8 : 100) {
     for (const int cores : {1, 2, 4}) {
-      const ServerOptions options = OptionsFor(memory * kMebibyte, {}, cores);
+      const v1::ServerConfig options = OptionsFor(memory * kMebibyte, {}, cores);
       EXPECT_LE(NeedOf(options).total(), memory * kMebibyte) << memory << " MiB, " << cores;
       EXPECT_THAT(MemoryWarnings(options, memory * kMebibyte), IsEmpty()) << memory;
     }
@@ -39,42 +41,42 @@ TEST(MemoryPlanTest, DefaultsFitEveryMemoryThatASmallContainerHas) {
 
 TEST(MemoryPlanTest, LimitsAreTheLargestWhereMemoryIsNotShort) {
   for (const std::uint64_t memory : {2048 * kMebibyte, kUnlimitedMemory}) {
-    const ServerOptions options = OptionsFor(memory);
-    EXPECT_EQ(options.max_calls, 128);
-    EXPECT_EQ(options.max_request_bytes, 32 * kMebibyte);
-    EXPECT_EQ(options.max_transport_bytes, 512 * kMebibyte);
-    EXPECT_EQ(options.max_held_bytes, 512 * kMebibyte);
-    EXPECT_EQ(options.max_slow_requests, 8);
+    const v1::ServerConfig options = OptionsFor(memory);
+    EXPECT_EQ(options.max_calls(), 128);
+    EXPECT_EQ(options.max_request_bytes(), 32 * kMebibyte);
+    EXPECT_EQ(options.max_transport_bytes(), 512 * kMebibyte);
+    EXPECT_EQ(options.max_held_bytes(), 512 * kMebibyte);
+    EXPECT_EQ(options.max_slow_requests(), 8);
   }
 }
 
 TEST(MemoryPlanTest, ALittleMemoryShrinksBytesBeforeCallsAndRequests) {
-  const ServerOptions options = OptionsFor(400 * kMebibyte);
-  EXPECT_EQ(options.max_calls, 128);
-  EXPECT_EQ(options.max_request_bytes, 32 * kMebibyte);
-  EXPECT_EQ(options.max_transport_bytes, 96 * kMebibyte);
-  EXPECT_EQ(options.max_slow_requests, 1);
-  EXPECT_LT(options.max_held_bytes, 128 * kMebibyte);
-  EXPECT_GE(options.max_held_bytes, 52000000u) << "two leaders of ten minutes at 240 Hz";
+  const v1::ServerConfig options = OptionsFor(400 * kMebibyte);
+  EXPECT_EQ(options.max_calls(), 128);
+  EXPECT_EQ(options.max_request_bytes(), 32 * kMebibyte);
+  EXPECT_EQ(options.max_transport_bytes(), 96 * kMebibyte);
+  EXPECT_EQ(options.max_slow_requests(), 1);
+  EXPECT_LT(options.max_held_bytes(), 128 * kMebibyte);
+  EXPECT_GE(options.max_held_bytes(), 52000000u) << "two leaders of ten minutes at 240 Hz";
 }
 
 TEST(MemoryPlanTest, MoreMemoryNeverMeansLowerLimits) {
-  ServerOptions before = OptionsFor(64 * kMebibyte);
+  v1::ServerConfig before = OptionsFor(64 * kMebibyte);
   for (std::uint64_t memory = 72; memory < 3000; memory += 8) {
-    const ServerOptions now = OptionsFor(memory * kMebibyte);
-    EXPECT_GE(now.max_calls, before.max_calls) << memory;
-    EXPECT_GE(now.max_request_bytes, before.max_request_bytes) << memory;
+    const v1::ServerConfig now = OptionsFor(memory * kMebibyte);
+    EXPECT_GE(now.max_calls(), before.max_calls()) << memory;
+    EXPECT_GE(now.max_request_bytes(), before.max_request_bytes()) << memory;
     EXPECT_GE(NeedOf(now).total(), NeedOf(before).total()) << memory;
     before = now;
   }
 }
 
 TEST(MemoryPlanTest, TooLittleMemoryGetsTheLeastLimitsAndAWarning) {
-  const ServerOptions options = OptionsFor(64 * kMebibyte);
-  EXPECT_EQ(options.max_calls, 4);
-  EXPECT_EQ(options.max_request_bytes, kMebibyte);
-  EXPECT_EQ(options.max_transport_bytes, 3 * kMebibyte);
-  EXPECT_EQ(options.max_held_bytes, kMebibyte);
+  const v1::ServerConfig options = OptionsFor(64 * kMebibyte);
+  EXPECT_EQ(options.max_calls(), 4);
+  EXPECT_EQ(options.max_request_bytes(), kMebibyte);
+  EXPECT_EQ(options.max_transport_bytes(), 3 * kMebibyte);
+  EXPECT_EQ(options.max_held_bytes(), kMebibyte);
   EXPECT_THAT(MemoryWarnings(options, 64 * kMebibyte),
               ElementsAre(AllOf(HasSubstr("the limit is 67 MB"), HasSubstr("max_calls = 4"))));
 }
@@ -82,25 +84,25 @@ TEST(MemoryPlanTest, TooLittleMemoryGetsTheLeastLimitsAndAWarning) {
 TEST(MemoryPlanTest, AnExplicitSettingStaysAndTheOthersMakeRoom) {
   v1::ServerConfig config;
   config.set_max_held_bytes(300 * kMebibyte);
-  const ServerOptions options = OptionsFor(800 * kMebibyte, config);
-  EXPECT_EQ(options.max_held_bytes, 300 * kMebibyte);
+  const v1::ServerConfig options = OptionsFor(800 * kMebibyte, config);
+  EXPECT_EQ(options.max_held_bytes(), 300 * kMebibyte);
   EXPECT_THAT(MemoryWarnings(options, 800 * kMebibyte), IsEmpty());
   config.set_max_calls(7);
   config.set_max_request_bytes(5 * kMebibyte);
   config.set_max_transport_bytes(11 * kMebibyte);
-  const ServerOptions all = OptionsFor(400 * kMebibyte, config);
-  EXPECT_EQ(all.max_calls, 7);
-  EXPECT_EQ(all.max_request_bytes, 5 * kMebibyte);
-  EXPECT_EQ(all.max_transport_bytes, 11 * kMebibyte);
-  EXPECT_EQ(all.max_held_bytes, 300 * kMebibyte);
+  const v1::ServerConfig all = OptionsFor(400 * kMebibyte, config);
+  EXPECT_EQ(all.max_calls(), 7);
+  EXPECT_EQ(all.max_request_bytes(), 5 * kMebibyte);
+  EXPECT_EQ(all.max_transport_bytes(), 11 * kMebibyte);
+  EXPECT_EQ(all.max_held_bytes(), 300 * kMebibyte);
 }
 
 TEST(MemoryPlanTest, WarnsOfExplicitSettingsThatDoNotFit) {
   v1::ServerConfig config;
   config.set_max_held_bytes(512 * kMebibyte);
   config.set_max_transport_bytes(512 * kMebibyte);
-  const ServerOptions options = OptionsFor(400 * kMebibyte, config);
-  EXPECT_EQ(options.max_held_bytes, 512 * kMebibyte);
+  const v1::ServerConfig options = OptionsFor(400 * kMebibyte, config);
+  EXPECT_EQ(options.max_held_bytes(), 512 * kMebibyte);
   EXPECT_THAT(
       MemoryWarnings(options, 400 * kMebibyte),
       ElementsAre(AllOf(HasSubstr("the limit is 419 MB"), HasSubstr("536 MB for max_held_bytes"),
@@ -110,16 +112,16 @@ TEST(MemoryPlanTest, WarnsOfExplicitSettingsThatDoNotFit) {
 TEST(MemoryPlanTest, AnExplicitLimitReplacesTheMachines) {
   v1::ServerConfig config;
   config.set_memory_limit_bytes(400 * kMebibyte);
-  const ServerOptions options = OptionsFor(kUnlimitedMemory, config);
-  EXPECT_EQ(options.memory_limit_bytes, 400 * kMebibyte);
-  EXPECT_EQ(options.max_held_bytes, OptionsFor(400 * kMebibyte).max_held_bytes);
+  const v1::ServerConfig options = OptionsFor(kUnlimitedMemory, config);
+  EXPECT_EQ(options.memory_limit_bytes(), 400 * kMebibyte);
+  EXPECT_EQ(options.max_held_bytes(), OptionsFor(400 * kMebibyte).max_held_bytes());
   EXPECT_THAT(MemoryWarnings(options, 4000 * kMebibyte), IsEmpty());
 }
 
 TEST(MemoryPlanTest, WarnsOfALimitThatTheMachineDoesNotHave) {
   v1::ServerConfig config;
   config.set_memory_limit_bytes(4000 * kMebibyte);
-  const ServerOptions options = OptionsFor(400 * kMebibyte, config);
+  const v1::ServerConfig options = OptionsFor(400 * kMebibyte, config);
   EXPECT_THAT(MemoryWarnings(options, 400 * kMebibyte),
               ElementsAre(AllOf(HasSubstr("memory_limit_bytes: is 4194304000"),
                                 HasSubstr("expected at most 419430400")),
@@ -127,7 +129,7 @@ TEST(MemoryPlanTest, WarnsOfALimitThatTheMachineDoesNotHave) {
 }
 
 TEST(MemoryPlanTest, ModelsThatAreLargerThanPlannedAreWarnedOf) {
-  const ServerOptions options = OptionsFor(1024 * kMebibyte);
+  const v1::ServerConfig options = OptionsFor(1024 * kMebibyte);
   EXPECT_THAT(MemoryWarnings(options, 1024 * kMebibyte, 80 * kMebibyte), IsEmpty());
   EXPECT_THAT(MemoryWarnings(options, 1024 * kMebibyte, 500 * kMebibyte),
               ElementsAre(HasSubstr("524 MB for the program and its models")));
@@ -137,7 +139,7 @@ TEST(MemoryPlanTest, RefusesALimitThatNoServerFitsInto) {
   v1::ServerConfig config;
   config.set_memory_limit_bytes(1000);
   EXPECT_THAT(
-      ToOptions(config, 2),
+      ResolveSettings(config, 2),
       StatusIs(
           absl::StatusCode::kInvalidArgument,
           HasSubstr("memory_limit_bytes: expected 67108864 to 18446744073709551615, got 1000")));

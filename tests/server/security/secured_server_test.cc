@@ -16,6 +16,7 @@
 #include "absl/strings/str_cat.h"
 #include "duet/v1/synthesis.grpc.pb.h"
 #include "model/base/sha256.h"
+#include "server/config/settings.h"
 #include "server/lifecycle/duet_server.h"
 #include "server/lifecycle/library_logs.h"
 #include "server/lifecycle/self_check.h"
@@ -75,13 +76,13 @@ class LineSink final : public metrics::LogSink {
 class SecuredServerTest : public ::testing::Test {
  protected:
   SecuredServerTest() {
-    options_.listen = {"127.0.0.1", 0};
-    options_.metrics_listen = config::ListenAddress{"127.0.0.1", 0};
+    options_.set_listen("127.0.0.1:0");
+    options_.set_metrics_listen("127.0.0.1:0");
   }
 
   void UseTls() {
-    options_.security.tls_certificate_file = folder_ / "cert.pem";
-    options_.security.tls_key_file = folder_ / "key.pem";
+    options_.set_tls_certificate_file((folder_ / "cert.pem").string());
+    options_.set_tls_key_file((folder_ / "key.pem").string());
     ShowCertificate(MakeTestCertificate("duet.test", {&authority_}));
   }
   void ShowCertificate(const TestCertificate& certificate) {
@@ -89,11 +90,11 @@ class SecuredServerTest : public ::testing::Test {
     WriteTestFile(folder_ / "key.pem", certificate.private_key);
   }
   void AskForClientCertificates() {
-    options_.security.tls_client_ca_file = folder_ / "ca.pem";
+    options_.set_tls_client_ca_file((folder_ / "ca.pem").string());
     WriteTestFile(folder_ / "ca.pem", authority_.certificate);
   }
   void UseAccess(const std::string& text) {
-    options_.security.access_file = folder_ / "access";
+    options_.set_access_file((folder_ / "access").string());
     WriteTestFile(folder_ / "access", text);
   }
   // "sha256:..." of a token.
@@ -115,7 +116,7 @@ class SecuredServerTest : public ::testing::Test {
       const std::shared_ptr<grpc::ChannelCredentials>& credentials) {
     grpc::ChannelArguments arguments;
     arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);
-    if (!options_.security.tls_certificate_file.empty()) {
+    if (!options_.tls_certificate_file().empty()) {
       arguments.SetSslTargetNameOverride("duet.test");
     }
     return grpc::CreateCustomChannel(absl::StrCat("127.0.0.1:", server_->port()), credentials,
@@ -138,7 +139,7 @@ class SecuredServerTest : public ::testing::Test {
   const TemporaryFolder folder_;
   const TestCertificate authority_ = MakeTestCertificate("authority.test");
   const TestCertificate stranger_ = MakeTestCertificate("stranger.test");
-  config::ServerOptions options_;
+  v1::ServerConfig options_ = config::ReadSettings(v1::ServerConfig(), /*cores=*/1).values;
   LineSink log_;
   std::unique_ptr<lifecycle::DuetServer> server_;
 };
@@ -295,10 +296,10 @@ TEST_F(SecuredServerTest, FramesInFlightAreACallersOwn) {
 TEST_F(SecuredServerTest, PlacesAreSharedByCallerNotByAddress) {
   UseAccess(
       absl::StrCat("studio synthesise ", Known("s"), "\n", "farm synthesise ", Known("f"), "\n"));
-  options_.max_calls = 4;
-  options_.client_share = 0.5;  // alone, a client comes to hold two of four
-  options_.workers = 4;
-  options_.max_batch_windows = 1;
+  options_.set_max_calls(4);
+  options_.set_client_share(0.5);  // alone, a client comes to hold two of four
+  options_.set_workers(4);
+  options_.set_max_batch_windows(1);
   GatedModel model;
   Start(model.get());
   const auto call = [this](const std::string& token) {

@@ -9,16 +9,17 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/batching/batcher.h"
-#include "server/config/server_options.h"
+#include "server/config/settings.h"
 #include "tests/server/support/timed_context.h"
 
 namespace duet::test {
 
 RunningService::Setup::Setup() {
-  const server::config::ServerOptions defaults;
+  const v1::ServerConfig defaults =
+      server::config::ReadSettings(v1::ServerConfig(), /*cores=*/1).values;
   admission.max_calls = 16;
-  limits.max_request_bytes = defaults.max_request_bytes;
-  buffered_frames = defaults.buffered_frames;
+  limits.max_request_bytes = defaults.max_request_bytes();
+  buffered_frames = static_cast<int>(defaults.buffered_frames());
 }
 
 RunningService::RunningService(Setup setup) : admission_(setup.admission) {

@@ -1,4 +1,4 @@
-// The options of certificates, callers, log and traces.
+// The settings of certificates, callers, log and traces.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <limits>
 #include <string>
 
-#include "server/config/server_options.h"
+#include "server/config/settings.h"
 #include "tests/support/status_matchers.h"
 
 namespace duet::server::config {
@@ -17,20 +17,20 @@ using test::IsOk;
 using test::StatusIs;
 using ::testing::HasSubstr;
 
-TEST(SecurityOptionsTest, NothingIsAskedForUnlessSaid) {
-  const absl::StatusOr<ServerOptions> options = ToOptions(v1::ServerConfig(), 4);
+TEST(SecuritySettingsTest, DefaultsAreUnencryptedAndUntraced) {
+  const absl::StatusOr<v1::ServerConfig> options = ResolveSettings(v1::ServerConfig(), 4);
   ASSERT_THAT(options, IsOk());
-  EXPECT_TRUE(options->security.tls_certificate_file.empty());
-  EXPECT_TRUE(options->security.access_file.empty());
-  EXPECT_EQ(options->logging.format, LoggingOptions::Format::kJson);
-  EXPECT_EQ(options->logging.level, LoggingOptions::Level::kInfo);
-  EXPECT_EQ(options->logging.success_ratio, 1);
-  EXPECT_EQ(options->logging.refusals_per_second, 10);
-  EXPECT_TRUE(options->tracing.otlp_endpoint.empty());
-  EXPECT_EQ(options->tracing.ratio, 1);
+  EXPECT_TRUE(options->tls_certificate_file().empty());
+  EXPECT_TRUE(options->access_file().empty());
+  EXPECT_EQ(options->log_format(), v1::LOG_FORMAT_JSON);
+  EXPECT_EQ(options->log_level(), v1::LOG_LEVEL_INFO);
+  EXPECT_EQ(options->log_success_ratio(), 1);
+  EXPECT_EQ(options->log_refusals_per_second(), 10);
+  EXPECT_TRUE(options->otlp_endpoint().empty());
+  EXPECT_EQ(options->trace_ratio(), 1);
 }
 
-TEST(SecurityOptionsTest, TakesOverEveryField) {
+TEST(SecuritySettingsTest, ValidValuesStayAsGiven) {
   v1::ServerConfig config;
   config.set_tls_certificate_file("/c");
   config.set_tls_key_file("/k");
@@ -42,22 +42,22 @@ TEST(SecurityOptionsTest, TakesOverEveryField) {
   config.set_log_level(v1::LOG_LEVEL_ERROR);
   config.set_log_success_ratio(0.5);
   config.set_log_refusals_per_second(3);
-  const absl::StatusOr<ServerOptions> options = ToOptions(config, 4);
+  const absl::StatusOr<v1::ServerConfig> options = ResolveSettings(config, 4);
   ASSERT_THAT(options, IsOk());
-  EXPECT_EQ(options->security.tls_certificate_file, "/c");
-  EXPECT_EQ(options->security.tls_key_file, "/k");
-  EXPECT_EQ(options->security.tls_client_ca_file, "/a");
-  EXPECT_EQ(options->security.access_file, "/l");
-  EXPECT_EQ(options->logging.format, LoggingOptions::Format::kText);
-  EXPECT_EQ(options->logging.level, LoggingOptions::Level::kError);
-  EXPECT_EQ(options->logging.success_ratio, 0.5);
-  EXPECT_EQ(options->logging.refusals_per_second, 3);
-  EXPECT_EQ(options->tracing.otlp_endpoint, "http://o:1");
-  EXPECT_EQ(options->tracing.ratio, 0.25);
+  EXPECT_EQ(options->tls_certificate_file(), "/c");
+  EXPECT_EQ(options->tls_key_file(), "/k");
+  EXPECT_EQ(options->tls_client_ca_file(), "/a");
+  EXPECT_EQ(options->access_file(), "/l");
+  EXPECT_EQ(options->log_format(), v1::LOG_FORMAT_TEXT);
+  EXPECT_EQ(options->log_level(), v1::LOG_LEVEL_ERROR);
+  EXPECT_EQ(options->log_success_ratio(), 0.5);
+  EXPECT_EQ(options->log_refusals_per_second(), 3);
+  EXPECT_EQ(options->otlp_endpoint(), "http://o:1");
+  EXPECT_EQ(options->trace_ratio(), 0.25);
   config.set_log_level(v1::LOG_LEVEL_WARNING);
   config.set_log_format(v1::LOG_FORMAT_JSON);
-  EXPECT_EQ(ToOptions(config, 4)->logging.level, LoggingOptions::Level::kWarning);
-  EXPECT_EQ(ToOptions(config, 4)->logging.format, LoggingOptions::Format::kJson);
+  EXPECT_EQ(ResolveSettings(config, 4)->log_level(), v1::LOG_LEVEL_WARNING);
+  EXPECT_EQ(ResolveSettings(config, 4)->log_format(), v1::LOG_FORMAT_JSON);
 }
 
 struct BadConfig {
@@ -67,10 +67,10 @@ struct BadConfig {
 
 class BadSecurityTest : public ::testing::TestWithParam<BadConfig> {};
 
-TEST_P(BadSecurityTest, IsRefusedByName) {
+TEST_P(BadSecurityTest, ErrorNamesTheField) {
   v1::ServerConfig config;
   GetParam().spoil(config);
-  EXPECT_THAT(ToOptions(config, 4),
+  EXPECT_THAT(ResolveSettings(config, 4),
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(GetParam().message)));
 }
 

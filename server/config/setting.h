@@ -1,0 +1,64 @@
+#ifndef DUET_SERVER_CONFIG_SETTING_H_
+#define DUET_SERVER_CONFIG_SETTING_H_
+
+#include <google/protobuf/descriptor.h>
+
+#include <string>
+#include <vector>
+
+#include "duet/v1/options.pb.h"
+#include "duet/v1/server_config.pb.h"
+
+namespace duet::server::config {
+
+// A value of an enum, as flags and as configuration files spell it.
+struct Choice {
+  std::string flag_value;  // "auto"
+  std::string name;        // "CLEAN_UP_POLICY_AUTO"
+  int number = 0;
+};
+
+// The values of an enum that may be set: all but the one of number 0.
+std::vector<Choice> ChoicesOf(const google::protobuf::EnumDescriptor& type);
+
+// "a, b or c", for messages.
+std::string OneOf(const std::vector<std::string>& names);
+
+// A field of duet.v1.ServerConfig, described by its option (duet/v1/options.proto). Cheap to copy.
+class Setting {
+ public:
+  using Field = google::protobuf::FieldDescriptor;
+
+  explicit Setting(const Field* field) : field_(field) {}
+  // `number`: such as v1::ServerConfig::kMaxCallsFieldNumber.
+  explicit Setting(int number)
+      : Setting(v1::ServerConfig::descriptor()->FindFieldByNumber(number)) {}
+
+  const Field& field() const { return *field_; }
+  const v1::SettingOptions& options() const { return field_->options().GetExtension(v1::setting); }
+  const std::string& name() const { return field_->name(); }  // "max_calls"
+  std::string flag() const;                                   // "max-calls"
+  std::string variable() const;                               // "DUET_SERVER_MAX_CALLS"
+  // Unit or choices of a value, such as "BYTES" or "auto|on|off". Empty for a boolean.
+  std::string unit() const;
+  // The value that a flag would set, such as "128" or "on", or a text. Empty if there is no
+  // default.
+  std::string default_text() const;
+  // Such as "1 to 100000". Empty if any value of the type is valid.
+  std::string range_text() const;
+  // One paragraph, with the default.
+  std::string help() const;
+
+  // Sets the field to its default, if that does not have to be computed.
+  void SetDefault(v1::ServerConfig* config) const;
+
+ private:
+  const Field* field_;
+};
+
+// Every setting, in the order of the schema.
+std::vector<Setting> AllSettings();
+
+}  // namespace duet::server::config
+
+#endif  // DUET_SERVER_CONFIG_SETTING_H_

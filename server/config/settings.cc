@@ -1,0 +1,304 @@
+#include "server/config/settings.h"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "absl/strings/string_view.h"
+#include "server/common/http_origin.h"
+#include "server/config/listen_address.h"
+#include "server/config/memory_plan.h"
+#include "server/config/mistakes.h"
+#include "server/config/setting.h"
+
+namespace duet::server::config {
+namespace {
+
+using v1::ServerConfig;
+
+// Returns `value`, or `min` after a mistake. The setting's range has the maximum.
+template <typename Number>
+Number CheckRange(const Setting& setting, Number value, Number min, Mistakes& mistakes) {
+  const v1::SettingRange& range = setting.options().range();
+  const Number max =
+      range.has_max() ? static_cast<Number>(range.max()) : std::numeric_limits<Number>::max();
+  // Written so that NaN is out of range.
+  if (value >= min && value <= max) return value;
+  if (range.or_zero() && value == 0) return value;
+  mistakes.Add(setting.name(), absl::StrCat(range.or_zero() ? "0, or " : "", min, " to ", max),
+               absl::StrCat(value));
+  return min;
+}
+
+template <typename Number>
+Number CheckRange(const Setting& setting, Number value, Mistakes& mistakes) {
+  return CheckRange(setting, value, static_cast<Number>(setting.options().range().min()), mistakes);
+}
+
+// Restores the default after a mistake.
+void CheckChoice(const Setting& setting, ServerConfig* values, Mistakes& mistakes) {
+  const google::protobuf::Reflection& reflection = *values->GetReflection();
+  const int number = reflection.GetEnumValue(*values, &setting.field());
+  std::vector<std::string> names;
+  for (const Choice& choice : ChoicesOf(*setting.field().enum_type())) {
+    if (choice.number == number) return;
+    names.push_back(choice.name);
+  }
+  mistakes.Add(setting.name(), OneOf(names), absl::StrCat(number));
+  setting.SetDefault(values);
+}
+
+// Checks a field that is set against its type's choices or its range. A range that depends on other
+// settings is checked with those.
+void CheckField(const Setting& setting, ServerConfig* values, Mistakes& mistakes) {
+  const google::protobuf::Reflection& reflection = *values->GetReflection();
+  const Setting::Field* field = &setting.field();
+  if (field->cpp_type() == Setting::Field::CPPTYPE_ENUM) {
+    CheckChoice(setting, values, mistakes);
+    return;
+  }
+  if (!setting.options().has_range() || !setting.options().range().min_text().empty()) return;
+  switch (field->cpp_type()) {
+    case Setting::Field::CPPTYPE_UINT32:
+      reflection.SetUInt32(values, field,
+                           CheckRange(setting, reflection.GetUInt32(*values, field), mistakes));
+      return;
+    case Setting::Field::CPPTYPE_UINT64:
+      reflection.SetUInt64(values, field,
+                           CheckRange(setting, reflection.GetUInt64(*values, field), mistakes));
+      return;
+    case Setting::Field::CPPTYPE_DOUBLE:
+      reflection.SetDouble(values, field,
+                           CheckRange(setting, reflection.GetDouble(*values, field), mistakes));
+      return;
+    default:
+      return;
+  }
+}
+
+bool IsSet(const Setting& setting, const ServerConfig& values) {
+  return !setting.field().is_repeated() &&
+         values.GetReflection()->HasField(values, &setting.field());
+}
+
+void SetDefaults(ServerConfig* values) {
+  for (const Setting& setting : AllSettings()) {
+    if (!IsSet(setting, *values)) setting.SetDefault(values);
+  }
+}
+
+// Checks each field alone.
+void CheckFields(ServerConfig* values, Mistakes& mistakes) {
+  for (const Setting& setting : AllSettings()) {
+    if (IsSet(setting, *values)) CheckField(setting, values, mistakes);
+  }
+}
+
+// The normal form of an address; "off" after a mistake.
+std::string ReadAddress(absl::string_view field, const std::string& text, Mistakes& mistakes) {
+  const absl::StatusOr<ListenAddress> address = ParseListenAddress(text);
+  if (address.ok()) return ToString(*address);
+  mistakes.Add(absl::StrCat(field, ": ", address.status().message()));
+  return "off";
+}
+
+std::string ReadAddressOrOff(absl::string_view field, const std::string& text, Mistakes& mistakes) {
+  return text.empty() || text == "off" ? "off" : ReadAddress(field, text, mistakes);
+}
+
+// Each listener needs a port of its own.
+void ReadListeners(ServerConfig* values, Mistakes& mistakes) {
+  values->set_listen(ReadAddress("listen", values->listen(), mistakes));
+  values->set_metrics_listen(
+      ReadAddressOrOff("metrics_listen", values->metrics_listen(), mistakes));
+  values->set_admin_listen(ReadAddressOrOff("admin_listen", values->admin_listen(), mistakes));
+  const std::vector<std::pair<absl::string_view, std::optional<ListenAddress>>> listeners = {
+      {"listen", AddressOf(values->listen())},
+      {"metrics_listen", AddressOf(values->metrics_listen())},
+      {"admin_listen", AddressOf(values->admin_listen())}};
+  for (std::size_t i = 0; i < listeners.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const auto& [field, address] = listeners[i];
+      const auto& [other_field, other] = listeners[j];
+      if (!address.has_value() || !other.has_value() || !Clash(*address, *other)) continue;
+      mistakes.Add(field, absl::StrCat("another port than ", other_field), ToString(*address),
+                   absl::StrCat(other_field, " is ", ToString(*other),
+                                "; port 0 is any free one, \"off\" none"));
+    }
+  }
+}
+
+// More threads than this for each core would only take turns; hundreds of them take a machine a
+// minute to start. Small machines may exceed it for experiments.
+constexpr int kThreadsPerCore = 4;
+constexpr int kThreadsAnywhere = 32;
+
+void CheckThreads(const ServerConfig& values, int cores, bool workers_given, Mistakes& mistakes) {
+  const auto most = static_cast<uint32_t>(std::max(kThreadsAnywhere, kThreadsPerCore * cores));
+  const uint32_t workers = values.workers();
+  const uint32_t threads = values.threads_per_worker();
+  if (workers * threads <= most) return;
+  if (workers_given && threads == 1) {
+    mistakes.Add("workers", absl::StrCat("1 to ", most, " on ", cores, " cores"),
+                 absl::StrCat(workers));
+    return;
+  }
+  mistakes.Add("threads_per_worker",
+               absl::StrCat("1 to ", std::max(1U, most / workers), " with ", workers, " workers"),
+               absl::StrCat(threads),
+               absl::StrCat("together they may have ", most, " threads on ", cores, " cores"));
+}
+
+// By default, every core gets a worker with one thread: evaluations of one window gain less from a
+// second thread than from a second window. LibTorch can use more threads. If only one of the two is
+// set, the other one uses up the cores.
+void ReadThreads(const ServerConfig& given, int cores, ServerConfig* values, Mistakes& mistakes) {
+  const bool one_thread = values->engine() == v1::ENGINE_CPU;
+  if (!given.has_threads_per_worker()) values->set_threads_per_worker(1);
+  if (one_thread && values->threads_per_worker() > 1) {
+    mistakes.Add("threads_per_worker", "1 with ENGINE_CPU",
+                 absl::StrCat(values->threads_per_worker()),
+                 "its evaluations have one thread each: more workers use more cores");
+    values->set_threads_per_worker(1);
+  }
+  const auto rest = [cores](uint32_t taken) {
+    return std::max(1U, static_cast<uint32_t>(cores) / taken);
+  };
+  if (!given.has_workers()) values->set_workers(rest(values->threads_per_worker()));
+  if (!given.has_threads_per_worker() && !one_thread) {
+    values->set_threads_per_worker(rest(values->workers()));
+  }
+  CheckThreads(*values, cores, given.has_workers(), mistakes);
+}
+
+void ReadEngine(const ServerConfig& given, int cores, ServerConfig* values, Mistakes& mistakes) {
+  if (values->engine() == v1::ENGINE_TORCH && values->precision() == v1::PRECISION_BF16) {
+    mistakes.Add("precision", "PRECISION_F32 with ENGINE_TORCH", "PRECISION_BF16");
+  }
+  ReadThreads(given, cores, values, mistakes);
+}
+
+// Runs after ReadEngine: workers take memory.
+void ReadMemory(const ServerConfig& given, std::uint64_t memory_bytes, ServerConfig* values,
+                Mistakes& mistakes) {
+  if (!given.has_memory_limit_bytes()) values->set_memory_limit_bytes(memory_bytes);
+  FitCallsToMemory(given, values);
+  if (given.has_max_transport_bytes()) {
+    values->set_max_transport_bytes(CheckRange(Setting(ServerConfig::kMaxTransportBytesFieldNumber),
+                                               given.max_transport_bytes(),
+                                               2 * values->max_request_bytes(), mistakes));
+  }
+  if (given.has_max_held_bytes()) {
+    values->set_max_held_bytes(CheckRange(Setting(ServerConfig::kMaxHeldBytesFieldNumber),
+                                          given.max_held_bytes(), values->max_request_bytes(),
+                                          mistakes));
+  }
+  FitBytesToMemory(given, values);
+  if (!given.has_max_slow_requests()) {
+    const uint64_t requests = values->max_transport_bytes() / (2 * values->max_request_bytes());
+    values->set_max_slow_requests(static_cast<uint32_t>(std::clamp<uint64_t>(requests, 1, 100000)));
+  }
+}
+
+void ReadWatchdog(ServerConfig* values) {
+  constexpr double kShortestDefault = 60;
+  if (values->has_watchdog_seconds()) return;
+  values->set_watchdog_seconds(std::max(values->max_call_seconds(), kShortestDefault));
+}
+
+// Whether metadata may hold text under this key.
+bool IsMetadataKey(absl::string_view key) {
+  return !absl::EndsWith(key, "-bin") && std::all_of(key.begin(), key.end(), [](unsigned char c) {
+    return absl::ascii_islower(c) || absl::ascii_isdigit(c) || c == '-' || c == '_' || c == '.';
+  });
+}
+
+void CheckNames(const ServerConfig& values, Mistakes& mistakes) {
+  if (!values.client_key().empty() && !IsMetadataKey(values.client_key())) {
+    mistakes.Add("client_key", "lower-case letters, digits, '-', '_' and '.', not ending in -bin",
+                 absl::StrCat("\"", values.client_key(), "\""));
+  }
+  if (!values.otlp_endpoint().empty()) {
+    const absl::Status status = common::ParseHttpOrigin(values.otlp_endpoint()).status();
+    if (!status.ok()) mistakes.Add(absl::StrCat("otlp_endpoint: ", status.message()));
+  }
+}
+
+void CheckSecurity(const ServerConfig& values, Mistakes& mistakes) {
+  if (values.tls_certificate_file().empty() != values.tls_key_file().empty()) {
+    const bool no_key = values.tls_key_file().empty();
+    mistakes.Add(no_key ? "tls_key_file" : "tls_certificate_file",
+                 absl::StrCat("a file beside ", no_key ? "tls_certificate_file" : "tls_key_file"),
+                 "none", "encryption needs both, plain text neither");
+  }
+  if (!values.tls_client_ca_file().empty() && values.tls_certificate_file().empty()) {
+    mistakes.Add("tls_client_ca_file", "tls_certificate_file and tls_key_file beside it", "neither",
+                 "only an encrypted connection can request client certificates");
+  }
+}
+
+void CheckLabels(const ServerConfig& values, Mistakes& mistakes) {
+  for (int i = 0; i < values.version_labels_size(); ++i) {
+    const v1::VersionLabel& label = values.version_labels(i);
+    if (!label.model().empty() && !label.label().empty() && label.version() != 0) continue;
+    mistakes.Add(absl::StrCat("version_labels[", i, "]"),
+                 "a model, a label and a version of 1 or more",
+                 absl::StrCat("model \"", label.model(), "\", label \"", label.label(),
+                              "\", version ", label.version()));
+  }
+}
+
+void CheckPolicies(const ServerConfig& values, Mistakes& mistakes) {
+  std::set<std::string> models;
+  for (int i = 0; i < values.version_policies_size(); ++i) {
+    const v1::VersionPolicy& policy = values.version_policies(i);
+    const std::string field = absl::StrCat("version_policies[", i, "]");
+    const bool has_zero = std::count(policy.versions().begin(), policy.versions().end(), 0U) > 0 ||
+                          (policy.has_latest() && policy.latest() == 0);
+    if (policy.model().empty()) {
+      mistakes.Add(field, "a model's name, or \"*\" for every other", "none");
+    } else if (!models.insert(policy.model()).second) {
+      mistakes.Add(field, "one policy for each model",
+                   absl::StrCat("a second of model \"", policy.model(), "\""));
+    } else if (policy.has_latest() && policy.versions_size() > 0) {
+      mistakes.Add(field, "either latest or versions", "both");
+    } else if (has_zero) {
+      mistakes.Add(field, "numbers of 1 or more", "0");
+    }
+  }
+}
+
+}  // namespace
+
+Settings ReadSettings(const ServerConfig& given, int cores, const SettingSources& sources,
+                      std::uint64_t memory_bytes) {
+  Mistakes mistakes(sources);
+  ServerConfig values = given;
+  SetDefaults(&values);
+  ReadListeners(&values, mistakes);
+  CheckFields(&values, mistakes);
+  ReadEngine(given, cores, &values, mistakes);
+  ReadMemory(given, memory_bytes, &values, mistakes);
+  ReadWatchdog(&values);
+  CheckNames(values, mistakes);
+  CheckSecurity(values, mistakes);
+  CheckLabels(values, mistakes);
+  CheckPolicies(values, mistakes);
+  return {std::move(values), mistakes.Take()};
+}
+
+absl::StatusOr<ServerConfig> ResolveSettings(const ServerConfig& given, int cores,
+                                             const SettingSources& sources,
+                                             std::uint64_t memory_bytes) {
+  Settings settings = ReadSettings(given, cores, sources, memory_bytes);
+  if (settings.mistakes.empty()) return std::move(settings.values);
+  return absl::InvalidArgumentError(absl::StrJoin(settings.mistakes, "\n"));
+}
+
+}  // namespace duet::server::config
