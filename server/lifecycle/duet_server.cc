@@ -422,8 +422,6 @@ void DuetServer::UpdateHealthLocked() {
   for (const std::string& model : health_models_) {
     const bool serving = healthy && served.count(model) > 0;
     health->SetServingStatus(absl::StrCat(service, "/", model), serving);
-    // The name that the first version gave it.
-    health->SetServingStatus(absl::StrCat("model:", model), serving);
   }
 }
 

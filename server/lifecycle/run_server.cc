@@ -23,7 +23,7 @@
 #include "server/lifecycle/check_config.h"
 #include "server/lifecycle/duet_server.h"
 #include "server/lifecycle/library_logs.h"
-#include "server/lifecycle/service_manager.h"
+#include "server/lifecycle/systemd_notifier.h"
 #include "server/lifecycle/validate_settings.h"
 #include "server/metrics/process_metrics.h"
 #include "server/metrics/queued_log_sink.h"
@@ -99,15 +99,15 @@ absl::StatusOr<std::unique_ptr<DuetServer>> StartServing(const v1::ServerConfig&
 }
 
 // Serves until a signal to stop comes, and reloads when one to reload does.
-void ServeUntilStopped(DuetServer& server, StopSignal& stop, const ServiceManager& manager) {
-  manager.Ready(ServedText(server));
+void ServeUntilStopped(DuetServer& server, StopSignal& stop, const SystemdNotifier& systemd) {
+  systemd.Ready(ServedText(server));
   while (WaitForSignal(stop) == StopSignal::Kind::kReload) {
-    manager.Reloading();
-    server.control().Reload([&server, &manager](const auto& report) {
-      if (!absl::IsCancelled(report.status())) manager.Ready(ServedText(server));
+    systemd.Reloading();
+    server.control().Reload([&server, &systemd](const auto& report) {
+      if (!absl::IsCancelled(report.status())) systemd.Ready(ServedText(server));
     });
   }
-  manager.Stopping();
+  systemd.Stopping();
   const common::Step step(kDraining);
   server.Drain([&stop](double seconds) { return !stop.WaitFor(seconds); });
 }
@@ -136,7 +136,7 @@ absl::Status Serve(const ValidatedSettings& settings, const ReadSettings& read_s
   if (!settings.resource_mistakes.empty()) {
     return absl::FailedPreconditionError(settings.resource_mistakes.front());
   }
-  const ServiceManager manager = ServiceManager::OfProcess();
+  const SystemdNotifier systemd = SystemdNotifier::OfProcess();
   log.Info("engine_opened", {{"engine", source.engine}});
   const auto server = StartServing(values, source, stop, sink);
   if (absl::IsCancelled(server.status())) return absl::OkStatus();
@@ -153,7 +153,7 @@ absl::Status Serve(const ValidatedSettings& settings, const ReadSettings& read_s
     return current.status();
   };
   serving.control().AddReloadable({"configuration", configure});
-  ServeUntilStopped(serving, stop, manager);
+  ServeUntilStopped(serving, stop, systemd);
   return absl::OkStatus();
 }
 

@@ -61,9 +61,8 @@ TEST(LoadingTest, ServesOnceItsModelsAreThere) {
   ASSERT_THAT(server->Serve(), IsOk());
   EXPECT_EQ(Health(server.channel, ""), "SERVING");
   EXPECT_EQ(Health(server.channel, "duet.v1.MotionSynthesis"), "SERVING");
-  EXPECT_EQ(Health(server.channel, "model:fake"), "SERVING");
   EXPECT_EQ(Health(server.channel, "duet.v1.MotionSynthesis/fake"), "SERVING");
-  EXPECT_EQ(Health(server.channel, "model:other"), "service name unknown");
+  EXPECT_EQ(Health(server.channel, "duet.v1.MotionSynthesis/other"), "service name unknown");
   EXPECT_THAT(HttpGet(server->metrics_port(), "/readyz"), StartsWith("HTTP/1.1 200"));
   EXPECT_TRUE(Call(*server.stub, SampleRequest()).status.ok());
   const std::vector<json> serving = server.log.Events("serving");
@@ -148,7 +147,7 @@ TEST(ReadinessTest, AFailedSelfCheckTurnsReadinessAndHealthUntilOneSucceeds) {
   });
   server.Load();
   ASSERT_THAT(server->Serve(), IsOk());
-  const std::vector<std::string> names = {"", "duet.v1.MotionSynthesis", "model:fake",
+  const std::vector<std::string> names = {"", "duet.v1.MotionSynthesis",
                                           "duet.v1.MotionSynthesis/fake"};
   const auto wait_for_health = [&](const std::string& wanted) {
     for (const std::string& name : names) {
@@ -321,7 +320,6 @@ TEST(DrainTest, ServesOnForDrainSecondsWhileHealthSaysNo) {
   server->Drain([&](double seconds) {
     waits.push_back(seconds);
     EXPECT_EQ(Health(server.channel, ""), "NOT_SERVING");
-    EXPECT_EQ(Health(server.channel, "model:fake"), "NOT_SERVING");
     EXPECT_EQ(Health(server.channel, "duet.v1.MotionSynthesis/fake"), "NOT_SERVING");
     EXPECT_THAT(HttpGet(server->metrics_port(), "/readyz"),
                 AllOf(StartsWith("HTTP/1.1 503"), HasSubstr("draining")));

@@ -305,7 +305,7 @@ class NotifySocket {
   const int descriptor_;
 };
 
-TEST(ServerProcessTest, TellsTheServiceManagerHowItStands) {
+TEST(ServerProcessTest, ReportsItsStateToSystemd) {
   TemporaryFolder folder;
   NotifySocket socket((folder / "notify").string());
   setenv("NOTIFY_SOCKET", (folder / "notify").c_str(), 1);

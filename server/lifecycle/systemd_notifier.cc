@@ -1,4 +1,4 @@
-#include "server/lifecycle/service_manager.h"
+#include "server/lifecycle/systemd_notifier.h"
 
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -13,25 +13,25 @@
 
 namespace duet::server::lifecycle {
 
-ServiceManager ServiceManager::OfProcess() {
+SystemdNotifier SystemdNotifier::OfProcess() {
   const char* socket = std::getenv("NOTIFY_SOCKET");
-  return ServiceManager(socket == nullptr ? "" : socket);
+  return SystemdNotifier(socket == nullptr ? "" : socket);
 }
 
-void ServiceManager::Ready(absl::string_view status) const {
+void SystemdNotifier::Ready(absl::string_view status) const {
   Send(absl::StrCat("READY=1\nSTATUS=", status));
 }
 
-void ServiceManager::Reloading() const {
-  // systemd tells by the time which of two reloads a READY=1 ends; it wants CLOCK_MONOTONIC.
+void SystemdNotifier::Reloading() const {
+  // The time, of CLOCK_MONOTONIC, lets systemd match a READY=1 with one of several reloads.
   const auto now = std::chrono::steady_clock::now().time_since_epoch();
   Send(absl::StrCat("RELOADING=1\nMONOTONIC_USEC=",
                     std::chrono::duration_cast<std::chrono::microseconds>(now).count()));
 }
 
-void ServiceManager::Stopping() const { Send("STOPPING=1"); }
+void SystemdNotifier::Stopping() const { Send("STOPPING=1"); }
 
-void ServiceManager::Send(const std::string& message) const {
+void SystemdNotifier::Send(const std::string& message) const {
   sockaddr_un address = {};
   if (socket_.empty() || socket_.size() >= sizeof(address.sun_path)) return;
   address.sun_family = AF_UNIX;
