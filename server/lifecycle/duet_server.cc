@@ -21,21 +21,21 @@
 namespace duet::server::lifecycle {
 namespace {
 
-// How long the readers of calls that were ended may take for the message under way, which is sent
-// before the status.
+// Timeout for the readers of aborted calls to read the current message, which is sent before the
+// status.
 constexpr double kLastMessageSeconds = 3;
-// How long gRPC may take to hand out the statuses of calls that were ended.
+// Timeout for gRPC to send the statuses of aborted calls.
 constexpr std::chrono::seconds kFlush(1);
-// How soon a file that changed is noticed, and how often calls without a line are told of.
+// Interval for noticing changed files and for reporting calls that were not logged.
 constexpr double kHousekeepingSeconds = 1;
-// How often a drain looks whether the last call has finished or a second signal has come.
+// Interval at which a drain checks for the last call and for a second signal.
 constexpr double kLookSeconds = 0.05;
-// How often the service looks at the time that its calls take: a request that is arriving slowly
-// must not bring much before it is noticed.
+// Interval at which the service checks the duration of its calls. It is short so that a request
+// that arrives slowly is noticed before much of it has arrived.
 constexpr double kCheckTimeSeconds = 0.02;
-// How long the server may take to answer itself.
+// Timeout of a self-check.
 constexpr double kSelfCheckTimeoutSeconds = 5;
-// How often memory of large requests is given back.
+// Interval for returning the memory of large requests.
 constexpr double kTrimSeconds = 1;
 
 constexpr common::StepKind kLookingAtTime{"time limits", "ending calls that take too long"};
@@ -43,7 +43,7 @@ constexpr common::StepKind kTrimming{"memory", "giving memory back"};
 constexpr common::StepKind kHousekeeping{"housekeeping",
                                          "reading certificates, counting unlogged calls"};
 
-// Far more than an operator needs.
+// Limits of the admin service, far above what an operator needs.
 constexpr std::size_t kAdminRequestBytes = std::size_t{64} << 10;
 constexpr std::size_t kAdminTransportBytes = std::size_t{16} << 20;
 constexpr int kAdminCalls = 32;
@@ -163,7 +163,7 @@ DuetServer::DuetServer(const v1::ServerConfig& settings, metrics::LogSink& sink,
 }
 
 DuetServer::~DuetServer() {
-  // What loads reaches everything else, and admin calls wait for it.
+  // Loading uses every other member, and admin calls wait for it.
   control_.Stop();
   if (admin_grpc_.server != nullptr) {
     admin_grpc_.server->Shutdown(std::chrono::system_clock::now() + kFlush);
@@ -299,7 +299,7 @@ void DuetServer::Watch(std::function<absl::Status()> self_check) {
 
 absl::Status DuetServer::CheckItself() const {
   double timeout = kSelfCheckTimeoutSeconds;
-  // A check that takes its time is not stuck.
+  // A slow check must not look like a stuck thread.
   if (settings_.watchdog_seconds() > 0)
     timeout = std::min(timeout, settings_.watchdog_seconds() / 4);
   const absl::Status listens = CheckListener(ListenAddressOf(settings_).host, grpc_.port, timeout);
@@ -364,13 +364,13 @@ absl::Status DuetServer::Serve() {
 }
 
 void DuetServer::Drain(const std::function<bool(double seconds)>& wait) {
-  draining_ = true;  // from here on nobody is told that the server is ready
+  draining_ = true;  // from here on the server reports that it is not ready
   SetHealth(false);
   control_.Stop();
   log_.Info("draining", {{"calls", admission_.calls()}});
   bool patient = settings_.drain_seconds() <= 0 || wait(settings_.drain_seconds());
-  // From here on new calls are refused as UNAVAILABLE. gRPC's own Shutdown comes last: it would
-  // wait for health watches as well, which never end by themselves.
+  // From here on new calls are rejected with UNAVAILABLE. gRPC's Shutdown comes last, because it
+  // also waits for health watches, which never end by themselves.
   admission_.SetState(service::Admission::State::kDraining);
   double left = settings_.grace_seconds();
   while (patient && left > 0 && admission_.calls() > 0) {
@@ -386,7 +386,7 @@ void DuetServer::Drain(const std::function<bool(double seconds)>& wait) {
 void DuetServer::Close() {
   admission_.SetState(service::Admission::State::kDraining);
   service_.AbortAll(service::DrainingRefusal());
-  // Shutdown's deadline would end the rest as CANCELLED, without a word.
+  // Shutdown's deadline would end the rest as CANCELLED, without a message.
   service_.FinishAborted(kLastMessageSeconds);
   grpc_.server->Shutdown(std::chrono::system_clock::now() + kFlush);
 }

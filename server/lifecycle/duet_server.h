@@ -35,51 +35,51 @@ namespace duet::server::lifecycle {
 // Returns the settings of the log.
 metrics::LogOptions LogOptionsOf(const v1::ServerConfig& settings);
 
-// The whole server in one object: listens from the start, refuses calls as UNAVAILABLE until
-// Serve(), answers them until Drain().
+// The whole server in one object. It listens from the start, rejects calls with UNAVAILABLE until
+// Serve(), and answers them until Drain().
 //
 //   auto server = DuetServer::Start(settings, sink);
 //   (*server)->Load(source, stop);
 //   (*server)->Serve();
-//   ... control().Reload(done) when asked to; until asked to stop ...
+//   ... control().Reload(done) at a signal to reload; until a signal to stop ...
 //   (*server)->Drain(wait);
 //
-// Threads: one thread at a time, but for control().
+// Threads: one thread at a time, except control().
 class DuetServer {
  public:
-  // `settings` are resolved (config::Settings). `sink` outlives the server; `self_check` takes the
-  // place of connecting to the server's own port. Fails with UNAVAILABLE, the setting and the
-  // reason when an address cannot be listened on; as SecretFiles::Open and CallTracer::Open when
-  // what they are given makes no sense (ValidateSettings finds that before).
+  // `settings` are resolved (config::Settings). `sink` outlives the server. `self_check` replaces
+  // connecting to the server's own port. Fails with UNAVAILABLE, the setting and the reason if it
+  // cannot listen on an address, and like SecretFiles::Open and CallTracer::Open if their files or
+  // settings are invalid (ValidateSettings reports those before).
   static absl::StatusOr<std::unique_ptr<DuetServer>> Start(
       const v1::ServerConfig& settings, metrics::LogSink& sink,
       std::function<absl::Status()> self_check = nullptr);
   ~DuetServer();
 
-  // Loads the models that the options name; each is logged and counted, served or refused. Fails
-  // when there is nothing to load from, with CANCELLED once `stop` gives true.
+  // Loads the models that the settings name. Logs and counts each, served or rejected. Fails if
+  // there is nothing to load from, and with CANCELLED after `stop` returns true.
   absl::Status Load(const registry::ModelSource& source, const std::function<bool()>& stop);
-  // Serves a loaded model, or logs why it is not; both are counted.
+  // Serves a loaded model, or logs why it does not load. Counts both.
   void Add(const registry::LoadReport& report) { manager_.Add(report); }
 
-  // Opens the service: version labels, default model, health. Fails with FAILED_PRECONDITION when
-  // there is no model, NOT_FOUND when the default model is not among them, INVALID_ARGUMENT when a
-  // label names a model that there is not.
+  // Opens the service: version labels, default model, health. Fails with FAILED_PRECONDITION if
+  // there is no model, NOT_FOUND if the default model is not served, and INVALID_ARGUMENT if a
+  // label names a model that does not exist.
   absl::Status Serve();
 
-  // What may be done to models meanwhile.
+  // Changes models while the server runs.
   registry::ModelControl& control() { return control_; }
   int admin_port() const { return admin_grpc_.port; }
-  // Labels and policies as these options have them, from the next reload on.
+  // Uses the labels and policies of these settings from the next reload.
   void Configure(const v1::ServerConfig& settings);
 
-  // Says NOT_SERVING, serves on for drain_seconds, then lets calls finish for grace_seconds, ends
-  // the others as UNAVAILABLE and closes. `wait` sleeps for so many seconds; when it gives false,
-  // as after a second signal, both times are cut short.
+  // Reports NOT_SERVING, continues to serve for drain_seconds, lets calls finish for grace_seconds,
+  // ends the rest as UNAVAILABLE, and closes. `wait` sleeps for the given seconds; if it returns
+  // false, as after a second signal, both periods end.
   void Drain(const std::function<bool(double seconds)>& wait);
 
-  // Reads certificates and the access file again and takes over what changed, at once. By itself
-  // that happens every second, for files that do not change any more. Safe to call concurrently.
+  // Reads certificates and the access file again and applies changes at once. The server does so
+  // every second for files that have stopped changing. Safe to call concurrently.
   void RefreshSecrets() { Tell(secrets_->Refresh()); }
 
   int port() const { return grpc_.port; }
@@ -92,23 +92,23 @@ class DuetServer {
              std::unique_ptr<tracing::CallTracer> tracer);
   absl::Status Listen(std::function<absl::Status()> self_check);
   absl::Status ListenForAdmin();
-  // Whether connections are taken and calls answered.
+  // Checks that the server accepts connections and answers calls.
   absl::Status CheckItself() const;
-  // Starts what looks after the server while it runs: time limits, memory, secrets, the
-  // log's counts, its own port.
+  // Starts the periodic tasks: time limits, memory, secrets, counts of unlogged calls, the
+  // self-check.
   void Watch(std::function<absl::Status()> self_check);
   void Tell(const std::vector<security::Reload>& reloads);
-  // The same as RefreshSecrets; fails while what is on disk is refused, also if nothing changed.
+  // Does the same as RefreshSecrets. Fails while the files on disk are invalid, even if unchanged.
   absl::Status ReloadSecrets();
   // Null: plain text.
   std::shared_ptr<grpc::ServerCredentials> Credentials() const;
-  // Takes no lock: one that is held for ever must not hide that the server is not ready.
+  // Takes no lock: a lock that is held forever must not hide that the server is not ready.
   bool Ready() const;
-  // How it stands with each model, for people: a line each.
+  // Describes the state of each model for people, one line each.
   std::string Describe() const;
-  // Tells gRPC's health service how it stands with the whole and with each model.
+  // Sets the status of the server and of each model in gRPC's health service.
   void SetHealth(bool serving);
-  // As the last self-check has it.
+  // Applies the result of the last self-check.
   void SetReachable(bool reachable);
   void UpdateHealth();
   void UpdateHealthLocked() DUET_REQUIRES(health_mutex_);

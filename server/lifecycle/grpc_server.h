@@ -22,26 +22,26 @@ struct GrpcServerOptions {
   int max_calls = 0;
   double max_call_seconds = 660;
   std::shared_ptr<grpc::ServerCredentials> credentials = nullptr;  // null: plain text
-  // Outlives the server. Null: one of max_transport_bytes that nobody else has.
+  // Outlives the server. Null: a quota of max_transport_bytes for this server only.
   const grpc::ResourceQuota* quota = nullptr;
 };
 
 struct GrpcServer {
-  std::shared_ptr<grpc::ServerCredentials> credentials;  // asked while the server listens
+  std::shared_ptr<grpc::ServerCredentials> credentials;  // used while the server listens
   std::unique_ptr<grpc::Server> server;
   int port = 0;
 };
 
-// Starts gRPC with the service, Google's health service (everything SERVING at first) and, where
-// asked for, reflection. `service` outlives the server.
-// Fails with UNAVAILABLE and the reason when the address cannot be listened on.
+// Starts gRPC with the service, the standard health service (everything SERVING at first) and, if
+// requested, reflection. `service` outlives the server.
+// Fails with UNAVAILABLE and the reason if it cannot listen on the address.
 absl::StatusOr<GrpcServer> StartGrpcServer(const GrpcServerOptions& options,
                                            grpc::Service& service);
 
-// Whether the server still answers calls: asks its health service, without a connection, so that
-// neither certificates nor tokens matter. Like every call it is answered on gRPC's callback
-// threads: where all of those hang, the kernel and gRPC go on taking connections, and no call is
-// answered. Fails with UNAVAILABLE.
+// Checks whether the server still answers calls: calls its health service in process, so that
+// neither certificates nor tokens matter. gRPC's callback threads answer it like every call. If all
+// of them hang, the kernel and gRPC still accept connections, but no call is answered. Fails with
+// UNAVAILABLE.
 absl::Status CheckAnswers(grpc::Server& server, double timeout_seconds);
 
 }  // namespace duet::server::lifecycle

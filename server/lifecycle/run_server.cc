@@ -41,7 +41,7 @@ namespace {
 using watchdog::Watchdog;
 using watchdog::WatchdogOptions;
 
-// Each connection is a descriptor, and gRPC's listener does not come back from running out.
+// Each connection needs a descriptor, and gRPC's listener does not recover from running out.
 void RaiseDescriptorLimit() {
   rlimit limit = {};
   if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
@@ -49,15 +49,15 @@ void RaiseDescriptorLimit() {
   setrlimit(RLIMIT_NOFILE, &limit);
 }
 
-// The settings as they are now: flags and variables stay, the file may have changed.
+// Resolves the settings again: flags and variables stay, the file may have changed.
 using ReadSettings = std::function<absl::StatusOr<v1::ServerConfig>()>;
 
 constexpr common::StepKind kStarting{"main", "starting and loading models", /*is_bounded=*/false};
 constexpr common::StepKind kDraining{"main", "draining", /*is_bounded=*/false};
 constexpr common::StepKind kEnding{"main", "ending threads", /*is_bounded=*/false};
 
-// How long ending takes once no call is waited for: gRPC hands out statuses for a second, a
-// self-check under way takes five at most, and so does a log that is stuck.
+// Maximum time to exit when no call is left: gRPC sends statuses for a second; a running self-check
+// and a stuck log take at most five seconds each.
 constexpr double kEndSeconds = 10;
 
 WatchdogOptions WatchdogOf(const v1::ServerConfig& values) {
@@ -68,7 +68,7 @@ WatchdogOptions WatchdogOf(const v1::ServerConfig& values) {
   return wanted;
 }
 
-// How many models are served, for the service manager's status line.
+// The number of served models, for the status line of systemd.
 std::string ServedText(DuetServer& server) {
   const std::vector<registry::ModelStatus> models = server.control().List();
   const auto served = std::count_if(models.begin(), models.end(), [](const auto& model) {
@@ -85,7 +85,7 @@ StopSignal::Kind WaitForSignal(StopSignal& stop) {
   return stop.Wait();
 }
 
-// Listens, loads and begins to serve; CANCELLED when a signal to stop came before.
+// Listens, loads and begins to serve. Fails with CANCELLED if a signal to stop arrives before that.
 absl::StatusOr<std::unique_ptr<DuetServer>> StartServing(const v1::ServerConfig& values,
                                                          const ModelSource& source,
                                                          StopSignal& stop, metrics::LogSink& sink) {
@@ -98,7 +98,7 @@ absl::StatusOr<std::unique_ptr<DuetServer>> StartServing(const v1::ServerConfig&
   return server;
 }
 
-// Serves until a signal to stop comes, and reloads when one to reload does.
+// Serves until a signal to stop, and reloads at a signal to reload.
 void ServeUntilStopped(DuetServer& server, StopSignal& stop, const SystemdNotifier& systemd) {
   systemd.Ready(ServedText(server));
   while (WaitForSignal(stop) == StopSignal::Kind::kReload) {
@@ -112,7 +112,7 @@ void ServeUntilStopped(DuetServer& server, StopSignal& stop, const SystemdNotifi
   server.Drain([&stop](double seconds) { return !stop.WaitFor(seconds); });
 }
 
-// After the models were loaded, because their size is known only then.
+// Called after the models are loaded, because their size is not known before.
 void WarnOfMemory(const v1::ServerConfig& values, metrics::JsonLog& log) {
   for (const std::string& warning :
        config::MemoryWarnings(values, config::AvailableMemory(), metrics::ResidentBytes())) {
@@ -120,14 +120,14 @@ void WarnOfMemory(const v1::ServerConfig& values, metrics::JsonLog& log) {
   }
 }
 
-// Serves until a signal to stop comes; why it cannot serve is in the log as well.
+// Serves until a signal to stop. If it cannot serve, it logs the reason.
 absl::Status Serve(const ValidatedSettings& settings, const ReadSettings& read_settings,
                    StopSignal& stop, metrics::LogSink& sink) {
   const v1::ServerConfig& values = settings.values;
   const ModelSource& source = *settings.source;
-  // Never destroyed: it watches until the process is gone.
+  // Never destroyed: it watches until the process has exited.
   auto* const last_resort = new Watchdog(WatchdogOf(values), stop);
-  const common::Step step(kEnding);  // of what follows the steps below
+  const common::Step step(kEnding);  // covers what follows the steps below
   metrics::JsonLog log(sink, absl::Now, LogOptionsOf(values));
   const LibraryLogs library_logs(log);
   for (const std::string& mistake : settings.resource_mistakes) {
@@ -195,14 +195,14 @@ int RunServer(int argc, const char* const* argv, const EngineOpener& open_engine
     return kExitUsage;
   }
   RaiseDescriptorLimit();
-  // Whoever reads the log may go away: its lines are lost then, and no call.
+  // If the reader of the log exits, log lines are lost, but no call is.
   std::signal(SIGPIPE, SIG_IGN);
   metrics::QueuedLogSink::Options log;
   log.drop_notice = [](std::uint64_t dropped) { return metrics::DroppedLinesNotice(dropped); };
   if (settings.values.log_format() == v1::LOG_FORMAT_TEXT) {
     sink = std::make_shared<metrics::TextLogSink>(std::move(sink));
   }
-  // Outlives everything that logs, and writes its last lines before the process ends.
+  // Outlives everything that logs, and writes the last lines before the process exits.
   metrics::QueuedLogSink queued_sink(std::move(sink), log);
   const auto read_settings = [&] { return config::ResolveSettings(read(), cores, memory); };
   return Serve(settings, read_settings, stop, queued_sink).ok() ? kExitStopped : kExitFailed;
