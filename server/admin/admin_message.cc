@@ -19,11 +19,11 @@ constexpr std::size_t kLongestLabel = 63;
 class Fields {
  public:
   Fields& Name(const std::string& name) {
-    if (name.empty()) Add("name", "is missing, wanted a model's name");
+    if (name.empty()) Add("name", "expected a model's name, got none");
     return *this;
   }
   Fields& Version(uint32_t version) {
-    if (version == 0) Add("version", "is missing, wanted a version of 1 or more");
+    if (version == 0) Add("version", "expected a version of 1 or more, got none");
     return *this;
   }
   Fields& Label(const std::string& label) {
@@ -31,8 +31,8 @@ class Fields {
       return absl::ascii_isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_' || c == '.';
     });
     if (plain && !label.empty() && label.size() <= kLongestLabel) return *this;
-    Add("label", absl::StrCat("is ", base::Quoted(label), ", wanted 1 to ", kLongestLabel,
-                              " letters, digits, '-', '_' and '.'"));
+    Add("label", absl::StrCat("expected 1 to ", kLongestLabel,
+                              " letters, digits, '-', '_' and '.', got ", base::Quoted(label)));
     return *this;
   }
 

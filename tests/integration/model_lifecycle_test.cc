@@ -387,7 +387,8 @@ TEST_F(ModelLifecycleTest, EachRefusalHasItsCodeAndSaysWhy) {
   };
   refused(LoadModel("fake", 2), StatusCode::FAILED_PRECONDITION, "weights: 7 bytes, wanted 9");
   refused(LoadModel("fake", 3), StatusCode::NOT_FOUND, "version 3 of model \"fake\"");
-  refused(LoadModel("", 0), StatusCode::INVALID_ARGUMENT, "name: is missing");
+  refused(LoadModel("", 0), StatusCode::INVALID_ARGUMENT,
+          "name: expected a model's name, got none");
   EXPECT_THAT(Decode(LoadModel("", 0)).Fields(), ElementsAre("name", "version"));
   refused(UnloadModel("fake", 1), StatusCode::FAILED_PRECONDITION, "is the last");
   refused(UnloadModel("fake", 9), StatusCode::NOT_FOUND, "version 9");
