@@ -43,7 +43,7 @@ std::string ToText(const Report& report);
 std::string ToJson(const Report& report);
 // A row for each step, under a header. Times in milliseconds.
 std::string ToCsv(const Report& report);
-// A page without scripts or outside files: tables and plots.
+// An HTML page that needs no other file: holds ToJson, and a script that draws tables and charts.
 std::string ToPage(const Report& report);
 
 // Lines of a CSV file with every call.

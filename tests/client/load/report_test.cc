@@ -7,7 +7,6 @@
 #include <string>
 
 #include "absl/strings/str_split.h"
-#include "client/load/chart.h"
 #include "client/load/generator.h"
 #include "tests/client/load/simulated_server.h"
 
@@ -38,6 +37,14 @@ Report TwoRates(int max_in_flight = 4096) {
   return report;
 }
 
+// A step without calls.
+Report EmptyReport() {
+  Report report;
+  report.steps.resize(1);
+  report.steps[0].step.callers = 1;
+  return report;
+}
+
 TEST(ReportTest, TheTableHasEachStepAndWhatWasRefused) {
   const std::string text = ToText(TwoRates());
   EXPECT_THAT(text, HasSubstr("sbu@2, 460 frames: 25.0 % of the calls"));
@@ -52,7 +59,9 @@ TEST(ReportTest, SaysWhereTheGeneratorDidNotKeepUp) {
   EXPECT_THAT(WhyNotKeptUp(report.steps[1]),
               ::testing::ContainsRegex("was sent [0-9]+ ms late or more and [0-9]+ of 2000 never"));
   EXPECT_THAT(ToText(report), HasSubstr("200 calls/s: "));
-  EXPECT_THAT(ToPage(report), HasSubstr("<p class=\"warning\">200 calls/s: "));
+  const auto steps = nlohmann::json::parse(ToJson(report))["steps"];
+  EXPECT_FALSE(steps[0].contains("not_kept_up"));
+  EXPECT_EQ(steps[1]["not_kept_up"], WhyNotKeptUp(report.steps[1]));
 }
 
 TEST(ReportTest, JsonHasEverything) {
@@ -92,15 +101,27 @@ TEST(ReportTest, CsvHasACellForEachColumn) {
   EXPECT_NEAR(std::stod(cell("whole_call_ms_p99.9")), 30, 1);
 }
 
-TEST(ReportTest, ThePageStandsAlone) {
-  const std::string page = ToPage(TwoRates());
-  EXPECT_THAT(page, HasSubstr("<h1>Load on &lt;here&gt; &amp; there</h1>"));
-  for (const char* foreign : {"<script", "src=", "href=", "url(", "@import"}) {
+TEST(ReportTest, JsonHasTheWholeDistribution) {
+  const auto step = nlohmann::json::parse(ToJson(TwoRates()))["steps"][0];
+  const auto& percentiles = step["whole_call_percentiles"];
+  EXPECT_EQ(percentiles.front()[0], 0);
+  EXPECT_NEAR(percentiles.front()[1].get<double>(), 10, 0.1);
+  EXPECT_NEAR(percentiles.back()[0].get<double>(), 99.8, 0.05);  // of 500 calls
+  EXPECT_EQ(nlohmann::json::parse(ToJson(EmptyReport()))["steps"][0]["whole_call_percentiles"],
+            nlohmann::json::array());
+}
+
+TEST(ReportTest, PageHoldsTheJsonAndNeedsNoOtherFile) {
+  const Report report = TwoRates();
+  const std::string page = ToPage(report);
+  for (const char* foreign : {"src=", "href=", "url(", "@import", "https://", "{{"}) {
     EXPECT_THAT(page, Not(HasSubstr(foreign)));
   }
-  EXPECT_THAT(page, HasSubstr("Calls a second by load"));
-  EXPECT_THAT(page, HasSubstr("200 calls/s: whole call over time"));
-  EXPECT_THAT(page, Not(HasSubstr("nan")));
+  const std::string start = "<script type=\"application/json\" id=\"report\">";
+  const size_t begin = page.find(start) + start.size();
+  const std::string json = page.substr(begin, page.find("</script>", begin) - begin);
+  EXPECT_THAT(json, Not(HasSubstr("<"))) << "a title would end the script";
+  EXPECT_EQ(nlohmann::json::parse(json), nlohmann::json::parse(ToJson(report)));
 }
 
 TEST(ReportTest, ARecordIsALine) {
@@ -117,41 +138,6 @@ TEST(ReportTest, ARecordIsALine) {
   EXPECT_EQ(RecordLine({0, 12.5}, {"sbu@2", 46, 1}, record),
             "\"12.5 calls/s\",sbu@2,46,1.500000,1.000,,20.500,UNAVAILABLE,46\n");
 }
-
-TEST(ChartTest, ValuesStandWhereTheAxesSay) {
-  Chart chart;
-  chart.title = "T";
-  chart.series = {{"a", {{0, 0}, {5, 50}, {10, 100}}}};
-  const std::string svg = ToSvg(chart);
-  // The middle of the x axis, and half of 106 % of the height.
-  EXPECT_THAT(svg, HasSubstr("M66.0 294.0L345.0 184.6L624.0 75.1\" class=\"s0\""));
-  EXPECT_THAT(svg, HasSubstr(">100</text>"));
-}
-
-TEST(ChartTest, WhatCannotBeDrawnLeavesAGap) {
-  Chart chart;
-  chart.log_y = true;
-  chart.series = {{"a", {{1, 10}, {2, 0}, {3, 10}, {4, 100}}}};
-  const std::string svg = ToSvg(chart);
-  // One point alone, then a line of two.
-  EXPECT_THAT(svg, ::testing::ContainsRegex(
-                       "<path d=\"M66.0 [0-9.]+M438.0 [0-9.]+L624.0 [0-9.]+\" class=\"s0\"/>"));
-  EXPECT_THAT(svg, Not(HasSubstr("nan")));
-  EXPECT_THAT(svg, Not(HasSubstr("inf")));
-}
-
-TEST(ChartTest, EvenAPartOfADecadeHasTicks) {
-  Chart chart;
-  chart.log_y = true;
-  chart.series = {{"a", {{0, 500}, {1, 900}}}};
-  const std::string svg = ToSvg(chart);
-  for (const char* label : {">500<", ">600<", ">900<", ">1000<"}) {
-    EXPECT_THAT(svg, HasSubstr(label));
-  }
-  EXPECT_THAT(svg, Not(HasSubstr(">400<")));
-}
-
-TEST(ChartTest, NothingIsAnEmptyChart) { EXPECT_THAT(ToSvg(Chart()), HasSubstr("</svg>")); }
 
 }  // namespace
 }  // namespace duet::client::load
