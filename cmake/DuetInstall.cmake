@@ -80,7 +80,7 @@ models, as a service that systemd starts, watches and drains.")
 set(CPACK_DEBIAN_TRAINING_PACKAGE_NAME duet-training)
 set(CPACK_DEBIAN_TRAINING_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_TRAINING_PACKAGE_DEPENDS "libopenblas0-openmp")
-set(CPACK_DEBIAN_TRAINING_PACKAGE_RECOMMENDS "librsvg2-bin, fonts-dejavu-core")
+set(CPACK_DEBIAN_TRAINING_PACKAGE_RECOMMENDS "python3, python3-matplotlib, python3-sklearn")
 set(CPACK_DEBIAN_TRAINING_DESCRIPTION "training and evaluation of Duet's networks
 Imports pairs of motions, trains the networks that duet-server serves, and
 evaluates them. Includes the LibTorch engine of the server.")

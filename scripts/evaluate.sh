@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Everything that docs/results shows, with one command: trains what is not trained yet, measures it
-# and makes the report. Killed, it goes on where it was. Hours on two cores.
+# Reproduces docs/results: trains the models that are missing, measures them and makes the report.
+# Continues after an interruption. Takes hours on two cores.
 #   scripts/evaluate.sh BIN DATA RUNS RESULTS REPORT
 #     BIN: build/release/bin   DATA: the SBU folder   RUNS, RESULTS, REPORT: folders to write
-# The ablation trains for half the epochs, the full method among its rows too.
+# The ablation, including its row of the full method, trains for half the epochs.
 # FOLDS="s01 s02" restricts the ablation to some folds; the default is every subject.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -29,18 +29,18 @@ ablate() { # CONFIG [FOLD...]
   for fold in "$@"; do "${command[@]}" --fold "${fold}"; done
 }
 
-# The paper's augmented set of one half, through server and client.
+# Makes the paper's augmented set of one half through server and client.
 make_set() { # HALF
   local jobs="${runs}/jobs-$1" log="${runs}/set-$1.log" server="" port=""
   "${bin}/duet-eval" augmentation --data "${data}" --seeds "$1" --write-jobs "${jobs}"
   "${bin}/duet-server" --listen 127.0.0.1:0 --metrics-listen off \
     --model-repository "${runs}/half/half-$1/checkpoint" >"${log}" 2>&1 &
   server=$!
-  # shellcheck disable=SC2064  # this server, whatever comes after it
+  # shellcheck disable=SC2064  # expands now: stops this server
   trap "kill ${server}" EXIT
   until [[ -n "${port}" ]]; do
     sleep 0.1
-    kill -0 "${server}" # a server that could not start: ${log}
+    kill -0 "${server}" # fails if the server could not start; see ${log}
     port="$(sed -n 's/.*"event":"serving".*"port":\([0-9]*\).*/\1/p' "${log}")"
   done
   "${bin}/duet" batch --manifest "${jobs}/manifest.tsv" --recipe recipes/sbu_300.textproto \
@@ -57,7 +57,7 @@ train() {
     "${bin}/duet-train" --data "${data}" --out "${runs}/${config}" --config "${config}" \
       --protocol loso
   done
-  for seed in 1 2; do # beside 0: what training from other weights changes
+  for seed in 1 2; do # in addition to 0: the spread over initial weights
     "${bin}/duet-train" --data "${data}" --out "${runs}/flow-${seed}" --config flow \
       --set "seed=${seed}" --protocol loso
   done
@@ -69,7 +69,7 @@ train() {
   done
 }
 
-# The model that samples, the deterministic one beside it.
+# Measures the model that samples beside the deterministic one.
 sampled() {
   local start models=(--runs "flow=${runs}/flow" --runs "ours=${runs}/default")
   "${bin}/duet-eval" direction --data "${data}" --out "${results}" --runs "flow=${runs}/flow"
@@ -113,17 +113,17 @@ measure() {
   for config in "${runs}"/augmentations/*; do
     compared+=("$(basename "${config}")=${config}")
   done
-  "${bin}/duet-eval" validation --runs "${compared[@]}" --out "${results}" --id 22_augmentations \
-    --title "Augmentations one by one, on validation subjects"
+  scripts/training_results.py validation --runs "${compared[@]}" --out "${results}" \
+    --id 22_augmentations --title "Augmentations one by one, on validation subjects"
   "${bin}/duet-eval" sweep --data "${data}" --runs "ours=${runs}/default" --out "${results}"
   for half in {1..5}; do sets+=(--synthetic "${runs}/set-${half}"); done
   "${bin}/duet-eval" augmentation --data "${data}" --runs "${runs}/half" \
     "${sets[@]}" --out "${results}"
   "${bin}/duet-eval" latent --data "${data}" --runs "ours=${runs}/default" \
     --runs "mshl22=${runs}/mshl22" --clips all --out "${results}"
-  "${bin}/duet-eval" curves --run "${runs}"/default/s* --out "${results}"
+  scripts/training_results.py curves --run "${runs}"/default/s* --out "${results}"
 }
 
 train
 measure
-"${bin}/duet-eval" report --results "${results}" --out "${report}"
+scripts/make_report.py --results "${results}" --out "${report}"

@@ -12,9 +12,9 @@
 #include "model/evaluation/judge/classifier.h"
 #include "model/evaluation/program/commands.h"
 #include "model/evaluation/program/fold_models.h"
+#include "model/evaluation/program/section_flags.h"
 #include "model/evaluation/report/metric_tables.h"
 #include "model/evaluation/report/paper_tables.h"
-#include "model/evaluation/report/result_section.h"
 #include "model/evaluation/report/trial_tables.h"
 
 namespace duet::evaluation::program {
@@ -30,9 +30,7 @@ struct Arguments {
   std::vector<std::string> synthetic;
   std::string write_jobs;
   int64_t epochs = judge::ClassifierOptions().epochs;
-  std::string out;
-  std::string id = "40_augmentation";
-  std::string title = "Synthetic motion as training material (Table 6)";
+  SectionFlags section = {"40_augmentation", "Synthetic motion as training material (Table 6)"};
 };
 
 std::string MadeHere(const experiments::SyntheticPlanOptions& plan) {
@@ -88,19 +86,18 @@ absl::Status ReadSets(const dataset::Dataset& dataset, const std::vector<std::st
 
 report::ResultSection MakeSection(const dataset::Dataset& dataset, const Arguments& arguments,
                                   const experiments::Trials& trials) {
-  report::ResultSection section;
-  section.id = arguments.id;
-  section.title = arguments.title;
-  section.text = {
+  report::ResultSection section = BeginSection(
+      arguments.section,
       "A classifier shaped like the discriminator learns to name the interaction from the "
       "follower's motion, from half of the captured clips of each class, without and with "
       "synthetic followers, and is tested on the captured clips of the other half. The generator "
       "that made the synthetic followers was trained on the same training half alone, and answers "
       "varied leaders of that half. A trial is one split and one seed of the classifier; trials of "
-      "different rows are paired.",
+      "different rows are paired.");
+  section.text.push_back(
       "Rows take equally many training steps, since longer training alone moves the accuracy; "
       "\"longer\" rows take the steps that the larger set needs for as many epochs. \"Synthetic "
-      "alone\" never sees a captured follower."};
+      "alone\" never sees a captured follower.");
   report::Table means =
       report::MeansTable("Accuracy on captured followers, mean over the trials", trials);
   AddPrintedRows(report::PaperAugmentation(), &means);
@@ -117,13 +114,6 @@ report::ResultSection MakeSection(const dataset::Dataset& dataset, const Argumen
        absl::StrCat(arguments.plan.match, " match + ", arguments.plan.mix, " mix")},
       {"in-process answers", arguments.as_served ? "as served" : "the network's own"},
       {"sets through the server", absl::StrCat(arguments.synthetic.size())}};
-  section.command =
-      absl::StrCat("duet-eval augmentation --data DIR --runs RUNS --seeds ",
-                   absl::StrJoin(arguments.seeds, ","), " --repeats ", arguments.repeats,
-                   " --epochs ", arguments.epochs, " --match ", arguments.plan.match, " --mix ",
-                   arguments.plan.mix, arguments.as_served ? " --as-served" : "");
-  for (size_t i = 0; i < arguments.synthetic.size(); ++i) section.command += " --synthetic SET";
-  section.date = report::Today();
   return section;
 }
 
@@ -162,9 +152,7 @@ absl::Status Run(const Arguments& arguments) {
     status = RunHalf(*dataset, half, options, &std::cerr, &trials);
     if (!status.ok()) return status;
   }
-  const report::ResultSection section = MakeSection(*dataset, arguments, trials);
-  for (const report::Table& table : section.tables) std::cout << ToPlainText(table) << "\n";
-  return arguments.out.empty() ? absl::OkStatus() : WriteSection(section, arguments.out);
+  return FinishSection(arguments.section, MakeSection(*dataset, arguments, trials));
 }
 
 }  // namespace
@@ -173,10 +161,10 @@ void AddAugmentationCommand(CLI::App* app, ChosenCommand* chosen) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app->add_subcommand(
       "augmentation", "A classifier with and without synthetic training motion (Table 6)");
-  command->add_option("--data", arguments->data, "folder of captures (docs/datasets.md)")
-      ->required();
+  AddDataFlag(&arguments->data, command);
   CLI::Option* runs =
-      command->add_option("--runs", arguments->runs, "output of duet-train --protocol half");
+      command->add_option("--runs", arguments->runs, "output of duet-train --protocol half")
+          ->type_name(kRuns);
   command->add_option("--seeds", arguments->seeds, "halves: <runs>/half-<seed>")
       ->delimiter(',')
       ->capture_default_str();
@@ -197,14 +185,15 @@ void AddAugmentationCommand(CLI::App* app, ChosenCommand* chosen) {
   command
       ->add_option("--synthetic", arguments->synthetic,
                    "a set that duet batch made of --write-jobs' manifest; repeatable")
+      ->type_name(kSet)
       ->allow_extra_args(false);
-  CLI::Option* write_jobs = command->add_option(
-      "--write-jobs", arguments->write_jobs,
-      "only write the leaders of one half's set and their manifest into this folder");
+  CLI::Option* write_jobs =
+      command
+          ->add_option("--write-jobs", arguments->write_jobs,
+                       "only write the leaders of one half's set and their manifest")
+          ->type_name(kSet);
   write_jobs->excludes(runs);
-  command->add_option("--out", arguments->out, "folder of results, for duet-eval report");
-  command->add_option("--id", arguments->id, "of the section")->capture_default_str();
-  command->add_option("--title", arguments->title, "of the section")->capture_default_str();
+  AddSectionFlags(&arguments->section, command);
   command->callback([arguments, chosen, runs, write_jobs] {
     if (runs->count() + write_jobs->count() == 0) throw CLI::RequiredError("--runs");
     *chosen = [arguments] { return Run(*arguments); };

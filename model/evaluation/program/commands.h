@@ -20,12 +20,9 @@ void AddToldApartCommand(CLI::App* app, ChosenCommand* chosen);     // from capt
 void AddSweepCommand(CLI::App* app, ChosenCommand* chosen);         // label weights
 void AddAugmentationCommand(CLI::App* app, ChosenCommand* chosen);  // the paper's Table 6
 void AddLatentCommand(CLI::App* app, ChosenCommand* chosen);        // Figures 6 and 7
-void AddCurvesCommand(CLI::App* app, ChosenCommand* chosen);        // training curves
-void AddValidationCommand(CLI::App* app, ChosenCommand* chosen);    // settings on held-back data
 void AddDataCommand(CLI::App* app, ChosenCommand* chosen);          // tilt, noise and leaders
 void AddDirectionCommand(CLI::App* app, ChosenCommand* chosen);     // where the partner is
 void AddJudgeCommand(CLI::App* app, ChosenCommand* chosen);         // for duet batch's filter
-void AddReportCommand(CLI::App* app, ChosenCommand* chosen);        // one page of all sections
 
 }  // namespace duet::evaluation::program
 

@@ -1,4 +1,3 @@
-#include <iostream>
 #include <memory>
 #include <string>
 #include <utility>
@@ -11,8 +10,8 @@
 #include "model/evaluation/program/fold_judge.h"
 #include "model/evaluation/program/fold_models.h"
 #include "model/evaluation/program/named_runs.h"
+#include "model/evaluation/program/section_flags.h"
 #include "model/evaluation/report/direction_table.h"
-#include "model/evaluation/report/result_section.h"
 
 namespace duet::evaluation::program {
 namespace {
@@ -21,9 +20,7 @@ struct Arguments {
   std::string data;
   std::vector<std::string> runs;
   std::vector<std::string> subjects;
-  std::string out;
-  std::string id = "06_direction";
-  std::string title = "Where the partner of a leader is expected";
+  SectionFlags section = {"06_direction", "Where the partner of a leader is expected"};
 };
 
 // What a fold's model knows. Errors: those of reading it; INVALID_ARGUMENT for other joints.
@@ -71,14 +68,6 @@ absl::StatusOr<std::vector<report::DirectionRow>> Measure(const Arguments& argum
   return rows;
 }
 
-std::string CommandLine(const std::vector<report::DirectionRow>& rows) {
-  std::string command = "duet-eval direction --data DIR";
-  for (std::size_t i = 1; i < rows.size(); ++i) {
-    absl::StrAppend(&command, " --runs ", rows[i].name, "=RUNS");
-  }
-  return command;
-}
-
 absl::Status Run(const Arguments& arguments) {
   const absl::StatusOr<dataset::Dataset> dataset = dataset::ReadDataset(arguments.data);
   if (!dataset.ok()) return dataset.status();
@@ -88,20 +77,13 @@ absl::Status Run(const Arguments& arguments) {
   }
   const absl::StatusOr<std::vector<report::DirectionRow>> rows = Measure(arguments, *dataset);
   if (!rows.ok()) return rows.status();
-  report::ResultSection section;
-  section.id = arguments.id;
-  section.title = arguments.title;
-  section.text = {
+  report::ResultSection section = BeginSection(
+      arguments.section,
       "A caller who tells neither the partner's direction nor the follower's start leaves it to "
-      "the "
-      "leader's motion. People left out of training, one at a time; lower is better."};
+      "the leader's motion. People left out of training, one at a time; lower is better.");
   section.tables = {report::DirectionTable(*rows)};
-  section.settings = {
-      {"data", absl::StrCat(dataset->name, ", ", dataset->sequences.size(), " sequences")}};
-  section.command = CommandLine(*rows);
-  section.date = report::Today();
-  std::cout << ToPlainText(section.tables[0]) << "\n";
-  return arguments.out.empty() ? absl::OkStatus() : WriteSection(section, arguments.out);
+  section.settings = {{"data", DescribeData(*dataset)}};
+  return FinishSection(arguments.section, section);
 }
 
 }  // namespace
@@ -110,16 +92,12 @@ void AddDirectionCommand(CLI::App* app, ChosenCommand* chosen) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app->add_subcommand(
       "direction", "How far off a partner is expected when a caller does not tell where");
-  command->add_option("--data", arguments->data, "folder of captures (docs/datasets.md)")
-      ->required();
-  command->add_option("--runs", arguments->runs,
-                      "[NAME=]DIR, output of duet-train --protocol loso; may be repeated");
-  command->add_option("--subjects", arguments->subjects, "left out in turn (default: everybody)")
-      ->delimiter(',');
-  command->add_option("--out", arguments->out, "folder of results, for duet-eval report");
-  command->add_option("--id", arguments->id, "of the section")->capture_default_str();
-  command->add_option("--title", arguments->title, "of the section")->capture_default_str();
-  command->callback([arguments, chosen] { *chosen = [arguments] { return Run(*arguments); }; });
+  AddDataFlag(&arguments->data, command);
+  command->add_option("--runs", arguments->runs, "output of duet-train --protocol loso; repeatable")
+      ->type_name(kNamedRuns);
+  AddSubjectsFlag(&arguments->subjects, command);
+  AddSectionFlags(&arguments->section, command);
+  RunWhenNamed(command, arguments, Run, chosen);
 }
 
 }  // namespace duet::evaluation::program

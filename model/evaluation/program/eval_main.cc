@@ -20,12 +20,9 @@ int main(int argc, char** argv) {
   duet::evaluation::program::AddSweepCommand(&app, &chosen);
   duet::evaluation::program::AddAugmentationCommand(&app, &chosen);
   duet::evaluation::program::AddLatentCommand(&app, &chosen);
-  duet::evaluation::program::AddCurvesCommand(&app, &chosen);
-  duet::evaluation::program::AddValidationCommand(&app, &chosen);
   duet::evaluation::program::AddDataCommand(&app, &chosen);
   duet::evaluation::program::AddJudgeCommand(&app, &chosen);
   duet::evaluation::program::AddDirectionCommand(&app, &chosen);
-  duet::evaluation::program::AddReportCommand(&app, &chosen);
   const duet::base::KebabCaseCommandLine line(argc, argv);
   CLI11_PARSE(app, line.argc(), line.argv());
   const absl::Status status = duet::network::CatchExceptions([&chosen] {

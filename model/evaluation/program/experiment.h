@@ -5,13 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "model/dataset/dataset.h"
 #include "model/evaluation/program/models.h"
+#include "model/evaluation/program/section_flags.h"
 #include "model/evaluation/report/result_section.h"
 
-// What the commands share that measure models on people left out of their training.
+// Shared by the commands that measure models on people left out of their training.
 
 namespace duet::evaluation::program {
 
@@ -19,30 +19,27 @@ struct ExperimentFlags {
   std::string data;
   ModelChoice models;
   std::vector<std::string> subjects;
-  std::string out;
-  std::string id, title;  // of the section; set before the flags are added, they are the defaults
+  SectionFlags section;
 };
 
-// --data, --subjects, --out, --id, --title; not those of the models.
-void AddExperimentFlags(ExperimentFlags* flags, CLI::App* command);
+// --data, --subjects and those of the section; not those of the models.
+void AddExperimentFlags(const std::string& id, const std::string& title, ExperimentFlags* flags,
+                        CLI::App* command);
 
-// What the flags name, read.
+// The data and the models that the flags name.
 struct Experiment {
   dataset::Dataset dataset;
-  std::vector<std::string> subjects;  // who is left out in turn
+  std::vector<std::string> subjects;  // left out in turn
   std::vector<FoldModel> models;
 };
 
 // Errors: those of ReadDataset, FoldSubjects and OpenModels.
 absl::StatusOr<Experiment> OpenExperiment(const ExperimentFlags& flags);
 
-// A section with its id, title, text, date, and the settings that every experiment has: the data,
-// who is left out, and what is done to the models' answers.
-report::ResultSection BeginSection(const ExperimentFlags& flags, const Experiment& experiment,
-                                   const std::string& text);
-
-// Prints the tables, and writes the section where a folder was asked for.
-absl::Status FinishSection(const ExperimentFlags& flags, const report::ResultSection& section);
+// BeginSection with the settings of every experiment: the data, the subjects left out, and how the
+// models' answers are finished.
+report::ResultSection BeginExperiment(const ExperimentFlags& flags, const Experiment& experiment,
+                                      const std::string& text);
 
 }  // namespace duet::evaluation::program
 

@@ -5,16 +5,14 @@
 #include <utility>
 #include <vector>
 
-#include "absl/strings/str_cat.h"
-#include "absl/strings/str_join.h"
 #include "model/evaluation/baselines/baselines.h"
 #include "model/evaluation/program/commands.h"
+#include "model/evaluation/program/experiment.h"
 #include "model/evaluation/program/fold_scorer.h"
 #include "model/evaluation/program/model_flags.h"
 #include "model/evaluation/program/named_runs.h"
 #include "model/evaluation/report/metric_tables.h"
 #include "model/evaluation/report/paper_tables.h"
-#include "model/evaluation/report/result_section.h"
 
 namespace duet::evaluation::program {
 namespace {
@@ -23,16 +21,11 @@ namespace {
 constexpr char kNoBaseline[] = "none";
 
 struct Arguments {
-  std::string data;
-  ModelChoice models;
+  ExperimentFlags flags;
   std::vector<std::string> starts = StartNames();
   std::vector<std::string> baselines = {"class_mean", "frozen_first_frame"};
-  std::vector<std::string> subjects;
   std::vector<std::string> metrics = {"afd", "afd_squared"};
   std::vector<std::string> printed;
-  std::string out;
-  std::string id = "10_folds";
-  std::string title = "Leave one subject out";
 };
 
 absl::Status AddModel(const FoldScorer& scorer, const FoldModel& model,
@@ -101,39 +94,15 @@ std::vector<report::Table> Tables(const dataset::Dataset& dataset, const Argumen
   return tables;
 }
 
-// A command line that makes the same tables, with placeholders for the folders.
-std::string Command(const Arguments& arguments, const std::vector<std::string>& subjects) {
-  std::string command = absl::StrCat("duet-eval folds --data DIR", ModelWords(arguments.models));
-  const auto add = [&](const std::string& flag, const std::vector<std::string>& values) {
-    absl::StrAppend(&command, " --", flag, " ", values.empty() ? "''" : absl::StrJoin(values, ","));
-  };
-  add("starts", arguments.starts);
-  add("baselines", arguments.baselines);
-  add("subjects", subjects);
-  add("metrics", arguments.metrics);
-  if (!arguments.printed.empty()) add("printed", arguments.printed);
-  return command;
-}
-
-report::ResultSection MakeSection(const dataset::Dataset& dataset,
-                                  const std::vector<std::string>& subjects,
-                                  const Arguments& arguments, const FoldScorer& scorer) {
-  report::ResultSection section;
-  section.id = arguments.id;
-  section.title = arguments.title;
-  section.text = {
+report::ResultSection MakeSection(const Experiment& experiment, const Arguments& arguments,
+                                  const FoldScorer& scorer) {
+  report::ResultSection section = BeginExperiment(
+      arguments.flags, experiment,
       "Each subject is left out in turn: methods learn from the sequences without that person and "
       "answer the leaders of all those with. Figures are means over the answers of all folds; the "
       "names of rows end in what a model was told of the follower's first frame: nothing, where "
-      "its root is (+root), or its pose (+pose)."};
-  if (arguments.models.one_for_all()) section.text.push_back(kOneForAll);
-  section.settings = {
-      {"data", absl::StrCat(dataset.name, ", ", dataset.sequences.size(), " sequences")},
-      {"left out in turn", absl::StrJoin(subjects, ", ")},
-      {"models' answers", arguments.models.as_served ? "as served" : "the network's own"}};
+      "its root is (+root), or its pose (+pose).");
   for (auto& setting : scorer.JudgeSettings()) section.settings.push_back(std::move(setting));
-  section.command = Command(arguments, subjects);
-  section.date = report::Today();
   return section;
 }
 
@@ -145,22 +114,19 @@ bool NeedsJudge(const std::vector<std::string>& metrics) {
 }
 
 absl::Status Run(const Arguments& arguments) {
-  absl::StatusOr<dataset::Dataset> dataset = dataset::ReadDataset(arguments.data);
-  if (!dataset.ok()) return dataset.status();
-  absl::StatusOr<std::vector<std::string>> subjects = FoldSubjects(*dataset, arguments.subjects);
-  if (!subjects.ok()) return subjects.status();
-  absl::StatusOr<std::vector<FoldModel>> models = OpenModels(arguments.models);
-  if (!models.ok()) return models.status();
+  absl::StatusOr<Experiment> experiment = OpenExperiment(arguments.flags);
+  if (!experiment.ok()) return experiment.status();
   absl::StatusOr<FoldScorer> scorer =
-      FoldScorer::Create(*dataset, *subjects, NeedsJudge(arguments.metrics));
+      FoldScorer::Create(experiment->dataset, experiment->subjects, NeedsJudge(arguments.metrics));
   if (!scorer.ok()) return scorer.status();
-  absl::StatusOr<std::vector<report::MethodFigures>> rows = Rows(*scorer, *models, arguments);
+  absl::StatusOr<std::vector<report::MethodFigures>> rows =
+      Rows(*scorer, experiment->models, arguments);
   if (!rows.ok()) return rows.status();
-  report::ResultSection section = MakeSection(*dataset, *subjects, arguments, *scorer);
-  section.tables = Tables(*dataset, arguments, *rows);
+  report::ResultSection section = MakeSection(*experiment, arguments, *scorer);
+  section.tables = Tables(experiment->dataset, arguments, *rows);
   for (const std::string& text : section.text) std::cout << text << "\n";
-  for (const report::Table& table : section.tables) std::cout << "\n" << ToPlainText(table);
-  return arguments.out.empty() ? absl::OkStatus() : WriteSection(section, arguments.out);
+  std::cout << "\n";
+  return FinishSection(arguments.flags.section, section);
 }
 
 std::vector<std::string> MetricNames() {
@@ -175,23 +141,15 @@ void AddFoldsCommand(CLI::App* app, ChosenCommand* chosen) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* command =
       app->add_subcommand("folds", "Figures of models and baselines, leaving one subject out");
-  command->add_option("--data", arguments->data, "folder of captures (docs/datasets.md)")
-      ->required();
-  AddModelFlags(ModelNeeded::kNo, &arguments->models, command);
-  command
-      ->add_option("--starts", arguments->starts,
-                   "what a model is told of the follower's first frame, a row each")
-      ->delimiter(',')
-      ->check(CLI::IsMember(StartNames()))
-      ->capture_default_str();
+  AddExperimentFlags("10_folds", "Leave one subject out", &arguments->flags, command);
+  AddModelFlags(ModelNeeded::kNo, &arguments->flags.models, command);
+  AddStartsFlag(&arguments->starts, command);
   std::vector<std::string> baselines = baselines::BaselineNames();
   baselines.push_back(kNoBaseline);
   command->add_option("--baselines", arguments->baselines, "rows beside it, or none")
       ->delimiter(',')
       ->check(CLI::IsMember(baselines))
       ->capture_default_str();
-  command->add_option("--subjects", arguments->subjects, "folds; default: every subject")
-      ->delimiter(',');
   command->add_option("--metrics", arguments->metrics, "tables to print")
       ->delimiter(',')
       ->check(CLI::IsMember(MetricNames()))
@@ -199,10 +157,7 @@ void AddFoldsCommand(CLI::App* app, ChosenCommand* chosen) {
   command->add_option("--printed", arguments->printed, "add the paper's rows: afd, fid")
       ->delimiter(',')
       ->check(CLI::IsMember({"afd", "fid"}));
-  command->add_option("--out", arguments->out, "folder of results, for duet-eval report");
-  command->add_option("--id", arguments->id, "of the section")->capture_default_str();
-  command->add_option("--title", arguments->title, "of the section")->capture_default_str();
-  command->callback([arguments, chosen] { *chosen = [arguments] { return Run(*arguments); }; });
+  RunWhenNamed(command, arguments, Run, chosen);
 }
 
 }  // namespace duet::evaluation::program

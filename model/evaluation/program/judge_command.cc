@@ -12,6 +12,7 @@
 #include "model/dataset/dataset.h"
 #include "model/evaluation/judge/classifier.h"
 #include "model/evaluation/program/commands.h"
+#include "model/evaluation/program/section_flags.h"
 
 namespace duet::evaluation::program {
 namespace {
@@ -77,8 +78,7 @@ void AddJudgeCommand(CLI::App* app, ChosenCommand* chosen) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* command =
       app->add_subcommand("judge", "Train a classifier of followers, for the filter of duet batch");
-  command->add_option("--data", arguments->data, "data set to learn from (docs/datasets.md)")
-      ->required();
+  AddDataFlag(&arguments->data, command);
   command->add_option("--out", arguments->out, "folder to write it to")->required();
   command->add_option("--hold-out", arguments->hold_out,
                       "a subject that it does not see, and is tried on");
@@ -91,7 +91,7 @@ void AddJudgeCommand(CLI::App* app, ChosenCommand* chosen) {
       ->check(CLI::Range(0, 10000))
       ->capture_default_str();
   command->add_option("--seed", arguments->options.seed)->capture_default_str();
-  command->callback([arguments, chosen] { *chosen = [arguments] { return Run(*arguments); }; });
+  RunWhenNamed(command, arguments, Run, chosen);
 }
 
 }  // namespace duet::evaluation::program

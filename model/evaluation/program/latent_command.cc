@@ -1,5 +1,4 @@
 #include <filesystem>
-#include <iostream>
 #include <memory>
 #include <string>
 #include <system_error>
@@ -11,12 +10,11 @@
 #include "absl/strings/str_join.h"
 #include "model/dataset/dataset.h"
 #include "model/evaluation/experiments/latent.h"
-#include "model/evaluation/experiments/latent_map.h"
 #include "model/evaluation/program/commands.h"
 #include "model/evaluation/program/fold_models.h"
 #include "model/evaluation/program/named_runs.h"
-#include "model/evaluation/report/latent_figures.h"
-#include "model/evaluation/report/result_section.h"
+#include "model/evaluation/program/section_flags.h"
+#include "model/evaluation/report/latent_table.h"
 
 namespace duet::evaluation::program {
 namespace {
@@ -26,10 +24,9 @@ struct Arguments {
   std::vector<std::string> runs;
   std::vector<std::string> subjects;
   std::string clips = "test";
-  metrics::TsneOptions tsne;
-  std::string out;
-  std::string id = "50_latent";
-  std::string title = "Latent space (Figures 6 and 7)";
+  double perplexity = 30;
+  uint64_t seed = 1;
+  SectionFlags section = {"50_latent", "Latent space (Figures 6 and 7)"};
 };
 
 // The clips of a fold to show.
@@ -67,7 +64,7 @@ struct FoldCheckpoint {
   checkpoint::Checkpoint checkpoint;
 };
 
-// Draws and measures one latent space: a figure and a row of the table.
+// Measures one latent space: a figure and a row of the table.
 absl::Status AddSpace(const dataset::Dataset& dataset, const FoldCheckpoint& fold,
                       experiments::LatentLabels labels, const Arguments& arguments,
                       report::ResultSection* section) {
@@ -77,20 +74,20 @@ absl::Status AddSpace(const dataset::Dataset& dataset, const FoldCheckpoint& fol
       LatentFeatures(fold.checkpoint, dataset, *clips, labels);
   if (!features.ok()) return features.status();
   const std::vector<int> classes = ClassesOf(dataset, *clips);
-  absl::StatusOr<experiments::LatentMap> map =
-      experiments::MapLatent(*features, classes, arguments.tsne);
-  if (!map.ok()) return map.status();
   const bool blind = labels == experiments::LatentLabels::kNone;
   const std::string name =
       absl::StrCat(fold.model, blind ? ", label withheld" : "", ", ", fold.subject);
-  section->tables.front().rows.push_back(report::LatentRow(name, *map));
+  absl::StatusOr<report::TableRow> row = report::LatentRow(name, *features, classes);
+  if (!row.ok()) return row.status();
+  section->tables.front().rows.push_back(*std::move(row));
   section->figures.push_back(
       {FigureName(
-           absl::StrCat(arguments.id, "_", fold.model, blind ? "_no_label_" : "_", fold.subject)),
+           absl::StrCat(section->id, "_", fold.model, blind ? "_no_label_" : "_", fold.subject)),
        absl::StrCat("Latent space of ", fold.model, " with ", fold.subject, " left out",
                     blind ? ", the label vector withheld" : "", ": t-SNE of ", clips->size(),
                     " clips, one point each."),
-       report::ToSvg(report::PlotByClass(name, dataset.classes, map->points, classes))});
+       report::LatentPlot{name, dataset.classes, classes, *std::move(features),
+                          arguments.perplexity, arguments.seed}});
   return absl::OkStatus();
 }
 
@@ -128,27 +125,20 @@ absl::Status AddModel(const dataset::Dataset& dataset, const NamedRuns& runs,
 report::ResultSection MakeSection(const dataset::Dataset& dataset,
                                   const std::vector<std::string>& subjects,
                                   const Arguments& arguments) {
-  report::ResultSection section;
-  section.id = arguments.id;
-  section.title = arguments.title;
-  section.text = {
+  report::ResultSection section = BeginSection(
+      arguments.section,
       "A clip is one point: the concatenated output of the generator's encoders, averaged over the "
-      "clip's frames, drawn by t-SNE. Each fold's model has a space of its own.",
+      "clip's frames, drawn by t-SNE. Each fold's model has a space of its own.");
+  section.text.push_back(
       "A model with a multi-hot embedding is told the class that colours the point: part of its "
       "order is given, not learnt. The same model with the label vector withheld (all zeros) shows "
-      "what it makes of the leader alone."};
+      "what it makes of the leader alone.");
   section.tables = {report::LatentTable()};
   section.settings = {{"data", dataset.name},
                       {"left out", absl::StrJoin(subjects, ", ")},
                       {"clips", arguments.clips},
-                      {"t-SNE perplexity", absl::StrCat(arguments.tsne.perplexity)},
-                      {"t-SNE iterations", absl::StrCat(arguments.tsne.iterations)},
-                      {"t-SNE seed", absl::StrCat(arguments.tsne.seed)}};
-  section.command =
-      absl::StrCat("duet-eval latent --data DIR --subjects ", absl::StrJoin(subjects, ","),
-                   " --clips ", arguments.clips, " --perplexity ", arguments.tsne.perplexity,
-                   " --seed ", arguments.tsne.seed);
-  section.date = report::Today();
+                      {"t-SNE perplexity", absl::StrCat(arguments.perplexity)},
+                      {"t-SNE seed", absl::StrCat(arguments.seed)}};
   return section;
 }
 
@@ -162,12 +152,10 @@ absl::Status Run(const Arguments& arguments) {
   for (const std::string& text : arguments.runs) {
     absl::StatusOr<NamedRuns> runs = ParseRuns(text);
     if (!runs.ok()) return runs.status();
-    absl::StrAppend(&section.command, " --runs ", runs->name, "=RUNS");
     absl::Status status = AddModel(*dataset, *runs, subjects, arguments, &section);
     if (!status.ok()) return status;
   }
-  std::cout << ToPlainText(section.tables.front());
-  return arguments.out.empty() ? absl::OkStatus() : WriteSection(section, arguments.out);
+  return FinishSection(arguments.section, section);
 }
 
 }  // namespace
@@ -176,11 +164,11 @@ void AddLatentCommand(CLI::App* app, ChosenCommand* chosen) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* command =
       app->add_subcommand("latent", "Maps of the generator's latent space (Figures 6 and 7)");
-  command->add_option("--data", arguments->data, "folder of captures (docs/datasets.md)")
-      ->required();
+  AddDataFlag(&arguments->data, command);
   command
       ->add_option("--runs", arguments->runs,
-                   "NAME=DIR, output of duet-train --protocol loso, or one run; repeatable")
+                   "output of duet-train --protocol loso, or one run; repeatable")
+      ->type_name(kNamedRuns)
       ->required()
       ->allow_extra_args(false);
   command->add_option("--subjects", arguments->subjects, "folds; default: the first subject")
@@ -188,14 +176,12 @@ void AddLatentCommand(CLI::App* app, ChosenCommand* chosen) {
   command->add_option("--clips", arguments->clips, "of the fold: test, train or all")
       ->check(CLI::IsMember({"test", "train", "all"}))
       ->capture_default_str();
-  command->add_option("--perplexity", arguments->tsne.perplexity, "lowered for few clips")
+  command->add_option("--perplexity", arguments->perplexity, "of t-SNE; lowered for few clips")
       ->check(CLI::Range(1.0, 1000.0))
       ->capture_default_str();
-  command->add_option("--seed", arguments->tsne.seed, "of the map's start")->capture_default_str();
-  command->add_option("--out", arguments->out, "folder of results, for duet-eval report");
-  command->add_option("--id", arguments->id, "of the section")->capture_default_str();
-  command->add_option("--title", arguments->title, "of the section")->capture_default_str();
-  command->callback([arguments, chosen] { *chosen = [arguments] { return Run(*arguments); }; });
+  command->add_option("--seed", arguments->seed, "of t-SNE's start")->capture_default_str();
+  AddSectionFlags(&arguments->section, command);
+  RunWhenNamed(command, arguments, Run, chosen);
 }
 
 }  // namespace duet::evaluation::program

@@ -109,7 +109,7 @@ absl::StatusOr<std::vector<report::Table>> Tables(const dataset::Dataset& datase
 }
 
 report::ResultSection MakeSection(const Experiment& experiment, const Arguments& arguments) {
-  report::ResultSection section = BeginSection(
+  report::ResultSection section = BeginExperiment(
       arguments.flags, experiment,
       "Leaders that last, each answered in every class, by windows of which each goes on from the "
       "one before. Four are made by formulas and unlike anything in the captures: one stands and "
@@ -119,11 +119,6 @@ report::ResultSection MakeSection(const Experiment& experiment, const Arguments&
       "clip, a few seconds each.");
   section.settings.emplace_back("variety", absl::StrCat(arguments.asked.variety));
   section.settings.emplace_back("seed", absl::StrCat(arguments.asked.seed));
-  section.command = absl::StrCat("duet-eval long --data DIR", ModelWords(arguments.flags.models),
-                                 " --seconds ", absl::StrJoin(arguments.seconds, ","), " --starts ",
-                                 absl::StrJoin(arguments.starts, ","), " --subjects ",
-                                 absl::StrJoin(experiment.subjects, ","), " --variety ",
-                                 arguments.asked.variety, " --seed ", arguments.asked.seed);
   return section;
 }
 
@@ -136,7 +131,7 @@ absl::Status Run(const Arguments& arguments) {
       Tables(dataset, experiment->models, experiment->subjects, arguments);
   if (!tables.ok()) return tables.status();
   section.tables = *std::move(tables);
-  return FinishSection(arguments.flags, section);
+  return FinishSection(arguments.flags.section, section);
 }
 
 }  // namespace
@@ -145,9 +140,7 @@ void AddLongCommand(CLI::App* app, ChosenCommand* chosen) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* command =
       app->add_subcommand("long", "Whether followers of long clips stand, near their leaders");
-  arguments->flags.id = "16_long";
-  arguments->flags.title = "Clips of a minute and of ten";
-  AddExperimentFlags(&arguments->flags, command);
+  AddExperimentFlags("16_long", "Clips of a minute and of ten", &arguments->flags, command);
   AddModelFlags(ModelNeeded::kYes, &arguments->flags.models, command);
   AddStartsFlag(&arguments->starts, command);
   AddSamplingFlags(&arguments->asked, command);
@@ -155,7 +148,7 @@ void AddLongCommand(CLI::App* app, ChosenCommand* chosen) {
       ->delimiter(',')
       ->check(CLI::Range(1.0, 3600.0))
       ->capture_default_str();
-  command->callback([arguments, chosen] { *chosen = [arguments] { return Run(*arguments); }; });
+  RunWhenNamed(command, arguments, Run, chosen);
 }
 
 }  // namespace duet::evaluation::program

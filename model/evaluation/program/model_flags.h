@@ -12,20 +12,22 @@
 
 namespace duet::evaluation::program {
 
-// What a reader must know of ModelChoice::one_for_all.
+// Printed where ModelChoice::one_for_all applies.
 inline constexpr char kOneForAll[] =
     "One checkpoint for every fold: it may have been trained on what is tested.";
 
-// --runs, --checkpoint, --embedded, --as-served: one source of models, or none where that is
-// allowed.
+// --runs, --checkpoint, --embedded, --as-served. Exactly one source of models, or at most one.
 enum class ModelNeeded { kYes, kNo };
 void AddModelFlags(ModelNeeded needed, ModelChoice* models, CLI::App* command);
-// The same as words of a command line, with placeholders for the folders: " --runs ours=RUNS".
-std::string ModelWords(const ModelChoice& models);
+
+// --as-served
+void AddAsServedFlag(ModelChoice* models, CLI::App* command);
 
 // --starts
 void AddStartsFlag(std::vector<std::string>* starts, CLI::App* command);
 
+// --variety
+void AddVarietyFlag(float* variety, CLI::App* command);
 // --variety, --seed
 void AddSamplingFlags(experiments::AskedSamples* asked, CLI::App* command);
 

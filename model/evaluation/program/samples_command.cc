@@ -90,7 +90,7 @@ absl::StatusOr<std::vector<report::MethodFigures>> Rows(const dataset::Dataset& 
 
 report::ResultSection MakeSection(const Experiment& experiment, const Arguments& arguments,
                                   const SampleScorer& scorer) {
-  report::ResultSection section = BeginSection(
+  report::ResultSection section = BeginExperiment(
       arguments.flags, experiment,
       "A model that samples answers every leader of every left-out subject several times, each "
       "with a seed of its own; one that does not answers once. The average frame distance rewards "
@@ -105,11 +105,6 @@ report::ResultSection MakeSection(const Experiment& experiment, const Arguments&
   section.settings.emplace_back("direction of the partner",
                                 arguments.asked.tell_direction ? "told" : "from the leader");
   for (auto& setting : scorer.JudgeSettings()) section.settings.push_back(std::move(setting));
-  section.command = absl::StrCat(
-      "duet-eval samples --data DIR", ModelWords(arguments.flags.models), " --starts ",
-      absl::StrJoin(arguments.starts, ","), " --subjects ", absl::StrJoin(experiment.subjects, ","),
-      " --samples ", arguments.asked.samples, " --variety ", arguments.asked.variety, " --seed ",
-      arguments.asked.seed, arguments.asked.tell_direction ? "" : " --untold-direction");
   return section;
 }
 
@@ -129,7 +124,7 @@ absl::Status Run(const Arguments& arguments) {
   for (report::Table& table : report::SampleTables(dataset.classes, *rows)) {
     section.tables.push_back(std::move(table));
   }
-  return FinishSection(arguments.flags, section);
+  return FinishSection(arguments.flags.section, section);
 }
 
 }  // namespace
@@ -137,9 +132,7 @@ absl::Status Run(const Arguments& arguments) {
 void AddSamplesCommand(CLI::App* app, ChosenCommand* chosen) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app->add_subcommand("samples", "Figures of many answers to each leader");
-  arguments->flags.id = "14_samples";
-  arguments->flags.title = "Many answers to one leader";
-  AddExperimentFlags(&arguments->flags, command);
+  AddExperimentFlags("14_samples", "Many answers to one leader", &arguments->flags, command);
   AddModelFlags(ModelNeeded::kYes, &arguments->flags.models, command);
   AddStartsFlag(&arguments->starts, command);
   AddSamplingFlags(&arguments->asked, command);
@@ -150,7 +143,7 @@ void AddSamplesCommand(CLI::App* app, ChosenCommand* chosen) {
       ->capture_default_str();
   command->add_flag("!--untold-direction", arguments->asked.tell_direction,
                     "leave where the partner is to the leader's motion");
-  command->callback([arguments, chosen] { *chosen = [arguments] { return Run(*arguments); }; });
+  RunWhenNamed(command, arguments, Run, chosen);
 }
 
 }  // namespace duet::evaluation::program

@@ -13,13 +13,10 @@
 #include "model/evaluation/program/fold_judge.h"
 #include "model/evaluation/program/model_flags.h"
 #include "model/evaluation/program/named_runs.h"
-#include "model/evaluation/report/pose_picture.h"
-#include "model/evaluation/report/result_section.h"
 
 namespace duet::evaluation::program {
 namespace {
 
-constexpr int kColumns = 8;
 // Of a model that samples, two answers show that they differ.
 constexpr int kAnswers = 2;
 
@@ -93,23 +90,18 @@ absl::Status AddPictures(const dataset::Dataset& dataset, const std::vector<Fold
   }
   section->figures.push_back(
       {name, absl::StrCat(of, ": leader blue, follower orange; paler on the left of the body."),
-       StripSvg(dataset.skeleton, class_name, *pairs, rate, kColumns)});
-  section->figures.push_back({name + "_moving", absl::StrCat(of, ", in motion."),
-                              MovingSvg(dataset.skeleton, class_name, *pairs, rate)});
+       report::PosePlot{class_name, dataset.skeleton, *std::move(pairs), rate}});
   return absl::OkStatus();
 }
 
 report::ResultSection MakeSection(const Experiment& experiment, const Arguments& arguments) {
-  report::ResultSection section = BeginSection(
+  report::ResultSection section = BeginExperiment(
       arguments.flags, experiment,
       "A clip of each class: of the first left-out person who has any, the one of middle length. "
       "Above the captured pair, below the same leader with synthesised followers.");
   section.settings.emplace_back("told of the follower's first frame", arguments.start);
   section.settings.emplace_back("variety", absl::StrCat(arguments.asked.variety));
   section.settings.emplace_back("seed", absl::StrCat(arguments.asked.seed));
-  section.command = absl::StrCat("duet-eval strips --data DIR", ModelWords(arguments.flags.models),
-                                 " --start ", arguments.start, " --variety ",
-                                 arguments.asked.variety, " --seed ", arguments.asked.seed);
   return section;
 }
 
@@ -127,7 +119,7 @@ absl::Status Run(const Arguments& arguments) {
     if (!status.ok()) return status;
   }
   std::cout << section.figures.size() << " figures\n";
-  return FinishSection(arguments.flags, section);
+  return FinishSection(arguments.flags.section, section);
 }
 
 }  // namespace
@@ -136,18 +128,16 @@ void AddStripsCommand(CLI::App* app, ChosenCommand* chosen) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* command =
       app->add_subcommand("strips", "Pictures of captured and synthesised pairs, still and moving");
-  arguments->flags.id = "18_strips";
-  arguments->flags.title = "Captured and synthesised, side by side";
-  AddExperimentFlags(&arguments->flags, command);
+  AddExperimentFlags("18_strips", "Captured and synthesised, side by side", &arguments->flags,
+                     command);
   command->get_option("--out")->required();
   AddModelFlags(ModelNeeded::kYes, &arguments->flags.models, command);
   command
-      ->add_option("--start", arguments->start,
-                   "what the models are told of the follower's first frame")
+      ->add_option("--start", arguments->start, "what the models get of the follower's first frame")
       ->check(CLI::IsMember(StartNames()))
       ->capture_default_str();
   AddSamplingFlags(&arguments->asked, command);
-  command->callback([arguments, chosen] { *chosen = [arguments] { return Run(*arguments); }; });
+  RunWhenNamed(command, arguments, Run, chosen);
 }
 
 }  // namespace duet::evaluation::program

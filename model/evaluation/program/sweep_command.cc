@@ -9,25 +9,20 @@
 #include "absl/strings/str_join.h"
 #include "model/evaluation/experiments/label_sweep.h"
 #include "model/evaluation/program/commands.h"
+#include "model/evaluation/program/experiment.h"
 #include "model/evaluation/program/fold_judge.h"
-#include "model/evaluation/program/models.h"
+#include "model/evaluation/program/model_flags.h"
 #include "model/evaluation/program/named_runs.h"
-#include "model/evaluation/report/result_section.h"
 #include "model/evaluation/report/sweep_figures.h"
 
 namespace duet::evaluation::program {
 namespace {
 
 struct Arguments {
-  std::string data;
-  ModelChoice models;
+  ExperimentFlags flags;
   std::vector<std::string> starts = {"none", "pose"};
-  std::vector<std::string> subjects;
   std::vector<uint64_t> sample_seeds = {0};
   float variety = 1;
-  std::string out;
-  std::string id = "30_sweep";
-  std::string title = "Mix, match and avoid: what label weights do";
 };
 
 // One fold: its generator, and its judge, who has not seen the left-out subject either.
@@ -118,63 +113,46 @@ report::SweepNames Names(experiments::StartGiven start) {
   return {};
 }
 
-report::ResultSection MakeSection(const dataset::Dataset& dataset, const FoldModel& model,
-                                  const std::vector<SweepFold>& folds, const Arguments& arguments) {
-  report::ResultSection section;
-  section.id = arguments.id;
-  section.title = arguments.title;
-  section.text = {
+report::ResultSection MakeSection(const Experiment& experiment, const std::vector<SweepFold>& folds,
+                                  const Arguments& arguments) {
+  report::ResultSection section = BeginExperiment(
+      arguments.flags, experiment,
       "Every leader of every fold's left-out subject is answered at each weight from -1 to 2 of "
       "its own class alone, and of each other class beside its own at 1. The fold's judge, who has "
       "not seen the left-out subject either, says how probable it finds each class. At weight 0 "
       "of the own class the network is asked for nothing; what it answers then is its guess from "
-      "the leader."};
-  std::vector<std::string> subjects;
-  for (const SweepFold& fold : folds) subjects.push_back(fold.subject);
-  section.settings = {
-      {"data", absl::StrCat(dataset.name, ", ", dataset.sequences.size(), " sequences")},
-      {"model", model.name},
-      {"left out in turn", absl::StrJoin(subjects, ", ")},
-      {"seeds of a model that samples", absl::StrJoin(arguments.sample_seeds, ", ")},
-      {"variety", absl::StrCat(arguments.variety)},
-      {"models' answers", arguments.models.as_served ? "as served" : "the network's own"}};
+      "the leader.");
+  section.settings.emplace_back("model", experiment.models.front().name);
+  section.settings.emplace_back("seeds of a model that samples",
+                                absl::StrJoin(arguments.sample_seeds, ", "));
+  section.settings.emplace_back("variety", absl::StrCat(arguments.variety));
   for (const SweepFold& fold : folds) {
     section.settings.emplace_back(absl::StrCat("judge without ", fold.subject, ", SHA-256"),
                                   fold.judge.front().hash());
   }
-  section.command =
-      absl::StrCat("duet-eval sweep --data DIR --runs ", model.name, "=RUNS --subjects ",
-                   absl::StrJoin(subjects, ","), " --starts ", absl::StrJoin(arguments.starts, ","),
-                   " --sample-seeds ", absl::StrJoin(arguments.sample_seeds, ","), " --variety ",
-                   arguments.variety, arguments.models.as_served ? " --as-served" : "");
-  section.date = report::Today();
   return section;
 }
 
 absl::Status Run(const Arguments& arguments) {
-  absl::StatusOr<dataset::Dataset> dataset = dataset::ReadDataset(arguments.data);
-  if (!dataset.ok()) return dataset.status();
-  absl::StatusOr<std::vector<FoldModel>> models = OpenModels(arguments.models);
-  if (!models.ok()) return models.status();
-  const FoldModel& model = models->front();
-  absl::StatusOr<std::vector<std::string>> subjects = FoldSubjects(*dataset, arguments.subjects);
-  if (!subjects.ok()) return subjects.status();
+  absl::StatusOr<Experiment> experiment = OpenExperiment(arguments.flags);
+  if (!experiment.ok()) return experiment.status();
+  const dataset::Dataset& dataset = experiment->dataset;
   std::vector<SweepFold> folds;
-  for (const std::string& subject : *subjects) {
-    absl::StatusOr<SweepFold> fold = OpenFold(*dataset, model, subject, arguments.starts);
+  for (const std::string& subject : experiment->subjects) {
+    absl::StatusOr<SweepFold> fold =
+        OpenFold(dataset, experiment->models.front(), subject, arguments.starts);
     if (!fold.ok()) return fold.status();
     folds.push_back(*std::move(fold));
   }
-  report::ResultSection section = MakeSection(*dataset, model, folds, arguments);
+  report::ResultSection section = MakeSection(*experiment, folds, arguments);
   for (const std::string& name : arguments.starts) {
     const experiments::StartGiven start = ParseStart(name);
     absl::StatusOr<std::vector<experiments::SweepCurve>> curves =
-        SweepFolds(*dataset, folds, start, arguments);
+        SweepFolds(dataset, folds, start, arguments);
     if (!curves.ok()) return curves.status();
-    AddSweep(dataset->classes, *curves, Names(start), &section);
+    AddSweep(dataset.classes, *curves, Names(start), &section);
   }
-  for (const report::Table& table : section.tables) std::cout << ToPlainText(table) << "\n";
-  return arguments.out.empty() ? absl::OkStatus() : WriteSection(section, arguments.out);
+  return FinishSection(arguments.flags.section, section);
 }
 
 }  // namespace
@@ -182,37 +160,22 @@ absl::Status Run(const Arguments& arguments) {
 void AddSweepCommand(CLI::App* app, ChosenCommand* chosen) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app->add_subcommand("sweep", "What raising and lowering label weights does");
-  command->add_option("--data", arguments->data, "folder of captures (docs/datasets.md)")
+  AddExperimentFlags("30_sweep", "Mix, match and avoid: what label weights do", &arguments->flags,
+                     command);
+  ModelChoice& models = arguments->flags.models;
+  models.runs.resize(1);
+  command->add_option("--runs", models.runs.front(), "output of duet-train --protocol loso")
+      ->type_name(kNamedRuns)
       ->required();
-  arguments->models.runs.resize(1);
-  command
-      ->add_option("--runs", arguments->models.runs.front(),
-                   "[NAME=]DIR, output of duet-train --protocol loso")
-      ->required();
-  command->add_flag("--as-served", arguments->models.as_served,
-                    "with constant limb lengths on the leader's floor, as a server answers");
-  command
-      ->add_option("--starts", arguments->starts,
-                   "what the model is told of the follower's first frame, two tables each")
-      ->delimiter(',')
-      ->check(CLI::IsMember(StartNames()))
-      ->capture_default_str();
+  AddAsServedFlag(&models, command);
+  AddStartsFlag(&arguments->starts, command);
   command
       ->add_option("--sample-seeds", arguments->sample_seeds,
                    "of a model that samples: each leader is swept with each of them")
       ->delimiter(',')
       ->capture_default_str();
-  command
-      ->add_option("--variety", arguments->variety,
-                   "of a model that samples; 0: the typical answer, 1: as varied as people")
-      ->check(CLI::Range(0.0, 2.0))
-      ->capture_default_str();
-  command->add_option("--subjects", arguments->subjects, "folds; default: every subject")
-      ->delimiter(',');
-  command->add_option("--out", arguments->out, "folder of results, for duet-eval report");
-  command->add_option("--id", arguments->id, "of the section")->capture_default_str();
-  command->add_option("--title", arguments->title, "of the section")->capture_default_str();
-  command->callback([arguments, chosen] { *chosen = [arguments] { return Run(*arguments); }; });
+  AddVarietyFlag(&arguments->variety, command);
+  RunWhenNamed(command, arguments, Run, chosen);
 }
 
 }  // namespace duet::evaluation::program

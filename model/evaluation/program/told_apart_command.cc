@@ -112,7 +112,7 @@ absl::StatusOr<report::Table> Measure(const dataset::Dataset& dataset,
 }
 
 report::ResultSection MakeSection(const Experiment& experiment, const Arguments& arguments) {
-  report::ResultSection section = BeginSection(
+  report::ResultSection section = BeginExperiment(
       arguments.flags, experiment,
       "A fresh classifier that sees leader and follower learns to tell a fold's answers to its "
       "training leaders from the captured pairs of the same people, and is tested on the left-out "
@@ -121,11 +121,6 @@ report::ResultSection MakeSection(const Experiment& experiment, const Arguments&
   section.settings.emplace_back("classifiers (seeds)", absl::StrJoin(arguments.seeds, ", "));
   section.settings.emplace_back("variety", absl::StrCat(arguments.asked.variety));
   section.settings.emplace_back("seed of the answers", absl::StrCat(arguments.asked.seed));
-  section.command = absl::StrCat(
-      "duet-eval told-apart --data DIR", ModelWords(arguments.flags.models), " --starts ",
-      absl::StrJoin(arguments.starts, ","), " --subjects ", absl::StrJoin(experiment.subjects, ","),
-      " --seeds ", absl::StrJoin(arguments.seeds, ","), " --variety ", arguments.asked.variety,
-      " --seed ", arguments.asked.seed);
   return section;
 }
 
@@ -138,7 +133,7 @@ absl::Status Run(const Arguments& arguments) {
       Measure(dataset, experiment->models, experiment->subjects, arguments);
   if (!table.ok()) return table.status();
   section.tables = {*std::move(table)};
-  return FinishSection(arguments.flags, section);
+  return FinishSection(arguments.flags.section, section);
 }
 
 }  // namespace
@@ -147,16 +142,14 @@ void AddToldApartCommand(CLI::App* app, ChosenCommand* chosen) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* command =
       app->add_subcommand("told-apart", "How well a classifier tells answers from captured pairs");
-  arguments->flags.id = "17_told_apart";
-  arguments->flags.title = "Told apart from captured pairs";
-  AddExperimentFlags(&arguments->flags, command);
+  AddExperimentFlags("17_told_apart", "Told apart from captured pairs", &arguments->flags, command);
   AddModelFlags(ModelNeeded::kYes, &arguments->flags.models, command);
   AddStartsFlag(&arguments->starts, command);
   AddSamplingFlags(&arguments->asked, command);
   command->add_option("--seeds", arguments->seeds, "of the classifiers, one for each")
       ->delimiter(',')
       ->capture_default_str();
-  command->callback([arguments, chosen] { *chosen = [arguments] { return Run(*arguments); }; });
+  RunWhenNamed(command, arguments, Run, chosen);
 }
 
 }  // namespace duet::evaluation::program

@@ -1,125 +1,117 @@
 #include "model/evaluation/report/result_section.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <system_error>
 
 #include "absl/strings/ascii.h"
-#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
 #include "absl/time/time.h"
 #include "model/base/file.h"
 #include "model/base/text.h"
-#include "model/evaluation/report/section_json.h"
 
 namespace duet::evaluation::report {
 namespace {
 
-namespace fs = std::filesystem;
+using nlohmann::ordered_json;
 
-constexpr size_t kMaxFileBytes = size_t{64} << 20;
+constexpr int kFormatVersion = 1;
+constexpr size_t kMaxNameBytes = 64;
+constexpr const char* kBestNames[] = {"none", "lowest", "highest"};  // as in Best
 
-absl::Status Prefixed(const std::string& prefix, const absl::Status& status) {
-  return {status.code(), absl::StrCat(prefix, ": ", status.message())};
+absl::Status CheckName(const std::string& field, const std::string& name) {
+  const bool is_name = !name.empty() && name.size() <= kMaxNameBytes &&
+                       std::all_of(name.begin(), name.end(), [](unsigned char c) {
+                         return absl::ascii_islower(c) || absl::ascii_isdigit(c) || c == '_';
+                       });
+  if (is_name) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      absl::StrCat(field, ": expected 1 to 64 of a-z, 0-9 and _, got ", base::Quoted(name)));
 }
 
-absl::Status CheckSvg(const std::string& svg) {
-  const bool is_whole = absl::StartsWith(svg, "<svg ") &&
-                        absl::EndsWith(absl::StripTrailingAsciiWhitespace(svg), "</svg>");
-  if (is_whole) return absl::OkStatus();
-  return absl::InvalidArgumentError(absl::StrCat("begins with ", base::Quoted(svg.substr(0, 16)),
-                                                 ", wanted one whole <svg> element"));
-}
-
-absl::StatusOr<ResultSection> ReadSection(const fs::path& file) {
-  const absl::StatusOr<std::string> text =
-      base::ReadFile(file, kMaxFileBytes, "a section of results");
-  if (!text.ok()) return text.status();
-  absl::StatusOr<ResultSection> section = SectionFromJson(*text);
-  if (!section.ok()) return Prefixed(file.string(), section.status());
-  if (section->id != file.stem().string()) {
-    return absl::InvalidArgumentError(absl::StrCat(
-        file.string(), ": id: ", base::Quoted(section->id), ", wanted the file's own name"));
-  }
-  for (ResultFigure& figure : section->figures) {
-    const fs::path svg_file = file.parent_path() / (figure.name + ".svg");
-    absl::StatusOr<std::string> svg = base::ReadFile(svg_file, kMaxFileBytes, "an SVG figure");
-    if (!svg.ok()) return svg.status();
-    if (absl::Status status = CheckSvg(*svg); !status.ok()) {
-      return Prefixed(svg_file.string(), status);
+absl::Status CheckTable(const std::string& field, const Table& table) {
+  for (size_t r = 0; r < table.rows.size(); ++r) {
+    const std::vector<double>& values = table.rows[r].values;
+    const std::string where = absl::StrCat(field, ".rows[", r, "].values");
+    if (values.size() != table.columns.size()) {
+      return absl::InvalidArgumentError(absl::StrCat(where, ": expected one for each of the ",
+                                                     table.columns.size(), " columns, got ",
+                                                     values.size()));
     }
-    figure.svg = *std::move(svg);
-  }
-  return section;
-}
-
-absl::Status CheckFigureNames(const std::vector<ResultSection>& sections) {
-  std::set<std::string> seen;
-  for (const ResultSection& section : sections) {
-    for (const ResultFigure& figure : section.figures) {
-      if (seen.insert(figure.name).second) continue;
+    const bool infinite =
+        std::any_of(values.begin(), values.end(), [](double v) { return std::isinf(v); });
+    if (infinite) {
       return absl::InvalidArgumentError(
-          absl::StrCat(section.id, ".json: figures: ", base::Quoted(figure.name),
-                       " is a figure of an earlier section, wanted a name of its own"));
+          absl::StrCat(where, ": expected finite numbers or NaN, got an infinite one"));
     }
   }
   return absl::OkStatus();
 }
 
-// The folder's JSON files.
-absl::StatusOr<std::vector<fs::path>> FindSections(const fs::path& folder) {
-  std::error_code error;
-  std::vector<fs::path> files;
-  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-    if (it->path().extension() == ".json") files.push_back(it->path());
+absl::Status Check(const ResultSection& section) {
+  absl::Status status = CheckName("id", section.id);
+  for (size_t i = 0; i < section.tables.size(); ++i) {
+    status.Update(CheckTable(absl::StrCat("tables[", i, "]"), section.tables[i]));
   }
-  if (error) {
-    return absl::NotFoundError(absl::StrCat(folder.string(), ": ", error.message(),
-                                            ", wanted a folder of results (duet-eval --out)"));
+  std::set<std::string> seen;
+  for (size_t i = 0; i < section.figures.size(); ++i) {
+    const std::string field = absl::StrCat("figures[", i, "].name");
+    const std::string& name = section.figures[i].name;
+    status.Update(CheckName(field, name));
+    if (!seen.insert(name).second) {
+      status.Update(absl::InvalidArgumentError(
+          absl::StrCat(field, ": expected a new name, got ", base::Quoted(name), " again")));
+    }
   }
-  if (files.empty()) {
-    return absl::NotFoundError(
-        absl::StrCat(folder.string(), ": no .json file, wanted results of duet-eval --out"));
+  return status;
+}
+
+// NaN becomes null.
+ordered_json TableToJson(const Table& table) {
+  ordered_json rows = ordered_json::array();
+  for (const TableRow& row : table.rows) {
+    rows.push_back({{"name", row.name}, {"printed", row.printed}, {"values", row.values}});
   }
-  return files;
+  return {{"title", table.title},       {"columns", table.columns},
+          {"rows", std::move(rows)},    {"notes", table.notes},
+          {"decimals", table.decimals}, {"best", kBestNames[static_cast<size_t>(table.best)]}};
+}
+
+std::string SectionToJson(const ResultSection& section) {
+  ordered_json tables = ordered_json::array();
+  for (const Table& table : section.tables) tables.push_back(TableToJson(table));
+  ordered_json figures = ordered_json::array();
+  for (const ResultFigure& figure : section.figures) {
+    figures.push_back(
+        {{"name", figure.name}, {"caption", figure.caption}, {"plot", ToJson(figure.plot)}});
+  }
+  ordered_json settings = ordered_json::array();
+  for (const auto& [name, value] : section.settings) {
+    settings.push_back({{"name", name}, {"value", value}});
+  }
+  const ordered_json whole = {{"format_version", kFormatVersion},
+                              {"id", section.id},
+                              {"title", section.title},
+                              {"text", section.text},
+                              {"tables", std::move(tables)},
+                              {"figures", std::move(figures)},
+                              {"settings", std::move(settings)},
+                              {"command", section.command},
+                              {"date", section.date}};
+  return whole.dump(1, ' ', false, ordered_json::error_handler_t::replace) + '\n';
 }
 
 }  // namespace
 
-absl::Status WriteSection(const ResultSection& section, const fs::path& folder) {
-  // What the reader would refuse must not be written: there is one set of rules.
-  const std::string text = SectionToJson(section);
-  if (absl::StatusOr<ResultSection> again = SectionFromJson(text); !again.ok()) {
-    return Prefixed(absl::StrCat("section ", base::Quoted(section.id)), again.status());
-  }
-  std::error_code error;
-  fs::create_directories(folder, error);
-  // The figures first: a section never names one that is not there.
-  for (const ResultFigure& figure : section.figures) {
-    if (absl::Status status = CheckSvg(figure.svg); !status.ok()) {
-      return Prefixed(absl::StrCat("figure ", base::Quoted(figure.name)), status);
-    }
-    absl::Status status = base::WriteFile(folder / (figure.name + ".svg"), figure.svg);
-    if (!status.ok()) return status;
-  }
-  return base::WriteFile(folder / (section.id + ".json"), text);
-}
-
-absl::StatusOr<std::vector<ResultSection>> ReadSections(const fs::path& folder) {
-  const absl::StatusOr<std::vector<fs::path>> files = FindSections(folder);
-  if (!files.ok()) return files.status();
-  std::vector<ResultSection> sections;
-  for (const fs::path& file : *files) {
-    absl::StatusOr<ResultSection> section = ReadSection(file);
-    if (!section.ok()) return section.status();
-    sections.push_back(*std::move(section));
-  }
-  std::sort(sections.begin(), sections.end(),
-            [](const ResultSection& a, const ResultSection& b) { return a.id < b.id; });
-  if (absl::Status status = CheckFigureNames(sections); !status.ok()) return status;
-  return sections;
+absl::Status WriteSection(const ResultSection& section, const std::filesystem::path& folder) {
+  if (absl::Status status = Check(section); !status.ok()) return status;
+  std::error_code error;  // base::WriteFile reports a folder that cannot be made
+  std::filesystem::create_directories(folder, error);
+  return base::WriteFile(folder / (section.id + ".json"), SectionToJson(section));
 }
 
 std::string Today() { return absl::FormatTime("%Y-%m-%d", absl::Now(), absl::UTCTimeZone()); }

@@ -7,37 +7,34 @@
 #include <vector>
 
 #include "absl/status/status.h"
-#include "absl/status/statusor.h"
+#include "model/evaluation/report/plot.h"
 #include "model/evaluation/report/table.h"
 
 namespace duet::evaluation::report {
 
-// A figure of a report: one SVG document.
 struct ResultFigure {
-  std::string name;     // of its file, lower_snake_case, unique within the report
+  std::string name;     // of its files, lower_snake_case, unique within the report
   std::string caption;  // one or two sentences
-  std::string svg;
+  Plot plot;
 };
 
-// What one command of duet-eval found, as the report prints it.
+// The results of one duet-eval command, as the report prints them.
 struct ResultSection {
-  std::string id;                 // lower_snake_case; of its file, and its place in the report
+  std::string id;                 // lower_snake_case; names the file and orders the report
   std::string title;              // a heading
   std::vector<std::string> text;  // paragraphs before the tables
   std::vector<Table> tables;
   std::vector<ResultFigure> figures;
-  // What produced it, in order: data, folds, seeds, sizes, extractor hashes.
+  // What produced it, in order: data, folds, seeds, sizes, hashes of the judges.
   std::vector<std::pair<std::string, std::string>> settings;
-  std::string command;  // to make it again, with DIR for the data's folder
+  std::string command;  // reproduces the section; folders are placeholders
   std::string date;     // YYYY-MM-DD
 };
 
-// Writes <folder>/<id>.json and <folder>/<figure>.svg, each whole or not at all.
+// Writes <folder>/<id>.json, whole or not at all.
+// Errors: INVALID_ARGUMENT naming the field for an id or a figure's name that is not 1 to 64 of
+// a-z, 0-9 and _, a repeated name, a row without one value per column, an infinite value.
 absl::Status WriteSection(const ResultSection& section, const std::filesystem::path& folder);
-
-// Reads every section of a folder, sorted by id. Strict. Errors: NOT_FOUND without any;
-// INVALID_ARGUMENT naming file and field.
-absl::StatusOr<std::vector<ResultSection>> ReadSections(const std::filesystem::path& folder);
 
 // Today, YYYY-MM-DD, in UTC.
 std::string Today();

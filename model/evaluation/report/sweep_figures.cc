@@ -97,7 +97,7 @@ void AddSweep(const std::vector<std::string>& classes, const std::vector<SweepCu
       const LinePlot plot = SweepPlot(FigureTitle(kind, classes[c], names.told), classes, curves,
                                       kind, static_cast<int>(c));
       section->figures.push_back({absl::StrCat(section->id, kind_name, classes[c], names.name_end),
-                                  Caption(kind, classes[c], names.told), ToSvg(plot)});
+                                  Caption(kind, classes[c], names.told), plot});
     }
   }
 }

@@ -1,13 +1,10 @@
 #include "model/evaluation/report/table.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
 #include <limits>
-
-#include "model/evaluation/report/markup.h"
 
 namespace duet::evaluation::report {
 namespace {
@@ -22,14 +19,6 @@ std::string Rounded(double value, int decimals) {
   // Never "-0.00".
   const bool is_zero = rounded.find_first_of("123456789in") == std::string::npos;
   return is_zero && rounded[0] == '-' ? rounded.substr(1) : rounded;
-}
-
-// The shortest form that reads back as the same number; empty for a missing one.
-std::string Exact(double value) {
-  if (std::isnan(value)) return "";
-  char text[32];
-  const std::to_chars_result end = std::to_chars(text, text + sizeof(text), value);
-  return std::string(text, end.ptr);
 }
 
 // The best of a column among the rows measured here, as printed; empty if there is none.
@@ -61,18 +50,6 @@ std::string PadRight(const std::string& text, size_t width) {
 
 }  // namespace
 
-std::vector<std::vector<TableCell>> FormatCells(const Table& table) {
-  std::vector<std::vector<TableCell>> cells(table.rows.size());
-  for (size_t column = 0; column < table.columns.size(); ++column) {
-    const std::string best = BestOf(table, column);
-    for (size_t i = 0; i < table.rows.size(); ++i) {
-      const std::string text = Rounded(table.rows[i].values[column], table.decimals);
-      cells[i].push_back({text, text == best && !table.rows[i].printed});
-    }
-  }
-  return cells;
-}
-
 void AddMeanColumn(Table* table) {
   table->columns.push_back("mean");
   for (TableRow& row : table->rows) {
@@ -85,11 +62,13 @@ void AddMeanColumn(Table* table) {
 std::string ToPlainText(const Table& table) {
   std::vector<std::vector<std::string>> lines = {{""}};
   lines[0].insert(lines[0].end(), table.columns.begin(), table.columns.end());
-  const std::vector<std::vector<TableCell>> cells = FormatCells(table);
-  for (size_t i = 0; i < table.rows.size(); ++i) {
-    lines.push_back({table.rows[i].name});
-    for (const TableCell& cell : cells[i])
-      lines.back().push_back((cell.best ? "*" : "") + cell.text);
+  for (const TableRow& row : table.rows) lines.push_back({row.name});
+  for (size_t column = 0; column < table.columns.size(); ++column) {
+    const std::string best = BestOf(table, column);
+    for (size_t i = 0; i < table.rows.size(); ++i) {
+      const std::string text = Rounded(table.rows[i].values[column], table.decimals);
+      lines[i + 1].push_back((text == best && !table.rows[i].printed ? "*" : "") + text);
+    }
   }
   std::vector<size_t> widths(lines[0].size());
   for (const std::vector<std::string>& line : lines) {
@@ -102,39 +81,6 @@ std::string ToPlainText(const Table& table) {
     text += '\n';
   }
   for (const std::string& note : table.notes) text += "  " + note + '\n';
-  return text;
-}
-
-std::string ToMarkdown(const Table& table) {
-  std::string text = "**" + EscapeMarkdown(table.title) + "**\n\n| |";
-  std::string rule = "|---|";
-  for (const std::string& column : table.columns) {
-    text += ' ' + EscapeMarkdown(column) + " |";
-    rule += "---:|";
-  }
-  text += '\n' + rule + '\n';
-  const std::vector<std::vector<TableCell>> cells = FormatCells(table);
-  for (size_t i = 0; i < table.rows.size(); ++i) {
-    const std::string name = EscapeMarkdown(table.rows[i].name);
-    text += table.rows[i].printed ? "| *" + name + "* |" : "| " + name + " |";
-    for (const TableCell& cell : cells[i]) {
-      text += cell.best ? " **" + cell.text + "** |" : ' ' + cell.text + " |";
-    }
-    text += '\n';
-  }
-  for (const std::string& note : table.notes) text += '\n' + EscapeMarkdown(note) + '\n';
-  return text;
-}
-
-std::string ToCsv(const Table& table) {
-  std::string text = "row,printed";
-  for (const std::string& column : table.columns) text += ',' + EscapeCsv(column);
-  text += '\n';
-  for (const TableRow& row : table.rows) {
-    text += EscapeCsv(row.name) + (row.printed ? ",true" : ",false");
-    for (const double value : row.values) text += ',' + Exact(value);
-    text += '\n';
-  }
   return text;
 }
 

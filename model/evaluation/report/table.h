@@ -30,22 +30,9 @@ struct Table {
 // Adds a last column "mean" with each row's mean; NaN where a figure is missing.
 void AddMeanColumn(Table* table);
 
-// A figure as it is printed.
-struct TableCell {
-  std::string text;   // rounded; a dash for a missing figure
-  bool best = false;  // ties are all best
-};
-// Shapes: returns [rows][columns].
-std::vector<std::vector<TableCell>> FormatCells(const Table& table);
-
-// A table in four formats. Every row has as many values as there are columns.
-// Plain text and Markdown round figures to `decimals`, print a dash for a missing one, and mark
-// every figure that is printed like the best one of its column. CSV and JSON keep enough digits to
-// read the same number back; a missing figure is an empty field in CSV and null in JSON.
-std::string ToPlainText(const Table& table);  // marked with an asterisk
-std::string ToMarkdown(const Table& table);   // marked in bold
-std::string ToCsv(const Table& table);        // RFC 4180; a column "printed" tells the rows apart
-std::string ToJson(const Table& table);
+// A table for a terminal: figures rounded to `decimals`, a dash for a missing one, an asterisk at
+// every figure that is printed like the best one of its column. Every row has one value per column.
+std::string ToPlainText(const Table& table);
 
 }  // namespace duet::evaluation::report
 

@@ -2,12 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "model/checkpoint/checkpoint.h"
 #include "model/evaluation/program/commands.h"
-#include "model/evaluation/report/result_section.h"
 #include "model/motion/coordinates.h"
 #include "tests/dataset/capture_folder.h"
+#include "tests/evaluation/support/read_section.h"
 #include "tests/support/sample_motion.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/tiny_checkpoint.h"
@@ -68,7 +69,7 @@ checkpoint::Manifest ConstantManifest(double cosine, double sine) {
   return manifest;
 }
 
-absl::StatusOr<report::Table> RunCommand(const std::vector<std::string>& runs) {
+absl::StatusOr<nlohmann::json> RunCommand(const std::vector<std::string>& runs) {
   const dataset::CaptureFolder captures;
   WriteCaptures(captures);
   const TemporaryFolder results;
@@ -85,10 +86,9 @@ absl::StatusOr<report::Table> RunCommand(const std::vector<std::string>& runs) {
     return absl::InvalidArgumentError(error.what());
   }
   if (absl::Status status = chosen(); !status.ok()) return status;
-  auto sections = report::ReadSections(results.path());
-  if (!sections.ok()) return sections.status();
-  EXPECT_EQ(sections->front().id, "06_direction");
-  return sections->front().tables.front();
+  const nlohmann::json section = test::ReadSection(results.path());
+  EXPECT_EQ(section.at("id"), "06_direction");
+  return section.at("tables").at(0);
 }
 
 TEST(DirectionCommandTest, HasARowForTheHipsAndForEachRun) {
@@ -100,15 +100,16 @@ TEST(DirectionCommandTest, HasARowForTheHipsAndForEachRun) {
       RunCommand({"ahead=" + (folder / "ahead").string(), "behind=" + (folder / "behind").string(),
                   "old=" + (folder / "old").string()});
   ASSERT_THAT(table, IsOk());
-  ASSERT_EQ(table->rows.size(), 4u);
-  EXPECT_EQ(table->rows[0].name, "hips");
-  EXPECT_EQ(table->rows[2].name, "behind");
-  EXPECT_EQ(table->rows[0].values[0], 6);
-  const double hips = table->rows[0].values[1];
+  EXPECT_THAT(test::RowNames(*table), testing::ElementsAre("hips", "ahead", "behind", "old"));
+  const auto value = [&](size_t row, size_t column) {
+    return table->at("rows").at(row).at("values").at(column).get<double>();
+  };
+  EXPECT_EQ(value(0, 0), 6);
+  const double hips = value(0, 1);
   EXPECT_LT(hips, 90);
-  EXPECT_NEAR(table->rows[1].values[1], hips, 0.01);
-  EXPECT_NEAR(table->rows[2].values[1], 180 - hips, 0.01);
-  EXPECT_EQ(table->rows[3].values, table->rows[0].values);
+  EXPECT_NEAR(value(1, 1), hips, 0.01);
+  EXPECT_NEAR(value(2, 1), 180 - hips, 0.01);
+  EXPECT_EQ(table->at("rows").at(3).at("values"), table->at("rows").at(0).at("values"));
 }
 
 TEST(DirectionCommandTest, NamesARunThatIsMissingOrOfOtherJoints) {

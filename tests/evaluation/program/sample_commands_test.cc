@@ -3,11 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "model/evaluation/program/commands.h"
-#include "model/evaluation/report/result_section.h"
 #include "model/motion/coordinates.h"
 #include "tests/dataset/capture_folder.h"
+#include "tests/evaluation/support/read_section.h"
 #include "tests/support/sample_motion.h"
 #include "tests/support/status_matchers.h"
 
@@ -15,6 +16,7 @@ namespace duet::evaluation::program {
 namespace {
 
 using test::IsOk;
+using test::RowNames;
 using test::TemporaryFolder;
 
 using ::testing::ElementsAre;
@@ -52,7 +54,7 @@ void WriteCaptures(const dataset::CaptureFolder& folder) {
 }
 
 // What the command leaves in its folder of results.
-absl::StatusOr<report::ResultSection> RunCommand(std::vector<std::string> words) {
+absl::StatusOr<nlohmann::json> RunCommand(std::vector<std::string> words) {
   const dataset::CaptureFolder captures;
   WriteCaptures(captures);
   const TemporaryFolder folder;
@@ -72,54 +74,53 @@ absl::StatusOr<report::ResultSection> RunCommand(std::vector<std::string> words)
   }
   absl::Status status = chosen();
   if (!status.ok()) return status;
-  absl::StatusOr<std::vector<report::ResultSection>> sections = report::ReadSections(folder.path());
-  if (!sections.ok()) return sections.status();
-  return sections->front();
-}
-
-std::vector<std::string> RowNames(const report::Table& table) {
-  std::vector<std::string> names;
-  for (const report::TableRow& row : table.rows) names.push_back(row.name);
-  return names;
+  return test::ReadSection(folder.path());
 }
 
 TEST(SampleCommandsTest, SamplesHasARowAStart) {
   const auto section = RunCommand({"samples", "--samples", "2", "--starts", "none,pose"});
   ASSERT_THAT(section, IsOk());
-  EXPECT_EQ(section->id, "14_samples");
-  EXPECT_THAT(RowNames(section->tables.at(0)),
+  EXPECT_EQ(section->at("id"), "14_samples");
+  EXPECT_THAT(RowNames(section->at("tables").at(0)),
               ElementsAre("captured", "other people", "duet", "duet+pose"));
-  EXPECT_THAT(section->command, HasSubstr("--embedded --starts none,pose --subjects s01"));
+  EXPECT_EQ(section->at("command"),
+            "duet-eval samples --data DIR --subjects s01 --out RESULTS --starts none,pose "
+            "--samples 2 --embedded");
 }
 
 TEST(SampleCommandsTest, LongHasARowALeader) {
   const auto section = RunCommand({"long", "--seconds", "5", "--starts", "pose"});
   ASSERT_THAT(section, IsOk());
-  ASSERT_THAT(section->tables, SizeIs(3));
-  EXPECT_THAT(RowNames(section->tables[0]),
+  const nlohmann::json& tables = section->at("tables");
+  ASSERT_THAT(tables, SizeIs(3));
+  EXPECT_THAT(RowNames(tables[0]),
               ElementsAre("people: clips as captured", "duet: idle", "duet: walk_eight",
                           "duet: dance", "duet: sit", "duet: captured"));
-  EXPECT_THAT(section->tables[2].rows, SizeIs(2 * 6));
+  EXPECT_THAT(tables[2].at("rows"), SizeIs(2 * 6));
 }
 
 TEST(SampleCommandsTest, ToldApartHasAColumnAFold) {
   const auto section = RunCommand({"told-apart", "--seeds", "1", "--starts", "none"});
   ASSERT_THAT(section, IsOk());
-  EXPECT_THAT(section->tables.at(0).columns, ElementsAre("s01", "mean", "spread"));
-  ASSERT_THAT(section->tables[0].rows, SizeIs(1));
-  EXPECT_GE(section->tables[0].rows[0].values[0], 0);
-  EXPECT_LE(section->tables[0].rows[0].values[0], 1);
+  const nlohmann::json& table = section->at("tables").at(0);
+  EXPECT_EQ(table.at("columns"), nlohmann::json({"s01", "mean", "spread"}));
+  ASSERT_THAT(table.at("rows"), SizeIs(1));
+  const double accuracy = table["rows"][0].at("values").at(0);
+  EXPECT_GE(accuracy, 0);
+  EXPECT_LE(accuracy, 1);
 }
 
-TEST(SampleCommandsTest, StripsDrawsEveryClassTwice) {
+TEST(SampleCommandsTest, StripsHasTheMotionsOfEveryClass) {
   const auto section = RunCommand({"strips", "--start", "pose"});
   ASSERT_THAT(section, IsOk());
-  ASSERT_THAT(section->figures, SizeIs(12));
-  EXPECT_EQ(section->figures[0].name, "18_strips_kick");
-  EXPECT_THAT(section->figures[0].caption, HasSubstr("s01s02/03/001"));
-  EXPECT_THAT(section->figures[0].svg, HasSubstr(">duet</text>"));
-  EXPECT_EQ(section->figures[1].name, "18_strips_kick_moving");
-  EXPECT_THAT(section->figures[1].svg, HasSubstr("<animate "));
+  ASSERT_THAT(section->at("figures"), SizeIs(6));
+  const nlohmann::json& figure = section->at("figures").at(0);
+  EXPECT_EQ(figure.at("name"), "18_strips_kick");
+  EXPECT_THAT(figure.at("caption"), HasSubstr("s01s02/03/001"));
+  EXPECT_EQ(figure.at("plot").at("kind"), "poses");
+  const nlohmann::json& pairs = figure.at("plot").at("pairs");
+  EXPECT_EQ(pairs.at(0).at("name"), "captured");
+  EXPECT_EQ(pairs.at(1).at("name"), "duet");
 }
 
 }  // namespace

@@ -3,146 +3,68 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 
-#include "model/evaluation/report/svg.h"
+#include "tests/support/sample_motion.h"
 
 namespace duet::evaluation::report {
 namespace {
 
-using testing::HasSubstr;
-using testing::Not;
+using nlohmann::json;
 
-int Count(const std::string& text, const std::string& part) {
-  int count = 0;
-  for (size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
-  return count;
+// As a reader of the file gets it.
+json Written(const Plot& plot) { return json::parse(ToJson(plot).dump()); }
+
+TEST(PlotTest, LinesHaveTheirAxesAndNullForGaps) {
+  LinePlot plot;
+  plot.title = "Losses";
+  plot.x_label = "epoch";
+  plot.series = {{"bone", {{1, 2.5}, {2, std::nan("")}}}};
+  plot.y_range = {0, 1};
+  plot.log_y = true;
+  plot.marked_x = {2};
+  plot.running_mean = 9;
+  const json written = Written(plot);
+  EXPECT_EQ(written["kind"], "lines");
+  EXPECT_EQ(written["title"], "Losses");
+  EXPECT_EQ(written["x_label"], "epoch");
+  EXPECT_EQ(written["series"][0], json::parse(R"({"name": "bone", "x": [1, 2], "y": [2.5, null]})"));
+  EXPECT_EQ(written["y_range"], json::parse("[0, 1]"));
+  EXPECT_EQ(written["log_y"], true);
+  EXPECT_EQ(written["marked_x"], json::parse("[2]"));
+  EXPECT_EQ(written["running_mean"], 9);
+  EXPECT_TRUE(Written(LinePlot())["y_range"].is_null());
 }
 
-TEST(SvgTest, NumbersAreValid) {
-  EXPECT_EQ(SvgNumber(1.5), "1.5");
-  EXPECT_EQ(SvgNumber(-0.001), "0");
-  EXPECT_EQ(SvgNumber(1e7), "10000000");
+TEST(PlotTest, LatentSpaceHasAVectorAndAClassForEachSample) {
+  const json written = Written(LatentPlot{"ours", {"kick", "hug"}, {1, 0}, {{1, 2}, {3, 4}}, 12, 7});
+  EXPECT_EQ(written["kind"], "latent");
+  EXPECT_EQ(written["class_names"], json::parse(R"(["kick", "hug"])"));
+  EXPECT_EQ(written["classes"], json::parse("[1, 0]"));
+  EXPECT_EQ(written["features"], json::parse("[[1, 2], [3, 4]]"));
+  EXPECT_EQ(written["perplexity"], 12);
+  EXPECT_EQ(written["seed"], 7);
 }
 
-TEST(SvgTest, SeriesDifferInColourAndDash) {
-  for (size_t i = 0; i < 8; ++i) {
-    for (size_t j = 0; j < i; ++j) {
-      EXPECT_NE(SeriesColour(i), SeriesColour(j));
-      EXPECT_NE(SeriesDash(i), SeriesDash(j));
-    }
+TEST(PlotTest, PosesHaveEveryFrameAndTheSideOfEachBone) {
+  const motion::Skeleton skeleton = motion::SbuSkeleton();
+  const motion::Poses poses = test::SwayingMotion(31, 15);
+  const json written = Written(PosePlot{"kick", skeleton, {{"captured", poses, poses}}, 15});
+  EXPECT_EQ(written["kind"], "poses");
+  EXPECT_EQ(written["frame_rate_hz"], 15);
+  EXPECT_EQ(written["root"], skeleton.root);
+  EXPECT_EQ(written["head"], skeleton.Find("head"));
+  ASSERT_EQ(written["bones"].size(), skeleton.bones.size());
+  for (const json& bone : written["bones"]) {
+    const std::string& child = skeleton.joint_names[bone["child"].get<size_t>()];
+    EXPECT_EQ(bone["side"] == "left", child.find("left") == 0) << child;
+    EXPECT_EQ(bone["side"] == "right", child.find("right") == 0) << child;
   }
-}
-
-TEST(ScatterPlotTest, DrawsEveryFinitePointAndALegend) {
-  ScatterPlot plot;
-  plot.title = "Latent space <test>";
-  plot.series = {{"kick", {{0, 0}, {1, 1}, {std::nan(""), 1}}}, {"punch & co", {{0, 1}}}};
-  const std::string svg = ToSvg(plot);
-  // Two finite points and the legend's one.
-  EXPECT_EQ(Count(svg, "<circle"), 3);
-  EXPECT_THAT(svg, HasSubstr("Latent space &lt;test&gt;"));
-  EXPECT_THAT(svg, HasSubstr("punch &amp; co"));
-  EXPECT_THAT(svg, Not(HasSubstr("nan")));
-  EXPECT_EQ(svg.rfind("</svg>\n"), svg.size() - 7);
-}
-
-// A map's distances mean something: they must not be stretched.
-TEST(ScatterPlotTest, HasOneScale) {
-  ScatterPlot plot;
-  plot.series = {{"wide", {{0, 0}, {10, 0}, {0, 1}}}};
-  const std::string svg = ToSvg(plot);
-  // 10 wide, with a twentieth on either side, over 562 pixels: 51.09 each.
-  EXPECT_THAT(svg, HasSubstr("cx=\"45.55\" cy=\"299.55\""));
-  EXPECT_THAT(svg, HasSubstr("cx=\"556.45\" cy=\"299.55\""));
-  EXPECT_THAT(svg, HasSubstr("cx=\"45.55\" cy=\"248.45\""));
-}
-
-TEST(LinePlotTest, PlacesPointsOnTheAxes) {
-  LinePlot plot;
-  plot.x_label = "weight";
-  plot.y_label = "probability";
-  plot.y_range = {0, 1};
-  plot.series = {{"kick", {{-1, 0}, {0, 0.5}, {2, 1}}}};
-  const std::string svg = ToSvg(plot);
-  // The corners of the axes' box: x 78 to 582, y 456 up to 48.
-  EXPECT_THAT(svg, HasSubstr("M78 456L246 252L582 48"));
-  EXPECT_THAT(svg, HasSubstr(">weight<"));
-  EXPECT_THAT(svg, HasSubstr(">probability<"));
-  EXPECT_THAT(svg, HasSubstr(">-1<"));
-  EXPECT_THAT(svg, HasSubstr(">0.5<"));
-}
-
-TEST(LinePlotTest, BreaksAtGapsAndHoldsToTheRange) {
-  LinePlot plot;
-  plot.y_range = {0, 1};
-  plot.series = {{"a", {{0, 0}, {1, 0}, {2, std::nan("")}, {3, 9}, {4, 9}}}};
-  const std::string svg = ToSvg(plot);
-  EXPECT_THAT(svg, HasSubstr("M78 456L204 456M456 48L582 48"));
-}
-
-TEST(LinePlotTest, LogarithmicAxisSkipsWhatIsNotPositive) {
-  LinePlot plot;
-  plot.log_y = true;
-  plot.y_range = {0.01, 100};
-  plot.series = {{"loss", {{0, 100}, {1, 0}, {2, 1}, {3, 0.01}}}};
-  const std::string svg = ToSvg(plot);
-  EXPECT_THAT(svg, HasSubstr("M78 48M414 252L582 456"));
-  EXPECT_THAT(svg, HasSubstr(">0.01<"));
-  EXPECT_THAT(svg, HasSubstr(">100<"));
-}
-
-TEST(LinePlotTest, ShortLogarithmicAxisHasRoundTicks) {
-  LinePlot plot;
-  plot.log_y = true;
-  plot.y_range = {1.5, 4.5};
-  plot.series = {{"loss", {{0, 4}, {1, 2}}}};
-  const std::string svg = ToSvg(plot);
-  EXPECT_THAT(svg, HasSubstr(">2.5<"));
-  // 3 stands half way from 2 to 4.5 in logarithms: 48 + 408 * log(4.5 / 3) / log(4.5 / 1.5).
-  EXPECT_THAT(svg, HasSubstr("M78 198.58L582 198.58"));
-}
-
-TEST(LinePlotTest, MakesRoomForItsLegendAndTitle) {
-  LinePlot plot;
-  plot.series = {{"short", {{0, 0}, {1, 1}}}};
-  EXPECT_THAT(ToSvg(plot), HasSubstr("viewBox=\"0 0 760 520\""));
-  plot.series[0].name = std::string(40, 'w');
-  // 582 to the box's edge, 46 to the text, 40 characters of at most 7.44, 20 of margin.
-  EXPECT_THAT(ToSvg(plot), HasSubstr("viewBox=\"0 0 945.6 520\""));
-  plot.series.assign(30, {"one of many", {{0, 0}}});
-  EXPECT_THAT(ToSvg(plot), HasSubstr("viewBox=\"0 0 760 728\""));
-  plot.title = std::string(133, 'w');  // twice what fits
-  EXPECT_THAT(ToSvg(plot), HasSubstr("font-size=\"7.97\""));
-}
-
-TEST(LinePlotTest, EmptyAndConstantSeriesAreDrawn) {
-  LinePlot plot;
-  EXPECT_THAT(ToSvg(plot), HasSubstr("</svg>"));
-  plot.series = {{"none", {}}, {"flat", {{1, 3}, {1, 3}}}};
-  EXPECT_THAT(ToSvg(plot), Not(HasSubstr("nan")));
-  EXPECT_THAT(ToSvg(plot), Not(HasSubstr("inf")));
-}
-
-TEST(LinePlotTest, RunningMeansRunBeforeFaintPoints) {
-  LinePlot plot;
-  plot.y_range = {0, 8};
-  plot.running_mean = 3;
-  plot.series = {{"a", {{0, 8}, {1, 0}, {2, 4}, {3, std::nan("")}, {4, 2}}}};
-  const std::string svg = ToSvg(plot);
-  // Values 0 to 8 stand at y 456 to 48. Means of (8 0), (8 0 4), (0 4) and 2 alone.
-  EXPECT_THAT(svg, HasSubstr("M78 48L204 456L330 252M582 354\" fill=\"none\""));
-  EXPECT_THAT(svg, HasSubstr("M78 252L204 252L330 354M582 354\" fill=\"none\""));
-  EXPECT_LT(svg.find("stroke-opacity=\"0.3\""), svg.find("M78 252L204"));
-}
-
-TEST(LinePlotTest, MarksTheGivenPlaces) {
-  LinePlot plot;
-  plot.series = {{"a", {{0, 0}, {10, 1}}}};
-  const int before = Count(ToSvg(plot), "#888888");
-  plot.marked_x = {5, 50};
-  EXPECT_EQ(Count(ToSvg(plot), "#888888"), before + 1);
+  const json& pair = written["pairs"][0];
+  EXPECT_EQ(pair["name"], "captured");
+  ASSERT_EQ(pair["leader"].size(), 31u);
+  ASSERT_EQ(pair["follower"][30].size(), 15u);
+  EXPECT_NEAR(pair["follower"][30][4][1].get<double>(), poses.at(30, 4).y, 1e-4);
 }
 
 }  // namespace

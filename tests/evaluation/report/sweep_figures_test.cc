@@ -69,7 +69,7 @@ TEST(AddSweep, AddsATableAKindAndAFigureAClass) {
   for (const ResultFigure& figure : section.figures) names.push_back(figure.name);
   EXPECT_THAT(names, ElementsAre("30_sweep_own_a_root", "30_sweep_own_b_root",
                                  "30_sweep_added_a_root", "30_sweep_added_b_root"));
-  EXPECT_THAT(section.figures[0].svg, HasSubstr(">a alone, given the first root<"));
+  EXPECT_EQ(std::get<LinePlot>(section.figures[0].plot).title, "a alone, given the first root");
   EXPECT_THAT(section.figures[0].caption, HasSubstr("the weight of a alone, given the first root"));
   EXPECT_THAT(section.figures[2].caption, HasSubstr("a added, given the first root"));
 }

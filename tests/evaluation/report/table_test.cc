@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "model/evaluation/report/paper_tables.h"
-#include "nlohmann/json.hpp"
 
 namespace duet::evaluation::report {
 namespace {
@@ -44,26 +43,13 @@ TEST(TableTest, PlainTextCountsCharactersNotBytes) {
 TEST(TableTest, ZeroHasNoSign) {
   Table table = Example();
   table.rows[0].values = {-0.001, -0.006};
-  const std::vector<std::vector<TableCell>> cells = FormatCells(table);
-  EXPECT_EQ(cells[0][0].text, "0.00");
-  EXPECT_EQ(cells[0][1].text, "-0.01");
+  EXPECT_THAT(ToPlainText(table), HasSubstr("ours     *0.00  *-0.01\n"));
 }
 
 TEST(TableTest, LargeFiguresAreWhole) {
   Table table = Example();
   table.rows[0].values[0] = -1e300;
-  EXPECT_EQ(FormatCells(table)[0][0].text.size(), 1u + 301u + 3u);
-}
-
-TEST(TableTest, MarkdownMarksTheBestAndSetsPrintedRowsApart) {
-  EXPECT_EQ(ToMarkdown(Example()),
-            "**Errors \\| all**\n\n"
-            "| | kick | punch |\n"
-            "|---|---:|---:|\n"
-            "| ours | **0.50** | **0.30** |\n"
-            "| a, \"b\" | **0.50** | - |\n"
-            "| *printed* | 0.10 | 0.20 |\n"
-            "\nraw unit\n");
+  EXPECT_GT(ToPlainText(table).size(), 4u * 300);
 }
 
 TEST(TableTest, HighestAndNoneCanBeBest) {
@@ -74,25 +60,6 @@ TEST(TableTest, HighestAndNoneCanBeBest) {
   EXPECT_THAT(ToPlainText(table), testing::Not(HasSubstr("*0.500")));
   table.best = Best::kNone;
   EXPECT_THAT(ToPlainText(table), testing::Not(HasSubstr("*")));
-}
-
-TEST(TableTest, CsvKeepsTheFiguresExactly) {
-  EXPECT_EQ(ToCsv(Example()),
-            "row,printed,kick,punch\n"
-            "ours,false,0.504,0.3\n"
-            "\"a, \"\"b\"\"\",false,0.5,\n"
-            "printed,true,0.1,0.2\n");
-}
-
-TEST(TableTest, JsonKeepsTheFiguresExactly) {
-  const nlohmann::json json = nlohmann::json::parse(ToJson(Example()));
-  EXPECT_EQ(json["title"], "Errors | all");
-  EXPECT_EQ(json["rows"][0]["values"][0], 0.504);
-  EXPECT_TRUE(json["rows"][1]["values"][1].is_null());
-  EXPECT_EQ(json["rows"][2]["printed"], true);
-  EXPECT_EQ(json["notes"][0], "raw unit");
-  EXPECT_EQ(json["decimals"], 2);
-  EXPECT_EQ(json["best"], "lowest");
 }
 
 TEST(TableTest, MeanColumnIsMissingWhereAFigureIs) {

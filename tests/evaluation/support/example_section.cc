@@ -19,9 +19,10 @@ evaluation::report::ResultSection ExampleSection(const std::string& id) {
   section.title = "Methods & classes";
   section.text = {"First <paragraph>.", "Second one."};
   section.tables = {table};
-  section.figures = {{id + "_curve", "A curve of \"errors\".",
-                      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 10 10\">"
-                      "<path d=\"M0 0L9 9\" stroke=\"#0072B2\"/></svg>\n"}};
+  evaluation::report::LinePlot plot;
+  plot.title = "Curve";
+  plot.series = {{"ours", {{0, 1}, {1, 2}}}};
+  section.figures = {{id + "_curve", "A curve of \"errors\".", plot}};
   section.settings = {{"data", "SBU"}, {"seeds", "1, 2"}};
   section.command = "duet-eval folds --data DIR";
   section.date = "2024-02-29";

@@ -7,8 +7,8 @@
 
 namespace duet::test {
 
-// A section with everything that one can have: texts that need escaping, a table with best, missing
-// and printed figures, a figure "<id>_curve", settings. Its id is `id`.
+// A section with id `id` and one of everything: texts that need escaping, a table with best,
+// missing and printed figures, a figure "<id>_curve", settings.
 evaluation::report::ResultSection ExampleSection(const std::string& id);
 
 }  // namespace duet::test

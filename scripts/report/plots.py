@@ -1,0 +1,33 @@
+"""Draws the figures of result sections with matplotlib."""
+
+from report import latent, lines, poses
+
+# An SVG keeps its text as text, and the same data gives the same file.
+STYLE = {"svg.fonttype": "none", "svg.hashsalt": "duet", "font.size": 9, "axes.titlesize": 11,
+         "axes.titleweight": "bold", "axes.titlelocation": "left", "axes.spines.top": False,
+         "axes.spines.right": False, "axes.axisbelow": True, "legend.frameon": False}
+DRAW = {"lines": lines.draw, "latent": latent.draw, "poses": poses.draw}
+
+
+def use_matplotlib():
+    """Prepares matplotlib for drawing without a display. Raises ImportError if it is missing."""
+    import matplotlib  # a report without it still has its tables
+    matplotlib.use("Agg")
+    matplotlib.rcParams.update(STYLE)
+
+
+def draw_plot(plot, folder, name):
+    """Draws a plot. Returns the files that show it, and a sentence for its caption or "".
+
+    Every still picture is written as <name>.svg and, at 300 dots an inch, as <name>.png.
+    """
+    from matplotlib import pyplot
+    figure, remark = DRAW[plot["kind"]](plot)
+    figure.savefig(folder / f"{name}.svg", bbox_inches="tight", metadata={"Date": None})
+    figure.savefig(folder / f"{name}.png", bbox_inches="tight", dpi=300)
+    pyplot.close(figure)
+    files = [f"{name}.svg"]
+    if plot["kind"] == "poses":
+        poses.animate(plot, folder / f"{name}_moving.gif")
+        files.append(f"{name}_moving.gif")
+    return files, remark

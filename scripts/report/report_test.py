@@ -1,0 +1,90 @@
+import copy
+import unittest
+from pathlib import Path
+
+from report import example, tables
+from report.markdown import escape, to_markdown
+from report.page import to_page
+
+
+def two_sections():
+    sections = [example.section("10_folds"), example.section("20_more")]
+    sections[1].update(title="More", date="2024-03-01")
+    pictures = {name: [f"{name}.svg"] for name in ("10_folds_curve", "20_more_curve")}
+    return sections, pictures
+
+
+class TablesTest(unittest.TestCase):
+    def test_ties_are_all_best_and_printed_rows_never(self):
+        table = copy.deepcopy(example.section()["tables"][0])
+        table.update(decimals=1)
+        table["rows"][2]["values"][0] = 0.52
+        self.assertEqual(tables.cells(table)[0][0], ("0.5", True))
+        self.assertEqual(tables.cells(table)[2], [("0.5", True), ("-", False)])
+        self.assertEqual(tables.cells(table)[1][0], ("0.1", False))
+
+    def test_highest_or_none_can_be_best(self):
+        table = example.section()["tables"][0]
+        self.assertTrue(tables.cells({**table, "best": "highest"})[2][0][1])
+        self.assertFalse(any(best for row in tables.cells({**table, "best": "none"})
+                             for _, best in row))
+
+    def test_zero_has_no_sign(self):
+        self.assertEqual(tables.rounded(-0.001, 2), "0.00")
+        self.assertEqual(tables.rounded(-0.006, 2), "-0.01")
+
+
+class MarkdownTest(unittest.TestCase):
+    def test_report_has_contents_tables_figures_and_origins(self):
+        text = to_markdown("Figures & tables", *two_sections())
+        self.assertTrue(text.startswith("# Figures & tables\n\n2024-03-01. The best figures"))
+        for part in (
+                "- [Methods & classes](#10_folds)\n- [More](#20_more)\n",
+                "<a id=\"20_more\"></a>\n\n## More\n\nFirst \\<paragraph\\>.\n\n",
+                "**Table 2. Errors \\<raw\\> & all**\n\n| | kick | shake_hands |\n|---|---:|---:|\n",
+                "| ours | **0.504** | **0.333** |\n| *paper (printed)* | 0.100 | 0.200 |\n",
+                "| frozen_first_frame | 0.700 | - |\n\nlower is better\n\n",
+                "![A curve of \"errors\".](20_more_curve.svg)\n\n*Figure 2. A curve of \"errors\".*\n",
+                "| seeds | 1, 2 |\n| date | 2024-03-01 |\n\n"
+                "<pre><code>duet-eval folds --data DIR</code></pre>\n\n</details>\n"):
+            self.assertIn(part, text)
+
+    def test_markup_is_escaped(self):
+        self.assertEqual(escape("a|b *c* _d_ shake_hands\n"), "a\\|b \\*c\\* \\_d\\_ shake_hands ")
+
+
+class PageTest(unittest.TestCase):
+    def page(self, change=lambda sections: None):
+        sections, _ = two_sections()
+        change(sections)
+        return to_page("Figures & tables", sections, {}, Path())
+
+    def test_text_is_escaped_and_numbers_run_through_all_sections(self):
+        page = self.page()
+        self.assertIn("<title>Figures &amp; tables</title>", page)
+        self.assertIn("<section id=\"20_more\">\n<h2>More</h2>\n<p>First &lt;paragraph&gt;.</p>",
+                      page)
+        self.assertIn("<p class=\"date\">2024-03-01</p>", page)
+        self.assertLess(page.index("<section id=\"20_more\">"), page.index("<b>Table 2.</b>"))
+        self.assertIn("<b>Figure 2.</b> A curve of &quot;errors&quot;.", page)
+
+    def test_best_and_printed_rows_are_set_apart(self):
+        page = self.page()
+        self.assertIn("<tr><th scope=\"row\">ours</th><td class=\"best\"><b>0.504</b></td>", page)
+        self.assertIn("<tbody class=\"printed\">", page)
+        self.assertIn("<td>&ndash;</td>", page)
+
+        def only_measured(sections):
+            for section in sections:
+                section["tables"][0]["rows"].pop(1)
+        self.assertNotIn("<tbody class=\"printed\">", self.page(only_measured))
+
+    def test_the_page_needs_no_other_file(self):
+        page = self.page()
+        self.assertIn("prefers-color-scheme: dark", page)
+        for reference in ("<link", "url(", "@import", "src=\"http"):
+            self.assertNotIn(reference, page)
+
+
+if __name__ == "__main__":
+    unittest.main()
