@@ -1,21 +1,27 @@
 #!/usr/bin/env python3
-"""What a cluster of 10, 100 and 1,000 pods does when ten times the calls come within a minute: queue, pods,
-refusals, simulated with service times that were measured. Writes a picture and prints a table.
+"""Simulates clusters of 10, 100 and 1,000 pods while the load rises tenfold within a minute: queue,
+pods and rejected calls, from measured service times. Prints a table and draws a picture.
 
     benchmarks/simulate_pods.py [--clips-per-second 567] [--out scale.png]
 
-The model: clips come at random (Poisson), clients take turns over the pods that are ready, each pod has
-two workers and lets 64 clips wait. Every 15 s the autoscaler (deploy/kubernetes) reads each pod's
-queue, averaged over 30 s, and wants pods in proportion to it over 8, at most twice as many as there
-are and four times as many as at first; it goes down by one in a hundred a minute after five quiet minutes. A new pod serves 10 s later
-(3 s for the image that is on the node, its start and its first readiness; the rest for scheduling).
-Steps of 100 ms, each pod on its own. The seed is fixed: the same arguments give the same answer.
+The model: clips arrive at random (Poisson) and are spread over the ready pods in turn. Each pod has
+two workers and queues at most 64 clips. Every 15 s the autoscaler (deploy/kubernetes) reads each
+pod's queue, averaged over 30 s, and requests pods in proportion to queue / 8: at most twice the
+current number and four times the initial one. After five quiet minutes it removes one pod in a
+hundred per minute. A new pod serves after 10 s (3 s for an image that is on the node, its start and
+its first readiness; the rest for scheduling). Steps of 100 ms. The seed is fixed: the same arguments
+give the same result.
 """
 
 import argparse
 import math
+import pathlib
+import sys
 
 import numpy
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "scripts"))
+from report import palette, plots  # noqa: E402
 
 STEP = 0.1  # seconds
 DURATION = 780
@@ -105,17 +111,19 @@ def summary(pods, rows):
 
 
 def draw(results, out):
-    import matplotlib
-    matplotlib.use("Agg")
+    plots.use_matplotlib()
     from matplotlib import pyplot
-    figure, axes = pyplot.subplots(3, len(results), figsize=(4.5 * len(results), 7), sharex=True)
+    figure, axes = pyplot.subplots(3, len(results), figsize=(4.5 * len(results), 7), sharex=True,
+                                   squeeze=False)
     for column, (pods, rows) in zip(axes.T, results):
         column[0].set_title(f"{pods} pods at first")
-        column[0].plot(rows[:, 0], rows[:, 2] / pods, label="pods that are ready")
-        column[0].plot(rows[:, 0], rows[:, 1], "--", label="pods that the load keeps busy")
-        column[1].plot(rows[:, 0], rows[:, 3], color="tab:orange", label="queue of a pod, mean")
+        column[0].plot(rows[:, 0], rows[:, 2] / pods, color=palette.colour(0),
+                       label="pods that are ready")
+        column[0].plot(rows[:, 0], rows[:, 1], "--", color=palette.colour(1),
+                       label="pods that the load keeps busy")
+        column[1].plot(rows[:, 0], rows[:, 3], color=palette.colour(2), label="queue of a pod, mean")
         column[1].axhline(TARGET_QUEUED, linewidth=0.5, color="black")
-        column[2].plot(rows[:, 0], 100 * rows[:, 4], color="tab:red", label="refused, %")
+        column[2].plot(rows[:, 0], 100 * rows[:, 4], color=palette.colour(3), label="refused, %")
         column[2].set_xlabel("seconds")
         for axis in column:
             axis.set_ylim(bottom=0)

@@ -1,23 +1,23 @@
 #!/usr/bin/env python3
-"""Hours of a server's life in minutes: callers of every kind while an operator changes everything that
-can be changed, and what became of calls, memory, descriptors and threads.
+"""Soak test: every kind of caller against a server while an operator changes everything that can be
+changed. Checks calls, memory, descriptors and threads.
 
     benchmarks/soak.py BUILD [--seconds 1200] [--rounds 20] [--callers 6] [--rate 20] [--out FOLDER]
 
-Callers ask for short and long clips, cancel, have tight deadlines, send nonsense, go away; duet-load
-asks beside them at a steady rate. Meanwhile models are reloaded (SIGHUP and `duet admin`), loaded,
-unloaded and refused, labels move, certificates and tokens are rotated. The server has TLS, an access
-file and a repository of its own.
+Callers request short and long clips, cancel, set tight deadlines, send invalid requests, disconnect;
+duet-load sends calls at a steady rate. Meanwhile models are reloaded (SIGHUP and `duet admin`),
+loaded, unloaded and rejected, labels move, certificates and tokens are rotated. The server has TLS,
+an access file and a repository of its own.
 
-After each round everybody pauses: one large request comes and goes, after which the server gives its
-free memory back, and resident memory is read when no call is left. Growth is the median of the last
-quarter of the rounds over that of the first quarter after the warm-up (the first fifth).
+After each round all callers pause. One large request makes the server return its free memory, and
+resident memory is read when no call is left. Growth is the median of the last quarter of the rounds
+over that of the first quarter after the warm-up (the first fifth).
 
-Ends with 1 where a call was lost (nobody told how it ended, or it was answered in part), ended
-otherwise than its kind may, or was begun and never finished by the server's own count; where an action
-failed, memory grew by more than --max-growth, descriptors are left over, or the server did not end
-well. Writes soak.md, soak.svg and soak.json to FOLDER. Needs python3-grpcio, protobuf-compiler and
-openssl. docs/soak.md is such a report.
+Exits with 1 if a call was lost (it ended without a status, or with part of its answer), ended in a
+way that its kind may not, or was begun and never finished by the server's own count; if an action
+failed, memory grew by more than --max-growth, descriptors are left over, or the server did not exit
+cleanly. Writes soak.md, soak.svg and soak.json to FOLDER. Needs python3-grpcio,
+python3-matplotlib, protobuf-compiler and openssl. docs/soak.md is such a report.
 """
 
 import argparse
@@ -43,6 +43,9 @@ import urllib.request
 import grpc
 
 import measure_hostile as hostile
+
+sys.path.insert(0, str(hostile.SOURCE / "scripts"))
+from report import palette, plots  # noqa: E402
 
 CHECKPOINT = hostile.SOURCE / "model/embedded/sbu/1"
 LONG_DEADLINE = 600.0  # whoever waits so long was forgotten, however busy the machine is
@@ -529,39 +532,25 @@ def growth_of(settled):
     return statistics.median(rest[-quarter:]) / statistics.median(rest[:quarter]) - 1
 
 
-def draw(samples, settled):
-    """Resident memory over time as an SVG: all of it, and the settled readings."""
-    width, height, left, top, bottom, right = 820, 380, 70, 44, 50, 20
-    last = max(sample[0] for sample in samples + settled)
-    most = 1.1 * max(sample[1] for sample in samples + settled) / 1e6
-    step = next(step for step in (10, 20, 50, 100, 200, 500, 1000) if most / step <= 8)
-
-    def x(seconds):
-        return left + seconds / last * (width - left - right)
-
-    def y(megabytes):
-        return height - bottom - megabytes / most * (height - top - bottom)
-    line = " ".join(f"{x(t):.1f},{y(rss / 1e6):.1f}" for t, rss, *_ in samples)
-    dots = "".join(f'<circle cx="{x(t):.1f}" cy="{y(rss / 1e6):.1f}" r="4"/>'
-                   for t, rss, *_ in settled)
-    parts = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" '
-             f'viewBox="0 0 {width} {height}" font-family="Helvetica, Arial, sans-serif" '
-             'font-size="13" fill="#222"><rect width="100%" height="100%" fill="#fff"/>',
-             f'<text x="{left}" y="24" font-size="16" font-weight="bold">Resident memory, MB: under '
-             'load (line), settled after each round (dots)</text>']
-    for value in range(0, int(most) + 1, step):
-        parts.append(f'<path d="M{left} {y(value):.1f}H{width - right}" stroke="#ddd"/><text '
-                     f'x="{left - 8}" y="{y(value) + 4:.1f}" text-anchor="end">{value}</text>')
-    unit, name = (60, "minutes") if last > 180 else (1, "seconds")
-    tick = next(tick for tick in (1, 2, 5, 10, 20, 50) if last / unit / tick <= 12)
-    for value in range(0, int(last / unit) + 1, tick):
-        parts.append(f'<text x="{x(value * unit):.1f}" y="{height - bottom + 18}" '
-                     f'text-anchor="middle">{value}</text>')
-    parts.append(f'<text x="{(left + width - right) / 2}" y="{height - 10}" text-anchor="middle">'
-                 f'{name}</text><path d="M{left} {height - bottom}H{width - right}" stroke="#222"/>'
-                 f'<polyline points="{line}" fill="none" stroke="#0072B2" stroke-width="1.2"/>'
-                 f'<g fill="#D55E00">{dots}</g></svg>\n')
-    return "\n".join(parts)
+def draw(samples, settled, file):
+    """Draws resident memory over time: a line under load, dots settled after each round."""
+    plots.use_matplotlib()
+    from matplotlib import pyplot
+    unit, name = (60, "minutes") if max(sample[0] for sample in samples + settled) > 180 else (
+        1, "seconds")
+    figure, axes = pyplot.subplots(figsize=(8.2, 3.8))
+    for index, (readings, style, label) in enumerate((
+            (samples, {"linewidth": 1.2}, "under load"),
+            (settled, {"linestyle": "", "marker": "o"}, "settled after each round"))):
+        axes.plot([time / unit for time, *_ in readings], [rss / 1e6 for _, rss, *_ in readings],
+                  color=palette.colour(index), label=label, **style)
+    axes.set_title("Resident memory, MB")
+    axes.set_xlabel(name)
+    axes.set_ylim(bottom=0)
+    axes.grid(axis="y", color=palette.GRID)
+    axes.legend(loc="lower right")
+    figure.savefig(file, bbox_inches="tight", metadata={"Date": None})
+    pyplot.close(figure)
 
 
 def spread(values):
@@ -640,7 +629,7 @@ def soak(args, folder, protos):
     if args.out:
         args.out.mkdir(parents=True, exist_ok=True)
         (args.out / "soak.md").write_text(report, encoding="utf-8")
-        (args.out / "soak.svg").write_text(draw(sampler.samples, settled), encoding="utf-8")
+        draw(sampler.samples, settled, args.out / "soak.svg")
         figures["samples"], figures["settled"] = sampler.samples, settled
         (args.out / "soak.json").write_text(json.dumps(figures), encoding="utf-8")
         shutil.copy(server.log_path, args.out / "server.log")
