@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Makes one call again and again until its standard input ends, and prints what became of each: a
-process of its own, so that what is measured beside does not share an interpreter with it.
+"""Repeats one call until its standard input ends and prints the result of each. A separate process,
+so that the measured callers do not share an interpreter with it.
 
     benchmarks/ask_beside.py ADDRESS METHOD PAUSE < REQUEST
 

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Runs the engine's benchmarks, and prints each beside the figure that was committed last.
+"""Runs the engine's benchmarks and prints each beside the last committed figure.
 
     benchmarks/bench.py build/release                prints the table
-    benchmarks/bench.py build/release --commit       keeps the figures in benchmarks/figures.json
+    benchmarks/bench.py build/release --commit       writes the figures to benchmarks/figures.json
 
-Speeds of different machines, or of a machine with other work, do not compare: the table says which
-machine the committed figures are from, and how fast this one is at plain arithmetic (roofline/...).
+Speeds of different machines, or of a machine with other load, are not comparable: the table names
+the machine of the committed figures and shows this machine's speed at plain arithmetic (roofline/...).
 """
 import argparse
 import json

@@ -4,8 +4,7 @@
     benchmarks/compare_builds.py BEFORE AFTER [--rounds 5] [--filter REGEX]
 
 BEFORE and AFTER are programs, such as <build>/benchmarks/synthesis_benchmark of two revisions. The
-two run one after the other, --rounds times, so that what disturbs the machine disturbs both. Prints
-the median CPU time of each benchmark in either build, and their ratio (above 1: AFTER is slower)
+two run one after the other, --rounds times, so that disturbances affect both. Prints the median CPU time of each benchmark in either build, and their ratio (above 1: AFTER is slower)
 with the smallest and largest ratio of a round.
 """
 

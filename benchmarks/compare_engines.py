@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""The engines beside eager PyTorch and ONNX Runtime, one thread each, in one run: windows a second,
-and how many times those of the peers.
+"""Compares the engines with eager PyTorch and ONNX Runtime, one thread each, in one run: windows a
+second, and their ratio to those of the peers.
 
     benchmarks/compare_engines.py build/release [NODE_MODULES]
 
 Needs Debian's python3-torch; for ONNX Runtime also node and a folder with it: `npm install
---ignore-scripts onnxruntime-node@1.17.3`. Times are the processor's, and each figure is the best of
-three rounds, in which all take turns: machines are noisy. Ours are whole answers (standard coordinates, checks, limb lengths; the
-clean-up is off), those of the peers the network alone.
+--ignore-scripts onnxruntime-node@1.17.3`. Measures processor time; each figure is the best of three
+rounds in which all take turns. Duet's figures are complete answers (standard coordinates, checks,
+limb lengths; without clean-up), those of the peers only the network.
 """
 import collections
 import json

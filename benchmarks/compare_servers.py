@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""duet-server beside the service that a user would write: a Python gRPC server around the same network
-in eager PyTorch. The same load on both, which take turns; duet-load runs on the same cores.
+"""Compares duet-server with a straightforward implementation: a Python gRPC server around the same
+network in eager PyTorch. Both get the same load in turn; duet-load runs on the same cores.
 
     benchmarks/compare_servers.py build/release [ROUNDS]
 
 Needs Debian's python3-torch, python3-grpcio and protobuf-compiler-grpc. Prints clips of 45 frames a
-second and times, the best of a few rounds (3), and what the engine alone does with a process on each
+second and times, the best of a few rounds (3), and the engine's throughput with one process per
 core.
 """
 import json

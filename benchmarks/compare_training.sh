@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Training throughput of Duet and of eager PyTorch, side by side: compare_training.sh [build folder].
+# Compares the training throughput of Duet and of eager PyTorch: compare_training.sh [build folder].
 # Needs python3-torch.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

@@ -1,5 +1,5 @@
-"""The service that a user would write: a Python gRPC server around the paper's generator in eager
-PyTorch, of the same contract. The peer of duet-server in compare_servers.py.
+"""A straightforward implementation: a Python gRPC server around the paper's generator in eager
+PyTorch, with the same contract. The peer of duet-server in compare_servers.py.
 
     eager_server.py PORT_FILE [--generator Paper|Sampling]
 

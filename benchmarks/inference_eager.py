@@ -1,8 +1,9 @@
-"""The peers of synthesis_benchmark.cc: the same two generators in eager PyTorch, as one would write
-them first. Prints a line of JSON for each generator and batch: milliseconds of processor time, the median of a few.
+"""The peers of synthesis_benchmark.cc: straightforward implementations of the same two generators in
+eager PyTorch. Prints a line of JSON for each generator and batch: the median processor time in
+milliseconds of a few runs.
 
     inference_eager.py THREADS BATCH...
-    inference_eager.py --export FOLDER      writes sbu@1.onnx and sbu@2.onnx, of any batch, instead
+    inference_eager.py --export FOLDER      writes sbu@1.onnx and sbu@2.onnx for any batch size instead
 
 Sizes: the embedded checkpoints' (sbu@1: the paper's sections 3.1 and 3.2; sbu@2: width 160, 4
 blocks, 4 heads, feed-forward 480, one step), 45 frames. Weights are random: speed does not depend

@@ -1,4 +1,4 @@
-"""What the measuring programs ask of duet-load."""
+"""Runs duet-load for the measuring programs."""
 
 import json
 import subprocess

@@ -5,13 +5,13 @@ and memory of the client.
     benchmarks/measure_batch.py BUILD [--items 20000] [--lines 1000000] [--leaders 50] [--before DUET]
 
 Four runs against a server whose engine answers at once (tests/duet-fake-server), so that the client
-is the limit: --items items into a file each, each of a leader of its own; the same with 20 items a
+is the bottleneck: --items items, each with its own leader and output file; the same with 20 items per
 leader; the same into packed shards; and a manifest of --lines lines of which one in a thousand is
-asked for, which shows the memory of a long list. Before each, bare gRPC makes as many calls
-(BUILD/benchmarks/call_cost): on a machine with other work, only the figures beside each other
-compare. Last, a real server: --leaders leaders with recipes/mixes.textproto, 26 items each.
+requested, which shows the memory of a long list. Before each, plain gRPC makes as many calls
+(BUILD/benchmarks/call_cost): on a machine with other load, only adjacent figures are comparable.
+Last, a real server: --leaders leaders with recipes/mixes.textproto, 26 items each.
 
-With --before, another `duet` makes each run as well, in turn.
+With --before, another `duet` also makes each run, in turn.
 """
 
 import argparse

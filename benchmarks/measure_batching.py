@@ -1,15 +1,14 @@
 #!/usr/bin/env python3
-"""What batching gains in the server: the same load on a server that batches and on one that does not.
+"""Measures the gain of batching: the same load on a server with batching and on one without.
 
     benchmarks/measure_batching.py BUILD [--server PROGRAM] [--batch 16] [--seconds 5] [--rounds 1]
 
-PROGRAM is the server to measure: BUILD/bin/duet-server unless told otherwise;
-BUILD/benchmarks/timed_server has an engine of known cost, so that it shows the batcher alone. Servers
-take turns within each round, so that what disturbs the machine disturbs both; the load's program runs
-on the same cores.
+PROGRAM is the server to measure, by default BUILD/bin/duet-server. BUILD/benchmarks/timed_server has
+an engine of known cost, to measure only the batcher. Servers take turns within each round, so that
+disturbances affect both; the load generator runs on the same cores.
 
-Prints clips a second and times for callers that ask without a pause; for one short call beside many
-clips of ten minutes; and how many calls are answered in time where deadlines are tight.
+Prints clips a second and times for callers without pauses, for one short call beside many clips of
+ten minutes, and the number of calls that meet tight deadlines.
 """
 
 import argparse

@@ -1,13 +1,12 @@
 #!/usr/bin/env python3
-"""What the release build's hardening costs (cmake/DuetHardening.cmake): the same programs built with it and
-without, taking turns.
+"""Measures the cost of the release build's hardening (cmake/DuetHardening.cmake): the same programs
+built with it and without, in turn.
 
     benchmarks/measure_hardening.py build/release [--rounds 5] [--calls 2000]
 
 Builds the programs without it in build/unhardened. Prints the table of compare_builds.py for kernels and
-clean-up (before: without), then the processor time that either server takes for a clip of 45 frames under
-eight callers. It counts processor time, which other programs on the machine disturb less than waiting
-times.
+clean-up (before: without), then the processor time of either server for a clip of 45 frames under
+eight callers. Other programs on the machine disturb processor time less than waiting times.
 """
 
 import argparse

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""What clients that keep to the protocol can do to a server: plays each against a real one.
+"""Plays hostile clients that obey the protocol against a real server and measures the effects.
 
     benchmarks/measure_hostile.py BUILD [SCENARIO ...] [--server PROGRAM] [--client PROGRAM]
 
-PROGRAMs are BUILD/bin/duet-server and BUILD/bin/duet unless told otherwise: an older server can be
-measured with the same clients. Prints a line of a table for each figure. Needs python3-grpcio and
-protobuf-compiler; hostile clients come from 127.0.0.2, so that they are not who asks beside them.
+PROGRAMs default to BUILD/bin/duet-server and BUILD/bin/duet: an older server can be measured with the
+same clients. Prints a table row for each figure. Needs python3-grpcio and protobuf-compiler. Hostile
+clients use 127.0.0.2, so that the server distinguishes them from the regular callers.
 docs/hostile_clients.md has the findings behind the scenarios, and figures.
 """
 

@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
-"""What a clip costs by its length: time, time to its first chunk, the server's processor time and
-memory; and what a call adds to the engine's own time.
+"""Measures the cost of a clip by its length: time, time to its first chunk, the server's processor
+time and memory, and the overhead of a call over the engine's own time.
 
     benchmarks/measure_lengths.py BUILD [--model sbu@2] [--rounds 3] [--frames 46] [--awake]
 
-Each length has a server of its own, so that the peak of its memory is that length's alone; it is
-asked by one caller, and so is one whose engine answers at once (tests/duet-fake-server): what a call
-takes without any. The engine alone is BUILD/benchmarks/synthesis_benchmark with clips of the same
-length in the same rounds. Prints the middle of the rounds; ratios are to the length before.
+Each length has its own server, so that the peak memory belongs to that length. One caller calls it,
+and one calls a server whose engine answers at once (tests/duet-fake-server), which measures the call
+without an engine. The engine without a server is BUILD/benchmarks/synthesis_benchmark with clips of
+the same length in the same rounds. Prints the median of the rounds; ratios are to the previous length.
 
---awake keeps every core from resting by a process that runs where nothing else wants to: what a
-call takes less then is the machine's own waking up.
+--awake keeps every core awake with a process of idle priority: the difference in a call's time is the
+wake-up time of the machine.
 """
 
 import argparse

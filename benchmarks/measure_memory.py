@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""How much memory a server needs for what its limits let in: plays mixes of legal calls against a real
-server, in a control group of its own where that is possible.
+"""Measures the memory that a server needs within its limits: plays mixes of valid calls against a real
+server, in its own control group if possible.
 
     benchmarks/measure_memory.py BUILD [MIX ...] [--limit MIB] [--server PROGRAM] [-- FLAG ...]
 
-Prints a line of a table for each mix: what became of the calls, and the peak of the server's memory.
-With --limit the server is held to so much and the group's peak is printed too; FLAGs go to the server.
-Needs python3-grpcio. docs/costs.md has the figures and the formula that follows from them.
+Prints a table row for each mix: the results of the calls and the peak of the server's memory. --limit
+limits the server's memory and also prints the group's peak; FLAGs go to the server. Needs
+python3-grpcio. docs/costs.md has the figures and the formula that follows from them.
 """
 
 import argparse

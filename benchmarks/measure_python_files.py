@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""What it costs Python to read a motion file: measure_python_files.py BUILD [--files COUNT]
+"""Measures reading motion files in Python: measure_python_files.py BUILD [--files COUNT]
 
-Reads a sample as often as is asked with duet_motion.read_motion, once with a process for each file
-(as before the package kept one), once with a process that is kept, and in four threads.
+Reads a sample COUNT times with duet_motion.read_motion: with a process for each file, with one
+persistent process, and in four threads.
 """
 
 import argparse

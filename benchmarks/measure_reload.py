@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Whether calls are slower while a model is reloaded: a steady rate of calls to two models, of which one
-is replaced again and again (`duet admin reload` after its checkpoint has changed).
+"""Measures calls during reloads of a model: a steady rate of calls to two models, one of which is
+replaced repeatedly (`duet admin reload` after its checkpoint has changed).
 
     benchmarks/measure_reload.py BUILD [--rate 30] [--seconds 60] [--pause 4] [--server PROGRAM]
 
-Prints times of the calls that were due while a reload ran, and of the others of the same run: what
-disturbs the machine disturbs both.
+Prints the times of the calls that were due during a reload and of the other calls of the same run, so
+that disturbances affect both.
 """
 
 import argparse

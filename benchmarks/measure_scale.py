@@ -1,17 +1,17 @@
 #!/usr/bin/env python3
-"""What more servers bring: 1, 2, 4 servers, each on its share of a core, behind HAProxy and without it, and
-a batch during which one of them is killed. As root, with haproxy.
+"""Measures scaling: 1, 2 and 4 servers, each on its share of a core, behind HAProxy and without it, and
+a batch during which one of them is killed. Needs root and haproxy.
 
     benchmarks/measure_scale.py BUILD [--share 0.25] [--servers 1 2 4] [--seconds 8]
 
-Each server is in a control group whose quota is its share of the cores (version 1 or 2 of them), as a pod
-would be; callers and the proxy have the rest of the machine. Prints clips of 45 frames a second as callers that
-ask without a pause get them, through the proxy (each call to the server with the fewest) and with
-callers that take turns over the servers by themselves; by how much a server's calls differ from its
-share; and how many items of the batch came.
+Each server runs in a control group (version 1 or 2) whose quota is its share of the cores, like a pod;
+callers and the proxy have the rest of the machine. Prints clips of 45 frames a second for callers
+without pauses, through the proxy (each call to the server with the fewest calls) and for callers that
+use the servers in turn; the deviation of a server's calls from its share; and the number of items
+that the batch completed.
 
-The proxy runs deploy/proxy/haproxy.cfg without TLS: callers encrypt on the cores that servers are
-measured on.
+The proxy runs deploy/proxy/haproxy.cfg without TLS, because callers would encrypt on the cores of the
+servers.
 """
 
 import argparse

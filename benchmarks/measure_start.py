@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""How long duet-server takes from its start to its first answer, and the memory it then holds, with
-either engine; the middle of five starts.
+"""Measures duet-server from its start to its first answer, and its memory then, with either engine: the
+median of five starts.
 
     benchmarks/measure_start.py build/release
 """

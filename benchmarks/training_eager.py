@@ -1,6 +1,6 @@
 """The peer of training_benchmark.cc: the same network, batch, loss and optimiser in eager PyTorch.
 
-Prints clips a second. Sizes: the paper's (section 3.1, 3.2), 16 clips of 45 frames, Adam, L1.
+Prints clips a second. Sizes from the paper (sections 3.1, 3.2), 16 clips of 45 frames, Adam, L1.
 """
 import sys
 import time
