@@ -10,7 +10,7 @@
 
 namespace duet::evaluation::baselines {
 
-// The rows of Table 1 that need no network, in the order of the table, after the two trivial rows.
+// The two trivial rows, then the rows of Table 1 that need no network, in the order of the table.
 std::vector<std::string> BaselineNames();
 
 // A baseline by its name, untrained, with its published settings (docs/baselines.md).

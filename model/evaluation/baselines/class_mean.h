@@ -7,7 +7,7 @@
 
 namespace duet::evaluation::baselines {
 
-// The trivial row: the mean follower pose of the class, held still in the standard coordinates.
+// The trivial method: the mean follower pose of the class, held still in the standard coordinates.
 class ClassMean : public PerClassMethod {
  public:
   ClassMean() : PerClassMethod("class_mean") {}

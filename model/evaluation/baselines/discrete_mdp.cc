@@ -7,9 +7,10 @@
 namespace duet::evaluation::baselines {
 namespace {
 
-// Pseudo-counts: what was never seen stays possible.
+// Pseudo-counts: unseen events stay possible.
 constexpr double kCount = 0.1;
-// Ascent on the mean log-likelihood of a frame: rate, and pull towards the starting weights.
+// Gradient ascent on the mean log-likelihood of a frame: rate, and pull towards the initial
+// weights.
 constexpr double kRate = 0.3;
 constexpr double kPull = 0.01;
 
@@ -72,8 +73,7 @@ DiscreteMdp::Weights DiscreteMdp::Surplus(const Model& model, const Tables& tabl
 
 void DiscreteMdp::LearnReward(const std::vector<Demonstration>& demonstrations,
                               const Counts& counts, Model* model) const {
-  // Each demonstration is explained by the counts of the others: by its own it would look better
-  // than any new one can.
+  // Each demonstration is explained by the counts of the others: its own would overfit.
   std::vector<Tables> others;
   double frames = 0;
   for (const Demonstration& one : demonstrations) {

@@ -13,8 +13,8 @@ namespace duet::evaluation::baselines {
 struct DiscreteMdpOptions {
   int pose_states = 16;   // clusters of follower poses
   int leader_states = 8;  // clusters of leader cues
-  int components = 10;    // that poses and cues are clustered in
-  int iterations = 30;    // of the reward's ascent
+  int components = 10;    // principal components in which poses and cues are clustered
+  int iterations = 30;    // gradient steps on the reward
   // The answer: the mean pose of each frame's states (true) or the most likely path's (false).
   bool expected_pose = true;
   uint64_t seed = 1;
@@ -25,7 +25,8 @@ struct DiscreteMdpOptions {
 // learnt by maximum-entropy inverse control with exact soft value iteration.
 //
 // Source: row KZBH12 of the paper's Table 1: Kitani, Ziebart, Bagnell, Hebert, Activity
-// Forecasting, ECCV 2012, as used for interactions by Huang et al. Our reading: docs/baselines.md.
+// Forecasting, ECCV 2012, as used for interactions by Huang et al. Implementation:
+// docs/baselines.md.
 class DiscreteMdp : public PerClassMethod {
  public:
   explicit DiscreteMdp(const DiscreteMdpOptions& options = {})
@@ -37,17 +38,17 @@ class DiscreteMdp : public PerClassMethod {
   Rows PredictClass(int interaction_class, const StandardPair& leader) const override;
 
  private:
-  // Features of arriving at a pose: (how well it goes with the leader's cluster, how usual the step
-  // is, how little the pose changes).
+  // Features of arriving at a pose: (how well it matches the leader's cluster, how frequent the
+  // step is, how little the pose changes).
   static constexpr int kFeatures = 3;
   using Weights = Eigen::Matrix<double, kFeatures, 1>;
 
-  // A training sequence in clusters.
+  // A training sequence as cluster indices.
   struct Demonstration {
     std::vector<int> leader;
     std::vector<int> pose;
   };
-  // How often clusters go together.
+  // How often clusters occur together.
   struct Counts {
     Eigen::MatrixXd together;  // [pose, leader]
     Eigen::MatrixXd steps;     // [from, to]
@@ -75,7 +76,7 @@ class DiscreteMdp : public PerClassMethod {
 
   void LearnReward(const std::vector<Demonstration>& demonstrations, const Counts& counts,
                    Model* model) const;
-  // Features of the demonstration less those expected of the policy.
+  // Features of the demonstration minus the policy's expected features.
   static Weights Surplus(const Model& model, const Tables& tables, const Demonstration& one);
   static ChainWeights Chain(const Model& model, const Tables& tables);
   static Rows Arrivals(const Model& model, const Tables& tables, const std::vector<int>& leader);

@@ -8,7 +8,7 @@
 
 namespace duet::evaluation::baselines {
 
-// The trivial row of methods that are told the follower's first pose: that pose, held still.
+// The trivial method with the follower's first pose: holds that pose still.
 class FrozenFirstFrame : public protocol::Method {
  public:
   std::string name() const override { return "frozen_first_frame"; }

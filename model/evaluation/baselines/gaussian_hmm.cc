@@ -25,7 +25,7 @@ std::vector<Rows> EvenCut(const std::vector<Rows>& sequences, int states) {
   return posteriors;
 }
 
-// What a hard assignment of frames to states says of transitions.
+// Transition counts of a hard assignment of frames to states.
 Eigen::MatrixXd CountJumps(const std::vector<Rows>& posteriors) {
   const Eigen::Index states = posteriors[0].cols();
   Eigen::MatrixXd jumps = Eigen::MatrixXd::Zero(states, states);
@@ -73,7 +73,7 @@ GaussianHmm::GaussianHmm(const std::vector<Rows>& sequences, const GaussianHmmOp
 
 void GaussianHmm::Maximise(const std::vector<Rows>& sequences, const std::vector<Rows>& posteriors,
                            const GaussianHmmOptions& options) {
-  // A few samples do not determine a full covariance: the pooled diagonal one counts as some more.
+  // A few samples do not determine a full covariance: the pooled diagonal one adds some.
   const Eigen::RowVectorXd prior = PooledVariance(sequences);
   chain_.start = Eigen::RowVectorXd::Constant(options.states, kStartCount);
   for (const Rows& posterior : posteriors) chain_.start += posterior.row(0);
@@ -86,7 +86,7 @@ void GaussianHmm::Maximise(const std::vector<Rows>& sequences, const std::vector
       weight += posteriors[i].col(k).sum();
       sum += posteriors[i].col(k).transpose() * sequences[i];
     }
-    // A state that no frame is in keeps what it had.
+    // A state without frames keeps its parameters.
     if (weight > 0) state.mean = sum / weight;
     if (state.mean.size() == 0) state.mean = sum;
     state.covariance = options.prior_weight * prior.asDiagonal().toDenseMatrix();

@@ -10,8 +10,8 @@ namespace duet::evaluation::baselines {
 
 struct GaussianHmmOptions {
   int states = 3;
-  int iterations = 15;           // of expectation maximisation
-  double prior_weight = 50;      // samples that the pooled diagonal covariance counts as
+  int iterations = 15;           // EM iterations
+  double prior_weight = 50;      // weight of the pooled diagonal covariance, in samples
   double least_variance = 1e-4;  // added to every variance
 };
 
@@ -23,13 +23,13 @@ struct GaussianHmmOptions {
 class GaussianHmm {
  public:
   GaussianHmm() = default;
-  // Starts from an even cut of every sequence into `states` pieces. At least one sequence of at
-  // least one frame.
+  // Initialised by cutting every sequence into `states` equal pieces. Requires at least one
+  // sequence of at least one frame.
   GaussianHmm(const std::vector<Rows>& sequences, const GaussianHmmOptions& options);
 
   int state_count() const { return static_cast<int>(states_.size()); }
 
-  // The log-likelihood of a sequence of whole outputs.
+  // The log-likelihood of a sequence of complete outputs.
   double LogLikelihood(const Rows& sequence) const;
 
   // The probability of each state in each frame, given the first `known.cols()` values of all

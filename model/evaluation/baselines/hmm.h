@@ -15,10 +15,10 @@ struct HmmOptions {
   GaussianHmmOptions hmm;
 };
 
-// One hidden Markov model a class over leader and follower together; the answer is the expected
+// One hidden Markov model per class over leader and follower together; the answer is the expected
 // follower given the whole leader.
 //
-// Source: row HMM of the paper's Table 1. Our reading: docs/baselines.md.
+// Source: row HMM of the paper's Table 1. Implementation: docs/baselines.md.
 class Hmm : public PerClassMethod {
  public:
   explicit Hmm(const HmmOptions& options = {}) : PerClassMethod("hmm"), options_(options) {}

@@ -7,12 +7,12 @@
 namespace duet::evaluation::baselines {
 namespace {
 
-constexpr double kNever = -1e9;  // log weight of a sample that may not be used
-// Least width of a kernel, relative to the root mean squared distance: repeated takes of one motion
-// must not make every other motion infinitely far.
+constexpr double kNever = -1e9;  // log weight of an excluded sample
+// Minimum width of a kernel, relative to the root mean squared distance: otherwise repeated takes
+// of one motion would make every other motion infinitely far.
 constexpr double kLeastWidth = 0.05;
 constexpr double kTiny = 1e-9;
-// Weights tried for the reward: powers of two times that of a Gaussian of the cues' own width.
+// Candidate weights of the reward: powers of two times that of a Gaussian of the cues' own width.
 constexpr int kLeastPower = -8, kMostPower = 4;
 constexpr int kMeanShifts = 20;
 
@@ -49,7 +49,7 @@ Rows EveryNth(const Rows& rows, Eigen::Index n) {
   return kept;
 }
 
-// Undoes EveryNth, linearly between the rows kept and held after the last.
+// Inverts EveryNth: linear between the kept rows, constant after the last.
 Rows FillBetween(const Rows& kept, Eigen::Index n, Eigen::Index rows) {
   Rows filled(rows, kept.cols());
   for (Eigen::Index i = 0; i < rows; ++i) {
@@ -63,7 +63,7 @@ Rows FillBetween(const Rows& kept, Eigen::Index n, Eigen::Index rows) {
 }  // namespace
 
 void KernelRl::BuildStep(const std::vector<int>& successor, Model* model) const {
-  // A state is a pose and how it changes: without the change, motion would freely turn back.
+  // A state is a pose and its change: without the change, motion could reverse freely.
   const Eigen::Index samples = model->poses.rows(), width = model->poses.cols();
   Rows states(samples, 2 * width);
   for (Eigen::Index i = 0; i < samples; ++i) {
@@ -106,8 +106,8 @@ void KernelRl::LearnReward(const std::vector<StandardPair>& pairs, Model* model)
   }
 }
 
-// Of the demonstrated poses, each seen as a sample's pose with Gaussian noise. A clip's own samples
-// are left out: they would explain it too well.
+// The log-likelihood of the demonstrated poses, each as a sample's pose with Gaussian noise.
+// Excludes a clip's own samples, which would overfit.
 double KernelRl::LogLikelihood(const Model& model, const std::vector<StandardPair>& pairs,
                                double weight) const {
   const size_t stride =

@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kMaxIterations = 100;
 
-// Picks rows far from those picked before, with probability in proportion to the squared distance.
+// Picks rows with probability proportional to the squared distance to those picked before.
 Rows Seeds(const Rows& rows, int clusters, base::Random* random) {
   Rows centres(clusters, rows.cols());
   Eigen::VectorXd nearest =

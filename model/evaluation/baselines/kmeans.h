@@ -9,8 +9,8 @@
 namespace duet::evaluation::baselines {
 
 // Centres of clusters of rows: k-means++ seeding (Arthur, Vassilvitskii 2007), then Lloyd's
-// iterations until nothing changes. At most `clusters` centres, fewer where there are fewer
-// different rows. The same seed gives the same centres.
+// iterations until nothing changes. At most `clusters` centres, fewer if there are fewer distinct
+// rows. The same seed gives the same centres.
 Rows KMeans(const Rows& rows, int clusters, uint64_t seed);
 
 // The index of the centre nearest to a row.

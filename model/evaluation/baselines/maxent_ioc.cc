@@ -11,7 +11,7 @@ namespace duet::evaluation::baselines {
 namespace {
 
 constexpr double kValueRidge = 1e-3;
-constexpr double kRate = 0.5;  // of the exponentiated gradient
+constexpr double kRate = 0.5;  // rate of the exponentiated gradient
 constexpr double kLeastWeight = 1e-3, kMostWeight = 1e4;
 constexpr double kLeastFeature = 1e-9;
 
@@ -36,7 +36,7 @@ double MeanSpacing(const Rows& centres) {
   return std::max(squared.rowwise().minCoeff().cwiseSqrt().mean(), 1e-6);
 }
 
-// At most `count` rows, evenly.
+// At most `count` rows, evenly spaced.
 Rows Thin(const Rows& rows, Eigen::Index count) {
   if (rows.rows() <= count) return rows;
   Rows kept(count, rows.cols());
@@ -44,8 +44,8 @@ Rows Thin(const Rows& rows, Eigen::Index count) {
   return kept;
 }
 
-// Ridge regression to poses from cues and a constant, which is not drawn to zero. `ridge` is
-// relative to the cues' mean square.
+// Ridge regression to poses from cues and a constant, which is not regularised. `ridge` is relative
+// to the cues' mean square.
 Eigen::MatrixXd FitRegression(const Rows& cues, const Rows& poses, double ridge) {
   const Rows inputs = WithConstant(cues);
   Eigen::MatrixXd normal = inputs.transpose() * inputs;
@@ -77,8 +77,8 @@ Rows OuterSum(const Rows& a, const Rows& b) {
 }  // namespace
 
 Rows MaxEntIoc::Basis(const Model& model, const Eigen::MatrixXd& squared) {
-  // Relative to the nearest centre, so that the sum never underflows. A sum of one keeps the values
-  // of poses far from all centres within those near them.
+  // Relative to the nearest centre, so that the sum never underflows. Normalisation bounds the
+  // values of poses far from all centres by those near them.
   const Eigen::VectorXd nearest = squared.rowwise().minCoeff();
   Rows basis = (-(squared.colwise() - nearest) / (2 * model.width * model.width)).array().exp();
   basis.array().colwise() /= basis.rowwise().sum().array().eval();
@@ -170,7 +170,7 @@ MaxEntIoc::Demonstration MaxEntIoc::Demonstrate(Rows expected, Rows poses) {
 
 void MaxEntIoc::LearnReward(const std::vector<Demonstration>& demonstrations, Model* model) const {
   base::Random random(options_.seed);
-  // To start with, the weights of independent Gaussians with the demonstrations' own spread.
+  // Initial weights: those of independent Gaussians with the demonstrations' spread.
   Weights total = Weights::Constant(kLeastFeature);
   double steps = 0;
   for (const Demonstration& one : demonstrations) {
@@ -187,7 +187,7 @@ void MaxEntIoc::LearnReward(const std::vector<Demonstration>& demonstrations, Mo
       excess += Sample(*model, one.expected, options_.rollouts, &random).costs - one.costs;
       scale += one.costs;
     }
-    // What the policy pays more of than people do must cost more.
+    // Raise the weight of costs that the policy incurs more than people do.
     const Weights step = excess.cwiseQuotient(scale).cwiseMax(-1).cwiseMin(1);
     const double rate = kRate / std::sqrt(1.0 + iteration);
     model->weights = model->weights.cwiseProduct((rate * step).array().exp().matrix())
@@ -218,7 +218,7 @@ void MaxEntIoc::TrainClass(int interaction_class, const std::vector<StandardPair
   first = 0;
   for (const StandardPair& pair : pairs) {
     const Eigen::Index frames = pair.cues.rows();
-    // The regression would know the clip by heart: expect from one without it.
+    // Fitted without the clip, which the regression would otherwise memorise.
     const Eigen::MatrixXd regression =
         pairs.size() == 1 ? model.regression
                           : FitRegression(Without(cues, first, frames),

@@ -14,13 +14,13 @@ struct MaxEntIocOptions {
   int leader_components = 10;
   int pose_components = 8;
   double ridge = 0.2;         // of the regression from the leader's cues to the expected pose
-  int actions = 24;           // displacements to choose from: clusters of those in training
-  int value_samples = 150;    // poses that the value function is fitted on
+  int actions = 24;           // candidate displacements: clusters of those in training
+  int value_samples = 150;    // poses on which the value function is fitted
   int value_centres = 32;     // radial functions of the value function
-  int iterations = 15;        // of exponentiated gradient
+  int iterations = 15;        // exponentiated gradient steps
   int demonstrations = 8;     // clips in each iteration
   int rollouts = 16;          // sampled paths for an expectation
-  int answer_rollouts = 200;  // whose mean is the answer
+  int answer_rollouts = 200;  // paths whose mean is the answer
   uint64_t seed = 1;
 };
 
@@ -30,7 +30,7 @@ struct MaxEntIocOptions {
 //
 // Source: row HFKB15 of the paper's Table 1: Huang, Farahmand, Kitani, Bagnell, Approximate MaxEnt
 // Inverse Optimal Control and its Application for Mental Simulation of Human Interactions, AAAI
-// 2015. Our reading: docs/baselines.md.
+// 2015. Implementation: docs/baselines.md.
 class MaxEntIoc : public PerClassMethod {
  public:
   explicit MaxEntIoc(const MaxEntIocOptions& options = {})
@@ -43,7 +43,7 @@ class MaxEntIoc : public PerClassMethod {
 
  private:
   // Costs of a step under the leader's cues, all squared lengths: from the next pose to the one
-  // expected from the cues; from the pose before; from the mean pose of the class.
+  // expected from the cues, to the previous pose, and to the mean pose of the class.
   static constexpr int kFeatures = 3;
   using Weights = Eigen::Matrix<double, kFeatures, 1>;
   using Costs = Eigen::Matrix<double, Eigen::Dynamic, kFeatures>;
@@ -54,16 +54,16 @@ class MaxEntIoc : public PerClassMethod {
     Eigen::MatrixXd regression;  // from cues and a constant to poses
     Rows centres;                // clusters of training poses
     double width = 1;            // of the radial functions at the centres
-    Rows actions;                // displacements to choose from
-    Eigen::VectorXd usual;       // [actions] log of how often each occurs in training
-    Rows samples;                // poses that the value function is fitted on
-    Rows arrivals;               // [samples x actions] where every action leads from every sample
+    Rows actions;                // candidate displacements
+    Eigen::VectorXd usual;       // [actions] log of the frequency in training
+    Rows samples;                // poses on which the value function is fitted
+    Rows arrivals;               // [samples x actions] the pose after each action from each sample
     Rows arrival_basis;          // their value basis
-    Costs arrival_costs;         // their costs but for the first, which depends on the leader
+    Costs arrival_costs;         // their costs, except the first, which depends on the leader
     Eigen::MatrixXd fit;         // [basis, samples]: values at the samples to coefficients
     Weights weights;
   };
-  // A training clip, with the poses that a regression without it expects.
+  // A training clip, with the poses that a regression fitted without it expects.
   struct Demonstration {
     Rows expected;
     Rows poses;

@@ -7,11 +7,11 @@
 namespace duet::evaluation::baselines {
 namespace {
 
-// Frames on either side that a velocity is taken over.
+// Frames on either side over which a velocity is measured.
 constexpr Eigen::Index kVelocityReach = 2;
-// Metres that the whole duration counts as, beside a pose of 3 J coordinates.
+// Metres that correspond to the whole duration, relative to a pose of 3 J coordinates.
 constexpr double kTimeWeight = 1.0;
-// Weight of one metre of the root's way, which moves all joints.
+// Weight of one metre of the root's path, which moves all joints.
 constexpr double kWayWeight = 2.0;
 
 }  // namespace
@@ -57,8 +57,8 @@ Rows LeaderCues(const motion::Standardisation& frame, const motion::Poses& world
     const Eigen::Index after = std::min(t + kVelocityReach, frames - 1);
     cues.row(t).head(width) = pose.row(t);
     cues.row(t).segment(width, width) = pose.row(after) - pose.row(before);
-    // What the frame of this moment and that of the first one make of the same joint, whichever,
-    // differs by how far the root has moved.
+    // For any joint, its coordinates in this frame's system and in the first frame's differ by the
+    // root's movement.
     const motion::Vec3 way =
         frame.Apply(world.at(static_cast<int>(t), 0)) -
         motion::Vec3{static_cast<float>(pose(t, 0)), static_cast<float>(pose(t, 1)),

@@ -10,12 +10,12 @@
 
 namespace duet::evaluation::baselines {
 
-// One row a frame (or a sample), one column a value.
+// One row per frame (or sample), one column per value.
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-// A captured pair in the frame that every baseline works in, which is the paper's: the leader's
-// root at the origin in every frame, one constant yaw; -z towards the partner where the capture's
-// setup tells its direction, else where the leader's hips face.
+// A captured pair in the coordinates of every baseline, those of the paper: the leader's root at
+// the origin in every frame, one constant yaw; -z points towards the partner if the capture's setup
+// has its direction, otherwise where the leader's hips face.
 //
 // Units: metres.
 struct StandardPair {
@@ -24,7 +24,7 @@ struct StandardPair {
   Rows follower;  // [frames, 3 joints]
 };
 
-// The yaw is taken from the leader and the setup alone, never from the follower.
+// The yaw depends only on the leader and the setup, never on the follower.
 motion::Standardisation BaselineStandardisation(
     const motion::Skeleton& skeleton, const dataset::Sequence& sequence,
     motion::StandardOrigin origin = motion::StandardOrigin::kEveryFrame);
@@ -34,7 +34,7 @@ StandardPair StandardLeader(const motion::Skeleton& skeleton, const dataset::Seq
 StandardPair StandardiseSequence(const motion::Skeleton& skeleton,
                                  const dataset::Sequence& sequence);
 
-// A follower in the standard coordinates of its sequence, back in the world.
+// Transforms a follower from the standard coordinates of its sequence to the world.
 // Shapes: follower [frames, 3 joints].
 motion::Poses FollowerToWorld(const motion::Skeleton& skeleton, const dataset::Sequence& sequence,
                               const Rows& follower);
@@ -43,13 +43,13 @@ motion::Poses FollowerToWorld(const motion::Skeleton& skeleton, const dataset::S
 Rows ToRows(const motion::Poses& poses);
 motion::Poses FromRows(const Rows& rows);
 
-// What a method sees of the leader in each frame: the pose, its change over four frames, how far
-// the root has moved since the first frame, and the time from 0 to 1 (the leader is known as a
-// whole). Each is scaled so that typical changes weigh about the same.
+// A method's input for the leader in each frame: the pose, its change over four frames, the root's
+// movement since the first frame, and the time from 0 to 1 (the whole leader is known). Each is
+// scaled so that typical changes have similar weights.
 // Shapes: `world` in world metres; returns [frames, 6 joints + 4].
 Rows LeaderCues(const motion::Standardisation& frame, const motion::Poses& world);
 
-// Motion stretched or shrunk to another number of frames, linearly. Both at least 1.
+// Resamples a motion linearly to another number of frames. Both numbers are at least 1.
 Rows StretchTo(const Rows& motion, Eigen::Index frames);
 
 }  // namespace duet::evaluation::baselines

@@ -10,7 +10,7 @@ namespace duet::evaluation::baselines {
 // Answers with the follower of the most similar leader of the same class (time-warped distance over
 // the whole clip), stretched to the leader's length.
 //
-// Source: row NN of the paper's Table 1, taken there from Huang et al. 2015. Our reading:
+// Source: row NN of the paper's Table 1, taken there from Huang et al. 2015. Implementation:
 // docs/baselines.md.
 class NearestNeighbour : public PerClassMethod {
  public:
@@ -26,8 +26,8 @@ class NearestNeighbour : public PerClassMethod {
 };
 
 // The mean distance of matched rows along the best monotone matching of two motions (dynamic time
-// warping: steps in either or both, ends matched with ends). The same number of columns, at least a
-// row each.
+// warping: steps in either or both; first and last rows are matched). Requires the same number of
+// columns and at least one row each.
 double TimeWarpedDistance(const Rows& a, const Rows& b);
 
 }  // namespace duet::evaluation::baselines

@@ -12,7 +12,7 @@ namespace {
 
 using dataset::Sequence;
 
-// The captured followers of a class who could answer a clip of so many frames.
+// The captured followers of a class that can answer a clip of `frames` frames.
 std::vector<const Sequence*> Candidates(const dataset::Dataset& dataset,
                                         const std::vector<int>& train, int interaction_class,
                                         int frames) {

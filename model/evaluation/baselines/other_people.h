@@ -10,11 +10,11 @@
 
 namespace duet::evaluation::baselines {
 
-// What people do who have not seen this leader: to each sequence of `test` the captured follower of
-// one of `train` of the same class, drawn by `seed`, where it stood to its own leader in the first
-// frame. Cut to the leader's length; drawn among clips that are long enough where there are any,
-// else stretched. It is real motion, so that its figures show what measures of likeness are worth
-// at best between different people; it cannot be in time with the leader.
+// For each sequence of `test`, returns the captured follower of a random sequence of `train` with
+// the same class (`seed`), placed as it stood to its own leader in the first frame. Drawn among
+// clips that are at least as long as the leader and cut to its length; if there are none,
+// stretched. This is real motion of people who did not see the leader: its figures bound measures
+// of similarity between different people. It is not synchronised with the leader.
 //
 // Shapes: returns [test]. Errors: INVALID_ARGUMENT for a class without a training sequence.
 absl::StatusOr<std::vector<motion::Poses>> AnswerWithOtherPeople(const dataset::Dataset& dataset,

@@ -10,8 +10,8 @@
 
 namespace duet::evaluation::baselines {
 
-// A method that learns one model for each interaction class, in the standard coordinates. What
-// differs between the baselines is in TrainClass and PredictClass.
+// A method that learns one model for each interaction class, in the standard coordinates.
+// Subclasses implement TrainClass and PredictClass.
 class PerClassMethod : public protocol::Method {
  public:
   explicit PerClassMethod(std::string name) : name_(std::move(name)) {}
@@ -23,7 +23,7 @@ class PerClassMethod : public protocol::Method {
   absl::StatusOr<motion::Poses> Predict(const dataset::Sequence& sequence) const override;
 
  protected:
-  // Forgets what an earlier Train learned.
+  // Discards the results of an earlier Train.
   virtual void Reset(int classes) = 0;
   // `pairs` holds at least one sequence.
   virtual void TrainClass(int interaction_class, const std::vector<StandardPair>& pairs) = 0;

@@ -9,7 +9,7 @@ namespace duet::evaluation::baselines {
 class PoseSpace {
  public:
   PoseSpace() = default;
-  // Fits at most `dimensions` components, fewer where the rows span fewer. At least one row.
+  // Fits at most `dimensions` components, fewer if the rows span fewer. Requires at least one row.
   PoseSpace(const Rows& rows, Eigen::Index dimensions);
 
   Eigen::Index dimensions() const { return basis_.cols(); }

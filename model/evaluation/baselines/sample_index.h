@@ -7,8 +7,8 @@
 
 namespace duet::evaluation::baselines {
 
-// An index with a probability in proportion to its weight. Weights are not negative, one is
-// positive.
+// Draws an index with a probability proportional to its weight. Weights are >= 0 and at least one
+// is > 0.
 inline Eigen::Index SampleIndex(const Eigen::Ref<const Eigen::VectorXd>& weights,
                                 base::Random* random) {
   double left = random->Uniform() * weights.sum();

@@ -19,7 +19,7 @@ absl::StatusOr<std::vector<double>> ClassifierAccuracy(const dataset::Dataset& d
                                                        const TrainingMaterial& material,
                                                        const std::vector<int>& test,
                                                        const judge::ClassifierOptions& options) {
-  // Synthetic pairs have leaders of their own: they join the data set as if captured.
+  // Synthetic pairs have their own leaders: they are added to the data set like captured ones.
   dataset::Dataset all = dataset;
   std::vector<int> train = material.captured;
   for (const dataset::Sequence& sequence : material.synthetic) {

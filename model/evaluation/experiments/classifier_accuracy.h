@@ -9,7 +9,7 @@
 
 namespace duet::evaluation::experiments {
 
-// What a classifier learns from.
+// The training data of a classifier.
 struct TrainingMaterial {
   std::vector<int> captured;                 // sequences of the data set
   std::vector<dataset::Sequence> synthetic;  // each in its class

@@ -11,7 +11,7 @@
 namespace duet::evaluation::experiments {
 namespace {
 
-// A row of the tables: what a classifier learns from, and for how many epochs.
+// A row of the tables: the training data of a classifier and its epochs.
 struct Condition {
   std::string row;
   TrainingMaterial material;

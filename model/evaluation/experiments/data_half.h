@@ -25,24 +25,23 @@ struct DataHalf {
 struct HalfOptions {
   std::string synthetic_row;  // the name of the row with DataHalf::synthetic
   int64_t epochs = 60;        // of a classifier on the captured half
-  int repeats = 1;            // classifiers, each with a seed of its own
+  int repeats = 1;            // classifiers with different seeds
 };
 
 // The rows of the experiment; HalfOptions names one more.
 inline constexpr char kCapturedRow[] = "captured";
-inline constexpr char kLonger[] = ", longer";  // what the names of two rows end in
+inline constexpr char kLonger[] = ", longer";  // suffix of two rows
 inline constexpr char kSyntheticAloneRow[] = "synthetic alone";
 inline constexpr char kServedRow[] = "captured + set through the server";
 
-// Gives every set to the half that it was made for. Errors: INVALID_ARGUMENT for a set whose half
-// is not among them, naming it.
+// Assigns every set to its half. Errors: INVALID_ARGUMENT naming a set whose half is missing.
 absl::Status AddServedSets(const std::vector<SyntheticSet>& sets, std::vector<DataHalf>* halves);
 
-// Trains and tests every row's classifiers on a half. Longer training alone moves the accuracy, and
-// more motions mean more steps an epoch. So every row takes as many steps as the captured motions
-// do in options.epochs. Two rows more, named ", longer", are captured motions with and without
-// synthetic ones, both for as many steps as the larger set takes in options.epochs. A line for
-// each classifier goes to `progress`.
+// Trains and tests every row's classifiers on a half. Longer training changes the accuracy by
+// itself, and more motions mean more steps per epoch. Therefore every row takes as many steps as
+// the captured motions do in options.epochs. Two further rows, with suffix ", longer", are captured
+// motions with and without synthetic ones, both for as many steps as the larger set takes in
+// options.epochs. Writes a line for each classifier to `progress`.
 absl::Status RunHalf(const dataset::Dataset& dataset, const DataHalf& half,
                      const HalfOptions& options, std::ostream* progress, Trials* trials);
 

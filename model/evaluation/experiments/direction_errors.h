@@ -9,9 +9,9 @@
 
 namespace duet::evaluation::experiments {
 
-// How far off a partner is expected of leaders about whom nothing more is told, degrees, 0 to 180:
-// by the regression of a model, or without one by the leader's hips, as a model without one goes
-// by. Shapes: returns [tests]. Requires a regression for the data set's skeleton.
+// Errors of the partner's estimated direction, degrees, 0 to 180: from a model's regression, or,
+// without one, from the leader's hips. Shapes: returns [tests]. Requires a regression for the data
+// set's skeleton.
 std::vector<double> DirectionErrors(const dataset::Dataset& dataset, const std::vector<int>& tests,
                                     const std::optional<engine::DirectionRegression>& regression);
 

@@ -3,18 +3,18 @@
 
 #include <vector>
 
-// How a class's weight in the label vector moves a judge's probability of that class.
+// The effect of a class's weight in the label vector on a judge's probability of that class.
 //
 // Source: the paper's graded and negative labels (section 3.1), which it shows but does not
 // measure.
 
 namespace duet::evaluation::experiments {
 
-// -1, -0.75, ..., 2: the weights that a sweep tries, in order.
+// -1, -0.75, ..., 2: the weights of a sweep, in order.
 const std::vector<double>& SweepWeights();
 
-// One leader answered at every weight of one class: alone (own == raised), or beside the leader's
-// own class at weight 1.
+// One leader answered at every weight of one class: the only class (own == raised), or beside the
+// leader's own class at weight 1.
 struct SweepCurve {
   int own = 0;                                    // the class of the leader's interaction
   int raised = 0;                                 // the class whose weight is swept
@@ -24,7 +24,7 @@ struct SweepCurve {
 // The label vector of a curve at a weight. Shapes: returns [classes].
 std::vector<float> SweepLabels(int classes, int own, int raised, double weight);
 
-// Changes of the probability within this much are called level.
+// Changes of the probability up to this count as level.
 inline constexpr double kLevelChange = 1e-3;
 
 // How the raised class's probability follows its weight: shares of curves (of single steps in
@@ -42,12 +42,12 @@ struct LabelControl {
 LabelControl MeasureControl(const std::vector<SweepCurve>& curves);
 
 // Spearman's rank correlation, ties at their mean rank; 0 where either side is constant. Requires
-// two samples or more, as many on both sides.
+// at least two samples, equally many on both sides.
 double RankCorrelation(const std::vector<double>& x, const std::vector<double>& y);
 
-// Which curves a figure is about.
+// Selects curves.
 enum class SweepKind {
-  kOwn,   // the leader's own class, alone
+  kOwn,   // only the leader's own class
   kAdded  // another class, beside the own one
 };
 std::vector<SweepCurve> Select(const std::vector<SweepCurve>& curves, SweepKind kind, int raised);

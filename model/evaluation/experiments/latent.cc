@@ -16,7 +16,7 @@
 namespace duet::evaluation::experiments {
 namespace {
 
-// Sequences at a time: bounds memory.
+// Sequences per batch: bounds memory.
 constexpr size_t kBatch = 64;
 
 std::vector<training::Example> Examples(const dataset::Dataset& dataset,
@@ -31,7 +31,7 @@ std::vector<training::Example> Examples(const dataset::Dataset& dataset,
   return examples;
 }
 
-// [N, S 2 E]: the mean over each clip's own frames; what the encoders say of padding is dropped.
+// [N, S 2 E]: the mean over each clip's own frames; without the outputs for padding.
 torch::Tensor MeanOverFrames(const torch::Tensor& frames, const torch::Tensor& lengths) {
   const torch::Tensor mask =
       network::FrameMask(lengths, frames.size(0)).to(frames.dtype()).unsqueeze(2);
@@ -78,7 +78,7 @@ absl::StatusOr<metrics::FeatureSet> LatentFeatures(const checkpoint::Checkpoint&
   network::Generator generator(checkpoint.manifest);
   if (status = network::LoadParameters(checkpoint, generator); !status.ok()) return status;
   generator->eval();
-  // LibTorch reports by exception: this is where they stop.
+  // Converts LibTorch's exceptions to a status.
   try {
     return Encode(checkpoint.manifest, std::move(generator), dataset,
                   Examples(dataset, sequences, labels));

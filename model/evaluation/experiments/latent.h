@@ -10,19 +10,19 @@
 
 namespace duet::evaluation::experiments {
 
-// What the generator is told beside the leader's motion.
+// The label vector that the generator receives.
 enum class LatentLabels {
   kOwnClass,  // the label vector of the sequence's class, as in the paper
-  kNone       // a label vector of zeros: what the leader alone tells
+  kNone       // zeros: only the leader's motion is informative
 };
 
-// The generator's latent space, one point a sequence: the concatenated output of the encoders h_t
-// averaged over the frames. (h_t itself is one point a frame; the paper's figures show sequences
-// but do not say how they become one.) No follower start is given.
+// The generator's latent space, one point per sequence: the concatenated output of the encoders h_t
+// averaged over the frames. (h_t itself is one point per frame; the paper's figures show sequences
+// but do not say how frames are combined.) Without a follower start.
 //
 // Source: paper section 3.1 and Figures 6, 7.
 // Shapes: returns [sequences][slices x 2 x encoder_hidden].
-// Errors: FAILED_PRECONDITION when the model's classes or joints are not the data's; INTERNAL when
+// Errors: FAILED_PRECONDITION if the model's classes or joints differ from the data's; INTERNAL if
 //         the network fails.
 absl::StatusOr<metrics::FeatureSet> LatentFeatures(const checkpoint::Checkpoint& checkpoint,
                                                    const dataset::Dataset& dataset,

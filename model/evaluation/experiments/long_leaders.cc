@@ -19,15 +19,15 @@ float Wave(double amplitude, double seconds, double period) {
   return static_cast<float>(amplitude * std::sin(2 * M_PI * seconds / period));
 }
 
-// Where a body stands and faces.
+// The place and direction of a body.
 struct Place {
   motion::Vec3 at;
   double yaw = 0;
 };
 using PlaceAt = Place (*)(double seconds);
 
-// Steps that keep a moving place under the body: a foot stands for three fifths of a cycle where
-// the body passes over it in the middle of that time, and swings to its next stand for the rest.
+// Steps that keep the feet under a moving body: a foot stands for three fifths of a cycle where the
+// body passes over it in the middle of that time, and swings to its next stand for the rest.
 struct Gait {
   double cycle_seconds;
   double lift_metres;
@@ -133,7 +133,7 @@ int FrameCount(double seconds, double frame_rate_hz) {
   return static_cast<int>(std::lround(seconds * frame_rate_hz)) + 1;
 }
 
-// The clip turned and moved on the floor to start as `first` does.
+// Rotates and moves the clip on the floor to start as `first` does.
 motion::Poses StartLike(const motion::Skeleton& skeleton, const motion::Poses& first,
                         motion::Poses clip) {
   const double turn = motion::Standardisation(skeleton, clip).yaw() -
@@ -163,7 +163,7 @@ motion::Poses StandingFollower() {
   return {joints, std::move(pose)};
 }
 
-// The class's clips that can be looped; the first of them tells the follower's place.
+// The class's clips that can be looped; the first of them determines the follower's place.
 std::vector<const dataset::Sequence*> LoopableClips(const dataset::Dataset& dataset,
                                                     const std::vector<int>& sequences,
                                                     int interaction_class) {

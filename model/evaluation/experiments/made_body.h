@@ -12,7 +12,7 @@ struct MadeArm {
   double swing = 0, spread = 0.12, elbow = 0.25;
 };
 
-// A body as few numbers: what MakeLeader moves.
+// The parameters of a body, which MakeLeader animates.
 struct MadeBody {
   motion::Vec3 hips;  // the middle of both
   double yaw = 0;     // about +y; at 0 it faces -z
@@ -21,12 +21,13 @@ struct MadeBody {
   MadeArm left_arm, right_arm;
 };
 
-// How high the middle of the hips is when the knees are a little bent, metres.
+// Height of the middle of the hips with slightly bent knees, metres.
 inline constexpr float kStandingHips = 0.80f;
-// How far each foot stands from the middle.
+// Distance of each foot from the middle.
 inline constexpr float kHalfStance = 0.10f;
 
-// The joints of SbuSkeleton. Limbs keep their lengths; a foot out of reach ends in its direction.
+// The joints of SbuSkeleton. Limbs have constant lengths; a leg points towards a foot position out
+// of reach.
 std::vector<motion::Vec3> PoseOf(const MadeBody& body);
 
 }  // namespace duet::evaluation::experiments

@@ -11,21 +11,21 @@
 
 namespace duet::evaluation::experiments {
 
-// How a model is asked.
+// Parameters of the requests to a model.
 struct AskedSamples {
-  int samples = 10;  // answers to each leader; a model that does not sample has one
+  int samples = 10;  // answers to each leader; a model that does not sample gives one
   float variety = 1;
   uint64_t seed = 0;  // of the whole set
   bool tell_direction = true;
 };
 
-// What is asked for the n-th answer to a sequence. No two leaders share a seed: with one noise for
-// all of them, their answers would differ less than a user's do.
+// The sampling of the n-th answer to a sequence. No two leaders share a seed: with common noise
+// their answers would vary less than in use.
 engine::Sampling SamplingOf(const AskedSamples& asked, const dataset::Dataset& dataset,
                             int sequence, int n);
 
 // The answers to sequences of the data set, each in its own class at weight 1. Errors: those of
-// CheckModelFits; FAILED_PRECONDITION for a start that the model does not take; the network's.
+// CheckModelFits; FAILED_PRECONDITION for a start that the model does not accept; the network's.
 // Shapes: returns [samples][sequences].
 absl::StatusOr<metrics::SampledMotions> AnswerWithSamples(const engine::Synthesizer& synthesizer,
                                                           const dataset::Dataset& dataset,

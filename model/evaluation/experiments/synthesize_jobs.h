@@ -10,7 +10,7 @@
 
 namespace duet::evaluation::experiments {
 
-// The jobs answered in this process, through the windows that a server would make of them.
+// Answers the jobs in this process, through the same windows as on a server.
 // Errors: those of CheckModelFits; a failure of the network, naming the job.
 absl::StatusOr<std::vector<dataset::Sequence>> SynthesizeJobs(
     const dataset::Dataset& dataset, const engine::Synthesizer& synthesizer,

@@ -13,21 +13,21 @@
 
 namespace duet::evaluation::experiments {
 
-// Whether a model answers a data set's clips: FAILED_PRECONDITION when its classes or joints are
-// not the data's.
+// Checks that a model can answer a data set's clips. FAILED_PRECONDITION if its classes or joints
+// differ from the data's.
 absl::Status CheckModelFits(const engine::ModelDescription& model, const dataset::Dataset& dataset);
 
-// What a synthesizer is told of the follower's first frame.
+// The synthesizer's input about the follower's first frame.
 enum class StartGiven { kNone, kRoot, kPose };
 
 // CheckModelFits, and FAILED_PRECONDITION for a start that the model does not accept.
 absl::Status CheckModelTakes(const engine::ModelDescription& model, const dataset::Dataset& dataset,
                              StartGiven start);
 
-// A trained model as a row of the tables, run as a server runs it: in windows that are blended.
+// A trained model as a row of the tables, run as on a server: in blended windows.
 class SynthesizerMethod : public protocol::Method {
  public:
-  // `synthesizer` was trained on the fold's training sequences alone. Requires a model that accepts
+  // `synthesizer` was trained only on the fold's training sequences. Requires a model that accepts
   // a follower start unless `start` is kNone.
   SynthesizerMethod(std::string name, std::shared_ptr<const engine::Synthesizer> synthesizer,
                     StartGiven start);
@@ -51,17 +51,18 @@ absl::StatusOr<motion::Poses> SynthesizeSequence(const engine::Synthesizer& synt
                                                  const std::vector<float>& labels,
                                                  StartGiven start);
 
-// A leader, the label vector ([classes]) to answer it with, and which of the answers is wanted.
+// A leader, the label vector ([classes]) to answer it with, and the sampling of the answer.
 struct LabelledLeader {
   const dataset::Sequence* sequence;
   std::vector<float> labels;
   engine::Sampling sampling = {};
-  // False: where the partner is is left to the leader's motion, as by a caller who tells nothing.
+  // False: the model estimates the partner's direction from the leader's motion, as for a request
+  // without it.
   bool tell_direction = true;
 };
 
-// The same for many leaders, several windows to an evaluation of the network: much faster than one
-// by one. Returns a follower for each, in order; a failure of one is a failure of all.
+// The same for many leaders, with several windows per evaluation of the network: much faster than
+// one by one. Returns a follower for each, in order; fails if one fails.
 absl::StatusOr<std::vector<motion::Poses>> SynthesizeSequences(
     const engine::Synthesizer& synthesizer, absl::Span<const LabelledLeader> leaders,
     StartGiven start);

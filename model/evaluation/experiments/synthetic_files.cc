@@ -36,7 +36,7 @@ std::string PartnerText(const std::optional<motion::Vec3>& direction) {
   return absl::StrCat(plain.x, ",", plain.y, ",", plain.z);
 }
 
-// One person, as docs/formats.md has it: the answer is nowhere in the folder before it is given.
+// One person (docs/formats.md): the folder never contains the captured follower.
 std::string LeaderJson(const motion::Clip& leader) {
   nlohmann::json frames = nlohmann::json::array();
   for (int t = 0; t < leader.frame_count(); ++t) {
@@ -54,7 +54,7 @@ std::string LeaderJson(const motion::Clip& leader) {
       .dump();
 }
 
-// Where a job's leader is, below the folder; the set that it was captured in names the data set's.
+// The path of a job's leader below the folder; its first part is the captured set.
 std::string LeaderPath(const dataset::Sequence& sequence) {
   return absl::StrCat("leaders/", sequence.set, sequence.set.empty() ? "" : "/", sequence.id,
                       ".json");
@@ -69,7 +69,7 @@ absl::Status WriteLeader(const dataset::Sequence& sequence, const fs::path& file
   return base::WriteFile(file, LeaderJson(sequence.pair.leader));
 }
 
-// What the index says of a clip beyond its motion.
+// The index's fields of a clip.
 struct Asked {
   uint64_t half = 0;
   std::optional<motion::Vec3> partner_direction;
@@ -141,7 +141,7 @@ absl::Status CheckSame(const dataset::Dataset& wanted, const dataset::Dataset& c
   return absl::OkStatus();
 }
 
-// As it was asked and answered: in a level world, whatever its reader made of it.
+// Restores the level world of request and answer, whatever the reader did.
 void UndoLevelling(dataset::Sequence* sequence) {
   for (motion::Clip* clip : {&sequence->pair.leader, &sequence->pair.follower}) {
     clip->poses = sequence->levelling.Invert(std::move(clip->poses));

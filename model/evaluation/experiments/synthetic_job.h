@@ -7,7 +7,7 @@
 
 namespace duet::evaluation::experiments {
 
-// A synthetic motion to be: what is asked of the generator.
+// A request for a synthetic motion.
 struct SyntheticJob {
   dataset::Sequence sequence;  // a leader of its class; the follower has no positions
   std::vector<float> labels;   // [classes], the label vector

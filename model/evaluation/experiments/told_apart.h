@@ -9,17 +9,15 @@
 
 namespace duet::evaluation::experiments {
 
-// What told-apart classifiers are trained with. They see leader and follower, and less is done to
-// make them work for other builds than for a judge: a limb of a wrong length may give an answer
-// away.
+// Settings of told-apart classifiers. They see leader and follower, and vary people's proportions
+// less than a judge does, since a limb of a wrong length may identify an answer.
 judge::ClassifierOptions ToldApartOptions(uint64_t seed);
 
-// How well a fresh classifier tells synthesised followers from captured ones: the mean of the
-// shares of captured and of synthesised pairs that it takes for what they are. 0.5: not at all; 1:
-// always. It learns from answers to the training sequences and from the captured followers of the
-// same, and is tested likewise on the test sequences. Leaders and followers all go through the same
-// filter (WithoutNoise): it is not to find the capture's noise. Errors: INVALID_ARGUMENT without
-// training or test answers.
+// The balanced accuracy of a new classifier that distinguishes synthesised from captured pairs.
+// 0.5: indistinguishable; 1: always correct. It learns from answers to the training sequences and
+// from their captured followers, and is tested on the same of the test sequences. Leaders and
+// followers all pass the same filter (WithoutNoise), so that it cannot detect sensor noise. Errors:
+// INVALID_ARGUMENT without training or test answers.
 absl::StatusOr<double> ToldApart(const dataset::Dataset& dataset,
                                  const std::vector<metrics::ScoredMotion>& training_answers,
                                  const std::vector<metrics::ScoredMotion>& test_answers,

@@ -24,13 +24,12 @@ struct TrialSummary {
   std::vector<double> above_zero;  // the share of trials with a figure above 0
 };
 
-// Figures of an experiment repeated: a row's values by column, trial by trial. Rows may miss
-// trials.
+// The figures of a repeated experiment: a row's values by column and trial. Rows may lack trials.
 class Trials {
  public:
   explicit Trials(std::vector<std::string> columns) : columns_(std::move(columns)) {}
 
-  // `trial` names what was drawn (split, seed): the same trials of two rows are a pair.
+  // `trial` identifies what was drawn (split, seed): equal trials of two rows are a pair.
   // Shapes: values [columns].
   void Add(const std::string& row, const std::string& trial, std::vector<double> values);
 
@@ -38,8 +37,8 @@ class Trials {
 
   // Every row's figures, rows in the order of their first Add.
   std::vector<TrialSummary> Summaries() const;
-  // How much larger every other row's figures are than those of row `base`, trial by trial, over
-  // the trials that both have. Empty where there is no such row.
+  // The differences between every other row's figures and those of row `base`, over the trials that
+  // both have. Empty without such a row.
   std::vector<TrialSummary> Gains(const std::string& base) const;
 
  private:

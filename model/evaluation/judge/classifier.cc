@@ -23,7 +23,7 @@ struct MotionClassifier::Model {
 
 namespace {
 
-// Motions at a time when nothing is learnt: bounds memory, and how far short motions are padded.
+// Motions per batch outside training: bounds memory and the padding of short motions.
 constexpr size_t kTestBatch = 64;
 
 struct MotionBatch {
@@ -69,9 +69,9 @@ std::vector<MotionBatch> TestBatches(const dataset::Dataset& dataset,
   return batches;
 }
 
-// A classifier that is to work for unseen people must not go by the build of those in the clip, nor
-// by when the clip starts and ends: both are varied. What was chosen here was chosen on held-back
-// training subjects, like the defaults of ClassifierOptions.
+// To generalise to unseen people, the classifier must not depend on the proportions of the people
+// in the clip, nor on the clip's start and end: both are varied. These values, like the defaults of
+// ClassifierOptions, were chosen on held-back training subjects.
 constexpr double kLabelSmoothing = 0.1;
 
 training::TrainingOptions::Augmentation Variations() {
@@ -110,7 +110,7 @@ training::TrainingOptions::Optimiser OptimiserSettings(const ClassifierOptions& 
   return settings;
 }
 
-// The batches of one epoch: every motion once, varied, in an order drawn anew.
+// The batches of one epoch: every motion once, varied, in a new random order.
 std::vector<MotionBatch> EpochBatches(const dataset::Dataset& dataset,
                                       const std::vector<dataset::Sequence>& sequences,
                                       const ClassifierOptions& options, int64_t epoch) {

@@ -16,32 +16,33 @@
 namespace duet::evaluation::judge {
 
 struct ClassifierOptions {
-  int64_t members = 1;  // networks, each from a seed of its own, whose probabilities are averaged
+  int64_t members = 1;  // networks with different seeds, whose probabilities are averaged
   int64_t hidden = 32;  // LSTM units of each direction, in both layers
   int64_t epochs = 20;
   int64_t batch = 16;
   double learning_rate = 2e-3;
   double weight_decay = 0.01;
   double dropout = 0.3;
-  // Standard deviation of one offset a joint and training motion, metres: the classifier is to work
-  // for people of another build.
+  // Standard deviation of one offset per joint and training motion, metres: makes the classifier
+  // independent of people's proportions.
   double body_noise = 0.05;
   JudgeSees sees = JudgeSees::kFollower;
   uint64_t seed = 0;
 };
 
-// Tells the class of a follower's motion: a network shaped like the discriminator, with one output
-// a class. A judge is such a classifier that scores synthesised motion (accuracy, FID, diversity);
-// the paper's Table 6 trains others on synthetic motion. It sees the follower alone, unless its
-// options say otherwise, in the standard coordinates of its leader (judge_input.h).
+// Classifies a follower's motion: networks shaped like the discriminator, with one output per
+// class. A judge is such a classifier that scores synthesised motion (accuracy, FID, diversity);
+// the paper's Table 6 trains others on synthetic motion. By default it sees only the follower, in
+// the standard coordinates of its leader (judge_input.h).
 //
 // Source:  paper sections 3.3 and 4 (the paper does not describe its own extractor).
 // Threads: the const functions are safe to call concurrently.
 class MotionClassifier {
  public:
   // Trains on followers for sequences of the data set, captured or synthesised, each in its
-  // sequence's class (`CapturedMotions` gives the captured ones). Same input, same result on the
-  // same machine. Errors: INVALID_ARGUMENT when a class of the data set has no motion.
+  // sequence's class (`CapturedMotions` gives the captured ones). The same input gives the same
+  // result on the same machine. Errors: INVALID_ARGUMENT when a class of the data set has no
+  // motion.
   static absl::StatusOr<MotionClassifier> Train(const dataset::Dataset& dataset,
                                                 const std::vector<metrics::ScoredMotion>& motions,
                                                 const ClassifierOptions& options);
@@ -54,11 +55,11 @@ class MotionClassifier {
   metrics::FeatureSet Features(const dataset::Dataset& dataset,
                                const std::vector<metrics::ScoredMotion>& motions) const;
 
-  // What model/classifier runs without LibTorch, of a judge that sees the follower alone. The data
-  // set is that of Train.
+  // The parts that model/classifier runs without LibTorch. Requires a judge that sees only the
+  // follower, and the data set of Train.
   classifier::ClassifierParts Parts(const dataset::Dataset& dataset) const;
 
-  // SHA-256 of all weights, in hexadecimal: which extractor a figure was measured with.
+  // SHA-256 of all weights, in hexadecimal: identifies the extractor of a figure.
   const std::string& hash() const;
 
  private:

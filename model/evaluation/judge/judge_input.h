@@ -7,14 +7,14 @@
 
 namespace duet::evaluation::judge {
 
-// Whom a judge is shown.
+// The people that a judge sees.
 using JudgeSees = classifier::Sees;
 
-// What a judge is shown of each joint: so many vectors.
+// The number of vectors per joint in a judge's input.
 constexpr int JudgeParts(JudgeSees sees) { return classifier::InputParts(sees); }
 
-// What a judge is shown of a sequence's follower in each frame: ClassifierInput in the sequence's
-// own direction. Shapes: returns [frames, JudgeParts x joints].
+// A judge's input for a sequence's follower in each frame: ClassifierInput in the sequence's own
+// direction. Shapes: returns [frames, JudgeParts x joints].
 motion::Poses JudgeInput(const motion::Skeleton& skeleton, const dataset::Sequence& sequence,
                          JudgeSees sees = JudgeSees::kFollower);
 

@@ -5,7 +5,7 @@
 
 namespace duet::evaluation::metrics {
 
-// How often motions meant as one class were taken for another.
+// Counts how often motions of one class were classified as another.
 class Confusion {
  public:
   explicit Confusion(int classes);
@@ -15,18 +15,18 @@ class Confusion {
 
   int class_count() const { return classes_; }
   int count(int meant, int taken_for) const;
-  // The share of motions meant as a class that were taken for it; NaN without any such motion.
+  // The share of a class's motions that were classified correctly; NaN without any.
   double ClassAccuracy(int meant) const;
-  // The share of all motions that were taken for what they were meant as; NaN without any.
+  // The share of all motions that were classified correctly; NaN without any.
   double Accuracy() const;
-  // The mean of ClassAccuracy over the classes that have motions: each class counts alike.
+  // The mean of ClassAccuracy over the classes that have motions: all classes have equal weight.
   double MeanClassAccuracy() const;
 
  private:
   int Total(int meant) const;
 
   int classes_;
-  std::vector<int> counts_;  // [meant, taken_for]
+  std::vector<int> counts_;  // [actual, predicted]
 };
 
 }  // namespace duet::evaluation::metrics

@@ -8,7 +8,7 @@
 namespace duet::evaluation::metrics {
 namespace {
 
-// Through the data set's own conversion, so that its constants stand in one place.
+// Uses the data set's own conversion, so that its constants are defined once.
 motion::Vec3 InUnit(MetricUnit unit, motion::Vec3 metres) {
   if (unit == MetricUnit::kMetres) return metres;
   return FromWorld({motion::LengthUnit::kSbuNormalised, motion::UpAxis::kYDown}, metres);

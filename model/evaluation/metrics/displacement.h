@@ -3,15 +3,15 @@
 
 #include "model/motion/poses.h"
 
-// How far a synthesised follower is from the captured one.
+// Distances between a synthesised follower and the captured one.
 //
 // Shapes: predicted and truth are alike, of one frame or more (two for VelocityError), in world
 //         metres, y up. Differing shapes are a programmer's error.
 //
-// In metres, every figure stays the same when both motions are moved alike, or turned alike about
-// the vertical. In the raw unit, whose axes are scaled differently, it stays the same only when
-// they are moved: pass motions as they stand in the world, and as captured, not levelled. The paper
-// turns them as well, but after the scaling, which changes no norm.
+// In metres, every figure is invariant to a common translation and a common rotation about the
+// vertical. In the raw unit, whose axes have different scales, it is invariant only to translation:
+// pass motions in world coordinates, as captured, not levelled. The paper also rotates them, but
+// after the scaling, which changes no norm.
 
 namespace duet::evaluation::metrics {
 
@@ -27,12 +27,11 @@ enum class MetricUnit {
 // Source: paper, Eq. 6.
 double Afd(const motion::Poses& predicted, const motion::Poses& truth, MetricUnit unit);
 
-// The same with the squared norm, as the authors' released code averages it. Unit: square of
-// `unit`.
+// The same with the squared norm, as in the authors' released code. Unit: square of `unit`.
 double AfdSquared(const motion::Poses& predicted, const motion::Poses& truth, MetricUnit unit);
 
-// Afd after each follower's own root joint is subtracted in every frame: the pose apart from where
-// the follower stands.
+// Afd after each follower's own root joint is subtracted in every frame: the pose without the
+// place.
 double RootAlignedAfd(const motion::Poses& predicted, const motion::Poses& truth, int root,
                       MetricUnit unit);
 

@@ -5,7 +5,7 @@
 
 #include "absl/status/statusor.h"
 
-// Distances between sets of feature vectors, as a classifier gives them for motions.
+// Distances between sets of feature vectors that a classifier computes of motions.
 // Shapes: [samples][features].
 
 namespace duet::evaluation::metrics {
@@ -17,8 +17,8 @@ using FeatureSet = std::vector<std::vector<float>>;
 //
 // Source: Heusel et al. 2017; paper section 4. Tr (S1 S2)^(1/2) is computed as the sum of the
 // singular values of A1^T A2 with S = A A^T (A: the centred samples over sqrt(n - 1)): their
-// squares are the eigenvalues of S1 S2. No square root of a rank-deficient matrix is taken, so that
-// sets of fewer samples than features give exact, never complex or negative, values. Errors:
+// squares are the eigenvalues of S1 S2. No square root of a rank-deficient matrix is taken, so sets
+// with fewer samples than features give exact values, never complex or negative ones. Errors:
 // INVALID_ARGUMENT for fewer than 2 samples, differing lengths, values that are not finite.
 absl::StatusOr<double> FrechetDistance(const FeatureSet& a, const FeatureSet& b);
 

@@ -9,10 +9,10 @@
 namespace duet::evaluation::metrics {
 namespace {
 
-// Of fewer motions there is neither a covariance nor a pair.
+// Fewer motions have neither a covariance nor a pair.
 constexpr size_t kLeastMotions = 2;
 
-// A mean that leaves out what has no figure.
+// A mean over the values that are not NaN.
 class Mean {
  public:
   void Add(double value) {

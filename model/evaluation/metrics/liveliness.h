@@ -3,23 +3,23 @@
 
 #include "model/motion/poses.h"
 
-// How much a body moves. A capture's noise counts as movement (of 0.51 m/s in SBU, a quarter), so
-// that captured and synthesised motion are compared after the same filter.
+// How much a body moves. Sensor noise adds apparent movement (a quarter of the 0.51 m/s in SBU), so
+// captured and synthesised motion are compared after the same filter.
 //
 // Units: poses in world metres.
 
 namespace duet::evaluation::metrics {
 
-// The filter's deviation: 1.5 frames at SBU's 15 Hz.
+// The filter's standard deviation: 1.5 frames at SBU's 15 Hz.
 inline constexpr double kNoiseFilterSeconds = 0.1;
 
-// The motion under a Gaussian of kNoiseFilterSeconds.
+// Returns the motion smoothed by a Gaussian of kNoiseFilterSeconds.
 motion::Poses WithoutNoise(const motion::Poses& poses, double frame_rate_hz);
 
 // The mean speed of the joints, m/s. 0 for one frame.
 double JointSpeed(const motion::Poses& poses, double frame_rate_hz);
 
-// The mean over the joints of how far each gets from where it is in frame 0, metres.
+// The mean over the joints of the largest distance from the joint's position in frame 0, metres.
 double RangeOfMotion(const motion::Poses& poses);
 
 }  // namespace duet::evaluation::metrics

@@ -4,29 +4,29 @@
 #include "model/motion/poses.h"
 #include "model/motion/skeleton.h"
 
-// Figures of one motion by itself. Captured motion is not perfect either (the bones that Kinect
-// sees grow and shrink by a tenth): read each figure beside the captured follower's.
+// Figures of a single motion. Captured motion has errors too (bone lengths from Kinect vary by a
+// tenth): compare each figure with that of the captured follower.
 //
 // Units: poses in world metres, y up.
 
 namespace duet::evaluation::metrics {
 
-// The mean over bones of (standard deviation over time) / (mean over time) of the bone's length.
-// 0 for a body whose bones keep their lengths. Dimensionless. Bones of mean length 0 count as 0.
+// The mean over bones of (standard deviation over time) / (mean over time) of the bone's length. 0
+// for bones of constant length. Dimensionless. Bones of mean length 0 count as 0.
 double BoneLengthDrift(const motion::Poses& poses, const motion::Skeleton& skeleton);
 
 // The mean over joints and frames of the norm of the third difference, times rate^3. Unit: m/s^3.
 // 0 for fewer than four frames.
 double Jitter(const motion::Poses& poses, double frame_rate_hz);
 
-// How feet move while they should stand. A step is a foot's movement along the floor from one frame
-// to the next; it counts where the foot is on the floor in both frames: at most 5 cm above the
-// lowest point that either foot reaches in the whole motion. NaN for a skeleton without feet.
+// How far feet slide while they are on the floor. A step is a foot's movement along the floor from
+// one frame to the next; it counts if the foot is on the floor in both frames: at most 5 cm above
+// the lowest point that either foot reaches in the whole motion. NaN for a skeleton without feet.
 // Source: skating ratio as in GMD (Karunratanakul et al. 2023); foot motion as in MANN.
 struct FootSlide {
   // The share of the steps that are faster than 0.5 m/s. 0 to 1.
   double skating_ratio = 0;
-  // The mean length of a step. Unit: centimetres a frame; depends on the frame rate.
+  // The mean length of a step. Unit: centimetres per frame; depends on the frame rate.
   double centimetres_a_frame = 0;
 };
 FootSlide MeasureFootSlide(const motion::Poses& poses, const motion::Skeleton& skeleton,

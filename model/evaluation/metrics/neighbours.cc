@@ -38,7 +38,7 @@ int Vote(const std::vector<int>& nearest) {
   std::map<int, int> votes;
   for (const int one : nearest) ++votes[one];
   int winner = nearest.front();
-  for (const int one : nearest) {  // in this order: the nearest of equals wins
+  for (const int one : nearest) {  // in this order: among equals the nearest wins
     if (votes[one] > votes[winner]) winner = one;
   }
   return winner;

@@ -9,11 +9,11 @@
 namespace duet::evaluation::metrics {
 
 // The share of samples whose class is the most frequent one among their `neighbours` nearest other
-// samples (Euclidean): how far classes lie apart in the space itself, whatever a map of it shows.
-// Of classes equally frequent the one with the nearest sample counts.
+// samples (Euclidean): how well the classes are separated in the space itself. Among equally
+// frequent classes, the one with the nearest sample wins.
 // Shapes: features [samples][features], classes [samples].
-// Errors: INVALID_ARGUMENT for vectors or classes of other lengths, and for fewer than `neighbours`
-//         + 1 samples. `neighbours` is 1 or more.
+// Errors: INVALID_ARGUMENT for vectors or classes of different lengths, and for fewer than
+//         `neighbours` + 1 samples. Requires `neighbours` >= 1.
 absl::StatusOr<double> NeighbourAccuracy(const FeatureSet& features,
                                          const std::vector<int>& classes, int neighbours);
 

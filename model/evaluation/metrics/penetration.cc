@@ -8,7 +8,7 @@
 namespace duet::evaluation::metrics {
 namespace {
 
-// Beyond rounding, metres.
+// Above rounding errors, metres.
 constexpr float kSlack = 1e-4f;
 
 // A bone in one frame, and the sphere around it.
@@ -34,7 +34,7 @@ double Depth(const std::vector<PlacedBone>& leader, const std::vector<PlacedBone
     const PlacedBone& a = leader[i];
     for (size_t j = 0; j < follower.size(); ++j) {
       const PlacedBone& b = follower[j];
-      // Most bones are so far apart that their spheres tell.
+      // Most bones are so far apart that their spheres do not overlap.
       const auto near = static_cast<float>(radii[i] + radii[j] - deepest) + a.reach + b.reach;
       const motion::Vec3 apart = a.middle - b.middle;
       if (Dot(apart, apart) > (near + kSlack) * (near + kSlack)) continue;

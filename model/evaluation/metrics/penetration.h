@@ -9,9 +9,9 @@
 
 namespace duet::evaluation::metrics {
 
-// How far two bodies reach into each other. A frame's depth is the largest max(0, r1 + r2 - d) over
-// all pairs of a leader's and a follower's bone, with radii r1 and r2 at a distance d. Less is not
-// always better (people who hug do touch): read it beside the captured pair's.
+// How deeply two bodies overlap. A frame's depth is the largest max(0, r1 + r2 - d) over all pairs
+// of a leader's and a follower's bone, with radii r1 and r2 at a distance d. Less is not always
+// better, since people touch when they hug: compare it with that of the captured pair.
 // Shapes: leader and follower are alike, in world metres.
 struct Penetration {
   double frequency = 0;          // share of frames with a depth above 0

@@ -22,7 +22,7 @@ std::optional<motion::JointPair> Shoulders(const motion::Skeleton& skeleton) {
   return pair;
 }
 
-// From left to right, of length 1; nothing where there is no such pair.
+// The unit vector from left to right; nullopt without such a pair.
 motion::Vec3 Across(const motion::Poses& poses, int frame,
                     const std::optional<motion::JointPair>& pair) {
   if (!pair) return {};
@@ -31,7 +31,7 @@ motion::Vec3 Across(const motion::Poses& poses, int frame,
   return length == 0 ? motion::Vec3{} : across / length;
 }
 
-// Seen from above; the angle to nowhere is 0.
+// Seen from above; 0 for a vector of length 0.
 double HorizontalAngle(motion::Vec3 a, motion::Vec3 b) {
   a.y = b.y = 0;
   return std::atan2(Norm(Cross(a, b)), Dot(a, b)) * kDegrees;

@@ -4,27 +4,29 @@
 #include "model/motion/poses.h"
 #include "model/motion/skeleton.h"
 
-// Whether a body stands, where, and which way it looks. NaN where a skeleton lacks the joints.
+// Lean, facing and height of a body. NaN if the skeleton lacks the joints.
 //
 // Units: poses in world metres, y up; degrees.
 
 namespace duet::evaluation::metrics {
 
-// What the neck (or else the head) is seen from: the middle of the hips or of the feet.
+// The lower end of the line to the neck (or else to the head): the middle of the hips or of the
+// feet.
 enum class LeanFrom { kHips, kFeet };
 
 // The angle between the vertical and the line up to the neck.
 struct Lean {
   double mean_degrees = 0;
-  // Of its means over one second (over all of a shorter motion), the largest: a kick leans the body
-  // for an instant, a body that falls over keeps leaning.
+  // The largest mean over one second (over all of a shorter motion): a kick leans the body for an
+  // instant, a fall for longer.
   double max_degrees = 0;
 };
 Lean MeasureLean(const motion::Poses& poses, const motion::Skeleton& skeleton, double frame_rate_hz,
                  LeanFrom from);
 
-// The mean angle between where the follower's hips and shoulders face and where the leader's root
-// is, both seen from above. 0 to 180. Shapes: as many frames in both.
+// The mean angle between the direction that the follower's hips and shoulders face and the
+// direction in which the leader's root is, both seen from above. 0 to 180. Shapes: as many frames
+// in both.
 double FacingDegrees(const motion::Poses& leader, const motion::Poses& follower,
                      const motion::Skeleton& skeleton);
 
@@ -32,7 +34,7 @@ double FacingDegrees(const motion::Poses& leader, const motion::Poses& follower,
 double RootDistance(const motion::Poses& leader, const motion::Poses& follower,
                     const motion::Skeleton& skeleton);
 
-// How far the lower foot gets from a floor at a height. All 0 or more.
+// Distances of the lower foot from the floor. All are at least 0.
 struct FloorGap {
   double above = 0;
   double below = 0;

@@ -12,7 +12,7 @@ size_t MotionCount(const SampledMotions& samples) {
   return samples.empty() ? 0 : samples.front().size();
 }
 
-// Between two followers of a sequence, in the world as captured, which the raw unit is of.
+// Between two followers of a sequence, in the world as captured, to which the raw unit refers.
 double Distance(const dataset::Sequence& sequence, const motion::Poses& a, const motion::Poses& b) {
   return Afd(sequence.levelling.Invert(a), sequence.levelling.Invert(b), MetricUnit::kSbuRaw);
 }

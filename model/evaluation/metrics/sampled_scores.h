@@ -6,11 +6,11 @@
 #include "model/dataset/dataset.h"
 #include "model/evaluation/metrics/scores.h"
 
-// Figures of a model that has many answers to one leader.
+// Figures of a model that gives many answers to one leader.
 //
-// The average frame distance rewards the mean of what may happen: an honest answer, as far from
-// that mean as people are, has up to 1.41 times its distance. So three are read side by side: of
-// one answer, of the mean of all, and of the best of all. Source: ReGenNet (Xu et al. 2024) for
+// The average frame distance rewards the mean of the possible answers: a sample from the true
+// distribution has up to 1.41 times its distance. Therefore three distances are reported: of one
+// answer, of the mean of all, and of the best of all. Source: ReGenNet (Xu et al. 2024) for
 // multimodality.
 
 namespace duet::evaluation::metrics {
@@ -24,7 +24,7 @@ std::vector<ScoredMotion> Pool(const SampledMotions& samples);
 // For each sequence, the answers' mean, joint by joint and frame by frame.
 std::vector<ScoredMotion> MeanAnswers(const SampledMotions& samples);
 
-// For each sequence, its answer of the least afd. It takes the captured follower to find it.
+// For each sequence, its answer with the smallest afd. Finding it needs the captured follower.
 std::vector<ScoredMotion> BestAnswers(const dataset::Dataset& dataset,
                                       const SampledMotions& samples);
 

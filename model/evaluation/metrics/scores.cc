@@ -97,7 +97,7 @@ std::vector<double> ScoreMotion(const dataset::Dataset& dataset, const ScoredMot
   const motion::Poses& truth = sequence.pair.follower.poses;
   const motion::Poses& made = motion.follower;
   const double rate = sequence.pair.leader.frame_rate_hz;
-  // The raw unit's axes are the camera's.
+  // The axes of the raw unit are those of the camera.
   const motion::Poses made_raw = sequence.levelling.Invert(made);
   const motion::Poses truth_raw = sequence.levelling.Invert(truth);
   const FootSlide slide = MeasureFootSlide(made, skeleton, rate);
@@ -135,7 +135,7 @@ std::vector<std::vector<double>> ScoreByClass(const dataset::Dataset& dataset,
     const size_t c = static_cast<size_t>(sequence.interaction_class);
     const std::vector<double> scores = ScoreMotion(dataset, motion);
     for (size_t m = 0; m < metrics; ++m) {
-      // NaN: the motion has no such figure, as one that never touches has no depth.
+      // NaN: the motion has no such figure; without contact there is no depth.
       if (std::isnan(scores[m])) continue;
       sums[c][m] += scores[m];
       ++counts[c][m];

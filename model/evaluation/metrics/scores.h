@@ -21,20 +21,20 @@ enum class Metric {
   kBoneLengthDrift,       // bone_length_drift: share of the length
   kJitter,                // jitter: m/s^3
   kSkatingRatio,          // skating_ratio: share of steps on the floor
-  kFootSlide,             // foot_slide_cm: centimetres a frame
+  kFootSlide,             // foot_slide_cm: centimetres per frame
   kPenetrationFrequency,  // penetration_frequency: share of frames
   kPenetrationDepth,      // penetration_depth_m: mean over those frames
   kJointSpeed,            // joint_speed: m/s, without noise
   kRangeOfMotion,         // range_of_motion_m: without noise
   kFilteredJerk,          // filtered_jerk: m/s^3, jitter without noise
   kLean,                  // lean_degrees: hips to neck, mean over frames
-  kFacing,                // facing_degrees: away from the leader
+  kFacing,                // facing_degrees: angle to the leader
   kRootDistance,          // root_distance_m: to the leader's, along the floor
   kTouch,                 // touch: share of frames
 };
 
 const std::vector<Metric>& AllMetrics();
-// lower_snake_case, with the unit where it is not the raw one.
+// lower_snake_case, with the unit unless it is the raw one.
 std::string MetricName(Metric metric);
 
 // A follower for a sequence of the data set, synthesised or captured.
@@ -43,12 +43,12 @@ struct ScoredMotion {
   motion::Poses follower;  // world metres
 };
 
-// Every metric of one motion, in the order of AllMetrics. Those in the raw unit are taken in the
-// world as captured, before it was levelled.
+// Every metric of one motion, in the order of AllMetrics. Those in the raw unit are measured in the
+// world as captured, before levelling.
 std::vector<double> ScoreMotion(const dataset::Dataset& dataset, const ScoredMotion& motion);
 
 // Means over the motions of each class, in the order of AllMetrics; NaN for a class without any.
-// Every motion counts alike, but for penetration depth, which is a mean over those motions that
+// All motions have equal weight, except in penetration depth, which is a mean over the motions that
 // penetrate. Shapes: returns [classes][metrics].
 std::vector<std::vector<double>> ScoreByClass(const dataset::Dataset& dataset,
                                               const std::vector<ScoredMotion>& motions);

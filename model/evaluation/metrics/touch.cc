@@ -9,7 +9,7 @@
 namespace duet::evaluation::metrics {
 namespace {
 
-// A hand's joint lies within the hand, and a capture errs by centimetres.
+// A hand's joint is inside the hand, and captures have errors of centimetres.
 constexpr double kReachMetres = 0.05;
 
 bool IsLimb(const motion::BodyPart& part) {

@@ -8,8 +8,8 @@
 
 namespace duet::evaluation::program {
 
-// The commands of duet-eval. Each declares itself and its flags in `app` and, when the command line
-// names it, stores what it does in `chosen`.
+// The commands of duet-eval. Each adds itself and its flags to `app` and, if the command line names
+// it, stores its action in `chosen`.
 using ChosenCommand = std::function<absl::Status()>;
 
 void AddFoldsCommand(CLI::App* app, ChosenCommand* chosen);         // figures of methods by class

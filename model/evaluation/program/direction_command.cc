@@ -23,7 +23,8 @@ struct Arguments {
   SectionFlags section = {"06_direction", "Where the partner of a leader is expected"};
 };
 
-// What a fold's model knows. Errors: those of reading it; INVALID_ARGUMENT for other joints.
+// Reads the regression of a fold's model, if it has one. Errors: those of reading it;
+// INVALID_ARGUMENT for other joints.
 absl::StatusOr<std::optional<engine::DirectionRegression>> ReadFold(
     const dataset::Dataset& dataset, const std::filesystem::path& run) {
   absl::StatusOr<checkpoint::Checkpoint> checkpoint = ReadRunCheckpoint(run);

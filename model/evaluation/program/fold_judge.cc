@@ -11,8 +11,7 @@
 namespace duet::evaluation::program {
 namespace {
 
-// What one network makes of a person whom it has never seen depends on its seed: several are
-// averaged.
+// The results of one network for an unseen person depend on its seed: several are averaged.
 constexpr int64_t kMembers = 4;
 
 }  // namespace

@@ -10,17 +10,17 @@
 
 namespace duet::evaluation::program {
 
-// Who is left out in turn: those asked for, or else every subject of the data set. Errors:
-// INVALID_ARGUMENT for a data set that names none.
+// The subjects to leave out in turn: those in `asked`, or, if it is empty, every subject of the
+// data set. Errors: INVALID_ARGUMENT for a data set that names none.
 absl::StatusOr<std::vector<std::string>> FoldSubjects(const dataset::Dataset& dataset,
                                                       const std::vector<std::string>& asked);
 
-// A fold's judge: it has seen the captured followers of the fold's training sequences and no
-// others. Tells stderr how long it took. Errors: LeaveSubjectOut's, MotionClassifier::Train's.
+// Trains a fold's judge, only on the captured followers of the fold's training sequences. Prints
+// the time to stderr. Errors: LeaveSubjectOut's, MotionClassifier::Train's.
 absl::StatusOr<judge::MotionClassifier> TrainFoldJudge(const dataset::Dataset& dataset,
                                                        const std::string& subject);
 
-// What a judge makes of motions, each of which was asked to be of its sequence's class.
+// A judge's results for motions, each requested in its sequence's class.
 metrics::JudgedFold JudgeMotions(const judge::MotionClassifier& judge,
                                  const dataset::Dataset& dataset,
                                  const std::vector<metrics::ScoredMotion>& motions);

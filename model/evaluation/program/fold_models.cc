@@ -17,7 +17,7 @@ absl::StatusOr<fs::path> FindCheckpoint(const fs::path& run) {
   std::error_code error;
   for (const auto& name : fs::directory_iterator(run / "checkpoint", error)) {
     for (const auto& version : fs::directory_iterator(name.path(), error)) {
-      // A dot marks what a killed run was still writing.
+      // A dot marks an unfinished write of an interrupted run.
       if (version.path().filename().string().front() != '.') found.push_back(version.path());
     }
   }

@@ -14,7 +14,7 @@ namespace duet::evaluation::program {
 // The only checkpoint below a run's folder, <run>/checkpoint/<name>/<version>. Errors: NOT_FOUND.
 absl::StatusOr<checkpoint::Checkpoint> ReadRunCheckpoint(const std::filesystem::path& run);
 
-// The generator of a fold: of <runs>/<subject>, as duet-train --protocol loso leaves it.
+// The generator of a fold: of <runs>/<subject>, as written by duet-train --protocol loso.
 // `as_served`: with constant limb lengths on the leader's floor, as a server answers; otherwise the
 // network's own answer.
 absl::StatusOr<std::shared_ptr<const engine::Synthesizer>> LoadFoldModel(

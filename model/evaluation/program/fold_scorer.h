@@ -16,7 +16,7 @@
 namespace duet::evaluation::program {
 
 // Leaves one subject out at a time and scores every method in the same folds with the same judges.
-// A method answers once, and all its figures are of those answers. Tells stderr of each fold.
+// A method answers once; all its figures are of those answers. Reports each fold on stderr.
 class FoldScorer {
  public:
   // A method for the fold without a subject; its Train is called with the fold's sequences.
@@ -32,7 +32,7 @@ class FoldScorer {
   // The captured followers of the same tests, as a row.
   absl::StatusOr<report::MethodFigures> ScoreCaptured() const;
 
-  // Which judges the figures were measured with: for the settings of a report.
+  // The judges of the figures, for the settings of a section.
   std::vector<std::pair<std::string, std::string>> JudgeSettings() const;
 
  private:
@@ -45,7 +45,7 @@ class FoldScorer {
 
   explicit FoldScorer(const dataset::Dataset& dataset) : dataset_(&dataset) {}
   absl::Status AddJudge(Fold* fold) const;
-  // Shapes: results [folds], what was answered in each.
+  // Shapes: results [folds], the answers in each.
   absl::StatusOr<report::MethodFigures> Figures(
       const std::string& row, const std::vector<protocol::FoldResult>& results) const;
 

@@ -17,7 +17,7 @@
 namespace duet::evaluation::program {
 namespace {
 
-// Of --baselines: the models' rows alone.
+// Value of --baselines for only the models' rows.
 constexpr char kNoBaseline[] = "none";
 
 struct Arguments {
@@ -41,7 +41,7 @@ absl::Status AddModel(const FoldScorer& scorer, const FoldModel& model,
           if (!synthesizer.ok()) return synthesizer.status();
           return std::make_unique<experiments::SynthesizerMethod>(row, *synthesizer, start);
         });
-    // A model without a start input has one row alone.
+    // A model without a start input has only one row.
     if (absl::IsFailedPrecondition(figures.status()) && start != experiments::StartGiven::kNone) {
       std::cerr << row << ": left out: " << figures.status().message() << "\n";
       continue;

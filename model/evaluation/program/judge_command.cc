@@ -24,8 +24,8 @@ struct Arguments {
   judge::ClassifierOptions options;
 };
 
-// What a program that is handed a pair knows of where the two stand; not what a capture's setup
-// tells.
+// Sets the direction that a program can derive from a pair, in place of the one from a capture's
+// setup.
 void FaceFollowers(dataset::Dataset* dataset) {
   for (dataset::Sequence& sequence : dataset->sequences) {
     sequence.partner_direction = classifier::DirectionToFollower(dataset->skeleton, sequence.pair);

@@ -91,7 +91,7 @@ absl::Status AddSpace(const dataset::Dataset& dataset, const FoldCheckpoint& fol
   return absl::OkStatus();
 }
 
-// Of a fold, as duet-train --protocol loso leaves it; or the one run that the folder itself is.
+// The checkpoint of a fold of duet-train --protocol loso, or of a single run.
 absl::StatusOr<checkpoint::Checkpoint> ReadFold(const std::filesystem::path& runs,
                                                 const std::string& subject) {
   std::error_code error;
@@ -99,8 +99,8 @@ absl::StatusOr<checkpoint::Checkpoint> ReadFold(const std::filesystem::path& run
   return ReadRunCheckpoint(is_run ? runs : runs / subject);
 }
 
-// A model that reads labels is shown a second time with the label withheld: the label alone would
-// tell the classes apart.
+// A model that reads labels is measured a second time without the label, which by itself separates
+// the classes.
 absl::Status AddModel(const dataset::Dataset& dataset, const NamedRuns& runs,
                       const std::vector<std::string>& subjects, const Arguments& arguments,
                       report::ResultSection* section) {

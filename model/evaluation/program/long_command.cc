@@ -65,7 +65,7 @@ absl::Status AddFold(const dataset::Dataset& dataset, const FoldModel& model,
   return absl::OkStatus();
 }
 
-// What captured followers of the left-out people show on the same measures, clip by clip.
+// The same figures for captured followers of the left-out people, clip by clip.
 absl::Status AddCaptured(const dataset::Dataset& dataset, const std::string& subject,
                          std::vector<experiments::LongClipRow>* rows) {
   absl::StatusOr<dataset::Split> split = LeaveSubjectOut(dataset, subject);

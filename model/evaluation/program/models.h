@@ -11,9 +11,9 @@
 
 namespace duet::evaluation::program {
 
-// The models that a command line names.
+// The models of a command line.
 struct ModelChoice {
-  std::vector<std::string> runs;  // [NAME=]DIR each, a model a fold
+  std::vector<std::string> runs;  // [NAME=]RUNS each, a model per fold
   std::string checkpoint;         // one model for every fold
   bool embedded = false;          // likewise, the one inside the program
   bool as_served = false;         // finished as a server finishes them (engine::PipelineOptions)

@@ -9,17 +9,17 @@
 
 namespace duet::evaluation::program {
 
-// Runs of duet-train, and how the tables call them.
+// Runs of duet-train, and their name in tables.
 struct NamedRuns {
   std::string name;
   std::filesystem::path folder;
 };
 
-// "ours=DIR", or a folder alone, which is named by its last part. Errors: INVALID_ARGUMENT.
+// Parses "ours=DIR", or "DIR", which is named by its last part. Errors: INVALID_ARGUMENT.
 absl::StatusOr<NamedRuns> ParseRuns(const std::string& text);
 
-// "none", "root" or "pose", and what a row's name adds for it: "", "+root", "+pose". Requires one
-// of StartNames.
+// "none", "root" or "pose", and the suffix of a row's name: "", "+root", "+pose". Requires one of
+// StartNames.
 experiments::StartGiven ParseStart(const std::string& name);
 std::vector<std::string> StartNames();
 std::string StartSuffix(experiments::StartGiven start);

@@ -33,8 +33,8 @@ std::vector<double> ColumnOf(const std::vector<std::vector<double>>& scores,
   return column;
 }
 
-// All folds' answers as one set of folds: the n-th set of every fold, one after the other. A fold's
-// sets are alike in number.
+// All folds' answers as one set of folds: the n-th set of every fold, one after the other. All
+// folds have the same number of sets.
 SampledMotions JoinFolds(const std::vector<SampledMotions>& answers) {
   SampledMotions joined(answers.empty() ? 0 : answers.front().size());
   for (const SampledMotions& fold : answers) {
@@ -61,7 +61,7 @@ void AddDistances(const dataset::Dataset& dataset, const SampledMotions& answers
   by_metric[report::kMultimodality] = MultimodalityByClass(dataset, answers);
 }
 
-// What the judges make of one set of answers of every fold.
+// The judges' results for one set of answers of every fold.
 struct JudgedSet {
   std::vector<JudgedFold> plain, filtered;  // [folds]
 };
@@ -77,7 +77,7 @@ JudgedSet JudgeSet(const dataset::Dataset& dataset, const std::vector<SampleFold
   return set;
 }
 
-// Adds values / count to sums, which may be empty still.
+// Adds values / count to sums, which may still be empty.
 void AddShare(const std::vector<double>& values, size_t count, std::vector<double>* sums) {
   sums->resize(values.size());
   for (size_t i = 0; i < values.size(); ++i) (*sums)[i] += values[i] / static_cast<double>(count);

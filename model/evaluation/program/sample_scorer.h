@@ -12,8 +12,8 @@
 
 namespace duet::evaluation::program {
 
-// One fold: who is left out, and its judge with what it makes of the captured followers, as they
-// are and without noise.
+// One fold: the subject left out, and its judge with its results for the captured followers, as
+// captured and after the noise filter.
 struct SampleFold {
   std::string subject;
   dataset::Split split;
@@ -31,12 +31,12 @@ class SampleScorer {
 
   const std::vector<SampleFold>& folds() const { return folds_; }
 
-  // Figures by class as report/sample_tables.h names them. Shapes: answers [folds].
+  // Figures by class with the names of report/sample_tables.h. Shapes: answers [folds].
   absl::StatusOr<report::MethodFigures> Score(
       const std::string& row, const std::vector<metrics::SampledMotions>& answers) const;
   absl::StatusOr<report::MethodFigures> ScoreCaptured() const;
 
-  // Which judges the figures were measured with: for the settings of a report.
+  // The judges of the figures, for the settings of a section.
   std::vector<std::pair<std::string, std::string>> JudgeSettings() const;
 
  private:

@@ -45,7 +45,7 @@ absl::StatusOr<report::MethodFigures> ScoreModel(const dataset::Dataset& dataset
   return scorer.Score(row, answers);
 }
 
-// What the same measures say of captured people who answer another leader of the class.
+// The same figures for captured people who answer another leader of the class.
 absl::StatusOr<report::MethodFigures> ScoreOtherPeople(const dataset::Dataset& dataset,
                                                        const SampleScorer& scorer,
                                                        const experiments::AskedSamples& asked) {

@@ -17,7 +17,7 @@
 namespace duet::evaluation::program {
 namespace {
 
-// Of a model that samples, two answers show that they differ.
+// Two answers show the variety of a model that samples.
 constexpr int kAnswers = 2;
 
 struct Arguments {
@@ -26,8 +26,8 @@ struct Arguments {
   experiments::AskedSamples asked;
 };
 
-// Which clip stands for a class: of the first left-out person who has any, the one of middle
-// length. Nobody chose it by its looks.
+// The clip that represents a class: of the first left-out person who has any, the one of median
+// length. The rule avoids choosing by appearance.
 struct Example {
   std::string subject;
   int sequence = 0;

@@ -25,7 +25,7 @@ struct Arguments {
   float variety = 1;
 };
 
-// One fold: its generator, and its judge, who has not seen the left-out subject either.
+// One fold: its generator, and its judge, which has not seen the left-out subject either.
 struct SweepFold {
   std::string subject;
   std::vector<int> test;
@@ -33,8 +33,8 @@ struct SweepFold {
   std::vector<judge::MotionClassifier> judge;  // one
 };
 
-// A leader's answers at every weight of every class, own and added: all with one seed, so that the
-// weight alone makes the difference.
+// A leader's answers at every weight of every class, own and added: all with one seed, so that only
+// the weight differs.
 absl::Status SweepLeader(const dataset::Dataset& dataset, const SweepFold& fold, int index,
                          experiments::StartGiven start, const engine::Sampling& sampling,
                          std::vector<experiments::SweepCurve>* curves) {

@@ -64,7 +64,8 @@ double Mean(const std::vector<double>& values) {
   return sum / static_cast<double>(values.size());
 }
 
-// A column a fold, their mean, and the deviation (n - 1) of that mean over the classifiers' seeds.
+// A column per fold, their mean, and the deviation (n - 1) of that mean over the classifiers'
+// seeds.
 report::TableRow Row(const std::string& name, const Accuracies& accuracies) {
   report::TableRow row = {name, {}};
   const size_t folds = accuracies.front().size();

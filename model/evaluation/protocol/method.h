@@ -11,7 +11,7 @@
 
 namespace duet::evaluation::protocol {
 
-// A way to answer a leader: a row of the paper's Table 1.
+// A method that answers leaders: a row of the paper's Table 1.
 class Method {
  public:
   virtual ~Method() = default;
@@ -23,11 +23,11 @@ class Method {
   virtual absl::Status Train(const dataset::Dataset& dataset, const std::vector<int>& train) = 0;
 
   // The follower's motion for a test sequence's leader, class and partner direction, in world
-  // metres. The sequence comes without its follower, or with the follower's first pose alone where
+  // metres. The sequence comes without its follower, or with only the follower's first pose where
   // reads_first_pose asks for it. Shapes: returns as many frames as the leader has.
   virtual absl::StatusOr<motion::Poses> Predict(const dataset::Sequence& sequence) const = 0;
 
-  // True for methods that are told the follower's first pose.
+  // True for methods that receive the follower's first pose.
   virtual bool reads_first_pose() const { return false; }
 };
 

@@ -15,8 +15,8 @@ double SecondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-// The sequence as a method may see it: without what it is to answer, so that a method that looks
-// for the answer fails instead of scoring well.
+// The sequence without its follower, so that a method that reads the answer fails instead of
+// scoring well.
 dataset::Sequence WithoutAnswer(const dataset::Sequence& sequence, bool keep_first_pose) {
   dataset::Sequence hidden = sequence;
   motion::Clip& follower = hidden.pair.follower;

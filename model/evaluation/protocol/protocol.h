@@ -12,19 +12,19 @@
 
 namespace duet::evaluation::protocol {
 
-// What a method answered in one fold.
+// A method's answers in one fold.
 struct FoldResult {
-  std::string subject;                         // who was left out
+  std::string subject;                         // the subject left out
   std::vector<metrics::ScoredMotion> motions;  // one for each test sequence, in the split's order
   double train_seconds = 0;
   double predict_seconds = 0;
 };
 
-// Trains a method and lets it answer the test sequences. Of these, the method sees the leader, the
-// class and the partner's direction; the follower is removed before Predict, all but its first pose
-// for methods that ask for that.
-// Errors: Train's; Predict's with the method's and the sequence's name in front; INTERNAL naming
-// both when an answer has the wrong size or is not finite.
+// Trains a method and answers the test sequences with it. The method receives the leader, the class
+// and the partner's direction of a sequence. The follower is removed before Predict, except for its
+// first pose if the method needs it.
+// Errors: Train's; Predict's, prefixed with the names of the method and the sequence; INTERNAL
+// naming both when an answer has the wrong size or is not finite.
 absl::StatusOr<FoldResult> RunFold(const dataset::Dataset& dataset, const dataset::Split& split,
                                    const std::string& subject, Method* method);
 

@@ -43,7 +43,7 @@ std::vector<std::pair<std::string, cleanup::Options>> Variants() {
           {"all", {}}};
 }
 
-// What a row adds up over sequences.
+// A row's sums over sequences.
 struct Effect {
   std::vector<float> ways;  // of every joint in every frame, metres
   int frames = 0, moved_frames = 0;

@@ -6,11 +6,12 @@
 
 namespace duet::evaluation::report {
 
-// What clean-up (model/cleanup) does to captured followers, which need none: a row for them as
-// captured, for each stage alone, and for all. Columns: the share of frames in which a joint moves
-// by more than a centimetre (percent), how far joints move (mean and 99th percentile, centimetres),
-// foot slide (centimetres a frame) and the deepest overlap with the leader (centimetres, mean over
-// sequences). Each sequence is one window; in classes that touch, bodies do as they like.
+// The effect of clean-up (model/cleanup) on captured followers, which need none: rows for them as
+// captured, for each single stage, and for all stages. Columns: the share of frames in which a
+// joint moves by more than a centimetre (percent), the movement of joints (mean and 99th
+// percentile, centimetres), foot slide (centimetres per frame) and the deepest overlap with the
+// leader (centimetres, mean over sequences). Each sequence is one window; contact is allowed in
+// classes that touch.
 Table CleanUpTable(const dataset::Dataset& dataset);
 
 }  // namespace duet::evaluation::report

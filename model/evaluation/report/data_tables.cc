@@ -22,7 +22,7 @@ constexpr double kFloorShare = 0.25;
 constexpr double kCentimetres = 100;
 constexpr double kSmoothingFrames = 1;
 
-// A row's name and what it is made of.
+// A row's name and its sequences.
 struct Group {
   std::string name;
   Sequences sequences;
@@ -34,7 +34,7 @@ Group Everything(const dataset::Dataset& dataset) {
   return all;
 }
 
-// A data set of one nameless set has the row of all alone.
+// A data set of one unnamed set has only the row of all.
 std::vector<Group> BySet(const dataset::Dataset& dataset) {
   std::map<std::string, Sequences> sets;
   for (const dataset::Sequence& sequence : dataset.sequences) {
@@ -89,7 +89,7 @@ std::vector<motion::Vec3> FeetOf(const motion::Skeleton& skeleton, const Sequenc
   return feet;
 }
 
-// What a noise row adds up, over both people.
+// A noise row's sums over both people.
 struct Noise {
   int joint_frames = 0;
   int repaired = 0;

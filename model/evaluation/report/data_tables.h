@@ -4,7 +4,7 @@
 #include "model/dataset/dataset.h"
 #include "model/evaluation/report/table.h"
 
-// What a data set is like before anybody learns from it.
+// Properties of a data set.
 
 namespace duet::evaluation::report {
 
@@ -12,18 +12,17 @@ namespace duet::evaluation::report {
 // for each set and one for all.
 Table LeanTable(const dataset::Dataset& dataset);
 
-// The lean of a plane through the lower feet (degrees), and how high a quarter of them is at most
+// The lean of a plane through the lower feet (degrees), and the lower quartile of their height
 // (centimetres), as captured and level: the same rows.
 Table FloorTable(const dataset::Dataset& dataset);
 
 // How many joints of frames motion::RepairJumps moves, and the jitter (m/s^3) of both people as
-// captured, so repaired, and after a Gaussian of one frame besides: a row for each class and one
+// captured, repaired, and after an additional Gaussian of one frame: a row for each class and one
 // for all.
 Table NoiseTable(const dataset::Dataset& dataset);
 
-// Where the leader's side comes from, and how often the motion rule names the leader that the index
-// names without guessing: a row for each class and one for all. In a symmetric class either may
-// lead.
+// The source of the leader's side, and how often the motion rule agrees with a side in the index: a
+// row for each class and one for all. In a symmetric class either may lead.
 Table LeaderTable(const dataset::Dataset& dataset);
 
 }  // namespace duet::evaluation::report

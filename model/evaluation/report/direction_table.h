@@ -8,14 +8,14 @@
 
 namespace duet::evaluation::report {
 
-// What one way of telling where partners are is off by, degrees, over all tests.
+// The errors of one estimate of partners' directions, degrees, over all tests.
 struct DirectionRow {
   std::string name;
   std::vector<double> errors;
 };
 
-// How many tests, the median and the 90th percentile of each row's errors, linear between
-// neighbours. A row of no errors has no figures.
+// The number of tests, and median and 90th percentile of each row's errors, interpolated linearly.
+// A row without errors has no figures.
 Table DirectionTable(const std::vector<DirectionRow>& rows);
 
 }  // namespace duet::evaluation::report

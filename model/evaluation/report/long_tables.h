@@ -9,9 +9,9 @@
 
 namespace duet::evaluation::report {
 
-// Three tables of followers of leaders that last, each titled with `what` ("60 s, without a
-// start"): the lean by leader and class; all figures by leader, of the worst class; and by class,
-// of the worst leader. Rows begin with the model's name.
+// Three tables of followers of long leaders, each titled with `what` ("60 s, without a start"): the
+// lean by leader and class; all figures by leader, for the worst class; and by class, for the worst
+// leader. Rows begin with the model's name.
 std::vector<Table> LongTables(const std::string& what, const std::vector<std::string>& classes,
                               const std::vector<experiments::LongClipRow>& rows);
 

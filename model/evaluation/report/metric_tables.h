@@ -20,10 +20,10 @@ struct MetricStyle {
   int decimals = 2;
   Best best = Best::kNone;
   bool judged = false;       // needs a classifier
-  bool of_captured = false;  // means something for captured followers by themselves
+  bool of_captured = false;  // meaningful for captured followers by themselves
 };
 
-// Every figure that tables can hold: those of AllMetrics, then the judge's.
+// Every figure of the tables: those of AllMetrics, then the judge's.
 const std::vector<MetricStyle>& MetricStyles();
 
 // Figures of one method, or of the captured followers, by metric.
@@ -33,13 +33,13 @@ struct MethodFigures {
   std::map<std::string, std::vector<double>> by_metric;  // [classes] each
 };
 
-// One row a method, one column a class and their mean. Methods without the figure, and captured
-// followers where it means nothing, are left out.
+// One row per method, one column per class and their mean. Omits methods without the figure, and
+// captured followers if it has no meaning for them.
 Table MetricTable(const MetricStyle& style, const std::vector<std::string>& classes,
                   const std::vector<MethodFigures>& methods);
 
-// Adds the paper's rows and notes below those measured here, where the paper's columns are the
-// table's classes; otherwise a note that they are not. `table` ends in a mean column.
+// Adds the paper's rows and notes below those measured here, if the paper's columns are the table's
+// classes; otherwise adds a note that they are not. `table` ends in a mean column.
 void AddPrintedRows(const Table& paper, Table* table);
 
 }  // namespace duet::evaluation::report

@@ -5,8 +5,8 @@
 
 namespace duet::evaluation::report {
 
-// The figures that Goel et al. 2022 print, every row marked as printed, each table with a note on
-// what it may be compared with. Columns bear this project's class names.
+// The figures printed by Goel et al. 2022. Every row is marked as printed; a note of each table
+// says what it is comparable with. Columns have this project's class names.
 
 Table PaperAfdSbu();        // Tables 1 and 4: average frame distance on SBU
 Table PaperFidSbu();        // Table 2

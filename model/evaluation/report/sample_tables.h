@@ -20,19 +20,19 @@ inline constexpr char kFilteredDiversity[] = "filtered_diversity";
 inline constexpr char kPooledFrechet[] = "fid_pooled";
 inline constexpr char kFilteredFrechet[] = "fid_pooled_filtered";
 
-// One row for each name: rows that bear the same (a model trained from several seeds) become their
-// mean. In order of first appearance.
+// One row per name: rows with the same name (a model trained with several seeds) become their mean.
+// In order of first appearance.
 std::vector<MethodFigures> MeanByName(const std::vector<MethodFigures>& rows);
 
-// One row a method, every figure the mean over the classes; speed and range of motion as ratios to
-// the row of captured followers, of class means. Requires that row.
+// One row per method, every figure the mean over the classes; speed and range of motion as ratios
+// to the row of captured followers, of class means. Requires that row.
 Table SampleSummary(const std::vector<MethodFigures>& methods);
 
-// The standard deviations (n - 1) of the summary's figures over the rows of each name that several
-// bear; no row without such a name.
+// The standard deviations (n - 1) of the summary's figures over the rows of each name that occurs
+// more than once.
 Table SampleSpread(const std::vector<MethodFigures>& methods);
 
-// By class: the ratios and every figure of MetricStyles and of the above that tells of samples.
+// By class: the ratios and every figure of MetricStyles and of the above.
 std::vector<Table> SampleTables(const std::vector<std::string>& classes,
                                 const std::vector<MethodFigures>& methods);
 

@@ -27,7 +27,7 @@ std::string KindTitle(SweepKind kind) {
   return kind == SweepKind::kOwn ? "Own class alone" : "Another class beside the own one";
 }
 
-// Of the figure in which the weight of class `name` is swept.
+// The title of the figure that sweeps the weight of class `name`.
 std::string FigureTitle(SweepKind kind, const std::string& name, const std::string& told) {
   return absl::StrCat(name, kind == SweepKind::kOwn ? " alone, " : " added, ", told);
 }

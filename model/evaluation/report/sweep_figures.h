@@ -11,23 +11,23 @@
 
 namespace duet::evaluation::report {
 
-// One row a raised class and one for all of them.
+// One row per raised class and one for all of them.
 Table ControlTable(const std::string& title, const std::vector<std::string>& classes,
                    const std::vector<experiments::SweepCurve>& curves, experiments::SweepKind kind);
 
-// kOwn: the mean probability of every class against the weight of class `raised`. kAdded: that of
-// class `raised` alone, a line for each own class.
+// kOwn: the mean probability of every class against the weight of class `raised`. kAdded: only that
+// of class `raised`, a line for each own class.
 LinePlot SweepPlot(const std::string& title, const std::vector<std::string>& classes,
                    const std::vector<experiments::SweepCurve>& curves, experiments::SweepKind kind,
                    int raised);
 
-// What a sweep is called after what the model was told of the follower's first frame.
+// The names of a sweep, by the model's input about the follower's first frame.
 struct SweepNames {
   std::string told;      // ends titles and captions: "without a start"
   std::string name_end;  // ends the figures' names: "", "_root"
 };
 
-// Adds a sweep's tables, one a kind, and its figures, one a kind and raised class.
+// Adds a sweep's tables, one per kind, and its figures, one per kind and raised class.
 void AddSweep(const std::vector<std::string>& classes,
               const std::vector<experiments::SweepCurve>& curves, const SweepNames& names,
               ResultSection* section);

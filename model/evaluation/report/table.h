@@ -8,9 +8,9 @@ namespace duet::evaluation::report {
 
 struct TableRow {
   std::string name;
-  std::vector<double> values;  // one a column; NaN: no figure
-  // True for figures that the paper prints and that were not measured here: the row is set apart
-  // and never marked as best.
+  std::vector<double> values;  // one per column; NaN: no figure
+  // True for figures that the paper prints and that were not measured here: the row is shown
+  // separately and never marked as best.
   bool printed = false;
 };
 
