@@ -9,7 +9,7 @@ Arrivals::Arrivals(ArrivalKind kind, double rate_hz, uint64_t seed)
 
 Duration Arrivals::Next() {
   if (kind_ == ArrivalKind::kConstant) {
-    return Seconds(static_cast<double>(calls_++) / rate_hz_);  // no sum: nothing drifts
+    return Seconds(static_cast<double>(calls_++) / rate_hz_);  // a product, since a sum would drift
   }
   seconds_ -= std::log(random_.OpenUniform()) / rate_hz_;
   return Seconds(seconds_);

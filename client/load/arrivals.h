@@ -9,17 +9,17 @@
 namespace duet::client::load {
 
 enum class ArrivalKind {
-  kPoisson,   // as callers that know nothing of each other come: gaps drawn from an exponential
+  kPoisson,   // independent callers: gaps from an exponential distribution
   kConstant,  // one gap for all
 };
 
-// When calls of an open loop are due: a timetable that knows nothing of the answers.
+// The due times of calls in an open loop, independent of the answers.
 class Arrivals {
  public:
   // `rate_hz`: calls a second on average, above 0. The same seed gives the same times.
   Arrivals(ArrivalKind kind, double rate_hz, uint64_t seed);
 
-  // When the next call is due, from the start. The first of a constant timetable is due at once.
+  // The due time of the next call, from the start. The first call of kConstant is due at once.
   Duration Next();
 
  private:

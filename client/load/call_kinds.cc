@@ -27,7 +27,7 @@ motion::Clip SwayingLeader(const ModelInfo& model, int frames) {
   return leader;
 }
 
-// Whether the server refuses a call of this kind for what it is.
+// Whether the server rejects a call of this kind because of its content.
 absl::Status Try(const Client& client, const SynthesisRequest& request) {
   const auto enough = [](const FollowerChunk&) { return absl::CancelledError("enough"); };
   const absl::Status status = client.SynthesizeStreaming(request, enough).status();

@@ -17,7 +17,7 @@ struct Weighted {
   double weight = 1;
 };
 
-// What calls ask for: every model with every length.
+// The requested clips: every model with every length.
 struct CallMix {
   std::vector<Weighted<ModelChoice>> models = {{ModelChoice(), 1}};
   std::vector<Weighted<int>> frames = {{46, 1}};  // of leaders at the model's own rate
@@ -25,7 +25,7 @@ struct CallMix {
   Priority priority = Priority::kInteractive;
 };
 
-// Calls that are all alike.
+// Calls with the same request.
 struct CallKind {
   std::string model;  // "sbu@2"
   int frames = 0;
@@ -33,11 +33,11 @@ struct CallKind {
   std::string request;  // a serialised duet.v1.SynthesizeRequest
 };
 
-// Asks the server which models these are, and for the beginning of an answer of each kind, so that
-// what it refuses is known before anything is measured. The leader is made up: a figure that sways,
-// in the model's joints; what it does costs the server nothing more or less.
+// Resolves the models at the server, and tries a call of each kind, so that rejections are known
+// before measuring. The leader is generated: a figure that sways, in the model's joints. Its motion
+// does not affect the cost.
 //
-// Errors: the server's status; that of a kind which it has merely no room for is passed over.
+// Errors: the server's status, except rejections for lack of capacity.
 absl::StatusOr<std::vector<CallKind>> FindKinds(const Client& client, const CallMix& mix);
 
 }  // namespace duet::client::load

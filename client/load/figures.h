@@ -5,7 +5,7 @@
 
 namespace duet::client::load {
 
-// How many of what is counted make one of what is shown.
+// Counted units per reported unit.
 inline constexpr double kMillisecond = 1e6;  // nanoseconds
 inline constexpr double kHertz = 1e3;        // millihertz
 

@@ -12,11 +12,11 @@
 namespace duet::client::load {
 namespace {
 
-constexpr Duration kLongestWait = std::chrono::milliseconds(200);     // between looks at `stopped`
-constexpr Duration kBackgroundPause = std::chrono::milliseconds(50);  // after a refusal
+constexpr Duration kLongestWait = std::chrono::milliseconds(200);     // between checks of `stopped`
+constexpr Duration kBackgroundPause = std::chrono::milliseconds(50);  // after a rejection
 constexpr int kKinds = 1, kArrivals = 2;                              // streams of random numbers
 
-// What the generator knows of a call under way.
+// The state of a call in flight.
 struct OpenCall {
   Time due;
   Time sent;
@@ -61,8 +61,8 @@ class Generator {
     return options_.calls > 0 && recorder_.measured_due() >= options_.calls;
   }
 
-  // Whether no further call is due. The measured time then has an end, but where a number of calls
-  // was asked for: that one ends with the last of them.
+  // Whether no further call is due. The end of the measured time is then fixed, unless a number of
+  // calls was requested: then the last of them ends it.
   bool IsOver() {
     if (is_over_) return true;
     const Time now = target_.Now();
@@ -76,7 +76,7 @@ class Generator {
     return is_over_ = true;
   }
 
-  // Calls that the timetable had before the end and that nobody could send.
+  // Calls that were due before the end and were never sent.
   void SkipDueUntil(Time end) {
     for (; IsOpenLoop() && next_due_ < end; next_due_ = begin_ + arrivals_.Next()) {
       recorder_.Due(next_due_);
@@ -140,7 +140,7 @@ class Generator {
     if (is_over_ && !measured_until_ && in_flight_ == 0) measured_until_ = last_end_;
   }
 
-  // Nobody is measured any longer who might be disturbed by the end of it.
+  // Ends the background after all measured calls, which it would disturb.
   void EndBackground() {
     target_.CancelAll();
     while (!calls_.empty()) {

@@ -7,10 +7,10 @@
 
 namespace duet::client::load {
 
-// Puts a load on a target, and returns once every call has ended.
+// Puts a load on a target. Returns after every call has ended.
 //
-// Closed loop: a call is due when its caller's last one has ended. Open loop: by the timetable
-// alone, so that a server that stands still for a second has a second's calls to answer for.
+// Closed loop: a call is due when its caller's previous one has ended. Open loop: due times are
+// independent of the answers, so a pause of the server delays every call that is due in it.
 Measurement RunStep(const Step& step, const LoadOptions& options, Target& target);
 
 }  // namespace duet::client::load

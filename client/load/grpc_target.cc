@@ -22,19 +22,19 @@ namespace {
 
 constexpr char kMethod[] = "/duet.v1.MotionSynthesis/Synthesize";
 
-// Requests go out as the bytes that they were made into once.
+// Sends requests as bytes that were serialised once.
 using Stub = grpc::TemplatedGenericStub<grpc::ByteBuffer, v1::SynthesizeResponse>;
 
 class Call;
 
-// Calls under way, and those that have ended and that nobody was told of yet.
+// Calls in flight, and ended calls that Wait has not returned yet.
 class CallBook {
  public:
   void Begin(int64_t id, std::shared_ptr<Call> call) {
     const std::lock_guard<std::mutex> lock(mutex_);
     open_.emplace(id, std::move(call));
   }
-  // Gives back the call, for whoever ends it to keep as long as it needs.
+  // Returns the call, which the thread that ends it keeps alive.
   std::shared_ptr<Call> End(const EndedCall& ended) {
     const std::lock_guard<std::mutex> lock(mutex_);
     const auto found = open_.find(ended.id);
@@ -68,7 +68,7 @@ class CallBook {
   std::vector<EndedCall> ended_;
 };
 
-// One call. gRPC's threads tell it of each message; it looks at the clock and counts frames.
+// One call. gRPC's threads report each message; it records times and counts frames.
 class Call final : public grpc::ClientBidiReactor<grpc::ByteBuffer, v1::SynthesizeResponse> {
  public:
   Call(int64_t id, CallBook* book) : book_(book) { ended_.id = id; }
@@ -143,7 +143,7 @@ class GrpcTarget final : public Target {
 
   std::vector<EndedCall> Wait(Time until) override { return book_.Wait(until); }
 
-  // A call may end on this thread as it is cancelled: under no lock.
+  // Cancelling may end a call on this thread: hold no lock.
   void CancelAll() override {
     for (const std::shared_ptr<Call>& call : book_.Open()) call->Cancel();
   }

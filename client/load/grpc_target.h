@@ -11,12 +11,12 @@
 
 namespace duet::client::load {
 
-// A server, over `connections` connections that calls take in turn. Call kind i asks with
-// requests[i], a serialised duet.v1.SynthesizeRequest; every call has the options' deadline, one
-// attempt, and no thread of its own. A reply without all its frames ends as INTERNAL.
+// A server, over `connections` connections that calls use in turn. Call kind i sends requests[i], a
+// serialised duet.v1.SynthesizeRequest; every call has the options' deadline, one attempt, and no
+// thread of its own. A reply without all its frames ends as INTERNAL.
 //
-// Returns once every connection is there. Errors: INVALID_ARGUMENT when an option makes no sense,
-// UNAVAILABLE when a connection does not come about within the deadline.
+// Returns after every connection is established. Errors: INVALID_ARGUMENT for invalid options,
+// UNAVAILABLE if a connection is not established within the deadline.
 absl::StatusOr<std::unique_ptr<Target>> ConnectTarget(const ClientOptions& options, int connections,
                                                       const std::vector<std::string>& requests);
 

@@ -13,24 +13,24 @@
 namespace duet::client::load {
 
 struct LoadOptions {
-  // How often each of the target's kinds of call is drawn; one or more.
+  // The weight of each of the target's kinds of call; at least one.
   std::vector<double> kind_weights = {1};
   ArrivalKind arrivals = ArrivalKind::kPoisson;
   uint64_t seed = 0;
-  Duration warm_up = std::chrono::seconds(1);  // calls due before it is over are not measured
+  Duration warm_up = std::chrono::seconds(1);  // calls that are due before its end are not measured
   Duration measured = std::chrono::seconds(10);
-  int64_t calls = 0;  // where above 0, so many are measured, however long that takes
-  // Of an open loop: no more calls than these are under way; those due meanwhile are sent late,
-  // and measured from when they were due.
+  int64_t calls = 0;  // if above 0, the number of measured calls, independent of time
+  // In an open loop: the most calls in flight. Calls due beyond that are sent late and measured
+  // from their due time.
   int max_in_flight = 4096;
-  // Callers who ask for `background_kind` all the time and are not measured.
+  // Callers that call `background_kind` continuously and are not measured.
   int background_callers = 0;
   std::size_t background_kind = 0;
   Duration interval = std::chrono::seconds(1);  // of the timeline
-  // Told of every call that is not background, in the order in which they ended. Optional.
+  // Receives every call except background calls, in the order in which they ended. Optional.
   std::function<void(const CallRecord&)> on_record;
-  // Looked at all the time: no further call is sent once it says so, and what was sent until then
-  // is what was measured. Optional.
+  // Polled: after it returns true no further call is sent, and only the calls sent until then are
+  // measured. Optional.
   std::function<bool()> stopped;
 };
 

@@ -10,18 +10,18 @@ constexpr int kBucketBits = 6;  // 64 buckets for each doubling
 constexpr int64_t kBuckets = int64_t{1} << kBucketBits;
 constexpr int64_t kLargest = int64_t{1} << 62;
 
-// The highest bit of a value that is 1 or more.
+// The highest set bit of a value >= 1.
 int HighestBit(int64_t value) { return 63 - __builtin_clzll(static_cast<uint64_t>(value)); }
 
-// Below 2 * kBuckets a value is its own bucket; above, the highest bit says which doubling and the
-// next kBucketBits say which part of it.
+// Below 2 * kBuckets a value is its own bucket; above, the highest bit gives the doubling and the
+// next kBucketBits the part of it.
 std::size_t BucketOf(int64_t value) {
   if (value < 2 * kBuckets) return static_cast<std::size_t>(value);
   const int shift = HighestBit(value) - kBucketBits;
   return static_cast<std::size_t>(shift * kBuckets + (value >> shift));
 }
 
-// The middle of what falls into a bucket.
+// The middle of a bucket's values.
 int64_t MiddleOf(std::size_t bucket) {
   const auto index = static_cast<int64_t>(bucket);
   if (index < 2 * kBuckets) return index;

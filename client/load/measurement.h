@@ -15,7 +15,7 @@
 
 namespace duet::client::load {
 
-// What every distribution is reported at.
+// The reported percentiles of every distribution.
 struct NamedPercentile {
   absl::string_view name;
   double percent;
@@ -30,30 +30,30 @@ inline constexpr std::array<NamedPercentile, 9> kPercentiles = {{{"min", 0},
                                                                  {"p99.9", 99.9},
                                                                  {"max", 100}}};
 
-// Calls that were answered. Times are in nanoseconds, from when a call was due, not from when it
-// was sent: a generator or a server that falls behind makes no figure better by it (coordinated
+// Answered calls. Times are in nanoseconds from when a call was due, not from when it was sent:
+// otherwise a generator or a server that falls behind would improve the figures (coordinated
 // omission).
 struct Answered {
   LogHistogram first_chunk;
   LogHistogram whole_call;
-  LogHistogram frame_rate;  // frames of a call by the time that it took; millihertz
+  LogHistogram frame_rate;  // frames of a call divided by its time; millihertz
 };
 
-// A stretch of the measured time, by when calls were due.
+// An interval of the measured time, with the calls that were due in it.
 struct Interval {
   int64_t due = 0;
   int64_t answered = 0;
   int64_t failed = 0;
-  LogHistogram whole_call;  // of those that were answered
+  LogHistogram whole_call;  // of answered calls
 };
 
-// What is asked of a server at a time: one of the two.
+// The load of a step: exactly one of the two.
 struct Step {
-  int callers = 0;     // closed loop: so many, each of which asks again once it is answered
-  double rate_hz = 0;  // open loop: so many calls a second, whatever becomes of them
+  int callers = 0;     // closed loop: callers that call again after each answer
+  double rate_hz = 0;  // open loop: calls a second, independent of the answers
 };
 
-// A call that has ended, for who keeps a record of each.
+// A call that has ended.
 struct CallRecord {
   Duration due;      // from the start of the measured time; negative while warming up
   Duration late;     // from when it was due to when it was sent
@@ -64,24 +64,24 @@ struct CallRecord {
   int frames = 0;
 };
 
-// What became of the calls of a step that were due in its measured time.
+// The results of the calls of a step that were due in its measured time.
 struct Measurement {
   Step step;
-  double began_unix = 0;  // measuring, in seconds since 1970; set by who knows the date
+  double began_unix = 0;  // start of measuring, in seconds since 1970; set by the caller
   double seconds = 0;     // measured
-  int64_t due = 0;        // calls that ought to have been sent
-  int64_t sent = 0;       // calls that were; the rest had to wait for others to end, to the last
+  int64_t due = 0;        // calls that were due
+  int64_t sent = 0;       // calls that were sent; the others waited until the end for a free place
   LogHistogram late;      // nanoseconds from when calls were due to when they were sent
   Answered all;           // of every kind
   std::vector<Answered> by_kind;
-  // Of every call, by how it ended; nanoseconds from when it was due.
+  // Of every call, by status; nanoseconds from when it was due.
   std::map<absl::StatusCode, LogHistogram> ended;
-  // Within the measured time, whenever they were due.
+  // Ended within the measured time, including calls due before it.
   int64_t answered_in_time = 0;
   int64_t frames_in_time = 0;
   Duration interval_length{0};
   std::vector<Interval> timeline;
-  std::map<absl::StatusCode, int64_t> background;  // calls that were load alone
+  std::map<absl::StatusCode, int64_t> background;  // background calls
 
   int64_t answered() const { return all.whole_call.count(); }
   double answered_per_second() const;
@@ -90,12 +90,11 @@ struct Measurement {
   double sent_per_second() const;
 };
 
-// Whether the generator did what it was asked to: all calls were sent, and no more than one in a
-// hundred over 10 ms late. Where it did not, the figures tell of the generator as well as of the
-// server.
+// Whether the generator kept up: all calls were sent, and at most one in a hundred over 10 ms late.
+// Otherwise the figures also measure the generator.
 bool KeptUp(const Measurement& measurement);
 
-// Calls that ended in any way but well, together.
+// All calls that ended with an error.
 LogHistogram NotAnswered(const Measurement& measurement);
 
 }  // namespace duet::client::load

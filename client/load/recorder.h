@@ -13,21 +13,21 @@
 
 namespace duet::client::load {
 
-// Makes a measurement of calls. Those due before `measured_from` are not measured.
+// Builds a measurement from calls. Ignores calls due before `measured_from`.
 class Recorder {
  public:
   // `options` outlives the recorder.
   Recorder(const Step& step, const LoadOptions& options, Time measured_from);
 
-  // A call is due, whether or not it is ever sent.
+  // Counts a due call, even if it is never sent.
   void Due(Time due);
   void Ended(Time due, Time sent, std::size_t kind, const EndedCall& ended);
   void BackgroundEnded(absl::StatusCode code) { ++measurement_.background[code]; }
 
-  // Calls that end later than this count in no rate.
+  // Calls that end later do not count in rates.
   void CloseAt(Time end) { answered_until_ = end; }
   int64_t measured_due() const { return measurement_.due; }
-  // What was measured in so many seconds.
+  // The measurement over `seconds` seconds.
   Measurement Finish(double seconds);
 
  private:

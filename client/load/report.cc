@@ -41,7 +41,7 @@ std::set<absl::StatusCode> AllCodes(const Report& report) {
   return codes;
 }
 
-// How calls ended that were not answered: "12 RESOURCE_EXHAUSTED (p50 0.4, p99 0.9 ms)".
+// The calls that were not answered: "12 RESOURCE_EXHAUSTED (p50 0.4, p99 0.9 ms)".
 std::string Failures(const Measurement& step) {
   std::string text;
   for (const auto& [code, times] : step.ended) {
@@ -78,7 +78,7 @@ std::string WhyNotKeptUp(const Measurement& measurement) {
     absl::StrAppend(&text, " and ", measurement.due - measurement.sent, " of ", measurement.due,
                     " never");
   }
-  return absl::StrCat(text, ": these figures tell of the generator as well as of the server");
+  return absl::StrCat(text, ": these figures also measure the generator");
 }
 
 std::string Describe(const KindName& kind) {

@@ -10,18 +10,18 @@
 
 namespace duet::client::load {
 
-// A kind of call, as reports name it.
+// A kind of call in a report.
 struct KindName {
   std::string model;  // "sbu@2"
   int frames = 0;
   double share = 1;  // of all calls
 };
 
-// What was measured of a server, step by step.
+// The measurements of a server, step by step.
 struct Report {
   std::string title;
   std::string program;  // "duet-load 1.0.0"
-  std::string time;     // when it began, in UTC
+  std::string time;     // start, in UTC
   std::string server;
   std::vector<std::pair<std::string, std::string>> settings;  // flags and their values
   std::vector<KindName> kinds;
@@ -32,7 +32,7 @@ struct Report {
 std::string StepName(const Step& step);
 // "RESOURCE_EXHAUSTED"
 std::string CodeName(absl::StatusCode code);
-// Where the generator did not do what it was asked to, how; otherwise empty.
+// Why the generator did not keep up; empty if it did.
 std::string WhyNotKeptUp(const Measurement& measurement);
 // "sbu@2, 46 frames".
 std::string Describe(const KindName& kind);

@@ -15,27 +15,27 @@ namespace duet::client::load {
 struct EndedCall {
   int64_t id = 0;
   absl::StatusCode code = absl::StatusCode::kOk;
-  std::optional<Time> first_chunk;  // when its first frames came
+  std::optional<Time> first_chunk;  // arrival of its first frames
   Time end;
-  int frames = 0;  // that came
+  int frames = 0;  // received
 };
 
-// Where calls go and where time comes from. Tests put a simulated server in its place, so that a
-// run of minutes is a function of its seed.
+// The destination of calls and the source of time. Tests use a simulated server, which makes a run
+// of minutes a function of its seed.
 //
-// Threads: used by one.
+// Threads: not thread-safe.
 class Target {
  public:
   virtual ~Target() = default;
 
   virtual Time Now() const = 0;
-  // Begins a call of a kind (an index into what the target knows) and does not wait for it. Every
-  // call that is begun ends, once. `id` is the caller's.
+  // Begins a call of a kind (an index into the target's kinds) without waiting for it. Every call
+  // ends exactly once. The caller chooses `id`.
   virtual void Start(int64_t id, std::size_t kind) = 0;
-  // Waits until `until` or until calls have ended, whichever is first; the calls that have ended
-  // and were not told of before.
+  // Waits until `until` or until calls have ended, whichever is first. Returns the ended calls that
+  // no earlier Wait returned.
   virtual std::vector<EndedCall> Wait(Time until) = 0;
-  // Has all calls end that have not; Wait tells of them too.
+  // Cancels all calls in flight; Wait returns them too.
   virtual void CancelAll() = 0;
 };
 

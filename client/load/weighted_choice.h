@@ -6,16 +6,16 @@
 
 namespace duet::client::load {
 
-// Picks one of several by their weights.
+// Picks an index by weight.
 class WeightedChoice {
  public:
-  // One weight or more, each above 0.
+  // At least one weight, each above 0.
   explicit WeightedChoice(const std::vector<double>& weights) {
     double sum = 0;
     for (const double weight : weights) ends_.push_back(sum += weight);
   }
 
-  // Which one `uniform`, in [0, 1), stands for.
+  // The index for `uniform` in [0, 1).
   std::size_t Pick(double uniform) const {
     std::size_t index = 0;
     while (index + 1 < ends_.size() && uniform * ends_.back() >= ends_[index]) ++index;
@@ -23,7 +23,7 @@ class WeightedChoice {
   }
 
  private:
-  std::vector<double> ends_;  // of each one's share, summed up
+  std::vector<double> ends_;  // cumulative shares
 };
 
 }  // namespace duet::client::load

@@ -26,15 +26,15 @@ const std::map<std::string, Priority> kPriorities = {{"interactive", Priority::k
                                                      {"bulk", Priority::kBulk}};
 
 constexpr char kFooter[] = R"(
-Measures how fast a server answers: so many callers who each ask again once they are answered
-(--callers), or so many calls a second whatever becomes of them (--rate). Several values make
-several steps. Every time runs from when a call was due. Nothing is tried twice.
+Measures a server under load: callers that each call again after an answer (--callers), or calls
+at a rate that is independent of the answers (--rate). Several values make several steps. Every
+time runs from when a call was due. Calls are not retried.
 
 Exit codes:
   0   done
   1   no call was answered
-  2   the command line makes no sense
-  42  the server refuses such calls, or a file cannot be written
+  2   the command line is invalid
+  42  the server rejects the calls, or a file cannot be written
 
 Examples:
   duet-load --server lab:50051 --callers 1,8,64
@@ -46,7 +46,7 @@ absl::Status Wanted(absl::string_view text, absl::string_view wanted) {
       absl::StrCat(base::Quoted(text), ", wanted ", wanted, ", such as 46=9,460"));
 }
 
-// A list of values, each with its weight or none; `parse` reads a value.
+// A list of values with optional weights; `parse` reads a value.
 template <typename T, typename Parse>
 absl::StatusOr<std::vector<Weighted<T>>> ParseMix(absl::string_view text, const Parse& parse) {
   std::vector<Weighted<T>> mix;
@@ -73,13 +73,13 @@ absl::StatusOr<int> ParseFrameCount(absl::string_view text) {
 void AddLoad(CLI::App* app, LoadArguments* arguments) {
   CLI::Option* callers =
       app->add_option("--callers", arguments->callers,
-                      "Calls at a time: each caller asks again once it is answered (default: 1)")
+                      "Concurrent callers; each calls again after an answer (default: 1)")
           ->delimiter(',')
           ->allow_extra_args(false)
           ->check(Undescribed(CLI::Range(1, 100000)))
           ->type_name("N[,N...]")
           ->group(kLoadGroup);
-  app->add_option("--rate", arguments->rates, "Calls a second, whatever becomes of them")
+  app->add_option("--rate", arguments->rates, "Calls a second, independent of the answers")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check(Undescribed(CLI::Range(0.001, 1e6)))
@@ -88,39 +88,39 @@ void AddLoad(CLI::App* app, LoadArguments* arguments) {
       ->group(kLoadGroup);
   AddChoice<ArrivalKind>(
       app, "--arrivals", kArrivals, [arguments](ArrivalKind kind) { arguments->arrivals = kind; },
-      "Whether calls of a rate come as strangers do, or one after the other")
+      "Gaps between the calls of a rate: random or constant")
       ->default_str(cli::NameOf(kArrivals, arguments->arrivals))
       ->group(kLoadGroup);
-  app->add_option("--warm-up", arguments->warm_up_seconds, "Seconds of each step before measuring")
+  app->add_option("--warm-up", arguments->warm_up_seconds, "Unmeasured seconds before each step")
       ->check(Undescribed(CLI::Range(0.0, 86400.0)))
       ->capture_default_str()
       ->type_name("SECONDS")
       ->group(kLoadGroup);
   CLI::Option* seconds =
-      app->add_option("--seconds", arguments->seconds, "Seconds of each step that are measured")
+      app->add_option("--seconds", arguments->seconds, "Measured seconds of each step")
           ->check(Undescribed(CLI::Range(0.1, 864000.0)))
           ->capture_default_str()
           ->type_name("SECONDS")
           ->group(kLoadGroup);
-  app->add_option("--calls", arguments->calls, "Measure so many calls instead")
+  app->add_option("--calls", arguments->calls, "Number of measured calls, in place of --seconds")
       ->check(Undescribed(CLI::Range(int64_t{1}, int64_t{1000000000})))
       ->excludes(seconds)
       ->type_name("N")
       ->group(kLoadGroup);
-  app->add_option("--connections", arguments->connections, "Connections that calls take in turn")
+  app->add_option("--connections", arguments->connections, "Connections, which calls use in turn")
       ->check(Undescribed(CLI::Range(1, 1000)))
       ->capture_default_str()
       ->type_name("N")
       ->group(kLoadGroup);
   app->add_option("--max-in-flight", arguments->max_in_flight,
-                  "Of a rate: calls under way, at most; more are sent late, and the report says so")
+                  "Maximum calls in flight with --rate; further calls are sent late, and reported")
       ->check(Undescribed(CLI::Range(1, 1000000)))
       ->capture_default_str()
       ->type_name("N")
       ->group(kLoadGroup);
   AddParsed<uint64_t>(
       app, "--seed", "SEED", cli::ParseSeed, [arguments](uint64_t seed) { arguments->seed = seed; },
-      "Of arrivals and of who asks for what: the same seed gives the same load")
+      "Seed of arrivals and requests: the same seed gives the same load")
       ->take_last()
       ->default_str(absl::StrCat(arguments->seed))
       ->group(kLoadGroup);
@@ -128,7 +128,7 @@ void AddLoad(CLI::App* app, LoadArguments* arguments) {
 
 void AddBackground(CLI::App* app, LoadArguments* arguments) {
   CLI::Option* callers = app->add_option("--background-callers", arguments->background_callers,
-                                         "Callers who ask all the time and are not measured")
+                                         "Callers that call continuously and are not measured")
                              ->check(Undescribed(CLI::Range(0, 100000)))
                              ->capture_default_str()
                              ->type_name("N")
@@ -142,7 +142,7 @@ void AddBackground(CLI::App* app, LoadArguments* arguments) {
   AddParsed<ModelChoice>(
       app, "--background-model", "NAME[@VERSION|:LABEL]", cli::ParseModelChoice,
       [arguments](ModelChoice model) { arguments->background_model = std::move(model); },
-      "The model that they ask; the first of the measured ones without")
+      "Their model (default: the first measured one)")
       ->take_last()
       ->needs(callers)
       ->group(kLoadGroup);
@@ -152,7 +152,7 @@ void AddCalls(CLI::App* app, LoadArguments* arguments) {
   AddParsed<std::vector<Weighted<int>>>(
       app, "--frames", "FRAMES[=WEIGHT],...", ParseFrames,
       [arguments](std::vector<Weighted<int>> frames) { arguments->mix.frames = std::move(frames); },
-      "Lengths of the leaders, drawn by their weights")
+      "Lengths of the leaders, drawn by weight")
       ->take_last()
       ->default_str(absl::StrCat(arguments->mix.frames.front().value))
       ->group(kCallGroup);
@@ -161,20 +161,20 @@ void AddCalls(CLI::App* app, LoadArguments* arguments) {
       [arguments](std::vector<Weighted<ModelChoice>> models) {
         arguments->mix.models = std::move(models);
       },
-      "NAME, NAME@VERSION or NAME:LABEL, drawn by their weights; the server's default without")
+      "NAME, NAME@VERSION or NAME:LABEL, drawn by weight (default: the server's)")
       ->take_last()
       ->group(kCallGroup);
   AddParsed<ClassWeight>(app, "--label", "CLASS[=WEIGHT]", cli::ParseClassWeight,
                          cli::AppendTo(&arguments->mix.labels),
-                         "Repeatable; without, 1 for the model's first class")
+                         "Repeatable (default: 1 for the model's first class)")
       ->group(kCallGroup);
   AddChoice<Priority>(
       app, "--priority", kPriorities,
       [arguments](Priority priority) { arguments->mix.priority = priority; },
-      "Whether calls are urgent or may wait")
+      "Priority of the calls")
       ->default_str(cli::NameOf(kPriorities, arguments->mix.priority))
       ->group(kCallGroup);
-  app->add_option("--deadline", arguments->server.timeout_seconds, "Of each call")
+  app->add_option("--deadline", arguments->server.timeout_seconds, "Deadline of each call")
       ->check(Undescribed(CLI::Range(0.001, 86400.0)))
       ->capture_default_str()
       ->type_name("SECONDS")
@@ -182,7 +182,7 @@ void AddCalls(CLI::App* app, LoadArguments* arguments) {
 }
 
 void AddOutputs(CLI::App* app, LoadArguments* arguments) {
-  app->add_option("--html", arguments->html, "Write a page with tables and plots")
+  app->add_option("--html", arguments->html, "Write a page with tables and charts")
       ->type_name("FILE")
       ->group(kOutputGroup);
   app->add_option("--csv", arguments->csv, "Write a row for each step")
@@ -194,10 +194,10 @@ void AddOutputs(CLI::App* app, LoadArguments* arguments) {
   app->add_option("--records", arguments->records, "Write a CSV row for each call")
       ->type_name("FILE")
       ->group(kOutputGroup);
-  app->add_option("--title", arguments->title, "Of the report")
+  app->add_option("--title", arguments->title, "Title of the report")
       ->type_name("TEXT")
       ->group(kOutputGroup);
-  app->add_flag("--quiet", arguments->quiet, "Do not say which step runs")->group(kOutputGroup);
+  app->add_flag("--quiet", arguments->quiet, "Do not print the current step")->group(kOutputGroup);
 }
 
 }  // namespace
@@ -214,7 +214,7 @@ void AddLoadFlags(CLI::App* app, LoadArguments* arguments) {
   app->footer(kFooter);
   app->get_formatter()->column_width(34);
   app->add_option("--server", arguments->server.address,
-                  "Or any gRPC target, such as unix:/run/duet.sock")
+                  "Server, or any gRPC target such as unix:/run/duet.sock")
       ->envname("DUET_SERVER")
       ->capture_default_str()
       ->type_name("HOST:PORT")
@@ -225,8 +225,7 @@ void AddLoadFlags(CLI::App* app, LoadArguments* arguments) {
   AddCalls(app, arguments);
   AddOutputs(app, arguments);
   app->add_flag("--man", arguments->manual_page, "Print the manual page");
-  app->add_option("--completion", arguments->completion,
-                  "Print what makes a shell complete this program")
+  app->add_option("--completion", arguments->completion, "Print the completion script of a shell")
       ->check(Undescribed(CLI::IsMember(std::vector<std::string>{"bash", "zsh", "fish"})))
       ->type_name("bash|zsh|fish");
 }

@@ -19,7 +19,7 @@
 
 namespace duet::client::load::program {
 
-// Everything that duet-load can be told.
+// The arguments of duet-load.
 struct LoadArguments {
   cli::ServerArguments server;
   std::vector<int> callers;   // a step each; and
@@ -44,14 +44,13 @@ struct LoadArguments {
   std::vector<Step> Steps() const;
 };
 
-// duet-load's command line: what parsing, help, completion and the manual page come from.
+// duet-load's command line: the source of parsing, help, completion and the manual page.
 void AddLoadFlags(CLI::App* app, LoadArguments* arguments);
 
 // The flags that were given, with their values.
 std::vector<std::pair<std::string, std::string>> GivenFlags(const CLI::App& app);
 
-// "46=9,460": lengths with their weights, 1 where none is said. Errors: INVALID_ARGUMENT with what
-// came and what was wanted.
+// "46=9,460": lengths with their weights (default 1). Errors: INVALID_ARGUMENT.
 absl::StatusOr<std::vector<Weighted<int>>> ParseFrames(absl::string_view text);
 // "sbu=3,k3hi@1": the same of models.
 absl::StatusOr<std::vector<Weighted<ModelChoice>>> ParseModels(absl::string_view text);

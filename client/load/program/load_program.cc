@@ -25,9 +25,9 @@ namespace duet::client::load::program {
 namespace {
 
 constexpr char kStandardOutput[] = "-";
-constexpr double kMostIntervals = 300;  // of a timeline: as many as a plot can show
+constexpr double kMostIntervals = 300;  // of a timeline: as many as a chart can show
 
-// Asks for what the server serves, patiently; calls that are measured are tried once.
+// Uses the client's retries; measured calls have one attempt.
 absl::StatusOr<std::vector<CallKind>> FindAllKinds(const LoadArguments& arguments,
                                                    const ClientOptions& options) {
   const absl::StatusOr<Client> client = Client::Create(options);
@@ -99,7 +99,7 @@ class LoadRun {
 
   absl::Status OpenRecords() {
     if (arguments_.records.empty()) return absl::OkStatus();
-    // Says by itself what is wrong with the path.
+    // Its status describes what is wrong with the path.
     absl::Status status = base::WriteFile(arguments_.records, RecordHeader());
     if (status.ok()) records_.open(arguments_.records, std::ios::app);
     return status;
@@ -145,7 +145,7 @@ class LoadRun {
     records_.flush();
     if (records_.is_open() && !records_) {
       return absl::InvalidArgumentError(
-          absl::StrCat(arguments_.records.string(), ": not all could be written"));
+          absl::StrCat(arguments_.records.string(), ": could not write every record"));
     }
     return absl::OkStatus();
   }
@@ -161,7 +161,7 @@ class LoadRun {
 }  // namespace
 
 int RunLoadProgram(const std::vector<std::string>& arguments, const LoadEnvironment& environment) {
-  CLI::App app("Puts a load on a Duet server and measures how fast it answers.", "duet-load");
+  CLI::App app("Puts a load on a Duet server and measures its answers.", "duet-load");
   app.set_version_flag("--version", "duet-load " DUET_VERSION);
   LoadArguments parsed;
   AddLoadFlags(&app, &parsed);

@@ -11,11 +11,11 @@ namespace duet::client::load::program {
 struct LoadEnvironment {
   std::ostream* out;
   std::ostream* err;
-  std::function<bool()> stopped;  // whether the run shall come to an early end
+  std::function<bool()> stopped;  // whether to end the run early
 };
 
-// The whole `duet-load` program. Returns its exit code (client/cli/exit_code.h). `arguments` come
-// without the program's name.
+// The whole `duet-load` program. Returns its exit code (client/cli/exit_code.h). `arguments`
+// excludes the program's name.
 int RunLoadProgram(const std::vector<std::string>& arguments, const LoadEnvironment& environment);
 
 }  // namespace duet::client::load::program
