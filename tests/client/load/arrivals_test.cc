@@ -31,7 +31,7 @@ TEST(ArrivalsTest, PoissonOnesComeAtTheRateWithExponentialGaps) {
   EXPECT_NEAR(static_cast<double>(long_gaps) / kCalls, 0.3679, 0.01);  // 1 / e
 }
 
-TEST(ArrivalsTest, TheSeedIsTheTimetable) {
+TEST(ArrivalsTest, SeedDeterminesTheDueTimes) {
   Arrivals one(ArrivalKind::kPoisson, 10, 1), same(ArrivalKind::kPoisson, 10, 1);
   Arrivals other(ArrivalKind::kPoisson, 10, 2);
   const Duration first = one.Next();

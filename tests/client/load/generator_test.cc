@@ -29,7 +29,7 @@ LoadOptions Constant() {
   return options;
 }
 
-TEST(GeneratorTest, CallersAskAgainOnceTheyAreAnswered) {
+TEST(GeneratorTest, CallersCallAgainAfterEachAnswer) {
   SimulatedServer server;
   server.workers = 2;
   const Measurement seen = RunStep(Callers(4), {}, server);
@@ -42,7 +42,7 @@ TEST(GeneratorTest, CallersAskAgainOnceTheyAreAnswered) {
   EXPECT_TRUE(KeptUp(seen));
 }
 
-TEST(GeneratorTest, ARateIsSentWhateverBecomesOfIt) {
+TEST(GeneratorTest, RateIsIndependentOfTheAnswers) {
   SimulatedServer server;
   server.cost = [](std::size_t) { return Seconds(0.5); };  // 2 calls a second of 50
   const Measurement seen = RunStep(Rate(50), Constant(), server);
@@ -67,7 +67,7 @@ TEST(GeneratorTest, PoissonArrivalsQueueWhereConstantOnesDoNot) {
   EXPECT_NEAR(poisson.all.whole_call.mean() / kMillisecond, 24, 6);
 }
 
-TEST(GeneratorTest, AServerThatStandsStillHasASecondsCallsToAnswerFor) {
+TEST(GeneratorTest, PauseOfTheServerDelaysEveryCallDueInIt) {
   SimulatedServer server;
   server.cost = [](std::size_t) { return Seconds(0.001); };
   server.stands_still_from = Seconds(5);
@@ -92,7 +92,7 @@ TEST(GeneratorTest, ACallThatIsSentLateIsMeasuredFromWhenItWasDue) {
   EXPECT_FALSE(KeptUp(seen));
 }
 
-TEST(GeneratorTest, CallsThatNobodyCouldSendAreToldOf) {
+TEST(GeneratorTest, CallsThatWereNeverSentAreReported) {
   SimulatedServer server;
   server.cost = [](std::size_t) { return Seconds(1); };
   LoadOptions options = Constant();
@@ -116,7 +116,7 @@ TEST(GeneratorTest, TheWarmUpIsNotMeasured) {
   EXPECT_DOUBLE_EQ(seen.seconds, 10);
 }
 
-TEST(GeneratorTest, ANumberOfCallsIsThatNumber) {
+TEST(GeneratorTest, NumberOfCallsIsExact) {
   for (const Step& step : {Callers(3), Rate(40)}) {
     SimulatedServer server;
     LoadOptions options;
@@ -129,7 +129,7 @@ TEST(GeneratorTest, ANumberOfCallsIsThatNumber) {
   }
 }
 
-TEST(GeneratorTest, WhatIsRefusedIsCountedByItself) {
+TEST(GeneratorTest, RejectionsAreCountedSeparately) {
   SimulatedServer server;
   server.max_calls = 2;
   const Measurement seen = RunStep(Rate(300), Constant(), server);
@@ -161,7 +161,7 @@ TEST(GeneratorTest, KindsAreDrawnByTheirWeights) {
   EXPECT_NE(server.kinds, other.kinds);
 }
 
-TEST(GeneratorTest, TheBackgroundIsLoadAndNoFigure) {
+TEST(GeneratorTest, BackgroundIsNotMeasured) {
   SimulatedServer server;
   server.workers = 3;
   server.cost = [](std::size_t kind) { return Seconds(kind == 1 ? 3 : 0.01); };
@@ -177,7 +177,7 @@ TEST(GeneratorTest, TheBackgroundIsLoadAndNoFigure) {
   EXPECT_THAT(seen.ended, ElementsAre(Key(absl::StatusCode::kOk)));
 }
 
-TEST(GeneratorTest, ARefusedBackgroundPausesBeforeItAsksAgain) {
+TEST(GeneratorTest, RejectedBackgroundPausesBeforeTheNextCall) {
   SimulatedServer server;
   server.max_calls = 0;
   LoadOptions options = Constant();
@@ -188,7 +188,7 @@ TEST(GeneratorTest, ARefusedBackgroundPausesBeforeItAsksAgain) {
               12);
 }
 
-TEST(GeneratorTest, ComesToAnEarlyEnd) {
+TEST(GeneratorTest, StopsEarlyOnRequest) {
   for (const Step& step : {Callers(2), Rate(50)}) {
     SimulatedServer server;
     LoadOptions options;
@@ -200,7 +200,7 @@ TEST(GeneratorTest, ComesToAnEarlyEnd) {
   }
 }
 
-TEST(GeneratorTest, TheTimelineSaysWhen) {
+TEST(GeneratorTest, TimelineCountsCallsByDueTime) {
   SimulatedServer server;
   server.cost = [](std::size_t) { return Seconds(0.001); };
   server.stands_still_from = Seconds(3);  // two seconds after the warm-up

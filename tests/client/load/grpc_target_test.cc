@@ -60,7 +60,7 @@ class GrpcTargetTest : public ::testing::Test {
   ClientOptions options_;
 };
 
-TEST_F(GrpcTargetTest, TellsHowACallEnded) {
+TEST_F(GrpcTargetTest, ReportsTheStatusOfACall) {
   server_.service().on_synthesize = [](auto*, const auto&, auto* writer) {
     WriteReply(kFrames, true, writer);
     return grpc::Status::OK;
@@ -77,7 +77,7 @@ TEST_F(GrpcTargetTest, TellsHowACallEnded) {
   EXPECT_LE(*ended.first_chunk, ended.end);
 }
 
-TEST_F(GrpcTargetTest, AReplyWithoutAllItsFramesIsNone) {
+TEST_F(GrpcTargetTest, IncompleteReplyIsInternal) {
   for (const auto& [frames, with_summary] : {std::pair(30, true), std::pair(kFrames, false)}) {
     server_.service().on_synthesize = [frames = frames, with_summary = with_summary](
                                           auto*, const auto&, auto* writer) {
@@ -90,7 +90,7 @@ TEST_F(GrpcTargetTest, AReplyWithoutAllItsFramesIsNone) {
   }
 }
 
-TEST_F(GrpcTargetTest, RefusalsHaveTheirCodeAndAreTriedOnce) {
+TEST_F(GrpcTargetTest, RejectionsKeepTheirCodeAndAreNotRetried) {
   std::atomic<int> calls{0};
   server_.service().on_synthesize = [&calls](auto*, const auto&, auto*) {
     ++calls;
@@ -154,7 +154,7 @@ TEST_F(GrpcTargetTest, CancelledCallsEndAndNothingOutlivesIt) {
   target.reset();  // with one under way
 }
 
-TEST_F(GrpcTargetTest, SaysWhoCalls) {
+TEST_F(GrpcTargetTest, SendsItsToken) {
   std::string authorization;
   server_.service().on_synthesize = [&](auto* context, const auto&, auto*) {
     const auto& metadata = context->client_metadata();
@@ -171,7 +171,7 @@ TEST_F(GrpcTargetTest, SaysWhoCalls) {
   EXPECT_EQ(authorization, "Bearer secret");
 }
 
-TEST(ConnectTargetTest, SaysThatNobodyIsThere) {
+TEST(ConnectTargetTest, UnreachableServerIsAnError) {
   ClientOptions options;
   options.server_address = "unix:/nowhere/duet.sock";
   options.deadline = absl::Milliseconds(50);

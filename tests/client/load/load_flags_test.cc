@@ -61,7 +61,7 @@ TEST(LoadFlagsTest, ReadsWhatCallsAskFor) {
   EXPECT_EQ(parsed.arrivals, ArrivalKind::kConstant);
 }
 
-TEST(LoadFlagsTest, SaysWhatItWanted) {
+TEST(LoadFlagsTest, InvalidMixesNameTheExpectedForm) {
   EXPECT_THAT(std::string(ParseFrames("46=0").status().message()),
               HasSubstr("\"46=0\", wanted a weight above 0"));
   EXPECT_THAT(std::string(ParseFrames("46,x").status().message()),
@@ -77,7 +77,7 @@ TEST(LoadFlagsTest, SaysWhatItWanted) {
   }
 }
 
-TEST(LoadFlagsTest, TellsWhatWasGiven) {
+TEST(LoadFlagsTest, GivenFlagsAreListed) {
   CLI::App app;
   LoadArguments parsed;
   AddLoadFlags(&app, &parsed);
@@ -96,13 +96,13 @@ TEST(LoadProgramTest, HasAManualPageAndCompletion) {
   EXPECT_THAT(RunWith({"--completion", "fish"}).out, HasSubstr("complete -c duet-load"));
 }
 
-TEST(LoadProgramTest, SaysThatNobodyIsThere) {
+TEST(LoadProgramTest, UnreachableServerIsAnError) {
   const Ran ran = RunWith({"--server", "unix:/nowhere/duet.sock", "--deadline", "0.05"});
   EXPECT_EQ(ran.code, cli::kExitRetry);
   EXPECT_THAT(ran.err, HasSubstr("duet-load: "));
 }
 
-TEST(LoadProgramTest, ATokenFileThatIsNotThereIsBadInput) {
+TEST(LoadProgramTest, MissingTokenFileIsBadInput) {
   EXPECT_EQ(RunWith({"--token-file", "/nowhere/token"}).code, cli::kExitBadInput);
 }
 

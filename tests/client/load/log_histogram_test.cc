@@ -30,7 +30,7 @@ TEST(LogHistogramTest, SmallValuesAreExact) {
   EXPECT_DOUBLE_EQ(histogram.mean(), 50.5);
 }
 
-TEST(LogHistogramTest, EveryPercentileIsOffByLessThanItSays) {
+TEST(LogHistogramTest, PercentilesAreWithinTheStatedError) {
   base::Random random(1);
   for (int round = 0; round < 2000; ++round) {
     // Two neighbours of one value, so that it is neither smallest nor largest.
@@ -52,7 +52,7 @@ TEST(LogHistogramTest, SmallestAndLargestAreExact) {
   EXPECT_EQ(histogram.Percentile(100), 7654321);
 }
 
-TEST(LogHistogramTest, AThousandthIsTheOneBeyond999) {
+TEST(LogHistogramTest, RankOfP999IsNotRoundedUp) {
   LogHistogram histogram;
   for (int i = 0; i < 999; ++i) histogram.Add(10);
   histogram.Add(5000);
@@ -61,7 +61,7 @@ TEST(LogHistogramTest, AThousandthIsTheOneBeyond999) {
   EXPECT_EQ(histogram.Percentile(99.9), 5000);
 }
 
-TEST(LogHistogramTest, TakesWhatIsOutOfRange) {
+TEST(LogHistogramTest, OutOfRangeValuesAreClamped) {
   LogHistogram histogram;
   histogram.Add(-5);
   histogram.Add(INT64_MAX);
@@ -69,7 +69,7 @@ TEST(LogHistogramTest, TakesWhatIsOutOfRange) {
   EXPECT_EQ(histogram.max(), int64_t{1} << 62);
 }
 
-TEST(LogHistogramTest, TwoTogetherAreAsOne) {
+TEST(LogHistogramTest, MergedHistogramsEqualOne) {
   LogHistogram low, high, both;
   for (int value = 1; value <= 1000; ++value) {
     (value <= 300 ? low : high).Add(1000 * value);

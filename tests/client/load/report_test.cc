@@ -45,7 +45,7 @@ Report EmptyReport() {
   return report;
 }
 
-TEST(ReportTest, TheTableHasEachStepAndWhatWasRefused) {
+TEST(ReportTest, TableHasEachStepAndItsRejections) {
   const std::string text = ToText(TwoRates());
   EXPECT_THAT(text, HasSubstr("sbu@2, 460 frames: 25.0 % of the calls"));
   EXPECT_THAT(text, HasSubstr("50 calls/s            50.0      2250 |    10.0"));
@@ -53,7 +53,7 @@ TEST(ReportTest, TheTableHasEachStepAndWhatWasRefused) {
   EXPECT_THAT(text, Not(HasSubstr("these figures also measure the generator")));
 }
 
-TEST(ReportTest, SaysWhereTheGeneratorDidNotKeepUp) {
+TEST(ReportTest, ReportsThatTheGeneratorDidNotKeepUp) {
   const Report report = TwoRates(1);
   EXPECT_EQ(WhyNotKeptUp(report.steps[0]), "");
   EXPECT_THAT(WhyNotKeptUp(report.steps[1]),

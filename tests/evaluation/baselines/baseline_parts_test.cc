@@ -188,7 +188,7 @@ TEST(MotionMatrixTest, TheStandardFrameIsTheSameWhereverThePairStands) {
   EXPECT_NEAR(a.follower(0, root), 0, 1e-4);
 }
 
-TEST(MotionMatrixTest, TheWorldComesBack) {
+TEST(MotionMatrixTest, StandardisationIsInvertible) {
   const dataset::Dataset dataset = MadeUpPairs(3);
   const dataset::Sequence& sequence = dataset.sequences[2];
   const StandardPair pair = StandardiseSequence(dataset.skeleton, sequence);
@@ -214,7 +214,7 @@ TEST(MotionMatrixTest, AKnownPartnerDirectionTurnsTheFrame) {
   EXPECT_NEAR(pair.follower(0, root + 2), -1.2 * std::cos(0.5), 1e-4);
 }
 
-TEST(MotionMatrixTest, CuesTellTheLeadersWay) {
+TEST(MotionMatrixTest, CuesContainTheLeadersPath) {
   const dataset::Dataset dataset = MadeUpPairs(1);
   dataset::Sequence sequence = dataset.sequences[0];
   const int joints = dataset.skeleton.joint_count();

@@ -53,7 +53,7 @@ TEST(BaselinesTest, LearnTheMadeUpAnswer) {
   EXPECT_LT(MeanAfd(dataset, "hfkb15"), 0.7 * still);
 }
 
-TEST(BaselinesTest, TheFirstPoseFrozenIsRightWhereNothingMoved) {
+TEST(BaselinesTest, FrozenFirstPoseIsExactForStillFollowers) {
   const dataset::Dataset dataset = MadeUpPairs(3);
   auto method = MakeBaseline("frozen_first_frame");
   ASSERT_THAT(method, IsOk());

@@ -100,7 +100,7 @@ TEST(OtherPeopleTest, LongerClipsAreCutAndShorterOnesStretchedWhereNoneIsLongEno
       Alike(seen.bottomRows(1), Seen(dataset, same[1], other.follower.poses).bottomRows(1)));
 }
 
-TEST(OtherPeopleTest, AClassNobodyWasTrainedOnIsRefused) {
+TEST(OtherPeopleTest, ClassWithoutTrainingClipsIsRejected) {
   const dataset::Dataset dataset = MadeUpPairs(2);
   EXPECT_THAT(AnswerWithOtherPeople(dataset, OfClass(dataset, 1), OfClass(dataset, 0), 0),
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("class give")));

@@ -60,7 +60,7 @@ TEST(PlanSyntheticSetTest, AsksForMatchesAndMixesOfEveryClass) {
   EXPECT_EQ(mixes, (std::map<int, int>{{0, 4}, {1, 4}}));
 }
 
-TEST(PlanSyntheticSetTest, NeverLooksOutsideTheTrainingHalfNorAtFollowers) {
+TEST(PlanSyntheticSetTest, UsesOnlyLeadersOfTheTrainingHalf) {
   dataset::Dataset dataset = MadeUpPairs(6);
   const dataset::Split split = *SplitInHalves(dataset, 1);
   for (const int test : split.test) {  // would show in what is drawn
@@ -76,7 +76,7 @@ TEST(PlanSyntheticSetTest, NeverLooksOutsideTheTrainingHalfNorAtFollowers) {
   }
 }
 
-TEST(PlanSyntheticSetTest, VariesLeadersByTheSeedAlone) {
+TEST(PlanSyntheticSetTest, OnlyTheSeedDeterminesTheVariation) {
   const dataset::Dataset dataset = MadeUpPairs(4);
   const auto first = PlanSyntheticSet(dataset, AllOf(dataset), {4, 4, 1});
   const auto again = PlanSyntheticSet(dataset, AllOf(dataset), {4, 4, 1});

@@ -26,7 +26,7 @@ TEST(DirectionErrors, AreAnglesFromWhereTheFollowerIs) {
               Pointwise(DoubleNear(0.01), {0.0, 30.0, 170.0}));
 }
 
-TEST(DirectionErrors, AreTheRegressionsWhereThereIsOne) {
+TEST(DirectionErrors, UseTheRegressionIfThereIsOne) {
   const dataset::Dataset dataset = test::MadeUpPairs(4);
   const auto count = static_cast<std::size_t>(engine::DirectionFeatureCount(dataset.skeleton));
   engine::DirectionRegression aside;

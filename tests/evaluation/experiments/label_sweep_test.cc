@@ -50,7 +50,7 @@ TEST(MeasureControl, OfACurveThatGoesTheWrongWay) {
   EXPECT_NEAR(control.rank_correlation, -1, 1e-12);
 }
 
-TEST(MeasureControl, CountsLevelApart) {
+TEST(MeasureControl, CountsLevelSeparately) {
   const LabelControl control = MeasureControl({MakeSweepCurve(0, 0, Level)});
   EXPECT_EQ(control.raised_up + control.lowered_down + control.steps_up, 0);
   EXPECT_EQ(control.raised_level, 1);

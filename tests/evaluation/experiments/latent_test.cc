@@ -49,7 +49,7 @@ metrics::FeatureSet Features(const checkpoint::Checkpoint& model, const dataset:
   return features.ok() ? *std::move(features) : metrics::FeatureSet{};
 }
 
-TEST(LatentFeaturesTest, GivesOnePointASequenceWhateverElseIsInTheBatch) {
+TEST(LatentFeaturesTest, PointDoesNotDependOnTheBatch) {
   const dataset::Dataset dataset = MadeUpPairs(4);  // of 16 to 19 frames
   const checkpoint::Checkpoint model = Model(dataset, checkpoint::GeneratorVariant::kPaper);
   const metrics::FeatureSet together = Features(model, dataset, {0, 1, 2, 3});

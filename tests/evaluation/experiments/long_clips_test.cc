@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kRate = 15;
 
-TEST(LongClipsTest, SeesAFollowerFallOverAndDriftAway) {
+TEST(LongClipsTest, MeasuresFallingAndDrifting) {
   const motion::Skeleton skeleton = motion::SbuSkeleton();
   motion::Poses leader = MakeLeader("idle", 40, kRate);
   for (motion::Vec3& p : leader.all()) p.y += 2;  // the floor is the leader's
@@ -40,7 +40,7 @@ TEST(LongClipsTest, SeesAFollowerFallOverAndDriftAway) {
   EXPECT_NEAR(fallen.last_feet, 0.4, 0.01);
 }
 
-TEST(LongClipsTest, TheEndTellsWhetherItStoodUpAgain) {
+TEST(LongClipsTest, LastSecondsShowWhetherItStoodUpAgain) {
   const motion::Poses leader = MakeLeader("idle", 40, kRate);
   motion::Poses follower = leader;
   for (int t = 200; t < 300; ++t) {
@@ -53,7 +53,7 @@ TEST(LongClipsTest, TheEndTellsWhetherItStoodUpAgain) {
   EXPECT_LT(figures.last_feet, 0.01);
 }
 
-TEST(LongClipsTest, TellsTheFirstSecondsFromTheLast) {
+TEST(LongClipsTest, FirstAndLastSecondsAreMeasuredSeparately) {
   const motion::Poses leader = MakeLeader("dance", 40, kRate);
   motion::Poses stops = leader;
   for (int t = 200; t < stops.frame_count(); ++t) {

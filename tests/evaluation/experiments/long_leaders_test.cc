@@ -52,7 +52,7 @@ TEST(MadeLeadersTest, StandingFeetDoNotSlide) {
   }
 }
 
-TEST(MadeLeadersTest, DoWhatTheyAreCalled) {
+TEST(MadeLeadersTest, MoveAsTheirNamesSay) {
   const motion::Skeleton skeleton = motion::SbuSkeleton();
   const auto made = [](const char* name) { return MakeLeader(name, 14, kRate); };
   EXPECT_LT(metrics::JointSpeed(made("idle"), kRate), 0.1);
@@ -93,7 +93,7 @@ TEST(LoopClipsTest, JoinsClipsWithoutAJump) {
   EXPECT_NEAR(Distance(looped.at(next + 20, skeleton.root), clip.at(20, skeleton.root)), 0, 1e-3);
 }
 
-TEST(MakeLongLeadersTest, AsksForThoseMadeAndTheClassesOwnClips) {
+TEST(MakeLongLeadersTest, HasGeneratedLeadersAndTheClassesClips) {
   dataset::Dataset dataset = test::MadeUpPairs(2);
   std::vector<LongLeader> leaders = MakeLongLeaders(dataset, {0, 1, 2, 3}, 1, 8);
   ASSERT_EQ(leaders.size(), MadeLeaderNames().size() + 1);

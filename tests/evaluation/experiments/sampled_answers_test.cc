@@ -68,13 +68,13 @@ TEST(SampledAnswersTest, EveryAnswerHasASeedOfItsOwn) {
   EXPECT_THAT(seeds, SizeIs(10));
 }
 
-TEST(SampledAnswersTest, TheSeedOfTheSetMovesAllOfThem) {
+TEST(SampledAnswersTest, SeedOfTheSetChangesEverySeed) {
   const dataset::Dataset dataset = MadeUpPairs(3);
   EXPECT_EQ(SamplingOf({2, 1, 7}, dataset, 4, 0).seed, SamplingOf({2, 1, 7}, dataset, 4, 0).seed);
   EXPECT_NE(SamplingOf({2, 1, 7}, dataset, 4, 0).seed, SamplingOf({2, 1, 8}, dataset, 4, 0).seed);
 }
 
-TEST(SampledAnswersTest, DirectionsAreToldUnlessTheyAreNotToBe) {
+TEST(SampledAnswersTest, DirectionIsOmittedOnRequest) {
   dataset::Dataset dataset = MadeUpPairs(1);
   dataset.sequences[0].partner_direction = motion::Vec3{1, 0, 0};
   const SeedTeller model(dataset);
@@ -96,7 +96,7 @@ TEST(SampledAnswersTest, AModelThatDoesNotSampleAnswersOnce) {
   EXPECT_THAT(*answers, SizeIs(1));
 }
 
-TEST(SampledAnswersTest, RefusesAStartThatTheModelDoesNotTake) {
+TEST(SampledAnswersTest, UnsupportedStartIsRejected) {
   const dataset::Dataset dataset = MadeUpPairs(1);
   SeedTeller model(dataset);
   model.description().accepts_follower_start = false;

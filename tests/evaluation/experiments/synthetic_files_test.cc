@@ -110,7 +110,7 @@ TEST_F(SyntheticFilesTest, LeadersAreFilesThatTheClientReads) {
   }
 }
 
-TEST_F(SyntheticFilesTest, TheManifestSaysWhatIsAsked) {
+TEST_F(SyntheticFilesTest, ManifestHasLabelsDirectionAndHalf) {
   const std::vector<std::string> lines =
       absl::StrSplit(ReadTestFile(folder_ / "jobs/manifest.tsv"), '\n');
   ASSERT_THAT(lines, testing::SizeIs(jobs_.size() + 2));  // the header, and the last line's end
@@ -128,7 +128,7 @@ TEST_F(SyntheticFilesTest, LeadersOfASetLieInItsFolder) {
               HasSubstr("\nleaders/s01s02/give-001.json\t"));
 }
 
-TEST_F(SyntheticFilesTest, ReadsBackWhatWasAnswered) {
+TEST_F(SyntheticFilesTest, AnsweredSetIsReadBack) {
   const absl::StatusOr<SyntheticSet> set = Read();
   ASSERT_THAT(set, IsOk());
   EXPECT_EQ(set->half, 7u);
@@ -147,7 +147,7 @@ TEST_F(SyntheticFilesTest, ReadsBackWhatWasAnswered) {
   }
 }
 
-TEST_F(SyntheticFilesTest, NamesTheLineOfAnEntryThatMakesNoSense) {
+TEST_F(SyntheticFilesTest, InvalidEntriesAreErrorsThatNameTheLine) {
   const auto invalid = [](const char* text) {
     return StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(text));
   };

@@ -32,7 +32,7 @@ std::vector<metrics::ScoredMotion> Answers(const dataset::Dataset& dataset, bool
   return answers;
 }
 
-TEST(ToldApartTest, FollowersThatStandStillAreTold) {
+TEST(ToldApartTest, StillFollowersAreDistinguished) {
   const dataset::Dataset dataset = MadeUpPairs(12);
   const auto freeze = [](motion::Poses* poses) {
     for (int t = 1; t < poses->frame_count(); ++t) {
@@ -45,7 +45,7 @@ TEST(ToldApartTest, FollowersThatStandStillAreTold) {
   EXPECT_GE(*told, 0.85);
 }
 
-TEST(ToldApartTest, CapturedFollowersAreNot) {
+TEST(ToldApartTest, CapturedFollowersAreIndistinguishable) {
   const dataset::Dataset dataset = MadeUpPairs(12);
   const auto same = [](motion::Poses*) {};
   const absl::StatusOr<double> told =
@@ -54,7 +54,7 @@ TEST(ToldApartTest, CapturedFollowersAreNot) {
   EXPECT_EQ(*told, 0.5);  // the same input twice: one of both is wrong
 }
 
-TEST(ToldApartTest, NoiseAloneGivesNothingAway) {
+TEST(ToldApartTest, NoiseDoesNotDistinguishAnswers) {
   // Shaking in a rhythm of three frames, of which the filter leaves less than a millimetre.
   const dataset::Dataset dataset = MadeUpPairs(12);
   const auto shake = [](motion::Poses* poses) {
@@ -68,7 +68,7 @@ TEST(ToldApartTest, NoiseAloneGivesNothingAway) {
   EXPECT_LE(*told, 0.7);
 }
 
-TEST(ToldApartTest, WantsAnswers) {
+TEST(ToldApartTest, MissingAnswersAreRejected) {
   const dataset::Dataset dataset = MadeUpPairs(3);
   const auto same = [](motion::Poses*) {};
   const std::vector<metrics::ScoredMotion> answers = Answers(dataset, true, same);

@@ -46,7 +46,7 @@ MotionClassifier Trained(const dataset::Dataset& dataset, const ClassifierOption
   return *std::move(judge);
 }
 
-TEST(MotionClassifier, GivesTheSameWithoutLibTorch) {
+TEST(MotionClassifier, MatchesTheClassifierWithoutLibTorch) {
   dataset::Dataset dataset = MadeUpPairs(kPairsAClass);
   std::vector<int> all;
   for (size_t i = 0; i < dataset.sequences.size(); ++i) {
@@ -71,7 +71,7 @@ TEST(MotionClassifier, GivesTheSameWithoutLibTorch) {
   }
 }
 
-TEST(MotionClassifier, TellsTheClassesOfAnotherSubjectApart) {
+TEST(MotionClassifier, ClassifiesAnUnseenSubject) {
   const dataset::Dataset dataset = MadeUpPairs(kPairsAClass);
   const MotionClassifier judge = Trained(dataset, Small());
   const std::vector<metrics::ScoredMotion> test = Followers(dataset, true);
@@ -102,7 +102,7 @@ TEST(MotionClassifier, IsDeterministic) {
 }
 
 // Lengths differ: what is padded beside a motion must not reach it.
-TEST(MotionClassifier, JudgesAMotionAloneAsAmongOthers) {
+TEST(MotionClassifier, ResultDoesNotDependOnTheBatch) {
   const dataset::Dataset dataset = MadeUpPairs(6);
   const MotionClassifier judge = Trained(dataset, Small());
   const std::vector<metrics::ScoredMotion> all = Followers(dataset, false);
@@ -118,7 +118,7 @@ TEST(MotionClassifier, JudgesAMotionAloneAsAmongOthers) {
   }
 }
 
-TEST(MotionClassifier, DoesNotMindWhereThePairStandsInTheWorld) {
+TEST(MotionClassifier, IsInvariantToThePlaceInTheWorld) {
   const dataset::Dataset dataset = MadeUpPairs(6);
   dataset::Dataset moved = dataset;
   for (dataset::Sequence& sequence : moved.sequences) {

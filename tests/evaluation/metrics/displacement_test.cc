@@ -48,7 +48,7 @@ TEST(AfdTest, RawUnitsEqualThePapersPipeline) {
   EXPECT_NEAR(Afd(predicted_world, truth_world, MetricUnit::kSbuRaw), std::sqrt(squared), 1e-5);
 }
 
-TEST(RootAlignedAfdTest, ForgivesPlacementAlone) {
+TEST(RootAlignedAfdTest, IgnoresPlacementButNotPose) {
   motion::Poses moved = kTruth;
   for (motion::Vec3& p : moved[0]) p += motion::Vec3{5, 6, 7};
   for (motion::Vec3& p : moved[1]) p += motion::Vec3{-1, 0, 2};

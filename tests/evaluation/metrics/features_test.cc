@@ -90,7 +90,7 @@ TEST(FrechetDistanceTest, SetsWithoutSpreadDifferByTheirMeans) {
   EXPECT_NEAR(Frechet(a, b), 9, 1e-9);
 }
 
-TEST(FrechetDistanceTest, RefusesWhatIsNoSetOfFeatures) {
+TEST(FrechetDistanceTest, InvalidFeatureSetsAreRejected) {
   const FeatureSet good = {{1, 2}, {3, 4}};
   const float nan = std::numeric_limits<float>::quiet_NaN();
   for (const FeatureSet& bad :
@@ -101,7 +101,7 @@ TEST(FrechetDistanceTest, RefusesWhatIsNoSetOfFeatures) {
   }
 }
 
-TEST(FrechetDistanceTest, SamplesWithoutFeaturesWantOneAtLeast) {
+TEST(FrechetDistanceTest, SamplesWithoutFeaturesAreRejected) {
   const FeatureSet empty = {{}, {}};
   EXPECT_THAT(std::string(FrechetDistance(empty, empty).status().message()),
               testing::HasSubstr("[0]: 0 values, wanted 1"));

@@ -64,7 +64,7 @@ TEST(FootSlideTest, CountsFastStepsOfFeetOnTheFloor) {
   EXPECT_NEAR(slide.centimetres_a_frame, (10 + 1) / 2.0, 1e-4);
 }
 
-TEST(FootSlideTest, TheFloorIsWhereTheLowestFootGetsWhereverThatIs) {
+TEST(FootSlideTest, FloorIsTheLowestPointOfEitherFoot) {
   for (const float floor : {-3.0f, 3.0f}) {
     // At 10 Hz: a step of 10 cm on the floor; the other foot half a metre above it.
     const motion::Poses poses(3, {{0, floor + 1, 0},

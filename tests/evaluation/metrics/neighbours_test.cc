@@ -28,7 +28,7 @@ TEST(NeighbourAccuracyTest, TakesTheMajorityOfSeveral) {
   EXPECT_EQ(*NeighbourAccuracy(line, classes, 3), 0.6);
 }
 
-TEST(NeighbourAccuracyTest, OfEqualVotesTheNearestCounts) {
+TEST(NeighbourAccuracyTest, TiesGoToTheNearestSample) {
   const FeatureSet line = {{0}, {1}, {2.5f}};
   EXPECT_DOUBLE_EQ(*NeighbourAccuracy(line, {0, 0, 1}, 2), 2.0 / 3);
   EXPECT_DOUBLE_EQ(*NeighbourAccuracy(line, {1, 1, 0}, 2), 2.0 / 3);
@@ -40,7 +40,7 @@ TEST(NeighbourAccuracyTest, MeasuresInAllDimensions) {
   EXPECT_EQ(*NeighbourAccuracy(plane, {0, 1, 0, 1}, 1), 0.0);
 }
 
-TEST(NeighbourAccuracyTest, RefusesWhatDoesNotFitTogether) {
+TEST(NeighbourAccuracyTest, MismatchedSizesAreRejected) {
   EXPECT_THAT(NeighbourAccuracy({{0}, {1}}, {0}, 1),
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("wanted one for each of 2")));
   EXPECT_THAT(NeighbourAccuracy({{0}, {1}}, {0, 1}, 2),

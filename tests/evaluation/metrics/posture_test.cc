@@ -97,7 +97,7 @@ TEST(FloorGapTest, IsOfTheLowerFoot) {
   EXPECT_NEAR(MeasureFloorGap(poses, Figure(), 0.05).above, 0.15, 1e-6);
 }
 
-TEST(PostureTest, WithoutTheJointsThereIsNoFigure) {
+TEST(PostureTest, MissingJointsGiveNaN) {
   motion::Skeleton skeleton = Figure();
   skeleton.feet.reset();
   const motion::Poses held = Held(Stand({}, 0), 2);

@@ -53,7 +53,7 @@ TEST(ScoresTest, EachColumnHoldsItsOwnMetric) {
   EXPECT_NEAR(scores[ColumnOf("velocity_error")], 0, 1e-4);
 }
 
-TEST(ScoresTest, TheRawUnitIsOfTheWorldAsCaptured) {
+TEST(ScoresTest, RawUnitIsMeasuredInTheWorldAsCaptured) {
   dataset::Dataset dataset = MadeUpPairs(1);
   // Captured by a camera that is pitched by 45 degrees.
   dataset.sequences[0].levelling = motion::Levelling({0, 1, 1}, 0.5f);
@@ -77,7 +77,7 @@ TEST(ScoresTest, AveragesOverTheMotionsOfAClass) {
   EXPECT_TRUE(std::isnan(by_class[1][ColumnOf("afd_squared")]));
 }
 
-TEST(ScoresTest, DepthIsAveragedOverPenetratingMotionsAlone) {
+TEST(ScoresTest, DepthIsAveragedOnlyOverPenetratingMotions) {
   const dataset::Dataset dataset = MadeUpPairs(2);
   std::vector<ScoredMotion> motions = CapturedMotions(dataset, {0, 1});
   const size_t frequency = ColumnOf("penetration_frequency");

@@ -31,7 +31,7 @@ TEST(TouchTest, HandsAndFeetEndTheLimbs) {
                                    skeleton.Find("left_foot"), skeleton.Find("right_foot")));
 }
 
-TEST(TouchTest, CountsFramesInWhichAHandIsAtTheLeader) {
+TEST(TouchTest, CountsFramesWithAHandNearTheLeader) {
   const motion::Skeleton skeleton = motion::SbuSkeleton();
   const motion::Poses leader = Stick({}, 4);
   motion::Poses follower = Stick({1, 0, 0}, 4);
@@ -50,7 +50,7 @@ TEST(TouchTest, AnElbowDoesNotCount) {
   EXPECT_EQ(TouchShare(Stick({}, 2), follower, skeleton, motion::SbuParts()), 0);
 }
 
-TEST(TouchTest, WithoutLimbsThereIsNoFigure) {
+TEST(TouchTest, MissingLimbsGiveNaN) {
   EXPECT_TRUE(std::isnan(TouchShare(Stick({}, 2), Stick({}, 2), motion::SbuSkeleton(), {})));
 }
 

@@ -69,13 +69,13 @@ TEST(FoldScorer, TrainsNoJudgeUnlessAsked) {
   EXPECT_THAT(scorer->JudgeSettings(), SizeIs(0));
 }
 
-TEST(FoldScorer, NamesASubjectThatIsNotThere) {
+TEST(FoldScorer, UnknownSubjectIsNamed) {
   const absl::Status status = FoldScorer::Create(MadeUpPairs(3), {"zoe"}, false).status();
   EXPECT_TRUE(absl::IsNotFound(status)) << status;
   EXPECT_THAT(std::string(status.message()), HasSubstr("zoe"));
 }
 
-TEST(FoldSubjects, AreThoseAskedForOrElseEverybody) {
+TEST(FoldSubjects, DefaultToEverySubject) {
   dataset::Dataset dataset = MadeUpPairs(3);
   EXPECT_THAT(*FoldSubjects(dataset, {"b"}), ElementsAre("b"));
   EXPECT_THAT(*FoldSubjects(dataset, {}), ElementsAre("a", "b", "c"));

@@ -65,7 +65,7 @@ TEST(ProtocolTest, LeavesEachSubjectOutOnce) {
   EXPECT_EQ(PoolMotions(*folds).size(), 6u);
 }
 
-TEST(ProtocolTest, HidesTheAnswer) {
+TEST(ProtocolTest, MethodsDoNotSeeTheFollower) {
   const dataset::Dataset dataset = MadeUpPairs(3);
   Recorder method;
   ASSERT_THAT(RunLeaveOneSubjectOut(dataset, {"a"}, &method), IsOk());
@@ -76,7 +76,7 @@ TEST(ProtocolTest, HidesTheAnswer) {
   EXPECT_THAT(method.follower_frames, ElementsAre(1, 1));
 }
 
-TEST(ProtocolTest, RefusesWrongAnswersByName) {
+TEST(ProtocolTest, InvalidAnswersAreErrorsThatNameMethodAndSequence) {
   const dataset::Dataset dataset = MadeUpPairs(3);
   Recorder method;
   method.spoil = [](motion::Poses* answer) { answer->DropFront(1); };
@@ -91,7 +91,7 @@ TEST(ProtocolTest, RefusesWrongAnswersByName) {
               StatusIs(absl::StatusCode::kInternal, HasSubstr("not finite")));
 }
 
-TEST(ProtocolTest, SaysWhichMethodFailedOnWhichSequence) {
+TEST(ProtocolTest, FailuresNameMethodAndSequence) {
   const dataset::Dataset dataset = MadeUpPairs(3);
   Recorder method;
   method.predict_status = absl::UnavailableError("the network failed");
@@ -100,7 +100,7 @@ TEST(ProtocolTest, SaysWhichMethodFailedOnWhichSequence) {
       StatusIs(absl::StatusCode::kUnavailable, HasSubstr("recorder: 0/0: the network failed")));
 }
 
-TEST(ProtocolTest, PassesErrorsOn) {
+TEST(ProtocolTest, ErrorsOfSubjectsAndTrainingAreReturned) {
   const dataset::Dataset dataset = MadeUpPairs(3);
   Recorder method;
   EXPECT_THAT(RunLeaveOneSubjectOut(dataset, {"z"}, &method),

@@ -25,7 +25,7 @@ TEST(CleanUpTableTest, HasARowForEachStageAndNoneMovesCaptures) {
   for (int column = 0; column < 3; ++column) EXPECT_EQ(captured.values[column], 0) << column;
 }
 
-TEST(CleanUpTableTest, AFollowerThatFloatsIsSetDownByTheFloorAlone) {
+TEST(CleanUpTableTest, OnlyTheFloorStageLowersAFloatingFollower) {
   dataset::Dataset dataset = MadeUpPairs(1);
   for (dataset::Sequence& sequence : dataset.sequences) {
     for (motion::Vec3& joint : sequence.pair.follower.poses.all()) joint.y += 0.5f;

@@ -37,7 +37,7 @@ TEST(MetricStyles, CoverEveryFigureOnce) {
   EXPECT_EQ(styled, wanted);
 }
 
-TEST(MetricTable, LeavesOutWhatHasNoFigure) {
+TEST(MetricTable, OmitsMethodsWithoutTheFigure) {
   const std::vector<MethodFigures> methods = {
       {"a", false, {{"afd", {1, 3}}, {"jitter", {5, 7}}}},
       {"b", false, {{"jitter", {6, 8}}}},
@@ -65,7 +65,7 @@ TEST(AddPrintedRows, SetsThePapersRowsApart) {
   EXPECT_EQ(table.notes.back(), paper.notes.back());
 }
 
-TEST(AddPrintedRows, SaysWhenTheClassesAreOthers) {
+TEST(AddPrintedRows, OtherClassesGetANoteInsteadOfRows) {
   Table table = MetricTable(Style(kFrechet), {"wave"}, {{"ours", false, {{kFrechet, {1}}}}});
   AddPrintedRows(PaperFidSbu(), &table);
   EXPECT_THAT(RowNames(table), ElementsAre("ours"));

@@ -46,7 +46,7 @@ TEST(SampleTablesTest, RowsOfOneNameBecomeTheirMeanAndSpread) {
   EXPECT_NEAR(Cell(spread, "flow", "FID"), std::sqrt(2), 1e-9);
 }
 
-TEST(SampleTablesTest, ByClassThereIsATableForEveryFigureThatIsThere) {
+TEST(SampleTablesTest, EveryAvailableFigureHasATableByClass) {
   const std::vector<Table> tables = SampleTables({"kick", "hug"}, Rows());
   ASSERT_EQ(tables.size(), 4u);  // both ratios and both figures they come from
   EXPECT_THAT(tables[0].columns, ElementsAre("kick", "hug", "mean"));

@@ -36,7 +36,7 @@ TEST(TrialTablesTest, DeviationsMarkNone) {
   EXPECT_EQ(deviations.best, Best::kNone);
 }
 
-TEST(TrialTablesTest, AGainIsThreeRows) {
+TEST(TrialTablesTest, GainHasMeanDeviationAndShareRows) {
   const Table gains = GainsTable("gains", TwoRows(), "real");
   ASSERT_EQ(gains.rows.size(), 3u);
   EXPECT_EQ(gains.rows[0].name, "more");
@@ -48,7 +48,7 @@ TEST(TrialTablesTest, AGainIsThreeRows) {
   EXPECT_THAT(gains.rows[2].values, ElementsAre(0.5, 0.5));
 }
 
-TEST(TrialTablesTest, GainsOverARowThatIsNotThereAreEmpty) {
+TEST(TrialTablesTest, GainsWithoutTheBaseRowAreEmpty) {
   EXPECT_TRUE(GainsTable("gains", TwoRows(), "nothing").rows.empty());
 }
 
