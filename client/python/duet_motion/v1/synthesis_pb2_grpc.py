@@ -6,29 +6,32 @@ from duet_motion.v1 import synthesis_pb2 as duet_dot_v1_dot_synthesis__pb2
 
 
 class MotionSynthesisStub(object):
-    """Answers one character's motion with another's.
+    """Synthesizes the motion of one character (the follower) in response to the motion of another (the
+    leader).
 
-    Every refusal carries google.rpc details (grpc-status-details-bin): BadRequest names each
-    offending field with what came and what was wanted, ErrorInfo gives a stable reason, RetryInfo
-    says when to come back.
+    Every error carries google.rpc details in `grpc-status-details-bin`. BadRequest lists each
+    invalid field with the expected and the received value. ErrorInfo contains a stable reason.
+    RetryInfo contains the delay after which to retry.
 
-    INVALID_ARGUMENT     a field is malformed; BadRequest names every such field
-    FAILED_PRECONDITION  the request does not fit the model (skeleton, follower start)
-    NOT_FOUND            unknown model, version or version label
-    RESOURCE_EXHAUSTED   too many calls, or bytes of them; the queue is full, or too long for the
-    deadline (all with RetryInfo); or the message is too large
-    UNAUTHENTICATED      the call says not who makes it, or not truly (CREDENTIALS_MISSING,
-    CREDENTIALS_INVALID), where the server asks for tokens
-    PERMISSION_DENIED    whoever makes it may not (CALLER_UNKNOWN, ROLE_MISSING)
-    UNAVAILABLE          the server is loading or draining (RetryInfo)
-    DEADLINE_EXCEEDED    the deadline passed, or is too near for the answer to be done by then; work
-    that had not started never starts. Also a request that takes too long to
-    arrive, an answer that nobody reads, and a call longer than the server
-    answers any (ErrorInfo tells which)
-    INTERNAL             the model failed; the text carries no internal detail
+    INVALID_ARGUMENT     A field is malformed. BadRequest lists every such field.
+    FAILED_PRECONDITION  The request does not fit the model (skeleton, follower start).
+    NOT_FOUND            The model, the version or the version label does not exist.
+    RESOURCE_EXHAUSTED   The server handles too many calls or too many request bytes, or its queue
+    is full or too long for the deadline (all with RetryInfo); or the message
+    is too large.
+    UNAUTHENTICATED      Credentials are missing or invalid (CREDENTIALS_MISSING,
+    CREDENTIALS_INVALID). Only if the server requires tokens.
+    PERMISSION_DENIED    The caller is not allowed to call this method (CALLER_UNKNOWN,
+    ROLE_MISSING).
+    UNAVAILABLE          The server is loading models or draining (RetryInfo).
+    DEADLINE_EXCEEDED    The deadline passed, or the server cannot finish before it. Work that has
+    not started by then never starts. Also returned if the request takes too
+    long to arrive, if the caller stops reading the response, and if the call
+    exceeds the server's maximum call duration. ErrorInfo contains the reason.
+    INTERNAL             The model failed. The message contains no internal details.
 
-    A live bidirectional call (leader frames in as they are captured) will join this service as its
-    own method; it will reuse SynthesizeResponse.
+    A bidirectional method for live sessions, in which the caller sends leader frames as they are
+    captured, will be added to this service. It will reuse SynthesizeResponse.
     """
 
     def __init__(self, channel):
@@ -55,48 +58,51 @@ class MotionSynthesisStub(object):
 
 
 class MotionSynthesisServicer(object):
-    """Answers one character's motion with another's.
+    """Synthesizes the motion of one character (the follower) in response to the motion of another (the
+    leader).
 
-    Every refusal carries google.rpc details (grpc-status-details-bin): BadRequest names each
-    offending field with what came and what was wanted, ErrorInfo gives a stable reason, RetryInfo
-    says when to come back.
+    Every error carries google.rpc details in `grpc-status-details-bin`. BadRequest lists each
+    invalid field with the expected and the received value. ErrorInfo contains a stable reason.
+    RetryInfo contains the delay after which to retry.
 
-    INVALID_ARGUMENT     a field is malformed; BadRequest names every such field
-    FAILED_PRECONDITION  the request does not fit the model (skeleton, follower start)
-    NOT_FOUND            unknown model, version or version label
-    RESOURCE_EXHAUSTED   too many calls, or bytes of them; the queue is full, or too long for the
-    deadline (all with RetryInfo); or the message is too large
-    UNAUTHENTICATED      the call says not who makes it, or not truly (CREDENTIALS_MISSING,
-    CREDENTIALS_INVALID), where the server asks for tokens
-    PERMISSION_DENIED    whoever makes it may not (CALLER_UNKNOWN, ROLE_MISSING)
-    UNAVAILABLE          the server is loading or draining (RetryInfo)
-    DEADLINE_EXCEEDED    the deadline passed, or is too near for the answer to be done by then; work
-    that had not started never starts. Also a request that takes too long to
-    arrive, an answer that nobody reads, and a call longer than the server
-    answers any (ErrorInfo tells which)
-    INTERNAL             the model failed; the text carries no internal detail
+    INVALID_ARGUMENT     A field is malformed. BadRequest lists every such field.
+    FAILED_PRECONDITION  The request does not fit the model (skeleton, follower start).
+    NOT_FOUND            The model, the version or the version label does not exist.
+    RESOURCE_EXHAUSTED   The server handles too many calls or too many request bytes, or its queue
+    is full or too long for the deadline (all with RetryInfo); or the message
+    is too large.
+    UNAUTHENTICATED      Credentials are missing or invalid (CREDENTIALS_MISSING,
+    CREDENTIALS_INVALID). Only if the server requires tokens.
+    PERMISSION_DENIED    The caller is not allowed to call this method (CALLER_UNKNOWN,
+    ROLE_MISSING).
+    UNAVAILABLE          The server is loading models or draining (RetryInfo).
+    DEADLINE_EXCEEDED    The deadline passed, or the server cannot finish before it. Work that has
+    not started by then never starts. Also returned if the request takes too
+    long to arrive, if the caller stops reading the response, and if the call
+    exceeds the server's maximum call duration. ErrorInfo contains the reason.
+    INTERNAL             The model failed. The message contains no internal details.
 
-    A live bidirectional call (leader frames in as they are captured) will join this service as its
-    own method; it will reuse SynthesizeResponse.
+    A bidirectional method for live sessions, in which the caller sends leader frames as they are
+    captured, will be added to this service. It will reuse SynthesizeResponse.
     """
 
     def Synthesize(self, request, context):
-        """Streams the follower's motion: one header, then chunks in frame order, then one summary.
-        A stream that ends without a summary is incomplete, whatever its status.
+        """Synthesizes a follower for a leader and streams its motion: one header, then chunks in frame
+        order, then one summary. A stream without a summary is incomplete, even if its status is OK.
         """
         context.set_code(grpc.StatusCode.UNIMPLEMENTED)
         context.set_details('Method not implemented!')
         raise NotImplementedError('Method not implemented!')
 
     def ListModels(self, request, context):
-        """Lists every model version being served, by name, newest version first.
+        """Lists every model version that the server serves, ordered by name, then by descending version.
         """
         context.set_code(grpc.StatusCode.UNIMPLEMENTED)
         context.set_details('Method not implemented!')
         raise NotImplementedError('Method not implemented!')
 
     def GetModel(self, request, context):
-        """Describes one model version and the limits that a request to it must keep.
+        """Gets one model version and the limits on requests to it.
         """
         context.set_code(grpc.StatusCode.UNIMPLEMENTED)
         context.set_details('Method not implemented!')
@@ -128,29 +134,32 @@ def add_MotionSynthesisServicer_to_server(servicer, server):
 
  # This class is part of an EXPERIMENTAL API.
 class MotionSynthesis(object):
-    """Answers one character's motion with another's.
+    """Synthesizes the motion of one character (the follower) in response to the motion of another (the
+    leader).
 
-    Every refusal carries google.rpc details (grpc-status-details-bin): BadRequest names each
-    offending field with what came and what was wanted, ErrorInfo gives a stable reason, RetryInfo
-    says when to come back.
+    Every error carries google.rpc details in `grpc-status-details-bin`. BadRequest lists each
+    invalid field with the expected and the received value. ErrorInfo contains a stable reason.
+    RetryInfo contains the delay after which to retry.
 
-    INVALID_ARGUMENT     a field is malformed; BadRequest names every such field
-    FAILED_PRECONDITION  the request does not fit the model (skeleton, follower start)
-    NOT_FOUND            unknown model, version or version label
-    RESOURCE_EXHAUSTED   too many calls, or bytes of them; the queue is full, or too long for the
-    deadline (all with RetryInfo); or the message is too large
-    UNAUTHENTICATED      the call says not who makes it, or not truly (CREDENTIALS_MISSING,
-    CREDENTIALS_INVALID), where the server asks for tokens
-    PERMISSION_DENIED    whoever makes it may not (CALLER_UNKNOWN, ROLE_MISSING)
-    UNAVAILABLE          the server is loading or draining (RetryInfo)
-    DEADLINE_EXCEEDED    the deadline passed, or is too near for the answer to be done by then; work
-    that had not started never starts. Also a request that takes too long to
-    arrive, an answer that nobody reads, and a call longer than the server
-    answers any (ErrorInfo tells which)
-    INTERNAL             the model failed; the text carries no internal detail
+    INVALID_ARGUMENT     A field is malformed. BadRequest lists every such field.
+    FAILED_PRECONDITION  The request does not fit the model (skeleton, follower start).
+    NOT_FOUND            The model, the version or the version label does not exist.
+    RESOURCE_EXHAUSTED   The server handles too many calls or too many request bytes, or its queue
+    is full or too long for the deadline (all with RetryInfo); or the message
+    is too large.
+    UNAUTHENTICATED      Credentials are missing or invalid (CREDENTIALS_MISSING,
+    CREDENTIALS_INVALID). Only if the server requires tokens.
+    PERMISSION_DENIED    The caller is not allowed to call this method (CALLER_UNKNOWN,
+    ROLE_MISSING).
+    UNAVAILABLE          The server is loading models or draining (RetryInfo).
+    DEADLINE_EXCEEDED    The deadline passed, or the server cannot finish before it. Work that has
+    not started by then never starts. Also returned if the request takes too
+    long to arrive, if the caller stops reading the response, and if the call
+    exceeds the server's maximum call duration. ErrorInfo contains the reason.
+    INTERNAL             The model failed. The message contains no internal details.
 
-    A live bidirectional call (leader frames in as they are captured) will join this service as its
-    own method; it will reuse SynthesizeResponse.
+    A bidirectional method for live sessions, in which the caller sends leader frames as they are
+    captured, will be added to this service. It will reuse SynthesizeResponse.
     """
 
     @staticmethod
